@@ -84,9 +84,9 @@ class Fault(str):
         return Fault, (str(self), self.code)
 
 
-def code_of(fault: str, otherwise: FaultCode) -> FaultCode:
-    """Return the code of a fault, or ``otherwise`` for a plain string."""
-    return fault.code if isinstance(fault, Fault) else otherwise
+def get_fault_code(fault: str, default: FaultCode) -> FaultCode:
+    """Return the code of a fault, or ``default`` for a plain string."""
+    return fault.code if isinstance(fault, Fault) else default
 
 
 class DriverError(CodedError):
@@ -101,7 +101,7 @@ class DriverError(CodedError):
         self, text: str = "", code: FaultCode | None = None, *, reason: str = "", **values: object
     ) -> None:
         super().__init__(Message(text, **values) if values else text)
-        self.code: FaultCode = code or code_of(text, "driver")
+        self.code: FaultCode = code or get_fault_code(text, "driver")
         self.reason = reason
 
     @property
@@ -113,51 +113,51 @@ class DriverError(CodedError):
 class TrippedError(DriverError):
     """The driver host has switched something off and rejects commands until the trip is acknowledged.
 
-    See ``Tripping``.
+    See ``TrippingDriverHost``.
     """
 
     def __init__(self, text: str) -> None:
         super().__init__(text, "late")
 
 
-class Trip(NamedTuple):
+class DriverHostTrip(NamedTuple):
     """Functions that the driver host has switched off because it received no messages from the control.
 
-    ``away`` is the time without messages, in seconds. ``spindle`` means that the spindle was commanded to
-    turn. ``outputs`` are the outputs that were on. ``found`` means that the machine was out of contact
-    instead, and that these functions remained on.
+    ``silence_s`` is the time without messages, in seconds. ``spindle`` means that the spindle was commanded
+    to turn. ``active_outputs`` are the outputs that were on. ``was_connection_lost`` means that the machine
+    was out of contact instead, and that these functions remained on.
     """
 
     number: int
-    away: float
+    silence_s: float
     spindle: bool
-    outputs: tuple[str, ...]
-    found: bool = False
+    active_outputs: tuple[str, ...]
+    was_connection_lost: bool = False
 
 
-class Tripping(Protocol):
+class TrippingDriverHost(Protocol):
     """A driver host that stops the spindle and the outputs when the control is silent.
 
     It then raises TrippedError for setpoints and for commands that switch something on, until the control
     acknowledges the trip.
     """
 
-    def tripped(self) -> Trip | None:
+    def get_active_trip(self) -> DriverHostTrip | None:
         """Return the trip that is not acknowledged yet, or None."""
         ...
 
-    def acknowledge(self, trip: Trip) -> None:
+    def acknowledge(self, trip: DriverHostTrip) -> None:
         """Acknowledge this trip; a newer trip remains active. Raises DriverError."""
         ...
 
 
-class Unknown(StrEnum):
+class UnknownPart(StrEnum):
     """Parts of the machine whose state is unknown because their connection is lost or silent."""
 
-    SLIDES = "slides"
+    AXES = "slides"
     SPINDLE = "spindle"
     OUTPUTS = "outputs"
     INPUTS = "inputs"
 
 
-ALL_UNKNOWN = frozenset(Unknown)
+ALL_UNKNOWN_PARTS = frozenset(UnknownPart)

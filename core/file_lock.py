@@ -22,7 +22,7 @@ _ENDING = ".unfinished"
 _BESIDE = ("-journal", "-wal", "-shm")  # files that SQLite creates for a copy of a store
 
 
-def lock(file: int) -> None:
+def lock_file(file: int) -> None:
     """Lock the file without waiting, for as long as it is open.
 
     Raises OSError if another process has locked the file. Systems without locks are ignored.
@@ -63,17 +63,17 @@ def is_locked(file: int) -> bool:
     Linux reports record locks of open files, but has no query for ``flock``. On other systems the file is
     locked for an instant, so a process that tries to lock it at that instant must try again.
     """
-    found = _asked(file)
+    found = _read_lock_info(file)
     if found is not None:
         return found
     try:
-        lock(file)
+        lock_file(file)
     except OSError:
         return True
     return False
 
 
-def _asked(file: int) -> bool | None:
+def _read_lock_info(file: int) -> bool | None:
     """Return the system's information about the lock; None if the system has none."""
     if sys.platform == "win32":
         return None
@@ -96,12 +96,12 @@ def _record(kind: int) -> bytes:
 
 
 @contextmanager
-def unfinished_file(target: Path) -> Iterator[Path]:
+def create_unfinished_file(target: Path) -> Iterator[Path]:
     """Create an empty temporary file next to ``target``, to be written and renamed; delete it afterwards.
 
     Raises OSError if the file cannot be created.
     """
-    forget_killed(target.parent)
+    remove_abandoned_files(target.parent)
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
     if sys.platform == "win32":
         os.close(handle)
@@ -114,12 +114,12 @@ def unfinished_file(target: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def unfinished_folder(target: Path) -> Iterator[Path]:
+def create_unfinished_folder(target: Path) -> Iterator[Path]:
     """Create a temporary folder next to ``target``, to be filled and renamed; delete it afterwards.
 
     Raises OSError if the folder cannot be created.
     """
-    forget_killed(target.parent)
+    remove_abandoned_files(target.parent)
     folder = tempfile.mkdtemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
     try:
         with _locked(_opened(Path(folder))):
@@ -128,13 +128,13 @@ def unfinished_folder(target: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def forget_killed(folder: Path) -> None:
+def remove_abandoned_files(folder: Path) -> None:
     """Remove the temporary files of killed writers from a folder. Files that are being written remain."""
     if sys.platform == "win32":
         return
     with suppress(OSError):
         for leftover in folder.glob(f".*{_ENDING}"):
-            if not _is_held(leftover):
+            if not _is_written_elsewhere(leftover):
                 _remove(leftover)
         for ending in _BESIDE:
             for beside in folder.glob(f".*{_ENDING}{ending}"):
@@ -154,20 +154,20 @@ def _opened(path: Path) -> int:
 def _locked(handle: int) -> Iterator[None]:
     try:
         if handle >= 0:
-            lock(handle)
+            lock_file(handle)
         yield
     finally:
         if handle >= 0:
             os.close(handle)
 
 
-def _is_held(path: Path) -> bool:
+def _is_written_elsewhere(path: Path) -> bool:
     """Return whether another process is writing the file; True if this is unknown."""
     handle = _opened(path)
     if handle < 0:
         return True
     try:
-        lock(handle)
+        lock_file(handle)
     except OSError:
         return True
     finally:

@@ -1,7 +1,7 @@
 """Reading of input files: regular files of limited size, uniform errors, and TOML.
 
-A reader calls ``input_bytes``, which raises only OSError, and parses the data within ``failures_as``, which
-converts all exceptions of the parser into the reader's own error.
+A reader calls ``read_input_bytes``, which raises only OSError, and parses the data within
+``convert_exceptions``, which converts all exceptions of the parser into the reader's own error.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 
 from core.message import CodedError, Message
 
-MB = 1024 * 1024
+BYTES_PER_MB = 1024 * 1024
 # Opening a pipe without a writer must not block. A terminal must not become the process's controlling
 # terminal.
 _FLAGS = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
@@ -30,7 +30,7 @@ class TooLargeError(OSError):
     """The file is larger than the limit for its kind."""
 
 
-def open_input(path: Path, most: int | None = None) -> BufferedReader:
+def open_input_file(path: Path, max_bytes: int | None = None) -> BufferedReader:
     """Open a regular file of at most ``most`` bytes without blocking. Raises only OSError.
 
     None as ``most`` permits any size, for callers that read only part of the file.
@@ -42,7 +42,7 @@ def open_input(path: Path, most: int | None = None) -> BufferedReader:
     except ValueError as error:  # the name contains a zero byte
         raise OSError(errno.EINVAL, "a file cannot have this name", str(path)) from error
     try:
-        _check(path, os.fstat(file.fileno()), most)
+        _check(path, os.fstat(file.fileno()), max_bytes)
     except BaseException:
         file.close()
         raise
@@ -56,39 +56,43 @@ def _check(path: Path, status: os.stat_result, most: int | None) -> None:
         raise _too_large(path, most)
 
 
-def input_bytes(path: Path, most: int) -> bytes:
+def read_input_bytes(path: Path, max_bytes: int) -> bytes:
     """Return the contents of a regular file of at most ``most`` bytes. Raises only OSError."""
-    with open_input(path, most) as file:
-        data = file.read(most + 1)
+    with open_input_file(path, max_bytes) as file:
+        data = file.read(max_bytes + 1)
     # another process is still writing the file, or its file system does not report its size
-    if len(data) > most:
-        raise _too_large(path, most)
+    if len(data) > max_bytes:
+        raise _too_large(path, max_bytes)
     return data
 
 
-def input_text(path: Path, most: int, encoding: str = "utf-8") -> str:
+def read_input_text(path: Path, max_bytes: int, encoding: str = "utf-8") -> str:
     r"""Return the text of a regular file with ``\n`` as line ends. Raises OSError or UnicodeDecodeError."""
-    return input_bytes(path, most).decode(encoding).replace("\r\n", "\n")
+    return read_input_bytes(path, max_bytes).decode(encoding).replace("\r\n", "\n")
 
 
 def _too_large(path: Path, most: int) -> TooLargeError:
     return TooLargeError(
-        errno.EINVAL, Message("the file is larger than {most_bytes} MB", most_bytes=most // MB), str(path)
+        errno.EINVAL,
+        Message("the file is larger than {most_bytes} MB", most_bytes=most // BYTES_PER_MB),
+        str(path),
     )
 
 
 @contextmanager
-def failures_as(refusal: Callable[[Exception], Exception]) -> Iterator[None]:
-    """Convert every exception of a parser into ``refusal(error)``, except exceptions of type CodedError."""
+def convert_exceptions(make_error: Callable[[Exception], Exception]) -> Iterator[None]:
+    """Convert every exception of a parser into ``make_error(error)``, except exceptions of type
+    CodedError.
+    """
     try:
         yield
     except CodedError:
         raise
     except Exception as error:
-        raise refusal(error) from error
+        raise make_error(error) from error
 
 
-def toml_tables(text: str) -> dict[str, object]:
+def parse_toml(text: str) -> dict[str, object]:
     """Return the tables of a TOML text.
 
     Raises only ValueError, with the cause and, if known, the location.

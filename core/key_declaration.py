@@ -11,24 +11,24 @@ from typing import Any, NamedTuple, TypeVar, dataclass_transform
 # --- Units of a machine file. The file has its own units; the model has mm, seconds, degrees and rpm.
 
 
-INCH = 25.4
+MM_PER_INCH = 25.4
 
 
-class Unit(StrEnum):
+class FileUnit(StrEnum):
     """Unit of a number in the machine file, as shown in findings; ``len`` means in or mm."""
 
-    PLAIN = ""
+    UNITLESS = ""
     LENGTH = "len"
     FEED = "len/min"
-    ACCEL = "len/s²"
+    ACCELERATION = "len/s²"
     MILLISECONDS = "ms"
     SECONDS = "s"
     PERCENT = "%"
     DEGREES = "deg"
     RPM = "rpm"
     RPM_PER_SECOND = "rpm/s"
-    TURNS_PER_MINUTE = "rpm of the C axis"
-    TURNS_PER_MINUTE_SECOND = "rpm/s of the C axis"
+    C_AXIS_RPM = "rpm of the C axis"
+    C_AXIS_RPM_PER_SECOND = "rpm/s of the C axis"
     DEGREES_PER_MINUTE = "deg/min"
     DEGREES_PER_SECOND_SQUARED = "deg/s²"
     KILOWATTS = "kW"
@@ -36,50 +36,50 @@ class Unit(StrEnum):
 
 # Divisors instead of factors, so that 300 in/min gives exactly the same number as the word F300.
 _DIVISOR = {
-    Unit.FEED: 60.0,
-    Unit.DEGREES_PER_MINUTE: 60.0,
-    Unit.MILLISECONDS: 1000.0,
-    Unit.PERCENT: 100.0,
+    FileUnit.FEED: 60.0,
+    FileUnit.DEGREES_PER_MINUTE: 60.0,
+    FileUnit.MILLISECONDS: 1000.0,
+    FileUnit.PERCENT: 100.0,
 }
-_MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0, Unit.KILOWATTS: 1000.0}
-LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
+_MULTIPLIER = {FileUnit.C_AXIS_RPM: 6.0, FileUnit.C_AXIS_RPM_PER_SECOND: 6.0, FileUnit.KILOWATTS: 1000.0}
+LENGTH_UNITS = frozenset((FileUnit.LENGTH, FileUnit.FEED, FileUnit.ACCELERATION))
 
 
-def to_model(value: float, unit: Unit, inch: bool) -> float:
+def convert_to_model(value: float, unit: FileUnit, is_inch: bool) -> float:
     """Return a number of the machine file in the unit of the model."""
-    length = value * INCH if inch and unit in LENGTHS else value
+    length = value * MM_PER_INCH if is_inch and unit in LENGTH_UNITS else value
     return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
 
 
-def to_file(value: float, unit: Unit, inch: bool) -> float:
+def convert_to_file(value: float, unit: FileUnit, is_inch: bool) -> float:
     """Return a number of the model in the unit of the machine file."""
     number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
-    return number / INCH if inch and unit in LENGTHS else number
+    return number / MM_PER_INCH if is_inch and unit in LENGTH_UNITS else number
 
 
-def word(unit: Unit, inch: bool) -> str:
+def make_unit_text(unit: FileUnit, is_inch: bool) -> str:
     """Return the unit as text with a space in front, with in or mm for lengths; empty for plain numbers."""
-    text = unit.value.replace("len", "in" if inch else "mm")
+    text = unit.value.replace("len", "in" if is_inch else "mm")
     return f" {text}" if text else ""
 
 
-def shown(value: float, unit: Unit, inch: bool) -> str:
+def format_value(value: float, unit: FileUnit, is_inch: bool) -> str:
     """Return a number of the model as text with the unit of the machine file."""
-    return f"{to_file(value, unit, inch):.6g}{word(unit, inch)}"
+    return f"{convert_to_file(value, unit, is_inch):.6g}{make_unit_text(unit, is_inch)}"
 
 
 Pair = tuple[float, float]
 Triple = tuple[float, float, float]
-Value = float | bool | str | Pair | Triple | tuple[float, ...]
+KeyValue = float | bool | str | Pair | Triple | tuple[float, ...]
 Words = str  # a list of words, stored as one text separated by spaces
 
 
-class Kind(Enum):
+class ValueKind(Enum):
     """Kinds of values, with their descriptions in findings."""
 
     NUMBER = "a number"
-    WHOLE = "a whole number"
-    FLAG = "true or false"
+    INTEGER = "a whole number"
+    BOOLEAN = "true or false"
     TEXT = "nonblank text in quotation marks"
     PAIR = "two numbers, [low, high]"
     TRIPLE = "three numbers, [x, y, z]"
@@ -89,7 +89,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class KeyField:
     """A key of the machine file: its kind, unit, range in the model's unit, and default.
 
     The key is required if ``default`` is None. ``attribute`` is the attribute that holds the value.
@@ -99,45 +99,45 @@ class Field:
 
     key: str
     attribute: str
-    kind: Kind
-    unit: Unit
-    low: float
-    high: float
-    default: Value | None
+    kind: ValueKind
+    unit: FileUnit
+    minimum: float
+    maximum: float
+    default: KeyValue | None
     choices: tuple[str | bool, ...]
-    derived: bool
+    is_derived: bool
     meaning: str
 
 
 # --- Declarations. A class declares the schema of a table, and its instances hold the values.
 
 
-class Range(NamedTuple):
+class KeyRange(NamedTuple):
     """Minimum and maximum of a number in the model's unit, and its unit in the file."""
 
-    low: float = 0.0
-    high: float = 0.0
-    unit: Unit = Unit.PLAIN
+    minimum: float = 0.0
+    maximum: float = 0.0
+    unit: FileUnit = FileUnit.UNITLESS
 
 
 class _Key(NamedTuple):
     """A declared key before its class exists; an empty ``name`` means the name of the attribute."""
 
-    range: Range
+    range: KeyRange
     meaning: str
     name: str
-    default: Value | None
+    default: KeyValue | None
     choices: tuple[str | bool, ...]
     derived: bool
     secret: bool
 
 
-def file_key(
-    range: Range = Range(),  # noqa: B008  immutable
+def declare_key(
+    range: KeyRange = KeyRange(),  # noqa: B008  immutable
     *,
     meaning: str,
     name: str = "",
-    default: Value | None = None,
+    default: KeyValue | None = None,
     choices: tuple[str | bool, ...] = (),
     derived: bool = False,
     secret: bool = False,
@@ -145,28 +145,28 @@ def file_key(
     """Declare a key on an attribute of a class. The annotation of the attribute is the kind of the value.
 
     ``name`` is the key in the file if it differs from the attribute's name. A ``secret`` value is not
-    printed. The other arguments are described in ``Field``.
+    printed. The other arguments are described in ``KeyField``.
     """
     return _Key(range, meaning, name, default, choices, derived, secret)
 
 
 _KINDS = {
-    "float": Kind.NUMBER,
-    "int": Kind.WHOLE,
-    "bool": Kind.FLAG,
-    "str": Kind.TEXT,
-    "Pair": Kind.PAIR,
-    "Triple": Kind.TRIPLE,
-    "tuple[float, ...]": Kind.NUMBERS,
-    "Words": Kind.WORDS,
+    "float": ValueKind.NUMBER,
+    "int": ValueKind.INTEGER,
+    "bool": ValueKind.BOOLEAN,
+    "str": ValueKind.TEXT,
+    "Pair": ValueKind.PAIR,
+    "Triple": ValueKind.TRIPLE,
+    "tuple[float, ...]": ValueKind.NUMBERS,
+    "Words": ValueKind.WORDS,
 }
 _Table = TypeVar("_Table")
-# the keys declared by each class with ``key_table``, which replaces them by defaults
+# the keys declared by each class with ``make_key_table``, which replaces them by defaults
 _declared: dict[type, Mapping[str, object]] = {}
 
 
-@dataclass_transform(frozen_default=True, field_specifiers=(file_key, field))
-def key_table(table: type[_Table]) -> type[_Table]:
+@dataclass_transform(frozen_default=True, field_specifiers=(declare_key, field))
+def make_key_table(table: type[_Table]) -> type[_Table]:
     """Convert a class that declares keys into a frozen dataclass with slots."""
     declared = dict(vars(table))
     for name, each in declared.items():
@@ -181,16 +181,16 @@ def key_table(table: type[_Table]) -> type[_Table]:
     return made
 
 
-Schema = type | tuple[Field, ...]  # a class that declares keys, or the keys themselves
+KeySchema = type | tuple[KeyField, ...]  # a class that declares keys, or the keys themselves
 
 
-def keys_of(table: Schema) -> tuple[Field, ...]:
+def get_declared_keys(table: KeySchema) -> tuple[KeyField, ...]:
     """Return the keys that a class declares, in order."""
     return table if isinstance(table, tuple) else _keys_of_class(table)
 
 
 @cache
-def _keys_of_class(table: type) -> tuple[Field, ...]:
+def _keys_of_class(table: type) -> tuple[KeyField, ...]:
     return tuple(
         _field(name, each, base.__annotations__[name])
         for base in reversed(table.__mro__)
@@ -199,10 +199,10 @@ def _keys_of_class(table: type) -> tuple[Field, ...]:
     )
 
 
-def _field(name: str, each: _Key, annotation: str) -> Field:
-    kind = Kind.CHOICE if each.choices else _KINDS[annotation]
+def _field(name: str, each: _Key, annotation: str) -> KeyField:
+    kind = ValueKind.CHOICE if each.choices else _KINDS[annotation]
     low, high, unit = each.range
-    return Field(
+    return KeyField(
         each.name or name,
         name,
         kind,

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from typing import Any, Self
 
-Value = str | int | float
-CASES: dict[str, Callable[[str], str]] = {
+MessageValue = str | int | float
+LETTER_CASES: dict[str, Callable[[str], str]] = {
     "upper": str.upper,
     "lower": str.lower,
     "capitalize": str.capitalize,
@@ -20,19 +20,19 @@ class Message(str):
 
     For code that only reads it, a message is an ordinary ``str``. ``template`` has fields as for
     ``str.format``, without format specifications. ``values`` are the values of the fields by name; a value
-    may be a ``Message``. ``case`` is the change of capitals, one of ``CASES`` or empty.
+    may be a ``Message``. ``case`` is the change of capitals, one of ``LETTER_CASES`` or empty.
     """
 
     __slots__ = ("case", "template", "values")
 
     template: str
-    values: dict[str, Value]
+    values: dict[str, MessageValue]
     case: str
 
     def __new__(cls, template: str, /, **values: object) -> Self:
         """Fill the template with the values. A value that is not text or a number becomes ``str(value)``."""
         named = ((name, values[name]) for name in _names_of(template))
-        known = {name: each if isinstance(each, Value) else str(each) for name, each in named}
+        known = {name: each if isinstance(each, MessageValue) else str(each) for name, each in named}
         made = super().__new__(cls, template.format(**known))
         made.template, made.values, made.case = template, known, ""
         return made
@@ -57,17 +57,17 @@ class Message(str):
         """Return the message with a capital first letter and all other letters in lower case."""
         return self._in_case("capitalize")
 
-    def as_sentence(self) -> Message:
+    def capitalize_first_letter(self) -> Message:
         """Return the message with a capital first letter; the other letters remain unchanged."""
         return self._in_case("sentence")
 
     def _in_case(self, case: str) -> Message:
-        made = str.__new__(Message, CASES[case](str.__str__(self)))
+        made = str.__new__(Message, LETTER_CASES[case](str.__str__(self)))
         made.template, made.values, made.case = self.template, self.values, case
         return made
 
 
-def worded(text: str, values: Mapping[str, object]) -> str:
+def fill_template(text: str, values: Mapping[str, object]) -> str:
     """Fill a text with values, formatting floats with at most six digits.
 
     A ``Message``, or a text without values, is returned unchanged.
@@ -84,7 +84,7 @@ def _names_of(template: str) -> tuple[str, ...]:
     return tuple(name for _, name, _, _ in Formatter().parse(template) if name)
 
 
-def make_message(template: str, values: dict[str, Value], case: str = "") -> Message:
+def make_message(template: str, values: dict[str, MessageValue], case: str = "") -> Message:
     """Return the message with this template, these values and case. Raises KeyError if a value is missing."""
     made = Message(template, **values)
     return made._in_case(case) if case else made
@@ -97,19 +97,19 @@ def join_messages(separator: str, parts: Iterable[str]) -> Message:
     return Message(between.join(f"{{{name}}}" for name in values), **values)
 
 
-def named_values(text: str) -> dict[str, Value]:
+def collect_values(text: str) -> dict[str, MessageValue]:
     """Return the values of a message and of the messages inside it, by name; {} for a plain text.
 
     If two values have the same name, the outer value is returned.
     """
     if not isinstance(text, Message):
         return {}
-    inner = [named_values(value) for value in text.values.values() if isinstance(value, Message)]
+    inner = [collect_values(value) for value in text.values.values() if isinstance(value, Message)]
     outer = {name: _plain(value) for name, value in text.values.items()}
     return {name: value for values in (*inner, outer) for name, value in values.items()}
 
 
-def _plain(value: Value) -> Value:
+def _plain(value: MessageValue) -> MessageValue:
     return str.__str__(value) if isinstance(value, Message) else value
 
 
@@ -133,7 +133,7 @@ def unpack_message(packed: str, text: str) -> str:
     return made if made == text else text
 
 
-def _packed(value: Value) -> object:
+def _packed(value: MessageValue) -> object:
     if not isinstance(value, Message):
         return value
     return {
@@ -161,13 +161,13 @@ class CodedError(Exception):
         self.code = code
 
 
-def error_code(error: BaseException) -> str:
+def get_error_code(error: BaseException) -> str:
     """Return the code of an error, for an error that replaces it; empty if the error has no code."""
     return error.code if isinstance(error, CodedError) else ""
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def find_nearest(word: str, known_words: Iterable[str]) -> str:
     """Return the known word most similar to ``word``; empty if none is similar."""
     from difflib import get_close_matches  # noqa: PLC0415  only who has mistyped waits for it
 
-    return next(iter(get_close_matches(word, list(known), n=1)), "")
+    return next(iter(get_close_matches(word, list(known_words), n=1)), "")

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterable
 
 
-def anchor_of(title: str) -> str:
+def make_anchor(title: str) -> str:
     """Return the anchor of a heading: lower case, words joined by hyphens, without punctuation."""
     plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title.strip())
     return re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
 
 
-def contents(titles: Iterable[str]) -> str:
+def make_contents(titles: Iterable[str]) -> str:
     """Return a list of links to the headings of a page, one line each."""
-    return "".join(f"- [{title}](#{anchor_of(title)})\n" for title in titles)
+    return "".join(f"- [{title}](#{make_anchor(title)})\n" for title in titles)

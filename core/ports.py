@@ -16,15 +16,15 @@ import numpy.typing as npt
 from core import faults
 
 
-class RapidOp(NamedTuple):
+class RapidOperation(NamedTuple):
     """Straight to ``x z``, as fast as the rapid rate in force allows."""
 
     x: float
     z: float
-    rate: float
+    rapid_rate: float
 
 
-class LineOp(NamedTuple):
+class LineOperation(NamedTuple):
     """Straight to ``x z`` at a feed."""
 
     x: float
@@ -32,7 +32,7 @@ class LineOp(NamedTuple):
     feed: float
 
 
-class ArcOp(NamedTuple):
+class ArcOperation(NamedTuple):
     """On a circle about ``cx cz`` to ``x z``. ``clockwise`` as elementary blocks say it: from Z+ to X+.
 
     ``x0 z0`` is where it begins.
@@ -48,7 +48,7 @@ class ArcOp(NamedTuple):
     feed: float
 
 
-class ThreadOp(NamedTuple):
+class ThreadOperation(NamedTuple):
     """One pass of a thread from ``x0 z0`` to ``x z``, tied to the spindle's index.
 
     ``lead`` is mm a turn along Z.
@@ -61,51 +61,53 @@ class ThreadOp(NamedTuple):
     lead: float
 
 
-BlockOp = RapidOp | LineOp | ArcOp | ThreadOp
+BlockOperation = RapidOperation | LineOperation | ArcOperation | ThreadOperation
 
 
 class BlockState(NamedTuple):
     """What the controller does with its blocks at one instant.
 
-    ``hindrance`` says in words why nothing may be begun, such as modes that are still being verified.
+    ``start_refusal`` says in words why nothing may be begun, such as modes that are still being verified.
     """
 
-    done: int  # every ticket up to this one has been moved to its end
-    active: int  # the ticket that is being moved, 0 unknown or none
-    resting: bool  # nothing moves, and nothing is left in the controller
-    held: bool  # at rest inside its queue: ``resume`` goes on
-    hindrance: str = ""
+    last_done_ticket: int  # every ticket up to this one has been moved to its end
+    active_ticket: int  # the ticket that is being moved, 0 unknown or none
+    is_at_rest: bool  # nothing moves, and nothing is left in the controller
+    is_in_feed_hold: bool  # at rest inside its queue: ``resume`` goes on
+    start_refusal: str = ""
 
 
-class BlockSink(Protocol):
+class BlockController(Protocol):
     """A controller with a planner of its own. Nothing here waits.
 
-    ``caps`` tells what it can do of ``core.interpreter.shared.machine_requirements``; what it cannot is
-    refused before the start. ``ahead`` is how many seconds of motion it may be given beyond the block that
-    it moves: it goes on by itself when the host is lost.
+    ``capabilities`` tells what it can do of ``core.interpreter.shared.machine_requirements``; what it cannot
+    is refused before the start. ``max_lead_s`` is how many seconds of motion it may be given beyond the block
+    that it moves: it goes on by itself when the host is lost.
     """
 
-    ahead: float
-    reach: float  # rpm up to which the spindle can follow the radius: 0 while it is not laid out for that
+    max_lead_s: float
+    css_max_rpm: (
+        float  # rpm up to which the spindle can follow the radius: 0 while it is not laid out for that
+    )
 
-    def lay_out(self, highest: float) -> None:
+    def prepare_css(self, max_rpm: float) -> None:
         """Up to so many rpm the spindle will have to follow the radius; 0: its speed is constant. Said before
         each speed, so that a driver whose spindle has steps can choose what they count from.
         """
         ...
 
-    def fastest(self, dx: float, dz: float) -> float:
+    def max_line_speed(self, dx: float, dz: float) -> float:
         """mm/s of a straight way in this direction on which no slide is faster than controller and machine
         file allow it.
         """
         ...
 
     @property
-    def caps(self) -> frozenset[str]:
+    def capabilities(self) -> frozenset[str]:
         """What it can do, by the names of ``machine_requirements``."""
         ...
 
-    def submit(self, op: BlockOp) -> int | None:
+    def submit_block(self, operation: BlockOperation) -> int | None:
         """Hand a block over: its ticket, or None while it takes no more. Raises DriverError."""
         ...
 
@@ -113,7 +115,7 @@ class BlockSink(Protocol):
         """How far it has come, as last told; from memory, at once."""
         ...
 
-    def hold(self) -> None:
+    def hold_on_path(self) -> None:
         """Come to rest on the path; a thread pass first ends."""
         ...
 
@@ -121,26 +123,28 @@ class BlockSink(Protocol):
         """Go on from a hold. Never starts a spindle."""
         ...
 
-    def abort(self) -> None:
+    def abort_blocks(self) -> None:
         """Come to rest and forget every block; ``state().resting`` once that is done."""
         ...
 
-    def override(self, feed: float, rapid: float) -> None:
+    def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Fractions of the programmed speeds, above 0; verified by the driver."""
         ...
 
-    def jog(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
+    def start_jog(
+        self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
+    ) -> bool:
         """Begin or renew: no way is queued beyond the lease. False when there is none before ``limits``.
 
         Raises DriverError.
         """
         ...
 
-    def jog_to(self, axis: str, target: float, speed: float) -> None:
+    def step_to(self, axis: str, target: float, speed: float) -> None:
         """One step from rest to rest. Raises DriverError."""
         ...
 
-    def jog_stop(self) -> None:
+    def stop_jog(self) -> None:
         """Come to rest at once."""
         ...
 
@@ -150,11 +154,11 @@ BoolArray = npt.NDArray[np.bool_]
 Fault = faults.Fault
 FaultCode = faults.FaultCode
 DriverError = faults.DriverError
-Unknown = faults.Unknown
-ALL_UNKNOWN = faults.ALL_UNKNOWN
+UnknownPart = faults.UnknownPart
+ALL_UNKNOWN_PARTS = faults.ALL_UNKNOWN_PARTS
 
 
-class Stop(StrEnum):
+class StopMode(StrEnum):
     """How to come to rest: at once and unpowered, braked then unpowered, or braked and held."""
 
     OFF = "off"
@@ -176,18 +180,20 @@ class Segments(NamedTuple):
     a: FloatArray
 
     @classmethod
-    def resting(cls, t: float, place: Sequence[float] | FloatArray) -> Segments:
+    def make_rest(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> Segments:
         """At this place from ``t`` on: they cut off whatever was queued behind."""
-        still = np.zeros((1, len(place)))
-        return cls(np.array([t]), np.zeros(1), np.array([place], dtype=np.float64), still, still)
+        still = np.zeros((1, len(position)))
+        return cls(
+            np.array([start_time_s]), np.zeros(1), np.array([position], dtype=np.float64), still, still
+        )
 
 
 _NO_MOTION = 1e-6  # s; what rounding may leave of a last piece, on a clock of hours
 
 
-def at_rest(horizon: float, now: float) -> bool:
+def is_queue_finished(queue_end: float, now: float) -> bool:
     """Whether what was queued is over: one rule for whoever asks, with a tolerance for rounding."""
-    return horizon <= now + _NO_MOTION
+    return queue_end <= now + _NO_MOTION
 
 
 class AxisSample(NamedTuple):
@@ -211,11 +217,11 @@ class SampleSource(Protocol):
     (s). What is not told is nan. Times rise; while nothing at all changes rows may be further apart.
     """
 
-    rate: float  # samples a second while something moves
+    sample_rate_hz: float  # samples a second while something moves
 
-    def take(self, most: int = 8192) -> FloatArray:
-        """What has been sampled since it was last taken, (n, 5 + 3 axes), the oldest first and ``most`` at a
-        time; where nobody takes them the oldest are lost.
+    def take(self, max_rows: int = 8192) -> FloatArray:
+        """What has been sampled since it was last taken, (n, 5 + 3 axes), the oldest first and ``max_rows``
+        at a time; where nobody takes them the oldest are lost.
         """
         ...
 
@@ -242,7 +248,7 @@ class AxisSink(Protocol):
         """
         ...
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Queued position and velocity at ``t``; what a splice at ``t`` has to continue."""
         ...
 
@@ -254,7 +260,7 @@ class AxisSink(Protocol):
         """Switch the drives of all axes on or off. Raises DriverError; a drive that then fails is a fault."""
         ...
 
-    def stop(self, how: Stop) -> None:
+    def stop(self, mode: StopMode) -> None:
         """Drop the queue and come to rest in this way. Raises DriverError."""
         ...
 
@@ -270,7 +276,7 @@ class AxisSink(Protocol):
 class Spindle(Protocol):
     """The main spindle; rpm is signed, positive as M03 turns."""
 
-    def run(self, rpm: float) -> None: ...
+    def run_at(self, rpm: float) -> None: ...
 
     def coast(self) -> None: ...
 
@@ -278,17 +284,17 @@ class Spindle(Protocol):
         """Measured rpm, signed."""
         ...
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """(time, revolutions counted since power-up) from the encoder, or None without one."""
         ...
 
-    def fault(self) -> str: ...
+    def read_fault(self) -> str: ...
 
 
-class SpindleHold(Protocol):
+class SpindleCAxis(Protocol):
     """The spindle's drive as C, where it is the same drive: changed over at standstill."""
 
-    def hold(self, on: bool, orient: bool = False) -> None:
+    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
         """Ask for it to be held as C, or to turn again; C keeps its count.
 
         ``orient``: it turns by the short way until its count is also its place from the index, in whole
@@ -296,27 +302,27 @@ class SpindleHold(Protocol):
         """
         ...
 
-    def held(self) -> bool:
+    def is_c_ready(self) -> bool:
         """Whether C may move, and stays where it is put."""
         ...
 
 
-class SpindleOrientation(Protocol):
+class OrientingSpindle(Protocol):
     """The spindle's drive stops it at an angle and holds it there, until it is to turn or is let go."""
 
-    def orient(self, angle: float, sense: int = 0) -> None:
+    def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Bring it to ``angle``, degrees from its index, 0 to under 360 and rising as M03 turns.
 
-        ``sense``: 1 it turns there as M03 does, -1 as M04, 0 by the short way. Raises DriverError while it
-        turns, without power or with a fault.
+        ``direction``: 1 it turns there as M03 does, -1 as M04, 0 by the short way. Raises DriverError while
+        it turns, without power or with a fault.
         """
         ...
 
-    def release(self) -> None:
+    def release_spindle(self) -> None:
         """Hold it no longer; on its way to an angle it comes to rest."""
         ...
 
-    def oriented(self) -> bool:
+    def is_oriented(self) -> bool:
         """Whether it stands at the angle that was asked for last, and is held there."""
         ...
 
@@ -324,29 +330,30 @@ class SpindleOrientation(Protocol):
 class Cam(NamedTuple):
     """Motion over the turns of the spindle instead of over time.
 
-    ``way.t`` and ``way.dt`` are turns from the encoder's count ``zero`` on, in the direction ``sign`` in
-    which the spindle turns; ``way.v`` and ``way.a`` are per turn. At rest until it begins and behind its end.
-    ``then`` goes on from that end by time; its ``t`` are seconds from there.
+    ``way.t`` and ``way.dt`` are turns from the encoder's count ``start_revolutions`` on, in the direction
+    ``sign`` in which the spindle turns; ``way.v`` and ``way.a`` are per turn. At rest until it begins and
+    behind its end. ``following_segments`` goes on from that end by time; its ``t`` are seconds from there.
     """
 
-    zero: float
+    start_revolutions: float
     sign: float
     way: Segments
-    then: Segments | None = None
+    following_segments: Segments | None = None
 
 
-class Geared(NamedTuple):
-    """Where on its cam a driver is: turns from ``zero``, and turns by which it is behind the spindle.
+class GearState(NamedTuple):
+    """Where on its cam a driver is: turns from ``start_revolutions``, and turns by which it is behind the
+    spindle.
 
     ``speed`` is what the spindle turns by its encoder, turns/s, positive the way the cam counts.
     """
 
-    turns: float
-    lag: float
+    revolutions: float
+    lag_revolutions: float
     speed: float
 
 
-class Gear(Protocol):
+class SpindleGear(Protocol):
     """Slides that follow the spindle inside the driver, at its own rate, by its own reading of the encoder.
 
     The slides are those of the sink beside it, the encoder counts as ``Spindle.angle``. A gear slips rather
@@ -364,7 +371,7 @@ class Gear(Protocol):
         """
         ...
 
-    def geared(self) -> Geared | None:
+    def geared(self) -> GearState | None:
         """None when the slides do not follow the spindle, or no longer."""
         ...
 
@@ -384,7 +391,7 @@ class DigitalIO(Protocol):
         """Switch one output. Raises DriverError."""
         ...
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Every output to its safe state."""
         ...
 
@@ -409,34 +416,34 @@ class StationState:
 class Station(Protocol):
     """Buttons, pots and switches of the operator station."""
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         """The station as last told, with its age; from memory, at once."""
         ...
 
 
-PROBE = "probe"  # the input of a touch probe or tool setter, on while it is touched
+PROBE_INPUT = "probe"  # the input of a touch probe or tool setter, on while it is touched
 
 
-class Latch(NamedTuple):
+class TouchLatch(NamedTuple):
     """Where the slides were when the input ``probe`` came on.
 
-    ``place`` by the encoders, in the sink's order of axes; ``late``: s by which it may have been taken late,
-    so that a slide at v has been up to v · late further back.
+    ``place`` by the encoders, in the sink's order of axes; ``max_delay_s``: s by which it may have been
+    taken late, so that a slide at v has been up to v · late further back.
     """
 
-    t: float
-    place: tuple[float, ...]
-    late: float
+    time_s: float
+    axis_positions: tuple[float, ...]
+    max_delay_s: float
 
 
 class TouchInput(Protocol):
     """A driver that keeps the place of a touch at its own rate. Without one a tick of the executor counts."""
 
-    def arm(self) -> None:
+    def arm_latch(self) -> None:
         """Forget what was kept; the next time that the input comes on is kept."""
         ...
 
-    def latched(self) -> Latch | None:
+    def read_latch(self) -> TouchLatch | None:
         """The first touch since it was armed; None as long as there was none."""
         ...
 
@@ -446,11 +453,11 @@ class Wakeup(Protocol):
     a second, and at once when it rings.
     """
 
-    def settled(self) -> bool:
+    def is_settled(self) -> bool:
         """Whether nothing that a look tells changes any more without a ring. Asked at rest."""
         ...
 
-    def ring(self) -> None:
+    def wake(self) -> None:
         """From any thread: look now."""
         ...
 
@@ -481,20 +488,22 @@ class MachinePorts:
     io: DigitalIO
     station: Station
     warnings: Sequence[str] = ()
-    gear: Gear | None = None  # None: threads follow the spindle by setpoints in time
-    lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
-    orientation: SpindleOrientation | None = None  # None: the spindle stops anywhere
-    blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
-    trips: faults.Tripping | None = None  # None: nothing switches off by itself when the control is silent
+    gear: SpindleGear | None = None  # None: threads follow the spindle by setpoints in time
+    lock: SpindleCAxis | None = None  # None: C has a drive of its own, or needs no change-over
+    orientation: OrientingSpindle | None = None  # None: the spindle stops anywhere
+    blocks: BlockController | None = None  # a controller that plans by itself: it takes no setpoints
+    trip_monitor: faults.TrippingDriverHost | None = (
+        None  # None: nothing switches off by itself when the control is silent
+    )
     untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move
     wakeup: Wakeup | None = None  # None: it is looked at in every tick, at rest too
     samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
     # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.
-    unknown: Callable[[], frozenset[Unknown]] = frozenset
+    unknown: Callable[[], frozenset[UnknownPart]] = frozenset
     # Seconds by which a slow wire delays a command to the spindle and the measured speed that shows it.
     spindle_lag: Callable[[], float] = float
     touch: TouchInput | None = None  # None: where a touch was is known to a tick of the executor
     # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
     # and again, when the executor is dead or stuck. It never waits for what the executor may hold.
-    halt: Callable[[], None] | None = None
+    halt_machine: Callable[[], None] | None = None

@@ -10,25 +10,26 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A polyline; ``ink`` is part, cut (the result of the shape), tool or axis."""
+    """A polyline; ``role`` is part, cut (the result of the shape), tool or axis."""
 
     points: tuple[Point, ...]
-    ink: str = "part"
-    closed: bool = False
+    role: str = "part"
+    is_closed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Dim:
-    """A dimension from ``a`` to ``b``, drawn at the distance ``away``; without ``b``, a number at ``a``.
+class Dimension:
+    """A dimension from ``start`` to ``end``, drawn at the distance ``distance``; without ``end``, a number
+    at ``start``.
 
-    ``word`` is the label of its field. ``before`` is a sign in front of the number.
+    ``field_word`` is the label of its field. ``prefix`` is a sign in front of the number.
     """
 
-    word: str
-    a: Point
-    b: Point | None = None
-    away: float = 0.0
-    before: str = ""
+    field_word: str
+    start: Point
+    end: Point | None = None
+    distance: float = 0.0
+    prefix: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,37 +37,37 @@ class Sketch:
     """Outlines and dimensions in any unit; the spindle axis is at radius 0."""
 
     outlines: tuple[Outline, ...] = ()
-    dims: tuple[Dim, ...] = field(default=())
+    dimensions: tuple[Dimension, ...] = field(default=())
 
 
-def sketch(*outlines: Outline, dims: Iterable[Dim] = ()) -> Sketch:
+def make_sketch(*outlines: Outline, dimensions: Iterable[Dimension] = ()) -> Sketch:
     """Return a sketch of these outlines and dimensions, with the spindle axis added."""
     ends = [p[0] for each in outlines for p in each.points]
     low, high = min(ends, default=0.0), max(ends, default=1.0)
     room = 0.05 * (high - low or 1.0)
     axis = Outline(((low - room, 0.0), (high + room, 0.0)), "axis")
-    return Sketch((axis, *outlines), tuple(dims))
+    return Sketch((axis, *outlines), tuple(dimensions))
 
 
-def part(*points: Point) -> Outline:
+def make_part_outline(*points: Point) -> Outline:
     """Return the outline of the part, closed along the axis."""
-    return Outline(points, "part", closed=True)
+    return Outline(points, "part", is_closed=True)
 
 
-def cut(*points: Point) -> Outline:
+def make_cut_outline(*points: Point) -> Outline:
     """Return the outline that the shape cuts."""
     return Outline(points, "cut")
 
 
-def tool(*points: Point) -> Outline:
+def make_tool_outline(*points: Point) -> Outline:
     """Return the closed outline of the tool."""
-    return Outline(points, "tool", closed=True)
+    return Outline(points, "tool", is_closed=True)
 
 
-def turned(profile: Sequence[Point], bar: float) -> tuple[Outline, ...]:
+def make_turned_outlines(profile: Sequence[Point], bar: float) -> tuple[Outline, ...]:
     """Return the outlines of a turned profile: the part including the bar after the profile, and the cut."""
     back = min(z for z, _ in profile)
     deep = 0.3 * max(abs(back), bar / 2.0, 0.1)
     face = profile[0][0]
     solid = [(face, 0.0), *profile, (back, bar / 2.0), (back - deep, bar / 2.0), (back - deep, 0.0)]
-    return Outline(tuple(solid), "part", closed=True), Outline(tuple(profile), "cut")
+    return Outline(tuple(solid), "part", is_closed=True), Outline(tuple(profile), "cut")

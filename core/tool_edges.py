@@ -6,7 +6,7 @@ D1 is the row of the tool itself, so a tool with one cutting edge needs only thi
 from __future__ import annotations
 
 _STEP = 100_000
-EDGES = range(1, 10)
+EDGE_NUMBERS = range(1, 10)
 
 # Tip quadrant → (z, x) from the nose center to the tip, with x away from the spindle axis. 0 and 9: the
 # center.
@@ -23,7 +23,7 @@ TIP_DIRECTIONS = {
     9: (0, 0),
 }
 
-NAMED_TOOLS = 32_768
+FIRST_NAMED_TOOL = 32_768
 """Numbers from here on stand for tools by a name that the table does not have."""
 
 
@@ -46,27 +46,27 @@ def _like(key: int, number: int) -> int:
     return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
 
 
-def edge_key(tool: int, edge: int) -> int:
+def make_edge_key(tool: int, edge: int) -> int:
     """Return the row number of a cutting edge; D1 has the number of the tool."""
     return tool if edge <= 1 else _like(tool, edge * _STEP + tool)
 
 
-def tool_of(key: int) -> int:
+def get_tool_number(key: int) -> int:
     """Return the tool number T of a row."""
     return _like(key, key % _STEP)
 
 
-def edge_of(key: int) -> int:
+def get_edge_number(key: int) -> int:
     """Return the cutting edge number D of a row, 1 to 9."""
     return max(key // _STEP, 1)
 
 
-def edge_number(key: int) -> str:
+def format_edge_suffix(key: int) -> str:
     """Return the text after T for a row, such as 3, ="ROUGHER" or, for another cutting edge, 3 D2."""
-    number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{tool_of(key)}"
-    return number if key < _STEP else f"{number} D{edge_of(key)}"
+    number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{get_tool_number(key)}"
+    return number if key < _STEP else f"{number} D{get_edge_number(key)}"
 
 
-def edge_name(key: int) -> str:
+def format_edge_name(key: int) -> str:
     """Return the name of a row, such as T3, T3 D2 or T="ROUGHER"."""
-    return f"T{edge_number(key)}"
+    return f"T{format_edge_suffix(key)}"

@@ -17,21 +17,21 @@ from core.ports import Clock, Station, StationState
 
 
 class TwoHandRelay:
-    """Two-hand relay: both palm buttons must be pressed within ``window`` seconds.
+    """Two-hand relay: both palm buttons must be pressed within ``window_s`` seconds.
 
     Both must be released before the next start (anti-tie-down). On a real machine, this is a safety relay,
     and the control reads only its output.
     """
 
-    def __init__(self, window: float, pulse: float) -> None:
-        self._window = window
-        self._pulse = pulse
+    def __init__(self, window_s: float, pulse_s: float) -> None:
+        self._window = window_s
+        self._pulse = pulse_s
         self._down: dict[str, float | None] = {"left": None, "right": None}
         self._armed = True
         self._on_from = -1.0
         self._on_until = -1.0
 
-    def press(self, palm: str, now: float) -> None:
+    def press_palm(self, palm: str, now: float) -> None:
         """Press a palm button at time ``now``."""
         if self._down[palm] is not None:
             return
@@ -43,7 +43,7 @@ class TwoHandRelay:
             self._on_from, self._on_until = now, float("inf")
         self._armed = False
 
-    def release(self, palm: str, now: float) -> None:
+    def release_palm(self, palm: str, now: float) -> None:
         """Release a palm button; the output turns off, but not before the minimum pulse has passed."""
         self._down[palm] = None
         if self._on_until > now:
@@ -51,47 +51,47 @@ class TwoHandRelay:
         if all(since is None for since in self._down.values()):
             self._armed = True
 
-    def output(self, now: float) -> bool:
+    def is_on(self, now: float) -> bool:
         """Return whether the output is on."""
         return self._on_from <= now < self._on_until
 
-    def falls(self, now: float) -> bool:
+    def will_turn_off(self, now: float) -> bool:
         """Return whether the output will turn off automatically."""
         return now < self._on_until < float("inf")
 
 
-class Panel:
+class PanelState:
     """State of all controls of a simulated operator station."""
 
-    def __init__(self, window: float, pulse: float, seed: int) -> None:
-        self.relay = TwoHandRelay(window, pulse)
+    def __init__(self, window_s: float, pulse_s: float, seed: int) -> None:
+        self.relay = TwoHandRelay(window_s, pulse_s)
         self.estop = False
         self.spindle_auto = True
         self.spindle_pot = 1.0
         self.feed_pot = 1.0
         self.handwheel = 0  # counts
-        self.noise = 0.0  # Half width of the noise of the pots.
-        self._pulse = pulse
+        self.noise_amplitude = 0.0  # Half width of the noise of the pots.
+        self._pulse = pulse_s
         self._hold_down = False
         self._hold_until = -1.0
         self._silent: StationState | None = None
         self._silent_since = 0.0
         self._random = random.Random(seed)
 
-    def hold(self, down: bool, now: float) -> None:
+    def set_feed_hold(self, pressed: bool, now: float) -> None:
         """Press or release the feed hold button, which is reported for at least one pulse."""
-        self._hold_down = down
-        if down:
+        self._hold_down = pressed
+        if pressed:
             self._hold_until = now + self._pulse
 
-    def settled(self, now: float) -> bool:
+    def is_settled(self, now: float) -> bool:
         """Return whether the reported state stays the same until the operator acts."""
-        pulse = now < self._hold_until or self.relay.falls(now)
-        return self._silent is None and not self.noise and not pulse
+        pulse = now < self._hold_until or self.relay.will_turn_off(now)
+        return self._silent is None and not self.noise_amplitude and not pulse
 
-    def silence(self, on: bool, now: float) -> None:
+    def set_disconnected(self, disconnected: bool, now: float) -> None:
         """Disconnect or connect the cable of the station."""
-        self._silent = self.state(now) if on else None
+        self._silent = self.state(now) if disconnected else None
         self._silent_since = now
 
     def state(self, now: float) -> StationState:
@@ -102,7 +102,7 @@ class Panel:
             return dataclasses.replace(self._silent, estop=estop, start=False, age=age)
         return StationState(
             estop=self.estop,
-            start=self.relay.output(now),
+            start=self.relay.is_on(now),
             hold=self._hold_down or now < self._hold_until,
             spindle_auto=self.spindle_auto,
             spindle_pot=self._noisy(self.spindle_pot, 1.0),
@@ -111,18 +111,18 @@ class Panel:
         )
 
     def _noisy(self, value: float, top: float) -> float:
-        if not self.noise:
+        if not self.noise_amplitude:
             return value
-        return min(max(value + self._random.uniform(-self.noise, self.noise), 0.0), top)
+        return min(max(value + self._random.uniform(-self.noise_amplitude, self.noise_amplitude), 0.0), top)
 
 
 _WINDOW, _PULSE = 0.5, 0.1  # Seconds; two-hand relay that the screen replaces.
 
 
-class StationHands:
+class StationControls:
     """Operator actions at a panel, callable from any thread with ``lock``, the lock of the panel's reader."""
 
-    def __init__(self, panel: Panel, lock: AbstractContextManager[object], clock: Clock) -> None:
+    def __init__(self, panel: PanelState, lock: AbstractContextManager[object], clock: Clock) -> None:
         self._panel, self._lock, self._clock = panel, lock, clock
 
     def press_left(self) -> None:
@@ -151,17 +151,17 @@ class StationHands:
     def press_hold(self) -> None:
         """Press the feed hold button."""
         with self._lock:
-            self._panel.hold(True, self._clock.now())
+            self._panel.set_feed_hold(True, self._clock.now())
 
     def release_hold(self) -> None:
         """Release the feed hold button."""
         with self._lock:
-            self._panel.hold(False, self._clock.now())
+            self._panel.set_feed_hold(False, self._clock.now())
 
-    def set_spindle_auto(self, auto: bool) -> None:
+    def set_spindle_auto(self, is_auto: bool) -> None:
         """Set the spindle switch to AUTO or OFF."""
         with self._lock:
-            self._panel.spindle_auto = auto
+            self._panel.spindle_auto = is_auto
 
     def set_spindle_pot(self, fraction: float) -> None:
         """Set the spindle override, limited to 0…1."""
@@ -182,12 +182,12 @@ class StationHands:
         with self._lock:
             relay, now = self._panel.relay, self._clock.now()
             if down:
-                relay.press(which, now)
+                relay.press_palm(which, now)
             else:
-                relay.release(which, now)
+                relay.release_palm(which, now)
 
 
-class PanelStation(StationHands):
+class OnScreenStation(StationControls):
     """``core.ports.Station`` of an on-screen panel, combined with wired inputs, callable from any thread.
 
     ``inputs`` returns the inputs of the machine, whose E-stop, start and hold also apply. ``wired`` is a
@@ -197,16 +197,16 @@ class PanelStation(StationHands):
     def __init__(
         self, clock: Clock, inputs: Callable[[], Mapping[str, bool]], wired: Station | None = None
     ) -> None:
-        super().__init__(Panel(_WINDOW, _PULSE, seed=0), threading.Lock(), clock)
+        super().__init__(PanelState(_WINDOW, _PULSE, seed=0), threading.Lock(), clock)
         self._inputs = inputs
         self._wired = wired
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         """Return the present state of the station."""
         with self._lock:
             state = self._panel.state(self._clock.now())
         inputs = self._inputs()
-        wired = self._wired.snapshot() if self._wired is not None else StationState()
+        wired = self._wired.read_state() if self._wired is not None else StationState()
         return dataclasses.replace(
             state,
             estop=state.estop or inputs.get("estop", False),
@@ -234,35 +234,35 @@ class PanelStation(StationHands):
 # --- Operator station whose buttons are inputs.
 
 
-class Pot(Protocol):
+class PotSettings(Protocol):
     """Pot in the machine file: its values at both ends, and the input that enables it."""
 
     @property
-    def low(self) -> float: ...
+    def low_value(self) -> float: ...
     @property
-    def high(self) -> float: ...
+    def high_value(self) -> float: ...
     @property
-    def switch(self) -> str: ...
+    def switch_input(self) -> str: ...
 
 
-def station_of(
+def build_station_state(
     inputs: Mapping[str, bool],
-    pots: Mapping[str, Pot],
-    read: Callable[[str], float],
+    pots: Mapping[str, PotSettings],
+    read_pot: Callable[[str], float],
     *,
     handwheel: int,
-    age: float,
+    age_s: float,
 ) -> StationState:
     """Build the state of the station; a button that the machine file does not have is never pressed.
 
-    ``read`` returns the position of a pot as a fraction, by its name. Without an input ``spindle_auto``, the
-    switch of the spindle pot selects AUTO.
+    ``read_pot`` returns the position of a pot as a fraction, by its name. Without an input ``spindle_auto``,
+    the switch of the spindle pot selects AUTO.
     """
     pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
-    auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
+    auto = inputs.get(pot.switch_input, True) if pot is not None and pot.switch_input else True
 
     def override(name: str) -> float:
-        return _scaled(pots[name], min(max(read(name), 0.0), 1.0)) if name in pots else 1.0
+        return _scaled(pots[name], min(max(read_pot(name), 0.0), 1.0)) if name in pots else 1.0
 
     return StationState(
         estop=inputs.get("estop", False),
@@ -272,42 +272,42 @@ def station_of(
         spindle_pot=override("spindle_pot"),
         feed_pot=override("feed_pot"),
         handwheel=handwheel,
-        age=age,
+        age=age_s,
         # Percent; negative values are noise of an idle motor.
-        spindle_load=_scaled(load, max(read("spindle_load"), 0.0)) if load is not None else None,
+        spindle_load=_scaled(load, max(read_pot("spindle_load"), 0.0)) if load is not None else None,
     )
 
 
-def _scaled(pot: Pot, fraction: float) -> float:
-    return pot.low + (pot.high - pot.low) * fraction
+def _scaled(pot: PotSettings, fraction: float) -> float:
+    return pot.low_value + (pot.high_value - pot.low_value) * fraction
 
 
 # --- Operator actions at a station in another process -----------------------------------------------------
 
 
-def _hand(name: str) -> Callable[..., None]:
+def _posted_action(name: str) -> Callable[..., None]:
     """Return a method that posts its name and arguments without waiting."""
 
-    def use(self: PostedHands, *values: object) -> None:
-        self.post(name, *values)
+    def use(self: PostedControls, *values: object) -> None:
+        self.post_action(name, *values)
 
     return use
 
 
-class PostedHands(ABC):
+class PostedControls(ABC):
     """Operator actions at a simulated station of another process.
 
-    ``app.desk.station_hands.StationPanel`` explains the actions. A subclass implements ``post``, which sends
-    an action to that process.
+    ``app.desk.station_controls.StationPanel`` explains the actions. A subclass implements ``post_action``,
+    which sends an action to that process.
     """
 
     @abstractmethod
-    def post(self, name: str, *values: object) -> None:
+    def post_action(self, name: str, *values: object) -> None:
         """Send the name of a station method and its arguments to the other process, without waiting."""
 
-    press_left, release_left = _hand("press_left"), _hand("release_left")
-    press_right, release_right = _hand("press_right"), _hand("release_right")
-    press_hold, release_hold = _hand("press_hold"), _hand("release_hold")
-    press_estop, release_estop = _hand("press_estop"), _hand("release_estop")
-    set_spindle_auto, set_spindle_pot = _hand("set_spindle_auto"), _hand("set_spindle_pot")
-    set_feed_pot, turn_handwheel = _hand("set_feed_pot"), _hand("turn_handwheel")
+    press_left, release_left = _posted_action("press_left"), _posted_action("release_left")
+    press_right, release_right = _posted_action("press_right"), _posted_action("release_right")
+    press_hold, release_hold = _posted_action("press_hold"), _posted_action("release_hold")
+    press_estop, release_estop = _posted_action("press_estop"), _posted_action("release_estop")
+    set_spindle_auto, set_spindle_pot = _posted_action("set_spindle_auto"), _posted_action("set_spindle_pot")
+    set_feed_pot, turn_handwheel = _posted_action("set_feed_pot"), _posted_action("turn_handwheel")

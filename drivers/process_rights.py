@@ -10,7 +10,7 @@ from contextlib import suppress
 _CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAULT of mlockall(2)
 
 
-def ask_real_time(policy: str, priority: int) -> str:
+def request_scheduling(policy: str, priority: int) -> str:
     """Request a policy of sched(7), such as ``SCHED_FIFO``.
 
     Return the reason for a refusal, or an empty text.
@@ -33,7 +33,7 @@ def lower_thread(priority: int) -> None:
             os.sched_setscheduler(0, policy, os.sched_param(priority))
 
 
-def lock_memory(*, only_used: bool = False) -> tuple[str, int]:
+def lock_process_memory(*, only_used: bool = False) -> tuple[str, int]:
     """Lock the present and future memory, and reduce garbage collection.
 
     With ``only_used``, reserved memory is locked at its first use. Return the reason for a refusal and the

@@ -10,7 +10,7 @@ from typing import Protocol
 from core.ports import DriverError
 
 
-class WireError(DriverError):
+class SerialLineError(DriverError):
     """Failure of the line itself, such as a missing port or a disconnected adapter."""
 
 
@@ -26,58 +26,58 @@ class LineSettings:
     flow: str = "none"
 
     @property
-    def character(self) -> float:
+    def character_s(self) -> float:
         """The duration of one character in seconds, with start, parity and stop bits."""
         return (1 + self.bits + (self.parity != "N") + self.stop) / self.baud
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """The settings as text, such as ``9600 7E1``."""
         return f"{self.baud} {self.bits}{self.parity}{self.stop}"
 
 
-class Wire(Protocol):
+class SerialTransport(Protocol):
     """Serial line for requests and responses. Every method raises WireError if the line has failed."""
 
     def send(self, data: bytes) -> None:
         """Send bytes; wait only briefly."""
         ...
 
-    def receive(self, limit: float) -> bytes:
-        """Return received bytes; wait at most ``limit`` seconds for the first one."""
+    def receive(self, timeout_s: float) -> bytes:
+        """Return received bytes; wait at most ``timeout_s`` seconds for the first one."""
         ...
 
-    def discard(self) -> None:
+    def discard_input(self) -> None:
         """Discard received bytes that have not been read."""
         ...
 
     def close(self) -> None: ...
 
 
-class FlowWire(Wire, Protocol):
+class FlowControlTransport(SerialTransport, Protocol):
     """Serial line with flow control and a count of damaged characters."""
 
     @property
-    def damaged(self) -> int:
+    def damaged_count(self) -> int:
         """The number of characters with a parity or framing error since the line was opened."""
         ...
 
-    def offer(self, data: bytes) -> int:
+    def send_available(self, data: bytes) -> int:
         """Send the bytes that the line accepts now and return their number, which may be 0."""
         ...
 
-    def obey_codes(self) -> None:
+    def enable_xon_xoff(self) -> None:
         """Let DC3 and DC1 (XOFF, XON) of the other side stop and resume the output.
 
         A line that cannot do so leaves these characters in its input.
         """
         ...
 
-    def waiting(self) -> int:
+    def count_unsent(self) -> int:
         """Return the number of accepted bytes that have not been transmitted."""
         ...
 
-    def drop_output(self) -> None:
+    def discard_output(self) -> None:
         """Discard accepted bytes that have not been transmitted."""
         ...
 
@@ -85,25 +85,28 @@ class FlowWire(Wire, Protocol):
 # --- Parity of seven-bit characters on a line of eight bits.
 
 
-PARITIES = {"E": 0, "O": 1}  # Number of ones in a character, modulo 2.
-_TOP = 0x80
+PARITY_VALUES = {"E": 0, "O": 1}  # Number of ones in a character, modulo 2.
+_PARITY_BIT = 0x80
 
 
-def parity_of(character: int) -> int:
+def calculate_parity(character: int) -> int:
     """Return the number of ones in a character, modulo 2."""
     return character.bit_count() & 1
 
 
-def table_of(parity: str) -> bytes:
+def create_parity_table(parity: str) -> bytes:
     """Return a table for ``bytes.translate`` that adds the parity bit to seven-bit characters."""
-    odd = PARITIES[parity]
-    return bytes(c & ~_TOP | (_TOP if parity_of(c & ~_TOP) != odd else 0) for c in range(256))
+    odd = PARITY_VALUES[parity]
+    return bytes(
+        c & ~_PARITY_BIT | (_PARITY_BIT if calculate_parity(c & ~_PARITY_BIT) != odd else 0)
+        for c in range(256)
+    )
 
 
 # --- Reasons for a failed serial port, as texts for the operator.
 
 
-_TO_DO = {
+_REMEDIES = {
     errno.ENOENT: ("this port does not exist; plug in the adapter. To list the ports: turndesk serial ports"),
     errno.EACCES: (
         "this user has no permission for the port; add this user to the dialout group, then log in again"
@@ -117,15 +120,15 @@ _TO_DO = {
 
 def why(error: Exception) -> str:
     """Return a remedy for an error of a serial port, or the text of the operating system."""
-    number = _number(error)
+    number = _error_number(error)
     if number is None and error.__context__ is not None:  # The library hides the cause in its own text.
-        number = _number(error.__context__)
+        number = _error_number(error.__context__)
     if number is not None:
-        return _TO_DO.get(number) or os.strerror(number)
+        return _REMEDIES.get(number) or os.strerror(number)
     return str(error).splitlines()[0] if str(error) else type(error).__name__
 
 
-def _number(error: BaseException) -> int | None:
+def _error_number(error: BaseException) -> int | None:
     """Return the error number of the operating system; for termios errors, it is the first argument."""
     number = error.errno if isinstance(error, OSError) else error.args[0] if error.args else None
     return number if isinstance(number, int) else None

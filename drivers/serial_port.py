@@ -12,21 +12,21 @@ from typing import NamedTuple
 import serial
 from serial.tools.list_ports import comports
 
-from drivers.serial_line import PARITIES, LineSettings, WireError, table_of, why
+from drivers.serial_line import PARITY_VALUES, LineSettings, SerialLineError, create_parity_table, why
 
 # --- Marks of a POSIX terminal for damaged characters (PARMRK).
 
 
-class Unmarker:
+class ParityMarkDecoder:
     """Decoder of PARMRK marks that counts damaged characters: FF 00 c is a damaged c, FF FF a valid FF."""
 
     def __init__(self) -> None:
-        self.damaged = 0
+        self.damaged_count = 0
         self._rest = b""
 
-    def feed(self, come: bytes) -> bytes:
+    def decode(self, received: bytes) -> bytes:
         """Return the characters without marks; damaged characters are unchanged."""
-        data, out = self._rest + come, bytearray()
+        data, out = self._rest + received, bytearray()
         at = 0
         while at < len(data):
             if data[at] != 0xFF:
@@ -36,7 +36,7 @@ class Unmarker:
                 out.append(0xFF)
                 at += 2
             elif len(data) - at >= 3:
-                self.damaged += 1
+                self.damaged_count += 1
                 out.append(data[at + 2])
                 at += 3
             else:
@@ -45,7 +45,7 @@ class Unmarker:
         return bytes(out)
 
 
-_POSIX = sys.platform != "win32"
+_IS_POSIX = sys.platform != "win32"
 _ENDING, _GLANCE = 20, 0.05  # Checks and s: one second for the last characters at 110 baud.
 # The error of termios is not an OSError. pyserial raises TypeError if the port was closed by another thread.
 _FAILURES: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
@@ -54,14 +54,14 @@ if sys.platform != "win32":
     import termios
 
     _FAILURES += (termios.error,)
-_NOT_OPENED: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
+_OPEN_ERRORS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 
 class PortInfo(NamedTuple):
     """Serial port of this computer: its device and description."""
 
     device: str
-    what: str
+    description: str
 
 
 def list_ports() -> list[PortInfo]:
@@ -72,32 +72,33 @@ def list_ports() -> list[PortInfo]:
     )
 
 
-class SerialWire:
-    """Serial port of this computer, opened exclusively; with ``watch``, damaged characters are counted.
+class SerialPort:
+    """Serial port of this computer, opened exclusively; with ``count_damaged``, damaged characters are
+    counted.
 
     If the port does not support seven bits with parity, this class adds the parity; XOFF and XON are then not
     interpreted.
     """
 
-    def __init__(self, settings: LineSettings, *, watch: bool = False) -> None:
+    def __init__(self, settings: LineSettings, *, count_damaged: bool = False) -> None:
         """Open and configure the port. Raises WireError."""
         self.settings = settings
-        self._marks = Unmarker() if watch and _POSIX else None
+        self._marks = ParityMarkDecoder() if count_damaged and _IS_POSIX else None
         self._parities: bytes | None = None
         try:
-            self._port = _opened(settings)
-        except _NOT_OPENED as error:
-            raise WireError(
+            self._port = _open_port(settings)
+        except _OPEN_ERRORS as error:
+            raise SerialLineError(
                 "{port} cannot be opened: {error}", reason="not-opened", port=settings.port, error=why(error)
             ) from error
         try:
             self._set_up(settings)
-        except _NOT_OPENED as error:
+        except _OPEN_ERRORS as error:
             self._port.close()
-            raise WireError(
+            raise SerialLineError(
                 "{port} cannot be set to {settings}: {error}",
                 port=settings.port,
-                settings=settings.words,
+                settings=settings.description,
                 error=why(error),
             ) from error
 
@@ -106,17 +107,17 @@ class SerialWire:
             return
         handle = self._port.fileno()
         kept = frame(handle, settings.bits, settings.parity)
-        if settings.bits == 7 and settings.parity in PARITIES and not kept:
-            self._parities = table_of(settings.parity)
+        if settings.bits == 7 and settings.parity in PARITY_VALUES and not kept:
+            self._parities = create_parity_table(settings.parity)
         if settings.flow == "xonxoff":
-            self.obey_codes()
+            self.enable_xon_xoff()
         if self._marks is not None:
             mark_damage(handle, parity=settings.parity != "N")
 
     @property
-    def damaged(self) -> int:
+    def damaged_count(self) -> int:
         """The number of parity and framing errors, or 0 if they are not counted."""
-        return self._marks.damaged if self._marks is not None else 0
+        return self._marks.damaged_count if self._marks is not None else 0
 
     def send(self, data: bytes) -> None:
         """Send bytes. Raises WireError, also if the other side stops the output for more than a second."""
@@ -125,7 +126,7 @@ class SerialWire:
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def offer(self, data: bytes) -> int:
+    def send_available(self, data: bytes) -> int:
         """Send the bytes that the kernel accepts immediately and return their number."""
         try:
             data = self._coded(data)
@@ -139,7 +140,7 @@ class SerialWire:
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def obey_codes(self) -> None:
+    def enable_xon_xoff(self) -> None:
         """Enable XON/XOFF in the kernel.
 
         Nothing is enabled if these characters have a parity bit that the kernel does not know.
@@ -152,15 +153,15 @@ class SerialWire:
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def receive(self, limit: float) -> bytes:
+    def receive(self, timeout_s: float) -> bytes:
         """Return received bytes; wait at most ``limit`` seconds for the first one."""
         try:
-            come = self._come(max(limit, 0.0))
+            come = self._read_available(max(timeout_s, 0.0))
         except _FAILURES as error:
             raise self._cut(error) from error
-        return self._marks.feed(come) if self._marks is not None else come
+        return self._marks.decode(come) if self._marks is not None else come
 
-    def _come(self, limit: float) -> bytes:
+    def _read_available(self, limit: float) -> bytes:
         """Wait by ``select``, because pyserial would configure the port again for each other timeout."""
         if sys.platform == "win32":
             self._port.timeout = limit
@@ -169,21 +170,21 @@ class SerialWire:
         ready, _, _ = select.select((self._port.fileno(),), (), (), limit)
         return self._port.read(max(self._port.in_waiting, 1)) if ready else b""
 
-    def discard(self) -> None:
+    def discard_input(self) -> None:
         """Discard the received bytes."""
         try:
             self._port.reset_input_buffer()
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def waiting(self) -> int:
+    def count_unsent(self) -> int:
         """Return the number of bytes in the kernel's output buffer."""
         try:
             return int(self._port.out_waiting)
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def drop_output(self) -> None:
+    def discard_output(self) -> None:
         """Discard the bytes in the kernel's output buffer."""
         try:
             self._port.reset_output_buffer()
@@ -197,29 +198,29 @@ class SerialWire:
         pseudo terminal, and lose the last bytes.
         """
         with suppress(*_FAILURES):  # A disconnected cable does not block.
-            if not self._goes_out():
+            if not self._is_sending():
                 self._port.reset_output_buffer()
         with suppress(*_FAILURES):
             self._port.close()
 
-    def _goes_out(self) -> bool:
+    def _is_sending(self) -> bool:
         """Return whether the kernel transmits its output within the expected time."""
         for _ in range(_ENDING):
             if not (left := self._port.out_waiting):
                 return True
-            time.sleep(min(left * self.settings.character, _GLANCE))
+            time.sleep(min(left * self.settings.character_s, _GLANCE))
         return not self._port.out_waiting
 
     def _coded(self, data: bytes) -> bytes:
         return data if self._parities is None else data.translate(self._parities)
 
-    def _cut(self, error: Exception) -> WireError:
-        return WireError(
+    def _cut(self, error: Exception) -> SerialLineError:
+        return SerialLineError(
             "{port} has failed: {error}", reason="failed", port=self.settings.port, error=why(error)
         )
 
 
-def _opened(settings: LineSettings) -> serial.Serial:
+def _open_port(settings: LineSettings) -> serial.Serial:
     """Open the port.
 
     On POSIX, bits, parity and XON/XOFF are set later, because pyserial does not verify them.
@@ -227,10 +228,10 @@ def _opened(settings: LineSettings) -> serial.Serial:
     return serial.Serial(
         settings.port,
         settings.baud,
-        bytesize=8 if _POSIX else settings.bits,
-        parity="N" if _POSIX else settings.parity,
+        bytesize=8 if _IS_POSIX else settings.bits,
+        parity="N" if _IS_POSIX else settings.parity,
         stopbits=settings.stop,
-        xonxoff=not _POSIX and settings.flow == "xonxoff",
+        xonxoff=not _IS_POSIX and settings.flow == "xonxoff",
         rtscts=settings.flow == "rtscts",
         timeout=0,
         write_timeout=1.0,

@@ -9,20 +9,22 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from typing import NamedTuple
 
-INF = float("inf")
+INFINITY = float("inf")
 
 
-class Piece(NamedTuple):
-    """Motion from ``t`` for ``dt`` seconds: position, velocity and acceleration of each axis at the start."""
+class MotionPiece(NamedTuple):
+    """Motion from ``t`` for ``duration_s`` seconds: position, velocity and acceleration of each axis at the
+    start.
+    """
 
-    t: float
-    dt: float
-    p: tuple[float, ...]
-    v: tuple[float, ...]
-    a: tuple[float, ...]
+    start_time_s: float
+    duration_s: float
+    positions: tuple[float, ...]
+    velocities: tuple[float, ...]
+    accelerations: tuple[float, ...]
 
 
-def at(piece: Piece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def get_motion_on_piece(piece: MotionPiece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return position and velocity of a piece at ``t``, limited to its start and end."""
     begins, lasts, at_p, at_v, at_a = piece
     dt = t - begins
@@ -33,67 +35,69 @@ def at(piece: Piece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return p, tuple([v + a * dt for v, a in zip(at_v, at_a, strict=True)])
 
 
-_TRIM = 64  # Pieces; discarding single pieces would cost more than storing them.
+_TRIM_COUNT = 64  # Pieces; discarding single pieces would cost more than storing them.
 
 
 class PieceQueue:
     """Queue of pieces with its final rest position; not thread-safe, so the driver must lock it."""
 
-    def __init__(self, rest: Sequence[float]) -> None:
-        self._zero = (0.0,) * len(rest)
-        self._pieces: list[Piece] = []
+    def __init__(self, rest_positions: Sequence[float]) -> None:
+        self._zero = (0.0,) * len(rest_positions)
+        self._pieces: list[MotionPiece] = []
         self._starts: list[float] = []
-        self._end = -INF
-        self._rest = tuple(rest)
+        self._end = -INFINITY
+        self._rest = tuple(rest_positions)
 
-    def rest_at(self, position: Sequence[float]) -> None:
+    def reset_to(self, position: Sequence[float]) -> None:
         """Discard all setpoints and rest at this position, for example after power-up or homing."""
-        self._pieces, self._starts, self._end = [], [], -INF
+        self._pieces, self._starts, self._end = [], [], -INFINITY
         self._rest = tuple(position)
 
-    def horizon(self, now: float) -> float:
+    def queue_end(self, now: float) -> float:
         """Return the end time of the last motion, or ``now`` if the queue is empty."""
         return max(self._end, now)
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def commanded_state_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return position and velocity at ``t``; at the joint of two pieces, those of the later one."""
         if t >= self._end:
             return self._rest, self._zero
         index = bisect_right(self._starts, t) - 1
         if index < 0:
-            return self._pieces[0].p, self._zero
-        return at(self._pieces[index], t)
+            return self._pieces[0].positions, self._zero
+        return get_motion_on_piece(self._pieces[index], t)
 
-    def piece_at(self, t: float) -> tuple[Piece, float]:
+    def find_piece_at(self, t: float) -> tuple[MotionPiece, float]:
         """Return the piece that is valid at ``t`` and its end time; without motion, a resting piece."""
         if t >= self._end:
-            return Piece(t, INF, self._rest, self._zero, self._zero), INF
+            return MotionPiece(t, INFINITY, self._rest, self._zero, self._zero), INFINITY
         index = bisect_right(self._starts, t) - 1
         if index < 0:
-            return Piece(t, INF, self._pieces[0].p, self._zero, self._zero), self._starts[0]
+            return MotionPiece(t, INFINITY, self._pieces[0].positions, self._zero, self._zero), self._starts[
+                0
+            ]
         piece = self._pieces[index]
-        ends = piece.t + piece.dt
+        ends = piece.start_time_s + piece.duration_s
         following = self._starts[index + 1] if index + 1 < len(self._starts) else self._end
         return piece, min(ends, following)
 
     def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
         """Return position, velocity and acceleration at ``t``."""
-        p, v = self.demand_at(t)
+        p, v = self.commanded_state_at(t)
         index = bisect_right(self._starts, t) - 1
-        return p, v, self._pieces[index].a if index >= 0 and t < self._end else self._zero
+        return p, v, self._pieces[index].accelerations if index >= 0 and t < self._end else self._zero
 
     @property
-    def pieces(self) -> Sequence[Piece]:
+    def pieces(self) -> Sequence[MotionPiece]:
         """The queued pieces, including those of the past that have not been trimmed."""
         return self._pieces
 
-    def brake(self, now: float, decel: Sequence[float]) -> float:
+    def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
         """Replace the queue by a straight deceleration of all axes together, and return its end time.
 
         It is for stops without the host (E-stop, fault). The axes leave the path only by its curvature within
         the braking distance.
         """
-        return self._brake(now, self.demand_at(now), decel)
+        return self._brake(now, self.commanded_state_at(now), deceleration)
 
     def _brake(
         self, now: float, state: tuple[tuple[float, ...], tuple[float, ...]], decel: Sequence[float]
@@ -101,26 +105,29 @@ class PieceQueue:
         p, v = state
         dt = max((abs(speed) / limit for speed, limit in zip(v, decel, strict=True)), default=0.0)
         if dt <= 0.0:
-            self.rest_at(p)
+            self.reset_to(p)
             return now
-        piece = Piece(now, dt, p, v, tuple(-speed / dt for speed in v))
-        self.replace(now, [piece])
+        piece = MotionPiece(now, dt, p, v, tuple(-speed / dt for speed in v))
+        self.replace_from(now, [piece])
         return now + dt
 
-    def trim(self, before: float) -> None:
+    def discard_before(self, time: float) -> None:
         """Discard pieces that ended before this time."""
-        gone = bisect_right(self._starts, before) - 1
-        if gone >= _TRIM:
+        gone = bisect_right(self._starts, time) - 1
+        if gone >= _TRIM_COUNT:
             del self._pieces[:gone], self._starts[:gone]
 
-    def replace(self, start: float, pieces: list[Piece]) -> None:
+    def replace_from(self, start: float, pieces: list[MotionPiece]) -> None:
         """Cut the queue at ``start`` and append ``pieces`` without checks; a gap before ``start`` is rest."""
-        rest = at(pieces[-1], INF)[0]
+        rest = get_motion_on_piece(pieces[-1], INFINITY)[0]
         keep = bisect_right(self._starts, start - 1e-12)
         del self._pieces[keep:], self._starts[keep:]
         if self._end < start:
-            pieces = [Piece(max(self._end, start - 1.0), 0.0, self._rest, self._zero, self._zero), *pieces]
+            pieces = [
+                MotionPiece(max(self._end, start - 1.0), 0.0, self._rest, self._zero, self._zero),
+                *pieces,
+            ]
         self._pieces += pieces
-        self._starts += [piece.t for piece in pieces]
-        self._end = pieces[-1].t + pieces[-1].dt
+        self._starts += [piece.start_time_s for piece in pieces]
+        self._end = pieces[-1].start_time_s + pieces[-1].duration_s
         self._rest = rest

@@ -13,19 +13,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.ports import DriverError, Segments
-from drivers.setpoint_pieces import Piece, PieceQueue
+from drivers.setpoint_pieces import MotionPiece, PieceQueue
 
-_AT_ONCE = 100  # Pieces per step; their conversion takes 0.1 ms.
+_BATCH_SIZE = 100  # Pieces per step; their conversion takes 0.1 ms.
 
 
-def _nothing() -> None:
+def _do_nothing() -> None:
     """Do nothing."""
 
 
-def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _nothing) -> list[Piece]:
+def convert_segments(
+    segments: Segments, axes: int, yield_cpu: Callable[[], None] = _do_nothing
+) -> list[MotionPiece]:
     """Convert segments into pieces. Raises DriverError for a wrong shape or values that are not finite.
 
-    ``give_way`` is called repeatedly, because the conversion of thousands of pieces may take too long for
+    ``yield_cpu`` is called repeatedly, because the conversion of thousands of pieces may take too long for
     some drives.
     """
     count = len(segments.t)
@@ -44,16 +46,16 @@ def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _not
             )
     if (segments.dt < 0).any():
         raise DriverError("the setpoint times run backward", "broken-path", reason="backwards")
-    pieces: list[Piece] = []
-    for begin in range(0, count, _AT_ONCE):
-        t, dt, p, v, a = (part[begin : begin + _AT_ONCE].tolist() for part in segments)
-        pieces += map(Piece, t, dt, map(tuple, p), map(tuple, v), map(tuple, a))
-        give_way()
+    pieces: list[MotionPiece] = []
+    for begin in range(0, count, _BATCH_SIZE):
+        t, dt, p, v, a = (part[begin : begin + _BATCH_SIZE].tolist() for part in segments)
+        pieces += map(MotionPiece, t, dt, map(tuple, p), map(tuple, v), map(tuple, a))
+        yield_cpu()
     return pieces
 
 
 @dataclass(frozen=True, slots=True)
-class AxisFigures:
+class AxisProperties:
     """Limits and properties of one axis for a driver, in mm or degrees, and seconds."""
 
     name: str
@@ -70,13 +72,13 @@ class AxisFigures:
 
 def check_limits(
     segments: Segments,
-    axes: Sequence[AxisFigures],
-    homed: Sequence[bool],
-    actual: Sequence[float] | None = None,
+    axes: Sequence[AxisProperties],
+    homed_axes: Sequence[bool],
+    actual_positions: Sequence[float] | None = None,
 ) -> None:
     """Raise DriverError for setpoints that are too fast, or outside the travel of a homed axis.
 
-    With ``actual``, an axis outside its travel may move back from its present position.
+    With ``actual_positions``, an axis outside its travel may move back from its present position.
     """
     for n, axis in enumerate(axes):
         if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
@@ -87,11 +89,11 @@ def check_limits(
                 axis=axis.name,
                 vmax=f"{axis.vmax:.1f}",
             )
-        if axis.travel is None or not homed[n]:
+        if axis.travel is None or not homed_axes[n]:
             continue
         low, high = axis.travel
-        if actual is not None:
-            low, high = min(low, actual[n]), max(high, actual[n])
+        if actual_positions is not None:
+            low, high = min(low, actual_positions[n]), max(high, actual_positions[n])
         place = segments.p[:, n]
         if place.min(initial=low) < low - 0.01 or place.max(initial=high) > high + 0.01:
             raise DriverError(
@@ -104,12 +106,12 @@ def check_limits(
             )
 
 
-_SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
-_REST = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
+_TIME_TOLERANCE_S = 1e-6  # s; clock rounding between the end of one piece and the start of the next
+_REST_SPEED = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
 
 
 @dataclass(frozen=True, slots=True)
-class Tolerance:
+class JunctionTolerance:
     """Permitted difference of position (mm or degrees) and velocity where two pieces meet, by axis.
 
     The position tolerance covers rounding. The velocity may jump as at a corner, by ``amax * interval``.
@@ -119,7 +121,7 @@ class Tolerance:
     velocity: tuple[float, ...]
 
     @classmethod
-    def of(cls, axes: Sequence[AxisFigures]) -> Tolerance:
+    def from_axes(cls, axes: Sequence[AxisProperties]) -> JunctionTolerance:
         """Return a tolerance of 0.001 mm and the corner velocities of these axes."""
         return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
@@ -128,15 +130,19 @@ class SetpointQueue(PieceQueue):
     """Setpoint queue of all axes that checks its input; not thread-safe, so the driver must lock it."""
 
     def __init__(
-        self, axes: tuple[str, ...], rest: Sequence[float], commit: float, tolerance: Tolerance
+        self,
+        axes: tuple[str, ...],
+        rest_positions: Sequence[float],
+        commit_time_s: float,
+        tolerance: JunctionTolerance,
     ) -> None:
-        super().__init__(rest)
+        super().__init__(rest_positions)
         self.axes = axes
-        self.commit = commit
+        self.commit = commit_time_s
         self._tolerance = tolerance
-        self.give_way: Callable[[], None] = _nothing  # Called while a long path is converted.
+        self.yield_cpu: Callable[[], None] = _do_nothing  # Called while a long path is converted.
         # Time up to which the drives already have setpoints.
-        self.handed_out: Callable[[], float] = lambda: -math.inf
+        self.get_transferred_until: Callable[[], float] = lambda: -math.inf
 
     def splice(self, segments: Segments, now: float) -> None:
         """Replace everything from ``segments.t[0]`` on.
@@ -145,9 +151,9 @@ class SetpointQueue(PieceQueue):
         velocity, be continuous, and end at rest. Otherwise DriverError is raised and the queue does not
         change.
         """
-        pieces = pieces_of(segments, len(self.axes), self.give_way)
-        start = pieces[0].t
-        fixed = max(now + self.commit, self.handed_out())
+        pieces = convert_segments(segments, len(self.axes), self.yield_cpu)
+        start = pieces[0].start_time_s
+        fixed = max(now + self.commit, self.get_transferred_until())
         if start < fixed - 1e-9:
             late = 1000 * (fixed - start)
             raise DriverError(
@@ -156,9 +162,9 @@ class SetpointQueue(PieceQueue):
                 reason="too-early",
                 late=f"{late:.1f}",
             )
-        self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v))
+        self._check_joint(self.commanded_state_at(start), (pieces[0].positions, pieces[0].velocities))
         self._check_run(segments)
-        self.replace(start, pieces)
+        self.replace_from(start, pieces)
 
     def _check_run(self, segments: Segments) -> None:
         """Check that each piece begins at the end of the piece before it, and that the last ends at rest.
@@ -169,7 +175,7 @@ class SetpointQueue(PieceQueue):
         t_end = segments.t + segments.dt
         p_end = segments.p + (segments.v + 0.5 * segments.a * dt) * dt
         v_end = segments.v + segments.a * dt
-        gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _SLOT)
+        gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _TIME_TOLERANCE_S)
         if gaps.size:
             raise DriverError(
                 "setpoints have a gap at t = {t_end} s; nothing was queued",
@@ -194,7 +200,7 @@ class SetpointQueue(PieceQueue):
                 position2=f"{segments.p[row + 1, axis]:.4f}",
                 speed2=f"{segments.v[row + 1, axis]:.3f}",
             )
-        moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST]
+        moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST_SPEED]
         if moving:
             raise DriverError(
                 "at the end of the setpoints, these axes are still moving: {moving}",
@@ -227,23 +233,29 @@ class SetpointQueue(PieceQueue):
 # --- Move of one axis from rest to rest, as for homing.
 
 
-def straight(
-    start: float, rest: Sequence[float], axis: int, *, to: float, speed: float, accel: float
+def plan_straight_move(
+    start_time: float,
+    rest_positions: Sequence[float],
+    axis_index: int,
+    *,
+    target: float,
+    speed: float,
+    accel: float,
 ) -> Segments:
     """Plan a move of one axis from rest to rest: ramp up, run at ``speed``, ramp down.
 
-    The axis with number ``axis`` moves to ``to``; the others rest.
+    The axis with number ``axis_index`` moves to ``target``; the others rest.
     """
-    way = to - rest[axis]
+    way = target - rest_positions[axis_index]
     sign = math.copysign(1.0, way)
     top = min(speed, math.sqrt(abs(way) * accel))
     ramp = top / accel
     cruise = (abs(way) - top * ramp) / top if top > 0.0 else 0.0
     dt = np.array([ramp, max(cruise, 0.0), ramp])
-    p, v = np.tile(np.asarray(rest, dtype=np.float64), (3, 1)), np.zeros((3, len(rest)))
+    p, v = np.tile(np.asarray(rest_positions, dtype=np.float64), (3, 1)), np.zeros((3, len(rest_positions)))
     a = np.zeros_like(v)
-    v[:, axis] = [0.0, sign * top, sign * top]
-    a[:, axis] = [sign * accel, 0.0, -sign * accel]
-    p[1, axis] += sign * 0.5 * top * ramp
-    p[2, axis] = to - sign * 0.5 * top * ramp
-    return Segments(start + np.array([0.0, dt[0], dt[0] + dt[1]]), dt, p, v, a)
+    v[:, axis_index] = [0.0, sign * top, sign * top]
+    a[:, axis_index] = [sign * accel, 0.0, -sign * accel]
+    p[1, axis_index] += sign * 0.5 * top * ramp
+    p[2, axis_index] = target - sign * 0.5 * top * ramp
+    return Segments(start_time + np.array([0.0, dt[0], dt[0] + dt[1]]), dt, p, v, a)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TypeVar
 
 from app.desk.desk import Desk
-from app.desk.pages.desk_parts import Attached
+from app.desk.pages.attached_parts import AttachedModel
 
-A = TypeVar("A", bound=Attached)
+A = TypeVar("A", bound=AttachedModel)
 
 
 def attached(desk: Desk, kind: type[A]) -> A:
     """Fails where the desk was put together without."""
-    found = desk.pages.find(kind)
+    found = desk.page_registry.find(kind)
     assert found is not None, kind
     return found

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.compose.extra import NAMES, extras
+from app.compose.optional_features import FEATURE_NAMES, extras
 
 HOUSE = Path(__file__).parents[1]
 PLACES = ("app/extras", "core/extras", "tests/extras")
@@ -38,7 +38,7 @@ def dependents(name: str) -> set[str]:
     found, before = {name}, set[str]()
     while found != before:
         before = set(found)
-        found |= {each for each, extra in extras().items() if found & set(extra.needs)}
+        found |= {each for each, extra in extras().items() if found & set(extra.required_features)}
     return found
 
 
@@ -73,11 +73,11 @@ def main(argv: Sequence[str]) -> int:
     """Check the features that are named, or all of them; return 1 if a check fails."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="features (default: all)")
-    names = parser.parse_args(argv).names or NAMES
+    names = parser.parse_args(argv).names or FEATURE_NAMES
     status = 0
     for name in names:
-        if name not in NAMES:
-            parser.error(f"{name} is not an optional feature; choose from {', '.join(NAMES)}")
+        if name not in FEATURE_NAMES:
+            parser.error(f"{name} is not an optional feature; choose from {', '.join(FEATURE_NAMES)}")
         gone = dependents(name)
         with TemporaryDirectory(prefix="slice-") as folder:
             copy = Path(folder) / "main"

@@ -26,11 +26,11 @@ def raises_code(kind: type[Exception], code: str, *values: object) -> Iterator[p
 def recorded_refusals(monkeypatch: pytest.MonkeyPatch) -> list[CodedError]:
     """Return a list that receives every error that ends a command of this process from now on."""
     refusals = list[CodedError]()
-    report = command_errors.report_refusal
+    report = command_errors.report_command_error
 
     def record(error: CodedError) -> int:
         refusals.append(error)
         return report(error)
 
-    monkeypatch.setattr(command_errors, "report_refusal", record)
+    monkeypatch.setattr(command_errors, "report_command_error", record)
     return refusals

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from core.file_placing import put_in_place
+from core.file_replacement import replace_atomically
 from core.store import database
 
-_create = database.create
+_create = database.create_store_file
 
 
 @cache
@@ -27,11 +27,11 @@ def _template() -> bytes:
 
 
 def copy_template(path: Path) -> None:
-    """Make an empty store at ``path`` as ``database.create`` does. Raises StoreError."""
+    """Make an empty store at ``path`` as ``database.create_store_file`` does. Raises StoreError."""
     unfinished = path.with_name(path.name + ".new")
     try:
         unfinished.write_bytes(_template())
-        put_in_place(unfinished, path)
+        replace_atomically(unfinished, path)
     except OSError:
         _create(path)  # it raises what the product raises
 
@@ -39,4 +39,4 @@ def copy_template(path: Path) -> None:
 def use_template(item: pytest.Item, patch: pytest.MonkeyPatch) -> None:
     """Let stores of this test begin as copies, unless its room is that of the store."""
     if not item.nodeid.startswith("tests/store/"):
-        patch.setattr(database, "create", copy_template)
+        patch.setattr(database, "create_store_file", copy_template)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.extra import extras
+from app.compose.optional_features import extras
 
 OURS = ("app", "core", "drivers", "resources")
 QT = {"PySide6", "shiboken6"}
@@ -87,7 +87,7 @@ def test_a_feature_knows_only_the_features_that_it_needs(imports: dict[str, set[
         return parts[2] if parts[1:2] == ["extras"] and len(parts) > 2 else ""
 
     known = {(owner(m), owner(name)) for m, used in imports.items() if owner(m) for name in used}
-    needed = {(name, need) for name, extra in extras().items() for need in extra.needs}
+    needed = {(name, need) for name, extra in extras().items() for need in extra.required_features}
     assert {(a, b) for a, b in known if b and a != b} <= needed
 
 

@@ -10,10 +10,16 @@ import pytest
 
 import resources
 from app.cli import main
-from app.compose import extra
-from app.compose.extra import NAMES, command_modules, drawing_endings, extras, insert_after
+from app.compose import optional_features
 from app.compose.machine.driver_modules import all_drivers
-from app.special.special_functions import SpecialFunctions
+from app.compose.optional_features import (
+    FEATURE_NAMES,
+    extras,
+    insert_after,
+    list_drawing_suffixes,
+    map_command_modules,
+)
+from app.special.special_functions import SpecialFunctionList
 from core.machine.machine_file import parse_machine
 from core.table_schema import MachineFileError
 from tests.attached import attached
@@ -27,7 +33,9 @@ HOUSE = Path(__file__).parents[1]
 def no_features(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As if the folders of all optional features were deleted."""
     found = importlib.util.find_spec
-    monkeypatch.setattr(extra, "find_spec", lambda name: None if "extras" in name else found(name))
+    monkeypatch.setattr(
+        optional_features, "find_spec", lambda name: None if "extras" in name else found(name)
+    )
     extras.cache_clear()
     yield
     extras.cache_clear()
@@ -36,13 +44,13 @@ def no_features(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_every_folder_of_a_feature_is_in_the_table() -> None:
     folders = {each.parent.name for each in (HOUSE / "app" / "extras").glob("*/extra.py")}
     cores = {each.name for each in (HOUSE / "core" / "extras").iterdir() if (each / "__init__.py").exists()}
-    assert folders <= set(NAMES)  # one that is left out has no folder
+    assert folders <= set(FEATURE_NAMES)  # one that is left out has no folder
     assert cores <= folders
 
 
 def test_every_command_of_a_feature_has_a_module() -> None:
-    assert all(importlib.util.find_spec(module) for module in command_modules().values())
-    assert set(command_modules()) <= set(main.all_commands())
+    assert all(importlib.util.find_spec(module) for module in map_command_modules().values())
+    assert set(map_command_modules()) <= set(main.list_commands())
 
 
 def test_an_addition_follows_the_item_that_it_names() -> None:
@@ -63,7 +71,7 @@ def test_an_addition_whose_item_is_absent_is_the_last() -> None:
 
 def test_a_feature_without_one_that_it_needs_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     name = next(iter(extras()))
-    monkeypatch.setattr(type(extras()[name]), "needs", ("gone",))
+    monkeypatch.setattr(type(extras()[name]), "required_features", ("gone",))
     extras.cache_clear()
     assert name not in extras()
     monkeypatch.undo()
@@ -73,7 +81,7 @@ def test_a_feature_without_one_that_it_needs_is_left_out(monkeypatch: pytest.Mon
 
 def test_a_feature_comes_after_those_that_it_needs() -> None:
     for name, each in extras().items():
-        assert all(NAMES.index(need) < NAMES.index(name) for need in each.needs)
+        assert all(FEATURE_NAMES.index(need) < FEATURE_NAMES.index(name) for need in each.required_features)
 
 
 @pytest.mark.usefixtures("no_features")
@@ -81,14 +89,14 @@ def test_without_features_f10_has_the_tool_lives_of_a_lathe(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctions).functions}
+    names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctionList).functions}
     assert "TOOL LIFE" in names
     assert "JOBS" not in names
 
 
 @pytest.mark.usefixtures("no_features")
 def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixture[str]) -> None:
-    assert set(main.all_commands()) == set(main.COMMANDS)
+    assert set(main.list_commands()) == set(main.CORE_COMMANDS)
     with pytest.raises(SystemExit) as stopped:
         main.main(["share", "status"])
     assert stopped.value.code == 2
@@ -97,12 +105,14 @@ def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixtu
 
 @pytest.mark.usefixtures("no_features")
 def test_without_features_no_drawing_is_listed() -> None:
-    assert drawing_endings() == ()
+    assert list_drawing_suffixes() == ()
 
 
 def test_a_folder_of_a_feature_with_only_caches_counts_as_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
-    monkeypatch.setattr(extra, "find_spec", lambda name: None if name.endswith(".extra") else found(name))
+    monkeypatch.setattr(
+        optional_features, "find_spec", lambda name: None if name.endswith(".extra") else found(name)
+    )
     extras.cache_clear()
     assert extras() == {}
     extras.cache_clear()
@@ -117,9 +127,9 @@ def test_a_folder_of_a_feature_with_only_caches_counts_as_absent(monkeypatch: py
     ],
 )
 def test_a_signal_at_a_device_of_an_absent_feature_is_rejected(signal: str, old: str, new: str) -> None:
-    own = [each for each in all_drivers() if each.prefix != "pendant."]
+    own = [each for each in all_drivers() if each.address_prefix != "pendant."]
     text = resources.machine_file("gt75.toml")
     assert old in text
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text.replace(old, new), "own.toml", own)
-    assert (f"{signal}.at", "absent-device") in [(each.path, each.code) for each in caught.value.errors]
+    assert (f"{signal}.at", "absent-device") in [(each.path, each.code) for each in caught.value.findings]

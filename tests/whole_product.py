@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.extra import NAMES, extras
+from app.compose.optional_features import FEATURE_NAMES, extras
 
-WHOLE_PRODUCT = pytest.mark.skipif(set(extras()) != set(NAMES), reason="an optional feature is left out")
+WHOLE_PRODUCT = pytest.mark.skipif(
+    set(extras()) != set(FEATURE_NAMES), reason="an optional feature is left out"
+)

@@ -8,23 +8,23 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.page_entry import editor_barred, program_barred, searchto_barred
-from app.desk.programs.program_loading import Loaded
+from app.desk.pages.page_entry import find_editor_refusal, find_program_refusal, find_searchto_refusal
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.desk.status.prompt_line import MOVING, NONE_NAMED, UNDER_WAY
-from app.path.measuring import measuring_words
-from app.path.part_player import player_of
-from app.path.path_aspects import tip_of
+from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES, NO_NAME_TYPED
+from app.path.measuring import make_measuring_prompt
+from app.path.part_player import make_part_player
+from app.path.path_aspects import find_tip_position
 from app.path.path_view import PathView
 from app.programs.file_prompt_view import FilePrompt
 from app.screen import page_table
-from app.screen.page_base import Host, KeyActions, Page
-from app.screen.program_listing import Listing
+from app.screen.page_base import KeyActions, Page, PageHost
+from app.screen.program_listing import ProgramListing
 from app.screen.window.window_bars import CommentLine
-from app.screen.window_layout import Rect, work_parts
-from app.working_plane.plane_instant import plane_words, running
+from app.screen.window_layout import Rect, divide_work_area
+from app.working_plane.plane_instant import describe_plane, make_run_instant
 from app.working_plane.working_plane_view import WorkingPlaneView
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 
 _NO_LINES: tuple[str, ...] = ()
 
@@ -47,173 +47,182 @@ class AutomaticPage(Page):
     )
     STARTS = True
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent)
-        look, desk = host.look, host.desk
-        self._loaded = Loaded()
+        look, desk = host.theme, host.desk
+        self._loaded = LoadedProgram()
         self._moving = False
-        self.listing = Listing(look, self)
-        self.comment = CommentLine(look, self)
-        self.path = PathView(look, self, player=player_of(desk))
-        self.path.stock = self._stock
-        self.space = WorkingPlaneView(look, self)  # Replaces the path view on a mill.
-        self.files = FilePrompt(look, desk.programs.folders, desk.programs.choose, self._files_closed, self)
+        self.program_listing = ProgramListing(look, self)
+        self.comment_line = CommentLine(look, self)
+        self.path_view = PathView(look, self, part_player=make_part_player(desk))
+        self.path_view.open_stock = self._open_stock
+        self.plane_view = WorkingPlaneView(look, self)  # Replaces the path view on a mill.
+        self.file_prompt = FilePrompt(
+            look,
+            desk.program_choice.program_folders,
+            desk.program_choice.load_by_name,
+            self._files_closed,
+            self,
+        )
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Redraw all parts in the present colors."""
-        self.files.dress()
-        self.path.restart()
+        self.file_prompt.apply_theme()
+        self.path_view.redraw()
 
     def _files_closed(self) -> None:
         self.window().setFocus()
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Close the prompt for a file, and let the page close."""
-        self.files.dismiss()
+        self.file_prompt.close_prompt()
         return True
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for choosing a file or measuring. Empty while the machine moves."""
-        if self.files.isVisible() and not self._moving:
-            return self.files.prompt()
-        return measuring_words() if self.path.ruler is not None and not self._moving else ""
+        if self.file_prompt.isVisible() and not self._moving:
+            return self.file_prompt.prompt_text()
+        return make_measuring_prompt() if self.path_view.measurement is not None and not self._moving else ""
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """End measuring. While the machine moves, leave Esc to feed hold and return False."""
-        measuring = self.path.ruler is not None and not self._moving
+        measuring = self.path_view.measurement is not None and not self._moving
         if measuring:
-            self.path.measure(on=False)
+            self.path_view.set_measuring(is_on=False)
         return measuring
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Lay out all parts in the new unit."""
-        listing, comment, path = work_parts(Rect(0, 0, self.width(), self.height()), self.look.u)
+        listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.u)
         for part, rect in (
-            (self.listing, listing),
-            (self.comment, comment),
-            (self.path, path),
-            (self.space, path),
-            (self.files, path),
+            (self.program_listing, listing),
+            (self.comment_line, comment),
+            (self.path_view, path),
+            (self.plane_view, path),
+            (self.file_prompt, path),
         ):
             part.setGeometry(*rect)
             part.update()
 
-    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the program, its current line, its comment and its path."""
-        if self.files.isVisible() and snapshot.state in {State.RUN, State.WAIT}:
-            self.files.dismiss()  # A cycle was started at the station, so the keys belong to the cycle.
-        self._moving = snapshot.state in MOVING
-        if self.path.player is not None:
-            self.path.player.bound = snapshot.state in UNDER_WAY
+        if self.file_prompt.isVisible() and snapshot.state in {MachineState.RUN, MachineState.WAIT}:
+            # A cycle was started at the station, so the keys belong to the cycle.
+            self.file_prompt.close_prompt()
+        self._moving = snapshot.state in MOVING_STATES
+        if self.path_view.part_player is not None:
+            self.path_view.part_player.follows_run = snapshot.state in ACTIVE_STATES
         self._show_program(loaded)
-        self.comment.text = view.comment
-        self.listing.show_run(view.line or snapshot.interrupted_line, view.block_text, view.next_text)
+        self.comment_line.text = status.comment
+        self.program_listing.show_run(
+            status.line_number or snapshot.interrupted_line, status.block_text, status.next_block_text
+        )
         self._show_path(snapshot, loaded)
 
-    def _show_program(self, loaded: Loaded) -> None:
+    def _show_program(self, loaded: LoadedProgram) -> None:
         if loaded is self._loaded:
             return
         self._loaded = loaded
         lines: Sequence[str] = loaded.source.lines if loaded.source else _NO_LINES
-        self.listing.trouble = loaded.trouble
-        self.listing.show_source(lines, {d.line: d.message for d in loaded.errors if d.line})
+        self.program_listing.error_text = loaded.error_text
+        self.program_listing.show_source(lines, {d.line: d.message for d in loaded.blocking_errors if d.line})
         scene = loaded.picture.scene if loaded.picture is not None else None
-        self.space.show_scene(scene)
-        self.space.setVisible(scene is not None)
-        self.path.show_picture(loaded.picture if scene is None else None)
+        self.plane_view.show_scene(scene)
+        self.plane_view.setVisible(scene is not None)
+        self.path_view.show_picture(loaded.picture if scene is None else None)
 
-    def _show_path(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        scene = self.space.scene
+    def _show_path(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+        scene = self.plane_view.scene
         if scene is not None:
-            self.space.show_instant(running(scene, snapshot), plane_words(snapshot.swivel))
+            self.plane_view.show_instant(make_run_instant(scene, snapshot), describe_plane(snapshot.swivel))
             return
-        self.path.show_tip(tip_of(snapshot, loaded.job))
-        first_move = self.desk.first_move
-        self.path.show_approach(first_move.legs(snapshot) if first_move is not None else None)
-        self.path.advance()
+        self.path_view.show_tip(find_tip_position(snapshot, loaded.job))
+        first_move = self.desk.start_watch
+        self.path_view.show_approach(first_move.make_start_legs(snapshot) if first_move is not None else None)
+        self.path_view.draw_slice()
 
     @property
-    def _looked_at(self) -> PathView | WorkingPlaneView:
+    def _visible_view(self) -> PathView | WorkingPlaneView:
         """The view that the zoom and pan keys control."""
-        return self.path if self.space.scene is None else self.space
+        return self.path_view if self.plane_view.scene is None else self.plane_view
 
-    def lively(self) -> bool:
+    def is_animating(self) -> bool:
         """Return whether the animation of the part is playing."""
-        return self.path.player is not None and self.path.player.playing
+        return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys for choosing a program, the editor and SEARCHTO."""
-        snapshot, loaded = self.desk.snapshot(), self.desk.session.now
-        asking = self.files.isVisible()
-        named = bool(self.files.wanted) if asking else loaded.path is not None
+        snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded
+        asking = self.file_prompt.isVisible()
+        named = bool(self.file_prompt.wanted_name) if asking else loaded.path is not None
         found = {
-            "F2": "" if asking else program_barred(snapshot),
-            "F3": editor_barred(snapshot, named=named),
-            "F6": searchto_barred(snapshot, loaded),
+            "F2": "" if asking else find_program_refusal(snapshot),
+            "F3": find_editor_refusal(snapshot, has_name=named),
+            "F6": find_searchto_refusal(snapshot, loaded),
         }
         return frozenset(key for key, why in found.items() if why)
 
     def key_actions(self) -> KeyActions:
         """Return the key actions of this page."""
-        looked_at = self._looked_at
+        looked_at = self._visible_view
         return {
-            "F2": self.ask_file,
-            "F3": self._edit,
-            "F4": self.desk.next_readout,
-            "F5": looked_at.fit,
-            "F6": partial(self.host.go, page_table.SEARCHTO),
-            "F8": partial(self.host.go, page_table.TOOLS),
-            "F9": partial(self.host.go, page_table.SECCMP),
-            "F10": partial(self.host.go, page_table.SPECIAL),
-            "B": partial(self.host.go, page_table.PART),
-            "Zoom in": partial(looked_at.zoom, 1),
-            "Zoom out": partial(looked_at.zoom, -1),
-            "Measure": self.path.measure,
-            "View": looked_at.next_view,
+            "F2": self.show_file_prompt,
+            "F3": self._open_editor,
+            "F4": self.desk.select_next_readout,
+            "F5": looked_at.fit_all,
+            "F6": partial(self.host.open_page, page_table.SEARCHTO_PAGE),
+            "F8": partial(self.host.open_page, page_table.TOOLS),
+            "F9": partial(self.host.open_page, page_table.SECCMP),
+            "F10": partial(self.host.open_page, page_table.SPECIAL),
+            "B": partial(self.host.open_page, page_table.PART),
+            "Zoom in": partial(looked_at.zoom_view, 1),
+            "Zoom out": partial(looked_at.zoom_view, -1),
+            "Measure": self.path_view.set_measuring,
+            "View": looked_at.select_next_view,
             **self._part_keys(),
-            "Pan left": partial(looked_at.pan, -1, 0),
-            "Pan right": partial(looked_at.pan, 1, 0),
-            "Pan up": partial(looked_at.pan, 0, -1),
-            "Pan down": partial(looked_at.pan, 0, 1),
-            "Page up": lambda: self.listing.scroll_by(-self.listing.rows),
-            "Page down": lambda: self.listing.scroll_by(self.listing.rows),
-            "Follow": self.listing.follow,
+            "Pan left": partial(looked_at.pan_view, -1, 0),
+            "Pan right": partial(looked_at.pan_view, 1, 0),
+            "Pan up": partial(looked_at.pan_view, 0, -1),
+            "Pan down": partial(looked_at.pan_view, 0, 1),
+            "Page up": lambda: self.program_listing.scroll_by(-self.program_listing.rows),
+            "Page down": lambda: self.program_listing.scroll_by(self.program_listing.rows),
+            "Follow": self.program_listing.follow_run,
         }
 
     def _part_keys(self) -> KeyActions:
         """Return the keys of the playback, which work while the part is shown."""
-        if self.path.player is None or not self.path.shows_part:
+        if self.path_view.part_player is None or not self.path_view.is_part_shown:
             return {}
-        return {**self.path.play_keys(), "To line": self._part_to_line}
+        return {**self.path_view.make_playback_key_actions(), "To line": self._show_part_at_line}
 
-    def _part_to_line(self) -> None:
+    def _show_part_at_line(self) -> None:
         """Show the part as it is before the first visible line of the program window."""
-        if self.path.player is not None:
-            self.path.player.to_line(self.listing.top + 1)
+        if self.path_view.part_player is not None:
+            self.path_view.part_player.seek_line(self.program_listing.first_row + 1)
 
-    def _stock(self) -> None:
+    def _open_stock(self) -> None:
         """Open the stock settings of the displayed part."""
-        from app.part.part_sheet import PartSheet
+        from app.part.part_model import PartModel
 
-        sheet = self.desk.pages.find(PartSheet)
-        if sheet is not None and self.host.go(page_table.PART):
+        sheet = self.desk.page_registry.find(PartModel)
+        if sheet is not None and self.host.open_page(page_table.PART):
             sheet.show_stock()
 
-    def _edit(self) -> None:
+    def _open_editor(self) -> None:
         """Open the editor for the loaded program, or for the name in the file prompt."""
-        from app.editor.editor import Editor
+        from app.editor.editor_model import EditorModel
 
-        wanted = self.files.wanted if self.files.isVisible() else ""
-        if self.files.isVisible() and not wanted:
-            self.desk.say(NONE_NAMED)
-        elif (editor := self.desk.pages.find(Editor)) is not None:
-            editor.wanted = wanted
-            self.host.go(page_table.EDITOR)
+        wanted = self.file_prompt.wanted_name if self.file_prompt.isVisible() else ""
+        if self.file_prompt.isVisible() and not wanted:
+            self.desk.say(NO_NAME_TYPED)
+        elif (editor := self.desk.page_registry.find(EditorModel)) is not None:
+            editor.pending_name = wanted
+            self.host.open_page(page_table.EDITOR)
 
-    def ask_file(self) -> None:
+    def show_file_prompt(self) -> None:
         """Show the prompt ``FILE TO BE PROCESSED``, or open the program list if it is already shown."""
-        if self.files.isVisible():
-            self.host.go(page_table.PROGRAMS)
-        elif self.desk.programs.can_choose():
-            self.host.clear_away()
-            self.files.ask()
+        if self.file_prompt.isVisible():
+            self.host.open_page(page_table.PROGRAMS)
+        elif self.desk.program_choice.can_choose():
+            self.host.close_alarm_log()
+            self.file_prompt.show_prompt()

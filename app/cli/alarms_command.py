@@ -12,7 +12,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.alarms import Code, Entry
+    from core.alarms import AlarmCode, AlarmEntry
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -48,22 +48,22 @@ def run(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _object(code: Code, entry: Entry) -> dict[str, object]:
-    from core.alarms.alarms_page import kind_of
+def _object(code: AlarmCode, entry: AlarmEntry) -> dict[str, object]:
+    from core.alarms.alarms_page import alarm_kind
 
     return {
         "number": entry.number,
         "code": code,
-        "kind": kind_of(entry.reaction),
+        "kind": alarm_kind(entry.reaction),
         "text": entry.text.upper(),
         "causes": list(entry.causes),
         "remedy": entry.remedy,
     }
 
 
-def _text(entry: Entry) -> str:
-    from core.alarms.alarms_page import kind_of
+def _text(entry: AlarmEntry) -> str:
+    from core.alarms.alarms_page import alarm_kind
 
     causes = "".join(f"     why: {cause}\n" for cause in entry.causes)
-    head = f"{entry.number}  {entry.text.upper()}  ({kind_of(entry.reaction)})"
+    head = f"{entry.number}  {entry.text.upper()}  ({alarm_kind(entry.reaction)})"
     return f"{head}\n{causes}      do: {entry.remedy}\n"

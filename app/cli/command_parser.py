@@ -14,24 +14,24 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
-from core.message import Message, nearest
+from core.message import Message, find_nearest
 
 # The texts are English. For each of them, argparse would search the system for catalogs of translations.
 argparse._ = str  # type: ignore[attr-defined]
 
-_USUAL_WIDTH = 80  # characters
-BEFORE = ("machine", "program", "offsets")
+_DEFAULT_WIDTH = 80  # characters
+PRE_COMMAND_OPTIONS = ("machine", "program", "offsets")
 """Options of the screen."""
-VALUED = frozenset(f"--{name}" for name in BEFORE)
-FLAGS = frozenset({"--version", "--demo", "--kiosk", "--help", "-h"})
+OPTIONS_WITH_VALUE = frozenset(f"--{name}" for name in PRE_COMMAND_OPTIONS)
+FLAG_OPTIONS = frozenset({"--version", "--demo", "--kiosk", "--help", "-h"})
 
-_INSTEAD: Mapping[str, str] = {
+_REPLACEMENTS: Mapping[str, str] = {
     "program": "write the program name after the command, without --program",
     "machine": "in turndesk machine commands, write the file name without --machine",
 }
 
 
-class _Once(argparse.Action):
+class _StoreOnce(argparse.Action):
     """Action that stores an option's value and rejects a second use of the option."""
 
     def __call__(
@@ -65,30 +65,30 @@ class Subcommands(argparse._SubParsersAction):  # type: ignore[type-arg]
         return super().add_parser(name, **kwargs)
 
 
-class Help(argparse.HelpFormatter):
+class HelpFormatter(argparse.HelpFormatter):
     """Help formatter with the width of the terminal that does not load the archive modules."""
 
     def __init__(self, prog: str, *args: Any, **kwargs: Any) -> None:
-        super().__init__(prog, *args, **{"width": _columns() - 2, **kwargs})
+        super().__init__(prog, *args, **{"width": _terminal_width() - 2, **kwargs})
 
 
-def _columns() -> int:
+def _terminal_width() -> int:
     """Return the width of the terminal, determined like ``shutil.get_terminal_size``."""
     words = os.environ.get("COLUMNS", "")
     columns = int(words) if words.isdecimal() else 0
     if columns <= 0 and sys.__stdout__ is not None:
         with suppress(ValueError, OSError):
             columns = os.get_terminal_size(sys.__stdout__.fileno()).columns
-    return columns or _USUAL_WIDTH
+    return columns or _DEFAULT_WIDTH
 
 
-class Parser(argparse.ArgumentParser):
+class CommandParser(argparse.ArgumentParser):
     """Argument parser with one-line errors that accepts each option once and only in full."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        super().__init__(*args, **{"allow_abbrev": False, "formatter_class": Help, **kwargs})
-        self.register("action", None, _Once)
-        self.register("action", "store", _Once)
+        super().__init__(*args, **{"allow_abbrev": False, "formatter_class": HelpFormatter, **kwargs})
+        self.register("action", None, _StoreOnce)
+        self.register("action", "store", _StoreOnce)
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Report an invalid command, action or choice with the most similar valid one."""
@@ -102,7 +102,7 @@ class Parser(argparse.ArgumentParser):
                 )
             if isinstance(action, argparse._SubParsersAction) and os.path.splitext(str(value))[1]:
                 self.error(Message("{value}: neither a file nor a command has this name", value=value))
-            near = nearest(str(value), map(str, action.choices))
+            near = find_nearest(str(value), map(str, action.choices))
             if near:
                 raise argparse.ArgumentError(
                     action,
@@ -118,7 +118,7 @@ class Parser(argparse.ArgumentParser):
         found, rest = self.parse_known_args(args, namespace)
         if rest:
             name = rest[0].partition("=")[0]
-            self._unknown(" ".join(rest), name, Message("this command has no option {name}", name=name))
+            self._raise_unknown(" ".join(rest), name, Message("this command has no option {name}", name=name))
         return found
 
     def _check_first_options(self, args: Sequence[str]) -> None:
@@ -132,7 +132,7 @@ class Parser(argparse.ArgumentParser):
             if not word.startswith("--"):
                 return
             if name not in known:
-                self._unknown(
+                self._raise_unknown(
                     word,
                     name,
                     Message("{name} is a command option; write it after the command", name=name),
@@ -140,12 +140,12 @@ class Parser(argparse.ArgumentParser):
             if not value and known[name].nargs != 0:
                 next(words, "")
 
-    def _unknown(self, words: str, name: str, elsewhere: str) -> NoReturn:
-        """Report unknown arguments; ``elsewhere`` is the message if another parser has the option."""
+    def _raise_unknown(self, words: str, name: str, elsewhere_message: str) -> NoReturn:
+        """Report unknown arguments; ``elsewhere_message`` is the message if another parser has the option."""
         options = self._all_options()
         if name in options:
-            self.error(elsewhere)
-        near = nearest(name, options)
+            self.error(elsewhere_message)
+        near = find_nearest(name, options)
         self.error(
             Message(
                 "unrecognized arguments: {words}{nearest}",
@@ -166,7 +166,7 @@ class Parser(argparse.ArgumentParser):
         for each in self._actions:
             if isinstance(each, argparse._SubParsersAction):
                 for below in each.choices.values():
-                    found += below._all_options() if isinstance(below, Parser) else []
+                    found += below._all_options() if isinstance(below, CommandParser) else []
         return found
 
     def error(self, message: str) -> NoReturn:
@@ -190,7 +190,7 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
         "program": "program to load at start-up",
         "offsets": "offsets file to use instead of the stored offsets",
     }
-    for name in BEFORE:
+    for name in PRE_COMMAND_OPTIONS:
         # A command has its own option of the same name, which would otherwise overwrite this value.
         parser.add_argument(f"--{name}", metavar="FILE", dest=f"before_{name}", help=texts[name])
 
@@ -200,10 +200,10 @@ def is_for_screen(argv: Sequence[str]) -> bool:
     words = iter(argv)
     for word in words:
         name, _, value = word.partition("=")
-        if name in VALUED:
+        if name in OPTIONS_WITH_VALUE:
             if not value and next(words, "-").startswith("-"):
                 return False
-        elif word not in FLAGS:
+        elif word not in FLAG_OPTIONS:
             return False
     return True
 
@@ -216,7 +216,7 @@ def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Seque
     value_of = ""
     for index, word in enumerate(argv):
         if value_of or word.startswith("-"):
-            value_of = word if word in VALUED and not value_of else ""
+            value_of = word if word in OPTIONS_WITH_VALUE and not value_of else ""
         elif word in commands or not os.path.isfile(word):
             break
         else:
@@ -229,11 +229,14 @@ def with_demo_first(argv: Sequence[str]) -> Sequence[str]:
     return ["--demo", *(word for word in argv if word != "--demo")] if "--demo" in argv else argv
 
 
-def settled(args: argparse.Namespace) -> argparse.Namespace:
+def assign_screen_options(args: argparse.Namespace) -> argparse.Namespace:
     """Return the arguments with the options before the command assigned to it. Raises CommandError."""
     command = args.command
     if args.version and (
-        command or args.demo or args.kiosk or any(getattr(args, f"before_{name}") for name in BEFORE)
+        command
+        or args.demo
+        or args.kiosk
+        or any(getattr(args, f"before_{name}") for name in PRE_COMMAND_OPTIONS)
     ):
         raise CommandError("--version cannot be combined with other options or commands", "version-alone")
     if command and args.kiosk:
@@ -241,7 +244,7 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
             Message("--kiosk opens the screen; remove this option to run {command}", command=command),
             "screen-option",
         )
-    for name in BEFORE:
+    for name in PRE_COMMAND_OPTIONS:
         before = getattr(args, f"before_{name}")
         if not command:
             setattr(args, name, before)
@@ -265,7 +268,7 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
 
 def _not_there(command: str, action: str, name: str) -> str:
     words = f"{command} {action}".strip()
-    instead = _INSTEAD.get(name) if name == "program" or command == "machine" else None
+    instead = _REPLACEMENTS.get(name) if name == "program" or command == "machine" else None
     hint = f"; {instead}" if instead else ""
     return Message(
         "--{name} cannot be used before {words}, which does not have this option{hint}",

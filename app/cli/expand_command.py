@@ -11,13 +11,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from app.cli.program_options import add_ideal_option, add_program_options, circumstances, read_source
-from app.cli.proofs.progress_bar import Progress
+from app.cli.program_options import add_ideal_option, add_program_options, read_context, read_source
+from app.cli.proofs.progress_bar import ProgressBar
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.language.source import Source
+    from core.language.source import ProgramSource
     from core.proving.program_timeline import Timeline
 
 
@@ -37,38 +37,38 @@ def run(args: argparse.Namespace) -> int:
     from core.proving.program_timeline import Timeline
 
     path = Path(args.file)
-    around = circumstances(args)
+    around = read_context(args)
     source = read_source(path, args)
-    timeline = Timeline.of(source, around.setup, around.machine, ideal=args.ideal)
+    timeline = Timeline.from_program(source, around.setup, around.machine, ideal=args.ideal)
     figures = importlib.import_module(f"app.cli.figures.{source.dialect}_figures")
     if not args.json:
         sys.stdout.write(figures.HEAD)
-    with Progress(f"expanding {path.name}", len(source.lines)) as progress:
-        for last, text in _texts(timeline, source, figures, json_wanted=args.json):
+    with ProgressBar(f"expanding {path.name}", len(source.lines)) as progress:
+        for last, text in _block_texts(timeline, source, figures, json_output=args.json):
             sys.stdout.write(text)
-            progress.reach(last)
-    return report_diagnostics(path, timeline)
+            progress.report_progress(last)
+    return print_diagnostics(path, timeline)
 
 
-def _texts(
-    timeline: Timeline, source: Source, figures: ModuleType, *, json_wanted: bool
+def _block_texts(
+    timeline: Timeline, source: ProgramSource, output_module: ModuleType, *, json_output: bool
 ) -> Iterator[tuple[int, str]]:
     """Yield the text of each block, or of a series of moves, with the number of its last block."""
     from core.interpreter.shared.elementary_blocks import TimedSeries
-    from core.proving.program_timeline import timed_series
+    from core.proving.program_timeline import iter_timed_series
 
-    for each in timed_series(timeline):
+    for each in iter_timed_series(timeline):
         if isinstance(each, TimedSeries):
-            text = figures.series_json(each) if json_wanted else figures.series_rows(each)
+            text = output_module.series_json(each) if json_output else output_module.series_rows(each)
             yield int(each.series.n[-1]), text
             continue
         block, t0, t1 = each
-        told = figures.block_json(block, source.lines[block.line - 1], t0, t1) if json_wanted else None
-        yield block.n, figures.row(block, t0) if told is None else json.dumps(told) + "\n"
+        told = output_module.block_json(block, source.lines[block.line - 1], t0, t1) if json_output else None
+        yield block.n, output_module.row(block, t0) if told is None else json.dumps(told) + "\n"
 
 
-def report_diagnostics(path: Path, timeline: Timeline) -> int:
+def print_diagnostics(path: Path, timeline: Timeline) -> int:
     """Print the findings on stderr, one per line; return the exit status."""
     findings = timeline.diagnostics
-    sys.stderr.write("".join(f"{d.in_one_line(str(path))}\n" for d in findings))
+    sys.stderr.write("".join(f"{d.format_one_line(str(path))}\n" for d in findings))
     return EXIT_ERRORS if any(d.severity == "error" for d in findings) else EXIT_OK

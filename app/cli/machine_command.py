@@ -13,24 +13,24 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from app.cli.program_options import out_file
-from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
-from app.compose.extra import action_modules
+from app.cli.change_author import COMMAND_LINE_USER, add_as_option, get_change_author
+from app.cli.program_options import parse_output_path
+from app.compose.optional_features import map_action_modules
 from app.desk.command_errors import (
     EXIT_ERRORS,
     EXIT_OK,
     EXIT_USAGE,
     CommandError,
-    as_command_error,
-    cannot_write,
+    convert_to_command_error,
+    make_write_error,
 )
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.compose.backends.hal_file import WrittenHal
-    from core.machine.machine_file import Change
+    from app.compose.backends.hal_file_writer import GeneratedHal
+    from core.machine.machine_file import KeyChange
     from core.machine.machine_model import Machine
 
 
@@ -46,37 +46,38 @@ def add_hal_parser(actions: SubParsers) -> None:
     parser.add_argument("file", metavar="FILE", help="machine file with the [hal] and [board] tables")
     parser.add_argument(
         "--out",
-        type=out_file,
+        type=parse_output_path,
         metavar="FILE.hal",
         help="output file, which must not exist yet (default: stdout)",
     )
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
-def write_hal(args: argparse.Namespace) -> int:
+def write_hal_file(args: argparse.Namespace) -> int:
     """Write the HAL file; return 2 if the machine file is invalid. Raises CommandError."""
-    from app.compose.backends.hal_file import written_hal
+    from app.compose.backends.hal_file_writer import generate_hal
     from app.compose.machine.machine_setup import read_machine
     from core.table_schema import MachineFileError
 
     machine = read_machine(args.file)
     try:
-        hal = written_hal(machine)
+        hal = generate_hal(machine)
     except MachineFileError as error:
-        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
+        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.findings))
         return EXIT_USAGE
     if args.out:
-        _save_hal(Path(args.out), hal.text, hal.beside)
+        _save_hal(Path(args.out), hal.text, hal.extra_files)
     if args.json:
         _report_file(machine.source, args.out, hal)
     elif args.out:
-        sys.stdout.write("".join(f"{line}\n" for line in hal.table))
-        sys.stdout.write("".join(f"measure: {note}\n" for note in hal.measure))
+        sys.stdout.write("".join(f"{line}\n" for line in hal.wiring_table))
+        sys.stdout.write("".join(f"measure: {note}\n" for note in hal.measurements))
     else:
         sys.stdout.write(hal.text)
         sys.stderr.write(
             "".join(
-                f"turndesk: {name} must be in the same folder; --out writes both\n" for name in hal.beside
+                f"turndesk: {name} must be in the same folder; --out writes both\n"
+                for name in hal.extra_files
             )
         )
     if args.out and Path(args.out).name != hal.name:
@@ -86,22 +87,22 @@ def write_hal(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _report_file(source: str, out: str | None, hal: WrittenHal) -> None:
+def _report_file(source: str, out: str | None, hal: GeneratedHal) -> None:
     report = {
         "file": source,
         "board": hal.board,
         "out": out,
         "hal": hal.text,
-        "beside": hal.beside,
-        "wires": [{**wire._asdict(), "names": list(wire.names)} for wire in hal.wires],
-        "measure": hal.measure,
+        "beside": hal.extra_files,
+        "wires": [{**wire._asdict(), "names": list(wire.names)} for wire in hal.wiring_rows],
+        "measure": hal.measurements,
     }
     sys.stdout.write(json.dumps(report) + "\n")
 
 
-def _save_hal(out: Path, text: str, beside: Mapping[str, str]) -> None:
+def _save_hal(output_path: Path, text: str, extra_files: Mapping[str, str]) -> None:
     """Write all files, which must not exist yet. Raises CommandError."""
-    files = {out: text, **{out.parent / name: more for name, more in beside.items()}}
+    files = {output_path: text, **{output_path.parent / name: more for name, more in extra_files.items()}}
     for path in files:
         if path.exists():
             raise CommandError(
@@ -116,7 +117,7 @@ def _save_hal(out: Path, text: str, beside: Mapping[str, str]) -> None:
             with path.open("x", encoding="utf-8") as opened:
                 opened.write(content)
         except OSError as error:
-            raise cannot_write(path, error) from error
+            raise make_write_error(path, error) from error
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -142,49 +143,49 @@ def add_parser(subparsers: SubParsers) -> None:
     accept.add_argument("file", metavar="FILE")
     add_as_option(accept)
     add_hal_parser(actions)
-    for module in action_modules().values():
+    for module in map_action_modules().values():
         import_module(module).add_parser(actions)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run an action; return 0 if successful, 1 for faults, and 2 for an invalid machine file."""
     if args.action == "check":
-        return check(args.file, json_wanted=args.json)
+        return check(args.file, json_output=args.json)
     if args.action == "hal":
-        return write_hal(args)
+        return write_hal_file(args)
     if args.action == "accept":
         return accept(args.file, args)
     if args.action == "peer":
-        return play(args.file)
-    status: int = import_module(action_modules()[args.action]).run(args)
+        return simulate_devices(args.file)
+    status: int = import_module(map_action_modules()[args.action]).run(args)
     return status
 
 
 # =
 
-WIDTH = 80
-Rows = Sequence[tuple[str, str, str, str]]  # name, address, state, details
+TABLE_WIDTH = 80
+TableRows = Sequence[tuple[str, str, str, str]]  # name, address, state, details
 
 
-def check(file: str | None, *, json_wanted: bool) -> int:
+def check(file: str | None, *, json_output: bool) -> int:
     """Check the machine file, connect to the machine and print a report; return the exit status."""
     from app.compose.backends.backend_entry import NOT_CHECKED
-    from app.compose.backends.machine_answers import check_ports
-    from app.compose.machine.machine_files import named_machine
+    from app.compose.backends.machine_check import check_machine
+    from app.compose.machine.machine_files import load_named_machine
     from core.table_schema import MachineFileError
 
     try:
-        machine = named_machine(file)
+        machine = load_named_machine(file)
     except MachineFileError as error:
         errors = [
-            {"path": each.path, "value": each.value, "expected": each.expected} for each in error.errors
+            {"path": each.path, "value": each.value, "expected": each.expected} for each in error.findings
         ]
-        _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
-        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
+        _report(json_output, {"file": error.source, "errors": errors, "ports": []})
+        sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.findings))
         return EXIT_USAGE
-    answers, told = check_ports(machine), _changed(machine)
+    answers, told = check_machine(machine), _unaccepted_changes(machine)
     _report(
-        json_wanted,
+        json_output,
         {
             "file": machine.source,
             "machine": machine.name,
@@ -194,48 +195,50 @@ def check(file: str | None, *, json_wanted: bool) -> int:
             "ports": [{**row._asdict(), "verdict": row.verdict} for row in answers.rows],
             "rights": [right._asdict() for right in answers.rights],
             "warnings": answers.warnings,
-            "trouble": answers.trouble,
+            "trouble": answers.faults,
         },
     )
-    if not json_wanted:
+    if not json_output:
         sys.stdout.write(f"{machine.source} is valid: {machine.name}, backend {machine.backend}\n")
         judged = [
             (f"{row.verdict:<4}  {row.name}", *row[1:]) for row in answers.rows if row.verdict != NOT_CHECKED
         ]
-        sys.stdout.write("".join(f"{line}\n" for line in table(judged)))
+        sys.stdout.write("".join(f"{line}\n" for line in format_check_table(judged)))
         unchecked = [row.name for row in answers.rows if row.verdict == NOT_CHECKED]
         if unchecked:
-            sys.stdout.write(f"  not checked, because no hardware reports them: {summary(unchecked)}\n")
+            sys.stdout.write(
+                f"  not checked, because no hardware reports them: {summarize_names(unchecked)}\n"
+            )
         for right in answers.rights:
             sys.stdout.write(f"  computer: {right.name}: {right.granted}\n")
             sys.stdout.write(f"    {right.missing}\n" if right.missing else "")
         sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
-    said = (*answers.warnings, *answers.trouble)
+    said = (*answers.warnings, *answers.faults)
     sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))
-    return EXIT_ERRORS if answers.trouble else EXIT_OK
+    return EXIT_ERRORS if answers.faults else EXIT_OK
 
 
-def _changed(machine: Machine) -> Sequence[Change]:
+def _unaccepted_changes(machine: Machine) -> Sequence[KeyChange]:
     """Return the differences from the accepted file; () if the store cannot be read."""
     try:
-        return changed(machine)
+        return list_changes(machine)
     except CommandError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return ()
 
 
-def table(rows: Rows) -> Iterator[str]:
+def format_check_table(rows: TableRows) -> Iterator[str]:
     """Yield the lines of the table, at most 80 characters long; long details continue on the next line."""
     widths = [max((len(row[column]) for row in rows), default=0) for column in range(3)]
     start = " " * (2 + sum(width + 2 for width in widths))
     for *cells, detail in rows:
         head = "  " + "".join(f"{cell:<{width}}  " for cell, width in zip(cells, widths, strict=True))
-        text = textwrap.wrap(detail, max(WIDTH - len(start), 30)) or [""]
+        text = textwrap.wrap(detail, max(TABLE_WIDTH - len(start), 30)) or [""]
         yield (head + text[0]).rstrip()
         yield from (start + more for more in text[1:])
 
 
-def summary(names: Sequence[str]) -> str:
+def summarize_names(names: Sequence[str]) -> str:
     """Return the names on one line; several inputs or outputs are only counted."""
     parts = [name for name in names if not name.startswith(("input ", "output "))]
     for kind in ("input", "output"):
@@ -251,43 +254,43 @@ def _report(json_wanted: bool, report: dict[str, object]) -> None:
 
 # --- accept: a real machine does not run until a changed file is accepted --------------------------------
 
-MOST = 5  # changes that a run prints; a check prints all
+MAX_PRINTED_CHANGES = 5  # changes that a run prints; a check prints all
 
 
-def changed(machine: Machine) -> tuple[Change, ...]:
+def list_changes(machine: Machine) -> tuple[KeyChange, ...]:
     """Return the differences from the file that was accepted last; () if none was. Raises CommandError."""
-    from app.cli.store_command import opened_store
-    from app.compose.machine.accepted_machine import differences
+    from app.cli.store_command import open_store
+    from app.compose.machine.accepted_machine import list_differences
 
-    with opened_store(read_only=True) as store:
-        return differences(machine, store.settings) or ()
+    with open_store(read_only=True) as store:
+        return list_differences(machine, store.settings) or ()
 
 
-def demand_accepted(machine: Machine) -> None:
+def require_accepted(machine: Machine) -> None:
     """Print the changes of the machine file before a run.
 
     Raises CommandError if the file of a real machine has changed since it was accepted.
     """
-    from app.compose.backends.connection import real_time
+    from app.compose.backends.connection import needs_real_time
 
     try:
-        told = changed(machine)
+        told = list_changes(machine)
     except CommandError:
-        if real_time(machine):
+        if needs_real_time(machine):
             raise
         return  # a simulated machine does not need a store
     if not told:
         return
-    lines = [str(change) for change in told[:MOST]]
-    if len(told) > MOST:
+    lines = [str(change) for change in told[:MAX_PRINTED_CHANGES]]
+    if len(told) > MAX_PRINTED_CHANGES:
         lines.append(
             Message(
                 "… and {told_count} more; to see all changes, run: turndesk machine check {source}",
-                told_count=len(told) - MOST,
+                told_count=len(told) - MAX_PRINTED_CHANGES,
                 source=machine.source,
             )
         )
-    if real_time(machine):
+    if needs_real_time(machine):
         why = Message(
             "{source} has changed since it was accepted ({lines})",
             source=machine.source,
@@ -306,16 +309,19 @@ def demand_accepted(machine: Machine) -> None:
 
 def accept(file: str, args: argparse.Namespace) -> int:
     """Print the changes of the machine file and accept it. Raises CommandError."""
-    from app.cli.store_command import opened_store
-    from app.compose.machine.accepted_machine import differences, key_of, record_of
+    from app.cli.store_command import open_store
+    from app.compose.machine.accepted_machine import create_record, get_settings_key, list_differences
     from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(file)
-    with opened_store() as store:
-        told, who = differences(machine, store.settings), who_changes(store, args, Act.MACHINE_FILE)
-        store.settings.save_setting(key_of(machine), record_of(machine)).result()
+    with open_store() as store:
+        told, who = (
+            list_differences(machine, store.settings),
+            get_change_author(store, args, ProtectedChange.MACHINE_FILE),
+        )
+        store.settings.save_setting(get_settings_key(machine), create_record(machine)).result()
         said = "; ".join(str(change) for change in told or ())
-        by = "" if who == COMMAND_LINE else f" by {who}"
+        by = "" if who == COMMAND_LINE_USER else f" by {who}"
         store.events.log_event(
             "machine",
             Message(
@@ -341,16 +347,16 @@ def _counted(changes: int) -> str:
 # --- peer: simulated devices for a bus without hardware --------------------------------------------------
 
 
-def play(file: str) -> int:
+def simulate_devices(file: str) -> int:
     """Simulate the devices of the machine file until Ctrl-C or SIGTERM. Raises CommandError."""
-    from app.compose.backends.backend_entry import backend_of, playable
+    from app.compose.backends.backend_entry import find_backend, list_playable_backends
     from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
 
     machine = read_machine(file)
-    play_it = backend_of(machine).play
+    play_it = find_backend(machine).play_devices
     if play_it is None:
-        there = " and ".join(playable())
+        there = " and ".join(list_playable_backends())
         why = Message(
             "machine.backend is {backend}, which does not have a simulator; simulators are "
             "available for {present}",
@@ -366,17 +372,17 @@ def play(file: str) -> int:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
-    with as_command_error(DriverError):
-        play_it(machine, lambda: not ended, _say, _typed())
+    with convert_to_command_error(DriverError):
+        play_it(machine, lambda: not ended, _say, _line_reader())
     return EXIT_OK
 
 
-def _typed() -> Callable[[], Iterable[str]]:
+def _line_reader() -> Callable[[], Iterable[str]]:
     """Return a function that reads lines of the standard input, if there is one."""
-    from app.compose.backends.played_machine import Typed
+    from app.compose.backends.simulated_devices import LineReader
 
     try:
-        return Typed(sys.stdin.fileno()).lines
+        return LineReader(sys.stdin.fileno()).read_lines
     except (OSError, ValueError, AttributeError):
         return tuple
 

@@ -17,23 +17,23 @@ from collections.abc import Mapping, Sequence
 from types import ModuleType
 
 from app import VERSION
-from app.cli.bug_report.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
+from app.cli.bug_report.crash_report import catch_interrupts, raise_interrupt, report_crash, report_thread
 from app.cli.command_parser import (
-    Parser,
+    CommandParser,
     Subcommands,
     add_screen_options,
+    assign_screen_options,
     is_for_screen,
-    settled,
     with_demo_first,
     with_program_option,
 )
-from app.compose.extra import Subcommand, command_modules, extras, insert_after
+from app.compose.optional_features import Subcommand, extras, insert_after, map_command_modules
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
-from app.desk.standard_input import nothing_taken
+from app.desk.standard_input import reset_standard_input
 from core.message import CodedError, Message
 
-COMMANDS: Mapping[str, str] = {
+CORE_COMMANDS: Mapping[str, str] = {
     "prove": "prove programs (errors, limits, cycle time) without moving the machine",
     "expand": "show each single motion and action that the control would execute",
     "trace": "write the time-stamped setpoints that the drives would receive",
@@ -52,79 +52,81 @@ COMMANDS: Mapping[str, str] = {
 """Subcommands with their help. Each has a module with add_parser(subparsers) and run(args) -> exit status.
 The help of all of them imports none."""
 
-NO_DISPLAY = """\
+NO_DISPLAY_TEXT = """\
 turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no operator screen. Without one:
   turndesk prove FILE…             proves programs: errors, limits, cycle time
   turndesk expand FILE             the elementary blocks that the control would execute
   turndesk trace FILE --out CSV    the setpoints that the drives would get
   turndesk run FILE --headless     runs it on the simulated lathe
 """
-_FULL = (errno.ENOSPC, errno.EDQUOT)
-WITHOUT = "prove, expand, trace and run --headless do not need a screen"
+_DISK_FULL_ERRORS = (errno.ENOSPC, errno.EDQUOT)
+SCREENLESS_COMMANDS_TEXT = "prove, expand, trace and run --headless do not need a screen"
 
 
-def all_commands() -> Sequence[str]:
+def list_commands() -> Sequence[str]:
     """Return all subcommands in the order of the help, including those of optional features."""
-    added = [(name, each.follows) for name, each in _added().items()]
-    return insert_after(COMMANDS, str, added)
+    added = [(name, each.predecessor) for name, each in _feature_commands().items()]
+    return insert_after(CORE_COMMANDS, str, added)
 
 
-def _added() -> Mapping[str, Subcommand]:
+def _feature_commands() -> Mapping[str, Subcommand]:
     """Return the subcommands of the optional features."""
-    return {name: each for extra in extras().values() for name, each in extra.commands.items()}
+    return {name: each for extra in extras().values() for name, each in extra.subcommands.items()}
 
 
 def _help_of(command: str) -> str:
-    return COMMANDS[command] if command in COMMANDS else _added()[command].help
+    return CORE_COMMANDS[command] if command in CORE_COMMANDS else _feature_commands()[command].help_line
 
 
-def _module_of(command: str) -> ModuleType:
+def _load_module(command: str) -> ModuleType:
     """Import the module of a subcommand."""
-    own = command in COMMANDS
+    own = command in CORE_COMMANDS
     return importlib.import_module(
-        f"app.cli.{command.replace('-', '_')}_command" if own else command_modules()[command]
+        f"app.cli.{command.replace('-', '_')}_command" if own else map_command_modules()[command]
     )
 
 
-def build_parser(commands: Sequence[str] | None = None, *, bare: bool = False) -> argparse.ArgumentParser:
+def build_parser(
+    commands: Sequence[str] | None = None, *, without_options: bool = False
+) -> argparse.ArgumentParser:
     """Return the parser with these subcommands, or with all subcommands for None.
 
-    ``bare`` adds subcommands without options, so that no module is imported.
+    ``without_options`` adds subcommands without options, so that no module is imported.
     """
-    parser = Parser(
+    parser = CommandParser(
         prog="turndesk",
         description="Operator screen for OmniTurn-style lathes. Run turndesk without a command to open "
         "the screen.",
     )
     add_screen_options(parser)
     subparsers = parser.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", parser_class=Parser, action=Subcommands
+        title="commands", metavar="COMMAND", dest="command", parser_class=CommandParser, action=Subcommands
     )
     assert isinstance(subparsers, Subcommands)
-    for name in all_commands() if commands is None else commands:
-        if bare:
+    for name in list_commands() if commands is None else commands:
+        if without_options:
             subparsers.add_parser(name, help=_help_of(name))
         else:
             subparsers.help_texts[name] = _help_of(name)
-            _module_of(name).add_parser(subparsers)
+            _load_module(name).add_parser(subparsers)
     return parser
 
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
     """Return only the requested command, to import one module, or all commands if it is invalid."""
     first = next((word for word in argv if word != "--demo"), "")
-    if first in COMMANDS:
+    if first in CORE_COMMANDS:
         return (first,)
-    commands = all_commands()
+    commands = list_commands()
     return (first,) if first in commands else commands
 
 
 def _arguments(argv: Sequence[str]) -> Sequence[str]:
     """Return the arguments with the demo and a program file in the places where the parser expects them."""
     argv = with_demo_first(argv)
-    if is_for_screen(argv) or (argv and argv[0] in COMMANDS):
+    if is_for_screen(argv) or (argv and argv[0] in CORE_COMMANDS):
         return argv
-    return with_program_option(argv, all_commands())
+    return with_program_option(argv, list_commands())
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -135,66 +137,66 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = _arguments(sys.argv[1:] if argv is None else argv)
     gc.set_threshold(200_000)  # imports alone would cause a hundred useless collections
     try:
-        nothing_taken()
+        reset_standard_input()
         bare = is_for_screen(argv)
-        args = build_parser(None if bare else _commands_for(argv), bare=bare).parse_args(argv)
+        args = build_parser(None if bare else _commands_for(argv), without_options=bare).parse_args(argv)
         from app.desk.data_folder import check_data_folder
 
-        with keep_interrupts():
+        with catch_interrupts():
             check_data_folder()
-            status = _flushed(_dispatch(settled(args)))
+            status = _flush_output(_dispatch(assign_screen_options(args)))
             raise_interrupt()
             return status
     except SystemExit:  # raised after the help, which needs no error handling
         raise
-    except _refusals() as error:
-        return command_errors.report_refusal(error)
+    except _rejection_types() as error:
+        return command_errors.report_command_error(error)
     except ImportError as error:
-        if not _library_missing(error):
+        if not _is_library_missing(error):
             raise
         sys.stderr.write(f"turndesk: {error}; install the system packages that README.md names\n")
         return EXIT_USAGE
     except KeyboardInterrupt:
         sys.stderr.write("turndesk: interrupted\n")
-        _forget_interrupt()
+        _clear_interrupt()
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader of the output has closed the pipe, as `| head` does, and expects a quiet end.
-        _write_no_more()
+        _discard_output()
         return EXIT_OK
     except OSError as error:
         # errors of a file are reported where it is written
-        if error.errno not in _FULL or error.filename is not None:
+        if error.errno not in _DISK_FULL_ERRORS or error.filename is not None:
             raise
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
-        _write_no_more()
+        _discard_output()
         return EXIT_USAGE
 
 
-def _refusals() -> tuple[type[CodedError], ...]:
+def _rejection_types() -> tuple[type[CodedError], ...]:
     """Return the errors of commands that are reported in one line."""
     from app.desk.data_folder import DataFolderError
 
     return CommandError, DataFolderError
 
 
-def _library_missing(error: ImportError) -> bool:
+def _is_library_missing(error: ImportError) -> bool:
     """Return whether a system library is missing, such as one that Qt needs; its name contains ``.so``."""
     return ".so" in str(error) and "cannot open shared object file" in str(error)
 
 
-def _flushed(status: int) -> int:
+def _flush_output(status: int) -> int:
     """Return the status after flushing stdout, because a full disk could not be reported later."""
     sys.stdout.flush()
     return status
 
 
-def _write_no_more() -> None:
+def _discard_output() -> None:
     """Discard the output that Python would write when it ends."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _forget_interrupt() -> None:
+def _clear_interrupt() -> None:
     """Clear the interpreter's mark of an interrupt, so that the exit status is used.
 
     Ctrl+C during the creation of a dataclass (``exec`` of a text) marks the interpreter as ended by the
@@ -210,19 +212,19 @@ def _dispatch(args: argparse.Namespace) -> int:
     if args.demo:
         _open_demo(args)
     if args.command:
-        status: int = _module_of(args.command).run(args)
+        status: int = _load_module(args.command).run(args)
         return status
     return _screen(args)
 
 
 def _open_demo(args: argparse.Namespace) -> None:
     """Use the data folder of the demo, and its program on the screen if none is specified."""
-    from app.compose.demo_store import demo_program, open_demo
+    from app.compose.demo_store import find_demo_program, open_demo
 
     machine = getattr(args, "machine", None)
     open_demo(machine)
     if not args.command:
-        args.program = args.program or demo_program(machine)
+        args.program = args.program or find_demo_program(machine)
 
 
 def _has_display() -> bool:
@@ -233,13 +235,16 @@ def _has_display() -> bool:
 
 def _screen(args: argparse.Namespace) -> int:
     if not _has_display():
-        sys.stderr.write(NO_DISPLAY)
+        sys.stderr.write(NO_DISPLAY_TEXT)
         return EXIT_USAGE
-    from app.screen.display import trouble
+    from app.screen.display import find_display_error
 
-    if why := trouble():
+    if why := find_display_error():
         raise CommandError(
-            Message("the screen cannot be opened: {why}. {without}", why=why, without=WITHOUT), "no-screen"
+            Message(
+                "the screen cannot be opened: {why}. {without}", why=why, without=SCREENLESS_COMMANDS_TEXT
+            ),
+            "no-screen",
         )
     if args.program and not (args.machine or args.offsets or args.kiosk):
         from app.screen.window.running_screen import hand_over
@@ -247,12 +252,14 @@ def _screen(args: argparse.Namespace) -> int:
         if hand_over(args.program):
             sys.stdout.write(f"{args.program}: opened in the TurnDesk that is already running\n")
             return EXIT_OK
-    from app.screen.run_screen import run_screen
+    from app.screen.screen_startup import run_screen
 
-    return run_screen(machine=args.machine, program=args.program, offsets=args.offsets, kiosk=args.kiosk)
+    return run_screen(
+        machine=args.machine, program_file=args.program, offsets_file=args.offsets, is_kiosk=args.kiosk
+    )
 
 
-def _streams_for_any_text() -> None:
+def _make_streams_tolerant() -> None:
     """Make the output streams replace characters that they cannot encode by question marks.
 
     Streams that the parent process has closed are replaced by the null device.
@@ -266,9 +273,9 @@ def _streams_for_any_text() -> None:
             stream.reconfigure(errors="replace")
 
 
-def console() -> int:
+def run_console() -> int:
     """Run the installed ``turndesk`` command, with crash reports instead of tracebacks."""
-    _streams_for_any_text()
+    _make_streams_tolerant()
     sys.excepthook = report_crash
     threading.excepthook = report_thread
     # numpy would start a thread pool for linear algebra that is not used here, which takes a fifth of a short
@@ -281,4 +288,4 @@ def console() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(console())
+    sys.exit(run_console())

@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from app.cli.who_changes import add_as_option, add_consent_options
+from app.cli.change_author import add_as_option, add_consent_options
 from core.message import Message
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -62,13 +62,13 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "table",
         nargs="?",
-        choices=[kind.value for kind in Kind],
+        choices=[kind.value for kind in OffsetKind],
         help="show only this table (default: all tables)",
     )
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the action. Raises CommandError."""
-    from app.cli.actions.offset_actions import ACTIONS
+    from app.cli.actions.offset_actions import OFFSET_ACTIONS
 
-    return ACTIONS[args.action](args)
+    return OFFSET_ACTIONS[args.action](args)

@@ -9,24 +9,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.figures.units import MM_PER_INCH
-from app.cli.program_options import STDIN, circumstances, read_source
+from app.cli.program_options import STDIN_NAME, read_context, read_source
 from app.desk.command_errors import CommandError
-from app.desk.kept_part import lasting
-from core.message import Message, error_code
-from core.part.stock_forms import FORMS
+from app.desk.stored_part import make_stock_absolute
+from core.message import Message, get_error_code
+from core.part.stock_forms import SPECIFICATION_FORMS
 
 if TYPE_CHECKING:
-    from app.cli.program_options import Circumstances
-    from app.desk.kept_part import KeptPart
-    from core.language.source import Source
+    from app.cli.program_options import CommandContext
+    from app.desk.stored_part import StoredPart
+    from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
     from core.part.tool_shape import ToolShape
-    from core.proving.program_tools import PartSetting
+    from core.proving.program_tools import PartSettings
 
 
-_LONGEST = 1016.0  # mm
+_MAX_LENGTH_MM = 1016.0  # mm
 
 
 def add_part_options(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +40,9 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
         metavar="IN",
         help="distance from the front of the chuck or collet to Z0, in inches",
     )
-    parser.add_argument("--stock", metavar="SPEC", help=Message("stock for the part: {forms}", forms=FORMS))
+    parser.add_argument(
+        "--stock", metavar="SPEC", help=Message("stock for the part: {forms}", forms=SPECIFICATION_FORMS)
+    )
     parser.add_argument(
         "--keep-stock",
         action="store_true",
@@ -51,55 +53,57 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
+def read_part_setting(args: argparse.Namespace, circumstances: CommandContext) -> PartSettings:
     """Return the part data from the options. Raises CommandError if an option is invalid."""
-    from app.compose.known_part import known_part
+    from app.compose.part_data import read_known_part
 
-    stick_out = _stick_out(args, around.machine)
-    setting = known_part(around.machine, around.setup.tools, _shapes(args), stick_out)
+    stick_out = _read_stickout(args, circumstances.machine)
+    setting = read_known_part(circumstances.machine, circumstances.setup.tools, _read_shapes(args), stick_out)
     if args.stock is None:
         if args.keep_stock:
             raise CommandError(
                 "--keep-stock needs --stock, which specifies the stock to save", "nothing-to-keep"
             )
         return setting
-    return replace(setting, stock=_said(args.stock, args, around, setting))
+    return replace(setting, stock=_said(args.stock, args, circumstances, setting))
 
 
-def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace) -> PartSetting:
+def apply_stored_stock(setting: PartSettings, program: str, args: argparse.Namespace) -> PartSettings:
     """Return the part data with the stored stock, unless --stock specifies one.
 
     With --keep-stock, the stock is also saved. Raises CommandError.
     """
-    from app.compose.known_part import keep_stock, kept_with
+    from app.compose.part_data import read_stored_part, save_stock
 
     if args.keep_stock:
-        if program == STDIN:
+        if program == STDIN_NAME:
             raise CommandError(
                 "--keep-stock saves the stock under the name of the program, but - (stdin) has no name",
                 "stdin-has-no-name",
             )
-        from app.cli.store_command import opened_store
-        from app.cli.who_changes import who_changes
-        from core.access.access_table import Act
+        from app.cli.change_author import get_change_author
+        from app.cli.store_command import open_store
+        from core.access.access_table import ProtectedChange
 
-        around = circumstances(args)
-        with opened_store() as store:
-            who_changes(store, args, Act.STOCK)
-        keep_stock(program, lasting(args.stock), _stick_out(args, around.machine))
-    return with_kept(setting, program, kept_with(program), args)
+        around = read_context(args)
+        with open_store() as store:
+            get_change_author(store, args, ProtectedChange.STOCK)
+        save_stock(program, make_stock_absolute(args.stock), _read_stickout(args, around.machine))
+    return apply_stored_part(setting, program, read_stored_part(program), args)
 
 
-def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse.Namespace) -> PartSetting:
+def apply_stored_part(
+    setting: PartSettings, program: str, stored: StoredPart, args: argparse.Namespace
+) -> PartSettings:
     """Return the part data with the stored values that no option specifies. Raises CommandError."""
-    from app.compose.known_part import with_kept_clamping
+    from app.compose.part_data import apply_stored_clamping
 
-    around = circumstances(args)
-    setting = with_kept_clamping(setting, around.machine, kept, said=args.stick_out is not None)
-    if args.stock is not None or not kept.stock:
+    around = read_context(args)
+    setting = apply_stored_clamping(setting, around.machine, stored, is_explicit=args.stick_out is not None)
+    if args.stock is not None or not stored.stock:
         return setting
     try:
-        return replace(setting, stock=_said(kept.stock, args, around, setting))
+        return replace(setting, stock=_said(stored.stock, args, around, setting))
     except CommandError as error:
         way = "specify the stock again with --stock and --keep-stock"
         raise CommandError(
@@ -114,33 +118,35 @@ def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse
 
 
 def _said(
-    text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
+    text: str, args: argparse.Namespace, around: CommandContext, setting: PartSettings
 ) -> Stock | StockSpec:
-    from app.compose.known_part import kept_with
-    from app.compose.said_stock import ProgramBefore, said_stock
+    from app.compose.part_data import read_stored_part
+    from app.compose.specified_stock import StockContext, read_stock
     from core.part.stock_spec import StockError
 
-    def read(path: Path) -> Source:
+    def read(path: Path) -> ProgramSource:
         return read_source(path, args)
 
     try:
-        return said_stock(text, ProgramBefore(read, around.setup, around.machine, setting, kept=kept_with))
+        return read_stock(
+            text, StockContext(read, around.setup, around.machine, setting, read_stored_part=read_stored_part)
+        )
     except StockError as error:
-        raise CommandError(f"--stock {error}", error_code(error)) from error
+        raise CommandError(f"--stock {error}", get_error_code(error)) from error
 
 
-def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
+def _read_shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
     """Return the shapes of --tools, or those of the store and of the offsets file."""
-    from app.compose.stored_offsets import stored_shapes
+    from app.compose.stored_offsets import read_stored_shapes
     from app.offsets.offsets_file import read_tool_shapes
 
     if args.tools is not None:
         return read_tool_shapes(Path(args.tools))
     described = read_tool_shapes(Path(args.offsets)) if args.offsets is not None else {}
-    return {**stored_shapes(), **described}
+    return {**read_stored_shapes(), **described}
 
 
-def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
+def _read_stickout(args: argparse.Namespace, machine: Machine) -> float | None:
     """Return the stick-out of the job in mm, or None. Raises CommandError if it is invalid."""
     if args.stick_out is None:
         return None
@@ -153,7 +159,7 @@ def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
             ),
             "no-clamping",
         )
-    if not 0.0 < stick_out <= _LONGEST:
+    if not 0.0 < stick_out <= _MAX_LENGTH_MM:
         raise CommandError(
             Message("--stick-out {stick_out} is not between 0 and 40 in", stick_out=f"{args.stick_out:g}"),
             "stick-out",

@@ -9,19 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
-from app.desk.standard_input import DASH, standard_input
-from core.language.source import Dialect, dialect_of
-from core.message import CodedError, Message, error_code
+from app.desk.standard_input import STDIN_ARGUMENT, read_standard_input
+from core.language.source import Dialect, guess_dialect
+from core.message import CodedError, Message, get_error_code
 
 if TYPE_CHECKING:
     from core.interpreter.shared.job_setup import Setup
-    from core.language.source import Source
+    from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
 
     SubParsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
 
-STDIN = "stdin"  # name of a program that is read from stdin
+STDIN_NAME = "stdin"  # name of a program that is read from stdin
 
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
@@ -52,45 +52,45 @@ def add_ideal_option(parser: argparse.ArgumentParser) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Circumstances:
+class CommandContext:
     """Machine and program context of one command."""
 
     machine: Machine
     setup: Setup
 
 
-def circumstances(args: argparse.Namespace) -> Circumstances:
+def read_context(args: argparse.Namespace) -> CommandContext:
     """Return the machine and context that the options specify. Raises CommandError."""
     from app.compose.machine.machine_setup import read_machine
-    from app.compose.stored_offsets import chosen_offsets, setup_with
+    from app.compose.stored_offsets import create_setup_with, make_offsets_reader
 
     machine = read_machine(args.machine)
-    inputs = input_states(args.inputs, machine.inputs)
-    setup = setup_with(
+    inputs = read_input_states(args.inputs, machine.inputs)
+    setup = create_setup_with(
         machine,
-        chosen_offsets(args.offsets)(),
+        make_offsets_reader(args.offsets)(),
         inputs=inputs,
         block_delete=args.block_delete,
         strict=args.strict,
     )
-    return Circumstances(machine, setup)
+    return CommandContext(machine, setup)
 
 
-def input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
+def read_input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
     """Return the input states of the file ``path``, or {} for None; ``known`` limits the names.
 
     Raises CommandError.
     """
     if path is None:
         return {}
-    return read_inputs(Path(path), known)
+    return read_inputs_file(Path(path), known)
 
 
-def read_source(path: Path, args: argparse.Namespace) -> Source:
+def read_source(path: Path, args: argparse.Namespace) -> ProgramSource:
     """Return the program text; ``-`` reads it from stdin. Raises CommandError if it cannot be read."""
-    from core.language.source import SourceError, load_source, source_of
+    from core.language.source import SourceError, decode_source, load_source
 
-    dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
+    dialect = Dialect(args.dialect) if args.dialect else guess_dialect(path.name)
     for option, template in (
         (
             "strict",
@@ -109,45 +109,47 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
             )
     try:
         source = (
-            source_of(STDIN, standard_input("program"), dialect)
-            if path == Path(DASH)
+            decode_source(STDIN_NAME, read_standard_input("program"), dialect)
+            if path == Path(STDIN_ARGUMENT)
             else load_source(path, dialect)
         )
     except SourceError as error:
         # The screen shows only the name of a program. A script that proves many programs also needs the
         # folder.
-        raise CommandError(str(error).replace(path.name, str(path), 1), error_code(error)) from error
-    from core.language.called_files import with_called_files
+        raise CommandError(str(error).replace(path.name, str(path), 1), get_error_code(error)) from error
+    from core.language.called_files import load_called_files
 
-    return with_called_files(source, [path.parent])
+    return load_called_files(source, [path.parent])
 
 
-def out_file(text: str) -> str | None:
+def parse_output_path(text: str) -> str | None:
     """Return the output file; None means stdout, also for ``-``."""
-    return None if text == DASH else text
+    return None if text == STDIN_ARGUMENT else text
 
 
-def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
+def read_inputs_file(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
     """Return input states by name. With ``known``, other names are errors.
 
     The file has a table [inputs] with ``10 = true`` for PLC input 10 and ``"TB2-5" = false`` for a terminal.
     M95 reads the input that the control calls 7, which is terminal TB2-9. ``7`` is also used for TB2-9 if the
     file does not contain TB2-9. Raises CommandError with every error.
     """
-    from app.desk.toml_file import read_toml, refuse, unknown_key
+    from app.desk.toml_file import make_unknown_key_error, raise_mistakes, read_toml
 
     data = read_toml(path)
-    mistakes = [unknown_key(key, ("inputs",)) for key in data if key != "inputs"]
+    mistakes = [make_unknown_key_error(key, ("inputs",)) for key in data if key != "inputs"]
     table = data.get("inputs")
     if not isinstance(table, dict):
-        refuse(path, [*mistakes, CodedError("the table [inputs] is missing", "no-table")])
+        raise_mistakes(path, [*mistakes, CodedError("the table [inputs] is missing", "no-table")])
         return {}
     mistakes += [
         CodedError(Message("inputs.{name} must be true (closed) or false (open)", name=name), "wrong-type")
         for name, state in table.items()
         if not isinstance(state, bool)
     ]
-    mistakes += [unknown_key(name, known, "inputs") for name in table if known and name not in known]
-    refuse(path, mistakes)
+    mistakes += [
+        make_unknown_key_error(name, known, "inputs") for name in table if known and name not in known
+    ]
+    raise_mistakes(path, mistakes)
     also = "7" in table and (not known or "TB2-9" in known)
     return {"TB2-9": table["7"], **table} if also else dict(table)

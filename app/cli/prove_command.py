@@ -11,24 +11,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.part_options import add_part_options
-from app.cli.program_options import add_ideal_option, add_program_options, circumstances, read_source
-from app.cli.proofs.progress_bar import Progress
-from app.compose.extra import proof_workers
+from app.cli.program_options import add_ideal_option, add_program_options, read_context, read_source
+from app.cli.proofs.progress_bar import ProgressBar
+from app.compose.optional_features import find_worker_class
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.message import Message
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
-MOST_JOBS = 256
+MAX_JOBS = 256
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from app.cli.proofs.proof_job import FittingJobs, OtherOffsets, ProofJob
-    from app.cli.proofs.proof_work import Findings
+    from app.cli.proofs.proof_work import ProofFindings
     from app.cli.proofs.report_file import ReportFile
     from core.interpreter.shared.job_setup import Setup
-    from core.language.source import Source
-    from core.proving.proof_report import PartReport, Report
+    from core.language.source import ProgramSource
+    from core.proving.proof_report import PartReport, ProofReport
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -61,10 +61,10 @@ def add_parser(subparsers: SubParsers) -> None:
 def add_folder_options(parser: argparse.ArgumentParser) -> None:
     """Add the options for proving many programs."""
     parser.add_argument(
-        "--jobs", metavar="N", type=_count, help="number of worker processes (default: one per core)"
+        "--jobs", metavar="N", type=_parse_count, help="number of worker processes (default: one per core)"
     )
     parser.set_defaults(scheduler=None)
-    if proof_workers():
+    if find_worker_class():
         parser.add_argument(
             "--scheduler",
             metavar="HOST:PORT",
@@ -75,14 +75,14 @@ def add_folder_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _count(word: str) -> int:
+def _parse_count(word: str) -> int:
     """Return the number of workers. Raises ArgumentTypeError if it is invalid."""
-    if not word.isdecimal() or not 1 <= int(word) <= MOST_JOBS:
+    if not word.isdecimal() or not 1 <= int(word) <= MAX_JOBS:
         raise argparse.ArgumentTypeError(
             Message(
                 "{word} is not a valid number of worker processes; use 1 to {most_jobs}",
                 word=f"{word!r}",
-                most_jobs=MOST_JOBS,
+                most_jobs=MAX_JOBS,
             )
         )
     return int(word)
@@ -90,22 +90,22 @@ def _count(word: str) -> int:
 
 def run(args: argparse.Namespace) -> int:
     """Prove each file; return 1 if a program has errors, or 2 if one cannot be read."""
-    many = _for_workers(args)
+    many = _uses_workers(args)
     from app.cli.proofs.proof_job import FittingJobs
 
-    jobs = FittingJobs(args, _job)
-    jobs.of("")  # reports errors in the options before anything is proved
+    jobs = FittingJobs(args, _create_job)
+    jobs.get_job_for("")  # reports errors in the options before anything is proved
     if many:
-        from app.cli.proofs.folder_proofs import prove_many
+        from app.cli.proofs.folder_proofs import prove_programs
 
-        return prove_many(args, jobs)
-    from app.cli.proofs.report_file import report_file
+        return prove_programs(args, jobs)
+    from app.cli.proofs.report_file import open_report
 
-    with report_file(args) as report:
-        return max(_status(Path(name), jobs, args, report) for name in args.files)
+    with open_report(args) as report:
+        return max(_prove_and_print(Path(name), jobs, args, report) for name in args.files)
 
 
-def _for_workers(args: argparse.Namespace) -> bool:
+def _uses_workers(args: argparse.Namespace) -> bool:
     """Return whether workers prove the programs and a table is printed: for folders and some options."""
     given = args.jobs is not None or args.scheduler is not None
     many = given or any(Path(name).is_dir() for name in args.files)
@@ -133,22 +133,22 @@ def _for_workers(args: argparse.Namespace) -> bool:
     return many
 
 
-def _job(args: argparse.Namespace) -> ProofJob:
+def _create_job(args: argparse.Namespace) -> ProofJob:
     """Return the common job from the options. Raises CommandError."""
-    from app.cli.part_options import part_setting
+    from app.cli.part_options import read_part_setting
     from app.cli.proofs.proof_job import ProofJob
 
-    around = circumstances(args)
-    setting = part_setting(args, around)
-    reported, other = args.report is not None, _other(args, around.setup)
+    around = read_context(args)
+    setting = read_part_setting(args, around)
+    reported, other = args.report is not None, _other_offsets(args, around.setup)
     if other is not None:
-        from core.proving.other_offsets import FINE
+        from core.proving.offset_comparison import FINE_COLUMN_WIDTH_MM
 
-        setting = replace(setting, step=FINE)
+        setting = replace(setting, step=FINE_COLUMN_WIDTH_MM)
     return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported, other)
 
 
-def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
+def _other_offsets(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
     """Return the offsets of --compare, or None. Raises CommandError with every error."""
     if args.compare is None:
         return None
@@ -159,98 +159,103 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
     return OtherOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
 
 
-def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None) -> int:
+def _prove_and_print(
+    path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None
+) -> int:
     """Prove one file and return its exit status. A file that cannot be read does not stop the others."""
-    from app.cli.part_options import with_kept_stock
-    from app.cli.proofs.proof_job import on_machine
+    from app.cli.part_options import apply_stored_stock
+    from app.cli.proofs.proof_job import describe_machine_choice
     from app.cli.proofs.proof_work import Proof
 
     try:
         source = read_source(path, args)
-        name = jobs.machine_of(source)
+        name = jobs.select_machine_name(source)
         if name:
-            sys.stderr.write(on_machine(path.name, name))
-        job = jobs.of(name)
-        job = replace(job, setting=with_kept_stock(job.setting, source.name, args))
+            sys.stderr.write(describe_machine_choice(path.name, name))
+        job = jobs.get_job_for(name)
+        job = replace(job, part_setting=apply_stored_stock(job.part_setting, source.name, args))
     except CommandError as error:
         if report is not None:
-            report.add(path, Proof({}, fault=str(error)))
-        return command_errors.report_refusal(error)
+            report.add_proof(path, Proof({}, failure_reason=str(error)))
+        return command_errors.report_command_error(error)
     found = _prove(path, source, job, args)
     if report is not None:
-        report.add(path, Proof({}, found.section))
+        report.add_proof(path, Proof({}, found.report_section))
     return EXIT_ERRORS if found.report.errors else EXIT_OK
 
 
-def _prove(path: Path, source: Source, job: ProofJob, args: argparse.Namespace) -> Findings:
-    from app.cli.figures.proof_json import report_json, stops_of
-    from app.cli.proofs.proof_work import findings
+def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Namespace) -> ProofFindings:
+    from app.cli.figures.proof_output import count_stops, make_report_json
+    from app.cli.proofs.proof_work import prove_with_findings
 
-    with Progress(f"proving {path.name}", len(source.lines)) as progress:
-        found = findings(job, source, progress.reach)
+    with ProgressBar(f"proving {path.name}", len(source.lines)) as progress:
+        found = prove_with_findings(job, source, progress.report_progress)
     report, part, _, compare = found
     if args.json:
-        told = report_json(str(path), report, part, optional_stop=args.optional_stop)
+        told = make_report_json(str(path), report, part, optional_stop=args.optional_stop)
         told |= {"compare": compare} if compare is not None else {}
         sys.stdout.write(json.dumps(told) + "\n")
     else:
-        sys.stdout.write(_sheet(path, report, part))
-        stops = stops_of(report, optional_stop=args.optional_stop)
+        sys.stdout.write(_proof_text(path, report, part))
+        stops = count_stops(report, optional_stop=args.optional_stop)
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
-        sys.stdout.write(_silenced(report))
+        sys.stdout.write(_silenced_text(report))
         if compare is not None:
-            from app.cli.figures.compare_figures import compare_lines
+            from app.cli.figures.comparison_output import format_comparison
 
-            sys.stdout.write(compare_lines(compare, metric=report.metric, dialect=report.dialect))
+            sys.stdout.write(format_comparison(compare, metric=report.is_metric, dialect=report.dialect))
     return found
 
 
-def _silenced(report: Report) -> str:
+def _silenced_text(report: ProofReport) -> str:
     """Return the number of silenced findings and the names of their checks as text."""
-    found = [each.check for each in report.diagnostics if each.silenced]
+    found = [each.check_name for each in report.diagnostics if each.downgrade_reason]
     return f"  silenced {len(found)} findings of {', '.join(sorted(set(found)))}\n" if found else ""
 
 
-def _reached(report: Report, length: Callable[[float], float], unit: str) -> str:
+def _limits_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
     """Return the limits as text: X and Z of the program on a lathe, all axes on a mill."""
-    if report.mill is not None:
-        from app.cli.figures.klartext_figures import machine_reach
+    if report.mill_results is not None:
+        from app.cli.figures.klartext_output import format_machine_limits
 
-        return machine_reach(report.mill)
-    (x0, x1), (z0, z1) = report.reach.x, report.reach.z
+        return format_machine_limits(report.mill_results)
+    (x0, x1), (z0, z1) = report.ranges.x_range, report.ranges.z_range
     return f"  X radius {length(x0):.5f} … {length(x1):.5f}   Z {length(z0):.5f} … {length(z1):.5f} {unit}\n"
 
 
-def _eased(report: Report, length: Callable[[float], float], unit: str) -> str:
+def _eased_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
     """Return the corner tolerance as text, if the machine file specifies one."""
-    if not report.corner_tolerance:
+    if not report.corner_tolerance_mm:
         return ""
-    return f"  joints of short chords within {length(report.corner_tolerance):.5f} {unit} of their words\n"
+    return f"  joints of short chords within {length(report.corner_tolerance_mm):.5f} {unit} of their words\n"
 
 
-def _ways(report: Report) -> str:
+def _paths_text(report: ProofReport) -> str:
     """Return the number and times of the paths that depend on inputs and block delete, as text."""
-    ways = report.ways
-    if ways.proved + ways.unproved <= 1:
+    ways = report.branch_summary
+    if ways.proved_count + ways.unproved_count <= 1:
         return ""
-    left = Message(", {unproved} not proved", unproved=ways.unproved) if ways.unproved else ""
-    low, high = ways.cycle
-    return f"  {ways.proved} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
+    left = Message(", {unproved} not proved", unproved=ways.unproved_count) if ways.unproved_count else ""
+    low, high = ways.cycle_time_range
+    return (
+        f"  {ways.proved_count} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and "
+        f"block delete\n"
+    )
 
 
-def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
+def _proof_text(path: Path, report: ProofReport, part: PartReport | None) -> str:
     """Return the proof as text."""
-    from app.cli.figures.proof_json import stock_lines
-    from app.cli.figures.units import MM_PER_INCH, inches, millimetres, per_minute
+    from app.cli.figures.proof_output import format_stock
+    from app.cli.figures.units import MM_PER_INCH, round_millimeters, to_inches, to_inches_per_minute
     from core.language.source import Dialect
 
     inch = report.dialect is Dialect.OMNITURN
-    length, unit, scale = (inches, "in", 1.0) if inch else (millimetres, "mm", MM_PER_INCH)
+    length, unit, scale = (to_inches, "in", 1.0) if inch else (round_millimeters, "mm", MM_PER_INCH)
 
-    findings = "".join(f"{d.in_one_line(str(path))}\n" for d in report.diagnostics)
-    times, reach = report.times, report.reach
-    slow, fast = (per_minute(speed) * scale for speed in reach.feed)
-    tools = " ".join(edge_name(n) for n in report.tools) or "no tool"
+    findings = "".join(f"{d.format_one_line(str(path))}\n" for d in report.diagnostics)
+    times, reach = report.times, report.ranges
+    slow, fast = (to_inches_per_minute(speed) * scale for speed in reach.feed_range)
+    tools = " ".join(format_edge_name(n) for n in report.tool_numbers) or "no tool"
     count = len(report.errors)
     verdict = (
         Message("{count} error{value}: the program will not run", count=count, value="s" * (count > 1))
@@ -258,15 +263,16 @@ def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
         else "proved"
     )
     return findings + (
-        f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
-        f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"
-        f" + dwell {times.dwell:.2f} + waiting {times.wait:.2f}\n"
-        f"{_ways(report)}"
-        f"  path {length(report.cutting_length):.4f} {unit} cutting,"
-        f" {length(report.rapid_length):.4f} {unit} rapid\n"
-        f"{_eased(report, length, unit)}"
-        f"{_reached(report, length, unit)}"
-        f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
+        f"{path}: {verdict}; {report.block_count} blocks, {report.elementary_block_count} elementary, "
+        f"{tools}\n"
+        f"  cycle {times.cycle_s:.2f} s = cutting {times.cutting_s:.2f} + rapid {times.rapid_s:.2f}"
+        f" + dwell {times.dwell_s:.2f} + waiting {times.wait_s:.2f}\n"
+        f"{_paths_text(report)}"
+        f"  path {length(report.cutting_length_mm):.4f} {unit} cutting,"
+        f" {length(report.rapid_length_mm):.4f} {unit} rapid\n"
+        f"{_eased_text(report, length, unit)}"
+        f"{_limits_text(report, length, unit)}"
+        f"  spindle {reach.rpm_range[0]:.0f} … {reach.rpm_range[1]:.0f} rpm"
         f"   feed {slow:.3f} … {fast:.3f} {unit}/min\n"
-        f"{stock_lines(part, report.dialect) if part is not None else ''}"
+        f"{format_stock(part, report.dialect) if part is not None else ''}"
     )

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import EXIT_OK, CommandError, cannot_write
+from app.desk.command_errors import EXIT_OK, CommandError, make_write_error
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
         with open(number, "w", encoding="utf-8") as file:
             file.write(text)
     except OSError as error:
-        raise cannot_write(target, error) from error
+        raise make_write_error(target, error) from error
     sys.stdout.write(f"written: {target}\n")
     return EXIT_OK
 

@@ -13,27 +13,27 @@ from typing import TYPE_CHECKING
 
 from app.cli.part_options import add_part_options
 from app.cli.program_options import (
-    Circumstances,
+    CommandContext,
     add_program_options,
-    circumstances,
-    input_states,
+    read_context,
+    read_input_states,
     read_source,
 )
-from app.cli.proofs.progress_bar import Progress
+from app.cli.proofs.progress_bar import ProgressBar
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.message import Message
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.desk.run_without_screen import Outcome
+    from app.desk.headless_run import RunOutcome
     from core.executor.job import Job
     from core.language.source import Dialect
-    from core.proving.proof_report import Report
+    from core.proving.proof_report import ProofReport
 
 
-_AROUND = 30.0  # s of the scope record in addition to the duration of the program
-_OF_ALARMS = ("number", "code", "text", "cause", "remedy", "line")
+_EXTRA_RECORD_S = 30.0  # s of the scope record in addition to the duration of the program
+_ALARM_COLUMNS = ("number", "code", "text", "cause", "remedy", "line")
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -69,10 +69,10 @@ def run(args: argparse.Namespace) -> int:
             ),
             "needs-headless",
         )
-    around = circumstances(args)
+    around = read_context(args)
     job = make_job(read_source(path, args), around.setup)
-    report = _proved(args, around, job)
-    sys.stderr.write("".join(f"{d.in_one_line(str(path))}\n" for d in report.diagnostics))
+    report = _prove_program(args, around, job)
+    sys.stderr.write("".join(f"{d.format_one_line(str(path))}\n" for d in report.diagnostics))
     if report.errors:
         return _refused(
             args,
@@ -84,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
             report,
         )
     if report.missing_tools:
-        names = ", ".join(edge_name(key) for key in report.missing_tools)
+        names = ", ".join(format_edge_name(key) for key in report.missing_tools)
         why = Message(
             "{path}: no offset has been set for {names}; set the offset with turndesk "
             "offsets set, or use --offsets",
@@ -92,82 +92,85 @@ def run(args: argparse.Namespace) -> int:
             names=names,
         )
         return _refused(args, why, report)
-    unanswered = [need for need in report.needs if need.builders_m]
+    unanswered = [need for need in report.required_functions if need.builder_m_code]
     if unanswered:
         why = Message(
             "{path} line {line}: this machine does not define {unanswered}",
             path=path,
             line=unanswered[0].line,
-            unanswered=unanswered[0].words,
+            unanswered=unanswered[0].description,
         )
         return _refused(args, why, report)
     return _run(args, around, job, report)
 
 
-def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report:
+def _prove_program(args: argparse.Namespace, circumstances: CommandContext, job: Job) -> ProofReport:
     """Return the proof of the program and its part."""
-    from app.cli.part_options import part_setting, with_kept_stock
+    from app.cli.part_options import apply_stored_stock, read_part_setting
     from core.proving.part_proof import prove_with_part
 
-    setting = with_kept_stock(part_setting(args, around), job.source.name, args)
-    report, _part = prove_with_part(job.reading, around.setup, around.machine, setting)
+    setting = apply_stored_stock(read_part_setting(args, circumstances), job.source.name, args)
+    report, _part = prove_with_part(job.shared_program, circumstances.setup, circumstances.machine, setting)
     return report
 
 
-def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
-    from app.cli.machine_command import demand_accepted
-    from app.compose.runs.headless_run import headless
+def _run(args: argparse.Namespace, around: CommandContext, job: Job, report: ProofReport) -> int:
+    from app.cli.machine_command import require_accepted
+    from app.compose.program_proving import create_proof
+    from app.compose.runs.headless_run import run_headless
     from app.compose.runs.run_log import EventLog
-    from app.compose.workshop import proof_of
 
-    demand_accepted(around.machine)
-    inputs = input_states(args.inputs, around.machine.inputs)
+    require_accepted(around.machine)
+    inputs = read_input_states(args.inputs, around.machine.inputs)
     path = Path(args.file)
     with (
-        EventLog.new(path.name) as log,
-        Progress(f"running {path.name}", report.times.cycle) as progress,
-        headless(
+        EventLog.create(path.name) as log,
+        ProgressBar(f"running {path.name}", report.times.cycle_s) as progress,
+        run_headless(
             around.machine,
             inputs=inputs,
-            realtime=args.realtime,
-            anew=args.anew,
+            real_time=args.realtime,
+            discard_interrupted=args.anew,
             log=log,
-            say=lambda text: _say(path, text),
-            progress=progress.reach,
-            lasts=report.times.cycle + _AROUND,
+            print_line=lambda text: _say(path, text),
+            progress=progress.report_progress,
+            duration_s=report.times.cycle_s + _EXTRA_RECORD_S,
         ) as play,
     ):
-        outcome = play.run(job, proof_of(job, report), optional_stop=args.optional_stop)
-    if log.trouble:
-        _say(path, Message("{problem}; the log of this run is incomplete", problem=log.trouble))
-    if outcome.why:
-        sys.stderr.write(f"turndesk: {path}: {outcome.state}: {outcome.why}\n")
+        outcome = play.run_job(job, create_proof(job, report), optional_stop=args.optional_stop)
+    if log.error_text:
+        _say(path, Message("{problem}; the log of this run is incomplete", problem=log.error_text))
+    if outcome.reason:
+        sys.stderr.write(f"turndesk: {path}: {outcome.final_state}: {outcome.reason}\n")
     _write(args, path, outcome, report, str(log.path))
-    return EXIT_OK if outcome.state == "complete" else EXIT_ERRORS
+    return EXIT_OK if outcome.final_state == "complete" else EXIT_ERRORS
 
 
 def _say(path: Path, text: str) -> None:
     sys.stderr.write(f"{path}: {text}\n")
 
 
-def _refused(args: argparse.Namespace, why: str, report: Report) -> int:
+def _refused(args: argparse.Namespace, why: str, report: ProofReport) -> int:
     sys.stderr.write(f"turndesk: {why}\n")
     if args.json:
         figures = _figures(None, report.dialect)
-        _write_line({"state": "refused", "final": _place(report, None), **figures, "events": ""})
+        _write_line({"state": "refused", "final": _final_position(report, None), **figures, "events": ""})
     return EXIT_ERRORS
 
 
-def _write(args: argparse.Namespace, path: Path, outcome: Outcome, report: Report, events: str) -> None:
-    final = _place(report, outcome)
+def _write(
+    args: argparse.Namespace, path: Path, outcome: RunOutcome, report: ProofReport, events: str
+) -> None:
+    final = _final_position(report, outcome)
     figures = _figures(outcome, report.dialect)
     if args.json:
-        _write_line({"state": outcome.state, "final": final, **figures, "events": events})
+        _write_line({"state": outcome.final_state, "final": final, **figures, "events": events})
         return
     unit = "in" if report.dialect == "omniturn" else "mm"
     sys.stdout.write(
-        f"{path}: {outcome.state} after {outcome.elapsed:.2f} s (proved: {report.times.cycle:.2f} s)\n"
-        f"  at {_shown_place(final, mill=report.mill is not None)} {unit};"
+        f"{path}: {outcome.final_state} after {outcome.elapsed_s:.2f} s (proved: "
+        f"{report.times.cycle_s:.2f} s)\n"
+        f"  at {_shown_place(final, mill=report.mill_results is not None)} {unit};"
         f" following error at most {figures['max_following_error']:.5f} {unit},"
         f" {figures['underruns']} underruns; log {events}\n"
     )
@@ -183,40 +186,42 @@ def _shown_place(final: dict[str, float], *, mill: bool) -> str:
     return Message("X radius {final}  Z {final2}", final=f"{final['x']:.5f}", final2=f"{final['z']:.5f}")
 
 
-def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:
+def _final_position(report: ProofReport, outcome: RunOutcome | None) -> dict[str, float]:
     """Return the position of the tip in the frame of the last move.
 
     X is a radius. Lengths are inches or mm, depending on the language.
     """
-    from app.cli.figures.units import degrees, length_of
+    from app.cli.figures.units import get_length_converter, round_degrees
     from core.language.source import Dialect
 
-    if report.mill is not None:
-        from app.cli.figures.klartext_figures import place
+    if report.mill_results is not None:
+        from app.cli.figures.klartext_output import get_final_position
 
-        complete = outcome is not None and outcome.state == "complete"
-        return place(report.mill, outcome.snapshot.demand if outcome else (), complete=complete)
+        complete = outcome is not None and outcome.final_state == "complete"
+        return get_final_position(
+            report.mill_results, outcome.snapshot.demand if outcome else (), is_complete=complete
+        )
     if outcome is None:
         return {"x": 0.0, "z": 0.0, "c": 0.0}
     demand = outcome.snapshot.demand
     x, z, c = demand[0], demand[1], demand[-1]
-    shift_x = report.machine_final[0] - report.final[0]
-    shift_z = report.machine_final[1] - report.final[1]
+    shift_x = report.machine_final_position[0] - report.final_position[0]
+    shift_z = report.machine_final_position[1] - report.final_position[1]
     if report.dialect is Dialect.SINUMERIK:
-        c -= report.machine_final[2] - report.final[2]
-    length = length_of(report.dialect)
-    return {"x": length(x - shift_x), "z": length(z - shift_z), "c": degrees(c)}
+        c -= report.machine_final_position[2] - report.final_position[2]
+    length = get_length_converter(report.dialect)
+    return {"x": length(x - shift_x), "z": length(z - shift_z), "c": round_degrees(c)}
 
 
-def _figures(outcome: Outcome | None, dialect: Dialect) -> dict[str, object]:
-    from app.cli.figures.units import length_of, seconds
+def _figures(outcome: RunOutcome | None, dialect: Dialect) -> dict[str, object]:
+    from app.cli.figures.units import get_length_converter, round_seconds
 
     if outcome is None:
         return {"elapsed_s": 0.0, "alarms": [], "underruns": 0, "max_following_error": 0.0}
     snapshot = outcome.snapshot
     return {
-        "elapsed_s": seconds(outcome.elapsed),
-        "alarms": [{name: getattr(alarm, name) for name in _OF_ALARMS} for alarm in snapshot.alarms],
+        "elapsed_s": round_seconds(outcome.elapsed_s),
+        "alarms": [{name: getattr(alarm, name) for name in _ALARM_COLUMNS} for alarm in snapshot.alarms],
         "underruns": snapshot.underruns,
-        "max_following_error": length_of(dialect)(snapshot.max_following_error),
+        "max_following_error": get_length_converter(dialect)(snapshot.max_following_error),
     }

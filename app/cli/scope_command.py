@@ -9,12 +9,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
+from app.desk.command_errors import EXIT_OK, CommandError, convert_to_command_error
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.records.record import Channel, Record
+    from core.records.record import Channel, ScopeRecord
 
 _STDOUT = "-"
 
@@ -37,7 +37,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the contents of the record; write its samples if ``--csv`` is used."""
     from core.records.record import RecordError
-    from core.records.record_file import open_record, save_csv, write_csv
+    from core.records.record_file import open_record, save_csv, write_csv_lines
 
     if args.json and args.csv == _STDOUT:
         raise CommandError(
@@ -45,10 +45,10 @@ def run(args: argparse.Namespace) -> int:
             "json-needs-file",
         )
     path = Path(args.file)
-    with as_command_error(RecordError):
+    with convert_to_command_error(RecordError):
         record = open_record(path)
         if args.csv == _STDOUT:
-            write_csv(record, sys.stdout.write)
+            write_csv_lines(record, sys.stdout.write)
             return EXIT_OK
         if args.csv is not None:
             save_csv(record, Path(args.csv))
@@ -57,53 +57,53 @@ def run(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _seconds(record: Record) -> float:
-    return float(record.times[-1] - record.times[0]) if len(record.times) else 0.0
+def _seconds(record: ScopeRecord) -> float:
+    return float(record.times_s[-1] - record.times_s[0]) if len(record.times_s) else 0.0
 
 
-def _object(path: Path, record: Record, out: str | None) -> dict[str, object]:
+def _object(path: Path, record: ScopeRecord, out: str | None) -> dict[str, object]:
     return {
         "file": str(path),
         "csv": out,
-        "started": record.started,
+        "started": record.start_time_utc_s,
         "seconds": round(_seconds(record), 6),
-        "samples": len(record.times),
-        "rate": record.rate,
+        "samples": len(record.times_s),
+        "rate": record.sampling_rate_hz,
         "about": dict(record.about),
         "channels": [_channel(record, each) for each in record.channels],
     }
 
 
-def _channel(record: Record, channel: Channel) -> dict[str, object]:
-    least, most = _bounds(record, channel)
+def _channel(record: ScopeRecord, channel: Channel) -> dict[str, object]:
+    least, most = _channel_range(record, channel)
     return {**channel._asdict(), "min": least, "max": most}
 
 
-def _bounds(record: Record, channel: Channel) -> tuple[float, float] | tuple[None, None]:
+def _channel_range(record: ScopeRecord, channel: Channel) -> tuple[float, float] | tuple[None, None]:
     """Return the smallest and largest known value; None for both if no value is known."""
     import numpy as np
 
-    column = record.columns[channel.name]
+    column = record.values_by_channel[channel.name]
     known = column[~np.isnan(column)]
     return (float(known.min()), float(known.max())) if len(known) else (None, None)
 
 
-def _text(path: Path, record: Record, out: str | None) -> str:
-    began = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(record.started))
+def _text(path: Path, record: ScopeRecord, out: str | None) -> str:
+    began = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(record.start_time_utc_s))
     lines: list[str] = [
         Message(
             "{path}: {times_count} samples in {record} s, starting at {began}; {rate} samples "
             "per second during motion",
             path=path,
-            times_count=len(record.times),
+            times_count=len(record.times_s),
             record=f"{_seconds(record):.3f}",
             began=began,
-            rate=f"{record.rate:g}",
+            rate=f"{record.sampling_rate_hz:g}",
         )
     ]
     lines += [f"  {name}: {words}" for name, words in record.about.items() if name != "states" and words]
     for channel in record.channels:
-        least, most = _bounds(record, channel)
+        least, most = _channel_range(record, channel)
         if least is not None:
             lines.append(f"  {channel.name:24} {least:12.5g} … {most:<12.5g} {channel.unit}".rstrip())
     if out is not None:

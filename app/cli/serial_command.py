@@ -7,23 +7,23 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
-from core.access.access_table import Act
-from core.input_file import open_input
+from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.store_command import open_store
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
+from core.access.access_table import ProtectedChange
+from core.input_file import open_input_file
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.transfer.line_transfer import Received, Transfer, TransferProgress
-    from core.machine.desk_tables import DncModel
+    from app.transfer.line_transfer import ReceivedProgram, SerialLineTransfer, TransferProgress
     from core.machine.machine_model import Machine
+    from core.machine.serial_and_backup_tables import SerialLineModel
 
 _EOL = {"crlf": "\r\n", "lf": "\n", "cr": "\r"}
 
 
-_ABOUT = """\
+_DESCRIPTION = """\
 Programs over a serial line (RS-232), between % lines as other controls and DNC programs send them.
 A program that is received is checked to its last character, proved, and stored as a new file: it
 never takes the place of another, and nothing starts. Ctrl-C gives a transfer up, and nothing is kept.
@@ -40,10 +40,10 @@ Both sides have to be set alike. Receive first, then send from the other side.
 def add_parser(subparsers: SubParsers) -> None:
     """Add the parser of the command and its actions."""
     raw = argparse.RawDescriptionHelpFormatter
-    parser = subparsers.add_parser("serial", description=_ABOUT, formatter_class=raw)
+    parser = subparsers.add_parser("serial", description=_DESCRIPTION, formatter_class=raw)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     actions.add_parser("ports", help="list the serial ports of this computer")
-    send = actions.add_parser("send", help="send a program", description=_ABOUT, formatter_class=raw)
+    send = actions.add_parser("send", help="send a program", description=_DESCRIPTION, formatter_class=raw)
     send.add_argument(
         "file",
         metavar="FILE",
@@ -52,7 +52,7 @@ def add_parser(subparsers: SubParsers) -> None:
     receive = actions.add_parser(
         "receive",
         help="receive a program and save it as a new file; it is never started",
-        description=_ABOUT,
+        description=_DESCRIPTION,
         formatter_class=raw,
     )
     receive.add_argument(
@@ -61,12 +61,12 @@ def add_parser(subparsers: SubParsers) -> None:
         help="output file, which must not exist yet (default: the program's own name, in the program folder)",
     )
     for each in (send, receive):
-        _add_line(each)
+        _add_line_options(each)
     add_as_option(receive)
-    _add_sending(send)
+    _add_send_options(send)
 
 
-def _add_line(parser: argparse.ArgumentParser) -> None:
+def _add_line_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of both directions; missing values come from [dnc] of the machine file."""
     parser.add_argument("--machine", metavar="FILE", help="machine file with the settings in [dnc]")
     parser.add_argument(
@@ -101,7 +101,7 @@ def _add_line(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_sending(parser: argparse.ArgumentParser) -> None:
+def _add_send_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that are only for sending."""
     parser.add_argument("--eol", choices=tuple(_EOL), help="line ending to use for sent data")
     parser.add_argument(
@@ -130,24 +130,24 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _ports() -> int:
-    from app.compose.backends.serial_ports import serial_ports
+    from app.compose.backends.serial_ports import list_serial_ports
     from core.ports import DriverError
 
-    with as_command_error(DriverError):
-        found = serial_ports()
+    with convert_to_command_error(DriverError):
+        found = list_serial_ports()
     sys.stdout.write("".join(f"{device}  {what}".rstrip() + "\n" for device, what in found))
     if not found:
         sys.stderr.write("turndesk: this computer has no serial port; plug the adapter in\n")
     return EXIT_OK
 
 
-def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
+def _settings(args: argparse.Namespace, machine: Machine) -> SerialLineModel:
     from dataclasses import replace
 
-    from app.compose.program_transfer import PLAIN
-    from core.machine.desk_tables import DncModel
+    from app.compose.program_transfer import DEFAULT_SETTINGS
+    from core.machine.serial_and_backup_tables import SerialLineModel
 
-    model = machine.hardware.table(DncModel) or PLAIN
+    model = machine.hardware.find_driver_table(SerialLineModel) or DEFAULT_SETTINGS
     names = ("port", "baud", "bits", "parity", "stop", "flow", "wrap", "dc_codes", "wait", "leader")
     said = {name: value for name in names if (value := getattr(args, name, None)) is not None}
     if getattr(args, "eol", None):
@@ -168,13 +168,13 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
     return model
 
 
-def _send(args: argparse.Namespace, settings: DncModel) -> int:
+def _send(args: argparse.Namespace, settings: SerialLineModel) -> int:
     from app.compose.program_transfer import SerialLines
 
     path = Path(args.file)
     _check_readable(path)
     lines = SerialLines(lambda _source: ((), 0.0))
-    sent = carry(lines.send(settings, path), f"sending {path.name}")
+    sent = run_transfer(lines.make_send_transfer(settings, path), f"sending {path.name}")
     if sent is None:
         return EXIT_ERRORS
     sys.stdout.write(f"{path.name}: {sent} bytes sent to {settings.port}\n")
@@ -184,7 +184,7 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
 def _check_readable(path: Path) -> None:
     """Raise CommandError before the line is opened if the file cannot be read."""
     try:
-        with open_input(path) as file:
+        with open_input_file(path) as file:
             file.read(1)
     except OSError as error:
         raise CommandError(
@@ -192,103 +192,109 @@ def _check_readable(path: Path) -> None:
         ) from error
 
 
-def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:
-    from app.compose.program_transfer import SerialLines, proving
-    from app.compose.stored_offsets import chosen_offsets
-    from app.compose.workshop import workshop
-    from core.language.source import Dialect, usual_ending
+def _receive(args: argparse.Namespace, machine: Machine, settings: SerialLineModel) -> int:
+    from app.compose.program_proving import create_loading_steps
+    from app.compose.program_transfer import SerialLines, create_proof_check
+    from app.compose.stored_offsets import make_offsets_reader
+    from core.language.source import Dialect, default_extension
 
     if args.out and Path(args.out).exists():  # checked before waiting, because the program could not be saved
         sys.stderr.write(
             f"turndesk: {args.out} already exists and is not overwritten; use a different name\n"
         )
         return EXIT_ERRORS
-    who = who_may(opened_store, args, Act.PROGRAMS)  # checked before waiting
-    ending = usual_ending(Dialect(machine.language))
-    lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)), ending)
-    received = carry(lines.receive(settings), Message("receiving from {port}", port=settings.port))
+    who = get_permitted_user(open_store, args, ProtectedChange.PROGRAMS)  # checked before waiting
+    ending = default_extension(Dialect(machine.language))
+    lines = SerialLines(
+        create_proof_check(create_loading_steps(machine, make_offsets_reader(None), draw_pictures=False)),
+        ending,
+    )
+    received = run_transfer(
+        lines.make_receive_transfer(settings), Message("receiving from {port}", port=settings.port)
+    )
     if received is None:
         return EXIT_ERRORS
     return _store(args, received, who)
 
 
-def _store(args: argparse.Namespace, received: Received, who: str) -> int:
-    from app.desk.data_folder import data_folder
-    from app.programs.whole_file import FileError
-    from app.transfer.line_transfer import free_name, store_new
+def _store(args: argparse.Namespace, received: ReceivedProgram, who: str) -> int:
+    from app.desk.data_folder import find_data_folder
+    from app.programs.atomic_files import FileOperationError
+    from app.transfer.line_transfer import find_unused_name, store_received
 
     out = Path(args.out) if args.out else None
-    folder = out.parent if out else data_folder() / "programs"
+    folder = out.parent if out else find_data_folder() / "programs"
     try:
-        path = store_new(received, folder, out.name if out else free_name(folder, received.name))
-    except FileError as error:
+        path = store_received(received, folder, out.name if out else find_unused_name(folder, received.name))
+    except FileOperationError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_ERRORS
-    note_change(opened_store, who, Message("program {path} received", path=path.name))
-    seven = ", received with 7 data bits and even parity" if received.seven else ""
-    lines = "1 line" if received.lines == 1 else f"{received.lines} lines"
-    sys.stdout.write(f"{path}: {lines}, complete{seven}\n  SHA-256 {received.digest}\n  {_found(received)}\n")
-    sys.stderr.write("".join(f"{text}\n" for text in received.findings))
-    return EXIT_ERRORS if received.findings else EXIT_OK
+    log_user_change(open_store, who, Message("program {path} received", path=path.name))
+    seven = ", received with 7 data bits and even parity" if received.is_seven_bit else ""
+    lines = "1 line" if received.line_count == 1 else f"{received.line_count} lines"
+    sys.stdout.write(f"{path}: {lines}, complete{seven}\n  SHA-256 {received.sha256}\n  {_found(received)}\n")
+    sys.stderr.write("".join(f"{text}\n" for text in received.finding_texts))
+    return EXIT_ERRORS if received.finding_texts else EXIT_OK
 
 
-def _found(received: Received) -> str:
-    if received.findings:
-        count = len(received.findings)
+def _found(received: ReceivedProgram) -> str:
+    if received.finding_texts:
+        count = len(received.finding_texts)
         return Message(
             "{count} error{value}; the program is saved so that you can correct it",
             count=count,
             value="s" * (count != 1),
         )
     return Message(
-        "proved without errors, cycle time {cycle} s; nothing was started", cycle=f"{received.cycle:.1f}"
+        "proved without errors, cycle time {cycle} s; nothing was started",
+        cycle=f"{received.cycle_time_s:.1f}",
     )
 
 
 # --- Transfer on the command line: progress on stderr, canceled by Ctrl-C -------------------------------
 
 T = TypeVar("T")
-_LOOK = 0.1  # s
+_POLL_INTERVAL_S = 0.1  # s
 
 
-def _heard(reach: TransferProgress) -> str:
+def _format_received(progress: TransferProgress) -> str:
     """Return the reason why the received data is not a program."""
-    if reach.what == "noise":
+    if progress.wait_reason == "noise":
         return Message(
             "the received data is not text ({received}); check --baud, --bits, --parity and the cable",
-            received=reach.heard,
+            received=progress.received_text,
         )
     return Message(
         "text was received without %: {received}; to receive programs without %, use --wrap ''",
-        received=f"{reach.heard!r}",
+        received=f"{progress.received_text!r}",
     )
 
 
-def _tell(told: str, reach: TransferProgress) -> str:
+def _tell(last_reason: str, progress: TransferProgress) -> str:
     """Report once what kind of data was received; return the kind that has been reported."""
-    if not reach.heard or told == reach.what:
-        return told
-    sys.stderr.write(f"turndesk: {_heard(reach)}\n")
-    return reach.what
+    if not progress.received_text or last_reason == progress.wait_reason:
+        return last_reason
+    sys.stderr.write(f"turndesk: {_format_received(progress)}\n")
+    return progress.wait_reason
 
 
-def carry(transfer: Transfer[T], what: str) -> T | None:
+def run_transfer(transfer: SerialLineTransfer[T], description: str) -> T | None:
     """Run a transfer and return its result; None if it failed, after printing the error."""
     from concurrent.futures import ThreadPoolExecutor, wait
 
-    from app.cli.proofs.progress_bar import Progress
-    from app.programs.whole_file import FileError
+    from app.cli.proofs.progress_bar import ProgressBar
+    from app.programs.atomic_files import FileOperationError
     from core.ports import DriverError
 
-    with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, Progress(what) as progress:
-        future, told = pool.submit(transfer.run), ""
+    with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, ProgressBar(description) as progress:
+        future, told = pool.submit(transfer.run_transfer), ""
         try:
-            while not wait([future], _LOOK).done:
-                progress.total = transfer.reach.total
-                progress.reach(transfer.reach.done)
-                told = _tell(told, transfer.reach)
+            while not wait([future], _POLL_INTERVAL_S).done:
+                progress.total = transfer.progress.total_bytes
+                progress.report_progress(transfer.progress.done_bytes)
+                told = _tell(told, transfer.progress)
             return future.result()
-        except (DriverError, FileError) as error:
+        except (DriverError, FileOperationError) as error:
             sys.stderr.write(f"turndesk: {error}\n")
             return None
         except KeyboardInterrupt:

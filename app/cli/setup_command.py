@@ -9,16 +9,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
+from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_OK, CommandError
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
 
-SHELLS = ("bash", "zsh", "fish")
+SHELL_NAMES = ("bash", "zsh", "fish")
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -44,21 +44,23 @@ def add_parser(subparsers: SubParsers) -> None:
     completion = actions.add_parser(
         "completion", help="print the shell script that completes commands with the Tab key"
     )
-    completion.add_argument("shell", metavar="SHELL", choices=SHELLS, help=", ".join(SHELLS))
+    completion.add_argument("shell", metavar="SHELL", choices=SHELL_NAMES, help=", ".join(SHELL_NAMES))
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the action. Raises CommandError."""
-    return ACTIONS[args.action](args)
+    return SETUP_ACTIONS[args.action](args)
 
 
 def _save(args: argparse.Namespace) -> int:
     from app.compose.machine.setup_file import save_setup
 
     told = save_setup(Path(args.file), args.machine)
-    sys.stdout.write(f"setup saved to {args.file}: data store, programs: {told.programs}, {told.machine}\n")
-    if told.left_out:
-        sys.stdout.write(f"skipped, because they are not programs: {', '.join(told.left_out)}\n")
+    sys.stdout.write(
+        f"setup saved to {args.file}: data store, programs: {told.program_count}, {told.machine_name}\n"
+    )
+    if told.omitted_files:
+        sys.stdout.write(f"skipped, because they are not programs: {', '.join(told.omitted_files)}\n")
     return EXIT_OK
 
 
@@ -67,12 +69,14 @@ def _load(args: argparse.Namespace) -> int:
 
     if args.check:
         told = check_setup(Path(args.file))
-        sys.stdout.write(f"{args.file} is undamaged: data store, programs: {told.programs}, {told.machine}\n")
+        sys.stdout.write(
+            f"{args.file} is undamaged: data store, programs: {told.program_count}, {told.machine_name}\n"
+        )
         return EXIT_OK
-    who = who_may(opened_store, args, Act.RESTORE)
+    who = get_permitted_user(open_store, args, ProtectedChange.RESTORE)
     told, kept = load_setup(Path(args.file))
-    note_change(
-        opened_store,
+    log_user_change(
+        open_store,
         who,
         Message(
             "setup loaded from {file}; the previous data was saved as {saved}", file=args.file, saved=kept
@@ -80,22 +84,23 @@ def _load(args: argparse.Namespace) -> int:
     )
     beside = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
     sys.stdout.write(
-        f"setup loaded from {args.file}: data store, programs: {told.programs}, {told.machine}{beside}\n"
+        f"setup loaded from {args.file}: data store, programs: {told.program_count}, "
+        f"{told.machine_name}{beside}\n"
     )
-    if told.placed is not None:
-        sys.stdout.write(f"start with: turndesk --machine {told.placed}\n")
+    if told.machine_path is not None:
+        sys.stdout.write(f"start with: turndesk --machine {told.machine_path}\n")
     return EXIT_OK
 
 
 def _desktop(args: argparse.Namespace) -> int:
-    from app.cli.actions.desktop_entry import install, remove
+    from app.cli.actions.desktop_entry import install_entries, remove_entries
 
     if args.remove and args.autostart:
         raise CommandError(
             "--remove removes the menu entry and the autostart; use it without --autostart",
             "remove-and-autostart",
         )
-    paths = remove() if args.remove else install(autostart=args.autostart)
+    paths = remove_entries() if args.remove else install_entries(autostart=args.autostart)
     verb = "removed" if args.remove else "written"
     sys.stdout.write("".join(f"{verb}: {path}\n" for path in paths) or "there is no entry to remove\n")
     return EXIT_OK
@@ -126,7 +131,7 @@ def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
             action.complete = files  # type: ignore[attr-defined]  # where shtab looks for it
 
 
-ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
+SETUP_ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
     "save": _save,
     "load": _load,
     "desktop": _desktop,

@@ -10,24 +10,24 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.who_changes import (
-    COMMAND_LINE,
+from app.cli.change_author import (
+    COMMAND_LINE_USER,
     add_as_option,
     add_consent_options,
-    note_change,
-    who_changes,
-    who_may,
+    get_change_author,
+    get_permitted_user,
+    log_user_change,
 )
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, as_command_error
-from app.desk.data_folder import data_folder
-from core.access.access_table import Act
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, convert_to_command_error
+from app.desk.data_folder import find_data_folder
+from core.access.access_table import ProtectedChange
 from core.message import Message
 
 if TYPE_CHECKING:
-    from app.cli.actions.meant_changes import Changes
+    from app.cli.actions.change_confirmation import OffsetChanges
     from app.cli.program_options import SubParsers
     from core.store.store import Store
-    from core.store.store_rows import Row, Value
+    from core.store.store_rows import FieldValue, OffsetRow
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -69,20 +69,20 @@ def run(args: argparse.Namespace) -> int:
 
 
 @contextmanager
-def store_refusals() -> Iterator[None]:
+def convert_store_errors() -> Iterator[None]:
     """Convert StoreError inside the block into CommandError."""
     from core.store.store_errors import StoreError
 
-    with as_command_error(StoreError):
+    with convert_to_command_error(StoreError):
         yield
 
 
 @contextmanager
-def opened_store(*, read_only: bool = False) -> Iterator[Store]:
+def open_store(*, read_only: bool = False) -> Iterator[Store]:
     """Open the store for the block and close it afterwards. Raises CommandError for every store error."""
     from core.store.store import Store
 
-    with store_refusals(), Store.open(data_folder(), read_only=read_only) as store:
+    with convert_store_errors(), Store.open(find_data_folder(), read_only=read_only) as store:
         yield store
 
 
@@ -92,22 +92,22 @@ def opened_store(*, read_only: bool = False) -> Iterator[Store]:
 def _backup(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    with store_refusals():
-        backup.backup(data_folder(), Path(args.path))
-    sys.stdout.write(f"{data_folder()} was backed up to {args.path}\n")
+    with convert_store_errors():
+        backup.back_up_store(find_data_folder(), Path(args.path))
+    sys.stdout.write(f"{find_data_folder()} was backed up to {args.path}\n")
     return EXIT_OK
 
 
 def _restore(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    who = who_may(opened_store, args, Act.RESTORE)
-    with store_refusals():
-        kept = backup.restore(data_folder(), Path(args.path))
+    who = get_permitted_user(open_store, args, ProtectedChange.RESTORE)
+    with convert_store_errors():
+        kept = backup.restore_store(find_data_folder(), Path(args.path))
     saved = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
-    note_change(opened_store, who, Message("restored from {path}{saved}", path=args.path, saved=saved))
+    log_user_change(open_store, who, Message("restored from {path}{saved}", path=args.path, saved=saved))
     done = Message(
-        "{folder} was restored from {path}{saved}", folder=data_folder(), path=args.path, saved=saved
+        "{folder} was restored from {path}{saved}", folder=find_data_folder(), path=args.path, saved=saved
     )
     sys.stdout.write(f"{done}\n")
     return EXIT_OK
@@ -116,37 +116,44 @@ def _restore(args: argparse.Namespace) -> int:
 def _export(args: argparse.Namespace) -> int:
     from core.store import store_export
 
-    with opened_store(read_only=True) as store:
-        count = store_export.export(store, Path(args.path))
+    with open_store(read_only=True) as store:
+        count = store_export.export_store(store, Path(args.path))
     sys.stdout.write(f"exported to {args.path}: programs: {count}, the offsets, the events and the runs\n")
     return EXIT_OK
 
 
 def _import(args: argparse.Namespace) -> int:
-    from app.cli.actions.meant_changes import demand_meant
-    from app.offsets.offsets_file import read_rows, read_shape_rows
+    from app.cli.actions.change_confirmation import confirm_changes
+    from app.offsets.offsets_file import read_offset_rows, read_shape_rows
     from core.store import store_export
-    from core.store.offsets.offset_tables import Reason
-    from core.store.store_rows import Kind
+    from core.store.offsets.offset_tables import ChangeReason
+    from core.store.store_rows import OffsetKind
 
     folder = Path(args.path)
     offsets_file = folder / store_export.OFFSETS
-    tools, secondary, zero = read_rows(offsets_file) if offsets_file.exists() else ({}, {}, {})
+    tools, secondary, zero = read_offset_rows(offsets_file) if offsets_file.exists() else ({}, {}, {})
     shapes = read_shape_rows(offsets_file) if offsets_file.exists() else {}
-    with opened_store() as store:
-        programs = store_export.program_files(folder)
-        mill, why = store_export.mill_rows(folder), Message("import from {folder}", folder=folder.name)
-        offsets: Changes = {
-            Kind.TOOL: _values_of(tools),
-            Kind.SECONDARY: _values_of(secondary),
-            Kind.ZERO: _values_of(zero),
-            Kind.SHAPE: _values_of(shapes),
+    with open_store() as store:
+        programs = store_export.read_exported_programs(folder)
+        mill, why = (
+            store_export.read_exported_mill_rows(folder),
+            Message("import from {folder}", folder=folder.name),
+        )
+        offsets: OffsetChanges = {
+            OffsetKind.TOOL: _row_values(tools),
+            OffsetKind.SECONDARY: _row_values(secondary),
+            OffsetKind.ZERO: _row_values(zero),
+            OffsetKind.SHAPE: _row_values(shapes),
             **mill,
         }
-        named = who_changes(store, args, Act.RESTORE)
-        demand_meant(store, args, {kind: offsets[kind] for kind in (Kind.TOOL, Kind.SECONDARY, *mill)})
-        who = "import" if named == COMMAND_LINE else named
-        store.write(lambda c: store_export.import_all(c, programs, offsets, Reason(why, who))).result()
+        named = get_change_author(store, args, ProtectedChange.RESTORE)
+        confirm_changes(
+            store, args, {kind: offsets[kind] for kind in (OffsetKind.TOOL, OffsetKind.SECONDARY, *mill)}
+        )
+        who = "import" if named == COMMAND_LINE_USER else named
+        store.write(
+            lambda c: store_export.import_programs_and_offsets(c, programs, offsets, ChangeReason(why, who))
+        ).result()
     counts: str = Message(
         "{programs_count}, tool offsets: {tools_count}, secondary offsets: {secondary_count}",
         programs_count=len(programs),
@@ -156,14 +163,14 @@ def _import(args: argparse.Namespace) -> int:
     if any(mill.values()):
         counts += Message(
             ", mill tools: {mill_count}, presets: {mill_count2}",
-            mill_count=len(mill[Kind.MILL_TOOL]),
-            mill_count2=len(mill[Kind.PRESET]),
+            mill_count=len(mill[OffsetKind.MILL_TOOL]),
+            mill_count2=len(mill[OffsetKind.PRESET]),
         )
     sys.stdout.write(f"imported from {folder}: programs: {counts}\n")
     return EXIT_OK
 
 
-def _values_of(rows: Mapping[int, Row]) -> dict[int, Mapping[str, Value]]:
+def _row_values(rows: Mapping[int, OffsetRow]) -> dict[int, Mapping[str, FieldValue]]:
     """Return the imported rows as changes of all their fields."""
     return {number: row._asdict() for number, row in rows.items()}
 
@@ -172,14 +179,14 @@ def _upgrade(_args: argparse.Namespace) -> int:
     """Upgrade the store by opening it for writing; a copy of the old version is saved next to it."""
     from core.store.store_file import has_store
 
-    there = has_store(data_folder())
+    there = has_store(find_data_folder())
     if there:
-        with opened_store():
+        with open_store():
             pass
     told = (
-        Message("the data store in {data_folder} is up to date", data_folder=data_folder())
+        Message("the data store in {data_folder} is up to date", data_folder=find_data_folder())
         if there
-        else Message("{data_folder} does not contain any stored data yet", data_folder=data_folder())
+        else Message("{data_folder} does not contain any stored data yet", data_folder=find_data_folder())
     )
     sys.stdout.write(f"{told}\n")
     return EXIT_OK
@@ -187,18 +194,18 @@ def _upgrade(_args: argparse.Namespace) -> int:
 
 def _verify(args: argparse.Namespace) -> int:
     from core.store import backup
-    from core.store.store_file import FILE_NAME, has_store
+    from core.store.store_file import STORE_FILE_NAME, has_store
 
-    path = data_folder() / FILE_NAME
-    with store_refusals():
-        problems = backup.all_problems(path) if has_store(data_folder()) else ()
+    path = find_data_folder() / STORE_FILE_NAME
+    with convert_store_errors():
+        problems = backup.find_all_problems(path) if has_store(find_data_folder()) else ()
     if args.json:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
     elif not problems:
         sys.stdout.write(
             f"{path} is undamaged\n"
-            if has_store(data_folder())
-            else Message("{data_folder} does not contain any stored data yet", data_folder=data_folder())
+            if has_store(find_data_folder())
+            else Message("{data_folder} does not contain any stored data yet", data_folder=find_data_folder())
             + "\n"
         )
     sys.stderr.write("".join(f"turndesk: {path}: {problem}\n" for problem in problems))

@@ -10,22 +10,22 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.expand_command import report_diagnostics
-from app.cli.program_options import add_program_options, circumstances, out_file, read_source
-from app.cli.proofs.progress_bar import Progress
-from app.desk.command_errors import CommandError, cannot_write
-from core.file_placing import put_in_place
-from core.language.source import Dialect, Source
+from app.cli.expand_command import print_diagnostics
+from app.cli.program_options import add_program_options, parse_output_path, read_context, read_source
+from app.cli.proofs.progress_bar import ProgressBar
+from app.desk.command_errors import CommandError, make_write_error
+from core.file_replacement import replace_atomically
+from core.language.source import Dialect, ProgramSource
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from core.machine.machine_model import Machine
     from core.proving.program_timeline import Timeline
-    from core.proving.setpoint_trace import Rows
+    from core.proving.setpoint_trace import SetpointRows
 
 
-def _interval(text: str) -> float:
+def _parse_interval(text: str) -> float:
     """Return a setpoint interval in seconds, 0.0001 to 1."""
     try:
         dt = float(text)
@@ -45,9 +45,15 @@ def add_parser(subparsers: SubParsers) -> None:
     parser = subparsers.add_parser("trace")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
-        "--dt", type=_interval, default=0.001, metavar="S", help="sampling interval in s (default: 0.001)"
+        "--dt",
+        type=_parse_interval,
+        default=0.001,
+        metavar="S",
+        help="sampling interval in s (default: 0.001)",
     )
-    parser.add_argument("--out", type=out_file, metavar="FILE.csv", help="output file (default: stdout)")
+    parser.add_argument(
+        "--out", type=parse_output_path, metavar="FILE.csv", help="output file (default: stdout)"
+    )
     add_program_options(parser)
 
 
@@ -65,9 +71,9 @@ def run(args: argparse.Namespace) -> int:
             "--json needs --out FILE, because the setpoints and the JSON cannot both go to stdout",
             "json-needs-file",
         )
-    around = circumstances(args)
+    around = read_context(args)
     source = read_source(path, args)
-    timeline = Timeline.of(source, around.setup, around.machine)
+    timeline = Timeline.from_program(source, around.setup, around.machine)
     table = _Table(around.machine, inch=source.dialect is Dialect.OMNITURN)
     if args.out is None:
         _write(timeline, table, args.dt, sys.stdout.write, source)
@@ -75,20 +81,20 @@ def run(args: argparse.Namespace) -> int:
         _write_file(timeline, table, args, source)
     if args.json:
         _write_json(timeline, args, path)
-    return report_diagnostics(path, timeline)
+    return print_diagnostics(path, timeline)
 
 
 def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> None:
     """Print the result as one JSON object."""
-    from app.cli.figures.proof_json import diagnostic_json
-    from app.cli.figures.units import seconds
+    from app.cli.figures.proof_output import make_diagnostic_json
+    from app.cli.figures.units import round_seconds
 
     told = {
         "file": str(path),
-        "out": None if timeline.errors else args.out,
+        "out": None if timeline.has_errors else args.out,
         "dt": args.dt,
-        "cycle_time_s": seconds(timeline.t),
-        "diagnostics": [diagnostic_json(each) for each in timeline.diagnostics],
+        "cycle_time_s": round_seconds(timeline.time_s),
+        "diagnostics": [make_diagnostic_json(each) for each in timeline.diagnostics],
     }
     sys.stdout.write(json.dumps(told) + "\n")
 
@@ -105,38 +111,45 @@ class _Table:
         places = (5 if axis.rotary else 7 if inch else 6 for axis in machine.axes)
         self._row = ",".join(("%.6f", *(f"%.{count}f" for count in places), "%.4f", "%d")) + "\n"
 
-    def lines(self, rows: Rows) -> str:
+    def format_lines(self, rows: SetpointRows) -> str:
         """Return setpoints as text, one per line."""
-        columns = (rows.t, *(rows.at / self._scales).T, rows.turned, rows.line)
+        columns = (
+            rows.times_s,
+            *(rows.positions / self._scales).T,
+            rows.spindle_angles_deg,
+            rows.line_numbers,
+        )
         return "".join([self._row % row for row in zip(*(c.tolist() for c in columns), strict=True)])
 
 
-def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: Source) -> None:
+def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: ProgramSource) -> None:
     """Write the file completely or not at all, also after errors of the program, a full disk or Ctrl+C."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:
         with partial.open("w", encoding="ascii", newline="") as file:
             _write(timeline, table, args.dt, file.write, source)
-        if not timeline.errors:
-            put_in_place(partial, out)
+        if not timeline.has_errors:
+            replace_atomically(partial, out)
     except OSError as error:
-        raise cannot_write(out, error) from error
+        raise make_write_error(out, error) from error
     finally:  # also on Ctrl+C
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
 
 
 def _write(
-    timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], source: Source
+    timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], source: ProgramSource
 ) -> None:
     """Write the setpoints; progress is shown in lines, because the duration is not known in advance."""
-    from core.proving.setpoint_trace import setpoints
+    from core.proving.setpoint_trace import iter_setpoints
 
     write(table.header)
     furthest = 0
-    with Progress(f"tracing {source.name}", len(source.lines)) as progress:
-        for chunk in setpoints(timeline, dt):
-            write(table.lines(chunk))
-            furthest = max(furthest, int(chunk.line.max(initial=0)))  # a loop returns to earlier lines
-            progress.reach(furthest)
+    with ProgressBar(f"tracing {source.name}", len(source.lines)) as progress:
+        for chunk in iter_setpoints(timeline, dt):
+            write(table.format_lines(chunk))
+            furthest = max(
+                furthest, int(chunk.line_numbers.max(initial=0))
+            )  # a loop returns to earlier lines
+            progress.report_progress(furthest)

@@ -43,18 +43,18 @@ def find_places(machine_file: str | None) -> Mapping[str, str]:
     from app import __file__ as package
     from app.compose.machine.machine_files import machine_path
     from app.compose.machine.machine_setup import read_machine
-    from app.desk.data_folder import BACKUPS, RECORDS, data_folder
-    from core.store.store_file import FILE_NAME
+    from app.desk.data_folder import BACKUPS_FOLDER, RECORDS_FOLDER, find_data_folder
+    from core.store.store_file import STORE_FILE_NAME
 
     read_machine(machine_file)
-    data = data_folder()
+    data = find_data_folder()
     return {
         "data_folder": str(data),
-        "store": str(data / FILE_NAME),
+        "store": str(data / STORE_FILE_NAME),
         "programs": str(data / "programs"),
         "logs": str(data / "logs"),
-        "backups": str(data / BACKUPS),
-        "scope_records": str(data / RECORDS),
+        "backups": str(data / BACKUPS_FOLDER),
+        "scope_records": str(data / RECORDS_FOLDER),
         "machine_file": str(machine_path(machine_file)),
         "code": str(package),
     }

@@ -7,32 +7,32 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from app.compose.backends.backend_entry import NO_PRIORITY, Connected, has_inverter, played
-from app.compose.backends.connection import connect
-from app.compose.desk_pages import PAGES, PageSetup, own_folder, register_pages
-from app.compose.extra import drawing_endings
-from app.compose.machine.accepted_machine import file_changes, guarded
-from app.compose.machine.machine_setup import read_machine, remember_machine
+from app.compose.backends.backend_entry import NO_PRIORITY_TEXT, ConnectedMachine, has_inverter, is_simulated
+from app.compose.backends.connection import connect_machine
+from app.compose.desk_pages import PAGES, PageSetup, get_program_folder, register_pages
+from app.compose.machine.accepted_machine import guard_commands, review_changes
+from app.compose.machine.machine_setup import read_machine, store_machine
+from app.compose.optional_features import list_drawing_suffixes
+from app.compose.program_proving import create_loading_steps, create_thumbnail_drawer, get_samples_folder
 from app.compose.runs.journal import Journal
 from app.compose.runs.receipt import Receipt
-from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand
-from app.compose.workshop import samples, thumbnails, workshop
-from app.desk.command_errors import as_command_error
+from app.compose.stored_offsets import Offsets, create_offset_book, try_read_shapes
+from app.desk.command_errors import convert_to_command_error
 from app.desk.desk import Desk
-from app.desk.kept_part import kept_part
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import ProgramLoader
-from app.desk.programs.start_watch import StartWatch
+from app.desk.programs.start_watch import FirstMoveWatch
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
-from app.desk.status.alarm_log import KEPT, KINDS
+from app.desk.status.alarm_log import LOGGED_KINDS, MAX_ENTRIES
+from app.desk.stored_part import load_stored_part
 from app.desk.translation import tr
-from core.executor.commands import LeftInterrupted
+from core.executor.commands import ReportInterruptedJob
 from core.executor.executor import Executor
-from core.executor.recorder import Recorder, recorded_of
-from core.executor.snapshot import Event, InterruptedJob
-from core.interpreter.shared.modal_state import Modal
+from core.executor.recorder import Recorder, list_recorded_signals
+from core.executor.snapshot import InterruptedJob, LogEvent
+from core.interpreter.shared.modal_state import ModalState
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError
@@ -40,7 +40,7 @@ from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
 
 
-def desk_and_executor(
+def create_desk_and_executor(
     machine_file: str | None,
     offsets: Callable[[], Offsets],
     clock: Clock,
@@ -53,11 +53,11 @@ def desk_and_executor(
     """
     machine = read_machine(machine_file)
     if journal is not None:
-        remember_machine(machine_file, journal)
-    return desk_and_parts(machine, offsets, clock, journal, records)[:2]
+        store_machine(machine_file, journal)
+    return create_desk_parts(machine, offsets, clock, journal, records)[:2]
 
 
-def desk_and_parts(
+def create_desk_parts(
     machine: Machine,
     offsets: Callable[[], Offsets],
     clock: Clock,
@@ -65,85 +65,90 @@ def desk_and_parts(
     records: Path | None,
 ) -> tuple[Desk, Executor, Recorder]:
     connected = _connected(machine, clock)
-    recorder = Recorder(recorded_of(machine, connected.ports), records)
-    events = DeskEvents(clock, journal, recorder.note)
+    recorder = Recorder(list_recorded_signals(machine, connected.ports), records)
+    events = EventDistributor(clock, journal, recorder.assign_record_name)
     executor = Executor(
         machine,
         connected.ports,
         events.hear,
-        note=journal.note if journal is not None else _kept_nowhere,
-        left=journal.left if journal is not None else None,
-        tell=recorder.tell,
+        store_interruption=journal.note if journal is not None else _discard,
+        interrupted_job=journal.left if journal is not None else None,
+        record_tick=recorder.queue_tick,
         checks_starts=machine.kind == "lathe",
     )
     control = DeskControl(
         executor.post,
         lambda: executor.snapshot,
-        connected.panel,
+        connected.on_screen_station,
         connected.set_input,
         connected.ports.warnings,
         recorder,
     )
-    desk = desk_of(machine, control, events, offsets)
-    desk.closing.shut = connected.close
+    desk = create_desk(machine, control, events, offsets)
+    desk.closing_sequence.close_drivers = connected.close
     return desk, executor, recorder
 
 
-def desk_of(
-    machine: Machine, control: DeskControl, events: DeskEvents, offsets: Callable[[], Offsets]
+def create_desk(
+    machine: Machine, control: DeskControl, events: EventDistributor, offsets: Callable[[], Offsets]
 ) -> Desk:
     """Return the screen model with all its pages, and report the warnings of the start."""
     journal = events.journal
-    desk = _desk(machine, control, events, offsets)
+    desk = _create_desk_model(machine, control, events, offsets)
     events.desk = desk
     if journal is not None:
-        desk.log.recall(_stops(journal))
-        journal.when_late(partial(_came_late, desk, journal))
+        desk.alarm_log.add_stored(_list_stops(journal))
+        journal.on_late_open(partial(_handle_late_store, desk, journal))
     for warning in (
         *control.warnings,
         *(Message("machine file: {item}", item=each) for each in desk.changes.changes),
     ):
-        events.say("warning", warning)
+        events.report_event("warning", warning)
     if journal is not None:
-        _tell_damage(desk, journal, partial(events.say, "warning"))
+        _report_damage(desk, journal, partial(events.report_event, "warning"))
     recordings = control.recordings
-    if recordings is not None and recordings.trouble:
-        events.say("warning", recordings.trouble)
-    if any(each.startswith(NO_PRIORITY) for each in control.warnings):
+    if recordings is not None and recordings.storage_error:
+        events.report_event("warning", recordings.storage_error)
+    if any(each.startswith(NO_PRIORITY_TEXT) for each in control.warnings):
         desk.say(tr("NO REAL-TIME PRIORITY: AXES STOP IF THE COMPUTER IS 10 MS LATE"))
     if desk.changes.barred:
         desk.say(desk.changes.barred)
     return desk
 
 
-def _came_late(desk: Desk, journal: Journal) -> None:
+def _handle_late_store(desk: Desk, journal: Journal) -> None:
     """Report information that was unknown at the start because the store was unavailable.
 
     Called in another thread.
     """
     if journal.left is not None:
-        desk.post(LeftInterrupted(journal.left))
-    _tell_damage(desk, journal, lambda text: journal.hear(Event(desk.snapshot().t, "warning", text)))
+        desk.post(ReportInterruptedJob(journal.left))
+    _report_damage(
+        desk, journal, lambda text: journal.hear(LogEvent(desk.read_snapshot().t, "warning", text))
+    )
 
 
-def _tell_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> None:
+def _report_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> None:
     """Report damaged data in the event log and on the prompt line."""
     for damage in journal.damage:
         log(damage)
         desk.say(tr(Message("CHECK: {what}", what=damage)))
 
 
-class DeskEvents:
+class EventDistributor:
     """Distributor of events to the screen model and the journal, if they exist."""
 
     def __init__(
-        self, clock: Clock, journal: Journal | None, record: Callable[[Event], Event] = lambda event: event
+        self,
+        clock: Clock,
+        journal: Journal | None,
+        record: Callable[[LogEvent], LogEvent] = lambda event: event,
     ) -> None:
         self.journal, self._record = journal, record
         self.desk: Desk | None = None
         self._clock = clock
 
-    def hear(self, event: Event, receipt: Receipt | None = None) -> None:
+    def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
         """Pass on an event, unless an earlier screen has stored it; ``receipt`` is confirmed then."""
         if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
             receipt.confirm()
@@ -155,84 +160,88 @@ class DeskEvents:
         if self.journal is not None:
             self.journal.hear(event, receipt)
 
-    def say(self, kind: str, text: str) -> None:
+    def report_event(self, kind: str, text: str) -> None:
         """Report an event with the present time."""
-        self.hear(Event(self._clock.now(), kind, text))
+        self.hear(LogEvent(self._clock.now(), kind, text))
 
 
-def _desk(
+def _create_desk_model(
     machine: Machine,
     control: DeskControl,
-    events: DeskEvents,
+    events: EventDistributor,
     offsets: Callable[[], Offsets],
 ) -> Desk:
     """Return the screen model with all its pages."""
     journal = events.journal
     keep = journal or Persistence()
 
-    def left() -> Modal:
-        return control.snapshot().modal
+    def left() -> ModalState:
+        return control.read_snapshot().modal
 
-    kept = partial(kept_part, keep.read_setting)
-    changed = file_changes(machine, keep, partial(events.say, "machine"))
-    guarded_control = replace(control, post=guarded(control.post, changed, partial(events.say, "refused")))
-    steps = workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept)
+    kept = partial(load_stored_part, keep.read_setting)
+    changed = review_changes(machine, keep, partial(events.report_event, "machine"))
+    guarded_control = replace(
+        control, post=guard_commands(control.post, changed, partial(events.report_event, "refused"))
+    )
+    steps = create_loading_steps(
+        machine, offsets, journal, last_modal_state=left, read_shapes=try_read_shapes, read_stored_part=kept
+    )
     desk = Desk(
         guarded_control,
         ProgramLoader(steps, control.post),
-        ProgramFolders((own_folder(), samples()), drawing_endings()),
-        machine=_shown(machine),
+        ProgramFolders((get_program_folder(), get_samples_folder()), list_drawing_suffixes()),
+        machine=_displayed_machine(machine),
         persistence=keep,
-        book=book_of(offsets, journal),
-        changes=changed,
-        first_move=StartWatch(guarded_control.post) if machine.kind == "lathe" else None,
+        offset_book=create_offset_book(offsets, journal),
+        file_changes=changed,
+        start_watch=FirstMoveWatch(guarded_control.post) if machine.kind == "lathe" else None,
     )
     setup = PageSetup(
         desk=desk,
         machine=machine,
         persistence=keep,
         journal=journal,
-        own=own_folder(),
-        work=workshop(machine, offsets, left=left),
-        proving=workshop(machine, offsets, left=left, pictures=False),
-        offsets=offsets,
-        kept=kept,
-        thumbnail=thumbnails(machine, shapes_at_hand, kept),
+        program_folder=get_program_folder(),
+        loading_steps=create_loading_steps(machine, offsets, last_modal_state=left),
+        proof_steps=create_loading_steps(machine, offsets, last_modal_state=left, draw_pictures=False),
+        read_offsets=offsets,
+        read_stored_part=kept,
+        draw_thumbnail=create_thumbnail_drawer(machine, try_read_shapes, kept),
     )
     register_pages(setup, PAGES)
     return desk
 
 
-def _shown(machine: Machine) -> DeskMachine:
+def _displayed_machine(machine: Machine) -> DeskMachine:
     """Return the machine as the screen presents it."""
     return DeskMachine(
-        name=Message("{machine} · {machine2}", machine=machine.name, machine2=_drives(machine)),
-        model=machine,
-        two_hand=machine.interlocks.two_hand_start,
-        with_c=machine.c_enabled,
-        one_hand=played(machine) and not has_inverter(machine),
+        name=Message("{machine} · {machine2}", machine=machine.name, machine2=_describe_drives(machine)),
+        machine=machine,
+        is_two_hand=machine.interlocks.two_hand_start,
+        has_c_axis=machine.c_enabled,
+        allows_one_hand=is_simulated(machine) and not has_inverter(machine),
     )
 
 
-def _stops(journal: Journal) -> Sequence[EventRow]:
+def _list_stops(journal: Journal) -> Sequence[EventRow]:
     """Return the alarms and stops of earlier days; () without a store."""
     try:
-        return journal.events("", KINDS, KEPT)
+        return journal.events("", LOGGED_KINDS, MAX_ENTRIES)
     except StoreError:
         return ()
 
 
-def _kept_nowhere(_what: InterruptedJob | None) -> None:
+def _discard(_value: InterruptedJob | None) -> None:
     """Discard the note of an interrupted job, for a screen without a store."""
 
 
-def _connected(machine: Machine, clock: Clock) -> Connected:
-    with as_command_error(DriverError):
-        return connect(machine, clock)
+def _connected(machine: Machine, clock: Clock) -> ConnectedMachine:
+    with convert_to_command_error(DriverError):
+        return connect_machine(machine, clock)
 
 
-def _drives(machine: Machine) -> str:
+def _describe_drives(machine: Machine) -> str:
     """Return which parts of the machine are real and which are simulated, for the operator."""
-    if not played(machine):
+    if not is_simulated(machine):
         return machine.backend.upper()
     return "SIMULATED AXES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"

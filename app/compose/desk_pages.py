@@ -12,66 +12,73 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.desk_part import KeptOfProgram, nothing_kept
-from app.compose.extra import extras
+from app.compose.optional_features import extras
+from app.compose.part_prover import ReadStoredPart, get_empty_part
+from app.compose.program_proving import (
+    create_drawer,
+    create_line_prover,
+    create_loading_steps,
+    create_part_comparer,
+    get_samples_folder,
+    rebuild_search,
+)
 from app.compose.runs.journal import Journal
 from app.compose.scope_desk import register_scope
-from app.compose.stored_offsets import Offsets, shapes_at_hand, stored_offsets
-from app.compose.workshop import drawer, line_prover, part_comparer, rebuilt, samples, workshop
-from app.desk.background_work import Watch
-from app.desk.data_folder import data_folder
+from app.compose.stored_offsets import Offsets, read_stored_offsets, try_read_shapes
+from app.desk.background_work import ProgressCallback
+from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
-from app.desk.programs.program_loading import LoadingSteps, Proved
+from app.desk.programs.program_loading import LoadingSteps, ProvedJob
 from app.desk.status.busy_notice import BusyNotice
-from app.jog.hand_functions import HandFunctions
-from app.mdi.mdi_model import MdiLine, MdiModel
-from app.offsets.offset_effect import Effect
-from app.part.part_sheet import PartSheet
-from app.production.parts_book import PartsBook, tools_of
+from app.jog.manual_functions import ManualFunctions
+from app.mdi.mdi_model import MdiInput, MdiModel
+from app.offsets.offset_effect import OffsetEffect
+from app.part.part_model import PartModel
+from app.production.parts_book import PartsBook, find_tool_table_kind
 from app.production.parts_watch import PartsWatch
 from app.production.tool_life_watch import ToolLifeWatch
 from app.searchto.searchto_model import SearchtoModel
-from app.special.lamps_and_sound import DeskSounds
-from core.access.access_table import Act
+from app.special.lamps_and_sound import EventSounds
+from core.access.access_table import ProtectedChange
 from core.executor.job import Job
-from core.interpreter.dialects import code_book
-from core.interpreter.restart.restart_approach import Choices
-from core.language.source import Dialect, usual_ending
+from core.interpreter.dialects import get_code_book
+from core.interpreter.restart.restart_approach import OperatorChoices
+from core.language.source import Dialect, default_extension
 from core.machine.machine_model import Machine
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 
 if TYPE_CHECKING:
-    from app.editor.editor import Editor
-    from app.programs.program_list import ProgramList
+    from app.editor.editor_model import EditorModel
+    from app.programs.program_list_model import ProgramListModel
     from app.programs.program_rows import DrawThumbnail
     from app.scope.scope_curves import LiveSamples
-    from app.special.special_functions import SpecialFunctions
+    from app.special.special_functions import SpecialFunctionList
 
-_MODEST = 0.2  # fraction of the manual rapid, for moves inside the part
+_MODEST_FRACTION = 0.2  # fraction of the manual rapid, for moves inside the part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageSetup:
     """Objects from which the pages are made.
 
-    ``own`` is the folder of the operator's programs. ``work`` reads and proves programs with the present
-    offsets and saves nothing; ``proving`` does the same without pictures. ``thumbnail`` draws the part of a
-    program. ``live`` are samples for the scope, or None for those of the control. Nothing is saved if
-    ``journal`` is None.
+    ``program_folder`` is the folder of the operator's programs. ``loading_steps`` reads and proves programs
+    with the present offsets and saves nothing; ``proving`` does the same without pictures.
+    ``draw_thumbnail`` draws the part of a program. ``live_samples`` are samples for the scope, or None for
+    those of the control. Nothing is saved if ``journal`` is None.
     """
 
     desk: Desk
     machine: Machine
     persistence: Persistence
     journal: Journal | None
-    own: Path
-    work: LoadingSteps
-    proving: LoadingSteps
-    offsets: Callable[[], Offsets] = stored_offsets
-    kept: KeptOfProgram = nothing_kept
-    thumbnail: DrawThumbnail | None = None
-    live: LiveSamples | None = None
+    program_folder: Path
+    loading_steps: LoadingSteps
+    proof_steps: LoadingSteps
+    read_offsets: Callable[[], Offsets] = read_stored_offsets
+    read_stored_part: ReadStoredPart = get_empty_part
+    draw_thumbnail: DrawThumbnail | None = None
+    live_samples: LiveSamples | None = None
 
 
 RegisterPage = Callable[[PageSetup], None]
@@ -87,53 +94,67 @@ def register_pages(setup: PageSetup, pages: Iterable[RegisterPage]) -> None:
 
 
 def _register_effect(setup: PageSetup) -> None:
-    compare = part_comparer(setup.machine, shapes_at_hand, setup.kept)
-    setup.desk.pages.attach(Effect(drawer(setup.machine), compare))
+    compare = create_part_comparer(setup.machine, try_read_shapes, setup.read_stored_part)
+    setup.desk.page_registry.attach_model(OffsetEffect(create_drawer(setup.machine), compare))
 
 
 def _register_editor(setup: PageSetup) -> None:
-    setup.desk.pages.attach_later("app.editor.editor.Editor", partial(_editor, setup))
+    setup.desk.page_registry.attach_lazily(
+        "app.editor.editor_model.EditorModel", partial(_create_editor, setup)
+    )
 
 
-def _editor(setup: PageSetup) -> Editor:
+def _create_editor(setup: PageSetup) -> EditorModel:
     """Return the editor, which proves the edited text without saving a version for each key press."""
-    from app.editor.editor import Editor
-    from app.editor.versions import NoArchive
+    from app.editor.editor_model import EditorModel
+    from app.editor.version_history import NullArchive
 
     desk, machine = setup.desk, setup.machine
-    work = workshop(
+    work = create_loading_steps(
         machine,
-        setup.offsets,
-        left=lambda: desk.snapshot().modal,
-        shapes=shapes_at_hand,
-        kept=setup.kept,
+        setup.read_offsets,
+        last_modal_state=lambda: desk.read_snapshot().modal,
+        read_shapes=try_read_shapes,
+        read_stored_part=setup.read_stored_part,
     )
-    ending = usual_ending(Dialect(machine.language))
-    editor = Editor(work, setup.journal or NoArchive(), setup.own, samples(), usual_ending=ending)
-    editor.may_save = lambda: desk.access.refusal(Act.PROGRAMS)
+    ending = default_extension(Dialect(machine.language))
+    editor = EditorModel(
+        work,
+        setup.journal or NullArchive(),
+        setup.program_folder,
+        get_samples_folder(),
+        default_extension=ending,
+    )
+    editor.find_save_refusal = lambda: desk.user_access.find_refusal(ProtectedChange.PROGRAMS)
     return editor
 
 
 def register_programs(setup: PageSetup) -> None:
     """Register the list of programs."""
-    setup.desk.pages.attach_later("app.programs.program_list.ProgramList", partial(_programs, setup))
+    setup.desk.page_registry.attach_lazily(
+        "app.programs.program_list_model.ProgramListModel", partial(_programs, setup)
+    )
 
 
-def _programs(setup: PageSetup) -> ProgramList:
-    from app.compose.program_list_desk import program_list
+def _programs(setup: PageSetup) -> ProgramListModel:
+    from app.compose.program_list_desk import create_program_list
 
-    return program_list(setup.desk, setup.persistence, setup.work, setup.own, setup.thumbnail)
+    return create_program_list(
+        setup.desk, setup.persistence, setup.loading_steps, setup.program_folder, setup.draw_thumbnail
+    )
 
 
 def _register_part(setup: PageSetup) -> None:
     """Register the page with findings and stock."""
-    from core.proving.checks.part_checks import CHECKS
+    from core.proving.checks.part_checks import PART_CHECKS
 
     machine = setup.machine
-    held, of_machine = machine.clamping, frozenset(machine.silenced)
-    checks, holds = frozenset(CHECKS), bool(held.diameter)
-    sheet = PartSheet(setup.desk, setup.persistence, checks, of_machine, held.stick_out, holds=holds)
-    setup.desk.pages.attach(sheet)
+    held, of_machine = machine.clamping, frozenset(machine.silenced_checks)
+    checks, holds = frozenset(PART_CHECKS), bool(held.diameter)
+    sheet = PartModel(
+        setup.desk, setup.persistence, checks, of_machine, held.stick_out, has_workholding=holds
+    )
+    setup.desk.page_registry.attach_model(sheet)
 
 
 # --- Operation --------------------------------------------------------------------------------------------
@@ -142,41 +163,50 @@ def _register_part(setup: PageSetup) -> None:
 def _register_lines(setup: PageSetup) -> None:
     """Register MDI, and the functions of the Jog page that use MDI lines."""
     desk, machine = setup.desk, setup.machine
-    prove_line = line_prover(machine, setup.offsets)
-    if desk.first_move is not None:
-        prove_line = desk.first_move.with_lines(prove_line)
-    codes = partial(code_book, Dialect(machine.language))
-    line = MdiLine(setup.persistence)
-    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, codes, line)
-    for each in (mdi, HandFunctions(desk, machine, prove_line)):
-        desk.pages.attach(each)
-        desk.pages.add_start(each)
+    prove_line = create_line_prover(machine, setup.read_offsets)
+    if desk.start_watch is not None:
+        prove_line = desk.start_watch.wrap_line_proof(prove_line)
+    codes = partial(get_code_book, Dialect(machine.language))
+    line = MdiInput(setup.persistence)
+    mdi = MdiModel(prove_line, desk.post, desk.read_snapshot, desk.say, desk.clear_prompt_line, codes, line)
+    for each in (mdi, ManualFunctions(desk, machine, prove_line)):
+        desk.page_registry.attach_model(each)
+        desk.page_registry.add_start_handler(each)
 
 
 def _register_mill_touch(setup: PageSetup) -> None:
     if setup.machine.kind == "mill":
-        from app.compose.machine.kinematics_chain import kinematics_of
-        from app.offsets.mill_touch import MillTouch
+        from app.compose.machine.kinematics_chain import build_kinematics
+        from app.offsets.mill_touch import MillTouchCalculator
 
-        setup.desk.pages.attach(MillTouch(setup.desk, kinematics_of(setup.machine)))
+        setup.desk.page_registry.attach_model(
+            MillTouchCalculator(setup.desk, build_kinematics(setup.machine))
+        )
 
 
 def _register_searchto(setup: PageSetup) -> None:
     """Register SEARCHTO, which moves at the manual rapid, and slower inside the part."""
     desk, rapid = setup.desk, setup.machine.limits.manual_rapid
-    choices = Choices(rapid=rapid, modest=_MODEST * rapid)
+    choices = OperatorChoices(outside_speed_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
 
-    def prove(job: Job, watch: Watch) -> Proved:
-        proved = desk.session.workshop.prove(job, watch)
-        if desk.first_move is None:
+    def prove(job: Job, watch: ProgressCallback) -> ProvedJob:
+        proved = desk.program_loader.steps.prove_job(job, watch)
+        if desk.start_watch is None:
             return proved
-        return desk.first_move.checked(job, proved, desk.snapshot(), watch)
+        return desk.start_watch.add_first_move_check(job, proved, desk.read_snapshot(), watch)
 
     searchto = SearchtoModel(
-        desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, prove, choices
+        desk.program_loader,
+        desk.post,
+        desk.read_snapshot,
+        desk.say,
+        desk.clear_prompt_line,
+        rebuild_search,
+        prove,
+        choices,
     )
-    desk.pages.attach(searchto)
-    desk.pages.add_start(searchto)
+    desk.page_registry.attach_model(searchto)
+    desk.page_registry.add_start_handler(searchto)
 
 
 # --- Production and special functions ---------------------------------------------------------------------
@@ -184,54 +214,58 @@ def _register_searchto(setup: PageSetup) -> None:
 
 def register_sounds(setup: PageSetup) -> None:
     """Register the sounds of the screen, which the special functions need."""
-    sounds = DeskSounds(setup.desk, setup.persistence)
-    setup.desk.pages.attach(sounds)
-    setup.desk.pages.add_frame_watcher(sounds.see)
+    sounds = EventSounds(setup.desk, setup.persistence)
+    setup.desk.page_registry.attach_model(sounds)
+    setup.desk.page_registry.add_frame_watcher(sounds.play_new_events)
 
 
 def register_special_functions(setup: PageSetup) -> None:
     """Register the special functions (F10)."""
     make = partial(_special_functions, setup)
-    setup.desk.pages.attach_later("app.special.special_functions.SpecialFunctions", make)
+    setup.desk.page_registry.attach_lazily("app.special.special_functions.SpecialFunctionList", make)
 
 
-def _special_functions(setup: PageSetup) -> SpecialFunctions:
-    from app.compose.special_functions_desk import special_functions
+def _special_functions(setup: PageSetup) -> SpecialFunctionList:
+    from app.compose.special_functions_desk import create_special_functions
 
-    sounds = setup.desk.pages.find(DeskSounds)
+    sounds = setup.desk.page_registry.find(EventSounds)
     assert sounds is not None
-    return special_functions(setup.desk, setup.machine, setup.persistence, setup.work, setup.own, sounds)
+    return create_special_functions(
+        setup.desk, setup.machine, setup.persistence, setup.loading_steps, setup.program_folder, sounds
+    )
 
 
 def register_production(setup: PageSetup) -> None:
     """Register the models that count and store production data."""
-    desk, tools = setup.desk, tools_of(setup.machine.kind)
-    book = setup.journal.parts_book(tools) if setup.journal is not None else PartsBook(tools=tools)
-    book.access = desk.access
-    watch = PartsWatch(desk, book, ToolLifeWatch(book, desk.control.identity))
-    desk.pages.attach(watch)
-    desk.pages.add_run_watcher(watch)
-    if tools is Kind.MILL_TOOL:
-        from app.offsets.mill_touch import MillLives
+    desk, tools = setup.desk, find_tool_table_kind(setup.machine.kind)
+    book = setup.journal.create_parts_book(tools) if setup.journal is not None else PartsBook(tool_kind=tools)
+    book.access = desk.user_access
+    watch = PartsWatch(desk, book, ToolLifeWatch(book, desk.desk_control.identity))
+    desk.page_registry.attach_model(watch)
+    desk.page_registry.add_run_watcher(watch)
+    if tools is OffsetKind.MILL_TOOL:
+        from app.offsets.mill_touch import MillToolLives
 
-        lives = watch.lives
-        lives_of_mill = MillLives(lives.lives, lambda number, cut: lives.set_used(number, cut, desk.say))
-        desk.pages.attach(lives_of_mill)
+        lives = watch.tool_life_watch
+        lives_of_mill = MillToolLives(
+            lives.read_lives, lambda number, cut: lives.set_cutting_time(number, cut, desk.say)
+        )
+        desk.page_registry.attach_model(lives_of_mill)
 
 
 def register_extras(setup: PageSetup) -> None:
     """Register the pages of the optional features."""
     for extra in extras().values():
-        extra.attach(setup.desk, setup.machine, setup.journal, setup.proving)
+        extra.attach_models(setup.desk, setup.machine, setup.journal, setup.proof_steps)
 
 
 def _register_busy_notice(setup: PageSetup) -> None:
-    setup.desk.pages.add_frame_watcher(BusyNotice(setup.desk.say).see)
+    setup.desk.page_registry.add_frame_watcher(BusyNotice(setup.desk.say).check_snapshot)
 
 
 def register_scope_page(setup: PageSetup) -> None:
     """Register the SCOPE page."""
-    register_scope(setup.desk, setup.live)
+    register_scope(setup.desk, setup.live_samples)
 
 
 PAGES: tuple[RegisterPage, ...] = (
@@ -252,6 +286,6 @@ PAGES: tuple[RegisterPage, ...] = (
 """All pages of a desk. A page comes after the pages that it needs."""
 
 
-def own_folder() -> Path:
+def get_program_folder() -> Path:
     """Return the folder of the operator's programs."""
-    return data_folder() / "programs"
+    return find_data_folder() / "programs"

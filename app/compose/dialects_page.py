@@ -9,16 +9,16 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.compose.machine.machine_files import shipped_machine
-from core.interpreter.dialects import NAMES, code_book
-from core.language.source import Dialect, dialect_of
+from app.compose.machine.machine_files import load_shipped_machine
+from core.interpreter.dialects import DIALECT_NAMES, get_code_book
+from core.language.source import Dialect, guess_dialect
 from core.machine.machine_model import Machine
 from core.message import Message
 
-BEGIN = "<!-- generated: python -m app.compose.dialects_page docs/dialects.md -->"
-END = "<!-- end of what is generated -->"
+BEGIN_MARK = "<!-- generated: python -m app.compose.dialects_page docs/dialects.md -->"
+END_MARK = "<!-- end of what is generated -->"
 _ENDINGS = (".nc", ".txt", ".h", ".mpf", ".spf")
-_PAGES = {
+_REFERENCE_PAGES = {
     Dialect.OMNITURN: "language",
     Dialect.KLARTEXT: "klartext-codes",
     Dialect.SINUMERIK: "sinumerik-codes",
@@ -26,25 +26,25 @@ _PAGES = {
 _MACHINES = Path(__file__).parents[2] / "resources" / "machines"
 
 
-def machines() -> dict[str, Machine]:
+def load_shipped_machines() -> dict[str, Machine]:
     """Return every shipped machine by its name for ``--machine``."""
     names = sorted(path.stem for path in _MACHINES.glob("*.toml"))
-    return {name: shipped_machine(name) for name in names}
+    return {name: load_shipped_machine(name) for name in names}
 
 
-def generated() -> str:
+def generate_text() -> str:
     """Return the generated text including both marks."""
-    found = machines()
-    return "\n".join([BEGIN, *_languages(found), "", *_shipped(found), END])
+    found = load_shipped_machines()
+    return "\n".join([BEGIN_MARK, *_languages(found), "", *_shipped(found), END_MARK])
 
 
-def with_generated(text: str) -> str:
+def update_page(text: str) -> str:
     """Return the page with its generated part updated. Raises ValueError if the marks are missing."""
-    before, mark, rest = text.partition(BEGIN)
-    _, last, after = rest.partition(END)
+    before, mark, rest = text.partition(BEGIN_MARK)
+    _, last, after = rest.partition(END_MARK)
     if not (mark and last):
-        raise ValueError(f"the page needs the lines {BEGIN!r} and {END!r}")
-    return before + generated() + after
+        raise ValueError(f"the page needs the lines {BEGIN_MARK!r} and {END_MARK!r}")
+    return before + generate_text() + after
 
 
 def _languages(found: dict[str, Machine]) -> Iterator[str]:
@@ -52,17 +52,17 @@ def _languages(found: dict[str, Machine]) -> Iterator[str]:
     yield f"| language | files | codes in the reference | {machines} |"
     yield "|---|---|---|---|"
     for dialect in Dialect:
-        endings = " ".join(f"`{each}`" for each in _ENDINGS if dialect_of(f"a{each}") is dialect)
-        book = code_book(dialect)
+        endings = " ".join(f"`{each}`" for each in _ENDINGS if guess_dialect(f"a{each}") is dialect)
+        book = get_code_book(dialect)
         count = sum(len(entries) for _, entries in book.chapters)
         speak = [name for name, machine in found.items() if machine.language == str(dialect)]
         codes = Message(
             "[{count} in {chapters_count} chapters]({pages}.md)",
             count=count,
             chapters_count=len(book.chapters),
-            pages=_PAGES[dialect],
+            pages=_REFERENCE_PAGES[dialect],
         )
-        yield f"| {NAMES[dialect]} | {endings} | {codes} | {', '.join(speak)} |"
+        yield f"| {DIALECT_NAMES[dialect]} | {endings} | {codes} | {', '.join(speak)} |"
 
 
 def _shipped(found: dict[str, Machine]) -> Iterator[str]:
@@ -75,4 +75,4 @@ def _shipped(found: dict[str, Machine]) -> Iterator[str]:
 
 if __name__ == "__main__":
     page = Path(sys.argv[1])
-    page.write_text(with_generated(page.read_text("utf-8")), "utf-8")
+    page.write_text(update_page(page.read_text("utf-8")), "utf-8")

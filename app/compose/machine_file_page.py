@@ -15,12 +15,19 @@ from math import isfinite
 from pathlib import Path
 
 from app.compose.machine.driver_modules import all_drivers
-from core.key_declaration import LENGTHS, Field, Kind, Unit, keys_of, to_file
+from core.key_declaration import (
+    LENGTH_UNITS,
+    FileUnit,
+    KeyField,
+    ValueKind,
+    convert_to_file,
+    get_declared_keys,
+)
 from core.machine import axis_tables, machine_tables, mill_kinematics
-from core.machine.driver_tables import tables_of
-from core.machine.hardware_model import AnalogModel
+from core.machine.driver_tables import all_driver_tables
+from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, OutputModel
-from core.page_contents import contents
+from core.page_contents import make_contents
 from core.table_schema import TableReference
 from drivers.inverter import family_table
 
@@ -46,25 +53,25 @@ values that contradict each other.
 
 """
 _WIDTH = 100
-_MOST_CHOICES = 20  # choices shown in a cell
-_WITHOUT_BOUNDS = (Kind.FLAG, Kind.TEXT, Kind.WORDS)
+_MAX_CHOICES = 20  # choices shown in a cell
+_UNBOUNDED_KINDS = (ValueKind.BOOLEAN, ValueKind.TEXT, ValueKind.WORDS)
 _AXES = "Positions are measured from home; X is a radius."
 
 
-def document() -> str:
+def generate_page() -> str:
     """Return the complete page."""
-    tables = tuple(references())
-    head = _HEAD + contents(map(_title, tables)).rstrip("\n")
+    tables = tuple(iterate_references())
+    head = _HEAD + make_contents(map(_table_title, tables)).rstrip("\n")
     return "\n".join([head, *(line for each in tables for line in _table(each))]) + "\n"
 
 
-def references() -> Iterator[TableReference]:
+def iterate_references() -> Iterator[TableReference]:
     """Yield every table that a machine file may have, in the order of the page."""
-    plain = dict(machine_tables.plain_tables(all_drivers()))
+    plain = dict(machine_tables.tables_without_subtables(all_drivers()))
     yield TableReference(
         "machine",
         "General machine settings and the timing of the setpoint queue.",
-        machine_tables.machine_fields(all_drivers()),
+        machine_tables.machine_table_fields(all_drivers()),
     )
     yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
@@ -92,43 +99,43 @@ def references() -> Iterator[TableReference]:
     )
     yield from _signals()
     yield from _kinematics()
-    for table in tables_of(all_drivers()):
-        yield TableReference(table.path, table.purpose, table.keys)
-        yield from table.parts
-    yield from family_table.TABLES
+    for table in all_driver_tables(all_drivers()):
+        yield TableReference(table.path, table.purpose, table.key_class)
+        yield from table.sub_tables
+    yield from family_table.FAMILY_TABLES
 
 
 def _axes() -> Iterator[TableReference]:
     yield TableReference(
         "axis.X, axis.Y, axis.Z",
         f"A linear axis. {_AXES} A lathe has X and Z, a mill X, Y and Z; all of them are required.",
-        axis_tables.Slide,
+        axis_tables.LinearAxisKeys,
     )
     yield TableReference(
         "axis.X.home, axis.Y.home, axis.Z.home",
         "Homing settings of a linear axis. An axis with `absolute = true` does not need this table.",
-        axis_tables.Home,
+        axis_tables.HomingKeys,
     )
     yield TableReference(
         "axis.C of a lathe",
         "The C axis of a lathe. A lathe without this table does not have a C axis.",
-        axis_tables.LatheC,
+        axis_tables.LatheCAxisKeys,
     )
     yield TableReference(
         "axis.C of a lathe, linear",
         "Keys of the third axis of a lathe if it is a linear axis (`linear = true`).",
-        axis_tables.ThirdSlide,
+        axis_tables.LinearThirdAxisKeys,
     )
     yield TableReference(
         "axis.A, axis.B, axis.C of a mill",
         "A rotary axis of a mill. A mill can have at most two rotary axes, and each "
         "axis needs a table in [kinematics].",
-        axis_tables.RotaryAxis,
+        axis_tables.RotaryAxisKeys,
     )
     yield TableReference(
         "axis.A.home, axis.B.home, axis.C.home of a mill",
         "Homing settings of a rotary axis. An axis with `absolute = true` does not need this table.",
-        axis_tables.RotaryHome,
+        axis_tables.RotaryHomingKeys,
     )
 
 
@@ -154,25 +161,25 @@ def _signals() -> Iterator[TableReference]:
     yield TableReference(
         "io.analog.…",
         "An analog signal: `feed_pot`, `spindle_pot`, `handwheel` or `spindle_load`.",
-        AnalogModel,
+        AnalogInputModel,
     )
     yield TableReference(
         "m_codes.…",
         "An M code that switches an output; the last word of the heading is the number of "
         "the code, without a leading zero. M codes that are part of the programming language "
         "are rejected.",
-        machine_tables.MCode,
+        machine_tables.MCodeKeys,
     )
     yield TableReference(
         "m_codes.… with ignored = true",
         "An M code from another machine; this machine ignores the code.",
-        machine_tables.IgnoredMCode,
+        machine_tables.IgnoredMCodeKeys,
     )
 
 
 def _kinematics() -> Iterator[TableReference]:
     yield TableReference(
-        mill_kinematics.TABLE,
+        mill_kinematics.KINEMATICS_TABLE,
         "The position of the workpiece on a mill with rotary axes.",
         mill_kinematics.KinematicsModel,
     )
@@ -186,14 +193,14 @@ def _kinematics() -> Iterator[TableReference]:
 # --- One table as Markdown.
 
 
-def _title(table: TableReference) -> str:
+def _table_title(table: TableReference) -> str:
     """Return the heading with each name of a table in brackets and formatted as code."""
     return re.sub(r"[\w\[\]]+(?:\.[\w…\]]+)+|^\w+", r"`[\g<0>]`", table.heading)
 
 
 def _table(table: TableReference) -> Iterator[str]:
-    yield from ("", f"## {_title(table)}", "", *_wrapped(table.purpose))
-    if fields := keys_of(table.keys):
+    yield from ("", f"## {_table_title(table)}", "", *_wrapped(table.purpose))
+    if fields := get_declared_keys(table.keys):
         yield from ("", "| key | unit | range | default | meaning |", "|---|---|---|---|---|")
         yield from (_row(field) for field in fields)
 
@@ -202,75 +209,75 @@ def _wrapped(text: str) -> list[str]:
     return textwrap.wrap(text, _WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
-def _row(field: Field) -> str:
+def _row(field: KeyField) -> str:
     cells = (f"`{field.key}`", _unit(field.unit), _range(field), _default(field), field.meaning)
     return f"| {' | '.join(cells)} |"
 
 
-def _unit(unit: Unit) -> str:
-    if unit in LENGTHS:
+def _unit(unit: FileUnit) -> str:
+    if unit in LENGTH_UNITS:
         return f"{unit.value.replace('len', 'mm')} or {unit.value.replace('len', 'in')}"
-    return {Unit.PLAIN: "–", Unit.TURNS_PER_MINUTE: "rpm", Unit.TURNS_PER_MINUTE_SECOND: "rpm/s"}.get(
+    return {FileUnit.UNITLESS: "–", FileUnit.C_AXIS_RPM: "rpm", FileUnit.C_AXIS_RPM_PER_SECOND: "rpm/s"}.get(
         unit, unit.value
     )
 
 
 _FORMS = {
-    Kind.FLAG: "true, false",
-    Kind.TEXT: "text",
-    Kind.WORDS: "list of words",
-    Kind.PAIR: "two numbers, ",
-    Kind.TRIPLE: "three numbers, ",
-    Kind.NUMBERS: "one to four numbers, ",
+    ValueKind.BOOLEAN: "true, false",
+    ValueKind.TEXT: "text",
+    ValueKind.WORDS: "list of words",
+    ValueKind.PAIR: "two numbers, ",
+    ValueKind.TRIPLE: "three numbers, ",
+    ValueKind.NUMBERS: "one to four numbers, ",
 }
 
 
-def _range(field: Field) -> str:
-    if field.kind is Kind.CHOICE:
-        many = len(field.choices) > _MOST_CHOICES
-        return "see meaning" if many else ", ".join(_literal(choice) for choice in field.choices)
+def _range(field: KeyField) -> str:
+    if field.kind is ValueKind.CHOICE:
+        many = len(field.choices) > _MAX_CHOICES
+        return "see meaning" if many else ", ".join(_format_literal(choice) for choice in field.choices)
     form = _FORMS.get(field.kind, "")
-    return form if field.kind in _WITHOUT_BOUNDS else form + _bounds(field)
+    return form if field.kind in _UNBOUNDED_KINDS else form + _bounds(field)
 
 
-def _bounds(field: Field) -> str:
-    return _in_units(field.unit, field.low, field.high)
+def _bounds(field: KeyField) -> str:
+    return _format_in_units(field.unit, field.minimum, field.maximum)
 
 
-def _in_units(unit: Unit, *values: float) -> str:
+def _format_in_units(unit: FileUnit, *values: float) -> str:
     """Return values of the model as in the file, lengths in both units."""
-    if unit not in LENGTHS:
-        return " to ".join(number(to_file(value, unit, inch=False)) for value in values)
+    if unit not in LENGTH_UNITS:
+        return " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
     if values == (0.0,):
         return "0"
-    metric = " to ".join(number(to_file(value, unit, inch=False)) for value in values)
-    inches = " to ".join(_inches(to_file(value, unit, inch=True)) for value in values)
+    metric = " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
+    inches = " to ".join(_format_inches(convert_to_file(value, unit, is_inch=True)) for value in values)
     return f"{metric} mm, {inches} in"
 
 
-def _default(field: Field) -> str:
+def _default(field: KeyField) -> str:
     value = field.default
-    if field.derived:
+    if field.is_derived:
         return "*derived*"
     if value is None:
         return "**required**"
     if value in ("", ()) or not _is_possible(field):
         return "*none*"
     if isinstance(value, bool | str):
-        return _literal(value)
-    return _in_units(field.unit, *(value if isinstance(value, tuple) else (value,)))
+        return _format_literal(value)
+    return _format_in_units(field.unit, *(value if isinstance(value, tuple) else (value,)))
 
 
-def _is_possible(field: Field) -> bool:
+def _is_possible(field: KeyField) -> bool:
     """Return whether the file could contain the default; a default out of range means "none"."""
     value = field.default
     if isinstance(value, bool | str) or value is None:
         return True
     values = value if isinstance(value, tuple) else (value,)
-    return all(isfinite(each) and field.low <= each <= field.high for each in values)
+    return all(isfinite(each) and field.minimum <= each <= field.maximum for each in values)
 
 
-def _literal(value: str | bool) -> str:
+def _format_literal(value: str | bool) -> str:
     """Return a value in TOML syntax."""
     return f"`{json.dumps(value)}`" if isinstance(value, str) else json.dumps(value)
 
@@ -281,7 +288,7 @@ def number(value: float) -> str:
     return text.replace("-", "−")
 
 
-def _inches(value: float) -> str:
+def _format_inches(value: float) -> str:
     """Return a length in inches with four significant digits and no zero before the point."""
     text = format(Decimal(f"{value:.4g}"), "f").replace("-", "−")
     return re.sub(r"^(−?)0\.", r"\1.", text)
@@ -291,7 +298,7 @@ def main(argv: list[str]) -> int:
     """Write the page to the file named in the arguments."""
     path = Path(argv[0])
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(document(), encoding="utf-8")
+    path.write_text(generate_page(), encoding="utf-8")
     return 0
 
 

@@ -4,39 +4,45 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.desk.background_work import Latest
+from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
 from app.programs.import_export import ImportExport
-from app.programs.program_list import ProgramList
-from app.programs.program_rows import DrawThumbnail, Preview
+from app.programs.program_list_model import ProgramListModel
+from app.programs.program_rows import DrawThumbnail, ProgramPreview
 from app.programs.removable_media import FolderChooser
 from core.message import Message
 
 
-def program_list(
-    desk: Desk, persistence: Persistence, workshop: LoadingSteps, own: Path, thumbnail: DrawThumbnail | None
-) -> ProgramList:
-    """Return the list of programs in the folder ``own``.
+def create_program_list(
+    desk: Desk,
+    persistence: Persistence,
+    loading_steps: LoadingSteps,
+    folder: Path,
+    thumbnail: DrawThumbnail | None,
+) -> ProgramListModel:
+    """Return the list of programs in the folder ``folder``.
 
     Imported programs are proved with the offsets at that time.
     """
 
     def check(path: Path) -> str:
-        job = workshop.make_job(workshop.read(path), False)
-        proved = workshop.prove(job, lambda _count: None)
+        job = loading_steps.make_job(loading_steps.read_source(path), False)
+        proved = loading_steps.prove_job(job, lambda _count: None)
         errors = proved.proof.errors
         result = (
             Message("{errors_count} ERRORS: {errors}", errors_count=len(errors), errors=errors[0])
             if errors
             else "PROVED"
         )
-        planned = None if errors else proved.proof.cycle_time
+        planned = None if errors else proved.proof.cycle_time_s
         persistence.runs.record_proof(path.name, result, planned, job.source.text)
         return errors[0] if errors else ""
 
-    worker = Latest("editing-programs")
-    chooser = FolderChooser(Path.home(), takes=desk.programs.folders.takes)
-    transfer = ImportExport(desk, own, persistence, worker, check, chooser)
-    return ProgramList(desk, own, persistence, worker, Preview(workshop, thumbnail), transfer)
+    worker = LatestRequestWorker("editing-programs")
+    chooser = FolderChooser(Path.home(), accepts_name=desk.program_choice.program_folders.accepts_name)
+    transfer = ImportExport(desk, folder, persistence, worker, check, chooser)
+    return ProgramListModel(
+        desk, folder, persistence, worker, ProgramPreview(loading_steps, thumbnail), transfer
+    )

@@ -6,58 +6,60 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from app.compose.backends.serial_ports import open_wire, serial_ports
+from app.compose.backends.serial_ports import list_serial_ports, open_serial_port
 from app.desk.programs.program_loading import LoadingSteps
-from app.programs.whole_file import FileError
-from app.transfer.line_transfer import Received
-from core.input_file import input_bytes
-from core.language.source import LARGEST_FILE, Source, SourceError, load_source
-from core.machine.desk_tables import DncModel
+from app.programs.atomic_files import FileOperationError
+from app.transfer.line_transfer import ReceivedProgram
+from core.input_file import read_input_bytes
+from core.language.source import MAX_FILE_SIZE, ProgramSource, SourceError, load_source
+from core.machine.serial_and_backup_tables import SerialLineModel
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import LineSettings
-from drivers.transfer.program_framing import Program, TransferSettings, outgoing
-from drivers.transfer.transfer_session import Reach, Receiving, Sending
-from drivers.waiting import RealClock
+from drivers.transfer.program_framing import ReceivedText, TransferSettings, encode_program
+from drivers.transfer.transfer_session import ReceiveTransfer, SendTransfer, TransferState
+from drivers.wakeups import RealClock
 
 # Usual settings of a serial line; the operator chooses the port.
-PLAIN = DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
-Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time in s
+DEFAULT_SETTINGS = SerialLineModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
+CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]  # errors, cycle time in s
 
 
 class SerialLines:
     """Implementation of ``app.transfer.line_transfer.Lines``.
 
-    ``check`` proves received programs, and ``ending`` is the suffix of their files.
+    ``check`` proves received programs, and ``suffix`` is the suffix of their files.
     """
 
-    def __init__(self, check: Check, ending: str = ".nc", clock: Clock | None = None) -> None:
-        self._check, self._ending, self._clock = check, ending, clock or RealClock()
+    def __init__(self, check: CheckProgram, suffix: str = ".nc", clock: Clock | None = None) -> None:
+        self._check, self._ending, self._clock = check, suffix, clock or RealClock()
 
-    def ports(self) -> Sequence[tuple[str, str]]:
+    def list_ports(self) -> Sequence[tuple[str, str]]:
         """Return the serial ports of this computer."""
-        return serial_ports()
+        return list_serial_ports()
 
-    def send(self, settings: DncModel, path: Path) -> SendingFile:
+    def make_send_transfer(self, settings: SerialLineModel, path: Path) -> FileSendTransfer:
         """Return the transfer that sends the program in a file."""
-        return SendingFile(settings_of(settings), path, self._clock)
+        return FileSendTransfer(make_transfer_settings(settings), path, self._clock)
 
-    def receive(self, settings: DncModel) -> ReceivingProgram:
+    def make_receive_transfer(self, settings: SerialLineModel) -> ProgramReceiveTransfer:
         """Return the transfer that receives a program."""
-        return ReceivingProgram(settings_of(settings), self._clock, self._check, self._ending)
+        return ProgramReceiveTransfer(
+            make_transfer_settings(settings), self._clock, self._check, self._ending
+        )
 
 
-class _Carried:
+class _LineTransfer:
     """A transfer whose serial line the worker opens; it can be canceled before that."""
 
     def __init__(self) -> None:
-        self._inner: Sending | Receiving | None = None
+        self._inner: SendTransfer | ReceiveTransfer | None = None
         self._cancelled = False
 
     @property
-    def reach(self) -> Reach:
+    def progress(self) -> TransferState:
         """Progress of the transfer."""
-        return self._inner.reach if self._inner is not None else Reach()
+        return self._inner.progress if self._inner is not None else TransferState()
 
     def cancel(self) -> None:
         """Cancel the transfer."""
@@ -65,81 +67,85 @@ class _Carried:
         if self._inner is not None:
             self._inner.cancel()
 
-    def _begin(self, inner: Sending | Receiving) -> None:
+    def _begin(self, inner: SendTransfer | ReceiveTransfer) -> None:
         self._inner = inner
         if self._cancelled:
             inner.cancel()
 
 
-class SendingFile(_Carried):
+class FileSendTransfer(_LineTransfer):
     """Transfer that sends a file; its result is the number returned by ``run``."""
 
     def __init__(self, settings: TransferSettings, path: Path, clock: Clock) -> None:
         super().__init__()
         self._settings, self._path, self._clock = settings, path, clock
 
-    def run(self) -> int:
+    def run_transfer(self) -> int:
         """Read the file, open the line and send. Raises FileError or DriverError."""
         try:
-            text = input_bytes(self._path, LARGEST_FILE)
+            text = read_input_bytes(self._path, MAX_FILE_SIZE)
         except OSError as error:
-            raise FileError(
+            raise FileOperationError(
                 Message("{path} CANNOT BE READ: {cause}", path=self._path.name, cause=error.strerror)
             ) from error
-        data = outgoing(text, self._settings)
-        wire = open_wire(self._settings.sending)
-        inner = Sending(wire, self._clock, self._settings, data)
+        data = encode_program(text, self._settings)
+        wire = open_serial_port(self._settings.sending_settings)
+        inner = SendTransfer(wire, self._clock, self._settings, data)
         self._begin(inner)
         return inner.run()
 
 
-class ReceivingProgram(_Carried):
+class ProgramReceiveTransfer(_LineTransfer):
     """Transfer that receives a program."""
 
-    def __init__(self, settings: TransferSettings, clock: Clock, check: Check, ending: str) -> None:
+    def __init__(self, settings: TransferSettings, clock: Clock, check: CheckProgram, suffix: str) -> None:
         super().__init__()
-        self._settings, self._clock, self._check, self._ending = settings, clock, check, ending
+        self._settings, self._clock, self._check, self._ending = settings, clock, check, suffix
 
-    def run(self) -> Received:
+    def run_transfer(self) -> ReceivedProgram:
         """Receive a program and prove it. Raises FileError or DriverError; nothing is then saved."""
-        inner = Receiving(open_wire(self._settings.receiving, watch=True), self._clock, self._settings)
+        inner = ReceiveTransfer(
+            open_serial_port(self._settings.receiving_settings, count_damaged=True),
+            self._clock,
+            self._settings,
+        )
         self._begin(inner)
         return self._looked_at(inner.run())
 
-    def _looked_at(self, program: Program) -> Received:
+    def _looked_at(self, program: ReceivedText) -> ReceivedProgram:
         name = program.name or "RECEIVED"
         name = name if Path(name).suffix else name + self._ending
-        source = _read(program.text, name)
+        source = _create_source(program.program_bytes, name)
         findings, cycle = self._check(source)
-        return Received(
-            text=source.text.encode("utf-8"),
+        return ReceivedProgram(
+            program_bytes=source.text.encode("utf-8"),
             name=name,
-            lines=program.lines,
-            digest=program.digest,
-            seven=program.seven,
-            skipped=program.skipped,
-            findings=findings,
-            cycle=cycle,
+            line_count=program.line_count,
+            sha256=program.sha256,
+            is_seven_bit=program.is_seven_bit,
+            skipped_bytes=program.skipped_bytes,
+            finding_texts=findings,
+            cycle_time_s=cycle,
         )
 
 
-def settings_of(model: DncModel) -> TransferSettings:
+def make_transfer_settings(model: SerialLineModel) -> TransferSettings:
     """Return the settings of the serial line and the data frame."""
     line = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop, model.flow)
     return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
 
 
-def proving(workshop: LoadingSteps) -> Check:
+def create_proof_check(loading_steps: LoadingSteps) -> CheckProgram:
     """Return a check that proves a program on this machine with the present offsets."""
 
-    def check(source: Source) -> tuple[tuple[str, ...], float]:
-        proved = workshop.prove(workshop.make_job(source, False), lambda _count: None)
-        return proved.proof.errors, proved.proof.cycle_time
+    def check(source: ProgramSource) -> tuple[tuple[str, ...], float]:
+        proved = loading_steps.prove_job(loading_steps.make_job(source, False), lambda _count: None)
+        return proved.proof.errors, proved.proof.cycle_time_s
 
     return check
 
 
-def _read(text: bytes, name: str) -> Source:
+def _create_source(text: bytes, name: str) -> ProgramSource:
     """Return the received text as a program file is read. Raises DriverError if the text is not a program."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / name

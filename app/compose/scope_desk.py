@@ -7,65 +7,69 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.desk.data_folder import RECORDS, data_folder
+from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
 from app.desk.desk import Desk
-from core.records.record import Channel, Record
-from core.records.recordings import Recordings
+from core.records.record import Channel, ScopeRecord
+from core.records.recordings import ScopeRecordings
 
 if TYPE_CHECKING:
     from app.scope.scope_curves import LiveSamples
-    from app.scope.scope_model import Scope
+    from app.scope.scope_model import ScopeModel
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedSamples:
     """Adapter that lets the page read the recorder's ring."""
 
-    recorder: Recordings
+    recorder: ScopeRecordings
 
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Recorded channels."""
-        return self.recorder.ring.recorded.channels
+        return self.recorder.ring.layout.channels
 
     @property
-    def last(self) -> float:
+    def newest_time_s(self) -> float:
         """Time of the newest sample, in seconds."""
-        return self.recorder.ring.samples.last
+        return self.recorder.ring.samples.last_time_s
 
     @property
-    def lasts(self) -> float:
+    def buffer_length_s(self) -> float:
         """Duration of the ring in seconds."""
-        return self.recorder.ring.recorded.lasts
+        return self.recorder.ring.layout.duration_s
 
-    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
-        """Return the samples from ``begin`` to ``end`` inclusive."""
-        return self.recorder.between(begin, end, names)
+    def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
+        """Return the samples from ``start_s`` to ``end_s`` inclusive."""
+        return self.recorder.get_record_between(start_s, end_s, names)
 
 
-def register_scope(desk: Desk, live: LiveSamples | None) -> None:
+def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
     """Register the scope with ``live`` samples, or with those of the control.
 
     Without either, the scope shows only files. The scope is created when the operator first opens its page.
     """
-    desk.pages.attach_later("app.scope.scope_model.Scope", partial(_scope, desk, live))
-    desk.pages.set_record_opener(lambda name: _scope_of(desk).open_alarm(name))
+    desk.page_registry.attach_lazily("app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples))
+    desk.page_registry.set_recording_opener(lambda name: _scope_of(desk).open_alarm_recording(name))
 
 
-def _scope(desk: Desk, live: LiveSamples | None) -> Scope:
-    from app.scope.record_shelf import RecordShelf
-    from app.scope.scope_model import Scope
-    from core.records.record_file import open_record, save_record, write_csv
+def _scope(desk: Desk, live: LiveSamples | None) -> ScopeModel:
+    from app.scope.recording_store import RecordingStore
+    from app.scope.scope_model import ScopeModel
+    from core.records.record_file import open_record, save_record, write_csv_lines
 
-    recordings = desk.control.recordings
+    recordings = desk.desk_control.recordings
     if live is None and recordings is not None:
         live = RecordedSamples(recordings)
-    return Scope(desk, live, RecordShelf(data_folder() / RECORDS, save_record, open_record, write_csv))
+    return ScopeModel(
+        desk,
+        live,
+        RecordingStore(find_data_folder() / RECORDS_FOLDER, save_record, open_record, write_csv_lines),
+    )
 
 
-def _scope_of(desk: Desk) -> Scope:
-    from app.scope.scope_model import Scope
+def _scope_of(desk: Desk) -> ScopeModel:
+    from app.scope.scope_model import ScopeModel
 
-    scope = desk.pages.find(Scope)
+    scope = desk.page_registry.find(ScopeModel)
     assert scope is not None
     return scope

@@ -5,99 +5,112 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from app.compose.extra import extras, insert_after
-from app.compose.program_transfer import PLAIN, SerialLines, proving
-from app.desk.background_work import Latest
-from app.desk.data_folder import BACKUPS, data_folder
+from app.compose.optional_features import extras, insert_after
+from app.compose.program_transfer import DEFAULT_SETTINGS, SerialLines, create_proof_check
+from app.desk.background_work import LatestRequestWorker
+from app.desk.data_folder import BACKUPS_FOLDER, find_data_folder
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
 from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
-from app.special.backup_and_restore import BackupAndRestore
-from app.special.counters import PartsCounterFunction, ToolLifeFunction
-from app.special.inputs_outputs import DriveStatus, InputsOutputs
-from app.special.lamps_and_sound import DeskSounds, LampsAndSound
-from app.special.machine_records import LoggedEvents, MachineFileAcceptance
-from app.special.operator_settings import RParameters, ScreenPreferences, SpindleSpeedLimit
+from app.special.backup_and_restore import BackupFunction
+from app.special.counter_functions import PartsCounterFunction, ToolLifeFunction
+from app.special.inputs_outputs import DriveStatusFunction, SignalsFunction
+from app.special.lamps_and_sound import EventSounds, LampsAndSoundFunction
+from app.special.machine_records import EventLogFunction, MachineFileFunction
+from app.special.operator_settings import RParametersFunction, ScreenSettingsFunction, SpindleLimitFunction
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.special.special_functions import SpecialFunction, SpecialFunctions
-from app.transfer.serial_transfer import SerialTransfer
-from core.language.source import Dialect, usual_ending
-from core.machine.desk_tables import BackupTable, DncModel
+from app.special.special_functions import SpecialFunction, SpecialFunctionList
+from app.transfer.serial_transfer import SerialTransferFunction
+from core.language.source import Dialect, default_extension
 from core.machine.machine_model import Machine
+from core.machine.serial_and_backup_tables import BackupTable, SerialLineModel
 
-MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
+MakeFunction = Callable[[Desk, Machine, Persistence, LatestRequestWorker], SpecialFunction]
 
 
-def _backup(desk: Desk, machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
-    table = machine.hardware.table(BackupTable)
+def _backup(
+    desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
+) -> SpecialFunction:
+    table = machine.hardware.find_driver_table(BackupTable)
     daily = Path(table.folder) if table is not None and table.folder else None
-    backup = BackupAndRestore(desk, persistence, worker, data_folder() / BACKUPS, daily=daily)
+    backup = BackupFunction(
+        desk, persistence, worker, find_data_folder() / BACKUPS_FOLDER, daily_folder=daily
+    )
 
     def restored() -> None:
-        desk.settings.reload()
-        desk.runs.counter.reload()
-        desk.access.reload()
+        desk.settings_store.reload()
+        desk.program_runs.part_counter.reload()
+        desk.user_access.reload()
 
-    backup.restored = restored
+    backup.on_restored = restored
     return backup
 
 
-def _setup_sheet(desk: Desk, machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
-    return SetupSheetFunction(desk, machine, persistence, worker, data_folder() / "sheets")
+def _setup_sheet(
+    desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
+) -> SpecialFunction:
+    return SetupSheetFunction(desk, machine, persistence, worker, find_data_folder() / "sheets")
 
 
-def _transfer(
-    desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path
+def _create_transfer(
+    desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, program_folder: Path
 ) -> SpecialFunction:
     """Return the RS-232 function, with the settings of [dnc] at first. Received programs are proved."""
-    lines = SerialLines(proving(workshop), usual_ending(Dialect(machine.language)))
-    return SerialTransfer(desk, persistence, lines, machine.hardware.table(DncModel) or PLAIN, own)
+    lines = SerialLines(create_proof_check(workshop), default_extension(Dialect(machine.language)))
+    return SerialTransferFunction(
+        desk,
+        persistence,
+        lines,
+        machine.hardware.find_driver_table(SerialLineModel) or DEFAULT_SETTINGS,
+        program_folder,
+    )
 
 
 # One line for each special function, in the order of the list. Functions without their hardware are not
 # shown.
-ITEMS: tuple[MakeFunction, ...] = (
-    lambda desk, machine, _keep, _worker: SpindleSpeedLimit(desk, machine.spindle),
+FUNCTION_ITEMS: tuple[MakeFunction, ...] = (
+    lambda desk, machine, _keep, _worker: SpindleLimitFunction(desk, machine.spindle),
     lambda desk, _machine, _keep, _worker: PartsCounterFunction(desk),
-    lambda desk, machine, _keep, _worker: InputsOutputs(desk, machine),
-    lambda desk, machine, _keep, _worker: DriveStatus(desk, machine),
-    lambda desk, _machine, persistence, worker: LoggedEvents(desk, persistence, worker),
+    lambda desk, machine, _keep, _worker: SignalsFunction(desk, machine),
+    lambda desk, machine, _keep, _worker: DriveStatusFunction(desk, machine),
+    lambda desk, _machine, persistence, worker: EventLogFunction(desk, persistence, worker),
     _backup,
-    lambda desk, _machine, _keep, _worker: ScreenPreferences(desk),
-    lambda desk, _machine, _keep, _worker: MachineFileAcceptance(desk, desk.changes),
+    lambda desk, _machine, _keep, _worker: ScreenSettingsFunction(desk),
+    lambda desk, _machine, _keep, _worker: MachineFileFunction(desk, desk.changes),
 )
 
 
-def special_functions(
+def create_special_functions(
     desk: Desk,
     machine: Machine,
     persistence: Persistence,
-    workshop: LoadingSteps,
-    own: Path,
-    sounds: DeskSounds,
-) -> SpecialFunctions:
+    loading_steps: LoadingSteps,
+    program_folder: Path,
+    sounds: EventSounds,
+) -> SpecialFunctionList:
     """Return all special functions.
 
-    ``workshop`` proves programs received over RS-232, and ``own`` is the folder of the operator's programs.
+    ``workshop`` proves programs received over RS-232, and ``program_folder`` is the folder of the operator's
+    programs.
     """
-    worker = Latest("editing-special")
-    functions = [make(desk, machine, persistence, worker) for make in ITEMS]
-    functions.append(_transfer(desk, machine, persistence, workshop, own))
+    worker = LatestRequestWorker("editing-special")
+    functions = [make(desk, machine, persistence, worker) for make in FUNCTION_ITEMS]
+    functions.append(_create_transfer(desk, machine, persistence, loading_steps, program_folder))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
-    watch = desk.pages.find(PartsWatch)
+    watch = desk.page_registry.find(PartsWatch)
     if watch is not None and machine.kind == "lathe":
         functions.append(ToolLifeFunction(desk, watch))
-    functions.append(LampsAndSound(desk, machine, sounds))
+    functions.append(LampsAndSoundFunction(desk, machine, sounds))
     if machine.language == Dialect.SINUMERIK:
-        functions.append(RParameters(desk, persistence, worker))
-    elsewhere = {name for extra in extras().values() for name in extra.own_functions}
+        functions.append(RParametersFunction(desk, persistence, worker))
+    elsewhere = {name for extra in extras().values() for name in extra.own_special_functions}
     functions = [each for each in functions if each.name not in elsewhere]
     added = [
         pair
         for extra in extras().values()
-        for pair in extra.special_functions(desk, machine, persistence, worker)
+        for pair in extra.list_special_functions(desk, machine, persistence, worker)
     ]
-    return SpecialFunctions(insert_after(functions, lambda function: function.name, added), worker)
+    return SpecialFunctionList(insert_after(functions, lambda function: function.name, added), worker)

@@ -16,74 +16,86 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.compose.desk_part import PartDesk
+from app.compose.part_prover import PartProver
 from app.programs.program_rows import Thumbnail
 
 if TYPE_CHECKING:
-    from app.desk.background_work import Watch
+    from app.desk.background_work import ProgressCallback
     from core.executor.job import Job
     from core.machine.machine_model import Machine
-    from core.part.solid_picture import Image
-    from core.proving.program_tools import PartSetting
+    from core.part.solid_picture import ImageArray
+    from core.proving.program_tools import PartSettings
 
 WIDE, HIGH = 168, 112  # pixels
-MOST = 400  # files; beyond this number the oldest fifth is deleted
-_CORE = Path(__file__).parents[2] / "core"
+MAX_FILES = 400  # files; beyond this number the oldest fifth is deleted
+_CORE_FOLDER = Path(__file__).parents[2] / "core"
 _AZIMUTH, _TILT = 32.0, 32.0
 
 
 @dataclass(frozen=True, slots=True)
-class Thumbnails:
+class ThumbnailCache:
     """Cache of thumbnails in ``folder`` for the programs of one machine."""
 
     folder: Path
     machine: Machine
-    parts: PartDesk
-    wide: int = WIDE
-    high: int = HIGH
+    part_prover: PartProver
+    width_px: int = WIDE
+    height_px: int = HIGH
 
-    def of(self, job: Job, watch: Watch) -> Thumbnail | None:
-        """Return a picture of the job's part, ``wide`` by ``high`` pixels, or None without a part.
+    def get_thumbnail(self, job: Job, report_progress: ProgressCallback) -> Thumbnail | None:
+        """Return a picture of the job's part, ``width_px`` by ``height_px`` pixels, or None without a part.
 
         ``watch`` may raise an exception to cancel.
         """
         if self.machine.kind != "lathe":
             return None
-        setting = self.parts.setting(job, watch)[0]
-        path = self.folder / self._key(job, setting)
-        pixels = _found(path, self.wide * self.high)
+        setting = self.part_prover.read_setting(job, report_progress)[0]
+        path = self.folder / self._cache_key(job, setting)
+        pixels = _found(path, self.width_px * self.height_px)
         if pixels is None:
-            image = self._made(job, setting, watch)
+            image = self._made(job, setting, report_progress)
             if image is None:
                 return None
             pixels = np.ascontiguousarray(image, dtype=np.uint32).tobytes()
-            _keep(path, pixels)
-        return Thumbnail(pixels, self.wide, self.high)
+            _save_cached(path, pixels)
+        return Thumbnail(pixels, self.width_px, self.height_px)
 
-    def _made(self, job: Job, setting: PartSetting, watch: Watch) -> Image | None:
+    def _made(self, job: Job, setting: PartSettings, watch: ProgressCallback) -> ImageArray | None:
         from core.part.solid_picture import SolidPicture
-        from core.part.solid_view import SolidView, fitted
-        from core.proving.part_history import PartGathering, finished_part
+        from core.part.solid_view import SolidView, fit_view
+        from core.proving.part_history import StepCollector, make_finished_part
         from core.proving.program_timeline import Timeline
 
-        gathered = PartGathering(setting)
-        for number, span in enumerate(Timeline.of(job.reading, job.setup, self.machine).spans()):
-            gathered.see(span)
+        gathered = StepCollector(setting)
+        for number, span in enumerate(
+            Timeline.from_program(job.shared_program, job.setup, self.machine).iter_spans()
+        ):
+            gathered.add_span(span)
             if number % 200 == 0:
                 watch(number)
-        moves = gathered.moves()
-        part = finished_part(moves, watch) if moves is not None else None
+        moves = gathered.collected_steps()
+        part = make_finished_part(moves, watch) if moves is not None else None
         if part is None:
             return None
-        scale, centre = fitted(part.back, part.front, part.radius, self.wide, self.high, _AZIMUTH)
+        scale, centre = fit_view(
+            part.back_z_mm, part.front_z_mm, part.radius_mm, self.width_px, self.height_px, _AZIMUTH
+        )
         view = SolidView(_AZIMUTH, _TILT, 0.0, scale, centre)
-        return SolidPicture().draw(part.solid, view, self.wide, self.high)
+        return SolidPicture().draw(part.solid, view, self.width_px, self.height_px)
 
-    def _key(self, job: Job, setting: PartSetting) -> str:
+    def _cache_key(self, job: Job, setting: PartSettings) -> str:
         """Return the file name of the thumbnail: a hash of everything that affects the picture."""
         shapes, radii, gang = setting.shapes, setting.nose_radii, setting.gang
         tools = (sorted(shapes.items()), sorted(radii.items()), sorted(gang.items()))
-        said = (job.source.name, job.digest, setting.stock, setting.clamping, tools, self.wide, self.high)
+        said = (
+            job.source.name,
+            job.digest,
+            setting.stock,
+            setting.clamping,
+            tools,
+            self.width_px,
+            self.height_px,
+        )
         return sha256(f"{_core_version()}\n{said!r}".encode("utf-8", "surrogatepass")).hexdigest()
 
 
@@ -91,7 +103,7 @@ class Thumbnails:
 def _core_version() -> str:
     """Return a hash of the code that makes parts, because another version may make different parts."""
     total = sha256()
-    for path in sorted(_CORE.rglob("*.py")):
+    for path in sorted(_CORE_FOLDER.rglob("*.py")):
         total.update(path.read_bytes())
     return total.hexdigest()
 
@@ -105,7 +117,7 @@ def _found(path: Path, pixels_wanted: int) -> bytes | None:
     return pixels if len(pixels) == 4 * pixels_wanted else None
 
 
-def _keep(path: Path, pixels: bytes) -> None:
+def _save_cached(path: Path, pixels: bytes) -> None:
     """Write the file completely or not at all. After a disk error the picture is simply drawn again."""
     aside = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
@@ -113,7 +125,7 @@ def _keep(path: Path, pixels: bytes) -> None:
         aside.write_bytes(zlib.compress(pixels))
         aside.replace(path)
         there = sorted(path.parent.iterdir(), key=lambda each: each.stat().st_mtime)
-        for old in there[: MOST // 5] if len(there) > MOST else []:
+        for old in there[: MAX_FILES // 5] if len(there) > MAX_FILES else []:
             old.unlink(missing_ok=True)
     except OSError:
         return

@@ -12,24 +12,24 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from app.desk.persistence import Persistence
-from app.desk.translation import data, tr
-from core.access.access_table import Act, Level, level_for
+from app.desk.translation import mark_untranslated, tr
+from core.access.access_table import AccessLevel, ProtectedChange, get_required_level
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
-from core.store.people import People
 from core.store.store_errors import StoreError
+from core.store.user_records import UserList
 
-NOBODY = "operator"  # Name in the history while no user is signed in.
-_AGAIN = 1.0  # Seconds between two attempts to read the stored users after an error.
+DEFAULT_USER = "operator"  # Name in the history while no user is signed in.
+_RETRY_INTERVAL_S = 1.0  # Seconds between two attempts to read the stored users after an error.
 
 
-class Session(Protocol):
+class SignInSession(Protocol):
     """Interface of the optional sign-in feature. Its methods never wait."""
 
-    def used(self) -> None:
+    def note_activity(self) -> None:
         """Note that the signed-in user pressed a key or touched the screen."""
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Process sign-in attempts and sign out an inactive user; called once a frame."""
 
     def reload(self) -> None:
@@ -40,79 +40,79 @@ class Session(Protocol):
 
 
 @dataclass(slots=True)
-class Access:
+class UserAccess:
     """The signed-in user, the access level in force and the permissions that follow from them.
 
-    ``name`` is the name of the signed-in user, empty if no user is signed in. Call ``used`` for every key
-    press and touch.
+    ``user_name`` is the name of the signed-in user, empty if no user is signed in. Call ``note_activity``
+    for every key press and touch.
     """
 
     persistence: Persistence = field(default_factory=Persistence)
     say: Callable[[str], None] = lambda _text: None
-    clock: Callable[[], float] = time.monotonic
-    people: People = field(default_factory=People)
-    name: str = ""
-    level: Level = Level.OPERATOR
-    session: Session | None = None  # None: the sign-in feature is not installed.
-    pending: str = ""  # Text for the header while a service reset is in progress.
+    read_time_s: Callable[[], float] = time.monotonic
+    users: UserList = field(default_factory=UserList)
+    user_name: str = ""
+    access_level: AccessLevel = AccessLevel.OPERATOR
+    sign_in_session: SignInSession | None = None  # None: the sign-in feature is not installed.
+    pending_notice: str = ""  # Text for the header while a service reset is in progress.
     _unread: float | None = None  # Time of the last failed attempt to read the users.
     _lifted: bool = False  # True after a service reset removed levels that could not be read.
 
     def __post_init__(self) -> None:
         self.reload()
-        self.persistence.who = lambda: self.who if self.people.on else ""
+        self.persistence.who = lambda: self.recorded_user if self.users.is_access_restricted else ""
 
     @property
-    def is_unread(self) -> bool:
+    def has_read_failed(self) -> bool:
         """Whether the stored users could not be read."""
         return self._unread is not None
 
     # --- who and what --------------------------------------------------------------------------------
 
     @property
-    def who(self) -> str:
+    def recorded_user(self) -> str:
         """The user name that the history records for a change."""
-        return self.name or NOBODY
+        return self.user_name or DEFAULT_USER
 
     @property
-    def words(self) -> str:
+    def header_text(self) -> str:
         """The user and level in force, for the header. Empty if access levels are off."""
-        if not self.people.on:
+        if not self.users.is_access_restricted:
             return ""
-        if self.pending:
-            return self.pending
-        level = tr(self.level.name)
-        return join_messages(" · ", (data(self.name), level)) if self.name else level
+        if self.pending_notice:
+            return self.pending_notice
+        level = tr(self.access_level.name)
+        return join_messages(" · ", (mark_untranslated(self.user_name), level)) if self.user_name else level
 
-    def refusal(self, act: Act) -> str:
+    def find_refusal(self, act: ProtectedChange) -> str:
         """Return why the level in force does not permit this act. Empty if the act is permitted."""
-        needed = level_for(act)
-        if not self.people.on or self.level >= needed:
+        needed = get_required_level(act)
+        if not self.users.is_access_restricted or self.access_level >= needed:
             return ""
         text = tr("{what}: {level} REQUIRED (NOW {now}). F10, ACCESS LEVELS: SIGN IN")
-        if self.session is None:
+        if self.sign_in_session is None:
             text = tr("{what}: {level} REQUIRED (NOW {now}). THIS TURNDESK IS INSTALLED WITHOUT SIGN-IN")
-        return tr(Message(text, what=tr(act.value), level=tr(needed.name), now=tr(self.level.name)))
+        return tr(Message(text, what=tr(act.value), level=tr(needed.name), now=tr(self.access_level.name)))
 
-    def sign_out(self, why: str = "") -> None:
-        """Sign out the user and set the level to OPERATOR. ``why`` is added to the log entry."""
-        if self.name:
-            self.note(Message("{name} has signed out{why}", name=self.name, why=why))
-        self.name, self.level = "", Level.OPERATOR
+    def sign_out(self, reason: str = "") -> None:
+        """Sign out the user and set the level to OPERATOR. ``reason`` is added to the log entry."""
+        if self.user_name:
+            self.log_access(Message("{name} has signed out{why}", name=self.user_name, why=reason))
+        self.user_name, self.access_level = "", AccessLevel.OPERATOR
 
     # --- time ----------------------------------------------------------------------------------------
 
-    def used(self) -> None:
+    def note_activity(self) -> None:
         """Note that the signed-in user pressed a key or touched the screen."""
-        if self.session is not None:
-            self.session.used()
+        if self.sign_in_session is not None:
+            self.sign_in_session.note_activity()
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Retry reading the users after an error, and update the session; called once a frame."""
-        if self._unread is not None and self.clock() - self._unread >= _AGAIN:
+        if self._unread is not None and self.read_time_s() - self._unread >= _RETRY_INTERVAL_S:
             self.reload()  # A store that could not be opened at the start may become available later.
-        if self.session is not None:
-            self.session.look(snapshot)
+        if self.sign_in_session is not None:
+            self.sign_in_session.update(snapshot)
 
     # --- people --------------------------------------------------------------------------------------
 
@@ -122,33 +122,33 @@ class Access:
         A user who was removed or whose level was lowered is signed out.
         """
         try:
-            self.people = self.persistence.people()
-            if self.session is not None:
-                self.session.reload()
+            self.users = self.persistence.people()
+            if self.sign_in_session is not None:
+                self.sign_in_session.reload()
         except StoreError:
-            self._unread = self.clock()
+            self._unread = self.read_time_s()
             if not self._lifted:
                 # Users are unknown, so the strictest level applies.
-                self.people = self.people._replace(damaged=True)
+                self.users = self.users._replace(has_damaged_row=True)
             return  # TurnDesk shows the storage error elsewhere.
         self._unread = None
-        row = self.people.named(self.name)
-        if self.name and (row is None or row.level < self.level):
+        row = self.users.find_user(self.user_name)
+        if self.user_name and (row is None or row.level < self.access_level):
             self.sign_out()
 
-    def lift(self) -> None:
+    def remove_levels(self) -> None:
         """Remove the access levels after a service reset.
 
         Levels that cannot be read are ignored until TurnDesk closes.
         """
-        self._lifted, self.people = True, People()
+        self._lifted, self.users = True, UserList()
         self.reload()
 
-    def note(self, text: str) -> None:
+    def log_access(self, text: str) -> None:
         """Write a line to the log with the name of the signed-in user."""
-        self.persistence.note_access(text, self.who)
+        self.persistence.log_access(text, self.recorded_user)
 
     def close(self) -> None:
         """Close the session when TurnDesk closes."""
-        if self.session is not None:
-            self.session.close()
+        if self.sign_in_session is not None:
+            self.sign_in_session.close()

@@ -7,8 +7,8 @@ from math import isfinite
 
 from core.message import Message
 
-CHARACTERS = frozenset("0123456789.,+-*/()−")  # Characters that an expression may contain.
-LONGEST = 80  # Maximum length of an expression in characters.
+EXPRESSION_CHARACTERS = frozenset("0123456789.,+-*/()−")  # Characters that an expression may contain.
+MAX_LENGTH = 80  # Maximum length of an expression in characters.
 _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
 
 
@@ -16,51 +16,51 @@ class EntryError(ValueError):
     """The expression is not a number. The message gives the reason."""
 
 
-def value_of(entry: str) -> float:
+def evaluate_expression(entry: str) -> float:
     """Return the value of an arithmetic expression.
 
     Raises EntryError with the invalid character, its position and the reason.
     """
     if not entry.strip():
         raise EntryError("no value entered; type a number")
-    if len(entry) > LONGEST:
+    if len(entry) > MAX_LENGTH:
         raise EntryError(
             Message(
                 "the expression is longer than {longest} characters; calculate it yourself and type "
                 "the result",
-                longest=LONGEST,
+                longest=MAX_LENGTH,
             )
         )
     entry = " ".join(entry.split())
-    reader = _Reader(entry)
-    value = reader.sum()
+    reader = _ExpressionParser(entry)
+    value = reader.parse_sum()
     reader.expect_end()
     if not isfinite(value):
         raise EntryError(Message("{entry} is too large; type a smaller number", entry=entry))
     return value
 
 
-def line_of(entry: str) -> int | None:
+def evaluate_line_number(entry: str) -> int | None:
     """Return the line number that an expression such as ``20+5`` evaluates to.
 
     None if the expression is invalid, or if its value is not an integer of at least 1.
     """
     try:
-        value = value_of(entry)
+        value = evaluate_expression(entry)
     except EntryError:
         return None
     return int(value) if value == int(value) and value >= 1 else None
 
 
-class _Reader:
+class _ExpressionParser:
     """Recursive-descent parser of one expression with sums, products, signs, numbers and parentheses."""
 
     def __init__(self, entry: str) -> None:
         self._entry = entry
-        self._tokens = list(_tokens(entry))
+        self._tokens = list(_split_tokens(entry))
         self._next = 0
 
-    def sum(self) -> float:
+    def parse_sum(self) -> float:
         value = self._product()
         while sign := self._take("+", "-"):
             part = self._product()
@@ -82,7 +82,7 @@ class _Reader:
             value = self._signed()
             return -value if sign == "-" else value
         if self._take("("):
-            value = self.sum()
+            value = self.parse_sum()
             if not self._take(")"):
                 raise self._refusal("a closing parenthesis")
             return value
@@ -125,7 +125,7 @@ class _Reader:
         )
 
 
-def _tokens(entry: str) -> list[tuple[str, int]]:
+def _split_tokens(entry: str) -> list[tuple[str, int]]:
     """Return the numbers and operators of an expression, each with its column, counted from 1.
 
     Raises EntryError for a character that an expression cannot contain.

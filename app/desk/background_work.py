@@ -18,11 +18,11 @@ from typing import TypeVar
 
 _log = logging.getLogger(__name__)
 
-ENDS = 2.0  # Seconds that closing waits for the work in progress.
-T = TypeVar("T")
-Watch = Callable[[float], None]
+CLOSE_TIMEOUT_S = 2.0  # Seconds that closing waits for the work in progress.
+ResultT = TypeVar("ResultT")
+ProgressCallback = Callable[[float], None]
 """Told how far slow work has come; it may raise AbandonedError, which has to be let through."""
-Failed = Callable[[str], None]
+FailureCallback = Callable[[str], None]
 
 
 class DaemonWorker:
@@ -49,13 +49,13 @@ class DaemonWorker:
                 self._thread = threading.Thread(target=self._work, name=self._name, daemon=True)
                 self._thread.start()
 
-    def close(self, limit: float) -> None:
-        """Finish the queued tasks, but wait for them for ``limit`` seconds at most."""
+    def close(self, timeout_s: float) -> None:
+        """Finish the queued tasks, but wait for them for ``timeout_s`` seconds at most."""
         with self._lock:
             self._closed = True
             self._tasks.put(None)
         if self._thread is not None and self._thread is not threading.current_thread():
-            self._thread.join(limit)
+            self._thread.join(timeout_s)
 
     def _work(self) -> None:
         while (task := self._tasks.get()) is not None:
@@ -66,7 +66,7 @@ class AbandonedError(Exception):
     """The work in progress is canceled because a newer request replaced it."""
 
 
-def sentence(error: BaseException) -> str:
+def describe_error(error: BaseException) -> str:
     """Return the text of a worker's error for the screen."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
@@ -74,102 +74,109 @@ def sentence(error: BaseException) -> str:
 
 
 @dataclass(slots=True, eq=False)
-class Request:
-    """One request to a worker. The work calls the request as its ``Watch`` to report progress."""
+class WorkRequest:
+    """One request to a worker. The work calls the request as its ``ProgressCallback`` to report progress."""
 
-    worker: Latest
+    worker: LatestRequestWorker
     # Does the work and returns the function that delivers the result.
-    run: Callable[[Request], Callable[[], None]]
-    failed: Failed
-    queued: bool  # Runs to its end even if a newer request arrives.
-    wanted: bool = True
-    overtaken: bool = False  # Replaced by a newer request, which waits for ``patience`` seconds.
-    began: float = 0.0
+    work: Callable[[WorkRequest], Callable[[], None]]
+    on_failed: FailureCallback
+    is_queued: bool  # Runs to its end even if a newer request arrives.
+    is_wanted: bool = True
+    is_superseded: bool = False  # Replaced by a newer request, which waits for ``grace_time_s`` seconds.
+    started_at: float = 0.0
 
     def __call__(self, reached: float = 0.0) -> None:
         """Report the progress of the work. Raises AbandonedError if the work must stop."""
-        self.worker.go_on(self)
-        self.worker.reached = int(reached)
+        self.worker.check_continue(self)
+        self.worker.progress = int(reached)
 
-    def publish(self, put: Callable[[], None]) -> None:
-        """Call ``put`` on the worker with an intermediate result, while no newer request can arrive.
+    def publish(self, deliver: Callable[[], None]) -> None:
+        """Call ``deliver`` on the worker with an intermediate result, while no newer request can arrive.
 
         Raises AbandonedError if the result is no longer wanted.
         """
         with self.worker.lock:
-            if not self.wanted:
+            if not self.is_wanted:
                 raise AbandonedError
-            put()
+            deliver()
 
 
 @dataclass(slots=True)
-class Latest:
+class LatestRequestWorker:
     """A worker on which a new request replaces the previous one.
 
-    ``ask`` replaces the previous request. ``queue`` adds work that is never canceled. For requests that
-    follow typing, work begins after ``quiet`` seconds without another request, but at the latest after
-    ``longest`` seconds. A replaced request may continue for ``patience`` seconds. ``beside`` is another
-    worker whose thread this worker shares.
+    ``request`` replaces the previous request. ``enqueue`` adds work that is never canceled. For requests that
+    follow typing, work begins after ``quiet_time_s`` seconds without another request, but at the latest after
+    ``max_delay_s`` seconds. A replaced request may continue for ``grace_time_s`` seconds. ``thread_owner``
+    is another worker whose thread this worker shares.
     """
 
     name: str  # Name of the thread.
-    quiet: float = 0.0
-    longest: float = 0.0
-    patience: float = 0.0
-    beside: Latest | None = None
+    quiet_time_s: float = 0.0
+    max_delay_s: float = 0.0
+    grace_time_s: float = 0.0
+    thread_owner: LatestRequestWorker | None = None
     clock: Callable[[], float] = time.monotonic
-    reached: int = 0  # Progress of the work in progress, in the unit of the work.
+    progress: int = 0  # Progress of the work in progress, in the unit of the work.
     lock: threading.Condition = field(default_factory=threading.Condition)
-    _waiting: deque[Request] = field(default_factory=deque)
-    _current: Request | None = None
-    _answers: deque[tuple[Request, Callable[[], None]]] = field(default_factory=deque)
+    _waiting: deque[WorkRequest] = field(default_factory=deque)
+    _current: WorkRequest | None = None
+    _answers: deque[tuple[WorkRequest, Callable[[], None]]] = field(default_factory=deque)
     _asked: float = 0.0
     _closing: bool = False
     _running: bool = False
     _pool: DaemonWorker = field(init=False)
 
     def __post_init__(self) -> None:
-        self._pool = DaemonWorker(self.name) if self.beside is None else self.beside._pool
+        self._pool = DaemonWorker(self.name) if self.thread_owner is None else self.thread_owner._pool
 
     # --- caller's side -------------------------------------------------------------------------------
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Whether work is in progress or a result is waiting for ``poll``."""
         with self.lock:
-            at_work = self._current is not None and self._current.wanted
+            at_work = self._current is not None and self._current.is_wanted
             return at_work or bool(self._waiting or self._answers)
 
-    def ask(self, work: Callable[[Request], T], done: Callable[[T], None], failed: Failed) -> None:
+    def request(
+        self,
+        work: Callable[[WorkRequest], ResultT],
+        on_done: Callable[[ResultT], None],
+        on_failed: FailureCallback,
+    ) -> None:
         """Request ``work`` in place of the previous request.
 
         ``poll`` later calls ``done`` with the result, or ``failed`` with an error text. ``work`` gets the
         request as its watch.
         """
         with self.lock:
-            if not self.patience:
-                self.give_up()
+            if not self.grace_time_s:
+                self.cancel()
             elif self._current is not None:
-                self._current.overtaken = True
+                self._current.is_superseded = True
             self._drop_waiting()
-            self._begin(work, done, failed, queued=False)
+            self._begin(work, on_done, on_failed, queued=False)
 
-    def queue(self, work: Callable[[], T], done: Callable[[T], None], failed: Failed) -> None:
+    def enqueue(
+        self, work: Callable[[], ResultT], on_done: Callable[[ResultT], None], on_failed: FailureCallback
+    ) -> None:
         """Add ``work`` that runs after all waiting work and is never canceled.
 
-        ``poll`` delivers the result as for ``ask``.
+        ``poll`` delivers the result as for ``request``.
         """
         with self.lock:
-            self._begin(lambda _request: work(), done, failed, queued=True)
+            self._begin(lambda _request: work(), on_done, on_failed, queued=True)
 
-    def give_up(self) -> None:
+    def cancel(self) -> None:
         """Cancel the current request. Queued work continues, and its result is still delivered."""
         with self.lock:
             self._drop_waiting()
-            if self._current is not None and not self._current.queued:
-                self._current.wanted = False
-            self._answers = deque(each for each in self._answers if each[0].queued)
-            self.reached = 0
+            if self._current is not None and not self._current.is_queued:
+                self._current.is_wanted = False
+            self._answers = deque(each for each in self._answers if each[0].is_queued)
+            self.progress = 0
 
     def poll(self) -> None:
         """Deliver the finished results in the order of the work; called once a frame."""
@@ -180,36 +187,41 @@ class Latest:
                 _request, answer = self._answers.popleft()
             answer()
 
-    def settle(self, timeout: float) -> None:
+    def wait_for_results(self, timeout_s: float) -> None:
         """Wait for the results and deliver them. For scripts and tests only, because this method blocks."""
-        end = time.monotonic() + timeout
-        while self.busy and time.monotonic() < end:
+        end = time.monotonic() + timeout_s
+        while self.is_busy and time.monotonic() < end:
             with self.lock:
-                self.lock.wait_for(lambda: self._answers or not self.busy, end - time.monotonic())
+                self.lock.wait_for(lambda: self._answers or not self.is_busy, end - time.monotonic())
             self.poll()
 
     def close(self) -> None:
         """End the thread. Requests are canceled. Queued work is finished, but its result is not delivered.
 
-        Work that takes longer than ``ENDS`` seconds remains on the daemon thread.
+        Work that takes longer than ``CLOSE_TIMEOUT_S`` seconds remains on the daemon thread.
         """
         with self.lock:
             self._closing = True
-            self.give_up()
+            self.cancel()
             self.lock.notify_all()
-        if self.beside is None:
-            self._pool.close(ENDS)
+        if self.thread_owner is None:
+            self._pool.close(CLOSE_TIMEOUT_S)
 
     def _begin(
-        self, work: Callable[[Request], T], done: Callable[[T], None], failed: Failed, *, queued: bool
+        self,
+        work: Callable[[WorkRequest], ResultT],
+        done: Callable[[ResultT], None],
+        failed: FailureCallback,
+        *,
+        queued: bool,
     ) -> None:
-        def run(request: Request) -> Callable[[], None]:
+        def run(request: WorkRequest) -> Callable[[], None]:
             result = work(request)
             return lambda: done(result)
 
         if self._closing:
             return
-        self._waiting.append(Request(self, run, failed, queued))
+        self._waiting.append(WorkRequest(self, run, failed, queued))
         self._asked = self.clock()
         self.lock.notify_all()
         if not self._running:
@@ -217,34 +229,35 @@ class Latest:
             self._pool.submit(self._work_off)
 
     def _drop_waiting(self) -> None:
-        self._waiting = deque(each for each in self._waiting if each.queued)
+        self._waiting = deque(each for each in self._waiting if each.is_queued)
 
     # --- worker thread -------------------------------------------------------------------------------
 
-    def go_on(self, request: Request) -> None:
+    def check_continue(self, request: WorkRequest) -> None:
         """Check that the work on this request may continue. Raises AbandonedError if not."""
-        late = request.overtaken and self.clock() - request.began > self.patience
-        if late or not request.wanted:
+        late = request.is_superseded and self.clock() - request.started_at > self.grace_time_s
+        if late or not request.is_wanted:
             raise AbandonedError
 
     def _work_off(self) -> None:
-        while (request := self._next()) is not None:
-            answer = _answer_of(request)
+        while (request := self._wait_for_request()) is not None:
+            answer = _run_request(request)
             with self.lock:
                 self._current = None
-                if answer is not None and request.wanted:
+                if answer is not None and request.is_wanted:
                     self._answers.append((request, answer))
                 self.lock.notify_all()
 
-    def _next(self) -> Request | None:
+    def _wait_for_request(self) -> WorkRequest | None:
         """Return the next request, or None if no request waits.
 
-        Wait until typing has paused for ``quiet`` seconds, or until ``longest`` seconds have passed.
+        Wait until typing has paused for ``quiet_time_s`` seconds, or until ``max_delay_s`` seconds have
+        passed.
         """
         with self.lock:
-            end = self.clock() + self.longest
+            end = self.clock() + self.max_delay_s
             while self._waiting and not self._closing:
-                left = min(self._asked + self.quiet, end) - self.clock()
+                left = min(self._asked + self.quiet_time_s, end) - self.clock()
                 if left <= 0.0:
                     break
                 self.lock.wait(left)
@@ -252,42 +265,44 @@ class Latest:
             if self._current is None:
                 self._running = False
             else:
-                self._current.began = self.clock()
-            self.reached = 0
+                self._current.started_at = self.clock()
+            self.progress = 0
             return self._current
 
 
-def _answer_of(request: Request) -> Callable[[], None] | None:
+def _run_request(request: WorkRequest) -> Callable[[], None] | None:
     """Do the work and return the function that delivers its result; None if the work was canceled."""
     try:
-        return request.run(request)
+        return request.work(request)
     except AbandonedError:
         return None
     except BaseException as error:  # noqa: BLE001 - whatever it is, it is told where it was asked for
-        if _is_a_defect(error):
+        if _is_defect(error):
             _log.error("on the worker %s", request.worker.name, exc_info=error)
-        why = sentence(error)
-        return lambda: request.failed(why)
+        why = describe_error(error)
+        return lambda: request.on_failed(why)
 
 
-def _is_a_defect(error: BaseException) -> bool:
+def _is_defect(error: BaseException) -> bool:
     """Return whether an error is a programming error, so that its traceback must be logged."""
     return type(error).__module__ == "builtins" and not isinstance(error, OSError | ValueError)
 
 
 class RepeatingThread:
-    """A thread that calls ``look`` after ``first`` seconds and then every ``every`` seconds.
+    """A thread that calls ``action`` after ``first_delay_s`` seconds and then every ``interval_s`` seconds.
 
     The watchdog identifies the thread by its name.
     """
 
-    def __init__(self, name: str, look: Callable[[], object], every: float, first: float = 0.0) -> None:
-        self._look, self._every, self._first = look, every, first
+    def __init__(
+        self, name: str, action: Callable[[], object], interval_s: float, first_delay_s: float = 0.0
+    ) -> None:
+        self._look, self._every, self._first = action, interval_s, first_delay_s
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._repeat, name=name, daemon=True)
 
     @property
-    def closing(self) -> bool:
+    def is_closing(self) -> bool:
         """Whether ``close`` was called. If the thread ends without ``close``, its end is an error."""
         return self._closing.is_set()
 
@@ -296,13 +311,13 @@ class RepeatingThread:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread. Wait for a call in progress for ``ENDS`` seconds at most.
+        """End the thread. Wait for a call in progress for ``CLOSE_TIMEOUT_S`` seconds at most.
 
         A call that hangs remains on the daemon thread.
         """
         self._closing.set()
         if self._thread.is_alive():
-            self._thread.join(ENDS)
+            self._thread.join(CLOSE_TIMEOUT_S)
 
     def _repeat(self) -> None:
         wait = self._first

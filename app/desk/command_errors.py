@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from core.message import CodedError, Message, error_code
+from core.message import CodedError, Message, get_error_code
 
 EXIT_OK, EXIT_ERRORS, EXIT_USAGE = 0, 1, 2
 EXIT_INTERRUPTED = 130  # Status that a shell reports for Ctrl+C.
@@ -20,22 +20,22 @@ class CommandError(CodedError):
 
 
 @contextmanager
-def as_command_error(*kinds: type[Exception]) -> Iterator[None]:
+def convert_to_command_error(*kinds: type[Exception]) -> Iterator[None]:
     """Convert exceptions of these types to CommandError with the same text."""
     try:
         yield
     except kinds as error:
-        raise CommandError(str(error), error_code(error)) from error
+        raise CommandError(str(error), get_error_code(error)) from error
 
 
-def cannot_write(file: object, error: OSError) -> CommandError:
+def make_write_error(file: object, error: OSError) -> CommandError:
     """Return the error for a file that the operating system does not let TurnDesk write."""
     return CommandError(
         Message("{file} cannot be written: {cause}", file=file, cause=error.strerror), "cannot-write"
     )
 
 
-def report_refusal(error: CodedError) -> int:
+def report_command_error(error: CodedError) -> int:
     """Print why the command cannot continue, and return its exit status."""
     sys.stderr.write(f"turndesk: {error}\n")
     return EXIT_USAGE

@@ -16,10 +16,10 @@ from app.desk.background_work import RepeatingThread
 from core.message import Message
 from core.store.store_errors import StoreError
 
-ENDING = ".turndesk.db"
-DAILY = "daily-"
+BACKUP_SUFFIX = ".turndesk.db"
+DAILY_PREFIX = "daily-"
 _DAY = timedelta(hours=24)
-_PATIENCE = timedelta(hours=12)
+_MAX_WAIT = timedelta(hours=12)
 _FIRST_LOOK, _LOOK = 60.0, 600.0  # s
 
 
@@ -27,26 +27,27 @@ _FIRST_LOOK, _LOOK = 60.0, 600.0  # s
 class DailyBackup:
     """Makes a backup each day, verifies it and deletes old backups.
 
-    ``copy`` writes a backup. ``check`` returns the defects of a backup file. ``still`` returns whether the
-    machine is at rest. ``apart`` is the folder of the backed-up data if the machine file specifies another
-    folder for backups. ``hint`` is called if that folder is on the same disk.
+    ``write_backup`` writes a backup. ``verify_backup`` returns the defects of a backup file. ``is_idle``
+    returns whether the machine is at rest. ``data_folder`` is the folder of the backed-up data if the
+    machine file specifies another folder for backups. ``report_same_disk`` is called if that folder is on
+    the same disk.
     """
 
     folder: Path
-    keep: int
-    copy: Callable[[Path], None]
-    check: Callable[[Path], tuple[str, ...]]
-    still: Callable[[], bool]
-    tell: Callable[[str], None]
-    now: Callable[[], datetime] = datetime.now
-    apart: Path | None = None
-    hint: Callable[[], None] = lambda: None
+    max_backups: int
+    write_backup: Callable[[Path], None]
+    verify_backup: Callable[[Path], tuple[str, ...]]
+    is_idle: Callable[[], bool]
+    report: Callable[[str], None]
+    read_clock: Callable[[], datetime] = datetime.now
+    data_folder: Path | None = None
+    report_same_disk: Callable[[], None] = lambda: None
     _hinted: bool = False
     _told: tuple[str, date] | None = None
     _thread: RepeatingThread = field(init=False)
 
     def __post_init__(self) -> None:
-        self._thread = RepeatingThread("daily-backup", self.look, _LOOK, _FIRST_LOOK)
+        self._thread = RepeatingThread("daily-backup", self.make_if_due, _LOOK, _FIRST_LOOK)
 
     def start(self) -> None:
         """Start the thread that makes the backups. Call this once."""
@@ -56,46 +57,46 @@ class DailyBackup:
         """End the thread after a backup in progress is finished."""
         self._thread.close()
 
-    def look(self) -> Path | None:
+    def make_if_due(self) -> Path | None:
         """Make the daily backup if it is due, and return its path. Report an error once a day."""
         try:
-            age = self._age()
-            if age is not None and (age < _DAY or (age < _DAY + _PATIENCE and not self.still())):
+            age = self._find_age()
+            if age is not None and (age < _DAY or (age < _DAY + _MAX_WAIT and not self.is_idle())):
                 return None
-            made = self._made()
+            made = self._make_backup()
         except (OSError, StoreError) as error:
             self._trouble(getattr(error, "strerror", None) or str(error))
             return None
         self._told = None
         return made
 
-    def _age(self) -> timedelta | None:
+    def _find_age(self) -> timedelta | None:
         """Return the age of the newest backup.
 
         None if no backup exists, or if the newest one has a date in the future because the clock was set
         back.
         """
-        newest = max(self._there(), key=partial(_made_at, self._name()), default=None)
+        newest = max(self._there(), key=partial(_sort_key, self._name()), default=None)
         if newest is None:
             return None
-        age = self.now() - datetime.fromtimestamp(newest.stat().st_mtime)
+        age = self.read_clock() - datetime.fromtimestamp(newest.stat().st_mtime)
         return age if age >= timedelta() else None
 
     def _there(self) -> list[Path]:
-        return list(self.folder.glob(f"{DAILY}*{ENDING}"))
+        return list(self.folder.glob(f"{DAILY_PREFIX}*{BACKUP_SUFFIX}"))
 
     def _name(self) -> str:
-        return f"{DAILY}{self.now():%Y-%m-%d-%H%M%S}{ENDING}"
+        return f"{DAILY_PREFIX}{self.read_clock():%Y-%m-%d-%H%M%S}{BACKUP_SUFFIX}"
 
-    def _made(self) -> Path:
+    def _make_backup(self) -> Path:
         """Write and verify a backup, delete the oldest backups, and return the new path.
 
         A backup that fails the check is deleted, and the older ones remain. Raises OSError or StoreError.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         target = self.folder / self._name()
-        self.copy(target)
-        wrong = self.check(target)
+        self.write_backup(target)
+        wrong = self.verify_backup(target)
         if wrong:
             target.unlink(missing_ok=True)
             raise StoreError(
@@ -106,28 +107,28 @@ class DailyBackup:
                 ),
                 "damaged-backup",
             )
-        for old in sorted(self._there(), key=partial(_made_at, target.name))[: -self.keep]:
+        for old in sorted(self._there(), key=partial(_sort_key, target.name))[: -self.max_backups]:
             old.unlink(missing_ok=True)
-        self._look_at_the_disk()
+        self._check_disk()
         return target
 
-    def _look_at_the_disk(self) -> None:
+    def _check_disk(self) -> None:
         """Report once if the backup folder is on the same disk as the data.
 
         This happens if the backup disk is not mounted.
         """
-        if self.apart is not None and not self._hinted:
-            self._hinted = self.folder.stat().st_dev == self.apart.stat().st_dev
+        if self.data_folder is not None and not self._hinted:
+            self._hinted = self.folder.stat().st_dev == self.data_folder.stat().st_dev
             if self._hinted:
-                self.hint()
+                self.report_same_disk()
 
     def _trouble(self, why: str) -> None:
-        now = why, self.now().date()
+        now = why, self.read_clock().date()
         if now != self._told:
-            self.tell(Message("{folder}: {why}", folder=self.folder, why=why))
+            self.report(Message("{folder}: {why}", folder=self.folder, why=why))
         self._told = now
 
 
-def _made_at(now: str, path: Path) -> tuple[bool, str]:
+def _sort_key(now: str, path: Path) -> tuple[bool, str]:
     """Return the sort key for the age of a backup. ``now`` is the name of a backup made now."""
     return path.name <= now, path.name

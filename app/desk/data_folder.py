@@ -7,9 +7,9 @@ from pathlib import Path
 
 from core.message import CodedError, Message
 
-HOME = "TURNDESK_HOME"
-BACKUPS = "backups"  # Subfolder for backups.
-RECORDS = "records"  # Subfolder for recordings of the scope.
+HOME_VARIABLE = "TURNDESK_HOME"
+BACKUPS_FOLDER = "backups"  # Subfolder for backups.
+RECORDS_FOLDER = "records"  # Subfolder for recordings of the scope.
 
 
 class DataFolderError(CodedError):
@@ -21,10 +21,10 @@ def check_data_folder() -> None:
 
     Raises DataFolderError.
     """
-    named = os.environ.get(HOME, "")
+    named = os.environ.get(HOME_VARIABLE, "")
     if not named:
         return
-    folder = data_folder()
+    folder = find_data_folder()
     there = next((each for each in (folder, *folder.parents) if each.exists()), folder)
     if there.exists() and not there.is_dir():
         template = (
@@ -36,13 +36,13 @@ def check_data_folder() -> None:
         raise DataFolderError(Message(template, folder=folder, present=there), "not-a-folder")
 
 
-def data_folder() -> Path:
+def find_data_folder() -> Path:
     """Return the folder of the store, logs and settings.
 
     This is ``TURNDESK_HOME`` if it is set, else the platform's data folder. Raises DataFolderError for a user
     without a home folder, as in a container.
     """
-    named = os.environ.get(HOME, "")
+    named = os.environ.get(HOME_VARIABLE, "")
     try:
         if named:
             return Path(named).expanduser().absolute()

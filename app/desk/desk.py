@@ -11,18 +11,18 @@ from dataclasses import replace
 from functools import partial
 from typing import Final
 
-from app.desk.access import Access
-from app.desk.late_presses import LatePresses, Starting
-from app.desk.pages.desk_parts import Closing
+from app.desk.access import UserAccess
+from app.desk.late_presses import LatePresses, StartingAction
+from app.desk.pages.attached_parts import ClosingSequence
 from app.desk.pages.page_registry import PageRegistry
 from app.desk.persistence import Persistence
 from app.desk.posted_values import PostedValues
-from app.desk.programs.program_choice import LAST_PROGRAM, ProgramChoice
+from app.desk.programs.program_choice import LAST_PROGRAM_SETTING, ProgramChoice
 from app.desk.programs.program_folder import ProgramFolders
-from app.desk.programs.program_loading import Loaded, Phase, ProgramLoader
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase, ProgramLoader
 from app.desk.programs.program_renewal import ProgramRenewal
-from app.desk.programs.start_watch import StartWatch
-from app.desk.screen_settings import SettingsBook
+from app.desk.programs.start_watch import FirstMoveWatch
+from app.desk.screen_settings import SettingsStore
 from app.desk.state.desk_clock import DeskClock
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
@@ -30,18 +30,18 @@ from app.desk.state.program_runs import ProgramRuns
 from app.desk.state.station_keys import StationKeys
 from app.desk.state.storage_state import StorageState
 from app.desk.state.window_state import WindowState
-from app.desk.station_hands import StationHands
+from app.desk.station_controls import StationControls
 from app.desk.status import prompt_line
 from app.desk.status.alarm_log import AlarmLog
-from app.desk.status.machine_file_changes import FileChanges
-from app.desk.status.machine_status import MachineStatus, Tone, status_of
-from app.desk.status.prompt_line import ONE_HAND, ONE_PALM, YES, PromptAnswers
-from app.desk.status.readouts import Readout
-from app.desk.stop_keys.stop_records import BY_ESC, BY_SCREEN
+from app.desk.status.machine_file_changes import MachineFileChanges
+from app.desk.status.machine_status import MachineStatus, Tone, make_status
+from app.desk.status.prompt_line import ONE_HAND_HINT, ONE_PALM_PRESSED, YES_KEY, PromptAnswers
+from app.desk.status.readouts import ReadoutKind
+from app.desk.stop_keys.stop_records import SOURCE_ESC, SOURCE_SCREEN
 from app.desk.translation import tr
-from app.offsets.offset_book import NONE_KEPT, OffsetBook
-from core.access.access_table import Act
-from core.closing import ClosingStep
+from app.offsets.offset_book import OFFSETS_NOT_STORED, OffsetBook
+from core.access.access_table import ProtectedChange
+from core.closing_steps import ClosingStep
 from core.executor.commands import (
     Command,
     ConfirmStart,
@@ -50,12 +50,12 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.snapshot import LINES, Event, Snapshot, Starts, State
+from core.executor.snapshot import MDI_ACTIONS, LogEvent, MachineState, Snapshot, StartAction
 from core.message import Message
 from core.store.store_errors import StoreError
 
-SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
-SILENT = "CONTROL SILENT"
+RUN_SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
+CONTROL_SILENT_TITLE = "CONTROL SILENT"
 _NO_MACHINE = DeskMachine()
 
 
@@ -63,352 +63,377 @@ class Desk:
     """The model of the Automatic page, and the objects that all pages share.
 
     ``persistence`` stores settings, levels, counts and runs. Without it, they are lost when TurnDesk closes.
-    ``first_move`` checks the first move of a start, if the machine supports this check.
+    ``start_watch`` checks the first move of a start, if the machine supports this check.
     """
 
     def __init__(
         self,
         control: DeskControl,
-        session: ProgramLoader,
+        program_loader: ProgramLoader,
         folders: ProgramFolders,
         *,
         machine: DeskMachine = _NO_MACHINE,
         persistence: Persistence | None = None,
-        book: OffsetBook | None = None,
-        changes: FileChanges | None = None,
-        first_move: StartWatch | None = None,
+        offset_book: OffsetBook | None = None,
+        file_changes: MachineFileChanges | None = None,
+        start_watch: FirstMoveWatch | None = None,
         clock: DeskClock | None = None,
     ) -> None:
         persistence = persistence or Persistence()
-        self.session: Final = session
+        self.program_loader: Final = program_loader
         self.machine: Final = machine
-        self.first_move: Final = first_move
+        self.start_watch: Final = start_watch
         self.clock: Final = clock or DeskClock()
         # Changes of the machine file that the operator must accept.
-        self.changes: Final = changes or FileChanges()
-        self.book: Final = book or OffsetBook(locked=NONE_KEPT)
-        self.window: Final = WindowState(LatePresses(self.snapshot, self.clock.seconds))
-        self.control: Final = replace(control, post=self.window.late.guard(control.post))
-        self.storage: Final = StorageState()
-        self.pages: Final = PageRegistry()
-        if first_move is not None:
-            self.pages.attach(first_move)
-        self.closing: Final = Closing()
-        self.settings: Final = SettingsBook(persistence)
-        self.runs: Final = ProgramRuns(persistence)
-        self.log: Final = AlarmLog(self.clock.time_of_day)
-        self.answers: Final = PromptAnswers(self.snapshot, self.storage.problem, self._now)
-        self.access: Final = Access(persistence, self.say, self.clock.seconds)
-        self.book.access = self.access
-        self.rebuilding: Final = ProgramRenewal(session, self.warn)
-        self.programs: Final = ProgramChoice(folders, session, self.snapshot, self.answers, self._save_path)
-        self.hands: Final = StationHands(
-            control.panel,
-            self.clock.seconds,
-            self.say,
-            self.clear,
-            self.answers.starting,
-            self.barred,
-            self.window.press_age,
-            one_palm=ONE_HAND if machine.one_hand else ONE_PALM,
+        self.changes: Final = file_changes or MachineFileChanges()
+        self.offset_book: Final = offset_book or OffsetBook(lock_reason=OFFSETS_NOT_STORED)
+        self.window_state: Final = WindowState(LatePresses(self.read_snapshot, self.clock.read_seconds))
+        self.desk_control: Final = replace(
+            control, post=self.window_state.late_presses.guard_post(control.post)
         )
-        self.hands.refuse_late(self.window.late)
-        self.station: Final = StationKeys(
-            self.control,
-            self.hands,
-            self.answers,
+        self.storage_state: Final = StorageState()
+        self.page_registry: Final = PageRegistry()
+        if start_watch is not None:
+            self.page_registry.attach_model(start_watch)
+        self.closing_sequence: Final = ClosingSequence()
+        self.settings_store: Final = SettingsStore(persistence)
+        self.program_runs: Final = ProgramRuns(persistence)
+        self.alarm_log: Final = AlarmLog(self.clock.format_local_time)
+        self.prompt_answers: Final = PromptAnswers(
+            self.read_snapshot, self.storage_state.read_problem, self._now
+        )
+        self.user_access: Final = UserAccess(persistence, self.say, self.clock.read_seconds)
+        self.offset_book.access = self.user_access
+        self.renewal: Final = ProgramRenewal(program_loader, self.show_warning)
+        self.program_choice: Final = ProgramChoice(
+            folders, program_loader, self.read_snapshot, self.prompt_answers, self._save_path
+        )
+        self.station_controls: Final = StationControls(
+            control.station_panel,
+            self.clock.read_seconds,
+            self.say,
+            self.clear_prompt_line,
+            self.prompt_answers.note_start_attempt,
             self.barred,
-            lambda press: self.feed_hold(press=press),
-            machine.two_hand,
-            PostedValues(self.clock.seconds),
+            self.window_state.find_press_age,
+            one_palm_message=ONE_HAND_HINT if machine.allows_one_hand else ONE_PALM_PRESSED,
+        )
+        self.station_controls.use_late_presses(self.window_state.late_presses)
+        self.station_keys: Final = StationKeys(
+            self.desk_control,
+            self.station_controls,
+            self.prompt_answers,
+            self.barred,
+            lambda press: self.start_feed_hold(press=press),
+            machine.is_two_hand,
+            PostedValues(self.clock.read_seconds),
         )
 
     def _now(self) -> float:
-        return self.hands.clock()
+        return self.station_controls.clock()
 
     def _save_path(self, path: str) -> None:
-        self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, path))
+        self.try_save(partial(self.settings_store.persistence.save_setting, LAST_PROGRAM_SETTING, path))
 
     def post(self, command: Command) -> None:
         """Send a command to the control. Later snapshots show its effect."""
-        self.control.post(command)
+        self.desk_control.post(command)
 
-    def snapshot(self) -> Snapshot:
+    def read_snapshot(self) -> Snapshot:
         """Return the newest snapshot of the control."""
-        return self.control.snapshot()
+        return self.desk_control.read_snapshot()
 
     def say(self, text: str) -> None:
         """Show a message for 4 s or until the next key."""
-        self.answers.say(text)
+        self.prompt_answers.say(text)
 
-    def warn(self, text: str) -> None:
+    def show_warning(self, text: str) -> None:
         """Show a message for 4 s, even if a key is pressed, for example because input was dropped."""
-        self.answers.say(text, lasting=True)
+        self.prompt_answers.say(text, is_lasting=True)
 
-    def done(self, text: str) -> None:
+    def show_success(self, text: str) -> None:
         """Show a success message, which is drawn differently from a refusal."""
-        self.answers.say(text, done=True)
+        self.prompt_answers.say(text, is_success=True)
 
-    def refuse(self, why: str) -> None:
+    def show_refusal(self, reason: str) -> None:
         """Show that an action was rejected, with the reason."""
-        self.say(Message("REJECTED: {why}", why=why))
+        self.say(Message("REJECTED: {why}", why=reason))
 
-    def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
+    def ask_operator(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
         """Ask the operator to confirm an action that loses data or moves the machine.
 
         The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` means yes, and differs from
         the key that caused the question. On a touch screen, the prompt line has a button for the answer.
         """
-        self.answers.ask(question, yes, key)
+        self.prompt_answers.ask_question(question, on_confirmed, key)
 
     @property
-    def asked(self) -> str:
+    def confirm_key(self) -> str:
         """The key that means yes to the open question. Empty if no question is open."""
-        return self.answers.key if self.answers.asked is not None else ""
+        return self.prompt_answers.key if self.prompt_answers.on_confirmed is not None else ""
 
-    def clear(self) -> None:
+    def clear_prompt_line(self) -> None:
         """Remove the message or the question from the prompt line."""
-        self.answers.take_back()
+        self.prompt_answers.withdraw()
 
     @property
-    def notice(self) -> str:
+    def prompt_notice(self) -> str:
         """The message for the last key, or else the open question. Empty if there is neither."""
-        return self.answers.notice
+        return self.prompt_answers.notice
 
     @property
-    def start_words(self) -> str:
+    def start_instruction(self) -> str:
         """The instruction for starting a cycle at this machine."""
-        if self.control.panel is None:
-            return "PRESS BOTH PALM BUTTONS" if self.machine.two_hand else "PRESS CYCLE START"
-        if self.machine.two_hand and self.machine.one_hand and self.settings.now.latched:
+        if self.desk_control.station_panel is None:
+            return "PRESS BOTH PALM BUTTONS" if self.machine.is_two_hand else "PRESS CYCLE START"
+        if self.machine.is_two_hand and self.machine.allows_one_hand and self.settings_store.current.latched:
             return "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
-        return "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.machine.two_hand else "PRESS CYCLE START (F12)"
+        return (
+            "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.machine.is_two_hand else "PRESS CYCLE START (F12)"
+        )
 
     @property
-    def release_words(self) -> str:
+    def release_instruction(self) -> str:
         """The instruction for releasing the E-stop at this machine."""
-        if self.window.has_field():
+        if self.window_state.has_text_field():
             by_hand = "F1, THEN U: RELEASE E-STOP"
-            return by_hand if self.control.panel is not None else "RELEASE THE E-STOP (F1: LEAVE THE PAGE)"
-        return "RELEASE THE E-STOP" if self.control.panel is None else "RELEASE THE E-STOP (U)"
+            return (
+                by_hand
+                if self.desk_control.station_panel is not None
+                else "RELEASE THE E-STOP (F1: LEAVE THE PAGE)"
+            )
+        return "RELEASE THE E-STOP" if self.desk_control.station_panel is None else "RELEASE THE E-STOP (U)"
 
     @property
-    def readout(self) -> Readout:
+    def readout_kind(self) -> ReadoutKind:
         """The kind of value that the large position display shows."""
-        return Readout(self.settings.now.readout)
+        return ReadoutKind(self.settings_store.current.readout)
 
-    def refused(self, act: Act) -> bool:
+    def is_refused(self, act: ProtectedChange) -> bool:
         """Return whether the access level is too low for this act, and show the reason if it is."""
-        why = self.access.refusal(act)
+        why = self.user_access.find_refusal(act)
         if why:
             self.say(why)
         return bool(why)
 
-    def choose_setting(self, name: str, value: object) -> None:
+    def apply_setting(self, name: str, value: object) -> None:
         """Apply a screen setting.
 
         If it cannot be saved, a message is shown and the setting lasts until TurnDesk closes.
         """
-        if not self.refused(Act.SCREEN):
-            self.keep(partial(self.settings.choose, name, value))
+        if not self.is_refused(ProtectedChange.SCREEN):
+            self.try_save(partial(self.settings_store.choose, name, value))
 
-    def keep(self, change: Callable[[], None]) -> None:
+    def try_save(self, save: Callable[[], None]) -> None:
         """Call a function that saves data, and show a message if saving fails."""
         try:
-            change()
+            save()
         except StoreError as error:
             self.say(Message("NOT SAVED: {error}", error=error))
 
-    def next_readout(self) -> None:
+    def select_next_readout(self) -> None:
         """Switch the large position display to position, distance to go or distance from home in turn."""
-        self.choose_setting("readout", self.readout.following.value)
+        self.apply_setting("readout", self.readout_kind.next_kind.value)
 
     def close(self) -> None:
         """Stop the machine and close its drivers, then end the workers and close all attached models."""
-        own = [ClosingStep("loading", self.session.close), ClosingStep("levels", self.access.close)]
-        self.closing.close([*own, *self.pages.closing_steps()])
+        own = [
+            ClosingStep("loading", self.program_loader.close),
+            ClosingStep("levels", self.user_access.close),
+        ]
+        self.closing_sequence.close([*own, *self.page_registry.make_closing_steps()])
 
-    def hear(self, event: Event) -> None:
+    def hear(self, event: LogEvent) -> None:
         """Accept an event of the executor. This method may be called from the executor's thread."""
-        self.answers.hear(event)
-        self.log.hear(event)
+        self.prompt_answers.hear(event)
+        self.alarm_log.hear(event)
 
     def barred(self) -> str:
         """Return why the start buttons have no effect now. Empty if they can start a cycle."""
-        if self.window.is_stop_held() or not self.window.starts_here:
-            return prompt_line.STOP_HELD if self.window.is_stop_held() else prompt_line.NOT_HERE
-        if self.storage.restoring:
-            return prompt_line.RESTORING
-        if (page := self.pages.open_start) is not None:
+        if self.window_state.is_stop_held() or not self.window_state.can_start_here:
+            return (
+                prompt_line.STOP_HELD if self.window_state.is_stop_held() else prompt_line.START_ON_AUTOMATIC
+            )
+        if self.storage_state.is_restoring:
+            return prompt_line.RESTORE_IN_PROGRESS
+        if (page := self.page_registry.active_start_handler) is not None:
             return page.barred()
-        loaded = self.session.now
-        if self.snapshot().state is not State.IDLE:
+        loaded = self.program_loader.loaded
+        if self.read_snapshot().state is not MachineState.IDLE:
             return ""
-        if loaded.phase is Phase.UNREADABLE:
-            return prompt_line.refusal(loaded)  # The executor still has the previous program.
-        stale = self.rebuilding.wanted or self.book.busy or loaded.phase is Phase.READING
-        return prompt_line.STALE if stale else ""
+        if loaded.phase is LoadingPhase.UNREADABLE:
+            return prompt_line.make_refusal(loaded)  # The executor still has the previous program.
+        stale = (
+            self.renewal.is_requested or self.offset_book.is_saving or loaded.phase is LoadingPhase.READING
+        )
+        return prompt_line.RELOAD_IN_PROGRESS if stale else ""
 
     # --- every frame ---------------------------------------------------------------------------------
 
-    def look(self) -> tuple[Snapshot, MachineStatus, Loaded]:
+    def update(self) -> tuple[Snapshot, MachineStatus, LoadedProgram]:
         """Update the models once a frame. Return the snapshot, the machine status and the loaded program."""
-        self.hands.turn_knobs()
-        snapshot = self.snapshot()
-        self.access.look(snapshot)
-        self.answers.look(snapshot)
-        self.rebuilding.look(snapshot, self.book, self.post)
-        loaded = self.session.now
-        if self.first_move is not None:
-            self.first_move.see(snapshot, loaded)
+        self.station_controls.advance_pots()
+        snapshot = self.read_snapshot()
+        self.user_access.update(snapshot)
+        self.prompt_answers.update(snapshot)
+        self.renewal.update(snapshot, self.offset_book, self.post)
+        loaded = self.program_loader.loaded
+        if self.start_watch is not None:
+            self.start_watch.update(snapshot, loaded)
         self._see_runs(snapshot, loaded)
-        machine, settings = self.machine, self.settings
-        view = status_of(
+        machine, settings = self.machine, self.settings_store
+        view = make_status(
             snapshot,
-            self.readout,
-            machine.with_c,
-            settings.units,
+            self.readout_kind,
+            machine.has_c_axis,
+            settings.display_units,
             machine.language,
-            machine.third_axis,
-            machine.table_turns,
+            machine.third_axis_name,
+            machine.is_table_rotary,
         )
-        if self.control.silence.silent(snapshot.t, self.hands.clock()):
-            view = replace(view, state=SILENT, tone=Tone.ALARM)
+        if self.desk_control.silence_watch.check_silence(snapshot.t, self.station_controls.clock()):
+            view = replace(view, state_text=CONTROL_SILENT_TITLE, tone=Tone.ALARM)
         return snapshot, view, loaded
 
-    def _see_runs(self, snapshot: Snapshot, loaded: Loaded) -> None:
-        if snapshot.starts not in LINES:  # An MDI line does not count as a run of the program.
-            self.runs.see(snapshot, loaded, self.post, self.say)
-            self.pages.see_run(snapshot, loaded)
-        self.pages.see_frame(snapshot)
-        if caution := self.runs.new_caution(snapshot, loaded):
+    def _see_runs(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+        if snapshot.starts not in MDI_ACTIONS:  # An MDI line does not count as a run of the program.
+            self.program_runs.record_frame(snapshot, loaded, self.post, self.say)
+            self.page_registry.notify_run_watchers(snapshot, loaded)
+        self.page_registry.notify_frame_watchers(snapshot)
+        if caution := self.program_runs.pop_part_warning(snapshot, loaded):
             self.say(tr(Message("CAUTION: {what}. PAUSE KEY: FEED HOLD", what=caution)))
-        if self.settings.now.first_job:
-            self.keep(partial(self.runs.follow_first_job, snapshot, loaded))
+        if self.settings_store.current.first_job:
+            self.try_save(partial(self.program_runs.update_first_job, snapshot, loaded))
 
-    def first_move_refusal(self, snapshot: Snapshot) -> str:
+    def find_first_move_refusal(self, snapshot: Snapshot) -> str:
         """Return why the first move prevents a start of the program. Empty if the first move is clear."""
-        if self.first_move is None or snapshot.state is not State.IDLE:
+        if self.start_watch is None or snapshot.state is not MachineState.IDLE:
             return ""
-        return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
+        return self.start_watch.start_refusal if snapshot.starts is StartAction.PROGRAM else ""
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def switch(self, name: str) -> None:
+    def toggle_switch(self, name: str) -> None:
         """Toggle ``single_block``, ``optional_stop``, ``cycle_repeat`` or ``no_count``.
 
         Raises ValueError for another name.
         """
-        if name not in SWITCHES:
+        if name not in RUN_SWITCHES:
             raise ValueError(f"there is no switch called {name!r}")
-        self.clear()
-        self.post(SetSwitch(name, self.station.posted.toggled(name, getattr(self.snapshot(), name))))
+        self.clear_prompt_line()
+        self.post(
+            SetSwitch(
+                name, self.station_keys.posted_values.toggle_value(name, getattr(self.read_snapshot(), name))
+            )
+        )
 
-    def may_close(self, close: Callable[[], None]) -> bool:
+    def can_close(self, close: Callable[[], None]) -> bool:
         """Return whether TurnDesk can close without losing unsaved work.
 
         If work would be lost, ask first; Y then calls ``close``.
         """
-        waiting = self.storage.waiting()
+        waiting = self.storage_state.read_unsaved()
         if waiting:
             words = tr("UNSAVED WORK WILL BE LOST: {what}. Y: CLOSE   N: STAY")
-            self.ask(tr(Message(words, what=waiting)), close)
+            self.ask_operator(tr(Message(words, what=waiting)), close)
         return not waiting
 
-    def feed_hold(self, by: str = BY_SCREEN, press: int = 0) -> None:
+    def start_feed_hold(self, source: str = SOURCE_SCREEN, press: int = 0) -> None:
         """Start feed hold in any state of the machine.
 
         ``press`` is the number of the key press, 0 if unknown.
         """
-        self.post(FeedHold(by, press))
-        self.clear()
+        self.post(FeedHold(source, press))
+        self.clear_prompt_line()
 
-    def reset(self) -> None:
+    def reset_control(self) -> None:
         """Acknowledge an alarm, or cancel an interrupted program after the operator confirms.
 
         If the control is silent, start another one where this is possible.
         """
-        state = self.snapshot().state
-        if self.control.silence.is_silent and self.control.restart is not None:
-            self.clear()
-            self.control.restart()
-        elif state in prompt_line.MOVING:
+        state = self.read_snapshot().state
+        if self.desk_control.silence_watch.is_silent and self.desk_control.restart is not None:
+            self.clear_prompt_line()
+            self.desk_control.restart()
+        elif state in prompt_line.MOVING_STATES:
             self.say("THE MACHINE IS MOVING. FIRST PRESS PAUSE (FEED HOLD)")
-        elif state in prompt_line.INTERRUPTED:
-            self.ask(prompt_line.GIVE_UP, self._give_up)
+        elif state in prompt_line.INTERRUPTED_STATES:
+            self.ask_operator(prompt_line.CONFIRM_CANCEL, self._give_up)
         else:
             self._give_up()
 
     def _give_up(self) -> None:
-        self.clear()
+        self.clear_prompt_line()
         self.post(Reset())
 
-    def yes(self) -> None:
+    def confirm_question(self) -> None:
         """Handle the key Y.
 
         Y confirms the open question. Without a question, Y confirms that an interrupted job starts again at
         line 1.
         """
-        snapshot = self.snapshot()
-        found, here = snapshot.interrupted, self.window.starts_here
-        if self.asked:
-            self.answer()
+        snapshot = self.read_snapshot()
+        found, here = snapshot.interrupted, self.window_state.can_start_here
+        if self.confirm_key:
+            self.confirm_if_unchanged()
         elif found is None or not snapshot.interrupted_line:
-            self.clear()
-        elif snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM or not here:
+            self.clear_prompt_line()
+        elif (
+            snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM or not here
+        ):
             self.say(tr("Y: AUTOMATIC PAGE ONLY, DRIVES ON"))
-        elif refusal := self.first_move_refusal(snapshot):
-            self.say(Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal))
+        elif refusal := self.find_first_move_refusal(snapshot):
+            self.say(Message("{no_start}: {refusal}", no_start=prompt_line.WILL_NOT_START, refusal=refusal))
         else:
-            self.clear()
+            self.clear_prompt_line()
             self.post(ConfirmStart(found.at))
 
-    def no(self) -> None:
+    def reject_question(self) -> None:
         """Handle the key N: reject the open question, or cancel the confirmed start at line 1."""
-        self.clear()
-        if self.snapshot().confirmed:
+        self.clear_prompt_line()
+        if self.read_snapshot().confirmed:
             self.post(ConfirmStart(""))
 
-    def enable(self) -> None:
+    def enable_drives(self) -> None:
         """Switch the drives on after an E-stop or after power-up, or show why this is not possible."""
-        state = self.snapshot().state
-        if state is State.DISABLED:
-            self.clear()
+        state = self.read_snapshot().state
+        if state is MachineState.DISABLED:
+            self.clear_prompt_line()
             self.post(EnableDrives())
-        elif state is State.ESTOP:
-            self.say(Message("E-STOP STILL PRESSED. {release_words}", release_words=self.release_words))
-        elif state is State.FAULT:
+        elif state is MachineState.ESTOP:
+            self.say(Message("E-STOP STILL PRESSED. {release_words}", release_words=self.release_instruction))
+        elif state is MachineState.FAULT:
             self.say("ALARM ACTIVE: PRESS R TO ACKNOWLEDGE IT FIRST")
         else:
-            self.done("THE DRIVES ARE ALREADY ON")
+            self.show_success("THE DRIVES ARE ALREADY ON")
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Handle the Esc key; return False if there was nothing to do.
 
         Esc cancels an open question, or a confirmed start at line 1. While the machine moves, Esc starts feed
         hold. A message without a question does not delay the feed hold.
         """
-        shot = self.snapshot()
-        moves = shot.state in prompt_line.MOVING
-        if self.asked or (self.notice and not moves):
-            self.clear()
+        shot = self.read_snapshot()
+        moves = shot.state in prompt_line.MOVING_STATES
+        if self.confirm_key or (self.prompt_notice and not moves):
+            self.clear_prompt_line()
         elif shot.confirmed:
             self.post(ConfirmStart(""))
         elif moves:
-            self.clear()
-            self.feed_hold(BY_ESC)
+            self.clear_prompt_line()
+            self.start_feed_hold(SOURCE_ESC)
         else:
             return False
         return True
 
-    def answer(self) -> None:
+    def confirm_if_unchanged(self) -> None:
         """Confirm the open question if the machine is still in the state in which the question was asked."""
-        if self.window.late.refuses(Starting.YES):
+        if self.window_state.late_presses.refuse_late_press(StartingAction.YES):
             return
-        self.answers.expire(self.snapshot())
-        self.answers.yes(self.hands.at())
+        self.prompt_answers.remove_expired(self.read_snapshot())
+        self.prompt_answers.confirm(self.station_controls.at())
 
     @property
-    def read(self) -> bool:
+    def was_question_read(self) -> bool:
         """Whether the open question was shown long enough before the present key press to have been read."""
-        return self.answers.read(self.hands.at())
+        return self.prompt_answers.was_read(self.station_controls.at())

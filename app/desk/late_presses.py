@@ -15,12 +15,12 @@ from enum import Enum, auto
 from app.desk.translation import tr
 from core.executor import commands
 from core.executor.commands import Command
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 
-TOLD = 4.0  # Seconds after the last dropped press. A press dropped later gets a new message.
+REPORT_INTERVAL_S = 4.0  # Seconds after the last dropped press. A press dropped later gets a new message.
 
 
-class Starting(Enum):
+class StartingAction(Enum):
     """An action that a press may start, for example motion, drives or an output."""
 
     CYCLE = auto()
@@ -35,108 +35,108 @@ class Starting(Enum):
     INPUT = auto()
     SPINDLE = auto()
     OVERRIDE = auto()
-    RELEASE = auto()
-    LINE_1 = auto()
+    RELEASE_ESTOP = auto()
+    START_AT_LINE_1 = auto()
     YES = auto()
-    FOLLOWING = auto()  # Any key after a dropped answer.
+    FOLLOWING_KEY = auto()  # Any key after a dropped answer.
     TOUCH = auto()  # A touch on a screen that has changed since.
 
 
-def name_of(starting: Starting) -> str:
+def name_starting_action(action: StartingAction) -> str:
     """Return the operator's name of a starting action, translated."""
     names = {
-        Starting.CYCLE: tr("CYCLE START"),
-        Starting.DRIVES: tr("DRIVES ON"),
-        Starting.ACKNOWLEDGE: tr("RESET"),
-        Starting.JOG: tr("JOG"),
-        Starting.HANDWHEEL: tr("HANDWHEEL"),
-        Starting.TOUCH_OFF: tr("TOUCH-OFF"),
-        Starting.DRIVE_TEST: tr("DRIVE TEST"),
-        Starting.HOME: tr("HOME"),
-        Starting.OUTPUT: tr("OUTPUT"),
-        Starting.INPUT: tr("SIMULATED INPUT"),
-        Starting.SPINDLE: tr("SPINDLE"),
-        Starting.OVERRIDE: tr("FEED RATE"),
-        Starting.RELEASE: tr("E-STOP RELEASE"),
-        Starting.LINE_1: tr("START AT LINE 1"),
-        Starting.YES: tr("YES"),
-        Starting.FOLLOWING: tr("ALL KEYS AFTER YES"),
-        Starting.TOUCH: tr("TOUCH"),
+        StartingAction.CYCLE: tr("CYCLE START"),
+        StartingAction.DRIVES: tr("DRIVES ON"),
+        StartingAction.ACKNOWLEDGE: tr("RESET"),
+        StartingAction.JOG: tr("JOG"),
+        StartingAction.HANDWHEEL: tr("HANDWHEEL"),
+        StartingAction.TOUCH_OFF: tr("TOUCH-OFF"),
+        StartingAction.DRIVE_TEST: tr("DRIVE TEST"),
+        StartingAction.HOME: tr("HOME"),
+        StartingAction.OUTPUT: tr("OUTPUT"),
+        StartingAction.INPUT: tr("SIMULATED INPUT"),
+        StartingAction.SPINDLE: tr("SPINDLE"),
+        StartingAction.OVERRIDE: tr("FEED RATE"),
+        StartingAction.RELEASE_ESTOP: tr("E-STOP RELEASE"),
+        StartingAction.START_AT_LINE_1: tr("START AT LINE 1"),
+        StartingAction.YES: tr("YES"),
+        StartingAction.FOLLOWING_KEY: tr("ALL KEYS AFTER YES"),
+        StartingAction.TOUCH: tr("TOUCH"),
     }
-    return names[starting]
+    return names[action]
 
 
-Rule = Callable[[Command, Snapshot], bool]
+StartRule = Callable[[Command, Snapshot], bool]
 
 
 def _always(_command: Command, _now: Snapshot) -> bool:
     return True
 
 
-def _acknowledges(_command: Command, now: Snapshot) -> bool:
+def _is_acknowledge(_command: Command, now: Snapshot) -> bool:
     """Return whether a reset acknowledges an alarm, which may be new. Any other reset stops the program."""
-    return now.state is State.FAULT
+    return now.state is MachineState.FAULT
 
 
 def _begins_at_line_1(command: Command, _now: Snapshot) -> bool:
     return isinstance(command, commands.ConfirmStart) and bool(command.at)
 
 
-def _switches(command: Command, _now: Snapshot) -> bool:
+def _is_drive_switch(command: Command, _now: Snapshot) -> bool:
     """Return whether a forced output can start something. Only switching the coolant off cannot."""
     return isinstance(command, commands.ForceOutput) and (command.on or command.name != "coolant")
 
 
-def _raises(command: Command, now: Snapshot) -> bool:
+def _is_override_increase(command: Command, now: Snapshot) -> bool:
     """Return whether a command raises the feed override.
 
     An operator who sees no effect on a stalled screen tends to press the key too often.
     """
-    return isinstance(command, commands.FeedOverride) and command.fraction > now.feed_override
+    return isinstance(command, commands.SetFeedOverride) and command.fraction > now.feed_override
 
 
-STARTS: Mapping[type[Command], tuple[Starting, Rule]] = {
-    commands.CycleStart: (Starting.CYCLE, _always),
-    commands.EnableDrives: (Starting.DRIVES, _always),
-    commands.Reset: (Starting.ACKNOWLEDGE, _acknowledges),
-    commands.Jog: (Starting.JOG, _always),
-    commands.JogStep: (Starting.JOG, _always),
-    commands.Wheel: (Starting.HANDWHEEL, _always),
-    commands.Touch: (Starting.TOUCH_OFF, _always),
-    commands.DriveTest: (Starting.DRIVE_TEST, _always),
-    commands.Home: (Starting.HOME, _always),
-    commands.ForceOutput: (Starting.OUTPUT, _switches),
-    commands.FeedOverride: (Starting.OVERRIDE, _raises),
-    commands.ConfirmStart: (Starting.LINE_1, _begins_at_line_1),
+STARTING_COMMANDS: Mapping[type[Command], tuple[StartingAction, StartRule]] = {
+    commands.CycleStart: (StartingAction.CYCLE, _always),
+    commands.EnableDrives: (StartingAction.DRIVES, _always),
+    commands.Reset: (StartingAction.ACKNOWLEDGE, _is_acknowledge),
+    commands.Jog: (StartingAction.JOG, _always),
+    commands.JogByStep: (StartingAction.JOG, _always),
+    commands.SelectHandwheel: (StartingAction.HANDWHEEL, _always),
+    commands.TouchOffTool: (StartingAction.TOUCH_OFF, _always),
+    commands.RunDriveTest: (StartingAction.DRIVE_TEST, _always),
+    commands.HomeAxes: (StartingAction.HOME, _always),
+    commands.ForceOutput: (StartingAction.OUTPUT, _is_drive_switch),
+    commands.SetFeedOverride: (StartingAction.OVERRIDE, _is_override_increase),
+    commands.ConfirmStart: (StartingAction.START_AT_LINE_1, _begins_at_line_1),
 }
 """Commands that start something, and when."""
 
-HARMLESS: frozenset[type[Command]] = frozenset(
+HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
     {
         commands.LoadJob,
-        commands.GiveProof,
-        commands.Renew,
-        commands.LeftInterrupted,
+        commands.SupplyProof,
+        commands.ChangeOffsets,
+        commands.ReportInterruptedJob,
         commands.FeedHold,
         commands.SetSwitch,
-        commands.JogStop,
-        commands.DriveTestOn,
-        commands.WheelOff,
-        commands.SpindleLimit,
+        commands.StopJog,
+        commands.RenewDriveTest,
+        commands.DeselectHandwheel,
+        commands.SetSpindleLimit,
         commands.UseOffsets,
-        commands.SpindleStop,
-        commands.PartsMade,
-        commands.GiveClearance,
-        commands.BarNextPart,
-        commands.Prepare,
+        commands.StopSpindle,
+        commands.SetPartCount,
+        commands.ReplaceClearances,
+        commands.BlockNextPart,
+        commands.PrepareStart,
     }
 )
 """All other commands. They start nothing without one of the commands that start."""
 
 
-def starts(command: Command, now: Snapshot) -> Starting | None:
+def find_starting_action(command: Command, now: Snapshot) -> StartingAction | None:
     """Return the action that a command starts, or None if the command starts nothing."""
-    found = STARTS.get(type(command))
+    found = STARTING_COMMANDS.get(type(command))
     return found[0] if found is not None and found[1](command, now) else None
 
 
@@ -144,54 +144,54 @@ def starts(command: Command, now: Snapshot) -> Starting | None:
 class LatePresses:
     """Drops actions that a late press would start, and collects their names for one message.
 
-    ``clock`` returns monotonic time in seconds. ``report`` gets the names of all dropped actions.
-    ``on_answer`` is called when the answer to a question was dropped.
+    ``clock`` returns monotonic time in seconds. ``report_names`` gets the names of all dropped actions.
+    ``on_answer_dropped`` is called when the answer to a question was dropped.
     """
 
     snapshot: Callable[[], Snapshot]
     clock: Callable[[], float]
-    report: Callable[[tuple[str, ...]], None] = lambda _names: None
-    on_answer: Callable[[], None] = lambda: None
-    late: bool = False  # The press that is being handled is late.
-    _dropped: list[Starting] = field(default_factory=list)
+    report_names: Callable[[tuple[str, ...]], None] = lambda _names: None
+    on_answer_dropped: Callable[[], None] = lambda: None
+    is_late: bool = False  # The press that is being handled is late.
+    _dropped: list[StartingAction] = field(default_factory=list)
     _last: float = float("-inf")
 
-    def refuses(self, starting: Starting) -> bool:
+    def refuse_late_press(self, action: StartingAction) -> bool:
         """Return whether the present press is too late to start this action. A dropped action is reported."""
-        if self.late:
-            self.report_dropped(starting)
-        return self.late
+        if self.is_late:
+            self.report_dropped(action)
+        return self.is_late
 
-    def report_dropped(self, starting: Starting) -> None:
+    def report_dropped(self, action: StartingAction) -> None:
         """Report a dropped action together with the actions that were dropped shortly before."""
         now = self.clock()
-        if now - self._last > TOLD:
+        if now - self._last > REPORT_INTERVAL_S:
             self._dropped.clear()
         self._last = now
-        if starting not in self._dropped:
-            self._dropped.append(starting)
-        if starting is Starting.YES:
-            self.on_answer()
-        self.report(tuple(name_of(each) for each in self._dropped))
+        if action not in self._dropped:
+            self._dropped.append(action)
+        if action is StartingAction.YES:
+            self.on_answer_dropped()
+        self.report_names(tuple(name_starting_action(each) for each in self._dropped))
 
     @contextmanager
-    def suspended(self) -> Iterator[None]:
+    def suspend_check(self) -> Iterator[None]:
         """Return a context in which actions do not count as caused by the press.
 
         It is used when a key that is held down is renewed, once a frame.
         """
-        late, self.late = self.late, False
+        late, self.is_late = self.is_late, False
         try:
             yield
         finally:
-            self.late = late
+            self.is_late = late
 
-    def guard(self, post: Callable[[Command], None]) -> Callable[[Command], None]:
+    def guard_post(self, post: Callable[[Command], None]) -> Callable[[Command], None]:
         """Return a version of ``post`` that drops the commands a late press must not give."""
 
         def guarded(command: Command) -> None:
-            starting = starts(command, self.snapshot()) if self.late else None
-            if starting is None or not self.refuses(starting):
+            starting = find_starting_action(command, self.snapshot()) if self.is_late else None
+            if starting is None or not self.refuse_late_press(starting):
                 post(command)
 
         return guarded

@@ -10,24 +10,25 @@ ALL_LANGUAGES = LATHES | MILLS
 
 
 @dataclass(frozen=True, slots=True)
-class PageEntry:
+class PageDescription:
     """The description of one page.
 
-    ``view`` and ``model`` are dotted class names, which are imported when the page is first opened. The model
-    must be attached to TurnDesk. A view without a model gets its data from ``Desk``. A page without a key is
-    not in the main menu. ``later`` lists dotted names that are imported after the page has opened.
+    ``view_class`` and ``model_class`` are dotted class names, which are imported when the page is first
+    opened. The model must be attached to TurnDesk. A view without a model gets its data from ``Desk``. A
+    page without a key is not in the main menu. ``deferred_modules`` lists dotted names that are imported
+    after the page has opened.
     """
 
     name: str
-    view: str
-    model: str = ""
+    view_class: str
+    model_class: str = ""
     key: str = ""
-    label: str = ""
+    menu_label: str = ""
     use: str = ""
     languages: frozenset[str] = ALL_LANGUAGES  # Programming languages of the machines that have this page.
-    later: tuple[str, ...] = ()
-    after: str = ""  # Page of an optional feature: the page that precedes it in the main menu.
-    shortcut: str = ""  # Key that opens this page from any page, by its name in app.screen.window.keys.
+    deferred_modules: tuple[str, ...] = ()
+    preceding_page: str = ""  # Page of an optional feature: the page that precedes it in the main menu.
+    shortcut: str = ""  # Key that opens this page from any page, by its name in app.screen.window.key_table.
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,34 +7,34 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from core.store.backup import Verdict
-from core.store.people import People
+from core.store.backup import BackupVerdict
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow
+from core.store.user_records import UserList
 
 if TYPE_CHECKING:
     from core.store.production.run_records import RunRecords
     from core.store.store import Store
 
-NOTHING_KEPT = "no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)"
+NOTHING_SAVED = "no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)"
 
 
 @dataclass(frozen=True, slots=True)
-class NoRunRecords:
+class NullRunRecords:
     """The run records where no store is open. Every record is dropped, and part counts are zero.
 
-    ``trouble`` is why no store is open. It is empty for scripts, which have no store.
+    ``error_text`` is why no store is open. It is empty for scripts, which have no store.
     """
 
-    trouble: str = ""
+    error_text: str = ""
 
     def read_records_by_text(self) -> Mapping[str, RunRow]:
         """Return an empty mapping. Raises StoreError if the store could not be opened."""
-        if self.trouble:
-            raise StoreError(self.trouble)
+        if self.error_text:
+            raise StoreError(self.error_text)
         return {}
 
-    def count_parts(self, _program: str) -> int:
+    def read_part_count(self, _program: str) -> int:
         """Return 0, because no parts are counted."""
         return 0
 
@@ -63,8 +63,8 @@ class Persistence:
 
     This base class is for scripts and for a store that cannot be opened. It stores settings until the program
     ends, and nothing else. Reading may raise StoreError. Writing is posted and never waits. Call ``backup``,
-    ``restore``, ``keep_settings``, ``events`` and ``save_version``, and wait for changes of ``opened``, on a
-    worker thread only.
+    ``restore``, ``save_settings``, ``events`` and ``save_version``, and wait for changes of
+    ``require_store``, on a worker thread only.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
@@ -78,7 +78,7 @@ class Persistence:
         """Store a value that JSON can represent. None removes the setting."""
         self.settings[key] = value
 
-    def keep_settings(self, values: Mapping[str, object]) -> None:
+    def save_settings(self, values: Mapping[str, object]) -> None:
         """Store several settings. Return when they are on the disk.
 
         Call this method on a worker. Raises StoreError.
@@ -86,34 +86,34 @@ class Persistence:
         for key, value in values.items():
             self.save_setting(key, value)
 
-    def note_change(self, text: str, who: str = "") -> None:
+    def log_change(self, text: str, user_name: str = "") -> None:
         """Write a change to the event log, for data without its own history.
 
         ``who`` is the user who requested the change; empty for the signed-in user. Without access levels,
         nothing is written.
         """
 
-    def note_access(self, text: str, who: str) -> None:
+    def log_access(self, text: str, user_name: str) -> None:
         """Write an access event to the event log, for example a sign-in or a wrong PIN."""
 
     @property
-    def runs(self) -> RunRecords | NoRunRecords:
+    def runs(self) -> RunRecords | NullRunRecords:
         """The run records of the store that is open now. A restore opens another store."""
-        return NoRunRecords()
+        return NullRunRecords()
 
-    def opened(self) -> Store:
+    def require_store(self) -> Store:
         """Return the store that is open now. Raises StoreError if no store is open."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
+        raise StoreError(NOTHING_SAVED, "nothing-stored")
 
-    def people(self) -> People:
+    def people(self) -> UserList:
         """Return the users of the machine. Raises StoreError."""
-        return People()
+        return UserList()
 
     def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
         """Return up to ``_limit`` log entries, newest first. Empty ``_kinds`` includes all kinds."""
         return ()
 
-    def renamed(self, old: str, new: str) -> None:
+    def move_program_data(self, old: str, new: str) -> None:
         """Move the versions, part count and run record of a program to its new name."""
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
@@ -121,16 +121,16 @@ class Persistence:
 
         Without a store, this method always raises the error, because the text would be lost.
         """
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
+        raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def backup(self, _target: Path) -> None:
         """Write a backup of the whole store. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
+        raise StoreError(NOTHING_SAVED, "nothing-stored")
 
-    def judge(self, _source: Path) -> Verdict:
+    def check_backup(self, _source: Path) -> BackupVerdict:
         """Check a backup and compare it with the present store. Call on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
+        raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def restore(self, _source: Path) -> Path | None:
         """Replace the store by a backup, and return the path of the replaced store. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT, "nothing-stored")
+        raise StoreError(NOTHING_SAVED, "nothing-stored")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-ARRIVES = 0.3  # Seconds within which the snapshot shows a posted value.
+ARRIVAL_TIMEOUT_S = 0.3  # Seconds within which the snapshot shows a posted value.
 
 
 @dataclass(slots=True)
@@ -18,18 +18,20 @@ class PostedValues:
     clock: Callable[[], float]
     _posted: dict[str, tuple[float, float]] = field(default_factory=dict)
 
-    def toggled(self, name: str, shown: bool) -> bool:
-        """Return the opposite state of a switch, to be posted now. ``shown`` is the state in the snapshot."""
-        return bool(self.changed(name, shown, lambda now: not now))
+    def toggle_value(self, name: str, displayed: bool) -> bool:
+        """Return the opposite state of a switch, to be posted now. ``displayed`` is the state in the
+        snapshot.
+        """
+        return bool(self.change_value(name, displayed, lambda now: not now))
 
-    def changed(self, name: str, shown: float, change: Callable[[float], float]) -> float:
+    def change_value(self, name: str, displayed: float, change: Callable[[float], float]) -> float:
         """Return the value after ``change``, to be posted now.
 
-        The change applies to the value that was posted last, or to ``shown`` if no value was posted in the
-        last 0.3 s.
+        The change applies to the value that was posted last, or to ``displayed`` if no value was posted in
+        the last 0.3 s.
         """
         now = self.clock()
-        value, at = self._posted.get(name, (shown, float("-inf")))
-        value = change(value if now - at < ARRIVES else shown)
+        value, at = self._posted.get(name, (displayed, float("-inf")))
+        value = change(value if now - at < ARRIVAL_TIMEOUT_S else displayed)
         self._posted[name] = value, now
         return value

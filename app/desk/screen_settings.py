@@ -10,31 +10,31 @@ from app.desk.persistence import Persistence
 from core.message import Message
 from core.store.store_errors import StoreError
 
-KEY = "screen"
+SETTINGS_KEY = "screen"
 
 
-class Units(StrEnum):
+class DisplayUnits(StrEnum):
     """The unit of displayed values. The operator always enters values in the unit of the control."""
 
     PROGRAM = "AS THE PROGRAM"
     INCH = "INCH"
     METRIC = "MM"
 
-    def metric(self, control: bool) -> bool:
+    def metric(self, is_control_metric: bool) -> bool:
         """Return whether displayed values are metric.
 
-        ``control`` is whether the control uses metric units now.
+        ``is_control_metric`` is whether the control uses metric units now.
         """
-        return control if self is Units.PROGRAM else self is Units.METRIC
+        return is_control_metric if self is DisplayUnits.PROGRAM else self is DisplayUnits.METRIC
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class ScreenSettings:
     """All screen settings, with default values for a new machine."""
 
     theme: str = "dark"
     language: str = "en"
-    units: str = Units.PROGRAM.value
+    units: str = DisplayUnits.PROGRAM.value
     readout: str = "POSITION"
     dock: bool = True
     full_screen: bool = False
@@ -42,10 +42,10 @@ class Settings:
     latched: bool = False  # The palm buttons may be pressed one after the other on a simulated machine.
 
 
-CHOICES: Mapping[str, tuple[object, ...]] = {
+SETTING_CHOICES: Mapping[str, tuple[object, ...]] = {
     "theme": ("dark", "light"),
     "language": ("en", "es"),
-    "units": tuple(unit.value for unit in Units),
+    "units": tuple(unit.value for unit in DisplayUnits),
     "readout": ("POSITION", "DISTANCE TO GO", "FROM HOME"),
     "dock": (True, False),
     "full_screen": (True, False),
@@ -54,15 +54,15 @@ CHOICES: Mapping[str, tuple[object, ...]] = {
 }
 
 
-_PASSING = frozenset({"readout"})  # Settings that change many times per shift and are not logged.
+_UNLOGGED_SETTINGS = frozenset({"readout"})  # Settings that change many times per shift and are not logged.
 
 
 @dataclass(slots=True)
-class SettingsBook:
+class SettingsStore:
     """The settings in force. A stored value that is not a valid choice is ignored."""
 
     persistence: Persistence = field(default_factory=Persistence)
-    now: Settings = field(init=False)
+    current: ScreenSettings = field(init=False)
 
     def __post_init__(self) -> None:
         self.reload()
@@ -70,34 +70,34 @@ class SettingsBook:
     def reload(self) -> None:
         """Read the stored settings. If the store cannot be read, the defaults apply."""
         try:
-            kept = self.persistence.read_setting(KEY)
+            kept = self.persistence.read_setting(SETTINGS_KEY)
         except StoreError:
             kept = None
         found = kept if isinstance(kept, dict) else {}
-        names = {field.name for field in fields(Settings)}
-        self.now = Settings(**{n: v for n, v in found.items() if n in names and _is_choice(n, v)})
+        names = {field.name for field in fields(ScreenSettings)}
+        self.current = ScreenSettings(**{n: v for n, v in found.items() if n in names and _is_choice(n, v)})
 
     def choose(self, name: str, value: object) -> None:
         """Apply a setting and save it. Raises ValueError for an invalid value, StoreError if saving fails."""
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
-        before, self.now = getattr(self.now, name), replace(self.now, **{name: value})  # type: ignore[arg-type]
-        self.persistence.save_setting(KEY, asdict(self.now))
-        if name not in _PASSING:
-            self.persistence.note_change(
+        before, self.current = getattr(self.current, name), replace(self.current, **{name: value})  # type: ignore[arg-type]
+        self.persistence.save_setting(SETTINGS_KEY, asdict(self.current))
+        if name not in _UNLOGGED_SETTINGS:
+            self.persistence.log_change(
                 Message("screen: {name} {before} → {value}", name=name, before=before, value=value)
             )
 
-    def following(self, name: str) -> object:
+    def find_next_choice(self, name: str) -> object:
         """Return the choice after the present one, in a cycle."""
-        choices = CHOICES[name]
-        return choices[(choices.index(getattr(self.now, name)) + 1) % len(choices)]
+        choices = SETTING_CHOICES[name]
+        return choices[(choices.index(getattr(self.current, name)) + 1) % len(choices)]
 
     @property
-    def units(self) -> Units:
+    def display_units(self) -> DisplayUnits:
         """The unit of displayed values."""
-        return Units(self.now.units)
+        return DisplayUnits(self.current.units)
 
 
 def _is_choice(name: str, value: object) -> bool:
-    return any(value == choice and type(value) is type(choice) for choice in CHOICES.get(name, ()))
+    return any(value == choice and type(value) is type(choice) for choice in SETTING_CHOICES.get(name, ()))

@@ -7,37 +7,39 @@ import sys
 from app.desk.command_errors import CommandError
 from core.message import Message
 
-DASH = "-"
-MOST_BYTES = 64 * 1024 * 1024  # Limit in bytes, because a pipe may never end.
-_taken: dict[str, bytes] = {}
+STDIN_ARGUMENT = "-"
+MAX_INPUT_BYTES = 64 * 1024 * 1024  # Limit in bytes, because a pipe may never end.
+_read_inputs: dict[str, bytes] = {}
 
 
-def nothing_taken() -> None:
+def reset_standard_input() -> None:
     """Forget the input that was read. Call this at the beginning of a command."""
-    _taken.clear()
+    _read_inputs.clear()
 
 
-def standard_input(what: str) -> bytes:
+def read_standard_input(description: str) -> bytes:
     """Return all bytes of standard input, up to one byte more than the limit.
 
-    A second call with the same ``what`` returns the same bytes. Raises CommandError if standard input is
-    closed or was read for another purpose.
+    A second call with the same ``description`` returns the same bytes. Raises CommandError if standard input
+    is closed or was read for another purpose.
     """
-    if what in _taken:
-        return _taken[what]
-    for other in _taken:
+    if description in _read_inputs:
+        return _read_inputs[description]
+    for other in _read_inputs:
         raise CommandError(
             Message(
                 '"-" (stdin) is already used for the {other}; specify a file for the {what}',
                 other=other,
-                what=what,
+                what=description,
             ),
             "stdin-taken",
         )
     if sys.stdin is None:
         raise CommandError(
-            Message("stdin is closed, so the {what} cannot be read from it; specify a file", what=what),
+            Message(
+                "stdin is closed, so the {what} cannot be read from it; specify a file", what=description
+            ),
             "stdin-closed",
         )
-    _taken[what] = sys.stdin.buffer.read(MOST_BYTES + 1)
-    return _taken[what]
+    _read_inputs[description] = sys.stdin.buffer.read(MAX_INPUT_BYTES + 1)
+    return _read_inputs[description]

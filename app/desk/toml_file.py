@@ -7,13 +7,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
-from app.desk.standard_input import DASH, standard_input
-from core.input_file import TooLargeError, input_bytes, toml_tables
-from core.message import CodedError, Message, nearest
+from app.desk.standard_input import STDIN_ARGUMENT, read_standard_input
+from core.input_file import TooLargeError, parse_toml, read_input_bytes
+from core.message import CodedError, Message, find_nearest
 
 _MOST_BYTES = 16 * 1024 * 1024
 # Strings and comments are not changed. A number after =, [ or a comma may begin with its point.
-_POINT_FIRST = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#.*)|([=\[,]\s*[-+]?)(?=\.\d)""")
+_LEADING_POINT = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#.*)|([=\[,]\s*[-+]?)(?=\.\d)""")
 
 
 def read_toml(path: Path) -> dict[str, object]:
@@ -22,8 +22,8 @@ def read_toml(path: Path) -> dict[str, object]:
     Shops write ``.25``, which is not valid in TOML. It is read as 0.25.
     """
     try:
-        text = _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
-        return toml_tables(_POINT_FIRST.sub(_with_nought, text))
+        text = _read_bytes(path).decode("utf-8").replace("\r\n", "\n")
+        return parse_toml(_LEADING_POINT.sub(_with_nought, text))
     except TooLargeError as error:
         raise _too_large(path) from error
     except OSError as error:
@@ -49,15 +49,15 @@ def _with_nought(found: re.Match[str]) -> str:
     return found[0] if found[1] is None else f"{found[1]}0"
 
 
-def _bytes_of(path: Path) -> bytes:
+def _read_bytes(path: Path) -> bytes:
     """Return the bytes of a file; ``-`` is standard input.
 
     Raises CommandError if standard input is too large, TooLargeError if the file is, or OSError.
     """
-    if str(path) == DASH:
-        data = standard_input("TOML")
+    if str(path) == STDIN_ARGUMENT:
+        data = read_standard_input("TOML")
     else:
-        return input_bytes(path, _MOST_BYTES)
+        return read_input_bytes(path, _MOST_BYTES)
     if len(data) > _MOST_BYTES:
         raise _too_large(path)
     return data
@@ -70,10 +70,10 @@ def _too_large(path: Path) -> CommandError:
     return CommandError(text, "too-large")
 
 
-def unknown(key: str, known: Iterable[str]) -> str:
+def describe_unknown_key(key: str, known: Iterable[str]) -> str:
     """Return the error text for an unknown key, with the most similar known key."""
     names = list(known)
-    near = nearest(key, names)
+    near = find_nearest(key, names)
     return Message(
         "{key} is unknown; {nearest}",
         key=key,
@@ -81,15 +81,17 @@ def unknown(key: str, known: Iterable[str]) -> str:
     )
 
 
-def unknown_key(key: str, known: Iterable[str], table: str = "") -> CodedError:
+def make_unknown_key_error(key: str, known: Iterable[str], table: str = "") -> CodedError:
     """Return the error for an unknown key, with the name of its table."""
     return CodedError(
-        Message("[{table}] {key}", table=table, key=unknown(key, known)) if table else unknown(key, known),
+        Message("[{table}] {key}", table=table, key=describe_unknown_key(key, known))
+        if table
+        else describe_unknown_key(key, known),
         "unknown-key",
     )
 
 
-def refuse(path: Path, mistakes: Sequence[CodedError]) -> None:
+def raise_mistakes(path: Path, mistakes: Sequence[CodedError]) -> None:
     """Raise CommandError with the texts and codes of all mistakes, if there are any."""
     if mistakes:
         text = "; ".join(str(each) for each in mistakes)

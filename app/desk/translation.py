@@ -10,77 +10,77 @@ import re
 from collections.abc import Callable
 from functools import lru_cache
 
-from core.message import CASES, Message, Value
+from core.message import LETTER_CASES, Message, MessageValue
 
 # Returns the translation of a template or text; empty if the catalog has none.
 Translate = Callable[[str], str]
 
-ENGLISH = "en"
+ENGLISH_CODE = "en"
 
 
-class _Speaker:
+class _ActiveTranslation:
     """The translator in use, and its language."""
 
     translate: Translate | None = None
-    language = ENGLISH
+    language = ENGLISH_CODE
 
 
-def speak(translate: Translate | None, language: str = ENGLISH) -> None:
+def set_translator(translate: Translate | None, language: str = ENGLISH_CODE) -> None:
     """Set the translator for all texts. None leaves the texts English.
 
     ``language`` is its ISO 639-1 code.
     """
-    _Speaker.translate = None if translate is None else lru_cache(8192)(translate)
-    _Speaker.language = language
+    _ActiveTranslation.translate = None if translate is None else lru_cache(8192)(translate)
+    _ActiveTranslation.language = language
 
 
-def spoken() -> str:
+def get_language() -> str:
     """Return the ISO 639-1 code of the language in use."""
-    return _Speaker.language
+    return _ActiveTranslation.language
 
 
 _NAMES = frozenset({"name", "program", "path", "text", "remark"})  # Placeholders for text of the user.
-_HOLE = re.compile(r"\{\w*\}")
-_LOWER = re.compile(r"[a-z]{2}")
+_PLACEHOLDER = re.compile(r"\{\w*\}")
+_LOWER_CASE = re.compile(r"[a-z]{2}")
 _CODE = re.compile(r"[^a-z\s]+")  # One word in capitals.
 
 _DATA, _END = "\u2068", "\u2069"  # Unicode's isolate characters, which are not visible.
 
 
-def data(text: str) -> str:
+def mark_untranslated(text: str) -> str:
     """Mark a text of the user, such as a remark or a name, so that ``tr`` does not translate it."""
     return f"{_DATA}{text}{_END}" if text else ""
 
 
 def tr(text: str) -> str:
     """Return a text in the operator's language, or the English text if there is no translation."""
-    translate = _Speaker.translate
+    translate = _ActiveTranslation.translate
     shown = text if translate is None else _translated(text, translate)
     return shown.replace(_DATA, "").replace(_END, "") if _DATA in shown else str.__str__(shown)
 
 
 def _translated(text: str, translate: Translate) -> str:
     if isinstance(text, Message):
-        return _filled(text, translate)
+        return _fill_message(text, translate)
     if text.startswith(_DATA) or not text:
         return text
     # A text in capitals may have its translation under the text in small letters.
     return translate(text) or (translate(text.lower()).upper() if text.isupper() else "") or text
 
 
-def _filled(message: Message, translate: Translate) -> str:
+def _fill_message(message: Message, translate: Translate) -> str:
     """Return the translated template with its translated values inserted."""
     template = translate(message.template) or message.template
-    of_program = _LOWER.search(_HOLE.sub("", message.template)) is not None
+    of_program = _LOWER_CASE.search(_PLACEHOLDER.sub("", message.template)) is not None
     values = {
-        name: each if _is_own_word(name, each, of_program) else _translated(str(each), translate)
+        name: each if _is_untranslatable(name, each, of_program) else _translated(str(each), translate)
         for name, each in message.values.items()
     }
     made = template.format(**values)
-    return CASES[message.case](made) if message.case else made
+    return LETTER_CASES[message.case](made) if message.case else made
 
 
-def _is_own_word(name: str, value: Value, of_program: bool) -> bool:
+def _is_untranslatable(name: str, value: MessageValue, of_program: bool) -> bool:
     """Return whether a value must not be translated: a number, a name, or a word of the program."""
     if isinstance(value, Message):
         return False

@@ -14,24 +14,31 @@ from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.arithmetic import line_of
-from app.desk.pages.sheet import Key
-from app.desk.programs.program_loading import Loaded
+from app.desk.arithmetic import evaluate_line_number
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.desk.status.prompt_line import MOVING
+from app.desk.status.prompt_line import MOVING_STATES
 from app.editor import editor_messages as messages
 from app.editor.code_help_view import CodeList, CodeStrip
-from app.editor.editor import Editor, Stage, enter
-from app.editor.editor_parts_view import ASKING, EditedPath, EditorParts, FindingList, HeadLine, Mode
-from app.editor.question_view import AskLine, Finder
-from app.editor.text_view import TextField, TypedText
-from app.editor.versions import VersionHistory
+from app.editor.editor_model import EditorModel, EditorStage, open_editor
+from app.editor.editor_parts_view import (
+    ASKING_MODES,
+    EditorHeadLine,
+    EditorMode,
+    EditorParts,
+    EditorPathView,
+    FindingList,
+)
+from app.editor.question_view import QuestionLine, TextFinder
+from app.editor.text_view import ProgramTextField, TextSynchronizer
+from app.editor.version_history import VersionHistory
 from app.editor.versions_view import VersionList
-from app.path.measuring import measuring_words
-from app.path.part_player import player_of
+from app.path.measuring import make_measuring_prompt
+from app.path.part_player import make_part_player
 from app.screen import page_table
-from app.screen.entry_panel import PROGRAMS, LetterPad
-from app.screen.page_base import EditorPanel, Host, KeyActions
+from app.screen.entry_panel import PROGRAM_KEYS, LetterPad
+from app.screen.page_base import EditorPanel, KeyActions, PageHost
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -39,15 +46,15 @@ from core.message import Message
 if TYPE_CHECKING:
     from core.language.diagnostics import Diagnostic
 
-Keys = dict[int, Key]
-Actions = dict[int, Callable[[], None]]
+ModeKeys = dict[int, FunctionKey]
+KeyActionMap = dict[int, Callable[[], None]]
 
 
-PROMPTS = {
-    Mode.FIND: messages.FINDING,
-    Mode.GO_TO: messages.GOING,
-    Mode.HISTORY: messages.CHOOSING,
-    Mode.CODES: messages.CODING,
+MODE_PROMPTS = {
+    EditorMode.FIND: messages.SEARCH_HINT,
+    EditorMode.LINE_NUMBER: messages.LINE_NUMBER_HINT,
+    EditorMode.HISTORY: messages.VERSION_LIST_HINT,
+    EditorMode.CODES: messages.CODE_LIST_HINT,
 }
 """What the prompt line says while nothing else is to be said."""
 
@@ -60,352 +67,386 @@ class EditorPage(EditorParts):
 
     NAME = page_table.EDITOR
 
-    def __init__(self, host: Host, editor: Editor, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, editor_model: EditorModel, parent: QWidget) -> None:
         super().__init__(host, parent)
-        look, self.editor = host.look, editor
-        self.mode = Mode.TEXT
+        look, self.editor = host.theme, editor_model
+        self.mode = EditorMode.TEXT
         self._target = page_table.AUTOMATIC  # page that is shown after leaving
         self._moving = False
-        self.head = HeadLine(look, self.turn_letters, self.open_panel, self)
-        self.letters = LetterPad(look, self._strike, self, PROGRAMS)
-        self.field = TextField(look, self)
-        self.path = EditedPath(look, self.go_to, self, player_of(host.desk))
-        self.space = WorkingPlaneView(look, self)  # replaces the path for a mill program
-        self.findings = FindingList(look, self._go_to_finding, self)
-        self.code = CodeStrip(look, self.look_up, self)
-        self.codes = CodeList(look, self.field, editor.proof, self.back, self)
-        self.history = VersionHistory(editor.archive, editor.worker)
-        self.versions = VersionList(look, self.history, self)
-        self.ask = AskLine(look, self, self)
-        self.finder = Finder(self.field, self.ask)
-        self.typed_text = TypedText(self.field, self.editor)
-        self.panel: EditorPanel = page_table.editor_panel(EditorPanel)(host, self)
+        self.head_line = EditorHeadLine(look, self.toggle_keyboard, self.open_panel, self)
+        self.letter_pad = LetterPad(look, self._strike, self, PROGRAM_KEYS)
+        self.text_field = ProgramTextField(look, self)
+        self.path_view = EditorPathView(look, self.move_cursor_to, self, make_part_player(host.desk))
+        self.plane_view = WorkingPlaneView(look, self)  # replaces the path for a mill program
+        self.finding_list = FindingList(look, self._show_finding, self)
+        self.code_strip = CodeStrip(look, self.complete_code, self)
+        self.code_list = CodeList(look, self.text_field, editor_model.live_proof, self.return_to_text, self)
+        self.version_history = VersionHistory(editor_model.version_archive, editor_model.worker)
+        self.version_list = VersionList(look, self.version_history, self)
+        self.question_line = QuestionLine(look, self, self)
+        self.text_finder = TextFinder(self.text_field, self.question_line)
+        self.typed_text = TextSynchronizer(self.text_field, self.editor)
+        self.editor_panel: EditorPanel = page_table.find_editor_panel(EditorPanel)(host, self)
         # numbers of the panel's text that was proved and of the text put into the field
         self._shown_panel = (0, 0)
 
     # --- calls of the main window --------------------------------------------------------------------
 
-    def opens(self) -> bool:
+    def can_open(self) -> bool:
         """Return whether the editor can open. It cannot while a program runs or the spindle turns."""
-        return self.editor.stage is not Stage.CLOSED or enter(self.desk, self.editor)
+        return self.editor.stage is not EditorStage.CLOSED or open_editor(self.desk, self.editor)
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Reset the page. The program is being read."""
         self._target = page_table.AUTOMATIC
-        self.enter(Mode.TEXT)
+        self.enter_mode(EditorMode.TEXT)
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Start saving and return whether the page can close now.
 
         Otherwise it closes after saving.
         """
-        if self.editor.stage is Stage.OFFERED:
-            self.editor.abort()
-        if self.editor.stage is not Stage.CLOSED:
+        if self.editor.stage is EditorStage.OFFERED:
+            self.editor.cancel_offer()
+        if self.editor.stage is not EditorStage.CLOSED:
             self._target = page_table.AUTOMATIC
-            self.editor.leave(self.typed_text.now())
-        return self.editor.stage is Stage.CLOSED
+            self.editor.save_and_leave(self.typed_text.read_text())
+        return self.editor.stage is EditorStage.CLOSED
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of the present function keys."""
-        now = self._keys()
+        now = self._find_mode_keys()
         return tuple(now[n].label if n in now else "" for n in range(1, 11))
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the present function keys."""
-        found = {f"F{number}": key.action for number, key in self._keys().items()}
-        found["Codes"] = self.look_up
-        found |= {name: partial(self.open_panel, name) for name in self.panel.KEYS}
-        if self.mode is Mode.LOOK:  # keys of the Automatic page with the same meaning
-            path = self.path
-            found |= {"Zoom in": partial(path.zoom, 1), "Zoom out": partial(path.zoom, -1)}
-            found |= {"Measure": self.back, "View": path.next_view}
+        found = {f"F{number}": key.action for number, key in self._find_mode_keys().items()}
+        found["Codes"] = self.complete_code
+        found |= {name: partial(self.open_panel, name) for name in self.editor_panel.KEYS}
+        if self.mode is EditorMode.PATH:  # keys of the Automatic page with the same meaning
+            path = self.path_view
+            found |= {"Zoom in": partial(path.zoom_view, 1), "Zoom out": partial(path.zoom_view, -1)}
+            found |= {"Measure": self.return_to_text, "View": path.select_next_view}
         return found
 
-    def esc_holds(self) -> bool:
+    def is_esc_stop_key(self) -> bool:
         """Return whether Esc stops the axes during motion, which it does unless a question is pending."""
-        return not self.editor.notice and self.editor.stage is not Stage.OFFERED
+        return not self.editor.message and self.editor.stage is not EditorStage.OFFERED
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Cancel the question, the mode or the message. Leave the editor without unsaved changes."""
-        if self._moving and self.esc_holds():
-            self.desk.feed_hold()  # Esc must do the safe action on every page.
-        elif self.editor.stage is Stage.OFFERED:
-            self.editor.abort()
-        elif self.mode is not Mode.TEXT:
-            if self.mode is not Mode.PANEL or not self.panel.model.escape():
-                self.back()
-        elif self.editor.notice:
-            self.editor.clear()
-        elif self.desk.notice:
+        if self._moving and self.is_esc_stop_key():
+            self.desk.start_feed_hold()  # Esc must do the safe action on every page.
+        elif self.editor.stage is EditorStage.OFFERED:
+            self.editor.cancel_offer()
+        elif self.mode is not EditorMode.TEXT:
+            if self.mode is not EditorMode.PANEL or not self.editor_panel.model.handle_escape():
+                self.return_to_text()
+        elif self.editor.message:
+            self.editor.clear_message()
+        elif self.desk.prompt_notice:
             return False
-        elif self.editor.is_dirty(self.typed_text.now()):
-            self.editor.notice = messages.UNSAVED
+        elif self.editor.is_dirty(self.typed_text.read_text()):
+            self.editor.message = messages.UNSAVED_CHANGES
         else:
             self._target = page_table.AUTOMATIC
-            self.abandon()
+            self.discard_and_leave()
         return True
 
-    def asks(self) -> str:
+    def pending_question(self) -> str:
         """Return the question that F6 confirms, or an empty string."""
-        return self.editor.notice if self.editor.asked else ""
+        return self.editor.message if self.editor.pending_action else ""
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the last message, or else the finding in the cursor line."""
-        if self.editor.notice:
-            return self.editor.notice
+        if self.editor.message:
+            return self.editor.message
         if self._moving:
-            return messages.RUNS_OLD
-        own = {Mode.LOOK: measuring_words, Mode.PANEL: self.panel.model.prompt}.get(self.mode)
-        if own is not None or self.mode in PROMPTS:
-            return own() if own is not None else PROMPTS[self.mode]
-        line = self.field.line
-        found = self.field.finding_at(line)
+            return messages.TEXT_NOT_RUNNING
+        own = {
+            EditorMode.PATH: make_measuring_prompt,
+            EditorMode.PANEL: self.editor_panel.model.prompt_text,
+        }.get(self.mode)
+        if own is not None or self.mode in MODE_PROMPTS:
+            return own() if own is not None else MODE_PROMPTS[self.mode]
+        line = self.text_field.cursor_line
+        found = self.text_field.finding_at(line)
         if found is not None:
             return Message(
                 "LINE {line}: {value} {hint}", line=line, value=found.text, hint=found.hint
             ).strip()
-        return messages.STANDING
+        return messages.SAVE_HINT
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Process finished work, prove the typed text and update the page."""
         editor = self.editor
-        self._moving = snapshot.state in MOVING
+        self._moving = snapshot.state in MOVING_STATES
         editor.poll()
-        if editor.stage is Stage.CLOSED:
-            self._go()
+        if editor.stage is EditorStage.CLOSED:
+            self._handle_closed()
             return
-        self.typed_text.refresh()
-        self._follow_stage()
-        if self.mode is Mode.PANEL:
-            self._follow_panel()
+        self.typed_text.synchronize()
+        self._update_stage()
+        if self.mode is EditorMode.PANEL:
+            self._update_panel()
         self.show_text()
-        if self.mode is Mode.LOOK and self.path.ruler is None:
-            self.back()  # Measuring has ended, so the text gets the keyboard again.
-        self.versions.refresh()
-        self.codes.refresh()
+        if self.mode is EditorMode.PATH and self.path_view.measurement is None:
+            self.return_to_text()  # Measuring has ended, so the text gets the keyboard again.
+        self.version_list.refresh()
+        self.code_list.refresh()
 
-    def _follow_stage(self) -> None:
+    def _update_stage(self) -> None:
         """Change the mode when the editor waits for a name or offers a new file."""
         stage = self.editor.stage
-        if stage is Stage.NAMING and self.mode is not Mode.NAME:
-            self.enter(Mode.NAME)
-        elif stage is Stage.OFFERED and self.mode is not Mode.OFFER:
-            self.enter(Mode.OFFER)
-        elif stage is Stage.OPEN and self.mode in {Mode.NAME, Mode.OFFER}:
-            self.enter(Mode.TEXT)
-        elif stage is Stage.OPEN and self.mode is Mode.TEXT and self.editor.made_of is not None:
-            self._make_of(self.editor.made_of)
+        if stage is EditorStage.NAMING and self.mode is not EditorMode.NAME:
+            self.enter_mode(EditorMode.NAME)
+        elif stage is EditorStage.OFFERED and self.mode is not EditorMode.NEW_FILE:
+            self.enter_mode(EditorMode.NEW_FILE)
+        elif stage is EditorStage.OPEN and self.mode in {EditorMode.NAME, EditorMode.NEW_FILE}:
+            self.enter_mode(EditorMode.TEXT)
+        elif (
+            stage is EditorStage.OPEN
+            and self.mode is EditorMode.TEXT
+            and self.editor.source_drawing is not None
+        ):
+            self._make_from_file(self.editor.source_drawing)
 
     # --- the function keys ---------------------------------------------------------------------------
 
-    def _keys(self) -> Keys:
+    def _find_mode_keys(self) -> ModeKeys:
         """Return the function keys of the present mode."""
-        word = "SAV+MENU" if self.mode is Mode.TEXT and self.typed_text.dirty else "MENU"
-        menu, back = Key(word, partial(self.leave_to, page_table.MENU)), Key("BACK", self.back)
-        undo = {8: Key("UNDO", self.field.undo), 9: Key("REDO", self.field.redo)}
-        of_mode: dict[Mode, Callable[[], Keys]] = {
-            Mode.FIND: lambda: self.finder.keys() | undo,
-            Mode.HISTORY: lambda: {2: Key("RESTORE", self.restore), **self.versions.keys()},
-            Mode.CODES: self.codes.keys,
-            Mode.PANEL: self.panel.model.keys,
-            Mode.LOOK: lambda: {3: Key("GO TO LINE", self._to_line), **self.path.keys()},
+        word = "SAV+MENU" if self.mode is EditorMode.TEXT and self.typed_text.is_dirty else "MENU"
+        menu, back = (
+            FunctionKey(word, partial(self.save_and_open_page, page_table.MENU)),
+            FunctionKey("BACK", self.return_to_text),
+        )
+        undo = {8: FunctionKey("UNDO", self.text_field.undo), 9: FunctionKey("REDO", self.text_field.redo)}
+        of_mode: dict[EditorMode, Callable[[], ModeKeys]] = {
+            EditorMode.FIND: lambda: self.text_finder.function_keys() | undo,
+            EditorMode.HISTORY: lambda: {
+                2: FunctionKey("RESTORE", self.restore_version),
+                **self.version_list.function_keys(),
+            },
+            EditorMode.CODES: self.code_list.function_keys,
+            EditorMode.PANEL: self.editor_panel.model.function_keys,
+            EditorMode.PATH: lambda: {
+                3: FunctionKey("GO TO LINE", self._jump_to_line),
+                **self.path_view.function_keys(),
+            },
         }
-        if self.mode is Mode.PANEL and not self.panel.model.listing:
+        if self.mode is EditorMode.PANEL and not self.editor_panel.model.is_list_shown:
             # A form must be written or discarded before the page closes.
             return {**of_mode[self.mode](), 10: back}
         if self.mode in of_mode:
             return {1: menu, **of_mode[self.mode](), 10: back}
-        if self.mode is Mode.OFFER:
-            return {1: Key("CREATE", self.editor.create), 10: Key("ABORT", self.editor.abort)}
-        if self.mode is Mode.TEXT:
-            return {1: menu, **self._text_keys(), **undo, 10: Key("DISCARD", self.abandon)}
-        return {2: Key("SAVE" if self.mode is Mode.NAME else "GO", self._take), 10: back}
-
-    def _text_keys(self) -> Keys:
+        if self.mode is EditorMode.NEW_FILE:
+            return {
+                1: FunctionKey("CREATE", self.editor.create_document),
+                10: FunctionKey("ABORT", self.editor.cancel_offer),
+            }
+        if self.mode is EditorMode.TEXT:
+            return {1: menu, **self._text_keys(), **undo, 10: FunctionKey("DISCARD", self.discard_and_leave)}
         return {
-            2: Key("SAVE", self.save),
-            3: Key(self._load_label(), partial(self.leave_to, page_table.AUTOMATIC)),
-            4: Key("FIND", partial(self.enter, Mode.FIND)),
-            5: Key("GO TO", partial(self.enter, Mode.GO_TO)),
-            6: Key("YES", self.answer) if self.editor.asked else Key("NEXT ERROR", self.next_finding),
-            7: Key("HISTORY", partial(self.enter, Mode.HISTORY)),
+            2: FunctionKey("SAVE" if self.mode is EditorMode.NAME else "GO", self._accept_entry),
+            10: back,
         }
 
-    def _load_label(self) -> str:
+    def _text_keys(self) -> ModeKeys:
+        return {
+            2: FunctionKey("SAVE", self.save_text),
+            3: FunctionKey(self._find_load_label(), partial(self.save_and_open_page, page_table.AUTOMATIC)),
+            4: FunctionKey("FIND", partial(self.enter_mode, EditorMode.FIND)),
+            5: FunctionKey("GO TO", partial(self.enter_mode, EditorMode.LINE_NUMBER)),
+            6: FunctionKey("YES", self.confirm_question)
+            if self.editor.pending_action
+            else FunctionKey("NEXT ERROR", self.select_next_finding),
+            7: FunctionKey("HISTORY", partial(self.enter_mode, EditorMode.HISTORY)),
+        }
+
+    def _find_load_label(self) -> str:
         """Return the label of F3, which loads saved changes or a text that is not loaded."""
-        editor, now = self.editor, self.desk.session.now
-        if self.typed_text.dirty:
+        editor, now = self.editor, self.desk.program_loader.loaded
+        if self.typed_text.is_dirty:
             return "SAV+LOAD"
         document = editor.document
-        other = document is not None and document.path == now.path and self.desk.storage.difference()
-        return "LOAD" if editor.was_saved or other or now.path is None else "LEAVE"
+        other = (
+            document is not None
+            and document.path == now.path
+            and self.desk.storage_state.read_file_difference()
+        )
+        return "LOAD" if editor.is_saved_since_open or other or now.path is None else "LEAVE"
 
-    def enter(self, mode: Mode) -> None:
+    def enter_mode(self, mode: EditorMode) -> None:
         """Switch to a mode."""
         self.mode = mode
-        self._ask()
+        self._update_question_line()
         self.show_mode()
-        if mode is Mode.HISTORY:
-            self.versions.raise_()
-            self.history.look(self.editor.name, self.typed_text.now())
-        if mode is Mode.CODES:
-            self.codes.raise_()
-        if mode is Mode.PANEL:
-            self.panel.raise_()
-        if mode in {Mode.HISTORY, Mode.OFFER, Mode.CODES, Mode.PANEL}:
+        if mode is EditorMode.HISTORY:
+            self.version_list.raise_()
+            self.version_history.open_history(self.editor.name, self.typed_text.read_text())
+        if mode is EditorMode.CODES:
+            self.code_list.raise_()
+        if mode is EditorMode.PANEL:
+            self.editor_panel.raise_()
+        if mode in {EditorMode.HISTORY, EditorMode.NEW_FILE, EditorMode.CODES, EditorMode.PANEL}:
             self.setFocus()
-        elif mode is Mode.TEXT:
-            self.field.setFocus()
+        elif mode is EditorMode.TEXT:
+            self.text_field.setFocus()
 
-    def back(self) -> None:
+    def return_to_text(self) -> None:
         """Return to the text from a question, a list or the path."""
-        self.editor.keep_no_name()
-        if self.mode is Mode.PANEL:
-            self.typed_text.stale = True  # The present proof can belong to the preview of a form.
-        self.enter(Mode.TEXT)
+        self.editor.cancel_naming()
+        if self.mode is EditorMode.PANEL:
+            self.typed_text.is_stale = True  # The present proof can belong to the preview of a form.
+        self.enter_mode(EditorMode.TEXT)
 
-    def go_to(self, line: int, column: int = 0) -> None:
+    def move_cursor_to(self, line: int, column: int = 0) -> None:
         """Move the cursor to a line and column."""
-        if self.mode is Mode.LOOK:
-            self.enter(Mode.TEXT)
-        self.field.go_to(max(1, line), column)
-        self.field.setFocus()
+        if self.mode is EditorMode.PATH:
+            self.enter_mode(EditorMode.TEXT)
+        self.text_field.move_cursor_to(max(1, line), column)
+        self.text_field.setFocus()
 
-    def _go_to_finding(self, found: Diagnostic) -> None:
+    def _show_finding(self, found: Diagnostic) -> None:
         """Move the cursor to a finding. For a finding in the part, show the part after that line."""
-        self.go_to(found.line, found.column)
-        if found.n:
-            self.path.show_part()
+        self.move_cursor_to(found.line, found.column)
+        if found.block_number:
+            self.path_view.show_part()
 
-    def next_finding(self) -> None:
+    def select_next_finding(self) -> None:
         """Move the cursor to the next finding."""
-        found = self.findings.following(self.field.line)
+        found = self.finding_list.find_next_error(self.text_field.cursor_line)
         if found is not None:
-            self._go_to_finding(found)
+            self._show_finding(found)
         else:
-            self.editor.notice = "NO ERRORS OR WARNINGS FOUND"
+            self.editor.message = "NO ERRORS OR WARNINGS FOUND"
 
-    def save(self) -> None:
+    def save_text(self) -> None:
         """Save the text and continue editing."""
-        self.editor.save(self.typed_text.now())
+        self.editor.save_document(self.typed_text.read_text())
 
-    def leave_to(self, page: str) -> None:
+    def save_and_open_page(self, page_name: str) -> None:
         """Save the text and go to another page."""
-        self._target = page
-        self.editor.leave(self.typed_text.now(), to_desk=page == page_table.AUTOMATIC)
+        self._target = page_name
+        self.editor.save_and_leave(self.typed_text.read_text(), should_load=page_name == page_table.AUTOMATIC)
 
-    def abandon(self) -> None:
+    def discard_and_leave(self) -> None:
         """Leave without saving."""
-        self.editor.abandon(self.typed_text.now())
+        self.editor.discard_and_leave(self.typed_text.read_text())
 
-    def answer(self) -> None:
+    def confirm_question(self) -> None:
         """Confirm the editor's question."""
-        self.editor.answer(self.typed_text.now())
+        self.editor.confirm_question(self.typed_text.read_text())
 
-    def restore(self) -> None:
+    def restore_version(self) -> None:
         """Restore the selected version into the editor."""
-        if self.history.text is not None:
-            self.editor.restore(self.history.text, self.history.number)
-            self.enter(Mode.TEXT)
+        if self.version_history.text is not None:
+            self.editor.restore_version(self.version_history.text, self.version_history.number)
+            self.enter_mode(EditorMode.TEXT)
 
-    def look_up(self) -> None:
+    def complete_code(self) -> None:
         """Complete the typed code, or look up the code at the cursor."""
-        if self.editor.stage is not Stage.OPEN or self.mode not in {Mode.TEXT, Mode.CODES}:
+        if self.editor.stage is not EditorStage.OPEN or self.mode not in {EditorMode.TEXT, EditorMode.CODES}:
             return
-        if self.codes.ask():
-            self.enter(Mode.CODES)
+        if self.code_list.open_choices():
+            self.enter_mode(EditorMode.CODES)
         else:
-            self.editor.notice = messages.NO_CODES
+            self.editor.message = messages.PROOF_PENDING
 
-    def look_at_path(self) -> None:
+    def focus_path(self) -> None:
         """Give the keyboard to the path, for measuring and for finding the line of a move."""
-        if self.path.drawn:
-            self.enter(Mode.LOOK)
+        if self.path_view.has_path:
+            self.enter_mode(EditorMode.PATH)
         else:
-            self.editor.notice = messages.NO_PATH
+            self.editor.message = messages.NO_PATH
 
-    def open_panel(self, key: str = "") -> None:
+    def open_panel(self, key_name: str = "") -> None:
         """Open the panel of an optional feature by its key. From the panel, return to the text."""
-        if self.mode is Mode.PANEL:
-            self.back()
-        elif self.editor.stage is Stage.OPEN and self.mode is Mode.TEXT:
-            panel, now = self.panel, self.typed_text.now()
-            self.editor.notice = panel.open_at(key, self.editor.name, now, self.field.line)
-            if not self.editor.notice:
-                self.desk.clear()
-                self._shown_panel = (panel.model.number, panel.model.written)
-                self.enter(Mode.PANEL)
+        if self.mode is EditorMode.PANEL:
+            self.return_to_text()
+        elif self.editor.stage is EditorStage.OPEN and self.mode is EditorMode.TEXT:
+            panel, now = self.editor_panel, self.typed_text.read_text()
+            self.editor.message = panel.open_for_text(
+                key_name, self.editor.name, now, self.text_field.cursor_line
+            )
+            if not self.editor.message:
+                self.desk.clear_prompt_line()
+                self._shown_panel = (panel.model.text_number, panel.model.write_count)
+                self.enter_mode(EditorMode.PANEL)
 
-    def _make_of(self, file: Path) -> None:
+    def _make_from_file(self, file: Path) -> None:
         """Open the form for the file from which this program is generated."""
-        self.editor.made_of = None
+        self.editor.source_drawing = None
         self.open_panel()
-        if self.mode is Mode.PANEL:
-            self.panel.model.open_file(file)
+        if self.mode is EditorMode.PANEL:
+            self.editor_panel.model.open_file(file)
 
-    def _follow_panel(self) -> None:
+    def _update_panel(self) -> None:
         """Prove the preview of the form, and put the written text into the field."""
-        model, (proved, written) = self.panel.model, self._shown_panel
-        model.look()
-        if model.written != written:
-            self.field.put_text(model.text, afresh=False)
-            self.field.go_to(model.at)
-        if model.number != proved and not self.typed_text.stale:
-            self.editor.preview(model.text)
-        self._shown_panel = (model.number, model.written)
-        self.panel.refresh()
+        model, (proved, written) = self.editor_panel.model, self._shown_panel
+        model.poll()
+        if model.write_count != written:
+            self.text_field.put_text(model.text, as_new=False)
+            self.text_field.move_cursor_to(model.cursor_line)
+        if model.text_number != proved and not self.typed_text.is_stale:
+            self.editor.preview_text(model.text)
+        self._shown_panel = (model.text_number, model.write_count)
+        self.editor_panel.refresh()
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Pass a key to the panel's form or list, and return whether it was used."""
-        return self.mode is Mode.PANEL and self.panel.model.typed(key)
+        return self.mode is EditorMode.PANEL and self.editor_panel.model.handle_key(key)
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is text of the form."""
-        return self.mode is Mode.PANEL and self.panel.model.takes(key)
+        return self.mode is EditorMode.PANEL and self.editor_panel.model.accepts_key(key)
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether the form has the keyboard."""
-        return self.mode is Mode.PANEL
+        return self.mode is EditorMode.PANEL
 
-    def _to_line(self) -> None:
+    def _jump_to_line(self) -> None:
         """Move the cursor to the line whose path is at the crosshair."""
-        self.editor.notice = self.path.line_here()
+        self.editor.message = self.path_view.jump_to_path_line()
 
     # --- question line ---------------------------------------------------------------------------------
 
-    def _ask(self) -> None:
+    def _update_question_line(self) -> None:
         """Show the question of the mode, or hide the question line."""
-        if self.mode is Mode.FIND:
-            self.ask.ask("FIND", "REPLACE WITH", entry=self.finder.start())
-            self.finder.look()
-        elif self.mode is Mode.GO_TO:
-            self.ask.ask("GO TO LINE", entry=str(self.field.line))
-        elif self.mode is Mode.NAME:
-            self.ask.ask("SAVE AS", entry=self.editor.name)
+        if self.mode is EditorMode.FIND:
+            self.question_line.show_question(
+                "FIND", "REPLACE WITH", initial_text=self.text_finder.find_initial_text()
+            )
+            self.text_finder.count_matches()
+        elif self.mode is EditorMode.LINE_NUMBER:
+            self.question_line.show_question("GO TO LINE", initial_text=str(self.text_field.cursor_line))
+        elif self.mode is EditorMode.NAME:
+            self.question_line.show_question("SAVE AS", initial_text=self.editor.name)
         else:
-            self.ask.hide()
+            self.question_line.hide()
 
-    def _take(self) -> None:
+    def _accept_entry(self) -> None:
         """Accept the entry of the question line."""
-        entry = self.ask.first.text()
-        if self.mode is Mode.FIND:
-            self.finder.step(1)
-        elif self.mode is Mode.NAME:
-            self.editor.take_name(entry)
-        elif (number := line_of(entry)) is None or number > self.field.blockCount():
-            self.ask.answer = Message("ENTER A NUMBER FROM 1 TO {count}", count=self.field.blockCount())
-            self.ask.first.selectAll()  # the next digit replaces the entry
+        entry = self.question_line.first_field.text()
+        if self.mode is EditorMode.FIND:
+            self.text_finder.select_match(1)
+        elif self.mode is EditorMode.NAME:
+            self.editor.save_under_name(entry)
+        elif (number := evaluate_line_number(entry)) is None or number > self.text_field.blockCount():
+            self.question_line.message_text = Message(
+                "ENTER A NUMBER FROM 1 TO {count}", count=self.text_field.blockCount()
+            )
+            self.question_line.first_field.selectAll()  # the next digit replaces the entry
         else:
-            self.enter(Mode.TEXT)
-            self.go_to(number)
+            self.enter_mode(EditorMode.TEXT)
+            self.move_cursor_to(number)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Handle keys of the question line. The focused field also receives the drawn keyboard."""
         if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
-            self.letters.write_into(watched)
+            self.letter_pad.set_target_field(watched)
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             return self._key(event)
         return False
@@ -416,50 +457,53 @@ class EditorPage(EditorParts):
             event.ignore()
 
     def _key(self, event: QKeyEvent) -> bool:
-        action = self._action_of(event)
+        action = self._find_action(event)
         if action is not None:
             action()
         return action is not None
 
-    def _action_of(self, event: QKeyEvent) -> Callable[[], None] | None:
+    def _find_action(self, event: QKeyEvent) -> Callable[[], None] | None:
         """Return the action of a key other than text and function keys, or None."""
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
-            return self._chords().get(key)
-        if self.mode in ASKING:
-            before = bool(modifiers & Qt.KeyboardModifier.ShiftModifier) and self.mode is Mode.FIND
-            enter, tab = partial(self.finder.step, -1) if before else self._take, self.ask.other_field
-            asking: Actions = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), enter)
+            return self._make_chord_actions().get(key)
+        if self.mode in ASKING_MODES:
+            before = bool(modifiers & Qt.KeyboardModifier.ShiftModifier) and self.mode is EditorMode.FIND
+            enter, tab = (
+                partial(self.text_finder.select_match, -1) if before else self._accept_entry,
+                self.question_line.focus_other_field,
+            )
+            asking: KeyActionMap = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), enter)
             asking |= dict.fromkeys((Qt.Key.Key_Tab, Qt.Key.Key_Backtab), tab)
             return asking.get(key)
-        if self.mode is Mode.CODES:
-            return self.codes.arrows().get(key)
-        if self.mode is Mode.HISTORY:
-            restore: Actions = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), self.restore)
-            return (self.versions.arrows() | restore).get(key)
+        if self.mode is EditorMode.CODES:
+            return self.code_list.arrow_actions().get(key)
+        if self.mode is EditorMode.HISTORY:
+            restore: KeyActionMap = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), self.restore_version)
+            return (self.version_list.arrow_actions() | restore).get(key)
         return None
 
-    def _chords(self) -> Actions:
+    def _make_chord_actions(self) -> KeyActionMap:
         """Return the actions of Ctrl with a key. Ctrl with arrows pans the path in the path mode."""
-        find, chords = partial(self.enter, Mode.FIND), dict[int, Callable[[], None]]()
-        if self.mode is not Mode.HISTORY:
+        find, chords = partial(self.enter_mode, EditorMode.FIND), dict[int, Callable[[], None]]()
+        if self.mode is not EditorMode.HISTORY:
             chords = {
-                Qt.Key.Key_S: self.save,
-                Qt.Key.Key_Space: self.look_up,
+                Qt.Key.Key_S: self.save_text,
+                Qt.Key.Key_Space: self.complete_code,
                 Qt.Key.Key_F: find,
                 Qt.Key.Key_H: find,
-                Qt.Key.Key_G: partial(self.enter, Mode.GO_TO),
-                Qt.Key.Key_M: self.look_at_path,
+                Qt.Key.Key_G: partial(self.enter_mode, EditorMode.LINE_NUMBER),
+                Qt.Key.Key_M: self.focus_path,
             }
-        if self.mode is Mode.LOOK:
+        if self.mode is EditorMode.PATH:
             ways = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
             ways[Qt.Key.Key_Down] = (0, 1)
-            chords |= {key: partial(self.path.pan, *way) for key, way in ways.items()}
+            chords |= {key: partial(self.path_view.pan_view, *way) for key, way in ways.items()}
         return chords
 
-    def _go(self) -> None:
+    def _handle_closed(self) -> None:
         """Show the editor's last message and the requested page after the editor has closed."""
-        if self.editor.notice:
-            self.desk.say(self.editor.notice)
-            self.editor.clear()
-        self.host.go(self._target)
+        if self.editor.message:
+            self.desk.say(self.editor.message)
+            self.editor.clear_message()
+        self.host.open_page(self._target)

@@ -6,48 +6,48 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.desk.background_work import Latest, Request
+from app.desk.background_work import LatestRequestWorker, WorkRequest
 from app.desk.programs.program_loading import LoadingSteps
-from core.interpreter.dialects import code_book
+from core.interpreter.dialects import get_code_book
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.message import Message
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
+    from app.path.path_picture import ProgramPicture
     from core.language.code_book import CodeBook
 
-QUIET = 0.008  # seconds without a key press before proving starts
-LONGEST = 0.03  # maximum seconds by which typing delays proving
-PATIENCE = 0.2  # seconds of work after which a newer text interrupts the worker
-_WEIGHT = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
+QUIET_TIME_S = 0.008  # seconds without a key press before proving starts
+MAX_DELAY_S = 0.03  # maximum seconds by which typing delays proving
+GRACE_TIME_S = 0.2  # seconds of work after which a newer text interrupts the worker
+_SEVERITY_WEIGHTS = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 
 
 @dataclass(frozen=True, slots=True)
-class Findings:
+class ProofFindings:
     """Result of proving the text with this number. ``picture`` can belong to an older text."""
 
     number: int = 0
     diagnostics: tuple[Diagnostic, ...] = ()
-    by_line: dict[int, Diagnostic] = field(default_factory=dict)  # most severe finding of each line
-    picture: Picture | None = None
-    cycle_time: float = 0.0
-    blocks: int = 0
-    trouble: str = ""  # reason why the text could not be proved
-    book: CodeBook | None = None  # code book of the text's language
+    line_findings: dict[int, Diagnostic] = field(default_factory=dict)  # most severe finding of each line
+    picture: ProgramPicture | None = None
+    cycle_time_s: float = 0.0
+    block_count: int = 0
+    error_text: str = ""  # reason why the text could not be proved
+    code_book: CodeBook | None = None  # code book of the text's language
 
     @property
-    def errors(self) -> int:
+    def error_count(self) -> int:
         """Number of findings that prevent a run."""
         return sum(d.severity is Severity.ERROR for d in self.diagnostics)
 
     @property
-    def warnings(self) -> int:
+    def warning_count(self) -> int:
         """Number of warnings."""
         return sum(d.severity is Severity.WARNING for d in self.diagnostics)
 
 
-def by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
+def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
     """Return the most severe finding of each line, the first of equals.
 
     Line 0 is the whole file.
@@ -55,7 +55,7 @@ def by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
     found: dict[int, Diagnostic] = {}
     for one in diagnostics:
         there = found.get(one.line)
-        if there is None or _WEIGHT[one.severity] > _WEIGHT[there.severity]:
+        if there is None or _SEVERITY_WEIGHTS[one.severity] > _SEVERITY_WEIGHTS[there.severity]:
             found[one.line] = one
     return found
 
@@ -64,67 +64,73 @@ def by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
 class LiveProof:
     """Proof of the latest text.
 
-    ``submit`` and ``now`` never wait, and older texts are skipped.
+    ``submit_text`` and ``current`` never wait, and older texts are skipped.
     """
 
-    workshop: LoadingSteps
-    worker: Latest = field(
-        default_factory=lambda: Latest("editing-proof", quiet=QUIET, longest=LONGEST, patience=PATIENCE)
+    steps: LoadingSteps
+    worker: LatestRequestWorker = field(
+        default_factory=lambda: LatestRequestWorker(
+            "editing-proof", quiet_time_s=QUIET_TIME_S, max_delay_s=MAX_DELAY_S, grace_time_s=GRACE_TIME_S
+        )
     )
-    _now: Findings = field(default_factory=Findings)
+    _now: ProofFindings = field(default_factory=ProofFindings)
     _number: int = 0
 
     @property
-    def now(self) -> Findings:
-        """Latest findings. A failure of the worker appears as ``trouble``."""
+    def current(self) -> ProofFindings:
+        """Latest findings. A failure of the worker appears as ``error_text``."""
         self.worker.poll()
         return self._now
 
     @property
-    def behind(self) -> bool:
-        """Whether a newer text than that of ``now`` is waiting or being proved."""
-        return self.worker.busy
+    def is_outdated(self) -> bool:
+        """Whether a newer text than that of ``current`` is waiting or being proved."""
+        return self.worker.is_busy
 
-    def submit(self, name: str, text: str, block_delete: bool = False) -> int:
+    def submit_text(self, name: str, text: str, block_delete: bool = False) -> int:
         """Submit the present text, and return its number."""
         self._number += 1
-        work = partial(self._prove, self._number, Source(name, text), block_delete)
-        self.worker.ask(work, self._show, self._failed)
+        work = partial(self._prove_text, self._number, ProgramSource(name, text), block_delete)
+        self.worker.request(work, self._show, self._failed)
         return self._number
 
-    def forget(self) -> None:
+    def clear_findings(self) -> None:
         """Clear the findings when another document opens."""
         self._number += 1
-        self._now = Findings(self._number)
+        self._now = ProofFindings(self._number)
 
     def close(self) -> None:
         """Cancel the present proof and stop the worker."""
         self.worker.close()
 
-    def _prove(self, number: int, source: Source, block_delete: bool, request: Request) -> Findings:
+    def _prove_text(
+        self, number: int, source: ProgramSource, block_delete: bool, request: WorkRequest
+    ) -> ProofFindings:
         """Prove a text on the worker.
 
         Findings are published before the picture is drawn. Those of the part follow last.
         """
-        job = self.workshop.make_job(source, block_delete)
-        proved = self.workshop.prove(job, request)
+        job = self.steps.make_job(source, block_delete)
+        proved = self.steps.prove_job(job, request)
         found, proof = proved.diagnostics, proved.proof
         before = self._now.picture
-        book = code_book(source.dialect).prepared()
-        findings = Findings(number, found, by_line(found), before, proof.cycle_time, proof.blocks, book=book)
+        book = get_code_book(source.dialect).with_compiled_patterns()
+        findings = ProofFindings(
+            number, found, map_by_line(found), before, proof.cycle_time_s, proof.block_count, code_book=book
+        )
         request.publish(partial(self._show, findings))
-        picture = self.workshop.draw(job, request)
+        picture = self.steps.draw_path(job, request)
         findings = replace(findings, picture=picture)
         request.publish(partial(self._show, findings))
-        part = self.workshop.part(picture, request)
+        part = self.steps.prove_part(picture, request)
         if part is None:
             return findings
-        found = part.among(found)
-        return replace(findings, diagnostics=found, by_line=by_line(found))
+        found = part.merge_diagnostics(found)
+        return replace(findings, diagnostics=found, line_findings=map_by_line(found))
 
-    def _show(self, findings: Findings) -> None:
+    def _show(self, findings: ProofFindings) -> None:
         if findings.number >= self._now.number:
             self._now = findings
 
     def _failed(self, why: str) -> None:
-        self._now = Findings(self._number, trouble=Message("PROVING FAILED: {why}", why=why))
+        self._now = ProofFindings(self._number, error_text=Message("PROVING FAILED: {why}", why=why))

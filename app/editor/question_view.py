@@ -11,54 +11,56 @@ from PySide6.QtCore import QObject, QRectF, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
-from app.desk.pages.sheet import Key
+from app.desk.pages.table_content import FunctionKey
 from app.desk.translation import tr
-from app.editor.text_view import TextField
-from app.screen.entry_panel import dress_line
-from app.screen.look import RIGHT, Look, Painter
-from app.screen.panel import Panel, Shown
+from app.editor.text_view import ProgramTextField
+from app.screen.entry_panel import style_line_edit
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from core.message import Message
 
 
 @dataclass(frozen=True, slots=True)
-class Search:
-    """Search for ``needle``, ignoring case.
+class TextSearch:
+    """Search for ``search_text``, ignoring case.
 
-    ``whole`` excludes matches inside longer words and numbers. F100 is then not found in F1000 or F100.5, so
-    that replacing F100 does not change those words.
+    ``matches_whole_words`` excludes matches inside longer words and numbers. F100 is then not found in F1000
+    or F100.5, so that replacing F100 does not change those words.
     """
 
-    needle: str
-    whole: bool = True
+    search_text: str
+    matches_whole_words: bool = True
 
-    def places(self, text: str) -> tuple[int, ...]:
+    def find_matches(self, text: str) -> tuple[int, ...]:
         """Return the start positions of the matches, from 0, without overlaps."""
-        if not self.needle:
+        if not self.search_text:
             return ()
         return tuple(match.start() for match in re.finditer(self._pattern, text))
 
     @property
     def _pattern(self) -> str:
-        pattern = "(?i)" + re.escape(self.needle)
-        if not self.whole:
+        pattern = "(?i)" + re.escape(self.search_text)
+        if not self.matches_whole_words:
             return pattern
-        if self.needle[0] in "0123456789.":
-            pattern = "(?i)(?<![0-9.])" + re.escape(self.needle)
-        elif self.needle[0].isalpha():
-            pattern = "(?i)(?<![A-Za-z])" + re.escape(self.needle)
-        if self.needle[-1] in "0123456789.":
+        if self.search_text[0] in "0123456789.":
+            pattern = "(?i)(?<![0-9.])" + re.escape(self.search_text)
+        elif self.search_text[0].isalpha():
+            pattern = "(?i)(?<![A-Za-z])" + re.escape(self.search_text)
+        if self.search_text[-1] in "0123456789.":
             return pattern + r"(?![0-9]|\.[0-9])"
-        return pattern + "(?![A-Za-z])" if self.needle[-1].isalpha() else pattern
+        return pattern + "(?![A-Za-z])" if self.search_text[-1].isalpha() else pattern
 
     def inside(self, text: str) -> int:
         """Return the number of matches inside longer words and numbers."""
-        return len(Search(self.needle, whole=False).places(text)) - len(self.places(text))
+        return len(TextSearch(self.search_text, matches_whole_words=False).find_matches(text)) - len(
+            self.find_matches(text)
+        )
 
     def words(self, text: str) -> str:
         """Return the number of matches as display text."""
-        count = len(self.places(text))
+        count = len(self.find_matches(text))
         found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
-        if not self.whole:
+        if not self.matches_whole_words:
             return Message("{value}, INCLUDING PARTS OF WORDS", value=found)
         more = self.inside(text)
         return (
@@ -68,159 +70,161 @@ class Search:
         )
 
 
-def following(places: tuple[int, ...], at: int) -> int | None:
+def following(positions: tuple[int, ...], start: int) -> int | None:
     """Return the first position from ``at`` on, starting over at the top, or None without positions."""
-    if not places:
+    if not positions:
         return None
-    return places[bisect_left(places, at) % len(places)]
+    return positions[bisect_left(positions, start) % len(positions)]
 
 
-def preceding(places: tuple[int, ...], at: int) -> int | None:
+def find_preceding(positions: tuple[int, ...], start: int) -> int | None:
     """Return the last position before ``at``, starting over at the end, or None without positions."""
-    return places[bisect_left(places, at) - 1] if places else None
+    return positions[bisect_left(positions, start) - 1] if positions else None
 
 
-LABEL = 15.0  # units: width of a label
-ANSWER = 34.0  # units: width of the message
+LABEL_WIDTH = 15.0  # units: width of a label
+MESSAGE_WIDTH = 34.0  # units: width of the message
 
 
-class AskLine(Panel):
+class QuestionLine(Panel):
     """Line with one or two fields and their labels, and a message about the entry on the right."""
 
-    ground = "panel"
-    answer = Shown("")  # message about the entry
+    ground_color = "panel"
+    message_text = RedrawingAttribute("")  # message about the entry
 
-    def __init__(self, look: Look, keys: QObject, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.first, self.second = QLineEdit(self), QLineEdit(self)
+    def __init__(self, theme: ScreenTheme, keys: QObject, parent: QWidget) -> None:
+        super().__init__(theme, parent)
+        self.first_field, self.second_field = QLineEdit(self), QLineEdit(self)
         self._labels: tuple[str, ...] = ("",)
-        for edit in (self.first, self.second):
+        for edit in (self.first_field, self.second_field):
             edit.setMaxLength(250)
             edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
             edit.installEventFilter(keys)
         self.hide()
 
-    def ask(self, *labels: str, entry: str | None = None) -> None:
+    def show_question(self, *labels: str, initial_text: str | None = None) -> None:
         """Show the line with the keyboard focus. The previous entry is selected for overtyping."""
         self._labels = labels
-        self.answer = ""
-        if entry is not None:
-            self.first.setText(entry)
-        for edit, label in zip((self.first, self.second), labels, strict=False):
+        self.message_text = ""
+        if initial_text is not None:
+            self.first_field.setText(initial_text)
+        for edit, label in zip((self.first_field, self.second_field), labels, strict=False):
             edit.setAccessibleName(tr(label))
-        self.second.setVisible(len(labels) > 1)
+        self.second_field.setVisible(len(labels) > 1)
         self.show()
         self._place()
-        self.first.setFocus()
-        self.first.selectAll()
+        self.first_field.setFocus()
+        self.first_field.selectAll()
         self.update()
 
-    def other_field(self) -> None:
+    def focus_other_field(self) -> None:
         """Move the keyboard focus to the other field."""
         if len(self._labels) > 1:
-            (self.second if self.first.hasFocus() else self.first).setFocus()
+            (self.second_field if self.first_field.hasFocus() else self.first_field).setFocus()
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply font and colors to the fields."""
-        for edit in (self.first, self.second):
-            dress_line(edit, self.look, 2.3, 0.6)
+        for edit in (self.first_field, self.second_field):
+            style_line_edit(edit, self.theme, 2.3, 0.6)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Place the fields next to their labels."""
         self._place()
-        self.dress()
+        self.apply_theme()
 
     def _place(self) -> None:
-        u = self.look.u
-        for edit, box in zip((self.first, self.second), self._boxes(), strict=False):
-            edit.setGeometry(box.adjusted(LABEL * u, 0.8 * u, 0, -0.8 * u).toRect())
+        u = self.theme.u
+        for edit, box in zip((self.first_field, self.second_field), self._boxes(), strict=False):
+            edit.setGeometry(box.adjusted(LABEL_WIDTH * u, 0.8 * u, 0, -0.8 * u).toRect())
 
     def _boxes(self) -> list[QRectF]:
-        u, count = self.look.u, len(self._labels)
-        wide = (self.width() - (ANSWER + 2) * u) / count
+        u, count = self.theme.u, len(self._labels)
+        wide = (self.width() - (MESSAGE_WIDTH + 2) * u) / count
         return [QRectF(n * wide + u, 0, wide - u, self.height()) for n in range(count)]
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
         for label, box in zip(self._labels, self._boxes(), strict=True):
-            painter.write(QRectF(box.x(), 0, (LABEL - 1) * u, box.height()), label, 1.8, "soft")
-        room = QRectF(self.width() - (ANSWER + 1) * u, 0, ANSWER * u, self.height())
-        painter.write(room, self.answer, 1.9, "text", at=RIGHT)
+            painter.draw_text_line(
+                QRectF(box.x(), 0, (LABEL_WIDTH - 1) * u, box.height()), label, 1.8, "soft"
+            )
+        room = QRectF(self.width() - (MESSAGE_WIDTH + 1) * u, 0, MESSAGE_WIDTH * u, self.height())
+        painter.draw_text_line(room, self.message_text, 1.9, "text", at=ALIGN_RIGHT)
 
 
-class Finder:
+class TextFinder:
     """Search of the text typed in the question line. The cursor moves to the next match."""
 
-    def __init__(self, field: TextField, ask: AskLine) -> None:
-        self._field, self._ask = field, ask
-        self.whole = True
-        ask.first.textEdited.connect(lambda _text: self.look())
+    def __init__(self, text_field: ProgramTextField, question_line: QuestionLine) -> None:
+        self._field, self._ask = text_field, question_line
+        self.matches_whole_words = True
+        question_line.first_field.textEdited.connect(lambda _text: self.count_matches())
 
-    def start(self) -> str:
+    def find_initial_text(self) -> str:
         """Return the initial search text: the selection within one line, or the previous search text."""
         marked = self._field.textCursor().selectedText()
-        return marked if marked and "\u2029" not in marked else self._ask.first.text()
+        return marked if marked and "\u2029" not in marked else self._ask.first_field.text()
 
     @property
-    def _search(self) -> Search:
-        return Search(self._ask.first.text(), self.whole)
+    def _search(self) -> TextSearch:
+        return TextSearch(self._ask.first_field.text(), self.matches_whole_words)
 
-    def look(self) -> None:
+    def count_matches(self) -> None:
         """Count the matches and select the first from the cursor on."""
         if self._ask.isVisible():
             cursor = self._field.textCursor()
             self._show(following(self._places(), cursor.selectionStart()))
 
-    def step(self, way: int) -> None:
+    def select_match(self, direction: int) -> None:
         """Select the next match (1) or the previous match (-1)."""
         cursor, places = self._field.textCursor(), self._places()
-        if way > 0:
+        if direction > 0:
             after = cursor.selectionEnd() if cursor.hasSelection() else cursor.position()
             self._show(following(places, after))
         else:
-            self._show(preceding(places, cursor.selectionStart()))
+            self._show(find_preceding(places, cursor.selectionStart()))
 
-    def replace(self) -> None:
+    def replace_match(self) -> None:
         """Replace the selected match and select the next one."""
         cursor, places = self._field.textCursor(), self._places()
         start = cursor.selectionStart()
-        length = len(self._search.needle)
+        length = len(self._search.search_text)
         if cursor.hasSelection() and start in places and cursor.selectionEnd() - start == length:
-            by = self._ask.second.text()
-            self._field.replace_at((start,), length, by)
+            by = self._ask.second_field.text()
+            self._field.replace_ranges((start,), length, by)
             self._show(following(self._places(), start + len(by)))
         else:
-            self.step(1)
+            self.select_match(1)
 
-    def replace_all(self) -> None:
+    def replace_all_matches(self) -> None:
         """Replace all matches as one step that can be undone."""
         places = self._places()
         if places:
-            self._field.replace_at(places, len(self._search.needle), self._ask.second.text())
-        self._ask.answer = (
+            self._field.replace_ranges(places, len(self._search.search_text), self._ask.second_field.text())
+        self._ask.message_text = (
             Message("{places_count} REPLACED", places_count=len(places)) if places else "NOT FOUND"
         )
 
-    def other_width(self) -> None:
+    def toggle_whole_words(self) -> None:
         """Switch between whole words and partial words."""
-        self.whole = not self.whole
-        self.look()
+        self.matches_whole_words = not self.matches_whole_words
+        self.count_matches()
 
-    def keys(self) -> dict[int, Key]:
+    def function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys during a search."""
         return {
-            2: Key("NEXT", partial(self.step, 1)),
-            3: Key("PREVIOUS", partial(self.step, -1)),
-            4: Key("REPLACE", self.replace),
-            5: Key("ALL", self.replace_all),
-            6: Key("PARTIAL" if self.whole else "WHOLE", self.other_width),
+            2: FunctionKey("NEXT", partial(self.select_match, 1)),
+            3: FunctionKey("PREVIOUS", partial(self.select_match, -1)),
+            4: FunctionKey("REPLACE", self.replace_match),
+            5: FunctionKey("ALL", self.replace_all_matches),
+            6: FunctionKey("PARTIAL" if self.matches_whole_words else "WHOLE", self.toggle_whole_words),
         }
 
     def _places(self) -> tuple[int, ...]:
-        return self._search.places(self._field.toPlainText())
+        return self._search.find_matches(self._field.toPlainText())
 
     def _show(self, place: int | None) -> None:
         search = self._search
-        self._ask.answer = search.words(self._field.toPlainText()) if search.needle else ""
+        self._ask.message_text = search.words(self._field.toPlainText()) if search.search_text else ""
         if place is not None:
-            self._field.select(place, len(search.needle))
+            self._field.select_range(place, len(search.search_text))

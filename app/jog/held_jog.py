@@ -11,13 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from app.desk.late_presses import Starting
+from app.desk.late_presses import StartingAction
 from app.desk.status.formats import MM_PER_INCH
 from app.desk.translation import tr
-from app.offsets.offset_values import Mode
-from core.executor.commands import Command, Jog, JogStep, JogStop
+from app.offsets.offset_values import ValueMode
+from core.executor.commands import Command, Jog, JogByStep, StopJog
 from core.executor.hand_motion.jog_line import Direction
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.machine.machine_model import Machine
 
 INCH_STEPS, MM_STEPS, DEGREE_STEPS = (
@@ -26,84 +26,88 @@ INCH_STEPS, MM_STEPS, DEGREE_STEPS = (
     (1.0, 0.5, 0.1, 0.02),
 )
 INCH_SPEEDS, MM_SPEEDS = (1.0, 5.0, 20.0, 50.0), (25.0, 125.0, 500.0, 1250.0)  # Per minute.
-DEGREE_SPEEDS = (3.0, 15.0, 60.0, 180.0)  # Per second.
+ROTARY_SPEEDS = (3.0, 15.0, 60.0, 180.0)  # Per second.
 STEP_SPEED = 20 * MM_PER_INCH / 60  # mm/s: the longest step takes a third of a second.
-STEP_SPEED_C = 60.0  # degrees/s
-C_RAPID = 360.0  # degrees/s
-CONTINUOUS = -1
+ROTARY_STEP_SPEED = 60.0  # degrees/s
+ROTARY_RAPID = 360.0  # degrees/s
+CONTINUOUS_STEP = -1
 
 
 @dataclass(slots=True)
 class JogSpeeds:
     """The selected step and speed.
 
-    ``step`` is CONTINUOUS or the index of one of four lengths. ``speed`` is the index of one of four speeds.
+    ``step`` is CONTINUOUS or the index of one of four lengths. ``speed_index`` is the index of one of four
+    speeds.
     """
 
     machine: Machine
-    step: int = CONTINUOUS
-    speed: int = 1
+    step_index: int = CONTINUOUS_STEP
+    speed_index: int = 1
 
-    def next_step(self) -> None:
+    def select_next_step(self) -> None:
         """Select the next step: continuous, then from the longest to the shortest, and continuous again."""
-        self.step = self.step + 1 if self.step < len(INCH_STEPS) - 1 else CONTINUOUS
+        self.step_index = self.step_index + 1 if self.step_index < len(INCH_STEPS) - 1 else CONTINUOUS_STEP
 
-    def next_speed(self) -> None:
+    def select_next_speed(self) -> None:
         """Select the next faster speed, or after the fastest the slowest."""
-        self.speed = (self.speed + 1) % len(INCH_SPEEDS)
+        self.speed_index = (self.speed_index + 1) % len(INCH_SPEEDS)
 
     def _turns(self, axis: str) -> bool:
-        return self.machine.axis(axis).rotary
+        return self.machine.find_axis(axis).rotary
 
-    def distance(self, axis: str, mode: Mode, step: int | None = None) -> float:
+    def find_step_length(self, axis: str, mode: ValueMode, step: int | None = None) -> float:
         """Return the length of a step in mm or degrees.
 
         If X is a diameter, a step of X changes the displayed diameter by the step length.
         """
-        step = self.step if step is None else step
+        step = self.step_index if step is None else step
         if self._turns(axis):
             return DEGREE_STEPS[step]
-        length = MM_STEPS[step] if mode.metric else INCH_STEPS[step] * MM_PER_INCH
-        return length / 2 if axis == "X" and mode.diameter else length
+        length = MM_STEPS[step] if mode.is_metric else INCH_STEPS[step] * MM_PER_INCH
+        return length / 2 if axis == "X" and mode.is_diameter else length
 
-    def step_word(self, axis: str, mode: Mode, step: int) -> str:
+    def format_step(self, axis: str, mode: ValueMode, step: int) -> str:
         """Return the length of a step of this axis as text."""
-        return _short(DEGREE_STEPS[step]) if self._turns(axis) else step_words(mode)[step]
+        return _short(DEGREE_STEPS[step]) if self._turns(axis) else make_step_labels(mode)[step]
 
-    def step_speed(self, axis: str) -> float:
+    def find_step_speed(self, axis: str) -> float:
         """Return the speed of a step in mm/s or degrees/s."""
         if self._turns(axis):
-            return min(STEP_SPEED_C, self.machine.axis(axis).vmax)
+            return min(ROTARY_STEP_SPEED, self.machine.find_axis(axis).vmax)
         return min(STEP_SPEED, self.machine.limits.manual_rapid)
 
-    def velocity(self, axis: str, mode: Mode, *, rapid: bool) -> float:
+    def find_velocity(self, axis: str, mode: ValueMode, *, is_rapid: bool) -> float:
         """Return the speed of a continuous jog in mm/s or degrees/s."""
         if self._turns(axis):
-            return min(C_RAPID if rapid else DEGREE_SPEEDS[self.speed], self.machine.axis(axis).vmax)
-        if rapid:
+            return min(
+                ROTARY_RAPID if is_rapid else ROTARY_SPEEDS[self.speed_index],
+                self.machine.find_axis(axis).vmax,
+            )
+        if is_rapid:
             return self.machine.limits.manual_rapid
-        slow = MM_SPEEDS[self.speed] if mode.metric else INCH_SPEEDS[self.speed] * MM_PER_INCH
+        slow = MM_SPEEDS[self.speed_index] if mode.is_metric else INCH_SPEEDS[self.speed_index] * MM_PER_INCH
         return min(slow / 60, self.machine.limits.manual_rapid)
 
 
-def step_words(mode: Mode) -> tuple[str, ...]:
+def make_step_labels(mode: ValueMode) -> tuple[str, ...]:
     """Return the step lengths as key labels."""
-    return tuple(_short(step) for step in (MM_STEPS if mode.metric else INCH_STEPS))
+    return tuple(_short(step) for step in (MM_STEPS if mode.is_metric else INCH_STEPS))
 
 
-def speed_words(mode: Mode) -> tuple[str, ...]:
+def make_speed_labels(mode: ValueMode) -> tuple[str, ...]:
     """Return the speeds of linear axes as key labels, in mm or inches per minute."""
-    return tuple(f"{speed:g}" for speed in (MM_SPEEDS if mode.metric else INCH_SPEEDS))
+    return tuple(f"{speed:g}" for speed in (MM_SPEEDS if mode.is_metric else INCH_SPEEDS))
 
 
-def turn_words() -> tuple[str, ...]:
+def make_rotary_speed_labels() -> tuple[str, ...]:
     """Return the speeds of rotary axes as key labels, in degrees per minute."""
-    return tuple(f"{60 * speed:g}" for speed in DEGREE_SPEEDS)
+    return tuple(f"{60 * speed:g}" for speed in ROTARY_SPEEDS)
 
 
-def rapid_word(machine: Machine, mode: Mode) -> str:
+def format_rapid_speed(machine: Machine, mode: ValueMode) -> str:
     """Return the manual rapid speed as text, in mm or inches per minute."""
-    return f"{machine.limits.manual_rapid * 60 / mode.unit:.0f}"
+    return f"{machine.limits.manual_rapid * 60 / mode.unit_mm:.0f}"
 
 
 def _short(step: float) -> str:
@@ -113,8 +117,8 @@ def _short(step: float) -> str:
 # --- directions ---------------------------------------------------------------------------------------
 
 
-Arrow = tuple[int, int]  # Right and down, as the operator sees the machine; (0, 0): no arrow.
-_NO_ARROW: Arrow = (0, 0)
+ArrowPoint = tuple[int, int]  # Right and down, as the operator sees the machine; (0, 0): no arrow.
+_NO_ARROW: ArrowPoint = (0, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,25 +126,28 @@ class JogDirection:
     """One jog direction: axis and sign, its cell in the cross, and its key with Qt's name and a label."""
 
     axis: str
-    sign: int
+    direction_sign: int
     column: int
     row: int
-    key: str
+    key_name: str
     label: str
-    arrow: Arrow = _NO_ARROW
-    shown: str = ""  # The displayed name of the axis, if it differs.
+    arrow_point: ArrowPoint = _NO_ARROW
+    displayed_axis: str = ""  # The displayed name of the axis, if it differs.
 
 
 # A lathe from above: X+ points toward the operator, Z+ to the right.
-_LATHE = (
+_LATHE_DIRECTIONS = (
     JogDirection("X", -1, 1, 0, "Up", "↑", (0, -1)),
     JogDirection("Z", -1, 0, 1, "Left", "←", (-1, 0)),
     JogDirection("Z", 1, 2, 1, "Right", "→", (1, 0)),
     JogDirection("X", 1, 1, 2, "Down", "↓", (0, 1)),
 )
-_LATHE_C = (JogDirection("C", -1, 0, 2, "PageDown", "PgDn"), JogDirection("C", 1, 2, 2, "PageUp", "PgUp"))
+_LATHE_C_DIRECTIONS = (
+    JogDirection("C", -1, 0, 2, "PageDown", "PgDn"),
+    JogDirection("C", 1, 2, 2, "PageUp", "PgUp"),
+)
 # A mill from above: X+ points to the right, Y+ away from the operator, Z+ up.
-_MILL = (
+_MILL_DIRECTIONS = (
     JogDirection("Y", 1, 1, 0, "Up", "↑", (0, -1)),
     JogDirection("X", -1, 0, 1, "Left", "←", (-1, 0)),
     JogDirection("X", 1, 2, 1, "Right", "→", (1, 0)),
@@ -149,185 +156,193 @@ _MILL = (
     JogDirection("Z", -1, 2, 2, "PageDown", "PgDn"),
 )
 # Cells and keys of + and − for rotary axes, in the machine's order.
-_ROTARY = (
+_ROTARY_DIRECTIONS = (
     ((0, 0, "Insert", "Ins"), (0, 2, "Delete", "Del")),
     ((3, 0, "BracketRight", "]"), (3, 2, "BracketLeft", "[")),
 )
 
 
-def directions_of(machine: Machine) -> tuple[JogDirection, ...]:
+def make_jog_directions(machine: Machine) -> tuple[JogDirection, ...]:
     """Return all jog directions of a machine. A lathe has C only if its spindle can be positioned."""
     if machine.kind != "mill":
-        turning = tuple(replace(each, shown=machine.shown("C")) for each in _LATHE_C)
-        return _LATHE + (turning if machine.c_enabled else ())
-    found = list(_MILL)
+        turning = tuple(
+            replace(each, displayed_axis=machine.displayed_axis_name("C")) for each in _LATHE_C_DIRECTIONS
+        )
+        return _LATHE_DIRECTIONS + (turning if machine.c_enabled else ())
+    found = list(_MILL_DIRECTIONS)
     rotary = [axis.name for axis in machine.axes if axis.rotary]
-    for name, ends in zip(rotary, _ROTARY, strict=False):
+    for name, ends in zip(rotary, _ROTARY_DIRECTIONS, strict=False):
         for sign, end in zip((1, -1), ends, strict=True):
             column, row, key, label = end
             found.append(JogDirection(name, sign, column, row, key, label))
     return tuple(found)
 
 
-BEGINS = 0.3  # Seconds within which the machine must begin to move.
-SILENT = 0.5  # Seconds without a repeat of a repeating key, after which its release counts as lost.
-RENEWED = 4  # Renewals per lease.
+MOTION_TIMEOUT_S = 0.3  # Seconds within which the machine must begin to move.
+REPEAT_TIMEOUT_S = 0.5  # Seconds without a repeat of a repeating key, after which its release counts as lost.
+RENEWALS_PER_LEASE = 4  # Renewals per lease.
 
 
 @dataclass(slots=True)
-class Held:
+class ActiveJog:
     """One continuous jog while its key or touch is held down."""
 
-    source: str
+    key_source: str
     axis: str
     velocity: float
-    rapid: bool
-    since: float
-    posted: float
-    looked: float
-    repeated: float | None = None  # Time of the last key repeat; None before the first repeat.
-    moving: bool = False
-    along: Direction | None = None
+    is_rapid: bool
+    start_time: float
+    post_time: float
+    update_time: float
+    repeat_time: float | None = None  # Time of the last key repeat; None before the first repeat.
+    is_moving: bool = False
+    direction: Direction | None = None
 
 
 @dataclass(slots=True)
 class HeldJog:
     """The jog of one key or touch.
 
-    ``lease`` is in seconds. ``barred`` returns why jogging is not possible now. ``clock`` returns monotonic
-    time in seconds.
+    ``lease_s`` is in seconds. ``find_refusal`` returns why jogging is not possible now. ``clock`` returns
+    monotonic time in seconds.
     """
 
-    starting: ClassVar[Starting] = Starting.JOG
-    speeds: JogSpeeds
-    lease: float
-    post: Callable[[Command], None]
-    say: Callable[[str], None]
-    clear: Callable[[], None]
+    starting_action: ClassVar[StartingAction] = StartingAction.JOG
+    jog_speeds: JogSpeeds
+    lease_s: float
+    post_command: Callable[[Command], None]
+    show_message: Callable[[str], None]
+    clear_message: Callable[[], None]
     clock: Callable[[], float]
-    barred: Callable[[], str]
-    mode: Mode = field(default_factory=Mode)
+    find_refusal: Callable[[], str]
+    value_mode: ValueMode = field(default_factory=ValueMode)
     # Direction in a tilted plane (3D-ROT).
-    along: Callable[[str], Direction | None] = field(default=lambda _axis: None)
+    find_direction: Callable[[str], Direction | None] = field(default=lambda _axis: None)
     # Returns whether a late press must not start the action.
-    refuses: Callable[[Starting], bool] = field(default=lambda _starting: False)
-    held: Held | None = None
-    rapid_armed: bool = False  # Rapid was selected on the screen, for the next jog only.
-    button: str = ""  # Input name of the last press, if it was a button at the machine.
-    down: set[str] = field(default_factory=set)  # Keys and touches that are pressed.
+    refuses_late_press: Callable[[StartingAction], bool] = field(default=lambda _starting: False)
+    active_jog: ActiveJog | None = None
+    is_rapid_armed: bool = False  # Rapid was selected on the screen, for the next jog only.
+    last_button: str = ""  # Input name of the last press, if it was a button at the machine.
+    keys_down: set[str] = field(default_factory=set)  # Keys and touches that are pressed.
     _ended: str = ""  # Reason for the end of the last jog, shown again when the axis is at rest.
 
-    def press(self, source: str, axis: str, sign: int, *, rapid: bool, button: str = "") -> None:
+    def press_direction(self, source: str, axis: str, sign: int, *, is_rapid: bool, button: str = "") -> None:
         """Handle a press on a direction.
 
         ``source`` is the key or touch. ``button`` is the input name of a button at the machine, or empty.
         """
-        others, self._ended = self.down - {source}, ""
-        self.rapid_armed = False
-        self.down.add(source)
-        if others or self.held is not None:
-            self.stop(tr("TWO KEYS PRESSED, JOG STOPPED. RELEASE BOTH, THEN PRESS ONE"))
-        elif self.refuses(self.starting):
+        others, self._ended = self.keys_down - {source}, ""
+        self.is_rapid_armed = False
+        self.keys_down.add(source)
+        if others or self.active_jog is not None:
+            self.stop_jog(tr("TWO KEYS PRESSED, JOG STOPPED. RELEASE BOTH, THEN PRESS ONE"))
+        elif self.refuses_late_press(self.starting_action):
             pass
-        elif why := self.barred():
-            self.say(why)
+        elif why := self.find_refusal():
+            self.show_message(why)
         else:
-            self.button = button
-            self._go(source, axis, sign, rapid)
+            self.last_button = button
+            self._start_jog(source, axis, sign, is_rapid)
 
-    def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
+    def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         """Start a step or a continuous jog. Subclasses may start another motion."""
-        if self.speeds.step != CONTINUOUS:
-            self._step(axis, sign, rapid)
+        if self.jog_speeds.step_index != CONTINUOUS_STEP:
+            self._start_step(axis, sign, rapid)
         else:
             self._begin(source, axis, sign, rapid)
 
-    def _step(self, axis: str, sign: int, rapid: bool) -> None:
+    def _start_step(self, axis: str, sign: int, rapid: bool) -> None:
         """Start one step. Holding the key does not make the step longer."""
         if rapid:
-            self.say(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT OR RELEASE SHIFT"))
+            self.show_message(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT OR RELEASE SHIFT"))
             return
-        self.clear()
-        distance = sign * self.speeds.distance(axis, self.mode)
-        self.post(JogStep(axis, distance, self.speeds.step_speed(axis), self.along(axis)))
+        self.clear_message()
+        distance = sign * self.jog_speeds.find_step_length(axis, self.value_mode)
+        self.post_command(
+            JogByStep(axis, distance, self.jog_speeds.find_step_speed(axis), self.find_direction(axis))
+        )
 
     def _begin(self, source: str, axis: str, sign: int, rapid: bool) -> None:
-        velocity = sign * self.speeds.velocity(axis, self.mode, rapid=rapid)
-        along = self.along(axis)
-        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease, self.button, along))
+        velocity = sign * self.jog_speeds.find_velocity(axis, self.value_mode, is_rapid=rapid)
+        along = self.find_direction(axis)
+        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease_s, self.last_button, along))
 
     def _hold(self, source: str, axis: str, velocity: float, rapid: bool, command: Command) -> None:
-        self.clear()
+        self.clear_message()
         now = self.clock()
         along = command.along if isinstance(command, Jog) else None
-        self.held = Held(source, axis, velocity, rapid, now, now, now, along=along)
-        self.post(command)
+        self.active_jog = ActiveJog(source, axis, velocity, rapid, now, now, now, direction=along)
+        self.post_command(command)
 
-    def repeated(self, source: str) -> None:
+    def note_repeat(self, source: str) -> None:
         """Note a key repeat, which shows that the key is still down."""
-        if self.held is not None and self.held.source == source:
-            self.held.repeated = self.clock()
+        if self.active_jog is not None and self.active_jog.key_source == source:
+            self.active_jog.repeat_time = self.clock()
 
-    def release(self, source: str) -> None:
+    def release_key(self, source: str) -> None:
         """Handle the release of a key or touch."""
-        self.down.discard(source)
-        if self.held is not None and self.held.source == source:
-            self.stop("")
+        self.keys_down.discard(source)
+        if self.active_jog is not None and self.active_jog.key_source == source:
+            self.stop_jog("")
 
-    def other_key(self) -> None:
+    def stop_for_other_key(self) -> None:
         """End the jog because another key was pressed, so that the operator may not be watching the axis."""
-        if self.held is not None:
-            self.stop(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
+        if self.active_jog is not None:
+            self.stop_jog(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
 
-    def shift_released(self) -> None:
+    def release_shift(self) -> None:
         """End a rapid jog when Shift is released."""
-        if self.held is not None and self.held.rapid:
-            self.stop(tr("SHIFT RELEASED. RAPID STOPPED"))
+        if self.active_jog is not None and self.active_jog.is_rapid:
+            self.stop_jog(tr("SHIFT RELEASED. RAPID STOPPED"))
 
-    def let_go(self, why: str = "") -> None:
+    def release_all(self, reason: str = "") -> None:
         """Release all keys and end the jog, because no release event will arrive."""
-        self.down.clear()
-        if self.held is not None:
-            self.stop(why)
+        self.keys_down.clear()
+        if self.active_jog is not None:
+            self.stop_jog(reason)
 
-    def stop(self, why: str) -> None:
+    def stop_jog(self, reason: str) -> None:
         """End the jog. Nothing moves until all keys are released."""
-        if self.held is not None:
-            self.held = None
-            self.post(JogStop())
-        if why:
-            self._ended = why
-            self.say(why)
+        if self.active_jog is not None:
+            self.active_jog = None
+            self.post_command(StopJog())
+        if reason:
+            self._ended = reason
+            self.show_message(reason)
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Renew the lease of the jog, or end the jog after an error; called once a frame."""
-        self.mode = Mode(snapshot.modal.metric, snapshot.reads_diameter)
-        held, now = self.held, self.clock()
+        self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
+        held, now = self.active_jog, self.clock()
         if held is None:
-            self._say_again(snapshot)
+            self._repeat_reason(snapshot)
             return
-        away, held.looked = now - held.looked, now
-        if away > self.lease:
-            self.stop(tr("SCREEN FROZE. JOG STOPPED"))
-        elif held.repeated is not None and now - held.repeated > SILENT:
-            self.stop(tr("JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN"))
-        elif snapshot.state is State.JOG:
-            held.moving = True
+        away, held.update_time = now - held.update_time, now
+        if away > self.lease_s:
+            self.stop_jog(tr("SCREEN FROZE. JOG STOPPED"))
+        elif held.repeat_time is not None and now - held.repeat_time > REPEAT_TIMEOUT_S:
+            self.stop_jog(tr("JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN"))
+        elif snapshot.state is MachineState.JOG:
+            held.is_moving = True
             self._renew(held, now)
-        elif held.moving or snapshot.state is not State.IDLE or now - held.since > BEGINS:
-            self.held = None  # The machine has ended the motion or never began it.
-            self.post(JogStop())
+        elif (
+            held.is_moving
+            or snapshot.state is not MachineState.IDLE
+            or now - held.start_time > MOTION_TIMEOUT_S
+        ):
+            self.active_jog = None  # The machine has ended the motion or never began it.
+            self.post_command(StopJog())
 
-    def _say_again(self, snapshot: Snapshot) -> None:
+    def _repeat_reason(self, snapshot: Snapshot) -> None:
         """Show the reason of the end again, because a change of state removed the first message."""
-        if self._ended and snapshot.state is not State.JOG:
-            self.say(self._ended)
+        if self._ended and snapshot.state is not MachineState.JOG:
+            self.show_message(self._ended)
             self._ended = ""
 
-    def _renew(self, held: Held, now: float) -> None:
-        if now - held.posted >= self.lease / RENEWED:
-            held.posted = now
-            self.post(self._renewal(held))
+    def _renew(self, held: ActiveJog, now: float) -> None:
+        if now - held.post_time >= self.lease_s / RENEWALS_PER_LEASE:
+            held.post_time = now
+            self.post_command(self._renewal(held))
 
-    def _renewal(self, held: Held, /) -> Command:
-        return Jog(held.axis, held.velocity, self.lease, self.button, held.along)
+    def _renewal(self, held: ActiveJog, /) -> Command:
+        return Jog(held.axis, held.velocity, self.lease_s, self.last_button, held.direction)

@@ -7,28 +7,28 @@ from enum import StrEnum
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from core.executor.commands import Home
-from core.executor.snapshot import Snapshot, State
+from core.executor.commands import HomeAxes
+from core.executor.snapshot import MachineState, Snapshot
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 
 
-class AxisState(StrEnum):
+class HomingState(StrEnum):
     """Homing state of an axis."""
 
     HOMED = "HOMED"
-    LOST = "NOT HOMED"
-    LOOKING = "HOMING"
+    NOT_HOMED = "NOT HOMED"
+    HOMING = "HOMING"
     ABSOLUTE = "ABSOLUTE"  # The encoder is absolute and needs no homing.
 
     @property
-    def words(self) -> str:
+    def state_name(self) -> str:
         """The translated name of the state."""
         words = {
-            AxisState.HOMED: tr("HOMED"),
-            AxisState.LOST: tr("NOT HOMED"),
-            AxisState.LOOKING: tr("HOMING"),
-            AxisState.ABSOLUTE: tr("ABSOLUTE"),
+            HomingState.HOMED: tr("HOMED"),
+            HomingState.NOT_HOMED: tr("NOT HOMED"),
+            HomingState.HOMING: tr("HOMING"),
+            HomingState.ABSOLUTE: tr("ABSOLUTE"),
         }
         return words[self]
 
@@ -42,12 +42,12 @@ class HomingQuestion:
     _asked: bool = False
 
     @property
-    def asking(self) -> bool:
+    def is_open(self) -> bool:
         """Whether this question is open."""
-        return self._asked and self.desk.asked == "Enter"
+        return self._asked and self.desk.confirm_key == "Enter"
 
     @property
-    def axes(self) -> tuple[Axis, ...]:
+    def homing_axes(self) -> tuple[Axis, ...]:
         """The axes that can be homed. C of a lathe is included only if the spindle is an axis."""
         return tuple(
             a
@@ -55,74 +55,76 @@ class HomingQuestion:
             if a.name != "C" or self.machine.c_enabled or self.machine.kind != "lathe"
         )
 
-    def known(self, snapshot: Snapshot) -> dict[str, AxisState]:
+    def find_states(self, snapshot: Snapshot) -> dict[str, HomingState]:
         """Return the homing state of every axis."""
         homed = dict(zip(snapshot.axes, snapshot.homed, strict=True))
-        lost = sorted((a for a in self.axes if not homed[a.name]), key=lambda axis: axis.home_order)
-        known = {a.name: AxisState.ABSOLUTE if a.absolute else AxisState.HOMED for a in self.axes}
-        known |= {axis.name: AxisState.LOST for axis in lost}
-        if snapshot.state is State.HOME and lost:
-            known[lost[0].name] = AxisState.LOOKING
+        lost = sorted((a for a in self.homing_axes if not homed[a.name]), key=lambda axis: axis.home_order)
+        known = {a.name: HomingState.ABSOLUTE if a.absolute else HomingState.HOMED for a in self.homing_axes}
+        known |= {axis.name: HomingState.NOT_HOMED for axis in lost}
+        if snapshot.state is MachineState.HOME and lost:
+            known[lost[0].name] = HomingState.HOMING
         return known
 
-    def lost(self, snapshot: Snapshot) -> list[str]:
+    def find_unhomed(self, snapshot: Snapshot) -> list[str]:
         """Return the names of the axes that must be homed, in homing order."""
-        known = self.known(snapshot)
-        order = sorted(self.axes, key=lambda axis: axis.home_order)
-        return [axis.name for axis in order if known[axis.name] in {AxisState.LOST, AxisState.LOOKING}]
+        known = self.find_states(snapshot)
+        order = sorted(self.homing_axes, key=lambda axis: axis.home_order)
+        return [
+            axis.name for axis in order if known[axis.name] in {HomingState.NOT_HOMED, HomingState.HOMING}
+        ]
 
-    def key(self, snapshot: Snapshot, why_not: str) -> None:
-        """Handle the home key: ask which axes to home, or show ``why_not``."""
-        lost = self.lost(snapshot)
-        if why_not:
-            self.desk.say(why_not)
+    def handle_home_key(self, snapshot: Snapshot, refusal: str) -> None:
+        """Handle the home key: ask which axes to home, or show ``refusal``."""
+        lost = self.find_unhomed(snapshot)
+        if refusal:
+            self.desk.say(refusal)
         elif not lost:
             self.desk.say(tr("ALL AXES HOMED"))
         else:
             text = tr("HOME {first}. ENTER: ALL AXES   {letters}: ONE AXIS   ESC: CANCEL")
             order = tr(", THEN ").join(lost)
             question = tr(Message(text, first=order, letters=tr(" OR ").join(sorted(lost))))
-            self.desk.ask(_stands(snapshot) + question, lambda: self._go(""), "Enter")
+            self.desk.ask_operator(_make_tool_warning(snapshot) + question, lambda: self._go(""), "Enter")
             self._asked = True
 
-    def answer(self, key: str, snapshot: Snapshot) -> bool:
+    def answer_axis(self, key: str, snapshot: Snapshot) -> bool:
         """Handle the letter of an axis while the question is open. Any other key cancels the question.
 
         Return True if the key was an axis letter.
         """
-        if not self.asking:
+        if not self.is_open:
             return False
-        name, read = key.upper(), self.desk.read
-        self.give_up()
-        if name in {axis.name for axis in self.axes}:
-            if name not in self.lost(snapshot):
+        name, read = key.upper(), self.desk.was_question_read
+        self.cancel()
+        if name in {axis.name for axis in self.homing_axes}:
+            if name not in self.find_unhomed(snapshot):
                 self.desk.say(tr(Message("{axis} IS ALREADY HOMED", axis=name)))
             elif read:
                 self._go(name)
             return True
         return False
 
-    def one(self, name: str, snapshot: Snapshot, why_not: str) -> None:
+    def home_axis(self, name: str, snapshot: Snapshot, refusal: str) -> None:
         """Handle a touch on one axis: ask first, then home this axis at a second touch."""
-        if self.asking and not why_not:
-            self.answer(name, snapshot)
+        if self.is_open and not refusal:
+            self.answer_axis(name, snapshot)
         else:
-            self.key(snapshot, why_not)
+            self.handle_home_key(snapshot, refusal)
 
     def _go(self, axis: str) -> None:
         self._asked = False
-        self.desk.clear()
-        self.desk.post(Home(axis))
+        self.desk.clear_prompt_line()
+        self.desk.post(HomeAxes(axis))
 
-    def give_up(self) -> bool:
+    def cancel(self) -> bool:
         """Cancel the question. Return False if it was not open."""
-        was, self._asked = self.asking, False
+        was, self._asked = self.is_open, False
         if was:
-            self.desk.clear()
+            self.desk.clear_prompt_line()
         return was
 
 
-def _stands(snapshot: Snapshot) -> str:
+def _make_tool_warning(snapshot: Snapshot) -> str:
     """Return a warning before the question, if a tool may be in a part. Empty otherwise."""
     found = snapshot.interrupted
     if found is None:

@@ -5,28 +5,28 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
-from app.desk.late_presses import Starting
+from app.desk.late_presses import StartingAction
 from app.desk.status import prompt_line
 from app.desk.status.prompt_line import STOP_HELD
 from app.desk.translation import tr
-from app.jog.hand_functions import HandFunctions
-from app.jog.held_jog import CONTINUOUS, JogDirection, JogSpeeds, directions_of
-from app.jog.jog_handwheel import JogHandwheel, PendantJog
+from app.jog.held_jog import CONTINUOUS_STEP, JogDirection, JogSpeeds, make_jog_directions
+from app.jog.jog_handwheel import JogHandwheel, PendantButtons
 from app.jog.jog_homing import HomingQuestion
-from app.jog.skim_and_setter import HeldTouch, SetterTouch, SkimCut
+from app.jog.manual_functions import ManualFunctions
+from app.jog.skim_and_setter import HeldTouchOff, SetterTouchOff, SkimCut
 from app.jog.tilted_jog import TiltedJog
-from app.jog.tool_setting import TOOL, TOUCH_X, TOUCH_Z, ToolSetting
-from app.offsets.mill_touch import MillTouch
-from core.executor.commands import JogStop
-from core.executor.snapshot import ACTIVE, Snapshot, State
+from app.jog.tool_setting import TOOL_QUESTION, TOUCH_X, TOUCH_Z, ToolSetting
+from app.offsets.mill_touch import MillTouchCalculator
+from core.executor.commands import StopJog
+from core.executor.snapshot import ACTIVE_STATES, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 
-LEASE = 0.25  # Maximum lease in seconds, also if the machine file specifies a longer one.
+MAX_LEASE_S = 0.25  # Maximum lease in seconds, also if the machine file specifies a longer one.
 
 # Letters that ask for a value of the selected tool, while no question is open.
-LETTERS = {
-    "t": TOOL,
+QUESTION_LETTERS = {
+    "t": TOOL_QUESTION,
     "x": TOUCH_X,
     "z": TOUCH_Z,
     "n": "nose_radius",
@@ -42,351 +42,367 @@ class JogModel:
 
     desk: Desk
     machine: Machine
-    speeds: JogSpeeds = field(init=False)
-    hold: HeldTouch = field(init=False)
-    wheel: JogHandwheel = field(init=False)
-    home: HomingQuestion = field(init=False)
-    tool: ToolSetting = field(init=False)
-    skim: SkimCut = field(init=False)
-    hand: HandFunctions = field(init=False)
-    setter: SetterTouch = field(init=False)
-    pendant: PendantJog = field(init=False)
-    tilt: TiltedJog = field(init=False)
+    jog_speeds: JogSpeeds = field(init=False)
+    held_jog: HeldTouchOff = field(init=False)
+    handwheel: JogHandwheel = field(init=False)
+    homing_question: HomingQuestion = field(init=False)
+    tool_setting: ToolSetting = field(init=False)
+    skim_cut: SkimCut = field(init=False)
+    manual_functions: ManualFunctions = field(init=False)
+    setter_touch: SetterTouchOff = field(init=False)
+    pendant_buttons: PendantButtons = field(init=False)
+    tilted_jog: TiltedJog = field(init=False)
     directions: tuple[JogDirection, ...] = ()
 
     def __post_init__(self) -> None:
         desk = self.desk
-        self.speeds = JogSpeeds(self.machine)
-        self.directions = directions_of(self.machine)
-        lease = min(self.machine.timing.lease, LEASE)
-        self.hold = HeldTouch(
-            self.speeds,
+        self.jog_speeds = JogSpeeds(self.machine)
+        self.directions = make_jog_directions(self.machine)
+        lease = min(self.machine.timing.lease, MAX_LEASE_S)
+        self.held_jog = HeldTouchOff(
+            self.jog_speeds,
             lease,
             desk.post,
             desk.say,
-            desk.clear,
+            desk.clear_prompt_line,
             self._now,
-            self.barred,
-            refuses=desk.window.late.refuses,
+            self.find_jog_refusal,
+            refuses_late_press=desk.window_state.late_presses.refuse_late_press,
         )
         moved = {each.axis for each in self.directions}
         names = tuple(axis.name for axis in self.machine.axes if axis.name in moved)
-        self.wheel = JogHandwheel(self.machine, self.hold, names, self._wheel_barred)
-        self.home = HomingQuestion(self.machine, desk)
-        self.tool = ToolSetting(desk, desk.book)
-        self.skim = SkimCut(desk, self.tool)
-        hand = desk.pages.find(HandFunctions)
+        self.handwheel = JogHandwheel(self.machine, self.held_jog, names, self._find_wheel_refusal)
+        self.homing_question = HomingQuestion(self.machine, desk)
+        self.tool_setting = ToolSetting(desk, desk.offset_book)
+        self.skim_cut = SkimCut(desk, self.tool_setting)
+        hand = desk.page_registry.find(ManualFunctions)
         if hand is None:
             raise RuntimeError("the desk was put together without functions by hand")
-        self.hand = hand
-        self.setter = SetterTouch(desk, self.machine, self.tool, lease, self.directions)
-        self.hold.setter = self.setter
-        self.pendant = PendantJog(self.machine, self.hold, self.wheel, names)
-        self.tilt = TiltedJog(MillTouch.of(desk).machine, self._end_hold, desk.say)
-        self.hold.along = self.tilt.along
+        self.manual_functions = hand
+        self.setter_touch = SetterTouchOff(desk, self.machine, self.tool_setting, lease, self.directions)
+        self.held_jog.setter_touch = self.setter_touch
+        self.pendant_buttons = PendantButtons(self.machine, self.held_jog, self.handwheel, names)
+        self.tilted_jog = TiltedJog(MillTouchCalculator.find_for(desk).machine, self._end_hold, desk.say)
+        self.held_jog.find_direction = self.tilted_jog.find_direction
 
     @property
-    def asked(self) -> bool:
+    def is_asking(self) -> bool:
         """Whether an entry is open: a question about the tool, or the spindle speed."""
-        return bool(self.tool.asked) or self.hand.asked
+        return bool(self.tool_setting.question_name) or self.manual_functions.is_asking_speed
 
     def _now(self) -> float:
-        return self.desk.hands.clock()
+        return self.desk.station_controls.clock()
 
-    def barred(self) -> str:
+    def find_jog_refusal(self) -> str:
         """Return why axes cannot be jogged now. Empty if they can.
 
         An open homing question is canceled.
         """
-        state = self.desk.snapshot().state
-        if self.desk.window.is_stop_held():
+        state = self.desk.read_snapshot().state
+        if self.desk.window_state.is_stop_held():
             return tr(STOP_HELD)
-        if self.asked:
+        if self.is_asking:
             return tr("ARROWS DO NOT JOG WHILE YOU TYPE A VALUE. PRESS ENTER OR ESC")
-        if self.home.give_up():
+        if self.homing_question.cancel():
             return tr("HOMING CANCELED. PRESS THE ARROW AGAIN TO JOG")
-        return why_no_jog(state)
+        return find_jog_refusal(state)
 
-    def _wheel_barred(self) -> str:
+    def _find_wheel_refusal(self) -> str:
         """Return why the handwheel cannot move an axis now. An open question is not canceled."""
-        if self.tilt.on:
+        if self.tilted_jog.is_on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
-        if self.asked:
+        if self.is_asking:
             return tr("HANDWHEEL IS OFF WHILE YOU ENTER A VALUE")
-        return why_no_jog(self.desk.snapshot().state)
+        return find_jog_refusal(self.desk.read_snapshot().state)
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Update all parts and renew the lease of the jog; called once a frame."""
-        self.tilt.look(snapshot)
-        self.hold.look(snapshot)
-        self.pendant.look(snapshot)
-        self.wheel.look(snapshot)
-        self.setter.look(snapshot)
-        self.tool.look(snapshot)
-        self.skim.look(snapshot)
-        self.hand.look(snapshot)
-        if self.tool.asked and (self.hand.chosen or self.hand.asked):
+        self.tilted_jog.update(snapshot)
+        self.held_jog.update(snapshot)
+        self.pendant_buttons.update(snapshot)
+        self.handwheel.update(snapshot)
+        self.setter_touch.update(snapshot)
+        self.tool_setting.update(snapshot)
+        self.skim_cut.update(snapshot)
+        self.manual_functions.update(snapshot)
+        if self.tool_setting.question_name and (
+            self.manual_functions.selected_function or self.manual_functions.is_asking_speed
+        ):
             # The operator may be at the workpiece, so no line stays prepared during a question.
-            self.hand.take_back()
+            self.manual_functions.cancel_selection()
 
-    def prompt(self, snapshot: Snapshot) -> str:
+    def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the prompt of the page."""
-        if self.tool.by_setter:
+        if self.tool_setting.is_setter_result:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
-        if self.tool.asked:
+        if self.tool_setting.question_name:
             return tr("TYPE VALUE OR EXPRESSION (.5-.002), PRESS ENTER. ESC: CANCEL")
-        return self._prompt_of_work(snapshot) or self._prompt_of_jog(snapshot)
+        return self._make_work_prompt(snapshot) or self._prompt_of_jog(snapshot)
 
-    def _prompt_of_work(self, snapshot: Snapshot) -> str:
+    def _make_work_prompt(self, snapshot: Snapshot) -> str:
         """Return the prompt for work other than jogging. Empty without such work."""
-        hand = self.hand
-        if hand.asked or hand.chosen or hand.under_way(snapshot):
-            return hand.prompt(snapshot)
-        words = self.skim.words(snapshot) or self.setter.prompt(snapshot)
-        return (why_no_jog(snapshot.state) or words) if words else hand.prompt(snapshot)
+        hand = self.manual_functions
+        if hand.is_asking_speed or hand.selected_function or hand.is_line_running(snapshot):
+            return hand.prompt_text(snapshot)
+        words = self.skim_cut.make_step_prompt(snapshot) or self.setter_touch.prompt_text(snapshot)
+        return (find_jog_refusal(snapshot.state) or words) if words else hand.prompt_text(snapshot)
 
     def _prompt_of_jog(self, snapshot: Snapshot) -> str:
-        wheel = self.wheel.choice[0] if self.wheel.choice else ""
-        why = jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
+        wheel = self.handwheel.wheel_choice[0] if self.handwheel.wheel_choice else ""
+        why = make_jog_prompt(
+            snapshot.state, self.homing_question.find_unhomed(snapshot), wheel, self.jog_speeds.step_index
+        )
         if why:
             return why
-        if not self.on_mill and not self.tool.number:
+        if not self.is_mill and not self.tool_setting.tool_number:
             return tr("HOLD AN ARROW TO JOG. SHIFT: RAPID   T: SELECT TOOL")
-        if not self.on_mill:
+        if not self.is_mill:
             return tr("HOLD ARROW TO JOG. SHIFT: RAPID   T: TOOL   X, Z: TOUCH OFF")
-        if self.tilt.on:
+        if self.tilted_jog.is_on:
             return tr("HOLD A KEY TO JOG IN TILTED X' Y' Z'. SHIFT: RAPID")
         return tr("HOLD KEY TO JOG. SHIFT: RAPID   TOUCH OFF: F8 TOOL, F9 PART")
 
     # --- step and speed: any change ends the jog -----------------------------------------------------
 
-    def next_step(self) -> None:
+    def select_next_step(self) -> None:
         """Handle F2: select the next step, and end the jog."""
         self._another_step()
-        self.speeds.next_step()
+        self.jog_speeds.select_next_step()
 
-    def choose_step(self, step: int) -> None:
+    def select_step(self, step: int) -> None:
         """Select a touched step, and end the jog."""
         self._another_step()
-        self.speeds.step, self.hold.rapid_armed = step, False
+        self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step, False
 
-    def next_speed(self) -> None:
+    def select_next_speed(self) -> None:
         """Handle F3: select the next speed, and end the jog."""
         self._another_speed()
-        self.speeds.next_speed()
+        self.jog_speeds.select_next_speed()
 
-    def choose_speed(self, speed: int) -> None:
+    def select_speed(self, speed: int) -> None:
         """Select a touched speed, and end the jog."""
         self._another_speed()
-        self.speeds.speed, self.hold.rapid_armed = speed, False
+        self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed, False
 
-    def arm(self) -> None:
+    def toggle_rapid(self) -> None:
         """Toggle rapid for the next jog by touch. Any other jog cancels it."""
         self._another_speed()
-        self.hold.rapid_armed = not self.hold.rapid_armed
+        self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
 
-    def finger(self, source: str, axis: str, sign: int) -> None:
+    def press_direction(self, source: str, axis: str, sign: int) -> None:
         """Handle a press on a direction by touch or mouse."""
-        self.hold.press(source, axis, sign, rapid=self.hold.rapid_armed)
+        self.held_jog.press_direction(source, axis, sign, is_rapid=self.held_jog.is_rapid_armed)
 
     def _another_step(self) -> None:
-        self.hold.let_go(tr("JOG STOPPED: STEP CHANGED"))
+        self.held_jog.release_all(tr("JOG STOPPED: STEP CHANGED"))
 
     def _another_speed(self) -> None:
-        self.hold.let_go(tr("JOG STOPPED: SPEED CHANGED"))
+        self.held_jog.release_all(tr("JOG STOPPED: SPEED CHANGED"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def ask(self, what: str) -> None:
+    def ask_tool_value(self, quantity: str) -> None:
         """Ask for a value of the tool, and end the jog."""
-        self.hold.other_key()
-        self.hand.take_back()
-        self.skim.drop()
-        self.tool.ask(what)
+        self.held_jog.stop_for_other_key()
+        self.manual_functions.cancel_selection()
+        self.skim_cut.cancel()
+        self.tool_setting.open_question(quantity)
 
     @property
-    def on_mill(self) -> bool:
+    def is_mill(self) -> bool:
         """Whether the machine is a mill, which has separate pages for tools and presets."""
         return self.machine.kind == "mill"
 
-    def turn_tilt(self) -> None:
+    def toggle_tilt(self) -> None:
         """Toggle 3D-ROT, and switch the handwheel off."""
-        self.wheel.drop("")
-        self.tilt.key(why_no_jog(self.desk.snapshot().state))
+        self.handwheel.deselect("")
+        self.tilted_jog.toggle(find_jog_refusal(self.desk.read_snapshot().state))
 
     def _end_hold(self, why: str) -> None:
-        self.hold.let_go(why)
+        self.held_jog.release_all(why)
 
-    def press_hand(self, name: str) -> None:
+    def press_function(self, name: str) -> None:
         """Handle a touch on a manual function, and end the jog."""
-        self.hold.other_key()
-        self.hand.press(name)
+        self.held_jog.stop_for_other_key()
+        self.manual_functions.select_function(name)
 
-    def ask_speed(self) -> None:
+    def ask_spindle_speed(self) -> None:
         """Ask for the spindle speed, and end the jog."""
-        self.hold.other_key()
-        self.hand.ask_speed()
+        self.held_jog.stop_for_other_key()
+        self.manual_functions.ask_speed()
 
-    def show_hand(self) -> None:
+    def toggle_manual(self) -> None:
         """Show or hide the manual functions, and end the jog."""
-        self.hold.other_key()
-        self.hand.toggle()
+        self.held_jog.stop_for_other_key()
+        self.manual_functions.toggle_shown()
 
-    def choose_master(self) -> None:
+    def ask_master(self) -> None:
         """Ask whether the selected tool becomes the master, and end the jog."""
-        self.hold.other_key()
-        self.tool.master()
+        self.held_jog.stop_for_other_key()
+        self.tool_setting.ask_master()
 
-    def touch_at_setter(self) -> None:
+    def start_setter_touch(self) -> None:
         """Start a touch-off at the tool setter. End the jog, and switch the handwheel off."""
-        self.hold.other_key()
-        self.wheel.drop("")
-        self.home.give_up()
-        self.setter.key()
+        self.held_jog.stop_for_other_key()
+        self.handwheel.deselect("")
+        self.homing_question.cancel()
+        self.setter_touch.toggle_armed()
 
     @property
-    def wheel_drawn(self) -> bool:
+    def is_wheel_shown(self) -> bool:
         """Whether the handwheel on the screen moves an axis now. It exists only with a simulated station."""
-        return self.wheel.choice is not None and self.desk.hands.station is not None
+        return self.handwheel.wheel_choice is not None and self.desk.station_controls.station is not None
 
-    def turn_wheel(self, clicks: int) -> None:
+    def turn_handwheel(self, clicks: int) -> None:
         """Turn the handwheel on the screen."""
-        station = self.desk.hands.station
-        if self.wheel_drawn and station is not None and not self.desk.window.late.refuses(Starting.HANDWHEEL):
-            station.turn_handwheel(clicks * self.wheel.counts)
+        station = self.desk.station_controls.station
+        if (
+            self.is_wheel_shown
+            and station is not None
+            and not self.desk.window_state.late_presses.refuse_late_press(StartingAction.HANDWHEEL)
+        ):
+            station.turn_handwheel(clicks * self.handwheel.counts_per_click)
 
-    def home_key(self) -> None:
+    def handle_home_key(self) -> None:
         """Handle the home key, which asks which axes to home."""
-        self.hold.let_go()
-        self.wheel.drop("")
-        self.home.key(self.desk.snapshot(), self._no_homing())
+        self.held_jog.release_all()
+        self.handwheel.deselect("")
+        self.homing_question.handle_home_key(self.desk.read_snapshot(), self._no_homing())
 
-    def home_one(self, axis: str) -> None:
+    def home_axis(self, axis: str) -> None:
         """Handle a touch on the homing target of one axis. A second touch homes the axis."""
-        self.hold.let_go()
-        self.wheel.drop("")
-        self.home.one(axis, self.desk.snapshot(), self._no_homing())
+        self.held_jog.release_all()
+        self.handwheel.deselect("")
+        self.homing_question.home_axis(axis, self.desk.read_snapshot(), self._no_homing())
 
     def _no_homing(self) -> str:
-        if self.asked:
+        if self.is_asking:
             return tr("FINISH THE ENTRY FIRST: PRESS ENTER OR ESC")
-        state = self.desk.snapshot().state
-        return tr("AXES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
+        state = self.desk.read_snapshot().state
+        return tr("AXES ARE STILL MOVING") if state is MachineState.JOG else find_jog_refusal(state)
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Prepare for the open page: ignore earlier changes of offsets, and let Cycle Start run lines."""
-        self.tool.history.opened()
-        self.hand.opened()
+        self.tool_setting.history.on_open()
+        self.manual_functions.on_open()
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Return False to leave the key to the window."""
-        if self.asked:
-            return self.hand.typed(key) if self.hand.asked else self.tool.typed(key)
-        if self.home.answer(key, self.desk.snapshot()):
+        if self.is_asking:
+            return (
+                self.manual_functions.handle_key(key)
+                if self.manual_functions.is_asking_speed
+                else self.tool_setting.handle_key(key)
+            )
+        if self.homing_question.answer_axis(key, self.desk.read_snapshot()):
             return True
-        if (not self.on_mill and self.skim.typed(key)) or self.hand.typed(key):
+        if (not self.is_mill and self.skim_cut.handle_key(key)) or self.manual_functions.handle_key(key):
             return True
         if key in {"v", "V"}:
-            self.wheel.next_axis()
-        elif self.on_mill:
+            self.handwheel.select_next_axis()
+        elif self.is_mill:
             return False
         elif key in {"p", "P"}:
-            self.touch_at_setter()
+            self.start_setter_touch()
         elif key in {"m", "M"}:
-            self.tool.master()
-        elif key.lower() in LETTERS:
-            self.ask(LETTERS[key.lower()])
+            self.tool_setting.ask_master()
+        elif key.lower() in QUESTION_LETTERS:
+            self.ask_tool_value(QUESTION_LETTERS[key.lower()])
         else:
             return False
         return True
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether this character has a function on this page."""
-        own = {"v", "b"} if self.on_mill else {*LETTERS, "m", "v", "p", "b", "c"}
-        if self.asked:
-            return self.hand.takes(key) or self.tool.takes(key)
+        own = {"v", "b"} if self.is_mill else {*QUESTION_LETTERS, "m", "v", "p", "b", "c"}
+        if self.is_asking:
+            return self.manual_functions.accepts_key(key) or self.tool_setting.accepts_key(key)
         return key.lower() in own
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Handle Esc: end the jog, or cancel a question or entry. Return False if there was nothing to do."""
-        if self.hold.held is not None:
-            self.hold.let_go()
+        if self.held_jog.active_jog is not None:
+            self.held_jog.release_all()
             return True
-        if self.setter.armed:
-            self.setter.drop()
+        if self.setter_touch.is_armed:
+            self.setter_touch.cancel()
             return True
-        if self.wheel.choice is not None:
-            self.wheel.drop(tr("HANDWHEEL IS OFF"))
+        if self.handwheel.wheel_choice is not None:
+            self.handwheel.deselect(tr("HANDWHEEL IS OFF"))
             return True
-        if self.home.give_up() or self.hand.take_back_by_key():
+        if self.homing_question.cancel() or self.manual_functions.handle_cancel_key():
             return True
-        return self.skim.escape() or self.tool.escape() or self.hand.hide()
+        return (
+            self.skim_cut.handle_escape()
+            or self.tool_setting.handle_escape()
+            or self.manual_functions.hide_functions()
+        )
 
     @property
-    def active(self) -> bool:
+    def is_active(self) -> bool:
         """Whether a key is held down or the handwheel is selected."""
-        return self.hold.held is not None or self.wheel.choice is not None
+        return self.held_jog.active_jog is not None or self.handwheel.wheel_choice is not None
 
-    def let_go(self) -> None:
+    def release_all(self) -> None:
         """End the jog and the handwheel, because the page no longer gets key events."""
-        self.hold.let_go(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
-        self.wheel.drop(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
-        self.hold.rapid_armed = False
+        self.held_jog.release_all(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
+        self.handwheel.deselect(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
+        self.held_jog.is_rapid_armed = False
         self._stop_step()
 
     def _stop_step(self) -> None:
-        if self.desk.snapshot().state is State.JOG:
-            self.desk.post(JogStop())
+        if self.desk.read_snapshot().state is MachineState.JOG:
+            self.desk.post(StopJog())
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Return whether the page can close. If it can, end all motion, questions and entries."""
-        self.hold.let_go()
-        if not self.hand.leave():
+        self.held_jog.release_all()
+        if not self.manual_functions.try_leave():
             return False
-        self.wheel.drop("")
+        self.handwheel.deselect("")
         self._stop_step()
-        self.home.give_up()
-        self.hold.rapid_armed = False
-        self.tilt.off()
-        self.setter.drop()
-        self.skim.drop()
-        self.tool.forget()
-        self.desk.clear()
+        self.homing_question.cancel()
+        self.held_jog.is_rapid_armed = False
+        self.tilted_jog.switch_off()
+        self.setter_touch.cancel()
+        self.skim_cut.cancel()
+        self.tool_setting.cancel_new_tool()
+        self.desk.clear_prompt_line()
         return True
 
 
-def why_no_jog(state: State) -> str:
+def find_jog_refusal(state: MachineState) -> str:
     """Return why manual motion is not possible in this state. Empty if it is possible."""
     words = {
-        State.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
-        State.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
-        State.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
-        State.HOME: tr("HOMING. PRESS H TO STOP"),
+        MachineState.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
+        MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
+        MachineState.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
+        MachineState.HOME: tr("HOMING. PRESS H TO STOP"),
     }
-    if state in ACTIVE:
+    if state in ACTIVE_STATES:
         return tr("PROGRAM RUNNING. TO JOG, LET IT END OR PRESS PAUSE, THEN R")
-    if state in prompt_line.INTERRUPTED:
+    if state in prompt_line.INTERRUPTED_STATES:
         return tr("PROGRAM NOT FINISHED. TO JOG, LET IT END OR CANCEL IT (R)")
     return words.get(state, "")
 
 
-def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
+def make_jog_prompt(state: MachineState, unhomed_axes: list[str], wheel_axis: str, step_index: int) -> str:
     """Return the prompt for manual motion.
 
     ``lost`` are the axes that are not homed. ``wheel`` is the axis of the handwheel, or empty.
     """
-    why = why_no_jog(state)
+    why = find_jog_refusal(state)
     if why:
         return why
-    if lost:
+    if unhomed_axes:
         return tr(
             Message(
                 "{axes} NOT HOMED: SOFT LIMITS ARE OFF. JOG SLOWLY. PRESS HOME",
-                axes=tr(" AND ").join(sorted(lost)),
+                axes=tr(" AND ").join(sorted(unhomed_axes)),
             )
         )
-    if wheel:
-        return tr(Message("HANDWHEEL MOVES {axis}, ONE STEP PER CLICK. V: NEXT AXIS", axis=wheel))
-    if step != CONTINUOUS:
+    if wheel_axis:
+        return tr(Message("HANDWHEEL MOVES {axis}, ONE STEP PER CLICK. V: NEXT AXIS", axis=wheel_axis))
+    if step_index != CONTINUOUS_STEP:
         return tr("EACH ARROW PRESS JOGS ONE STEP. F2: STEP SIZE")
     return ""

@@ -12,93 +12,101 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.jog.held_jog import CONTINUOUS, rapid_word, speed_words, step_words, turn_words
-from app.jog.held_keys_view import JogCross, draw_middle
-from app.jog.jog_homing import AxisState
+from app.jog.held_jog import (
+    CONTINUOUS_STEP,
+    format_rapid_speed,
+    make_rotary_speed_labels,
+    make_speed_labels,
+    make_step_labels,
+)
+from app.jog.held_keys_view import JogCross, draw_jog_mode
+from app.jog.jog_homing import HomingState
 from app.jog.jog_model import JogModel
-from app.offsets.offset_values import Mode
-from app.screen.look import CENTRE, Look, Painter
-from app.screen.panel import Control, Shown, pressed
-from app.screen.window_layout import FINGER
+from app.offsets.offset_values import ValueMode
+from app.screen.panel import RedrawingAttribute, TouchControl, make_press_control
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import Message
 
 # --- rows of tiles ------------------------------------------------------------------------------------
 
 
-NAME = 8.4  # Units: width of the row name.
-SHORT = 4  # Letters: a longer word gets a wider tile.
+NAME_WIDTH = 8.4  # Units: width of the row name.
+SHORT_WORD_LENGTH = 4  # Letters: a longer word gets a wider tile.
 
 
 @dataclass(frozen=True, slots=True)
-class Tiles:
+class TileRow:
     """A row of touch tiles.
 
-    ``name`` is the row name with its key. ``warn`` colors the selected tile as a warning, and ``alarmed`` are
-    tiles in the alarm color.
+    ``name`` is the row name with its key. ``is_warning`` colors the selected tile as a warning, and
+    ``alarmed_indices`` are tiles in the alarm color.
     """
 
-    name: tuple[str, str]
-    words: tuple[str, ...]
-    presses: Sequence[Callable[[], None]]
-    chosen: int = -1
-    warn: bool = False
-    alarmed: frozenset[int] = frozenset()
+    row_name: tuple[str, str]
+    labels: tuple[str, ...]
+    actions: Sequence[Callable[[], None]]
+    selected_index: int = -1
+    is_warning: bool = False
+    alarmed_indices: frozenset[int] = frozenset()
 
 
-def draw_tiles(painter: Painter, row: QRectF, tiles: Tiles) -> list[tuple[QRectF, Callable[[], None]]]:
+def draw_tiles(
+    painter: ThemedPainter, row: QRectF, tiles: TileRow
+) -> list[tuple[QRectF, Callable[[], None]]]:
     """Draw a row of tiles, and return the rectangle and action of each tile."""
-    u, left = painter.look.u, row.x()
-    if tiles.name[0]:
-        left += NAME * u
-        _name(painter, QRectF(row.x(), row.y(), (NAME - 0.6) * u, row.height()), tiles.name)
-    shares = [1.0 + 0.11 * max(0, len(word) - SHORT) for word in tiles.words]
+    u, left = painter.theme.u, row.x()
+    if tiles.row_name[0]:
+        left += NAME_WIDTH * u
+        _name(painter, QRectF(row.x(), row.y(), (NAME_WIDTH - 0.6) * u, row.height()), tiles.row_name)
+    shares = [1.0 + 0.11 * max(0, len(word) - SHORT_WORD_LENGTH) for word in tiles.labels]
     part = (row.right() - left + 0.6 * u) / sum(shares)
     boxes = []
-    for number, (word, share) in enumerate(zip(tiles.words, shares, strict=True)):
+    for number, (word, share) in enumerate(zip(tiles.labels, shares, strict=True)):
         box = QRectF(left, row.y(), share * part - 0.6 * u, row.height())
         left += share * part
-        _tile(painter, box, word, tiles, number)
+        _draw_tile(painter, box, word, tiles, number)
         boxes.append(box)
-    return list(zip(boxes, tiles.presses, strict=True))
+    return list(zip(boxes, tiles.actions, strict=True))
 
 
-def _name(painter: Painter, box: QRectF, name: tuple[str, str]) -> None:
+def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:
     half = box.height() / 2
-    painter.write(QRectF(box.x(), box.y(), box.width(), half), name[0], 1.5, "soft")
-    painter.write(QRectF(box.x(), box.y() + half, box.width(), half), name[1], 1.6, "accent")
+    painter.draw_text_line(QRectF(box.x(), box.y(), box.width(), half), name[0], 1.5, "soft")
+    painter.draw_text_line(QRectF(box.x(), box.y() + half, box.width(), half), name[1], 1.6, "accent")
 
 
-def _tile(painter: Painter, box: QRectF, word: str, tiles: Tiles, number: int) -> None:
+def _draw_tile(painter: ThemedPainter, box: QRectF, word: str, tiles: TileRow, number: int) -> None:
     """Draw one tile, filled if it is selected, and in a warning color if necessary."""
     ink, ground, line = "text", "key", "frame"
-    if number in tiles.alarmed:
+    if number in tiles.alarmed_indices:
         ink = line = "alarm"
-    if number == tiles.chosen:
-        ground = line = "pause" if tiles.warn else "lit"
-        ink = "on_state" if tiles.warn else "on_lit"
-    painter.box(box, line, 0.16, ground)
-    painter.write(box, word, 2.1, ink, at=CENTRE, margin=0.8)
+    if number == tiles.selected_index:
+        ground = line = "pause" if tiles.is_warning else "lit"
+        ink = "on_state" if tiles.is_warning else "on_lit"
+    painter.draw_box(box, line, 0.16, ground)
+    painter.draw_text_line(box, word, 2.1, ink, at=ALIGN_CENTER, margin=0.8)
 
 
 # --- the drawn handwheel ------------------------------------------------------------------------------
 
 
-CLICK = 3.6  # Degrees per click: 100 clicks per revolution.
-_NOTCH = 120  # One notch of the mouse wheel in Qt's unit.
-_SPOKES = 24
+DEGREES_PER_CLICK = 3.6  # Degrees per click: 100 clicks per revolution.
+_WHEEL_NOTCH = 120  # One notch of the mouse wheel in Qt's unit.
+_SPOKE_COUNT = 24
 
 
-class Dial:
-    """The handwheel on the screen. ``turned`` gets the number of clicks, clockwise positive."""
+class HandwheelDial:
+    """The handwheel on the screen. ``on_turned`` gets the number of clicks, clockwise positive."""
 
-    def __init__(self, turned: Callable[[int], None]) -> None:
-        self._turned = turned
+    def __init__(self, on_turned: Callable[[int], None]) -> None:
+        self._turned = on_turned
         self._angle = 0.0  # Drawn angle in degrees.
         self._at = 0.0  # Angle of the touch in degrees.
         self._rest = 0.0  # Remaining degrees of an incomplete click.
 
-    def control(self, box: QRectF) -> Control:
+    def make_control(self, box: QRectF) -> TouchControl:
         """Return the control that turns the handwheel by touch."""
 
         def bearing(at: QPointF) -> float:
@@ -113,71 +121,76 @@ class Dial:
             self._turn((here - self._at + 180.0) % 360.0 - 180.0)
             self._at = here
 
-        return Control(box, down, along, name="HANDWHEEL", kind="slider")
+        return TouchControl(box, down, along, name="HANDWHEEL", kind="slider")
 
-    def notches(self, delta: int) -> None:
+    def turn_by_mouse_wheel(self, delta: int) -> None:
         """Turn the handwheel by the mouse wheel. ``delta`` is in Qt's unit; positive turns clockwise."""
-        self._turn(CLICK * delta / _NOTCH)
+        self._turn(DEGREES_PER_CLICK * delta / _WHEEL_NOTCH)
 
-    def draw(self, painter: Painter, box: QRectF, click: str) -> None:
+    def draw(self, painter: ThemedPainter, box: QRectF, click_text: str) -> None:
         """Draw the handwheel at its present angle, with the distance per click."""
-        size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.look.u
-        painter.setPen(painter.look.pen("accent", 0.24))
+        size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.theme.u
+        painter.setPen(painter.theme.make_pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
-        for spoke in range(_SPOKES):
-            angle = math.radians(self._angle + 360.0 * spoke / _SPOKES)
+        for spoke in range(_SPOKE_COUNT):
+            angle = math.radians(self._angle + 360.0 * spoke / _SPOKE_COUNT)
             out = QPointF(math.cos(angle), math.sin(angle))
             inner = 0.72 if spoke == 0 else 0.88
             painter.drawLine(box.center() + out * (inner * size), box.center() + out * size)
         inside = QRectF(box.center().x() - 0.6 * size, box.y(), 1.2 * size, box.height())
-        painter.write(inside, click, 2.4, "text", at=CENTRE)
+        painter.draw_text_line(inside, click_text, 2.4, "text", at=ALIGN_CENTER)
 
     def _turn(self, degrees: float) -> None:
         self._rest += degrees
-        clicks = int(self._rest / CLICK)  # Rounded toward 0.
+        clicks = int(self._rest / DEGREES_PER_CLICK)  # Rounded toward 0.
         if clicks:
-            self._rest -= clicks * CLICK
-            self._angle += clicks * CLICK
+            self._rest -= clicks * DEGREES_PER_CLICK
+            self._angle += clicks * DEGREES_PER_CLICK
             self._turned(clicks)
 
 
 ROW, HELD = 5.0, 9.4  # Minimum height in units of a row of tiles and of a jog target.
-CROSS = 3  # Rows of jog targets.
-DrawRow = Callable[[Painter, QRectF], None]
+CROSS_ROWS = 3  # Rows of jog targets.
+DrawTileRow = Callable[[ThemedPainter, QRectF], None]
 
 
 class JogPad(JogCross):
     """The jog pad with all its targets, which are as large as the room allows."""
 
-    _shown: Shown[object] = Shown(None)
-    _known: Shown[Mapping[str, AxisState]] = Shown({})
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
+    _known: RedrawingAttribute[Mapping[str, HomingState]] = RedrawingAttribute({})
 
-    def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
-        super().__init__(look, model.hold, model.directions, model.finger, parent)
+    def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
+        super().__init__(theme, model.held_jog, model.directions, model.press_direction, parent)
         self._model = model
-        self._dial = Dial(model.turn_wheel)
+        self._dial = HandwheelDial(model.turn_handwheel)
 
-    def show_jog(self, snapshot: Snapshot) -> None:
+    def show_state(self, snapshot: Snapshot) -> None:
         """Show the selected step and speed, the active target and the homing states."""
         model = self._model
-        self._known = model.home.known(snapshot)
-        held = model.hold.held
+        self._known = model.homing_question.find_states(snapshot)
+        held = model.held_jog.active_jog
         self._shown = (
-            (model.speeds.step, model.speeds.speed, model.hold.rapid_armed, model.hold.mode),
+            (
+                model.jog_speeds.step_index,
+                model.jog_speeds.speed_index,
+                model.held_jog.is_rapid_armed,
+                model.held_jog.value_mode,
+            ),
             (held.axis, held.velocity) if held else None,
-            (model.wheel.choice, model.home.asking, snapshot.state),
-            (model.setter.armed, snapshot.touching, model.tilt.on),
+            (model.handwheel.wheel_choice, model.homing_question.is_open, snapshot.state),
+            (model.setter_touch.is_armed, snapshot.touch_phase, model.tilted_jog.is_on),
         )
-        self.mark = "'" if model.tilt.on else ""
+        self.axis_suffix = "'" if model.tilted_jog.is_on else ""
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.controls.clear()
         self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
-        u = self.look.u
+        u = self.theme.u
         room = self.inside().adjusted(-0.4 * u, 0, 0.4 * u, 0.3 * u)
-        rows = self._rows(room)
+        rows = self._make_row_drawers(room)
         high = self._tile_height(room, len(rows) + 1) + 0.6 * u
         row = QRectF(room.x(), room.y(), room.width(), high - 0.6 * u)
         for draw in rows:
@@ -185,150 +198,182 @@ class JogPad(JogCross):
             row = row.translated(0, high)
         foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
         self._homing(painter, foot)
-        middle = self.cross(painter, QRectF(room.x(), row.y(), room.width(), foot.y() - row.y() - 0.6 * u))
-        self._middle(painter, middle)
+        middle = self.draw_cross(
+            painter, QRectF(room.x(), row.y(), room.width(), foot.y() - row.y() - 0.6 * u)
+        )
+        self._draw_middle(painter, middle)
 
-    def _rows(self, room: QRectF) -> list[DrawRow]:
+    def _make_row_drawers(self, area: QRectF) -> list[DrawTileRow]:
         """Return the rows above the cross. Steps and speeds share one row if there is little height."""
-        wheel: list[DrawRow] = [self._wheel] if self._model.wheel.there else []
-        both: list[DrawRow] = [self._steps, self._speeds]
-        needed = self.look.keys_high(len(both) + len(wheel) + 1 + CROSS) + 0.6 * self.look.u
-        return [*(both if room.height() >= needed else [self._steps_and_speeds]), *wheel]
+        wheel: list[DrawTileRow] = [self._draw_wheel] if self._model.handwheel.is_available else []
+        both: list[DrawTileRow] = [self._steps, self._speeds]
+        needed = self.theme.find_key_rows_height(len(both) + len(wheel) + 1 + CROSS_ROWS) + 0.6 * self.theme.u
+        return [*(both if area.height() >= needed else [self._draw_steps_and_speeds]), *wheel]
 
-    def _tile_height(self, room: QRectF, rows: int) -> float:
+    def _tile_height(self, area: QRectF, rows: int) -> float:
         """Return the height of a tile row: a fingertip, if this leaves enough height for the jog targets."""
-        u = self.look.u
-        finger = self.look.row(ROW, 9.0, touch=True)
-        left = room.height() - CROSS * (HELD * u + 0.6 * u) - u
-        return max(min(finger, float(FINGER)), ROW * u, min(finger, left / rows - 0.6 * u))
+        u = self.theme.u
+        finger = self.theme.find_row_height(ROW, 9.0, is_touchable=True)
+        left = area.height() - CROSS_ROWS * (HELD * u + 0.6 * u) - u
+        return max(min(finger, float(FINGERTIP_PX)), ROW * u, min(finger, left / rows - 0.6 * u))
 
-    def _steps_and_speeds(self, painter: Painter, row: QRectF) -> None:
+    def _draw_steps_and_speeds(self, painter: ThemedPainter, row: QRectF) -> None:
         """Draw step and speed in one row, with the functions of F2 and F3, and RAPID."""
-        model, mode = self._model, self._model.hold.mode
-        step = model.speeds.step
+        model, mode = self._model, self._model.held_jog.value_mode
+        step = model.jog_speeds.step_index
         said = tr("CONT")
-        if step != CONTINUOUS:
-            turning = self._turning
-            said = model.speeds.step_word(turning, mode, step) if turning else step_words(mode)[step]
-        speeds = turn_words() if self._turning else speed_words(mode)
-        words = (f"F2 {said}", f"F3 {speeds[model.speeds.speed]}", tr("RAPID"))
-        chosen = 2 if model.hold.rapid_armed else -1
-        tiles = Tiles(("", ""), words, [model.next_step, model.next_speed, model.arm], chosen, warn=True)
+        if step != CONTINUOUS_STEP:
+            turning = self._active_rotary_axis
+            said = (
+                model.jog_speeds.format_step(turning, mode, step) if turning else make_step_labels(mode)[step]
+            )
+        speeds = make_rotary_speed_labels() if self._active_rotary_axis else make_speed_labels(mode)
+        words = (f"F2 {said}", f"F3 {speeds[model.jog_speeds.speed_index]}", tr("RAPID"))
+        chosen = 2 if model.held_jog.is_rapid_armed else -1
+        tiles = TileRow(
+            ("", ""),
+            words,
+            [model.select_next_step, model.select_next_speed, model.toggle_rapid],
+            chosen,
+            is_warning=True,
+        )
         self._tiles(painter, row, tiles)
 
-    def _steps(self, painter: Painter, row: QRectF) -> None:
+    def _steps(self, painter: ThemedPainter, row: QRectF) -> None:
         model = self._model
-        unit = tr("STEP MM") if model.hold.mode.metric else tr("STEP IN")
-        words = (tr("CONT"), *step_words(model.hold.mode))
-        if self._turning:
+        unit = tr("STEP MM") if model.held_jog.value_mode.is_metric else tr("STEP IN")
+        words = (tr("CONT"), *make_step_labels(model.held_jog.value_mode))
+        if self._active_rotary_axis:
             unit = tr("STEP °")
             words = (
                 tr("CONT"),
-                *(model.speeds.step_word(self._turning, model.hold.mode, n) for n in range(len(words) - 1)),
+                *(
+                    model.jog_speeds.format_step(self._active_rotary_axis, model.held_jog.value_mode, n)
+                    for n in range(len(words) - 1)
+                ),
             )
-        chosen = model.speeds.step - CONTINUOUS
-        presses = [partial(model.choose_step, step) for step in range(CONTINUOUS, len(words) - 1)]
-        self._tiles(painter, row, Tiles((unit, "F2"), words, presses, chosen))
+        chosen = model.jog_speeds.step_index - CONTINUOUS_STEP
+        presses = [partial(model.select_step, step) for step in range(CONTINUOUS_STEP, len(words) - 1)]
+        self._tiles(painter, row, TileRow((unit, "F2"), words, presses, chosen))
 
-    def _speeds(self, painter: Painter, row: QRectF) -> None:
-        model, mode = self._model, self._model.hold.mode
-        unit = tr("MM/MIN") if mode.metric else tr("IN/MIN")
-        rapid = f"{tr('RAPID')} {rapid_word(model.machine, mode)}"
-        words = (*speed_words(mode), rapid)
-        if self._turning:
+    def _speeds(self, painter: ThemedPainter, row: QRectF) -> None:
+        model, mode = self._model, self._model.held_jog.value_mode
+        unit = tr("MM/MIN") if mode.is_metric else tr("IN/MIN")
+        rapid = f"{tr('RAPID')} {format_rapid_speed(model.machine, mode)}"
+        words = (*make_speed_labels(mode), rapid)
+        if self._active_rotary_axis:
             unit, rapid = tr("°/MIN"), f"{tr('RAPID')} {self._turning_rapid}"
-            words = (*turn_words(), rapid)
-        chosen = len(words) - 1 if model.hold.rapid_armed else model.speeds.speed
+            words = (*make_rotary_speed_labels(), rapid)
+        chosen = len(words) - 1 if model.held_jog.is_rapid_armed else model.jog_speeds.speed_index
         presses: list[Callable[[], None]] = [
-            *(partial(model.choose_speed, speed) for speed in range(len(words) - 1)),
-            model.arm,
+            *(partial(model.select_speed, speed) for speed in range(len(words) - 1)),
+            model.toggle_rapid,
         ]
-        self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.hold.rapid_armed))
+        self._tiles(
+            painter,
+            row,
+            TileRow((unit, "F3"), words, presses, chosen, is_warning=model.held_jog.is_rapid_armed),
+        )
 
     @property
-    def _turning(self) -> str:
+    def _active_rotary_axis(self) -> str:
         """The rotary axis that is jogged or that the handwheel moves, else empty. It has its own units."""
-        held, wheel = self._model.hold.held, self._model.wheel.choice
+        held, wheel = self._model.held_jog.active_jog, self._model.handwheel.wheel_choice
         axis = held.axis if held else wheel[0] if wheel else ""
-        return axis if axis and self._model.machine.axis(axis).rotary else ""
+        return axis if axis and self._model.machine.find_axis(axis).rotary else ""
 
     @property
     def _turning_rapid(self) -> str:
         model = self._model
-        return f"{60 * model.speeds.velocity(self._turning, model.hold.mode, rapid=True):.0f}"
+        mode = model.held_jog.value_mode
+        velocity = model.jog_speeds.find_velocity(self._active_rotary_axis, mode, is_rapid=True)
+        return f"{60 * velocity:.0f}"
 
-    def _wheel(self, painter: Painter, row: QRectF) -> None:
+    def _draw_wheel(self, painter: ThemedPainter, row: QRectF) -> None:
         """Draw the row that selects the handwheel axis."""
-        wheel = self._model.wheel
-        axis = wheel.choice[0] if wheel.choice else ""
-        presses = [partial(wheel.choose, name) for name in ("", *wheel.names)]
-        chosen = ("", *wheel.names).index(axis)
-        words = (tr("OFF"), *wheel.names)
-        self._tiles(painter, row, Tiles((tr("HANDWHEEL"), "V"), words, presses, chosen, warn=bool(axis)))
+        wheel = self._model.handwheel
+        axis = wheel.wheel_choice[0] if wheel.wheel_choice else ""
+        presses = [partial(wheel.select_axis, name) for name in ("", *wheel.axis_names)]
+        chosen = ("", *wheel.axis_names).index(axis)
+        words = (tr("OFF"), *wheel.axis_names)
+        self._tiles(
+            painter, row, TileRow((tr("HANDWHEEL"), "V"), words, presses, chosen, is_warning=bool(axis))
+        )
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Turn the handwheel on the screen by the mouse wheel."""
-        if self._model.wheel_drawn:
-            self._dial.notches(event.angleDelta().y())
+        if self._model.is_wheel_shown:
+            self._dial.turn_by_mouse_wheel(event.angleDelta().y())
             self.update()
         event.accept()
 
-    def _homing(self, painter: Painter, row: QRectF) -> None:
+    def _homing(self, painter: ThemedPainter, row: QRectF) -> None:
         model = self._model
         words = [tr("HOME")]
-        presses: list[Callable[[], None]] = [model.home_key]
-        for axis in model.home.axes:
-            name = model.machine.shown(axis.name)
-            words.append(f"{name} {self._known[axis.name].words}" if self._known else name)
-            presses.append(partial(model.home_one, axis.name))
+        presses: list[Callable[[], None]] = [model.handle_home_key]
+        for axis in model.homing_question.homing_axes:
+            name = model.machine.displayed_axis_name(axis.name)
+            words.append(f"{name} {self._known[axis.name].state_name}" if self._known else name)
+            presses.append(partial(model.home_axis, axis.name))
         lost = frozenset(
             i
             for i, known in enumerate(self._known.values(), 1)
-            if known in {AxisState.LOST, AxisState.LOOKING}
+            if known in {HomingState.NOT_HOMED, HomingState.HOMING}
         )
-        chosen = 0 if model.home.asking else -1
-        armed = model.setter.armed
-        if model.setter.model is not None:
+        chosen = 0 if model.homing_question.is_open else -1
+        armed = model.setter_touch.is_armed
+        if model.setter_touch.setter is not None:
             words.append(tr("SETTER (P)"))
-            presses.append(model.touch_at_setter)
+            presses.append(model.start_setter_touch)
             chosen = len(words) - 1 if armed else chosen
-        self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, armed, lost))
+        self._tiles(painter, row, TileRow(("", ""), tuple(words), presses, chosen, armed, lost))
 
-    def _tiles(self, painter: Painter, row: QRectF, tiles: Tiles) -> None:
+    def _tiles(self, painter: ThemedPainter, row: QRectF, tiles: TileRow) -> None:
         for box, press in draw_tiles(painter, row, tiles):
-            self.controls.append(pressed(box, press))
+            self.controls.append(make_press_control(box, press))
 
-    def _middle(self, painter: Painter, box: QRectF) -> None:
+    def _draw_middle(self, painter: ThemedPainter, box: QRectF) -> None:
         """Draw the present jog mode with its values in the middle of the cross."""
         model = self._model
-        mode: Mode = model.hold.mode
-        step = model.speeds.step
+        mode: ValueMode = model.held_jog.value_mode
+        step = model.jog_speeds.step_index
         words = (
-            (tr("STEP"), step_words(mode)[step])
-            if step != CONTINUOUS
+            (tr("STEP"), make_step_labels(mode)[step])
+            if step != CONTINUOUS_STEP
             else (tr("CONTINUOUS"), self._speed(mode))
         )
-        if model.wheel.choice is not None:
-            axis, step = model.wheel.choice
-            words = (tr(Message("HANDWHEEL {axis}", axis=axis)), model.speeds.step_word(axis, mode, step))
-        if model.wheel_drawn:
+        if model.handwheel.wheel_choice is not None:
+            axis, step = model.handwheel.wheel_choice
+            words = (
+                tr(Message("HANDWHEEL {axis}", axis=axis)),
+                model.jog_speeds.format_step(axis, mode, step),
+            )
+        if model.is_wheel_shown:
             self._dial.draw(painter, box, words[1])
-            self.controls.append(self._dial.control(box))
+            self.controls.append(self._dial.make_control(box))
             return
-        if model.setter.armed:
-            draw_middle(painter, box, (tr("TOUCH OFF"), f"T{model.tool.number}", tr("at the tool setter")))
+        if model.setter_touch.is_armed:
+            draw_jog_mode(
+                painter,
+                box,
+                (tr("TOUCH OFF"), f"T{model.tool_setting.tool_number}", tr("at the tool setter")),
+            )
             return
-        unit = tr("mm") if mode.metric else tr("in")
-        if self._turning:
+        unit = tr("mm") if mode.is_metric else tr("in")
+        if self._active_rotary_axis:
             unit = "°"
-            if step != CONTINUOUS:
-                words = (tr("STEP"), model.speeds.step_word(self._turning, mode, step))
-        draw_middle(painter, box, (*words, unit if step != CONTINUOUS else f"{unit}/min"))
+            if step != CONTINUOUS_STEP:
+                words = (tr("STEP"), model.jog_speeds.format_step(self._active_rotary_axis, mode, step))
+        draw_jog_mode(painter, box, (*words, unit if step != CONTINUOUS_STEP else f"{unit}/min"))
 
-    def _speed(self, mode: Mode) -> str:
+    def _speed(self, mode: ValueMode) -> str:
         model = self._model
-        held = model.hold.held
-        rapid = held.rapid if held else model.hold.rapid_armed
-        if self._turning:
-            return self._turning_rapid if rapid else turn_words()[model.speeds.speed]
-        return rapid_word(model.machine, mode) if rapid else speed_words(mode)[model.speeds.speed]
+        held = model.held_jog.active_jog
+        rapid = held.is_rapid if held else model.held_jog.is_rapid_armed
+        if self._active_rotary_axis:
+            return self._turning_rapid if rapid else make_rotary_speed_labels()[model.jog_speeds.speed_index]
+        return (
+            format_rapid_speed(model.machine, mode)
+            if rapid
+            else make_speed_labels(mode)[model.jog_speeds.speed_index]
+        )

@@ -9,93 +9,95 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.jog.hand_functions import (
+from app.jog.held_keys_view import CHORD_MODIFIERS, HeldKeysPage
+from app.jog.jog_model import JogModel
+from app.jog.jog_pad_view import JogPad
+from app.jog.manual_functions import (
     CLOSE,
     COOLANT_OFF,
     COOLANT_ON,
     FORWARD,
     OPEN,
     REVERSE,
-    SPEED,
+    SPEED_KEY,
     STOP,
 )
-from app.jog.held_keys_view import CHORDS, HeldKeysPage
-from app.jog.jog_model import JogModel
-from app.jog.jog_pad_view import JogPad
-from app.jog.skim_and_setter import CutStep
+from app.jog.skim_and_setter import SkimCutStep
 from app.jog.tool_setting import TOUCH_X, TOUCH_Z
-from app.jog.tool_setting_view import MillJogPanel, ToolPanel
+from app.jog.tool_setting_view import MillJogPanel, ToolSettingPanel
 from app.screen import page_table
-from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
-from app.screen.look import CENTRE, LEFT, Look, Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import FingerPanel, Shown, pressed
-from app.screen.window_layout import FINGER
+from app.screen.entry_panel import EntryPanel, EntryTexts, NumberPad
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import RedrawingAttribute, TouchPanel, make_press_control
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import Message
 
-KEY = 4.5  # Units: height of a key in the strip.
-StepKey = tuple[str, str, Callable[[], object]]  # Letter, label and action.
+KEY_HEIGHT = 4.5  # Units: height of a key in the strip.
+StripKey = tuple[str, str, Callable[[], object]]  # Letter, label and action.
 
 
-def draw_key(painter: Painter, box: QRectF, letter: str, words: str, *, chosen: bool, on: bool) -> None:
+def draw_function_key(
+    painter: ThemedPainter, box: QRectF, letter: str, label: str, *, is_selected: bool, is_on: bool
+) -> None:
     """Draw a key with its letter, filled if its function is on, and framed if it is selected."""
-    u = painter.look.u
-    ground, ink = ("run", "on_state") if on else ("here" if chosen else "key", "text")
-    painter.box(box, "lit" if chosen else "frame", 0.3 if chosen else 0.16, ground)
-    painter.write(
-        QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), letter, 1.9, ink if on else "accent"
+    u = painter.theme.u
+    ground, ink = ("run", "on_state") if is_on else ("here" if is_selected else "key", "text")
+    painter.draw_box(box, "lit" if is_selected else "frame", 0.3 if is_selected else 0.16, ground)
+    painter.draw_text_line(
+        QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), letter, 1.9, ink if is_on else "accent"
     )
-    painter.write(box.adjusted(3.2 * u, 0, -0.6 * u, 0), words, 2.1, ink, at=CENTRE)
+    painter.draw_text_line(box.adjusted(3.2 * u, 0, -0.6 * u, 0), label, 2.1, ink, at=ALIGN_CENTER)
 
 
-class HandPanel(FingerPanel):
+class ManualPanel(TouchPanel):
     """The panel of the manual functions. A touch selects a function; the start buttons run it.
 
     STOP acts immediately, also as a late press.
     """
 
-    _shown: Shown[object] = Shown(None)
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
 
-    def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
+        super().__init__(theme, parent)
         self._model = model
 
-    def show_hand(self, snapshot: Snapshot) -> None:
+    def show_functions(self, snapshot: Snapshot) -> None:
         """Show which function is selected, prepared or on."""
-        hand = self._model.hand
+        hand = self._model.manual_functions
         self._shown = (
-            hand.chosen,
-            hand.line.ready is not None,
-            hand.speed,
+            hand.selected_function,
+            hand.prepared_line.ready_job is not None,
+            hand.start_speed_rpm,
             (round(snapshot.rpm_actual), snapshot.rpm_command, snapshot.outputs),
             snapshot.state,
         )
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.controls.clear()
         self.frame(painter, tr("MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START"))
-        u, room, hand = self.look.u, self.inside(), self._model.hand
-        rows = 4 if CLOSE in hand.there else 3
+        u, room, hand = self.theme.u, self.inside(), self._model.manual_functions
+        rows = 4 if CLOSE in hand.available_functions else 3
         high = (room.height() + 0.6 * u) / rows
         row = QRectF(room.x(), room.y(), room.width(), high - 0.6 * u)
-        self._spindle(painter, row)
-        on = hand.desk.snapshot()
+        self._draw_spindle(painter, row)
+        on = hand.desk.read_snapshot()
         turns = on.rpm_command
         row.translate(0, high)
-        speed = f"S {hand.speed:g} {tr('RPM')}" if hand.speed else tr("SPEED …")
+        speed = f"S {hand.start_speed_rpm:g} {tr('RPM')}" if hand.start_speed_rpm else tr("SPEED …")
         self._keys(
             painter,
             row,
-            (SPEED, speed, "", False),
+            (SPEED_KEY, speed, "", False),
             ("1", tr("FORWARD"), FORWARD, turns > 0),
             ("2", tr("REVERSE"), REVERSE, turns < 0),
         )
         row.translate(0, high)
-        if COOLANT_ON in hand.there:
+        if COOLANT_ON in hand.available_functions:
             wet = "coolant" in on.outputs
             self._keys(
                 painter,
@@ -103,7 +105,7 @@ class HandPanel(FingerPanel):
                 ("3", tr("COOLANT ON"), COOLANT_ON, wet),
                 ("4", tr("COOLANT OFF"), COOLANT_OFF, False),
             )
-        if CLOSE in hand.there:
+        if CLOSE in hand.available_functions:
             row.translate(0, high)
             closed = "collet" in on.outputs
             self._keys(
@@ -113,94 +115,98 @@ class HandPanel(FingerPanel):
                 ("6", tr("OPEN COLLET"), OPEN, not closed),
             )
 
-    def _spindle(self, painter: Painter, row: QRectF) -> None:
+    def _draw_spindle(self, painter: ThemedPainter, row: QRectF) -> None:
         """Draw the state of the spindle, and the key that stops it."""
-        u, hand, snapshot = self.look.u, self._model.hand, self._model.desk.snapshot()
+        u, hand, snapshot = self.theme.u, self._model.manual_functions, self._model.desk.read_snapshot()
         words = tr("SPINDLE STOPPED")
-        if hand.turns(snapshot):
+        if hand.is_spindle_turning(snapshot):
             words = tr(Message("SPINDLE TURNING AT {rpm:.0f} RPM", rpm=abs(snapshot.rpm_actual)))
         left = QRectF(row.x(), row.y(), 0.56 * row.width(), row.height())
-        painter.write(left, words, 2.4, "pause" if hand.turns(snapshot) else "text", at=LEFT)
+        painter.draw_text_line(
+            left, words, 2.4, "pause" if hand.is_spindle_turning(snapshot) else "text", at=ALIGN_LEFT
+        )
         box = QRectF(left.right() + 0.6 * u, row.y(), row.right() - left.right() - 0.6 * u, row.height())
-        painter.box(box, "alarm", 0.3, "key")
-        painter.write(QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), "0", 1.9, "accent")
-        painter.write(box.adjusted(3.2 * u, 0, -0.6 * u, 0), tr("SPINDLE STOP"), 2.4, "alarm", at=CENTRE)
-        stop = pressed(box, partial(self._model.press_hand, STOP))
-        self.controls.append(stop.stopping())
+        painter.draw_box(box, "alarm", 0.3, "key")
+        painter.draw_text_line(QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), "0", 1.9, "accent")
+        painter.draw_text_line(
+            box.adjusted(3.2 * u, 0, -0.6 * u, 0), tr("SPINDLE STOP"), 2.4, "alarm", at=ALIGN_CENTER
+        )
+        stop = make_press_control(box, partial(self._model.press_function, STOP))
+        self.controls.append(stop.make_stop_control())
 
-    def _keys(self, painter: Painter, row: QRectF, *keys: tuple[str, str, str, bool]) -> None:
-        u, hand = self.look.u, self._model.hand
+    def _keys(self, painter: ThemedPainter, row: QRectF, *keys: tuple[str, str, str, bool]) -> None:
+        u, hand = self.theme.u, self._model.manual_functions
         wide = (row.width() + 0.6 * u) / len(keys)
         for number, (letter, words, name, on) in enumerate(keys):
             box = QRectF(row.x() + number * wide, row.y(), wide - 0.6 * u, row.height())
-            chosen = hand.chosen == (name or SPEED)
-            draw_key(painter, box, letter, words, chosen=chosen, on=on)
-            press = partial(self._model.press_hand, name) if name else self._model.ask_speed
-            self.controls.append(pressed(box, press))
+            chosen = hand.selected_function == (name or SPEED_KEY)
+            draw_function_key(painter, box, letter, words, is_selected=chosen, is_on=on)
+            press = partial(self._model.press_function, name) if name else self._model.ask_spindle_speed
+            self.controls.append(make_press_control(box, press))
 
 
-def strip_keys(look: Look) -> float:
+def find_strip_key_height(theme: ScreenTheme) -> float:
     """Return the height of the strip keys in pixels, at least a fingertip."""
-    return max(float(FINGER), KEY * look.u)
+    return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.u)
 
 
-class HandStrip(FingerPanel):
+class ManualStrip(TouchPanel):
     """The strip below tool setting while no question is open, with keys for manual functions and skim cut."""
 
-    _shown: Shown[object] = Shown(None)
-    change, foot = Shown(""), Shown("")
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
+    change_text, footer_text = RedrawingAttribute(""), RedrawingAttribute("")
 
-    def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
+        super().__init__(theme, parent)
         self._model = model
 
-    def show_strip(self, snapshot: Snapshot, change: str, foot: str) -> None:
+    def show_keys(self, snapshot: Snapshot, change_text: str, footer_text: str) -> None:
         """Show the available keys, the last change, and the hint for other keys."""
-        skim, hand = self._model.skim, self._model.hand
-        self.change, self.foot = change, foot
-        self._shown = (skim.step, skim.axis, hand.shown, hand.turns(snapshot))
+        skim, hand = self._model.skim_cut, self._model.manual_functions
+        self.change_text, self.footer_text = change_text, footer_text
+        self._shown = (skim.cut_step, skim.measured_axis, hand.is_shown, hand.is_spindle_turning(snapshot))
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.controls.clear()
-        u = self.look.u
-        painter.fill(self.area(), "ground")
+        u = self.theme.u
+        painter.fill_rect(self.find_full_area(), "ground")
         keys = self._keys()
-        room = self.area()
-        low = self.height() - strip_keys(self.look)
+        room = self.find_full_area()
+        low = self.height() - find_strip_key_height(self.theme)
         wide = (room.width() + 0.6 * u) / len(keys)
         for number, (letter, words, press) in enumerate(keys):
             box = QRectF(room.x() + number * wide, low, wide - 0.6 * u, room.bottom() - low)
-            draw_key(painter, box, letter, words, chosen=False, on=False)
-            self.controls.append(pressed(box, partial(self._press, press)))
+            draw_function_key(painter, box, letter, words, is_selected=False, is_on=False)
+            self.controls.append(make_press_control(box, partial(self._press, press)))
         text = QRectF(room.x() + u, room.y(), room.width() - 2 * u, low - 0.3 * u)
-        if self._model.skim.open or not self.change:
-            painter.write(text, self.foot, 1.8, "soft", bold=False)
+        if self._model.skim_cut.is_open or not self.change_text:
+            painter.draw_text_line(text, self.footer_text, 1.8, "soft", bold=False)
         else:
-            painter.write(text, self.change, 1.8, "accent")
+            painter.draw_text_line(text, self.change_text, 1.8, "accent")
 
     def _press(self, press: Callable[[], object]) -> None:
-        self._model.hold.other_key()
+        self._model.held_jog.stop_for_other_key()
         press()
 
-    def _keys(self) -> tuple[StepKey, ...]:
-        model, skim = self._model, self._model.skim
-        leave: StepKey = ("Esc", tr("CANCEL"), skim.escape)
-        hand: StepKey = (
+    def _keys(self) -> tuple[StripKey, ...]:
+        model, skim = self._model, self._model.skim_cut
+        leave: StripKey = ("Esc", tr("CANCEL"), skim.handle_escape)
+        hand: StripKey = (
             "B",
-            tr("TOOL SETTING") if model.hand.shown else tr("MANUAL FUNCTIONS"),
-            model.show_hand,
+            tr("TOOL SETTING") if model.manual_functions.is_shown else tr("MANUAL FUNCTIONS"),
+            model.toggle_manual,
         )
-        if skim.step is CutStep.AXIS:
+        if skim.cut_step is SkimCutStep.CHOOSE_AXIS:
             return (
-                ("X", tr("DIAMETER"), partial(skim.choose, TOUCH_X)),
-                ("Z", tr("FACE"), partial(skim.choose, TOUCH_Z)),
+                ("X", tr("DIAMETER"), partial(skim.select_cut, TOUCH_X)),
+                ("Z", tr("FACE"), partial(skim.select_cut, TOUCH_Z)),
                 leave,
             )
-        if skim.step is CutStep.CUT:
-            return (hand, ("↵", tr("CUT DONE"), skim.made), leave)
-        if skim.step is CutStep.AWAY:
-            return (hand, ("0", tr("SPINDLE STOP"), partial(model.press_hand, STOP)), leave)
-        return (hand,) if model.on_mill else (hand, ("C", tr("SKIM CUT"), skim.begin))
+        if skim.cut_step is SkimCutStep.CUTTING:
+            return (hand, ("↵", tr("CUT DONE"), skim.finish_cut), leave)
+        if skim.cut_step is SkimCutStep.RETRACT:
+            return (hand, ("0", tr("SPINDLE STOP"), partial(model.press_function, STOP)), leave)
+        return (hand,) if model.is_mill else (hand, ("C", tr("SKIM CUT"), skim.begin_skim_cut))
 
 
 # Width fraction of the pad; height of the entry line and of a text line in units.
@@ -227,129 +233,138 @@ class JogPage(HeldKeysPage):
 
     model: JogModel
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
-        machine = host.desk.machine.model
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
+        machine = host.desk.machine.machine
         if machine is None:
             raise RuntimeError("the desk was put together without a machine to move by hand")
         super().__init__(host, JogModel(host.desk, machine), parent)
-        self.pad: JogPad = JogPad(self.look, self.model, self)
-        self.numbers = KeyPad(self.look, self.touched, own=None, parent=self)
-        self.mill = MillJogPanel(self.look, self.model, self._to_tools, self._to_presets, self)
-        self.tool = ToolPanel(self.look, self.model, self)
-        self.asked = EntryPanel(self.look, self)
-        self.hand = HandPanel(self.look, self.model, self)
-        self.strip = HandStrip(self.look, self.model, self)
+        self.jog_cross: JogPad = JogPad(self.theme, self.model, self)
+        self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
+        self.mill_panel = MillJogPanel(self.theme, self.model, self._to_tools, self._to_presets, self)
+        self.tool_panel = ToolSettingPanel(self.theme, self.model, self)
+        self.entry_panel = EntryPanel(self.theme, self)
+        self.manual_panel = ManualPanel(self.theme, self.model, self)
+        self.manual_strip = ManualStrip(self.theme, self.model, self)
 
     def _to_tools(self) -> None:
-        self.host.go(page_table.TOOLS)
+        self.host.open_page(page_table.TOOLS)
 
     def _to_presets(self) -> None:
-        self.host.go(page_table.SECCMP)
+        self.host.open_page(page_table.SECCMP)
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the key labels. A mill touches off on the pages of tools and presets."""
-        labels = super().labels()
-        return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.on_mill else labels
+        labels = super().key_labels()
+        return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.is_mill else labels
 
-    def other_key(self, event: QKeyEvent) -> bool:
+    def handle_other_key(self, event: QKeyEvent) -> bool:
         """Handle the Home key, which asks which axes to home."""
-        if event.key() != Qt.Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORDS:
+        if event.key() != Qt.Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORD_MODIFIERS:
             return False
-        self.model.home_key()
+        self.model.handle_home_key()
         return True
 
     def key_actions(self) -> KeyActions:
         """Return the key actions: steps, speeds, readout, touch-off and undo."""
         model = self.model
         common: KeyActions = {
-            "F2": model.next_step,
-            "F3": model.next_speed,
-            "F8": partial(self.host.go, page_table.TOOLS),
-            "F9": partial(self.host.go, page_table.SECCMP),
-            "F10": self.desk.next_readout,
+            "F2": model.select_next_step,
+            "F3": model.select_next_speed,
+            "F8": partial(self.host.open_page, page_table.TOOLS),
+            "F9": partial(self.host.open_page, page_table.SECCMP),
+            "F10": self.desk.select_next_readout,
         }
-        if model.on_mill:
-            return {**common, "F5": model.turn_tilt}
-        touch = {"F5": lambda: model.ask(TOUCH_X), "F6": lambda: model.ask(TOUCH_Z)}
-        return {**common, **touch, "F4": model.tool.undo}
+        if model.is_mill:
+            return {**common, "F5": model.toggle_tilt}
+        touch = {"F5": lambda: model.ask_tool_value(TOUCH_X), "F6": lambda: model.ask_tool_value(TOUCH_Z)}
+        return {**common, **touch, "F4": model.tool_setting.ask_undo}
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys of touch-off, undo and tilted plane."""
-        model, snapshot = self.model, self.desk.snapshot()
-        if model.on_mill:
-            return frozenset() if model.tilt.turns(snapshot) else frozenset({"F5"})
+        model, snapshot = self.model, self.desk.read_snapshot()
+        if model.is_mill:
+            return frozenset() if model.tilted_jog.is_available(snapshot) else frozenset({"F5"})
         found = {
-            "F5": model.tool.barred(TOUCH_X, snapshot),
-            "F6": model.tool.barred(TOUCH_Z, snapshot),
-            "F4": model.tool.undo_barred() or not model.tool.history.undoable(model.tool.number),
+            "F5": model.tool_setting.find_refusal(TOUCH_X, snapshot),
+            "F6": model.tool_setting.find_refusal(TOUCH_Z, snapshot),
+            "F4": model.tool_setting.find_undo_refusal()
+            or not model.tool_setting.history.can_undo(model.tool_setting.tool_number),
         }
         return frozenset(key for key, why in found.items() if why)
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether a value of the tool or the spindle speed is being entered."""
-        return self.model.asked
+        return self.model.is_asking
 
     # --- page ----------------------------------------------------------------------------------------
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt of the model."""
-        return self.model.prompt(self.desk.snapshot())
+        return self.model.prompt_text(self.desk.read_snapshot())
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Release all keys, and return whether the page can close. It cannot while a line runs."""
-        self.pad.let_go()
-        return self.model.leave()
+        self.jog_cross.release_all()
+        return self.model.try_leave()
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Update the model, which renews the jog, and show its state."""
         if not self._has_keyboard():
-            self.let_go_if_held()
-        self.model.look(snapshot)
-        entering, hand = self.model.asked, self.model.hand
-        self.pad.setVisible(not entering)
-        self.numbers.setVisible(entering)
-        self.numbers.own = ("L", tr("THIS TOOL ONLY")) if self.model.tool.masters else None
-        self.pad.show_jog(snapshot)
-        self.hand.setVisible(hand.shown)
-        self.mill.setVisible(self.model.on_mill and not hand.shown)
-        self.tool.setVisible(not self.model.on_mill and not hand.shown)
-        self.asked.setVisible(entering)
-        self.strip.setVisible(not entering)
-        self.hand.show_hand(snapshot)
-        if self.model.on_mill:
-            self.mill.show_mill(snapshot)
+            self.release_if_active()
+        self.model.update(snapshot)
+        entering, hand = self.model.is_asking, self.model.manual_functions
+        self.jog_cross.setVisible(not entering)
+        self.number_pad.setVisible(entering)
+        self.number_pad.page_key = (
+            ("L", tr("THIS TOOL ONLY")) if self.model.tool_setting.is_master_touched else None
+        )
+        self.jog_cross.show_state(snapshot)
+        self.manual_panel.setVisible(hand.is_shown)
+        self.mill_panel.setVisible(self.model.is_mill and not hand.is_shown)
+        self.tool_panel.setVisible(not self.model.is_mill and not hand.is_shown)
+        self.entry_panel.setVisible(entering)
+        self.manual_strip.setVisible(not entering)
+        self.manual_panel.show_functions(snapshot)
+        if self.model.is_mill:
+            self.mill_panel.show_mill(snapshot)
         else:
-            self.tool.show_tool(snapshot)
+            self.tool_panel.show_tool(snapshot)
         self._show_question(snapshot)
 
     def _show_question(self, snapshot: Snapshot) -> None:
         """Show the open question, or the keys that are available without a question."""
-        tool, hand = self.model.tool, self.model.hand
-        if hand.asked:
+        tool, hand = self.model.tool_setting, self.model.manual_functions
+        if hand.is_asking_speed:
             foot = tr("Enter: accept   Esc: cancel")
-            self.asked.asked = EntryWords("", tr("SPINDLE SPEED, RPM?"), hand.text, "", foot)
+            self.entry_panel.entry_texts = EntryTexts("", tr("SPINDLE SPEED, RPM?"), hand.text, "", foot)
             return
-        foot = tool.note() or (
+        foot = tool.make_note_text() or (
             tr("Enter: accept   Esc: cancel")
-            if self.model.asked
+            if self.model.is_asking
             else tr("T tool · X Z touch off · W wear · N nose radius · Q tip · K remark · M master · F4 undo")
         )
-        if self.model.on_mill:
+        if self.model.is_mill:
             foot = ""
-        text = tool.touching.cause if tool.by_setter else tool.text
-        self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot)
-        self.strip.show_strip(snapshot, tool.history.last_in_words, foot)
+        text = tool.touch_off.reason if tool.is_setter_result else tool.text
+        self.entry_panel.entry_texts = EntryTexts(
+            "", tool.question_text(), text, tool.describe_change(), foot
+        )
+        self.manual_strip.show_keys(snapshot, tool.history.last_change_text, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Lay out the pad at the left, and the tool above the entry line at the right."""
-        u, gap = self.look.u, max(4, round(0.7 * self.look.u))
+        u, gap = self.theme.u, max(4, round(0.7 * self.theme.u))
         left = round(WIDE * self.width())
-        for part in (self.pad, self.numbers):
+        for part in (self.jog_cross, self.number_pad):
             part.setGeometry(0, 0, left, self.height())
         wide, asked = self.width() - left - gap, round(ASKED * u)
-        strip = round(strip_keys(self.look) + WORDS * u)
-        sides: tuple[tuple[QWidget, int], ...] = ((self.tool, asked), (self.mill, strip), (self.hand, asked))
+        strip = round(find_strip_key_height(self.theme) + WORDS * u)
+        sides: tuple[tuple[QWidget, int], ...] = (
+            (self.tool_panel, asked),
+            (self.mill_panel, strip),
+            (self.manual_panel, asked),
+        )
         for side, foot in sides:
             side.setGeometry(left + gap, 0, wide, self.height() - foot - gap)
-        self.asked.setGeometry(left + gap, self.height() - asked, wide, asked)
-        self.strip.setGeometry(left + gap, self.height() - strip, wide, strip)
+        self.entry_panel.setGeometry(left + gap, self.height() - asked, wide, asked)
+        self.manual_strip.setGeometry(left + gap, self.height() - strip, wide, strip)

@@ -11,33 +11,33 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from app.desk.desk import Desk
-from app.desk.status.formats import length
-from app.desk.status.readouts import TURNING
+from app.desk.status.formats import format_length
+from app.desk.status.readouts import TURNING_RPM
 from app.desk.translation import tr
-from app.jog.held_jog import Held, HeldJog, JogDirection
-from app.jog.tool_setting import MOVED, TOUCH_X, TOUCH_Z, TOUCHES, ToolSetting
-from app.offsets.offset_changes import refusal
-from app.offsets.offset_values import signed
-from core.executor.commands import Command, Touch
-from core.executor.snapshot import CYCLE, Snapshot, State, Touched, TouchPhase
+from app.jog.held_jog import ActiveJog, HeldJog, JogDirection
+from app.jog.tool_setting import MOVE_TOLERANCE_MM, TOUCH_FIELDS, TOUCH_X, TOUCH_Z, ToolSetting
+from app.offsets.offset_changes import find_change_refusal
+from app.offsets.offset_values import format_signed
+from core.executor.commands import Command, TouchOffTool
+from core.executor.snapshot import CYCLE_STATES, MachineState, Snapshot, TouchPhase, TouchResult
 from core.machine.machine_model import Machine
 from core.machine.setter_table import SetterModel
 from core.message import Message
-from core.ports import PROBE
+from core.ports import PROBE_INPUT
 from core.store.store_rows import ToolRow
 
 # Minimum cut in mm along the other axis with the spindle turning. A shorter cut cannot be measured.
-LEAST_CUT = 0.25
+MIN_CUT_MM = 0.25
 
 
-class CutStep(Enum):
+class SkimCutStep(Enum):
     """The next step of a skim cut."""
 
     OFF = auto()
-    AXIS = auto()  # Choose a diameter or a face.
-    CUT = auto()
-    AWAY = auto()  # Retract along the other axis and stop the spindle.
-    MEASURE = auto()  # The size is being entered.
+    CHOOSE_AXIS = auto()  # Choose a diameter or a face.
+    CUTTING = auto()
+    RETRACT = auto()  # Retract along the other axis and stop the spindle.
+    MEASURING = auto()  # The size is being entered.
 
 
 @dataclass(slots=True)
@@ -45,206 +45,221 @@ class SkimCut:
     """A touch-off by a skim cut. Offsets change only when the size is entered. Esc cancels."""
 
     desk: Desk
-    tool: ToolSetting
-    step: CutStep = CutStep.OFF
-    what: str = ""  # =
-    at: float = 0.0  # Machine position of the axis during the cut in mm, by its encoder.
+    tool_setting: ToolSetting
+    cut_step: SkimCutStep = SkimCutStep.OFF
+    quantity: str = ""  # =
+    cut_position: float = 0.0  # Machine position of the axis during the cut in mm, by its encoder.
     # Commanded position during the cut in mm. The cutting force deflects the axis, which then springs back.
-    sent: float = 0.0
-    way: float = 0.0  # Distance in mm along the other axis with the spindle turning, since this axis moved.
-    spoilt: str = ""  # Why the last cut is no longer valid.
+    commanded_position: float = 0.0
+    cut_length: float = (
+        0.0  # Distance in mm along the other axis with the spindle turning, since this axis moved.
+    )
+    failure_reason: str = ""  # Why the last cut is no longer valid.
     # Positions of both axes at the beginning of this distance.
     _stands: tuple[float, float] | None = field(default=None)
 
     @property
-    def open(self) -> bool:
+    def is_open(self) -> bool:
         """Whether a skim cut is in progress."""
-        return self.step is not CutStep.OFF
+        return self.cut_step is not SkimCutStep.OFF
 
     @property
-    def axis(self) -> str:
+    def measured_axis(self) -> str:
         """The axis that is measured and must not move after the cut."""
-        return TOUCHES[self.what].upper() if self.what else ""
+        return TOUCH_FIELDS[self.quantity].upper() if self.quantity else ""
 
     @property
-    def other(self) -> str:
+    def travel_axis(self) -> str:
         """The axis along which the tool cuts and retracts."""
-        return "Z" if self.axis == "X" else "X"
+        return "Z" if self.measured_axis == "X" else "X"
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def begin(self) -> None:
+    def begin_skim_cut(self) -> None:
         """Ask for the axis, or show why no tool can be set now."""
-        if self.open:
+        if self.is_open:
             return
-        why = self.tool.barred(TOUCH_X, self.desk.snapshot())
+        why = self.tool_setting.find_refusal(TOUCH_X, self.desk.read_snapshot())
         if why:
             self.desk.say(why)
             return
-        self.desk.clear()
-        self.step = CutStep.AXIS
+        self.desk.clear_prompt_line()
+        self.cut_step = SkimCutStep.CHOOSE_AXIS
 
-    def choose(self, what: str) -> None:
+    def select_cut(self, quantity: str) -> None:
         """Select a diameter or a face as the cut."""
-        why = self.tool.barred(what, self.desk.snapshot())
+        why = self.tool_setting.find_refusal(quantity, self.desk.read_snapshot())
         if why:
             self.desk.say(why)
             return
-        self.desk.clear()
-        self.what, self.step = what, CutStep.CUT
-        self._anew(self.desk.snapshot())
+        self.desk.clear_prompt_line()
+        self.quantity, self.cut_step = quantity, SkimCutStep.CUTTING
+        self._anew(self.desk.read_snapshot())
 
-    def made(self) -> None:
+    def finish_cut(self) -> None:
         """Finish the cut, and store the position of the axis."""
-        snapshot = self.desk.snapshot()
-        why = self._no_cut(snapshot)
+        snapshot = self.desk.read_snapshot()
+        why = self._find_cut_refusal(snapshot)
         if why:
             self.desk.say(why)
             return
-        self.desk.clear()
-        self.at = snapshot.tip["XZ".index(self.axis)]
-        self.sent, self.step, self.spoilt = self._place(snapshot), CutStep.AWAY, ""
+        self.desk.clear_prompt_line()
+        self.cut_position = snapshot.tip["XZ".index(self.measured_axis)]
+        self.commanded_position, self.cut_step, self.failure_reason = (
+            self._place(snapshot),
+            SkimCutStep.RETRACT,
+            "",
+        )
 
-    def _no_cut(self, snapshot: Snapshot) -> str:
+    def _find_cut_refusal(self, snapshot: Snapshot) -> str:
         """Return why there is no cut to measure yet. Empty if there is one."""
-        if snapshot.state is not State.IDLE:
+        if snapshot.state is not MachineState.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
-        if self.way >= LEAST_CUT:
+        if self.cut_length >= MIN_CUT_MM:
             return ""
-        if abs(snapshot.rpm_actual) <= TURNING:
+        if abs(snapshot.rpm_actual) <= TURNING_RPM:
             return tr("NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT")
         return tr(
             Message(
                 "NO CUT YET: {axis} MOVED LAST. FEED {other} WITHOUT MOVING {axis}",
-                axis=self.axis,
-                other=self.other,
+                axis=self.measured_axis,
+                other=self.travel_axis,
             )
         )
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Return False to leave the key to the page."""
-        if self.step is CutStep.AXIS and key.lower() in {"x", "z"}:
-            self.choose(TOUCH_X if key.lower() == "x" else TOUCH_Z)
-        elif self.step is CutStep.CUT and key == "Enter":
-            self.made()
-        elif not self.open and key in {"c", "C"}:
-            self.begin()
+        if self.cut_step is SkimCutStep.CHOOSE_AXIS and key.lower() in {"x", "z"}:
+            self.select_cut(TOUCH_X if key.lower() == "x" else TOUCH_Z)
+        elif self.cut_step is SkimCutStep.CUTTING and key == "Enter":
+            self.finish_cut()
+        elif not self.is_open and key in {"c", "C"}:
+            self.begin_skim_cut()
         else:
             return False
         return True
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Handle Esc: cancel the skim cut. Return False if none is in progress."""
-        was = self.open
+        was = self.is_open
         if was:
-            self.drop()
+            self.cancel()
             self.desk.say(tr("SKIM CUT CANCELED, NOTHING CHANGED"))
         return was
 
-    def drop(self) -> None:
+    def cancel(self) -> None:
         """End the skim cut without a change of offsets."""
-        if self.step is CutStep.MEASURE:
-            self.tool.close()
-        self.step, self.what, self.spoilt = CutStep.OFF, "", ""
-        self.way, self._stands = 0.0, None
+        if self.cut_step is SkimCutStep.MEASURING:
+            self.tool_setting.close_question()
+        self.cut_step, self.quantity, self.failure_reason = SkimCutStep.OFF, "", ""
+        self.cut_length, self._stands = 0.0, None
 
     # --- every frame ---------------------------------------------------------------------------------
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Follow the axes and the spindle, and advance the skim cut; called once a frame."""
-        if not self.open or self.step is CutStep.AXIS:
+        if not self.is_open or self.cut_step is SkimCutStep.CHOOSE_AXIS:
             return
-        why = self._spoilt(snapshot)
+        why = self._find_failure(snapshot)
         if why:
-            self.drop()
+            self.cancel()
             self.desk.say(why)
-        elif self.step is CutStep.CUT:
-            self._follow(snapshot)
-        elif abs(self._place(snapshot) - self.sent) > MOVED:
-            self._moved(snapshot)
-        elif self.step is CutStep.AWAY:
-            self._measure(snapshot)
-        elif not self.tool.asked:  # The value was saved or canceled.
-            self.drop()
+        elif self.cut_step is SkimCutStep.CUTTING:
+            self._follow_cut(snapshot)
+        elif abs(self._place(snapshot) - self.commanded_position) > MOVE_TOLERANCE_MM:
+            self._handle_moved(snapshot)
+        elif self.cut_step is SkimCutStep.RETRACT:
+            self._measure_cut(snapshot)
+        elif not self.tool_setting.question_name:  # The value was saved or canceled.
+            self.cancel()
         elif self._turns(snapshot):
-            self.tool.close()
-            self.step = CutStep.AWAY
+            self.tool_setting.close_question()
+            self.cut_step = SkimCutStep.RETRACT
 
-    def _spoilt(self, snapshot: Snapshot) -> str:
+    def _find_failure(self, snapshot: Snapshot) -> str:
         """Return why the skim cut cannot continue. Empty if it can."""
-        if snapshot.state in {State.ESTOP, State.FAULT, State.DISABLED, State.HOME}:
+        if snapshot.state in {
+            MachineState.ESTOP,
+            MachineState.FAULT,
+            MachineState.DISABLED,
+            MachineState.HOME,
+        }:
             return tr("MACHINE STOPPED. SKIM CUT CANCELED. NOTHING CHANGED")
-        if not snapshot.homed[snapshot.axes.index(self.axis)]:
-            return tr(Message("{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED", axis=self.axis))
+        if not snapshot.homed[snapshot.axes.index(self.measured_axis)]:
+            return tr(
+                Message("{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED", axis=self.measured_axis)
+            )
         return ""
 
-    def _follow(self, snapshot: Snapshot) -> None:
+    def _follow_cut(self, snapshot: Snapshot) -> None:
         """Measure the distance along the other axis with the spindle turning, since this axis moved last."""
-        if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVED:
+        if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVE_TOLERANCE_MM:
             self._anew(snapshot)
         elif self._turns(snapshot):
-            self.way = max(self.way, abs(self._beside(snapshot) - self._stands[1]))
-        elif not self.way:
+            self.cut_length = max(self.cut_length, abs(self._beside(snapshot) - self._stands[1]))
+        elif not self.cut_length:
             self._stands = (self._stands[0], self._beside(snapshot))
 
     def _anew(self, snapshot: Snapshot) -> None:
-        self.way, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
+        self.cut_length, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
 
-    def _moved(self, snapshot: Snapshot) -> None:
+    def _handle_moved(self, snapshot: Snapshot) -> None:
         """Discard the stored position, because the axis moved after the cut."""
-        mode = self.tool.history.mode
-        away = self._place(snapshot) - self.sent
-        shown = length(2 * away if self.axis == "X" and mode.diameter else away, mode.metric)
-        if self.step is CutStep.MEASURE:
-            self.tool.close()
-        self.step = CutStep.CUT
+        mode = self.tool_setting.history.value_mode
+        away = self._place(snapshot) - self.commanded_position
+        shown = format_length(
+            2 * away if self.measured_axis == "X" and mode.is_diameter else away, mode.is_metric
+        )
+        if self.cut_step is SkimCutStep.MEASURING:
+            self.tool_setting.close_question()
+        self.cut_step = SkimCutStep.CUTTING
         self._anew(snapshot)
         words = tr("{axis} MOVED {away} AFTER THE CUT. NOT SAVED. CUT AGAIN OR PRESS ESC")
-        self.spoilt = tr(Message(words, axis=self.axis, away=shown))
+        self.failure_reason = tr(Message(words, axis=self.measured_axis, away=shown))
 
-    def _measure(self, snapshot: Snapshot) -> None:
+    def _measure_cut(self, snapshot: Snapshot) -> None:
         """Ask for the size when the spindle and the axes are at rest."""
-        if snapshot.state is State.IDLE and not self._turns(snapshot):
-            self.step = CutStep.MEASURE
-            self.tool.measured(self.what, self.at)
+        if snapshot.state is MachineState.IDLE and not self._turns(snapshot):
+            self.cut_step = SkimCutStep.MEASURING
+            self.tool_setting.ask_cut_size(self.quantity, self.cut_position)
 
     @staticmethod
     def _turns(snapshot: Snapshot) -> bool:
-        return abs(snapshot.rpm_actual) > TURNING or snapshot.rpm_command != 0.0
+        return abs(snapshot.rpm_actual) > TURNING_RPM or snapshot.rpm_command != 0.0
 
     def _place(self, snapshot: Snapshot) -> float:
-        return snapshot.demand[snapshot.axes.index(self.axis)]
+        return snapshot.demand[snapshot.axes.index(self.measured_axis)]
 
     def _beside(self, snapshot: Snapshot) -> float:
-        return snapshot.demand[snapshot.axes.index(self.other)]
+        return snapshot.demand[snapshot.axes.index(self.travel_axis)]
 
     # --- display -------------------------------------------------------------------------------------
 
-    def words(self, snapshot: Snapshot) -> str:
+    def make_step_prompt(self, snapshot: Snapshot) -> str:
         """Return the prompt for the next step."""
-        if self.step is CutStep.AXIS:
+        if self.cut_step is SkimCutStep.CHOOSE_AXIS:
             return tr("SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL")
-        if self.step is CutStep.AWAY:
+        if self.cut_step is SkimCutStep.RETRACT:
             words = tr("RETRACT {other} ONLY. DO NOT MOVE {axis}. THEN 0: STOP SPINDLE")
-            return tr(Message(words, axis=self.axis, other=self.other))
-        return self._words_of_cut(snapshot) if self.step is CutStep.CUT else ""
+            return tr(Message(words, axis=self.measured_axis, other=self.travel_axis))
+        return self._words_of_cut(snapshot) if self.cut_step is SkimCutStep.CUTTING else ""
 
     def _words_of_cut(self, snapshot: Snapshot) -> str:
-        if self.spoilt and self.way < LEAST_CUT:
-            return self.spoilt
-        if self.way >= LEAST_CUT and snapshot.state not in CYCLE:
+        if self.failure_reason and self.cut_length < MIN_CUT_MM:
+            return self.failure_reason
+        if self.cut_length >= MIN_CUT_MM and snapshot.state not in CYCLE_STATES:
             words = tr("CUT FAR ENOUGH IN {other} TO MEASURE, THEN PRESS ENTER")
-            return tr(Message(words, other=self.other))
+            return tr(Message(words, other=self.travel_axis))
         if not self._turns(snapshot):
             return tr("START THE SPINDLE (B), THEN JOG INTO THE CUT. ESC: CANCEL")
         words = tr("JOG {axis} TO THE DEPTH OF CUT, THEN FEED IN {other}. ESC: CANCEL")
-        return tr(Message(words, axis=self.axis, other=self.other))
+        return tr(Message(words, axis=self.measured_axis, other=self.travel_axis))
 
 
-Way = tuple[str, int]  # Axis and sign.
-ALL: tuple[Way, ...] = (("X", -1), ("X", 1), ("Z", -1), ("Z", 1))
-CENTRE = 9  # The offset refers to the nose center.
-_WAYS: dict[int, tuple[Way, ...]] = {
+TouchDirection = tuple[str, int]  # Axis and sign.
+ALL_DIRECTIONS: tuple[TouchDirection, ...] = (("X", -1), ("X", 1), ("Z", -1), ("Z", 1))
+CENTER_TIP = 9  # The offset refers to the nose center.
+_DIRECTIONS_BY_TIP: dict[int, tuple[TouchDirection, ...]] = {
     1: (("X", 1), ("Z", 1)),
     2: (("X", 1), ("Z", -1)),
     3: (("X", -1), ("Z", -1)),
@@ -253,90 +268,98 @@ _WAYS: dict[int, tuple[Way, ...]] = {
     6: (("X", 1),),
     7: (("Z", -1),),
     8: (("X", -1),),
-    CENTRE: ALL,
+    CENTER_TIP: ALL_DIRECTIONS,
 }
 
 
-def ways_of(row: ToolRow | None) -> tuple[Way, ...]:
+def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
     """Return the directions in which this tool can be touched off.
 
     A tool that was never set allows all directions. A tool without a tip quadrant allows none.
     """
-    return ALL if row is None else _WAYS.get(row.quadrant, ())
+    return ALL_DIRECTIONS if row is None else _DIRECTIONS_BY_TIP.get(row.quadrant, ())
 
 
-def stands_at(place: float, way: Way, model: SetterModel, row: ToolRow | None) -> float:
+def find_zero_position(
+    touch_position: float, direction: TouchDirection, setter: SetterModel, row: ToolRow | None
+) -> float:
     """Return the machine position in mm at which this tip is on part zero. The tip touched at ``place``."""
-    axis, sign = way
-    before = sign * row.nose_radius if row is not None and row.quadrant == CENTRE else 0.0
-    return place - (model.face(axis, sign) - before)
+    axis, sign = direction
+    before = sign * row.nose_radius if row is not None and row.quadrant == CENTER_TIP else 0.0
+    return touch_position - (setter.touch_position(axis, sign) - before)
 
 
-def way_word(way: Way) -> str:
+def format_direction(direction: TouchDirection) -> str:
     """Return a direction as text, for example X−."""
-    return f"{way[0]}{'+' if way[1] > 0 else '−'}"
+    return f"{direction[0]}{'+' if direction[1] > 0 else '−'}"
 
 
 @dataclass(slots=True)
-class SetterTouch:
+class SetterTouchOff:
     """Touch-off at the tool setter.
 
-    ``armed`` means that the next direction key starts a touch-off. ``directions`` contain the keys.
+    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contain the keys.
     """
 
     desk: Desk
     machine: Machine
-    tool: ToolSetting
-    lease: float
+    tool_setting: ToolSetting
+    lease_s: float
     directions: tuple[JogDirection, ...]
-    armed: bool = False
+    is_armed: bool = False
     _presses: int = 0
     _seen: int | None = None  # Number of the last touch-off that was processed.
 
     @property
-    def model(self) -> SetterModel | None:
+    def setter(self) -> SetterModel | None:
         """The tool setter from the machine file. None if the machine has no tool setter with an input."""
-        return self.machine.hardware.table(SetterModel) if PROBE in self.machine.inputs else None
+        return (
+            self.machine.hardware.find_driver_table(SetterModel)
+            if PROBE_INPUT in self.machine.inputs
+            else None
+        )
 
-    def key(self) -> None:
+    def toggle_armed(self) -> None:
         """Handle P: arm or cancel the touch-off of the selected tool."""
-        if self.armed:
-            self.drop()
+        if self.is_armed:
+            self.cancel()
         elif why := self._barred():
             self.desk.say(why)
         else:
-            self.armed = True
-            self.desk.clear()
+            self.is_armed = True
+            self.desk.clear_prompt_line()
 
-    def drop(self) -> None:
+    def cancel(self) -> None:
         """Cancel the touch-off."""
-        self.armed = False
+        self.is_armed = False
 
     def _barred(self) -> str:
-        tool, snapshot = self.tool, self.desk.snapshot()
-        if self.model is None:
+        tool, snapshot = self.tool_setting, self.desk.read_snapshot()
+        if self.setter is None:
             return tr("THIS MACHINE HAS NO TOOL SETTER")
-        if why := tool.book.locked or refusal(snapshot, correction=False):
+        if why := tool.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=False):
             return why
-        if not tool.number:
+        if not tool.tool_number:
             return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
-        if not ways_of(tool.row):
-            return tr(Message("T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9", number=tool.number))
+        if not find_touch_directions(tool.tool_row):
+            return tr(
+                Message("T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9", number=tool.tool_number)
+            )
         return ""
 
-    def command(self, axis: str, sign: int, button: str) -> Command | str:
+    def make_command(self, axis: str, sign: int, button: str) -> Command | str:
         """Return the touch-off command for this direction, or the reason as text if it is not possible."""
-        ways = ways_of(self.tool.row)
+        ways = find_touch_directions(self.tool_setting.tool_row)
         if (axis, sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
-            words = tr(" OR ").join(way_word(way) for way in ways)
-            return tr(Message(text, number=self.tool.number, ways=words))
+            words = tr(" OR ").join(format_direction(way) for way in ways)
+            return tr(Message(text, number=self.tool_setting.tool_number, ways=words))
         self._presses += 1
-        return Touch(axis, sign, self.lease, self._presses, button)
+        return TouchOffTool(axis, sign, self.lease_s, self._presses, button)
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Ask whether to save the result of a touch-off, when the axis is at rest; called once a frame."""
-        if self._seen is not None and snapshot.state is State.JOG:
+        if self._seen is not None and snapshot.state is MachineState.JOG:
             return
         touched = snapshot.touched
         number = touched.number if touched is not None else 0
@@ -344,31 +367,31 @@ class SetterTouch:
             self._seen = number
             return
         self._seen = number
-        if not self.armed or self.model is None:
+        if not self.is_armed or self.setter is None:
             return
-        if touched.place is None:
+        if touched.touch_position is None:
             self.desk.say(tr(Message("TOUCH-OFF FAILED: {why}", why=touched.why.upper())))
         else:
-            self.armed = False
-            self._found(touched, touched.place, self.model)
+            self.is_armed = False
+            self._found(touched, touched.touch_position, self.setter)
 
-    def _found(self, touched: Touched, place: float, model: SetterModel) -> None:
+    def _found(self, touched: TouchResult, place: float, model: SetterModel) -> None:
         way = (touched.axis, touched.sign)
-        value = stands_at(place, way, model, self.tool.row)
-        metric = self.tool.history.mode.metric
-        about = signed(touched.error, metric).removeprefix("+")
+        value = find_zero_position(place, way, model, self.tool_setting.tool_row)
+        metric = self.tool_setting.history.value_mode.is_metric
+        about = format_signed(touched.uncertainty_mm, metric).removeprefix("+")
         cause = tr(
             Message(
                 "measured at the tool setter, direction {direction}, ±{error}",
-                direction=way_word(way),
+                direction=format_direction(way),
                 error=about,
             )
         )
-        self.tool.found(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
+        self.tool_setting.ask_setter_result(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 
-    def prompt(self, snapshot: Snapshot) -> str:
+    def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the prompt for the touch-off. Empty if no touch-off is armed."""
-        if not self.armed:
+        if not self.is_armed:
             return ""
         words = {
             TouchPhase.SEARCH: tr("SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP"),
@@ -377,38 +400,38 @@ class SetterTouch:
             TouchPhase.RETREAT: tr("CONTACT MADE. BACKING OFF"),
             TouchPhase.RETURN: tr("NO CONTACT. RETURNING"),
         }
-        if snapshot.touching is not None:
-            return words[snapshot.touching]
-        ways = ways_of(self.tool.row)
+        if snapshot.touch_phase is not None:
+            return words[snapshot.touch_phase]
+        ways = find_touch_directions(self.tool_setting.tool_row)
         keys = tr(" OR ").join(
-            f"{each.label} ({way_word((each.axis, each.sign))})"
+            f"{each.label} ({format_direction((each.axis, each.direction_sign))})"
             for each in self.directions
-            if (each.axis, each.sign) in ways
+            if (each.axis, each.direction_sign) in ways
         )
         text = tr("TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL")
-        return tr(Message(text, number=self.tool.number, keys=keys))
+        return tr(Message(text, number=self.tool_setting.tool_number, keys=keys))
 
 
 @dataclass(slots=True)
-class HeldTouch(HeldJog):
-    """A continuous jog, or a touch-off while a key is held down if ``setter`` is armed."""
+class HeldTouchOff(HeldJog):
+    """A continuous jog, or a touch-off while a key is held down if ``setter_touch`` is armed."""
 
-    setter: SetterTouch | None = None
+    setter_touch: SetterTouchOff | None = None
     _asked: Command | None = field(default=None)
 
-    def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
+    def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         self._asked = None
-        if self.setter is None or not self.setter.armed:
-            HeldJog._go(self, source, axis, sign, rapid)
+        if self.setter_touch is None or not self.setter_touch.is_armed:
+            HeldJog._start_jog(self, source, axis, sign, rapid)
             return
-        asked = self.setter.command(axis, sign, self.button)
+        asked = self.setter_touch.make_command(axis, sign, self.last_button)
         if isinstance(asked, str):
-            self.say(asked)
+            self.show_message(asked)
         elif rapid:
-            self.say(tr("NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT"))
+            self.show_message(tr("NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT"))
         else:
             self._asked = asked
             self._hold(source, axis, float(sign), False, asked)
 
-    def _renewal(self, held: Held, /) -> Command:
+    def _renewal(self, held: ActiveJog, /) -> Command:
         return self._asked or HeldJog._renewal(self, held)

@@ -7,37 +7,37 @@ from dataclasses import dataclass
 
 from app.desk.translation import tr
 from core.executor.hand_motion.jog_line import Direction
-from core.executor.snapshot import BY_HAND, Snapshot
-from core.geometry.rotary_axes import Kinematics, Rotary
-from core.geometry.rotation_frames import Matrix, product, turned
+from core.executor.snapshot import MANUAL_STATES, Snapshot
+from core.geometry.rotary_axes import Kinematics, RotaryAxis
+from core.geometry.rotation_frames import Matrix, multiply_matrices, rotation_about
 from core.interpreter.shared.working_plane import PlaneSystem
 from core.message import Message
 
-SLIDES = "XYZ"
+LINEAR_AXES = "XYZ"
 _ROTARY = "ABC"  # Axes of Q120, Q121 and Q122.
-_THERE = 0.01  # Tolerance in degrees between a rotary axis and its plane angle.
-_UPRIGHT = 1e-6  # Tolerance of a unit vector within which a tool counts as upright.
+_ANGLE_TOLERANCE_DEG = 0.01  # Tolerance in degrees between a rotary axis and its plane angle.
+_UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool counts as upright.
 
 
 @dataclass(frozen=True, slots=True)
 class JogFrame:
     """The jog directions X, Y and Z in machine coordinates, as the columns of ``axes``.
 
-    ``words`` is the name of the frame.
+    ``frame_text`` is the name of the frame.
     """
 
     axes: Matrix
-    words: str
+    frame_text: str
 
-    def direction(self, axis: str) -> Direction | None:
+    def find_direction(self, axis: str) -> Direction | None:
         """Return the machine direction of a linear axis. None for a rotary axis, which jogs as usual."""
-        if axis not in SLIDES:
+        if axis not in LINEAR_AXES:
             return None
-        x, y, z = (row[SLIDES.index(axis)] for row in self.axes)
+        x, y, z = (row[LINEAR_AXES.index(axis)] for row in self.axes)
         return x, y, z
 
 
-def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
+def make_jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
     """Return the frame for jogging, or the reason as text if there is no such frame.
 
     The frame is the active tilted plane, if the rotary axes are at its angles. Without a plane, it is the
@@ -45,70 +45,77 @@ def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
     """
     swivel = snapshot.swivel
     angles = dict(zip(snapshot.axes, snapshot.actual, strict=True))
-    if swivel is not None and swivel.system.tilted:
+    if swivel is not None and swivel.system.is_tilted:
         system = swivel.system
-        axes = sorted(system.kinematics.rotaries, key=lambda axis: axis.name)
-        off = [axis.name for axis in axes if _off(system, axis, angles[axis.name])]
+        axes = sorted(system.kinematics.rotary_axes, key=lambda axis: axis.name)
+        off = [axis.name for axis in axes if _is_angle_different(system, axis, angles[axis.name])]
         if off:
             turn = " ".join(f"{axis.name}+Q{120 + _ROTARY.index(axis.name)}" for axis in axes)
             words = tr("{axes} NOT AT THE PLANE ANGLE. FIRST RUN L {turn} FMAX IN MDI")
             return tr(Message(words, axes=tr(" AND ").join(off), turn=turn))
-        return JogFrame(system.place.turn, tr(Message("TILTED PLANE FROM LINE {line}", line=system.line)))
-    if machine is None or abs(machine.tool_axis(angles)[2] - 1.0) <= _UPRIGHT:
+        return JogFrame(
+            system.transform.rotation,
+            tr(Message("TILTED PLANE FROM LINE {line}", line=system.plane_block_line)),
+        )
+    if machine is None or abs(machine.tool_direction(angles)[2] - 1.0) <= _UPRIGHT_TOLERANCE:
         return tr("NO TILT ACTIVE. RUN PLANE IN MDI (F4) OR TILT THE HEAD")
-    heads = [turned(each.direction, angles[each.name]) for each in machine.rotaries if not each.table]
-    return JogFrame(product(*heads), tr("TOOL AXIS"))
+    heads = [
+        rotation_about(each.direction, angles[each.name]) for each in machine.rotary_axes if not each.is_table
+    ]
+    return JogFrame(multiply_matrices(*heads), tr("TOOL AXIS"))
 
 
-def _off(system: PlaneSystem, axis: Rotary, angle: float) -> bool:
+def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> bool:
     """Return whether a rotary axis is not at the angle of the plane."""
-    target = system.targets[_ROTARY.index(axis.name)]
-    return abs(axis.travel(target, system.kinematics.shown(axis, angle))) > _THERE
+    target = system.target_angles[_ROTARY.index(axis.name)]
+    return (
+        abs(axis.find_travel(target, system.kinematics.displayed_angle(axis, angle))) > _ANGLE_TOLERANCE_DEG
+    )
 
 
 @dataclass(slots=True)
 class TiltedJog:
     """Jog in a tilted frame. It is switched off when the frame is lost.
 
-    ``let_go`` ends the jog, and ``say`` shows the reason.
+    ``release_keys`` ends the jog, and ``show_message`` shows the reason.
     """
 
     machine: Kinematics | None
-    let_go: Callable[[str], None]
-    say: Callable[[str], None]
-    on: bool = False
-    frame: JogFrame | None = None  # The available frame, also while 3D-ROT is off.
-    why: str = ""  # Why no frame is available.
+    release_keys: Callable[[str], None]
+    show_message: Callable[[str], None]
+    is_on: bool = False
+    jog_frame: JogFrame | None = None  # The available frame, also while 3D-ROT is off.
+    refusal_reason: str = ""  # Why no frame is available.
 
-    def key(self, barred: str = "") -> None:
+    def toggle(self, refusal: str = "") -> None:
         """Toggle 3D-ROT. Show the reason if this is not possible."""
-        self.let_go("")
-        if not self.on and self.frame is None:
-            self.say(self.why)
-        elif not self.on and barred:
-            self.say(barred)
+        self.release_keys("")
+        if not self.is_on and self.jog_frame is None:
+            self.show_message(self.refusal_reason)
+        elif not self.is_on and refusal:
+            self.show_message(refusal)
         else:
-            self.on = not self.on
-            self.say("")
+            self.is_on = not self.is_on
+            self.show_message("")
 
-    def turns(self, snapshot: Snapshot) -> bool:
+    def is_available(self, snapshot: Snapshot) -> bool:
         """Return whether the key has a function now."""
-        return self.on or (self.frame is not None and snapshot.state in BY_HAND)
+        return self.is_on or (self.jog_frame is not None and snapshot.state in MANUAL_STATES)
 
-    def off(self) -> None:
+    def switch_off(self) -> None:
         """Switch 3D-ROT off, because the page closes."""
-        self.on = False
+        self.is_on = False
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Update the frame; called once a frame of the screen."""
-        found = jog_frame(self.machine, snapshot)
-        self.frame, self.why = (None, found) if isinstance(found, str) else (found, "")
-        if self.on and self.frame is None:
-            self.on = False
-            why = tr(Message("3D-ROT IS OFF. KEYS NOW JOG IN MACHINE X Y Z. {why}", why=self.why))
-            self.let_go(why)
-            self.say(why)
+        found = make_jog_frame(self.machine, snapshot)
+        self.jog_frame, self.refusal_reason = (None, found) if isinstance(found, str) else (found, "")
+        if self.is_on and self.jog_frame is None:
+            self.is_on = False
+            why = tr(Message("3D-ROT IS OFF. KEYS NOW JOG IN MACHINE X Y Z. {why}", why=self.refusal_reason))
+            self.release_keys(why)
+            self.show_message(why)
 
-    def along(self, axis: str) -> Direction | None:
+    def find_direction(self, axis: str) -> Direction | None:
         """Return the machine direction of a jog of this axis, or None for the machine axis itself."""
-        return self.frame.direction(axis) if self.on and self.frame is not None else None
+        return self.jog_frame.find_direction(axis) if self.is_on and self.jog_frame is not None else None

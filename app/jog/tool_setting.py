@@ -4,49 +4,51 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.sheet import edited, refused
+from app.desk.pages.table_content import edit_text, refused
 from app.desk.translation import tr
-from app.offsets.change_rules import CORRECTIONS
+from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, follower_names, refusal
-from app.offsets.offset_table import NewTool, ToolFields
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal, format_followers
+from app.offsets.offset_table import IncompleteTool, ToolFieldEditor
 from app.offsets.offset_values import (
     TOOL_FIELDS,
-    Mode,
-    heading,
-    not_set,
-    shown_value,
-    signed,
-    to_mm,
-    value_typed,
-    word,
+    ValueMode,
+    convert_to_mm,
+    describe_unset,
+    format_signed,
+    format_value,
+    make_heading,
+    parse_value,
+    translate_field,
 )
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
-from core.store.offsets.touch_off import Touch
-from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, Sort, ToolRow
-from core.tool_edges import edge_name, edge_number
+from core.store.offsets.touch_off import TouchPosition
+from core.store.store_rows import MAX_REMARK_LENGTH, OFFSET_NUMBERS, FieldType, OffsetKind, ToolRow
+from core.tool_edges import format_edge_name, format_edge_suffix
 
 TOUCH_X, TOUCH_Z = "touch x", "touch z"
-TOUCHES = {TOUCH_X: "x", TOUCH_Z: "z"}
-MOVED = 0.005  # Tolerance in mm. After a larger move, the axis is no longer where the tip touched.
+TOUCH_FIELDS = {TOUCH_X: "x", TOUCH_Z: "z"}
+MOVE_TOLERANCE_MM = (
+    0.005  # Tolerance in mm. After a larger move, the axis is no longer where the tip touched.
+)
 
 
-def touch_refusal(what: str, snapshot: Snapshot) -> str:
+def find_touch_refusal(quantity: str, snapshot: Snapshot) -> str:
     """Return why an axis cannot be touched off now. Empty if it can."""
-    axis = TOUCHES[what].upper()
+    axis = TOUCH_FIELDS[quantity].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
         return tr(Message("{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST", axis=axis))
-    if snapshot.state not in {State.IDLE, State.DISABLED}:
+    if snapshot.state not in {MachineState.IDLE, MachineState.DISABLED}:
         return tr("TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY")
     return ""
 
 
-def slide(what: str, snapshot: Snapshot) -> float:
+def find_axis_position(quantity: str, snapshot: Snapshot) -> float:
     """Return the machine position of the touched axis in mm."""
-    return snapshot.tip["xz".index(TOUCHES[what])]
+    return snapshot.tip["xz".index(TOUCH_FIELDS[quantity])]
 
 
 @dataclass(slots=True)
@@ -54,99 +56,133 @@ class TouchOff:
     """One touch-off of one axis. ``at`` is the machine position at the touch in mm.
 
     ``found`` is the machine position in mm with the tip on part zero, as the tool setter measured it.
-    ``cause`` describes the measurement. Such a value needs no entry, and the axis may move afterwards.
+    ``reason`` describes the measurement. Such a value needs no entry, and the axis may move afterwards.
     """
 
-    what: str = ""
-    at: float = 0.0
-    alone: bool = False  # Only this tool changes, although it is the master.
-    found: float | None = None
-    cause: str = ""
-    by_cut: bool = False  # The entered size was measured on a skim cut.
+    quantity: str = ""
+    touch_position: float = 0.0
+    skips_followers: bool = False  # Only this tool changes, although it is the master.
+    measured_value: float | None = None
+    reason: str = ""
+    is_skim_cut: bool = False  # The entered size was measured on a skim cut.
 
     @property
-    def name(self) -> str:
+    def field_name(self) -> str:
         """The field of the tool that the touch-off sets."""
-        return TOUCHES[self.what]
+        return TOUCH_FIELDS[self.quantity]
 
-    def open(self, what: str, snapshot: Snapshot) -> None:
+    def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
         """Store the present position of the axis as the touch."""
-        self.what, self.at, self.alone = what, slide(what, snapshot), False
-        self.found, self.cause, self.by_cut = None, "", False
+        self.quantity, self.touch_position, self.skips_followers = (
+            quantity,
+            find_axis_position(quantity, snapshot),
+            False,
+        )
+        self.measured_value, self.reason, self.is_skim_cut = None, "", False
 
-    def cut(self, what: str, at: float) -> None:
+    def set_cut(self, quantity: str, position: float) -> None:
         """Store the machine position of a skim cut in mm."""
-        self.what, self.at, self.alone = what, at, False
-        self.found, self.cause, self.by_cut = None, "", True
+        self.quantity, self.touch_position, self.skips_followers = quantity, position, False
+        self.measured_value, self.reason, self.is_skim_cut = None, "", True
 
-    def set(self, what: str, found: float, cause: str) -> None:
+    def set_measurement(self, quantity: str, value: float, reason: str) -> None:
         """Store a measurement of the tool setter. Other tools do not follow a master in this case."""
-        self.what, self.found, self.cause, self.alone, self.by_cut = what, found, cause, True, False
+        self.quantity, self.measured_value, self.reason, self.skips_followers, self.is_skim_cut = (
+            quantity,
+            value,
+            reason,
+            True,
+            False,
+        )
 
-    def place(self, text: str, mode: Mode) -> float:
+    def find_zero_position(self, text: str, mode: ValueMode) -> float:
         """Return the machine position in mm with the tip on part zero, X as a radius. Raises EntryError."""
-        if self.found is not None:
-            return self._within(self.found)
-        typed = value_of(text) * (0.5 if self.what == TOUCH_X else 1.0)
-        return self._within(self.at - to_mm(typed, mode.metric))
+        if self.measured_value is not None:
+            return self._within(self.measured_value)
+        typed = evaluate_expression(text) * (0.5 if self.quantity == TOUCH_X else 1.0)
+        return self._within(self.touch_position - convert_to_mm(typed, mode.is_metric))
 
     def _within(self, place: float) -> float:
-        if not TOOL_FIELDS[self.name].takes(place):
+        if not TOOL_FIELDS[self.field_name].accepts(place):
             raise EntryError(
-                tr(Message("the {axis} offset would be outside the allowed range", axis=word(self.name)))
+                tr(
+                    Message(
+                        "the {axis} offset would be outside the allowed range",
+                        axis=translate_field(self.field_name),
+                    )
+                )
             )
         return place
 
-    def save(self, number: int, text: str, history: OffsetHistory, new: NewTool) -> str:
+    def save_touch(self, number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool) -> str:
         """Save the touch-off. Return why it was rejected, or an empty text.
 
         X and Z of a new tool are saved together. Raises EntryError for an invalid entry.
         """
-        place, book, ask = self.place(text, history.mode), history.book, OffsetQuestions(history)
+        place, book, ask = (
+            self.find_zero_position(text, history.value_mode),
+            history.offset_book,
+            OffsetQuestions(history),
+        )
         if number in book.tools:
             return ask.touch_off(
-                number, self.touch(place), self._reason(text, history.mode), self._tip(place)
+                number,
+                self.make_touch(place),
+                self._make_reason(text, history.value_mode),
+                self._find_tip_x(place),
             )
-        values = new.add(number, self.name, place)
-        new.tip = self._tip(place) if self.name == "x" else new.tip
+        values = new_tool.add_value(number, self.field_name, place)
+        new_tool.tip_x_mm = self._find_tip_x(place) if self.field_name == "x" else new_tool.tip_x_mm
         if len(values) < 2:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
-        why = ask.touch_off(number, Touch(x, z), self.cause or tr("touch-off of a new tool"), new.tip)
+        why = ask.touch_off(
+            number, TouchPosition(x, z), self.reason or tr("touch-off of a new tool"), new_tool.tip_x_mm
+        )
         if not why:
-            new.drop()
+            new_tool.discard()
         return why
 
-    def touch(self, place: float) -> Touch:
+    def make_touch(self, place: float) -> TouchPosition:
         """Return the touch of this axis.
 
         ``place`` is the machine position in mm with the tip on part zero.
         """
-        return Touch(place, None, self.alone) if self.name == "x" else Touch(None, place, self.alone)
-
-    def _tip(self, place: float) -> float | None:
-        """Return X of the tip relative to part zero at the touch in mm. None if X was not touched."""
-        return self.at - place if self.name == "x" and self.found is None else None
-
-    def moved(self, snapshot: Snapshot) -> bool:
-        """Return whether the axis has moved since the touch. A skim cut checks this itself."""
-        return self.found is None and not self.by_cut and abs(slide(self.what, snapshot) - self.at) > MOVED
-
-    def _reason(self, text: str, mode: Mode) -> str:
-        """Return the text for the history."""
-        if self.cause:
-            return f"{self.cause}{tr(', this tool only') if self.alone else ''}"
-        unit = "MM " if mode.metric else ""
-        names = (
-            (tr("skim cut Ø"), tr("skim cut Z")) if self.by_cut else (tr("touch-off Ø"), tr("touch-off Z"))
+        return (
+            TouchPosition(place, None, self.skips_followers)
+            if self.field_name == "x"
+            else TouchPosition(None, place, self.skips_followers)
         )
-        what = names[self.what != TOUCH_X]
-        return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.alone else ''}"
+
+    def _find_tip_x(self, place: float) -> float | None:
+        """Return X of the tip relative to part zero at the touch in mm. None if X was not touched."""
+        return self.touch_position - place if self.field_name == "x" and self.measured_value is None else None
+
+    def has_moved(self, snapshot: Snapshot) -> bool:
+        """Return whether the axis has moved since the touch. A skim cut checks this itself."""
+        return (
+            self.measured_value is None
+            and not self.is_skim_cut
+            and abs(find_axis_position(self.quantity, snapshot) - self.touch_position) > MOVE_TOLERANCE_MM
+        )
+
+    def _make_reason(self, text: str, mode: ValueMode) -> str:
+        """Return the text for the history."""
+        if self.reason:
+            return f"{self.reason}{tr(', this tool only') if self.skips_followers else ''}"
+        unit = "MM " if mode.is_metric else ""
+        names = (
+            (tr("skim cut Ø"), tr("skim cut Z"))
+            if self.is_skim_cut
+            else (tr("touch-off Ø"), tr("touch-off Z"))
+        )
+        what = names[self.quantity != TOUCH_X]
+        return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.skips_followers else ''}"
 
 
-TOOL = "tool"  # The question for the tool number.
+TOOL_QUESTION = "tool"  # The question for the tool number.
 Pair = tuple[float, float]
-_AFTER = {"wear_x": "wear_z"}  # The question that follows an answer.
+_NEXT_QUESTIONS = {"wear_x": "wear_z"}  # The question that follows an answer.
 
 
 @dataclass(slots=True)
@@ -154,286 +190,314 @@ class ToolSetting:
     """The selected tool with the open question and the entered text."""
 
     desk: Desk
-    book: OffsetBook
+    offset_book: OffsetBook
     history: OffsetHistory = field(init=False)
-    fields: ToolFields = field(init=False)
-    touching: TouchOff = field(default_factory=TouchOff)
-    number: int = 0
-    asked: str = ""  # The open question: a touch, "tool", a field, or empty.
+    tool_fields: ToolFieldEditor = field(init=False)
+    touch_off: TouchOff = field(default_factory=TouchOff)
+    tool_number: int = 0
+    question_name: str = ""  # The open question: a touch, "tool", a field, or empty.
     text: str = ""
     _active: int = -1  # The active tool at the last update.
 
     def __post_init__(self) -> None:
-        self.history = OffsetHistory(self.desk, Kind.TOOL, keys="F8, F5")
-        self.fields = ToolFields(self.history)
+        self.history = OffsetHistory(self.desk, OffsetKind.TOOL, key_hint="F8, F5")
+        self.tool_fields = ToolFieldEditor(self.history)
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def row(self) -> ToolRow | None:
+    def tool_row(self) -> ToolRow | None:
         """The offset of the selected tool. None if the tool was never set."""
-        return self.book.tools.get(self.number)
+        return self.offset_book.tools.get(self.tool_number)
 
     @property
-    def masters(self) -> bool:
+    def is_master_touched(self) -> bool:
         """Whether the master tool is being touched off."""
-        return self.asked in TOUCHES and self.row is not None and self.row.master
+        return self.question_name in TOUCH_FIELDS and self.tool_row is not None and self.tool_row.master
 
     @property
-    def by_setter(self) -> bool:
+    def is_setter_result(self) -> bool:
         """Whether the question is about a measurement of the tool setter."""
-        return self.asked in TOUCHES and self.touching.found is not None
+        return self.question_name in TOUCH_FIELDS and self.touch_off.measured_value is not None
 
-    def found(self, what: str, value: float, cause: str) -> None:
+    def ask_setter_result(self, quantity: str, value: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
         ``value`` is the machine position in mm with the tip on part zero. A suspicious value is asked only
         once, by the question for suspicious changes.
         """
-        self.asked, self.text = what, ""
-        self.touching.set(what, value, cause)
-        if self.row is not None and OffsetQuestions(self.history).doubts(
-            self.number, self.touching.touch(value)
+        self.question_name, self.text = quantity, ""
+        self.touch_off.set_measurement(quantity, value, reason)
+        if self.tool_row is not None and OffsetQuestions(self.history).find_touch_suspicions(
+            self.tool_number, self.touch_off.make_touch(value)
         ):
             self._enter()
 
-    def measured(self, what: str, at: float) -> None:
+    def ask_cut_size(self, quantity: str, position: float) -> None:
         """Ask for the size of a skim cut. ``at`` is the machine position during the cut in mm."""
-        self.desk.clear()
-        self.asked, self.text = what, ""
-        self.touching.cut(what, at)
+        self.desk.clear_prompt_line()
+        self.question_name, self.text = quantity, ""
+        self.touch_off.set_cut(quantity, position)
 
     @property
-    def moved(self) -> float | None:
+    def offset_change(self) -> float | None:
         """The measured position minus the present offset with wear in mm.
 
         None without a measurement of the tool setter or without a present offset.
         """
-        if not self.by_setter or self.row is None or self.touching.found is None:
+        if not self.is_setter_result or self.tool_row is None or self.touch_off.measured_value is None:
             return None
-        return self.touching.found - self.row.offset["xz".index(self.touching.name)]
+        return self.touch_off.measured_value - self.tool_row.offset["xz".index(self.touch_off.field_name)]
 
-    def question(self) -> str:
+    def question_text(self) -> str:
         """Return the open question. Empty without a question."""
-        name = edge_name(self.number)
-        if self.asked == TOOL:
+        name = format_edge_name(self.tool_number)
+        if self.question_name == TOOL_QUESTION:
             return tr("TOOL NUMBER?")
-        if self.by_setter:
+        if self.is_setter_result:
             return tr(
                 Message(
                     "SAVE {tool} {axis} MEASURED AT THE TOOL SETTER?",
                     tool=name,
-                    axis=self.touching.name.upper(),
+                    axis=self.touch_off.field_name.upper(),
                 )
             )
-        if self.asked == TOUCH_X:
+        if self.question_name == TOUCH_X:
             return tr(Message("{tool} MEASURED DIAMETER?", tool=name))
-        if self.asked == TOUCH_Z:
+        if self.question_name == TOUCH_Z:
             return tr(Message("{tool} Z POSITION OF THE FACE?", tool=name))
-        return f"{name}  {word(self.asked)}?" if self.asked else ""
+        return f"{name}  {translate_field(self.question_name)}?" if self.question_name else ""
 
-    def note(self) -> str:
+    def make_note_text(self) -> str:
         """Return a note that the operator must read before answering. Empty without a note."""
-        number, new = self.number, self.fields.new
-        if self.masters and self.touching.alone:
+        number, new = self.tool_number, self.tool_fields.incomplete_tool
+        if self.is_master_touched and self.touch_off.skips_followers:
             return tr(
                 Message(
                     "ONLY T{number} CHANGES. L: APPLY TO ALL TOOLS",
-                    number=edge_number(number),
+                    number=format_edge_suffix(number),
                 )
             )
-        if self.masters:
+        if self.is_master_touched:
             return tr(
                 Message(
                     "T{number} IS THE MASTER. ALSO ADJUSTED: {others}. L: THIS TOOL ONLY",
-                    number=edge_number(number),
-                    others=follower_names(self.book.tools, number) or tr("no tools"),
+                    number=format_edge_suffix(number),
+                    others=format_followers(self.offset_book.tools, number) or tr("no tools"),
                 )
             )
-        if new.number and new.number == number:
+        if new.tool_number and new.tool_number == number:
             text = tr("T{number} IS NOT SET YET. TOUCH OFF {axis} TOO")
-            return tr(Message(text, number=edge_number(number), axis=new.missing.upper()))
+            return tr(Message(text, number=format_edge_suffix(number), axis=new.missing_axis.upper()))
         return ""
 
-    def old_to_new(self) -> str:
+    def describe_change(self) -> str:
         """Return the change that the entry would make, or else the last change."""
-        if not self.asked or self.asked == TOOL:
-            return self.history.last_in_words
-        mode, name, row = self.history.mode, TOUCHES.get(self.asked, self.asked), self.row
-        touched, title = self.asked in TOUCHES, heading(name, mode)
-        was = shown_value(name, getattr(row, name), mode) if row else not_set(unread=self.book.unread)
+        if not self.question_name or self.question_name == TOOL_QUESTION:
+            return self.history.last_change_text
+        mode, name, row = (
+            self.history.value_mode,
+            TOUCH_FIELDS.get(self.question_name, self.question_name),
+            self.tool_row,
+        )
+        touched, title = self.question_name in TOUCH_FIELDS, make_heading(name, mode)
+        was = (
+            format_value(name, getattr(row, name), mode)
+            if row
+            else describe_unset(is_unread=self.offset_book.has_read_failed)
+        )
         try:
-            value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)
-            ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""
-            apart = self._apart(name, mode)
-            return f"{title}  {was}  →  {shown_value(name, value, mode)}{apart}{ends}"
+            value = (
+                self.touch_off.find_zero_position(self.text, mode)
+                if touched
+                else parse_value(name, self.text, mode)
+            )
+            ends = _describe_reset_wear(row, f"wear_{name}", mode) if touched else ""
+            apart = self._format_difference(name, mode)
+            return f"{title}  {was}  →  {format_value(name, value, mode)}{apart}{ends}"
         except EntryError:
             return f"{title}  {was}  →  …"  # An incomplete expression is not an error yet.
 
-    def _apart(self, name: str, mode: Mode) -> str:
+    def _format_difference(self, name: str, mode: ValueMode) -> str:
         """Return the difference between the measured and the present offset as text."""
-        if self.moved is None:
+        if self.offset_change is None:
             return ""
-        shown = 2 * self.moved if name == "x" and mode.diameter else self.moved
-        return f"   {tr('DIFFERENCE')} {signed(shown, mode.metric)}"
+        shown = 2 * self.offset_change if name == "x" and mode.is_diameter else self.offset_change
+        return f"   {tr('DIFFERENCE')} {format_signed(shown, mode.is_metric)}"
 
-    def tip(self, snapshot: Snapshot) -> Pair | None:
+    def find_tip_position(self, snapshot: Snapshot) -> Pair | None:
         """Return the position of the tip relative to part zero in mm. None if the tool was never set."""
-        if self.row is None:
+        if self.tool_row is None:
             return None
-        x, z = self.row.offset
+        x, z = self.tool_row.offset
         return snapshot.tip[0] - x, snapshot.tip[1] - z
 
-    def from_master(self) -> Pair | None:
+    def find_master_difference(self) -> Pair | None:
         """Return the offset of this tool minus the master's in mm. None unless both are set."""
-        master = self.book.tools.get(self.book.master)
-        if self.row is None or master is None:
+        master = self.offset_book.tools.get(self.offset_book.master_number)
+        if self.tool_row is None or master is None:
             return None
-        (x, z), (mx, mz) = self.row.offset, master.offset
+        (x, z), (mx, mz) = self.tool_row.offset, master.offset
         return x - mx, z - mz
 
     # --- every frame ---------------------------------------------------------------------------------
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Select the active tool when it changes; called once a frame.
 
         A change of the unit discards the entry.
         """
-        before = self.history.mode
-        self.history.look(snapshot)
-        if self.history.mode != before and self.asked:
-            self.close()
+        before = self.history.value_mode
+        self.history.update(snapshot)
+        if self.history.value_mode != before and self.question_name:
+            self.close_question()
             self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
         if snapshot.modal.tool != self._active:
             self._active = snapshot.modal.tool
-            if self._active and not self.asked:
+            if self._active and not self.question_name:
                 self._choose(self._active)
 
     def _choose(self, number: int) -> None:
-        if number != self.number:
-            self.number = number
-            self.fields.new.drop()
+        if number != self.tool_number:
+            self.tool_number = number
+            self.tool_fields.incomplete_tool.discard()
 
     # --- questions -----------------------------------------------------------------------------------
 
-    def ask(self, what: str) -> None:
+    def open_question(self, quantity: str) -> None:
         """Open a question, or show why this is not possible."""
-        snapshot = self.desk.snapshot()
-        why = "" if what == TOOL else self.barred(what, snapshot)
+        snapshot = self.desk.read_snapshot()
+        why = "" if quantity == TOOL_QUESTION else self.find_refusal(quantity, snapshot)
         if why:
             self.desk.say(why)
             return
-        self.desk.clear()
-        self.asked, self.text = what, ""
-        if what == "remark" and self.row is not None:
-            self.text = self.row.remark
-        if what in TOUCHES:
-            self.touching.open(what, snapshot)
+        self.desk.clear_prompt_line()
+        self.question_name, self.text = quantity, ""
+        if quantity == "remark" and self.tool_row is not None:
+            self.text = self.tool_row.remark
+        if quantity in TOUCH_FIELDS:
+            self.touch_off.begin_touch(quantity, snapshot)
 
-    def barred(self, what: str, snapshot: Snapshot) -> str:
+    def find_refusal(self, quantity: str, snapshot: Snapshot) -> str:
         """Return why this question cannot be opened now. Empty if it can."""
-        why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS[Kind.TOOL])
-        if why or not self.number:
+        why = self.offset_book.lock_reason or find_change_refusal(
+            snapshot, is_correction=quantity in CORRECTION_FIELDS[OffsetKind.TOOL]
+        )
+        if why or not self.tool_number:
             return why or _which_tool()
-        if what in TOUCHES:
-            return touch_refusal(what, snapshot)
-        if self.row is None:
+        if quantity in TOUCH_FIELDS:
+            return find_touch_refusal(quantity, snapshot)
+        if self.tool_row is None:
             return tr(
-                Message("T{number} IS NOT SET. TOUCH OFF X AND Z FIRST", number=edge_number(self.number))
+                Message(
+                    "T{number} IS NOT SET. TOUCH OFF X AND Z FIRST",
+                    number=format_edge_suffix(self.tool_number),
+                )
             )
         return ""
 
-    def close(self) -> None:
+    def close_question(self) -> None:
         """Close the question."""
-        self.asked, self.text = "", ""
+        self.question_name, self.text = "", ""
 
-    def forget(self) -> None:
+    def cancel_new_tool(self) -> None:
         """Close the question, and discard an incomplete new tool."""
-        self.close()
-        self.fields.new.drop()
+        self.close_question()
+        self.tool_fields.incomplete_tool.discard()
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered."""
-        return self.asked == "remark" or (bool(self.asked) and not self.by_setter and key in CHARACTERS)
+        return self.question_name == "remark" or (
+            bool(self.question_name) and not self.is_setter_result and key in EXPRESSION_CHARACTERS
+        )
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key while a question is open. Return False if the key has no meaning in an entry."""
         if key == "Enter":
             self._enter()
-        elif key in {"Back", "Delete"} or (len(key) == 1 and self.takes(key)):
-            self.text = edited(self.text, key, REMARK_LONGEST if self.asked == "remark" else LONGEST)
-        elif key in {"l", "L"} and self.masters:
-            self.touching.alone = not self.touching.alone
+        elif key in {"Back", "Delete"} or (len(key) == 1 and self.accepts_key(key)):
+            self.text = edit_text(
+                self.text, key, MAX_REMARK_LENGTH if self.question_name == "remark" else MAX_LENGTH
+            )
+        elif key in {"l", "L"} and self.is_master_touched:
+            self.touch_off.skips_followers = not self.touch_off.skips_followers
         else:
             return False
         return True
 
     def _enter(self) -> None:
         try:
-            why = self._answer()
+            why = self._save_answer()
         except EntryError as error:
             self.text = refused(self.text)
             why = tr(Message("REJECTED: {why}", why=error))
         if why:
             self.desk.say(why)
 
-    def _answer(self) -> str:
+    def _save_answer(self) -> str:
         """Process the answer. Return why it was rejected, or an empty text. Raises EntryError."""
-        if self.asked == TOOL:
+        if self.question_name == TOOL_QUESTION:
             return self._tool()
-        snapshot = self.desk.snapshot()
-        why = self.barred(self.asked, snapshot)
+        snapshot = self.desk.read_snapshot()
+        why = self.find_refusal(self.question_name, snapshot)
         if why:
             return why
-        return self._touched(snapshot) if self.asked in TOUCHES else self._field()
+        return self._touched(snapshot) if self.question_name in TOUCH_FIELDS else self._field()
 
     def _tool(self) -> str:
-        value = value_of(self.text)
-        if value not in OFFSETS:
+        value = evaluate_expression(self.text)
+        if value not in OFFSET_NUMBERS:
             raise EntryError(tr(Message("T{number:g} does not exist; tools are T1…32", number=value)))
         self._choose(int(value))
-        self.close()
+        self.close_question()
         return ""
 
     def _touched(self, snapshot: Snapshot) -> str:
-        if self.touching.moved(snapshot):
+        if self.touch_off.has_moved(snapshot):
             return tr("AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN")
-        why = self.touching.save(self.number, self.text, self.history, self.fields.new)
+        why = self.touch_off.save_touch(
+            self.tool_number, self.text, self.history, self.tool_fields.incomplete_tool
+        )
         if not why:
-            self.close()
-        return why or self.note()
+            self.close_question()
+        return why or self.make_note_text()
 
     def _field(self) -> str:
-        name, text = self.asked, self.text
-        keeps = not text.strip() and TOOL_FIELDS[name].sort is not Sort.TEXT
-        why = "" if keeps else self.fields.save(self.number, name, text)
+        name, text = self.question_name, self.text
+        keeps = not text.strip() and TOOL_FIELDS[name].field_type is not FieldType.TEXT
+        why = "" if keeps else self.tool_fields.save_field(self.tool_number, name, text)
         if not why:
-            self.close()
-            self.asked = "" if self.desk.asked else _AFTER.get(name, "")
+            self.close_question()
+            self.question_name = "" if self.desk.confirm_key else _NEXT_QUESTIONS.get(name, "")
         return why
 
-    def master(self) -> None:
+    def ask_master(self) -> None:
         """Ask whether the selected tool becomes the master, or whether no tool is if it is the master now."""
-        why = self.barred("master", self.desk.snapshot())
-        self.close()
-        self.history.answer(why or self.fields.master(self.number))
+        why = self.find_refusal("master", self.desk.read_snapshot())
+        self.close_question()
+        self.history.show_refusal(why or self.tool_fields.ask_master(self.tool_number))
 
-    def undo(self) -> None:
+    def ask_undo(self) -> None:
         """Ask whether the last change of the selected tool is undone."""
-        self.close()
-        self.history.answer(self.undo_barred() or OffsetQuestions(self.history).undo(Kind.TOOL, self.number))
+        self.close_question()
+        self.history.show_refusal(
+            self.find_undo_refusal()
+            or OffsetQuestions(self.history).ask_undo(OffsetKind.TOOL, self.tool_number)
+        )
 
-    def undo_barred(self) -> str:
+    def find_undo_refusal(self) -> str:
         """Return why the last change of the selected tool cannot be undone now. Empty if it can."""
-        why = self.book.locked or refusal(self.desk.snapshot(), correction=False)
-        return why or ("" if self.number else _which_tool())
+        why = self.offset_book.lock_reason or find_change_refusal(
+            self.desk.read_snapshot(), is_correction=False
+        )
+        return why or ("" if self.tool_number else _which_tool())
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Close the question, and discard an incomplete new tool. Return False if there was neither."""
-        was = bool(self.asked or self.fields.new.number)
-        if was and self.number:
-            self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
-        self.forget()
+        was = bool(self.question_name or self.tool_fields.incomplete_tool.tool_number)
+        if was and self.tool_number:
+            self.desk.say(tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(self.tool_number))))
+        self.cancel_new_tool()
         return was
 
 
@@ -441,10 +505,11 @@ def _which_tool() -> str:
     return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
 
 
-def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:
+def _describe_reset_wear(row: ToolRow | None, name: str, mode: ValueMode) -> str:
     """Return the text of the wear that a touch-off resets to zero, because the new geometry includes it."""
     if row is None or not getattr(row, name):
         return ""
     return (
-        f"   {word(name)}  {shown_value(name, getattr(row, name), mode)}  →  {shown_value(name, 0.0, mode)}"
+        f"   {translate_field(name)}  {format_value(name, getattr(row, name), mode)}  →  "
+        f"{format_value(name, 0.0, mode)}"
     )

@@ -8,22 +8,29 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.status.formats import length
+from app.desk.status.formats import format_length
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
-from app.jog.tilted_jog import SLIDES
-from app.jog.tool_setting import TOOL, TOUCH_X, TOUCH_Z
-from app.offsets.offset_values import Mode, marked, not_set, shown_value, signed, word
-from app.screen.drawings import draw_tip
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
-from app.screen.panel import Panel, Shown
-from app.screen.window_layout import FINGER
+from app.jog.tilted_jog import LINEAR_AXES
+from app.jog.tool_setting import TOOL_QUESTION, TOUCH_X, TOUCH_Z
+from app.offsets.offset_values import (
+    ValueMode,
+    describe_unset,
+    find_diameter_mark,
+    format_signed,
+    format_value,
+    translate_field,
+)
+from app.screen.drawings import draw_tool_tip
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ALIGN_RIGHT, ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 # Field, and the key that asks for its value.
-FIELDS = (
+TOOL_FIELDS_SHOWN = (
     ("x", "X"),
     ("z", "Z"),
     ("wear_x", "W"),
@@ -33,202 +40,234 @@ FIELDS = (
     ("remark", "K"),
     ("master", "M"),
 )
-ROWS = len(FIELDS) // 2
-_ASKS = {"x": TOUCH_X, "z": TOUCH_Z}
+ROWS = len(TOOL_FIELDS_SHOWN) // 2
+_FIELD_QUESTIONS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
-class ToolPanel(Panel):
+class ToolSettingPanel(Panel):
     """The panel of the tool setting. Every field is a touch target."""
 
-    _shown: Shown[object] = Shown(None)
-    _tip: Shown[tuple[float, float] | None] = Shown(None)
-    _mode = Shown(Mode())
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
+    _tip: RedrawingAttribute[tuple[float, float] | None] = RedrawingAttribute(None)
+    _mode = RedrawingAttribute(ValueMode())
 
-    def __init__(self, look: Look, model: JogModel, parent: QWidget) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
+        super().__init__(theme, parent)
         self._model = model
 
     def show_tool(self, snapshot: Snapshot) -> None:
         """Show the selected tool and the position of its tip."""
-        tool = self._model.tool
-        self._mode = tool.history.mode
-        self._tip = tool.tip(snapshot)
-        self._shown = (tool.number, tool.row, tool.asked, tool.from_master(), tool.book.master)
+        tool = self._model.tool_setting
+        self._mode = tool.history.value_mode
+        self._tip = tool.find_tip_position(snapshot)
+        self._shown = (
+            tool.tool_number,
+            tool.tool_row,
+            tool.question_name,
+            tool.find_master_difference(),
+            tool.offset_book.master_number,
+        )
 
     @property
-    def shown_mode(self) -> Mode:
+    def displayed_mode(self) -> ValueMode:
         """The unit of the position display, so that the page never shows positions in two units."""
-        return Mode(self._model.desk.settings.units.metric(self._mode.metric), self._mode.diameter)
+        return ValueMode(
+            self._model.desk.settings_store.display_units.metric(self._mode.is_metric), self._mode.is_diameter
+        )
 
     @property
-    def tip_words(self) -> str:
+    def tip_heading(self) -> str:
         """The heading of the tip position, with its unit if the unit differs from the panel's."""
-        if self.shown_mode.metric == self._mode.metric:
+        if self.displayed_mode.is_metric == self._mode.is_metric:
             return tr("TIP POSITION FROM PART ZERO")
         return (
             tr("TIP POSITION FROM PART ZERO, MM")
-            if self.shown_mode.metric
+            if self.displayed_mode.is_metric
             else tr("TIP POSITION FROM PART ZERO, INCH")
         )
 
-    def draw(self, painter: Painter) -> None:
-        unit = tr("MM") if self._mode.metric else tr("INCH")
+    def draw(self, painter: ThemedPainter) -> None:
+        unit = tr("MM") if self._mode.is_metric else tr("INCH")
         self.frame(painter, join_messages("  ·  ", (tr("TOOL SETTING"), unit)))
-        u = self.look.u
+        u = self.theme.u
         room = self.inside().adjusted(-0.3 * u, 0, 0.3 * u, 0.3 * u)
-        cells = ROWS * (FINGER + 0.5 * u)  # Each cell is a touch target.
+        cells = ROWS * (FINGERTIP_PX + 0.5 * u)  # Each cell is a touch target.
         high = min(10.5 * u, 0.36 * room.height(), max(room.height() - cells, 7.0 * u))
         head = QRectF(room.x(), room.y(), room.width(), high)
-        self._head(painter, head)
+        self._draw_head(painter, head)
         rest = QRectF(
             room.x(), head.bottom() + 0.5 * u, room.width(), room.bottom() - head.bottom() - 0.5 * u
         )
         self._cells(painter, rest)
 
-    def _head(self, painter: Painter, room: QRectF) -> None:
+    def _draw_head(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the tool number, the tip quadrant and the tip position."""
-        u, tool = self.look.u, self._model.tool
-        box = QRectF(room.x(), room.y(), 13 * u, room.height())
-        self._target(painter, box, partial(self._model.ask, TOOL), lit=tool.asked == TOOL)
-        name = edge_name(tool.number) if tool.number else "T–"
-        painter.write(box.adjusted(0, 0.6 * u, 0, 0), name, 5.0, "text", at=CENTRE)
+        u, tool = self.theme.u, self._model.tool_setting
+        box = QRectF(area.x(), area.y(), 13 * u, area.height())
+        self._target(
+            painter,
+            box,
+            partial(self._model.ask_tool_value, TOOL_QUESTION),
+            lit=tool.question_name == TOOL_QUESTION,
+        )
+        name = format_edge_name(tool.tool_number) if tool.tool_number else "T–"
+        painter.draw_text_line(box.adjusted(0, 0.6 * u, 0, 0), name, 5.0, "text", at=ALIGN_CENTER)
         self._key(painter, box, "T")
-        side = room.height()
-        tip = QRectF(box.right() + 0.8 * u, room.y(), side, side)
-        quadrant = tool.row.quadrant if tool.row else 0
-        name = f"{word('quadrant')} {quadrant or ''}"
-        self._target(painter, tip, partial(self._model.ask, "quadrant"), name, lit=False)
-        draw_tip(painter, tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u), quadrant)
-        self._stands(painter, room.adjusted(tip.right() + 1.2 * u - room.x(), 0, 0, 0))
+        side = area.height()
+        tip = QRectF(box.right() + 0.8 * u, area.y(), side, side)
+        quadrant = tool.tool_row.quadrant if tool.tool_row else 0
+        name = f"{translate_field('quadrant')} {quadrant or ''}"
+        self._target(painter, tip, partial(self._model.ask_tool_value, "quadrant"), name, lit=False)
+        draw_tool_tip(painter, tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u), quadrant)
+        self._stands(painter, area.adjusted(tip.right() + 1.2 * u - area.x(), 0, 0, 0))
 
-    def _stands(self, painter: Painter, room: QRectF) -> None:
-        u, mode = self.look.u, self.shown_mode
-        painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_words, 1.5, "soft")
+    def _stands(self, painter: ThemedPainter, room: QRectF) -> None:
+        u, mode = self.theme.u, self.displayed_mode
+        painter.draw_text_line(
+            QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_heading, 1.5, "soft"
+        )
         high = (room.height() - 2.0 * u) / 2
         if self._tip is None:
-            painter.write(
-                room.adjusted(0, 2 * u, 0, 0), not_set(unread=self._model.tool.book.unread), 2.8, "soft"
+            painter.draw_text_line(
+                room.adjusted(0, 2 * u, 0, 0),
+                describe_unset(is_unread=self._model.tool_setting.offset_book.has_read_failed),
+                2.8,
+                "soft",
             )
             return
         x, z = self._tip
         figures = (
-            (f"X {'Ø' if mode.diameter else 'R'}", length(2 * x if mode.diameter else x, mode.metric)),
-            ("Z", length(z, mode.metric)),
+            (
+                f"X {'Ø' if mode.is_diameter else 'R'}",
+                format_length(2 * x if mode.is_diameter else x, mode.is_metric),
+            ),
+            ("Z", format_length(z, mode.is_metric)),
         )
         for number, (name, figure) in enumerate(figures):
             row = QRectF(room.x(), room.y() + 2.0 * u + number * high, room.width(), high)
-            painter.write(row, name, 2.2, "accent")
-            painter.write(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=RIGHT)
+            painter.draw_text_line(row, name, 2.2, "accent")
+            painter.draw_text_line(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=ALIGN_RIGHT)
 
-    def _cells(self, painter: Painter, room: QRectF) -> None:
-        u = self.look.u
+    def _cells(self, painter: ThemedPainter, room: QRectF) -> None:
+        u = self.theme.u
         high, wide = (room.height() + 0.5 * u) / ROWS, (room.width() + 0.6 * u) / 2
-        for number, (name, key) in enumerate(FIELDS):
+        for number, (name, key) in enumerate(TOOL_FIELDS_SHOWN):
             row, column = divmod(number, 2)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.6 * u, high - 0.5 * u)
             self._cell(painter, box, name, key)
 
-    def _cell(self, painter: Painter, box: QRectF, name: str, key: str) -> None:
-        u, mode = self.look.u, self._mode
-        model, tool = self._model, self._model.tool
-        asks = _ASKS.get(name, name)
-        press: Callable[[], None] = model.choose_master if name == "master" else partial(model.ask, asks)
-        self._target(painter, box, press, lit=tool.asked == asks)
-        mark = marked(name, mode)
-        label = {"x": tr("TOUCH OFF X"), "z": tr("TOUCH OFF Z")}.get(name, word(name)) + (
+    def _cell(self, painter: ThemedPainter, box: QRectF, name: str, key: str) -> None:
+        u, mode = self.theme.u, self._mode
+        model, tool = self._model, self._model.tool_setting
+        asks = _FIELD_QUESTIONS.get(name, name)
+        press: Callable[[], None] = (
+            model.ask_master if name == "master" else partial(model.ask_tool_value, asks)
+        )
+        self._target(painter, box, press, lit=tool.question_name == asks)
+        mark = find_diameter_mark(name, mode)
+        label = {"x": tr("TOUCH OFF X"), "z": tr("TOUCH OFF Z")}.get(name, translate_field(name)) + (
             f" {mark}" if mark else ""
         )
         self._key(painter, box, key)
         upper = QRectF(box.x() + 3.4 * u, box.y() + 0.3 * u, box.width() - 4 * u, 2.2 * u)
-        painter.write(upper, label, 1.5, "soft")
+        painter.draw_text_line(upper, label, 1.5, "soft")
         text = self._text(name)
         room = QRectF(box.x() + u, box.y() + 2.3 * u, box.width() - 2 * u, box.height() - 2.5 * u)
-        at = LEFT if name in {"remark", "master"} else RIGHT
-        painter.write(room, text, 2.5, "text", at=at, raw=name == "remark")
+        at = ALIGN_LEFT if name in {"remark", "master"} else ALIGN_RIGHT
+        painter.draw_text_line(room, text, 2.5, "text", at=at, raw=name == "remark")
 
     def _text(self, name: str) -> str:
-        tool, mode = self._model.tool, self._mode
+        tool, mode = self._model.tool_setting, self._mode
         if name == "master":
-            return self._master()
-        return shown_value(name, getattr(tool.row, name), mode) if tool.row else ""
+            return self._describe_master()
+        return format_value(name, getattr(tool.tool_row, name), mode) if tool.tool_row else ""
 
-    def _master(self) -> str:
+    def _describe_master(self) -> str:
         """Return the master tool, and the distance of this tool from the master."""
-        tool, mode = self._model.tool, self._mode
-        master = tool.book.master
+        tool, mode = self._model.tool_setting, self._mode
+        master = tool.offset_book.master_number
         if not master:
             return tr("none")
-        if master == tool.number:
+        if master == tool.tool_number:
             return tr("THIS TOOL")
-        apart = tool.from_master()
+        apart = tool.find_master_difference()
         if apart is None:
             return f"T{master}"
-        x = signed(2 * apart[0] if mode.diameter else apart[0], mode.metric)
-        return f"T{master}   X {x}  Z {signed(apart[1], mode.metric)}"
+        x = format_signed(2 * apart[0] if mode.is_diameter else apart[0], mode.is_metric)
+        return f"T{master}   X {x}  Z {format_signed(apart[1], mode.is_metric)}"
 
     def _target(
-        self, painter: Painter, box: QRectF, press: Callable[[], None], name: str = "", *, lit: bool
+        self, painter: ThemedPainter, box: QRectF, press: Callable[[], None], name: str = "", *, lit: bool
     ) -> None:
-        painter.box(box, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
-        self.place(box, press, name)
+        painter.draw_box(box, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
+        self.add_target(box, press, name)
 
-    def _key(self, painter: Painter, box: QRectF, key: str) -> None:
-        u = self.look.u
-        painter.write(QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), key, 1.7, "accent")
+    def _key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
+        u = self.theme.u
+        painter.draw_text_line(
+            QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), key, 1.7, "accent"
+        )
 
 
-_PLACES = 4  # Decimals of a direction cosine.
-_HIGH = 6.0  # Units: height of a row.
+_COSINE_DECIMALS = 4  # Decimals of a direction cosine.
+_ROW_HEIGHT = 6.0  # Units: height of a row.
 
 
 class MillJogPanel(Panel):
     """The panel of a mill. Tool, preset and 3D-ROT are touch targets."""
 
-    _shown: Shown[object] = Shown(None)
-    _tip: Shown[tuple[float, ...] | None] = Shown(None)
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
+    _tip: RedrawingAttribute[tuple[float, ...] | None] = RedrawingAttribute(None)
 
     def __init__(
         self,
-        look: Look,
+        theme: ScreenTheme,
         model: JogModel,
-        tools: Callable[[], None],
+        open_tools: Callable[[], None],
         presets: Callable[[], None],
         parent: QWidget,
     ) -> None:
-        super().__init__(look, parent)
-        self._model, self._tools, self._presets = model, tools, presets
+        super().__init__(theme, parent)
+        self._model, self._tools, self._presets = model, open_tools, presets
 
     def show_mill(self, snapshot: Snapshot) -> None:
         """Show the active tool and preset, the tip position and the tilted frame."""
-        book, tilt, tool = self._model.desk.book, self._model.tilt, snapshot.modal.tool
+        book, tilt, tool = self._model.desk.offset_book, self._model.tilted_jog, snapshot.modal.tool
         swivel = snapshot.swivel
-        self._tip = swivel.system.place.point(_slides(snapshot)) if swivel is not None else None
-        self._shown = (tool, book.mill_tools.get(tool), book.preset, tilt.on, tilt.frame, tilt.why)
+        self._tip = swivel.system.transform.to_frame_point(_slides(snapshot)) if swivel is not None else None
+        self._shown = (
+            tool,
+            book.mill_tools.get(tool),
+            book.active_preset,
+            tilt.is_on,
+            tilt.jog_frame,
+            tilt.refusal_reason,
+        )
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.frame(painter, tr("TOOL, PRESET, TILTED PLANE  ·  MM"))
-        u, room = self.look.u, self.inside()
-        row = QRectF(room.x(), room.y(), room.width(), _HIGH * u - 0.6 * u)
+        u, room = self.theme.u, self.inside()
+        row = QRectF(room.x(), room.y(), room.width(), _ROW_HEIGHT * u - 0.6 * u)
         self._tool(painter, row)
-        row.translate(0, _HIGH * u)
+        row.translate(0, _ROW_HEIGHT * u)
         self._preset(painter, row)
-        row.translate(0, _HIGH * u)
+        row.translate(0, _ROW_HEIGHT * u)
         self._tilted(painter, row)
-        self._axes(
+        self._draw_axes(
             painter, QRectF(room.x(), row.bottom() + u, room.width(), room.bottom() - row.bottom() - u)
         )
 
-    def _tool(self, painter: Painter, row: QRectF) -> None:
-        book, number = self._model.desk.book, self._model.desk.snapshot().modal.tool
+    def _tool(self, painter: ThemedPainter, row: QRectF) -> None:
+        book, number = self._model.desk.offset_book, self._model.desk.read_snapshot().modal.tool
         tool = book.mill_tools.get(number)
         words = tr("no tool active; run TOOL CALL in MDI")
         if tool is not None:
             words = f"{tool.name}   L {tool.length + tool.dl:.3f}   R {tool.radius + tool.dr:.3f}"
         self._key(painter, row, "F8", f"T{number}" if number else tr("TOOL"), words, self._tools)
 
-    def _preset(self, painter: Painter, row: QRectF) -> None:
-        book = self._model.desk.book
-        preset = book.presets.get(book.preset)
+    def _preset(self, painter: ThemedPainter, row: QRectF) -> None:
+        book = self._model.desk.offset_book
+        preset = book.presets.get(book.active_preset)
         words = tr("zero point from the machine file")
         if preset is not None:
             words = Message(
@@ -239,32 +278,37 @@ class MillJogPanel(Panel):
                 rotation=f"{preset.rotation:.3f}",
             )
         self._key(
-            painter, row, "F9", tr(Message("PRESET {number}", number=book.preset)), words, self._presets
+            painter,
+            row,
+            "F9",
+            tr(Message("PRESET {number}", number=book.active_preset)),
+            words,
+            self._presets,
         )
 
-    def _tilted(self, painter: Painter, row: QRectF) -> None:
-        tilt = self._model.tilt
-        state = tr("ON") if tilt.on else tr("OFF")
-        tilted = self._model.desk.snapshot().swivel
+    def _tilted(self, painter: ThemedPainter, row: QRectF) -> None:
+        tilt = self._model.tilted_jog
+        state = tr("ON") if tilt.is_on else tr("OFF")
+        tilted = self._model.desk.read_snapshot().swivel
         words = (
             tr("not tilted")
-            if tilted is None or not tilted.system.tilted
+            if tilted is None or not tilted.system.is_tilted
             else tr("rotary axes are not at the angles of the tilted plane")
         )
-        words = tilt.frame.words if tilt.frame is not None else words
+        words = tilt.jog_frame.frame_text if tilt.jog_frame is not None else words
         self._key(
             painter,
             row,
             "F5",
             Message("3D-ROT {state}", state=state),
             words,
-            self._model.turn_tilt,
-            lit=tilt.on,
+            self._model.toggle_tilt,
+            lit=tilt.is_on,
         )
 
     def _key(
         self,
-        painter: Painter,
+        painter: ThemedPainter,
         row: QRectF,
         key: str,
         name: str,
@@ -273,35 +317,47 @@ class MillJogPanel(Panel):
         *,
         lit: bool = False,
     ) -> None:
-        u = self.look.u
-        painter.box(row, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
-        painter.write(QRectF(row.x() + 0.8 * u, row.y() + 0.2 * u, 4 * u, 2 * u), key, 1.6, "accent")
+        u = self.theme.u
+        painter.draw_box(row, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
+        painter.draw_text_line(QRectF(row.x() + 0.8 * u, row.y() + 0.2 * u, 4 * u, 2 * u), key, 1.6, "accent")
         left = QRectF(row.x() + 4 * u, row.y(), 13.5 * u, row.height())
-        painter.write(left, name, 2.5, "text")
-        painter.write(row.adjusted(18 * u, 0, -0.8 * u, 0), words, 2.0, "soft")
-        self.place(row, press)
+        painter.draw_text_line(left, name, 2.5, "text")
+        painter.draw_text_line(row.adjusted(18 * u, 0, -0.8 * u, 0), words, 2.0, "soft")
+        self.add_target(row, press)
 
-    def _axes(self, painter: Painter, room: QRectF) -> None:
+    def _draw_axes(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the tip position in the active system, and the machine direction of each jog key."""
-        u, tilt = self.look.u, self._model.tilt
-        head = QRectF(room.x(), room.y(), room.width(), 2.2 * u)
-        painter.write(head, tr("TIP POSITION"), 1.5, "soft")
-        if tilt.frame is not None:
-            painter.write(head, tr("JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z"), 1.5, "soft", at=RIGHT)
-        high = min(4.4 * u, (room.height() - 2.4 * u) / len(SLIDES))
-        for place, name in enumerate(SLIDES):
-            row = QRectF(room.x(), head.bottom() + place * high, room.width(), high)
-            mark = "'" if tilt.on else ""
-            painter.write(row, f"{name}{mark}", 2.6, "accent")
+        u, tilt = self.theme.u, self._model.tilted_jog
+        head = QRectF(area.x(), area.y(), area.width(), 2.2 * u)
+        painter.draw_text_line(head, tr("TIP POSITION"), 1.5, "soft")
+        if tilt.jog_frame is not None:
+            painter.draw_text_line(
+                head, tr("JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z"), 1.5, "soft", at=ALIGN_RIGHT
+            )
+        high = min(4.4 * u, (area.height() - 2.4 * u) / len(LINEAR_AXES))
+        for place, name in enumerate(LINEAR_AXES):
+            row = QRectF(area.x(), head.bottom() + place * high, area.width(), high)
+            mark = "'" if tilt.is_on else ""
+            painter.draw_text_line(row, f"{name}{mark}", 2.6, "accent")
             if self._tip is not None:
                 at = QRectF(row.x() + 4 * u, row.y(), 13 * u, high)
-                painter.write(at, length(self._tip[place], metric=True), 2.8, "text", at=RIGHT)
-            direction = tilt.along(name) if tilt.on else tilt.frame.direction(name) if tilt.frame else None
+                painter.draw_text_line(
+                    at, format_length(self._tip[place], metric=True), 2.8, "text", at=ALIGN_RIGHT
+                )
+            direction = (
+                tilt.find_direction(name)
+                if tilt.is_on
+                else tilt.jog_frame.find_direction(name)
+                if tilt.jog_frame
+                else None
+            )
             if direction is not None:
-                words = "   ".join(f"{share + 0.0:+.{_PLACES}f}" for share in direction)
-                painter.write(row, words, 2.2, "text" if tilt.on else "soft", at=RIGHT)
+                words = "   ".join(f"{share + 0.0:+.{_COSINE_DECIMALS}f}" for share in direction)
+                painter.draw_text_line(row, words, 2.2, "text" if tilt.is_on else "soft", at=ALIGN_RIGHT)
         if self._tip is None:
-            painter.write(room, tr("position unknown until a program line has run"), 2.2, "soft", at=CENTRE)
+            painter.draw_text_line(
+                area, tr("position unknown until a program line has run"), 2.2, "soft", at=ALIGN_CENTER
+            )
 
 
 def _slides(snapshot: Snapshot) -> tuple[float, float, float]:

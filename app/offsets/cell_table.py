@@ -6,22 +6,22 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.desk.arithmetic import CHARACTERS, EntryError, value_of
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.sheet import edited, refused
+from app.desk.pages.table_content import edit_text, refused
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.offsets.offset_changes import LETTERS, refusal
+from app.offsets.offset_changes import NUMBER_PREFIXES, find_change_refusal
 from app.offsets.offset_table import OffsetTable
-from app.offsets.offset_values import UNKNOWN, cell_text, out_of_range, signed_zero_offset
-from core.executor.snapshot import Snapshot, State
+from app.offsets.offset_values import UNKNOWN_VALUE, describe_range_error, format_cell, format_zero_offset
+from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
-from core.store.store_rows import FIELDS, Field, Row, Sort, Value
+from core.store.store_rows import FIELDS_BY_KIND, FieldType, FieldValue, OffsetRow, RowField
 
-_KEYS = CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
-_STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
-_LEAFS = {"Page up": -10, "Page down": 10}
+_ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
+_CELL_STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
+_PAGE_STEPS = {"Page up": -10, "Page down": 10}
 
 
 class CellTable(OffsetTable):
@@ -34,20 +34,20 @@ class CellTable(OffsetTable):
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.row = self.column = 0
-        self.writing = False  # A text is being edited.
+        self.row_index = self.column_index = 0
+        self.is_text_open = False  # A text is being edited.
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def is_writing(self) -> bool:
+    def is_editing_text(self) -> bool:
         """Whether a text cell is being edited."""
-        return self.writing
+        return self.is_text_open
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The field names of the columns."""
-        return tuple(FIELDS[self.kind])
+        return tuple(FIELDS_BY_KIND[self.kind])
 
     @property
     @abstractmethod
@@ -57,25 +57,25 @@ class CellTable(OffsetTable):
     @property
     def words(self) -> tuple[str, ...]:
         """The column heads."""
-        return tuple(self.field_of(name).word for name in self.columns)
+        return tuple(self.field_of(name).label for name in self.columns)
 
     @abstractmethod
-    def in_force(self, snapshot: Snapshot) -> int:
+    def find_active_row(self, snapshot: Snapshot) -> int:
         """Return the number of the row that the machine uses now, or 0."""
 
-    def field_of(self, name: str) -> Field:
+    def field_of(self, name: str) -> RowField:
         """Return the field definition of a column."""
-        return FIELDS[self.kind][name]
+        return FIELDS_BY_KIND[self.kind][name]
 
-    def value_at(self, number: int, name: str) -> Value:
+    def value_at(self, number: int, name: str) -> FieldValue:
         """Return the saved value of a cell.
 
-        A row that was never set gives 0 or an empty text. Unreadable offsets give ``UNKNOWN``.
+        A row that was never set gives 0 or an empty text. Unreadable offsets give ``UNKNOWN_VALUE``.
         """
-        row = self.book.of(self.kind).get(number)
-        if self.book.unread:
-            return UNKNOWN
-        empty: Value = "" if self.field_of(name).sort is Sort.TEXT else 0.0
+        row = self.offset_book.get_rows(self.kind).get(number)
+        if self.offset_book.has_read_failed:
+            return UNKNOWN_VALUE
+        empty: FieldValue = "" if self.field_of(name).field_type is FieldType.TEXT else 0.0
         return empty if row is None else getattr(row, name)
 
     def tone_at(self, _number: int, _name: str) -> Tone:
@@ -85,187 +85,203 @@ class CellTable(OffsetTable):
     @property
     def number(self) -> int:
         """The number of the selected row."""
-        return self.numbers[self.row]
+        return self.numbers[self.row_index]
 
     @property
-    def chosen(self) -> int | None:
+    def selected_number(self) -> int | None:
         """The number of the selected row, to which undo applies."""
         return self.number
 
     @property
     def name(self) -> str:
         """The field name of the selected column."""
-        return self.columns[self.column]
+        return self.columns[self.column_index]
 
     @property
-    def field(self) -> Field:
+    def selected_field(self) -> RowField:
         """The field definition of the selected column."""
         return self.field_of(self.name)
 
     @property
-    def which(self) -> str:
+    def row_name(self) -> str:
         """The displayed name of the selected row."""
-        return f"{LETTERS[self.kind]}{self.number}"
+        return f"{NUMBER_PREFIXES[self.kind]}{self.number}"
 
     @property
-    def stored(self) -> Row | None:
+    def stored_row(self) -> OffsetRow | None:
         """The saved values of the selected row. None if the row was never set."""
-        return self.book.of(self.kind).get(self.number)
+        return self.offset_book.get_rows(self.kind).get(self.number)
 
     @property
-    def question(self) -> str:
+    def question_text(self) -> str:
         """The prompt for the selected cell, with its unit."""
-        units = {Sort.METRIC: ", MM", Sort.ANGLE: tr(", DEGREES"), Sort.MINUTES: tr(", MINUTES")}
-        return f"{self.which}  {self.field.word}{units.get(self.field.sort, '')}?"
+        units = {
+            FieldType.METRIC_LENGTH: ", MM",
+            FieldType.ANGLE: tr(", DEGREES"),
+            FieldType.MINUTES: tr(", MINUTES"),
+        }
+        return f"{self.row_name}  {self.selected_field.label}{units.get(self.selected_field.field_type, '')}?"
 
     @property
-    def value_before(self) -> Value:
+    def stored_value(self) -> FieldValue:
         """The saved value of the selected cell."""
         return self.value_at(self.number, self.name)
 
     @property
-    def old_to_new(self) -> str:
+    def change_text(self) -> str:
         """The change that is being entered, or else the last change."""
         if not self.text.strip():
-            return self.history.last_in_words
+            return self.offset_history.last_change_text
         try:
             new = self._value(self.text)
         except EntryError:
             return ""  # An incomplete expression is not an error yet.
-        before, after = (cell_text(self.field, value) for value in (self.value_before, new))
-        return f"{self.which} {self.field.word}   {before}  →  {after}"
+        before, after = (format_cell(self.selected_field, value) for value in (self.stored_value, new))
+        return f"{self.row_name} {self.selected_field.label}   {before}  →  {after}"
 
-    def hint(self, _snapshot: Snapshot) -> str:
+    def make_hint(self, _snapshot: Snapshot) -> str:
         """Return how to enter a value and select another cell."""
-        if self.writing:
+        if self.is_text_open:
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
         return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
-    def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
+    def find_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
         """Return why this table cannot be changed now. Empty if it can.
 
         A change moves a zero point or a tip, so it is possible only between cycles.
         """
-        if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
+        if (
+            snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOME}
+            and not self.offset_book.lock_reason
+        ):
             return tr("PROGRAM RUNNING. CHANGE THIS TABLE ONLY BETWEEN CYCLES")
-        return self.book.locked or refusal(snapshot, correction=correction)
+        return self.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=is_correction)
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered.
 
         These are the characters of numbers, C if it clears the table, or any character in an open text.
         """
         return (
-            (self.writing and len(key) == 1)
-            or key in CHARACTERS
-            or (bool(self.own_key) and key == self.own_key)
+            (self.is_text_open and len(key) == 1)
+            or key in EXPRESSION_CHARACTERS
+            or (bool(self.page_key) and key == self.page_key)
         )
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. While a text is open, every character belongs to the text."""
-        return self.enter_key(key) if self.writing else super().typed(key)
+        return self.handle_entry_key(key) if self.is_text_open else super().handle_key(key)
 
-    def enter_key(self, key: str) -> bool:
+    def handle_entry_key(self, key: str) -> bool:
         """Handle a key of the table: arrow keys select a cell, and Enter saves the entered value."""
-        if self.writing and (len(key) == 1 or key in {"Back", "Delete"}):
-            self.text = edited(self.text, key, int(self.field.high))
+        if self.is_text_open and (len(key) == 1 or key in {"Back", "Delete"}):
+            self.text = edit_text(self.text, key, int(self.selected_field.maximum))
             return True
-        if key in _LEAFS:
-            self.choose(max(0, min(self.row + _LEAFS[key], len(self.numbers) - 1)), self.column)
+        if key in _PAGE_STEPS:
+            self.choose(
+                max(0, min(self.row_index + _PAGE_STEPS[key], len(self.numbers) - 1)), self.column_index
+            )
             return True
-        if key not in _KEYS:
+        if key not in _ENTRY_KEYS:
             return False
-        self.desk.clear()
-        if key in _STEPS:
-            self.move(*_STEPS[key])
+        self.desk.clear_prompt_line()
+        if key in _CELL_STEPS:
+            self.move_selection(*_CELL_STEPS[key])
         elif key == "Enter":
-            self.enter()
-        elif self.field.sort is not Sort.TEXT:
-            self.type_text(key)
+            self.handle_enter()
+        elif self.selected_field.field_type is not FieldType.TEXT:
+            self.edit_entry(key)
         return True
 
-    def move(self, rows: int, columns: int) -> None:
+    def move_selection(self, rows: int, columns: int) -> None:
         """Select another cell by rows and columns. A value that was not entered is discarded."""
         wide = len(self.columns)
-        at = (self.row * wide + self.column + rows * wide + columns) % (len(self.numbers) * wide)
+        at = (self.row_index * wide + self.column_index + rows * wide + columns) % (len(self.numbers) * wide)
         self.choose(at // wide, at % wide)
 
     def choose(self, row: int, column: int) -> None:
         """Select a touched cell. A second touch opens a text or toggles a flag."""
-        again = (row, column) == (self.row, self.column)
-        self.row, self.column, self.text, self.writing = row, column, "", False
-        if again and self.field.sort is Sort.TEXT:
+        again = (row, column) == (self.row_index, self.column_index)
+        self.row_index, self.column_index, self.text, self.is_text_open = row, column, "", False
+        if again and self.selected_field.field_type is FieldType.TEXT:
             self._open()
-        elif again and self.field.sort is Sort.FLAG:
-            self._turn()
+        elif again and self.selected_field.field_type is FieldType.BOOLEAN:
+            self._toggle_flag()
 
-    def take_back(self) -> bool:
+    def cancel_entry(self) -> bool:
         """Discard the entered text. Return False if nothing was entered."""
-        typed = bool(self.text) or self.writing
-        self.drop()
+        typed = bool(self.text) or self.is_text_open
+        self.discard_entry()
         return typed
 
-    def drop(self) -> None:
+    def discard_entry(self) -> None:
         """Discard the entered text."""
-        self.text, self.writing = "", False
+        self.text, self.is_text_open = "", False
 
-    def enter(self) -> None:
+    def handle_enter(self) -> None:
         """Handle Enter: save the entered value, open a text, toggle a flag, or select the next cell."""
-        if self.writing:
-            self.save(self.text.strip, "")
-        elif self.field.sort is Sort.TEXT:
+        if self.is_text_open:
+            self.save_cell(self.text.strip, "")
+        elif self.selected_field.field_type is FieldType.TEXT:
             self._open()
         elif self.text.strip():
-            self.save(lambda: self._value(self.text), self.text.strip())
-        elif self.field.sort is Sort.FLAG:
-            self._turn()
+            self.save_cell(lambda: self._value(self.text), self.text.strip())
+        elif self.selected_field.field_type is FieldType.BOOLEAN:
+            self._toggle_flag()
         else:
-            self.move(0, 1)
+            self.move_selection(0, 1)
 
-    def _turn(self) -> None:
+    def _toggle_flag(self) -> None:
         """Toggle a flag and save it."""
-        on = not self.value_before
-        self.save(lambda: on, "1" if on else "0")
+        on = not self.stored_value
+        self.save_cell(lambda: on, "1" if on else "0")
 
     def _open(self) -> None:
-        if why := self.barred(self.desk.snapshot()):
+        if why := self.find_refusal(self.desk.read_snapshot()):
             self.desk.say(why)
             return
-        self.writing, self.text = True, str(self.value_before)
+        self.is_text_open, self.text = True, str(self.stored_value)
 
     # --- saving --------------------------------------------------------------------------------------
 
-    def _value(self, text: str) -> Value:
-        if self.writing:
+    def _value(self, text: str) -> FieldValue:
+        if self.is_text_open:
             return text.strip()
-        value = self.checked(value_of(text))
-        return int(value) if self.field.sort in {Sort.WHOLE, Sort.FLAG} else value
-
-    def checked(self, value: float) -> float:
-        """Return the rounded value if it is in the range of the field. Raises EntryError otherwise."""
-        field = self.field
-        if field.takes(value):
-            return round(value, 10)
-        unit = {Sort.ANGLE: tr("degrees"), Sort.MINUTES: tr("min"), Sort.WHOLE: "", Sort.FLAG: ""}.get(
-            field.sort, tr("mm")
+        value = self.check_range(evaluate_expression(text))
+        return (
+            int(value) if self.selected_field.field_type in {FieldType.INTEGER, FieldType.BOOLEAN} else value
         )
-        named = f"{self.which} {field.word}"
-        raise EntryError(out_of_range(named, signed_zero_offset(value), unit, field.low, field.high))
 
-    def save(
+    def check_range(self, value: float) -> float:
+        """Return the rounded value if it is in the range of the field. Raises EntryError otherwise."""
+        field = self.selected_field
+        if field.accepts(value):
+            return round(value, 10)
+        unit = {
+            FieldType.ANGLE: tr("degrees"),
+            FieldType.MINUTES: tr("min"),
+            FieldType.INTEGER: "",
+            FieldType.BOOLEAN: "",
+        }.get(field.field_type, tr("mm"))
+        named = f"{self.row_name} {field.label}"
+        raise EntryError(
+            describe_range_error(named, format_zero_offset(value), unit, field.minimum, field.maximum)
+        )
+
+    def save_cell(
         self,
-        value: Callable[[], Value],
-        typed: str,
-        also: Callable[[Value], Mapping[str, Value]] = lambda _new: {},
+        value: Callable[[], FieldValue],
+        entered_text: str,
+        find_dependent_values: Callable[[FieldValue], Mapping[str, FieldValue]] = lambda _new: {},
     ) -> bool:
         """Save the selected cell, and return whether this succeeded. A rejected text remains for correction.
 
-        ``typed`` is recorded in the history. ``also`` returns other fields of the row that depend on the new
-        value.
+        ``typed`` is recorded in the history. ``find_dependent_values`` returns other fields of the row that
+        depend on the new value.
         """
-        if why := self.barred(self.desk.snapshot()):
+        if why := self.find_refusal(self.desk.read_snapshot()):
             self.desk.say(why)
             return False
         try:
@@ -274,18 +290,20 @@ class CellTable(OffsetTable):
             self.text = refused(self.text)
             self.desk.say(tr(Message("REJECTED: {why}", why=error)))
             return False
-        if self.stored is not None and self.value_before == new:
-            self.desk.say(tr(Message("{which} NOT CHANGED", which=self.which)))
-        elif why := self.keep({self.name: new, **also(new)}, self._reason(typed)):
+        if self.stored_row is not None and self.stored_value == new:
+            self.desk.say(tr(Message("{which} NOT CHANGED", which=self.row_name)))
+        elif why := self.save_fields(
+            {self.name: new, **find_dependent_values(new)}, self._reason(entered_text)
+        ):
             self.text = refused(self.text)
             self.desk.say(why)
             return False
-        self.drop()
+        self.discard_entry()
         return True
 
-    def keep(self, values: Mapping[str, Value], why: str) -> str:
+    def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
         """Save fields of the selected row. Return why this was rejected, or an empty text."""
-        return self.questions.change(self.kind, self.number, values, why)
+        return self.offset_questions.change_fields(self.kind, self.number, values, reason)
 
     def _reason(self, typed: str) -> str:
-        return f"{self.field.word} {typed}".strip()
+        return f"{self.selected_field.label} {typed}".strip()

@@ -8,25 +8,25 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus, Tone
 from app.offsets.cell_table import CellTable
-from app.offsets.mill_tools import MillTools
-from app.offsets.offset_values import cell_text
+from app.offsets.mill_tools import MillToolTable
+from app.offsets.offset_values import format_cell
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.zero_offsets import Presets, ZeroOffsets
+from app.offsets.zero_offsets import PresetTable, ZeroOffsetTable
 from app.screen import page_table
-from app.screen.look import CENTRE, RIGHT, Look, Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Shown
-from app.screen.sheet_panel import RowPanel
-from app.screen.window_layout import FINGER
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter
+from app.screen.table_panel import RowPanel
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.production.tool_life import ToolLife
-from core.store.store_rows import Row
+from core.store.store_rows import OffsetRow
 
 HEAD, HIGH = 4.0, 8.0  # Units: maximum height of the head line, and height of a row.
-_NAME = 0.07  # Fraction of the width for the row number.
+_NUMBER_SHARE = 0.07  # Fraction of the width for the row number.
 
 
 class CellPanel(RowPanel):
@@ -35,78 +35,84 @@ class CellPanel(RowPanel):
     On a small screen with the number pad, only the columns that fit are shown, including the selected one.
     """
 
-    stored: Shown[Mapping[int, Row]] = Shown({})
-    lives: Shown[Mapping[int, ToolLife]] = Shown({})  # Tool life of a mill's tools.
-    cell = Shown((0, 0))
-    in_force = Shown(0)  # Number of the active row, or 0.
+    stored: RedrawingAttribute[Mapping[int, OffsetRow]] = RedrawingAttribute({})
+    tool_lives: RedrawingAttribute[Mapping[int, ToolLife]] = RedrawingAttribute(
+        {}
+    )  # Tool life of a mill's tools.
+    selected_cell = RedrawingAttribute((0, 0))
+    active_row = RedrawingAttribute(0)  # Number of the active row, or 0.
 
-    def __init__(self, look: Look, table: CellTable, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self._heading, self._words, self._model = table.title, table.words, table
-        self._kind, self._numbers, self._columns = table.kind, table.numbers, table.columns
-        self._choose: Callable[[int, int], None] = table.choose
-        self._wide = [_WIDE.get(name, 1.0) for name in table.columns]
+    def __init__(self, theme: ScreenTheme, cell_table: CellTable, parent: QWidget) -> None:
+        super().__init__(theme, parent)
+        self._heading, self._words, self._model = cell_table.title, cell_table.words, cell_table
+        self._kind, self._numbers, self._columns = cell_table.kind, cell_table.numbers, cell_table.columns
+        self._choose: Callable[[int, int], None] = cell_table.choose
+        self._wide = [_COLUMN_SHARES.get(name, 1.0) for name in cell_table.columns]
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.frame(painter, self._heading)
-        room, u, count = self.inside(), self.look.u, len(self._numbers)
-        least = self.look.row(HIGH, 10.0, touch=True) + 0.5 * u
+        room, u, count = self.inside(), self.theme.u, len(self._numbers)
+        least = self.theme.find_row_height(HIGH, 10.0, is_touchable=True) + 0.5 * u
         head = min(HEAD * u, least)
         body = room.adjusted(0, head, 0, 0)
-        fits = min(self.fitting(body, least, count), count)
-        body = self.scrolled(painter, body, fits, count, self.cell[0])
+        fits = min(self.count_fitting_rows(body, least, count), count)
+        body = self.draw_scroll_keys(painter, body, fits, count, self.selected_cell[0])
         high = min(body.height() / fits, max(least, HIGH * u))
         self._head(painter, QRectF(body.x(), room.y(), body.width(), head))
-        for number, row in self.boxes(body, high):
+        for number, row in self.find_row_boxes(body, high):
             self._row(painter, row.adjusted(0, 0, 0, -0.5 * u), number)
 
-    def _cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
+    def _find_cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
         """Yield the visible columns with their rectangles in this row."""
-        room, gap = row.width() * (1.0 - _NAME), 0.5 * self.look.u
-        shown = self._in_sight(room * min(self._wide) / (FINGER + gap))
+        room, gap = row.width() * (1.0 - _NUMBER_SHARE), 0.5 * self.theme.u
+        shown = self._find_visible_columns(room * min(self._wide) / (FINGERTIP_PX + gap))
         one = room / sum(self._wide[column] for column in shown)
-        left = row.x() + row.width() * _NAME
+        left = row.x() + row.width() * _NUMBER_SHARE
         for column in shown:
             wide = self._wide[column] * one
             yield column, QRectF(left, row.y(), wide - gap, row.height())
             left += wide
 
-    def _in_sight(self, room: float) -> range:
+    def _find_visible_columns(self, available_width: float) -> range:
         """Return the visible columns, from the first one, or so that the selected one is the last.
 
-        ``room`` is in the units of the column widths.
+        ``available_width`` is in the units of the column widths.
         """
         first, end, used = 0, 0, 0.0
-        while end < len(self._wide) and (used + self._wide[end] <= room or end <= self.cell[1]):
+        while end < len(self._wide) and (
+            used + self._wide[end] <= available_width or end <= self.selected_cell[1]
+        ):
             used, end = used + self._wide[end], end + 1
-            while used > room and first < end - 1:
+            while used > available_width and first < end - 1:
                 used, first = used - self._wide[first], first + 1
         return range(first, end)
 
-    def _head(self, painter: Painter, row: QRectF) -> None:
-        for column, cell in self._cells(row):
-            painter.write(cell, self._words[column], 2.2, "soft", at=CENTRE)
+    def _head(self, painter: ThemedPainter, row: QRectF) -> None:
+        for column, cell in self._find_cells(row):
+            painter.draw_text_line(cell, self._words[column], 2.2, "soft", at=ALIGN_CENTER)
 
-    def _row(self, painter: Painter, box: QRectF, row: int) -> None:
-        u, number = self.look.u, self._numbers[row]
-        if number == self.in_force:
-            painter.fill(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
-        painter.write(box.adjusted(1.6 * u, 0, 0, 0), f"{_LETTER[self._kind]}{number}", 2.4, "accent")
+    def _row(self, painter: ThemedPainter, box: QRectF, row: int) -> None:
+        u, number = self.theme.u, self._numbers[row]
+        if number == self.active_row:
+            painter.fill_rect(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
+        painter.draw_text_line(
+            box.adjusted(1.6 * u, 0, 0, 0), f"{_ROW_LETTERS[self._kind]}{number}", 2.4, "accent"
+        )
         offset, size = self.stored.get(number), min(3.0, 0.5 * box.height() / u)
-        for nth, (column, cell) in enumerate(self._cells(box)):
+        for nth, (column, cell) in enumerate(self._find_cells(box)):
             name = self._columns[column]
-            here = (row, column) == self.cell
-            painter.fill(cell, "here" if here else "key")
-            text, tone = name in _TEXTS, self._model.tone_at(number, name)
+            here = (row, column) == self.selected_cell
+            painter.fill_rect(cell, "here" if here else "key")
+            text, tone = name in _TEXT_COLUMNS, self._model.tone_at(number, name)
             if tone is not Tone.OFF:
-                painter.box(cell, tone.value, 0.3, "here" if here else "key")
+                painter.draw_box(cell, tone.value, 0.3, "here" if here else "key")
             value = self._model.value_at(number, name)
             ink = "text" if offset is not None or here else "soft"
             place = cell.adjusted(0.6 * u, 0, -0.8 * u, 0)
-            at = CENTRE if text else RIGHT
-            painter.write(
+            at = ALIGN_CENTER if text else ALIGN_RIGHT
+            painter.draw_text_line(
                 place,
-                cell_text(self._model.field_of(name), value),
+                format_cell(self._model.field_of(name), value),
                 size,
                 ink,
                 at=at,
@@ -115,39 +121,42 @@ class CellPanel(RowPanel):
             )
             spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if nth == 0 else cell
             # The number belongs to the first cell, so that touching the number selects the row.
-            words = f"{_LETTER[self._kind]}{number} {self._words[column]}"
-            self.place(spot, partial(self._choose, row, column), words, kind="row", on=here)
+            words = f"{_ROW_LETTERS[self._kind]}{number} {self._words[column]}"
+            self.add_target(spot, partial(self._choose, row, column), words, kind="row", is_on=here)
 
 
 # Relative widths of columns.
-_WIDE = {"name": 1.5, "remark": 2.0, "length": 1.25, "teeth": 0.92, "point": 0.92, "stops": 0.92}
-_TEXTS = frozenset({"name", "remark"})
-_LETTER = {ZeroOffsets.kind: "G", MillTools.kind: "T", Presets.kind: ""}
+_COLUMN_SHARES = {"name": 1.5, "remark": 2.0, "length": 1.25, "teeth": 0.92, "point": 0.92, "stops": 0.92}
+_TEXT_COLUMNS = frozenset({"name", "remark"})
+_ROW_LETTERS = {ZeroOffsetTable.kind: "G", MillToolTable.kind: "T", PresetTable.kind: ""}
 
 
 class CellTablePage(OffsetPage):
     """Base class of the three pages. F2 touches off. These pages do not draw the effect of a change."""
 
     model: CellTable
-    table: CellPanel
+    table_panel: CellPanel
 
-    def __init__(self, host: Host, parent: QWidget, model: CellTable) -> None:
+    def __init__(self, host: PageHost, parent: QWidget, model: CellTable) -> None:
         super().__init__(host, parent, model)
-        self.table = CellPanel(self.look, model, self)
-        if not model.own_key:
+        self.table_panel = CellPanel(self.theme, model, self)
+        if not model.page_key:
             # Selects the next cell, even if the pad leaves no room for its column.
-            self.pad.own = ("Tab", "→")
+            self.number_pad.page_key = ("Tab", "→")
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the keys, without F6 and F10."""
         return {key: act for key, act in super().key_actions().items() if key not in {"F6", "F10"}}
 
-    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the present state of the table."""
         super().refresh(snapshot, status, loaded)
         model = self.model
-        self.table.stored, self.table.cell = model.book.of(model.kind), (model.row, model.column)
-        self.table.in_force = model.in_force(snapshot)
+        self.table_panel.stored, self.table_panel.selected_cell = (
+            model.offset_book.get_rows(model.kind),
+            (model.row_index, model.column_index),
+        )
+        self.table_panel.active_row = model.find_active_row(snapshot)
 
 
 class ZeroOffsetsPage(CellTablePage):
@@ -155,22 +164,22 @@ class ZeroOffsetsPage(CellTablePage):
 
     NAME = page_table.ZERO
     LABELS = ("MENU", "SET POS.", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
-    model: ZeroOffsets
+    model: ZeroOffsetTable
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent, ZeroOffsets(host.desk))
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
+        super().__init__(host, parent, ZeroOffsetTable(host.desk))
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the key labels. A SINUMERIK lathe has no secondary offsets."""
         return (*self.LABELS[:8], "", "") if self.desk.machine.language == "sinumerik" else self.LABELS
 
-    def barred_by(self) -> dict[str, object]:
+    def key_refusals(self) -> dict[str, object]:
         """Return the reasons why keys are disabled, including F2 for setting the position."""
-        return {**super().barred_by(), "F2": self.model.here_barred()}
+        return {**super().key_refusals(), "F2": self.model.find_position_refusal()}
 
     def key_actions(self) -> KeyActions:
         """Return the key actions, including F2 for setting the position."""
-        return {**super().key_actions(), "F2": self.model.here}
+        return {**super().key_actions(), "F2": self.model.set_from_position}
 
 
 class MillToolsPage(CellTablePage):
@@ -178,24 +187,24 @@ class MillToolsPage(CellTablePage):
 
     NAME = page_table.MILL_TOOLS
     LABELS = ("MENU", "TOUCH L", "", "UNDO", "HISTORY", "", "ALARMS", "", "PRESETS", "")
-    model: MillTools
+    model: MillToolTable
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent, MillTools(host.desk))
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
+        super().__init__(host, parent, MillToolTable(host.desk))
 
-    def barred_by(self) -> dict[str, object]:
+    def key_refusals(self) -> dict[str, object]:
         """Return the reasons why keys are disabled, including F2 for touching off the length."""
-        return {**super().barred_by(), "F2": self.model.here_barred()}
+        return {**super().key_refusals(), "F2": self.model.find_position_refusal()}
 
     def key_actions(self) -> KeyActions:
         """Return the key actions, including F2 for touching off the length."""
         rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
-        return {**rest, "F2": self.model.here, "F9": partial(self._go, page_table.PRESETS)}
+        return {**rest, "F2": self.model.set_from_position, "F9": partial(self._go, page_table.PRESETS)}
 
-    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the present table and the tool life, which changes while the page is open."""
         super().refresh(snapshot, status, loaded)
-        self.table.lives = self.model.lives.lives()
+        self.table_panel.tool_lives = self.model.mill_lives.read_lives()
 
 
 class PresetsPage(CellTablePage):
@@ -203,18 +212,22 @@ class PresetsPage(CellTablePage):
 
     NAME = page_table.PRESETS
     LABELS = ("MENU", "TOUCH", "ACTIVATE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
-    model: Presets
+    model: PresetTable
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent, Presets(host.desk))
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
+        super().__init__(host, parent, PresetTable(host.desk))
 
-    def barred_by(self) -> dict[str, object]:
+    def key_refusals(self) -> dict[str, object]:
         """Return the reasons why keys are disabled, including F2 for touching off and F3 for activating."""
         model = self.model
-        return {**super().barred_by(), "F2": model.here_barred(), "F3": model.activate_barred()}
+        return {
+            **super().key_refusals(),
+            "F2": model.find_position_refusal(),
+            "F3": model.find_activate_refusal(),
+        }
 
     def key_actions(self) -> KeyActions:
         """Return the key actions, including F2 for touching off and F3 for activating a preset."""
         rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
-        own = {"F2": self.model.here, "F3": self.model.activate}
+        own = {"F2": self.model.set_from_position, "F3": self.model.activate_preset}
         return {**rest, **own, "F8": partial(self._go, page_table.MILL_TOOLS)}

@@ -13,124 +13,149 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.machine.machine_model import Machine
-from core.store.offsets.touch_off import Touch
-from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
+from core.store.offsets.touch_off import TouchPosition
+from core.store.store_rows import (
+    FIELDS_BY_KIND,
+    FieldValue,
+    MillRow,
+    OffsetKind,
+    OffsetRow,
+    SecondaryRow,
+    ToolRow,
+    replace_fields,
+)
 
-LARGE_MM = 0.5  # Geometry: about .02 in.
+LARGE_CHANGE_MM = 0.5  # Geometry: about .02 in.
 # Wear: .010 in as entered, X on the diameter. A misplaced decimal point turns .002 into .020.
 LARGE_CORRECTION_MM = 0.254
-_NEAR = 1e-6  # Rounding tolerance in mm.
+_ROUNDING_TOLERANCE_MM = 1e-6  # Rounding tolerance in mm.
 
-Travel = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from home.
+TravelLimits = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from home.
 
 
-class Doubt(StrEnum):
+class SuspicionKind(StrEnum):
     """The reason why a change is suspicious. The most serious reason comes first."""
 
-    TRAVEL = "travel"  # The tip cannot reach part zero.
-    SIDE = "side"  # The tool would cut on the other side of the part.
-    LARGE = "large"  # The value differs much from the value in use.
-    MASTER = "master"  # Other tools will follow this tool.
+    OUTSIDE_TRAVEL = "travel"  # The tip cannot reach part zero.
+    WRONG_SIDE = "side"  # The tool would cut on the other side of the part.
+    LARGE_CHANGE = "large"  # The value differs much from the value in use.
+    NEW_MASTER = "master"  # Other tools will follow this tool.
 
 
 class Suspicion(NamedTuple):
     """One suspicious field of an offset, with its old value (None: not set) and new value in mm."""
 
-    doubt: Doubt
+    kind: SuspicionKind
     number: int
     name: str
-    old: Value | None
-    new: Value
+    old_value: FieldValue | None
+    new_value: FieldValue
 
 
-def travel_of(machine: Machine | None) -> Travel:
+def find_travel(machine: Machine | None) -> TravelLimits:
     """Return the travel of X and Z of a lathe in mm. Empty for a mill or without a machine.
 
     The tool length of a mill is not a machine position, so it is not compared with the travel.
     """
     if machine is None or machine.kind != "lathe":
         return {}
-    return {a.name.lower(): a.reach for a in machine.axes if a.name in {"X", "Z"} and a.travel is not None}
+    return {
+        a.name.lower(): a.travel_with_margin
+        for a in machine.axes
+        if a.name in {"X", "Z"} and a.travel is not None
+    }
 
 
-def suspicions_of(
-    kind: Kind, table: Mapping[int, Row], changes: Mapping[int, Mapping[str, Value]], travel: Travel
+def find_table_suspicions(
+    kind: OffsetKind,
+    table: Mapping[int, OffsetRow],
+    changes: Mapping[int, Mapping[str, FieldValue]],
+    travel: TravelLimits,
 ) -> tuple[Suspicion, ...]:
     """Return the suspicious fields if these fields of table rows are set.
 
     Rows with a value out of its range are omitted, because the store rejects them.
     """
-    new = {n: row for n, values in changes.items() if (row := _changed(kind, table.get(n), values))}
+    new = {n: row for n, values in changes.items() if (row := _make_changed_row(kind, table.get(n), values))}
     found = [
-        each for number, row in new.items() for each in suspicions(number, table.get(number), row, travel)
+        each
+        for number, row in new.items()
+        for each in find_suspicions(number, table.get(number), row, travel)
     ]
-    found += _new_masters(table, new)
+    found += _check_new_master(table, new)
     return tuple(found)
 
 
-def _changed(kind: Kind, old: Row | None, values: Mapping[str, Value]) -> Row | None:
+def _make_changed_row(
+    kind: OffsetKind, old: OffsetRow | None, values: Mapping[str, FieldValue]
+) -> OffsetRow | None:
     """Return the row with these values. None if its kind is not checked or a value is out of its range."""
-    fields = FIELDS[kind]
-    if not all(name in fields and fields[name].takes(value) for name, value in values.items()):
+    fields = FIELDS_BY_KIND[kind]
+    if not all(name in fields and fields[name].accepts(value) for name, value in values.items()):
         return None
-    if kind is Kind.TOOL:
-        return with_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
-    if kind is Kind.SECONDARY:
-        return with_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
-    if kind is Kind.MILL_TOOL:
-        return with_fields(old if isinstance(old, MillRow) else MillRow(), values)
+    if kind is OffsetKind.TOOL:
+        return replace_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
+    if kind is OffsetKind.SECONDARY:
+        return replace_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
+    if kind is OffsetKind.MILL_TOOL:
+        return replace_fields(old if isinstance(old, MillRow) else MillRow(), values)
     return None
 
 
-def suspicions(number: int, old: Row | None, new: Row, travel: Travel) -> tuple[Suspicion, ...]:
+def find_suspicions(
+    number: int, old: OffsetRow | None, new: OffsetRow, travel: TravelLimits
+) -> tuple[Suspicion, ...]:
     """Return the suspicious fields if ``new`` replaces ``old``, the most serious first."""
     found: list[Suspicion] = []
     if isinstance(new, ToolRow):
         found = list(_of_tool(number, old if isinstance(old, ToolRow) else None, new, travel))
     elif isinstance(new, SecondaryRow):
         before = old if isinstance(old, SecondaryRow) else SecondaryRow()
-        found = list(_of_corrections(number, before, new, ("x", "z"), doubled="x"))
+        found = list(_check_corrections(number, before, new, ("x", "z"), doubled="x"))
     elif isinstance(new, MillRow):
         found = list(_of_mill(number, old if isinstance(old, MillRow) else MillRow(), new))
-    order = list(Doubt)
-    return tuple(sorted(found, key=lambda each: order.index(each.doubt)))
+    order = list(SuspicionKind)
+    return tuple(sorted(found, key=lambda each: order.index(each.kind)))
 
 
-def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> Iterator[Suspicion]:
+def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimits) -> Iterator[Suspicion]:
     yield from _beyond(number, old, new, travel)
     if old is None:
-        yield from _of_corrections(number, ToolRow(), new, ("wear_x", "wear_z"), doubled="wear_x")
+        yield from _check_corrections(number, ToolRow(), new, ("wear_x", "wear_z"), doubled="wear_x")
         return
-    if old.x * new.x < -_NEAR:
-        yield Suspicion(Doubt.SIDE, number, "x", old.x, new.x)
+    if old.x * new.x < -_ROUNDING_TOLERANCE_MM:
+        yield Suspicion(SuspicionKind.WRONG_SIDE, number, "x", old.x, new.x)
     for at, name in enumerate("xz"):
         before, after = getattr(old, name), getattr(new, name)
         # A touch-off includes the wear in the new geometry, so the tip moves by the difference of the sums.
-        if before != after and abs(new.offset[at] - old.offset[at]) > LARGE_MM + _NEAR:
-            yield Suspicion(Doubt.LARGE, number, name, before, after)
+        if (
+            before != after
+            and abs(new.offset[at] - old.offset[at]) > LARGE_CHANGE_MM + _ROUNDING_TOLERANCE_MM
+        ):
+            yield Suspicion(SuspicionKind.LARGE_CHANGE, number, name, before, after)
     worn = tuple(f"wear_{name}" for name in "xz" if getattr(old, name) == getattr(new, name))
-    yield from _of_corrections(number, old, new, worn, doubled="wear_x")
+    yield from _check_corrections(number, old, new, worn, doubled="wear_x")
 
 
 def _of_mill(number: int, old: MillRow, new: MillRow) -> Iterator[Suspicion]:
     measured = tuple(name for name in ("length", "radius", "corner") if getattr(old, name))  # 0: not entered.
-    yield from _moved(number, old, new, measured, LARGE_MM)
-    yield from _of_corrections(number, old, new, ("dl", "dr", "dr2"), doubled="")
+    yield from _moved(number, old, new, measured, LARGE_CHANGE_MM)
+    yield from _check_corrections(number, old, new, ("dl", "dr", "dr2"), doubled="")
 
 
-def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> Iterator[Suspicion]:
+def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimits) -> Iterator[Suspicion]:
     for at, name in enumerate("xz"):
         low, high = travel.get(name, (new.offset[at], new.offset[at]))
         moved = old is None or old.offset[at] != new.offset[at]
         if moved and not low <= new.offset[at] <= high:
             before = getattr(old, name) if old is not None else None
-            yield Suspicion(Doubt.TRAVEL, number, name, before, getattr(new, name))
+            yield Suspicion(SuspicionKind.OUTSIDE_TRAVEL, number, name, before, getattr(new, name))
 
 
-def _of_corrections(
-    number: int, old: Row, new: Row, names: tuple[str, ...], doubled: str
+def _check_corrections(
+    number: int, old: OffsetRow, new: OffsetRow, names: tuple[str, ...], doubled: str
 ) -> Iterator[Suspicion]:
     """Yield suspicious corrections. ``doubled`` is the field that is entered as a diameter."""
     for name in names:
@@ -138,80 +163,82 @@ def _of_corrections(
         yield from _moved(number, old, new, (name,), limit)
 
 
-def _moved(number: int, old: Row, new: Row, names: tuple[str, ...], limit: float) -> Iterator[Suspicion]:
+def _moved(
+    number: int, old: OffsetRow, new: OffsetRow, names: tuple[str, ...], limit: float
+) -> Iterator[Suspicion]:
     for name in names:
         before, after = getattr(old, name), getattr(new, name)
-        if abs(after - before) > limit + _NEAR:
-            yield Suspicion(Doubt.LARGE, number, name, before, after)
+        if abs(after - before) > limit + _ROUNDING_TOLERANCE_MM:
+            yield Suspicion(SuspicionKind.LARGE_CHANGE, number, name, before, after)
 
 
-def _new_masters(table: Mapping[int, Row], new: Mapping[int, Row]) -> Iterator[Suspicion]:
+def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]) -> Iterator[Suspicion]:
     """Yield the rows that become the master while the table contains tools that will follow."""
     for number, row in new.items():
         old = table.get(number)
         was = isinstance(old, ToolRow) and old.master
-        if isinstance(row, ToolRow) and row.master and not was and followers(table, number):
-            yield Suspicion(Doubt.MASTER, number, "master", False, True)
+        if isinstance(row, ToolRow) and row.master and not was and find_followers(table, number):
+            yield Suspicion(SuspicionKind.NEW_MASTER, number, "master", False, True)
 
 
 # --- several tools ---------------------------------------------------------------------------------------
 
 
-def touched(tools: Mapping[int, ToolRow], number: int, touch: Touch) -> ToolRow:
+def apply_touch(tools: Mapping[int, ToolRow], number: int, touch: TouchPosition) -> ToolRow:
     """Return the row of a tool after this touch-off, as the store will save it."""
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
-    values: dict[str, Value] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
-    return with_fields(tools.get(number, ToolRow()), values)
+    values: dict[str, FieldValue] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
+    return replace_fields(tools.get(number, ToolRow()), values)
 
 
-def followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
+def find_followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
     """Return the tools that follow if this tool is the master and is touched off."""
     return tuple(number for number in sorted(tools) if number != master)
 
 
-def of_followers(
-    tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: Travel
+def find_follower_suspicions(
+    tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: TravelLimits
 ) -> tuple[Suspicion, ...]:
     """Return the followers that a touch-off of the master would move outside the travel."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
     found: list[Suspicion] = []
-    for number in followers(tools, master):
+    for number in find_followers(tools, master):
         row = tools[number]
-        found += _beyond(number, row, with_fields(row, {"x": row.x + x, "z": row.z + z}), travel)
+        found += _beyond(number, row, replace_fields(row, {"x": row.x + x, "z": row.z + z}), travel)
     return tuple(found)
 
 
-def described(
-    found: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
+def describe_suspicions(
+    suspicions: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
 ) -> str:
     """Return one text for all suspicions. Each field appears once, with its most serious reason."""
     fields: dict[tuple[int, str], Suspicion] = {}
-    for each in found:
+    for each in suspicions:
         fields.setdefault((each.number, each.name), each)
     return ", ".join(f"{name(each)} ({reason(each)})" for each in fields.values())
 
 
-CORRECTIONS = {
-    Kind.TOOL: frozenset({"wear_x", "wear_z", "remark"}),
-    Kind.MILL_TOOL: frozenset({"dl", "dr", "dr2"}),
+CORRECTION_FIELDS = {
+    OffsetKind.TOOL: frozenset({"wear_x", "wear_z", "remark"}),
+    OffsetKind.MILL_TOOL: frozenset({"dl", "dr", "dr2"}),
 }
 """Fields of a tool that are corrections; of a secondary offset all are."""
 
-_ACTS = {
-    Kind.TOOL: Act.TOOLS,
-    Kind.SECONDARY: Act.WEAR,
-    Kind.ZERO: Act.ZEROS,
-    Kind.SHAPE: Act.SHAPES,
-    Kind.MILL_TOOL: Act.TOOLS,
-    Kind.PRESET: Act.PRESETS,
+_RIGHTS_BY_KIND = {
+    OffsetKind.TOOL: ProtectedChange.TOOLS,
+    OffsetKind.SECONDARY: ProtectedChange.WEAR,
+    OffsetKind.ZERO: ProtectedChange.ZEROS,
+    OffsetKind.SHAPE: ProtectedChange.SHAPES,
+    OffsetKind.MILL_TOOL: ProtectedChange.TOOLS,
+    OffsetKind.PRESET: ProtectedChange.PRESETS,
 }
 
 
-def act_of(kind: Kind, fields: Collection[str] = ()) -> Act:
+def find_required_right(kind: OffsetKind, fields: Collection[str] = ()) -> ProtectedChange:
     """Return the access right that is needed to change these fields.
 
     Without fields, return the right to clear the table or to undo a change.
     """
-    only = CORRECTIONS.get(kind, frozenset())
-    return Act.WEAR if fields and only.issuperset(fields) else _ACTS[kind]
+    only = CORRECTION_FIELDS.get(kind, frozenset())
+    return ProtectedChange.WEAR if fields and only.issuperset(fields) else _RIGHTS_BY_KIND[kind]

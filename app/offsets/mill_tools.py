@@ -4,67 +4,74 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from app.desk.arithmetic import value_of
+from app.desk.arithmetic import evaluate_expression
 from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
-from app.offsets.mill_touch import MillLives, MillTouch
+from app.offsets.mill_touch import MillToolLives, MillTouchCalculator
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.production.tool_life import LifeState
-from core.store.store_rows import LIFE_REACH, MILL_TOOLS, Field, Kind, Sort, Value
+from core.production.tool_life import ToolLifeState
+from core.store.store_rows import (
+    MAX_TOOL_LIFE_MIN,
+    MILL_TOOL_NUMBERS,
+    FieldType,
+    FieldValue,
+    OffsetKind,
+    RowField,
+)
 
-USED = "used"  # The column of the cutting time, which is counted and is not part of the row.
-_USED = Field("CUR.TIME", 0.0, LIFE_REACH, Sort.MINUTES, name=USED)
-_TONES = {LifeState.WARNED: Tone.PAUSE, LifeState.SPENT: Tone.ALARM}
+CUTTING_TIME_FIELD = "used"  # The column of the cutting time, which is counted and is not part of the row.
+_USED_FIELD = RowField("CUR.TIME", 0.0, MAX_TOOL_LIFE_MIN, FieldType.MINUTES, name=CUTTING_TIME_FIELD)
+_LIFE_TONES = {ToolLifeState.WARNING: Tone.PAUSE, ToolLifeState.USED_UP: Tone.ALARM}
 
 
-class MillTools(CellTable):
+class MillToolTable(CellTable):
     """The tool table with its selected cell and the text that is entered for it."""
 
-    kind = Kind.MILL_TOOL
-    numbers = MILL_TOOLS
+    kind = OffsetKind.MILL_TOOL
+    numbers = MILL_TOOL_NUMBERS
 
     @property
-    def lives(self) -> MillLives:
+    def mill_lives(self) -> MillToolLives:
         """The tool life of the tools."""
-        return MillLives.of(self.desk)
+        return MillToolLives.find_for(self.desk)
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The field names of the columns. The cutting time follows the tool life limit."""
         *fields, stops = super().columns
-        return (*fields, USED, stops)
+        return (*fields, CUTTING_TIME_FIELD, stops)
 
-    def field_of(self, name: str) -> Field:
+    def field_of(self, name: str) -> RowField:
         """Return the field definition of a column."""
-        return _USED if name == USED else super().field_of(name)
+        return _USED_FIELD if name == CUTTING_TIME_FIELD else super().field_of(name)
 
-    def value_at(self, number: int, name: str) -> Value:
+    def value_at(self, number: int, name: str) -> FieldValue:
         """Return the value of a cell. CUR.TIME is the cutting time in minutes since the tool was new."""
-        if name != USED:
+        if name != CUTTING_TIME_FIELD:
             return super().value_at(number, name)
-        life = self.lives.lives().get(number)
+        life = self.mill_lives.read_lives().get(number)
         return round(life.seconds / 60.0, 1) if life is not None else 0.0
 
     def tone_at(self, number: int, name: str) -> Tone:
         """Return the tone of a cell. CUR.TIME shows when the tool life is almost or completely used."""
-        life = self.lives.lives().get(number) if name == USED else None
-        return Tone.OFF if life is None else _TONES.get(life.state, Tone.OFF)
+        life = self.mill_lives.read_lives().get(number) if name == CUTTING_TIME_FIELD else None
+        return Tone.OFF if life is None else _LIFE_TONES.get(life.state, Tone.OFF)
 
     @property
     def title(self) -> str:
         """The title of the table, with its units."""
         return tr("TOOL TABLE  ·  MM, DEGREES, MINUTES")
 
-    def in_force(self, snapshot: Snapshot) -> int:
+    def find_active_row(self, snapshot: Snapshot) -> int:
         """Return the number of the tool in the spindle."""
         return snapshot.modal.tool
 
     @property
-    def foot(self) -> str:
+    def footer_text(self) -> str:
         """The hint below the table: the keys F2 and Esc, or the meaning of a tool life column."""
-        if self.name in {"life", USED}:
+        if self.name in {"life", CUTTING_TIME_FIELD}:
             return tr(
                 "TIME2: tool life limit in minutes at feed, 0 = no limit        CUR.TIME: minutes "
                 "cut so far, 0 for a new tool"
@@ -73,37 +80,38 @@ class MillTools(CellTable):
             return tr("STOP: no new part starts once TIME2 is reached        Enter: on/off")
         return tr("F2: set L so that the current tip position becomes the typed height        Esc: exit")
 
-    def keep(self, values: Mapping[str, Value], why: str) -> str:
+    def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
         """Save CUR.TIME in the tool life counter and other fields in the table.
 
         Return why this was rejected, or an empty text.
         """
-        if USED not in values:
-            return super().keep(values, why)
-        if self.stored is None:
+        if CUTTING_TIME_FIELD not in values:
+            return super().save_fields(values, reason)
+        if self.stored_row is None:
             return tr(
                 Message("T{number} IS NOT IN THE TABLE YET: ENTER ITS LENGTH FIRST", number=self.number)
             )
-        self.lives.set_used(self.number, 60.0 * float(values[USED]))
+        self.mill_lives.set_cutting_time(self.number, 60.0 * float(values[CUTTING_TIME_FIELD]))
         return ""
 
-    def here_barred(self) -> str:
+    def find_position_refusal(self) -> str:
         """Return why the tool length cannot be touched off now. Empty if it can."""
         if self.name != "length":
             return tr("SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH")
-        nose = MillTouch.of(self.desk).nose_height()
-        return nose if isinstance(nose, str) else self.barred(self.desk.snapshot())
+        nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
+        return nose if isinstance(nose, str) else self.find_refusal(self.desk.read_snapshot())
 
-    def here(self) -> None:
+    def set_from_position(self) -> None:
         """Handle F2: calculate the length of a tool whose tip is at the entered height, or at 0.
 
         The height is relative to the preset in force.
         """
-        nose = MillTouch.of(self.desk).nose_height()
-        if isinstance(nose, str) or self.here_barred():
-            self.desk.say(self.here_barred())
+        nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
+        if isinstance(nose, str) or self.find_position_refusal():
+            self.desk.say(self.find_position_refusal())
             return
         reads = self.text.strip() or "0"
-        self.save(
-            lambda: self.checked(nose - value_of(reads)), tr(Message("touch-off at {value}", value=reads))
+        self.save_cell(
+            lambda: self.check_range(nose - evaluate_expression(reads)),
+            tr(Message("touch-off at {value}", value=reads)),
         )

@@ -7,20 +7,20 @@ from dataclasses import dataclass, replace
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.offsets_in_force import MillOffsets, with_mill
-from core.executor.snapshot import Snapshot, State
+from app.offsets.active_offsets import MillOffsets, add_mill_offsets
+from core.executor.snapshot import MachineState, Snapshot
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector
 from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 from core.production.tool_life import ToolLife
 
-_HERE: Vector = (0.0, 0.0, 0.0)
-_UPRIGHT = 1e-6  # Tolerance of a unit vector within which a tool counts as upright.
+_ORIGIN: Vector = (0.0, 0.0, 0.0)
+_UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool counts as upright.
 
 
 @dataclass(slots=True)
-class MillTouch:
+class MillTouchCalculator:
     """Calculates positions on a mill. ``machine`` is the kinematics from the machine file, or None."""
 
     desk: Desk
@@ -30,76 +30,83 @@ class MillTouch:
         """Do nothing, because nothing runs in the background."""
 
     @classmethod
-    def of(cls, desk: Desk) -> MillTouch:
+    def find_for(cls, desk: Desk) -> MillTouchCalculator:
         """Return the object attached to TurnDesk, or one without kinematics."""
-        found = desk.pages.find(cls)
+        found = desk.page_registry.find(cls)
         return found if found is not None else cls(desk, None)
 
-    def tip(self, zeros: Mapping[str, float]) -> Vector | str:
+    def find_tip_position(self, zero_positions: Mapping[str, float]) -> Vector | str:
         """Return the machine position of the tip of the tool in the spindle in mm, or why it is unknown.
 
         The position is calculated for the rotary axes at ``zeros``.
         """
-        stands = self._stands()
+        stands = self._find_stationary_state()
         if isinstance(stands, str):
             return stands
         machine, angles, slides = stands
-        number = self.desk.snapshot().modal.tool
-        row = self.desk.book.mill_tools.get(number)
+        number = self.desk.read_snapshot().modal.tool
+        row = self.desk.offset_book.mill_tools.get(number)
         if row is None:
             return tr("SPINDLE HAS NO TOOL FROM THE TABLE. RUN TOOL CALL IN MDI")
         length = row.length + row.dl
-        bare = machine.with_preset(DatumPreset(_HERE, zeros=tuple(zeros.items())))
-        return bare.at_zeros(replace(bare, origin=_HERE).place(angles, tool_length=length).point(slides))
+        bare = machine.with_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(zero_positions.items())))
+        return bare.move_to_table_zeros(
+            replace(bare, origin=_ORIGIN).make_transform(angles, tool_length=length).to_frame_point(slides)
+        )
 
-    def moved(self, spot: Vector, before: Mapping[str, float], after: Mapping[str, float]) -> Vector:
-        """Return the machine position in mm of a workpiece point with the rotary axes at ``after``.
+    def find_moved_point(
+        self, workpiece_point: Vector, angles_before: Mapping[str, float], angles_after: Mapping[str, float]
+    ) -> Vector:
+        """Return the machine position in mm of a workpiece point with the rotary axes at ``angles_after``.
 
-        ``spot`` is the machine position of the same point with the rotary axes at ``before``.
+        ``workpiece_point`` is the machine position of the same point with the rotary axes at
+        ``angles_before``.
         """
         if self.machine is None:
-            return spot
+            return workpiece_point
         first, last = (
-            self.machine.with_preset(DatumPreset(_HERE, zeros=tuple(each.items())))
-            for each in (before, after)
+            self.machine.with_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(each.items())))
+            for each in (angles_before, angles_after)
         )
-        return last.at_zeros(first.at_home(spot))
+        return last.move_to_table_zeros(first.move_from_table_zeros(workpiece_point))
 
     @property
-    def rotary_axes(self) -> tuple[str, ...]:
+    def rotary_axis_names(self) -> tuple[str, ...]:
         """The names of the rotary axes in alphabetical order."""
-        return tuple(sorted(axis.name for axis in self.machine.rotaries)) if self.machine else ()
+        return tuple(sorted(axis.name for axis in self.machine.rotary_axes)) if self.machine else ()
 
-    def angle(self, name: str) -> float | str:
+    def find_angle(self, axis_name: str) -> float | str:
         """Return the machine position of a rotary axis in degrees, or why it is unknown."""
-        stands = self._stands()
-        return stands if isinstance(stands, str) else stands[1][name]
+        stands = self._find_stationary_state()
+        return stands if isinstance(stands, str) else stands[1][axis_name]
 
-    def nose_height(self) -> float | str:
+    def find_nose_height(self) -> float | str:
         """Return the height of the spindle nose above the zero of the preset in force in mm.
 
         A tool whose tip touches this zero has this length L. If the height is unknown, return the reason as
         text.
         """
-        stands = self._stands()
+        stands = self._find_stationary_state()
         if isinstance(stands, str):
             return stands
         machine, angles, slides = stands
-        if abs(machine.frame(angles)[2][2] - 1.0) > _UPRIGHT:
+        if abs(machine.tool_frame(angles)[2][2] - 1.0) > _UPRIGHT_TOLERANCE:
             return tr("TOOL TILTED. TURN ROTARY AXES TO SET IT SQUARE TO WORKPIECE")
-        return machine.place(angles).point(slides)[2]
+        return machine.make_transform(angles).to_frame_point(slides)[2]
 
-    def _stands(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
+    def _find_stationary_state(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
         """Return the kinematics with the preset in force, the rotary angles and the linear axis positions.
 
         If they are unknown, return the reason as text.
         """
-        snapshot, book = self.desk.snapshot(), self.desk.book
+        snapshot, book = self.desk.read_snapshot(), self.desk.offset_book
         if self.machine is None:
             return tr("CANNOT TOUCH OFF: THE MILL'S MACHINE FILE HAS NO [kinematics] TABLE")
         if why := _unknown(snapshot):
             return why
-        setup = with_mill(Setup(kinematics=self.machine), MillOffsets({}, book.presets, book.preset))
+        setup = add_mill_offsets(
+            Setup(kinematics=self.machine), MillOffsets({}, book.presets, book.active_preset)
+        )
         assert setup.kinematics is not None
         at = dict(zip(snapshot.axes, snapshot.actual, strict=True))
         slides: Vector = at.pop("X"), at.pop("Y"), at.pop("Z")
@@ -107,7 +114,7 @@ class MillTouch:
 
 
 def _unknown(snapshot: Snapshot) -> str:
-    if snapshot.state in {State.JOG, State.HOME}:
+    if snapshot.state in {MachineState.JOG, MachineState.HOME}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     for axis, homed in zip(snapshot.axes, snapshot.homed, strict=True):
         if not homed:
@@ -120,21 +127,21 @@ def _none() -> Mapping[int, ToolLife]:
 
 
 @dataclass(slots=True)
-class MillLives:
+class MillToolLives:
     """Access to the tool life of a mill's tools.
 
-    ``lives`` returns the tool life by tool number, and returns the same object while nothing changes.
-    ``set_used`` sets the cutting seconds of a tool, 0 for a new tool.
+    ``read_lives`` returns the tool life by tool number, and returns the same object while nothing changes.
+    ``set_cutting_time`` sets the cutting seconds of a tool, 0 for a new tool.
     """
 
-    lives: Callable[[], Mapping[int, ToolLife]] = _none
-    set_used: Callable[[int, float], None] = lambda _number, _seconds: None
+    read_lives: Callable[[], Mapping[int, ToolLife]] = _none
+    set_cutting_time: Callable[[int, float], None] = lambda _number, _seconds: None
 
     def close(self) -> None:
         """Do nothing, because nothing runs in the background."""
 
     @classmethod
-    def of(cls, desk: Desk) -> MillLives:
+    def find_for(cls, desk: Desk) -> MillToolLives:
         """Return the object attached to TurnDesk, or one without tools."""
-        found = desk.pages.find(cls)
+        found = desk.page_registry.find(cls)
         return found if found is not None else cls()

@@ -7,31 +7,31 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from app.desk.access import Access
-from app.offsets.change_rules import act_of
-from app.offsets.offsets_in_force import PRESET, preset_of
-from core.access.access_table import Act
+from app.desk.access import UserAccess
+from app.offsets.active_offsets import PRESET_SETTING, find_active_preset
+from app.offsets.change_rules import find_required_right
+from core.access.access_table import ProtectedChange
 from core.message import Message
-from core.store.offsets.touch_off import Touch
+from core.store.offsets.touch_off import TouchPosition
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
-    Change,
-    Kind,
+    FieldValue,
     MillRow,
+    OffsetChange,
+    OffsetKind,
+    OffsetRow,
     PresetRow,
-    Row,
     SecondaryRow,
     ShapeRow,
     ToolRow,
-    Value,
     ZeroRow,
 )
 
 if TYPE_CHECKING:
     from core.store.store import Store
 
-NONE_KEPT = "OFFSETS CANNOT BE SAVED: NO DATA STORE"
-SAVING = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
+OFFSETS_NOT_STORED = "OFFSETS CANNOT BE SAVED: NO DATA STORE"
+SAVE_IN_PROGRESS = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 
 
 class OffsetRows(NamedTuple):
@@ -46,18 +46,18 @@ class OffsetRows(NamedTuple):
     preset: int
 
 
-def rows_of_store(store: Store) -> OffsetRows:
+def read_store_rows(store: Store) -> OffsetRows:
     """Read all offsets. Raises StoreError."""
     tables = store.offsets
     presets = tables.presets.read_rows()
     return OffsetRows(
-        tables.tools.read_rows(),
-        tables.secondary.read_rows(),
-        tables.zero.read_rows(),
-        tables.shapes.read_rows(),
+        tables.tool_offsets.read_rows(),
+        tables.secondary_offsets.read_rows(),
+        tables.zero_offsets.read_rows(),
+        tables.tool_shapes.read_rows(),
         tables.mill_tools.read_rows(),
         presets,
-        preset_of(store.settings.read_setting(PRESET), presets),
+        find_active_preset(store.settings.read_setting(PRESET_SETTING), presets),
     )
 
 
@@ -66,59 +66,59 @@ class OffsetBook:
     """Offsets and tool shapes by number, in mm and degrees, with X as a radius.
 
     A change that the access level permits is posted to the store's writer. It is shown when it is on the
-    disk. ``poll`` is called once a frame. Without ``store``, nothing can be changed, and ``locked`` gives the
-    reason.
+    disk. ``poll_saving`` is called once a frame. Without ``store``, nothing can be changed, and
+    ``lock_reason`` gives the reason.
     """
 
     store: Store | None = None
-    locked: str = ""
+    lock_reason: str = ""
     tools: dict[int, ToolRow] = field(default_factory=dict)
     secondary: dict[int, SecondaryRow] = field(default_factory=dict)
     zero: dict[int, ZeroRow] = field(default_factory=dict)  # By the number of the G code.
     shapes: dict[int, ShapeRow] = field(default_factory=dict)
     mill_tools: dict[int, MillRow] = field(default_factory=dict)
     presets: dict[int, PresetRow] = field(default_factory=dict)
-    preset: int = 0  # The preset in force on a mill; 0: the preset of the machine file.
-    access: Access = field(default_factory=Access)  # The signed-in user and the permitted changes.
-    unread: bool = False  # True if offsets cannot be read.
+    active_preset: int = 0  # The preset in force on a mill; 0: the preset of the machine file.
+    access: UserAccess = field(default_factory=UserAccess)  # The signed-in user and the permitted changes.
+    has_read_failed: bool = False  # True if offsets cannot be read.
     at: int = 1  # The tool that the tool pages have selected.
     changes: int = 0  # Number of saved changes.
     _saving: Future[Any] | None = None
-    # Set by another thread and read by ``poll``.
+    # Set by another thread and read by ``poll_saving``.
     _reopened: tuple[Store | None, str, OffsetRows | None] | None = None
 
     def __post_init__(self) -> None:
-        self.read()
+        self.read_store()
 
     # --- present values ------------------------------------------------------------------------------
 
-    def of(self, kind: Kind) -> Mapping[int, Row]:
+    def get_rows(self, kind: OffsetKind) -> Mapping[int, OffsetRow]:
         """Return the offsets of one kind, by number."""
-        tables: dict[Kind, Mapping[int, Row]] = {
-            Kind.TOOL: self.tools,
-            Kind.SECONDARY: self.secondary,
-            Kind.ZERO: self.zero,
-            Kind.SHAPE: self.shapes,
-            Kind.MILL_TOOL: self.mill_tools,
-            Kind.PRESET: self.presets,
+        tables: dict[OffsetKind, Mapping[int, OffsetRow]] = {
+            OffsetKind.TOOL: self.tools,
+            OffsetKind.SECONDARY: self.secondary,
+            OffsetKind.ZERO: self.zero,
+            OffsetKind.SHAPE: self.shapes,
+            OffsetKind.MILL_TOOL: self.mill_tools,
+            OffsetKind.PRESET: self.presets,
         }
         return tables[kind]
 
     @property
-    def master(self) -> int:
+    def master_number(self) -> int:
         """The number of the master tool, or 0 without a master."""
         return next((number for number, row in self.tools.items() if row.master), 0)
 
-    def history(self, kind: Kind, limit: int = 200) -> tuple[Change, ...]:
+    def read_history(self, kind: OffsetKind, limit: int = 200) -> tuple[OffsetChange, ...]:
         """Return the last changes, newest first. Empty without a store."""
-        return () if self.store is None else self.store.offsets.table(kind).read_history(limit)
+        return () if self.store is None else self.store.offsets.get_table(kind).read_history(limit)
 
-    def read(self) -> None:
+    def read_store(self) -> None:
         """Read the values of the store. This returns at once, even while the store is being written."""
         if self.store is not None:
-            self.show(rows_of_store(self.store))
+            self.show_rows(read_store_rows(self.store))
 
-    def show(self, rows: OffsetRows) -> None:
+    def show_rows(self, rows: OffsetRows) -> None:
         """Use these values. Without a store, they can be shown but not changed."""
         self.tools, self.secondary, self.zero = dict(rows.tools), dict(rows.secondary), dict(rows.zero)
         self.shapes, self.mill_tools, self.presets = (
@@ -126,82 +126,97 @@ class OffsetBook:
             dict(rows.mill_tools),
             dict(rows.presets),
         )
-        self.preset = rows.preset
+        self.active_preset = rows.preset
 
     def _shown(self) -> OffsetRows:
         return OffsetRows(
-            self.tools, self.secondary, self.zero, self.shapes, self.mill_tools, self.presets, self.preset
+            self.tools,
+            self.secondary,
+            self.zero,
+            self.shapes,
+            self.mill_tools,
+            self.presets,
+            self.active_preset,
         )
 
     # --- changes: each returns why it was rejected, or an empty text ----------------------------------
 
-    def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
+    def change_fields(
+        self, kind: OffsetKind, number: int, values: Mapping[str, FieldValue], reason: str
+    ) -> str:
         """Save some fields of an offset, and leave the other fields unchanged."""
         return self._post(
-            act_of(kind, values),
-            lambda store, who: store.offsets.table(kind).change_row(number, why, values, who=who),
+            find_required_right(kind, values),
+            lambda store, who: store.offsets.get_table(kind).change_row(number, reason, values, who=who),
         )
 
-    def touch_off(self, number: int, touch: Touch, why: str) -> str:
+    def touch_off(self, number: int, touch: TouchPosition, reason: str) -> str:
         """Set a tool by a touch-off. If the tool is the master, all other tools follow."""
         return self._post(
-            Act.TOOLS, lambda store, who: store.offsets.tools.touch_off(number, touch, why, who=who)
+            ProtectedChange.TOOLS,
+            lambda store, who: store.offsets.tool_offsets.set_touched_offset(
+                number, touch, reason, author=who
+            ),
         )
 
-    def choose_master(self, number: int, why: str) -> str:
+    def choose_master(self, number: int, reason: str) -> str:
         """Make this tool the master. 0 means that no tool is the master."""
         return self._post(
-            Act.TOOLS, lambda store, who: store.offsets.tools.choose_master(number, why, who=who)
+            ProtectedChange.TOOLS,
+            lambda store, who: store.offsets.tool_offsets.set_master_tool(number, reason, author=who),
         )
 
-    def choose_preset(self, number: int) -> str:
+    def activate_preset(self, number: int) -> str:
         """Activate another preset. 0 is the preset of the machine file."""
-        before = self.preset
+        before = self.active_preset
 
         def choose(store: Store, _who: str) -> Future[None]:
-            self.access.persistence.note_change(
+            self.access.persistence.log_change(
                 Message("active preset: {before} → {number}", before=before, number=number)
             )
-            return store.settings.save_setting(PRESET, number)
+            return store.settings.save_setting(PRESET_SETTING, number)
 
-        return self._post(Act.PRESETS, choose)
+        return self._post(ProtectedChange.PRESETS, choose)
 
-    def remove_shape(self, number: int, why: str) -> str:
+    def remove_shape(self, number: int, reason: str) -> str:
         """Delete the shape of a tool."""
         return self._post(
-            Act.SHAPES, lambda store, who: store.offsets.shapes.remove_row(number, why, who=who)
+            ProtectedChange.SHAPES,
+            lambda store, who: store.offsets.tool_shapes.remove_row(number, reason, author=who),
         )
 
-    def clear(self, kind: Kind, why: str) -> str:
+    def clear_table(self, kind: OffsetKind, reason: str) -> str:
         """Delete all offsets of this kind."""
         return self._post(
-            act_of(kind), lambda store, who: store.offsets.table(kind).remove_all_rows(why, who=who)
+            find_required_right(kind),
+            lambda store, who: store.offsets.get_table(kind).remove_all_rows(reason, author=who),
         )
 
-    def undoable(self, kind: Kind, number: int | None) -> tuple[Change, ...]:
+    def find_undoable(self, kind: OffsetKind, number: int | None) -> tuple[OffsetChange, ...]:
         """Return the changes of the last step that undo would reverse. Raises StoreError.
 
         ``number`` is a row, or None for the last step of the whole table.
         """
-        return () if self.store is None else self.store.offsets.table(kind).find_undoable(number)
+        return () if self.store is None else self.store.offsets.get_table(kind).find_undoable_changes(number)
 
-    def undo(self, kind: Kind, number: int | None, step: int) -> str:
+    def undo_step(self, kind: OffsetKind, number: int | None, step: int) -> str:
         """Undo exactly this step."""
         return self._post(
-            act_of(kind), lambda store, who: store.offsets.table(kind).undo_step(number, step, who=who)
+            find_required_right(kind),
+            lambda store, who: store.offsets.get_table(kind).undo_step(number, step, author=who),
         )
 
-    def barred(self, act: Act) -> str:
+    def barred(self, act: ProtectedChange) -> str:
         """Return why this change cannot be posted now. Empty if it can."""
-        if self.store is None or self.busy:
-            return self.locked or SAVING
-        return self.access.refusal(act)
+        if self.store is None or self.is_saving:
+            return self.lock_reason or SAVE_IN_PROGRESS
+        return self.access.find_refusal(act)
 
-    def _post(self, act: Act, write: Callable[[Store, str], Future[Any]]) -> str:
+    def _post(self, act: ProtectedChange, write: Callable[[Store, str], Future[Any]]) -> str:
         if (why := self.barred(act)) or self.store is None:
             return why
         try:
-            self._saving = write(self.store, self.access.who)
+            self._saving = write(self.store, self.access.recorded_user)
         except StoreError as error:
             return str(error)
         return ""
@@ -209,11 +224,11 @@ class OffsetBook:
     # --- once a frame --------------------------------------------------------------------------------
 
     @property
-    def busy(self) -> bool:
+    def is_saving(self) -> bool:
         """Whether a change is being saved."""
         return self._saving is not None
 
-    def poll(self) -> str:
+    def poll_saving(self) -> str:
         """Check whether the change has been saved. Return the error, or an empty text."""
         if self._reopened is not None:
             return self._turn_to(*self._reopened)
@@ -226,29 +241,29 @@ class OffsetBook:
             self.changes += 1
         return self._read_or_why() or (str(error) if error is not None else "")
 
-    def reopen(self, store: Store | None, trouble: str, rows: OffsetRows | None = None) -> None:
+    def use_store(self, store: Store | None, error_text: str, rows: OffsetRows | None = None) -> None:
         """Use another store from the next poll on. Any thread may call this.
 
         If ``store`` is None, ``trouble`` gives the reason. ``rows`` are the offsets that another TurnDesk,
         which owns the store, has set.
         """
-        self._reopened = store, trouble, rows
+        self._reopened = store, error_text, rows
 
     def _turn_to(self, store: Store | None, trouble: str, rows: OffsetRows | None) -> str:
         self._reopened, self._saving = None, None
         if store is not self.store or (rows is not None and rows != self._shown()):
             self.changes += 1
         if rows is not None:
-            self.show(rows)
-        self.store, self.unread = store, self.unread and store is None and rows is None
-        self.locked = (
+            self.show_rows(rows)
+        self.store, self.has_read_failed = store, self.has_read_failed and store is None and rows is None
+        self.lock_reason = (
             "" if store is not None else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=trouble)
         )
         return self._read_or_why()
 
     def _read_or_why(self) -> str:
         try:
-            self.read()
+            self.read_store()
         except StoreError as error:
             return str(error)
         return ""

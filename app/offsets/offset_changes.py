@@ -12,67 +12,75 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from app.desk.desk import Desk
-from app.desk.status.formats import local_time
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.formats import format_local_time
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.offsets.change_rules import (
-    LARGE_MM,
-    Doubt,
+    LARGE_CHANGE_MM,
     Suspicion,
-    act_of,
-    described,
-    followers,
-    of_followers,
-    suspicions,
-    suspicions_of,
-    touched,
-    travel_of,
+    SuspicionKind,
+    apply_touch,
+    describe_suspicions,
+    find_follower_suspicions,
+    find_followers,
+    find_required_right,
+    find_suspicions,
+    find_table_suspicions,
+    find_travel,
 )
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_values import Mode, cell_text, from_to, heading, not_set, shown_value, signed
-from core.access.access_table import Act
-from core.executor.snapshot import Snapshot, State
+from app.offsets.offset_values import (
+    ValueMode,
+    describe_unset,
+    format_cell,
+    format_change,
+    format_signed,
+    format_value,
+    make_heading,
+)
+from core.access.access_table import ProtectedChange
+from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
-from core.store.offsets.touch_off import Touch
+from core.store.offsets.touch_off import TouchPosition
 from core.store.store_errors import StoreError
-from core.store.store_rows import FIELDS, Change, Kind, ToolRow, Value
-from core.tool_edges import edge_name
+from core.store.store_rows import FIELDS_BY_KIND, FieldValue, OffsetChange, OffsetKind, ToolRow
+from core.tool_edges import format_edge_name
 
-LETTERS = {
-    Kind.TOOL: "T",
-    Kind.SHAPE: "T",
-    Kind.SECONDARY: "D",
-    Kind.ZERO: "G",
-    Kind.MILL_TOOL: "T",
-    Kind.PRESET: "PRESET ",
+NUMBER_PREFIXES = {
+    OffsetKind.TOOL: "T",
+    OffsetKind.SHAPE: "T",
+    OffsetKind.SECONDARY: "D",
+    OffsetKind.ZERO: "G",
+    OffsetKind.MILL_TOOL: "T",
+    OffsetKind.PRESET: "PRESET ",
 }
 
 
-def refusal(snapshot: Snapshot, *, correction: bool) -> str:
+def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
     """Return why offsets cannot be changed now. Empty if they can.
 
     A correction (wear, secondary offset) may be entered while parts run, because the present part uses the
     offsets that it was proved with. A change of a tip position must wait until no program is running.
     """
-    if snapshot.state in {State.JOG, State.HOME}:
+    if snapshot.state in {MachineState.JOG, MachineState.HOME}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
-    if snapshot.state in UNDER_WAY and not correction:
+    if snapshot.state in ACTIVE_STATES and not is_correction:
         return tr("PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)")
     return ""
 
 
-def counts_from(snapshot: Snapshot) -> str:
+def describe_start(snapshot: Snapshot) -> str:
     """Return from when a change that is entered now applies. Empty between cycles."""
-    if snapshot.state not in UNDER_WAY:
+    if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
         return tr("OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED")
     return tr("WEAR APPLIES FROM NEXT CYCLE START")
 
 
-def _behind_saved(snapshot: Snapshot) -> str:
+def _describe_applied_next(snapshot: Snapshot) -> str:
     """Return the text that follows SAVED in a message while parts run."""
-    if snapshot.state not in UNDER_WAY:
+    if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
         return tr("; APPLIES FROM NEXT PART")
@@ -81,185 +89,193 @@ def _behind_saved(snapshot: Snapshot) -> str:
 
 @dataclass(slots=True)
 class OffsetHistory:
-    """The history of the table ``kind``. Every page that changes the table calls ``look`` once a frame."""
+    """The history of the table ``kind``. Every page that changes the table calls ``update`` once a frame."""
 
     desk: Desk
-    kind: Kind
-    mode: Mode = field(default_factory=Mode)  # Mode of the control at the last update.
-    keys: str = "F5"  # Keys that show the history on the page.
-    last: tuple[Change, ...] = ()  # Changes of the last step that was saved while the page was open.
-    listed: tuple[Change, ...] | None = None  # The history while it is shown, else None.
+    kind: OffsetKind
+    value_mode: ValueMode = field(default_factory=ValueMode)  # Mode of the control at the last update.
+    key_hint: str = "F5"  # Keys that show the history on the page.
+    last_changes: tuple[
+        OffsetChange, ...
+    ] = ()  # Changes of the last step that was saved while the page was open.
+    listed_changes: tuple[OffsetChange, ...] | None = None  # The history while it is shown, else None.
     _seen: int = 0
     _newest: int = 0  # Id of the newest change that was read.
     _asked_of: tuple[int, int | None] | None = None  # Change count and row for which ``_undoable`` is valid.
     _undoable: bool = True
 
     def __post_init__(self) -> None:
-        self._seen = self.book.changes
+        self._seen = self.offset_book.changes
 
     @property
-    def book(self) -> OffsetBook:
+    def offset_book(self) -> OffsetBook:
         """The saved offsets."""
-        return self.desk.book
+        return self.desk.offset_book
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Ignore the changes that were made before the page opened."""
-        self._seen, self.last = self.book.changes, ()
+        self._seen, self.last_changes = self.offset_book.changes, ()
         self._newest = max((change.id for change in self._read(1)), default=0)
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Update the unit of the control, and report newly saved changes; called once a frame."""
-        self.mode = Mode(snapshot.modal.metric, snapshot.reads_diameter)
-        if self.book.changes == self._seen:
+        self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
+        if self.offset_book.changes == self._seen:
             return
-        self._seen = self.book.changes
+        self._seen = self.offset_book.changes
         changes = self._read()
         # The change may belong to another table, for example a tip entered on the page of the tool shape.
         fresh = bool(changes) and changes[0].id != self._newest
         self._newest = changes[0].id if changes else 0
-        self.last = tuple(change for change in changes if fresh and change.step == changes[0].step)
-        if self.listed is not None:
-            self.listed = changes
-        self.desk.done(self._saved() + _behind_saved(snapshot))
+        self.last_changes = tuple(change for change in changes if fresh and change.step == changes[0].step)
+        if self.listed_changes is not None:
+            self.listed_changes = changes
+        self.desk.show_success(self._saved() + _describe_applied_next(snapshot))
 
     def _saved(self) -> str:
-        if not self.last:
+        if not self.last_changes:
             return tr("SAVED")
-        names = " ".join(self._named(change) for change in reversed(self.last))
-        if len(self.last) > 1 and self.kind is not Kind.ZERO:
-            names = tr(Message("{count} OFFSETS", count=len(self.last)))
-        taken_back = self.last[0].undoes is not None
+        names = " ".join(self._named(change) for change in reversed(self.last_changes))
+        if len(self.last_changes) > 1 and self.kind is not OffsetKind.ZERO:
+            names = tr(Message("{count} OFFSETS", count=len(self.last_changes)))
+        taken_back = self.last_changes[0].undoes is not None
         return tr(Message(tr("{names} UNDONE") if taken_back else tr("{names} SAVED"), names=names))
 
-    def _named(self, change: Change) -> str:
-        letter = LETTERS[self.kind]
-        return edge_name(change.number) if letter == "T" else f"{letter}{change.number}"
+    def _named(self, change: OffsetChange) -> str:
+        letter = NUMBER_PREFIXES[self.kind]
+        return format_edge_name(change.number) if letter == "T" else f"{letter}{change.number}"
 
-    def in_words(self, change: Change) -> tuple[str, str, str, str]:
+    def format_change(self, change: OffsetChange) -> tuple[str, str, str, str]:
         """Return the texts of one change.
 
         They are the local time, the offset, its values from → to in the control's unit, and the reason with
         the user.
         """
-        at = local_time(change.at)
+        at = format_local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
         which = self._named(change)
-        return at, which, from_to(change.old, change.new, self.mode), f"{change.why}{who}"
+        return at, which, format_change(change.old, change.new, self.value_mode), f"{change.why}{who}"
 
     @property
-    def last_in_words(self) -> str:
+    def last_change_text(self) -> str:
         """The last change in one line. Empty if nothing has changed while the page was open."""
-        if len(self.last) == 1:
-            _at, which, change, _why = self.in_words(self.last[0])
+        if len(self.last_changes) == 1:
+            _at, which, change, _why = self.format_change(self.last_changes[0])
             return f"{which}   {change}"
         return (
             tr(
                 Message(
-                    "{count} offsets changed. {keys}: show the changes", count=len(self.last), keys=self.keys
+                    "{count} offsets changed. {keys}: show the changes",
+                    count=len(self.last_changes),
+                    keys=self.key_hint,
                 )
             )
-            if self.last
+            if self.last_changes
             else ""
         )
 
-    def toggle(self) -> None:
+    def toggle_shown(self) -> None:
         """Show the history in place of the table, or the table again."""
-        self.listed = None if self.listed is not None else self._read()
+        self.listed_changes = None if self.listed_changes is not None else self._read()
 
-    def undoable(self, number: int | None) -> bool:
+    def can_undo(self, number: int | None) -> bool:
         """Return whether a change of this row can be undone. The result is cached until the next change."""
-        key = self.book.changes, number
+        key = self.offset_book.changes, number
         if self._asked_of != key:
             self._asked_of, self._undoable = key, True
             with suppress(StoreError):  # ``undo`` itself reports the error.
-                self._undoable = bool(self.book.undoable(self.kind, number))
+                self._undoable = bool(self.offset_book.find_undoable(self.kind, number))
         return self._undoable
 
-    def answer(self, why: str) -> None:
+    def show_refusal(self, reason: str) -> None:
         """Show a reason why something was rejected. An empty text shows nothing."""
-        if why:
-            self.desk.say(why)
+        if reason:
+            self.desk.say(reason)
 
-    def _read(self, limit: int = 200) -> tuple[Change, ...]:
+    def _read(self, limit: int = 200) -> tuple[OffsetChange, ...]:
         try:
-            return self.book.history(self.kind, limit)
+            return self.offset_book.read_history(self.kind, limit)
         except StoreError as error:
             self.desk.say(str(error))
             return ()
 
 
-_MOST_NAMES = 6  # Followers that a question lists by name.
+_MAX_NAMES = 6  # Followers that a question lists by name.
 
 
 @dataclass(frozen=True, slots=True)
 class OffsetQuestions:
     """Changes of offsets with confirmation. Each method returns why it was rejected, or an empty text."""
 
-    history: OffsetHistory
+    offset_history: OffsetHistory
 
     # --- values --------------------------------------------------------------------------------------
 
-    def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
+    def change_fields(
+        self, kind: OffsetKind, number: int, values: Mapping[str, FieldValue], reason: str
+    ) -> str:
         """Save some fields of an offset. Ask first if a value is suspicious."""
-        book = self.history.book
-        table = book.of(kind)
-        return self._if_meant(
+        book = self.offset_history.offset_book
+        table = book.get_rows(kind)
+        return self._ask_if_intended(
             kind,
-            suspicions_of(kind, table, {number: values}, self._travel()),
-            act_of(kind, values),
-            lambda: book.change(kind, number, values, why),
-            lambda: book.of(kind).get(number) == table.get(number),
+            find_table_suspicions(kind, table, {number: values}, self._travel()),
+            find_required_right(kind, values),
+            lambda: book.change_fields(kind, number, values, reason),
+            lambda: book.get_rows(kind).get(number) == table.get(number),
         )
 
-    def touch_off(self, number: int, touch: Touch, why: str, tip: float | None = None) -> str:
+    def touch_off(self, number: int, touch: TouchPosition, reason: str, tip_x_mm: float | None = None) -> str:
         """Set a tool by a touch-off. Ask first if the result is suspicious.
 
         ``tip`` is X of the tip relative to part zero in mm as a radius, or None if X was not touched.
         """
-        book = self.history.book
+        book = self.offset_history.offset_book
         tools = book.tools
-        return self._if_meant(
-            Kind.TOOL,
-            self.doubts(number, touch, tip),
-            Act.TOOLS,
-            lambda: book.touch_off(number, touch, why),
+        return self._ask_if_intended(
+            OffsetKind.TOOL,
+            self.find_touch_suspicions(number, touch, tip_x_mm),
+            ProtectedChange.TOOLS,
+            lambda: book.touch_off(number, touch, reason),
             lambda: book.tools == tools,
-            self._that_follow(number, touch),
+            self._describe_followers(number, touch),
         )
 
-    def doubts(self, number: int, touch: Touch, tip: float | None = None) -> tuple[Suspicion, ...]:
+    def find_touch_suspicions(
+        self, number: int, touch: TouchPosition, tip_x_mm: float | None = None
+    ) -> tuple[Suspicion, ...]:
         """Return the suspicious fields of this touch-off."""
-        tools, travel = self.history.book.tools, self._travel()
-        old, new = tools.get(number), touched(tools, number, touch)
-        found = suspicions(number, old, new, travel)
-        if old is not None and old.master and not touch.alone:
-            found += of_followers(tools, number, new, travel)
-        if tip is not None and self._other_side(number, tip, new.x):
-            found = (Suspicion(Doubt.SIDE, number, "x", old.x if old else None, new.x), *found)
+        tools, travel = self.offset_history.offset_book.tools, self._travel()
+        old, new = tools.get(number), apply_touch(tools, number, touch)
+        found = find_suspicions(number, old, new, travel)
+        if old is not None and old.master and not touch.moves_only_this_tool:
+            found += find_follower_suspicions(tools, number, new, travel)
+        if tip_x_mm is not None and self._is_other_side(number, tip_x_mm, new.x):
+            found = (Suspicion(SuspicionKind.WRONG_SIDE, number, "x", old.x if old else None, new.x), *found)
         return found
 
-    def _that_follow(self, number: int, touch: Touch) -> str:
+    def _describe_followers(self, number: int, touch: TouchPosition) -> str:
         """Return the names of the tools that follow this touch-off. Empty if no other tool moves."""
-        tools = self.history.book.tools
-        moves_all = number in tools and tools[number].master and not touch.alone
-        return follower_names(tools, number) if moves_all else ""
+        tools = self.offset_history.offset_book.tools
+        moves_all = number in tools and tools[number].master and not touch.moves_only_this_tool
+        return format_followers(tools, number) if moves_all else ""
 
-    def _other_side(self, number: int, tip: float, new_x: float) -> bool:
+    def _is_other_side(self, number: int, tip: float, new_x: float) -> bool:
         """Return whether the tool would touch the other side of the part than before."""
-        book = self.history.book
+        book = self.offset_history.offset_book
         old, shape = book.tools.get(number), book.shapes.get(number)
         if old is not None:
             return tip * (tip + new_x - old.offset[0]) < 0.0
         return tip > 0.0 if shape is not None and shape.rear else tip < 0.0
 
     def _travel(self) -> Mapping[str, tuple[float, float]]:
-        return travel_of(self.history.desk.machine.model)
+        return find_travel(self.offset_history.desk.machine.machine)
 
-    def _if_meant(
+    def _ask_if_intended(
         self,
-        kind: Kind,
+        kind: OffsetKind,
         found: tuple[Suspicion, ...],
-        act: Act,
+        act: ProtectedChange,
         save: Callable[[], str],
         unchanged: Callable[[], bool],
         others: str = "",
@@ -268,46 +284,50 @@ class OffsetQuestions:
 
         The change is rejected if the offsets have changed since the question.
         """
-        history = self.history
-        if (why := history.book.barred(act)) or not found:
+        history = self.offset_history
+        if (why := history.offset_book.barred(act)) or not found:
             return why or save()
-        changes = described(found, lambda each: self._named(kind, each), lambda each: _reason(each.doubt))
+        changes = describe_suspicions(
+            found, lambda each: self._describe_field(kind, each), lambda each: _reason(each.kind)
+        )
         text = tr("{changes}. Y: CHANGE   N: KEEP OLD VALUE")
         if others:
             text = tr("{changes}. ALSO ADJUSTED: {others}. Y: CHANGE   N: KEEP")
         question = tr(Message(text, changes=changes, others=others))
-        history.desk.ask(question, lambda: history.answer(save() if unchanged() else _changed_meanwhile()))
+        history.desk.ask_operator(
+            question, lambda: history.show_refusal(save() if unchanged() else _changed_meanwhile())
+        )
         return ""
 
-    def _named(self, kind: Kind, each: Suspicion) -> str:
+    def _describe_field(self, kind: OffsetKind, each: Suspicion) -> str:
         """Return the text of a change, for example T1 X Ø +0.50000 → −1.20000."""
-        title, shown = self._display(kind, each.name)
-        old = not_set() if each.old is None else shown(each.old)
-        return f"{_row_name(kind, each.number)} {title} {old} → {shown(each.new)}"
+        title, shown = self._find_format(kind, each.name)
+        old = describe_unset() if each.old_value is None else shown(each.old_value)
+        return f"{_row_name(kind, each.number)} {title} {old} → {shown(each.new_value)}"
 
-    def _display(self, kind: Kind, name: str) -> tuple[str, Callable[[Value], str]]:
+    def _find_format(self, kind: OffsetKind, name: str) -> tuple[str, Callable[[FieldValue], str]]:
         """Return the title of a field, and the function that formats its values."""
-        mode = self.history.mode
-        if kind is Kind.TOOL:
-            return heading(name, mode), lambda value: shown_value(name, value, mode)
-        if kind is Kind.SECONDARY:
-            return name.upper(), lambda value: signed(float(value), mode.metric)
-        field = FIELDS[kind][name]
-        return field.word, lambda value: cell_text(field, value)
+        mode = self.offset_history.value_mode
+        if kind is OffsetKind.TOOL:
+            return make_heading(name, mode), lambda value: format_value(name, value, mode)
+        if kind is OffsetKind.SECONDARY:
+            return name.upper(), lambda value: format_signed(float(value), mode.is_metric)
+        field = FIELDS_BY_KIND[kind][name]
+        return field.label, lambda value: format_cell(field, value)
 
     # --- the master ----------------------------------------------------------------------------------
 
-    def choose_master(self, number: int) -> str:
+    def ask_master(self, number: int) -> str:
         """Ask whether this tool becomes the master, or no tool if it is the master. Name the followers."""
-        book = self.history.book
-        tools, before = book.tools, book.master
-        if why := book.barred(Act.TOOLS):
+        book = self.offset_history.offset_book
+        tools, before = book.tools, book.master_number
+        if why := book.barred(ProtectedChange.TOOLS):
             return why
         chosen = 0 if before == number else number
         reason = tr("set as master") if chosen else tr("no master")
-        self.history.desk.ask(
+        self.offset_history.desk.ask_operator(
             self._master_question(before, chosen),
-            lambda: self.history.answer(
+            lambda: self.offset_history.show_refusal(
                 book.choose_master(chosen, reason) if book.tools == tools else _changed_meanwhile()
             ),
         )
@@ -316,64 +336,71 @@ class OffsetQuestions:
     def _master_question(self, before: int, chosen: int) -> str:
         if not chosen:
             text = tr("MASTER {before} → NONE: NO OTHER TOOLS WILL BE ADJUSTED. Y: CHANGE   N: KEEP")
-            return tr(Message(text, before=edge_name(before)))
+            return tr(Message(text, before=format_edge_name(before)))
         text = tr(
             "MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF "
             "CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP"
         )
-        mode = self.history.mode
+        mode = self.offset_history.value_mode
         return tr(
             Message(
                 text,
-                before=edge_name(before) if before else tr("none"),
-                tool=edge_name(chosen),
-                others=follower_names(self.history.book.tools, chosen) or tr("no tools"),
-                limit=f"{LARGE_MM / mode.unit:.2g}",
+                before=format_edge_name(before) if before else tr("none"),
+                tool=format_edge_name(chosen),
+                others=format_followers(self.offset_history.offset_book.tools, chosen) or tr("no tools"),
+                limit=f"{LARGE_CHANGE_MM / mode.unit_mm:.2g}",
                 unit=mode.name.upper(),
             )
         )
 
     # --- undo ----------------------------------------------------------------------------------------
 
-    def undo(self, kind: Kind, number: int | None, done: str = "") -> str:
+    def ask_undo(self, kind: OffsetKind, number: int | None, on_done: str = "") -> str:
         """Ask whether the last change of this row is undone. None means the last change of the table.
 
         ``done`` is shown after Y by a page that does not watch the table.
         """
-        book = self.history.book
-        if why := book.barred(act_of(kind)):
+        book = self.offset_history.offset_book
+        if why := book.barred(find_required_right(kind)):
             return why
         try:
-            step = book.undoable(kind, number)
+            step = book.find_undoable(kind, number)
         except StoreError as error:
             return str(error)
         if not step:
             return tr(Message("NO CHANGE TO UNDO IN {row}", row=_table_or_row(kind, number)))
         chosen = next((each for each in step if each.number == number), step[0])
-        _at, _which, change, _why = self.history.in_words(chosen._replace(old=chosen.new, new=chosen.old))
+        _at, _which, change, _why = self.offset_history.format_change(
+            chosen._replace(old=chosen.new, new=chosen.old)
+        )
         others = [_row_name(kind, each.number) for each in step if each is not chosen]
         text = tr("UNDO {row}: {change}? Y: UNDO   N: KEEP")
         if others:
             text = tr("UNDO {row}: {change}, AND ALSO {others}? Y: UNDO   N: KEEP")
         words = tr(
-            Message(text, row=_row_name(kind, chosen.number), change=change, others=", ".join(_short(others)))
+            Message(
+                text,
+                row=_row_name(kind, chosen.number),
+                change=change,
+                others=", ".join(_shorten_names(others)),
+            )
         )
-        self.history.desk.ask(words, partial(self._undo, kind, number, step[0].step, done))
+        self.offset_history.desk.ask_operator(words, partial(self._undo, kind, number, step[0].step, on_done))
         return ""
 
-    def _undo(self, kind: Kind, number: int | None, step: int, done: str) -> None:
-        why = self.history.book.undo(kind, number, step)
-        self.history.answer(why)
+    def _undo(self, kind: OffsetKind, number: int | None, step: int, done: str) -> None:
+        why = self.offset_history.offset_book.undo_step(kind, number, step)
+        self.offset_history.show_refusal(why)
         if done and not why:
-            self.history.desk.done(done)
+            self.offset_history.desk.show_success(done)
 
 
-def _reason(doubt: Doubt) -> str:
+def _reason(doubt: SuspicionKind) -> str:
     words = {
-        Doubt.TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
-        Doubt.SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
-        Doubt.LARGE: tr("LARGE CHANGE"),
-        Doubt.MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
+        SuspicionKind.OUTSIDE_TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
+        SuspicionKind.WRONG_SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
+        SuspicionKind.LARGE_CHANGE: tr("LARGE CHANGE"),
+        SuspicionKind.NEW_MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
     }
     return words[doubt]
 
@@ -382,21 +409,21 @@ def _changed_meanwhile() -> str:
     return tr("OFFSETS CHANGED BEFORE YOU ANSWERED. ENTER THE VALUE AGAIN")
 
 
-def _row_name(kind: Kind, number: int) -> str:
-    letter = LETTERS[kind]
-    return edge_name(number) if letter == "T" else f"{letter}{number}"
+def _row_name(kind: OffsetKind, number: int) -> str:
+    letter = NUMBER_PREFIXES[kind]
+    return format_edge_name(number) if letter == "T" else f"{letter}{number}"
 
 
-def _table_or_row(kind: Kind, number: int | None) -> str:
+def _table_or_row(kind: OffsetKind, number: int | None) -> str:
     return tr("THIS TABLE") if number is None else _row_name(kind, number)
 
 
-def follower_names(tools: Mapping[int, ToolRow], master: int) -> str:
+def format_followers(tools: Mapping[int, ToolRow], master: int) -> str:
     """Return the names of the tools that follow this master, shortened if there are many."""
-    return ", ".join(_short([edge_name(number) for number in followers(tools, master)]))
+    return ", ".join(_shorten_names([format_edge_name(number) for number in find_followers(tools, master)]))
 
 
-def _short(names: list[str]) -> list[str]:
+def _shorten_names(names: list[str]) -> list[str]:
     """Return the first names and the number of the others."""
-    more = len(names) - _MOST_NAMES
-    return names if more <= 0 else [*names[:_MOST_NAMES], tr(Message("{count} MORE", count=more))]
+    more = len(names) - _MAX_NAMES
+    return names if more <= 0 else [*names[:_MAX_NAMES], tr(Message("{count} MORE", count=more))]

@@ -13,29 +13,29 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from app.desk.background_work import Latest, Watch
-from app.desk.status.formats import length
+from app.desk.background_work import LatestRequestWorker, ProgressCallback
+from app.desk.status.formats import format_length
 from app.desk.translation import tr
+from app.offsets.active_offsets import make_secondary_offsets, make_tool_offsets
 from app.offsets.offset_table import OffsetTable
-from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.job import Job
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.message import Message
-from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
+from core.store.store_rows import OffsetChange, OffsetKind, SecondaryRow, ToolRow
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
-    from core.proving.other_offsets import OtherPart
+    from app.path.path_picture import ProgramPicture
+    from core.proving.offset_comparison import ComparedPart
 
     # Arguments: the job with old and new offsets. Returns None if the program makes no part.
-    ComparePart = Callable[[Job, Job, Watch], OtherPart | None]
+    ComparePart = Callable[[Job, Job, ProgressCallback], ComparedPart | None]
 
-NOUGHT = 1e-9  # Millimeters.
-R = TypeVar("R", ToolRow, SecondaryRow)
+EQUALITY_TOLERANCE_MM = 1e-9  # Millimeters.
+OffsetRowT = TypeVar("OffsetRowT", ToolRow, SecondaryRow)
 
 
 @dataclass(frozen=True, slots=True)
-class Tables:
+class OffsetTables:
     """Tool offsets and secondary offsets, as the interpreter uses them."""
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
@@ -43,87 +43,93 @@ class Tables:
 
 
 # Arguments: job, tools that define the frame of the drawing, and progress function.
-Draw = Callable[[Job, Mapping[int, ToolOffset], Watch], "Picture"]
+DrawPaths = Callable[[Job, Mapping[int, ToolOffset], ProgressCallback], "ProgramPicture"]
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class ComparedPaths:
     """Two paths in one frame, with the old and the new offsets."""
 
-    before: Picture
-    after: Picture
+    picture_before: ProgramPicture
+    picture_after: ProgramPicture
     # Largest distance of corresponding points in mm; inf if the paths have different moves.
-    furthest: float = 0.0
+    largest_distance: float = 0.0
 
     @property
-    def same(self) -> bool:
+    def is_equal(self) -> bool:
         """Whether the change has no effect on this program."""
-        return self.furthest <= NOUGHT
+        return self.largest_distance <= EQUALITY_TOLERANCE_MM
 
 
-def compared(before: Picture, after: Picture) -> Compared:
+def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
     """Return both paths with their largest distance."""
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
-        return Compared(before, after, float("inf"))
+        return ComparedPaths(before, after, float("inf"))
     if not len(before.z):
-        return Compared(before, after)
+        return ComparedPaths(before, after)
     apart = np.hypot(after.z - before.z, after.x - before.x)
-    return Compared(before, after, float(apart.max()))
+    return ComparedPaths(before, after, float(apart.max()))
 
 
 @dataclass(slots=True)
-class Effect:
-    """Draws the paths on a worker. The screen reads only ``now``, ``part``, ``busy`` and ``trouble``."""
+class OffsetEffect:
+    """Draws the paths on a worker. The screen reads only ``now``, ``part``, ``is_busy`` and
+    ``error_text``.
+    """
 
-    draw: Draw
-    compare: ComparePart | None = None  # None: parts cannot be compared.
-    now: Compared | None = None
-    part: OtherPart | None = None
-    trouble: str = ""
-    worker: Latest = field(default_factory=lambda: Latest("effect"))
+    draw_path: DrawPaths
+    compare_part: ComparePart | None = None  # None: parts cannot be compared.
+    compared_paths: ComparedPaths | None = None
+    compared_part: ComparedPart | None = None
+    error_text: str = ""
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("effect"))
 
     @property
-    def busy(self) -> bool:
-        """Whether the worker is still drawing. After an error, ``trouble`` gives the reason."""
+    def is_busy(self) -> bool:
+        """Whether the worker is still drawing. After an error, ``error_text`` gives the reason."""
         self.worker.poll()
-        return self.worker.busy
+        return self.worker.is_busy
 
-    def ask(self, job: Job, before: Tables, after: Tables) -> None:
+    def request_paths(self, job: Job, before: OffsetTables, after: OffsetTables) -> None:
         """Draw this program with the old and new offsets. A drawing in progress is canceled."""
 
-        def pair(watch: Watch) -> Compared:
-            return compared(*(self.draw(_with(job, each), before.tools, watch) for each in (before, after)))
+        def pair(watch: ProgressCallback) -> ComparedPaths:
+            return compare_pictures(
+                *(self.draw_path(_with(job, each), before.tools, watch) for each in (before, after))
+            )
 
-        self.now, self.part, self.trouble = None, None, ""
-        self.worker.ask(pair, self._drawn, self._failed)
+        self.compared_paths, self.compared_part, self.error_text = None, None, ""
+        self.worker.request(pair, self._drawn, self._failed)
 
-    def ask_part(self, compare: ComparePart, job: Job, before: Tables, after: Tables) -> None:
+    def request_part(
+        self, compare_part: ComparePart, job: Job, before: OffsetTables, after: OffsetTables
+    ) -> None:
         """Compare the part with the old and new offsets. Work in progress is canceled."""
-        self.part, self.trouble = None, ""
-        work = partial(compare, _with(job, before), _with(job, after))
-        self.worker.ask(work, self._compared, self._failed)
+        self.compared_part, self.error_text = None, ""
+        work = partial(compare_part, _with(job, before), _with(job, after))
+        self.worker.request(work, self._compared, self._failed)
 
-    def _compared(self, part: OtherPart | None) -> None:
-        self.part = part
-        self.trouble = "" if part is not None else tr("THIS PROGRAM DOES NOT MAKE A PART")
+    def _compared(self, part: ComparedPart | None) -> None:
+        self.compared_part = part
+        self.error_text = "" if part is not None else tr("THIS PROGRAM DOES NOT MAKE A PART")
 
-    def _drawn(self, pair: Compared) -> None:
-        self.now = pair
+    def _drawn(self, pair: ComparedPaths) -> None:
+        self.compared_paths = pair
 
     def _failed(self, why: str) -> None:
-        self.trouble = why
+        self.error_text = why
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Cancel the drawing in progress, and discard the results."""
-        self.worker.give_up()
-        self.now, self.part, self.trouble = None, None, ""
+        self.worker.cancel()
+        self.compared_paths, self.compared_part, self.error_text = None, None, ""
 
     def close(self) -> None:
         """Cancel the drawing in progress, and end the worker."""
         self.worker.close()
 
 
-def _with(job: Job, tables: Tables) -> Job:
+def _with(job: Job, tables: OffsetTables) -> Job:
     return replace(job, setup=replace(job.setup, tools=tables.tools, secondary=tables.secondary))
 
 
@@ -134,143 +140,153 @@ def _with(job: Job, tables: Tables) -> Job:
 class EffectDisplay:
     """The views of the effect: whole path, close-up of the largest change, part features, then the table."""
 
-    table: OffsetTable
-    open: bool = False
-    near: bool = False  # Close-up of the largest change.
-    of_part: bool = False  # Effect on the features of the part.
-    _asked: tuple[Tables, Tables] | None = None
+    offset_table: OffsetTable
+    is_open: bool = False
+    is_close_up: bool = False  # Close-up of the largest change.
+    is_part_shown: bool = False  # Effect on the features of the part.
+    _asked: tuple[OffsetTables, OffsetTables] | None = None
 
     @property
-    def effect(self) -> Effect | None:
+    def offset_effect(self) -> OffsetEffect | None:
         """The worker that draws, or None if effects cannot be drawn."""
-        return self.table.desk.pages.find(Effect)
+        return self.offset_table.desk.page_registry.find(OffsetEffect)
 
-    def turn(self) -> None:
+    def show_next_view(self) -> None:
         """Handle F6: show the next view."""
-        if not self.open:
+        if not self.is_open:
             self._open()
-        elif self.of_part or self.pictures is None or self.pictures.same:
-            self.close()
-        elif not self.near:
-            self.near = True
+        elif self.is_part_shown or self.compared_paths is None or self.compared_paths.is_equal:
+            self.close_view()
+        elif not self.is_close_up:
+            self.is_close_up = True
         else:
             self._open_part()
 
     def _open_part(self) -> None:
-        effect, now = self.effect, self.table.desk.session.now
-        if effect is None or effect.compare is None or now.job is None or self._asked is None:
-            self.close()
+        effect, now = self.offset_effect, self.offset_table.desk.program_loader.loaded
+        if effect is None or effect.compare_part is None or now.job is None or self._asked is None:
+            self.close_view()
         elif now.picture is not None and now.picture.no_part:
-            self.close()
-            self.table.desk.say(tr(now.picture.no_part))
+            self.close_view()
+            self.offset_table.desk.say(tr(now.picture.no_part))
         else:
-            effect.ask_part(effect.compare, now.job, *self._asked)
-            self.of_part = True
+            effect.request_part(effect.compare_part, now.job, *self._asked)
+            self.is_part_shown = True
 
-    def barred(self) -> str:
+    def find_refusal(self) -> str:
         """Return why no effect can be shown now. Empty if it can be, or is shown."""
-        if self.open:
+        if self.is_open:
             return ""
-        if self.effect is None or self.table.desk.session.now.job is None:
+        if self.offset_effect is None or self.offset_table.desk.program_loader.loaded.job is None:
             return tr("LOAD A PROGRAM FIRST TO SEE THE EFFECT ON ITS PATH")
-        if self._pair() is None:
+        if self._make_tables_pair() is None:
             return tr("NO CHANGES YET. TYPE OR CHANGE A VALUE, THEN PRESS F6")
         return ""
 
     def _open(self) -> None:
-        effect, job, pair = self.effect, self.table.desk.session.now.job, self._pair()
+        effect, job, pair = (
+            self.offset_effect,
+            self.offset_table.desk.program_loader.loaded.job,
+            self._make_tables_pair(),
+        )
         if effect is None or job is None or pair is None:
-            self.table.desk.say(self.barred())
+            self.offset_table.desk.say(self.find_refusal())
             return
-        self.table.desk.clear()
-        effect.ask(job, *pair)
-        self.open, self.near, self.of_part, self._asked = True, False, False, pair
+        self.offset_table.desk.clear_prompt_line()
+        effect.request_paths(job, *pair)
+        self.is_open, self.is_close_up, self.is_part_shown, self._asked = True, False, False, pair
 
-    def _pair(self) -> tuple[Tables, Tables] | None:
+    def _make_tables_pair(self) -> tuple[OffsetTables, OffsetTables] | None:
         """Return the old and new offsets, or None if there is no change to show.
 
         The change is that of the present entry if it changes a value, else the last change.
         """
-        book, last = self.table.book, self.table.history.last
-        tools, secondary = self.table.proposed()
+        book, last = self.offset_table.offset_book, self.offset_table.offset_history.last_changes
+        tools, secondary = self.offset_table.make_proposed_offsets()
         now = _tables(book.tools, book.secondary)
         typed = _tables(tools, secondary)
         if typed != now:
             return now, typed
         if not last:
             return None
-        if self.table.kind is Kind.TOOL:
-            return _tables(_before(book.tools, last, ToolRow), book.secondary), now
-        return _tables(book.tools, _before(book.secondary, last, SecondaryRow)), now
+        if self.offset_table.kind is OffsetKind.TOOL:
+            return _tables(_restore_rows(book.tools, last, ToolRow), book.secondary), now
+        return _tables(book.tools, _restore_rows(book.secondary, last, SecondaryRow)), now
 
-    def close(self) -> None:
+    def close_view(self) -> None:
         """Show the table again."""
-        self.open = self.near = self.of_part = False
-        if self.effect is not None:
-            self.effect.forget()
+        self.is_open = self.is_close_up = self.is_part_shown = False
+        if self.offset_effect is not None:
+            self.offset_effect.clear()
 
     @property
-    def pictures(self) -> Compared | None:
+    def compared_paths(self) -> ComparedPaths | None:
         """The paths to draw now. None while the worker is drawing."""
-        effect = self.effect
-        return None if not self.open or effect is None or effect.busy else effect.now
+        effect = self.offset_effect
+        return None if not self.is_open or effect is None or effect.is_busy else effect.compared_paths
 
     @property
-    def part(self) -> OtherPart | None:
+    def compared_part(self) -> ComparedPart | None:
         """The part with the old and new offsets. None while the worker is calculating."""
-        effect = self.effect
-        return None if not self.of_part or effect is None or effect.busy else effect.part
+        effect = self.offset_effect
+        return None if not self.is_part_shown or effect is None or effect.is_busy else effect.compared_part
 
-    def _words_of_part(self, effect: Effect) -> str:
-        part = self.part
-        if effect.trouble:
+    def _words_of_part(self, effect: OffsetEffect) -> str:
+        part = self.compared_part
+        if effect.error_text:
             return tr(
                 Message(
                     "PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}. F6: SHOW TABLE",
-                    why=effect.trouble,
+                    why=effect.error_text,
                 )
             )
         if part is None:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
-        if not part.differing:
+        if not part.differing_feature_count:
             return tr("NO DIAMETER OR SHOULDER ON THE PART CHANGES. F6: SHOW TABLE")
-        if part.differing == 1:
+        if part.differing_feature_count == 1:
             return tr("1 PART FEATURE WILL CHANGE. F6: SHOW TABLE")
         words = tr("{count} PART FEATURES WILL CHANGE. F6: SHOW TABLE")
-        return tr(Message(words, count=part.differing))
+        return tr(Message(words, count=part.differing_feature_count))
 
     @property
     def words(self) -> str:
         """The text of the prompt line that describes the view."""
-        effect = self.effect
-        return self._words_of_part(effect) if self.of_part and effect is not None else self._words_of_path()
+        effect = self.offset_effect
+        return (
+            self._words_of_part(effect)
+            if self.is_part_shown and effect is not None
+            else self._words_of_path()
+        )
 
     def _words_of_path(self) -> str:
-        effect, pair = self.effect, self.pictures
-        if effect is not None and effect.trouble:
-            return tr(Message("THE EFFECT CANNOT BE DRAWN: {why}", why=effect.trouble))
+        effect, pair = self.offset_effect, self.compared_paths
+        if effect is not None and effect.error_text:
+            return tr(Message("THE EFFECT CANNOT BE DRAWN: {why}", why=effect.error_text))
         if pair is None:
             return tr("DRAWING THE OLD AND NEW PATHS")
-        if pair.same:
+        if pair.is_equal:
             return tr("THE CHANGE DOES NOT AFFECT THE LOADED PROGRAM. F6: SHOW TABLE")
-        mode = self.table.mode
-        if pair.furthest == float("inf"):
+        mode = self.offset_table.value_mode
+        if pair.largest_distance == float("inf"):
             return tr("THE TWO PATHS HAVE DIFFERENT MOVES. F6: SHOW TABLE")
-        far = f"{length(pair.furthest, mode.metric)} {mode.name}"
-        if not self.near:
+        far = f"{format_length(pair.largest_distance, mode.is_metric)} {mode.name}"
+        if not self.is_close_up:
             text = tr("PATHS DIFFER BY {far} (CIRCLED). F6: CLOSE-UP   ESC: TABLE")
             return tr(Message(text, far=far))
         text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: SHOW TABLE")
-        if effect is not None and effect.compare is not None:
+        if effect is not None and effect.compare_part is not None:
             text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: EFFECT ON THE PART")
         return tr(Message(text, far=far))
 
 
-def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Tables:
-    return Tables(tool_offsets(tools), secondary_offsets(secondary))
+def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> OffsetTables:
+    return OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
 
 
-def _before(rows: Mapping[int, R], changes: tuple[Change, ...], kind: type[R]) -> dict[int, R]:
+def _restore_rows(
+    rows: Mapping[int, OffsetRowT], changes: tuple[OffsetChange, ...], kind: type[OffsetRowT]
+) -> dict[int, OffsetRowT]:
     """Return the rows as they were before these changes."""
     undone = dict(rows)
     for change in changes:

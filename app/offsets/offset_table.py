@@ -10,51 +10,61 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError
 from app.desk.desk import Desk
-from app.desk.pages.sheet import edited, refused
+from app.desk.pages.table_content import edit_text, refused
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, refusal
-from app.offsets.offset_values import TOOL_FIELDS, Mode, heading, shown_value, value_added, value_typed, word
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal
+from app.offsets.offset_values import (
+    TOOL_FIELDS,
+    ValueMode,
+    format_value,
+    make_heading,
+    parse_increment,
+    parse_value,
+    translate_field,
+)
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.store_rows import Kind, SecondaryRow, Sort, ToolRow, Value
-from core.tool_edges import edge_name, edge_number
+from core.store.store_rows import FieldType, FieldValue, OffsetKind, SecondaryRow, ToolRow
+from core.tool_edges import format_edge_name, format_edge_suffix
 
-Proposed = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
+ProposedOffsets = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
 
 
 class OffsetTable(ABC):
     """Base class of the models of offset pages. Each subclass has its own entry method."""
 
-    kind: ClassVar[Kind]
-    clears: ClassVar[str] = ""  # Question before C clears the whole table; empty if C has no function.
-    own_key: str = ""  # A letter with a function on this page, for the number pad.
-    why_cleared: ClassVar[str] = ""  # Reason for the history.
+    kind: ClassVar[OffsetKind]
+    clear_question: ClassVar[str] = (
+        ""  # Question before C clears the whole table; empty if C has no function.
+    )
+    page_key: str = ""  # A letter with a function on this page, for the number pad.
+    clear_reason: ClassVar[str] = ""  # Reason for the history.
     text: str = ""  # The entered text.
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
-        self.history = OffsetHistory(desk, self.kind)
+        self.offset_history = OffsetHistory(desk, self.kind)
 
     @property
-    def book(self) -> OffsetBook:
+    def offset_book(self) -> OffsetBook:
         """The saved offsets."""
-        return self.desk.book
+        return self.desk.offset_book
 
     @property
-    def mode(self) -> Mode:
+    def value_mode(self) -> ValueMode:
         """The control's unit, and whether its X is a diameter."""
-        return self.history.mode
+        return self.offset_history.value_mode
 
     @property
-    def questions(self) -> OffsetQuestions:
+    def offset_questions(self) -> OffsetQuestions:
         """The changes that are confirmed before they take effect."""
-        return OffsetQuestions(self.history)
+        return OffsetQuestions(self.offset_history)
 
     @property
-    def chosen(self) -> int | None:
+    def selected_number(self) -> int | None:
         """The number of the selected row, to which undo applies. None if no row is selected."""
         return None
 
@@ -67,234 +77,253 @@ class OffsetTable(ABC):
 
     @property
     @abstractmethod
-    def question(self) -> str:
+    def question_text(self) -> str:
         """The question that the operator must answer now."""
 
     @property
-    def is_writing(self) -> bool:
+    def is_editing_text(self) -> bool:
         """Whether a text that accepts letters is being edited."""
         return False
 
     @property
-    def entered(self) -> str:
+    def entered_text(self) -> str:
         """The entered text, as the entry line shows it."""
         return self.text
 
     @property
     @abstractmethod
-    def old_to_new(self) -> str:
+    def change_text(self) -> str:
         """The change that is being entered, or else the last change."""
 
     @property
     @abstractmethod
-    def foot(self) -> str:
+    def footer_text(self) -> str:
         """The hint about other keys."""
 
     @abstractmethod
-    def hint(self, snapshot: Snapshot) -> str:
+    def make_hint(self, snapshot: Snapshot) -> str:
         """Return how a value is entered, or from when it will apply, for the prompt line."""
 
     @abstractmethod
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered."""
 
     @abstractmethod
-    def enter_key(self, key: str) -> bool:
+    def handle_entry_key(self, key: str) -> bool:
         """Handle a key of the entry. Return False if the key has no meaning here."""
 
     @abstractmethod
-    def take_back(self) -> bool:
+    def cancel_entry(self) -> bool:
         """Discard the entry and show this. Return False if nothing was entered."""
 
     @abstractmethod
-    def drop(self) -> None:
+    def discard_entry(self) -> None:
         """Discard the entry."""
 
-    def proposed(self) -> Proposed:
+    def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the tool and secondary offsets as they would be with the present entry."""
-        return self.book.tools, self.book.secondary
+        return self.offset_book.tools, self.offset_book.secondary
 
     # --- conditions: each returns the reason for a refusal, or an empty text --------------------------
 
     @property
-    def corrects(self) -> bool:
+    def is_correction(self) -> bool:
         """Whether the entry is a correction, which may be made while parts run."""
         return True
 
-    def barred(self, snapshot: Snapshot, *, correction: bool) -> str:
+    def find_refusal(self, snapshot: Snapshot, *, is_correction: bool) -> str:
         """Return why the table cannot be changed now. Empty if it can."""
-        return self.book.locked or refusal(snapshot, correction=correction)
+        return self.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=is_correction)
 
-    def undo_barred(self) -> str:
+    def find_undo_refusal(self) -> str:
         """Return why the last change cannot be undone now. Empty if it can."""
-        return self.barred(self.desk.snapshot(), correction=self.kind is Kind.SECONDARY)
+        return self.find_refusal(self.desk.read_snapshot(), is_correction=self.kind is OffsetKind.SECONDARY)
 
     # --- the page ------------------------------------------------------------------------------------
 
-    def prompt(self, snapshot: Snapshot) -> str:
+    def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the page's prompt."""
-        if why := self.barred(snapshot, correction=self.corrects):
+        if why := self.find_refusal(snapshot, is_correction=self.is_correction):
             return why
-        if self.history.listed is not None:
+        if self.offset_history.listed_changes is not None:
             return tr("PAGE UP, PAGE DOWN: SCROLL   F5 OR ESC: CLOSE HISTORY")
-        return self.hint(snapshot)
+        return self.make_hint(snapshot)
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Update the unit of the control, and report saved changes; called once a frame."""
-        self.history.look(snapshot)
+        self.offset_history.update(snapshot)
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Return False to leave the key to the window."""
-        if key in {"c", "C"} and self.clears:
-            self.clear()
+        if key in {"c", "C"} and self.clear_question:
+            self.clear_table()
             return True
-        return self.enter_key(key)
+        return self.handle_entry_key(key)
 
-    def type_text(self, key: str, longest: int = LONGEST) -> None:
+    def edit_entry(self, key: str, max_length: int = MAX_LENGTH) -> None:
         """Edit the entered text by one key."""
-        self.text = edited(self.text, key, longest)
+        self.text = edit_text(self.text, key, max_length)
 
-    def undo(self) -> None:
+    def handle_undo(self) -> None:
         """Discard the entry, or else ask whether the last change of the selected row is undone."""
-        why = self.undo_barred()
-        if why or not self.take_back():
-            self.history.answer(why or self.questions.undo(self.kind, self.chosen))
+        why = self.find_undo_refusal()
+        if why or not self.cancel_entry():
+            self.offset_history.show_refusal(
+                why or self.offset_questions.ask_undo(self.kind, self.selected_number)
+            )
 
-    def clear(self) -> None:
+    def clear_table(self) -> None:
         """Handle C: clear the whole table after the operator confirms."""
-        if why := self.barred(self.desk.snapshot(), correction=False):
+        if why := self.find_refusal(self.desk.read_snapshot(), is_correction=False):
             self.desk.say(why)
         else:
-            self.desk.ask(tr(self.clears), self._clear_all)
+            self.desk.ask_operator(tr(self.clear_question), self._clear_all)
 
     def _clear_all(self) -> None:
-        why = self.barred(self.desk.snapshot(), correction=False)
-        self.history.answer(why or self.book.clear(self.kind, self.why_cleared))
+        why = self.find_refusal(self.desk.read_snapshot(), is_correction=False)
+        self.offset_history.show_refusal(why or self.offset_book.clear_table(self.kind, self.clear_reason))
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Handle Esc: close the history, a question or the entry. Return False if nothing was open."""
-        if self.history.listed is not None:
-            self.history.listed = None
-        elif self.desk.asked:
-            self.desk.clear()
+        if self.offset_history.listed_changes is not None:
+            self.offset_history.listed_changes = None
+        elif self.desk.confirm_key:
+            self.desk.clear_prompt_line()
         else:
-            return self.take_back()
+            return self.cancel_entry()
         return True
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Ignore the changes that were made before the page opened."""
-        self.history.opened()
+        self.offset_history.on_open()
 
-    def leave(self) -> None:
+    def on_close(self) -> None:
         """Discard unfinished entries before the page closes."""
-        self.drop()
-        self.desk.clear()
-        self.history.listed = None
+        self.discard_entry()
+        self.desk.clear_prompt_line()
+        self.offset_history.listed_changes = None
 
 
 @dataclass(slots=True)
-class NewTool:
+class IncompleteTool:
     """X or Z of a tool that is not set yet. It is saved only with the other value.
 
     A tool with half an offset could run into the part.
     """
 
-    number: int = 0
-    values: dict[str, Value] = field(default_factory=dict)
-    tip: float | None = None  # X of the tip relative to part zero at the touch-off in mm.
+    tool_number: int = 0
+    known_values: dict[str, FieldValue] = field(default_factory=dict)
+    tip_x_mm: float | None = None  # X of the tip relative to part zero at the touch-off in mm.
 
-    def add(self, number: int, name: str, value: Value) -> dict[str, Value]:
+    def add_value(self, number: int, name: str, value: FieldValue) -> dict[str, FieldValue]:
         """Add one of the two values, and return the values that are known."""
-        if number != self.number:
-            self.drop()
-        self.values = {**self.values, name: value}
-        self.number = number
-        return self.values
+        if number != self.tool_number:
+            self.discard()
+        self.known_values = {**self.known_values, name: value}
+        self.tool_number = number
+        return self.known_values
 
-    def drop(self) -> None:
+    def discard(self) -> None:
         """Discard the values."""
-        self.number, self.values, self.tip = 0, {}, None
+        self.tool_number, self.known_values, self.tip_x_mm = 0, {}, None
 
     @property
-    def missing(self) -> str:
+    def missing_axis(self) -> str:
         """The axis whose value is still missing."""
-        return "x" if "z" in self.values else "z"
+        return "x" if "z" in self.known_values else "z"
 
 
 @dataclass(slots=True)
-class ToolFields:
+class ToolFieldEditor:
     """Saves single fields of tools, for F8 and the Jog page.
 
     Each method returns why it was rejected, or an empty text.
     """
 
-    history: OffsetHistory
-    new: NewTool = field(default_factory=NewTool)
+    offset_history: OffsetHistory
+    incomplete_tool: IncompleteTool = field(default_factory=IncompleteTool)
 
-    def never_set(self, number: int) -> str:
+    def describe_unset_tool(self, number: int) -> str:
         """Return the message that this tool is not set."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
-        return tr(Message(text, number=edge_number(number)))
+        return tr(Message(text, number=format_edge_suffix(number)))
 
-    def save(self, number: int, name: str, text: str, *, adding: bool = False) -> str:
+    def save_field(self, number: int, name: str, text: str, *, is_increment: bool = False) -> str:
         """Set a field to the entered value, or add the value to it.
 
         Raises EntryError for an invalid value.
         """
-        mode, row = self.history.mode, self.history.book.tools.get(number)
+        mode, row = self.offset_history.value_mode, self.offset_history.offset_book.tools.get(number)
         if row is None:
-            return self._first(number, name, value_typed(name, text, mode))
-        value = value_added(name, row, text, mode) if adding else value_typed(name, text, mode)
+            return self._save_first_value(number, name, parse_value(name, text, mode))
+        value = parse_increment(name, row, text, mode) if is_increment else parse_value(name, text, mode)
         if value == getattr(row, name):
-            self.history.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(number))))
+            self.offset_history.desk.say(
+                tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(number)))
+            )
             return ""
-        typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{text.strip()}"
-        return OffsetQuestions(self.history).change(Kind.TOOL, number, {name: value}, typed)
+        typed = (
+            f"{'MM ' if mode.is_metric else ''}{translate_field(name)} "
+            f"{'+ ' if is_increment else ''}{text.strip()}"
+        )
+        return OffsetQuestions(self.offset_history).change_fields(
+            OffsetKind.TOOL, number, {name: value}, typed
+        )
 
-    def _first(self, number: int, name: str, value: Value) -> str:
+    def _save_first_value(self, number: int, name: str, value: FieldValue) -> str:
         """Save X and Z of a new tool when both are known."""
         if name not in {"x", "z"}:
-            return self.never_set(number)
-        values = self.new.add(number, name, value)
+            return self.describe_unset_tool(number)
+        values = self.incomplete_tool.add_value(number, name, value)
         if len(values) < 2:
             text = tr("NOW ENTER {axis}. T{number} IS SET WHEN BOTH X AND Z ARE ENTERED")
-            self.history.desk.say(tr(Message(text, axis=word(self.new.missing), number=edge_number(number))))
+            self.offset_history.desk.say(
+                tr(
+                    Message(
+                        text,
+                        axis=translate_field(self.incomplete_tool.missing_axis),
+                        number=format_edge_suffix(number),
+                    )
+                )
+            )
             return ""
-        why = OffsetQuestions(self.history).change(Kind.TOOL, number, values, tr("manual entry"))
+        why = OffsetQuestions(self.offset_history).change_fields(
+            OffsetKind.TOOL, number, values, tr("manual entry")
+        )
         if not why:
-            self.new.drop()
+            self.incomplete_tool.discard()
         return why
 
-    def master(self, number: int) -> str:
+    def ask_master(self, number: int) -> str:
         """Ask whether this tool becomes the master, or whether no tool is if it is the master now."""
-        if number not in self.history.book.tools:
-            return self.never_set(number)
-        return OffsetQuestions(self.history).choose_master(number)
+        if number not in self.offset_history.offset_book.tools:
+            return self.describe_unset_tool(number)
+        return OffsetQuestions(self.offset_history).ask_master(number)
 
 
-class ToolEntry(OffsetTable):
+class ToolFieldTable(OffsetTable):
     """A tool table with a field under the cursor and its entered text.
 
     A text field accepts letters after Enter has opened it.
     """
 
-    to_write: ClassVar[str]  # Message for a letter before the text is open.
-    writing = False  # A text is being edited.
+    text_hint: ClassVar[str]  # Message for a letter before the text is open.
+    is_text_open = False  # A text is being edited.
 
     @property
-    def number(self) -> int:
+    def tool_number(self) -> int:
         """The tool that the tool pages have selected."""
-        return self.book.at
+        return self.offset_book.at
 
     @property
-    def chosen(self) -> int | None:
+    def selected_number(self) -> int | None:
         """The selected tool, to which undo applies."""
-        return self.number
+        return self.tool_number
 
     @property
-    def tool(self) -> ToolRow | None:
+    def tool_row(self) -> ToolRow | None:
         """The offset of the selected tool. None if the tool was never set."""
-        return self.book.tools.get(self.number)
+        return self.offset_book.tools.get(self.tool_number)
 
     @property
     @abstractmethod
@@ -303,96 +332,96 @@ class ToolEntry(OffsetTable):
 
     @property
     @abstractmethod
-    def value_before(self) -> str:
+    def stored_value_text(self) -> str:
         """The saved value of the field as text."""
 
-    def cell_barred(self) -> str:
+    def find_cell_refusal(self) -> str:
         """Return why the field under the cursor cannot be changed now. Empty if it can."""
-        return self.barred(self.desk.snapshot(), correction=self.corrects)
+        return self.find_refusal(self.desk.read_snapshot(), is_correction=self.is_correction)
 
     @property
-    def is_text(self) -> bool:
+    def accepts_any_text(self) -> bool:
         """Whether the field accepts any text, which Enter opens."""
         field = TOOL_FIELDS[self.name]
-        return field.sort is Sort.TEXT and not field.choices
+        return field.field_type is FieldType.TEXT and not field.choices
 
     @property
-    def question(self) -> str:
+    def question_text(self) -> str:
         """The tool and the field under the cursor."""
-        return f"{edge_name(self.number)}  {heading(self.name, self.mode)}?"
+        return f"{format_edge_name(self.tool_number)}  {make_heading(self.name, self.value_mode)}?"
 
     @property
-    def old_to_new(self) -> str:
+    def change_text(self) -> str:
         """The field's old and entered value, or else the last change."""
-        if not (self.text or self.writing):
-            return self.history.last_in_words
+        if not (self.text or self.is_text_open):
+            return self.offset_history.last_change_text
         try:
-            new = shown_value(self.name, value_typed(self.name, self.text, self.mode), self.mode)
+            new = format_value(self.name, parse_value(self.name, self.text, self.value_mode), self.value_mode)
         except EntryError:
             new = "…"  # An incomplete expression is not an error yet.
-        return f"{self.value_before}  →  {new}"
+        return f"{self.stored_value_text}  →  {new}"
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered: number characters, or any character in an open text."""
-        return self.writing or key in CHARACTERS
+        return self.is_text_open or key in EXPRESSION_CHARACTERS
 
-    def enter_key(self, key: str) -> bool:
+    def handle_entry_key(self, key: str) -> bool:
         """Handle Enter and text keys. Subclasses handle the keys that move the cursor."""
         if key == "Enter":
-            self.enter()
+            self.handle_enter()
         elif key in {"Back", "Delete"}:
-            self.type_text(key)
-        elif len(key) == 1 and self.takes(key):
+            self.edit_entry(key)
+        elif len(key) == 1 and self.accepts_key(key):
             self._add(key)
         else:
             return False
         return True
 
     @abstractmethod
-    def enter(self) -> None:
+    def handle_enter(self) -> None:
         """Handle Enter on the field."""
 
     def _add(self, key: str) -> None:
-        if self.is_text and not self.writing:
-            self.desk.say(tr(self.to_write))
+        if self.accepts_any_text and not self.is_text_open:
+            self.desk.say(tr(self.text_hint))
             return
         if not self.text:
-            self.desk.clear()
-        self.type_text(key, int(TOOL_FIELDS[self.name].high) if self.writing else LONGEST)
+            self.desk.clear_prompt_line()
+        self.edit_entry(key, int(TOOL_FIELDS[self.name].maximum) if self.is_text_open else MAX_LENGTH)
 
-    def left_open(self) -> bool:
+    def is_entry_unfinished(self) -> bool:
         """Return whether an unfinished entry prevents moving the cursor, and show this."""
-        if self.text or self.writing:
+        if self.text or self.is_text_open:
             self.desk.say(tr("ENTER: SET   ESC: CANCEL"))
-        return bool(self.text or self.writing)
+        return bool(self.text or self.is_text_open)
 
-    def store(self, save: Callable[[], str]) -> bool:
+    def save_field(self, save_value: Callable[[], str]) -> bool:
         """Save the field with ``save``. Show why it was rejected; the text then remains for correction."""
-        barred = self.cell_barred()
+        barred = self.find_cell_refusal()
         try:
-            why = barred or save()
+            why = barred or save_value()
         except EntryError as error:
             why = tr(Message("REJECTED: {why}", why=error))
         if why:
             self.text = self.text if barred else refused(self.text)
             self.desk.say(why)
             return False
-        self.text, self.writing = "", False
+        self.text, self.is_text_open = "", False
         return True
 
     @property
-    def entering(self) -> bool:
+    def has_entry(self) -> bool:
         """Whether there is an entry that Esc can discard."""
-        return bool(self.text or self.writing)
+        return bool(self.text or self.is_text_open)
 
-    def take_back(self) -> bool:
+    def cancel_entry(self) -> bool:
         """Discard the entry or close an open text. Return False if there is neither."""
-        if not self.entering:
+        if not self.has_entry:
             return False
-        self.drop()
-        self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
+        self.discard_entry()
+        self.desk.say(tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(self.tool_number))))
         return True
 
-    def drop(self) -> None:
+    def discard_entry(self) -> None:
         """Discard the entry."""
-        self.text, self.writing = "", False
+        self.text, self.is_text_open = "", False

@@ -8,74 +8,77 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.desk.arithmetic import EntryError, value_of
+from app.desk.arithmetic import EntryError, evaluate_expression
 from app.desk.status import formats
-from app.desk.status.formats import MINUS, MM_PER_INCH
+from app.desk.status.formats import MINUS_SIGN, MM_PER_INCH
 from app.desk.translation import tr
 from core.message import Message
 from core.store.store_rows import (
-    FIELDS,
-    Field,
-    Kind,
+    FIELDS_BY_KIND,
+    FieldType,
+    FieldValue,
     MillRow,
+    OffsetKind,
+    OffsetRow,
     PresetRow,
-    Row,
+    RowField,
     SecondaryRow,
     ShapeRow,
-    Sort,
     ToolRow,
-    Value,
     ZeroRow,
 )
 
-TOOL_FIELDS = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}  # Fields of a tool's offset and of its shape.
-ZERO_PLACES = 3
+TOOL_FIELDS = {
+    **FIELDS_BY_KIND[OffsetKind.TOOL],
+    **FIELDS_BY_KIND[OffsetKind.SHAPE],
+}  # Fields of a tool's offset and of its shape.
+ZERO_OFFSET_DECIMALS = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Mode:
+class ValueMode:
     """The control's unit, and whether X is a diameter, from one snapshot."""
 
-    metric: bool = False
-    diameter: bool = False
+    is_metric: bool = False
+    is_diameter: bool = False
 
     @property
-    def unit(self) -> float:
+    def unit_mm(self) -> float:
         """The number of millimeters in one unit of an entry."""
-        return 1.0 if self.metric else MM_PER_INCH
+        return 1.0 if self.is_metric else MM_PER_INCH
 
     @property
     def name(self) -> str:
         """The name of the unit in messages."""
-        return "mm" if self.metric else "in"
+        return "mm" if self.is_metric else "in"
 
 
-UNKNOWN = "?"  # Replaces a value that could not be read.
+UNKNOWN_VALUE = "?"  # Replaces a value that could not be read.
 
 
-def not_set(*, unread: bool = False) -> str:
+def describe_unset(*, is_unread: bool = False) -> str:
     """Return the text for an offset that was never entered, or that could not be read."""
-    return tr("unreadable") if unread else tr("not set")
+    return tr("unreadable") if is_unread else tr("not set")
 
 
-def signed(mm: float, metric: bool) -> str:
+def format_signed(mm: float, metric: bool) -> str:
     """Return a length in mm as text with a sign, also a plus, because an offset differs from a dimension."""
-    figure = formats.length(mm, metric)
-    return figure if figure.startswith(MINUS) else f"+{figure}"
+    figure = formats.format_length(mm, metric)
+    return figure if figure.startswith(MINUS_SIGN) else f"+{figure}"
 
 
-def signed_zero_offset(value: float) -> str:
+def format_zero_offset(value: float) -> str:
     """Return a zero offset in mm or degrees as text with a sign."""
-    figure = formats.fixed(value, ZERO_PLACES)
+    figure = formats.format_fixed(value, ZERO_OFFSET_DECIMALS)
     return figure if value < 0 and figure[:1] not in "0123456789" else f"+{figure}"
 
 
-def to_mm(value: float, metric: bool) -> float:
+def convert_to_mm(value: float, metric: bool) -> float:
     """Return an entered length in mm, rounded in its own unit so that it is displayed as entered."""
     return round(value, 10) * (1.0 if metric else MM_PER_INCH)
 
 
-def added(mm: float, value: float, metric: bool) -> float:
+def add_correction(mm: float, value: float, metric: bool) -> float:
     """Return ``mm`` plus an entered correction in mm.
 
     The sum is rounded in the unit of the entry, so that ten times .0005 is .005.
@@ -84,7 +87,7 @@ def added(mm: float, value: float, metric: bool) -> float:
     return round(mm / unit + value, 10) * unit
 
 
-def out_of_range(field: str, value: str, unit: str, low: float, high: float) -> str:
+def describe_range_error(field: str, value: str, unit: str, low: float, high: float) -> str:
     """Return the message for a value out of its range, in the unit of the entry."""
     text = tr("{field} would become {value} {unit}; allowed range is {low}…{high}")
     return tr(Message(text, field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}"))
@@ -93,56 +96,64 @@ def out_of_range(field: str, value: str, unit: str, low: float, high: float) -> 
 # =
 
 
-def in_words(offset: Row | None, mode: Mode) -> str:
+def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
     """Return an offset in one line. X of a tool follows the control's mode; other X values are radii."""
     if offset is None:
-        return not_set()
+        return describe_unset()
     if isinstance(offset, ToolRow):
-        return f"{_pair(offset.x, offset.z, mode.metric, mode.diameter)}{_more(offset, mode)}"
+        return (
+            f"{_pair(offset.x, offset.z, mode.is_metric, mode.is_diameter)}"
+            f"{_format_more_fields(offset, mode)}"
+        )
     if isinstance(offset, SecondaryRow):
         x, z, r = offset
-        return f"X {signed(x, mode.metric)}  Z {signed(z, mode.metric)}  R {formats.length(r, mode.metric)}"
+        return (
+            f"X {format_signed(x, mode.is_metric)}  Z {format_signed(z, mode.is_metric)}  R "
+            f"{formats.format_length(r, mode.is_metric)}"
+        )
     if isinstance(offset, ShapeRow):
-        return _shape_in_words(offset, mode)
+        return _format_shape(offset, mode)
     if isinstance(offset, ZeroRow):
         both = zip("XZC", offset, strict=True)
-        return "  ".join(f"{name} {signed_zero_offset(value)}" for name, value in both)
-    return stated_fields(offset)
+        return "  ".join(f"{name} {format_zero_offset(value)}" for name, value in both)
+    return format_set_fields(offset)
 
 
-def stated_fields(row: MillRow | PresetRow) -> str:
+def format_set_fields(row: MillRow | PresetRow) -> str:
     """Return the fields of a mill's tool or preset that have values, with the control's names."""
-    fields = FIELDS[Kind.MILL_TOOL if isinstance(row, MillRow) else Kind.PRESET]
-    values: tuple[Value, ...] = tuple(row)
+    fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillRow) else OffsetKind.PRESET]
+    values: tuple[FieldValue, ...] = tuple(row)
     told = [
-        field.word if field.sort is Sort.FLAG else f"{field.word} {cell_text(field, value)}"
+        field.label if field.field_type is FieldType.BOOLEAN else f"{field.label} {format_cell(field, value)}"
         for field, value in zip(fields.values(), values, strict=True)
         if value or field.name in {"x", "y", "z", "rotation"}
     ]
-    return "  ".join(told) or formats.NOTHING
+    return "  ".join(told) or formats.NO_VALUE
 
 
-def cell_text(field: Field, value: Value) -> str:
+def format_cell(field: RowField, value: FieldValue) -> str:
     """Return a value as text in mm, degrees or minutes, for a table of a mill."""
     if isinstance(value, str):
         return value
-    if field.sort is Sort.FLAG:
-        return field.word if value else formats.NOTHING
-    if field.sort in {Sort.WHOLE, Sort.MINUTES}:
+    if field.field_type is FieldType.BOOLEAN:
+        return field.label if value else formats.NO_VALUE
+    if field.field_type in {FieldType.INTEGER, FieldType.MINUTES}:
         return f"{value:g}"
-    return signed_zero_offset(value) if field.low < 0 else formats.fixed(value, ZERO_PLACES)
+    return (
+        format_zero_offset(value) if field.minimum < 0 else formats.format_fixed(value, ZERO_OFFSET_DECIMALS)
+    )
 
 
 def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
     mark = "Ø" if diameter else ""
-    return f"X{mark} {signed(2 * x if diameter else x, metric)}  Z {signed(z, metric)}"
+    return f"X{mark} {format_signed(2 * x if diameter else x, metric)}  Z {format_signed(z, metric)}"
 
 
-def _more(tool: ToolRow, mode: Mode) -> str:
+def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
     """Return the other values of a tool, if they are set."""
-    parts = [f"  R {formats.length(tool.nose_radius, mode.metric)}"]
+    parts = [f"  R {formats.format_length(tool.nose_radius, mode.is_metric)}"]
     if tool.wear_x or tool.wear_z:
-        parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.metric, True)}")
+        parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.is_metric, True)}")
     if tool.quadrant:
         parts.append(f"  {tr('TIP')} {tool.quadrant}")
     if tool.master:
@@ -150,110 +161,121 @@ def _more(tool: ToolRow, mode: Mode) -> str:
     return "".join(parts) + (f"  {tool.remark}" if tool.remark else "")
 
 
-def _shape_in_words(shape: ShapeRow, mode: Mode) -> str:
+def _format_shape(shape: ShapeRow, mode: ValueMode) -> str:
     """Return the kind and hand of a tool shape, and its specified values."""
     stated = [
-        f"{word(name)} {shown_value(name, value, mode)}"
+        f"{translate_field(name)} {format_value(name, value, mode)}"
         for name, value in shape._asdict().items()
         if value and not TOOL_FIELDS[name].choices
     ]
-    return "  ".join([choice_word(shape.kind), choice_word(shape.hand), *stated])
+    return "  ".join([translate_choice(shape.kind), translate_choice(shape.hand), *stated])
 
 
-def from_to(old: Row | None, new: Row | None, mode: Mode) -> str:
+def format_change(old: OffsetRow | None, new: OffsetRow | None, mode: ValueMode) -> str:
     """Return an offset before and after a change.
 
     For a tool that is set before and after, only the changed fields are included.
     """
     if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
-        return f"{in_words(old, mode)}  →  {in_words(new, mode)}"
+        return f"{format_offset(old, mode)}  →  {format_offset(new, mode)}"
     changed = [name for name in old._fields if getattr(old, name) != getattr(new, name)]
     return "   ".join(
-        f"{word(name)} {_in_change(name, old, mode)} → {_in_change(name, new, mode)}" for name in changed
+        f"{translate_field(name)} {_in_change(name, old, mode)} → {_in_change(name, new, mode)}"
+        for name in changed
     )
 
 
-def _in_change(name: str, row: ToolRow | ShapeRow, mode: Mode) -> str:
-    if TOOL_FIELDS[name].sort is Sort.FLAG:
+def _in_change(name: str, row: ToolRow | ShapeRow, mode: ValueMode) -> str:
+    if TOOL_FIELDS[name].field_type is FieldType.BOOLEAN:
         return tr("yes") if getattr(row, name) else tr("no")
-    return shown_value(name, getattr(row, name), mode) or tr("none")
+    return format_value(name, getattr(row, name), mode) or tr("none")
 
 
 # --- a field of a tool -----------------------------------------------------------------------------------
 
 
-def value_typed(name: str, text: str, mode: Mode) -> Value:
+def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
     """Return the field value for an entered text, in mm for lengths. Raises EntryError with the reason."""
-    field = TOOL_FIELDS[name]
-    if field.sort is Sort.TEXT:
-        value: Value = text.strip()
-    elif field.sort is Sort.FLAG and text in {"yes", "no"}:
+    field = TOOL_FIELDS[field_name]
+    if field.field_type is FieldType.TEXT:
+        value: FieldValue = text.strip()
+    elif field.field_type is FieldType.BOOLEAN and text in {"yes", "no"}:
         value = text == "yes"
-    elif field.sort is Sort.LENGTH:
-        value = to_mm(value_of(text) / _doubled(name, mode), mode.metric)
+    elif field.field_type is FieldType.LENGTH:
+        value = convert_to_mm(evaluate_expression(text) / _find_factor(field_name, mode), mode.is_metric)
     else:
-        number = value_of(text)
+        number = evaluate_expression(text)
         value = int(number) if number.is_integer() else number
     return _taken(field, value, mode)
 
 
-def value_added(name: str, old: ToolRow, text: str, mode: Mode) -> Value:
+def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMode) -> FieldValue:
     """Return the length in mm after adding an entered text. Raises EntryError with the reason."""
-    field, before = TOOL_FIELDS[name], getattr(old, name)
-    if field.sort is not Sort.LENGTH:
+    field, before = TOOL_FIELDS[field_name], getattr(old_row, field_name)
+    if field.field_type is not FieldType.LENGTH:
         raise EntryError(
             tr(
                 Message(
-                    "{field} does not accept an added value; press Enter to set the value", field=field.word
+                    "{field} does not accept an added value; press Enter to set the value", field=field.label
                 )
             )
         )
-    return _taken(field, added(before, value_of(text) / _doubled(name, mode), mode.metric), mode)
+    return _taken(
+        field,
+        add_correction(before, evaluate_expression(text) / _find_factor(field_name, mode), mode.is_metric),
+        mode,
+    )
 
 
-def _taken(field: Field, value: Value, mode: Mode) -> Value:
-    if field.takes(value):
+def _taken(field: RowField, value: FieldValue, mode: ValueMode) -> FieldValue:
+    if field.accepts(value):
         return value
-    if field.sort is not Sort.LENGTH:
-        raise EntryError(tr(Message("{field} must be {range}", field=field.word, range=field.range)))
-    factor = _doubled(field.name, mode) / mode.unit
-    figure = shown_value(field.name, value, mode)
-    raise EntryError(out_of_range(field.word, figure, mode.name, field.low * factor, field.high * factor))
+    if field.field_type is not FieldType.LENGTH:
+        raise EntryError(tr(Message("{field} must be {range}", field=field.label, range=field.range_text)))
+    factor = _find_factor(field.name, mode) / mode.unit_mm
+    figure = format_value(field.name, value, mode)
+    raise EntryError(
+        describe_range_error(field.label, figure, mode.name, field.minimum * factor, field.maximum * factor)
+    )
 
 
-def _doubled(name: str, mode: Mode) -> float:
+def _find_factor(name: str, mode: ValueMode) -> float:
     """Return the factor between an entered X and the stored radius.
 
     Wear is always a diameter, because it is measured on the part. The control's mode may be radius between
     two parts.
     """
-    return 2.0 if name == "wear_x" or (name == "x" and mode.diameter) else 1.0
+    return 2.0 if name == "wear_x" or (name == "x" and mode.is_diameter) else 1.0
 
 
-def shown_value(name: str, value: Value, mode: Mode) -> str:
+def format_value(name: str, value: FieldValue, mode: ValueMode) -> str:
     """Return a field value as text for the operator."""
     field = TOOL_FIELDS[name]
     if field.choices:
-        return choice_word(str(value))
-    if field.sort is Sort.FLAG:
+        return translate_choice(str(value))
+    if field.field_type is FieldType.BOOLEAN:
         words = (tr("MASTER"), "") if name == "master" else (tr("YES"), tr("NO"))
         return words[0] if value else words[1]
-    if isinstance(value, str) or field.sort is Sort.WHOLE:
+    if isinstance(value, str) or field.field_type is FieldType.INTEGER:
         return str(value)
-    if field.sort is Sort.ANGLE:
+    if field.field_type is FieldType.ANGLE:
         return f"{value:g}°"
-    mm = value * _doubled(name, mode)
-    return signed(mm, mode.metric) if field.low < 0.0 else formats.length(mm, mode.metric)
+    mm = value * _find_factor(name, mode)
+    return (
+        format_signed(mm, mode.is_metric)
+        if field.minimum < 0.0
+        else formats.format_length(mm, mode.is_metric)
+    )
 
 
-def marked(name: str, mode: Mode) -> str:
+def find_diameter_mark(name: str, mode: ValueMode) -> str:
     """Return Ø or R for a field that is an X value, else an empty text."""
     if name not in {"x", "wear_x"}:
         return ""
-    return "Ø" if _doubled(name, mode) > 1.0 else "R"
+    return "Ø" if _find_factor(name, mode) > 1.0 else "R"
 
 
-def word(name: str) -> str:
+def translate_field(name: str) -> str:
     """Return the translated name of a field."""
     words = {
         "x": tr("X"),
@@ -282,7 +304,7 @@ def word(name: str) -> str:
     return words[name]
 
 
-def choice_word(value: str) -> str:
+def translate_choice(value: str) -> str:
     """Return the translated name of a tool kind or hand."""
     words = {
         "turning": tr("TURNING"),
@@ -303,7 +325,7 @@ def choice_word(value: str) -> str:
     return words.get(value, value)
 
 
-def heading(name: str, mode: Mode) -> str:
+def make_heading(name: str, mode: ValueMode) -> str:
     """Return the translated name of a field, with Ø or R for an X value."""
-    mark = marked(name, mode)
-    return f"{word(name)} {mark}" if mark else word(name)
+    mark = find_diameter_mark(name, mode)
+    return f"{translate_field(name)} {mark}" if mark else translate_field(name)

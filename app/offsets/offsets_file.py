@@ -12,48 +12,54 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.desk.toml_file import read_toml, refuse, unknown, unknown_key
+from app.desk.toml_file import describe_unknown_key, make_unknown_key_error, raise_mistakes, read_toml
 from core.message import CodedError, Message
 from core.store.store_rows import (
-    FIELDS,
+    FIELDS_BY_KIND,
     MM_PER_INCH,
-    OFFSETS,
+    OFFSET_NUMBERS,
     ZERO_CODES,
-    Field,
-    Kind,
+    FieldType,
+    FieldValue,
+    OffsetKind,
+    RowField,
     SecondaryRow,
     ShapeRow,
-    Sort,
     ToolRow,
-    Value,
     ZeroRow,
-    with_fields,
+    replace_fields,
 )
-from core.tool_edges import EDGES, edge_key, edge_of, tool_of
+from core.tool_edges import EDGE_NUMBERS, get_edge_number, get_tool_number, make_edge_key
 
 if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
 
-_KINDS = (Kind.TOOL, Kind.SECONDARY)
-_NUMBERS = {
-    Kind.TOOL: ({str(number): number for number in OFFSETS}, "offset numbers are 1…32"),
-    Kind.SECONDARY: ({str(number): number for number in OFFSETS}, "offset numbers are 1…32"),
-    Kind.ZERO: ({str(code): code for code in ZERO_CODES}, ("settable zero offsets are 54…59 (G54 to G59)")),
+_FILE_KINDS = (OffsetKind.TOOL, OffsetKind.SECONDARY)
+_NUMBER_RANGES = {
+    OffsetKind.TOOL: ({str(number): number for number in OFFSET_NUMBERS}, "offset numbers are 1…32"),
+    OffsetKind.SECONDARY: ({str(number): number for number in OFFSET_NUMBERS}, "offset numbers are 1…32"),
+    OffsetKind.ZERO: (
+        {str(code): code for code in ZERO_CODES},
+        ("settable zero offsets are 54…59 (G54 to G59)"),
+    ),
 }
-_EXPECTED = {
-    Sort.LENGTH: "a number in inches",
-    Sort.METRIC: "a number in mm",
-    Sort.ANGLE: "a number in degrees",
-    Sort.WHOLE: "a whole number",
-    Sort.TEXT: "a text",
-    Sort.FLAG: "true or false",
+_EXPECTED_TYPES = {
+    FieldType.LENGTH: "a number in inches",
+    FieldType.METRIC_LENGTH: "a number in mm",
+    FieldType.ANGLE: "a number in degrees",
+    FieldType.INTEGER: "a whole number",
+    FieldType.TEXT: "a text",
+    FieldType.BOOLEAN: "true or false",
 }
-TOOL_KEYS: Mapping[str, Field] = {**FIELDS[Kind.TOOL], **FIELDS[Kind.SHAPE]}
-_EDGE_KEYS = frozenset(f"d{edge}" for edge in EDGES[1:])
-ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
+TOOL_TABLE_KEYS: Mapping[str, RowField] = {
+    **FIELDS_BY_KIND[OffsetKind.TOOL],
+    **FIELDS_BY_KIND[OffsetKind.SHAPE],
+}
+_EDGE_KEYS = frozenset(f"d{edge}" for edge in EDGE_NUMBERS[1:])
+KEY_ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
 
 
-def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
+def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
     """Return the tool, secondary and zero offsets of a file as rows of the store.
 
     A missing key is 0 or empty. A tool with a shape but without X and Z has no offset, because its tip
@@ -61,23 +67,24 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
-    tools = _tools(data, mistakes).placed
+    tools = _tools(data, mistakes).placed_rows
     secondary = {
-        n: with_fields(SecondaryRow(), values) for n, values in _table(data, Kind.SECONDARY, mistakes)
+        n: replace_fields(SecondaryRow(), values)
+        for n, values in _table(data, OffsetKind.SECONDARY, mistakes)
     }
     masters = [f"tool.{n}" for n, row in tools.items() if row.master]
     mistakes += [
         CodedError(
             Message(
                 "[tool.{number}.d{number2}] is an edge of T{number3}, but that tool has no X and Z values",
-                number=tool_of(n),
-                number2=edge_of(n),
-                number3=tool_of(n),
+                number=get_tool_number(n),
+                number2=get_edge_number(n),
+                number3=get_tool_number(n),
             ),
             "edge-without-tool",
         )
         for n in tools
-        if tool_of(n) not in tools
+        if get_tool_number(n) not in tools
     ]
     if len(masters) > 1:
         mistakes.append(
@@ -89,8 +96,10 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
                 "two-masters",
             )
         )
-    zero = {code: with_fields(ZeroRow(), values) for code, values in _table(data, Kind.ZERO, mistakes)}
-    refuse(path, mistakes)
+    zero = {
+        code: replace_fields(ZeroRow(), values) for code, values in _table(data, OffsetKind.ZERO, mistakes)
+    }
+    raise_mistakes(path, mistakes)
     return tools, secondary, zero
 
 
@@ -99,7 +108,7 @@ def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
     data = read_toml(path)
     mistakes = _unknown_tables(data)
     shapes = _tools(data, mistakes).shapes
-    refuse(path, mistakes)
+    raise_mistakes(path, mistakes)
     return shapes
 
 
@@ -112,45 +121,47 @@ def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     data = read_toml(path)
     mistakes = _unknown_tables(data)
     found = _tools(data, mistakes)
-    refuse(path, mistakes)
+    raise_mistakes(path, mistakes)
     if not found.shapes:
         return {}
-    from app.desk.stored_shapes import tool_shapes
+    from app.desk.stored_shapes import make_tool_shapes
 
-    return tool_shapes(found.shapes, found.rows)
+    return make_tool_shapes(found.shapes, found.rows)
 
 
 def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
-    return [unknown_key(key, _KINDS) for key in data if key not in {*_KINDS, Kind.ZERO}]
+    return [
+        make_unknown_key_error(key, _FILE_KINDS) for key in data if key not in {*_FILE_KINDS, OffsetKind.ZERO}
+    ]
 
 
-class _Tools(NamedTuple):
+class _ToolTables(NamedTuple):
     """The tools of a file: all offsets, the offsets with a specified position, and the shapes."""
 
     rows: dict[int, ToolRow]
-    placed: dict[int, ToolRow]
+    placed_rows: dict[int, ToolRow]
     shapes: dict[int, ShapeRow]
 
 
-def _tools(data: dict[str, object], mistakes: list[CodedError]) -> _Tools:
-    found = _Tools({}, {}, {})
-    for number, values in _table(data, Kind.TOOL, mistakes):
-        shape = {name: value for name, value in values.items() if name in FIELDS[Kind.SHAPE]}
+def _tools(data: dict[str, object], mistakes: list[CodedError]) -> _ToolTables:
+    found = _ToolTables({}, {}, {})
+    for number, values in _table(data, OffsetKind.TOOL, mistakes):
+        shape = {name: value for name, value in values.items() if name in FIELDS_BY_KIND[OffsetKind.SHAPE]}
         offset = {name: value for name, value in values.items() if name not in shape}
-        found.rows[number] = with_fields(ToolRow(), offset)
+        found.rows[number] = replace_fields(ToolRow(), offset)
         if not shape or {"x", "z"} & offset.keys():
-            found.placed[number] = found.rows[number]
+            found.placed_rows[number] = found.rows[number]
         if shape:
-            found.shapes[number] = with_fields(ShapeRow(), shape)
+            found.shapes[number] = replace_fields(ShapeRow(), shape)
             mistakes += _shape_mistakes(number, found.shapes[number], found.rows[number])
     return found
 
 
 def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[CodedError]:
-    from app.desk.stored_shapes import row_mistakes
+    from app.desk.stored_shapes import find_mistakes
 
     if not row.kind:
-        kinds = FIELDS[Kind.SHAPE]["kind"].range
+        kinds = FIELDS_BY_KIND[OffsetKind.SHAPE]["kind"].range_text
         text = Message(
             "[tool.{number}] has a shape but no kind; set kind to one of {kinds}",
             number=number,
@@ -158,17 +169,19 @@ def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[Coded
         )
         yield CodedError(text, "no-kind")
         return
-    for wrong in row_mistakes(row, tool):
+    for wrong in find_mistakes(row, tool):
         yield CodedError(
-            Message("tool.{number}.{field}: {wrong}", number=number, field=wrong.field, wrong=wrong.text),
+            Message(
+                "tool.{number}.{field}: {wrong}", number=number, field=wrong.field_name, wrong=wrong.message
+            ),
             "invalid-shape",
         )
 
 
 def _table(
-    data: dict[str, object], kind: Kind, mistakes: list[CodedError]
-) -> Iterator[tuple[int, dict[str, Value]]]:
-    table, (numbers, those) = data.get(kind.value, {}), _NUMBERS[kind]
+    data: dict[str, object], kind: OffsetKind, mistakes: list[CodedError]
+) -> Iterator[tuple[int, dict[str, FieldValue]]]:
+    table, (numbers, those) = data.get(kind.value, {}), _NUMBER_RANGES[kind]
     if not isinstance(table, dict):
         mistakes.append(
             CodedError(
@@ -204,7 +217,7 @@ def _table(
                 )
             )
         else:
-            edges = _edges(entry) if kind is Kind.TOOL else {}
+            edges = _read_edges(entry) if kind is OffsetKind.TOOL else {}
             own = {key: value for key, value in entry.items() if key not in edges}
             if own or not edges:
                 yield numbers[name], _values(own, kind, name, mistakes)
@@ -224,25 +237,27 @@ def _table(
                     )
                     continue
                 yield (
-                    edge_key(numbers[name], int(key[1])),
+                    make_edge_key(numbers[name], int(key[1])),
                     _values(values, kind, Message("{name}.{key}", name=name, key=key), mistakes),
                 )
 
 
-def _edges(entry: dict[str, object]) -> dict[str, object]:
+def _read_edges(entry: dict[str, object]) -> dict[str, object]:
     """Return the further cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by their keys."""
     return {key: value for key, value in entry.items() if key in _EDGE_KEYS}
 
 
-def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[CodedError]) -> dict[str, Value]:
-    known = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
-    values: dict[str, Value] = {}
+def _values(
+    entry: dict[str, object], kind: OffsetKind, name: str, mistakes: list[CodedError]
+) -> dict[str, FieldValue]:
+    known = TOOL_TABLE_KEYS if kind is OffsetKind.TOOL else FIELDS_BY_KIND[kind]
+    values: dict[str, FieldValue] = {}
     for key, value in entry.items():
         where = f"{kind}.{name}.{key}"
-        full_key = ALIASES.get(key, key) if kind is Kind.TOOL else key
+        full_key = KEY_ALIASES.get(key, key) if kind is OffsetKind.TOOL else key
         field = known.get(full_key)
         if field is None:
-            mistakes.append(unknown_key(key, known, f"{kind}.{name}"))
+            mistakes.append(make_unknown_key_error(key, known, f"{kind}.{name}"))
         elif field.name in values:
             mistakes.append(
                 CodedError(
@@ -250,62 +265,63 @@ def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[Code
                         "{place} is specified under two names, {value}; use only one name",
                         place=where,
                         value=" and ".join(
-                            [*(a for a, full in ALIASES.items() if full == full_key), full_key]
+                            [*(a for a, full in KEY_ALIASES.items() if full == full_key), full_key]
                         ),
                     ),
                     "key-twice",
                 )
             )
-        elif mistake := _mistake(where, field, value):
+        elif mistake := _find_mistake(where, field, value):
             mistakes.append(mistake)
         else:
             values[field.name] = _kept(field, value)
     return values
 
 
-def _mistake(where: str, field: Field, value: object) -> CodedError | None:
+def _find_mistake(where: str, field: RowField, value: object) -> CodedError | None:
     """Return the mistake in a value of the file, or None if the value is valid."""
-    if not _fits(field, value):
+    if not _fits_field(field, value):
         return CodedError(
-            Message("{place} must be {expected}", place=where, expected=_EXPECTED[field.sort]), "wrong-type"
+            Message("{place} must be {expected}", place=where, expected=_EXPECTED_TYPES[field.field_type]),
+            "wrong-type",
         )
     if field.choices and isinstance(value, str) and value not in field.choices:
-        word = unknown(value or '""', field.choices)
+        word = describe_unknown_key(value or '""', field.choices)
         return CodedError(Message("{place} = {word}", place=where, word=word), "unknown-word")
-    mistake = out_of_range(where, field, _kept(field, value), value)
+    mistake = find_range_error(where, field, _kept(field, value), value)
     return CodedError(mistake, "out-of-range") if mistake else None
 
 
-def _fits(field: Field, value: object) -> bool:
+def _fits_field(field: RowField, value: object) -> bool:
     """Return whether the TOML type of a value matches the field."""
     if isinstance(value, bool):
-        return field.sort is Sort.FLAG
+        return field.field_type is FieldType.BOOLEAN
     if isinstance(value, str):
-        return field.sort is Sort.TEXT
-    return isinstance(value, int | float) and field.sort not in {Sort.FLAG, Sort.TEXT}
+        return field.field_type is FieldType.TEXT
+    return isinstance(value, int | float) and field.field_type not in {FieldType.BOOLEAN, FieldType.TEXT}
 
 
-def _kept(field: Field, value: object) -> Value:
-    if field.sort is Sort.LENGTH and isinstance(value, int | float):
+def _kept(field: RowField, value: object) -> FieldValue:
+    if field.field_type is FieldType.LENGTH and isinstance(value, int | float):
         return value * MM_PER_INCH
     return value if isinstance(value, int | float | str) else 0.0
 
 
-def shown(value: object) -> str:
+def format_value(value: object) -> str:
     """Return a value as text for an error message."""
     return f"{value:g}" if isinstance(value, int | float) else repr(value)
 
 
-def out_of_range(name: str, field: Field, value: Value, entered: object) -> str:
+def find_range_error(name: str, field: RowField, value: FieldValue, entered_value: object) -> str:
     """Return the message for a value out of its range, or an empty text. Lengths are in mm.
 
-    NaN is always out of range. ``entered`` is the value as it is in the file.
+    NaN is always out of range. ``entered_value`` is the value as it is in the file.
     """
-    if field.takes(value):
+    if field.accepts(value):
         return ""
     return Message(
         "{name} = {value} is out of range; expected {range}",
         name=name,
-        value=shown(entered),
-        range=field.range,
+        value=format_value(entered_value),
+        range=field.range_text,
     )

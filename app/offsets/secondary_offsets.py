@@ -8,22 +8,34 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from app.desk.arithmetic import CHARACTERS, EntryError, value_of
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.sheet import refused
-from app.desk.status.formats import length
+from app.desk.pages.table_content import refused
+from app.desk.status.formats import format_length
 from app.desk.translation import tr
-from app.offsets.offset_changes import counts_from
-from app.offsets.offset_table import OffsetTable, Proposed
-from app.offsets.offset_values import Mode, added, in_words, out_of_range, to_mm
+from app.offsets.offset_changes import describe_start
+from app.offsets.offset_table import OffsetTable, ProposedOffsets
+from app.offsets.offset_values import (
+    ValueMode,
+    add_correction,
+    convert_to_mm,
+    describe_range_error,
+    format_offset,
+)
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.store_rows import OFFSETS, RADIUS_MAX, SECONDARY_REACH, Kind, SecondaryRow
+from core.store.store_rows import (
+    MAX_NOSE_RADIUS_MM,
+    OFFSET_NUMBERS,
+    SECONDARY_OFFSET_LIMIT_MM,
+    OffsetKind,
+    SecondaryRow,
+)
 
-_KEYS = CHARACTERS | {"Back", "Delete", "Enter"}
+_ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter"}
 
 
-class Step(IntEnum):
+class SecondaryOffsetStep(IntEnum):
     """The steps of the dialogue, in order."""
 
     NUMBER = 0
@@ -32,24 +44,28 @@ class Step(IntEnum):
     R = 3
 
 
-def corrected(step: Step, old: float, typed: float, mode: Mode) -> float:
+def correct_value(
+    step: SecondaryOffsetStep, old_value: float, entered_value: float, mode: ValueMode
+) -> float:
     """Return the new value in mm for an entry: X is halved and added, Z is added, R replaces the value."""
-    if step is Step.R:
-        return to_mm(typed, mode.metric)
-    return added(old, typed / 2 if step is Step.X else typed, mode.metric)
+    if step is SecondaryOffsetStep.R:
+        return convert_to_mm(entered_value, mode.is_metric)
+    return add_correction(
+        old_value, entered_value / 2 if step is SecondaryOffsetStep.X else entered_value, mode.is_metric
+    )
 
 
-class SecondaryOffsets(OffsetTable):
+class SecondaryOffsetEntry(OffsetTable):
     """The dialogue with its number, step, entered text and previous answers."""
 
-    kind = Kind.SECONDARY
-    own_key = "C"
-    clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
-    why_cleared = "all offsets cleared with the C key"
+    kind = OffsetKind.SECONDARY
+    page_key = "C"
+    clear_question = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
+    clear_reason = "all offsets cleared with the C key"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.step, self.number = Step.NUMBER, 0
+        self.entry_step, self.offset_number = SecondaryOffsetStep.NUMBER, 0
         self._answers: list[float] = []  # New values of the previous steps in mm.
         self._typed: list[str] = []
 
@@ -59,178 +75,191 @@ class SecondaryOffsets(OffsetTable):
     def heading(self) -> str:
         """The number of the offset that is being entered."""
         which = tr("Secondary offset number:")
-        return f"{which} {self.number}" if self.number else which
+        return f"{which} {self.offset_number}" if self.offset_number else which
 
     @property
-    def question(self) -> str:
+    def question_text(self) -> str:
         """The prompt of this step. All prompts except R are those of the original control."""
         words = (tr("Offset Number?"), tr("X DIAMETER CORRECTION?"), tr("Z CORRECTION?"), tr("R?"))
-        return words[self.step]
+        return words[self.entry_step]
 
     @property
-    def old(self) -> SecondaryRow | None:
+    def present_row(self) -> SecondaryRow | None:
         """The present values of the offset that is being changed. None if it is not set."""
-        return self.book.secondary.get(self.number) if self.number else None
+        return self.offset_book.secondary.get(self.offset_number) if self.offset_number else None
 
     @property
-    def chosen(self) -> int | None:
+    def selected_number(self) -> int | None:
         """The entered number, or None, which means that undo applies to the last change of the table."""
-        return self.number or None
+        return self.offset_number or None
 
     @property
-    def preview(self) -> SecondaryRow | None:
+    def preview_row(self) -> SecondaryRow | None:
         """The offset as it would be with the entered text. None if no number is selected."""
-        if not self.number:
+        if not self.offset_number:
             return None
-        old = self.old or SecondaryRow()
+        old = self.present_row or SecondaryRow()
         new = [*self._answers, *old[len(self._answers) :]]
-        if self.text.strip() and self.step is not Step.NUMBER:
+        if self.text.strip() and self.entry_step is not SecondaryOffsetStep.NUMBER:
             try:
-                at = self.step - 1
-                new[at] = corrected(self.step, old[at], value_of(self.text), self.mode)
+                at = self.entry_step - 1
+                new[at] = correct_value(
+                    self.entry_step, old[at], evaluate_expression(self.text), self.value_mode
+                )
             except EntryError:
                 pass  # An incomplete expression is not an error yet.
         return SecondaryRow(*new)
 
     @property
-    def old_to_new(self) -> str:
+    def change_text(self) -> str:
         """The change that is being entered, or else the last change."""
-        if self.step is Step.NUMBER:
-            return self.history.last_in_words
-        was, new = (in_words(side, self.mode) for side in (self.old, self.preview))
-        return f"D{self.number}   {was}  →  {new}"
+        if self.entry_step is SecondaryOffsetStep.NUMBER:
+            return self.offset_history.last_change_text
+        was, new = (format_offset(side, self.value_mode) for side in (self.present_row, self.preview_row))
+        return f"D{self.offset_number}   {was}  →  {new}"
 
     @property
-    def foot(self) -> str:
+    def footer_text(self) -> str:
         """The hint how to exit and how to clear the table, in the words of the original control."""
         leave = tr("Press Esc to exit offset adjustment screen")
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
-    def hint(self, snapshot: Snapshot) -> str:
+    def make_hint(self, snapshot: Snapshot) -> str:
         """Return how to answer the question, or from when a correction applies."""
-        if self.step is Step.NUMBER and not counts_from(snapshot):
+        if self.entry_step is SecondaryOffsetStep.NUMBER and not describe_start(snapshot):
             return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
-        return counts_from(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE")
+        return describe_start(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE")
 
-    def proposed(self) -> Proposed:
+    def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the offsets as they would be with the present entry."""
-        tools, secondary = super().proposed()
-        preview = self.preview
-        return tools, {**secondary, **({self.number: preview} if preview else {})}
+        tools, secondary = super().make_proposed_offsets()
+        preview = self.preview_row
+        return tools, {**secondary, **({self.offset_number: preview} if preview else {})}
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Update the unit of the control; called once a frame. A change of the unit discards the entry.
 
         X is always a diameter correction. A change of the control's diameter mode therefore has no effect.
         """
-        before = self.mode
-        super().look(snapshot)
-        if self.mode.metric != before.metric and self.step is not Step.NUMBER:
-            self.drop()
+        before = self.value_mode
+        super().update(snapshot)
+        if (
+            self.value_mode.is_metric != before.is_metric
+            and self.entry_step is not SecondaryOffsetStep.NUMBER
+        ):
+            self.discard_entry()
             self.desk.say(tr("CONTROL CHANGED UNITS. NOTHING SAVED. ENTER THE VALUE AGAIN"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered: number characters, or C to clear the table."""
-        return key in CHARACTERS or key == "C"
+        return key in EXPRESSION_CHARACTERS or key == "C"
 
-    def enter_key(self, key: str) -> bool:
+    def handle_entry_key(self, key: str) -> bool:
         """Handle a text key, or Enter to answer the question."""
-        if key not in _KEYS:
+        if key not in _ENTRY_KEYS:
             return False
-        self.desk.clear()
+        self.desk.clear_prompt_line()
         if key == "Enter":
             self._enter()
         else:
-            self.type_text(key)
+            self.edit_entry(key)
         return True
 
-    def choose(self, number: int) -> None:
+    def select_offset(self, number: int) -> None:
         """Select an offset by touch. This is rejected while another offset is being entered."""
-        if self.step is Step.NUMBER:
+        if self.entry_step is SecondaryOffsetStep.NUMBER:
             self.text = str(number)
             self._enter()
         else:
-            self.desk.say(tr(Message("FINISH ENTERING D{number} FIRST, OR PRESS ESC", number=self.number)))
+            self.desk.say(
+                tr(Message("FINISH ENTERING D{number} FIRST, OR PRESS ESC", number=self.offset_number))
+            )
 
-    def clear(self) -> None:
+    def clear_table(self) -> None:
         """Handle C: clear the table, but not while an offset is being entered."""
-        whole = self.barred(self.desk.snapshot(), correction=False)
-        if not whole and self.step is not Step.NUMBER:
+        whole = self.find_refusal(self.desk.read_snapshot(), is_correction=False)
+        if not whole and self.entry_step is not SecondaryOffsetStep.NUMBER:
             self.desk.say(tr("C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST"))
         else:
-            super().clear()
+            super().clear_table()
 
-    def undo(self) -> None:
+    def handle_undo(self) -> None:
         """Ask whether the last change of the entered number is undone, if no value has been entered yet."""
-        if self.step is not Step.X or self.text or self.undo_barred():
-            super().undo()
+        if self.entry_step is not SecondaryOffsetStep.X or self.text or self.find_undo_refusal():
+            super().handle_undo()
             return
-        number = self.number
-        self.drop()
-        self.history.answer(self.questions.undo(self.kind, number))
+        number = self.offset_number
+        self.discard_entry()
+        self.offset_history.show_refusal(self.offset_questions.ask_undo(self.kind, number))
 
-    def take_back(self) -> bool:
+    def cancel_entry(self) -> bool:
         """Discard the entry and show this. Return False if nothing was entered."""
-        if self.step is Step.NUMBER and not self.text:
+        if self.entry_step is SecondaryOffsetStep.NUMBER and not self.text:
             return False
-        number = self.number
-        self.drop()
+        number = self.offset_number
+        self.discard_entry()
         self.desk.say(tr(Message("D{number} NOT CHANGED", number=number)) if number else "")
         return True
 
-    def drop(self) -> None:
+    def discard_entry(self) -> None:
         """Return to the first step, and discard all answers."""
-        self.step, self.number, self.text = Step.NUMBER, 0, ""
+        self.entry_step, self.offset_number, self.text = SecondaryOffsetStep.NUMBER, 0, ""
         self._answers, self._typed = [], []
 
     def _enter(self) -> None:
-        if why := self.barred(self.desk.snapshot(), correction=True):
+        if why := self.find_refusal(self.desk.read_snapshot(), is_correction=True):
             self.desk.say(why)
             return
         try:
-            self._take_number() if self.step is Step.NUMBER else self._take_value()
+            self._take_number() if self.entry_step is SecondaryOffsetStep.NUMBER else self._take_value()
         except EntryError as error:
             self.text = refused(self.text)
             self.desk.say(tr(Message("REJECTED: {why}", why=error)))
 
     def _take_number(self) -> None:
-        value = value_of(self.text)
-        if value not in OFFSETS:
+        value = evaluate_expression(self.text)
+        if value not in OFFSET_NUMBERS:
             raise EntryError(tr(Message("D{number:g} does not exist; offsets are D1…32", number=value)))
-        self.number, self.step, self.text = int(value), Step.X, ""
+        self.offset_number, self.entry_step, self.text = int(value), SecondaryOffsetStep.X, ""
 
     def _take_value(self) -> None:
-        at, text = self.step - 1, self.text.strip()
-        new = old = (self.old or SecondaryRow())[at]
+        at, text = self.entry_step - 1, self.text.strip()
+        new = old = (self.present_row or SecondaryRow())[at]
         if text:
-            new = corrected(self.step, old, value_of(text), self.mode)
-            self._check(new)
-        typed = f"{self.step.name} {text}" if text else ""
-        if self.step is not Step.R:
+            new = correct_value(self.entry_step, old, evaluate_expression(text), self.value_mode)
+            self._check_range(new)
+        typed = f"{self.entry_step.name} {text}" if text else ""
+        if self.entry_step is not SecondaryOffsetStep.R:
             self._answers.append(new)
             self._typed.append(typed)
-            self.step, self.text = Step(self.step + 1), ""
+            self.entry_step, self.text = SecondaryOffsetStep(self.entry_step + 1), ""
         else:
             self._save(SecondaryRow(self._answers[0], self._answers[1], new), [*self._typed, typed])
 
-    def _check(self, mm: float) -> None:
+    def _check_range(self, mm: float) -> None:
         """Check the range of a value. Raises EntryError."""
-        low, high = (0.0, RADIUS_MAX) if self.step is Step.R else (-SECONDARY_REACH, SECONDARY_REACH)
+        low, high = (
+            (0.0, MAX_NOSE_RADIUS_MM)
+            if self.entry_step is SecondaryOffsetStep.R
+            else (-SECONDARY_OFFSET_LIMIT_MM, SECONDARY_OFFSET_LIMIT_MM)
+        )
         if not low <= mm <= high:
-            unit, name = self.mode.unit, f"D{self.number} {self.step.name}"
-            figure = length(mm, self.mode.metric)
-            raise EntryError(out_of_range(name, figure, self.mode.name, low / unit, high / unit))
+            unit, name = self.value_mode.unit_mm, f"D{self.offset_number} {self.entry_step.name}"
+            figure = format_length(mm, self.value_mode.is_metric)
+            raise EntryError(
+                describe_range_error(name, figure, self.value_mode.name, low / unit, high / unit)
+            )
 
     def _save(self, new: SecondaryRow, typed: list[str]) -> None:
-        if new == self.old:
-            self.desk.say(tr(Message("D{number} NOT CHANGED", number=self.number)))
-            self.drop()
+        if new == self.present_row:
+            self.desk.say(tr(Message("D{number} NOT CHANGED", number=self.offset_number)))
+            self.discard_entry()
             return
-        reason = ("MM " if self.mode.metric else "") + " ".join(filter(None, typed))
-        why = self.questions.change(self.kind, self.number, new._asdict(), reason)
+        reason = ("MM " if self.value_mode.is_metric else "") + " ".join(filter(None, typed))
+        why = self.offset_questions.change_fields(self.kind, self.offset_number, new._asdict(), reason)
         if why:
             self.desk.say(why)
         else:
-            self.drop()
+            self.discard_entry()

@@ -5,248 +5,266 @@ from __future__ import annotations
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.change_rules import CORRECTIONS
-from app.offsets.offset_changes import counts_from
-from app.offsets.offset_table import Proposed, ToolEntry, ToolFields
+from app.offsets.change_rules import CORRECTION_FIELDS
+from app.offsets.offset_changes import describe_start
+from app.offsets.offset_table import ProposedOffsets, ToolFieldEditor, ToolFieldTable
 from app.offsets.offset_values import (
-    not_set,
-    shown_value,
-    value_typed,
+    describe_unset,
+    format_value,
+    parse_value,
 )
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.store_rows import OFFSETS, Kind, with_fields
-from core.tool_edges import EDGES, edge_key, edge_number, tool_of
+from core.store.store_rows import OFFSET_NUMBERS, OffsetKind, replace_fields
+from core.tool_edges import EDGE_NUMBERS, format_edge_suffix, get_tool_number, make_edge_key
 
-COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
-PAGE = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
-EDGE_KEY = "D"  # Adds a cutting edge to the tool, in a language with cutting edges.
-_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
+TABLE_COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
+PAGE_ROWS = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
+CUTTING_EDGE_KEY = "D"  # Adds a cutting edge to the tool, in a language with cutting edges.
+_CURSOR_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
 
 
-class ToolOffsets(ToolEntry):
+class ToolOffsetTable(ToolFieldTable):
     """The table with its cursor and the entered text. A remark accepts letters after Enter has opened it."""
 
-    kind = Kind.TOOL
-    to_write = "PRESS ENTER TO TYPE A REMARK"
+    kind = OffsetKind.TOOL
+    text_hint = "PRESS ENTER TO TYPE A REMARK"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.own_key = EDGE_KEY if desk.machine.language == "sinumerik" else ""
-        self.fields = ToolFields(self.history)
-        self.column = 0
-        self.page = PAGE  # Rows that fit now, by which Page up and Page down move.
-        self.relative = False  # X and Z are shown relative to the master.
-        self.opened_edge = 0  # A new cutting edge whose values are not entered yet.
+        self.page_key = CUTTING_EDGE_KEY if desk.machine.language == "sinumerik" else ""
+        self.tool_fields = ToolFieldEditor(self.offset_history)
+        self.column_index = 0
+        self.page_rows = PAGE_ROWS  # Rows that fit now, by which Page up and Page down move.
+        self.is_relative = False  # X and Z are shown relative to the master.
+        self.new_edge = 0  # A new cutting edge whose values are not entered yet.
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def rows(self) -> tuple[int, ...]:
+    def tool_numbers(self) -> tuple[int, ...]:
         """The rows of the table: every tool, followed by its further cutting edges."""
-        edges = sorted({key for key in (*self.book.tools, self.opened_edge) if key not in OFFSETS and key})
+        edges = sorted(
+            {key for key in (*self.offset_book.tools, self.new_edge) if key not in OFFSET_NUMBERS and key}
+        )
         return tuple(
-            key for tool in OFFSETS for key in (tool, *(each for each in edges if tool_of(each) == tool))
+            key
+            for tool in OFFSET_NUMBERS
+            for key in (tool, *(each for each in edges if get_tool_number(each) == tool))
         )
 
     @property
-    def row(self) -> int:
+    def row_index(self) -> int:
         """The index of the cursor's row, counted from 0."""
-        rows = self.rows
-        return rows.index(self.number if self.number in rows else tool_of(self.number))
+        rows = self.tool_numbers
+        return rows.index(self.tool_number if self.tool_number in rows else get_tool_number(self.tool_number))
 
     @property
     def name(self) -> str:
         """The field under the cursor."""
-        return COLUMNS[self.column]
+        return TABLE_COLUMNS[self.column_index]
 
-    def cell(self, number: int, name: str) -> str:
+    def format_cell(self, number: int, name: str) -> str:
         """Return a cell of the table as text. X and Z are relative to the master if this is selected."""
-        book, mode, new = self.book, self.mode, self.fields.new
+        book, mode, new = self.offset_book, self.value_mode, self.tool_fields.incomplete_tool
         row = book.tools.get(number)
         if row is None:
-            known = number == new.number and name in new.values
-            return shown_value(name, new.values[name], mode) if known else ""
-        master = book.tools.get(book.master)
-        if self.relative and master is not None and name in {"x", "z"} and number != book.master:
+            known = number == new.tool_number and name in new.known_values
+            return format_value(name, new.known_values[name], mode) if known else ""
+        master = book.tools.get(book.master_number)
+        if self.is_relative and master is not None and name in {"x", "z"} and number != book.master_number:
             at = "xz".index(name)
-            return shown_value(name, row.offset[at] - master.offset[at], mode)
-        return shown_value(name, getattr(row, name), mode)
+            return format_value(name, row.offset[at] - master.offset[at], mode)
+        return format_value(name, getattr(row, name), mode)
 
     @property
-    def is_writing(self) -> bool:
+    def is_editing_text(self) -> bool:
         """Whether a remark is being edited."""
-        return self.writing
+        return self.is_text_open
 
     @property
-    def value_before(self) -> str:
+    def stored_value_text(self) -> str:
         """The saved value of the cell as text."""
-        return self.cell(self.number, self.name) or (
-            not_set(unread=self.book.unread) if self.tool is None else ""
+        return self.format_cell(self.tool_number, self.name) or (
+            describe_unset(is_unread=self.offset_book.has_read_failed) if self.tool_row is None else ""
         )
 
     @property
-    def foot(self) -> str:
+    def footer_text(self) -> str:
         """The hint for the keys F2, F3 and Esc."""
-        if self.own_key:
+        if self.page_key:
             return tr(
                 "F2: add typed value   F3: X and Z relative to master   F8: shape   D: other edge   Esc: exit"
             )
         return tr("F2: add typed value   F3: X and Z relative to master   F8: tool shape   Esc: exit")
 
-    def hint(self, snapshot: Snapshot) -> str:
+    def make_hint(self, snapshot: Snapshot) -> str:
         """Return how to enter a remark or a value, or from when a change applies."""
-        if self.writing:
+        if self.is_text_open:
             return tr("TYPE A REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
-        return counts_from(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
+        return describe_start(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
 
-    def proposed(self) -> Proposed:
+    def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the offsets as they would be with the entered text."""
-        tools, secondary = super().proposed()
-        if self.tool is None or not self.text:
+        tools, secondary = super().make_proposed_offsets()
+        if self.tool_row is None or not self.text:
             return tools, secondary
         try:
-            value = value_typed(self.name, self.text, self.mode)
+            value = parse_value(self.name, self.text, self.value_mode)
         except EntryError:
             return tools, secondary
-        return {**tools, self.number: with_fields(self.tool, {self.name: value})}, secondary
+        return {**tools, self.tool_number: replace_fields(self.tool_row, {self.name: value})}, secondary
 
     @property
-    def corrects(self) -> bool:
+    def is_correction(self) -> bool:
         """Whether the field is wear or remark, which may change while parts run."""
-        return self.name in CORRECTIONS[Kind.TOOL]
+        return self.name in CORRECTION_FIELDS[OffsetKind.TOOL]
 
-    def cell_barred(self) -> str:
+    def find_cell_refusal(self) -> str:
         """Return why the cell under the cursor cannot be changed now. Empty if it can."""
-        if self.relative and self.name in {"x", "z"}:
+        if self.is_relative and self.name in {"x", "z"}:
             return tr("X, Z RELATIVE TO MASTER: READ-ONLY. F3: SHOW X, Z FROM HOME")
-        return super().cell_barred()
+        return super().find_cell_refusal()
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Update the unit of the control; called once a frame. A change of the unit discards the entry.
 
         An entry of X or Z is also discarded if the diameter mode changes. Wear is always a diameter.
         """
-        before = self.mode
-        super().look(snapshot)
-        position = not self.corrects or bool(self.fields.new.number)
-        changed = self.mode != before if position else self.mode.metric != before.metric
-        if changed and (self.text or self.fields.new.number):
-            self.drop()
+        before = self.value_mode
+        super().update(snapshot)
+        position = not self.is_correction or bool(self.tool_fields.incomplete_tool.tool_number)
+        changed = self.value_mode != before if position else self.value_mode.is_metric != before.is_metric
+        if changed and (self.text or self.tool_fields.incomplete_tool.tool_number):
+            self.discard_entry()
             self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def enter_key(self, key: str) -> bool:
+    def handle_entry_key(self, key: str) -> bool:
         """Handle a key of the table: arrow keys move the cursor, and Enter saves the entered value."""
         if key in {"Page up", "Page down"}:
-            self._step(self.page if key == "Page down" else -self.page, 0)
-        elif key in _MOVES:
-            self._step(*_MOVES[key])
-        elif self.own_key and key.upper() == self.own_key and not self.writing:
-            self.open_edge()
+            self._step(self.page_rows if key == "Page down" else -self.page_rows, 0)
+        elif key in _CURSOR_MOVES:
+            self._step(*_CURSOR_MOVES[key])
+        elif self.page_key and key.upper() == self.page_key and not self.is_text_open:
+            self.add_cutting_edge()
         else:
-            return super().enter_key(key)
+            return super().handle_entry_key(key)
         return True
 
-    def choose(self, number: int, column: int) -> None:
+    def select_cell(self, number: int, column: int) -> None:
         """Select a touched cell. A second touch opens a remark or sets the master."""
-        again = (number, column) == (self.number, self.column)
-        self._go(number, column)
-        if again and self.name in {"remark", "master"} and not self.writing:
-            self.enter()
+        again = (number, column) == (self.tool_number, self.column_index)
+        self._select_cell(number, column)
+        if again and self.name in {"remark", "master"} and not self.is_text_open:
+            self.handle_enter()
 
-    def add(self) -> None:
+    def add_entered(self) -> None:
         """Handle F2: add the entered value to the present value."""
-        if why := self.add_barred():
+        if why := self.find_add_refusal():
             self.desk.say(why)
             return
-        self._save(adding=True)
+        self._save_entry(is_increment=True)
 
-    def add_barred(self) -> str:
+    def find_add_refusal(self) -> str:
         """Return why no value can be added now. Empty if it can."""
-        if self.tool is None or not self.text.strip():
+        if self.tool_row is None or not self.text.strip():
             return tr("TYPE THE VALUE TO ADD, THEN PRESS F2")
         return ""
 
-    def relative_barred(self) -> str:
+    def find_relative_refusal(self) -> str:
         """Return why X and Z cannot be shown relative to the master. Empty if they can."""
-        if not self.relative and not self.book.master:
+        if not self.is_relative and not self.offset_book.master_number:
             return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
-    def turn_relative(self) -> None:
+    def toggle_relative(self) -> None:
         """Handle F3: show X and Z from home, or relative to the master."""
-        if why := self.relative_barred():
+        if why := self.find_relative_refusal():
             self.desk.say(why)
             return
-        self.relative = not self.relative
+        self.is_relative = not self.is_relative
 
     def _step(self, down: int, right: int) -> None:
-        rows = self.rows
-        self._go(rows[max(0, min(len(rows) - 1, self.row + down))], self.column + right)
+        rows = self.tool_numbers
+        self._select_cell(rows[max(0, min(len(rows) - 1, self.row_index + down))], self.column_index + right)
 
-    def open_edge(self) -> None:
+    def add_cutting_edge(self) -> None:
         """Handle D: add a row for the next cutting edge of this tool. Entering X and Z sets the edge."""
-        tool = tool_of(self.number)
-        free = (edge_key(tool, edge) for edge in EDGES if edge_key(tool, edge) not in self.book.tools)
+        tool = get_tool_number(self.tool_number)
+        free = (
+            make_edge_key(tool, edge)
+            for edge in EDGE_NUMBERS
+            if make_edge_key(tool, edge) not in self.offset_book.tools
+        )
         key = next(free, 0)
-        if self.left_open():
+        if self.is_entry_unfinished():
             return
-        if tool not in self.book.tools:
-            self.desk.say(self.fields.never_set(tool))
+        if tool not in self.offset_book.tools:
+            self.desk.say(self.tool_fields.describe_unset_tool(tool))
         elif not key:
             self.desk.say(tr(Message("T{number} ALREADY HAS ALL CUTTING EDGES, D1 TO D9", number=tool)))
         else:
-            self.opened_edge = key
-            self._go(key, COLUMNS.index("x"))
-            self.desk.say(tr(Message("T{number}: TYPE X AND Z", number=edge_number(key))))
+            self.new_edge = key
+            self._select_cell(key, TABLE_COLUMNS.index("x"))
+            self.desk.say(tr(Message("T{number}: TYPE X AND Z", number=format_edge_suffix(key))))
 
-    def _go(self, number: int, column: int) -> None:
+    def _select_cell(self, number: int, column: int) -> None:
         """Move the cursor, unless there is an unfinished entry. An incomplete new tool is discarded."""
-        if self.left_open():
+        if self.is_entry_unfinished():
             return
-        if self.opened_edge not in {0, number} and self.fields.new.number != self.opened_edge:
-            self.opened_edge = 0
-        self.book.at = number
-        self.column = max(0, min(len(COLUMNS) - 1, column))
-        new = self.fields.new
-        if new.number and self.number != new.number:
+        if self.new_edge not in {0, number} and self.tool_fields.incomplete_tool.tool_number != self.new_edge:
+            self.new_edge = 0
+        self.offset_book.at = number
+        self.column_index = max(0, min(len(TABLE_COLUMNS) - 1, column))
+        new = self.tool_fields.incomplete_tool
+        if new.tool_number and self.tool_number != new.tool_number:
             self.desk.say(
-                tr(Message("T{number} IS NOT SET: ENTER BOTH X AND Z", number=edge_number(new.number)))
+                tr(
+                    Message(
+                        "T{number} IS NOT SET: ENTER BOTH X AND Z", number=format_edge_suffix(new.tool_number)
+                    )
+                )
             )
-            self.drop()
+            self.discard_entry()
 
-    def enter(self) -> None:
+    def handle_enter(self) -> None:
         """Handle Enter: save the entered value, choose the master, open a remark, or go to the next cell."""
         if self.name == "master":
-            self.history.answer(self.cell_barred() or self.fields.master(self.number))
-        elif self.name == "remark" and not self.writing:
+            self.offset_history.show_refusal(
+                self.find_cell_refusal() or self.tool_fields.ask_master(self.tool_number)
+            )
+        elif self.name == "remark" and not self.is_text_open:
             self._open()
-        elif self.text.strip() or self.writing:
-            self._save(adding=False)
+        elif self.text.strip() or self.is_text_open:
+            self._save_entry(is_increment=False)
         else:
-            self._go(self.number, self.column + 1)
+            self._select_cell(self.tool_number, self.column_index + 1)
 
     def _open(self) -> None:
-        why = self.cell_barred()
-        if why or self.tool is None:
-            self.desk.say(why or self.fields.never_set(self.number))
+        why = self.find_cell_refusal()
+        if why or self.tool_row is None:
+            self.desk.say(why or self.tool_fields.describe_unset_tool(self.tool_number))
             return
-        self.writing, self.text = True, self.tool.remark
+        self.is_text_open, self.text = True, self.tool_row.remark
 
-    def _save(self, *, adding: bool) -> None:
+    def _save_entry(self, *, is_increment: bool) -> None:
         """Save the cell. For a new tool, move the cursor to the missing value."""
-        saved = self.store(lambda: self.fields.save(self.number, self.name, self.text, adding=adding))
-        if saved and self.fields.new.number:
-            self.column = COLUMNS.index(self.fields.new.missing)
+        saved = self.save_field(
+            lambda: self.tool_fields.save_field(
+                self.tool_number, self.name, self.text, is_increment=is_increment
+            )
+        )
+        if saved and self.tool_fields.incomplete_tool.tool_number:
+            self.column_index = TABLE_COLUMNS.index(self.tool_fields.incomplete_tool.missing_axis)
 
     @property
-    def entering(self) -> bool:
+    def has_entry(self) -> bool:
         """Whether Esc can discard an entry or an incomplete new tool."""
-        return super().entering or bool(self.fields.new.number)
+        return super().has_entry or bool(self.tool_fields.incomplete_tool.tool_number)
 
-    def drop(self) -> None:
+    def discard_entry(self) -> None:
         """Discard the entry, an open remark and an incomplete new tool."""
-        super().drop()
-        self.fields.new.drop()
+        super().discard_entry()
+        self.tool_fields.incomplete_tool.discard()

@@ -8,27 +8,27 @@ from functools import partial
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.desk.translation import data, tr
-from app.offsets.offset_values import heading, not_set, word
+from app.desk.translation import mark_untranslated, tr
+from app.offsets.offset_values import describe_unset, make_heading, translate_field
 from app.offsets.offsets_view import OffsetPage
-from app.offsets.tool_offsets import COLUMNS, ToolOffsets
-from app.offsets.tool_shapes import ToolShapes
+from app.offsets.tool_offsets import TABLE_COLUMNS, ToolOffsetTable
+from app.offsets.tool_shapes import ToolShapeTable
 from app.screen import page_table
-from app.screen.drawings import draw_outline, draw_tip
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
-from app.screen.sheet_panel import RowPanel
+from app.screen.drawings import draw_tool_outline, draw_tool_tip
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ALIGN_RIGHT, ScreenTheme, ThemedPainter
+from app.screen.table_panel import RowPanel
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
-from core.tool_edges import edge_number, edge_of, tool_of
+from core.tool_edges import format_edge_suffix, get_edge_number, get_tool_number
 
-NUMBER = 5.4  # Units: width of the number column.
-HEAD = 3.2  # Units: height of the column heads.
+NUMBER_WIDTH = 5.4  # Units: width of the number column.
+HEAD_HEIGHT = 3.2  # Units: height of the column heads.
 # Relative widths of the other columns.
-SHARES = {
+COLUMN_SHARES = {
     "x": 15.0,
     "z": 14.0,
     "nose_radius": 11.5,
@@ -40,117 +40,132 @@ SHARES = {
 }
 
 
-class ToolTable(RowPanel):
+class ToolOffsetPanel(RowPanel):
     """The table of the tool offsets. It is redrawn when the model has changed."""
 
-    notch = 1
-    _shown: Shown[object] = Shown(())
+    scroll_step = 1
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(())
 
-    def __init__(self, look: Look, model: ToolOffsets, parent: QWidget) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, model: ToolOffsetTable, parent: QWidget) -> None:
+        super().__init__(theme, parent)
         self._model = model
-        self.choose: Callable[[int, int], None] = model.choose
+        self.on_select: Callable[[int, int], None] = model.select_cell
         self._heads: dict[str, str] = {}  # Column heads by field.
 
-    def show_tools(self) -> None:
+    def update_rows(self) -> None:
         """Show the present state of the model."""
         model = self._model
         self._shown = (
-            model.book.tools,
-            (model.number, model.column, model.relative, model.mode, model.opened_edge),
-            dict(model.fields.new.values),
-            tuple(change.number for change in model.history.last),
+            model.offset_book.tools,
+            (model.tool_number, model.column_index, model.is_relative, model.value_mode, model.new_edge),
+            dict(model.tool_fields.incomplete_tool.known_values),
+            tuple(change.number for change in model.offset_history.last_changes),
         )
 
     def scroll_by(self, rows: int) -> None:
         """Move the cursor, which is always visible."""
         key = ("Up", "Down") if abs(rows) == 1 else ("Page up", "Page down")
-        self._model.typed(key[rows > 0])
+        self._model.handle_key(key[rows > 0])
 
-    def draw(self, painter: Painter) -> None:
-        u, model = self.look.u, self._model
-        mode = model.mode
-        x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
-        title: str = join_messages("  ·  ", (tr("TOOL OFFSETS"), tr("MM") if mode.metric else tr("INCH"), x))
-        if model.relative:
-            title += "  ·  " + tr(Message("X AND Z RELATIVE TO MASTER T{number}", number=model.book.master))
+    def draw(self, painter: ThemedPainter) -> None:
+        u, model = self.theme.u, self._model
+        mode = model.value_mode
+        x = tr("X IS A DIAMETER") if mode.is_diameter else tr("X IS A RADIUS")
+        title: str = join_messages(
+            "  ·  ", (tr("TOOL OFFSETS"), tr("MM") if mode.is_metric else tr("INCH"), x)
+        )
+        if model.is_relative:
+            title += "  ·  " + tr(
+                Message("X AND Z RELATIVE TO MASTER T{number}", number=model.offset_book.master_number)
+            )
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
-        body = room.adjusted(0, HEAD * u, 0, 0)
-        count = len(model.rows)
-        model.page = min(count, self.fitting(body, self.look.row(7.0, 9.0, touch=True), count))
-        body = self.scrolled(painter, body, model.page, count, model.row)
-        head = QRectF(body.x(), room.y(), body.width(), HEAD * u)
-        columns = self._columns(head)
+        body = room.adjusted(0, HEAD_HEIGHT * u, 0, 0)
+        count = len(model.tool_numbers)
+        model.page_rows = min(
+            count,
+            self.count_fitting_rows(body, self.theme.find_row_height(7.0, 9.0, is_touchable=True), count),
+        )
+        body = self.draw_scroll_keys(painter, body, model.page_rows, count, model.row_index)
+        head = QRectF(body.x(), room.y(), body.width(), HEAD_HEIGHT * u)
+        columns = self._make_columns(head)
         self._head(painter, head, columns)
-        high = body.height() / model.page
-        for place, row in self.boxes(body, high):
-            self._row(painter, row, model.rows[place], columns)
+        high = body.height() / model.page_rows
+        for place, row in self.find_row_boxes(body, high):
+            self._row(painter, row, model.tool_numbers[place], columns)
 
-    def _head(self, painter: Painter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
-        u, mode = self.look.u, self._model.mode
+    def _head(self, painter: ThemedPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
+        u, mode = self.theme.u, self._model.value_mode
         for name, (left, wide) in columns.items():
             cell = QRectF(left, head.y(), wide - 0.4 * u, head.height())
-            self._heads[name] = heading(name, mode)
-            painter.write(cell, self._heads[name], 1.5, "soft", at=CENTRE, margin=0.2)
+            self._heads[name] = make_heading(name, mode)
+            painter.draw_text_line(cell, self._heads[name], 1.5, "soft", at=ALIGN_CENTER, margin=0.2)
 
-    def _columns(self, room: QRectF) -> dict[str, tuple[float, float]]:
+    def _make_columns(self, area: QRectF) -> dict[str, tuple[float, float]]:
         """Return the left edge and width of each column in pixels."""
-        left = room.x() + NUMBER * self.look.u
-        part = (room.right() - left) / sum(SHARES.values())
+        left = area.x() + NUMBER_WIDTH * self.theme.u
+        part = (area.right() - left) / sum(COLUMN_SHARES.values())
         columns = {}
-        for name in COLUMNS:
-            columns[name] = (left, SHARES[name] * part)
-            left += SHARES[name] * part
+        for name in TABLE_COLUMNS:
+            columns[name] = (left, COLUMN_SHARES[name] * part)
+            left += COLUMN_SHARES[name] * part
         return columns
 
     def _row(
-        self, painter: Painter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
+        self, painter: ThemedPainter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
     ) -> None:
-        u, model = self.look.u, self._model
-        here = number == model.number
+        u, model = self.theme.u, self._model
+        here = number == model.tool_number
         if here:
-            painter.fill(row, "here")
-        if number in {change.number for change in model.history.last}:
-            painter.fill(QRectF(row.x(), row.y(), 0.5 * u, row.height()), "lit")
-        margin = QRectF(row.x(), row.y(), (NUMBER - 0.8) * u, row.height())
-        name = f"T{number}" if number == tool_of(number) else f"D{edge_of(number)}"
-        painter.write(margin, name, 2.2 * self._scale(row), "accent", at=RIGHT)
-        unset = number not in model.book.tools
+            painter.fill_rect(row, "here")
+        if number in {change.number for change in model.offset_history.last_changes}:
+            painter.fill_rect(QRectF(row.x(), row.y(), 0.5 * u, row.height()), "lit")
+        margin = QRectF(row.x(), row.y(), (NUMBER_WIDTH - 0.8) * u, row.height())
+        name = f"T{number}" if number == get_tool_number(number) else f"D{get_edge_number(number)}"
+        painter.draw_text_line(margin, name, 2.2 * self._find_scale(row), "accent", at=ALIGN_RIGHT)
+        unset = number not in model.offset_book.tools
         for at, (field, (left, wide)) in enumerate(columns.items()):
             cell = QRectF(left, row.y(), wide, row.height())
             self._cell(painter, cell, number, field)
-            if here and at == model.column:
-                painter.box(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u), "accent", 0.24, "")
+            if here and at == model.column_index:
+                painter.draw_box(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u), "accent", 0.24, "")
             spot = cell.united(margin) if at == 0 else cell  # A touch on the number selects the row.
             words = f"{name} {self._heads[field]}"
-            self.place(
-                spot, partial(self.choose, number, at), words, kind="row", on=here and at == model.column
+            self.add_target(
+                spot,
+                partial(self.on_select, number, at),
+                words,
+                kind="row",
+                is_on=here and at == model.column_index,
             )
-        if unset and number != model.fields.new.number:
+        if unset and number != model.tool_fields.incomplete_tool.tool_number:
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
-            painter.write(
-                empty, not_set(unread=model.book.unread), 1.9 * self._scale(row), "soft", bold=False
+            painter.draw_text_line(
+                empty,
+                describe_unset(is_unread=model.offset_book.has_read_failed),
+                1.9 * self._find_scale(row),
+                "soft",
+                bold=False,
             )
 
-    def _scale(self, row: QRectF) -> float:
+    def _find_scale(self, row: QRectF) -> float:
         """Return the scale of the letters for the height of the row."""
-        return min(1.0, row.height() / (4.2 * self.look.u))
+        return min(1.0, row.height() / (4.2 * self.theme.u))
 
-    def _cell(self, painter: Painter, cell: QRectF, number: int, name: str) -> None:
-        u = self.look.u
-        text = self._model.cell(number, name)
+    def _cell(self, painter: ThemedPainter, cell: QRectF, number: int, name: str) -> None:
+        u = self.theme.u
+        text = self._model.format_cell(number, name)
         room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
         if name == "quadrant" and text:
-            wide = 2.6 * u * self._scale(cell)
-            draw_tip(painter, room.adjusted(room.width() - wide, 0.2 * u, 0, -0.2 * u), int(text))
+            wide = 2.6 * u * self._find_scale(cell)
+            draw_tool_tip(painter, room.adjusted(room.width() - wide, 0.2 * u, 0, -0.2 * u), int(text))
             room.setRight(room.right() - wide - 0.4 * u)
         worn = name.startswith("wear") and text.strip("+0.") == ""
-        ink, at = "soft" if worn else "text", LEFT if name == "remark" else RIGHT
-        painter.write(
+        ink, at = "soft" if worn else "text", ALIGN_LEFT if name == "remark" else ALIGN_RIGHT
+        painter.draw_text_line(
             room,
             text,
-            2.0 * self._scale(cell),
+            2.0 * self._find_scale(cell),
             ink,
             at=at,
             bold=not worn and name != "remark",
@@ -163,114 +178,120 @@ class ToolOffsetsPage(OffsetPage):
 
     NAME = page_table.TOOLS
     LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "SHAPE", "SECCMP", "ZERO")
-    model: ToolOffsets
-    table: ToolTable
+    model: ToolOffsetTable
+    table_panel: ToolOffsetPanel
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent, ToolOffsets(host.desk))
-        self.table = ToolTable(self.look, self.model, self)
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
+        super().__init__(host, parent, ToolOffsetTable(host.desk))
+        self.table_panel = ToolOffsetPanel(self.theme, self.model, self)
 
-    def barred_by(self) -> dict[str, object]:
+    def key_refusals(self) -> dict[str, object]:
         """Return the reasons why keys are disabled, including F2 for adding and F3 for the master."""
         model = self.model
-        return {**super().barred_by(), "F2": model.add_barred(), "F3": model.relative_barred()}
+        return {**super().key_refusals(), "F2": model.find_add_refusal(), "F3": model.find_relative_refusal()}
 
     def key_actions(self) -> KeyActions:
         """Return the key actions, including F2 for adding, F3 for the master and F8 for the tool's shape."""
         own: KeyActions = {
-            "F2": self.model.add,
-            "F3": self.model.turn_relative,
+            "F2": self.model.add_entered,
+            "F3": self.model.toggle_relative,
             "F8": partial(self._go, page_table.SHAPE),
         }
         return {**super().key_actions(), **own}
 
-    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the present state of the table."""
         super().refresh(snapshot, status, loaded)
-        self.table.show_tools()
+        self.table_panel.update_rows()
 
 
-ROWS = 6  # Fields in each of the two columns.
-FIELDS = 0.6  # Fraction of the width for both columns.
+FIELD_ROWS = 6  # Fields in each of the two columns.
+FIELDS_SHARE = 0.6  # Fraction of the width for both columns.
 
 
-class ShapeTable(Panel):
+class ToolShapePanel(Panel):
     """Two columns of fields, which are touch targets, with the drawing at their right."""
 
-    _shown: Shown[object] = Shown(())
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(())
 
-    def __init__(self, look: Look, model: ToolShapes, parent: QWidget) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, model: ToolShapeTable, parent: QWidget) -> None:
+        super().__init__(theme, parent)
         self._model = model
 
-    def show_shape(self) -> None:
+    def update_fields(self) -> None:
         """Show the present state of the model."""
         model = self._model
-        last = tuple(change.number for change in model.history.last)
-        self._shown = (model.number, model.row, model.tool, model.name, model.mode, last)
+        last = tuple(change.number for change in model.offset_history.last_changes)
+        self._shown = (model.tool_number, model.shape_row, model.tool_row, model.name, model.value_mode, last)
 
-    def draw(self, painter: Painter) -> None:
-        u, model = self.look.u, self._model
-        unit = tr("MM") if model.mode.metric else tr("INCH")
+    def draw(self, painter: ThemedPainter) -> None:
+        u, model = self.theme.u, self._model
+        unit = tr("MM") if model.value_mode.is_metric else tr("INCH")
         title: str = join_messages(
-            "  ·  ", (tr(Message("SHAPE OF T{number}", number=edge_number(model.number))), unit)
+            "  ·  ", (tr(Message("SHAPE OF T{number}", number=format_edge_suffix(model.tool_number))), unit)
         )
-        if model.tool is not None and model.tool.remark:
-            title += f"  ·  {data(model.tool.remark)}"
+        if model.tool_row is not None and model.tool_row.remark:
+            title += f"  ·  {mark_untranslated(model.tool_row.remark)}"
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, 0, 0.7 * u, 0.5 * u)
-        fields = QRectF(room.x(), room.y(), FIELDS * room.width(), room.height())
-        wide, high = fields.width() / 2, fields.height() / ROWS
-        for place, name in enumerate(model.names):
-            column, row = divmod(place, ROWS)
+        fields = QRectF(room.x(), room.y(), FIELDS_SHARE * room.width(), room.height())
+        wide, high = fields.width() / 2, fields.height() / FIELD_ROWS
+        for place, name in enumerate(model.field_names):
+            column, row = divmod(place, FIELD_ROWS)
             cell = QRectF(fields.x() + column * wide, fields.y() + row * high, wide, high)
-            self._field(painter, cell.adjusted(0, 0, -0.5 * u, -0.5 * u), name)
-            self.place(cell, partial(model.choose, place))
-        self._picture(
+            self._draw_field(painter, cell.adjusted(0, 0, -0.5 * u, -0.5 * u), name)
+            self.add_target(cell, partial(model.select_field, place))
+        self._draw_picture(
             painter,
             QRectF(
                 fields.right() + 0.4 * u, room.y(), room.right() - fields.right() - 0.4 * u, room.height()
             ),
         )
 
-    def _field(self, painter: Painter, cell: QRectF, name: str) -> None:
+    def _draw_field(self, painter: ThemedPainter, cell: QRectF, name: str) -> None:
         """Draw the name of a field above its value."""
-        u, model = self.look.u, self._model
+        u, model = self.theme.u, self._model
         here = name == model.name
-        painter.fill(cell, "here" if here else "key")
+        painter.fill_rect(cell, "here" if here else "key")
         head = cell.adjusted(0.8 * u, 0.3 * u, -0.8 * u, 0)
         head.setHeight(1.8 * u)
-        painter.write(head, heading(name, model.mode), 1.5, "soft")
-        wrong = name in {"quadrant" if each.field == "tip" else each.field for each in model.mistakes}
+        painter.draw_text_line(head, make_heading(name, model.value_mode), 1.5, "soft")
+        wrong = name in {
+            "quadrant" if each.field_name == "tip" else each.field_name for each in model.shape_mistakes
+        }
         foot = cell.adjusted(0.8 * u, 2.2 * u, -0.8 * u, -0.4 * u)
-        text = model.cell(name)
+        text = model.format_field(name)
         free = name in {"insert", "holder", "profile"}
         if name == "quadrant" and text:
             side = foot.height()
-            draw_tip(painter, QRectF(foot.x(), foot.y(), side, side), int(text))
-        painter.write(
-            foot, text or "–", 2.0, "alarm" if wrong else "text", at=RIGHT, bold=bool(text), raw=free
+            draw_tool_tip(painter, QRectF(foot.x(), foot.y(), side, side), int(text))
+        painter.draw_text_line(
+            foot, text or "–", 2.0, "alarm" if wrong else "text", at=ALIGN_RIGHT, bold=bool(text), raw=free
         )
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def _picture(self, painter: Painter, room: QRectF) -> None:
+    def _draw_picture(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the outline with X down, as in the path view. Below it are the assumed values."""
-        u, model = self.look.u, self._model
-        words = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.4 * u)
-        painter.fill(room, "panel")
-        outline = model.outline
-        if model.row is None:
+        u, model = self.theme.u, self._model
+        words = QRectF(area.x(), area.bottom() - 2.6 * u, area.width(), 2.4 * u)
+        painter.fill_rect(area, "panel")
+        outline = model.tool_outline
+        if model.shape_row is None:
             text = tr("TOOL SHAPE NOT DEFINED: ONLY THE TOOL NOSE IS CHECKED")
-            painter.write(room, text, 1.8, "soft", at=CENTRE, margin=1.0)
+            painter.draw_text_line(area, text, 1.8, "soft", at=ALIGN_CENTER, margin=1.0)
         elif outline is None:
-            painter.write(room, tr("IMPOSSIBLE TOOL SHAPE"), 1.8, "alarm", at=CENTRE, margin=1.0)
+            painter.draw_text_line(
+                area, tr("IMPOSSIBLE TOOL SHAPE"), 1.8, "alarm", at=ALIGN_CENTER, margin=1.0
+            )
         else:
-            draw_outline(painter, room.adjusted(0, 0, 0, -2.8 * u), outline)
-            if outline.assumed:
-                names = ", ".join(word("quadrant" if name == "tip" else name) for name in outline.assumed)
+            draw_tool_outline(painter, area.adjusted(0, 0, 0, -2.8 * u), outline)
+            if outline.assumed_fields:
+                names = ", ".join(
+                    translate_field("quadrant" if name == "tip" else name) for name in outline.assumed_fields
+                )
                 text = tr(Message("ASSUMED: {names}", names=names))
-                painter.write(words, text, 1.5, "soft", at=CENTRE, bold=False, margin=1.0)
+                painter.draw_text_line(words, text, 1.5, "soft", at=ALIGN_CENTER, bold=False, margin=1.0)
 
 
 class ToolShapePage(OffsetPage):
@@ -278,34 +299,34 @@ class ToolShapePage(OffsetPage):
 
     NAME = page_table.SHAPE
     LABELS = ("MENU", "", "NONE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "ZERO")
-    model: ToolShapes
-    table: ShapeTable
+    model: ToolShapeTable
+    table_panel: ToolShapePanel
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
-        super().__init__(host, parent, ToolShapes(host.desk))
-        self.table = ShapeTable(self.look, self.model, self)
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
+        super().__init__(host, parent, ToolShapeTable(host.desk))
+        self.table_panel = ToolShapePanel(self.theme, self.model, self)
 
-    def barred_by(self) -> dict[str, object]:
+    def key_refusals(self) -> dict[str, object]:
         """Return the reasons why keys are disabled, including F3 for deleting the shape."""
-        return {**super().barred_by(), "F3": self.model.remove_barred()}
+        return {**super().key_refusals(), "F3": self.model.find_delete_refusal()}
 
     def key_actions(self) -> KeyActions:
         """Return the key actions, with F3 for deleting the shape and without the effect on the path."""
         shared = {key: act for key, act in super().key_actions().items() if key != "F6"}
-        return {**shared, "F3": self.model.remove}
+        return {**shared, "F3": self.model.delete_shape}
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Select the first field of the selected tool."""
-        super().opened()
-        self.model.place = 0
+        super().on_open()
+        self.model.field_index = 0
 
-    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the present state of the fields."""
         super().refresh(snapshot, status, loaded)
-        self.table.show_shape()
+        self.table_panel.update_fields()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go one step back, or from the first step to the table of tools."""
-        if not self.model.escape():
-            self.host.go(page_table.TOOLS)
+        if not self.model.handle_escape():
+            self.host.open_page(page_table.TOOLS)
         return True

@@ -4,233 +4,266 @@ from __future__ import annotations
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.stored_shapes import row_mistakes, shape_of
+from app.desk.stored_shapes import find_mistakes, make_tool_shape
 from app.desk.translation import tr
-from app.offsets.offset_table import ToolEntry, ToolFields
-from app.offsets.offset_values import TOOL_FIELDS, choice_word, shown_value, value_typed, word
+from app.offsets.offset_table import ToolFieldEditor, ToolFieldTable
+from app.offsets.offset_values import (
+    TOOL_FIELDS,
+    format_value,
+    parse_value,
+    translate_choice,
+    translate_field,
+)
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.part.shape_rules import FIELDS_OF, ShapeMistake
-from core.part.tool_outline import ToolOutline, outline
+from core.part.shape_rules import FIELDS_BY_KIND, ShapeMistake
+from core.part.tool_outline import ToolOutline, make_outline
 from core.part.tool_shape import ToolKind
-from core.store.store_rows import OFFSETS, Kind, ShapeRow, Sort, ToolRow, Value, with_fields
-from core.tool_edges import edge_name, edge_number, tool_of
+from core.store.store_rows import (
+    OFFSET_NUMBERS,
+    FieldType,
+    FieldValue,
+    OffsetKind,
+    ShapeRow,
+    ToolRow,
+    replace_fields,
+)
+from core.tool_edges import format_edge_name, format_edge_suffix, get_tool_number
 
 # Fields that are saved with the tool's offset.
-_OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}
-_MOVES = {"Up": -1, "Down": 1, "Tab": 1}
-_TURNS = {"Left": -1, "Right": 1}
+_OFFSET_FIELDS = {"tip": "quadrant", "nose_radius": "nose_radius"}
+_CURSOR_MOVES = {"Up": -1, "Down": 1, "Tab": 1}
+_CHOICE_STEPS = {"Left": -1, "Right": 1}
 
 
-class ToolShapes(ToolEntry):
+class ToolShapeTable(ToolFieldTable):
     """The shape of one tool, with the field under the cursor. Left and Right cycle through the choices."""
 
-    kind = Kind.SHAPE
-    to_write = "PRESS ENTER TO TYPE THE TEXT"
+    kind = OffsetKind.SHAPE
+    text_hint = "PRESS ENTER TO TYPE THE TEXT"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.place = 0
+        self.field_index = 0
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def row(self) -> ShapeRow | None:
+    def shape_row(self) -> ShapeRow | None:
         """The shape of the selected tool. None if the tool has no shape."""
-        return self.book.shapes.get(self.number)
+        return self.offset_book.shapes.get(self.tool_number)
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def field_names(self) -> tuple[str, ...]:
         """The fields that apply to a tool of this kind."""
-        row = self.row
+        row = self.shape_row
         if row is None:
             return ("kind",)
-        return ("kind", *(_OF_THE_OFFSET.get(name, name) for name in FIELDS_OF[ToolKind(row.kind)]))
+        return ("kind", *(_OFFSET_FIELDS.get(name, name) for name in FIELDS_BY_KIND[ToolKind(row.kind)]))
 
     @property
     def name(self) -> str:
         """The field under the cursor."""
-        return self.names[min(self.place, len(self.names) - 1)]
+        return self.field_names[min(self.field_index, len(self.field_names) - 1)]
 
-    def value(self, name: str) -> Value:
+    def read_value(self, name: str) -> FieldValue:
         """Return the saved value of a field. Nose radius and tip come from the tool's offset."""
         if name in ToolRow._fields:
-            of_offset: Value = getattr(self.tool or ToolRow(), name)
+            of_offset: FieldValue = getattr(self.tool_row or ToolRow(), name)
             return of_offset
-        of_shape: Value = getattr(self.row or ShapeRow(), name)
+        of_shape: FieldValue = getattr(self.shape_row or ShapeRow(), name)
         return of_shape
 
-    def cell(self, name: str) -> str:
+    def format_field(self, name: str) -> str:
         """Return a field as text. Empty if the field is not specified."""
-        value = self.value(name)
-        stated = bool(value) or TOOL_FIELDS[name].sort is Sort.FLAG or (name == "quadrant" and self.tool)
-        return shown_value(name, value, self.mode) if stated else ""
+        value = self.read_value(name)
+        stated = (
+            bool(value)
+            or TOOL_FIELDS[name].field_type is FieldType.BOOLEAN
+            or (name == "quadrant" and self.tool_row)
+        )
+        return format_value(name, value, self.value_mode) if stated else ""
 
     @property
-    def mistakes(self) -> tuple[ShapeMistake, ...]:
+    def shape_mistakes(self) -> tuple[ShapeMistake, ...]:
         """The mistakes in this shape."""
-        return () if self.row is None else row_mistakes(self.row, self.tool)
+        return () if self.shape_row is None else find_mistakes(self.shape_row, self.tool_row)
 
     @property
-    def outline(self) -> ToolOutline | None:
+    def tool_outline(self) -> ToolOutline | None:
         """The outline to draw. None if there is no shape, or if it has mistakes."""
-        return None if self.row is None or self.mistakes else outline(shape_of(self.row, self.tool))
+        return (
+            None
+            if self.shape_row is None or self.shape_mistakes
+            else make_outline(make_tool_shape(self.shape_row, self.tool_row))
+        )
 
     @property
-    def value_before(self) -> str:
+    def stored_value_text(self) -> str:
         """The saved value of the field as text."""
-        return self.cell(self.name)
+        return self.format_field(self.name)
 
     @property
-    def entered(self) -> str:
+    def entered_text(self) -> str:
         """The entered text, or the name of the selected choice."""
-        return self._said(self.text) if self.text and self.chosen_from else self.text
+        return self._said(self.text) if self.text and self.field_choices else self.text
 
     def _said(self, choice: str) -> str:
-        return {"yes": tr("YES"), "no": tr("NO")}.get(choice) or choice_word(choice)
+        return {"yes": tr("YES"), "no": tr("NO")}.get(choice) or translate_choice(choice)
 
     @property
-    def foot(self) -> str:
+    def footer_text(self) -> str:
         """The hint for the keys F3, F8 and Esc."""
         return tr("Page Up, Page Down: other tool   F3: delete shape   F8: tool table   Esc: exit")
 
-    def hint(self, _snapshot: Snapshot) -> str:
+    def make_hint(self, _snapshot: Snapshot) -> str:
         """Return the first mistake of the shape, or how to enter the field under the cursor."""
-        if self.mistakes and not (self.text or self.writing):
-            return f"{edge_name(self.number)}: {tr(self.mistakes[0].text)}"
-        if self.writing:
+        if self.shape_mistakes and not (self.text or self.is_text_open):
+            return f"{format_edge_name(self.tool_number)}: {tr(self.shape_mistakes[0].message)}"
+        if self.is_text_open:
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
-        if self.chosen_from:
+        if self.field_choices:
             return tr("LEFT/RIGHT: CHANGE    ENTER: ACCEPT")
-        if self.is_text:
-            return tr(self.to_write)
+        if self.accepts_any_text:
+            return tr(self.text_hint)
         return tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   0: NOT SPECIFIED")
 
     @property
-    def corrects(self) -> bool:
+    def is_correction(self) -> bool:
         """False, because a change of a shape must wait until no program is running."""
         return False
 
     @property
-    def chosen_from(self) -> tuple[str, ...]:
+    def field_choices(self) -> tuple[str, ...]:
         """The choices of the field under the cursor. Empty for a free value."""
         field = TOOL_FIELDS[self.name]
-        return ("no", "yes") if field.sort is Sort.FLAG else field.choices
+        return ("no", "yes") if field.field_type is FieldType.BOOLEAN else field.choices
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def enter_key(self, key: str) -> bool:
+    def handle_entry_key(self, key: str) -> bool:
         """Handle a key: Up and Down move the cursor, and Enter saves the entered value or choice."""
-        if key in _MOVES:
-            self.go(self.names.index(self.name) + _MOVES[key])
-        elif key in _TURNS:
-            self.turn(_TURNS[key])
+        if key in _CURSOR_MOVES:
+            self.move_cursor(self.field_names.index(self.name) + _CURSOR_MOVES[key])
+        elif key in _CHOICE_STEPS:
+            self.show_choice(_CHOICE_STEPS[key])
         elif key in {"Page up", "Page down"}:
-            self.go_to_tool(tool_of(self.number) + (1 if key == "Page down" else -1))
-        elif len(key) == 1 and self.takes(key) and self.chosen_from:
+            self.select_tool(get_tool_number(self.tool_number) + (1 if key == "Page down" else -1))
+        elif len(key) == 1 and self.accepts_key(key) and self.field_choices:
             self.desk.say(tr("LEFT/RIGHT: CHANGE THIS VALUE"))
         else:
-            return super().enter_key(key)
+            return super().handle_entry_key(key)
         return True
 
-    def choose(self, place: int) -> None:
+    def select_field(self, index: int) -> None:
         """Select a touched field. A second touch opens a text or selects the next choice."""
-        again = place == self.names.index(self.name)
+        again = index == self.field_names.index(self.name)
         if not again:
-            self.go(place)
-        elif self.chosen_from:
-            self.turn(1)
-        elif self.is_text and not self.writing:
-            self.enter()
+            self.move_cursor(index)
+        elif self.field_choices:
+            self.show_choice(1)
+        elif self.accepts_any_text and not self.is_text_open:
+            self.handle_enter()
 
-    def go(self, place: int) -> None:
+    def move_cursor(self, index: int) -> None:
         """Move the cursor to a field, unless there is an unfinished entry."""
-        if not self.left_open():
-            self.place = max(0, min(len(self.names) - 1, place))
+        if not self.is_entry_unfinished():
+            self.field_index = max(0, min(len(self.field_names) - 1, index))
 
-    def go_to_tool(self, number: int) -> None:
+    def select_tool(self, number: int) -> None:
         """Select another tool at its first field, unless there is an unfinished entry."""
-        if not self.left_open():
-            self.book.at, self.place = max(OFFSETS[0], min(OFFSETS[-1], number)), 0
+        if not self.is_entry_unfinished():
+            self.offset_book.at, self.field_index = max(OFFSET_NUMBERS[0], min(OFFSET_NUMBERS[-1], number)), 0
 
-    def turn(self, step: int) -> None:
+    def show_choice(self, step: int) -> None:
         """Show the next or previous choice of the field. Enter saves it."""
-        choices = self.chosen_from
+        choices = self.field_choices
         if not choices:
             return
-        if why := self.cell_barred():
+        if why := self.find_cell_refusal():
             self.desk.say(why)
             return
-        now = self.text or self._choice()
+        now = self.text or self._find_choice()
         self.text = choices[(choices.index(now) + step) % len(choices)] if now in choices else choices[0]
 
-    def _choice(self) -> str:
+    def _find_choice(self) -> str:
         """Return the value of the field as one of its choices. Empty if it is not specified."""
-        value = self.value(self.name)
+        value = self.read_value(self.name)
         return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 
-    def enter(self) -> None:
+    def handle_enter(self) -> None:
         """Handle Enter: save the entered value or choice, open a text, or go to the next field."""
-        if self.text.strip() or self.writing:
-            self.store(lambda: self._save(self.name, value_typed(self.name, self.text, self.mode)))
-        elif self.is_text:
+        if self.text.strip() or self.is_text_open:
+            self.save_field(
+                lambda: self._save_field(self.name, parse_value(self.name, self.text, self.value_mode))
+            )
+        elif self.accepts_any_text:
             self._open()
         else:
-            self.go(self.names.index(self.name) + 1)
+            self.move_cursor(self.field_names.index(self.name) + 1)
 
     def _open(self) -> None:
-        if why := self.cell_barred():
+        if why := self.find_cell_refusal():
             self.desk.say(why)
         else:
-            self.writing, self.text = True, str(self.value(self.name))
+            self.is_text_open, self.text = True, str(self.read_value(self.name))
 
-    def _save(self, name: str, value: Value) -> str:
+    def _save_field(self, name: str, value: FieldValue) -> str:
         """Save a field. Raises EntryError if the value is a mistake in this field."""
         of_offset = name in ToolRow._fields
-        if of_offset and self.tool is None:
-            return ToolFields(self.history).never_set(self.number)
-        if (self.row is not None or of_offset) and value == self.value(name):
-            self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
+        if of_offset and self.tool_row is None:
+            return ToolFieldEditor(self.offset_history).describe_unset_tool(self.tool_number)
+        if (self.shape_row is not None or of_offset) and value == self.read_value(name):
+            self.desk.say(tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(self.tool_number))))
             return ""
-        self._check(name, value)
-        typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
-        return self.questions.change(
-            Kind.TOOL if of_offset else Kind.SHAPE, self.number, {name: value}, typed
+        self._check_shape(name, value)
+        typed = f"{'MM ' if self.value_mode.is_metric else ''}{translate_field(name)} {self.text.strip()}"
+        return self.offset_questions.change_fields(
+            OffsetKind.TOOL if of_offset else OffsetKind.SHAPE, self.tool_number, {name: value}, typed
         )
 
-    def _check(self, name: str, value: Value) -> None:
+    def _check_shape(self, name: str, value: FieldValue) -> None:
         """Raise EntryError if the value is a mistake in this field.
 
         Mistakes in other fields are only shown.
         """
-        tool, row = self.tool or ToolRow(), self.row or ShapeRow()
+        tool, row = self.tool_row or ToolRow(), self.shape_row or ShapeRow()
         if name in ToolRow._fields:
-            tool = with_fields(tool, {name: value})
+            tool = replace_fields(tool, {name: value})
         else:
-            row = with_fields(row, {name: value})
+            row = replace_fields(row, {name: value})
         wrong = [
-            each for each in row_mistakes(row, tool) if _OF_THE_OFFSET.get(each.field, each.field) == name
+            each
+            for each in find_mistakes(row, tool)
+            if _OFFSET_FIELDS.get(each.field_name, each.field_name) == name
         ]
         if wrong:
-            raise EntryError(wrong[0].text)
+            raise EntryError(wrong[0].message)
 
-    def remove_barred(self) -> str:
+    def find_delete_refusal(self) -> str:
         """Return why the shape cannot be deleted now. Empty if it can."""
-        if self.row is None:
-            return tr(Message("T{number}: NO TOOL SHAPE DEFINED", number=edge_number(self.number)))
-        return self.cell_barred()
+        if self.shape_row is None:
+            return tr(
+                Message("T{number}: NO TOOL SHAPE DEFINED", number=format_edge_suffix(self.tool_number))
+            )
+        return self.find_cell_refusal()
 
-    def remove(self) -> None:
+    def delete_shape(self) -> None:
         """Handle F3: delete the shape after the operator confirms."""
-        if why := self.remove_barred():
+        if why := self.find_delete_refusal():
             self.desk.say(why)
         else:
-            number = self.number
+            number = self.tool_number
             question = tr(
-                Message("PRESS Y TO DELETE THE SHAPE OF T{number}, N TO KEEP IT", number=edge_number(number))
+                Message(
+                    "PRESS Y TO DELETE THE SHAPE OF T{number}, N TO KEEP IT",
+                    number=format_edge_suffix(number),
+                )
             )
-            self.desk.ask(question, lambda: self._remove(number))
+            self.desk.ask_operator(question, lambda: self._remove(number))
 
     def _remove(self, number: int) -> None:
-        self.drop()
-        self.history.answer(self.cell_barred() or self.book.remove_shape(number, tr("no shape")))
+        self.discard_entry()
+        self.offset_history.show_refusal(
+            self.find_cell_refusal() or self.offset_book.remove_shape(number, tr("no shape"))
+        )

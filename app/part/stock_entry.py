@@ -6,22 +6,22 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from app.desk.arithmetic import EntryError, value_of
-from app.desk.kept_part import KeptPart
-from app.desk.status.formats import MM_PER_INCH, length
-from core.part.stock_spec import StockError, StockSpec, stock_spec
+from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.status.formats import MM_PER_INCH, format_length
+from app.desk.stored_part import StoredPart
+from core.part.stock_spec import StockError, StockSpec, parse_specification
 
-_PLACES = 6
+_DECIMALS = 6
 
 
 class StockKind(StrEnum):
-    """Kind of stock. ``NONE`` means not specified."""
+    """Kind of stock. ``UNSPECIFIED`` means not specified."""
 
-    NONE = "none"
+    UNSPECIFIED = "none"
     BAR = "bar"
     TUBE = "tube"
     PROFILE = "profile"
-    AFTER = "after"
+    PREVIOUS_PART = "after"
 
 
 class StockField(StrEnum):
@@ -36,23 +36,23 @@ class StockField(StrEnum):
     STICK_OUT = "stick_out"
 
 
-_ROUND = (StockField.DIAMETER, StockField.LENGTH, StockField.ALLOWANCE)
-_OF_A_FILE = (StockField.FILE, StockField.ALLOWANCE)
+_ROUND_FIELDS = (StockField.DIAMETER, StockField.LENGTH, StockField.ALLOWANCE)
+_FILE_FIELDS = (StockField.FILE, StockField.ALLOWANCE)
 _FIELDS = {
-    StockKind.NONE: (),
-    StockKind.BAR: _ROUND,
+    StockKind.UNSPECIFIED: (),
+    StockKind.BAR: _ROUND_FIELDS,
     StockKind.TUBE: (StockField.DIAMETER, StockField.BORE, StockField.LENGTH, StockField.ALLOWANCE),
-    StockKind.PROFILE: _OF_A_FILE,
-    StockKind.AFTER: _OF_A_FILE,
+    StockKind.PROFILE: _FILE_FIELDS,
+    StockKind.PREVIOUS_PART: _FILE_FIELDS,
 }
 _KINDS = {
-    StockKind.NONE: "",
+    StockKind.UNSPECIFIED: "",
     StockKind.BAR: "BAR",
     StockKind.TUBE: "TUBE",
     StockKind.PROFILE: "PROFILE",
-    StockKind.AFTER: "PART FROM ANOTHER PROGRAM",
+    StockKind.PREVIOUS_PART: "PART FROM ANOTHER PROGRAM",
 }
-_STICK_OUTS = (0.0, 40.0 * MM_PER_INCH)
+_STICK_LIMITS_MM = (0.0, 40.0 * MM_PER_INCH)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class StockEntry:
     ``file`` is a profile or the preceding program.
     """
 
-    kind: StockKind = StockKind.NONE
+    kind: StockKind = StockKind.UNSPECIFIED
     diameter: float = 0.0
     bore: float = 0.0
     length: float = 0.0
@@ -71,17 +71,17 @@ class StockEntry:
     stick_out: float = 0.0
 
     @classmethod
-    def of(cls, kept: KeptPart) -> StockEntry:
+    def of(cls, stored: StoredPart) -> StockEntry:
         """Return the entry for the stored data.
 
         An invalid stock text is ignored, but the stick-out remains.
         """
-        out = kept.stick_out or 0.0
+        out = stored.stick_out or 0.0
         try:
-            spec = stock_spec(kept.stock) if kept.stock else StockSpec("")
+            spec = parse_specification(stored.stock) if stored.stock else StockSpec("")
         except StockError:
             return cls(stick_out=out)
-        kind = StockKind(kept.stock.partition(":")[0]) if kept.stock else StockKind.NONE
+        kind = StockKind(stored.stock.partition(":")[0]) if stored.stock else StockKind.UNSPECIFIED
         file = spec.profile or spec.after
         return cls(kind, spec.diameter, spec.bore, spec.length, spec.allowance, file, out)
 
@@ -90,39 +90,39 @@ class StockEntry:
         """Fields that apply to this kind of stock."""
         return (StockField.KIND, *_FIELDS[self.kind], StockField.STICK_OUT)
 
-    def cell(self, name: StockField, metric: bool) -> str:
+    def format_field(self, field: StockField, metric: bool) -> str:
         """Return the text of a field, or an empty string if the field is not specified."""
-        if name is StockField.FILE:
+        if field is StockField.FILE:
             return Path(self.file).name
-        if name is StockField.KIND:
+        if field is StockField.KIND:
             return _KINDS[self.kind]
-        value = float(getattr(self, name))
-        return length(value, metric) if value else ""
+        value = float(getattr(self, field))
+        return format_length(value, metric) if value else ""
 
-    def typed(self, name: StockField, text: str, metric: bool) -> StockEntry:
+    def typed(self, field: StockField, text: str, metric: bool) -> StockEntry:
         """Return a copy with a typed length, in mm or inches.
 
         Raises EntryError if the length is not valid for the field.
         """
-        value = value_of(text) * (1.0 if metric else MM_PER_INCH)
+        value = evaluate_expression(text) * (1.0 if metric else MM_PER_INCH)
         if value < 0.0:
             raise EntryError("a stock length cannot be negative; enter 0 to clear the length")
-        low, high = _STICK_OUTS
-        if name is StockField.STICK_OUT and not low <= value <= high:
+        low, high = _STICK_LIMITS_MM
+        if field is StockField.STICK_OUT and not low <= value <= high:
             raise EntryError("the stick-out must be more than 0 and at most 40 in")
-        changed = replace(self, **{name.value: round(value, _PLACES)})  # type: ignore[arg-type]
+        changed = replace(self, **{field.value: round(value, _DECIMALS)})  # type: ignore[arg-type]
         if changed.kind is StockKind.TUBE and changed.diameter and changed.bore >= changed.diameter:
             raise EntryError("the bore of a tube must be smaller than its diameter")
         return changed
 
     @property
-    def lacks(self) -> StockField | None:
+    def missing_field(self) -> StockField | None:
         """First required field without a value, or None if the stock is complete."""
         wanted = {
             StockKind.BAR: (StockField.DIAMETER,),
             StockKind.TUBE: (StockField.DIAMETER, StockField.BORE),
             StockKind.PROFILE: (StockField.FILE,),
-            StockKind.AFTER: (StockField.FILE,),
+            StockKind.PREVIOUS_PART: (StockField.FILE,),
         }.get(self.kind, ())
         return next((name for name in wanted if not getattr(self, name)), None)
 
@@ -132,20 +132,20 @@ class StockEntry:
 
         Raises StockError if the stock is not possible.
         """
-        if self.kind is StockKind.NONE:
+        if self.kind is StockKind.UNSPECIFIED:
             return ""
-        if self.kind in {StockKind.PROFILE, StockKind.AFTER}:
+        if self.kind in {StockKind.PROFILE, StockKind.PREVIOUS_PART}:
             sizes = [self.file]
         else:
             round_ones = [self.diameter, *([self.bore] if self.kind is StockKind.TUBE else [])]
-            sizes = [_word(each) for each in (*round_ones, *([self.length] if self.length else []))]
-        allowance = f"+{_word(self.allowance)}" if self.allowance else ""
+            sizes = [_format_length(each) for each in (*round_ones, *([self.length] if self.length else []))]
+        allowance = f"+{_format_length(self.allowance)}" if self.allowance else ""
         text = f"{self.kind}:{':'.join(sizes)}{allowance}"
-        stock_spec(text)
+        parse_specification(text)
         return text
 
 
-def _word(mm: float) -> str:
+def _format_length(mm: float) -> str:
     """Return a length in inches if that text is shorter, and otherwise in mm."""
     inches, metric = (f"{value:.6f}".rstrip("0").rstrip(".") for value in (mm / MM_PER_INCH, mm))
     exact = abs(float(inches) * MM_PER_INCH - mm) < 1e-6

@@ -10,122 +10,122 @@ from PySide6.QtGui import QPainter
 from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
 from app.path.part_player import PartPlayer
-from app.screen.look import CENTRE, LEFT, Look, draw_sign, put
-from app.screen.panel import Press
+from app.screen.panel import OnPress
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ScreenTheme, draw_state_symbol, draw_text
 from core.message import Message
 
-_KEY = 6.6  # units: width of a key
-_STOCK = 9.0  # units: width of the STOCK key
-_WORDS = 15.0  # units: width of the time and line number at the right
-_LEAST = 8.0  # units: minimum width of the time line
+_KEY_WIDTH = 6.6  # units: width of a key
+_STOCK_KEY_WIDTH = 9.0  # units: width of the STOCK key
+_TEXT_WIDTH = 15.0  # units: width of the time and line number at the right
+_MIN_TRACK_WIDTH = 8.0  # units: minimum width of the time line
 
-Place = Callable[[QRectF, Press], None]
+AddTouchTarget = Callable[[QRectF, OnPress], None]
 
 
-class PartBar:
+class PartTimeline:
     """Time line of the part view, with its buttons and its touch handling."""
 
-    def __init__(self, look: Look, player: PartPlayer, stock: Press | None = None) -> None:
-        """Create the time line. ``stock`` opens the entry of the stock."""
-        self.look, self.player, self._stock = look, player, stock
+    def __init__(self, theme: ScreenTheme, player: PartPlayer, open_stock: OnPress | None = None) -> None:
+        """Create the time line. ``open_stock`` opens the entry of the stock."""
+        self.theme, self.part_player, self._stock = theme, player, open_stock
         self._track = QRectF()
         self._at = 0.0  # touch position in pixels
 
-    def takes(self, at: QPointF) -> bool:
+    def handle_touch(self, position: QPointF) -> bool:
         """Return whether a touch is on the active time line, and seek to its time.
 
         Returns False while the player follows the run.
         """
-        u = self.look.u
-        if self.player.bound or not self._track.adjusted(-u, -3 * u, u, 3 * u).contains(at):
+        u = self.theme.u
+        if self.part_player.follows_run or not self._track.adjusted(-u, -3 * u, u, 3 * u).contains(position):
             return False
-        self.player.playing = False
-        self._at = at.x()
+        self.part_player.is_playing = False
+        self._at = position.x()
         self._seek()
         return True
 
-    def drag(self, by: QPointF) -> None:
+    def handle_drag(self, pixels: QPointF) -> None:
         """Seek by a horizontal drag, in pixels."""
-        self._at += by.x()
+        self._at += pixels.x()
         self._seek()
 
     def _seek(self) -> None:
         share = (self._at - self._track.x()) / max(self._track.width(), 1.0)
-        self.player.seek(min(max(share, 0.0), 1.0) * self.player.duration)
+        self.part_player.seek_time(min(max(share, 0.0), 1.0) * self.part_player.duration_s)
 
-    def draw(self, painter: QPainter, room: QRectF, place: Place) -> None:
-        """Draw the buttons and the time line within ``room``.
+    def draw(self, painter: QPainter, area: QRectF, place: AddTouchTarget) -> None:
+        """Draw the buttons and the time line within ``area``.
 
         ``place`` registers the touch targets.
         """
-        look, u, player = self.look, self.look.u, self.player
-        box = QRectF(room.x() + 0.6 * u, room.y() + 0.5 * u, _KEY * u, room.height() - u)
-        self._sign(painter, box, Tone.PAUSE if player.playing else Tone.RUN)
-        place(box, player.play_or_pause)
+        look, u, player = self.theme, self.theme.u, self.part_player
+        box = QRectF(area.x() + 0.6 * u, area.y() + 0.5 * u, _KEY_WIDTH * u, area.height() - u)
+        self._sign(painter, box, Tone.PAUSE if player.is_playing else Tone.RUN)
+        place(box, player.toggle_playback)
         for word, press, lit in (
-            ("×10", player.faster, player.fast),
-            ("◀|", lambda: player.step(-1), False),
-            ("|▶", lambda: player.step(1), False),
+            ("×10", player.toggle_fast, player.is_fast),
+            ("◀|", lambda: player.step_blocks(-1), False),
+            ("|▶", lambda: player.step_blocks(1), False),
         ):
-            box = box.translated((_KEY + 0.5) * u, 0)
+            box = box.translated((_KEY_WIDTH + 0.5) * u, 0)
             self._key(painter, box, word, lit=lit)
             place(box, press)
         if self._stock is not None:
-            box = QRectF(box.right() + 0.5 * u, box.y(), _STOCK * u, box.height())
+            box = QRectF(box.right() + 0.5 * u, box.y(), _STOCK_KEY_WIDTH * u, box.height())
             self._key(painter, box, tr("STOCK"), lit=False, size=1.7)
             place(box, self._stock)
-        left, right = box.right() + 2.2 * u, room.right() - (_WORDS + 1.0) * u
+        left, right = box.right() + 2.2 * u, area.right() - (_TEXT_WIDTH + 1.0) * u
         self._track = QRectF()
-        if right - left < _LEAST * u:
+        if right - left < _MIN_TRACK_WIDTH * u:
             return  # There is not enough room for a time line.
-        self._track = QRectF(left, room.center().y() - 0.5 * u, right - left, u)
-        self._line(painter)
-        painter.setFont(look.font(1.7, bold=True))
-        painter.setPen(look.colour("soft" if player.bound else "text"))
-        words = QRectF(right + 1.6 * u, room.y(), _WORDS * u, room.height() / 2)
-        put(painter, words, LEFT, _clock(player.t) + " / " + _clock(player.duration))
-        shown = player.played
-        if shown is not None and shown.instant.line:
-            painter.setFont(look.font(1.6))
-            text = tr(Message("LINE {line}", line=shown.instant.line))
-            put(painter, words.translated(0, room.height() / 2 - 0.4 * u), LEFT, text)
+        self._track = QRectF(left, area.center().y() - 0.5 * u, right - left, u)
+        self._draw_line(painter)
+        painter.setFont(look.make_font(1.7, is_bold=True))
+        painter.setPen(look.color("soft" if player.follows_run else "text"))
+        words = QRectF(right + 1.6 * u, area.y(), _TEXT_WIDTH * u, area.height() / 2)
+        draw_text(
+            painter, words, ALIGN_LEFT, _format_time(player.time_s) + " / " + _format_time(player.duration_s)
+        )
+        shown = player.result
+        if shown is not None and shown.part_instant.line:
+            painter.setFont(look.make_font(1.6))
+            text = tr(Message("LINE {line}", line=shown.part_instant.line))
+            draw_text(painter, words.translated(0, area.height() / 2 - 0.4 * u), ALIGN_LEFT, text)
 
-    def _line(self, painter: QPainter) -> None:
+    def _draw_line(self, painter: QPainter) -> None:
         """Draw the track, the elapsed part, the error marks and the current position."""
-        look, u, track, player = self.look, self.look.u, self._track, self.player
-        length = max(player.duration, 1e-9)
-        at = track.x() + track.width() * min(player.t / length, 1.0)
-        painter.fillRect(track, look.colour("key"))
+        look, u, track, player = self.theme, self.theme.u, self._track, self.part_player
+        length = max(player.duration_s, 1e-9)
+        at = track.x() + track.width() * min(player.time_s / length, 1.0)
+        painter.fillRect(track, look.color("key"))
         painter.fillRect(
             QRectF(track.x(), track.y(), at - track.x(), track.height()),
-            look.colour("off" if player.bound else "lit"),
+            look.color("off" if player.follows_run else "lit"),
         )
-        for t in player.marks().tolist():
+        for t in player.find_error_times().tolist():
             mark = track.x() + track.width() * t / length
-            painter.fillRect(
-                QRectF(mark - 0.2 * u, track.y() - 1.0 * u, 0.4 * u, 3 * u), look.colour("alarm")
-            )
-        painter.setPen(look.pen("panel", 0.2))
-        painter.setBrush(look.colour("text"))
+            painter.fillRect(QRectF(mark - 0.2 * u, track.y() - 1.0 * u, 0.4 * u, 3 * u), look.color("alarm"))
+        painter.setPen(look.make_pen("panel", 0.2))
+        painter.setBrush(look.color("text"))
         painter.drawEllipse(QPointF(at, track.center().y()), 1.3 * u, 1.3 * u)
 
     def _key(self, painter: QPainter, box: QRectF, word: str, *, lit: bool, size: float = 2.0) -> None:
-        look = self.look
-        painter.fillRect(box, look.colour("lit" if lit else "key"))
-        dim = "soft" if self.player.bound else "text"
-        painter.setPen(look.colour("on_lit" if lit else dim))
-        painter.setFont(look.font(size, bold=True))
-        put(painter, box, CENTRE, word)
+        look = self.theme
+        painter.fillRect(box, look.color("lit" if lit else "key"))
+        dim = "soft" if self.part_player.follows_run else "text"
+        painter.setPen(look.color("on_lit" if lit else dim))
+        painter.setFont(look.make_font(size, is_bold=True))
+        draw_text(painter, box, ALIGN_CENTER, word)
 
     def _sign(self, painter: QPainter, box: QRectF, tone: Tone) -> None:
-        look, u = self.look, self.look.u
-        painter.fillRect(box, look.colour("key"))
+        look, u = self.theme, self.theme.u
+        painter.fillRect(box, look.color("key"))
         sign = QRectF(box.center().x() - 1.1 * u, box.center().y() - 1.1 * u, 2.2 * u, 2.2 * u)
-        draw_sign(painter, sign, tone, look.colour("soft" if self.player.bound else "text"))
+        draw_state_symbol(painter, sign, tone, look.color("soft" if self.part_player.follows_run else "text"))
         painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
-def _clock(seconds: float) -> str:
+def _format_time(seconds: float) -> str:
     """Return a time as minutes and seconds."""
     minutes, rest = divmod(max(seconds, 0.0), 60.0)
     return f"{int(minutes)}:{rest:04.1f}"

@@ -7,18 +7,18 @@ from enum import Enum
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
+    from app.path.path_picture import ProgramPicture
     from app.path.polyline import Polyline
     from core.executor.job import Job
     from core.executor.snapshot import Snapshot
 
 
-class Aspect(Enum):
+class PathAspect(Enum):
     """Direction from which a program is viewed.
 
     ``PATH`` is from above (X+ down, Z+ right). ``FACE`` is onto the end of the part, and ``SIDE`` is its
     unrolled side (Z+ right, C+ up). ``SECTION`` is the part cut along its axis, ``SOLID`` is the part in 3D,
-    and ``OPEN`` is the solid part without one quarter.
+    and ``OPEN_SOLID`` is the solid part without one quarter.
     """
 
     PATH = "PATH"
@@ -26,14 +26,14 @@ class Aspect(Enum):
     SIDE = "SIDE"
     SECTION = "SECTION"
     SOLID = "SOLID"
-    OPEN = "OPEN"
+    OPEN_SOLID = "OPEN"
 
 
-IN_SPACE = frozenset({Aspect.SOLID, Aspect.OPEN})
-OF_PART = IN_SPACE | {Aspect.SECTION}
+SPATIAL_ASPECTS = frozenset({PathAspect.SOLID, PathAspect.OPEN_SOLID})
+PART_ASPECTS = SPATIAL_ASPECTS | {PathAspect.SECTION}
 
 
-class Tip(NamedTuple):
+class TipPosition(NamedTuple):
     """Active block (0 for none) and the position of the tool tip in the frame of the part, in millimeters.
 
     ``c`` is the programmed C position in degrees while C is locked, and otherwise None. ``h`` is the height
@@ -45,13 +45,15 @@ class Tip(NamedTuple):
     x: float = 0.0
     c: float | None = None
     h: float = 0.0
-    stood: tuple[float, float] | None = None  # Z and X where an interrupted block stopped, if different
+    stop_position: tuple[float, float] | None = (
+        None  # Z and X where an interrupted block stopped, if different
+    )
 
 
-View = tuple[Aspect, ...]
+AspectView = tuple[PathAspect, ...]
 
 
-def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
+def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition:
     """Return the present tip position.
 
     If ``job`` was interrupted, the tip also contains the block and position of the interruption.
@@ -59,38 +61,42 @@ def tip_of(snapshot: Snapshot, job: Job | None = None) -> Tip:
     modal = snapshot.modal
     x, z, *rotary = snapshot.actual
     turned = rotary[0] - modal.offset_c if rotary and modal.c_locked else None
-    h = getattr(modal.mill.frame, "h", 0.0) if modal.mill is not None else 0.0
-    tip = Tip(snapshot.block, z - modal.base_z, x - modal.base_x, turned, h)
+    h = getattr(modal.mill.frame, "tool_height_mm", 0.0) if modal.mill is not None else 0.0
+    tip = TipPosition(snapshot.block, z - modal.drawing_zero_z, x - modal.drawing_zero_x, turned, h)
     found = snapshot.interrupted
     if snapshot.block or found is None or job is None or found.text != job.text_digest:
         return tip
     tool = job.setup.tools.get(found.tool)
     if tool is None:
         return tip
-    return tip._replace(block=found.block, stood=(found.where[1] - tool.z, found.where[0] - tool.x))
+    return tip._replace(block=found.block, stop_position=(found.where[1] - tool.z, found.where[0] - tool.x))
 
 
-def polyline_of(picture: Picture | None, aspect: Aspect) -> Polyline | None:
+def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyline | None:
     """Return the polyline of a picture for an aspect, or None if there is nothing to show."""
-    if picture is None or aspect is Aspect.PATH or aspect in OF_PART:
+    if picture is None or aspect is PathAspect.PATH or aspect in PART_ASPECTS:
         return picture
-    return picture.face if aspect is Aspect.FACE else picture.side
+    return picture.face if aspect is PathAspect.FACE else picture.side
 
 
-def views_of(picture: Picture, *, part: bool = False) -> list[View]:
+def find_views(picture: ProgramPicture, *, part: bool = False) -> list[AspectView]:
     """Return the views that the view key steps through.
 
     The first views show the path together with a face or side that is machined at C, then each of them alone.
     If ``part`` is set, the views of the part follow.
     """
-    more = [aspect for aspect in (Aspect.FACE, Aspect.SIDE) if polyline_of(picture, aspect) is not None]
-    both = [(Aspect.PATH, aspect) for aspect in more]
-    views = [*both, *((aspect,) for aspect in more), (Aspect.PATH,)]
+    more = [
+        aspect
+        for aspect in (PathAspect.FACE, PathAspect.SIDE)
+        if select_polyline(picture, aspect) is not None
+    ]
+    both = [(PathAspect.PATH, aspect) for aspect in more]
+    views = [*both, *((aspect,) for aspect in more), (PathAspect.PATH,)]
     if not part:
         return views
     if picture.part is None:
-        return [*views, (Aspect.SECTION,)] if picture.no_part else views  # The section shows the reason.
-    return [*views, (Aspect.SECTION,), (Aspect.SOLID,), (Aspect.OPEN,)]
+        return [*views, (PathAspect.SECTION,)] if picture.no_part else views  # The section shows the reason.
+    return [*views, (PathAspect.SECTION,), (PathAspect.SOLID,), (PathAspect.OPEN_SOLID,)]
 
 
 # --- legs of an approach ------------------------------------------------------------------------------

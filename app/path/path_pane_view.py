@@ -9,245 +9,259 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QPolygonF
 
-from app.path.measuring import farthest, point_at
-from app.path.path_aspects import OF_PART, Aspect, Tip, View, polyline_of, views_of
-from app.path.path_layers_view import Ink, Layers, polygon, stroke_run
-from app.path.path_picture import Picture, face_point
-from app.path.path_projection import Projection, boxed, fitted, runs, travelled
+from app.path.measuring import find_largest_distance, find_nearest_chord
+from app.path.path_aspects import (
+    PART_ASPECTS,
+    AspectView,
+    PathAspect,
+    TipPosition,
+    find_views,
+    select_polyline,
+)
+from app.path.path_layers_view import LineStyle, PathLayers, draw_run, make_polygon
+from app.path.path_picture import ProgramPicture, map_to_face
+from app.path.path_projection import Projection, fit_bounds, fit_mirrored, project_progress, project_runs
 from app.path.path_stock_view import Blank, blank_of, draw_blank
 from app.path.polyline import Bounds, Polyline
-from app.screen.look import Look
+from app.screen.screen_theme import ScreenTheme
 
 if TYPE_CHECKING:
     from app.path.part_player import PartPlayer
 
 ZOOM_STEP = 1.25
-PAN_STEP = 0.1  # ratio to the width of the pane
-MARGIN = 1.4  # units around the fitted path
+PAN_STEP_SHARE = 0.1  # ratio to the width of the pane
+FIT_MARGIN = 1.4  # units around the fitted path
 
-Place = tuple[float, float]
-PICK = 1.6  # units: maximum distance from a line at which a touch selects the line
-RING = 6.0  # units around a face: room for the circle of the part and its angles
-MOST_MARKED = 20_000  # maximum number of points of a line that are drawn thick
+Position = tuple[float, float]
+PICK_DISTANCE = 1.6  # units: maximum distance from a line at which a touch selects the line
+RING_MARGIN = 6.0  # units around a face: room for the circle of the part and its angles
+MAX_MARKED_POINTS = 20_000  # maximum number of points of a line that are drawn thick
 
 
-class Pane:
+class PathPane:
     """One pane of the path view. Positions are widget pixels, and drawings are relative to the pane.
 
-    z and x are the coordinates of the viewed plane. ``player`` is the player of the part, where the part is
-    shown.
+    z and x are the coordinates of the viewed plane. ``part_player`` is the player of the part, where the
+    part is shown.
     """
 
-    player: PartPlayer | None = None
+    part_player: PartPlayer | None = None
 
     def __init__(
-        self, look: Look, aspect: Aspect, polyline: Polyline, before: Polyline | None = None
+        self, theme: ScreenTheme, aspect: PathAspect, polyline: Polyline, before: Polyline | None = None
     ) -> None:
-        self.look, self.aspect = look, aspect
-        self.room = QRectF()
-        self.also: tuple[Place, ...] = ()  # points that must be visible together with the whole path
-        self.by_hand = False  # set when the user zooms or pans
+        self.theme, self.aspect = theme, aspect
+        self.area = QRectF()
+        self.extra_points: tuple[
+            Position, ...
+        ] = ()  # points that must be visible together with the whole path
+        self.is_adjusted = False  # set when the user zooms or pans
         self.projection: Projection | None = None
-        self.polyline, self.before = polyline, before
+        self.polyline, self.polyline_before = polyline, before
         self._blank = self._blank_below()
-        self.apart = farthest(before, polyline) if before is not None else None
-        self._layers: Layers | None = None
+        self.largest_distance = find_largest_distance(before, polyline) if before is not None else None
+        self._layers: PathLayers | None = None
         self._block = 0
-        self._place: Place | None = None  # position of the tip; None until the first position is set
-        self._stood: Place | None = None
-        self.marked: list[tuple[int, int]] = []  # ranges of points
+        self._place: Position | None = None  # position of the tip; None until the first position is set
+        self._stood: Position | None = None
+        self.marked_point_ranges: list[tuple[int, int]] = []  # ranges of points
 
     # --- projection and path -------------------------------------------------------------------------
 
-    def take(self, polyline: Polyline, before: Polyline | None) -> None:
+    def show_polyline(self, polyline: Polyline, before: Polyline | None) -> None:
         """Show another path. The projection remains if the user adjusted it."""
-        self.polyline, self.before, self._block, self.marked = polyline, before, 0, []
+        self.polyline, self.polyline_before, self._block, self.marked_point_ranges = polyline, before, 0, []
         self._blank = self._blank_below()
-        self.apart = farthest(before, polyline) if before is not None else None
-        if self.by_hand and self.projection is not None:
-            self.look_at(self.projection)
+        self.largest_distance = find_largest_distance(before, polyline) if before is not None else None
+        if self.is_adjusted and self.projection is not None:
+            self.set_projection(self.projection)
         else:
-            self.fit()
+            self.fit_view()
 
     def _blank_below(self) -> Blank | None:
         """Return the stock and clamping that are drawn below the path, or None."""
         picture = self.polyline
-        wanted = self.aspect is Aspect.PATH and self.before is None
-        return blank_of(picture) if wanted and isinstance(picture, Picture) else None
+        wanted = self.aspect is PathAspect.PATH and self.polyline_before is None
+        return blank_of(picture) if wanted and isinstance(picture, ProgramPicture) else None
 
-    def whole(self) -> Projection:
+    def make_full_projection(self) -> Projection:
         """Return the projection that shows the part, all cuts near it, and the path before a change.
 
         The chuck uses the width that remains.
         """
-        fit = boxed if self.aspect is Aspect.SIDE else fitted
+        fit = fit_bounds if self.aspect is PathAspect.SIDE else fit_mirrored
         bounds, blank = self.polyline.bounds, self._blank
         if blank is not None:
             bounds = blank.cuts_seen(bounds)
-        if self.before is not None:
-            bounds = _around(bounds, self.before.bounds)
-        for z, x in self.also:
-            bounds = _around(bounds, (z, z, x, x))
-        margin = (RING if self.aspect is Aspect.FACE else MARGIN) * self.look.u
-        whole = fit(bounds, int(self.room.width()), int(self.room.height()), margin)
+        if self.polyline_before is not None:
+            bounds = _unite_bounds(bounds, self.polyline_before.bounds)
+        for z, x in self.extra_points:
+            bounds = _unite_bounds(bounds, (z, z, x, x))
+        margin = (RING_MARGIN if self.aspect is PathAspect.FACE else FIT_MARGIN) * self.theme.u
+        whole = fit(bounds, int(self.area.width()), int(self.area.height()), margin)
         if blank is None or blank.chuck_from is None:
             return whole
-        free = self.room.width() - 2 * margin - (bounds[1] - bounds[0]) * whole.scale
+        free = self.area.width() - 2 * margin - (bounds[1] - bounds[0]) * whole.scale
         wanted = max(0.0, bounds[0] - blank.chuck_from) * whole.scale
-        return whole.moved(max(0.0, min(free, wanted)) / 2, 0.0)
+        return whole.shift(max(0.0, min(free, wanted)) / 2, 0.0)
 
-    def restart(self) -> None:
+    def redraw(self) -> None:
         """Draw the same view again, with new colors."""
         if self.projection is not None:
-            self.look_at(self.projection)
+            self.set_projection(self.projection)
 
-    def look_at(self, projection: Projection) -> None:
+    def set_projection(self, projection: Projection) -> None:
         """Set the projection and redraw the pane."""
         self.projection = projection
         blank = self._blank
         ground = None
         if blank is not None:
-            ground = partial(draw_blank, look=self.look, blank=blank, projection=projection)
-        self._layers = Layers(self.look, self.polyline, projection, self.before, ground)
-        self._layers.want(self._block - 1)
-        self._layers.advance()
+            ground = partial(draw_blank, look=self.theme, blank=blank, projection=projection)
+        self._layers = PathLayers(self.theme, self.polyline, projection, self.polyline_before, ground)
+        self._layers.request_blocks(self._block - 1)
+        self._layers.draw_slice()
 
-    def block_at(self, at: QPointF) -> int:
+    def find_block(self, position: QPointF) -> int:
         """Return the block that is drawn at or near a widget position, or 0 without a block."""
-        z, x = self.here(at)
-        point = point_at(self.polyline, z, x, PICK * self.look.u * self.pixel)
-        return 0 if point is None else self.polyline.block_of_point(point)
+        z, x = self.map_to_plane(position)
+        point = find_nearest_chord(self.polyline, z, x, PICK_DISTANCE * self.theme.u * self.pixel_size_mm)
+        return 0 if point is None else self.polyline.find_block(point)
 
     # --- navigation ----------------------------------------------------------------------------------
 
-    def lay(self, room: QRectF) -> None:
+    def set_area(self, area: QRectF) -> None:
         """Set the room of the pane. A changed size shows the whole path again."""
-        if room != self.room:
-            self.room = room
-            self.fit()
+        if area != self.area:
+            self.area = area
+            self.fit_view()
 
-    def fit(self) -> None:
+    def fit_view(self) -> None:
         """Show the whole path."""
-        self.by_hand = False
-        self.look_at(self.whole())
+        self.is_adjusted = False
+        self.set_projection(self.make_full_projection())
 
-    def include(self, places: Sequence[Place]) -> None:
+    def include_points(self, points: Sequence[Position]) -> None:
         """Set the points that must be visible together with the whole path."""
-        if tuple(places) != self.also:
-            self.also = tuple(places)
-            if not self.by_hand and self.projection is not None:
-                self.fit()
+        if tuple(points) != self.extra_points:
+            self.extra_points = tuple(points)
+            if not self.is_adjusted and self.projection is not None:
+                self.fit_view()
 
-    def zoom(self, steps: int, at: QPointF | None = None) -> None:
+    def zoom_view(self, steps: int, position: QPointF | None = None) -> None:
         """Zoom in (positive steps) or out, around a widget position, the largest difference or the middle."""
-        self.magnify(ZOOM_STEP**steps, at if at is not None else self._middle())
+        self.magnify(ZOOM_STEP**steps, position if position is not None else self._middle())
 
     def _middle(self) -> QPointF:
-        if self.apart is not None and self.projection is not None:
-            at = self.room.topLeft() + self.spot(self.apart.z, self.apart.x)
-            if self.room.contains(at):
+        if self.largest_distance is not None and self.projection is not None:
+            at = self.area.topLeft() + self.map_to_pane(self.largest_distance.z, self.largest_distance.x)
+            if self.area.contains(at):
                 return at
-        return self.room.center()
+        return self.area.center()
 
-    def magnify(self, factor: float, at: QPointF) -> None:
+    def magnify(self, factor: float, position: QPointF) -> None:
         """Magnify by a factor. The path under the position ``at`` stays in place."""
         if self.projection is not None:
-            self.by_hand = True
-            at = at - self.room.topLeft()
-            self.look_at(self.projection.zoomed(factor, at.x(), at.y()))
+            self.is_adjusted = True
+            position = position - self.area.topLeft()
+            self.set_projection(self.projection.zoom(factor, position.x(), position.y()))
 
-    def pan(self, across: int, down: int) -> None:
+    def pan_view(self, across: int, down: int) -> None:
         """Move the visible area to the right and down by a number of steps."""
-        step = PAN_STEP * self.room.width()
-        self.drag(QPointF(-across * step, -down * step))
+        step = PAN_STEP_SHARE * self.area.width()
+        self.handle_drag(QPointF(-across * step, -down * step))
 
-    def drag(self, by: QPointF) -> None:
+    def handle_drag(self, pixels: QPointF) -> None:
         """Move the picture by a drag, in pixels."""
         if self.projection is not None:
-            self.by_hand = True
-            self.look_at(self.projection.moved(by.x(), by.y()))
+            self.is_adjusted = True
+            self.set_projection(self.projection.shift(pixels.x(), pixels.y()))
 
     # --- coordinates ---------------------------------------------------------------------------------
 
     @property
-    def pixel(self) -> float:
+    def pixel_size_mm(self) -> float:
         """Size of one pixel in millimeters."""
         return 1.0 / self.projection.scale if self.projection is not None else 1.0
 
-    def spot(self, z: float, x: float) -> QPointF:
+    def map_to_pane(self, z: float, x: float) -> QPointF:
         """Return the pane position of a point of the plane, in pixels from the corner of the pane."""
         assert self.projection is not None
-        return QPointF(float(self.projection.across(z)), float(self.projection.down(x)))
+        return QPointF(float(self.projection.find_column(z)), float(self.projection.find_row(x)))
 
-    def here(self, at: QPointF) -> Place:
+    def map_to_plane(self, position: QPointF) -> Position:
         """Return the z and x of the plane at a widget position."""
-        projection, room = self.projection, self.room
+        projection, room = self.projection, self.area
         assert projection is not None
-        z = projection.z + (at.x() - room.x() - projection.width / 2) / projection.scale
-        return z, projection.x + (at.y() - room.y() - projection.height / 2) / projection.scale
+        z = projection.z + (position.x() - room.x() - projection.width / 2) / projection.scale
+        return z, projection.x + (position.y() - room.y() - projection.height / 2) / projection.scale
 
-    def sight(self) -> Bounds:
+    def find_visible_area(self) -> Bounds:
         """Return the visible area: minimum z, maximum z, minimum x, maximum x."""
-        (z0, x0), (z1, x1) = self.here(self.room.topLeft()), self.here(self.room.bottomRight())
+        (z0, x0), (z1, x1) = (
+            self.map_to_plane(self.area.topLeft()),
+            self.map_to_plane(self.area.bottomRight()),
+        )
         return z0, z1, x0, x1
 
-    def show_spot(self, z: float, x: float) -> None:
+    def pan_to_point(self, z: float, x: float) -> None:
         """Pan as far as necessary to make a point visible."""
-        at, room = self.spot(z, x), self.room
-        edge = MARGIN * self.look.u
+        at, room = self.map_to_pane(z, x), self.area
+        edge = FIT_MARGIN * self.theme.u
         over = QPointF(
             min(0.0, at.x() - edge) + max(0.0, at.x() - room.width() + edge),
             min(0.0, at.y() - edge) + max(0.0, at.y() - room.height() + edge),
         )
         if not over.isNull():
-            self.drag(-over)
+            self.handle_drag(-over)
 
     # --- moving parts --------------------------------------------------------------------------------
 
-    def stand(self, block: int, place: Place | None, stood: Place | None = None) -> None:
+    def set_run_state(
+        self, active_block: int, tip_position: Position | None, stop_position: Position | None = None
+    ) -> None:
         """Set the active block and the tip position, in the z and x of the polyline.
 
-        ``stood`` is the position where an interrupted block stopped.
+        ``stop_position`` is the position where an interrupted block stopped.
         """
-        if self._layers is not None and block != self._block:
-            self._layers.want(block - 1)
-        self._block, self._place = block, place
-        self._stood = stood
+        if self._layers is not None and active_block != self._block:
+            self._layers.request_blocks(active_block - 1)
+        self._block, self._place = active_block, tip_position
+        self._stood = stop_position
 
-    def end_of(self, block: int) -> Place | None:
+    def find_block_end(self, block: int) -> Position | None:
         """Return the end of a block, or the end of the last earlier block that is drawn in this pane."""
-        at = max(0, self.polyline.points_done(block) - 1)
+        at = max(0, self.polyline.count_finished_points(block) - 1)
         return (
             (float(self.polyline.z[at]), float(self.polyline.x[at])) if len(self.polyline.z) else self._place
         )
 
-    def place_of(self, tip: Tip) -> Place | None:
+    def find_tip_position(self, tip: TipPosition) -> Position | None:
         """Return the position of the machine's tip in this pane.
 
         A face retains its last position while C turns as the spindle.
         """
-        if self.aspect is Aspect.PATH or self.aspect in OF_PART:
+        if self.aspect is PathAspect.PATH or self.aspect in PART_ASPECTS:
             return tip.z, tip.x
         if tip.c is None:
             return self._place
-        if self.aspect is Aspect.FACE:
-            return face_point(tip.x, tip.c, tip.h)
-        return tip.z, -tip.c * self.polyline.round
+        if self.aspect is PathAspect.FACE:
+            return map_to_face(tip.x, tip.c, tip.h)
+        return tip.z, -tip.c * self.polyline.mm_per_degree
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
         """Draw blocks as thick lines. Each range is (first, last), inclusive, counted from 1."""
         first = self.polyline.first
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
-        self.marked = [(a, min(b, a + MOST_MARKED)) for a, b in ranges if b > a]
+        self.marked_point_ranges = [(a, min(b, a + MAX_MARKED_POINTS)) for a, b in ranges if b > a]
 
-    def advance(self) -> bool:
+    def draw_slice(self) -> bool:
         """Draw for a few milliseconds at most, and return whether anything changed."""
-        return self._layers is not None and self._layers.advance()
+        return self._layers is not None and self._layers.draw_slice()
 
     @property
-    def complete(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether everything requested is drawn."""
-        return self._layers is not None and self._layers.complete
+        return self._layers is not None and self._layers.is_complete
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -261,42 +275,46 @@ class Pane:
         if self.projection is None:
             return
         self._draw_marked(painter, self.projection)
-        if self.before is None:
-            self._under_way(painter, self.projection)
+        if self.polyline_before is None:
+            self._draw_active_block(painter, self.projection)
             self._tool_tip(painter)
-        elif self.apart is not None and self.apart.distance:
-            painter.setPen(self.look.pen("text", 0.2))
+        elif self.largest_distance is not None and self.largest_distance.distance:
+            painter.setPen(self.theme.make_pen("text", 0.2))
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawEllipse(self.spot(self.apart.z, self.apart.x), 1.4 * self.look.u, 1.4 * self.look.u)
+            painter.drawEllipse(
+                self.map_to_pane(self.largest_distance.z, self.largest_distance.x),
+                1.4 * self.theme.u,
+                1.4 * self.theme.u,
+            )
 
     def _draw_marked(self, painter: QPainter, projection: Projection) -> None:
-        pens = Ink.MARKED.pens(self.look)
+        pens = LineStyle.MARKED.make_pens(self.theme)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        for start, end in self.marked:
-            for run in runs(self.polyline, projection, start, end):
+        for start, end in self.marked_point_ranges:
+            for run in project_runs(self.polyline, projection, start, end):
                 painter.setPen(pens[run.stroke])
-                stroke_run(painter, run)
+                draw_run(painter, run)
 
-    def _under_way(self, painter: QPainter, projection: Projection) -> None:
+    def _draw_active_block(self, painter: QPainter, projection: Projection) -> None:
         """Draw the finished part of the active block."""
         if not self._block or self._place is None:
             return
-        if self._stood is not None and self.aspect is not Aspect.PATH:
+        if self._stood is not None and self.aspect is not PathAspect.PATH:
             return  # On a face or a side, the C position of the interruption is not known.
-        found = travelled(self.polyline, projection, self._block, *(self._stood or self._place))
+        found = project_progress(self.polyline, projection, self._block, *(self._stood or self._place))
         if found is not None:
-            painter.setPen(Ink.DONE.pens(self.look)[found.stroke])
+            painter.setPen(LineStyle.FINISHED.make_pens(self.theme)[found.stroke])
             painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawPolyline(polygon(found.columns, found.rows))
+            painter.drawPolyline(make_polygon(found.columns, found.rows))
 
     def _tool_tip(self, painter: QPainter) -> None:
         if self._place is None:
             return
-        look, u = self.look, self.look.u
-        at = self.spot(*self._place)
-        painter.setPen(look.pen("panel", 0.2))
-        painter.setBrush(look.colour("tip"))
-        if self.aspect is not Aspect.PATH:  # A mill is viewed along its axis.
+        look, u = self.theme, self.theme.u
+        at = self.map_to_pane(*self._place)
+        painter.setPen(look.make_pen("panel", 0.2))
+        painter.setBrush(look.color("tip"))
+        if self.aspect is not PathAspect.PATH:  # A mill is viewed along its axis.
             painter.drawEllipse(at, 0.7 * u, 0.7 * u)
             return
         side = 1.0 if self._place[1] >= 0 else -1.0
@@ -304,86 +322,89 @@ class Pane:
         painter.drawPolygon(QPolygonF([*body, at + QPointF(-1.1 * u, 1.6 * side * u)]))
 
 
-def _around(one: Bounds, other: Bounds) -> Bounds:
+def _unite_bounds(one: Bounds, other: Bounds) -> Bounds:
     """Return the bounding box of two boxes."""
     low, high = tuple(map(min, one, other)), tuple(map(max, one, other))
     return low[0], high[1], low[2], high[3]
 
 
-Make = Callable[[Aspect, Polyline, Polyline | None], Pane]
-LEAST = 40  # pixels: minimum width of a layout
+MakePane = Callable[[PathAspect, Polyline, Polyline | None], PathPane]
+MIN_LAYOUT_WIDTH_PX = 40  # pixels: minimum width of a layout
 
 
-class Panes:
+class PaneSet:
     """Panes of ``picture`` and, for a comparison, of the picture ``before`` the change.
 
-    ``keeps`` retains adjusted projections when the picture changes. ``make`` creates a pane.
+    ``keeps_view`` retains adjusted projections when the picture changes. ``make_pane`` creates a pane.
     """
 
-    def __init__(self, keeps: bool, make: Make, *, with_part: bool = False) -> None:
-        self._keeps, self._make, self._with_part = keeps, make, with_part
-        self.picture: Picture | None = None
-        self.before: Picture | None = None
-        self.now: list[Pane] = []
-        self._views: list[View] = []
+    def __init__(self, keeps_view: bool, make_pane: MakePane, *, has_part: bool = False) -> None:
+        self._keeps, self._make, self._with_part = keeps_view, make_pane, has_part
+        self.picture: ProgramPicture | None = None
+        self.picture_before: ProgramPicture | None = None
+        self.visible_panes: list[PathPane] = []
+        self._views: list[AspectView] = []
         self._view = 0
         self._room = QRectF()
 
-    def show(self, picture: Picture | None, before: Picture | None) -> None:
+    def set_pictures(self, picture: ProgramPicture | None, before: ProgramPicture | None) -> None:
         """Set the pictures. The present view remains if it still exists."""
-        self.picture, self.before = picture, before
+        self.picture, self.picture_before = picture, before
         with_part = self._with_part and before is None
-        views = views_of(picture, part=with_part) if picture is not None else []
+        views = find_views(picture, part=with_part) if picture is not None else []
         if views != self._views:
             self._views, self._view = views, 0
         self._fill()
 
     @property
-    def several(self) -> bool:
+    def has_several_views(self) -> bool:
         """Whether more than one view exists."""
         return len(self._views) > 1
 
     @property
-    def choices(self) -> int:
+    def view_count(self) -> int:
         """Number of views."""
         return len(self._views)
 
-    def next_view(self) -> None:
+    def select_next_view(self) -> None:
         """Switch to the next view."""
         self._view = (self._view + 1) % max(1, len(self._views))
         self._fill()
 
-    def lay(self, room: QRectF) -> None:
+    def set_area(self, area: QRectF) -> None:
         """Divide the room among the panes."""
-        self._room = room
-        if room.width() <= LEAST or not self.now:
+        self._room = area
+        if area.width() <= MIN_LAYOUT_WIDTH_PX or not self.visible_panes:
             return
-        wide = room.width() / len(self.now)
-        for number, pane in enumerate(self.now):
-            box = QRectF(room.x() + number * wide, room.y(), wide, room.height())
-            pane.lay(box.toRect().toRectF())
+        wide = area.width() / len(self.visible_panes)
+        for number, pane in enumerate(self.visible_panes):
+            box = QRectF(area.x() + number * wide, area.y(), wide, area.height())
+            pane.set_area(box.toRect().toRectF())
 
-    def at(self, place: QPointF) -> Pane | None:
+    def at(self, position: QPointF) -> PathPane | None:
         """Return the pane at a widget position, or None."""
-        return next((pane for pane in self.now if pane.room.contains(place)), None)
+        return next((pane for pane in self.visible_panes if pane.area.contains(position)), None)
 
-    def advance(self) -> bool:
+    def draw_slice(self) -> bool:
         """Draw for a few milliseconds at most, and return whether anything changed."""
-        drawn = [pane.advance() for pane in self.now]
+        drawn = [pane.draw_slice() for pane in self.visible_panes]
         return any(drawn)
 
     def _fill(self) -> None:
         aspects = self._views[self._view] if self._views else ()
-        kept = {pane.aspect: pane for pane in self.now} if self._keeps else {}
+        kept = {pane.aspect: pane for pane in self.visible_panes} if self._keeps else {}
         panes = []
         for aspect in aspects:
-            polyline, before = polyline_of(self.picture, aspect), polyline_of(self.before, aspect)
+            polyline, before = (
+                select_polyline(self.picture, aspect),
+                select_polyline(self.picture_before, aspect),
+            )
             assert polyline is not None
             pane = kept.get(aspect)
             if pane is None:
                 pane = self._make(aspect, polyline, before)
             else:
-                pane.take(polyline, before)
+                pane.show_polyline(polyline, before)
             panes.append(pane)
-        self.now = panes
-        self.lay(self._room)
+        self.visible_panes = panes
+        self.set_area(self._room)

@@ -16,31 +16,31 @@ import numpy as np
 import numpy.typing as npt
 
 from app.path.polyline import (
-    SAME,
-    Floats,
+    SAME_POINT_MM,
+    FloatArray,
     Polyline,
     PolylineBuilder,
     Stroke,
-    arc_pieces,
-    bounds_of,
-    mill_way,
-    turn_pieces,
+    count_arc_chords,
+    count_turn_chords,
+    find_bounds,
+    sample_mill_move,
 )
-from app.working_plane.plane_scene import Scene, SceneBuilder
+from app.working_plane.plane_scene import MillScene, SceneBuilder
 from core.geometry.lines_and_arcs import arc_sweep
-from core.geometry.virtual_mill import Face, Side
-from core.interpreter.shared.elementary_blocks import Block, Kind, Series, TimedSeries
+from core.geometry.virtual_mill import FacePlane, SidePlane
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries, TimedSeries
 
 if TYPE_CHECKING:
-    from core.geometry.virtual_mill import PlaneMove, Spot
-    from core.proving.part_history import PartMoves
+    from core.geometry.virtual_mill import MillPoint, PlaneMove
+    from core.proving.part_history import ProgramSteps
 
 
-STILL = 1e-9  # mm, degrees
-LEAST = 1.0  # mm: radius for unrolling a side whose radius is unknown
+STILL_TOLERANCE = 1e-9  # mm, degrees
+MIN_UNROLL_RADIUS_MM = 1.0  # mm: radius for unrolling a side whose radius is unknown
 
 
-def face_point(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
+def map_to_face(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
     """Return the position on the face (right, down) of a tip at lathe X (a radius).
 
     C is turned by ``c`` degrees, and ``h`` is the height of the center line.
@@ -54,39 +54,39 @@ class FaceBuilder:
     """Collects the moves that are visible on the face."""
 
     def __init__(self, blocks: int) -> None:
-        self.pencil = PolylineBuilder(blocks)
-        self.wanted = False
+        self.polyline_builder = PolylineBuilder(blocks)
+        self.is_needed = False
 
-    def mill(self, move: PlaneMove, frame: Face, way: list[Spot], stroke: int) -> None:
+    def add_mill_move(self, move: PlaneMove, frame: FacePlane, points: list[MillPoint], stroke: int) -> None:
         """Add a move of plane switching, in a frame that was turned by ``frame.c0`` on entry."""
-        self.wanted = True
-        turn = -math.radians(frame.heading)
+        self.is_needed = True
+        turn = -math.radians(frame.heading_deg)
         cos, sin = math.cos(turn), math.sin(turn)
         x, y, _ = move.start
-        self.pencil.start(x * cos + y * sin, x * sin - y * cos)
-        for x, y, _ in way:
-            self.pencil.to(x * cos + y * sin, x * sin - y * cos, stroke)
-        if move.centre is not None:
-            x, y = move.centre
-            self.pencil.centres.extend((x * cos + y * sin, x * sin - y * cos))
+        self.polyline_builder.start_at(x * cos + y * sin, x * sin - y * cos)
+        for x, y, _ in points:
+            self.polyline_builder.add_point(x * cos + y * sin, x * sin - y * cos, stroke)
+        if move.center is not None:
+            x, y = move.center
+            self.polyline_builder.centers.extend((x * cos + y * sin, x * sin - y * cos))
 
-    def move(self, block: Block, x0: float, x1: float, stroke: int) -> None:
+    def add_move(self, block: Block, x0: float, x1: float, stroke: int) -> None:
         """Add any other move with C locked, from lathe X ``x0`` to lathe X ``x1``."""
-        self.wanted |= abs(block.c - block.c0) > STILL and abs(x1 - x0) > STILL
-        self.pencil.start(*face_point(x0, block.c0))
-        pieces = turn_pieces(block.c - block.c0)
+        self.is_needed |= abs(block.c - block.c0) > STILL_TOLERANCE and abs(x1 - x0) > STILL_TOLERANCE
+        self.polyline_builder.start_at(*map_to_face(x0, block.c0))
+        pieces = count_turn_chords(block.c - block.c0)
         for k in range(1, pieces + 1):
             s = k / pieces
             c = block.c0 + (block.c - block.c0) * s
-            self.pencil.to(*face_point(x0 + (x1 - x0) * s, c), stroke)
+            self.polyline_builder.add_point(*map_to_face(x0 + (x1 - x0) * s, c), stroke)
 
-    def polyline(self) -> Polyline:
+    def build_polyline(self) -> Polyline:
         """Return the polyline of the collected moves."""
-        z, x, stroke, first = self.pencil.arrays()
-        low_z, high_z, low_x, high_x = bounds_of(z, x, stroke)
+        z, x, stroke, first = self.polyline_builder.make_arrays()
+        low_z, high_z, low_x, high_x = find_bounds(z, x, stroke)
         reach = max(abs(low_z), abs(high_z), abs(low_x), abs(high_x))
-        centres = np.array(self.pencil.centres).reshape(-1, 2)
-        return Polyline(z, x, stroke, first, (-reach, reach, -reach, reach), centres=centres)
+        centres = np.array(self.polyline_builder.centers).reshape(-1, 2)
+        return Polyline(z, x, stroke, first, (-reach, reach, -reach, reach), centers=centres)
 
 
 class SideBuilder:
@@ -96,43 +96,49 @@ class SideBuilder:
     """
 
     def __init__(self, blocks: int) -> None:
-        self.pencil = PolylineBuilder(blocks)
-        self.wanted = False
+        self.polyline_builder = PolylineBuilder(blocks)
+        self.is_needed = False
         self._diameter = 0.0  # diameter of the first plane, which the program uses
         self._reach = 0.0
 
-    def mill(self, move: PlaneMove, frame: Side, way: list[Spot], stroke: int, dz: float) -> None:
+    def add_mill_move(
+        self, move: PlaneMove, frame: SidePlane, points: list[MillPoint], stroke: int, dz: float
+    ) -> None:
         """Add a move of plane switching. ``dz`` converts program Z to the Z of the part."""
-        self.wanted = True
+        self.is_needed = True
         self._diameter = self._diameter or frame.diameter
         degrees = 360.0 / (math.pi * frame.diameter)
         x, y, _ = move.start
-        self.pencil.start(frame.z0 - x + dz, y * degrees - frame.c0)
-        for x, y, _ in way:
-            self.pencil.to(frame.z0 - x + dz, y * degrees - frame.c0, stroke)
-        if move.centre is not None:
-            x, y = move.centre
-            self.pencil.centres.extend((frame.z0 - x + dz, y * degrees - frame.c0))
+        self.polyline_builder.start_at(frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg)
+        for x, y, _ in points:
+            self.polyline_builder.add_point(
+                frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg, stroke
+            )
+        if move.center is not None:
+            x, y = move.center
+            self.polyline_builder.centers.extend((frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg))
 
-    def move(self, block: Block, x: float, dz: float, stroke: int) -> None:
+    def add_move(self, block: Block, x: float, dz: float, stroke: int) -> None:
         """Add any other move with C locked, to lathe X ``x``."""
-        self.wanted |= abs(block.c - block.c0) > STILL and abs(block.z - block.z0) > STILL
+        self.is_needed |= (
+            abs(block.c - block.c0) > STILL_TOLERANCE and abs(block.z - block.z0) > STILL_TOLERANCE
+        )
         if stroke != Stroke.RAPID:
             self._reach = max(self._reach, abs(x))
-        self.pencil.start(block.z0 + dz, -block.c0)
-        self.pencil.to(block.z + dz, -block.c, stroke)
+        self.polyline_builder.start_at(block.z0 + dz, -block.c0)
+        self.polyline_builder.add_point(block.z + dz, -block.c, stroke)
 
-    def polyline(self) -> Polyline:
+    def build_polyline(self) -> Polyline:
         """Return the collected moves, unrolled at a diameter.
 
         The diameter is that of the first plane, or else the largest cut diameter.
         """
-        z, x, stroke, first = self.pencil.arrays()
-        scale = math.pi * (self._diameter or 2 * max(self._reach, LEAST)) / 360.0
-        centres = np.array(self.pencil.centres).reshape(-1, 2) * (1.0, scale)
-        down: Floats = x * scale
-        bounds = bounds_of(z, down, stroke)
-        return Polyline(z, down, stroke, first, bounds, centres=centres, round=scale)
+        z, x, stroke, first = self.polyline_builder.make_arrays()
+        scale = math.pi * (self._diameter or 2 * max(self._reach, MIN_UNROLL_RADIUS_MM)) / 360.0
+        centres = np.array(self.polyline_builder.centers).reshape(-1, 2) * (1.0, scale)
+        down: FloatArray = x * scale
+        bounds = find_bounds(z, down, stroke)
+        return Polyline(z, down, stroke, first, bounds, centers=centres, mm_per_degree=scale)
 
 
 class FaceAndSideBuilder:
@@ -141,52 +147,52 @@ class FaceAndSideBuilder:
     def __init__(self, blocks: int) -> None:
         self._face, self._side = FaceBuilder(blocks), SideBuilder(blocks)
 
-    def add(self, block: Block, stroke: int, way: list[Spot]) -> None:
+    def add_move(self, block: Block, stroke: int, points: list[MillPoint]) -> None:
         """Add one move with C locked.
 
-        ``way`` contains the mill's points after the start of a move in a plane.
+        ``points`` contains the mill's points after the start of a move in a plane.
         """
         modal, plane = block.modal, block.plane
-        dz = block.offset_z - modal.base_z
+        dz = block.offset_z - modal.drawing_zero_z
         if plane is None:
-            dx = block.offset_x - modal.base_x
-            self._face.move(block, block.x0 + dx, block.x + dx, stroke)
-            self._side.move(block, block.x + dx, dz, stroke)
-        elif isinstance(plane.frame, Side):
-            self._side.mill(plane, plane.frame, way, stroke, dz + modal.secondary_z)
+            dx = block.offset_x - modal.drawing_zero_x
+            self._face.add_move(block, block.x0 + dx, block.x + dx, stroke)
+            self._side.add_move(block, block.x + dx, dz, stroke)
+        elif isinstance(plane.frame, SidePlane):
+            self._side.add_mill_move(plane, plane.frame, points, stroke, dz + modal.secondary_z)
         else:
-            self._face.mill(plane, plane.frame, way, stroke)
+            self._face.add_mill_move(plane, plane.frame, points, stroke)
 
     def end_block(self) -> None:
         """Mark the end of a block, whether or not the block is visible."""
-        self._face.pencil.end_block()
-        self._side.pencil.end_block()
+        self._face.polyline_builder.end_block()
+        self._side.polyline_builder.end_block()
 
-    def polylines(self) -> tuple[Polyline | None, Polyline | None]:
+    def build_polylines(self) -> tuple[Polyline | None, Polyline | None]:
         """Return face and side, each None if nothing is visible there.
 
         A program that uses C only for indexing is shown on the face.
         """
         face, side = self._face, self._side
-        divides = not side.wanted and len(face.pencil.z) > 0
+        divides = not side.is_needed and len(face.polyline_builder.z) > 0
         return (
-            face.polyline() if face.wanted or divides else None,
-            side.polyline() if side.wanted else None,
+            face.build_polyline() if face.is_needed or divides else None,
+            side.build_polyline() if side.is_needed else None,
         )
 
 
-def way_of(block: Block) -> list[Spot]:
+def find_mill_points(block: Block) -> list[MillPoint]:
     """Return the mill's points after the start of a move in a plane."""
-    return [] if block.plane is None else mill_way(block.plane, block.c - block.c0)
+    return [] if block.plane is None else sample_mill_move(block.plane, block.c - block.c0)
 
 
-WATCHED = 2000  # number of blocks between two checks for cancellation
+BLOCKS_PER_CHECK = 2000  # number of blocks between two checks for cancellation
 
-Timed = tuple[Block, float, float]
+TimedBlocks = tuple[Block, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Picture(Polyline):
+class ProgramPicture(Polyline):
     """Path seen from above, with X+ down. ``face`` and ``side`` show the cuts with C locked.
 
     ``ends`` (blocks + 1,) is the program time in seconds at the end of each block, starting with 0. ``chord``
@@ -200,11 +206,11 @@ class Picture(Polyline):
     face: Polyline | None = None
     side: Polyline | None = None
     metric: bool = False
-    scene: Scene | None = None  # scene of a mill
-    part: PartMoves | None = None  # moves from which the part can be calculated
+    scene: MillScene | None = None  # scene of a mill
+    part: ProgramSteps | None = None  # moves from which the part can be calculated
     no_part: str = ""  # reason why the part is not calculated
 
-    def block_of_line(self, line: int) -> int:
+    def find_block_for_line(self, line: int) -> int:
         """Return the block that ends the first pass through a source line.
 
         If the line has no blocks, the nearest earlier line with blocks is used. Returns 0 if no such line
@@ -217,152 +223,156 @@ class Picture(Polyline):
         apart = np.flatnonzero(np.diff(there) > 1)
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
-    def blocks_before(self, line: int) -> int:
+    def count_blocks_before(self, line: int) -> int:
         """Return the number of blocks that are finished when a source line is first reached."""
         there = np.flatnonzero(self.line == line)
-        return int(there[0]) if len(there) else self.block_of_line(line)
+        return int(there[0]) if len(there) else self.find_block_for_line(line)
 
-    def blocks_of_line(self, line: int) -> list[tuple[int, int]]:
+    def find_blocks_for_line(self, line: int) -> list[tuple[int, int]]:
         """Return all blocks of a source line as inclusive ranges (first, last), counted from 1."""
         there = np.flatnonzero(self.line == line) + 1
         parts = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1) if len(there) else []
         return [(int(part[0]), int(part[-1])) for part in parts]
 
-    def line_of_block(self, block: int) -> int:
+    def find_source_line(self, block: int) -> int:
         """Return the source line of a block, both counted from 1, or 0 for no block."""
         return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0
 
-    def time_left(self, block: int, to_go: float) -> float:
+    def time_left(self, block: int, remaining_mm: float) -> float:
         """Return the remaining program time in seconds, at 100 % override.
 
-        ``to_go`` is the distance in mm that remains in block number ``block``.
+        ``remaining_mm`` is the distance in mm that remains in block number ``block``.
         """
         total = float(self.ends[-1])
         if not 1 <= block <= self.blocks:
             return total
         start, end = float(self.ends[block - 1]), float(self.ends[block])
         chord = float(self.chord[block - 1])
-        share = min(1.0, to_go / chord) if chord > SAME else 1.0
+        share = min(1.0, remaining_mm / chord) if chord > SAME_POINT_MM else 1.0
         return total - end + (end - start) * share
 
 
 class PictureBuilder:
     """Collects blocks into a picture. ``metric`` is the unit of a picture without blocks."""
 
-    def __init__(self, metric: bool = False) -> None:
+    def __init__(self, is_metric: bool = False) -> None:
         self._pencil = PolylineBuilder()
         self._turned: FaceAndSideBuilder | None = None
-        self._metric = metric
+        self._metric = is_metric
         self._scene = SceneBuilder()
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
-    def add(self, block: Block, end: float) -> None:
+    def add_block(self, block: Block, end_time: float) -> None:
         """Append one block that ends ``end`` seconds after the start of the program."""
         if block.swivel is not None:
-            self._scene.add(block, block.swivel)  # The picture of a lathe has no meaning for such a block.
+            self._scene.add_block(
+                block, block.swivel
+            )  # The picture of a lathe has no meaning for such a block.
         elif block.moves:
             if block.modal.c_locked:
                 self._locked(block)
-            elif block.kind is not Kind.ROTATE:
+            elif block.kind is not BlockKind.ROTATE:
                 self._move(block, _stroke(block))
         self._pencil.end_block()
         if self._turned is not None:
             self._turned.end_block()
-        self._ends.append(end)
+        self._ends.append(end_time)
         self._line.append(block.line)
         self._metric = block.modal.metric
-        self._chord.append(_chord(block) if block.moves else 0.0)
+        self._chord.append(_find_chord(block) if block.moves else 0.0)
 
-    def add_series(self, series: Series, ends: Floats) -> None:
+    def add_series(self, series: StraightMoveSeries, end_times: FloatArray) -> None:
         """Append straight moves that end ``ends`` (m,) seconds after the start of the program."""
         like = series.pattern
         if self._turned is not None or like.modal.c_locked:
-            for block, end in zip(series, ends.tolist(), strict=True):
-                self.add(block, end)
+            for block, end in zip(series, end_times.tolist(), strict=True):
+                self.add_block(block, end)
             return
-        dx, dz = like.offset_x - like.modal.base_x, like.offset_z - like.modal.base_z
-        self._pencil.start(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
-        self._pencil.row(series.z + dz, series.x + dx, _stroke(like))
-        self._ends.frombytes(ends.tobytes())
+        dx, dz = like.offset_x - like.modal.drawing_zero_x, like.offset_z - like.modal.drawing_zero_z
+        self._pencil.start_at(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
+        self._pencil.add_separate_points(series.z + dz, series.x + dx, _stroke(like))
+        self._ends.frombytes(end_times.tobytes())
         self._line.frombytes(series.line.tobytes())
         self._chord.frombytes(np.hypot(series.x - series.x0, series.z - series.z0).tobytes())
         self._metric = like.modal.metric
 
-    def add_timed(self, each: Timed | TimedSeries) -> int:
+    def add_timed(self, each: TimedBlocks | TimedSeries) -> int:
         """Append a timed block or series of moves, and return the number of blocks."""
         if isinstance(each, TimedSeries):
-            self.add_series(each.series, each.t1)
+            self.add_series(each.series, each.end_times_s)
             return len(each.series)
-        self.add(each[0], each[2])
+        self.add_block(each[0], each[2])
         return 1
 
-    def picture(self) -> Picture:
+    def build_picture(self) -> ProgramPicture:
         """Return the picture of the appended blocks."""
-        z, x, stroke, first = self._pencil.arrays()
-        face, side = self._turned.polylines() if self._turned is not None else (None, None)
-        return Picture(
+        z, x, stroke, first = self._pencil.make_arrays()
+        face, side = self._turned.build_polylines() if self._turned is not None else (None, None)
+        return ProgramPicture(
             z=z,
             x=x,
             stroke=stroke,
             first=first,
             ends=np.array(self._ends),
             chord=np.array(self._chord),
-            bounds=bounds_of(z, x, stroke),
-            centres=np.array(self._pencil.centres).reshape(-1, 2),
+            bounds=find_bounds(z, x, stroke),
+            centers=np.array(self._pencil.centers).reshape(-1, 2),
             line=np.array(self._line, dtype=np.int64),
             face=face,
             side=side,
             metric=self._metric,
-            scene=self._scene.scene(),
+            scene=self._scene.build_scene(),
         )
 
     def _locked(self, block: Block) -> None:
         if self._turned is None:
             self._turned = FaceAndSideBuilder(len(self._line))
-        stroke, way = _stroke(block), way_of(block)
-        self._turned.add(block, stroke, way)
+        stroke, way = _stroke(block), find_mill_points(block)
+        self._turned.add_move(block, stroke, way)
         if block.plane is not None:
-            self._mill(block, block.plane, way, stroke)
-        elif block.kind is not Kind.ROTATE:
+            self._add_mill_move(block, block.plane, way, stroke)
+        elif block.kind is not BlockKind.ROTATE:
             self._move(block, stroke)
 
     def _move(self, block: Block, stroke: Stroke) -> None:
-        dx = block.offset_x - block.modal.base_x
-        dz = block.offset_z - block.modal.base_z
-        self._pencil.start(block.z0 + dz, block.x0 + dx)
-        if block.kind is Kind.ARC:
+        dx = block.offset_x - block.modal.drawing_zero_x
+        dz = block.offset_z - block.modal.drawing_zero_z
+        self._pencil.start_at(block.z0 + dz, block.x0 + dx)
+        if block.kind is BlockKind.ARC:
             self._arc(block, dx, dz, stroke)
-        self._pencil.to(block.z + dz, block.x + dx, stroke)
+        self._pencil.add_point(block.z + dz, block.x + dx, stroke)
 
     def _arc(self, block: Block, dx: float, dz: float, stroke: Stroke) -> None:
         start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
         radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
-        pieces = arc_pieces(radius, sweep)
+        pieces = count_arc_chords(radius, sweep)
         cz, cx = block.cz + dz, block.cx + dx
-        self._pencil.centres.extend((cz, cx))
+        self._pencil.centers.extend((cz, cx))
         for k in range(1, pieces):
             at = start + sweep * k / pieces
-            self._pencil.to(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
+            self._pencil.add_point(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
 
-    def _mill(self, block: Block, plane: PlaneMove, way: list[Spot], stroke: Stroke) -> None:
+    def _add_mill_move(self, block: Block, plane: PlaneMove, points: list[MillPoint], stroke: Stroke) -> None:
         """Add the motion of the X and Z axes during a move of the mill in a plane."""
         modal = block.modal
-        dx = block.offset_x - modal.base_x + modal.secondary_x
-        dz = block.offset_z - modal.base_z + modal.secondary_z
-        side = 1.0 if plane.frame.far else -1.0
-        for number, (x, y, z) in enumerate((plane.start, *way)):
-            if isinstance(plane.frame, Face):
-                h = plane.frame.h
+        dx = block.offset_x - modal.drawing_zero_x + modal.secondary_x
+        dz = block.offset_z - modal.drawing_zero_z + modal.secondary_z
+        side = 1.0 if plane.frame.is_far_side else -1.0
+        for number, (x, y, z) in enumerate((plane.start, *points)):
+            if isinstance(plane.frame, FacePlane):
+                h = plane.frame.tool_height_mm
                 at = (z + dz, dx + side * math.sqrt(max(x * x + y * y - h * h, 0.0)))
             else:
-                at = (plane.frame.z0 - x + dz, dx + side * z)
+                at = (plane.frame.z_start_mm - x + dz, dx + side * z)
             if number:
-                self._pencil.to(*at, stroke)
+                self._pencil.add_point(*at, stroke)
             else:
-                self._pencil.start(*at)
+                self._pencil.start_at(*at)
 
 
-def picture_of(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], None]) -> Picture:
+def build_picture(
+    blocks: Iterable[TimedBlocks | TimedSeries], watch: Callable[[int], None]
+) -> ProgramPicture:
     """Return the picture of all blocks.
 
     ``watch`` is called with the block count at intervals and may raise an exception to cancel.
@@ -370,13 +380,13 @@ def picture_of(blocks: Iterable[Timed | TimedSeries], watch: Callable[[int], Non
     sketch, count, told = PictureBuilder(), 0, 0
     for each in blocks:
         count += sketch.add_timed(each)
-        if count - told >= WATCHED:
+        if count - told >= BLOCKS_PER_CHECK:
             told = count
             watch(count)
-    return sketch.picture()
+    return sketch.build_picture()
 
 
-def _chord(block: Block) -> float:
+def _find_chord(block: Block) -> float:
     """Return the distance from start to end in the first two axes, in mm, as used for the distance to go."""
     if block.travel is not None:
         return math.dist(block.travel.start[:2], block.travel.end[:2])
@@ -384,6 +394,6 @@ def _chord(block: Block) -> float:
 
 
 def _stroke(block: Block) -> Stroke:
-    if block.kind is Kind.RAPID:
+    if block.kind is BlockKind.RAPID:
         return Stroke.RAPID
     return Stroke.TURN if block.modal.spindle else Stroke.MILL

@@ -8,13 +8,13 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QBrush, QPainter
 
-from app.path.path_layers_view import polygon
-from app.path.path_picture import Picture
-from app.path.path_projection import Line, Projection, clamping_areas, stock_areas, stock_outline
+from app.path.path_layers_view import make_polygon
+from app.path.path_picture import ProgramPicture
+from app.path.path_projection import PixelLine, Projection, project_clamping, project_stock, stock_areas
 from app.path.polyline import Bounds
-from app.screen.look import Look
+from app.screen.screen_theme import ScreenTheme
 from core.interpreter.shared.units import MM_PER_INCH
-from core.part.stock import Clamping, Stock, bar
+from core.part.stock import Clamping, Stock, make_bar
 from core.part.stock_spec import StockError, StockSpec
 
 BESIDE = 0.12  # ratio to the length and diameter of the part: visible room for the tool
@@ -41,9 +41,11 @@ class Blank:
         if self.stock is None:
             return cuts
         z0, _, x0, x1 = cuts
-        face = max(self.stock.back, self._face if self._face is not None else min(z0, self.stock.front))
-        beside = BESIDE * (self.stock.front - face + 2.0 * self.stock.radius)
-        right, radius = self.stock.front + beside, self.stock.radius
+        face = max(
+            self.stock.back_z_mm, self._face if self._face is not None else min(z0, self.stock.front_z_mm)
+        )
+        beside = BESIDE * (self.stock.front_z_mm - face + 2.0 * self.stock.max_radius_mm)
+        right, radius = self.stock.front_z_mm + beside, self.stock.max_radius_mm
         reach = max(radius, min(max(abs(x0), abs(x1)), radius + beside))
         return min(face, max(z0, face - beside)), right, min(0.0, x0), reach
 
@@ -51,7 +53,7 @@ class Blank:
     def chuck_from(self) -> float | None:
         """The Z of the left edge of the chuck as far as it is worth showing, or None without a chuck."""
         face = self._face
-        return None if face is None else face - _CHUCK_SHOWN * 2.0 * self.clamped.radius
+        return None if face is None else face - _CHUCK_SHOWN * 2.0 * self.clamped.max_radius_mm
 
     @property
     def _face(self) -> float | None:
@@ -59,11 +61,11 @@ class Blank:
         return -held.stick_out if held is not None and held.diameter else None
 
 
-def blank_of(picture: Picture) -> Blank | None:
+def blank_of(picture: ProgramPicture) -> Blank | None:
     """Return the specified stock and clamping of a program, or None if neither is specified."""
     if picture.part is None:
         return None
-    setting = picture.part.setting
+    setting = picture.part.part_settings
     stock, (z0, _, x0, x1) = setting.stock, picture.bounds
     if isinstance(stock, StockSpec):
         try:
@@ -72,34 +74,34 @@ def blank_of(picture: Picture) -> Blank | None:
             stock = None
     if stock is None and (setting.clamping is None or not setting.clamping.diameter):
         return None
-    needed = stock or bar(2.0 * max(abs(x0), abs(x1)), 0.0, z0)
+    needed = stock or make_bar(2.0 * max(abs(x0), abs(x1)), 0.0, z0)
     return Blank(stock, needed, setting.clamping)
 
 
-def draw_blank(painter: QPainter, look: Look, blank: Blank, projection: Projection) -> None:
+def draw_blank(painter: QPainter, look: ScreenTheme, blank: Blank, projection: Projection) -> None:
     """Draw the stock as a filled section, and the chuck or collet and tailstock hatched."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     if blank.stock is not None:
-        ground = look.colour("frame")
+        ground = look.color("frame")
         ground.setAlphaF(_FILLED)
         _fill(painter, stock_areas(blank.stock, projection), QBrush(ground))
-        pen = look.pen("ghost", 0.12)
+        pen = look.make_pen("ghost", 0.12)
         pen.setDashPattern([5, 4])
         painter.setPen(pen)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        for line in stock_outline(blank.stock, projection):
-            painter.drawPolyline(polygon(line.columns, line.rows))
+        for line in project_stock(blank.stock, projection):
+            painter.drawPolyline(make_polygon(line.columns, line.rows))
     if blank.clamping is not None:
-        chuck = clamping_areas(blank.clamping, blank.clamped, projection)
-        _fill(painter, chuck, QBrush(look.colour("key")))
-        painter.setPen(look.pen("off", 0.14))
-        painter.setBrush(QBrush(look.colour("off"), Qt.BrushStyle.FDiagPattern))
+        chuck = project_clamping(blank.clamping, blank.clamped, projection)
+        _fill(painter, chuck, QBrush(look.color("key")))
+        painter.setPen(look.make_pen("off", 0.14))
+        painter.setBrush(QBrush(look.color("off"), Qt.BrushStyle.FDiagPattern))
         for area in chuck:
-            painter.drawPolygon(polygon(area.columns, area.rows))
+            painter.drawPolygon(make_polygon(area.columns, area.rows))
 
 
-def _fill(painter: QPainter, areas: list[Line], brush: QBrush) -> None:
+def _fill(painter: QPainter, areas: list[PixelLine], brush: QBrush) -> None:
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(brush)
     for area in areas:
-        painter.drawPolygon(polygon(np.asarray(area.columns), np.asarray(area.rows)))
+        painter.drawPolygon(make_polygon(np.asarray(area.columns), np.asarray(area.rows)))

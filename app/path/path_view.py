@@ -2,7 +2,7 @@
 
 The view from above has X+ down and Z+ to the right, with both sides of X0. Cuts with C locked are shown next
 to it, on the face or the unrolled side of the part. Set the content with ``show_picture`` or
-``show_compared``, set the machine position with ``show_tip``, and call ``advance`` once per frame. This
+``show_compared``, set the machine position with ``show_tip``, and call ``draw_slice`` once per frame. This
 module calculates only screen positions.
 """
 
@@ -17,106 +17,108 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResize
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.path.path_aspects import IN_SPACE, OF_PART, Aspect, DrawnLeg, Tip
-from app.path.path_pointer_view import Pointer
-from app.screen.look import LEFT, Look, put
-from app.screen.panel import Panel, Press
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, DrawnLeg, PathAspect, TipPosition
+from app.path.path_pointer_view import PathPointer
+from app.screen.panel import OnPress, Panel
+from app.screen.screen_theme import ALIGN_LEFT, ScreenTheme, draw_text
 
 if TYPE_CHECKING:
     from app.path import path_marks_view as marks
-    from app.path.measuring_view import Measure
-    from app.path.part_bar_view import PartBar
+    from app.path.measuring_view import Measurement
+    from app.path.part_bar_view import PartTimeline
     from app.path.part_player import PartPlayer
-    from app.path.path_pane_view import Pane, Panes, Place
-    from app.path.path_picture import Picture
+    from app.path.path_pane_view import PaneSet, PathPane, Position
+    from app.path.path_picture import ProgramPicture
     from app.path.path_projection import Projection
     from app.path.polyline import Polyline
     from app.screen.page_base import KeyActions
 
-BAR = 6.8  # units: height of the time line below the part
+TIMELINE_HEIGHT = 6.8  # units: height of the time line below the part
 FOOT = 2.4  # units: height of the row with the legend and the scales below the panes
-Picked = Callable[[int], None]
+OnBlockPicked = Callable[[int], None]
 
 
 class PathView(Panel):
     """Panes side by side, each with its own zoom. Keys act on the first pane, touches on the touched pane.
 
-    ``picked`` is called with the number of the touched block, counted from 1. While measuring, the view has
-    the keyboard focus and passes unused keys to the window.
+    ``on_picked`` is called with the number of the touched block, counted from 1. While measuring, the view
+    has the keyboard focus and passes unused keys to the window.
     """
 
-    part_name = "PATH"
+    accessible_name = "PATH"
     title = "PATH"
-    keeps = False  # whether adjusted projections remain when the picture changes
+    keeps_view = False  # whether adjusted projections remain when the picture changes
     shows_whole_approach = False  # whether the visible area includes all legs of an approach
 
     def __init__(
         self,
-        look: Look,
+        theme: ScreenTheme,
         parent: QWidget | None = None,
-        picked: Picked | None = None,
-        player: PartPlayer | None = None,
+        on_picked: OnBlockPicked | None = None,
+        part_player: PartPlayer | None = None,
     ) -> None:
-        super().__init__(look, parent)
-        self._picked = picked
-        self.player = player  # player of the part; without a player, the part is not shown
+        super().__init__(theme, parent)
+        self._picked = on_picked
+        self.part_player = part_player  # player of the part; without a player, the part is not shown
         # opens the entry of the stock; None if it cannot be opened from this view
-        self.stock: Press | None = None
-        self._bar: PartBar | None = None  # the time line, created when the part is first shown
-        self._set: Panes | None = None  # created with the first picture
-        self._tip: Tip | None = None  # not drawn until the first position is set
-        self.legs: tuple[DrawnLeg, ...] = ()  # legs of an approach
-        self.ruler: Measure | None = None  # None while the user does not measure
-        self._pointer = Pointer(look, self._pressed, self._hovers, self._dragged, self._touched, self.magnify)
+        self.open_stock: OnPress | None = None
+        self._bar: PartTimeline | None = None  # the time line, created when the part is first shown
+        self._set: PaneSet | None = None  # created with the first picture
+        self._tip: TipPosition | None = None  # not drawn until the first position is set
+        self.drawn_legs: tuple[DrawnLeg, ...] = ()  # legs of an approach
+        self.measurement: Measurement | None = None  # None while the user does not measure
+        self._pointer = PathPointer(
+            theme, self._find_touch_target, self._hovers, self._dragged, self._handle_touch, self.magnify
+        )
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     @property
-    def panes(self) -> Sequence[Pane]:
+    def panes(self) -> Sequence[PathPane]:
         """Visible panes, from left to right."""
-        return self._set.now if self._set is not None else ()
+        return self._set.visible_panes if self._set is not None else ()
 
     @property
-    def view(self) -> Projection | None:
+    def first_projection(self) -> Projection | None:
         """Projection of the first pane, or None without a pane."""
         return self.panes[0].projection if self.panes else None
 
     @property
-    def several(self) -> bool:
+    def has_several_views(self) -> bool:
         """Whether more than one view exists."""
-        return self._set is not None and self._set.several
+        return self._set is not None and self._set.has_several_views
 
     @property
-    def comparing(self) -> bool:
+    def is_comparing(self) -> bool:
         """Whether two pictures are compared."""
-        return self._set is not None and self._set.before is not None
+        return self._set is not None and self._set.picture_before is not None
 
     @property
-    def picture(self) -> Picture | None:
+    def picture(self) -> ProgramPicture | None:
         """Displayed picture, or None if nothing is displayed."""
         return self._set.picture if self._set is not None else None
 
     @property
-    def shows_part(self) -> bool:
+    def is_part_shown(self) -> bool:
         """Whether a view of the part is displayed."""
-        return any(pane.aspect in OF_PART for pane in self.panes)
+        return any(pane.aspect in PART_ASPECTS for pane in self.panes)
 
     @property
-    def drawn(self) -> bool:
+    def has_path(self) -> bool:
         """Whether the picture contains any path."""
         return self.picture is not None and len(self.picture.z) > 0
 
     @property
-    def in_mm(self) -> bool:
+    def is_metric(self) -> bool:
         """Whether the program uses millimeters."""
         return self.picture is not None and self.picture.metric
 
     # --- content -------------------------------------------------------------------------------------
 
-    def show_picture(self, picture: Picture | None) -> None:
+    def show_picture(self, picture: ProgramPicture | None) -> None:
         """Show the path of another program, or no path."""
         self._show(picture, None)
 
-    def show_compared(self, before: Picture | None, after: Picture | None) -> None:
+    def show_compared(self, before: ProgramPicture | None, after: ProgramPicture | None) -> None:
         """Show one program before and after a change in one view with a legend, without tip and progress.
 
         If ``after`` is None, nothing is shown. If ``before`` is None, only ``after`` is shown.
@@ -125,12 +127,12 @@ class PathView(Panel):
 
     def show_approach(self, legs: Sequence[DrawnLeg] | None) -> None:
         """Show the approach over the path. The first leg is the present tool position."""
-        if tuple(legs or ()) != self.legs:
-            self.legs = tuple(legs or ())
-            self._include()
+        if tuple(legs or ()) != self.drawn_legs:
+            self.drawn_legs = tuple(legs or ())
+            self._include_points()
             self.update()
 
-    def show_tip(self, tip: Tip) -> None:
+    def show_tip(self, tip: TipPosition) -> None:
         """Show the tool tip and the progress of the run."""
         if tip != self._tip:
             self._tip = tip
@@ -143,217 +145,219 @@ class PathView(Panel):
             pane.mark(blocks)
         self.update()
 
-    def advance(self) -> None:
+    def draw_slice(self) -> None:
         """Draw the missing parts for a few milliseconds at most; called once per frame."""
-        if self._set is not None and self._set.advance():
+        if self._set is not None and self._set.draw_slice():
             self.update()
 
-    def _show(self, picture: Picture | None, before: Picture | None) -> None:
-        from app.path.path_pane_view import Panes
+    def _show(self, picture: ProgramPicture | None, before: ProgramPicture | None) -> None:
+        from app.path.path_pane_view import PaneSet
 
         if self._set is None:
-            self._set = Panes(self.keeps, self._make, with_part=self.player is not None)
-        if picture is self._set.picture and before is self._set.before:
+            self._set = PaneSet(self.keeps_view, self._make, has_part=self.part_player is not None)
+        if picture is self._set.picture and before is self._set.picture_before:
             return
         if self._tip is not None:
             self._tip = self._tip._replace(block=0)
-        if self.player is not None:
-            self.player.show(picture if before is None else None)
-        self._set.show(picture, before)
-        if self.ruler is not None and self.ruler.pane in self.panes:
-            self.ruler.renew()  # the measured points remain
+        if self.part_player is not None:
+            self.part_player.load_picture(picture if before is None else None)
+        self._set.set_pictures(picture, before)
+        if self.measurement is not None and self.measurement.pane in self.panes:
+            self.measurement.rebuild_snap_points()  # the measured points remain
         else:
-            self.measure(on=False)
+            self.set_measuring(is_on=False)
         self._lay_out()
 
-    def _make(self, aspect: Aspect, polyline: Polyline, before: Polyline | None) -> Pane:
-        if aspect in OF_PART and self.player is not None:
+    def _make(self, aspect: PathAspect, polyline: Polyline, before: Polyline | None) -> PathPane:
+        if aspect in PART_ASPECTS and self.part_player is not None:
             from app.path.part_pane_view import PartPane, SolidPane
 
-            made = PartPane if aspect is Aspect.SECTION else SolidPane
-            return made(self.look, aspect, polyline, self.player)
-        from app.path.path_pane_view import Pane
+            made = PartPane if aspect is PathAspect.SECTION else SolidPane
+            return made(self.theme, aspect, polyline, self.part_player)
+        from app.path.path_pane_view import PathPane
 
-        return Pane(self.look, aspect, polyline, before)
+        return PathPane(self.theme, aspect, polyline, before)
 
     def _lay_out(self) -> None:
         if self._set is not None:
-            self._include()
-            from app.path.path_marks_view import button_columns, columns_wide
+            self._include_points()
+            from app.path.path_marks_view import count_button_columns, find_columns_width
 
-            room = self.room()
-            columns = button_columns(self.look, room, len(self._buttons()))
-            self._set.lay(room.adjusted(0, 0, -columns_wide(columns, self.look), 0))
+            room = self.find_panes_area()
+            columns = count_button_columns(self.theme, room, len(self._buttons()))
+            self._set.set_area(room.adjusted(0, 0, -find_columns_width(columns, self.theme), 0))
             self._show_tool()
         self.update()
 
-    def _include(self) -> None:
+    def _include_points(self) -> None:
         """Include the whole approach in the visible area, if the view shows it."""
         for pane in self.panes:
-            if pane.aspect is Aspect.PATH and self.shows_whole_approach:
-                pane.include([(leg.z, leg.x) for leg in self.legs])
+            if pane.aspect is PathAspect.PATH and self.shows_whole_approach:
+                pane.include_points([(leg.z, leg.x) for leg in self.drawn_legs])
 
     def _show_tool(self) -> None:
         if self._tip is not None:
             for pane in self.panes:
-                pane.stand(self._tip.block, self._place_in(pane, self._tip), self._tip.stood)
+                pane.set_run_state(
+                    self._tip.block, self._find_tip_position(pane, self._tip), self._tip.stop_position
+                )
 
-    def _place_in(self, pane: Pane, tip: Tip) -> Place | None:
+    def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> Position | None:
         """Return the position of the tip in a pane."""
-        return pane.place_of(tip)
+        return pane.find_tip_position(tip)
 
-    def fit(self) -> None:
+    def fit_all(self) -> None:
         """Show the whole path in every pane."""
         for pane in self.panes:
-            pane.fit()
+            pane.fit_view()
         self.update()
 
-    def restart(self) -> None:
+    def redraw(self) -> None:
         """Draw the same view again, with new colors."""
         for pane in self.panes:
-            pane.restart()
+            pane.redraw()
         self.update()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Show the whole path after a change of size."""
         self._lay_out()
 
-    def room(self) -> QRectF:
+    def find_panes_area(self) -> QRectF:
         """Return the area inside the frame. The panes use the area that the buttons leave free."""
-        u = self.look.u
-        bar = BAR if self.shows_part else FOOT
-        return self.area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
+        u = self.theme.u
+        bar = TIMELINE_HEIGHT if self.is_part_shown else FOOT
+        return self.find_full_area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
 
     # --- navigation ----------------------------------------------------------------------------------
 
-    def next_view(self) -> None:
+    def select_next_view(self) -> None:
         """Switch to the next view if there are several."""
-        if self._set is not None and self.several:
-            measuring = self.ruler is not None
-            self.measure(on=False)
-            self._set.next_view()
+        if self._set is not None and self.has_several_views:
+            measuring = self.measurement is not None
+            self.set_measuring(is_on=False)
+            self._set.select_next_view()
             self._lay_out()
-            self.measure(on=measuring)
+            self.set_measuring(is_on=measuring)
 
     def show_part(self) -> None:
         """Switch to a view of the part if one exists."""
-        for _ in range(self._set.choices if self._set is not None else 0):
-            if not self.shows_part:
-                self.next_view()
+        for _ in range(self._set.view_count if self._set is not None else 0):
+            if not self.is_part_shown:
+                self.select_next_view()
 
-    def zoom(self, steps: int, at: QPointF | None = None) -> None:
+    def zoom_view(self, steps: int, position: QPointF | None = None) -> None:
         """Zoom in (positive steps) or out, around a widget position or the middle."""
-        pane = self.pane_at(at)
+        pane = self.find_pane(position)
         if pane is not None:
-            pane.zoom(steps, at)
+            pane.zoom_view(steps, position)
             self.update()
 
-    def magnify(self, factor: float, at: QPointF) -> None:
+    def magnify(self, factor: float, position: QPointF) -> None:
         """Magnify by a factor around a widget position."""
-        pane = self.pane_at(at)
+        pane = self.find_pane(position)
         if pane is not None:
-            pane.magnify(factor, at)
+            pane.magnify(factor, position)
             self.update()
 
-    def pan(self, across: int, down: int) -> None:
+    def pan_view(self, across: int, down: int) -> None:
         """Move the visible area to the right and down by a number of steps."""
-        pane = self.pane_at(None)
+        pane = self.find_pane(None)
         if pane is not None:
-            pane.pan(across, down)
+            pane.pan_view(across, down)
             self.update()
 
-    def look_keys(self) -> KeyActions:
+    def make_view_key_actions(self) -> KeyActions:
         """Return the actions of the zoom and pan keys, as on the Automatic page."""
         return {
-            "Zoom in": partial(self.zoom, 1),
-            "Zoom out": partial(self.zoom, -1),
-            "Pan left": partial(self.pan, -1, 0),
-            "Pan right": partial(self.pan, 1, 0),
-            "Pan up": partial(self.pan, 0, -1),
-            "Pan down": partial(self.pan, 0, 1),
+            "Zoom in": partial(self.zoom_view, 1),
+            "Zoom out": partial(self.zoom_view, -1),
+            "Pan left": partial(self.pan_view, -1, 0),
+            "Pan right": partial(self.pan_view, 1, 0),
+            "Pan up": partial(self.pan_view, 0, -1),
+            "Pan down": partial(self.pan_view, 0, 1),
         }
 
-    def play_keys(self) -> KeyActions:
+    def make_playback_key_actions(self) -> KeyActions:
         """Return the actions of the time line keys; empty without a player."""
-        player = self.player
+        player = self.part_player
         if player is None:
             return {}
         return {
-            "Play": player.play_or_pause,
-            "Play fast": player.faster,
-            "Step back": partial(player.step, -1),
-            "Step forward": partial(player.step, 1),
+            "Play": player.toggle_playback,
+            "Play fast": player.toggle_fast,
+            "Step back": partial(player.step_blocks, -1),
+            "Step forward": partial(player.step_blocks, 1),
         }
 
-    def pane_at(self, at: QPointF | None) -> Pane | None:
+    def find_pane(self, position: QPointF | None) -> PathPane | None:
         """Return the pane at a position, or else the pane of the measurement, or the first pane."""
-        found = self._set.at(at) if self._set is not None and at is not None else None
+        found = self._set.at(position) if self._set is not None and position is not None else None
         if found is None:
-            found = self.ruler.pane if self.ruler is not None else next(iter(self.panes), None)
+            found = self.measurement.pane if self.measurement is not None else next(iter(self.panes), None)
         return found
 
     # --- measuring and picking -----------------------------------------------------------------------
 
-    def measure(self, *, on: bool | None = None) -> None:
+    def set_measuring(self, *, is_on: bool | None = None) -> None:
         """Start or stop measuring in the last pane. None toggles."""
-        if on is None:
-            on = self.ruler is None
-        if on and self.drawn and self.view is not None:
+        if is_on is None:
+            is_on = self.measurement is None
+        if is_on and self.has_path and self.first_projection is not None:
             self._measure_in(self.panes[-1])
             self.setFocus()
-        elif not on and self.ruler is not None:
-            self.ruler.end()
-            self.ruler = None
+        elif not is_on and self.measurement is not None:
+            self.measurement.end_measuring()
+            self.measurement = None
             self.setMouseTracking(False)
             if self.hasFocus():
                 self.window().setFocus()
         self.update()
 
-    def _measure_in(self, pane: Pane) -> Measure:
-        from app.path.measuring_view import Measure
+    def _measure_in(self, pane: PathPane) -> Measurement:
+        from app.path.measuring_view import Measurement
 
-        ruler = self.ruler = Measure(pane)
+        ruler = self.measurement = Measurement(pane)
         self.setMouseTracking(True)
         return ruler
 
-    def _pressed(self, at: QPointF) -> Pane | PartBar | None:
+    def _find_touch_target(self, at: QPointF) -> PathPane | PartTimeline | None:
         """Return the time line or pane at a position, or None if the press was on a button."""
-        if self.touch(at):
+        if self.press_at(at):
             return None
-        if self._bar is not None and self.shows_part and self._bar.takes(at):
+        if self._bar is not None and self.is_part_shown and self._bar.handle_touch(at):
             return self._bar
-        return self.pane_at(at)
+        return self.find_pane(at)
 
     def _hovers(self, at: QPointF) -> None:
-        if self.ruler is not None and self.ruler.pane.room.contains(at):
-            self.ruler.point(at)
+        if self.measurement is not None and self.measurement.pane.area.contains(at):
+            self.measurement.move_cursor(at)
             self.update()
 
-    def _dragged(self, held: Pane | PartBar, by: QPointF) -> None:
-        held.drag(by)
+    def _dragged(self, held: PathPane | PartTimeline, by: QPointF) -> None:
+        held.handle_drag(by)
         self.update()
 
-    def _touched(self, pane: Pane | PartBar, at: QPointF) -> None:
+    def _handle_touch(self, pane: PathPane | PartTimeline, at: QPointF) -> None:
         """Measure from the touched point, or select the block that is drawn there."""
-        from app.path.path_pane_view import Pane
+        from app.path.path_pane_view import PathPane
 
-        if not isinstance(pane, Pane):
+        if not isinstance(pane, PathPane):
             return
-        if pane.aspect in IN_SPACE:
+        if pane.aspect in SPATIAL_ASPECTS:
             return
-        if self.ruler is not None:
-            ruler = self.ruler if self.ruler.pane is pane else self._measure_in(pane)
-            ruler.point(at)
-            ruler.hold()
+        if self.measurement is not None:
+            ruler = self.measurement if self.measurement.pane is pane else self._measure_in(pane)
+            ruler.move_cursor(at)
+            ruler.set_point()
             self.update()
-        elif self._picked is not None and (block := pane.block_at(at)):
+        elif self._picked is not None and (block := pane.find_block(at)):
             self._picked(block)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Handle the keys of measuring, and pass all other keys to the window."""
-        if self.ruler is not None and self.ruler.key(event):
+        if self.measurement is not None and self.measurement.key(event):
             self.update()
         else:
             event.ignore()
@@ -365,27 +369,27 @@ class PathView(Panel):
     def focusOutEvent(self, event: QFocusEvent) -> None:
         """Stop measuring when another widget gets the focus, but not when another window does."""
         if event.reason() is not Qt.FocusReason.ActiveWindowFocusReason:
-            self.measure(on=False)
+            self.set_measuring(is_on=False)
 
     def event(self, event: QEvent) -> bool:
         """Handle touch events, and pass all other events to the base class."""
-        return self._pointer.takes(event) or super().event(event)
+        return self._pointer.handle_touch_event(event) or super().event(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom around the pointer with the wheel."""
-        self.zoom(1 if event.angleDelta().y() > 0 else -1, event.position())
+        self.zoom_view(1 if event.angleDelta().y() > 0 else -1, event.position())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press a button of the view, or start a drag."""
-        self._pointer.press(event.position())
+        self._pointer.begin_press(event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Move the picture during a drag."""
-        self._pointer.move(event.position())
+        self._pointer.move_pointer(event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End a drag, or handle a touch if the pointer did not move."""
-        self._pointer.release(event.position())
+        self._pointer.end_press(event.position())
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -393,83 +397,91 @@ class PathView(Panel):
         """Draw panes, title, buttons and legend, or a sentence without a picture."""
         from app.path import path_marks_view as marks
 
-        look, panes = self.look, self.panes
+        look, panes = self.theme, self.panes
         if not panes:
             why = tr("Load a program to see its path.")
-            marks.draw_nothing(painter, look, self.inside(), why)
+            marks.draw_no_path(painter, look, self.inside(), why)
             return
         for pane in panes:
             self._draw_pane(painter, pane)
         if (
-            self.ruler is not None and self.ruler.pane.aspect not in IN_SPACE
+            self.measurement is not None and self.measurement.pane.aspect not in SPATIAL_ASPECTS
         ):  # The table is drawn in another pane if there is one.
-            beside = next((pane for pane in panes if pane is not self.ruler.pane), self.ruler.pane)
-            self.ruler.draw_figures(painter, beside.room, self.in_mm)
+            beside = next(
+                (pane for pane in panes if pane is not self.measurement.pane), self.measurement.pane
+            )
+            self.measurement.draw_values(painter, beside.area, self.is_metric)
         self._draw_title(painter)
-        marks.draw_buttons(painter, look, self.room(), self._buttons(), self.place)
-        if self.shows_part:
+        marks.draw_buttons(painter, look, self.find_panes_area(), self._buttons(), self.add_target)
+        if self.is_part_shown:
             self._draw_bar(painter)
             return
-        legend = marks.compared_legend(look) if self.comparing else marks.run_legend(look)
-        room = self.room()
+        legend = marks.make_comparison_legend(look) if self.is_comparing else marks.make_run_legend(look)
+        room = self.find_panes_area()
         foot = QRectF(room.x(), room.bottom(), room.width(), FOOT * look.u)
         marks.draw_foot(
-            painter, look, foot, [(pane.room, pane.projection) for pane in panes], legend, self.in_mm
+            painter, look, foot, [(pane.area, pane.projection) for pane in panes], legend, self.is_metric
         )
-        apart = panes[0].apart
+        apart = panes[0].largest_distance
         if apart is not None:
-            marks.draw_words(painter, look, panes[0].room, marks.apart_words(apart, self.in_mm))
+            marks.draw_title(painter, look, panes[0].area, marks.describe_difference(apart, self.is_metric))
 
     def _draw_bar(self, painter: QPainter) -> None:
         """Draw the time line of the part."""
-        from app.path.part_bar_view import PartBar
+        from app.path.part_bar_view import PartTimeline
 
-        assert self.player is not None
+        assert self.part_player is not None
         if self._bar is None:
-            self._bar = PartBar(self.look, self.player, self.stock)
-        room, u = self.room(), self.look.u
-        self._bar.draw(painter, QRectF(room.x(), room.bottom(), room.width(), BAR * u), self.place)
+            self._bar = PartTimeline(self.theme, self.part_player, self.open_stock)
+        room, u = self.find_panes_area(), self.theme.u
+        self._bar.draw(
+            painter, QRectF(room.x(), room.bottom(), room.width(), TIMELINE_HEIGHT * u), self.add_target
+        )
 
-    def _draw_pane(self, painter: QPainter, pane: Pane) -> None:
+    def _draw_pane(self, painter: QPainter, pane: PathPane) -> None:
         from app.path import path_marks_view as marks
 
-        look = self.look
+        look = self.theme
         painter.save()
-        painter.setClipRect(pane.room)
-        painter.translate(pane.room.topLeft())
+        painter.setClipRect(pane.area)
+        painter.translate(pane.area.topLeft())
         if pane.projection is not None:
             pane.draw_path(painter)
-            marks.draw_centre_lines(painter, look, pane.aspect, pane.projection, pane.polyline)
+            marks.draw_center_lines(painter, look, pane.aspect, pane.projection, pane.polyline)
             pane.draw_run(painter)
-        if self.legs and pane.aspect is Aspect.PATH:
-            marks.draw_approach(painter, look, pane, self.legs)
-        if self.ruler is not None and self.ruler.pane is pane and pane.aspect not in IN_SPACE:
-            self.ruler.draw(painter)
+        if self.drawn_legs and pane.aspect is PathAspect.PATH:
+            marks.draw_approach(painter, look, pane, self.drawn_legs)
+        if (
+            self.measurement is not None
+            and self.measurement.pane is pane
+            and pane.aspect not in SPATIAL_ASPECTS
+        ):
+            self.measurement.draw(painter)
         painter.restore()
-        if pane.aspect is not Aspect.PATH:
-            ink = "alarm" if pane.aspect in OF_PART and marks.errors_of(pane) else "soft"
-            marks.draw_words(painter, look, pane.room, marks.pane_words(pane, self.in_mm), ink)
+        if pane.aspect is not PathAspect.PATH:
+            ink = "alarm" if pane.aspect in PART_ASPECTS and marks.find_pane_errors(pane) else "soft"
+            marks.draw_title(painter, look, pane.area, marks.make_pane_title(pane, self.is_metric), ink)
             if pane is not self.panes[0]:
-                marks.draw_border(painter, look, pane.room)
+                marks.draw_border(painter, look, pane.area)
 
-    def _buttons(self) -> list[marks.Button]:
-        from app.path.path_marks_view import Button
+    def _buttons(self) -> list[marks.ViewButton]:
+        from app.path.path_marks_view import ViewButton
 
         found = [
-            Button("+", lambda: self.zoom(1)),
-            Button("−", lambda: self.zoom(-1)),
-            Button(tr("FIT"), self.fit),
-            Button(tr("MEAS"), self.measure, self.ruler is not None),
+            ViewButton("+", lambda: self.zoom_view(1)),
+            ViewButton("−", lambda: self.zoom_view(-1)),
+            ViewButton(tr("FIT"), self.fit_all),
+            ViewButton(tr("MEAS"), self.set_measuring, self.measurement is not None),
         ]
-        if self.several:
+        if self.has_several_views:
             # A low pane does not have room for all buttons.
-            found.insert(2, Button(tr("VIEW"), self.next_view))
+            found.insert(2, ViewButton(tr("VIEW"), self.select_next_view))
         return found
 
     def _draw_title(self, painter: QPainter) -> None:
         """Draw the title again, because the panes have covered its lower half."""
-        look, u = self.look, self.look.u
+        look, u = self.theme, self.theme.u
         wide = self.width() - 4 * u
-        painter.setFont(look.fit(self.title, 1.7, wide, bold=True))
-        painter.setPen(look.colour("soft"))
-        put(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), LEFT, self.title)
+        painter.setFont(look.fit_font(self.title, 1.7, wide, is_bold=True))
+        painter.setPen(look.color("soft"))
+        draw_text(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), ALIGN_LEFT, self.title)

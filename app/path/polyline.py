@@ -12,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from core.geometry.virtual_mill import PlaneMove, Spot
+    from core.geometry.virtual_mill import MillPoint, PlaneMove
 
-Floats = npt.NDArray[np.float64]
+FloatArray = npt.NDArray[np.float64]
 Bounds = tuple[float, float, float, float]
 
-SAME = 1e-7  # mm
+SAME_POINT_MM = 1e-7  # mm
 
 
 class Stroke(IntEnum):
@@ -36,75 +36,75 @@ class Polyline:
     ``z`` is to the right and ``x`` is down, in mm. Seen from above, they are Z and X. On the face they are
     face X and minus face Y. On the unrolled side they are Z and minus the circumferential length. ``first``
     has the shape (blocks + 1,). ``bounds`` is (minimum z, maximum z, minimum x, maximum x) of all cuts, or of
-    all points without cuts. ``centres`` (arcs, 2) contains z and x of arc centers. ``round`` is the length of
-    ``x`` in mm per degree of C, or 0 if ``x`` is not a circumferential length.
+    all points without cuts. ``centers`` (arcs, 2) contains z and x of arc centers. ``mm_per_degree`` is the
+    length of ``x`` in mm per degree of C, or 0 if ``x`` is not a circumferential length.
     """
 
-    z: Floats
-    x: Floats
+    z: FloatArray
+    x: FloatArray
     stroke: npt.NDArray[np.uint8]
     first: npt.NDArray[np.int64]
     bounds: Bounds
-    centres: Floats = field(default_factory=lambda: np.zeros((0, 2)), kw_only=True)
-    round: float = field(default=0.0, kw_only=True)
+    centers: FloatArray = field(default_factory=lambda: np.zeros((0, 2)), kw_only=True)
+    mm_per_degree: float = field(default=0.0, kw_only=True)
 
     @property
     def blocks(self) -> int:
         """Number of elementary blocks."""
         return len(self.first) - 1
 
-    def points_done(self, blocks: int) -> int:
+    def count_finished_points(self, blocks: int) -> int:
         """Return the number of points of the first ``blocks`` blocks."""
         return int(self.first[max(0, min(blocks, self.blocks))])
 
-    def block_of_point(self, point: int) -> int:
+    def find_block(self, point: int) -> int:
         """Return the number of the block, from 1, that contains the chord ending in a point (from 0)."""
         return int(np.searchsorted(self.first, point, side="right"))
 
 
 class PolylineBuilder:
-    """Builds a polyline: call ``to`` for each point of a block, then ``end_block``."""
+    """Builds a polyline: call ``add_point`` for each point of a block, then ``end_block``."""
 
     def __init__(self, blocks: int = 0) -> None:
         self.z, self.x, self.stroke = array("d"), array("d"), array("B")
-        self.first = array("q", bytes(8 * (blocks + 1)))
-        self.centres = array("d")
+        self.first_points = array("q", bytes(8 * (blocks + 1)))
+        self.centers = array("d")
 
-    def start(self, z: float, x: float) -> None:
+    def start_at(self, z: float, x: float) -> None:
         """Set the start point, with a jump if the last point differs."""
-        if self.z and abs(self.z[-1] - z) < SAME and abs(self.x[-1] - x) < SAME:
+        if self.z and abs(self.z[-1] - z) < SAME_POINT_MM and abs(self.x[-1] - x) < SAME_POINT_MM:
             return
-        self.to(z, x, Stroke.JUMP)
+        self.add_point(z, x, Stroke.JUMP)
 
-    def to(self, z: float, x: float, stroke: int) -> None:
+    def add_point(self, z: float, x: float, stroke: int) -> None:
         """Append a point with its stroke."""
         self.z.append(z)
         self.x.append(x)
         self.stroke.append(stroke)
 
-    def row(self, z: Floats, x: Floats, stroke: int) -> None:
+    def add_separate_points(self, z: FloatArray, x: FloatArray, stroke: int) -> None:
         """Append points, each of which ends a separate block."""
         first = len(self.z)
         self.z.frombytes(z.tobytes())
         self.x.frombytes(x.tobytes())
         self.stroke.frombytes(bytes([stroke]) * len(z))
-        self.first.frombytes(np.arange(first + 1, first + 1 + len(z)).tobytes())
+        self.first_points.frombytes(np.arange(first + 1, first + 1 + len(z)).tobytes())
 
     def end_block(self) -> None:
         """End a block that contains all points since the last call."""
-        self.first.append(len(self.z))
+        self.first_points.append(len(self.z))
 
-    def arrays(self) -> tuple[Floats, Floats, npt.NDArray[np.uint8], npt.NDArray[np.int64]]:
+    def make_arrays(self) -> tuple[FloatArray, FloatArray, npt.NDArray[np.uint8], npt.NDArray[np.int64]]:
         """Return ``z``, ``x``, ``stroke`` and ``first`` of the polyline."""
         return (
             np.array(self.z),
             np.array(self.x),
             np.array(self.stroke, dtype=np.uint8),
-            np.array(self.first, dtype=np.int64),
+            np.array(self.first_points, dtype=np.int64),
         )
 
 
-def bounds_of(z: Floats, x: Floats, stroke: npt.NDArray[np.uint8]) -> Bounds:
+def find_bounds(z: FloatArray, x: FloatArray, stroke: npt.NDArray[np.uint8]) -> Bounds:
     """Return the bounding box of all cuts, or of all points without cuts."""
     if not len(z):
         return 0.0, 0.0, 0.0, 0.0
@@ -119,35 +119,35 @@ def bounds_of(z: Floats, x: Floats, stroke: npt.NDArray[np.uint8]) -> Bounds:
 # --- arcs as chords -----------------------------------------------------------------------------------
 
 
-CHORD_ERROR = 0.004  # mm; half a pixel at 125 pixels per millimeter
-TURN_STEP = 4.0  # degrees of C between two points of a combined move
-MOST = 720  # maximum number of points of one turning move
+MAX_CHORD_ERROR_MM = 0.004  # mm; half a pixel at 125 pixels per millimeter
+TURN_STEP_DEG = 4.0  # degrees of C between two points of a combined move
+MAX_TURN_POINTS = 720  # maximum number of points of one turning move
 
 
-def arc_pieces(radius: float, sweep: float) -> int:
-    """Return the number of chords of an arc that deviate from it by ``CHORD_ERROR`` at most."""
-    if radius <= CHORD_ERROR:
+def count_arc_chords(radius: float, sweep: float) -> int:
+    """Return the number of chords of an arc that deviate from it by ``MAX_CHORD_ERROR_MM`` at most."""
+    if radius <= MAX_CHORD_ERROR_MM:
         return 4
-    step = 2 * math.acos(1 - CHORD_ERROR / radius)
+    step = 2 * math.acos(1 - MAX_CHORD_ERROR_MM / radius)
     return max(1, math.ceil(abs(sweep) / step))
 
 
-def turn_pieces(degrees: float) -> int:
+def count_turn_chords(degrees: float) -> int:
     """Return the number of chords of a move during which C turns by ``degrees``."""
-    return max(1, min(MOST, math.ceil(abs(degrees) / TURN_STEP)))
+    return max(1, min(MAX_TURN_POINTS, math.ceil(abs(degrees) / TURN_STEP_DEG)))
 
 
-def mill_way(move: PlaneMove, degrees: float) -> list[Spot]:
+def sample_mill_move(move: PlaneMove, degrees: float) -> list[MillPoint]:
     """Return the points of a mill move in the plane's frame, after the start up to the end.
 
     ``degrees`` is the rotation of C during the move.
     """
-    if move.centre is None:
-        pieces = turn_pieces(degrees)
+    if move.center is None:
+        pieces = count_turn_chords(degrees)
         (x0, y0, z0), (x1, y1, z1) = move.start, move.end
         shares = [k / pieces for k in range(1, pieces)]
         return [*((x0 + (x1 - x0) * s, y0 + (y1 - y0) * s, z0 + (z1 - z0) * s) for s in shares), move.end]
     radius = move.radius
     sweep = move.length / radius if radius else 0.0
-    pieces = max(turn_pieces(degrees), arc_pieces(radius, sweep))
-    return [(x, y, z) for x, y, z in move.points(np.linspace(0.0, 1.0, pieces + 1)[1:]).tolist()]
+    pieces = max(count_turn_chords(degrees), count_arc_chords(radius, sweep))
+    return [(x, y, z) for x, y, z in move.mill_points(np.linspace(0.0, 1.0, pieces + 1)[1:]).tolist()]

@@ -6,15 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from core.executor.snapshot import Event, State
+from core.executor.snapshot import LogEvent, MachineState
 from core.store.production.part_cycles import CycleRecords, CycleRow, StopRow
-from core.store.store_rows import utc_now
+from core.store.store_rows import get_utc_now_text
 
 COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
-BETWEEN = "BETWEEN CYCLES"  # the next cycle was not started
-_STANDS = frozenset({State.HOLD.value, State.BLOCK_END.value, State.PROGRAM_STOP.value})
-_GOES = frozenset({State.RUN.value, State.WAIT.value, State.HOLDING.value})
-_BROKEN = frozenset({State.FAULT.value, State.ESTOP.value})
+BETWEEN_CYCLES = "BETWEEN CYCLES"  # the next cycle was not started
+_STOPPED_STATES = frozenset(
+    {MachineState.HOLD.value, MachineState.BLOCK_END.value, MachineState.PROGRAM_STOP.value}
+)
+_RUNNING_STATES = frozenset({MachineState.RUN.value, MachineState.WAIT.value, MachineState.HOLDING.value})
+_FAULT_STATES = frozenset({MachineState.FAULT.value, MachineState.ESTOP.value})
 
 
 @dataclass(slots=True)
@@ -22,16 +24,16 @@ class _Cycle:
     """Cycle of the present part: its row, its start time and its stopped time in seconds."""
 
     row: CycleRow
-    began: float
-    stood: float = 0.0
-    restarted: bool = False
+    start_time: float
+    stopped_s: float = 0.0
+    is_restarted: bool = False
 
 
 @dataclass(slots=True)
 class _Stop:
     row: StopRow
-    began: float
-    named: bool  # whether the reason is more specific than the name of the state
+    start_time: float
+    is_named: bool  # whether the reason is more specific than the name of the state
 
 
 class CycleRecorder:
@@ -41,15 +43,15 @@ class CycleRecorder:
     counts as a stop until the next cycle starts.
     """
 
-    def __init__(self, now: Callable[[], str] = utc_now) -> None:
-        self._now = now
+    def __init__(self, read_clock: Callable[[], str] = get_utc_now_text) -> None:
+        self._now = read_clock
         self._program = ""
         self._cycle: _Cycle | None = None
         self._stop: _Stop | None = None
         self._reason = ""  # reason that was reported before the machine stopped
         self._numbered = 0
 
-    def hear(self, event: Event, cycles: CycleRecords) -> None:
+    def hear(self, event: LogEvent, cycles: CycleRecords) -> None:
         """Update the present cycle and stop with one event of the executor."""
         if event.kind == "load":
             self._program = Path(event.text).name
@@ -57,25 +59,25 @@ class CycleRecorder:
             self._end_stop(event, cycles)
             self._begin(event, cycles)
         elif event.kind == "restart" and self._cycle is not None:
-            self._cycle.restarted = True
+            self._cycle.is_restarted = True
         elif event.kind == "state":
             self._state(event, cycles)
         elif event.kind in {"stop", "alarm", "estop"} and event.alarm is not None:
-            self._name(event.alarm.text)
+            self._name_reason(event.alarm.text)
         elif event.kind in {"part", "uncounted"}:
             self._end(event, cycles, COMPLETE if event.kind == "part" else UNCOUNTED)
         elif event.kind == "end":
             self._end(event, cycles, GIVEN_UP)  # no cycle is left to end after a part
             if self._stop is None or self._stop.row.cycle:
                 self._end_stop(event, cycles)
-                self._begin_stop(event, BETWEEN, named=True)
+                self._begin_stop(event, BETWEEN_CYCLES, named=True)
 
-    def go_on(self, program: str, t: float, cycles: CycleRecords) -> None:
+    def resume_part(self, program: str, time_s: float, cycles: CycleRecords) -> None:
         """Record the rest of a part that was started before this process. It counts as restarted."""
         self._program = Path(program).name
-        self._begin(Event(t, "start", program), cycles)
+        self._begin(LogEvent(time_s, "start", program), cycles)
         assert self._cycle is not None
-        self._cycle.restarted = True
+        self._cycle.is_restarted = True
 
     # --- cycles -------------------------------------------------------------------------------------------
 
@@ -84,70 +86,76 @@ class CycleRecorder:
         now = self._now()
         return f"{now}#{self._numbered}", now
 
-    def _begin(self, event: Event, cycles: CycleRecords) -> None:
+    def _begin(self, event: LogEvent, cycles: CycleRecords) -> None:
         key, now = self._key()
-        self._cycle = _Cycle(CycleRow(key, self._program, 0, now), event.t)
+        self._cycle = _Cycle(CycleRow(key, self._program, 0, now), event.time_s)
         cycles.record_cycle(self._cycle.row)
 
-    def _end(self, event: Event, cycles: CycleRecords, outcome: str) -> None:
+    def _end(self, event: LogEvent, cycles: CycleRecords, outcome: str) -> None:
         cycle, self._cycle = self._cycle, None
         if cycle is None:
             return
         if self._stop is not None and self._stop.row.cycle:
-            cycle.stood += event.t - self._stop.began
-        if cycle.restarted and outcome == COMPLETE:
+            cycle.stopped_s += event.time_s - self._stop.start_time
+        if cycle.is_restarted and outcome == COMPLETE:
             outcome = RESTARTED
-        seconds = max(0.0, event.t - cycle.began - cycle.stood)
+        seconds = max(0.0, event.time_s - cycle.start_time - cycle.stopped_s)
         row = cycle.row._replace(
-            part=event.part, ended=self._now(), seconds=seconds, outcome=outcome, load=event.load
+            part=event.part_number,
+            ended=self._now(),
+            seconds=seconds,
+            outcome=outcome,
+            load=event.mean_load_percent,
         )
         cycles.record_cycle(row)
 
     # --- stops --------------------------------------------------------------------------------------------
 
-    def _state(self, event: Event, cycles: CycleRecords) -> None:
+    def _state(self, event: LogEvent, cycles: CycleRecords) -> None:
         cycle = self._cycle
-        if event.text in _BROKEN:
-            self._break(event, cycles)
+        if event.text in _FAULT_STATES:
+            self._interrupt_cycle(event, cycles)
         elif cycle is None:
             return
-        elif event.text in _STANDS and self._stop is None:
+        elif event.text in _STOPPED_STATES and self._stop is None:
             self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
-        elif event.text in _GOES:
+        elif event.text in _RUNNING_STATES:
             self._go(cycle, event, cycles)
 
-    def _go(self, cycle: _Cycle, event: Event, cycles: CycleRecords) -> None:
-        if event.text != State.HOLDING.value:
+    def _go(self, cycle: _Cycle, event: LogEvent, cycles: CycleRecords) -> None:
+        if event.text != MachineState.HOLDING.value:
             self._reason = ""
         if self._stop is not None:
-            cycle.stood += event.t - self._stop.began
+            cycle.stopped_s += event.time_s - self._stop.start_time
             self._end_stop(event, cycles)
 
-    def _break(self, event: Event, cycles: CycleRecords) -> None:
+    def _interrupt_cycle(self, event: LogEvent, cycles: CycleRecords) -> None:
         """End the cycle after an alarm or E-stop. Production is stopped until the next start."""
         self._end(event, cycles, event.text)
-        if self._stop is not None and self._stop.row.reason == BETWEEN:
+        if self._stop is not None and self._stop.row.reason == BETWEEN_CYCLES:
             self._end_stop(event, cycles)
         if self._stop is None:
             self._begin_stop(event, self._reason or event.text, named=bool(self._reason))
 
-    def _begin_stop(self, event: Event, reason: str, *, named: bool) -> None:
+    def _begin_stop(self, event: LogEvent, reason: str, *, named: bool) -> None:
         key, now = self._key()
         cycle = self._cycle.row.key if self._cycle is not None else ""
-        self._stop = _Stop(StopRow(key, cycle, self._program, now, 0.0, reason, event.line), event.t, named)
+        self._stop = _Stop(
+            StopRow(key, cycle, self._program, now, 0.0, reason, event.line), event.time_s, named
+        )
         self._reason = ""
 
-    def _end_stop(self, event: Event, cycles: CycleRecords) -> None:
+    def _end_stop(self, event: LogEvent, cycles: CycleRecords) -> None:
         stop, self._stop, self._reason = self._stop, None, ""
         if stop is None:
             return
-        row = stop.row._replace(seconds=max(0.0, event.t - stop.began))
+        row = stop.row._replace(seconds=max(0.0, event.time_s - stop.start_time))
         cycles.record_stop(row)
 
-    def _name(self, reason: str) -> None:
+    def _name_reason(self, reason: str) -> None:
         """Set the reason for the present stop, or for the next stop if the machine runs."""
         stop = self._stop
         if stop is None:
             self._reason = reason
-        elif not stop.named:
-            self._stop = replace(stop, row=stop.row._replace(reason=reason), named=True)
+        elif not stop.is_named:
+            self._stop = replace(stop, row=stop.row._replace(reason=reason), is_named=True)

@@ -9,69 +9,75 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from app.desk.access import Access
-from app.desk.background_work import Latest
+from app.desk.access import UserAccess
+from app.desk.background_work import LatestRequestWorker
 from app.production.tool_totals import TOTALS, ToolTotals
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.message import Message
 from core.store.production import part_cycles, tool_lives
 from core.store.production.part_cycles import StopRow
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.settings import save_setting
 from core.store.store import Store
 from core.store.store_access import Operation, WaitingEntries
 from core.store.store_errors import StoreError
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 
-NONE_KEPT = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
-Read = Callable[[Store, str], Any]
+PARTS_NOT_STORED = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
+ReadFeature = Callable[[Store, str], Any]
 """What an optional feature reads of the store for a program, on the worker. Raises StoreError."""
-NEWEST = 1000  # maximum number of readings, cycles and stops
+MAX_ROWS = 1000  # maximum number of readings, cycles and stops
 
 
 @dataclass(frozen=True, slots=True)
-class Production:
+class ProductionData:
     """Production data: tool life of all tools, the latest stops, and data of optional features."""
 
     program: str = ""
-    lives: dict[int, LifeRow] = field(default_factory=dict)
+    tool_lives: dict[int, ToolLifeRow] = field(default_factory=dict)
     stops: tuple[StopRow, ...] = ()  # stops of all programs, oldest first
-    more: Mapping[str, Any] = field(default_factory=dict)  # by the name of the feature
+    feature_data: Mapping[str, Any] = field(default_factory=dict)  # by the name of the feature
 
 
-def production(store: Store, program: str, tools: Kind, readers: Mapping[str, Read]) -> Production:
+def read_production(
+    store: Store, program: str, tools: OffsetKind, readers: Mapping[str, ReadFeature]
+) -> ProductionData:
     """Return the stored production data. ``tools`` is the tool table of the machine.
 
     The call reads the store and can take a while. Raises StoreError.
     """
     more = {name: read(store, program) for name, read in readers.items()}
     with store.read() as connection:
-        lives, stops = tool_lives.lives(connection, tools), part_cycles.stops(connection, None, NEWEST)
-    return Production(program, lives, stops, more)
+        lives, stops = (
+            tool_lives.read_tool_lives(connection, tools),
+            part_cycles.read_stops(connection, None, MAX_ROWS),
+        )
+    return ProductionData(program, lives, stops, more)
 
 
-def tools_of(machine_kind: str) -> Kind:
+def find_tool_table_kind(machine_kind: str) -> OffsetKind:
     """Return the kind of tool table for a kind of machine."""
-    return Kind.MILL_TOOL if machine_kind == "mill" else Kind.TOOL
+    return OffsetKind.MILL_TOOL if machine_kind == "mill" else OffsetKind.TOOL
 
 
 @dataclass(slots=True)
 class PartsBook:
-    """Access to stored production data. ``look`` is called once per frame, and ``now`` is the latest data.
+    """Access to stored production data. ``update`` is called once per frame, and ``current`` is the latest
+    data.
 
-    A worker reads, and the store writes. Without ``store`` nothing is stored. ``away`` is the reason, and
-    ``locked`` is the message on the pages of measured parts.
+    A worker reads, and the store writes. Without ``store`` nothing is stored. ``no_store_reason`` is the
+    reason, and ``lock_reason`` is the message on the pages of measured parts.
     """
 
     store: Store | None = None
-    away: str = ""
-    tools: Kind = Kind.TOOL  # tool table of this machine
-    now: Production = field(default_factory=Production)
-    access: Access = field(default_factory=Access)  # user and permissions for changes
-    trouble: str = ""  # reason for the last failure of reading or writing
-    loads: int = 0  # number of times that ``now`` was read
-    readers: dict[str, Read] = field(default_factory=dict)  # readers of optional features
-    worker: Latest = field(default_factory=lambda: Latest("measured-parts"))
+    no_store_reason: str = ""
+    tool_kind: OffsetKind = OffsetKind.TOOL  # tool table of this machine
+    current: ProductionData = field(default_factory=ProductionData)
+    access: UserAccess = field(default_factory=UserAccess)  # user and permissions for changes
+    error_text: str = ""  # reason for the last failure of reading or writing
+    load_count: int = 0  # number of times that ``current`` was read
+    readers: dict[str, ReadFeature] = field(default_factory=dict)  # readers of optional features
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("measured-parts"))
     _stale: bool = True
     _reading: bool = False
     _saving: list[tuple[Future[Any], Callable[[], None], Callable[[str], None]]] = field(default_factory=list)
@@ -81,28 +87,35 @@ class PartsBook:
     _reopened: tuple[Store | None, str] | None = None
 
     @property
-    def locked(self) -> str:
+    def lock_reason(self) -> str:
         """Reason why measured parts are not stored, or an empty string."""
         if self.store is not None:
             return ""
-        return Message("MEASURED PARTS CANNOT BE SAVED: {away}", away=self.away) if self.away else NONE_KEPT
+        return (
+            Message("MEASURED PARTS CANNOT BE SAVED: {away}", away=self.no_store_reason)
+            if self.no_store_reason
+            else PARTS_NOT_STORED
+        )
 
-    def look(self, program: str) -> None:
+    def update(self, program: str) -> None:
         """Process finished reading and writing, and read changed data again."""
         if self._reopened is not None:
-            self.store, self.away = self._reopened
+            self.store, self.no_store_reason = self._reopened
             self._reopened, self._behind, self._stale = None, None, True
         self.worker.poll()
         self._look_at_writing()
-        if program != self.now.program:
-            self.now, self._stale = Production(program, self.now.lives, more=self.now.more), True
+        if program != self.current.program:
+            self.current, self._stale = (
+                ProductionData(program, self.current.tool_lives, feature_data=self.current.feature_data),
+                True,
+            )
         store = self.store
-        if store is not None and not self.worker.busy and self._written(store):
+        if store is not None and not self.worker.is_busy and self._is_reload_due(store):
             self._reading = True
-            work = partial(production, store, program, self.tools, self.readers)
-            self.worker.ask(lambda _watch: work(), self._read, self._failed)
+            work = partial(read_production, store, program, self.tool_kind, self.readers)
+            self.worker.request(lambda _watch: work(), self._read, self._failed)
 
-    def _written(self, store: Store) -> bool:
+    def _is_reload_due(self, store: Store) -> bool:
         """Return whether data must be read again and all earlier changes are written."""
         if self._stale and self._behind is None:
             self._stale = False
@@ -115,16 +128,16 @@ class PartsBook:
         self._behind = None
         return True
 
-    def _read(self, found: Production) -> None:
-        self.now, self.trouble, self._reading = found, "", False
-        self.loads += 1
-        self._tell_done()
+    def _read(self, found: ProductionData) -> None:
+        self.current, self.error_text, self._reading = found, "", False
+        self.load_count += 1
+        self._call_done()
 
     def _failed(self, why: str) -> None:
-        self.trouble, self._reading = why, False
-        self._tell_done()
+        self.error_text, self._reading = why, False
+        self._call_done()
 
-    def _tell_done(self) -> None:
+    def _call_done(self) -> None:
         """Call the callbacks for changes that are on the disk and read again."""
         told, self._kept = self._kept, []
         for done in told:
@@ -143,51 +156,55 @@ class PartsBook:
             else:
                 failed(str(error))
 
-    def refresh(self) -> None:
+    def request_reload(self) -> None:
         """Request a new reading because data was stored elsewhere."""
         self._stale = True
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Whether changes are still being written."""
         return bool(self._saving or self._kept)
 
     @property
-    def settled(self) -> bool:
-        """Whether ``now`` equals the stored data, with nothing left to write or read."""
-        return not (self.busy or self._stale or self._behind is not None or self._reading)
+    def is_settled(self) -> bool:
+        """Whether ``current`` equals the stored data, with nothing left to write or read."""
+        return not (self.is_busy or self._stale or self._behind is not None or self._reading)
 
-    def write(
+    def write_change(
         self,
-        act: Act,
+        access_right: ProtectedChange,
         operation: Operation[Any],
-        done: Callable[[], None],
-        failed: Callable[[str], None],
-        change: str = "",
+        on_done: Callable[[], None],
+        on_failed: Callable[[str], None],
+        description: str = "",
     ) -> None:
         """Store a change.
 
-        A later ``look`` calls ``done`` once the change is on the disk, or ``failed`` with a reason.
-        ``change`` is the text for the change log, or empty for no entry.
+        A later ``update`` calls ``on_done`` once the change is on the disk, or ``on_failed`` with a reason.
+        ``description`` is the text for the change log, or empty for no entry.
         """
-        why = (self.away or NONE_KEPT) if self.store is None else self.access.refusal(act)
+        why = (
+            (self.no_store_reason or PARTS_NOT_STORED)
+            if self.store is None
+            else self.access.find_refusal(access_right)
+        )
         if self.store is None or why:
-            failed(why)
+            on_failed(why)
             return
 
         def kept() -> None:
-            if change:
-                self.access.persistence.note_change(change)
-            done()
+            if description:
+                self.access.persistence.log_change(description)
+            on_done()
 
         try:
-            self._saving.append((self.store.write(operation), kept, failed))
+            self._saving.append((self.store.write(operation), kept, on_failed))
         except StoreError as error:
-            failed(str(error))
+            on_failed(str(error))
 
-    def keep_use(self, lives: Iterable[LifeRow], totals: ToolTotals | None = None) -> None:
+    def save_tool_use(self, lives: Iterable[ToolLifeRow], totals: ToolTotals | None = None) -> None:
         """Store the use of tools, and the totals of the control that it includes, in one transaction."""
-        store, tools = self.store, self.tools
+        store, tools = self.store, self.tool_kind
         if store is None:
             return
         rows = tuple(lives)
@@ -195,20 +212,22 @@ class PartsBook:
         def keeping(unwritten: WaitingEntries) -> None:
             for row in rows:
                 use = (row.number, row.parts, row.seconds, tools)
-                unwritten.latest(("life", str(row.number)), partial(_set_use, use))
+                unwritten.replace_operation(("life", str(row.number)), partial(_set_use, use))
             if totals is not None:
-                unwritten.latest(("setting", TOTALS), lambda c: save_setting(c, TOTALS, totals.plain))
+                unwritten.replace_operation(
+                    ("setting", TOTALS), lambda c: save_setting(c, TOTALS, totals.plain)
+                )
 
         store.keep(keeping)
 
-    def reopen(self, store: Store | None, trouble: str) -> None:
+    def use_store(self, store: Store | None, error_text: str) -> None:
         """Replace the store; callable from any thread."""
-        self._reopened = store, trouble
+        self._reopened = store, error_text
 
     def close(self) -> None:
         """Stop the worker."""
         self.worker.close()
 
 
-def _set_use(use: tuple[int, int, float, Kind], connection: sqlite3.Connection) -> None:
-    tool_lives.set_use(connection, *use)
+def _set_use(use: tuple[int, int, float, OffsetKind], connection: sqlite3.Connection) -> None:
+    tool_lives.save_use(connection, *use)

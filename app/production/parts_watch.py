@@ -7,22 +7,22 @@ from pathlib import Path
 from typing import Protocol
 
 from app.desk.desk import Desk
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.translation import tr
 from app.production.parts_book import PartsBook
 from app.production.tool_life_watch import ToolLifeWatch
-from core.executor.commands import BarNextPart
+from core.executor.commands import BlockNextPart
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 
 
-class Plan(Protocol):
+class ProductionPlan(Protocol):
     """Plan of an optional feature for the next parts."""
 
-    def bar(self, snapshot: Snapshot) -> str:
+    def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return the reason why the next part must not start, or an empty string."""
 
-    def due(self) -> str:
+    def due_reminder(self) -> str:
         """Return the text for the prompt line, or an empty string."""
 
 
@@ -30,53 +30,65 @@ class Plan(Protocol):
 class PartsWatch:
     """Watch of production.
 
-    ``see`` is called once per frame, and ``due`` by the prompt line, without waiting.
+    ``observe`` is called once per frame, and ``due_reminder`` by the prompt line, without waiting.
     """
 
     desk: Desk
-    book: PartsBook
-    lives: ToolLifeWatch
+    parts_book: PartsBook
+    tool_life_watch: ToolLifeWatch
     _ends: int = -1
     _changes: int = -1
     _store: object = None
     _barred: str | None = None  # reason that was last sent to the executor
-    plans: list[Plan] = field(default_factory=list)  # plans of optional features
+    production_plans: list[ProductionPlan] = field(default_factory=list)  # plans of optional features
 
     @property
-    def program(self) -> str:
+    def program_name(self) -> str:
         """Name of the loaded program."""
-        return Path(self.desk.session.now.name).name
+        return Path(self.desk.program_loader.loaded.name).name
 
-    def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
+    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update production data, tool life and the lock of the next part. Called once per frame."""
-        if snapshot.ends != self._ends or self.desk.book.changes != self._changes:
-            self._ends, self._changes = snapshot.ends, self.desk.book.changes
-            self.book.refresh()
-        self.book.look(self.program)
-        if self.book.store is not self._store:
-            self._store = self.book.store
-            self.lives.forget()
-        self.lives.see(snapshot, self.desk.say)
-        self._bar(snapshot, loaded)
+        if snapshot.ends != self._ends or self.desk.offset_book.changes != self._changes:
+            self._ends, self._changes = snapshot.ends, self.desk.offset_book.changes
+            self.parts_book.request_reload()
+        self.parts_book.update(self.program_name)
+        if self.parts_book.store is not self._store:
+            self._store = self.parts_book.store
+            self.tool_life_watch.discard_counts()
+        self.tool_life_watch.observe(snapshot, self.desk.say)
+        self._update_block(snapshot, loaded)
 
-    def _bar(self, snapshot: Snapshot, loaded: Loaded) -> None:
+    def _update_block(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Send the lock reason to the executor before the part ends, so that the next part does not start."""
-        tools = loaded.proof.tools if loaded.proof is not None else ()
-        bars = (self.lives.bar(snapshot, tools), *(plan.bar(snapshot) for plan in self.plans))
+        tools = loaded.proof.tool_numbers if loaded.proof is not None else ()
+        bars = (
+            self.tool_life_watch.find_block_reason(snapshot, tools),
+            *(plan.find_block_reason(snapshot) for plan in self.production_plans),
+        )
         wanted = next(filter(None, bars), "")
         if wanted not in {snapshot.next_barred, self._barred}:
-            self.desk.post(BarNextPart(wanted))
+            self.desk.post(BlockNextPart(wanted))
         self._barred = wanted
 
-    def due(self) -> str:
+    def due_reminder(self) -> str:
         """Return the due measurements and tool changes for the prompt line, or an empty string."""
-        return join_messages(" · ", filter(None, (*(plan.due() for plan in self.plans), self.lives.due())))
+        return join_messages(
+            " · ",
+            filter(
+                None,
+                (
+                    *(plan.due_reminder() for plan in self.production_plans),
+                    self.tool_life_watch.due_reminder(),
+                ),
+            ),
+        )
 
-    def refuse(self, why: str) -> None:
+    def report_refusal(self, reason: str) -> None:
         """Report the reason why data was not stored."""
-        self.desk.say(tr(Message("NOT SAVED: {why}", why=why)))
+        self.desk.say(tr(Message("NOT SAVED: {why}", why=reason)))
 
     def close(self) -> None:
         """Store the remaining tool use and stop the worker."""
-        self.lives.keep_all()
-        self.book.close()
+        self.tool_life_watch.save_all()
+        self.parts_book.close()

@@ -10,14 +10,14 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.programs.program_folder import ListedProgram, ProgramFolders
-from app.desk.status.prompt_line import ASK_FILE, CHOOSE_FILE, NOT_FOUND
+from app.desk.status.prompt_line import ASK_FILE, CHOOSE_FILE, FILE_NOT_FOUND
 from app.desk.translation import tr
-from app.screen.entry_panel import dress_line
-from app.screen.look import CENTRE, RIGHT, Look, Painter, put
-from app.screen.sheet_panel import RowPanel
+from app.screen.entry_panel import style_line_edit
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter, draw_text
+from app.screen.table_panel import RowPanel
 from core.message import Message
 
-ROW = 6.6  # units: a fingertip
+ROW_HEIGHT = 6.6  # units: a fingertip
 
 
 class FilePrompt(RowPanel):
@@ -27,56 +27,56 @@ class FilePrompt(RowPanel):
     """
 
     title = ASK_FILE
-    notch, centred = 1, True
+    scroll_step, is_centered = 1, True
 
     def __init__(
         self,
-        look: Look,
+        theme: ScreenTheme,
         program_folders: ProgramFolders,
-        choose: Callable[[str], bool],
-        closed: Callable[[], None],
+        on_select: Callable[[str], bool],
+        on_closed: Callable[[], None],
         parent: QWidget,
     ) -> None:
-        super().__init__(look, parent)
-        self._shelf, self._choose, self._closed = program_folders, choose, closed
+        super().__init__(theme, parent)
+        self._shelf, self._choose, self._closed = program_folders, on_select, on_closed
         self._entries: tuple[ListedProgram, ...] = ()
         self._row = 0
         self._moved = False  # The user selected a row, which has priority over the typed name.
-        self.not_found = False
-        self.edit = QLineEdit(self)
-        self.edit.setMaxLength(250)
-        self.edit.textEdited.connect(self._typed)
-        self.edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
-        self.edit.installEventFilter(self)
-        self.dress()
+        self.is_not_found = False
+        self.name_edit = QLineEdit(self)
+        self.name_edit.setMaxLength(250)
+        self.name_edit.textEdited.connect(self._typed)
+        self.name_edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
+        self.name_edit.installEventFilter(self)
+        self.apply_theme()
         self.hide()
 
     @property
-    def message(self) -> str:
+    def message_text(self) -> str:
         """Message about the name, or an empty string."""
-        return NOT_FOUND if self.not_found else ""
+        return FILE_NOT_FOUND if self.is_not_found else ""
 
     @property
-    def wanted(self) -> str:
+    def wanted_name(self) -> str:
         """Program for F3: the row that the user selected, or the typed name, or an empty string."""
         if self._moved and self._entries:
             return str(self._entries[self._row].path)
-        return self.edit.text().strip()
+        return self.name_edit.text().strip()
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt. Cycle Start is not mentioned, because its keys are text here."""
-        return NOT_FOUND if self.not_found else CHOOSE_FILE
+        return FILE_NOT_FOUND if self.is_not_found else CHOOSE_FILE
 
-    def ask(self) -> None:
+    def show_prompt(self) -> None:
         """Show the empty prompt with the keyboard focus."""
-        self.not_found = False
-        self.edit.clear()
+        self.is_not_found = False
+        self.name_edit.clear()
         self._narrow("")
         self.show()
         self.raise_()
-        self.edit.setFocus()
+        self.name_edit.setFocus()
 
-    def dismiss(self) -> None:
+    def close_prompt(self) -> None:
         """Close the prompt. The loaded program remains."""
         if self.isVisible():
             self.hide()
@@ -89,13 +89,13 @@ class FilePrompt(RowPanel):
         return False
 
     def _key(self, event: QKeyEvent) -> bool:
-        if self.not_found:
-            self.not_found = False
-            self.edit.selectAll()
+        if self.is_not_found:
+            self.is_not_found = False
+            self.name_edit.selectAll()
             self.update()
             return True
         actions: dict[int, Callable[[], None]] = {
-            Qt.Key.Key_Escape: self.dismiss,
+            Qt.Key.Key_Escape: self.close_prompt,
             Qt.Key.Key_Return: self._take,
             Qt.Key.Key_Enter: self._take,
             Qt.Key.Key_Down: lambda: self._mark(self._row + 1),
@@ -114,7 +114,7 @@ class FilePrompt(RowPanel):
         self._narrow(text)
 
     def _narrow(self, text: str) -> None:
-        self._entries = self._shelf.matching(text)
+        self._entries = self._shelf.find_matching(text)
         self._row = 0
         self.update()
 
@@ -125,8 +125,8 @@ class FilePrompt(RowPanel):
             self.update()
 
     def _take(self) -> None:
-        typed = self.edit.text()
-        if not self._moved and typed.strip() and self._shelf.find(typed) is not None:
+        typed = self.name_edit.text()
+        if not self._moved and typed.strip() and self._shelf.find_path(typed) is not None:
             self._try(typed)
         elif self._entries:
             self._try(str(self._entries[self._row].path))
@@ -135,59 +135,66 @@ class FilePrompt(RowPanel):
 
     def _try(self, name: str) -> None:
         if self._choose(name):
-            self.dismiss()
+            self.close_prompt()
         else:
-            self.not_found = True
+            self.is_not_found = True
             self.update()
 
     # --- drawing -------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Place the entry line below the title."""
-        u = self.look.u
-        self.edit.setGeometry(round(1.6 * u), round(2.8 * u), round(self.width() - 3.2 * u), round(4.8 * u))
-        self.dress()
+        u = self.theme.u
+        self.name_edit.setGeometry(
+            round(1.6 * u), round(2.8 * u), round(self.width() - 3.2 * u), round(4.8 * u)
+        )
+        self.apply_theme()
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply font and colors to the entry line."""
-        self.edit.setAccessibleName(tr(ASK_FILE))
-        dress_line(self.edit, self.look, 2.6, 1.0)
+        self.name_edit.setAccessibleName(tr(ASK_FILE))
+        style_line_edit(self.name_edit, self.theme, 2.6, 1.0)
 
     def scroll_by(self, rows: int) -> None:
         """Move the selection."""
         self._mark(self._row + rows)
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
         self.frame(painter, self.title, "accent", 0.3)
         foot = QRectF(1.6 * u, self.height() - 3.2 * u, self.width() - 3.2 * u, 2.6 * u)
-        if self.not_found:
+        if self.is_not_found:
             self._not_found(painter)
         else:
             self._list(painter)
         keys = "ENTER: load the selected program   ESC: keep the current program   F2: show the list"
-        painter.write(foot, keys, 1.6, "soft", bold=False, fit=False)
+        painter.draw_text_line(foot, keys, 1.6, "soft", bold=False, fit=False)
         count = len(self._entries)
-        put(painter, foot, RIGHT, tr("1 program") if count == 1 else Message("{count} programs", count=count))
+        draw_text(
+            painter,
+            foot,
+            ALIGN_RIGHT,
+            tr("1 program") if count == 1 else Message("{count} programs", count=count),
+        )
 
-    def _list(self, painter: Painter) -> None:
-        u = self.look.u
-        fits = max(1, int((self.height() - 10.5 * u) / (ROW * u)))
-        room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, fits * ROW * u)
-        room = self.scrolled(painter, room, fits, len(self._entries), self._row)
-        for number, box in self.boxes(room, ROW * u):
+    def _list(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
+        fits = max(1, int((self.height() - 10.5 * u) / (ROW_HEIGHT * u)))
+        room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, fits * ROW_HEIGHT * u)
+        room = self.draw_scroll_keys(painter, room, fits, len(self._entries), self._row)
+        for number, box in self.find_row_boxes(room, ROW_HEIGHT * u):
             entry, marked = self._entries[number], number == self._row
             if marked:
-                painter.fill(box, "lit")
+                painter.fill_rect(box, "lit")
             ink, soft = ("on_lit", "on_lit") if marked else ("text", "soft")
             name = box.adjusted(1.2 * u, 0, -30 * u, 0)
-            painter.write(name, entry.name, 2.3, ink, bold=marked, raw=True, fit=False)
+            painter.draw_text_line(name, entry.name, 2.3, ink, bold=marked, raw=True, fit=False)
             folder, text = box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0), entry.path.parent.name
-            painter.write(folder, text, 1.6, soft, at=RIGHT, bold=False, raw=True, fit=False)
-            self.place(box, partial(self._try, str(entry.path)), kind="row", on=marked)
+            painter.draw_text_line(folder, text, 1.6, soft, at=ALIGN_RIGHT, bold=False, raw=True, fit=False)
+            self.add_target(box, partial(self._try, str(entry.path)), kind="row", is_on=marked)
 
-    def _not_found(self, painter: Painter) -> None:
-        u = self.look.u
+    def _not_found(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
         box = QRectF(1.6 * u, 10 * u, self.width() - 3.2 * u, 7 * u)
-        painter.fill(box, "alarm")
-        painter.write(box, NOT_FOUND, 2.8, "on_state", at=CENTRE, margin=2)
+        painter.fill_rect(box, "alarm")
+        painter.draw_text_line(box, FILE_NOT_FOUND, 2.8, "on_state", at=ALIGN_CENTER, margin=2)

@@ -11,81 +11,81 @@ from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.page_description import ProgramKey
-from app.desk.pages.page_entry import editor_barred
-from app.desk.pages.sheet import Key
-from app.desk.programs.program_loading import Loaded
+from app.desk.pages.page_entry import find_editor_refusal
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.editor.editor import Editor
+from app.editor.editor_model import EditorModel
 from app.path.path_view import PathView
-from app.programs.copy_rename_delete import NONE
-from app.programs.program_list import ProgramList, details_of
-from app.programs.program_rows import Program, Thumbnail
+from app.programs.program_commands import NO_SELECTION
+from app.programs.program_list_model import ProgramListModel, make_details
+from app.programs.program_rows import ListedFile, Thumbnail
 from app.screen import page_table
-from app.screen.entry_panel import NAMES_WIDE, LetterPad
-from app.screen.look import Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
-from app.screen.sheet_panel import ListPage, SheetPanel
-from app.working_plane.plane_instant import at_line
+from app.screen.entry_panel import WIDE_NAME_KEYS, LetterPad
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ThemedPainter
+from app.screen.table_panel import ListPage, TablePanel
+from app.working_plane.plane_instant import make_line_instant
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
+    from app.path.path_picture import ProgramPicture
 
 # --- details of the selected program -----------------------------------------------------------------------
 
 
-LABEL = 11.0  # units
-LONG = 2  # rows at the end that use the whole width
+LABEL_WIDTH = 11.0  # units
+FULL_WIDTH_ROWS = 2  # rows at the end that use the whole width
 
 
-class RecordPanel(Panel):
+class ProgramDetailPanel(Panel):
     """Panel of details in two columns: label and value."""
 
     title = "DETAILS"
-    program: Shown[Program | None] = Shown(None)
-    trouble = Shown("")  # state or error of the preview
-    part: Shown[Thumbnail | None] = Shown(None)
+    program: RedrawingAttribute[ListedFile | None] = RedrawingAttribute(None)
+    error_text = RedrawingAttribute("")  # state or error of the preview
+    part_thumbnail: RedrawingAttribute[Thumbnail | None] = RedrawingAttribute(None)
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
-        rows = list(details_of(self.program)) if self.program is not None else []
-        beside = len(rows) - LONG
-        if self.trouble:
-            rows.append(("PREVIEW", self.trouble))
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
+        rows = list(make_details(self.program)) if self.program is not None else []
+        beside = len(rows) - FULL_WIDTH_ROWS
+        if self.error_text:
+            rows.append(("PREVIEW", self.error_text))
         room = self.inside()
         high = min(3.0 * u, room.height() / max(1, len(rows)))
         self._draw_part(painter, high * beside)
         for number, (label, text) in enumerate(rows):
             y = room.y() + number * high
-            painter.write(QRectF(room.x(), y, (LABEL - 0.6) * u, high), label, 1.6, "soft")
-            value = QRectF(room.x() + LABEL * u, y, room.width() - LABEL * u, high)
-            painter.write(value, text, 1.9, "text")
+            painter.draw_text_line(QRectF(room.x(), y, (LABEL_WIDTH - 0.6) * u, high), label, 1.6, "soft")
+            value = QRectF(room.x() + LABEL_WIDTH * u, y, room.width() - LABEL_WIDTH * u, high)
+            painter.draw_text_line(value, text, 1.9, "text")
 
-    def _draw_part(self, painter: Painter, high: float) -> None:
+    def _draw_part(self, painter: ThemedPainter, height: float) -> None:
         """Draw the finished part on the right, next to the short rows."""
-        if self.part is None or high <= 0.0:
+        if self.part_thumbnail is None or height <= 0.0:
             return
-        pixels, columns, rows = self.part
+        pixels, columns, rows = self.part_thumbnail
         room, form = self.inside(), QImage.Format.Format_ARGB32
-        scale = min(1.0, high / rows, 0.5 * room.width() / columns)
+        scale = min(1.0, height / rows, 0.5 * room.width() / columns)
         wide, tall = columns * scale, rows * scale
-        at = QRectF(room.right() - wide, room.y() + (high - tall) / 2, wide, tall)
+        at = QRectF(room.right() - wide, room.y() + (height - tall) / 2, wide, tall)
         painter.drawImage(at, QImage(pixels, columns, rows, 4 * columns, form))
 
 
 SHARE, RECORD = 0.6, 24.0  # ratio of the width for the list; units of height for the details
-LETTERS = 19.0  # units of height for the drawn keyboard
+KEYBOARD_HEIGHT = 19.0  # units of height for the drawn keyboard
 
 
-class PreviewPath(PathView):
+class PreviewPathView(PathView):
     """Path preview of a program that is not loaded."""
 
     title = "PREVIEW"
 
 
-class PreviewSpace(WorkingPlaneView):
+class PreviewPlaneView(WorkingPlaneView):
     """Preview of a mill program: table, workpiece and path."""
 
     title = "PREVIEW"
@@ -95,121 +95,126 @@ class ProgramsPage(ListPage):
     """Page PROGRAMS: shows its model and passes the keys to it."""
 
     NAME = page_table.PROGRAMS
-    model: ProgramList
+    model: ProgramListModel
 
-    def __init__(self, host: Host, model: ProgramList, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: ProgramListModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.table = SheetPanel(self.look, self._chosen, self)
-        self.path = PreviewPath(self.look, self)
-        self.space = PreviewSpace(self.look, self)
-        self._shown: Picture | None = None
-        self.record = RecordPanel(self.look, self)
-        self.letters = LetterPad(self.look, self.touched, self, NAMES_WIDE)
+        self.table_panel = TablePanel(self.theme, self._chosen, self)
+        self.path_view = PreviewPathView(self.theme, self)
+        self.plane_view = PreviewPlaneView(self.theme, self)
+        self._shown: ProgramPicture | None = None
+        self.detail_panel = ProgramDetailPanel(self.theme, self)
+        self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self, WIDE_NAME_KEYS)
         self._with_letters = False
-        self.table.touch_entry = self._turn_letters
+        self.table_panel.on_entry_touched = self._turn_letters
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the barred keys of the list, and F3 while the editor cannot be opened."""
-        closed = not self.model.transfer.open and editor_barred(self.desk.snapshot())
-        return super().barred() | ({"F3"} if closed else set())
+        closed = not self.model.import_export.is_open and find_editor_refusal(self.desk.read_snapshot())
+        return super().disabled_keys() | ({"F3"} if closed else set())
 
-    def page_keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.keys()
+        return self.model.function_keys()
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of the list or of the folder chooser."""
-        added = {name: key.label for name, key in self.desk.pages.program_keys.items()}
-        own = {} if self.model.transfer.open else {"F3": "EDIT", **added}
-        return self.labels_of(own, self.page_keys())
+        added = {name: key.label for name, key in self.desk.page_registry.program_keys.items()}
+        own = {} if self.model.import_export.is_open else {"F3": "EDIT", **added}
+        return self.make_labels(own, self.function_keys())
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the function keys of the list or of the folder chooser."""
-        keys = self.page_keys()
-        added = {name: partial(self._use, key) for name, key in self.desk.pages.program_keys.items()}
-        own: KeyActions = {} if self.model.transfer.open else {"F3": self._edit, **added}
+        keys = self.function_keys()
+        added = {
+            name: partial(self._use_program_key, key)
+            for name, key in self.desk.page_registry.program_keys.items()
+        }
+        own: KeyActions = {} if self.model.import_export.is_open else {"F3": self._open_editor, **added}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.page_keys()[name].action()
+        self.function_keys()[name].action()
 
-    def _edit(self) -> None:
+    def _open_editor(self) -> None:
         """Edit the selected program without loading it, or a new program with the typed name."""
-        here = self.model.program
-        editor = self.desk.pages.find(Editor)
-        if here is None and editor is not None and self.model.find.text:
-            editor.wanted = self.model.find.text
-            self.host.go(page_table.EDITOR)
+        here = self.model.selected_program
+        editor = self.desk.page_registry.find(EditorModel)
+        if here is None and editor is not None and self.model.search_field.text:
+            editor.pending_name = self.model.search_field.text
+            self.host.open_page(page_table.EDITOR)
             return
         if here is None or editor is None:
-            self.desk.say(NONE)
+            self.desk.say(NO_SELECTION)
             return
-        editor.made_of = here.path if here.drawing else None
-        editor.wanted = f"{here.path.stem}.nc" if here.drawing else str(here.path)
-        if not self.host.go(page_table.EDITOR):
-            editor.made_of = None
+        editor.source_drawing = here.path if here.is_drawing else None
+        editor.pending_name = f"{here.path.stem}.nc" if here.is_drawing else str(here.path)
+        if not self.host.open_page(page_table.EDITOR):
+            editor.source_drawing = None
 
-    def _use(self, key: ProgramKey) -> None:
+    def _use_program_key(self, key: ProgramKey) -> None:
         """Open the page of the key with the selected program."""
-        here = self.model.program
-        if here is None or here.drawing:
-            self.desk.say(NONE)
-        elif self.host.go(key.page):
+        here = self.model.selected_program
+        if here is None or here.is_drawing:
+            self.desk.say(NO_SELECTION)
+        elif self.host.open_page(key.page):
             key.use(here.name)
 
     def _chosen(self, row: int) -> None:
         model = self.model
-        if model.transfer.open:
-            model.transfer.touch(row)
-        elif row == model.marked:
-            self.typed("Enter")
+        if model.import_export.is_open:
+            model.import_export.touch_line(row)
+        elif row == model.selected_row:
+            self.handle_key("Enter")
         else:
-            model.choose(row)
+            model.select_row(row)
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Enter on a program loads it and opens the Automatic page."""
         model = self.model
-        if key == "Enter" and not model.transfer.open and not model.question:
+        if key == "Enter" and not model.import_export.is_open and not model.question:
             # The page changes first, because a question about an interrupted job belongs to the new page.
-            if model.may_load() and self.host.go(page_table.AUTOMATIC):
-                model.load()
+            if model.can_load() and self.host.open_page(page_table.AUTOMATIC):
+                model.load_selected()
             return True
-        return model.typed(key)
+        return model.handle_key(key)
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether a name can be typed."""
-        return not self.model.transfer.open
+        return not self.model.import_export.is_open
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Redraw the path in the present colors."""
-        self.path.restart()
+        self.path_view.redraw()
 
-    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Update list, preview and details."""
         model = self.model
-        model.look()
-        self.table.show_sheet(model.sheet())
-        here = model.program
-        self._show_picture(model.preview.of(None if here is not None and here.drawing else here))
-        lettered = (bool(model.question) or self._with_letters) and not model.transfer.open
-        if lettered is self.letters.isHidden():
-            self.letters.setVisible(lettered)
+        model.poll()
+        self.table_panel.show_table(model.make_table())
+        here = model.selected_program
+        self._show_picture(model.preview.find_picture(None if here is not None and here.is_drawing else here))
+        lettered = (bool(model.question) or self._with_letters) and not model.import_export.is_open
+        if lettered is self.letter_pad.isHidden():
+            self.letter_pad.setVisible(lettered)
             self._lay_out()
-        self.record.program = here
-        self.record.part = model.preview.part_of(here)
-        self.record.trouble = "DRAWING THE PREVIEW …" if model.preview.busy else model.preview.trouble
+        self.detail_panel.program = here
+        self.detail_panel.part_thumbnail = model.preview.find_thumbnail(here)
+        self.detail_panel.error_text = (
+            "DRAWING THE PREVIEW …" if model.preview.is_drawing else model.preview.error_text
+        )
 
-    def _show_picture(self, picture: Picture | None) -> None:
+    def _show_picture(self, picture: ProgramPicture | None) -> None:
         scene = picture.scene if picture is not None else None
         if picture is not self._shown:
             self._shown = picture
-            self.space.show_scene(scene)
-            self.space.setVisible(scene is not None)
-            self.path.show_picture(picture if scene is None else None)
+            self.plane_view.show_scene(scene)
+            self.plane_view.setVisible(scene is not None)
+            self.path_view.show_picture(picture if scene is None else None)
         if scene is None:
-            self.path.advance()
+            self.path_view.draw_slice()
         else:
-            self.space.show_instant(at_line(scene, 0), "")
+            self.plane_view.show_instant(make_line_instant(scene, 0), "")
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the parts after a change of size."""
@@ -218,21 +223,25 @@ class ProgramsPage(ListPage):
     def _turn_letters(self) -> None:
         self._with_letters = not self._with_letters
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Open the list without the drawn keyboard."""
         self._with_letters = False
-        super().opened()
+        super().on_open()
 
     def _lay_out(self) -> None:
-        u = self.look.u
+        u = self.theme.u
         gap = max(4, round(0.7 * u))
         left, low = round(SHARE * self.width()), round(RECORD * u)
         right = self.width() - left - gap
-        keys = 0 if self.letters.isHidden() else max(self.letters.least, round(LETTERS * u))
+        keys = (
+            0
+            if self.letter_pad.isHidden()
+            else max(self.letter_pad.min_height_px, round(KEYBOARD_HEIGHT * u))
+        )
         foot = keys or low  # The keyboard takes the place of the details.
-        self.table.setGeometry(0, 0, left, self.height() - (keys + gap if keys else 0))
-        for part in (self.path, self.space):
+        self.table_panel.setGeometry(0, 0, left, self.height() - (keys + gap if keys else 0))
+        for part in (self.path_view, self.plane_view):
             part.setGeometry(left + gap, 0, right, self.height() - foot - gap)
-        self.record.setGeometry(left + gap, self.height() - low, right, low)
-        self.record.setVisible(not keys)
-        self.letters.setGeometry(0, self.height() - keys, self.width(), keys)
+        self.detail_panel.setGeometry(left + gap, self.height() - low, right, low)
+        self.detail_panel.setVisible(not keys)
+        self.letter_pad.setGeometry(0, self.height() - keys, self.width(), keys)

@@ -12,62 +12,66 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.pages.sheet import Row, Sheet
-from app.desk.programs.program_folder import Takes, is_program
+from app.desk.pages.table_content import TableContent, TableRow
+from app.desk.programs.program_folder import AcceptsName, is_program_name
 from app.desk.status import formats
 from app.desk.translation import tr
-from app.programs.whole_file import FileError
+from app.programs.atomic_files import FileOperationError
 from core.message import Message, join_messages
 
-ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))
-MOUNTS = Path("/proc/self/mountinfo")
-BLOCKS = Path("/sys/dev/block")
-_GONE = frozenset({errno.EIO, errno.ENODEV, errno.ENXIO, errno.ENOENT, errno.ENOTCONN, errno.ESTALE})
-_FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
+MEDIA_ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))
+MOUNT_TABLE = Path("/proc/self/mountinfo")
+BLOCK_DEVICES = Path("/sys/dev/block")
+_UNPLUGGED_ERRORS = frozenset(
+    {errno.EIO, errno.ENODEV, errno.ENXIO, errno.ENOENT, errno.ENOTCONN, errno.ESTALE}
+)
+_DISK_FULL_ERRORS = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 
 @dataclass(frozen=True, slots=True)
-class Stick:
-    """Mounted medium: label, path and ``free`` space in bytes. ``locked`` means read-only."""
+class UsbStick:
+    """Mounted medium: label, path and ``free_bytes`` space in bytes. ``is_read_only`` means read-only."""
 
     label: str
     path: Path
-    free: int
-    locked: bool = False
+    free_bytes: int
+    is_read_only: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Mount:
+class MountEntry:
     """Entry of the kernel's list of mounts: path, block device and read-only state."""
 
     path: Path
-    device: str
-    locked: bool
+    device_number: str
+    is_read_only: bool
 
 
-def sticks(
-    roots: Sequence[Path] = ROOTS,
-    mounted: Callable[[Path], bool] = os.path.ismount,
-    mounts: Path = MOUNTS,
-    blocks: Path = BLOCKS,
-) -> tuple[Stick, ...]:
+def list_sticks(
+    media_roots: Sequence[Path] = MEDIA_ROOTS,
+    is_mount_point: Callable[[Path], bool] = os.path.ismount,
+    mount_table: Path = MOUNT_TABLE,
+    block_devices: Path = BLOCK_DEVICES,
+) -> tuple[UsbStick, ...]:
     """Return the mounted removable media, sorted by label.
 
     A folder that is not a mount point is ignored.
     """
     try:
-        listed = tuple(_listed(mounts.read_text(encoding="utf-8", errors="surrogateescape")))
+        listed = tuple(_parse_mounts(mount_table.read_text(encoding="utf-8", errors="surrogateescape")))
     except OSError:
-        listed = tuple(Mount(path, "", False) for root in roots for path in _mounted(root, mounted))
+        listed = tuple(
+            MountEntry(path, "", False) for root in media_roots for path in _mounted(root, is_mount_point)
+        )
     found = {
-        each.path: Stick(each.path.name, each.path, _free(each.path), each.locked)
+        each.path: UsbStick(each.path.name, each.path, _free(each.path), each.is_read_only)
         for each in listed
-        if _below(each.path, roots) or _removable(each.device, blocks)
+        if _is_below(each.path, media_roots) or _is_removable(each.device_number, block_devices)
     }
     return tuple(sorted(found.values(), key=lambda stick: stick.label.lower()))
 
 
-def _listed(text: str) -> Iterator[Mount]:
+def _parse_mounts(text: str) -> Iterator[MountEntry]:
     r"""Yield the mounts of the kernel's list, which writes a blank in a name as ``\040``."""
     for line in text.splitlines():
         words = line.split()
@@ -76,15 +80,15 @@ def _listed(text: str) -> Iterator[Mount]:
         path = words[4].encode("utf-8", "surrogateescape").decode("unicode_escape")
         path = path.encode("latin-1", "replace").decode("utf-8", "replace")
         options = {*words[5].split(","), *words[-1].split(",")}
-        yield Mount(Path(path), words[2], "ro" in options)
+        yield MountEntry(Path(path), words[2], "ro" in options)
 
 
-def _below(path: Path, roots: Sequence[Path]) -> bool:
+def _is_below(path: Path, roots: Sequence[Path]) -> bool:
     """Return whether a path is one or two levels below a root, such as /media/STICK or /media/USER/STICK."""
     return any(root in path.parents and len(path.relative_to(root).parts) <= 2 for root in roots)
 
 
-def _removable(device: str, blocks: Path) -> bool:
+def _is_removable(device: str, blocks: Path) -> bool:
     """Return whether the disk of a mount is removable.
 
     A partition is looked up through its disk.
@@ -125,63 +129,63 @@ def _free(path: Path) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Medium:
+class TargetMedium:
     """Folder for a copy, with its device number at the time of opening.
 
     A stick that is unplugged leaves its folder, which then belongs to the disk of the control.
     """
 
     folder: Path
-    device: int
+    device_number: int
 
     @classmethod
-    def of(cls, folder: Path) -> Medium:
+    def from_folder(cls, folder: Path) -> TargetMedium:
         """Return the present medium of a folder. Raises FileError if the folder does not exist."""
         try:
             return cls(folder, folder.stat().st_dev)
         except OSError as error:
-            raise FileError(why_not(error, folder)) from error
+            raise FileOperationError(describe_media_error(error, folder)) from error
 
-    def check(self) -> None:
+    def check_present(self) -> None:
         """Raise FileError if another medium or no medium is present now."""
-        if Medium.of(self.folder).device != self.device:
-            raise FileError(pulled_out(self.folder))
+        if TargetMedium.from_folder(self.folder).device_number != self.device_number:
+            raise FileOperationError(describe_unplugged(self.folder))
 
-    def room_for(self, size: int) -> None:
-        """Raise FileError if fewer than ``size`` bytes are free."""
+    def check_free_space(self, size_bytes: int) -> None:
+        """Raise FileError if fewer than ``size_bytes`` bytes are free."""
         free = _free(self.folder)
-        if size > free:
-            raise FileError(
+        if size_bytes > free:
+            raise FileOperationError(
                 tr(
                     Message(
                         "{place}: {size} NEEDED, ONLY {free} FREE. USE ANOTHER USB STICK",
                         place=self.folder.name,
-                        size=formats.file_size(size),
-                        free=formats.file_size(free),
+                        size=formats.format_file_size(size_bytes),
+                        free=formats.format_file_size(free),
                     )
                 )
             )
 
 
-def pulled_out(folder: Path) -> str:
+def describe_unplugged(folder: Path) -> str:
     """Return the message about a stick that was unplugged."""
     return tr(Message("{place} IS NO LONGER CONNECTED. PLUG IT IN AGAIN AND PRESS F2", place=folder.name))
 
 
-def why_not(error: OSError, folder: Path) -> str:
+def describe_media_error(error: OSError, folder: Path) -> str:
     """Return the reason for a failed access to a medium as a message for the operator."""
-    if error.errno in _FULL:
+    if error.errno in _DISK_FULL_ERRORS:
         return tr(Message("{place} IS FULL. NO PARTIAL FILE LEFT. USE ANOTHER USB STICK", place=folder.name))
     if error.errno == errno.EROFS:
         words = tr("{place} IS WRITE-PROTECTED. UNLOCK IT OR USE ANOTHER USB STICK")
         return tr(Message(words, place=folder.name))
-    if error.errno in _GONE:
-        return pulled_out(folder)
+    if error.errno in _UNPLUGGED_ERRORS:
+        return describe_unplugged(folder)
     return tr(Message("{place}: {why}", place=folder.name, why=error.strerror or str(error)))
 
 
-UP = ".."
-MOST = 2000
+PARENT_NAME = ".."
+MAX_LINES = 2000
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,99 +194,104 @@ class FolderLine:
 
     name: str
     path: Path
-    folder: bool
-    size: int = 0
-    locked: bool = False  # a read-only place
+    is_folder: bool
+    size_bytes: int = 0
+    is_read_only: bool = False  # a read-only place
 
 
 @dataclass(slots=True)
 class FolderChooser:
     """Folder chooser.
 
-    ``at`` is the open folder, or None for the list of places. ``look`` can take a while.
+    ``current_folder`` is the open folder, or None for the list of places. ``list_lines`` can take a while.
     """
 
-    home: Path
-    plugged: Callable[[], Sequence[Stick]] = sticks
-    takes: Takes = is_program
-    at: Path | None = None
-    top: Path | None = None  # folder of the open place, where going up ends
+    home_folder: Path
+    list_sticks: Callable[[], Sequence[UsbStick]] = list_sticks
+    accepts_name: AcceptsName = is_program_name
+    current_folder: Path | None = None
+    top_folder: Path | None = None  # folder of the open place, where going up ends
     lines: tuple[FolderLine, ...] = ()
-    marked: int = 0
-    medium: Medium | None = None  # the open place at the time of opening
-    trouble: str = field(default="")
+    selected_row: int = 0
+    medium: TargetMedium | None = None  # the open place at the time of opening
+    error_text: str = field(default="")
 
-    def look(self) -> tuple[FolderLine, ...]:
+    def list_lines(self) -> tuple[FolderLine, ...]:
         """Return the lines of the open folder, on a worker.
 
         Raises FileError if the folder cannot be read.
         """
-        if self.at is None:
+        if self.current_folder is None:
             self.medium = None
-            places = [FolderLine(s.label, s.path, True, s.free, s.locked) for s in self.plugged()]
-            return (*places, FolderLine(tr("THIS CONTROL"), self.home, True))
+            places = [
+                FolderLine(s.label, s.path, True, s.free_bytes, s.is_read_only) for s in self.list_sticks()
+            ]
+            return (*places, FolderLine(tr("THIS CONTROL"), self.home_folder, True))
         if self.medium is None:
-            self.medium = Medium.of(self.top or self.at)
-        self.medium.check()
+            self.medium = TargetMedium.from_folder(self.top_folder or self.current_folder)
+        self.medium.check_present()
         try:
-            return (FolderLine(UP, self.at.parent, True), *_inside(self.at, self.takes))
+            return (
+                FolderLine(PARENT_NAME, self.current_folder.parent, True),
+                *_inside(self.current_folder, self.accepts_name),
+            )
         except OSError as error:
-            raise FileError(why_not(error, self.at)) from error
+            raise FileOperationError(describe_media_error(error, self.current_folder)) from error
 
     def show_lines(self, lines: tuple[FolderLine, ...]) -> None:
-        """Show the lines that ``look`` has returned."""
-        self.lines, self.trouble = lines, ""
-        self.marked = min(self.marked, max(0, len(lines) - 1))
+        """Show the lines that ``list_lines`` has returned."""
+        self.lines, self.error_text = lines, ""
+        self.selected_row = min(self.selected_row, max(0, len(lines) - 1))
 
-    def go(self, line: FolderLine) -> None:
+    def open_line(self, line: FolderLine) -> None:
         """Open a folder, its parent folder, or the list of places from the top of a place."""
-        self.marked = 0
-        if line.name == UP and self.at == self.top:
-            self.at = self.top = None
+        self.selected_row = 0
+        if line.name == PARENT_NAME and self.current_folder == self.top_folder:
+            self.current_folder = self.top_folder = None
         else:
-            if self.at is None:
-                self.top = line.path
-            self.at = line.path
+            if self.current_folder is None:
+                self.top_folder = line.path
+            self.current_folder = line.path
 
     @property
-    def marked_line(self) -> FolderLine | None:
+    def selected_line(self) -> FolderLine | None:
         """Selected line, or None."""
-        return self.lines[self.marked] if self.marked < len(self.lines) else None
+        return self.lines[self.selected_row] if self.selected_row < len(self.lines) else None
 
     @property
-    def programs(self) -> tuple[Path, ...]:
+    def program_paths(self) -> tuple[Path, ...]:
         """Programs of the open folder."""
-        return tuple(line.path for line in self.lines if not line.folder)
+        return tuple(line.path for line in self.lines if not line.is_folder)
 
 
-def _inside(folder: Path, takes: Takes) -> list[FolderLine]:
-    paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MOST]
+def _inside(folder: Path, takes: AcceptsName) -> list[FolderLine]:
+    paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MAX_LINES]
     seen = [path for path in paths if not path.name.startswith(".")]
     folders = [FolderLine(path.name, path, True) for path in seen if path.is_dir()]
     files = [path for path in seen if takes(path.name) and path.is_file()]
     return folders + [FolderLine(path.name, path, False, path.stat().st_size) for path in files]
 
 
-def chooser_sheet(chooser: FolderChooser, title: str) -> Sheet:
+def make_chooser_table(chooser: FolderChooser, title: str) -> TableContent:
     """Return the table of places, folders and programs."""
     rows = tuple(
-        Row(
+        TableRow(
             (
                 line.name,
-                "READ-ONLY" if line.locked else "FOLDER" if line.folder else "PROGRAM",
-                formats.file_size(line.size) if line.size else "",
+                "READ-ONLY" if line.is_read_only else "FOLDER" if line.is_folder else "PROGRAM",
+                formats.format_file_size(line.size_bytes) if line.size_bytes else "",
             )
         )
         for line in chooser.lines
     )
-    where = str(chooser.at) if chooser.at else "LOCATIONS"
-    return Sheet(
+    where = str(chooser.current_folder) if chooser.current_folder else "LOCATIONS"
+    return TableContent(
         join_messages("  ·  ", (title, where)),
-        ("NAME", "", "FREE" if chooser.at is None else "SIZE"),
+        ("NAME", "", "FREE" if chooser.current_folder is None else "SIZE"),
         (0.64, 0.18, 0.18),
         rows,
-        chooser.marked if rows else -1,
-        notes=(chooser.trouble,) if chooser.trouble else (),
-        raw=frozenset({2} if chooser.at is None else {0, 2}),
-        figures=frozenset({2}),
+        chooser.selected_row if rows else -1,
+        notes=(chooser.error_text,) if chooser.error_text else (),
+        raw_columns=frozenset({2} if chooser.current_folder is None else {0, 2}),
+        number_columns=frozenset({2}),
     )

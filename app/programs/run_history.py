@@ -8,19 +8,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.persistence import Persistence
-from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from app.desk.status import prompt_line
 from app.desk.translation import tr
-from core.executor.commands import Command, PartsMade, SetSwitch
-from core.executor.snapshot import Snapshot, State
+from core.executor.commands import Command, SetPartCount, SetSwitch
+from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 from core.store.production.run_records import RunRecords
 from core.store.store_errors import StoreError
 
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
-CUT_OFF = "CUT OFF"  # the control stopped during the run, as detected at the next start
-_RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompt_line.INTERRUPTED
-_SETTLED = frozenset({Phase.READY, Phase.REFUSED})
+INTERRUPTED_OUTCOME = "CUT OFF"  # the control stopped during the run, as detected at the next start
+_RUNNING_STATES = (
+    frozenset({MachineState.RUN, MachineState.HOLDING, MachineState.WAIT}) | prompt_line.INTERRUPTED_STATES
+)
+_FINAL_PHASES = frozenset({LoadingPhase.READY, LoadingPhase.REFUSED})
 
 
 @dataclass(slots=True)
@@ -28,15 +30,15 @@ class RunHistory:
     """Recorder of runs; examines every snapshot and posts to the store without waiting."""
 
     persistence: Persistence = field(default_factory=Persistence)
-    running: str = ""  # program that is running
+    running_program: str = ""  # program that is running
     _parts: int | None = None
     _ends: int = 0
     _timed: int = 0
     # count of MDI lines while nothing was running: an MDI line is not a run of the loaded program
     _lines: int = 0
-    _loaded: Loaded | None = None
+    _loaded: LoadedProgram | None = None
 
-    def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
+    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Record the runs and proofs that a snapshot shows. Called once per frame.
 
         TurnDesk reports separately if the store rejects a record.
@@ -45,42 +47,42 @@ class RunHistory:
             self._run(snapshot)
             self._proof(loaded)
         except StoreError:
-            self.running = ""
+            self.running_program = ""
 
     def _run(self, snapshot: Snapshot) -> None:
         parts, self._parts = self._parts, snapshot.parts
         name = Path(snapshot.program).name
         if parts is not None and snapshot.parts > parts and name:
-            if snapshot.timed > self._timed:
+            if snapshot.timed_cycle_count > self._timed:
                 self.persistence.runs.record_cycle(name, snapshot.last_cycle)
-            if not self.running:
+            if not self.running_program:
                 self.persistence.runs.record_start(name)
             self._end(name, COMPLETE)
-        elif parts is not None and snapshot.ends > self._ends and self.running:
+        elif parts is not None and snapshot.ends > self._ends and self.running_program:
             self._end(name, UNCOUNTED)
-        self._ends, self._timed = snapshot.ends, snapshot.timed
-        if snapshot.state not in _RUNNING:
+        self._ends, self._timed = snapshot.ends, snapshot.timed_cycle_count
+        if snapshot.state not in _RUNNING_STATES:
             self._lines = snapshot.lines
-        under_way = snapshot.state in _RUNNING and snapshot.block > 0 and snapshot.lines == self._lines
-        if under_way and not self.running and name:
-            self.running = name
+        under_way = snapshot.state in _RUNNING_STATES and snapshot.block > 0 and snapshot.lines == self._lines
+        if under_way and not self.running_program and name:
+            self.running_program = name
             self.persistence.runs.record_start(name)
-        elif self.running and snapshot.state not in _RUNNING:
-            self._end(self.running, _outcome(snapshot))
+        elif self.running_program and snapshot.state not in _RUNNING_STATES:
+            self._end(self.running_program, _outcome(snapshot))
 
     def _end(self, name: str, outcome: str) -> None:
-        self.running = ""
+        self.running_program = ""
         self.persistence.runs.record_end(name, outcome)
 
-    def _proof(self, loaded: Loaded) -> None:
+    def _proof(self, loaded: LoadedProgram) -> None:
         if loaded is self._loaded:
             return
         self._loaded = loaded
-        if loaded.phase not in _SETTLED or loaded.path is None or loaded.source is None:
+        if loaded.phase not in _FINAL_PHASES or loaded.path is None or loaded.source is None:
             return
-        errors, name, text = len(loaded.errors), loaded.path.name, loaded.source.text
-        if loaded.phase is Phase.REFUSED:
-            first = loaded.errors[0].message if errors else ""
+        errors, name, text = len(loaded.blocking_errors), loaded.path.name, loaded.source.text
+        if loaded.phase is LoadingPhase.REFUSED:
+            first = loaded.blocking_errors[0].message if errors else ""
             self.persistence.runs.record_proof(
                 name,
                 Message("{errors_count} ERRORS: {errors}", errors_count=max(errors, 1), errors=first),
@@ -88,29 +90,29 @@ class RunHistory:
                 text,
             )
         else:
-            planned = loaded.proof.cycle_time if loaded.proof else None
+            planned = loaded.proof.cycle_time_s if loaded.proof else None
             self.persistence.runs.record_proof(name, "PROVED", planned, text)
 
 
 def _outcome(snapshot: Snapshot) -> str:
-    if snapshot.state is State.ESTOP:
+    if snapshot.state is MachineState.ESTOP:
         return ESTOP
-    if snapshot.state is State.FAULT and snapshot.alarms:
+    if snapshot.state is MachineState.FAULT and snapshot.alarms:
         return Message("ALARM {number}", number=snapshot.alarms[-1].number)
     return GIVEN_UP
 
 
-def note_cut_off_runs(runs: RunRecords) -> None:
+def mark_interrupted_runs(run_records: RunRecords) -> None:
     """Mark runs without an end as interrupted by a shutdown; called at the start."""
-    told = runs.end_cut_off_runs(
-        CUT_OFF, "{program}: the control shut down during the last run of this program"
+    told = run_records.end_interrupted_runs(
+        INTERRUPTED_OUTCOME, "{program}: the control shut down during the last run of this program"
     )
     with suppress(StoreError):  # A full disk stores the records later.
         told.result()
 
 
-MOST = 9_999_999
-_MAKING = frozenset({State.RUN, State.WAIT})
+MAX_COUNT = 9_999_999
+_PRODUCING_STATES = frozenset({MachineState.RUN, MachineState.WAIT})
 
 
 @dataclass(slots=True)
@@ -124,33 +126,33 @@ class PartCounter:
     program: str = ""
     count: int = 0
     target: int = 0
-    of_job: int = 0  # count at which the active job is done; has priority over the target
+    job_target: int = 0  # count at which the active job is done; has priority over the target
     _seen: int | None = None
     _announced: int = -1
     _made: int = -1  # count that was last sent to the executor
-    text: str = ""  # digest of the program text whose parts are counted
+    text_digest: str = ""  # digest of the program text whose parts are counted
 
     @property
-    def words(self) -> str:
+    def count_text(self) -> str:
         """Number of parts, with the target if there is one: ``12`` or ``12/100``."""
-        return f"{self.count}/{self.aim}" if self.aim else str(self.count)
+        return f"{self.count}/{self.final_count}" if self.final_count else str(self.count)
 
     @property
-    def aim(self) -> int:
+    def final_count(self) -> int:
         """Count at which production ends: that of the active job, or else the target. 0 means no end."""
-        return self.of_job or self.target
+        return self.job_target or self.target
 
     @property
-    def reached(self) -> bool:
+    def is_complete(self) -> bool:
         """Whether all requested parts are made."""
-        return 0 < self.aim <= self.count
+        return 0 < self.final_count <= self.count
 
-    def see(
+    def observe(
         self,
         snapshot: Snapshot,
-        post: Callable[[Command], None],
-        say: Callable[[str], None],
-        text: str = "",
+        post_command: Callable[[Command], None],
+        show_message: Callable[[str], None],
+        text_digest: str = "",
     ) -> None:
         """Update the count from a snapshot, once per frame.
 
@@ -158,30 +160,37 @@ class PartCounter:
         loaded program text.
         """
         name = Path(snapshot.program).name
-        if name != self.program or text != self.text:
+        if name != self.program or text_digest != self.text_digest:
             self._load(name)
-            self.text = text
+            self.text_digest = text_digest
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.count += snapshot.parts - self._seen
-            if self.reached and not self.of_job:  # The end of a job is reported together with the next job.
+            if (
+                self.is_complete and not self.job_target
+            ):  # The end of a job is reported together with the next job.
                 words = tr("TARGET REACHED: {count} OF {target} PARTS")
-                say(tr(Message(words, count=self.count, target=self.target)))
+                show_message(tr(Message(words, count=self.count, target=self.target)))
         self._seen = snapshot.parts
-        self._tell_executor(snapshot, post)
-        self._stop_at(snapshot, post, say)
+        self._send_count(snapshot, post_command)
+        self._stop_at(snapshot, post_command, show_message)
 
-    def _tell_executor(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
+    def _send_count(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
         """Send the count to the executor, which numbers the parts."""
         if self.program and self.count not in {snapshot.made, self._made}:
-            post(PartsMade(self.count))
+            post(SetPartCount(self.count))
         self._made = self.count
 
     def _stop_at(
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
-        last = snapshot.counts and self.aim > 0 and self.count + 1 >= self.aim
-        if last and snapshot.cycle_repeat and snapshot.state in _MAKING and self._announced != self.count:
+        last = snapshot.counts and self.final_count > 0 and self.count + 1 >= self.final_count
+        if (
+            last
+            and snapshot.cycle_repeat
+            and snapshot.state in _PRODUCING_STATES
+            and self._announced != self.count
+        ):
             self._announced = self.count
             post(SetSwitch("cycle_repeat", False))
             say("THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF")
@@ -191,11 +200,11 @@ class PartCounter:
         if not name:
             return
         try:
-            self.count = self.persistence.runs.count_parts(name)
+            self.count = self.persistence.runs.read_part_count(name)
             kept = self.persistence.read_setting(_key(name))
         except StoreError:
             return  # TurnDesk itself reports that nothing is stored.
-        self.target = kept if isinstance(kept, int) and 0 < kept <= MOST else 0
+        self.target = kept if isinstance(kept, int) and 0 < kept <= MAX_COUNT else 0
 
     def reload(self) -> None:
         """Reload count and target, for example after a restore."""
@@ -205,7 +214,7 @@ class PartCounter:
         """Set the target number of parts, or 0 for no target. Raises StoreError if it cannot be stored."""
         before, self.target, self._announced = self.target, target, -1
         self.persistence.save_setting(_key(self.program), target or None)
-        self.persistence.note_change(
+        self.persistence.log_change(
             Message(
                 "part target of {program}: {before} → {target}",
                 program=self.program,
@@ -214,27 +223,27 @@ class PartCounter:
             )
         )
 
-    def correct(self, by: int) -> None:
+    def correct_count(self, change: int) -> None:
         """Change the count by parts made elsewhere or by scrap.
 
         Raises StoreError if it cannot be stored.
         """
-        self.count, self._announced = self.count + by, -1
-        self.persistence.runs.add_parts(self.program, by)
-        self.persistence.note_change(
+        self.count, self._announced = self.count + change, -1
+        self.persistence.runs.add_parts(self.program, change)
+        self.persistence.log_change(
             Message(
                 "part count of {program}: {count} → {count2}",
                 program=self.program,
-                count=self.count - by,
+                count=self.count - change,
                 count2=self.count,
             )
         )
 
-    def reset(self) -> None:
+    def reset_count(self) -> None:
         """Reset the count to zero. Raises StoreError if it cannot be stored."""
         before, self.count, self._announced = self.count, 0, -1
         self.persistence.runs.reset_parts(self.program)
-        self.persistence.note_change(
+        self.persistence.log_change(
             Message("part count of {program}: {before} → 0", program=self.program, before=before)
         )
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Sequence
 from hashlib import sha256
 from html import escape
 
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.message import Message
 
-_PAGE = """
+_PAGE_CSS = """
 body{font:14px/1.4 system-ui,"Segoe UI",Helvetica,Arial,sans-serif;color:#1a1d21;background:#fff;
 margin:24px auto;max-width:960px;padding:0 16px}
 h1{font-size:22px;margin:0}
@@ -39,7 +39,7 @@ code{color:#5b626b}
 .hint{color:#5b626b}
 """.replace("\n", "")
 
-DRAWINGS = """
+DRAWING_STYLE = """
 .stock{fill:#e3e7eb;stroke:#9aa3ad;stroke-width:1;stroke-dasharray:5 3}
 .part{fill:#a9bccd;stroke:#22384d;stroke-width:1.4}
 .faint{fill:#dfe7ee;stroke:#9fb0c0;stroke-width:1}
@@ -56,16 +56,16 @@ DRAWINGS = """
 """.replace("\n", "")
 """Of the drawings alone."""
 
-_PRINT = """
+_PRINT_CSS = """
 @media print{body{margin:0}
 section{break-before:page}
 section:first-of-type{break-before:auto}}
 """.replace("\n", "")
 
-STYLE = _PAGE + DRAWINGS + _PRINT
+PAGE_STYLE = _PAGE_CSS + DRAWING_STYLE + _PRINT_CSS
 """Of a page in a browser."""
 
-PAPER = """
+PAPER_COLORS = """
 body{color:#1a1d21;font-size:12px}
 h1{font-size:20px;margin-top:0;margin-bottom:2px}
 h2{font-size:16px;margin-top:10px;margin-bottom:6px}
@@ -85,52 +85,53 @@ pre{background-color:#f2f4f6}
 """Of a PDF: what the HTML of Qt knows of it."""
 
 
-_NOTHING_LOADED = "default-src 'none'; style-src 'unsafe-inline'"
-PAGE_END = "</body></html>\n"
+_CONTENT_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
+HTML_END = "</body></html>\n"
 
 
-def page_head(title: str, made: str, language: str) -> str:
+def make_page_head(title: str, date_text: str, language: str) -> str:
     """Return the HTML before the first section.
 
-    ``made`` is the date, ``language`` an ISO 639-1 code.
+    ``date_text`` is the date, ``language`` an ISO 639-1 code.
     """
     return (
         f'<!DOCTYPE html>\n<html lang="{language}"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
-        f'<meta http-equiv="Content-Security-Policy" content="{_NOTHING_LOADED}">'
-        f"<title>{escape(title)}</title><style>{STYLE}</style></head><body>{headline(title, made)}\n"
+        f'<meta http-equiv="Content-Security-Policy" content="{_CONTENT_POLICY}">'
+        f"<title>{escape(title)}</title><style>{PAGE_STYLE}</style></head><body>"
+        f"{make_headline(title, date_text)}\n"
     )
 
 
-def headline(title: str, made: str) -> str:
+def make_headline(title: str, date_text: str) -> str:
     """Return the title and the date as HTML."""
-    return f'<h1>{escape(title)}</h1><p class="made">{escape(made)}</p>'
+    return f'<h1>{escape(title)}</h1><p class="made">{escape(date_text)}</p>'
 
 
-def verdict(look: str, words: str) -> str:
+def make_result_line(css_class: str, text: str) -> str:
     """Return the result line with the style ``good``, ``doubt`` or ``bad``."""
-    return f'<p class="verdict {look}">{escape(words)}</p>'
+    return f'<p class="verdict {css_class}">{escape(text)}</p>'
 
 
-def figure(drawing: str, caption: str) -> str:
+def make_drawing_block(drawing: str, caption: str) -> str:
     """Return a drawing with a caption as HTML."""
     return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
-def pairs(rows: Iterable[tuple[str, str]]) -> str:
+def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
     """Return a table of names and values. Both are escaped."""
     lines = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
     return f'<table class="facts">{lines}</table>'
 
 
-def table(head: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
+def make_table(column_heads: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table. The cells must be HTML."""
-    top = "".join(f"<th>{escape(each)}</th>" for each in head)
+    top = "".join(f"<th>{escape(each)}</th>" for each in column_heads)
     lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><tr>{top}</tr>{lines}</table>"
 
 
-def clock(seconds: float) -> str:
+def format_minutes(seconds: float) -> str:
     """Return a duration as minutes and seconds."""
     minutes, rest = divmod(seconds, 60.0)
     return (
@@ -140,6 +141,6 @@ def clock(seconds: float) -> str:
     )
 
 
-def text_hash(source: Source) -> str:
+def hash_text(source: ProgramSource) -> str:
     """Return the SHA-256 of a program text, which identifies the text."""
     return sha256(source.text.encode("utf-8", "surrogatepass")).hexdigest()

@@ -11,17 +11,17 @@ from tempfile import TemporaryDirectory
 from core.message import Message
 from core.own_process import module_environment
 
-_LONGEST = 120.0  # seconds
+_TIMEOUT_S = 120.0  # seconds
 
 
-class Paper(StrEnum):
+class PaperSize(StrEnum):
     """Paper size."""
 
     A4 = "a4"
     LETTER = "letter"
 
 
-def pdf_of(html: str, title: str, paper: Paper) -> bytes:
+def make_pdf(html: str, title: str, paper: PaperSize) -> bytes:
     """Return the PDF of a page's HTML body.
 
     ``title`` is the footer. Runs on a worker. Raises OSError.
@@ -32,11 +32,11 @@ def pdf_of(html: str, title: str, paper: Paper) -> bytes:
         around = module_environment(QT_QPA_PLATFORM="offscreen")
         try:
             done = subprocess.run(
-                command, input=html.encode(), capture_output=True, timeout=_LONGEST, check=False, env=around
+                command, input=html.encode(), capture_output=True, timeout=_TIMEOUT_S, check=False, env=around
             )
         except subprocess.TimeoutExpired as error:
             raise OSError(
-                0, Message("no PDF was created within {longest} s", longest=f"{_LONGEST:.0f}")
+                0, Message("no PDF was created within {longest} s", longest=f"{_TIMEOUT_S:.0f}")
             ) from error
         if done.returncode:
             lines = done.stderr.decode(errors="replace").strip().splitlines()

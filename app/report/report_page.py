@@ -10,20 +10,27 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from app.report import part_drawings
-from app.report.html_tables import clock, figure, pairs, table, text_hash, verdict
-from app.report.run_record import RunRecord
+from app.report.html_tables import (
+    format_minutes,
+    hash_text,
+    make_drawing_block,
+    make_pair_table,
+    make_result_line,
+    make_table,
+)
+from app.report.run_record import RunRecorder
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.message import Message
 from core.part.tool_shape import ToolShape
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 if TYPE_CHECKING:
     from core.interpreter.shared.job_setup import Setup
     from core.machine.machine_model import Machine
-    from core.proving.proof_report import PartReport, Report
+    from core.proving.proof_report import PartReport, ProofReport
 
-_PICTURES = 30  # maximum number of pictures of findings
+_MAX_PICTURES = 30  # maximum number of pictures of findings
 _MM_PER_INCH = 25.4
 
 
@@ -31,14 +38,19 @@ class ProgramReport:
     """Report section of one program."""
 
     def __init__(
-        self, source: Source, report: Report, part: PartReport | None, record: RunRecord,
-        machine: Machine, setup: Setup,
-    ) -> None:  # fmt: skip
-        self._source, self._report, self._part, self._record = source, report, part, record
+        self,
+        source: ProgramSource,
+        report: ProofReport,
+        part_report: PartReport | None,
+        run_record: RunRecorder,
+        machine: Machine,
+        setup: Setup,
+    ) -> None:
+        self._source, self._report, self._part, self._record = source, report, part_report, run_record
         self._machine, self._setup = machine, setup
-        self._metric = report.metric or report.dialect is not Dialect.OMNITURN
+        self._metric = report.is_metric or report.dialect is not Dialect.OMNITURN
 
-    def html(self) -> str:
+    def make_html(self) -> str:
         """Return the section as HTML."""
         return "".join(
             (
@@ -76,27 +88,27 @@ class ProgramReport:
                 "Program",
                 Message(
                     "{blocks} program blocks, {elementary} motions and actions, {dialect}",
-                    blocks=report.blocks,
-                    elementary=report.elementary,
+                    blocks=report.block_count,
+                    elementary=report.elementary_block_count,
                     dialect=report.dialect,
                 ),
             ),
-            ("Text (SHA-256)", text_hash(self._source)),
+            ("Text (SHA-256)", hash_text(self._source)),
             (
                 "Cycle",
                 Message(
                     "{cycle}: cutting {cutting} s, rapid {rapid} s, dwell {dwell} s, waiting {wait} s",
-                    cycle=clock(times.cycle),
-                    cutting=f"{times.cutting:.1f}",
-                    rapid=f"{times.rapid:.1f}",
-                    dwell=f"{times.dwell:.1f}",
-                    wait=f"{times.wait:.1f}",
+                    cycle=format_minutes(times.cycle_s),
+                    cutting=f"{times.cutting_s:.1f}",
+                    rapid=f"{times.rapid_s:.1f}",
+                    dwell=f"{times.dwell_s:.1f}",
+                    wait=f"{times.wait_s:.1f}",
                 ),
             ),
             *self._stock_rows(),
         ]
         look = "bad" if errors else "doubt" if warnings else "good"
-        return verdict(look, words) + pairs(rows)
+        return make_result_line(look, words) + make_pair_table(rows)
 
     def _count(self, severity: Severity) -> int:
         return sum(each.severity is severity for each in self._report.diagnostics)
@@ -107,26 +119,28 @@ class ProgramReport:
             return []
         stock = part.stock
         bore = (
-            Message(", bore diameter {bore}", bore=self._length(2 * stock.bore[0][1])) if stock.bore else ""
+            Message(", bore diameter {bore}", bore=self._length(2 * stock.bore_profile[0][1]))
+            if stock.bore_profile
+            else ""
         )
         taken = Message(
             "stock not specified; a bar of Ø {radius}{bore} is assumed",
-            radius=self._length(2 * stock.radius),
+            radius=self._length(2 * stock.max_radius_mm),
             bore=bore,
         )
-        name = stock.given or taken
+        name = stock.specification or taken
         rows = [
-            ("Stock", f"{name}; {self._volume(part.volume)}"),
-            ("Cut away", self._volume(part.removed)),
+            ("Stock", f"{name}; {self._volume(part.stock_volume_mm3)}"),
+            ("Cut away", self._volume(part.removed_volume_mm3)),
         ]
-        if part.last is not None and part.last.outside:
-            outside = part.last.outside
+        if part.last_piece is not None and part.last_piece.outside_profile:
+            outside = part.last_piece.outside_profile
             size = self._length(2 * max(r for _, r in outside))
             rows.append(("Part", f"Ø {size} × {self._length(outside[0][0] - outside[-1][0])}"))
-        if part.pieces:
-            rows.append(("Parted off", _many(len(part.pieces), "piece")))
-        rows += [("Assumed", words) for words in part.assumed]
-        return rows + [("Not checked", words) for words in part.unchecked]
+        if part.parted_pieces:
+            rows.append(("Parted off", _many(len(part.parted_pieces), "piece")))
+        rows += [("Assumed", words) for words in part.assumptions]
+        return rows + [("Not checked", words) for words in part.unchecked_data]
 
     # --- drawings
 
@@ -134,23 +148,23 @@ class ProgramReport:
         part, record = self._part, self._record
         if part is None or part.stock is None:
             return "<p>No section view is shown because the program does not turn a part.</p>"
-        clamping = record.setting.clamping
+        clamping = record.part_setting.clamping
         short = (
             Message("; only the first {moves_count} moves are shown", moves_count=f"{len(record.moves):,}")
-            if record.cut_short
+            if record.is_truncated
             else ""
         )
-        milled = "; milling with live tools is not shown" if part.milled else ""
-        if part.sides is not None:
+        milled = "; milling with live tools is not shown" if part.is_milled else ""
+        if part.section_halves is not None:
             milled = "; milling is shown with C at 0"
-        cut_open = figure(
-            part_drawings.section(part.stock, part.last, clamping, part.sides),
+        cut_open = make_drawing_block(
+            part_drawings.draw_section(part.stock, part.last_piece, clamping, part.section_halves),
             Message("Section (light: stock, dark: finished part){milled}", milled=milled),
         )
         if not record.moves:
             return cut_open
-        return cut_open + figure(
-            part_drawings.path(part.stock, part.last, clamping, record.moves, part.sides),
+        return cut_open + make_drawing_block(
+            part_drawings.path(part.stock, part.last_piece, clamping, record.moves, part.section_halves),
             Message("Tool paths (solid: cuts, dashed: rapids, thick: threads){short}", short=short),
         )
 
@@ -160,8 +174,10 @@ class ProgramReport:
         found = self._report.diagnostics
         if not found:
             return "<h3>Findings</h3><p>None.</p>"
-        places = self._places(found)
-        return "<h3>Findings</h3>" + "".join(self._finding(each, places.get(each.n, "")) for each in found)
+        places = self._draw_findings(found)
+        return "<h3>Findings</h3>" + "".join(
+            self._finding(each, places.get(each.block_number, "")) for each in found
+        )
 
     def _finding(self, each: Diagnostic, picture: str) -> str:
         lines = self._source.lines
@@ -174,16 +190,16 @@ class ProgramReport:
             f"<code>{escape(each.code)}</code></p>{code}<p>{escape(each.text)}</p>{hint}</div>{picture}</div>"
         )
 
-    def _places(self, found: Sequence[Diagnostic]) -> dict[int, str]:
+    def _draw_findings(self, found: Sequence[Diagnostic]) -> dict[int, str]:
         """Return pictures of the part findings by elementary block."""
-        wanted = list(dict.fromkeys(each.n for each in found if each.n))[:_PICTURES]
+        wanted = list(dict.fromkeys(each.block_number for each in found if each.block_number))[:_MAX_PICTURES]
         if self._part is None or not wanted:
             return {}
-        held = self._record.metal_at(wanted)
+        held = self._record.find_material(wanted)
         moves = {move.n: move for move in self._record.moves if move.n in held}
-        shapes, clamping = self._part.shapes, self._record.setting.clamping
+        shapes, clamping = self._part.shapes, self._record.part_setting.clamping
         return {
-            n: part_drawings.place(move, held[n], shapes.get(move.modal.tool), clamping)
+            n: part_drawings.draw_finding(move, held[n], shapes.get(move.modal.tool), clamping)
             for n, move in moves.items()
         }
 
@@ -191,22 +207,24 @@ class ProgramReport:
 
     def _tools(self) -> str:
         shapes = self._part.shapes if self._part is not None else {}
-        numbers = sorted({*self._report.tools, *(n for n, time in self._record.times.items() if time.total)})
+        numbers = sorted(
+            {*self._report.tool_numbers, *(n for n, time in self._record.tool_times.items() if time.total_s)}
+        )
         rows = [self._tool(n, shapes.get(n)) for n in numbers]
         return (
             "<h3>Tools and times</h3>"
-            f"{table(('Tool', 'Outline', 'Shape', 'Cutting s', 'Rapid s', 'Time at rest, s'), rows)}"
+            f"{make_table(('Tool', 'Outline', 'Shape', 'Cutting s', 'Rapid s', 'Time at rest, s'), rows)}"
         )
 
     def _tool(self, number: int, shape: ToolShape | None) -> tuple[str, ...]:
-        time = self._record.times.get(number)
-        seconds = (time.cutting, time.rapid, time.rest) if time is not None else (0.0, 0.0, 0.0)
-        name = edge_name(number) if number else "no tool"
-        said = "" if shape == self._record.setting.shapes.get(number) else " (assumed)"
-        words = escape(self._shape(shape) + said)
-        return name, part_drawings.tool_picture(shape), words, *(f"{each:.1f}" for each in seconds)
+        time = self._record.tool_times.get(number)
+        seconds = (time.cutting_s, time.rapid_s, time.rest_s) if time is not None else (0.0, 0.0, 0.0)
+        name = format_edge_name(number) if number else "no tool"
+        said = "" if shape == self._record.part_setting.shapes.get(number) else " (assumed)"
+        words = escape(self._describe_shape(shape) + said)
+        return name, part_drawings.draw_tool(shape), words, *(f"{each:.1f}" for each in seconds)
 
-    def _shape(self, shape: ToolShape | None) -> str:
+    def _describe_shape(self, shape: ToolShape | None) -> str:
         """Return the specified data of a tool as text."""
         if shape is None:
             return "unknown"
@@ -222,55 +240,55 @@ class ProgramReport:
 
     def _stops(self) -> str:
         rows = [
-            (f"M0{int(stop.optional)}", str(stop.line), clock(stop.at), escape(stop.message))
-            for stop in self._record.stops
+            (f"M0{int(stop.is_optional)}", str(stop.line), format_minutes(stop.time_s), escape(stop.message))
+            for stop in self._record.program_stops
         ]
         head = ("Stop", "Line", "After", "Message to the operator")
-        return "<h3>Stops</h3>" + (table(head, rows) if rows else "<p>None.</p>")
+        return "<h3>Stops</h3>" + (make_table(head, rows) if rows else "<p>None.</p>")
 
     def _offsets(self) -> str:
         setup, length = self._setup, self._length
         rows = [
             (
-                edge_name(n),
+                format_edge_name(n),
                 length(row.x),
                 length(row.z),
                 f"nose radius {length(row.nose_radius)}",
             )
-            for n in self._report.tools
+            for n in self._report.tool_numbers
             if (row := setup.tools.get(n)) is not None
         ]
         rows += [
-            (edge_name(n), "not set", "not set", "X and Z are assumed to be 0")
+            (format_edge_name(n), "not set", "not set", "X and Z are assumed to be 0")
             for n in self._report.missing_tools
         ]
         rows += [
-            (f"D{n}", length(d.x), length(d.z), f"radius {length(d.r)}")
-            for n in sorted(self._record.secondary)
+            (f"D{n}", length(d.x), length(d.z), f"radius {length(d.nose_radius)}")
+            for n in sorted(self._record.used_secondary)
             if (d := setup.secondary.get(n)) is not None
         ]
         rows += [
             (f"G{n}", length(zero.x), length(zero.z), f"C {zero.c:g}°")
-            for n in sorted(self._record.settable)
+            for n in sorted(self._record.used_zero_offsets)
             if (zero := setup.zero.get(n)) is not None
         ]
-        return "<h3>Offsets</h3>" + table(("Offset", "X (radius)", "Z", ""), rows)
+        return "<h3>Offsets</h3>" + make_table(("Offset", "X (radius)", "Z", ""), rows)
 
 
 # --- the page
 
 
-def program_part(name: str, section: str) -> str:
+def make_program_section(name: str, section: str) -> str:
     """Return the section of one program with its heading."""
     return f"<section><h2>{escape(name)}</h2>{section}</section>\n"
 
 
-def not_proved(why: str) -> str:
+def make_unproved_section(reason: str) -> str:
     """Return the section of a program that could not be proved."""
-    return verdict("bad", "Not proved") + f"<p>{escape(why)}</p>"
+    return make_result_line("bad", "Not proved") + f"<p>{escape(reason)}</p>"
 
 
-def compared_part(lines: str) -> str:
+def make_comparison(lines: str) -> str:
     """Return the effect of other offsets, in the text form of the command line."""
     return f"<h3>With different offsets</h3><pre>{escape(lines)}</pre>"
 

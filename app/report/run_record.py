@@ -7,66 +7,66 @@ from dataclasses import dataclass, field
 
 from core.interpreter.shared.actions import ProgramStop
 from core.interpreter.shared.elementary_blocks import Block, TimedSeries
-from core.interpreter.shared.working_plane import Corners
-from core.part.turned_part import Piece
+from core.interpreter.shared.working_plane import BlankCorners
+from core.part.turned_part import PartedPiece
 from core.proving.part_proof import PartProof
 from core.proving.program_timeline import MotionSpan, RestSpan
-from core.proving.program_tools import PartSetting
-from core.proving.tip_moves import LiveStep, Steps, TipMove, live_move
+from core.proving.program_tools import PartSettings
+from core.proving.tip_moves import LiveToolStep, StepConverter, TipMove, make_live_tool_move
 
-MOST_MOVES = 20_000  # maximum number of drawn moves
-_MOST_STOPS = 500
+MAX_MOVES = 20_000  # maximum number of drawn moves
+_MAX_STOPS = 500
 
 
 @dataclass(slots=True)
 class ToolTime:
     """Times of one tool in seconds: cutting, rapid and rest."""
 
-    cutting: float = 0.0
-    rapid: float = 0.0
-    rest: float = 0.0
+    cutting_s: float = 0.0
+    rapid_s: float = 0.0
+    rest_s: float = 0.0
 
     @property
-    def total(self) -> float:
+    def total_s(self) -> float:
         """Total time in seconds."""
-        return self.cutting + self.rapid + self.rest
+        return self.cutting_s + self.rapid_s + self.rest_s
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class PlannedStop:
     """Program stop M00, or M01 if ``optional``: line, time in seconds and message to the operator."""
 
     line: int
-    at: float
-    optional: bool
+    time_s: float
+    is_optional: bool
     message: str
 
 
 @dataclass(slots=True)
-class RunRecord:
+class RunRecorder:
     """Recorder of the spans of a proving pass."""
 
-    setting: PartSetting
+    part_setting: PartSettings
     moves: list[TipMove] = field(default_factory=list)
-    times: dict[int, ToolTime] = field(default_factory=dict)
-    stops: list[Stop] = field(default_factory=list)
-    secondary: set[int] = field(default_factory=set)  # D numbers that are called
-    settable: set[int] = field(default_factory=set)  # zero offsets that are called, 54 to 59
-    blank: Corners | None = None  # corners of BLK FORM on a mill
-    cut_short: bool = False  # not all moves are drawn
-    _steps: Steps = field(default_factory=Steps)
+    tool_times: dict[int, ToolTime] = field(default_factory=dict)
+    program_stops: list[PlannedStop] = field(default_factory=list)
+    used_secondary: set[int] = field(default_factory=set)  # D numbers that are called
+    used_zero_offsets: set[int] = field(default_factory=set)  # zero offsets that are called, 54 to 59
+    blank_corners: BlankCorners | None = None  # corners of BLK FORM on a mill
+    is_truncated: bool = False  # not all moves are drawn
+    _steps: StepConverter = field(default_factory=StepConverter)
     _part: PartProof = field(init=False)
     _tool: int = 0
 
     def __post_init__(self) -> None:
-        self._part = PartProof(self.setting)
+        self._part = PartProof(self.part_setting)
 
-    def see(self, span: MotionSpan | RestSpan) -> None:
+    def add_span(self, span: MotionSpan | RestSpan) -> None:
         """Add the moves, times and stops of the next span of the program."""
-        self._part.see(span)
-        for each in span.times_of_parts():
+        self._part.add_span(span)
+        for each in span.iter_group_times():
             if isinstance(each, TimedSeries):
-                self._count(each.series.pattern, float((each.t1 - each.t0).sum()))
+                self._count(each.series.pattern, float((each.end_times_s - each.start_times_s).sum()))
             else:
                 block, t0, t1 = each
                 self._count(block, t1 - t0)
@@ -74,45 +74,45 @@ class RunRecord:
         if isinstance(span, MotionSpan):
             self._draw(span)
         elif span.block is not None:
-            list(self._steps.of([span.block]))
+            list(self._steps.convert_blocks([span.block]))
         else:
-            self._time.rest += span.t1 - span.t0
+            self._time.rest_s += span.end_time_s - span.start_time_s
 
     @property
     def _time(self) -> ToolTime:
-        return self.times.setdefault(self._tool, ToolTime())
+        return self.tool_times.setdefault(self._tool, ToolTime())
 
     def _count(self, block: Block, seconds: float) -> None:
         modal = block.modal
         self._tool = modal.tool
-        self.secondary |= {modal.secondary} - {0}
-        self.settable |= {modal.settable} - {0}
+        self.used_secondary |= {modal.secondary} - {0}
+        self.used_zero_offsets |= {modal.settable} - {0}
         if block.swivel is not None:
-            self.blank = block.swivel.system.blank
+            self.blank_corners = block.swivel.system.blank_corners
         time = self._time
         if not block.moves:
-            time.rest += seconds
+            time.rest_s += seconds
         elif block.rapid:
-            time.rapid += seconds
+            time.rapid_s += seconds
         else:
-            time.cutting += seconds
+            time.cutting_s += seconds
 
     def _stop(self, block: Block, at: float) -> None:
         action = block.action
-        if isinstance(action, ProgramStop) and len(self.stops) < _MOST_STOPS:
-            self.stops.append(Stop(block.line, at, action.optional, action.message))
+        if isinstance(action, ProgramStop) and len(self.program_stops) < _MAX_STOPS:
+            self.program_stops.append(PlannedStop(block.line, at, action.optional, action.message))
 
     def _draw(self, span: MotionSpan) -> None:
-        for part in span.parts:
-            if len(self.moves) > MOST_MOVES:
-                self.cut_short = True
+        for part in span.block_groups:
+            if len(self.moves) > MAX_MOVES:
+                self.is_truncated = True
                 return
-            for step in self._steps.of(part):
+            for step in self._steps.convert_blocks(part):
                 if isinstance(step, TipMove):
                     self.moves.append(step)
-                elif isinstance(step, LiveStep):
-                    self.moves.append(live_move(step))
+                elif isinstance(step, LiveToolStep):
+                    self.moves.append(make_live_tool_move(step))
 
-    def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
+    def find_material(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
         """Return the material before each of these blocks, if a tool moved in X and Z."""
-        return self._part.metal_at(blocks)
+        return self._part.material_before_blocks(blocks)

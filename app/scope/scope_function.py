@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from app.desk.pages.sheet import Row
+from app.desk.pages.table_content import TableRow
 from app.desk.translation import tr
-from app.scope.scope_model import Scope
+from app.scope.scope_model import ScopeModel
 from app.special.special_functions import PageFunction
 from core.message import Message
 
-PAGE = "SCOPE"  # name of the page in app.screen.page_table
+SCOPE_PAGE = "SCOPE"  # name of the page in app.screen.page_table
 
 
 class ScopeFunction(PageFunction):
@@ -16,23 +16,28 @@ class ScopeFunction(PageFunction):
 
     name = "SCOPE"
     use = "axis and spindle curves"
-    page = PAGE
-    way = (
+    page = SCOPE_PAGE
+    key_hint = (
         "Press Enter to open the page. Shift+F10 opens this page from any other page "
         "and switches back to that page."
     )
 
-    def facts(self) -> tuple[Row, ...]:
+    def make_fact_rows(self) -> tuple[TableRow, ...]:
         """Return the rows with the recorded duration and the number of channels."""
-        scope = self.desk.pages.find(Scope)
-        live = scope.live if scope is not None else None
+        scope = self.desk.page_registry.find(ScopeModel)
+        live = scope.live_samples if scope is not None else None
         if live is None:
-            return (Row((tr("RECORDED"), tr("NO SCOPE DATA RECORDED ON THIS MACHINE"))),)
+            return (TableRow((tr("RECORDED"), tr("NO SCOPE DATA RECORDED ON THIS MACHINE"))),)
         return (
-            Row((tr("STORED"), tr(Message("THE LAST {minutes} MINUTES", minutes=f"{live.lasts / 60.0:g}")))),
-            Row((tr("CHANNELS"), str(len(live.channels)))),
+            TableRow(
+                (
+                    tr("STORED"),
+                    tr(Message("THE LAST {minutes} MINUTES", minutes=f"{live.buffer_length_s / 60.0:g}")),
+                )
+            ),
+            TableRow((tr("CHANNELS"), str(len(live.channels)))),
         )
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt that names the keys."""
         return "ENTER: OPEN SCOPE   ESC: BACK TO LIST"

@@ -10,116 +10,124 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status import formats
-from app.scope.scope_curves import Sight
-from app.scope.scope_model import Scope
-from app.scope.signals import Signal
-from app.screen.look import CENTRE, CURVES, RIGHT, Look, Painter
-from app.screen.panel import Shown
-from app.screen.sheet_panel import RowPanel
-from app.screen.window_layout import FINGER
+from app.scope.scope_curves import ScopePicture
+from app.scope.scope_model import ScopeModel
+from app.scope.signals import ScopeSignal
+from app.screen.panel import RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, CURVE_COLORS, ScreenTheme, ThemedPainter
+from app.screen.table_panel import RowPanel
+from app.screen.window_layout import FINGERTIP_PX
 from core.message import Message
 
-_ROW = 5.6  # units: maximum height of a row
-_READ = 0.1  # seconds between two updates of a live value
+_ROW_HEIGHT = 5.6  # units: maximum height of a row
+_UPDATE_INTERVAL_S = 0.1  # seconds between two updates of a live value
 
 
-class Readings(RowPanel):
+class ScopeReadings(RowPanel):
     """List with one row per curve. A touch selects a row."""
 
     title = "VALUES"
-    notch = 1
-    mark: Shown[object] = Shown(None)
+    scroll_step = 1
+    mark: RedrawingAttribute[object] = RedrawingAttribute(None)
 
-    def __init__(self, look: Look, scope: Scope, choose: Callable[[int], None], parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.scope, self._choose = scope, choose
-        self.sight = Sight()
+    def __init__(
+        self, theme: ScreenTheme, scope_model: ScopeModel, on_select: Callable[[int], None], parent: QWidget
+    ) -> None:
+        super().__init__(theme, parent)
+        self.scope_model, self._choose = scope_model, on_select
+        self.picture = ScopePicture()
         self._known: object = None
-        self.figures: tuple[tuple[str, ...], ...] = ()
+        self.value_texts: tuple[tuple[str, ...], ...] = ()
 
-    def show_sight(self, sight: Sight) -> None:
+    def show_picture(self, picture: ScopePicture) -> None:
         """Show the values of a picture. Live values change at most ten times per second."""
-        scope = self.scope
-        latest = {each.signal.key: each.latest for each in sight.curves}
-        figures = tuple(self._words(each, latest, sight) for each in scope.shown)
-        times = scope.cursors.times if scope.cursors.shown else None
+        scope = self.scope_model
+        latest = {each.signal.key: each.latest_value for each in picture.curves}
+        figures = tuple(self._words(each, latest, picture) for each in scope.shown)
+        times = scope.cursors.times_s if scope.cursors.shown else None
         known = (
             scope.marked,
             times,
             tuple(each.key for each in scope.shown),
-            self.look.palette,
-            sight.metric,
+            self.theme.palette,
+            picture.is_metric,
         )
-        if sight.live and known == self._known and abs(sight.zero - self.sight.zero) < _READ:
+        if (
+            picture.is_live
+            and known == self._known
+            and abs(picture.zero_s - self.picture.zero_s) < _UPDATE_INTERVAL_S
+        ):
             return
-        self.sight, self._known = sight, known
+        self.picture, self._known = picture, known
         self.mark = (figures, known)
-        self.figures = figures
+        self.value_texts = figures
 
-    def _words(self, signal: Signal, latest: dict[str, float], sight: Sight) -> tuple[str, ...]:
-        places = signal.quantity.places(sight.metric)
-        unit = signal.quantity.unit(sight.metric)
-        if signal.key in sight.at:
-            a, b = sight.at[signal.key]
-            return tuple(formats.fixed(value, places) for value in (a, b, b - a))
+    def _words(self, signal: ScopeSignal, latest: dict[str, float], sight: ScopePicture) -> tuple[str, ...]:
+        places = signal.quantity.places(sight.is_metric)
+        unit = signal.quantity.unit(sight.is_metric)
+        if signal.key in sight.cursor_values:
+            a, b = sight.cursor_values[signal.key]
+            return tuple(formats.format_fixed(value, places) for value in (a, b, b - a))
         value = latest.get(signal.key, math.nan)
-        return (f"{formats.fixed(value, places)} {unit}" if math.isfinite(value) else "",)
+        return (f"{formats.format_fixed(value, places)} {unit}" if math.isfinite(value) else "",)
 
     def scroll_by(self, rows: int) -> None:
         """Select the curve a number of rows further down. Negative numbers go up."""
-        self._choose(self.scope.marked + rows)
+        self._choose(self.scope_model.marked + rows)
 
     @property
-    def high(self) -> float:
+    def row_height_px(self) -> float:
         """Height of a row in pixels, at least that of a fingertip."""
-        return max(float(FINGER), _ROW * self.look.u)
+        return max(float(FINGERTIP_PX), _ROW_HEIGHT * self.theme.u)
 
-    def draw(self, painter: Painter) -> None:
-        room, shown = self.inside(), self.scope.shown
-        u = self.look.u
-        if self.scope.cursors.shown:
-            room = self._between(painter, room)
+    def draw(self, painter: ThemedPainter) -> None:
+        room, shown = self.inside(), self.scope_model.shown
+        u = self.theme.u
+        if self.scope_model.cursors.shown:
+            room = self._draw_between(painter, room)
         if not shown:
             row = QRectF(room.x(), room.y(), room.width(), 3 * u)
-            painter.write(row, "Press F4 to select curves.", 1.8, "soft", bold=False)
+            painter.draw_text_line(row, "Press F4 to select curves.", 1.8, "soft", bold=False)
             return
-        fits = self.fitting(room, self.high, len(shown))
-        marked = min(self.scope.marked, len(shown) - 1)
-        room = self.scrolled(painter, room, fits, len(shown), marked)
-        for number, row in self.boxes(room, self.high):
+        fits = self.count_fitting_rows(room, self.row_height_px, len(shown))
+        marked = min(self.scope_model.marked, len(shown) - 1)
+        room = self.draw_scroll_keys(painter, room, fits, len(shown), marked)
+        for number, row in self.find_row_boxes(room, self.row_height_px):
             box = row.adjusted(0, 0, 0, -0.4 * u)
             self._row(painter, box, number, shown[number], here=number == marked)
-            self.place(box, partial(self._choose, number), kind="row", on=number == marked)
+            self.add_target(box, partial(self._choose, number), kind="row", is_on=number == marked)
 
-    def _between(self, painter: Painter, room: QRectF) -> QRectF:
+    def _draw_between(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the time between the cursors and return the area below."""
-        u, apart = self.look.u, self.scope.cursors.apart
-        hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NOTHING
-        row = QRectF(room.x(), room.y(), room.width(), 2.6 * u)
-        painter.write(
+        u, apart = self.theme.u, self.scope_model.cursors.distance_s
+        hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NO_VALUE
+        row = QRectF(area.x(), area.y(), area.width(), 2.6 * u)
+        painter.draw_text_line(
             row,
-            Message("B − A   {apart} ms", apart=formats.fixed(1000.0 * apart, 2)),
+            Message("B − A   {apart} ms", apart=formats.format_fixed(1000.0 * apart, 2)),
             1.8,
             "accent",
             raw=True,
         )
         row.translate(0.0, 2.6 * u)
-        painter.write(row, f"1 / (B − A)   {hertz}", 1.8, "soft", raw=True)
-        return room.adjusted(0, 5.8 * u, 0, 0)
+        painter.draw_text_line(row, f"1 / (B − A)   {hertz}", 1.8, "soft", raw=True)
+        return area.adjusted(0, 5.8 * u, 0, 0)
 
-    def _row(self, painter: Painter, box: QRectF, number: int, signal: Signal, *, here: bool) -> None:
-        u = self.look.u
-        colours = CURVES[self.look.palette.name]
-        painter.fill(box, "here" if here else "key")
+    def _row(
+        self, painter: ThemedPainter, box: QRectF, number: int, signal: ScopeSignal, *, here: bool
+    ) -> None:
+        u = self.theme.u
+        colours = CURVE_COLORS[self.theme.palette.name]
+        painter.fill_rect(box, "here" if here else "key")
         patch = QRectF(box.x(), box.y(), 2.4 * u, box.height())
         painter.fillRect(patch, colours[number % len(colours)])
-        painter.write(patch, str(number + 1), 1.6, "panel", at=CENTRE)
+        painter.draw_text_line(patch, str(number + 1), 1.6, "panel", at=ALIGN_CENTER)
         text = box.adjusted(3.0 * u, 0.06 * box.height(), -0.4 * u, -0.06 * box.height())
         upper = QRectF(text.x(), text.y(), text.width(), 0.48 * text.height())
-        painter.write(upper, signal.title, 1.7, "text", raw=True)
+        painter.draw_text_line(upper, signal.title, 1.7, "text", raw=True)
         lower = upper.translated(0, upper.height())
         ink = "text" if here else "soft"
-        words = self.figures[number] if number < len(self.figures) else ("",)
+        words = self.value_texts[number] if number < len(self.value_texts) else ("",)
         if len(words) == 3:
             for place, (name, word) in enumerate(zip(("A", "B", "Δ"), words, strict=True)):
                 cell = QRectF(
@@ -128,8 +136,8 @@ class Readings(RowPanel):
                     lower.width() / 3 - 0.3 * u,
                     lower.height(),
                 )
-                painter.write(cell, f"{name} {word}", 1.6, ink, raw=True, bold=False)
+                painter.draw_text_line(cell, f"{name} {word}", 1.6, ink, raw=True, bold=False)
             return
-        painter.write(lower, words[0], 1.9, "text", at=RIGHT, raw=True)
+        painter.draw_text_line(lower, words[0], 1.9, "text", at=ALIGN_RIGHT, raw=True)
         if signal.note:
-            painter.write(lower, signal.note, 1.5, "soft", raw=True, bold=False)
+            painter.draw_text_line(lower, signal.note, 1.5, "soft", raw=True, bold=False)

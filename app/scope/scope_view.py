@@ -11,21 +11,21 @@ from PySide6.QtCore import QBuffer, QByteArray, QEvent, QIODevice, QPointF, QRec
 from PySide6.QtGui import QImage, QImageWriter, QMouseEvent, QResizeEvent, QTouchEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.sheet import Key
-from app.desk.programs.program_loading import Loaded
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status import formats
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.scope.scope_curves import Sight
-from app.scope.scope_model import NO_SAMPLES, Scope, Side
-from app.scope.scope_readings_view import Readings
-from app.scope.scope_sheets import ScopeSheets
+from app.scope.scope_curves import ScopePicture
+from app.scope.scope_model import NO_SAMPLES, ScopeModel, SidePanel
+from app.scope.scope_readings_view import ScopeReadings
+from app.scope.scope_tables import ScopeTables
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad
-from app.screen.look import Look, Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
-from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.entry_panel import NumberPad
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
+from app.screen.table_panel import ListPage, TablePanel
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 
@@ -33,43 +33,43 @@ if TYPE_CHECKING:
     from app.scope.scope_chart_view import ScopeChart
 
 _READINGS, _TABLE, _PAD, _HEAD = 34.0, 56.0, 28.4, 3.4  # units: widths of the areas, height of the head line
-_NOTCH = 120  # wheel angle of one notch in Qt
+_WHEEL_NOTCH = 120  # wheel angle of one notch in Qt
 _NEAR, _STILL = 22.0, 6.0  # pixels: distance for touching a cursor, and travel before a press becomes a drag
-_LEAST = 24.0  # pixels: minimum finger distance
-_LANES = 4  # lanes created in advance: following error, velocity, spindle and one more
+_MIN_FINGER_PX = 24.0  # pixels: minimum finger distance
+_LANES_AHEAD = 4  # lanes created in advance: following error, velocity, spindle and one more
 
 
-def _chart_class() -> type[ScopeChart]:
+def _import_chart_class() -> type[ScopeChart]:
     """Import the chart class on a worker, because importing pyqtgraph takes 0.3 s."""
     from app.scope.scope_chart_view import ScopeChart
 
     return ScopeChart
 
 
-class HeadLine(Panel):
+class ScopeHeadLine(Panel):
     """Head line with sample rate, window, displayed data and trigger."""
 
-    ground = "panel"
-    words: Shown[tuple[str, str, bool]] = Shown(("", "", False))
+    ground_color = "panel"
+    head_texts: RedrawingAttribute[tuple[str, str, bool]] = RedrawingAttribute(("", "", False))
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
-        left, right, warn = self.words
-        room = self.area().adjusted(0.8 * u, 0, -0.8 * u, 0)
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
+        left, right, warn = self.head_texts
+        room = self.find_full_area().adjusted(0.8 * u, 0, -0.8 * u, 0)
         half = room.width() * (0.66 if right else 1.0)
-        painter.write(QRectF(room.x(), room.y(), half, room.height()), left, 1.8, "text", raw=True)
+        painter.draw_text_line(QRectF(room.x(), room.y(), half, room.height()), left, 1.8, "text", raw=True)
         rest = QRectF(room.x() + half, room.y(), room.width() - half, room.height())
-        painter.write(rest, right, 1.8, "pause" if warn else "soft", raw=True)
+        painter.draw_text_line(rest, right, 1.8, "pause" if warn else "soft", raw=True)
 
 
-class CurveRoom(QWidget):
+class CurveArea(QWidget):
     """Area that handles touch, wheel and mouse. Its chart only draws."""
 
     part_name = "CHART"
 
-    def __init__(self, look: Look, scope: Scope, parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, scope: ScopeModel, parent: QWidget) -> None:
         super().__init__(parent)
-        self.look, self.scope = look, scope
+        self.theme, self.scope_model = theme, scope
         self.chart: ScopeChart | None = None
         self._down: QPointF | None = None
         self._last = QPointF()
@@ -86,14 +86,14 @@ class CurveRoom(QWidget):
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom the time around the pointer, or with Shift the lane under the pointer."""
         notches = event.angleDelta().y() or event.angleDelta().x()
-        steps = round(notches / _NOTCH) or (1 if notches > 0 else -1)
+        steps = round(notches / _WHEEL_NOTCH) or (1 if notches > 0 else -1)
         if self.chart is None:
             return
         at = event.position()
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self.scope.stretch(steps, self.chart.quantity_at(at))
+            self.scope_model.stretch_lane(steps, self.chart.find_quantity(at))
         else:
-            self.scope.zoom(steps, self.chart.time_at(at))
+            self.scope_model.zoom_window(steps, self.chart.find_time(at))
         event.accept()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -116,7 +116,7 @@ class CurveRoom(QWidget):
         if event.type() in {QEvent.Type.TouchEnd, QEvent.Type.TouchCancel}:
             self._down, self._spread = None, None
         elif len(spots) > 1:
-            self._two(spots[0], spots[1])
+            self._handle_two_touches(spots[0], spots[1])
         elif spots and event.type() == QEvent.Type.TouchBegin:
             self._press(spots[0])
         elif spots and self._spread is None:
@@ -127,28 +127,30 @@ class CurveRoom(QWidget):
     def _press(self, at: QPointF) -> None:
         self._down = self._last = at
         self._dragging, self._cursor = False, -1
-        cursors = self.scope.cursors
+        cursors = self.scope_model.cursors
         if cursors.shown and self.chart is not None:
-            away = [abs(self.chart.across(time) - at.x()) for time in cursors.times]
+            away = [abs(self.chart.find_column(time) - at.x()) for time in cursors.times_s]
             nearest = away.index(min(away))
             if away[nearest] < _NEAR:
-                self._cursor = cursors.at = nearest
+                self._cursor = cursors.active_cursor = nearest
 
     def _move(self, at: QPointF) -> None:
         chart = self.chart
         if self._down is None or chart is None:
             return
         if self._cursor >= 0:
-            self.scope.cursors.move(chart.time_at(at), self._cursor)
+            self.scope_model.cursors.move_cursor(chart.find_time(at), self._cursor)
             return
         self._dragging = self._dragging or (at - self._down).manhattanLength() > _STILL
         if self._dragging:
             by = at - self._last
             self._last = at
             if by.x():
-                self.scope.pan(chart.time_at(QPointF(0, 0)) - chart.time_at(QPointF(by.x(), 0)))
+                self.scope_model.pan_window(
+                    chart.find_time(QPointF(0, 0)) - chart.find_time(QPointF(by.x(), 0))
+                )
 
-    def _two(self, one: QPointF, other: QPointF) -> None:
+    def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
         """Zoom the time by horizontal finger motion, or the lane by vertical finger motion."""
         self._down = None
         way = (abs(one.x() - other.x()), abs(one.y() - other.y()))
@@ -158,10 +160,12 @@ class CurveRoom(QWidget):
             return
         middle = (one + other) / 2
         if way[0] >= way[1]:
-            self.scope.magnify(max(way[0], _LEAST) / max(before[0], _LEAST), chart.time_at(middle))
+            self.scope_model.magnify_window(
+                max(way[0], _MIN_FINGER_PX) / max(before[0], _MIN_FINGER_PX), chart.find_time(middle)
+            )
         else:
-            factor = max(way[1], _LEAST) / max(before[1], _LEAST)
-            self.scope.stretch_by(factor, chart.quantity_at(middle))
+            factor = max(way[1], _MIN_FINGER_PX) / max(before[1], _MIN_FINGER_PX)
+            self.scope_model.magnify_lane(factor, chart.find_quantity(middle))
 
 
 class ScopePage(ListPage):
@@ -170,128 +174,139 @@ class ScopePage(ListPage):
     NAME = page_table.SCOPE
     model: _ScopeKeys
 
-    def __init__(self, host: Host, scope: Scope, parent: QWidget) -> None:
-        self.scope = scope
-        self.sheets = ScopeSheets(scope)
-        super().__init__(host, _ScopeKeys(scope, self.sheets), parent)
-        self.head = HeadLine(self.look, self)
-        self.curves = CurveRoom(self.look, scope, self)
-        self.readings = Readings(self.look, scope, self._marked, self)
-        self.table = SheetPanel(self.look, self.sheets.choose, self)
-        self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
+    def __init__(self, host: PageHost, scope: ScopeModel, parent: QWidget) -> None:
+        self.scope_model = scope
+        self.scope_tables = ScopeTables(scope)
+        super().__init__(host, _ScopeKeys(scope, self.scope_tables), parent)
+        self.head_line = ScopeHeadLine(self.theme, self)
+        self.curve_area = CurveArea(self.theme, scope, self)
+        self.readings = ScopeReadings(self.theme, scope, self._marked, self)
+        self.table_panel = TablePanel(self.theme, self.scope_tables.touch_row, self)
+        self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self._laid: object = None
         self._drawn: object = None
         self._undrawn = True  # the present picture is not drawn yet
-        scope.filing.queue(_chart_class, self._chart_there, self.desk.say)
+        scope.file_worker.enqueue(_import_chart_class, self._create_chart, self.desk.say)
 
-    def _chart_there(self, chart_class: type[ScopeChart]) -> None:
+    def _create_chart(self, chart_class: type[ScopeChart]) -> None:
         """Insert the chart after its class was loaded."""
-        chart = chart_class(self.look, self.curves)
-        self.curves.chart = chart
-        chart.setGeometry(self.curves.rect())
+        chart = chart_class(self.theme, self.curve_area)
+        self.curve_area.chart = chart
+        chart.setGeometry(self.curve_area.rect())
         chart.show()
 
-    def ahead(self) -> bool:
+    def prepare_slice(self) -> bool:
         """Create the chart and its lanes in steps, before the page is first shown."""
-        self.scope.filing.poll()
-        chart = self.curves.chart
-        return chart is None or not chart.ready(_LANES)
+        self.scope_model.file_worker.poll()
+        chart = self.curve_area.chart
+        return chart is None or not chart.prepare_plots(_LANES_AHEAD)
 
     def _marked(self, number: int) -> None:
-        self.scope.mark(number)
+        self.scope_model.mark(number)
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of the displayed table."""
-        return self.labels_of({}, self.page_keys())
+        return self.make_labels({}, self.function_keys())
 
-    def page_keys(self) -> Mapping[str, Key]:
-        scope, open_ = self.scope, self.sheets.open
-        if scope.side is Side.FILES:
-            pictured = {"F6": Key("PICTURE", self._picture), "F9": Key("BACK", partial(open_, Side.FILES))}
-            return {**self.sheets.keys(), **pictured}
+    def function_keys(self) -> Mapping[str, FunctionKey]:
+        scope, open_ = self.scope_model, self.scope_tables.open_table
+        if scope.side_panel is SidePanel.FILES:
+            pictured = {
+                "F6": FunctionKey("PICTURE", self._save_picture),
+                "F9": FunctionKey("BACK", partial(open_, SidePanel.FILES)),
+            }
+            return {**self.scope_tables.function_keys(), **pictured}
         return {
-            "F2": Key("FREEZE" if scope.is_live else "LIVE", scope.freeze_key, barred=not scope.has_samples),
-            "F3": Key("TRIGGER", partial(open_, Side.TRIGGER)),
-            "F4": Key("CURVES", partial(open_, Side.CURVES)),
-            "F5": Key("CURSORS", scope.cursors_key, barred=scope.is_live),
-            "F6": Key("FIT", scope.fit),
-            **({"F8": Key("ANALYZE", self._analyse)} if page_table.has_page(page_table.ANALYSES) else {}),
-            "F9": Key("RECORDS", partial(open_, Side.FILES)),
+            "F2": FunctionKey(
+                "FREEZE" if scope.is_live else "LIVE", scope.toggle_frozen, barred=not scope.has_samples
+            ),
+            "F3": FunctionKey("TRIGGER", partial(open_, SidePanel.TRIGGER)),
+            "F4": FunctionKey("CURVES", partial(open_, SidePanel.CURVES)),
+            "F5": FunctionKey("CURSORS", scope.toggle_cursors, barred=scope.is_live),
+            "F6": FunctionKey("FIT", scope.fit_all),
+            **(
+                {"F8": FunctionKey("ANALYZE", self._analyse)}
+                if page_table.has_page(page_table.ANALYSES)
+                else {}
+            ),
+            "F9": FunctionKey("RECORDS", partial(open_, SidePanel.FILES)),
         }
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the function keys and of zoom and pan."""
-        scope = self.scope
+        scope = self.scope_model
         return {
-            **{name: key.action for name, key in self.page_keys().items()},
-            "Zoom in": partial(scope.zoom, 1),
-            "Zoom out": partial(scope.zoom, -1),
+            **{name: key.action for name, key in self.function_keys().items()},
+            "Zoom in": partial(scope.zoom_window, 1),
+            "Zoom out": partial(scope.zoom_window, -1),
             "Pan left": partial(scope.pan_steps, -1),
             "Pan right": partial(scope.pan_steps, 1),
-            "Pan up": partial(scope.stretch, 1),
-            "Pan down": partial(scope.stretch, -1),
-            "Page up": partial(scope.shift, 1),
-            "Page down": partial(scope.shift, -1),
-            "Follow": scope.fit,
+            "Pan up": partial(scope.stretch_lane, 1),
+            "Pan down": partial(scope.stretch_lane, -1),
+            "Page up": partial(scope.shift_lane, 1),
+            "Page down": partial(scope.shift_lane, -1),
+            "Follow": scope.fit_all,
         }
 
-    def lively(self) -> bool:
+    def is_animating(self) -> bool:
         """Return whether the picture changes: live curves that are not constant, or unfinished lanes."""
-        return self._undrawn or (self.scope.is_live and self.scope.sight.level is None)
+        return self._undrawn or (
+            self.scope_model.is_live and self.scope_model.picture.constant_values is None
+        )
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether a level or a line number is to be entered."""
-        return self.sheets.asks
+        return self.scope_tables.is_value_asked
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go back one step. Return False from the curves."""
-        return self.sheets.escape()
+        return self.scope_tables.handle_escape()
 
     def _analyse(self) -> None:
-        self.host.go(page_table.ANALYSES)
+        self.host.open_page(page_table.ANALYSES)
 
-    def _picture(self) -> None:
+    def _save_picture(self) -> None:
         """Save a picture of the page. A worker encodes it."""
         image = self.grab().toImage()
-        self.scope.write_picture(partial(_png, image))
+        self.scope_model.write_picture(partial(_encode_png, image))
 
     # --- every frame ---------------------------------------------------------------------------------
 
-    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Draw the last finished picture and request the next one."""
-        scope, chart = self.scope, self.curves.chart
-        if chart is not None and chart.room.width() > 1.0:
-            scope.pixels = round(chart.room.width())
-        scope.look()
+        scope, chart = self.scope_model, self.curve_area.chart
+        if chart is not None and chart.curve_area.width() > 1.0:
+            scope.width_px = round(chart.curve_area.width())
+        scope.poll()
         self._lay_out_if()
-        self.head.words = self._words()
+        self.head_line.head_texts = self._words()
         if not self.readings.isHidden():
-            self.readings.show_sight(scope.sight)
-        if not self.table.isHidden():
-            self.table.show_sheet(self.sheets.sheet())
-        shown = (_seen(scope.sight), scope.cursors.times, scope.cursors.at)
-        if chart is not None and shown != self._drawn and chart.show_sight(scope.sight, scope.cursors):
+            self.readings.show_picture(scope.picture)
+        if not self.table_panel.isHidden():
+            self.table_panel.show_table(self.scope_tables.make_table())
+        shown = (_find_view_key(scope.picture), scope.cursors.times_s, scope.cursors.active_cursor)
+        if chart is not None and shown != self._drawn and chart.show_picture(scope.picture, scope.cursors):
             self._drawn = shown
         self._undrawn = chart is None or shown != self._drawn
 
     def _words(self) -> tuple[str, str, bool]:
-        scope, sight = self.scope, self.scope.sight
-        if scope.live is None and scope.is_live:
+        scope, sight = self.scope_model, self.scope_model.picture
+        if scope.live_samples is None and scope.is_live:
             return NO_SAMPLES, "", True
-        if self.curves.chart is None:
+        if self.curve_area.chart is None:
             return tr("OPENING …"), "", False
-        rate = tr(Message("{rate} samples per second", rate=f"{sight.rate:g}"))
-        span = tr(Message("window {span}", span=span_words(scope.window.span)))
-        what = tr("LIVE") if scope.is_live else scope.name or tr("FROZEN")
-        over = "  ·  " + tr(Message("overlay: {name}", name=scope.over_name)) if scope.over_name else ""
-        return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_words, scope.armed
+        rate = tr(Message("{rate} samples per second", rate=f"{sight.sample_rate_hz:g}"))
+        span = tr(Message("window {span}", span=format_span(scope.time_window.span_s)))
+        what = tr("LIVE") if scope.is_live else scope.recording_name or tr("FROZEN")
+        over = "  ·  " + tr(Message("overlay: {name}", name=scope.overlay_name)) if scope.overlay_name else ""
+        return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_text, scope.is_armed
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors."""
-        if self.curves.chart is not None:
-            self.curves.chart.dress()
+        if self.curve_area.chart is not None:
+            self.curve_area.chart.apply_theme()
         self._drawn = None
 
     # --- layout --------------------------------------------------------------------------------------
@@ -300,87 +315,92 @@ class ScopePage(ListPage):
         """Lay out and draw everything again."""
         self._laid = None
         self._lay_out_if()
-        self.dress()
+        self.apply_theme()
 
     def _lay_out_if(self) -> None:
-        known = (self.size(), self.scope.side, self.sheets.asks)
+        known = (self.size(), self.scope_model.side_panel, self.scope_tables.is_value_asked)
         if known != self._laid:
             self._laid = known
             self._lay_out()
 
     def _lay_out(self) -> None:
-        u, reading = self.look.u, self.scope.side is Side.READINGS
-        gap, asks = max(4, round(0.7 * u)), self.sheets.asks
+        u, reading = self.theme.u, self.scope_model.side_panel is SidePanel.READINGS
+        gap, asks = max(4, round(0.7 * u)), self.scope_tables.is_value_asked
         side = round((_READINGS if reading else _TABLE) * u)
         left = self.width() - side - gap
         self.readings.setVisible(reading)
-        self.table.setVisible(not reading)
-        self.pad.setVisible(asks)
-        for part in (self.readings, self.table):
+        self.table_panel.setVisible(not reading)
+        self.number_pad.setVisible(asks)
+        for part in (self.readings, self.table_panel):
             part.setGeometry(left + gap, 0, side, self.height())
         pad = round(_PAD * u) if asks else 0
-        self.pad.setGeometry(left - pad, 0, pad, self.height())
+        self.number_pad.setGeometry(left - pad, 0, pad, self.height())
         left -= pad + (gap if asks else 0)
         high = round(_HEAD * u)
-        self.head.setGeometry(0, 0, left, high)
-        self.curves.setGeometry(0, high, left, self.height() - high)
+        self.head_line.setGeometry(0, 0, left, high)
+        self.curve_area.setGeometry(0, high, left, self.height() - high)
 
 
 class _ScopeKeys:
     """Adapter between the page and its models."""
 
-    def __init__(self, scope: Scope, sheets: ScopeSheets) -> None:
+    def __init__(self, scope: ScopeModel, sheets: ScopeTables) -> None:
         self._scope, self._sheets = scope, sheets
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Pass a key to the cursors or to the table."""
         scope = self._scope
-        if scope.cursors.shown and scope.side is Side.READINGS and key in {"Left", "Right"}:
+        if scope.cursors.shown and scope.side_panel is SidePanel.READINGS and key in {"Left", "Right"}:
             scope.step_cursor(1 if key == "Right" else -1)
             return True
         if scope.cursors.shown and key == "Tab":
-            scope.cursors.other()
+            scope.cursors.activate_other()
             return True
-        if scope.side is Side.READINGS and key in {"Page up", "Page down"}:
+        if scope.side_panel is SidePanel.READINGS and key in {"Page up", "Page down"}:
             return False  # These keys shift the lane.
-        return self._sheets.typed(key)
+        return self._sheets.handle_key(key)
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of the value to be entered."""
-        return self._sheets.takes(key)
+        return self._sheets.accepts_key(key)
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Do nothing, because the page reopens as it was left."""
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go back one step, and return whether there was a step."""
-        return self._sheets.escape()
+        return self._sheets.handle_escape()
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
-        return self._sheets.prompt()
+        return self._sheets.prompt_text()
 
-    def leave(self) -> None:
+    def on_close(self) -> None:
         """Clear the entry."""
-        self._sheets.entry.text = ""
+        self._sheets.input_field.text = ""
 
 
-def _seen(sight: Sight) -> object:
+def _find_view_key(sight: ScopePicture) -> object:
     """Return a value that is equal for pictures that look the same."""
-    if sight.level is None:
+    if sight.constant_values is None:
         return sight
-    figures = [(each.signal.key, f"{level!r}") for each, level in zip(sight.curves, sight.level, strict=True)]
-    return figures, dict(sight.ranges), sight.begin, sight.end, sight.metric
+    figures = [
+        (each.signal.key, f"{level!r}")
+        for each, level in zip(sight.curves, sight.constant_values, strict=True)
+    ]
+    return figures, dict(sight.lane_ranges), sight.begin_s, sight.end_s, sight.is_metric
 
 
-def span_words(seconds: float) -> str:
+def format_span(seconds: float) -> str:
     """Return a duration as text with a suitable unit."""
     if seconds < 1.0:
-        return Message("{seconds} ms", seconds=formats.fixed(1000.0 * seconds, 0 if seconds >= 0.01 else 1))
-    return f"{formats.fixed(seconds, 0 if math.isclose(seconds, round(seconds)) else 1)} s"
+        return Message(
+            "{seconds} ms", seconds=formats.format_fixed(1000.0 * seconds, 0 if seconds >= 0.01 else 1)
+        )
+    return f"{formats.format_fixed(seconds, 0 if math.isclose(seconds, round(seconds)) else 1)} s"
 
 
-def _png(image: QImage) -> bytes:
+def _encode_png(image: QImage) -> bytes:
     """Encode an image as PNG; runs on a worker."""
     buffer = QBuffer()
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)

@@ -25,22 +25,22 @@ class Quantity(Enum):
     """Measured quantity with its name, metric unit, inch unit and minimum range; one lane per quantity."""
 
     POSITION = ("POSITION", "mm", "in", 1e-3)
-    ERROR = ("FOLLOWING ERROR", "mm", "in", 1e-3)
+    FOLLOWING_ERROR = ("FOLLOWING ERROR", "mm", "in", 1e-3)
     VELOCITY = ("VELOCITY", "mm/s", tr("in/s"), 0.1)
     ACCELERATION = ("ACCELERATION", "mm/s²", tr("in/s²"), 10.0)
     ANGLE = ("ANGLE", "°", "°", 0.1)
     ANGLE_ERROR = ("FOLLOWING ERROR", "°", "°", 0.01)
-    TURNING = ("ANGULAR SPEED", "°/s", "°/s", 1.0)
-    TURNING_CHANGE = ("ANGULAR ACCELERATION", "°/s²", "°/s²", 10.0)
+    ROTATION_SPEED = ("ANGULAR SPEED", "°/s", "°/s", 1.0)
+    ROTATION_ACCELERATION = ("ANGULAR ACCELERATION", "°/s²", "°/s²", 10.0)
     SPINDLE = ("SPINDLE", "rpm", "rpm", 10.0)
-    RIPPLE = ("SPINDLE RIPPLE", "rpm", "rpm", 1.0)
-    TURNS = ("SPINDLE REVOLUTIONS", tr("turns"), tr("turns"), 1.0)
+    SPEED_RIPPLE = ("SPINDLE RIPPLE", "rpm", "rpm", 1.0)
+    REVOLUTIONS = ("SPINDLE REVOLUTIONS", tr("turns"), tr("turns"), 1.0)
     LOAD = ("LOAD", "%", "%", 10.0)
     OVERRIDE = ("OVERRIDE", "%", "%", 10.0)
-    QUEUE = ("QUEUE", "ms", "ms", 10.0)
-    LATENESS = ("CYCLE DELAY", "ms", "ms", 1.0)
-    NUMBER = ("LINE", "", "", 5.0)
-    LOGIC = ("INPUTS AND OUTPUTS", "", "", 1.0)
+    QUEUE_TIME = ("QUEUE", "ms", "ms", 10.0)
+    DELAY = ("CYCLE DELAY", "ms", "ms", 1.0)
+    LINE_NUMBER = ("LINE", "", "", 5.0)
+    LOGIC_LEVEL = ("INPUTS AND OUTPUTS", "", "", 1.0)
 
     @property
     def title(self) -> str:
@@ -48,12 +48,12 @@ class Quantity(Enum):
         return str(self.value[0])
 
     @property
-    def least(self) -> float:
+    def min_range(self) -> float:
         """Smallest useful range in internal units."""
         return float(self.value[3])
 
     @property
-    def length(self) -> bool:
+    def is_length(self) -> bool:
         """Whether the unit depends on the choice of millimeters or inches."""
         return self.unit(True) != self.unit(False)
 
@@ -61,40 +61,40 @@ class Quantity(Enum):
         """Return the display unit in the operator's language."""
         return tr(self.value[1] if metric else self.value[2])
 
-    def scale(self, metric: bool) -> float:
+    def find_scale(self, metric: bool) -> float:
         """Return the factor from internal units to display units."""
         if self is Quantity.OVERRIDE:
             return 100.0
-        if self in {Quantity.QUEUE, Quantity.LATENESS}:
+        if self in {Quantity.QUEUE_TIME, Quantity.DELAY}:
             return 1000.0
-        return 1.0 / MM_PER_INCH if self.length and not metric else 1.0
+        return 1.0 / MM_PER_INCH if self.is_length and not metric else 1.0
 
     def places(self, metric: bool) -> int:
         """Return the number of decimals."""
-        return _PLACES[self] + (1 if self.length and not metric else 0)
+        return _DECIMALS[self] + (1 if self.is_length and not metric else 0)
 
 
-_PLACES = {
+_DECIMALS = {
     Quantity.POSITION: 4,
-    Quantity.ERROR: 4,
+    Quantity.FOLLOWING_ERROR: 4,
     Quantity.VELOCITY: 3,
     Quantity.ACCELERATION: 1,
     Quantity.ANGLE: 3,
     Quantity.ANGLE_ERROR: 4,
-    Quantity.TURNING: 2,
-    Quantity.TURNING_CHANGE: 1,
+    Quantity.ROTATION_SPEED: 2,
+    Quantity.ROTATION_ACCELERATION: 1,
     Quantity.SPINDLE: 1,
-    Quantity.RIPPLE: 2,
-    Quantity.TURNS: 3,
+    Quantity.SPEED_RIPPLE: 2,
+    Quantity.REVOLUTIONS: 3,
     Quantity.LOAD: 1,
     Quantity.OVERRIDE: 0,
-    Quantity.QUEUE: 1,
-    Quantity.LATENESS: 2,
-    Quantity.NUMBER: 0,
-    Quantity.LOGIC: 0,
+    Quantity.QUEUE_TIME: 1,
+    Quantity.DELAY: 2,
+    Quantity.LINE_NUMBER: 0,
+    Quantity.LOGIC_LEVEL: 0,
 }
 
-Derive = Callable[[FloatArray, FloatArray], FloatArray]
+DeriveValues = Callable[[FloatArray, FloatArray], FloatArray]
 
 
 def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
@@ -102,55 +102,55 @@ def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True)
-class Signal:
-    """One curve: its channel, its calculation, and the calculation window ``span`` in seconds.
+class ScopeSignal:
+    """One curve: its channel, its calculation, and the calculation window ``span_s`` in seconds.
 
-    ``letter`` is the axis, or empty for signals of the machine. ``word`` is the English name. ``raw`` is set
-    if the name comes from the machine file and is not translated.
+    ``letter`` is the axis, or empty for signals of the machine. ``word`` is the English name.
+    ``is_untranslated`` is set if the name comes from the machine file and is not translated.
     """
 
     key: str
-    word: str
+    display_name: str
     quantity: Quantity
-    channel: str
-    letter: str = ""
-    derive: Derive = _as_it_is
-    span: float = 0.0
-    raw: bool = False
+    channel_name: str
+    axis_letter: str = ""
+    derive_values: DeriveValues = _as_it_is
+    span_s: float = 0.0
+    is_untranslated: bool = False
 
     @property
     def title(self) -> str:
         """Name of the signal in the operator's language."""
-        word = self.word if self.raw else tr(self.word)
-        return f"{self.letter} {word}" if self.letter else word
+        word = self.display_name if self.is_untranslated else tr(self.display_name)
+        return f"{self.axis_letter} {word}" if self.axis_letter else word
 
     @property
     def note(self) -> str:
         """Text about the calculation window, or an empty string for directly sampled signals."""
-        return tr(Message("{ms} ms window", ms=f"{1000.0 * self.span:g}")) if self.span else ""
+        return tr(Message("{ms} ms window", ms=f"{1000.0 * self.span_s:g}")) if self.span_s else ""
 
-    def values(self, times: FloatArray, column: FloatArray) -> FloatArray:
+    def calculate_values(self, times: FloatArray, column: FloatArray) -> FloatArray:
         """Return the values of the signal for the samples of its channel, in internal units."""
-        return self.derive(times, column)
+        return self.derive_values(times, column)
 
 
-def _speed(key: str, word: str, letter: str, channel: str, quantity: Quantity) -> Signal:
-    span = record.VELOCITY_SPAN
-    return Signal(key, word, quantity, channel, letter, record.velocity, span)
+def _speed(key: str, word: str, letter: str, channel: str, quantity: Quantity) -> ScopeSignal:
+    span = record.VELOCITY_SPAN_S
+    return ScopeSignal(key, word, quantity, channel, letter, record.calculate_velocity, span)
 
 
-def _of_axis(letter: str, rotary: bool) -> list[Signal]:
+def _of_axis(letter: str, rotary: bool) -> list[ScopeSignal]:
     place, off, fast, faster = (
-        (Quantity.ANGLE, Quantity.ANGLE_ERROR, Quantity.TURNING, Quantity.TURNING_CHANGE)
+        (Quantity.ANGLE, Quantity.ANGLE_ERROR, Quantity.ROTATION_SPEED, Quantity.ROTATION_ACCELERATION)
         if rotary
-        else (Quantity.POSITION, Quantity.ERROR, Quantity.VELOCITY, Quantity.ACCELERATION)
+        else (Quantity.POSITION, Quantity.FOLLOWING_ERROR, Quantity.VELOCITY, Quantity.ACCELERATION)
     )
     demand, actual = Message("{item} demand", item=letter), Message("{item} actual", item=letter)
-    span = record.ACCELERATION_SPAN
+    span = record.ACCELERATION_SPAN_S
     return [
-        Signal(demand, tr("commanded position"), place, demand, letter),
-        Signal(actual, tr("measured position"), place, actual, letter),
-        Signal(
+        ScopeSignal(demand, tr("commanded position"), place, demand, letter),
+        ScopeSignal(actual, tr("measured position"), place, actual, letter),
+        ScopeSignal(
             Message("{letter} following error", letter=letter),
             tr("following error"),
             off,
@@ -161,16 +161,16 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
             Message("{letter} demand velocity", letter=letter), tr("commanded velocity"), letter, demand, fast
         ),
         _speed(Message("{letter} velocity", letter=letter), tr("velocity"), letter, actual, fast),
-        Signal(
+        ScopeSignal(
             Message("{letter} acceleration", letter=letter),
             tr("acceleration"),
             faster,
             actual,
             letter,
-            record.acceleration,
+            record.calculate_acceleration,
             span,
         ),
-        Signal(
+        ScopeSignal(
             Message("{letter} load", letter=letter),
             tr("load"),
             Quantity.LOAD,
@@ -180,51 +180,53 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
     ]
 
 
-_MACHINE = (
-    Signal("spindle command", tr("Commanded spindle speed"), Quantity.SPINDLE, "spindle command"),
-    Signal("spindle speed", tr("Measured spindle speed"), Quantity.SPINDLE, "spindle speed"),
-    Signal(
+_MACHINE_SIGNALS = (
+    ScopeSignal("spindle command", tr("Commanded spindle speed"), Quantity.SPINDLE, "spindle command"),
+    ScopeSignal("spindle speed", tr("Measured spindle speed"), Quantity.SPINDLE, "spindle speed"),
+    ScopeSignal(
         "spindle ripple",
         tr("Spindle ripple"),
-        Quantity.RIPPLE,
+        Quantity.SPEED_RIPPLE,
         "spindle speed",
         "",
-        record.ripple,
-        record.RIPPLE_SPAN,
+        record.calculate_ripple,
+        record.RIPPLE_SPAN_S,
     ),
-    Signal("spindle turns", tr("Spindle revolutions"), Quantity.TURNS, "spindle turns"),
-    Signal("spindle load", tr("Spindle load"), Quantity.LOAD, "spindle load"),
-    Signal("feed override", tr("Feed override"), Quantity.OVERRIDE, "feed override"),
-    Signal("spindle override", tr("Spindle override"), Quantity.OVERRIDE, "spindle override"),
-    Signal("queue", tr("Setpoint queue depth"), Quantity.QUEUE, "queue"),
-    Signal("lateness", tr("Control cycle delay"), Quantity.LATENESS, "lateness"),
-    Signal("line", tr("Line"), Quantity.NUMBER, "line"),
+    ScopeSignal("spindle turns", tr("Spindle revolutions"), Quantity.REVOLUTIONS, "spindle turns"),
+    ScopeSignal("spindle load", tr("Spindle load"), Quantity.LOAD, "spindle load"),
+    ScopeSignal("feed override", tr("Feed override"), Quantity.OVERRIDE, "feed override"),
+    ScopeSignal("spindle override", tr("Spindle override"), Quantity.OVERRIDE, "spindle override"),
+    ScopeSignal("queue", tr("Setpoint queue depth"), Quantity.QUEUE_TIME, "queue"),
+    ScopeSignal("lateness", tr("Control cycle delay"), Quantity.DELAY, "lateness"),
+    ScopeSignal("line", tr("Line"), Quantity.LINE_NUMBER, "line"),
 )
 
 
-def signals_of(channels: Sequence[Channel]) -> tuple[Signal, ...]:
+def list_signals(channels: Sequence[Channel]) -> tuple[ScopeSignal, ...]:
     """Return all signals that the channels provide, in the order of the list."""
     there = {each.name: each for each in channels}
-    found: list[Signal] = []
+    found: list[ScopeSignal] = []
     for channel in channels:
         letter, _, what = channel.name.partition(" ")
         if what == "demand" and len(letter) == 1:
             found += _of_axis(letter, channel.unit == "deg")
-    found += _MACHINE
+    found += _MACHINE_SIGNALS
     for channel in channels:
         if channel.logic:
             name = channel.name.partition(" ")[2]
-            found.append(Signal(channel.name, name, Quantity.LOGIC, channel.name, raw=True))
-    return tuple(each for each in found if each.channel in there)
+            found.append(
+                ScopeSignal(channel.name, name, Quantity.LOGIC_LEVEL, channel.name, is_untranslated=True)
+            )
+    return tuple(each for each in found if each.channel_name in there)
 
 
-def first_chosen(signals: Sequence[Signal]) -> tuple[str, ...]:
+def find_default_keys(signals: Sequence[ScopeSignal]) -> tuple[str, ...]:
     """Return the keys of the signals that are shown first.
 
     They are the following errors and velocities of the axes, and the spindle, as many as the smallest screen
     can list.
     """
-    slides = [each.letter for each in signals if each.quantity is Quantity.ERROR][:3]
+    slides = [each.axis_letter for each in signals if each.quantity is Quantity.FOLLOWING_ERROR][:3]
     wanted = [f"{letter} {name}" for name in ("following error", "velocity") for letter in slides]
     wanted += ["spindle command"] if len(slides) < 3 else []
     wanted += ["spindle speed"]

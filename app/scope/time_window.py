@@ -10,181 +10,183 @@ import numpy.typing as npt
 
 from app.desk.translation import tr
 
-SPANS = (
+ROUND_SPANS_S = (
     *(0.01, 0.02, 0.05, 0.1, 0.2, 0.5),
     *(1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 300.0),
 )  # zoom steps in seconds
-LEAST = SPANS[0]
-PAN = 0.1  # ratio of the window per step
+MIN_SPAN_S = ROUND_SPANS_S[0]
+PAN_STEP_SHARE = 0.1  # ratio of the window per step
 
 
 @dataclass(slots=True)
-class Window:
+class TimeWindow:
     """Time window in seconds relative to instant 0 of the record, or to the newest sample when live.
 
-    ``most`` is the largest possible window: the start and end of the record.
+    ``limits`` is the largest possible window: the start and end of the record.
     """
 
-    begin: float = -10.0
-    end: float = 0.0
-    most: tuple[float, float] = (-300.0, 0.0)
+    begin_s: float = -10.0
+    end_s: float = 0.0
+    limits: tuple[float, float] = (-300.0, 0.0)
 
     @property
-    def span(self) -> float:
+    def span_s(self) -> float:
         """Width of the window in seconds."""
-        return self.end - self.begin
+        return self.end_s - self.begin_s
 
     @property
-    def middle(self) -> float:
+    def middle_s(self) -> float:
         """Middle of the window in seconds."""
-        return 0.5 * (self.begin + self.end)
+        return 0.5 * (self.begin_s + self.end_s)
 
-    def zoom(self, steps: int, at: float | None = None) -> None:
+    def zoom_window(self, steps: int, time_s: float | None = None) -> None:
         """Zoom in (positive steps) or out through round spans. The time ``at`` stays in place."""
-        near = [each for each in SPANS if each < self.span * 0.999]
-        far = [each for each in SPANS if each > self.span * 1.001]
+        near = [each for each in ROUND_SPANS_S if each < self.span_s * 0.999]
+        far = [each for each in ROUND_SPANS_S if each > self.span_s * 1.001]
         for _ in range(abs(steps)):
             row = near if steps > 0 else far
-            span = (row.pop() if steps > 0 else row.pop(0)) if row else self.span
-            self.magnify(self.span / span, at)
+            span = (row.pop() if steps > 0 else row.pop(0)) if row else self.span_s
+            self.magnify(self.span_s / span, time_s)
 
-    def magnify(self, factor: float, at: float | None = None) -> None:
+    def magnify(self, factor: float, time_s: float | None = None) -> None:
         """Magnify by a factor around a time, or around the middle."""
-        at = self.middle if at is None else at
-        whole = self.most[1] - self.most[0]
-        span = min(max(self.span / factor, LEAST), max(whole, LEAST))
-        share = (at - self.begin) / self.span if self.span else 0.5
-        self.begin = at - share * span
-        self.end = self.begin + span
+        time_s = self.middle_s if time_s is None else time_s
+        whole = self.limits[1] - self.limits[0]
+        span = min(max(self.span_s / factor, MIN_SPAN_S), max(whole, MIN_SPAN_S))
+        share = (time_s - self.begin_s) / self.span_s if self.span_s else 0.5
+        self.begin_s = time_s - share * span
+        self.end_s = self.begin_s + span
         self._stay()
 
-    def pan(self, by: float) -> None:
+    def pan_window(self, shift_s: float) -> None:
         """Move the window by a number of seconds, within the record."""
-        self.begin, self.end = self.begin + by, self.end + by
+        self.begin_s, self.end_s = self.begin_s + shift_s, self.end_s + shift_s
         self._stay()
 
-    def whole(self) -> None:
+    def show_all(self) -> None:
         """Show the whole record."""
-        self.begin, self.end = self.most
-        if self.span < LEAST:
-            self.begin = self.end - LEAST
+        self.begin_s, self.end_s = self.limits
+        if self.span_s < MIN_SPAN_S:
+            self.begin_s = self.end_s - MIN_SPAN_S
 
-    def show(self, instant: float) -> None:
+    def show_time(self, time_s: float) -> None:
         """Pan as far as necessary to show a time."""
-        if not self.begin <= instant <= self.end:
-            self.pan(instant - self.middle)
+        if not self.begin_s <= time_s <= self.end_s:
+            self.pan_window(time_s - self.middle_s)
 
     def _stay(self) -> None:
-        span = self.span
-        self.begin = max(self.most[0], min(self.begin, self.most[1] - span))
-        self.end = self.begin + span
+        span = self.span_s
+        self.begin_s = max(self.limits[0], min(self.begin_s, self.limits[1] - span))
+        self.end_s = self.begin_s + span
 
 
 @dataclass(slots=True)
-class Cursors:
+class TimeCursors:
     """Two cursors in seconds.
 
     ``at`` is the index of the cursor that keys move, or -1 while hidden.
     """
 
-    times: tuple[float, float] = (0.0, 0.0)
-    at: int = -1
+    times_s: tuple[float, float] = (0.0, 0.0)
+    active_cursor: int = -1
 
     @property
     def shown(self) -> bool:
         """Whether the cursors are shown."""
-        return self.at >= 0
+        return self.active_cursor >= 0
 
     @property
-    def apart(self) -> float:
+    def distance_s(self) -> float:
         """Time from the first to the second cursor in seconds."""
-        return self.times[1] - self.times[0]
+        return self.times_s[1] - self.times_s[0]
 
-    def put_into(self, window: Window) -> None:
+    def place_in(self, window: TimeWindow) -> None:
         """Place the cursors at one quarter and three quarters of the window."""
-        quarter = 0.25 * window.span
-        self.times, self.at = (window.begin + quarter, window.end - quarter), 0
+        quarter = 0.25 * window.span_s
+        self.times_s, self.active_cursor = (window.begin_s + quarter, window.end_s - quarter), 0
 
-    def move(self, to: float, which: int | None = None) -> None:
+    def move_cursor(self, time_s: float, cursor: int | None = None) -> None:
         """Move a cursor to a time. The default is the active cursor."""
-        self.at = self.at if which is None else which
-        self.times = (to, self.times[1]) if self.at == 0 else (self.times[0], to)
+        self.active_cursor = self.active_cursor if cursor is None else cursor
+        self.times_s = (time_s, self.times_s[1]) if self.active_cursor == 0 else (self.times_s[0], time_s)
 
-    def other(self) -> None:
+    def activate_other(self) -> None:
         """Activate the other cursor."""
         if self.shown:
-            self.at = 1 - self.at
+            self.active_cursor = 1 - self.active_cursor
 
 
 FloatArray = npt.NDArray[np.float64]
 
 
-class When(Enum):
+class TriggerEvent(Enum):
     """Trigger event."""
 
     OFF = tr("OFF: CURVES KEEP UPDATING")
-    RISES = tr("SIGNAL RISES ABOVE LEVEL")
-    FALLS = tr("SIGNAL FALLS BELOW LEVEL")
-    BEYOND = tr("SIGNAL EXCEEDS ± LEVEL")
+    RISES_ABOVE = tr("SIGNAL RISES ABOVE LEVEL")
+    FALLS_BELOW = tr("SIGNAL FALLS BELOW LEVEL")
+    EXCEEDS = tr("SIGNAL EXCEEDS ± LEVEL")
     ALARM = tr("ALARM OR E-STOP")
     LINE = tr("A PROGRAM LINE STARTS")
 
     @property
-    def by_level(self) -> bool:
+    def needs_level(self) -> bool:
         """Whether the event depends on a signal and a level."""
-        return self in {When.RISES, When.FALLS, When.BEYOND}
+        return self in {TriggerEvent.RISES_ABOVE, TriggerEvent.FALLS_BELOW, TriggerEvent.EXCEEDS}
 
 
-SHARES = (0.1, 0.5, 0.9)  # shares of the window before the trigger
+TRIGGER_SHARES = (0.1, 0.5, 0.9)  # shares of the window before the trigger
 
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
     """Trigger of the scope.
 
-    ``signal`` is the key of a signal, ``level`` is in internal units, and ``before`` is the share of the
-    window before the event.
+    ``signal_key`` is the key of a signal, ``level`` is in internal units, and ``share_before`` is the share
+    of the window before the event.
     """
 
-    when: When = When.OFF
-    signal: str = ""
+    event: TriggerEvent = TriggerEvent.OFF
+    signal_key: str = ""
     level: float = 0.0
     line: int = 1
-    before: float = 0.5
+    share_before: float = 0.5
 
     @property
-    def wants(self) -> str:
+    def watched_key(self) -> str:
         """Key of the signal or channel that the trigger examines, or an empty string while it is off."""
-        if self.when.by_level:
-            return self.signal
-        return {When.ALARM: "state", When.LINE: "line"}.get(self.when, "")
+        if self.event.needs_level:
+            return self.signal_key
+        return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.event, "")
 
-    def following_share(self) -> Trigger:
+    def with_next_share(self) -> Trigger:
         """Return a copy with the next position in the window."""
-        at = SHARES.index(self.before) if self.before in SHARES else -1
-        return replace(self, before=SHARES[(at + 1) % len(SHARES)])
+        at = TRIGGER_SHARES.index(self.share_before) if self.share_before in TRIGGER_SHARES else -1
+        return replace(self, share_before=TRIGGER_SHARES[(at + 1) % len(TRIGGER_SHARES)])
 
-    def released(self, times: FloatArray, values: FloatArray, alarmed: frozenset[int]) -> float | None:
+    def find_trigger_time(
+        self, times: FloatArray, values: FloatArray, alarm_values: frozenset[int]
+    ) -> float | None:
         """Return the time of the first sample that fires the trigger, or None.
 
         The first sample cannot fire the trigger. ``alarmed`` contains the values of the channel ``state``
         that mean an alarm or an E-stop.
         """
-        if self.when is When.OFF or len(values) < 2:
+        if self.event is TriggerEvent.OFF or len(values) < 2:
             return None
         with np.errstate(invalid="ignore"):
-            on = self._on(values, alarmed)
+            on = self._on(values, alarm_values)
         known = np.isfinite(values)
         edges = np.flatnonzero(on[1:] & ~on[:-1] & known[1:] & known[:-1])
         return float(times[edges[0] + 1]) if len(edges) else None
 
     def _on(self, values: FloatArray, alarmed: frozenset[int]) -> npt.NDArray[np.bool_]:
-        if self.when is When.RISES:
+        if self.event is TriggerEvent.RISES_ABOVE:
             return np.asarray(values >= self.level)
-        if self.when is When.FALLS:
+        if self.event is TriggerEvent.FALLS_BELOW:
             return np.asarray(values <= self.level)
-        if self.when is When.BEYOND:
+        if self.event is TriggerEvent.EXCEEDS:
             return np.asarray(np.abs(values) > abs(self.level))
-        if self.when is When.LINE:
+        if self.event is TriggerEvent.LINE:
             return np.asarray(values == self.line)
         return np.isin(values, sorted(alarmed))

@@ -19,29 +19,29 @@ from PySide6.QtWidgets import QAccessibleWidget, QWidget
 from shiboken6 import VoidPtr, isValid
 
 from app.desk.translation import tr
-from app.screen.panel import Panel, Spot, no_press
+from app.screen.panel import Panel, TouchTarget, ignore_press
 
 Role, Text = QAccessible.Role, QAccessible.Text
-Maybe = Any  # Or None, which Qt accepts although its type stubs do not.
+MaybeInterface = Any  # Or None, which Qt accepts although its type stubs do not.
 _ROLES = {"key": Role.Button, "row": Role.ListItem, "lamp": Role.CheckBox, "slider": Role.Slider}
 
 
-def install() -> None:
+def register_accessibility() -> None:
     """Register the factory that creates the accessible interfaces of panels and pages."""
-    QAccessible.installFactory(_interface_of)
+    QAccessible.installFactory(_make_interface)
 
 
-def _interface_of(kind: str, shown: QObject) -> QAccessibleInterface | None:
+def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
     """Return the accessible interface of a plain QWidget, or None. Qt has interfaces for other classes."""
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
     return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessiblePart(shown)
 
 
-def announce(shown: QWidget, text: str) -> None:
+def speak_text(widget: QWidget, text: str) -> None:
     """Let a screen reader speak a text that has appeared. Without a screen reader, nothing happens."""
     if QAccessible.isActive() and text:
-        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(shown, text))
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(widget, text))
 
 
 class AccessiblePart(QAccessibleWidget):
@@ -50,9 +50,9 @@ class AccessiblePart(QAccessibleWidget):
     Without a ``part_name``, it has the name of its parent widget.
     """
 
-    def __init__(self, part: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
-        super().__init__(part, role)
-        self._part = part
+    def __init__(self, widget: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
+        super().__init__(widget, role)
+        self._part = widget
 
     def text(self, kind: QAccessible.Text) -> str:
         """Return the name in the operator's language."""
@@ -69,39 +69,39 @@ class AccessiblePanel(AccessiblePart):
     """A panel, with its title as name, its texts as description, and its targets as children."""
 
     def __init__(self, panel: Panel) -> None:
-        super().__init__(panel, Role.List if panel.lists else Role.Grouping)
+        super().__init__(panel, Role.List if panel.is_list else Role.Grouping)
         self._panel = panel
-        self._spots: dict[int, AccessibleSpot] = {}
+        self._spots: dict[int, AccessibleTarget] = {}
 
     def text(self, kind: QAccessible.Text) -> str:
         """Return the title, or all texts outside the targets for the description."""
         if kind is Text.Name:
-            return self._panel.words_of_name() or super().text(kind)
-        return self._panel.words_outside() if kind is Text.Description else super().text(kind)
+            return self._panel.find_accessible_name() or super().text(kind)
+        return self._panel.describe_content() if kind is Text.Description else super().text(kind)
 
     def childCount(self) -> int:
         """Return the number of child widgets and targets."""
-        return super().childCount() + len(self._panel.spots())
+        return super().childCount() + len(self._panel.list_targets())
 
-    def child(self, index: int) -> Maybe:
+    def child(self, index: int) -> MaybeInterface:
         """Return a child by its index. The child widgets precede the targets."""
         number = index - super().childCount()
         if number < 0:
             return super().child(index)
-        if number >= len(self._panel.spots()):
+        if number >= len(self._panel.list_targets()):
             return None
         if number not in self._spots:
-            self._spots[number] = AccessibleSpot(self._panel, number)
+            self._spots[number] = AccessibleTarget(self._panel, number)
             QAccessible.registerAccessibleInterface(self._spots[number])
         return self._spots[number]
 
     def indexOfChild(self, child: QAccessibleInterface) -> int:
         """Return the index of a child, or -1."""
-        if isinstance(child, AccessibleSpot):
-            return super().childCount() + child.number
+        if isinstance(child, AccessibleTarget):
+            return super().childCount() + child.target_index
         return super().indexOfChild(child)
 
-    def childAt(self, x: int, y: int) -> Maybe:
+    def childAt(self, x: int, y: int) -> MaybeInterface:
         """Return the child at a position on the screen, or None."""
         for index in range(self.childCount()):
             child = self.child(index)
@@ -110,58 +110,58 @@ class AccessiblePanel(AccessiblePart):
         return None
 
 
-class _Press(QAccessibleActionInterface):
+class _PressAction(QAccessibleActionInterface):
     """Action that presses a target as a touch does."""
 
-    def __init__(self, spot: AccessibleSpot) -> None:
+    def __init__(self, spot: AccessibleTarget) -> None:
         super().__init__()
         self._spot = spot
 
     def actionNames(self) -> list[str]:
         """Return the press action, or no action for a control that can be dragged."""
-        held = self._spot.isValid() and self._spot.spot.press is no_press
+        held = self._spot.isValid() and self._spot.target.on_press is ignore_press
         return [] if held else [QAccessibleActionInterface.pressAction()]
 
     def doAction(self, _name: str) -> None:
         """Press the target."""
         if self._spot.isValid():
-            self._spot.spot.press()
+            self._spot.target.on_press()
 
     def keyBindingsForAction(self, _name: str) -> list[str]:
         """Return no key bindings, because the painted texts name the keys."""
         return []
 
 
-class AccessibleSpot(QAccessibleInterface):
+class AccessibleTarget(QAccessibleInterface):
     """One target of a panel, by its index. After each painting, it describes what the panel shows there."""
 
-    def __init__(self, panel: Panel, number: int) -> None:
+    def __init__(self, panel: Panel, index: int) -> None:
         super().__init__()
-        self._panel, self.number = panel, number
-        self._press = _Press(self)
+        self._panel, self.target_index = panel, index
+        self._press = _PressAction(self)
 
     @property
-    def spot(self) -> Spot:
+    def target(self) -> TouchTarget:
         """The target as it was last painted."""
-        return self._panel.spots()[self.number]
+        return self._panel.list_targets()[self.target_index]
 
     def isValid(self) -> bool:
         """Return whether the panel still shows a target with this index."""
-        return isValid(self._panel) and self.number < len(self._panel.spots())
+        return isValid(self._panel) and self.target_index < len(self._panel.list_targets())
 
-    def object(self) -> Maybe:
+    def object(self) -> MaybeInterface:
         """Return None, because a target is not a widget."""
         return None
 
-    def parent(self) -> Maybe:
+    def parent(self) -> MaybeInterface:
         """Return the accessible interface of the panel."""
         return QAccessible.queryAccessibleInterface(self._panel) if isValid(self._panel) else None
 
-    def child(self, _index: int) -> Maybe:
+    def child(self, _index: int) -> MaybeInterface:
         """Return None, because a target has no children."""
         return None
 
-    def childAt(self, _x: int, _y: int) -> Maybe:
+    def childAt(self, _x: int, _y: int) -> MaybeInterface:
         """Return None, because a target has no children."""
         return None
 
@@ -175,7 +175,7 @@ class AccessibleSpot(QAccessibleInterface):
 
     def text(self, kind: QAccessible.Text) -> str:
         """Return the texts that are painted on the target."""
-        return self._panel.words_on(self.spot) if kind is Text.Name and self.isValid() else ""
+        return self._panel.describe_target(self.target) if kind is Text.Name and self.isValid() else ""
 
     def setText(self, _kind: QAccessible.Text, _text: str) -> None:
         """Do nothing, because the panel paints its own text."""
@@ -184,11 +184,11 @@ class AccessibleSpot(QAccessibleInterface):
         """Return the rectangle of the target on the screen."""
         if not self.isValid():
             return QRect()
-        return self.spot.box.toRect().translated(self._panel.mapToGlobal(QPoint()))
+        return self.target.box.toRect().translated(self._panel.mapToGlobal(QPoint()))
 
     def role(self) -> QAccessible.Role:
         """Return the accessible role of the target."""
-        return _ROLES[self.spot.kind] if self.isValid() else Role.NoRole
+        return _ROLES[self.target.kind] if self.isValid() else Role.NoRole
 
     def state(self) -> QAccessible.State:
         """Return whether the target is disabled, checked or selected."""
@@ -196,19 +196,19 @@ class AccessibleSpot(QAccessibleInterface):
         if not self.isValid():
             state.invalid = True
             return state
-        spot = self.spot
-        state.disabled, state.invisible = spot.barred, not self._panel.isVisible()
+        spot = self.target
+        state.disabled, state.invisible = spot.is_disabled, not self._panel.isVisible()
         state.checkable = spot.kind == "lamp"
-        state.checked = spot.on and spot.kind == "lamp"
+        state.checked = spot.is_on and spot.kind == "lamp"
         state.selectable = spot.kind == "row"
-        state.selected = spot.on and spot.kind == "row"
+        state.selected = spot.is_on and spot.kind == "row"
         return state
 
     def actionInterface(self) -> QAccessibleActionInterface:
         """Return the action that presses the target."""
         return self._press
 
-    def interface_cast(self, kind: QAccessible.InterfaceType) -> Maybe:
+    def interface_cast(self, kind: QAccessible.InterfaceType) -> MaybeInterface:
         """Return the requested accessible interface, or a null pointer.
 
         Qt needs a null pointer, because it would treat None as the address of an interface.

@@ -16,28 +16,28 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
 from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem, QGraphicsView, QWidget
 
-from app.desk.status.formats import fixed
+from app.desk.status.formats import format_fixed
 from app.desk.translation import tr
-from app.screen.look import CURVES, FAMILY, LEAST, Look
+from app.screen.screen_theme import CURVE_COLORS, FONT_FAMILY, MIN_TEXT_SIZE, ScreenTheme
 
 _TICK, _NAME = 1.6, 1.5  # Units: height of the numbers on an axis, and of the name of a plot.
 FloatArray = npt.NDArray[np.float64]
 
 
-def curve_colour(look: Look, number: int) -> QColor:
+def find_curve_color(theme: ScreenTheme, index: int) -> QColor:
     """Return the color of a curve by its index, counted from 0. After eight curves, the colors repeat."""
-    colours = CURVES[look.palette.name]
-    return QColor(colours[number % len(colours)])
+    colours = CURVE_COLORS[theme.palette.name]
+    return QColor(colours[index % len(colours)])
 
 
-def line_pen(colour: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
+def make_line_pen(color: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
     """Return a pen one pixel wide. Qt needs four times as long for a wider pen."""
-    pen = QPen(colour, 1.0, style)
+    pen = QPen(color, 1.0, style)
     pen.setCosmetic(True)
     return pen
 
 
-class Axis(pg.AxisItem):  # type: ignore[misc]
+class ChartAxis(pg.AxisItem):  # type: ignore[misc]
     """An axis whose numbers have TurnDesk's format: a true minus sign and no SI prefix."""
 
     def __init__(self, orientation: str) -> None:
@@ -45,18 +45,20 @@ class Axis(pg.AxisItem):  # type: ignore[misc]
         self.enableAutoSIPrefix(False)
         self.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)  # Draw the labels only once.
 
-    def figures(self, low: float, high: float, size: float) -> list[float]:
-        """Return the values that have labels between ``low`` and ``high`` on an axis of ``size`` pixels."""
-        levels = self.tickValues(low, high, size) if high > low and size > 0.0 else []
+    def find_label_values(self, low: float, high: float, length_px: float) -> list[float]:
+        """Return the values that have labels between ``low`` and ``high`` on an axis of ``length_px``
+        pixels.
+        """
+        levels = self.tickValues(low, high, length_px) if high > low and length_px > 0.0 else []
         return [float(value) for _spacing, values in levels[:1] for value in values]
 
     def tickStrings(self, values: Sequence[float], _scale: float, spacing: float) -> list[str]:
         """Return the labels, with as many decimals as their spacing requires."""
         places = max(0, int(np.ceil(-np.log10(spacing) - 1e-6))) if spacing > 0.0 else 0
-        return [fixed(value, places) for value in values]
+        return [format_fixed(value, places) for value in values]
 
 
-class Plot(pg.GraphicsWidget):  # type: ignore[misc]
+class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
     """One plot of a chart, with curves, a left axis and a bottom axis. Its owner sets the ranges.
 
     It replaces the PlotItem of pyqtgraph, which spends three quarters of its time on menus that are not used
@@ -72,22 +74,22 @@ class Plot(pg.GraphicsWidget):  # type: ignore[misc]
         self.vb = pg.ViewBox(parent=self, enableMouse=False, enableMenu=False, defaultPadding=0.0)
         self.vb.disableAutoRange()
         self.layout.addItem(self.vb, 0, 1)
-        self._axes = {side: Axis(side) for side in ("left", "bottom")}
+        self._axes = {side: ChartAxis(side) for side in ("left", "bottom")}
         for side, place in (("left", (0, 0)), ("bottom", (1, 1))):
             axis = self._axes[side]
             axis.linkToView(self.vb)
             axis.setZValue(0.5)
             self.layout.addItem(axis, *place)
 
-    def axis(self, side: str) -> Axis:
+    def find_axis(self, side: str) -> ChartAxis:
         """Return the axis at the ``left`` or the ``bottom``."""
         return self._axes[side]
 
-    def put(self, item: QGraphicsItem) -> None:
+    def add_item(self, item: QGraphicsItem) -> None:
         """Add an item to the plot, in the units of the axes."""
         self.vb.addItem(item)
 
-    def empty(self) -> None:
+    def clear_plot(self) -> None:
         """Remove all curves and restore the initial state of the axes."""
         self.vb.clear()
         self.vb.invertY(False)
@@ -97,52 +99,52 @@ class Plot(pg.GraphicsWidget):  # type: ignore[misc]
             if axis.labelText:
                 axis.setLabel("")
 
-    def curve(self, pen: QPen) -> pg.PlotCurveItem:
-        """Add a curve and return it. Set its points with ``set_curve``."""
+    def add_curve(self, pen: QPen) -> pg.PlotCurveItem:
+        """Add a curve and return it. Set its points with ``set_curve_points``."""
         found = pg.PlotCurveItem(pen=pen, antialias=False, skipFiniteCheck=True)
         found.setSegmentedLineMode("on")  # Drawing lines takes half as long as drawing a path.
-        self.put(found)
+        self.add_item(found)
         return found
 
-    def room(self) -> QRectF:
+    def find_curve_area(self) -> QRectF:
         """Return the rectangle in which the curves are drawn, in pixels of the chart."""
         found: QRectF = self.vb.sceneBoundingRect()
         return found
 
-    def grid(self) -> list[QLineF]:
+    def find_grid_lines(self) -> list[QLineF]:
         """Return a grid line for each label of both axes, in pixels of the chart."""
-        room, ((x0, x1), (y0, y1)) = self.room(), self.vb.viewRange()
+        room, ((x0, x1), (y0, y1)) = self.find_curve_area(), self.vb.viewRange()
         lines = []
-        for value in self.axis("bottom").figures(x0, x1, room.width()):
+        for value in self.find_axis("bottom").find_label_values(x0, x1, room.width()):
             x = room.x() + (value - x0) / (x1 - x0) * room.width()
             lines.append(QLineF(x, room.y(), x, room.bottom()))
-        for value in self.axis("left").figures(y0, y1, room.height()):
+        for value in self.find_axis("left").find_label_values(y0, y1, room.height()):
             y = room.bottom() - (value - y0) / (y1 - y0) * room.height()
             lines.append(QLineF(room.x(), y, room.right(), y))
         return lines
 
-    def value_at(self, place: QPointF) -> tuple[float, float]:
+    def find_values(self, position: QPointF) -> tuple[float, float]:
         """Return the horizontal and vertical axis values at a position in pixels of the chart."""
         (x0, x1), (y0, y1) = self.vb.viewRange()
-        room = self.room()
-        across = (place.x() - room.x()) / max(1.0, room.width())
-        down = (place.y() - room.y()) / max(1.0, room.height())
+        room = self.find_curve_area()
+        across = (position.x() - room.x()) / max(1.0, room.width())
+        down = (position.y() - room.y()) / max(1.0, room.height())
         return x0 + across * (x1 - x0), y1 - down * (y1 - y0)
 
 
-def set_curve(curve: pg.PlotCurveItem, x: FloatArray, y: FloatArray, connect: object = "all") -> None:
+def set_curve_points(curve: pg.PlotCurveItem, x: FloatArray, y: FloatArray, connect: object = "all") -> None:
     """Set the points of a curve. ``connect`` is all, pairs, or an array with 0 where a line ends."""
     curve.setData(x=x, y=y, connect=connect, skipFiniteCheck=True)
 
 
 class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
-    """A column of plots. Call ``dress`` when the theme or the size of the window changes."""
+    """A column of plots. Call ``apply_theme`` when the theme or the size of the window changes."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)
-        self.look = look
-        self.plots: list[Plot] = []
-        self._spare: list[Plot] = []
+        self.theme = theme
+        self.plots: list[ChartPlot] = []
+        self._spare: list[ChartPlot] = []
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
@@ -150,79 +152,79 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.setAntialiasing(False)
         # The background is not cached, because the grid moves.
         self.setCacheMode(QGraphicsView.CacheModeFlag.CacheNone)
-        self.dress()
+        self.apply_theme()
 
-    def ready(self, count: int) -> bool:
+    def prepare_plots(self, count: int) -> bool:
         """Return whether ``count`` plots exist.
 
         Each call creates at most one missing plot, so that no call takes longer than a frame.
         """
         if len(self.plots) + len(self._spare) < count:
-            self._spare.append(Plot())
+            self._spare.append(ChartPlot())
             return False
         return True
 
-    def add(self) -> Plot:
+    def add_plot(self) -> ChartPlot:
         """Add a plot below the others and return it."""
-        plot = self._spare.pop() if self._spare else Plot()
+        plot = self._spare.pop() if self._spare else ChartPlot()
         self.addItem(plot, row=len(self.plots), col=0)
         self.plots.append(plot)
         self._dress(plot)
         return plot
 
-    def empty(self) -> None:
+    def remove_plots(self) -> None:
         """Remove all plots. They are reused later."""
         self.clear()
         for plot in self.plots:
-            plot.empty()
+            plot.clear_plot()
         self._spare += self.plots
         self.plots.clear()
 
-    def share_left(self, units: float) -> None:
+    def set_left_width(self, units: float) -> None:
         """Set the width of all left axes in units, so that the plots are aligned."""
         for plot in self.plots:
-            plot.axis("left").setWidth(round(units * self.look.u))
+            plot.find_axis("left").setWidth(round(units * self.theme.u))
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors and font sizes."""
-        margin = round(0.4 * self.look.u)
-        top = round(0.6 * _TICK * self.look.u)  # Half of the top label is above the highest line.
+        margin = round(0.4 * self.theme.u)
+        top = round(0.6 * _TICK * self.theme.u)  # Half of the top label is above the highest line.
         self.ci.layout.setContentsMargins(margin, top, margin, margin)
-        self.ci.layout.setSpacing(round(1.2 * self.look.u))  # Keep the labels of two axes apart.
+        self.ci.layout.setSpacing(round(1.2 * self.theme.u))  # Keep the labels of two axes apart.
         self.setAccessibleName(tr("CHART"))
-        self.setBackground(self.look.colour("panel"))
+        self.setBackground(self.theme.color("panel"))
         for plot in self.plots:
             self._dress(plot)
 
-    def _dress(self, plot: Plot) -> None:
-        look = self.look
-        font = look.font(_TICK)
+    def _dress(self, plot: ChartPlot) -> None:
+        look = self.theme
+        font = look.make_font(_TICK)
         for side in ("left", "bottom"):
-            axis = plot.axis(side)
-            axis.setPen(line_pen(look.colour("frame")))
-            axis.setTextPen(line_pen(look.colour("soft")))
+            axis = plot.find_axis(side)
+            axis.setPen(make_line_pen(look.color("frame")))
+            axis.setTextPen(make_line_pen(look.color("soft")))
             axis.setStyle(tickFont=font, tickLength=-round(0.5 * look.u))
             axis.labelStyle = {
                 "color": look.palette.soft,
-                "font-size": f"{max(8, round(LEAST * look.u))}px",
-                "font-family": FAMILY,
+                "font-size": f"{max(8, round(MIN_TEXT_SIZE * look.u))}px",
+                "font-family": FONT_FAMILY,
             }
             if axis.labelText:
                 axis.setLabel(axis.labelText)  # Setting an empty text would show an empty label.
 
-    def name(self, painter: QPainter, text: str, room: QRectF) -> None:
+    def name(self, painter: QPainter, text: str, area: QRectF) -> None:
         """Draw the name of a plot in its upper left corner, on a filled background."""
-        u = self.look.u
-        painter.setFont(self.look.font(_NAME, bold=True))
+        u = self.theme.u
+        painter.setFont(self.theme.make_font(_NAME, is_bold=True))
         wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
-        box = QRectF(room.x() + 0.4 * u, room.y() + 0.3 * u, wide + 0.8 * u, 2.0 * u)
-        painter.fillRect(box, self.look.colour("panel"))
-        painter.setPen(self.look.colour("soft"))
+        box = QRectF(area.x() + 0.4 * u, area.y() + 0.3 * u, wide + 0.8 * u, 2.0 * u)
+        painter.fillRect(box, self.theme.color("panel"))
+        painter.setPen(self.theme.color("soft"))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def drawBackground(self, painter: QPainter, rect: QRectF) -> None:
         """Draw the background and all grid lines together, in a tenth of the time of pyqtgraph's grid."""
         super().drawBackground(painter, rect)
-        painter.setPen(line_pen(self.look.colour("ghost")))
+        painter.setPen(make_line_pen(self.theme.color("ghost")))
         for plot in self.plots:
-            painter.drawLines(plot.grid())
+            painter.drawLines(plot.find_grid_lines())

@@ -17,11 +17,11 @@ from pathlib import Path
 
 from core.message import Message
 
-_PATIENCE = 15.0  # Seconds that a display has to respond.
-_CHUNK = 1 << 14
+_TIMEOUT_S = 15.0  # Seconds that a display has to respond.
+_CHUNK_BYTES = 1 << 14
 
 
-def trouble() -> str:
+def find_display_error() -> str:
     """Return why no window can be opened, with a remedy. Empty if a window can be opened."""
     if sys.platform != "linux":
         return ""
@@ -29,24 +29,24 @@ def trouble() -> str:
 
     if QtGui.QGuiApplication.instance() is not None or not hasattr(os, "fork"):
         return ""  # The display is already open.
-    opened, said = _tried(QtGui)
-    return "" if opened else _why(said)
+    opened, said = _try_open(QtGui)
+    return "" if opened else _explain_error(said)
 
 
-def _tried(gui: object) -> tuple[bool, str]:
+def _try_open(gui: object) -> tuple[bool, str]:
     """Open the display in a child process. Return whether this succeeded, and the messages of Qt."""
     reads, writes = os.pipe()
     child = os.fork()
     if child == 0:
-        _open(gui, writes)
+        _open_display(gui, writes)
     os.close(writes)
-    said = _heard(reads, child)
+    said = _read_result(reads, child)
     os.close(reads)
     _, status = os.waitpid(child, 0)
     return status == 0, said
 
 
-def _open(gui: object, writes: int) -> None:
+def _open_display(gui: object, writes: int) -> None:
     """Open the display and exit. This runs in the child process and must not run cleanup of the parent."""
     try:
         import resource
@@ -61,13 +61,13 @@ def _open(gui: object, writes: int) -> None:
         os._exit(1)
 
 
-def _heard(reads: int, child: int) -> str:
+def _read_result(reads: int, child: int) -> str:
     """Return the output of the child process. Kill the process if the display does not respond."""
-    said, end = b"", time.monotonic() + _PATIENCE
+    said, end = b"", time.monotonic() + _TIMEOUT_S
     while (left := end - time.monotonic()) > 0.0:
         if not select.select([reads], [], [], left)[0]:
             break
-        data = os.read(reads, _CHUNK)
+        data = os.read(reads, _CHUNK_BYTES)
         if not data:
             return said.decode("utf-8", "replace")
         said += data
@@ -76,35 +76,35 @@ def _heard(reads: int, child: int) -> str:
     return said.decode("utf-8", "replace") + "no answer"
 
 
-def _why(said: str) -> str:
+def _explain_error(qt_messages: str) -> str:
     """Return the error text with a remedy for the messages of Qt."""
     platform = os.environ.get("QT_QPA_PLATFORM", "")
-    if "Could not find the Qt platform plugin" in said:
+    if "Could not find the Qt platform plugin" in qt_messages:
         return Message(
             "QT_QPA_PLATFORM={platform}: Qt has no platform plugin with this name; remove this "
             "environment variable",
             platform=platform,
         )
-    missing = _missing_library()
+    missing = _find_missing_library()
     if missing and (platform.startswith("xcb") or os.environ.get("DISPLAY")):
         return Message("{missing}; install the system packages listed in README.md", missing=missing)
     tried = [f"{name}={os.environ[name]}" for name in ("WAYLAND_DISPLAY", "DISPLAY") if os.environ.get(name)]
     if not tried:
         return "neither DISPLAY nor WAYLAND_DISPLAY is set; start turndesk from a desktop, or set DISPLAY"
-    if "uthorization" in said:
+    if "uthorization" in qt_messages:
         return Message(
             "{tried} does not accept this user; start turndesk as the user who is logged in to the desktop",
             tried=" and ".join(tried),
         )
     template = (
         ("no display at {tried} responded in time; start the X server or compositor, or correct this setting")
-        if said.endswith("no answer")
+        if qt_messages.endswith("no answer")
         else "no display found at {tried}; start the X server or compositor, or correct this setting"
     )
     return Message(template, tried=" or ".join(tried))
 
 
-def _missing_library() -> str:
+def _find_missing_library() -> str:
     """Return the error for a library that Qt's X11 plugin needs and that is missing. Empty if all exist."""
     import PySide6
 

@@ -10,15 +10,15 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainterPath, QPen, QPolygonF, QTransform
 from PySide6.QtWidgets import QWidget
 
-from app.screen.look import CENTRE, Look, Painter
-from app.screen.panel import Panel, Shown
-from app.screen.window_layout import FINGER
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
 from core.part.tool_outline import ToolOutline
 from core.part.tool_polygons import FloatArray
-from core.sketch import Dim, Outline, Sketch
+from core.sketch import Dimension, Outline, Sketch
 from core.tool_edges import TIP_DIRECTIONS
 
-_INKS = {
+_LINE_COLORS = {
     "part": ("frame", 0.16),
     "cut": ("accent", 0.36),
     "tool": ("tip", 0.16),
@@ -26,61 +26,64 @@ _INKS = {
     "far": ("soft", 0.16),
     "left": ("alarm", 0.5),
 }
-_GROUNDS = {"part": "key", "tool": "here"}
-_FIGURE = 1.9  # Units: height of a number.
-_ARROW = 0.7
-_ACROSS = (0.12, 0.32)  # Positions on the line of a diameter, from below, so that two numbers do not overlap.
-_ROOM = 5.0  # Units around the drawing, for dimensions.
+_FILL_COLORS = {"part": "key", "tool": "here"}
+_NUMBER_HEIGHT = 1.9  # Units: height of a number.
+_ARROW_SIZE = 0.7
+_NUMBER_POSITIONS = (
+    0.12,
+    0.32,
+)  # Positions on the line of a diameter, from below, so that two numbers do not overlap.
+_DRAWING_MARGIN = 5.0  # Units around the drawing, for dimensions.
 
 
 class SketchPanel(Panel):
     """Panel that draws a sketch with its dimensions.
 
-    ``shown`` contains the sketch, the values by dimension word, the word of the selected field, and the words
-    of fields with errors.
+    ``displayed`` contains the sketch, the values by dimension word, the word of the selected field, and the
+    words of fields with errors.
     """
 
     title = "DRAWING"
-    shown: Shown[tuple[Sketch, tuple[tuple[str, str], ...], str, frozenset[str]]] = Shown(
-        (Sketch(), (), "", frozenset())
+    displayed: RedrawingAttribute[tuple[Sketch, tuple[tuple[str, str], ...], str, frozenset[str]]] = (
+        RedrawingAttribute((Sketch(), (), "", frozenset()))
     )
 
     def __init__(
         self,
-        look: Look,
-        touch: Callable[[str], None],
-        beside: Callable[[tuple[float, float]], None],
+        theme: ScreenTheme,
+        on_dimension_touch: Callable[[str], None],
+        on_touch_elsewhere: Callable[[tuple[float, float]], None],
         parent: QWidget,
     ) -> None:
         """Create the panel. ``touch`` gets the word of a touched dimension.
 
-        ``beside`` gets the point of any other touch, in coordinates of the sketch.
+        ``on_touch_elsewhere`` gets the point of any other touch, in coordinates of the sketch.
         """
-        super().__init__(look, parent)
-        self._touch, self._beside = touch, beside
+        super().__init__(theme, parent)
+        self._touch, self._beside = on_dimension_touch, on_touch_elsewhere
         self._scale, self._middle, self._centre = 1.0, (0.0, 0.0), QPointF()
 
-    def draw(self, painter: Painter) -> None:
-        drawn, figures, here, wrong = self.shown
+    def draw(self, painter: ThemedPainter) -> None:
+        drawn, figures, here, wrong = self.displayed
         if not drawn.outlines:
             return
-        self._fit(drawn)
+        self._fit_sketch(drawn)
         for each in drawn.outlines:
             self._outline(painter, each)
         said = dict(figures)
-        for number, dim in enumerate(sorted(drawn.dims, key=lambda dim: dim.word == here)):
-            if said.get(dim.word, ""):
-                ink = "alarm" if dim.word in wrong else "lit" if dim.word == here else "text"
-                share = _ACROSS[number % len(_ACROSS)] if _is_diameter(dim) else 0.5
-                self._dimension(painter, dim, said[dim.word], ink, share, marked=dim.word == here)
+        for number, dim in enumerate(sorted(drawn.dimensions, key=lambda dim: dim.field_word == here)):
+            if said.get(dim.field_word, ""):
+                ink = "alarm" if dim.field_word in wrong else "lit" if dim.field_word == here else "text"
+                share = _NUMBER_POSITIONS[number % len(_NUMBER_POSITIONS)] if _is_diameter(dim) else 0.5
+                self._dimension(painter, dim, said[dim.field_word], ink, share, marked=dim.field_word == here)
 
-    def _fit(self, drawn: Sketch) -> None:
+    def _fit_sketch(self, drawn: Sketch) -> None:
         """Center the drawing in the panel at the largest possible scale."""
         points = [p for each in drawn.outlines for p in each.points]
-        points += [(dim.a[0], dim.a[1] + dim.away) for dim in drawn.dims]
+        points += [(dim.start[0], dim.start[1] + dim.distance) for dim in drawn.dimensions]
         low = min(p[0] for p in points), min(p[1] for p in points)
         high = max(p[0] for p in points), max(p[1] for p in points)
-        room = self.inside().adjusted(*(k * _ROOM * self.look.u for k in (0.8, 0.4, -0.8, -0.4)))
+        room = self.inside().adjusted(*(k * _DRAWING_MARGIN * self.theme.u for k in (0.8, 0.4, -0.8, -0.4)))
         wide, tall = max(high[0] - low[0], 1e-6), max(high[1] - low[1], 1e-6)
         self._scale = max(1e-6, min(room.width() / wide, room.height() / tall))
         self._middle = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0
@@ -90,71 +93,73 @@ class SketchPanel(Panel):
         x = self._centre.x() + (point[0] - self._middle[0]) * self._scale
         return QPointF(x, self._centre.y() - (point[1] - self._middle[1]) * self._scale)
 
-    def touch(self, at: QPointF) -> bool:
+    def press_at(self, position: QPointF) -> bool:
         """Handle a touch on a dimension or on any other point of the sketch."""
-        if not super().touch(at):
-            away = at - self._centre
+        if not super().press_at(position):
+            away = position - self._centre
             self._beside((self._middle[0] + away.x() / self._scale, self._middle[1] - away.y() / self._scale))
         return True
 
-    def _outline(self, painter: Painter, each: Outline) -> None:
-        ink, width = _INKS[each.ink]
-        pen = self.look.pen(ink, width)
-        if each.ink == "axis":
+    def _outline(self, painter: ThemedPainter, each: Outline) -> None:
+        ink, width = _LINE_COLORS[each.role]
+        pen = self.theme.make_pen(ink, width)
+        if each.role == "axis":
             pen.setStyle(Qt.PenStyle.DashDotLine)
         painter.setPen(pen)
         shape = QPolygonF([self._at(p) for p in each.points])
-        ground = _GROUNDS.get(each.ink)
-        if each.closed:
-            painter.setBrush(self.look.colour(ground) if ground else Qt.BrushStyle.NoBrush)
+        ground = _FILL_COLORS.get(each.role)
+        if each.is_closed:
+            painter.setBrush(self.theme.color(ground) if ground else Qt.BrushStyle.NoBrush)
             painter.drawPolygon(shape)
         else:
             painter.drawPolyline(shape)
 
     def _dimension(
-        self, painter: Painter, dim: Dim, figure: str, ink: str, share: float, *, marked: bool
+        self, painter: ThemedPainter, dim: Dimension, figure: str, ink: str, share: float, *, marked: bool
     ) -> None:
-        middle = self._at(dim.a)
-        if dim.b is not None:
-            a, b = self._at(dim.a), self._at(dim.b)
-            lift = QPointF(0.0, -dim.away * self._scale)
-            painter.setPen(QPen(self.look.colour(ink), 1.0))
-            if dim.away:
+        middle = self._at(dim.start)
+        if dim.end is not None:
+            a, b = self._at(dim.start), self._at(dim.end)
+            lift = QPointF(0.0, -dim.distance * self._scale)
+            painter.setPen(QPen(self.theme.color(ink), 1.0))
+            if dim.distance:
                 painter.drawLine(a, a + lift)
                 painter.drawLine(b, b + lift)
             line = QLineF(a + lift, b + lift)
             painter.drawLine(line)
-            self._arrow(painter, line)
-            self._arrow(painter, QLineF(line.p2(), line.p1()))
+            self._draw_arrow(painter, line)
+            self._draw_arrow(painter, QLineF(line.p2(), line.p1()))
             middle = line.pointAt(share)
-        self._figure(painter, middle, dim.before + figure, ink, dim.word, marked=marked)
+        self._figure(painter, middle, dim.prefix + figure, ink, dim.field_word, marked=marked)
 
-    def _arrow(self, painter: Painter, line: QLineF) -> None:
+    def _draw_arrow(self, painter: ThemedPainter, line: QLineF) -> None:
         """Draw an arrowhead at the first point of a line."""
         if line.length() < 1e-6:
             return
         for turn in (20.0, -20.0):
             side = QLineF(line)
-            side.setLength(_ARROW * self.look.u)
+            side.setLength(_ARROW_SIZE * self.theme.u)
             side.setAngle(line.angle() + turn)
             painter.drawLine(side)
 
     def _figure(
-        self, painter: Painter, at: QPointF, figure: str, ink: str, word: str, *, marked: bool
+        self, painter: ThemedPainter, at: QPointF, figure: str, ink: str, word: str, *, marked: bool
     ) -> None:
-        u = self.look.u
-        metrics = QFontMetricsF(self.look.font(_FIGURE, bold=True))
+        u = self.theme.u
+        metrics = QFontMetricsF(self.theme.make_font(_NUMBER_HEIGHT, is_bold=True))
         wide, tall = metrics.horizontalAdvance(figure) + 1.2 * u, 2.6 * u
         box = QRectF(at.x() - wide / 2.0, at.y() - tall / 2.0, wide, tall)
         box.moveLeft(max(1.0, min(box.x(), self.width() - wide - 1.0)))
         box.moveTop(max(1.0, min(box.y(), self.height() - tall - 1.0)))
-        painter.fill(box, "lit" if marked else "panel")
-        painter.write(box, figure, _FIGURE, "on_lit" if marked else ink, at=CENTRE, raw=True, fit=False)
-        self.place(self._finger_about(box), partial(self._touch, word))
+        painter.fill_rect(box, "lit" if marked else "panel")
+        painter.draw_text_line(
+            box, figure, _NUMBER_HEIGHT, "on_lit" if marked else ink, at=ALIGN_CENTER, raw=True, fit=False
+        )
+        self.add_target(self._make_touch_box(box), partial(self._touch, word))
 
-    def _finger_about(self, box: QRectF) -> QRectF:
+    def _make_touch_box(self, box: QRectF) -> QRectF:
         """Return a rectangle around a number that is large enough for a touch and inside the panel."""
-        least = max(5.0 * self.look.u, FINGER)
+        least = max(5.0 * self.theme.u, FINGERTIP_PX)
         side, up = (max(0.0, least - have) / 2.0 for have in (box.width(), box.height()))
         place = box.adjusted(-side, -up, side, up)
         place.moveLeft(max(0.0, min(place.x(), self.width() - place.width())))
@@ -162,56 +167,61 @@ class SketchPanel(Panel):
         return place
 
 
-def _is_diameter(dim: Dim) -> bool:
+def _is_diameter(dim: Dimension) -> bool:
     """Return whether the dimension line crosses the axis at a right angle."""
-    return dim.b is not None and dim.a[1] < 0.0 < dim.b[1] and dim.a[0] == dim.b[0]
+    return dim.end is not None and dim.start[1] < 0.0 < dim.end[1] and dim.start[0] == dim.end[0]
 
 
-_AROUND = 1.9  # Size of the drawing relative to the cutting edges, for a tool with an insert.
+_DRAWING_SCALE = 1.9  # Size of the drawing relative to the cutting edges, for a tool with an insert.
 
 
-def draw_outline(painter: Painter, box: QRectF, outline: ToolOutline, *, small: bool = False) -> None:
+def draw_tool_outline(
+    painter: ThemedPainter, box: QRectF, outline: ToolOutline, *, is_small: bool = False
+) -> None:
     """Draw the body, cutting edges and control point of a tool. Z points right and X points down.
 
-    ``small`` omits the arrows of the axes and draws a smaller cross.
+    ``is_small`` omits the arrows of the axes and draws a smaller cross.
     """
-    look, u = painter.look, painter.look.u
-    place = _placing(box, outline)
+    look, u = painter.theme, painter.theme.u
+    place = _make_transform(box, outline)
     painter.save()
     painter.setClipRect(box)
-    for polygons, ink, ground in ((outline.body, "frame", "ghost"), (outline.cutting, "accent", "key")):
+    for polygons, ink, ground in (
+        (outline.body_outlines, "frame", "ghost"),
+        (outline.cutting_outlines, "accent", "key"),
+    ):
         for points in polygons:
-            painter.setPen(look.pen(ink, 0.16))
-            painter.setBrush(look.colour(ground))
+            painter.setPen(look.make_pen(ink, 0.16))
+            painter.setBrush(look.color(ground))
             painter.drawPolygon(place.map(_polygon(points)))
     at = place.map(QPointF(0.0, 0.0))
-    painter.setPen(look.pen("tip", 0.2))
-    arm, circle = (0.7 * u, 0.3 * u) if small else (1.6 * u, 0.6 * u)
+    painter.setPen(look.make_pen("tip", 0.2))
+    arm, circle = (0.7 * u, 0.3 * u) if is_small else (1.6 * u, 0.6 * u)
     painter.drawLine(at - QPointF(arm, 0), at + QPointF(arm, 0))
     painter.drawLine(at - QPointF(0, arm), at + QPointF(0, arm))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.drawEllipse(at, circle, circle)
     painter.restore()
-    if not small:
-        _axes(painter, box)
+    if not is_small:
+        _draw_axes(painter, box)
 
 
-def _placing(box: QRectF, outline: ToolOutline) -> QTransform:
+def _make_transform(box: QRectF, outline: ToolOutline) -> QTransform:
     """Return the transform from (z, x) in mm to the box.
 
     Axial tools are shown completely, other tools only around their cutting edges.
     """
-    cutting = _polygon(outline.cutting[0]).boundingRect()
-    for points in outline.cutting[1:]:
+    cutting = _polygon(outline.cutting_outlines[0]).boundingRect()
+    for points in outline.cutting_outlines[1:]:
         cutting = cutting.united(_polygon(points).boundingRect())
-    share = 1.15 if outline.axial else _AROUND
-    if outline.axial and outline.body:
-        cutting = cutting.united(_polygon(outline.body[0]).boundingRect())
+    share = 1.15 if outline.is_axial else _DRAWING_SCALE
+    if outline.is_axial and outline.body_outlines:
+        cutting = cutting.united(_polygon(outline.body_outlines[0]).boundingRect())
     scale = min(box.width() / cutting.width(), box.height() / cutting.height()) / share
     # Shift the center of the drawing toward the body.
     middle = cutting.center()
-    if outline.body and not outline.axial:
-        whole = _polygon(outline.body[0]).boundingRect().center() - middle
+    if outline.body_outlines and not outline.is_axial:
+        whole = _polygon(outline.body_outlines[0]).boundingRect().center() - middle
         reach = max(abs(whole.x()), abs(whole.y()), 1e-9)
         middle += whole * (0.3 * min(cutting.width(), cutting.height()) / reach)
     return QTransform(
@@ -223,21 +233,23 @@ def _polygon(points: FloatArray) -> QPolygonF:
     return QPolygonF([QPointF(z, x) for z, x in points.tolist()])
 
 
-def _axes(painter: Painter, box: QRectF) -> None:
+def _draw_axes(painter: ThemedPainter, box: QRectF) -> None:
     """Draw the arrows Z+ to the right and X+ down, in the upper left corner."""
-    u = painter.look.u
+    u = painter.theme.u
     at, long = QPointF(box.x() + 1.2 * u, box.y() + 1.2 * u), 3.0 * u
-    painter.setPen(painter.look.pen("soft", 0.14))
+    painter.setPen(painter.theme.make_pen("soft", 0.14))
     painter.drawLine(at, at + QPointF(long, 0))
     painter.drawLine(at, at + QPointF(0, long))
-    painter.write(QRectF(at.x() + long + 0.3 * u, at.y() - u, 3 * u, 2 * u), "Z+", 1.4, "soft", raw=True)
-    painter.write(QRectF(at.x() - 0.6 * u, at.y() + long, 3 * u, 2 * u), "X+", 1.4, "soft", raw=True)
+    painter.draw_text_line(
+        QRectF(at.x() + long + 0.3 * u, at.y() - u, 3 * u, 2 * u), "Z+", 1.4, "soft", raw=True
+    )
+    painter.draw_text_line(QRectF(at.x() - 0.6 * u, at.y() + long, 3 * u, 2 * u), "X+", 1.4, "soft", raw=True)
 
 
-_SPREAD = 0.7  # Radians from the tool's axis to its flanks.
+_FLANK_ANGLE = 0.7  # Radians from the tool's axis to its flanks.
 
 
-def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text") -> None:
+def draw_tool_tip(painter: ThemedPainter, box: QRectF, quadrant: int, color: str = "text") -> None:
     """Draw a tool tip: the body, the nose circle, and a dot at the point where X and Z are set."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
@@ -246,24 +258,24 @@ def draw_tip(painter: Painter, box: QRectF, quadrant: int, colour: str = "text")
     painter.save()
     painter.setClipRect(box)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(painter.look.colour("ghost"))
+    painter.setBrush(painter.theme.color("ghost"))
     if (z, x) != (0, 0):
-        painter.drawPath(_body(middle, math.atan2(-x, -z), radius, side))
-    painter.setPen(painter.look.pen(colour, 0.16))
+        painter.drawPath(_make_body_path(middle, math.atan2(-x, -z), radius, side))
+    painter.setPen(painter.theme.make_pen(color, 0.16))
     painter.drawEllipse(middle, radius, radius)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(painter.look.colour("tip"))
+    painter.setBrush(painter.theme.color("tip"))
     dot = max(1.5, 0.06 * side)
     painter.drawEllipse(middle + QPointF(radius * z, radius * x), dot, dot)
     painter.restore()
 
 
-def _body(nose: QPointF, away: float, radius: float, side: float) -> QPainterPath:
+def _make_body_path(nose: QPointF, away: float, radius: float, side: float) -> QPainterPath:
     """Return two flanks that touch the nose circle and extend out of the drawing."""
-    path = QPainterPath(_on(nose, away + math.pi / 2 + _SPREAD, radius))
-    path.lineTo(_on(_on(nose, away + math.pi / 2 + _SPREAD, radius), away + _SPREAD, 2 * side))
-    path.lineTo(_on(_on(nose, away - math.pi / 2 - _SPREAD, radius), away - _SPREAD, 2 * side))
-    path.lineTo(_on(nose, away - math.pi / 2 - _SPREAD, radius))
+    path = QPainterPath(_on(nose, away + math.pi / 2 + _FLANK_ANGLE, radius))
+    path.lineTo(_on(_on(nose, away + math.pi / 2 + _FLANK_ANGLE, radius), away + _FLANK_ANGLE, 2 * side))
+    path.lineTo(_on(_on(nose, away - math.pi / 2 - _FLANK_ANGLE, radius), away - _FLANK_ANGLE, 2 * side))
+    path.lineTo(_on(nose, away - math.pi / 2 - _FLANK_ANGLE, radius))
     path.closeSubpath()
     return path
 

@@ -10,33 +10,33 @@ from PySide6.QtCore import QEvent, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QKeyEvent
 from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
 
-from app.desk.pages.sheet import RefusedText
+from app.desk.pages.table_content import RejectedText
 from app.desk.translation import tr
-from app.screen.look import Look, Painter
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
 
-Rows = Sequence[Sequence[str]]
-NAMES: Rows = ("1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm._ ", ("Esc", "Back", "Enter"))
-NAMES_WIDE: Rows = (
+KeyRows = Sequence[Sequence[str]]
+NAME_KEYS: KeyRows = ("1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm._ ", ("Esc", "Back", "Enter"))
+WIDE_NAME_KEYS: KeyRows = (
     (*"1234567890", "Back"),
     (*"qwertyuiop", "Enter"),
     (*"asdfghjkl-", "Esc"),
     "zxcvbnm._ ",
 )  # For the full width. One row fewer leaves more room for a list.
-PROGRAMS: Rows = (
+PROGRAM_KEYS: KeyRows = (
     (*"1234567890-.", "Back"),
     (*"QWERTYUIOP()", "Enter"),
     (*"ASDFGHJKL+/}", "Up"),
     (*"ZXCVBNM=~ ", "Left", "Right", "Down"),
 )
-LINES: Rows = (
+LINE_KEYS: KeyRows = (
     "1234567890-.",
     "QWERTYUIOP()",
     "ASDFGHJKL+/}",
     "ZXCVBNM=~ ",
     ("Back", "Left", "Right", "Up", "Down", "Enter"),
 )  # For MDI. The rows are short enough to fit next to the modal state.
-_CODES = {
+_KEY_CODES = {
     "Back": Qt.Key.Key_Backspace,
     "Enter": Qt.Key.Key_Return,
     "Up": Qt.Key.Key_Up,
@@ -44,130 +44,136 @@ _CODES = {
     "Left": Qt.Key.Key_Left,
     "Right": Qt.Key.Key_Right,
 }
-_ARROWS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→"}
+_ARROW_SIGNS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→"}
 
 
 class LetterPad(Panel):
     """A touch keyboard whose keys act like keys of the keyboard. It is hidden at first."""
 
-    part_name = "KEYBOARD"
+    accessible_name = "KEYBOARD"
 
-    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget, rows: Rows = NAMES) -> None:
-        super().__init__(look, parent)
-        self._press, self._rows = press, rows
+    def __init__(
+        self, theme: ScreenTheme, press: Callable[[str], None], parent: QWidget, key_rows: KeyRows = NAME_KEYS
+    ) -> None:
+        super().__init__(theme, parent)
+        self._press, self._rows = press, key_rows
         self.hide()
 
     @property
-    def least(self) -> int:
+    def min_height_px(self) -> int:
         """The height in pixels at which every key is large enough for a fingertip."""
-        return self.look.keys_high(len(self._rows))
+        return self.theme.find_key_rows_height(len(self._rows))
 
-    def write_into(self, field: QWidget) -> None:
+    def set_target_field(self, text_field: QWidget) -> None:
         """Keep the focus in this standard field when a key is touched.
 
         Otherwise Qt would give the focus to the window.
         """
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
-        self.setFocusProxy(field)
+        self.setFocusProxy(text_field)
 
-    def draw(self, painter: Painter) -> None:
-        gap = 0.6 * self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        gap = 0.6 * self.theme.u
         high = (self.height() + gap) / len(self._rows)
         for row, keys in enumerate(self._rows):
             wide = (self.width() + gap) / len(keys)
             for column, key in enumerate(keys):
-                self.draw_key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
+                self.draw_pad_key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
 
-    def draw_key(self, painter: Painter, box: QRectF, key: str) -> None:
+    def draw_pad_key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
         """Draw one key."""
-        words = {"Esc": "ESC", "Back": tr("DEL"), "Enter": tr("ENTER"), " ": tr("SPACE"), **_ARROWS}
+        words = {"Esc": "ESC", "Back": tr("DEL"), "Enter": tr("ENTER"), " ": tr("SPACE"), **_ARROW_SIGNS}
         shown = words.get(key, key)
         ink = "text" if key.isalnum() and len(key) == 1 else "accent"
-        self.key(painter, box, shown, 2.8, partial(self._press, key), ink=ink, raw=True, margin=0.4)
+        self.key(painter, box, shown, 2.8, partial(self._press, key), color=ink, is_raw=True, margin=0.4)
 
 
-def strike(key: str, target: QWidget) -> None:
-    """Send the press and release of a key of ``PROGRAMS`` to a widget, like a real key."""
-    code = _CODES.get(key)
+def send_key(key: str, widget: QWidget) -> None:
+    """Send the press and release of a key of ``PROGRAM_KEYS`` to a widget, like a real key."""
+    code = _KEY_CODES.get(key)
     text = "\r" if key == "Enter" else "" if code is not None else key
     number = code if code is not None else Qt.Key(ord(key))
     for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
-        QApplication.sendEvent(target, QKeyEvent(kind, number, Qt.KeyboardModifier.NoModifier, text))
+        QApplication.sendEvent(widget, QKeyEvent(kind, number, Qt.KeyboardModifier.NoModifier, text))
 
 
 @dataclass(frozen=True, slots=True)
-class EntryWords:
+class EntryTexts:
     """The texts of an entry.
 
     They are its subject, question, input text, change (old → new) and a hint for other keys.
     """
 
-    which: str = ""
-    question: str = ""
+    subject: str = ""
+    question_text: str = ""
     text: str = ""
-    change: str = ""
-    foot: str = ""
-    refused: bool = field(init=False)  # The next character replaces the text.
+    change_text: str = ""
+    footer_text: str = ""
+    is_rejected: bool = field(init=False)  # The next character replaces the text.
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "refused", isinstance(self.text, RefusedText))
+        object.__setattr__(self, "is_rejected", isinstance(self.text, RejectedText))
 
 
 class EntryPanel(Panel):
     """A panel with one input field. It is redrawn when one of its texts changes."""
 
-    ground = "panel"
-    asked = Shown(EntryWords())
+    ground_color = "panel"
+    entry_texts = RedrawingAttribute(EntryTexts())
 
-    def draw(self, painter: Painter) -> None:
-        u, asked = self.look.u, self.asked
-        room = self.area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
-        painter.write(QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.which, 1.9, "text", bold=False)
-        left = 28 * u if asked.which else 0.0
+    def draw(self, painter: ThemedPainter) -> None:
+        u, asked = self.theme.u, self.entry_texts
+        room = self.find_full_area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
+        painter.draw_text_line(
+            QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.subject, 1.9, "text", bold=False
+        )
+        left = 28 * u if asked.subject else 0.0
         change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
-        painter.write(change, asked.change, 2.0, "accent")
+        painter.draw_text_line(change, asked.change_text, 2.0, "accent")
         self._ask(painter, QRectF(room.x(), room.y() + 3.5 * u, room.width(), 4.8 * u))
         room.setTop(room.bottom() - 3.0 * u)
-        painter.write(room, asked.foot, 1.8, "soft", bold=False)
+        painter.draw_text_line(room, asked.footer_text, 1.8, "soft", bold=False)
 
-    def _ask(self, painter: Painter, row: QRectF) -> None:
-        u, asked = self.look.u, self.asked
-        painter.write(QRectF(row.x(), row.y(), 36 * u, row.height()), asked.question, 2.4, "text")
-        if not asked.question:
+    def _ask(self, painter: ThemedPainter, row: QRectF) -> None:
+        u, asked = self.theme.u, self.entry_texts
+        painter.draw_text_line(
+            QRectF(row.x(), row.y(), 36 * u, row.height()), asked.question_text, 2.4, "text"
+        )
+        if not asked.question_text:
             return
         box = row.adjusted(37 * u, 0.2 * u, 0, -0.2 * u)
         draw_entry_box(painter, box, asked.text)
 
 
-def draw_entry(
-    painter: Painter, inside: QRectF, text: str, *, size: float = 2.8, cursor: bool = True
+def draw_entry_text(
+    painter: ThemedPainter, area: QRectF, text: str, *, size: float = 2.8, has_cursor: bool = True
 ) -> None:
     """Draw an input text, ``size`` units high, with a caret if the field has the keyboard.
 
     A rejected text is drawn as selected, because the next character replaces it.
     """
-    u, selected = painter.look.u, painter.look.caret and isinstance(text, RefusedText)
-    painter.setFont(painter.look.fit(text, size, inside.width() - u, bold=True))
-    wide = min(QFontMetricsF(painter.font()).horizontalAdvance(text), inside.width() - u)
+    u, selected = painter.theme.u, painter.theme.is_caret_shown and isinstance(text, RejectedText)
+    painter.setFont(painter.theme.fit_font(text, size, area.width() - u, is_bold=True))
+    wide = min(QFontMetricsF(painter.font()).horizontalAdvance(text), area.width() - u)
     high = (size + 0.2) * u
     if selected:
-        painter.fill(QRectF(inside.x(), inside.center().y() - high / 2, wide, high), "lit")
-    painter.write(inside, text, size, "on_lit" if selected else "text", raw=True, margin=1.0)
-    if cursor and painter.look.caret:
-        at = inside.x() + wide + 0.3 * u
-        painter.fill(QRectF(at, inside.center().y() - high / 2, 0.3 * u, high), "accent")
+        painter.fill_rect(QRectF(area.x(), area.center().y() - high / 2, wide, high), "lit")
+    painter.draw_text_line(area, text, size, "on_lit" if selected else "text", raw=True, margin=1.0)
+    if has_cursor and painter.theme.is_caret_shown:
+        at = area.x() + wide + 0.3 * u
+        painter.fill_rect(QRectF(at, area.center().y() - high / 2, 0.3 * u, high), "accent")
 
 
-def draw_entry_box(painter: Painter, box: QRectF, text: str, size: float = 2.8) -> None:
+def draw_entry_box(painter: ThemedPainter, box: QRectF, text: str, size: float = 2.8) -> None:
     """Draw an input field with its frame and text."""
-    painter.box(box, "accent", 0.2, "ground")
-    draw_entry(painter, box.adjusted(painter.look.u, 0, -painter.look.u, 0), text, size=size)
+    painter.draw_box(box, "accent", 0.2, "ground")
+    draw_entry_text(painter, box.adjusted(painter.theme.u, 0, -painter.theme.u, 0), text, size=size)
 
 
-def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
+def style_line_edit(edit: QLineEdit, theme: ScreenTheme, size: float, left: float) -> None:
     """Apply the present font and colors to a line edit, with ``left`` units of padding before its text."""
-    u, colours = look.u, look.palette
-    edit.setFont(look.font(size, bold=True))
+    u, colours = theme.u, theme.palette
+    edit.setFont(theme.make_font(size, is_bold=True))
     edit.setStyleSheet(
         f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
         f" border: {max(1, round(0.2 * u))}px solid {colours.accent}; padding-left: {round(left * u)}px;"
@@ -178,28 +184,39 @@ def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
 # --- number pad --------------------------------------------------------------------------------------------
 
 
-_FREE = "C"  # The key to which a page gives its own meaning.
-_KEYS: Rows = ("789/", "456*", "123-", "0.(+", (_FREE, "Esc", ")", "Back"), ("Enter",))
-_SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"}
+_PAGE_KEY = "C"  # The key to which a page gives its own meaning.
+_NUMBER_KEYS: KeyRows = ("789/", "456*", "123-", "0.(+", (_PAGE_KEY, "Esc", ")", "Back"), ("Enter",))
+_KEY_LABELS = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"}
 
 
-class KeyPad(LetterPad):
+class NumberPad(LetterPad):
     """A touch keyboard for numbers and arithmetic."""
 
-    part_name = "NUMBER PAD"
-    own: Shown[tuple[str, str] | None] = Shown(None)  # Key name and label of the page's own key.
+    accessible_name = "NUMBER PAD"
+    page_key: RedrawingAttribute[tuple[str, str] | None] = RedrawingAttribute(
+        None
+    )  # Key name and label of the page's own key.
 
     def __init__(
-        self, look: Look, press: Callable[[str], None], *, own: tuple[str, str] | None, parent: QWidget
+        self,
+        theme: ScreenTheme,
+        press: Callable[[str], None],
+        *,
+        page_key: tuple[str, str] | None,
+        parent: QWidget,
     ) -> None:
-        """Create the pad. ``own`` is the name and label of the page's own key, or None for an empty place."""
-        super().__init__(look, press, parent, _KEYS)
-        self.own = own
+        """Create the pad. ``page_key`` is the name and label of the page's own key, or None for an empty
+        place.
+        """
+        super().__init__(theme, press, parent, _NUMBER_KEYS)
+        self.page_key = page_key
         self.show()
 
-    def draw_key(self, painter: Painter, box: QRectF, key: str) -> None:
+    def draw_pad_key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
         """Draw one key. The place of the page's own key remains empty without such a key."""
-        key, shown = (self.own or ("", "")) if key == _FREE else (key, _SHOWN.get(key, key.upper()))
+        key, shown = (
+            (self.page_key or ("", "")) if key == _PAGE_KEY else (key, _KEY_LABELS.get(key, key.upper()))
+        )
         if key:
             ink = "text" if key.isdigit() or key == "." else "accent"
-            self.key(painter, box, shown, 3.0, partial(self._press, key), ink=ink, margin=1.0)
+            self.key(painter, box, shown, 3.0, partial(self._press, key), color=ink, margin=1.0)

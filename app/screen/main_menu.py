@@ -9,20 +9,20 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.page_description import PageEntry
-from app.desk.pages.page_entry import editor_barred, mdi_barred
-from app.desk.programs.program_loading import Loaded
+from app.desk.page_description import PageDescription
+from app.desk.pages.page_entry import find_editor_refusal, find_mdi_refusal
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.screen import page_table
-from app.screen.look import CENTRE, Look, Painter
-from app.screen.page_base import Host, KeyActions, Page
-from app.screen.page_table import menu_keys, menu_of
-from app.screen.panel import Panel, Shown
-from app.screen.window.keys import OF_MENU
-from app.screen.window_layout import FINGER
+from app.screen.page_base import KeyActions, Page, PageHost
+from app.screen.page_table import list_menu_entries, map_menu_keys
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
+from app.screen.window.key_table import MENU_KEYS
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 
-COLUMNS = 2
+COLUMN_COUNT = 2
 
 
 class MenuPage(Page):
@@ -30,89 +30,97 @@ class MenuPage(Page):
 
     NAME = page_table.MENU
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent)
-        self._entries = menu_of(host.desk.machine.language)
-        self._keys = menu_keys(host.desk.machine.language)
-        labels = {"F1": "MENU", "F7": "ALARMS", **{key: each.label for key, each in self._keys.items()}}
+        self._entries = list_menu_entries(host.desk.machine.language)
+        self._keys = map_menu_keys(host.desk.machine.language)
+        labels = {"F1": "MENU", "F7": "ALARMS", **{key: each.menu_label for key, each in self._keys.items()}}
         self._labels = tuple(labels.get(f"F{number}", "") for number in range(1, 11))
-        self.list = _Tiles(self.look, host.press, self._entries, self)
+        self.menu_list = _MenuTiles(self.theme, host.press_key, self._entries, self)
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of the pages that this machine has."""
         return self._labels
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the keys of the editor and MDI while those pages cannot be opened."""
-        snapshot, named = self.desk.snapshot(), self.desk.session.now.path is not None
+        snapshot, named = self.desk.read_snapshot(), self.desk.program_loader.loaded.path is not None
         found = {
-            page_table.EDITOR: editor_barred(snapshot, named=named),
-            page_table.MDI: mdi_barred(snapshot),
+            page_table.EDITOR: find_editor_refusal(snapshot, has_name=named),
+            page_table.MDI: find_mdi_refusal(snapshot),
         }
         return frozenset(key for key, each in self._keys.items() if found.get(each.name))
 
-    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Dim the tiles of pages that cannot be opened now."""
-        super().refresh(snapshot, view, loaded)
-        self.list.barred = self.barred()
+        super().refresh(snapshot, status, loaded)
+        self.menu_list.barred = self.disabled_keys()
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the menu's keys."""
-        return {OF_MENU.get(key, key): partial(self._open, entry.name) for key, entry in self._keys.items()}
+        return {MENU_KEYS.get(key, key): partial(self._open, entry.name) for key, entry in self._keys.items()}
 
     def _open(self, name: str) -> None:
-        self.desk.clear()  # The message for the previous key has been read.
-        self.host.go(name)
+        self.desk.clear_prompt_line()  # The message for the previous key has been read.
+        self.host.open_page(name)
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the instruction for choosing a page."""
         return "PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC"
 
-    def esc_holds(self) -> bool:
+    def is_esc_stop_key(self) -> bool:
         """Return False, because Esc opens the Automatic page even while the machine moves."""
         return False
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Open the Automatic page."""
-        self.host.go(page_table.AUTOMATIC)
+        self.host.open_page(page_table.AUTOMATIC)
         return True
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Let the tiles fill the page."""
-        self.list.setGeometry(self.rect())
+        self.menu_list.setGeometry(self.rect())
 
 
-class _Tiles(Panel):
+class _MenuTiles(Panel):
     """The menu entries in two columns."""
 
     title = page_table.MENU
-    barred: Shown[frozenset[str]] = Shown(frozenset())  # Keys of pages that cannot be opened now.
+    barred: RedrawingAttribute[frozenset[str]] = RedrawingAttribute(
+        frozenset()
+    )  # Keys of pages that cannot be opened now.
 
     def __init__(
-        self, look: Look, press: Callable[[str], None], entries: Sequence[PageEntry], parent: QWidget
+        self,
+        theme: ScreenTheme,
+        press: Callable[[str], None],
+        entries: Sequence[PageDescription],
+        parent: QWidget,
     ) -> None:
-        super().__init__(look, parent)
+        super().__init__(theme, parent)
         self._press, self._entries = press, entries
 
-    def draw(self, painter: Painter) -> None:
-        u, room = self.look.u, self.inside()
-        rows = -(-len(self._entries) // COLUMNS)
-        wide, high = room.width() / COLUMNS, min(room.height() / rows, 13.0 * u)
-        tall = max(high - u, min(high, FINGER))
+    def draw(self, painter: ThemedPainter) -> None:
+        u, room = self.theme.u, self.inside()
+        rows = -(-len(self._entries) // COLUMN_COUNT)
+        wide, high = room.width() / COLUMN_COUNT, min(room.height() / rows, 13.0 * u)
+        tall = max(high - u, min(high, FINGERTIP_PX))
         for number, entry in enumerate(self._entries):
             column, row = divmod(number, rows)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, tall)
             self._tile(painter, box, entry)
-            press = partial(self._press, OF_MENU.get(entry.key, entry.key))
-            self.place(box, press, barred=entry.key in self.barred)
+            press = partial(self._press, MENU_KEYS.get(entry.key, entry.key))
+            self.add_target(box, press, is_disabled=entry.key in self.barred)
 
-    def _tile(self, painter: Painter, box: QRectF, entry: PageEntry) -> None:
-        u = self.look.u
+    def _tile(self, painter: ThemedPainter, box: QRectF, entry: PageDescription) -> None:
+        u = self.theme.u
         barred = entry.key in self.barred
         ink = "soft" if barred else "accent"
-        painter.box(box, "frame" if barred else "accent", 0.2, "panel" if barred else "key")
-        painter.write(QRectF(box.x() + u, box.y(), 8 * u, box.height()), entry.key, 3.4, ink, at=CENTRE)
+        painter.draw_box(box, "frame" if barred else "accent", 0.2, "panel" if barred else "key")
+        painter.draw_text_line(
+            QRectF(box.x() + u, box.y(), 8 * u, box.height()), entry.key, 3.4, ink, at=ALIGN_CENTER
+        )
         text = box.adjusted(10.5 * u, 0.14 * box.height(), -1.5 * u, -0.14 * box.height())
         text.setHeight(text.height() / 2)
-        painter.write(text, entry.name, 3.0, "soft" if barred else "text")
-        painter.write(text.translated(0, text.height()), entry.use, 1.9, "soft", bold=False)
+        painter.draw_text_line(text, entry.name, 3.0, "soft" if barred else "text")
+        painter.draw_text_line(text.translated(0, text.height()), entry.use, 1.9, "soft", bold=False)

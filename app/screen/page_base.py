@@ -8,42 +8,43 @@ override the following members:
 - ``NAME``: its name in ``app.screen.page_table``, which the title line shows.
 - ``LABELS``: ten labels of up to eight characters for the function keys. F1 is MENU.
   An empty label means no key.
-- ``labels()``: the labels, if they change.
-- ``barred()``: function keys that are disabled now. They are drawn dim, and show the reason
+- ``key_labels()``: the labels, if they change.
+- ``disabled_keys()``: function keys that are disabled now. They are drawn dim, and show the reason
   when pressed.
 - ``STARTS``: whether the start buttons can start cycles while the page is shown.
-- ``key_actions()``: its key actions, by the key names of ``app.screen.window.keys``. They
+- ``key_actions()``: its key actions, by the key names of ``app.screen.window.make_key_table``. They
   precede those of the frame. H, E, D, R and the pots work on every page without a caret, and
   F1 on all pages.
-- ``key_down``: gets every key press first, including repeats. True means that the page has
+- ``handle_key_press``: gets every key press first, including repeats. True means that the page has
   handled the key.
-- ``pressed()``: called before any other key or touch acts. Actions that need a key held down end.
-- ``key_up``: gets every key release.
-- ``let_go()``: called if no key release will arrive any more. All such actions end.
-- ``typed(key)``: handles a key as text input: one character, or ``Enter Back Delete Tab Up
+- ``end_held_actions()``: called before any other key or touch acts. Actions that need a key held down end.
+- ``handle_key_release``: gets every key release.
+- ``release_all()``: called if no key release will arrive any more. All such actions end.
+- ``handle_key(key)``: handles a key as text input: one character, or ``Enter Back Delete Tab Up
   Down``, ``Page up``, ``Page down``. True means that the page has handled the key. A standard
   widget with the focus handles its keys itself.
-- ``takes(key)``: whether this character is text input. Lamps then do not show it as their key.
-- ``has_field()``: whether an input field has the keyboard. Only then is a caret drawn, and every
+- ``accepts_key(key)``: whether this character is text input. Lamps then do not show it as their key.
+- ``has_text_field()``: whether an input field has the keyboard. Only then is a caret drawn, and every
   character belongs to the field.
-- ``asks()``: a question of the page, which has priority on the prompt line.
-- ``prompt()``: the text of the prompt line if there is no message and no alarm.
-- ``opens()``: whether the page can be opened now. If not, it shows the reason by ``desk.say``.
-- ``opened()``: called when the page has opened. It may take the focus from the window.
-- ``leave()``: called before the page or the window closes. False prevents this. The page then
+- ``pending_question()``: a question of the page, which has priority on the prompt line.
+- ``prompt_text()``: the text of the prompt line if there is no message and no alarm.
+- ``can_open()``: whether the page can be opened now. If not, it shows the reason by ``desk.say``.
+- ``on_open()``: called when the page has opened. It may take the focus from the window.
+- ``try_leave()``: called before the page or the window closes. False prevents this. The page then
   shows the reason by ``desk.say``.
-- ``esc_holds()``: whether Esc starts feed hold while the machine moves. False if Esc has another
+- ``is_esc_stop_key()``: whether Esc starts feed hold while the machine moves. False if Esc has another
   function.
-- ``escape()``: handles Esc. False means that the page closed nothing. The window then closes its
+- ``handle_escape()``: handles Esc. False means that the page closed nothing. The window then closes its
   question, starts feed hold, or opens the Automatic page.
-- ``ahead()``: prepares slow parts in slices before the page is shown. False means that nothing
+- ``prepare_slice()``: prepares slow parts in slices before the page is shown. False means that nothing
   is left.
-- ``lively()``: whether the page shows an animation, so that it is drawn 60 times per second.
+- ``is_animating()``: whether the page shows an animation, so that it is drawn 60 times per second.
 - ``refresh``: called once a frame with the snapshot, status and loaded program of one instant.
-- ``dress()``: called when the colors have changed. The frame redraws painted parts.
+- ``apply_theme()``: called when the colors have changed. The frame redraws painted parts.
 
-``host.go(name)`` opens another page, ``host.press(key)`` acts like a key press, and ``host.desk`` is the
-model. The frame sets the page's geometry. Lay out the parts in ``resizeEvent``, in units of ``look.u``.
+``host.open_page(name)`` opens another page, ``host.press_key(key)`` acts like a key press, and ``host.desk``
+is the model. The frame sets the page's geometry. Lay out the parts in ``resizeEvent``, in units of
+``look.u``.
 """
 
 from __future__ import annotations
@@ -57,9 +58,9 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
 from app.desk.pages.editor_panel import PanelModel
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.screen.look import Look
+from app.screen.screen_theme import ScreenTheme
 from core.executor.snapshot import Snapshot
 
 _LABELS: Mapping[str, Mapping[str, str]] = {
@@ -68,7 +69,7 @@ _LABELS: Mapping[str, Mapping[str, str]] = {
 }
 
 
-def label_on(language: str, label: str) -> str:
+def find_label(language: str, label: str) -> str:
     """Return the label of a key on a machine with this programming language."""
     return _LABELS.get(language, {}).get(label, label)
 
@@ -77,14 +78,14 @@ KeyActions = Mapping[str, Callable[[], object]]  # Actions by key name. Their re
 
 
 @dataclass(frozen=True, slots=True)
-class Host:
+class PageHost:
     """The objects and functions that the frame gives to its pages."""
 
-    look: Look
+    theme: ScreenTheme
     desk: Desk
-    press: Callable[[str], None]
-    go: Callable[[str], bool]
-    clear_away: Callable[[], None]  # Closes the alarm log that covers the page.
+    press_key: Callable[[str], None]
+    open_page: Callable[[str], bool]
+    close_alarm_log: Callable[[], None]  # Closes the alarm log that covers the page.
 
 
 class Page(QWidget):
@@ -94,21 +95,21 @@ class Page(QWidget):
     LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
     STARTS: ClassVar[bool] = False
 
-    def __init__(self, host: Host, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(parent)
-        self.host, self.look, self.desk = host, host.look, host.desk
+        self.host, self.theme, self.desk = host, host.theme, host.desk
         self.hide()
 
     @property
-    def part_name(self) -> str:
+    def accessible_name(self) -> str:
         """The name for assistive technology."""
         return self.NAME
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the present labels of the function keys; called once a frame."""
-        return tuple(label_on(self.desk.machine.language, label) for label in self.LABELS)
+        return tuple(find_label(self.desk.machine.language, label) for label in self.LABELS)
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the function keys that are disabled now; called once a frame."""
         return frozenset()
 
@@ -116,90 +117,90 @@ class Page(QWidget):
         """Return the key actions of this page, by key name."""
         return {}
 
-    def key_down(self, _event: QKeyEvent) -> bool:
+    def handle_key_press(self, _event: QKeyEvent) -> bool:
         """Handle a key press before all other parts. Return False to leave the key to them."""
         return False
 
-    def key_up(self, _event: QKeyEvent) -> None:
+    def handle_key_release(self, _event: QKeyEvent) -> None:
         """Handle a key release."""
 
-    def pressed(self) -> None:
+    def end_held_actions(self) -> None:
         """End actions of keys held down, because another key or touch will act next."""
 
-    def let_go(self) -> None:
+    def release_all(self) -> None:
         """End all actions of keys held down, because no key release will arrive."""
 
-    def typed(self, _key: str) -> bool:
+    def handle_key(self, _key: str) -> bool:
         """Handle a key as text input. Return False to leave the key to the window."""
         return False
 
-    def touched(self, key: str) -> None:
+    def handle_touched_key(self, key: str) -> None:
         """Handle a touch on a drawn key. Esc goes to the window, any other key to this page."""
         if key == "Esc":
-            self.host.press(key)
+            self.host.press_key(key)
         else:
-            self.typed(key)
+            self.handle_key(key)
 
-    def takes(self, _key: str) -> bool:
+    def accepts_key(self, _key: str) -> bool:
         """Return whether this character is text input for the page."""
         return False
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether an input field of the page has the keyboard."""
         return False
 
-    def ahead(self) -> bool:
+    def prepare_slice(self) -> bool:
         """Prepare one slice of slow parts before the page is shown. Return False if nothing is left."""
         return False
 
-    def lively(self) -> bool:
+    def is_animating(self) -> bool:
         """Return whether the page shows an animation or live measurements."""
         return False
 
-    def asks(self) -> str:
+    def pending_question(self) -> str:
         """Return a question of the page, which nothing covers. Empty without a question."""
         return ""
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the page's prompt. Empty for the prompt of the machine state."""
         return ""
 
-    def opens(self) -> bool:
+    def can_open(self) -> bool:
         """Return whether the page can be opened now."""
         return True
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Handle the opening of the page."""
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Return whether another page may replace this one. If not, the prompt line shows the reason."""
         return True
 
-    def esc_holds(self) -> bool:
+    def is_esc_stop_key(self) -> bool:
         """Return whether Esc starts feed hold while the machine moves. An input field uses Esc itself."""
-        return not self.has_field()
+        return not self.has_text_field()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Handle Esc. Return whether Esc has closed something on the page."""
         return False
 
-    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the snapshot, status and loaded program of this instant; called once a frame."""
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors."""
 
 
 class PageModel(Protocol):
-    """Interface of a page's model. ``escape`` returns False if it canceled nothing."""
+    """Interface of a page's model. ``handle_escape`` returns False if it canceled nothing."""
 
-    def typed(self, key: str) -> bool: ...
+    def handle_key(self, key: str) -> bool: ...
 
-    def takes(self, key: str) -> bool: ...
+    def accepts_key(self, key: str) -> bool: ...
 
-    def opened(self) -> None: ...
+    def on_open(self) -> None: ...
 
-    def escape(self) -> bool: ...
+    def handle_escape(self) -> bool: ...
 
 
 class ModelPage(Page):
@@ -207,21 +208,21 @@ class ModelPage(Page):
 
     model: PageModel
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Pass a key to the model."""
-        return self.model.typed(key)
+        return self.model.handle_key(key)
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether this character is text input for the model."""
-        return self.model.takes(key)
+        return self.model.accepts_key(key)
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Inform the model that the page has opened."""
-        self.model.opened()
+        self.model.on_open()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Let the model go one step back."""
-        return self.model.escape()
+        return self.model.handle_escape()
 
 
 class HeadKey(NamedTuple):
@@ -237,22 +238,22 @@ class HeadKey(NamedTuple):
 class EditorPanel(QWidget):
     """A panel of the editor without content. A feature registers a subclass as ``Extra.editor_panel``.
 
-    ``KEYS`` are the names of the keys that open it, from ``app.screen.window.keys``.
+    ``KEYS`` are the names of the keys that open it, from ``app.screen.window.make_key_table``.
     """
 
     KEYS: Sequence[str] = ()
     model: PanelModel
 
-    def __init__(self, host: Host, page: Page) -> None:  # noqa: ARG002
-        super().__init__(page)
+    def __init__(self, host: PageHost, editor_page: Page) -> None:  # noqa: ARG002
+        super().__init__(editor_page)
         self.model = PanelModel()
         self.hide()
 
-    def head_keys(self, name: str) -> Sequence[HeadKey]:  # noqa: ARG002
+    def make_head_keys(self, name: str) -> Sequence[HeadKey]:  # noqa: ARG002
         """Return the targets above the text of a program with this name, from right to left."""
         return ()
 
-    def open_at(self, key: str, name: str, text: str, line: int) -> str:  # noqa: ARG002
+    def open_for_text(self, key: str, name: str, text: str, line: int) -> str:  # noqa: ARG002
         """Open the panel for this text. Return why this is not possible, or an empty text.
 
         ``line`` is the line of the cursor, counted from 1. ``key`` is the name of the pressed key, or empty

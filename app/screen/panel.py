@@ -19,17 +19,17 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, Look, Painter, put
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ScreenTheme, ThemedPainter, draw_text
 
-Press = Callable[[], None]
+OnPress = Callable[[], None]
 T = TypeVar("T")
 
 
-class Shown(Generic[T]):
+class RedrawingAttribute(Generic[T]):
     """A descriptor for an attribute of a panel. The panel is redrawn when its value changes."""
 
-    def __init__(self, first: T) -> None:
-        self._first = first
+    def __init__(self, initial: T) -> None:
+        self._first = initial
 
     def __set_name__(self, _owner: type, name: str) -> None:
         self._name = name
@@ -44,19 +44,21 @@ class Shown(Generic[T]):
             panel.update()
 
 
-def no_press() -> None:
+def ignore_press() -> None:
     """Do nothing, because assistive technology does not press a control that can be dragged."""
 
 
-class Spot(NamedTuple):
-    """A target of a panel. ``name`` precedes the painted texts in the accessible name, see ``words_on``."""
+class TouchTarget(NamedTuple):
+    """A target of a panel. ``name`` precedes the painted texts in the accessible name, see
+    ``describe_target``.
+    """
 
     box: QRectF
-    press: Press
+    on_press: OnPress
     name: str = ""
     kind: Literal["key", "row", "lamp", "slider"] = "key"
-    on: bool = False  # The lamp is lit, or the row is selected.
-    barred: bool = False  # Pressing the target would be rejected now.
+    is_on: bool = False  # The lamp is lit, or the row is selected.
+    is_disabled: bool = False  # Pressing the target would be rejected now.
 
 
 class Panel(QWidget):
@@ -66,15 +68,15 @@ class Panel(QWidget):
     """
 
     title = ""
-    part_name = ""  # For assistive technology, if the panel has no title.
-    lists = False  # The targets are the rows of a list.
-    ground = "ground"
-    paints: ClassVar[int] = 0  # Number of paint events of all panels.
+    accessible_name = ""  # For assistive technology, if the panel has no title.
+    is_list = False  # The targets are the rows of a list.
+    ground_color = "ground"
+    paint_count: ClassVar[int] = 0  # Number of paint events of all panels.
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, theme: ScreenTheme, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.look = look
-        self._places: list[Spot] = []
+        self.theme = theme
+        self._places: list[TouchTarget] = []
         self._written: list[tuple[QRectF, str]] | None = None
         self._titled = ""
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -82,195 +84,196 @@ class Panel(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint the panel. The painter always ends, because an active painter would crash the process."""
-        Panel.paints += 1
-        with Painter(self, self.look) as painter:
+        Panel.paint_count += 1
+        with ThemedPainter(self, self.theme) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            painter.fill(self.area(), self.ground)
+            painter.fill_rect(self.find_full_area(), self.ground_color)
             self._places.clear()
             if self.title:
                 self.frame(painter, self.title)
             self.draw(painter)
-            self._written = painter.written if Painter.notes else None
+            self._written = painter.drawn_texts if ThemedPainter.records_texts else None
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         """Draw the content of the panel inside its frame. Subclasses override this."""
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press the target at once, when the mouse button or finger goes down."""
-        self.touch(event.position())
+        self.press_at(event.position())
 
-    def touch(self, at: QPointF) -> bool:
+    def press_at(self, position: QPointF) -> bool:
         """Press the target at this position. Return False if there is no target."""
         for spot in self._places:
-            if spot.box.contains(at):
-                spot.press()
+            if spot.box.contains(position):
+                spot.on_press()
                 return True
         return False
 
-    def place(
+    def add_target(
         self,
         rect: QRectF,
-        press: Press,
+        press: OnPress,
         name: str = "",
         *,
         kind: Literal["key", "row", "lamp"] = "key",
-        on: bool = False,
-        barred: bool = False,
+        is_on: bool = False,
+        is_disabled: bool = False,
     ) -> None:
-        """Register a target inside ``rect`` while drawing. See ``Spot``."""
-        self._places.append(Spot(rect, press, name, kind, on, barred))
+        """Register a target inside ``rect`` while drawing. See ``TouchTarget``."""
+        self._places.append(TouchTarget(rect, press, name, kind, is_on, is_disabled))
 
     # --- for assistive technology ---------------------------------------------------------------------
 
-    def spots(self) -> Sequence[Spot]:
+    def list_targets(self) -> Sequence[TouchTarget]:
         """Return the targets as they were last painted."""
         return self._places
 
-    def written(self) -> list[tuple[QRectF, str]]:
+    def read_painted_texts(self) -> list[tuple[QRectF, str]]:
         """Return the texts that were last painted, with their rectangles.
 
         Painters record no texts before the first call, because recording takes 5 % of their time.
         """
-        Painter.notes = True
+        ThemedPainter.records_texts = True
         if self._written is None and self.isVisible():
             self.grab()
         return [(box, text) for box, text in self._written or () if text]
 
-    def words_on(self, spot: Spot) -> str:
+    def describe_target(self, target: TouchTarget) -> str:
         """Return the accessible name of a target: its name, and the texts that are painted on it."""
-        texts = (text for box, text in self.written() if spot.box.contains(box.center()))
-        return "  ".join((*([tr(spot.name)] if spot.name else ()), *texts))
+        texts = (text for box, text in self.read_painted_texts() if target.box.contains(box.center()))
+        return "  ".join((*([tr(target.name)] if target.name else ()), *texts))
 
-    def words_outside(self) -> str:
+    def describe_content(self) -> str:
         """Return all texts outside the targets, without the title."""
         return "  ".join(
             text
-            for box, text in self.written()
-            if text != self._titled and not any(each.box.contains(box.center()) for each in self.spots())
+            for box, text in self.read_painted_texts()
+            if text != self._titled
+            and not any(each.box.contains(box.center()) for each in self.list_targets())
         )
 
-    def words_of_name(self) -> str:
-        """Return the title, or else ``part_name``, or else the painted texts."""
-        shown = self.words_outside() or "  ".join(text for _box, text in self.written())
-        return self._titled or tr(self.part_name) or shown
+    def find_accessible_name(self) -> str:
+        """Return the title, or else ``accessible_name``, or else the painted texts."""
+        shown = self.describe_content() or "  ".join(text for _box, text in self.read_painted_texts())
+        return self._titled or tr(self.accessible_name) or shown
 
     def key(
         self,
-        painter: Painter,
+        painter: ThemedPainter,
         box: QRectF,
-        word: str,
+        label: str,
         size: float,
-        press: Press,
+        press: OnPress,
         *,
-        ink: str = "text",
-        raw: bool = False,
+        color: str = "text",
+        is_raw: bool = False,
         margin: float = 0.0,
     ) -> None:
         """Draw a touch key with its label in the center, and register it as a target."""
-        painter.fill(box, "key")
-        painter.write(box, word, size, ink, at=CENTRE, raw=raw, margin=margin)
-        self.place(box, press)
+        painter.fill_rect(box, "key")
+        painter.draw_text_line(box, label, size, color, at=ALIGN_CENTER, raw=is_raw, margin=margin)
+        self.add_target(box, press)
 
-    def area(self) -> QRectF:
+    def find_full_area(self) -> QRectF:
         """Return the rectangle of the whole widget in pixels."""
         return QRectF(self.rect())
 
     def inside(self) -> QRectF:
         """Return the rectangle inside a frame with a title, in pixels."""
-        u = self.look.u
-        return self.area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
+        u = self.theme.u
+        return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
-    def frame(self, painter: Painter, title: str, colour: str = "frame", width: float = 0.16) -> None:
+    def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
         """Draw a frame with its title in the top line, as on text screens."""
-        look, u, title = self.look, self.look.u, tr(title)
+        look, u, title = self.theme, self.theme.u, tr(title)
         self._titled = title
         top = 1.0 * u
-        pen = look.pen(colour, width)
+        pen = look.make_pen(color, width)
         half = pen.widthF() / 2
-        box = self.area().adjusted(half, top, -half, -half)
+        box = self.find_full_area().adjusted(half, top, -half, -half)
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(look.colour("panel"))
+        painter.setBrush(look.color("panel"))
         painter.drawRect(box)
         painter.setPen(QPen(pen))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
-        font = look.fit(title, 1.7, self.width() - 4 * u, bold=True)
+        font = look.fit_font(title, 1.7, self.width() - 4 * u, is_bold=True)
         painter.setFont(font)
         wide = QFontMetricsF(font).horizontalAdvance(title)
         patch = QRectF(1.6 * u, 0.0, wide + 1.2 * u, 2.0 * u)
-        painter.fillRect(
-            QRectF(patch.x(), top - half - 1, patch.width(), 2 * half + 2), look.colour("ground")
-        )
-        painter.fill(QRectF(patch.x(), top, patch.width(), 1.0 * u), "panel")
-        painter.setPen(look.colour("soft"))
-        put(painter, patch.adjusted(0.6 * u, 0, 0, 0), LEFT, title)
+        painter.fillRect(QRectF(patch.x(), top - half - 1, patch.width(), 2 * half + 2), look.color("ground"))
+        painter.fill_rect(QRectF(patch.x(), top, patch.width(), 1.0 * u), "panel")
+        painter.setPen(look.color("soft"))
+        draw_text(painter, patch.adjusted(0.6 * u, 0, 0, 0), ALIGN_LEFT, title)
 
 
 # --- multi-touch --------------------------------------------------------------------------------------
 
 
-MOUSE = -1  # Touch number of the mouse.
+MOUSE_TOUCH_ID = -1  # Touch number of the mouse.
 
 
 @dataclass(frozen=True, slots=True)
-class Control:
+class TouchControl:
     """A target with actions for pressing, moving and releasing."""
 
     box: QRectF
-    down: Callable[[QPointF], None]
-    along: Callable[[QPointF], None] | None = None
-    up: Callable[[], None] | None = None
-    always: bool = False  # The control stops the machine, so it also acts on a late press.
-    name: str = ""  # See ``Spot``.
+    on_press: Callable[[QPointF], None]
+    on_move: Callable[[QPointF], None] | None = None
+    on_release: Callable[[], None] | None = None
+    acts_when_late: bool = False  # The control stops the machine, so it also acts on a late press.
+    name: str = ""  # See ``TouchTarget``.
     kind: Literal["key", "slider"] = "key"
 
-    def spot(self) -> Spot:
+    def make_target(self) -> TouchTarget:
         """Return the control as a target for assistive technology."""
-        return Spot(self.box, no_press if self.along else self.tap, self.name, self.kind)
+        return TouchTarget(
+            self.box, ignore_press if self.on_move else self.press_and_release, self.name, self.kind
+        )
 
-    def tap(self) -> None:
+    def press_and_release(self) -> None:
         """Press the control at its center and release it."""
-        self.down(self.box.center())
-        if self.up:
-            self.up()
+        self.on_press(self.box.center())
+        if self.on_release:
+            self.on_release()
 
-    def stopping(self) -> Control:
+    def make_stop_control(self) -> TouchControl:
         """Return a copy of the control that stops the machine."""
-        return replace(self, always=True)
+        return replace(self, acts_when_late=True)
 
 
-def pressed(box: QRectF, press: Press, name: str = "") -> Control:
+def make_press_control(box: QRectF, press: OnPress, name: str = "") -> TouchControl:
     """Return a control that acts when it is pressed anywhere in its box."""
-    return Control(box, lambda _at: press(), name=name)
+    return TouchControl(box, lambda _at: press(), name=name)
 
 
-class FingerPanel(Panel):
+class TouchPanel(Panel):
     """A panel with controls that react to several touches and the mouse. ``draw`` creates the controls."""
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self.controls: list[Control] = []
-        self._held: dict[int, Control] = {}
+    def __init__(self, theme: ScreenTheme, parent: QWidget | None = None) -> None:
+        super().__init__(theme, parent)
+        self.controls: list[TouchControl] = []
+        self._held: dict[int, TouchControl] = {}
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
-    def spots(self) -> Sequence[Spot]:
+    def list_targets(self) -> Sequence[TouchTarget]:
         """Return the targets and the controls."""
-        return [*super().spots(), *(each.spot() for each in self.controls)]
+        return [*super().list_targets(), *(each.make_target() for each in self.controls)]
 
-    def stops_at(self, at: QPointF) -> bool:
+    def has_stop_control_at(self, position: QPointF) -> bool:
         """Return whether a control at this position stops the machine."""
-        return any(control.always and control.box.contains(at) for control in self.controls)
+        return any(control.acts_when_late and control.box.contains(position) for control in self.controls)
 
     @property
-    def fingers(self) -> int:
+    def touch_count(self) -> int:
         """The number of touches that hold a control, including the mouse."""
         return len(self._held)
 
-    def mouse_is_up(self) -> None:
+    def release_mouse(self) -> None:
         """Release the control of the mouse, because the release event of its button was lost."""
-        self._up(MOUSE)
+        self._up(MOUSE_TOUCH_ID)
 
-    def let_go(self) -> None:
+    def release_all(self) -> None:
         """Release all controls, because their release events will not arrive."""
         for finger in tuple(self._held):
             self._up(finger)
@@ -282,7 +285,7 @@ class FingerPanel(Panel):
         for point in event.points():
             self._finger(point)
         if event.type() == QEvent.Type.TouchCancel:
-            self.let_go()
+            self.release_all()
         event.accept()
         return True
 
@@ -297,32 +300,32 @@ class FingerPanel(Panel):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press a control with the left button. A control that stops the machine accepts any button."""
-        if event.button() is Qt.MouseButton.LeftButton or self.stops_at(event.position()):
-            self._up(MOUSE)
-            self._down(MOUSE, event.position())
+        if event.button() is Qt.MouseButton.LeftButton or self.has_stop_control_at(event.position()):
+            self._up(MOUSE_TOUCH_ID)
+            self._down(MOUSE_TOUCH_ID, event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Move along the control that the mouse has pressed."""
-        self._along(MOUSE, event.position())
+        self._along(MOUSE_TOUCH_ID, event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Release the control that the mouse has pressed, wherever the pointer is."""
         if not event.buttons() & Qt.MouseButton.LeftButton:
-            self._up(MOUSE)
+            self._up(MOUSE_TOUCH_ID)
 
     def _down(self, finger: int, at: QPointF) -> None:
         for control in self.controls:
             if control.box.contains(at):
                 self._held[finger] = control
-                control.down(at)
+                control.on_press(at)
                 return
 
     def _along(self, finger: int, at: QPointF) -> None:
         control = self._held.get(finger)
-        if control and control.along:
-            control.along(at)
+        if control and control.on_move:
+            control.on_move(at)
 
     def _up(self, finger: int) -> None:
         control = self._held.pop(finger, None)
-        if control and control.up:
-            control.up()
+        if control and control.on_release:
+            control.on_release()

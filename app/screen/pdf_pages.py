@@ -30,44 +30,44 @@ from PySide6.QtGui import (
 from PySide6.QtSvg import QSvgRenderer
 from PySide6.QtWidgets import QApplication
 
-from app.report.html_tables import DRAWINGS, PAPER
-from app.report.pdf_file import Paper
-from app.screen.look import FAMILY, load_fonts
-from core.file_placing import bytes_to_disk
+from app.report.html_tables import DRAWING_STYLE, PAPER_COLORS
+from app.report.pdf_file import PaperSize
+from app.screen.screen_theme import FONT_FAMILY, load_fonts
+from core.file_replacement import sync_file
 
 _DPI = 96  # Resolution of the pixels in which drawings and text are measured.
-_FINE = 1200  # Resolution of the PDF.
-_MARGIN = 14.0  # mm
-_FOOT = 26.0  # pixels
-_FRAME = "#dde1e5"
+_PDF_DPI = 1200  # Resolution of the PDF.
+_MARGIN_MM = 14.0  # mm
+_FOOTER_PX = 26.0  # pixels
+_FRAME_COLOR = "#dde1e5"
 # Tags that Qt does not support, with their replacements.
-_INSTEAD = {
+_TAG_REPLACEMENTS = {
     "<figure>": "<div>", "</figure>": "</div>", "<figcaption>": '<p class="hint">', "</figcaption>": "</p>",
 }  # fmt: skip
 _SVG = re.compile(r'<svg role="img" width="(\d+)" height="(\d+)".*?</svg>', re.DOTALL)
 
 
-class PdfPages:
+class PdfWriter:
     """A PDF file that is written page by page. Raises OSError if writing fails."""
 
-    def __init__(self, path: Path, title: str, paper: Paper) -> None:
-        _application()
+    def __init__(self, path: Path, title: str, paper_size: PaperSize) -> None:
+        _make_application()
         self._path, self._file, self._pages = path, QFile(str(path)), 0
         if not self._file.open(QFile.OpenModeFlag.WriteOnly):
             raise OSError(0, self._file.errorString(), str(path))
         self._writer = QPdfWriter(self._file)
         self._writer.setTitle(title)
         self._writer.setCreator("TurnDesk")
-        self._writer.setResolution(_FINE)
-        size = QPageSize.PageSizeId.Letter if paper is Paper.LETTER else QPageSize.PageSizeId.A4
-        margins = QMarginsF(_MARGIN, _MARGIN, _MARGIN, _MARGIN)
+        self._writer.setResolution(_PDF_DPI)
+        size = QPageSize.PageSizeId.Letter if paper_size is PaperSize.LETTER else QPageSize.PageSizeId.A4
+        margins = QMarginsF(_MARGIN_MM, _MARGIN_MM, _MARGIN_MM, _MARGIN_MM)
         self._writer.setPageLayout(
             QPageLayout(
                 QPageSize(size), QPageLayout.Orientation.Portrait, margins, QPageLayout.Unit.Millimeter
             )
         )
         self._painter = QPainter(self._writer)
-        self._painter.scale(_FINE / _DPI, _FINE / _DPI)
+        self._painter.scale(_PDF_DPI / _DPI, _PDF_DPI / _DPI)
 
     def __enter__(self) -> Self:
         return self
@@ -78,19 +78,19 @@ class PdfPages:
         if kind is None:
             self.close()
         else:
-            self.give_up()
+            self.discard()
 
-    def add(self, html: str, foot: str) -> None:
+    def add_pages(self, html: str, footer: str) -> None:
         """Add ``html`` on new pages, with ``foot`` and a page number at the bottom of each page."""
-        text = _Text(html, self._writer.width() * _DPI / _FINE)
-        room = QSizeF(text.width, self._writer.height() * _DPI / _FINE - _FOOT)
+        text = _PdfText(html, self._writer.width() * _DPI / _PDF_DPI)
+        room = QSizeF(text.width, self._writer.height() * _DPI / _PDF_DPI - _FOOTER_PX)
         text.document.setPageSize(room)
         for page in range(text.document.pageCount()):
             if self._pages:
                 self._writer.newPage()
             self._pages += 1
             self._page(text.document, page, room)
-            self._number(room, foot)
+            self._number(room, footer)
 
     def _page(self, document: QTextDocument, page: int, room: QSizeF) -> None:
         painter = self._painter
@@ -100,8 +100,8 @@ class PdfPages:
         painter.restore()
 
     def _number(self, room: QSizeF, foot: str) -> None:
-        painter, row = self._painter, QRectF(0.0, room.height(), room.width(), _FOOT)
-        font = QFont(FAMILY)
+        painter, row = self._painter, QRectF(0.0, room.height(), room.width(), _FOOTER_PX)
+        font = QFont(FONT_FAMILY)
         font.setPixelSize(10)
         painter.setFont(font)
         below = Qt.AlignmentFlag.AlignBottom
@@ -116,16 +116,16 @@ class PdfPages:
         self._file.close()
         if not whole:
             raise OSError(0, why, str(self._path))
-        bytes_to_disk(self._path)
+        sync_file(self._path)
 
-    def give_up(self) -> None:
+    def discard(self) -> None:
         """Close the unfinished file, which will not be used."""
         if self._painter.isActive():
             self._painter.end()
         self._file.close()
 
 
-class _Text:
+class _PdfText:
     """HTML that is ready to be drawn. Its drawings are stored and drawn as vector graphics."""
 
     def __init__(self, html: str, width: float) -> None:
@@ -133,19 +133,19 @@ class _Text:
         self.document = QTextDocument()
         self.document.setUseDesignMetrics(True)
         self.document.setDocumentMargin(0.0)
-        font = QFont(FAMILY)
+        font = QFont(FONT_FAMILY)
         font.setPixelSize(12)
         self.document.setDefaultFont(font)
-        self.document.setDefaultStyleSheet(PAPER)
-        self._drawings = _Drawings(width, self.document)
+        self.document.setDefaultStyleSheet(PAPER_COLORS)
+        self._drawings = _SvgObjects(width, self.document)
         image = QTextFormat.ObjectTypes.ImageObject.value
         self.document.documentLayout().registerHandler(image, self._drawings)
-        for theirs, ours in _INSTEAD.items():
+        for theirs, ours in _TAG_REPLACEMENTS.items():
             html = html.replace(theirs, ours)
-        self.document.setHtml(_SVG.sub(self._drawings.keep, html))
+        self.document.setHtml(_SVG.sub(self._drawings.add_svg, html))
 
 
-class _Drawings(QPyTextObject):
+class _SvgObjects(QPyTextObject):
     """Draws the SVG drawings that replace images in the text."""
 
     def __init__(self, width: float, parent: QObject) -> None:
@@ -153,7 +153,7 @@ class _Drawings(QPyTextObject):
         self._width = width
         self._kept: list[tuple[QSizeF, str]] = []
 
-    def keep(self, found: re.Match[str]) -> str:
+    def add_svg(self, found: re.Match[str]) -> str:
         """Store a drawing of the HTML, and return the image tag that replaces it."""
         wide, high = float(found[1]), float(found[2])
         share = min(1.0, self._width / wide)
@@ -171,12 +171,12 @@ class _Drawings(QPyTextObject):
         rect = QRectF(rect)
         text = self._kept[self._number(form)][1]
         text = text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1)
-        text = text.replace("<title>", f"<style>{DRAWINGS}</style><title>", 1)
+        text = text.replace("<title>", f"<style>{DRAWING_STYLE}</style><title>", 1)
         painter.save()
         painter.setClipRect(rect, Qt.ClipOperation.IntersectClip)
         QSvgRenderer(QByteArray(text.encode())).render(painter, rect)
         painter.restore()
-        painter.setPen(QPen(QColor(_FRAME), 0.5))
+        painter.setPen(QPen(QColor(_FRAME_COLOR), 0.5))
         painter.drawRect(rect.adjusted(0.5, 0.5, -0.5, -0.5))
 
     @staticmethod
@@ -184,28 +184,28 @@ class _Drawings(QPyTextObject):
         return int(form.toImageFormat().name())
 
 
-def usual_paper() -> Paper:
+def find_default_paper() -> PaperSize:
     """Return Letter if the computer's locale uses inches, else A4."""
     system = QLocale.system().measurementSystem()
-    return Paper.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else Paper.A4
+    return PaperSize.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else PaperSize.A4
 
 
-def _application() -> None:
+def _make_application() -> None:
     """Create an application without a display if no application exists, because fonts need one."""
     if QGuiApplication.instance() is None:
-        _kept.append(QApplication(["turndesk", "-platform", "offscreen"]))
+        _application_ref.append(QApplication(["turndesk", "-platform", "offscreen"]))
     load_fonts()
 
 
-_kept: list[QGuiApplication] = []  # References that keep the applications alive.
+_application_ref: list[QGuiApplication] = []  # References that keep the applications alive.
 
 
 def main() -> int:
     """Run ``python -m app.screen.pdf_pages FILE TITLE PAPER < HTML`` as a separate process."""
     path, title, paper = sys.argv[1:]
     try:
-        with PdfPages(Path(path), title, Paper(paper)) as pages:
-            pages.add(sys.stdin.buffer.read().decode(), title)
+        with PdfWriter(Path(path), title, PaperSize(paper)) as pages:
+            pages.add_pages(sys.stdin.buffer.read().decode(), title)
     except OSError as error:
         sys.stderr.write(f"{error.strerror}\n")
         return 1

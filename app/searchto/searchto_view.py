@@ -12,37 +12,37 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.path.part_player import player_of
-from app.path.path_aspects import Tip, tip_of
+from app.path.part_player import make_part_player
+from app.path.path_aspects import TipPosition, find_tip_position
 from app.path.path_view import PathView
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad, draw_entry
-from app.screen.look import Look, Painter
-from app.screen.page_base import Host, KeyActions, ModelPage
-from app.screen.panel import Panel, Shown
-from app.screen.program_listing import Listing
-from app.screen.window_layout import FINGER
+from app.screen.entry_panel import NumberPad, draw_entry_text
+from app.screen.page_base import KeyActions, ModelPage, PageHost
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.program_listing import ProgramListing
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
+from app.searchto.restart_plan import RestartPlan, RetractPlan
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
-from app.searchto.searchto_plan import Plan, WayOut
 from app.searchto.searchto_state_view import (
-    FOLD,
+    FOLD_KEY,
     PASS_AFTER,
     PASS_BEFORE,
-    NearestGood,
-    StatePanel,
-    StateShown,
+    NearestValidLine,
+    RestartStatePanel,
+    StateContent,
 )
-from app.working_plane.plane_instant import at_line, plane_words
+from app.working_plane.plane_instant import describe_plane, make_line_instant
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
-    from app.working_plane.plane_scene import Scene
+    from app.path.path_picture import ProgramPicture
+    from app.working_plane.plane_scene import MillScene
 
 # --- line or text -------------------------------------------------------------------------------------
 
@@ -50,62 +50,66 @@ if TYPE_CHECKING:
 class SearchEntryPanel(Panel):
     """The question for a line or text, with the entered text."""
 
-    ground = "panel"
-    text = Shown("")
+    ground_color = "panel"
+    entry_text = RedrawingAttribute("")
 
-    def __init__(self, look: Look, press: Callable[[], None], parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, press: Callable[[], None], parent: QWidget) -> None:
         """Create the panel. ``press`` is called for a touch."""
-        super().__init__(look, parent)
+        super().__init__(theme, parent)
         self._press = press
 
-    def draw(self, painter: Painter) -> None:
-        self.place(self.area(), self._press)
-        u = self.look.u
-        room = self.area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
+    def draw(self, painter: ThemedPainter) -> None:
+        self.add_target(self.find_full_area(), self._press)
+        u = self.theme.u
+        room = self.find_full_area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
         question = tr("LINE OR TEXT?")
-        painter.write(QRectF(room.x(), room.y(), 14 * u, room.height()), question, 1.9, "text")
+        painter.draw_text_line(QRectF(room.x(), room.y(), 14 * u, room.height()), question, 1.9, "text")
         box = room.adjusted(14.5 * u, 0, 0, 0)
-        painter.box(box, "accent", 0.2, "ground")
-        draw_entry(painter, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.text)
+        painter.draw_box(box, "accent", 0.2, "ground")
+        draw_entry_text(painter, box.adjusted(0.8 * u, 0, -0.8 * u, 0), self.entry_text)
 
 
 # --- functions that start -----------------------------------------------------------------------------
 
 
-ROW = 2.7  # Units.
-ACROSS = 40  # Characters of one line of a warning.
+ROW_HEIGHT = 2.7  # Units.
+WARNING_LINE_CHARS = 40  # Characters of one line of a warning.
 
 
-class StartsPanel(Panel):
+class StartedFunctionsPanel(Panel):
     """The functions that will start.
 
-    ``choices`` are options with their keys. ``trouble`` is a warning, or the reason why the restart cannot
+    ``choices`` are options with their keys. ``error_text`` is a warning, or the reason why the restart cannot
     start.
     """
 
-    starts: Shown[tuple[str, ...]] = Shown(())
-    choices: Shown[tuple[str, ...]] = Shown(())
-    trouble = Shown("")
-    confirmed = Shown(False)
+    started_functions: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
+    option_texts: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
+    error_text = RedrawingAttribute("")
+    is_confirmed = RedrawingAttribute(False)
 
-    def show_starts(
-        self, starts: Sequence[str], choices: Sequence[str], trouble: str, confirmed: bool
+    def show_functions(
+        self, functions: Sequence[str], options: Sequence[str], error_text: str, is_confirmed: bool
     ) -> None:
         """Show these functions, options and warnings."""
-        self.starts, self.choices = tuple(starts), tuple(choices)
-        self.trouble, self.confirmed = trouble, confirmed
+        self.started_functions, self.option_texts = tuple(functions), tuple(options)
+        self.error_text, self.is_confirmed = error_text, is_confirmed
 
-    def draw(self, painter: Painter) -> None:
-        title = tr("CONFIRMED: READY FOR CYCLE START") if self.confirmed else tr("WILL START")
-        self.frame(painter, title, "lit" if self.confirmed else "frame", 0.3 if self.confirmed else 0.16)
-        u, room = self.look.u, self.inside()
-        lines = [(text, "text", True) for text in self.starts]
-        lines += [(text, "soft", False) for choice in self.choices for text in wrap(choice, ACROSS)]
-        lines += [(text, "alarm", True) for text in wrap(self.trouble, ACROSS)]
-        high = min(ROW * u, room.height() / max(1, len(lines)))
+    def draw(self, painter: ThemedPainter) -> None:
+        title = tr("CONFIRMED: READY FOR CYCLE START") if self.is_confirmed else tr("WILL START")
+        self.frame(
+            painter, title, "lit" if self.is_confirmed else "frame", 0.3 if self.is_confirmed else 0.16
+        )
+        u, room = self.theme.u, self.inside()
+        lines = [(text, "text", True) for text in self.started_functions]
+        lines += [
+            (text, "soft", False) for choice in self.option_texts for text in wrap(choice, WARNING_LINE_CHARS)
+        ]
+        lines += [(text, "alarm", True) for text in wrap(self.error_text, WARNING_LINE_CHARS)]
+        high = min(ROW_HEIGHT * u, room.height() / max(1, len(lines)))
         for number, (text, colour, bold) in enumerate(lines):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
-            painter.write(row, text, min(1.9, high / u * 0.75), colour, bold=bold)
+            painter.draw_text_line(row, text, min(1.9, high / u * 0.75), colour, bold=bold)
 
 
 LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # Fractions of the width; units of height.
@@ -114,7 +118,7 @@ LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # Fractions of the width; un
 class SearchtoPage(ModelPage):
     """The SEARCHTO page. Lines are chosen by arrow keys, numbers or texts."""
 
-    NAME = page_table.SEARCHTO
+    NAME = page_table.SEARCHTO_PAGE
     LABELS = (
         "MENU",
         "NEXT",
@@ -130,247 +134,264 @@ class SearchtoPage(ModelPage):
     STARTS = True
     model: SearchtoModel
 
-    def __init__(self, host: Host, model: SearchtoModel, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: SearchtoModel, parent: QWidget) -> None:
         super().__init__(host, parent)
         self.model = model
-        self.asked = SearchEntryPanel(self.look, self._turn_pad, self)
-        self.listing = Listing(self.look, self)
-        self.listing.touched = self._mark
-        self.state = StatePanel(self.look, host.press, self)
-        self.path = PathView(self.look, self, player=player_of(host.desk))
-        self.path.shows_whole_approach = True
-        self.starts = StartsPanel(self.look, self)
-        self.space = WorkingPlaneView(self.look, self)  # Replaces the path view on a mill.
-        self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
-        self.pad.hide()
-        self._loaded: Loaded | None = None
+        self.entry_panel = SearchEntryPanel(self.theme, self._turn_pad, self)
+        self.program_listing = ProgramListing(self.theme, self)
+        self.program_listing.on_line_touched = self._mark_line
+        self.state_panel = RestartStatePanel(self.theme, host.press_key, self)
+        self.path_view = PathView(self.theme, self, part_player=make_part_player(host.desk))
+        self.path_view.shows_whole_approach = True
+        self.functions_panel = StartedFunctionsPanel(self.theme, self)
+        self.plane_view = WorkingPlaneView(self.theme, self)  # Replaces the path view on a mill.
+        self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
+        self.number_pad.hide()
+        self._loaded: LoadedProgram | None = None
         self._whole = False  # Equal rows are shown, too.
         self._stood: tuple[object, int] = (None, 0)  # Path and block after which the part was last shown.
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the function keys that are disabled now."""
-        return self.model.barred_keys()
+        return self.model.disabled_keys()
 
     def key_actions(self) -> KeyActions:
         """Return the key actions of this page."""
         model = self.model
         return {
-            "F2": partial(model.find, 1),
-            "F3": partial(model.find, -1),
-            "F4": model.way_out,
-            "F5": model.turn_coolant,
-            "F6": model.search,
-            "F8": partial(model.nearest, -1),
-            "F9": partial(model.nearest, 1),
-            "F10": model.confirm,
-            FOLD: self._turn_fold,
-            PASS_BEFORE: partial(model.turn_pass, -1),
-            PASS_AFTER: partial(model.turn_pass, 1),
-            "Zoom in": partial(self._looked_at.zoom, 1),
-            "Zoom out": partial(self._looked_at.zoom, -1),
+            "F2": partial(model.find_text, 1),
+            "F3": partial(model.find_text, -1),
+            "F4": model.plan_retract,
+            "F5": model.toggle_coolant,
+            "F6": model.rebuild_selected,
+            "F8": partial(model.select_nearest_valid, -1),
+            "F9": partial(model.select_nearest_valid, 1),
+            "F10": model.confirm_plan,
+            FOLD_KEY: self._turn_fold,
+            PASS_BEFORE: partial(model.select_pass, -1),
+            PASS_AFTER: partial(model.select_pass, 1),
+            "Zoom in": partial(self._visible_view.zoom_view, 1),
+            "Zoom out": partial(self._visible_view.zoom_view, -1),
         }
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Arrow keys select a line, and other keys are text input."""
         if not self.model.has_keyboard:
             return False
-        steps = {"Up": -1, "Down": 1, "Page up": -self.listing.rows, "Page down": self.listing.rows}
+        steps = {
+            "Up": -1,
+            "Down": 1,
+            "Page up": -self.program_listing.rows,
+            "Page down": self.program_listing.rows,
+        }
         if key in steps:
-            self.model.move(steps[key])
+            self.model.move_cursor(steps[key])
             return True
         if key == "Tab":
             self._turn_fold()
             return True
         if key in {"Left", "Right"}:
-            self.model.turn_pass(-1 if key == "Left" else 1)
+            self.model.select_pass(-1 if key == "Left" else 1)
             return True
         if key == "Enter":
-            self.model.enter()
+            self.model.handle_enter()
             return True
-        return self.model.typed(key)
+        return self.model.handle_key(key)
 
-    def touched(self, key: str) -> None:
+    def handle_touched_key(self, key: str) -> None:
         """Handle a touch on the number pad. Enter and Esc also hide the pad, so that the state is visible."""
         if key in {"Enter", "Esc"}:
-            self.pad.hide()
+            self.number_pad.hide()
         if key != "Esc":
-            self.typed(key)
+            self.handle_key(key)
 
     def _turn_pad(self) -> None:
-        self.pad.setVisible(self.pad.isHidden())
-        self.pad.raise_()
+        self.number_pad.setVisible(self.number_pad.isHidden())
+        self.number_pad.raise_()
 
-    def _mark(self, line: int) -> None:
+    def _mark_line(self, line: int) -> None:
         """Select a touched line, or rebuild its state if the line is already selected."""
         if not self.model.has_keyboard:
             return
-        if line == self.model.cursor.line:
-            self.model.search()
+        if line == self.model.line_cursor.selected_line:
+            self.model.rebuild_selected()
         else:
-            self.model.move(line - self.model.cursor.line)
+            self.model.move_cursor(line - self.model.line_cursor.selected_line)
 
     def _turn_fold(self) -> None:
         self._whole = not self._whole
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether the entry accepts text, which is so except while the tool retracts."""
         return self.model.has_keyboard
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt of the model."""
-        return self.model.prompt(self.desk.snapshot(), self.desk.start_words)
+        return self.model.prompt_text(self.desk.read_snapshot(), self.desk.start_instruction)
 
-    def opens(self) -> bool:
+    def can_open(self) -> bool:
         """Return whether the page can be opened, which needs a proved program that is not running."""
-        return self.model.opens()
+        return self.model.can_open()
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Let Cycle Start run programs again, and let the page close."""
-        self.pad.hide()
-        self.model.leave()
+        self.number_pad.hide()
+        self.model.on_close()
         return True
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go one step back, or from the first step to the Automatic page."""
-        if not self.model.escape():
-            self.host.go(page_table.AUTOMATIC)
+        if not self.model.handle_escape():
+            self.host.open_page(page_table.AUTOMATIC)
         return True
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Redraw the path in the present colors."""
-        self.path.restart()
+        self.path_view.redraw()
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the line, its state and the path. After a restart has started, open the Automatic page."""
         model = self.model
-        model.look(snapshot, loaded)
-        if model.started:
-            self.host.go(page_table.AUTOMATIC)
+        model.update(snapshot, loaded)
+        if model.is_started:
+            self.host.open_page(page_table.AUTOMATIC)
             return
         if loaded is not self._loaded:
             self._loaded = loaded
-            self.listing.show_source(model.cursor.lines, {})
+            self.program_listing.show_source(model.line_cursor.lines, {})
             self._show_program(loaded)
-        self.asked.text = model.cursor.text
-        self.listing.show_run(model.cursor.line, "", "")
-        self.state.shown = self._shown()
+        self.entry_panel.entry_text = model.line_cursor.entry_text
+        self.program_listing.show_run(model.line_cursor.selected_line, "", "")
+        self.state_panel.content = self._shown()
         self._show_plan()
-        if self.space.scene is not None and loaded.picture is not None:
-            self._show_plane(self.space.scene, loaded.picture)
+        if self.plane_view.scene is not None and loaded.picture is not None:
+            self._show_plane(self.plane_view.scene, loaded.picture)
             return
         self._show_stock(loaded)
-        self.path.show_tip(self._tip(snapshot))
-        self.path.advance()
+        self.path_view.show_tip(self._find_tip(snapshot))
+        self.path_view.draw_slice()
 
-    def _show_program(self, loaded: Loaded) -> None:
+    def _show_program(self, loaded: LoadedProgram) -> None:
         """Show the path of the program, or on a mill the table and workpiece."""
         scene = loaded.picture.scene if loaded.picture is not None else None
-        self.space.show_scene(scene)
-        self.space.setVisible(scene is not None)
-        self.path.show_picture(loaded.picture if scene is None else None)
+        self.plane_view.show_scene(scene)
+        self.plane_view.setVisible(scene is not None)
+        self.path_view.show_picture(loaded.picture if scene is None else None)
 
-    def _show_plane(self, scene: Scene, picture: Picture) -> None:
+    def _show_plane(self, scene: MillScene, picture: ProgramPicture) -> None:
         """Show axes and plane at the beginning of the line, with the earlier blocks drawn as done."""
-        plan, line = self.model.plan, self.model.cursor.line
-        here = at_line(scene, line - 1)
-        axes, done = here.axes, picture.blocks_before(line)
+        plan, line = self.model.restart_plan, self.model.line_cursor.selected_line
+        here = make_line_instant(scene, line - 1)
+        axes, done = here.axis_positions, picture.count_blocks_before(line)
         if plan is not None:
-            axes, done = {**axes, **plan.axes}, plan.found.checkpoint.blocks
-        self.space.show_instant(replace(here, axes=axes, block=done), plane_words(here.swivel))
+            axes, done = {**axes, **plan.axis_positions}, plan.restart_point.checkpoint.blocks
+        self.plane_view.show_instant(
+            replace(here, axis_positions=axes, active_block=done), describe_plane(here.swivel)
+        )
 
     @property
-    def _looked_at(self) -> PathView | WorkingPlaneView:
+    def _visible_view(self) -> PathView | WorkingPlaneView:
         """The view that the zoom keys control."""
-        return self.path if self.space.scene is None else self.space
+        return self.path_view if self.plane_view.scene is None else self.plane_view
 
-    def _tip(self, snapshot: Snapshot) -> Tip:
+    def _find_tip(self, snapshot: Snapshot) -> TipPosition:
         """Return the tool tip. With a plan, this is the tip of the line's tool, where the path begins."""
-        shown = self.model.leaving or self.model.plan
-        legs = shown.legs if shown is not None else ()
-        return Tip(0, legs[0].z, legs[0].x) if legs else tip_of(snapshot)._replace(block=0)
+        shown = self.model.retract_plan or self.model.restart_plan
+        legs = shown.drawn_legs if shown is not None else ()
+        return TipPosition(0, legs[0].z, legs[0].x) if legs else find_tip_position(snapshot)._replace(block=0)
 
-    def _shown(self) -> StateShown:
-        model, line = self.model, self.model.cursor.line
-        answer, plan = model.answer, model.plan
+    def _shown(self) -> StateContent:
+        model, line = self.model, self.model.line_cursor.selected_line
+        answer, plan = model.search_refusal, model.restart_plan
         if answer is not None:
             title = tr(Message("CANNOT START FROM LINE {line}", line=answer.line))
-            near = (("F8", tr("PREVIOUS VALID"), answer.before), ("F9", tr("NEXT VALID"), answer.after))
-            return StateShown(title, (), answer.why, tuple(self._near(*each) for each in near))
+            near = (
+                ("F8", tr("PREVIOUS VALID"), answer.nearest_line_before),
+                ("F9", tr("NEXT VALID"), answer.nearest_line_after),
+            )
+            return StateContent(title, (), answer.why, tuple(self._near(*each) for each in near))
         if plan is not None:
             return self._state(plan)
-        if model.leaving is not None:
-            return StateShown(tr("RETRACT PATH"), (), model.leaving.trouble)
+        if model.retract_plan is not None:
+            return StateContent(tr("RETRACT PATH"), (), model.retract_plan.error_text)
         if model.stage is SearchtoStage.SEARCHING:
             words = tr(Message("SEARCHING UP TO LINE {line}", line=line))
-            return StateShown(join_messages("  ·  ", (words, str(model.finder.worker.reached))))
-        return StateShown(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
+            return StateContent(join_messages("  ·  ", (words, str(model.restart_finder.worker.progress))))
+        return StateContent(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
 
-    def _state(self, plan: Plan) -> StateShown:
-        title, visit = tr(Message("STATE AT LINE {line}", line=plan.found.line)), plan.found.visit
-        if visit.of < 2:
-            return StateShown(title, plan.rows, whole=self._whole)
-        words = tr(Message("REPETITION {number} OF {count}", number=visit.number, count=visit.of))
-        return StateShown(f"{title}, {words}", plan.rows, passes=words, whole=self._whole)
+    def _state(self, plan: RestartPlan) -> StateContent:
+        title, visit = (
+            tr(Message("STATE AT LINE {line}", line=plan.restart_point.line)),
+            plan.restart_point.visit,
+        )
+        if visit.visit_count < 2:
+            return StateContent(title, plan.state_rows, shows_all_rows=self._whole)
+        words = tr(
+            Message("REPETITION {number} OF {count}", number=visit.visit_number, count=visit.visit_count)
+        )
+        return StateContent(f"{title}, {words}", plan.state_rows, pass_text=words, shows_all_rows=self._whole)
 
-    def _near(self, key: str, label: str, line: int) -> NearestGood:
+    def _near(self, key: str, label: str, line: int) -> NearestValidLine:
         if not line:
-            return NearestGood(key, tr(Message("{which}: NONE", which=label)), 0, "")
+            return NearestValidLine(key, tr(Message("{which}: NONE", which=label)), 0, "")
         words = tr(Message("{which}: LINE {line}", which=label, line=line))
-        return NearestGood(key, words, line, self.model.cursor.lines[line - 1].strip())
+        return NearestValidLine(key, words, line, self.model.line_cursor.lines[line - 1].strip())
 
     def _show_plan(self) -> None:
-        model, plan = self.model, self.model.plan
-        if model.leaving is not None:
-            self._show_leaving(model.leaving)
+        model, plan = self.model, self.model.restart_plan
+        if model.retract_plan is not None:
+            self._show_leaving(model.retract_plan)
             return
         if plan is None:
-            self.path.show_approach(None)
-            self.starts.show_starts((), (), "", confirmed=False)
+            self.path_view.show_approach(None)
+            self.functions_panel.show_functions((), (), "", is_confirmed=False)
             return
-        self.path.show_approach(plan.legs)
+        self.path_view.show_approach(plan.drawn_legs)
         choices: list[str] = []
-        if plan.found.checkpoint.modal.coolant:
+        if plan.restart_point.checkpoint.modal.coolant:
             choices.append(
                 tr("COOLANT WILL START. F5: CHANGE")
-                if model.choices.coolant
+                if model.restart_choices.coolant
                 else tr("COOLANT WILL NOT START. F5: START COOLANT TOO")
             )
-        if plan.way:
-            choices.append(tr(Message("PATH: {legs}", legs=", ".join(plan.way))))
-        trouble = plan.trouble or plan.warning
-        starts = plan.starts or (tr("AXES ONLY"),)
-        self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
+        if plan.approach_texts:
+            choices.append(tr(Message("PATH: {legs}", legs=", ".join(plan.approach_texts))))
+        trouble = plan.error_text or plan.warning_text
+        starts = plan.started_functions or (tr("AXES ONLY"),)
+        self.functions_panel.show_functions(
+            starts, choices, trouble, is_confirmed=model.stage is SearchtoStage.READY
+        )
 
-    def _show_stock(self, loaded: Loaded) -> None:
+    def _show_stock(self, loaded: LoadedProgram) -> None:
         """Show the part as the earlier lines leave it, in the pass that was found."""
-        plan, picture, player = self.model.plan, loaded.picture, self.path.player
+        plan, picture, player = self.model.restart_plan, loaded.picture, self.path_view.part_player
         if picture is None or player is None:
             return
-        line = self.model.cursor.line
-        done = plan.found.checkpoint.blocks if plan is not None else picture.blocks_before(line)
+        line = self.model.line_cursor.selected_line
+        done = plan.restart_point.checkpoint.blocks if plan is not None else picture.count_blocks_before(line)
         if (picture, done) != self._stood:
             self._stood = picture, done
-            player.to_block(done)
+            player.seek_block(done)
 
-    def _show_leaving(self, leaving: WayOut) -> None:
-        self.path.show_approach(leaving.legs)
-        told = tr(Message("RETRACT FROM PART AT {feed}", feed=leaving.feed))
-        choices = () if leaving.trouble else (told, tr("H: FEED HOLD DURING RETRACT"))
+    def _show_leaving(self, leaving: RetractPlan) -> None:
+        self.path_view.show_approach(leaving.drawn_legs)
+        told = tr(Message("RETRACT FROM PART AT {feed}", feed=leaving.feed_text))
+        choices = () if leaving.error_text else (told, tr("H: FEED HOLD DURING RETRACT"))
         ready = self.model.stage is SearchtoStage.READY
-        only = () if leaving.trouble else (tr("AXES ONLY"),)
-        self.starts.show_starts(only, choices, leaving.trouble, confirmed=ready)
+        only = () if leaving.error_text else (tr("AXES ONLY"),)
+        self.functions_panel.show_functions(only, choices, leaving.error_text, is_confirmed=ready)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Lay out the program, the state, and the path above the functions that start."""
-        u = self.look.u
-        gap, asked, starts = max(4, round(0.7 * u)), max(FINGER, round(ASKED * u)), round(STARTS * u)
+        u = self.theme.u
+        gap, asked, starts = max(4, round(0.7 * u)), max(FINGERTIP_PX, round(ASKED * u)), round(STARTS * u)
         wide, high = self.width(), self.height()
         left, state = round(LIST * wide), round(STATE * wide)
         right = left + gap + state + gap
-        self.asked.setGeometry(0, 0, left, asked)
-        self.listing.setGeometry(0, asked + gap, left, high - asked - gap)
-        self.state.setGeometry(left + gap, 0, state, high)
-        self.pad.setGeometry(left + gap, 0, state, high)
-        for part in (self.path, self.space):
+        self.entry_panel.setGeometry(0, 0, left, asked)
+        self.program_listing.setGeometry(0, asked + gap, left, high - asked - gap)
+        self.state_panel.setGeometry(left + gap, 0, state, high)
+        self.number_pad.setGeometry(left + gap, 0, state, high)
+        for part in (self.path_view, self.plane_view):
             part.setGeometry(right, 0, wide - right, high - starts - gap)
-        self.starts.setGeometry(right, high - starts, wide - right, starts)
+        self.functions_panel.setGeometry(right, high - starts, wide - right, starts)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.json_key import keys
+from core.json_keys import declare_keys
 
-STATUS = keys(
+STATUS_KEYS = declare_keys(
     """
 machine | string | | Name of the machine.
 available | boolean | | Whether TurnDesk receives the state of the machine. If not, most values are null.
@@ -32,12 +32,12 @@ alarms[].remedy | string | | What the operator must do.
 alarms[].line | integer or null | | Line of the program.
 """
 )
-FILE = (
-    *keys(
+FILE_KEYS = (
+    *declare_keys(
         """
 updated | string | UTC | Time at which the file was written.
 since | string | UTC | Time at which `execution` last changed.
 """
     ),
-    *STATUS,
+    *STATUS_KEYS,
 )

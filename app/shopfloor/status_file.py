@@ -8,55 +8,61 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.desk.background_work import RepeatingThread
-from app.shopfloor.floor_reading import Reading, Value
+from app.shopfloor.machine_reading import MachineReading, ReadingValue
 from core.executor.snapshot import Alarm, InterruptedJob
-from core.file_placing import write_in_place
+from core.file_replacement import write_atomically
 
-NAME = "status.json"
-_LOOK = 1.0  # s
-_LOAD_STEP = 5  # %
+STATUS_FILE_NAME = "status.json"
+_UPDATE_INTERVAL_S = 1.0  # s
+_LOAD_STEP_PERCENT = 5  # %
 # checks without a change after which the file is written anyway, because an old file means that TurnDesk is
 # not running
-_AGAIN = 10
+_MAX_UNCHANGED_CHECKS = 10
 _log = logging.getLogger(__name__)
 
-Status = dict[str, object]
+StatusDocument = dict[str, object]
 
 
-def status_of(machine: str, reading: Reading) -> Status:
+def make_status(machine: str, reading: MachineReading) -> StatusDocument:
     """Return the status of the machine for the file: state, program, parts and alarms."""
     values = reading.values
     return {
         "machine": machine,
-        "available": reading.available,
+        "available": reading.is_available,
         "execution": values.get("execution"),
         "mode": values.get("mode"),
         "estop": values.get("estop"),
         "program": values.get("program"),
-        "parts": int(values["pcount"] or 0) if reading.available else None,
-        "spindle_load": _load(values.get("Sload")),
-        "interrupted": _interrupted(reading.interrupted),
+        "parts": int(values["pcount"] or 0) if reading.is_available else None,
+        "spindle_load": _round_load(values.get("Sload")),
+        "interrupted": _make_interrupted(reading.interrupted_job),
         "alarms": [
-            {"of": key, "level": level, "code": code, "text": text, **_entry(reading.alarm(code))}
+            {
+                "of": key,
+                "level": level,
+                "code": code,
+                "text": text,
+                **_make_alarm_entry(reading.find_alarm(code)),
+            }
             for key, active in reading.conditions.items()
             for level, code, text in active
         ],
     }
 
 
-def _load(load: Value) -> int | None:
+def _round_load(load: ReadingValue) -> int | None:
     """Return the load in % rounded to 5, to limit the number of writes."""
-    return round(load / _LOAD_STEP) * _LOAD_STEP if isinstance(load, float) else None
+    return round(load / _LOAD_STEP_PERCENT) * _LOAD_STEP_PERCENT if isinstance(load, float) else None
 
 
-def _interrupted(found: InterruptedJob | None) -> Status | None:
+def _make_interrupted(found: InterruptedJob | None) -> StatusDocument | None:
     """Return the interrupted job; ``at`` is UTC in ISO 8601 format."""
     if found is None:
         return None
     return {"line": found.line, "tool": found.tool, "part": found.part, "at": found.at}
 
 
-def _entry(alarm: Alarm | None) -> Status:
+def _make_alarm_entry(alarm: Alarm | None) -> StatusDocument:
     """Return number, cause and remedy of an alarm as shown on the screen."""
     if alarm is None:
         return {"number": None, "cause": "", "remedy": "", "line": None}
@@ -64,27 +70,27 @@ def _entry(alarm: Alarm | None) -> Status:
     return {"number": alarm.number, "cause": alarm.cause, "remedy": alarm.remedy, "line": line}
 
 
-class StatusFile:
-    """The status file, which is always replaced as a whole. ``utc`` returns the time as text."""
+class StatusFileWriter:
+    """The status file, which is always replaced as a whole. ``read_utc`` returns the time as text."""
 
-    def __init__(self, path: Path, utc: Callable[[], str]) -> None:
-        self._path, self._utc = path, utc
-        self._written: Status = {}
+    def __init__(self, path: Path, read_utc: Callable[[], str]) -> None:
+        self._path, self._utc = path, read_utc
+        self._written: StatusDocument = {}
         self._since = ""
         self._looks = 0
         self._failed = False
 
-    def show(self, status: Status) -> None:
+    def write_status(self, status: StatusDocument) -> None:
         """Write the status if it has changed or the file is too old. A failed write is tried again."""
         self._looks += 1
-        if status == self._written and self._looks < _AGAIN:
+        if status == self._written and self._looks < _MAX_UNCHANGED_CHECKS:
             return
         now = self._utc()
         if not self._since or status.get("execution") != self._written.get("execution"):
             self._since = now
         text = json.dumps({"updated": now, "since": self._since, **status}, indent=1) + "\n"
         try:
-            write_in_place(self._path, text.encode())
+            write_atomically(self._path, text.encode())
         except OSError as error:
             if not self._failed:
                 _log.warning("%s cannot be written: %s", self._path, error.strerror or error)
@@ -93,24 +99,29 @@ class StatusFile:
         self._written, self._looks, self._failed = status, 0, False
 
 
-class StatusKeeper(RepeatingThread):
+class StatusFileUpdater(RepeatingThread):
     """Thread that updates the status file once per second, so that a slow disk delays no other thread."""
 
-    def __init__(self, file: StatusFile, look: Callable[[], Status], gone: Status) -> None:
-        """Create the thread; ``gone`` is the status that is written last."""
-        super().__init__("status", self._show, _LOOK)
-        self._file, self._status, self._gone = file, look, gone
-        self._last: Status = {}
+    def __init__(
+        self,
+        status_file: StatusFileWriter,
+        action: Callable[[], StatusDocument],
+        final_status: StatusDocument,
+    ) -> None:
+        """Create the thread; ``final_status`` is the status that is written last."""
+        super().__init__("status", self._show, _UPDATE_INTERVAL_S)
+        self._file, self._status, self._gone = status_file, action, final_status
+        self._last: StatusDocument = {}
 
     def _show(self) -> None:
         self._last = self._status()
-        self._file.show(self._last)
+        self._file.write_status(self._last)
 
     def _repeat(self) -> None:
         try:
             super()._repeat()
             self._last = self._status()  # a job that is interrupted by closing remains interrupted
         finally:
-            if not self.closing:
+            if not self.is_closing:
                 _log.error("the status file is not kept any more: a mistake of the control", exc_info=True)
-            self._file.show({**self._gone, "interrupted": self._last.get("interrupted")})
+            self._file.write_status({**self._gone, "interrupted": self._last.get("interrupted")})

@@ -8,39 +8,39 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from app.desk.background_work import Latest
-from app.desk.daily_backup import ENDING
+from app.desk.background_work import LatestRequestWorker
+from app.desk.daily_backup import BACKUP_SUFFIX
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.persistence import Persistence
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.programs.removable_media import Stick, sticks
-from app.programs.whole_file import FileError
+from app.programs.atomic_files import FileOperationError
+from app.programs.removable_media import UsbStick, list_sticks
 from app.special.special_functions import SpecialFunction
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
-from core.file_placing import all_to_disk
+from core.file_replacement import sync_all_files
 from core.message import Message
-from core.store.backup import Verdict
+from core.store.backup import BackupVerdict
 
-_IN_TERMINAL = "Close TurnDesk, then run in a terminal: turndesk store restore FILE"
-BARRED = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
+_TERMINAL_HINT = "Close TurnDesk, then run in a terminal: turndesk store restore FILE"
+RESTORE_REFUSAL = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class BackupPlace:
     """Folder for backups, or one backup in a folder."""
 
     label: str
     path: Path
-    backup: bool = False
-    size: int = 0
-    at: str = ""
+    is_backup: bool = False
+    size_bytes: int = 0
+    time_text: str = ""
 
 
-class BackupAndRestore(SpecialFunction):
+class BackupFunction(SpecialFunction):
     """Special function for backups: Enter on a folder makes a backup, and Enter on a backup restores it."""
 
     name = "BACKUP AND RESTORE"
@@ -50,91 +50,100 @@ class BackupAndRestore(SpecialFunction):
         self,
         desk: Desk,
         persistence: Persistence,
-        worker: Latest,
+        worker: LatestRequestWorker,
         folder: Path,
-        plugged: Callable[[], Sequence[Stick]] = sticks,
-        daily: Path | None = None,
+        list_media: Callable[[], Sequence[UsbStick]] = list_sticks,
+        daily_folder: Path | None = None,
     ) -> None:
         """Create the function.
 
         ``daily`` is the folder of daily backups if it differs from ``folder``.
         """
         super().__init__(desk)
-        self.persistence, self.worker, self.folder, self.plugged = persistence, worker, folder, plugged
-        self.daily = daily
-        self.places: tuple[Place, ...] = ()
-        self.verdicts: dict[Place, Verdict] = {}
-        self.unchecked = ""  # reason why backups cannot be checked: the present data is unreadable
-        self.busy = ""
-        self.restored: Callable[[], None] = lambda: None
+        self.persistence, self.worker, self.backup_folder, self.list_media = (
+            persistence,
+            worker,
+            folder,
+            list_media,
+        )
+        self.daily_folder = daily_folder
+        self.places: tuple[BackupPlace, ...] = ()
+        self.verdicts: dict[BackupPlace, BackupVerdict] = {}
+        self.check_error = ""  # reason why backups cannot be checked: the present data is unreadable
+        self.task_text = ""
+        self.on_restored: Callable[[], None] = lambda: None
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of listed folders and backups."""
         return len(self.places)
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """List the folders and backups."""
-        self.look()
+        self.reload_places()
 
-    def look(self) -> None:
+    def reload_places(self) -> None:
         """List folders and backups again. The result arrives in a later frame."""
-        self.worker.queue(lambda: _places(self.folder, self.plugged(), self.daily), self._found, self._failed)
+        self.worker.enqueue(
+            lambda: _list_places(self.backup_folder, self.list_media(), self.daily_folder),
+            self._found,
+            self._failed,
+        )
 
-    def _found(self, places: tuple[Place, ...]) -> None:
+    def _found(self, places: tuple[BackupPlace, ...]) -> None:
         self.places = places
         self.marked = min(self.marked, max(0, len(places) - 1))
-        self.verdicts, self.unchecked = {}, ""
+        self.verdicts, self.check_error = {}, ""
         for place in places:
-            if place.backup:
-                self.worker.queue(partial(self._judged, place), self._judge, self._not_judged)
+            if place.is_backup:
+                self.worker.enqueue(partial(self._check_place, place), self._judge, self._not_judged)
 
-    def _judged(self, place: Place) -> tuple[Place, Verdict]:
+    def _check_place(self, place: BackupPlace) -> tuple[BackupPlace, BackupVerdict]:
         """Check a backup on the worker. Raises StoreError."""
-        return place, self.persistence.judge(place.path)
+        return place, self.persistence.check_backup(place.path)
 
-    def _judge(self, found: tuple[Place, Verdict]) -> None:
+    def _judge(self, found: tuple[BackupPlace, BackupVerdict]) -> None:
         place, verdict = found
         if place in self.places:
             self.verdicts[place] = verdict
 
     def _not_judged(self, why: str) -> None:
-        self.unchecked = why
+        self.check_error = why
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of folders, each followed by its backups."""
         rows = tuple(
-            Row(
+            TableRow(
                 (
-                    place.label if not place.backup else f"     {place.label}",
+                    place.label if not place.is_backup else f"     {place.label}",
                     self._does(place),
-                    Message("{size} KB", size=f"{place.size / 1024:.0f}") if place.backup else "",
-                    place.at,
+                    Message("{size} KB", size=f"{place.size_bytes / 1024:.0f}") if place.is_backup else "",
+                    place.time_text,
                 ),
-                None if place.backup else True,
+                None if place.is_backup else True,
                 Tone.WAIT,
             )
             for place in self.places
         )
-        return Sheet(
+        return TableContent(
             "BACKUP AND RESTORE",
             ("PLACE", "ACTION ON ENTER", "SIZE", "WHEN"),
             (0.36, 0.29, 0.13, 0.22),
             rows,
             self.marked,
-            notes=(self.busy,) if self.busy else self._notes(),
-            raw=frozenset({0, 2, 3}),
+            notes=(self.task_text,) if self.task_text else self._make_notes(),
+            raw_columns=frozenset({0, 2, 3}),
         )
 
-    def _does(self, place: Place) -> str:
-        if not place.backup:
+    def _does(self, place: BackupPlace) -> str:
+        if not place.is_backup:
             return "BACK UP HERE"
         verdict = self.verdicts.get(place)
         if verdict is None:
-            return "NOT CHECKED" if self.unchecked else "CHECKING …"
-        return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.problem else "RESTORE (BACKUP IS INTACT)"
+            return "NOT CHECKED" if self.check_error else "CHECKING …"
+        return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.first_problem else "RESTORE (BACKUP IS INTACT)"
 
-    def _notes(self) -> tuple[str, ...]:
+    def _make_notes(self) -> tuple[str, ...]:
         """Return the notes about the selected backup: its damage, or the effect of a restore."""
         kept = (
             "When a backup is restored, a copy of the replaced data is saved in the same folder "
@@ -143,124 +152,130 @@ class BackupAndRestore(SpecialFunction):
         place = self.places[self.marked] if self.places else None
         verdict = self.verdicts.get(place) if place is not None else None
         if verdict is None:
-            return (self.unchecked, tr(_IN_TERMINAL)) if self.unchecked else (kept,)
-        if verdict.problem:
-            return (verdict.problem, kept)
-        what = _differences(verdict)
+            return (self.check_error, tr(_TERMINAL_HINT)) if self.check_error else (kept,)
+        if verdict.first_problem:
+            return (verdict.first_problem, kept)
+        what = _describe_differences(verdict)
         differs = Message("Differences from the current data: {what}.", what=what)
         return (tr(differs if what else "The backup and the current data are the same."), kept)
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return F4, which looks for media again."""
-        return {"F4": Key("REFRESH", self.look)}
+        return {"F4": FunctionKey("REFRESH", self.reload_places)}
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Make or restore the selected backup."""
-        if self.busy:
+        if self.task_text:
             self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
         elif self.places:
             place = self.places[self.marked]
-            (self._restore if place.backup else self._backup)(place)
+            (self._restore if place.is_backup else self._backup)(place)
         return True
 
-    def _backup(self, place: Place) -> None:
-        if self.desk.refused(Act.BACKUPS):
+    def _backup(self, place: BackupPlace) -> None:
+        if self.desk.is_refused(ProtectedChange.BACKUPS):
             return
-        name = f"{datetime.now().strftime('%Y-%m-%d-%H%M%S')}{ENDING}"
+        name = f"{datetime.now().strftime('%Y-%m-%d-%H%M%S')}{BACKUP_SUFFIX}"
         target = place.path / name
-        self.busy = "Backing up …"
-        self.desk.clear()
+        self.task_text = "Backing up …"
+        self.desk.clear_prompt_line()
 
         def work() -> str:
             try:
                 place.path.mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise FileError(
+                raise FileOperationError(
                     Message("{target} CANNOT BE WRITTEN: {cause}", target=place.path, cause=error.strerror)
                 ) from error
             self.persistence.backup(target)
-            all_to_disk()
+            sync_all_files()
             return name
 
-        self.worker.queue(work, partial(self._backed_up, place), self._failed)
+        self.worker.enqueue(work, partial(self._backed_up, place), self._failed)
 
-    def _backed_up(self, place: Place, name: str) -> None:
-        self.busy = ""
-        own = place.path in {self.folder, self.daily}
+    def _backed_up(self, place: BackupPlace, name: str) -> None:
+        self.task_text = ""
+        own = place.path in {self.backup_folder, self.daily_folder}
         done = (
             "BACKUP {name} IS COMPLETE" if own else "BACKUP {name} IS COMPLETE. YOU CAN REMOVE THE USB STICK"
         )
-        self.desk.done(tr(Message(done, name=name)))
-        self.look()
+        self.desk.show_success(tr(Message(done, name=name)))
+        self.reload_places()
 
-    def _restore(self, place: Place) -> None:
-        if self.unchecked:
-            self.desk.refuse(tr(_IN_TERMINAL))
+    def _restore(self, place: BackupPlace) -> None:
+        if self.check_error:
+            self.desk.show_refusal(tr(_TERMINAL_HINT))
             return
-        if self.desk.refused(Act.RESTORE):
+        if self.desk.is_refused(ProtectedChange.RESTORE):
             return
         verdict = self.verdicts.get(place)
-        if verdict is None or verdict.problem:
-            why = verdict.problem if verdict is not None else tr("THE BACKUP IS STILL BEING CHECKED: WAIT")
-            self.desk.refuse(why)
+        if verdict is None or verdict.first_problem:
+            why = (
+                verdict.first_problem
+                if verdict is not None
+                else tr("THE BACKUP IS STILL BEING CHECKED: WAIT")
+            )
+            self.desk.show_refusal(why)
             return
-        if self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say(BARRED)
+        if self.desk.read_snapshot().state in ACTIVE_STATES:
+            self.desk.say(RESTORE_REFUSAL)
             return
         asked = tr("Y: RESTORE {name} OVER ALL CURRENT DATA (DIFFERENCES: {what})   N: CANCEL")
-        what = _differences(verdict) or tr("NONE")
-        self.desk.ask(tr(Message(asked, name=place.label, what=what)), lambda: self._restore_now(place))
+        what = _describe_differences(verdict) or tr("NONE")
+        self.desk.ask_operator(
+            tr(Message(asked, name=place.label, what=what)), lambda: self._restore_now(place)
+        )
 
-    def _restore_now(self, place: Place) -> None:
-        if self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say(BARRED)
+    def _restore_now(self, place: BackupPlace) -> None:
+        if self.desk.read_snapshot().state in ACTIVE_STATES:
+            self.desk.say(RESTORE_REFUSAL)
             return
-        self.busy = "Restoring …"
-        self.desk.storage.begin_restore()
-        self.worker.queue(lambda: self.persistence.restore(place.path), self._done, self._failed)
+        self.task_text = "Restoring …"
+        self.desk.storage_state.begin_restore()
+        self.worker.enqueue(lambda: self.persistence.restore(place.path), self._done, self._failed)
 
     def _done(self, kept: Path | None) -> None:
-        self.busy = ""
-        self.desk.storage.end_restore()
+        self.task_text = ""
+        self.desk.storage_state.end_restore()
         where = kept.name if kept else "—"
-        self.persistence.note_change(
+        self.persistence.log_change(
             Message("restored; previous data saved as {place}", place=where)
         )  # The signed-in user is still known.
-        self.restored()
+        self.on_restored()
         said = tr(Message("RESTORED. PREVIOUS DATA SAVED AS {name}", name=where))
-        self.desk.done(said)
-        self.look()
+        self.desk.show_success(said)
+        self.reload_places()
 
     def _failed(self, why: str) -> None:
-        self.busy = ""
-        self.desk.storage.end_restore()
-        self.desk.refuse(why)
+        self.task_text = ""
+        self.desk.storage_state.end_restore()
+        self.desk.show_refusal(why)
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt about Enter."""
         return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
-def _differences(verdict: Verdict) -> str:
+def _describe_differences(verdict: BackupVerdict) -> str:
     """Return the number of rows per table that a restore would change, as text; empty for no change."""
-    told = [f"{tr(name)} {count}" for name, count in verdict.differs]
-    if verdict.older:
+    told = [f"{tr(name)} {count}" for name, count in verdict.difference_counts]
+    if verdict.is_older:
         told.append(tr("other data was not compared because the backup is from an older version"))
     return ", ".join(told)
 
 
-def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:
+def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupPlace, ...]:
     """Return the control's folder and the media, each followed by its backups, newest first."""
-    found: list[Place] = []
+    found: list[BackupPlace] = []
     kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY BACKUPS"), daily)] if daily is not None else [])]
-    for label, path in (*kept, *((stick.label, stick.path) for stick in plugged)):
-        found.append(Place(label, path))
-        backups = sorted(path.glob(f"*{ENDING}"), key=lambda file: file.name, reverse=True)
+    for label, path in (*kept, *((stick.label, stick.path) for stick in media)):
+        found.append(BackupPlace(label, path))
+        backups = sorted(path.glob(f"*{BACKUP_SUFFIX}"), key=lambda file: file.name, reverse=True)
         found += [_backup_of(file) for file in backups if not file.name.startswith(".")]
     return tuple(found)
 
 
-def _backup_of(file: Path) -> Place:
+def _backup_of(file: Path) -> BackupPlace:
     status = file.stat()
     at = datetime.fromtimestamp(status.st_mtime).strftime("%Y-%m-%d %H:%M")
-    return Place(file.name.removesuffix(ENDING), file, True, status.st_size, at)
+    return BackupPlace(file.name.removesuffix(BACKUP_SUFFIX), file, True, status.st_size, at)

@@ -9,37 +9,37 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from app.desk.desk import Desk
-from app.desk.late_presses import Starting
-from app.desk.pages.sheet import Key, Row, Sheet, following
+from app.desk.late_presses import StartingAction
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following
 from app.desk.status import formats
 from app.desk.status.machine_status import Tone
-from app.desk.status.readouts import UNKNOWN, Lamp, drives_lamp, lamps_of
+from app.desk.status.readouts import UNKNOWN_VALUE, Lamp, make_drives_lamp, make_lamps
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.commands import ForceOutput
-from core.executor.snapshot import Alarm, Snapshot, State
+from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
-from core.ports import Unknown
+from core.ports import UnknownPart
 
-NOT_NOW = "SWITCH OUTPUTS ONLY WHEN NO PROGRAM RUNS AND NOTHING MOVES"
-AT_REST = frozenset({State.IDLE, State.DISABLED})
+SWITCH_REFUSAL = "SWITCH OUTPUTS ONLY WHEN NO PROGRAM RUNS AND NOTHING MOVES"
+REST_STATES = frozenset({MachineState.IDLE, MachineState.DISABLED})
 # Users of an input: OmniTurn codes and functions of the control.
-_ASKED_IN_PROGRAMS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
-_ASKED_BY = {
+_PROGRAM_INPUT_USERS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
+_INPUT_USERS = {
     "estop": "E-STOP",
     "start": "CYCLE START",
     "hold": "FEED HOLD",
     "guard": "GUARD",
     "collet_closed": "COLLET",
 }
-OF_STATION = frozenset({"estop", "start", "hold", "collet_closed"})  # not switched on this page
+STATION_SIGNALS = frozenset({"estop", "start", "hold", "collet_closed"})  # not switched on this page
 _OWN_CODES = {"coolant": ("M8", "M9")}
 _OWN_CODES_OF_OMNITURN = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
 
 
-class Kind(StrEnum):
+class SignalListKind(StrEnum):
     """List of signals."""
 
     OUTPUTS = "OUTPUTS"
@@ -47,7 +47,7 @@ class Kind(StrEnum):
     LAMPS = "MACHINE LAMPS"
 
 
-class InputsOutputs(SpecialFunction):
+class SignalsFunction(SpecialFunction):
     """Special function for signals: F4 selects the list, and Enter switches an output after confirmation."""
 
     name = "INPUTS AND OUTPUTS"
@@ -56,85 +56,105 @@ class InputsOutputs(SpecialFunction):
     def __init__(self, desk: Desk, machine: Machine) -> None:
         super().__init__(desk)
         self.machine = machine
-        self.kind = Kind.OUTPUTS
-        self._codes = _codes(machine)
+        self.list_kind = SignalListKind.OUTPUTS
+        self._codes = _map_codes(machine)
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of rows of the displayed list."""
-        if self.kind is Kind.OUTPUTS:
+        if self.list_kind is SignalListKind.OUTPUTS:
             return len(self.machine.outputs)
-        return len(self.machine.inputs) if self.kind is Kind.INPUTS else 0
+        return len(self.machine.inputs) if self.list_kind is SignalListKind.INPUTS else 0
 
     @property
-    def _simulated(self) -> bool:
+    def _is_simulated(self) -> bool:
         """Whether inputs can be switched, as on a simulated machine."""
-        return self.desk.control.set_input is not None
+        return self.desk.desk_control.set_input is not None
 
-    def sheet(self, snapshot: Snapshot) -> Sheet:
+    def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table of the list, with all states from one snapshot."""
-        if self.kind is Kind.LAMPS:
+        if self.list_kind is SignalListKind.LAMPS:
             return self._lamps(snapshot)
-        outputs = self.kind is Kind.OUTPUTS
+        outputs = self.list_kind is SignalListKind.OUTPUTS
         on = snapshot.outputs if outputs else snapshot.inputs
-        known = (Unknown.OUTPUTS if outputs else Unknown.INPUTS) not in snapshot.unknown
+        known = (UnknownPart.OUTPUTS if outputs else UnknownPart.INPUTS) not in snapshot.unknown
         models = self.machine.outputs if outputs else self.machine.inputs
         rows = tuple(
-            Row(
-                (name, model.terminal, _state(name in on) if known else UNKNOWN, self._used(name, outputs)),
+            TableRow(
+                (
+                    name,
+                    model.terminal,
+                    _state(name in on) if known else UNKNOWN_VALUE,
+                    self._used(name, outputs),
+                ),
                 name in on and known,
                 Tone.RUN if name in on else Tone.OFF,
             )
             for name, model in models.items()
         )
         heads = ("NAME", "TERMINAL", "STATE", "SWITCHED BY" if outputs else "READ BY")
-        return Sheet(self.kind.value, heads, (0.34, 0.2, 0.16, 0.3), rows, self.marked, raw=frozenset({0, 1}))
+        return TableContent(
+            self.list_kind.value,
+            heads,
+            (0.34, 0.2, 0.16, 0.3),
+            rows,
+            self.marked,
+            raw_columns=frozenset({0, 1}),
+        )
 
-    def _lamps(self, snapshot: Snapshot) -> Sheet:
+    def _lamps(self, snapshot: Snapshot) -> TableContent:
         lamps = (
-            *lamps_of(snapshot, table=self.machine.table_turns),
-            drives_lamp(snapshot),
-            Lamp("ALARM", bool(snapshot.alarms), warn=True),
-            Lamp("E-STOP", snapshot.state is State.ESTOP, warn=True),
+            *make_lamps(snapshot, is_table_rotary=self.machine.has_rotary_table),
+            make_drives_lamp(snapshot),
+            Lamp("ALARM", bool(snapshot.alarms), is_warning=True),
+            Lamp("E-STOP", snapshot.state is MachineState.ESTOP, is_warning=True),
             Lamp("AXES HOMED", all(snapshot.homed)),
         )
         rows = tuple(
-            Row((lamp.word, _state(lamp.lit)), lamp.lit, Tone.PAUSE if lamp.warn else Tone.RUN)
+            TableRow(
+                (lamp.label, _state(lamp.is_lit)), lamp.is_lit, Tone.PAUSE if lamp.is_warning else Tone.RUN
+            )
             for lamp in lamps
         )
-        return Sheet(self.kind.value, ("LAMP", "STATE"), (0.6, 0.4), rows)
+        return TableContent(self.list_kind.value, ("LAMP", "STATE"), (0.6, 0.4), rows)
 
     def _used(self, name: str, output: bool) -> str:
         if output:
-            return tr("CONTROL (AUTOMATIC)") if name in self.machine.lamps else self._codes.get(name, "")
+            return (
+                tr("CONTROL (AUTOMATIC)") if name in self.machine.lamp_outputs else self._codes.get(name, "")
+            )
         if name == "guard" and not self.machine.interlocks.guard_stops:
             # The guard stops nothing on this machine; its state is only reported to the shop floor.
             return ""
-        if name in _ASKED_BY or self.machine.language != "omniturn":
-            return _ASKED_BY.get(name, "")
-        return _ASKED_IN_PROGRAMS.get(name, f"M97I{name}" if name.isdigit() else "")
+        if name in _INPUT_USERS or self.machine.language != "omniturn":
+            return _INPUT_USERS.get(name, "")
+        return _PROGRAM_INPUT_USERS.get(name, f"M97I{name}" if name.isdigit() else "")
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return F4, which shows the next list."""
-        labels = {Kind.OUTPUTS: "OUTPUTS", Kind.INPUTS: "INPUTS", Kind.LAMPS: "LAMPS"}
-        return {"F4": Key(labels[following(Kind, self.kind)], self._go_on)}
+        labels = {
+            SignalListKind.OUTPUTS: "OUTPUTS",
+            SignalListKind.INPUTS: "INPUTS",
+            SignalListKind.LAMPS: "LAMPS",
+        }
+        return {"F4": FunctionKey(labels[following(SignalListKind, self.list_kind)], self._go_on)}
 
     def _go_on(self) -> None:
-        self.desk.clear()
-        self.kind, self.marked = following(Kind, self.kind), 0
+        self.desk.clear_prompt_line()
+        self.list_kind, self.marked = following(SignalListKind, self.list_kind), 0
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Switch the selected output, or the selected input of a simulated machine."""
-        if self.kind is Kind.INPUTS and self._simulated:
-            self._switch_input()
+        if self.list_kind is SignalListKind.INPUTS and self._is_simulated:
+            self._toggle_input()
         else:
             self._switch()
         return True
 
-    def _switch_input(self) -> None:
+    def _toggle_input(self) -> None:
         """Switch a simulated input at any time, including while a program waits for it."""
         name = tuple(self.machine.inputs)[self.marked]
-        if name in OF_STATION:
+        if name in STATION_SIGNALS:
             self.desk.say(
                 tr(
                     Message(
@@ -144,33 +164,33 @@ class InputsOutputs(SpecialFunction):
                 )
             )
             return
-        if self.desk.refused(Act.INPUTS):
+        if self.desk.is_refused(ProtectedChange.INPUTS):
             return
-        on = name not in self.desk.snapshot().inputs
-        assert self.desk.control.set_input is not None
-        if self.desk.window.late.refuses(Starting.INPUT):
+        on = name not in self.desk.read_snapshot().inputs
+        assert self.desk.desk_control.set_input is not None
+        if self.desk.window_state.late_presses.refuse_late_press(StartingAction.INPUT):
             return
-        self.desk.control.set_input(name, on)
-        self.desk.access.persistence.note_change(
+        self.desk.desk_control.set_input(name, on)
+        self.desk.user_access.persistence.log_change(
             Message("simulated input {name}: {ending}", name=name, ending="on" if on else "off")
         )
         words = tr("SIMULATED INPUT {name} IS ON") if on else tr("SIMULATED INPUT {name} IS OFF")
-        self.desk.done(tr(Message(words, name=name)))
+        self.desk.show_success(tr(Message(words, name=name)))
 
     def _switch(self) -> None:
-        if self.kind is not Kind.OUTPUTS:
+        if self.list_kind is not SignalListKind.OUTPUTS:
             self.desk.say("ONLY OUTPUTS CAN BE SWITCHED. F4: SHOW OUTPUTS")
             return
         name = tuple(self.machine.outputs)[self.marked]
-        snapshot = self.desk.snapshot()
-        if snapshot.state not in AT_REST:
-            self.desk.say(NOT_NOW)
+        snapshot = self.desk.read_snapshot()
+        if snapshot.state not in REST_STATES:
+            self.desk.say(SWITCH_REFUSAL)
             return
-        if name in self.machine.lamps:
+        if name in self.machine.lamp_outputs:
             self.desk.post(ForceOutput(name, True))
-            self.desk.done("LAMP TEST: ALL TOWER LAMPS ARE ON FOR 2 SECONDS")
+            self.desk.show_success("LAMP TEST: ALL TOWER LAMPS ARE ON FOR 2 SECONDS")
             return
-        if self.desk.refused(Act.OUTPUTS):
+        if self.desk.is_refused(ProtectedChange.OUTPUTS):
             return
         on = name not in snapshot.outputs
         asked = (
@@ -178,26 +198,28 @@ class InputsOutputs(SpecialFunction):
             if on
             else tr("PRESS Y TO SWITCH {name} OFF, N TO LEAVE IT ON")
         )
-        self.desk.ask(tr(Message(asked, name=name)), lambda: self._force(name, on))
+        self.desk.ask_operator(tr(Message(asked, name=name)), lambda: self._force(name, on))
 
     def _force(self, name: str, on: bool) -> None:
-        if not self.desk.refused(Act.OUTPUTS):  # The access level may have expired in the meantime.
+        if not self.desk.is_refused(
+            ProtectedChange.OUTPUTS
+        ):  # The access level may have expired in the meantime.
             self.desk.post(ForceOutput(name, on))
-            self.desk.access.persistence.note_change(
+            self.desk.user_access.persistence.log_change(
                 Message(
                     "output {name} switched on by hand" if on else "output {name} switched off by hand",
                     name=name,
                 )
             )
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt about Enter."""
-        if self.kind is Kind.INPUTS and self._simulated:
+        if self.list_kind is SignalListKind.INPUTS and self._is_simulated:
             return tr("ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST")
-        if self.kind is not Kind.OUTPUTS:
+        if self.list_kind is not SignalListKind.OUTPUTS:
             return "F4: NEXT LIST   ESC: BACK TO THE LIST OF FUNCTIONS"
-        if self.desk.snapshot().state not in AT_REST:
-            return NOT_NOW
+        if self.desk.read_snapshot().state not in REST_STATES:
+            return SWITCH_REFUSAL
         return "CHECK THE MACHINE FIRST   ENTER OR TAP: SWITCH THE OUTPUT"
 
 
@@ -205,7 +227,7 @@ def _state(on: bool) -> str:
     return "ON" if on else "OFF"
 
 
-def _codes(machine: Machine) -> dict[str, str]:
+def _map_codes(machine: Machine) -> dict[str, str]:
     """Return the M codes of each output, on before off, in the notation of the machine's language."""
     omniturn = machine.language == "omniturn"
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
@@ -216,13 +238,13 @@ def _codes(machine: Machine) -> dict[str, str]:
     return {name: " ".join(codes) for name, codes in found.items()}
 
 
-OF_DRIVES = frozenset({"axis", "following", "in-position", "driver"})
-HOW = {"lathe": "POSITIONS FROM HOME, X AS A RADIUS", "mill": "FROM HOME"}
-AXES = frozenset("XYZABC")
-OF_SPINDLE = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", "thread-lost"})
+DRIVE_ALARMS = frozenset({"axis", "following", "in-position", "driver"})
+POSITION_NOTES = {"lathe": "POSITIONS FROM HOME, X AS A RADIUS", "mill": "FROM HOME"}
+AXIS_LETTERS = frozenset("XYZABC")
+SPINDLE_ALARMS = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", "thread-lost"})
 
 
-class DriveStatus(SpecialFunction):
+class DriveStatusFunction(SpecialFunction):
     """Special function for the drives, in machine coordinates from home with X as a radius."""
 
     name = "DRIVE STATUS"
@@ -232,15 +254,17 @@ class DriveStatus(SpecialFunction):
         super().__init__(desk)
         self.machine = machine
 
-    def sheet(self, snapshot: Snapshot) -> Sheet:
+    def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table with one row per axis and one for the spindle."""
-        metric = self.desk.settings.units.metric(snapshot.modal.metric)
+        metric = self.desk.settings_store.display_units.metric(snapshot.modal.metric)
         on = snapshot.powered
         rows = [self._axis(snapshot, number, metric, on) for number in range(len(snapshot.axes))]
         unit = "MM" if metric else "INCH"
-        largest = formats.length(snapshot.max_following_error, metric)
-        return Sheet(
-            Message("DRIVE STATUS  ·  {unit}  ·  {method}", unit=unit, method=HOW[self.machine.kind]),
+        largest = formats.format_length(snapshot.max_following_error, metric)
+        return TableContent(
+            Message(
+                "DRIVE STATUS  ·  {unit}  ·  {method}", unit=unit, method=POSITION_NOTES[self.machine.kind]
+            ),
             ("AXIS", "POWER", "HOME", "DEMAND", "ACTUAL", "FOLLOWING ERROR", "ALLOWED", "FAULT"),
             (0.08, 0.1, 0.12, 0.16, 0.16, 0.15, 0.13, 0.1),
             (*rows, self._spindle(snapshot)),
@@ -248,55 +272,55 @@ class DriveStatus(SpecialFunction):
                 Message("Largest following error since startup: {largest}", largest=largest),
                 Message("The setpoint queue ran low {underruns} times", underruns=snapshot.underruns),
             ),
-            figures=frozenset({3, 4, 5, 6}),
+            number_columns=frozenset({3, 4, 5, 6}),
         )
 
-    def _axis(self, snapshot: Snapshot, number: int, metric: bool, on: bool) -> Row:
-        axis = self.machine.axis(snapshot.axes[number])
+    def _axis(self, snapshot: Snapshot, number: int, metric: bool, on: bool) -> TableRow:
+        axis = self.machine.find_axis(snapshot.axes[number])
         values = (
             snapshot.demand[number],
             snapshot.actual[number],
             snapshot.following_error[number],
             axis.following_window,
         )
-        write = formats.angle if axis.rotary else lambda value: formats.length(value, metric)
-        fault = _fault(snapshot.alarms, OF_DRIVES, axis)
+        write = formats.format_angle if axis.rotary else lambda value: formats.format_length(value, metric)
+        fault = _find_fault(snapshot.alarms, DRIVE_ALARMS, axis)
         home = "HOMED" if snapshot.homed[number] else "NOT HOMED"
         power = "ON" if on else "OFF"
-        known = Unknown.SLIDES not in snapshot.unknown
-        figures = [write(value) if known else f"{write(value)} {UNKNOWN}" for value in values[:3]]
-        cells = (axis.name, power if known else UNKNOWN, home, *figures, write(values[3]), fault)
-        return Row(cells, on and known and fault == formats.NOTHING, Tone.RUN)
+        known = UnknownPart.AXES not in snapshot.unknown
+        figures = [write(value) if known else f"{write(value)} {UNKNOWN_VALUE}" for value in values[:3]]
+        cells = (axis.name, power if known else UNKNOWN_VALUE, home, *figures, write(values[3]), fault)
+        return TableRow(cells, on and known and fault == formats.NO_VALUE, Tone.RUN)
 
-    def _spindle(self, snapshot: Snapshot) -> Row:
-        fault = _fault(snapshot.alarms, OF_SPINDLE, None)
+    def _spindle(self, snapshot: Snapshot) -> TableRow:
+        fault = _find_fault(snapshot.alarms, SPINDLE_ALARMS, None)
         band = abs(snapshot.rpm_command) * self.machine.spindle.at_speed
         off = snapshot.rpm_actual - snapshot.rpm_command
-        known = Unknown.SPINDLE not in snapshot.unknown
+        known = UnknownPart.SPINDLE not in snapshot.unknown
         cells = (
             "S",
             "AUTO" if snapshot.spindle_auto else "OFF",
             "rpm",
-            formats.fixed(snapshot.rpm_command, 0),
-            formats.fixed(snapshot.rpm_actual, 0) if known else UNKNOWN,
-            formats.fixed(off, 0) if known else UNKNOWN,
-            formats.fixed(band, 0),
+            formats.format_fixed(snapshot.rpm_command, 0),
+            formats.format_fixed(snapshot.rpm_actual, 0) if known else UNKNOWN_VALUE,
+            formats.format_fixed(off, 0) if known else UNKNOWN_VALUE,
+            formats.format_fixed(band, 0),
             fault,
         )
-        return Row(cells, snapshot.spindle_auto and known and fault == formats.NOTHING, Tone.RUN)
+        return TableRow(cells, snapshot.spindle_auto and known and fault == formats.NO_VALUE, Tone.RUN)
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt, which refers to the alarms."""
         return "F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST"
 
 
-def _fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
+def _find_fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
     """Return the number of the alarm of an axis or the spindle.
 
     An alarm without an axis applies to all.
     """
     for alarm in reversed(alarms):
-        named = AXES & set(alarm.cause.split())
+        named = AXIS_LETTERS & set(alarm.cause.split())
         if alarm.code in codes and (axis is None or not named or axis.name in named):
             return str(alarm.number)
-    return formats.NOTHING
+    return formats.NO_VALUE

@@ -6,66 +6,70 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.persistence import Persistence
-from app.desk.status.sounds import Sounds
+from app.desk.status.sounds import SoundPlayer
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.commands import ForceOutput
-from core.executor.signal_lamps import SignalKinds
+from core.executor.signal_lamps import SignalSelector
 from core.executor.snapshot import Snapshot
-from core.machine.hardware_model import SIGNALS, Signal
+from core.machine.hardware_model import MACHINE_SIGNALS, MachineSignal
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.store.store_errors import StoreError
 
 _SETTING = "sound"
-_STEP = 20
-_LAMPS = {"lamp_red": "RED", "lamp_amber": "AMBER", "lamp_green": "GREEN"}
-KINDS = tuple(SIGNALS)
+_VOLUME_STEP = 20
+_LAMP_NAMES = {"lamp_red": "RED", "lamp_amber": "AMBER", "lamp_green": "GREEN"}
+EVENT_KINDS = tuple(MACHINE_SIGNALS)
 
 
 @dataclass(slots=True)
-class DeskSounds:
+class EventSounds:
     """Sounds for new events, with ``volume`` 0 by default. The kinds in ``silent`` are muted."""
 
     desk: Desk
     persistence: Persistence
-    sounds: Sounds = field(default_factory=Sounds)
-    volume: int = 0
-    silent: frozenset[str] = frozenset()
-    _signals: SignalKinds = field(default_factory=SignalKinds)
+    sound_player: SoundPlayer = field(default_factory=SoundPlayer)
+    volume_percent: int = 0
+    muted_kinds: frozenset[str] = frozenset()
+    _signals: SignalSelector = field(default_factory=SignalSelector)
     _before: tuple[str, ...] | None = None
     _told: str = ""
     _read: bool = False
 
-    def see(self, snapshot: Snapshot) -> None:
+    def play_new_events(self, snapshot: Snapshot) -> None:
         """Play the sounds of events that began since the last frame. The first frame is silent."""
-        self.recall()
-        kinds = self._signals.see(snapshot.state, snapshot.ends, barred=bool(snapshot.next_barred))
+        self.load_settings()
+        kinds = self._signals.update_signals(
+            snapshot.state, snapshot.ends, next_part_blocked=bool(snapshot.next_barred)
+        )
         before, self._before = self._before, kinds
         new = [] if before is None else [kind for kind in kinds if kind not in before and self._heard(kind)]
-        if self.volume and new:
-            self.sounds.play(SIGNALS[min(new, key=KINDS.index)].tones, self.volume)
-        self._tell()
+        if self.volume_percent and new:
+            self.sound_player.play_tones(
+                MACHINE_SIGNALS[min(new, key=EVENT_KINDS.index)].tones_hz, self.volume_percent
+            )
+        self._report()
 
     def _heard(self, kind: str) -> bool:
-        return kind not in self.silent and bool(SIGNALS[kind].tones)
+        return kind not in self.muted_kinds and bool(MACHINE_SIGNALS[kind].tones_hz)
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         """Report each sound error once."""
-        why = self.sounds.trouble
+        why = self.sound_player.error_text
         if why and why != self._told:
             self.desk.say(tr(Message("NO SOUND: {why}", why=why)))
         self._told = why or self._told
 
-    def tried(self) -> None:
+    def play_test_sound(self) -> None:
         """Play the test sound and report a repeated error again."""
-        self._told = self.sounds.trouble = ""
-        self.sounds.play(SIGNALS["part"].tones, self.volume)
+        self._told = self.sound_player.error_text = ""
+        self.sound_player.play_tones(MACHINE_SIGNALS["part"].tones_hz, self.volume_percent)
 
-    def recall(self) -> None:
+    def load_settings(self) -> None:
         """Load the stored settings once."""
         if self._read:
             return
@@ -76,110 +80,116 @@ class DeskSounds:
             return
         match kept:
             case {"volume": int(volume), "silent": list(silent)}:
-                self.volume, self.silent = max(0, min(100, volume)), frozenset(map(str, silent))
+                self.volume_percent, self.muted_kinds = max(0, min(100, volume)), frozenset(map(str, silent))
 
-    def choose(self, volume: int, silent: frozenset[str]) -> None:
+    def save_settings(self, volume_percent: int, muted_kinds: frozenset[str]) -> None:
         """Store the volume and the muted kinds. Raises StoreError."""
-        before, self.volume, self.silent = self.volume, max(0, min(100, volume)), silent
-        self.persistence.save_setting(_SETTING, {"volume": self.volume, "silent": sorted(silent)})
+        before, self.volume_percent, self.muted_kinds = (
+            self.volume_percent,
+            max(0, min(100, volume_percent)),
+            muted_kinds,
+        )
+        self.persistence.save_setting(
+            _SETTING, {"volume": self.volume_percent, "silent": sorted(muted_kinds)}
+        )
         told = Message(
             "sound volume: {before} → {volume} %, muted: {silent}",
             before=before,
-            volume=self.volume,
-            silent=", ".join(sorted(silent)) or "nothing",
+            volume=self.volume_percent,
+            silent=", ".join(sorted(muted_kinds)) or "nothing",
         )
-        self.persistence.note_change(told)
+        self.persistence.log_change(told)
 
     def close(self) -> None:
         """Stop all sounds."""
-        self.sounds.close()
+        self.sound_player.close()
 
 
-class LampsAndSound(SpecialFunction):
+class LampsAndSoundFunction(SpecialFunction):
     """Special function with one row per event: its lamp, if fitted, and its sound."""
 
     name = "LAMPS AND SOUND"
     use = "lamps, sounds, volume, lamp test"
 
-    def __init__(self, desk: Desk, machine: Machine, sounds: DeskSounds) -> None:
+    def __init__(self, desk: Desk, machine: Machine, sounds: EventSounds) -> None:
         super().__init__(desk)
-        self.machine, self.sounds = machine, sounds
+        self.machine, self.event_sounds = machine, sounds
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of events."""
-        return len(KINDS)
+        return len(EVENT_KINDS)
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of lamps and sounds."""
-        self.sounds.recall()
+        self.event_sounds.load_settings()
         rows = tuple(
-            Row((tr(signal.use), self._lamp(signal), self._sound(kind, signal)))
-            for kind, signal in SIGNALS.items()
+            TableRow((tr(signal.description), self._lamp(signal), self._sound(kind, signal)))
+            for kind, signal in MACHINE_SIGNALS.items()
         )
-        volume = f"{self.sounds.volume} %" if self.sounds.volume else tr("OFF")
-        lamps = ", ".join(self.machine.lamps) or tr(
+        volume = f"{self.event_sounds.volume_percent} %" if self.event_sounds.volume_percent else tr("OFF")
+        lamps = ", ".join(self.machine.lamp_outputs) or tr(
             "no lamps are defined in the machine file; add lamp_red, lamp_amber, "
             "lamp_green, lamp_buzzer under [io.out]"
         )
         notes = (tr(Message("VOLUME: {volume}", volume=volume)), tr(Message("LAMPS: {names}", names=lamps)))
         heads = ("DESCRIPTION", "LAMP", "SOUND")
-        return Sheet("LAMPS AND SOUND", heads, (0.5, 0.32, 0.18), rows, self.marked, notes=notes,
-                     raw=frozenset({0, 1, 2}))  # fmt: skip
+        return TableContent("LAMPS AND SOUND", heads, (0.5, 0.32, 0.18), rows, self.marked, notes=notes,
+                     raw_columns=frozenset({0, 1, 2}))  # fmt: skip
 
-    def _lamp(self, signal: Signal) -> str:
-        words = tr(_LAMPS[signal.lamp]) + (f" {tr('BLINKING')}" if signal.blinks else "")
-        buzz = f" + {tr('BUZZER')} {signal.buzz:g} s" if signal.buzz else ""
+    def _lamp(self, signal: MachineSignal) -> str:
+        words = tr(_LAMP_NAMES[signal.lamp]) + (f" {tr('BLINKING')}" if signal.is_blinking else "")
+        buzz = f" + {tr('BUZZER')} {signal.buzzer_time_s:g} s" if signal.buzzer_time_s else ""
         return words + buzz
 
-    def _sound(self, kind: str, signal: Signal) -> str:
-        if not signal.tones:
+    def _sound(self, kind: str, signal: MachineSignal) -> str:
+        if not signal.tones_hz:
             return ""
-        return tr("OFF") if kind in self.sounds.silent else tr("ON")
+        return tr("OFF") if kind in self.event_sounds.muted_kinds else tr("ON")
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for volume, sound test and lamp test."""
         return {
-            "F2": Key("SOFTER", lambda: self._louder(-_STEP)),
-            "F3": Key("LOUDER", lambda: self._louder(_STEP)),
-            "F4": Key("TRY", self.try_out),
-            "F5": Key("LAMP TEST", self.test),
+            "F2": FunctionKey("SOFTER", lambda: self._louder(-_VOLUME_STEP)),
+            "F3": FunctionKey("LOUDER", lambda: self._louder(_VOLUME_STEP)),
+            "F4": FunctionKey("TRY", self.play_part_sound),
+            "F5": FunctionKey("LAMP TEST", self.test_lamps),
         }
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Turn the sound of the selected event on or off."""
-        kind = KINDS[self.marked]
-        if SIGNALS[kind].tones:
-            silent = self.sounds.silent ^ {kind}
-            self._choose(self.sounds.volume, silent)
+        kind = EVENT_KINDS[self.marked]
+        if MACHINE_SIGNALS[kind].tones_hz:
+            silent = self.event_sounds.muted_kinds ^ {kind}
+            self._choose(self.event_sounds.volume_percent, silent)
         else:
             self.desk.say("NO SOUND FOR A RUNNING CYCLE: ONLY THE LAMP SHOWS IT")
         return True
 
     def _louder(self, by: int) -> None:
-        self._choose(self.sounds.volume + by, self.sounds.silent)
+        self._choose(self.event_sounds.volume_percent + by, self.event_sounds.muted_kinds)
 
     def _choose(self, volume: int, silent: frozenset[str]) -> None:
-        self.desk.clear()
-        if not self.desk.refused(Act.SCREEN):
-            self.desk.keep(lambda: self.sounds.choose(volume, silent))
+        self.desk.clear_prompt_line()
+        if not self.desk.is_refused(ProtectedChange.SCREEN):
+            self.desk.try_save(lambda: self.event_sounds.save_settings(volume, silent))
 
-    def try_out(self) -> None:
+    def play_part_sound(self) -> None:
         """Play the sound of a finished part at the present volume."""
-        if not self.sounds.volume:
+        if not self.event_sounds.volume_percent:
             self.desk.say("VOLUME IS ZERO. F3: LOUDER")
         else:
-            self.desk.clear()
-            self.sounds.tried()
+            self.desk.clear_prompt_line()
+            self.event_sounds.play_test_sound()
 
-    def test(self) -> None:
+    def test_lamps(self) -> None:
         """Turn all lamps on for 2 s, at rest."""
-        if not self.machine.lamps:
+        if not self.machine.lamp_outputs:
             self.desk.say("THIS MACHINE HAS NO LAMPS. DEFINE THEM UNDER [io.out] IN THE MACHINE FILE")
         else:
-            self.desk.clear()
-            self.desk.post(ForceOutput(self.machine.lamps[0], True))
+            self.desk.clear_prompt_line()
+            self.desk.post(ForceOutput(self.machine.lamp_outputs[0], True))
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
         return "ENTER: SOUND ON/OFF   F3: LOUDER   F4: TRY   ESC: BACK"

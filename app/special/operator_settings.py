@@ -5,28 +5,28 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from app.desk.arithmetic import EntryError, value_of
-from app.desk.background_work import Latest
+from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.persistence import Persistence
 from app.desk.status import formats
-from app.desk.status.prompt_line import UNDER_WAY
-from app.desk.status.readouts import UNKNOWN
+from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.status.readouts import UNKNOWN_VALUE
 from app.desk.translation import tr
-from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters
-from app.special.special_functions import FigureFunction, SpecialFunction
-from core.access.access_table import Act
-from core.executor.commands import SpindleLimit
+from app.offsets.active_offsets import R_PARAMETERS_SETTING, parse_r_parameters
+from app.special.special_functions import NumericFunction, SpecialFunction
+from core.access.access_table import ProtectedChange
+from core.executor.commands import SetSpindleLimit
 from core.executor.snapshot import Snapshot
-from core.language.sinumerik.sinumerik_words import MOST_R, REACH
+from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER, VALUE_RANGES
 from core.machine.machine_model import SpindleModel
 from core.message import Message
-from core.ports import Unknown
+from core.ports import UnknownPart
 from core.store.store_errors import StoreError
 
 
-class RParameters(FigureFunction):
+class RParametersFunction(NumericFunction):
     """Special function for R parameters.
 
     A typed value applies to the selected row. The loaded program is then proved again.
@@ -35,34 +35,34 @@ class RParameters(FigureFunction):
     name = "R PARAMETERS"
     use = "R0 to R299 of SINUMERIK programs"
 
-    def __init__(self, desk: Desk, persistence: Persistence, worker: Latest) -> None:
+    def __init__(self, desk: Desk, persistence: Persistence, worker: LatestRequestWorker) -> None:
         super().__init__(desk)
         self._persistence, self._worker = persistence, worker
-        self.values: dict[int, float] = {}  # parameters with a value
-        self.opened()
+        self.parameter_values: dict[int, float] = {}  # parameters with a value
+        self.on_open()
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Load the stored values when the function opens."""
-        if self._worker.busy:
+        if self._worker.is_busy:
             return  # The pending values are already displayed.
         try:
-            self.values = r_parameters(self._persistence.read_setting(R_PARAMETERS))
+            self.parameter_values = parse_r_parameters(self._persistence.read_setting(R_PARAMETERS_SETTING))
         except StoreError:
-            self.values = {}  # TurnDesk itself reports that nothing is stored.
+            self.parameter_values = {}  # TurnDesk itself reports that nothing is stored.
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of R parameters (R0 to R299)."""
-        return MOST_R + 1
+        return MAX_R_NUMBER + 1
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of all parameters. A dash means not set, which counts as 0."""
-        values = self.values
+        values = self.parameter_values
         rows = tuple(
-            Row((f"R{number}", f"{values[number]:.9g}" if number in values else "–"), number in values)
-            for number in range(self.count)
+            TableRow((f"R{number}", f"{values[number]:.9g}" if number in values else "–"), number in values)
+            for number in range(self.row_count)
         )
-        return Sheet(
+        return TableContent(
             "R PARAMETERS",
             ("", ""),
             (0.4, 0.6),
@@ -77,67 +77,67 @@ class RParameters(FigureFunction):
                 ),
                 "A parameter without a value is treated as 0, and a warning is shown.",
             ),
-            figures=frozenset({1}),
+            number_columns=frozenset({1}),
         )
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return F4, which clears the selected parameter."""
-        return {"F4": Key("CLEAR", self.unset)}
+        return {"F4": FunctionKey("CLEAR", self.clear_selected)}
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key: digits edit the entry, and arrows move the selection."""
-        return super().typed(key) or self.moves(key)
+        return super().handle_key(key) or self.move_selection(key)
 
-    def unset(self) -> None:
+    def clear_selected(self) -> None:
         """Clear the selected parameter."""
-        self._keep(self.marked, None)
+        self._save_value(self.marked, None)
 
     def take(self, text: str) -> bool:
         """Set the selected parameter to the typed value. Raises EntryError outside the permitted range."""
-        value = value_of(text)
-        low, high = REACH["R"]
+        value = evaluate_expression(text)
+        low, high = VALUE_RANGES["R"]
         if not low <= value <= high:
             raise EntryError(
                 tr(Message("R PARAMETERS RANGE FROM {low} TO {high}", low=f"{low:g}", high=f"{high:g}"))
             )
-        return self._keep(self.marked, value)
+        return self._save_value(self.marked, value)
 
-    def _keep(self, number: int, value: float | None) -> bool:
+    def _save_value(self, number: int, value: float | None) -> bool:
         """Store and log a value, then prove the loaded program. Return False while a program runs."""
-        if self.desk.refused(Act.ZEROS):
+        if self.desk.is_refused(ProtectedChange.ZEROS):
             return False
-        if self.desk.snapshot().state in UNDER_WAY:
+        if self.desk.read_snapshot().state in ACTIVE_STATES:
             self.desk.say(tr("PROGRAM RUNNING. CHANGE R PARAMETERS BETWEEN CYCLES"))
             return False
-        before = self.values.pop(number, None)
+        before = self.parameter_values.pop(number, None)
         if value is not None:
-            self.values[number] = value
-        kept = {str(each): self.values[each] for each in sorted(self.values)}
+            self.parameter_values[number] = value
+        kept = {str(each): self.parameter_values[each] for each in sorted(self.parameter_values)}
         told = f"R{number}: {_told(before)} → {_told(value)}"
-        self._worker.queue(
-            partial(self._persistence.keep_settings, {R_PARAMETERS: kept or None}),
-            lambda _none: self._is_kept(told),
+        self._worker.enqueue(
+            partial(self._persistence.save_settings, {R_PARAMETERS_SETTING: kept or None}),
+            lambda _none: self._handle_saved(told),
             lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),
         )
         return True
 
-    def _is_kept(self, told: str) -> None:
+    def _handle_saved(self, message: str) -> None:
         """Log the change and prove the loaded program again."""
-        self._persistence.note_change(told)
-        now = self.desk.session.now
+        self._persistence.log_change(message)
+        now = self.desk.program_loader.loaded
         if now.path is None or now.job is None:
             return
-        if self.desk.snapshot().state in UNDER_WAY:  # A cycle was started in the meantime.
-            self.desk.rebuilding.wanted = True
+        if self.desk.read_snapshot().state in ACTIVE_STATES:  # A cycle was started in the meantime.
+            self.desk.renewal.is_requested = True
         else:
-            self.desk.session.load(now.path, now.block_delete)
+            self.desk.program_loader.start_loading(now.path, now.block_delete)
 
 
 def _told(value: float | None) -> str:
     return "none" if value is None else f"{value:.9g}"
 
 
-WORDS = {
+SETTING_NAMES = {
     "units": "DISPLAY UNITS",
     "readout": "VALUE IN LARGE READOUT",
     "language": "LANGUAGE",
@@ -147,32 +147,34 @@ WORDS = {
     "full_screen": "WINDOW",
     "first_job": "FIRST JOB CARD",
 }
-YES_NO = {
+YES_NO_NAMES = {
     "dock": ("SHOWN", "HIDDEN"),
     "latched": ("PRESS BUTTONS IN SEQUENCE", "PRESS BUTTONS TOGETHER"),
     "full_screen": ("FULL SCREEN", "WINDOW"),
     "first_job": ("SHOWN", "HIDDEN"),
 }
-VALUES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
+VALUE_NAMES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGHT"}
 
 
-class ScreenPreferences(SpecialFunction):
+class ScreenSettingsFunction(SpecialFunction):
     """Special function for screen settings. Enter or a touch selects the next choice."""
 
     name = "SCREEN"
     use = "units, language, operator station, window"
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of settings."""
-        return len(WORDS)
+        return len(SETTING_NAMES)
 
-    def sheet(self, snapshot: Snapshot) -> Sheet:
+    def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table with the present choice of each setting."""
-        now = self.desk.settings.now
-        rows = tuple(Row((words, _in_words(name, getattr(now, name)))) for name, words in WORDS.items())
+        now = self.desk.settings_store.current
+        rows = tuple(
+            TableRow((words, _in_words(name, getattr(now, name)))) for name, words in SETTING_NAMES.items()
+        )
         metric = snapshot.modal.metric
-        return Sheet(
+        return TableContent(
             "SCREEN",
             ("", ""),
             (0.6, 0.4),
@@ -184,7 +186,7 @@ class ScreenPreferences(SpecialFunction):
             ),
         )
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Select the next choice of the selected setting."""
         self._go_on()
         return True
@@ -195,38 +197,38 @@ class ScreenPreferences(SpecialFunction):
         self._go_on()
 
     def _go_on(self) -> None:
-        name = tuple(WORDS)[self.marked]
-        settings = self.desk.settings
-        if name == "dock" and self.desk.control.panel is None:
+        name = tuple(SETTING_NAMES)[self.marked]
+        settings = self.desk.settings_store
+        if name == "dock" and self.desk.desk_control.station_panel is None:
             self.desk.say("NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION")
             return
-        if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
+        if name == "dock" and settings.current.dock and self.desk.station_controls.estop_pressed:
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
-        if name == "latched" and not self.desk.machine.one_hand:
+        if name == "latched" and not self.desk.machine.allows_one_hand:
             self.desk.say(tr("SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE"))
             return
         if name == "first_job":
-            self.desk.runs.restart_first_job()
-        self.desk.hands.let_go()
-        self.desk.clear()
-        self.desk.choose_setting(name, settings.following(name))
+            self.desk.program_runs.restart_first_job()
+        self.desk.station_controls.release_all()
+        self.desk.clear_prompt_line()
+        self.desk.apply_setting(name, settings.find_next_choice(name))
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt about Enter."""
         return "ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST"
 
 
 def _in_words(name: str, value: object) -> str:
     if isinstance(value, bool):
-        return YES_NO[name][not value]
-    return VALUES.get(str(value), str(value))
+        return YES_NO_NAMES[name][not value]
+    return VALUE_NAMES.get(str(value), str(value))
 
 
-LIFT = "PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT"
+CONFIRM_REMOVE_LIMIT = "PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT"
 
 
-class SpindleSpeedLimit(FigureFunction):
+class SpindleLimitFunction(NumericFunction):
     """Special function for a spindle speed limit that applies until TurnDesk is restarted."""
 
     name = "MAXIMUM SPINDLE SPEED"
@@ -236,19 +238,19 @@ class SpindleSpeedLimit(FigureFunction):
         super().__init__(desk)
         self.spindle = spindle
 
-    def sheet(self, snapshot: Snapshot) -> Sheet:
+    def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table with the machine maximum, the limit and the present speeds."""
-        limit = snapshot.spindle_limit
+        limit = snapshot.spindle_limit_rpm
         rows = (
-            Row(("MACHINE MAXIMUM", formats.rpm(self.spindle.rpm_max), "rpm")),
-            Row(
+            TableRow(("MACHINE MAXIMUM", formats.rpm(self.spindle.max_rpm), "rpm")),
+            TableRow(
                 ("ACTIVE LIMIT", formats.rpm(limit) if limit else "NONE", "rpm" if limit else ""),
                 bool(limit),
             ),
-            Row(("COMMANDED SPEED", formats.rpm(snapshot.rpm_command), "rpm")),
-            Row(("MEASURED SPEED", _measured(snapshot), "rpm")),
+            TableRow(("COMMANDED SPEED", formats.rpm(snapshot.rpm_command), "rpm")),
+            TableRow(("MEASURED SPEED", _measured(snapshot), "rpm")),
         )
-        return Sheet(
+        return TableContent(
             "MAXIMUM SPINDLE SPEED",
             ("", "", ""),
             (0.55, 0.3, 0.15),
@@ -259,36 +261,36 @@ class SpindleSpeedLimit(FigureFunction):
                 "If a program commands a higher speed, the spindle runs at the limit.",
                 "The limit takes effect at once, even while a program runs.",
             ),
-            figures=frozenset({1}),
+            number_columns=frozenset({1}),
         )
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return F4, which removes the limit."""
-        return {"F4": Key("NO LIMIT", self.lift)}
+        return {"F4": FunctionKey("NO LIMIT", self.confirm_remove_limit)}
 
-    def lift(self) -> None:
+    def confirm_remove_limit(self) -> None:
         """Remove the limit after confirmation, because a workpiece can be in the chuck."""
-        if not self.desk.snapshot().spindle_limit:
+        if not self.desk.read_snapshot().spindle_limit_rpm:
             self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
-        elif not self.desk.refused(Act.SPINDLE_LIMIT):
-            self.desk.ask(LIFT, self._lifted)
+        elif not self.desk.is_refused(ProtectedChange.SPINDLE_LIMIT):
+            self.desk.ask_operator(CONFIRM_REMOVE_LIMIT, self._lifted)
 
     def _lifted(self) -> None:
-        if not self.desk.refused(Act.SPINDLE_LIMIT):
+        if not self.desk.is_refused(ProtectedChange.SPINDLE_LIMIT):
             self._limit(None)
 
     def _limit(self, rpm: float | None) -> None:
-        before = self.desk.snapshot().spindle_limit
-        self.desk.post(SpindleLimit(rpm))
+        before = self.desk.read_snapshot().spindle_limit_rpm
+        self.desk.post(SetSpindleLimit(rpm))
         told = " → ".join(
             Message("{speed} rpm", speed=f"{each:g}") if each else "none" for each in (before, rpm)
         )
-        self.desk.access.persistence.note_change(Message("spindle speed limit: {details}", details=told))
+        self.desk.user_access.persistence.log_change(Message("spindle speed limit: {details}", details=told))
 
     def take(self, text: str) -> bool:
         """Set the limit in rpm. Raises EntryError outside the range of the spindle."""
-        rpm = value_of(text)
-        low, high = self.spindle.rpm_min, self.spindle.rpm_max
+        rpm = evaluate_expression(text)
+        low, high = self.spindle.min_rpm, self.spindle.max_rpm
         if not low <= rpm <= high:
             raise EntryError(
                 Message(
@@ -298,17 +300,19 @@ class SpindleSpeedLimit(FigureFunction):
                     high=f"{high:g}",
                 )
             )
-        limit = self.desk.snapshot().spindle_limit
-        if limit and rpm > limit and self.desk.refused(Act.SPINDLE_LIMIT):
+        limit = self.desk.read_snapshot().spindle_limit_rpm
+        if limit and rpm > limit and self.desk.is_refused(ProtectedChange.SPINDLE_LIMIT):
             return False
         self._limit(rpm)
-        self.desk.done(tr(Message("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART", rpm=formats.rpm(rpm))))
+        self.desk.show_success(
+            tr(Message("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART", rpm=formats.rpm(rpm)))
+        )
         return True
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the limit."""
         return "TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK"
 
 
 def _measured(snapshot: Snapshot) -> str:
-    return UNKNOWN if Unknown.SPINDLE in snapshot.unknown else formats.rpm(snapshot.rpm_actual)
+    return UNKNOWN_VALUE if UnknownPart.SPINDLE in snapshot.unknown else formats.rpm(snapshot.rpm_actual)

@@ -5,25 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from app.desk.status.readouts import rotary_angle
+from app.desk.status.readouts import format_rotary_angle
 from app.desk.translation import tr
-from app.report.run_record import RunRecord, Stop, ToolTime
+from app.report.run_record import PlannedStop, RunRecorder, ToolTime
 from core.geometry.rotary_axes import DatumPreset
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset, ZeroOffset
-from core.interpreter.shared.working_plane import Corners
+from core.interpreter.shared.working_plane import BlankCorners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.part.stock import Clamping, Stock
 from core.part.tool_shape import ToolKind, ToolShape
-from core.part.turned_part import Piece
+from core.part.turned_part import PartedPiece
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
-from core.proving.prove_program import Progress
+from core.proving.program_tools import PartSettings
+from core.proving.prove_program import ReportProgress
 
-Length = Callable[[float], str]
+FormatLength = Callable[[float], str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,44 +33,48 @@ class MillSetup:
     The rest is from the tool table.
     """
 
-    blank: Corners | None
-    preset: int
-    datum: DatumPreset | None  # row of the preset; None for preset 0, which is in the machine file
-    names: Mapping[int, str]
-    tools: Mapping[int, MillTool]
+    blank_corners: BlankCorners | None
+    preset_number: int
+    datum_preset: DatumPreset | None  # row of the preset; None for preset 0, which is in the machine file
+    tool_names: Mapping[int, str]
+    mill_tools: Mapping[int, MillTool]
 
-    def stock_words(self, length: Length) -> str:
+    def format_stock(self, format_length: FormatLength) -> str:
         """Return length, width and height of the blank as text."""
-        if self.blank is None:
+        if self.blank_corners is None:
             return tr("stock not specified because the program has no BLK FORM")
-        low, high = self.blank
-        return Message("BLK FORM  {b}", b=" × ".join((length(b - a) for a, b in zip(low, high, strict=True))))
+        low, high = self.blank_corners
+        return Message(
+            "BLK FORM  {b}", b=" × ".join((format_length(b - a) for a, b in zip(low, high, strict=True)))
+        )
 
-    def preset_words(self, length: Length) -> str:
+    def format_preset(self, format_length: FormatLength) -> str:
         """Return the active preset and its position relative to home as text."""
-        if self.datum is None:
-            return f"{self.preset}   {tr('zero point from the machine file')}"
-        places = (f"{name} {length(at)}" for name, at in zip("XYZ", self.datum.origin, strict=True))
-        turned = (f"{name} {rotary_angle(at)}°" for name, at in self.datum.zeros if at)
+        if self.datum_preset is None:
+            return f"{self.preset_number}   {tr('zero point from the machine file')}"
+        places = (
+            f"{name} {format_length(at)}" for name, at in zip("XYZ", self.datum_preset.origin, strict=True)
+        )
+        turned = (f"{name} {format_rotary_angle(at)}°" for name, at in self.datum_preset.axis_zeros if at)
         rotation = (
-            (Message("ROT {rotation}°", rotation=rotary_angle(self.datum.rotation)),)
-            if self.datum.rotation
+            (Message("ROT {rotation}°", rotation=format_rotary_angle(self.datum_preset.rotation_deg)),)
+            if self.datum_preset.rotation_deg
             else ()
         )
-        return f"{self.preset}   " + "   ".join((*places, *turned, *rotation))
+        return f"{self.preset_number}   " + "   ".join((*places, *turned, *rotation))
 
-    def tool_words(self, number: int) -> str:
+    def describe_tool(self, number: int) -> str:
         """Return name, point angle and number of teeth of a tool as text."""
-        row = self.tools.get(number, MillTool())
+        row = self.mill_tools.get(number, MillTool())
         words = (
-            self.names.get(number, ""),
-            f"{tr('POINT ANGLE')} {row.point:g}°" if row.point else "",
-            f"{row.teeth} {tr('teeth')}" if row.teeth else "",
+            self.tool_names.get(number, ""),
+            f"{tr('POINT ANGLE')} {row.point_angle_deg:g}°" if row.point_angle_deg else "",
+            f"{row.tooth_count} {tr('teeth')}" if row.tooth_count else "",
         )
         return ", ".join(filter(None, words)) or tr("no tool name in the tool table")
 
 
-def mill_setup(setup: Setup, blank: Corners | None) -> MillSetup | None:
+def make_mill_setup(setup: Setup, blank: BlankCorners | None) -> MillSetup | None:
     """Return the mill setup of a job, or None on a lathe."""
     if setup.kinematics is None:
         return None
@@ -79,122 +83,129 @@ def mill_setup(setup: Setup, blank: Corners | None) -> MillSetup | None:
     return MillSetup(blank, setup.preset, datum, names, setup.mill_tools)
 
 
-def offset_words(offset: ToolOffset, length: Length) -> str:
+def format_tool_offset(offset: ToolOffset, format_length: FormatLength) -> str:
     """Return tool length L and radius R as text, including DL and DR."""
-    return f"L {length(offset.z)}   R {length(offset.nose_radius)}"
+    return f"L {format_length(offset.z)}   R {format_length(offset.nose_radius)}"
 
 
 _MM_PER_INCH = 25.4
 
 
 @dataclass(frozen=True, slots=True)
-class SheetTool:
+class SetupTool:
     """Tool of the setup sheet.
 
-    ``assumed`` means an incomplete shape, and ``offset`` is None if not measured.
+    ``is_assumed`` means an incomplete shape, and ``offset`` is None if not measured.
     """
 
-    number: int
-    shape: ToolShape | None
-    assumed: bool
-    offset: ToolOffset | None
-    time: ToolTime
+    tool_number: int
+    tool_shape: ToolShape | None
+    is_assumed: bool
+    tool_offset: ToolOffset | None
+    tool_time: ToolTime
 
 
 @dataclass(frozen=True, slots=True)
 class SetupSheet:
     """Setup data for starting a program, in mm and seconds."""
 
-    metric: bool
-    cycle: float
-    found: tuple[Diagnostic, ...]  # findings of the proof, with their severity at the machine
+    is_metric: bool
+    cycle_time_s: float
+    diagnostics: tuple[Diagnostic, ...]  # findings of the proof, with their severity at the machine
     stock: Stock | None
-    part: Piece | None
-    milled: bool
+    finished_part: PartedPiece | None
+    is_milled: bool
     clamping: Clamping | None
-    tools: tuple[SheetTool, ...]
-    secondary: tuple[tuple[int, SecondaryOffset], ...]
-    zero: tuple[tuple[int, ZeroOffset], ...]
-    stops: tuple[Stop, ...]
-    mill: MillSetup | None = None
-    omniturn: bool = True  # an OmniTurn program, which uses M00 instead of M0
+    setup_tools: tuple[SetupTool, ...]
+    secondary_offsets: tuple[tuple[int, SecondaryOffset], ...]
+    zero_offsets: tuple[tuple[int, ZeroOffset], ...]
+    program_stops: tuple[PlannedStop, ...]
+    mill_setup: MillSetup | None = None
+    is_omniturn: bool = True  # an OmniTurn program, which uses M00 instead of M0
 
     @property
-    def errors(self) -> int:
+    def error_count(self) -> int:
         """Number of errors, which prevent a run."""
-        return sum(each.severity is Severity.ERROR for each in self.found)
+        return sum(each.severity is Severity.ERROR for each in self.diagnostics)
 
     @property
-    def warnings(self) -> int:
+    def warning_count(self) -> int:
         """Number of warnings."""
-        return sum(each.severity is Severity.WARNING for each in self.found)
+        return sum(each.severity is Severity.WARNING for each in self.diagnostics)
 
     @property
-    def verdict(self) -> str:
+    def summary(self) -> str:
         """Summary of errors and warnings as text, or an empty string without them."""
-        if self.errors == 1:
+        if self.error_count == 1:
             return tr("1 ERROR: this program will not run as it is")
-        if self.errors:
-            return tr(Message("{count} ERRORS: this program will not run as it is", count=self.errors))
-        if self.warnings == 1:
+        if self.error_count:
+            return tr(Message("{count} ERRORS: this program will not run as it is", count=self.error_count))
+        if self.warning_count == 1:
             return tr("1 WARNING: check it before the first part")
-        if self.warnings:
-            return tr(Message("{count} WARNINGS: check them before the first part", count=self.warnings))
+        if self.warning_count:
+            return tr(Message("{count} WARNINGS: check them before the first part", count=self.warning_count))
         return ""
 
-    def length(self, mm: float) -> str:
+    def format_length(self, mm: float) -> str:
         """Return a length with its unit, in the unit of the program."""
         return (
-            Message("{unit} mm", unit=f"{mm:.3f}") if self.metric else f"{mm / _MM_PER_INCH:.4f} {tr('in')}"
+            Message("{unit} mm", unit=f"{mm:.3f}")
+            if self.is_metric
+            else f"{mm / _MM_PER_INCH:.4f} {tr('in')}"
         )
 
     @property
-    def stock_words(self) -> str:
+    def stock_text(self) -> str:
         """Stock as text."""
-        if self.mill is not None:
-            return self.mill.stock_words(self.length)
+        if self.mill_setup is not None:
+            return self.mill_setup.format_stock(self.format_length)
         stock = self.stock
         if stock is None:
             return tr("unknown")
-        round_ = f"Ø {self.length(2.0 * stock.radius)}"
-        if stock.bore:
-            round_ += ", " + tr(Message("bore {size}", size=self.length(2.0 * stock.bore[0][1])))
-        if stock.given:
-            return f"{round_} ({stock.given})"
+        round_ = f"Ø {self.format_length(2.0 * stock.max_radius_mm)}"
+        if stock.bore_profile:
+            round_ += ", " + tr(
+                Message("bore {size}", size=self.format_length(2.0 * stock.bore_profile[0][1]))
+            )
+        if stock.specification:
+            return f"{round_} ({stock.specification})"
         return tr(Message("at least {size} (assumed, not specified)", size=round_))
 
     @property
-    def held_words(self) -> tuple[tuple[str, str], ...]:
+    def clamping_texts(self) -> tuple[tuple[str, str], ...]:
         """Stick-out and clamping as pairs of name and text; on a mill, the preset."""
-        if self.mill is not None:
-            return ((tr("PRESET"), self.mill.preset_words(self.length)),)
+        if self.mill_setup is not None:
+            return ((tr("PRESET"), self.mill_setup.format_preset(self.format_length)),)
         held = self.clamping
         if held is None or not held.diameter:
             return ((tr("STICK-OUT"), tr("unknown because the machine file has no values under [clamping]")),)
-        chuck = f"Ø {self.length(held.diameter)}"
-        if held.jaws:
-            size = f"Ø {self.length(held.jaw_diameter)} × {self.length(held.jaws)}"
+        chuck = f"Ø {self.format_length(held.diameter)}"
+        if held.jaw_length:
+            size = f"Ø {self.format_length(held.jaw_diameter)} × {self.format_length(held.jaw_length)}"
             chuck += ", " + tr(Message("jaws {size}", size=size))
         if held.max_rpm:
             chuck += ", " + tr(Message("max. {rpm} rpm", rpm=f"{held.max_rpm:.0f}"))
-        rows = [(tr("STICK-OUT"), self.length(held.stick_out)), (tr("CHUCK"), chuck)]
-        if held.quill:
-            quill = f"Ø {self.length(held.quill)}, {held.point:g}°, Z {self.length(held.centre)}"
+        rows = [(tr("STICK-OUT"), self.format_length(held.stick_out)), (tr("CHUCK"), chuck)]
+        if held.quill_diameter:
+            quill = (
+                f"Ø {self.format_length(held.quill_diameter)}, {held.center_angle_deg:g}°, Z "
+                f"{self.format_length(held.center_z_mm)}"
+            )
             rows.append((tr("TAILSTOCK"), quill))
         return tuple(rows)
 
-    def shape_words(self, tool: SheetTool) -> str:
+    def describe_shape(self, tool: SetupTool) -> str:
         """Return the shape of a tool as text."""
-        if self.mill is not None:
-            return self.mill.tool_words(tool.number)
-        shape = tool.shape
+        if self.mill_setup is not None:
+            return self.mill_setup.describe_tool(tool.tool_number)
+        shape = tool.tool_shape
         if shape is None:
             return tr("unknown")
         words = ", ".join(filter(None, self._of_shape(shape)))
-        return tr(Message("{tool} (assumed)", tool=words)) if tool.assumed else words
+        return tr(Message("{tool} (assumed)", tool=words)) if tool.is_assumed else words
 
     def _of_shape(self, shape: ToolShape) -> Iterator[str]:
-        yield kind_word(shape.kind)
+        yield translate_tool_kind(shape.kind)
         yield shape.insert
         yield shape.holder
         for name, mm in (
@@ -202,71 +213,82 @@ class SetupSheet:
             (tr("PITCH"), shape.pitch), (tr("CUTTING LENGTH"), shape.length),
             (tr("STICK-OUT"), shape.stick_out),
         ):  # fmt: skip
-            yield f"{name} {self.length(mm)}" if mm else ""
+            yield f"{name} {self.format_length(mm)}" if mm else ""
         yield f"{tr('POINT ANGLE')} {shape.point:g}°" if shape.point else ""
         yield f"{tr('TIP')} {shape.tip}" if shape.tip else ""
 
-    def offset_words(self, tool: SheetTool) -> str:
+    def format_offset(self, tool: SetupTool) -> str:
         """Return the offset of a tool as text: X as a radius and Z, or on a mill length and radius."""
-        if tool.offset is None:
+        if tool.tool_offset is None:
             return tr("NOT SET")
-        if self.mill is not None:
-            return offset_words(tool.offset, self.length)
-        x, z, r = (self.length(mm) for mm in (tool.offset.x, tool.offset.z, tool.offset.nose_radius))
+        if self.mill_setup is not None:
+            return format_tool_offset(tool.tool_offset, self.format_length)
+        x, z, r = (
+            self.format_length(mm)
+            for mm in (tool.tool_offset.x, tool.tool_offset.z, tool.tool_offset.nose_radius)
+        )
         return tr(Message("X (radius) {x}   Z {z}   R {radius}", x=x, z=z, radius=r))
 
-    def stop_word(self, stop: Stop) -> str:
+    def format_stop(self, stop: PlannedStop) -> str:
         """Return the stop code in the notation of the program's language."""
-        return f"M{'0' if self.omniturn else ''}{int(stop.optional)}"
+        return f"M{'0' if self.is_omniturn else ''}{int(stop.is_optional)}"
 
 
-def setup_sheet(
-    program: ReadProgram, setup: Setup, machine: Machine, setting: PartSetting, watch: Progress | None = None
+def make_setup_sheet(
+    program: SharedProgram,
+    setup: Setup,
+    machine: Machine,
+    setting: PartSettings,
+    watch: ReportProgress | None = None,
 ) -> SetupSheet:
     """Prove the program and return its setup sheet.
 
     ``watch`` is called during the proof and may raise an exception to cancel.
     """
-    record = RunRecord(setting)
-    report, part = prove_with_part(program, setup, machine, setting, watch, seen=record.see)
+    record = RunRecorder(setting)
+    report, part = prove_with_part(program, setup, machine, setting, watch, on_span=record.add_span)
     shapes = part.shapes if part is not None else {}
-    numbers = sorted({*report.tools, *(n for n, time in record.times.items() if n and time.total)})
+    numbers = sorted(
+        {*report.tool_numbers, *(n for n, time in record.tool_times.items() if n and time.total_s)}
+    )
     return SetupSheet(
-        metric=report.metric or report.dialect is not Dialect.OMNITURN,
-        cycle=report.times.cycle,
-        found=report.diagnostics,
+        is_metric=report.is_metric or report.dialect is not Dialect.OMNITURN,
+        cycle_time_s=report.times.cycle_s,
+        diagnostics=report.diagnostics,
         stock=part.stock if part is not None else None,
-        part=part.last if part is not None else None,
-        milled=part is not None and part.milled,
+        finished_part=part.last_piece if part is not None else None,
+        is_milled=part is not None and part.is_milled,
         clamping=setting.clamping,
-        tools=tuple(
-            SheetTool(
+        setup_tools=tuple(
+            SetupTool(
                 n,
                 shapes.get(n),
                 setting.shapes.get(n) != shapes.get(n),
                 setup.tools.get(n),
-                record.times.get(n, ToolTime()),
+                record.tool_times.get(n, ToolTime()),
             )
             for n in numbers
         ),
-        secondary=tuple((n, setup.secondary.get(n, SecondaryOffset())) for n in sorted(record.secondary)),
-        zero=tuple((n, setup.zero.get(n, ZeroOffset())) for n in sorted(record.settable)),
-        stops=tuple(record.stops),
-        mill=mill_setup(setup, record.blank),
-        omniturn=report.dialect is Dialect.OMNITURN,
+        secondary_offsets=tuple(
+            (n, setup.secondary.get(n, SecondaryOffset())) for n in sorted(record.used_secondary)
+        ),
+        zero_offsets=tuple((n, setup.zero.get(n, ZeroOffset())) for n in sorted(record.used_zero_offsets)),
+        program_stops=tuple(record.program_stops),
+        mill_setup=make_mill_setup(setup, record.blank_corners),
+        is_omniturn=report.dialect is Dialect.OMNITURN,
     )
 
 
-def kind_word(kind: ToolKind) -> str:
+def translate_tool_kind(kind: ToolKind) -> str:
     """Return the display text of a tool kind."""
     words = kind.upper().replace("-", " ")
     return tr("FORM TOOL") if kind is ToolKind.FORM else tr(words)
 
 
-def outside_words(sheet: SetupSheet) -> str:
+def format_finished_size(sheet: SetupSheet) -> str:
     """Return the size of the finished part as text, or an empty string if nothing is turned."""
-    if sheet.part is None or not sheet.part.outside:
+    if sheet.finished_part is None or not sheet.finished_part.outside_profile:
         return ""
-    outside = sheet.part.outside
-    size = sheet.length(2.0 * max(r for _, r in outside))
-    return f"Ø {size} × {sheet.length(outside[0][0] - outside[-1][0])}"
+    outside = sheet.finished_part.outside_profile
+    size = sheet.format_length(2.0 * max(r for _, r in outside))
+    return f"Ø {size} × {sheet.format_length(outside[0][0] - outside[-1][0])}"

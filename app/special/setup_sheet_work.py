@@ -8,67 +8,74 @@ from datetime import datetime
 from html import escape
 from pathlib import Path
 
-from app.desk.background_work import Request
-from app.desk.pages.sheet import Row
-from app.desk.translation import spoken, tr
-from app.programs.whole_file import FileError, settle, write_out
+from app.desk.background_work import WorkRequest
+from app.desk.pages.table_content import TableRow
+from app.desk.translation import get_language, tr
+from app.programs.atomic_files import FileOperationError, copy_to_medium, flush_folder
 from app.report import part_drawings
 from app.report.html_tables import (
-    PAGE_END,
-    clock,
-    figure,
-    headline,
-    page_head,
-    pairs,
-    table,
-    text_hash,
-    verdict,
+    HTML_END,
+    format_minutes,
+    hash_text,
+    make_drawing_block,
+    make_headline,
+    make_page_head,
+    make_pair_table,
+    make_result_line,
+    make_table,
 )
-from app.report.pdf_file import Paper, pdf_of
-from app.special.setup_sheet import SetupSheet, outside_words, setup_sheet
+from app.report.pdf_file import PaperSize, make_pdf
+from app.special.setup_sheet import SetupSheet, format_finished_size, make_setup_sheet
 from core.executor.job import Job
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.part.insert_codes import InsertCodeError
-from core.part.tool_outline import ToolOutline, outline
+from core.part.tool_outline import ToolOutline, make_outline
 from core.part.tool_shape import ToolShape
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 
 
-def setup_sheet_html(
-    sheet: SetupSheet, facts: Sequence[tuple[str, str]], remarks: Mapping[int, str], notes: Sequence[str]
+def make_sheet_html(
+    sheet: SetupSheet, fact_rows: Sequence[tuple[str, str]], remarks: Mapping[int, str], notes: Sequence[str]
 ) -> str:
     """Return the body of the HTML page.
 
-    ``facts`` are the first rows, and ``remarks`` are the remarks about tools by number.
+    ``fact_rows`` are the first rows, and ``remarks`` are the remarks about tools by number.
     """
     rows = [
-        *facts,
-        (tr("TIME PER PART"), clock(sheet.cycle)),
-        (tr("STOCK"), sheet.stock_words),
-        *sheet.held_words,
+        *fact_rows,
+        (tr("TIME PER PART"), format_minutes(sheet.cycle_time_s)),
+        (tr("STOCK"), sheet.stock_text),
+        *sheet.clamping_texts,
     ]
-    if outside_words(sheet):
-        rows.append((tr("PART"), outside_words(sheet)))
+    if format_finished_size(sheet):
+        rows.append((tr("PART"), format_finished_size(sheet)))
     return "".join(
-        (_verdict(sheet), pairs(rows), _notes(notes), _tools(sheet, remarks), _offsets(sheet), _stops(sheet),
-         _section(sheet))
-    )  # fmt: skip
+        (
+            _verdict(sheet),
+            make_pair_table(rows),
+            _notes(notes),
+            _tools(sheet, remarks),
+            _offsets(sheet),
+            _stops(sheet),
+            _section(sheet),
+        )
+    )
 
 
 def _verdict(sheet: SetupSheet) -> str:
-    if not sheet.verdict:
+    if not sheet.summary:
         return ""
-    return verdict("bad" if sheet.errors else "doubt", sheet.verdict)
+    return make_result_line("bad" if sheet.error_count else "doubt", sheet.summary)
 
 
 def _section(sheet: SetupSheet) -> str:
     if sheet.stock is None:
         return ""
-    drawing = part_drawings.section(sheet.stock, sheet.part, sheet.clamping)
+    drawing = part_drawings.draw_section(sheet.stock, sheet.finished_part, sheet.clamping)
     text = tr("Section view: the stock is light, the finished part is dark")
-    return figure(
-        drawing, text + ("; " + tr("features milled by live tools are not shown") if sheet.milled else "")
+    return make_drawing_block(
+        drawing, text + ("; " + tr("features milled by live tools are not shown") if sheet.is_milled else "")
     )
 
 
@@ -82,16 +89,16 @@ def _notes(notes: Sequence[str]) -> str:
 def _tools(sheet: SetupSheet, remarks: Mapping[int, str]) -> str:
     rows = [
         (
-            f"T{tool.number}" if tool.number else tr("no T word"),
-            part_drawings.tool_picture(tool.shape),
-            _said(sheet.shape_words(tool), remarks.get(tool.number, "")),
-            escape(sheet.offset_words(tool)),
-            f"{tool.time.total:.1f}",
+            f"T{tool.tool_number}" if tool.tool_number else tr("no T word"),
+            part_drawings.draw_tool(tool.tool_shape),
+            _said(sheet.describe_shape(tool), remarks.get(tool.tool_number, "")),
+            escape(sheet.format_offset(tool)),
+            f"{tool.tool_time.total_s:.1f}",
         )
-        for tool in sheet.tools
+        for tool in sheet.setup_tools
     ]
     head = (tr("STATION"), tr("PICTURE"), tr("TOOL"), tr("OFFSET"), "s")
-    return f"<h3>{escape(tr('TOOLS'))}</h3>" + table(head, rows)
+    return f"<h3>{escape(tr('TOOLS'))}</h3>" + make_table(head, rows)
 
 
 def _said(words: str, remark: str) -> str:
@@ -99,84 +106,94 @@ def _said(words: str, remark: str) -> str:
 
 
 def _offsets(sheet: SetupSheet) -> str:
-    length = sheet.length
-    rows = [(f"D{n}", length(d.x), length(d.z), f"R {length(d.r)}") for n, d in sheet.secondary]
-    rows += [(f"G{n}", length(zero.x), length(zero.z), f"C {zero.c:g}°") for n, zero in sheet.zero]
+    length = sheet.format_length
+    rows = [
+        (f"D{n}", length(d.x), length(d.z), f"R {length(d.nose_radius)}") for n, d in sheet.secondary_offsets
+    ]
+    rows += [(f"G{n}", length(zero.x), length(zero.z), f"C {zero.c:g}°") for n, zero in sheet.zero_offsets]
     if not rows:
         return ""
     head = (tr("OFFSET"), tr("X (radius)"), "Z", "")
-    return f"<h3>{escape(tr('SECONDARY AND ZERO OFFSETS'))}</h3>" + table(head, rows)
+    return f"<h3>{escape(tr('SECONDARY AND ZERO OFFSETS'))}</h3>" + make_table(head, rows)
 
 
 def _stops(sheet: SetupSheet) -> str:
     rows = [
-        (sheet.stop_word(stop), str(stop.line), clock(stop.at), escape(stop.message)) for stop in sheet.stops
+        (sheet.format_stop(stop), str(stop.line), format_minutes(stop.time_s), escape(stop.message))
+        for stop in sheet.program_stops
     ]
     head = (tr("STOP"), tr("LINE"), tr("AFTER"), tr("MESSAGE TO THE OPERATOR"))
-    found = table(head, rows) if rows else f"<p>{escape(tr('None.'))}</p>"
+    found = make_table(head, rows) if rows else f"<p>{escape(tr('None.'))}</p>"
     return f"<h3>{escape(tr('STOPS'))}</h3>{found}"
 
 
 @dataclass(frozen=True, slots=True)
-class MadeSheet:
+class PreparedSheet:
     """Setup sheet of one job, with the outlines of its tools by number."""
 
     job: Job
-    sheet: SetupSheet
-    outlines: Mapping[int, ToolOutline | None]
+    setup_sheet: SetupSheet
+    tool_outlines: Mapping[int, ToolOutline | None]
 
 
-def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
+def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iterator[TableRow]:
     """Yield the rows of the sheet: time, stock, clamping, tools, offsets and stops."""
-    sheet = made.sheet
-    if sheet.verdict:
-        yield Row((tr("ERRORS") if sheet.errors else tr("WARNINGS"), sheet.verdict, ""))
-    part = outside_words(sheet)
-    stock = sheet.stock_words + (f"\n{tr('PART')} {part}" if part else "")
-    yield Row((tr("TIME PER PART"), clock(sheet.cycle), ""))
-    yield Row((tr("STOCK"), stock, ""))
-    for name, words in sheet.held_words:
-        yield Row((name, words, ""))
-    for tool in sheet.tools:
-        remark = remarks.get(tool.number, "")
-        words = f"{remark}: {sheet.shape_words(tool)}" if remark else sheet.shape_words(tool)
-        offset = f"{sheet.offset_words(tool)}   {tool.time.total:.1f} s"
-        name = f"T{tool.number}" if tool.number else tr("no T word")
-        yield Row((name, f"{words}\n{offset}", ""), outline=made.outlines.get(tool.number))
-    length = sheet.length
-    for n, d in sheet.secondary:
-        yield Row((f"D{n}", f"X {length(d.x)}   Z {length(d.z)}   R {length(d.r)}", ""))
-    for n, zero in sheet.zero:
-        yield Row((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
-    for stop in sheet.stops:
+    sheet = prepared.setup_sheet
+    if sheet.summary:
+        yield TableRow((tr("ERRORS") if sheet.error_count else tr("WARNINGS"), sheet.summary, ""))
+    part = format_finished_size(sheet)
+    stock = sheet.stock_text + (f"\n{tr('PART')} {part}" if part else "")
+    yield TableRow((tr("TIME PER PART"), format_minutes(sheet.cycle_time_s), ""))
+    yield TableRow((tr("STOCK"), stock, ""))
+    for name, words in sheet.clamping_texts:
+        yield TableRow((name, words, ""))
+    for tool in sheet.setup_tools:
+        remark = remarks.get(tool.tool_number, "")
+        words = f"{remark}: {sheet.describe_shape(tool)}" if remark else sheet.describe_shape(tool)
+        offset = f"{sheet.format_offset(tool)}   {tool.tool_time.total_s:.1f} s"
+        name = f"T{tool.tool_number}" if tool.tool_number else tr("no T word")
+        yield TableRow((name, f"{words}\n{offset}", ""), outline=prepared.tool_outlines.get(tool.tool_number))
+    length = sheet.format_length
+    for n, d in sheet.secondary_offsets:
+        yield TableRow((f"D{n}", f"X {length(d.x)}   Z {length(d.z)}   R {length(d.nose_radius)}", ""))
+    for n, zero in sheet.zero_offsets:
+        yield TableRow((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
+    for stop in sheet.program_stops:
         at = tr(Message("LINE {line}", line=stop.line))
-        yield Row((sheet.stop_word(stop), f"{stop.message}\n{at}, {clock(stop.at)}", ""))
+        yield TableRow((sheet.format_stop(stop), f"{stop.message}\n{at}, {format_minutes(stop.time_s)}", ""))
 
 
-def made_of(job: Job, machine: Machine, setting: PartSetting | None, watch: Request) -> MadeSheet:
+def prepare_sheet(
+    job: Job, machine: Machine, setting: PartSettings | None, watch: WorkRequest
+) -> PreparedSheet:
     """Prepare the sheet of a job; runs on a worker."""
-    sheet = setup_sheet(job.reading, job.setup, machine, setting or PartSetting(), watch)
-    return MadeSheet(job, sheet, {tool.number: _outline(tool.shape) for tool in sheet.tools})
+    sheet = make_setup_sheet(job.shared_program, job.setup, machine, setting or PartSettings(), watch)
+    return PreparedSheet(
+        job, sheet, {tool.tool_number: _outline(tool.tool_shape) for tool in sheet.setup_tools}
+    )
 
 
 def _outline(shape: ToolShape | None) -> ToolOutline | None:
     try:
-        return outline(shape) if shape is not None else None
+        return make_outline(shape) if shape is not None else None
     except InsertCodeError:
         return None
 
 
-def page_of(
-    made: MadeSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
+def make_sheet_page(
+    prepared: PreparedSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
 ) -> tuple[str, str, str]:
     """Return title, date and body of the page."""
-    facts = [(tr("MACHINE"), machine.name), (tr("PROGRAM CHECKSUM (SHA-256)"), text_hash(made.job.source))]
-    body = setup_sheet_html(made.sheet, facts, remarks, notes)
+    facts = [
+        (tr("MACHINE"), machine.name),
+        (tr("PROGRAM CHECKSUM (SHA-256)"), hash_text(prepared.job.source)),
+    ]
+    body = make_sheet_html(prepared.setup_sheet, facts, remarks, notes)
     title = tr(Message("Setup sheet: {program}", program=program))
     return title, datetime.now().strftime("%Y-%m-%d %H:%M"), body
 
 
-def write(page: tuple[str, str, str], program: str, folder: Path, paper: Paper) -> str:
+def write_sheet_files(page: tuple[str, str, str], program: str, folder: Path, paper_size: PaperSize) -> str:
     """Write the sheet as PDF and HTML on the worker, and return the PDF's name.
 
     Each file is replaced atomically. Raises FileError.
@@ -185,13 +202,13 @@ def write(page: tuple[str, str, str], program: str, folder: Path, paper: Paper) 
     name = f"{program}-setup"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        pdf = pdf_of(headline(title, made) + body, title, paper)
+        pdf = make_pdf(make_headline(title, made) + body, title, paper_size)
     except OSError as error:
-        raise FileError(
+        raise FileOperationError(
             Message("{target} CANNOT BE WRITTEN: {cause}", target=folder, cause=error.strerror)
         ) from error
-    html = page_head(title, made, spoken()) + body + PAGE_END
-    write_out(folder / f"{name}.html", html.encode("utf-8", "backslashreplace"))
-    write_out(folder / f"{name}.pdf", pdf)
-    settle(folder)
+    html = make_page_head(title, made, get_language()) + body + HTML_END
+    copy_to_medium(folder / f"{name}.html", html.encode("utf-8", "backslashreplace"))
+    copy_to_medium(folder / f"{name}.pdf", pdf)
+    flush_folder(folder)
     return f"{name}.pdf"

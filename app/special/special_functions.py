@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from app.desk.arithmetic import EntryError
-from app.desk.background_work import Latest
+from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, refused
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, refused
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -28,43 +28,43 @@ class SpecialFunction(ABC):
         self.marked = 0
 
     @abstractmethod
-    def sheet(self, snapshot: Snapshot) -> Sheet:
+    def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table for a snapshot."""
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function's keys, F2 to F10 without F7."""
         return {}
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Return False to leave it to the window."""
-        return (key == "Enter" and self.act()) or self.moves(key)
+        return (key == "Enter" and self.execute_row()) or self.move_selection(key)
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Execute the selected row. Return False if the row has no action."""
         return False
 
-    def takes(self, _key: str) -> bool:
+    def accepts_key(self, _key: str) -> bool:
         """Return whether a character is text now."""
         return False
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the text of the prompt line."""
         return "ESC: BACK TO THE LIST"
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Close the innermost open part. Return False if nothing was open."""
         return False
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Prepare the function for display."""
 
-    def left(self) -> None:
+    def on_close(self) -> None:
         """Cancel entries and questions when the function closes."""
 
-    def listen(self, *, seen: bool) -> None:
+    def process_wire_input(self, *, is_displayed: bool) -> None:
         """Process input from a wire, called once per frame.
 
-        ``seen`` is set while the function is displayed.
+        ``is_displayed`` is set while the function is displayed.
         """
 
     def close(self) -> None:
@@ -73,40 +73,42 @@ class SpecialFunction(ABC):
     def choose(self, row: int) -> None:
         """Select the touched row. A touch on the selected row executes it."""
         if row != self.marked:
-            self.desk.clear()
+            self.desk.clear_prompt_line()
             self.marked = row
         else:
-            self.act()
+            self.execute_row()
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of rows that can be selected."""
         return 0
 
-    def moves(self, key: str) -> bool:
+    def move_selection(self, key: str) -> bool:
         """Move the selection by a key, and return whether the key does so."""
-        if key not in STEPS or not self.count:
+        if key not in ROW_STEPS or not self.row_count:
             return False
-        self.desk.clear()
-        self.marked = max(0, min(self.count - 1, self.marked + STEPS[key]))
+        self.desk.clear_prompt_line()
+        self.marked = max(0, min(self.row_count - 1, self.marked + ROW_STEPS[key]))
         return True
 
 
 class PageFunction(SpecialFunction):
     """Special function with a separate page: shows a few facts, and opens the page with Enter or a touch."""
 
-    way: ClassVar[str]  # description of other keys that open the page
+    key_hint: ClassVar[str]  # description of other keys that open the page
 
     @abstractmethod
-    def facts(self) -> tuple[Row, ...]:
+    def make_fact_rows(self) -> tuple[TableRow, ...]:
         """Return the rows of facts in the list."""
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of facts."""
-        return Sheet(tr(self.name), ("", ""), (0.4, 0.6), self.facts(), notes=(self.way,))
+        return TableContent(
+            tr(self.name), ("", ""), (0.4, 0.6), self.make_fact_rows(), notes=(self.key_hint,)
+        )
 
 
-class FigureFunction(SpecialFunction):
+class NumericFunction(SpecialFunction):
     """Special function with a numeric entry that accepts arithmetic.
 
     Enter passes the text to ``take``.
@@ -114,7 +116,7 @@ class FigureFunction(SpecialFunction):
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.entry = Entry()
+        self.entry = InputField()
 
     @abstractmethod
     def take(self, text: str) -> bool:
@@ -123,129 +125,131 @@ class FigureFunction(SpecialFunction):
         Return False if it was rejected with a message. Raises EntryError.
         """
 
-    def enter(self) -> None:
+    def submit_entry(self) -> None:
         """Accept the typed text, or show the reason for its rejection."""
         try:
             if self.take(self.entry.text):
                 self.entry.text = ""
         except EntryError as error:
             self.entry.text = refused(self.entry.text)
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is a digit or an operator."""
-        return self.entry.takes(key)
+        return self.entry.accepts_key(key)
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key of the entry."""
         if key == "Enter":
-            self.enter()
+            self.submit_entry()
             return True
-        if self.entry.type(key):
-            self.desk.clear()
+        if self.entry.handle_key(key):
+            self.desk.clear_prompt_line()
             return True
         return False
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Clear the entry. Return False if it was empty."""
         begun, self.entry.text = bool(self.entry.text), ""
         return begun
 
-    def left(self) -> None:
+    def on_close(self) -> None:
         """Clear the entry when the function closes."""
         self.entry.text = ""
 
 
 @dataclass(slots=True)
-class SpecialFunctions:
+class SpecialFunctionList:
     """List of special functions.
 
     ``at`` is the displayed one, which has the keys while ``inside`` is set.
     """
 
     functions: Sequence[SpecialFunction]
-    worker: Latest
+    worker: LatestRequestWorker
     at: int = 0
     inside: bool = False
     number: str = ""  # digits typed in the list so far
 
     @property
-    def current(self) -> SpecialFunction:
+    def shown_function(self) -> SpecialFunction:
         """Displayed function."""
         return self.functions[self.at]
 
-    def show(self, number: int) -> None:
+    def show_function(self, index: int) -> None:
         """Display a function from the list."""
         self.number = ""
-        number = max(0, min(len(self.functions) - 1, number))
-        if number != self.at or self.inside:
-            self.current.desk.clear()
-            self.current.left()
-            self.at, self.inside = number, False
-            self.current.opened()
+        index = max(0, min(len(self.functions) - 1, index))
+        if index != self.at or self.inside:
+            self.shown_function.desk.clear_prompt_line()
+            self.shown_function.on_close()
+            self.at, self.inside = index, False
+            self.shown_function.on_open()
 
-    def enter(self, number: int) -> None:
+    def open_function(self, index: int) -> None:
         """Open a function, which then receives the keys."""
-        self.show(number)
+        self.show_function(index)
         self.inside = True
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key: select a function by arrows or number, open it with Enter, or pass the key to it."""
         if self.inside:
-            return self.current.typed(key)
+            return self.shown_function.handle_key(key)
         if key in {"Up", "Down"}:
-            self.show(self.at + (1 if key == "Down" else -1))
+            self.show_function(self.at + (1 if key == "Down" else -1))
         elif key in {"Enter", "Tab"}:
-            self.enter(self.at)
-        elif self.takes(key):
-            self._type_number(key)
+            self.open_function(self.at)
+        elif self.accepts_key(key):
+            self._add_digit(key)
         else:
             return False
         return True
 
-    def _type_number(self, digit: str) -> None:
+    def _add_digit(self, digit: str) -> None:
         """Select the function of the typed number. A digit that does not fit starts a new number."""
         numbers = range(1, len(self.functions) + 1)
         typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")
         if not typed:
             words = tr("FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}")
-            self.current.desk.say(tr(Message(words, number=self.number + digit, last=len(self.functions))))
+            self.shown_function.desk.say(
+                tr(Message(words, number=self.number + digit, last=len(self.functions)))
+            )
             return
-        self.show(int(typed) - 1)
+        self.show_function(int(typed) - 1)
         self.number = typed
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is text now."""
-        return self.current.takes(key) if self.inside else key.isascii() and key.isdigit()
+        return self.shown_function.accepts_key(key) if self.inside else key.isascii() and key.isdigit()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go back one step. Return False from the list."""
-        shown = self.current
+        shown = self.shown_function
         if not self.inside:
             return False
-        if shown.desk.notice:
-            shown.desk.clear()
-        elif not shown.escape():
+        if shown.desk.prompt_notice:
+            shown.desk.clear_prompt_line()
+        elif not shown.handle_escape():
             self.inside = False
         return True
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt of the function or of the list."""
         if self.inside:
-            return self.current.prompt()
+            return self.shown_function.prompt_text()
         return "TAP A FUNCTION OR TYPE ITS NUMBER   ENTER: OPEN   ESC: BACK"
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Show the list when the page opens."""
         self.inside, self.number = False, ""
-        self.current.opened()
+        self.shown_function.on_open()
 
-    def leave(self) -> None:
+    def on_close(self) -> None:
         """Close the function when the page closes."""
-        self.current.left()
+        self.shown_function.on_close()
         self.inside = False
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Process the results of the worker; called once per frame."""
         self.worker.poll()
 

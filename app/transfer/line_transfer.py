@@ -7,70 +7,70 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-from app.programs.copy_rename_delete import checked_name, same_name_in
-from app.programs.whole_file import FileError, write_new
-from core.machine.desk_tables import DncModel
+from app.programs.atomic_files import FileOperationError, write_new_file
+from app.programs.program_commands import check_name, find_same_name
+from core.machine.serial_and_backup_tables import SerialLineModel
 from core.message import Message
 
 T_co = TypeVar("T_co", covariant=True)
 
 
 class TransferProgress(Protocol):
-    """Progress of a transfer. ``total`` is 0 while unknown.
+    """Progress of a transfer. ``total_bytes`` is 0 while unknown.
 
-    ``what`` names the reason for waiting: held, dc1, sender, frame, noise or empty. ``heard`` is the data
-    received while the first % of a program is expected.
+    ``wait_reason`` names the reason for waiting: held, dc1, sender, frame, noise or empty. ``received_text``
+    is the data received while the first % of a program is expected.
     """
 
     @property
-    def done(self) -> int: ...
+    def done_bytes(self) -> int: ...
 
     @property
-    def total(self) -> int: ...
+    def total_bytes(self) -> int: ...
 
     @property
-    def lines(self) -> int: ...
+    def line_count(self) -> int: ...
 
     @property
-    def what(self) -> str: ...
+    def wait_reason(self) -> str: ...
 
     @property
-    def heard(self) -> str: ...
+    def received_text(self) -> str: ...
 
 
 @dataclass(frozen=True, slots=True)
-class Received:
+class ReceivedProgram:
     """Complete received program that was proved but not stored yet.
 
-    ``name`` is the file name from the program, with an extension. ``digest`` is the SHA-256 of ``text``.
-    ``seven`` means that it arrived with 7 data bits although 8 are set. ``findings`` are the errors of the
-    proof.
+    ``name`` is the file name from the program, with an extension. ``sha256`` is the SHA-256 of
+    ``program_bytes``. ``is_seven_bit`` means that it arrived with 7 data bits although 8 are set.
+    ``finding_texts`` are the errors of the proof.
     """
 
-    text: bytes
+    program_bytes: bytes
     name: str
-    lines: int
-    digest: str
-    seven: bool
-    skipped: int
-    findings: tuple[str, ...]
-    cycle: float
+    line_count: int
+    sha256: str
+    is_seven_bit: bool
+    skipped_bytes: int
+    finding_texts: tuple[str, ...]
+    cycle_time_s: float
 
 
-class Transfer(Protocol[T_co]):
+class SerialLineTransfer(Protocol[T_co]):
     """Transfer over the serial line.
 
-    ``run`` blocks and is called on a worker. All other members are callable from any thread.
+    ``run_transfer`` blocks and is called on a worker. All other members are callable from any thread.
     """
 
     @property
-    def reach(self) -> TransferProgress: ...
+    def progress(self) -> TransferProgress: ...
 
     def cancel(self) -> None:
-        """Cancel the transfer. ``run`` then raises an error, and nothing is stored."""
+        """Cancel the transfer. ``run_transfer`` then raises an error, and nothing is stored."""
         ...
 
-    def run(self) -> T_co:
+    def run_transfer(self) -> T_co:
         """Execute the transfer. Raises DriverError or FileError with a message for the operator."""
         ...
 
@@ -78,40 +78,40 @@ class Transfer(Protocol[T_co]):
 class SerialPorts(Protocol):
     """Serial ports and transfers over them."""
 
-    def ports(self) -> Sequence[tuple[str, str]]:
+    def list_ports(self) -> Sequence[tuple[str, str]]:
         """Return device and description of each port. Raises DriverError."""
         ...
 
-    def send(self, settings: DncModel, path: Path) -> Transfer[int]:
-        """Return a transfer that sends a program. Its ``run`` returns the number of bytes."""
+    def make_send_transfer(self, settings: SerialLineModel, path: Path) -> SerialLineTransfer[int]:
+        """Return a transfer that sends a program. Its ``run_transfer`` returns the number of bytes."""
         ...
 
-    def receive(self, settings: DncModel) -> Transfer[Received]:
-        """Return a transfer that receives a program. Its ``run`` returns the program."""
+    def make_receive_transfer(self, settings: SerialLineModel) -> SerialLineTransfer[ReceivedProgram]:
+        """Return a transfer that receives a program. Its ``run_transfer`` returns the program."""
         ...
 
 
 # --- Storing a received program; existing files are never changed. ---------------------------------------
 
 
-def store_new(received: Received, folder: Path, name: str) -> Path:
+def store_received(received: ReceivedProgram, folder: Path, name: str) -> Path:
     """Store a received program as a new file and return its path.
 
     ``name`` gets the extension of the received program if it has none. Raises FileError if the name is
     invalid or exists, or if the disk rejects the file.
     """
-    name = checked_name(name, Path(received.name))
-    if other := same_name_in(folder, name):
-        raise FileError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
-    write_new(folder / name, received.text)
+    name = check_name(name, Path(received.name))
+    if other := find_same_name(folder, name):
+        raise FileOperationError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
+    write_new_file(folder / name, received.program_bytes)
     return folder / name
 
 
-def free_name(folder: Path, name: str) -> str:
+def find_unused_name(folder: Path, name: str) -> str:
     """Return ``name``, or the first unused name of ``name-2``, ``name-3`` and so on."""
     base = Path(name)
     tried, number = name, 1
-    while same_name_in(folder, tried):
+    while find_same_name(folder, tried):
         number += 1
         tried = f"{base.stem}-{number}{base.suffix}"
     return tried

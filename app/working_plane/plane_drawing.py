@@ -14,101 +14,114 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.working_plane.plane_scene import Ink, Scene
+from app.working_plane.plane_scene import MillScene, MoveStyle
 
 if TYPE_CHECKING:
-    from app.working_plane.plane_instant import Instant
-    from core.geometry.rotary_axes import Kinematics, Place
+    from app.working_plane.plane_instant import SceneInstant
+    from core.geometry.rotary_axes import FrameTransform, Kinematics
 
 FloatArray = npt.NDArray[np.float64]
-_STEP = 1.25  # factor of one zoom step
-_PAN = 0.15  # ratio of the picture's smaller side
+_ZOOM_STEP = 1.25  # factor of one zoom step
+_PAN_STEP = 0.15  # ratio of the picture's smaller side
 
 
 @dataclass(frozen=True, slots=True)
-class Aspect:
+class ViewAspect:
     """View direction in degrees.
 
-    ``around`` is the rotation about Z from the front (negative Y) to the right, and ``above`` is the
-    elevation.
+    ``azimuth_deg`` is the rotation about Z from the front (negative Y) to the right, and ``elevation_deg``
+    is the elevation.
     """
 
     name: str
-    around: float
-    above: float
+    azimuth_deg: float
+    elevation_deg: float
 
 
-ASPECTS = (
-    Aspect("3-D", 46.0, 36.0),
-    Aspect("FRONT", 0.0, 0.0),
-    Aspect("RIGHT", 90.0, 0.0),
-    Aspect("TOP", 0.0, 90.0),
+VIEW_ASPECTS = (
+    ViewAspect("3-D", 46.0, 36.0),
+    ViewAspect("FRONT", 0.0, 0.0),
+    ViewAspect("RIGHT", 90.0, 0.0),
+    ViewAspect("TOP", 0.0, 90.0),
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """View of ``centre`` (mm, machine).
+    """View of ``center`` (mm, machine).
 
-    A ``radius`` in mm around it fills the picture at ``nearness`` 1.
+    A ``radius_mm`` in mm around it fills the picture at ``zoom_factor`` 1.
     """
 
-    centre: tuple[float, float, float]
-    radius: float
-    aspect: int = 0
-    nearness: float = 1.0
-    across: float = 0.0  # offset as a ratio of the picture's smaller side
-    down: float = 0.0
+    center: tuple[float, float, float]
+    radius_mm: float
+    aspect_index: int = 0
+    zoom_factor: float = 1.0
+    offset_right: float = 0.0  # offset as a ratio of the picture's smaller side
+    offset_down: float = 0.0
 
     @property
-    def shown(self) -> Aspect:
+    def view_aspect(self) -> ViewAspect:
         """Selected view direction."""
-        return ASPECTS[self.aspect % len(ASPECTS)]
+        return VIEW_ASPECTS[self.aspect_index % len(VIEW_ASPECTS)]
 
-    def following(self) -> Camera:
+    def with_next_aspect(self) -> Camera:
         """Return the camera for the next view direction, showing everything."""
-        return replace(self, aspect=(self.aspect + 1) % len(ASPECTS), nearness=1.0, across=0.0, down=0.0)
+        return replace(
+            self,
+            aspect_index=(self.aspect_index + 1) % len(VIEW_ASPECTS),
+            zoom_factor=1.0,
+            offset_right=0.0,
+            offset_down=0.0,
+        )
 
-    def fitted(self) -> Camera:
+    def with_full_view(self) -> Camera:
         """Return the camera that shows everything."""
-        return replace(self, nearness=1.0, across=0.0, down=0.0)
+        return replace(self, zoom_factor=1.0, offset_right=0.0, offset_down=0.0)
 
-    def zoomed(self, steps: int) -> Camera:
+    def with_zoom(self, steps: int) -> Camera:
         """Return the camera zoomed in by ``steps``."""
-        return replace(self, nearness=min(40.0, max(0.2, self.nearness * _STEP**steps)))
+        return replace(self, zoom_factor=min(40.0, max(0.2, self.zoom_factor * _ZOOM_STEP**steps)))
 
-    def panned(self, across: int, down: int) -> Camera:
+    def with_pan(self, across: int, down: int) -> Camera:
         """Return the camera moved to the right and down by a number of steps."""
-        return replace(self, across=self.across - _PAN * across, down=self.down - _PAN * down)
+        return replace(
+            self,
+            offset_right=self.offset_right - _PAN_STEP * across,
+            offset_down=self.offset_down - _PAN_STEP * down,
+        )
 
     @property
-    def axes(self) -> FloatArray:
+    def view_axes(self) -> FloatArray:
         """Unit vectors right, down and towards the viewer as rows, in machine coordinates."""
-        around, above = math.radians(self.shown.around), math.radians(self.shown.above)
+        around, above = (
+            math.radians(self.view_aspect.azimuth_deg),
+            math.radians(self.view_aspect.elevation_deg),
+        )
         ca, sa, ce, se = math.cos(around), math.sin(around), math.cos(above), math.sin(above)
         right, eye = (ca, sa, 0.0), (sa * ce, -ca * ce, se)
         down = (sa * se, -ca * se, -ce)
         return np.array((right, down, eye))
 
-    def seen(self, points: FloatArray, width: float, height: float) -> FloatArray:
+    def project_points(self, points: FloatArray, width: float, height: float) -> FloatArray:
         """Return pixel x, pixel y and depth towards the viewer (n, 3) of machine points (n, 3)."""
         size = min(width, height)
-        scale = self.nearness * size / (2.0 * self.radius)
-        found = (points - np.array(self.centre)) @ self.axes.T * scale
-        found[:, 0] += width / 2.0 + self.across * size
-        found[:, 1] += height / 2.0 + self.down * size
+        scale = self.zoom_factor * size / (2.0 * self.radius_mm)
+        found = (points - np.array(self.center)) @ self.view_axes.T * scale
+        found[:, 0] += width / 2.0 + self.offset_right * size
+        found[:, 1] += height / 2.0 + self.offset_down * size
         return np.asarray(found)
 
 
 # --- blank and table ----------------------------------------------------------------------------------
 
 
-_ROUND = 48  # corners of a circle
+_RIM_POINTS = 48  # corners of a circle
 
 
-def outline(camera: Camera, points: FloatArray) -> FloatArray:
+def find_convex_outline(camera: Camera, points: FloatArray) -> FloatArray:
     """Return the convex outline of points (n, 3) as seen by the camera (Andrew's monotone chain)."""
-    flat = points @ camera.axes[:2].T
+    flat = points @ camera.view_axes[:2].T
     order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
     half: list[list[int]] = []
     for run in (order, order[::-1]):
@@ -126,68 +139,70 @@ def _turns_back(flat: FloatArray, a: int, b: int, c: int) -> bool:
     return float(u[0] * v[1] - u[1] * v[0]) <= 0.0
 
 
-def carried(place: Place, points: FloatArray) -> FloatArray:
+def transform_points(system: FrameTransform, points: FloatArray) -> FloatArray:
     """Return the machine positions (n, 3) of points (n, 3) in the system of ``place``, in mm."""
-    return np.asarray(points @ np.array(place.turn).T + np.array(place.shift))
+    return np.asarray(points @ np.array(system.rotation).T + np.array(system.translation))
 
 
-def corners_of(scene: Scene) -> FloatArray:
+def find_blank_corners(scene: MillScene) -> FloatArray:
     """Return the eight corners (8, 3) of the blank in the workpiece system, with x varying fastest."""
-    (x0, y0, z0), (x1, y1, z1) = scene.corners
+    (x0, y0, z0), (x1, y1, z1) = scene.blank_corners
     return np.array([(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)])
 
 
-def middle_of(scene: Scene) -> tuple[float, float, float]:
+def find_blank_center(scene: MillScene) -> tuple[float, float, float]:
     """Return the center of the blank in the workpiece system."""
-    low, high = scene.corners
+    low, high = scene.blank_corners
     x, y, z = (0.5 * (a + b) for a, b in zip(low, high, strict=True))
     return x, y, z
 
 
-def diagonal_of(scene: Scene) -> float:
+def find_blank_diagonal(scene: MillScene) -> float:
     """Return the diagonal of the blank in mm, which scales all other sizes."""
-    low, high = scene.corners
+    low, high = scene.blank_corners
     return max(1.0, math.dist(low, high))
 
 
-def table_rim(scene: Scene) -> FloatArray:
+def make_table_rim(scene: MillScene) -> FloatArray:
     """Return the rim of the table (n, 3) in machine coordinates with all axes at 0.
 
     The rim is a circle below the blank, around the axis of the first table and wide enough for the blank.
     """
-    place = scene.kinematics.place({}, scene.kinematics.basic)
-    corners = carried(place, corners_of(scene))
-    centre = _foot(scene.kinematics, corners.mean(axis=0))
+    place = scene.kinematics.make_transform({}, scene.kinematics.workpiece_rotation)
+    corners = transform_points(place, find_blank_corners(scene))
+    centre = _find_table_center(scene.kinematics, corners.mean(axis=0))
     radius = 1.12 * float(np.hypot(*(corners[:, :2] - centre[:2]).T).max())
-    turn = np.linspace(0.0, 2.0 * math.pi, _ROUND, endpoint=False)
-    low = np.full(_ROUND, corners[:, 2].min())
+    turn = np.linspace(0.0, 2.0 * math.pi, _RIM_POINTS, endpoint=False)
+    low = np.full(_RIM_POINTS, corners[:, 2].min())
     return np.column_stack((centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn), low))
 
 
-def _foot(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
+def _find_table_center(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
     """Return a point on a table axis parallel to Z, or the center of the blank without such an axis."""
-    for axis in kinematics.rotaries:
-        if axis.table and abs(axis.direction[2]) > 0.5:
+    for axis in kinematics.rotary_axes:
+        if axis.is_table and abs(axis.direction[2]) > 0.5:
             return np.array(axis.point)
     return middle
 
 
-def spot(row: FloatArray) -> tuple[float, float, float]:
+def convert_to_tuple(row: FloatArray) -> tuple[float, float, float]:
     """Return one row as a tuple of coordinates."""
     x, y, z = row.tolist()
     return x, y, z
 
 
-_SHARE = 0.34  # ratio to the blank's diagonal: length of the plane's axes and half the side of its square
-_TOOL = 12  # corners of the tool
-_MOST_POINTS = 10_000  # maximum number of path points; longer paths are thinned out
-_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
-_TOP = 1  # index of the top face
-_SIDE_ONLY = 1e-9
+_PLANE_SIZE_SHARE = (
+    0.34  # ratio to the blank's diagonal: length of the plane's axes and half the side of its square
+)
+_TOOL_CORNERS = 12  # corners of the tool
+_MAX_POINTS = 10_000  # maximum number of path points; longer paths are thinned out
+_BLANK_FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+_TOP_FACE = 1  # index of the top face
+_FACE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Face:
+class DrawnFace:
     """Filled polygon (n, 2). ``role`` is table, table-under, blank, blank-top, plane or tool."""
 
     role: str
@@ -195,7 +210,7 @@ class Face:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stroke:
+class DrawnStroke:
     """Line (n, 2). ``role`` is rapid, cut, done, x, y, z, axis or edge, and ``name`` labels its end."""
 
     role: str
@@ -204,92 +219,112 @@ class Stroke:
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class SceneDrawing:
     """Picture that is ready to paint: faces, then strokes."""
 
-    faces: tuple[Face, ...] = ()
-    strokes: tuple[Stroke, ...] = ()
+    faces: tuple[DrawnFace, ...] = ()
+    strokes: tuple[DrawnStroke, ...] = ()
 
 
-def camera_for(scene: Scene) -> Camera:
+def make_camera(scene: MillScene) -> Camera:
     """Return a camera that shows the whole table with the blank and the tool at any tilt."""
-    table = table_rim(scene)
-    at = scene.kinematics.place({}).machine(middle_of(scene))
+    table = make_table_rim(scene)
+    at = scene.kinematics.make_transform({}).to_machine_position(find_blank_center(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
     return Camera((at[0], at[1], at[2] + 0.1 * reach), 1.1 * reach)
 
 
-def figure(scene: Scene, instant: Instant, camera: Camera, width: float, height: float) -> Figure:
+def draw_scene(
+    scene: MillScene, instant: SceneInstant, camera: Camera, width: float, height: float
+) -> SceneDrawing:
     """Return the drawing of a scene at an instant, for a picture of this size in pixels."""
-    picture = _Picture(scene, instant, camera, width, height)
-    return Figure(
-        faces=tuple(sorted_faces([*picture.table(), *picture.blank(), *picture.plane(), *picture.tool()])),
-        strokes=(*picture.path(), *picture.axes(), *picture.lines_of_rotation()),
+    picture = _ScenePicture(scene, instant, camera, width, height)
+    return SceneDrawing(
+        faces=tuple(
+            sort_faces(
+                [
+                    *picture.make_table_faces(),
+                    *picture.make_blank_faces(),
+                    *picture.make_plane_faces(),
+                    *picture.make_tool_faces(),
+                ]
+            )
+        ),
+        strokes=(
+            *picture.make_path_strokes(),
+            *picture.make_axis_strokes(),
+            *picture.make_rotation_strokes(),
+        ),
     )
 
 
-def sorted_faces(faces: Sequence[tuple[float, Face]]) -> list[Face]:
+def sort_faces(faces: Sequence[tuple[float, DrawnFace]]) -> list[DrawnFace]:
     """Return the faces in painting order, with the farthest first."""
     return [face for _, face in sorted(faces, key=lambda pair: pair[0])]
 
 
-class _Picture:
-    def __init__(self, scene: Scene, instant: Instant, camera: Camera, width: float, height: float) -> None:
+class _ScenePicture:
+    def __init__(
+        self, scene: MillScene, instant: SceneInstant, camera: Camera, width: float, height: float
+    ) -> None:
         self._scene, self._instant, self._camera = scene, instant, camera
         self._size = width, height
         chain = scene.kinematics
-        self._angles = {axis.name: instant.axes.get(axis.name, 0.0) for axis in chain.rotaries}
+        self._angles = {axis.name: instant.axis_positions.get(axis.name, 0.0) for axis in chain.rotary_axes}
         # Workpiece position: a place includes the linear axes, and a tilted head moves them.
-        self._tables = {axis.name: self._angles[axis.name] for axis in chain.rotaries if axis.table}
-        self._part = chain.place(self._tables, chain.basic)
+        self._tables = {axis.name: self._angles[axis.name] for axis in chain.rotary_axes if axis.is_table}
+        self._part = chain.make_transform(self._tables, chain.workpiece_rotation)
 
-    def table(self) -> list[tuple[float, Face]]:
+    def make_table_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return the table disc: painted first when seen from above, and last when seen from below.
 
         The depth of its center is not sufficient, because a small blank near the far rim is farther away.
         """
-        machine_parallel = self._scene.kinematics.place(self._tables)
-        zero = self._scene.kinematics.place({})
-        flat = carried(machine_parallel, np.array([zero.point(spot(row)) for row in table_rim(self._scene)]))
+        machine_parallel = self._scene.kinematics.make_transform(self._tables)
+        zero = self._scene.kinematics.make_transform({})
+        flat = transform_points(
+            machine_parallel,
+            np.array([zero.to_frame_point(convert_to_tuple(row)) for row in make_table_rim(self._scene)]),
+        )
         up = np.cross(flat[1] - flat[0], flat[2] - flat[1])
-        if up @ self._camera.axes[2] > 0.0:
+        if up @ self._camera.view_axes[2] > 0.0:
             return [(-math.inf, self._face("table", flat)[1])]
         return [(math.inf, self._face("table-under", flat)[1])]
 
-    def blank(self) -> list[tuple[float, Face]]:
+    def make_blank_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return the faces of the blank that are turned towards the viewer."""
-        corners = carried(self._part, corners_of(self._scene))
+        corners = transform_points(self._part, find_blank_corners(self._scene))
         middle = corners.mean(axis=0)
-        eye = self._camera.axes[2]
+        eye = self._camera.view_axes[2]
         found = []
-        for number, face in enumerate(_FACES):
+        for number, face in enumerate(_BLANK_FACES):
             shape = corners[list(face)]
-            if (shape.mean(axis=0) - middle) @ eye > _SIDE_ONLY:
-                found.append(self._face("blank-top" if number == _TOP else "blank", shape))
+            if (shape.mean(axis=0) - middle) @ eye > _FACE_TOLERANCE:
+                found.append(self._face("blank-top" if number == _TOP_FACE else "blank", shape))
         return found
 
-    def plane(self) -> list[tuple[float, Face]]:
+    def make_plane_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return a square of the working plane around its datum."""
         swivel = self._instant.swivel
-        if swivel is None or not swivel.system.tilted:
+        if swivel is None or not swivel.system.is_tilted:
             return []
         r, o = np.array(swivel.system.frame), np.array(swivel.system.datum)
-        half = _SHARE * diagonal_of(self._scene)
+        half = _PLANE_SIZE_SHARE * find_blank_diagonal(self._scene)
         square = np.array([(half, half, 0), (-half, half, 0), (-half, -half, 0), (half, -half, 0)])
-        return [self._face("plane", carried(self._part, o + square @ r.T))]
+        return [self._face("plane", transform_points(self._part, o + square @ r.T))]
 
-    def tool(self) -> list[tuple[float, Face]]:
+    def make_tool_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return a cutter at the tool tip along the present tool axis."""
-        chain, axes = self._scene.kinematics, self._instant.axes
-        length = self._instant.swivel.system.tool_length if self._instant.swivel is not None else 0.0
+        chain, axes = self._scene.kinematics, self._instant.axis_positions
+        length = self._instant.swivel.system.tool_length_mm if self._instant.swivel is not None else 0.0
         slides = axes["X"], axes["Y"], axes["Z"]
-        tip = np.array(chain.tip(self._angles, slides, length))
-        along = np.array(chain.tool_axis(self._angles))
-        size = diagonal_of(self._scene)
+        tip = np.array(chain.tip_position(self._angles, slides, length))
+        along = np.array(chain.tool_direction(self._angles))
+        size = find_blank_diagonal(self._scene)
         aside = np.cross(along, (1.0, 0.0, 0.0) if abs(along[0]) < 0.9 else (0.0, 1.0, 0.0))
         aside /= np.linalg.norm(aside)
         third = np.cross(along, aside)
-        turn = np.linspace(0.0, 2.0 * math.pi, _TOOL, endpoint=False)[:, None]
+        turn = np.linspace(0.0, 2.0 * math.pi, _TOOL_CORNERS, endpoint=False)[:, None]
         ring = np.cos(turn) * aside + np.sin(turn) * third
         faces = []
         for low, high, radius in ((0.0, 0.3, 0.03), (0.3, 0.55, 0.07)):
@@ -297,21 +332,21 @@ class _Picture:
                 tip + along * low * size + ring * radius * size,
                 tip + along * high * size + ring * radius * size,
             )
-            faces.append(self._face("tool", outline(self._camera, np.vstack(ends))))
+            faces.append(self._face("tool", find_convex_outline(self._camera, np.vstack(ends))))
         return faces
 
-    def path(self) -> list[Stroke]:
+    def make_path_strokes(self) -> list[DrawnStroke]:
         """Return the path of the tip on the workpiece, with finished and remaining moves separate."""
         scene = self._scene
         if not len(scene.points):
             return []
-        done = scene.done(self._instant.block)
-        keep = np.arange(0, len(scene.points), max(1, len(scene.points) // _MOST_POINTS))
-        seen = self._seen(carried(self._part, scene.points[keep]))
-        ink, behind = scene.ink[keep], keep < done
-        return [*_ways(seen, ink, behind)]
+        done = scene.count_finished_points(self._instant.active_block)
+        keep = np.arange(0, len(scene.points), max(1, len(scene.points) // _MAX_POINTS))
+        seen = self._seen(transform_points(self._part, scene.points[keep]))
+        ink, behind = scene.move_styles[keep], keep < done
+        return [*_make_strokes(seen, ink, behind)]
 
-    def axes(self) -> list[Stroke]:
+    def make_axis_strokes(self) -> list[DrawnStroke]:
         """Return the axes of the working plane at its datum.
 
         Without a tilted plane, they are the axes of the workpiece.
@@ -319,48 +354,58 @@ class _Picture:
         swivel = self._instant.swivel
         r = np.array(swivel.system.frame) if swivel is not None else np.eye(3)
         o = np.array(swivel.system.datum) if swivel is not None else np.zeros(3)
-        mark = "'" if swivel is not None and swivel.system.tilted else ""
-        length = _SHARE * diagonal_of(self._scene)
+        mark = "'" if swivel is not None and swivel.system.is_tilted else ""
+        length = _PLANE_SIZE_SHARE * find_blank_diagonal(self._scene)
         found = []
         for number, name in enumerate("xyz"):
             ends = np.array((o, o + length * r[:, number]))
-            found.append(Stroke(name, self._seen(carried(self._part, ends))[:, :2], f"{name.upper()}{mark}"))
+            found.append(
+                DrawnStroke(
+                    name, self._seen(transform_points(self._part, ends))[:, :2], f"{name.upper()}{mark}"
+                )
+            )
         return found
 
-    def lines_of_rotation(self) -> list[Stroke]:
+    def make_rotation_strokes(self) -> list[DrawnStroke]:
         """Return the rotation axes of the tables in their present position."""
         scene, found = self._scene, []
-        reach = 0.75 * diagonal_of(scene)
-        rotaries = scene.kinematics.rotaries
+        reach = 0.75 * find_blank_diagonal(scene)
+        rotaries = scene.kinematics.rotary_axes
         for number, axis in enumerate(rotaries):
-            if not axis.table:
+            if not axis.is_table:
                 continue
-            outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :] if each.table}
-            place, zero = scene.kinematics.place(outer), scene.kinematics.place({})
-            middle = np.array(zero.machine(middle_of(scene)))
+            outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :] if each.is_table}
+            place, zero = scene.kinematics.make_transform(outer), scene.kinematics.make_transform({})
+            middle = np.array(zero.to_machine_position(find_blank_center(scene)))
             along, point = np.array(axis.direction), np.array(axis.point)
             foot = point + along * float((middle - point) @ along)
             ends = np.array((foot - reach * along, foot + reach * along))
-            moved = carried(place, np.array([zero.point(spot(end)) for end in ends]))
-            found.append(Stroke("axis", self._seen(moved)[:, :2], axis.name))
+            moved = transform_points(
+                place, np.array([zero.to_frame_point(convert_to_tuple(end)) for end in ends])
+            )
+            found.append(DrawnStroke("axis", self._seen(moved)[:, :2], axis.name))
         return found
 
     def _seen(self, points: FloatArray) -> FloatArray:
-        return self._camera.seen(points, *self._size)
+        return self._camera.project_points(points, *self._size)
 
-    def _face(self, role: str, points: FloatArray) -> tuple[float, Face]:
+    def _face(self, role: str, points: FloatArray) -> tuple[float, DrawnFace]:
         seen = self._seen(points)
-        return float(seen[:, 2].mean()), Face(role, seen[:, :2])
+        return float(seen[:, 2].mean()), DrawnFace(role, seen[:, :2])
 
 
-def _ways(seen: FloatArray, ink: npt.NDArray[np.int8], behind: npt.NDArray[np.bool_]) -> list[Stroke]:
+def _make_strokes(
+    seen: FloatArray, styles: npt.NDArray[np.int8], behind: npt.NDArray[np.bool_]
+) -> list[DrawnStroke]:
     """Return the lines of the path, split where the drawing style changes."""
-    role = np.where(ink == Ink.CUT, np.where(behind, 3, 2), np.where(ink == Ink.RAPID, 1, 0))
+    role = np.where(
+        styles == MoveStyle.CUT, np.where(behind, 3, 2), np.where(styles == MoveStyle.RAPID, 1, 0)
+    )
     starts = np.flatnonzero(np.diff(role, prepend=-1))
     names = {1: "rapid", 2: "cut", 3: "done"}
     found = []
     for start, end in zip(starts, [*starts[1:], len(role)], strict=True):
         kind = int(role[start])
         if kind:
-            found.append(Stroke(names[kind], seen[max(0, start - 1) : end, :2]))
+            found.append(DrawnStroke(names[kind], seen[max(0, start - 1) : end, :2]))
     return found

@@ -6,66 +6,66 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.desk.status.readouts import rotary_angle, system_words
+from app.desk.status.readouts import format_rotary_angle, name_system
 
 if TYPE_CHECKING:
-    from app.working_plane.plane_scene import Scene
+    from app.working_plane.plane_scene import MillScene
     from core.executor.snapshot import Snapshot
     from core.geometry.rotary_axes import Kinematics
-    from core.interpreter.shared.working_plane import Swivel
+    from core.interpreter.shared.working_plane import PlanePosition
 
 _AXES = ("A", "B", "C")
 
 
 @dataclass(frozen=True, slots=True)
-class Instant:
+class SceneInstant:
     """Axis positions by name, the displayed plane, and the active block (0 for none)."""
 
-    axes: Mapping[str, float]
-    swivel: Swivel | None
-    block: int = 0
+    axis_positions: Mapping[str, float]
+    swivel: PlanePosition | None
+    active_block: int = 0
 
 
-def running(scene: Scene, snapshot: Snapshot) -> Instant:
+def make_run_instant(scene: MillScene, snapshot: Snapshot) -> SceneInstant:
     """Return the instant of a snapshot."""
     axes = dict(zip(snapshot.axes, snapshot.actual, strict=True))
-    axes |= {name: 0.0 for name in scene.kinematics.names if name not in axes}
-    return Instant(axes, snapshot.swivel, snapshot.block)
+    axes |= {name: 0.0 for name in scene.kinematics.axis_names if name not in axes}
+    return SceneInstant(axes, snapshot.swivel, snapshot.block)
 
 
-def at_line(scene: Scene, line: int) -> Instant:
+def make_line_instant(scene: MillScene, line: int) -> SceneInstant:
     """Return the instant after a program line, with the tables at the target angles of its plane."""
-    swivel = scene.swivel_at(line)
+    swivel = scene.find_swivel(line)
     if swivel is None:
-        return Instant(dict.fromkeys(scene.kinematics.names, 0.0), None)
-    axes = dict(zip("XYZ", swivel.slides, strict=True))
-    shown = zip(_AXES, swivel.rotary, swivel.system.targets, strict=True)
-    tilted = line in scene.planes and swivel.system.tilted
-    zero = scene.kinematics.zero
+        return SceneInstant(dict.fromkeys(scene.kinematics.axis_names, 0.0), None)
+    axes = dict(zip("XYZ", swivel.machine_position, strict=True))
+    shown = zip(_AXES, swivel.rotary_angles, swivel.system.target_angles, strict=True)
+    tilted = line in scene.planes and swivel.system.is_tilted
+    zero = scene.kinematics.zero_angles
     axes |= {name: zero[name] + (target if tilted else at) for name, at, target in shown if at is not None}
-    return Instant(axes, swivel)
+    return SceneInstant(axes, swivel)
 
 
-def title_of(kinematics: Kinematics) -> str:
+def make_view_title(kinematics: Kinematics) -> str:
     """Return the title of the view, which names the displayed parts: head, table or both."""
-    heads = any(not axis.table for axis in kinematics.rotaries)
+    heads = any(not axis.is_table for axis in kinematics.rotary_axes)
     if not heads:
         return "TABLE AND PLANE"
-    both = any(axis.table for axis in kinematics.rotaries)
+    both = any(axis.is_table for axis in kinematics.rotary_axes)
     return "HEAD, TABLE AND PLANE" if both else "HEAD AND PLANE"
 
 
-def plane_words(swivel: Swivel | None) -> str:
+def describe_plane(swivel: PlanePosition | None) -> str:
     """Return one line of text with the name, the angles and the Z' direction of the plane."""
     if swivel is None:
         return ""
-    words = system_words(swivel)
-    if not swivel.system.tilted:
+    words = name_system(swivel)
+    if not swivel.system.is_tilted:
         return words
     asked = "  ".join(
-        f"{name}{'+' if target >= 0 else ''}{rotary_angle(target)}"
-        for name, at, target in zip(_AXES, swivel.rotary, swivel.system.targets, strict=True)
+        f"{name}{'+' if target >= 0 else ''}{format_rotary_angle(target)}"
+        for name, at, target in zip(_AXES, swivel.rotary_angles, swivel.system.target_angles, strict=True)
         if at is not None
     )
-    x, y, z = (rotary_angle(row[2]) for row in swivel.system.frame)
+    x, y, z = (format_rotary_angle(row[2]) for row in swivel.system.frame)
     return f"{words}:  {asked}   Z' {x}  {y}  {z}"

@@ -10,16 +10,16 @@ from PySide6.QtGui import QMouseEvent, QPainter, QPen, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.screen.look import CENTRE, Look, Painter, put_raw
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter, draw_raw_text
 
 if TYPE_CHECKING:
-    from app.working_plane.plane_drawing import Camera, Face, FloatArray, Stroke
-    from app.working_plane.plane_instant import Instant
-    from app.working_plane.plane_scene import Scene
+    from app.working_plane.plane_drawing import Camera, DrawnFace, DrawnStroke, FloatArray
+    from app.working_plane.plane_instant import SceneInstant
+    from app.working_plane.plane_scene import MillScene
 
 # For each face: fill color, opacity (0 to 255), edge color.
-_FILLS = {
+_FACE_COLORS = {
     "table": ("key", 255, "frame"),
     "table-under": ("key", 110, "frame"),  # the workpiece is visible through the table
     "blank": ("ghost", 215, "soft"),
@@ -28,7 +28,7 @@ _FILLS = {
     "tool": ("pause", 235, "text"),
 }
 # For each stroke: color, width in units, dashed.
-_STROKES = {
+_STROKE_STYLES = {
     "rapid": ("rapid", 0.10, True),
     "cut": ("todo", 0.22, False),
     "done": ("done", 0.26, False),
@@ -37,7 +37,7 @@ _STROKES = {
     "z": ("wait", 0.30, False),
     "axis": ("soft", 0.10, True),
 }
-SMOOTH = 2000  # maximum number of points of a line that is drawn wide and antialiased
+MAX_SMOOTH_POINTS = 2000  # maximum number of points of a line that is drawn wide and antialiased
 _DRAG_STEP = 60.0  # pixels of a drag per panning step
 
 
@@ -48,23 +48,23 @@ class WorkingPlaneView(Panel):
     """
 
     title = "TABLE AND PLANE"
-    words = Shown("")
-    _instant: Shown[Instant | None] = Shown(None)
-    _camera: Shown[Camera | None] = Shown(None)
+    words = RedrawingAttribute("")
+    _instant: RedrawingAttribute[SceneInstant | None] = RedrawingAttribute(None)
+    _camera: RedrawingAttribute[Camera | None] = RedrawingAttribute(None)
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
-        self._scene: Scene | None = None
+    def __init__(self, theme: ScreenTheme, parent: QWidget | None = None) -> None:
+        super().__init__(theme, parent)
+        self._scene: MillScene | None = None
         self._held: QPointF | None = None
         self.hide()
 
     @property
-    def scene(self) -> Scene | None:
+    def scene(self) -> MillScene | None:
         """Displayed scene, or None."""
         return self._scene
 
     @property
-    def instant(self) -> Instant | None:
+    def instant(self) -> SceneInstant | None:
         """Displayed axis positions, plane and active block, or None."""
         return self._instant
 
@@ -73,41 +73,41 @@ class WorkingPlaneView(Panel):
         """Camera of the view, or None without a scene."""
         return self._camera
 
-    def show_scene(self, scene: Scene | None) -> None:
+    def show_scene(self, scene: MillScene | None) -> None:
         """Show the scene of another program. The view direction remains."""
         if scene is self._scene:
             return
-        aspect = self._camera.aspect if self._camera is not None else 0
+        aspect = self._camera.aspect_index if self._camera is not None else 0
         self._scene, self._instant = scene, None
         if scene is not None:
-            from app.working_plane.plane_drawing import camera_for
-            from app.working_plane.plane_instant import title_of
+            from app.working_plane.plane_drawing import make_camera
+            from app.working_plane.plane_instant import make_view_title
 
-            self.title = title_of(scene.kinematics)
-            self._camera = replace(camera_for(scene), aspect=aspect)
+            self.title = make_view_title(scene.kinematics)
+            self._camera = replace(make_camera(scene), aspect_index=aspect)
         self.update()
 
-    def show_instant(self, instant: Instant, words: str) -> None:
+    def show_instant(self, instant: SceneInstant, plane_text: str) -> None:
         """Show the machine at an instant, with a text about the plane."""
-        self._instant, self.words = instant, words
+        self._instant, self.words = instant, plane_text
 
     # --- navigation ----------------------------------------------------------------------------------
 
-    def next_view(self) -> None:
+    def select_next_view(self) -> None:
         """Select the next view direction."""
-        self._look(self._camera.following() if self._camera else None)
+        self._look(self._camera.with_next_aspect() if self._camera else None)
 
-    def fit(self) -> None:
+    def fit_all(self) -> None:
         """Show the whole table."""
-        self._look(self._camera.fitted() if self._camera else None)
+        self._look(self._camera.with_full_view() if self._camera else None)
 
-    def zoom(self, steps: int) -> None:
+    def zoom_view(self, steps: int) -> None:
         """Zoom in by a number of steps. Negative steps zoom out."""
-        self._look(self._camera.zoomed(steps) if self._camera else None)
+        self._look(self._camera.with_zoom(steps) if self._camera else None)
 
-    def pan(self, across: int, down: int) -> None:
+    def pan_view(self, across: int, down: int) -> None:
         """Move the visible area to the right and down by a number of steps."""
-        self._look(self._camera.panned(across, down) if self._camera else None)
+        self._look(self._camera.with_pan(across, down) if self._camera else None)
 
     def _look(self, camera: Camera | None) -> None:
         if camera is not None:
@@ -117,11 +117,11 @@ class WorkingPlaneView(Panel):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom with the mouse wheel."""
-        self.zoom(1 if event.angleDelta().y() > 0 else -1)
+        self.zoom_view(1 if event.angleDelta().y() > 0 else -1)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press a button of the view, or start a drag."""
-        if not self.touch(event.position()):
+        if not self.press_at(event.position()):
             self._held = event.position()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
@@ -132,7 +132,7 @@ class WorkingPlaneView(Panel):
         across, down = (int(side / _DRAG_STEP) for side in (way.x(), way.y()))
         if across or down:
             self._held = event.position()
-            self.pan(-across, -down)
+            self.pan_view(-across, -down)
 
     def mouseReleaseEvent(self, _event: QMouseEvent) -> None:
         """End a drag."""
@@ -140,13 +140,13 @@ class WorkingPlaneView(Panel):
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         room = self.inside()
         if self._scene is None or self._instant is None or self._camera is None:
             return
-        from app.working_plane.plane_drawing import figure
+        from app.working_plane.plane_drawing import draw_scene
 
-        made = figure(self._scene, self._instant, self._camera, room.width(), room.height())
+        made = draw_scene(self._scene, self._instant, self._camera, room.width(), room.height())
         painter.save()
         painter.setClipRect(room)
         painter.translate(room.topLeft())
@@ -157,18 +157,20 @@ class WorkingPlaneView(Panel):
         painter.restore()
         self._words(painter, room)
 
-    def _face(self, painter: Painter, face: Face) -> None:
-        fill, share, edge = _FILLS[face.role]
-        colour = self.look.colour(fill)
+    def _face(self, painter: ThemedPainter, face: DrawnFace) -> None:
+        fill, share, edge = _FACE_COLORS[face.role]
+        colour = self.theme.color(fill)
         colour.setAlpha(share)
         painter.setBrush(colour)
-        painter.setPen(self.look.pen(edge, 0.10))
+        painter.setPen(self.theme.make_pen(edge, 0.10))
         painter.drawPolygon(_polygon(face.points))
 
-    def _stroke(self, painter: Painter, stroke: Stroke) -> None:
-        colour, width, dashed = _STROKES[stroke.role]
-        pen = QPen(self.look.pen(colour, width))
-        fine = len(stroke.points) <= SMOOTH  # A wide, antialiased pen would take 0.1 s for longer lines.
+    def _stroke(self, painter: ThemedPainter, stroke: DrawnStroke) -> None:
+        colour, width, dashed = _STROKE_STYLES[stroke.role]
+        pen = QPen(self.theme.make_pen(colour, width))
+        fine = (
+            len(stroke.points) <= MAX_SMOOTH_POINTS
+        )  # A wide, antialiased pen would take 0.1 s for longer lines.
         if not fine:
             pen.setWidth(1)
         elif dashed:
@@ -178,21 +180,21 @@ class WorkingPlaneView(Panel):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, fine)
         painter.drawPolyline(_polygon(stroke.points))
         if stroke.name:
-            u = self.look.u
+            u = self.theme.u
             x, y = stroke.points[-1].tolist()
-            painter.setFont(self.look.font(1.6, bold=True))
-            put_raw(painter, QRectF(x - 2 * u, y - 1.4 * u, 4 * u, 2.2 * u), CENTRE, stroke.name)
+            painter.setFont(self.theme.make_font(1.6, is_bold=True))
+            draw_raw_text(painter, QRectF(x - 2 * u, y - 1.4 * u, 4 * u, 2.2 * u), ALIGN_CENTER, stroke.name)
 
-    def _words(self, painter: Painter, room: QRectF) -> None:
-        u = self.look.u
+    def _words(self, painter: ThemedPainter, room: QRectF) -> None:
+        u = self.theme.u
         foot = room.adjusted(0, room.height() - 2.4 * u, 0, 0)
-        painter.write(foot, self.words, 1.7, "text", raw=True)
+        painter.draw_text_line(foot, self.words, 1.7, "text", raw=True)
         assert self._camera is not None
         button = QRectF(room.right() - 8 * u, room.top(), 8 * u, 3.4 * u)
-        self.key(painter, button, tr(self._camera.shown.name), 1.6, self.next_view)
+        self.key(painter, button, tr(self._camera.view_aspect.name), 1.6, self.select_next_view)
 
 
 def _polygon(points: FloatArray) -> QPolygonF:
-    from app.path.path_layers_view import polygon
+    from app.path.path_layers_view import make_polygon
 
-    return polygon(points[:, 0], points[:, 1])
+    return make_polygon(points[:, 0], points[:, 1])

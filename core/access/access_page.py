@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from core.access.access_table import NEVER, RULES, Level
+from core.access.access_table import ACCESS_RULES, NEVER_PERMITTED, AccessLevel
 
 _HEAD = """\
 # What each access level may change
@@ -31,27 +31,29 @@ This page is generated from `core/access/access_table.py` by
 """
 
 
-def page() -> str:
+def make_page() -> str:
     """Return the text of the page."""
-    return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER)) + "".join(_lines())
+    return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER_PERMITTED)) + "".join(_lines())
 
 
 def _lines() -> Iterator[str]:
-    for level in Level:
+    for level in AccessLevel:
         yield f"\n## {level.name}\n\n| what may be changed | page | command |\n|---|---|---|\n"
-        for rule in RULES.values():
+        for rule in ACCESS_RULES.values():
             if rule.level is level:
                 commands = (
-                    ", ".join(f"`{each.strip()}`" for each in rule.command.split(",")) if rule.command else ""
+                    ", ".join(f"`{each.strip()}`" for each in rule.commands.split(","))
+                    if rule.commands
+                    else ""
                 )
-                yield f"| {rule.what} | {rule.where} | {commands} |\n"
+                yield f"| {rule.what} | {rule.pages} | {commands} |\n"
 
 
-def main(argv: list[str]) -> int:
+def write_page(argv: list[str]) -> int:
     """Write the page to the named file."""
-    Path(argv[0]).write_text(page(), encoding="utf-8")
+    Path(argv[0]).write_text(make_page(), encoding="utf-8")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(write_page(sys.argv[1:]))

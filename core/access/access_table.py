@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import Enum, IntEnum
 
 
-class Level(IntEnum):
+class AccessLevel(IntEnum):
     """An access level. Each level includes the permissions of the lower levels."""
 
     OPERATOR = 1
@@ -19,7 +19,7 @@ class Level(IntEnum):
     SERVICE = 3
 
 
-class Act(Enum):
+class ProtectedChange(Enum):
     """A protected change, with its name on the screen."""
 
     WEAR = "WEAR AND SECONDARY OFFSETS"
@@ -49,109 +49,123 @@ class Act(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class AccessRule:
     """The minimum level for a change, its description, and its pages and commands."""
 
-    level: Level
+    level: AccessLevel
     what: str
-    where: str
-    command: str = ""
+    pages: str
+    commands: str = ""
 
 
-RULES: dict[Act, Rule] = {
-    Act.WEAR: Rule(
-        Level.OPERATOR,
+ACCESS_RULES: dict[ProtectedChange, AccessRule] = {
+    ProtectedChange.WEAR: AccessRule(
+        AccessLevel.OPERATOR,
         "tool wear values and tool remarks; secondary offsets; DL, DR and DR2 of a "
         "mill's tools; undoing changes to these values",
         "F8, F9, W",
         "offsets set, offsets clear D, offsets undo secondary",
     ),
-    Act.COUNTS: Rule(
-        Level.OPERATOR, "the part count, and the target count at which production stops", "F10 PARTS COUNTER"
+    ProtectedChange.COUNTS: AccessRule(
+        AccessLevel.OPERATOR,
+        "the part count, and the target count at which production stops",
+        "F10 PARTS COUNTER",
     ),
-    Act.INSERTS: Rule(
-        Level.OPERATOR,
+    ProtectedChange.INSERTS: AccessRule(
+        AccessLevel.OPERATOR,
         "replacing an insert or a tool, which resets the tool life count to zero",
         "key W; on a mill also key F8",
     ),
-    Act.READINGS: Rule(Level.OPERATOR, "entering and deleting the measured values of parts", "W"),
-    Act.JOBS: Rule(Level.OPERATOR, "jobs in the queue, with their order, part counts and notes", "J", "jobs"),
-    Act.SCREEN: Rule(Level.OPERATOR, "units, language, colors, sounds, notes, paper size", "F10"),
-    Act.INPUTS: Rule(Level.OPERATOR, "the inputs of a simulated machine", "F10 INPUTS AND OUTPUTS"),
-    Act.BACKUPS: Rule(
-        Level.OPERATOR, "making a backup or an export", "F10", "store backup, store export, setup save"
+    ProtectedChange.READINGS: AccessRule(
+        AccessLevel.OPERATOR, "entering and deleting the measured values of parts", "W"
     ),
-    Act.TOOLS: Rule(
-        Level.SETUP,
+    ProtectedChange.JOBS: AccessRule(
+        AccessLevel.OPERATOR, "jobs in the queue, with their order, part counts and notes", "J", "jobs"
+    ),
+    ProtectedChange.SCREEN: AccessRule(
+        AccessLevel.OPERATOR, "units, language, colors, sounds, notes, paper size", "F10"
+    ),
+    ProtectedChange.INPUTS: AccessRule(
+        AccessLevel.OPERATOR, "the inputs of a simulated machine", "F10 INPUTS AND OUTPUTS"
+    ),
+    ProtectedChange.BACKUPS: AccessRule(
+        AccessLevel.OPERATOR, "making a backup or an export", "F10", "store backup, store export, setup save"
+    ),
+    ProtectedChange.TOOLS: AccessRule(
+        AccessLevel.SETUP,
         "entering or touching off a tool's position, nose radius, tip quadrant and "
         "master tool; editing the tools of a mill; undoing or clearing these values",
         "F8, F5",
         "offsets set, offsets clear, offsets undo, tools import",
     ),
-    Act.SHAPES: Rule(Level.SETUP, "the shape of a tool", "F8 twice", "offsets set T3 kind=…, tools import"),
-    Act.ZEROS: Rule(Level.SETUP, "G54 to G59", "G", "offsets set G54"),
-    Act.PRESETS: Rule(
-        Level.SETUP,
+    ProtectedChange.SHAPES: AccessRule(
+        AccessLevel.SETUP, "the shape of a tool", "F8 twice", "offsets set T3 kind=…, tools import"
+    ),
+    ProtectedChange.ZEROS: AccessRule(AccessLevel.SETUP, "G54 to G59", "G", "offsets set G54"),
+    ProtectedChange.PRESETS: AccessRule(
+        AccessLevel.SETUP,
         "presets of a mill, and the selection of the active preset",
         "keys F9 and F5 on a mill",
         "offsets set",
     ),
-    Act.PROGRAMS: Rule(
-        Level.SETUP,
+    ProtectedChange.PROGRAMS: AccessRule(
+        AccessLevel.SETUP,
         "saving, copying, renaming, deleting, importing and receiving programs; "
         "publishing a program from the command line; accepting another control's "
         "version or keeping this control's own version",
         "F3, F6, F10, X",
         "serial receive, share publish, share take, share keep, profile --out, shapes --out",
     ),
-    Act.STOCK: Rule(
-        Level.SETUP,
+    ProtectedChange.STOCK: AccessRule(
+        AccessLevel.SETUP,
         "stock, stick-out and disabled checks of a program",
         "B",
         "prove --keep-stock, run --keep-stock",
     ),
-    Act.LIVES: Rule(
-        Level.SETUP, "tool life limits, and whether production stops when a limit is reached", "W"
+    ProtectedChange.LIVES: AccessRule(
+        AccessLevel.SETUP, "tool life limits, and whether production stops when a limit is reached", "W"
     ),
-    Act.FEATURES: Rule(
-        Level.SETUP,
+    ProtectedChange.FEATURES: AccessRule(
+        AccessLevel.SETUP,
         "features to measure on a part, whether production waits for the measurement, and shift hours",
         "W",
     ),
-    Act.TRANSFER: Rule(Level.SETUP, "serial port settings", "F10 RS-232"),
-    Act.RECORDS: Rule(
-        Level.SETUP, "deleting a saved scope record; every access level can save a record", "Q"
+    ProtectedChange.TRANSFER: AccessRule(AccessLevel.SETUP, "serial port settings", "F10 RS-232"),
+    ProtectedChange.RECORDS: AccessRule(
+        AccessLevel.SETUP, "deleting a saved scope record; every access level can save a record", "Q"
     ),
-    Act.SPINDLE_LIMIT: Rule(
-        Level.SETUP,
+    ProtectedChange.SPINDLE_LIMIT: AccessRule(
+        AccessLevel.SETUP,
         "removing or raising the spindle speed limit; everyone can lower it",
         "F10 MAXIMUM SPINDLE SPEED",
     ),
-    Act.OUTPUTS: Rule(
-        Level.SETUP,
+    ProtectedChange.OUTPUTS: AccessRule(
+        AccessLevel.SETUP,
         "switching an output by its name; everyone can use the lamp test",
         "F10 INPUTS AND OUTPUTS",
     ),
-    Act.MACHINE_FILE: Rule(
-        Level.SERVICE, "accepting a changed machine file", "F10 MACHINE FILE", "machine accept"
+    ProtectedChange.MACHINE_FILE: AccessRule(
+        AccessLevel.SERVICE, "accepting a changed machine file", "F10 MACHINE FILE", "machine accept"
     ),
-    Act.RESTORE: Rule(
-        Level.SERVICE,
+    ProtectedChange.RESTORE: AccessRule(
+        AccessLevel.SERVICE,
         "replacing the stored data with a backup, an export or a setup",
         "F10 BACKUP AND RESTORE",
         "store restore, store import, setup load",
     ),
-    Act.SHARED_PLACE: Rule(
-        Level.SERVICE,
+    ProtectedChange.SHARED_PLACE: AccessRule(
+        AccessLevel.SERVICE,
         "setting up the shared location for programs; giving this control the name of a "
         "control that no longer exists",
         "",
         "share begin, share publish --claim",
     ),
-    Act.PEOPLE: Rule(Level.SERVICE, "users, their levels and PINs", "F10 ACCESS LEVELS", "access"),
+    ProtectedChange.PEOPLE: AccessRule(
+        AccessLevel.SERVICE, "users, their levels and PINs", "F10 ACCESS LEVELS", "access"
+    ),
 }
 
-NEVER = (
+NEVER_PERMITTED = (
     "E-stop",
     "feed hold",
     "Reset",
@@ -163,6 +177,6 @@ NEVER = (
 """What no level ever stands in the way of."""
 
 
-def level_for(act: Act) -> Level:
+def get_required_level(act: ProtectedChange) -> AccessLevel:
     """Return the minimum level for a change."""
-    return RULES[act].level
+    return ACCESS_RULES[act].level

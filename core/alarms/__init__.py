@@ -5,22 +5,24 @@ Each alarm is one entry in the file of its subject, under its code. No alarm exi
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import Code as Code
-from core.alarms.alarm_entry import Entries
-from core.alarms.alarm_entry import Entry as Entry
+from core.alarms.alarm_entry import AlarmCode as AlarmCode
+from core.alarms.alarm_entry import AlarmEntries
+from core.alarms.alarm_entry import AlarmEntry as AlarmEntry
 from core.alarms.alarm_entry import Reaction as Reaction
-from core.alarms.axis_alarms import AXES
-from core.alarms.bus_alarms import WIRES
-from core.alarms.control_alarms import CONTROL, PROGRAM, STATION
-from core.alarms.spindle_alarms import CHUCK, SPINDLE
+from core.alarms.axis_alarms import AXIS_ALARMS
+from core.alarms.bus_alarms import CONNECTION_ALARMS
+from core.alarms.control_alarms import CONTROL_ALARMS, PROGRAM_ALARMS, STOP_AND_HOLD_ALARMS
+from core.alarms.spindle_alarms import COLLET_ALARMS, SPINDLE_ALARMS
 
-SUBJECTS: tuple[tuple[str, Entries], ...] = (
-    ("Axes and axis drives", AXES),
-    ("Spindle, C axis and threads", SPINDLE),
-    ("Collet", CHUCK),
-    ("Program", PROGRAM),
-    ("Bus, driver host and controller", WIRES),
-    ("Operator station and stops", STATION),
-    ("Control", CONTROL),
+SUBJECTS: tuple[tuple[str, AlarmEntries], ...] = (
+    ("Axes and axis drives", AXIS_ALARMS),
+    ("Spindle, C axis and threads", SPINDLE_ALARMS),
+    ("Collet", COLLET_ALARMS),
+    ("Program", PROGRAM_ALARMS),
+    ("Bus, driver host and controller", CONNECTION_ALARMS),
+    ("Operator station and stops", STOP_AND_HOLD_ALARMS),
+    ("Control", CONTROL_ALARMS),
 )
-CATALOGUE: dict[Code, Entry] = {code: entry for _, entries in SUBJECTS for code, entry in entries.items()}
+CATALOGUE: dict[AlarmCode, AlarmEntry] = {
+    code: entry for _, entries in SUBJECTS for code, entry in entries.items()
+}

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 from core.faults import FaultCode
 
 # Codes of the control; those of drivers are in ``core.faults``.
-OwnCode = Literal[
+ControlAlarmCode = Literal[
     # axes, spindle, thread
     "in-position",
     "standstill",
@@ -59,13 +59,13 @@ OwnCode = Literal[
     "single-block",
     "by-hand",
 ]
-Code = Literal[FaultCode, OwnCode]
+AlarmCode = Literal[FaultCode, ControlAlarmCode]
 
 
 class Reaction(Enum):
     """The reaction of the machine to an alarm. One supervisor carries it out for all drivers."""
 
-    OFF = (
+    DRIVES_OFF = (
         "the axes brake and their drives lose power, the spindle is switched off, and the "
         "outputs go to their safe state; press Reset to acknowledge"
     )
@@ -74,14 +74,14 @@ class Reaction(Enum):
         "to their safe state; press Reset to acknowledge"
     )
     HOLD = "the axes stop on the path and the spindle continues to turn; press Cycle Start to resume"
-    ASKED = "a stop requested by a button or by the program"
+    REQUESTED = "a stop requested by a button or by the program"
 
 
-class Entry(NamedTuple):
+class AlarmEntry(NamedTuple):
     """An entry of the alarm catalog: ``text``, ``causes`` with the likeliest first, and ``remedy``.
 
-    ``tells`` means that the details of the alarm (an axis, a line, the text of a drive) are shown to the
-    operator before the causes. Otherwise they are only logged.
+    ``shows_detail`` means that the details of the alarm (an axis, a line, the text of a drive) are shown to
+    the operator before the causes. Otherwise they are only logged.
     """
 
     number: int
@@ -89,10 +89,10 @@ class Entry(NamedTuple):
     causes: tuple[str, ...]
     remedy: str
     reaction: Reaction
-    tells: bool = False
+    shows_detail: bool = False
 
 
-Entries = Mapping[Code, Entry]
+AlarmEntries = Mapping[AlarmCode, AlarmEntry]
 # Constructors of catalog entries, one for each reaction.
-off, stop = partial(Entry, reaction=Reaction.OFF), partial(Entry, reaction=Reaction.STOP)
-hold, asked = partial(Entry, reaction=Reaction.HOLD), partial(Entry, reaction=Reaction.ASKED)
+off, stop = partial(AlarmEntry, reaction=Reaction.DRIVES_OFF), partial(AlarmEntry, reaction=Reaction.STOP)
+hold, asked = partial(AlarmEntry, reaction=Reaction.HOLD), partial(AlarmEntry, reaction=Reaction.REQUESTED)

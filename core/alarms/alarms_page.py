@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from core.alarms import SUBJECTS
-from core.alarms.alarm_entry import Entry, Reaction
+from core.alarms.alarm_entry import AlarmEntry, Reaction
 from core.message import Message
-from core.page_contents import contents
+from core.page_contents import make_contents
 
 _HEAD = """\
 # Alarms, holds and stops
@@ -28,21 +28,21 @@ the program line and the drive's own text if they are known. Technical details a
 The kind in parentheses is what the alarm does:
 """
 _KINDS = {
-    Reaction.OFF: "alarm that switches the drives off",
+    Reaction.DRIVES_OFF: "alarm that switches the drives off",
     Reaction.STOP: "alarm",
     Reaction.HOLD: "hold",
-    Reaction.ASKED: "stop",
+    Reaction.REQUESTED: "stop",
 }
 
 
-def kind_of(reaction: Reaction) -> str:
+def alarm_kind(reaction: Reaction) -> str:
     """Return the kind of alarm that causes a reaction."""
     return _KINDS[reaction]
 
 
-def document() -> str:
+def render_page() -> str:
     """Return the text of the page."""
-    head = _HEAD.format(contents=contents(title for title, _ in SUBJECTS))
+    head = _HEAD.format(contents=make_contents(title for title, _ in SUBJECTS))
     return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 
 
@@ -58,8 +58,8 @@ def _subjects() -> Iterator[str]:
             yield from _entry(entry)
 
 
-def _entry(entry: Entry) -> Iterator[str]:
-    yield f"**{entry.number} {entry.text.upper()}** ({kind_of(entry.reaction)})  "
+def _entry(entry: AlarmEntry) -> Iterator[str]:
+    yield f"**{entry.number} {entry.text.upper()}** ({alarm_kind(entry.reaction)})  "
     yield Message("Likely causes: {causes}.  ", causes="; ".join(entry.causes))
     yield f"Remedy: {entry.remedy}."
     yield ""
@@ -67,7 +67,7 @@ def _entry(entry: Entry) -> Iterator[str]:
 
 def main(argv: list[str]) -> int:
     """Write the page to the named file."""
-    Path(argv[0]).write_text(document(), encoding="utf-8")
+    Path(argv[0]).write_text(render_page(), encoding="utf-8")
     return 0
 
 

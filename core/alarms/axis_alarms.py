@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import Entries, off, stop
+from core.alarms.alarm_entry import AlarmEntries, off, stop
 
-AXES: Entries = {
+AXIS_ALARMS: AlarmEntries = {
     "axis": off(
         101,
         "axis drive fault",
@@ -14,7 +14,7 @@ AXES: Entries = {
             ("the axis is blocked"),
         ),
         "Read the drive's display and correct the cause. Press Reset, then Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "following": off(
         102,
@@ -26,7 +26,7 @@ AXES: Entries = {
         ),
         "Check where the tool is and free the axis. Press Reset, then Drives On. Home any "
         "axis shown as not homed",
-        tells=True,
+        shows_detail=True,
     ),
     "in-position": stop(
         103,
@@ -37,7 +37,7 @@ AXES: Entries = {
             "the in-position window in the machine file is too narrow",
         ),
         "Find what prevents the axis from reaching its position, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
     "driver": off(
         104,
@@ -57,7 +57,7 @@ AXES: Entries = {
             "a fuse or the drive power supply has failed",
         ),
         "Close the safety circuit. Press Reset, then Drives On. Home any axis shown as not homed",
-        tells=True,
+        shows_detail=True,
     ),
     "no-power": off(
         106,
@@ -68,7 +68,7 @@ AXES: Entries = {
             "a drive shows a fault",
         ),
         "Release the E-stop and switch on the drives' power. Press Reset, then Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "drive-silent": off(
         107,
@@ -79,7 +79,7 @@ AXES: Entries = {
             "the drive has failed",
         ),
         "Check the drive's power and bus cable. Press Reset, then Drives On, and home again",
-        tells=True,
+        shows_detail=True,
     ),
     "drive-restarted": off(
         108,
@@ -89,7 +89,7 @@ AXES: Entries = {
             "someone reset the drive, or the drive is being operated with its own software",
         ),
         "Check the drive's power supply. Press Reset, then Drives On, and home again",
-        tells=True,
+        shows_detail=True,
     ),
     "drive-setup": off(
         109,
@@ -101,7 +101,7 @@ AXES: Entries = {
         ),
         "In a terminal, run 'turndesk machine check' with the machine file to find the "
         "rejected setting. Correct the setting, then press Reset and Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "drive-keeps-fault": off(
         110,
@@ -111,7 +111,7 @@ AXES: Entries = {
             ("the drive must be switched off and on again"),
         ),
         "Read the drive's display. If the fault does not clear, switch the machine off and on",
-        tells=True,
+        shows_detail=True,
     ),
     "limit-switch": off(
         111,
@@ -123,7 +123,7 @@ AXES: Entries = {
         ),
         "If the axis is still on its limit switch, first turn the axis by hand until it is "
         "off the switch. Press Reset, then Drives On, and home the axis",
-        tells=True,
+        shows_detail=True,
     ),
     "homing": off(
         112,
@@ -136,14 +136,14 @@ AXES: Entries = {
             ("the axis is blocked"),
         ),
         "Check the home switch and the homing direction. Press Reset, then Drives On, and home again",
-        tells=True,
+        shows_detail=True,
     ),
     "position-lost": off(
         113,
         "position lost",
         ("the controller was stopped while the axes were moving", "an axis limit was hit"),
         "Press Reset, then Drives On. Home all axes before starting anything",
-        tells=True,
+        shows_detail=True,
     ),
     "drive-limits": off(
         114,
@@ -154,7 +154,7 @@ AXES: Entries = {
         ),
         "Press Reset, then Drives On. Compare the machine file with the drive settings "
         "before running the program again",
-        tells=True,
+        shows_detail=True,
     ),
     "queue-dry": off(
         115,
@@ -173,7 +173,7 @@ AXES: Entries = {
         ),
         "Keep clear of the axis: the axis may jump when freed. Find what is holding "
         "the axis, then press Reset and Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "encoder-still": off(
         117,
@@ -188,7 +188,7 @@ AXES: Entries = {
         ),
         "Check the actual position of the axis. Check the encoder and its coupling. "
         "Press Reset, then Drives On. Home any axis shown as not homed",
-        tells=True,
+        shows_detail=True,
     ),
     "moved-unasked": off(
         118,
@@ -199,6 +199,6 @@ AXES: Entries = {
             "the drive is being moved by its own software or by a pendant",
         ),
         "Check where the axis is and that nothing is in its path. Press Reset, then Drives On",
-        tells=True,
+        shows_detail=True,
     ),
 }

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import Code, Entries, off, stop
+from core.alarms.alarm_entry import AlarmCode, AlarmEntries, off, stop
 
 # After these alarms no command reaches the machine, so a failed safe stop is only a consequence of them.
-CUT_OFF: frozenset[Code] = frozenset(
+CONNECTION_LOSS_CODES: frozenset[AlarmCode] = frozenset(
     (
         *("bus", "feeder-gone", "feeder-silent", "controller-lost"),
         *("hal-bridge", "hal-silent", "hal-thread", "hal-board", "hal-setup"),
     )
 )
-WIRES: Entries = {
+CONNECTION_ALARMS: AlarmEntries = {
     "bus": off(
         501,
         "the drive bus has failed",
@@ -22,7 +22,7 @@ WIRES: Entries = {
         ),
         "PRESS E-STOP: the spindle may be turning. Check cable, terminators and interface, "
         "then press Reset to reopen the bus",
-        tells=True,
+        shows_detail=True,
     ),
     "io-silent": off(
         502,
@@ -33,7 +33,7 @@ WIRES: Entries = {
         ),
         "Check the module's power and cable, then press Reset and Drives On. Its "
         "outputs were off: check clamps, brakes and valves",
-        tells=True,
+        shows_detail=True,
     ),
     "output": stop(
         503,
@@ -43,7 +43,7 @@ WIRES: Entries = {
             ("the output module has failed"),
         ),
         "Check the definition of the output in the machine file, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
     "feeder-gone": off(
         511,
@@ -99,7 +99,7 @@ WIRES: Entries = {
         ),
         "Press Reset, then Drives On. Compare the controller's settings with the machine "
         "file ('turndesk machine check')",
-        tells=True,
+        shows_detail=True,
     ),
     "controller-alarm": off(
         525,
@@ -107,7 +107,7 @@ WIRES: Entries = {
         ("the motion controller reported an alarm, whose number this alarm shows",),
         "Look up the controller's alarm number in its manual and correct the cause. Press "
         "Reset, then Drives On. Home any axis shown as not homed",
-        tells=True,
+        shows_detail=True,
     ),
     "controller-modes": off(
         526,
@@ -117,7 +117,7 @@ WIRES: Entries = {
             ("the controller was reset, but the reset was not detected"),
         ),
         "Close any other software that uses the controller. Press Reset, then Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "controller-estop": off(
         527,
@@ -130,7 +130,7 @@ WIRES: Entries = {
         "the safety door is open",
         ("the door was opened during the cycle", "a fault in the door switch or its cable"),
         "The spindle and coolant are off. Close the door, then press Reset and Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "hal-bridge": off(
         531,
@@ -144,7 +144,7 @@ WIRES: Entries = {
         ),
         "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to "
         "restart HAL. Home any axis shown as not homed",
-        tells=True,
+        shows_detail=True,
     ),
     "hal-silent": off(
         532,
@@ -158,7 +158,7 @@ WIRES: Entries = {
         ),
         "PRESS E-STOP: the spindle may be turning. Check where the tool is and close other "
         "programs, then press Reset and Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "hal-thread": off(
         533,
@@ -195,6 +195,6 @@ WIRES: Entries = {
         ),
         "In a terminal, run 'turndesk machine check' with the machine file to list every "
         "pin. Correct the fault, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
 }

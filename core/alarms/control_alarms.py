@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import Entries, asked, hold, off, stop
+from core.alarms.alarm_entry import AlarmEntries, asked, hold, off, stop
 
-CONTROL: Entries = {
+CONTROL_ALARMS: AlarmEntries = {
     "internal": off(
         901,
         "the control has failed",
@@ -29,7 +29,7 @@ CONTROL: Entries = {
             "an internal error in TurnDesk; see the log",
         ),
         "PRESS E-STOP and switch the machine off. Save the log (F10), then exit and restart TurnDesk",
-        tells=True,
+        shows_detail=True,
     ),
     "control-silent": off(
         908,
@@ -47,7 +47,7 @@ CONTROL: Entries = {
         ),
         "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
         "updates. Press R to restart the control, or exit and restart TurnDesk",
-        tells=True,
+        shows_detail=True,
     ),
     "feeder-tripped": hold(
         906,
@@ -59,7 +59,7 @@ CONTROL: Entries = {
         ),
         "Check the tool. Read what will restart, then press Cycle Start. Measure this part, "
         "and count it by hand if it is good (F10, 2, F2)",
-        tells=True,
+        shows_detail=True,
     ),
     "switched-off": hold(
         907,
@@ -70,7 +70,7 @@ CONTROL: Entries = {
         ),
         "Find the cause. Read the list of outputs that will be restored, then press Cycle "
         "Start. Measure this part, because it is not counted",
-        tells=True,
+        shows_detail=True,
     ),
     "late": hold(
         903,
@@ -96,7 +96,7 @@ CONTROL: Entries = {
 # --- program --------------------------------------------------------------------------------------------
 
 
-PROGRAM: Entries = {
+PROGRAM_ALARMS: AlarmEntries = {
     "program": stop(
         401,
         "program error",
@@ -105,7 +105,7 @@ PROGRAM: Entries = {
             "an input or a counter made the program jump to a line that had never run before",
         ),
         "Correct the line in the editor (F3) and load the program again",
-        tells=True,
+        shows_detail=True,
     ),
     "travel": stop(
         402,
@@ -115,7 +115,7 @@ PROGRAM: Entries = {
             "the axes were not at the start position for which the program was proved",
         ),
         "Check the tool offset and the start position of the axes, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
     "no-end": stop(
         403,
@@ -126,13 +126,13 @@ PROGRAM: Entries = {
 }
 
 
-STATION: Entries = {
+STOP_AND_HOLD_ALARMS: AlarmEntries = {
     "held": hold(
         600,
         "feed hold set by TurnDesk",
         ("the text of this alarm shows the cause",),
         "Correct the cause shown, then press Cycle Start",
-        tells=True,
+        shows_detail=True,
     ),
     "station-silent": hold(
         601,
@@ -160,7 +160,7 @@ STATION: Entries = {
         ("the pendant was unplugged", "a fault in the pendant's cable or hub"),
         "Plug the pendant in again, then press Cycle Start. To work without the "
         "pendant, remove [pendant] and all pendant entries from the machine file",
-        tells=True,
+        shows_detail=True,
     ),
     "controller-holds": hold(
         603,
@@ -173,35 +173,35 @@ STATION: Entries = {
         "E-stop",
         ("an E-stop button was pressed", "the safety circuit has opened"),
         "Make the machine safe, release the E-stop button, then press Drives On",
-        tells=True,
+        shows_detail=True,
     ),
     "feed-hold": asked(
         702,
         "feed hold",
         ("feed hold was pressed",),
         "Press Cycle Start to resume or Reset to cancel the program",
-        tells=True,
+        shows_detail=True,
     ),
     "reset": asked(
         703,
         "reset",
         ("Reset was pressed and the program was canceled",),
         "Check where the tool is before starting anything",
-        tells=True,
+        shows_detail=True,
     ),
     "program-stop": asked(
         704,
         "program stop",
         ("M00 in the program",),
         "Follow the program message, then press Cycle Start",
-        tells=True,
+        shows_detail=True,
     ),
     "optional-stop": asked(
         705,
         "optional stop",
         ("M01 in the program, and Optional Stop is on",),
         "Press Cycle Start to resume. Press O to switch Optional Stop off",
-        tells=True,
+        shows_detail=True,
     ),
     "single-block": asked(
         706,
@@ -214,6 +214,6 @@ STATION: Entries = {
         "spindle stopped manually",
         ("the spindle was stopped manually",),
         "No action needed: the stop was requested",
-        tells=True,
+        shows_detail=True,
     ),
 }

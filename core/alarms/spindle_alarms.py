@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import Entries, hold, off, stop
+from core.alarms.alarm_entry import AlarmEntries, hold, off, stop
 
-SPINDLE: Entries = {
+SPINDLE_ALARMS: AlarmEntries = {
     "spindle": stop(
         201,
         "spindle drive fault",
@@ -14,7 +14,7 @@ SPINDLE: Entries = {
             "a fault in the drive's power supply or motor cable",
         ),
         "Read the drive's display, correct the cause, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
     "at-speed": stop(
         202,
@@ -28,7 +28,7 @@ SPINDLE: Entries = {
             "the spindle was stopped externally",
         ),
         "Check the spindle, then press Reset. Test the speed in MDI before running the program again",
-        tells=True,
+        shows_detail=True,
     ),
     "ignores-stop": stop(
         203,
@@ -41,14 +41,14 @@ SPINDLE: Entries = {
             "the spindle was started locally at its drive",
         ),
         "PRESS E-STOP. Find the cause before starting the spindle again",
-        tells=True,
+        shows_detail=True,
     ),
     "spindle-still": stop(
         204,
         "feed per revolution with spindle stopped",
         ("M03 or M04 is missing before the cut",),
         "Start the spindle in the program before this line",
-        tells=True,
+        shows_detail=True,
     ),
     "thread-lost": stop(
         205,
@@ -59,14 +59,14 @@ SPINDLE: Entries = {
             "the spindle was switched off during the threading pass",
         ),
         "X has retracted and the thread is not finished. Check the part and the insert",
-        tells=True,
+        shows_detail=True,
     ),
     "c-is-spindle": stop(
         206,
         "C axis move with spindle turning",
         ("the spindle is the C axis on this machine, and M05 is missing before this line",),
         "Add M05 before this line and load the program again",
-        tells=True,
+        shows_detail=True,
     ),
     "spindle-off": stop(
         207,
@@ -77,7 +77,7 @@ SPINDLE: Entries = {
             "the spindle is engaged as the C axis",
         ),
         "Correct the cause shown, press Reset and start again",
-        tells=True,
+        shows_detail=True,
     ),
     "inverter-silent": stop(
         208,
@@ -88,7 +88,7 @@ SPINDLE: Entries = {
             ("wrong baud rate or address"),
         ),
         "IF THE SPINDLE IS TURNING, PRESS E-STOP. Check the inverter's cable and power, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
     "spindle-disagrees": stop(
         209,
@@ -99,7 +99,7 @@ SPINDLE: Entries = {
             ("wrong encoder counts per revolution in the machine file"),
         ),
         "PRESS E-STOP. Check the belt and the encoder before starting the spindle again",
-        tells=True,
+        shows_detail=True,
     ),
     "spindle-encoder": stop(
         210,
@@ -110,7 +110,7 @@ SPINDLE: Entries = {
             "the encoder has restarted or reports a fault",
         ),
         "Check the encoder and its cable, then press Reset. Threads cannot be cut without the encoder",
-        tells=True,
+        shows_detail=True,
     ),
     "c-coupling": off(
         211,
@@ -121,14 +121,14 @@ SPINDLE: Entries = {
             ("power was lost during the switch to C-axis mode"),
         ),
         "Press Reset, then Drives On. Test M19 in MDI",
-        tells=True,
+        shows_detail=True,
     ),
     "thread-no-encoder": stop(
         212,
         "threading requires a running spindle",
         ("M03 or M04 is missing before the thread", "the spindle of this machine does not have an encoder"),
         "Start the spindle before the thread. Without an encoder, use a die or a tap",
-        tells=True,
+        shows_detail=True,
     ),
     "spindle-orient": stop(
         213,
@@ -143,7 +143,7 @@ SPINDLE: Entries = {
         ),
         "Before moving any axis, check whether a boring bar is still in its hole. Press "
         "Reset, then test the spindle orientation in MDI",
-        tells=True,
+        shows_detail=True,
     ),
     "spindle-slow": hold(
         221,
@@ -192,7 +192,7 @@ SPINDLE: Entries = {
     ),
 }
 
-CHUCK: Entries = {
+COLLET_ALARMS: AlarmEntries = {
     "collet-open": stop(
         301,
         "spindle start with the collet open",
@@ -201,14 +201,14 @@ CHUCK: Entries = {
             "the collet switch does not respond",
         ),
         "Close the collet with M12, press Reset and start again",
-        tells=True,
+        shows_detail=True,
     ),
     "unclamp": stop(
         302,
         "collet unclamp not permitted",
         ("the spindle is still turning when the program opens the collet",),
         "Add M05 before M13 and load the program again",
-        tells=True,
+        shows_detail=True,
     ),
     "collet": stop(
         303,
@@ -219,13 +219,13 @@ CHUCK: Entries = {
             "the bar or the part prevents the collet from moving",
         ),
         "Check the air pressure and the collet switch, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
     "collet-lost": stop(
         304,
         "collet has opened",
         ("air pressure was lost while the spindle was turning", "a fault in the switch or its cable"),
         "WAIT UNTIL THE SPINDLE STOPS. Check air, collet and bar, then press Reset",
-        tells=True,
+        shows_detail=True,
     ),
 }

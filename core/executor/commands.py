@@ -14,15 +14,17 @@ from typing import Final
 from core.executor.hand_motion.drive_test import DriveTestPath
 from core.executor.hand_motion.jog_line import Direction
 from core.executor.job import Job, Proof
-from core.executor.snapshot import InterruptedJob, Starts
+from core.executor.snapshot import InterruptedJob, StartAction
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.plain_value import PlainValue
 
-SAME: Final = 0.01  # mm, largest distance between the checked position and the start position
+POSITION_TOLERANCE_MM: Final = (
+    0.01  # mm, largest distance between the checked position and the start position
+)
 
-UNCHECKED: Final = "start-unchecked"
-INSIDE: Final = "tool-in-part"
-CROSSES: Final = "first-move-crosses"
+START_UNCHECKED: Final = "start-unchecked"
+TOOL_IN_PART: Final = "tool-in-part"
+FIRST_MOVE_CROSSES: Final = "first-move-crosses"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,10 +32,11 @@ class Clearance:
     """The result of checking the first move of a job from one position of the axes.
 
     ``job`` is the digest of the job, and ``at`` is the position in machine mm. ``begun`` is the number of
-    runs that had started when the check was made, because a run may change the part. ``code`` is ``INSIDE``
-    or ``CROSSES`` if the start is refused, and ``why`` is the sentence for the operator. Both are empty if
-    the first move is clear. ``warned`` is a warning to show before the start because the part is unknown or
-    assumed. ``repeats`` marks the end position of the program, from which Cycle Repeat starts.
+    runs that had started when the check was made, because a run may change the part. ``code`` is
+    ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES`` if the start is refused, and ``why`` is the sentence for the
+    operator. Both are empty if the first move is clear. ``warned`` is a warning to show before the start
+    because the part is unknown or assumed. ``repeats`` marks the end position of the program, from which
+    Cycle Repeat starts.
     """
 
     job: str
@@ -42,20 +45,29 @@ class Clearance:
     code: str = ""
     why: str = ""
     warned: str = ""
-    repeats: bool = False
+    is_for_repeat: bool = False
 
-    def applies_to(self, job: str, at: Sequence[float], begun: int) -> bool:
+    def applies_to(self, job_digest: str, position: Sequence[float], run_count: int) -> bool:
         """Return whether this clearance is valid for a start of ``job`` from ``at`` after ``begun`` runs."""
-        if self.job != job or (self.begun != begun and not self.repeats):
+        if self.job != job_digest or (self.begun != run_count and not self.is_for_repeat):
             return False
-        return all(abs(a - b) <= SAME for a, b in zip(self.at, at, strict=False))
+        return all(abs(a - b) <= POSITION_TOLERANCE_MM for a, b in zip(self.at, position, strict=False))
 
 
-def verdict(
-    known: Iterable[Clearance], job: str, at: Sequence[float], begun: int, *, repeats: bool = False
+def find_clearance(
+    clearances: Iterable[Clearance],
+    job_digest: str,
+    position: Sequence[float],
+    run_count: int,
+    *,
+    for_repeat: bool = False,
 ) -> Clearance | None:
     """Return the clearance for a start of ``job`` from ``at``, or None if it is not yet computed."""
-    found = (each for each in known if each.repeats is repeats and each.applies_to(job, at, begun))
+    found = (
+        each
+        for each in clearances
+        if each.is_for_repeat is for_repeat and each.applies_to(job_digest, position, run_count)
+    )
     return next(found, None)
 
 
@@ -76,7 +88,7 @@ class LoadJob(Command):
     proof: Proof | None = None
 
 
-class GiveProof(Command):
+class SupplyProof(Command):
     """Provide the proof of the loaded job if proving took longer than loading."""
 
     __slots__ = __match_args__ = ("proof",)
@@ -86,7 +98,7 @@ class GiveProof(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class Renew(Command):
+class ChangeOffsets(Command):
     """Use changed offsets for the loaded program from the next part on.
 
     The command may arrive while the program runs. The part in progress then uses its present offsets to the
@@ -99,7 +111,7 @@ class Renew(Command):
     trouble: str = ""  # why the job cannot be proved
 
 
-class LeftInterrupted(Command):
+class ReportInterruptedJob(Command):
     """Report the job that was interrupted when the previous control process ended.
 
     ``logged`` is True if the log already contains the entry.
@@ -168,7 +180,7 @@ class SetSwitch(Command):
         self.on: Final = on
 
 
-class FeedOverride(Command):
+class SetFeedOverride(Command):
     """Set the feed override to ``fraction`` of the programmed feed, from 0 to 1.5."""
 
     __slots__ = __match_args__ = ("fraction",)
@@ -196,7 +208,7 @@ class Jog(Command):
         self.along: Final = along
 
 
-class Touch(Command):
+class TouchOffTool(Command):
     """Touch the tool setter along ``axis`` in the direction ``sign`` (+1 or -1) while the lease (s) lasts.
 
     The sender must renew the lease. ``press`` is the number of the key press. A touch-off that has ended does
@@ -213,7 +225,7 @@ class Touch(Command):
         self.while_on: Final = while_on
 
 
-class JogStep(Command):
+class JogByStep(Command):
     """Move one axis by exactly ``distance`` (mm or degrees) at ``speed`` (mm/s or degrees/s).
 
     The step is refused while an axis moves, or if the full step would leave the travel. ``along`` is
@@ -229,14 +241,14 @@ class JogStep(Command):
         self.along: Final = along
 
 
-class JogStop(Command):
+class StopJog(Command):
     """Release the jog lease immediately. A step in progress ends early."""
 
     __slots__ = ()
 
 
-class DriveTest(Command):
-    """Run a drive test from rest while the lease (s) lasts. ``JogStop`` ends the test.
+class RunDriveTest(Command):
+    """Run a drive test from rest while the lease (s) lasts. ``StopJog`` ends the test.
 
     The test is refused while an axis moves or the spindle turns, or if the full path would leave the travel.
     """
@@ -248,7 +260,7 @@ class DriveTest(Command):
         self.lease: Final = lease
 
 
-class DriveTestOn(Command):
+class RenewDriveTest(Command):
     """Renew the lease (s) of the active drive test. This command never starts a test."""
 
     __slots__ = __match_args__ = ("lease",)
@@ -257,11 +269,11 @@ class DriveTestOn(Command):
         self.lease: Final = lease
 
 
-class Wheel(Command):
+class SelectHandwheel(Command):
     """Let the handwheel move ``axis`` by ``step`` (mm or degrees) per click while the lease (s) lasts.
 
     The sender must renew the lease. Earlier counts, and counts faster than the axis can follow, cause no
-    motion. If the control ends the handwheel motion, the wheel stays disabled until ``WheelOff``.
+    motion. If the control ends the handwheel motion, the wheel stays disabled until ``DeselectHandwheel``.
     """
 
     __slots__ = __match_args__ = ("axis", "step", "lease")
@@ -272,13 +284,13 @@ class Wheel(Command):
         self.lease: Final = lease
 
 
-class WheelOff(Command):
+class DeselectHandwheel(Command):
     """Deselect the handwheel and stop the axis that it moves."""
 
     __slots__ = ()
 
 
-class SpindleLimit(Command):
+class SetSpindleLimit(Command):
     """Set the operator's spindle speed limit (rpm) of page F10; None selects the machine's maximum.
 
     The limit applies until TurnDesk is restarted.
@@ -290,7 +302,7 @@ class SpindleLimit(Command):
         self.rpm: Final = rpm
 
 
-class Home(Command):
+class HomeAxes(Command):
     """Home ``axis``, or all axes that are not homed if ``axis`` is empty."""
 
     __slots__ = __match_args__ = ("axis",)
@@ -313,7 +325,7 @@ class UseOffsets(Command):
         self.secondary: Final = secondary
 
 
-class SpindleStop(Command):
+class StopSpindle(Command):
     """Stop a spindle that MDI or M02 left running. The command is refused while a program runs."""
 
     __slots__ = ()
@@ -342,7 +354,7 @@ class ConfirmStart(Command):
         self.at: Final = at
 
 
-class PartsMade(Command):
+class SetPartCount(Command):
     """Set the number of finished parts of the loaded program."""
 
     __slots__ = __match_args__ = ("parts",)
@@ -351,7 +363,7 @@ class PartsMade(Command):
         self.parts: Final = parts
 
 
-class GiveClearance(Command):
+class ReplaceClearances(Command):
     """Replace all clearances for the first move of the next start."""
 
     __slots__ = __match_args__ = ("clearances",)
@@ -360,7 +372,7 @@ class GiveClearance(Command):
         self.clearances: Final = clearances
 
 
-class BarNextPart(Command):
+class BlockNextPart(Command):
     """Prevent the start of another part after the present one, for the reason ``why``.
 
     An empty ``why`` permits it.
@@ -375,15 +387,15 @@ class BarNextPart(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class Prepare(Command):
+class PrepareStart(Command):
     """Select the next action of Cycle Start: the program, a restart in it, or an MDI line with its proof.
 
-    ``clearance`` is the check of the first move of a restart or a line. ``Starts.LINE`` without a job means
-    that MDI is open but no line is ready, so Cycle Start does nothing. The command is refused while a cycle
-    runs.
+    ``clearance`` is the check of the first move of a restart or a line. ``StartAction.LINE`` without a job
+    means that MDI is open but no line is ready, so Cycle Start does nothing. The command is refused while a
+    cycle runs.
     """
 
-    starts: Starts = Starts.PROGRAM
+    starts: StartAction = StartAction.PROGRAM
     job: Job | None = None
     proof: Proof | None = None
     clearance: Clearance | None = None

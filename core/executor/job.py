@@ -14,19 +14,19 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
-from core.interpreter.dialects import ReadProgram, line_alone
-from core.interpreter.omniturn.setup.carry_over import RAPID, UNITS, inherited_settings
+from core.interpreter.dialects import SharedProgram, interpret_mdi_line
+from core.interpreter.omniturn.setup.inherited_state import RAPID, UNITS, find_inherited_settings
 from core.interpreter.shared.checkpoint import Checkpoint
-from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, SectionEndDetector
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.machine_requirements import Need
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.machine_requirements import MachineRequirement
+from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.message import Message
 
-WARNING = "WARNING: "
+WARNING_PREFIX = "WARNING: "
 """What an announcement of something that a proof has warned of begins with."""
 
 
@@ -38,47 +38,48 @@ class ProgramPass(NamedTuple):
     """
 
     blocks: Iterator[Block]
-    problems: Callable[[], Sequence[Diagnostic]]
-    left: Callable[[], Checkpoint] | None = None
+    get_diagnostics: Callable[[], Sequence[Diagnostic]]
+    make_checkpoint: Callable[[], Checkpoint] | None = None
 
 
 class ReadAhead:
     """Reads the blocks of a pass ahead of the motion.
 
-    ``pending`` contains the blocks of one path section. ``stop`` is the next block that needs a standstill
-    (``SectionEnds``). No block after ``stop`` is read until it has been executed, so that the program reads
-    inputs at the correct time. Each block is checked again against the machine as it is read.
+    ``pending_blocks`` contains the blocks of one path section. ``stop`` is the next block that needs a
+    standstill (``SectionEndDetector``). No block after ``stop`` is read until it has been executed, so that
+    the program reads inputs at the correct time. Each block is checked again against the machine as it is
+    read.
     """
 
     def __init__(self, source: ProgramPass, machine: Machine) -> None:
         self._source = source
         self._machine = machine
         self._reported = 0  # number of interpreter diagnostics already checked
-        self._ends = SectionEnds()
-        self.pending: deque[Block] = deque()
-        self.seconds = 0.0  # shortest possible time of the pending blocks
+        self._ends = SectionEndDetector()
+        self.pending_blocks: deque[Block] = deque()
+        self.pending_motion_s = 0.0  # shortest possible time of the pending blocks
         self.stop: Block | None = None
         # the error that ends the pass after the earlier blocks are done
-        self.trouble: AlarmError | None = None
-        self.ended = False
+        self.read_error: AlarmError | None = None
+        self.is_at_end = False
 
     @property
     def next_block(self) -> Block | None:
         """The next block that has not been taken, or None."""
-        return self.pending[0] if self.pending else self.stop
+        return self.pending_blocks[0] if self.pending_blocks else self.stop
 
     @property
-    def dry(self) -> bool:
+    def is_exhausted(self) -> bool:
         """True if no more blocks can be read before a standstill."""
-        return self.stop is not None or self.ended or self.trouble is not None
+        return self.stop is not None or self.is_at_end or self.read_error is not None
 
-    def pull(self, blocks: int, seconds: float) -> None:
+    def read_blocks(self, blocks: int, seconds: float) -> None:
         """Read until ``blocks`` blocks were read or ``seconds`` seconds of motion are pending.
 
         A thread is read to the end of its pull-out, even if more seconds are pending.
         """
         for _ in range(blocks):
-            if self.dry or (self.seconds >= seconds and not self._ends.in_thread):
+            if self.is_exhausted or (self.pending_motion_s >= seconds and not self._ends.is_in_thread):
                 return
             block = self._next()
             if block is not None:
@@ -86,16 +87,16 @@ class ReadAhead:
 
     def take(self) -> list[Block]:
         """Return the pending blocks for motion and remove them."""
-        taken = list(self.pending)
-        self.pending.clear()
-        self.seconds = 0.0
+        taken = list(self.pending_blocks)
+        self.pending_blocks.clear()
+        self.pending_motion_s = 0.0
         return taken
 
-    def pass_stop(self) -> None:
+    def release_stop(self) -> None:
         """Mark the standstill as used: the action is done, or the cutting block may start."""
         block, self.stop = self.stop, None
         if block is not None:
-            self._ends.rested(block)
+            self._ends.record_standstill(block)
             if block.moves:
                 self._append(block)
 
@@ -104,42 +105,44 @@ class ReadAhead:
             block = next(self._source.blocks)
         except StopIteration:
             self._find_error()
-            self.ended = True
+            self.is_at_end = True
             return None
         except ProgramError as error:
-            self.trouble = AlarmError("program", error.diagnostic.message, error.diagnostic.line)
+            self.read_error = AlarmError("program", error.diagnostic.message, error.diagnostic.line)
             return None
         self._find_error()
-        return None if self.trouble else block
+        return None if self.read_error else block
 
     def _find_error(self) -> None:
         """Store the first new error of the interpreter, which only a live run can meet."""
-        problems = self._source.problems()
+        problems = self._source.get_diagnostics()
         for problem in problems[self._reported :]:
-            if problem.severity is Severity.ERROR and self.trouble is None:
-                self.trouble = AlarmError("program", problem.message, problem.line)
+            if problem.severity is Severity.ERROR and self.read_error is None:
+                self.read_error = AlarmError("program", problem.message, problem.line)
         self._reported = len(problems)
 
     def _sort(self, block: Block) -> None:
         try:
             check_block(block, self._machine)
         except AlarmError as trouble:
-            self.trouble = trouble
+            self.read_error = trouble
             return
-        if self._ends.rests_before(block):
+        if self._ends.needs_standstill_before(block):
             self.stop = block
         else:
             self._append(block)
 
     def _append(self, block: Block) -> None:
-        self.pending.append(block)
-        self.seconds += nominal_seconds(block)
+        self.pending_blocks.append(block)
+        self.pending_motion_s += nominal_duration_s(block)
 
 
-def nominal_seconds(block: Block) -> float:
+def nominal_duration_s(block: Block) -> float:
     """Return the time of a block at its programmed speed, in seconds. The real time is never shorter."""
     speed = (
-        block.feed * abs(block.rpm) / 60.0 if block.per_rev and block.kind is not Kind.RAPID else block.feed
+        block.feed * abs(block.rpm) / 60.0
+        if block.per_rev and block.kind is not BlockKind.RAPID
+        else block.feed
     )
     return block.length / speed if speed > 0.0 else 0.0
 
@@ -155,7 +158,7 @@ def check_block(block: Block, machine: Machine) -> None:
     """
     if not block.moves:
         return
-    if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
+    if block.per_rev and block.kind is not BlockKind.RAPID and block.rpm == 0.0 and block.c == block.c0:
         raise AlarmError(
             "spindle-still", Message("line {line} uses feed per revolution", line=block.line), block.line
         )
@@ -165,8 +168,8 @@ def check_block(block: Block, machine: Machine) -> None:
             Message("line {line} moves C while the spindle is turning", line=block.line),
             block.line,
         )
-    for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
-        least, most = axis.reach
+    for axis, (low, high) in zip(machine.axes, block.compute_machine_bounds(), strict=True):
+        least, most = axis.travel_with_margin
         if low < least or high > most:
             unit = "degrees" if axis.rotary else "mm"
             far = low if low < least else high
@@ -189,48 +192,52 @@ class Job:
 
     ``digest`` identifies exactly this job.
 
-    ``reading`` is the parsed text. The proof and the run of a job share it.
+    ``shared_program`` is the parsed text. The proof and the run of a job share it.
     """
 
-    source: Source
+    source: ProgramSource
     setup: Setup
     digest: str
-    reading: ReadProgram = field(compare=False, repr=False)
+    shared_program: SharedProgram = field(compare=False, repr=False)
     tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that have been entered
-    carries: frozenset[str] = frozenset()  # settings that the program inherits from the previous job
+    retained_settings: frozenset[str] = (
+        frozenset()
+    )  # settings that the program inherits from the previous job
     text_digest: str = ""  # digest of the text alone
-    part_of: str = ""  # digest of the whole program's job if this job starts in its middle
+    parent_digest: str = ""  # digest of the whole program's job if this job starts in its middle
 
 
 @dataclass(frozen=True, slots=True)
 class Proof:
     """The result of proving the job with this digest.
 
-    ``warned`` contains short warnings about assumed values. They do not prevent a start but are shown before
-    it.
+    ``warnings`` contains short warnings about assumed values. They do not prevent a start but are shown
+    before it.
     """
 
     digest: str
     errors: tuple[str, ...]
-    blocks: int = 0
-    cycle_time: float = 0.0
-    tools: tuple[int, ...] = ()  # tool offsets that the program uses
-    measured: tuple[int, ...] = ()  # those that are set or that the program measures itself
-    needs: tuple[Need, ...] = ()  # machine functions that the program needs beyond straight lines
-    warned: tuple[str, ...] = ()
+    block_count: int = 0
+    cycle_time_s: float = 0.0
+    tool_numbers: tuple[int, ...] = ()  # tool offsets that the program uses
+    measured_tools: tuple[int, ...] = ()  # those that are set or that the program measures itself
+    required_functions: tuple[
+        MachineRequirement, ...
+    ] = ()  # machine functions that the program needs beyond straight lines
+    warnings: tuple[str, ...] = ()
 
     def unset(self, job: Job) -> list[int]:
         """Return the tools of the program that are neither set nor measured by the program itself."""
-        return sorted(set(self.tools) - job.tools_set - set(self.measured))
+        return sorted(set(self.tool_numbers) - job.tools_set - set(self.measured_tools))
 
 
-def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
+def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) -> Job:
     """Return the job of a program with its setup.
 
-    ``whole`` is the job of the whole program if this job starts in its middle. The digest covers everything
-    that the elementary blocks depend on, except live inputs and the position of the axes.
+    ``whole_job`` is the job of the whole program if this job starts in its middle. The digest covers
+    everything that the elementary blocks depend on, except live inputs and the position of the axes.
     """
-    part_of = whole.digest if whole is not None else ""
+    part_of = whole_job.digest if whole_job is not None else ""
     circumstances = (
         sorted(setup.tools.items()),
         sorted(setup.secondary.items()),
@@ -238,13 +245,13 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
         sorted(setup.r.items()),
         (
             sorted(setup.limits.m_outputs.items()),
-            sorted(setup.limits.m_ignored),
-            setup.limits.control,
-            setup.limits.third_axis,
-            setup.limits.c_linear,
+            sorted(setup.limits.ignored_m_codes),
+            setup.limits.control_model,
+            setup.limits.third_axis_name,
+            setup.limits.is_c_linear,
         ),
-        (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
-        (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),
+        (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution_mm),
+        (setup.limits.can_unclamp_while_turning, setup.limits.can_start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
         (setup.begin.key if setup.begin else "", part_of),
         setup.kinematics,
@@ -253,29 +260,31 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
     text = hashlib.sha256(f"{source.dialect}\n{source.text}".encode("utf-8", "surrogatepass"))
     alone = text.hexdigest()
     text.update(repr(circumstances).encode())
-    reading = whole.reading if whole is not None else ReadProgram(source, strict=setup.strict)
+    reading = (
+        whole_job.shared_program if whole_job is not None else SharedProgram(source, strict=setup.strict)
+    )
     return Job(
         source,
         setup,
         text.hexdigest(),
         reading,
         frozenset(setup.tools),
-        inherited_settings(source),
+        find_inherited_settings(source),
         alone,
         part_of,
     )
 
 
-def outdated(job: Job, left: Modal) -> str:
+def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
     """Return how the present units or rapid rate differ from those of the proof.
 
     The previous job may have changed them. The result is empty if nothing differs.
     """
     if job.setup.begin is not None:
         return ""
-    if UNITS in job.carries and job.setup.metric != left.metric:
-        return "the active unit is now mm" if left.metric else "the active unit is now inches"
-    if RAPID in job.carries and not math.isclose(job.setup.last_rapid, left.rapid_rate):
+    if UNITS in job.retained_settings and job.setup.metric != present_modal.metric:
+        return "the active unit is now mm" if present_modal.metric else "the active unit is now inches"
+    if RAPID in job.retained_settings and not math.isclose(job.setup.last_rapid, present_modal.rapid_rate):
         return "the rapid rate has changed"
     return ""
 
@@ -283,17 +292,19 @@ def outdated(job: Job, left: Modal) -> str:
 # --- interpretation of a job ----------------------------------------------------------------------------
 
 
-def interpret(job: Job, setup: Setup) -> ProgramPass:
-    """Start one pass through a job. Its blocks end at the first error, which ``problems`` then returns."""
-    if setup.begin is not None and setup.begin.single:
-        line = line_alone(job.source, setup)
+def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
+    """Start one pass through a job. Its blocks end at the first error, which ``get_diagnostics`` then
+    returns.
+    """
+    if setup.begin is not None and setup.begin.is_mdi_line:
+        line = interpret_mdi_line(job.source, setup)
         return ProgramPass(
-            line.blocks(to_first_error=True), lambda: line.diagnostics, lambda: line.checkpoint
+            line.generate_blocks(to_first_error=True), lambda: line.diagnostics, lambda: line.checkpoint
         )
-    interpreter = job.reading.begin(setup)
-    return ProgramPass(interpreter.blocks(to_first_error=True), lambda: interpreter.diagnostics)
+    interpreter = job.shared_program.start_pass(setup)
+    return ProgramPass(interpreter.generate_blocks(to_first_error=True), lambda: interpreter.diagnostics)
 
 
-def circumstances(setup: Setup, start: tuple[float, ...], inputs: Callable[[str], bool]) -> Setup:
+def setup_at_start(setup: Setup, start: tuple[float, ...], is_input_on: Callable[[str], bool]) -> Setup:
     """Return the setup of a job with the present position of the axes and the live inputs."""
-    return dataclasses.replace(setup, start=start, inputs=inputs)
+    return dataclasses.replace(setup, start=start, inputs=is_input_on)

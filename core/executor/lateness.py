@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 
-STEPS = (0.0, 0.5, 1.0, 2.0)  # s added to the queue depth
-LATE = 0.1  # s; a tick with a longer delay counts as late
-CALM = 30.0  # s without a late tick after which the depth is reduced by one step
-SHOWN = 0.1  # s; the displayed delay is rounded up to this step
-AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
+QUEUE_DEPTH_STEPS_S = (0.0, 0.5, 1.0, 2.0)  # s added to the queue depth
+LATE_THRESHOLD_S = 0.1  # s; a tick with a longer delay counts as late
+CALM_PERIOD_S = 30.0  # s without a late tick after which the depth is reduced by one step
+DISPLAY_STEP_S = 0.1  # s; the displayed delay is rounded up to this step
+QUEUE_RESERVE_S = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
 
 
-class Lateness:
+class TickLateness:
     """Tracks late ticks of one executor. ``lookahead`` is the queue depth of the machine file, in seconds."""
 
     def __init__(self, lookahead: float) -> None:
@@ -25,29 +25,32 @@ class Lateness:
         self._worst = 0.0  # longest delay in s since the last reset of the depth
 
     @property
-    def lookahead(self) -> float:
+    def lookahead_s(self) -> float:
         """The time for which setpoints are queued ahead of the motion, in seconds."""
-        return self._lookahead + STEPS[self._step]
+        return self._lookahead + QUEUE_DEPTH_STEPS_S[self._step]
 
     @property
-    def hold_later(self) -> float:
+    def hold_delay_s(self) -> float:
         """The additional delay of a feed hold on a busy computer, in seconds, rounded up to 0.1 s.
 
         The delay never exceeds the queue depth, because the axes stop at the end of the queue.
         """
-        if self._worst < LATE:
+        if self._worst < LATE_THRESHOLD_S:
             return 0.0
-        return math.ceil(min(self._worst, self.lookahead + AHEAD) / SHOWN - 1e-9) * SHOWN
+        return (
+            math.ceil(min(self._worst, self.lookahead_s + QUEUE_RESERVE_S) / DISPLAY_STEP_S - 1e-9)
+            * DISPLAY_STEP_S
+        )
 
-    def look(self, late: float, now: float) -> bool:
-        """Record that a tick was ``late`` seconds late; return whether ``hold_later`` has increased."""
-        before = self.hold_later
-        if late >= LATE:
+    def record_tick(self, delay_s: float, now: float) -> bool:
+        """Record that a tick was ``delay_s`` seconds late; return whether ``hold_delay_s`` has increased."""
+        before = self.hold_delay_s
+        if delay_s >= LATE_THRESHOLD_S:
             self._calm_since = now
-            self._worst = max(self._worst, late)
-            if late >= 0.5 * self.lookahead and self._step + 1 < len(STEPS):
+            self._worst = max(self._worst, delay_s)
+            if delay_s >= 0.5 * self.lookahead_s and self._step + 1 < len(QUEUE_DEPTH_STEPS_S):
                 self._step += 1
-        elif now - self._calm_since >= CALM:
+        elif now - self._calm_since >= CALM_PERIOD_S:
             self._calm_since = now
             self._worst, self._step = 0.0, max(self._step - 1, 0)
-        return self.hold_later > before
+        return self.hold_delay_s > before

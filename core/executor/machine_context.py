@@ -7,19 +7,27 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from core.alarms import Code
-from core.executor.lateness import Lateness
-from core.executor.raised_alarm import Attempt, log_line, make_alarm
+from core.alarms import AlarmCode
+from core.executor.lateness import TickLateness
+from core.executor.raised_alarm import Attempt, format_log_line, make_alarm
 from core.executor.signals import CommandedOutputs, StationSignals
-from core.executor.snapshot import Alarm, Event
+from core.executor.snapshot import Alarm, LogEvent
 from core.executor.spindle_control import SpindleControl
 from core.machine.machine_model import Machine
-from core.machine.station_rules import ENABLE
-from core.ports import AxisSample, FloatArray, MachinePorts, Unknown
+from core.machine.station_rules import HANDWHEEL_ENABLE_INPUT
+from core.ports import AxisSample, FloatArray, MachinePorts, UnknownPart
 
 _log = logging.getLogger(__name__)
-_QUIET = StationSignals(estop=False, start=False, hold=False, feed=1.0, spindle=1.0, auto=True, trouble="")
-_LEAST = 0.005  # smallest step of the feed override
+_NEUTRAL_SIGNALS = StationSignals(
+    estop_pressed=False,
+    start_requested=False,
+    hold_requested=False,
+    feed_override=1.0,
+    spindle=1.0,
+    spindle_auto=True,
+    station_fault="",
+)
+_OVERRIDE_STEP = 0.005  # smallest step of the feed override
 
 
 @dataclass(slots=True)
@@ -38,32 +46,32 @@ class MachineContext:
 
     machine: Machine
     ports: MachinePorts
-    on_event: Callable[[Event], None]
+    on_event: Callable[[LogEvent], None]
     spindle: SpindleControl
     now: float
     sample: AxisSample
     inputs: dict[str, bool]
     outputs: CommandedOutputs  # the same as ``ports.io``
-    signals: StationSignals = _QUIET
-    unknown: frozenset[Unknown] = frozenset()  # items of which no data arrives
+    signals: StationSignals = _NEUTRAL_SIGNALS
+    unknown_items: frozenset[UnknownPart] = frozenset()  # items of which no data arrives
     switches: Switches = field(default_factory=Switches)
-    soft_override: float = 1.0
-    lamp_test: float = 0.0  # time until which all lamps of the signal tower are on
+    screen_override: float = 1.0
+    lamp_test_end: float = 0.0  # time until which all lamps of the signal tower are on
     line: int = 0  # line of the block being executed, for the log
     stop: Alarm | None = None  # why the machine is stopped although no alarm is active
-    lateness: Lateness = field(init=False)
-    _noted: Code | None = None  # code of the last stop that was logged
+    lateness: TickLateness = field(init=False)
+    _noted: AlarmCode | None = None  # code of the last stop that was logged
     _borne: float | None = None  # spindle load of the latest driver sample, per cent
 
     def __post_init__(self) -> None:
-        self.lateness = Lateness(self.machine.timing.lookahead)
+        self.lateness = TickLateness(self.machine.timing.lookahead)
 
     @property
     def spindle_load(self) -> float | None:
         """The spindle load in per cent, from the machine's input or else from the driver; None if unknown."""
         return self._borne if self.signals.spindle_load is None else self.signals.spindle_load
 
-    def note_load(self, samples: FloatArray | None) -> None:
+    def record_load(self, samples: FloatArray | None) -> None:
         """Store the spindle load of the newest driver sample. ``samples`` has the shape (n, 5 + 3 axes).
 
         The columns are described in ``core.ports.SampleSource``.
@@ -75,14 +83,14 @@ class MachineContext:
     @property
     def feed_override(self) -> float:
         """The feed override: pot times screen setting, 0 to 1.5, in steps of 0.005."""
-        fraction = min(self.signals.feed * self.soft_override, 1.5)
-        return round(fraction / _LEAST) * _LEAST
+        fraction = min(self.signals.feed_override * self.screen_override, 1.5)
+        return round(fraction / _OVERRIDE_STEP) * _OVERRIDE_STEP
 
     def log(self, kind: str, text: str) -> None:
         """Write an entry with the current time and line to the event log."""
-        self.log_event(Event(self.now, kind, text, self.line))
+        self.log_event(LogEvent(self.now, kind, text, self.line))
 
-    def show_stop(self, code: Code, detail: str = "") -> None:
+    def show_stop(self, code: AlarmCode, detail: str = "") -> None:
         """Show a hold, a stop or the E-stop until motion resumes, and log it.
 
         Of consecutive single-block stops only the first is logged, so that they do not crowd out other
@@ -93,22 +101,22 @@ class MachineContext:
         else:
             self.stop = self.log_stop(code, detail)
 
-    def log_stop(self, code: Code, detail: str = "") -> Alarm:
+    def log_stop(self, code: AlarmCode, detail: str = "") -> Alarm:
         """Log a stop that needs no display, and return it as an alarm entry."""
         stop = make_alarm(code, detail, self.line, self.now)
         self._noted = code
         kind = "estop" if code == "estop" else "stop"
-        self.log_event(Event(self.now, kind, log_line(stop), self.line, stop))
+        self.log_event(LogEvent(self.now, kind, format_log_line(stop), self.line, stop))
         return stop
 
-    def log_event(self, event: Event) -> None:
+    def log_event(self, event: LogEvent) -> None:
         """Pass an event to the log. A failure of the log is reported but stops nothing."""
         with Attempt() as trial:
             self.on_event(event)
         if trial.error is not None:
             _log.error("an event was lost: %s", event, exc_info=trial.error)
 
-    def terminal(self, name: str) -> bool:
+    def is_input_on(self, name: str) -> bool:
         """Return whether an input is on. ``name`` is its name or terminal, as used in a program."""
         if name in self.inputs:
             return self.inputs[name]
@@ -117,11 +125,11 @@ class MachineContext:
                 return self.inputs.get(model.name, False)
         return False
 
-    def button(self, name: str) -> bool:
+    def is_button_pressed(self, name: str) -> bool:
         """Return whether a jog button is pressed, together with the enabling switch if there is one."""
-        return self.inputs.get(name, False) and self.inputs.get(ENABLE, True)
+        return self.inputs.get(name, False) and self.inputs.get(HANDWHEEL_ENABLE_INPUT, True)
 
-    def in_position(self) -> bool:
+    def is_in_position(self) -> bool:
         """Return whether all axes are at rest and within their in-position windows."""
         pairs = zip(self.machine.axes, self.sample.following_error, strict=True)
         return not self.sample.moving and all(abs(error) <= axis.in_position for axis, error in pairs)

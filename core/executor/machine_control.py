@@ -4,45 +4,62 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from core.alarms import Code, Reaction
-from core.alarms.bus_alarms import CUT_OFF
+from core.alarms import AlarmCode, Reaction
+from core.alarms.bus_alarms import CONNECTION_LOSS_CODES
 from core.executor import start_conditions
-from core.executor.control_status import modal_at_power_up
+from core.executor.control_status import make_power_up_modal
 from core.executor.hand_motion.drive_test import DriveTester
 from core.executor.hand_motion.handwheel import Handwheel
-from core.executor.hand_motion.jogging import jogger_of
+from core.executor.hand_motion.jogging import create_jogger
 from core.executor.hand_motion.touch_off import Homing, TouchOff
-from core.executor.interruption_watch import Note
+from core.executor.interruption_watch import StoreInterruptedJob
 from core.executor.job import Job, ProgramPass
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.cycle import Cycle
 from core.executor.program_run import ProgramRun
-from core.executor.raised_alarm import AlarmError, Attempt, alarm_and_reaction, log_alarm, log_line
+from core.executor.raised_alarm import (
+    AlarmError,
+    Attempt,
+    format_log_line,
+    log_alarm,
+    make_alarm_and_reaction,
+)
 from core.executor.safety.safe_stop import SafeStop
 from core.executor.safety.supervision import OutputsWatch, Supervisor
 from core.executor.snapshot import (
-    ACTIVE,
-    BY_HAND,
-    CLOSED,
-    CYCLE,
-    ESTOP,
-    LINES,
-    STOPPED,
-    Event,
+    ACTIVE_STATES,
+    CLOSED_REASON,
+    CYCLE_STATES,
+    ESTOP_REASON,
+    MANUAL_STATES,
+    MDI_ACTIONS,
+    STOPPED_STATES,
     InterruptedJob,
-    State,
-    demand_allowed,
+    LogEvent,
+    MachineState,
+    require_transition,
 )
-from core.executor.start_conditions import SPINDLE, Announcement, Starting
+from core.executor.start_conditions import SPINDLE_FUNCTION, AnnouncedStart, StartAnnouncement
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
-from core.ports import Unknown
+from core.ports import UnknownPart
 
-_GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
-MEANT = 0.8  # s between a confirmation and a start: 0.5 s between the two palm buttons, plus time to read
-_AT_REST = frozenset({State.IDLE, State.DISABLED})
-_STOPPED = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
+_CONTINUED_STATES = frozenset(
+    {
+        MachineState.RUN,
+        MachineState.WAIT,
+        MachineState.IDLE,
+        MachineState.DISABLED,
+        MachineState.JOG,
+        MachineState.HOME,
+    }
+)
+CONFIRMATION_DELAY_S = (
+    0.8  # s between a confirmation and a start: 0.5 s between the two palm buttons, plus time to read
+)
+_REST_STATES = frozenset({MachineState.IDLE, MachineState.DISABLED})
+_STOP_STATES = frozenset({MachineState.ESTOP, MachineState.FAULT, MachineState.DISABLED})
 
 
 class MachineControl:
@@ -51,34 +68,40 @@ class MachineControl:
     def __init__(
         self,
         context: MachineContext,
-        passes: Callable[[Job, Setup], ProgramPass],
-        note: Note,
-        left: InterruptedJob | None,
+        start_pass: Callable[[Job, Setup], ProgramPass],
+        store_interruption: StoreInterruptedJob,
+        interrupted_job: InterruptedJob | None,
     ) -> None:
         self._context = context
-        self.program_run = ProgramRun(context, passes, self.enter, note, left)
+        self.program_run = ProgramRun(
+            context, start_pass, self.change_state, store_interruption, interrupted_job
+        )
         self.status = self.program_run.status
-        self.status.modal = modal_at_power_up(context)
+        self.status.modal = make_power_up_modal(context)
         self.counters = self.program_run.counters
         self.supervisor = Supervisor(context)
-        self.safe = SafeStop(context)
-        self.jogger = jogger_of(context)
-        self.wheel = Handwheel(context, self.jogger)
-        self.drive_test = DriveTester(context, self.jogger)
-        self.touch = TouchOff(context, self.jogger)
+        self.safe_stop = SafeStop(context)
+        self.jogger = create_jogger(context)
+        self.handwheel = Handwheel(context, self.jogger)
+        self.drive_tester = DriveTester(context, self.jogger)
+        self.touch_off = TouchOff(context, self.jogger)
         self.homing = Homing(context)
-        self.announcement = Announcement()
-        self.disturbance = OutputsWatch(context, self.program_run)
-        self.announcement.sources += [self._spindle_starts, self.disturbance.starts, self._warned]
-        self.announcement.sources.append(self._first_move_warned)
-        self.meant_at = -MEANT  # time at which the operator last confirmed a start
-        self.jog_ended = ""  # why the control ended a jog; it stays ended until the key is released
+        self.announcement = StartAnnouncement()
+        self.outputs_watch = OutputsWatch(context, self.program_run)
+        self.announcement.sources += [
+            self._iter_spindle_starts,
+            self.outputs_watch.list_restart_outputs,
+            self._iter_proof_warnings,
+        ]
+        self.announcement.sources.append(self._iter_first_move_warnings)
+        self.confirmed_at = -CONFIRMATION_DELAY_S  # time at which the operator last confirmed a start
+        self.jog_end_reason = ""  # why the control ended a jog; it stays ended until the key is released
         self._turned = False  # in the previous tick the spindle turned as commanded
         self._giving_up = False
         self._hindered = ""  # the reason that prevented a start in the previous tick
 
     @property
-    def state(self) -> State:
+    def state(self) -> MachineState:
         """The present state of the machine."""
         return self.status.state
 
@@ -88,77 +111,83 @@ class MachineControl:
         return self.program_run.cycle
 
     @property
-    def modal(self) -> Modal:
+    def modal(self) -> ModalState:
         """The modal state of the block being executed, or the state in force between two programs."""
         return self.program_run.modal
 
-    def enter(self, state: State) -> None:
+    def change_state(self, state: MachineState) -> None:
         """Change the state and log the change. Raises TransitionError if the change is not permitted."""
         if state is self.state:
             return
-        demand_allowed(self.state, state)
+        require_transition(self.state, state)
         self.status.state = state
-        if state is State.BLOCK_END:
+        if state is MachineState.BLOCK_END:
             self._context.show_stop("single-block")
-        elif state in _GOES_ON:
+        elif state in _CONTINUED_STATES:
             self._context.stop = None
         self._context.log("state", state.value)
 
     # --- requests -----------------------------------------------------------------------------------------
 
-    def start(self) -> None:
+    def handle_cycle_start(self) -> None:
         """Handle Cycle Start: start or resume a cycle. Has no effect while a cycle runs."""
         state, cycle = self.state, self.cycle
-        if state in ACTIVE or self._giving_up:
+        if state in ACTIVE_STATES or self._giving_up:
             return
-        if state in STOPPED and cycle is not None:
-            if not self.refuse(
-                start_conditions.station_stop(self._context) or cycle.why_not_on() or self._unannounced()
+        if state in STOPPED_STATES and cycle is not None:
+            if not self.refuse_start(
+                start_conditions.find_station_refusal(self._context)
+                or cycle.find_resume_refusal()
+                or self._unannounced()
             ):
-                waits = bool(self._context.spindle.waits)
-                self.announcement.begin()
-                cycle.go_on(starts_spindle=waits)
-        elif not self.refuse(self.program_run.refusal(state) or self._unannounced() or self._just_meant()):
-            self.announcement.begin()
-            self.program_run.begin()
+                waits = bool(self._context.spindle.waiting_reason)
+                self.announcement.start_functions()
+                cycle.resume(starts_spindle=waits)
+        elif not self.refuse_start(
+            self.program_run.find_start_refusal(state)
+            or self._unannounced()
+            or self._find_confirmation_refusal()
+        ):
+            self.announcement.start_functions()
+            self.program_run.start_run()
 
-    def refuse(self, why: str) -> bool:
-        """Store and log a start refusal. Return True if ``why`` contains a reason."""
-        self.status.start_refused = why
-        if why:
-            self._context.log("refused", why)
-        return bool(why)
+    def refuse_start(self, reason: str) -> bool:
+        """Store and log a start refusal. Return True if ``reason`` contains a reason."""
+        self.status.start_refusal = reason
+        if reason:
+            self._context.log("refused", reason)
+        return bool(reason)
 
-    def _forget_refusal(self) -> None:
+    def _clear_start_refusal(self) -> None:
         """Clear a displayed start refusal when its cause in the machine has gone."""
-        if self.status.start_refused:
-            now = start_conditions.hindrance(self._context, self.state)
-            if self._hindered == self.status.start_refused != now:
-                self.status.start_refused = ""
+        if self.status.start_refusal:
+            now = start_conditions.find_state_refusal(self._context, self.state)
+            if self._hindered == self.status.start_refusal != now:
+                self.status.start_refusal = ""
             self._hindered = now
 
-    def spindle_switch(self) -> None:
+    def handle_spindle_switch(self) -> None:
         """Handle the spindle switch turned from OFF to AUTO.
 
         Between programs the switch starts a waiting spindle. In a stopped cycle only Cycle Start does.
         """
         spindle = self._context.spindle
-        if self.state not in BY_HAND or not spindle.waits:
+        if self.state not in MANUAL_STATES or not spindle.waiting_reason:
             return
-        why = start_conditions.unclamped(self._context) or self.announcement.refusal(
-            self._context.now, SPINDLE
+        why = start_conditions.find_collet_refusal(self._context) or self.announcement.find_refusal(
+            self._context.now, SPINDLE_FUNCTION
         )
         if why:
             self._context.log("refused", why)
         else:
-            self.announcement.begin(SPINDLE)
+            self.announcement.start_functions(SPINDLE_FUNCTION)
 
-    def _just_meant(self) -> str:
+    def _find_confirmation_refusal(self) -> str:
         """Return why a start within 0.8 s after a confirmation is refused, or an empty string.
 
         The operator cannot have read the prompt in that time.
         """
-        if self._context.now - self.meant_at >= MEANT:
+        if self._context.now - self.confirmed_at >= CONFIRMATION_DELAY_S:
             return ""
         return (
             "the palm buttons were pressed too soon after the confirmation: release both "
@@ -166,272 +195,289 @@ class MachineControl:
         )
 
     def _unannounced(self) -> str:
-        waits = self._context.spindle.waits
-        unclamped = start_conditions.unclamped_by_program(self._context) if waits else ""
-        return unclamped or self.announcement.refusal(self._context.now)
+        waits = self._context.spindle.waiting_reason
+        unclamped = start_conditions.find_program_collet_refusal(self._context) if waits else ""
+        return unclamped or self.announcement.find_refusal(self._context.now)
 
-    def _spindle_starts(self) -> Iterator[Starting]:
+    def _iter_spindle_starts(self) -> Iterator[AnnouncedStart]:
         """Yield the announcement of a waiting spindle that the next start turns on.
 
         In a cycle only Cycle Start turns it on. Between programs the spindle switch does too.
         """
         spindle = self._context.spindle
-        rpm, by_hand = spindle.would_turn, self.state in BY_HAND
-        if rpm and (by_hand or (self.state in STOPPED and not spindle.start_barred)):
+        rpm, by_hand = spindle.waiting_start_rpm, self.state in MANUAL_STATES
+        if rpm and (by_hand or (self.state in STOPPED_STATES and not spindle.start_inhibit_reason)):
             way = "FORWARD" if rpm > 0.0 else "REVERSE"
             text = Message("SPINDLE STARTS AT {rpm} RPM {direction}", rpm=f"{abs(rpm):.0f}", direction=way)
-            yield Starting(
-                SPINDLE,
-                text if spindle.auto else Message("SET SPINDLE SWITCH TO AUTO: {start}", start=text),
-                spindle.permit,
+            yield AnnouncedStart(
+                SPINDLE_FUNCTION,
+                text if spindle.is_auto else Message("SET SPINDLE SWITCH TO AUTO: {start}", start=text),
+                spindle.permit_start,
                 rpm,
             )
 
-    def _warned(self) -> Iterator[Starting]:
+    def _iter_proof_warnings(self) -> Iterator[AnnouncedStart]:
         """Yield the warnings of the proof, which the operator must read before the program starts."""
         status = self.status
         job, proof = status.job, status.proof
-        if self.state not in _AT_REST or status.starts in LINES or job is None or proof is None:
+        if (
+            self.state not in _REST_STATES
+            or status.start_action in MDI_ACTIONS
+            or job is None
+            or proof is None
+        ):
             return
         # otherwise the start is refused anyway
-        if proof.digest == job.digest and proof.warned and not proof.errors:
-            first, more = proof.warned[0], len(proof.warned) - 1
+        if proof.digest == job.digest and proof.warnings and not proof.errors:
+            first, more = proof.warnings[0], len(proof.warnings) - 1
             said = Message("{first_error} ({more} MORE)", first_error=first, more=more) if more else first
-            yield Starting("warned" + job.digest, Message("WARNING: {warned}", warned=said), lambda: None)
+            yield AnnouncedStart(
+                "warned" + job.digest, Message("WARNING: {warned}", warned=said), lambda: None
+            )
 
-    def _first_move_warned(self) -> Iterator[Starting]:
+    def _iter_first_move_warnings(self) -> Iterator[AnnouncedStart]:
         """Yield the warning that the first move may hit a part that is unknown or only assumed."""
-        if self.state not in _AT_REST or not self.status.checks_starts:
+        if self.state not in _REST_STATES or not self.status.requires_clearance:
             return
-        found = start_conditions.first_move_verdict(self._context, self.status, self.counters.begun)
+        found = start_conditions.find_first_move_clearance(
+            self._context, self.status, self.counters.started_run_count
+        )
         if found is not None and found.warned:
-            yield Starting(
+            yield AnnouncedStart(
                 "first-move" + found.job, Message("WARNING: {warned}", warned=found.warned), lambda: None
             )
 
-    def feed_hold(self, reason: str, by: str = "", code: Code | None = None) -> None:
+    def start_feed_hold(self, reason: str, source: str = "", code: AlarmCode | None = None) -> None:
         """Hold the cycle, end a jog, stop homing and disable the handwheel.
 
         ``reason`` is a text of the alarm catalog, or a detail for ``code``. It is empty if a button was
-        pressed; ``by`` then names the button.
+        pressed; ``source`` then names the button.
         """
-        if self.wheel.axis:
-            self.wheel.end(reason.lower() or "feed hold", self.state)
-        if self.state is State.JOG:
+        if self.handwheel.axis:
+            self.handwheel.disable(reason.lower() or "feed hold", self.state)
+        if self.state is MachineState.JOG:
             self.stop_jog(reason.lower() or "feed hold")
-        elif self.state is State.HOME:
+        elif self.state is MachineState.HOME:
             self._stop_homing()
-        elif self.cycle is not None and self.state in ACTIVE:
-            self._context.spindle.break_off()
-            self.cycle.hold(reason, by, code)
+        elif self.cycle is not None and self.state in ACTIVE_STATES:
+            self._context.spindle.cancel_orientation()
+            self.cycle.start_feed_hold(reason, source, code)
 
     def reset(self) -> None:
         """Cancel the program, stop the spindle and acknowledge alarms."""
-        self.status.start_refused = ""
-        self.safe.functions_off()
+        self.status.start_refusal = ""
+        self.safe_stop.switch_functions_off()
         if self.status.alarms:
             self._acknowledge()
-        elif self.cycle is not None and self.state in CYCLE:
+        elif self.cycle is not None and self.state in CYCLE_STATES:
             job = self.status.job
             self._context.log_stop(
                 "reset", Message("{source} was canceled", source=job.source.name) if job is not None else ""
             )
             self._giving_up = True
-            self.cycle.abandon()
+            self.cycle.stop_canceled_cycle()
             self._leave()
-        elif self.state is State.JOG:
-            self.feed_hold("reset")
-        elif self.state is State.HOME:
+        elif self.state is MachineState.JOG:
+            self.start_feed_hold("reset")
+        elif self.state is MachineState.HOME:
             self._stop_homing()
 
-    def stop_jog(self, why: str) -> None:
-        """Stop manual motion and a touch-off for the reason ``why``. Raises DriverError."""
-        self.touch.end(why)
+    def stop_jog(self, reason: str) -> None:
+        """Stop manual motion and a touch-off for the reason ``reason``. Raises DriverError."""
+        self.touch_off.cancel(reason)
         self.jogger.stop()
 
-    def let_go(self) -> None:
+    def release_jog_key(self) -> None:
         """Handle the release of a jog key or button, after which the next press counts again.
 
         A late or repeated release does not stop a motion that started after the jog. Raises DriverError if a
         driver fails.
         """
-        self.jog_ended = ""
-        if self.state is State.JOG:
+        self.jog_end_reason = ""
+        if self.state is MachineState.JOG:
             self.stop_jog("the key or button was released")
 
-    def _end_jog(self, why: str) -> None:
+    def _end_jog(self, reason: str) -> None:
         """End manual motion and refuse further renewals until the key is released."""
-        self.jog_ended = "" if self.jogger.stepping or self.jogger.goal is not None else why
-        self.stop_jog(why)
+        self.jog_end_reason = (
+            "" if self.jogger.is_stepping or self.jogger.target_position is not None else reason
+        )
+        self.stop_jog(reason)
 
-    def _mind_spindle(self) -> None:
+    def _check_spindle(self) -> None:
         """End manual motion when the spindle stops, because the tool would crash into the stopped part."""
         spindle = self._context.spindle
-        turned, self._turned = self._turned, spindle.asked and not spindle.fails
-        if not turned or self._turned or self.state is not State.JOG:
+        turned, self._turned = self._turned, spindle.is_requested and not spindle.is_too_slow
+        if not turned or self._turned or self.state is not MachineState.JOG:
             return
         why = Message(
             "the spindle has stopped: {why_slow}",
-            why_slow=spindle.why_slow or "the spindle speed is below half of the commanded speed",
+            why_slow=spindle.slow_reason or "the spindle speed is below half of the commanded speed",
         ).lower()
         self._end_jog(why)
-        if self.wheel.axis:
-            self.wheel.end(why, self.state)
+        if self.handwheel.axis:
+            self.handwheel.disable(why, self.state)
         else:
             self._context.log("refused", Message("jog: {why}", why=why))
 
     def _ran_into_setter(self) -> None:
         why = "the tool setter is triggered; jog the tool away from it"
         self.stop_jog(why)
-        if self.wheel.axis:
-            self.wheel.end(why, self.state)
+        if self.handwheel.axis:
+            self.handwheel.disable(why, self.state)
         else:
             self._context.log("refused", Message("jog: {why}", why=why))
 
-    def follow_wheel(self) -> None:
+    def follow_handwheel(self) -> None:
         """Move the selected axis as the handwheel turns. Raises DriverError if a driver fails."""
-        if self.wheel.turn(self.state):
-            self.enter(State.JOG)
+        if self.handwheel.follow_clicks(self.state):
+            self.change_state(MachineState.JOG)
 
-    def mirror_estop(self, pressed: bool) -> None:
+    def follow_estop(self, pressed: bool) -> None:
         """Follow the E-stop of the hardware, which has stopped the machine.
 
         Nothing starts when it is released.
         """
-        if pressed and self.state is not State.ESTOP:
-            self.safe.react(Reaction.OFF)
+        if pressed and self.state is not MachineState.ESTOP:
+            self.safe_stop.run_steps(Reaction.DRIVES_OFF)
             self._context.show_stop("estop")
-            self._give_up(ESTOP)
-            self.enter(State.ESTOP)
-        elif not pressed and self.state is State.ESTOP:
-            self.enter(State.DISABLED)
+            self._cancel_active_function(ESTOP_REASON)
+            self.change_state(MachineState.ESTOP)
+        elif not pressed and self.state is MachineState.ESTOP:
+            self.change_state(MachineState.DISABLED)
 
     # --- actions in every tick ----------------------------------------------------------------------------
 
-    def go_on(self) -> None:
+    def advance(self) -> None:
         """Advance the active function by one tick. Raises AlarmError, MotionError or DriverError."""
         self._finish_stopping()
-        self._forget_refusal()
-        self.program_run.look()
-        self._mind_spindle()
-        if self.touch.mind(self.state):
+        self._clear_start_refusal()
+        self.program_run.update_between_cycles()
+        self._check_spindle()
+        if self.touch_off.check_state(self.state):
             self._ran_into_setter()
-        if self.cycle is not None and self.state in CYCLE:
+        if self.cycle is not None and self.state in CYCLE_STATES:
             if self._giving_up:
                 self._leave()
                 return
-            if self.state in ACTIVE:
-                self._mind_the_queue(self.cycle)
-            self.cycle.step()
-        elif self.state is State.JOG:
-            self._go_on_by_hand()
-        elif self.state is State.HOME and self.homing.step():
-            self.enter(State.IDLE)
+            if self.state in ACTIVE_STATES:
+                self._check_queue(self.cycle)
+            self.cycle.advance()
+        elif self.state is MachineState.JOG:
+            self._advance_manual_motion()
+        elif self.state is MachineState.HOME and self.homing.advance():
+            self.change_state(MachineState.IDLE)
 
-    def _go_on_by_hand(self) -> None:
+    def _advance_manual_motion(self) -> None:
         """Advance a touch-off or a jog. The jog is over when the axis is at rest."""
-        if self.touch.phase is not None:
-            self.touch.step()
+        if self.touch_off.phase is not None:
+            self.touch_off.advance()
             return
-        self.drive_test.look()
-        self.jogger.mind_button()
-        if self.jogger.over():
-            self.enter(State.IDLE)
+        self.drive_tester.check_guard()
+        self.jogger.check_button()
+        if self.jogger.finish_if_at_rest():
+            self.change_state(MachineState.IDLE)
 
-    def _mind_the_queue(self, cycle: Cycle) -> None:
+    def _check_queue(self, cycle: Cycle) -> None:
         """Hold the cycle if the setpoint queue runs low, because the computer was too late to refill it."""
         motion = self.program_run.motion
-        left = motion.starving - self._context.now
-        if motion.active and left < self._context.machine.timing.low_water:
+        left = motion.starvation_time_s - self._context.now
+        if motion.has_section and left < self._context.machine.timing.low_water:
             self.counters.underruns += 1
             self._context.log("starved", "feed hold: computer busy; the axes stop on the path")
-            cycle.starve()
+            cycle.hold_for_underrun()
 
     def _leave(self) -> None:
-        if self.program_run.leave():
+        if self.program_run.finish_canceled_cycle():
             self._giving_up = False
 
     def _stop_homing(self) -> None:
         self.homing.stop()
-        self.enter(State.IDLE)
+        self.change_state(MachineState.IDLE)
 
     # --- alarms -------------------------------------------------------------------------------------------
 
-    def alarm(self, trouble: AlarmError) -> None:
+    def raise_alarm(self, error: AlarmError) -> None:
         """Stop the machine and show the alarm. An alarm that is already active is ignored."""
         context = self._context
-        alarm, reaction = alarm_and_reaction(trouble, context.line, context.now)
+        alarm, reaction = make_alarm_and_reaction(error, context.line, context.now)
         if any(old.code == alarm.code for old in self.status.alarms):
             return
         log_alarm(alarm)
-        if reaction is Reaction.HOLD and self._holds(trouble):
+        if reaction is Reaction.HOLD and self._handle_hold_alarm(error):
             return
         self.status.alarms = (*self.status.alarms, alarm)
-        self.status.power_off = self.status.power_off or reaction is Reaction.OFF
-        self.safe.react(reaction)
-        self._give_up(Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text))
-        if self.state not in {State.ESTOP, State.FAULT}:
-            self.enter(State.FAULT)
-        context.log_event(Event(context.now, "alarm", log_line(alarm), alarm.line, alarm))
+        self.status.drives_switched_off = self.status.drives_switched_off or reaction is Reaction.DRIVES_OFF
+        self.safe_stop.run_steps(reaction)
+        self._cancel_active_function(
+            Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text)
+        )
+        if self.state not in {MachineState.ESTOP, MachineState.FAULT}:
+            self.change_state(MachineState.FAULT)
+        context.log_event(LogEvent(context.now, "alarm", format_log_line(alarm), alarm.line, alarm))
 
-    def _holds(self, trouble: AlarmError) -> bool:
+    def _handle_hold_alarm(self, error: AlarmError) -> bool:
         """Handle an alarm whose reaction is feed hold; return False if nothing is moving."""
-        if self.cycle is not None and self.state in ACTIVE:
-            self.cycle.starve(trouble.code, trouble.detail)
-        elif self.state in BY_HAND:
+        if self.cycle is not None and self.state in ACTIVE_STATES:
+            self.cycle.hold_for_underrun(error.code, error.detail)
+        elif self.state in MANUAL_STATES:
             self.jogger.stop()
-            stop = self._context.log_stop(trouble.code, trouble.detail)
+            stop = self._context.log_stop(error.code, error.detail)
             self._context.log("refused", stop.text.lower())
         else:
             return False
         return True
 
-    def failed(self, error: BaseException) -> None:
+    def handle_internal_error(self, error: BaseException) -> None:
         """Enter the alarm state for an internal error, even if the transition table does not permit it."""
-        if self.state is not State.ESTOP:
-            self.status.state = State.FAULT
-        self.alarm(AlarmError("internal", Message("{name}: {error}", name=type(error).__name__, error=error)))
+        if self.state is not MachineState.ESTOP:
+            self.status.state = MachineState.FAULT
+        self.raise_alarm(
+            AlarmError("internal", Message("{name}: {error}", name=type(error).__name__, error=error))
+        )
 
-    def _give_up(self, why: str) -> None:
+    def _cancel_active_function(self, reason: str) -> None:
         """Cancel the active function, even if its driver no longer responds."""
         self._giving_up = False
-        self.jogger.forget()  # The stop has ended the jog, so a later release must not stop anything.
+        self.jogger.clear_jog()  # The stop has ended the jog, so a later release must not stop anything.
         with Attempt() as trial:
-            self.program_run.forget(why)
+            self.program_run.cancel_run(reason)
         if trial.error is not None:
-            self.program_run.drop()
+            self.program_run.discard_run()
             self._context.log(
                 "alarm", Message("fault while canceling the program: {error}", error=trial.error)
             )
 
     def _finish_stopping(self) -> None:
         """Retry an incomplete safe stop and raise an alarm if a driver still does not carry it out."""
-        if self.state in _STOPPED:
-            self.safe.again()
-            if self.safe.undone and not any(each.code in CUT_OFF for each in self.status.alarms):
-                self.alarm(
+        if self.state in _STOP_STATES:
+            self.safe_stop.retry_failed_steps()
+            if self.safe_stop.failed_steps_text and not any(
+                each.code in CONNECTION_LOSS_CODES for each in self.status.alarms
+            ):
+                self.raise_alarm(
                     AlarmError(
                         "not-safe",
                         Message(
                             "a driver does not carry out the stop command for {undone}",
-                            undone=self.safe.undone,
+                            undone=self.safe_stop.failed_steps_text,
                         ),
                     )
                 )
 
-    def shut(self) -> None:
+    def shut_down(self) -> None:
         """Stop all motion and switch everything off."""
-        self.safe.react(Reaction.OFF)
-        self.safe.finish()
-        self._give_up(CLOSED)
-        if self.state is not State.ESTOP:
-            self.status.state = State.DISABLED
+        self.safe_stop.run_steps(Reaction.DRIVES_OFF)
+        self.safe_stop.retry_last_time()
+        self._cancel_active_function(CLOSED_REASON)
+        if self.state is not MachineState.ESTOP:
+            self.status.state = MachineState.DISABLED
 
-    def _power_off(self) -> None:
+    def _switch_drives_off(self) -> None:
         """Switch the drives off. A failure is ignored if the drives no longer communicate."""
         with Attempt() as off:
             self._context.ports.axes.enable(False)
-        if off.error is not None and Unknown.SLIDES not in self._context.unknown:
+        if off.error is not None and UnknownPart.AXES not in self._context.unknown_items:
             raise off.error
 
     def _acknowledge(self) -> None:
@@ -440,12 +486,12 @@ class MachineControl:
         if context.sample.moving:
             context.log("refused", "reset: wait until the axes have stopped")
             return
-        if status.power_off:
-            self._power_off()
+        if status.drives_switched_off:
+            self._switch_drives_off()
         context.ports.axes.clear_fault()
-        status.power_off, status.alarms = False, ()
-        self.safe.forget()
-        self.supervisor.acknowledged()
+        status.drives_switched_off, status.alarms = False, ()
+        self.safe_stop.discard_failed_steps()
+        self.supervisor.accept_positions()
         context.sample = context.ports.axes.sample()
-        if self.state is State.FAULT:
-            self.enter(State.IDLE if context.sample.enabled else State.DISABLED)
+        if self.state is MachineState.FAULT:
+            self.change_state(MachineState.IDLE if context.sample.enabled else MachineState.DISABLED)

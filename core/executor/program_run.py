@@ -8,28 +8,28 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from core.executor import start_conditions
-from core.executor.commands import UNCHECKED, Renew
+from core.executor.commands import START_UNCHECKED, ChangeOffsets
 from core.executor.control_status import (
     ControlStatus,
     PartCount,
-    modal_as_machine,
-    modal_given_up,
-    modal_interrupted,
-    modal_with_offsets,
+    apply_offsets_to_modal,
+    modal_after_cancel,
+    modal_after_mdi_cancel,
+    sync_modal_with_machine,
 )
-from core.executor.interruption_watch import InterruptionWatch, Note
-from core.executor.job import Job, ProgramPass, circumstances, outdated
+from core.executor.interruption_watch import InterruptionWatch, StoreInterruptedJob
+from core.executor.job import Job, ProgramPass, find_outdated_setting, setup_at_start
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.controller_motion import ControllerMotion
 from core.executor.program_motion.cycle import Cycle, PathMotion
 from core.executor.program_motion.setpoint_motion import SetpointMotion
-from core.executor.snapshot import GIVEN_UP, LINES, InterruptedJob, Starts, State
+from core.executor.snapshot import MDI_ACTIONS, RESET_REASON, InterruptedJob, MachineState, StartAction
 from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.language.source import Dialect
 from core.message import Message
-from core.tool_edges import tool_of
+from core.tool_edges import get_tool_number
 
 
 class ChangedOffsets:
@@ -43,42 +43,42 @@ class ChangedOffsets:
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
-        self._asked: Renew | None = None
+        self._asked: ChangeOffsets | None = None
 
     @property
-    def wanted(self) -> bool:
+    def is_requested(self) -> bool:
         """True if the next part starts with changed offsets."""
         return self._asked is not None
 
     @property
-    def pending(self) -> bool:
+    def is_proof_pending(self) -> bool:
         """True if the proof of the changed offsets has not arrived yet."""
         return self._asked is not None and self._asked.proof is None and not self._asked.trouble
 
-    def ask(self, asked: Renew, running: Job | None) -> str:
+    def store_request(self, command: ChangeOffsets, running_job: Job | None) -> str:
         """Store a request until the end of the part; return why it is refused, or an empty string."""
-        job = asked.job
-        if job is not None and (running is None or job.source.text != running.source.text):
+        job = command.job
+        if job is not None and (running_job is None or job.source.text != running_job.source.text):
             return (
                 "another program is running; changed offsets apply only to the program for which "
                 "they were entered"
             )
-        self._asked = asked
+        self._asked = command
         return ""
 
-    def refusal(self, left: Modal) -> str:
+    def find_repeat_refusal(self, present_modal: ModalState) -> str:
         """Return why the program is not repeated with the changed offsets, or an empty string."""
         asked = self._asked
         if asked is None:
             return ""
         if asked.trouble or asked.job is None:
             return asked.trouble
-        why = start_conditions.unproved(asked.job, asked.proof) or start_conditions.lacking(
-            self._context, asked.proof
-        )
-        return why or outdated(asked.job, left)
+        why = start_conditions.find_proof_refusal(
+            asked.job, asked.proof
+        ) or start_conditions.find_missing_function(self._context, asked.proof)
+        return why or find_outdated_setting(asked.job, present_modal)
 
-    def take_up(self, status: ControlStatus) -> None:
+    def apply_changes(self, status: ControlStatus) -> None:
         """Make the changed job the loaded program, between two parts or after the program.
 
         Without a proof, the program cannot start, because its old offsets no longer match the tables.
@@ -90,10 +90,10 @@ class ChangedOffsets:
         if asked.job is not None:
             setup = asked.job.setup
             status.job = asked.job
-            status.modal = modal_with_offsets(status.modal, setup.tools, setup.secondary)
+            status.modal = apply_offsets_to_modal(status.modal, setup.tools, setup.secondary)
             self._context.log("offsets", "the changed offsets are in effect")
 
-    def forget(self) -> None:
+    def discard_request(self) -> None:
         """Discard the request because another program is loaded."""
         self._asked = None
 
@@ -104,19 +104,21 @@ class ProgramRun:
     def __init__(
         self,
         context: MachineContext,
-        passes: Callable[[Job, Setup], ProgramPass],
-        enter: Callable[[State], None],
-        note: Note,
-        left: InterruptedJob | None,
+        start_pass: Callable[[Job, Setup], ProgramPass],
+        change_state: Callable[[MachineState], None],
+        store_interruption: StoreInterruptedJob,
+        interrupted_job: InterruptedJob | None,
     ) -> None:
         self._context = context
-        self._passes = passes
-        self._enter = enter
-        self.motion = _motion_of(context)
+        self._passes = start_pass
+        self._enter = change_state
+        self.motion = _make_motion(context)
         self.status = ControlStatus()
-        self.parts = PartCount(context)
-        self.counters = self.parts.counters
-        self.interruption = InterruptionWatch(context, self.status, self.parts, note, left)
+        self.part_count = PartCount(context)
+        self.counters = self.part_count.counters
+        self.interruption_watch = InterruptionWatch(
+            context, self.status, self.part_count, store_interruption, interrupted_job
+        )
         self.changed_offsets = ChangedOffsets(context)
         self.cycle: Cycle | None = None
         self._source: ProgramPass | None = None
@@ -124,172 +126,178 @@ class ProgramRun:
         self._dialect = Dialect.OMNITURN  # language of the run
         self._between = False  # a part is finished, and the next one waits for the proof of changed offsets
 
-    def refusal(self, state: State) -> str:
+    def find_start_refusal(self, state: MachineState) -> str:
         """Return why Cycle Start may not start the selected job, or an empty string."""
-        why = start_conditions.start_refusal(self._context, state, self.status)
-        self.status.start_code = ""
+        why = start_conditions.find_start_refusal(self._context, state, self.status)
+        self.status.start_refusal_code = ""
         if why:
             return why
-        code, why = start_conditions.first_move_refusal(self._context, self.status, self.counters.begun)
-        self.status.start_code = code
-        if code == UNCHECKED:
-            return self.interruption.refusal or why
-        return why or self.interruption.refusal
+        code, why = start_conditions.find_first_move_refusal(
+            self._context, self.status, self.counters.started_run_count
+        )
+        self.status.start_refusal_code = code
+        if code == START_UNCHECKED:
+            return self.interruption_watch.start_refusal or why
+        return why or self.interruption_watch.start_refusal
 
-    def begin(self) -> None:
+    def start_run(self) -> None:
         """Start the program, the restart or the MDI line. A prepared job is used only once."""
         status, context = self.status, self._context
-        job = start_conditions.job_to_start(status)
+        job = start_conditions.selected_job(status)
         assert job is not None
-        self.counters.cycle = 0.0
-        self.counters.begun += 1
-        self._line = status.starts in LINES
-        self.counters.lines += self._line
-        if status.starts is Starts.RESTART:
-            status.starts = Starts.PROGRAM
-        status.prepared = status.prepared_proof = None
+        self.counters.cycle_time_s = 0.0
+        self.counters.started_run_count += 1
+        self._line = status.start_action in MDI_ACTIONS
+        self.counters.mdi_line_count += self._line
+        if status.start_action is StartAction.RESTART:
+            status.start_action = StartAction.PROGRAM
+        status.prepared_job = status.prepared_proof = None
         if not self._line:
-            self.parts.piece.begin(job, self.interruption.begun)
-            self.interruption.begin(job.setup.begin)
-        self._open(job)
-        self._enter(State.RUN)
+            self.part_count.workpiece.start_run(job, self.interruption_watch.started_block_count)
+            self.interruption_watch.record_start(job.setup.begin)
+        self._open_pass(job)
+        self._enter(MachineState.RUN)
         context.log("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
         begin = job.setup.begin
-        if begin is not None and not begin.single:
-            context.log("restart", Message("the program restarts at line {line}", line=begin.line))
+        if begin is not None and not begin.is_mdi_line:
+            context.log("restart", Message("the program restarts at line {line}", line=begin.line_number))
 
     @property
-    def will_count(self) -> bool:
+    def will_count_part(self) -> bool:
         """True if a program is running that will count as a part when it ends."""
-        return self.cycle is not None and not (self._line or self._between or self.parts.why_none)
+        return self.cycle is not None and not (
+            self._line or self._between or self.part_count.uncounted_reason
+        )
 
-    def disturb(self, why: str) -> None:
+    def mark_part_disturbed(self, reason: str) -> None:
         """Mark the part in progress as disturbed, so that it is not counted."""
         if not (self._line or self._between):
-            self.parts.piece.disturbed = self.parts.piece.disturbed or why
+            self.part_count.workpiece.disturbance = self.part_count.workpiece.disturbance or reason
 
-    def cut(self, seconds: float) -> None:
+    def add_cutting_time(self, seconds: float) -> None:
         """Add ``seconds`` to the cutting time of the tool if it moves at feed. Dry runs do not count."""
-        block = self.cycle.current if self.cycle is not None and not self.cycle.at_rest else None
+        block = self.cycle.current_block if self.cycle is not None and not self.cycle.is_at_rest else None
         if block is not None and block.moves and not block.rapid and not self._context.switches.no_count:
-            self.counters.cut(tool_of(block.modal.tool), seconds, self._context.spindle_load)
+            self.counters.add_cutting_time(
+                get_tool_number(block.modal.tool), seconds, self._context.spindle_load
+            )
 
-    def leave(self) -> bool:
+    def finish_canceled_cycle(self) -> bool:
         """Finish a canceled cycle as soon as the axes are at rest; return True when it is finished."""
-        if self.cycle is None or not self.cycle.at_rest:
+        if self.cycle is None or not self.cycle.is_at_rest:
             return False
         said = "the MDI line was canceled by reset" if self._line else "program canceled by reset"
         kind = "mdi" if self._line else "end"
-        self.forget(GIVEN_UP)
-        self._enter(State.IDLE)
+        self.cancel_run(RESET_REASON)
+        self._enter(MachineState.IDLE)
         self._context.log(kind, said)
         return True
 
-    def forget(self, why: str) -> None:
+    def cancel_run(self, reason: str) -> None:
         """Cancel the run for the reason ``why``.
 
         A program leaves the modal state that M30 would leave. An MDI line leaves its modes.
         """
         cycle = self.cycle
         if cycle is None:
-            self.motion.forget()
+            self.motion.clear_section()
             return
         if not (self._line or self._between):
-            self.interruption.broke_off(cycle.current, why)
+            self.interruption_watch.record_interruption(cycle.current_block, reason)
         language = self._context.machine.language
-        given_up = modal_given_up(cycle.modal, language)
-        self._put_away(modal_interrupted(cycle.modal) if self._line else given_up)
+        given_up = modal_after_cancel(cycle.modal, language)
+        self._finish_run(modal_after_mdi_cancel(cycle.modal) if self._line else given_up)
 
-    def drop(self) -> None:
+    def discard_run(self) -> None:
         """Discard the run without calling the drivers, for use after a driver failure."""
         self.cycle = self._source = None
         self._between = False
         self._context.line = 0
 
-    def _put_away(self, left: Modal, *, tool_open: bool = False) -> None:
+    def _finish_run(self, final_modal: ModalState, *, tool_open: bool = False) -> None:
         """End the run with the modal state ``left`` and apply offsets that were changed during the run."""
-        self._stand(left, tool_open=tool_open)
+        self._store_modal(final_modal, tool_open=tool_open)
         if not self._line:
-            self.status.kept = None
+            self.status.saved_pass = None
         self.cycle = self._source = None
         self._between = False
         self._context.line = 0
-        self.motion.forget()
-        self.changed_offsets.take_up(self.status)
+        self.motion.clear_section()
+        self.changed_offsets.apply_changes(self.status)
 
-    def _stand(self, modal: Modal, *, tool_open: bool = False) -> None:
+    def _store_modal(self, modal: ModalState, *, tool_open: bool = False) -> None:
         """Store the modal state. Units and rapid rate are taken over only from OmniTurn programs."""
         before = self.status.modal
         if self._dialect is not Dialect.OMNITURN:
             modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
-        self.status.modal, self.status.tool_open = modal, tool_open
+        self.status.modal, self.status.is_tool_move_pending = modal, tool_open
 
-    def look(self) -> None:
+    def update_between_cycles(self) -> None:
         """Update the state between two cycles, and start the next part of Cycle Repeat if it may start."""
-        self.interruption.look(None if self._line or self._between else self.cycle)
+        self.interruption_watch.record_progress(None if self._line or self._between else self.cycle)
         if self.cycle is None:
-            self.status.modal = modal_as_machine(self.status.modal, self._context)
-        elif self._between and self.status.state in {State.RUN, State.WAIT}:
-            self._go_round(self.cycle)
+            self.status.modal = sync_modal_with_machine(self.status.modal, self._context)
+        elif self._between and self.status.state in {MachineState.RUN, MachineState.WAIT}:
+            self._repeat_program(self.cycle)
 
-    def _open(self, job: Job) -> None:
+    def _open_pass(self, job: Job) -> None:
         """Start a pass through ``job`` from the present position of the axes."""
         at, _ = self._context.ports.axes.demand_at(self._context.now)
-        setup = circumstances(job.setup, at, self._context.terminal)
-        self.motion.forget()
+        setup = setup_at_start(job.setup, at, self._context.is_input_on)
+        self.motion.clear_section()
         diameter = job.source.dialect is Dialect.SINUMERIK
-        begins = Modal(metric=setup.metric, diameter=diameter, rapid_rate=setup.last_rapid)
+        begins = ModalState(metric=setup.metric, diameter=diameter, rapid_rate=setup.last_rapid)
         if setup.begin is not None:
             begins = setup.begin.checkpoint.modal
         self._source, self._dialect = self._passes(job, setup), job.source.dialect
-        self.cycle = Cycle(self._context, self.motion, self._source, begins, self._enter, self._ended)
+        self.cycle = Cycle(self._context, self.motion, self._source, begins, self._enter, self._handle_end)
 
-    def _ended(self, end: ProgramEnd | None) -> None:
+    def _handle_end(self, end: ProgramEnd | None) -> None:
         """Handle M30, M02, or the end of an MDI line."""
         if end is not None and end.reset:
             self._end_functions()
         if self._line:
-            self._line_ended(end)
+            self._end_mdi_line(end)
             return
-        self.parts.ended()
-        self.interruption.finished()
+        self.part_count.record_program_end()
+        self.interruption_watch.clear_record()
         self._between = end is not None and end.reset and self._context.switches.cycle_repeat
         if self.cycle is not None and self._between:
-            self._go_round(self.cycle)
+            self._repeat_program(self.cycle)
         else:
             self._program_ended()
 
-    def _go_round(self, cycle: Cycle) -> None:
+    def _repeat_program(self, cycle: Cycle) -> None:
         """Start the next part once changed offsets are proved, or log why it does not start."""
         repeat = self._context.switches.cycle_repeat
-        if repeat and self.changed_offsets.pending and not self.status.next_barred:
-            cycle.wait_for("PROVING WITH THE CHANGED OFFSETS")
+        if repeat and self.changed_offsets.is_proof_pending and not self.status.next_part_block_reason:
+            cycle.wait_for_next_cycle("PROVING WITH THE CHANGED OFFSETS")
             return
         why = self._why_not_again(cycle.modal)
         if why or not repeat:
             self._program_ended(why)
             return
-        self.changed_offsets.take_up(self.status)
+        self.changed_offsets.apply_changes(self.status)
         self._between = False
-        self.counters.cycle = 0.0
-        self.counters.begun += 1
+        self.counters.cycle_time_s = 0.0
+        self.counters.started_run_count += 1
         assert self.status.job is not None
-        self.interruption.begin(None)
-        self._open(self.status.job)
-        self._enter(State.RUN)
+        self.interruption_watch.record_start(None)
+        self._open_pass(self.status.job)
+        self._enter(MachineState.RUN)
         self._context.log("repeat", self.status.job.source.name)
 
-    def _why_not_again(self, left: Modal) -> str:
-        if self.status.next_barred:
-            return self.status.next_barred
-        if self.changed_offsets.wanted:
-            return self.changed_offsets.refusal(left)
-        again = start_conditions.first_move_verdict(
-            self._context, self.status, self.counters.begun, repeats=True
+    def _why_not_again(self, left: ModalState) -> str:
+        if self.status.next_part_block_reason:
+            return self.status.next_part_block_reason
+        if self.changed_offsets.is_requested:
+            return self.changed_offsets.find_repeat_refusal(left)
+        again = start_conditions.find_first_move_clearance(
+            self._context, self.status, self.counters.started_run_count, for_repeat=True
         )
         if again is not None and again.code:
             return again.why
-        old = outdated(self.status.job, left) if self.status.job is not None else ""
+        old = find_outdated_setting(self.status.job, left) if self.status.job is not None else ""
         return Message("{old}, but the program does not specify this setting", old=old) if old else ""
 
     def _program_ended(self, no_repeat: str = "") -> None:
@@ -298,24 +306,24 @@ class ProgramRun:
                 "refused", Message("the cycle is not repeated: {no_repeat}", no_repeat=no_repeat)
             )
         self._context.log("end", "program end")
-        self._put_away(self.modal)
-        self._enter(State.IDLE)
+        self._finish_run(self.modal)
+        self._enter(MachineState.IDLE)
 
-    def _line_ended(self, end: ProgramEnd | None) -> None:
+    def _end_mdi_line(self, end: ProgramEnd | None) -> None:
         """Store the state that an MDI line leaves for the next line.
 
         After M30 it is the state after a program.
         """
         source = self._source
-        left = source.left() if source is not None and source.left is not None else None
-        modal = self.modal if left is None else modal_as_machine(left.modal, self._context)
-        self.status.kept = left.kept if left is not None and end is None else None
-        self._put_away(modal, tool_open=left is not None and left.tool_line != 0)
-        self._enter(State.IDLE)
+        left = source.make_checkpoint() if source is not None and source.make_checkpoint is not None else None
+        modal = self.modal if left is None else sync_modal_with_machine(left.modal, self._context)
+        self.status.saved_pass = left.kept if left is not None and end is None else None
+        self._finish_run(modal, tool_open=left is not None and left.tool_line != 0)
+        self._enter(MachineState.IDLE)
         self._context.log("mdi", "done")
 
     @property
-    def modal(self) -> Modal:
+    def modal(self) -> ModalState:
         """The modal state of the block being executed, or the state in force between two programs."""
         return self.cycle.modal if self.cycle is not None else self.status.modal
 
@@ -328,7 +336,7 @@ class ProgramRun:
                 context.ports.io.write(name, False)
 
 
-def _motion_of(context: MachineContext) -> PathMotion:
+def _make_motion(context: MachineContext) -> PathMotion:
     """Return the motion by setpoints, or block by block if the controller plans the motion."""
     blocks = context.ports.blocks
     return SetpointMotion(context) if blocks is None else ControllerMotion(context, blocks)

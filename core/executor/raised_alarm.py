@@ -8,12 +8,12 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ClassVar
 
-from core.alarms import CATALOGUE, Code, Reaction
+from core.alarms import CATALOGUE, AlarmCode, Reaction
 from core.executor.snapshot import Alarm
 from core.message import Message
 
 _log = logging.getLogger(__name__)
-CODES_OF_HOLDS: dict[str, Code] = {
+HOLD_CODES: dict[str, AlarmCode] = {
     entry.text.upper(): code for code, entry in CATALOGUE.items() if entry.reaction is Reaction.HOLD
 }
 
@@ -25,23 +25,23 @@ class AlarmError(Exception):
     that is shown to the operator if the catalog entry permits it, and is logged otherwise.
     """
 
-    def __init__(self, code: Code, detail: str = "", line: int = 0) -> None:
+    def __init__(self, code: AlarmCode, detail: str = "", line: int = 0) -> None:
         super().__init__(detail or CATALOGUE[code].text)
-        self.code: Code = code
+        self.code: AlarmCode = code
         self.detail = detail
         self.line = line
 
 
-def alarm_and_reaction(trouble: AlarmError, line: int, now: float) -> tuple[Alarm, Reaction]:
+def make_alarm_and_reaction(error: AlarmError, line: int, now: float) -> tuple[Alarm, Reaction]:
     """Return the alarm to show, with ``line`` as its default line, and the reaction of the machine."""
-    alarm = make_alarm(trouble.code, trouble.detail, trouble.line or line, now)
-    return alarm, CATALOGUE[trouble.code].reaction
+    alarm = make_alarm(error.code, error.detail, error.line or line, now)
+    return alarm, CATALOGUE[error.code].reaction
 
 
-def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
+def make_alarm(code: AlarmCode, detail: str, line: int, now: float) -> Alarm:
     """Return an alarm, a hold or a stop with the texts of the catalog and the details of this case."""
     entry = CATALOGUE[code]
-    exactly = detail if entry.tells else ""
+    exactly = detail if entry.shows_detail else ""
     return Alarm(
         number=entry.number,
         code=code,
@@ -55,19 +55,19 @@ def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
     )
 
 
-def code_of_hold(reason: str, by: str) -> tuple[Code, str]:
+def find_hold_code(reason: str, source: str) -> tuple[AlarmCode, str]:
     """Return the alarm code and the detail of a hold.
 
-    ``reason`` is a catalog text in capitals or a free text. It is empty if a button was pressed; ``by`` then
-    names the button.
+    ``reason`` is a catalog text in capitals or a free text. It is empty if a button was pressed; ``source``
+    then names the button.
     """
     if not reason:
-        return "feed-hold", Message("feed hold requested by {name}", name=by) if by else ""
-    code = CODES_OF_HOLDS.get(reason)
+        return "feed-hold", Message("feed hold requested by {name}", name=source) if source else ""
+    code = HOLD_CODES.get(reason)
     return ("held", reason.lower()) if code is None else (code, "")
 
 
-def log_line(alarm: Alarm) -> str:
+def format_log_line(alarm: Alarm) -> str:
     """Return one line for the event log, starting with the alarm number of the catalog."""
     return Message("{number} {alarm}: {cause}", number=alarm.number, alarm=alarm.text, cause=alarm.cause)
 
@@ -98,17 +98,17 @@ class Attempt:
 
 
 class ReportedAttempt(Attempt):
-    """A ``with`` block that logs its error and passes it to ``failed``.
+    """A ``with`` block that logs its error and passes it to ``handle_failure``.
 
-    An error in ``failed`` is logged too. An error that repeats in every tick is logged the first, tenth,
-    hundredth … time, so that it does not hide earlier entries.
+    An error in ``handle_failure`` is logged too. An error that repeats in every tick is logged the first,
+    tenth, hundredth … time, so that it does not hide earlier entries.
     """
 
     _written: ClassVar[Counter[str]] = Counter()
 
-    def __init__(self, failed: Callable[[BaseException], None]) -> None:
+    def __init__(self, handle_failure: Callable[[BaseException], None]) -> None:
         super().__init__()
-        self._failed = failed
+        self._failed = handle_failure
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

@@ -19,72 +19,72 @@ from typing import NamedTuple
 import numpy as np
 
 from core.executor.raised_alarm import Attempt
-from core.executor.snapshot import Event, Snapshot, State, Tick
+from core.executor.snapshot import LogEvent, MachineState, Snapshot, TickData
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.ports import FloatArray, MachinePorts, Unknown
+from core.ports import FloatArray, MachinePorts, UnknownPart
 from core.records.record import RecordError
-from core.records.record_file import ENDING, save_record
-from core.records.record_ring import TICKS, Recorded, Ring, Rows, bits_of
-from core.records.recordings import KEPT, Recordings
-from core.records.ring_file import NOW, RingFile, new_ring
+from core.records.record_file import RECORD_SUFFIX, save_record
+from core.records.record_ring import TICK_RATE_HZ, RingLayout, RowBuffer, ScopeRing, pack_bits
+from core.records.recordings import MAX_ALARM_RECORDS, ScopeRecordings
+from core.records.ring_file import NOW, RingFile, create_ring_file
 
 _log = logging.getLogger(__name__)
 _NAN = float("nan")
-_LOOK = 0.1  # s between two passes through the queue
-_RESTS = 0.5  # additional s while nothing happens
-_AT_REST = 0.1  # s between two rows while no value changes
-_GRAIN = 0.005  # s; half a tick
-_MOST = 12_000  # largest number of queued ticks: 2 min
+_POLL_INTERVAL_S = 0.1  # s between two passes through the queue
+_REST_PAUSE_S = 0.5  # additional s while nothing happens
+_REST_ROW_INTERVAL_S = 0.1  # s between two rows while no value changes
+_TIME_RESOLUTION_S = 0.005  # s; half a tick
+_MAX_QUEUED_TICKS = 12_000  # largest number of queued ticks: 2 min
 BEFORE, BEHIND = 10.0, 2.0  # s before and after an alarm that its record contains
-_SOON = 0.2  # s that the record continues after an alarm at rest
-ENDS = 3.0  # s that closing waits for the thread, because a disk may hang
-_FROZEN = frozenset({"alarm", "estop"})  # kinds of events
-_STATES = {state: float(i) for i, state in enumerate(State)}
-_STANDS = 0.01  # mm/s
-_TURNS = 1.0  # rpm
+_RECORD_DELAY_S = 0.2  # s that the record continues after an alarm at rest
+CLOSE_TIMEOUT_S = 3.0  # s that closing waits for the thread, because a disk may hang
+_RECORDED_EVENT_KINDS = frozenset({"alarm", "estop"})  # kinds of events
+_STATES = {state: float(i) for i, state in enumerate(MachineState)}
+_STANDSTILL_SPEED_MM_S = 0.01  # mm/s
+_TURNING_RPM = 1.0  # rpm
 
 
-class _Frozen(NamedTuple):
+class _OpenRecord(NamedTuple):
     """An alarm whose record has not been written yet."""
 
-    event: Event
+    event: LogEvent
     program: str
 
 
-def recorded_of(machine: Machine, ports: MachinePorts) -> Recorded:
+def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
     """Return the list of signals that are recorded for this machine."""
-    return Recorded(
+    return RingLayout(
         {axis.name: axis.rotary for axis in machine.axes},
         tuple(machine.inputs),
         tuple(machine.outputs),
-        ports.samples.rate if ports.samples is not None else TICKS,
+        ports.samples.sample_rate_hz if ports.samples is not None else TICK_RATE_HZ,
         time.time() - ports.clock.now(),
         machine.name,
-        tuple(state.value for state in State),
+        tuple(state.value for state in MachineState),
     )
 
 
-class Recorder(Recordings):
+class Recorder(ScopeRecordings):
     """Records ticks in a ring buffer and saves a file for each alarm.
 
-    The executor calls ``tell`` and ``note``; ``latest`` and ``between`` may be used from any thread.
-    ``folder`` contains the ring file ``name`` and the alarm records; None means that no file is written.
-    ``trouble`` is the reason why the ring file cannot be written, in which case the record is in memory only.
-    ``memory`` is shared with another process that reads the ring.
+    The executor calls ``queue_tick`` and ``assign_record_name``; ``latest`` and ``get_record_between`` may
+    be used from any thread. ``folder`` contains the ring file ``name`` and the alarm records; None means
+    that no file is written. ``storage_error`` is the reason why the ring file cannot be written, in which
+    case the record is in memory only. ``memory`` is shared with another process that reads the ring.
     """
 
     def __init__(
         self,
-        recorded: Recorded,
+        recorded: RingLayout,
         folder: Path | None = None,
         name: str = NOW,
         memory: memoryview | None = None,
     ) -> None:
-        super().__init__(Ring.of(recorded, memory), folder)
-        self._told: deque[Tick] = deque(maxlen=_MOST)
-        self._noted: deque[_Frozen] = deque()
-        self._freezing: _Frozen | None = None
+        super().__init__(ScopeRing.from_layout(recorded, memory), folder)
+        self._told: deque[TickData] = deque(maxlen=_MAX_QUEUED_TICKS)
+        self._noted: deque[_OpenRecord] = deque()
+        self._freezing: _OpenRecord | None = None
         self._name = self._writing = ""  # names of the record that is pending and of the record being written
         self._program = ""
         self._skipped: list[float] | None = None  # the last tick if it contained no change
@@ -101,31 +101,31 @@ class Recorder(Recordings):
 
     def _open(self, folder: Path, name: str) -> None:
         try:
-            self._file = new_ring(folder, name, self.ring)
+            self._file = create_ring_file(folder, name, self.ring)
         except RecordError as error:
-            self.trouble = Message("the scope record is stored in memory only: {error}", error=error)
+            self.storage_error = Message("the scope record is stored in memory only: {error}", error=error)
 
     # --- the executor's thread ------------------------------------------------------------------------
 
-    def tell(self, tick: Tick) -> None:
+    def queue_tick(self, tick: TickData) -> None:
         """Queue the data of one tick. Never waits."""
         self._program = tick.snapshot.program
         self._told.append(tick)
-        if not tick.rests:
+        if not tick.is_at_rest:
             self._happens.set()
 
-    def note(self, event: Event) -> Event:
+    def assign_record_name(self, event: LogEvent) -> LogEvent:
         """Return an alarm or E-stop event with the name of the record that will be written. Never waits."""
-        if self.folder is None or event.kind not in _FROZEN or event.alarm is None:
+        if self.folder is None or event.kind not in _RECORDED_EVENT_KINDS or event.alarm is None:
             return event
         if not self._name:
-            began = time.localtime(self.ring.recorded.began + event.t)
+            began = time.localtime(self.ring.layout.clock_zero_utc_s + event.time_s)
             stamp = time.strftime("%Y%m%dT%H%M%S", began)
-            self._name = f"{stamp}-alarm{event.alarm.number}{ENDING}"
-            named = replace(event, record=self._name)
-            self._noted.append(_Frozen(named, self._program))
+            self._name = f"{stamp}-alarm{event.alarm.number}{RECORD_SUFFIX}"
+            named = replace(event, record_name=self._name)
+            self._noted.append(_OpenRecord(named, self._program))
             return named
-        return replace(event, record=self._name)
+        return replace(event, record_name=self._name)
 
     def is_saving(self, name: str) -> bool:
         """Return whether the record of this alarm is still to be written."""
@@ -142,108 +142,121 @@ class Recorder(Recordings):
         self._closing.set()
         self._happens.set()
         if self._thread.is_alive():
-            self._thread.join(ENDS)
-        self.drain(last=True)
+            self._thread.join(CLOSE_TIMEOUT_S)
+        self.store_queued_ticks(is_last=True)
         if self._file is not None:
             self._file.close()
             self._file = None
 
     def _run(self) -> None:
-        while not self._closing.wait(_LOOK):
-            self._happens.wait(_RESTS)
+        while not self._closing.wait(_POLL_INTERVAL_S):
+            self._happens.wait(_REST_PAUSE_S)
             self._happens.clear()
             with Attempt() as trial:
-                self.drain()
+                self.store_queued_ticks()
             if trial.error is not None:
                 _log.error("the recorder has failed", exc_info=trial.error)
                 return
 
-    def drain(self, *, last: bool = False) -> None:
+    def store_queued_ticks(self, *, is_last: bool = False) -> None:
         """Store the queued ticks. ``last`` is True if no more ticks will follow."""
         ticks = [self._told.popleft() for _ in range(len(self._told))]
         if ticks:
             self._keep(self.ring.ticks, self._tick_rows(ticks))
             self._keep(self.ring.samples, self._sample_rows(ticks))
-        self._freeze(ticks[-1].snapshot if ticks else None, last=last)
+        self._write_due_record(ticks[-1].snapshot if ticks else None, last=is_last)
 
-    def _keep(self, rows: Rows, new: FloatArray) -> None:
+    def _keep(self, rows: RowBuffer, new: FloatArray) -> None:
         if not len(new):
             return
         parts = rows.write(new)
         if self._file is not None:
             try:
-                self._file.write(rows, parts)
+                self._file.write_rows(rows, parts)
             except RecordError as error:
-                self.trouble = Message("the scope record is stored in memory only: {error}", error=error)
-                _log.warning("%s", self.trouble)
+                self.storage_error = Message(
+                    "the scope record is stored in memory only: {error}", error=error
+                )
+                _log.warning("%s", self.storage_error)
                 self._file.close()
                 self._file = None
 
-    def _tick_rows(self, ticks: Iterable[Tick]) -> FloatArray:
+    def _tick_rows(self, ticks: Iterable[TickData]) -> FloatArray:
         """Return a row for each tick that contains a change, and ten rows per second at rest."""
-        recorded, last = self.ring.recorded, self.ring.ticks.last
+        recorded, last = self.ring.layout, self.ring.ticks.last_time_s
         rows: list[list[float]] = []
         for tick in ticks:
             s = tick.snapshot
             if s.t <= last:
                 continue
-            heard = Unknown.SPINDLE not in s.unknown
+            heard = UnknownPart.SPINDLE not in s.unknown
             figures = [
                 s.rpm_command,
                 s.rpm_actual if heard else _NAN,
-                tick.turns if heard else _NAN,
+                tick.spindle_revolutions if heard else _NAN,
                 s.feed_override,
                 s.spindle_override,
-                tick.queue,
+                tick.queued_motion_s,
                 0.0,
                 float(s.line),
                 float(s.block),
                 _STATES[s.state],
-                *_told(bits_of(recorded.inputs, s.inputs), Unknown.INPUTS not in s.unknown),
-                *_told(bits_of(recorded.outputs, s.outputs), Unknown.OUTPUTS not in s.unknown),
+                *_values_or_nan(pack_bits(recorded.inputs, s.inputs), UnknownPart.INPUTS not in s.unknown),
+                *_values_or_nan(pack_bits(recorded.outputs, s.outputs), UnknownPart.OUTPUTS not in s.unknown),
             ]
-            self._late = max(self._late, tick.late)
-            if figures == self._figures and s.t < last + _AT_REST - _GRAIN:
+            self._late = max(self._late, tick.delay_s)
+            if figures == self._figures and s.t < last + _REST_ROW_INTERVAL_S - _TIME_RESOLUTION_S:
                 continue
             self._figures, last = figures, s.t
             rows.append([s.t, *figures[:6], self._late, *figures[7:]])
             self._late = 0.0
         return np.array(rows).reshape(-1, recorded.tick_width)
 
-    def _sample_rows(self, ticks: list[Tick]) -> FloatArray:
+    def _sample_rows(self, ticks: list[TickData]) -> FloatArray:
         """Return the driver's samples, or the axis positions at each tick if the driver has no samples."""
-        width, last = self.ring.recorded.sample_width, self.ring.samples.last
+        width, last = self.ring.layout.sample_width, self.ring.samples.last_time_s
         told = [
-            _loaded(tick.samples, tick) for tick in ticks if tick.samples is not None and len(tick.samples)
+            _add_spindle_load(tick.samples, tick)
+            for tick in ticks
+            if tick.samples is not None and len(tick.samples)
         ]
-        rows = np.concatenate(told) if told else self._seen(ticks, last)
+        rows = np.concatenate(told) if told else self._rows_from_snapshots(ticks, last)
         rows = self._with_gap(rows, ticks)
         if rows.shape[1:] != (width,):
             return np.empty((0, width))
         return rows[rows[:, 0] > np.maximum.accumulate(np.concatenate(([last], rows[:-1, 0])))]
 
-    def _with_gap(self, rows: FloatArray, ticks: Iterable[Tick]) -> FloatArray:
+    def _with_gap(self, rows: FloatArray, ticks: Iterable[TickData]) -> FloatArray:
         """Insert a row of NaN where the data of the axes is lost, so that no line is drawn across the gap."""
-        silent = [tick.snapshot.t for tick in ticks if Unknown.SLIDES in tick.snapshot.unknown]
+        silent = [tick.snapshot.t for tick in ticks if UnknownPart.AXES in tick.snapshot.unknown]
         begins, self._silent = bool(silent) and not self._silent, bool(silent)
         if not silent:
             return rows
         before, behind = rows[rows[:, 0] < silent[0]], rows[rows[:, 0] > silent[-1]]
-        gap = np.full((int(begins), self.ring.recorded.sample_width), _NAN)
+        gap = np.full((int(begins), self.ring.layout.sample_width), _NAN)
         gap[:, 0] = silent[0]
         return np.concatenate([before, gap, behind])
 
-    def _seen(self, ticks: Iterable[Tick], last: float) -> FloatArray:
+    def _rows_from_snapshots(self, ticks: Iterable[TickData], last: float) -> FloatArray:
         """Return samples taken from the snapshots. The last row before a change is always included."""
-        width, none = self.ring.recorded.sample_width, [_NAN] * len(self.ring.recorded.axes)
+        width, none = self.ring.layout.sample_width, [_NAN] * len(self.ring.layout.is_rotary_by_axis)
         rows: list[list[float]] = []
         for tick in ticks:
             s = tick.snapshot
-            if tick.samples is not None or s.t <= last or Unknown.SLIDES in s.unknown:
+            if tick.samples is not None or s.t <= last or UnknownPart.AXES in s.unknown:
                 continue
             place = (s.demand, s.actual, s.rpm_actual)
-            row = [s.t, *s.demand, *s.actual, *none, s.rpm_actual, tick.turns, _load(tick), tick.queue]
-            if place == self._place and s.t < last + _AT_REST - _GRAIN:
+            row = [
+                s.t,
+                *s.demand,
+                *s.actual,
+                *none,
+                s.rpm_actual,
+                tick.spindle_revolutions,
+                _load(tick),
+                tick.queued_motion_s,
+            ]
+            if place == self._place and s.t < last + _REST_ROW_INTERVAL_S - _TIME_RESOLUTION_S:
                 self._resting = row
                 continue
             if self._resting is not None and place != self._place:
@@ -254,24 +267,24 @@ class Recorder(Recordings):
 
     # --- records of alarms --------------------------------------------------------------------------------
 
-    def _freeze(self, now: Snapshot | None, *, last: bool) -> None:
+    def _write_due_record(self, now: Snapshot | None, *, last: bool) -> None:
         """Write the record of an alarm when the machine is at rest or 2 s have passed."""
         if self._freezing is None and self._noted:
             self._freezing = self._noted.popleft()
         if self._freezing is None or (now is None and not last):
             return
         event = self._freezing.event
-        if last or now is None or _over(now, event.t):
+        if last or now is None or _over(now, event.time_s):
             self._name, self._writing = "", self._name  # a later alarm gets its own record
             frozen, self._freezing = self._freezing, None
-            self._write(frozen, min(self.ring.samples.last, event.t + BEHIND))
+            self._write(frozen, min(self.ring.samples.last_time_s, event.time_s + BEHIND))
             self._writing = ""
 
-    def _write(self, frozen: _Frozen, end: float) -> None:
+    def _write(self, frozen: _OpenRecord, end: float) -> None:
         event, folder = frozen.event, self.folder
         assert folder is not None
         assert event.alarm is not None
-        record = self.ring.between(event.t - BEFORE, end)
+        record = self.ring.get_record_between(event.time_s - BEFORE, end)
         about = {
             **record.about,
             "program": frozen.program,
@@ -282,30 +295,30 @@ class Recorder(Recordings):
                 cause=event.alarm.cause,
             ),
             "alarm line": str(event.line),
-            "alarm time": repr(event.t),  # on the clock of the samples
+            "alarm time": repr(event.time_s),  # on the clock of the samples
         }
         try:
-            save_record(replace(record, about=about), folder / event.record)
-            rotate(folder)
+            save_record(replace(record, about=about), folder / event.record_name)
+            delete_oldest_records(folder)
         except RecordError as error:
-            self.trouble = Message("the record of an alarm was lost: {error}", error=error)
-            _log.warning("%s", self.trouble)
+            self.storage_error = Message("the record of an alarm was lost: {error}", error=error)
+            _log.warning("%s", self.storage_error)
 
 
-def _told(figures: list[float], heard: bool) -> list[float]:
+def _values_or_nan(values: list[float], is_known: bool) -> list[float]:
     """Return the values, or NaN for each value if no data arrives."""
-    return figures if heard else [_NAN] * len(figures)
+    return values if is_known else [_NAN] * len(values)
 
 
 def _over(now: Snapshot, alarm: float) -> bool:
-    stands = now.velocity < _STANDS and abs(now.rpm_actual) < _TURNS
-    return now.t >= alarm + BEHIND or (stands and now.t >= alarm + _SOON)
+    stands = now.velocity < _STANDSTILL_SPEED_MM_S and abs(now.rpm_actual) < _TURNING_RPM
+    return now.t >= alarm + BEHIND or (stands and now.t >= alarm + _RECORD_DELAY_S)
 
 
-def rotate(folder: Path) -> None:
+def delete_oldest_records(folder: Path) -> None:
     """Delete the oldest alarm records above the permitted number. Raises RecordError if deletion fails."""
     try:
-        for old in sorted(folder.glob(f"*-alarm*{ENDING}"))[:-KEPT]:
+        for old in sorted(folder.glob(f"*-alarm*{RECORD_SUFFIX}"))[:-MAX_ALARM_RECORDS]:
             old.unlink()
     except OSError as error:
         raise RecordError(
@@ -320,11 +333,11 @@ def rotate(folder: Path) -> None:
 _LOAD = -2  # column of the spindle load in a sample
 
 
-def _load(tick: Tick) -> float:
+def _load(tick: TickData) -> float:
     return _NAN if tick.snapshot.spindle_load is None else tick.snapshot.spindle_load
 
 
-def _loaded(rows: FloatArray, tick: Tick) -> FloatArray:
+def _add_spindle_load(rows: FloatArray, tick: TickData) -> FloatArray:
     """Return the samples with the spindle load of the machine's input, if the driver does not measure it."""
     load = tick.snapshot.spindle_load
     if load is None or not len(rows) or not np.isnan(rows[:, _LOAD]).all():

@@ -11,46 +11,49 @@ from dataclasses import dataclass, field
 
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import Attempt
-from core.executor.snapshot import ACTIVE, STOPPED, State
-from core.machine.hardware_model import BUZZER, HALF, SIGNALS
+from core.executor.snapshot import ACTIVE_STATES, STOPPED_STATES, MachineState
+from core.machine.hardware_model import BLINK_HALF_PERIOD_S, BUZZER, MACHINE_SIGNALS
 from core.message import Message
-from core.ports import DigitalIO, Unknown
+from core.ports import DigitalIO, UnknownPart
 
-_NO_PARTS = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
-_AGAIN = 1.0  # s after which a lamp in the wrong state is switched again
-_REFUSED = 5.0  # s after which a lamp that the driver refused is switched again
+_NO_PARTS = frozenset({MachineState.ESTOP, MachineState.FAULT, MachineState.DISABLED})
+_RETRY_INTERVAL_S = 1.0  # s after which a lamp in the wrong state is switched again
+_REFUSAL_TIME_S = 5.0  # s after which a lamp that the driver refused is switched again
 
 
 @dataclass(slots=True)
-class SignalKinds:
+class SignalSelector:
     """Determines the active signals, and remembers whether a part is finished and no other has started."""
 
     _ends: int = -1
     _made: bool = False
 
-    def see(self, state: State, ends: int, *, barred: bool) -> tuple[str, ...]:
+    def update_signals(
+        self, state: MachineState, program_end_count: int, *, next_part_blocked: bool
+    ) -> tuple[str, ...]:
         """Return the names of all active signals.
 
-        ``ends`` is the number of finished programs. ``barred`` is True if no other part may start.
+        ``program_end_count`` is the number of finished programs. ``next_part_blocked`` is True if no other
+        part may start.
         """
-        self._made = (self._made or ends > self._ends >= 0) and state is State.IDLE
-        self._ends = ends
+        self._made = (self._made or program_end_count > self._ends >= 0) and state is MachineState.IDLE
+        self._ends = program_end_count
         found = [kind for kind in (_of_state(state),) if kind]
-        if barred and state not in _NO_PARTS:
+        if next_part_blocked and state not in _NO_PARTS:
             found.append("tool-life")
         elif self._made:
             found.append("part")
         return tuple(found)
 
 
-def _of_state(state: State) -> str:
-    if state is State.ESTOP:
+def _of_state(state: MachineState) -> str:
+    if state is MachineState.ESTOP:
         return "estop"
-    if state is State.FAULT:
+    if state is MachineState.FAULT:
         return "alarm"
-    if state in STOPPED:
+    if state in STOPPED_STATES:
         return "stop"
-    return "runs" if state in ACTIVE else ""
+    return "runs" if state in ACTIVE_STATES else ""
 
 
 @dataclass(slots=True)
@@ -62,7 +65,7 @@ class SignalLamps:
     _lamps: tuple[str, ...] = field(init=False)
     _kinds: tuple[str, ...] = ()
     _since: dict[str, float] = field(default_factory=dict)  # start time of each signal
-    _signals: SignalKinds = field(default_factory=SignalKinds)
+    _signals: SignalSelector = field(default_factory=SignalSelector)
     _due: dict[str, float] = field(default_factory=dict)  # earliest time at which each lamp is switched again
     _sent: dict[str, bool] = field(default_factory=dict)
     # earliest time of the next attempt after a refusal of the driver
@@ -70,16 +73,20 @@ class SignalLamps:
     _told: str = ""
 
     def __post_init__(self) -> None:
-        self._lamps = self.context.machine.lamps
+        self._lamps = self.context.machine.lamp_outputs
 
-    def look(self, state: State, ends: int, *, barred: bool) -> None:
-        """Update the lamps; ``barred`` is True if a tool or a measurement prevents the next part."""
+    def update_lamps(self, state: MachineState, program_end_count: int, *, next_part_blocked: bool) -> None:
+        """Update the lamps; ``next_part_blocked`` is True if a tool or a measurement prevents the next
+        part.
+        """
         if not self._lamps:
             return
         with Attempt():  # A driver error of a lamp must not stop the machine.
-            self._see(self._signals.see(state, ends, barred=barred))
-            if Unknown.OUTPUTS not in self.context.unknown:
-                self._switch(self._wanted(state))
+            self._see(
+                self._signals.update_signals(state, program_end_count, next_part_blocked=next_part_blocked)
+            )
+            if UnknownPart.OUTPUTS not in self.context.unknown_items:
+                self._switch(self._required_states(state))
 
     def _see(self, kinds: tuple[str, ...]) -> None:
         if kinds != self._kinds:
@@ -87,24 +94,26 @@ class SignalLamps:
             self._since = {kind: self._since.get(kind, now) for kind in kinds}
             self._kinds = kinds
 
-    def _wanted(self, state: State) -> dict[str, bool]:
+    def _required_states(self, machine_state: MachineState) -> dict[str, bool]:
         """Return the required state of each lamp.
 
         A lamp without an active signal is in its safe state after a fault, and off otherwise.
         """
         now, outputs = self.context.now, self.context.machine.outputs
-        if now < self.context.lamp_test:
+        if now < self.context.lamp_test_end:
             return dict.fromkeys(self._lamps, True)
-        fault = state in {State.FAULT, State.ESTOP}
-        wanted = {name: fault and bool(outputs[name].safe) for name in self._lamps}
+        fault = machine_state in {MachineState.FAULT, MachineState.ESTOP}
+        wanted = {name: fault and bool(outputs[name].safe_state) for name in self._lamps}
         # its output commands wait for the queued blocks
-        steady = self.context.ports.blocks is not None and state in ACTIVE
+        steady = self.context.ports.blocks is not None and machine_state in ACTIVE_STATES
         for kind in self._kinds:
-            signal, age = SIGNALS[kind], now - self._since[kind]
-            dark = signal.blinks and not steady and age % (2.0 * HALF) >= HALF
+            signal, age = MACHINE_SIGNALS[kind], now - self._since[kind]
+            dark = (
+                signal.is_blinking and not steady and age % (2.0 * BLINK_HALF_PERIOD_S) >= BLINK_HALF_PERIOD_S
+            )
             if signal.lamp in wanted:
                 wanted[signal.lamp] = not dark
-            if BUZZER in wanted and age < signal.buzz:
+            if BUZZER in wanted and age < signal.buzzer_time_s:
                 wanted[BUZZER] = not dark
         return wanted
 
@@ -120,9 +129,9 @@ class SignalLamps:
         with Attempt() as trial:
             self.io.write(name, on)
         if trial.error is None:
-            self._sent[name], self._due[name] = on, now + _AGAIN
+            self._sent[name], self._due[name] = on, now + _RETRY_INTERVAL_S
             return
-        self._refused[name] = now + _REFUSED
+        self._refused[name] = now + _REFUSAL_TIME_S
         why = Message("{name} CANNOT BE SWITCHED: {error}", name=name.upper(), error=trial.error)
         if why != self._told:
             self._told = why

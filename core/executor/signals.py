@@ -7,37 +7,39 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from core.machine.hardware_model import LAMPS
+from core.machine.hardware_model import LAMP_NAMES
 from core.machine.machine_model import OutputModel
 from core.message import Message
 from core.ports import DigitalIO, StationState
 
-_SILENT = 0.3  # s without data, after which the last value is used and a running cycle stops in feed hold
-_JUMP = 0.2  # fraction of the range within 0.1 s that only a bad pot wiper can cause
-_STAND = 0.3  # s for which an increased value must be stable
-_NOISY = 3  # jumps within 1 s after which a pot counts as faulty
-_DEBOUNCE = 0.3  # s within which a second start counts as the same press
-_AWAY = 0.3  # s between two readings; a press during a longer gap is too old to start a motion
-_TELLS = 0.5  # s for which a driver may still report the state before a write
+_SILENCE_TIMEOUT_S = (
+    0.3  # s without data, after which the last value is used and a running cycle stops in feed hold
+)
+_JUMP_THRESHOLD = 0.2  # fraction of the range within 0.1 s that only a bad pot wiper can cause
+_STABLE_TIME_S = 0.3  # s for which an increased value must be stable
+_NOISY_JUMPS = 3  # jumps within 1 s after which a pot counts as faulty
+_DEBOUNCE_S = 0.3  # s within which a second start counts as the same press
+_MAX_ABSENCE_S = 0.3  # s between two readings; a press during a longer gap is too old to start a motion
+_SETTLING_TIME_S = 0.5  # s for which a driver may still report the state before a write
 
 
 class StationSignals(NamedTuple):
     """The requests of the operator station in one tick."""
 
-    estop: bool
-    start: bool  # both palm buttons, in this tick only
-    hold: bool  # while the hold button is pressed
-    feed: float
+    estop_pressed: bool
+    start_requested: bool  # both palm buttons, in this tick only
+    hold_requested: bool  # while the hold button is pressed
+    feed_override: float
     spindle: float
-    auto: bool
-    trouble: str  # why the cycle must stop in feed hold; empty without a fault
-    wheel: int = 0  # counts of the handwheel
-    turned_on: bool = False  # the spindle switch was turned from OFF to AUTO in this tick
-    lost: str = ""  # sentence about a missing part of the station, which causes a feed hold
-    wheel_trouble: str = ""  # why handwheel and jog buttons are ignored
+    spindle_auto: bool
+    station_fault: str  # why the cycle must stop in feed hold; empty without a fault
+    handwheel_counts: int = 0  # counts of the handwheel
+    spindle_turned_on: bool = False  # the spindle switch was turned from OFF to AUTO in this tick
+    connection_lost_reason: str = ""  # sentence about a missing part of the station, which causes a feed hold
+    handwheel_fault: str = ""  # why handwheel and jog buttons are ignored
     spindle_load: float | None = None  # per cent
     # both palm buttons were pressed between two late readings, so the start is ignored
-    late_start: bool = False
+    late_start_detected: bool = False
 
 
 class OverridePot:
@@ -50,28 +52,28 @@ class OverridePot:
         self._jumps: deque[float] = deque()
 
     @property
-    def noisy(self) -> bool:
+    def is_noisy(self) -> bool:
         """True if the value jumps more often than a hand could turn the pot."""
-        return len(self._jumps) >= _NOISY
+        return len(self._jumps) >= _NOISY_JUMPS
 
-    def read(self, raw: float, now: float) -> float:
+    def filter_reading(self, raw_value: float, now: float) -> float:
         """Return the filtered value for a raw reading at time ``now``."""
-        self._count_jumps(raw, now)
-        if raw <= self.value or self._slow(raw):
-            self.value, self._rising = raw, None
-        elif self._rising is None or abs(raw - self._rising[0]) > 0.05:
-            self._rising = (raw, now)
-        elif now - self._rising[1] >= _STAND:
-            self.value, self._rising = raw, None
+        self._count_jumps(raw_value, now)
+        if raw_value <= self.value or self._slow(raw_value):
+            self.value, self._rising = raw_value, None
+        elif self._rising is None or abs(raw_value - self._rising[0]) > 0.05:
+            self._rising = (raw_value, now)
+        elif now - self._rising[1] >= _STABLE_TIME_S:
+            self.value, self._rising = raw_value, None
         return self.value
 
     def _slow(self, raw: float) -> bool:
-        return self._rising is None and raw - self.value <= _JUMP
+        return self._rising is None and raw - self.value <= _JUMP_THRESHOLD
 
     def _count_jumps(self, raw: float, now: float) -> None:
         while self._recent and self._recent[0][0] < now - 0.1:
             self._recent.popleft()
-        if any(abs(raw - old) > _JUMP for _, old in self._recent):
+        if any(abs(raw - old) > _JUMP_THRESHOLD for _, old in self._recent):
             self._jumps.append(now)
             self._recent.clear()
         self._recent.append((now, raw))
@@ -90,55 +92,55 @@ class StationWatch:
         self._auto = True  # position of the spindle switch in the last message of the station
         self._spoke = -1e9  # time of the last message of the station
 
-    def read(self, state: StationState, now: float) -> StationSignals:
+    def process_state(self, state: StationState, now: float) -> StationSignals:
         """Return the requests of the station for one reading at time ``now``."""
-        silent = not (state.age <= _SILENT and math.isfinite(state.feed_pot + state.spindle_pot))
+        silent = not (state.age <= _SILENCE_TIMEOUT_S and math.isfinite(state.feed_pot + state.spindle_pot))
         if not silent:
-            self._feed.read(state.feed_pot, now)
-            self._spindle.read(state.spindle_pot, now)
-        live = not silent and now - self._spoke <= _AWAY
+            self._feed.filter_reading(state.feed_pot, now)
+            self._spindle.filter_reading(state.spindle_pot, now)
+        live = not silent and now - self._spoke <= _MAX_ABSENCE_S
         pressed = state.start and not self._started and not silent
         edge = live and pressed
         turned = live and state.spindle_auto and not self._auto
         self._started = state.start
         if not silent:
             self._auto, self._spoke = state.spindle_auto, now
-        noisy = self._feed.noisy or self._spindle.noisy
+        noisy = self._feed.is_noisy or self._spindle.is_noisy
         trouble = (
             "NO RESPONSE FROM OPERATOR STATION" if silent else "OVERRIDE SIGNAL UNSTABLE" if noisy else ""
         )
         return StationSignals(
-            estop=state.estop,
-            start=edge and self.may_start(now),
-            hold=state.hold,
-            feed=self._feed.value,
+            estop_pressed=state.estop,
+            start_requested=edge and self.accept_start_press(now),
+            hold_requested=state.hold,
+            feed_override=self._feed.value,
             spindle=self._spindle.value,
-            auto=self._auto,
-            trouble=trouble,
-            wheel=state.handwheel,
-            turned_on=turned,
-            lost=state.trouble,
-            wheel_trouble=state.wheel_trouble,
+            spindle_auto=self._auto,
+            station_fault=trouble,
+            handwheel_counts=state.handwheel,
+            spindle_turned_on=turned,
+            connection_lost_reason=state.trouble,
+            handwheel_fault=state.wheel_trouble,
             spindle_load=state.spindle_load,
-            late_start=pressed and not live,
+            late_start_detected=pressed and not live,
         )
 
-    def may_start(self, now: float) -> bool:
+    def accept_start_press(self, now: float) -> bool:
         """Return whether a start is a new press rather than contact bounce, and record its time."""
-        fresh = now - self._last_start >= _DEBOUNCE
+        fresh = now - self._last_start >= _DEBOUNCE_S
         if fresh:
             self._last_start = now
         return fresh
 
 
-class Differing(NamedTuple):
+class OutputMismatch(NamedTuple):
     """An output whose actual state differs from its commanded state."""
 
     name: str
     wanted: bool
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """The change of the output as a text for the operator."""
         name = self.name.upper()
         return (
@@ -152,7 +154,9 @@ class CommandedOutputs:
     def __init__(self, io: DigitalIO, models: Mapping[str, OutputModel]) -> None:
         self._io = io
         self._models = models
-        self._lamps = frozenset(LAMPS) & models.keys()  # lamps are switched by the control, not by programs
+        self._lamps = (
+            frozenset(LAMP_NAMES) & models.keys()
+        )  # lamps are switched by the control, not by programs
         self._wanted = dict(self.outputs())
         # time of the last write of each output; some drivers report it late
         self._written: dict[str, float] = {}
@@ -168,7 +172,7 @@ class CommandedOutputs:
             {name: on for name, on in outputs.items() if name not in self._lamps} if self._lamps else outputs
         )
 
-    def everything(self) -> Mapping[str, bool]:
+    def all_outputs(self) -> Mapping[str, bool]:
         """Return the actual states of all outputs by name, including the lamps."""
         return self._io.outputs()
 
@@ -178,34 +182,35 @@ class CommandedOutputs:
         self._wanted[name] = on
         self._written[name] = self._now
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Switch every output to its safe state."""
-        self._io.safe()
+        self._io.switch_to_safe_state()
         for model in self._models.values():
-            if model.safe is not None and model.name not in self._lamps:
-                self._wanted[model.name], self._written[model.name] = model.safe, self._now
+            if model.safe_state is not None and model.name not in self._lamps:
+                self._wanted[model.name], self._written[model.name] = model.safe_state, self._now
 
-    def look(self, now: float) -> None:
+    def set_write_time(self, now: float) -> None:
         """Set the time at which later writes are recorded. Called first in each tick."""
         self._now = now
 
-    def fell(self, names: Sequence[str]) -> None:
+    def mark_switched_off(self, names: Sequence[str]) -> None:
         """Mark outputs as switched off by another device, even if they were written recently."""
         for name in names:
             self._written.pop(name, None)
 
-    def differing(self) -> list[Differing]:
+    def find_mismatches(self) -> list[OutputMismatch]:
         """Return the outputs that are not in their commanded state although the delay has passed."""
         actual = self._io.outputs()
         return [
-            Differing(name, wanted)
+            OutputMismatch(name, wanted)
             for name, wanted in self._wanted.items()
-            if actual.get(name, wanted) is not wanted and self._now - self._written.get(name, -1e9) > _TELLS
+            if actual.get(name, wanted) is not wanted
+            and self._now - self._written.get(name, -1e9) > _SETTLING_TIME_S
         ]
 
-    def accept(self) -> list[Differing]:
+    def accept_actual_states(self) -> list[OutputMismatch]:
         """Accept the actual states as commanded when no program runs, and return the outputs that changed."""
-        changed = self.differing()
+        changed = self.find_mismatches()
         for each in changed:
             self._wanted[each.name] = not each.wanted
         return changed

@@ -13,20 +13,20 @@ from math import isfinite
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from core.alarms import Code
-from core.interpreter.shared.checkpoint import KeptPass
-from core.interpreter.shared.modal_state import Modal
+from core.alarms import AlarmCode
+from core.interpreter.shared.checkpoint import SavedPass
+from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
-from core.ports import FloatArray, Unknown
-from core.tool_edges import edge_name
+from core.ports import FloatArray, UnknownPart
+from core.tool_edges import format_edge_name
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.working_plane import Swivel
+    from core.interpreter.shared.working_plane import PlanePosition
 
-CONTROL_LOST = "THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED"
-CLOSED = "TURNDESK WAS CLOSED"
-GIVEN_UP = "CANCELED BY RESET"
-ESTOP = "E-STOP"
+POWER_LOST_REASON = "THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED"
+CLOSED_REASON = "TURNDESK WAS CLOSED"
+RESET_REASON = "CANCELED BY RESET"
+ESTOP_REASON = "E-STOP"
 
 _TEXTS = ("program", "job", "text", "why", "at")
 _NUMBERS = ("line", "block", "begun", "tool", "part")
@@ -62,18 +62,21 @@ class InterruptedJob:
             "{program}, line {line}, {tool}, part {part}: {why}",
             program=self.program,
             line=self.line,
-            tool=edge_name(self.tool),
+            tool=format_edge_name(self.tool),
             part=self.part,
             why=self.why,
         )
 
 
-def plain(kept: InterruptedJob) -> dict[str, object]:
+def interrupted_job_to_json(interrupted_job: InterruptedJob) -> dict[str, object]:
     """Return the interrupted job as a dictionary for JSON."""
-    return asdict(kept) | {"axes": list(kept.axes), "where": list(kept.where)}
+    return asdict(interrupted_job) | {
+        "axes": list(interrupted_job.axes),
+        "where": list(interrupted_job.where),
+    }
 
 
-def of_plain(value: object) -> InterruptedJob | None:
+def interrupted_job_from_json(value: object) -> InterruptedJob | None:
     """Return the interrupted job read from JSON, or None if the value is missing or invalid."""
     if not isinstance(value, Mapping):
         return None
@@ -88,12 +91,12 @@ def of_plain(value: object) -> InterruptedJob | None:
     return InterruptedJob(**texts, **numbers, axes=axes, where=where) if known else None  # type: ignore[arg-type]
 
 
-def utc_now() -> str:
+def utc_timestamp() -> str:
     """Return the time of day in UTC with a resolution of 1 s, in ISO 8601 format."""
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
-class State(StrEnum):
+class MachineState(StrEnum):
     """States of the executor. The values are shown to the operator."""
 
     ESTOP = "E-STOP"
@@ -110,16 +113,16 @@ class State(StrEnum):
     FAULT = "ALARM"
 
 
-class Starts(StrEnum):
+class StartAction(StrEnum):
     """The action of the next Cycle Start."""
 
     PROGRAM = "program"
-    LINE = "line"
+    MDI_LINE = "line"
     RESTART = "restart"
-    WAY_OUT = "way-out"  # retract from the part after a stop; the interrupted job remains interrupted
+    RETRACT = "way-out"  # retract from the part after a stop; the interrupted job remains interrupted
 
 
-LINES = frozenset({Starts.LINE, Starts.WAY_OUT})
+MDI_ACTIONS = frozenset({StartAction.MDI_LINE, StartAction.RETRACT})
 """What is no run of the program."""
 
 
@@ -132,7 +135,7 @@ class Alarm:
     """
 
     number: int
-    code: Code
+    code: AlarmCode
     text: str
     cause: str
     remedy: str
@@ -146,16 +149,16 @@ class DriveTestState(NamedTuple):
     """State of the drive tests. ``barred`` is the reason why this machine cannot run them.
 
     ``axis`` is the axis under test, empty without a test. ``number`` counts the tests that were started; the
-    last one started at ``began`` on the clock of the samples. ``whole`` counts the completed tests. ``rate``
-    is the number of samples per second.
+    last one started at ``start_time_s`` on the clock of the samples. ``completed_test_count`` counts the
+    completed tests. ``sample_rate_hz`` is the number of samples per second.
     """
 
     barred: str = ""
     axis: str = ""
     number: int = 0
-    began: float = 0.0
-    whole: int = 0
-    rate: float = 100.0
+    start_time_s: float = 0.0
+    completed_test_count: int = 0
+    sample_rate_hz: float = 100.0
 
 
 NO_DRIVE_TEST = DriveTestState()
@@ -172,18 +175,19 @@ class TouchPhase(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Touched:
+class TouchResult:
     """The result of a touch-off.
 
-    ``place`` is the position of the axis at the touch, in machine mm by its encoder, and ``error`` is its
-    uncertainty. ``place`` is None if the touch-off failed for the reason ``why``.
+    ``touch_position`` is the position of the axis at the touch, in machine mm by its encoder, and
+    ``uncertainty_mm`` is its uncertainty. ``touch_position`` is None if the touch-off failed for the reason
+    ``why``.
     """
 
     number: int  # number of touch-offs that have ended
     axis: str
     sign: int
-    place: float | None = None
-    error: float = 0.0
+    touch_position: float | None = None
+    uncertainty_mm: float = 0.0
     why: str = ""
 
 
@@ -195,7 +199,7 @@ class Snapshot:
     """
 
     t: float = 0.0
-    state: State = State.DISABLED
+    state: MachineState = MachineState.DISABLED
     # text such as AT SPEED, COLLET, TB2-5 or DWELL; for a tap, that the hold waits for its exit
     waiting_for: str = ""
     program: str = ""
@@ -212,8 +216,8 @@ class Snapshot:
     powered: bool = False  # the drives report that they have power
     block_end: tuple[float, ...] = (0.0, 0.0, 0.0)  # end position of the block, for the distance to go
     offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
-    swivel: Swivel | None = None  # working plane of the last started block on a mill
-    modal: Modal = field(default_factory=Modal)
+    swivel: PlanePosition | None = None  # working plane of the last started block on a mill
+    modal: ModalState = field(default_factory=ModalState)
     x_diameter: bool | None = None  # X is displayed as a diameter; None: as in ``modal``
     velocity: float = 0.0  # actual speed along the path, mm/s
     feed: float = 0.0  # programmed feed: mm/s or mm/rev, see ``modal``
@@ -221,15 +225,15 @@ class Snapshot:
     turns: bool = False  # only rotary axes move, so the feed is in degrees instead of mm
     rpm_command: float = 0.0
     rpm_actual: float = 0.0
-    orienting: bool = False  # the spindle drive moves the spindle to an angle
+    is_orienting: bool = False  # the spindle drive moves the spindle to an angle
     oriented: float | None = None  # angle in degrees from the index at which the drive holds the spindle
     # signed rpm that the program or MDI commands, before pot, switch and F10 limit
-    spindle_asked: float = 0.0
+    requested_rpm: float = 0.0
     feed_override: float = 1.0
     spindle_override: float = 1.0
     spindle_auto: bool = True
     # limit of page F10 until the restart of TurnDesk, rpm; 0: the maximum of the machine
-    spindle_limit: float = 0.0
+    spindle_limit_rpm: float = 0.0
     single_block: bool = False
     optional_stop: bool = False
     block_delete: bool = False
@@ -241,45 +245,47 @@ class Snapshot:
     inputs: frozenset[str] = frozenset()
     comment: str = ""
     message: str = ""  # message of M00 or M01 during the stop
-    optionally_stopped: bool = False  # the stop is an M01 instead of an M00
+    is_optional_stop: bool = False  # the stop is an M01 instead of an M00
     alarms: tuple[Alarm, ...] = ()  # active alarms, the oldest first
     # why the machine is stopped although no alarm is active: a hold, a stop or the E-stop
     stop: Alarm | None = None
     cycle_elapsed: float = 0.0  # time of this cycle without stops
     last_cycle: float = 0.0
-    timed: int = 0  # number of cycles timed by ``last_cycle``; a part finished by a restart is not timed
+    timed_cycle_count: int = (
+        0  # number of cycles timed by ``last_cycle``; a part finished by a restart is not timed
+    )
     parts: int = 0  # completed and counted since the executor was started
     made: int = 0  # finished parts of the loaded program: set with ``PartsMade`` and counted since
     cutting: Mapping[int, float] = field(default_factory=dict)  # s at feed by tool since the start
     next_barred: str = ""  # why no other part starts after the present one
     ends: int = 0  # programs that ran to their end, counted or not
     underruns: int = 0
-    hold_later: float = 0.0  # additional delay of a feed hold on a busy computer, s
+    hold_delay_s: float = 0.0  # additional delay of a feed hold on a busy computer, s
     max_following_error: float = 0.0
-    proof_wanted: bool = False  # the loaded job has no proof
-    starts: Starts = Starts.PROGRAM  # the action of the next Cycle Start
-    prepared: str = ""  # digest of the line or restart that Cycle Start would run
+    needs_proof: bool = False  # the loaded job has no proof
+    starts: StartAction = StartAction.PROGRAM  # the action of the next Cycle Start
+    prepared_digest: str = ""  # digest of the line or restart that Cycle Start would run
     interrupted: InterruptedJob | None = None  # a program that did not reach its end
     confirmed: bool = False  # a start at the first line is confirmed
     lines: int = 0  # MDI lines started since the start of the executor
-    tool_open: bool = False  # MDI has called a tool that has not moved yet
-    kept: KeptPass[Any] | None = None  # state that MDI lines in other languages have left in force
+    is_tool_move_pending: bool = False  # MDI has called a tool that has not moved yet
+    kept: SavedPass[Any] | None = None  # state that MDI lines in other languages have left in force
     announced: tuple[str, ...] = ()  # further actions that the next Cycle Start starts
-    start_refused: str = ""  # why the last Cycle Start did nothing
+    start_refusal: str = ""  # why the last Cycle Start did nothing
     start_code: str = ""  # code of the refusal if the first move caused it
     begun: int = 0  # runs since the start of the executor: programs, repeats, restarts and MDI lines
     wheel: str = ""  # axis that the handwheel moves; empty without one
     wheel_ended: str = ""  # why the control disabled the handwheel
     # No data arrives from these items, so their values here are the last known ones.
-    unknown: frozenset[Unknown] = frozenset()
+    unknown: frozenset[UnknownPart] = frozenset()
     drive_test: DriveTestState = NO_DRIVE_TEST
-    touching: TouchPhase | None = None  # a tool is being touched off at the tool setter
-    touched: Touched | None = None  # result of the last touch-off
+    touch_phase: TouchPhase | None = None  # a tool is being touched off at the tool setter
+    touched: TouchResult | None = None  # result of the last touch-off
     spindle_load: float | None = None  # per cent; None if the machine does not measure the load
 
-    def tells_as(self, other: Snapshot) -> bool:
+    def equals_except_time(self, other: Snapshot) -> bool:
         """Return whether another snapshot is equal except for its time."""
-        return self is other or _told(self) == _told(other)
+        return self is other or _values_without_time(self) == _values_without_time(other)
 
     @property
     def interrupted_line(self) -> int:
@@ -288,7 +294,7 @@ class Snapshot:
         return found.line if found is not None and found.program == self.program else 0
 
     @property
-    def reads_diameter(self) -> bool:
+    def shows_diameter(self) -> bool:
         """True if displays show X as a diameter.
 
         The mode of a program remains after its end, Reset or E-stop.
@@ -301,75 +307,100 @@ class Snapshot:
         return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
 
 
-_told = attrgetter(*(each.name for each in fields(Snapshot) if each.name != "t"))
+_values_without_time = attrgetter(*(each.name for each in fields(Snapshot) if each.name != "t"))
 
 
 @dataclass(frozen=True, slots=True)
-class Event:
+class LogEvent:
     """An event for the event log."""
 
-    t: float
+    time_s: float
     # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
     # interrupted, late, cleared, refused, override, switch, force, load, offsets, test
     kind: str
     text: str
     line: int = 0
     alarm: Alarm | None = None  # catalog entry of an alarm, an E-stop or a stop
-    record: str = ""  # file of the scope record before the event, in the folder ``records``
-    part: int = 0  # number of the part among those of the program
-    load: float | None = None  # mean spindle load at feed for a part, per cent
+    record_name: str = ""  # file of the scope record before the event, in the folder ``records``
+    part_number: int = 0  # number of the part among those of the program
+    mean_load_percent: float | None = None  # mean spindle load at feed for a part, per cent
 
 
-class Tick(NamedTuple):
+class TickData(NamedTuple):
     """The data that the executor passes to the recorder in each tick.
 
     ``samples`` are the driver's samples, or None if the driver has none.
     """
 
     snapshot: Snapshot
-    late: float  # s by which the tick was late
-    queue: float  # s of queued motion, nan if the samples contain it
-    turns: float  # revolutions of the spindle, nan without an encoder
+    delay_s: float  # s by which the tick was late
+    queued_motion_s: float  # s of queued motion, nan if the samples contain it
+    spindle_revolutions: float  # revolutions of the spindle, nan without an encoder
     samples: FloatArray | None
-    rests: bool = False  # the machine is at rest and nothing changes
+    is_at_rest: bool = False  # the machine is at rest and nothing changes
 
 
 # --- permitted state changes ----------------------------------------------------------------------------
 
 
 # E-stop and alarm may follow any state, and no motion may follow them directly.
-_ALWAYS = {State.ESTOP, State.FAULT}
-_UNDER_WAY = {State.RUN, State.WAIT, State.HOLDING, State.HOLD, State.BLOCK_END, State.PROGRAM_STOP}
-
-TRANSITIONS: dict[State, frozenset[State]] = {
-    State.ESTOP: frozenset({State.DISABLED}),
-    State.DISABLED: frozenset({State.IDLE, *_ALWAYS}),
-    State.IDLE: frozenset({State.RUN, State.JOG, State.HOME, State.DISABLED, *_ALWAYS}),
-    State.RUN: frozenset({*_UNDER_WAY, State.IDLE, *_ALWAYS} - {State.RUN}),
-    State.WAIT: frozenset({*_UNDER_WAY, State.IDLE, *_ALWAYS} - {State.WAIT}),
-    State.HOLDING: frozenset({State.HOLD, State.BLOCK_END, State.IDLE, *_ALWAYS}),
-    State.HOLD: frozenset({State.RUN, State.WAIT, State.IDLE, *_ALWAYS}),
-    State.BLOCK_END: frozenset({State.RUN, State.WAIT, State.HOLD, State.IDLE, *_ALWAYS}),
-    State.PROGRAM_STOP: frozenset({State.RUN, State.WAIT, State.BLOCK_END, State.IDLE, *_ALWAYS}),
-    State.JOG: frozenset({State.IDLE, *_ALWAYS}),
-    State.HOME: frozenset({State.IDLE, *_ALWAYS}),
-    State.FAULT: frozenset({State.ESTOP, State.DISABLED, State.IDLE}),
+_ALWAYS_ALLOWED = {MachineState.ESTOP, MachineState.FAULT}
+_RUNNING_STATES = {
+    MachineState.RUN,
+    MachineState.WAIT,
+    MachineState.HOLDING,
+    MachineState.HOLD,
+    MachineState.BLOCK_END,
+    MachineState.PROGRAM_STOP,
 }
 
-ACTIVE = frozenset({State.RUN, State.WAIT, State.HOLDING})  # the cycle advances automatically
-STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})  # Cycle Start resumes the cycle
-CYCLE = ACTIVE | STOPPED
+TRANSITIONS: dict[MachineState, frozenset[MachineState]] = {
+    MachineState.ESTOP: frozenset({MachineState.DISABLED}),
+    MachineState.DISABLED: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
+    MachineState.IDLE: frozenset(
+        {MachineState.RUN, MachineState.JOG, MachineState.HOME, MachineState.DISABLED, *_ALWAYS_ALLOWED}
+    ),
+    MachineState.RUN: frozenset({*_RUNNING_STATES, MachineState.IDLE, *_ALWAYS_ALLOWED} - {MachineState.RUN}),
+    MachineState.WAIT: frozenset(
+        {*_RUNNING_STATES, MachineState.IDLE, *_ALWAYS_ALLOWED} - {MachineState.WAIT}
+    ),
+    MachineState.HOLDING: frozenset(
+        {MachineState.HOLD, MachineState.BLOCK_END, MachineState.IDLE, *_ALWAYS_ALLOWED}
+    ),
+    MachineState.HOLD: frozenset({MachineState.RUN, MachineState.WAIT, MachineState.IDLE, *_ALWAYS_ALLOWED}),
+    MachineState.BLOCK_END: frozenset(
+        {MachineState.RUN, MachineState.WAIT, MachineState.HOLD, MachineState.IDLE, *_ALWAYS_ALLOWED}
+    ),
+    MachineState.PROGRAM_STOP: frozenset(
+        {MachineState.RUN, MachineState.WAIT, MachineState.BLOCK_END, MachineState.IDLE, *_ALWAYS_ALLOWED}
+    ),
+    MachineState.JOG: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
+    MachineState.HOME: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
+    MachineState.FAULT: frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE}),
+}
+
+ACTIVE_STATES = frozenset(
+    {MachineState.RUN, MachineState.WAIT, MachineState.HOLDING}
+)  # the cycle advances automatically
+STOPPED_STATES = frozenset(
+    {MachineState.HOLD, MachineState.BLOCK_END, MachineState.PROGRAM_STOP}
+)  # Cycle Start resumes the cycle
+CYCLE_STATES = ACTIVE_STATES | STOPPED_STATES
 # manual operation, in which the spindle switch starts the spindle
-BY_HAND = frozenset({State.IDLE, State.JOG})
+MANUAL_STATES = frozenset({MachineState.IDLE, MachineState.JOG})
 
 
 class TransitionError(Exception):
     """Raised when the executor requests a state change that the table does not permit."""
 
 
-def demand_allowed(old: State, new: State) -> None:
-    """Raise TransitionError unless ``new`` may follow ``old``."""
-    if new not in TRANSITIONS[old]:
+def require_transition(old_state: MachineState, new_state: MachineState) -> None:
+    """Raise TransitionError unless ``new_state`` may follow ``old_state``."""
+    if new_state not in TRANSITIONS[old_state]:
         raise TransitionError(
-            Message("the machine state cannot change from {old} to {new}", old=old.value, new=new.value)
+            Message(
+                "the machine state cannot change from {old} to {new}",
+                old=old_state.value,
+                new=new_state.value,
+            )
         )

@@ -9,17 +9,17 @@ from core.executor.control_status import ControlStatus
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.program_motion.cycle import Cycle
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.snapshot import MachineState, Snapshot, StartAction
 from core.interpreter.shared.actions import ProgramEnd, ProgramStop
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 from core.ports import AxisSample
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.working_plane import Swivel
+    from core.interpreter.shared.working_plane import PlanePosition
 
 
-class _Played(TypedDict):
+class _BlockValues(TypedDict):
     """The values of a snapshot that come from the block being executed."""
 
     line: int
@@ -32,28 +32,30 @@ class _Played(TypedDict):
     turns: bool
 
 
-class Publisher:
+class SnapshotPublisher:
     """Makes snapshots, and measures the velocity from two consecutive samples."""
 
     def __init__(self) -> None:
         self._before: AxisSample | None = None
         self._velocity = 0.0
-        self._swivel: Swivel | None = None
+        self._swivel: PlanePosition | None = None
         self._diameter: bool | None = None  # X is displayed as a diameter; None: the mode of the control
         self._shown_for = ""  # the program to which this mode belongs
 
-    def snapshot(self, context: MachineContext, control: MachineControl) -> Snapshot:
+    def make_snapshot(self, context: MachineContext, control: MachineControl) -> Snapshot:
         """Return the snapshot of this tick."""
         cycle, status, counters = control.cycle, control.status, control.counters
-        block = cycle.current if cycle else None
+        block = cycle.current_block if cycle else None
         job, modal = status.job, control.modal
-        self._swivel = self._system(block, under_way=cycle is not None or status.kept is not None)
+        self._swivel = self._working_plane(
+            block, is_running=cycle is not None or status.saved_pass is not None
+        )
         return Snapshot(
-            **_played(block, modal, context.sample),
+            **_block_values(block, modal, context.sample),
             next_text=_next_text(cycle),
             t=context.now,
             state=status.state,
-            waiting_for=cycle.waiting_for if cycle else "",
+            waiting_for=cycle.wait_label if cycle else "",
             program=job.source.name if job else "",
             job=job.digest if job else "",
             axes=tuple(axis.name for axis in context.machine.axes),
@@ -63,65 +65,67 @@ class Publisher:
             homed=context.sample.homed,
             powered=context.sample.enabled,
             modal=modal,
-            x_diameter=self._x_mode(block, modal, status),
+            x_diameter=self._is_x_diameter(block, modal, status),
             swivel=self._swivel,
-            velocity=self._measured(context.sample, sum(not axis.rotary for axis in context.machine.axes)),
-            rpm_command=context.spindle.command,
-            rpm_actual=context.spindle.measured,
-            orienting=context.spindle.orientation.on_its_way,
-            oriented=context.spindle.orientation.at,
-            spindle_asked=context.spindle.asked_rpm,
+            velocity=self._measure_velocity(
+                context.sample, sum(not axis.rotary for axis in context.machine.axes)
+            ),
+            rpm_command=context.spindle.commanded_rpm,
+            rpm_actual=context.spindle.measured_rpm,
+            is_orienting=context.spindle.orientation.is_moving,
+            oriented=context.spindle.orientation.angle_deg,
+            requested_rpm=context.spindle.requested_rpm,
             feed_override=context.feed_override,
             spindle_override=context.spindle.override,
-            spindle_auto=context.spindle.auto,
-            spindle_limit=context.spindle.limit or 0.0,
+            spindle_auto=context.spindle.is_auto,
+            spindle_limit_rpm=context.spindle.operator_limit_rpm or 0.0,
             single_block=context.switches.single_block,
             optional_stop=context.switches.optional_stop,
             block_delete=job.setup.block_delete if job else False,
             cycle_repeat=context.switches.cycle_repeat,
             no_count=context.switches.no_count,
-            counts=control.program_run.will_count,
-            absent=context.machine.absent,
-            outputs=frozenset(name for name, on in context.outputs.everything().items() if on),
+            counts=control.program_run.will_count_part,
+            absent=context.machine.missing_outputs,
+            outputs=frozenset(name for name, on in context.outputs.all_outputs().items() if on),
             inputs=frozenset(name for name, on in context.inputs.items() if on),
             comment=modal.comment,
             message=cycle.message if cycle else "",
-            optionally_stopped=status.state is State.PROGRAM_STOP and _optional(block),
+            is_optional_stop=status.state is MachineState.PROGRAM_STOP and _is_optional_stop(block),
             alarms=status.alarms,
             stop=context.stop,
-            cycle_elapsed=counters.cycle,
-            last_cycle=counters.last_cycle,
-            timed=counters.timed,
-            parts=counters.parts,
-            made=counters.made,
-            cutting=counters.cutting,
-            next_barred=status.next_barred,
-            ends=counters.ends,
+            cycle_elapsed=counters.cycle_time_s,
+            last_cycle=counters.last_cycle_time_s,
+            timed_cycle_count=counters.timed_cycle_count,
+            parts=counters.counted_part_count,
+            made=counters.program_part_count,
+            cutting=counters.cutting_times_s,
+            next_barred=status.next_part_block_reason,
+            ends=counters.program_end_count,
             underruns=counters.underruns,
-            hold_later=context.lateness.hold_later,
+            hold_delay_s=context.lateness.hold_delay_s,
             max_following_error=control.supervisor.max_following_error,
-            proof_wanted=job is not None and (status.proof is None or status.proof.digest != job.digest),
-            starts=status.starts,
-            prepared=status.prepared.digest if status.prepared else "",
-            lines=counters.lines,
-            interrupted=status.interrupted,
-            confirmed=control.program_run.interruption.answered,
-            tool_open=status.tool_open,
-            kept=status.kept,
-            announced=control.announcement.publish(context.now),
-            start_refused=status.start_refused,
-            start_code=status.start_code if status.start_refused else "",
-            begun=counters.begun,
-            wheel=control.wheel.axis,
-            wheel_ended=control.wheel.ended,
-            unknown=context.unknown,
-            drive_test=control.drive_test.state,
-            touching=control.touch.phase,
-            touched=control.touch.touched,
+            needs_proof=job is not None and (status.proof is None or status.proof.digest != job.digest),
+            starts=status.start_action,
+            prepared_digest=status.prepared_job.digest if status.prepared_job else "",
+            lines=counters.mdi_line_count,
+            interrupted=status.interrupted_job,
+            confirmed=control.program_run.interruption_watch.is_confirmed,
+            is_tool_move_pending=status.is_tool_move_pending,
+            kept=status.saved_pass,
+            announced=control.announcement.update_texts(context.now),
+            start_refusal=status.start_refusal,
+            start_code=status.start_refusal_code if status.start_refusal else "",
+            begun=counters.started_run_count,
+            wheel=control.handwheel.axis,
+            wheel_ended=control.handwheel.end_reason,
+            unknown=context.unknown_items,
+            drive_test=control.drive_tester.state,
+            touch_phase=control.touch_off.phase,
+            touched=control.touch_off.last_result,
             spindle_load=context.spindle_load,
         )
 
-    def _x_mode(self, block: Block | None, modal: Modal, status: ControlStatus) -> bool:
+    def _is_x_diameter(self, block: Block | None, modal: ModalState, status: ControlStatus) -> bool:
         """Return whether X is displayed as a diameter.
 
         The mode of the last program or MDI line remains after its end, a reset or an E-stop, and during a
@@ -132,15 +136,15 @@ class Publisher:
         name = status.job.source.name if status.job is not None else ""
         if name != self._shown_for:
             self._shown_for, self._diameter = name, None
-        if status.starts is Starts.LINE:
+        if status.start_action is StartAction.MDI_LINE:
             self._diameter = modal.diameter
         elif block is not None and not (
-            status.starts is Starts.WAY_OUT or isinstance(block.action, ProgramEnd)
+            status.start_action is StartAction.RETRACT or isinstance(block.action, ProgramEnd)
         ):
             self._diameter = block.modal.diameter
         return modal.diameter if self._diameter is None else self._diameter
 
-    def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:
+    def _working_plane(self, block: Block | None, *, is_running: bool) -> PlanePosition | None:
         """Return the working plane of the last block on a mill.
 
         Between programs, the working plane is neither tilted nor shifted.
@@ -148,16 +152,22 @@ class Publisher:
         if block is not None:
             return block.swivel
         last = self._swivel
-        return last if last is None or under_way or last.system.level else last.levelled()
+        return (
+            last
+            if last is None or is_running or last.system.is_workpiece_system
+            else last.convert_to_workpiece_system()
+        )
 
-    def _measured(self, sample: AxisSample, slides: int) -> float:
+    def _measure_velocity(self, sample: AxisSample, linear_axis_count: int) -> float:
         """Return the velocity of the linear axes together, in mm/s, measured by the encoders."""
         before, self._before = self._before, sample
         if before is None:
             return 0.0
         dt = sample.t - before.t
         if dt > 0.0:
-            self._velocity = math.dist(sample.actual[:slides], before.actual[:slides]) / dt
+            self._velocity = (
+                math.dist(sample.actual[:linear_axis_count], before.actual[:linear_axis_count]) / dt
+            )
         return self._velocity
 
 
@@ -165,21 +175,21 @@ def _ends(block: Block) -> bool:
     return isinstance(block.action, ProgramEnd)
 
 
-def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:
+def _block_values(block: Block | None, modal: ModalState, sample: AxisSample) -> _BlockValues:
     """Return the values of the block, or of the modal state and the setpoint without a block."""
-    return _Played(
+    return _BlockValues(
         line=block.line if block else 0,
         block=block.n if block else 0,
         block_text=block.text if block else "",
         block_end=block.machine_end if block else sample.demand,
         offset=(block.offset_x, block.offset_z) if block else (modal.offset_x, modal.offset_z),
-        feed=_feed(block, modal),
+        feed=_feed_in_force(block, modal),
         rapid=block.rapid if block else modal.rapid,
-        turns=_turns(block, modal),
+        turns=_is_rotary_feed(block, modal),
     )
 
 
-def _optional(block: Block | None) -> bool:
+def _is_optional_stop(block: Block | None) -> bool:
     """Return whether the block is an optional stop (M01)."""
     action = block.action if block else None
     return isinstance(action, ProgramStop) and action.optional
@@ -191,17 +201,19 @@ def _next_text(cycle: Cycle | None) -> str:
     return following.text if following else ""
 
 
-def _turns(block: Block | None, modal: Modal) -> bool:
+def _is_rotary_feed(block: Block | None, modal: ModalState) -> bool:
     """Return whether the programmed feed is in degrees instead of mm."""
     if block is None:
         return False
-    return (block.swivels and not block.rapid) or (block.kind is Kind.ROTATE and not modal.c_locked)
+    return (block.has_angular_feed and not block.rapid) or (
+        block.kind is BlockKind.ROTATE and not modal.c_locked
+    )
 
 
-def _feed(block: Block | None, modal: Modal) -> float:
+def _feed_in_force(block: Block | None, modal: ModalState) -> float:
     """Return the programmed feed of a moving block, or the feed in force."""
-    if block is not None and block.moves and block.kind is not Kind.ROTATE:
+    if block is not None and block.moves and block.kind is not BlockKind.ROTATE:
         # A tap moves by its lead even if the feed per minute is in force.
-        by_minute = block.coupled and block.per_rev and not block.modal.per_rev
+        by_minute = block.follows_spindle and block.per_rev and not block.modal.per_rev
         return block.feed * abs(block.rpm) / 60.0 if by_minute else block.feed
     return modal.feed or 0.0

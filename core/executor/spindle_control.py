@@ -12,24 +12,26 @@ from functools import partial
 from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
-from core.executor.spindle_orientation import Orientation
-from core.faults import code_of
-from core.geometry.surface_speed import surface_rpm
+from core.executor.spindle_orientation import OrientationControl
+from core.faults import get_fault_code
+from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared.elementary_blocks import Block
 from core.machine.machine_model import SpindleModel
 from core.message import Message
-from core.ports import Spindle, SpindleHold, SpindleOrientation
+from core.ports import OrientingSpindle, Spindle, SpindleCAxis
 
 # --- the angle of the spindle ---------------------------------------------------------------------------
 
 
-_WINDOW = 0.2  # s of readings used; a longer time is less noisy, a shorter one follows speed changes better
-_DEGREE = 3
+_FIT_WINDOW_S = (
+    0.2  # s of readings used; a longer time is less noisy, a shorter one follows speed changes better
+)
+_FIT_DEGREE = 3
 _CURVED = 0.06  # s after the last reading for which the speed change is extrapolated
-_LEAST_READINGS = 8  # readings
+_MIN_READINGS = 8  # readings
 
 
-class SpindleAngle:
+class SpindleAnglePredictor:
     """Prediction of the spindle angle by a cubic fit to the latest encoder readings.
 
     Angles are in signed revolutions and times in seconds. With one reading every 10 ms and 4096 counts per
@@ -41,59 +43,61 @@ class SpindleAngle:
         self._reads: deque[tuple[float, float]] = deque()
         self._fit: tuple[list[float], float] | None = None
 
-    def note(self, read: tuple[float, float] | None) -> None:
+    def add_reading(self, reading: tuple[float, float] | None) -> None:
         """Add a reading (time, revolutions). None means that the spindle has no encoder."""
-        if read is None:
+        if reading is None:
             self._reads.clear()
-        elif not self._reads or read[0] > self._reads[-1][0]:
-            self._reads.append(read)
-            while self._reads[0][0] < read[0] - _WINDOW:
+        elif not self._reads or reading[0] > self._reads[-1][0]:
+            self._reads.append(reading)
+            while self._reads[0][0] < reading[0] - _FIT_WINDOW_S:
                 self._reads.popleft()
         else:
             return
         self._fit = None
 
     @property
-    def turns(self) -> float:
+    def latest_revolutions(self) -> float:
         """Revolutions of the latest reading; NaN if there are no readings."""
         return self._reads[-1][1] if self._reads else math.nan
 
     @property
-    def known(self) -> bool:
+    def is_predictable(self) -> bool:
         """True if there are enough recent readings for a prediction.
 
         It is False immediately after an interruption of the control, and always without an encoder.
         """
-        return len(self._reads) >= _LEAST_READINGS
+        return len(self._reads) >= _MIN_READINGS
 
-    def at(self, t: float) -> tuple[float, float] | None:
-        """Return (revolutions, revolutions per second) at time ``t``, or None without enough readings."""
-        if not self.known:
+    def predict(self, time_s: float) -> tuple[float, float] | None:
+        """Return (revolutions, revolutions per second) at time ``time_s``, or None without enough
+        readings.
+        """
+        if not self.is_predictable:
             return None
         if self._fit is None:
-            self._fit = self._fitted()
+            self._fit = self._fit_readings()
         shape, base = self._fit
-        u = t - self._reads[-1][0]
+        u = time_s - self._reads[-1][0]
         near = min(u, _CURVED)
         turns = speed = 0.0
         for factor in reversed(shape):
             turns, speed = turns * near + factor, speed * near + turns
         return base + turns + speed * (u - near), speed
 
-    def turning_at(self, t: float) -> tuple[float, float]:
+    def predict_turning(self, time_s: float) -> tuple[float, float]:
         """Return the result of ``at``, but raise AlarmError if the spindle is stopped or not measured."""
-        state = self.at(t)
+        state = self.predict(time_s)
         if state is None:
             raise AlarmError("thread-no-encoder", "the spindle encoder does not count")
         if state[1] == 0.0:
             raise AlarmError("thread-no-encoder", "the spindle does not turn")
         return state
 
-    def _fitted(self) -> tuple[list[float], float]:
+    def _fit_readings(self) -> tuple[list[float], float]:
         """Return the coefficients of the cubic from the last reading on, and the angle of that reading."""
         last, base = self._reads[-1]
         times, turns = zip(*self._reads, strict=True)
-        return _least_squares([t - last for t in times], [each - base for each in turns], _DEGREE), base
+        return _least_squares([t - last for t in times], [each - base for each in turns], _FIT_DEGREE), base
 
 
 def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
@@ -121,35 +125,35 @@ def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
     return shape
 
 
-_GRACE = 1.0  # s within which a drive must start to follow a new speed
-_REACTS = 0.5  # s of this time for the delay of the drive; the rest is for an ordinary connection
-_OVER = 0.1  # fraction by which the speed may exceed the expected speed, and
-_OVER_RPM = 50.0  # rpm by which the speed may exceed the expected speed
-_STOOD = 0.2  # s at standstill with a command, after which the spindle counts as stopped
-_GONE = 2.0  # s after which the command is withdrawn, so that the drive can first report the cause
+_GRACE_S = 1.0  # s within which a drive must start to follow a new speed
+_REACTION_TIME_S = 0.5  # s of this time for the delay of the drive; the rest is for an ordinary connection
+_OVERSPEED_FRACTION = 0.1  # fraction by which the speed may exceed the expected speed, and
+_OVERSPEED_RPM = 50.0  # rpm by which the speed may exceed the expected speed
+_STOPPED_TIME_S = 0.2  # s at standstill with a command, after which the spindle counts as stopped
+_LOST_TIME_S = 2.0  # s after which the command is withdrawn, so that the drive can first report the cause
 
 
-class SpindleDemand(NamedTuple):
+class SpindleRequest(NamedTuple):
     """The requested signed speed in rpm, or a surface speed in mm/s with its rpm limits.
 
-    M03 and M04 give the sign. G76 and G77 set the limits ``lowest`` and ``highest``.
+    M03 and M04 give the sign. G76 and G77 set the limits ``min_rpm`` and ``max_rpm``.
     """
 
     rpm: float
-    surface: float | None = None
-    lowest: float = 0.0
-    highest: float | None = None
+    surface_speed: float | None = None
+    min_rpm: float = 0.0
+    max_rpm: float | None = None
 
     @classmethod
-    def of(cls, block: Block) -> SpindleDemand:
+    def from_block(cls, block: Block) -> SpindleRequest:
         """Return the spindle speed that is in force in a block."""
-        return cls(block.rpm, block.css, block.modal.css_min, block.modal.css_max)
+        return cls(block.rpm, block.css, block.modal.min_css_rpm, block.modal.max_css_rpm)
 
 
 class SpindleControl:
     """Converts the programmed speed to a command in every tick, and monitors the spindle drive.
 
-    Only ``ask`` and ``permit`` start the spindle. After ``stop`` it remains at rest until the program
+    Only ``ask`` and ``permit_start`` start the spindle. After ``stop`` it remains at rest until the program
     requests it again. A requested spindle that is stopped by the switch, the pot or a fault waits. Its
     request is stored, its command is withdrawn, and it starts when permitted.
     """
@@ -158,31 +162,31 @@ class SpindleControl:
         self,
         port: Spindle,
         model: SpindleModel,
-        lock: SpindleHold | None = None,
-        lay_out: Callable[[float], None] = lambda _: None,
-        orientation: SpindleOrientation | None = None,
+        c_axis_port: SpindleCAxis | None = None,
+        prepare_css: Callable[[float], None] = lambda _: None,
+        orientation: OrientingSpindle | None = None,
         lag: Callable[[], float] = float,
     ) -> None:
         """Initialize the control.
 
-        Before each speed command, ``lay_out`` receives the highest rpm that the radius may require. ``lag``
-        returns the delay in seconds that the connection adds to commands and measured speeds.
+        Before each speed command, ``prepare_css`` receives the highest rpm that the radius may require.
+        ``lag`` returns the delay in seconds that the connection adds to commands and measured speeds.
         """
         self._port = port
-        self._lay_out, self._lag = lay_out, lag
-        self._lock = lock
-        self.orientation = Orientation(orientation, model.orient_rpm)
+        self._lay_out, self._lag = prepare_css, lag
+        self._lock = c_axis_port
+        self.orientation = OrientationControl(orientation, model.orient_rpm)
         self._model = model
-        self.limit: float | None = None  # limit of page F10 until the restart of TurnDesk, rpm
-        self.command = 0.0  # signed rpm as sent to the drive
-        self.measured = 0.0
-        self.known = True  # if False, ``measured`` is the last known speed
-        self.angle = SpindleAngle()
+        self.operator_limit_rpm: float | None = None  # limit of page F10 until the restart of TurnDesk, rpm
+        self.commanded_rpm = 0.0  # signed rpm as sent to the drive
+        self.measured_rpm = 0.0
+        self.is_speed_known = True  # if False, ``measured_rpm`` is the last known speed
+        self.angle = SpindleAnglePredictor()
         self.override = 1.0
-        self.auto = True
-        self.guard_open = False  # the guard is open, and the machine stops the spindle for it
-        self.waits = ""  # why a requested spindle is stopped and waits for permission to start
-        self._ask: SpindleDemand | None = None
+        self.is_auto = True
+        self.is_guard_open = False  # the guard is open, and the machine stops the spindle for it
+        self.waiting_reason = ""  # why a requested spindle is stopped and waits for permission to start
+        self._ask: SpindleRequest | None = None
         self._turned = False  # the spindle has turned since the command was sent
         # time since which the spindle is stopped although it is commanded and has turned
         self._stands: float | None = None
@@ -194,93 +198,95 @@ class SpindleControl:
         self._rose: tuple[float, float] = (0.0, 0.0)  # time and speed at which the command rose
 
     @property
-    def highest(self) -> float:
+    def max_rpm(self) -> float:
         """The maximum permitted speed, in rpm."""
-        return min(self._model.rpm_max, self.limit or self._model.rpm_max)
+        return min(self._model.max_rpm, self.operator_limit_rpm or self._model.max_rpm)
 
     @property
-    def asked(self) -> bool:
+    def is_requested(self) -> bool:
         """True if the program requests that the spindle turns."""
         return self._ask is not None
 
     @property
-    def asked_rpm(self) -> float:
+    def requested_rpm(self) -> float:
         """The requested signed speed in rpm. With G96, it is calculated for the present tool radius."""
         ask = self._ask
         if ask is None:
             return 0.0
-        return math.copysign(self._rpm_of(ask, self._model.rpm_max), ask.rpm)
+        return math.copysign(self._request_rpm(ask, self._model.max_rpm), ask.rpm)
 
     @property
-    def stopped(self) -> bool:
+    def is_stopped(self) -> bool:
         """True if the measured speed is zero. False if no speed data arrives."""
-        return self.known and abs(self.measured) < self._model.stop_below
+        return self.is_speed_known and abs(self.measured_rpm) < self._model.stop_below
 
     @property
-    def stands_or_orients(self) -> bool:
+    def is_stopped_or_orienting(self) -> bool:
         """True if the spindle is stopped or moves only because its drive orients it."""
-        return self.known and (self.stopped or self.orientation.turns_at > 0.0)
+        return self.is_speed_known and (self.is_stopped or self.orientation.max_rpm > 0.0)
 
     @property
-    def lost(self) -> bool:
+    def is_speed_lost(self) -> bool:
         """True if the spindle turns at less than half of the expected speed, or in the wrong direction.
 
         Feeding must stop in this case.
         """
-        along = math.copysign(1.0, self.command) * self.measured
-        return self.command == 0.0 or along < 0.5 * min(abs(self.command), self._owed(self._now))
+        along = math.copysign(1.0, self.commanded_rpm) * self.measured_rpm
+        return self.commanded_rpm == 0.0 or along < 0.5 * min(
+            abs(self.commanded_rpm), self._min_expected_rpm(self._now)
+        )
 
     @property
-    def fails(self) -> bool:
+    def is_too_slow(self) -> bool:
         """True if the spindle should turn but is too slow to cut."""
-        return self._ask is not None and self.lost
+        return self._ask is not None and self.is_speed_lost
 
     @property
-    def why_slow(self) -> str:
+    def slow_reason(self) -> str:
         """The reason why the spindle does not turn, if the operator or the program has caused it."""
         if self._ask is None:
             return "SPINDLE STOPPED"
-        return self.start_barred or self.waits
+        return self.start_inhibit_reason or self.waiting_reason
 
     @property
-    def start_barred(self) -> str:
+    def start_inhibit_reason(self) -> str:
         """The reason at the operator station that prevents a spindle start, or an empty string."""
-        if self.guard_open:
+        if self.is_guard_open:
             return "GUARD OPEN"
-        if not self.auto:
+        if not self.is_auto:
             return "SPINDLE SWITCH OFF"
         return "SPINDLE OVERRIDE AT 0" if self.override <= 0.0 else ""
 
     @property
-    def would_turn(self) -> float:
+    def waiting_start_rpm(self) -> float:
         """The signed speed in rpm at which a waiting spindle will start; 0 if it does not wait.
 
         The position of the spindle switch is ignored, because turning the switch may be the permission.
         """
-        return self._obeying() if self.waits else 0.0
+        return self._obeying() if self.waiting_reason else 0.0
 
-    def permit(self) -> None:
+    def permit_start(self) -> None:
         """Permit a waiting spindle to start after Cycle Start, or after the spindle switch was turned on."""
-        if self._ask is not None and not self.start_barred:
+        if self._ask is not None and not self.start_inhibit_reason:
             self._forget_waiting()
             self._again, self._in_band_since = True, None
 
-    def dropped(self, why: str) -> None:
+    def record_external_stop(self, reason: str) -> None:
         """Record that a device between control and drive has stopped the spindle, which then waits."""
         if self._ask is not None:
-            self.waits, self._withdrawn = why, True
+            self.waiting_reason, self._withdrawn = reason, True
 
-    def ask(self, ask: SpindleDemand) -> None:
+    def request_speed(self, demand: SpindleRequest) -> None:
         """Request a speed by M03, M04 or S."""
         self._let_go()
-        self._ask = ask
+        self._ask = demand
         self._forget_waiting()
         self._in_band_since = None
 
-    def follow(self, block: Block) -> None:
+    def follow_block(self, block: Block) -> None:
         """Adopt the speed of the block being executed, such as after G96 or G97. Never starts the spindle."""
         if self._ask is not None and block.rpm != 0.0:
-            self._ask = SpindleDemand.of(block)
+            self._ask = SpindleRequest.from_block(block)
 
     def stop(self) -> None:
         """Stop the spindle by M05 or by a stop of the control, and discard the request."""
@@ -289,7 +295,7 @@ class SpindleControl:
         self._let_go()
         self._send(0.0, self._now)
 
-    def safe_steps(self, *, coast: bool) -> list[tuple[str, Callable[[], None]]]:
+    def prepare_safe_stop(self, *, coast: bool) -> list[tuple[str, Callable[[], None]]]:
         """Return the steps of a safe stop of the spindle. Each step must be run even if another step raises.
 
         The request is discarded, C is released, and the drive is commanded to stop even if a stop was already
@@ -301,64 +307,64 @@ class SpindleControl:
             self._coasting = True
         return [
             ("C", self._free_c),
-            ("the spindle orientation", self.orientation.let_go),
+            ("the spindle orientation", self.orientation.release),
             ("the spindle", partial(self._tell_off, coast=coast)),
         ]
 
     def _tell_off(self, *, coast: bool) -> None:
         if coast:
-            self.command = 0.0
+            self.commanded_rpm = 0.0
             self._port.coast()
         else:
-            if self.command != 0.0:  # a repeated stop does not restart the time limit
-                self._note_fall(0.0, self._now)
-            self.command = 0.0
-            self._port.run(0.0)
+            if self.commanded_rpm != 0.0:  # a repeated stop does not restart the time limit
+                self._record_fall(0.0, self._now)
+            self.commanded_rpm = 0.0
+            self._port.run_at(0.0)
 
-    def hold(self, *, orient: bool) -> bool:
+    def engage_c_axis(self, *, orient: bool) -> bool:
         """Switch the spindle to C-axis mode (M19, M89); return True when it is engaged.
 
         Raises DriverError if the drive rejects the change.
         """
         if self._lock is None:
             return True
-        if not self._lock.held():
-            self._lock.hold(True, orient)
-        return self._lock.held()
+        if not self._lock.is_c_ready():
+            self._lock.set_c_mode(True, orient)
+        return self._lock.is_c_ready()
 
-    def orient(self, angle: float, sense: int) -> bool:
+    def orient_spindle(self, angle: float, direction: int) -> bool:
         """Orient the spindle (M19, SPOS); return True when the drive holds it at ``angle`` degrees.
 
         A condition that prevents a spindle start also prevents orienting. Raises AlarmError or DriverError.
         """
-        if self.start_barred and self.orientation.at is None:
-            self.orientation.let_go()
+        if self.start_inhibit_reason and self.orientation.angle_deg is None:
+            self.orientation.release()
             return False
-        return self.orientation.bring(angle, sense)
+        return self.orientation.request_angle(angle, direction)
 
-    def break_off(self) -> None:
+    def cancel_orientation(self) -> None:
         """End a change to C-axis mode or an orientation that is in progress, because of a feed hold."""
-        if not self.held:
+        if not self.is_c_axis_ready:
             self._free_c()
-        if self.orientation.at is None:
-            self.orientation.let_go()
+        if self.orientation.angle_deg is None:
+            self.orientation.release()
 
     @property
-    def held(self) -> bool:
+    def is_c_axis_ready(self) -> bool:
         """True if C may move as far as the spindle drive is concerned."""
-        return self._lock is None or self._lock.held()
+        return self._lock is None or self._lock.is_c_ready()
 
     def _let_go(self) -> None:
-        self.orientation.let_go()
+        self.orientation.release()
         self._free_c()
 
     def _free_c(self) -> None:
         if self._lock is not None:
-            self._lock.hold(False)
+            self._lock.set_c_mode(False)
 
-    def look(self) -> None:
+    def read_encoder(self) -> None:
         """Read the encoder. Called first in each tick."""
-        self.angle.note(self._port.angle())
+        self.angle.add_reading(self._port.read_angle())
 
     def update(self, now: float, radius: float) -> None:
         """Send a changed speed and monitor the drive, once per tick.
@@ -371,121 +377,130 @@ class SpindleControl:
         # keep the last speed, because an unknown speed must not count as a standstill
         if not math.isfinite(measured):
             raise AlarmError("spindle-encoder", "the spindle drive reports a speed that is not a number")
-        self.measured = measured
+        self.measured_rpm = measured
         self._radius = radius
-        self._watch_standing(now)
+        self._check_stopped_spindle(now)
         self._send(self._wanted(), now)
         self._watch_band(now)
-        fault = self._port.fault()
+        fault = self._port.read_fault()
         if fault:
             self._coasting = True
-            raise AlarmError(code_of(fault, "spindle"), fault)
-        self._coasting = self._coasting and not self.stopped and self.command == 0.0
-        self.orientation.look()
-        if not self._coasting and abs(self.measured) > self._allowed(now):
+            raise AlarmError(get_fault_code(fault, "spindle"), fault)
+        self._coasting = self._coasting and not self.is_stopped and self.commanded_rpm == 0.0
+        self.orientation.check_angle()
+        if not self._coasting and abs(self.measured_rpm) > self._max_expected_rpm(now):
             turns = Message(
                 "the spindle turns at {measured} rpm; the commanded speed is {command} rpm",
-                measured=f"{self.measured:.0f}",
-                command=f"{self.command:.0f}",
+                measured=f"{self.measured_rpm:.0f}",
+                command=f"{self.commanded_rpm:.0f}",
             )
             raise AlarmError("ignores-stop", turns)
 
-    def at_speed(self, now: float) -> bool:
+    def is_at_speed(self, now: float) -> bool:
         """Return whether the spindle has been within its speed window long enough, or is not requested."""
         if self._ask is None:
             return True
-        if self.command == 0.0 or self._in_band_since is None:
+        if self.commanded_rpm == 0.0 or self._in_band_since is None:
             return False
         return now - self._in_band_since >= self._model.at_speed_time - 1e-9
 
     def _wanted(self) -> float:
-        return 0.0 if self._withdrawn or not self.auto else self._obeying()
+        return 0.0 if self._withdrawn or not self.is_auto else self._obeying()
 
     def _obeying(self) -> float:
         ask = self._ask
         if ask is None:
             return 0.0
-        rpm = min(self._rpm_of(ask, self.highest), self.highest) * self.override
-        if 0.0 < rpm < self._model.rpm_min:
-            rpm = self._model.rpm_min
+        rpm = min(self._request_rpm(ask, self.max_rpm), self.max_rpm) * self.override
+        if 0.0 < rpm < self._model.min_rpm:
+            rpm = self._model.min_rpm
         return rpm if ask.rpm >= 0.0 else -rpm
 
-    def _rpm_of(self, ask: SpindleDemand, highest: float) -> float:
-        """Return the unsigned speed of a request in rpm. ``highest`` limits a surface speed."""
-        if ask.surface is None:
-            return abs(ask.rpm)
-        return surface_rpm(ask.surface, self._radius, ask.lowest, min(ask.highest or highest, highest))
+    def _request_rpm(self, request: SpindleRequest, max_rpm: float) -> float:
+        """Return the unsigned speed of a request in rpm. ``max_rpm`` limits a surface speed."""
+        if request.surface_speed is None:
+            return abs(request.rpm)
+        return find_surface_rpm(
+            request.surface_speed, self._radius, request.min_rpm, min(request.max_rpm or max_rpm, max_rpm)
+        )
 
     def _send(self, rpm: float, now: float) -> None:
-        same = abs(rpm - self.command) <= 0.002 * abs(rpm) and (rpm == 0.0) == (self.command == 0.0)
+        same = abs(rpm - self.commanded_rpm) <= 0.002 * abs(rpm) and (rpm == 0.0) == (
+            self.commanded_rpm == 0.0
+        )
         if same and not self._again:
             return
         self._again = False
-        self._note_fall(rpm, now)
-        if abs(rpm - self.command) > self._model.at_speed * abs(rpm):
+        self._record_fall(rpm, now)
+        if abs(rpm - self.commanded_rpm) > self._model.at_speed * abs(rpm):
             self._in_band_since = None
-        if rpm * self.command <= 0.0:
+        if rpm * self.commanded_rpm <= 0.0:
             self._turned, self._stands = False, None
-        self.command = rpm
-        self._lay_out(self._highest_by_radius())
-        self._port.run(rpm)
+        self.commanded_rpm = rpm
+        self._lay_out(self._max_css_rpm())
+        self._port.run_at(rpm)
 
-    def _highest_by_radius(self) -> float:
+    def _max_css_rpm(self) -> float:
         """Return the highest speed in rpm that the radius may require; 0 without a surface speed."""
         ask = self._ask
-        if ask is None or ask.surface is None:
+        if ask is None or ask.surface_speed is None:
             return 0.0
-        return min(min(ask.highest or self.highest, self.highest) * self.override, self._model.rpm_max)
+        return min(min(ask.max_rpm or self.max_rpm, self.max_rpm) * self.override, self._model.max_rpm)
 
-    def _note_fall(self, rpm: float, now: float) -> None:
+    def _record_fall(self, rpm: float, now: float) -> None:
         """Record the time and speed at which a change of the command starts.
 
         The measured speed is included because the spindle may still coast after an E-stop.
         """
-        fastest = max(abs(self.measured), abs(self.command))
-        if abs(rpm) < fastest or rpm * self.command < 0.0 or rpm * self.measured < 0.0:
+        fastest = max(abs(self.measured_rpm), abs(self.commanded_rpm))
+        if abs(rpm) < fastest or rpm * self.commanded_rpm < 0.0 or rpm * self.measured_rpm < 0.0:
             self._fell = (now, fastest)
-        elif abs(rpm) > abs(self.command) <= self._owed(now):  # otherwise the spindle is still accelerating
-            self._rose = (now, min(abs(self.measured), abs(self.command)))
+        elif (
+            abs(rpm) > abs(self.commanded_rpm) <= self._min_expected_rpm(now)
+        ):  # otherwise the spindle is still accelerating
+            self._rose = (now, min(abs(self.measured_rpm), abs(self.commanded_rpm)))
 
-    def _watch_standing(self, now: float) -> None:
+    def _check_stopped_spindle(self, now: float) -> None:
         """Let a requested but stopped spindle wait, so that it does not start when the cause goes away."""
         if self._ask is None:
             return
-        if self.start_barred:
-            self.dropped(self.start_barred)
-        elif not self.stopped or abs(self.command) < 2.0 * self._model.stop_below:
-            self._turned, self._stands = self._turned or not self.stopped, None
+        if self.start_inhibit_reason:
+            self.record_external_stop(self.start_inhibit_reason)
+        elif not self.is_stopped or abs(self.commanded_rpm) < 2.0 * self._model.stop_below:
+            self._turned, self._stands = self._turned or not self.is_stopped, None
         elif self._turned:
             self._stands = now if self._stands is None else self._stands
-            if now - self._stands >= _STOOD:
-                self.waits = self.waits or "SPINDLE STOPPED UNEXPECTEDLY"
-            self._withdrawn = self._withdrawn or now - self._stands >= _GONE
+            if now - self._stands >= _STOPPED_TIME_S:
+                self.waiting_reason = self.waiting_reason or "SPINDLE STOPPED UNEXPECTEDLY"
+            self._withdrawn = self._withdrawn or now - self._stands >= _LOST_TIME_S
 
     def _forget_waiting(self) -> None:
-        self.waits, self._withdrawn, self._turned, self._stands = "", False, False, None
+        self.waiting_reason, self._withdrawn, self._turned, self._stands = "", False, False, None
 
     def _watch_band(self, now: float) -> None:
-        if abs(self.measured - self.command) > self._model.at_speed * abs(self.command):
+        if abs(self.measured_rpm - self.commanded_rpm) > self._model.at_speed * abs(self.commanded_rpm):
             self._in_band_since = None
         elif self._in_band_since is None:
             self._in_band_since = now
 
-    def _owed(self, now: float) -> float:
+    def _min_expected_rpm(self, now: float) -> float:
         """Return the speed in rpm that a correct drive has at least reached after the command rose."""
         since, speed = self._rose
-        return speed + self._model.accel * max(now - since - self._grace, 0.0)
+        return speed + self._model.accel * max(now - since - self._grace_s, 0.0)
 
-    def _allowed(self, now: float) -> float:
+    def _max_expected_rpm(self, now: float) -> float:
         """Return the highest speed in rpm that a correct drive can have after the command fell."""
         since, speed = self._fell
-        ramp = speed - self._model.decel * max(now - since - self._grace, 0.0)
-        return max(abs(self.command), ramp, self.orientation.turns_at) * (1.0 + _OVER) + _OVER_RPM
+        ramp = speed - self._model.decel * max(now - since - self._grace_s, 0.0)
+        return (
+            max(abs(self.commanded_rpm), ramp, self.orientation.max_rpm) * (1.0 + _OVERSPEED_FRACTION)
+            + _OVERSPEED_RPM
+        )
 
     @property
-    def _grace(self) -> float:
+    def _grace_s(self) -> float:
         """The time in seconds after a command in which the measured speed need not follow."""
-        return max(_GRACE, self._lag() + _REACTS)
+        return max(_GRACE_S, self._lag() + _REACTION_TIME_S)
 
     _now = 0.0
     _radius = 0.0

@@ -10,56 +10,56 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from core.executor.commands import UNCHECKED, Clearance, verdict
-from core.executor.control_status import ControlStatus, modal_as_machine
-from core.executor.job import Job, Proof, outdated
+from core.executor.commands import START_UNCHECKED, Clearance, find_clearance
+from core.executor.control_status import ControlStatus, sync_modal_with_machine
+from core.executor.job import Job, Proof, find_outdated_setting
 from core.executor.machine_context import MachineContext
-from core.executor.snapshot import Starts, State
-from core.interpreter.shared.checkpoint import Begin
-from core.interpreter.shared.machine_requirements import ORIENT, THREAD
-from core.interpreter.shared.modal_state import Modal
+from core.executor.snapshot import MachineState, StartAction
+from core.interpreter.shared.checkpoint import PassStart
+from core.interpreter.shared.machine_requirements import SPINDLE_ORIENTATION, THREADING
+from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
-INHIBIT = "start_inhibit"  # the input that prevents every cycle from starting or resuming
-_BUSY = {
-    State.ESTOP: "E-stop is pressed: release it",
-    State.FAULT: "an alarm is active: clear its cause and press Reset",
-    State.DISABLED: "the drives are off: switch them on",
-    State.JOG: "the machine is being jogged",
-    State.HOME: "the machine is homing",
+START_INHIBIT_INPUT = "start_inhibit"  # the input that prevents every cycle from starting or resuming
+_BUSY_STATES = {
+    MachineState.ESTOP: "E-stop is pressed: release it",
+    MachineState.FAULT: "an alarm is active: clear its cause and press Reset",
+    MachineState.DISABLED: "the drives are off: switch them on",
+    MachineState.JOG: "the machine is being jogged",
+    MachineState.HOME: "the machine is homing",
 }
 
 
-def guard_open(context: MachineContext) -> bool:
+def is_guard_open(context: MachineContext) -> bool:
     """Return whether the guard is open at a machine whose guard stops the cycle. An off input means open."""
     return context.machine.interlocks.guard_stops and not context.inputs.get("guard", False)
 
 
-def station_stop(context: MachineContext) -> str:
+def find_station_refusal(context: MachineContext) -> str:
     """Return which condition of the operator station prevents a cycle, or an empty string."""
-    if context.signals.hold:
+    if context.signals.hold_requested:
         return "feed hold is pressed"
-    if guard_open(context):
+    if is_guard_open(context):
         return "the guard is open: close it"
-    if context.inputs.get(INHIBIT, False):
+    if context.inputs.get(START_INHIBIT_INPUT, False):
         return "the start inhibit switch is on"
-    return context.signals.trouble.lower() or context.signals.lost
+    return context.signals.station_fault.lower() or context.signals.connection_lost_reason
 
 
-def unclamped(context: MachineContext) -> str:
+def find_collet_refusal(context: MachineContext) -> str:
     """Return why the collet prevents a spindle start, or an empty string."""
     if context.machine.interlocks.spindle_with_collet_open or context.inputs.get("collet_closed", True):
         return ""
     return "the spindle does not start with the collet open: close the collet first"
 
 
-def unclamped_by_program(context: MachineContext) -> str:
+def find_program_collet_refusal(context: MachineContext) -> str:
     """Return why the collet prevents a spindle start within a stopped cycle, or an empty string.
 
     If the program has opened the collet, the operator must press Reset before closing it.
     """
-    why = unclamped(context)
+    why = find_collet_refusal(context)
     if why and not context.outputs.outputs().get("collet", True):
         return (
             "the program has opened the collet, so the spindle does not start: press Reset, "
@@ -68,15 +68,15 @@ def unclamped_by_program(context: MachineContext) -> str:
     return why
 
 
-def hindrance(context: MachineContext, state: State) -> str:
+def find_state_refusal(context: MachineContext, state: MachineState) -> str:
     """Return which state of the machine prevents any cycle start, or an empty string."""
-    if state in _BUSY:
-        return _BUSY[state]
-    if station_stop(context):
-        return station_stop(context)
-    if context.ports.blocks is not None and context.ports.blocks.state().hindrance:
-        return context.ports.blocks.state().hindrance
-    name = context.machine.shown
+    if state in _BUSY_STATES:
+        return _BUSY_STATES[state]
+    if find_station_refusal(context):
+        return find_station_refusal(context)
+    if context.ports.blocks is not None and context.ports.blocks.state().start_refusal:
+        return context.ports.blocks.state().start_refusal
+    name = context.machine.displayed_axis_name
     away = [
         name(a.name) for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed
     ]
@@ -85,34 +85,40 @@ def hindrance(context: MachineContext, state: State) -> str:
     return ""
 
 
-def job_refusal(context: MachineContext, state: State, job: Job | None, proof: Proof | None) -> str:
+def find_job_refusal(
+    context: MachineContext, state: MachineState, job: Job | None, proof: Proof | None
+) -> str:
     """Return why this job may not be started now, or an empty string if it may."""
-    return hindrance(context, state) or unproved(job, proof) or lacking(context, proof)
+    return (
+        find_state_refusal(context, state)
+        or find_proof_refusal(job, proof)
+        or find_missing_function(context, proof)
+    )
 
 
-def lacking(context: MachineContext, proof: Proof | None) -> str:
+def find_missing_function(context: MachineContext, proof: Proof | None) -> str:
     """Return which function the program needs but the machine does not have, or an empty string."""
     blocks = context.ports.blocks
-    absent = {Message("output {name}", name=name) for name in context.machine.absent}
-    for need in proof.needs if proof is not None else ():
-        if need.builders_m:
+    absent = {Message("output {name}", name=name) for name in context.machine.missing_outputs}
+    for need in proof.required_functions if proof is not None else ():
+        if need.builder_m_code:
             return Message(
                 "line {line}: this machine does not define {need}",
                 line=need.line,
-                need=need.words,
+                need=need.description,
             )
-        if need.what in absent:
-            return Message("line {line}: this machine has no {need}", line=need.line, need=need.words)
-        if blocks is not None and need.what not in blocks.caps:
+        if need.function in absent:
+            return Message("line {line}: this machine has no {need}", line=need.line, need=need.description)
+        if blocks is not None and need.function not in blocks.capabilities:
             return Message(
-                "line {line}: this controller does not support {need}", line=need.line, need=need.words
+                "line {line}: this controller does not support {need}", line=need.line, need=need.description
             )
-        if blocks is None and need.what == ORIENT and context.ports.orientation is None:
+        if blocks is None and need.function == SPINDLE_ORIENTATION and context.ports.orientation is None:
             return Message(
                 "line {line}: the spindle driver of this machine cannot orient the spindle to an angle",
                 line=need.line,
             )
-        if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
+        if blocks is None and need.function == THREADING and context.ports.spindle.read_angle() is None:
             return Message(
                 "line {line}: a thread needs a spindle encoder, but this machine does not have one",
                 line=need.line,
@@ -120,7 +126,7 @@ def lacking(context: MachineContext, proof: Proof | None) -> str:
     return ""
 
 
-def unproved(job: Job | None, proof: Proof | None) -> str:
+def find_proof_refusal(job: Job | None, proof: Proof | None) -> str:
     """Return why the proof does not permit a start of this job, or an empty string."""
     if job is None:
         return "no program is loaded"
@@ -133,7 +139,7 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
     if missing := proof.unset(job):
         return Message(
             "tool offset {number} has never been set",
-            number=", ".join(edge_name(number) for number in missing),
+            number=", ".join(format_edge_name(number) for number in missing),
         )
     return ""
 
@@ -142,55 +148,59 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
 
 
 _NOTHING = {
-    Starts.LINE: "no MDI line is ready to start",
-    Starts.RESTART: "the restart is not ready: search for a line and confirm it",
+    StartAction.MDI_LINE: "no MDI line is ready to start",
+    StartAction.RESTART: "the restart is not ready: search for a line and confirm it",
 }
-_SAME = 0.01  # mm or degrees, tolerance between the axes and the planned start position
+_POSITION_TOLERANCE = 0.01  # mm or degrees, tolerance between the axes and the planned start position
 
 
-def job_to_start(status: ControlStatus) -> Job | None:
+def selected_job(status: ControlStatus) -> Job | None:
     """Return the job that Cycle Start would run, or None."""
-    return status.job if status.starts is Starts.PROGRAM else status.prepared
+    return status.job if status.start_action is StartAction.PROGRAM else status.prepared_job
 
 
-def start_refusal(context: MachineContext, state: State, status: ControlStatus) -> str:
+def find_start_refusal(context: MachineContext, state: MachineState, status: ControlStatus) -> str:
     """Return why Cycle Start is refused now, or an empty string if it may start."""
-    job, proof = job_to_start(status), status.proof
-    if status.starts is not Starts.PROGRAM:
+    job, proof = selected_job(status), status.proof
+    if status.start_action is not StartAction.PROGRAM:
         proof = status.prepared_proof
-    if job is None and status.starts in _NOTHING:
-        return hindrance(context, state) or _NOTHING[status.starts]
-    why = job_refusal(context, state, job, proof) or (_moved(context, job) or _changed(context, status, job))
-    return why or (status.next_barred if status.starts is Starts.PROGRAM else "")
+    if job is None and status.start_action in _NOTHING:
+        return find_state_refusal(context, state) or _NOTHING[status.start_action]
+    why = find_job_refusal(context, state, job, proof) or (
+        _moved(context, job) or _find_change(context, status, job)
+    )
+    return why or (status.next_part_block_reason if status.start_action is StartAction.PROGRAM else "")
 
 
-def first_move_refusal(context: MachineContext, status: ControlStatus, begun: int) -> tuple[str, str]:
+def find_first_move_refusal(
+    context: MachineContext, status: ControlStatus, run_count: int
+) -> tuple[str, str]:
     """Return the code and the sentence if the first move is refused; both are empty if it is permitted."""
-    job = job_to_start(status)
-    if not status.checks_starts or job is None:
+    job = selected_job(status)
+    if not status.requires_clearance or job is None:
         return "", ""
-    found = first_move_verdict(context, status, begun)
+    found = find_first_move_clearance(context, status, run_count)
     if found is None:
-        return UNCHECKED, "the first move is being checked against the part: start again in a moment"
+        return START_UNCHECKED, "the first move is being checked against the part: start again in a moment"
     return found.code, found.why
 
 
-def first_move_verdict(
-    context: MachineContext, status: ControlStatus, begun: int, *, repeats: bool = False
+def find_first_move_clearance(
+    context: MachineContext, status: ControlStatus, run_count: int, *, for_repeat: bool = False
 ) -> Clearance | None:
-    """Return the clearance of the first move after Cycle Start, or after Cycle Repeat if ``repeats``.
+    """Return the clearance of the first move after Cycle Start, or after Cycle Repeat if ``for_repeat``.
 
     The result is None if the clearance has not been computed yet.
     """
-    job, known = job_to_start(status), status.clearances
-    if repeats:
+    job, known = selected_job(status), status.clearances
+    if for_repeat:
         job = status.job
-    elif status.starts is not Starts.PROGRAM:
+    elif status.start_action is not StartAction.PROGRAM:
         known = tuple(filter(None, (status.prepared_clearance,)))
     if job is None:
         return None
     at, _ = context.ports.axes.demand_at(context.now)
-    return verdict(known, job.digest, at, begun, repeats=repeats)
+    return find_clearance(known, job.digest, at, run_count, for_repeat=for_repeat)
 
 
 def _moved(context: MachineContext, job: Job | None) -> str:
@@ -198,44 +208,49 @@ def _moved(context: MachineContext, job: Job | None) -> str:
         return ""
     at, _ = context.ports.axes.demand_at(context.now)
     away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
-    if away <= _SAME:
+    if away <= _POSITION_TOLERANCE:
         return ""
-    return Message("the axes have moved since the program was proved; {begin}", begin=_again(job.setup.begin))
+    return Message(
+        "the axes have moved since the program was proved; {begin}", begin=_proof_instruction(job.setup.begin)
+    )
 
 
-def _changed(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
+def _find_change(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
     """Return what has changed since the program, the line or the restart was proved, or an empty string."""
     if job is None:
         return ""
     begin = job.setup.begin
     if begin is None:
-        old = outdated(job, status.modal)
+        old = find_outdated_setting(job, status.modal)
         return (
             Message("{old}, but the program does not specify this setting; load the program again", old=old)
             if old
             else ""
         )
-    now = modal_as_machine(status.modal, context)
-    if not begin.single:
-        return _changed_for_restart(status, job, begin, now)
+    now = sync_modal_with_machine(status.modal, context)
+    if not begin.is_mdi_line:
+        return _find_restart_change(status, job, begin, now)
     same = now == begin.checkpoint.modal
     return (
         ""
         if same
-        else Message("the machine state has changed since the line was proved; {begin}", begin=_again(begin))
+        else Message(
+            "the machine state has changed since the line was proved; {begin}",
+            begin=_proof_instruction(begin),
+        )
     )
 
 
-def _again(begin: Begin) -> str:
+def _proof_instruction(begin: PassStart) -> str:
     """Return how the operator can have the job proved again."""
-    if begin.single:
+    if begin.is_mdi_line:
         return "request the retract path again" if begin.approach else "enter or select the line again"
     return "search for the line again"
 
 
-def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Modal) -> str:
+def _find_restart_change(status: ControlStatus, job: Job, begin: PassStart, now: ModalState) -> str:
     """Return why a restart is outdated: another program is loaded, or the collet is in another state."""
-    if status.job is None or status.job.digest != job.part_of:
+    if status.job is None or status.job.digest != job.parent_digest:
         return "the program was loaded again: search for the line again"
     wanted = begin.checkpoint.modal.collet_closed
     if now.collet_closed != wanted:
@@ -244,73 +259,75 @@ def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Mod
             if now.collet_closed
             else "the collet is open, but must be closed at line {line}: close the collet in MDI"
         )
-        return Message(template, line=begin.line)
-    return unproved(status.job, status.proof)
+        return Message(template, line=begin.line_number)
+    return find_proof_refusal(status.job, status.proof)
 
 
 # --- announcements of a start ---------------------------------------------------------------------------
 
 
-SPINDLE = "spindle"
-TIME_TO_READ = 0.3  # s for which an announcement must have been displayed before a start
-_FIGURE_CHANGED = 0.1  # relative change of a value that makes a new announcement
+SPINDLE_FUNCTION = "spindle"
+READING_TIME_S = 0.3  # s for which an announcement must have been displayed before a start
+_VALUE_CHANGE_FRACTION = 0.1  # relative change of a value that makes a new announcement
 
 
-class Starting(NamedTuple):
+class AnnouncedStart(NamedTuple):
     """A function that the next start would turn on.
 
-    ``what`` identifies the function, and the operator reads ``text``. ``figure`` is its value, such as the
-    rpm of a spindle. A large change of the value makes a new announcement. ``begin`` turns the function on
-    after the announced start.
+    ``what`` identifies the function, and the operator reads ``text``. ``displayed_value`` is its value, such
+    as the rpm of a spindle. A large change of the value makes a new announcement. ``begin`` turns the
+    function on after the announced start.
     """
 
-    what: str
+    function_name: str
     text: str
-    begin: Callable[[], None]
-    figure: float = 0.0
+    start_function: Callable[[], None]
+    displayed_value: float = 0.0
 
 
-class Announcement:
+class StartAnnouncement:
     """The functions that a start would turn on, read from ``sources`` in every tick.
 
     Used on the executor's thread only.
     """
 
     def __init__(self) -> None:
-        self.sources: list[Callable[[], Iterable[Starting]]] = []
+        self.sources: list[Callable[[], Iterable[AnnouncedStart]]] = []
         self._since: dict[str, tuple[float, float]] = {}  # by key: time of the first display, and the value
 
-    def publish(self, now: float) -> tuple[str, ...]:
+    def update_texts(self, now: float) -> tuple[str, ...]:
         """Return the texts for the snapshot of this tick and record when each first appeared."""
         items, before = self._items(), self._since
-        self._since = {item.what: self._counted(item, before, now) for item in items}
+        self._since = {item.function_name: self._counted(item, before, now) for item in items}
         return tuple(item.text for item in items)
 
-    def refusal(self, now: float, what: str = "") -> str:
+    def find_refusal(self, now: float, function_name: str = "") -> str:
         """Return why a start is refused because the operator had no time to read an announcement.
 
         ``what`` limits the check to one function. The result is empty if the start is permitted.
         """
-        for item in self._items(what):
-            since, figure = self._since.get(item.what, (math.inf, 0.0))
-            if now - since < TIME_TO_READ - 1e-9 or _differ(item.figure, figure):
+        for item in self._items(function_name):
+            since, figure = self._since.get(item.function_name, (math.inf, 0.0))
+            if now - since < READING_TIME_S - 1e-9 or _differ(item.displayed_value, figure):
                 return Message("read this message first: {item}; then start again", item=item.text)
         return ""
 
-    def begin(self, what: str = "") -> None:
+    def start_functions(self, function_name: str = "") -> None:
         """Turn on the function ``what``, or all functions, after a permitted start."""
-        for item in self._items(what):
-            item.begin()
+        for item in self._items(function_name):
+            item.start_function()
 
-    def _items(self, what: str = "") -> list[Starting]:
-        return [item for source in self.sources for item in source() if what in {"", item.what}]
+    def _items(self, what: str = "") -> list[AnnouncedStart]:
+        return [item for source in self.sources for item in source() if what in {"", item.function_name}]
 
     def _counted(
-        self, item: Starting, before: dict[str, tuple[float, float]], now: float
+        self, item: AnnouncedStart, before: dict[str, tuple[float, float]], now: float
     ) -> tuple[float, float]:
-        known = before.get(item.what)
-        return (now, item.figure) if known is None or _differ(item.figure, known[1]) else known
+        known = before.get(item.function_name)
+        return (
+            (now, item.displayed_value) if known is None or _differ(item.displayed_value, known[1]) else known
+        )
 
 
 def _differ(new: float, old: float) -> bool:
-    return abs(new - old) > _FIGURE_CHANGED * abs(old)
+    return abs(new - old) > _VALUE_CHANGE_FRACTION * abs(old)

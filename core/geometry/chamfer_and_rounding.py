@@ -9,12 +9,20 @@ from __future__ import annotations
 from math import asin, cos, dist, pi, sin, tan
 
 from core.geometry.contour_offset import GougeError, offset_element
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of, meetings, turn
+from core.geometry.lines_and_arcs import (
+    SAME_POINT_TOLERANCE_MM,
+    Arc,
+    Element,
+    Line,
+    extended_intersections,
+    left_normal,
+    turn_angle,
+)
 from core.message import CodedError, Message
 
 # Lines that turn by less than this angle (rad) have the same or the opposite direction. The corner point
 # would be inaccurate by more than any machine can move.
-STRAIGHT = 1e-6
+STRAIGHT_TOLERANCE_RAD = 1e-6
 
 
 class CornerError(CodedError):
@@ -28,43 +36,45 @@ class NoCornerError(CornerError):
 class CornerTooLargeError(CornerError):
     """Raised when the corner needs more of a move than its length.
 
-    ``needed`` is the required length in mm. ``first`` is True if the first of the two moves is too short.
+    ``needed_length`` is the required length in mm. ``first`` is True if the first of the two moves is too
+    short.
     """
 
-    def __init__(self, needed: float, *, first: bool) -> None:
+    def __init__(self, needed_length: float, *, is_first_move: bool) -> None:
         super().__init__(
-            "the current line is too short" if first else "the next line is too short", "line-too-short"
+            "the current line is too short" if is_first_move else "the next line is too short",
+            "line-too-short",
         )
-        self.needed = needed
-        self.first = first
+        self.needed_length = needed_length
+        self.is_first_move = is_first_move
 
 
-def chamfer(before: Element, after: Element, leg: float) -> tuple[Element, Line, Element]:
+def chamfer(first_element: Element, second_element: Element, leg: float) -> tuple[Element, Line, Element]:
     """Return both elements shortened by ``leg`` mm at their corner, with the chamfer between them.
 
     Raises NoCornerError, CornerTooLargeError, or CornerError if the second element reverses the direction of
     the first or the chamfer would cross one of them.
     """
-    angle = _turned(before, after)
-    first, last = _shortened(before, after, leg)
+    angle = _turn_between(first_element, second_element)
+    first, last = _shorten(first_element, second_element, leg)
     between = Line(first.end, last.start)
-    out = first.end_direction if first.length > SAME_POINT else before.start_direction
-    into = last.start_direction if last.length > SAME_POINT else after.end_direction
+    out = first.end_direction if first.length > SAME_POINT_TOLERANCE_MM else first_element.start_direction
+    into = last.start_direction if last.length > SAME_POINT_TOLERANCE_MM else second_element.end_direction
     cut = between.start_direction
-    if turn(out, cut) * angle <= 0.0 or turn(cut, into) * angle <= 0.0:
+    if turn_angle(out, cut) * angle <= 0.0 or turn_angle(cut, into) * angle <= 0.0:
         raise CornerError("the chamfer would cross one of the two moves", "crosses")
     return first, between, last
 
 
-def _turned(before: Element, after: Element) -> float:
+def _turn_between(before: Element, after: Element) -> float:
     """Return the angle in radians by which the direction changes between the elements."""
     for element in (before, after):
-        if element.length < SAME_POINT:
-            raise CornerTooLargeError(0.0, first=element is before)
-    angle = turn(before.end_direction, after.start_direction)
-    if abs(angle) < STRAIGHT:
+        if element.length < SAME_POINT_TOLERANCE_MM:
+            raise CornerTooLargeError(0.0, is_first_move=element is before)
+    angle = turn_angle(before.end_direction, after.start_direction)
+    if abs(angle) < STRAIGHT_TOLERANCE_RAD:
         raise NoCornerError("the two moves have the same direction", "no-corner")
-    if abs(angle) > pi - STRAIGHT:
+    if abs(angle) > pi - STRAIGHT_TOLERANCE_RAD:
         lines = isinstance(before, Line) and isinstance(after, Line)
         raise CornerError(
             "the next line goes straight back along the previous line"
@@ -75,20 +85,25 @@ def _turned(before: Element, after: Element) -> float:
     return angle
 
 
-def _shortened(before: Element, after: Element, leg: float) -> tuple[Element, Element]:
+def _shorten(before: Element, after: Element, leg: float) -> tuple[Element, Element]:
     """Return both elements, each shortened by a chord of ``leg`` mm at their corner."""
-    end, start = before.length - _taken(before, leg, first=True), _taken(after, leg, first=False)
-    return before.part(before.start, before.point(max(end, 0.0))), after.part(after.point(start), after.end)
+    end, start = (
+        before.length - _removed_length(before, leg, is_first=True),
+        _removed_length(after, leg, is_first=False),
+    )
+    return before.section_between(before.start, before.point_at(max(end, 0.0))), after.section_between(
+        after.point_at(start), after.end
+    )
 
 
-def _taken(element: Element, leg: float, *, first: bool) -> float:
+def _removed_length(element: Element, leg: float, *, is_first: bool) -> float:
     """Return the length in mm that the leg removes from an element."""
     if isinstance(element, Arc) and leg > 2.0 * element.radius:
-        raise CornerTooLargeError(leg, first=first)
+        raise CornerTooLargeError(leg, is_first_move=is_first)
     way = _way(element, leg)
     # A part of an arc must remain, because an arc with equal ends would be a full circle.
-    if way > element.length - _left(element):
-        raise CornerTooLargeError(way, first=first)
+    if way > element.length - _required_length(element):
+        raise CornerTooLargeError(way, is_first_move=is_first)
     return min(way, element.length)
 
 
@@ -98,55 +113,60 @@ def _way(element: Element, leg: float) -> float:
     return 2.0 * element.radius * asin(min(1.0, leg / (2.0 * element.radius)))
 
 
-def _left(element: Element) -> float:
+def _required_length(element: Element) -> float:
     """Return the length in mm that must remain of an element.
 
     An arc with equal ends would be a full circle.
     """
-    return SAME_POINT if isinstance(element, Arc) else -SAME_POINT
+    return SAME_POINT_TOLERANCE_MM if isinstance(element, Arc) else -SAME_POINT_TOLERANCE_MM
 
 
-def rounding(before: Element, after: Element, radius: float) -> tuple[Element, Arc, Element]:
+def make_rounding(
+    first_element: Element, second_element: Element, radius: float
+) -> tuple[Element, Arc, Element]:
     """Return both elements shortened to the tangent points of an arc of ``radius`` mm, with the arc.
 
     Between two lines, each line is shortened by radius·tan(turn/2). Otherwise the center of the arc is the
     intersection of both elements offset by ``radius``. Raises the errors of ``chamfer``, and CornerError if
     no arc is tangent to both within their length.
     """
-    if isinstance(before, Line) and isinstance(after, Line):
-        return _fillet(before, after, radius)
-    angle = turn(before.end_direction, after.start_direction)
-    if abs(angle) < STRAIGHT:
+    if isinstance(first_element, Line) and isinstance(second_element, Line):
+        return _fillet(first_element, second_element, radius)
+    angle = turn_angle(first_element.end_direction, second_element.start_direction)
+    if abs(angle) < STRAIGHT_TOLERANCE_RAD:
         raise NoCornerError("the two moves have the same direction", "no-corner")
     side = radius if angle > 0 else -radius
     try:
-        aside = offset_element(before, side), offset_element(after, side)
+        aside = offset_element(first_element, side), offset_element(second_element, side)
     except GougeError as problem:
         raise CornerError(
             Message("the arc does not fit one of the two moves: {problem}", problem=problem), "no-arc"
         ) from None
-    touched = [(before.along(centre), after.along(centre), centre) for centre in meetings(*aside)]
+    touched = [
+        (first_element.distance_from_start(centre), second_element.distance_from_start(centre), centre)
+        for centre in extended_intersections(*aside)
+    ]
     fitting = [
-        (before.length - end + start, end, start, centre)
+        (first_element.length - end + start, end, start, centre)
         for end, start, centre in touched
-        if _left(before) <= end <= before.length + SAME_POINT
-        and -SAME_POINT <= start <= after.length - _left(after)
+        if _required_length(first_element) <= end <= first_element.length + SAME_POINT_TOLERANCE_MM
+        and -SAME_POINT_TOLERANCE_MM <= start <= second_element.length - _required_length(second_element)
     ]
     if not fitting:
         raise CornerError(
             "no arc of this radius is tangent to both moves within their length", "no-touching-arc"
         )
     _, end, start, centre = min(fitting)
-    first = before.part(before.start, before.point(end))
-    last = after.part(after.point(start), after.end)
+    first = first_element.section_between(first_element.start, first_element.point_at(end))
+    last = second_element.section_between(second_element.point_at(start), second_element.end)
     return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
 
 
 def _fillet(before: Line, after: Line, radius: float) -> tuple[Element, Arc, Element]:
-    angle = _turned(before, after)
-    first, last = _shortened(before, after, radius * tan(abs(angle) / 2))
+    angle = _turn_between(before, after)
+    first, last = _shorten(before, after, radius * tan(abs(angle) / 2))
     side = radius if angle > 0 else -radius
-    left = left_of(before.end_direction)
+    left = left_normal(before.end_direction)
     centre = first.end[0] + left[0] * side, first.end[1] + left[1] * side
     return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
 
@@ -158,33 +178,38 @@ _STEPS = 256  # steps of the search for the first leg that is long enough
 _HALVINGS = 60
 
 
-def leg_of(before: Element, after: Element, length: float) -> float:
+def find_chamfer_leg(first_element: Element, second_element: Element, length: float) -> float:
     """Return the leg of a chamfer that is itself ``length`` mm long. Raises the errors of ``chamfer``."""
-    if isinstance(before, Line) and isinstance(after, Line):
+    if isinstance(first_element, Line) and isinstance(second_element, Line):
         # The chamfer and its two legs are an isosceles triangle.
-        return length / (2.0 * max(abs(cos(turn(before.end_direction, after.start_direction) / 2)), 1e-9))
-    _turned(before, after)
-    most = min(_longest(before), _longest(after))
+        return length / (
+            2.0
+            * max(abs(cos(turn_angle(first_element.end_direction, second_element.start_direction) / 2)), 1e-9)
+        )
+    _turn_between(first_element, second_element)
+    most = min(_max_leg(first_element), _max_leg(second_element))
     for step in range(1, _STEPS + 1):
-        if _width(before, after, most * step / _STEPS) >= length:
-            return _found(before, after, length, most * (step - 1) / _STEPS, most * step / _STEPS)
+        if _chamfer_length(first_element, second_element, most * step / _STEPS) >= length:
+            return _found(
+                first_element, second_element, length, most * (step - 1) / _STEPS, most * step / _STEPS
+            )
     raise CornerError("the two moves are too short for a chamfer of this length", "too-short")
 
 
 def _found(before: Element, after: Element, length: float, short: float, long: float) -> float:
     for _ in range(_HALVINGS):
         middle = (short + long) / 2
-        short, long = (middle, long) if _width(before, after, middle) < length else (short, middle)
+        short, long = (middle, long) if _chamfer_length(before, after, middle) < length else (short, middle)
     return long
 
 
-def _width(before: Element, after: Element, leg: float) -> float:
+def _chamfer_length(before: Element, after: Element, leg: float) -> float:
     """Return the length of the chamfer with this leg."""
-    one = before.point(before.length - _way(before, leg))
-    return dist(one, after.point(_way(after, leg)))
+    one = before.point_at(before.length - _way(before, leg))
+    return dist(one, after.point_at(_way(after, leg)))
 
 
-def _longest(element: Element) -> float:
+def _max_leg(element: Element) -> float:
     """Return the longest leg that ends on the element."""
     if isinstance(element, Line):
         return element.length

@@ -1,7 +1,7 @@
 """Offset of a contour by a distance, and the spans in which roughing may move next to a contour.
 
-``Offset`` rejects a contour into which the distance does not fit. ``trimmed_offset``, for roughing, leaves
-out fillets smaller than the allowance and grooves narrower than twice the allowance.
+``OffsetBuilder`` rejects a contour into which the distance does not fit. ``trim_offset``, for roughing,
+leaves out fillets smaller than the allowance and grooves narrower than twice the allowance.
 
 Points of roughing are (depth, distance along Z) as seen from the start point of the tool. The depth grows
 along X toward the contour, and the second value along Z toward it. The contour runs with the tool on its
@@ -19,70 +19,70 @@ from typing import NamedTuple
 import numpy as np
 
 from core.geometry.lines_and_arcs import (
-    SAME_POINT,
+    SAME_POINT_TOLERANCE_MM,
     Arc,
-    Box,
+    BoundingBox,
     Element,
     Line,
     Point,
-    clearance,
-    distance,
-    holds,
+    contains_point,
+    distance_to_point,
     intersections,
-    left_of,
-    turn,
+    left_normal,
+    min_distance,
+    turn_angle,
 )
 
 # mm. Offsets whose ends are closer than this are joined at their midpoint. Programs round their numbers to
 # 1.27 µm, so tangents are not more exact than that, and no machine can follow such a step.
-JOINED = 0.001
+JOIN_TOLERANCE_MM = 0.001
 
 # mm by which the offset may be closer to the contour than its distance. The value is half a join plus
 # rounding, and less than the 2 µm that are visible on a workpiece.
-NEARER = 0.0015
+OFFSET_TOLERANCE_MM = 0.0015
 
 # rad. A turn closer than this to 180 degrees is a reversal, where neither side is free.
-STRAIGHT_BACK = 1e-6
+REVERSAL_TOLERANCE_RAD = 1e-6
 
 # Number of elements before and after that are checked for a second wall. The output is delayed by the same
 # number, so that it is not used before it has been checked.
-WINDOW = 128
+WINDOW_ELEMENTS = 128
 # mm by which a path may be closer, because offsets of tangent elements are joined across rounding errors.
 _NEARER = 0.0005
 # mm between the end of one piece and the start of the next. Short arcs in rounded words are tangent only to
 # some hundredths of a degree, which causes a step in the offset.
-_FOLLOWS = 5 * JOINED
+_JOINT_TOLERANCE_MM = 5 * JOIN_TOLERANCE_MM
 # mm of parts that may remain unused after the end of the path.
-_LOST = 0.02
-Span = tuple[float, float]
+_MAX_UNUSED_MM = 0.02
+ZSpan = tuple[float, float]
 """From where to where along the way, mm."""
-_SHORTEST = 0.001  # mm; half of what is visible on a workpiece
+_MIN_SPAN_MM = 0.001  # mm; half of what is visible on a workpiece
 _TOUCH = 1e-6  # mm; a line that is deeper than a wall by less is on the wall
-_ENDLESS = float("inf")
+_INFINITE_MM = float("inf")
 
 
 class GougeError(Exception):
     """Raised when the offset of a contour cuts into the contour.
 
-    ``index`` is the number of the element that cannot be offset, from 0. ``why`` is a clause about the
+    ``index`` is the number of the element that cannot be offset, from 0. ``reason`` is a clause about the
     element.
     """
 
-    def __init__(self, index: int, why: str) -> None:
-        super().__init__(why)
-        self.index = index
-        self.why = why
+    def __init__(self, index: int, reason: str) -> None:
+        super().__init__(reason)
+        self.element_index = index
+        self.reason = reason
 
 
-class Piece(NamedTuple):
+class OffsetPiece(NamedTuple):
     """A piece of an offset contour.
 
-    ``corner`` is True for an arc around the corner at the end of the element ``source``.
+    ``corner`` is True for an arc around the corner at the end of the element ``source_index``.
     """
 
-    source: int  # index of the element, from 0
+    source_index: int  # index of the element, from 0
     element: Element
-    corner: bool
+    is_corner: bool
 
 
 def offset_element(element: Element, distance_left: float) -> Element:
@@ -90,19 +90,19 @@ def offset_element(element: Element, distance_left: float) -> Element:
 
     Arcs remain concentric. Raises GougeError (index 0) for an arc whose radius would vanish.
     """
-    ax, az = left_of(element.start_direction)
-    bx, bz = left_of(element.end_direction)
+    ax, az = left_normal(element.start_direction)
+    bx, bz = left_normal(element.end_direction)
     start = element.start[0] + ax * distance_left, element.start[1] + az * distance_left
     end = element.end[0] + bx * distance_left, element.end[1] + bz * distance_left
     if isinstance(element, Line):
         return Line(start, end)
     grown = element.radius + (distance_left if element.clockwise else -distance_left)
-    if grown < SAME_POINT:
+    if grown < SAME_POINT_TOLERANCE_MM:
         raise GougeError(0, "the inside radius of the move is too small for the offset path")
-    return Arc(start, end, element.centre, element.clockwise)
+    return Arc(start, end, element.center, element.clockwise)
 
 
-class Offset:
+class OffsetBuilder:
     """The offset of a contour whose elements are added one by one.
 
     The path is ``distance_left`` mm to the left of the contour, or to the right if negative. It starts and
@@ -117,25 +117,25 @@ class Offset:
         self._count = 0
         # the last contour element and its offset, which has its final start
         self._last: tuple[Element, Element] | None = None
-        self._ready: deque[Piece] = deque()
-        self._guard = _Guard(abs(distance_left))
+        self._ready: deque[OffsetPiece] = deque()
+        self._guard = _GougeGuard(abs(distance_left))
 
-    def add(self, element: Element) -> Iterator[Piece]:
+    def add(self, element: Element) -> Iterator[OffsetPiece]:
         """Add the next element and yield the pieces that are final. Raises GougeError."""
         index = self._count
         self._count += 1
         try:
             moved = offset_element(element, self._distance)
         except GougeError as problem:
-            raise GougeError(index, problem.why) from None
+            raise GougeError(index, problem.reason) from None
         if self._last is not None:
-            moved = self._join(*self._last, element, moved, index)
+            moved = self._join_offsets(*self._last, element, moved, index)
         self._guard.contour(index, element)
         self._last = element, moved
-        while len(self._ready) > WINDOW:
+        while len(self._ready) > WINDOW_ELEMENTS:
             yield self._ready.popleft()
 
-    def close(self) -> Iterator[Piece]:
+    def finish(self) -> Iterator[OffsetPiece]:
         """Yield the remaining pieces after the last element. Raises GougeError."""
         if self._last is not None:
             self._keep(self._count - 1, self._last[1], corner=False)
@@ -143,90 +143,100 @@ class Offset:
         while self._ready:
             yield self._ready.popleft()
 
-    def _join(self, before: Element, ended: Element, after: Element, begun: Element, index: int) -> Element:
+    def _join_offsets(
+        self, before: Element, first_offset: Element, after: Element, second_offset: Element, index: int
+    ) -> Element:
         """Join the offsets of two elements; return the second one with its new start."""
         corner = after.start
-        angle = turn(before.end_direction, after.start_direction)
-        if abs(angle) > pi - STRAIGHT_BACK and self._distance:
+        angle = turn_angle(before.end_direction, after.start_direction)
+        if abs(angle) > pi - REVERSAL_TOLERANCE_RAD and self._distance:
             raise GougeError(index, "the move reverses the direction of the previous move")
-        if dist(ended.end, begun.start) <= JOINED:
-            joint = _middle(ended.end, begun.start)
-            joint = ended.end if dist(joint, ended.end) < SAME_POINT else joint
-            self._keep(index - 1, _cut(ended, ended.start, joint, index - 1), corner=False)
-            return begun.part(joint, begun.end)
+        if dist(first_offset.end, second_offset.start) <= JOIN_TOLERANCE_MM:
+            joint = _middle(first_offset.end, second_offset.start)
+            joint = first_offset.end if dist(joint, first_offset.end) < SAME_POINT_TOLERANCE_MM else joint
+            self._keep(
+                index - 1, _cut_offset(first_offset, first_offset.start, joint, index - 1), corner=False
+            )
+            return second_offset.section_between(joint, second_offset.end)
         if (angle > 0) != (self._distance > 0):
-            self._keep(index - 1, ended, corner=False)
-            around = Arc(ended.end, begun.start, corner, clockwise=angle < 0)
+            self._keep(index - 1, first_offset, corner=False)
+            around = Arc(first_offset.end, second_offset.start, corner, clockwise=angle < 0)
             self._keep(index - 1, around, corner=True)
-            return begun
-        joint = _inside(ended, begun, corner, index)
-        self._keep(index - 1, _cut(ended, ended.start, joint, index - 1), corner=False)
-        return _cut(begun, joint, begun.end, index)
+            return second_offset
+        joint = _inside_corner(first_offset, second_offset, corner, index)
+        self._keep(index - 1, _cut_offset(first_offset, first_offset.start, joint, index - 1), corner=False)
+        return _cut_offset(second_offset, joint, second_offset.end, index)
 
     def _keep(self, index: int, element: Element, *, corner: bool) -> None:
-        piece = Piece(index, element, corner)
+        piece = OffsetPiece(index, element, corner)
         self._guard.path(piece)
         self._ready.append(piece)
 
 
-def pieces_beside(elements: Iterable[Element], distance_left: float) -> list[Piece]:
-    """Return the complete offset of a known contour. Raises GougeError like ``Offset``."""
-    offset = Offset(distance_left)
+def offset_known_contour(elements: Iterable[Element], distance_left: float) -> list[OffsetPiece]:
+    """Return the complete offset of a known contour. Raises GougeError like ``OffsetBuilder``."""
+    offset = OffsetBuilder(distance_left)
     found = [piece for element in elements for piece in offset.add(element)]
-    return [*found, *offset.close()]
+    return [*found, *offset.finish()]
 
 
 def _middle(a: Point, b: Point) -> Point:
     return (a[0] + b[0]) / 2, (a[1] + b[1]) / 2
 
 
-def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
+def _inside_corner(first_offset: Element, second_offset: Element, corner: Point, index: int) -> Point:
     """Return the intersection of two offsets at an inside corner that is closer to the corner."""
-    found = intersections(ended, begun)
+    found = intersections(first_offset, second_offset)
     if not found:
-        shorter = index - 1 if ended.length < begun.length else index
+        shorter = index - 1 if first_offset.length < second_offset.length else index
         raise GougeError(shorter, "the neighboring moves leave no room for the offset path of the move")
     return min(found, key=lambda point: dist(point, corner))
 
 
-def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
+def _cut_offset(element: Element, start: Point, end: Point, index: int) -> Element:
     """Return the part of an offset between two points. Raises GougeError if it vanishes or reverses."""
     whole = start == element.start and end == element.end
     # otherwise an arc could become a full circle
-    if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:
+    if (
+        not whole
+        and element.distance_from_start(end) - element.distance_from_start(start)
+        < 2 * SAME_POINT_TOLERANCE_MM
+    ):
         raise GougeError(index, "the neighboring moves leave no room for the offset path of the move")
-    return element.part(start, end)
+    return element.section_between(start, end)
 
 
-class _Guard:
+class _GougeGuard:
     """Checks that no piece of the offset is closer to an element of the contour than permitted."""
 
     def __init__(self, apart: float) -> None:
-        self._least = apart - NEARER
-        self._contour: deque[tuple[Element, Box]] = deque(maxlen=WINDOW)
-        self._path: deque[tuple[Element, Box]] = deque(maxlen=WINDOW)
+        self._least = apart - OFFSET_TOLERANCE_MM
+        self._contour: deque[tuple[Element, BoundingBox]] = deque(maxlen=WINDOW_ELEMENTS)
+        self._path: deque[tuple[Element, BoundingBox]] = deque(maxlen=WINDOW_ELEMENTS)
 
     def contour(self, index: int, element: Element) -> None:
-        box = element.box
+        box = element.bounding_box
         if self._too_near(element, box, self._path):
             raise GougeError(index, "the offset path of another move would cut into this move")
         self._contour.append((element, box))
 
-    def path(self, piece: Piece) -> None:
-        box = piece.element.box
+    def path(self, piece: OffsetPiece) -> None:
+        box = piece.element.bounding_box
         if self._too_near(piece.element, box, self._contour):
             raise GougeError(
-                piece.source, "the compensated path of the move would gouge another part of the contour"
+                piece.source_index, "the compensated path of the move would gouge another part of the contour"
             )
         self._path.append((piece.element, box))
 
-    def _too_near(self, element: Element, box: Box, others: deque[tuple[Element, Box]]) -> bool:
+    def _too_near(
+        self, element: Element, box: BoundingBox, others: deque[tuple[Element, BoundingBox]]
+    ) -> bool:
         least = self._least
         x0, x1, z0, z1 = box[0] - least, box[1] + least, box[2] - least, box[3] + least
         for other, (low_x, high_x, low_z, high_z) in others:
             if low_x > x1 or high_x < x0 or low_z > z1 or high_z < z0:
                 continue  # true for nearly all elements; the exact check takes a hundred times as long
-            if clearance(element, other) < least:
+            if min_distance(element, other) < least:
                 return True
         return False
 
@@ -238,68 +248,76 @@ class TrimError(Exception):
     """Raised when the offset of a contour is not a continuous path at this distance."""
 
 
-def around(element: Element, apart: float) -> list[Element]:
+def make_region_edges(element: Element, distance: float) -> list[Element]:
     """Return curves that contain the edge of the region within ``apart`` mm of an element."""
-    return [*moved(element, apart), *moved(element, -apart), *(_ring(p, apart) for p in _ends(element))]
+    return [
+        *offset_to_left(element, distance),
+        *offset_to_left(element, -distance),
+        *(_ring(p, distance) for p in _ends(element)),
+    ]
 
 
-def trimmed_offset(elements: Sequence[Element], apart: float) -> list[Element]:
+def trim_offset(elements: Sequence[Element], distance: float) -> list[Element]:
     """Return the path ``apart`` mm to the left of a contour, closer to it by at most 0.5 µm.
 
     Each element must start at the end of the previous one. Raises TrimError if the path is not continuous.
     """
-    if apart <= 0:
+    if distance <= 0:
         return list(elements)
-    contour = Boxed(elements)
-    edges = Boxed([edge for element in elements for edge in around(element, apart)])
+    contour = ElementIndex(elements)
+    edges = ElementIndex([edge for element in elements for edge in make_region_edges(element, distance)])
     kept = [
         part
-        for piece in _pieces(elements, apart)
-        for part in split_at(piece, edges)
-        if _far(part, contour, apart - _NEARER)
+        for piece in _offset_pieces(elements, distance)
+        for part in split_at_edges(piece, edges)
+        if _is_far_enough(part, contour, distance - _NEARER)
     ]
-    return _chained(kept)
+    return _follow_path(kept)
 
 
-class Boxed:
+class ElementIndex:
     """Elements that can be searched by position."""
 
     def __init__(self, elements: Sequence[Element]) -> None:
         self._elements = elements
-        self._boxes = np.array([element.box for element in elements])
+        self._boxes = np.array([element.bounding_box for element in elements])
 
-    def near(self, box: Box, within: float) -> list[Element]:
-        """Return the elements whose bounding boxes are at most ``within`` mm from ``box`` along both axes."""
+    def find_near(self, box: BoundingBox, distance: float) -> list[Element]:
+        """Return the elements whose bounding boxes are at most ``distance`` mm from ``box`` along both
+        axes.
+        """
         x0, x1, z0, z1 = self._boxes.T
-        hit = (x0 <= box[1] + within) & (x1 >= box[0] - within)
-        hit &= (z0 <= box[3] + within) & (z1 >= box[2] - within)
+        hit = (x0 <= box[1] + distance) & (x1 >= box[0] - distance)
+        hit &= (z0 <= box[3] + distance) & (z1 >= box[2] - distance)
         return [self._elements[at] for at in np.flatnonzero(hit).tolist()]
 
 
-def _pieces(elements: Sequence[Element], apart: float) -> list[Element]:
+def _offset_pieces(elements: Sequence[Element], distance: float) -> list[Element]:
     """Return the left offset of each element, and an arc around each corner that turns right."""
-    pieces = moved(elements[0], apart)
+    pieces = offset_to_left(elements[0], distance)
     for before, after in pairwise(elements):
-        angle = turn(before.end_direction, after.start_direction)
+        angle = turn_angle(before.end_direction, after.start_direction)
         if angle < 0:
-            pieces += _corner(before, after, apart)
-        pieces += moved(after, apart)
+            pieces += _corner_arc(before, after, distance)
+        pieces += offset_to_left(after, distance)
     return pieces
 
 
-def _corner(before: Element, after: Element, apart: float) -> list[Element]:
+def _corner_arc(before: Element, after: Element, distance: float) -> list[Element]:
     """Return the arc around a corner, even next to a fillet whose own offset has vanished."""
     first, last = (
-        (after.start[0] + side[0] * apart, after.start[1] + side[1] * apart)
-        for side in (left_of(before.end_direction), left_of(after.start_direction))
+        (after.start[0] + side[0] * distance, after.start[1] + side[1] * distance)
+        for side in (left_normal(before.end_direction), left_normal(after.start_direction))
     )
-    return [] if dist(first, last) < SAME_POINT else [Arc(first, last, after.start, clockwise=True)]
+    return (
+        [] if dist(first, last) < SAME_POINT_TOLERANCE_MM else [Arc(first, last, after.start, clockwise=True)]
+    )
 
 
-def moved(element: Element, apart: float) -> list[Element]:
+def offset_to_left(element: Element, distance: float) -> list[Element]:
     """Return the element offset to its left, or an empty list for an arc whose radius would vanish."""
     try:
-        return [offset_element(element, apart)]
+        return [offset_element(element, distance)]
     except GougeError:
         return []
 
@@ -313,26 +331,33 @@ def _ring(centre: Point, radius: float) -> Arc:
     return Arc(start, start, centre, clockwise=True)
 
 
-def split_at(piece: Element, edges: Boxed) -> list[Element]:
+def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
     """Return the parts of a piece between its intersections with the edges."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
-    for edge in edges.near(piece.box, SAME_POINT):
+    for edge in edges.find_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
         for point in intersections(piece, edge):
-            along = piece.along(point)
-            if SAME_POINT < along < length - SAME_POINT:
+            along = piece.distance_from_start(point)
+            if SAME_POINT_TOLERANCE_MM < along < length - SAME_POINT_TOLERANCE_MM:
                 at[along] = point
     places = sorted(at)
-    return [piece.part(at[a], at[b]) for a, b in pairwise(places) if b - a > SAME_POINT or len(places) == 2]
+    return [
+        piece.section_between(at[a], at[b])
+        for a, b in pairwise(places)
+        if b - a > SAME_POINT_TOLERANCE_MM or len(places) == 2
+    ]
 
 
-def _far(part: Element, contour: Boxed, least: float) -> bool:
+def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) -> bool:
     """Return whether the middle of a part, and so the whole part, is far enough from every element."""
-    x, z = middle = part.point(part.length / 2)
-    return all(distance(element, middle) >= least for element in contour.near((x, x, z, z), least))
+    x, z = middle = part.point_at(part.length / 2)
+    return all(
+        distance_to_point(element, middle) >= min_distance
+        for element in contour.find_near((x, x, z, z), min_distance)
+    )
 
 
-def _chained(parts: list[Element]) -> list[Element]:
+def _follow_path(parts: list[Element]) -> list[Element]:
     """Return the parts that form a continuous path from the first one.
 
     If several parts start at one point, the last one is used, because the offset loops between them. Raises
@@ -344,81 +369,90 @@ def _chained(parts: list[Element]) -> list[Element]:
     path, at = [parts[0]], 0
     while True:
         x, z = path[-1].end
-        follows = np.flatnonzero(np.hypot(starts[at + 1 :, 0] - x, starts[at + 1 :, 1] - z) <= _FOLLOWS)
+        follows = np.flatnonzero(
+            np.hypot(starts[at + 1 :, 0] - x, starts[at + 1 :, 1] - z) <= _JOINT_TOLERANCE_MM
+        )
         if not follows.size:
             break
         at += 1 + int(follows[-1])
         path.append(parts[at])
-    if sum(part.length for part in parts[at + 1 :]) > _LOST:
+    if sum(part.length for part in parts[at + 1 :]) > _MAX_UNUSED_MM:
         raise TrimError
     return path
 
 
-class Area:
+class RoughingArea:
     """The area between the start point and the contour, without the allowance on the contour.
 
-    ``path`` is the path along the contour at the distance ``left`` (mm), from the start to the end of the
-    area. Raises TrimError if no such path exists.
+    ``path`` is the path along the contour at the distance ``allowance_mm`` (mm), from the start to the end
+    of the area. Raises TrimError if no such path exists.
     """
 
-    def __init__(self, contour: Sequence[Element], left: float) -> None:
-        self.contour, self.left = contour, left
-        self.path = trimmed_offset(contour, left)
-        self.top = min(element.box[0] for element in contour) - left
-        self.deepest = max(element.box[1] for element in self.path)
+    def __init__(self, contour: Sequence[Element], allowance_mm: float) -> None:
+        self.contour, self.allowance_mm = contour, allowance_mm
+        self.path = trim_offset(contour, allowance_mm)
+        self.top_depth = min(element.bounding_box[0] for element in contour) - allowance_mm
+        self.max_depth = max(element.bounding_box[1] for element in self.path)
         self._front, self._back = self.path[0].start, self.path[-1].end
-        parts = [part for element in contour for part in _rising(element)]
-        self._walls = [(part.box[0] - left, around(part, left) if left > 0 else [part]) for part in parts]
+        parts = [part for element in contour for part in _split_by_depth(element)]
+        self._walls = [
+            (
+                part.bounding_box[0] - allowance_mm,
+                make_region_edges(part, allowance_mm) if allowance_mm > 0 else [part],
+            )
+            for part in parts
+        ]
 
     @property
-    def turns_back(self) -> bool:
+    def reverses_in_z(self) -> bool:
         """True if the path reverses along Z. No span can reach the region after such an edge."""
         return any(
-            element.box[2] < element.start[1] - _TOUCH or element.box[3] > element.end[1] + _TOUCH
+            element.bounding_box[2] < element.start[1] - _TOUCH
+            or element.bounding_box[3] > element.end[1] + _TOUCH
             for element in self.path
         )
 
-    def spans(self, depth: float) -> list[Span]:
+    def find_spans(self, depth: float) -> list[ZSpan]:
         """Return the spans along Z in which a tool may move at ``depth``.
 
         Above each span, up to depth 0, there is also no contour.
         """
         met = [wall for least, wall in self._walls if least <= depth - _TOUCH]
-        walls = [reach for wall in met if (reach := _reach(wall, depth - _TOUCH)) is not None]
+        walls = [reach for wall in met if (reach := _span_at_depth(wall, depth - _TOUCH)) is not None]
         if depth > self._front[0] + _TOUCH:
-            walls.append((-_ENDLESS, self._front[1]))
-        found: list[Span] = []
+            walls.append((-_INFINITE_MM, self._front[1]))
+        found: list[ZSpan] = []
         at = 0.0
-        for start, end in [*sorted(walls), (self._back[1], _ENDLESS)]:
+        for start, end in [*sorted(walls), (self._back[1], _INFINITE_MM)]:
             stop = min(start, self._back[1])
-            if stop - at > _SHORTEST:
+            if stop - at > _MIN_SPAN_MM:
                 found.append((at, stop))
             at = max(at, end)
         return found
 
 
-def _rising(element: Element) -> list[Element]:
+def _split_by_depth(element: Element) -> list[Element]:
     """Return the parts of an element along which the depth only increases or only decreases."""
     if isinstance(element, Line):
         return [element]
-    (cx, cz), radius = element.centre, element.radius
+    (cx, cz), radius = element.center, element.radius
     length = element.length
     turns = {
         at: point
         for point in ((cx - radius, cz), (cx + radius, cz))
-        if _TOUCH < (at := element.along(point)) < length - _TOUCH
+        if _TOUCH < (at := element.distance_from_start(point)) < length - _TOUCH
     }
     points = [element.start, *(turns[at] for at in sorted(turns)), element.end]
-    return [element.part(a, b) for a, b in pairwise(points)]
+    return [element.section_between(a, b) for a, b in pairwise(points)]
 
 
-def _reach(wall: Sequence[Element], depth: float) -> Span | None:
+def _span_at_depth(wall: Sequence[Element], depth: float) -> ZSpan | None:
     """Return the span along Z of the part of a wall that is not deeper than ``depth``, or None."""
-    places = [place for edge in wall for place in _places(edge, depth)]
+    places = [place for edge in wall for place in _z_extremes(edge, depth)]
     return (min(places), max(places)) if places else None
 
 
-def _places(edge: Element, depth: float) -> list[float]:
+def _z_extremes(edge: Element, depth: float) -> list[float]:
     """Return positions along Z that include both extremes of the part of an edge down to ``depth``."""
     if isinstance(edge, Line):
         return _places_of_line(edge, depth)
@@ -436,14 +470,14 @@ def _places_of_line(edge: Line, depth: float) -> list[float]:
 
 
 def _inner_extremes(arc: Arc) -> list[Point]:
-    (cu, cv), radius = arc.centre, arc.radius
-    return [point for point in ((cu, cv - radius), (cu, cv + radius)) if holds(arc, point)]
+    (cu, cv), radius = arc.center, arc.radius
+    return [point for point in ((cu, cv - radius), (cu, cv + radius)) if contains_point(arc, point)]
 
 
 def _at_depth(arc: Arc, depth: float) -> list[Point]:
-    (cu, cv), radius = arc.centre, arc.radius
+    (cu, cv), radius = arc.center, arc.radius
     square = radius * radius - (depth - cu) ** 2
     if square < 0:
         return []
     half = sqrt(square)
-    return [point for point in ((depth, cv - half), (depth, cv + half)) if holds(arc, point)]
+    return [point for point in ((depth, cv - half), (depth, cv + half)) if contains_point(arc, point)]

@@ -14,17 +14,17 @@ FULL_TURN = 2 * math.pi
 
 # mm. Ends of an arc that are closer than this are one point and make a full circle. The value is far below
 # the control's resolution of 1.27 µm.
-SAME_POINT = 1e-6
+SAME_POINT_TOLERANCE_MM = 1e-6
 Point = tuple[float, float]
 """X as a radius, Z; mm."""
-Box = tuple[float, float, float, float]
+BoundingBox = tuple[float, float, float, float]
 """Least x, greatest x, least z, greatest z; mm."""
 # mm. Curves that are closer than this touch. Offsets of tangent elements have this accuracy, and a machine
 # cannot show a nanometer.
-TOUCH = 1e-6
+TOUCH_TOLERANCE_MM = 1e-6
 # Sine of the angle (rad) below which two lines count as parallel. Rounding errors would move their
 # intersection by a thousand times the distance between them.
-PARALLEL = 1e-9
+PARALLEL_TOLERANCE = 1e-9
 
 
 def arc_sweep(
@@ -36,7 +36,7 @@ def arc_sweep(
     points give a full circle.
     """
     start = math.atan2(x0 - cx, z0 - cz)
-    if math.hypot(x - x0, z - z0) < SAME_POINT:
+    if math.hypot(x - x0, z - z0) < SAME_POINT_TOLERANCE_MM:
         return start, FULL_TURN if clockwise else -FULL_TURN
     turned = (math.atan2(x - cx, z - cz) - start) % FULL_TURN
     return start, turned if clockwise else turned - FULL_TURN
@@ -52,7 +52,7 @@ def arc_extent(
         a * c > 0.0
         and b * d > 0.0
         and (turned > 0.0 if clockwise else turned < 0.0)
-        and abs(x - x0) + abs(z - z0) > 2.0 * SAME_POINT
+        and abs(x - x0) + abs(z - z0) > 2.0 * SAME_POINT_TOLERANCE_MM
     ):  # within a quadrant, the ends are the extremes
         return min(x0, x), max(x0, x), min(z0, z), max(z0, z)
     start, sweep = arc_sweep(x0, z0, x, z, cx, cz, clockwise)
@@ -66,7 +66,7 @@ def arc_extent(
     return min(xs), max(xs), min(zs), max(zs)
 
 
-def centre_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
+def center_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
     """Return the center of the arc of at most 180 degrees from start to end.
 
     A chord longer than the diameter gives its midpoint. Raises ValueError if start and end are equal.
@@ -80,11 +80,11 @@ def centre_from_radius(start: Point, end: Point, radius: float, *, clockwise: bo
     return (start[0] + end[0]) / 2 + side * dz, (start[1] + end[1]) / 2 - side * dx
 
 
-def arc_length(start: Point, end: Point, centre: Point, *, clockwise: bool) -> float:
+def arc_length(start: Point, end: Point, center: Point, *, clockwise: bool) -> float:
     """Return the length of an arc, or of the spiral between slightly different radii at its ends."""
-    first = hypot(start[0] - centre[0], start[1] - centre[1])
-    last = hypot(end[0] - centre[0], end[1] - centre[1])
-    _, sweep = arc_sweep(*start, *end, *centre, clockwise)
+    first = hypot(start[0] - center[0], start[1] - center[1])
+    last = hypot(end[0] - center[0], end[1] - center[1])
+    _, sweep = arc_sweep(*start, *end, *center, clockwise)
     return (first + last) / 2 * abs(sweep)
 
 
@@ -113,17 +113,17 @@ class Line:
         return self.start_direction
 
     @property
-    def box(self) -> Box:
+    def bounding_box(self) -> BoundingBox:
         """Bounding box of the line."""
         (x0, z0), (x1, z1) = self.start, self.end
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
-    def point(self, at: float) -> Point:
+    def point_at(self, distance: float) -> Point:
         """Return the point ``at`` mm from the start, on the infinite line."""
         dx, dz = self.start_direction
-        return self.start[0] + dx * at, self.start[1] + dz * at
+        return self.start[0] + dx * distance, self.start[1] + dz * distance
 
-    def along(self, point: Point) -> float:
+    def distance_from_start(self, point: Point) -> float:
         """Return the distance in mm from the start to the projection of ``point`` on the infinite line.
 
         The distance is negative before the start.
@@ -131,7 +131,7 @@ class Line:
         dx, dz = self.start_direction
         return (point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dz
 
-    def part(self, start: Point, end: Point) -> Line:
+    def section_between(self, start: Point, end: Point) -> Line:
         """Return the part of the line between two of its points."""
         return Line(start, end)
 
@@ -142,22 +142,22 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """An arc of a circle. Equal start and end points make a full circle. See ``arc_between``."""
+    """An arc of a circle. Equal start and end points make a full circle. See ``make_arc``."""
 
     start: Point
     end: Point
-    centre: Point
+    center: Point
     clockwise: bool
 
     @property
     def radius(self) -> float:
         """Radius of the arc, in mm."""
-        return dist(self.start, self.centre)
+        return dist(self.start, self.center)
 
     @property
     def sweep(self) -> float:
         """Signed angle of the arc in radians, positive for a clockwise arc."""
-        return arc_sweep(*self.start, *self.end, *self.centre, self.clockwise)[1]
+        return arc_sweep(*self.start, *self.end, *self.center, self.clockwise)[1]
 
     @property
     def length(self) -> float:
@@ -175,41 +175,41 @@ class Arc:
         return self._direction(self.end)
 
     @property
-    def box(self) -> Box:
+    def bounding_box(self) -> BoundingBox:
         """Bounding box of the arc."""
-        return arc_extent(*self.start, *self.end, *self.centre, self.clockwise)
+        return arc_extent(*self.start, *self.end, *self.center, self.clockwise)
 
-    def point(self, at: float) -> Point:
+    def point_at(self, distance: float) -> Point:
         """Return the point ``at`` mm from the start, on the full circle."""
         radius = self.radius
-        angle = atan2(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
-        angle += at / radius if self.clockwise else -at / radius
-        return self.centre[0] + radius * sin(angle), self.centre[1] + radius * cos(angle)
+        angle = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
+        angle += distance / radius if self.clockwise else -distance / radius
+        return self.center[0] + radius * sin(angle), self.center[1] + radius * cos(angle)
 
-    def along(self, point: Point) -> float:
+    def distance_from_start(self, point: Point) -> float:
         """Return the distance in mm from the start to ``point`` along the circle.
 
         A point outside the arc is measured from the nearer end. Its distance is negative before the start,
         and greater than the length after the end.
         """
-        angle = atan2(point[0] - self.centre[0], point[1] - self.centre[1])
-        first = atan2(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
+        angle = atan2(point[0] - self.center[0], point[1] - self.center[1])
+        first = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
         turned = (angle - first if self.clockwise else first - angle) % FULL_TURN
         off = FULL_TURN - abs(self.sweep)
         if turned > FULL_TURN - off / 2:
             turned -= FULL_TURN
         return turned * self.radius
 
-    def part(self, start: Point, end: Point) -> Arc:
+    def section_between(self, start: Point, end: Point) -> Arc:
         """Return the part of the arc between two of its points."""
-        return Arc(start, end, self.centre, self.clockwise)
+        return Arc(start, end, self.center, self.clockwise)
 
     def reversed(self) -> Arc:
         """Return the arc in the opposite direction."""
-        return Arc(self.end, self.start, self.centre, not self.clockwise)
+        return Arc(self.end, self.start, self.center, not self.clockwise)
 
     def _direction(self, at: Point) -> Point:
-        rx, rz = at[0] - self.centre[0], at[1] - self.centre[1]
+        rx, rz = at[0] - self.center[0], at[1] - self.center[1]
         size = hypot(rx, rz)
         return (rz / size, -rx / size) if self.clockwise else (-rz / size, rx / size)
 
@@ -217,7 +217,7 @@ class Arc:
 Element = Line | Arc
 
 
-def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> Arc:
+def make_arc(start: Point, end: Point, center: Point, *, clockwise: bool) -> Arc:
     """Return an arc whose center is moved to the perpendicular bisector of the chord.
 
     Both ends then have the same radius. Programs round centers to the resolution, and the motion planner
@@ -225,45 +225,45 @@ def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> 
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dz)
-    if chord < SAME_POINT:
-        return Arc(start, end, centre, clockwise)
+    if chord < SAME_POINT_TOLERANCE_MM:
+        return Arc(start, end, center, clockwise)
     ux, uz = dx / chord, dz / chord
-    off = (centre[0] - (start[0] + end[0]) / 2) * ux + (centre[1] - (start[1] + end[1]) / 2) * uz
-    return Arc(start, end, (centre[0] - off * ux, centre[1] - off * uz), clockwise)
+    off = (center[0] - (start[0] + end[0]) / 2) * ux + (center[1] - (start[1] + end[1]) / 2) * uz
+    return Arc(start, end, (center[0] - off * ux, center[1] - off * uz), clockwise)
 
 
-def shifted(element: Element, x: float, z: float) -> Element:
+def shift_element(element: Element, x: float, z: float) -> Element:
     """Return a line or an arc shifted by ``x`` and ``z`` mm."""
     if not x and not z:
         return element
     start, end = (element.start[0] + x, element.start[1] + z), (element.end[0] + x, element.end[1] + z)
     if isinstance(element, Line):
         return Line(start, end)
-    return Arc(start, end, (element.centre[0] + x, element.centre[1] + z), element.clockwise)
+    return Arc(start, end, (element.center[0] + x, element.center[1] + z), element.clockwise)
 
 
-def left_of(direction: Point) -> Point:
+def left_normal(direction: Point) -> Point:
     """Return the unit vector to the left of a direction, seen from above."""
     return -direction[1], direction[0]
 
 
-def touching(point: Point, centre: Point, radius: float, *, clockwise: bool) -> Point:
+def tangent_point(point: Point, center: Point, radius: float, *, clockwise: bool) -> Point:
     """Return the tangent point of a line from an outside point to a circle that it then follows."""
-    half = acos(min(1.0, radius / dist(point, centre)))
+    half = acos(min(1.0, radius / dist(point, center)))
     # In the direction of the circle, the tangent point is ``half`` after the direction of the point.
-    angle = atan2(point[0] - centre[0], point[1] - centre[1]) + (half if clockwise else -half)
-    return centre[0] + radius * sin(angle), centre[1] + radius * cos(angle)
+    angle = atan2(point[0] - center[0], point[1] - center[1]) + (half if clockwise else -half)
+    return center[0] + radius * sin(angle), center[1] + radius * cos(angle)
 
 
-def turn(before: Point, after: Point) -> float:
+def turn_angle(first: Point, second: Point) -> float:
     """Return the angle in radians from one direction to the next, positive to the left, in (-pi, pi]."""
-    cross = before[0] * after[1] - before[1] * after[0]
-    dot = before[0] * after[0] + before[1] * after[1]
+    cross = first[0] * second[1] - first[1] * second[0]
+    dot = first[0] * second[0] + first[1] * second[1]
     angle = atan2(cross, dot)
     return pi if angle == -pi else angle
 
 
-def meetings(a: Element, b: Element) -> list[Point]:
+def extended_intersections(a: Element, b: Element) -> list[Point]:
     """Return the intersections of the infinite lines or full circles of two elements, at most two points.
 
     A tangent point counts once. Elements on the same line or circle have no intersection.
@@ -278,55 +278,67 @@ def intersections(a: Element, b: Element) -> list[Point]:
 
     Elements on the same line or circle give an empty list.
     """
-    return [point for point in meetings(a, b) if holds(a, point) and holds(b, point)]
+    return [
+        point
+        for point in extended_intersections(a, b)
+        if contains_point(a, point) and contains_point(b, point)
+    ]
 
 
-def holds(element: Element, point: Point) -> bool:
+def contains_point(element: Element, point: Point) -> bool:
     """Return whether a point of the infinite line or full circle is within the element."""
-    return -SAME_POINT <= element.along(point) <= element.length + SAME_POINT
+    return (
+        -SAME_POINT_TOLERANCE_MM
+        <= element.distance_from_start(point)
+        <= element.length + SAME_POINT_TOLERANCE_MM
+    )
 
 
 def _lines(a: Line, b: Line) -> list[Point]:
     (ax, az), (bx, bz) = a.start_direction, b.start_direction
     cross = ax * bz - az * bx
-    if abs(cross) < PARALLEL:
+    if abs(cross) < PARALLEL_TOLERANCE:
         return []
     dx, dz = b.start[0] - a.start[0], b.start[1] - a.start[1]
-    return [a.point((dx * bz - dz * bx) / cross)]
+    return [a.point_at((dx * bz - dz * bx) / cross)]
 
 
 def _line_circle(line: Line, arc: Arc) -> list[Point]:
-    foot = line.along(arc.centre)
-    off, radius = dist(line.point(foot), arc.centre), arc.radius
-    if off > radius + TOUCH:
+    foot = line.distance_from_start(arc.center)
+    off, radius = dist(line.point_at(foot), arc.center), arc.radius
+    if off > radius + TOUCH_TOLERANCE_MM:
         return []
     half = sqrt(max(radius * radius - off * off, 0.0))
-    return [line.point(foot)] if half == 0.0 else [line.point(foot - half), line.point(foot + half)]
+    return [line.point_at(foot)] if half == 0.0 else [line.point_at(foot - half), line.point_at(foot + half)]
 
 
 def _circles(a: Arc, b: Arc) -> list[Point]:
-    apart = dist(a.centre, b.centre)
+    apart = dist(a.center, b.center)
     ra, rb = a.radius, b.radius
-    if apart < TOUCH or apart > ra + rb + TOUCH or apart < abs(ra - rb) - TOUCH:
+    if (
+        apart < TOUCH_TOLERANCE_MM
+        or apart > ra + rb + TOUCH_TOLERANCE_MM
+        or apart < abs(ra - rb) - TOUCH_TOLERANCE_MM
+    ):
         return []
-    ux, uz = (b.centre[0] - a.centre[0]) / apart, (b.centre[1] - a.centre[1]) / apart
+    ux, uz = (b.center[0] - a.center[0]) / apart, (b.center[1] - a.center[1]) / apart
     to_chord = (apart * apart + ra * ra - rb * rb) / (2 * apart)
     half = sqrt(max(ra * ra - to_chord * to_chord, 0.0))
-    x, z = a.centre[0] + ux * to_chord, a.centre[1] + uz * to_chord
+    x, z = a.center[0] + ux * to_chord, a.center[1] + uz * to_chord
     return [(x, z)] if half == 0.0 else [(x - uz * half, z + ux * half), (x + uz * half, z - ux * half)]
 
 
-def distance(element: Element, point: Point) -> float:
+def distance_to_point(element: Element, point: Point) -> float:
     """Return the distance from a point to the nearest point of an element, in mm."""
-    at = element.along(point)
+    at = element.distance_from_start(point)
     if 0.0 <= at <= element.length:
         if isinstance(element, Arc):
-            return abs(dist(point, element.centre) - element.radius)
-        return dist(point, element.point(at))
+            return abs(dist(point, element.center) - element.radius)
+        return dist(point, element.point_at(at))
     return min(dist(point, element.start), dist(point, element.end))
 
 
-def clearance(a: Element, b: Element) -> float:
+def min_distance(a: Element, b: Element) -> float:
     """Return the least distance between two elements in mm; 0 if they intersect.
 
     The distance is reached at an end of an element or on a common normal, which passes through the centers of
@@ -334,24 +346,27 @@ def clearance(a: Element, b: Element) -> float:
     """
     if intersections(a, b):
         return 0.0
-    points_a, points_b = [a.start, a.end, *_facing(a, b)], [b.start, b.end, *_facing(b, a)]
-    return min([distance(b, point) for point in points_a] + [distance(a, point) for point in points_b])
+    points_a, points_b = [a.start, a.end, *_facing_points(a, b)], [b.start, b.end, *_facing_points(b, a)]
+    return min(
+        [distance_to_point(b, point) for point in points_a]
+        + [distance_to_point(a, point) for point in points_b]
+    )
 
 
-def _facing(element: Element, other: Element) -> list[Point]:
+def _facing_points(element: Element, other: Element) -> list[Point]:
     """Return the inner points of an element whose normal passes through the center of the other."""
     if isinstance(other, Line):
         return []
     if isinstance(element, Line):
-        foot = element.along(other.centre)
-        return [element.point(foot)] if 0.0 < foot < element.length else []
-    dx, dz = other.centre[0] - element.centre[0], other.centre[1] - element.centre[1]
+        foot = element.distance_from_start(other.center)
+        return [element.point_at(foot)] if 0.0 < foot < element.length else []
+    dx, dz = other.center[0] - element.center[0], other.center[1] - element.center[1]
     apart, radius = hypot(dx, dz), element.radius
-    if apart < TOUCH:
+    if apart < TOUCH_TOLERANCE_MM:
         return []
     rx, rz = dx / apart * radius, dz / apart * radius
     both = (
-        (element.centre[0] + rx, element.centre[1] + rz),
-        (element.centre[0] - rx, element.centre[1] - rz),
+        (element.center[0] + rx, element.center[1] + rz),
+        (element.center[0] - rx, element.center[1] - rz),
     )
-    return [point for point in both if 0.0 < element.along(point) < element.length]
+    return [point for point in both if 0.0 < element.distance_from_start(point) < element.length]

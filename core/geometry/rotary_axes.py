@@ -21,210 +21,225 @@ from core.geometry.rotation_frames import (
     Z_AXIS,
     Matrix,
     Vector,
-    applied,
-    minus,
-    plus,
-    product,
-    scaled,
-    transposed,
-    turned,
+    add_vectors,
+    apply_matrix,
+    multiply_matrices,
+    rotation_about,
+    scale_vector,
+    subtract_vectors,
+    transpose_matrix,
 )
 
-TURN = 360.0
-RANGE_END = 1e-9  # degrees of tolerance at the ends of a range
+FULL_TURN_DEG = 360.0
+RANGE_TOLERANCE_DEG = 1e-9  # degrees of tolerance at the ends of a range
 
 
 @dataclass(frozen=True, slots=True)
-class Slide:
+class LinearAxis:
     """A linear axis, with its travel in mm from home and its maximum speed in mm/s."""
 
     name: str
-    low: float = -math.inf
-    high: float = math.inf
+    travel_min: float = -math.inf
+    travel_max: float = math.inf
     vmax: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
-class Rotary:
+class RotaryAxis:
     """A rotary axis. ``direction`` (unit vector) and ``point`` (mm) of its line are given with all axes at 0.
 
     The point of a table is in machine coordinates. The point of a head is measured from the spindle nose.
-    With ``modulo`` the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``low`` and ``high``
-    limit it, both inclusive.
+    With ``is_modulo`` the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``travel_min`` and
+    ``travel_max`` limit it, both inclusive.
     """
 
     name: str
-    table: bool
+    is_table: bool
     direction: Vector
     point: Vector
-    low: float = -math.inf
-    high: float = math.inf
-    modulo: bool = False
+    travel_min: float = -math.inf
+    travel_max: float = math.inf
+    is_modulo: bool = False
     vmax: float = math.inf  # degrees/s
 
-    def inside(self, angle: float) -> bool:
+    def is_in_range(self, angle: float) -> bool:
         """Return whether the angle is within the range of the axis."""
-        return self.modulo or self.low - RANGE_END <= angle <= self.high + RANGE_END
+        return (
+            self.is_modulo
+            or self.travel_min - RANGE_TOLERANCE_DEG <= angle <= self.travel_max + RANGE_TOLERANCE_DEG
+        )
 
-    def displayed(self, angle: float) -> float:
+    def displayed_angle(self, angle: float) -> float:
         """Return the angle as displayed: 0 to 360 degrees on a modulo axis."""
-        if not self.modulo:
+        if not self.is_modulo:
             return angle + 0.0
-        rest = angle % TURN
-        return 0.0 if TURN - rest < RANGE_END else rest
+        rest = angle % FULL_TURN_DEG
+        return 0.0 if FULL_TURN_DEG - rest < RANGE_TOLERANCE_DEG else rest
 
-    def travel(self, start: float, target: float) -> float:
+    def find_travel(self, start: float, target: float) -> float:
         """Return the travel in degrees. A modulo axis takes the shorter direction; 180 is positive."""
         way = target - start
-        if not self.modulo:
+        if not self.is_modulo:
             return way
-        short = way % TURN
-        return short - TURN if short > TURN / 2.0 + RANGE_END else short
+        short = way % FULL_TURN_DEG
+        return short - FULL_TURN_DEG if short > FULL_TURN_DEG / 2.0 + RANGE_TOLERANCE_DEG else short
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class FrameTransform:
     """The transformation machine = turn · q + shift from points of a system to machine positions, in mm.
 
     It is valid for fixed rotary axes.
     """
 
-    turn: Matrix
-    shift: Vector
+    rotation: Matrix
+    translation: Vector
 
-    def machine(self, q: Vector) -> Vector:
-        """Return the machine position of the linear axes for the point ``q``."""
-        return plus(applied(self.turn, q), self.shift)
+    def to_machine_position(self, point: Vector) -> Vector:
+        """Return the machine position of the linear axes for the point ``point``."""
+        return add_vectors(apply_matrix(self.rotation, point), self.translation)
 
-    def point(self, machine: Vector) -> Vector:
+    def to_frame_point(self, machine: Vector) -> Vector:
         """Return the point with this machine position."""
-        return applied(transposed(self.turn), minus(machine, self.shift))
+        return apply_matrix(transpose_matrix(self.rotation), subtract_vectors(machine, self.translation))
 
 
 @dataclass(frozen=True, slots=True)
 class DatumPreset:
     """A row of the preset table.
 
-    ``origin`` is the machine position of the workpiece zero in mm. ``rotation`` is the basic rotation of the
-    workpiece about Z in degrees. ``zeros`` are the machine angles at which the rotary axes read 0, by name.
-    ``origin`` and ``rotation`` apply at these angles. An axis that is not listed has the angle 0.
+    ``origin`` is the machine position of the workpiece zero in mm. ``rotation_deg`` is the basic rotation of
+    the workpiece about Z in degrees. ``axis_zeros`` are the machine angles at which the rotary axes read 0,
+    by name. ``origin`` and ``rotation_deg`` apply at these angles. An axis that is not listed has the angle
+    0.
     """
 
     origin: Vector
-    rotation: float = 0.0
-    zeros: tuple[tuple[str, float], ...] = ()
+    rotation_deg: float = 0.0
+    axis_zeros: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
 class Kinematics:
     """A mill with X, Y, Z and its rotary axes from the workpiece to the tool, tables before heads.
 
-    ``origin`` is the machine position of the workpiece zero with all rotary axes at 0. ``basic_rotation`` is
-    the angle of the workpiece system about Z relative to the machine, with the rotary axes at ``zeros``,
-    where they read 0. ``order`` lists all axes in the machine's order. Angles are machine angles unless noted
-    otherwise.
+    ``origin`` is the machine position of the workpiece zero with all rotary axes at 0.
+    ``basic_rotation_deg`` is the angle of the workpiece system about Z relative to the machine, with the
+    rotary axes at ``axis_zeros``, where they read 0. ``axis_order`` lists all axes in the machine's order.
+    Angles are machine angles unless noted otherwise.
     """
 
-    slides: tuple[Slide, Slide, Slide]
-    rotaries: tuple[Rotary, ...]
+    linear_axes: tuple[LinearAxis, LinearAxis, LinearAxis]
+    rotary_axes: tuple[RotaryAxis, ...]
     origin: Vector
-    basic_rotation: float = 0.0
-    order: tuple[str, ...] = field(default=())
-    zeros: tuple[tuple[str, float], ...] = ()
+    basic_rotation_deg: float = 0.0
+    axis_order: tuple[str, ...] = field(default=())
+    axis_zeros: tuple[tuple[str, float], ...] = ()
 
     @cached_property
-    def basic(self) -> Matrix:
+    def workpiece_rotation(self) -> Matrix:
         """The workpiece system in machine coordinates with all rotary axes at 0."""
-        turn, _ = self._tables(self.zero)
-        return product(transposed(turn), turned(Z_AXIS, self.basic_rotation))
+        turn, _ = self._table_transform(self.zero_angles)
+        return multiply_matrices(transpose_matrix(turn), rotation_about(Z_AXIS, self.basic_rotation_deg))
 
     @cached_property
-    def zero(self) -> Mapping[str, float]:
+    def zero_angles(self) -> Mapping[str, float]:
         """The machine angle at which each rotary axis reads 0, by name."""
-        return {axis.name: 0.0 for axis in self.rotaries} | dict(self.zeros)
+        return {axis.name: 0.0 for axis in self.rotary_axes} | dict(self.axis_zeros)
 
     def with_preset(self, preset: DatumPreset) -> Kinematics:
         """Return the machine with the workpiece of a preset."""
-        zeros = tuple(each for each in preset.zeros if self.rotary(each[0]) is not None and each[1])
-        moved = replace(self, basic_rotation=preset.rotation, zeros=zeros)
-        return replace(moved, origin=moved.at_home(preset.origin))
+        zeros = tuple(
+            each for each in preset.axis_zeros if self.find_rotary_axis(each[0]) is not None and each[1]
+        )
+        moved = replace(self, basic_rotation_deg=preset.rotation_deg, axis_zeros=zeros)
+        return replace(moved, origin=moved.move_from_table_zeros(preset.origin))
 
-    def at_home(self, spot: Vector) -> Vector:
-        """Return a workpiece point with the tables at 0 that is at ``spot`` with the tables at their zeros.
+    def move_from_table_zeros(self, point: Vector) -> Vector:
+        """Return a workpiece point with the tables at 0 that is at ``point`` with the tables at their zeros.
 
         Both points are in machine mm.
         """
-        turn, shift = self._tables(self.zero)
-        return applied(transposed(turn), minus(spot, shift))
+        turn, shift = self._table_transform(self.zero_angles)
+        return apply_matrix(transpose_matrix(turn), subtract_vectors(point, shift))
 
-    def at_zeros(self, spot: Vector) -> Vector:
+    def move_to_table_zeros(self, point: Vector) -> Vector:
         """Return a workpiece point moved with the tables from 0 to their zeros, in machine mm."""
-        turn, shift = self._tables(self.zero)
-        return plus(applied(turn, spot), shift)
+        turn, shift = self._table_transform(self.zero_angles)
+        return add_vectors(apply_matrix(turn, point), shift)
 
-    def shown(self, axis: Rotary, angle: float) -> float:
+    def displayed_angle(self, axis: RotaryAxis, angle: float) -> float:
         """Return the displayed value of a machine angle, relative to the zero of the axis."""
-        return axis.displayed(angle - self.zero[axis.name])
+        return axis.displayed_angle(angle - self.zero_angles[axis.name])
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def axis_names(self) -> tuple[str, ...]:
         """The names of all axes in the machine's order."""
-        return self.order or (*(s.name for s in self.slides), *(r.name for r in self.rotaries))
+        return self.axis_order or (*(s.name for s in self.linear_axes), *(r.name for r in self.rotary_axes))
 
-    def rotary(self, name: str) -> Rotary | None:
+    def find_rotary_axis(self, name: str) -> RotaryAxis | None:
         """Return the rotary axis with this name, or None if the machine has no such axis."""
-        return next((axis for axis in self.rotaries if axis.name == name), None)
+        return next((axis for axis in self.rotary_axes if axis.name == name), None)
 
-    def frame(self, angles: Mapping[str, float]) -> Matrix:
+    def tool_frame(self, angles: Mapping[str, float]) -> Matrix:
         """Return the tool's frame as seen from the workpiece at the given angles by name (default 0)."""
-        return product(*(turned(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotaries))
+        return multiply_matrices(
+            *(rotation_about(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotary_axes)
+        )
 
-    def place(
+    def make_transform(
         self,
         angles: Mapping[str, float],
         frame: Matrix = IDENTITY,
         datum: Vector = (0.0, 0.0, 0.0),
         tool_length: float = 0.0,
-    ) -> Place:
+    ) -> FrameTransform:
         """Return the transformation from points of a system to positions of the linear axes.
 
         The system has the axes ``frame`` and the origin ``datum`` (mm). Both are given in the
         machine-parallel system at the workpiece zero, without tilt. The transformation is valid for these
         angles and this tool length.
         """
-        turn, shift = self._tables(angles)
-        spot = applied(turn, plus(self.origin, datum))
-        nose = self._nose(angles, tool_length)
-        return Place(product(turn, frame), minus(plus(spot, shift), nose))
+        turn, shift = self._table_transform(angles)
+        spot = apply_matrix(turn, add_vectors(self.origin, datum))
+        nose = self._nose_to_tip(angles, tool_length)
+        return FrameTransform(
+            multiply_matrices(turn, frame), subtract_vectors(add_vectors(spot, shift), nose)
+        )
 
-    def tool_axis(self, angles: Mapping[str, float]) -> Vector:
+    def tool_direction(self, angles: Mapping[str, float]) -> Vector:
         """Return the direction from the tip to the spindle, in machine coordinates."""
-        return applied(product(*(turned(a.direction, angles.get(a.name, 0.0)) for a in self._heads)), Z_AXIS)
+        return apply_matrix(
+            multiply_matrices(*(rotation_about(a.direction, angles.get(a.name, 0.0)) for a in self._heads)),
+            Z_AXIS,
+        )
 
-    def tip(self, angles: Mapping[str, float], slides: Vector, tool_length: float = 0.0) -> Vector:
+    def tip_position(
+        self, angles: Mapping[str, float], positions: Vector, tool_length: float = 0.0
+    ) -> Vector:
         """Return the machine position of the tip in mm for positions of the linear axes."""
-        return plus(slides, self._nose(angles, tool_length))
+        return add_vectors(positions, self._nose_to_tip(angles, tool_length))
 
     @property
-    def _heads(self) -> Sequence[Rotary]:
-        return [axis for axis in self.rotaries if not axis.table]
+    def _heads(self) -> Sequence[RotaryAxis]:
+        return [axis for axis in self.rotary_axes if not axis.is_table]
 
-    def _tables(self, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
+    def _table_transform(self, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
         """Return rotation and shift that move a point with the tables from 0 to these angles."""
         turn, shift = IDENTITY, (0.0, 0.0, 0.0)
-        for axis in self.rotaries:
-            if axis.table:
-                back = turned(axis.direction, -angles.get(axis.name, 0.0))
-                turn = product(back, turn)
-                shift = plus(applied(back, minus(shift, axis.point)), axis.point)
+        for axis in self.rotary_axes:
+            if axis.is_table:
+                back = rotation_about(axis.direction, -angles.get(axis.name, 0.0))
+                turn = multiply_matrices(back, turn)
+                shift = add_vectors(apply_matrix(back, subtract_vectors(shift, axis.point)), axis.point)
         return turn, shift
 
-    def _nose(self, angles: Mapping[str, float], tool_length: float) -> Vector:
+    def _nose_to_tip(self, angles: Mapping[str, float], tool_length: float) -> Vector:
         """Return the vector from the spindle nose with the heads at 0 to the tip, in machine mm."""
-        tip = scaled(Z_AXIS, -tool_length)
+        tip = scale_vector(Z_AXIS, -tool_length)
         for axis in reversed(self._heads):
-            turn = turned(axis.direction, angles.get(axis.name, 0.0))
-            tip = plus(applied(turn, minus(tip, axis.point)), axis.point)
+            turn = rotation_about(axis.direction, angles.get(axis.name, 0.0))
+            tip = add_vectors(apply_matrix(turn, subtract_vectors(tip, axis.point)), axis.point)
         return tip
 
 
@@ -233,89 +248,94 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PivotMove:
-    """A move of the rotary axes from the angles ``start`` to ``end`` around a fixed point.
+    """A move of the rotary axes from the angles ``start`` to ``end_angles`` around a fixed point.
 
     ``pivot`` is the fixed point in mm, in the machine-parallel system at the workpiece zero. It is
-    ``distance`` mm below the tip along the tool. ``length`` is in degrees. With ``pivot_end``, the point
-    moves there in a straight line, and ``length`` is in mm.
+    ``pivot_distance`` mm below the tip along the tool. ``length`` is in degrees. With ``pivot_end``, the
+    point moves there in a straight line, and ``length`` is in mm.
     """
 
     kinematics: Kinematics
-    start: Mapping[str, float]
-    end: Mapping[str, float]
+    start_angles: Mapping[str, float]
+    end_angles: Mapping[str, float]
     pivot: Vector
-    distance: float
+    pivot_distance: float
     tool_length: float
     length: float
     pivot_end: Vector | None = None
 
     @property
-    def in_degrees(self) -> bool:
+    def is_feed_in_degrees(self) -> bool:
         """True if the feed is in degrees because the pivot is fixed."""
         return self.pivot_end is None
 
     @property
-    def straight(self) -> bool:
+    def is_straight(self) -> bool:
         """Always False, because linear axes and angles are not proportional."""
         return False
 
-    def machine(self, share: FloatArray) -> FloatArray:
+    def machine_positions(self, fractions: FloatArray) -> FloatArray:
         """Return machine positions (k, axes), in the machine's order, at fractions (k,) of the move."""
         at: dict[str, FloatArray] = {
-            name: start + share * (self.end[name] - start) for name, start in self.start.items()
+            name: start + fractions * (self.end_angles[name] - start)
+            for name, start in self.start_angles.items()
         }
         first, last = np.array(self.pivot), np.array(self.pivot_end or self.pivot)
-        spots = np.array(self.kinematics.origin) + first + share[:, np.newaxis] * (last - first)
-        slides = _carried_by_tables(self.kinematics, at, spots)
-        slides = slides - _noses(self.kinematics, at, self.tool_length + self.distance)
+        spots = np.array(self.kinematics.origin) + first + fractions[:, np.newaxis] * (last - first)
+        slides = _rotate_with_tables(self.kinematics, at, spots)
+        slides = slides - _noses_to_tips(self.kinematics, at, self.tool_length + self.pivot_distance)
         at |= {"X": slides[:, 0], "Y": slides[:, 1], "Z": slides[:, 2]}
-        rows: FloatArray = np.stack([at[name] for name in self.kinematics.names], axis=1)
+        rows: FloatArray = np.stack([at[name] for name in self.kinematics.axis_names], axis=1)
         return rows
 
-    def goals(self) -> dict[str, float]:
+    def end_positions(self) -> dict[str, float]:
         """Return the machine positions of all axes at the end, by name."""
-        there = dict(zip(self.kinematics.names, self.machine(np.ones(1))[0].tolist(), strict=True))
-        return {**there, **self.end}
+        there = dict(
+            zip(self.kinematics.axis_names, self.machine_positions(np.ones(1))[0].tolist(), strict=True)
+        )
+        return {**there, **self.end_angles}
 
-    def part(self, points: FloatArray) -> FloatArray:
+    def workpiece_points(self, positions: FloatArray) -> FloatArray:
         """Return the tip on the workpiece (k, 3) in mm at machine positions (k, axes)."""
-        at = dict(zip(self.kinematics.names, points.T, strict=True))
+        at = dict(zip(self.kinematics.axis_names, positions.T, strict=True))
         spots: FloatArray = np.stack([at[name] for name in "XYZ"], axis=1)
-        spots = spots + _noses(self.kinematics, at, self.tool_length)
-        for axis in reversed(self.kinematics.rotaries):
-            if axis.table:
-                spots = _carried(axis, at[axis.name], spots)
+        spots = spots + _noses_to_tips(self.kinematics, at, self.tool_length)
+        for axis in reversed(self.kinematics.rotary_axes):
+            if axis.is_table:
+                spots = _rotate_about_axis(axis, at[axis.name], spots)
         spots -= np.array(self.kinematics.origin)
         return spots
 
-    def nearest(self) -> float:
+    def critical_fraction(self) -> float:
         """Return 0.5, because no fraction of the move is more critical than another."""
         return 0.5
 
 
-def _carried_by_tables(machine: Kinematics, at: Mapping[str, FloatArray], spots: FloatArray) -> FloatArray:
+def _rotate_with_tables(
+    machine: Kinematics, angles: Mapping[str, FloatArray], points: FloatArray
+) -> FloatArray:
     """Return points (k, 3) in mm moved by the tables from 0 to these angles (k,)."""
-    for axis in machine.rotaries:
-        if axis.table:
-            spots = _carried(axis, -at[axis.name], spots)
-    return spots
+    for axis in machine.rotary_axes:
+        if axis.is_table:
+            points = _rotate_about_axis(axis, -angles[axis.name], points)
+    return points
 
 
-def _noses(machine: Kinematics, at: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
+def _noses_to_tips(machine: Kinematics, angles: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
     """Return vectors from the spindle nose at 0 to the tip with the heads at these angles (k,), in mm.
 
     The result has the shape (k, 3), or one row without heads.
     """
     tips: FloatArray = np.array([[0.0, 0.0, -tool_length]])
-    for axis in reversed(machine.rotaries):
-        if not axis.table:
-            tips = _carried(axis, at[axis.name], tips)
+    for axis in reversed(machine.rotary_axes):
+        if not axis.is_table:
+            tips = _rotate_about_axis(axis, angles[axis.name], tips)
     return tips
 
 
-def _carried(axis: Rotary, degrees: FloatArray, points: FloatArray) -> FloatArray:
+def _rotate_about_axis(axis: RotaryAxis, degrees: FloatArray, points: FloatArray) -> FloatArray:
     """Return points (k, 3), or one point, rotated about the axis by the angles (k,) (Rodrigues' formula)."""
-    line, along, aside = _turning(axis)
+    line, along, aside = _rotation_terms(axis)
     angle = np.radians(degrees)[:, np.newaxis]
     cosine = np.cos(angle)
     from_line = points - line
@@ -327,7 +347,7 @@ def _carried(axis: Rotary, degrees: FloatArray, points: FloatArray) -> FloatArra
 
 
 @lru_cache(maxsize=64)
-def _turning(axis: Rotary) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _rotation_terms(axis: RotaryAxis) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return a point of the axis, the projection onto its direction, and the cross-product matrix."""
     x, y, z = axis.direction
     aside = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])

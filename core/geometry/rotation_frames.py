@@ -18,17 +18,17 @@ X_AXIS: Vector = (1.0, 0.0, 0.0)
 Y_AXIS: Vector = (0.0, 1.0, 0.0)
 Z_AXIS: Vector = (0.0, 0.0, 1.0)
 
-SHORTEST = 1e-6  # mm; closer points do not define a direction
-SMALLEST_SINE = 1e-6  # sine of the angle at the first point, below which three points do not define a plane
+MIN_DISTANCE_MM = 1e-6  # mm; closer points do not define a direction
+MIN_SINE = 1e-6  # sine of the angle at the first point, below which three points do not define a plane
 
 _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
-class NoFrameError(CodedError, ValueError):
+class InvalidFrameError(CodedError, ValueError):
     """Raised when values do not define a plane. ``str()`` gives the reason."""
 
 
-def cos_sin(degrees: float) -> tuple[float, float]:
+def exact_cos_sin(degrees: float) -> tuple[float, float]:
     """Return cosine and sine, exact at multiples of 90 degrees.
 
     Without exact values, a table at 90 degrees would be tilted by 6e-17.
@@ -40,58 +40,59 @@ def cos_sin(degrees: float) -> tuple[float, float]:
     return math.cos(angle), math.sin(angle)
 
 
-def plus(a: Vector, b: Vector) -> Vector:
+def add_vectors(a: Vector, b: Vector) -> Vector:
     """Return the sum of two vectors."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-def minus(a: Vector, b: Vector) -> Vector:
+def subtract_vectors(a: Vector, b: Vector) -> Vector:
     """Return the difference of two vectors."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-def scaled(a: Vector, factor: float) -> Vector:
+def scale_vector(a: Vector, factor: float) -> Vector:
     """Return a vector multiplied by a number."""
     return a[0] * factor, a[1] * factor, a[2] * factor
 
 
-def dot(a: Vector, b: Vector) -> float:
+def dot_product(a: Vector, b: Vector) -> float:
     """Return the scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def cross(a: Vector, b: Vector) -> Vector:
+def cross_product(a: Vector, b: Vector) -> Vector:
     """Return the vector product of two vectors."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def applied(m: Matrix, v: Vector) -> Vector:
+def apply_matrix(m: Matrix, v: Vector) -> Vector:
     """Return the product of a matrix and a vector."""
-    return dot(m[0], v), dot(m[1], v), dot(m[2], v)
+    return dot_product(m[0], v), dot_product(m[1], v), dot_product(m[2], v)
 
 
-def transposed(m: Matrix) -> Matrix:
+def transpose_matrix(m: Matrix) -> Matrix:
     """Return the transposed matrix, which is the inverse of a rotation."""
     (a, b, c), (d, e, f), (g, h, i) = m
     return (a, d, g), (b, e, h), (c, f, i)
 
 
-def product(*factors: Matrix) -> Matrix:
+def multiply_matrices(*factors: Matrix) -> Matrix:
     """Return the matrix product from left to right; the identity without factors."""
     made = IDENTITY
     for factor in factors:
-        columns = transposed(factor)
+        columns = transpose_matrix(factor)
         first, second, third = (
-            (dot(row, columns[0]), dot(row, columns[1]), dot(row, columns[2])) for row in made
+            (dot_product(row, columns[0]), dot_product(row, columns[1]), dot_product(row, columns[2]))
+            for row in made
         )
         made = first, second, third
     return made
 
 
-def turned(axis: Vector, degrees: float) -> Matrix:
+def rotation_about(axis: Vector, degrees: float) -> Matrix:
     """Return the right-handed rotation about a unit vector by an angle (Rodrigues' formula)."""
     x, y, z = axis
-    c, s = cos_sin(degrees)
+    c, s = exact_cos_sin(degrees)
     d = 1.0 - c
     return (
         (c + x * x * d, x * y * d - z * s, x * z * d + y * s),
@@ -100,66 +101,70 @@ def turned(axis: Vector, degrees: float) -> Matrix:
     )
 
 
-def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
+def frame_from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
     """Return the frame with X' from the first point to the second and the third on the side of +Y'.
 
     Only directions matter. Raises NoFrameError if two points are equal or all three are on one line.
     """
-    u, v = minus(p2, p1), minus(p3, p1)
+    u, v = subtract_vectors(p2, p1), subtract_vectors(p3, p1)
     along, aside = math.hypot(*u), math.hypot(*v)
-    if along < SHORTEST:
-        raise NoFrameError("the first and second points are the same", "first-and-second-point-equal")
-    if aside < SHORTEST:
-        raise NoFrameError("the first and third points are the same", "first-and-third-point-equal")
-    x = scaled(u, 1.0 / along)
-    normal = cross(x, scaled(v, 1.0 / aside))
+    if along < MIN_DISTANCE_MM:
+        raise InvalidFrameError("the first and second points are the same", "first-and-second-point-equal")
+    if aside < MIN_DISTANCE_MM:
+        raise InvalidFrameError("the first and third points are the same", "first-and-third-point-equal")
+    x = scale_vector(u, 1.0 / along)
+    normal = cross_product(x, scale_vector(v, 1.0 / aside))
     sine = math.hypot(*normal)
-    if sine < SMALLEST_SINE:
-        raise NoFrameError("the three points are on one straight line", "points-on-one-line")
-    z = scaled(normal, 1.0 / sine)
-    return transposed((x, cross(z, x), z))
+    if sine < MIN_SINE:
+        raise InvalidFrameError("the three points are on one straight line", "points-on-one-line")
+    z = scale_vector(normal, 1.0 / sine)
+    return transpose_matrix((x, cross_product(z, x), z))
 
 
-def from_spatial(a: float, b: float, c: float) -> Matrix:
+def frame_from_spatial_angles(a: float, b: float, c: float) -> Matrix:
     """Return the rotation by ``a`` about X, then ``b`` about Y, then ``c`` about Z, with fixed axes."""
-    return product(turned(Z_AXIS, c), turned(Y_AXIS, b), turned(X_AXIS, a))
+    return multiply_matrices(rotation_about(Z_AXIS, c), rotation_about(Y_AXIS, b), rotation_about(X_AXIS, a))
 
 
-def from_euler(precession: float, nutation: float, rotation: float) -> Matrix:
+def frame_from_euler_angles(precession: float, nutation: float, rotation: float) -> Matrix:
     """Return the rotation about Z, then about the rotated X', then about the tilted Z'."""
-    return product(turned(Z_AXIS, precession), turned(X_AXIS, nutation), turned(Z_AXIS, rotation))
+    return multiply_matrices(
+        rotation_about(Z_AXIS, precession), rotation_about(X_AXIS, nutation), rotation_about(Z_AXIS, rotation)
+    )
 
 
-def from_vectors(base: Vector, normal: Vector) -> Matrix:
+def frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
     """Return the frame with Z' along ``normal`` and X' along the component of ``base`` square to it.
 
     Raises NoFrameError if a vector has no length or the vectors are parallel.
     """
     long, wide = math.hypot(*normal), math.hypot(*base)
-    if long < SHORTEST or wide < SHORTEST:
-        raise NoFrameError("a vector has zero length", "vector-without-length")
-    z = scaled(normal, 1.0 / long)
-    y = cross(z, scaled(base, 1.0 / wide))
+    if long < MIN_DISTANCE_MM or wide < MIN_DISTANCE_MM:
+        raise InvalidFrameError("a vector has zero length", "vector-without-length")
+    z = scale_vector(normal, 1.0 / long)
+    y = cross_product(z, scale_vector(base, 1.0 / wide))
     sine = math.hypot(*y)
-    if sine < SMALLEST_SINE:
-        raise NoFrameError("the two vectors are parallel", "parallel-vectors")
-    y = scaled(y, 1.0 / sine)
-    return transposed((cross(y, z), y, z))
+    if sine < MIN_SINE:
+        raise InvalidFrameError("the two vectors are parallel", "parallel-vectors")
+    y = scale_vector(y, 1.0 / sine)
+    return transpose_matrix((cross_product(y, z), y, z))
 
 
-def from_projections(first: float, second: float, rotation: float) -> Matrix:
+def frame_from_projections(first: float, second: float, rotation: float) -> Matrix:
     """Return the plane that has the angle ``first`` in Z X and ``second`` in Y Z.
 
     X' is in the plane Z X before the plane is rotated by ``rotation`` about Z'. Angles are measured upward
     from X and from Y. Raises NoFrameError at 90 degrees.
     """
-    (c1, s1), (c2, s2) = cos_sin(first), cos_sin(second)
-    if min(abs(c1), abs(c2)) < SMALLEST_SINE:
-        raise NoFrameError("a projection angle is 90 degrees", "projection-angle")
+    (c1, s1), (c2, s2) = exact_cos_sin(first), exact_cos_sin(second)
+    if min(abs(c1), abs(c2)) < MIN_SINE:
+        raise InvalidFrameError("a projection angle is 90 degrees", "projection-angle")
     along, aside = (c1, 0.0, s1), (0.0, c2, s2)
-    return product(from_vectors(along, cross(along, aside)), turned(Z_AXIS, rotation))
+    return multiply_matrices(
+        frame_from_vectors(along, cross_product(along, aside)), rotation_about(Z_AXIS, rotation)
+    )
 
 
-def about_z(frame: Matrix) -> float:
+def z_rotation_deg(frame: Matrix) -> float:
     """Return the angle of a frame that is rotated about Z only, in degrees from -180 to 180."""
     return math.degrees(math.atan2(frame[1][0] - frame[0][1], frame[0][0] + frame[1][1]))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 
-def surface_rpm(speed: float, radius: float, lo: float, hi: float) -> float:
+def find_surface_rpm(speed: float, radius: float, min_rpm: float, max_rpm: float) -> float:
     """Return the unsigned rpm for the surface speed ``speed`` (mm/s) at ``radius`` mm from the centerline.
 
-    rpm = 60·speed / (2·pi·|radius|), at least ``lo`` and at most ``hi``. The result on the centerline is
-    ``hi``.
+    rpm = 60·speed / (2·pi·|radius|), at least ``min_rpm`` and at most ``max_rpm``. The result on the
+    centerline is ``max_rpm``.
     """
     path = 2.0 * math.pi * abs(radius)
     rpm = math.inf if path == 0.0 else 60.0 * speed / path
-    return min(max(rpm, lo), hi)
+    return min(max(rpm, min_rpm), max_rpm)

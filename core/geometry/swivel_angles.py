@@ -13,25 +13,25 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from core.geometry.rotary_axes import TURN, Kinematics
+from core.geometry.rotary_axes import FULL_TURN_DEG, Kinematics
 from core.geometry.rotation_frames import (
     Z_AXIS,
     Matrix,
     Vector,
-    about_z,
-    applied,
-    cross,
-    dot,
-    minus,
-    product,
-    scaled,
-    transposed,
-    turned,
+    apply_matrix,
+    cross_product,
+    dot_product,
+    multiply_matrices,
+    rotation_about,
+    scale_vector,
+    subtract_vectors,
+    transpose_matrix,
+    z_rotation_deg,
 )
 
-FREE = math.radians(1e-9)  # =
-UNREACHED = 1e-9  # sine of the angle below which a tool direction counts as reached
-TIE = 1e-6  # degrees by which two travels must differ to count as different
+PARALLEL_TOLERANCE = math.radians(1e-9)  # =
+REACHED_TOLERANCE = 1e-9  # sine of the angle below which a tool direction counts as reached
+TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count as different
 
 
 class SolutionSide(StrEnum):
@@ -44,154 +44,181 @@ class SolutionSide(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Solution:
-    """Angles by axis name. ``spin`` is the remaining mathematical rotation about the tool axis.
+class SwivelSolution:
+    """Angles by axis name. ``tool_rotation_deg`` is the remaining mathematical rotation about the tool axis.
 
-    ``symmetry`` is the angle of the primary axis from its symmetry point, and ``primary`` from its basic
-    position 0.
+    ``symmetry_angle`` is the angle of the primary axis from its symmetry point, and ``primary_angle`` from
+    its basic position 0.
     """
 
-    angles: Mapping[str, float]
-    spin: float
-    symmetry: float = 0.0
-    primary: float = 0.0
+    axis_angles: Mapping[str, float]
+    tool_rotation_deg: float
+    symmetry_angle: float = 0.0
+    primary_angle: float = 0.0
 
-    def on(self, side: SolutionSide | None) -> bool:
+    def is_on_side(self, side: SolutionSide | None) -> bool:
         """Return whether the solution is on this side. The point itself is on both sides."""
         if side is None:
             return True
-        angle = self.symmetry if side in {SolutionSide.SYM_PLUS, SolutionSide.SYM_MINUS} else self.primary
-        return angle >= -TIE if side in {SolutionSide.SYM_PLUS, SolutionSide.SEQ_PLUS} else angle <= TIE
+        angle = (
+            self.symmetry_angle
+            if side in {SolutionSide.SYM_PLUS, SolutionSide.SYM_MINUS}
+            else self.primary_angle
+        )
+        return (
+            angle >= -TRAVEL_TOLERANCE_DEG
+            if side in {SolutionSide.SYM_PLUS, SolutionSide.SEQ_PLUS}
+            else angle <= TRAVEL_TOLERANCE_DEG
+        )
 
 
-def solutions(machine: Kinematics, frame: Matrix, *, table_rot: bool = False) -> list[Solution]:
+def find_all_solutions(
+    machine: Kinematics, frame: Matrix, *, rotates_table: bool = False
+) -> list[SwivelSolution]:
     """Return all solutions square to ``frame`` (in the machine-parallel system), without axis ranges.
 
     If the first axis of the chain is parallel to the tool, it is free and goes to its zero. With
-    ``table_rot`` it goes to the angle that leaves no rotation about the tool.
+    ``rotates_table`` it goes to the angle that leaves no rotation about the tool.
     """
-    normal = applied(frame, Z_AXIS)
-    found: list[Solution] = []
-    for angles, symmetry, primary in _tilts(machine, normal):
-        spin = _wrapped(about_z(product(transposed(machine.frame(angles)), frame)))
-        first = machine.rotaries[0] if machine.rotaries else None
-        if table_rot and first is not None and math.hypot(*cross(first.direction, normal)) < FREE:
-            angles[first.name] += math.copysign(1.0, dot(first.direction, normal)) * spin
+    normal = apply_matrix(frame, Z_AXIS)
+    found: list[SwivelSolution] = []
+    for angles, symmetry, primary in _iter_tilt_angles(machine, normal):
+        spin = _wrap_angle(
+            z_rotation_deg(multiply_matrices(transpose_matrix(machine.tool_frame(angles)), frame))
+        )
+        first = machine.rotary_axes[0] if machine.rotary_axes else None
+        if (
+            rotates_table
+            and first is not None
+            and math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE
+        ):
+            angles[first.name] += math.copysign(1.0, dot_product(first.direction, normal)) * spin
             spin = 0.0
-        made = Solution(angles, spin, symmetry, primary)
+        made = SwivelSolution(angles, spin, symmetry, primary)
         if not any(_same(machine, made, other) for other in found):
             found.append(made)
     return found
 
 
-def choose(
+def choose_solution(
     machine: Kinematics,
     frame: Matrix,
-    present: Mapping[str, float],
+    present_angles: Mapping[str, float],
     side: SolutionSide | None = None,
     *,
-    table_rot: bool = False,
-) -> Solution | None:
+    rotates_table: bool = False,
+) -> SwivelSolution | None:
     """Return the solution on ``side`` within the axis ranges that has the shortest travel from ``present``.
 
     The travel is the sum over all axes. If two travels differ by less than TIE, the positive side is
     selected. Returns None if no solution is possible.
     """
-    best: Solution | None = None
-    for made in fitting(machine, frame, present, side, table_rot=table_rot):
-        if best is None or _way(machine, made, present) < _way(machine, best, present) - TIE:
+    best: SwivelSolution | None = None
+    for made in find_reachable_solutions(machine, frame, present_angles, side, rotates_table=rotates_table):
+        if (
+            best is None
+            or _way(machine, made, present_angles)
+            < _way(machine, best, present_angles) - TRAVEL_TOLERANCE_DEG
+        ):
             best = made
     return best
 
 
-def fitting(
+def find_reachable_solutions(
     machine: Kinematics,
     frame: Matrix,
-    present: Mapping[str, float],
+    present_angles: Mapping[str, float],
     side: SolutionSide | None = None,
     *,
-    table_rot: bool = False,
-) -> list[Solution]:
+    rotates_table: bool = False,
+) -> list[SwivelSolution]:
     """Return the solutions on ``side`` within the axis ranges, the positive side first."""
-    near = [_nearest(machine, made, present) for made in solutions(machine, frame, table_rot=table_rot)]
-    fits = [made for made in near if made is not None and made.on(side)]
-    return sorted(fits, key=lambda each: -each.symmetry)
+    near = [
+        _choose_nearest_turn(machine, made, present_angles)
+        for made in find_all_solutions(machine, frame, rotates_table=rotates_table)
+    ]
+    fits = [made for made in near if made is not None and made.is_on_side(side)]
+    return sorted(fits, key=lambda each: -each.symmetry_angle)
 
 
-def _tilts(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
+def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
     """Yield angles that bring the tool to ``normal``, with the primary angle from symmetry and from 0."""
-    angles = dict(machine.zero)
-    tilting = list(machine.rotaries)
-    while tilting and math.hypot(*cross(tilting[-1].direction, Z_AXIS)) < UNREACHED:
+    angles = dict(machine.zero_angles)
+    tilting = list(machine.rotary_axes)
+    while tilting and math.hypot(*cross_product(tilting[-1].direction, Z_AXIS)) < REACHED_TOLERANCE:
         tilting.pop()  # the axis rotates about the tool and does not tilt it
     if not tilting:
-        if math.hypot(*cross(Z_AXIS, normal)) < UNREACHED and normal[2] > 0.0:
+        if math.hypot(*cross_product(Z_AXIS, normal)) < REACHED_TOLERANCE and normal[2] > 0.0:
             yield angles, 0.0, 0.0
     elif len(tilting) == 1:
         axis = tilting[0]
-        if abs(dot(axis.direction, normal)) < UNREACHED:
-            angle = _angle(axis.direction, Z_AXIS, normal)
+        if abs(dot_product(axis.direction, normal)) < REACHED_TOLERANCE:
+            angle = _angle_about(axis.direction, Z_AXIS, normal)
             yield angles | {axis.name: angle}, angle, angle
     else:
         first, second = tilting[-2:]
-        for tilt, symmetry in _second(first.direction, second.direction, normal):
-            tool = applied(turned(second.direction, tilt), Z_AXIS)
-            free = math.hypot(*cross(first.direction, normal)) < FREE
-            turn = angles[first.name] if free else _angle(first.direction, tool, normal)
+        for tilt, symmetry in _iter_second_angles(first.direction, second.direction, normal):
+            tool = apply_matrix(rotation_about(second.direction, tilt), Z_AXIS)
+            free = math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE
+            turn = angles[first.name] if free else _angle_about(first.direction, tool, normal)
             yield angles | {first.name: turn, second.name: tilt}, symmetry, tilt
 
 
-def _second(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
+def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
     """Yield both angles of the axis next to the tool, the greater first, with the offset from their mean.
 
     The mean uses the displayed angles from -180 to 180, for either direction of the other axis.
     """
-    middle = math.degrees(math.atan2(dot(a1, cross(a2, Z_AXIS)), dot(a1, Z_AXIS)))
-    away = math.degrees(math.atan2(math.hypot(*cross(a1, normal)), dot(a1, normal)))
-    low, high = sorted((_wrapped(middle + away), _wrapped(middle - away)))
+    middle = math.degrees(math.atan2(dot_product(a1, cross_product(a2, Z_AXIS)), dot_product(a1, Z_AXIS)))
+    away = math.degrees(math.atan2(math.hypot(*cross_product(a1, normal)), dot_product(a1, normal)))
+    low, high = sorted((_wrap_angle(middle + away), _wrap_angle(middle - away)))
     half = (high - low) / 2.0
     yield high, half
     yield low, -half
 
 
-def _angle(axis: Vector, start: Vector, end: Vector) -> float:
+def _angle_about(axis: Vector, start: Vector, end: Vector) -> float:
     """Return the angle in degrees about ``axis`` from one direction to another, seen along the axis."""
-    p, q = (minus(each, scaled(axis, dot(axis, each))) for each in (start, end))
-    return math.degrees(math.atan2(dot(axis, cross(p, q)), dot(p, q)))
+    p, q = (subtract_vectors(each, scale_vector(axis, dot_product(axis, each))) for each in (start, end))
+    return math.degrees(math.atan2(dot_product(axis, cross_product(p, q)), dot_product(p, q)))
 
 
-def _wrapped(angle: float) -> float:
+def _wrap_angle(angle: float) -> float:
     """Return the angle in the range (-180, 180]."""
-    return angle - TURN * math.ceil((angle - TURN / 2.0) / TURN)
+    return angle - FULL_TURN_DEG * math.ceil((angle - FULL_TURN_DEG / 2.0) / FULL_TURN_DEG)
 
 
-def _same(machine: Kinematics, one: Solution, other: Solution) -> bool:
+def _same(machine: Kinematics, one: SwivelSolution, other: SwivelSolution) -> bool:
     return all(
-        abs(_wrapped(one.angles[axis.name] - other.angles[axis.name])) < TIE for axis in machine.rotaries
+        abs(_wrap_angle(one.axis_angles[axis.name] - other.axis_angles[axis.name])) < TRAVEL_TOLERANCE_DEG
+        for axis in machine.rotary_axes
     )
 
 
-def _nearest(machine: Kinematics, made: Solution, present: Mapping[str, float]) -> Solution | None:
+def _choose_nearest_turn(
+    machine: Kinematics, solution: SwivelSolution, present_angles: Mapping[str, float]
+) -> SwivelSolution | None:
     """Return the solution with each limited axis at the turn closest to its present angle.
 
     Returns None if an axis is out of range.
     """
     angles = {}
-    for axis in machine.rotaries:
-        angle, now = made.angles[axis.name], present.get(axis.name, 0.0)
-        if axis.modulo:
-            angles[axis.name] = axis.displayed(angle)
+    for axis in machine.rotary_axes:
+        angle, now = solution.axis_angles[axis.name], present_angles.get(axis.name, 0.0)
+        if axis.is_modulo:
+            angles[axis.name] = axis.displayed_angle(angle)
             continue
-        nearest = angle + TURN * round((now - angle) / TURN)
-        turns = [angle, nearest, nearest - TURN, nearest + TURN]
-        inside = [each for each in turns if axis.inside(each)]
+        nearest = angle + FULL_TURN_DEG * round((now - angle) / FULL_TURN_DEG)
+        turns = [angle, nearest, nearest - FULL_TURN_DEG, nearest + FULL_TURN_DEG]
+        inside = [each for each in turns if axis.is_in_range(each)]
         if not inside:
             return None
         angles[axis.name] = min(inside, key=lambda each: abs(each - now))
-    return Solution(angles, made.spin, made.symmetry, made.primary)
+    return SwivelSolution(angles, solution.tool_rotation_deg, solution.symmetry_angle, solution.primary_angle)
 
 
-def _way(machine: Kinematics, made: Solution, present: Mapping[str, float]) -> float:
+def _way(machine: Kinematics, made: SwivelSolution, present: Mapping[str, float]) -> float:
     return sum(
-        abs(axis.travel(present.get(axis.name, 0.0), made.angles[axis.name])) for axis in machine.rotaries
+        abs(axis.find_travel(present.get(axis.name, 0.0), made.axis_angles[axis.name]))
+        for axis in machine.rotary_axes
     )

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import sys
 
-from core.interpreter.dialects import NAMES, code_book
-from core.language.code_book import CodeBook, Entry
+from core.interpreter.dialects import DIALECT_NAMES, get_code_book
+from core.language.code_book import CodeBook, CodeBookEntry
 from core.language.source import Dialect
-from core.page_contents import contents
+from core.page_contents import make_contents
 
 _TOP = """\
 # {name}, code by code
@@ -25,28 +25,28 @@ Each code has an example. "Rejected" gives an example that is rejected, with a p
 """
 
 
-def page(dialect: Dialect) -> str:
+def render_code_book(dialect: Dialect) -> str:
     """Return the text of the page."""
-    book = code_book(dialect)
+    book = get_code_book(dialect)
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
     )
     titles = [*(["Cycle parameters"] if book.meanings else []), *(title for title, _ in book.chapters)]
-    top = _TOP.format(name=NAMES[dialect], dialect=dialect, contents=contents(titles))
-    return top + _frame(book) + _words(book) + chapters
+    top = _TOP.format(name=DIALECT_NAMES[dialect], dialect=dialect, contents=make_contents(titles))
+    return top + _frame(book) + _parameter_table(book) + chapters
 
 
 def _frame(book: CodeBook) -> str:
     return f"Every example goes between these lines:\n\n```\n{book.head}…\n{book.tail}```\n"
 
 
-def _words(book: CodeBook) -> str:
+def _parameter_table(book: CodeBook) -> str:
     """Return the table of the cycle parameters, or an empty text for a language without them."""
     rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
     return f"\n## Cycle parameters\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 
 
-def _entry(entry: Entry) -> str:
+def _entry(entry: CodeBookEntry) -> str:
     lines = [*entry.example.splitlines(), *(["…", *entry.behind.splitlines()] if entry.behind else [])]
     example = "```\n" + "\n".join(lines) + "\n```\n" if lines else ""
     refused = " / ".join(entry.refused.splitlines())
@@ -55,4 +55,4 @@ def _entry(entry: Entry) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(page(Dialect(sys.argv[1])))
+    sys.stdout.write(render_code_book(Dialect(sys.argv[1])))

@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
-from core.interpreter.shared.interpretation import Interpretation, RefusedPass
+from core.interpreter.shared.interpretation import InterpreterPass, RejectedPass
 from core.interpreter.shared.job_setup import Setup
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 
 if TYPE_CHECKING:
-    from core.interpreter.omniturn.flow.conditional_calls import Branching, Guide
+    from core.interpreter.omniturn.flow.conditional_calls import BranchingPass, BranchRecord
     from core.interpreter.omniturn.omniturn_program import Program
     from core.language.code_book import CodeBook
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 _LATHE_AXES = 3
 
 
-PassFactory = Callable[[Setup], Interpretation]
+PassFactory = Callable[[Setup], InterpreterPass]
 """One more pass through a text that has been read."""
 
 
-def _omniturn(source: Source, strict: bool) -> PassFactory:
+def _omniturn(source: ProgramSource, strict: bool) -> PassFactory:
     from core.interpreter.omniturn.omniturn_program import read_program
 
     return _OmniTurn(read_program(source, strict))
@@ -35,116 +35,116 @@ class _OmniTurn:
     def __init__(self, program: Program) -> None:
         self.program = program
 
-    def __call__(self, setup: Setup) -> Interpretation:
+    def __call__(self, setup: Setup) -> InterpreterPass:
         from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 
-        return Interpreter(self.program.for_one_pass(), setup)
+        return Interpreter(self.program.copy_for_pass(), setup)
 
 
-def line_alone(source: Source, setup: Setup) -> Interpretation:
+def interpret_mdi_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     """Return a pass through one line of MDI in the machine's language, from the state of ``setup.begin``."""
     if refused := _refusal(source.dialect, setup):
         return refused
-    return _LINES[source.dialect](source, setup)
+    return _LINE_INTERPRETERS[source.dialect](source, setup)
 
 
-def _omniturn_line(source: Source, setup: Setup) -> Interpretation:
+def _omniturn_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     from core.interpreter.omniturn.omniturn_interpreter import Interpreter
-    from core.interpreter.omniturn.omniturn_program import read_single
+    from core.interpreter.omniturn.omniturn_program import read_mdi_line
 
-    return Interpreter(read_single(source), setup)
+    return Interpreter(read_mdi_line(source), setup)
 
 
-def _sinumerik_line(source: Source, setup: Setup) -> Interpretation:
+def _sinumerik_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
 
     return Interpreter(source, setup)
 
 
-def _klartext_line(source: Source, setup: Setup) -> Interpretation:
+def _klartext_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     from core.interpreter.klartext.klartext_interpreter import Interpreter
-    from core.interpreter.klartext.klartext_program import read_single
+    from core.interpreter.klartext.klartext_program import read_mdi_block
 
     assert setup.kinematics is not None  # otherwise, the pass was rejected
-    return Interpreter(read_single(source, inch=not setup.metric), setup, setup.kinematics)
+    return Interpreter(read_mdi_block(source, is_inch=not setup.metric), setup, setup.kinematics)
 
 
-_LINES: Mapping[Dialect, Callable[[Source, Setup], Interpretation]] = {
+_LINE_INTERPRETERS: Mapping[Dialect, Callable[[ProgramSource, Setup], InterpreterPass]] = {
     Dialect.OMNITURN: _omniturn_line,
     Dialect.SINUMERIK: _sinumerik_line,
     Dialect.KLARTEXT: _klartext_line,
 }
 
 
-def _sinumerik(source: Source, _strict: bool) -> PassFactory:
+def _sinumerik(source: ProgramSource, _strict: bool) -> PassFactory:
     from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
 
     return lambda setup: Interpreter(source, setup)
 
 
-def _klartext(source: Source, _strict: bool) -> PassFactory:
+def _klartext(source: ProgramSource, _strict: bool) -> PassFactory:
     from core.interpreter.klartext.klartext_interpreter import Interpreter
     from core.interpreter.klartext.klartext_program import read_program
 
     program = read_program(source)
 
-    def begin(setup: Setup) -> Interpretation:
+    def begin(setup: Setup) -> InterpreterPass:
         assert setup.kinematics is not None  # otherwise, the pass was rejected
         return Interpreter(program, setup, setup.kinematics)
 
     return begin
 
 
-def _refusal(dialect: Dialect, setup: Setup) -> RefusedPass | None:
+def _refusal(dialect: Dialect, setup: Setup) -> RejectedPass | None:
     """Return a rejected pass if this machine cannot run the dialect; otherwise None."""
     lathe = len(setup.start) == _LATHE_AXES
     if dialect is Dialect.OMNITURN and not lathe:
         why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
-        return RefusedPass(why, "Choose the machine file of a lathe: --machine gt75.")
+        return RejectedPass(why, "Choose the machine file of a lathe: --machine gt75.")
     if dialect is Dialect.SINUMERIK and not lathe:
         why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
-        return RefusedPass(why, "Choose the machine file of a lathe: --machine sinumerik-modulo.")
+        return RejectedPass(why, "Choose the machine file of a lathe: --machine sinumerik-modulo.")
     if dialect is Dialect.KLARTEXT and setup.kinematics is None:
         why = (
             "A Klartext program needs a mill with X, Y, Z and [kinematics]; this machine does "
             "not meet these requirements."
         )
-        return RefusedPass(why, "Choose the machine file of a mill: --machine ac-table-mill.")
+        return RejectedPass(why, "Choose the machine file of a mill: --machine ac-table-mill.")
     return None
 
 
-NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
+DIALECT_NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.KLARTEXT: "Klartext"}
 """What sentences call them."""
 
 
 @cache
-def code_book(dialect: Dialect) -> CodeBook:
+def get_code_book(dialect: Dialect) -> CodeBook:
     """Return the code book of a language, which is read on first use."""
     if dialect is Dialect.OMNITURN:
-        from core.interpreter.omniturn.codes.omniturn_book import book
+        from core.interpreter.omniturn.codes.omniturn_book import build_code_book
 
-        return book()
-    from core.language.code_book_files import BOOKS, read_book
+        return build_code_book()
+    from core.language.code_book_files import CODE_BOOKS_FOLDER, read_book
 
-    return read_book(BOOKS / dialect)
+    return read_book(CODE_BOOKS_FOLDER / dialect)
 
 
 # The module of a language is imported when a program needs it.
-_READERS: Mapping[Dialect, Callable[[Source, bool], PassFactory]] = {
+_READERS: Mapping[Dialect, Callable[[ProgramSource, bool], PassFactory]] = {
     Dialect.OMNITURN: _omniturn,
     Dialect.SINUMERIK: _sinumerik,
     Dialect.KLARTEXT: _klartext,
 }
 
 
-class ReadProgram:
+class SharedProgram:
     """A program text that is read with its first pass and then shared by all passes.
 
     Reading a million blocks takes almost a second, which the executor cannot wait. Passes can be created in
     several threads at the same time.
     """
 
-    def __init__(self, source: Source, *, strict: bool = False) -> None:
+    def __init__(self, source: ProgramSource, *, strict: bool = False) -> None:
         self.source = source
         self._strict = strict
 
@@ -156,29 +156,29 @@ class ReadProgram:
         """Read the text now, so that the first pass does not have to."""
         _ = self._begin
 
-    def is_same(self, other: ReadProgram) -> bool:
+    def has_same_source(self, other: SharedProgram) -> bool:
         """Return whether the other program has the same text, read in the same mode."""
         return self.source == other.source and self._strict == other._strict
 
-    def begin(self, setup: Setup) -> Interpretation:
+    def start_pass(self, setup: Setup) -> InterpreterPass:
         """Return a new pass with this setup."""
         dialect = self.source.dialect
         if refused := _refusal(dialect, setup):
             return refused
-        if setup.begin is not None and setup.begin.single:
-            return line_alone(self.source, setup)
+        if setup.begin is not None and setup.begin.is_mdi_line:
+            return interpret_mdi_line(self.source, setup)
         return self._begin(setup)
 
-    def branching(self, setup: Setup, guide: Guide) -> Branching | None:
+    def start_branching_pass(self, setup: Setup, guide: BranchRecord) -> BranchingPass | None:
         """Return a pass that ``guide`` can send to both branches; None if the program reads no input."""
-        if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.single):
+        if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.is_mdi_line):
             return None
         read = self._begin
-        if not isinstance(read, _OmniTurn) or not read.program.asks:
+        if not isinstance(read, _OmniTurn) or not read.program.input_dependent_calls:
             return None
-        from core.interpreter.omniturn.flow.conditional_calls import Branching
+        from core.interpreter.omniturn.flow.conditional_calls import BranchingPass
 
-        return Branching(read.program.for_one_pass(), setup, guide)
+        return BranchingPass(read.program.copy_for_pass(), setup, guide)
 
     @property
     def program(self) -> Program | None:
@@ -191,10 +191,10 @@ class ReadProgram:
         return _READERS[self.source.dialect](self.source, self._strict)
 
 
-def _unread(source: Source, strict: bool) -> ReadProgram:
-    return ReadProgram(source, strict=strict)
+def _unread(source: ProgramSource, strict: bool) -> SharedProgram:
+    return SharedProgram(source, strict=strict)
 
 
-def interpretation(source: Source, setup: Setup) -> Interpretation:
+def interpret_program(source: ProgramSource, setup: Setup) -> InterpreterPass:
     """Return one pass through a program that is read only for this pass."""
-    return ReadProgram(source, strict=setup.strict).begin(setup)
+    return SharedProgram(source, strict=setup.strict).start_pass(setup)

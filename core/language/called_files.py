@@ -9,23 +9,23 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from core.language.source import Dialect, Source, SourceError, load_source
+from core.language.source import Dialect, ProgramSource, SourceError, load_source
 
-_MOST_FILES = 500
+_MAX_FILES = 500
 
 
-def with_called_files(source: Source, folders: Sequence[Path]) -> Source:
+def load_called_files(source: ProgramSource, folders: Sequence[Path]) -> ProgramSource:
     """Return the source with all programs that it calls, directly or indirectly.
 
     Files that are missing or not text are left out; the call then causes an error in the program. OmniTurn
     programs do not call other files. A source that already has its programs is returned unchanged.
     """
-    called = _calls_of(source.dialect)
+    called = _call_finder(source.dialect)
     if called is None or source.subprograms:
         return source
-    found: dict[str, Source] = {}
+    found: dict[str, ProgramSource] = {}
     waiting = [source]
-    while waiting and len(found) < _MOST_FILES:
+    while waiting and len(found) < _MAX_FILES:
         for name in called(waiting.pop()):
             if name not in found and (read := _read(name, folders, source.dialect)) is not None:
                 found[name] = read
@@ -33,21 +33,21 @@ def with_called_files(source: Source, folders: Sequence[Path]) -> Source:
     return replace(source, subprograms=tuple(found[name] for name in sorted(found)))
 
 
-def _calls_of(dialect: Dialect) -> Callable[[Source], Iterator[str]] | None:
+def _call_finder(dialect: Dialect) -> Callable[[ProgramSource], Iterator[str]] | None:
     """Return the function that yields the file names, in capitals, that a source of this dialect calls."""
     if dialect is Dialect.SINUMERIK:
-        from core.language.sinumerik.subprogram_files import called_files
+        from core.language.sinumerik.subprogram_files import find_called_files
 
-        return called_files
+        return find_called_files
     if dialect is Dialect.KLARTEXT:
-        from core.language.klartext.named_files import called_programs
+        from core.language.klartext.named_files import find_called_programs
 
-        return called_programs
+        return find_called_programs
     return None
 
 
-def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> Source | None:
-    for path in _places(name, folders, dialect):
+def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> ProgramSource | None:
+    for path in _candidate_paths(name, folders, dialect):
         try:
             if path.is_file():
                 return load_source(path, dialect)
@@ -56,18 +56,18 @@ def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> Source | None
     return None
 
 
-def _places(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Path]:
+def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Path]:
     """Yield the possible paths of a file, the most likely one first.
 
     Folders are therefore listed only if necessary.
     """
-    for each in (name, *_also(name, dialect)):
+    for each in (name, *_alternative_names(name, dialect)):
         for folder in folders:
             yield folder / each.lower()
             yield from _same_name(folder, each)
 
 
-def _also(name: str, dialect: Dialect) -> tuple[str, ...]:
+def _alternative_names(name: str, dialect: Dialect) -> tuple[str, ...]:
     """Return other file names for a call; SINUMERIK can also call a main program by its name."""
     return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 

@@ -11,18 +11,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-_CLOSE = ("", ".", ":", "=", "(", ",")  # These words follow the head without a blank.
+_ATTACHED_PREFIXES = ("", ".", ":", "=", "(", ",")  # These words follow the head without a blank.
 _NUMBER = re.compile(r"0*([0-9]+)")
 _WORD_BEGIN = re.compile(r"(?<![A-Z_$])[A-Z_$]|(?<=[0-9 ])[A-Z]")
 _NUMBERED = re.compile(r"(.*[A-Z ])0*([0-9]+)")  # a head that ends in a whole number
-_NUMBER_BEHIND = r"\s*0*([0-9]+)"
-_LETTERS_BEHIND = r"(?![A-Z_])"
-_DIGITS_BEHIND = r"(?![0-9])"
+_NUMBER_AFTER = r"\s*0*([0-9]+)"
+_NO_LETTER_AFTER = r"(?![A-Z_])"
+_NO_DIGIT_AFTER = r"(?![0-9])"
 _NO_LETTER_BEFORE = r"(?<![A-Z_$])"
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class CodeBookEntry:
     """One code of the code book: its ``head`` and the ``words`` that follow it, as the book shows them.
 
     ``example`` are lines that use the code. They are a complete program if ``whole`` is True; otherwise they
@@ -46,7 +46,7 @@ class Entry:
     @property
     def form(self) -> str:
         """The code with its words."""
-        joined = self.words[:1] in _CLOSE or self.head[-1] in "=("
+        joined = self.words[:1] in _ATTACHED_PREFIXES or self.head[-1] in "=("
         return self.head + self.words if joined else f"{self.head} {self.words}"
 
     @property
@@ -59,50 +59,50 @@ class Entry:
 class CodeBook:
     """Chapters of entries. ``head`` and ``tail`` are the lines before and after each example.
 
-    ``comment`` is the character that starts a comment. ``meanings`` explains the words of codes, for all
-    codes (``R``) or for one code (``G83.R``). The pattern ``named`` finds these words.
+    ``comment_sign`` is the character that starts a comment. ``meanings`` explains the words of codes, for all
+    codes (``R``) or for one code (``G83.R``). The pattern ``word_pattern`` finds these words.
     """
 
-    chapters: tuple[tuple[str, tuple[Entry, ...]], ...]
+    chapters: tuple[tuple[str, tuple[CodeBookEntry, ...]], ...]
     head: str
     tail: str
-    comment: str
+    comment_sign: str
     meanings: Mapping[str, str] = field(default_factory=dict)
-    named: str = r"[A-Z_][A-Z0-9_]*"
+    word_pattern: str = r"[A-Z_][A-Z0-9_]*"
 
-    def words_of(self, entry: Entry) -> tuple[tuple[str, str], ...]:
+    def list_words(self, entry: CodeBookEntry) -> tuple[tuple[str, str], ...]:
         """Return each word of a code with its meaning, if the book has one."""
-        found = dict.fromkeys(re.findall(self.named, f"{entry.words} {entry.insert}".strip()))
+        found = dict.fromkeys(re.findall(self.word_pattern, f"{entry.words} {entry.insert}".strip()))
         said = (
             (word, self.meanings.get(f"{entry.head}.{word}", self.meanings.get(word, ""))) for word in found
         )
         return tuple((word, what) for word, what in said if what)
 
     @cached_property
-    def entries(self) -> tuple[Entry, ...]:
+    def entries(self) -> tuple[CodeBookEntry, ...]:
         """All entries in the order of the book."""
         return tuple(entry for _, entries in self.chapters for entry in entries)
 
-    def at(self, line: str, column: int) -> Entry | None:
+    def at(self, line: str, column: int) -> CodeBookEntry | None:
         """Return the entry of the code at the cursor.
 
         Otherwise, return the entry of the nearest code to the left of the cursor, or of the first code in the
         line. ``column`` counts from 1 and may be one past the end of the line. Returns None in a comment and
         if the line has no known code.
         """
-        code = line.upper().split(self.comment, 1)[0]
+        code = line.upper().split(self.comment_sign, 1)[0]
         if column - 1 > len(code):
             return None
-        found = sorted(self._found_in(code), key=lambda each: (each[0], each[0] - each[1]))
+        found = sorted(self._find_codes(code), key=lambda each: (each[0], each[0] - each[1]))
         before = [each for each in found if each[0] < column]
         return before[-1][2] if before else found[0][2] if found else None
 
-    def _found_in(self, code: str) -> Iterator[tuple[int, int, Entry]]:
+    def _find_codes(self, code: str) -> Iterator[tuple[int, int, CodeBookEntry]]:
         """Yield start, end and entry of each code in a line.
 
         If two codes have the same start, the longer code counts.
         """
-        longest: dict[int, tuple[int, Entry]] = {}
+        longest: dict[int, tuple[int, CodeBookEntry]] = {}
         for pattern, by_number in self._patterns:
             for match in pattern.finditer(code):
                 entry = by_number.get(match[1])
@@ -116,23 +116,23 @@ class CodeBook:
                 reached = end
 
     @cached_property
-    def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, Entry]], ...]:
+    def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, CodeBookEntry]], ...]:
         """A pattern for each group of heads that differ only in their number, with its entries by number."""
-        families: dict[tuple[str, bool], dict[str, Entry]] = {}
+        families: dict[tuple[str, bool], dict[str, CodeBookEntry]] = {}
         for entry in self.entries:
             numbered = _NUMBERED.fullmatch(entry.head)
             stem, number = numbered.groups() if numbered else (entry.head, "")
             families.setdefault((stem, bool(numbered)), {})[number] = entry
         return tuple((_pattern(*family), by_number) for family, by_number in families.items())
 
-    def completions(self, line: str, column: int) -> tuple[int, tuple[Entry, ...]]:
+    def find_completions(self, line: str, column: int) -> tuple[int, tuple[CodeBookEntry, ...]]:
         """Return the column where the incomplete code starts, and the entries that can complete it.
 
         The entries are in book order. The longest matching text before the cursor is used. There are no
         entries in a comment or after a blank.
         """
         typed = line[: column - 1].upper()
-        if self.comment in typed or not typed or typed[-1].isspace():
+        if self.comment_sign in typed or not typed or typed[-1].isspace():
             return column, ()
         for match in _WORD_BEGIN.finditer(typed):
             found = self._beginning_with(typed[match.start() :])
@@ -140,8 +140,8 @@ class CodeBook:
                 return match.start() + 1, found
         return column, ()
 
-    def _beginning_with(self, typed: str) -> tuple[Entry, ...]:
-        written, wanted = " ".join(typed.split()), _plain(typed)
+    def _beginning_with(self, typed: str) -> tuple[CodeBookEntry, ...]:
+        written, wanted = " ".join(typed.split()), _normalize(typed)
         return tuple(
             each
             for each, head in self._heads
@@ -150,20 +150,20 @@ class CodeBook:
         )
 
     @cached_property
-    def _heads(self) -> tuple[tuple[Entry, str], ...]:
-        return tuple((each, _plain(each.head)) for each in self.entries)
+    def _heads(self) -> tuple[tuple[CodeBookEntry, str], ...]:
+        return tuple((each, _normalize(each.head)) for each in self.entries)
 
-    def chapter_of(self, entry: Entry | None) -> int:
+    def find_chapter(self, entry: CodeBookEntry | None) -> int:
         """Return the index of the chapter that contains an entry; 0 for None."""
         return next((n for n, (_, entries) in enumerate(self.chapters) if entry in entries), 0)
 
-    def prepared(self) -> CodeBook:
+    def with_compiled_patterns(self) -> CodeBook:
         """Return the book after computing its patterns, which takes some milliseconds."""
         _ = self._patterns, self._heads
         return self
 
 
-def _plain(written: str) -> str:
+def _normalize(written: str) -> str:
     """Return a code in its normal form: capitals, single blanks, and no leading zeros in numbers."""
     return _NUMBER.sub(r"\1", " ".join(written.upper().split()))
 
@@ -171,6 +171,6 @@ def _plain(written: str) -> str:
 def _pattern(stem: str, numbered: bool) -> re.Pattern[str]:
     """Return a pattern that finds a code in a line. Its group is the number, or empty without one."""
     words = r"\s*".join(map(re.escape, stem.split()))
-    last = _DIGITS_BEHIND if stem[-1].isdigit() else _LETTERS_BEHIND if stem[-1].isalpha() else ""
+    last = _NO_DIGIT_AFTER if stem[-1].isdigit() else _NO_LETTER_AFTER if stem[-1].isalpha() else ""
     before = _NO_LETTER_BEFORE if stem[0].isalpha() else ""
-    return re.compile(before + words + (_NUMBER_BEHIND if numbered else f"(){last}"))
+    return re.compile(before + words + (_NUMBER_AFTER if numbered else f"(){last}"))

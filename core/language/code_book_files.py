@@ -18,9 +18,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from core.language.code_book import CodeBook, Entry
+from core.language.code_book import CodeBook, CodeBookEntry
 
-BOOKS = Path(__file__).with_name("code_books")
+CODE_BOOKS_FOLDER = Path(__file__).with_name("code_books")
 
 _TEXTS = dict.fromkeys(("head", "words", "what", "example", "refused", "why", "behind", "insert"), "")
 _KINDS: Mapping[str, type | tuple[type, ...]] = {
@@ -32,13 +32,13 @@ _KINDS: Mapping[str, type | tuple[type, ...]] = {
 }
 """Keys of an entry, and what their values are."""
 
-_HOLE = re.compile(r"\{(\w+)\}")
+_PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 
 def read_book(folder: Path) -> CodeBook:
     """Return the code book of a folder. Raises ValueError with file and code if an entry is invalid."""
     frame = tomllib.loads((folder / "book.toml").read_text(encoding="utf-8"))
-    chapters: dict[str, list[Entry]] = {}
+    chapters: dict[str, list[CodeBookEntry]] = {}
     meanings: dict[str, str] = {}
     for path in (folder / f"{subject}.toml" for subject in frame["subjects"]):
         try:
@@ -50,12 +50,12 @@ def read_book(folder: Path) -> CodeBook:
         tuple((title, tuple(entries)) for title, entries in chapters.items()),
         head=_program(frame["head"]),
         tail=_program(frame["tail"]),
-        comment=frame["comment"],
+        comment_sign=frame["comment"],
         meanings=meanings,
     )
 
 
-def _read_subject(text: str, chapters: dict[str, list[Entry]], meanings: dict[str, str]) -> None:
+def _read_subject(text: str, chapters: dict[str, list[CodeBookEntry]], meanings: dict[str, str]) -> None:
     """Add the entries and meanings of a file to those of the book."""
     tables = tomllib.loads(text)
     parts, usual = tables.pop("parts", {}), tables.pop("usual", {})
@@ -65,7 +65,7 @@ def _read_subject(text: str, chapters: dict[str, list[Entry]], meanings: dict[st
         chapters.setdefault(title, []).extend(entries)
 
 
-def _entries(row: dict[str, Any], usual: dict[str, Any], parts: dict[str, str]) -> Iterator[Entry]:
+def _entries(row: dict[str, Any], usual: dict[str, Any], parts: dict[str, str]) -> Iterator[CodeBookEntry]:
     """Yield the entry of each head of a row. Raises ValueError if the row is invalid."""
     for head in row.get("heads") or [row.get("head", "")]:
         try:
@@ -74,24 +74,26 @@ def _entries(row: dict[str, Any], usual: dict[str, Any], parts: dict[str, str]) 
             raise ValueError(f"{head}: {error}") from error
 
 
-def _entry(row: dict[str, Any], parts: dict[str, str]) -> Entry:
+def _entry(row: dict[str, Any], parts: dict[str, str]) -> CodeBookEntry:
     if wrong := [key for key, value in row.items() if not isinstance(value, _KINDS.get(key, ()))]:
         raise ValueError(f"{wrong[0]} is an unknown key, or its value is of the wrong kind")
     known = ChainMap(row, parts)
-    texts = {key: _filled(value, known) for key, value in row.items() if isinstance(value, str)}
+    texts = {key: _fill_placeholders(value, known) for key, value in row.items() if isinstance(value, str)}
     texts["what"] = " ".join(texts["what"].split())
     texts["behind"] = _program(texts["behind"])
     if not (texts["head"] and texts["what"]):
         raise ValueError("head or what is missing")
     if isinstance(row["refused"], dict):
-        texts["refused"] = _replaced(texts["example"], row["refused"])
+        texts["refused"] = _replace_pieces(texts["example"], row["refused"])
     if bool(texts["refused"]) != bool(texts["why"]):
         raise ValueError("refused and why must be together")
-    files = tuple((name, _program(_filled(text, known))) for name, text in row.get("files", {}).items())
-    return Entry(**texts, whole=row.get("whole", False), files=files)
+    files = tuple(
+        (name, _program(_fill_placeholders(text, known))) for name, text in row.get("files", {}).items()
+    )
+    return CodeBookEntry(**texts, whole=row.get("whole", False), files=files)
 
 
-def _filled(text: str, known: Mapping[str, Any]) -> str:
+def _fill_placeholders(text: str, known: Mapping[str, Any]) -> str:
     """Return a text with its parts inserted and without line breaks at its ends."""
     if "{" not in text:
         return text.strip("\n")
@@ -99,13 +101,13 @@ def _filled(text: str, known: Mapping[str, Any]) -> str:
     def part(hole: re.Match[str]) -> str:
         found = known.get(hole[1])
         if isinstance(found, str):
-            return _filled(found, {name: each for name, each in known.items() if name != hole[1]})
+            return _fill_placeholders(found, {name: each for name, each in known.items() if name != hole[1]})
         raise ValueError(f"{hole[0]} has no text")
 
-    return _HOLE.sub(part, text).strip("\n")
+    return _PLACEHOLDER.sub(part, text).strip("\n")
 
 
-def _replaced(example: str, pieces: Mapping[str, str]) -> str:
+def _replace_pieces(example: str, pieces: Mapping[str, str]) -> str:
     """Return the example with each of the pieces replaced. Raises ValueError if the example lacks a piece."""
     for before, after in pieces.items():
         if before not in example:

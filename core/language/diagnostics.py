@@ -20,9 +20,10 @@ class Severity(StrEnum):
 class Diagnostic:
     """One finding. Lines and columns count from 1. Column 0 means the whole line, and line 0 the whole file.
 
-    ``check`` is the name of the check that made the finding, and ``n`` is the elementary block (0 for none).
-    A repeated finding has its first location and its ``count``. ``assumed`` names the assumptions of the
-    finding (``stock``, ``T3``). ``silenced`` is the reason why the finding is only a note.
+    ``check_name`` is the name of the check that made the finding, and ``block_number`` is the elementary
+    block (0 for none). A repeated finding has its first location and its ``occurrence_count``. ``assumed``
+    names the assumptions of the finding (``stock``, ``T3``). ``downgrade_reason`` is the reason why the
+    finding is only a note.
     """
 
     line: int
@@ -31,22 +32,22 @@ class Diagnostic:
     code: str
     message: str
     hint: str = ""
-    check: str = ""
-    n: int = 0
-    count: int = 1
-    assumed: tuple[str, ...] = ()
-    silenced: str = ""
+    check_name: str = ""
+    block_number: int = 0
+    occurrence_count: int = 1
+    assumptions: tuple[str, ...] = ()
+    downgrade_reason: str = ""
 
     @property
     def text(self) -> str:
         """The message, followed by the number of repetitions if the finding is repeated."""
         return (
             self.message
-            if self.count == 1
-            else Message("{message} ({count} times)", message=self.message, count=self.count)
+            if self.occurrence_count == 1
+            else Message("{message} ({count} times)", message=self.message, count=self.occurrence_count)
         )
 
-    def in_one_line(self, name: str) -> str:
+    def format_one_line(self, name: str) -> str:
         """Return the finding as one line: location, severity, message, code and remedy."""
         place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
         hint = Message(" — {hint}", hint=self.hint) if self.hint else ""
@@ -68,20 +69,20 @@ class ProgramError(Exception):
         self.diagnostic = diagnostic
 
 
-AT_THE_STOP = "axis position after a program stop"
+PROGRAM_STOP_ASSUMPTION = "axis position after a program stop"
 """What rests on a place that a program has read behind a stop, where a hand may have moved the axes."""
 
 
-def resting_on(found: Diagnostic, *assumed: str) -> Diagnostic:
+def add_assumptions(finding: Diagnostic, *assumed: str) -> Diagnostic:
     """Return the finding with further assumptions on which it depends."""
-    return replace(found, assumed=(*found.assumed, *assumed))
+    return replace(finding, assumptions=(*finding.assumptions, *assumed))
 
 
-def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
+def make_error_diagnostic(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
     """Return a diagnostic with the severity error."""
     return Diagnostic(line, column, Severity.ERROR, code, message, hint)
 
 
-def program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
+def make_program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
     """Return the exception for an error diagnostic."""
-    return ProgramError(refusal(line, column, code, message, hint))
+    return ProgramError(make_error_diagnostic(line, column, code, message, hint))

@@ -1,6 +1,6 @@
 """Formulas of programs: numbers, parameters, operators with precedence, and functions.
 
-Each language defines its own ``Grammar``. The parsed formulas are the same for all languages and are
+Each language defines its own ``FormulaGrammar``. The parsed formulas are the same for all languages and are
 evaluated by ``core.interpreter.shared.formula_values``.
 """
 
@@ -40,9 +40,9 @@ class Operation(NamedTuple):
 
 
 Formula = Number | Parameter | Operation
-INDICES = "indices"
+INDEX_OPERATION = "indices"
 """The operation that stands for several indices of one element; it has no value of its own."""
-FUNCTIONS = {
+FUNCTION_OPERATIONS = {
     "SIN": "sine",
     "COS": "cosine",
     "TAN": "tangent",
@@ -56,38 +56,38 @@ FUNCTIONS = {
 """Functions that have the same name in every language."""
 
 
-def indices_of(index: Formula) -> tuple[Formula, ...]:
+def split_index(index: Formula) -> tuple[Formula, ...]:
     """Return the formulas of an index in square brackets, one for each dimension."""
-    return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
+    return index.operands if isinstance(index, Operation) and index.name == INDEX_OPERATION else (index,)
 
 
 class FormulaError(Exception):
-    """A syntax error in a formula. ``at`` is the index in the text, and ``str()`` is the message."""
+    """A syntax error in a formula. ``index`` is the index in the text, and ``str()`` is the message."""
 
-    def __init__(self, at: int, why: str, hint: str) -> None:
-        super().__init__(why)
-        self.at = at
+    def __init__(self, index: int, message: str, hint: str) -> None:
+        super().__init__(message)
+        self.index = index
         self.hint = hint
 
 
 @dataclass(frozen=True)
-class Grammar:
+class FormulaGrammar:
     """Notation of formulas in a language, in capitals.
 
-    ``number`` and ``parameter`` match one operand; the groups of a parameter are its letters and its number.
-    ``operators`` maps each operator to its precedence (higher binds tighter) and name, ``functions`` maps
-    functions to names, and ``constants`` maps constants to values. ``separator`` separates the operands of a
-    function. If it is empty, functions have one operand without parentheses.
+    ``number`` and ``parameter_pattern`` match one operand; the groups of a parameter are its letters and its
+    number. ``operators`` maps each operator to its precedence (higher binds tighter) and name, ``functions``
+    maps functions to names, and ``constants`` maps constants to values. ``operand_separator`` separates the
+    operands of a function. If it is empty, functions have one operand without parentheses.
     """
 
-    number: re.Pattern[str]
-    parameter: re.Pattern[str]
+    number_pattern: re.Pattern[str]
+    parameter_pattern: re.Pattern[str]
     operators: Mapping[str, tuple[int, str]]
     functions: Mapping[str, str]
     constants: Mapping[str, float] = field(default_factory=dict)
-    separator: str = ""
-    negation: int = 50  # precedence of a sign before an operand
-    indexed: bool = False  # the number of a parameter may be a formula in square brackets
+    operand_separator: str = ""
+    negation_precedence: int = 50  # precedence of a sign before an operand
+    allows_index: bool = False  # the number of a parameter may be a formula in square brackets
     _sign: re.Pattern[str] = field(init=False, repr=False)
     _word: re.Pattern[str] = field(init=False, repr=False)
     _constant: re.Pattern[str] = field(init=False, repr=False)
@@ -97,19 +97,19 @@ class Grammar:
         object.__setattr__(self, "_word", _any_of(self.functions))
         object.__setattr__(self, "_constant", _any_of(self.constants))
 
-    def operator(self, text: str, at: int) -> str | None:
+    def find_operator(self, text: str, index: int) -> str | None:
         """Return the operator at this index, or None."""
-        match = self._sign.match(text, at)
+        match = self._sign.match(text, index)
         return match.group() if match else None
 
-    def function(self, text: str, at: int) -> str | None:
+    def find_function(self, text: str, index: int) -> str | None:
         """Return the function at this index, or None."""
-        match = self._word.match(text, at)
+        match = self._word.match(text, index)
         return match.group() if match else None
 
-    def constant(self, text: str, at: int) -> str | None:
+    def find_constant(self, text: str, index: int) -> str | None:
         """Return the constant at this index, or None."""
-        match = self._constant.match(text, at)
+        match = self._constant.match(text, index)
         return match.group() if match else None
 
 
@@ -120,131 +120,136 @@ def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
     ordered = sorted(words, key=len, reverse=True)
     return re.compile(
         "|".join(
-            re.escape(word) + ("(?![A-Z_])" if word.isalpha() else _APART.get(word, "")) for word in ordered
+            re.escape(word) + ("(?![A-Z_])" if word.isalpha() else _OPERATOR_LOOKAHEADS.get(word, ""))
+            for word in ordered
         )
     )
 
 
-_APART = {"<": "(?!<)"}  # << concatenates strings
+_OPERATOR_LOOKAHEADS = {"<": "(?!<)"}  # << concatenates strings
 
 
-_CLOSEST = 1000
-_DEEPEST = 40
+_HIGHEST_PRECEDENCE = 1000
+_MAX_DEPTH = 40
 
 
 class FormulaReader(LineReader):
-    """Parser of one formula in ``upper``, which starts at ``at``.
+    """Parser of one formula in ``uppercase_text``, which starts at ``index``.
 
-    After reading, ``at`` is the index that follows.
+    After reading, ``index`` is the index that follows.
     """
 
-    def __init__(self, grammar: Grammar, upper: str, at: int) -> None:
-        self.upper, self.at = upper, at
+    def __init__(self, grammar: FormulaGrammar, uppercase_text: str, index: int) -> None:
+        self.uppercase_text, self.index = uppercase_text, index
         self._grammar = grammar
         self._depth = 0
 
-    def formula(self) -> Formula:
+    def read_formula(self) -> Formula:
         """Read and return the formula. Raises FormulaError if it is incomplete or invalid."""
         return self._expression(0)
 
     def _expression(self, weakest: int) -> Formula:
         """Read operands and operators with a precedence of at least ``weakest``, from left to right."""
         self._depth += 1
-        if self._depth > _DEEPEST:
+        if self._depth > _MAX_DEPTH:
             raise FormulaError(
-                self.at, "The formula is nested too deeply", "Split the formula into several assignments."
+                self.index, "The formula is nested too deeply", "Split the formula into several assignments."
             )
         made = self._operand()
         while (sign := self._operator()) is not None:
             power, name = self._grammar.operators[sign]
             if power < weakest:
                 break
-            column = self.at + 1
-            self.at += len(sign)
+            column = self.index + 1
+            self.index += len(sign)
             made = Operation(name, (made, self._expression(power + 1)), column)
         self._depth -= 1
         return made
 
     def _operator(self) -> str | None:
-        self.blanks()
-        return self._grammar.operator(self.upper, self.at)
+        self.skip_blanks()
+        return self._grammar.find_operator(self.uppercase_text, self.index)
 
     def _operand(self) -> Formula:
-        self.blanks()
-        at = self.at
+        self.skip_blanks()
+        at = self.index
         if self._takes("-"):
-            return Operation("negative", (self._expression(self._grammar.negation),), at + 1)
+            return Operation("negative", (self._expression(self._grammar.negation_precedence),), at + 1)
         if self._takes("+"):
-            return self._expression(self._grammar.negation)
+            return self._expression(self._grammar.negation_precedence)
         if self._takes("("):
             return self._enclosed()
-        return self._word(at) or self._figure(at)
+        return self._word(at) or self._parameter_or_number(at)
 
-    def _word(self, at: int) -> Formula | None:
+    def _word(self, index: int) -> Formula | None:
         """Read a function with its operands, or a constant; return None for any other text."""
         grammar = self._grammar
-        if word := grammar.function(self.upper, at):
-            self.at += len(word)
-            return Operation(grammar.functions[word], self._asked_of(), at + 1)
-        if word := grammar.constant(self.upper, at):
-            self.at += len(word)
+        if word := grammar.find_function(self.uppercase_text, index):
+            self.index += len(word)
+            return Operation(grammar.functions[word], self._function_operands(), index + 1)
+        if word := grammar.find_constant(self.uppercase_text, index):
+            self.index += len(word)
             return Number(grammar.constants[word])
         return None
 
-    def _figure(self, at: int) -> Formula:
+    def _parameter_or_number(self, index: int) -> Formula:
         """Read a parameter or a number."""
         grammar = self._grammar
-        if match := grammar.parameter.match(self.upper, at):
-            self.at = match.end()
+        if match := grammar.parameter_pattern.match(self.uppercase_text, index):
+            self.index = match.end()
             letters, number = match.group(1), match.group(2)
-            if not number and grammar.indexed and self.upper.startswith("[", self.at):
-                return Parameter(letters, self.index(), at + 1)
-            return Parameter(letters, int(number) if number else None, at + 1)
-        if match := grammar.number.match(self.upper, at):
-            self.at = match.end()
+            if not number and grammar.allows_index and self.uppercase_text.startswith("[", self.index):
+                return Parameter(letters, self.read_index(), index + 1)
+            return Parameter(letters, int(number) if number else None, index + 1)
+        if match := grammar.number_pattern.match(self.uppercase_text, index):
+            self.index = match.end()
             return Number(float(match.group().replace(",", ".").replace("EX", "E")))
-        raise FormulaError(at, "A number or a parameter is missing in the formula", "Complete the formula.")
+        raise FormulaError(
+            index, "A number or a parameter is missing in the formula", "Complete the formula."
+        )
 
-    def index(self) -> Formula:
+    def read_index(self) -> Formula:
         """Read the index in square brackets at the current position.
 
         Several indices are returned as one operation INDICES. Raises FormulaError if the bracket is
         incomplete.
         """
-        self.at += 1
-        column, found = self.at, [self._expression(0)]
-        while self._grammar.separator and self._takes(self._grammar.separator):
+        self.index += 1
+        column, found = self.index, [self._expression(0)]
+        while self._grammar.operand_separator and self._takes(self._grammar.operand_separator):
             found.append(self._expression(0))
         if not self._takes("]"):
-            raise FormulaError(self.at, "The closing square bracket is missing", "Write ] after the index.")
-        return found[0] if len(found) == 1 else Operation(INDICES, tuple(found), column)
+            raise FormulaError(
+                self.index, "The closing square bracket is missing", "Write ] after the index."
+            )
+        return found[0] if len(found) == 1 else Operation(INDEX_OPERATION, tuple(found), column)
 
     def _enclosed(self) -> Formula:
         made = self._expression(0)
         self._close()
         return made
 
-    def _asked_of(self) -> tuple[Formula, ...]:
+    def _function_operands(self) -> tuple[Formula, ...]:
         """Read the operands of a function.
 
         These are one operand, or a list in parentheses if the language has a separator.
         """
-        self.blanks()
-        if not self._grammar.separator or not self._takes("("):
-            return (self._expression(_CLOSEST),)
+        self.skip_blanks()
+        if not self._grammar.operand_separator or not self._takes("("):
+            return (self._expression(_HIGHEST_PRECEDENCE),)
         found = [self._expression(0)]
-        while self._takes(self._grammar.separator):
+        while self._takes(self._grammar.operand_separator):
             found.append(self._expression(0))
         self._close()
         return tuple(found)
 
     def _close(self) -> None:
         if not self._takes(")"):
-            raise FormulaError(self.at, "A closing parenthesis is missing", "Write ) after the formula.")
+            raise FormulaError(self.index, "A closing parenthesis is missing", "Write ) after the formula.")
 
     def _takes(self, sign: str) -> bool:
-        self.blanks()
-        if not self.upper.startswith(sign, self.at):
+        self.skip_blanks()
+        if not self.uppercase_text.startswith(sign, self.index):
             return False
-        self.at += len(sign)
+        self.index += len(sign)
         return True

@@ -4,46 +4,46 @@ from __future__ import annotations
 
 import re
 
-UNSIGNED = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+UNSIGNED_NUMBER = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
 """Pattern of a number without a sign."""
 
-SIGNED = rf"[+-]?{UNSIGNED}"
+SIGNED_NUMBER = rf"[+-]?{UNSIGNED_NUMBER}"
 
 
 class LineReader:
-    """A position in a line at which patterns are matched. ``upper`` is the line in capitals."""
+    """A position in a line at which patterns are matched. ``uppercase_text`` is the line in capitals."""
 
-    def __init__(self, upper: str, at: int = 0) -> None:
-        self.upper = upper
-        self.at = at
+    def __init__(self, uppercase_text: str, index: int = 0) -> None:
+        self.uppercase_text = uppercase_text
+        self.index = index
 
     @property
-    def done(self) -> bool:
+    def is_at_end(self) -> bool:
         """Whether only blanks follow."""
-        return not self.upper[self.at :].strip()
+        return not self.uppercase_text[self.index :].strip()
 
-    def blanks(self) -> None:
+    def skip_blanks(self) -> None:
         """Move to the next character that is not a blank."""
-        if self.upper[self.at : self.at + 1].isspace():
-            self.at = after_blanks(self.upper, self.at)
+        if self.uppercase_text[self.index : self.index + 1].isspace():
+            self.index = find_non_blank(self.uppercase_text, self.index)
 
-    def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+    def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of the pattern at this position and move past it; None without a match."""
-        match = pattern.match(self.upper, self.at)
+        match = pattern.match(self.uppercase_text, self.index)
         if match is not None:
-            self.at = match.end()
+            self.index = match.end()
         return match
 
 
-def after_blanks(text: str, at: int) -> int:
+def find_non_blank(text: str, index: int) -> int:
     """Return the index of the next character that is not a blank, or the length of the text."""
     end = len(text)
-    while at < end and text[at].isspace():
-        at += 1
-    return at
+    while index < end and text[index].isspace():
+        index += 1
+    return index
 
 
-def comment_start(text: str) -> int:
+def find_comment_start(text: str) -> int:
     """Return the index of the semicolon that begins the comment, or the length of the text without a comment.
 
     A semicolon in a quoted text does not begin a comment.
@@ -54,12 +54,12 @@ def comment_start(text: str) -> int:
     return len(text) if at < 0 else at
 
 
-def after_signs(text: str, at: int, signs: int) -> int:
+def skip_characters(text: str, index: int, count: int) -> int:
     """Return the index after this number of characters that are not blanks."""
-    while signs and at < len(text):
-        signs -= not text[at].isspace()
-        at += 1
-    return at
+    while count and index < len(text):
+        count -= not text[index].isspace()
+        index += 1
+    return index
 
 
 _SIGNS: dict[str, tuple[str, str]] = {
@@ -81,14 +81,14 @@ _SIGNS: dict[str, tuple[str, str]] = {
 }
 
 
-def typed(sign: str) -> tuple[str, str] | None:
+def describe_typographic_character(character: str) -> tuple[str, str] | None:
     """Return the description of a typographic character and the text to type instead.
 
     Returns None for any other character.
     """
-    return _SIGNS.get(sign)
+    return _SIGNS.get(character)
 
 
-def ascii_upper(text: str) -> str:
+def to_ascii_upper(text: str) -> str:
     """Return the text in capitals with the same length; non-ASCII characters such as ``ß`` are unchanged."""
     return text.upper() if text.isascii() else "".join(s.upper() if s.isascii() else s for s in text)

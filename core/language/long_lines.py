@@ -7,11 +7,11 @@ from typing import overload
 
 import numpy as np
 
-_AT_ONCE = 20_000  # lines
+_CHUNK_SIZE = 20_000  # lines
 _NEW_LINE = ord("\n")
 
 
-class LongLines(Sequence[str]):
+class LazyLines(Sequence[str]):
     """The lines of an ASCII text without line ends, split on access.
 
     An empty line after the final line end does not count.
@@ -38,12 +38,12 @@ class LongLines(Sequence[str]):
         there = range(len(self))[at]
         if there.step != 1:
             return [self[k] for k in there]
-        return self.joined(there).split("\n") if there else []
+        return self.join_lines(there).split("\n") if there else []
 
-    def joined(self, lines: range) -> str:
+    def join_lines(self, lines: range) -> str:
         """Return these lines, at least one, as one text with line ends; faster than joining single lines."""
         return self._text[self._starts[lines.start] : self._starts[lines.stop] - 1]
 
     def __iter__(self) -> Iterator[str]:
-        for first in range(0, len(self), _AT_ONCE):
-            yield from self[first : first + _AT_ONCE]
+        for first in range(0, len(self), _CHUNK_SIZE):
+            yield from self[first : first + _CHUNK_SIZE]

@@ -10,8 +10,8 @@ from enum import StrEnum
 from functools import cached_property
 from pathlib import Path, PurePath
 
-from core.input_file import TooLargeError, input_bytes
-from core.language.diagnostics import Diagnostic, refusal
+from core.input_file import TooLargeError, read_input_bytes
+from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.message import CodedError, Message
 
 
@@ -23,36 +23,36 @@ class Dialect(StrEnum):
     SINUMERIK = "sinumerik"
 
 
-_BY_ENDING = {".h": Dialect.KLARTEXT, ".mpf": Dialect.SINUMERIK, ".spf": Dialect.SINUMERIK}
+_DIALECT_BY_EXTENSION = {".h": Dialect.KLARTEXT, ".mpf": Dialect.SINUMERIK, ".spf": Dialect.SINUMERIK}
 
 
 _USUAL_ENDINGS = {Dialect.OMNITURN: ".nc", Dialect.KLARTEXT: ".h", Dialect.SINUMERIK: ".mpf"}
 
 
-def usual_ending(dialect: Dialect) -> str:
+def default_extension(dialect: Dialect) -> str:
     """Return the default file extension of a dialect, such as ``.nc``."""
     return _USUAL_ENDINGS[dialect]
 
 
-def dialect_of(name: str) -> Dialect:
+def guess_dialect(name: str) -> Dialect:
     """Return the default dialect of a file name, which depends on its extension."""
-    return _BY_ENDING.get(PurePath(name).suffix.lower(), Dialect.OMNITURN)
+    return _DIALECT_BY_EXTENSION.get(PurePath(name).suffix.lower(), Dialect.OMNITURN)
 
 
 # Form feeds and Unicode line separators do not end a line, so that line numbers match those of an editor.
 _LINE_END = re.compile(r"\r\n|\r|\n")
-_LONGEST_LINE = 8192
+_MAX_LINE_LENGTH = 8192
 _LONG = 4 * 1024 * 1024  # characters; the lines of longer texts are not stored
-LARGEST_FILE = 64 * 1024 * 1024
+MAX_FILE_SIZE = 64 * 1024 * 1024
 _DOS_END_OF_FILE = "\x1a"
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass(frozen=True)
-class Source:
+class ProgramSource:
     """Program text.
 
-    ``name`` is used in messages and on the screen; ``said`` is the specified dialect, or None.
+    ``name`` is used in messages and on the screen; ``specified_dialect`` is the specified dialect, or None.
 
     ``subprograms`` are the called files, which are read together with the program, so that the executed text
     is the proved text.
@@ -60,25 +60,25 @@ class Source:
 
     name: str
     text: str
-    said: Dialect | None = None
-    subprograms: tuple[Source, ...] = ()
+    specified_dialect: Dialect | None = None
+    subprograms: tuple[ProgramSource, ...] = ()
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return the pickle data without the lines, which the other process splits again."""
-        return Source, (self.name, self.text, self.said, self.subprograms)
+        return ProgramSource, (self.name, self.text, self.specified_dialect, self.subprograms)
 
     @property
     def dialect(self) -> Dialect:
         """The language of the program."""
-        return self.said or dialect_of(self.name)
+        return self.specified_dialect or guess_dialect(self.name)
 
     @cached_property
     def lines(self) -> Sequence[str]:
         """The lines without line ends; an empty line after the final line end does not count."""
         if len(self.text) >= _LONG and self.text.isascii() and "\r" not in self.text:
-            from core.language.long_lines import LongLines  # noqa: PLC0415  with numpy
+            from core.language.long_lines import LazyLines  # noqa: PLC0415  with numpy
 
-            return LongLines(self.text)
+            return LazyLines(self.text)
         lines = _lines(self.text)
         if not lines[-1]:
             lines.pop()
@@ -93,13 +93,13 @@ class SourceError(CodedError):
         self.diagnostic = diagnostic
 
 
-def load_source(path: Path, said: Dialect | None = None) -> Source:
+def load_source(path: Path, specified_dialect: Dialect | None = None) -> ProgramSource:
     """Read a program file in UTF-8 or in an 8-bit character set of DOS or Windows.
 
     Raises SourceError if the file cannot be read or is not text.
     """
     try:
-        data = input_bytes(path, LARGEST_FILE)
+        data = read_input_bytes(path, MAX_FILE_SIZE)
     except TooLargeError as problem:
         raise _too_large(path.name) from problem
     except OSError as problem:
@@ -109,14 +109,14 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
             Message("{path} cannot be read: {cause}.", path=path.name, cause=reason),
             "Check the file name and the disk.",
         ) from problem
-    return source_of(path.name, data, said)
+    return decode_source(path.name, data, specified_dialect)
 
 
-def source_of(name: str, data: bytes, said: Dialect | None = None) -> Source:
+def decode_source(name: str, data: bytes, specified_dialect: Dialect | None = None) -> ProgramSource:
     """Return the source of these bytes with this name. Raises SourceError if the bytes are not text."""
-    if len(data) > LARGEST_FILE:
+    if len(data) > MAX_FILE_SIZE:
         raise _too_large(name)
-    return Source(name, _decoded(name, data), said)
+    return ProgramSource(name, _decoded(name, data), specified_dialect)
 
 
 def _decoded(name: str, data: bytes) -> str:
@@ -156,10 +156,10 @@ def _lines(text: str) -> list[str]:
 
 
 def _check_line_lengths(name: str, text: str) -> None:
-    if not _may_hold_long_line(text):
+    if not _may_contain_long_line(text):
         return
     for number, line in enumerate(_lines(text), start=1):
-        if len(line) > _LONGEST_LINE:
+        if len(line) > _MAX_LINE_LENGTH:
             raise _refused(
                 "line-too-long",
                 Message(
@@ -167,18 +167,18 @@ def _check_line_lengths(name: str, text: str) -> None:
                     number=number,
                     name=name,
                     line_count=len(line),
-                    longest_line=_LONGEST_LINE,
+                    longest_line=_MAX_LINE_LENGTH,
                 ),
                 "Choose a program file with line breaks.",
                 number,
             )
 
 
-def _may_hold_long_line(text: str) -> bool:
+def _may_contain_long_line(text: str) -> bool:
     """Return whether a line may be too long, searching line ends at the maximum distance."""
     at = 0
-    while len(text) - at > _LONGEST_LINE:
-        end = text.rfind("\n", at, at + _LONGEST_LINE + 1)
+    while len(text) - at > _MAX_LINE_LENGTH:
+        end = text.rfind("\n", at, at + _MAX_LINE_LENGTH + 1)
         if end < 0:
             return True
         at = end + 1
@@ -192,4 +192,4 @@ def _too_large(name: str) -> SourceError:
 
 
 def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:
-    return SourceError(refusal(line, 0, code, message, hint))
+    return SourceError(make_error_diagnostic(line, 0, code, message, hint))

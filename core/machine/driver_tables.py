@@ -4,108 +4,116 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from core.machine.hardware_model import AnalogModel, Hardware, HomeModel
+from core.machine.hardware_model import AnalogInputModel, Hardware, HomingModel
 from core.message import Message
 from core.table_schema import (
-    Driver,
+    DriverDeclaration,
     DriverTable,
-    FileReading,
-    Finding,
-    Values,
-    raw_at,
-    read_named,
+    FileFinding,
+    FileValues,
+    MachineFileReading,
+    find_raw_value,
+    find_unknown_keys,
+    format_toml_value,
+    read_named_tables,
     read_table,
-    unknown_keys,
-    written,
 )
 
-ANALOG_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
+ANALOG_INPUT_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
 _AXES = "XYZABC"
 
 
-def tables_of(drivers: Sequence[Driver]) -> tuple[DriverTable, ...]:
+def all_driver_tables(drivers: Sequence[DriverDeclaration]) -> tuple[DriverTable, ...]:
     """Return the tables of all drivers, in the order of the drivers."""
     return tuple(table for driver in drivers for table in driver.tables)
 
 
-def children_of(drivers: Sequence[Driver], path: str) -> tuple[str, ...]:
+def driver_subtables(drivers: Sequence[DriverDeclaration], path: str) -> tuple[str, ...]:
     """Return the names of the tables that drivers add inside one of the control's own tables."""
-    parted = (table.path.rpartition(".") for table in tables_of(drivers))
+    parted = (table.path.rpartition(".") for table in all_driver_tables(drivers))
     return tuple(name for parent, _, name in parted if parent == path)
 
 
 class DriverReading:
     """Reads the drivers' tables of a machine file; ``findings`` contains the errors in them."""
 
-    def __init__(self, file: FileReading, drivers: Sequence[Driver]) -> None:
+    def __init__(self, file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> None:
         self.file = file
-        self._tables = [table for table in tables_of(drivers) if table.path in file.tables]
-        self.findings: list[Finding] = []
+        self._tables = [table for table in all_driver_tables(drivers) if table.path in file.tables]
+        self.findings: list[FileFinding] = []
         for table in self._tables:
             raw = file.raw(table.path)
-            raw = {} if raw is None and table.always else raw
-            self.findings += read_table(raw, table.keys, table.path, file.values, table.children)
+            raw = {} if raw is None and table.is_always_read else raw
+            self.findings += read_table(raw, table.key_class, table.path, file.values, table.child_tables)
             self.findings += table.read_children(file)
         self.findings += _read_analog(file)
 
-    def hardware(self, outputs: Sequence[str]) -> Hardware:
+    def build_hardware(self, outputs: Sequence[str]) -> Hardware:
         """Return the hardware model in the model's units. The file must not have findings."""
         file, values = self.file, self.file.values
-        refreshed = {name: values.number(f"io.out.{name}.refresh_ms") for name in outputs}
+        refreshed = {name: values.read_number(f"io.out.{name}.refresh_ms") for name in outputs}
         return Hardware(
-            feeder=values.flag("machine.feeder"),
-            continues_alone=values.text("machine.screen_lost") == "continue",
+            uses_driver_host=values.read_flag("machine.feeder"),
+            continues_without_screen=values.text("machine.screen_lost") == "continue",
             spindle_driver=values.text("spindle.driver"),
-            tables={table.path: table.model(file) for table in self._tables},
-            analog={
-                name: values.model(AnalogModel, f"io.analog.{name}", name=name)
-                for name in file.names("io.analog")
+            tables={table.path: table.make_model(file) for table in self._tables},
+            analog_inputs={
+                name: values.make_model(AnalogInputModel, f"io.analog.{name}", name=name)
+                for name in file.list_table_keys("io.analog")
             },
-            homes={
-                name: values.model(HomeModel, f"axis.{name}.home")
+            homing_models={
+                name: values.make_model(HomingModel, f"axis.{name}.home")
                 for name in file.axes
-                if values.has(f"axis.{name}.home.order")
+                if values.has_values(f"axis.{name}.home.order")
             },
-            refresh={name: longest for name, longest in refreshed.items() if longest > 0.0},
+            refresh_timeouts_s={name: longest for name, longest in refreshed.items() if longest > 0.0},
         )
 
 
-def tables_there(data: Mapping[str, object], drivers: Sequence[Driver]) -> tuple[str, ...]:
+def existing_tables(file_data: Mapping[str, object], drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
     """Return the paths of the drivers' tables that a file has, or that always exist."""
     return tuple(
-        table.path for table in tables_of(drivers) if table.always or raw_at(data, table.path) is not None
+        table.path
+        for table in all_driver_tables(drivers)
+        if table.is_always_read or find_raw_value(file_data, table.path) is not None
     )
 
 
-def _read_analog(file: FileReading) -> Iterator[Finding]:
+def _read_analog(file: MachineFileReading) -> Iterator[FileFinding]:
     table = file.raw("io.analog")
     if isinstance(table, dict):
-        yield from unknown_keys(table, list(ANALOG_NAMES), "io.analog")
-        table = {name: entry for name, entry in table.items() if name in ANALOG_NAMES}
-    yield from read_named({} if table is None else table, AnalogModel, "io.analog", file.values)
+        yield from find_unknown_keys(table, list(ANALOG_INPUT_NAMES), "io.analog")
+        table = {name: entry for name, entry in table.items() if name in ANALOG_INPUT_NAMES}
+    yield from read_named_tables({} if table is None else table, AnalogInputModel, "io.analog", file.values)
 
 
 # --- rules between drivers and the rest of the file --------------------------------------------------------
 
 
-def broken(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+def check_driver_tables(
+    file: MachineFileReading, drivers: Sequence[DriverDeclaration]
+) -> Iterator[FileFinding]:
     """Yield findings about backend, spindle driver, ports, refreshed outputs and the driver tables."""
     yield from _backend(file, drivers)
     yield from _spindle(file, drivers)
-    yield from _orients(file, drivers)
-    yield from _count_rates(file.values, drivers)
+    yield from _check_orientation(file, drivers)
+    yield from _check_count_rates(file.values, drivers)
     yield from _renewed(file)
     yield from _guard(file)
-    yield from _ports(file.values, drivers)
-    for table in tables_of(drivers):
-        yield from table.rules(file)
+    yield from _check_serial_ports(file.values, drivers)
+    for table in all_driver_tables(drivers):
+        yield from table.check_rules(file)
 
 
-def _backend(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+def _backend(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
     for driver in drivers:
         path = driver.tables[0].path
-        if driver.backend and path not in file.tables and file.values.says("machine.backend", driver.backend):
-            yield Finding(
+        if (
+            driver.backend
+            and path not in file.tables
+            and file.values.has_text("machine.backend", driver.backend)
+        ):
+            yield FileFinding(
                 Message("[{path}]", path=path),
                 "",
                 Message(
@@ -116,9 +124,9 @@ def _backend(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
             )
 
 
-def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
     values, path = file.values, "spindle.driver"
-    if not values.has(path, "machine.backend"):
+    if not values.has_values(path, "machine.backend"):
         return
     word, backend = values.text(path), values.text("machine.backend")
     beside = {
@@ -132,11 +140,11 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         expected = Message(
             "this value must be {allowed} with machine.backend = {backend}",
             allowed=" or ".join(allowed),
-            backend=written(backend),
+            backend=format_toml_value(backend),
         )
-        yield Finding(path, written(word), expected, "broken-rule")
+        yield FileFinding(path, format_toml_value(word), expected, "broken-rule")
     elif word in beside and beside[word] not in file.tables:
-        yield Finding(
+        yield FileFinding(
             beside[word],
             "",
             Message('this table is missing but required by spindle.driver = "{word}"', word=word),
@@ -144,40 +152,45 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         )
 
 
-def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+def _check_orientation(
+    file: MachineFileReading, drivers: Sequence[DriverDeclaration]
+) -> Iterator[FileFinding]:
     """Check that an oriented spindle has a driver for it and is not the C axis."""
     values, path = file.values, "spindle.oriented"
-    if not values.has(path, "spindle.driver") or not values.flag(path):
+    if not values.has_values(path, "spindle.driver") or not values.read_flag(path):
         return
     word = values.text("spindle.driver")
-    can = [driver.spindle for driver in drivers if driver.orients]
+    can = [driver.spindle for driver in drivers if driver.can_orient_spindle]
     if word not in can:
         expected: str = Message(
             "this value must be false, because only a spindle with spindle.driver = {can} "
             "can be stopped at an angle",
             can=" or ".join(can),
         )
-        yield Finding(path, "true", expected, "broken-rule")
-    lathe = values.has("machine.kind", "axis.C.enabled", "axis.C.own_drive")
-    lathe = lathe and values.says("machine.kind", "lathe")
-    if lathe and values.flag("axis.C.enabled") and not values.flag("axis.C.own_drive"):
+        yield FileFinding(path, "true", expected, "broken-rule")
+    lathe = values.has_values("machine.kind", "axis.C.enabled", "axis.C.own_drive")
+    lathe = lathe and values.has_text("machine.kind", "lathe")
+    if lathe and values.read_flag("axis.C.enabled") and not values.read_flag("axis.C.own_drive"):
         expected = (
             "this value must be false, because the spindle is the C axis and is positioned "
             "as C; alternatively, set axis.C.own_drive = true"
         )
-        yield Finding(path, "true", expected, "broken-rule")
+        yield FileFinding(path, "true", expected, "broken-rule")
 
 
-def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
+def _check_count_rates(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
     """Check the counts per second of each axis against the limit of the backend."""
     rates = {driver.backend: driver.count_rate for driver in drivers}
     for axis in _AXES:
         path, count = f"axis.{axis}.vmax", f"axis.{axis}.count"
-        if not values.has(path, count, "machine.backend"):
+        if not values.has_values(path, count, "machine.backend"):
             continue
-        rate, limit = values.number(path) / values.number(count), rates[values.text("machine.backend")]
+        rate, limit = (
+            values.read_number(path) / values.read_number(count),
+            rates[values.text("machine.backend")],
+        )
         if rate > limit:
-            yield Finding(
+            yield FileFinding(
                 path,
                 "",
                 Message(
@@ -190,25 +203,29 @@ def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]
             )
 
 
-def _renewed(file: FileReading) -> Iterator[Finding]:
+def _renewed(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
     for path in file.terminals:
-        wanted = path.startswith("io.out.") and values.has(f"{path}.refresh_ms", f"{path}.safe")
-        if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
+        wanted = path.startswith("io.out.") and values.has_values(f"{path}.refresh_ms", f"{path}.safe")
+        if (
+            wanted
+            and values.read_number(f"{path}.refresh_ms")
+            and values.values_by_path[f"{path}.safe"] is not False
+        ):
             expected = "an output that switches off when it is not refreshed needs safe = false"
-            yield Finding(
+            yield FileFinding(
                 f"{path}.refresh_ms",
-                f"{1000 * values.number(f'{path}.refresh_ms'):g}",
+                f"{1000 * values.read_number(f'{path}.refresh_ms'):g}",
                 expected,
                 "broken-rule",
             )
 
 
-def _guard(file: FileReading) -> Iterator[Finding]:
+def _guard(file: MachineFileReading) -> Iterator[FileFinding]:
     path = "interlocks.guard_stops"
-    named = "io.in.guard" in file.terminals or "io.in.guard.at" in file.values.wrong
-    if file.values.has(path) and file.values.flag(path) and not named:
-        yield Finding(
+    named = "io.in.guard" in file.terminals or "io.in.guard.at" in file.values.invalid_paths
+    if file.values.has_values(path) and file.values.read_flag(path) and not named:
+        yield FileFinding(
             path,
             "true",
             "this setting needs an input named guard for the guard switch, which is on "
@@ -217,17 +234,17 @@ def _guard(file: FileReading) -> Iterator[Finding]:
         )
 
 
-def _ports(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
+def _check_serial_ports(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
     """Check that no serial port is used twice."""
     taken: dict[str, str] = {}
-    for path in (table.port for table in tables_of(drivers) if table.port):
-        if values.has(path):
+    for path in (table.serial_port_key for table in all_driver_tables(drivers) if table.serial_port_key):
+        if values.has_values(path):
             port = values.text(path)
             first = taken.setdefault(port, path)
             if first != path:
-                yield Finding(
+                yield FileFinding(
                     path,
-                    written(port),
+                    format_toml_value(port),
                     Message("{first} already uses this port; choose another port", first=first),
                     "broken-rule",
                 )

@@ -6,60 +6,60 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
 
-from core.key_declaration import Pair, Range, file_key, key_table
+from core.key_declaration import KeyRange, Pair, declare_key, make_key_table
 
 _Table = TypeVar("_Table")
 RED, AMBER, GREEN, BUZZER = "lamp_red", "lamp_amber", "lamp_green", "lamp_buzzer"
-LAMPS = (RED, AMBER, GREEN, BUZZER)
+LAMP_NAMES = (RED, AMBER, GREEN, BUZZER)
 """Outputs of [io.out] that the control lights by itself, where the machine file has them."""
-PREFIX = "lamp_"
-HALF = 0.5  # s that a blinking lamp is on, and off
+LAMP_PREFIX = "lamp_"
+BLINK_HALF_PERIOD_S = 0.5  # s that a blinking lamp is on, and off
 
 
-@key_table
-class AnalogModel:
+@make_key_table
+class AnalogInputModel:
     """A pot or a handwheel.
 
     ``range`` gives the values at both ends of the signal. ``switch`` is the name of the input of its switch.
     """
 
     name: str
-    terminal: str = file_key(
+    terminal: str = declare_key(
         name="at",
         meaning="Terminal of the signal, written as the backend requires. The handwheel can also be on the "
         "pendant, such as `pendant.REL_DIAL`.",
     )
-    range: Pair = file_key(
-        Range(-1000.0, 1000.0),
+    range: Pair = declare_key(
+        KeyRange(-1000.0, 1000.0),
         default=(0.0, 1.0),
         meaning="Values at the two ends of the signal: fractions of the programmed value for the pots, "
         "percent for `spindle_load`.",
     )
-    switch: str = file_key(
+    switch: str = declare_key(
         default="",
         meaning="Name of the input of the AUTO/OFF switch next to the pot, such as `spindle_auto`. "
         "Default: no switch.",
     )
-    counts_per_click: int = file_key(
-        Range(-1000, 1000),
+    counts_per_click: int = declare_key(
+        KeyRange(-1000, 1000),
         default=1,
         meaning="Handwheel: counts per detent; a negative value reverses the direction. A pot has no "
         "detents.",
     )
 
     @property
-    def low(self) -> float:
+    def low_value(self) -> float:
         """The value at the lower end of the signal."""
         return self.range[0]
 
     @property
-    def high(self) -> float:
+    def high_value(self) -> float:
         """The value at the upper end of the signal."""
         return self.range[1]
 
 
 @dataclass(frozen=True, slots=True)
-class HomeModel:
+class HomingModel:
     """Homing of a real drive: CiA 402 method, slow speed, and position of home from the reference mark."""
 
     method: int = 0  # 0: not specified
@@ -71,41 +71,41 @@ class HomeModel:
 class Hardware:
     """The wiring of the machine and the tables of its drivers."""
 
-    feeder: bool = False  # the drivers run in a separate process
-    continues_alone: bool = False  # the cycle continues while the screen does not respond
+    uses_driver_host: bool = False  # the drivers run in a separate process
+    continues_without_screen: bool = False  # the cycle continues while the screen does not respond
     spindle_driver: str = "sim"  # sim, cia402, vfd or grblhal
     tables: Mapping[str, object] = field(default_factory=dict)  # models of the driver tables, by path
-    analog: Mapping[str, AnalogModel] = field(default_factory=dict)
-    homes: Mapping[str, HomeModel] = field(default_factory=dict)  # homing models by axis
-    refresh: Mapping[str, float] = field(
+    analog_inputs: Mapping[str, AnalogInputModel] = field(default_factory=dict)
+    homing_models: Mapping[str, HomingModel] = field(default_factory=dict)  # homing models by axis
+    refresh_timeouts_s: Mapping[str, float] = field(
         default_factory=dict
     )  # output name → s after which the output switches off if it is not refreshed
 
-    def table(self, kind: type[_Table]) -> _Table | None:
+    def find_driver_table(self, kind: type[_Table]) -> _Table | None:
         """Return the model of the driver table of this type, or None if the file has no such table."""
         return next((each for each in self.tables.values() if isinstance(each, kind)), None)
 
 
-class Signal(NamedTuple):
+class MachineSignal(NamedTuple):
     """A machine signal with its lamp, buzzer and sounds.
 
-    ``buzz`` is the time in seconds for which the buzzer sounds at the start, in step with a blinking lamp.
-    ``tones`` are the frequencies in Hz that the computer plays, 0.2 s each.
+    ``buzzer_time_s`` is the time in seconds for which the buzzer sounds at the start, in step with a
+    blinking lamp. ``tones_hz`` are the frequencies in Hz that the computer plays, 0.2 s each.
     """
 
     lamp: str
-    blinks: bool
-    buzz: float
-    tones: tuple[int, ...]
-    use: str
+    is_blinking: bool
+    buzzer_time_s: float
+    tones_hz: tuple[int, ...]
+    description: str
 
 
-SIGNALS = {
-    "estop": Signal(RED, False, 0.0, (440, 440), "E-STOP"),
-    "alarm": Signal(RED, True, 3.0, (880, 440, 880, 440), "ALARM"),
-    "tool-life": Signal(AMBER, True, 1.0, (660, 660), "TOOL LIFE USED UP, OR PART MEASUREMENT DUE"),
-    "stop": Signal(AMBER, True, 1.0, (660, 440), "STOP: FEED HOLD, M00, SINGLE BLOCK"),
-    "part": Signal(AMBER, False, 0.5, (523, 659, 784), "PART FINISHED, NO CYCLE RUNNING"),
-    "runs": Signal(GREEN, False, 0.0, (), "CYCLE RUNNING"),
+MACHINE_SIGNALS = {
+    "estop": MachineSignal(RED, False, 0.0, (440, 440), "E-STOP"),
+    "alarm": MachineSignal(RED, True, 3.0, (880, 440, 880, 440), "ALARM"),
+    "tool-life": MachineSignal(AMBER, True, 1.0, (660, 660), "TOOL LIFE USED UP, OR PART MEASUREMENT DUE"),
+    "stop": MachineSignal(AMBER, True, 1.0, (660, 440), "STOP: FEED HOLD, M00, SINGLE BLOCK"),
+    "part": MachineSignal(AMBER, False, 0.5, (523, 659, 784), "PART FINISHED, NO CYCLE RUNNING"),
+    "runs": MachineSignal(GREEN, False, 0.0, (), "CYCLE RUNNING"),
 }
 """By the kind of what happens, as it is announced (MQTT, web hook) too."""

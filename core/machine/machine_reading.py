@@ -9,109 +9,128 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-from core.key_declaration import Schema
+from core.key_declaration import KeySchema
 from core.machine import axis_tables, machine_tables
-from core.machine.driver_tables import children_of
+from core.machine.driver_tables import driver_subtables
 from core.machine.machine_model import InputModel, OutputModel
 from core.message import Message
-from core.table_schema import Driver, Finding, Values, joined, missing, read_table, unknown_keys, written
+from core.table_schema import (
+    DriverDeclaration,
+    FileFinding,
+    FileValues,
+    find_unknown_keys,
+    format_toml_value,
+    join_path,
+    make_missing_finding,
+    read_table,
+)
 
 _NONE = "none"  # terminal of an output that the machine does not have, such as a manual collet
-HAND_RAPID = 100 * 25.4 / 60  # mm/s: jog and manual rapid of an OmniTurn, 100 in/min
+MANUAL_RAPID_MM_S = 100 * 25.4 / 60  # mm/s: jog and manual rapid of an OmniTurn, 100 in/min
 _DRIVE = 40.0  # Hz, position loop of a slow servo drive, which lags its command by 2 / (2 pi f) s
-_LAG = 2.0 / (2.0 * math.pi * _DRIVE)
-_C_STARTS = 3.0  # 1/s; 1/3 s to full speed, which a spindle drive without a C ramp can do
+_DRIVE_LAG_S = 2.0 / (2.0 * math.pi * _DRIVE)
+_C_ACCELERATION_RATE = 3.0  # 1/s; 1/3 s to full speed, which a spindle drive without a C ramp can do
 _C_SPEED, _C_COUNT = 200 * 6.0, 0.02  # degrees/s and degrees: the C option of a GT-75
 _STILL, _STILL_DEGREES = 0.2, 1.0  # mm and degrees, permitted position error at rest
-_CLOSES = 0.5  # s; such collets take 0.2 to 0.4 s, and the switch decides
-_SLIDES = ("X", "Y", "Z")
-Derived = float | None  # None: cannot be derived
-TO_BE_SAID = frozenset(("collet.close_s", "axis.C.vmax", "axis.C.count"))
+_COLLET_CLOSE_S = 0.5  # s; such collets take 0.2 to 0.4 s, and the switch decides
+_LINEAR_AXIS_NAMES = ("X", "Y", "Z")
+DerivedValue = float | None  # None: cannot be derived
+REQUIRED_KEYS = frozenset(("collet.close_s", "axis.C.vmax", "axis.C.count"))
 
 
-class Reading:
+class MachineReading:
     """Values and findings of one file, and the names of its signals and M codes."""
 
-    def __init__(self, data: Mapping[str, object], drivers: Sequence[Driver]) -> None:
+    def __init__(self, data: Mapping[str, object], drivers: Sequence[DriverDeclaration]) -> None:
         self.data = data
         self._drivers = drivers
-        self.values = Values(_inch(data))
-        self.kind = _kind(data)
+        self.values = FileValues(_read_unit(data))
+        self.kind = _read_kind(data)
         self.outputs: list[str] = []
-        self.absent: list[str] = []  # outputs that the machine does not have
+        self.missing_outputs: list[str] = []  # outputs that the machine does not have
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
-        self.findings = _unknown_tables(data, machine_tables.top_tables(drivers))
+        self.findings = _unknown_tables(data, machine_tables.top_level_tables(drivers))
         self._read()
 
     def _read(self) -> None:
-        self._table("machine", machine_tables.machine_fields(self._drivers))
-        for path, keys in machine_tables.plain_tables(self._drivers):
-            if path in machine_tables.TABLES_OF_A_LATHE and self.kind != "lathe":
+        self._table("machine", machine_tables.machine_table_fields(self._drivers))
+        for path, keys in machine_tables.tables_without_subtables(self._drivers):
+            if path in machine_tables.LATHE_TABLES and self.kind != "lathe":
                 self._of_a_lathe(path)
             else:
                 self._table(path, keys)
         self._axes()
-        io = self._parent("io", ("in", "out", "analog"))
-        self.absent, wired = _absent(io.get("out"))
-        self.outputs = self._named(wired, "io.out", OutputModel)
-        self.inputs = self._named(io.get("in"), "io.in", InputModel)
-        self.m_codes = self._m_codes(self.data.get("m_codes", {}))
-        self._language()
+        io = self._read_parent_table("io", ("in", "out", "analog"))
+        self.missing_outputs, wired = _split_missing_outputs(io.get("out"))
+        self.outputs = self._read_named_tables(wired, "io.out", OutputModel)
+        self.inputs = self._read_named_tables(io.get("in"), "io.in", InputModel)
+        self.m_codes = self._read_m_codes(self.data.get("m_codes", {}))
+        self._check_language()
 
-    def _language(self) -> None:
+    def _check_language(self) -> None:
         """Check the MDI language, whose permitted values depend on the kind of machine."""
         spoken = machine_tables.LANGUAGES[self.kind]
-        said = self.values.found.get("machine.language") or spoken[0]
-        self.values.found["machine.language"] = said
+        said = self.values.values_by_path.get("machine.language") or spoken[0]
+        self.values.values_by_path["machine.language"] = said
         if said not in spoken:
             expected = Message(
                 "the language must be {spoken} for a {kind}", kind=self.kind, spoken=" or ".join(spoken)
             )
-            self.findings.append(Finding("machine.language", written(said), expected, "broken-rule"))
+            self.findings.append(
+                FileFinding("machine.language", format_toml_value(said), expected, "broken-rule")
+            )
 
-    def _table(self, path: str, keys: Schema) -> None:
-        table = self.data.get(path, {} if path in machine_tables.MAY_BE_MISSING else None)
-        self._keys(table, path, keys, children_of(self._drivers, path))
+    def _table(self, path: str, keys: KeySchema) -> None:
+        table = self.data.get(path, {} if path in machine_tables.OPTIONAL_TABLES else None)
+        self._keys(table, path, keys, driver_subtables(self._drivers, path))
 
-    def _keys(self, table: object, path: str, keys: Schema, children: tuple[str, ...] = ()) -> None:
+    def _keys(self, table: object, path: str, keys: KeySchema, children: tuple[str, ...] = ()) -> None:
         if table is None:
             self.findings.append(
-                Finding(f"[{path}]", "", "this table is missing but required by TurnDesk", "missing")
+                FileFinding(f"[{path}]", "", "this table is missing but required by TurnDesk", "missing")
             )
         else:
             self.findings += read_table(table, keys, path, self.values, children)
 
-    def _parent(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
+    def _read_parent_table(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
         """Return a table that contains tables, or an empty one if the entry is not a table."""
         table = self.data.get(path, {})
         if not isinstance(table, dict):
             self.findings.append(
-                Finding(
+                FileFinding(
                     path,
-                    written(table),
+                    format_toml_value(table),
                     Message("this entry must be a table, [{path}]", path=path),
                     "not-a-table",
                 )
             )
             return {}
-        self.findings += unknown_keys(table, list(known), path)
+        self.findings += find_unknown_keys(table, list(known), path)
         return table
 
     def _axes(self) -> None:
-        lathe, rotary = self.kind == "lathe", machine_tables.ROTARY[self.kind]
-        axes = self._parent("axis", (*machine_tables.SLIDES[self.kind], *(("C",) if lathe else rotary)))
-        for name in machine_tables.SLIDES[self.kind]:
-            self._homed(axes.get(name), f"axis.{name}", axis_tables.Slide, axis_tables.Home)
+        lathe, rotary = self.kind == "lathe", machine_tables.ROTARY_AXES[self.kind]
+        axes = self._read_parent_table(
+            "axis", (*machine_tables.LINEAR_AXES[self.kind], *(("C",) if lathe else rotary))
+        )
+        for name in machine_tables.LINEAR_AXES[self.kind]:
+            self._read_axis_with_home(
+                axes.get(name), f"axis.{name}", axis_tables.LinearAxisKeys, axis_tables.HomingKeys
+            )
         if lathe:
             third = axes.get("C", {})  # most lathes have no C axis and no table for it
             linear = isinstance(third, dict) and third.get("linear") is True
-            self._keys(third, "axis.C", axis_tables.ThirdSlide if linear else axis_tables.LatheC)
+            self._keys(
+                third, "axis.C", axis_tables.LinearThirdAxisKeys if linear else axis_tables.LatheCAxisKeys
+            )
         for name in rotary:
             if name in axes:
-                self._homed(axes[name], f"axis.{name}", axis_tables.RotaryAxis, axis_tables.RotaryHome)
+                self._read_axis_with_home(
+                    axes[name], f"axis.{name}", axis_tables.RotaryAxisKeys, axis_tables.RotaryHomingKeys
+                )
 
-    def _homed(self, table: object, path: str, keys: Schema, home: Schema) -> None:
+    def _read_axis_with_home(self, table: object, path: str, keys: KeySchema, home: KeySchema) -> None:
         """Read the table of an axis and its ``home`` table."""
         self._keys(table, path, keys, ("home",))
         if isinstance(table, dict) and "home" in table:
@@ -120,45 +139,47 @@ class Reading:
     def _of_a_lathe(self, path: str) -> None:
         if path in self.data:
             self.findings.append(
-                Finding(f"[{path}]", "", "only a lathe can have this table; remove the table", "lathe-only")
+                FileFinding(
+                    f"[{path}]", "", "only a lathe can have this table; remove the table", "lathe-only"
+                )
             )
         else:  # the control needs these values for every machine
-            self._keys({}, path, machine_tables.TABLES_OF_A_LATHE[path])
+            self._keys({}, path, machine_tables.LATHE_TABLES[path])
 
-    def _m_codes(self, table: object) -> list[str]:
+    def _read_m_codes(self, table: object) -> list[str]:
         """Read the M codes that switch an output and those that are ignored; return their names."""
-        ignored, switching = _ignored(table)
-        names = {*self._named(ignored, "m_codes", machine_tables.IgnoredMCode)}
-        names |= {*self._named(switching, "m_codes", machine_tables.MCode)}
+        ignored, switching = _split_ignored_codes(table)
+        names = {*self._read_named_tables(ignored, "m_codes", machine_tables.IgnoredMCodeKeys)}
+        names |= {*self._read_named_tables(switching, "m_codes", machine_tables.MCodeKeys)}
         return [name for name in table if name in names] if isinstance(table, dict) else []
 
-    def _named(self, table: object, path: str, keys: Schema) -> list[str]:
+    def _read_named_tables(self, table: object, path: str, keys: KeySchema) -> list[str]:
         """Read tables with names chosen in the file; return the names."""
         if not isinstance(table, dict):
             self._keys(table, path, ())
             return []
         for name, entry in table.items():
-            self._keys(entry, joined(path, name), keys)
+            self._keys(entry, join_path(path, name), keys)
         return list(table)
 
 
-def _inch(data: Mapping[str, object]) -> bool | None:
+def _read_unit(data: Mapping[str, object]) -> bool | None:
     """Return whether the file uses inches, or None if its unit is missing or invalid."""
     machine = data.get("machine")
     units = machine.get("units") if isinstance(machine, dict) else None
     return units == "inch" if units in ("inch", "mm") else None
 
 
-def _kind(data: Mapping[str, object]) -> str:
+def _read_kind(data: Mapping[str, object]) -> str:
     """Return the kind of machine; "lathe" if it is missing or invalid."""
     machine = data.get("machine")
     kind = machine.get("kind") if isinstance(machine, dict) else None
-    return kind if isinstance(kind, str) and kind in machine_tables.KINDS else "lathe"
+    return kind if isinstance(kind, str) and kind in machine_tables.MACHINE_KINDS else "lathe"
 
 
-def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Finding]:
+def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[FileFinding]:
     findings = []
-    for found in unknown_keys(data, list(top), ""):
+    for found in find_unknown_keys(data, list(top), ""):
         known = Message(
             "this version of TurnDesk supports the tables {name}",
             name=", ".join(f"[{name}]" for name in top),
@@ -166,7 +187,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Find
         guess = found.expected.removeprefix("unknown key; ")
         near = Message("{guess} ", guess=guess) if guess.startswith("did") else ""
         findings.append(
-            Finding(
+            FileFinding(
                 Message("[{path}]", path=found.path),
                 "",
                 Message("unknown table; {nearest}{known}", nearest=near, known=known),
@@ -176,7 +197,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Find
     return findings
 
 
-def _ignored(table: object) -> tuple[dict[str, object], object]:
+def _split_ignored_codes(table: object) -> tuple[dict[str, object], object]:
     """Return the entries of ignored M codes, and the table without them."""
     if not isinstance(table, dict):
         return {}, table
@@ -187,7 +208,7 @@ def _ignored(table: object) -> tuple[dict[str, object], object]:
     return ignored, switching
 
 
-def _absent(outputs: object) -> tuple[list[str], object]:
+def _split_missing_outputs(outputs: object) -> tuple[list[str], object]:
     """Return the names of outputs that the machine does not have, and the table without them."""
     if not isinstance(outputs, dict):
         return [], outputs
@@ -195,46 +216,46 @@ def _absent(outputs: object) -> tuple[list[str], object]:
     return absent, {name: entry for name, entry in outputs.items() if name not in absent}
 
 
-def fill(reading: Reading) -> Iterator[Finding]:
+def fill_missing_values(reading: MachineReading) -> Iterator[FileFinding]:
     """Fill in the missing values; yield a finding for each value that has no default.
 
     A default that depends on an invalid value gives no second finding.
     """
     values = reading.values
-    for place, field in values.left_out.items():
-        if not _filled(place, reading) and place in TO_BE_SAID:
-            yield missing(place, field, values.inch)
+    for place, field in values.omitted_fields.items():
+        if not _filled(place, reading) and place in REQUIRED_KEYS:
+            yield make_missing_finding(place, field, values.is_inch)
 
 
-def _filled(place: str, reading: Reading) -> bool:
+def _filled(place: str, reading: MachineReading) -> bool:
     _, _, key = place.rpartition(".")
-    rule = RULES.get(place) or OF_AN_AXIS[key]
+    rule = DEFAULT_RULES.get(place) or AXIS_RULES[key]
     value = rule(reading, place)
     if value is not None:
-        reading.values.found[place] = value
+        reading.values.values_by_path[place] = value
     return value is not None
 
 
-def _of_slides(values: Values, key: str) -> list[float]:
-    paths = [f"axis.{name}.{key}" for name in _SLIDES]
-    return [values.number(path) for path in paths if values.has(path)]
+def _of_slides(values: FileValues, key: str) -> list[float]:
+    paths = [f"axis.{name}.{key}" for name in _LINEAR_AXIS_NAMES]
+    return [values.read_number(path) for path in paths if values.has_values(path)]
 
 
-def _slowest(reading: Reading, _place: str) -> Derived:
+def _slowest_axis_speed(reading: MachineReading, _place: str) -> DerivedValue:
     """Return the speed of the slowest linear axis, because a feed may be in any direction."""
     return min(_of_slides(reading.values, "vmax"), default=None)
 
 
-def _by_hand(reading: Reading, _place: str) -> Derived:
-    return min((HAND_RAPID, *_of_slides(reading.values, "vmax")))
+def _by_hand(reading: MachineReading, _place: str) -> DerivedValue:
+    return min((MANUAL_RAPID_MM_S, *_of_slides(reading.values, "vmax")))
 
 
-def _coarsest(reading: Reading, _place: str) -> Derived:
+def _coarsest_count(reading: MachineReading, _place: str) -> DerivedValue:
     """Return the largest count, because a programmed step must be at least one count on every axis."""
     return max(_of_slides(reading.values, "count"), default=None)
 
 
-def _brakes(reading: Reading, _place: str) -> Derived:
+def _spindle_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
     """Return the acceleration of the spindle.
 
     Most spindles brake faster, and too long a time only adds a wait.
@@ -242,40 +263,42 @@ def _brakes(reading: Reading, _place: str) -> Derived:
     return _number(reading.values, "spindle.accel_rpm_s")
 
 
-def _closes(reading: Reading, _place: str) -> Derived:
+def _collet_close_time(reading: MachineReading, _place: str) -> DerivedValue:
     """Return the closing time of the collet.
 
     It is 0.5 s if a switch confirms a closed collet. Otherwise, the file must specify it.
     """
-    return _CLOSES if "collet_closed" in reading.inputs or reading.kind != "lathe" else None
+    return _COLLET_CLOSE_S if "collet_closed" in reading.inputs or reading.kind != "lathe" else None
 
 
-def _neighbour(values: Values, place: str) -> Derived:
+def _similar_axis_value(values: FileValues, place: str) -> DerivedValue:
     """Return the same key of the first linear axis that has it, because axes usually have equal drives."""
     _, name, key = place.split(".")
-    said = [f"axis.{other}.{key}" for other in _SLIDES if name in _SLIDES]
-    return next((values.number(p) for p in said if values.has(p) and p not in values.left_out), None)
+    said = [f"axis.{other}.{key}" for other in _LINEAR_AXIS_NAMES if name in _LINEAR_AXIS_NAMES]
+    return next(
+        (values.read_number(p) for p in said if values.has_values(p) and p not in values.omitted_fields), None
+    )
 
 
-def _window(reading: Reading, place: str) -> Derived:
+def _following_error_window(reading: MachineReading, place: str) -> DerivedValue:
     """Return the value of another axis, or twice the lag of a slow drive at full speed."""
     values = reading.values
     vmax = _number(values, place.replace("fe_window", "vmax"))
-    return _neighbour(values, place) or (2.0 * _LAG * vmax if vmax else None)
+    return _similar_axis_value(values, place) or (2.0 * _DRIVE_LAG_S * vmax if vmax else None)
 
 
-def _arrived(reading: Reading, place: str) -> Derived:
+def _in_position_window(reading: MachineReading, place: str) -> DerivedValue:
     """Return the value of another axis, or four counts, because a drive at rest moves by one or two.
 
     For a coarse C, five counts are used.
     """
     values = reading.values
     count = _number(values, place.replace("in_pos", "count"))
-    counts = 4.0 if place.split(".")[1] in _SLIDES else 5.0
-    return _neighbour(values, place) or (counts * count if count else None)
+    counts = 4.0 if place.split(".")[1] in _LINEAR_AXIS_NAMES else 5.0
+    return _similar_axis_value(values, place) or (counts * count if count else None)
 
 
-def _stands(reading: Reading, place: str) -> Derived:
+def _standstill_tolerance(reading: MachineReading, place: str) -> DerivedValue:
     """Return the standstill tolerance of another axis, or 0.2 mm (1 degree).
 
     Cutting forces do not move an axis that far.
@@ -287,42 +310,46 @@ def _stands(reading: Reading, place: str) -> Derived:
     arrived = _number(values, place.replace("still_window", "in_pos"))
     if window is None or arrived is None:
         return None
-    usual = _STILL if place.split(".")[1] in _SLIDES else _STILL_DEGREES
-    return _neighbour(values, place) or min(max(usual, 4.0 * arrived), window)
+    usual = _STILL if place.split(".")[1] in _LINEAR_AXIS_NAMES else _STILL_DEGREES
+    return _similar_axis_value(values, place) or min(max(usual, 4.0 * arrived), window)
 
 
-def _c_speed(reading: Reading, _place: str) -> Derived:
+def _c_speed(reading: MachineReading, _place: str) -> DerivedValue:
     return None if _c_is_used(reading) else _C_SPEED
 
 
-def _c_count(reading: Reading, _place: str) -> Derived:
+def _c_count(reading: MachineReading, _place: str) -> DerivedValue:
     return None if _c_is_used(reading) else _C_COUNT
 
 
-def _c_starts(reading: Reading, _place: str) -> Derived:
+def _c_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
     """Return an acceleration to full speed in 1/3 s, limited by that of the spindle, which is C."""
     values = reading.values
     spindle, vmax = _number(values, "spindle.accel_rpm_s"), _number(values, "axis.C.vmax")
-    return min(6.0 * spindle, _C_STARTS * vmax) if spindle and vmax else None
+    return min(6.0 * spindle, _C_ACCELERATION_RATE * vmax) if spindle and vmax else None
 
 
-def _c_is_used(reading: Reading) -> bool:
-    return reading.values.has("axis.C.enabled") and reading.values.flag("axis.C.enabled")
+def _c_is_used(reading: MachineReading) -> bool:
+    return reading.values.has_values("axis.C.enabled") and reading.values.read_flag("axis.C.enabled")
 
 
-def _number(values: Values, path: str) -> Derived:
-    return values.number(path) if values.has(path) else None
+def _number(values: FileValues, path: str) -> DerivedValue:
+    return values.read_number(path) if values.has_values(path) else None
 
 
-Rule = Callable[[Reading, str], Derived]
-OF_AN_AXIS: dict[str, Rule] = {"fe_window": _window, "in_pos": _arrived, "still_window": _stands}
-RULES: dict[str, Rule] = {
-    "limits.max_feed": _slowest,
+DeriveValue = Callable[[MachineReading, str], DerivedValue]
+AXIS_RULES: dict[str, DeriveValue] = {
+    "fe_window": _following_error_window,
+    "in_pos": _in_position_window,
+    "still_window": _standstill_tolerance,
+}
+DEFAULT_RULES: dict[str, DeriveValue] = {
+    "limits.max_feed": _slowest_axis_speed,
     "limits.manual_rapid": _by_hand,
-    "limits.resolution": _coarsest,
-    "spindle.decel_rpm_s": _brakes,
-    "collet.close_s": _closes,
+    "limits.resolution": _coarsest_count,
+    "spindle.decel_rpm_s": _spindle_acceleration,
+    "collet.close_s": _collet_close_time,
     "axis.C.vmax": _c_speed,
     "axis.C.count": _c_count,
-    "axis.C.amax": _c_starts,
+    "axis.C.amax": _c_acceleration,
 }

@@ -7,40 +7,42 @@ from collections.abc import Callable, Iterator
 from itertools import combinations
 from typing import NamedTuple
 
-from core.key_declaration import Unit, shown
+from core.key_declaration import FileUnit, format_value
 from core.message import Message
-from core.table_schema import Finding, Values
+from core.table_schema import FileFinding, FileValues
 
 
 class Rule(NamedTuple):
-    """A rule. ``wrong`` returns the error at ``path``, or an empty string, if all ``needs`` are present."""
+    """A rule. ``find_error`` returns the error at ``path``, or an empty string, if all ``required_keys`` are
+    present.
+    """
 
-    path: str
-    needs: tuple[str, ...]
-    wrong: Callable[[Values], str]
+    key_path: str
+    required_keys: tuple[str, ...]
+    find_error: Callable[[FileValues], str]
 
 
-def broken(values: Values) -> Iterator[Finding]:
+def check_rules(values: FileValues) -> Iterator[FileFinding]:
     """Yield a finding for every rule that the valid values break."""
-    for rule in RULES:
-        if values.has(rule.path, *rule.needs) and (expected := rule.wrong(values)):
-            yield Finding(rule.path, "", expected, "broken-rule")
+    for rule in VALUE_RULES:
+        if values.has_values(rule.key_path, *rule.required_keys) and (expected := rule.find_error(values)):
+            yield FileFinding(rule.key_path, "", expected, "broken-rule")
 
 
-def _below(path: str, limit: str, why: str, unit: Unit) -> Rule:
+def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> Rule:
     """Return the rule that ``path`` must not exceed ``limit``."""
 
-    def wrong(values: Values) -> str:
-        value, bound = values.number(path), values.number(limit)
+    def wrong(values: FileValues) -> str:
+        value, bound = values.read_number(path), values.read_number(limit)
         if value <= bound * (1 + 1e-9):
             return ""
-        inch = bool(values.inch)
+        inch = bool(values.is_inch)
         return Message(
             "{unit} exceeds {limit} = {bound}; {why}",
-            unit=shown(value, unit, inch),
+            unit=format_value(value, unit, inch),
             limit=limit,
-            bound=shown(bound, unit, inch),
-            why=why,
+            bound=format_value(bound, unit, inch),
+            why=reason,
         )
 
     return Rule(path, (limit,), wrong)
@@ -49,8 +51,8 @@ def _below(path: str, limit: str, why: str, unit: Unit) -> Rule:
 def _home_inside(axis: str) -> Rule:
     path = f"axis.{axis}.travel"
 
-    def wrong(values: Values) -> str:
-        low, high = values.pair(path)
+    def wrong(values: FileValues) -> str:
+        low, high = values.read_pair(path)
         return "" if low <= 0.0 <= high else ("travel is measured from home, so 0 must be within the travel")
 
     return Rule(path, (), wrong)
@@ -59,8 +61,8 @@ def _home_inside(axis: str) -> Rule:
 def _fixed_points(axis: str) -> Rule:
     path = f"axis.{axis}.fixed_points"
 
-    def wrong(values: Values) -> str:
-        points, (low, high) = values.numbers(path), values.pair(f"axis.{axis}.travel")
+    def wrong(values: FileValues) -> str:
+        points, (low, high) = values.read_numbers(path), values.read_pair(f"axis.{axis}.travel")
         if len(points) > 1 and values.text("machine.kind") != "lathe":
             return (
                 "on a mill, each axis can have only one point, the reference of M92; only a "
@@ -69,10 +71,10 @@ def _fixed_points(axis: str) -> Rule:
         outside = next((point for point in points if not low <= point <= high), None)
         if outside is None:
             return ""
-        inch = bool(values.inch)
+        inch = bool(values.is_inch)
         point, ends = (
-            shown(outside, Unit.LENGTH, inch),
-            (shown(end, Unit.LENGTH, inch) for end in (low, high)),
+            format_value(outside, FileUnit.LENGTH, inch),
+            (format_value(end, FileUnit.LENGTH, inch) for end in (low, high)),
         )
         return Message(
             "{point} is outside axis.{axis}.travel ({ends}); the axis cannot move there",
@@ -84,18 +86,18 @@ def _fixed_points(axis: str) -> Rule:
     return Rule(path, (f"axis.{axis}.travel", "machine.kind"), wrong)
 
 
-def _jog_run_on(axis: str) -> Rule:
+def _jog_overrun_rule(axis: str) -> Rule:
     """Return the rule for the distance lease · vmax + vmax² / 2a that an axis travels after a lost jog."""
     vmax, amax = f"axis.{axis}.vmax", f"axis.{axis}.amax"
 
-    def wrong(values: Values) -> str:
-        v = values.number(vmax)
-        run_on = values.number("machine.lease_ms") * v + v * v / (2 * values.number(amax))
-        limit = values.number("limits.clearance")
+    def wrong(values: FileValues) -> str:
+        v = values.read_number(vmax)
+        run_on = values.read_number("machine.lease_ms") * v + v * v / (2 * values.read_number(amax))
+        limit = values.read_number("limits.clearance")
         if run_on <= limit * (1 + 1e-9):
             return ""
-        inch = bool(values.inch)
-        far, near = shown(run_on, Unit.LENGTH, inch), shown(limit, Unit.LENGTH, inch)
+        inch = bool(values.is_inch)
+        far, near = format_value(run_on, FileUnit.LENGTH, inch), format_value(limit, FileUnit.LENGTH, inch)
         return Message(
             "{axis} would travel {distance} at vmax after the signal of a jog key is lost, "
             "which exceeds limits.clearance = {nearest}; reduce machine.lease_ms",
@@ -107,16 +109,16 @@ def _jog_run_on(axis: str) -> Rule:
     return Rule("machine.lease_ms", (vmax, amax, "limits.clearance"), wrong)
 
 
-def _corner_tolerance(axis: str) -> Rule:
+def _corner_tolerance_rule(axis: str) -> Rule:
     """Return the rule that the tolerance is at least the one count by which joints always move."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
-    def wrong(values: Values) -> str:
-        said, least = values.number(path), math.sqrt(2.0) * values.number(count)
+    def wrong(values: FileValues) -> str:
+        said, least = values.read_number(path), math.sqrt(2.0) * values.read_number(count)
         if said == 0.0 or said >= least * (1 - 1e-9):
             return ""
-        inch = bool(values.inch)
-        least_shown = shown(least, Unit.LENGTH, inch)
+        inch = bool(values.is_inch)
+        least_shown = format_value(least, FileUnit.LENGTH, inch)
         return Message(
             "rounding to {count} already causes a deviation of {least_shown}; enter at least "
             "this value, or remove the entry",
@@ -130,8 +132,8 @@ def _corner_tolerance(axis: str) -> Rule:
 def _homing(axis: str) -> Rule:
     path = f"axis.{axis}.absolute"
 
-    def wrong(values: Values) -> str:
-        known = values.flag(path) or values.stated(f"axis.{axis}.home.order")
+    def wrong(values: FileValues) -> str:
+        known = values.read_flag(path) or values.is_stated(f"axis.{axis}.home.order")
         known = known or (axis == "C" and values.text("machine.kind") == "lathe")  # M19 finds it
         return (
             ""
@@ -144,12 +146,14 @@ def _homing(axis: str) -> Rule:
     return Rule(path, ("machine.kind",), wrong)
 
 
-def _home_orders() -> tuple[Rule, ...]:
+def _home_order_rules() -> tuple[Rule, ...]:
     """Return the rules that no two axes home at the same time."""
 
     def rule(one: str, other: str) -> Rule:
-        def wrong(values: Values) -> str:
-            same = values.number(f"axis.{one}.home.order") == values.number(f"axis.{other}.home.order")
+        def wrong(values: FileValues) -> str:
+            same = values.read_number(f"axis.{one}.home.order") == values.read_number(
+                f"axis.{other}.home.order"
+            )
             return (
                 Message(
                     "{one} and {other} must home one after the other; set different values of home.order",
@@ -165,10 +169,10 @@ def _home_orders() -> tuple[Rule, ...]:
     return tuple(rule(one, other) for one, other in combinations("XYZABC", 2))
 
 
-def _timeout(values: Values) -> str:
-    needed = values.pair("spindle.rpm")[1] / values.number("spindle.accel_rpm_s")
-    needed += values.number("spindle.at_speed_s")
-    if values.number("spindle.timeout_s") > needed:
+def _timeout(values: FileValues) -> str:
+    needed = values.read_pair("spindle.rpm")[1] / values.read_number("spindle.accel_rpm_s")
+    needed += values.read_number("spindle.at_speed_s")
+    if values.read_number("spindle.timeout_s") > needed:
         return ""
     return Message(
         "the spindle takes {needed} s to reach its maximum speed; the timeout must be longer",
@@ -176,9 +180,9 @@ def _timeout(values: Values) -> str:
     )
 
 
-def _stop_below(values: Values) -> str:
-    low = values.pair("spindle.rpm")[0]
-    below = values.number("spindle.stop_below")
+def _stop_below(values: FileValues) -> str:
+    low = values.read_pair("spindle.rpm")[0]
+    below = values.read_number("spindle.stop_below")
     return (
         ""
         if below < low
@@ -190,8 +194,8 @@ def _stop_below(values: Values) -> str:
     )
 
 
-def _feedback(values: Values) -> str:
-    wanted = values.flag("c_axis.feedback") and not values.flag("axis.C.enabled")
+def _feedback(values: FileValues) -> str:
+    wanted = values.read_flag("c_axis.feedback") and not values.read_flag("axis.C.enabled")
     return "C-axis feedback requires axis.C.enabled = true" if wanted else ""
 
 
@@ -200,42 +204,48 @@ def _slide(axis: str) -> tuple[Rule, ...]:
     return (
         _home_inside(axis),
         _fixed_points(axis),
-        _jog_run_on(axis),
-        _corner_tolerance(axis),
+        _jog_overrun_rule(axis),
+        _corner_tolerance_rule(axis),
         _homing(axis),
-        _below("limits.max_feed", f"{path}.vmax", "an axis cannot move faster than its vmax", Unit.FEED),
-        _below("limits.manual_rapid", f"{path}.vmax", "an axis cannot move faster than its vmax", Unit.FEED),
-        _below(f"{path}.home.speed", f"{path}.vmax", "an axis cannot move faster than its vmax", Unit.FEED),
-        _below(
+        _maximum_rule(
+            "limits.max_feed", f"{path}.vmax", "an axis cannot move faster than its vmax", FileUnit.FEED
+        ),
+        _maximum_rule(
+            "limits.manual_rapid", f"{path}.vmax", "an axis cannot move faster than its vmax", FileUnit.FEED
+        ),
+        _maximum_rule(
+            f"{path}.home.speed", f"{path}.vmax", "an axis cannot move faster than its vmax", FileUnit.FEED
+        ),
+        _maximum_rule(
             f"{path}.count",
             "limits.resolution",
             "one step of limits.resolution must be at least one count",
-            Unit.LENGTH,
+            FileUnit.LENGTH,
         ),
-        *_windows(axis, Unit.LENGTH),
+        *_window_rules(axis, FileUnit.LENGTH),
     )
 
 
-def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
+def _window_rules(axis: str, unit: FileUnit) -> tuple[Rule, ...]:
     """Return the rules that count, in-position, standstill and following error windows increase in order."""
     count, arrived, still, window = (
         f"axis.{axis}.{key}" for key in ("count", "in_pos", "still_window", "fe_window")
     )
     return (
-        _below(count, arrived, "the in-position window must be at least one count", unit),
-        _below(
+        _maximum_rule(count, arrived, "the in-position window must be at least one count", unit),
+        _maximum_rule(
             arrived,
             window,
             "the in-position window must not be larger than the following error limit",
             unit,
         ),
-        _below(
+        _maximum_rule(
             arrived,
             still,
             "the in-position window must not be larger than the standstill tolerance",
             unit,
         ),
-        _below(
+        _maximum_rule(
             still,
             window,
             "the standstill tolerance must not be larger than the following error limit",
@@ -245,13 +255,13 @@ def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
 
 
 def _rotary(axis: str) -> tuple[Rule, ...]:
-    return _home_inside(axis), _homing(axis), *_windows(axis, Unit.DEGREES)
+    return _home_inside(axis), _homing(axis), *_window_rules(axis, FileUnit.DEGREES)
 
 
 _QUEUE = "the setpoint queue would run empty"
 
 
-def _indexes(values: Values) -> str:
+def _find_turret_error(values: FileValues) -> str:
     """Reject a turret, because no driver indexes it and T2 would cut with another tool."""
     if values.text("tooling.kind") != "turret":
         return ""
@@ -260,36 +270,36 @@ def _indexes(values: Values) -> str:
     )
 
 
-RULES = (
+VALUE_RULES = (
     *_slide("X"),
     *_slide("Y"),
     *_slide("Z"),
     *_rotary("A"),
     *_rotary("B"),
     *_rotary("C"),
-    *_home_orders(),
-    _below(
+    *_home_order_rules(),
+    _maximum_rule(
         "machine.setpoint_ms",
         "machine.commit_ms",
         "the duration of a setpoint cannot be longer than machine.commit_ms",
-        Unit.MILLISECONDS,
+        FileUnit.MILLISECONDS,
     ),
-    _below("machine.commit_ms", "machine.low_water_ms", _QUEUE, Unit.MILLISECONDS),
-    _below("machine.low_water_ms", "machine.lookahead_ms", _QUEUE, Unit.MILLISECONDS),
-    _below(
+    _maximum_rule("machine.commit_ms", "machine.low_water_ms", _QUEUE, FileUnit.MILLISECONDS),
+    _maximum_rule("machine.low_water_ms", "machine.lookahead_ms", _QUEUE, FileUnit.MILLISECONDS),
+    _maximum_rule(
         "machine.lease_ms",
         "machine.lookahead_ms",
         "jog motion is queued at most machine.lookahead_ms ahead, so machine.lease_ms must not be longer",
-        Unit.MILLISECONDS,
+        FileUnit.MILLISECONDS,
     ),
-    _below(
+    _maximum_rule(
         "machine.commit_ms",
         "machine.lease_ms",
         "the jog watchdog would expire before the control renews it",
-        Unit.MILLISECONDS,
+        FileUnit.MILLISECONDS,
     ),
     Rule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),
     Rule("spindle.stop_below", ("spindle.rpm",), _stop_below),
-    Rule("tooling.kind", (), _indexes),
+    Rule("tooling.kind", (), _find_turret_error),
     Rule("c_axis.feedback", ("axis.C.enabled",), _feedback),
 )

@@ -5,8 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from core.key_declaration import Field, Range, Schema, Unit, Words, file_key, keys_of
-from core.machine.driver_tables import tables_of
+from core.key_declaration import (
+    FileUnit,
+    KeyField,
+    KeyRange,
+    KeySchema,
+    Words,
+    declare_key,
+    get_declared_keys,
+)
+from core.machine.driver_tables import all_driver_tables
 from core.machine.machine_model import (
     ClampingModel,
     ColletModel,
@@ -15,58 +23,58 @@ from core.machine.machine_model import (
     SpindleModel,
     Timing,
 )
-from core.table_schema import Driver
+from core.table_schema import DriverDeclaration
 
-KINDS = ("lathe", "mill")
+MACHINE_KINDS = ("lathe", "mill")
 LANGUAGES = {"lathe": ("omniturn", "sinumerik"), "mill": ("klartext",)}  # the first one is the default
-SLIDES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
+LINEAR_AXES = {"lathe": ("X", "Z"), "mill": ("X", "Y", "Z")}
 # rotary axes that a machine may have; C of a lathe is its spindle
-ROTARY = {"lathe": (), "mill": ("A", "B", "C")}
+ROTARY_AXES = {"lathe": (), "mill": ("A", "B", "C")}
 
 
-class General:
+class GeneralKeys:
     """Keys of [machine], without its times."""
 
-    name: str = file_key(meaning="Name of the machine, shown on the screen and in reports.")
-    units: str = file_key(
+    name: str = declare_key(meaning="Name of the machine, shown on the screen and in reports.")
+    units: str = declare_key(
         choices=("inch", "mm"), meaning="Unit of every length, feed and acceleration in this file."
     )
-    kind: str = file_key(
+    kind: str = declare_key(
         default="lathe",
-        choices=KINDS,
+        choices=MACHINE_KINDS,
         meaning="Kind of machine. It determines which axes, tables and languages the machine can have.",
     )
-    backend: str = file_key(
+    backend: str = declare_key(
         default="sim",
         choices=("sim",),
         meaning="Connection to the machine. Each backend other than the simulated machine needs the "
         "table with the same name.",
     )
-    language: str = file_key(
+    language: str = declare_key(
         default="",
         choices=("omniturn", "sinumerik", "klartext"),
         meaning='Language of MDI blocks. Default: "omniturn" on a lathe, "klartext" on a mill. A lathe '
         'accepts "omniturn" and "sinumerik", a mill only "klartext".',
     )
-    control: str = file_key(
+    control: str = declare_key(
         default="840d",
         choices=("802d", "808d", "828d", "840d"),
         meaning="SINUMERIK control for which the programs were written. It determines how TurnDesk reads "
         "codes that differ between these controls.",
     )
-    feeder: bool = file_key(
+    feeder: bool = declare_key(
         default=False,
         meaning='true: the drivers run in a separate process, the driver host. "canopen" and "hal" always '
         'use it, "grblhal" never.',
     )
-    screen_lost: str = file_key(
+    screen_lost: str = declare_key(
         default="hold",
         choices=("hold", "continue"),
         meaning="Reaction to a screen that has not answered for 3 s, or that was killed, during a program. "
         '"hold": feed hold. "continue": the machine finishes the part, and no other part begins before the '
         "screen responds again.",
     )
-    x_is: str = file_key(
+    x_is: str = declare_key(
         default="diameter",
         choices=("radius", "diameter"),
         meaning="Not used by this version. X is a radius everywhere in this file, and each language "
@@ -74,20 +82,20 @@ class General:
     )
 
 
-class COption:
+class CAxisKeys:
     """Keys of [c_axis] of a lathe."""
 
-    feedback: bool = file_key(
+    feedback: bool = declare_key(
         default=False,
         meaning="true: the drive reports that C has reached its angle. false: TurnDesk calculates when C "
         "arrives and warns if a dwell is too short.",
     )
 
 
-class Tooling:
+class ToolingKeys:
     """Keys of [tooling]."""
 
-    kind: str = file_key(
+    kind: str = declare_key(
         default="single",
         choices=("single", "gang", "turret"),
         meaning='"gang": all tools are on one plate, and the proof also checks the neighboring tools. '
@@ -95,40 +103,40 @@ class Tooling:
     )
 
 
-class Checks:
+class CheckKeys:
     """Keys of [checks]."""
 
-    silenced: Words = file_key(
+    silenced: Words = declare_key(
         default="",
         meaning="IDs of the checks of the part whose findings are only notes on this machine, such as "
         "`chip-load`; they are listed in [checks.md](../checks.md).",
     )
 
 
-class MCode:
+class MCodeKeys:
     """Keys of an M code that switches an output, [m_codes.…]."""
 
-    output: str = file_key(meaning="Name of the output in [io.out] that the code switches.")
-    on: bool = file_key(meaning="State to which the code switches the output.")
-    enabled: bool = file_key(
+    output: str = declare_key(meaning="Name of the output in [io.out] that the code switches.")
+    on: bool = declare_key(meaning="State to which the code switches the output.")
+    enabled: bool = declare_key(
         default=True, meaning="false: the code is defined, but programs that use it are rejected."
     )
 
 
-class IgnoredMCode:
+class IgnoredMCodeKeys:
     """Keys of an M code of another machine that has no effect on this one."""
 
-    ignored: str = file_key(
+    ignored: str = declare_key(
         choices=(True,),
         meaning="true: programs may contain this code of another machine, and it does nothing.",
     )
-    enabled: bool = file_key(default=True, meaning="false: programs that use the code are rejected.")
+    enabled: bool = declare_key(default=True, meaning="false: programs that use the code are rejected.")
 
 
 class _SpindleDriver:
     """The key of [spindle] whose choices come from the drivers."""
 
-    driver: str = file_key(
+    driver: str = declare_key(
         default="sim",
         choices=("sim",),
         meaning='Driver of the spindle: that of the backend ("cia402" for CANopen), or "vfd" for an '
@@ -136,40 +144,40 @@ class _SpindleDriver:
     )
 
 
-def _offered(keys: tuple[Field, ...], key: str, words: Iterable[str]) -> tuple[Field, ...]:
+def _add_driver_choices(keys: tuple[KeyField, ...], key: str, words: Iterable[str]) -> tuple[KeyField, ...]:
     """Return the keys, one of them with the choices that the drivers provide."""
     choices = tuple(word for word in words if word)
     return tuple(replace(each, choices=choices) if each.key == key else each for each in keys)
 
 
-def machine_fields(drivers: Sequence[Driver]) -> tuple[Field, ...]:
+def machine_table_fields(drivers: Sequence[DriverDeclaration]) -> tuple[KeyField, ...]:
     """Return the keys of [machine] with the backends of the drivers."""
-    keys = (*keys_of(General), *keys_of(Timing))
-    return _offered(keys, "backend", (driver.backend for driver in drivers))
+    keys = (*get_declared_keys(GeneralKeys), *get_declared_keys(Timing))
+    return _add_driver_choices(keys, "backend", (driver.backend for driver in drivers))
 
 
-def plain_tables(drivers: Sequence[Driver]) -> tuple[tuple[str, Schema], ...]:
+def tables_without_subtables(drivers: Sequence[DriverDeclaration]) -> tuple[tuple[str, KeySchema], ...]:
     """Return paths and keys of the tables that contain no other tables.
 
     The tables axis, io and m_codes contain tables, some with names chosen in the file. The spindle drivers
     come from the drivers.
     """
-    spindle = (*keys_of(SpindleModel), *keys_of(_SpindleDriver))
+    spindle = (*get_declared_keys(SpindleModel), *get_declared_keys(_SpindleDriver))
     return (
         ("limits", LimitsModel),
-        ("c_axis", COption),
-        ("spindle", _offered(spindle, "driver", (driver.spindle for driver in drivers))),
+        ("c_axis", CAxisKeys),
+        ("spindle", _add_driver_choices(spindle, "driver", (driver.spindle for driver in drivers))),
         ("collet", ColletModel),
         ("interlocks", Interlocks),
         ("clamping", ClampingModel),
-        ("tooling", Tooling),
-        ("checks", Checks),
+        ("tooling", ToolingKeys),
+        ("checks", CheckKeys),
     )
 
 
-def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
+def top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
     """Return the names of all tables that a file may have, in the order of the documentation."""
-    own = [table for table in tables_of(drivers) if "." not in table.path]
+    own = [table for table in all_driver_tables(drivers) if "." not in table.path]
     return (
         *(
             "machine",
@@ -185,22 +193,26 @@ def top_tables(drivers: Sequence[Driver]) -> tuple[str, ...]:
             "io",
             "m_codes",
         ),
-        *(table.path for table in own if table.always),
+        *(table.path for table in own if table.is_always_read),
         "kinematics",
-        *(table.path for table in own if not table.always),
+        *(table.path for table in own if not table.is_always_read),
     )
 
 
-class _NoCollet:
+class _NoColletKeys:
     """Keys of [collet] of a mill."""
 
-    open_s: float = file_key(Range(0.0, 10.0, Unit.SECONDS), default=0.0, meaning="A mill has no collet.")
-    close_s: float = file_key(Range(0.0, 10.0, Unit.SECONDS), default=0.0, meaning="A mill has no collet.")
+    open_s: float = declare_key(
+        KeyRange(0.0, 10.0, FileUnit.SECONDS), default=0.0, meaning="A mill has no collet."
+    )
+    close_s: float = declare_key(
+        KeyRange(0.0, 10.0, FileUnit.SECONDS), default=0.0, meaning="A mill has no collet."
+    )
 
 
 # A mill does not have these tables, and its model contains these defaults.
-TABLES_OF_A_LATHE: dict[str, type] = {"c_axis": COption, "collet": _NoCollet}
-MAY_BE_MISSING = ("limits", "collet", "clamping", "tooling", "checks", "c_axis", "interlocks", "m_codes")
+LATHE_TABLES: dict[str, type] = {"c_axis": CAxisKeys, "collet": _NoColletKeys}
+OPTIONAL_TABLES = ("limits", "collet", "clamping", "tooling", "checks", "c_axis", "interlocks", "m_codes")
 
 # M codes with a fixed meaning in the machine's language, which the machine file cannot assign.
 FIXED_M_CODES = {

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from core.key_declaration import Range, Triple, Unit, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, Triple, declare_key, make_key_table
 from core.message import Message
-from core.table_schema import Finding, Values, read_table, written
+from core.table_schema import FileFinding, FileValues, format_toml_value, read_table
 
-TABLE = "kinematics"
-MOST_ROTARIES = 2
+KINEMATICS_TABLE = "kinematics"
+MAX_ROTARY_AXES = 2
 _DIRECTIONS: dict[str, Triple] = {
     "X": (1.0, 0.0, 0.0),
     "Y": (0.0, 1.0, 0.0),
@@ -18,35 +18,37 @@ _DIRECTIONS: dict[str, Triple] = {
     "-Y": (0.0, -1.0, 0.0),
     "-Z": (0.0, 0.0, -1.0),
 }
-_ALONG = {"A": "X", "B": "Y", "C": "Z"}
+_AXIS_DIRECTIONS = {"A": "X", "B": "Y", "C": "Z"}
 
 
-@key_table
+@make_key_table
 class RotaryModel:
     """One rotary axis, described with all rotary axes at 0."""
 
     name: str
-    side: str = file_key(choices=("table", "head"), meaning="Whether the axis turns the table or the head.")
-    order: int = file_key(
-        Range(1, 9),
+    side: str = declare_key(
+        choices=("table", "head"), meaning="Whether the axis turns the table or the head."
+    )
+    order: int = declare_key(
+        KeyRange(1, 9),
         meaning="Position in the chain from the workpiece to the tool, the lowest number first; tables "
         "come before heads.",
     )
-    direction: str = file_key(
+    direction: str = declare_key(
         choices=tuple(_DIRECTIONS), meaning="Direction of the axis of rotation with all rotary axes at 0."
     )
-    point: Triple = file_key(
-        Range(-5000.0, 5000.0, Unit.LENGTH),
+    point: Triple = declare_key(
+        KeyRange(-5000.0, 5000.0, FileUnit.LENGTH),
         meaning="Any point on the axis of rotation: in machine positions for a table, measured from the "
         "spindle nose for a head.",
     )
-    modulo: bool = file_key(
+    modulo: bool = declare_key(
         default=False,
         meaning="true: the axis shows 0° to 360° and takes the shorter direction; it must not have `travel`.",
     )
 
     @property
-    def table(self) -> bool:
+    def is_table(self) -> bool:
         """True if the axis turns the table instead of the head."""
         return self.side == "table"
 
@@ -56,19 +58,19 @@ class RotaryModel:
         return _DIRECTIONS[self.direction]
 
 
-@key_table
+@make_key_table
 class KinematicsModel:
     """Position of the workpiece in mm and degrees, and the rotary axes.
 
     ``chain`` is the order of the axes from the workpiece to the tool.
     """
 
-    origin: Triple = file_key(
-        Range(-5000.0, 5000.0, Unit.LENGTH),
+    origin: Triple = declare_key(
+        KeyRange(-5000.0, 5000.0, FileUnit.LENGTH),
         meaning="Machine position of the workpiece zero with all rotary axes at 0.",
     )
-    basic_rotation: float = file_key(
-        Range(-180.0, 180.0, Unit.DEGREES),
+    basic_rotation: float = declare_key(
+        KeyRange(-180.0, 180.0, FileUnit.DEGREES),
         default=0.0,
         meaning="Rotation of the workpiece about Z relative to the machine.",
     )
@@ -78,28 +80,33 @@ class KinematicsModel:
 class KinematicsReading:
     """Reads [kinematics] if the file has it; ``findings`` contains the errors in the table."""
 
-    def __init__(self, data: Mapping[str, object], values: Values, kind: str, rotary: Sequence[str]) -> None:
+    def __init__(
+        self, data: Mapping[str, object], values: FileValues, kind: str, rotary: Sequence[str]
+    ) -> None:
         self._values = values
         self._names: list[str] = []
-        self._there = TABLE in data
-        self.findings: list[Finding] = []
+        self._there = KINEMATICS_TABLE in data
+        self.findings: list[FileFinding] = []
         if self._there:
-            self._read(data[TABLE], kind, rotary)
+            self._read(data[KINEMATICS_TABLE], kind, rotary)
 
-    def model(self) -> KinematicsModel | None:
+    def build_model(self) -> KinematicsModel | None:
         """Return the model of the table, or None without a table. There must be no findings."""
         if not self._there:
             return None
-        chain = (self._values.model(RotaryModel, f"{TABLE}.{name}", name=name) for name in self._names)
+        chain = (
+            self._values.make_model(RotaryModel, f"{KINEMATICS_TABLE}.{name}", name=name)
+            for name in self._names
+        )
         ordered = sorted(chain, key=lambda axis: axis.order)
-        return self._values.model(KinematicsModel, TABLE, chain=tuple(ordered))
+        return self._values.make_model(KinematicsModel, KINEMATICS_TABLE, chain=tuple(ordered))
 
     def _read(self, table: object, kind: str, rotary: Sequence[str]) -> None:
-        self.findings += read_table(table, KinematicsModel, TABLE, self._values, tuple(rotary))
+        self.findings += read_table(table, KinematicsModel, KINEMATICS_TABLE, self._values, tuple(rotary))
         if kind != "mill":
             self.findings.append(
-                Finding(
-                    f"[{TABLE}]",
+                FileFinding(
+                    f"[{KINEMATICS_TABLE}]",
                     "",
                     'only a mill can have this table; set machine.kind = "mill"',
                     "mill-only",
@@ -108,10 +115,10 @@ class KinematicsReading:
         if not isinstance(table, dict):
             return
         for name in rotary:
-            path = Message("{table}.{name}", table=TABLE, name=name)
+            path = Message("{table}.{name}", table=KINEMATICS_TABLE, name=name)
             if name not in table:
                 self.findings.append(
-                    Finding(
+                    FileFinding(
                         Message("[{path}]", path=path),
                         "",
                         Message("this table is missing; define where axis.{name} is located", name=name),
@@ -123,53 +130,53 @@ class KinematicsReading:
             self.findings += found
             if not found:
                 self._names.append(name)
-        self.findings += [*self._broken()]
+        self.findings += [*self._check_rules()]
 
-    def _broken(self) -> Iterator[Finding]:
+    def _check_rules(self) -> Iterator[FileFinding]:
         """Yield findings about rules between the axes, each checked if its values are valid."""
         values = self._values
-        if len(self._names) > MOST_ROTARIES:
-            yield Finding(
-                Message("[{table}]", table=TABLE),
+        if len(self._names) > MAX_ROTARY_AXES:
+            yield FileFinding(
+                Message("[{table}]", table=KINEMATICS_TABLE),
                 "",
-                Message("at most {most_rotaries} rotary axes are supported", most_rotaries=MOST_ROTARIES),
+                Message("at most {most_rotaries} rotary axes are supported", most_rotaries=MAX_ROTARY_AXES),
                 "broken-rule",
             )
         orders: dict[float, str] = {}
         for name in self._names:
-            path = Message("{table}.{name}", table=TABLE, name=name)
-            direction, order = values.text(f"{path}.direction"), values.number(f"{path}.order")
-            if direction.removeprefix("-") != _ALONG[name]:
+            path = Message("{table}.{name}", table=KINEMATICS_TABLE, name=name)
+            direction, order = values.text(f"{path}.direction"), values.read_number(f"{path}.order")
+            if direction.removeprefix("-") != _AXIS_DIRECTIONS[name]:
                 expected = Message(
                     "the direction must be {along} or -{along2}, because {name} rotates about that axis",
-                    along=_ALONG[name],
-                    along2=_ALONG[name],
+                    along=_AXIS_DIRECTIONS[name],
+                    along2=_AXIS_DIRECTIONS[name],
                     name=name,
                 )
-                yield Finding(f"{path}.direction", written(direction), expected, "broken-rule")
+                yield FileFinding(f"{path}.direction", format_toml_value(direction), expected, "broken-rule")
             if order in orders:
                 expected = Message(
                     "{orders} already uses this order number; choose another number",
                     orders=orders[order],
                 )
-                yield Finding(f"{path}.order", written(int(order)), expected, "broken-rule")
+                yield FileFinding(f"{path}.order", format_toml_value(int(order)), expected, "broken-rule")
             orders[order] = name
-            if values.flag(f"{path}.modulo") and values.has(f"axis.{name}.travel"):
-                low, _ = values.pair(f"axis.{name}.travel")
+            if values.read_flag(f"{path}.modulo") and values.has_values(f"axis.{name}.travel"):
+                low, _ = values.read_pair(f"axis.{name}.travel")
                 if abs(low) != float("inf"):
                     expected = Message(
                         "a modulo axis has no travel limits; remove axis.{name}.travel", name=name
                     )
-                    yield Finding(f"{path}.modulo", "true", expected, "broken-rule")
+                    yield FileFinding(f"{path}.modulo", "true", expected, "broken-rule")
         yield from self._heads_last(orders)
 
-    def _heads_last(self, orders: Mapping[float, str]) -> Iterator[Finding]:
+    def _heads_last(self, orders: Mapping[float, str]) -> Iterator[FileFinding]:
         head = False
         for _, name in sorted(orders.items()):
-            table = self._values.text(f"{TABLE}.{name}.side") == "table"
+            table = self._values.text(f"{KINEMATICS_TABLE}.{name}.side") == "table"
             if table and head:
                 expected = (
                     "tables must come before heads, because the order goes from the workpiece to the tool"
                 )
-                yield Finding(f"{TABLE}.{name}.order", "", expected, "broken-rule")
+                yield FileFinding(f"{KINEMATICS_TABLE}.{name}.order", "", expected, "broken-rule")
             head = head or not table

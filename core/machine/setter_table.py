@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.key_declaration import Range, Unit, file_key, key_table, shown
+from core.key_declaration import FileUnit, KeyRange, declare_key, format_value, make_key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, FileReading, Finding
+from core.table_schema import DriverDeclaration, DriverTable, FileFinding, MachineFileReading
 
 PROBE_INPUT = "io.in.probe"
-SEES = 0.1  # s, longest time from the touch to the command to brake
+MAX_TOUCH_DELAY_S = 0.1  # s, longest time from the touch to the command to brake
 
 
-@key_table
+@make_key_table
 class SetterModel:
     """Position of the stylus of a tool setter, and the motion of a touch-off.
 
@@ -22,50 +22,50 @@ class SetterModel:
     ``search``, retracts by ``back_off``, and touches again at ``slow``.
     """
 
-    x: float = file_key(
-        Range(-1000.0, 1000.0, Unit.LENGTH),
+    x: float = declare_key(
+        KeyRange(-1000.0, 1000.0, FileUnit.LENGTH),
         meaning="X position of the middle of the stylus, a radius measured from the spindle axis.",
     )
-    z: float = file_key(
-        Range(-3000.0, 3000.0, Unit.LENGTH),
+    z: float = declare_key(
+        KeyRange(-3000.0, 3000.0, FileUnit.LENGTH),
         meaning="Z position of the middle of the stylus, measured from part zero.",
     )
-    width: float = file_key(
-        Range(0.2, 100.0, Unit.LENGTH), meaning="Width of the stylus, or the diameter of a ball."
+    width: float = declare_key(
+        KeyRange(0.2, 100.0, FileUnit.LENGTH), meaning="Width of the stylus, or the diameter of a ball."
     )
-    overtravel: float = file_key(
-        Range(0.1, 50.0, Unit.LENGTH),
+    overtravel: float = declare_key(
+        KeyRange(0.1, 50.0, FileUnit.LENGTH),
         meaning="Distance by which the stylus may be pushed. The tool must be able to stop within it.",
     )
-    speed: float = file_key(
-        Range(0.05, 50.0, Unit.FEED), meaning="Speed at which the tool searches for the stylus."
+    speed: float = declare_key(
+        KeyRange(0.05, 50.0, FileUnit.FEED), meaning="Speed at which the tool searches for the stylus."
     )
-    slow: float = file_key(
-        Range(0.002, 5.0, Unit.FEED),
+    slow: float = declare_key(
+        KeyRange(0.002, 5.0, FileUnit.FEED),
         meaning="Speed of the second touch, which is measured; not above `speed`.",
     )
-    search: float = file_key(
-        Range(0.5, 200.0, Unit.LENGTH),
+    search: float = declare_key(
+        KeyRange(0.5, 200.0, FileUnit.LENGTH),
         default=12.7,
         meaning="Distance within which the tool searches for the stylus.",
     )
-    back_off: float = file_key(
-        Range(0.05, 20.0, Unit.LENGTH),
+    back_off: float = declare_key(
+        KeyRange(0.05, 20.0, FileUnit.LENGTH),
         default=1.27,
         meaning="Distance by which the tool retracts between the two touches.",
     )
 
-    def face(self, axis: str, sign: int) -> float:
+    def touch_position(self, axis: str, sign: int) -> float:
         """Return the tip position at which it touches the stylus in this direction, in mm from part zero."""
         middle = self.x if axis == "X" else self.z
         return middle - sign * self.width / 2.0
 
 
-def _rules(file: FileReading) -> Iterator[Finding]:
+def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
     values, here = file.values, "setter" in file.tables
     there = PROBE_INPUT in file.terminals
-    if here and not there and f"{PROBE_INPUT}.at" not in values.wrong:
-        yield Finding(
+    if here and not there and f"{PROBE_INPUT}.at" not in values.invalid_paths:
+        yield FileFinding(
             PROBE_INPUT,
             "",
             "this input is missing; [setter] needs an input that is on while the setter is touched",
@@ -74,45 +74,45 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     if not here:
         return
     if values.text("machine.kind") != "lathe":
-        yield Finding("[setter]", "", "only a lathe can have this table; remove the table", "lathe-only")
-    inch = bool(values.inch)
-    both = values.has("setter.slow", "setter.speed")
-    if both and values.number("setter.slow") > values.number("setter.speed"):
-        yield Finding(
+        yield FileFinding("[setter]", "", "only a lathe can have this table; remove the table", "lathe-only")
+    inch = bool(values.is_inch)
+    both = values.has_values("setter.slow", "setter.speed")
+    if both and values.read_number("setter.slow") > values.read_number("setter.speed"):
+        yield FileFinding(
             "setter.slow",
             "",
             "this speed is higher than setter.speed; the second touch must not be faster than the first",
             "broken-rule",
         )
     keys = ("setter.speed", "setter.overtravel", "axis.X.amax", "axis.Z.amax", "machine.commit_ms")
-    if values.has(*keys):
-        speed, over = values.number("setter.speed"), values.number("setter.overtravel")
-        accel = min(values.number("axis.X.amax"), values.number("axis.Z.amax"))
-        needed = runs_on(speed, accel, values.number("machine.commit_ms"))
+    if values.has_values(*keys):
+        speed, over = values.read_number("setter.speed"), values.read_number("setter.overtravel")
+        accel = min(values.read_number("axis.X.amax"), values.read_number("axis.Z.amax"))
+        needed = stopping_distance(speed, accel, values.read_number("machine.commit_ms"))
         if needed > over * (1 + 1e-9):
-            far = shown(needed, Unit.LENGTH, inch)
+            far = format_value(needed, FileUnit.LENGTH, inch)
             why = Message(
                 "the tool travels {distance} after the touch, which exceeds setter.overtravel; "
                 "reduce the speed",
                 distance=far,
             )
-            yield Finding("setter.speed", "", why, "broken-rule")
+            yield FileFinding("setter.speed", "", why, "broken-rule")
 
 
-def runs_on(speed: float, accel: float, commit: float) -> float:
+def stopping_distance(speed: float, accel: float, commit: float) -> float:
     """Return the largest distance from the touch to rest.
 
     It consists of the detection delay, the commit time and the braking distance.
     """
-    return speed * (SEES + commit) + speed * speed / (2.0 * accel)
+    return speed * (MAX_TOUCH_DELAY_S + commit) + speed * speed / (2.0 * accel)
 
 
-DRIVER = Driver(
+SETTER_DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "setter",
             SetterModel,
-            rules=_rules,
+            check_rules=_rules,
             purpose="A tool setter, or a probe at a fixed place, for touching off the tools of a lathe. "
             "It needs the input `probe`.",
         ),

@@ -6,31 +6,31 @@ import re
 from collections.abc import Iterator
 
 from core.message import Message
-from core.table_schema import FileReading, Finding, written
+from core.table_schema import FileFinding, MachineFileReading, format_toml_value
 
-WHEEL = "handwheel"
-ENABLE = "wheel_enable"  # pressed while the handwheel may move an axis
-FACTORS = {"wheel_x1": 1, "wheel_x10": 10, "wheel_x100": 100}  # times the smallest step
+HANDWHEEL = "handwheel"
+HANDWHEEL_ENABLE_INPUT = "wheel_enable"  # pressed while the handwheel may move an axis
+STEP_FACTORS = {"wheel_x1": 1, "wheel_x10": 10, "wheel_x100": 100}  # times the smallest step
 AXIS_BUTTON, STEP_BUTTON = "wheel_axis", "wheel_step"  # each press selects the next axis, the next step
-JOG_RAPID = "jog_rapid"  # pressed together with a jog button
+JOG_RAPID_INPUT = "jog_rapid"  # pressed together with a jog button
 
 
-def selector(axis: str) -> str:
+def axis_selector_input(axis_name: str) -> str:
     """Return the name of the input that is on while the axis selector switch is at this axis."""
-    return f"wheel_{axis.lower()}"
+    return f"wheel_{axis_name.lower()}"
 
 
-def jog_button(axis: str, sign: int) -> str:
+def jog_button_input(axis: str, sign: int) -> str:
     """Return the name of the input of the machine's jog button for this axis and direction."""
     return f"jog_{axis.lower()}_{'plus' if sign > 0 else 'minus'}"
 
 
-def wrong_jog(file: FileReading) -> Iterator[Finding]:
+def check_jog_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for every jog button whose axis does not exist."""
-    known = [JOG_RAPID, *(jog_button(axis, sign) for axis in file.axes for sign in (1, -1))]
-    for name in file.names("io.in"):
+    known = [JOG_RAPID_INPUT, *(jog_button_input(axis, sign) for axis in file.axes for sign in (1, -1))]
+    for name in file.list_table_keys("io.in"):
         if name.startswith("jog_") and name not in known:
-            yield Finding(
+            yield FileFinding(
                 Message("io.in.{name}", name=name),
                 "",
                 Message("this input is not a jog button; use one of {known}", known=", ".join(known)),
@@ -38,47 +38,51 @@ def wrong_jog(file: FileReading) -> Iterator[Finding]:
             )
 
 
-def wrong_wheel(file: FileReading) -> Iterator[Finding]:
+def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for every invalid count and every switch that is not a handwheel switch."""
-    values, analog = file.values, file.names("io.analog")
+    values, analog = file.values, file.list_table_keys("io.analog")
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"
-        if values.has(path) and name == WHEEL and values.number(path) == 0:
-            yield Finding(
+        if values.has_values(path) and name == HANDWHEEL and values.read_number(path) == 0:
+            yield FileFinding(
                 path,
                 "0",
                 "this value must be a number of counts, negative if the handwheel turns in the "
                 "opposite direction",
                 "broken-rule",
             )
-        if values.has(path) and name != WHEEL and values.number(path) != 1:
-            yield Finding(
+        if values.has_values(path) and name != HANDWHEEL and values.read_number(path) != 1:
+            yield FileFinding(
                 path,
-                f"{values.number(path):g}",
+                f"{values.read_number(path):g}",
                 "an override potentiometer has no detents; remove this key",
                 "broken-rule",
             )
-    selectors = [selector(axis) for axis in file.axes]
-    known = [ENABLE, *FACTORS, *selectors, AXIS_BUTTON, STEP_BUTTON]
-    there = file.names("io.in")
-    for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(FACTORS))):
+    selectors = [axis_selector_input(axis) for axis in file.axes]
+    known = [HANDWHEEL_ENABLE_INPUT, *STEP_FACTORS, *selectors, AXIS_BUTTON, STEP_BUTTON]
+    there = file.list_table_keys("io.in")
+    for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(STEP_FACTORS))):
         if button in there and (also := [name for name in switches if name in there]):
             why = Message(
                 "{also} already makes this selection; use either the button or the switches, not both",
                 also=also[0],
             )
-            yield Finding(f"io.in.{button}", "", why, "broken-rule")
+            yield FileFinding(f"io.in.{button}", "", why, "broken-rule")
     for name in there:
         if name.startswith("wheel_") and name not in known:
-            yield Finding(
+            yield FileFinding(
                 Message("io.in.{name}", name=name),
                 "",
                 Message("this input is not a handwheel switch; use one of {known}", known=", ".join(known)),
                 "broken-rule",
             )
-        elif name.startswith("wheel_") and WHEEL not in analog:
-            at = written(values.text(f"io.in.{name}.at")) if values.has(f"io.in.{name}.at") else ""
-            yield Finding(
+        elif name.startswith("wheel_") and HANDWHEEL not in analog:
+            at = (
+                format_toml_value(values.text(f"io.in.{name}.at"))
+                if values.has_values(f"io.in.{name}.at")
+                else ""
+            )
+            yield FileFinding(
                 f"io.in.{name}",
                 at,
                 "this input is a handwheel switch; add the handwheel under [io.analog]",
@@ -99,8 +103,8 @@ WHY = (
 )
 
 
-def wrong_palms(file: FileReading) -> Iterator[Finding]:
+def check_palm_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for every input that is one of two palm buttons."""
-    for name in file.names("io.in"):
+    for name in file.list_table_keys("io.in"):
         if _PALM.fullmatch(name):
-            yield Finding(f"io.in.{name}", "", WHY, "broken-rule")
+            yield FileFinding(f"io.in.{name}", "", WHY, "broken-rule")

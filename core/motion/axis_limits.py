@@ -87,7 +87,7 @@ class MotionLimits:
         return np.array(self.vmax)
 
     @property
-    def accelerations(self) -> FloatArray:
+    def acceleration_array(self) -> FloatArray:
         """``amax`` as an array (axes,)."""
         return np.array(self.amax)
 

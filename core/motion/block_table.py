@@ -19,7 +19,7 @@ from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove
-    from core.geometry.working_plane import CurvedMove, Travel
+    from core.geometry.working_plane import AxisMove, CurvedMove
 
 
 class ModalLike(Protocol):
@@ -30,9 +30,9 @@ class ModalLike(Protocol):
     """
 
     @property
-    def css_min(self) -> float: ...
+    def min_css_rpm(self) -> float: ...
     @property
-    def css_max(self) -> float | None: ...
+    def max_css_rpm(self) -> float | None: ...
     @property
     def offset_c(self) -> float: ...
     @property
@@ -62,7 +62,7 @@ class MotionBlock(Protocol):
     cz: float
     clockwise: bool
     plane: PlaneMove | None
-    travel: Travel | None
+    travel: AxisMove | None
 
     @property
     def kind(self) -> str: ...
@@ -72,10 +72,10 @@ class MotionBlock(Protocol):
     def modal(self) -> ModalLike: ...
 
 
-KINDS = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
-KINDS["plane"] = 7  # swivel of rotary axes in Klartext
+KIND_CODES = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
+KIND_CODES["plane"] = 7  # swivel of rotary axes in Klartext
 _COLUMNS = ("n", "x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z", "feed", "rpm", "cx", "cz")
-_read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c_locked")
+_read_columns = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c_locked")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +105,8 @@ class BlockTable:
     thread: BoolArray
     locked: BoolArray
     surface: FloatArray
-    lo: FloatArray
-    hi: FloatArray
+    min_rpm: FloatArray
+    max_rpm: FloatArray
     way: tuple[CurvedMove | None, ...]
     length: FloatArray
 
@@ -117,7 +117,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
     Raises MotionError with the number of the block if its kind cannot be planned or a value is not a number.
     """
     width = len(_COLUMNS) + 4
-    table = np.fromiter(chain.from_iterable(map(_read, blocks)), np.float64).reshape(-1, width)
+    table = np.fromiter(chain.from_iterable(map(_read_columns, blocks)), np.float64).reshape(-1, width)
     _demand_finite(table)
     kinds = _kinds(blocks)
     shift = table[:, 7:9]
@@ -128,7 +128,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
     end[:, 2] += table[:, 15]
     length = np.full(len(blocks), np.nan)
     if blocks[0].travel is not None:
-        start, end, length = _travels(blocks)
+        start, end, length = _travel_columns(blocks)
     surface, lo, hi = _surface(blocks, rpm_max)
     return BlockTable(
         n=table[:, 0],
@@ -138,24 +138,24 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
         axis=table[:, 7],
         feed=table[:, 9],
         rpm=np.minimum(np.abs(table[:, 10]), rpm_max),
-        per_rev=((table[:, 13] != 0.0) & (kinds != KINDS["rapid"])) | (kinds == KINDS["thread"]),
+        per_rev=((table[:, 13] != 0.0) & (kinds != KIND_CODES["rapid"])) | (kinds == KIND_CODES["thread"]),
         clockwise=table[:, 14] != 0.0,
-        rapid=_rapid(blocks, kinds),
-        arc=kinds == KINDS["arc"],
-        thread=kinds == KINDS["thread"],
+        rapid=_find_rapids(blocks, kinds),
+        arc=kinds == KIND_CODES["arc"],
+        thread=kinds == KIND_CODES["thread"],
         locked=table[:, 16] != 0.0,
         surface=surface,
-        lo=lo,
-        hi=hi,
+        min_rpm=lo,
+        max_rpm=hi,
         way=tuple(_way(block) for block in blocks),
         length=length,
     )
 
 
-def _rapid(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
+def _find_rapids(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
     """Return the blocks (m,) to which the rapid override applies."""
-    rapid: BoolArray = kinds == KINDS["rapid"]
-    for i in np.flatnonzero((kinds == KINDS["plane"]) | (kinds == KINDS["plane-line"])).tolist():
+    rapid: BoolArray = kinds == KIND_CODES["rapid"]
+    for i in np.flatnonzero((kinds == KIND_CODES["plane"]) | (kinds == KIND_CODES["plane-line"])).tolist():
         rapid[i] = blocks[i].rapid
     return rapid
 
@@ -164,7 +164,7 @@ def _way(block: MotionBlock) -> CurvedMove | None:
     return block.plane if block.travel is None else block.travel.way
 
 
-def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _travel_columns(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return start and end (m, axes) and length (m,) of blocks that specify all axes."""
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
@@ -178,9 +178,9 @@ def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, Flo
 
 def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:
     try:
-        return np.array([KINDS[b.kind] for b in blocks], dtype=np.float64)
+        return np.array([KIND_CODES[b.kind] for b in blocks], dtype=np.float64)
     except KeyError:
-        block = next(b for b in blocks if b.kind not in KINDS)
+        block = next(b for b in blocks if b.kind not in KIND_CODES)
         raise MotionError(
             Message(
                 "Block {number}: a {kind} block cannot be planned as a motion.",
@@ -220,8 +220,8 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
                     ),
                     "surface-speed",
                 )
-            surface[i], lo[i] = block.css, block.modal.css_min
-            hi[i] = rpm_max if block.modal.css_max is None else min(block.modal.css_max, rpm_max)
+            surface[i], lo[i] = block.css, block.modal.min_css_rpm
+            hi[i] = rpm_max if block.modal.max_css_rpm is None else min(block.modal.max_css_rpm, rpm_max)
     return surface, np.minimum(lo, hi), hi
 
 
@@ -231,7 +231,7 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
 _FIELDS = tuple(f.name for f in fields(BlockTable))
 
 
-class Row(Protocol):
+class MoveSeries(Protocol):
     """m straight moves of X and Z as columns (m,). All other values are those of ``pattern``.
 
     ``feed`` (m,) is None if the feed is that of ``pattern`` too.
@@ -252,28 +252,30 @@ class Row(Protocol):
     @property
     def feed(self) -> FloatArray | None: ...
     def __len__(self) -> int: ...
-    def __getitem__(self, at: slice, /) -> Row: ...
+    def __getitem__(self, at: slice, /) -> MoveSeries: ...
 
 
-Part = list[Any] | Row
+BlockGroup = list[Any] | MoveSeries
 """Blocks one by one, or a row."""
 
 
-def batches(blocks: Iterable[MotionBlock | Row], first: int, window: int) -> Iterator[tuple[list[Part], int]]:
-    """Yield batches of ``window`` blocks with their sizes; the first batch has ``first`` blocks.
+def split_into_batches(
+    blocks: Iterable[MotionBlock | MoveSeries], first_size: int, window_size: int
+) -> Iterator[tuple[list[BlockGroup], int]]:
+    """Yield batches of ``window_size`` blocks with their sizes; the first batch has ``first_size`` blocks.
 
     The last batch contains the remaining blocks. A full batch is yielded before the next block is read. Rows
     are divided at the end of a batch.
     """
-    batch: list[Part] = []
+    batch: list[BlockGroup] = []
     singles: list[Any] = []
-    room = size = first
+    room = size = first_size
     for each in blocks:
         if _is_row(each):
             rest = each
             while len(rest) >= room:
                 yield [*batch, rest[:room]], size
-                rest, batch, room, size = rest[room:], [], window, window
+                rest, batch, room, size = rest[room:], [], window_size, window_size
             if len(rest):
                 batch.append(rest)
                 room -= len(rest)
@@ -285,32 +287,32 @@ def batches(blocks: Iterable[MotionBlock | Row], first: int, window: int) -> Ite
         room -= 1
         if not room:
             yield batch, size
-            batch, room, size = [], window, window
+            batch, room, size = [], window_size, window_size
     if batch:
         yield batch, size - room
 
 
-def _is_row(each: MotionBlock | Row) -> TypeGuard[Row]:
+def _is_row(each: MotionBlock | MoveSeries) -> TypeGuard[MoveSeries]:
     return isinstance(each, Sequence)  # single blocks are not sequences
 
 
-def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
+def build_table(batch: Sequence[BlockGroup], rpm_max: float) -> BlockTable:
     """Return the table of all blocks of a batch; see ``read_blocks``."""
     unlike = [block for part in batch for block in (part if isinstance(part, list) else [part.pattern])]
     table = read_blocks(unlike, rpm_max)
     if all(isinstance(part, list) for part in batch):
         return table  # =
     counts = [n for part in batch for n in ([1] * len(part) if isinstance(part, list) else [len(part)])]
-    table = BlockTable(*[_repeated(getattr(table, name), counts) for name in _FIELDS])
+    table = BlockTable(*[_repeat_entries(getattr(table, name), counts) for name in _FIELDS])
     first = 0
     for part in batch:
         if not isinstance(part, list):
-            _put_in(table, slice(first, first + len(part)), part)
+            _write_series(table, slice(first, first + len(part)), part)
         first += len(part)
     return table
 
 
-def _repeated(column: Any, counts: Sequence[int]) -> Any:
+def _repeat_entries(column: Any, counts: Sequence[int]) -> Any:
     """Return a column (k,) or (k, axes), or the curved moves, with each entry repeated ``counts`` times."""
     if isinstance(column, tuple):
         return tuple(chain.from_iterable(map(repeat, column, counts)))
@@ -318,11 +320,11 @@ def _repeated(column: Any, counts: Sequence[int]) -> Any:
     return np.repeat(column.T, counts, axis=-1).T
 
 
-def _put_in(table: BlockTable, at: slice, row: Row) -> None:
+def _write_series(table: BlockTable, rows: slice, row: MoveSeries) -> None:
     """Write numbers, positions and feeds of a row of blocks to the slice ``at`` of the table."""
     like = row.pattern
-    table.n[at] = row.n
+    table.n[rows] = row.n
     if row.feed is not None:
-        table.feed[at] = row.feed
+        table.feed[rows] = row.feed
     for ends, x, z in ((table.start, row.x0, row.z0), (table.end, row.x, row.z)):
-        ends[at, 0], ends[at, 1] = x + like.offset_x, z + like.offset_z
+        ends[rows, 0], ends[rows, 1] = x + like.offset_x, z + like.offset_z

@@ -25,101 +25,116 @@ from core.motion.axis_limits import (
     MotionError,
     MotionLimits,
 )
-from core.motion.block_table import BlockTable, MotionBlock, Part, table_of
+from core.motion.block_table import BlockGroup, BlockTable, MotionBlock, build_table
 from core.motion.joint_easing import SUPPORT
 from core.motion.path_pieces import (
-    SAME_POINT,
-    Pieces,
-    ends_in_chord,
-    joined,
+    SAME_POINT_TOLERANCE,
+    PathPieces,
+    concatenate_pieces,
+    ends_with_chord,
+    extend_smoothed_pieces,
     make_pieces,
-    regrown,
-    unrounded,
+    smooth_joints,
 )
-from core.motion.speed_limits import by_radius, constant_rates, least_ratio, piece_limits, split_by_radius
+from core.motion.speed_limits import (
+    depends_on_radius,
+    find_block_speeds,
+    find_min_ratio,
+    find_piece_limits,
+    split_piece_by_radius,
+)
 
 if TYPE_CHECKING:
     from core.geometry.working_plane import CurvedMove
 
 
-CHORD_ERROR = 1e-4  # mm by which a chord may deviate from the move, measured on the part
-STEP_SHARE = 0.5  # fraction of the velocity step of a corner, so that joints of chords do not limit the speed
-_FIRST = 16  # initial number of chords
-_HALVINGS = 30  # largest number of halvings
+MAX_CHORD_ERROR_MM = 1e-4  # mm by which a chord may deviate from the move, measured on the part
+VELOCITY_STEP_FRACTION = (
+    0.5  # fraction of the velocity step of a corner, so that joints of chords do not limit the speed
+)
+_FIRST_CHORDS = 16  # initial number of chords
+_MAX_HALVINGS = 30  # largest number of halvings
 # mm; shorter chords are not halved, because distances along a path have an accuracy of 1e-9 mm
-_SHORTEST = 1e-5
+_MIN_CHORD_MM = 1e-5
 _ROUNDING = 1e-9
-_SPOTS = np.array([0.25, 0.5, 0.75])  # fractions of a chord at which its deviation is checked
-GAP = 1e-6  # mm or degrees between the end of a block and the start of the next
+_CHECK_FRACTIONS = np.array([0.25, 0.5, 0.75])  # fractions of a chord at which its deviation is checked
+BLOCK_GAP_TOLERANCE = 1e-6  # mm or degrees between the end of a block and the start of the next
 
 
-def with_parts(table: BlockTable) -> BoolArray:
+def find_divided_blocks(table: BlockTable) -> BoolArray:
     """Return the blocks (m,) that are divided into several pieces."""
-    parted = _fed_by_c(table)
+    parted = _find_c_fed_moves(table)
     if table.way.count(None) < len(table.way):
         parted = parted | np.array([way is not None for way in table.way], dtype=bool)
     return parted
 
 
-def parts_of(whole: Pieces, table: BlockTable, limits: MotionLimits, index: int) -> Pieces:
+def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, index: int) -> PathPieces:
     """Return piece ``index`` as chords, or as a move of X and Z followed by the remaining rotation of C.
 
     Raises MotionError if C turns too little for the move of X and Z.
     """
-    piece, move = whole[index : index + 1], table.way[index]
+    piece, move = pieces[index : index + 1], table.way[index]
     if move is None:
-        return _slide_by_c(piece, table, index)
-    if move.length <= SAME_POINT:
+        return _divide_c_fed_move(piece, table, index)
+    if move.length <= SAME_POINT_TOLERANCE:
         return piece[:0]
-    share = np.array([0.0, 1.0]) if move.straight else chords(move, float(piece.rate[0]), limits)
-    points = move.machine(share)
+    share = (
+        np.array([0.0, 1.0]) if move.is_straight else divide_into_chords(move, float(piece.rate[0]), limits)
+    )
+    points = move.machine_positions(share)
     points += table.start[index] - points[0]
     points[-1] = table.end[index]
-    return _chain(piece, points, np.diff(share) * move.length)
+    return _make_straight_pieces(piece, points, np.diff(share) * move.length)
 
 
-def chords(move: CurvedMove, rate: float, limits: MotionLimits) -> FloatArray:
+def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits) -> FloatArray:
     """Return fractions of a curved move (k+1,) between which the axes may move proportionally.
 
-    The chords deviate from the move by at most CHORD_ERROR, measured on the part. Neighboring chords differ
-    so little that their joint permits the feed ``rate`` (mm/s), unless the move itself has a corner there.
+    The chords deviate from the move by at most MAX_CHORD_ERROR_MM, measured on the part. Neighboring chords
+    differ so little that their joint permits the feed ``rate`` (mm/s), unless the move itself has a corner
+    there.
     """
-    share, nearest = np.linspace(0.0, 1.0, _FIRST + 1), move.nearest()
+    share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.critical_fraction()
     if np.abs(share - nearest).min() > _ROUNDING:
         share = np.sort(np.append(share, nearest))
-    for _ in range(_HALVINGS):
-        ends = move.machine(share)
-        wide = _leaves(move, share, ends) | _jerks(move, share, ends, OVERRIDE_MAX * rate, limits)
-        wide &= np.diff(share) * move.length > _SHORTEST
+    for _ in range(_MAX_HALVINGS):
+        ends = move.machine_positions(share)
+        wide = _deviates(move, share, ends) | _exceeds_velocity_step(
+            move, share, ends, OVERRIDE_MAX * feed_mm_s, limits
+        )
+        wide &= np.diff(share) * move.length > _MIN_CHORD_MM
         if not wide.any():
             break
         share = np.sort(np.append(share, 0.5 * (share[:-1] + share[1:])[wide]))
     return share
 
 
-def _leaves(move: CurvedMove, share: FloatArray, ends: FloatArray) -> BoolArray:
-    """Return which chords (k,) between ``ends`` at ``share`` deviate too much on the part."""
-    span, change = np.diff(share), np.diff(ends, axis=0)
-    true = move.machine((share[:-1] + _SPOTS[:, None] * span).ravel())
-    chord = (ends[:-1] + _SPOTS[:, None, None] * change).reshape(true.shape)
-    seen = move.part(np.concatenate([chord, true]))
+def _deviates(move: CurvedMove, fractions: FloatArray, ends: FloatArray) -> BoolArray:
+    """Return which chords (k,) between ``ends`` at ``fractions`` deviate too much on the part."""
+    span, change = np.diff(fractions), np.diff(ends, axis=0)
+    true = move.machine_positions((fractions[:-1] + _CHECK_FRACTIONS[:, None] * span).ravel())
+    chord = (ends[:-1] + _CHECK_FRACTIONS[:, None, None] * change).reshape(true.shape)
+    seen = move.workpiece_points(np.concatenate([chord, true]))
     off = seen[: len(true)] - seen[len(true) :]
-    worst: FloatArray = (off**2).sum(axis=1).reshape(len(_SPOTS), len(span)).max(axis=0)
-    return worst > CHORD_ERROR**2
+    worst: FloatArray = (off**2).sum(axis=1).reshape(len(_CHECK_FRACTIONS), len(span)).max(axis=0)
+    return worst > MAX_CHORD_ERROR_MM**2
 
 
-def _jerks(
-    move: CurvedMove, share: FloatArray, ends: FloatArray, speed: float, limits: MotionLimits
+def _exceeds_velocity_step(
+    move: CurvedMove, fractions: FloatArray, ends: FloatArray, speed: float, limits: MotionLimits
 ) -> BoolArray:
     """Return the chords (k,) at whose ends the velocity step of an axis would be too large."""
-    length = np.diff(share) * move.length
+    length = np.diff(fractions) * move.length
     direction = np.diff(ends, axis=0) / length[:, None]
     turn = np.abs(np.diff(direction, axis=0))
     mean = 0.5 * (length[:-1] + length[1:])
-    fastest = np.minimum(speed, least_ratio(limits.speeds, np.abs(direction)))
-    bend = least_ratio(limits.accelerations * CENTRIPETAL_SHARE, turn / mean[:, None])
+    fastest = np.minimum(speed, find_min_ratio(limits.speeds, np.abs(direction)))
+    bend = find_min_ratio(limits.acceleration_array * CENTRIPETAL_SHARE, turn / mean[:, None])
     v = np.minimum(np.minimum(fastest[:-1], fastest[1:]), np.sqrt(bend))
-    sharp = (v[:, None] * turn > STEP_SHARE * limits.accelerations * limits.interval).any(axis=1)
+    sharp = (v[:, None] * turn > VELOCITY_STEP_FRACTION * limits.acceleration_array * limits.interval).any(
+        axis=1
+    )
     long = mean > v * limits.interval  # shorter chords belong to a corner of the move itself
     wide = np.zeros(len(length), dtype=bool)
     wide[:-1] |= sharp & long
@@ -127,7 +142,7 @@ def _jerks(
     return wide
 
 
-def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
+def _make_straight_pieces(piece: PathPieces, points: FloatArray, length: FloatArray) -> PathPieces:
     """Return straight pieces through ``points`` (k+1, axes) with the given ``length`` (k,)."""
     parts = piece[np.zeros(len(length), dtype=np.int64)]
     zero = np.zeros(len(length))
@@ -138,12 +153,12 @@ def _chain(piece: Pieces, points: FloatArray, length: FloatArray) -> Pieces:
         centre=np.zeros((len(length), 2)),
         radius=zero,
         angle=zero,
-        curvature=zero,
+        curvatures=zero,
         length=length,
     )
 
 
-def _fed_by_c(table: BlockTable) -> BoolArray:
+def _find_c_fed_moves(table: BlockTable) -> BoolArray:
     """Return the straight moves (m,) with a feed per revolution in which the spindle turns as C.
 
     The revolutions of C count for their feed.
@@ -152,13 +167,13 @@ def _fed_by_c(table: BlockTable) -> BoolArray:
         return np.zeros(len(table.n), dtype=bool)
     delta = table.end - table.start
     lathe = np.isnan(table.length)
-    slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT
-    turned = table.locked & (np.abs(delta[:, 2]) > SAME_POINT)
+    slides = np.hypot(delta[:, 0], delta[:, 1]) > SAME_POINT_TOLERANCE
+    turned = table.locked & (np.abs(delta[:, 2]) > SAME_POINT_TOLERANCE)
     fed: BoolArray = lathe & table.per_rev & ~table.arc & slides & turned
     return fed
 
 
-def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
+def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> PathPieces:
     """Return the move of X and Z with C, followed by the rotation of C that the move does not need."""
     start, end, feed = table.start[index], table.end[index], float(table.feed[index])
     way = float(np.hypot(*(end - start)[:2]))
@@ -176,35 +191,35 @@ def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
         )
     there = end.copy()
     there[2] = start[2] + np.copysign(min(needed, abs(turn)), turn)
-    first = _chain(piece, np.array([start, there]), np.array([way]))
+    first = _make_straight_pieces(piece, np.array([start, there]), np.array([way]))
     rest = (abs(turn) - needed) * feed / 360.0
-    if rest <= SAME_POINT:
-        return _chain(piece, np.array([start, end]), np.array([way]))
-    return joined([first, _chain(piece, np.array([there, end]), np.array([rest]))])
+    if rest <= SAME_POINT_TOLERANCE:
+        return _make_straight_pieces(piece, np.array([start, end]), np.array([way]))
+    return concatenate_pieces([first, _make_straight_pieces(piece, np.array([there, end]), np.array([rest]))])
 
 
 @dataclass(frozen=True, slots=True)
-class Path:
+class MotionPath:
     """A path in machine coordinates that can be planned, with n pieces of m blocks.
 
     ``s`` (n+1,) is the distance of the joints along the path in mm. It continues from earlier pieces that a
-    builder has dropped. ``cap`` (n,) in mm/s and ``a`` (n,) in mm/s² are the limits along the pieces.
-    ``corner`` (n+1,) are the squared speed limits of the joints, infinite at both ends. The block with the
-    number ``blocks[i]`` has the pieces ``first[i]:first[i+1]``, none if it has no length. ``start`` (axes,)
-    is the first point of the path. The last ``loose`` joints may still move, by the resolution of the words,
-    when more blocks are added.
+    builder has dropped. ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in mm/s² are the limits along
+    the pieces. ``joint_limits`` (n+1,) are the squared speed limits of the joints, infinite at both ends.
+    The block with the number ``blocks[i]`` has the pieces ``first[i]:first[i+1]``, none if it has no length.
+    ``start`` (axes,) is the first point of the path. The last ``loose_joint_count`` joints may still move,
+    by the resolution of the words, when more blocks are added.
     """
 
-    pieces: Pieces
-    s: FloatArray
-    cap: FloatArray
-    a: FloatArray
-    corner: FloatArray
-    blocks: IntArray
-    first: IntArray
-    start: FloatArray
+    pieces: PathPieces
+    joint_distances: FloatArray
+    speed_caps: FloatArray
+    accelerations: FloatArray
+    joint_limits: FloatArray
+    block_numbers: IntArray
+    first_pieces: IntArray
+    start_position: FloatArray
     limits: MotionLimits
-    loose: int = 0
+    loose_joint_count: int = 0
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -212,37 +227,39 @@ class Path:
     @property
     def length(self) -> float:
         """Length of the whole path, in mm."""
-        return float(self.s[-1] - self.s[0])
+        return float(self.joint_distances[-1] - self.joint_distances[0])
 
     @property
-    def reach(self) -> float:
+    def corner_reach_mm(self) -> float:
         """The largest distance around a joint that affects its limit, in mm: the path of one interval."""
-        return float(self.limits.interval * self.cap.max(initial=0.0))
+        return float(self.limits.interval * self.speed_caps.max(initial=0.0))
 
-    def block_span(self, n: int) -> tuple[float, float]:
+    def block_span(self, number: int) -> tuple[float, float]:
         """Return the distances at which block ``n`` starts and ends.
 
         Raises MotionError if the block is not on this path.
         """
-        i = int(np.searchsorted(self.blocks, n))
-        if i == len(self.blocks) or self.blocks[i] != n:
+        i = int(np.searchsorted(self.block_numbers, number))
+        if i == len(self.block_numbers) or self.block_numbers[i] != number:
             raise MotionError(
-                Message("Block {number} is not on the planned path.", number=n), "block-not-on-path"
+                Message("Block {number} is not on the planned path.", number=number), "block-not-on-path"
             )
-        return float(self.s[self.first[i]]), float(self.s[self.first[i + 1]])
+        return float(self.joint_distances[self.first_pieces[i]]), float(
+            self.joint_distances[self.first_pieces[i + 1]]
+        )
 
-    def piece_at(self, s: FloatArray) -> IntArray:
+    def piece_at(self, distances: FloatArray) -> IntArray:
         """Return the index of the piece at each distance; at a joint, that of the piece that starts there."""
-        found: IntArray = np.searchsorted(self.s, s, side="right") - 1
+        found: IntArray = np.searchsorted(self.joint_distances, distances, side="right") - 1
         return np.clip(found, 0, max(len(self) - 1, 0))
 
-    def point(self, s: FloatArray, piece: IntArray | None = None) -> FloatArray:
+    def positions_at(self, distances: FloatArray, piece: IntArray | None = None) -> FloatArray:
         """Return the machine positions (k, axes) at the distances ``s`` (k,), exact on lines and arcs."""
         if not len(self):
-            return np.tile(self.start, (len(s), 1))
-        index = self.piece_at(s) if piece is None else piece
+            return np.tile(self.start_position, (len(distances), 1))
+        index = self.piece_at(distances) if piece is None else piece
         pieces = self.pieces[index]
-        return pieces.point(np.clip(s - self.s[index], 0.0, pieces.length))
+        return pieces.point(np.clip(distances - self.joint_distances[index], 0.0, pieces.length))
 
 
 class PathBuilder:
@@ -257,21 +274,21 @@ class PathBuilder:
         self._limits = limits
         self.rpm_max = rpm_max
         self._closed = False
-        self._parts: list[Pieces] = []
-        self._written: Pieces | None = None  # the last pieces as programmed
+        self._parts: list[PathPieces] = []
+        self._written: PathPieces | None = None  # the last pieces as programmed
         self._blocks: list[IntArray] = []
         self._counts: list[IntArray] = []
         self._start: FloatArray | None = None
         self._end: FloatArray | None = None
         self._s0 = 0.0
-        self._path: Path | None = None
+        self._path: MotionPath | None = None
 
     @property
-    def holds_blocks(self) -> bool:
+    def has_blocks(self) -> bool:
         """True if the path contains blocks."""
         return self._start is not None
 
-    def add(self, blocks: Iterable[MotionBlock], reached: float = -np.inf) -> None:
+    def add_blocks(self, blocks: Iterable[MotionBlock], reached_distance: float = -np.inf) -> None:
         """Append blocks that move.
 
         Raises MotionError, and adds nothing, if one of them cannot be planned. ``reached`` is the distance
@@ -280,11 +297,11 @@ class PathBuilder:
         """
         batch = list(blocks)
         if batch:
-            self.add_batch([batch], reached)
+            self.add_batch([batch], reached_distance)
 
-    def add_batch(self, batch: Sequence[Part], reached: float = -np.inf) -> None:
-        """Append blocks given as lists and rows, which must not be empty; see ``add``."""
-        table = table_of(batch, self.rpm_max)
+    def add_batch(self, batch: Sequence[BlockGroup], reached_distance: float = -np.inf) -> None:
+        """Append blocks given as lists and rows, which must not be empty; see ``add_blocks``."""
+        table = build_table(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
                 Message(
@@ -294,29 +311,32 @@ class PathBuilder:
                 "path-ended",
             )
         _demand_unbroken(table, self._end)
-        pieces, counts = _pieces(table, self._limits)
+        pieces, counts = _make_block_pieces(table, self._limits)
         if self._start is None:
             self._start = table.start[0].copy()
         self._end = table.end[-1].copy()
-        self._append(pieces, reached)
+        self._append_pieces(pieces, reached_distance)
         self._blocks.append(table.n.astype(np.int64))
         self._counts.append(counts)
         self._path = None
 
-    def _append(self, new: Pieces, reached: float) -> None:
+    def _append_pieces(self, pieces: PathPieces, reached: float) -> None:
         """Append pieces and move the joints of short chords before the old end, which the new ones affect."""
-        known = joined([*self._parts, new[:0]])
+        known = concatenate_pieces([*self._parts, pieces[:0]])
         if self._written is None or not len(known):  # blocks without length leave nothing to continue
-            self._parts, self._written = [unrounded(new, self._limits)], new[-2 * SUPPORT :]
+            self._parts, self._written = [smooth_joints(pieces, self._limits)], pieces[-2 * SUPPORT :]
             return
         end = self._s0 + float(known.length.sum())
         redo = min(SUPPORT, len(known), len(self._written))
         if reached > end - float(known.length[len(known) - redo :].sum()):
             redo = 0
-        self._parts = [known[: len(known) - redo], regrown(known, self._written, new, redo, self._limits)]
-        self._written = joined([self._written, new[-2 * SUPPORT :]])[-2 * SUPPORT :]
+        self._parts = [
+            known[: len(known) - redo],
+            extend_smoothed_pieces(known, self._written, pieces, redo, self._limits),
+        ]
+        self._written = concatenate_pieces([self._written, pieces[-2 * SUPPORT :]])[-2 * SUPPORT :]
 
-    def path(self) -> Path:
+    def build_path(self) -> MotionPath:
         """Return the path of all blocks that were added and not dropped.
 
         Raises MotionError if no block has been added.
@@ -325,61 +345,68 @@ class PathBuilder:
             self._path = self._make()
         return self._path
 
-    def close(self) -> None:
+    def end_path(self) -> None:
         """End the path with an exact stop, so that no blocks can be added."""
         self._closed, self._path = True, None
 
-    def drop_before(self, n: int) -> None:
+    def drop_blocks_before(self, block_number: int) -> None:
         """Drop the blocks before block ``n``, except those that its corner limit still needs.
 
         These are the last block with a length and, for short chords, those within one interval.
         """
-        path = self.path()
-        keep = int(np.searchsorted(path.blocks, n))
-        piece = int(path.first[keep])
+        path = self.build_path()
+        keep = int(np.searchsorted(path.block_numbers, block_number))
+        piece = int(path.first_pieces[keep])
         if piece == 0:
             return
-        near = int(np.searchsorted(path.s, path.s[piece] - path.reach, side="right")) - 1
-        keep = int(np.searchsorted(path.first, max(min(piece - 1, near), 0), side="right")) - 1
-        piece = int(path.first[keep])
-        self._s0 = float(path.s[piece])
-        self._start = path.point(path.s[piece : piece + 1])[0]
+        near = (
+            int(
+                np.searchsorted(
+                    path.joint_distances, path.joint_distances[piece] - path.corner_reach_mm, side="right"
+                )
+            )
+            - 1
+        )
+        keep = int(np.searchsorted(path.first_pieces, max(min(piece - 1, near), 0), side="right")) - 1
+        piece = int(path.first_pieces[keep])
+        self._s0 = float(path.joint_distances[piece])
+        self._start = path.positions_at(path.joint_distances[piece : piece + 1])[0]
         self._parts = [path.pieces[piece:]]
-        self._blocks = [path.blocks[keep:]]
-        self._counts = [np.diff(path.first)[keep:]]
+        self._blocks = [path.block_numbers[keep:]]
+        self._counts = [np.diff(path.first_pieces)[keep:]]
         self._path = None
 
-    def _make(self) -> Path:
+    def _make(self) -> MotionPath:
         if self._start is None:
             raise MotionError("The path has no blocks to plan. Add the blocks first.", "no-block")
-        pieces = joined(self._parts)
-        cap, a, corner = piece_limits(pieces, self._limits, more=not self._closed)
-        return Path(
+        pieces = concatenate_pieces(self._parts)
+        cap, a, corner = find_piece_limits(pieces, self._limits, has_more_pieces=not self._closed)
+        return MotionPath(
             pieces=pieces,
-            s=self._s0 + np.concatenate([[0.0], np.cumsum(pieces.length)]),
-            cap=cap,
-            a=a,
-            corner=corner,
-            blocks=np.concatenate(self._blocks),
-            first=np.concatenate([[0], np.cumsum(np.concatenate(self._counts))]),
-            start=self._start,
+            joint_distances=self._s0 + np.concatenate([[0.0], np.cumsum(pieces.length)]),
+            speed_caps=cap,
+            accelerations=a,
+            joint_limits=corner,
+            block_numbers=np.concatenate(self._blocks),
+            first_pieces=np.concatenate([[0], np.cumsum(np.concatenate(self._counts))]),
+            start_position=self._start,
             limits=self._limits,
-            loose=SUPPORT if not self._closed and ends_in_chord(pieces, self._limits) else 0,
+            loose_joint_count=SUPPORT if not self._closed and ends_with_chord(pieces, self._limits) else 0,
         )
 
 
-def _pieces(table: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
+def _make_block_pieces(table: BlockTable, limits: MotionLimits) -> tuple[PathPieces, IntArray]:
     """Return the pieces of the blocks and the number of pieces (m,) of each block."""
-    whole = make_pieces(table, constant_rates(table))
+    whole = make_pieces(table, find_block_speeds(table))
     counts = (whole.length > 0.0).astype(np.int64)
-    turned, mapped = (counts > 0) & by_radius(table), with_parts(table)
+    turned, mapped = (counts > 0) & depends_on_radius(table), find_divided_blocks(table)
     parts, done = [], 0
     for i in np.flatnonzero(turned | mapped).tolist():
-        split = parts_of(whole, table, limits, i) if mapped[i] else split_by_radius(whole, table, i)
+        split = divide_piece(whole, table, limits, i) if mapped[i] else split_piece_by_radius(whole, table, i)
         if len(split) != 1 or mapped[i]:
             parts += [whole[done:i], split]
             counts[i], done = len(split), i + 1
-    pieces = joined([*parts, whole[done:]])
+    pieces = concatenate_pieces([*parts, whole[done:]])
     long = pieces.length > 0.0
     return pieces if long.all() else pieces[long], counts
 
@@ -387,7 +414,7 @@ def _pieces(table: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
 def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
     before = table.end[:-1] if end is None else np.vstack([end, table.end[:-1]])
     gap = np.abs(table.start[len(table.n) - len(before) :] - before)
-    if (gap > GAP).any():
+    if (gap > BLOCK_GAP_TOLERANCE).any():
         i = int(gap.max(axis=1).argmax()) + len(table.n) - len(before)
         raise MotionError(
             Message(

@@ -1,6 +1,6 @@
 """The plan of a path: look-ahead, squared speeds at the joints, and phases of constant acceleration.
 
-To add a jerk limit, change ``profile_of``, which gives each piece an acceleration, a cruise and a
+To add a jerk limit, change ``build_profile``, which gives each piece an acceleration, a cruise and a
 deceleration. A jerk limit replaces these three phases by seven, and ``2·a·length`` by the speed that such a
 ramp reaches.
 """
@@ -14,17 +14,17 @@ import numpy as np
 
 from core.message import Message
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError
-from core.motion.motion_path import Path
-from core.motion.motion_profile import Phases, Profile
+from core.motion.motion_path import MotionPath
+from core.motion.motion_profile import MotionProfile, Phases
 
 # --- look-ahead -----------------------------------------------------------------------------------------
 
 
-_FEW = 24  # number of limits up to which a plain loop is faster than arrays
+_FEW_PIECES = 24  # number of limits up to which a plain loop is faster than arrays
 _SUMS_ROW = 256  # =
 
 
-def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
+def limit_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i+1] ≤ r[i] + gain[i].
 
     With squared speeds as ``limit`` and 2·a·length as ``gain`` (n,) ≥ 0, the result is the speed that
@@ -32,7 +32,7 @@ def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     gain.
     """
     count = len(limit)
-    if count <= _FEW:
+    if count <= _FEW_PIECES:
         return _one_by_one(limit.tolist(), gain.tolist())
     rows = -(-count // _SUMS_ROW)
     top = float(limit[np.isfinite(limit)].max(initial=0.0))
@@ -44,16 +44,16 @@ def reachable_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     limits[:count] = limit
     table, sums = limits.reshape(rows, _SUMS_ROW), np.cumsum(steps.reshape(rows, _SUMS_ROW), axis=1)
     local = np.minimum.accumulate(table - sums, axis=1)
-    carried = np.minimum(local, _carry(local[:, -1].tolist(), sums[:, -1].tolist())[:, None]) + sums
-    return _sharpened(carried.reshape(-1)[:count], limit, steps[1:count])
+    carried = np.minimum(local, _carry_limits(local[:, -1].tolist(), sums[:, -1].tolist())[:, None]) + sums
+    return _remove_rounding(carried.reshape(-1)[:count], limit, steps[1:count])
 
 
-def reachable_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
+def limit_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i].
 
     The result is the speed from which braking is possible.
     """
-    return reachable_forward(limit[::-1], gain[::-1])[::-1]
+    return limit_forward(limit[::-1], gain[::-1])[::-1]
 
 
 def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
@@ -63,7 +63,7 @@ def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
     return np.array(reached)
 
 
-def _carry(lows: list[float], totals: list[float]) -> FloatArray:
+def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
     """Return the limit at the start of each row that follows from the earlier rows."""
     carry, carries = np.inf, []
     for low, total in zip(lows, totals, strict=True):
@@ -72,7 +72,7 @@ def _carry(lows: list[float], totals: list[float]) -> FloatArray:
     return np.array(carries)
 
 
-def _sharpened(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
+def _remove_rounding(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
     """Return the minima without the rounding error of the sums, wherever a limit applies."""
     sharp = rough.copy()
     np.minimum(limit[1:], rough[:-1] + steps, out=sharp[1:])
@@ -84,56 +84,60 @@ def _sharpened(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> Float
 # --- phases ---------------------------------------------------------------------------------------------
 
 
-_TINY = 1e-12  # relative length below which a ramp or a cruise is a rounding error
+_TINY_LENGTH = 1e-12  # relative length below which a ramp or a cruise is a rounding error
 
 
-def at_rest(path: Path, at: float) -> Profile:
+def make_rest_profile(path: MotionPath, distance: float) -> MotionProfile:
     """Return a profile without motion at the distance ``at``."""
     none = np.empty(0)
     phases = Phases(none, none, none, none, none, np.empty(0, dtype=np.int64))
-    return Profile(path=path, start_s=at, end_s=at, duration=0.0, phases=phases)
+    return MotionProfile(
+        path=path, start_distance=distance, end_distance=distance, duration_s=0.0, phases=phases
+    )
 
 
-def profile_of(
-    path: Path,
-    first: int,
-    at: float,
+def build_profile(
+    path: MotionPath,
+    first_piece: int,
+    start_distance: float,
     *,
     length: FloatArray,
-    a: FloatArray,
-    cap: FloatArray,
+    accelerations: FloatArray,
+    speed_caps: FloatArray,
     speeds: FloatArray,
-) -> Profile:
+) -> MotionProfile:
     """Return the phases of n consecutive pieces from ``first`` on, starting at the distance ``at``.
 
-    ``cap`` (n,) and ``speeds`` (n+1,) are squared speeds: the feed within the pieces, and the speeds at the
-    joints. A piece accelerates to its cap or as far as its length permits, cruises, and decelerates. A piece
-    entered above its cap decelerates first.
+    ``speed_caps`` (n,) and ``speeds`` (n+1,) are squared speeds: the feed within the pieces, and the speeds
+    at the joints. A piece accelerates to its cap or as far as its length permits, cruises, and decelerates.
+    A piece entered above its cap decelerates first.
     """
-    peak = np.minimum(np.maximum(cap, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + a * length)
+    peak = np.minimum(
+        np.maximum(speed_caps, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + accelerations * length
+    )
     v, vp = np.sqrt(speeds), np.sqrt(peak)
     v0, v1 = v[:-1], v[1:]
-    up, cruise, down = _distances(length, a, v0, vp, v1)
-    s = path.s[first : first + len(length)].copy()
-    s[0] = at
+    up, cruise, down = _distances(length, accelerations, v0, vp, v1)
+    s = path.joint_distances[first_piece : first_piece + len(length)].copy()
+    s[0] = start_distance
     times = np.zeros((len(length), 3))
     for k, (dist, total) in enumerate(((up, v0 + vp), (cruise, vp + vp), (down, vp + v1))):
         np.divide(2.0 * dist, total, out=times[:, k], where=total > 0.0)
     kept = np.flatnonzero(times > 0.0)
     dt = times.take(kept)
     t = np.concatenate([[0.0], np.cumsum(dt)])
-    return Profile(
+    return MotionProfile(
         path=path,
-        start_s=at,
-        end_s=min(float(s[-1] + length[-1]), float(path.s[first + len(length)])),
-        duration=float(t[-1]),
+        start_distance=start_distance,
+        end_distance=min(float(s[-1] + length[-1]), float(path.joint_distances[first_piece + len(length)])),
+        duration_s=float(t[-1]),
         phases=Phases(
             t=t[:-1],
             dt=dt,
             s=_in_turn(s, s + up, s + up + cruise).take(kept),
             v=_in_turn(v0, vp, vp).take(kept),
             a=_in_turn(vp - v0, vp - vp, v1 - vp).take(kept) / dt,
-            piece=np.repeat(np.arange(first, first + len(length)), 3).take(kept),
+            piece=np.repeat(np.arange(first_piece, first_piece + len(length)), 3).take(kept),
         ),
     )
 
@@ -150,32 +154,32 @@ def _distances(
     length: FloatArray, a: FloatArray, v0: FloatArray, peak: FloatArray, v1: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the lengths (n,) of acceleration, cruise and deceleration for the speeds between them."""
-    tiny, double = _TINY * peak, 2.0 * a
+    tiny, double = _TINY_LENGTH * peak, 2.0 * a
     rise = np.abs(peak - v0)
     fall = np.abs(peak - v1)
     up = np.where(rise > tiny, rise * (peak + v0) / double, 0.0)
     down = np.where(fall > tiny, (peak - v1) * (peak + v1) / double, 0.0)
     ramps = up + down
     cruise = length - ramps
-    full = (cruise <= _TINY * length) & (ramps > 0.0)
+    full = (cruise <= _TINY_LENGTH * length) & (ramps > 0.0)
     fit = np.divide(length, ramps, out=np.ones_like(length), where=full)
     return up * fit, np.where(full, 0.0, cruise), down * fit
 
 
 _SETTLED = 1e-12  # relative difference of squared speeds that is a rounding error
-_LOOK_BACK = 1000  # joints before the end that are searched first for a settled one
-NEAR = 1e-9  # mm of path and relative squared speed that are rounding errors
+_BACKWARD_PIECES = 1000  # joints before the end that are searched first for a settled one
+ROUNDING_TOLERANCE = 1e-9  # mm of path and relative squared speed that are rounding errors
 
 
-def plan(
-    path: Path,
+def plan_motion(
+    path: MotionPath,
     *,
-    start_s: float | None = None,
-    start_v: float = 0.0,
+    start_distance: float | None = None,
+    start_speed: float = 0.0,
     feed_scale: float = 1.0,
     rapid_scale: float = 1.0,
     stop: bool = False,
-) -> Profile:
+) -> MotionProfile:
     """Return the fastest motion from ``start_s`` (default: the start of the path) at ``start_v`` to rest.
 
     The motion ends at the end of the path, or with ``stop`` as soon as braking permits. A scale of 0 stops
@@ -185,63 +189,69 @@ def plan(
     Raises MotionError if a value is not valid, or if the speed is too high for the next corner or for a stop
     on this path. The state then does not come from a plan on this path.
     """
-    _demand_sane(start_v, feed_scale, rapid_scale)
-    at = _start(path, start_s)
+    _demand_sane(start_speed, feed_scale, rapid_scale)
+    at = _start(path, start_distance)
     first = int(path.piece_at(np.array([at]))[0])
-    if path.s[-1] - at <= NEAR or not len(path):
-        return _rest(path, start_v)
+    if path.joint_distances[-1] - at <= ROUNDING_TOLERANCE or not len(path):
+        return _rest(path, start_speed)
     if stop:
-        return _brake(path, at, start_v, first)
+        return _braking_profile(path, at, start_speed, first)
     scale = np.where(path.pieces.rapid[first:], rapid_scale, feed_scale)
-    soft = np.minimum(path.cap[first:], scale * path.pieces.rate[first:])
+    soft = np.minimum(path.speed_caps[first:], scale * path.pieces.rate[first:])
     blocked = np.flatnonzero(soft == 0.0)
     last = int(blocked[0]) if len(blocked) else len(soft)
-    run = _Run.of(path, at, first, first + last)
-    if len(blocked) and (last == 0 or not run.can_rest(start_v)):
-        return _brake(path, at, start_v, first)
-    speeds = _squared_speeds(run, soft[:last] ** 2, start_v)
+    run = _PieceRun.of(path, at, first, first + last)
+    if len(blocked) and (last == 0 or not run.can_rest(start_speed)):
+        return _braking_profile(path, at, start_speed, first)
+    speeds = _squared_speeds(run, soft[:last] ** 2, start_speed)
     cap = soft[:last] ** 2
-    return profile_of(path, first, at, length=run.length, a=run.a, cap=cap, speeds=speeds)
+    return build_profile(
+        path, first, at, length=run.length, accelerations=run.a, speed_caps=cap, speeds=speeds
+    )
 
 
-def settled_joints(path: Path, start_s: float | None = None) -> int:
+def find_last_settled_joint(path: MotionPath, start_distance: float | None = None) -> int:
     """Return the last joint whose planned speed cannot be changed by further pieces, or -1.
 
     A piece that follows may form a sharp corner with the last one or none. The speed at the start of the last
     piece may therefore be anything up to its limit. Joints with the same speed for 0 and for that limit are
     settled.
     """
-    first = int(path.piece_at(np.array([_start(path, start_s)]))[0])
+    first = int(path.piece_at(np.array([_start(path, start_distance)]))[0])
     # Later pieces may raise the limits of joints of short chords near the end.
-    known = int(np.searchsorted(path.s[:-1], path.s[-1] - path.reach, side="right"))
-    known = min(known, len(path) - path.loose)
-    settled, back = -1, _LOOK_BACK
+    known = int(
+        np.searchsorted(
+            path.joint_distances[:-1], path.joint_distances[-1] - path.corner_reach_mm, side="right"
+        )
+    )
+    known = min(known, len(path) - path.loose_joint_count)
+    settled, back = -1, _BACKWARD_PIECES
     while settled < 0 and known - first >= 2:
         begin = max(known - back, first)
-        settled = _settled_between(path, begin, known)
+        settled = _find_settled_joint(path, begin, known)
         if begin == first:
             break
         back *= 8
     return settled
 
 
-def _settled_between(path: Path, first: int, known: int) -> int:
+def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
     """Return the last settled joint from ``first`` on and before ``known``, or -1."""
-    run = _Run.of(path, float(path.s[first]), first, known)
+    run = _PieceRun.of(path, float(path.joint_distances[first]), first, known)
     limit = run.hard[:-1].copy()
-    soft = np.minimum(path.cap[first:known], path.pieces.rate[first:known]) ** 2
+    soft = np.minimum(path.speed_caps[first:known], path.pieces.rate[first:known]) ** 2
     np.minimum(limit, soft, out=limit)
     np.minimum(limit[1:], soft[:-1], out=limit[1:])
     gain = run.gain[:-1]
-    most = reachable_backward(limit, gain)
+    most = limit_backward(limit, gain)
     limit[-1] = 0.0
-    least = reachable_backward(limit, gain)
+    least = limit_backward(limit, gain)
     same = np.flatnonzero(most - least <= _SETTLED * most)
     return first + int(same[-1]) if len(same) else -1
 
 
 @dataclass(frozen=True, slots=True)
-class _Run:
+class _PieceRun:
     """The n pieces that a plan covers; the first one may be partial."""
 
     length: FloatArray
@@ -249,16 +259,16 @@ class _Run:
     hard: FloatArray  # (n+1,) squared speed limits that always apply, 0 at the end
 
     @classmethod
-    def of(cls, path: Path, at: float, first: int, last: int) -> _Run:
-        length, cap = path.pieces.length[first:last].copy(), path.cap[first:last] ** 2
+    def of(cls, path: MotionPath, at: float, first: int, last: int) -> _PieceRun:
+        length, cap = path.pieces.length[first:last].copy(), path.speed_caps[first:last] ** 2
         hard = np.zeros(len(length) + 1)
         if len(length):
-            length[0] = path.s[first + 1] - at
+            length[0] = path.joint_distances[first + 1] - at
             hard[:-1] = cap
-            hard[1:-1] = np.minimum(np.minimum(cap[:-1], cap[1:]), path.corner[first + 1 : last])
-            if at <= path.s[first]:
-                hard[0] = min(cap[0], path.corner[first])
-        return cls(length, path.a[first:last], hard)
+            hard[1:-1] = np.minimum(np.minimum(cap[:-1], cap[1:]), path.joint_limits[first + 1 : last])
+            if at <= path.joint_distances[first]:
+                hard[0] = min(cap[0], path.joint_limits[first])
+        return cls(length, path.accelerations[first:last], hard)
 
     @property
     def gain(self) -> FloatArray:
@@ -269,23 +279,23 @@ class _Run:
 
     def slack(self, v: float) -> float:
         """Return the rounding error of a squared speed that the rounding of distances causes."""
-        return float(NEAR * v * v + 2.0 * NEAR * self.a.max(initial=0.0))
+        return float(ROUNDING_TOLERANCE * v * v + 2.0 * ROUNDING_TOLERANCE * self.a.max(initial=0.0))
 
 
-def _squared_speeds(run: _Run, soft: FloatArray, v: float) -> FloatArray:
+def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
     """Return the squared speeds (n+1,) at the joints, starting with v²."""
     limit = run.hard.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])
-    allowed = reachable_backward(limit, run.gain)
+    allowed = limit_backward(limit, run.gain)
     slack = run.slack(v)
     if v * v <= allowed[0] + slack:
         allowed[0] = v * v
-        return reachable_forward(allowed, run.gain)
-    return _braked_into(run, allowed, v * v, slack)
+        return limit_forward(allowed, run.gain)
+    return _brake_to_limits(run, allowed, v * v, slack)
 
 
-def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) -> FloatArray:
+def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: float) -> FloatArray:
     """Return full braking from a speed above the new feeds until they are met, then the normal plan."""
     braked = square - np.concatenate([[0.0], np.cumsum(run.gain)])
     fits = np.flatnonzero(braked <= allowed + slack)
@@ -303,7 +313,7 @@ def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) ->
     k = int(fits[0])
     _demand_passable(braked[:k], run.hard[:k], slack)
     allowed[k] = min(allowed[k], braked[k - 1] + run.gain[k - 1])
-    tail = reachable_forward(allowed[k:], run.gain[k:])
+    tail = limit_forward(allowed[k:], run.gain[k:])
     return np.concatenate([braked[:k], tail])
 
 
@@ -322,31 +332,33 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
         )
 
 
-def _brake(path: Path, at: float, v: float, first: int) -> Profile:
+def _braking_profile(path: MotionPath, at: float, v: float, first: int) -> MotionProfile:
     """Return the profile of braking to rest with full acceleration along the path."""
     last = first
     while True:
         last = min(len(path), last + max(64, last - first))
-        run = _Run.of(path, at, first, last)
+        run = _PieceRun.of(path, at, first, last)
         if run.can_rest(v) or last == len(path):
             break
     if not run.can_rest(v):
-        _braked_into(run, np.zeros(len(run.length) + 1), v * v, run.slack(v))
+        _brake_to_limits(run, np.zeros(len(run.length) + 1), v * v, run.slack(v))
     braked = v * v - np.concatenate([[0.0], np.cumsum(run.gain)])
     k = int(np.argmax(braked <= run.slack(v))) if (braked <= run.slack(v)).any() else len(run.length)
     if v == 0.0:
-        return at_rest(path, at)
+        return make_rest_profile(path, at)
     # At least one piece, because C turns by degrees in 0.001 mm near the axis of a plane.
     k = max(k, 1)
     _demand_passable(braked[:k], run.hard[:k], run.slack(v))
     length, speeds = run.length[:k].copy(), np.maximum(braked[: k + 1], 0.0)
     length[-1] = min(length[-1], speeds[-2] / (2.0 * run.a[k - 1]))
     speeds[-1] = 0.0
-    return profile_of(path, first, at, length=length, a=run.a[:k], cap=np.zeros(k), speeds=speeds)
+    return build_profile(
+        path, first, at, length=length, accelerations=run.a[:k], speed_caps=np.zeros(k), speeds=speeds
+    )
 
 
-def _rest(path: Path, v: float) -> Profile:
-    if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
+def _rest(path: MotionPath, v: float) -> MotionProfile:
+    if v * v > 2.0 * ROUNDING_TOLERANCE * float(path.accelerations.max(initial=1.0)):
         raise MotionError(
             Message(
                 "At {value} mm/s, the axes cannot stop at the end of the path. Start planning before the "
@@ -355,22 +367,26 @@ def _rest(path: Path, v: float) -> Profile:
             ),
             "cannot-stop-at-end",
         )
-    return at_rest(path, float(path.s[-1]))
+    return make_rest_profile(path, float(path.joint_distances[-1]))
 
 
-def _start(path: Path, start_s: float | None) -> float:
-    at = float(path.s[0]) if start_s is None else start_s
-    if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
+def _start(path: MotionPath, start_s: float | None) -> float:
+    at = float(path.joint_distances[0]) if start_s is None else start_s
+    if (
+        not path.joint_distances[0] - ROUNDING_TOLERANCE
+        <= at
+        <= path.joint_distances[-1] + ROUNDING_TOLERANCE
+    ):
         raise MotionError(
             Message(
                 "Distance {position} mm is not on the path, which runs from {s} to {s2} mm.",
                 position=at,
-                s=f"{path.s[0]:.6f}",
-                s2=f"{path.s[-1]:.6f}",
+                s=f"{path.joint_distances[0]:.6f}",
+                s2=f"{path.joint_distances[-1]:.6f}",
             ),
             "not-on-path",
         )
-    return min(max(at, float(path.s[0])), float(path.s[-1]))
+    return min(max(at, float(path.joint_distances[0])), float(path.joint_distances[-1]))
 
 
 def _demand_sane(start_v: float, feed_scale: float, rapid_scale: float) -> None:

@@ -11,14 +11,16 @@ from typing import NamedTuple
 import numpy as np
 
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray
-from core.motion.motion_path import Path
+from core.motion.motion_path import MotionPath
 
 SegmentArrays = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
-PART = 0.002  # s, longest part of an arc
-ARC_ERROR = 2.5e-4  # mm by which a part may deviate from the arc between its ends
-BRIEF = 1e-6  # s; shorter parts use the tangent, because their position differences would be rounding errors
-PART_ANGLE = 0.25  # rad, longest part of an arc
+MAX_PART_S = 0.002  # s, longest part of an arc
+MAX_ARC_ERROR_MM = 2.5e-4  # mm by which a part may deviate from the arc between its ends
+SHORT_PART_S = (
+    1e-6  # s; shorter parts use the tangent, because their position differences would be rounding errors
+)
+MAX_PART_ANGLE = 0.25  # rad, longest part of an arc
 
 
 class Phases(NamedTuple):
@@ -31,20 +33,20 @@ class Phases(NamedTuple):
     a: FloatArray  # mm/s²
     piece: IntArray
 
-    def pick(self, part: IntArray | BoolArray | slice) -> Phases:
+    def select(self, selection: IntArray | BoolArray | slice) -> Phases:
         """Return the selected phases."""
         return Phases(
-            t=self.t[part],
-            dt=self.dt[part],
-            s=self.s[part],
-            v=self.v[part],
-            a=self.a[part],
-            piece=self.piece[part],
+            t=self.t[selection],
+            dt=self.dt[selection],
+            s=self.s[selection],
+            v=self.v[selection],
+            a=self.a[selection],
+            piece=self.piece[selection],
         )
 
 
-def axis_segments(path: Path, phases: Phases, t_origin: float) -> SegmentArrays:
-    """Return the setpoint pieces (t, dt, p, v, a) of k phases, with ``t_origin`` added to their times.
+def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -> SegmentArrays:
+    """Return the setpoint pieces (t, dt, p, v, a) of k phases, with ``time_origin_s`` added to their times.
 
     A line gives one exact piece. An arc is divided into equal times of at most 2 ms. The ends of the parts
     are on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so positions are continuous. With the jerk j =
@@ -57,194 +59,204 @@ def axis_segments(path: Path, phases: Phases, t_origin: float) -> SegmentArrays:
     owner = np.repeat(np.arange(len(parts)), parts)
     nth = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
     h = (phases.dt / np.maximum(parts, 1))[owner]
-    p, v, a = _states(path, phases.pick(owner), nth * h)
-    arc = np.flatnonzero(path.pieces.curvature[phases.piece[owner]] != 0.0) if len(path) else owner
+    p, v, a = _phase_states(path, phases.select(owner), nth * h)
+    arc = np.flatnonzero(path.pieces.curvatures[phases.piece[owner]] != 0.0) if len(path) else owner
     if len(arc):
-        v[arc], a[arc] = _joined_on_arc(path, phases.pick(owner[arc]), nth[arc], h[arc], (p[arc], v[arc]))
-    return t_origin + phases.t[owner] + nth * h, h, p, v, a
+        v[arc], a[arc] = _join_on_arc(path, phases.select(owner[arc]), nth[arc], h[arc], (p[arc], v[arc]))
+    return time_origin_s + phases.t[owner] + nth * h, h, p, v, a
 
 
-def _joined_on_arc(
-    path: Path, phases: Phases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
+def _join_on_arc(
+    path: MotionPath, phases: Phases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
     """Return velocity and acceleration that lead each part between its ends on the arc."""
     end = (nth + 1) * h
-    p1, _, _ = _states(path, phases, end)
+    p1, _, _ = _phase_states(path, phases, end)
     resting = (phases.v + phases.a * end <= 1e-9 * phases.v)[:, None]
     p0, v0 = begin
-    short = (h < BRIEF)[:, None]
-    chord, span = p1 - p0, np.maximum(h, BRIEF)[:, None]
+    short = (h < SHORT_PART_S)[:, None]
+    chord, span = p1 - p0, np.maximum(h, SHORT_PART_S)[:, None]
     v = np.where(resting & ~short, 2.0 * chord / span, v0)
     joining = np.where(resting, -v / span, 2.0 * (chord - v * span) / span**2)
-    return v, np.where(short, _curved(path, phases, v0), joining)
+    return v, np.where(short, _arc_acceleration(path, phases, v0), joining)
 
 
-def _curved(path: Path, phases: Phases, v: FloatArray) -> FloatArray:
+def _arc_acceleration(path: MotionPath, phases: Phases, v: FloatArray) -> FloatArray:
     """Return the true acceleration (k, 3) at the start of arc phases with the velocity ``v`` (k, 3)."""
     pieces = path.pieces[phases.piece]
-    tangent = pieces.tangent(np.clip(phases.s - path.s[phases.piece], 0.0, pieces.length))
+    tangent = pieces.tangent(np.clip(phases.s - path.joint_distances[phases.piece], 0.0, pieces.length))
     curved: FloatArray = tangent * phases.a[:, None]
-    turning = pieces.curvature * np.hypot(v[:, 0], v[:, 1])
+    turning = pieces.curvatures * np.hypot(v[:, 0], v[:, 1])
     curved[:, 0] += turning * v[:, 1]
     curved[:, 1] -= turning * v[:, 0]
     return curved
 
 
-def _part_counts(path: Path, phases: Phases) -> IntArray:
+def _part_counts(path: MotionPath, phases: Phases) -> IntArray:
     counts = np.ones(len(phases.t), dtype=np.int64)
     if not len(path):
         return counts
-    bend = np.abs(path.pieces.curvature[phases.piece])
+    bend = np.abs(path.pieces.curvatures[phases.piece])
     arc = np.flatnonzero(bend)
-    bend, (_, dt, _, v, a, _) = bend[arc], phases.pick(arc)
+    bend, (_, dt, _, v, a, _) = bend[arc], phases.select(arc)
     fastest = np.maximum(v, v + a * dt)
     jerk = fastest * bend * np.hypot(fastest**2 * bend, 3.0 * a)
-    longest = np.minimum(PART, PART_ANGLE / (fastest * bend))
-    longest = np.minimum(longest, np.cbrt(ARC_ERROR * 40.5 / jerk))
+    longest = np.minimum(MAX_PART_S, MAX_PART_ANGLE / (fastest * bend))
+    longest = np.minimum(longest, np.cbrt(MAX_ARC_ERROR_MM * 40.5 / jerk))
     counts[arc] = np.maximum(np.ceil(dt / longest * (1.0 - 1e-12)), 1.0).astype(np.int64)
     return counts
 
 
-def _states(path: Path, phases: Phases, tau: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _phase_states(
+    path: MotionPath, phases: Phases, tau: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return position, velocity and tangential acceleration (k, axes) at ``tau`` (k,) in the phases."""
     pieces = path.pieces[phases.piece]
     speed = np.maximum(phases.v + phases.a * tau, 0.0)
-    local = phases.s - path.s[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau
+    local = phases.s - path.joint_distances[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau
     local = np.clip(local, 0.0, pieces.length)
     tangent = pieces.tangent(local)
     return pieces.point(local), tangent * speed[:, None], tangent * phases.a[:, None]
 
 
-NEAR = 1e-9  # mm that are a rounding error
-BRIEF_TIME = 1e-12  # s that are a rounding error
+ROUNDING_TOLERANCE_MM = 1e-9  # mm that are a rounding error
+ROUNDING_TOLERANCE_S = 1e-12  # s that are a rounding error
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
-    """Motion along ``path`` from ``start_s`` at t = 0 to ``end_s`` at ``duration``.
+class MotionProfile:
+    """Motion along ``path`` from ``start_distance`` at t = 0 to ``end_distance`` at ``duration_s``.
 
-    A plan ends at rest. Only a part cut off with ``until`` may end in motion. A profile without phases is at
-    rest at ``end_s``. Times are in seconds from the start of the profile.
+    A plan ends at rest. Only a part cut off with ``cut_at_distance`` may end in motion. A profile without
+    phases is at rest at ``end_distance``. Times are in seconds from the start of the profile.
     """
 
-    path: Path
-    start_s: float
-    end_s: float
-    duration: float
+    path: MotionPath
+    start_distance: float
+    end_distance: float
+    duration_s: float
     phases: Phases
 
     def __len__(self) -> int:
         return len(self.phases.t)
 
-    def at(self, t: FloatArray | float) -> tuple[FloatArray, FloatArray]:
+    def distance_and_speed_at(self, times_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
         """Return distance and speed at the times ``t`` (m,).
 
         Earlier times give the state at the start. Later times give rest at the end.
         """
-        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         if not len(self):
-            return np.full(times.shape, self.end_s), np.zeros(times.shape)
+            return np.full(times.shape, self.end_distance), np.zeros(times.shape)
         k = self._phase(times)
-        _, dt, s0, v0, a, _ = self.phases.pick(k)
+        _, dt, s0, v0, a, _ = self.phases.select(k)
         tau = np.clip(times - self.phases.t[k], 0.0, dt)
-        ends = np.append(self.phases.s[1:], self.end_s)[k]
+        ends = np.append(self.phases.s[1:], self.end_distance)[k]
         s = np.clip(s0 + (v0 + 0.5 * a * tau) * tau, s0, ends)
-        done = times >= self.duration
-        return np.where(done, self.end_s, s), np.where(done, 0.0, np.maximum(v0 + a * tau, 0.0))
+        done = times >= self.duration_s
+        return np.where(done, self.end_distance, s), np.where(done, 0.0, np.maximum(v0 + a * tau, 0.0))
 
     @property
-    def end_v(self) -> float:
+    def end_speed(self) -> float:
         """The speed at the end in mm/s: 0 for a plan, the speed to continue with for a part of one."""
         if not len(self):
             return 0.0
-        last = self.phases.pick(slice(-1, None))
+        last = self.phases.select(slice(-1, None))
         return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
 
-    def position(self, t: FloatArray | float) -> FloatArray:
+    def positions_at(self, times_s: FloatArray | float) -> FloatArray:
         """Return the machine positions (m, axes) at the times ``t`` (m,), exact on lines and arcs."""
-        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
-        s, _ = self.at(times)
+        times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
+        s, _ = self.distance_and_speed_at(times)
         if not len(self):
-            return self.path.point(s)
-        return self.path.point(s, self.phases.piece[self._phase(times)])
+            return self.path.positions_at(s)
+        return self.path.positions_at(s, self.phases.piece[self._phase(times)])
 
-    def block_at(self, t: FloatArray | float) -> IntArray:
+    def block_numbers_at(self, times_s: FloatArray | float) -> IntArray:
         """Return the numbers of the blocks executed at the times ``t`` (m,); 0 without motion."""
-        times = np.atleast_1d(np.asarray(t, dtype=np.float64))
+        times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         if not len(self):
             return np.zeros(times.shape, dtype=np.int64)
         owner: IntArray = self.path.pieces.block[self.phases.piece[self._phase(times)]]
         return owner
 
-    def block_of(self, t: float) -> int:
-        """Return the number of the block executed at ``t`` in seconds; faster than ``block_at``."""
+    def block_number_at(self, time_s: float) -> int:
+        """Return the number of the block executed at ``t`` in seconds; faster than ``block_numbers_at``."""
         if not len(self):
             return 0
-        found = int(self.phases.t.searchsorted(t, side="right")) - 1
+        found = int(self.phases.t.searchsorted(time_s, side="right")) - 1
         piece = self.phases.piece[min(max(found, 0), len(self) - 1)]
         return int(self.path.pieces.block[piece])
 
-    def block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
+    def find_block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
         """Return the numbers of all blocks of the path, and the times at which each starts and ends.
 
         Times are in seconds, and inf for a block that is not reached. Blocks before the start have 0 for
         both. A block without length ends when it starts.
         """
-        joints, first = self._joint_times(), self.path.first
-        return self.path.blocks, joints[first[:-1]], joints[first[1:]]
+        joints, first = self._joint_times(), self.path.first_pieces
+        return self.path.block_numbers, joints[first[:-1]], joints[first[1:]]
 
-    def time_at(self, s: FloatArray) -> FloatArray:
+    def times_at_distances(self, distances: FloatArray) -> FloatArray:
         """Return the times at which the distances ``s`` (m,) are reached.
 
         The time is 0 before the start, and inf after the end.
         """
-        beyond = s > self.end_s + NEAR
+        beyond = distances > self.end_distance + ROUNDING_TOLERANCE_MM
         if not len(self):
             return np.where(beyond, np.inf, 0.0)
-        k = np.clip(np.searchsorted(self.phases.s, s, side="right") - 1, 0, len(self) - 1)
-        t0, dt, s0, v0, a, _ = self.phases.pick(k)
-        ahead = np.maximum(s - s0, 0.0)
+        k = np.clip(np.searchsorted(self.phases.s, distances, side="right") - 1, 0, len(self) - 1)
+        t0, dt, s0, v0, a, _ = self.phases.select(k)
+        ahead = np.maximum(distances - s0, 0.0)
         total = v0 + np.sqrt(np.maximum(v0**2 + 2.0 * a * ahead, 0.0))
         tau = np.divide(2.0 * ahead, total, out=np.zeros_like(ahead), where=total > 0.0)
-        times = np.where(s >= self.end_s, self.duration, t0 + np.minimum(tau, dt))
+        times = np.where(distances >= self.end_distance, self.duration_s, t0 + np.minimum(tau, dt))
         return np.where(beyond, np.inf, times)
 
-    def segments(self, t_from: float, t_to: float, t_origin: float = 0.0) -> SegmentArrays:
+    def make_segments(
+        self, start_time_s: float, end_time_s: float, time_origin_s: float = 0.0
+    ) -> SegmentArrays:
         """Return setpoint arrays (t, dt, p, v, a) for a time window: the fields of ``core.ports.Segments``.
 
         A phase on a line gives one piece of constant acceleration. Arcs give parts of at most 2 ms, as
-        described in ``axis_segments``. ``t`` is the time of the profile plus ``t_origin``. The arrays end in
-        motion if ``t_to`` is before the end of the profile, and at rest otherwise.
+        described in ``make_axis_segments``. ``t`` is the time of the profile plus ``time_origin_s``. The
+        arrays end in motion if ``t_to`` is before the end of the profile, and at rest otherwise.
         """
-        return axis_segments(self.path, self._window(t_from, t_to), t_origin)
+        return make_axis_segments(self.path, self._window(start_time_s, end_time_s), time_origin_s)
 
-    def until(self, s: float) -> Profile:
+    def cut_at_distance(self, distance: float) -> MotionProfile:
         """Return the part up to the distance ``s``, which must be a joint. It may end in motion."""
-        count = int(np.searchsorted(self.phases.s, s, side="left"))
-        phases = self.phases.pick(slice(0, count))
+        count = int(np.searchsorted(self.phases.s, distance, side="left"))
+        phases = self.phases.select(slice(0, count))
         duration = float(phases.t[-1] + phases.dt[-1]) if count else 0.0
-        return Profile(path=self.path, start_s=self.start_s, end_s=s, duration=duration, phases=phases)
+        return MotionProfile(
+            path=self.path,
+            start_distance=self.start_distance,
+            end_distance=distance,
+            duration_s=duration,
+            phases=phases,
+        )
 
     def _joint_times(self) -> FloatArray:
         """Return the times of all joints, from their pieces. Near a stop, distances give no exact times."""
         joints = np.arange(len(self.path) + 1)
-        times = np.append(self.phases.t, self.duration)[np.searchsorted(self.phases.piece, joints)]
-        return np.where(self.path.s > self.end_s + NEAR, np.inf, times)
+        times = np.append(self.phases.t, self.duration_s)[np.searchsorted(self.phases.piece, joints)]
+        return np.where(self.path.joint_distances > self.end_distance + ROUNDING_TOLERANCE_MM, np.inf, times)
 
     def _window(self, t_from: float, t_to: float) -> Phases:
-        lo, hi = max(t_from, 0.0), min(t_to, self.duration)
+        lo, hi = max(t_from, 0.0), min(t_to, self.duration_s)
         if not len(self) or hi <= lo:
-            return self.phases.pick(slice(0, 0))
+            return self.phases.select(slice(0, 0))
         i = int(np.searchsorted(self.phases.t, lo, side="right")) - 1
         j = int(np.searchsorted(self.phases.t, hi, side="left"))
-        part = self.phases.pick(np.arange(i, j))  # an index array makes a copy, a slice would not
+        part = self.phases.select(np.arange(i, j))  # an index array makes a copy, a slice would not
         part.dt[-1] = min(part.dt[-1], hi - part.t[-1])
         skip = lo - part.t[0]
         part.s[0] += (part.v[0] + 0.5 * part.a[0] * skip) * skip
         part.v[0] += part.a[0] * skip
         part.t[0] += skip
         part.dt[0] -= skip
-        return part.pick(part.dt > BRIEF_TIME)
+        return part.select(part.dt > ROUNDING_TOLERANCE_S)
 
     def _phase(self, times: FloatArray) -> IntArray:
         found: IntArray = np.searchsorted(self.phases.t, times, side="right") - 1

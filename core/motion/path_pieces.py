@@ -19,22 +19,22 @@ from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 from core.motion.block_table import BlockTable
 from core.motion.joint_easing import eased
 
-SAME_POINT = 1e-7  # mm or degrees; closer points count as one point
-_STEEPEST = 1e5  # degrees of C per mm; distances have an accuracy of 1e-9 mm, so C has 1e-4 degrees
-_NO_WAY = 1e-4  # mm of X and Z below which a rotation of C measures the path
-_TURN_ALONE = 1e-6  # mm of X and Z below which the feed is that of C
-RADII_DIFFER = 0.02  # mm by which the radii at the start and end of an arc may differ
+SAME_POINT_TOLERANCE = 1e-7  # mm or degrees; closer points count as one point
+_MAX_DEG_PER_MM = 1e5  # degrees of C per mm; distances have an accuracy of 1e-9 mm, so C has 1e-4 degrees
+_MIN_PATH_MM = 1e-4  # mm of X and Z below which a rotation of C measures the path
+_C_ONLY_TOLERANCE_MM = 1e-6  # mm of X and Z below which the feed is that of C
+RADIUS_TOLERANCE_MM = 0.02  # mm by which the radii at the start and end of an arc may differ
 _SHARE = 0.25  # fraction of a chord by which its ends may be moved
 _TURNS = 4.0  # resolution steps per chord length; a larger turn is not caused by rounding
 
 
 @dataclass(frozen=True, slots=True)
-class Pieces:
+class PathPieces:
     """n lines and arcs in machine coordinates, in mm, degrees for C, radians for angles, and mm/s.
 
     A line has ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path. The
     path of a lathe is measured in X and Z, and in degrees if only C turns. Blocks of other machines specify
-    their length. An arc has ``curvature`` ±1/radius, positive for clockwise and 0 for lines. ``angle`` is
+    their length. An arc has ``curvatures`` ±1/radius, positive for clockwise and 0 for lines. ``angle`` is
     that of its start, with x = center x + radius·sin and z = center z + radius·cos. ``direction`` of an arc
     contains only the motion of C. ``block`` is the number of the block, and ``rate`` is the programmed speed.
     """
@@ -45,7 +45,7 @@ class Pieces:
     centre: FloatArray
     radius: FloatArray
     angle: FloatArray
-    curvature: FloatArray
+    curvatures: FloatArray
     length: FloatArray
     rate: FloatArray
     rapid: BoolArray
@@ -53,42 +53,44 @@ class Pieces:
     def __len__(self) -> int:
         return len(self.length)
 
-    def __getitem__(self, part: slice | IntArray | BoolArray) -> Pieces:
-        return Pieces(*[getattr(self, name)[part] for name in _FIELDS])
+    def __getitem__(self, part: slice | IntArray | BoolArray) -> PathPieces:
+        return PathPieces(*[getattr(self, name)[part] for name in _FIELDS])
 
-    def tangent(self, at: FloatArray) -> FloatArray:
-        """Return the directions (n, axes) at the distances ``at`` (n,) from the start of each piece."""
+    def tangent(self, distances: FloatArray) -> FloatArray:
+        """Return the directions (n, axes) at the distances ``distances`` (n,) from the start of each
+        piece.
+        """
         tangent = self.direction.copy(order="K")
-        arc = np.flatnonzero(self.curvature)
+        arc = np.flatnonzero(self.curvatures)
         if len(arc):
-            angle = self.angle[arc] + self.curvature[arc] * at[arc]
-            turning = np.sign(self.curvature[arc])
+            angle = self.angle[arc] + self.curvatures[arc] * distances[arc]
+            turning = np.sign(self.curvatures[arc])
             tangent[arc, 0] += turning * np.cos(angle)
             tangent[arc, 1] -= turning * np.sin(angle)
         return tangent
 
-    def point(self, at: FloatArray) -> FloatArray:
-        """Return the positions (n, axes) at the distances ``at`` (n,) from the start of each piece."""
-        point = self.start + self.direction * at[:, None]
-        arc = self.curvature != 0.0
+    def point(self, distances: FloatArray) -> FloatArray:
+        """Return the positions (n, axes) at the distances ``distances`` (n,) from the start of each piece."""
+        point = self.start + self.direction * distances[:, None]
+        arc = self.curvatures != 0.0
         if arc.any():
-            angle = self.angle[arc] + self.curvature[arc] * at[arc]
+            angle = self.angle[arc] + self.curvatures[arc] * distances[arc]
             point[arc, 0] = self.centre[arc, 0] + self.radius[arc] * np.sin(angle)
             point[arc, 1] = self.centre[arc, 1] + self.radius[arc] * np.cos(angle)
         return point
 
 
-_FIELDS = tuple(f.name for f in fields(Pieces))
+_FIELDS = tuple(f.name for f in fields(PathPieces))
 
 
-def joined(parts: Sequence[Pieces]) -> Pieces:
+def concatenate_pieces(parts: Sequence[PathPieces]) -> PathPieces:
     """Return the pieces of several arrays, one after the other."""
     if len(parts) == 1:
         return parts[0]
-    return Pieces(*[np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS])
+    return PathPieces(*[np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS])
 
 
-def make_pieces(table: BlockTable, rate: FloatArray) -> Pieces:
+def make_pieces(table: BlockTable, speeds: FloatArray) -> PathPieces:
     """Return one piece for each of m blocks, including those of length zero. ``rate`` (m,) is in mm/s.
 
     Raises MotionError if the start and the end of an arc are not on one circle.
@@ -96,25 +98,30 @@ def make_pieces(table: BlockTable, rate: FloatArray) -> Pieces:
     delta = table.end - table.start
     length = np.hypot(delta[:, 0], delta[:, 1])
     turn = np.abs(delta[:, 2])
-    way, slides = length, length > np.maximum(SAME_POINT, np.minimum(turn / _STEEPEST, _NO_WAY))
-    length = np.where(slides, way, np.where(turn > SAME_POINT, turn, 0.0))
-    beside = ~slides & (way > _TURN_ALONE) & np.isnan(table.length)
-    rate = np.where(beside, rate * length / np.maximum(way, _TURN_ALONE), rate)  # X and Z retain their feed
+    way, slides = (
+        length,
+        length > np.maximum(SAME_POINT_TOLERANCE, np.minimum(turn / _MAX_DEG_PER_MM, _MIN_PATH_MM)),
+    )
+    length = np.where(slides, way, np.where(turn > SAME_POINT_TOLERANCE, turn, 0.0))
+    beside = ~slides & (way > _C_ONLY_TOLERANCE_MM) & np.isnan(table.length)
+    speeds = np.where(
+        beside, speeds * length / np.maximum(way, _C_ONLY_TOLERANCE_MM), speeds
+    )  # X and Z retain their feed
     length = np.where(np.isnan(table.length), length, table.length)
     centre, radius, angle, curvature, sweep = _circles(table)
     length = np.where(curvature != 0.0, radius * sweep, length)
     direction = delta / np.where(length > 0.0, length, 1.0)[:, None]
     direction[curvature != 0.0, :2] = 0.0
-    return Pieces(
+    return PathPieces(
         block=table.n.astype(np.int64),
         start=table.start,
         direction=direction,
         centre=centre,
         radius=radius,
         angle=angle,
-        curvature=curvature,
+        curvatures=curvature,
         length=length,
-        rate=rate,
+        rate=speeds,
         rapid=table.rapid,
     )
 
@@ -128,20 +135,20 @@ def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, Flo
     if not len(arc):
         return centre, radius, angle, curvature, sweep
     start, end = table.start[arc, :2], table.end[arc, :2]
-    centre[arc] = _settled_centre(table, arc)
+    centre[arc] = _adjust_centers(table, arc)
     a, b = start - centre[arc], end - centre[arc]
     first, last = np.arctan2(a[:, 0], a[:, 1]), np.arctan2(b[:, 0], b[:, 1])
     turning = np.where(table.clockwise[arc], 1.0, -1.0)
-    closed = np.hypot(*(end - start).T) <= SAME_POINT
+    closed = np.hypot(*(end - start).T) <= SAME_POINT_TOLERANCE
     sweep[arc] = np.where(closed, 2.0 * np.pi, (turning * (last - first)) % (2.0 * np.pi))
     radius[arc], angle[arc] = np.hypot(a[:, 0], a[:, 1]), first
-    real = radius > SAME_POINT
+    real = radius > SAME_POINT_TOLERANCE
     np.divide(1.0, radius, out=curvature, where=real)
     curvature[arc] *= turning
     return centre, radius, angle, curvature, sweep
 
 
-def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
+def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
     """Return the centers moved to the perpendicular bisector of the chord, so that the arc meets its end.
 
     Programmed centers are rounded to the resolution. Without this correction, the path would have a gap of
@@ -150,7 +157,7 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
     start, end, centre = table.start[arc, :2], table.end[arc, :2], table.centre[arc]
     radii = np.hypot(*(start - centre).T), np.hypot(*(end - centre).T)
     off = np.abs(radii[0] - radii[1])
-    if (off > RADII_DIFFER).any():
+    if (off > RADIUS_TOLERANCE_MM).any():
         worst = int(off.argmax())
         raise MotionError(
             Message(
@@ -164,15 +171,15 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
         )
     chord = end - start
     size = np.hypot(chord[:, 0], chord[:, 1])[:, None]
-    along = np.divide(chord, size, out=np.zeros_like(chord), where=size > SAME_POINT)
+    along = np.divide(chord, size, out=np.zeros_like(chord), where=size > SAME_POINT_TOLERANCE)
     middle = 0.5 * (start + end)
     settled: FloatArray = centre - along * np.sum((centre - middle) * along, axis=1)[:, None]
     return settled
 
 
-def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
+def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
     """Return the pieces with joints moved by at most ``limits.grain`` per axis. Both ends remain."""
-    inner = _free(pieces, limits)
+    inner = _is_free_joint(pieces, limits)
     if not inner.any():
         return pieces
     free = np.concatenate([[False], inner, [False]])
@@ -180,22 +187,22 @@ def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
     allowed = np.zeros(len(free))
     allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
-    joints = _joints(pieces)
+    joints = _joint_positions(pieces)
     points = np.empty(len(joints), dtype=np.complex128)
     points.real, points.imag = joints[:, 0], joints[:, 1]
     points = eased(points, s, free, allowed)
     joints[:, 0], joints[:, 1] = points.real, points.imag
-    return moved(pieces, joints, free)
+    return move_joints(pieces, joints, free)
 
 
-def _joints(pieces: Pieces) -> FloatArray:
+def _joint_positions(pieces: PathPieces) -> FloatArray:
     """Return the starts of the pieces (n,) and the end of the last one: (n+1, axes)."""
     return np.concatenate([pieces.start, pieces[-1:].point(pieces.length[-1:])])
 
 
-def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
-    """Return the lines between ``joints`` (n+1, axes) where at least one end is ``free`` (n+1,)."""
-    touched = np.flatnonzero(free[:-1] | free[1:])
+def move_joints(pieces: PathPieces, joints: FloatArray, is_free: BoolArray) -> PathPieces:
+    """Return the lines between ``joints`` (n+1, axes) where at least one end is ``is_free`` (n+1,)."""
+    touched = np.flatnonzero(is_free[:-1] | is_free[1:])
     start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
     length = pieces.length.copy()
     begins = [joints[:, axis].take(touched) for axis in (0, 1)]
@@ -208,42 +215,53 @@ def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
     return dataclasses.replace(pieces, start=start, direction=direction, length=length)
 
 
-def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: MotionLimits) -> Pieces:
-    """Return the last ``redo`` pieces of ``known``, smoothed together with the ``new`` pieces that follow.
+def extend_smoothed_pieces(
+    smoothed: PathPieces,
+    programmed: PathPieces,
+    new_pieces: PathPieces,
+    redo_count: int,
+    limits: MotionLimits,
+) -> PathPieces:
+    """Return the last ``redo_count`` pieces of ``smoothed``, smoothed together with the ``new_pieces``
+    pieces that follow.
 
-    ``written`` are the last pieces of ``known`` as programmed, at least SUPPORT more than ``redo`` if so many
-    exist.
+    ``programmed`` are the last pieces of ``smoothed`` as programmed, at least SUPPORT more than
+    ``redo_count`` if so many exist.
     """
-    both = joined([written, new])
-    smooth = unrounded(both, limits)[len(written) - redo :]
-    begin = known[-1:].point(known.length[-1:])[0] if redo == 0 else known.start[len(known) - redo]
+    both = concatenate_pieces([programmed, new_pieces])
+    smooth = smooth_joints(both, limits)[len(programmed) - redo_count :]
+    begin = (
+        smoothed[-1:].point(smoothed.length[-1:])[0]
+        if redo_count == 0
+        else smoothed.start[len(smoothed) - redo_count]
+    )
     # Only chords have moved ends. A rotation of C must not change its length because of noise in X and Z.
-    if not len(smooth) or not _chords(smooth[:1], limits)[0] or (smooth.start[0] == begin).all():
+    if not len(smooth) or not _is_short_chord(smooth[:1], limits)[0] or (smooth.start[0] == begin).all():
         return smooth
-    joints = _joints(smooth)
+    joints = _joint_positions(smooth)
     joints[0] = begin
-    return moved(smooth, joints, np.arange(len(joints)) == 0)
+    return move_joints(smooth, joints, np.arange(len(joints)) == 0)
 
 
-def ends_in_chord(pieces: Pieces, limits: MotionLimits) -> bool:
+def ends_with_chord(pieces: PathPieces, limits: MotionLimits) -> bool:
     """Return whether the last joint may still be moved when pieces are added."""
-    return len(pieces) > 0 and bool(_chords(pieces[-1:], limits)[0])
+    return len(pieces) > 0 and bool(_is_short_chord(pieces[-1:], limits)[0])
 
 
-def _chords(pieces: Pieces, limits: MotionLimits) -> BoolArray:
+def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
     """Return the lines (n,) of linear axes that are short enough to be affected by rounding."""
     # Rounding turns longer lines so little that no speed is too high for the joint.
     longest = _TURNS * limits.grain * limits.plane_speed / (limits.plane_acceleration * limits.interval)
-    alone = (pieces.curvature == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
+    alone = (pieces.curvatures == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
     chords: BoolArray = alone & (pieces.length < longest) & pieces.direction[:, :2].any(axis=1)
     return chords
 
 
-def _free(pieces: Pieces, limits: MotionLimits) -> BoolArray:
+def _is_free_joint(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
     """Return the joints (n-1,) between two short chords that turn no more than rounding can cause."""
     if limits.grain <= 0.0 or len(pieces) < 3:
         return np.zeros(max(len(pieces) - 1, 0), dtype=bool)
-    chord = _chords(pieces, limits)
+    chord = _is_short_chord(pieces, limits)
     turn = np.abs(np.diff(pieces.direction[:, :2], axis=0)).max(axis=1)
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
     rounding = turn * shorter <= _TURNS * limits.grain

@@ -28,42 +28,47 @@ from core.motion.axis_limits import (
     MotionLimits,
 )
 from core.motion.block_table import BlockTable
-from core.motion.path_pieces import Pieces
+from core.motion.path_pieces import PathPieces
 
 # --- chords over an interval ----------------------------------------------------------------------------
 
 
 _HALVINGS = 6  # number of lower speeds at which the same joint is checked too
-_MUCH = 0.2  # fraction of amax; joints of chords that need less remain unchanged
-RPM_STEP = 1.02  # largest factor of the spindle speed within a piece
-ARC_SAMPLES = 65  # points at which the radius of an arc is sampled for the split
+_MIN_DEMAND_FRACTION = 0.2  # fraction of amax; joints of chords that need less remain unchanged
+MAX_RPM_RATIO = 1.02  # largest factor of the spindle speed within a piece
+ARC_SAMPLE_COUNT = 65  # points at which the radius of an arc is sampled for the split
 
 
-class JointDemand(NamedTuple):
+class JointLimits(NamedTuple):
     """Squared speed limits (k,) in mm²/s² of k joints, and required acceleration (k, axes) in mm/s²."""
 
-    joint: IntArray
-    squared: FloatArray
-    acceleration: FloatArray
+    joint_numbers: IntArray
+    squared_speeds: FloatArray
+    required_acceleration: FloatArray
 
 
-def demand_over_intervals(
-    pieces: Pieces, alone: JointDemand, fastest: FloatArray, limits: MotionLimits, *, more: bool
-) -> JointDemand:
-    """Return the demand of the path around the joints of ``alone``.
+def find_joint_limits(
+    pieces: PathPieces,
+    single_limits: JointLimits,
+    fastest: FloatArray,
+    limits: MotionLimits,
+    *,
+    has_more_pieces: bool,
+) -> JointLimits:
+    """Return the demand of the path around the joints of ``single_limits``.
 
-    The joints are passed at ``fastest`` (k,) mm/s or slower. ``alone`` contains the limits of each joint
-    considered separately; no limit becomes lower. Joint i is between the pieces i and i+1. The path is
+    The joints are passed at ``fastest`` (k,) mm/s or slower. ``single_limits`` contains the limits of each
+    joint considered separately; no limit becomes lower. Joint i is between the pieces i and i+1. The path is
     assumed to continue straight at both ends. If ``more`` pieces will follow, joints within an interval of
     the end are considered separately and reserve the full acceleration, so that limits only rise as the path
     grows.
     """
-    if not len(alone.joint):
-        return alone
-    share = CENTRIPETAL_SHARE * limits.accelerations
+    if not len(single_limits.joint_numbers):
+        return single_limits
+    share = CENTRIPETAL_SHARE * limits.acceleration_array
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
-    at = s[alone.joint + 1]
-    mean = 0.5 * (pieces.length[alone.joint] + pieces.length[alone.joint + 1])
+    at = s[single_limits.joint_numbers + 1]
+    mean = 0.5 * (pieces.length[single_limits.joint_numbers] + pieces.length[single_limits.joint_numbers + 1])
     speeds = fastest / 2.0 ** np.arange(_HALVINGS)[:, None]
     asked = np.zeros((_HALVINGS, len(at), len(share)))
     for i, speed in enumerate(speeds):
@@ -72,88 +77,90 @@ def demand_over_intervals(
     ratio = (asked / share).max(axis=2)
     over = ratio > 1.0
     squared = np.where(over, (speeds / np.where(over, ratio, 1.0)) ** 2, np.inf).min(axis=0)
-    if more:
+    if has_more_pieces:
         squared[at + fastest * limits.interval > s[-1]] = 0.0
-    better = np.maximum(squared, alone.squared)
+    better = np.maximum(squared, single_limits.squared_speeds)
     taken = np.where((speeds**2 <= better)[:, :, None], asked, 0.0).max(axis=0, initial=0.0)
     taken[squared < fastest**2] = share
-    kept = (squared <= alone.squared) & (squared > 0.0)
-    taken[kept] = alone.acceleration[kept]
-    return JointDemand(alone.joint, better, taken)
+    kept = (squared <= single_limits.squared_speeds) & (squared > 0.0)
+    taken[kept] = single_limits.required_acceleration[kept]
+    return JointLimits(single_limits.joint_numbers, better, taken)
 
 
-def _second_difference(pieces: Pieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
+def _second_difference(pieces: PathPieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
     """Return |P(s+r) - 2·P(s) + P(s-r)| per axis (k, axes)."""
     before, here, after = (_points(pieces, s, where) for where in (at - reach, at, at + reach))
     difference: FloatArray = np.abs(after - 2.0 * here + before)
     return difference
 
 
-def _points(pieces: Pieces, s: FloatArray, where: FloatArray) -> FloatArray:
+def _points(pieces: PathPieces, s: FloatArray, where: FloatArray) -> FloatArray:
     index = np.clip(np.searchsorted(s, where, side="right") - 1, 0, len(pieces) - 1)
     return pieces[index].point(where - s[index])
 
 
-def piece_limits(
-    pieces: Pieces, limits: MotionLimits, *, more: bool
+def find_piece_limits(
+    pieces: PathPieces, limits: MotionLimits, *, has_more_pieces: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return speed cap (n,) and acceleration (n,) of pieces, and squared speed limits (n+1,) of joints.
 
     ``more`` is True if pieces will follow. The limits at both ends are infinite.
     """
-    cap = speed_caps(pieces, limits)
-    speeds = expected_speeds(pieces, cap)
+    cap = find_speed_caps(pieces, limits)
+    speeds = find_expected_speeds(pieces, cap)
     corner = np.full(len(pieces) + 1, np.inf)
     if not len(pieces):
         return cap, cap, corner
-    turns, along = corner_turns(pieces), accelerations(pieces, speeds, limits)
-    steps = step_caps(turns, np.maximum(along[:-1], along[1:]), limits)
-    single = np.minimum(steps, curve_caps(pieces, turns, limits))
-    asked = _asked(pieces, speeds, turns, single, limits, more=more)
+    turns, along = find_direction_changes(pieces), find_accelerations(pieces, speeds, limits)
+    steps = limit_velocity_steps(turns, np.maximum(along[:-1], along[1:]), limits)
+    single = np.minimum(steps, limit_curve_speeds(pieces, turns, limits))
+    asked = _chord_demand(pieces, speeds, turns, single, limits, more=has_more_pieces)
     corner[1:-1] = single
     # A velocity step at one joint is at most amax·interval, because the drives' queue accepts no more.
-    corner[1:-1][asked.joint] = np.minimum(asked.squared, steps[asked.joint])
-    spare = spare_for_chords(pieces, speeds, turns, single, limits, asked, more=more)
+    corner[1:-1][asked.joint_numbers] = np.minimum(asked.squared_speeds, steps[asked.joint_numbers])
+    spare = find_spare_acceleration(
+        pieces, speeds, turns, single, limits, asked, has_more_pieces=has_more_pieces
+    )
     return cap, np.minimum(along, spare), corner
 
 
-def speed_caps(pieces: Pieces, limits: MotionLimits) -> FloatArray:
+def find_speed_caps(pieces: PathPieces, limits: MotionLimits) -> FloatArray:
     """Return the speeds (n,) in mm/s that axes and centripetal acceleration permit on each piece."""
-    caps = least_ratio(limits.speeds, np.abs(pieces.direction))
-    arc = pieces.curvature != 0.0
+    caps = find_min_ratio(limits.speeds, np.abs(pieces.direction))
+    arc = pieces.curvatures != 0.0
     centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
     caps[arc] = np.minimum(caps[arc], np.minimum(limits.plane_speed, centripetal))
     return caps
 
 
-def expected_speeds(pieces: Pieces, caps: FloatArray) -> FloatArray:
+def find_expected_speeds(pieces: PathPieces, caps: FloatArray) -> FloatArray:
     """Return the highest speeds (n,) of the pieces at any override, in mm/s, for which arcs are planned."""
     return np.minimum(caps, OVERRIDE_MAX * pieces.rate)
 
 
-def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
+def find_accelerations(pieces: PathPieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
     """Return the accelerations (n,) along the pieces in mm/s².
 
     On arcs, they are the part of the vector sum that remains at ``speeds``.
     """
-    along = least_ratio(limits.accelerations, np.abs(pieces.direction))
-    arc = pieces.curvature != 0.0
-    centripetal = speeds[arc] ** 2 * np.abs(pieces.curvature[arc])
+    along = find_min_ratio(limits.acceleration_array, np.abs(pieces.direction))
+    arc = pieces.curvatures != 0.0
+    centripetal = speeds[arc] ** 2 * np.abs(pieces.curvatures[arc])
     along[arc] = np.minimum(along[arc], np.sqrt(limits.plane_acceleration**2 - centripetal**2))
     return along
 
 
-def least_ratio(limit: FloatArray, share: FloatArray) -> FloatArray:
-    """Return the smallest limit / share (n,) over the axes; inf for an axis whose ``share`` (n, axes) is 0.
+def find_min_ratio(limit: FloatArray, demand: FloatArray) -> FloatArray:
+    """Return the smallest limit / share (n,) over the axes; inf for an axis whose ``demand`` (n, axes) is 0.
 
     ``limit``, (axes,) or (n, axes), is greater than 0.
     """
     with np.errstate(divide="ignore"):
-        ratios = limit / share
+        ratios = limit / demand
     return reduce(np.minimum, ratios.T)  # three long columns are compared faster than a million short rows
 
 
-def corner_turns(pieces: Pieces) -> FloatArray:
+def find_direction_changes(pieces: PathPieces) -> FloatArray:
     """Return |change of direction| per axis (n-1, axes) at the joints. Values below 1e-9 become 0."""
     leaving = pieces.tangent(pieces.length)[:-1]
     entering = pieces.tangent(np.zeros(len(pieces)))[1:]
@@ -162,19 +169,21 @@ def corner_turns(pieces: Pieces) -> FloatArray:
     return turns
 
 
-def step_caps(turns: FloatArray, along: FloatArray, limits: MotionLimits) -> FloatArray:
+def limit_velocity_steps(
+    direction_changes: FloatArray, lengths: FloatArray, limits: MotionLimits
+) -> FloatArray:
     """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the limit of an interval.
 
-    A corner turns the velocity by v·|Δu|, and ``along`` (n-1,) mm/s² may brake before the corner and
+    A corner turns the velocity by v·|Δu|, and ``lengths`` (n-1,) mm/s² may brake before the corner and
     accelerate after it: (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints
     half an interval off the corner show at most an eighth more. The result is infinite without a turn.
     """
-    sharp = least_ratio(limits.accelerations * limits.interval, turns)
-    caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * along, 0.0) ** 2
+    sharp = find_min_ratio(limits.acceleration_array * limits.interval, direction_changes)
+    caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * lengths, 0.0) ** 2
     return caps
 
 
-def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> FloatArray:
+def limit_curve_speeds(pieces: PathPieces, direction_changes: FloatArray, limits: MotionLimits) -> FloatArray:
     """Return the squared speeds (n-1,) in mm²/s² of joints close to others, each considered separately.
 
     Short chords: v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean length of the neighbors. For chords of a circle,
@@ -184,75 +193,77 @@ def curve_caps(pieces: Pieces, turns: FloatArray, limits: MotionLimits) -> Float
     """
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
-    share = limits.accelerations * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
-    return least_ratio(share, turns)
+    share = limits.acceleration_array * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
+    return find_min_ratio(share, direction_changes)
 
 
-def _asked(
-    pieces: Pieces,
+def _chord_demand(
+    pieces: PathPieces,
     speeds: FloatArray,
     turns: FloatArray,
     single: FloatArray,
     limits: MotionLimits,
     *,
     more: bool,
-) -> JointDemand:
+) -> JointLimits:
     """Return the demand of short chords over an interval, for the joints that would otherwise be slow."""
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
-    much = (alone > _MUCH * limits.accelerations).any(axis=1) | (single < fastest**2)
+    much = (alone > _MIN_DEMAND_FRACTION * limits.acceleration_array).any(axis=1) | (single < fastest**2)
     joints = np.flatnonzero(much & (mean < fastest * limits.interval))
-    given = JointDemand(joints, single[joints], alone[joints])
-    return demand_over_intervals(pieces, given, fastest[joints], limits, more=more)
+    given = JointLimits(joints, single[joints], alone[joints])
+    return find_joint_limits(pieces, given, fastest[joints], limits, has_more_pieces=more)
 
 
-def spare_for_chords(
-    pieces: Pieces,
+def find_spare_acceleration(
+    pieces: PathPieces,
     speeds: FloatArray,
-    turns: FloatArray,
-    single: FloatArray,
+    direction_changes: FloatArray,
+    single_limits: FloatArray,
     limits: MotionLimits,
-    asked: JointDemand,
+    joint_limits: JointLimits,
     *,
-    more: bool,
+    has_more_pieces: bool,
 ) -> FloatArray:
     """Return the acceleration (n,) that remains for short chords while they follow a curve.
 
     Chords passed within one setpoint interval act as a curve. They use v²·|Δu|/ℓ of each axis, or the demand
-    of the whole interval (``JointDemand``), and (amax - used)/|u| remains. At least a fifth of amax remains
+    of the whole interval (``JointLimits``), and (amax - used)/|u| remains. At least a fifth of amax remains
     because of the corner limits. If ``more`` pieces will follow, the last chord gets exactly this share, so
     that a later corner cannot reduce it. The result is infinite for longer lines and for arcs.
     """
-    amax = limits.accelerations
+    amax = limits.acceleration_array
     spare = np.full(len(pieces), np.inf)
-    short = (pieces.length < speeds * limits.interval) & (pieces.curvature == 0.0)
+    short = (pieces.length < speeds * limits.interval) & (pieces.curvatures == 0.0)
     if not short.any():
         return spare
-    bend = turns / (0.5 * (pieces.length[:-1] + pieces.length[1:]))[:, None]
-    before = bend * np.minimum(speeds[1:] ** 2, single)[:, None]
-    after = bend * np.minimum(speeds[:-1] ** 2, single)[:, None]
-    before[asked.joint] = after[asked.joint] = asked.acceleration
+    bend = direction_changes / (0.5 * (pieces.length[:-1] + pieces.length[1:]))[:, None]
+    before = bend * np.minimum(speeds[1:] ** 2, single_limits)[:, None]
+    after = bend * np.minimum(speeds[:-1] ** 2, single_limits)[:, None]
+    before[joint_limits.joint_numbers] = after[joint_limits.joint_numbers] = (
+        joint_limits.required_acceleration
+    )
     taken = np.zeros(pieces.direction.shape)
     taken[1:] = before
     np.maximum(taken[:-1], after, out=taken[:-1])
-    if more:
+    if has_more_pieces:
         taken[-1] = CENTRIPETAL_SHARE * amax
     left = amax - np.minimum(taken[short], CENTRIPETAL_SHARE * amax)
-    spare[short] = least_ratio(left, np.abs(pieces.direction[short]))
+    spare[short] = find_min_ratio(left, np.abs(pieces.direction[short]))
     return spare
 
 
-def constant_rates(table: BlockTable) -> FloatArray:
+def find_block_speeds(table: BlockTable) -> FloatArray:
     """Return the speed (m,) of each block in mm/s. Surface-speed blocks use the middle of their radii.
 
     Raises MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, and
     for a surface speed at the spindle centerline without an upper limit of the spindle speed.
     """
     _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
-    surface = by_radius(table)
+    surface = depends_on_radius(table)
     middle = 0.5 * (table.start[:, 0] + table.end[:, 0]) - table.axis
-    rpm = np.where(surface, surface_rpms(table, middle), table.rpm)
+    rpm = np.where(surface, find_surface_rpms(table, middle), table.rpm)
     _refuse(
         table,
         table.per_rev & ~(rpm > 0.0),
@@ -260,7 +271,7 @@ def constant_rates(table: BlockTable) -> FloatArray:
         "spindle-stopped",
     )
     on_axis = (table.start[:, 0] - table.axis) * (table.end[:, 0] - table.axis) <= 0.0
-    endless = surface & on_axis & np.isinf(table.hi)
+    endless = surface & on_axis & np.isinf(table.max_rpm)
     _refuse(
         table,
         endless,
@@ -288,19 +299,19 @@ def _per_lead(table: BlockTable) -> FloatArray:
     return np.where(table.thread, way / along, 1.0)
 
 
-def by_radius(table: BlockTable) -> BoolArray:
+def depends_on_radius(table: BlockTable) -> BoolArray:
     """Return the blocks (m,) whose speed depends on the radius."""
     return table.per_rev & np.isfinite(table.surface)
 
 
-def surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
-    """Return ``surface_rpm`` of ``core.geometry`` for arrays.
+def find_surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
+    """Return ``find_surface_rpm`` of ``core.geometry`` for arrays.
 
     The result is NaN without a surface speed, and for a surface speed of 0 at the centerline.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         rpm = 60.0 * table.surface / (2.0 * np.pi * np.abs(radius))
-    return np.clip(rpm, table.lo, table.hi)
+    return np.clip(rpm, table.min_rpm, table.max_rpm)
 
 
 def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
@@ -310,69 +321,69 @@ def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
         )
 
 
-def split_by_radius(pieces: Pieces, table: BlockTable, index: int) -> Pieces:
+def split_piece_by_radius(pieces: PathPieces, table: BlockTable, index: int) -> PathPieces:
     """Return piece ``index`` in parts within which the rpm changes by at most 2 %.
 
     Each part has the rate at its middle. On a line across the axis, the time of a part is then exact, because
     1/v is linear in the radius. The piece is not split where the rpm is at its limit. The number of parts is
     at most ln(max/min rpm)/ln 1.02 per pass.
     """
-    piece, owner = pieces[index : index + 1], _row(table, index)
+    piece, owner = pieces[index : index + 1], _table_row(table, index)
     length = float(piece.length[0])
-    at = _cuts(piece, owner, length)
+    at = _find_radius_cuts(piece, owner, length)
     middle = _radii(piece, owner, 0.5 * (at[1:] + at[:-1]))
-    rate = owner.feed * surface_rpms(owner, middle) / 60.0
-    return cut(piece, at, rate)
+    rate = owner.feed * find_surface_rpms(owner, middle) / 60.0
+    return split_piece(piece, at, rate)
 
 
-def cut(piece: Pieces, at: FloatArray, rate: FloatArray) -> Pieces:
+def split_piece(piece: PathPieces, distances: FloatArray, speeds: FloatArray) -> PathPieces:
     """Return one piece cut at the distances ``at`` (k+1,), including its ends, with ``rate`` (k,)."""
-    parts = piece[np.zeros(len(at) - 1, dtype=np.int64)]
+    parts = piece[np.zeros(len(distances) - 1, dtype=np.int64)]
     return replace(
         parts,
-        start=parts.point(at[:-1]),
-        angle=parts.angle + parts.curvature * at[:-1],
-        length=np.diff(at),
-        rate=rate,
+        start=parts.point(distances[:-1]),
+        angle=parts.angle + parts.curvatures * distances[:-1],
+        length=np.diff(distances),
+        rate=speeds,
     )
 
 
-def _row(table: BlockTable, index: int) -> BlockTable:
+def _table_row(table: BlockTable, index: int) -> BlockTable:
     """Return the table of one block."""
     row = slice(index, index + 1)
     return BlockTable(*(getattr(table, name)[row] for name in table.__dataclass_fields__))
 
 
-def _radii(piece: Pieces, owner: BlockTable, at: FloatArray) -> FloatArray:
+def _radii(piece: PathPieces, owner: BlockTable, at: FloatArray) -> FloatArray:
     many = piece[np.zeros(len(at), dtype=np.int64)]
     radii: FloatArray = np.abs(many.point(at)[:, 0] - owner.axis[0])
     return radii
 
 
-def _cuts(piece: Pieces, owner: BlockTable, length: float) -> FloatArray:
+def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> FloatArray:
     """Return the distances at which the radius passes a level of a geometric series of rpm."""
-    if piece.curvature[0] == 0.0:
+    if piece.curvatures[0] == 0.0:
         x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]
         crossing = [length * x0 / (x0 - x1)] if x0 * x1 < 0.0 else []
         grid = np.array([0.0, *crossing, length])
     else:
-        grid = np.linspace(0.0, length, ARC_SAMPLES)
+        grid = np.linspace(0.0, length, ARC_SAMPLE_COUNT)
     radii = _radii(piece, owner, grid)
     pairs = zip(grid[:-1], grid[1:], radii[:-1], radii[1:], strict=True)
-    cuts = np.unique(np.concatenate([_passed(owner, *pair) for pair in pairs]))
+    cuts = np.unique(np.concatenate([_linear_radius_cuts(owner, *pair) for pair in pairs]))
     inside = cuts[(cuts > 1e-9 * length) & (cuts < length * (1.0 - 1e-9))]
     return np.concatenate([[0.0], inside, [length]])
 
 
-def _passed(owner: BlockTable, s0: float, s1: float, r0: float, r1: float) -> FloatArray:
+def _linear_radius_cuts(owner: BlockTable, s0: float, s1: float, r0: float, r1: float) -> FloatArray:
     """Return the distances at which levels are passed while the radius changes linearly from r0 to r1."""
     unclamped = 60.0 * owner.surface[0] / (2.0 * np.pi)  # rpm times radius
     low, high = min(r0, r1), max(r0, r1)
-    bottom = max(low, unclamped / owner.hi[0])
-    top = min(high, unclamped / owner.lo[0]) if owner.lo[0] > 0.0 else high
+    bottom = max(low, unclamped / owner.max_rpm[0])
+    top = min(high, unclamped / owner.min_rpm[0]) if owner.min_rpm[0] > 0.0 else high
     if not bottom < top or bottom == 0.0:
         return np.empty(0)
-    steps = int(np.ceil(np.log(top / bottom) / np.log(RPM_STEP)))
+    steps = int(np.ceil(np.log(top / bottom) / np.log(MAX_RPM_RATIO)))
     levels = bottom * (top / bottom) ** (np.arange(steps + 1) / steps)
     fraction = (levels - r0) / (r1 - r0)
     return np.asarray(s0 + fraction * (s1 - s0), dtype=np.float64)

@@ -5,11 +5,11 @@ circle of 12.7 mm, a thickness of 4.76 mm and a nose radius of 0.8 mm (1/32 in).
 (shape, clearance, tolerance, type, size, thickness, corner) and ANSI B212.4 (sizes in fractions of an inch).
 They were compared with the catalogs of Mitsubishi, Widia, Palbit and Denitool.
 
-``20x20``, ``3/4"`` and ``16mm`` are sizes of a shank. ``MCLNR 2020K12`` (ISO 5608) and ``MCLNR-124B`` (ANSI
-B212.5) are holders with a shank, and ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` are boring bars. Reach
-and head are typical values and not those of one maker. If they must be exact within 1 mm, measure the holder
-and specify its outline. ``0,4 18,4 18,60 0,60`` is an outline in mm, with Z and X from the control point. Any
-other text is a name.
+``20x20``, ``3/4"`` and ``16mm`` are sizes of a standard_shank. ``MCLNR 2020K12`` (ISO 5608) and
+``MCLNR-124B`` (ANSI B212.5) are holders with a shank, and ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` are
+boring bars. Reach and head are typical values and not those of one maker. If they must be exact within 1 mm,
+measure the holder and specify its outline. ``0,4 18,4 18,60 0,60`` is an outline in mm, with Z and X from
+the control point. Any other text is a name.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from core.message import CodedError, Message
 
 MM_PER_INCH = 25.4
 _RHOMBS = {"C": 80.0, "D": 55.0, "E": 75.0, "K": 55.0, "M": 86.0, "S": 90.0, "V": 35.0}
-CORNERS: Mapping[str, tuple[float, ...]] = {
+CORNER_ANGLES: Mapping[str, tuple[float, ...]] = {
     **{shape: (angle, 180.0 - angle) * 2 for shape, angle in _RHOMBS.items()},
     "T": (60.0,) * 3,
     "W": (80.0, 160.0) * 3,  # the trigon, a triangle with bent sides
@@ -36,7 +36,7 @@ CORNERS: Mapping[str, tuple[float, ...]] = {
 }
 _CLEARANCES = {"A": 3.0, "B": 5.0, "C": 7.0, "D": 15.0, "E": 20.0, "F": 25.0, "G": 30.0, "N": 0.0, "P": 11.0}
 _LETTERS: tuple[tuple[str, Iterable[str]], ...] = (
-    ("shape", CORNERS),
+    ("shape", CORNER_ANGLES),
     ("clearance", _CLEARANCES),
     ("tolerance class", "ACEFGHJKLMNU"),
     ("insert type (hole and chip breaker)", "ABCFGHJMNQRTUWX"),
@@ -125,23 +125,23 @@ class InsertCodeError(CodedError, ValueError):
 class Insert:
     """An indexable insert, in degrees and mm.
 
-    ``corners`` and ``edges`` are interior angles and lengths, counterclockwise from the cutting corner.
-    ``inscribed_circle`` is a diameter. A round insert has no corners and no edges; its nose is the whole
-    circle.
+    ``corner_angles`` and ``edge_lengths`` are interior angles and lengths, counterclockwise from the cutting
+    corner. ``inscribed_circle`` is a diameter. A round insert has no corners and no edges; its nose is the
+    whole circle.
     """
 
     shape: str
-    corners: tuple[float, ...]
-    edges: tuple[float, ...]
+    corner_angles: tuple[float, ...]
+    edge_lengths: tuple[float, ...]
     inscribed_circle: float
     nose_radius: float
     thickness: float = 0.0
-    clearance: float = 0.0
+    clearance_angle: float = 0.0
 
     @property
     def point_angle(self) -> float:
         """The included angle of the cutting corner in degrees; 0 for a round insert."""
-        return self.corners[0] if self.corners else 0.0
+        return self.corner_angles[0] if self.corner_angles else 0.0
 
 
 # --- ISO 1832, symbols 1 to 4: shape, normal clearance, tolerance, fixing and chip breaker -----------------
@@ -153,28 +153,29 @@ class Insert:
 # --- ANSI B212.4: inscribed circle in 1/8 in, thickness in 1/16 in, corner in 1/64 in ----------------------
 
 
-def edge_length(corner: float, following: float, circle: float) -> float:
+def edge_length(corner: float, next_corner: float, circle_diameter: float) -> float:
     """Return the edge between two corners (degrees) of a polygon around an inscribed circle (diameter)."""
-    return circle / 2.0 * (1.0 / tan(radians(corner / 2.0)) + 1.0 / tan(radians(following / 2.0)))
+    return circle_diameter / 2.0 * (1.0 / tan(radians(corner / 2.0)) + 1.0 / tan(radians(next_corner / 2.0)))
 
 
-def insert_of(shape: str, circle: float, nose_radius: float) -> Insert:
+def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Insert:
     """Return the insert with this shape letter and inscribed circle in mm."""
-    corners = CORNERS[shape]
+    corners = CORNER_ANGLES[shape]
     if shape == "K":  # only the long edges of a parallelogram touch the circle; the end edge is short
-        edges: tuple[float, ...] = (circle / sin(radians(corners[0])), _K_EDGE) * 2
+        edges: tuple[float, ...] = (circle_diameter / sin(radians(corners[0])), _K_EDGE) * 2
     else:
         edges = tuple(
-            edge_length(corner, after, circle) for corner, after in pairwise((*corners, *corners[:1]))
+            edge_length(corner, after, circle_diameter)
+            for corner, after in pairwise((*corners, *corners[:1]))
         )
-    return Insert(shape, corners, edges, circle, nose_radius if corners else circle / 2.0)
+    return Insert(shape, corners, edges, circle_diameter, nose_radius if corners else circle_diameter / 2.0)
 
 
-def metric_sizes(shape: str) -> dict[str, float]:
+def metric_circle_sizes(shape: str) -> dict[str, float]:
     """Return the inscribed circles (mm) by the two digits of ISO 1832: the edge in whole mm, rounded down."""
     if shape in "RK":
         return dict(_UNUSUAL[shape])
-    corners = CORNERS[shape]
+    corners = CORNER_ANGLES[shape]
     sizes = {}
     for inch in (*(_SMALL if shape in "CDSTVW" else ()), *_SERIES):
         circle = round(inch * MM_PER_INCH, 6)
@@ -184,7 +185,7 @@ def metric_sizes(shape: str) -> dict[str, float]:
 
 
 @lru_cache(maxsize=256)  # called for every feed of a program
-def decoded(code: str) -> Insert:
+def decode_insert_code(code: str) -> Insert:
     """Return the insert of an ISO or ANSI code. Raises InsertCodeError that names the invalid character.
 
     Characters after the size (edge condition, hand, chip breaker of the maker) are ignored.
@@ -194,17 +195,19 @@ def decoded(code: str) -> Insert:
     head = letters[0] if letters else ""
     size = text[len(head) :].removeprefix("-")
     metric = re.match(r"(L\d|\d\d)\w\d", size)
-    _check_letters(code, head, older=len(head) == 3 and size[:1].isdigit() and not metric)
-    read = _metric if metric else _inch
-    circle, thickness, nose = read(_Size(code, head[0], size, len(head)))
-    return replace(insert_of(head[0], circle, nose), thickness=thickness, clearance=_CLEARANCES[head[1]])
+    _check_letters(code, head, is_old_code=len(head) == 3 and size[:1].isdigit() and not metric)
+    read = _read_metric_sizes if metric else _read_inch_sizes
+    circle, thickness, nose = read(_CodeDigits(code, head[0], size, len(head)))
+    return replace(
+        make_insert(head[0], circle, nose), thickness=thickness, clearance_angle=_CLEARANCES[head[1]]
+    )
 
 
-def _check_letters(code: str, head: str, *, older: bool) -> None:
+def _check_letters(code: str, head: str, *, is_old_code: bool) -> None:
     """Check the four letters. Older inch codes leave out the last one (TPG 322)."""
     for place, (what, known) in enumerate(_LETTERS, start=1):
         if len(head) < place:
-            if older:
+            if is_old_code:
                 return
             raise InsertCodeError(
                 Message(
@@ -229,7 +232,7 @@ def _check_letters(code: str, head: str, *, older: bool) -> None:
 
 
 @dataclass(slots=True)
-class _Size:
+class _CodeDigits:
     """The digits of a code, read from the left."""
 
     code: str
@@ -279,11 +282,11 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
     )
 
 
-def _metric(size: _Size) -> tuple[float, float, float]:
+def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     """Return inscribed circle, thickness and nose radius in mm, read from a metric code."""
     edge = size.left[:2]
     circle = size.take(
-        edge, Message("size for insert shape {shape}", shape=size.shape), metric_sizes(size.shape)
+        edge, Message("size for insert shape {shape}", shape=size.shape), metric_circle_sizes(size.shape)
     )
     if size.shape == "C":
         circle = _THIN.get((edge, size.left[:2]), circle)
@@ -298,11 +301,13 @@ def _metric(size: _Size) -> tuple[float, float, float]:
     return circle, thickness, circle / 2.0
 
 
-def _inch(size: _Size) -> tuple[float, float, float]:
+def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     """Return inscribed circle, thickness and nose radius in mm, read from an inch code."""
-    circle = size.take(_next(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
-    thickness = size.take(_next(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS)
-    corner = _next(size, _CORNER_FRACTION)
+    circle = size.take(_next_number(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
+    thickness = size.take(
+        _next_number(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS
+    )
+    corner = _next_number(size, _CORNER_FRACTION)
     if size.shape == "R" and corner in {"", "0"}:  # a round insert needs no corner
         return circle * MM_PER_INCH, thickness * MM_PER_INCH, circle * MM_PER_INCH / 2.0
     nose = size.take(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
@@ -319,43 +324,43 @@ def _inch(size: _Size) -> tuple[float, float, float]:
     return circle * MM_PER_INCH, thickness * MM_PER_INCH, nose * MM_PER_INCH
 
 
-def _next(size: _Size, pattern: re.Pattern[str]) -> str:
+def _next_number(size: _CodeDigits, pattern: re.Pattern[str]) -> str:
     """Return the next number of an inch code, or the invalid character in its place."""
     found = pattern.match(size.left)
     return (found[0] if found else "") or size.left[:1]
 
 
 @dataclass(frozen=True, slots=True)
-class Holder:
+class ToolHolder:
     """A tool holder in mm; 0 means not specified. A bar is round, a shank is square or nearly so.
 
-    ``reach`` is the distance from the tip to the far side of the shank. ``entry`` is the entering angle in
-    degrees. ``faces`` is True if this angle applies to a feed toward the axis. ``outline`` replaces all other
-    values.
+    ``reach_mm`` is the distance from the tip to the far side of the shank. ``entering_angle_deg`` is the
+    entering angle in degrees. ``is_facing_angle`` is True if this angle applies to a feed toward the axis.
+    ``outline`` replaces all other values.
     """
 
-    width: float = 0.0
-    bar: float = 0.0
-    reach: float = 0.0
-    entry: float = 0.0
-    faces: bool = False
+    shank_width_mm: float = 0.0
+    bar_diameter_mm: float = 0.0
+    reach_mm: float = 0.0
+    entering_angle_deg: float = 0.0
+    is_facing_angle: bool = False
     outline: tuple[tuple[float, float], ...] = ()
 
 
-def holder_of(text: str) -> Holder | None:
+def parse_holder(text: str) -> ToolHolder | None:
     """Return the holder that a text describes, or None if the text is only a name or empty."""
     words = text.strip()
-    if points := outline_points(words):
-        return Holder(outline=points)
-    return _size(words.lower()) or _coded(words.upper())
+    if points := parse_outline(words):
+        return ToolHolder(outline=points)
+    return _parse_shank_size(words.lower()) or _coded(words.upper())
 
 
-def shank(width: float) -> Holder:
+def standard_shank(width: float) -> ToolHolder:
     """Return a standard shank of this width."""
-    return Holder(width=width, reach=_reach(width))
+    return ToolHolder(shank_width_mm=width, reach_mm=_reach(width))
 
 
-def outline_points(text: str) -> tuple[tuple[float, float], ...] | None:
+def parse_outline(text: str) -> tuple[tuple[float, float], ...] | None:
     """Return the points of an outline ``z,x z,x z,x``, or None for any other text."""
     if not re.fullmatch(rf"\s*{_PAIR}(?:\s+{_PAIR}){{2,}}\s*", text):
         return None
@@ -365,7 +370,7 @@ def outline_points(text: str) -> tuple[tuple[float, float], ...] | None:
         return None
 
 
-def _size(words: str) -> Holder | None:
+def _parse_shank_size(words: str) -> ToolHolder | None:
     """Return the shank of ``20x20``, ``3/4"``, ``.75 in`` or ``16mm``; fractions are inches.
 
     A number without a unit returns None.
@@ -383,7 +388,7 @@ def _size(words: str) -> Holder | None:
         return None
     above, _, under = figure.partition("/")
     wide = float(above) / float(under or 1.0) * (MM_PER_INCH if inches else 1.0)
-    return shank(wide) if 0.0 < wide <= 100.0 else None
+    return standard_shank(wide) if 0.0 < wide <= 100.0 else None
 
 
 def _reach(width: float) -> float:
@@ -396,31 +401,31 @@ def _reach(width: float) -> float:
 # --- codes: clamping, insert shape, style, clearance, hand; then the shank and the size of the insert -------
 
 
-def _coded(words: str) -> Holder | None:
+def _coded(words: str) -> ToolHolder | None:
     if bar := re.fullmatch(_BAR, words):
         metric = len(bar[3]) == 2  # an ISO bar gives the edge in mm, an inch bar the circle in 1/8 in
         across = float(bar[1]) * (1.0 if metric else MM_PER_INCH / 16.0)
-        return Holder(bar=across, entry={**_TURNS, **_FACES}.get(bar[2], 0.0))
+        return ToolHolder(bar_diameter_mm=across, entering_angle_deg={**_TURNS, **_FACES}.get(bar[2], 0.0))
     if found := re.fullmatch(_ISO_SHANK, words):
         return _styled(found[1], float(found[3]))
     if found := re.fullmatch(_INCH_SHANK, words):
-        return _styled(found[1], _inch_width(found[2]))
+        return _styled(found[1], _parse_inch_width(found[2]))
     return None
 
 
-def _styled(style: str, width: float) -> Holder:
+def _styled(style: str, width: float) -> ToolHolder:
     entry, faces = _TURNS.get(style, 0.0), style in _FACES
     neutral = style in "DENV"
-    return Holder(
+    return ToolHolder(
         width, 0.0, width / 2.0 if neutral else _reach(width), entry or _FACES.get(style, 0.0), faces
     )
 
 
-def _inch_width(figures: str) -> float:
+def _parse_inch_width(digits: str) -> float:
     """Return the width in mm of the two digits of an inch code.
 
     Square shanks are given in 16ths of an inch, others by width in 8ths and height in quarters.
     """
-    if int(figures) in _INCH_REACH or figures in {"04", "05", "32"}:
-        return int(figures) * MM_PER_INCH / 16.0
-    return int(figures[0]) * MM_PER_INCH / 8.0
+    if int(digits) in _INCH_REACH or digits in {"04", "05", "32"}:
+        return int(digits) * MM_PER_INCH / 16.0
+    return int(digits[0]) * MM_PER_INCH / 8.0

@@ -15,17 +15,17 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.virtual_mill import PlaneMove, Side
+from core.geometry.virtual_mill import PlaneMove, SidePlane
 
 FloatArray = npt.NDArray[np.float64]
 
 _TINY = 1e-12
-CHORD = 0.002
+MAX_CHORD_ERROR_MM = 0.002
 """How far a chord may lie off its curve, mm."""
-_AWAY = 1e-6  # mm
+_AXIS_TOLERANCE_MM = 1e-6  # mm
 
 
-def capsules(
+def capsule_intervals(
     start: FloatArray, end: FloatArray, radius: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the r between which discs moved from ``start`` to ``end`` (m, 2) cover rays at ``angles`` (n,).
@@ -36,7 +36,7 @@ def capsules(
     cos, sin = np.cos(angles), np.sin(angles)
     low0, high0 = _discs(start, radius, cos, sin)
     low1, high1 = _discs(end, radius, cos, sin)
-    low2, high2 = _between(start, end, radius, cos, sin)
+    low2, high2 = _rectangle_intervals(start, end, radius, cos, sin)
     # The swept area is convex, so the three intervals of a ray overlap or touch.
     return np.minimum(np.minimum(low0, low1), low2), np.maximum(np.maximum(high0, high1), high2)
 
@@ -52,7 +52,7 @@ def _discs(
     return _cleaned(np.maximum(along - half, 0.0), along + half, square > 0.0)
 
 
-def _between(
+def _rectangle_intervals(
     start: FloatArray, end: FloatArray, radius: float, cos: FloatArray, sin: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the intervals covered by the rectangle between the first and the last disc."""
@@ -61,14 +61,14 @@ def _between(
     unit = way / np.maximum(length, _TINY)
     ux, uy = unit[:, :1], unit[:, 1:]
     along, across = start[:, :1] * ux + start[:, 1:] * uy, start[:, 1:] * ux - start[:, :1] * uy
-    low, high = clipped(ux * cos + uy * sin, along, along + length)
-    low1, high1 = clipped(ux * sin - uy * cos, across - radius, across + radius)
+    low, high = clip_interval(ux * cos + uy * sin, along, along + length)
+    low1, high1 = clip_interval(ux * sin - uy * cos, across - radius, across + radius)
     low, high = np.maximum(low, low1), np.minimum(high, high1)
     return _cleaned(low, high, (length > _TINY) & (high > low))
 
 
-def clipped(
-    factor: FloatArray, least: FloatArray | float, most: FloatArray | float
+def clip_interval(
+    factor: FloatArray, lower_bound: FloatArray | float, upper_bound: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the interval of r >= 0 in which ``factor`` · r is between two bounds.
 
@@ -76,8 +76,8 @@ def clipped(
     """
     upright = np.abs(factor) < _TINY
     safe = np.where(upright, 1.0, factor)
-    one, other = least / safe, most / safe
-    within = (np.less_equal(least, 0.0)) & (np.greater_equal(most, 0.0))
+    one, other = lower_bound / safe, upper_bound / safe
+    within = (np.less_equal(lower_bound, 0.0)) & (np.greater_equal(upper_bound, 0.0))
     low = np.where(upright, np.where(within, 0.0, np.inf), np.maximum(np.minimum(one, other), 0.0))
     high = np.where(upright, np.where(within, np.inf, 0.0), np.maximum(one, other))
     return low, high
@@ -90,29 +90,29 @@ def _cleaned(
     return np.where(there, low, np.inf), np.where(there, high, -np.inf)
 
 
-def joined(low: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
+def unite_intervals(starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the union of intervals (m, n) along the first axis, in the fewest layers (k, n), ascending.
 
     Intervals whose high is not above their low are empty. Empty intervals of the result are at infinity.
     """
-    there = high > low
-    low, high = np.where(there, low, np.inf), np.where(there, high, -np.inf)
-    order = np.argsort(low, axis=0)
-    low, high = np.take_along_axis(low, order, axis=0), np.take_along_axis(high, order, axis=0)
-    reach = np.maximum.accumulate(high, axis=0)
-    begins = low < np.inf
-    begins[1:] &= low[1:] > reach[:-1]
+    there = ends > starts
+    starts, ends = np.where(there, starts, np.inf), np.where(there, ends, -np.inf)
+    order = np.argsort(starts, axis=0)
+    starts, ends = np.take_along_axis(starts, order, axis=0), np.take_along_axis(ends, order, axis=0)
+    reach = np.maximum.accumulate(ends, axis=0)
+    begins = starts < np.inf
+    begins[1:] &= starts[1:] > reach[:-1]
     layer = np.cumsum(begins, axis=0) - 1
     count = max(int(layer[-1].max()) + 1, 1)
-    first, last = np.full((count, low.shape[1]), np.inf), np.full((count, low.shape[1]), -np.inf)
+    first, last = np.full((count, starts.shape[1]), np.inf), np.full((count, starts.shape[1]), -np.inf)
     rows, columns = np.nonzero(begins)
-    first[layer[rows, columns], columns] = low[rows, columns]
-    rows, columns = np.nonzero(low < np.inf)
-    np.maximum.at(last, (layer[rows, columns], columns), high[rows, columns])
+    first[layer[rows, columns], columns] = starts[rows, columns]
+    rows, columns = np.nonzero(starts < np.inf)
+    np.maximum.at(last, (layer[rows, columns], columns), ends[rows, columns])
     return first, last
 
 
-def radial_mill(
+def radial_mill_intervals(
     turned: FloatArray, half: FloatArray, end: float, length: float, height: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the r (columns, rays) that a mill on a radius of the part covers.
@@ -121,9 +121,9 @@ def radial_mill(
     the width of the mill at each column, or 0. The mill extends from ``end`` outward by ``length``.
     ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
     """
-    low, high = clipped(np.cos(turned), end, end + length)
+    low, high = clip_interval(np.cos(turned), end, end + length)
     if height:
-        low1, high1 = clipped(np.sin(turned), height - half[:, None], height + half[:, None])
+        low1, high1 = clip_interval(np.sin(turned), height - half[:, None], height + half[:, None])
         low, high = np.maximum(low, low1), np.minimum(high, high1)
     else:
         low = np.broadcast_to(low, (len(half), len(turned)))
@@ -131,68 +131,78 @@ def radial_mill(
     return _cleaned(low, high, half[:, None] > 0.0)
 
 
-def nearest_turn(turned: FloatArray, way: float) -> FloatArray:
-    """Return the smallest signed angle between each ray and a tool axis that rotates by ``way`` radians.
+def nearest_angle(turned: FloatArray, rotation: float) -> FloatArray:
+    """Return the smallest signed angle between each ray and a tool axis that rotates by ``rotation`` radians.
 
     ``turned`` (rays,) is the angle from the axis at its start to each ray.
     """
-    middle = np.remainder(turned - 0.5 * way + np.pi, 2.0 * np.pi) - np.pi
-    left = np.maximum(np.abs(middle) - 0.5 * abs(way), 0.0)
+    middle = np.remainder(turned - 0.5 * rotation + np.pi, 2.0 * np.pi) - np.pi
+    left = np.maximum(np.abs(middle) - 0.5 * abs(rotation), 0.0)
     return np.asarray(np.copysign(left, middle), dtype=np.float64)
 
 
-def plane_path(move: PlaneMove, lift: float = 0.0, chord: float = CHORD) -> FloatArray:
+def make_plane_path(
+    move: PlaneMove, z_offset: float = 0.0, max_chord_error: float = MAX_CHORD_ERROR_MM
+) -> FloatArray:
     """Return the path (n, 3) of a plane switching move; ``lift`` (mm) is added to the program Z.
 
     On the face, the path contains x, y and z of the mill's end, as for ``MilledPart.mill_axial``. On the
     side, it contains r, z and the polar angle in degrees, as for ``mill_radial``.
     """
-    shares = np.linspace(0.0, 1.0, _chords(move, chord) + 1)
-    if isinstance(move.frame, Side):
-        return radial_path(move.machine(shares) + np.array([0.0, lift, 0.0]), far_side=move.frame.far)
-    points = move.part(move.machine(shares))
-    turn = math.radians(move.frame.heading)
-    return _turned(points, np.full(len(points), turn), lift)
+    shares = np.linspace(0.0, 1.0, _count_chords(move, max_chord_error) + 1)
+    if isinstance(move.frame, SidePlane):
+        return make_radial_path(
+            move.machine_positions(shares) + np.array([0.0, z_offset, 0.0]), far_side=move.frame.is_far_side
+        )
+    points = move.workpiece_points(move.machine_positions(shares))
+    turn = math.radians(move.frame.heading_deg)
+    return _turned(points, np.full(len(points), turn), z_offset)
 
 
-def axial_path(machine: FloatArray, height: float = 0.0, lift: float = 0.0) -> FloatArray:
+def make_axial_path(positions: FloatArray, height: float = 0.0, z_offset: float = 0.0) -> FloatArray:
     """Return x, y, z (n, 3) in the part's frame of a tool parallel to Z at lathe X (radius), Z, C (n, 3).
 
     ``height`` is the height of the tool above the axis. Units are mm and degrees.
     """
-    spot = np.column_stack([-machine[:, 0], np.full(len(machine), height), machine[:, 1]])
-    return _turned(spot, -np.radians(machine[:, 2]), lift)
+    spot = np.column_stack([-positions[:, 0], np.full(len(positions), height), positions[:, 1]])
+    return _turned(spot, -np.radians(positions[:, 2]), z_offset)
 
 
-def radial_path(machine: FloatArray, *, far_side: bool = False) -> FloatArray:
+def make_radial_path(positions: FloatArray, *, far_side: bool = False) -> FloatArray:
     """Return r, z and polar angle in degrees (n, 3) of a tool on a radius at lathe X, Z, C (n, 3).
 
     X is a radius. The tool is on the negative X side of the lathe, or on the positive one if ``far_side``.
     """
-    x, z, c = machine.T
+    x, z, c = positions.T
     return np.column_stack([x, z, 180.0 - c]) if far_side else np.column_stack([-x, z, -c])
 
 
-def locked_path(start: FloatArray, end: FloatArray, chord: float = CHORD) -> FloatArray:
+def make_locked_path(
+    start: FloatArray, end: FloatArray, max_chord_error: float = MAX_CHORD_ERROR_MM
+) -> FloatArray:
     """Return lathe X, Z, C (n, 3) along a straight move, dense enough for a tool parallel to Z."""
     turn = math.radians(abs(float(end[2] - start[2])))
-    far = max(abs(float(start[0])), abs(float(end[0])), _AWAY)
-    count = max(math.ceil(turn / math.sqrt(8.0 * chord / far)), 1)
+    far = max(abs(float(start[0])), abs(float(end[0])), _AXIS_TOLERANCE_MM)
+    count = max(math.ceil(turn / math.sqrt(8.0 * max_chord_error / far)), 1)
     return np.linspace(start, end, count + 1)
 
 
-def _chords(move: PlaneMove, chord: float) -> int:
+def _count_chords(move: PlaneMove, chord: float) -> int:
     """Return the number of straight pieces of a move."""
-    if move.centre is None:
-        return 1 if move.straight or not _unreachable(move) else 360
+    if move.center is None:
+        return 1 if move.is_straight or not _is_too_close_to_axis(move) else 360
     half = 2.0 * math.acos(max(1.0 - chord / max(move.radius, chord), -1.0))
     turns = max(move.length / max(move.radius, chord) / half, 1.0)
-    return max(math.ceil(turns), 360 if _unreachable(move) else 1)
+    return max(math.ceil(turns), 360 if _is_too_close_to_axis(move) else 1)
 
 
-def _unreachable(move: PlaneMove) -> bool:
+def _is_too_close_to_axis(move: PlaneMove) -> bool:
     """Return whether a face mill passes closer to the axis than its height permits."""
-    return not isinstance(move.frame, Side) and move.rho(move.nearest()) < abs(move.frame.h) - _AWAY
+    return (
+        not isinstance(move.frame, SidePlane)
+        and move.distance_from_axis(move.critical_fraction())
+        < abs(move.frame.tool_height_mm) - _AXIS_TOLERANCE_MM
+    )
 
 
 def _turned(points: FloatArray, angles: FloatArray, lift: float) -> FloatArray:

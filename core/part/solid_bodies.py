@@ -17,70 +17,70 @@ import numpy.typing as npt
 from core.part.ray_cuts import FloatArray
 from core.part.solid_view import SolidView
 from core.part.stock import Clamping, Stock
-from core.part.surface_points import Solid, turned_solid
+from core.part.surface_points import Solid, make_turned_solid
 
-Image = npt.NDArray[np.uint32]
-Depths = npt.NDArray[np.int32]
+ImageArray = npt.NDArray[np.uint32]
+DepthArray = npt.NDArray[np.int32]
 
-_FRONT = 15.0  # mm of the chuck body that are drawn
+_CHUCK_FRONT_MM = 15.0  # mm of the chuck body that are drawn
 _STEP = 0.01  # mm, width of a shoulder of the chuck
 _CONE = 60  # columns of a tailstock center
-_PROUD = 0.1  # mm by which an insert is drawn above its holder
+_INSERT_HEIGHT_MM = 0.1  # mm by which an insert is drawn above its holder
 _INSERT, _HOLDER = 4.8, 16.0  # mm below the rake face; a holder uses its width if it is less
 _LIGHT = np.array([-0.38, 0.62, 0.69])  # right, up, toward the viewer
 _GHOST = 0.3
 
 
-class Round(StrEnum):
+class RoundAxis(StrEnum):
     """The axis about which a tool is round, if any."""
 
-    NOT = ""
-    ALONG = "z"
-    ACROSS = "x"
+    NONE = ""
+    Z = "z"
+    X = "x"
 
 
 class ToolBody(NamedTuple):
     """A tool at its position: outlines (k, 2) of Z and X in mm.
 
-    ``ghost`` means that its body is only assumed.
+    ``is_ghost`` means that its body is only assumed.
     """
 
-    cutting: tuple[FloatArray, ...]
-    body: tuple[FloatArray, ...]
-    round: Round = Round.NOT
-    ghost: bool = False
+    cutting_outlines: tuple[FloatArray, ...]
+    body_outlines: tuple[FloatArray, ...]
+    round_axis: RoundAxis = RoundAxis.NONE
+    is_ghost: bool = False
 
 
-class Layer(NamedTuple):
+class ImageLayer(NamedTuple):
     """An image of 0xAARRGGBB with the depth of each pixel (0: empty).
 
-    ``share`` is the opacity of the layer, from 0 to 1.
+    ``opacity`` is the opacity of the layer, from 0 to 1.
     """
 
-    image: Image
-    depth: Depths
-    share: float = 1.0
+    image: ImageArray
+    depth: DepthArray
+    opacity: float = 1.0
 
-    def over(self, image: Image, depth: Depths) -> None:
+    def draw_over(self, image: ImageArray, depth: DepthArray) -> None:
         """Draw the layer over a picture and update the depth of the picture."""
         nearer = self.depth > depth
         if not nearer.any():
             return
-        if self.share < 1.0:
-            image[nearer] = _mixed(self.image[nearer], image[nearer], self.share)
+        if self.opacity < 1.0:
+            image[nearer] = _blend_images(self.image[nearer], image[nearer], self.opacity)
         else:
             np.copyto(image, self.image, where=nearer)
             np.copyto(depth, self.depth, where=nearer)
 
 
-class _Face(NamedTuple):
+class _LitFace(NamedTuple):
     """Points (n, 3) of Z, X and height in mm, with their brightness from 0 to 1, (n,) or one value."""
 
     points: FloatArray
     shade: FloatArray | float
 
 
-class _Eye(NamedTuple):
+class _Viewer(NamedTuple):
     """The viewer.
 
     ``turn`` rotates to the right, up and toward the viewer; ``z`` and ``x`` are visible ranges in mm.
@@ -92,112 +92,123 @@ class _Eye(NamedTuple):
     x: tuple[float, float]
 
 
-def chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
+def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
     """Return the front of a chuck with its jaws, or of a collet, with the center of a tailstock."""
     edges: list[float] = []
     columns: list[tuple[float, float]] = []  # inner and outer radius
     if clamping.diameter:
-        inside = clamping.around(stock).bore[0][1]
-        body = -clamping.stick_out - clamping.jaws
+        inside = clamping.chuck_around(stock).bore_profile[0][1]
+        body = -clamping.stick_out - clamping.jaw_length
         radius, jaws = clamping.diameter / 2.0, (clamping.jaw_diameter or clamping.diameter) / 2.0
-        edges += [body - _FRONT, body - _STEP, body]
+        edges += [body - _CHUCK_FRONT_MM, body - _STEP, body]
         columns += [(inside, radius)] * 2
-        if clamping.jaws:
-            edges += [body + _STEP, body + clamping.jaws]
+        if clamping.jaw_length:
+            edges += [body + _STEP, body + clamping.jaw_length]
             columns += [(inside, jaws)] * 2
     tailstock = clamping.tailstock
     if tailstock is not None:
-        (tip, _), (end, radius), (back, _) = tailstock.outside
+        (tip, _), (end, radius), (back, _) = tailstock.outside_profile
         cone = np.linspace(tip, end, _CONE + 1)
         columns += [(0.0, 0.0)] if edges else []
         edges += [*cone.tolist(), end + _STEP, back]
         columns += [(0.0, radius * (k + 0.5) / _CONE) for k in range(_CONE)] + [(0.0, radius)] * 2
     low, high = np.array(columns).T
-    return turned_solid(np.array(edges), low[None], high[None])
+    return make_turned_solid(np.array(edges), low[None], high[None])
 
 
-def tool_layers(
+def make_tool_layers(
     tool: ToolBody,
     view: SolidView,
     width: int,
     height: int,
-    colours: tuple[int, int],
+    colors: tuple[int, int],
     deep: float,
-    far: float,
-) -> Iterator[Layer]:
+    far_depth: float,
+) -> Iterator[ImageLayer]:
     """Yield the layers of the body and the edges of a tool.
 
-    ``deep`` is the number of depth steps per pixel. The depth is counted from a plane ``far`` pixels beyond
-    the axis.
+    ``deep`` is the number of depth steps per pixel. The depth is counted from a plane ``far_depth`` pixels
+    beyond the axis.
     """
-    eye = _eye(view, width, height)
+    eye = _make_viewer(view, width, height)
     for polygons, lift, thick, colour, ghost in (
-        (tool.body, 0.0, _HOLDER, colours[0], tool.ghost),
-        (tool.cutting, _PROUD, _INSERT, colours[1], False),
+        (tool.body_outlines, 0.0, _HOLDER, colors[0], tool.is_ghost),
+        (tool.cutting_outlines, _INSERT_HEIGHT_MM, _INSERT, colors[1], False),
     ):
-        faces = [face for polygon in polygons for face in _faces(polygon, (lift, thick), tool.round, eye)]
+        faces = [
+            face for polygon in polygons for face in _faces(polygon, (lift, thick), tool.round_axis, eye)
+        ]
         if faces:
-            yield _layer(faces, view, (width, height), colour, (deep, far))._replace(
-                share=_GHOST if ghost else 1.0
+            yield _make_layer(faces, view, (width, height), colour, (deep, far_depth))._replace(
+                opacity=_GHOST if ghost else 1.0
             )
 
 
-def _eye(view: SolidView, width: int, height: int) -> _Eye:
+def _make_viewer(view: SolidView, width: int, height: int) -> _Viewer:
     """Return the viewer, with visible ranges enlarged for tilted views."""
-    cos, _ = view.along
-    across = (0.5 * height / view.scale + _HOLDER) / max(abs(math.sin(math.radians(view.tilt))), 0.25)
-    along = (0.5 * width / view.scale + across) / max(cos, 0.25)
-    return _Eye(_turned(view), view.scale, (view.centre - along, view.centre + along), (-across, across))
+    cos, _ = view.azimuth_cos_sin
+    across = (0.5 * height / view.pixels_per_mm + _HOLDER) / max(
+        abs(math.sin(math.radians(view.tilt_deg))), 0.25
+    )
+    along = (0.5 * width / view.pixels_per_mm + across) / max(cos, 0.25)
+    return _Viewer(
+        _view_rotation(view),
+        view.pixels_per_mm,
+        (view.center_z_mm - along, view.center_z_mm + along),
+        (-across, across),
+    )
 
 
-def _faces(polygon: FloatArray, heights: tuple[float, float], round_: Round, eye: _Eye) -> Iterable[_Face]:
-    if round_ is not Round.NOT:
-        return [_revolved(polygon, round_, eye)]
+def _faces(
+    polygon: FloatArray, heights: tuple[float, float], round_: RoundAxis, eye: _Viewer
+) -> Iterable[_LitFace]:
+    if round_ is not RoundAxis.NONE:
+        return [_revolved_surface(polygon, round_, eye)]
     lift, thick = heights
     size = np.ptp(polygon, axis=0)
-    return _prism(polygon, lift, min(thick, max(float(size.min()), 1.0)), eye)
+    return _prism_faces(polygon, lift, min(thick, max(float(size.min()), 1.0)), eye)
 
 
-def _prism(polygon: FloatArray, lift: float, thick: float, eye: _Eye) -> Iterator[_Face]:
+def _prism_faces(polygon: FloatArray, lift: float, thick: float, eye: _Viewer) -> Iterator[_LitFace]:
     """Yield the visible faces of a convex outline, with its upper face at the height ``lift``."""
     for height, normal in ((lift, (0.0, 0.0, 1.0)), (-thick, (0.0, 0.0, -1.0))):
-        if (shade := _lit(eye, np.array(normal))) > 0.0:
-            inside = _inside(polygon, eye)
-            yield _Face(np.column_stack([inside, np.full(len(inside), height)]), float(shade))
+        if (shade := _face_brightness(eye, np.array(normal))) > 0.0:
+            inside = _points_inside(polygon, eye)
+            yield _LitFace(np.column_stack([inside, np.full(len(inside), height)]), float(shade))
     turned = float(np.sign(_area(polygon)) or 1.0)
     down = np.linspace(lift, -thick, max(math.ceil((thick + lift) * eye.scale), 2))
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
         way = b - a
         length = math.hypot(*way)
-        shade = _lit(eye, np.array([way[1], -way[0], 0.0]) * (turned / max(length, 1e-9)))
+        shade = _face_brightness(eye, np.array([way[1], -way[0], 0.0]) * (turned / max(length, 1e-9)))
         if length < 1e-9 or shade <= 0.0:
             continue
         share = np.linspace(0.0, 1.0, max(math.ceil(length * eye.scale), 1), endpoint=False)
         edge = a + share[:, None] * way
         edge = edge[_seen(edge[:, 0], eye.z) & _seen(edge[:, 1], eye.x)]
         points = np.column_stack([np.repeat(edge, len(down), axis=0), np.tile(down, len(edge))])
-        yield _Face(points, float(shade))
+        yield _LitFace(points, float(shade))
 
 
 def _seen(values: FloatArray, span: tuple[float, float]) -> npt.NDArray[np.bool_]:
     return (values >= span[0]) & (values <= span[1])
 
 
-def _lit(eye: _Eye, normals: FloatArray) -> FloatArray:
+def _face_brightness(eye: _Viewer, normals: FloatArray) -> FloatArray:
     """Return the brightness of faces with these normals (…, 3); 0 for faces that point away."""
     turned = normals @ eye.turn.T
     light = 0.35 + 0.65 * np.clip(turned @ _LIGHT, 0.0, 1.0)
     return np.where(turned[..., 2] > 0.0, light, 0.0)
 
 
-def _revolved(polygon: FloatArray, round_: Round, eye: _Eye) -> _Face:
+def _revolved_surface(polygon: FloatArray, round_: RoundAxis, eye: _Viewer) -> _LitFace:
     """Return the surface of a rotating tool, whose outline is symmetrical about its axis."""
-    axis, across = (0, 1) if round_ is Round.ALONG else (1, 0)
+    axis, across = (0, 1) if round_ is RoundAxis.Z else (1, 0)
     span = eye.z if axis == 0 else eye.x
     low, high = max(polygon[:, axis].min(), span[0]), min(polygon[:, axis].max(), span[1])
     middle = 0.5 * (polygon[:, across].min() + polygon[:, across].max())
     at = np.linspace(low, high, max(math.ceil((high - low) * eye.scale), 2))
-    first, last = _crossed(polygon, axis, at)
+    first, last = _crossing_range(polygon, axis, at)
     radius = np.nan_to_num(np.maximum(last - middle, middle - first))
     angles = np.linspace(0.0, 2.0 * math.pi, max(math.ceil(2.0 * math.pi * radius.max() * eye.scale), 12))
     lean = np.gradient(radius, at) if high > low else np.zeros(len(at))
@@ -207,11 +218,11 @@ def _revolved(polygon: FloatArray, round_: Round, eye: _Eye) -> _Face:
     points[..., 2] = radius[:, None] * sin
     normals[..., axis], normals[..., across], normals[..., 2] = -lean[:, None], cos, sin
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-    shade = _lit(eye, normals).ravel()
-    return _Face(points.reshape(-1, 3)[shade > 0.0], shade[shade > 0.0])
+    shade = _face_brightness(eye, normals).ravel()
+    return _LitFace(points.reshape(-1, 3)[shade > 0.0], shade[shade > 0.0])
 
 
-def _crossed(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _crossing_range(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the range in which a convex outline is crossed at these positions of an axis, or NaN."""
     a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
     place = at[:, None]
@@ -225,13 +236,13 @@ def _crossed(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray
     return np.where(none, np.nan, low), np.where(none, np.nan, high)
 
 
-def _inside(polygon: FloatArray, eye: _Eye) -> FloatArray:
+def _points_inside(polygon: FloatArray, eye: _Viewer) -> FloatArray:
     """Return the visible points (n, 2) of a convex outline, one pixel apart."""
     low, high = max(polygon[:, 0].min(), eye.z[0]), min(polygon[:, 0].max(), eye.z[1])
     if high < low:
         return np.zeros((0, 2))
     at = np.linspace(low, high, max(math.ceil((high - low) * eye.scale), 2))
-    first, last = (np.clip(each, *eye.x) for each in _crossed(polygon, 0, at))
+    first, last = (np.clip(each, *eye.x) for each in _crossing_range(polygon, 0, at))
     there = last >= first
     at, first, last = at[there], first[there], last[there]
     count = np.maximum(np.ceil((last - first) * eye.scale), 1.0).astype(np.intp)
@@ -246,14 +257,14 @@ def _area(polygon: FloatArray) -> float:
     return float(0.5 * np.sum(z * np.roll(x, -1) - x * np.roll(z, -1)))
 
 
-def _layer(
-    faces: Sequence[_Face], view: SolidView, size: tuple[int, int], colour: int, depths: tuple[float, float]
-) -> Layer:
+def _make_layer(
+    faces: Sequence[_LitFace], view: SolidView, size: tuple[int, int], color: int, depths: tuple[float, float]
+) -> ImageLayer:
     """Convert points to pixels and retain the nearest point of each pixel."""
     width, height = size
     points = np.concatenate([face.points for face in faces])
     light = np.concatenate([np.broadcast_to(face.shade, len(face.points)) for face in faces])
-    place = (points - np.array([view.centre, 0.0, 0.0])) @ _turned(view).T * view.scale
+    place = (points - np.array([view.center_z_mm, 0.0, 0.0])) @ _view_rotation(view).T * view.pixels_per_mm
     column = np.floor(place[:, 0] + 0.5 * width).astype(np.int64)
     row = np.floor(0.5 * height - place[:, 1]).astype(np.int64)
     there = (column >= 0) & (column < width) & (row >= 0) & (row < height)
@@ -261,32 +272,32 @@ def _layer(
     deep = ((place[there, 2] + depths[1]) * depths[0]).astype(np.int64)
     keys = np.zeros(width * height, np.int64)
     np.maximum.at(keys, row[there] * width + column[there], (deep << 8) + shade)
-    return Layer(
-        _coloured(keys & 255, colour, keys > 0).reshape(height, width),
+    return ImageLayer(
+        _coloured(keys & 255, color, keys > 0).reshape(height, width),
         (keys >> 8).astype(np.int32).reshape(height, width),
     )
 
 
-def _turned(view: SolidView) -> FloatArray:
+def _view_rotation(view: SolidView) -> FloatArray:
     """Return the rotation from Z, X (toward the operator) and height to right, up and toward the viewer."""
-    cos, sin = view.along
-    tilt = math.radians(view.tilt)
+    cos, sin = view.azimuth_cos_sin
+    tilt = math.radians(view.tilt_deg)
     near = np.array([0.0, math.cos(tilt), math.sin(tilt)])
     up = np.array([0.0, -math.sin(tilt), math.cos(tilt)])
     z = np.array([1.0, 0.0, 0.0])
     return np.array([cos * z - sin * near, up, sin * z + cos * near])
 
 
-def _coloured(shade: npt.NDArray[np.int64], colour: int, there: npt.NDArray[np.bool_]) -> Image:
+def _coloured(shade: npt.NDArray[np.int64], colour: int, there: npt.NDArray[np.bool_]) -> ImageArray:
     parts = [((colour >> off) & 255) * shade // 255 << off for off in (16, 8, 0)]
     whole = (0xFF << 24) | parts[0] | parts[1] | parts[2]
     return np.where(there, whole, 0).astype(np.uint32)
 
 
-def _mixed(over: Image, under: Image, share: float) -> Image:
+def _blend_images(upper: ImageArray, lower: ImageArray, opacity: float) -> ImageArray:
     """Blend two images channel by channel; the upper image remains transparent over empty pixels."""
-    mixed = np.zeros(over.shape, np.uint32)
+    mixed = np.zeros(upper.shape, np.uint32)
     for off in (0, 8, 16, 24):
-        a, b = (((each >> np.uint32(off)) & np.uint32(255)).astype(np.float64) for each in (over, under))
-        mixed |= np.round(share * a + (1.0 - share) * b).astype(np.uint32) << np.uint32(off)
+        a, b = (((each >> np.uint32(off)) & np.uint32(255)).astype(np.float64) for each in (upper, lower))
+        mixed |= np.round(opacity * a + (1.0 - opacity) * b).astype(np.uint32) << np.uint32(off)
     return mixed

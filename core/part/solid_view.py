@@ -20,57 +20,58 @@ from core.part.ray_cuts import FloatArray
 class SolidView:
     """The view of a part. ``azimuth`` rotates the viewer from the side (0) to the face (90) or chuck (-90).
 
-    ``tilt`` raises the viewer: 0 is the position of the operator, 90 is from above like the path view.
-    ``roll`` is C. Angles are in degrees. ``scale`` is in pixels per mm, and ``centre`` is the Z of the middle
-    of the picture. ``opening`` is the range of phi that is cut out, within -180 to 180 degrees, or None.
+    ``tilt_deg`` raises the viewer: 0 is the position of the operator, 90 is from above like the path view.
+    ``roll_deg`` is C. Angles are in degrees. ``pixels_per_mm`` is in pixels per mm, and ``center_z_mm`` is
+    the Z of the middle of the picture. ``open_range_deg`` is the range of phi that is cut out, within -180
+    to 180 degrees, or None.
     """
 
-    azimuth: float = 30.0
-    tilt: float = 35.0
-    roll: float = 0.0
-    scale: float = 10.0
-    centre: float = 0.0
-    opening: tuple[float, float] | None = None
+    azimuth_deg: float = 30.0
+    tilt_deg: float = 35.0
+    roll_deg: float = 0.0
+    pixels_per_mm: float = 10.0
+    center_z_mm: float = 0.0
+    open_range_deg: tuple[float, float] | None = None
 
     @property
-    def along(self) -> tuple[float, float]:
+    def azimuth_cos_sin(self) -> tuple[float, float]:
         """Cosine and sine of the azimuth."""
-        return math.cos(math.radians(self.azimuth)), math.sin(math.radians(self.azimuth))
+        return math.cos(math.radians(self.azimuth_deg)), math.sin(math.radians(self.azimuth_deg))
 
-    def phi(self, angles: npt.NDArray[np.floating]) -> FloatArray:
+    def viewer_angles(self, angles: npt.NDArray[np.floating]) -> FloatArray:
         """Return phi in radians from -pi to pi for polar angles of the part in radians.
 
         The operator is at lathe X+, which is the polar angle 180° with C at 0.
         """
-        phi = math.radians(180.0 - self.tilt - self.roll) - angles
+        phi = math.radians(180.0 - self.tilt_deg - self.roll_deg) - angles
         return np.asarray(np.remainder(phi + math.pi, 2.0 * math.pi) - math.pi, dtype=np.float64)
 
-    def open_at(self, phi: FloatArray) -> npt.NDArray[np.bool_]:
+    def is_cut_open(self, phi: FloatArray) -> npt.NDArray[np.bool_]:
         """Return which values of phi (radians) are cut out."""
-        if self.opening is None:
+        if self.open_range_deg is None:
             return np.zeros(phi.shape, dtype=np.bool_)
-        first, last = (math.radians(edge) for edge in self.opening)
+        first, last = (math.radians(edge) for edge in self.open_range_deg)
         return (phi > first) & (phi < last)
 
-    def on_screen(self, points: FloatArray, width: int, height: int) -> FloatArray:
+    def project_to_screen(self, points: FloatArray, width: int, height: int) -> FloatArray:
         """Return pixels to the right and down (n, 2) of points r, z and polar angle in degrees (n, 3)."""
         r, z, angle = points.T
-        phi = self.phi(np.radians(angle))
-        cos, sin = self.along
-        right = (z - self.centre) * cos - r * np.cos(phi) * sin
+        phi = self.viewer_angles(np.radians(angle))
+        cos, sin = self.azimuth_cos_sin
+        right = (z - self.center_z_mm) * cos - r * np.cos(phi) * sin
         return np.column_stack(
-            [0.5 * width + self.scale * right, 0.5 * height - self.scale * r * np.sin(phi)]
+            [0.5 * width + self.pixels_per_mm * right, 0.5 * height - self.pixels_per_mm * r * np.sin(phi)]
         )
 
 
-def fitted(
-    back: float, front: float, radius: float, width: int, height: int, azimuth: float
+def fit_view(
+    back_z_mm: float, front_z_mm: float, radius: float, width: int, height: int, azimuth: float
 ) -> tuple[float, float]:
     """Return scale and center at which a part fills the picture at any roll.
 
-    The part extends from Z ``back`` to ``front``.
+    The part extends from Z ``back_z_mm`` to ``front_z_mm``.
     """
     cos, sin = abs(math.cos(math.radians(azimuth))), abs(math.sin(math.radians(azimuth)))
-    wide, high = (front - back) * cos + 2.0 * radius * sin, 2.0 * radius
+    wide, high = (front_z_mm - back_z_mm) * cos + 2.0 * radius * sin, 2.0 * radius
     scale = 0.94 * min(width / max(wide, 1e-6), height / max(high, 1e-6))
-    return scale, 0.5 * (back + front)
+    return scale, 0.5 * (back_z_mm + front_z_mm)

@@ -15,43 +15,44 @@ Point = tuple[float, float]
 
 _FIRST_MODE = 1.8751**2  # constant of a beam clamped at one end
 _SOUND = 3.5e6  # mm/s, √(E/ρ) of brass; the value for steel and aluminum is 5.0e6
-_BEHIND = 100.0  # mm of chuck body in the model
+_BODY_LENGTH_MM = 100.0  # mm of chuck body in the model
 _QUILL = 60.0  # mm of quill in the model, after the cone of the center
 
 
 @dataclass(frozen=True, slots=True)
 class Stock:
-    """The stock. ``outside`` and ``bore`` are profiles of Z and r in mm with Z not decreasing.
+    """The stock. ``outside_profile`` and ``bore`` are profiles of Z and r in mm with Z not decreasing.
 
-    An empty ``bore`` means solid stock. ``given`` is the user's specification, or empty if there was none.
+    An empty ``bore`` means solid stock. ``specification`` is the user's specification, or empty if there was
+    none.
     """
 
-    given: str
-    outside: tuple[Point, ...]
-    bore: tuple[Point, ...] = ()
+    specification: str
+    outside_profile: tuple[Point, ...]
+    bore_profile: tuple[Point, ...] = ()
 
     @property
-    def back(self) -> float:
+    def back_z_mm(self) -> float:
         """The least Z of the stock, on the side of the chuck."""
-        return self.outside[0][0]
+        return self.outside_profile[0][0]
 
     @property
-    def front(self) -> float:
+    def front_z_mm(self) -> float:
         """Z of the face."""
-        return self.outside[-1][0]
+        return self.outside_profile[-1][0]
 
     @property
-    def radius(self) -> float:
+    def max_radius_mm(self) -> float:
         """The greatest radius."""
-        return max(r for _, r in self.outside)
+        return max(r for _, r in self.outside_profile)
 
-    def outside_at(self, z: FloatArray) -> FloatArray:
+    def outside_radius_at(self, z: FloatArray) -> FloatArray:
         """Return the outside radius at each z (n,)."""
-        return _at(self.outside, z)
+        return _at(self.outside_profile, z)
 
-    def bore_at(self, z: FloatArray) -> FloatArray:
+    def bore_radius_at(self, z: FloatArray) -> FloatArray:
         """Return the radius of the bore at each z (n,); 0 where the stock is solid."""
-        return _at(self.bore, z) if self.bore else np.zeros(len(z))
+        return _at(self.bore_profile, z) if self.bore_profile else np.zeros(len(z))
 
 
 def _at(profile: Sequence[Point], z: FloatArray) -> FloatArray:
@@ -60,28 +61,34 @@ def _at(profile: Sequence[Point], z: FloatArray) -> FloatArray:
     return radii
 
 
-def bar(diameter: float, front: float, back: float, given: str = "") -> Stock:
+def make_bar(diameter: float, front_z_mm: float, back_z_mm: float, specification: str = "") -> Stock:
     """Return a round bar, in mm."""
-    return Stock(given, ((back, diameter / 2), (front, diameter / 2)))
+    return Stock(specification, ((back_z_mm, diameter / 2), (front_z_mm, diameter / 2)))
 
 
-def tube(diameter: float, bore: float, front: float, back: float, given: str = "") -> Stock:
+def make_tube(
+    diameter: float, bore: float, front_z_mm: float, back_z_mm: float, specification: str = ""
+) -> Stock:
     """Return a tube, in mm."""
-    return Stock(given, ((back, diameter / 2), (front, diameter / 2)), ((back, bore / 2), (front, bore / 2)))
+    return Stock(
+        specification,
+        ((back_z_mm, diameter / 2), (front_z_mm, diameter / 2)),
+        ((back_z_mm, bore / 2), (front_z_mm, bore / 2)),
+    )
 
 
-def whirling_rpm(stock: Stock, stick_out: float) -> float:
+def critical_rpm(stock: Stock, stick_out: float) -> float:
     """Return the first critical speed in rpm of a bar that extends ``stick_out`` mm from its chuck to Z0.
 
     The result is 0 if the bar does not stick out. The formula is that of a beam clamped at one end, 1.8751² ·
     √(E·I / (ρ·A)) / L², with E and ρ of brass, which gives the lowest speed of the turned metals. A bar that
     is bent whirls below this speed.
     """
-    length = stick_out + stock.front
+    length = stick_out + stock.front_z_mm
     if length <= 0.0:
         return 0.0
-    bore = max((r for _, r in stock.bore), default=0.0)
-    gyration = math.hypot(stock.radius, bore) / 2.0
+    bore = max((r for _, r in stock.bore_profile), default=0.0)
+    gyration = math.hypot(stock.max_radius_mm, bore) / 2.0
     return _FIRST_MODE * _SOUND * gyration / length**2 * 60.0 / math.tau
 
 
@@ -89,38 +96,38 @@ def whirling_rpm(stock: Stock, stick_out: float) -> float:
 class Clamping:
     """Chuck or collet in the part's frame, in mm. Its front face is at Z = -``stick_out``.
 
-    ``jaws`` is the length by which jaws or the nose of a collet extend from the body. A ``max_rpm`` of 0
-    means not specified. ``quill`` is the diameter of a tailstock quill, or 0 without a tailstock. The tip of
-    its center, with the included angle ``point`` in degrees, is at Z ``centre``.
+    ``jaw_length`` is the length by which jaws or the nose of a collet extend from the body. A ``max_rpm`` of
+    0 means not specified. ``quill_diameter`` is the diameter of a tailstock quill, or 0 without a tailstock.
+    The tip of its center, with the included angle ``center_angle_deg`` in degrees, is at Z ``center_z_mm``.
     """
 
     diameter: float
     stick_out: float
-    jaws: float = 0.0
+    jaw_length: float = 0.0
     jaw_diameter: float = 0.0
     max_rpm: float = 0.0
-    quill: float = 0.0
-    point: float = 60.0
-    centre: float = 0.0
+    quill_diameter: float = 0.0
+    center_angle_deg: float = 60.0
+    center_z_mm: float = 0.0
 
     @property
     def outline(self) -> tuple[Point, ...]:
         """Z and r of the outside, with Z ascending."""
-        face, body = -self.stick_out, -self.stick_out - self.jaws
-        front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaws else ()
-        return ((body - _BEHIND, self.diameter / 2), (body, self.diameter / 2), *front)
+        face, body = -self.stick_out, -self.stick_out - self.jaw_length
+        front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaw_length else ()
+        return ((body - _BODY_LENGTH_MM, self.diameter / 2), (body, self.diameter / 2), *front)
 
-    def around(self, stock: Stock) -> Stock:
+    def chuck_around(self, stock: Stock) -> Stock:
         """Return the material of the chuck around the clamped stock."""
-        inside = min(stock.radius, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
+        inside = min(stock.max_radius_mm, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
         back, front = self.outline[0][0], self.outline[-1][0]
         return Stock("", self.outline, ((back, inside), (front, inside)))
 
     @property
     def tailstock(self) -> Stock | None:
         """Center and quill of the tailstock, or None."""
-        if not self.quill:
+        if not self.quill_diameter:
             return None
-        radius = self.quill / 2.0
-        cone = self.centre + radius / math.tan(math.radians(self.point / 2.0))
-        return Stock("", ((self.centre, 0.0), (cone, radius), (cone + _QUILL, radius)))
+        radius = self.quill_diameter / 2.0
+        cone = self.center_z_mm + radius / math.tan(math.radians(self.center_angle_deg / 2.0))
+        return Stock("", ((self.center_z_mm, 0.0), (cone, radius), (cone + _QUILL, radius)))

@@ -3,6 +3,6 @@
 The module imports nothing, because the command line shows the forms before it loads other modules.
 """
 
-FORMS = (
+SPECIFICATION_FORMS = (
     "bar:D, bar:D:LENGTH, tube:D:BORE, tube:D:BORE:LENGTH, profile:FILE.csv or after:FILE.nc, then +ALLOWANCE"
 )

@@ -13,15 +13,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
-from core.input_file import failures_as
+from core.input_file import convert_exceptions
 from core.message import CodedError, Message
 from core.part.stock import Point, Stock
-from core.part.stock_forms import FORMS
+from core.part.stock_forms import SPECIFICATION_FORMS
 
 _INCH = 25.4
 _LENGTH = re.compile(r"(\d+\.?\d*|\.\d+)(mm|in)?", re.IGNORECASE)
-_LARGEST = 1000.0  # mm
-_BEHIND = 10.0  # mm of stock past the last cut if no length is specified
+_MAX_SIZE_MM = 1000.0  # mm
+_EXTRA_LENGTH_MM = 10.0  # mm of stock past the last cut if no length is specified
 
 
 class StockError(CodedError, ValueError):
@@ -45,21 +45,21 @@ class StockSpec:
     after: str = ""
     points: str = ""  # text of the profile file, in the unit of the program
 
-    def stock(self, back: float, unit: float) -> Stock:
+    def stock(self, back_z_mm: float, unit: float) -> Stock:
         """Return the bar, tube or profile.
 
-        ``back`` is the least Z that is cut, in mm. ``unit`` is the unit of the program, in mm. Raises
+        ``back_z_mm`` is the least Z that is cut, in mm. ``unit`` is the unit of the program, in mm. Raises
         StockError.
         """
         if self.points:
-            return profile_stock(self.given, self.points, unit, self.allowance)
+            return parse_profile(self.given, self.points, unit, self.allowance)
         front = self.allowance
-        ends = front - self.length if self.length else min(back, front) - _BEHIND, front
+        ends = front - self.length if self.length else min(back_z_mm, front) - _EXTRA_LENGTH_MM, front
         hole = tuple((z, self.bore / 2) for z in ends) if self.bore else ()
         return Stock(self.given, tuple((z, self.diameter / 2) for z in ends), hole)
 
 
-def stock_spec(text: str) -> StockSpec:
+def parse_specification(text: str) -> StockSpec:
     """Return the parsed specification. Raises StockError with the fault and the permitted forms."""
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:
@@ -67,20 +67,20 @@ def stock_spec(text: str) -> StockSpec:
             raise StockError(
                 Message("{text} has no file name; write {kind}:FILE", text=f"{text!r}", kind=kind), "no-file"
             )
-        name, allowance = _file_and_allowance(rest)
+        name, allowance = _split_allowance(rest)
         return StockSpec(text, allowance=allowance, **{kind: name})  # type: ignore[arg-type]
     if kind not in {"bar", "tube"}:
         raise StockError(
             Message(
                 "{text} is not a stock specification; use one of these forms: {forms}",
                 text=f"{text!r}",
-                forms=FORMS,
+                forms=SPECIFICATION_FORMS,
             ),
             "unknown-form",
         )
     sizes, plus, extra = rest.partition("+")
-    allowance = _length(extra, text) if plus else 0.0
-    lengths = [_length(each, text) for each in sizes.split(":")]
+    allowance = _parse_length(extra, text) if plus else 0.0
+    lengths = [_parse_length(each, text) for each in sizes.split(":")]
     return _round_stock(text, kind, lengths, allowance)
 
 
@@ -92,17 +92,17 @@ def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -
                 "{text} has {lengths_count} dimensions; use one of these forms: {forms}",
                 text=f"{text!r}",
                 lengths_count=len(lengths),
-                forms=FORMS,
+                forms=SPECIFICATION_FORMS,
             ),
             "size-count",
         )
     diameter, bore = lengths[0], lengths[1] if kind == "tube" else 0.0
-    if not 0.0 < diameter <= _LARGEST:
+    if not 0.0 < diameter <= _MAX_SIZE_MM:
         raise StockError(
             Message(
                 "{text}: a diameter must be more than 0 and at most {largest} in",
                 text=f"{text!r}",
-                largest=f"{_LARGEST / _INCH:.0f}",
+                largest=f"{_MAX_SIZE_MM / _INCH:.0f}",
             ),
             "diameter",
         )
@@ -115,23 +115,23 @@ def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -
             "bore",
         )
     length = lengths[diameters] if len(lengths) > diameters else 0.0
-    if len(lengths) > diameters and not 0.0 < length <= 10.0 * _LARGEST:
+    if len(lengths) > diameters and not 0.0 < length <= 10.0 * _MAX_SIZE_MM:
         raise StockError(Message("{text}: a length must be more than 0", text=f"{text!r}"), "length")
     return StockSpec(text, diameter, bore, length, allowance)
 
 
-def _file_and_allowance(rest: str) -> tuple[str, float]:
+def _split_allowance(rest: str) -> tuple[str, float]:
     """Return file name and allowance.
 
     A file name may contain a plus sign, so only a plus sign before a length at the end is an allowance.
     """
     name, plus, extra = rest.rpartition("+")
     if plus and _LENGTH.fullmatch(extra.strip()):
-        return name, _length(extra, rest)
+        return name, _parse_length(extra, rest)
     return rest, 0.0
 
 
-def _length(text: str, whole: str) -> float:
+def _parse_length(text: str, whole: str) -> float:
     """Return a length in mm. Raises StockError if the text is not a length."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
@@ -146,9 +146,9 @@ def _length(text: str, whole: str) -> float:
     return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
 
 
-def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stock:
+def parse_profile(specification: str, text: str, scale: float, allowance: float) -> Stock:
     """Return the stock from CSV points: Z, r (and bore r) in units of ``scale`` mm. Raises StockError."""
-    rows = _rows(text)
+    rows = _parse_rows(text)
     if len(rows) < 2:
         raise StockError("a profile needs at least two points, with z, r in each row", "too-few-points")
     if len({len(row) for row in rows}) > 1:
@@ -168,14 +168,14 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
     bore: tuple[Point, ...] = tuple(
         (row[0] * scale + allowance, row[2] * scale) for row in rows if len(row) > 2
     )
-    return Stock(given, outside, bore)
+    return Stock(specification, outside, bore)
 
 
-def _rows(text: str) -> list[list[float]]:
+def _parse_rows(text: str) -> list[list[float]]:
     """Return the numbers of the rows, without the header and comments that begin with #."""
     import csv
 
-    with failures_as(
+    with convert_exceptions(
         lambda _error: StockError("the profile is damaged; it must be CSV text with columns z, r", "damaged")
     ):
         return _numbered_rows(csv.reader(io.StringIO(text)))
@@ -202,7 +202,7 @@ def _numbers(row: list[str], number: int) -> list[float]:
             ),
             "not-numbers",
         )
-    if max(map(abs, values)) > 10.0 * _LARGEST:
+    if max(map(abs, values)) > 10.0 * _MAX_SIZE_MM:
         raise StockError(
             Message(
                 "row {number} of the profile has a value that is too large; check the unit", number=number

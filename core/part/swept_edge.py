@@ -23,25 +23,26 @@ _UPRIGHT = 1e-9  # mm; a narrower side does not bound a column
 class Columns(NamedTuple):
     """Equally spaced columns along Z, in mm.
 
-    ``number`` is the number of columns, ``step`` the spacing, and ``first`` the middle of the first one.
+    ``number`` is the number of columns, ``step_mm`` the spacing, and ``first_z_mm`` the middle of the first
+    one.
     """
 
-    first: float
-    step: float
+    first_z_mm: float
+    step_mm: float
     number: int
 
     @property
-    def middles(self) -> FloatArray:
+    def column_centers(self) -> FloatArray:
         """Z of the middle of each column, (number,)."""
-        middles: FloatArray = self.first + self.step * np.arange(self.number, dtype=np.float64)
+        middles: FloatArray = self.first_z_mm + self.step_mm * np.arange(self.number, dtype=np.float64)
         return middles
 
-    def at(self, z: float) -> int:
+    def find_column(self, z: float) -> int:
         """Return the first column that is not before ``z``, limited to the existing columns."""
-        return min(max(math.ceil((z - self.first) / self.step), 0), self.number)
+        return min(max(math.ceil((z - self.first_z_mm) / self.step_mm), 0), self.number)
 
 
-class Edge(NamedTuple):
+class AxisFacingEdge(NamedTuple):
     """The side of a convex outline that faces the axis.
 
     ``z`` (k,) ascends, ``r`` has the shape (k,), and ``slope`` (k - 1,) ascends.
@@ -52,7 +53,7 @@ class Edge(NamedTuple):
     slope: FloatArray
 
 
-def towards_axis(outline: FloatArray) -> Edge:
+def axis_facing_edge(outline: FloatArray) -> AxisFacingEdge:
     """Return the side of a convex outline (k, 2) that faces the axis, its lower convex chain in Z and r."""
     ordered = outline[np.lexsort((outline[:, 1], outline[:, 0]))]
     chain: list[Point] = []
@@ -63,15 +64,15 @@ def towards_axis(outline: FloatArray) -> Edge:
             chain.pop()
         chain.append((z, r))
     points = np.array(chain)
-    return Edge(points[:, 0], points[:, 1], np.diff(points[:, 1]) / np.diff(points[:, 0]))
+    return AxisFacingEdge(points[:, 0], points[:, 1], np.diff(points[:, 1]) / np.diff(points[:, 0]))
 
 
 def _turn(a: Point, b: Point, c: Point) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def sweep(
-    edge: Edge, start: Point, end: Point, columns: Columns, below: float = math.inf
+def sweep_edge(
+    edge: AxisFacingEdge, start: Point, end: Point, columns: Columns, below: float = math.inf
 ) -> tuple[int, FloatArray]:
     """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
@@ -87,8 +88,8 @@ def sweep(
         z = np.concatenate((edge.z[: at + 1] + z1, edge.z[at:] + z0))
         r = np.concatenate((edge.r[: at + 1] + r1, edge.r[at:] + r0))
     low, high = _ends_below(z, r, below)
-    first, last = columns.at(low), columns.at(high)
-    there = columns.first + columns.step * np.arange(first, max(first, last))
+    first, last = columns.find_column(low), columns.find_column(high)
+    there = columns.first_z_mm + columns.step_mm * np.arange(first, max(first, last))
     return first, np.interp(there, z, r)
 
 

@@ -14,59 +14,68 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.part.insert_codes import Holder, Insert, decoded, holder_of, insert_of, shank
+from core.part.insert_codes import (
+    Insert,
+    ToolHolder,
+    decode_insert_code,
+    make_insert,
+    parse_holder,
+    standard_shank,
+)
 from core.part.tool_polygons import (
-    CHORD,
-    COARSE,
+    MAX_BODY_CHORD_ERROR_MM,
+    MAX_NOSE_CHORD_ERROR_MM,
     FloatArray,
-    circle,
+    convex_hull,
     convex_pieces,
-    counter_clockwise,
-    hull,
-    largest_radius,
-    nose_centre,
-    polygon,
-    rectangle,
-    rounded,
-    walked,
+    make_circle,
+    make_polygon,
+    make_rectangle,
+    max_corner_radius,
+    nose_center,
+    orient_counterclockwise,
+    polygon_from_edges,
+    round_corners,
 )
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 
 # Entering angles of the usual holders, ISO 5608: MCLN, DDJN, MVJN, MTJN, MWLN, MSRN, CKJN and the like.
-ENTRIES: Mapping[str, float] = {
+ENTERING_ANGLES: Mapping[str, float] = {
     **{"C": 95.0, "W": 95.0, "D": 93.0, "V": 93.0, "T": 93.0, "K": 93.0, "S": 75.0, "E": 95.0, "M": 90.0},
     **{"P": 60.0, "H": 50.0, "O": 40.0},
 }
-BORING_ENTRIES: Mapping[str, float] = {**ENTRIES, "T": 91.0}  # STFC
-NOSE = 0.4  # mm, nose radius of an unknown insert
+BORING_ENTERING_ANGLES: Mapping[str, float] = {**ENTERING_ANGLES, "T": 91.0}  # STFC
+DEFAULT_NOSE_RADIUS_MM = 0.4  # mm, nose radius of an unknown insert
 # Bars of ISO 5609: diameter → tip to axis, mm.
 _BARS = (
     (0.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0, 40.0),
     (0.0, 6.0, 7.0, 9.0, 11.0, 13.0, 17.0, 22.0, 27.0),
 )
-_PROUD = 0.1  # fraction of the inscribed circle by which an insert extends from its seat, at most 1 mm
+_INSERT_OVERHANG_FRACTION = (
+    0.1  # fraction of the inscribed circle by which an insert extends from its seat, at most 1 mm
+)
 _BLADE = 0.8  # fraction of the width of the edge
 _TAP_LEAD = 3.0  # pitches
-_POINTS = {ToolKind.DRILL: 118.0, ToolKind.CENTRE_DRILL: 60.0, ToolKind.THREADING: 60.0}
+_POINTS = {ToolKind.DRILL: 118.0, ToolKind.CENTER_DRILL: 60.0, ToolKind.THREADING: 60.0}
 
 
 @dataclass(frozen=True, slots=True)
 class ToolOutline:
     """Convex polygons (k, 2) of (z, r) about the control point, in mm, counterclockwise.
 
-    ``cutting`` removes material, and ``body`` must not touch any. ``axial`` means that the tool is round
+    ``cutting`` removes material, and ``body`` must not touch any. ``is_axial`` means that the tool is round
     about an axis parallel to Z. ``assumed`` lists the fields of the shape for which a standard size is used.
     """
 
-    cutting: tuple[FloatArray, ...]
-    body: tuple[FloatArray, ...] = ()
-    axial: bool = False
-    assumed: tuple[str, ...] = ()
+    cutting_outlines: tuple[FloatArray, ...]
+    body_outlines: tuple[FloatArray, ...] = ()
+    is_axial: bool = False
+    assumed_fields: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
-class _Drawing:
+class _OutlineDrawing:
     """The drawing of one tool in the common pose."""
 
     shape: ToolShape
@@ -83,17 +92,17 @@ class _Drawing:
         return usual
 
     @property
-    def holder(self) -> Holder:
+    def holder(self) -> ToolHolder:
         """The holder, as far as it is specified."""
-        return holder_of(self.shape.holder) or Holder()
+        return parse_holder(self.shape.holder) or ToolHolder()
 
-    def shank(self, usual: float) -> Holder:
+    def shank(self, usual: float) -> ToolHolder:
         """Return the specified shank, or the usual one of this width."""
         holder = self.holder
-        if holder.width:
+        if holder.shank_width_mm:
             return holder
         self.assumed.append("holder")
-        return shank(usual)
+        return standard_shank(usual)
 
     @property
     def sided(self) -> bool:
@@ -108,16 +117,16 @@ class _Drawing:
         return np.array([-1.0 if self.sided else 0.0, -1.0])
 
 
-def outline(shape: ToolShape) -> ToolOutline:
+def make_outline(shape: ToolShape) -> ToolOutline:
     """Return the outline of a tool. Raises InsertCodeError for an invalid code.
 
     ``core.part.shape_rules`` checks for other contradictions first.
     """
-    drawing = _Drawing(shape)
+    drawing = _OutlineDrawing(shape)
     _DRAW[shape.kind](drawing)
     if pieces := drawing.holder.outline:
         drawing.body = []
-    pose = _round_pose if shape.turns_itself else _pose
+    pose = _rotate_to_direction if shape.is_rotating else _mirror_to_quadrant
     placed = _as_drawn if shape.kind is ToolKind.FORM else pose
     return ToolOutline(
         tuple(placed(each, shape.direction) for each in drawing.cutting),
@@ -125,16 +134,18 @@ def outline(shape: ToolShape) -> ToolOutline:
             *(placed(each, shape.direction) for each in drawing.body),
             *(convex_pieces(pieces) if pieces else ()),
         ),
-        shape.turns_itself and shape.direction[1] == 0,
+        shape.is_rotating and shape.direction[1] == 0,
         tuple(dict.fromkeys(drawing.assumed)),
     )
 
 
-def nose_circle(radius: float, tip: int) -> ToolOutline:
+def make_nose_circle(radius: float, tip: int) -> ToolOutline:
     """Return the outline of a tool without a shape: its nose circle, or a very small one without a radius."""
-    size = radius or CHORD * 10.0
+    size = radius or MAX_NOSE_CHORD_ERROR_MM * 10.0
     z, r = TIP_DIRECTIONS[tip]
-    return ToolOutline((circle(size) - size * np.array([z, r], dtype=np.float64),), assumed=("kind",))
+    return ToolOutline(
+        (make_circle(size) - size * np.array([z, r], dtype=np.float64),), assumed_fields=("kind",)
+    )
 
 
 # --- poses: mirroring to the side of the tip ----------------------------------------------------------------
@@ -144,136 +155,140 @@ def _as_drawn(points: FloatArray, _direction: tuple[int, int]) -> FloatArray:
     return points
 
 
-def _pose(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
+def _mirror_to_quadrant(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
     """Return points mirrored from quadrant 3 or 8."""
     z, r = direction
     if r == 0:  # quadrants 7 and 5: the end points along the axis instead of to it
-        return counter_clockwise(points[:, ::-1] * np.array([-z, 1.0]))
-    return counter_clockwise(points * np.array([-z or 1.0, -r]))
+        return orient_counterclockwise(points[:, ::-1] * np.array([-z, 1.0]))
+    return orient_counterclockwise(points * np.array([-z or 1.0, -r]))
 
 
-def _round_pose(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
+def _rotate_to_direction(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
     """Return points of a round tool rotated from quadrant 7."""
     z, r = direction
     if z == 0:
-        return counter_clockwise(points[:, ::-1] * np.array([1.0, -r]))
-    return counter_clockwise(points * np.array([-z, 1.0]))
+        return orient_counterclockwise(points[:, ::-1] * np.array([1.0, -r]))
+    return orient_counterclockwise(points * np.array([-z, 1.0]))
 
 
 # --- turning and boring -------------------------------------------------------------------------------------
 
 
-def _insert(drawing: _Drawing, usual_circle: float) -> Insert:
+def _insert(drawing: _OutlineDrawing, usual_circle: float) -> Insert:
     shape = drawing.shape
     if not shape.insert.strip():
         drawing.assumed.append("insert")
-        return insert_of("C", usual_circle, shape.nose_radius or NOSE)
-    insert = decoded(shape.insert)
-    if not insert.corners:
+        return make_insert("C", usual_circle, shape.nose_radius or DEFAULT_NOSE_RADIUS_MM)
+    insert = decode_insert_code(shape.insert)
+    if not insert.corner_angles:
         return insert
-    return insert_of(insert.shape, insert.inscribed_circle, shape.nose_radius or insert.nose_radius)
+    return make_insert(insert.shape, insert.inscribed_circle, shape.nose_radius or insert.nose_radius)
 
 
-def _heading(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> float:
+def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]) -> float:
     """Return the direction of the end cutting edge from the tip, in degrees from +z to +r."""
     shape, holder, point = drawing.shape, drawing.holder, insert.point_angle
-    entry = shape.entry or holder.entry
+    entry = shape.entry or holder.entering_angle_deg
     if not entry and (not drawing.sided or shape.hand is Hand.NEUTRAL):
         return 90.0 - point / 2.0
-    if holder.faces and not shape.entry and not shape.internal:
+    if holder.is_facing_angle and not shape.entry and not shape.internal:
         return entry - 90.0
     return 180.0 - (entry or usual[insert.shape]) - point
 
 
-def _seated(drawing: _Drawing, insert: Insert, usual: Mapping[str, float]) -> tuple[FloatArray, FloatArray]:
+def _seat_insert(
+    drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]
+) -> tuple[FloatArray, FloatArray]:
     """Return the insert, and the part of it that is on its seat, about the control point."""
     radius = insert.nose_radius
-    seat = 1.0 - 2.0 * min(1.0, _PROUD * insert.inscribed_circle) / insert.inscribed_circle
-    if not insert.corners:
-        nose = circle(radius)
+    seat = 1.0 - 2.0 * min(1.0, _INSERT_OVERHANG_FRACTION * insert.inscribed_circle) / insert.inscribed_circle
+    if not insert.corner_angles:
+        nose = make_circle(radius)
         return nose - drawing.tip * radius, nose * seat - drawing.tip * radius
-    sharp = walked(insert.corners, insert.edges, _heading(drawing, insert, usual))
-    radius = min(radius, 0.99 * largest_radius(sharp))
-    shift = -radius * drawing.tip - (nose_centre(sharp, radius) if radius else sharp[0])
-    chords = [CHORD] + [COARSE] * (len(sharp) - 1)
+    sharp = polygon_from_edges(
+        insert.corner_angles, insert.edge_lengths, _edge_heading(drawing, insert, usual)
+    )
+    radius = min(radius, 0.99 * max_corner_radius(sharp))
+    shift = -radius * drawing.tip - (nose_center(sharp, radius) if radius else sharp[0])
+    chords = [MAX_NOSE_CHORD_ERROR_MM] + [MAX_BODY_CHORD_ERROR_MM] * (len(sharp) - 1)
     middle = sharp.mean(axis=0)
-    nosed = rounded(sharp, [radius] * len(sharp), chords)
+    nosed = round_corners(sharp, [radius] * len(sharp), chords)
     return nosed + shift, middle + (
-        rounded(sharp, [radius] * len(sharp), [COARSE] * len(sharp)) - middle
+        round_corners(sharp, [radius] * len(sharp), [MAX_BODY_CHORD_ERROR_MM] * len(sharp)) - middle
     ) * seat + shift
 
 
-def _turning(drawing: _Drawing) -> None:
+def _turning(drawing: _OutlineDrawing) -> None:
     insert = _insert(drawing, 12.7)
-    cutting, seat = _seated(drawing, insert, ENTRIES)
+    cutting, seat = _seat_insert(drawing, insert, ENTERING_ANGLES)
     drawing.cutting.append(cutting)
     across = insert.inscribed_circle
-    head = max(2.5 * across, 2.0 * max(insert.edges, default=across))
+    head = max(2.5 * across, 2.0 * max(insert.edge_lengths, default=across))
     holder = drawing.shank(next(wide for least, wide in _SHANKS if across >= least))
     centred = not drawing.sided or drawing.shape.hand is Hand.NEUTRAL
-    far = holder.width / 2.0 if centred else holder.reach
-    _shank_behind(drawing, seat, (far - holder.width, far), head)
+    far = holder.shank_width_mm / 2.0 if centred else holder.reach_mm
+    _add_shank(drawing, seat, (far - holder.shank_width_mm, far), head)
 
 
 _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  # inscribed circle → width, mm
 
 
-def _shank_behind(drawing: _Drawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
+def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
     """Add a head from the seat to the shank, and the shank up to its stick-out."""
-    drawing.body.append(hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
+    drawing.body.append(convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
-        drawing.body.append(rectangle(side, (head, end)))
+        drawing.body.append(make_rectangle(side, (head, end)))
 
 
-def _boring(drawing: _Drawing) -> None:
+def _boring(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
-    bar = shape.diameter or drawing.holder.bar
+    bar = shape.diameter or drawing.holder.bar_diameter_mm
     insert = _insert(drawing, next(circle for least, circle in _BAR_INSERTS if bar >= least))
-    cutting, seat = _seated(drawing, insert, BORING_ENTRIES)
+    cutting, seat = _seat_insert(drawing, insert, BORING_ENTERING_ANGLES)
     drawing.cutting.append(cutting)
     if not bar:
         bar = next(wide for least, wide in _INSERT_BARS if insert.inscribed_circle >= least)
         drawing.assumed.append("diameter")
     axis = float(np.interp(bar, *_BARS)) if bar < _BARS[0][-1] else 0.7 * bar
-    _bar_behind(drawing, seat, bar, axis, min(insert.inscribed_circle, bar) / 2.0)
+    _add_bar(drawing, seat, bar, axis, min(insert.inscribed_circle, bar) / 2.0)
 
 
 _BAR_INSERTS = ((26.0, 12.7), (17.0, 9.525), (0.0, 6.35))  # bar → inscribed circle, mm
 _INSERT_BARS = ((12.0, 32.0), (9.0, 20.0), (6.0, 12.0), (0.0, 8.0))  # inscribed circle → bar, mm
 
 
-def _bar_behind(drawing: _Drawing, seat: FloatArray, bar: float, axis: float, head: float) -> None:
+def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float, head: float) -> None:
     """Add a bar toward +z with its axis at a distance from the tip; z is mirrored for back boring."""
     back = -1.0 if drawing.shape.direction[0] > 0 else 1.0
     away = np.array([back, 1.0])
     low, high = axis - bar / 2.0, axis + bar / 2.0
     start = min(head, float((seat * away)[:, 0].max()))
     end = drawing.size("stick_out", 4.0 * bar)
-    drawing.body.append(hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away)
+    drawing.body.append(convex_hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away)
     if end > start:
-        drawing.body.append(rectangle((start, end), (low, high)) * away)
+        drawing.body.append(make_rectangle((start, end), (low, high)) * away)
     if drawing.shape.stick_out:
-        drawing.body.append(rectangle((end, end + 2.0 * bar), (axis - bar, axis + bar)) * away)
+        drawing.body.append(make_rectangle((end, end + 2.0 * bar), (axis - bar, axis + bar)) * away)
 
 
 # --- grooving, parting, threading: edge, blade, then shank or bar -------------------------------------------
 
 
-def _grooving(drawing: _Drawing) -> None:
+def _grooving(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
     width = drawing.size("width", 3.0)
     nose = min(shape.nose_radius, 0.49 * width)
     depth = shape.length or (0.0 if shape.internal else shape.stick_out) or _usual_depth(shape, width)
-    high = max(min(depth, max(1.5 * width, 2.0)), nose + CHORD)
-    left = _left_end(drawing, width, nose)
-    sharp = rectangle((left, left + width), (0.0, high)) - np.array([0.0, nose * (1.0 + drawing.tip[1])])
-    drawing.cutting.append(rounded(sharp, [nose, nose, 0.0, 0.0], [CHORD] * 4))
+    high = max(min(depth, max(1.5 * width, 2.0)), nose + MAX_NOSE_CHORD_ERROR_MM)
+    left = _left_edge_end(drawing, width, nose)
+    sharp = make_rectangle((left, left + width), (0.0, high)) - np.array([0.0, nose * (1.0 + drawing.tip[1])])
+    drawing.cutting.append(round_corners(sharp, [nose, nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 4))
     thin = (1.0 - _BLADE) / 2.0 * width
     _blade_behind(drawing, (left + thin, left + width - thin), high, depth)
 
 
-def _left_end(drawing: _Drawing, width: float, nose: float) -> float:
+def _left_edge_end(drawing: _OutlineDrawing, width: float, nose: float) -> float:
     """Return the left end of an edge, whose control point is its corner, its middle or a nose center."""
     if not drawing.sided:
         return -width / 2.0
@@ -284,22 +299,22 @@ def _usual_depth(shape: ToolShape, width: float) -> float:
     return 1.5 * width if shape.internal else max(12.0 * width, 25.0)
 
 
-def _blade_behind(drawing: _Drawing, side: tuple[float, float], high: float, depth: float) -> None:
+def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: float, depth: float) -> None:
     shape = drawing.shape
     if depth > high:
-        drawing.body.append(rectangle(side, (high, depth)))
+        drawing.body.append(make_rectangle(side, (high, depth)))
     if shape.internal:
         bar = drawing.size("diameter", 12.0)
-        _bar_behind(drawing, rectangle(side, (depth, depth + bar)), bar, depth + bar / 2.0, side[0])
+        _add_bar(drawing, make_rectangle(side, (depth, depth + bar)), bar, depth + bar / 2.0, side[0])
     elif shape.length or shape.stick_out:
-        wide = drawing.shank(20.0).width
+        wide = drawing.shank(20.0).shank_width_mm
         end = max(shape.stick_out, depth + 2.0 * wide)
-        drawing.body.append(rectangle((side[0], side[0] + wide), (depth, end)))
+        drawing.body.append(make_rectangle((side[0], side[0] + wide), (depth, end)))
     else:
         drawing.assumed.append("length")
 
 
-def _threading(drawing: _Drawing) -> None:
+def _draw_threading(drawing: _OutlineDrawing) -> None:
     """Draw a V with a nose radius, or with a flat of one eighth of the pitch (ISO 68-1)."""
     shape = drawing.shape
     angle = math.radians(drawing.size("point", _POINTS[ToolKind.THREADING]))
@@ -308,12 +323,12 @@ def _threading(drawing: _Drawing) -> None:
     half = flat / 2.0 + high * math.tan(angle / 2.0)
     if flat:
         points = [(-flat / 2.0, 0.0), (flat / 2.0, 0.0), (half, high), (-half, high)]
-        drawing.cutting.append(polygon(points) - np.array([drawing.tip[0] * flat / 2.0, 0.0]))
+        drawing.cutting.append(make_polygon(points) - np.array([drawing.tip[0] * flat / 2.0, 0.0]))
     else:
-        sharp = polygon([(0.0, 0.0), (half, high), (-half, high)])
-        nose = min(shape.nose_radius, 0.5 * largest_radius(sharp))
-        shift = -nose * drawing.tip - (nose_centre(sharp, nose) if nose else sharp[0])
-        drawing.cutting.append(rounded(sharp, [nose, 0.0, 0.0], [CHORD] * 3) + shift)
+        sharp = make_polygon([(0.0, 0.0), (half, high), (-half, high)])
+        nose = min(shape.nose_radius, 0.5 * max_corner_radius(sharp))
+        shift = -nose * drawing.tip - (nose_center(sharp, nose) if nose else sharp[0])
+        drawing.cutting.append(round_corners(sharp, [nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 3) + shift)
     top = drawing.cutting[0][:, 1].max()
     left = float(drawing.cutting[0][:, 0].min())
     _blade_behind(drawing, (left, left + 2.0 * half), top, top + 2.0 * half)
@@ -323,15 +338,15 @@ def _threading(drawing: _Drawing) -> None:
 
 
 def _cylinder(start: float, end: float, radius: float) -> FloatArray:
-    return rectangle((start, end), (-radius, radius))
+    return make_rectangle((start, end), (-radius, radius))
 
 
-def _symmetrical(upper: list[tuple[float, float]]) -> FloatArray:
+def _mirror_half(upper: list[tuple[float, float]]) -> FloatArray:
     """Return a convex polygon from its half at r ≥ 0, ordered along z."""
-    return hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
+    return convex_hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
 
 
-def _shank_of(drawing: _Drawing, length: float, diameter: float) -> None:
+def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -> None:
     """Add the shank up to its clamping, and the clamping if its position is specified."""
     end = drawing.shape.stick_out or length + 2.0 * diameter
     if end > length:
@@ -340,18 +355,18 @@ def _shank_of(drawing: _Drawing, length: float, diameter: float) -> None:
         drawing.body.append(_cylinder(end, end + 2.0 * diameter + 10.0, diameter / 2.0 + 5.0))
 
 
-def _drill(drawing: _Drawing) -> None:
+def _drill(drawing: _OutlineDrawing) -> None:
     diameter = drawing.size("diameter", 6.0)
     radius = diameter / 2.0
     length = drawing.size("length", 8.0 * diameter)
     cone = radius / math.tan(math.radians(drawing.size("point", _POINTS[ToolKind.DRILL]) / 2.0))
     length = max(length, cone)
-    point = [(0.0, 0.0)] if cone > CHORD else []  # a flat drill has no point
-    drawing.cutting.append(_symmetrical([*point, (cone if point else 0.0, radius), (length, radius)]))
-    _shank_of(drawing, length, diameter)
+    point = [(0.0, 0.0)] if cone > MAX_NOSE_CHORD_ERROR_MM else []  # a flat drill has no point
+    drawing.cutting.append(_mirror_half([*point, (cone if point else 0.0, radius), (length, radius)]))
+    _add_round_shank(drawing, length, diameter)
 
 
-def _centre_drill(drawing: _Drawing) -> None:
+def _draw_center_drill(drawing: _OutlineDrawing) -> None:
     """Draw DIN 333 form A: pilot of 0.4 body diameters, 120° point, then the cone.
 
     ``width`` is the diameter of the pilot.
@@ -360,64 +375,64 @@ def _centre_drill(drawing: _Drawing) -> None:
     pilot = drawing.shape.width or 0.4 * diameter
     tip = pilot / 2.0 / math.tan(math.radians(60.0))
     root = 1.2 * pilot
-    angle = math.radians(drawing.size("point", _POINTS[ToolKind.CENTRE_DRILL]) / 2.0)
+    angle = math.radians(drawing.size("point", _POINTS[ToolKind.CENTER_DRILL]) / 2.0)
     end = root + (diameter - pilot) / 2.0 / math.tan(angle)
-    drawing.cutting.append(_symmetrical([(0.0, 0.0), (tip, pilot / 2.0), (root, pilot / 2.0)]))
+    drawing.cutting.append(_mirror_half([(0.0, 0.0), (tip, pilot / 2.0), (root, pilot / 2.0)]))
     drawing.cutting.append(
-        _symmetrical([(root, pilot / 2.0), (end, diameter / 2.0), (end + 0.5, diameter / 2.0)])
+        _mirror_half([(root, pilot / 2.0), (end, diameter / 2.0), (end + 0.5, diameter / 2.0)])
     )
-    _shank_of(drawing, end + 0.5, diameter)
+    _add_round_shank(drawing, end + 0.5, diameter)
 
 
-def _reamer(drawing: _Drawing) -> None:
+def _reamer(drawing: _OutlineDrawing) -> None:
     diameter = drawing.size("diameter", 6.0)
     length = drawing.size("length", 5.0 * diameter)
     lead = min(0.1 * diameter, 0.5)  # at 45°
     radius = diameter / 2.0
-    drawing.cutting.append(_symmetrical([(0.0, radius - lead), (lead, radius), (length, radius)]))
-    _shank_of(drawing, length, diameter)
+    drawing.cutting.append(_mirror_half([(0.0, radius - lead), (lead, radius), (length, radius)]))
+    _add_round_shank(drawing, length, diameter)
 
 
-def _tap(drawing: _Drawing) -> None:
+def _draw_tap(drawing: _OutlineDrawing) -> None:
     """Draw a tap whose lead is three pitches long and starts below the core (ISO 68-1)."""
     diameter = drawing.size("diameter", 6.0)
     pitch = drawing.size("pitch", diameter / 6.0)
     length = drawing.size("length", 2.5 * diameter + _TAP_LEAD * pitch)
     end = max(diameter - 1.2 * pitch, 0.5 * diameter) / 2.0
     lead = min(_TAP_LEAD * pitch, length)
-    drawing.cutting.append(_symmetrical([(0.0, end), (lead, diameter / 2.0), (length, diameter / 2.0)]))
-    _shank_of(drawing, length, diameter)
+    drawing.cutting.append(_mirror_half([(0.0, end), (lead, diameter / 2.0), (length, diameter / 2.0)]))
+    _add_round_shank(drawing, length, diameter)
 
 
-def _end_mill(drawing: _Drawing) -> None:
+def _end_mill(drawing: _OutlineDrawing) -> None:
     diameter = drawing.size("diameter", 6.0)
     length = drawing.size("length", 3.0 * diameter)
     nose = min(drawing.shape.nose_radius, diameter / 2.0)
     radii = [nose, 0.0, 0.0, nose]
     body = _cylinder(0.0, length, diameter / 2.0)
-    drawing.cutting.append(rounded(body, radii, [CHORD] * 4) if nose else body)
-    _shank_of(drawing, length, diameter)
+    drawing.cutting.append(round_corners(body, radii, [MAX_NOSE_CHORD_ERROR_MM] * 4) if nose else body)
+    _add_round_shank(drawing, length, diameter)
 
 
-def _form(drawing: _Drawing) -> None:
+def _form(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
     if shape.profile:
         drawing.cutting.extend(convex_pieces(shape.profile))
     else:
         drawing.assumed.append("profile")
-        drawing.cutting.extend(nose_circle(shape.nose_radius, shape.tip).cutting)
+        drawing.cutting.extend(make_nose_circle(shape.nose_radius, shape.tip).cutting_outlines)
 
 
-_DRAW: Mapping[ToolKind, Callable[[_Drawing], None]] = {
+_DRAW: Mapping[ToolKind, Callable[[_OutlineDrawing], None]] = {
     ToolKind.TURNING: _turning,
     ToolKind.BORING: _boring,
     ToolKind.GROOVING: _grooving,
     ToolKind.PARTING: _grooving,
-    ToolKind.THREADING: _threading,
+    ToolKind.THREADING: _draw_threading,
     ToolKind.DRILL: _drill,
-    ToolKind.CENTRE_DRILL: _centre_drill,
+    ToolKind.CENTER_DRILL: _draw_center_drill,
     ToolKind.REAMER: _reamer,
-    ToolKind.TAP: _tap,
+    ToolKind.TAP: _draw_tap,
     ToolKind.END_MILL: _end_mill,
     ToolKind.FORM: _form,
 }

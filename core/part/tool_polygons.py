@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from core.message import CodedError
 
 FloatArray = NDArray[np.float64]
-CHORD = 0.0005  # mm of deviation between a nose and its chords
-COARSE = 0.02  # mm of deviation for corners that do not cut
+MAX_NOSE_CHORD_ERROR_MM = 0.0005  # mm of deviation between a nose and its chords
+MAX_BODY_CHORD_ERROR_MM = 0.02  # mm of deviation for corners that do not cut
 _RIGHT_ANGLE = math.pi / 2.0
 
 
@@ -24,35 +24,41 @@ class PartError(CodedError, ValueError):
     """Raised for points, edges or outlines from which no part, cut or tool can be computed."""
 
 
-def polygon(points: Iterable[tuple[float, float]]) -> FloatArray:
+def make_polygon(points: Iterable[tuple[float, float]]) -> FloatArray:
     """Return the points as an array, counterclockwise."""
-    return counter_clockwise(np.array(tuple(points), dtype=np.float64))
+    return orient_counterclockwise(np.array(tuple(points), dtype=np.float64))
 
 
-def rectangle(z: tuple[float, float], r: tuple[float, float]) -> FloatArray:
+def make_rectangle(z: tuple[float, float], r: tuple[float, float]) -> FloatArray:
     """Return the rectangle between two z and two r."""
     (left, right), (low, high) = sorted(z), sorted(r)
-    return polygon([(left, low), (right, low), (right, high), (left, high)])
+    return make_polygon([(left, low), (right, low), (right, high), (left, high)])
 
 
-def area(points: FloatArray) -> float:
+def signed_area(points: FloatArray) -> float:
     """Return the area of a polygon by the shoelace formula; negative for a clockwise polygon."""
     z, r = points[:, 0], points[:, 1]
     return 0.5 * float(np.dot(z, np.roll(r, -1)) - np.dot(r, np.roll(z, -1)))
 
 
-def counter_clockwise(points: FloatArray) -> FloatArray:
+def orient_counterclockwise(points: FloatArray) -> FloatArray:
     """Return the polygon in counterclockwise order."""
-    return points if area(points) >= 0.0 else points[::-1].copy()
+    return points if signed_area(points) >= 0.0 else points[::-1].copy()
 
 
-def arc(start: float, sweep: float, radius: float, chord: float = CHORD) -> FloatArray:
+def make_arc_points(
+    start: float, sweep: float, radius: float, max_chord_error: float = MAX_NOSE_CHORD_ERROR_MM
+) -> FloatArray:
     """Return points (k, 2) on an arc about the origin, in radians, including its extremes in z and r.
 
     A chord with the half angle t deviates by radius·(1 - cos t). A diameter turned with the extreme of a
     quadrant is exact.
     """
-    most = 2.0 * math.acos(max(0.0, 1.0 - chord / radius)) if radius > chord else _RIGHT_ANGLE
+    most = (
+        2.0 * math.acos(max(0.0, 1.0 - max_chord_error / radius))
+        if radius > max_chord_error
+        else _RIGHT_ANGLE
+    )
     first = math.floor(start / _RIGHT_ANGLE + 1e-9) + 1
     quarters = [k * _RIGHT_ANGLE for k in range(first, first + 5) if k * _RIGHT_ANGLE < start + sweep - 1e-9]
     angles = [start]
@@ -62,47 +68,55 @@ def arc(start: float, sweep: float, radius: float, chord: float = CHORD) -> Floa
     return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
-def circle(radius: float) -> FloatArray:
+def make_circle(radius: float) -> FloatArray:
     """Return a circle about the origin."""
-    return arc(0.0, 2.0 * math.pi, radius)[:-1]
+    return make_arc_points(0.0, 2.0 * math.pi, radius)[:-1]
 
 
-def walked(corners: Sequence[float], edges: Sequence[float], heading: float) -> FloatArray:
+def polygon_from_edges(
+    corner_angles: Sequence[float], edge_lengths: Sequence[float], heading_deg: float
+) -> FloatArray:
     """Return a polygon from its interior angles and edges, with the first corner at the origin, in degrees.
 
-    ``heading`` is the direction of the first edge from +z to +r.
+    ``heading_deg`` is the direction of the first edge from +z to +r.
     """
-    points, at, angle = [], np.zeros(2), math.radians(heading)
-    for corner, edge in zip((*corners[1:], corners[0]), edges, strict=True):
+    points, at, angle = [], np.zeros(2), math.radians(heading_deg)
+    for corner, edge in zip((*corner_angles[1:], corner_angles[0]), edge_lengths, strict=True):
         points.append(at)
         at = at + edge * np.array([math.cos(angle), math.sin(angle)])
         angle += math.pi - math.radians(corner)
     return np.array(points)
 
 
-def nose_centre(points: FloatArray, radius: float, at: int = 0) -> FloatArray:
+def nose_center(points: FloatArray, radius: float, corner_index: int = 0) -> FloatArray:
     """Return the center of the circle with this radius that touches both edges of a corner."""
-    before, corner, after = points[at - 1], points[at], points[(at + 1) % len(points)]
+    before, corner, after = (
+        points[corner_index - 1],
+        points[corner_index],
+        points[(corner_index + 1) % len(points)],
+    )
     one, other = _unit(before - corner), _unit(after - corner)
     half = math.acos(float(np.clip(np.dot(one, other), -1.0, 1.0))) / 2.0
     return np.asarray(corner + _unit(one + other) * radius / math.sin(half))
 
 
-def rounded(points: FloatArray, radii: Sequence[float], chords: Sequence[float]) -> FloatArray:
+def round_corners(
+    points: FloatArray, radii: Sequence[float], max_chord_errors: Sequence[float]
+) -> FloatArray:
     """Return the convex polygon with rounded corners, each with its radius and its chord error limit."""
     parts = []
-    for at, (radius, chord) in enumerate(zip(radii, chords, strict=True)):
+    for at, (radius, chord) in enumerate(zip(radii, max_chord_errors, strict=True)):
         if radius <= 0.0:
             parts.append(points[at : at + 1])
             continue
         into, out = points[at] - points[at - 1], points[(at + 1) % len(points)] - points[at]
         start = math.atan2(into[1], into[0]) - _RIGHT_ANGLE
         turn = math.atan2(into[0] * out[1] - into[1] * out[0], float(np.dot(into, out)))
-        parts.append(nose_centre(points, radius, at) + arc(start, turn, radius, chord))
+        parts.append(nose_center(points, radius, at) + make_arc_points(start, turn, radius, chord))
     return np.concatenate(parts)
 
 
-def largest_radius(points: FloatArray) -> float:
+def max_corner_radius(points: FloatArray) -> float:
     """Return the largest radius that fits into all corners at the same time."""
     fits = []
     for at in range(len(points)):
@@ -112,7 +126,7 @@ def largest_radius(points: FloatArray) -> float:
     return min(fits)
 
 
-def hull(points: FloatArray) -> FloatArray:
+def convex_hull(points: FloatArray) -> FloatArray:
     """Return the convex hull of points, counterclockwise (Andrew's monotone chain)."""
     ordered = [tuple(point) for point in points[np.lexsort((points[:, 1], points[:, 0]))]]
     return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1], dtype=np.float64)
@@ -121,7 +135,7 @@ def hull(points: FloatArray) -> FloatArray:
 def _chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     chain: list[tuple[float, ...]] = []
     for point in ordered:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0.0:
+        while len(chain) > 1 and _turn_value(chain[-2], chain[-1], point) <= 0.0:
             chain.pop()
         chain.append(point)
     return chain
@@ -132,11 +146,11 @@ def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ..
 
     Raises PartError if the outline crosses or touches itself.
     """
-    left = [(float(z), float(r)) for z, r in counter_clockwise(np.array(points, dtype=np.float64))]
-    if _crosses(left):
+    left = [(float(z), float(r)) for z, r in orient_counterclockwise(np.array(points, dtype=np.float64))]
+    if _has_crossing_edges(left):
         raise PartError("the outline crosses itself", "crosses-itself")
     if _convex(left):
-        return (np.array(left),) if area(np.array(left)) > 0.0 else ()
+        return (np.array(left),) if signed_area(np.array(left)) > 0.0 else ()
     pieces = []
     while len(left) > 3:
         ear = next((at for at in range(len(left)) if _is_ear(left, at)), None)
@@ -144,20 +158,20 @@ def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ..
             raise PartError("the outline touches itself", "touches-itself")
         pieces.append(np.array([left[ear - 1], left[ear], left[(ear + 1) % len(left)]]))
         del left[ear]
-    return tuple(piece for piece in (*pieces, np.array(left)) if area(piece) > 0.0)
+    return tuple(piece for piece in (*pieces, np.array(left)) if signed_area(piece) > 0.0)
 
 
 def _convex(points: list[tuple[float, float]]) -> bool:
     around = [*points, *points[:2]]
-    return all(_turn(*around[at : at + 3]) >= 0.0 for at in range(len(points)))
+    return all(_turn_value(*around[at : at + 3]) >= 0.0 for at in range(len(points)))
 
 
-def _crosses(points: list[tuple[float, float]]) -> bool:
+def _has_crossing_edges(points: list[tuple[float, float]]) -> bool:
     """Return whether two edges that are not neighbors cross."""
     edges = list(pairwise([*points, points[0]]))
     return any(
-        _turn(*edges[one], edges[other][0]) * _turn(*edges[one], edges[other][1]) < 0.0
-        and _turn(*edges[other], edges[one][0]) * _turn(*edges[other], edges[one][1]) < 0.0
+        _turn_value(*edges[one], edges[other][0]) * _turn_value(*edges[one], edges[other][1]) < 0.0
+        and _turn_value(*edges[other], edges[one][0]) * _turn_value(*edges[other], edges[one][1]) < 0.0
         for other in range(len(edges))
         for one in range(other - 1)
     )
@@ -165,18 +179,18 @@ def _crosses(points: list[tuple[float, float]]) -> bool:
 
 def _is_ear(points: list[tuple[float, float]], at: int) -> bool:
     before, corner, after = points[at - 1], points[at], points[(at + 1) % len(points)]
-    if _turn(before, corner, after) < 0.0:
+    if _turn_value(before, corner, after) < 0.0:
         return False
     others = (point for point in points if point not in (before, corner, after))
     return not any(
-        _turn(before, corner, point) >= 0.0
-        and _turn(corner, after, point) >= 0.0
-        and _turn(after, before, point) >= 0.0
+        _turn_value(before, corner, point) >= 0.0
+        and _turn_value(corner, after, point) >= 0.0
+        and _turn_value(after, before, point) >= 0.0
         for point in others
     )
 
 
-def _turn(first: Sequence[float], second: Sequence[float], third: Sequence[float]) -> float:
+def _turn_value(first: Sequence[float], second: Sequence[float], third: Sequence[float]) -> float:
     """Return a positive value if the path over three points turns left."""
     return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 

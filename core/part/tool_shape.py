@@ -17,7 +17,7 @@ class ToolKind(StrEnum):
     PARTING = "parting"
     THREADING = "threading"
     DRILL = "drill"
-    CENTRE_DRILL = "centre-drill"
+    CENTER_DRILL = "centre-drill"
     REAMER = "reamer"
     TAP = "tap"
     END_MILL = "end-mill"
@@ -34,7 +34,7 @@ class Hand(StrEnum):
 
 # Rotating tools, whose control point is on their axis at the end.
 ROUND_TOOLS = frozenset(
-    {ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL}
+    {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL}
 )
 
 Point = tuple[float, float]
@@ -75,7 +75,7 @@ class ToolShape:
     profile: tuple[Point, ...] = ()
 
     @property
-    def turns_itself(self) -> bool:
+    def is_rotating(self) -> bool:
         """True for a rotating tool: drill, center drill, reamer, tap or end mill."""
         return self.kind in ROUND_TOOLS
 
@@ -94,7 +94,7 @@ class ToolShape:
     @property
     def direction(self) -> tuple[int, int]:
         """The direction of the tip as (z, x), from the quadrant, or else from kind, hand and side."""
-        if self.turns_itself and self.tip in {0, 9}:
+        if self.is_rotating and self.tip in {0, 9}:
             return (-1, 0)
         if self.tip not in {0, 9}:
             return TIP_DIRECTIONS[self.tip]

@@ -18,17 +18,17 @@ import numpy.typing as npt
 from core.part.stock import Stock
 from core.part.swept_edge import Columns, FloatArray, Point
 
-STEP = 0.008
-"""Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
-_FINE = 40_000  # columns; 320 mm
+DEFAULT_COLUMN_WIDTH_MM = 0.008
+"""Width of a column, mm, up to ``_MAX_COLUMNS`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
+_MAX_COLUMNS = 40_000  # columns; 320 mm
 _TOUCH = 1e-6  # mm; thinner material counts as none
-_FIT = 0.004  # mm of tolerance of a reported profile
-_STEEP = 8.0  # column widths; a larger step between two columns is a shoulder
-Profile = list[tuple[float, float]]
+_PROFILE_TOLERANCE_MM = 0.004  # mm of tolerance of a reported profile
+_STEEP_RATIO = 8.0  # column widths; a larger step between two columns is a shoulder
+ProfilePoints = list[tuple[float, float]]
 """Z and r, mm, Z falling: from the face towards the chuck."""
 
 
-def simplified(points: FloatArray, tolerance: float) -> FloatArray:
+def simplify_polyline(points: FloatArray, tolerance: float) -> FloatArray:
     """Return a subset (k, 2) of points (n, 2), including the ends, within ``tolerance`` of their polyline."""
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
@@ -37,7 +37,7 @@ def simplified(points: FloatArray, tolerance: float) -> FloatArray:
         first, last = todo.pop()
         if last - first < 2:
             continue
-        off = _distances(points[first + 1 : last], points[first], points[last])
+        off = _distances_from_line(points[first + 1 : last], points[first], points[last])
         worst = int(off.argmax())
         if off[worst] > tolerance:
             middle = first + 1 + worst
@@ -46,7 +46,7 @@ def simplified(points: FloatArray, tolerance: float) -> FloatArray:
     return points[kept]
 
 
-def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+def _distances_from_line(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     """Return the distance of each point (n, 2) from the straight line between two points."""
     way: FloatArray = end - start
     length = float(np.hypot(*way))
@@ -60,53 +60,53 @@ def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatA
 class Cut(NamedTuple):
     """The material that one move cuts. Lengths are in mm, the area of the half section in mm², volume in mm³.
 
-    ``depth`` is the greatest thickness along r. ``width`` is the length of Z that is cut, from ``back`` to
-    ``front``.
+    ``depth`` is the greatest thickness along r. ``width_mm`` is the length of Z that is cut, from
+    ``back_z_mm`` to ``front_z_mm``.
     """
 
     area: float = 0.0
-    volume: float = 0.0
-    depth: float = 0.0
-    width: float = 0.0
-    back: float = 0.0
-    front: float = 0.0
-    parts: bool = False  # a column has lost all its material
+    volume_mm3: float = 0.0
+    depth_mm: float = 0.0
+    width_mm: float = 0.0
+    back_z_mm: float = 0.0
+    front_z_mm: float = 0.0
+    parts_off: bool = False  # a column has lost all its material
 
     def __bool__(self) -> bool:
         return self.area > 0.0
 
-    def joined(self, other: Cut) -> Cut:
+    def combine(self, other: Cut) -> Cut:
         """Return both cuts together."""
         if not self or not other:
             return self or other
         return Cut(
             self.area + other.area,
-            self.volume + other.volume,
-            self.depth + other.depth,
-            max(self.width, other.width),
-            min(self.back, other.back),
-            max(self.front, other.front),
-            self.parts or other.parts,
+            self.volume_mm3 + other.volume_mm3,
+            self.depth_mm + other.depth_mm,
+            max(self.width_mm, other.width_mm),
+            min(self.back_z_mm, other.back_z_mm),
+            max(self.front_z_mm, other.front_z_mm),
+            self.parts_off or other.parts_off,
         )
 
-    def followed(self, other: Cut) -> Cut:
+    def combine_sequence(self, other: Cut) -> Cut:
         """Return this cut followed by another one of the same move, with the greater of both depths."""
-        return self.joined(other)._replace(depth=max(self.depth, other.depth))
+        return self.combine(other)._replace(depth_mm=max(self.depth_mm, other.depth_mm))
 
 
-NOTHING = Cut()
+NO_CUT = Cut()
 
 
-class Piece(NamedTuple):
+class PartedPiece(NamedTuple):
     """A piece that was parted off: volume in mm³, outside profile, and bore (None if it is solid)."""
 
-    volume: float
-    outside: Profile
-    bore: Profile | None
-    min_wall: float | None
+    volume_mm3: float
+    outside_profile: ProfilePoints
+    bore_profile: ProfilePoints | None
+    min_wall_mm: float | None
 
 
-def _span(r0: float, r1: float) -> tuple[float, float]:
+def _radius_range(r0: float, r1: float) -> tuple[float, float]:
     """Return the least and the greatest distance from the axis on a straight move from ``r0`` to ``r1``."""
     nearest = 0.0 if r0 * r1 < 0.0 else min(abs(r0), abs(r1))
     return nearest, max(abs(r0), abs(r1))
@@ -115,175 +115,188 @@ def _span(r0: float, r1: float) -> tuple[float, float]:
 class TurnedPart:
     """A part in the lathe: material from ``low`` to ``high`` (layers, columns), as radii in mm."""
 
-    def __init__(self, stock: Stock, step: float = STEP) -> None:
-        length = stock.front - stock.back
-        count = max(math.ceil(length / step - 1e-9), 1)
-        step = length / count if count <= _FINE else length / _FINE
-        count = min(count, _FINE)
-        self.columns = Columns(stock.back + step / 2, step, count)
-        middles = self.columns.middles
-        self.high = stock.outside_at(middles)[np.newaxis, :].copy()
-        self.low = np.minimum(stock.bore_at(middles), self.high[0])[np.newaxis, :].copy()
-        self.largest = stock.radius
-        self.whole = self.volume  # volume of the stock, mm³
-        self.pieces: list[Piece] = []
-        self.holds = False  # parted material remains in place until ``let_fall``
+    def __init__(self, stock: Stock, column_width: float = DEFAULT_COLUMN_WIDTH_MM) -> None:
+        length = stock.front_z_mm - stock.back_z_mm
+        count = max(math.ceil(length / column_width - 1e-9), 1)
+        column_width = length / count if count <= _MAX_COLUMNS else length / _MAX_COLUMNS
+        count = min(count, _MAX_COLUMNS)
+        self.columns = Columns(stock.back_z_mm + column_width / 2, column_width, count)
+        middles = self.columns.column_centers
+        self.outer_radii = stock.outside_radius_at(middles)[np.newaxis, :].copy()
+        self.inner_radii = np.minimum(stock.bore_radius_at(middles), self.outer_radii[0])[
+            np.newaxis, :
+        ].copy()
+        self.max_stock_radius_mm = stock.max_radius_mm
+        self.stock_volume_mm3 = self.volume_mm3  # volume of the stock, mm³
+        self.parted_pieces: list[PartedPiece] = []
+        self.holds_parted_pieces = False  # parted material remains in place until ``drop_parted_pieces``
         self._parted = False
-        self.removed = 0.0  # mm³ removed by cuts only
+        self.removed_volume_mm3 = 0.0  # mm³ removed by cuts only
 
     # --- present material
 
     @property
-    def volume(self) -> float:
+    def volume_mm3(self) -> float:
         """Volume in mm³ of all the material in the chuck."""
         return self._volume(slice(None))
 
     @property
-    def outermost(self) -> FloatArray:
+    def max_radii(self) -> FloatArray:
         """The greatest radius of each column (columns,); 0 if it contains no material."""
-        there = self.high > self.low
-        radii: FloatArray = np.max(np.where(there, self.high, 0.0), axis=0)
+        there = self.outer_radii > self.inner_radii
+        radii: FloatArray = np.max(np.where(there, self.outer_radii, 0.0), axis=0)
         return radii
 
     @property
-    def innermost(self) -> FloatArray:
+    def min_radii(self) -> FloatArray:
         """The least radius of the material in each column (columns,); 0 if it contains none."""
-        there = self.high > self.low
-        inner = np.min(np.where(there, self.low, np.inf), axis=0)
+        there = self.outer_radii > self.inner_radii
+        inner = np.min(np.where(there, self.inner_radii, np.inf), axis=0)
         return np.where(np.isfinite(inner), inner, 0.0)
 
-    def highest(self, back: float, front: float) -> float:
-        """Return the greatest radius of the columns from Z ``back`` to ``front``; 0 without columns."""
-        there = slice(self.columns.at(back), self.columns.at(front))
-        return float(self.high[:, there].max(initial=0.0))
+    def max_radius_between(self, back_z_mm: float, front_z_mm: float) -> float:
+        """Return the greatest radius of the columns from Z ``back_z_mm`` to ``front_z_mm``; 0 without
+        columns.
+        """
+        there = slice(self.columns.find_column(back_z_mm), self.columns.find_column(front_z_mm))
+        return float(self.outer_radii[:, there].max(initial=0.0))
 
     def _volume(self, there: slice) -> float:
-        low, high = self.low[:, there], self.high[:, there]
-        return math.pi * self.columns.step * float(np.sum(high * high - low * low))
+        low, high = self.inner_radii[:, there], self.outer_radii[:, there]
+        return math.pi * self.columns.step_mm * float(np.sum(high * high - low * low))
 
-    def contains(self, points: Sequence[Point], depth: float) -> bool:
+    def enters_material(self, points: Sequence[Point], depth: float) -> bool:
         """Return whether a path of Z and r in mm is more than ``depth`` inside the material anywhere."""
         return any(self._crossed(start, end, depth) for start, end in pairwise(points))
 
     def _crossed(self, start: Point, end: Point, depth: float) -> bool:
         (z0, r0), (z1, r1) = (start, end) if start[0] <= end[0] else (end, start)
-        first, last = self.columns.at(z0), self.columns.at(z1)
+        first, last = self.columns.find_column(z0), self.columns.find_column(z1)
         if first == last:  # perpendicular to the axis, within one column
             if not 0 < first < self.columns.number:
                 return False
-            nearest, farthest = _span(r0, r1)
-            low, high = self.low[:, first], self.high[:, first]
+            nearest, farthest = _radius_range(r0, r1)
+            low, high = self.inner_radii[:, first], self.outer_radii[:, first]
             return bool(
                 np.any((high - low > 2 * depth) & (farthest > low + depth) & (nearest < high - depth))
             )
-        z = self.columns.first + self.columns.step * np.arange(first, last)
+        z = self.columns.first_z_mm + self.columns.step_mm * np.arange(first, last)
         r = np.abs(r0 + (r1 - r0) * (z - z0) / (z1 - z0))
-        low, high = self.low[:, first:last], self.high[:, first:last]
+        low, high = self.inner_radii[:, first:last], self.outer_radii[:, first:last]
         return bool(np.any((r > low + depth) & (r < high - depth)))
 
     # --- cuts
 
-    def outwards(self, first: int, reach: FloatArray, *, cut: bool = True) -> Cut:
-        """Return all material further out than ``reach`` (m,) from column ``first`` on.
+    def cut_outside(self, first_column: int, radii: FloatArray, *, remove: bool = True) -> Cut:
+        """Return all material further out than ``radii`` (m,) from column ``first`` on.
 
         The material is removed if ``cut`` is True.
         """
-        there = slice(first, first + len(reach))
-        met = NOTHING
-        for low, high in zip(self.low[:, there], self.high[:, there], strict=True):
-            left = np.minimum(np.maximum(reach, low), high)
-            met = met.joined(self._met(first, low, high, left, high))
-            if cut:
+        there = slice(first_column, first_column + len(radii))
+        met = NO_CUT
+        for low, high in zip(self.inner_radii[:, there], self.outer_radii[:, there], strict=True):
+            left = np.minimum(np.maximum(radii, low), high)
+            met = met.combine(self._measure_cut(first_column, low, high, left, high))
+            if remove:
                 high[:] = left
-        return self._taken(met, cut=cut)
+        return self._taken(met, cut=remove)
 
-    def inwards(self, first: int, reach: FloatArray, *, cut: bool = True) -> Cut:
-        """Return all material closer to the axis than ``reach`` (m,); remove it if ``cut``."""
-        there = slice(first, first + len(reach))
-        met = NOTHING
-        for low, high in zip(self.low[:, there], self.high[:, there], strict=True):
-            left = np.maximum(np.minimum(reach, high), low)
-            met = met.joined(self._met(first, low, high, low, left))
-            if cut:
+    def cut_inside(self, first_column: int, radii: FloatArray, *, remove: bool = True) -> Cut:
+        """Return all material closer to the axis than ``radii`` (m,); remove it if ``cut``."""
+        there = slice(first_column, first_column + len(radii))
+        met = NO_CUT
+        for low, high in zip(self.inner_radii[:, there], self.outer_radii[:, there], strict=True):
+            left = np.maximum(np.minimum(radii, high), low)
+            met = met.combine(self._measure_cut(first_column, low, high, low, left))
+            if remove:
                 low[:] = left
-        return self._taken(met, cut=cut)
+        return self._taken(met, cut=remove)
 
-    def between(self, first: int, near: FloatArray, far: FloatArray, *, cut: bool = True) -> Cut:
-        """Return all material between the radii ``near`` and ``far`` (m,); remove it if ``cut``."""
-        there = slice(first, first + len(near))
-        met = NOTHING
-        for layer in range(len(self.low)):
-            low, high = self.low[layer, there], self.high[layer, there]
-            start, end = np.clip(near, low, high), np.clip(far, low, high)
+    def cut_between(
+        self, first_column: int, inner_radii: FloatArray, outer_radii: FloatArray, *, remove: bool = True
+    ) -> Cut:
+        """Return all material between the radii ``inner_radii`` and ``outer_radii`` (m,); remove it if
+        ``cut``.
+        """
+        there = slice(first_column, first_column + len(inner_radii))
+        met = NO_CUT
+        for layer in range(len(self.inner_radii)):
+            low, high = self.inner_radii[layer, there], self.outer_radii[layer, there]
+            start, end = np.clip(inner_radii, low, high), np.clip(outer_radii, low, high)
             end = np.maximum(start, end)
-            met = met.joined(self._met(first, low, high, start, end))
-            if cut:
-                self._split(layer, there, start, end)
-        return self._taken(met, cut=cut)
+            met = met.combine(self._measure_cut(first_column, low, high, start, end))
+            if remove:
+                self._split_layer(layer, there, start, end)
+        return self._taken(met, cut=remove)
 
-    def _split(self, layer: int, there: slice, start: FloatArray, end: FloatArray) -> None:
+    def _split_layer(self, layer: int, there: slice, start: FloatArray, end: FloatArray) -> None:
         """Remove [start, end] from one layer, and move the material further out to a separate layer."""
-        low, high = self.low[layer, there].copy(), self.high[layer, there].copy()
+        low, high = self.inner_radii[layer, there].copy(), self.outer_radii[layer, there].copy()
         taken = end > start
         outer = taken & (high > end)
         inner = taken & (start > low)
         both = outer & inner
-        self.high[layer, there] = np.where(inner, start, np.where(taken & ~outer, low, high))
-        self.low[layer, there] = np.where(outer & ~inner, end, low)
+        self.outer_radii[layer, there] = np.where(inner, start, np.where(taken & ~outer, low, high))
+        self.inner_radii[layer, there] = np.where(outer & ~inner, end, low)
         if both.any():
             self._layer_for(there, np.where(both, end, 0.0), np.where(both, high, 0.0), both)
 
     def _layer_for(
         self, there: slice, low: FloatArray, high: FloatArray, wanted: npt.NDArray[np.bool_]
     ) -> None:
-        for layer in range(len(self.low)):
-            free = self.high[layer, there] <= self.low[layer, there]
+        for layer in range(len(self.inner_radii)):
+            free = self.outer_radii[layer, there] <= self.inner_radii[layer, there]
             if free[wanted].all():
-                self.low[layer, there] = np.where(wanted, low, self.low[layer, there])
-                self.high[layer, there] = np.where(wanted, high, self.high[layer, there])
+                self.inner_radii[layer, there] = np.where(wanted, low, self.inner_radii[layer, there])
+                self.outer_radii[layer, there] = np.where(wanted, high, self.outer_radii[layer, there])
                 return
         empty = np.zeros((1, self.columns.number))
-        self.low, self.high = np.vstack((self.low, empty)), np.vstack((self.high, empty))
+        self.inner_radii, self.outer_radii = (
+            np.vstack((self.inner_radii, empty)),
+            np.vstack((self.outer_radii, empty)),
+        )
         self._layer_for(there, low, high, wanted)
 
-    def _met(self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray) -> Cut:
+    def _measure_cut(
+        self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray
+    ) -> Cut:
         """Return the material between ``start`` and ``end`` of a layer, both within its interval."""
         thick = end - start
         touched = (thick > _TOUCH).nonzero()[0]
         if not len(touched):
-            return NOTHING
-        step, begin = self.columns.step, self.columns.first + self.columns.step * (first - 0.5)
+            return NO_CUT
+        step, begin = self.columns.step_mm, self.columns.first_z_mm + self.columns.step_mm * (first - 0.5)
         whole = (start[touched] <= low[touched] + _TOUCH) & (end[touched] >= high[touched] - _TOUCH)
         return Cut(
             area=step * float(thick.sum()),
-            volume=math.pi * step * float(end @ end - start @ start),
-            depth=float(thick.max()),
-            width=step * len(touched),
-            back=begin + step * int(touched[0]),
-            front=begin + step * (int(touched[-1]) + 1),
-            parts=bool(whole.any()),
+            volume_mm3=math.pi * step * float(end @ end - start @ start),
+            depth_mm=float(thick.max()),
+            width_mm=step * len(touched),
+            back_z_mm=begin + step * int(touched[0]),
+            front_z_mm=begin + step * (int(touched[-1]) + 1),
+            parts_off=bool(whole.any()),
         )
 
     def _taken(self, met: Cut, *, cut: bool) -> Cut:
         if cut and met:
-            self.removed += met.volume
-            self._parted = self._parted or met.parts
-            if not self.holds:
-                self.let_fall()
+            self.removed_volume_mm3 += met.volume_mm3
+            self._parted = self._parted or met.parts_off
+            if not self.holds_parted_pieces:
+                self.drop_parted_pieces()
         return met
 
-    def let_fall(self) -> None:
+    def drop_parted_pieces(self) -> None:
         """Drop the pieces that were parted off while they were supported."""
-        self.holds = False
+        self.holds_parted_pieces = False
         if self._parted:
             self._parted = False
-            self._part_off()
+            self._drop_unconnected()
 
     # --- parting off
 
-    def _part_off(self) -> None:
+    def _drop_unconnected(self) -> None:
         """Drop the material that is not connected to the end in the chuck. Chips are not counted."""
-        metal = np.any(self.high > self.low + _TOUCH, axis=0)
+        metal = np.any(self.outer_radii > self.inner_radii + _TOUCH, axis=0)
         there = np.flatnonzero(metal)
         if not len(there):
             return
@@ -297,36 +310,36 @@ class TurnedPart:
     def _fall(self, there: slice) -> None:
         volume = self._volume(there)
         if volume > 0.01:  # mm³
-            self.pieces.append(self._piece(there, volume))
-        self.low[:, there] = self.high[:, there] = 0.0
+            self.parted_pieces.append(self._piece(there, volume))
+        self.inner_radii[:, there] = self.outer_radii[:, there] = 0.0
 
-    def rest(self) -> Piece:
+    def remaining_piece(self) -> PartedPiece:
         """Return the material in the chuck as a piece."""
-        return self._piece(slice(None), self.volume)
+        return self._piece(slice(None), self.volume_mm3)
 
-    def _piece(self, there: slice, volume: float) -> Piece:
-        z = self.columns.middles[there]
-        high, low = self.outermost[there], self.innermost[there]
+    def _piece(self, there: slice, volume: float) -> PartedPiece:
+        z = self.columns.column_centers[there]
+        high, low = self.max_radii[there], self.min_radii[there]
         metal = high > low + _TOUCH
         if not metal.any():
-            return Piece(0.0, [], None, None)
+            return PartedPiece(0.0, [], None, None)
         z, high, low = z[metal], high[metal], low[metal]
         bored = low > _TOUCH
         wall = float(np.min(high[bored] - low[bored])) if bored.any() else None
-        bore = self._profile(z, low) if bored.any() else None
-        return Piece(volume, self._profile(z, high), bore, wall)
+        bore = self._make_profile(z, low) if bored.any() else None
+        return PartedPiece(volume, self._make_profile(z, high), bore, wall)
 
-    def _profile(self, z: FloatArray, r: FloatArray) -> Profile:
+    def _make_profile(self, z: FloatArray, r: FloatArray) -> ProfilePoints:
         """Return the points from the face toward the chuck, with vertical shoulders between columns."""
-        half = self.columns.step / 2
+        half = self.columns.step_mm / 2
         rise = np.abs(np.diff(r))
         beside = np.maximum(np.append(rise[1:], 0.0), np.insert(rise[:-1], 0, 0.0))
-        steps = np.flatnonzero(rise > _STEEP * np.maximum(self.columns.step, beside))
+        steps = np.flatnonzero(rise > _STEEP_RATIO * np.maximum(self.columns.step_mm, beside))
         points = np.column_stack((z, r))
         upright = np.column_stack(
             (np.repeat(z[steps] + half, 2), np.column_stack((r[steps], r[steps + 1])).ravel())
         )
         points = np.insert(points, np.repeat(steps + 1, 2), upright, axis=0)
         ends = np.array([[z[0] - half, r[0]]]), np.array([[z[-1] + half, r[-1]]])
-        fitted = simplified(np.vstack((ends[0], points, ends[1]))[::-1], _FIT)
+        fitted = simplify_polyline(np.vstack((ends[0], points, ends[1]))[::-1], _PROFILE_TOLERANCE_MM)
         return [(float(a), float(b)) for a, b in fitted]

@@ -8,22 +8,22 @@ from enum import Enum
 
 from core.message import CodedError, Message
 
-PARTS_MOST = 1_000_000
-SECONDS_MOST = 60.0 * 100_000
-WARN = 0.9  # share of the life at which a warning is shown
+MAX_LIMIT_PARTS = 1_000_000
+MAX_LIMIT_SECONDS = 60.0 * 100_000
+DEFAULT_WARNING_SHARE = 0.9  # share of the life at which a warning is shown
 
 
 class ToolLifeError(CodedError, ValueError):
     """Raised for invalid limits of a tool life. The message names the limit and the remedy."""
 
 
-class LifeState(Enum):
+class ToolLifeState(Enum):
     """The state of a tool's life."""
 
     NO_LIMIT = "no limit"
-    GOOD = "good"
-    WARNED = "warned"
-    SPENT = "spent"
+    OK = "good"
+    WARNING = "warned"
+    USED_UP = "spent"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class ToolLife:
     limit_seconds: float = 0.0
     parts: int = 0
     seconds: float = 0.0
-    warn: float = WARN
+    warn: float = DEFAULT_WARNING_SHARE
     stops: bool = False
 
     @property
@@ -49,13 +49,13 @@ class ToolLife:
         return max(by_parts, by_time)
 
     @property
-    def state(self) -> LifeState:
+    def state(self) -> ToolLifeState:
         """The state of the life: warned from the share ``warn`` on, spent at the limit."""
         if not (self.limit_parts or self.limit_seconds):
-            return LifeState.NO_LIMIT
+            return ToolLifeState.NO_LIMIT
         if self.share >= 1.0 - 1e-9:
-            return LifeState.SPENT
-        return LifeState.WARNED if self.share >= self.warn - 1e-9 else LifeState.GOOD
+            return ToolLifeState.USED_UP
+        return ToolLifeState.WARNING if self.share >= self.warn - 1e-9 else ToolLifeState.OK
 
     @property
     def parts_left(self) -> int | None:
@@ -87,23 +87,23 @@ class ToolLife:
         )
 
 
-def check_life(life: ToolLife) -> None:
+def check_tool_life(life: ToolLife) -> None:
     """Raise ToolLifeError if a limit of the tool life is not valid."""
-    if not 0 <= life.limit_parts <= PARTS_MOST:
+    if not 0 <= life.limit_parts <= MAX_LIMIT_PARTS:
         raise ToolLifeError(
             Message(
                 "T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit",
                 number=life.number,
-                parts_most=PARTS_MOST,
+                parts_most=MAX_LIMIT_PARTS,
             ),
             "limit-in-parts",
         )
-    if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= SECONDS_MOST):
+    if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= MAX_LIMIT_SECONDS):
         raise ToolLifeError(
             Message(
                 "T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit",
                 number=life.number,
-                seconds_most=f"{SECONDS_MOST / 60.0:g}",
+                seconds_most=f"{MAX_LIMIT_SECONDS / 60.0:g}",
             ),
             "limit-in-minutes",
         )

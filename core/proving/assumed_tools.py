@@ -11,13 +11,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.proving.tip_moves import QUICK, LiveStep, TipMove
-from core.tool_edges import edge_name
+from core.proving.tip_moves import FAST_FEED_MM_S, LiveToolStep, TipMove
+from core.tool_edges import format_edge_name
 
-_BY_MOVES = "based on the tool moves"
+_MOVES_EXPLANATION = "based on the tool moves"
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z within this distance of the axis is a drill
 _SQUARE = 0.02  # mm of Z in a plunge
 _NAMES = {
@@ -27,14 +27,14 @@ _NAMES = {
     ToolKind.PARTING: "a parting tool",
     ToolKind.THREADING: "a threading tool",
     ToolKind.DRILL: "a drill",
-    ToolKind.CENTRE_DRILL: "a center drill",
+    ToolKind.CENTER_DRILL: "a center drill",
     ToolKind.REAMER: "a reamer",
     ToolKind.TAP: "a tap",
     ToolKind.END_MILL: "an end mill",
     ToolKind.FORM: "a form tool",
 }
 _GROOVE = 2.0  # mm; assumed width of a grooving or parting tool
-_WIDEST = 8.0  # mm, largest assumed width of a grooving tool
+_MAX_GROOVE_WIDTH_MM = 8.0  # mm, largest assumed width of a grooving tool
 _USUAL, _SMALLEST, _ALLOWANCE = 6.35, 1.0, 0.5  # mm; assumed diameters of a drill
 _BAR = 5.0  # mm; assumed bar of a grooving or threading tool in a bore
 _SLIM = "VNMG160404"  # a slim insert that reaches most contours, so that an unknown insert gives no finding
@@ -43,13 +43,13 @@ _WIDTH = r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WID
 _AT_FACE = 0.1  # mm
 _WIDE = 1.6  # widths; a tool that feeds further along Z is a turning tool
 
-OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
-GROOVERS = frozenset({ToolKind.GROOVING, ToolKind.PARTING})
+HOLE_TOOLS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
+GROOVING_TOOLS = frozenset({ToolKind.GROOVING, ToolKind.PARTING})
 
 # Words of shop comments, the most specific first. They are not compiled, because few programs need them.
 _WORDS = (
     (r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b|\bTOPE\b", None),
-    (r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT|\bBROCA DE (CENTROS?|CENTRAR|PUNTO)|\bPUNTEAR", ToolKind.CENTRE_DRILL),
+    (r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT|\bBROCA DE (CENTROS?|CENTRAR|PUNTO)|\bPUNTEAR", ToolKind.CENTER_DRILL),
     (r"\bREAM|\bESCARIA", ToolKind.REAMER),
     (r"\bTAP(PING)?\b|\bMACHO\b|\bMACHUEL", ToolKind.TAP),
     (r"\bTHREAD|\bROSCA", ToolKind.THREADING),
@@ -61,7 +61,7 @@ _WORDS = (
     (r"\bTURN|\bFAC(E|ING)\b|\bCUCHILLA|\bCILINDRA|\bREFRENTA|\bDESBAST", ToolKind.TURNING),
 )
 _SIZE = r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*(?:IN(?:CH)?\b|\")?(?=[^/]*\bDRILL|\s*DIA)"
-_MILLIMETRES = r"(\d+(?:\.\d+)?)\s*MM\b"
+_MILLIMETERS = r"(\d+(?:\.\d+)?)\s*MM\b"
 _TAP_NUMBER = r"(?:^|[^\d/.])#?(\d{1,2})(?:\s*-\s*|\s+)(\d{2})\b(?!\s*TPI)"  # 10-32, or 10 32
 _TAP_INCH = r"(?:(\d+)[/ ](\d+)|(\d*\.\d+))\s*[- ]\s*(\d{1,2})\b"  # 1/4-20, or 1 4 20
 _TAP_TPI = r"\b(\d{1,2})\s*TPI\b"  # 20 TPI
@@ -79,100 +79,109 @@ _LEFT_HAND = r"\bL\.?H\b|\bLEFT[ -]?HAND"
 class ToolUse:
     """The comments and moves of one tool in a program."""
 
-    number: int
+    tool_number: int
     comments: list[str] = field(default_factory=list)
     moves: list[TipMove] = field(default_factory=list)
     nose_radius: float = 0.0
-    pushes_bar: bool = False  # the tool fed while the collet was open
-    paused: bool = False  # the program waits or switches an output while the tool is at the part
+    is_bar_stop: bool = False  # the tool fed while the collet was open
+    has_pause: bool = False  # the program waits or switches an output while the tool is at the part
     # blocks with C engaged or in a plane of the virtual mill
-    live: list[LiveStep] = field(default_factory=list)
+    live_steps: list[LiveToolStep] = field(default_factory=list)
 
     @property
-    def metric(self) -> bool:
+    def is_metric(self) -> bool:
         """True if the program uses mm while it uses this tool."""
-        modals = [*(move.modal for move in self.moves[:1]), *(block.modal for block, _ in self.live[:1])]
+        modals = [
+            *(move.modal for move in self.moves[:1]),
+            *(block.modal for block, _ in self.live_steps[:1]),
+        ]
         return any(modal.metric for modal in modals)
 
     @property
     def live_blocks(self) -> list[Block]:
         """The blocks of a live tool that move X, Z or the virtual mill. Indexing of C is left out."""
-        return [b for b, _ in self.live if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
+        return [b for b, _ in self.live_steps if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
 
     @property
-    def never_fed(self) -> TipMove | Block | None:
+    def first_rapid_position(self) -> TipMove | Block | None:
         """The first position at the part of a tool whose moves are all rapids, while spindle or C is active.
 
         None if the tool feeds or if its rapids have another purpose.
         """
-        if self.pushes_bar:
+        if self.is_bar_stop:
             return None
         if blocks := self.live_blocks:
-            fed = any(not (b.rapid or b.feed >= QUICK) for b in blocks) or not all(
-                m.quick for m in self.moves
+            fed = any(not (b.rapid or b.feed >= FAST_FEED_MM_S) for b in blocks) or not all(
+                m.is_fast for m in self.moves
             )
             return None if fed else blocks[0]
-        if self.paused:
+        if self.has_pause:
             return None
         first = [m for m in self.moves if m.points[-1][0] < -_SQUARE][:1]
-        drawn = any(m.kind is Kind.ARC and not m.modal.rapid for m in self.moves)
+        drawn = any(m.kind is BlockKind.ARC and not m.modal.rapid for m in self.moves)
         if drawn and first and not first[0].modal.rapid and any(m.modal.rapid for m in self.moves):
             return None  # the tool cuts at the F of the first line and also makes rapids with G00
         there = [m for m in self.moves if m.rpm and m.points[-1][0] < _AT_FACE]
-        return there[0] if there and all(m.quick for m in self.moves) else None
+        return there[0] if there and all(m.is_fast for m in self.moves) else None
 
     @property
-    def across(self) -> bool:
+    def is_radial(self) -> bool:
         """True if a live tool enters the part along X instead of Z, such as in the plane ZC."""
-        if any(b.plane is not None and b.plane.on_side for b, _ in self.live):
+        if any(b.plane is not None and b.plane.is_on_side_plane for b, _ in self.live_steps):
             return True
-        feeds = [b for b, _ in self.live if b.plane is None and not b.rapid and b.feed < QUICK]
+        feeds = [b for b, _ in self.live_steps if b.plane is None and not b.rapid and b.feed < FAST_FEED_MM_S]
         along = sum(max(b.z0 - b.z, 0.0) for b in feeds)
         return sum(max(abs(b.x0) - abs(b.x), 0.0) for b in feeds) > along
 
 
 @dataclass(frozen=True, slots=True)
-class Assumed:
+class AssumedTool:
     """The assumed shape of a tool, or None for a bar stop, with a sentence about the assumption.
 
-    ``named`` is True if a comment states the kind of tool.
+    ``is_kind_named`` is True if a comment states the kind of tool.
     """
 
-    shape: ToolShape | None
-    words: str
-    named: bool = False
-    sized: bool = False  # the diameter is assumed
+    tool_shape: ToolShape | None
+    explanation: str
+    is_kind_named: bool = False
+    is_diameter_assumed: bool = False  # the diameter is assumed
 
-    def with_diameter(self, use: ToolUse, bore: Sequence[TipMove]) -> Assumed:
+    def add_diameter(self, tool_use: ToolUse, bore_moves: Sequence[TipMove]) -> AssumedTool:
         """Return the tool with a diameter if it is a round tool without one.
 
-        The diameter of a drill is slightly less than the ``bore`` that is cut after it.
+        The diameter of a drill is slightly less than the ``bore_moves`` that is cut after it.
         """
-        shape = self.shape
-        if shape is None or not shape.turns_itself or shape.diameter:
+        shape = self.tool_shape
+        if shape is None or not shape.is_rotating or shape.diameter:
             return self
-        bore = bore if shape.kind in OPENS else ()
-        inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
+        bore_moves = bore_moves if shape.kind in HOLE_TOOLS else ()
+        inside = [abs(r) for m in bore_moves if not m.is_fast for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
         words = Message(
-            "{words}, assumed diameter {diameter}", words=self.words, diameter=_size(diameter, use)
+            "{words}, assumed diameter {diameter}",
+            words=self.explanation,
+            diameter=_format_length(diameter, tool_use),
         )
-        return replace(self, shape=replace(shape, diameter=diameter), words=words, sized=True)
+        return replace(
+            self, tool_shape=replace(shape, diameter=diameter), explanation=words, is_diameter_assumed=True
+        )
 
-    def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
+    def add_width(self, tool_use: ToolUse, threads: Sequence[TipMove]) -> AssumedTool:
         """Return the tool with a width if it is a grooving or parting tool without one.
 
-        See ``groove_width``.
+        See ``find_groove_width``.
         """
-        shape = self.shape
-        if shape is None or shape.kind not in GROOVERS or shape.width:
+        shape = self.tool_shape
+        if shape is None or shape.kind not in GROOVING_TOOLS or shape.width:
             return self
-        width = groove_width(shape, use.moves, threads)
-        words = Message("{words}, assumed width {width}", words=self.words, width=_size(width, use))
-        return replace(self, shape=replace(shape, width=width), words=words)
+        width = find_groove_width(shape, tool_use.moves, threads)
+        words = Message(
+            "{words}, assumed width {width}", words=self.explanation, width=_format_length(width, tool_use)
+        )
+        return replace(self, tool_shape=replace(shape, width=width), explanation=words)
 
 
-def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
+def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
     """Return the width in mm of an edge without a specified width.
 
     The width is 2 mm, or the width that a thread needs to start in the groove. This applies to threads that
@@ -180,27 +189,31 @@ def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[T
     side.
     """
     forward = shape.direction[0]  # direction of the corner that is set; the edge extends back from it
-    plunged = {m.points[-1][0] for m in moves if not m.quick and _square(m)}
+    plunged = {m.points[-1][0] for m in moves if not m.is_fast and _square(m)}
     needed = [0.0]
-    for z0, lead in {(m.points[0][0], m.per_rev) for m in threads if m.points[-1][0] > m.points[0][0]}:
+    for z0, lead in {
+        (m.points[0][0], m.feed_per_rev_mm) for m in threads if m.points[-1][0] > m.points[0][0]
+    }:
         reaches = [(z - z0) * forward if forward else abs(z0 - z) for z in plunged]
-        needed += [each + lead / 2.0 for each in reaches if 0.0 <= each <= _WIDEST]
+        needed += [each + lead / 2.0 for each in reaches if 0.0 <= each <= _MAX_GROOVE_WIDTH_MM]
     return max(_GROOVE, max(needed) * (1.0 if forward else 2.0))
 
 
-def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
-    """Return the assumed shape of a tool without a shape, or with an incomplete shape ``said``."""
-    kind, why = (said.kind, "based on the tool shape") if said is not None else _kind(use)
+def assume_tool(tool_use: ToolUse, specified: ToolShape | None = None) -> AssumedTool:
+    """Return the assumed shape of a tool without a shape, or with an incomplete shape ``specified``."""
+    kind, why = (specified.kind, "based on the tool shape") if specified is not None else _kind(tool_use)
     if kind is None:
-        return Assumed(None, Message("{number} is treated as a bar stop", number=edge_name(use.number)))
-    shape = said or _shape(kind, use)
+        return AssumedTool(
+            None, Message("{number} is treated as a bar stop", number=format_edge_name(tool_use.tool_number))
+        )
+    shape = specified or _shape(kind, tool_use)
     words = Message(
         "{number} is treated as {kind} ({why})",
-        number=edge_name(use.number),
-        kind=_names(kind, shape, use),
+        number=format_edge_name(tool_use.tool_number),
+        kind=_names(kind, shape, tool_use),
         why=why,
     )
-    return Assumed(shape, words, why != _BY_MOVES)
+    return AssumedTool(shape, words, why != _MOVES_EXPLANATION)
 
 
 def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
@@ -208,35 +221,35 @@ def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
     for words, kind in _WORDS if text.strip() else ():
         if re.search(words, text):
             return kind, "based on the tool comment"
-    if use.pushes_bar:
-        return None, _BY_MOVES
-    if use.live:
-        return ToolKind.END_MILL, _BY_MOVES
-    return _by_moves(use.moves), _BY_MOVES
+    if use.is_bar_stop:
+        return None, _MOVES_EXPLANATION
+    if use.live_steps:
+        return ToolKind.END_MILL, _MOVES_EXPLANATION
+    return _by_moves(use.moves), _MOVES_EXPLANATION
 
 
 def _by_moves(moves: Sequence[TipMove]) -> ToolKind:
-    cuts = [move for move in moves if not move.quick]
-    if any(move.kind is Kind.THREAD for move in cuts):
+    cuts = [move for move in moves if not move.is_fast]
+    if any(move.kind is BlockKind.THREAD for move in cuts):
         return ToolKind.TAP if _on_axis(cuts) else ToolKind.THREADING
     if cuts and _on_axis(cuts):
         return ToolKind.DRILL
-    if _plunges(cuts):
+    if _has_plunge(cuts):
         back = min(z for move in cuts for z, _ in move.points)
         return ToolKind.PARTING if _to_centre(cuts) and back < -_GROOVE else ToolKind.GROOVING
-    return ToolKind.BORING if in_bore(moves) else ToolKind.TURNING
+    return ToolKind.BORING if works_in_bore(moves) else ToolKind.TURNING
 
 
 def _on_axis(cuts: Iterable[TipMove]) -> bool:
     return all(abs(r) <= _ON_AXIS for move in cuts for _, r in move.points)
 
 
-def _plunges(cuts: Sequence[TipMove]) -> bool:
+def _has_plunge(cuts: Sequence[TipMove]) -> bool:
     """Return whether a tool cuts perpendicular to the axis inside the part.
 
     The cuts along Z are at most as long as the cleaning of a groove.
     """
-    if not cuts or any(move.kind is Kind.ARC for move in cuts):
+    if not cuts or any(move.kind is BlockKind.ARC for move in cuts):
         return False
     along = [abs(move.points[-1][0] - move.points[0][0]) for move in cuts]
     plunged = [move for move, z in zip(cuts, along, strict=True) if z <= _SQUARE]
@@ -247,15 +260,15 @@ def _to_centre(cuts: Iterable[TipMove]) -> bool:
     return min(r for move in cuts for _, r in move.points) <= 0.25
 
 
-def in_bore(moves: Sequence[TipMove]) -> bool:
+def works_in_bore(moves: Sequence[TipMove]) -> bool:
     """Return whether a tool retracts toward the axis more often than away from it."""
     votes = 0
     for before, move in pairwise(moves):
         inside = move.points[0][0] < 0.0
-        if move.quick and not before.quick and inside:
+        if move.is_fast and not before.is_fast and inside:
             away = abs(move.points[-1][1]) - abs(move.points[0][1])
             votes += (away < 0.0) - (away > 0.0)
-    feeds = [move for move in moves if not move.quick and move.kind is not Kind.THREAD]
+    feeds = [move for move in moves if not move.is_fast and move.kind is not BlockKind.THREAD]
     return votes > 0 or (votes == 0 and _enters_before_cutting(feeds, moves))
 
 
@@ -270,9 +283,9 @@ def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -
 
 
 def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
-    nose, rear = use.nose_radius, _rear(use.moves)
+    nose, rear = use.nose_radius, _is_at_rear(use.moves)
     if kind is ToolKind.TURNING:
-        left = _away_from_chuck(use.moves)
+        left = _cuts_away_from_chuck(use.moves)
         tip = (1 if rear else 4) if left else (2 if rear else 3)
         hand = Hand.LEFT if left else Hand.RIGHT
         return ToolShape(kind, hand, tip=tip, nose_radius=nose, insert=_SLIM, rear=rear)
@@ -281,27 +294,27 @@ def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
     if kind in {ToolKind.GROOVING, ToolKind.PARTING}:
         return _groover(kind, use, rear=rear)
     if kind is ToolKind.THREADING:
-        inside = in_bore(use.moves)
+        inside = works_in_bore(use.moves)
         tip, bar = 6 if inside is not rear else 8, _BAR if inside else 0.0
         return ToolShape(kind, tip=tip, nose_radius=nose, diameter=bar, rear=rear)
     return _round_tool(kind, use)
 
 
 def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
-    width = edge_width(" ".join(use.comments))
-    if kind is ToolKind.GROOVING and _plunges_outwards(use.moves):
+    width = parse_edge_width(" ".join(use.comments))
+    if kind is ToolKind.GROOVING and _plunges_outward(use.moves):
         return ToolShape(kind, tip=3 if rear else 2, width=width, diameter=_BAR, rear=rear)
-    return ToolShape(kind, tip=_edge(use, rear=rear), width=width, rear=rear)
+    return ToolShape(kind, tip=_find_tip_quadrant(use, rear=rear), width=width, rear=rear)
 
 
-def _plain(comment: str) -> str:
+def _normalize_comment(comment: str) -> str:
     """Return the comment in capitals, with a decimal point for a P between two digits."""
     return _POINT_SIGN.sub(".", comment.upper())
 
 
-def edge_width(comment: str) -> float:
+def parse_edge_width(comment: str) -> float:
     """Return the width in mm given in a comment (.045 WIDE, 045 WIDE in thousandths, 3MM WIDE), or 0."""
-    found = re.search(_WIDTH, _plain(comment))
+    found = re.search(_WIDTH, _normalize_comment(comment))
     if found is None:
         return 0.0
     figure = float(found[1])
@@ -312,21 +325,21 @@ def edge_width(comment: str) -> float:
 
 def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
     comment = " ".join(use.comments).upper()
-    diameter, hand = _diameter(comment), Hand.LEFT if re.search(_LEFT_HAND, comment) else Hand.RIGHT
+    diameter, hand = _parse_diameter(comment), Hand.LEFT if re.search(_LEFT_HAND, comment) else Hand.RIGHT
     if kind is ToolKind.TAP:
-        across, pitch = tap_size(comment)
+        across, pitch = parse_tap_size(comment)
         return ToolShape(kind, hand, diameter=across or diameter, pitch=pitch)
-    if use.live and not _on_axis(use.moves):
-        return ToolShape(kind, tip=8 if use.across else 7, diameter=diameter or _MILL, point=118.0)
+    if use.live_steps and not _on_axis(use.moves):
+        return ToolShape(kind, tip=8 if use.is_radial else 7, diameter=diameter or _MILL, point=118.0)
     return ToolShape(kind, hand, diameter=diameter, point=118.0)
 
 
-def tap_size(comment: str) -> tuple[float, float]:
+def parse_tap_size(comment: str) -> tuple[float, float]:
     """Return diameter and pitch in mm of a tap named in a comment, or 0 for a value that is missing.
 
     Examples are 1/4-20, 10-32, M6X1, and with the characters of the control 1 4 20, 10 32, 20 TPI.
     """
-    text = _plain(comment)
+    text = _normalize_comment(comment)
     if found := re.search(_TAP_METRIC, text):
         across = float(found[1])
         return across, float(found[2]) if found[2] else _METRIC_COARSE.get(across, 0.0)
@@ -340,25 +353,25 @@ def tap_size(comment: str) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-def releases(use: ToolUse) -> bool:
+def names_releasing_holder(tool_use: ToolUse) -> bool:
     """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
-    return re.search(_RELEASES, " ".join(use.comments).upper()) is not None
+    return re.search(_RELEASES, " ".join(tool_use.comments).upper()) is not None
 
 
-def _rear(moves: Sequence[TipMove]) -> bool:
+def _is_at_rear(moves: Sequence[TipMove]) -> bool:
     """Return whether a tool works at negative X, ignoring facing slightly beyond the axis."""
-    cuts = [move for move in moves if not move.quick]
+    cuts = [move for move in moves if not move.is_fast]
     behind = [r for move in cuts for z, r in move.points if z < -_SQUARE]
     radii = behind or [r for move in cuts for _, r in move.points]
     return bool(radii) and -min(radii) > max(radii)
 
 
-def _away_from_chuck(moves: Iterable[TipMove]) -> bool:
+def _cuts_away_from_chuck(moves: Iterable[TipMove]) -> bool:
     """Return whether a tool cuts along Z from the chuck toward the face, like a left-hand tool.
 
     A move that ends before the face is a retract at feed.
     """
-    cuts = [move for move in moves if not move.quick]
+    cuts = [move for move in moves if not move.is_fast]
     along = [m.points[-1][0] - m.points[0][0] for m in cuts if max(z for z, _ in m.points) < 0.0]
     return sum(along) > _SQUARE and max(along) > 2.0 * max(-min(along), 0.0)
 
@@ -367,13 +380,13 @@ def _square(move: TipMove) -> bool:
     return abs(move.points[-1][0] - move.points[0][0]) <= _SQUARE
 
 
-def _plunges_outwards(moves: Iterable[TipMove]) -> bool:
+def _plunges_outward(moves: Iterable[TipMove]) -> bool:
     """Return whether the cuts perpendicular to the axis lead away from it, as for a groove in a bore."""
-    square = [m for m in moves if not m.quick and _square(m)]
+    square = [m for m in moves if not m.is_fast and _square(m)]
     return bool(square) and abs(square[0].points[-1][1]) > abs(square[0].points[0][1])
 
 
-def _edge(use: ToolUse, *, rear: bool) -> int:
+def _find_tip_quadrant(use: ToolUse, *, rear: bool) -> int:
     """Return the tip quadrant of the corner that is set: the left one unless a comment names the right."""
     text = " ".join(use.comments).upper()
     if "RIGHT EDGE" in text or "RIGHT SIDE" in text:
@@ -381,10 +394,10 @@ def _edge(use: ToolUse, *, rear: bool) -> int:
     return 2 if rear else 3
 
 
-def _diameter(comment: str) -> float:
+def _parse_diameter(comment: str) -> float:
     """Return the diameter in mm given in a comment such as 1/4 DRILL or DRILL .250 DIA, or 0."""
-    text = _plain(comment)
-    if found := re.search(_MILLIMETRES, text):
+    text = _normalize_comment(comment)
+    if found := re.search(_MILLIMETERS, text):
         return float(found[1])
     if found := re.search(_SIZE, text):
         inches = float(found[3]) if found[3] else int(found[1]) / max(int(found[2]), 1)
@@ -392,17 +405,19 @@ def _diameter(comment: str) -> float:
     return 0.0
 
 
-def _size(mm: float, use: ToolUse) -> str:
+def _format_length(mm: float, use: ToolUse) -> str:
     """Return a length as text in the unit of the program."""
-    return Message("{unit} mm", unit=f"{mm:.2f}") if use.metric else Message("{mm} in", mm=f"{mm / 25.4:.3f}")
+    return (
+        Message("{unit} mm", unit=f"{mm:.2f}") if use.is_metric else Message("{mm} in", mm=f"{mm / 25.4:.3f}")
+    )
 
 
 def _names(kind: ToolKind, shape: ToolShape, use: ToolUse) -> str:
     size = (
-        Message(", {diameter}", diameter=_size(shape.diameter, use))
-        if shape.diameter and shape.turns_itself
+        Message(", {diameter}", diameter=_format_length(shape.diameter, use))
+        if shape.diameter and shape.is_rotating
         else ""
     )
     if shape.width:
-        size = Message(", {width} wide", width=_size(shape.width, use))
+        size = Message(", {width} wide", width=_format_length(shape.width, use))
     return f"{_NAMES[kind]}{size}"

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from core.message import Message
-from core.page_contents import contents
-from core.proving.checks.part_checks import CHECKS, PROGRAM_CHECKS, Check
+from core.page_contents import make_contents
+from core.proving.checks.part_checks import PART_CHECKS, PROGRAM_CHECKS, PartCheck
 
 _PART, _PROGRAM = "Checks of the part", "Checks that do not need the stock"
 _HEAD = """\
@@ -56,26 +56,26 @@ check that is turned off become notes with the reason, and are counted (`silence
 """
 
 
-def page() -> str:
+def render_page() -> str:
     """Return the text of the page."""
-    head = _HEAD.format(contents=contents([_PART, _PROGRAM]))
-    return f"{head}\n## {_PART}\n\n{_rows(CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
+    head = _HEAD.format(contents=make_contents([_PART, _PROGRAM]))
+    return f"{head}\n## {_PART}\n\n{_rows(PART_CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
 
 
-def _rows(checks: Mapping[str, Check]) -> str:
+def _rows(checks: Mapping[str, PartCheck]) -> str:
     return "\n".join(_row(name, check) for name, check in checks.items()) + "\n"
 
 
-def _row(name: str, check: Check) -> str:
+def _row(name: str, check: PartCheck) -> str:
     return "\n".join(_lines(name, check))
 
 
-def _lines(name: str, check: Check) -> Iterator[str]:
-    yield f"**{name}** ({check.severity}): {check.looks_for}  "
-    yield Message("Condition: {decides}  ", decides=check.decides)
-    if name in CHECKS:
+def _lines(name: str, check: PartCheck) -> Iterator[str]:
+    yield f"**{name}** ({check.severity}): {check.purpose}  "
+    yield Message("Condition: {decides}  ", decides=check.condition)
+    if name in PART_CHECKS:
         yield Message(
-            "Depends on: {rests_on}.  ", rests_on=" and ".join(check.rests_on) or "the machine file"
+            "Depends on: {rests_on}.  ", rests_on=" and ".join(check.required_data) or "the machine file"
         )
     yield f"Remedy: {check.remedy}"
     yield ""
@@ -83,7 +83,7 @@ def _lines(name: str, check: Check) -> Iterator[str]:
 
 def main(argv: list[str]) -> int:
     """Write the page to the named file."""
-    Path(argv[0]).write_text(page(), encoding="utf-8")
+    Path(argv[0]).write_text(render_page(), encoding="utf-8")
     return 0
 
 

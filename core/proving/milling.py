@@ -10,39 +10,45 @@ import numpy as np
 
 from core.interpreter.shared.elementary_blocks import Block
 from core.part.milled_part import MilledPart
-from core.part.polar_field import PolarField, Taken, in_order, turned_field
-from core.part.ray_cuts import FloatArray, axial_path, locked_path, plane_path, radial_path
+from core.part.polar_field import PolarField, RemovedMaterial, field_from_section, sort_intervals
+from core.part.ray_cuts import (
+    FloatArray,
+    make_axial_path,
+    make_locked_path,
+    make_plane_path,
+    make_radial_path,
+)
 from core.part.tool_shape import ToolKind, ToolShape
-from core.part.turned_part import Piece, TurnedPart
-from core.proving.tip_moves import QUICK, Place
+from core.part.turned_part import PartedPiece, TurnedPart
+from core.proving.tip_moves import FAST_FEED_MM_S, MachineXZ
 
-_CONES = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL})
+_CONES = frozenset({ToolKind.DRILL, ToolKind.CENTER_DRILL})
 _DEEPER = 0.0254  # mm
-_BESIDE = 0.002  # mm of tolerance for a slope in a wider column
+_SLOPE_TOLERANCE_MM = 0.002  # mm of tolerance for a slope in a wider column
 
 
 class MillMove(NamedTuple):
     """One elementary block of a live tool, with its path (n, 3) for ``MilledPart``, axial or radial."""
 
-    n: int
+    block_number: int
     line: int
     path: FloatArray
-    axial: bool
-    quick: bool
+    is_axial: bool
+    is_fast: bool
 
 
-def mill_move(block: Block, place: Place, shape: ToolShape) -> MillMove | None:
+def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> MillMove | None:
     """Return the path of a block in the part's frame, or None without a move.
 
-    ``place`` is added to X and Z of the block.
+    ``part_zero`` is added to X and Z of the block.
     """
     turns_only = (block.x, block.z) == (block.x0, block.z0)  # the feed of the block is in degrees
-    quick = block.rapid or (not block.per_rev and not turns_only and block.feed >= QUICK)
-    dx, dz = place
+    quick = block.rapid or (not block.per_rev and not turns_only and block.feed >= FAST_FEED_MM_S)
+    dx, dz = part_zero
     if block.plane is not None:
         lift = dz + block.modal.secondary_z
-        axial = not block.plane.on_side
-        return MillMove(block.n, block.line, plane_path(block.plane, lift), axial, quick)
+        axial = not block.plane.is_on_side_plane
+        return MillMove(block.n, block.line, make_plane_path(block.plane, lift), axial, quick)
     ends = np.array(
         [[block.x0 + dx, block.z0 + dz, block.c0], [block.x + dx, block.z + dz, block.c]], dtype=np.float64
     )
@@ -50,117 +56,122 @@ def mill_move(block: Block, place: Place, shape: ToolShape) -> MillMove | None:
         return None
     axial = shape.direction[0] != 0
     if axial:
-        return MillMove(block.n, block.line, axial_path(locked_path(ends[0], ends[1])), True, quick)
+        return MillMove(block.n, block.line, make_axial_path(make_locked_path(ends[0], ends[1])), True, quick)
     far_side = float(ends[:, 0].mean()) > 0.0
-    return MillMove(block.n, block.line, radial_path(ends, far_side=far_side), False, quick)
+    return MillMove(block.n, block.line, make_radial_path(ends, far_side=far_side), False, quick)
 
 
-def between(path: FloatArray, first: float, last: float) -> FloatArray:
+def path_between(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
     """Return the piece of a path between two shares of it, from 0 to 1."""
     at = np.linspace(0.0, 1.0, len(path))
-    shares = np.concatenate(([first], at[(at > first) & (at < last)], [last]))
+    shares = np.concatenate(
+        ([start_fraction], at[(at > start_fraction) & (at < end_fraction)], [end_fraction])
+    )
     return np.column_stack([np.interp(shares, at, figures) for figures in path.T])
 
 
-def cone_height(shape: ToolShape) -> float:
+def point_height_mm(shape: ToolShape) -> float:
     """Return the height in mm of the point of a live drill; 0 for a mill."""
     if shape.kind not in _CONES or not shape.point:
         return 0.0
     return float(shape.diameter / 2.0 / np.tan(np.radians(shape.point / 2.0)))
 
 
-class Milling:
+class MillingState:
     """A turned part with its polar field. Material that is turned off later is removed from the field too."""
 
     def __init__(self, part: TurnedPart) -> None:
         self._turned = part
         columns = part.columns
-        edges: FloatArray = columns.first + columns.step * (
+        edges: FloatArray = columns.first_z_mm + columns.step_mm * (
             np.arange(columns.number + 1, dtype=np.float64) - 0.5
         )
-        self._part = MilledPart(turned_field(edges, part.low, part.high))
-        self._volume = part.volume  # volume of the turned part at the last update of the field
+        self._part = MilledPart(field_from_section(edges, part.inner_radii, part.outer_radii))
+        self._volume = part.volume_mm3  # volume of the turned part at the last update of the field
 
     @classmethod
-    def of(cls, part: TurnedPart, field: PolarField, volume: float) -> Milling:
+    def from_field(cls, part: TurnedPart, field: PolarField, volume: float) -> MillingState:
         """Return the state with an existing field; ``volume`` is the turned volume at its last update."""
         milling = cls.__new__(cls)
         milling._turned, milling._part, milling._volume = part, MilledPart(field), volume
         return milling
 
     @property
-    def even_with(self) -> float:
+    def synced_volume_mm3(self) -> float:
         """The volume in mm³ of the turned part at the last update of the field."""
         return self._volume
 
     @property
-    def field(self) -> PolarField:
+    def updated_field(self) -> PolarField:
         """The material, updated with the turned cuts."""
-        self._follow()
+        self._update_field()
         return self._part.field
 
     @property
     def nbytes(self) -> int:
         """The memory of the field in bytes."""
-        return self._part.field.low.nbytes + self._part.field.high.nbytes
+        return self._part.field.inner_radii.nbytes + self._part.field.outer_radii.nbytes
 
     @property
-    def left(self) -> float:
+    def remaining_volume_mm3(self) -> float:
         """The volume in mm³ of the material in the chuck."""
-        return self.field.volume
+        return self.updated_field.volume_mm3
 
-    def cut(self, move: MillMove, shape: ToolShape) -> Taken:
+    def cut_material(self, move: MillMove, shape: ToolShape) -> RemovedMaterial:
         """Remove the material that a live tool sweeps, and return it."""
-        self._follow()
-        part, (radius, length, point) = self._part, _sizes(shape)
-        if move.axial:
+        self._update_field()
+        part, (radius, length, point) = self._part, _mill_sizes(shape)
+        if move.is_axial:
             return part.mill_axial(move.path, radius, length, point)
         return part.mill_radial(move.path, radius, length, point=point)
 
-    def touches(self, move: MillMove, shape: ToolShape) -> bool:
+    def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
         """Return whether a live tool moves along a face: it would hit material .001 in deeper."""
-        self._follow()
-        part, (radius, length, point) = self._part, _sizes(shape)
-        if move.axial:
-            return part.meets_axial(move.path - [0.0, 0.0, _DEEPER], radius, length, point)
-        return part.meets_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
+        self._update_field()
+        part, (radius, length, point) = self._part, _mill_sizes(shape)
+        if move.is_axial:
+            return part.hits_axial(move.path - [0.0, 0.0, _DEEPER], radius, length, point)
+        return part.hits_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
 
-    def less_milled(self, piece: Piece) -> Piece:
+    def subtract_milled_volume(self, piece: PartedPiece) -> PartedPiece:
         """Return a piece that was just parted off, without the volume that live tools had removed."""
-        if not piece.outside:
+        if not piece.outside_profile:
             return piece
         field = self._part.field
-        front, back = piece.outside[0][0], piece.outside[-1][0]
-        there = (field.middles < front) & (field.middles > back)
-        return piece._replace(volume=min(float(field.volumes[there].sum()), piece.volume))
+        front, back = piece.outside_profile[0][0], piece.outside_profile[-1][0]
+        there = (field.column_centers < front) & (field.column_centers > back)
+        return piece._replace(volume_mm3=min(float(field.column_volumes[there].sum()), piece.volume_mm3))
 
-    def sides(self) -> tuple[Piece, Piece]:
+    def section_halves(self) -> tuple[PartedPiece, PartedPiece]:
         """Return both halves of the section with C at 0: X+, then X-."""
-        field = self.field
-        rays = field.low.shape[2]  # =
+        field = self.updated_field
+        rays = field.inner_radii.shape[2]  # =
         upper, lower = (
-            _side(field.edges, field.low[:, :, ray], field.high[:, :, ray]) for ray in (rays // 2, 0)
+            _section_profiles(field.column_edges, field.inner_radii[:, :, ray], field.outer_radii[:, :, ray])
+            for ray in (rays // 2, 0)
         )
         return upper, lower
 
-    def _follow(self) -> None:
+    def _update_field(self) -> None:
         """Remove from the field the material that has been turned off since the last update."""
         turned = self._turned
-        if turned.volume == self._volume:
+        if turned.volume_mm3 == self._volume:
             return
-        self._volume = turned.volume
+        self._volume = turned.volume_mm3
         field = self._part.field
         at = np.clip(
-            np.rint((field.middles - turned.columns.first) / turned.columns.step).astype(np.intp),
+            np.rint((field.column_centers - turned.columns.first_z_mm) / turned.columns.step_mm).astype(
+                np.intp
+            ),
             0,
             turned.columns.number - 1,
         )
-        everywhere = slice(0, len(field.middles))
-        for start, end in _gaps(*in_order(turned.low[:, at], turned.high[:, at])):
-            field.take(everywhere, slice(None), start[:, None], end[:, None])
+        everywhere = slice(0, len(field.column_centers))
+        for start, end in _iter_gaps(*sort_intervals(turned.inner_radii[:, at], turned.outer_radii[:, at])):
+            field.intersect(everywhere, slice(None), start[:, None], end[:, None])
 
 
-def _side(edges: FloatArray, low: FloatArray, high: FloatArray) -> Piece:
+def _section_profiles(edges: FloatArray, low: FloatArray, high: FloatArray) -> PartedPiece:
     """Return one half of a section as the profiles of a piece without volume."""
     there = high > low
     outer = np.max(np.where(there, high, 0.0), axis=0)
@@ -170,19 +181,19 @@ def _side(edges: FloatArray, low: FloatArray, high: FloatArray) -> Piece:
         [(float(z), float(r[at])) for at in columns for z in (edges[at + 1], edges[at])]
         for r in (outer, inner)
     )
-    return Piece(0.0, outside, bore if any(r > 0.0 for _, r in bore) else None, None)
+    return PartedPiece(0.0, outside, bore if any(r > 0.0 for _, r in bore) else None, None)
 
 
-def _sizes(shape: ToolShape) -> tuple[float, float, float]:
+def _mill_sizes(shape: ToolShape) -> tuple[float, float, float]:
     """Return radius, cutting length and height of the point."""
-    return shape.diameter / 2.0, shape.length or math.inf, cone_height(shape)
+    return shape.diameter / 2.0, shape.length or math.inf, point_height_mm(shape)
 
 
-def _gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+def _iter_gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield the ranges without material in sorted layers (layers, columns), from the axis outward."""
     there = high > low
-    begins = np.where(there, low - _BESIDE, np.inf)
-    ends = np.maximum.accumulate(np.where(there, high + _BESIDE, 0.0), axis=0)
+    begins = np.where(there, low - _SLOPE_TOLERANCE_MM, np.inf)
+    ends = np.maximum.accumulate(np.where(there, high + _SLOPE_TOLERANCE_MM, 0.0), axis=0)
     yield np.zeros(low.shape[1]), begins[0]
     for layer in range(len(low)):
         outer = begins[layer + 1] if layer + 1 < len(low) else np.full(low.shape[1], np.inf)

@@ -16,73 +16,89 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.shared.actions import Collet
+from core.interpreter.shared.actions import ColletSwitch
 from core.message import Message
-from core.part.solid_bodies import Round, ToolBody, chuck_solid
-from core.part.solid_picture import Scene
+from core.part.solid_bodies import RoundAxis, ToolBody, make_chuck_solid
+from core.part.solid_picture import PartScene
 from core.part.stock_spec import StockSpec
-from core.part.surface_points import Solid, solid_of, turned_solid
+from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.swept_edge import FloatArray, Point
-from core.part.tool_outline import ToolOutline, outline
+from core.part.tool_outline import ToolOutline, make_outline
 from core.part.tool_shape import ToolShape
-from core.proving.part_instant import Half, Hit, PartCopies, PartInstant, PlacedTool, hit_of, metal_of
-from core.proving.part_making import PartMaking
-from core.proving.part_proof import MOST_MOVES
-from core.proving.program_timeline import MotionSpan, Part, RestSpan
-from core.proving.program_tools import PartSetting, ProgramTools
-from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, ends_of, slides_at, zero_of
+from core.proving.part_instant import (
+    MaterialHit,
+    PartCopies,
+    PartInstant,
+    PlacedTool,
+    SectionHalf,
+    copy_material,
+    find_hit,
+)
+from core.proving.part_proof import MAX_MOVES
+from core.proving.part_simulation import PartSimulation
+from core.proving.program_timeline import BlockGroup, MotionSpan, RestSpan
+from core.proving.program_tools import PartSettings, ProgramTools
+from core.proving.tip_moves import (
+    LiveToolStep,
+    ProgramStep,
+    StepConverter,
+    TipMove,
+    axis_position_at,
+    find_part_zero,
+    step_end_points,
+)
 
-_LOOKED = 20  # blocks between two calls of ``watch``
+_CHECK_INTERVAL = 20  # blocks between two calls of ``watch``
 
-Go = Callable[[], None]
-Watch = Callable[[float], None]
+CheckCanceled = Callable[[], None]
+ReportProgress = Callable[[float], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PartMoves:
+class ProgramSteps:
     """All blocks of a program in their order, with the settings of stock and tools."""
 
-    parts: tuple[Part, ...]
-    setting: PartSetting
+    parts: tuple[BlockGroup, ...]
+    part_settings: PartSettings
 
 
 @dataclass(slots=True)
-class PartGathering:
+class StepCollector:
     """Collects the blocks of a pass through a program, up to the limit for the operator screen."""
 
-    setting: PartSetting
-    _parts: list[Part] = field(default_factory=list)
+    part_settings: PartSettings
+    _parts: list[BlockGroup] = field(default_factory=list)
     _blocks: int = 0
 
-    def see(self, span: MotionSpan | RestSpan) -> None:
+    def add_span(self, span: MotionSpan | RestSpan) -> None:
         """Add the next span of the program."""
         if isinstance(span, MotionSpan):
-            parts = span.parts
+            parts = span.block_groups
         else:
             parts = ([span.block],) if span.block is not None else ()
         self._blocks += sum(len(part) for part in parts)
-        if self._blocks <= MOST_MOVES:
+        if self._blocks <= MAX_MOVES:
             self._parts += parts
         else:
             self._parts.clear()
 
     @property
-    def too_many(self) -> str:
+    def overflow_reason(self) -> str:
         """The reason why the part cannot be made, as a sentence, or an empty string."""
-        if self._blocks <= MOST_MOVES:
+        if self._blocks <= MAX_MOVES:
             return ""
         way = "use 'turndesk prove --stock' for longer programs"
         return Message(
             "The program has {blocks} blocks, but TurnDesk can simulate the part for at most "
             "{most_moves} blocks; {details}",
             blocks=self._blocks,
-            most_moves=MOST_MOVES,
+            most_moves=MAX_MOVES,
             details=way,
         )
 
-    def moves(self) -> PartMoves | None:
+    def collected_steps(self) -> ProgramSteps | None:
         """Return the collected blocks, or None if there are none or too many."""
-        return PartMoves(tuple(self._parts), self.setting) if self._parts else None
+        return ProgramSteps(tuple(self._parts), self.part_settings) if self._parts else None
 
 
 class PartHistory:
@@ -91,52 +107,58 @@ class PartHistory:
     Used by one thread at a time.
     """
 
-    def __init__(self, moves: PartMoves) -> None:
-        reading = Steps()
-        self.steps: list[Step] = [step for part in moves.parts for step in reading.of(part)]
+    def __init__(self, program_steps: ProgramSteps) -> None:
+        reading = StepConverter()
+        self.steps: list[ProgramStep] = [
+            step for part in program_steps.parts for step in reading.convert_blocks(part)
+        ]
         self._numbers = np.array([_number(step) for step in self.steps], dtype=np.int64)
-        self._tools = ProgramTools(self.steps, moves.setting)
-        stock = moves.setting.stock or self._tools.assumed_stock()
+        self._tools = ProgramTools(self.steps, program_steps.part_settings)
+        stock = program_steps.part_settings.stock or self._tools.assume_stock()
         self.stock = (
-            stock.stock(self._tools.back, self._tools.unit) if isinstance(stock, StockSpec) else stock
+            stock.stock(self._tools.back_z_mm, self._tools.unit_mm) if isinstance(stock, StockSpec) else stock
         )
         self._outlines: dict[int, ToolOutline | None] = {}
-        self._hits: dict[tuple[str, int], Hit] = {}
+        self._hits: dict[tuple[str, int], MaterialHit] = {}
         self._kept = PartCopies()
-        self._clamping = moves.setting.clamping
-        self._travel = moves.setting.travel
+        self._clamping = program_steps.part_settings.clamping
+        self._travel = program_steps.part_settings.travel
         self._chuck: Solid | None = None
         held = self._clamping
-        if held is not None and (held.diameter or held.quill) and self.stock is not None:
-            self._chuck = chuck_solid(held, self.stock)
-        self._making = PartMaking(self._tools, self.stock, moves.setting)
+        if held is not None and (held.diameter or held.quill_diameter) and self.stock is not None:
+            self._chuck = make_chuck_solid(held, self.stock)
+        self._making = PartSimulation(self._tools, self.stock, program_steps.part_settings)
         self._seen = self._making  # the part as last returned
-        self._ahead: tuple[int, float, PartMaking] | None = (
+        self._ahead: tuple[int, float, PartSimulation] | None = (
             None  # number of steps, share of the next one, and its part
         )
         self._done = 0  # steps
         self._last: PartInstant | None = None
-        self._kept.keep(0, self._making)
+        self._kept.store_copy(0, self._making)
 
-    def at(self, block: int, share: float = 0.0, watch: Go | None = None) -> PartInstant:
+    def at(
+        self, block: int, fraction: float = 0.0, check_canceled: CheckCanceled | None = None
+    ) -> PartInstant:
         """Return the part when ``block`` blocks and the ``share`` (0 to 1) of the next one are done.
 
         ``watch`` is called regularly during long work and may raise. The work done until then is stored.
         """
         self._last = None
         done = int(np.searchsorted(self._numbers, block, side="right"))
-        self._go_to(done, watch)
-        under_way = self.steps[done] if done < len(self.steps) and share > 0.0 else None
-        self._last = self._instant(block, share, under_way)
+        self._go_to(done, check_canceled)
+        under_way = self.steps[done] if done < len(self.steps) and fraction > 0.0 else None
+        self._last = self._instant(block, fraction, under_way)
         return self._last
 
-    def making_at(self, block: int, tip: Point | None = None, watch: Go | None = None) -> PartMaking:
+    def simulation_at(
+        self, block: int, tip: Point | None = None, check_canceled: CheckCanceled | None = None
+    ) -> PartSimulation:
         """Return a copy of the part before a block, or with the block done up to the ``tip`` (Z, r in mm)."""
         share = 0.0
         step = self._step(block)
         if tip is not None and isinstance(step, TipMove):
-            share = share_along(step.points, tip)
-        self.at(block - 1, share, watch)
+            share = polyline_fraction(step.points, tip)
+        self.at(block - 1, share, check_canceled)
         return self._seen.copy()
 
     @property
@@ -144,40 +166,42 @@ class PartHistory:
         """The tools of the program, as specified or assumed."""
         return self._tools
 
-    def zero(self, tool: int) -> Point | None:
+    def find_part_zero(self, tool: int) -> Point | None:
         """Return machine X and Z at which the tip of this tool is at part zero, or None if it never moves."""
         for step in reversed(self.steps):
             if isinstance(step, TipMove) and step.modal.tool == tool:
-                return step.zero
-            if isinstance(step, LiveStep) and step.block.modal.tool == tool:
-                return zero_of(step.block, step.place)
+                return step.part_zero
+            if isinstance(step, LiveToolStep) and step.block.modal.tool == tool:
+                return find_part_zero(step.block, step.part_zero)
         return None
 
     @property
-    def end(self) -> Point | None:
+    def end_position(self) -> Point | None:
         """Machine X and Z at the end of the program, or None if no axis moves."""
         for step in reversed(self.steps):
             if isinstance(step, TipMove):
-                return step.points[-1][1] + step.zero[0], step.points[-1][0] + step.zero[1]
+                return step.points[-1][1] + step.part_zero[0], step.points[-1][0] + step.part_zero[1]
         return None
 
-    def share_at(self, block: int, behind_end: Point) -> float:
-        """Return the share of a block that is done when the tool is ``behind_end`` (Z, r) from its end."""
+    def executed_fraction(self, block: int, offset_from_end: Point) -> float:
+        """Return the share of a block that is done when the tool is ``offset_from_end`` (Z, r) from its
+        end.
+        """
         step = self._step(block)
-        if isinstance(step, LiveStep):
-            ends = ends_of(step)
-            return share_along(ends, (ends[1][0] + behind_end[0], ends[1][1] + behind_end[1]))
+        if isinstance(step, LiveToolStep):
+            ends = step_end_points(step)
+            return polyline_fraction(ends, (ends[1][0] + offset_from_end[0], ends[1][1] + offset_from_end[1]))
         if not isinstance(step, TipMove):
             return 0.0
         end = step.points[-1]
-        return share_along(step.points, (end[0] + behind_end[0], end[1] + behind_end[1]))
+        return polyline_fraction(step.points, (end[0] + offset_from_end[0], end[1] + offset_from_end[1]))
 
     @property
-    def blocks(self) -> int:
+    def block_count(self) -> int:
         """The number of the last block."""
         return int(self._numbers[-1]) if len(self._numbers) else 0
 
-    def now(self) -> PartInstant:
+    def current_part(self) -> PartInstant:
         """Return the part as far as the present work has made it."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
@@ -186,166 +210,171 @@ class PartHistory:
         """Return whether ``instant`` is the last one returned, so that the part is unchanged."""
         return instant is self._last
 
-    def solid(self, instant: PartInstant) -> Solid | None:
+    def make_solid(self, instant: PartInstant) -> Solid | None:
         """Return the solid of the last instant, for this thread only, or None without material."""
-        if instant.near is None:
+        if instant.x_plus_half is None:
             return None
         milling = self._seen.milling
         if milling is not None:
-            return solid_of(milling.field)
-        return turned_solid(*instant.near)
+            return make_milled_solid(milling.updated_field)
+        return make_turned_solid(*instant.x_plus_half)
 
-    def scene_at(self, instant: PartInstant) -> Scene:
+    def scene_at(self, instant: PartInstant) -> PartScene:
         """Return the objects around the part at an instant: chuck or collet, and the tool."""
         tool = instant.tool
-        if tool is None or not (tool.cutting or tool.body):
-            return Scene(self._chuck)
-        return Scene(self._chuck, ToolBody(tool.cutting, tool.body, tool.round, tool.assumed))
+        if tool is None or not (tool.cutting_outlines or tool.body_outlines):
+            return PartScene(self._chuck)
+        return PartScene(
+            self._chuck, ToolBody(tool.cutting_outlines, tool.body_outlines, tool.round_axis, tool.is_assumed)
+        )
 
-    def _step(self, block: int) -> Step | None:
+    def _step(self, block: int) -> ProgramStep | None:
         there = int(np.searchsorted(self._numbers, block))
         return self.steps[there] if there < len(self.steps) and self._numbers[there] == block else None
 
     # --- execution of the program
 
-    def _go_to(self, done: int, watch: Go | None) -> None:
+    def _go_to(self, done: int, watch: CheckCanceled | None) -> None:
         if self._ahead is not None and self._ahead[0] != done:
             self._ahead = None
-        kept = self._kept.before(done)
+        kept = self._kept.last_copy_before(done)
         if not kept <= self._done <= done:
             self._making, self._done = self._kept.copy(kept), kept
         while self._done < done:
-            if watch is not None and self._done % _LOOKED == 0:
+            if watch is not None and self._done % _CHECK_INTERVAL == 0:
                 watch()
-            self._see(self.steps[self._done])
+            self._apply_step(self.steps[self._done])
             self._done += 1
-            self._kept.perhaps(self._done, self._making)
+            self._kept.store_if_due(self._done, self._making)
 
-    def _see(self, step: Step) -> None:
+    def _apply_step(self, step: ProgramStep) -> None:
         """Apply the next block and store its hits."""
         making, known = self._making, len(self._making.findings.diagnostics)
-        before = metal_of(making.part)
-        making.see(step)
+        before = copy_material(making.part)
+        making.apply_step(step)
         for found in making.findings.diagnostics[known:]:
-            hit = hit_of(found, step, making, before)
+            hit = find_hit(found, step, making, before)
             if hit is not None:
-                self._hits[found.check, found.line] = hit
+                self._hits[found.check_name, found.line] = hit
 
     # --- displayed state
 
-    def _instant(self, block: int, share: float, under_way: Step | None) -> PartInstant:
-        making, place = self._making, self._place()
+    def _instant(self, block: int, share: float, under_way: ProgramStep | None) -> PartInstant:
+        making, place = self._making, self._last_position()
         if isinstance(under_way, TipMove):
-            cut = _begun(under_way, share)
+            cut = _first_part(under_way, share)
             place = cut.points[-1]
             if making.milling is None:
                 making = making.copy()
-                making.see(cut)
-        elif isinstance(under_way, LiveStep):
-            making, place = self._milled(under_way, share), slides_at(under_way, share)
+                making.apply_step(cut)
+        elif isinstance(under_way, LiveToolStep):
+            making, place = self._milled_part(under_way, share), axis_position_at(under_way, share)
         self._seen, found = making, making.findings.diagnostics
         near, far = _halves(making)
         return PartInstant(
-            block=block,
-            share=share,
+            block_count=block,
+            next_block_fraction=share,
             line=_line(under_way or (self.steps[self._done - 1] if self._done else None)),
-            near=near,
-            far=far,
+            x_plus_half=near,
+            x_minus_half=far,
             stock=self.stock,
-            tool=self._tool(making.tool, place),
+            tool=self._tool(making.active_tool, place),
             hits=tuple(
-                self._hits[each.check, each.line] for each in found if (each.check, each.line) in self._hits
+                self._hits[each.check_name, each.line]
+                for each in found
+                if (each.check_name, each.line) in self._hits
             ),
             findings=found,
-            pieces=making.parted_off,
+            parted_piece_count=making.parted_piece_count,
             clamping=self._clamping,
-            is_open=making.is_open,
-            reach=self._reach(under_way),
-            c=self._c(under_way, share),
+            is_collet_open=making.is_collet_open,
+            tip_range=self._tip_range(under_way),
+            c_angle_deg=self._c_angle(under_way, share),
         )
 
-    def _milled(self, step: LiveStep, share: float) -> PartMaking:
+    def _milled_part(self, step: LiveToolStep, fraction: float) -> PartSimulation:
         """Return the part with a live tool's block in progress, continued from the last view if possible."""
         done, gone, ahead = self._ahead or (-1, 0.0, self._making)
-        if done != self._done or gone > share:
+        if done != self._done or gone > fraction:
             gone, ahead = 0.0, self._making.copy()
-        if share > gone:
-            ahead.mill(step, gone, share)
-        self._ahead = self._done, share, ahead
+        if fraction > gone:
+            ahead.apply_milling(step, gone, fraction)
+        self._ahead = self._done, fraction, ahead
         return ahead
 
-    def _reach(self, under_way: Step | None) -> tuple[Point, Point] | None:
+    def _tip_range(self, current_step: ProgramStep | None) -> tuple[Point, Point] | None:
         """Return the machine limits in tip positions, with the offset of the last moving block."""
         last = self.steps[max(0, self._done - 200) : self._done]
-        for step in (*((under_way,) if under_way is not None else ()), *reversed(last)):
-            if self._travel is None or not isinstance(step, TipMove | LiveStep):
+        for step in (*((current_step,) if current_step is not None else ()), *reversed(last)):
+            if self._travel is None or not isinstance(step, TipMove | LiveToolStep):
                 continue
-            x, z = step.zero if isinstance(step, TipMove) else zero_of(step.block, step.place)
+            x, z = step.part_zero if isinstance(step, TipMove) else find_part_zero(step.block, step.part_zero)
             (x0, x1), (z0, z1) = self._travel
             return (z0 - z, x0 - x), (z1 - z, x1 - x)
         return None
 
-    def _c(self, under_way: Step | None, share: float) -> float:
+    def _c_angle(self, current_step: ProgramStep | None, fraction: float) -> float:
         """Return C of the block in progress, or of the last block that engaged C."""
-        if isinstance(under_way, LiveStep):
-            return _c_at(under_way, share)
+        if isinstance(current_step, LiveToolStep):
+            return _c_at(current_step, fraction)
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
-            if isinstance(step, LiveStep):
+            if isinstance(step, LiveToolStep):
                 return _c_at(step, 1.0)
         return 0.0
 
-    def _place(self) -> Point | None:
+    def _last_position(self) -> Point | None:
         """Return the end of the last moving block."""
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
             if isinstance(step, TipMove):
                 return step.points[-1]
-            if isinstance(step, LiveStep):
-                return ends_of(step)[1]
+            if isinstance(step, LiveToolStep):
+                return step_end_points(step)[1]
         return None
 
     def _tool(self, number: int, place: Point | None) -> PlacedTool | None:
         if place is None:
             return None
         if number not in self._outlines:
-            shape = self._tools.shape(number)
-            self._outlines[number] = outline(shape) if shape is not None else None
+            shape = self._tools.find_shape(number)
+            self._outlines[number] = make_outline(shape) if shape is not None else None
         lines = self._outlines[number]
         if lines is None:
-            return PlacedTool(number, place, (), (), assumed=True)
+            return PlacedTool(number, place, (), (), is_assumed=True)
         cutting, body = (
-            tuple(each + np.array(place) for each in group) for group in (lines.cutting, lines.body)
+            tuple(each + np.array(place) for each in group)
+            for group in (lines.cutting_outlines, lines.body_outlines)
         )
-        shape = self._tools.shape(number)
+        shape = self._tools.find_shape(number)
         return PlacedTool(
-            number, place, cutting, body, not self._tools.described(number), _round(shape, lines.axial)
+            number, place, cutting, body, not self._tools.is_specified(number), _round(shape, lines.is_axial)
         )
 
 
-def _round(shape: ToolShape | None, axial: bool) -> Round:
-    if shape is None or not shape.turns_itself:
-        return Round.NOT
-    return Round.ALONG if axial else Round.ACROSS
+def _round(shape: ToolShape | None, axial: bool) -> RoundAxis:
+    if shape is None or not shape.is_rotating:
+        return RoundAxis.NONE
+    return RoundAxis.Z if axial else RoundAxis.X
 
 
-def share_along(points: Sequence[Point], at: Point) -> float:
+def polyline_fraction(points: Sequence[Point], position: Point) -> float:
     """Return the share of a polyline that is before its nearest position to a point."""
     gone = best = 0.0
     least = math.inf
     total = sum(math.dist(a, b) for a, b in pairwise(points))
     for a, b in pairwise(points):
         dz, dr, size = b[0] - a[0], b[1] - a[1], math.dist(a, b)
-        along = ((at[0] - a[0]) * dz + (at[1] - a[1]) * dr) / (size * size) if size else 0.0
+        along = ((position[0] - a[0]) * dz + (position[1] - a[1]) * dr) / (size * size) if size else 0.0
         along = min(max(along, 0.0), 1.0)
-        off = math.dist(at, (a[0] + along * dz, a[1] + along * dr))
+        off = math.dist(position, (a[0] + along * dz, a[1] + along * dr))
         if off < least:
             least, best = off, gone + along * size
         gone += size
     return best / total if total else 0.0
 
 
-def _begun(move: TipMove, share: float) -> TipMove:
+def _first_part(move: TipMove, fraction: float) -> TipMove:
     """Return the first part of a move."""
-    left, points = share * move.length, [move.points[0]]
+    left, points = fraction * move.length_mm, [move.points[0]]
     for a, b in pairwise(move.points):
         size = math.dist(a, b)
         if size >= left:
@@ -357,84 +386,95 @@ def _begun(move: TipMove, share: float) -> TipMove:
     return move._replace(points=tuple(points) if len(points) > 1 else move.points[:1] * 2)
 
 
-def _number(step: Step) -> int:
-    return step.block.n if isinstance(step, LiveStep) else step.n
+def _number(step: ProgramStep) -> int:
+    return step.block.n if isinstance(step, LiveToolStep) else step.n
 
 
-def _line(step: Step | None) -> int:
+def _line(step: ProgramStep | None) -> int:
     if step is None:
         return 0
-    return step.block.line if isinstance(step, LiveStep) else step.line
+    return step.block.line if isinstance(step, LiveToolStep) else step.line
 
 
-def _c_at(step: LiveStep, share: float) -> float:
+def _c_at(step: LiveToolStep, fraction: float) -> float:
     """Return C in degrees at a share of a live tool's block."""
     block = step.block
     if block.plane is not None:
-        return float(block.plane.machine(np.array([share]))[0, 2])
-    return block.c0 + (block.c - block.c0) * share
+        return float(block.plane.machine_positions(np.array([fraction]))[0, 2])
+    return block.c0 + (block.c - block.c0) * fraction
 
 
-def _halves(making: PartMaking) -> tuple[Half | None, Half | None]:
+def _halves(making: PartSimulation) -> tuple[SectionHalf | None, SectionHalf | None]:
     part = making.part
     if part is None:
         return None, None
     if making.milling is not None:
-        field, rays = making.milling.field, making.milling.field.low.shape[2]
+        field, rays = making.milling.updated_field, making.milling.updated_field.inner_radii.shape[2]
         sides = [
-            Half(field.edges.copy(), field.low[:, :, ray].copy(), field.high[:, :, ray].copy())
+            SectionHalf(
+                field.column_edges.copy(),
+                field.inner_radii[:, :, ray].copy(),
+                field.outer_radii[:, :, ray].copy(),
+            )
             for ray in (rays // 2, 0)  # X+ of the lathe with C at 0 is at 180° of the part
         ]
         return sides[0], sides[1]
     columns = part.columns
-    edges: FloatArray = columns.first + columns.step * (np.arange(columns.number + 1, dtype=np.float64) - 0.5)
-    half = Half(edges, part.low.copy(), part.high.copy())
+    edges: FloatArray = columns.first_z_mm + columns.step_mm * (
+        np.arange(columns.number + 1, dtype=np.float64) - 0.5
+    )
+    half = SectionHalf(edges, part.inner_radii.copy(), part.outer_radii.copy())
     return half, half
 
 
 class FinishedPart(NamedTuple):
-    """The finished part. ``back`` and ``front`` are the ends of its stock in Z, ``radius`` that of the stock.
+    """The finished part. ``back_z_mm`` and ``front_z_mm`` are the ends of its stock in Z, ``radius`` that of
+    the stock.
 
     Lengths are in mm.
     """
 
     solid: Solid
-    back: float
-    front: float
-    radius: float
+    back_z_mm: float
+    front_z_mm: float
+    radius_mm: float
 
 
-def finished_part(moves: PartMoves, watch: Watch) -> FinishedPart | None:
+def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> FinishedPart | None:
     """Return the finished part, or None if nothing is cut.
 
     ``watch`` receives the block number regularly and may raise to cancel.
     """
-    history = PartHistory(moves)
+    history = PartHistory(steps)
 
     def at(block: int) -> PartInstant:
-        return history.at(block, 0.0, lambda: watch(block))
+        return history.at(block, 0.0, lambda: report_progress(block))
 
-    pieces = at(history.blocks).pieces
-    ends = [history.blocks, *_before_last_opening(history)]
+    pieces = at(history.block_count).parted_piece_count
+    ends = [history.block_count, *_find_block_before_opening(history)]
     if pieces:
-        ends = [_before_last_piece(at, history.blocks, pieces)]
-    held = [(volume, end) for end in ends if (volume := _volume(at(end).near)) > 0.0]
+        ends = [_find_block_before_last_piece(at, history.block_count, pieces)]
+    held = [(volume, end) for end in ends if (volume := _section_volume(at(end).x_plus_half)) > 0.0]
     stock = history.stock
     if not held or stock is None:
         return None
-    solid = history.solid(at(min(held)[1]))
-    return FinishedPart(solid, stock.back, stock.front, stock.radius) if solid is not None else None
+    solid = history.make_solid(at(min(held)[1]))
+    return (
+        FinishedPart(solid, stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm)
+        if solid is not None
+        else None
+    )
 
 
-def _before_last_opening(history: PartHistory) -> list[int]:
+def _find_block_before_opening(history: PartHistory) -> list[int]:
     """Return the block before the last opening of the collet."""
     for step in reversed(history.steps):
-        if not isinstance(step, TipMove | LiveStep) and step.action == Collet(closed=False):
+        if not isinstance(step, TipMove | LiveToolStep) and step.action == ColletSwitch(closed=False):
             return [max(step.n - 1, 0)]
     return []
 
 
-def _before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
+def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
     """Return the last block before the last piece was parted off.
 
     A binary search is possible, because the number of pieces never decreases.
@@ -442,14 +482,14 @@ def _before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int)
     before, behind = 0, last
     while behind - before > 1:
         middle = (before + behind) // 2
-        before, behind = (middle, behind) if at(middle).pieces < pieces else (before, middle)
+        before, behind = (middle, behind) if at(middle).parted_piece_count < pieces else (before, middle)
     return before
 
 
-def _volume(half: Half | None) -> float:
+def _section_volume(half: SectionHalf | None) -> float:
     """Return the volume of the section rotated about the axis, in mm³."""
     if half is None:
         return 0.0
-    wide = half.edges[1:] - half.edges[:-1]
-    rings = (half.high**2 - half.low**2).clip(min=0.0)
+    wide = half.column_edges[1:] - half.column_edges[:-1]
+    rings = (half.outer_radii**2 - half.inner_radii**2).clip(min=0.0)
     return float(math.pi * (rings * wide).sum())

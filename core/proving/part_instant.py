@@ -10,159 +10,181 @@ from typing import NamedTuple
 import numpy as np
 
 from core.language.diagnostics import Diagnostic
-from core.part.polar_field import FieldCopy, Taken, copied, restored
-from core.part.solid_bodies import Round
+from core.part.polar_field import FieldCopy, RemovedMaterial, compact_copy, restore_field
+from core.part.solid_bodies import RoundAxis
 from core.part.stock import Clamping, Stock
 from core.part.swept_edge import FloatArray, Point
 from core.part.turned_part import Cut, TurnedPart
 from core.proving.checks.part_checks import is_serious
-from core.proving.milling import Milling
-from core.proving.part_making import PartMaking
-from core.proving.tip_moves import LiveStep, Step
+from core.proving.milling import MillingState
+from core.proving.part_simulation import PartSimulation
+from core.proving.tip_moves import LiveToolStep, ProgramStep
 
 _TOUCH = 1e-6  # mm
-_PLACES = 40  # points along a hit in chuck or tailstock
-_OF_CLAMPING = frozenset({"into-chuck", "into-tailstock"})
+_SAMPLE_COUNT = 40  # points along a hit in chuck or tailstock
+_CLAMPING_CHECKS = frozenset({"into-chuck", "into-tailstock"})
 # For other findings, the material that a block removes is the intended cut.
-_OF_METAL = frozenset(
+_MATERIAL_CHECKS = frozenset(
     {"rapid-into-stock", "feed-into-holder", "holder-into-stock", "through-part", "neighbour-tool"}
 )
-Metal = tuple[FloatArray, FloatArray]
+MaterialRadii = tuple[FloatArray, FloatArray]
 """Lowest and highest radius of each column's layers, mm."""
-_EVERY = 16  # initial number of blocks between two copies
-_MOST_COPIES = 96
-_MOST_BYTES = 96e6  # bytes of all copies
+_COPY_INTERVAL = 16  # initial number of blocks between two copies
+_MAX_COPIES = 96
+_MAX_BYTES = 96e6  # bytes of all copies
 
 
-class Half(NamedTuple):
+class SectionHalf(NamedTuple):
     """One side of the section.
 
-    ``edges`` (columns + 1,) are ascending Z. The material is from ``low`` to ``high`` (layers, columns), as
-    radii in mm.
+    ``column_edges`` (columns + 1,) are ascending Z. The material is from ``low`` to ``high`` (layers,
+    columns), as radii in mm.
     """
 
-    edges: FloatArray
-    low: FloatArray
-    high: FloatArray
+    column_edges: FloatArray
+    inner_radii: FloatArray
+    outer_radii: FloatArray
 
 
-class Hit(NamedTuple):
+class MaterialHit(NamedTuple):
     """Material that was hit by a fault of the program.
 
-    ``finding`` is the diagnostic. The hit is from ``low`` to ``high`` at each ``z`` (n,), with a width of
-    ``wide`` mm in Z each.
+    ``finding`` is the diagnostic. The hit is from ``low`` to ``high`` at each ``z_positions`` (n,), with a
+    width of ``column_width_mm`` mm in Z each.
     """
 
     finding: Diagnostic
-    z: FloatArray
-    low: FloatArray
-    high: FloatArray
-    wide: float
+    z_positions: FloatArray
+    inner_radii: FloatArray
+    outer_radii: FloatArray
+    column_width_mm: float
 
 
 class PlacedTool(NamedTuple):
-    """A tool at its position: its control point ``at``, and its outlines (k, 2) of Z and r in mm.
+    """A tool at its position: its control point ``control_point``, and its outlines (k, 2) of Z and r in mm.
 
-    ``assumed`` means that its shape is not specified, so its body is a typical one. ``round`` is the axis
-    about which it is round.
+    ``is_assumed`` means that its shape is not specified, so its body is a typical one. ``round_axis`` is the
+    axis about which it is round.
     """
 
-    number: int
-    at: Point
-    cutting: tuple[FloatArray, ...]
-    body: tuple[FloatArray, ...]
-    assumed: bool
-    round: Round = Round.NOT
+    tool_number: int
+    control_point: Point
+    cutting_outlines: tuple[FloatArray, ...]
+    body_outlines: tuple[FloatArray, ...]
+    is_assumed: bool
+    round_axis: RoundAxis = RoundAxis.NONE
 
 
 class PartInstant(NamedTuple):
-    """The part when ``block`` blocks and the ``share`` of the next one are done.
+    """The part when ``block_count`` blocks and the ``next_block_fraction`` of the next one are done.
 
-    ``near`` is the side of the section at X+, and ``far`` the opposite side; None means no material. ``hits``
-    and ``findings`` are those up to this time. ``reach`` is the range of the tip in Z and r.
+    ``x_plus_half`` is the side of the section at X+, and ``x_minus_half`` the opposite side; None means no
+    material. ``hits`` and ``findings`` are those up to this time. ``tip_range`` is the range of the tip in Z
+    and r.
     """
 
-    block: int
-    share: float
+    block_count: int
+    next_block_fraction: float
     line: int
-    near: Half | None
-    far: Half | None
+    x_plus_half: SectionHalf | None
+    x_minus_half: SectionHalf | None
     stock: Stock | None
     tool: PlacedTool | None
-    hits: tuple[Hit, ...]
+    hits: tuple[MaterialHit, ...]
     findings: tuple[Diagnostic, ...]
-    pieces: int
+    parted_piece_count: int
     clamping: Clamping | None = None
-    is_open: bool = False
-    reach: tuple[Point, Point] | None = None
-    c: float = 0.0  # present or last angle of an engaged C axis, degrees
+    is_collet_open: bool = False
+    tip_range: tuple[Point, Point] | None = None
+    c_angle_deg: float = 0.0  # present or last angle of an engaged C axis, degrees
 
 
-def metal_of(part: TurnedPart | None) -> Metal | None:
+def copy_material(part: TurnedPart | None) -> MaterialRadii | None:
     """Return a copy of the present material, for a later comparison."""
-    return None if part is None else (part.low.copy(), part.high.copy())
+    return None if part is None else (part.inner_radii.copy(), part.outer_radii.copy())
 
 
-def hit_of(found: Diagnostic, step: Step, making: PartMaking, before: Metal | None) -> Hit | None:
+def find_hit(
+    finding: Diagnostic,
+    step: ProgramStep,
+    simulation: PartSimulation,
+    previous_material: MaterialRadii | None,
+) -> MaterialHit | None:
     """Return the hit of the last block for one of its findings, or None.
 
     ``before`` is the material before that block.
     """
-    if not is_serious(found):
+    if not is_serious(finding):
         return None
-    if found.check in _OF_CLAMPING:
-        met = making.findings.into_clamping.get((found.check, found.line))
-        return _held_hit(found, met, making.findings.clamping, making.stock)
-    if found.check not in _OF_METAL:
+    if finding.check_name in _CLAMPING_CHECKS:
+        met = simulation.findings.clamping_cuts.get((finding.check_name, finding.line))
+        return _clamping_hit(finding, met, simulation.findings.clamping, simulation.initial_stock)
+    if finding.check_name not in _MATERIAL_CHECKS:
         return None
-    if isinstance(step, LiveStep):
-        return _milled_hit(found, making.milled_last)
-    if before is None or making.part is None:
+    if isinstance(step, LiveToolStep):
+        return _milled_hit(finding, simulation.last_milled_material)
+    if previous_material is None or simulation.part is None:
         return None
-    return _hit(found, before, making.part)
+    return _removed_material_hit(finding, previous_material, simulation.part)
 
 
-def _held_hit(found: Diagnostic, met: Cut | None, held: Clamping | None, stock: Stock | None) -> Hit | None:
+def _clamping_hit(
+    finding: Diagnostic, cut: Cut | None, clamping: Clamping | None, stock: Stock | None
+) -> MaterialHit | None:
     """Return the hit of a tool in chuck, collet or tailstock, from its outside to the depth of the cut."""
-    if met is None or held is None or stock is None:
+    if cut is None or clamping is None or stock is None:
         return None
-    body = held.tailstock if found.check == "into-tailstock" else held.around(stock)
+    body = clamping.tailstock if finding.check_name == "into-tailstock" else clamping.chuck_around(stock)
     if body is None:
         return None
-    low, high = max(min(met.back, met.front), body.back), min(max(met.back, met.front), body.front)
-    z = np.linspace(low, high, _PLACES)
-    outside = body.outside_at(z)
-    return Hit(found, z, np.maximum(outside - met.depth, 0.0), outside, (high - low) / (_PLACES - 1))
+    low, high = (
+        max(min(cut.back_z_mm, cut.front_z_mm), body.back_z_mm),
+        min(max(cut.back_z_mm, cut.front_z_mm), body.front_z_mm),
+    )
+    z = np.linspace(low, high, _SAMPLE_COUNT)
+    outside = body.outside_radius_at(z)
+    return MaterialHit(
+        finding, z, np.maximum(outside - cut.depth_mm, 0.0), outside, (high - low) / (_SAMPLE_COUNT - 1)
+    )
 
 
-def _hit(found: Diagnostic, before: Metal, part: TurnedPart) -> Hit | None:
+def _removed_material_hit(
+    finding: Diagnostic, previous_material: MaterialRadii, part: TurnedPart
+) -> MaterialHit | None:
     """Return the material that a block has removed, from the lowest to the highest of each column."""
-    layers = len(before[0])
-    low, high = part.low[:layers], part.high[:layers]
-    was = before[1] > before[0]
-    above = was & (before[1] - high > _TOUCH)
-    below = was & (low - before[0] > _TOUCH)
+    layers = len(previous_material[0])
+    low, high = part.inner_radii[:layers], part.outer_radii[:layers]
+    was = previous_material[1] > previous_material[0]
+    above = was & (previous_material[1] - high > _TOUCH)
+    below = was & (low - previous_material[0] > _TOUCH)
     touched = (above | below).any(axis=0)
     if not touched.any():
         return None
     least = np.minimum(
-        np.where(above, np.maximum(high, before[0]), np.inf).min(axis=0),
-        np.where(below, before[0], np.inf).min(axis=0),
+        np.where(above, np.maximum(high, previous_material[0]), np.inf).min(axis=0),
+        np.where(below, previous_material[0], np.inf).min(axis=0),
     )
     most = np.maximum(
-        np.where(above, before[1], 0.0).max(axis=0),
-        np.where(below, np.minimum(low, before[1]), 0.0).max(axis=0),
+        np.where(above, previous_material[1], 0.0).max(axis=0),
+        np.where(below, np.minimum(low, previous_material[1]), 0.0).max(axis=0),
     )
-    z = part.columns.middles[touched]
-    return Hit(found, z, least[touched], most[touched], part.columns.step)
+    z = part.columns.column_centers[touched]
+    return MaterialHit(finding, z, least[touched], most[touched], part.columns.step_mm)
 
 
-def _milled_hit(found: Diagnostic, met: Taken) -> Hit | None:
+def _milled_hit(finding: Diagnostic, removed: RemovedMaterial) -> MaterialHit | None:
     """Return the material that a live tool has hit."""
-    if not met:
+    if not removed:
         return None
-    middle, low, high = (np.array([each]) for each in (0.5 * (met.back + met.front), met.low, met.high))
-    return Hit(found, middle, low, high, met.front - met.back)
+    middle, low, high = (
+        np.array([each])
+        for each in (
+            0.5 * (removed.back_z_mm + removed.front_z_mm),
+            removed.min_radius_mm,
+            removed.max_radius_mm,
+        )
+    )
+    return MaterialHit(finding, middle, low, high, removed.front_z_mm - removed.back_z_mm)
 
 
 class PartCopies:
@@ -172,44 +194,44 @@ class PartCopies:
     """
 
     def __init__(self) -> None:
-        self._copies: dict[int, tuple[PartMaking, FieldCopy | None, float]] = {}
-        self._every = _EVERY
+        self._copies: dict[int, tuple[PartSimulation, FieldCopy | None, float]] = {}
+        self._every = _COPY_INTERVAL
 
-    def before(self, done: int) -> int:
-        """Return the number of steps of the last copy at or before ``done`` steps."""
-        return max(each for each in self._copies if each <= done)
+    def last_copy_before(self, step_count: int) -> int:
+        """Return the number of steps of the last copy at or before ``step_count`` steps."""
+        return max(each for each in self._copies if each <= step_count)
 
-    def copy(self, done: int) -> PartMaking:
+    def copy(self, step_count: int) -> PartSimulation:
         """Return a part from which to continue."""
-        kept, field, even_with = self._copies[done]
+        kept, field, even_with = self._copies[step_count]
         making = kept.copy()
         if field is not None and making.part is not None:
-            making.milling = Milling.of(making.part, restored(field), even_with)
+            making.milling = MillingState.from_field(making.part, restore_field(field), even_with)
         return making
 
-    def perhaps(self, done: int, making: PartMaking) -> None:
+    def store_if_due(self, step_count: int, simulation: PartSimulation) -> None:
         """Store a copy if the interval has passed."""
-        if done % self._every == 0 and done not in self._copies:
-            self.keep(done, making)
+        if step_count % self._every == 0 and step_count not in self._copies:
+            self.store_copy(step_count, simulation)
 
-    def keep(self, done: int, making: PartMaking) -> None:
-        """Store a copy of the part after ``done`` steps."""
-        milling = making.milling
+    def store_copy(self, step_count: int, simulation: PartSimulation) -> None:
+        """Store a copy of the part after ``step_count`` steps."""
+        milling = simulation.milling
         field, even_with = None, 0.0
         if milling is not None:
-            near = self._copies.get(max((each for each in self._copies if each < done), default=-1))
-            field = copied(milling.field, near[1] if near is not None else None)
-            even_with = milling.even_with
-        making.milling = None
-        self._copies[done] = making.copy(), field, even_with
-        making.milling = milling
-        while len(self._copies) > _MOST_COPIES or (self._size > _MOST_BYTES and len(self._copies) > 2):
+            near = self._copies.get(max((each for each in self._copies if each < step_count), default=-1))
+            field = compact_copy(milling.updated_field, near[1] if near is not None else None)
+            even_with = milling.synced_volume_mm3
+        simulation.milling = None
+        self._copies[step_count] = simulation.copy(), field, even_with
+        simulation.milling = milling
+        while len(self._copies) > _MAX_COPIES or (self._total_bytes > _MAX_BYTES and len(self._copies) > 2):
             self._every *= 2
             for each in [each for each in self._copies if each % self._every]:
                 del self._copies[each]
 
     @property
-    def _size(self) -> int:
+    def _total_bytes(self) -> int:
         """The memory of all copies in bytes; shared columns count once."""
         columns = {
             id(column): column.nbytes

@@ -8,59 +8,59 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.part.stock_spec import StockSpec
-from core.part.turned_part import Piece
-from core.proving.part_making import PartMaking
-from core.proving.program_timeline import MotionSpan, Part, RestSpan
-from core.proving.program_tools import PartSetting, ProgramTools
-from core.proving.proof_report import PartReport, Report, in_order
-from core.proving.prove_program import Progress, prove
-from core.proving.tip_moves import Step, Steps, TipMove
+from core.part.turned_part import PartedPiece
+from core.proving.part_simulation import PartSimulation
+from core.proving.program_timeline import BlockGroup, MotionSpan, RestSpan
+from core.proving.program_tools import PartSettings, ProgramTools
+from core.proving.proof_report import PartReport, ProofReport, sort_findings
+from core.proving.prove_program import ReportProgress, prove
+from core.proving.tip_moves import ProgramStep, StepConverter, TipMove
 
-MOST_MOVES = 50_000
+MAX_MOVES = 50_000
 """Of a longer program the part is made when somebody has said its stock: a million take half a minute.
 
 On the desk, where it would be in the way of a machine, never: ``part_history``.
 """
 
-_WATCHED = 200  # moves between two calls of ``watch``
+_CHECK_INTERVAL = 200  # moves between two calls of ``check_canceled``
 
 
 def prove_with_part(
-    program: Source | ReadProgram, setup: Setup, machine: Machine, setting: PartSetting,
-    progress: Progress | None = None, *, ideal: bool = False,
-    seen: Callable[[MotionSpan | RestSpan], None] | None = None,
-    watch: Callable[[float], None] | None = None,
-) -> tuple[Report, PartReport | None]:  # fmt: skip
+    program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, part_settings: PartSettings,
+    report_progress: ReportProgress | None = None, *, ideal: bool = False,
+    on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
+    check_canceled: Callable[[float], None] | None = None,
+) -> tuple[ProofReport, PartReport | None]:  # fmt: skip
     """Return the proof of a program including the findings of its part. A mill has no part proof.
 
-    ``seen`` receives each span, as in ``prove``. ``watch`` may cancel while the part is made.
+    ``on_span`` receives each span, as in ``prove``. ``check_canceled`` may cancel while the part is made.
     """
     if machine.kind != "lathe":
-        return prove(program, setup, machine, progress, ideal=ideal, seen=seen), None
-    gathered = PartProof(setting)
+        return prove(program, setup, machine, report_progress, ideal=ideal, on_span=on_span), None
+    gathered = PartProof(part_settings)
 
     def see(span: MotionSpan | RestSpan) -> None:
-        gathered.see(span)
-        if seen is not None:
-            seen(span)
+        gathered.add_span(span)
+        if on_span is not None:
+            on_span(span)
 
-    report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
-    part = gathered.report(watch)
+    report = prove(program, setup, machine, report_progress, ideal=ideal, on_span=see)
+    part = gathered.make_report(check_canceled)
     # findings of the reading, which does not know the stock
     known = {(each.line, each.code) for each in report.diagnostics}
     found = [each for each in part.findings if (each.line, each.code) not in known]
-    left = _without_weaker(report.diagnostics, found)
-    return replace(report, diagnostics=in_order((*left, *found))), part
+    left = _remove_weaker_findings(report.diagnostics, found)
+    return replace(report, diagnostics=sort_findings((*left, *found))), part
 
 
-def refusing_missing_offsets(report: Report, setup: Setup) -> Report:
+def require_tool_offsets(report: ProofReport, setup: Setup) -> ProofReport:
     """Return the report of ``prove`` with a missing tool offset as an error if offsets are known.
 
     The machine would not start with it. The operator screen and ``run`` refuse such a start themselves.
@@ -74,7 +74,7 @@ def refusing_missing_offsets(report: Report, setup: Setup) -> Report:
     return replace(report, diagnostics=tuple(found))
 
 
-_WEAKER = {
+_WEAKER_CHECKS = {
     "cut-standing": {"spindle-off", "live-tool-off"},
     "drill-without-limit": {"no-speed-limit"},
     "arc-loop": {"arc-over-half"},
@@ -82,24 +82,24 @@ _WEAKER = {
 """By check of the part: the warnings, found without the stock, that say the same with less certainty."""
 
 
-def _without_weaker(report: Iterable[Diagnostic], found: Iterable[Diagnostic]) -> list[Diagnostic]:
+def _remove_weaker_findings(report: Iterable[Diagnostic], findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the report without warnings that an error of the part confirms.
 
     The error must be on the same line or later.
     """
     left = list(report)
-    for error in found:
-        if error.severity is not Severity.ERROR or error.code not in _WEAKER:
+    for error in findings:
+        if error.severity is not Severity.ERROR or error.code not in _WEAKER_CHECKS:
             continue
         weaker = [
             each
             for each in left
-            if each.code in _WEAKER[error.code]
+            if each.code in _WEAKER_CHECKS[error.code]
             and each.severity is Severity.WARNING
-            and (each.line == error.line or 0 < each.n <= error.n)
+            and (each.line == error.line or 0 < each.block_number <= error.block_number)
         ]
         if weaker:
-            left.remove(max(weaker, key=lambda each: each.n))
+            left.remove(max(weaker, key=lambda each: each.block_number))
     return left
 
 
@@ -111,15 +111,15 @@ def _not_made(moves: int) -> PartReport:
 class PartProof:
     """Collects the blocks of a pass and makes the part from them."""
 
-    def __init__(self, setting: PartSetting, parts: Iterable[Part] = ()) -> None:
-        self._setting = setting
-        self._parts: list[Part] = list(parts)
+    def __init__(self, part_settings: PartSettings, parts: Iterable[BlockGroup] = ()) -> None:
+        self._setting = part_settings
+        self._parts: list[BlockGroup] = list(parts)
         self._moves = sum(map(len, self._parts))
 
-    def see(self, span: MotionSpan | RestSpan) -> None:
+    def add_span(self, span: MotionSpan | RestSpan) -> None:
         """Add the next span of the program."""
         if isinstance(span, MotionSpan):
-            parts = span.parts
+            parts = span.block_groups
         else:
             parts = ([span.block],) if span.block is not None else ()
         self._moves += sum(map(len, parts))
@@ -130,38 +130,38 @@ class PartProof:
 
     @property
     def _too_many(self) -> bool:
-        return self._moves > MOST_MOVES and self._setting.stock is None
+        return self._moves > MAX_MOVES and self._setting.stock is None
 
-    def report(self, watch: Callable[[float], None] | None = None) -> PartReport:
+    def make_report(self, check_canceled: Callable[[float], None] | None = None) -> PartReport:
         """Return the part after the whole program. A very long program needs a specified stock.
 
-        ``watch`` receives the number of moves done regularly and may raise to cancel.
+        ``check_canceled`` receives the number of moves done regularly and may raise to cancel.
         """
         if self._too_many:
             return _not_made(self._moves)
-        making, steps = self._begun()
+        making, steps = self._start_part()
         for done, step in enumerate(steps):
-            if watch is not None and done % _WATCHED == 0:
-                watch(done)
-            making.see(step)
-        return making.report()
+            if check_canceled is not None and done % _CHECK_INTERVAL == 0:
+                check_canceled(done)
+            making.apply_step(step)
+        return making.make_report()
 
-    def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
+    def material_before_blocks(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
         """Return the material before each of these elementary blocks, by number, without live tools."""
-        making, steps = self._begun()
-        held: dict[int, Piece] = {}
+        making, steps = self._start_part()
+        held: dict[int, PartedPiece] = {}
         for step in steps:
             if isinstance(step, TipMove) and step.n in blocks and making.part is not None:
-                held.setdefault(step.n, making.part.rest())
-            making.see(step)
+                held.setdefault(step.n, making.part.remaining_piece())
+            making.apply_step(step)
         return held
 
-    def _begun(self) -> tuple[PartMaking, list[Step]]:
+    def _start_part(self) -> tuple[PartSimulation, list[ProgramStep]]:
         """Return the part with the stock in the chuck, and the steps of the program."""
-        reading = Steps(self._setting.tips)
-        steps = [step for part in self._parts for step in reading.of(part)]
+        reading = StepConverter(self._setting.tips)
+        steps = [step for part in self._parts for step in reading.convert_blocks(part)]
         tools = ProgramTools(steps, self._setting)
-        stock = self._setting.stock or tools.assumed_stock()
+        stock = self._setting.stock or tools.assume_stock()
         if isinstance(stock, StockSpec):
-            stock = stock.stock(tools.back, tools.unit)
-        return PartMaking(tools, stock, self._setting), steps
+            stock = stock.stock(tools.back_z_mm, tools.unit_mm)
+        return PartSimulation(tools, stock, self._setting), steps

@@ -10,58 +10,69 @@ from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.actions import (
     Action,
-    Collet,
+    ColletSwitch,
     Dwell,
     ProgramEnd,
     SpindleLock,
-    SpindleOrient,
+    SpindlePositioning,
     SpindleRun,
     SpindleStop,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds, Series, TimedSeries
-from core.interpreter.shared.interpretation import Interpretation
+from core.interpreter.shared.elementary_blocks import (
+    Block,
+    BlockKind,
+    SectionEndDetector,
+    StraightMoveSeries,
+    TimedSeries,
+)
+from core.interpreter.shared.interpretation import InterpreterPass
 from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError, MotionLimits
-from core.motion.window_planner import Chunk, ChunkPlanner
-from core.proving.proof_report import in_order
-from core.proving.spindle_forecast import SETTLING, THREAD_EARLY, SpindleForecast, orienting
+from core.motion.window_planner import PlannedChunk, WindowPlanner
+from core.proving.proof_report import sort_findings
+from core.proving.spindle_forecast import (
+    SETTLING_TIME_S,
+    THREAD_START_LEAD_S,
+    SpindleForecast,
+    max_orientation_time_s,
+)
 
 # --- blocks without times -------------------------------------------------------------------------------
 
 
-Part = list[Block] | Series
+BlockGroup = list[Block] | StraightMoveSeries
 """Blocks one after the other that have come one by one, or as a series."""
 
 
-class BlocksInMotion:
+class PendingBlocks:
     """Blocks that were passed to the planner but are not timed yet. Series remain whole if possible."""
 
     def __init__(self) -> None:
-        self._parts: deque[Part] = deque()
+        self._parts: deque[BlockGroup] = deque()
 
     @property
-    def first(self) -> Block | None:
+    def first_block(self) -> Block | None:
         """The oldest block, or None."""
         return self._parts[0][0] if self._parts else None
 
-    def append(self, each: Block | Series) -> None:
+    def append(self, blocks: Block | StraightMoveSeries) -> None:
         """Append a block or a series."""
-        if isinstance(each, Series):
-            self._parts.append(each)
+        if isinstance(blocks, StraightMoveSeries):
+            self._parts.append(blocks)
         elif self._parts and isinstance(self._parts[-1], list):
-            self._parts[-1].append(each)
+            self._parts[-1].append(blocks)
         else:
-            self._parts.append([each])
+            self._parts.append([blocks])
 
-    def take(self, count: int) -> tuple[Part, ...]:
+    def pop_blocks(self, count: int) -> tuple[BlockGroup, ...]:
         """Remove and return the ``count`` oldest blocks."""
-        taken: list[Part] = []
+        taken: list[BlockGroup] = []
         while count:
             part = self._parts.popleft()
             if len(part) > count:
@@ -82,40 +93,42 @@ TimedBlock = tuple[Block, float, float]
 class MotionSpan(NamedTuple):
     """A span of motion from ``t0`` on, with the blocks that end in it and their times."""
 
-    t0: float
-    chunk: Chunk
-    parts: tuple[Part, ...]
+    start_time_s: float
+    chunk: PlannedChunk
+    block_groups: tuple[BlockGroup, ...]
 
     @property
     def blocks(self) -> list[Block]:
         """The blocks that end in the span. Blocks of series are created on each access."""
-        return list(chain.from_iterable(self.parts))
+        return list(chain.from_iterable(self.block_groups))
 
     @property
-    def last(self) -> Block | None:
+    def last_block(self) -> Block | None:
         """The last block that ends in the span, or None."""
-        return self.parts[-1][-1] if self.parts else None
+        return self.block_groups[-1][-1] if self.block_groups else None
 
     @property
-    def t1(self) -> float:
+    def end_time_s(self) -> float:
         """The end of the span. The next span may continue without a stop."""
-        return self.t0 + self.chunk.profile.duration
+        return self.start_time_s + self.chunk.profile.duration_s
 
-    def times(self) -> Iterator[TimedBlock]:
+    def iter_block_times(self) -> Iterator[TimedBlock]:
         """Yield each block with its start and end on the program's clock."""
-        for each in self.times_of_parts():
+        for each in self.iter_group_times():
             if isinstance(each, TimedSeries):
-                yield from zip(each.series, each.t0.tolist(), each.t1.tolist(), strict=True)
+                yield from zip(
+                    each.series, each.start_times_s.tolist(), each.end_times_s.tolist(), strict=True
+                )
             else:
                 yield each
 
-    def times_of_parts(self) -> Iterator[TimedBlock | TimedSeries]:
-        """Yield the same as ``times``, but each series as one item."""
-        shift, first = self.t0 - self.chunk.t, 0
-        for part in self.parts:
+    def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
+        """Yield the same as ``iter_block_times``, but each series as one item."""
+        shift, first = self.start_time_s - self.chunk.start_time_s, 0
+        for part in self.block_groups:
             there = slice(first, first + len(part))
-            t0, t1 = self.chunk.t0[there] + shift, self.chunk.t1[there] + shift
-            if isinstance(part, Series):
+            t0, t1 = self.chunk.block_starts_s[there] + shift, self.chunk.block_ends_s[there] + shift
+            if isinstance(part, StraightMoveSeries):
                 yield TimedSeries(part, t0, t1)
             else:
                 yield from zip(part, t0.tolist(), t1.tolist(), strict=True)
@@ -125,30 +138,30 @@ class MotionSpan(NamedTuple):
 class RestSpan(NamedTuple):
     """A rest from ``t0`` to ``t1``: a block without motion, or (None) a wait before the next motion."""
 
-    t0: float
-    t1: float
+    start_time_s: float
+    end_time_s: float
     block: Block | None
 
-    def times(self) -> Iterator[TimedBlock]:
+    def iter_block_times(self) -> Iterator[TimedBlock]:
         """Yield the block, if any, with its start and end on the program's clock."""
         if self.block is not None:
-            yield self.block, self.t0, self.t1
+            yield self.block, self.start_time_s, self.end_time_s
 
-    def times_of_parts(self) -> Iterator[TimedBlock | TimedSeries]:
-        """Yield the same as ``times``."""
-        return self.times()
+    def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
+        """Yield the same as ``iter_block_times``."""
+        return self.iter_block_times()
 
 
-_AT_ONCE = 1e12  # mm/s²; the ramps of an ideal machine are shorter than the displayed resolution
+_IDEAL_ACCELERATION = 1e12  # mm/s²; the ramps of an ideal machine are shorter than the displayed resolution
 
 
 class RestState(NamedTuple):
     """The state at rest between two blocks: time, spindle, pending speed wait, and path section rules."""
 
-    t: float
+    time_s: float
     spindle: SpindleForecast
-    speed_wanted: bool
-    ends: SectionEnds
+    is_speed_pending: bool
+    section_ends: SectionEndDetector
 
 
 class Timeline:
@@ -159,158 +172,164 @@ class Timeline:
     """
 
     def __init__(
-        self, interpreter: Interpretation, setup: Setup, machine: Machine, *, ideal: bool = False
+        self, interpreter: InterpreterPass, setup: Setup, machine: Machine, *, ideal: bool = False
     ) -> None:
         self.interpreter = interpreter
         self.spindle = SpindleForecast(machine)
-        self.t = 0.0
-        self.start = setup.start
+        self.time_s = 0.0
+        self.start_position = setup.start
         self._machine = machine
         self._ideal = ideal
         limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
         if ideal:
-            limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
-        self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
-        self._source = self.interpreter.series()
-        self._back: Block | Series | None = None  # the next item after a motion, already read
-        self._moving = BlocksInMotion()
-        self._ends = SectionEnds()
+            limits = replace(limits, amax=(_IDEAL_ACCELERATION,) * len(limits.amax))
+        self._planner = WindowPlanner(limits, rpm_max=machine.spindle.max_rpm)
+        self._source = self.interpreter.generate_series()
+        self._back: Block | StraightMoveSeries | None = None  # the next item after a motion, already read
+        self._moving = PendingBlocks()
+        self._ends = SectionEndDetector()
         self._speed_wanted = False  # a speed was commanded, and no feed has waited for it yet
         self._refused: list[Diagnostic] = []
 
     @classmethod
-    def of(
-        cls, program: Source | ReadProgram, setup: Setup, machine: Machine, *, ideal: bool = False
+    def from_program(
+        cls, program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, *, ideal: bool = False
     ) -> Timeline:
         """Return the timeline of a program's text, or of its parsed form."""
-        reading = program if isinstance(program, ReadProgram) else ReadProgram(program, strict=setup.strict)
-        return cls(reading.begin(setup), setup, machine, ideal=ideal)
+        reading = (
+            program if isinstance(program, SharedProgram) else SharedProgram(program, strict=setup.strict)
+        )
+        return cls(reading.start_pass(setup), setup, machine, ideal=ideal)
 
     @property
     def rest_state(self) -> RestState:
         """The state from which another path through the program continues."""
-        return RestState(self.t, copy(self.spindle), self._speed_wanted, copy(self._ends))
+        return RestState(self.time_s, copy(self.spindle), self._speed_wanted, copy(self._ends))
 
-    def go_on(self, rest_state: RestState) -> None:
+    def continue_from(self, rest_state: RestState) -> None:
         """Continue from the state of another timeline at rest instead of the start of the program."""
-        self.t, self.spindle, self._speed_wanted = (
-            rest_state.t,
+        self.time_s, self.spindle, self._speed_wanted = (
+            rest_state.time_s,
             copy(rest_state.spindle),
-            rest_state.speed_wanted,
+            rest_state.is_speed_pending,
         )
-        self._ends = copy(rest_state.ends)
+        self._ends = copy(rest_state.section_ends)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of reading and interpreting so far, in the order of lines."""
-        return in_order([*self.interpreter.diagnostics, *self._refused])
+        return sort_findings([*self.interpreter.diagnostics, *self._refused])
 
     @property
-    def errors(self) -> bool:
+    def has_errors(self) -> bool:
         """True if the diagnostics contain an error."""
         return any(d.severity is Severity.ERROR for d in self.diagnostics)
 
-    def spans(self) -> Iterator[MotionSpan | RestSpan]:
+    def iter_spans(self) -> Iterator[MotionSpan | RestSpan]:
         """Yield the program in time order, without gaps."""
         while (each := self._next()) is not None:
-            if isinstance(each, Series) or each.moves:
-                yield from self._motion(each)
+            if isinstance(each, StraightMoveSeries) or each.moves:
+                yield from self._path_section(each)
             else:
                 yield self._action(each)
 
-    def _next(self) -> Block | Series | None:
+    def _next(self) -> Block | StraightMoveSeries | None:
         if self._back is not None:
             back, self._back = self._back, None
             return back
         return next(self._source, None)
 
-    def _motion(self, each: Block | Series) -> Iterator[MotionSpan | RestSpan]:
+    def _path_section(self, each: Block | StraightMoveSeries) -> Iterator[MotionSpan | RestSpan]:
         """Yield one path section, from rest to rest."""
-        first = _like(each)
-        if self._ends.rests_before(first):
-            self._ends.rested(first)
+        first = _template_block(each)
+        if self._ends.needs_standstill_before(first):
+            self._ends.record_standstill(first)
         if not first.rapid:
-            yield from self._at_speed()
-        yield self._rest(self._wait(self._machine.timing.commit))
-        if first.kind is Kind.THREAD and not self._ideal:
-            yield self._index(first)
-        start = self.t - self._planner.t
+            yield from self._wait_for_speed()
+        yield self._rest(self._wait_seconds(self._machine.timing.commit))
+        if first.kind is BlockKind.THREAD and not self._ideal:
+            yield self._make_index_wait(first)
+        start = self.time_s - self._planner.planned_time_s
         try:
-            for chunk in self._planner.add(self._moves(each)):
+            for chunk in self._planner.plan_blocks(self._section_blocks(each)):
                 yield self._moved(start, chunk)
-            for chunk in self._planner.finish():
+            for chunk in self._planner.finish_section():
                 yield self._moved(start, chunk)
-            yield self._rest(self._wait(SETTLING))
+            yield self._rest(self._wait_seconds(SETTLING_TIME_S))
         except MotionError as error:
             self._refuse(str(error))
 
-    def _moves(self, each: Block | Series | None) -> Iterator[Block | Series]:
+    def _section_blocks(
+        self, each: Block | StraightMoveSeries | None
+    ) -> Iterator[Block | StraightMoveSeries]:
         """Yield the blocks of a path section that starts with ``each``."""
         while each is not None:
             self._moving.append(each)
             yield each
             each = self._next()
-            if each is not None and self._ends.rests_before(_like(each)):
+            if each is not None and self._ends.needs_standstill_before(_template_block(each)):
                 break
         self._back = each
 
-    def _index(self, block: Block) -> RestSpan:
+    def _make_index_wait(self, block: Block) -> RestSpan:
         """Return the wait until the axes may start in step with the spindle index, up to one revolution.
 
         The rule of the executor is in docs/decisions/0016-threads-follow-the-spindle.md.
         """
-        turn = abs(self.spindle.speed(self.t)) / 60.0
+        turn = abs(self.spindle.speed_at(self.time_s)) / 60.0
         if not turn:
             return self._rest(0.0)
         ramp = block.feed * turn / (2.0 * self._machine.axes[1].amax)
-        ahead = abs(self.spindle.turns(self.t)) + turn * (ramp + THREAD_EARLY)
-        return self._rest(THREAD_EARLY + (math.ceil(ahead - 1e-9) - ahead) / turn)
+        ahead = abs(self.spindle.revolutions_at(self.time_s)) + turn * (ramp + THREAD_START_LEAD_S)
+        return self._rest(THREAD_START_LEAD_S + (math.ceil(ahead - 1e-9) - ahead) / turn)
 
-    def _moved(self, start: float, chunk: Chunk) -> MotionSpan:
-        span = MotionSpan(start + chunk.t, chunk, self._moving.take(len(chunk.n)))
-        self.t = span.t1
-        last = span.last
+    def _moved(self, start: float, chunk: PlannedChunk) -> MotionSpan:
+        span = MotionSpan(
+            start + chunk.start_time_s, chunk, self._moving.pop_blocks(len(chunk.block_numbers))
+        )
+        self.time_s = span.end_time_s
+        last = span.last_block
         if last is not None and last.css is not None:
-            self._follow(last.rpm)
+            self._follow_css(last.rpm)
         return span
 
-    def _follow(self, rpm: float) -> None:
+    def _follow_css(self, rpm: float) -> None:
         """Set the speed reached by constant surface speed, or ramp to it if it has not been reached."""
         if self._speed_wanted:
-            self.spindle.command(self.t, rpm)
+            self.spindle.command_speed(self.time_s, rpm)
         else:
-            self.spindle.settle(self.t, rpm)
+            self.spindle.set_speed(self.time_s, rpm)
 
-    def _at_speed(self) -> Iterator[RestSpan]:
+    def _wait_for_speed(self) -> Iterator[RestSpan]:
         """Yield the wait for the spindle to be at speed before a feed."""
         if self._speed_wanted:
             self._speed_wanted = False
-            yield self._rest(self._wait(max(0.0, self.spindle.ready_at() - self.t)))
+            yield self._rest(self._wait_seconds(max(0.0, self.spindle.at_speed_time_s() - self.time_s)))
 
-    def _wait(self, seconds: float) -> float:
+    def _wait_seconds(self, seconds: float) -> float:
         """Return the wait of a real machine; 0 for an ideal machine."""
         return 0.0 if self._ideal else seconds
 
     def _rest(self, seconds: float, block: Block | None = None) -> RestSpan:
-        span = RestSpan(self.t, self.t + seconds, block)
-        self.t = span.t1
+        span = RestSpan(self.time_s, self.time_s + seconds, block)
+        self.time_s = span.end_time_s
         return span
 
     def _action(self, block: Block) -> RestSpan:
         assert block.action is not None
-        self._ends.rests_before(block)
+        self._ends.needs_standstill_before(block)
         self._turn(block)
         return self._rest(self._seconds(block.action), block)
 
     def _turn(self, block: Block) -> None:
         action = block.action
         if isinstance(action, SpindleRun):
-            self.spindle.command(self.t, block.rpm)
+            self.spindle.command_speed(self.time_s, block.rpm)
             self._speed_wanted = True
-        elif isinstance(action, SpindleStop | SpindleLock | SpindleOrient) or (
+        elif isinstance(action, SpindleStop | SpindleLock | SpindlePositioning) or (
             isinstance(action, ProgramEnd) and action.reset
         ):
-            self.spindle.command(self.t, 0.0)
+            self.spindle.command_speed(self.time_s, 0.0)
             self._speed_wanted = False
 
     def _seconds(self, action: Action) -> float:
@@ -319,34 +338,34 @@ class Timeline:
             return action.seconds
         if isinstance(action, SpindleLock) or (isinstance(action, SpindleStop) and action.stands):
             return self._until_still()
-        if isinstance(action, SpindleOrient):
-            return self._until_still() + orienting(self._machine.spindle, action.sense)
-        if isinstance(action, Collet):
+        if isinstance(action, SpindlePositioning):
+            return self._until_still() + max_orientation_time_s(self._machine.spindle, action.sense)
+        if isinstance(action, ColletSwitch):
             return collet.close_time if action.closed else collet.open_time
         return 0.0
 
     def _until_still(self) -> float:
-        return max(0.0, self.spindle.still_at(self._machine.spindle.stop_below) - self.t)
+        return max(0.0, self.spindle.slow_time_s(self._machine.spindle.stop_below) - self.time_s)
 
     def _refuse(self, why: str) -> None:
-        line = self._moving.first.line if self._moving.first else 0
+        line = self._moving.first_block.line if self._moving.first_block else 0
         hint = "change the move named in the message"
         self._refused.append(Diagnostic(line, 0, Severity.ERROR, "impossible-motion", why, hint))
         self._source, self._back = iter(()), None
 
 
-def _like(each: Block | Series) -> Block:
+def _template_block(each: Block | StraightMoveSeries) -> Block:
     """Return the block, or the pattern of a series."""
-    return each.pattern if isinstance(each, Series) else each
+    return each.pattern if isinstance(each, StraightMoveSeries) else each
 
 
-def timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
+def iter_timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
     """Yield every elementary block with its start and end in seconds. Waits belong to no block."""
-    for span in timeline.spans():
-        yield from span.times()
+    for span in timeline.iter_spans():
+        yield from span.iter_block_times()
 
 
-def timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
-    """Yield the same as ``timed_blocks``, but each series of moves as one item."""
-    for span in timeline.spans():
-        yield from span.times_of_parts()
+def iter_timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
+    """Yield the same as ``iter_timed_blocks``, but each series of moves as one item."""
+    for span in timeline.iter_spans():
+        yield from span.iter_group_times()

@@ -6,36 +6,50 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from core.interpreter.shared.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.actions import (
+    ColletSwitch,
+    InputRead,
+    InputWait,
+    OutputSwitch,
+    ProgramStop,
+    ToolChange,
+)
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.units import MM_PER_INCH
 from core.message import Message
-from core.part.cutter import Cutter, Side
+from core.part.cutter import CutSide, Cutter
 from core.part.stock import Clamping, Point, Stock
 from core.part.stock_spec import StockSpec
-from core.part.tool_outline import outline
+from core.part.tool_outline import make_outline
 from core.part.tool_shape import ToolKind, ToolShape
-from core.part.turned_part import STEP
-from core.proving.assumed_tools import GROOVERS, OPENS, Assumed, ToolUse, assumed_tool, releases
-from core.proving.checks.thread_checks import UNKNOWN, Drives
-from core.proving.tip_moves import QUICK, LiveStep, Place, Step, TipMove
-from core.tool_edges import edge_name
+from core.part.turned_part import DEFAULT_COLUMN_WIDTH_MM
+from core.proving.assumed_tools import (
+    GROOVING_TOOLS,
+    HOLE_TOOLS,
+    AssumedTool,
+    ToolUse,
+    assume_tool,
+    names_releasing_holder,
+)
+from core.proving.checks.thread_checks import UNKNOWN_LIMITS, DriveLimits
+from core.proving.tip_moves import FAST_FEED_MM_S, LiveToolStep, MachineXZ, ProgramStep, TipMove
+from core.tool_edges import format_edge_name
 
 _PLUNGE = 0.5  # mm
-_FED_AWAY = 1.0  # mm
-_MORE = 0.25  # mm of radius added to a bar
-_BEHIND = 10.0  # mm of bar past the last cut
+_FED_AWAY_MM = 1.0  # mm
+_EXTRA_RADIUS_MM = 0.25  # mm of radius added to a bar
+_EXTRA_BAR_MM = 10.0  # mm of bar past the last cut
 _SAME = 0.01
 _NEAR_FACE, _CENTRE = 1.0, 1.0  # mm; a cut from outside to the axis within this range is the face
-_BEYOND = 6.35  # mm; feeds further outside do not belong to a bore
-_LEAST = 0.5  # mm of radius
+_BORE_MARGIN_MM = 6.35  # mm; feeds further outside do not belong to a bore
+_MIN_RADIUS_MM = 0.5  # mm of radius
 _WALL = 2.0  # mm of wall around a bore
-_BEFORE = 5.0  # mm before Z0; a missing minus sign gives smaller values or affects one move only
-_MOST = 0.5  # fraction of all feeds
+_FACE_MARGIN_MM = 5.0  # mm before Z0; a missing minus sign gives smaller values or affects one move only
+_MAX_FEED_FRACTION = 0.5  # fraction of all feeds
 
 
 @dataclass(frozen=True, slots=True)
-class PartSetting:
+class PartSettings:
     """The specified stock, tools (by T) and clamping. Nose radii in mm come from the offsets."""
 
     stock: Stock | StockSpec | None = None
@@ -43,15 +57,15 @@ class PartSetting:
     nose_radii: Mapping[int, float] = field(default_factory=dict)
     clamping: Clamping | None = None
     gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools on a gang plate
-    tips: Mapping[int, Place] = field(default_factory=dict)  # as described in ``Steps``
-    drives: Drives = UNKNOWN
+    tips: Mapping[int, MachineXZ] = field(default_factory=dict)  # as described in ``Steps``
+    drives: DriveLimits = UNKNOWN_LIMITS
     live_codes: bool = False  # the machine has M codes that switch live tools
-    step: float = STEP  # width of a column of the part, mm
+    step: float = DEFAULT_COLUMN_WIDTH_MM  # width of a column of the part, mm
     silenced: Mapping[str, str] = field(default_factory=dict)  # reason by check
     travel: tuple[Point, Point] | None = None  # travel of X and of Z from home, mm
 
     @property
-    def may_refuse(self) -> bool:
+    def can_refuse_start(self) -> bool:
         """True if enough is specified for an error of the part that depends on no assumption."""
         return self.stock is not None or self.clamping is not None
 
@@ -59,68 +73,73 @@ class PartSetting:
 class ProgramTools:
     """The tools of a program by T. All moves are collected first, because assumptions depend on them."""
 
-    def __init__(self, steps: Sequence[Step], setting: PartSetting) -> None:
-        self.uses: dict[int, ToolUse] = {}
-        self.fed_at: float | None = None  # Z of the bar stop in mm
-        self.feeds_first = False  # the bar is fed before the first cut
-        self._setting = setting
+    def __init__(self, steps: Sequence[ProgramStep], part_settings: PartSettings) -> None:
+        self.tool_uses: dict[int, ToolUse] = {}
+        self.bar_stop_z: float | None = None  # Z of the bar stop in mm
+        self.feeds_bar_first = False  # the bar is fed before the first cut
+        self._setting = part_settings
         self._gather(steps)
-        self.assumed: dict[int, Assumed] = {
-            n: assumed_tool(use, setting.shapes.get(n))
-            for n, use in self.uses.items()
-            if self._lacks_something(n) and (use.moves or use.live) and (n or len(self.uses) == 1)
+        self.assumed_tools: dict[int, AssumedTool] = {
+            n: assume_tool(use, part_settings.shapes.get(n))
+            for n, use in self.tool_uses.items()
+            if self._lacks_something(n) and (use.moves or use.live_steps) and (n or len(self.tool_uses) == 1)
         }  # T0 counts as a tool only if the program names no other
-        self._give_sizes()
+        self._assume_sizes()
 
-    def _gather(self, steps: Sequence[Step]) -> None:
+    def _gather(self, steps: Sequence[ProgramStep]) -> None:
         use, is_open, cut = self._use(0), False, False
         place, comment = (0.0, 0.0), ""
         for step in steps:
             if isinstance(step, TipMove):
                 place = step.points[-1]
                 use.moves.append(step)
-                use.pushes_bar = use.pushes_bar or (is_open and not step.quick)
-                cut = cut or not (step.quick or is_open or self._stop_to_come(use))
-            elif isinstance(step, LiveStep):
-                use.live.append(step)
+                use.is_bar_stop = use.is_bar_stop or (is_open and not step.is_fast)
+                cut = cut or not (step.is_fast or is_open or self._stop_to_come(use))
+            elif isinstance(step, LiveToolStep):
+                use.live_steps.append(step)
                 cut = True
             elif isinstance(step.action, ToolChange):
                 use = self._use(step.action.tool)
                 use.comments.append(step.modal.comment if step.modal.comment != comment else "")
-            elif isinstance(step.action, ProgramStop | Output | WaitInput | AskInput):
-                use.paused = True
-            elif isinstance(step.action, Collet):
-                use.paused = True
+            elif isinstance(step.action, ProgramStop | OutputSwitch | InputWait | InputRead):
+                use.has_pause = True
+            elif isinstance(step.action, ColletSwitch):
+                use.has_pause = True
                 is_open = not step.action.closed
-                self.feeds_first = self.feeds_first or (is_open and not cut)
-                if not is_open and use.pushes_bar and self.fed_at is None:
-                    self.fed_at = place[0]
-            comment = (step.block if isinstance(step, LiveStep) else step).modal.comment
+                self.feeds_bar_first = self.feeds_bar_first or (is_open and not cut)
+                if not is_open and use.is_bar_stop and self.bar_stop_z is None:
+                    self.bar_stop_z = place[0]
+            comment = (step.block if isinstance(step, LiveToolStep) else step).modal.comment
 
     def _use(self, number: int) -> ToolUse:
         nose = self._setting.nose_radii.get(number, 0.0)
-        return self.uses.setdefault(number, ToolUse(number, nose_radius=nose))
+        return self.tool_uses.setdefault(number, ToolUse(number, nose_radius=nose))
 
     @staticmethod
     def _stop_to_come(use: ToolUse) -> bool:
-        return use.pushes_bar or any("STOP" in text.upper() for text in use.comments)
+        return use.is_bar_stop or any("STOP" in text.upper() for text in use.comments)
 
     def _lacks_something(self, number: int) -> bool:
         said = self._setting.shapes.get(number)
-        return said is None or (said.kind in GROOVERS and not said.width)
+        return said is None or (said.kind in GROOVING_TOOLS and not said.width)
 
-    def _give_sizes(self) -> None:
+    def _assume_sizes(self) -> None:
         """Set the unknown sizes of drills and grooving tools from the tools that follow them."""
-        bore = [m for n, use in self.uses.items() if (s := self.shape(n)) and s.internal for m in use.moves]
-        threads = [m for use in self.uses.values() for m in use.moves if m.kind is Kind.THREAD]
-        for number, each in self.assumed.items():
-            use = self.uses[number]
-            self.assumed[number] = each.with_diameter(use, bore).with_width(use, threads)
+        bore = [
+            m
+            for n, use in self.tool_uses.items()
+            if (s := self.find_shape(n)) and s.internal
+            for m in use.moves
+        ]
+        threads = [m for use in self.tool_uses.values() for m in use.moves if m.kind is BlockKind.THREAD]
+        for number, each in self.assumed_tools.items():
+            use = self.tool_uses[number]
+            self.assumed_tools[number] = each.add_diameter(use, bore).add_width(use, threads)
 
-    def shape(self, number: int) -> ToolShape | None:
+    def find_shape(self, number: int) -> ToolShape | None:
         """Return the shape of a tool; None for a bar stop or if no cutting shape is known."""
-        if number in self.assumed:
-            return self.assumed[number].shape
+        if number in self.assumed_tools:
+            return self.assumed_tools[number].tool_shape
         return self._setting.shapes.get(number)
 
     @property
@@ -128,72 +147,76 @@ class ProgramTools:
         """The drills and reamers of the program with an assumed diameter, by T."""
         return [
             n
-            for n, each in sorted(self.assumed.items())
-            if each.shape is not None and each.shape.kind in OPENS and each.sized
+            for n, each in sorted(self.assumed_tools.items())
+            if each.tool_shape is not None and each.tool_shape.kind in HOLE_TOOLS and each.is_diameter_assumed
         ]
 
-    def described(self, number: int) -> bool:
+    def is_specified(self, number: int) -> bool:
         """Return whether the shape of the tool is specified."""
         return number in self._setting.shapes
 
-    def releases(self, number: int) -> bool:
+    def releases_tap(self, number: int) -> bool:
         """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
-        return releases(self.uses[number]) if number in self.uses else False
+        return names_releasing_holder(self.tool_uses[number]) if number in self.tool_uses else False
 
-    def cutter(self, number: int) -> Cutter | None:
+    def make_cutter(self, number: int) -> Cutter | None:
         """Return the tool ready to cut. Without a specified holder, only its edges are used."""
-        shape = self.shape(number)
-        if shape is None or (shape.turns_itself and shape.direction[0] == 0):
+        shape = self.find_shape(number)
+        if shape is None or (shape.is_rotating and shape.direction[0] == 0):
             return None  # a live tool across the spindle cannot turn
-        lines = outline(shape)
-        body = lines.body if self.described(number) else ()
-        return Cutter(lines.cutting, body, _side(shape), rear=shape.behind, drills=shape.turns_itself)
+        lines = make_outline(shape)
+        body = lines.body_outlines if self.is_specified(number) else ()
+        return Cutter(
+            lines.cutting_outlines, body, _side(shape), is_rear=shape.behind, is_drill=shape.is_rotating
+        )
 
     @property
-    def unit(self) -> float:
+    def unit_mm(self) -> float:
         """The unit of length of the program in mm, from its first move."""
-        metric = (use.metric for use in self.uses.values() if use.moves or use.live)
+        metric = (use.is_metric for use in self.tool_uses.values() if use.moves or use.live_steps)
         return 1.0 if next(metric, False) else MM_PER_INCH
 
     @property
-    def back(self) -> float:
+    def back_z_mm(self) -> float:
         """The least Z of all cuts, in mm."""
-        moves = (m for use in self.uses.values() for m in use.moves if not (m.quick or use.pushes_bar))
+        moves = (
+            m for use in self.tool_uses.values() for m in use.moves if not (m.is_fast or use.is_bar_stop)
+        )
         return min((z for move in moves for z, _ in move.points), default=0.0)
 
     @property
-    def parted_at(self) -> float | None:
+    def part_off_z(self) -> float | None:
         """The deepest Z of a parting tool that feeds toward the axis, or None."""
         deepest: list[float] = []
-        for number, use in self.uses.items():
-            shape = self.shape(number)
+        for number, use in self.tool_uses.items():
+            shape = self.find_shape(number)
             if shape is None or shape.kind is not ToolKind.PARTING:
                 continue
             behind = (
                 shape.width * (1 + shape.direction[0]) / 2.0
             )  # width of the edge beyond the corner that is set
-            ways = [(*m.points[0], *m.points[-1]) for m in use.moves if not m.quick]
+            ways = [(*m.points[0], *m.points[-1]) for m in use.moves if not m.is_fast]
             deepest += [z1 - behind for _, r0, z1, r1 in ways if abs(r1) < abs(r0) - _PLUNGE]
         return min(deepest, default=None)
 
-    def nothing_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
+    def find_uncut_feeds(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
         """Yield line, block and sentence for tools that never feed and for feeds away from the part."""
-        cutting = [use for n, use in self.uses.items() if self.shape(n) is not None]
+        cutting = [use for n, use in self.tool_uses.items() if self.find_shape(n) is not None]
         for use in cutting:
-            if (move := use.never_fed) is not None:
+            if (move := use.first_rapid_position) is not None:
                 yield (
                     move.line,
                     move.n,
                     (
                         Message(
                             "{number} makes no feed moves; all its moves are rapids.",
-                            number=edge_name(use.number),
+                            number=format_edge_name(use.tool_number),
                         )
                     ),
                 )
         if stock is not None:
             return
-        if (lost := self.fed_away) is not None:
+        if (lost := self.longest_feed_away) is not None:
             yield (
                 lost.line,
                 lost.n,
@@ -203,7 +226,7 @@ class ProgramTools:
                 ),
             )
         for use in cutting:
-            fed = [block for block in use.live_blocks if not block.rapid and block.feed < QUICK]
+            fed = [block for block in use.live_blocks if not block.rapid and block.feed < FAST_FEED_MM_S]
             if fed:
                 yield (
                     fed[0].line,
@@ -211,85 +234,88 @@ class ProgramTools:
                     (
                         Message(
                             "Live tool {number} feeds, but never past Z0 toward the spindle.",
-                            number=edge_name(use.number),
+                            number=format_edge_name(use.tool_number),
                         )
                     ),
                 )
 
     @property
-    def fed_away(self) -> TipMove | None:
+    def longest_feed_away(self) -> TipMove | None:
         """The longest feed away from the chuck if all feeds together lead away, or None."""
-        feeds = [m for n, use in self.uses.items() if self.shape(n) for m in use.moves if not m.quick]
+        feeds = [
+            m for n, use in self.tool_uses.items() if self.find_shape(n) for m in use.moves if not m.is_fast
+        ]
         along = [move.points[-1][0] - move.points[0][0] for move in feeds]
-        if sum(along) <= _FED_AWAY or zero_behind(feeds):
+        if sum(along) <= _FED_AWAY_MM or is_zero_at_chuck(feeds):
             return None
         return feeds[along.index(max(along))]
 
-    def assumed_stock(self) -> Stock | None:
+    def assume_stock(self) -> Stock | None:
         """Return the assumed stock for the cuts of the tools, or None."""
         outside: list[TipMove] = []
         bore: list[TipMove] = []
-        for number, use in self.uses.items():
-            shape = self.shape(number)
+        for number, use in self.tool_uses.items():
+            shape = self.find_shape(number)
             if shape is not None:
-                (outside if _side(shape) is Side.OUTSIDE else bore).extend(use.moves)
-        live = [step for use in self.uses.values() for step in use.live]
-        drills = [s.diameter for s in map(self.shape, self.uses) if s is not None and s.turns_itself]
-        return assumed_stock(outside, bore, self.fed_at, max(drills, default=0.0), live)
+                (outside if _side(shape) is CutSide.OUTSIDE else bore).extend(use.moves)
+        live = [step for use in self.tool_uses.values() for step in use.live_steps]
+        drills = [s.diameter for s in map(self.find_shape, self.tool_uses) if s is not None and s.is_rotating]
+        return assume_stock(outside, bore, self.bar_stop_z, max(drills, default=0.0), live)
 
 
-def _side(shape: ToolShape) -> Side:
-    if shape.turns_itself or shape.internal:
-        return Side.BORE
+def _side(shape: ToolShape) -> CutSide:
+    if shape.is_rotating or shape.internal:
+        return CutSide.BORE
     if shape.direction == (-1, 0) and shape.kind is not ToolKind.TURNING:
-        return Side.FACE
+        return CutSide.FACE
     across = shape.direction[1] * (-1 if shape.behind else 1)
-    return Side.BORE if across > 0 else Side.OUTSIDE
+    return CutSide.BORE if across > 0 else CutSide.OUTSIDE
 
 
-def assumed_stock(
+def assume_stock(
     outside: Sequence[TipMove],
     bore: Sequence[TipMove],
-    face: float | None,
-    drill: float,
-    live: Sequence[LiveStep] = (),
+    bar_stop_z: float | None,
+    max_drill_diameter: float,
+    live_steps: Sequence[LiveToolStep] = (),
 ) -> Stock | None:
     """Return a bar for the moves of outside tools, or a tube if boring tools start without a drill.
 
-    ``face`` is the Z in mm of the bar stop; None means Z0. ``drill`` is the diameter of the largest drill, or
+    ``bar_stop_z`` is the Z in mm of the bar stop; None means Z0. ``max_drill_diameter`` is the diameter of
+    the largest drill, or
     0. Returns None if nothing is cut past the face, or if part zero is not at the face.
     """
-    cuts = [move for move in (*outside, *bore) if not move.quick]
-    if face is None and zero_behind(cuts):
+    cuts = [move for move in (*outside, *bore) if not move.is_fast]
+    if bar_stop_z is None and is_zero_at_chuck(cuts):
         return None
-    front = _front((*outside, *bore)) if face is None else face
-    milled = [step for step in live if not step.block.rapid and step.block.feed < QUICK]
+    front = _find_face_z((*outside, *bore)) if bar_stop_z is None else bar_stop_z
+    milled = [step for step in live_steps if not step.block.rapid and step.block.feed < FAST_FEED_MM_S]
     depths = [z for move in cuts for z, _ in move.points] + [b.reach()[2] + dz for b, (_, dz) in milled]
     back = min(depths, default=front)
     if back > front or not depths:
         return None
-    reach = max((_live_reach(step) for step in milled), default=0.0)
-    radius = max(_bar_radius(outside, bore, front) if cuts else reach, drill)
-    hole = 0.0 if drill else min(_bore_radius(bore, front), radius - _SAME)
-    ends = back - _BEHIND, front
+    reach = max((_live_tool_radius(step) for step in milled), default=0.0)
+    radius = max(_bar_radius(outside, bore, front) if cuts else reach, max_drill_diameter)
+    hole = 0.0 if max_drill_diameter else min(_bore_radius(bore, front), radius - _SAME)
+    ends = back - _EXTRA_BAR_MM, front
     inner = tuple((z, hole) for z in ends) if hole > 0.0 else ()
     return Stock("", tuple((z, radius) for z in ends), inner)
 
 
-def zero_behind(cuts: Sequence[TipMove]) -> bool:
+def is_zero_at_chuck(cuts: Sequence[TipMove]) -> bool:
     """Return whether part zero is at the chuck end of the part, because most feeds are before Z0."""
-    before = sum(move.length for move in cuts if min(z for z, _ in move.points) > _BEFORE)
-    return before > _MOST * sum(move.length for move in cuts)
+    before = sum(move.length_mm for move in cuts if min(z for z, _ in move.points) > _FACE_MARGIN_MM)
+    return before > _MAX_FEED_FRACTION * sum(move.length_mm for move in cuts)
 
 
-def _front(moves: Sequence[TipMove]) -> float:
+def _find_face_z(moves: Sequence[TipMove]) -> float:
     """Return Z of the face: slightly before the first face cut and clear of rapids, or 0 without one."""
     faced = [m.points[-1][0] for m in moves if _cuts_face(m)]
     if not faced:
         return 0.0
     face = max(faced)
-    free = min((z for m in moves if m.quick for z, _ in m.points if z > face + _SAME), default=face)
-    return face + min(_MORE, (free - face) / 2.0)
+    free = min((z for m in moves if m.is_fast for z, _ in m.points if z > face + _SAME), default=face)
+    return face + min(_EXTRA_RADIUS_MM, (free - face) / 2.0)
 
 
 def _cuts_face(move: TipMove) -> bool:
@@ -304,47 +330,52 @@ def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: floa
 
     If only grooves or faces are cut, the bar is slightly smaller than the start of the largest of them.
     """
-    feeds = [move for move in outside if not move.quick]
+    feeds = [move for move in outside if not move.is_fast]
     behind = [move for move in feeds if min(z for z, _ in move.points) < front - _SAME]
-    along = [_cylinder(m) for m in behind if _turns(m, front)]
-    largest = max(along, default=math.inf) + _BEYOND
+    along = [_bar_radius_for_move(m) for m in behind if _is_turning_move(m, front)]
+    largest = max(along, default=math.inf) + _BORE_MARGIN_MM
     widest = max((r for r in _radii(bore) if r < largest), default=0.0)
-    sunk = [min(abs(r) for _, r in m.points) + _MORE for m in behind if along and _plunges(m)]
-    begins = [max(abs(r) for _, r in move.points) - 2.0 * _MORE for move in behind or feeds]
-    faced = _faced(feeds, front)
-    cut = max([*along, *sunk, widest] if along or widest else begins, default=_LEAST)
+    sunk = [min(abs(r) for _, r in m.points) + _EXTRA_RADIUS_MM for m in behind if along and _is_plunge(m)]
+    begins = [max(abs(r) for _, r in move.points) - 2.0 * _EXTRA_RADIUS_MM for move in behind or feeds]
+    faced = _facing_start_radius(feeds, front)
+    cut = max([*along, *sunk, widest] if along or widest else begins, default=_MIN_RADIUS_MM)
     if faced < math.inf:
-        cut = min(max(cut, faced - 3.0 * _MORE), faced)
-    passed = [abs(r) for m in outside if m.quick for z, r in m.points if z < front - _SAME]
+        cut = min(max(cut, faced - 3.0 * _EXTRA_RADIUS_MM), faced)
+    passed = [abs(r) for m in outside if m.is_fast for z, r in m.points if z < front - _SAME]
     beside = [r for r in passed if r >= cut - _SAME]
-    return max(min([cut + _MORE, *beside]), widest + _WALL if widest else 0.0, _LEAST)
+    return max(min([cut + _EXTRA_RADIUS_MM, *beside]), widest + _WALL if widest else 0.0, _MIN_RADIUS_MM)
 
 
-def _turns(move: TipMove, front: float) -> bool:
+def _is_turning_move(move: TipMove, front: float) -> bool:
     """Return whether a move goes along Z in the part. A move that ends before the face is a retract."""
     z0, z1 = move.points[0][0], move.points[-1][0]
     return abs(z1 - z0) > _SAME and not z1 > max(z0, front + _NEAR_FACE)
 
 
-def _plunges(move: TipMove) -> bool:
+def _is_plunge(move: TipMove) -> bool:
     """Return whether a move goes perpendicular toward the axis and ends before it."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) <= _SAME and abs(r0) > abs(r1) > _CENTRE
 
 
 def _radii(moves: Iterable[TipMove]) -> Iterator[float]:
-    return (abs(r) for move in moves if not move.quick for _, r in move.points)
+    return (abs(r) for move in moves if not move.is_fast for _, r in move.points)
 
 
-def _live_reach(step: LiveStep) -> float:
+def _live_tool_radius(step: LiveToolStep) -> float:
     """Return slightly less than the outer end of a live tool's cut."""
     low, high, _, _ = step.block.reach()
     return (
-        max(abs(low + step.place[0]), abs(high + step.place[0]), abs(step.block.x0 + step.place[0])) - _MORE
+        max(
+            abs(low + step.part_zero[0]),
+            abs(high + step.part_zero[0]),
+            abs(step.block.x0 + step.part_zero[0]),
+        )
+        - _EXTRA_RADIUS_MM
     )
 
 
-def _faced(feeds: Iterable[TipMove], front: float) -> float:
+def _facing_start_radius(feeds: Iterable[TipMove], front: float) -> float:
     """Return the start radius of the first cut if it faces the part, otherwise inf. No bar is larger."""
     for move in feeds:
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
@@ -356,16 +387,16 @@ def _faced(feeds: Iterable[TipMove], front: float) -> float:
     return math.inf
 
 
-def _cylinder(move: TipMove) -> float:
+def _bar_radius_for_move(move: TipMove) -> float:
     """Return the bar radius that a move along Z needs.
 
     An arc may bulge outward, and a line outward may leave the part.
     """
     radii = [abs(r) for _, r in move.points]
-    return max(radii) if move.kind is Kind.ARC else min(radii)
+    return max(radii) if move.kind is BlockKind.ARC else min(radii)
 
 
 def _bore_radius(bore: Iterable[TipMove], front: float) -> float:
     """Return slightly less than the smallest radius cut in the bore, or 0."""
-    behind = [m for m in bore if not m.quick and min(z for z, _ in m.points) < front - _SAME]
-    return max(min((max(abs(r) for _, r in m.points) for m in behind), default=0.0) - _MORE, 0.0)
+    behind = [m for m in bore if not m.is_fast and min(z for z, _ in m.points) < front - _SAME]
+    return max(min((max(abs(r) for _, r in m.points) for m in behind), default=0.0) - _EXTRA_RADIUS_MM, 0.0)

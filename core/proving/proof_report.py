@@ -6,100 +6,100 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from core.interpreter.shared.machine_requirements import Need
+from core.interpreter.shared.machine_requirements import MachineRequirement
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.part.stock import Stock
 from core.part.tool_shape import ToolShape
-from core.part.turned_part import Piece
+from core.part.turned_part import PartedPiece
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.working_plane import Swivel
+    from core.interpreter.shared.working_plane import PlanePosition
 
 
-Range = tuple[float, float]
+ValueRange = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Times:
+class ProgramTimes:
     """Times in seconds that add up to the cycle time.
 
-    ``wait`` is the time for spindle, collet and the start of each motion.
+    ``wait_s`` is the time for spindle, collet and the start of each motion.
     """
 
-    cutting: float = 0.0
-    rapid: float = 0.0
-    dwell: float = 0.0
-    wait: float = 0.0
+    cutting_s: float = 0.0
+    rapid_s: float = 0.0
+    dwell_s: float = 0.0
+    wait_s: float = 0.0
 
     @property
-    def cycle(self) -> float:
+    def cycle_s(self) -> float:
         """The cycle time. Waits for the operator at M00 and M01 are not included."""
-        return self.cutting + self.rapid + self.dwell + self.wait
+        return self.cutting_s + self.rapid_s + self.dwell_s + self.wait_s
 
 
 @dataclass(frozen=True, slots=True)
-class Reach:
+class ProgramRanges:
     """The ranges that the program uses: program frame, unsigned rpm, and path feed in mm/s."""
 
-    x: Range = (0.0, 0.0)
-    z: Range = (0.0, 0.0)
-    c: Range = (0.0, 0.0)
-    rpm: Range = (0.0, 0.0)
-    feed: Range = (0.0, 0.0)
+    x_range: ValueRange = (0.0, 0.0)
+    z_range: ValueRange = (0.0, 0.0)
+    c_range: ValueRange = (0.0, 0.0)
+    rpm_range: ValueRange = (0.0, 0.0)
+    feed_range: ValueRange = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class MillFigures:
+class MillResults:
     """The results of a program on a mill.
 
-    ``axes`` is the order of the axes, and ``reach`` their ranges in machine positions. ``final`` is the end
-    of the last block in its working plane, or None without a block.
+    ``axis_names`` is the order of the axes, and ``reach`` their ranges in machine positions.
+    ``final_position`` is the end of the last block in its working plane, or None without a block.
     """
 
-    axes: tuple[str, ...]
-    reach: tuple[Range, ...]
-    final: Swivel | None
+    axis_names: tuple[str, ...]
+    axis_ranges: tuple[ValueRange, ...]
+    final_position: PlanePosition | None
 
 
 @dataclass(frozen=True, slots=True)
-class Ways:
+class BranchSummary:
     """The paths through a program, by its inputs and by block delete on and off.
 
-    ``cycle`` is the least and the greatest cycle time of the paths in seconds. ``unproved`` is the number of
-    paths that were not proved.
+    ``cycle`` is the least and the greatest cycle time of the paths in seconds. ``unproved_count`` is the
+    number of paths that were not proved.
     """
 
-    proved: int = 1
-    unproved: int = 0
-    cycle: Range = (0.0, 0.0)
+    proved_count: int = 1
+    unproved_count: int = 0
+    cycle_time_range: ValueRange = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class ProofReport:
     """The proof of one program. If it has errors, the values cover only what could be interpreted."""
 
     name: str
     dialect: Dialect
-    metric: bool
-    blocks: int
-    elementary: int
+    is_metric: bool
+    block_count: int
+    elementary_block_count: int
     diagnostics: tuple[Diagnostic, ...]
-    times: Times
-    cutting_length: float
-    rapid_length: float
-    tools: tuple[int, ...]
+    times: ProgramTimes
+    cutting_length_mm: float
+    rapid_length_mm: float
+    tool_numbers: tuple[int, ...]
     missing_tools: tuple[int, ...]
-    reach: Reach
-    final: tuple[float, float, float]  # program frame
-    machine_final: tuple[float, ...]
-    mill: MillFigures | None = None
-    needs: tuple[Need, ...] = ()
-    ways: Ways = field(default_factory=Ways)
-    stops: int = 0  # M00
-    optional_stops: int = 0  # M01
+    ranges: ProgramRanges
+    final_position: tuple[float, float, float]  # program frame
+    machine_final_position: tuple[float, ...]
+    mill_results: MillResults | None = None
+    required_functions: tuple[MachineRequirement, ...] = ()
+    branch_summary: BranchSummary = field(default_factory=BranchSummary)
+    stop_count: int = 0  # M00
+    optional_stop_count: int = 0  # M01
     # mm of deviation that the machine file permits at joints of chords; 0: only rounding
-    corner_tolerance: float = 0.0
+    corner_tolerance_mm: float = 0.0
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
@@ -107,29 +107,29 @@ class Report:
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
 
 
-def in_order(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+def sort_findings(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return the findings in the order of lines and columns."""
-    return tuple(sorted(found, key=lambda each: (each.line, each.column)))
+    return tuple(sorted(findings, key=lambda each: (each.line, each.column)))
 
 
 @dataclass(frozen=True, slots=True)
 class PartReport:
     """The results of the part, in mm and mm³.
 
-    ``last`` is the last piece that was parted off, or the material in the chuck. ``shapes`` are the tools by
-    T, specified or assumed, or None if no cutting shape is known. ``assumed`` contains a sentence for each
-    assumption, and ``unchecked`` the checks that lacked data.
+    ``last_piece`` is the last piece that was parted off, or the material in the chuck. ``shapes`` are the
+    tools by T, specified or assumed, or None if no cutting shape is known. ``assumptions`` contains a
+    sentence for each assumption, and ``unchecked_data`` the checks that lacked data.
     """
 
     stock: Stock | None
-    volume: float
-    removed: float
-    left: float
-    last: Piece | None
-    milled: bool
-    pieces: tuple[Piece, ...]
-    assumed: tuple[str, ...]
+    stock_volume_mm3: float
+    removed_volume_mm3: float
+    remaining_volume_mm3: float
+    last_piece: PartedPiece | None
+    is_milled: bool
+    parted_pieces: tuple[PartedPiece, ...]
+    assumptions: tuple[str, ...]
     findings: tuple[Diagnostic, ...]
-    unchecked: tuple[str, ...] = ()
+    unchecked_data: tuple[str, ...] = ()
     shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
-    sides: tuple[Piece, Piece] | None = None
+    section_halves: tuple[PartedPiece, PartedPiece] | None = None

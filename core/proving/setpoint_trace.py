@@ -8,32 +8,32 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.geometry.surface_speed import surface_rpm
-from core.interpreter.shared.elementary_blocks import Block, Floats, Ints, Series
+from core.geometry.surface_speed import find_surface_rpm
+from core.interpreter.shared.elementary_blocks import Block, FloatArray, IntArray, StraightMoveSeries
 from core.motion.window_planner import sample_positions
-from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
+from core.proving.program_timeline import BlockGroup, MotionSpan, RestSpan, Timeline
 
-BATCH = 10_000  # rows yielded together while the machine rests
+REST_BATCH_ROWS = 10_000  # rows yielded together while the machine rests
 
 
-class Rows(NamedTuple):
+class SetpointRows(NamedTuple):
     """k rows of setpoints.
 
     They contain the time in seconds and the machine positions (k, axes) in the machine's order, in mm (X of a
-    lathe as a radius) and degrees. ``turned`` is the continuous spindle angle in degrees from the start, and
-    ``line`` the source line.
+    lathe as a radius) and degrees. ``spindle_angles_deg`` is the continuous spindle angle in degrees from
+    the start, and ``line`` the source line.
     """
 
-    t: Floats
-    at: Floats
-    turned: Floats
-    line: Ints
+    times_s: FloatArray
+    positions: FloatArray
+    spindle_angles_deg: FloatArray
+    line_numbers: IntArray
 
 
-def setpoints(timeline: Timeline, dt: float) -> Iterator[Rows]:
+def iter_setpoints(timeline: Timeline, interval_s: float) -> Iterator[SetpointRows]:
     """Yield rows every ``dt`` seconds from 0 to the first one after the end of the program."""
-    sampler = _Sampler(timeline, dt)
-    for span in timeline.spans():
+    sampler = _SpanSampler(timeline, interval_s)
+    for span in timeline.iter_spans():
         if isinstance(span, MotionSpan):
             yield sampler.moved(span)
         else:
@@ -41,50 +41,52 @@ def setpoints(timeline: Timeline, dt: float) -> Iterator[Rows]:
     yield sampler.standing(1)
 
 
-class _Sampler:
+class _SpanSampler:
     """Samples the spans of a timeline at equal intervals."""
 
     def __init__(self, timeline: Timeline, dt: float) -> None:
         self._spindle = timeline.spindle
         self._dt = dt
         self._row = 0  # number of the next row; its time is row times dt, so that errors do not accumulate
-        self._at: tuple[float, ...] = timeline.start
+        self._at: tuple[float, ...] = timeline.start_position
         self._line = 0
         self._angle = 0.0
         self._rpm = 0.0  # rpm of the last row
 
-    def moved(self, span: MotionSpan) -> Rows:
+    def moved(self, span: MotionSpan) -> SetpointRows:
         """Return the rows of a motion."""
         profile = span.chunk.profile
-        _, positions, numbers = sample_positions(profile, self._dt, max(0.0, self._row * self._dt - span.t0))
-        owners = np.searchsorted(span.chunk.n, numbers)
-        lines = np.concatenate([np.empty(0, np.int64), *map(_lines, span.parts)])[owners]
-        led = _leading_spindle(span.parts)
+        _, positions, numbers = sample_positions(
+            profile, self._dt, max(0.0, self._row * self._dt - span.start_time_s)
+        )
+        owners = np.searchsorted(span.chunk.block_numbers, numbers)
+        lines = np.concatenate([np.empty(0, np.int64), *map(_lines, span.block_groups)])[owners]
+        led = _radius_following_blocks(span.block_groups)
         by_radius = {row: led[n] for row, n in enumerate(numbers.tolist()) if n in led} if led else {}
         self._line = int(lines[-1]) if len(lines) else self._line
-        self._at = tuple(profile.position(profile.duration)[0].tolist())
+        self._at = tuple(profile.positions_at(profile.duration_s)[0].tolist())
         return self._rows(positions, lines, by_radius)
 
-    def rested(self, span: RestSpan) -> Iterator[Rows]:
+    def rested(self, span: RestSpan) -> Iterator[SetpointRows]:
         """Yield the rows of a rest."""
         if span.block is not None:
             self._line = span.block.line
-        count = max(0, math.ceil((span.t1 - self._row * self._dt) / self._dt - 1e-9))
-        for done in range(0, count, BATCH):
-            yield self.standing(min(BATCH, count - done), span.block)
+        count = max(0, math.ceil((span.end_time_s - self._row * self._dt) / self._dt - 1e-9))
+        for done in range(0, count, REST_BATCH_ROWS):
+            yield self.standing(min(REST_BATCH_ROWS, count - done), span.block)
 
-    def standing(self, count: int, block: Block | None = None) -> Rows:
+    def standing(self, count: int, block: Block | None = None) -> SetpointRows:
         """Return ``count`` rows without motion."""
-        by_radius = dict.fromkeys(range(count), block) if block is not None and _leads(block) else {}
+        by_radius = dict.fromkeys(range(count), block) if block is not None and _follows_radius(block) else {}
         return self._rows(np.tile(self._at, (count, 1)), np.full(count, self._line), by_radius)
 
-    def _rows(self, at: Floats, lines: Ints, by_radius: Mapping[int, Block]) -> Rows:
-        t: Floats = self._dt * np.arange(self._row, self._row + len(at), dtype=np.float64)
+    def _rows(self, at: FloatArray, lines: IntArray, by_radius: Mapping[int, Block]) -> SetpointRows:
+        t: FloatArray = self._dt * np.arange(self._row, self._row + len(at), dtype=np.float64)
         turned = self._turned(self._speeds(t, at[:, 0], by_radius))
         self._row += len(at)
-        return Rows(t, at, turned, lines)
+        return SetpointRows(t, at, turned, lines)
 
-    def _turned(self, speeds: Floats) -> Floats:
+    def _turned(self, speeds: FloatArray) -> FloatArray:
         """Return the angles, calculated with the mean of the speeds at both ends of each interval."""
         before = np.concatenate([[self._rpm], speeds])
         steps = (before[:-1] + speeds) / 2 * self._dt * 6  # 1 rpm is 6 degrees/s
@@ -94,35 +96,41 @@ class _Sampler:
         self._angle, self._rpm = float(angles[-1]), float(before[-1])
         return angles[1:]
 
-    def _speeds(self, t: Floats, machine_x: Floats, by_radius: Mapping[int, Block]) -> Floats:
+    def _speeds(self, t: FloatArray, machine_x: FloatArray, by_radius: Mapping[int, Block]) -> FloatArray:
         """Return the signed rpm of the rows; ``by_radius`` has the blocks with constant surface speed.
 
         The forecast of the timeline is not changed, because its waits must not depend on the sampling.
         """
-        speeds = self._spindle.speeds(t)
+        speeds = self._spindle.speeds_at(t)
         for row, block in by_radius.items():
             before = float(speeds[row - 1]) if row else self._rpm
             wanted = self._by_radius(block, float(machine_x[row]))
-            speeds[row] = self._spindle.towards(before, wanted, self._dt)
+            speeds[row] = self._spindle.ramp_speed(before, wanted, self._dt)
         return speeds
 
     def _by_radius(self, block: Block, machine_x: float) -> float:
         """Return the signed rpm for the surface speed of the block at the present position."""
-        modal, most = block.modal, self._spindle.rpm_max
-        rpm = surface_rpm(block.css or 0.0, machine_x - block.offset_x, modal.css_min, modal.css_max or most)
+        modal, most = block.modal, self._spindle.max_rpm
+        rpm = find_surface_rpm(
+            block.css or 0.0, machine_x - block.offset_x, modal.min_css_rpm, modal.max_css_rpm or most
+        )
         return math.copysign(rpm, modal.spindle)
 
 
-def _lines(part: Part) -> Ints:
-    return part.line if isinstance(part, Series) else np.array([block.line for block in part], np.int64)
+def _lines(part: BlockGroup) -> IntArray:
+    return (
+        part.line
+        if isinstance(part, StraightMoveSeries)
+        else np.array([block.line for block in part], np.int64)
+    )
 
 
-def _leads(block: Block) -> bool:
+def _follows_radius(block: Block) -> bool:
     """Return whether the spindle speed follows the radius in a block."""
     return block.css is not None and bool(block.modal.spindle)
 
 
-def _leading_spindle(parts: tuple[Part, ...]) -> dict[int, Block]:
+def _radius_following_blocks(parts: tuple[BlockGroup, ...]) -> dict[int, Block]:
     """Return the blocks by number in which the spindle follows the radius; series have none."""
-    alone = (block for part in parts if not isinstance(part, Series) for block in part)
-    return {block.n: block for block in alone if _leads(block)}
+    alone = (block for part in parts if not isinstance(part, StraightMoveSeries) for block in part)
+    return {block.n: block for block in alone if _follows_radius(block)}

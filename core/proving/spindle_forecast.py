@@ -10,29 +10,29 @@ import numpy.typing as npt
 from core.machine.machine_model import Machine, SpindleModel
 
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
-DRIVE_LATENCY = 0.08
+DRIVE_LATENCY_S = 0.08
 
 # Seconds from the end of a motion until the axes are in position and the executor continues. The following
 # error of a 40 Hz servo decays in 20 to 30 ms, and the decision is made at the next tick.
-SETTLING = 0.035
+SETTLING_TIME_S = 0.035
 
 
 # Seconds that the executor leaves between the plan of a thread pass and its start.
-THREAD_EARLY = 0.01
+THREAD_START_LEAD_S = 0.01
 
 
-def orienting(spindle: SpindleModel, sense: int) -> float:
+def max_orientation_time_s(spindle: SpindleModel, direction: int) -> float:
     """Return the longest time in seconds from standstill to an angle.
 
     The rotation is half a revolution, or a full one in a given direction.
     """
-    return DRIVE_LATENCY + (60.0 if sense else 30.0) / spindle.orient_rpm
+    return DRIVE_LATENCY_S + (60.0 if direction else 30.0) / spindle.orient_rpm
 
 
 class SpindleForecast:
     """The forecast spindle speed: signed rpm over time as the drive ramps it, and at-speed times.
 
-    Times must not decrease between calls of ``command``.
+    Times must not decrease between calls of ``command_speed``.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -43,54 +43,54 @@ class SpindleForecast:
         self._turns, self._counted = 0.0, 0.0
 
     @property
-    def target(self) -> float:
+    def target_rpm(self) -> float:
         """The commanded speed in signed rpm."""
         return self._to
 
-    def command(self, t: float, rpm: float) -> None:
+    def command_speed(self, time_s: float, rpm: float) -> None:
         """Command a new speed at time ``t``. The ramp starts from the speed at that time."""
         if rpm == self._to:
             return
-        self._turns, self._counted = self.turns(t), t
-        self._from, self._to, self._since = self.speed(t), rpm, t + DRIVE_LATENCY
+        self._turns, self._counted = self.revolutions_at(time_s), time_s
+        self._from, self._to, self._since = self.speed_at(time_s), rpm, time_s + DRIVE_LATENCY_S
 
-    def towards(self, now: float, rpm: float, dt: float) -> float:
-        """Return the speed after ``dt`` seconds on the ramp from ``now`` toward ``rpm``."""
-        rate = self._model.accel if abs(rpm) > abs(now) else self._model.decel
-        return now + max(-rate * dt, min(rate * dt, rpm - now))
+    def ramp_speed(self, present_rpm: float, rpm: float, interval_s: float) -> float:
+        """Return the speed after ``interval_s`` seconds on the ramp from ``present_rpm`` toward ``rpm``."""
+        rate = self._model.accel if abs(rpm) > abs(present_rpm) else self._model.decel
+        return present_rpm + max(-rate * interval_s, min(rate * interval_s, rpm - present_rpm))
 
-    def settle(self, t: float, rpm: float) -> None:
+    def set_speed(self, time_s: float, rpm: float) -> None:
         """Set the speed to ``rpm`` at time ``t``, after a move with constant surface speed."""
-        self._turns, self._counted = self.turns(t), t
+        self._turns, self._counted = self.revolutions_at(time_s), time_s
         self._from = self._to = rpm
-        self._since = t
+        self._since = time_s
 
-    def turns(self, t: float) -> float:
+    def revolutions_at(self, time_s: float) -> float:
         """Return the signed revolutions from the start of the program to ``t``.
 
         ``t`` must not be before the last command.
         """
-        at, ends = self._since, [self._counted, t]
+        at, ends = self._since, [self._counted, time_s]
         rpm = self._from
-        for goal, rate in self._legs():
+        for goal, rate in self._ramp_legs():
             ends += [at, at + abs(goal - rpm) / rate]
             at, rpm = ends[-1], goal
-        joints = sorted(joint for joint in ends if self._counted <= joint <= t)
+        joints = sorted(joint for joint in ends if self._counted <= joint <= time_s)
         turned = self._turns
         for a, b in pairwise(joints):  # the speed is linear between two joints
-            turned += (self.speed(a) + self.speed(b)) / 120.0 * (b - a)
+            turned += (self.speed_at(a) + self.speed_at(b)) / 120.0 * (b - a)
         return turned
 
     @property
-    def rpm_max(self) -> float:
+    def max_rpm(self) -> float:
         """The maximum speed of the machine, in rpm."""
-        return self._model.rpm_max
+        return self._model.max_rpm
 
-    def speed(self, t: float) -> float:
+    def speed_at(self, time_s: float) -> float:
         """Return the signed rpm at time ``t``."""
-        left = max(0.0, t - self._since)
+        left = max(0.0, time_s - self._since)
         rpm = self._from
-        for goal, rate in self._legs():
+        for goal, rate in self._ramp_legs():
             need = abs(goal - rpm) / rate
             if left < need:
                 return rpm + (goal - rpm) * left / need
@@ -98,34 +98,34 @@ class SpindleForecast:
             rpm = goal
         return self._to
 
-    def speeds(self, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Return ``speed`` at the times ``t`` (k,). Only times within the ramp are computed singly."""
+    def speeds_at(self, times_s: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Return ``speed_at`` at the times ``t`` (k,). Only times within the ramp are computed singly."""
         ends = self._since + (abs(self._from) + abs(self._to)) / min(self._model.accel, self._model.decel)
-        found = np.full(len(t), self._to)
-        for at in np.flatnonzero(t <= ends).tolist():
-            found[at] = self.speed(float(t[at]))
+        found = np.full(len(times_s), self._to)
+        for at in np.flatnonzero(times_s <= ends).tolist():
+            found[at] = self.speed_at(float(times_s[at]))
         return found
 
-    def _legs(self) -> list[tuple[float, float]]:
+    def _ramp_legs(self) -> list[tuple[float, float]]:
         """Return the ramp as (target rpm, rpm/s). A reversal decelerates to rest first."""
         slow, fast = self._model.decel, self._model.accel
         if self._from * self._to < 0:
             return [(0.0, slow), (self._to, fast)]
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
-    def still_at(self, below: float) -> float:
-        """Return the time at which a stopping spindle is slower than ``below`` rpm.
+    def slow_time_s(self, threshold_rpm: float) -> float:
+        """Return the time at which a stopping spindle is slower than ``threshold_rpm`` rpm.
 
         The time is in the past if the spindle is already slower.
         """
-        over = abs(self._from) - below
+        over = abs(self._from) - threshold_rpm
         return self._since + over / self._model.decel if over > 0.0 else 0.0
 
-    def ready_at(self) -> float:
+    def at_speed_time_s(self) -> float:
         """Return the time at which the spindle has been within the at-speed band long enough."""
         rpm, t = self._from, self._since
         band = self._model.at_speed * abs(self._to)
-        for goal, rate in self._legs():
+        for goal, rate in self._ramp_legs():
             inside = band if goal == self._to else 0.0
             t += max(0.0, abs(goal - rpm) - inside) / rate
             rpm = goal

@@ -14,28 +14,30 @@ from itertools import pairwise
 
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
-from core.part.cutter import SolidTool, solid_tool
+from core.part.cutter import SolidTool, make_solid_tool
 from core.part.swept_edge import FloatArray, Point
-from core.part.tool_outline import nose_circle, outline
-from core.part.turned_part import NOTHING, Cut, TurnedPart
-from core.proving.part_history import Go, PartHistory
-from core.proving.part_making import PartMaking
-from core.proving.tip_moves import Steps, TipMove
+from core.part.tool_outline import make_nose_circle, make_outline
+from core.part.turned_part import NO_CUT, Cut, TurnedPart
+from core.proving.part_history import CheckCanceled, PartHistory
+from core.proving.part_simulation import PartSimulation
+from core.proving.tip_moves import StepConverter, TipMove
 
-MET = 0.1
+TOUCH_TOLERANCE_MM = 0.1
 """mm of metal, in r and in Z, up to which a tool only touches the part: feed marks, the braking of a stop."""
 
-ASIDE = 7.3  # mm, offset of a second start position, chosen to differ from all programmed positions
-_SAME = 1e-6  # mm
+SECOND_START_OFFSET_MM = (
+    7.3  # mm, offset of a second start position, chosen to differ from all programmed positions
+)
+_POSITION_TOLERANCE_MM = 1e-6  # mm
 _NOSE = 0.4  # mm, assumed nose radius of the insert
-_MOST = 60  # largest number of moves that are checked
-_FAR = 500.0  # mm, distance of a jog that moves a tool clear
+_MAX_MOVES = 60  # largest number of moves that are checked
+_JOG_DISTANCE_MM = 500.0  # mm, distance of a jog that moves a tool clear
 
-Passes = Callable[[tuple[float, ...]], Iterable[Block]]
+IterStartBlocks = Callable[[tuple[float, ...]], Iterable[Block]]
 """The blocks of what is started, from these axis positions on, machine mm."""
 
 
-class Body(Enum):
+class CollisionBody(Enum):
     """The objects that a tool may hit."""
 
     PART = "part"
@@ -44,17 +46,18 @@ class Body(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class StartNow:
+class StartState:
     """The machine at a start: axis positions (machine mm, X as a radius, then Z) and the active tool.
 
-    ``broken`` is the interrupted elementary block with its machine X and Z, or None. ``strict`` means that a
-    program starts at its first line, so that it only positions before its first known position.
+    ``interrupted_block`` is the interrupted elementary block with its machine X and Z, or None.
+    ``starts_at_first_line`` means that a program starts at its first line, so that it only positions before
+    its first known position.
     """
 
-    at: tuple[float, ...]
-    tool: int
-    broken: tuple[int, Point] | None = None
-    strict: bool = True
+    axis_positions: tuple[float, ...]
+    active_tool: int
+    interrupted_block: tuple[int, Point] | None = None
+    starts_at_first_line: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,52 +67,52 @@ class FirstMove:
     ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``zero`` is machine X and Z at
     which the displayed tip is at part zero. It belongs to the tool that hits something, or otherwise to the
     tool at the end of the move. ``met`` is the object that ``tool`` hits at Z ``z`` (mm, part's frame), even
-    before it moves if ``inside`` is True. ``out`` is the direction of a safe jog, such as ``Z+``, or empty if
-    no direction is certain.
+    before it moves if ``starts_inside`` is True. ``safe_jog_direction`` is the direction of a safe jog, such
+    as ``Z+``, or empty if no direction is certain.
     """
 
     path: tuple[tuple[float, float, bool], ...]
-    zero: Point = (0.0, 0.0)
-    met: Body | None = None
+    part_zero: Point = (0.0, 0.0)
+    hit_body: CollisionBody | None = None
     tool: int = 0
-    z: float = 0.0
-    inside: bool = False
-    out: str = ""
-    assumed: bool = False  # the part or the tool is assumed
-    known: bool = True  # the part is known
+    hit_z_mm: float = 0.0
+    starts_inside: bool = False
+    safe_jog_direction: str = ""
+    is_assumed: bool = False  # the part or the tool is assumed
+    is_part_known: bool = True  # the part is known
 
 
-def first_moves(passes: Passes, at: tuple[float, ...]) -> list[TipMove]:
+def find_first_moves(iter_blocks: IterStartBlocks, axis_positions: tuple[float, ...]) -> list[TipMove]:
     """Return the moves up to the first position that does not depend on the axis positions."""
-    aside = tuple(each + ASIDE for each in at)
-    steps, found = Steps(), list[TipMove]()
-    for block, other in zip(passes(at), passes(aside), strict=False):
+    aside = tuple(each + SECOND_START_OFFSET_MM for each in axis_positions)
+    steps, found = StepConverter(), list[TipMove]()
+    for block, other in zip(iter_blocks(axis_positions), iter_blocks(aside), strict=False):
         if block.travel is not None or block.plane is not None:
             break
-        found += (step for step in steps.of([block]) if isinstance(step, TipMove))
-        if block.action is None and (_is_known(block, other) or len(found) >= _MOST):
+        found += (step for step in steps.convert_blocks([block]) if isinstance(step, TipMove))
+        if block.action is None and (_is_known(block, other) or len(found) >= _MAX_MOVES):
             break
     return found
 
 
 def _is_known(one: Block, other: Block) -> bool:
-    same = abs(one.x + one.offset_x - other.x - other.offset_x) < _SAME
-    return same and abs(one.z + one.offset_z - other.z - other.offset_z) < _SAME
+    same = abs(one.x + one.offset_x - other.x - other.offset_x) < _POSITION_TOLERANCE_MM
+    return same and abs(one.z + one.offset_z - other.z - other.offset_z) < _POSITION_TOLERANCE_MM
 
 
-def unchecked(moves: Sequence[TipMove]) -> FirstMove:
+def make_unchecked_move(moves: Sequence[TipMove]) -> FirstMove:
     """Return the first move that consists of these moves, without a check for hits."""
     if not moves:
         return FirstMove(())
-    legs = [(*_machine(moves[0].points[0], moves[0].zero), True)]
+    legs = [(*_machine(moves[0].points[0], moves[0].part_zero), True)]
     for move in moves:
-        legs += ((*_machine(point, move.zero), move.quick) for point in move.points[1:])
-    return FirstMove(tuple(legs), moves[-1].zero)
+        legs += ((*_machine(point, move.part_zero), move.is_fast) for point in move.points[1:])
+    return FirstMove(tuple(legs), moves[-1].part_zero)
 
 
-def _tip(at: Point, zero: Point) -> Point:
+def _tip_position(axis_position: Point, zero: Point) -> Point:
     """Return Z and r of the tip in the part's frame in mm, with the axes at machine X and Z."""
-    return at[1] - zero[1], at[0] - zero[0]
+    return axis_position[1] - zero[1], axis_position[0] - zero[0]
 
 
 def _machine(point: Point, zero: Point) -> tuple[float, float]:
@@ -120,146 +123,182 @@ def _machine(point: Point, zero: Point) -> tuple[float, float]:
 class StartCheck:
     """Checks starts against the part of one program; ``offsets`` are those of its job, by T."""
 
-    history: PartHistory
+    part_history: PartHistory
     offsets: dict[int, ToolOffset]
     stock_specified: bool
-    silenced: frozenset[str] = frozenset()
+    silenced_checks: frozenset[str] = frozenset()
     _solids: dict[int, SolidTool] = field(default_factory=dict)
 
-    def find(self, passes: Passes, now: StartNow, watch: Go | None = None) -> FirstMove:
+    def check_start(
+        self,
+        iter_blocks: IterStartBlocks,
+        start_state: StartState,
+        check_canceled: CheckCanceled | None = None,
+    ) -> FirstMove:
         """Return the first move of this start and the object that it hits, if any."""
-        moves = first_moves(passes, now.at)
-        making = self._making(now, watch)
-        known = making.milling is None and (making.part is not None or self.history.stock is None)
-        found = replace(unchecked(moves), known=known or now.broken is None)
+        moves = find_first_moves(iter_blocks, start_state.axis_positions)
+        making = self._making(start_state, check_canceled)
+        known = making.milling is None and (making.part is not None or self.part_history.stock is None)
+        found = replace(
+            make_unchecked_move(moves), is_part_known=known or start_state.interrupted_block is None
+        )
         for body, metal in self._metal(making):
-            hit = self._hit(body, metal, moves, now)
+            hit = self._find_hit(body, metal, moves, start_state)
             if hit is not None:
                 tool, z, inside = hit
                 return replace(
                     found,
-                    zero=self._zero(tool) or found.zero,
-                    met=body,
+                    part_zero=self._part_zero_for_tool(tool) or found.part_zero,
+                    hit_body=body,
                     tool=tool,
-                    z=z,
-                    inside=inside,
-                    out=self._out(making, now),
-                    assumed=self._is_assumed(body, tool, now),
+                    hit_z_mm=z,
+                    starts_inside=inside,
+                    safe_jog_direction=self._find_safe_jog(making, start_state),
+                    is_assumed=self._is_assumed(body, tool, start_state),
                 )
         return found
 
-    def _making(self, now: StartNow, watch: Go | None) -> PartMaking:
-        if now.broken is None:
-            return self.history.making_at(1, watch=watch)
-        block, where = now.broken
-        zero = self._zero(now.tool)
-        return self.history.making_at(block, _tip(where, zero) if zero is not None else None, watch)
+    def _making(self, now: StartState, watch: CheckCanceled | None) -> PartSimulation:
+        if now.interrupted_block is None:
+            return self.part_history.simulation_at(1, check_canceled=watch)
+        block, where = now.interrupted_block
+        zero = self._part_zero_for_tool(now.active_tool)
+        return self.part_history.simulation_at(
+            block, _tip_position(where, zero) if zero is not None else None, watch
+        )
 
-    def _is_assumed(self, body: Body, tool: int, now: StartNow) -> bool:
+    def _is_assumed(self, body: CollisionBody, tool: int, start_state: StartState) -> bool:
         """Return whether the finding depends on an assumption.
 
         A tool that was stopped in a cut is certainly in the part. Without an active tool, the tip is unknown.
         """
         if tool == 0:
             return True
-        if body is Body.PART and now.broken is None and not self.stock_specified:
+        if body is CollisionBody.PART and start_state.interrupted_block is None and not self.stock_specified:
             return True
-        return now.broken is None and not self.history.tools.described(tool)
+        return start_state.interrupted_block is None and not self.part_history.tools.is_specified(tool)
 
-    def _metal(self, making: PartMaking) -> Iterator[tuple[Body, TurnedPart]]:
-        if making.part is not None and making.milling is None and not making.is_open:
-            yield Body.PART, making.part
-        for check, body in making.findings.bodies.items():
-            if check not in self.silenced:
-                yield Body(check), body
+    def _metal(self, making: PartSimulation) -> Iterator[tuple[CollisionBody, TurnedPart]]:
+        if making.part is not None and making.milling is None and not making.is_collet_open:
+            yield CollisionBody.PART, making.part
+        for check, body in making.findings.clamping_bodies.items():
+            if check not in self.silenced_checks:
+                yield CollisionBody(check), body
 
-    def _hit(
-        self, body: Body, metal: TurnedPart, moves: Sequence[TipMove], now: StartNow
+    def _find_hit(
+        self, body: CollisionBody, metal: TurnedPart, moves: Sequence[TipMove], start_state: StartState
     ) -> tuple[int, float, bool] | None:
         """Return tool, Z, and whether the tool is inside before it moves; None without a hit."""
-        here = (now.at[0], now.at[1])
-        if now.tool == 0 and now.broken is None:
-            now = replace(now, strict=False)  # Without an active tool, the position of its tip is unknown.
-        standing = self._met(metal, now.tool, here, here)
-        if standing and now.strict:
-            return now.tool, standing.front, True
+        here = (start_state.axis_positions[0], start_state.axis_positions[1])
+        if start_state.active_tool == 0 and start_state.interrupted_block is None:
+            start_state = replace(
+                start_state, starts_at_first_line=False
+            )  # Without an active tool, the position of its tip is unknown.
+        standing = self._met(metal, start_state.active_tool, here, here)
+        if standing and start_state.starts_at_first_line:
+            return start_state.active_tool, standing.front_z_mm, True
         for move in moves:
-            for number in dict.fromkeys((now.tool, move.modal.tool)):
+            for number in dict.fromkeys((start_state.active_tool, move.modal.tool)):
                 for a, b in pairwise(move.points):
-                    met = self._met(metal, number, _machine(a, move.zero), _machine(b, move.zero))
-                    if met.area > standing.area + MET * MET and not self._cuts(body, move, now):
-                        return number, met.front, False
-            self._cut(body, metal, move, now)
-        if body is Body.PART and now.strict and now.broken is not None:
-            return self._enclosing(metal, now)
+                    met = self._met(metal, number, _machine(a, move.part_zero), _machine(b, move.part_zero))
+                    if (
+                        met.area > standing.area + TOUCH_TOLERANCE_MM * TOUCH_TOLERANCE_MM
+                        and not self._is_intended_cut(body, move, start_state)
+                    ):
+                        return number, met.front_z_mm, False
+            self._cut(body, metal, move, start_state)
+        if (
+            body is CollisionBody.PART
+            and start_state.starts_at_first_line
+            and start_state.interrupted_block is not None
+        ):
+            return self._find_bore_hit(metal, start_state)
         return None
 
-    def _enclosing(self, metal: TurnedPart, now: StartNow) -> tuple[int, float, bool] | None:
+    def _find_bore_hit(self, metal: TurnedPart, start_state: StartState) -> tuple[int, float, bool] | None:
         """Return the hit of a tool that stopped in a bore, or None if no material is outside its tip.
 
         The first move may remain in the bore, but the next tools would then move this tool through the wall.
         """
-        zero = self._zero(now.tool)
+        zero = self._part_zero_for_tool(start_state.active_tool)
         if zero is None:
             return None
-        z, r = _tip((now.at[0], now.at[1]), zero)
-        around = metal.outermost[abs(metal.columns.middles - z) <= max(2 * MET, metal.columns.step)]
-        if len(around) and float(around.min()) > abs(r) + MET:
-            return now.tool, z, True
+        z, r = _tip_position((start_state.axis_positions[0], start_state.axis_positions[1]), zero)
+        around = metal.max_radii[
+            abs(metal.columns.column_centers - z) <= max(2 * TOUCH_TOLERANCE_MM, metal.columns.step_mm)
+        ]
+        if len(around) and float(around.min()) > abs(r) + TOUCH_TOLERANCE_MM:
+            return start_state.active_tool, z, True
         return None
 
-    def _cuts(self, body: Body, move: TipMove, now: StartNow) -> bool:
+    def _is_intended_cut(self, body: CollisionBody, move: TipMove, start_state: StartState) -> bool:
         """Return whether the move is meant to cut this material."""
-        return body is Body.PART and not now.strict and not move.quick and move.rpm != 0.0
+        return (
+            body is CollisionBody.PART
+            and not start_state.starts_at_first_line
+            and not move.is_fast
+            and move.rpm != 0.0
+        )
 
-    def _cut(self, body: Body, metal: TurnedPart, move: TipMove, now: StartNow) -> None:
-        cutter = self.history.tools.cutter(move.modal.tool) if self._cuts(body, move, now) else None
+    def _cut(self, body: CollisionBody, metal: TurnedPart, move: TipMove, now: StartState) -> None:
+        cutter = (
+            self.part_history.tools.make_cutter(move.modal.tool)
+            if self._is_intended_cut(body, move, now)
+            else None
+        )
         if cutter is not None:
             for a, b in pairwise(move.points):
-                cutter.cut(metal, a, b)
+                cutter.cut_material(metal, a, b)
 
-    def _out(self, making: PartMaking, now: StartNow) -> str:
+    def _find_safe_jog(self, simulation: PartSimulation, start_state: StartState) -> str:
         """Return the direction of a jog along one axis that moves the active tool out without a hit."""
-        tool, (x, z) = now.tool, now.at[:2]
-        zero = self._zero(tool) or (0.0, 0.0)
+        tool, (x, z) = start_state.active_tool, start_state.axis_positions[:2]
+        zero = self._part_zero_for_tool(tool) or (0.0, 0.0)
         side = 1.0 if x >= zero[0] else -1.0
-        across = ("X+", (x + side * _FAR, z)) if side > 0.0 else ("X-", (x + side * _FAR, z))
-        for words, end in (("Z+", (x, z + _FAR)), across):
-            paths = [(metal, self._met(metal, tool, (x, z), (x, z))) for _, metal in self._metal(making)]
-            if all(self._met(m, tool, (x, z), end).area <= at.area + MET * MET for m, at in paths):
+        across = (
+            ("X+", (x + side * _JOG_DISTANCE_MM, z))
+            if side > 0.0
+            else ("X-", (x + side * _JOG_DISTANCE_MM, z))
+        )
+        for words, end in (("Z+", (x, z + _JOG_DISTANCE_MM)), across):
+            paths = [(metal, self._met(metal, tool, (x, z), (x, z))) for _, metal in self._metal(simulation)]
+            if all(
+                self._met(m, tool, (x, z), end).area <= at.area + TOUCH_TOLERANCE_MM * TOUCH_TOLERANCE_MM
+                for m, at in paths
+            ):
                 return words
         return ""
 
     # --- tool on the machine ------------------------------------------------------------------------------
 
     def _met(self, metal: TurnedPart, tool: int, start: Point, end: Point) -> Cut:
-        zero = self._zero(tool)
+        zero = self._part_zero_for_tool(tool)
         if zero is None:
-            return NOTHING
-        met = self._solid(tool).met(metal, _tip(start, zero), _tip(end, zero))
-        return met if met.depth > MET and met.width > MET else NOTHING
+            return NO_CUT
+        met = self._solid(tool).find_collision(metal, _tip_position(start, zero), _tip_position(end, zero))
+        return met if met.depth_mm > TOUCH_TOLERANCE_MM and met.width_mm > TOUCH_TOLERANCE_MM else NO_CUT
 
-    def _zero(self, tool: int) -> Point | None:
+    def _part_zero_for_tool(self, tool: int) -> Point | None:
         """Return machine X and Z at which this tool is at part zero, or None if unknown, as for T0."""
-        zero, offset = self.history.zero(tool), self.offsets.get(tool)
+        zero, offset = self.part_history.find_part_zero(tool), self.offsets.get(tool)
         if zero is None and offset is not None:
             return offset.x, offset.z
         return zero
 
     def _solid(self, tool: int) -> SolidTool:
         if tool not in self._solids:
-            self._solids[tool] = solid_tool(self._outlines(tool))
+            self._solids[tool] = make_solid_tool(self._tool_outlines(tool))
         return self._solids[tool]
 
-    def _outlines(self, tool: int) -> tuple[FloatArray, ...]:
+    def _tool_outlines(self, tool: int) -> tuple[FloatArray, ...]:
         """Return edges and body of a specified tool, or else its certain parts: nose, or drill flutes."""
-        tools = self.history.tools
-        shape = tools.shape(tool)
+        tools = self.part_history.tools
+        shape = tools.find_shape(tool)
         if shape is None:
-            return nose_circle(_NOSE, 0).cutting
-        lines = outline(shape)
-        if tools.described(tool):
-            return (*lines.cutting, *lines.body)
-        if shape.turns_itself:
-            return lines.cutting
-        return nose_circle(max(shape.nose_radius, _NOSE), shape.tip).cutting
+            return make_nose_circle(_NOSE, 0).cutting_outlines
+        lines = make_outline(shape)
+        if tools.is_specified(tool):
+            return (*lines.cutting_outlines, *lines.body_outlines)
+        if shape.is_rotating:
+            return lines.cutting_outlines
+        return make_nose_circle(max(shape.nose_radius, _NOSE), shape.tip).cutting_outlines

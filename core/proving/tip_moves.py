@@ -12,85 +12,85 @@ import numpy as np
 
 from core.geometry.lines_and_arcs import arc_sweep
 from core.interpreter.shared.actions import Preset, ToolChange
-from core.interpreter.shared.elementary_blocks import Block, Kind, Series
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries
+from core.interpreter.shared.modal_state import ModalState
 from core.part.swept_edge import Point
 
-QUICK = 100 * 25.4 / 60
+FAST_FEED_MM_S = 100 * 25.4 / 60
 """mm/s; what moves by G94 at this or more goes to a place and cuts nothing."""
 
 _CHORD = 0.001  # mm of deviation from an arc
-_PIECES = 16  # pieces of a move in a plane, which is curved in the axes
+_MOVE_PIECES = 16  # pieces of a move in a plane, which is curved in the axes
 
-_TURNED = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
+_TURNED = frozenset({BlockKind.RAPID, BlockKind.FEED, BlockKind.ARC, BlockKind.THREAD})
 
 
 class TipMove(NamedTuple):
     """The move of one elementary block. Its points are Z and r in mm from part zero.
 
-    ``speed`` is along the path in mm/s. ``quick`` is True for a rapid, or for a feed per minute of the same
-    speed. ``per_rev`` is the feed per revolution in mm, or 0 for a feed per minute. ``zero`` is machine X and
-    Z at which the tip is at part zero.
+    ``speed_mm_s`` is along the path in mm/s. ``is_fast`` is True for a rapid, or for a feed per minute of
+    the same speed. ``per_rev`` is the feed per revolution in mm, or 0 for a feed per minute. ``part_zero``
+    is machine X and Z at which the tip is at part zero.
     """
 
     n: int
     line: int
-    kind: Kind
+    kind: BlockKind
     points: tuple[Point, ...]
-    speed: float
-    quick: bool
-    per_rev: float
+    speed_mm_s: float
+    is_fast: bool
+    feed_per_rev_mm: float
     rpm: float
-    modal: Modal
-    zero: tuple[float, float] = (0.0, 0.0)
+    modal: ModalState
+    part_zero: tuple[float, float] = (0.0, 0.0)
 
     @property
-    def length(self) -> float:
+    def length_mm(self) -> float:
         """Length of the move, in mm."""
         return sum(math.dist(a, b) for a, b in pairwise(self.points))
 
     @property
-    def seconds(self) -> float:
+    def duration_s(self) -> float:
         """Time of the move at its speed in seconds; 0 without a speed."""
-        return self.length / self.speed if self.speed else 0.0
+        return self.length_mm / self.speed_mm_s if self.speed_mm_s else 0.0
 
 
-Place = tuple[float, float]
+MachineXZ = tuple[float, float]
 """What brings X and Z of a block to its place from part zero, mm."""
 
 
 _ON_AXIS = 0.05  # mm
 
 
-class LiveStep(NamedTuple):
+class LiveToolStep(NamedTuple):
     """A block that moves with C engaged or in a plane of the virtual mill, with its part zero."""
 
     block: Block
-    place: Place
+    part_zero: MachineXZ
 
 
-Step = TipMove | LiveStep | Block
+ProgramStep = TipMove | LiveToolStep | Block
 """What the part sees of a program: a move of X and Z, one of a live tool, or a block that does not move."""
 
 
-class Steps:
+class StepConverter:
     """Converts the blocks of a program, in order, to steps.
 
     A G92 before the first move of a tool specifies the position of part zero. A later G92 shifts the part,
     like G10.
 
-    ``tips`` are the true positions at which tips are at part zero, machine X and Z in mm, by T or G54 to G59.
-    If the active offsets differ from them, the tool is displaced from the programmed position.
+    ``tip_positions`` are the true positions at which tips are at part zero, machine X and Z in mm, by T or
+    G54 to G59. If the active offsets differ from them, the tool is displaced from the programmed position.
     """
 
-    def __init__(self, tips: Mapping[int, Place] | None = None) -> None:
-        self._tips = tips or {}
+    def __init__(self, tip_positions: Mapping[int, MachineXZ] | None = None) -> None:
+        self._tips = tip_positions or {}
         self._zero = (0.0, 0.0)  # presets that only specify part zero: X, Z
         self._moved = False
 
-    def of(self, blocks: Sequence[Block]) -> Iterator[Step]:
+    def convert_blocks(self, blocks: Sequence[Block]) -> Iterator[ProgramStep]:
         """Yield the steps of the next blocks."""
-        if isinstance(blocks, Series):
+        if isinstance(blocks, StraightMoveSeries):
             self._moved = True
             if not blocks.pattern.modal.c_locked:
                 yield from self._of_series(blocks)
@@ -99,12 +99,16 @@ class Steps:
             if block.action is not None:
                 self._act(block)
                 yield block
-            elif block.kind in _TURNED and block.travel is None and (not block.modal.c_locked or taps(block)):
+            elif (
+                block.kind in _TURNED
+                and block.travel is None
+                and (not block.modal.c_locked or is_rigid_tap(block))
+            ):
                 self._moved = True
                 place = self._part_zero(block)
                 yield _move(block, block.n, block.line, tuple(_points(block, *place)), place)
             elif block.travel is None:
-                yield LiveStep(block, self._part_zero(block))
+                yield LiveToolStep(block, self._part_zero(block))
 
     def _act(self, block: Block) -> None:
         modal = block.modal
@@ -114,7 +118,7 @@ class Steps:
         elif isinstance(block.action, Preset) and not self._moved:
             self._zero = modal.preset_x, modal.preset_z
 
-    def _part_zero(self, block: Block) -> Place:
+    def _part_zero(self, block: Block) -> MachineXZ:
         """Return work shift, preset and zero offset together, without presets that only specify part zero."""
         modal = block.modal
         x, z = self._tips.get(modal.tool, (modal.tool_x, modal.tool_z))
@@ -123,7 +127,7 @@ class Steps:
             x, z = x + zero_x, z + zero_z
         return block.offset_x - x - self._zero[0], block.offset_z - z - self._zero[1]
 
-    def _of_series(self, series: Series) -> Iterator[TipMove]:
+    def _of_series(self, series: StraightMoveSeries) -> Iterator[TipMove]:
         like = series.pattern
         dx, dz = self._part_zero(like)
         columns = (series.n, series.line, series.x0 + dx, series.z0 + dz, series.x + dx, series.z + dz)
@@ -134,55 +138,57 @@ class Steps:
             yield _move(like, n, line, ((z0, x0), (z, x)), (dx, dz))
 
 
-def zero_of(block: Block, place: Place) -> Place:
+def find_part_zero(block: Block, part_shift: MachineXZ) -> MachineXZ:
     """Return machine X and Z at which the tip is at part zero."""
-    return block.offset_x - place[0], block.offset_z - place[1]
+    return block.offset_x - part_shift[0], block.offset_z - part_shift[1]
 
 
-def ends_of(step: LiveStep) -> tuple[Point, Point]:
+def step_end_points(step: LiveToolStep) -> tuple[Point, Point]:
     """Return the start and the end of a live tool's block, as positions of the axes in the part's frame."""
-    (dx, dz), block = step.place, step.block
+    (dx, dz), block = step.part_zero, step.block
     return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
 
 
-def slides_at(step: LiveStep, share: float) -> Point:
+def axis_position_at(step: LiveToolStep, fraction: float) -> Point:
     """Return the position of the axes after a share of a live tool's block."""
     plane = step.block.plane
     if plane is not None:
-        x, z, _ = plane.machine(np.array([share]))[0].tolist()
-        return z + step.place[1] + step.block.modal.secondary_z, x
-    start, end = ends_of(step)
-    return start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
+        x, z, _ = plane.machine_positions(np.array([fraction]))[0].tolist()
+        return z + step.part_zero[1] + step.block.modal.secondary_z, x
+    start, end = step_end_points(step)
+    return start[0] + (end[0] - start[0]) * fraction, start[1] + (end[1] - start[1]) * fraction
 
 
-def live_move(step: LiveStep) -> TipMove:
+def make_live_tool_move(step: LiveToolStep) -> TipMove:
     """Return the move of the axes in a block of a live tool, for drawing."""
-    pieces = _PIECES if step.block.plane is not None else 1
-    points = tuple(slides_at(step, k / pieces) for k in range(pieces + 1))
-    return _move(step.block, step.block.n, step.block.line, points, step.place)
+    pieces = _MOVE_PIECES if step.block.plane is not None else 1
+    points = tuple(axis_position_at(step, k / pieces) for k in range(pieces + 1))
+    return _move(step.block, step.block.n, step.block.line, points, step.part_zero)
 
 
-def taps(block: Block) -> bool:
+def is_rigid_tap(block: Block) -> bool:
     """Return whether the engaged spindle turns proportionally to a move along Z on the axis: a rigid tap."""
-    turned = block.kind is Kind.FEED and block.c != block.c0 and block.z != block.z0
+    turned = block.kind is BlockKind.FEED and block.c != block.c0 and block.z != block.z0
     return turned and block.modal.c_locked and block.x == block.x0 and abs(block.x) < _ON_AXIS
 
 
-def _move(block: Block, n: int, line: int, points: tuple[Point, ...], place: Place) -> TipMove:
+def _move(block: Block, n: int, line: int, points: tuple[Point, ...], place: MachineXZ) -> TipMove:
     per_rev, rpm = (block.feed if block.per_rev and not block.rapid else 0.0), block.rpm
     speed = per_rev * abs(rpm) / 60.0 if per_rev else block.feed
-    if taps(block):
+    if is_rigid_tap(block):
         per_rev = abs((block.z - block.z0) / (block.c - block.c0)) * 360.0
         rpm = math.copysign(speed / per_rev * 60.0, block.c - block.c0)
-    quick = block.rapid or (not per_rev and block.feed >= QUICK and block.kind is not Kind.THREAD)
+    quick = block.rapid or (
+        not per_rev and block.feed >= FAST_FEED_MM_S and block.kind is not BlockKind.THREAD
+    )
     return TipMove(
-        n, line, block.kind, points, speed, quick, per_rev, rpm, block.modal, zero_of(block, place)
+        n, line, block.kind, points, speed, quick, per_rev, rpm, block.modal, find_part_zero(block, place)
     )
 
 
 def _points(block: Block, dx: float, dz: float) -> Iterator[Point]:
     yield block.z0 + dz, block.x0 + dx
-    if block.kind is Kind.ARC:
+    if block.kind is BlockKind.ARC:
         start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
         radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
         step = 2.0 * math.acos(max(1.0 - _CHORD / radius, 0.0)) if radius > 0.0 else math.pi

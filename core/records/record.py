@@ -1,7 +1,8 @@
 """A scope record: samples of a period of time, derived quantities and errors.
 
 Channels have descriptive names, such as ``X demand``, ``X actual``, ``X following error`` (mm, or degrees for
-rotary axes), ``spindle command``, ``spindle speed`` (rpm) and ``feed override``. ``channels_of`` lists all.
+rotary axes), ``spindle command``, ``spindle speed`` (rpm) and ``feed override``. ``list_machine_channels``
+lists all.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.input_file import MB, TooLargeError
+from core.input_file import BYTES_PER_MB, TooLargeError
 from core.message import CodedError, Message
 
 FloatArray = npt.NDArray[np.float64]
@@ -23,15 +24,15 @@ _LATEST = 250_000_000_000.0  # s since 1970, in the year 9892, near the end of P
 # Channels of each axis, named by the axis letter followed by these words.
 AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
 _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
-MOST_BYTES = 512 * MB
+MAX_RECORD_BYTES = 512 * BYTES_PER_MB
 """The most that a record may have, packed or unpacked; five minutes at 1 kHz have 50 MB."""
 
-VELOCITY_SPAN = 0.008  # s
-ACCELERATION_SPAN = 0.032  # s
-RIPPLE_SPAN = 0.5  # s, the span of the mean speed from which ripple is calculated
+VELOCITY_SPAN_S = 0.008  # s
+ACCELERATION_SPAN_S = 0.032  # s
+RIPPLE_SPAN_S = 0.5  # s, the span of the mean speed from which ripple is calculated
 
 
-class UnsoundError(ValueError):
+class InconsistentRecordError(ValueError):
     """The contents of a record file are inconsistent; the text has the cause."""
 
 
@@ -63,7 +64,7 @@ MACHINE_CHANNELS = (
 )
 
 
-def channels_of(
+def list_machine_channels(
     axes: Mapping[str, bool], inputs: tuple[str, ...], outputs: tuple[str, ...]
 ) -> tuple[Channel, ...]:
     """Return all channels recorded for a machine. ``axes`` maps each letter to whether the axis is rotary."""
@@ -78,29 +79,33 @@ def channels_of(
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class ScopeRecord:
     """Samples between two points in time; values that a driver does not report are NaN.
 
-    ``times`` (n,) are seconds of the monotonic clock in ascending order. ``columns`` has an array (n,) for
-    each channel name. ``started`` is the time of the first sample in seconds since 1970. ``rate`` is the
-    driver's sampling rate in samples per second. Quantities of the control retain their value from the last
-    tick.
+    ``times`` (n,) are seconds of the monotonic clock in ascending order. ``values_by_channel`` has an array
+    (n,) for each channel name. ``start_time_utc_s`` is the time of the first sample in seconds since 1970.
+    ``sampling_rate_hz`` is the driver's sampling rate in samples per second. Quantities of the control
+    retain their value from the last tick.
     """
 
     channels: tuple[Channel, ...]
-    times: FloatArray
-    columns: Mapping[str, FloatArray]
-    started: float
-    rate: float
+    times_s: FloatArray
+    values_by_channel: Mapping[str, FloatArray]
+    start_time_utc_s: float
+    sampling_rate_hz: float
     about: Mapping[str, str] = field(default_factory=dict)  # machine, program and alarm as text
 
-    def between(self, begin: float, end: float) -> Record:
+    def select_between(self, begin: float, end: float) -> ScopeRecord:
         """Return the samples from ``begin`` to ``end`` inclusive, in seconds of the monotonic clock."""
-        first, last = np.searchsorted(self.times, (begin, np.nextafter(end, np.inf)))
+        first, last = np.searchsorted(self.times_s, (begin, np.nextafter(end, np.inf)))
         cut = slice(int(first), int(last))
-        started = self.started + (float(self.times[first]) - float(self.times[0]) if first < last else 0.0)
-        columns = {name: column[cut] for name, column in self.columns.items()}
-        return Record(self.channels, self.times[cut], columns, started, self.rate, self.about)
+        started = self.start_time_utc_s + (
+            float(self.times_s[first]) - float(self.times_s[0]) if first < last else 0.0
+        )
+        columns = {name: column[cut] for name, column in self.values_by_channel.items()}
+        return ScopeRecord(
+            self.channels, self.times_s[cut], columns, started, self.sampling_rate_hz, self.about
+        )
 
 
 def _is_unicode(text: str) -> bool:
@@ -108,30 +113,33 @@ def _is_unicode(text: str) -> bool:
     return not any("\ud800" <= sign <= "\udfff" for sign in text)
 
 
-def checked_record(record: Record) -> Record:
+def check_record(record: ScopeRecord) -> ScopeRecord:
     """Check a record from a file and return it with infinite values as NaN. Raises UnsoundError."""
-    if not 0.0 <= record.started <= _LATEST:
-        raise UnsoundError(
+    if not 0.0 <= record.start_time_utc_s <= _LATEST:
+        raise InconsistentRecordError(
             Message(
                 "the start time of the scope record, {started} s after January 1, 1970, is not valid",
-                started=f"{record.started:g}",
+                started=f"{record.start_time_utc_s:g}",
             )
         )
-    if not 0.0 <= record.rate < np.inf:
-        raise UnsoundError(
-            Message("the sampling rate of {rate} samples per second is not valid", rate=f"{record.rate:g}")
+    if not 0.0 <= record.sampling_rate_hz < np.inf:
+        raise InconsistentRecordError(
+            Message(
+                "the sampling rate of {rate} samples per second is not valid",
+                rate=f"{record.sampling_rate_hz:g}",
+            )
         )
     if not all(text.isprintable() for channel in record.channels for text in channel[:2]):
-        raise UnsoundError("a channel name is not text")
+        raise InconsistentRecordError("a channel name is not text")
     if not all(_is_unicode(text) for each in record.about.items() for text in each):
-        raise UnsoundError("the description in the file is not text")
-    if not np.isfinite(record.times).all() or (np.diff(record.times) < 0.0).any():
-        raise UnsoundError("the sample times do not increase")
+        raise InconsistentRecordError("the description in the file is not text")
+    if not np.isfinite(record.times_s).all() or (np.diff(record.times_s) < 0.0).any():
+        raise InconsistentRecordError("the sample times do not increase")
     known = {
         name: np.where(np.isinf(column), np.nan, column) if np.isinf(column).any() else column
-        for name, column in record.columns.items()
+        for name, column in record.values_by_channel.items()
     }
-    return replace(record, columns=known)
+    return replace(record, values_by_channel=known)
 
 
 class RecordError(CodedError):
@@ -142,9 +150,9 @@ class AnalysisError(CodedError):
     """A record lacks data that an analysis needs. The text names the missing data and a remedy."""
 
 
-def damage(path: Path, error: Exception) -> RecordError:
+def make_damage_error(path: Path, error: Exception) -> RecordError:
     """Return the RecordError for a file with damaged contents."""
-    if isinstance(error, UnsoundError):
+    if isinstance(error, InconsistentRecordError):
         return RecordError(
             Message("{path} is damaged ({error}); open another scope record", path=path, error=error),
             "damaged",
@@ -170,13 +178,15 @@ def why(path: Path, error: OSError) -> RecordError:
     return RecordError(Message("{path}: {cause}", path=path, cause=error.strerror or error), "unusable")
 
 
-def velocity(times: FloatArray, position: FloatArray, span: float = VELOCITY_SPAN) -> FloatArray:
+def calculate_velocity(
+    times: FloatArray, position: FloatArray, span_s: float = VELOCITY_SPAN_S
+) -> FloatArray:
     """Return the mean velocity across ``span`` s, in units per second.
 
     The span is at least two sample intervals. The result is exact for constant acceleration. The amplitude of
     a sine of ω rad/s is multiplied by sin(ω·span/2)/(ω·span/2). The first and last half span are NaN.
     """
-    k = _half(times, span)
+    k = _half(times, span_s)
     found = np.full(len(times), np.nan)
     if len(times) > 2 * k:
         way, took = position[2 * k :] - position[: -2 * k], times[2 * k :] - times[: -2 * k]
@@ -184,7 +194,9 @@ def velocity(times: FloatArray, position: FloatArray, span: float = VELOCITY_SPA
     return found
 
 
-def acceleration(times: FloatArray, position: FloatArray, span: float = ACCELERATION_SPAN) -> FloatArray:
+def calculate_acceleration(
+    times: FloatArray, position: FloatArray, span_s: float = ACCELERATION_SPAN_S
+) -> FloatArray:
     """Return the mean acceleration across ``span`` s, in units per second squared.
 
     The result is the change of the mean velocity from the first to the second half of the span. With h =
@@ -192,7 +204,7 @@ def acceleration(times: FloatArray, position: FloatArray, span: float = ACCELERA
     acceleration. The amplitude of a sine is multiplied by (sin(ωh/2)/(ωh/2))². The first and last half span
     are NaN.
     """
-    k = _half(times, span)
+    k = _half(times, span_s)
     found = np.full(len(times), np.nan)
     if len(times) > 2 * k:
         ahead, behind = times[2 * k :] - times[k:-k], times[k:-k] - times[: -2 * k]
@@ -202,12 +214,12 @@ def acceleration(times: FloatArray, position: FloatArray, span: float = ACCELERA
     return found
 
 
-def ripple(times: FloatArray, speed: FloatArray, span: float = RIPPLE_SPAN) -> FloatArray:
+def calculate_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPLE_SPAN_S) -> FloatArray:
     """Return the speed minus its mean over ``span`` s.
 
     Ripple with a whole number of waves in the span cancels in the mean. The first and last half span are NaN.
     """
-    k = _half(times, span)
+    k = _half(times, span_s)
     found = np.full(len(times), np.nan)
     known = np.isfinite(speed)
     if len(times) > 2 * k:

@@ -17,75 +17,75 @@ from pathlib import Path
 
 import numpy as np
 
-from core.file_placing import put_in_place
-from core.input_file import MB, failures_as, input_bytes
+from core.file_replacement import replace_atomically
+from core.input_file import BYTES_PER_MB, convert_exceptions, read_input_bytes
 from core.message import Message
 from core.records.record import (
-    MOST_BYTES,
+    MAX_RECORD_BYTES,
     Channel,
     FloatArray,
-    Record,
+    InconsistentRecordError,
     RecordError,
-    UnsoundError,
-    checked_record,
-    damage,
+    ScopeRecord,
+    check_record,
+    make_damage_error,
     why,
 )
-from core.records.ring_file import is_ring, read_ring
+from core.records.ring_file import is_ring_file, read_ring_file
 
-ENDING = ".scope"
+RECORD_SUFFIX = ".scope"
 _VERSION = 1
 _ABOUT = "about"
 _UNKNOWN = 255  # the unknown value of a logic channel, stored as a byte like 0 and 1
 _ROWS = 2000  # CSV rows written at a time
 
 
-def save_record(record: Record, path: Path) -> None:
+def save_record(record: ScopeRecord, path: Path) -> None:
     """Write a record file completely or not at all. Raises RecordError."""
     told = {
         "version": _VERSION,
-        "started": record.started,
-        "rate": record.rate,
+        "started": record.start_time_utc_s,
+        "rate": record.sampling_rate_hz,
         "about": dict(record.about),
         "channels": [list(channel) for channel in record.channels],
     }
     columns = {f"column{i}": _packed(record, channel) for i, channel in enumerate(record.channels)}
-    columns |= {"times": record.times, _ABOUT: np.frombuffer(json.dumps(told).encode(), dtype=np.uint8)}
+    columns |= {"times": record.times_s, _ABOUT: np.frombuffer(json.dumps(told).encode(), dtype=np.uint8)}
     unfinished = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with unfinished.open("wb") as file:
             np.savez_compressed(file, **columns)  # type: ignore[arg-type]  # its stubs take one for an option
-        put_in_place(unfinished, path)
+        replace_atomically(unfinished, path)
     except OSError as error:
         with suppress(OSError):
             unfinished.unlink(missing_ok=True)
         raise why(path, error) from error
 
 
-def _packed(record: Record, channel: Channel) -> np.ndarray[tuple[int, ...], np.dtype[np.generic]]:
-    column = record.columns[channel.name]
+def _packed(record: ScopeRecord, channel: Channel) -> np.ndarray[tuple[int, ...], np.dtype[np.generic]]:
+    column = record.values_by_channel[channel.name]
     if not channel.logic:
         return column
     return np.where(np.isnan(column), _UNKNOWN, column).astype(np.uint8)
 
 
-def open_record(path: Path) -> Record:
+def open_record(path: Path) -> ScopeRecord:
     """Return the record in a file, or the last minutes from the file of a ring.
 
     Raises RecordError if the file cannot be read or is damaged.
     """
-    if is_ring(path):
-        return read_ring(path)
+    if is_ring_file(path):
+        return read_ring_file(path)
     try:
-        data = input_bytes(path, MOST_BYTES)
+        data = read_input_bytes(path, MAX_RECORD_BYTES)
     except OSError as error:
         raise why(path, error) from error
-    with failures_as(partial(damage, path)):
-        return checked_record(_read(path, io.BytesIO(data)))
+    with convert_exceptions(partial(make_damage_error, path)):
+        return check_record(_read(path, io.BytesIO(data)))
 
 
-def _read(path: Path, data: io.BytesIO) -> Record:
+def _read(path: Path, data: io.BytesIO) -> ScopeRecord:
     if not zipfile.is_zipfile(data):
         part = data.getvalue()[:2] == b"PK"
         raise RecordError(
@@ -96,7 +96,7 @@ def _read(path: Path, data: io.BytesIO) -> Record:
                     "{path} is not a scope record; choose a file in the records folder that ends in "
                     "{ending} or .ring",
                     path=path,
-                    ending=ENDING,
+                    ending=RECORD_SUFFIX,
                 )
             ),
             "cut-off" if part else "not-a-record",
@@ -110,7 +110,7 @@ def _read(path: Path, data: io.BytesIO) -> Record:
                 Message(
                     "{path} is not a scope record; choose a file that ends in {ending}",
                     path=path,
-                    ending=ENDING,
+                    ending=RECORD_SUFFIX,
                 ),
                 "not-a-record",
             )
@@ -133,27 +133,30 @@ def _check_size(data: io.BytesIO) -> None:
     """Raise UnsoundError before unpacking an archive that would be far larger than any record."""
     with zipfile.ZipFile(data) as archive:
         size = sum(each.file_size for each in archive.infolist())
-    if size > MOST_BYTES:
-        raise UnsoundError(
-            Message("the uncompressed file is larger than {most_bytes} MB", most_bytes=MOST_BYTES // MB)
+    if size > MAX_RECORD_BYTES:
+        raise InconsistentRecordError(
+            Message(
+                "the uncompressed file is larger than {most_bytes} MB",
+                most_bytes=MAX_RECORD_BYTES // BYTES_PER_MB,
+            )
         )
 
 
-def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
+def _record(told: dict[str, object], column: Callable[[str], object]) -> ScopeRecord:
     """Return the record with this description and these columns.
 
     Raises UnsoundError if they are inconsistent, and ValueError, KeyError or TypeError if they are malformed.
     """
     channels, about = told["channels"], told["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
-        raise UnsoundError("the description in the file has an unknown format")
+        raise InconsistentRecordError("the description in the file has an unknown format")
     made = tuple(Channel(str(name), str(unit), bool(logic)) for name, unit, logic in channels)
     times = np.asarray(column("times"), dtype=np.float64)
     columns: dict[str, FloatArray] = {}
     for i, channel in enumerate(made):
         found = np.asarray(column(f"column{i}"), dtype=np.float64)
         if found.shape != times.shape or times.ndim != 1:
-            raise UnsoundError(
+            raise InconsistentRecordError(
                 Message(
                     "channel {channel} has {size} samples instead of {size2}",
                     channel=channel.name,
@@ -164,35 +167,35 @@ def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
         columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
     started, rate = told["started"], told["rate"]
     if not isinstance(started, int | float) or not isinstance(rate, int | float):
-        raise UnsoundError("the start time of the record is missing")
+        raise InconsistentRecordError("the start time of the record is missing")
     words = {str(name): str(text) for name, text in about.items()}
-    return Record(made, times, columns, float(started), float(rate), words)
+    return ScopeRecord(made, times, columns, float(started), float(rate), words)
 
 
-def write_csv(record: Record, write: Callable[[str], object]) -> None:
+def write_csv_lines(record: ScopeRecord, write: Callable[[str], object]) -> None:
     """Write a record as CSV lines, with times in s from its start; unknown values are empty."""
     names = [
         Message("{item} [{unit}]", item=each.name, unit=each.unit) if each.unit else each.name
         for each in record.channels
     ]
     write(",".join(["t [s]", *(name.replace(",", " ") for name in names)]) + "\n")
-    columns = [record.columns[each.name] for each in record.channels]
+    columns = [record.values_by_channel[each.name] for each in record.channels]
     logic = [each.logic for each in record.channels]
-    for at in range(0, len(record.times), _ROWS):
-        part = [[f"{t:.6f}" for t in (record.times[at : at + _ROWS] - record.times[0]).tolist()]]
+    for at in range(0, len(record.times_s), _ROWS):
+        part = [[f"{t:.6f}" for t in (record.times_s[at : at + _ROWS] - record.times_s[0]).tolist()]]
         part += [
             _texts(column[at : at + _ROWS], whole=whole) for column, whole in zip(columns, logic, strict=True)
         ]
         write("".join(",".join(row) + "\n" for row in zip(*part, strict=True)))
 
 
-def save_csv(record: Record, path: Path) -> None:
+def save_csv(record: ScopeRecord, path: Path) -> None:
     """Write a record to a CSV file completely or not at all. Raises RecordError."""
     unfinished = path.with_name(path.name + ".part")
     try:
         with unfinished.open("w", encoding="utf-8", newline="") as file:
-            write_csv(record, file.write)
-        put_in_place(unfinished, path)
+            write_csv_lines(record, file.write)
+        replace_atomically(unfinished, path)
     except OSError as error:
         with suppress(OSError):
             unfinished.unlink(missing_ok=True)

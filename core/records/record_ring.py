@@ -12,15 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.records.record import Channel, FloatArray, Record, channels_of
+from core.records.record import Channel, FloatArray, ScopeRecord, list_machine_channels
 
 _BITS = 48  # logic channels in one value, which a float represents exactly
 _BEFORE = 0.5  # s, the longest time for which a tick's values apply without a new row
-LASTS = 300.0  # s of samples in the ring
-TICKS = 100.0  # ticks of the control per second
+RING_DURATION_S = 300.0  # s of samples in the ring
+TICK_RATE_HZ = 100.0  # ticks of the control per second
 
 # Values of a tick's row after the time. The inputs and outputs follow as bits.
-TICK_FIGURES = (
+TICK_CHANNELS = (
     "spindle command",
     "spindle speed",
     "spindle turns",
@@ -34,71 +34,77 @@ TICK_FIGURES = (
 )
 # Values of spindle and queue that drivers report, after those of the axes. The tick's value is used if the
 # driver reports none.
-SAMPLE_FIGURES = ("spindle speed", "spindle turns", "spindle load", "queue")
+SAMPLE_CHANNELS = ("spindle speed", "spindle turns", "spindle load", "queue")
 
 
 @dataclass(frozen=True, slots=True)
-class Recorded:
+class RingLayout:
     """Layout of a ring: the machine's channels, the sampling rate and the duration.
 
-    ``axes`` maps each letter to whether the axis is rotary. ``began`` is the time of the clock's zero, in
-    seconds since 1970. ``states`` are the texts of the values of the channel ``state``. ``lasts`` is in
-    seconds.
+    ``axes`` maps each letter to whether the axis is rotary. ``clock_zero_utc_s`` is the time of the clock's
+    zero, in seconds since 1970. ``state_names`` are the texts of the values of the channel ``state``.
+    ``duration_s`` is in seconds.
     """
 
-    axes: Mapping[str, bool]
+    is_rotary_by_axis: Mapping[str, bool]
     inputs: tuple[str, ...] = ()
     outputs: tuple[str, ...] = ()
-    rate: float = TICKS
-    began: float = 0.0
-    machine: str = ""
-    states: tuple[str, ...] = ()
-    lasts: float = LASTS
+    sampling_rate_hz: float = TICK_RATE_HZ
+    clock_zero_utc_s: float = 0.0
+    machine_name: str = ""
+    state_names: tuple[str, ...] = ()
+    duration_s: float = RING_DURATION_S
 
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Channels of a record from this ring."""
-        return channels_of(self.axes, self.inputs, self.outputs)
+        return list_machine_channels(self.is_rotary_by_axis, self.inputs, self.outputs)
 
     @property
     def sample_width(self) -> int:
         """Number of values in a driver's sample.
 
-        The values are the time, the demand, actual and load of all axes, and SAMPLE_FIGURES.
+        The values are the time, the demand, actual and load of all axes, and SAMPLE_CHANNELS.
         """
-        return 1 + 3 * len(self.axes) + len(SAMPLE_FIGURES)
+        return 1 + 3 * len(self.is_rotary_by_axis) + len(SAMPLE_CHANNELS)
 
     @property
     def tick_width(self) -> int:
-        """Number of values in a tick: the time, TICK_FIGURES, and the inputs and outputs as bits."""
-        return 1 + len(TICK_FIGURES) + _words(self.inputs) + _words(self.outputs)
+        """Number of values in a tick: the time, TICK_CHANNELS, and the inputs and outputs as bits."""
+        return 1 + len(TICK_CHANNELS) + _words(self.inputs) + _words(self.outputs)
 
     @property
-    def rooms(self) -> tuple[int, int]:
+    def row_capacities(self) -> tuple[int, int]:
         """Numbers of samples and of ticks that the ring can store."""
-        return max(2, round(self.lasts * self.rate)), max(2, round(self.lasts * TICKS))
+        return max(2, round(self.duration_s * self.sampling_rate_hz)), max(
+            2, round(self.duration_s * TICK_RATE_HZ)
+        )
 
     @property
-    def ring_bytes(self) -> int:
+    def size_bytes(self) -> int:
         """Size of the ring in memory, in bytes."""
-        samples, ticks = self.rooms
-        return bytes_of(samples, self.sample_width) + bytes_of(ticks, self.tick_width)
+        samples, ticks = self.row_capacities
+        return calculate_buffer_size(samples, self.sample_width) + calculate_buffer_size(
+            ticks, self.tick_width
+        )
 
     @property
-    def about(self) -> dict[str, str]:
+    def description(self) -> dict[str, str]:
         """Machine and states as text, for the description of a record."""
-        return {"machine": self.machine, "states": "|".join(self.states)}
+        return {"machine": self.machine_name, "states": "|".join(self.state_names)}
 
 
 def _words(names: Collection[str]) -> int:
     return -(-len(names) // _BITS)
 
 
-def bits_of(names: tuple[str, ...], on: Collection[str]) -> list[float]:
-    """Return logic channels as bits, 48 in each value. ``on`` has the names of those that are on."""
+def pack_bits(names: tuple[str, ...], active_names: Collection[str]) -> list[float]:
+    """Return logic channels as bits, 48 in each value. ``active_names`` has the names of those that are
+    on.
+    """
     words = [0] * _words(names)
     for i, name in enumerate(names):
-        if name in on:
+        if name in active_names:
             words[i // _BITS] |= 1 << (i % _BITS)
     return [float(word) for word in words]
 
@@ -106,92 +112,104 @@ def bits_of(names: tuple[str, ...], on: Collection[str]) -> list[float]:
 # =
 
 
-class Rows:
+class RowBuffer:
     """Ring buffer of rows of one kind; one thread writes, and any thread reads without a lock.
 
-    Column 0 is the time. ``memory`` has ``bytes_of(room, width)`` bytes and can be shared with another
-    process.
+    Column 0 is the time. ``memory`` has ``calculate_buffer_size(capacity, width)`` bytes and can be shared
+    with another process.
     """
 
-    def __init__(self, room: int, width: int, memory: memoryview | None = None) -> None:
-        self.room = room
-        figures = np.zeros(bytes_of(room, width) // 8) if memory is None else np.frombuffer(memory)
+    def __init__(self, capacity: int, width: int, memory: memoryview | None = None) -> None:
+        self.capacity = capacity
+        figures = (
+            np.zeros(calculate_buffer_size(capacity, width) // 8) if memory is None else np.frombuffer(memory)
+        )
         self._counts = figures[:2].view(np.int64)
-        self.data: FloatArray = figures[2:].reshape(room, width + 1)  # the last column is the row's number
+        self.array: FloatArray = figures[2:].reshape(
+            capacity, width + 1
+        )  # the last column is the row's number
 
     @property
-    def begun(self) -> int:
+    def rows_started(self) -> int:
         """Number of rows whose writing has started."""
         return int(self._counts[0])
 
-    @begun.setter
-    def begun(self, count: int) -> None:
+    @rows_started.setter
+    def rows_started(self, count: int) -> None:
         self._counts[0] = count
 
     @property
-    def whole(self) -> int:
+    def rows_completed(self) -> int:
         """Number of rows that are completely written."""
         return int(self._counts[1])
 
-    @whole.setter
-    def whole(self, count: int) -> None:
+    @rows_completed.setter
+    def rows_completed(self, count: int) -> None:
         self._counts[1] = count
 
     def write(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
         """Append rows and return the changed slots with their contents, for the file."""
-        rows = rows[-self.room :]
-        first, end = self.whole, self.whole + len(rows)
+        rows = rows[-self.capacity :]
+        first, end = self.rows_completed, self.rows_completed + len(rows)
         numbered = np.column_stack((rows, np.arange(first, end, dtype=np.float64)))
-        self.begun = end
-        at = first % self.room
-        parts = [(at, numbered[: self.room - at])]
-        if len(numbered) > self.room - at:
-            parts.append((0, numbered[self.room - at :]))
+        self.rows_started = end
+        at = first % self.capacity
+        parts = [(at, numbered[: self.capacity - at])]
+        if len(numbered) > self.capacity - at:
+            parts.append((0, numbered[self.capacity - at :]))
         for slot, part in parts:
-            self.data[slot : slot + len(part)] = part
-        self.whole = end
+            self.array[slot : slot + len(part)] = part
+        self.rows_completed = end
         return parts
 
-    def between(self, begin: float, end: float) -> FloatArray:
+    def copy_between(self, begin: float, end: float) -> FloatArray:
         """Return a copy of the rows from ``begin`` to ``end`` inclusive.
 
         Rows that are being written are omitted.
         """
-        whole = self.whole
-        low = max(0, self.begun - self.room)
+        whole = self.rows_completed
+        low = max(0, self.rows_started - self.capacity)
         first = self._search(low, whole, lambda t: t >= begin)
         last = self._search(first, whole, lambda t: t > end)
-        at, count = first % self.room, last - first
-        rows = np.concatenate((self.data[at : at + count], self.data[: max(0, at + count - self.room)]))
-        lost = max(0, self.begun - self.room - first)  # overwritten while reading
-        return sound(rows[lost:], first + lost)
+        at, count = first % self.capacity, last - first
+        rows = np.concatenate((self.array[at : at + count], self.array[: max(0, at + count - self.capacity)]))
+        lost = max(0, self.rows_started - self.capacity - first)  # overwritten while reading
+        return select_valid_rows(rows[lost:], first + lost)
 
     def _search(self, low: int, high: int, reached: Callable[[float], bool]) -> int:
         while low < high:
             middle = (low + high) // 2
-            if reached(float(self.data[middle % self.room, 0])):
+            if reached(float(self.array[middle % self.capacity, 0])):
                 high = middle
             else:
                 low = middle + 1
         return low
 
     @property
-    def last(self) -> float:
+    def last_time_s(self) -> float:
         """Time of the newest row; minus infinity if there are no rows."""
-        return float(self.data[(self.whole - 1) % self.room, 0]) if self.whole else -np.inf
+        return (
+            float(self.array[(self.rows_completed - 1) % self.capacity, 0])
+            if self.rows_completed
+            else -np.inf
+        )
 
     @property
-    def first(self) -> float:
+    def first_time_s(self) -> float:
         """Time of the oldest row that is still available; infinity if there are no rows."""
-        return float(self.data[max(0, self.begun - self.room) % self.room, 0]) if self.whole else np.inf
+        return (
+            float(self.array[max(0, self.rows_started - self.capacity) % self.capacity, 0])
+            if self.rows_completed
+            else np.inf
+        )
 
 
-def bytes_of(room: int, width: int) -> int:
-    """Return the size in bytes of a ``Rows`` buffer with this number of rows and columns."""
-    return 8 * (2 + room * (width + 1))
+def calculate_buffer_size(capacity: int, width: int) -> int:
+    """Return the size in bytes of a ``RowBuffer`` buffer with this number of rows and columns."""
+    return 8 * (2 + capacity * (width + 1))
 
 
-def sound(rows: FloatArray, first: int) -> FloatArray:
+def select_valid_rows(rows: FloatArray, first: int) -> FloatArray:
     """Return the valid rows without their numbers: numbered from ``first`` on, with ascending times."""
     if not len(rows):
         return rows[:, :-1]
@@ -205,72 +223,74 @@ def sound(rows: FloatArray, first: int) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True)
-class Ring:
-    """Samples and ticks of the last minutes. Any thread may call ``latest`` and ``between``."""
+class ScopeRing:
+    """Samples and ticks of the last minutes. Any thread may call ``get_record_since`` and ``between``."""
 
-    recorded: Recorded
-    samples: Rows
-    ticks: Rows
+    layout: RingLayout
+    samples: RowBuffer
+    ticks: RowBuffer
 
     @classmethod
-    def of(cls, recorded: Recorded, memory: memoryview | None = None) -> Ring:
-        """Return the ring in ``memory``, which has ``recorded.ring_bytes`` bytes, or a new, empty ring."""
-        room, ticks = recorded.rooms
-        cut = bytes_of(room, recorded.sample_width)
+    def from_layout(cls, layout: RingLayout, memory: memoryview | None = None) -> ScopeRing:
+        """Return the ring in ``memory``, which has ``layout.size_bytes`` bytes, or a new, empty ring."""
+        room, ticks = layout.row_capacities
+        cut = calculate_buffer_size(room, layout.sample_width)
         return cls(
-            recorded,
-            Rows(room, recorded.sample_width, memory[:cut] if memory is not None else None),
-            Rows(ticks, recorded.tick_width, memory[cut:] if memory is not None else None),
+            layout,
+            RowBuffer(room, layout.sample_width, memory[:cut] if memory is not None else None),
+            RowBuffer(ticks, layout.tick_width, memory[cut:] if memory is not None else None),
         )
 
-    def latest(self, since: float, names: Collection[str] | None = None) -> Record:
+    def get_record_since(self, since: float, names: Collection[str] | None = None) -> ScopeRecord:
         """Return the samples after ``since``, in seconds of the clock.
 
         ``names`` selects channels; None selects all.
         """
-        return self.between(np.nextafter(since, np.inf), np.inf, names)
+        return self.get_record_between(np.nextafter(since, np.inf), np.inf, names)
 
-    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
+    def get_record_between(
+        self, begin: float, end: float, names: Collection[str] | None = None
+    ) -> ScopeRecord:
         """Return the samples from ``begin`` to ``end`` inclusive.
 
         ``names`` selects channels; None selects all.
         """
-        return record_of(
-            self.recorded,
-            self.samples.between(begin, end),
-            self.ticks.between(begin - _BEFORE, end),
+        return make_record(
+            self.layout,
+            self.samples.copy_between(begin, end),
+            self.ticks.copy_between(begin - _BEFORE, end),
             names,
         )
 
 
-def record_of(
-    recorded: Recorded, samples: FloatArray, ticks: FloatArray, names: Collection[str] | None = None
-) -> Record:
+def make_record(
+    layout: RingLayout, samples: FloatArray, ticks: FloatArray, names: Collection[str] | None = None
+) -> ScopeRecord:
     """Return a record made from samples and ticks. A tick's values apply until the next tick."""
     times = samples[:, 0].copy()
     seen = np.searchsorted(ticks[:, 0], times, side="right") - 1
-    source = _Source(recorded, samples, ticks, seen)
-    wanted = [each for each in recorded.channels if names is None or each.name in names]
+    source = _Source(layout, samples, ticks, seen)
+    wanted = [each for each in layout.channels if names is None or each.name in names]
     columns = {each.name: source.column(each.name) for each in wanted}
-    started = recorded.began + (float(times[0]) if len(times) else 0.0)
-    return Record(tuple(wanted), times, columns, started, recorded.rate, recorded.about)
+    started = layout.clock_zero_utc_s + (float(times[0]) if len(times) else 0.0)
+    return ScopeRecord(tuple(wanted), times, columns, started, layout.sampling_rate_hz, layout.description)
 
 
 class _Source:
     """Access to the values of each channel in the rows."""
 
-    def __init__(self, recorded: Recorded, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
-        self._recorded, self._samples, self._ticks, self._seen = recorded, samples, ticks, np.asarray(seen)
+    def __init__(self, layout: RingLayout, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
+        self._recorded, self._samples, self._ticks, self._seen = layout, samples, ticks, np.asarray(seen)
 
     def column(self, name: str) -> FloatArray:
         """Return the values of one channel at the times of the samples."""
-        recorded, axes = self._recorded, list(self._recorded.axes)
+        recorded, axes = self._recorded, list(self._recorded.is_rotary_by_axis)
         letter, _, what = name.partition(" ")
         if letter in axes and what in {"demand", "actual", "following error", "load"}:
             return self._of_axis(axes.index(letter), len(axes), what)
         if letter in {"input", "output"}:
             names = recorded.inputs if letter == "input" else recorded.outputs
-            first = 1 + len(TICK_FIGURES) + (0 if letter == "input" else _words(recorded.inputs))
+            first = 1 + len(TICK_CHANNELS) + (0 if letter == "input" else _words(recorded.inputs))
             return self._bit(first, names.index(what))
         return self._of_machine(name, 1 + 3 * len(axes))
 
@@ -284,17 +304,17 @@ class _Source:
 
     def _of_machine(self, name: str, behind: int) -> FloatArray:
         if name == "lateness":
-            return self._worst(1 + TICK_FIGURES.index(name))
+            return self._worst(1 + TICK_CHANNELS.index(name))
         told = np.full(len(self._samples), np.nan)
-        if name in SAMPLE_FIGURES:
-            told = self._samples[:, behind + SAMPLE_FIGURES.index(name)].copy()
-        if name in TICK_FIGURES:
+        if name in SAMPLE_CHANNELS:
+            told = self._samples[:, behind + SAMPLE_CHANNELS.index(name)].copy()
+        if name in TICK_CHANNELS:
             missing = np.isnan(told)
-            told[missing] = self._held(1 + TICK_FIGURES.index(name))[missing]
+            told[missing] = self._select_tick_values(1 + TICK_CHANNELS.index(name))[missing]
         return told
 
     def _bit(self, first: int, index: int) -> FloatArray:
-        word = self._held(first + index // _BITS)
+        word = self._select_tick_values(first + index // _BITS)
         known = ~np.isnan(word)
         bits = np.full(len(word), np.nan)
         bits[known] = (word[known].astype(np.int64) >> (index % _BITS)) & 1
@@ -305,7 +325,7 @@ class _Source:
 
         At standstill there are fewer samples than ticks.
         """
-        held = self._held(column)
+        held = self._select_tick_values(column)
         known = np.flatnonzero(self._seen >= 0)
         if not len(known):
             return held
@@ -315,7 +335,7 @@ class _Source:
         held[known] = np.where(first <= last, worst, held[known])
         return held
 
-    def _held(self, column: int) -> FloatArray:
+    def _select_tick_values(self, column: int) -> FloatArray:
         """Return the value of the latest tick at each sample; NaN before the first tick."""
         if not len(self._ticks):
             return np.full(len(self._seen), np.nan)

@@ -6,42 +6,44 @@ from collections.abc import Collection
 from pathlib import Path
 
 from core.message import Message
-from core.records.record import Record, RecordError
+from core.records.record import RecordError, ScopeRecord
 from core.records.record_file import open_record
-from core.records.record_ring import Ring
+from core.records.record_ring import ScopeRing
 
-KEPT = 50  # records of alarms that are stored
+MAX_ALARM_RECORDS = 50  # records of alarms that are stored
 
 
-class Recordings:
+class ScopeRecordings:
     """The ring and the folder of the records, readable from any thread.
 
     ``folder`` is None if no files are written. If the ring file cannot be written, the samples are only in
     memory, and the last argument is the reason.
     """
 
-    def __init__(self, ring: Ring, folder: Path | None, trouble: str = "") -> None:
-        self.ring, self.folder, self.trouble = ring, folder, trouble
+    def __init__(self, ring: ScopeRing, folder: Path | None, storage_error: str = "") -> None:
+        self.ring, self.folder, self.storage_error = ring, folder, storage_error
 
-    def latest(self, since: float, names: Collection[str] | None = None) -> Record:
+    def get_record_since(self, since: float, names: Collection[str] | None = None) -> ScopeRecord:
         """Return the samples after ``since``, in seconds of the clock.
 
         ``names`` selects channels; None selects all.
         """
-        return self.ring.latest(since, names)
+        return self.ring.get_record_since(since, names)
 
-    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
+    def get_record_between(
+        self, begin: float, end: float, names: Collection[str] | None = None
+    ) -> ScopeRecord:
         """Return the samples from ``begin`` to ``end`` inclusive, in seconds of the clock.
 
         ``names`` selects channels; None selects all.
         """
-        return self.ring.between(begin, end, names)
+        return self.ring.get_record_between(begin, end, names)
 
     def is_saving(self, _name: str) -> bool:
         """Return whether the record of this alarm is still being written."""
         return False
 
-    def alarm_record(self, name: str) -> Record:
+    def open_alarm_record(self, name: str) -> ScopeRecord:
         """Return the record of an alarm by the file name in its log entry.
 
         Do not call it in the screen's thread.
@@ -52,6 +54,9 @@ class Recordings:
             raise RecordError("the record of this alarm is still being saved; try again in 2 s")
         if self.folder is None or Path(name).name != name or not (self.folder / name).exists():
             raise RecordError(
-                Message("this alarm record was deleted; only the newest {saved} are stored", saved=KEPT)
+                Message(
+                    "this alarm record was deleted; only the newest {saved} are stored",
+                    saved=MAX_ALARM_RECORDS,
+                )
             )
         return open_record(self.folder / name)

@@ -18,20 +18,20 @@ from pathlib import Path
 
 import numpy as np
 
-from core.file_lock import lock
-from core.input_file import failures_as, open_input
+from core.file_lock import lock_file
+from core.input_file import convert_exceptions, open_input_file
 from core.message import Message
 from core.records.record import (
-    MOST_BYTES,
+    MAX_RECORD_BYTES,
     FloatArray,
-    Record,
+    InconsistentRecordError,
     RecordError,
-    UnsoundError,
-    checked_record,
-    damage,
+    ScopeRecord,
+    check_record,
+    make_damage_error,
     why,
 )
-from core.records.record_ring import Recorded, Ring, Rows, record_of, sound
+from core.records.record_ring import RingLayout, RowBuffer, ScopeRing, make_record, select_valid_rows
 
 _MAGIC = b"TurnDesk ring\n"
 _VERSION = 1
@@ -42,17 +42,17 @@ _PAGE = 4096
 _CHUNK = 1 << 20
 
 
-def _head(recorded: Recorded, ring: Ring) -> bytes:
+def _head(recorded: RingLayout, ring: ScopeRing) -> bytes:
     told = {
-        "axes": dict(recorded.axes),
+        "axes": dict(recorded.is_rotary_by_axis),
         "inputs": recorded.inputs,
         "outputs": recorded.outputs,
-        "rate": recorded.rate,
-        "began": recorded.began,
-        "machine": recorded.machine,
-        "states": recorded.states,
-        "lasts": recorded.lasts,
-        "rooms": [ring.samples.room, ring.ticks.room],
+        "rate": recorded.sampling_rate_hz,
+        "began": recorded.clock_zero_utc_s,
+        "machine": recorded.machine_name,
+        "states": recorded.state_names,
+        "lasts": recorded.duration_s,
+        "rooms": [ring.samples.capacity, ring.ticks.capacity],
     }
     text = json.dumps(told).encode()
     size = -(-(_START.size + len(text) + 2 * _COUNTS.size) // _PAGE) * _PAGE
@@ -63,12 +63,12 @@ def _head(recorded: Recorded, ring: Ring) -> bytes:
 class RingFile:
     """File of a ring on the disk, created in full size and locked by the one process that writes it.
 
-    The constructor and ``write`` raise RecordError if the file cannot be written.
+    The constructor and ``write_rows`` raise RecordError if the file cannot be written.
     """
 
-    def __init__(self, path: Path, ring: Ring) -> None:
+    def __init__(self, path: Path, ring: ScopeRing) -> None:
         self.path, self._ring = path, ring
-        head = _head(ring.recorded, ring)
+        head = _head(ring.layout, ring)
         self._head = len(head)
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -78,7 +78,7 @@ class RingFile:
         try:
             _lock(self._file, path)
             os.ftruncate(self._file, 0)  # only after the lock, when no other process writes the file
-            _allocate(self._file, len(head) + ring.samples.data.nbytes + ring.ticks.data.nbytes)
+            _allocate(self._file, len(head) + ring.samples.array.nbytes + ring.ticks.array.nbytes)
             _write(self._file, head, 0)
         except OSError as error:
             with suppress(OSError):
@@ -89,18 +89,18 @@ class RingFile:
             os.close(self._file)
             raise
 
-    def write(self, rows: Rows, parts: list[tuple[int, FloatArray]]) -> None:
+    def write_rows(self, rows: RowBuffer, parts: list[tuple[int, FloatArray]]) -> None:
         """Write rows that were appended to the ring, then count them. Raises RecordError."""
         first = rows is self._ring.samples
-        start = self._head if first else self._head + self._ring.samples.data.nbytes
+        start = self._head if first else self._head + self._ring.samples.array.nbytes
         counts = self._head - (2 if first else 1) * _COUNTS.size
-        line = rows.data.shape[1] * 8
-        before = rows.whole - sum(len(part) for _, part in parts)
+        line = rows.array.shape[1] * 8
+        before = rows.rows_completed - sum(len(part) for _, part in parts)
         try:
-            _write(self._file, _COUNTS.pack(rows.whole, before), counts)
+            _write(self._file, _COUNTS.pack(rows.rows_completed, before), counts)
             for slot, part in parts:
                 _write(self._file, np.ascontiguousarray(part, dtype="<f8").tobytes(), start + slot * line)
-            _write(self._file, _COUNTS.pack(rows.whole, rows.whole), counts)
+            _write(self._file, _COUNTS.pack(rows.rows_completed, rows.rows_completed), counts)
         except OSError as error:
             raise why(self.path, error) from error
 
@@ -112,7 +112,7 @@ class RingFile:
 def _lock(file: int, path: Path) -> None:
     """Lock the file. Raises RecordError if another process has locked it."""
     try:
-        lock(file)
+        lock_file(file)
     except OSError as error:
         raise RecordError(
             Message("{path} is being written by another TurnDesk process", path=path), "in-use"
@@ -141,10 +141,10 @@ def _write(file: int, data: bytes, at: int) -> None:
 
 # files of the operator screen, for the present start and for the previous one
 NOW, LAST = "now.ring", "before.ring"
-RUN = "run.ring"  # file of the last run without the operator screen
+RUN_RING_NAME = "run.ring"  # file of the last run without the operator screen
 
 
-def new_ring(folder: Path, name: str, ring: Ring) -> RingFile:
+def create_ring_file(folder: Path, name: str, ring: ScopeRing) -> RingFile:
     """Create the ring file of this start. The last file of the operator screen is renamed to LAST.
 
     Raises RecordError if the file cannot be created.
@@ -170,10 +170,10 @@ def _free(path: Path) -> bool:
 # --- Reading the file, also while it is being written ---------------------------------------------------
 
 
-def is_ring(path: Path) -> bool:
+def is_ring_file(path: Path) -> bool:
     """Return whether a file begins like a ring file; False if it cannot be read."""
     try:
-        with open_input(path) as file:
+        with open_input_file(path) as file:
             return file.read(len(_MAGIC)) == _MAGIC
     except OSError:
         return False
@@ -183,20 +183,20 @@ def is_ring(path: Path) -> bool:
 class _Found:
     """Header of a ring file."""
 
-    recorded: Recorded
+    recorded: RingLayout
     rooms: tuple[int, int]
     head: int
 
 
-def read_ring(path: Path, begin: float = -np.inf, end: float = np.inf) -> Record:
+def read_ring_file(path: Path, begin: float = -np.inf, end: float = np.inf) -> ScopeRecord:
     """Return the record in a ring file, also while the file is being written. Raises RecordError."""
-    with failures_as(partial(damage, path)):
-        return checked_record(_read_ring(path, begin, end))
+    with convert_exceptions(partial(make_damage_error, path)):
+        return check_record(_read_ring(path, begin, end))
 
 
-def _read_ring(path: Path, begin: float, end: float) -> Record:
+def _read_ring(path: Path, begin: float, end: float) -> ScopeRecord:
     try:
-        with open_input(path, MOST_BYTES) as file:
+        with open_input_file(path, MAX_RECORD_BYTES) as file:
             data = file.read(_START.size)
             found = _described(path, data, file.read)
             file.seek(found.head - 2 * _COUNTS.size)
@@ -210,7 +210,7 @@ def _read_ring(path: Path, begin: float, end: float) -> Record:
         _unrolled(data, whole, begun) for data, (_, whole), (begun, _) in zip(rings, counts, now, strict=True)
     )
     times = samples[:, 0]
-    return record_of(found.recorded, samples[(times >= begin) & (times <= end)], ticks)
+    return make_record(found.recorded, samples[(times >= begin) & (times <= end)], ticks)
 
 
 def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found:
@@ -230,11 +230,11 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
             ),
             "newer-version",
         )
-    if not _START.size + length + 2 * _COUNTS.size <= head <= MOST_BYTES:
-        raise UnsoundError("the file header has an invalid length")
+    if not _START.size + length + 2 * _COUNTS.size <= head <= MAX_RECORD_BYTES:
+        raise InconsistentRecordError("the file header has an invalid length")
     try:
         told = json.loads(read(length))
-        recorded = Recorded(
+        recorded = RingLayout(
             {str(name): bool(rotary) for name, rotary in told["axes"].items()},
             tuple(map(str, told["inputs"])),
             tuple(map(str, told["outputs"])),
@@ -256,8 +256,10 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
     widths = (found.recorded.sample_width, found.recorded.tick_width)
     for room, width in zip(found.rooms, widths, strict=True):
         size = room * (width + 1) * 8
-        if not 0 < size <= MOST_BYTES:
-            raise UnsoundError(Message("the row count in the file header, {room}, is not valid", room=room))
+        if not 0 < size <= MAX_RECORD_BYTES:
+            raise InconsistentRecordError(
+                Message("the row count in the file header, {room}, is not valid", room=room)
+            )
         data = read(size)
         if len(data) != size:
             raise RecordError(
@@ -279,4 +281,4 @@ def _unrolled(data: FloatArray, whole: int, begun: int) -> FloatArray:
     at = first % room
     rows = np.concatenate((data[at:], data[:at]))[: whole - first]
     lost = max(0, begun - room - first)
-    return sound(rows[lost:], first + lost)
+    return select_valid_rows(rows[lost:], first + lost)

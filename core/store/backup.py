@@ -11,15 +11,15 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from core.file_lock import unfinished_file
-from core.file_placing import put_in_place
+from core.file_lock import create_unfinished_file
+from core.file_replacement import replace_atomically
 from core.message import Message
-from core.store import damaged_rows, database, log_damage, people, program_records, row_sums
-from core.store.database import make_folder
-from core.store.people import PersonRow
-from core.store.store_connection import WriterLock, companions, connect, version_of
-from core.store.store_errors import Cause, StoreError, cause_of, said, why
-from core.store.store_file import FILE_NAME, has_store, real_path
+from core.store import damaged_rows, database, log_damage, program_records, row_checksums, user_records
+from core.store.database import create_store_folder
+from core.store.store_connection import WriterLock, connect_store, get_log_and_index_paths, read_store_version
+from core.store.store_errors import StoreError, StoreErrorCause, find_cause, get_system_error_text, why
+from core.store.store_file import STORE_FILE_NAME, has_store, resolve_link
+from core.store.user_records import UserRow
 
 _NAMES = {
     "tool_offsets": "tool offsets",
@@ -34,15 +34,15 @@ _NAMES = {
     "settings": "settings",
     "jobs": "jobs",
 }
-_SUMS = "SELECT tbl, key, sha256 FROM row_sums"
-_NEWEST = (
+_CHECKSUM_QUERY = "SELECT tbl, key, sha256 FROM row_sums"
+_NEWEST_VERSION_QUERY = (
     "SELECT name, sha256 FROM programs JOIN program_versions ON program = programs.id"
     " WHERE number = (SELECT max(number) FROM program_versions WHERE program = programs.id)"
 )
 Found = dict[tuple[str, object], str]
 
 
-def problems(path: Path) -> tuple[str, ...]:
+def find_problems(path: Path) -> tuple[str, ...]:
     """Return the problems found inside the store file ``path``, without writing to the file.
 
     The check covers database pages, references between tables, program texts and row checksums. Raises
@@ -51,28 +51,28 @@ def problems(path: Path) -> tuple[str, ...]:
     return _looked_through(path, _found)
 
 
-def all_problems(path: Path) -> tuple[str, ...]:
+def find_all_problems(path: Path) -> tuple[str, ...]:
     """Return the problems of a store file, including damaged history entries.
 
-    History entries are checked only if ``problems`` finds nothing. A backup with damaged history entries is
-    still usable.
+    History entries are checked only if ``find_problems`` finds nothing. A backup with damaged history
+    entries is still usable.
     """
-    return problems(path) or _looked_through(path, _of_histories)
+    return find_problems(path) or _looked_through(path, _of_histories)
 
 
 def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, ...]]) -> tuple[str, ...]:
     database.check_file(path, thorough=False)
     try:
-        with closing(connect(path, read_only=True)) as connection:
-            log_damage.check_log(path, connection)
+        with closing(connect_store(path, read_only=True)) as connection:
+            log_damage.check_log_is_readable(path, connection)
             return look(connection)
     except sqlite3.Error as error:
         return (Message("the file is damaged: {text}", text=error),)
 
 
 def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
-    newest = version_of(connection) == len(database.migrations())
-    return damaged_rows.damaged_histories(connection) if newest else ()
+    newest = read_store_version(connection) == len(database.load_migrations())
+    return damaged_rows.find_damaged_history(connection) if newest else ()
 
 
 def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
@@ -88,27 +88,29 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
     ]
     found += [
         Message("{which} does not match its checksum", which=which)
-        for which in program_records.spoilt(connection)
+        for which in program_records.find_damaged_versions(connection)
     ]
-    found += damaged_rows.damaged(connection, row_sums.sealed_before(version_of(connection)))
+    found += damaged_rows.find_damaged_rows(
+        connection, row_checksums.list_tables_with_checksums(read_store_version(connection))
+    )
     return tuple(found)
 
 
-def backup(folder: Path, target: Path) -> None:
+def back_up_store(folder: Path, target: Path) -> None:
     """Copy the store of ``folder`` to ``target`` in its present state, even while the store is being written.
 
     The copy contains the names and levels of the users, but no PINs, because anyone with the file could try
     all PINs. Raises StoreError if the folder has no intact store, or if ``target`` exists and is not a backup
     of a store.
     """
-    path = folder / FILE_NAME
+    path = folder / STORE_FILE_NAME
     if not has_store(folder):
         raise StoreError(
             Message("no data store exists in {folder} yet, so there is nothing to back up", folder=folder),
             "no-store",
         )
     if _is_there(target):
-        database.check_kind(target)
+        database.check_is_file(target)
         if target.samefile(path):
             raise StoreError(
                 Message(
@@ -117,7 +119,7 @@ def backup(folder: Path, target: Path) -> None:
                 "store-itself",
             )
         database.check_header(target)
-    found = problems(path)
+    found = find_problems(path)
     if found:
         raise StoreError(
             Message(
@@ -127,10 +129,10 @@ def backup(folder: Path, target: Path) -> None:
             ),
             "damaged",
         )
-    _copy(path, target, people.forget_pins)
+    _copy(path, target, user_records.erase_pins)
 
 
-def restore(folder: Path, source: Path) -> Path | None:
+def restore_store(folder: Path, source: Path) -> Path | None:
     """Replace the store of ``folder`` by a backup and return the path of the saved old store.
 
     The result is None if the folder had no store. The backup is checked first. The users and PINs of this
@@ -138,7 +140,7 @@ def restore(folder: Path, source: Path) -> Path | None:
     the restored store has no users, so the caller must require a service reset first. Raises StoreError if
     the backup is damaged or the store is in use.
     """
-    found = problems(source)
+    found = find_problems(source)
     if found:
         raise StoreError(
             Message(
@@ -148,12 +150,12 @@ def restore(folder: Path, source: Path) -> Path | None:
             ),
             "damaged-backup",
         )
-    make_folder(folder)
-    path = folder / FILE_NAME
+    create_store_folder(folder)
+    path = folder / STORE_FILE_NAME
     with closing(WriterLock(folder)):
         there = has_store(folder)
         if there:
-            database.check_kind(path)
+            database.check_is_file(path)
         if there and path.samefile(source):
             raise StoreError(
                 Message(
@@ -161,32 +163,32 @@ def restore(folder: Path, source: Path) -> Path | None:
                 ),
                 "store-itself",
             )
-        here = _people_of(path) if there else None
-        kept = _keep(path) if there else None
-        for leftover in companions(path):
+        here = _read_users(path) if there else None
+        kept = _save_old_store(path) if there else None
+        for leftover in get_log_and_index_paths(path):
             leftover.unlink(missing_ok=True)
-        _copy(source, real_path(path), partial(_put_people, here))
+        _copy(source, resolve_link(path), partial(_replace_users, here))
         return kept
 
 
-def _people_of(path: Path) -> tuple[PersonRow, ...]:
+def _read_users(path: Path) -> tuple[UserRow, ...]:
     """Return the users of the store that is about to be replaced; () if they cannot be read."""
     try:
         database.check_header(path)
-        with closing(connect(path, read_only=True)) as connection:
-            return people.people(connection).rows
+        with closing(connect_store(path, read_only=True)) as connection:
+            return user_records.read_user_list(connection).rows
     except (StoreError, sqlite3.Error):
         return ()
 
 
-def _put_people(rows: tuple[PersonRow, ...] | None, copy: sqlite3.Connection) -> None:
+def _replace_users(rows: tuple[UserRow, ...] | None, copy: sqlite3.Connection) -> None:
     """Replace the users of the restored copy by ``rows``.
 
     None means that no store existed before, so the copy retains the users of the backup.
     """
-    if rows or (rows is not None and row_sums.columns(copy, "people")):
-        database.migrate(copy, database.migrations())
-        people.replace_all(copy, rows)
+    if rows or (rows is not None and row_checksums.list_checksummed_columns(copy, "people")):
+        database.migrate(copy, database.load_migrations())
+        user_records.replace_all_users(copy, rows)
 
 
 def _is_there(target: Path) -> bool:
@@ -196,19 +198,19 @@ def _is_there(target: Path) -> bool:
         raise _unwritable(target, error) from error
 
 
-def _keep(path: Path) -> Path:
+def _save_old_store(path: Path) -> Path:
     """Copy the store that is about to be replaced, intact or damaged, with its log if it has one."""
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
-    log, _ = companions(path)
-    kept_log, _ = companions(kept)
+    log, _ = get_log_and_index_paths(path)
+    kept_log, _ = get_log_and_index_paths(kept)
     try:
         if log.exists() and log.stat().st_size:
             shutil.copy2(log, kept_log)
-        with unfinished_file(kept) as unfinished:
+        with create_unfinished_file(kept) as unfinished:
             shutil.copy2(path, unfinished)
-            put_in_place(unfinished, kept)
+            replace_atomically(unfinished, kept)
     except OSError as error:
         kept_log.unlink(missing_ok=True)
         raise _unwritable(kept, error) from error
@@ -223,7 +225,7 @@ def _empty_log(path: Path) -> None:
     busy = 0
     with (
         suppress(sqlite3.Error, StoreError),
-        closing(connect(path, read_only=False)) as connection,
+        closing(connect_store(path, read_only=False)) as connection,
     ):
         busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
@@ -242,69 +244,72 @@ def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], Non
     written.
     """
     try:
-        with unfinished_file(target) as unfinished:
+        with create_unfinished_file(target) as unfinished:
             with (
-                closing(connect(source, read_only=True)) as reading,
+                closing(connect_store(source, read_only=True)) as reading,
                 closing(sqlite3.connect(unfinished, isolation_level=None)) as writing,
             ):
                 reading.backup(writing)
                 writing.execute("PRAGMA journal_mode = DELETE")
                 change(writing)
-            put_in_place(unfinished, target)
+            replace_atomically(unfinished, target)
     except (OSError, sqlite3.Error) as error:
         raise _unwritable(target, error) from error
 
 
 def _unwritable(target: Path, error: Exception) -> StoreError:
-    if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
+    if isinstance(error, OSError | sqlite3.Error) and find_cause(target, error) in {
+        StoreErrorCause.FULL,
+        StoreErrorCause.LOCKED,
+    }:
         return why(target, error)
     return StoreError(
         Message(
             "{target} cannot be written ({error}); check the folder, its free space and its permissions",
             target=target,
-            error=said(error),
+            error=get_system_error_text(error),
         ),
         "cannot-write",
     )
 
 
-class Verdict(NamedTuple):
+class BackupVerdict(NamedTuple):
     """The result of checking a backup: its first problem and its differences from the store.
 
-    ``problem`` is empty if the backup is intact. ``differs`` has the number of changed, missing or new items
-    by table. ``older`` means that the backup has an older store version without comparable checksums; only
-    its programs are then compared.
+    ``first_problem`` is empty if the backup is intact. ``difference_counts`` has the number of changed,
+    missing or new items by table. ``is_older`` means that the backup has an older store version without
+    comparable checksums; only its programs are then compared.
     """
 
-    problem: str = ""
-    differs: tuple[tuple[str, int], ...] = ()
-    older: bool = False
+    first_problem: str = ""
+    difference_counts: tuple[tuple[str, int], ...] = ()
+    is_older: bool = False
 
 
-def verdict(now: sqlite3.Connection, path: Path) -> Verdict:
+def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
     """Check a backup page by page and compare it with the open store, without writing to either.
 
     The check reads the whole file and may take some time.
     """
     try:
-        found = problems(path)
+        found = find_problems(path)
         if found:
-            return Verdict(found[0])
-        with closing(connect(path, read_only=True)) as then:
-            older = version_of(then) != version_of(now)
-            return Verdict("", _differing(now, then, sums=not older), older)
+            return BackupVerdict(found[0])
+        with closing(connect_store(path, read_only=True)) as then:
+            older = read_store_version(then) != read_store_version(connection)
+            return BackupVerdict("", _count_differences(connection, then, has_checksums=not older), older)
     except StoreError as error:
-        return Verdict(str(error))
+        return BackupVerdict(str(error))
     except sqlite3.Error as error:
-        return Verdict(str(why(path, error)))
+        return BackupVerdict(str(why(path, error)))
 
 
-def _differing(
-    now: sqlite3.Connection, then: sqlite3.Connection, *, sums: bool
+def _count_differences(
+    now: sqlite3.Connection, then: sqlite3.Connection, *, has_checksums: bool
 ) -> tuple[tuple[str, int], ...]:
     """Return the number of differing items by table, compared by checksum and text and not by time."""
     counts: dict[str, int] = {}
-    here, there = _by_row(now, sums=sums), _by_row(then, sums=sums)
+    here, there = _by_row(now, sums=has_checksums), _by_row(then, sums=has_checksums)
     for row in here.keys() | there.keys():
         if here.get(row) != there.get(row):
             counts[row[0]] = counts.get(row[0], 0) + 1
@@ -313,8 +318,8 @@ def _differing(
 
 
 def _by_row(connection: sqlite3.Connection, *, sums: bool) -> Found:
-    found: Found = {("programs", name): digest for name, digest in connection.execute(_NEWEST)}
+    found: Found = {("programs", name): digest for name, digest in connection.execute(_NEWEST_VERSION_QUERY)}
     if sums:
-        rows = connection.execute(_SUMS).fetchall()
+        rows = connection.execute(_CHECKSUM_QUERY).fetchall()
         found |= {(_NAMES[table], (table, key)): digest for table, key, digest in rows if table in _NAMES}
     return found

@@ -10,16 +10,16 @@ import sqlite3
 from collections.abc import Collection, Sequence
 
 from core.message import Message
-from core.store import row_sums
-from core.store.offsets.offset_tables import LOGS, TABLES
-from core.store.row_sums import HISTORIES, KEYS, Key
+from core.store import row_checksums
+from core.store.offsets.offset_tables import HISTORY_TABLES, OFFSET_TABLES
+from core.store.row_checksums import HISTORY_KEY_COLUMNS, KEY_COLUMNS, RowKey
 from core.store.store_rows import ShapeRow
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
-TABLES_CHANGED = "the database schema differs from the schema that TurnDesk created"
-OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
+SCHEMA_CHANGED_MESSAGE = "the database schema differs from the schema that TurnDesk created"
+TABLES_USED_BY_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
 """The tables of what programs are proved with."""
-_ANEW = "enter the data again, or restore a backup"
+_DEFAULT_REMEDY = "enter the data again, or restore a backup"
 _REMEDY = {
     "part_counts": "count the parts and enter the number, or restore a backup",
     "jobs": "clear the job from the queue ('turndesk jobs clear') and enter the job again",
@@ -46,7 +46,7 @@ _OTHERS = {
 }
 
 
-def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
+def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
     """Restore damaged rows from the history and discard rows that can start from zero.
 
     The result has one message for each row. A row is restored if its last history entry matches the saved
@@ -54,42 +54,49 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
     """
     told: list[str] = []
     connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # no table has a key of this type
-    for table, key in _broken(connection, KEYS):
-        row = history_of(connection, table, key, row_sums.columns(connection, table))
-        saved, now = row_sums.saved_sum(connection, table, key), row_sums.row(connection, table, key)
-        if row is not None and (row == now or row_sums.sum_of(table, row) == saved):
+    for table, key in _broken(connection, KEY_COLUMNS):
+        row = find_last_entered_values(
+            connection, table, key, row_checksums.list_checksummed_columns(connection, table)
+        )
+        saved, now = (
+            row_checksums.read_saved_checksum(connection, table, key),
+            row_checksums.read_row(connection, table, key),
+        )
+        if row is not None and (row == now or row_checksums.calculate_checksum(table, row) == saved):
             marks = ", ".join("?" * len(row))
-            connection.execute(f"DELETE FROM {table} WHERE {KEYS[table]} = ?", (key,))
-            connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_sums.readable(row))
+            connection.execute(f"DELETE FROM {table} WHERE {KEY_COLUMNS[table]} = ?", (key,))
+            connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_checksums.decode_values(row))
             told.append(
                 Message(
                     "{table} was damaged in the data store; the last values entered were restored "
                     "from the history",
-                    table=named(table, key),
+                    table=make_row_label(table, key),
                 )
             )
-        elif table in _PUT_AWAY:
-            told.append(_put_away(connection, table, key))
+        elif table in _DISCARD_FUNCTIONS:
+            told.append(_discard_row(connection, table, key))
     return tuple(told)
 
 
-def _begin_anew(connection: sqlite3.Connection, program: Key) -> str:
+def _begin_anew(connection: sqlite3.Connection, program: RowKey) -> str:
     connection.execute("DELETE FROM runs WHERE program = ?", (program,))
-    return Message("{program} was damaged in the data store and was cleared", program=named("runs", program))
+    return Message(
+        "{program} was damaged in the data store and was cleared", program=make_row_label("runs", program)
+    )
 
 
-def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
+def _retire_damaged_feature(connection: sqlite3.Connection, feature: RowKey) -> str:
     """Retire a damaged feature, or delete it with its readings if it has a value that no feature can have."""
-    row = row_sums.row(connection, "part_features", feature)
+    row = row_checksums.read_row(connection, "part_features", feature)
     which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
     told = Message(
         "{which} was damaged in the data store and was removed from the list of "
         "measured features; enter the feature again",
-        which=named("part_features", which),
+        which=make_row_label("part_features", which),
     )
     every = ", ".join(
         f"{column} = {column}"  # SQLite checks only the bounds of the columns that are set
-        for column in row_sums.columns(connection, "part_features")
+        for column in row_checksums.list_checksummed_columns(connection, "part_features")
         if column not in {"id", "retired"}
     )
     try:
@@ -111,40 +118,40 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
     )
 
 
-_PUT_AWAY = {"runs": _begin_anew, "part_features": _measure_no_more}
+_DISCARD_FUNCTIONS = {"runs": _begin_anew, "part_features": _retire_damaged_feature}
 
 
-def _put_away(connection: sqlite3.Connection, table: str, key: Key) -> str:
+def _discard_row(connection: sqlite3.Connection, table: str, key: RowKey) -> str:
     """Discard a row that cannot be entered again and is useless without its values.
 
     If the row is gone, its checksum is deleted too.
     """
-    told = _PUT_AWAY[table](connection, key)
-    if row_sums.row(connection, table, key) is None:
+    told = _DISCARD_FUNCTIONS[table](connection, key)
+    if row_checksums.read_row(connection, table, key) is None:
         connection.execute("DELETE FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
     return told
 
 
-def _shown(value: row_sums.Value) -> str:
+def _shown(value: row_checksums.ColumnValue) -> str:
     text = value.decode("utf-8", "backslashreplace") if isinstance(value, bytes) else str(value)
     return " ".join(text.split())
 
 
-def damaged(
-    connection: sqlite3.Connection, tables: Collection[str] = KEYS, settings: Collection[str] = ()
+def find_damaged_rows(
+    connection: sqlite3.Connection, tables: Collection[str] = KEY_COLUMNS, settings: Collection[str] = ()
 ) -> tuple[str, ...]:
     """Return a message for each row that does not match its checksum.
 
     Such a row is read as if it had never been set. ``tables`` and ``settings`` limit the check to these
     tables and to these keys of the table of settings.
     """
-    looked = [table for table in KEYS if table in tables or (table == "settings" and settings)]
+    looked = [table for table in KEY_COLUMNS if table in tables or (table == "settings" and settings)]
     return tuple(
         (
             Message(
                 "{table} does not match its checksum and is not used; {table2}",
-                table=named(table, key),
-                table2=_REMEDY.get(table, _ANEW),
+                table=make_row_label(table, key),
+                table2=_REMEDY.get(table, _DEFAULT_REMEDY),
             )
         )
         for table, key in _broken(connection, looked)
@@ -152,48 +159,54 @@ def damaged(
     )
 
 
-def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
+def find_damaged_history(connection: sqlite3.Connection) -> tuple[str, ...]:
     """Return a message for each damaged row of a history table, and one if the database schema has changed.
 
     These tables grow for years. They are checked completely only by ``verify``.
     """
-    tables = () if row_sums.schema_is_whole(connection) else (TABLES_CHANGED,)
+    tables = () if row_checksums.is_schema_intact(connection) else (SCHEMA_CHANGED_MESSAGE,)
     return tables + tuple(
-        Message("{table} was damaged in the data store", table=named(table, key))
-        for table, key in _broken(connection, HISTORIES)
+        Message("{table} was damaged in the data store", table=make_row_label(table, key))
+        for table, key in _broken(connection, HISTORY_KEY_COLUMNS)
     )
 
 
-def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tuple[str, Key]]:
+def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tuple[str, RowKey]]:
     order = list(tables)
-    found = row_sums.all_broken(connection, tables)
+    found = row_checksums.find_all_broken_rows(connection, tables)
     return sorted(found, key=lambda row: (order.index(row[0]), isinstance(row[1], str), row[1]))
 
 
-def named(name: str, key: row_sums.Key) -> str:
+def make_row_label(name: str, key: row_checksums.RowKey) -> str:
     """Return the operator's name for a row of a table with checksums."""
-    table = next((each for each in TABLES.values() if each.name == name), None)
-    if any(log.name == name for log in LOGS):
+    table = next((each for each in OFFSET_TABLES.values() if each.name == name), None)
+    if any(log.name == name for log in HISTORY_TABLES):
         return Message("entry {key} of the offset history", key=key)
     if table is None:
         return Message("{others} {text}", others=_OTHERS[name], text=" ".join(str(key).split()))
     if table.letter != "T" or not isinstance(key, int):
         return f"{table.letter}{key}"
-    return Message("the tool shape of {key}", key=edge_name(key)) if table.row is ShapeRow else edge_name(key)
+    return (
+        Message("the tool shape of {key}", key=format_edge_name(key))
+        if table.row is ShapeRow
+        else format_edge_name(key)
+    )
 
 
-def history_of(
-    connection: sqlite3.Connection, name: str, key: row_sums.Key, columns: Sequence[str]
-) -> tuple[row_sums.Value, ...] | None:
+def find_last_entered_values(
+    connection: sqlite3.Connection, name: str, key: row_checksums.RowKey, columns: Sequence[str]
+) -> tuple[row_checksums.ColumnValue, ...] | None:
     """Return the values of a row as last entered, in the order of ``columns``.
 
     The result is None if the row was never entered or has been cleared.
     """
-    kind = next((kind for kind, table in TABLES.items() if table.name == name), None)
+    kind = next((kind for kind, table in OFFSET_TABLES.items() if table.name == name), None)
     if kind is None:
         return None
-    log = TABLES[kind].log
-    sides = ", ".join(log.key if column == log.key else f"new_{column}" for column in columns)
-    last = f"WHERE {log.key} = ? AND {log.kind} = ? ORDER BY id DESC LIMIT 1"
-    found = row_sums.raw(connection, f"SELECT {sides} FROM {log.name} {last}", (key, kind.value))
+    log = OFFSET_TABLES[kind].log
+    sides = ", ".join(log.key_column if column == log.key_column else f"new_{column}" for column in columns)
+    last = f"WHERE {log.key_column} = ? AND {log.kind_expression} = ? ORDER BY id DESC LIMIT 1"
+    found = row_checksums.query_raw_rows(
+        connection, f"SELECT {sides} FROM {log.name} {last}", (key, kind.value)
+    )
     return None if not found or None in found[0] else found[0]

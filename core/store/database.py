@@ -10,41 +10,41 @@ from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from core import file_placing
-from core.file_lock import forget_killed, unfinished_file
-from core.file_placing import NEW_FILE, put_in_place, restrict_folder
-from core.input_file import open_input
+from core import file_replacement
+from core.file_lock import create_unfinished_file, remove_abandoned_files
+from core.file_replacement import NEW_FILE_MODE, replace_atomically, restrict_folder_access
+from core.input_file import open_input_file
 from core.message import Message
-from core.store import row_sums
-from core.store.log_damage import check_log, put_damaged_log_aside
+from core.store import row_checksums
+from core.store.log_damage import check_log_is_readable, save_damaged_log
 from core.store.store_connection import (
-    WRITTEN_HERE,
+    FOLDERS_OPEN_FOR_WRITING,
     WriterLock,
-    companions,
-    configured,
-    connect,
-    has_log,
-    version_of,
+    configure_connection,
+    connect_store,
+    get_log_and_index_paths,
+    has_write_ahead_log,
+    read_store_version,
 )
-from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_file import FILE_NAME, has_store
+from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
+from core.store.store_file import STORE_FILE_NAME, has_store
 
 APPLICATION_ID = 0x5475724E  # "TurN": identifies a SQLite file as a TurnDesk store
 _MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
 _PRIVATE = ("logs", "backups")  # subfolders that only the owner of the store may read
-INDEX_REBUILT = (
+INDEX_REBUILT_MESSAGE = (
     "an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost"
 )
-_MOST_WORDS = 1000  # SQLite reports damaged pages first
+_MAX_MESSAGES = 1000  # SQLite reports damaged pages first
 # matches "row 3 missing from index …" and "wrong # of entries in index …"
 _INDEX = re.compile(r"\bindex \S+$")
-_VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
-_MENDABLE = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
+_VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_checksums.KEY_COLUMNS)})\b"
+_REPAIRABLE_PATTERN = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
 """What opening mends: an index is made anew from its table, and a value of a wrong type has no good sum."""
 
 
-def migrations() -> tuple[str, ...]:
+def load_migrations() -> tuple[str, ...]:
     """Return the SQL script of each store version, the first version first."""
     scripts = sorted(_MIGRATIONS.glob("*.sql"))
     numbers = [int(script.name.partition("_")[0]) for script in scripts]
@@ -61,11 +61,11 @@ def check_header(path: Path) -> None:
     for writing: when a process closes any handle of the file, it releases all locks that SQLite holds on the
     file in this process. The next program that reads the store would then remove its log.
     """
-    if path.name == FILE_NAME and path.parent.resolve() in WRITTEN_HERE:
+    if path.name == STORE_FILE_NAME and path.parent.resolve() in FOLDERS_OPEN_FOR_WRITING:
         return
-    check_kind(path)
+    check_is_file(path)
     try:
-        with open_input(path) as file:
+        with open_input_file(path) as file:
             header = file.read(100)
     except OSError as error:
         raise why(path, error) from error
@@ -86,7 +86,7 @@ def check_header(path: Path) -> None:
         )
 
 
-def check_kind(path: Path) -> None:
+def check_is_file(path: Path) -> None:
     """Raise StoreError if ``path`` is not a file or a link to a file.
 
     A pipe is not opened, because opening it could block.
@@ -132,11 +132,11 @@ def check_file(path: Path, *, thorough: bool) -> int:
 def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
     """Return the store's version and SQLite's messages about damage that opening the store repairs."""
     check_header(path)
-    newest = len(migrations())
+    newest = len(load_migrations())
     try:
-        with closing(connect(path, read_only=True)) as connection:
-            version = version_of(connection)
-            wrong = _found_wrong(connection) if thorough else []
+        with closing(connect_store(path, read_only=True)) as connection:
+            version = read_store_version(connection)
+            wrong = _find_damage(connection) if thorough else []
     except sqlite3.Error as error:
         raise why(path, error) from error
     if version > newest:
@@ -150,30 +150,32 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
             ),
             "newer-version",
         )
-    damage = [text for text in wrong if not _MENDABLE.search(text)]
+    damage = [text for text in wrong if not _REPAIRABLE_PATTERN.search(text)]
     if damage:
-        raise Cause.DAMAGED.error(path, damage[0])
+        raise StoreErrorCause.DAMAGED.make_error(path, damage[0])
     return version, wrong
 
 
-def _found_wrong(connection: sqlite3.Connection) -> list[str]:
+def _find_damage(connection: sqlite3.Connection) -> list[str]:
     """Return SQLite's messages about damaged pages, indexes and types."""
-    found = connection.execute(f"PRAGMA integrity_check({_MOST_WORDS})")
+    found = connection.execute(f"PRAGMA integrity_check({_MAX_MESSAGES})")
     return [str(text) for (text,) in found if text != "ok"]
 
 
-def _mend_indexes(connection: sqlite3.Connection, path: Path, wrong: list[str]) -> tuple[str, ...]:
+def _rebuild_indexes(
+    connection: sqlite3.Connection, path: Path, damage_messages: list[str]
+) -> tuple[str, ...]:
     """Rebuild the indexes if one does not match its table, and return a message about the repair.
 
     Raises StoreError if the indexes cannot be rebuilt.
     """
-    if not any(_INDEX.search(text) for text in wrong):
+    if not any(_INDEX.search(text) for text in damage_messages):
         return ()
     try:
         connection.execute("REINDEX")
     except sqlite3.IntegrityError as error:  # two rows have the same key, so the correct row is unknown
-        raise Cause.DAMAGED.error(path, error) from error
-    return (INDEX_REBUILT,)
+        raise StoreErrorCause.DAMAGED.make_error(path, error) from error
+    return (INDEX_REBUILT_MESSAGE,)
 
 
 def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
@@ -183,10 +185,10 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
     migration fails; the store then remains at the previous version.
     """
     for number, script in enumerate(scripts, start=1):
-        if number <= version_of(connection):
+        if number <= read_store_version(connection):
             continue
         try:
-            _bring_to(connection, number, script)
+            _run_migration(connection, number, script)
         except sqlite3.Error as error:
             if connection.in_transaction:
                 connection.rollback()
@@ -195,59 +197,63 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
                     "the data store cannot be upgraded to version {number} and stays at the previous "
                     "version: {connection}",
                     number=number,
-                    connection=why(_path_of(connection), error),
+                    connection=why(_find_database_path(connection), error),
                 ),
                 "migration-failed",
             ) from error
-    if len(scripts) >= row_sums.SINCE:
-        row_sums.watch(connection)
+    if len(scripts) >= row_checksums.FIRST_CHECKSUM_VERSION:
+        row_checksums.create_checksum_triggers(connection)
 
 
-def _bring_to(connection: sqlite3.Connection, number: int, script: str) -> None:
+def _run_migration(connection: sqlite3.Connection, number: int, script: str) -> None:
     """Run one migration and recalculate the checksums of all rows that were intact before.
 
     The checksums depend on the columns, which a migration can change.
     """
-    damaged = row_sums.all_broken(connection, row_sums.sealed_before(number - 1))
+    damaged = row_checksums.find_all_broken_rows(
+        connection, row_checksums.list_tables_with_checksums(number - 1)
+    )
     connection.executescript(f"BEGIN IMMEDIATE;\n{script}\nPRAGMA user_version = {number};")
-    if number >= row_sums.SINCE:
-        row_sums.seal_all(connection, damaged)
+    if number >= row_checksums.FIRST_CHECKSUM_VERSION:
+        row_checksums.write_all_checksums(connection, damaged)
     connection.execute("COMMIT")
 
 
-def _path_of(connection: sqlite3.Connection) -> Path:
+def _find_database_path(connection: sqlite3.Connection) -> Path:
     """Return the path of the database file of a connection."""
     return Path(str(connection.execute("PRAGMA database_list").fetchone()[2]))
 
 
-def create(path: Path) -> None:
+def create_store_file(path: Path) -> None:
     """Create an empty store that appears under its name only when it is complete.
 
     Raises StoreError if the store cannot be created.
     """
     unfinished = path.with_name(path.name + ".new")
     try:
-        for leftover in (unfinished, *companions(unfinished)):
+        for leftover in (unfinished, *get_log_and_index_paths(unfinished)):
             leftover.unlink(missing_ok=True)
-        unfinished.touch(NEW_FILE)
+        unfinished.touch(NEW_FILE_MODE)
         with closing(sqlite3.connect(unfinished, isolation_level=None)) as connection:
-            configured(connection)
+            configure_connection(connection)
             # The file gets its final name only when it is complete and on the disk, so the single steps need
             # no syncing.
             connection.execute("PRAGMA synchronous = OFF")
             connection.execute("PRAGMA journal_mode = MEMORY")
             connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            migrate(connection, migrations())
+            migrate(connection, load_migrations())
             connection.execute("PRAGMA journal_mode = WAL")
-        put_in_place(unfinished, path)
+        replace_atomically(unfinished, path)
     except (OSError, sqlite3.Error) as error:
         raise why(path, error) from error
 
 
-def empty() -> sqlite3.Connection:
+def create_empty_store() -> sqlite3.Connection:
     """Return an empty store in memory, for reading before the store file exists."""
-    connection = configured(sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False))
-    migrate(connection, migrations())
+    connection = configure_connection(
+        sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
+    )
+    migrate(connection, load_migrations())
     return connection
 
 
@@ -255,14 +261,14 @@ def empty() -> sqlite3.Connection:
 
 
 @dataclass(frozen=True, slots=True)
-class Opened:
+class OpenedStore:
     """The connections of an open store; ``writer`` is None if the store is open read-only."""
 
     path: Path
     reader: sqlite3.Connection
     writer: sqlite3.Connection | None = None
     lock: WriterLock | None = None
-    mended: tuple[str, ...] = ()  # messages about repaired damage of the file itself
+    repair_messages: tuple[str, ...] = ()  # messages about repaired damage of the file itself
 
     def close(self) -> None:
         """Close the connections, then release the lock. Calling it again has no effect."""
@@ -273,63 +279,63 @@ class Opened:
             self.lock.close()
 
 
-def open_to_read(folder: Path) -> Opened:
+def open_read_only(folder: Path) -> OpenedStore:
     """Open the store read-only; open an empty store in memory if the file does not exist.
 
     Raises StoreError if the file is damaged, has another version, or has a log with lost changes, because the
     store would be read in its state before these changes.
     """
-    path = folder / FILE_NAME
+    path = folder / STORE_FILE_NAME
     if not has_store(folder):
-        return Opened(path, empty())
+        return OpenedStore(path, create_empty_store())
     version = check_file(path, thorough=False)
-    if version < len(migrations()):
+    if version < len(load_migrations()):
         raise StoreError(
             Message("{path} is from an older TurnDesk; upgrade it: turndesk store upgrade", path=path),
             "older-version",
         )
-    reader = connect(path, read_only=True)
+    reader = connect_store(path, read_only=True)
     try:
-        check_log(path, reader)
+        check_log_is_readable(path, reader)
     except StoreError:
         reader.close()
         raise
-    return Opened(path, reader)
+    return OpenedStore(path, reader)
 
 
-def open_to_write(folder: Path) -> Opened:
+def open_for_writing(folder: Path) -> OpenedStore:
     """Lock the store and open it for writing; create or upgrade it if necessary.
 
     Raises StoreError if the store is in use, damaged or of a newer version.
     """
-    path = folder / FILE_NAME
-    make_folder(folder)
+    path = folder / STORE_FILE_NAME
+    create_store_folder(folder)
     with ExitStack() as undo:
         lock = WriterLock(folder)
         undo.callback(lock.close)
-        forget_killed(folder)
+        remove_abandoned_files(folder)
         if not has_store(folder):
             _refuse_lost_file(path)
-            create(path)
+            create_store_file(path)
         version, wrong = _checked(path, thorough=True)
-        put_aside = put_damaged_log_aside(path)
-        lock.opened()
+        put_aside = save_damaged_log(path)
+        lock.mark_file_open()
         writer, mended = _writing(path, version, wrong)
         undo.callback(writer.close)
-        reader = connect(path, read_only=True)
+        reader = connect_store(path, read_only=True)
         undo.pop_all()
-        return Opened(path, reader, writer, lock, put_aside + mended)
+        return OpenedStore(path, reader, writer, lock, put_aside + mended)
 
 
-def make_folder(folder: Path) -> None:
+def create_store_folder(folder: Path) -> None:
     """Create the store's folder and prevent other users from reading the folder, its logs and its backups.
 
     Raises StoreError if the folder cannot be created.
     """
     try:
-        file_placing.make_folder(folder)
+        file_replacement.create_synced_folder(folder)
     except OSError as error:
-        if cause_of(folder, error) is Cause.FULL:
+        if find_cause(folder, error) is StoreErrorCause.FULL:
             raise why(folder, error) from error
         raise StoreError(
             Message(
@@ -340,7 +346,7 @@ def make_folder(folder: Path) -> None:
             "cannot-make-folder",
         ) from error
     for each in (folder, *(folder / name for name in _PRIVATE)):
-        restrict_folder(each)
+        restrict_folder_access(each)
 
 
 def _refuse_lost_file(path: Path) -> None:
@@ -348,8 +354,8 @@ def _refuse_lost_file(path: Path) -> None:
 
     SQLite would otherwise apply the log to the new, empty database.
     """
-    if has_log(path):
-        log, _ = companions(path)
+    if has_write_ahead_log(path):
+        log, _ = get_log_and_index_paths(path)
         raise StoreError(
             Message(
                 "{path} is missing, but its log {log} still exists; put the file back, or move "
@@ -362,13 +368,13 @@ def _refuse_lost_file(path: Path) -> None:
 
 
 def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connection, tuple[str, ...]]:
-    connection = connect(path, read_only=False)
+    connection = connect_store(path, read_only=False)
     try:
-        if 0 < version < len(migrations()):
-            _keep_copy(connection, path.with_name(f"{path.stem}-version-{version}.db"))
+        if 0 < version < len(load_migrations()):
+            _save_copy(connection, path.with_name(f"{path.stem}-version-{version}.db"))
         connection.execute("PRAGMA journal_mode = WAL")
-        mended = _mend_indexes(connection, path, wrong)
-        migrate(connection, migrations())
+        mended = _rebuild_indexes(connection, path, wrong)
+        migrate(connection, load_migrations())
     except (OSError, sqlite3.Error) as error:
         connection.close()
         raise why(path, error) from error
@@ -378,10 +384,10 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
     return connection, mended
 
 
-def _keep_copy(connection: sqlite3.Connection, target: Path) -> None:
+def _save_copy(connection: sqlite3.Connection, target: Path) -> None:
     """Save a copy of the store next to it before the store is upgraded. Raises OSError."""
-    with unfinished_file(target) as unfinished:
+    with create_unfinished_file(target) as unfinished:
         with closing(sqlite3.connect(unfinished)) as copy:
             connection.backup(copy)
             copy.execute("PRAGMA journal_mode = DELETE")
-        put_in_place(unfinished, target)
+        replace_atomically(unfinished, target)

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from core.message import pack_message, unpack_message
 from core.store.store_access import StoreAccess, WaitingEntries
-from core.store.store_rows import EventRow, utc_now
+from core.store.store_rows import EventRow, get_utc_now_text
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
 
-def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
+def add_events(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
     """Add events to the log."""
     connection.executemany(
         "INSERT INTO events (at, kind, text, line, record, who, message) VALUES (?, ?, ?, ?, ?, ?, ?)",
@@ -23,8 +23,8 @@ def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
     )
 
 
-def events(
-    connection: sqlite3.Connection, search: str, limit: int, kinds: Collection[str] = ()
+def find_events(
+    connection: sqlite3.Connection, search_text: str, limit: int, kinds: Collection[str] = ()
 ) -> tuple[EventRow, ...]:
     """Return the latest events whose kind or text contains ``search``, newest first.
 
@@ -35,7 +35,7 @@ def events(
         " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
         " AND (?2 = '[]' OR kind IN (SELECT value FROM json_each(?2)))"
         " ORDER BY id DESC LIMIT ?3",
-        (search, json.dumps(sorted(kinds)), limit),
+        (search_text, json.dumps(sorted(kinds)), limit),
     )
     return tuple(map(_event, rows))
 
@@ -45,7 +45,7 @@ def _event(row: tuple[Any, ...]) -> EventRow:
     return EventRow(at, kind, unpack_message(packed, text), *more)
 
 
-def events_between(
+def find_events_between(
     connection: sqlite3.Connection, kinds: Collection[str], since: str, until: str
 ) -> tuple[EventRow, ...]:
     """Return the events of these kinds from ``since`` to before ``until`` (UTC), oldest first."""
@@ -71,11 +71,13 @@ class EventLog:
         ``search`` selects events whose kind or text contains it, ignoring case. ``kinds`` selects events of
         these kinds; all kinds if empty.
         """
-        return self._store.query(events, search, limit, kinds)
+        return self._store.run_query(find_events, search, limit, kinds)
 
-    def log_event(self, kind: str, text: str, line: int = 0, record: str = "", who: str = "") -> Future[None]:
+    def log_event(
+        self, kind: str, text: str, line: int = 0, record: str = "", author: str = ""
+    ) -> Future[None]:
         """Log an event with the present time. The event is not lost if the disk is full."""
-        return self.log_events([EventRow(utc_now(), kind, text, line, record, who)])
+        return self.log_events([EventRow(get_utc_now_text(), kind, text, line, record, author)])
 
     def log_events(self, events: Iterable[EventRow]) -> Future[None]:
         """Log several events with their own times. The events are not lost if the disk is full."""
@@ -83,6 +85,6 @@ class EventLog:
 
         def keeping(unwritten: WaitingEntries) -> None:
             for row in rows:
-                unwritten.event(row)
+                unwritten.add_event(row)
 
         return self._store.keep(keeping)

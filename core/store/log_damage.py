@@ -14,16 +14,21 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
-from core.file_placing import restrict, write_in_place
+from core.file_replacement import restrict_access, write_atomically
 from core.message import Message
-from core.store.store_connection import companions, connect, has_log, in_use
+from core.store.store_connection import (
+    connect_store,
+    get_log_and_index_paths,
+    has_write_ahead_log,
+    is_open_for_writing,
+)
 from core.store.store_errors import StoreError, why
 
 _HEAD = struct.Struct(">8I")  # magic, version, page size, sequence number, two salts, two checksums
 _FRAME = struct.Struct(">6I")  # page number, number of pages after a commit, two salts, two checksums
 _MAGIC = 0x377F0682  # the lowest bit is 1 if the checksums use big-endian words
-_TAKEN = struct.Struct("=I")  # number of entries that SQLite accepts, stored in its index
-_TAKEN_AT = 16
+_FRAME_COUNT_STRUCT = struct.Struct("=I")  # number of entries that SQLite accepts, stored in its index
+_FRAME_COUNT_OFFSET = 16
 _SMALLEST = 512  # bytes in the smallest page
 _WORD = 0xFFFFFFFF
 
@@ -33,16 +38,16 @@ Pair = tuple[int, int]
 class _Frame(NamedTuple):
     """An entry of the log, with the data from which its checksum is calculated.
 
-    ``ends`` is true for the last entry of a change.
+    ``is_commit`` is true for the last entry of a change.
     """
 
-    ends: bool
+    is_commit: bool
     salts: Pair
     sums: Pair
-    summed: bytes  # page number and size, followed by the page
+    checksummed_data: bytes  # page number and size, followed by the page
 
 
-def lost_changes(log: Path, index: Path) -> int:
+def count_lost_changes(log: Path, index: Path) -> int:
     """Return the number of complete changes in ``log`` that SQLite ignores according to its ``index``.
 
     A reader must have the store open, and no process may write the store. Raises OSError if a file cannot be
@@ -54,13 +59,15 @@ def lost_changes(log: Path, index: Path) -> int:
         return 0
     magic, _, page, _, *rest = _HEAD.unpack(head)
     frames = _frames(content, page) if _SMALLEST <= page <= 65536 else []
-    if not _is_whole(head, magic):
-        return sum(frame.ends and frame.salts == frames[0].salts for frame in frames) or 1
+    if not _has_valid_header(head, magic):
+        return sum(frame.is_commit and frame.salts == frames[0].salts for frame in frames) or 1
     salts, sums = tuple(rest[:2]), tuple(rest[2:])
-    taken = _TAKEN.unpack_from(index.read_bytes()[: _TAKEN_AT + _TAKEN.size], _TAKEN_AT)[0]
+    taken = _FRAME_COUNT_STRUCT.unpack_from(
+        index.read_bytes()[: _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size], _FRAME_COUNT_OFFSET
+    )[0]
     before = frames[taken - 1].sums if taken else sums
     behind = frames[taken:]
-    ends = [at for at, frame in enumerate(behind) if frame.ends and _one_is_equal(frame.salts, salts)]
+    ends = [at for at, frame in enumerate(behind) if frame.is_commit and _has_equal_salt(frame.salts, salts)]
     if len(ends) == 1 and _is_torn(behind[: ends[0] + 1], before, salts, _order(magic)):
         return 0
     return len(ends)
@@ -76,7 +83,7 @@ def _frames(content: bytes, page: int) -> list[_Frame]:
     return found
 
 
-def _one_is_equal(its: Pair, salts: tuple[int, ...]) -> bool:
+def _has_equal_salt(its: Pair, salts: tuple[int, ...]) -> bool:
     """Return whether one of two salts matches the log's salts.
 
     An entry of an earlier use of the log has two different salts. An entry with one damaged salt still has
@@ -89,64 +96,68 @@ def _one_is_equal(its: Pair, salts: tuple[int, ...]) -> bool:
 # damage.
 
 
-def _is_torn(frames: list[_Frame], before: Pair, salts: tuple[int, ...], order: str) -> bool:
+def _is_torn(frames: list[_Frame], previous_sums: Pair, salts: tuple[int, ...], order: str) -> bool:
     """Return whether parts of the last change never reached the disk.
 
     The result is False if a single damaged word explains the wrong checksums. A disk writes whole sectors,
     whereas a bit that flips later is in one word and has a known effect on the checksums.
     """
-    if not all(_one_is_equal(frame.salts, salts) for frame in frames):
+    if not all(_has_equal_salt(frame.salts, salts) for frame in frames):
         return True
     wrong = []
     for frame in frames:
-        one, two = _sums(frame.summed, before, order)
+        one, two = _calculate_checksums(frame.checksummed_data, previous_sums, order)
         wrong.append(((frame.sums[0] - one) & _WORD, (frame.sums[1] - two) & _WORD))
-        before = frame.sums
+        previous_sums = frame.sums
     bad = [at for at, each in enumerate(wrong) if each != (0, 0)]
     # the damaged checksum is also the start value of the next checksum
     if len(bad) == 2 and bad[1] == bad[0] + 1:
         return 0 not in wrong[bad[0]]
-    return len(bad) > 1 or (len(bad) == 1 and not _is_one_word(wrong[bad[0]], len(frames[0].summed)))
+    return len(bad) > 1 or (
+        len(bad) == 1 and not _is_one_word(wrong[bad[0]], len(frames[0].checksummed_data))
+    )
 
 
-def _is_one_word(wrong: Pair, size: int) -> bool:
+def _is_one_word(checksum_differences: Pair, size: int) -> bool:
     """Return whether one damaged word of an entry or of its checksum explains the error of the checksums."""
-    if 0 in wrong:
+    if 0 in checksum_differences:
         return True
     effects = [(1, 1), (0, 1)]  # effects of the two words of the last pair on both checksums
     for _ in range(size // 8):
-        if any((wrong[0] * b - wrong[1] * a) & _WORD == 0 for a, b in effects):
+        if any((checksum_differences[0] * b - checksum_differences[1] * a) & _WORD == 0 for a, b in effects):
             return True
         effects = [((a + b) & _WORD, (a + 2 * b) & _WORD) for a, b in effects]
     return False
 
 
-def _is_whole(head: bytes, magic: int) -> bool:
+def _has_valid_header(head: bytes, magic: int) -> bool:
     """Return whether the header of a log matches its checksum."""
-    return magic & ~1 == _MAGIC and _sums(head[:24], (0, 0), _order(magic)) == struct.unpack(">2I", head[24:])
+    return magic & ~1 == _MAGIC and _calculate_checksums(head[:24], (0, 0), _order(magic)) == struct.unpack(
+        ">2I", head[24:]
+    )
 
 
 def _order(magic: int) -> str:
     return ">" if magic & 1 else "<"
 
 
-def _sums(summed: bytes, before: Pair, order: str) -> Pair:
-    """Return SQLite's checksums over pairs of words, continued from ``before``."""
-    one, two = before
-    words = struct.unpack(f"{order}{len(summed) // 4}I", summed)
+def _calculate_checksums(checksummed_data: bytes, previous_sums: Pair, order: str) -> Pair:
+    """Return SQLite's checksums over pairs of words, continued from ``previous_sums``."""
+    one, two = previous_sums
+    words = struct.unpack(f"{order}{len(checksummed_data) // 4}I", checksummed_data)
     for first, second in zip(words[::2], words[1::2], strict=True):
         one = (one + first + two) & _WORD
         two = (two + second + one) & _WORD
     return one, two
 
 
-def check_log(path: Path, reader: sqlite3.Connection) -> None:
+def check_log_is_readable(path: Path, reader: sqlite3.Connection) -> None:
     """Raise StoreError if changes in the log cannot be read and TurnDesk is not running.
 
     A running TurnDesk has already reported the damage. The check is then skipped, because it opens and closes
     SQLite's index (see ``check_header``).
     """
-    if in_use(path.parent):
+    if is_open_for_writing(path.parent):
         return
     lost = _changes_lost(path, reader)
     if lost:
@@ -162,23 +173,23 @@ def check_log(path: Path, reader: sqlite3.Connection) -> None:
         )
 
 
-def put_damaged_log_aside(path: Path) -> tuple[str, ...]:
+def save_damaged_log(path: Path) -> tuple[str, ...]:
     """Save a copy of a log that has lost changes before the log is overwritten.
 
     The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError.
     """
-    log, _ = companions(path)
-    with closing(connect(path, read_only=True)) as reader:
+    log, _ = get_log_and_index_paths(path)
+    with closing(connect_store(path, read_only=True)) as reader:
         lost = _changes_lost(path, reader)
     if not lost:
         return ()
     kept = path.with_name(f"{path.stem}-damaged-log-{datetime.now(UTC):%Y%m%dT%H%M%SZ}")
     try:
-        write_in_place(kept, log.read_bytes())
-        restrict(kept)
+        write_atomically(kept, log.read_bytes())
+        restrict_access(kept)
     except OSError as error:
         raise why(kept, error) from error
-    with closing(connect(path, read_only=False)) as writer:
+    with closing(connect_store(path, read_only=False)) as writer:
         writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return (
         (
@@ -194,14 +205,14 @@ def put_damaged_log_aside(path: Path) -> tuple[str, ...]:
 
 
 def _changes_lost(path: Path, reader: sqlite3.Connection) -> int:
-    log, index = companions(path)
-    if not has_log(path):
+    log, index = get_log_and_index_paths(path)
+    if not has_write_ahead_log(path):
         return 0
     try:
         reader.execute(
             "SELECT count(*) FROM sqlite_master"
         ).fetchone()  # makes SQLite determine how much of the log is valid
-        return lost_changes(log, index)
+        return count_lost_changes(log, index)
     except sqlite3.Error as error:
         raise why(path, error) from error
     except FileNotFoundError:

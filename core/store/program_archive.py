@@ -23,35 +23,37 @@ class ProgramArchive:
 
     def list_programs(self) -> tuple[ProgramRow, ...]:
         """Return all programs with their newest version, sorted by name."""
-        return self._store.query(program_records.listing)
+        return self._store.run_query(program_records.read_programs)
 
     def list_versions(self, name: str) -> tuple[VersionRow, ...]:
         """Return every version of a program, newest first; () for an unknown program."""
-        return self._store.query(program_records.versions, name)
+        return self._store.run_query(program_records.read_versions, name)
 
     def load_version(self, name: str, version: int | None = None) -> bytes:
         """Return the text of a version as it was saved; None as ``version`` selects the newest version.
 
         Raises StoreError if the version is unknown or does not match its checksum.
         """
-        return self._store.query(program_records.load, name, version)
+        return self._store.run_query(program_records.load_version, name, version)
 
-    def save_version(self, name: str, text: bytes, why: str, *, who: str = "") -> Future[int]:
+    def save_version(self, name: str, text: bytes, reason: str, *, author: str = "") -> Future[int]:
         """Save a version; the result is its number. A text equal to the newest version is not saved again."""
-        return self._store.write(lambda c: program_records.save(c, name, text, why, who))
+        return self._store.write(
+            lambda c: program_records.save_program_version(c, name, text, reason, author)
+        )
 
-    def keep_loaded_version(self, name: str, text: bytes, why: str) -> Future[None]:
+    def save_loaded_version(self, name: str, text: bytes, reason: str) -> Future[None]:
         """Save the version that is about to run. Later runs of this name are recorded for this text."""
-        key = program_records.key_of_bytes(text)
+        key = program_records.make_bytes_key(text)
         self._loaded.add(name, key)
 
         def operation(connection: sqlite3.Connection) -> None:
-            job_queue.load_text(connection, name, key)
-            program_records.save(connection, name, text, why)
+            job_queue.record_loaded_text(connection, name, key)
+            program_records.save_program_version(connection, name, text, reason)
 
-        return self._store.keep_latest(("text", name), operation)
+        return self._store.store_latest_durably(("text", name), operation)
 
     def rename_program(self, old: str, new: str) -> Future[None]:
         """Rename a program together with its versions, run record and notes."""
         self._loaded.rename(old, new)
-        return self._store.write(lambda c: program_records.renamed(c, old, new))
+        return self._store.write(lambda c: program_records.transfer_records(c, old, new))

@@ -12,17 +12,22 @@ import sqlite3
 from hashlib import sha256
 
 from core.message import Message
-from core.store import row_sums, settings
+from core.store import row_checksums, settings
 from core.store.store_errors import StoreError
-from core.store.store_file import notes_key, part_key, stock_key, text_key
-from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
+from core.store.store_file import (
+    make_loaded_text_key,
+    make_notes_setting_key,
+    make_part_setting_key,
+    make_stock_setting_key,
+)
+from core.store.store_rows import ProgramRow, RunRow, VersionRow, get_utc_now_text
 
 _NAME_BYTES = 200
 _FORBIDDEN = frozenset('/\\:*?"<>|')
-PREFIX = "sha256:"  # no file name contains a colon
+RECORD_KEY_PREFIX = "sha256:"  # no file name contains a colon
 
 
-def check_name(name: str) -> None:
+def check_program_name(name: str) -> None:
     """Raise StoreError if the name would not be a valid file name on every common operating system."""
     clean = name.strip() == name and name not in ("", ".", "..")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
@@ -35,13 +40,15 @@ def check_name(name: str) -> None:
         )
 
 
-def save(connection: sqlite3.Connection, name: str, text: bytes, why: str, who: str = "") -> int:
+def save_program_version(
+    connection: sqlite3.Connection, name: str, text: bytes, reason: str, author: str = ""
+) -> int:
     """Save ``text`` as the newest version and return its number.
 
     A text equal to the newest version is not saved again. Raises StoreError if the name is invalid.
     """
-    check_name(name)
-    now, digest = utc_now(), sha256(text).hexdigest()
+    check_program_name(name)
+    now, digest = get_utc_now_text(), sha256(text).hexdigest()
     connection.execute(
         "INSERT INTO programs (name, created) VALUES (?, ?) ON CONFLICT DO NOTHING", (name, now)
     )
@@ -56,12 +63,12 @@ def save(connection: sqlite3.Connection, name: str, text: bytes, why: str, who: 
     connection.execute(
         "INSERT INTO program_versions (program, number, text, sha256, saved, why, who)"
         " VALUES (?, ?, ?, ?, ?, ?, ?)",
-        (program, number, text, digest, now, why, who),
+        (program, number, text, digest, now, reason, author),
     )
     return number
 
 
-def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
+def read_programs(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
     """Return all programs with their newest version, sorted by name."""
     rows = connection.execute(
         "SELECT name, created, max(number), saved"
@@ -71,7 +78,7 @@ def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
     return tuple(ProgramRow(*row) for row in rows)
 
 
-def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
+def read_versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
     """Return every version of a program, newest first; () for an unknown program."""
     rows = connection.execute(
         "SELECT number, sha256, saved, why, length(text), who FROM program_versions"
@@ -81,7 +88,7 @@ def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...
     return tuple(VersionRow(*row) for row in rows)
 
 
-def load(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
+def load_version(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
     """Return the text of a version; None as ``version`` selects the newest version.
 
     Raises StoreError if the version is unknown or does not match its checksum.
@@ -100,8 +107,8 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
         )
         raise StoreError(Message(template, name=f"{name!r}", version=version), "no-program")
     number, text, digest = row
-    if not _is_whole(text, digest):
-        shown = _in_line(number)
+    if not _matches_checksum(text, digest):
+        shown = _flatten_number(number)
         raise StoreError(
             Message(
                 "{name} version {value} does not match its checksum; load another version or "
@@ -114,101 +121,109 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
     return bytes(text)
 
 
-def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
+def find_damaged_versions(connection: sqlite3.Connection) -> tuple[str, ...]:
     """Return name and number of every version whose text does not match its checksum."""
     rows = connection.execute(
         "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
     )
     return tuple(
-        Message("{name} version {number}", name=f"{name!r}", number=_in_line(number))
+        Message("{name} version {number}", name=f"{name!r}", number=_flatten_number(number))
         for name, number, text, digest in rows
-        if not _is_whole(text, digest)
+        if not _matches_checksum(text, digest)
     )
 
 
-def _in_line(number: object) -> str:
+def _flatten_number(number: object) -> str:
     """Return a version number as one line of text, because a damaged number may be any text."""
     return " ".join(str(number).split())
 
 
-def _is_whole(text: object, digest: object) -> bool:
+def _matches_checksum(text: object, digest: object) -> bool:
     """Return whether a stored text matches its checksum. Values that are not bytes never match."""
     return isinstance(text, bytes) and sha256(text).hexdigest() == digest
 
 
-def parts(connection: sqlite3.Connection, program: str) -> int:
+def read_part_count(connection: sqlite3.Connection, program: str) -> int:
     """Return the parts made since the count was last reset; 0 if the row is damaged."""
-    row = row_sums.whole_row(connection, "part_counts", key_of(connection, program))
+    row = row_checksums.read_intact_row(connection, "part_counts", find_loaded_key(connection, program))
     return _count(row[1]) if row else 0
 
 
-def _count(value: row_sums.Value) -> int:
+def _count(value: row_checksums.ColumnValue) -> int:
     return value if isinstance(value, int) else 0
 
 
-def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> None:
-    """Add ``by`` parts to the part count, or subtract them if ``by`` is negative, down to zero."""
-    program = key_of(connection, program)
-    count = max(0, parts(connection, program) + by)
+def add_parts(connection: sqlite3.Connection, program: str, added_count: int, counted_at: str) -> None:
+    """Add ``added_count`` parts to the part count, or subtract them if ``added_count`` is negative, down to
+    zero.
+    """
+    program = find_loaded_key(connection, program)
+    count = max(0, read_part_count(connection, program) + added_count)
     connection.execute(
         "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
         " ON CONFLICT (program) DO UPDATE SET count = ?2, last = ?3",
-        (program, count, last),
+        (program, count, counted_at),
     )
 
 
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
     """Reset the part count of a program to zero."""
-    key = key_of(connection, program)
+    key = find_loaded_key(connection, program)
     connection.execute("DELETE FROM part_counts WHERE program = ?", (key,))
 
 
-def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
+def read_run_records(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
     """Return the run record of each program name, sorted by name: the record of the text last loaded.
 
     Damaged rows are omitted.
     """
-    records, names = by_text(connection), keys_by_name(connection)
-    names |= {key: key for key in records if not key.startswith(PREFIX) and key not in names}
+    records, names = read_run_records_by_text(connection), read_keys_by_name(connection)
+    names |= {key: key for key in records if not key.startswith(RECORD_KEY_PREFIX) and key not in names}
     return tuple(records[key]._replace(program=name) for name, key in sorted(names.items()) if key in records)
 
 
-def by_text(connection: sqlite3.Connection) -> dict[str, RunRow]:
+def read_run_records_by_text(connection: sqlite3.Connection) -> dict[str, RunRow]:
     """Return the run record of each program text, by record key. Damaged rows are omitted."""
-    runs = row_sums.whole_rows(connection, "runs")
-    counts = row_sums.whole_rows(connection, "part_counts")
+    runs = row_checksums.read_intact_rows(connection, "runs")
+    counts = row_checksums.read_intact_rows(connection, "part_counts")
     return {str(key): _run(str(key), runs.get(key), counts.get(key)) for key in runs.keys() | counts.keys()}
 
 
-def _run(program: str, run: row_sums.Row | None, count: row_sums.Row | None) -> RunRow:
+def _run(program: str, run: row_checksums.RowValues | None, count: row_checksums.RowValues | None) -> RunRow:
     parts = _count(count[1]) if count else 0
-    return RunRow._make((program, parts, *row_sums.readable(run[1:]))) if run else RunRow(program, parts)
+    return (
+        RunRow._make((program, parts, *row_checksums.decode_values(run[1:])))
+        if run
+        else RunRow(program, parts)
+    )
 
 
-def started(connection: sqlite3.Connection, program: str, at: str) -> None:
+def record_start(connection: sqlite3.Connection, program: str, started_at: str) -> None:
     """Record that a run of the program started at ``at``."""
     key = _row(connection, program)
-    connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at, key))
+    connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (started_at, key))
 
 
-def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
+def record_outcome(connection: sqlite3.Connection, program: str, outcome: str) -> None:
     """Record the outcome of the program's last run."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, key))
 
 
-def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
+def record_interrupted_runs(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
     """Record ``outcome`` for all runs without an end; return the names of their programs."""
     rows = connection.execute(
         "UPDATE runs SET outcome = ? WHERE started IS NOT NULL AND coalesce(outcome, '') = ''"
         " RETURNING program",
         (outcome,),
     )
-    names = {key: name for name, key in keys_by_name(connection).items()}
+    names = {key: name for name, key in read_keys_by_name(connection).items()}
     return tuple(sorted(names.get(program, program) for (program,) in rows))
 
 
-def finished(connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float) -> None:
+def record_complete_cycles(
+    connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float
+) -> None:
     """Record complete cycles: the time of the last cycle and the shortest time, in seconds.
 
     A stored shortest time of zero is replaced, because older versions stored zero for a part that a restart
@@ -222,22 +237,24 @@ def finished(connection: sqlite3.Connection, program: str, seconds: float, count
     )
 
 
-def proved(connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str) -> None:
+def record_proof(
+    connection: sqlite3.Connection, program: str, result: str, cycle_time_s: float | None, proved_at: str
+) -> None:
     """Record the result of a proof at ``at``, and its calculated cycle time in seconds or None."""
     key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
-        (at, result, planned, key),
+        (proved_at, result, cycle_time_s, key),
     )
 
 
-def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
+def transfer_records(connection: sqlite3.Connection, old: str, new: str) -> None:
     """Transfer versions, counts, run records, settings and measured features to a new program name.
 
     If the new name already has versions or features, they remain, and those of the old name are not moved.
     Raises StoreError if the new name is invalid.
     """
-    check_name(new)
+    check_program_name(new)
     connection.execute(
         "UPDATE programs SET name = ?2 WHERE name = ?1 AND NOT EXISTS"
         " (SELECT 1 FROM programs WHERE name = ?2)",
@@ -253,40 +270,42 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
     for table in ("runs", "part_counts"):
         connection.execute(f"DELETE FROM {table} WHERE program = ?", (new,))
         connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
-    for key in (stock_key, part_key, notes_key, text_key):
+    for key in (make_stock_setting_key, make_part_setting_key, make_notes_setting_key, make_loaded_text_key):
         connection.execute("DELETE FROM settings WHERE key = ?", (key(new),))
         connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new), key(old)))
 
 
 def _row(connection: sqlite3.Connection, program: str) -> str:
     """Create the program's row of ``runs`` if it is missing, and return its record key."""
-    key = key_of(connection, program)
+    key = find_loaded_key(connection, program)
     connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
     return key
 
 
-def key_of_text(text: str) -> str:
+def make_text_key(text: str) -> str:
     """Return the record key of a program text."""
-    return key_of_bytes(text.encode("utf-8", "surrogateescape"))
+    return make_bytes_key(text.encode("utf-8", "surrogateescape"))
 
 
-def key_of_bytes(data: bytes) -> str:
+def make_bytes_key(data: bytes) -> str:
     """Return the record key of a stored version, given as bytes."""
-    return PREFIX + sha256(data).hexdigest()
+    return RECORD_KEY_PREFIX + sha256(data).hexdigest()
 
 
-def key_of(connection: sqlite3.Connection, program: str) -> str:
+def find_loaded_key(connection: sqlite3.Connection, program: str) -> str:
     """Return the record key of the text last loaded under a name. A record key is returned unchanged."""
-    if program.startswith(PREFIX):
+    if program.startswith(RECORD_KEY_PREFIX):
         return program
-    stored = settings.read_setting(connection, text_key(program))
-    return stored if isinstance(stored, str) and stored.startswith(PREFIX) else program
+    stored = settings.read_setting(connection, make_loaded_text_key(program))
+    return stored if isinstance(stored, str) and stored.startswith(RECORD_KEY_PREFIX) else program
 
 
-def keys_by_name(connection: sqlite3.Connection) -> dict[str, str]:
+def read_keys_by_name(connection: sqlite3.Connection) -> dict[str, str]:
     """Return the record key of each program name that has one."""
-    rows = connection.execute("SELECT key, value FROM settings WHERE key LIKE ? || '%'", (text_key(""),))
-    found = ((str(key).removeprefix(text_key("")), _loaded(value)) for key, value in rows)
+    rows = connection.execute(
+        "SELECT key, value FROM settings WHERE key LIKE ? || '%'", (make_loaded_text_key(""),)
+    )
+    found = ((str(key).removeprefix(make_loaded_text_key("")), _loaded(value)) for key, value in rows)
     return {name: key for name, key in found if key}
 
 
@@ -295,10 +314,10 @@ def _loaded(value: object) -> str:
         key = json.loads(str(value))
     except ValueError:
         return ""  # a damaged row, which is reported when the store is opened
-    return key if isinstance(key, str) and key.startswith(PREFIX) else ""
+    return key if isinstance(key, str) and key.startswith(RECORD_KEY_PREFIX) else ""
 
 
-def adopt(connection: sqlite3.Connection, program: str) -> None:
+def assign_rows_to_text(connection: sqlite3.Connection, program: str) -> None:
     """Move rows that an older version stored by name to the text that was proved then, if it is known."""
     row = connection.execute(
         "SELECT sha256 FROM program_versions JOIN programs ON program = programs.id"
@@ -310,5 +329,6 @@ def adopt(connection: sqlite3.Connection, program: str) -> None:
         return
     for table in ("runs", "part_counts"):
         connection.execute(
-            f"UPDATE OR IGNORE {table} SET program = ? WHERE program = ?", (f"{PREFIX}{row[0]}", program)
+            f"UPDATE OR IGNORE {table} SET program = ? WHERE program = ?",
+            (f"{RECORD_KEY_PREFIX}{row[0]}", program),
         )

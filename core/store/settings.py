@@ -7,7 +7,7 @@ import sqlite3
 from typing import TYPE_CHECKING
 
 from core.message import Message
-from core.store import row_sums
+from core.store import row_checksums
 from core.store.store_access import StoreAccess
 from core.store.store_errors import StoreError
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 def read_setting(connection: sqlite3.Connection, key: str) -> object:
     """Return the value stored under ``key``; None if it is not set or does not match its checksum."""
-    row = row_sums.whole_row(connection, "settings", key)
-    return json.loads(str(row_sums.readable(row)[1])) if row else None
+    row = row_checksums.read_intact_row(connection, "settings", key)
+    return json.loads(str(row_checksums.decode_values(row)[1])) if row else None
 
 
 def save_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
@@ -29,14 +29,14 @@ def save_setting(connection: sqlite3.Connection, key: str, value: object) -> Non
     if value is None:
         connection.execute("DELETE FROM settings WHERE key = ?", (key,))
         return
-    text = setting_text(key, value)
+    text = encode_setting(key, value)
     connection.execute(
         "INSERT INTO settings VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET value = excluded.value",
         (key, text),
     )
 
 
-def setting_text(key: str, value: object) -> str:
+def encode_setting(key: str, value: object) -> str:
     """Return a value as JSON. Raises StoreError that names ``key`` if JSON cannot represent the value."""
     try:
         return json.dumps(value, allow_nan=False)
@@ -54,12 +54,12 @@ class Settings:
 
     def read_setting(self, key: str) -> object:
         """Return the value stored under ``key``; None if it is not set."""
-        return self._store.query(read_setting, key)
+        return self._store.run_query(read_setting, key)
 
     def save_setting(self, key: str, value: object) -> Future[None]:
         """Store a value under ``key``; None deletes the key.
 
         Raises StoreError if JSON cannot represent the value.
         """
-        setting_text(key, value)
-        return self._store.keep_latest(("setting", key), lambda c: save_setting(c, key, value))
+        encode_setting(key, value)
+        return self._store.store_latest_durably(("setting", key), lambda c: save_setting(c, key, value))

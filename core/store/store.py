@@ -12,23 +12,23 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from core.message import Message
 from core.store import damaged_rows, event_log
-from core.store.database import Opened, open_to_read, open_to_write
+from core.store.database import OpenedStore, open_for_writing, open_read_only
 from core.store.event_log import EventLog
 from core.store.offsets.offset_repository import OffsetTables
-from core.store.people import PeopleRecords
 from core.store.production.job_queue import JobQueue
 from core.store.production.part_cycles import CycleRecords
 from core.store.production.run_records import LoadedTexts, RunRecords
 from core.store.program_archive import ProgramArchive
-from core.store.row_sums import KEYS
+from core.store.row_checksums import KEY_COLUMNS
 from core.store.settings import Settings
-from core.store.store_errors import Cause, StoreError, why
-from core.store.store_rows import EventRow, utc_now
+from core.store.store_errors import StoreError, StoreErrorCause, why
+from core.store.store_rows import EventRow, get_utc_now_text
+from core.store.user_records import UserRecords
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
-    from core.store.store_access import Backlog, Keeping, Operation
+    from core.store.store_access import EntryWriter, Operation, PendingEntries
     from core.store.store_writer import StoreWriter
 
 __all__ = ["Store", "StoreError"]
@@ -40,16 +40,16 @@ P = ParamSpec("P")
 class Store:
     """An open store with its repositories, one for each subject.
 
-    ``open`` creates a store. Methods can be called from any thread. ``repaired`` has a message for each
-    damaged row that was restored when the store was opened.
+    ``open`` creates a store. Methods can be called from any thread. ``repair_messages`` has a message for
+    each damaged row that was restored when the store was opened.
     """
 
-    def __init__(self, opened: Opened) -> None:
+    def __init__(self, opened: OpenedStore) -> None:
         self.path = opened.path
         self._reader = opened.reader
         self._reading = threading.Lock()
         self._opened = opened
-        self.repaired = _repaired(opened.writer, opened.mended) if opened.writer else ()
+        self.repair_messages = _repair_damage(opened.writer, opened.repair_messages) if opened.writer else ()
         self._writer = _writer(opened.writer, opened.path) if opened.writer else None
         loaded = LoadedTexts()
         self.offsets = OffsetTables(self)
@@ -59,7 +59,7 @@ class Store:
         self.jobs = JobQueue(self)
         self.events = EventLog(self)
         self.settings = Settings(self)
-        self.people = PeopleRecords(self)
+        self.people = UserRecords(self)
 
     @classmethod
     def open(cls, folder: Path, *, read_only: bool = False) -> Store:
@@ -69,7 +69,7 @@ class Store:
         exist. Raises StoreError if another process has the store open for writing, or if the file is damaged,
         from another program or of a newer version. Such a file is not changed.
         """
-        return cls(open_to_read(folder) if read_only else open_to_write(folder))
+        return cls(open_read_only(folder) if read_only else open_for_writing(folder))
 
     def close(self) -> None:
         """Write all queued changes, then release the store. Calling it again has no effect.
@@ -92,12 +92,12 @@ class Store:
     @property
     def trouble(self) -> str:
         """Reason why the last write failed; empty if it succeeded."""
-        return self._writer.trouble if self._writer else ""
+        return self._writer.last_error if self._writer else ""
 
     @property
-    def backlog(self) -> Backlog | None:
+    def pending_entries(self) -> PendingEntries | None:
         """Entries that wait in memory for the disk; None if there are none."""
-        return self._writer.backlog if self._writer else None
+        return self._writer.pending_entries if self._writer else None
 
     @contextmanager
     def read(self) -> Iterator[sqlite3.Connection]:
@@ -108,7 +108,7 @@ class Store:
         """
         with self._reading:
             try:
-                with _one_moment(self._reader) as connection:
+                with _read_transaction(self._reader) as connection:
                     yield connection
             except sqlite3.ProgrammingError as error:
                 raise StoreError(
@@ -117,9 +117,9 @@ class Store:
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
             except UnicodeDecodeError as error:  # a column name is damaged
-                raise Cause.DAMAGED.error(self.path, error) from error
+                raise StoreErrorCause.DAMAGED.make_error(self.path, error) from error
 
-    def query(
+    def run_query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
     ) -> T:
         """Return the result of ``function``, called with the connection for reading and these arguments."""
@@ -127,14 +127,14 @@ class Store:
             return function(connection, *args, **named)
 
     def find_damaged_rows(
-        self, tables: Collection[str] = KEYS, settings: Collection[str] = ()
+        self, tables: Collection[str] = KEY_COLUMNS, settings: Collection[str] = ()
     ) -> tuple[str, ...]:
         """Return a message for each row that does not match its checksum.
 
         ``tables`` are the tables to check. ``settings`` are the keys to check if ``tables`` does not include
         the table of settings.
         """
-        return self.query(damaged_rows.damaged, tables, settings)
+        return self.run_query(damaged_rows.find_damaged_rows, tables, settings)
 
     def write(self, operation: Operation[T]) -> Future[T]:
         """Run ``operation`` in its own transaction on the writer's thread.
@@ -143,16 +143,16 @@ class Store:
         the change is rejected or fails; the store is then unchanged. Raises StoreError immediately for a
         read-only store.
         """
-        return self._open_writer().post(operation)
+        return self._open_writer().queue_operation(operation)
 
-    def keep(self, keeping: Keeping) -> Future[None]:
+    def keep(self, add_entry: EntryWriter) -> Future[None]:
         """Store an entry that must not be lost.
 
-        If the disk is full, the entry waits in memory (``backlog``) and is written when the disk has space.
-        The future raises StoreError while the entry waits. Raises StoreError immediately for a read-only
-        store.
+        If the disk is full, the entry waits in memory (``pending_entries``) and is written when the disk has
+        space. The future raises StoreError while the entry waits. Raises StoreError immediately for a
+        read-only store.
         """
-        return self._open_writer().keep(keeping)
+        return self._open_writer().queue_entry(add_entry)
 
     def _open_writer(self) -> StoreWriter:
         if self._writer is None:
@@ -161,13 +161,13 @@ class Store:
             )
         return self._writer
 
-    def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
+    def store_latest_durably(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
         """Store an operation as ``keep`` does, replacing a waiting operation with the same ``key``."""
-        return self.keep(lambda unwritten: unwritten.latest(key, operation))
+        return self.keep(lambda unwritten: unwritten.replace_operation(key, operation))
 
 
 @contextmanager
-def _one_moment(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
+def _read_transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
     """Open a read-only transaction, which neither waits for a writer nor blocks one."""
     connection.execute("BEGIN")
     try:
@@ -183,18 +183,18 @@ def _writer(connection: sqlite3.Connection, path: Path) -> StoreWriter:
     return StoreWriter(connection, path)
 
 
-def _repaired(connection: sqlite3.Connection, mended: tuple[str, ...]) -> tuple[str, ...]:
+def _repair_damage(connection: sqlite3.Connection, repair_messages: tuple[str, ...]) -> tuple[str, ...]:
     """Repair damaged rows, log the repairs and return their messages.
 
     If the disk cannot be written, the repair is left for the next start.
     """
     try:
         connection.execute("BEGIN IMMEDIATE")
-        told = (*mended, *damaged_rows.repair(connection))
-        event_log.log(connection, (EventRow(utc_now(), "warning", text) for text in told))
+        told = (*repair_messages, *damaged_rows.repair_rows(connection))
+        event_log.add_events(connection, (EventRow(get_utc_now_text(), "warning", text) for text in told))
         connection.execute("COMMIT")
     except sqlite3.Error:
         with suppress(sqlite3.Error):
             connection.rollback()
-        return mended
+        return repair_messages
     return told

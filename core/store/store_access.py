@@ -20,21 +20,21 @@ Operation = Callable[[sqlite3.Connection], T]
 
 
 @dataclass(frozen=True, slots=True)
-class Backlog:
-    """The numbers of entries that wait in memory for the disk, and the reason (``why``)."""
+class PendingEntries:
+    """The numbers of entries that wait in memory for the disk, and the reason (``reason``)."""
 
-    why: str
-    events: int = 0
-    parts: int = 0
-    others: int = 0
-    dropped: int = 0  # events lost because the memory for them was full too
+    reason: str
+    event_count: int = 0
+    part_count: int = 0
+    other_count: int = 0
+    dropped_event_count: int = 0  # events lost because the memory for them was full too
     # By program: whether the count is set to zero first, and the parts to add.
-    counts: Mapping[str, tuple[bool, int]] = field(default_factory=dict)
+    part_counts_by_program: Mapping[str, tuple[bool, int]] = field(default_factory=dict)
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Description of the entries that would be lost if TurnDesk ended now."""
-        counts = ((self.parts, "part"), (self.events, "event"), (self.others, "other entry"))
+        counts = ((self.part_count, "part"), (self.event_count, "event"), (self.other_count, "other entry"))
         found = [
             Message("{count} {name}", count=count, name=_many(name, count)) for count, name in counts if count
         ]
@@ -50,23 +50,23 @@ def _many(name: str, count: int) -> str:
 class WaitingEntries(Protocol):
     """Entries that wait in memory for the disk. ``program`` is a record key or a program name."""
 
-    def event(self, row: EventRow) -> None:
+    def add_event(self, row: EventRow) -> None:
         """Add an event."""
 
-    def count_parts(self, program: str, by: int) -> None:
-        """Add parts to a part count, or subtract them if ``by`` is negative."""
+    def add_parts(self, program: str, count: int) -> None:
+        """Add parts to a part count, or subtract them if ``count`` is negative."""
 
     def reset_parts(self, program: str) -> None:
         """Set a part count to zero."""
 
-    def cycle(self, program: str, seconds: float) -> None:
+    def add_cycle(self, program: str, seconds: float) -> None:
         """Add a complete cycle and its time in seconds."""
 
-    def latest(self, name: tuple[str, str], operation: Operation[object]) -> None:
+    def replace_operation(self, name: tuple[str, str], operation: Operation[object]) -> None:
         """Add an operation that replaces a waiting operation with the same name."""
 
 
-Keeping = Callable[[WaitingEntries], None]
+EntryWriter = Callable[[WaitingEntries], None]
 
 
 class StoreAccess(Protocol):
@@ -78,13 +78,13 @@ class StoreAccess(Protocol):
     """
 
     @property
-    def backlog(self) -> Backlog | None:
+    def pending_entries(self) -> PendingEntries | None:
         """Entries that wait in memory for the disk; None if there are none."""
 
     def read(self) -> AbstractContextManager[sqlite3.Connection]:
         """Open a read transaction for one thread at a time and return its connection as a context manager."""
 
-    def query(
+    def run_query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
     ) -> T:
         """Return the result of ``function``, called with the connection for reading and these arguments."""
@@ -92,11 +92,11 @@ class StoreAccess(Protocol):
     def write(self, operation: Operation[T]) -> Future[T]:
         """Run ``operation`` in its own transaction. If it fails, the change is dropped."""
 
-    def keep(self, keeping: Keeping) -> Future[None]:
+    def keep(self, add_entry: EntryWriter) -> Future[None]:
         """Store an entry that must not be lost. On a full disk it is written when space is available again.
 
         The future raises StoreError while the entry waits in memory.
         """
 
-    def keep_latest(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
+    def store_latest_durably(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
         """Store an operation as ``keep`` does, replacing a waiting operation with the same ``key``."""

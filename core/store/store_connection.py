@@ -9,20 +9,20 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from core.file_lock import is_locked, lock, mark_locked
-from core.file_placing import NEW_FILE
+from core.file_lock import is_locked, lock_file, mark_locked
+from core.file_replacement import NEW_FILE_MODE
 from core.message import Message
-from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_file import real_path
+from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
+from core.store.store_file import resolve_link
 
 _BUSY_SECONDS = 5.0
 _LOCK = "turndesk.lock"
 _TRIES, _BETWEEN = 10, 0.01  # attempts to get the writer lock, seconds between two attempts
-WRITTEN_HERE = set[Path]()  # folders whose store this process has open for writing
-_NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
+FOLDERS_OPEN_FOR_WRITING = set[Path]()  # folders whose store this process has open for writing
+_UNWRITABLE_CAUSES = frozenset({StoreErrorCause.FULL, StoreErrorCause.FORBIDDEN})
 
 
-def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
+def connect_store(path: Path, *, read_only: bool) -> sqlite3.Connection:
     """Open a connection to the store, in which the caller begins transactions explicitly.
 
     Reading needs a little disk space next to the file for SQLite's index. If the disk has no space and the
@@ -31,7 +31,7 @@ def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
     try:
         return _connection(path, "mode=ro" if read_only else "mode=rw")
     except sqlite3.Error as error:
-        if not read_only or cause_of(path, error) not in _NO_ROOM or has_log(path):
+        if not read_only or find_cause(path, error) not in _UNWRITABLE_CAUSES or has_write_ahead_log(path):
             raise why(path, error) from error
     try:
         return _connection(path, "mode=ro&immutable=1")
@@ -48,7 +48,7 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
         timeout=_BUSY_SECONDS,
     )
     try:
-        return configured(connection)
+        return configure_connection(connection)
     except UnicodeDecodeError as error:  # SQLite's message quotes the damaged text
         connection.close()
         raise _damaged() from error
@@ -64,12 +64,12 @@ def _damaged() -> sqlite3.DatabaseError:
     return error
 
 
-def has_log(path: Path) -> bool:
-    log, _ = companions(path)
+def has_write_ahead_log(path: Path) -> bool:
+    log, _ = get_log_and_index_paths(path)
     return log.exists() and log.stat().st_size > 0
 
 
-def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
+def configure_connection(connection: sqlite3.Connection) -> sqlite3.Connection:
     """Set a connection to sync every commit to the disk and to enforce foreign keys.
 
     Returns the connection.
@@ -79,14 +79,14 @@ def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
     return connection
 
 
-def version_of(connection: sqlite3.Connection) -> int:
+def read_store_version(connection: sqlite3.Connection) -> int:
     """Return the number of the store's last migration; 0 for an empty database."""
     return int(connection.execute("PRAGMA user_version").fetchone()[0])
 
 
-def companions(path: Path) -> tuple[Path, Path]:
+def get_log_and_index_paths(path: Path) -> tuple[Path, Path]:
     """Return the paths of SQLite's write-ahead log and of its index, with links resolved."""
-    path = real_path(path)
+    path = resolve_link(path)
     return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
 
 
@@ -103,11 +103,11 @@ class WriterLock:
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
         self._path = folder / _LOCK
         try:
-            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, NEW_FILE)
+            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, NEW_FILE_MODE)
         except OSError as error:
             raise why(self._path, error) from error
         try:
-            self._take(pause)
+            self._lock_file(pause)
         except OSError as error:
             owner = os.read(self._file, 32).decode("ascii", "replace").strip()
             os.close(self._file)
@@ -129,28 +129,28 @@ class WriterLock:
             os.lseek(self._file, 0, os.SEEK_SET)
             os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
 
-    def _take(self, pause: Callable[[float], object]) -> None:
+    def _lock_file(self, pause: Callable[[float], object]) -> None:
         """Lock the file. Raises OSError if the lock remains unavailable."""
         for _ in range(_TRIES):
             with suppress(OSError):
-                lock(self._file)
+                lock_file(self._file)
                 return
             pause(_BETWEEN)
-        lock(self._file)
+        lock_file(self._file)
 
-    def opened(self) -> None:
+    def mark_file_open(self) -> None:
         """Record that SQLite now has the store file open in this process."""
-        WRITTEN_HERE.add(self._folder)
+        FOLDERS_OPEN_FOR_WRITING.add(self._folder)
 
     def close(self) -> None:
         """Release the store. Calling it again has no effect."""
         if self._file >= 0:
-            WRITTEN_HERE.discard(self._folder)
+            FOLDERS_OPEN_FOR_WRITING.discard(self._folder)
             os.close(self._file)
             self._file = -1
 
 
-def in_use(folder: Path) -> bool:
+def is_open_for_writing(folder: Path) -> bool:
     """Return whether a process has the store of this folder open for writing, without locking the store."""
     try:
         file = os.open(folder / _LOCK, os.O_RDONLY)

@@ -13,20 +13,20 @@ from core.message import CodedError, Message
 class StoreError(CodedError):
     """The store cannot do a requested operation. The text has the reason, the file and a remedy.
 
-    ``passing`` is true if the obstacle may disappear without intervention, such as a full disk or another
-    program's lock.
+    ``is_temporary`` is true if the obstacle may disappear without intervention, such as a full disk or
+    another program's lock.
     """
 
-    passing = False
+    is_temporary = False
 
 
-_ROOM = 64 * 1024  # bytes, more than SQLite's index needs
+_TRIAL_FILE_BYTES = 64 * 1024  # bytes, more than SQLite's index needs
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
-_GONE = frozenset({errno.ENOENT, errno.ENOTDIR})
+_MISSING_ERRNOS = frozenset({errno.ENOENT, errno.ENOTDIR})
 _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
-class Cause(Enum):
+class StoreErrorCause(Enum):
     """Cause of a store error; the value is the template of the message."""
 
     FULL = "the disk is full, so nothing more can be written to {path}; free up space on that disk"
@@ -44,39 +44,39 @@ class Cause(Enum):
     OTHER = "{path} cannot be used ({error}) and was not changed"
 
     @property
-    def code(self) -> str:
+    def error_code(self) -> str:
         """Code of the error."""
         return _CODES[self]
 
-    def error(self, path: Path, error: object) -> StoreError:
+    def make_error(self, path: Path, error: object) -> StoreError:
         """Return the StoreError with this cause for the file ``path``."""
-        made = StoreError(Message(self.value, path=path, error=" ".join(str(error).split())), self.code)
-        made.passing = self in {Cause.FULL, Cause.LOCKED}
+        made = StoreError(Message(self.value, path=path, error=" ".join(str(error).split())), self.error_code)
+        made.is_temporary = self in {StoreErrorCause.FULL, StoreErrorCause.LOCKED}
         return made
 
 
 _CODES = {
-    Cause.FULL: "disk-full",
-    Cause.LOCKED: "locked",
-    Cause.FORBIDDEN: "forbidden",
-    Cause.GONE: "not-found",
-    Cause.FAILING: "disk-failing",
-    Cause.HANGS: "disk-hangs",
-    Cause.DAMAGED: "damaged",
-    Cause.OTHER: "unusable",
+    StoreErrorCause.FULL: "disk-full",
+    StoreErrorCause.LOCKED: "locked",
+    StoreErrorCause.FORBIDDEN: "forbidden",
+    StoreErrorCause.GONE: "not-found",
+    StoreErrorCause.FAILING: "disk-failing",
+    StoreErrorCause.HANGS: "disk-hangs",
+    StoreErrorCause.DAMAGED: "damaged",
+    StoreErrorCause.OTHER: "unusable",
 }
 
 _BY_CODE = {
-    sqlite3.SQLITE_FULL: Cause.FULL,
-    sqlite3.SQLITE_BUSY: Cause.LOCKED,
-    sqlite3.SQLITE_LOCKED: Cause.LOCKED,
-    sqlite3.SQLITE_PERM: Cause.FORBIDDEN,
-    sqlite3.SQLITE_AUTH: Cause.FORBIDDEN,
-    sqlite3.SQLITE_READONLY: Cause.FORBIDDEN,
-    sqlite3.SQLITE_CANTOPEN: Cause.FORBIDDEN,
-    sqlite3.SQLITE_IOERR: Cause.FAILING,
-    sqlite3.SQLITE_CORRUPT: Cause.DAMAGED,
-    sqlite3.SQLITE_NOTADB: Cause.DAMAGED,
+    sqlite3.SQLITE_FULL: StoreErrorCause.FULL,
+    sqlite3.SQLITE_BUSY: StoreErrorCause.LOCKED,
+    sqlite3.SQLITE_LOCKED: StoreErrorCause.LOCKED,
+    sqlite3.SQLITE_PERM: StoreErrorCause.FORBIDDEN,
+    sqlite3.SQLITE_AUTH: StoreErrorCause.FORBIDDEN,
+    sqlite3.SQLITE_READONLY: StoreErrorCause.FORBIDDEN,
+    sqlite3.SQLITE_CANTOPEN: StoreErrorCause.FORBIDDEN,
+    sqlite3.SQLITE_IOERR: StoreErrorCause.FAILING,
+    sqlite3.SQLITE_CORRUPT: StoreErrorCause.DAMAGED,
+    sqlite3.SQLITE_NOTADB: StoreErrorCause.DAMAGED,
 }
 
 
@@ -84,7 +84,7 @@ _BY_CODE = {
 _DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")
 
 
-def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
+def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
     """Return the cause of an error from SQLite or the system.
 
     If SQLite's code is ambiguous, a trial file is written to the folder to find the system's error.
@@ -92,12 +92,14 @@ def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
     if isinstance(error, OSError):
         return _of_system(error)
     if any(words in str(error) for words in _DAMAGED_WORDS):
-        return Cause.DAMAGED
+        return StoreErrorCause.DAMAGED
     code = getattr(error, "sqlite_errorcode", None)
     if code == sqlite3.SQLITE_READONLY_DBMOVED:
-        return Cause.GONE
-    cause = _BY_CODE.get(code & 0xFF, Cause.OTHER) if isinstance(code, int) else Cause.OTHER
-    if cause in {Cause.FAILING, Cause.FORBIDDEN}:
+        return StoreErrorCause.GONE
+    cause = (
+        _BY_CODE.get(code & 0xFF, StoreErrorCause.OTHER) if isinstance(code, int) else StoreErrorCause.OTHER
+    )
+    if cause in {StoreErrorCause.FAILING, StoreErrorCause.FORBIDDEN}:
         tried = _trial(path.parent)
         return _of_system(tried) if tried is not None else cause
     return cause
@@ -105,10 +107,10 @@ def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
 
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
     """Return the StoreError for an error with the store in ``path``."""
-    return cause_of(path, error).error(path, said(error))
+    return find_cause(path, error).make_error(path, get_system_error_text(error))
 
 
-def said(error: Exception) -> str:
+def get_system_error_text(error: Exception) -> str:
     """Return the system's text for an error, without the error number and the file name."""
     return (isinstance(error, OSError) and error.strerror) or str(error)
 
@@ -119,18 +121,18 @@ def _trial(folder: Path) -> OSError | None:
 
     try:
         with TemporaryFile(dir=folder) as file:
-            file.write(bytes(_ROOM))
+            file.write(bytes(_TRIAL_FILE_BYTES))
             file.flush()
     except OSError as error:
         return error
     return None
 
 
-def _of_system(error: OSError) -> Cause:
+def _of_system(error: OSError) -> StoreErrorCause:
     if error.errno in _FULL:
-        return Cause.FULL
+        return StoreErrorCause.FULL
     if error.errno in _FORBIDDEN:
-        return Cause.FORBIDDEN
-    if error.errno in _GONE:
-        return Cause.GONE
-    return Cause.FAILING if error.errno == errno.EIO else Cause.OTHER
+        return StoreErrorCause.FORBIDDEN
+    if error.errno in _MISSING_ERRNOS:
+        return StoreErrorCause.GONE
+    return StoreErrorCause.FAILING if error.errno == errno.EIO else StoreErrorCause.OTHER

@@ -9,20 +9,30 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from core.file_lock import unfinished_folder
-from core.file_placing import folder_in_place
-from core.input_file import MB, input_bytes
+from core.file_lock import create_unfinished_folder
+from core.file_replacement import place_folder
+from core.input_file import BYTES_PER_MB, read_input_bytes
 from core.message import Message
 from core.store import program_records
 from core.store.offsets import offset_tables
-from core.store.offsets.offset_tables import Reason
+from core.store.offsets.offset_tables import ChangeReason
 from core.store.store import Store
-from core.store.store_errors import Cause, StoreError, cause_of, said, why
-from core.store.store_rows import FIELDS, EventRow, Field, Kind, Row, RunRow, Sort, Value, inches
-from core.tool_edges import edge_of, tool_of
+from core.store.store_errors import StoreError, StoreErrorCause, find_cause, get_system_error_text, why
+from core.store.store_rows import (
+    FIELDS_BY_KIND,
+    EventRow,
+    FieldType,
+    FieldValue,
+    OffsetKind,
+    OffsetRow,
+    RowField,
+    RunRow,
+    convert_to_inches,
+)
+from core.tool_edges import get_edge_number, get_tool_number
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
-TABLES = {  # complete tables of measured parts and mills, in mm and seconds as stored
+TABLES_BY_FILE_NAME = {  # complete tables of measured parts and mills, in mm and seconds as stored
     "features.csv": "part_features",
     "readings.csv": "part_readings",
     "cycles.csv": "part_cycles",
@@ -33,12 +43,12 @@ TABLES = {  # complete tables of measured parts and mills, in mm and seconds as 
     "mill_tools.csv": "mill_tools",
     "presets.csv": "datum_presets",
 }
-TABLE_OF = {Kind.MILL_TOOL: "mill_tools.csv", Kind.PRESET: "presets.csv"}
+MILL_FILE_NAMES = {OffsetKind.MILL_TOOL: "mill_tools.csv", OffsetKind.PRESET: "presets.csv"}
 _ALL = 2**62
-_LARGEST = 64 * MB  # limit for one table or program
+_LARGEST = 64 * BYTES_PER_MB  # limit for one table or program
 
 
-def export(store: Store, folder: Path) -> int:
+def export_store(store: Store, folder: Path) -> int:
     """Write the newest version of every program and the other data; return the number of programs.
 
     The folder appears only when it is complete. Raises StoreError if the folder exists and is not empty, or
@@ -50,18 +60,18 @@ def export(store: Store, folder: Path) -> int:
                 Message("{folder} is not empty; specify a new folder for the export", folder=folder),
                 "folder-not-empty",
             )
-        with unfinished_folder(folder) as scratch:
+        with create_unfinished_folder(folder) as scratch:
             unfinished = scratch / folder.name
             count = _write_all(store, unfinished)
-            folder_in_place(unfinished, folder)
+            place_folder(unfinished, folder)
     except OSError as error:
-        if cause_of(folder, error) is Cause.FULL:
+        if find_cause(folder, error) is StoreErrorCause.FULL:
             raise why(folder, error) from error
         raise StoreError(
             Message(
                 "{target} cannot be written ({error}); check the folder, its free space and its permissions",
                 target=folder,
-                error=said(error),
+                error=get_system_error_text(error),
             ),
             "cannot-write",
         ) from error
@@ -77,7 +87,7 @@ def _write_all(store: Store, folder: Path) -> int:
     _write_table(folder / EVENTS, EventRow._fields, reversed(store.events.read_events(limit=_ALL)))
     _write_table(folder / RUNS, _run_columns(), store.runs.read_records())
     with store.read() as connection:
-        for name, table in TABLES.items():
+        for name, table in TABLES_BY_FILE_NAME.items():
             rows = connection.execute(f"SELECT * FROM {table}")
             _write_table(folder / name, (column[0] for column in rows.description), rows)
     return len(names)
@@ -97,38 +107,42 @@ def _file_name(name: object) -> str:
 
 def _offset_lines(store: Store) -> Iterator[str]:
     yield "# Offsets in inches; X is a radius."
-    for code, zero in store.offsets.zero.read_rows().items():
+    for code, zero in store.offsets.zero_offsets.read_rows().items():
         yield Message("[zero.{code}]  # mm and degrees", code=code)
         yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
-    tools, shapes = store.offsets.tools.read_rows(), store.offsets.shapes.read_rows()
+    tools, shapes = store.offsets.tool_offsets.read_rows(), store.offsets.tool_shapes.read_rows()
     for number in sorted({*tools, *shapes}):
         yield f"[tool.{_key(number)}]"
         if number in tools:
-            yield from _entry_lines(Kind.TOOL, tools[number])
+            yield from _entry_lines(OffsetKind.TOOL, tools[number])
         if number in shapes:
-            yield from _entry_lines(Kind.SHAPE, shapes[number])
-    for number, row in store.offsets.secondary.read_rows().items():
+            yield from _entry_lines(OffsetKind.SHAPE, shapes[number])
+    for number, row in store.offsets.secondary_offsets.read_rows().items():
         yield f"[secondary.{number}]"
-        yield from _entry_lines(Kind.SECONDARY, row)
+        yield from _entry_lines(OffsetKind.SECONDARY, row)
 
 
 def _key(number: int) -> str:
     """Return the TOML key of a tool, such as 3, or of a further cutting edge, such as 3.d2."""
-    return f"{number}" if number == tool_of(number) else f"{tool_of(number)}.d{edge_of(number)}"
+    return (
+        f"{number}"
+        if number == get_tool_number(number)
+        else f"{get_tool_number(number)}.d{get_edge_number(number)}"
+    )
 
 
-def _entry_lines(kind: Kind, row: Row) -> Iterator[str]:
+def _entry_lines(kind: OffsetKind, row: OffsetRow) -> Iterator[str]:
     for name, value in row._asdict().items():
-        yield f"{name} = {_toml(FIELDS[kind][name], value)}"
+        yield f"{name} = {_toml(FIELDS_BY_KIND[kind][name], value)}"
 
 
-def _toml(field: Field, value: Value) -> str:
+def _toml(field: RowField, value: FieldValue) -> str:
     """Return an offset's value in TOML syntax, lengths in inches."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, bool):
         return str(value).lower()
-    return repr(inches(value)) if field.sort is Sort.LENGTH else str(value)
+    return repr(convert_to_inches(value)) if field.field_type is FieldType.LENGTH else str(value)
 
 
 def _run_columns() -> Iterator[str]:
@@ -145,19 +159,19 @@ def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object
         table.writerows(rows)
 
 
-def mill_rows(folder: Path) -> dict[Kind, dict[int, dict[str, Value]]]:
+def read_exported_mill_rows(folder: Path) -> dict[OffsetKind, dict[int, dict[str, FieldValue]]]:
     """Return tools and presets of a mill from an exported folder, by number; missing fields are omitted.
 
     Raises StoreError if a table cannot be read.
     """
-    return {kind: _rows(folder / TABLE_OF[kind], kind) for kind in TABLE_OF}
+    return {kind: _rows(folder / MILL_FILE_NAMES[kind], kind) for kind in MILL_FILE_NAMES}
 
 
-def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
+def _rows(path: Path, kind: OffsetKind) -> dict[int, dict[str, FieldValue]]:
     if not path.exists():
         return {}
     try:
-        text = input_bytes(path, _LARGEST).decode("utf-8")
+        text = read_input_bytes(path, _LARGEST).decode("utf-8")
         table = list(csv.DictReader(io.StringIO(text, newline="")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise StoreError(
@@ -167,15 +181,19 @@ def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
     return dict(_numbered(path, line, row, kind) for line, row in enumerate(table, start=2))
 
 
-def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[int, dict[str, Value]]:
+def _numbered(
+    path: Path, line: int, row: dict[str, str], kind: OffsetKind
+) -> tuple[int, dict[str, FieldValue]]:
     """Return the number and values of one row.
 
     Raises StoreError with the line number if the row is invalid.
     """
     try:
-        fields = {each.column: each for each in FIELDS[kind].values()}
+        fields = {each.column: each for each in FIELDS_BY_KIND[kind].values()}
         values = {
-            fields[column].name: text if fields[column].sort is Sort.TEXT else _number(fields[column], text)
+            fields[column].name: text
+            if fields[column].field_type is FieldType.TEXT
+            else _number(fields[column], text)
             for column, text in row.items()
             if column in fields
         }
@@ -191,37 +209,37 @@ def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[i
         raise StoreError(text, "unreadable-export") from error
 
 
-def _number(field: Field, text: str) -> Value:
-    return int(text) if field.sort in {Sort.WHOLE, Sort.FLAG} else float(text)
+def _number(field: RowField, text: str) -> FieldValue:
+    return int(text) if field.field_type in {FieldType.INTEGER, FieldType.BOOLEAN} else float(text)
 
 
-def program_files(folder: Path) -> dict[str, bytes]:
+def read_exported_programs(folder: Path) -> dict[str, bytes]:
     """Return the programs of an exported folder by name. Raises StoreError if the folder is not an export."""
     try:
-        return {path.name: input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
+        return {path.name: read_input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
             Message(
                 "{folder} is not an exported folder ({error}); specify a folder that 'store export' created",
                 folder=folder,
-                error=said(error),
+                error=get_system_error_text(error),
             ),
             "not-an-export",
         ) from error
 
 
-def import_all(
+def import_programs_and_offsets(
     connection: sqlite3.Connection,
     programs: Mapping[str, bytes],
-    offsets: Mapping[Kind, Mapping[int, Mapping[str, Value]]],
-    reason: Reason,
+    offsets: Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]],
+    reason: ChangeReason,
 ) -> None:
     """Save programs by name and rows of offsets by number, within the caller's transaction.
 
     Raises StoreError if a name is invalid, or if a number or value is out of range.
     """
     for name, text in programs.items():
-        program_records.save(connection, name, text, reason.why)
+        program_records.save_program_version(connection, name, text, reason.text)
     for kind, rows in offsets.items():
         for number, values in rows.items():
-            offset_tables.change(connection, kind, number, reason, values)
+            offset_tables.change_row(connection, kind, number, reason, values)

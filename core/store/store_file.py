@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-FILE_NAME = "turndesk.db"
+STORE_FILE_NAME = "turndesk.db"
 
 
 def has_store(folder: Path) -> bool:
@@ -15,7 +15,7 @@ def has_store(folder: Path) -> bool:
     link or is closed to this user. The error is reported when the store is read.
     """
     try:
-        os.lstat(folder / FILE_NAME)
+        os.lstat(folder / STORE_FILE_NAME)
     except PermissionError:
         return True
     except OSError:
@@ -23,26 +23,26 @@ def has_store(folder: Path) -> bool:
     return True
 
 
-def real_path(path: Path) -> Path:
+def resolve_link(path: Path) -> Path:
     """Return the target of a link; ``path`` itself if it is not a link."""
     return path.resolve() if path.is_symlink() else path
 
 
-def stock_key(program: str) -> str:
+def make_stock_setting_key(program: str) -> str:
     """Return the key of the setting with the stock of a program."""
     return f"stock:{program}"
 
 
-def notes_key(program: str) -> str:
+def make_notes_setting_key(program: str) -> str:
     """Return the key of the setting with the setup notes of a program."""
     return f"notes:{program}"
 
 
-def text_key(program: str) -> str:
+def make_loaded_text_key(program: str) -> str:
     """Return the key of the setting that specifies which text was last loaded under this name."""
     return f"text:{program}"
 
 
-def part_key(program: str) -> str:
+def make_part_setting_key(program: str) -> str:
     """Return the key of the setting with a program's stick-out and silenced checks."""
     return f"part:{program}"

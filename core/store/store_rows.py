@@ -13,105 +13,116 @@ from math import isfinite
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints
 
 from core.message import Message
-from core.tool_edges import EDGES, edge_key
+from core.tool_edges import EDGE_NUMBERS, make_edge_key
 
 MM_PER_INCH = 25.4
-TOOL_REACH = 1270.0  # mm, 50 in, more than the travel of any such lathe
-SECONDARY_REACH = 254.0  # mm, 10 in, the limit of the digits on the control's display
-RADIUS_MAX = 50.8  # mm, 2 in
-WEAR_REACH = 2.54  # mm, .1 in; a tool with more wear has to be touched off again
-REMARK_LONGEST = 40  # characters
-SHAPE_REACH = 508.0  # mm, 20 in, more than the stick-out of any tool of such a lathe
-OUTLINE_LONGEST = 600  # characters
-ZERO_REACH = 5000.0  # mm, more than the travel of any such lathe
-MILL_TOOL_REACH = 1000.0  # mm, more than the length or diameter of any mill tool
-OVERSIZE_REACH = 99.999  # mm, as in TOOL CALL
-LIFE_REACH = 100_000.0  # minutes
-ANGLE_REACH = 360.0  # degrees; larger angles repeat the same positions
+TOOL_OFFSET_LIMIT_MM = 1270.0  # mm, 50 in, more than the travel of any such lathe
+SECONDARY_OFFSET_LIMIT_MM = 254.0  # mm, 10 in, the limit of the digits on the control's display
+MAX_NOSE_RADIUS_MM = 50.8  # mm, 2 in
+WEAR_LIMIT_MM = 2.54  # mm, .1 in; a tool with more wear has to be touched off again
+MAX_REMARK_LENGTH = 40  # characters
+MAX_SHAPE_DIMENSION_MM = 508.0  # mm, 20 in, more than the stick-out of any tool of such a lathe
+MAX_OUTLINE_LENGTH = 600  # characters
+ZERO_OFFSET_LIMIT_MM = 5000.0  # mm, more than the travel of any such lathe
+MILL_TOOL_LIMIT_MM = 1000.0  # mm, more than the length or diameter of any mill tool
+OVERSIZE_LIMIT_MM = 99.999  # mm, as in TOOL CALL
+MAX_TOOL_LIFE_MIN = 100_000.0  # minutes
+ANGLE_LIMIT_DEG = 360.0  # degrees; larger angles repeat the same positions
 TOOL_KINDS = (
     *("turning", "boring", "grooving", "parting", "threading", "drill"),
     *("centre-drill", "reamer", "tap", "end-mill", "form"),
 )
-HANDS = ("right", "left", "neutral")
+TOOL_HANDS = ("right", "left", "neutral")
 _ROUNDING = 1e-9  # in
-OFFSETS = range(1, 33)
-TOOL_ROWS = frozenset(edge_key(tool, edge) for tool in OFFSETS for edge in EDGES)
+OFFSET_NUMBERS = range(1, 33)
+TOOL_ROW_NUMBERS = frozenset(make_edge_key(tool, edge) for tool in OFFSET_NUMBERS for edge in EDGE_NUMBERS)
 """Numbers of the tables of tools: T, and their further cutting edges."""
 ZERO_CODES = range(54, 60)
-MILL_TOOLS = range(1, 1000)
-PRESETS = range(1, 100)  # preset 0 is specified in the machine file
-Value = float | int | str | bool
+MILL_TOOL_NUMBERS = range(1, 1000)
+PRESET_NUMBERS = range(1, 100)  # preset 0 is specified in the machine file
+FieldValue = float | int | str | bool
 
 
-class Sort(StrEnum):
+class FieldType(StrEnum):
     """Type and unit of a field's value."""
 
     LENGTH = "length"  # stored in mm, entered and shown in inches
-    METRIC = "millimetres"
+    METRIC_LENGTH = "millimetres"
     ANGLE = "degrees"
     MINUTES = "minutes"
-    WHOLE = "whole number"
+    INTEGER = "whole number"
     TEXT = "text"
-    FLAG = "yes or no"
+    BOOLEAN = "yes or no"
 
 
-_UNITS = {Sort.METRIC: "mm", Sort.ANGLE: "degrees", Sort.MINUTES: "minutes"}
+_UNITS = {FieldType.METRIC_LENGTH: "mm", FieldType.ANGLE: "degrees", FieldType.MINUTES: "minutes"}
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class RowField:
     """Name, limits and type of one field of a row.
 
-    ``low`` and ``high`` are in mm for a length and numbers of characters for a text. A field is declared as
-    the annotation of a row's attribute, whose name commands and files use.
+    ``minimum`` and ``maximum`` are in mm for a length and numbers of characters for a text. A field is
+    declared as the annotation of a row's attribute, whose name commands and files use.
     """
 
-    word: str  # the name used in messages
-    low: float = 0.0
-    high: float = 0.0
-    sort: Sort = Sort.LENGTH
+    label: str  # the name used in messages
+    minimum: float = 0.0
+    maximum: float = 0.0
+    field_type: FieldType = FieldType.LENGTH
     choices: tuple[str, ...] = ()  # valid values of a text with fixed values
     column: str = ""  # the database column, if it differs from the name
     name: str = ""
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """Accepted range as text, in the unit in which the value is entered."""
         if self.choices:
             return ", ".join(self.choices)
-        if self.sort is Sort.LENGTH:
+        if self.field_type is FieldType.LENGTH:
             return Message(
-                "{low}…{high} in", low=f"{self.low / MM_PER_INCH:g}", high=f"{self.high / MM_PER_INCH:g}"
+                "{low}…{high} in",
+                low=f"{self.minimum / MM_PER_INCH:g}",
+                high=f"{self.maximum / MM_PER_INCH:g}",
             )
-        if self.sort in _UNITS:
+        if self.field_type in _UNITS:
             return Message(
-                "{low}…{high} {units}", low=f"{self.low:g}", high=f"{self.high:g}", units=_UNITS[self.sort]
+                "{low}…{high} {units}",
+                low=f"{self.minimum:g}",
+                high=f"{self.maximum:g}",
+                units=_UNITS[self.field_type],
             )
-        if self.sort is Sort.TEXT:
-            return Message("up to {high} characters on one line", high=f"{self.high:g}")
-        return f"{self.low:g}…{self.high:g}"
+        if self.field_type is FieldType.TEXT:
+            return Message("up to {high} characters on one line", high=f"{self.maximum:g}")
+        return f"{self.minimum:g}…{self.maximum:g}"
 
-    def takes(self, value: object) -> bool:
+    def accepts(self, value: object) -> bool:
         """Return whether the store accepts this value. NaN is never accepted."""
         if self.choices:
             return value in self.choices
         if isinstance(value, str):
-            return self.sort is Sort.TEXT and len(value) <= self.high and (value.isprintable() or not value)
-        if self.sort is Sort.TEXT or not isinstance(value, int | float):
+            return (
+                self.field_type is FieldType.TEXT
+                and len(value) <= self.maximum
+                and (value.isprintable() or not value)
+            )
+        if self.field_type is FieldType.TEXT or not isinstance(value, int | float):
             return False
-        rounding = _ROUNDING * MM_PER_INCH if self.sort is Sort.LENGTH else 0.0
-        if not isfinite(value) or (self.sort in {Sort.WHOLE, Sort.FLAG} and not float(value).is_integer()):
+        rounding = _ROUNDING * MM_PER_INCH if self.field_type is FieldType.LENGTH else 0.0
+        if not isfinite(value) or (
+            self.field_type in {FieldType.INTEGER, FieldType.BOOLEAN} and not float(value).is_integer()
+        ):
             return False
-        return self.low - rounding <= value <= self.high + rounding
+        return self.minimum - rounding <= value <= self.maximum + rounding
 
 
-def fields_of(row: type) -> Mapping[str, Field]:
+def read_row_fields(row: type) -> Mapping[str, RowField]:
     """Return the fields of a row type by name, in order, read from its annotations."""
     fields = {name: get_args(hint)[1] for name, hint in get_type_hints(row, include_extras=True).items()}
     return {name: replace(field, name=name, column=field.column or name) for name, field in fields.items()}
 
 
-class Kind(StrEnum):
+class OffsetKind(StrEnum):
     """Kinds of offset tables.
 
     A lathe has T, D, zero offsets G54 to G59 and tool shapes. A mill has tools and presets of the workpiece
@@ -126,12 +137,12 @@ class Kind(StrEnum):
     PRESET = "preset"
 
 
-def _reach(word: str, most: float, sort: Sort = Sort.LENGTH) -> Field:
-    return Field(word, -most, most, sort)
+def _reach(word: str, most: float, sort: FieldType = FieldType.LENGTH) -> RowField:
+    return RowField(word, -most, most, sort)
 
 
-def _size(word: str) -> Field:
-    return Field(word, 0.0, SHAPE_REACH)
+def _size(word: str) -> RowField:
+    return RowField(word, 0.0, MAX_SHAPE_DIMENSION_MM)
 
 
 class ToolRow(NamedTuple):
@@ -141,14 +152,14 @@ class ToolRow(NamedTuple):
     At most one tool is the master tool.
     """
 
-    x: Annotated[float, _reach("X", TOOL_REACH)] = 0.0
-    z: Annotated[float, _reach("Z", TOOL_REACH)] = 0.0
-    nose_radius: Annotated[float, Field("nose radius", 0.0, RADIUS_MAX, column="r")] = 0.0
-    wear_x: Annotated[float, _reach("wear X", WEAR_REACH)] = 0.0
-    wear_z: Annotated[float, _reach("wear Z", WEAR_REACH)] = 0.0
-    quadrant: Annotated[int, Field("tip quadrant", 0, 9, Sort.WHOLE)] = 0
-    remark: Annotated[str, Field("remark", 0, REMARK_LONGEST, Sort.TEXT)] = ""
-    master: Annotated[bool, Field("master", 0, 1, Sort.FLAG)] = False
+    x: Annotated[float, _reach("X", TOOL_OFFSET_LIMIT_MM)] = 0.0
+    z: Annotated[float, _reach("Z", TOOL_OFFSET_LIMIT_MM)] = 0.0
+    nose_radius: Annotated[float, RowField("nose radius", 0.0, MAX_NOSE_RADIUS_MM, column="r")] = 0.0
+    wear_x: Annotated[float, _reach("wear X", WEAR_LIMIT_MM)] = 0.0
+    wear_z: Annotated[float, _reach("wear Z", WEAR_LIMIT_MM)] = 0.0
+    quadrant: Annotated[int, RowField("tip quadrant", 0, 9, FieldType.INTEGER)] = 0
+    remark: Annotated[str, RowField("remark", 0, MAX_REMARK_LENGTH, FieldType.TEXT)] = ""
+    master: Annotated[bool, RowField("master", 0, 1, FieldType.BOOLEAN)] = False
 
     @property
     def offset(self) -> tuple[float, float]:
@@ -159,17 +170,17 @@ class ToolRow(NamedTuple):
 class SecondaryRow(NamedTuple):
     """A secondary offset (D) in mm, X as a radius; ``r`` is the nose radius."""
 
-    x: Annotated[float, _reach("X", SECONDARY_REACH)] = 0.0
-    z: Annotated[float, _reach("Z", SECONDARY_REACH)] = 0.0
-    r: Annotated[float, Field("nose radius", 0.0, RADIUS_MAX)] = 0.0
+    x: Annotated[float, _reach("X", SECONDARY_OFFSET_LIMIT_MM)] = 0.0
+    z: Annotated[float, _reach("Z", SECONDARY_OFFSET_LIMIT_MM)] = 0.0
+    r: Annotated[float, RowField("nose radius", 0.0, MAX_NOSE_RADIUS_MM)] = 0.0
 
 
 class ZeroRow(NamedTuple):
     """A zero offset: the machine position of program zero, in mm and degrees, X as a radius."""
 
-    x: Annotated[float, _reach("X", ZERO_REACH, Sort.METRIC)] = 0.0
-    z: Annotated[float, _reach("Z", ZERO_REACH, Sort.METRIC)] = 0.0
-    c: Annotated[float, _reach("C", ANGLE_REACH, Sort.ANGLE)] = 0.0
+    x: Annotated[float, _reach("X", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    z: Annotated[float, _reach("Z", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    c: Annotated[float, _reach("C", ANGLE_LIMIT_DEG, FieldType.ANGLE)] = 0.0
 
 
 class ShapeRow(NamedTuple):
@@ -181,20 +192,22 @@ class ShapeRow(NamedTuple):
     in mm.
     """
 
-    kind: Annotated[str, Field("kind", sort=Sort.TEXT, choices=TOOL_KINDS)] = ""
-    hand: Annotated[str, Field("hand", sort=Sort.TEXT, choices=HANDS)] = "right"
-    insert: Annotated[str, Field("insert", 0, REMARK_LONGEST, Sort.TEXT, column="insert_code")] = ""
-    holder: Annotated[str, Field("holder", 0, OUTLINE_LONGEST, Sort.TEXT)] = ""
+    kind: Annotated[str, RowField("kind", field_type=FieldType.TEXT, choices=TOOL_KINDS)] = ""
+    hand: Annotated[str, RowField("hand", field_type=FieldType.TEXT, choices=TOOL_HANDS)] = "right"
+    insert: Annotated[str, RowField("insert", 0, MAX_REMARK_LENGTH, FieldType.TEXT, column="insert_code")] = (
+        ""
+    )
+    holder: Annotated[str, RowField("holder", 0, MAX_OUTLINE_LENGTH, FieldType.TEXT)] = ""
     width: Annotated[float, _size("width")] = 0.0
     diameter: Annotated[float, _size("diameter")] = 0.0
-    point: Annotated[float, Field("point angle", 0.0, 180.0, Sort.ANGLE)] = 0.0
+    point: Annotated[float, RowField("point angle", 0.0, 180.0, FieldType.ANGLE)] = 0.0
     stick_out: Annotated[float, _size("stick-out")] = 0.0
     length: Annotated[float, _size("cutting length")] = 0.0
-    pitch: Annotated[float, Field("pitch", 0.0, MM_PER_INCH)] = 0.0
-    flutes: Annotated[int, Field("flutes", 0, 20, Sort.WHOLE)] = 0
-    entry: Annotated[float, Field("entering angle", 0.0, 150.0, Sort.ANGLE)] = 0.0
-    rear: Annotated[bool, Field("rear tool", 0, 1, Sort.FLAG)] = False
-    profile: Annotated[str, Field("profile", 0, OUTLINE_LONGEST, Sort.TEXT)] = ""
+    pitch: Annotated[float, RowField("pitch", 0.0, MM_PER_INCH)] = 0.0
+    flutes: Annotated[int, RowField("flutes", 0, 20, FieldType.INTEGER)] = 0
+    entry: Annotated[float, RowField("entering angle", 0.0, 150.0, FieldType.ANGLE)] = 0.0
+    rear: Annotated[bool, RowField("rear tool", 0, 1, FieldType.BOOLEAN)] = False
+    profile: Annotated[str, RowField("profile", 0, MAX_OUTLINE_LENGTH, FieldType.TEXT)] = ""
 
 
 class MillRow(NamedTuple):
@@ -204,17 +217,17 @@ class MillRow(NamedTuple):
     used up.
     """
 
-    name: Annotated[str, Field("NAME", 0, REMARK_LONGEST, Sort.TEXT)] = ""
-    length: Annotated[float, _reach("L", MILL_TOOL_REACH, Sort.METRIC)] = 0.0
-    radius: Annotated[float, Field("R", 0.0, MILL_TOOL_REACH, Sort.METRIC)] = 0.0
-    corner: Annotated[float, Field("R2", 0.0, MILL_TOOL_REACH, Sort.METRIC)] = 0.0
-    dl: Annotated[float, _reach("DL", OVERSIZE_REACH, Sort.METRIC)] = 0.0
-    dr: Annotated[float, _reach("DR", OVERSIZE_REACH, Sort.METRIC)] = 0.0
-    dr2: Annotated[float, _reach("DR2", OVERSIZE_REACH, Sort.METRIC)] = 0.0
-    teeth: Annotated[int, Field("CUT", 0, 99, Sort.WHOLE)] = 0
-    point: Annotated[float, Field("T-ANGLE", 0.0, 180.0, Sort.ANGLE)] = 0.0
-    life: Annotated[float, Field("TIME2", 0.0, LIFE_REACH, Sort.MINUTES)] = 0.0
-    stops: Annotated[bool, Field("STOP", 0, 1, Sort.FLAG)] = False
+    name: Annotated[str, RowField("NAME", 0, MAX_REMARK_LENGTH, FieldType.TEXT)] = ""
+    length: Annotated[float, _reach("L", MILL_TOOL_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    radius: Annotated[float, RowField("R", 0.0, MILL_TOOL_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    corner: Annotated[float, RowField("R2", 0.0, MILL_TOOL_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    dl: Annotated[float, _reach("DL", OVERSIZE_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    dr: Annotated[float, _reach("DR", OVERSIZE_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    dr2: Annotated[float, _reach("DR2", OVERSIZE_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    teeth: Annotated[int, RowField("CUT", 0, 99, FieldType.INTEGER)] = 0
+    point: Annotated[float, RowField("T-ANGLE", 0.0, 180.0, FieldType.ANGLE)] = 0.0
+    life: Annotated[float, RowField("TIME2", 0.0, MAX_TOOL_LIFE_MIN, FieldType.MINUTES)] = 0.0
+    stops: Annotated[bool, RowField("STOP", 0, 1, FieldType.BOOLEAN)] = False
 
 
 class PresetRow(NamedTuple):
@@ -223,46 +236,46 @@ class PresetRow(NamedTuple):
     ``a``, ``b`` and ``c`` are the positions at which the rotary axes show 0, in degrees.
     """
 
-    x: Annotated[float, _reach("X", ZERO_REACH, Sort.METRIC)] = 0.0
-    y: Annotated[float, _reach("Y", ZERO_REACH, Sort.METRIC)] = 0.0
-    z: Annotated[float, _reach("Z", ZERO_REACH, Sort.METRIC)] = 0.0
-    rotation: Annotated[float, _reach("ROT", 180.0, Sort.ANGLE)] = 0.0
-    a: Annotated[float, _reach("A", ANGLE_REACH, Sort.ANGLE)] = 0.0
-    b: Annotated[float, _reach("B", ANGLE_REACH, Sort.ANGLE)] = 0.0
-    c: Annotated[float, _reach("C", ANGLE_REACH, Sort.ANGLE)] = 0.0
-    remark: Annotated[str, Field("DOC", 0, REMARK_LONGEST, Sort.TEXT)] = ""
+    x: Annotated[float, _reach("X", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    y: Annotated[float, _reach("Y", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    z: Annotated[float, _reach("Z", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
+    rotation: Annotated[float, _reach("ROT", 180.0, FieldType.ANGLE)] = 0.0
+    a: Annotated[float, _reach("A", ANGLE_LIMIT_DEG, FieldType.ANGLE)] = 0.0
+    b: Annotated[float, _reach("B", ANGLE_LIMIT_DEG, FieldType.ANGLE)] = 0.0
+    c: Annotated[float, _reach("C", ANGLE_LIMIT_DEG, FieldType.ANGLE)] = 0.0
+    remark: Annotated[str, RowField("DOC", 0, MAX_REMARK_LENGTH, FieldType.TEXT)] = ""
 
 
-FIELDS: Mapping[Kind, Mapping[str, Field]] = {
-    Kind.TOOL: fields_of(ToolRow),
-    Kind.SECONDARY: fields_of(SecondaryRow),
-    Kind.ZERO: fields_of(ZeroRow),
-    Kind.SHAPE: fields_of(ShapeRow),
-    Kind.MILL_TOOL: fields_of(MillRow),
-    Kind.PRESET: fields_of(PresetRow),
+FIELDS_BY_KIND: Mapping[OffsetKind, Mapping[str, RowField]] = {
+    OffsetKind.TOOL: read_row_fields(ToolRow),
+    OffsetKind.SECONDARY: read_row_fields(SecondaryRow),
+    OffsetKind.ZERO: read_row_fields(ZeroRow),
+    OffsetKind.SHAPE: read_row_fields(ShapeRow),
+    OffsetKind.MILL_TOOL: read_row_fields(MillRow),
+    OffsetKind.PRESET: read_row_fields(PresetRow),
 }
-Row = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
+OffsetRow = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
 R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
-RowT = TypeVar("RowT", bound=Row)  # also for rows whose type is known only at run time
+RowT = TypeVar("RowT", bound=OffsetRow)  # also for rows whose type is known only at run time
 
 
-def with_fields(row: R, values: Mapping[str, Value]) -> R:
+def replace_fields(row: R, values: Mapping[str, FieldValue]) -> R:
     """Return the row with these fields replaced. Raises ValueError for an unknown field name."""
     named: dict[str, Any] = dict(values)  # the fields have different types
     return row._replace(**named)
 
 
-class Change(NamedTuple):
+class OffsetChange(NamedTuple):
     """A change of one offset: the row before and after, None if it was not set. Ids increase with time."""
 
     id: int
     step: int
     undoes: int | None
     at: str
-    kind: Kind
+    kind: OffsetKind
     number: int
-    old: Row | None
-    new: Row | None
+    old: OffsetRow | None
+    new: OffsetRow | None
     why: str
     who: str
 
@@ -328,16 +341,16 @@ class RunRow(NamedTuple):
     planned: float | None = None
 
 
-def inches(mm: float) -> float:
+def convert_to_inches(mm: float) -> float:
     """Return mm as inches, rounded to ten decimals so that a value entered in inches is shown unchanged."""
     return round(mm / MM_PER_INCH, 10)
 
 
-def utc_now() -> str:
+def get_utc_now_text() -> str:
     """Return the present time as UTC text, to the millisecond."""
-    return utc(datetime.now(UTC))
+    return format_utc(datetime.now(UTC))
 
 
-def utc(moment: datetime) -> str:
+def format_utc(moment: datetime) -> str:
     """Return a time as UTC text in the stored format, which sorts in chronological order."""
     return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

@@ -17,15 +17,15 @@ from typing import NamedTuple, TypeVar
 from core.message import Message
 from core.store import event_log, program_records
 from core.store.production import job_queue
-from core.store.store_access import Backlog, Keeping, Operation
-from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_rows import EventRow, utc_now
+from core.store.store_access import EntryWriter, Operation, PendingEntries
+from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
+from core.store.store_rows import EventRow, get_utc_now_text
 
 # --- Entries to be written: events, part counts, runs and settings, buffered until the disk accepts them.
 
 
 # more than a week of events; beyond this number the oldest are dropped and their number is reported
-EVENTS = 20_000
+MAX_PENDING_EVENTS = 20_000
 
 
 class _Parts(NamedTuple):
@@ -39,12 +39,12 @@ class _Parts(NamedTuple):
 class _Cycles(NamedTuple):
     """Pending complete cycles of a program, with their times in seconds."""
 
-    made: int
+    cycle_count: int
     best: float
     latest: float
 
 
-class Unwritten:
+class UnwrittenEntries:
     """Entries that are not on the disk yet; used only by the writer's thread.
 
     All entries are written in one transaction. Part counts are added up and only the last value of a setting
@@ -61,40 +61,40 @@ class Unwritten:
     def __bool__(self) -> bool:
         return bool(self._events or self._parts or self._cycles or self._latest or self._dropped)
 
-    def event(self, row: EventRow) -> None:
+    def add_event(self, row: EventRow) -> None:
         """Add an event; drop the oldest event if there are too many."""
-        if len(self._events) >= EVENTS:
+        if len(self._events) >= MAX_PENDING_EVENTS:
             self._events.popleft()
             self._dropped += 1
         self._events.append(row)
 
-    def count_parts(self, program: str, by: int) -> None:
-        """Add parts to a part count, or subtract them if ``by`` is negative."""
+    def add_parts(self, program: str, count: int) -> None:
+        """Add parts to a part count, or subtract them if ``count`` is negative."""
         before = self._parts.get(program, _Parts())
-        self._parts[program] = before._replace(more=before.more + by, last=utc_now())
+        self._parts[program] = before._replace(more=before.more + count, last=get_utc_now_text())
 
     def reset_parts(self, program: str) -> None:
         """Set a part count to zero."""
-        self._parts[program] = _Parts(reset=True, last=utc_now())
+        self._parts[program] = _Parts(reset=True, last=get_utc_now_text())
 
-    def cycle(self, program: str, seconds: float) -> None:
+    def add_cycle(self, program: str, seconds: float) -> None:
         """Add a complete cycle and its time in seconds."""
         before = self._cycles.get(program, _Cycles(0, seconds, seconds))
-        self._cycles[program] = _Cycles(before.made + 1, min(before.best, seconds), seconds)
+        self._cycles[program] = _Cycles(before.cycle_count + 1, min(before.best, seconds), seconds)
 
-    def latest(self, name: tuple[str, str], operation: Operation[object]) -> None:
+    def replace_operation(self, name: tuple[str, str], operation: Operation[object]) -> None:
         """Add an operation that replaces a waiting operation with the same name."""
         self._latest.pop(name, None)  # moves the operation to the end, so that it is written last
         self._latest[name] = operation
 
-    def backlog(self, why: str) -> Backlog:
+    def count_entries(self, reason: str) -> PendingEntries:
         """Return the numbers of the waiting entries, with the reason ``why`` they wait."""
         parts = sum(abs(each.more) for each in self._parts.values())
         others = len(self._latest) + len(self._cycles) + sum(each.reset for each in self._parts.values())
         counts = {program: (each.reset, each.more) for program, each in self._parts.items()}
-        return Backlog(why, len(self._events), parts, others, self._dropped, counts)
+        return PendingEntries(reason, len(self._events), parts, others, self._dropped, counts)
 
-    def write(self, connection: sqlite3.Connection) -> None:
+    def write_all(self, connection: sqlite3.Connection) -> None:
         """Write all entries inside the caller's transaction. Entries that the store rejects are logged."""
         refused = [why for why in (_done(each, connection) for each in self._operations()) if why]
         if self._dropped:
@@ -104,8 +104,8 @@ class Unwritten:
                     dropped=self._dropped,
                 )
             )
-        now = utc_now()
-        event_log.log(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
+        now = get_utc_now_text()
+        event_log.add_events(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
 
     def clear(self) -> None:
         """Remove all entries, because they are on the disk."""
@@ -138,7 +138,7 @@ def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
 def _writing_parts(program: str, parts: _Parts) -> Operation[object]:
     def write(connection: sqlite3.Connection) -> None:
         if parts.reset:
-            job_queue.count_reset(connection, program)
+            job_queue.save_count_before_reset(connection, program)
             program_records.reset_parts(connection, program)
         if parts.more:
             program_records.add_parts(connection, program, parts.more, parts.last)
@@ -147,36 +147,36 @@ def _writing_parts(program: str, parts: _Parts) -> Operation[object]:
 
 
 def _writing_cycles(program: str, cycles: _Cycles) -> Operation[object]:
-    return lambda connection: program_records.finished(
-        connection, program, cycles.latest, cycles.made, cycles.best
+    return lambda connection: program_records.record_complete_cycles(
+        connection, program, cycles.latest, cycles.cycle_count, cycles.best
     )
 
 
 T = TypeVar("T")
-_Task = Callable[[Unwritten], None]
-HANGS = 2.0  # s, a change that waits longer is reported
-ENDS = 10.0  # s that ``close`` waits for the disk
-AGAIN = 2.0  # s until a failed write is tried again
+_Task = Callable[[UnwrittenEntries], None]
+SLOW_WRITE_S = 2.0  # s, a change that waits longer is reported
+CLOSE_TIMEOUT_S = 10.0  # s that ``close`` waits for the disk
+RETRY_INTERVAL_S = 2.0  # s until a failed write is tried again
 
 
 class StoreWriter:
     """A thread that runs operations one after the other, each in its own transaction.
 
-    The future of ``post`` is done when its transaction is on the disk. It raises StoreError if the operation
-    fails; the store is then unchanged. An entry given to ``keep`` that the disk does not accept remains in
-    memory and is written later. A disk that hangs reports no error, so the age of the oldest unfinished
-    change is checked. ``clock`` returns seconds.
+    The future of ``queue_operation`` is done when its transaction is on the disk. It raises StoreError if
+    the operation fails; the store is then unchanged. An entry given to ``queue_entry`` that the disk does
+    not accept remains in memory and is written later. A disk that hangs reports no error, so the age of the
+    oldest unfinished change is checked. ``clock`` returns seconds.
     """
 
     def __init__(
         self, connection: sqlite3.Connection, path: Path, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._trouble = ""
-        self._backlog: Backlog | None = None
+        self._backlog: PendingEntries | None = None
         self._clock = clock
         self._posted: deque[float] = deque()  # times at which the queued and current tasks were submitted
         self._connection, self._path = connection, path
-        self._unwritten = Unwritten()
+        self._unwritten = UnwrittenEntries()
         self._waiting: list[Future[None]] = []  # futures of entries that are not on the disk yet
         self._queue: queue.SimpleQueue[_Task | None] = queue.SimpleQueue()
         self._closing = threading.Lock()
@@ -185,17 +185,19 @@ class StoreWriter:
         self._thread.start()
 
     @property
-    def trouble(self) -> str:
+    def last_error(self) -> str:
         """Reason why changes are not stored; empty if all changes are stored."""
         return self._trouble or self._hanging
 
     @property
-    def backlog(self) -> Backlog | None:
+    def pending_entries(self) -> PendingEntries | None:
         """Entries that wait in memory for the disk; None if there are none."""
         why, waiting = self._hanging, len(self._posted)
         if self._backlog is None:
-            return Backlog(why, others=waiting) if why else None
-        return replace(self._backlog, others=self._backlog.others + waiting) if why else self._backlog
+            return PendingEntries(why, other_count=waiting) if why else None
+        return (
+            replace(self._backlog, other_count=self._backlog.other_count + waiting) if why else self._backlog
+        )
 
     @property
     def _hanging(self) -> str:
@@ -204,26 +206,26 @@ class StoreWriter:
             waited = self._clock() - self._posted[0]
         except IndexError:
             return ""
-        return str(Cause.HANGS.error(self._path, "")) if waited > HANGS else ""
+        return str(StoreErrorCause.HANGS.make_error(self._path, "")) if waited > SLOW_WRITE_S else ""
 
-    def post(self, operation: Operation[T]) -> Future[T]:
+    def queue_operation(self, operation: Operation[T]) -> Future[T]:
         """Queue ``operation`` to run inside a transaction. Raises StoreError if the store is closed."""
         future: Future[T] = Future()
         self._put(lambda _unwritten: self._answer(operation, future))
         return future
 
-    def keep(self, keeping: Keeping) -> Future[None]:
+    def queue_entry(self, add_entry: EntryWriter) -> Future[None]:
         """Queue an entry that must be written sooner or later. Raises StoreError if the store is closed.
 
         The future is done when the entry is on the disk. It raises StoreError if the entry has to wait.
         """
         future: Future[None] = Future()
 
-        def take(unwritten: Unwritten) -> None:
-            keeping(unwritten)
+        def take(unwritten: UnwrittenEntries) -> None:
+            add_entry(unwritten)
             self._waiting.append(future)
             if self._queue.empty():
-                self._write_held()
+                self._write_waiting()
 
         self._put(take)
         return future
@@ -235,41 +237,41 @@ class StoreWriter:
             self._posted.append(self._clock())
             self._queue.put(task)
 
-    def close(self, limit: float = ENDS) -> bool:
+    def close(self, timeout_s: float = CLOSE_TIMEOUT_S) -> bool:
         """Write the queued changes, then end the thread; return whether the thread has ended.
 
-        The result is False if the disk takes longer than ``limit`` seconds; the thread then still uses the
-        connection. ``backlog`` has the entries that could not be written.
+        The result is False if the disk takes longer than ``timeout_s`` seconds; the thread then still uses
+        the connection. ``backlog`` has the entries that could not be written.
         """
         with self._closing:
             if not self._closed:
                 self._closed = True
                 self._queue.put(None)
-        self._thread.join(limit)
+        self._thread.join(timeout_s)
         return not self._thread.is_alive()
 
     def _work(self) -> None:
         while True:
             try:
-                task = self._queue.get(timeout=AGAIN if self._unwritten else None)
+                task = self._queue.get(timeout=RETRY_INTERVAL_S if self._unwritten else None)
             except queue.Empty:
-                self._write_held()
+                self._write_waiting()
                 continue
             if task is None:
                 break
             task(self._unwritten)
             self._posted.popleft()
-        self._write_held()
+        self._write_waiting()
 
-    def _write_held(self) -> None:
+    def _write_waiting(self) -> None:
         """Write all waiting entries in one transaction; retain them if the write fails."""
         if not self._unwritten:
             return
         try:
-            self._in_transaction(self._unwritten.write)
+            self._in_transaction(self._unwritten.write_all)
         except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
             told = self._failed(error)
-            self._backlog = self._unwritten.backlog(self._trouble or str(told))
+            self._backlog = self._unwritten.count_entries(self._trouble or str(told))
             self._tell(lambda future: future.set_exception(told))
             return
         self._unwritten.clear()
@@ -289,7 +291,7 @@ class StoreWriter:
                 answer(future)
 
     def _answer(self, operation: Operation[T], future: Future[T]) -> None:
-        self._write_held()  # earlier entries must be written first
+        self._write_waiting()  # earlier entries must be written first
         if not future.set_running_or_notify_cancel():
             return
         try:
@@ -311,9 +313,9 @@ class StoreWriter:
                 Message("nothing was stored ({error})", error=error), "constraint"
             )  # the disk has no fault
         self._trouble = str(why(self._path, error))
-        cause = cause_of(self._path, error)
+        cause = find_cause(self._path, error)
         told = StoreError(
             Message("nothing was stored: {problem}. Then make the entry again", problem=self._trouble),
-            cause.code,
+            cause.error_code,
         )
-        return StoreError(self._trouble, cause.code) if cause is Cause.DAMAGED else told
+        return StoreError(self._trouble, cause.error_code) if cause is StoreErrorCause.DAMAGED else told

@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from core.json_key import Key, keys, row_keys
+from core.json_keys import JsonKey, declare_keys, declare_row_keys
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CorrectionRow, CycleRow, StopRow
-from core.store.production.tool_lives import InsertChange, LifeRow
+from core.store.production.tool_lives import InsertChange, ToolLifeRow
 from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
 
 
-class TableKeys(NamedTuple):
+class TableColumns(NamedTuple):
     """A table of the store: its name, columns, and the export file with the same columns."""
 
     name: str
-    file: str
+    export_file: str
     purpose: str
-    columns: tuple[Key, ...]
+    columns: tuple[JsonKey, ...]
 
 
-_ID = keys("id | integer | | Number of the row.")
-_NUMBER = keys("number | integer | | Number of the tool or offset.")
-CYCLE = """
+_ID = declare_keys("id | integer | | Number of the row.")
+_NUMBER = declare_keys("number | integer | | Number of the tool or offset.")
+CYCLE_COLUMNS = """
 key | | Key of the cycle, unique and independent of the clock.
 program | | File name of the program.
 part | | Number of the part, counted for this program; 0 if no part was counted.
@@ -32,7 +32,7 @@ seconds | s | Cycle time without stops.
 outcome | | How the cycle ended, such as COMPLETE.
 load | % | Mean spindle load at feed; null if the drive does not report it.
 """
-STOP = """
+STOP_COLUMNS = """
 key | | Key of the stop.
 cycle | | Key of the cycle that was stopped; empty between two cycles.
 program | | File name of the program.
@@ -41,7 +41,7 @@ seconds | s | Length of the stop.
 reason | | Reason for the stop, as shown on the screen.
 line | | Line of the program; 0 if not available.
 """
-FEATURE = """
+FEATURE_COLUMNS = """
 id | | Number of the feature.
 program | | File name of the program.
 name | | Name of the feature.
@@ -55,7 +55,7 @@ grows | | 1 if the feature becomes larger when the offset becomes larger, −1 i
 every | | Number of parts between two measurements; 0 if no interval is specified.
 sample | | Number of parts in a sample.
 """
-READING = """
+READING_COLUMNS = """
 id | | Number of the reading.
 feature | | Number of the feature.
 part | | Number of the part.
@@ -65,8 +65,10 @@ at | UTC | Time of the reading.
 source | | typed or gauge.
 gauge | | Name of the gauge; empty if the value was typed.
 """
-OFFSET_CHANGE = "offset_change | | Newest offset change when the part was started; −1 if it is not known.\n"
-CORRECTION = """
+OFFSET_CHANGE_COLUMNS = (
+    "offset_change | | Newest offset change when the part was started; −1 if it is not known.\n"
+)
+CORRECTION_COLUMNS = """
 id | | Number of the offset change.
 at | UTC | Time of the change.
 kind | | Table of the offset: tool or secondary.
@@ -79,7 +81,7 @@ who | | User or TurnDesk function that made the change.
 was_x | mm | Value in X before the change, a radius.
 was_z | mm | Value in Z before the change.
 """
-LIFE = """
+TOOL_LIFE_COLUMNS = """
 number | | Number of the tool.
 limit_parts | | Tool life in parts; 0 means unlimited.
 limit_seconds | s | Tool life in time at feed; 0 means unlimited.
@@ -88,7 +90,7 @@ stops | | 1: no further part starts when the tool life is used up; 0: production
 parts | | Parts made since the insert was changed.
 seconds | s | Time at feed since the insert was changed.
 """
-INSERT = """
+INSERT_CHANGE_COLUMNS = """
 id | | Number of the change.
 at | UTC | Time of the change.
 number | | Number of the tool.
@@ -98,7 +100,7 @@ why | | Reason for the change.
 kind | | Table of the tool: tool (lathe) or mill tool (mill).
 who | | User or TurnDesk function that made the change.
 """
-EVENT = """
+EVENT_COLUMNS = """
 at | UTC | Time of the event.
 kind | | Kind of the event.
 text | | Sentence in English.
@@ -106,7 +108,7 @@ line | | Line of the program; 0 if not available.
 record | | File of the scope data in the folder `records`; empty if not available.
 who | | User who made a change.
 """
-TOOL = """
+TOOL_OFFSET_COLUMNS = """
 x | mm | Machine position in X, a radius, at which the tool tip is on part zero.
 z | mm | Machine position in Z at which the tool tip is on part zero.
 nose_radius | mm | Nose radius.
@@ -116,17 +118,17 @@ quadrant | | Tip quadrant, 0 to 9; 0 if it is not specified.
 remark | | Remark.
 master | | Whether the tool is the master tool.
 """
-SECONDARY = """
+SECONDARY_OFFSET_COLUMNS = """
 x | mm | Secondary offset in X, a radius.
 z | mm | Secondary offset in Z.
 r | mm | Nose radius.
 """
-ZERO = """
+ZERO_OFFSET_COLUMNS = """
 x | mm | Machine position of part zero in X, a radius.
 z | mm | Machine position of part zero in Z.
 c | deg | Machine position of part zero in C.
 """
-SHAPE = """
+TOOL_SHAPE_COLUMNS = """
 kind | | Kind of the tool.
 hand | | right, left or neutral.
 insert | | Designation of the insert; empty if it is not specified.
@@ -142,7 +144,7 @@ entry | deg | Entering angle; 0 if it is not specified.
 rear | | Whether the tool works at negative X.
 profile | | Outline of a form tool as `z,x z,x …` in mm.
 """
-MILL = """
+MILL_TOOL_COLUMNS = """
 name | | Name of the tool.
 length | mm | Length L.
 radius | mm | Radius R.
@@ -155,7 +157,7 @@ point | deg | Point angle.
 life | min | Tool life; 0 means unlimited.
 stops | | 1: no further part starts when the tool life is used up; 0: production continues.
 """
-PRESET = """
+PRESET_COLUMNS = """
 x | mm | Machine position of the workpiece zero in X.
 y | mm | Machine position of the workpiece zero in Y.
 z | mm | Machine position of the workpiece zero in Z.
@@ -169,9 +171,9 @@ remark | | Remark.
 
 def _columns(
     row: type[tuple[object, ...]], text: str, renamed: dict[str, str] | None = None
-) -> tuple[Key, ...]:
+) -> tuple[JsonKey, ...]:
     """Return the fields of a row type as columns, with integers for booleans as in SQLite."""
-    columns = row_keys("", row, text)
+    columns = declare_row_keys("", row, text)
     names = renamed or {}
     return tuple(
         key._replace(name=names.get(key.name, key.name), type=key.type.replace("boolean", "integer"))
@@ -179,12 +181,12 @@ def _columns(
     )
 
 
-TABLES = (
-    TableKeys(
+PUBLIC_TABLES = (
+    TableColumns(
         "programs",
         "",
         "Programs that TurnDesk has saved.",
-        keys(
+        declare_keys(
             """
 id | integer | | Number of the program.
 name | string | | File name of the program.
@@ -192,12 +194,12 @@ created | string | UTC | Time at which the program was first saved.
 """
         ),
     ),
-    TableKeys(
+    TableColumns(
         "program_versions",
         "",
         "All saved versions of the programs. The export contains the newest version in the "
         "folder `programs`.",
-        keys(
+        declare_keys(
             """
 id | integer | | Number of the row.
 program | integer | | Number of the program in `programs`.
@@ -210,11 +212,11 @@ who | string | | User who saved the version.
 """
         ),
     ),
-    TableKeys(
+    TableColumns(
         "part_counts",
         "",
         "Part counts of the programs.",
-        keys(
+        declare_keys(
             """
 program | string | | File name of the program.
 count | integer | | Parts made.
@@ -222,11 +224,11 @@ last | string | UTC | Time of the last part.
 """
         ),
     ),
-    TableKeys(
+    TableColumns(
         "runs",
         "",
         "The last run and the last proof of each program.",
-        keys(
+        declare_keys(
             """
 program | string | | File name of the program.
 started | string or null | UTC | Start of the last run.
@@ -240,88 +242,93 @@ planned | number or null | s | Cycle time that the last proof calculated.
 """
         ),
     ),
-    TableKeys(
+    TableColumns(
         "events",
         "",
         "The event log. `events.csv` has the columns `at` to `who`, in this order, the newest event last.",
         (
             *_ID,
-            *row_keys("", EventRow, EVENT),
-            *keys("message | string | | Template and values of the text, JSON."),
+            *declare_row_keys("", EventRow, EVENT_COLUMNS),
+            *declare_keys("message | string | | Template and values of the text, JSON."),
         ),
     ),
-    TableKeys(
+    TableColumns(
         "tool_offsets",
         "",
         "Tool offsets of a lathe. The export contains them in inches in `offsets.toml`, "
         "together with the secondary and zero offsets and the tool shapes.",
-        (*_NUMBER, *_columns(ToolRow, TOOL, {"nose_radius": "r"})),
+        (*_NUMBER, *_columns(ToolRow, TOOL_OFFSET_COLUMNS, {"nose_radius": "r"})),
     ),
-    TableKeys(
+    TableColumns(
         "secondary_offsets",
         "",
         "Secondary offsets, D1 to D32.",
-        (*_NUMBER, *_columns(SecondaryRow, SECONDARY)),
+        (*_NUMBER, *_columns(SecondaryRow, SECONDARY_OFFSET_COLUMNS)),
     ),
-    TableKeys(
+    TableColumns(
         "zero_offsets",
         "",
         "Zero offsets G54 to G59.",
-        (*keys("code | integer | | 54 to 59."), *_columns(ZeroRow, ZERO)),
+        (*declare_keys("code | integer | | 54 to 59."), *_columns(ZeroRow, ZERO_OFFSET_COLUMNS)),
     ),
-    TableKeys(
+    TableColumns(
         "tool_shapes",
         "",
         "Shapes of the tools of a lathe.",
-        (*_NUMBER, *_columns(ShapeRow, SHAPE, {"insert": "insert_code"})),
+        (*_NUMBER, *_columns(ShapeRow, TOOL_SHAPE_COLUMNS, {"insert": "insert_code"})),
     ),
-    TableKeys(
+    TableColumns(
         "part_features",
         "features.csv",
         "Features of the parts that are measured.",
         (
-            *_columns(FeatureRow, FEATURE),
-            *keys("retired | integer | | 1 if the feature is no longer measured, otherwise 0."),
+            *_columns(FeatureRow, FEATURE_COLUMNS),
+            *declare_keys("retired | integer | | 1 if the feature is no longer measured, otherwise 0."),
         ),
     ),
-    TableKeys(
+    TableColumns(
         "part_readings",
         "readings.csv",
         "Readings of the features.",
         (
-            *_columns(ReadingRow, READING + OFFSET_CHANGE)[:-1],
-            *keys("void | integer | | 1 if the reading was deleted, otherwise 0."),
+            *_columns(ReadingRow, READING_COLUMNS + OFFSET_CHANGE_COLUMNS)[:-1],
+            *declare_keys("void | integer | | 1 if the reading was deleted, otherwise 0."),
         ),
     ),
-    TableKeys(
+    TableColumns(
         "part_cycles",
         "cycles.csv",
         "One row for each part that was started.",
         (
             *_ID,
-            *_columns(CycleRow, CYCLE)[:-1],
-            *keys("offset_change | integer | | Newest offset change when the cycle started."),
-            *_columns(CycleRow, CYCLE)[-1:],
+            *_columns(CycleRow, CYCLE_COLUMNS)[:-1],
+            *declare_keys("offset_change | integer | | Newest offset change when the cycle started."),
+            *_columns(CycleRow, CYCLE_COLUMNS)[-1:],
         ),
     ),
-    TableKeys(
+    TableColumns(
         "production_stops",
         "stops.csv",
         "One row for each stop of production.",
-        (*_ID, *_columns(StopRow, STOP)),
+        (*_ID, *_columns(StopRow, STOP_COLUMNS)),
     ),
-    TableKeys("tool_lives", "tool_lives.csv", "Tool life of the tools of a lathe.", _columns(LifeRow, LIFE)),
-    TableKeys(
+    TableColumns(
+        "tool_lives",
+        "tool_lives.csv",
+        "Tool life of the tools of a lathe.",
+        _columns(ToolLifeRow, TOOL_LIFE_COLUMNS),
+    ),
+    TableColumns(
         "insert_changes",
         "insert_changes.csv",
         "Changes of inserts and tools.",
-        _columns(InsertChange, INSERT),
+        _columns(InsertChange, INSERT_CHANGE_COLUMNS),
     ),
-    TableKeys(
+    TableColumns(
         "mill_tool_lives",
         "mill_tool_lives.csv",
         "Use of the tools of a mill.",
-        keys(
+        declare_keys(
             """
 number | integer | | Number of the tool.
 parts | integer | | Parts made since the tool was changed.
@@ -329,23 +336,25 @@ seconds | number | s | Time at feed since the tool was changed.
 """
         ),
     ),
-    TableKeys("mill_tools", "mill_tools.csv", "Tools of a mill.", (*_NUMBER, *_columns(MillRow, MILL))),
-    TableKeys(
+    TableColumns(
+        "mill_tools", "mill_tools.csv", "Tools of a mill.", (*_NUMBER, *_columns(MillRow, MILL_TOOL_COLUMNS))
+    ),
+    TableColumns(
         "datum_presets",
         "presets.csv",
         "Presets of a mill.",
         (
             *_NUMBER,
-            *_columns(PresetRow, PRESET)[:4],
-            *_columns(PresetRow, PRESET)[-1:],
-            *_columns(PresetRow, PRESET)[4:-1],
+            *_columns(PresetRow, PRESET_COLUMNS)[:4],
+            *_columns(PresetRow, PRESET_COLUMNS)[-1:],
+            *_columns(PresetRow, PRESET_COLUMNS)[4:-1],
         ),
     ),
-    TableKeys(
+    TableColumns(
         "jobs",
         "",
         "The job queue.",
-        keys(
+        declare_keys(
             """
 id | integer | | Number of the row.
 place | integer | | Position in the queue.
@@ -359,7 +368,7 @@ added | string | UTC | Time at which the job was added.
         ),
     ),
 )
-RUNS_FILE = (
+RUN_FILE_COLUMNS = (
     "program",
     "parts",
     "started",
@@ -371,4 +380,4 @@ RUNS_FILE = (
     "proof",
     "planned_s",
 )
-CORRECTIONS = row_keys("", CorrectionRow, CORRECTION)
+CORRECTION_FILE_COLUMNS = declare_row_keys("", CorrectionRow, CORRECTION_COLUMNS)

@@ -4,32 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.ports import AxisSample, DriverError, Segments, Stop, at_rest
-from drivers.canopen.canopen_bus import Bus
+from core.ports import AxisSample, DriverError, Segments, StopMode, is_queue_finished
+from drivers.canopen.canopen_bus import CanBus
 from drivers.canopen.canopen_config import CanopenConfig
-from drivers.canopen.canopen_homing import Homing
+from drivers.canopen.canopen_homing import CanopenHoming
 from drivers.canopen.canopen_objects import DriveState
-from drivers.canopen.canopen_setup import limits
-from drivers.canopen.driven_axes import MOTIONS, DriveSet
-from drivers.canopen.position_modes import CyclicFollower, Follower, ProfiledFollower, SyncSchedule
+from drivers.canopen.canopen_setup import build_limit_objects
+from drivers.canopen.drive_set import MOTION_MODES, DriveSet
+from drivers.canopen.position_modes import CyclicFollower, ProfiledFollower, SetpointFollower, SyncSchedule
 from drivers.canopen.pvt_mode import PvtFollower
-from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
-from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
+from drivers.port_checks import (
+    require_axis,
+    require_no_fault,
+    require_no_homing,
+    require_power,
+    require_standstill,
+)
+from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_limits
 
 
-def follower_of(
+def create_follower(
     config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
-) -> Follower:
+) -> SetpointFollower:
     """Create the follower for ``config.bus.mode``."""
     if config.bus.mode == "pp":
-        return ProfiledFollower(drives.axes, drives.indices, queue)
-    if MOTIONS[config.bus.mode].cyclic:
-        return CyclicFollower(drives.axes, drives.indices, queue, MOTIONS[config.bus.mode].mode, schedule)
-    return PvtFollower(drives.axes, drives.indices, queue, config.commit, config.bus.record)
+        return ProfiledFollower(drives.axes, drives.axis_indices, queue)
+    if MOTION_MODES[config.bus.mode].is_cyclic:
+        return CyclicFollower(
+            drives.axes, drives.axis_indices, queue, MOTION_MODES[config.bus.mode].mode, schedule
+        )
+    return PvtFollower(drives.axes, drives.axis_indices, queue, config.commit_time_s, config.bus.record)
 
 
-_PAST = 0.5  # Age in s of setpoints that are still available.
-_BRAKES = (
+_HISTORY_S = 0.5  # Age in s of setpoints that are still available.
+_BRAKING_RESERVE_S = (
     0.15  # Seconds in addition to the ramp from full speed until a quick stop must have ended without power.
 )
 
@@ -37,45 +45,47 @@ _BRAKES = (
 class CanopenAxes:
     """``core.ports.AxisSink`` of the CANopen drives, used only by the thread that owns the bus."""
 
-    def __init__(self, config: CanopenConfig, bus: Bus) -> None:
+    def __init__(self, config: CanopenConfig, bus: CanBus) -> None:
         self._bus = bus
         self.config = config
         self.axes = tuple(axis.name for axis in config.axes)
-        self.commit = config.commit
-        self.drives = DriveSet(config.axes, bus, MOTIONS[config.bus.mode])
-        tolerance = Tolerance.of(config.axes)
-        self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit, tolerance)
-        self.schedule = SyncSchedule(config.bus.sync, bus.clock.now())
-        self.follower = follower_of(config, self.drives, self.queue, self.schedule)
-        self.cyclic = MOTIONS[config.bus.mode].cyclic
-        self.homing: Homing | None = None
+        self.commit = config.commit_time_s
+        self.drives = DriveSet(config.axes, bus, MOTION_MODES[config.bus.mode])
+        tolerance = JunctionTolerance.from_axes(config.axes)
+        self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit_time_s, tolerance)
+        self.sync_schedule = SyncSchedule(config.bus.sync, bus.clock.now())
+        self.follower = create_follower(config, self.drives, self.queue, self.sync_schedule)
+        self.is_cyclic = MOTION_MODES[config.bus.mode].is_cyclic
+        self.active_homing: CanopenHoming | None = None
         self.fault = ""
-        self.beside = ""  # Fault of another device on the bus.
-        self.reconnect: Callable[[], None] = lambda: None  # Opens the bus and configures all nodes.
-        self.clearing: list[Callable[[], None]] = []  # Functions that clear the faults of other devices.
+        self.other_device_fault = ""  # Fault of another device on the bus.
+        self.reconnect_bus: Callable[[], None] = lambda: None  # Opens the bus and configures all nodes.
+        self.fault_clearers: list[
+            Callable[[], None]
+        ] = []  # Functions that clear the faults of other devices.
         self._on = False
         self._braking = False  # Braking by quick stop, after which a drive switches itself off.
         self._powerless_at = 0.0  # Time when the power is switched off at the latest.
-        self._given_up: Homing | None = None  # A canceled homing that still brakes.
+        self._given_up: CanopenHoming | None = None  # A canceled homing that still brakes.
 
     def connect(self) -> None:
         """Configure every drive. Raises DriverError."""
-        self.drives.connect()
-        self.queue.rest_at(self._actual())
+        self.drives.configure_drives()
+        self.queue.reset_to(self._actual_positions())
 
-    def tick(self, now: float) -> None:
+    def run_cycle(self, now: float) -> None:
         """Supervise the drives, home and feed setpoints, without raising errors.
 
-        A fault stops all axes. In cyclic modes, ``go_on`` feeds the setpoints at each SYNC instead.
+        A fault stops all axes. In cyclic modes, ``advance`` feeds the setpoints at each SYNC instead.
         """
         self._supervise()
-        if not self.cyclic:
-            self.go_on(now)
-        self._end_braking(now)
-        self.drives.note_motion(now)
-        self.queue.trim(now - _PAST)
+        if not self.is_cyclic:
+            self.advance(now)
+        self._check_braking_time(now)
+        self.drives.update_motion(now)
+        self.queue.discard_before(now - _HISTORY_S)
 
-    def go_on(self, now: float) -> None:
+    def advance(self, now: float) -> None:
         """Execute the next step of a homing, or feed the next setpoints."""
         try:
             if self._on and not self.fault:
@@ -91,11 +101,11 @@ class CanopenAxes:
 
     def horizon(self) -> float:
         """Return the end time of the setpoint queue, or the present time if it is empty."""
-        return self.queue.horizon(self.now())
+        return self.queue.queue_end(self.now())
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at time ``t``."""
-        return self.queue.demand_at(t)
+        return self.queue.commanded_state_at(time_s)
 
     def splice(self, segments: Segments) -> None:
         """Splice setpoints into the queue.
@@ -103,17 +113,17 @@ class CanopenAxes:
         Raises DriverError if they are invalid or the drives cannot follow.
         """
         self._need_power()
-        homing = self.homing or self._given_up
-        demand_no_homing(homing.config.name if homing is not None else "")
+        homing = self.active_homing or self._given_up
+        require_no_homing(homing.config.name if homing is not None else "")
         check_limits(segments, self.config.axes, self._homed())
-        self.follower.check(segments)
+        self.follower.check_segments(segments)
         self.queue.splice(segments, self.now())
 
     def sample(self) -> AxisSample:
         """Return the state of the axes from the last replies, at the time of their SYNC."""
-        actual, powered, seen = self._actual(), self._powered(), self.drives.seen
-        demand, velocity = self.queue.demand_at(self.follower.path_time(seen))
-        busy = self.homing is not None or self._given_up is not None
+        actual, powered, seen = self._actual_positions(), self._powered(), self.drives.last_reply_s
+        demand, velocity = self.queue.commanded_state_at(self.follower.get_path_time(seen))
+        busy = self.active_homing is not None or self._given_up is not None
         if not powered or busy:
             demand = actual
         return AxisSample(
@@ -123,149 +133,153 @@ class CanopenAxes:
             following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
             enabled=powered,
             homed=self._homed(),
-            moving=not self._bus.trouble and (busy or any(velocity) or self._plays),
+            moving=not self._bus.failure and (busy or any(velocity) or self._plays),
             fault=self.fault,
         )
 
     @property
     def _plays(self) -> bool:
-        return self.drives.moving or (self.cyclic and self.follower.playing)
+        return self.drives.is_moving or (self.is_cyclic and self.follower.is_playing)
 
     def enable(self, on: bool) -> None:
         """Switch the power on or off and wait for it. Raises DriverError that names the drives that fail."""
         if not on:
-            self._off(DriveState.OFF)
+            self._off(DriveState.SWITCH_ON_DISABLED)
             self.drives.power_off()
             return
-        demand_no_fault(self.fault)
+        require_no_fault(self.fault)
         if self._powered():
             return
-        self.follower.prepare()
+        self.follower.prepare_targets()
         self.drives.power_on()
-        self.queue.rest_at(self._actual())
+        self.queue.reset_to(self._actual_positions())
         self._on = True
 
-    def stop(self, how: Stop) -> None:
+    def stop(self, mode: StopMode) -> None:
         """Stop all axes by the drives at one SYNC, or on the path with RAMP_HOLD."""
-        if how is Stop.RAMP_HOLD and self._powered():
-            self._hold()
+        if mode is StopMode.RAMP_HOLD and self._powered():
+            self._brake_on_path()
             return
-        self._off(DriveState.OFF if how is Stop.OFF else DriveState.QUICK_STOP)
-        if not self._bus.trouble and not self.cyclic:  # Otherwise with the next SYNC at its regular time.
-            self.drives.exchange()
+        self._off(DriveState.SWITCH_ON_DISABLED if mode is StopMode.OFF else DriveState.QUICK_STOP_ACTIVE)
+        if not self._bus.failure and not self.is_cyclic:  # Otherwise with the next SYNC at its regular time.
+            self.drives.exchange_sync()
 
     def home(self, axis: str) -> None:
         """Start the homing of the drive. Raises DriverError without power or while the axis moves."""
-        demand_axis(axis, self.axes)
+        require_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
-        demand_standstill(axis, self.sample().moving)
-        self.follower.abort()
-        self.homing = Homing(driven, self.follower.mode, self.now())
+        require_standstill(axis, self.sample().moving)
+        self.follower.abort_transfer()
+        self.active_homing = CanopenHoming(driven, self.follower.mode, self.now())
 
     def clear_fault(self) -> None:
         """Clear the fault and reset the drives, which remain without power.
 
         After a bus failure, the bus is opened again and every node is configured. Raises DriverError.
         """
-        if self._bus.trouble:
-            self.reconnect()
-        self._off(DriveState.OFF)
-        for clear in self.clearing:
+        if self._bus.failure:
+            self.reconnect_bus()
+        self._off(DriveState.SWITCH_ON_DISABLED)
+        for clear in self.fault_clearers:
             clear()
-        self.beside = self.fault = ""
-        self.drives.clear()
+        self.other_device_fault = self.fault = ""
+        self.drives.reset_faults()
 
-    def follower_rests(self, now: float) -> bool:
+    def is_follower_idle(self, now: float) -> bool:
         """Return whether no setpoints are left in the queue or in the drives."""
-        return at_rest(self.queue.horizon(now), now) and not self.follower.playing
+        return is_queue_finished(self.queue.queue_end(now), now) and not self.follower.is_playing
 
-    def rest_here(self) -> None:
+    def reset_queue(self) -> None:
         """Restart the setpoint queue at the measured positions."""
-        self.queue.rest_at(self._actual())
+        self.queue.reset_to(self._actual_positions())
 
     # --- inside -------------------------------------------------------------------------------------------
 
     def _supervise(self) -> None:
-        trouble = self._bus.trouble or self.beside or self.follower.trouble or self.drives.look()
-        trouble = trouble or (self.homing.trouble if self.homing is not None else "")
+        trouble = (
+            self._bus.failure or self.other_device_fault or self.follower.failure or self.drives.supervise()
+        )
+        trouble = trouble or (self.active_homing.failure if self.active_homing is not None else "")
         if trouble and not self.fault:
             self._trip(trouble)
         elif self._on and not self._powered() and not trouble:
-            self._off(DriveState.OFF)  # The power was removed by E-stop or STO.
-            self.drives.lose_home()
+            self._off(DriveState.SWITCH_ON_DISABLED)  # The power was removed by E-stop or STO.
+            self.drives.clear_home()
 
     def _trip(self, fault: str) -> None:
         """Set the fault and stop all axes."""
         self.fault = self.fault or fault
-        self._off(DriveState.QUICK_STOP)
+        self._off(DriveState.QUICK_STOP_ACTIVE)
 
     def _off(self, goal: DriveState) -> None:
-        if goal is DriveState.QUICK_STOP and not self._braking:
+        if goal is DriveState.QUICK_STOP_ACTIVE and not self._braking:
             driven = [axis.config for axis in self.drives.axes]
             ramp = max((axis.vmax / axis.amax for axis in driven), default=0.0)
-            self._powerless_at = self.now() + ramp + _BRAKES
-        self._braking = goal is DriveState.QUICK_STOP
-        self._on, self.homing, self._given_up = False, None, None
-        self.drives.aim(goal)
-        self.follower.abort()
-        self.follower.urgent = True
-        self.queue.rest_at(self._actual())
+            self._powerless_at = self.now() + ramp + _BRAKING_RESERVE_S
+        self._braking = goal is DriveState.QUICK_STOP_ACTIVE
+        self._on, self.active_homing, self._given_up = False, None, None
+        self.drives.set_goal_state(goal)
+        self.follower.abort_transfer()
+        self.follower.must_send_now = True
+        self.queue.reset_to(self._actual_positions())
 
-    def _end_braking(self, now: float) -> None:
+    def _check_braking_time(self, now: float) -> None:
         """Switch the drives off when a quick stop takes too long.
 
         A drive with a failed encoder or a runaway would otherwise push without end.
         """
         if self._braking and now > self._powerless_at:
             self._braking = False
-            self.drives.aim(DriveState.OFF)
+            self.drives.set_goal_state(DriveState.SWITCH_ON_DISABLED)
 
-    def _hold(self) -> None:
+    def _brake_on_path(self) -> None:
         """Brake on the path; during homing, the drive brakes on its own ramp."""
-        if self.homing is not None:
-            self.homing.give_up()
-            self.homing, self._given_up = None, self.homing
+        if self.active_homing is not None:
+            self.active_homing.cancel()
+            self.active_homing, self._given_up = None, self.active_homing
         elif self._given_up is None:
             at = self.now() + self.commit
-            if any(self.queue.demand_at(at)[1]):
-                self.queue.brake(at, [axis.amax for axis in self.config.axes])
+            if any(self.queue.commanded_state_at(at)[1]):
+                self.queue.brake_to_rest(at, [axis.amax for axis in self.config.axes])
             else:
-                place, _ = self.queue.demand_at(at)  # Setpoints until then remain.
-                self.queue.splice(Segments.resting(at, place), at - self.commit)
-            self.follower.braked(at)
+                place, _ = self.queue.commanded_state_at(at)  # Setpoints until then remain.
+                self.queue.splice(Segments.make_rest(at, place), at - self.commit)
+            self.follower.handle_braking(at)
 
     def _go_on(self, now: float) -> None:
-        homing = self.homing or self._given_up
+        homing = self.active_homing or self._given_up
         if homing is None:
-            self.follower.feed(now)
+            self.follower.feed_setpoints(now)
             return
-        homing.step(now)
-        if homing.done:
-            if self.homing is not None:
-                homing.axis.homed = True
-                for index, sub, value in limits(homing.config):
+        homing.advance(now)
+        if homing.is_done:
+            if self.active_homing is not None:
+                homing.axis.is_homed = True
+                for index, sub, value in build_limit_objects(homing.config):
                     homing.axis.drive.setup.try_write(index, sub, value)
-            self.homing = self._given_up = None
-            self.queue.rest_at(self._actual())  # The path continues from the stop position of the drive.
+            self.active_homing = self._given_up = None
+            self.queue.reset_to(
+                self._actual_positions()
+            )  # The path continues from the stop position of the drive.
 
     def _need_power(self) -> None:
-        demand_power(self.fault, self._powered())
+        require_power(self.fault, self._powered())
 
     def _powered(self) -> bool:
-        return self._on and self.drives.powered
+        return self._on and self.drives.is_powered
 
-    def _actual(self) -> tuple[float, ...]:
+    def _actual_positions(self) -> tuple[float, ...]:
         """Return the positions measured by the drives, or the queued position of an axis without a drive."""
-        p = list(self.queue.demand_at(self.now())[0])
-        for index, axis in zip(self.drives.indices, self.drives.axes, strict=True):
+        p = list(self.queue.commanded_state_at(self.now())[0])
+        for index, axis in zip(self.drives.axis_indices, self.drives.axes, strict=True):
             p[index] = axis.drive.position * axis.config.count
         return tuple(p)
 
     def _homed(self) -> tuple[bool, ...]:
         homed = [True] * len(self.axes)
-        for index, axis in zip(self.drives.indices, self.drives.axes, strict=True):
-            homed[index] = axis.homed
+        for index, axis in zip(self.drives.axis_indices, self.drives.axes, strict=True):
+            homed[index] = axis.is_homed
         return tuple(homed)

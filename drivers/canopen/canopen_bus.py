@@ -23,29 +23,29 @@ _log = logging.getLogger(__name__)
 for _library in ("can", "canopen"):  # Their errors are raised and reported by TurnDesk.
     logging.getLogger(_library).addHandler(logging.NullHandler())
 
-_GARBLED = 3  # Number of invalid frames.
+_MAX_GARBLED_FRAMES = 3  # Number of invalid frames.
 _BUS_OFF = 0x40  # Class of an error frame: the controller is bus-off.
 _OPERATIONAL = 5
-_ROUNDS = 400  # Cycles with a stopped clock before a missing response is assumed.
-_EARLY = 0.005  # Seconds by which the heartbeat may be sent early.
+_MAX_STOPPED_CYCLES = 400  # Cycles with a stopped clock before a missing response is assumed.
+_HEARTBEAT_EARLY_S = 0.005  # Seconds by which the heartbeat may be sent early.
 _BEAT, _SYNC, _NMT = 0x700, 0x080, 0x000
-_ECHOING = ("udp_multicast",)  # Receives its own frames, so another master cannot be detected.
+_ECHOING_INTERFACES = ("udp_multicast",)  # Receives its own frames, so another master cannot be detected.
 
 
-class Bus(canopen.Network):
+class CanBus(canopen.Network):
     """CAN bus; in tests, ``idle`` advances the time during a wait."""
 
     def __init__(self, config: CanopenTable, clock: Clock, idle: Callable[[], None] | None = None) -> None:
-        super().__init__(opened(config))
+        super().__init__(open_interface(config))
         self.config = config
         self.clock = clock
-        self.garbled = 0
-        self.trouble: Fault | str = ""  # Reason for the bus failure until the bus is opened again.
+        self.garbled_frame_count = 0
+        self.failure: Fault | str = ""  # Reason for the bus failure until the bus is opened again.
         self._idle = idle
         # Called during every wait; returns seconds until the next call.
-        self.meanwhile: Callable[[], float] | None = None
-        self.next_beat = clock.now()  # Time of TurnDesk's next heartbeat.
-        if config.interface not in _ECHOING:
+        self.wait_callback: Callable[[], float] | None = None
+        self.next_heartbeat_s = clock.now()  # Time of TurnDesk's next heartbeat.
+        if config.interface not in _ECHOING_INTERFACES:
             for cob in (_SYNC, _NMT, _BEAT + config.host_id):
                 self.subscribe(cob, self._another_master)
 
@@ -59,46 +59,46 @@ class Bus(canopen.Network):
         """Open the interface again after a failure. Raises DriverError."""
         self.close()
         try:
-            self.bus = opened(self.config)
+            self.bus = open_interface(self.config)
         except DriverError as error:
-            raise DriverError(f"{self.trouble}; {error}", "bus") from error
-        self.trouble, self.garbled = "", 0
-        self.next_beat = self.clock.now()
+            raise DriverError(f"{self.failure}; {error}", "bus") from error
+        self.failure, self.garbled_frame_count = "", 0
+        self.next_heartbeat_s = self.clock.now()
 
-    def pump(self, wait: float = 0.0) -> None:
+    def process_frames(self, timeout_s: float = 0.0) -> None:
         """Send the heartbeat when it is due and process received frames.
 
         ``wait`` limits the seconds to the first frame. The heartbeat is sent from this loop on purpose: a
         kernel job would continue to send it if the process hangs.
         """
-        self.beat()
-        while self.bus is not None and not self.trouble:
+        self.send_heartbeat()
+        while self.bus is not None and not self.failure:
             try:
-                message = self.bus.recv(wait)
+                message = self.bus.recv(timeout_s)
             except (can.CanError, OSError) as error:
-                self.lost(Message("the CAN interface has failed: {error}", error=error))
+                self.mark_failed(Message("the CAN interface has failed: {error}", error=error))
                 return
             if message is None:
                 return
-            wait = 0.0
+            timeout_s = 0.0
             self._take(message)
 
-    def beat(self, *, at_once: bool = False) -> None:
+    def send_heartbeat(self, *, force: bool = False) -> None:
         """Send the heartbeat when it is due; a node starts to monitor it at the first one."""
         now = self.clock.now()
-        if (at_once or now >= self.next_beat - _EARLY) and not self.trouble:
-            self.next_beat = now + self.config.heartbeat
+        if (force or now >= self.next_heartbeat_s - _HEARTBEAT_EARLY_S) and not self.failure:
+            self.next_heartbeat_s = now + self.config.heartbeat
             with contextlib.suppress(DriverError):  # Stored as the fault of the bus.
                 self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send one frame. Raises DriverError if the interface rejects it."""
-        if self.bus is None or self.trouble:
+        if self.bus is None or self.failure:
             raise DriverError(
                 "CAN {channel}: {problem}",
                 "bus",
                 channel=self.config.channel,
-                problem=self.trouble or "closed",
+                problem=self.failure or "closed",
             )
         frame = can.Message(
             arbitration_id=can_id, data=bytes(data), is_extended_id=False, is_remote_frame=remote
@@ -106,44 +106,44 @@ class Bus(canopen.Network):
         try:
             self.bus.send(frame)
         except (can.CanError, OSError) as error:
-            self.lost(Message("the CAN interface cannot send: {error}", error=error))
+            self.mark_failed(Message("the CAN interface cannot send: {error}", error=error))
             raise DriverError(
-                "CAN {channel}: {problem}", "bus", channel=self.config.channel, problem=self.trouble
+                "CAN {channel}: {problem}", "bus", channel=self.config.channel, problem=self.failure
             ) from error
 
-    def synchronise(self) -> None:
+    def send_sync(self) -> None:
         """Send one SYNC, at which the drives apply the frames sent before and reply."""
         self.send_message(_SYNC, b"")
 
-    def wait(self, ready: Callable[[], bool], timeout: float) -> bool:
-        """Process frames until ``ready`` returns True; return False after ``timeout`` seconds of real time.
+    def wait_until(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
+        """Process frames until ``ready`` returns True; return False after ``timeout_s`` seconds of real time.
 
         Returns False at once if the bus has failed.
         """
         if self._idle is not None:
-            return self._wait_in_steps(ready)
-        end = time.monotonic() + timeout
-        while not ready():
+            return self._wait_in_steps(is_ready)
+        end = time.monotonic() + timeout_s
+        while not is_ready():
             left = end - time.monotonic()
-            if left <= 0.0 or self.trouble:
+            if left <= 0.0 or self.failure:
                 return False
-            due = self.meanwhile() if self.meanwhile is not None else 0.005
-            self.pump(min(left, due, 0.005))
+            due = self.wait_callback() if self.wait_callback is not None else 0.005
+            self.process_frames(min(left, due, 0.005))
         return True
 
     @property
-    def stepped(self) -> bool:
+    def is_stepped(self) -> bool:
         """Whether time advances only by ``idle``, as in tests."""
         return self._idle is not None
 
-    def lost(self, why: str) -> None:
+    def mark_failed(self, reason: str) -> None:
         """Mark the bus as failed; the first reason is retained."""
-        self.trouble = self.trouble or Fault(why, "bus")
+        self.failure = self.failure or Fault(reason, "bus")
 
     def _wait_in_steps(self, ready: Callable[[], bool]) -> bool:
         assert self._idle is not None
-        for _ in range(_ROUNDS):
-            self.pump()
+        for _ in range(_MAX_STOPPED_CYCLES):
+            self.process_frames()
             if ready():
                 return True
             self._idle()
@@ -152,7 +152,7 @@ class Bus(canopen.Network):
     def _take(self, message: can.Message) -> None:
         if message.is_error_frame:
             if message.arbitration_id & _BUS_OFF:
-                self.lost(
+                self.mark_failed(
                     "bus-off: the CAN controller has disconnected itself from the bus; check cable and "
                     "termination"
                 )
@@ -164,10 +164,10 @@ class Bus(canopen.Network):
         try:
             self.notify(message.arbitration_id, bytearray(message.data), self.clock.now())
         except (struct.error, IndexError, ValueError) as error:
-            self.garbled += 1
+            self.garbled_frame_count += 1
             _log.warning("CAN frame %03X makes no sense: %s", message.arbitration_id, error)
-            if self.garbled >= _GARBLED:
-                self.lost(
+            if self.garbled_frame_count >= _MAX_GARBLED_FRAMES:
+                self.mark_failed(
                     Message(
                         "invalid CAN frames received, the last with ID {arbitration_id}; check the "
                         "node numbers",
@@ -177,10 +177,12 @@ class Bus(canopen.Network):
 
     def _another_master(self, can_id: int, _data: bytearray, _timestamp: float) -> None:
         what = {_SYNC: "SYNC", _NMT: "NMT commands"}.get(can_id, "our heartbeat")
-        self.lost(Message("another master is sending {what} on this bus; switch that master off", what=what))
+        self.mark_failed(
+            Message("another master is sending {what} on this bus; switch that master off", what=what)
+        )
 
 
-class WaitingSdo(SdoClient):
+class PollingSdoClient(SdoClient):
     """SDO client that reads the bus itself while it waits."""
 
     RESPONSE_TIMEOUT = 1.0  # Seconds; some drives store values slowly.
@@ -200,8 +202,8 @@ class WaitingSdo(SdoClient):
         Raises SdoCommunicationError without a response and SdoAbortedError if the node rejects the request.
         """
         bus = self.network
-        assert isinstance(bus, Bus)
-        if not bus.wait(lambda: not self.responses.empty(), self.RESPONSE_TIMEOUT):
+        assert isinstance(bus, CanBus)
+        if not bus.wait_until(lambda: not self.responses.empty(), self.RESPONSE_TIMEOUT):
             raise SdoCommunicationError("no answer")
         answer: bytes = self.responses.get_nowait()
         if answer[0] == RESPONSE_ABORTED:
@@ -209,12 +211,12 @@ class WaitingSdo(SdoClient):
         return answer
 
 
-class Node(canopen.RemoteNode):
+class PollingNode(canopen.RemoteNode):
     """Remote node whose SDO client needs no reading thread."""
 
-    def add_sdo(self, rx_cobid: int, tx_cobid: int) -> WaitingSdo:
+    def add_sdo(self, rx_cobid: int, tx_cobid: int) -> PollingSdoClient:
         """Add an SDO channel and return its client."""
-        client = WaitingSdo(rx_cobid, tx_cobid, self.object_dictionary)
+        client = PollingSdoClient(rx_cobid, tx_cobid, self.object_dictionary)
         self.sdo_channels.append(client)
         if self.has_network():
             self.network.subscribe(client.tx_cobid, client.on_response)
@@ -222,23 +224,31 @@ class Node(canopen.RemoteNode):
 
 
 # NotImplementedError is raised for an interface that python-can does not know.
-_NOT_OPENED = (can.CanError, OSError, ValueError, TypeError, AttributeError, ImportError, NotImplementedError)
+_OPEN_ERRORS = (
+    can.CanError,
+    OSError,
+    ValueError,
+    TypeError,
+    AttributeError,
+    ImportError,
+    NotImplementedError,
+)
 
 
-def opened(config: CanopenTable) -> can.BusABC:
+def open_interface(config: CanopenTable) -> can.BusABC:
     """Open the CAN interface. Raises DriverError if it cannot be opened.
 
     On udp_multicast, a channel may end in ``:port``. Two groups on one port receive each other's frames
     within one computer.
     """
-    on_udp = config.interface in _ECHOING
+    on_udp = config.interface in _ECHOING_INTERFACES
     channel, _, port = config.channel.partition(":") if on_udp else (config.channel, "", "")
     more: dict[str, Any] = {"port": int(port)} if port.isdecimal() else {}
     try:
         return can.Bus(
             interface=config.interface, channel=channel, bitrate=config.bitrate, ignore_config=True, **more
         )
-    except _NOT_OPENED as error:
+    except _OPEN_ERRORS as error:
         _refuse(config, error)
 
 

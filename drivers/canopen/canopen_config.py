@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 
 from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.canopen.drive_profiles import CIA402, DriveProfile
-from drivers.setpoint_queue import AxisFigures
+from drivers.canopen.drive_profiles import CIA402_PROFILE, DriveProfile
+from drivers.setpoint_queue import AxisProperties
 
 
 @dataclass(frozen=True, slots=True)
-class AxisConfig(AxisFigures):
+class AxisConfig(AxisProperties):
     """One axis; without a ``node`` it has no drive and only counts."""
 
     node: CanNode | None = None
-    profile: DriveProfile = CIA402
+    profile: DriveProfile = CIA402_PROFILE
     counts_per_rev: int = 0  # Counts per revolution for velocities in rpm; 0: counts/s.
     home_method: int = 0
-    home_latch: float = 0.0
+    home_latch_speed: float = 0.0
     home_offset: float = 0.0
 
     def velocity(self, speed: float) -> float:
@@ -33,12 +33,12 @@ class AxisConfig(AxisFigures):
         The argument is in mm/s² or degrees/s².
         """
         counts = accel / self.count
-        return max(round(counts * 60.0 / self.counts_per_rev if self.profile.rpm else counts), 1)
+        return max(round(counts * 60.0 / self.counts_per_rev if self.profile.uses_rpm else counts), 1)
 
 
 @dataclass(frozen=True, slots=True)
 class SpindleConfig:
-    """Spindle drive in profile velocity mode, in rpm and rpm/s; ``is_c``: the drive also positions C.
+    """Spindle drive in profile velocity mode, in rpm and rpm/s; ``is_c_axis``: the drive also positions C.
 
     Without counts per revolution, its node does not provide an angle.
     """
@@ -47,7 +47,7 @@ class SpindleConfig:
     rpm_max: float
     accel: float
     decel: float
-    is_c: bool = False
+    is_c_axis: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class EncoderConfig:
     name: str
     node: CanNode | None
     index: int
-    sub: int
+    subindex: int
     counts_per_rev: int  # Negative: counts down with M03.
     rpm_max: float
 
@@ -67,17 +67,19 @@ class OutputConfig:
     """Output with its safe state; None leaves the output unchanged."""
 
     terminal: CanTerminal
-    safe: bool | None = False
+    safe_state: bool | None = False
 
 
 @dataclass(frozen=True, slots=True)
 class PotConfig:
-    """Analog input, whose zero and full scale mean ``low`` and ``high``; ``switch`` names its input."""
+    """Analog input, whose zero and full scale mean ``low_value`` and ``high_value``; ``switch_input`` names
+    its input.
+    """
 
     terminal: CanTerminal
-    low: float = 0.0
-    high: float = 1.0
-    switch: str = ""
+    low_value: float = 0.0
+    high_value: float = 1.0
+    switch_input: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,4 +94,4 @@ class CanopenConfig:
     outputs: Mapping[str, OutputConfig] = field(default_factory=dict)
     inputs: Mapping[str, CanTerminal] = field(default_factory=dict)
     pots: Mapping[str, PotConfig] = field(default_factory=dict)
-    commit: float = 0.14
+    commit_time_s: float = 0.14

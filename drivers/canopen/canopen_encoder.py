@@ -10,15 +10,17 @@ from canopen.emcy import EmcyError
 from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import Bus
+from drivers.canopen.canopen_bus import CanBus
 from drivers.canopen.canopen_config import EncoderConfig
-from drivers.canopen.canopen_setup import Setup, watching
-from drivers.canopen.cia402_drives import SYNCS, Drive402
+from drivers.canopen.canopen_setup import NodeSetup, build_monitoring_objects
+from drivers.canopen.cia402_drives import MAX_MISSING_REPLIES, Cia402Drive
 
-_WINDOW = 0.1  # Seconds over which the speed is measured, so that a late reading changes it by about 1 %.
-_FASTER = 2.0  # Factor of the maximum speed that indicates a broken wire.
-_SCALED = 0x04  # Bit 2 of 0x6000: the counts per revolution are 0x6001 instead of the resolution.
-_WORD = 2**32
+_SPEED_WINDOW_S = (
+    0.1  # Seconds over which the speed is measured, so that a late reading changes it by about 1 %.
+)
+_MAX_SPEED_FACTOR = 2.0  # Factor of the maximum speed that indicates a broken wire.
+_SCALING_ENABLED = 0x04  # Bit 2 of 0x6000: the counts per revolution are 0x6001 instead of the resolution.
+_COUNTER_RANGE = 2**32
 
 
 class CanEncoder:
@@ -27,15 +29,15 @@ class CanEncoder:
     A fault remains until ``clear_fault``.
     """
 
-    def __init__(self, config: EncoderConfig, bus: Bus, drive: Drive402 | None) -> None:
+    def __init__(self, config: EncoderConfig, bus: CanBus, drive: Cia402Drive | None) -> None:
         self._config = config
         self._bus = bus
         self._drive = drive
         self._setup = drive.setup if drive is not None else _setup_of(config, bus)
         self.node = self._setup.node
-        self.trouble: Fault | str = ""
-        self.missing = 0
-        self._range = _WORD  # Counts after which the position wraps around.
+        self.failure: Fault | str = ""
+        self.missing_reply_count = 0
+        self._range = _COUNTER_RANGE  # Counts after which the position wraps around.
         self._raw: int | None = None
         self._counts = 0
         self._asked = self._heard = bus.clock.now()
@@ -45,62 +47,64 @@ class CanEncoder:
         """Check and map the encoder. Raises DriverError if it does not match the machine file."""
         setup, config = self._setup, self._config
         if config.node is not None:
-            setup.pre_operational()
-            setup.demand_profile(406)
-            setup.configure(watching(self._bus.config), config.node.sdo, (od.HEARTBEAT,))
+            setup.enter_pre_operational()
+            setup.require_profile(406)
+            setup.configure_objects(
+                build_monitoring_objects(self._bus.config), config.node.sdo, (od.HEARTBEAT,)
+            )
             self._check_counts()
             self.node.nmt.add_heartbeat_callback(self._heartbeat)
             self.node.emcy.add_callback(self._emergency)
-        entry = config.index | config.sub << 16
-        every = self._bus.config.seldom
-        setup.transmit(1 if self._drive is None else 3, self._told, (entry, 32), every=every)
-        self._raw, self.missing, self.trouble = None, 0, ""
+        entry = config.index | config.subindex << 16
+        every = self._bus.config.slow_reply_divisor
+        setup.map_sent_objects(1 if self._drive is None else 3, self._told, (entry, 32), every=every)
+        self._raw, self.missing_reply_count, self.failure = None, 0, ""
         self._heard = self._bus.clock.now()
         self._reads.clear()
 
-    def operational(self) -> None:
+    def start_node(self) -> None:
         """Start the node by NMT; a drive is started by its owner."""
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
-    def sync_sent(self, now: float, *, counted: bool = True) -> None:
-        """Record that a SYNC is sent; with ``counted``, a reply is expected."""
-        self.missing, self._asked = self.missing + counted, now
+    def record_sync(self, now: float, *, reply_expected: bool = True) -> None:
+        """Record that a SYNC is sent; with ``reply_expected``, a reply is expected."""
+        self.missing_reply_count, self._asked = self.missing_reply_count + reply_expected, now
 
-    def look(self) -> None:
+    def supervise(self) -> None:
         """Set a fault if heartbeats or replies are missing."""
         silent = self._bus.clock.now() - self._heard
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
             self._wrong(
                 "no heartbeat from the encoder for {silent} s; check cable and power", silent=f"{silent:.2f}"
             )
-        elif self.missing > SYNCS:
+        elif self.missing_reply_count > MAX_MISSING_REPLIES:
             self._wrong("the encoder does not respond to SYNC; check cable and power")
 
     def clear_fault(self) -> None:
         """Configure the encoder again after a fault; a failure affects only the spindle, not the axes."""
-        if not self.trouble:
+        if not self.failure:
             return
         try:
             self.connect()
-            self.operational()
+            self.start_node()
         except DriverError as error:
-            self.trouble = Fault("spindle encoder {error}", "spindle-encoder", error=error)
+            self.failure = Fault("spindle encoder {error}", "spindle-encoder", error=error)
 
-    def speed(self) -> float:
+    def measured_rpm(self) -> float:
         """Return the speed of the last 0.1 s in rpm, signed."""
         if len(self._reads) < 2:
             return 0.0
         (t0, turns0), (t1, turns1) = self._reads[0], self._reads[-1]
         return 60.0 * (turns1 - turns0) / (t1 - t0)
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, revolutions) pair at the last SYNC with a reply, or None before the first reply."""
         return self._reads[-1] if self._reads else None
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the reason why the measurement is invalid, or an empty text."""
-        return self._bus.trouble or self.trouble
+        return self._bus.failure or self.failure
 
     def _check_counts(self) -> None:
         """Check the counts per revolution and the counting range against the machine file.
@@ -108,7 +112,7 @@ class CanEncoder:
         Raises DriverError if the counts differ or may wrap around between two replies.
         """
         setup, config = self._setup, self._config
-        scaled = setup.read(od.ENCODER_MODE) & _SCALED
+        scaled = setup.read(od.ENCODER_MODE) & _SCALING_ENABLED
         counts = setup.read(od.ENCODER_STEPS if scaled else od.ENCODER_RESOLUTION)
         if counts != abs(config.counts_per_rev):
             where = "6001:0" if scaled else "6501:0"
@@ -121,9 +125,9 @@ class CanEncoder:
                 counts_per_rev=abs(config.counts_per_rev),
             )
         turns = setup.read(od.ENCODER_TURNS)
-        self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
-        wait = self._bus.config.sync * self._bus.config.seldom
-        between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # Maximum revolutions.
+        self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _COUNTER_RANGE
+        wait = self._bus.config.sync * self._bus.config.slow_reply_divisor
+        between = (MAX_MISSING_REPLIES + 1) * wait * config.rpm_max / 60.0  # Maximum revolutions.
         if self._range < 2.0 * between * counts:
             raise DriverError(
                 "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
@@ -138,7 +142,7 @@ class CanEncoder:
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
         raw = int.from_bytes(map_.data[:4], "little") % self._range
         last, self._raw = self._raw, raw
-        now, self.missing = self._asked, 0
+        now, self.missing_reply_count = self._asked, 0
         if last is None:
             last = raw
         half = self._range // 2
@@ -148,16 +152,16 @@ class CanEncoder:
             self._doubt(abs(moved), now - self._reads[-1][0])
         if not self._reads or now > self._reads[-1][0]:
             self._reads.append((now, self._counts / self._config.counts_per_rev))
-        while self._reads[-1][0] - self._reads[0][0] > _WINDOW:
+        while self._reads[-1][0] - self._reads[0][0] > _SPEED_WINDOW_S:
             self._reads.popleft()
 
     def _doubt(self, moved: int, passed: float) -> None:
         turns = moved / abs(self._config.counts_per_rev)
         most = (
-            _FASTER
+            _MAX_SPEED_FACTOR
             * self._config.rpm_max
             / 60.0
-            * max(passed, self._bus.config.sync * self._bus.config.seldom)
+            * max(passed, self._bus.config.sync * self._bus.config.slow_reply_divisor)
         )
         if turns > most:
             self._wrong(
@@ -182,15 +186,15 @@ class CanEncoder:
 
     def _wrong(self, what: str, **values: object) -> None:
         what = Message(what, **values) if values else what
-        self.trouble = self.trouble or Fault(
+        self.failure = self.failure or Fault(
             "spindle encoder {name}: {what}", "spindle-encoder", name=self._config.name, what=what
         )
 
 
-def _setup_of(config: EncoderConfig, bus: Bus) -> Setup:
+def _setup_of(config: EncoderConfig, bus: CanBus) -> NodeSetup:
     assert config.node is not None  # Otherwise the encoder is the second input of a drive.
-    objects = od.dictionary(config.name, config.node.eds, od.encoder_objects)
-    return Setup(bus, config.name, config.node.id, objects)
+    objects = od.load_dictionary(config.name, config.node.eds, od.build_encoder_dictionary)
+    return NodeSetup(bus, config.name, config.node.id, objects)
 
 
 class MeasuredSpindle:
@@ -202,7 +206,7 @@ class MeasuredSpindle:
     def __init__(self, encoder: CanEncoder | None) -> None:
         self._encoder = encoder
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Raise DriverError unless ``rpm`` is 0, because the bus does not have a spindle drive."""
         if rpm:
             raise DriverError(
@@ -214,12 +218,12 @@ class MeasuredSpindle:
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed, or 0 without an encoder."""
-        return self._encoder.speed() if self._encoder is not None else 0.0
+        return self._encoder.measured_rpm() if self._encoder is not None else 0.0
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, revolutions) pair, or None without an encoder or before its first reply."""
-        return self._encoder.angle() if self._encoder is not None else None
+        return self._encoder.read_angle() if self._encoder is not None else None
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the reason why the encoder is invalid, or an empty text."""
-        return self._encoder.fault() if self._encoder is not None else ""
+        return self._encoder.read_fault() if self._encoder is not None else ""

@@ -8,14 +8,14 @@ from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import BIT_12, BIT_13, HALT, HM, NEW, REACHED, DriveState
-from drivers.canopen.cia402_drives import Drive402
-from drivers.canopen.driven_axes import DrivenAxis
+from drivers.canopen.cia402_drives import Cia402Drive
+from drivers.canopen.drive_set import DrivenAxis
 
-_FIRST = 0.1  # Seconds in which "target reached" may still refer to the last move.
-_MODE = 0.5  # Seconds for a change of mode.
-_SPARE = 10.0  # Seconds in addition to the travel time at homing speed.
-_SETTLE = 0.05  # Seconds until the new count is reported, from which setpoints start.
-_STILL = 0.1  # Seconds without a count before a halted drive is assumed to be at standstill.
+_STALE_STATUS_S = 0.1  # Seconds in which "target reached" may still refer to the last move.
+_MODE_CHANGE_S = 0.5  # Seconds for a change of mode.
+_TIME_RESERVE_S = 10.0  # Seconds in addition to the travel time at homing speed.
+_SETTLING_TIME_S = 0.05  # Seconds until the new count is reported, from which setpoints start.
+_STANDSTILL_TIME_S = 0.1  # Seconds without a count before a halted drive is assumed to be at standstill.
 
 
 class _Step(Enum):
@@ -23,93 +23,97 @@ class _Step(Enum):
     RUN = "searching for the home switch"
     SETTLE = "switch found; the position count is being reset"
     HALT = "homing canceled; the axis is braking"
-    BACK = "waiting for the drive to return to the previous mode"
+    RESTORE_MODE = "waiting for the drive to return to the previous mode"
     DONE = "the drive has returned to the previous mode"
 
 
-class Homing:
-    """Homing of one axis; ``step`` must be called once per tick until ``done`` is true or a fault is set."""
+class CanopenHoming:
+    """Homing of one axis; ``step`` must be called once per tick until ``is_done`` is true or a fault is
+    set.
+    """
 
-    def __init__(self, axis: DrivenAxis, back: int, now: float) -> None:
+    def __init__(self, axis: DrivenAxis, previous_mode: int, now: float) -> None:
         self.axis = axis
         self.config = axis.config
         self._drive = axis.drive
-        self._back = back
+        self._back = previous_mode
         self._step = _Step.MODE
         self._since = now
-        self.trouble: Fault | str = ""
-        self._write()
-        self._drive.mode = HM
+        self.failure: Fault | str = ""
+        self._write_parameters()
+        self._drive.commanded_mode = HM
 
     @property
-    def done(self) -> bool:
+    def is_done(self) -> bool:
         """Whether the homing has ended and the drive is back in its previous mode."""
         return self._step is _Step.DONE
 
-    def step(self, now: float) -> None:
+    def advance(self, now: float) -> None:
         """Evaluate the status word and continue."""
         drive, waited = self._drive, now - self._since
-        if self._step is _Step.MODE and drive.shown_mode == HM:
-            drive.extra |= NEW
+        if self._step is _Step.MODE and drive.reported_mode == HM:
+            drive.mode_bits |= NEW
             self._enter(_Step.RUN, now)
         elif self._step is _Step.RUN:
             self._look(now, waited)
-        elif self._step is _Step.SETTLE and waited > _SETTLE:
+        elif self._step is _Step.SETTLE and waited > _SETTLING_TIME_S:
             self._leave(now)
         elif self._step is _Step.HALT:
             self._brake(now, waited)
-        elif self._step is _Step.BACK and drive.shown_mode == self._back:
+        elif self._step is _Step.RESTORE_MODE and drive.reported_mode == self._back:
             self._enter(_Step.DONE, now)
-        elif self._step in {_Step.MODE, _Step.BACK} and waited > _MODE:
-            self._fail("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode)
+        elif self._step in {_Step.MODE, _Step.RESTORE_MODE} and waited > _MODE_CHANGE_S:
+            self._fail("the drive stays in mode {shown_mode}", shown_mode=drive.reported_mode)
 
-    def give_up(self) -> None:
+    def cancel(self) -> None:
         """Cancel the homing, so that the drive brakes.
 
         The mode changes back at standstill, because some drives reject a mode change in motion.
         """
-        self._drive.extra = self._drive.extra & ~NEW | HALT
+        self._drive.mode_bits = self._drive.mode_bits & ~NEW | HALT
         self._step = _Step.HALT
 
     def _brake(self, now: float, waited: float) -> None:
-        if self.axis.moving or not self._braking:  # The first check after the cancellation starts the wait.
+        if (
+            self.axis.is_moving or not self._braking
+        ):  # The first check after the cancellation starts the wait.
             self._since, self._braking = now, True
-        elif waited > _STILL:
+        elif waited > _STANDSTILL_TIME_S:
             self._leave(now)
 
     def _leave(self, now: float) -> None:
-        self._drive.extra &= ~(NEW | HALT)
-        self._drive.mode = self._back
-        self._enter(_Step.BACK, now)
+        self._drive.mode_bits &= ~(NEW | HALT)
+        self._drive.commanded_mode = self._back
+        self._enter(_Step.RESTORE_MODE, now)
 
     def _look(self, now: float, waited: float) -> None:
-        status = self._drive.status
+        status = self._drive.status_word
         if status & BIT_13:
             self._fail("the drive reports a homing error; check switch, method and direction")
-        elif waited > _FIRST and status & BIT_12 and status & REACHED:
+        elif waited > _STALE_STATUS_S and status & BIT_12 and status & REACHED:
             self._enter(_Step.SETTLE, now)
         elif waited > self._longest():
             self._fail("no home switch was found within the axis travel")
 
     def _longest(self) -> float:
         low, high = self.config.travel or (0.0, 360.0)
-        return 2.0 * (high - low) / self.config.home_speed + _SPARE
+        return 2.0 * (high - low) / self.config.home_speed + _TIME_RESERVE_S
 
     def _enter(self, step: _Step, now: float) -> None:
         self._step, self._since = step, now
 
     def _fail(self, why: str, **values: object) -> None:
         why = Message(why, **values) if values else why
-        self._drive.extra &= ~NEW
-        self.trouble = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
+        self._drive.mode_bits &= ~NEW
+        self.failure = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 
-    def _write(self) -> None:
+    def _write_parameters(self) -> None:
         """Write method, speeds, acceleration and home offset, as far as the drive has these objects.
 
         Raises DriverError.
         """
         config, setup = self.config, self._drive.setup
-        slow = config.home_latch or config.home_speed / 10.0
+        slow = config.home_latch_speed or config.home_speed / 10.0
         setup.write(od.HOME_METHOD, 0, config.home_method)
         for index, sub, value in (
             (od.HOME_SPEEDS, 1, max(round(config.velocity(config.home_speed)), 1)),
@@ -118,13 +122,13 @@ class Homing:
         ):
             setup.try_write(index, sub, value)
         place = round(config.home_offset / config.count)
-        if not setup.try_write(config.profile.home_place, 0, place) and place:
+        if not setup.try_write(config.profile.home_offset_object, 0, place) and place:
             raise DriverError(
                 "{name}: the drive has no object {home_place}h (home offset), so "
                 "axis.{name2}.home.offset must be 0",
                 "homing",
                 name=config.name,
-                home_place=f"{config.profile.home_place:04X}",
+                home_place=f"{config.profile.home_offset_object:04X}",
                 name2=config.name,
             )
 
@@ -134,87 +138,94 @@ class Homing:
 # --- Position of the spindle drive: homed on the index or in place, and tracked while it turns.
 
 
-_CHANGE = 2.0  # Seconds for a change of mode with power.
-_SEARCH = 15.0  # Seconds to find the index.
-_FIRST_REFERENCE = 0.1  # Seconds in which "target reached" may still refer to the last move.
-_HERE = (37, 35)  # Homing methods for the present position: the new code and the old one.
-_INDEX = 34  # Homing method: index, turning forward.
-SEARCH_RPM = 60
+_POWERED_MODE_CHANGE_S = 2.0  # Seconds for a change of mode with power.
+_INDEX_SEARCH_S = 15.0  # Seconds to find the index.
+_STALE_REFERENCE_S = 0.1  # Seconds in which "target reached" may still refer to the last move.
+_PRESENT_POSITION_METHODS = (37, 35)  # Homing methods for the present position: the new code and the old one.
+_INDEX_METHOD = 34  # Homing method: index, turning forward.
+INDEX_SEARCH_RPM = 60
 
 
-class Referencing:
+class SpindleHoming:
     """Homing of the spindle drive, which the caller starts and then polls."""
 
-    def __init__(self, drive: Drive402) -> None:
+    def __init__(self, drive: Cia402Drive) -> None:
         self._drive = drive
         self._limit = 0.0
         self._why = ""
         self._since = 0.0
         self._told = False  # The drive has received the start command.
 
-    def index(self, now: float) -> None:
+    def start_index_search(self, now: float) -> None:
         """Start the search for the index. Raises DriverError."""
-        self._limit, self._why = _SEARCH, "no encoder index was found within one revolution"
-        self._drive.setup.write(od.HOME_METHOD, 0, _INDEX)
+        self._limit, self._why = _INDEX_SEARCH_S, "no encoder index was found within one revolution"
+        self._drive.setup.write(od.HOME_METHOD, 0, _INDEX_METHOD)
         self._begin(0, now)
 
-    def set_position(self, place: int, now: float) -> None:
+    def set_position(self, counts: int, now: float) -> None:
         """Start to set the present position to ``place`` counts. Raises DriverError."""
-        self._limit, self._why = _CHANGE, "the drive does not accept its new position"
+        self._limit, self._why = _POWERED_MODE_CHANGE_S, "the drive does not accept its new position"
         try:
-            self._drive.setup.write(od.HOME_METHOD, 0, _HERE[0])
+            self._drive.setup.write(od.HOME_METHOD, 0, _PRESENT_POSITION_METHODS[0])
         except DriverError:
-            self._drive.setup.write(od.HOME_METHOD, 0, _HERE[1])
-        self._begin(place, now)
+            self._drive.setup.write(od.HOME_METHOD, 0, _PRESENT_POSITION_METHODS[1])
+        self._begin(counts, now)
 
-    def done(self, now: float) -> bool:
+    def is_done(self, now: float) -> bool:
         """Return whether the homing is complete. Raises DriverError if it has failed."""
         drive, waited = self._drive, now - self._since
         if not self._told:
-            if drive.enabled and drive.shown_mode == HM:
-                drive.extra, self._told, self._since = NEW, True, now
-            elif waited > _CHANGE:
+            if drive.enabled and drive.reported_mode == HM:
+                drive.mode_bits, self._told, self._since = NEW, True, now
+            elif waited > _POWERED_MODE_CHANGE_S:
                 raise DriverError(
                     "C: the spindle drive remains in state {state}, mode {shown_mode}",
                     "c-coupling",
                     state=drive.state,
-                    shown_mode=drive.shown_mode,
+                    shown_mode=drive.reported_mode,
                 )
             return False
-        if drive.status & BIT_13 or waited > self._limit:
+        if drive.status_word & BIT_13 or waited > self._limit:
             raise DriverError(f"C: {self._why}", "c-coupling")
-        done = waited > _FIRST_REFERENCE and bool(drive.status & BIT_12 and drive.status & REACHED)
+        done = waited > _STALE_REFERENCE_S and bool(
+            drive.status_word & BIT_12 and drive.status_word & REACHED
+        )
         if done:
-            drive.extra = 0
+            drive.mode_bits = 0
         return done
 
     def _begin(self, place: int, now: float) -> None:
         write, drive = self._drive.setup.write, self._drive
-        write(od.HOME_SPEEDS, 1, SEARCH_RPM)
-        write(od.HOME_SPEEDS, 2, SEARCH_RPM // 10)
+        write(od.HOME_SPEEDS, 1, INDEX_SEARCH_RPM)
+        write(od.HOME_SPEEDS, 2, INDEX_SEARCH_RPM // 10)
         write(od.HOME_OFFSET, 0, place)
-        drive.mode, drive.goal, drive.extra, drive.target = HM, DriveState.ENABLED, 0, 0
+        drive.commanded_mode, drive.goal_state, drive.mode_bits, drive.target_value = (
+            HM,
+            DriveState.OPERATION_ENABLED,
+            0,
+            0,
+        )
         self._told, self._since = False, now
 
 
-class Phase:
+class IndexPhase:
     """Counts from the index within one revolution; ``counts`` is None before the index is found."""
 
-    def __init__(self, per_turn: int) -> None:
-        self._per_turn = per_turn
+    def __init__(self, counts_per_rev: int) -> None:
+        self._per_turn = counts_per_rev
         self._last = 0
         self.counts: int | None = None
 
-    def index_found(self, position: int) -> None:
+    def set_index(self, position: int) -> None:
         """Set the phase at a drive position that counts from the index."""
         self.counts, self._last = position % self._per_turn, position
 
-    def follow(self, position: int, *, leaps: bool) -> None:
+    def update(self, position: int, *, ignore_jumps: bool) -> None:
         """Track the drive position, once per cycle.
 
-        ``leaps``: the counter is being set while the spindle does not turn, so the change is ignored.
+        ``ignore_jumps``: the counter is being set while the spindle does not turn, so the change is ignored.
         """
         moved = (position - self._last + 2**31) % 2**32 - 2**31
         self._last = position
-        if self.counts is not None and not leaps:
+        if self.counts is not None and not ignore_jumps:
             self.counts = (self.counts + moved) % self._per_turn

@@ -8,30 +8,30 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeGuard
 
-from core.key_declaration import Range, file_key, key_table
+from core.key_declaration import KeyRange, declare_key, make_key_table
 from core.table_schema import (
-    FileReading,
-    Finding,
+    FileFinding,
+    MachineFileReading,
     TableReference,
-    expected_table,
-    read_named,
-    unknown_keys,
-    written,
+    find_unknown_keys,
+    format_toml_value,
+    make_table_finding,
+    read_named_tables,
 )
 from drivers.canopen.drive_profiles import PROFILES
 
-PLAIN_MODULE = "401"  # Stands for the first I/O module in addresses.
+FIRST_MODULE = "401"  # Stands for the first I/O module in addresses.
 DRIVE, MODULE, ENCODER_PROFILE = 402, 401, 406  # Profiles of CiA.
 NODES, SDO, SPINDLE = "canopen.nodes", "canopen.sdo", "spindle"
-_ADDRESS = re.compile(r"([A-Za-z0-9_]+)\.([0-9A-Fa-f]{4})\.(\d{1,3})(?:\.(\d{1,2}))?")
-_OBJECT = re.compile(r"([0-9A-Fa-f]{4}):(\d{1,3})")
+_TERMINAL_PATTERN = re.compile(r"([A-Za-z0-9_]+)\.([0-9A-Fa-f]{4})\.(\d{1,3})(?:\.(\d{1,2}))?")
+_OBJECT_PATTERN = re.compile(r"([0-9A-Fa-f]{4}):(\d{1,3})")
 INPUT, BITS = 0x6000, 8  # The object of a module's inputs, and the bits of a byte.
 _WINDOW, _OFF = 0x6065, 0xFFFFFFFF
 _LOW, _HIGH = -(2**31), 2**32 - 1  # Range of an object value.
-_SELDOM = 0.01  # s
+_SLOW_VALUE_PERIOD_S = 0.01  # s
 
-CYCLIC = ("csp", "ip")  # Modes with one setpoint per SYNC.
-EVENED_OUT = 0.25  # Fraction of a period by which a SYNC may be late.
+CYCLIC_MODES = ("csp", "ip")  # Modes with one setpoint per SYNC.
+MAX_SYNC_DELAY_FRACTION = 0.25  # Fraction of a period by which a SYNC may be late.
 SDO_REFERENCE = TableReference(
     "canopen.sdo.…",
     "Objects that TurnDesk writes to a node at each start and reads back; the last word "
@@ -39,39 +39,39 @@ SDO_REFERENCE = TableReference(
     'such as `"6007:0"`, with the index in hexadecimal; the value is a 32-bit integer.',
 )
 # Index, sub-index and value, written at every start and read back.
-Objects = tuple[tuple[int, int, int], ...]
+ObjectValues = tuple[tuple[int, int, int], ...]
 
 
-@key_table
+@make_key_table
 class CanNode:
     """One node of the bus; ``name`` is an axis, ``spindle`` or the name of an I/O module."""
 
     name: str
-    id: int = file_key(Range(1, 127), meaning="Node number set at the device.")
-    profile: int = file_key(
-        Range(401, 406),
+    id: int = declare_key(KeyRange(1, 127), meaning="Node number set at the device.")
+    profile: int = declare_key(
+        KeyRange(401, 406),
         default=402,
         meaning="Device profile of CiA: 402 (drive), 401 (input and output module) or 406 (encoder).",
     )
-    drive: str = file_key(
+    drive: str = declare_key(
         default="",
         choices=tuple(PROFILES),
         meaning="Family of the drive. Default: `drive` of [canopen]; without it the family that the EDS "
         "file names, or plain CiA 402.",
     )
-    eds: str = file_key(
+    eds: str = declare_key(
         default="",
         meaning="EDS file of the device, in the folder of the machine file. Default: the objects of the "
         "family or of the standard.",
     )
-    counts_per_rev: int = file_key(
-        Range(0, 100_000_000),
+    counts_per_rev: int = declare_key(
+        KeyRange(0, 100_000_000),
         default=0,
         meaning="Encoder counts per motor revolution, 4 × the lines, for drives that use rpm as their unit "
         "of speed. 0: the drive uses counts/s. For the spindle: counts per spindle revolution, needed for "
         "threads and C.",
     )
-    sdo: Objects = ()  # First the objects for all nodes of its profile, then its own.
+    sdo: ObjectValues = ()  # First the objects for all nodes of its profile, then its own.
 
 
 NODE_REFERENCE = TableReference(
@@ -88,75 +88,75 @@ class CanTerminal:
 
     node: str
     index: int
-    sub: int
+    subindex: int
     bit: int = -1
     active_low: bool = False
 
 
-def seldom(sync: float) -> int:
+def get_slow_reply_divisor(sync_period_s: float) -> int:
     """Return the number of SYNCs between two replies of slow values, which corresponds to about 10 ms."""
-    return max(1, round(_SELDOM / sync))
+    return max(1, round(_SLOW_VALUE_PERIOD_S / sync_period_s))
 
 
 # --- addresses -------------------------------------------------------------------------------------------
 
 
-def can_terminal(text: str) -> CanTerminal | None:
+def parse_terminal(text: str) -> CanTerminal | None:
     """Parse ``401.6200.1.0`` into node, object, sub-index and bit; return None if it is not an address."""
-    found = _ADDRESS.fullmatch(text)
+    found = _TERMINAL_PATTERN.fullmatch(text)
     if found is None:
         return None
     node, index, sub, bit = found.groups()
     return CanTerminal(node, int(index, 16), int(sub), int(bit) if bit else -1)
 
 
-def sdo_address(text: str) -> tuple[int, int] | None:
+def parse_sdo_address(text: str) -> tuple[int, int] | None:
     """Parse ``6007:0`` into index and sub-index; return None if it is not an address."""
-    found = _OBJECT.fullmatch(text)
+    found = _OBJECT_PATTERN.fullmatch(text)
     if found is None or int(found[2]) > 255:
         return None
     return int(found[1], 16), int(found[2])
 
 
-def terminal(file: FileReading, text: str) -> CanTerminal | None:
+def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
     """Parse a terminal address and replace 401 by the name of the first module."""
-    found = can_terminal(text)
-    if found is None or found.node != PLAIN_MODULE:
+    found = parse_terminal(text)
+    if found is None or found.node != FIRST_MODULE:
         return found
-    return replace(found, node=next(iter(module_names(file)), PLAIN_MODULE))
+    return replace(found, node=next(iter(list_module_names(file)), FIRST_MODULE))
 
 
-def input_addresses() -> Iterator[str]:
+def iterate_input_addresses() -> Iterator[str]:
     """Yield the input addresses of the first module, bit by bit."""
-    return (f"{PLAIN_MODULE}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
+    return (f"{FIRST_MODULE}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
 
 
 # --- reading ---------------------------------------------------------------------------------------------
 
 
-def read_nodes(file: FileReading) -> Iterator[Finding]:
+def read_nodes(file: MachineFileReading) -> Iterator[FileFinding]:
     """Read [canopen.nodes] and yield the findings there and in [canopen.sdo]."""
     nodes, objects = file.raw(NODES), file.raw(SDO)
-    yield from read_named({} if nodes is None else nodes, CanNode, NODES, file.values)
+    yield from read_named_tables({} if nodes is None else nodes, CanNode, NODES, file.values)
     if objects is None:
         return
     if not isinstance(objects, dict):
-        yield expected_table(SDO, objects)
+        yield make_table_finding(SDO, objects)
         return
-    yield from unknown_keys(objects, ["all", *file.names(NODES)], SDO)
+    yield from find_unknown_keys(objects, ["all", *file.list_table_keys(NODES)], SDO)
     for node, entries in objects.items():
         path = f"{SDO}.{node}"
         if not isinstance(entries, dict):
-            yield expected_table(path, entries)
+            yield make_table_finding(path, entries)
             continue
         for key, value in entries.items():
-            if why := _wrong_object(key, value):
-                yield Finding(f'{path}."{key}"', written(value), why)
+            if why := _describe_bad_object(key, value):
+                yield FileFinding(f'{path}."{key}"', format_toml_value(value), why)
 
 
-def _wrong_object(key: str, value: object) -> str:
+def _describe_bad_object(key: str, value: object) -> str:
     """Return the expected form of a wrong entry, or an empty text for a valid entry."""
-    address = sdo_address(key)
+    address = parse_sdo_address(key)
     if address is None:
         return 'the key must be an object address with the index in hexadecimal, such as "6007:0"'
     if not _whole(value) or not _LOW <= value <= _HIGH:
@@ -170,53 +170,53 @@ def _whole(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def objects_of(file: FileReading, node: str) -> Objects:
+def read_sdo_objects(file: MachineFileReading, node: str) -> ObjectValues:
     """Return the valid entries of [canopen.sdo] for one node or for ``all``."""
     entries = file.raw(f"{SDO}.{node}")
     found = entries.items() if isinstance(entries, dict) else ()
     return tuple(
         (*address, value)
         for key, value in found
-        if (address := sdo_address(key)) and _whole(value) and not _wrong_object(key, value)
+        if (address := parse_sdo_address(key)) and _whole(value) and not _describe_bad_object(key, value)
     )
 
 
-def object_path(node: str, index: int, sub: int) -> str:
+def format_object_path(node: str, index: int, subindex: int) -> str:
     """Return the path of a node's object as in the machine file."""
-    return f'{SDO}.{node}."{index:04X}:{sub}"'
+    return f'{SDO}.{node}."{index:04X}:{subindex}"'
 
 
-def node_of(file: FileReading, name: str) -> CanNode:
+def build_node(file: MachineFileReading, name: str) -> CanNode:
     """Build a node with all objects that are written to it, from a valid file."""
-    shared = objects_of(file, "all") if profile_of(file, name) == DRIVE else ()
-    return file.values.model(
+    shared = read_sdo_objects(file, "all") if read_node_profile(file, name) == DRIVE else ()
+    return file.values.make_model(
         CanNode,
         f"{NODES}.{name}",
         name=name,
-        drive=family_of(file, name),
-        sdo=(*shared, *objects_of(file, name)),
+        drive=read_drive_family(file, name),
+        sdo=(*shared, *read_sdo_objects(file, name)),
     )
 
 
-def family_of(file: FileReading, name: str) -> str:
+def read_drive_family(file: MachineFileReading, name: str) -> str:
     """Return the drive family of a node, or the default for all drives; empty if it is not a drive."""
-    if profile_of(file, name) != DRIVE:
+    if read_node_profile(file, name) != DRIVE:
         return ""
     paths = (f"{NODES}.{name}.drive", "canopen.drive")
-    return next((found for path in paths if (found := said(file, path))), "")
+    return next((found for path in paths if (found := read_text(file, path))), "")
 
 
-def said(file: FileReading, path: str) -> str:
+def read_text(file: MachineFileReading, path: str) -> str:
     """Return the text of a key, or an empty text if it is missing or invalid."""
-    return file.values.text(path) if file.values.has(path) else ""
+    return file.values.text(path) if file.values.has_values(path) else ""
 
 
-def profile_of(file: FileReading, node: str) -> int:
+def read_node_profile(file: MachineFileReading, node: str) -> int:
     """Return the CiA profile of a node, or 0 if the file does not specify one."""
     path = f"{NODES}.{node}.profile"
-    return file.values.whole(path) if file.values.has(path) else 0
+    return file.values.read_integer(path) if file.values.has_values(path) else 0
 
 
-def module_names(file: FileReading) -> list[str]:
+def list_module_names(file: MachineFileReading) -> list[str]:
     """Return the names of the I/O modules in the order of the file."""
-    return [name for name in file.names(NODES) if profile_of(file, name) == MODULE]
+    return [name for name in file.list_table_keys(NODES) if read_node_profile(file, name) == MODULE]

@@ -14,11 +14,11 @@ from canopen import ObjectDictionary, import_od
 from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 from canopen.objectdictionary import datatypes as kind
 
-from core.input_file import MB, input_text
+from core.input_file import BYTES_PER_MB, read_input_text
 from core.message import Message
 from core.ports import DriverError
 from drivers.canopen.canopen_nodes import CanNode
-from drivers.canopen.drive_profiles import CIA402, DriveProfile, profile_of
+from drivers.canopen.drive_profiles import CIA402_PROFILE, DriveProfile, find_profile
 
 U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64
 I8, I16, I32 = kind.INTEGER8, kind.INTEGER16, kind.INTEGER32
@@ -33,7 +33,7 @@ PROFILE_SPEED, PROFILE_ACCEL, PROFILE_DECEL, QUICK_DECEL = 0x6081, 0x6083, 0x608
 HOME_METHOD, HOME_SPEEDS, HOME_ACCEL = 0x6098, 0x6099, 0x609A
 IP_SUBMODE, IP_RECORD, IP_TIME, BUFFER = 0x60C0, 0x60C1, 0x60C2, 0x60C4
 INPUTS_402, FOLLOWING, TARGET_SPEED, SUPPORTED = 0x60FD, 0x60F4, 0x60FF, 0x6502
-TORQUE = 0x6077  # Actual torque in per mille of the rated torque.
+ACTUAL_TORQUE = 0x6077  # Actual torque in per mille of the rated torque.
 HOME_METHODS, MOTOR_TURN, GEAR, FEED = 0x60E3, 0x608F, 0x6091, 0x6092
 DIGITAL_IN, DIGITAL_OUT, ERROR_MODE, ERROR_VALUE = 0x6000, 0x6200, 0x6206, 0x6207
 ENCODER_MODE, ENCODER_STEPS, ENCODER_RANGE, ENCODER_POSITION = 0x6000, 0x6001, 0x6002, 0x6004
@@ -41,14 +41,14 @@ ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
 _log = logging.getLogger(__name__)
-_LARGEST = 16 * MB  # Maximum size of an EDS file.
-_FLAWS = 50  # Maximum number of objects without a type in an EDS file.
+_MAX_EDS_SIZE = 16 * BYTES_PER_MB  # Maximum size of an EDS file.
+_MAX_EDS_ERRORS = 50  # Maximum number of objects without a type in an EDS file.
 _VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (SYNC_PERIOD, U32), (HEARTBEAT, U16))
 _ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
 _VARIABLES_402 = (
     *((ABORT_OPTION, I16), (QUICK_OPTION, I16), (FAULT_OPTION, I16)),
     *((CONTROL, U16), (STATUS, U16), (MODE, I8), (MODE_SHOWN, I8)),
-    *((POSITION, I32), (TORQUE, I16), (WINDOW, U32), (WINDOW_TIME, U16), (VELOCITY, I32)),
+    *((POSITION, I32), (ACTUAL_TORQUE, I16), (WINDOW, U32), (WINDOW_TIME, U16), (VELOCITY, I32)),
     *((TARGET, I32), (HOME_OFFSET, I32), (PROFILE_SPEED, U32), (PROFILE_ACCEL, U32)),
     *((PROFILE_DECEL, U32), (QUICK_DECEL, U32), (HOME_METHOD, I8), (HOME_ACCEL, U32)),
     *((IP_SUBMODE, I16), (FOLLOWING, I32), (INPUTS_402, U32), (TARGET_SPEED, I32), (SUPPORTED, U32)),
@@ -67,67 +67,67 @@ _ARRAYS_401 = (
     *((DIGITAL_IN, U8, 8), (DIGITAL_OUT, U8, 8), (ERROR_MODE, U8, 8), (ERROR_VALUE, U8, 8)),
     *((ANALOG_IN, I16, 4), (ANALOG_DELTA, U32, 4)),
 )
-_EPOS2_HAS_NOT = (
+_EPOS2_MISSING = (
     *(SYNC_PERIOD, ON_ERROR, QUICK_OPTION, WINDOW_TIME, IP_RECORD, FOLLOWING, INPUTS_402),
     *(HOME_METHODS, MOTOR_TURN, GEAR, FEED),
 )
-_EPOS4_HAS_NOT = (SYNC_PERIOD, HOME_OFFSET, IP_SUBMODE, IP_RECORD, BUFFER, MOTOR_TURN, GEAR, FEED)
+_EPOS4_MISSING = (SYNC_PERIOD, HOME_OFFSET, IP_SUBMODE, IP_RECORD, BUFFER, MOTOR_TURN, GEAR, FEED)
 
 
-def drive_objects(profile: DriveProfile = CIA402) -> ObjectDictionary:
+def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDictionary:
     """Build the dictionary of a drive without an EDS file from the standard objects of its family."""
     found = _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
     found.add_object(_record(IP_TIME, _TIME_PERIOD))
     found.add_object(_record(BUFFER, _BUFFER))
-    for index in {"epos2": _EPOS2_HAS_NOT, "epos4": _EPOS4_HAS_NOT}.get(profile.name, ()):
+    for index in {"epos2": _EPOS2_MISSING, "epos4": _EPOS4_MISSING}.get(profile.name, ()):
         del found[index]
-    if profile.words:  # The maxon drives have no timeout for received PDOs.
+    if profile.product_words:  # The maxon drives have no timeout for received PDOs.
         for number in range(4):
             record = found[COMMANDED + number]
             assert isinstance(record, ODRecord)
             del record.subindices[5]
-    for index, _, _ in profile.units:
+    for index, _, _ in profile.unit_objects:
         found.add_object(_variable(index, 0, U32))
-    if profile.home_place not in found:
-        found.add_object(_variable(profile.home_place, 0, I32))
-    if profile.inputs.object not in found:
-        found.add_object(_record(profile.inputs.object, ((profile.inputs.sub, U16, "ro"),)))
+    if profile.home_offset_object not in found:
+        found.add_object(_variable(profile.home_offset_object, 0, I32))
+    if profile.inputs.object_index not in found:
+        found.add_object(_record(profile.inputs.object_index, ((profile.inputs.subindex, U16, "ro"),)))
     if profile.queue is not None:
-        order = _variable(profile.queue.object, 0, U64)
+        order = _variable(profile.queue.object_index, 0, U64)
         order.access_type = "wo"
         found.add_object(order)
     return found
 
 
-def module_objects() -> ObjectDictionary:
+def build_module_dictionary() -> ObjectDictionary:
     """Build the dictionary of an I/O module without an EDS file."""
     return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
 
 
-def encoder_objects() -> ObjectDictionary:
+def build_encoder_dictionary() -> ObjectDictionary:
     """Build the dictionary of an encoder without an EDS file."""
     return _dictionary((*_VARIABLES_301, *_VARIABLES_406), _ARRAYS_301)
 
 
-def drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
+def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
     """Return the object dictionary and the family profile of a drive. Raises DriverError."""
     if not node.eds:
-        profile = profile_of(node.drive, None, None)
-        return drive_objects(profile), profile
-    found = dictionary(node.name, node.eds, drive_objects)
+        profile = find_profile(node.drive, None, None)
+        return build_drive_dictionary(profile), profile
+    found = load_dictionary(node.name, node.eds, build_drive_dictionary)
     told = found.device_information
-    return found, profile_of(node.drive, told.vendor_number, told.product_name)
+    return found, find_profile(node.drive, told.vendor_number, told.product_name)
 
 
-def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
+def load_dictionary(name: str, eds: str, build_standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
     """Load the dictionary of the EDS file, or build the standard one without a file.
 
     Raises DriverError that names the node and the file.
     """
     if not eds:
-        return standard()
+        return build_standard()
     try:
-        found = _read(Path(eds))
+        found = _read_eds(Path(eds))
     except (OSError, ValueError, KeyError, configparser.Error) as error:
         reason = str(error).splitlines()[0]
         raise DriverError(
@@ -142,10 +142,10 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
     return found
 
 
-def _read(path: Path) -> ObjectDictionary:
+def _read_eds(path: Path) -> ObjectDictionary:
     """Read an EDS or DCF file; objects without a type are omitted."""
-    text = input_text(path, _LARGEST, "latin-1")
-    for _ in range(_FLAWS):
+    text = read_input_text(path, _MAX_EDS_SIZE, "latin-1")
+    for _ in range(_MAX_EDS_ERRORS):
         stream = io.StringIO(text)
         stream.name = str(path)  # The library evaluates the file extension.
         try:
@@ -158,7 +158,7 @@ def _read(path: Path) -> ObjectDictionary:
             text = less
             continue
         return found
-    raise ValueError(f"more than {_FLAWS} objects without a type")
+    raise ValueError(f"more than {_MAX_EDS_ERRORS} objects without a type")
 
 
 def _dictionary(
@@ -219,24 +219,24 @@ def _mapping(index: int) -> ODArray:
 class DriveState(StrEnum):
     """States of a drive as CiA 402 names them."""
 
-    NOT_READY = "not ready to switch on"
-    OFF = "switch on disabled"
-    READY = "ready to switch on"
-    ON = "switched on"
-    ENABLED = "operation enabled"
-    QUICK_STOP = "quick stop active"
-    REACTING = "fault reaction active"
+    NOT_READY_TO_SWITCH_ON = "not ready to switch on"
+    SWITCH_ON_DISABLED = "switch on disabled"
+    READY_TO_SWITCH_ON = "ready to switch on"
+    SWITCHED_ON = "switched on"
+    OPERATION_ENABLED = "operation enabled"
+    QUICK_STOP_ACTIVE = "quick stop active"
+    FAULT_REACTION_ACTIVE = "fault reaction active"
     FAULT = "fault"
 
 
-_MASKS = (
-    (0x4F, 0x00, DriveState.NOT_READY),
-    (0x4F, 0x40, DriveState.OFF),
-    (0x6F, 0x21, DriveState.READY),
-    (0x6F, 0x23, DriveState.ON),
-    (0x6F, 0x27, DriveState.ENABLED),
-    (0x6F, 0x07, DriveState.QUICK_STOP),
-    (0x4F, 0x0F, DriveState.REACTING),
+_STATE_MASKS = (
+    (0x4F, 0x00, DriveState.NOT_READY_TO_SWITCH_ON),
+    (0x4F, 0x40, DriveState.SWITCH_ON_DISABLED),
+    (0x6F, 0x21, DriveState.READY_TO_SWITCH_ON),
+    (0x6F, 0x23, DriveState.SWITCHED_ON),
+    (0x6F, 0x27, DriveState.OPERATION_ENABLED),
+    (0x6F, 0x07, DriveState.QUICK_STOP_ACTIVE),
+    (0x4F, 0x0F, DriveState.FAULT_REACTION_ACTIVE),
     (0x4F, 0x08, DriveState.FAULT),
 )
 SHUTDOWN, SWITCH_ON, ENABLE, DISABLE, QUICK, RESET = 0x06, 0x07, 0x0F, 0x00, 0x02, 0x80
@@ -246,30 +246,31 @@ REACHED, LIMITED, BIT_12, BIT_13 = 0x400, 0x800, 0x1000, 0x2000
 PP, PV, HM, IP, CSP = 1, 3, 6, 7, 8
 MODE_BITS = {PP: 0x01, PV: 0x04, HM: 0x20, IP: 0x40, CSP: 0x80}  # Bits of 0x6502.
 
-_LADDER = {
-    DriveState.OFF: SHUTDOWN,
-    DriveState.READY: SWITCH_ON,
-    DriveState.ON: ENABLE,
-    DriveState.ENABLED: ENABLE,
-    DriveState.QUICK_STOP: DISABLE,  # Leaving this state upward would restart the drive after an emergency.
+_NEXT_CONTROL_WORDS = {
+    DriveState.SWITCH_ON_DISABLED: SHUTDOWN,
+    DriveState.READY_TO_SWITCH_ON: SWITCH_ON,
+    DriveState.SWITCHED_ON: ENABLE,
+    DriveState.OPERATION_ENABLED: ENABLE,
+    # Leaving this state upward would restart the drive after an emergency.
+    DriveState.QUICK_STOP_ACTIVE: DISABLE,
 }
 
 
-def state_of(word: int) -> DriveState:
+def decode_state(status_word: int) -> DriveState:
     """Return the state in a status word; a word that matches no mask is "not ready to switch on"."""
-    for mask, bits, state in _MASKS:
-        if word & mask == bits:
+    for mask, bits, state in _STATE_MASKS:
+        if status_word & mask == bits:
             return state
-    return DriveState.NOT_READY
+    return DriveState.NOT_READY_TO_SWITCH_ON
 
 
-def towards_enabled(state: DriveState) -> int:
+def get_enabling_word(state: DriveState) -> int:
     """Return the control word for the next step toward operation enabled; it never leaves a fault."""
-    return _LADDER.get(state, DISABLE)
+    return _NEXT_CONTROL_WORDS.get(state, DISABLE)
 
 
-def reset_step(state: DriveState, last: int) -> int:
+def get_fault_reset_word(state: DriveState, last_word: int) -> int:
     """Return the control word that clears a fault by an edge of bit 7, without switching on power."""
-    if state is DriveState.FAULT and last != RESET:
+    if state is DriveState.FAULT and last_word != RESET:
         return RESET
     return DISABLE

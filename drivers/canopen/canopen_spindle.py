@@ -11,46 +11,46 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
-from core.ports import DriverError, Fault, Stop, at_rest
+from core.ports import DriverError, Fault, StopMode, is_queue_finished
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_axes import CanopenAxes
-from drivers.canopen.canopen_bus import Bus
+from drivers.canopen.canopen_bus import CanBus
 from drivers.canopen.canopen_config import SpindleConfig
-from drivers.canopen.canopen_homing import SEARCH_RPM, Phase, Referencing
+from drivers.canopen.canopen_homing import INDEX_SEARCH_RPM, IndexPhase, SpindleHoming
 from drivers.canopen.canopen_objects import HM, IP, MODE_BITS, PV, DriveState
-from drivers.canopen.canopen_setup import stopping
-from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Drive402, DriveWork
-from drivers.canopen.driven_axes import DrivenAxis
-from drivers.port_parts import demand_free_drive, demand_spindle
-from drivers.setpoint_queue import straight
+from drivers.canopen.canopen_setup import build_stop_objects
+from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Cia402Drive, DriveSetupData
+from drivers.canopen.drive_set import DrivenAxis
+from drivers.port_checks import require_free_drive, require_spindle_ready
+from drivers.setpoint_queue import plan_straight_move
 
-_STANDS = 2.0  # rpm
+_STANDSTILL_RPM = 2.0  # rpm
 # Without these objects, the spindle would continue to turn if this computer stops responding.
-_KEPT_TURNING = (od.ABORT_OPTION, od.WATCHED)
-_POWER = 1.0  # Seconds in which the drive must switch on.
+_SPINDLE_STOP_OBJECTS = (od.ABORT_OPTION, od.WATCHED)
+_POWER_ON_S = 1.0  # Seconds in which the drive must switch on.
 
 
 class CanopenSpindle:
     """``core.ports.Spindle`` of a CiA 402 drive, which has power only while it turns or must turn."""
 
-    def __init__(self, config: SpindleConfig, bus: Bus) -> None:
+    def __init__(self, config: SpindleConfig, bus: CanBus) -> None:
         self._config = config
         self._bus = bus
         self._came_on = False
         self._last = self._counts = 0
         self._ordered = 0.0  # Time of the last power request in s.
-        self.lent = False  # Used as C, so the drive does not turn as the spindle.
-        self.kept = False  # Must remain C.
-        self.blind = False  # Ignore changes of the counter during homing.
-        self.drive = Drive402(bus, config.node, SPEED_TARGET, (SPEED,))
+        self.is_used_as_c = False  # Used as C, so the drive does not turn as the spindle.
+        self.is_c_requested = False  # Must remain C.
+        self.ignores_counter = False  # Ignore changes of the counter during homing.
+        self.drive = Cia402Drive(bus, config.node, SPEED_TARGET, (SPEED,))
 
     def connect(self) -> None:
         """Configure the drive. Raises DriverError."""
         config = self._config
-        queue = self.drive.profile.queue if config.is_c else None
+        queue = self.drive.profile.queue if config.is_c_axis else None
         standing = (
-            *self.drive.profile.units,
-            *stopping(self._bus.config),
+            *self.drive.profile.unit_objects,
+            *build_stop_objects(self._bus.config),
             (od.PROFILE_ACCEL, 0, round(config.accel)),
             (od.PROFILE_DECEL, 0, round(config.decel)),
             (od.QUICK_DECEL, 0, round(config.decel)),
@@ -58,55 +58,55 @@ class CanopenSpindle:
         if queue is not None:
             standing = (*standing, (od.IP_SUBMODE, 0, queue.submode))
         self.drive.connect(
-            DriveWork(
-                modes=MODE_BITS[PV] | (MODE_BITS[HM] | MODE_BITS[IP] if config.is_c else 0),
-                standing=standing,
-                own=config.node.sdo,
-                needed=_KEPT_TURNING,
-                records=queue.object if queue is not None else 0,
-                axis=False,
+            DriveSetupData(
+                mode_bits=MODE_BITS[PV] | (MODE_BITS[HM] | MODE_BITS[IP] if config.is_c_axis else 0),
+                default_objects=standing,
+                file_objects=config.node.sdo,
+                required_objects=_SPINDLE_STOP_OBJECTS,
+                record_object=queue.object_index if queue is not None else 0,
+                is_axis=False,
             )
         )
-        self.drive.mode, self.drive.target = PV, 0
+        self.drive.commanded_mode, self.drive.target_value = PV, 0
 
-    def tick(self) -> None:
+    def update(self) -> None:
         """Supervise the drive; switch it off at standstill, and never switch it on automatically."""
         drive = self.drive
-        drive.look(3.0 * self._bus.config.heartbeat)
+        drive.supervise(3.0 * self._bus.config.heartbeat)
         lost = self._came_on and not drive.enabled
-        self._came_on = drive.enabled and drive.goal is DriveState.ENABLED
-        if drive.trouble:
-            drive.goal, drive.target = DriveState.QUICK_STOP, 0
-        elif self.lent:
+        self._came_on = drive.enabled and drive.goal_state is DriveState.OPERATION_ENABLED
+        if drive.failure:
+            drive.goal_state, drive.target_value = DriveState.QUICK_STOP_ACTIVE, 0
+        elif self.is_used_as_c:
             self._came_on = False
-        elif drive.goal is DriveState.ENABLED:
-            self._watch(lost)
+        elif drive.goal_state is DriveState.OPERATION_ENABLED:
+            self._check_drive(lost)
 
-    def _watch(self, lost: bool) -> None:
+    def _check_drive(self, is_power_lost: bool) -> None:
         """Switch off after a loss of power, or set a fault if the drive does not switch on.
 
         Waiting is not permitted, because a return of the power would start the spindle.
         """
         drive, now = self.drive, self._bus.clock.now()
-        if lost:
-            drive.goal, drive.target = DriveState.OFF, 0
-        elif not drive.enabled and now - self._ordered > _POWER:
-            drive.trouble = Fault(
+        if is_power_lost:
+            drive.goal_state, drive.target_value = DriveState.SWITCH_ON_DISABLED, 0
+        elif not drive.enabled and now - self._ordered > _POWER_ON_S:
+            drive.failure = Fault(
                 "spindle: the drive does not switch on; check that the E-stop is released and the "
                 "drive has power",
                 "spindle",
             )
-        elif drive.target == 0 and abs(drive.speed) < _STANDS:
-            drive.goal = DriveState.OFF
+        elif drive.target_value == 0 and abs(drive.speed) < _STANDSTILL_RPM:
+            drive.goal_state = DriveState.SWITCH_ON_DISABLED
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops it.
 
         Raises DriverError with a fault, or while the drive is engaged as C, if the speed is not 0.
         """
         if rpm:
-            demand_spindle(self._bus.trouble or self.drive.trouble)
-        if rpm and self.kept:
+            require_spindle_ready(self._bus.failure or self.drive.failure)
+        if rpm and self.is_c_requested:
             raise DriverError(
                 "the spindle stays off because its drive is engaged as the C axis; release the "
                 "drive with M05 first",
@@ -114,17 +114,17 @@ class CanopenSpindle:
                 reason="held-as-c",
             )
         limit = self._config.rpm_max
-        self.drive.target = round(min(max(rpm, -limit), limit))
-        if rpm and self.lent:
+        self.drive.target_value = round(min(max(rpm, -limit), limit))
+        if rpm and self.is_used_as_c:
             return  # The spindle turns after C is released.
-        if rpm and self.drive.goal is not DriveState.ENABLED:
-            self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
+        if rpm and self.drive.goal_state is not DriveState.OPERATION_ENABLED:
+            self.drive.goal_state, self._ordered = DriveState.OPERATION_ENABLED, self._bus.clock.now()
 
     def coast(self) -> None:
         """Remove the torque, so that the spindle coasts to a stop."""
-        self.drive.target = 0
-        if not self.lent:
-            self.drive.goal = DriveState.OFF
+        self.drive.target_value = 0
+        if not self.is_used_as_c:
+            self.drive.goal_state = DriveState.SWITCH_ON_DISABLED
 
     @property
     def counts_per_rev(self) -> int:
@@ -132,74 +132,74 @@ class CanopenSpindle:
         return self._config.node.counts_per_rev
 
     @property
-    def commanded(self) -> bool:
+    def has_speed_command(self) -> bool:
         """Whether a speed other than 0 is commanded."""
-        return self.drive.target != 0
+        return self.drive.target_value != 0
 
-    def resume(self) -> None:
+    def restore_speed(self) -> None:
         """Execute the speed command that was given while the drive was C."""
-        if self.drive.target:
-            self.drive.goal, self._ordered = DriveState.ENABLED, self._bus.clock.now()
+        if self.drive.target_value:
+            self.drive.goal_state, self._ordered = DriveState.OPERATION_ENABLED, self._bus.clock.now()
 
     def clear_fault(self) -> None:
         """Clear the fault without power, and configure a restarted drive again. Raises DriverError."""
-        if self.drive.rebooted or self.drive.missing:
+        if self.drive.has_restarted or self.drive.missing_reply_count:
             self.connect()
-            self.drive.operational()
-        self.drive.forget()
-        self.drive.clear()
+            self.drive.start_node()
+        self.drive.clear_failure()
+        self.drive.reset_fault()
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed, or 0 while the drive is C."""
-        return 0.0 if self.lent else float(self.drive.speed)
+        return 0.0 if self.is_used_as_c else float(self.drive.speed)
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, revolutions) pair of the last reply, or None without counts per revolution."""
         if not self.counts_per_rev:
             return None
         now = self.drive.position
-        if self.blind:
-            return self.drive.answered, self._counts / self.counts_per_rev
+        if self.ignores_counter:
+            return self.drive.last_reply_s, self._counts / self.counts_per_rev
         # The counter wraps around every few hours.
         self._counts += (now - self._last + 2**31) % 2**32 - 2**31
         self._last = now
-        return self.drive.answered, self._counts / self.counts_per_rev
+        return self.drive.last_reply_s, self._counts / self.counts_per_rev
 
-    def leapt(self) -> None:
+    def accept_counter_jump(self) -> None:
         """Accept a counter that was set by homing, without counting the jump as rotation."""
-        if self.blind:
-            self._last, self.blind = self.drive.position, False
+        if self.ignores_counter:
+            self._last, self.ignores_counter = self.drive.position, False
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the fault of the drive or bus, or an empty text."""
-        return self._bus.trouble or (self.drive.trouble and Fault(self.drive.trouble, "spindle"))
+        return self._bus.failure or (self.drive.failure and Fault(self.drive.failure, "spindle"))
 
 
 # --- C on the spindle drive.
 
 
-_CHANGE = 2.0  # Seconds for a change of mode with power.
-_TURN = 360.0
+_MODE_CHANGE_S = 2.0  # Seconds for a change of mode with power.
+_DEGREES_PER_REV = 360.0
 
 
-class Step(Enum):
+class CanopenCStep(Enum):
     """Steps of the change between spindle and C."""
 
-    FREE = "the drive is running as the spindle drive"
-    REST = "waiting until the axis drives have executed their queued motion"
-    INDEX = "searching for the encoder index"
-    HERE = "setting the current position in the spindle drive"
-    POWER = "changing the spindle drive to position mode"
-    TURN = "turning the spindle to its C-axis position"
-    HELD = "is C"
-    LEAVE = "ending C axis mode"
-    BACK = "changing the spindle drive to speed mode"
+    SPINDLE_MODE = "the drive is running as the spindle drive"
+    WAIT_FOR_REST = "waiting until the axis drives have executed their queued motion"
+    FIND_INDEX = "searching for the encoder index"
+    SET_POSITION = "setting the current position in the spindle drive"
+    POWER_ON = "changing the spindle drive to position mode"
+    TURN_TO_POSITION = "turning the spindle to its C-axis position"
+    ENGAGED = "is C"
+    DISENGAGE = "ending C axis mode"
+    RESTORE_SPEED_MODE = "changing the spindle drive to speed mode"
 
 
-class SpindleC:
-    """``core.ports.SpindleHold`` of the spindle drive; a fault stops all axes.
+class CanopenSpindleC:
+    """``core.ports.SpindleCAxis`` of the spindle drive; a fault stops all axes.
 
-    ``tick`` is called once per cycle of the bus.
+    ``update`` is called once per cycle of the bus.
     """
 
     def __init__(self, axes: CanopenAxes, spindle: CanopenSpindle, name: str) -> None:
@@ -208,58 +208,65 @@ class SpindleC:
         config = axes.config.axes[self._number]
         per_turn = spindle.counts_per_rev
         config = replace(
-            config, count=_TURN / per_turn, counts_per_rev=per_turn, profile=spindle.drive.profile
+            config, count=_DEGREES_PER_REV / per_turn, counts_per_rev=per_turn, profile=spindle.drive.profile
         )
-        self._axis = DrivenAxis(config, spindle.drive, homed=True)
-        self.step = Step.FREE
-        self.trouble: Fault | str = ""
+        self._axis = DrivenAxis(config, spindle.drive, is_homed=True)
+        self.step = CanopenCStep.SPINDLE_MODE
+        self.failure: Fault | str = ""
         self._wanted = self._orient = False
         self._since = 0.0
-        self._homing = Referencing(spindle.drive)
-        self._phase = Phase(spindle.counts_per_rev)
+        self._homing = SpindleHoming(spindle.drive)
+        self._phase = IndexPhase(spindle.counts_per_rev)
         self._off = 0.0  # Degrees to turn to the position.
         # Required C position when engaged, preserved across canceled attempts.
         self._goal: float | None = None
 
     # --- the port ----------------------------------------------------------------------------------------
 
-    def hold(self, on: bool, orient: bool = False) -> None:
+    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
         """Engage the drive as C, or release it as the spindle.
 
         With ``orient``, the spindle first turns to its position from the index. Raises DriverError if the
         drive cannot be engaged now.
         """
-        if on and self.trouble:
-            raise DriverError(self.trouble)
-        if on and not self._wanted:
-            turning = self._spindle.commanded or abs(self._drive.speed) >= _STANDS
-            demand_free_drive(self._axes.sample().enabled, self.step is Step.FREE and turning)
+        if enabled and self.failure:
+            raise DriverError(self.failure)
+        if enabled and not self._wanted:
+            turning = self._spindle.has_speed_command or abs(self._drive.speed) >= _STANDSTILL_RPM
+            require_free_drive(
+                self._axes.sample().enabled, self.step is CanopenCStep.SPINDLE_MODE and turning
+            )
             self._orient = orient
-        self._want(on)
+        self._want(enabled)
 
-    def held(self) -> bool:
+    def is_c_ready(self) -> bool:
         """Return whether C is engaged and may move."""
-        return self.step is Step.HELD and self._wanted
+        return self.step is CanopenCStep.ENGAGED and self._wanted
 
     # --- each cycle --------------------------------------------------------------------------------------
 
-    def tick(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Continue the change that is in progress."""
-        self._phase.follow(self._drive.position, leaps=self.step in {Step.INDEX, Step.HERE})
-        if self._drive.rebooted:
+        self._phase.update(
+            self._drive.position,
+            ignore_jumps=self.step in {CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION},
+        )
+        if self._drive.has_restarted:
             self._phase.counts = None
-        if self.step is not Step.FREE and (self._drive.trouble or not self._axes.sample().enabled):
+        if self.step is not CanopenCStep.SPINDLE_MODE and (
+            self._drive.failure or not self._axes.sample().enabled
+        ):
             self._want(False)  # Without power, C ends.
-        steps: dict[Step, Callable[[float], None]] = {
-            Step.FREE: self._free,
-            Step.REST: self._rest,
-            Step.INDEX: self._search,
-            Step.HERE: self._here,
-            Step.POWER: self._power,
-            Step.TURN: self._turn,
-            Step.HELD: self._held,
-            Step.LEAVE: self._leave,
-            Step.BACK: self._back,
+        steps: dict[CanopenCStep, Callable[[float], None]] = {
+            CanopenCStep.SPINDLE_MODE: self._free,
+            CanopenCStep.WAIT_FOR_REST: self._rest,
+            CanopenCStep.FIND_INDEX: self._search,
+            CanopenCStep.SET_POSITION: self._here,
+            CanopenCStep.POWER_ON: self._power,
+            CanopenCStep.TURN_TO_POSITION: self._turn,
+            CanopenCStep.ENGAGED: self._held,
+            CanopenCStep.DISENGAGE: self._disengage,
+            CanopenCStep.RESTORE_SPEED_MODE: self._back,
         }
         try:
             steps[self.step](now)
@@ -268,44 +275,44 @@ class SpindleC:
 
     def clear_fault(self) -> None:
         """Clear the fault and release the drive."""
-        self.trouble = ""
+        self.failure = ""
         self._want(False)
 
     def _free(self, now: float) -> None:
         if self._wanted:
-            self._spindle.lent = True
+            self._spindle.is_used_as_c = True
             self._goal = self._demand() if self._goal is None else self._goal
-            self._enter(Step.REST, now)
+            self._enter(CanopenCStep.WAIT_FOR_REST, now)
 
     def _rest(self, now: float) -> None:
         if not self._wanted:
-            self._enter(Step.BACK, now)
-        elif not self._axes.follower_rests(now):
+            self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
+        elif not self._axes.is_follower_idle(now):
             self._since = now
         elif self._orient and self._phase.counts is None:
-            self._spindle.blind = True
-            self._homing.index(now)
-            self._enter(Step.INDEX, now)
+            self._spindle.ignores_counter = True
+            self._homing.start_index_search(now)
+            self._enter(CanopenCStep.FIND_INDEX, now)
         else:
-            self._tell_place(now)
+            self._set_drive_position(now)
 
     def _search(self, now: float) -> None:
-        if self._referenced(now):
-            self._phase.index_found(self._drive.position)
-            self._tell_place(now)
+        if self._is_homing_done(now):
+            self._phase.set_index(self._drive.position)
+            self._set_drive_position(now)
 
-    def _tell_place(self, now: float) -> None:
+    def _set_drive_position(self, now: float) -> None:
         """Set the drive's counter to the position of C without motion."""
-        self._off = self._beside()
+        self._off = self._angle_to_position()
         place = self._place() - self._off
-        self._spindle.blind = True
+        self._spindle.ignores_counter = True
         self._homing.set_position(round(place / self._axis.config.count), now)
-        self._enter(Step.HERE, now)
+        self._enter(CanopenCStep.SET_POSITION, now)
 
     def _here(self, now: float) -> None:
-        if self._referenced(now):
-            self._spindle.leapt()
-            self._drive.mode = IP
+        if self._is_homing_done(now):
+            self._spindle.accept_counter_jump()
+            self._drive.commanded_mode = IP
             if self._axis.records is None:
                 raise DriverError(
                     "C axis not available: {title} does not have a position queue",
@@ -313,106 +320,106 @@ class SpindleC:
                     title=self._drive.profile.title,
                 )
             self._axis.records.clear()
-            self._enter(Step.POWER, now)
+            self._enter(CanopenCStep.POWER_ON, now)
 
-    def _referenced(self, now: float) -> bool:
+    def _is_homing_done(self, now: float) -> bool:
         """Return whether the homing is complete; a canceled request ends it. Raises DriverError."""
         if self._wanted:
-            return self._homing.done(now)
-        self._drive.extra = 0
-        self._enter(Step.BACK, now)
+            return self._homing.is_done(now)
+        self._drive.mode_bits = 0
+        self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
         return False
 
     def _power(self, now: float) -> None:
         if not self._wanted:
-            self._enter(Step.BACK, now)
-        elif self._drive.enabled and self._drive.shown_mode == IP:
-            self._join()
+            self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
+        elif self._drive.enabled and self._drive.reported_mode == IP:
+            self._add_to_axes()
             self._begin_turn()
-            self._enter(Step.TURN, now)
-        elif now - self._since > _CHANGE:
-            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.shown_mode)
+            self._enter(CanopenCStep.TURN_TO_POSITION, now)
+        elif now - self._since > _MODE_CHANGE_S:
+            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.reported_mode)
 
     def _turn(self, now: float) -> None:
         if not self._wanted:
-            self._axes.stop(Stop.RAMP_HOLD)
-            self._enter(Step.LEAVE, now)
-        elif at_rest(self._axes.queue.horizon(now), now) and not self._axes.drives.moving:
+            self._axes.stop(StopMode.RAMP_HOLD)
+            self._enter(CanopenCStep.DISENGAGE, now)
+        elif is_queue_finished(self._axes.queue.queue_end(now), now) and not self._axes.drives.is_moving:
             self._goal = None
-            self._enter(Step.HELD, now)
+            self._enter(CanopenCStep.ENGAGED, now)
 
     def _held(self, now: float) -> None:
         if not self._wanted:
-            self._enter(Step.LEAVE, now)
+            self._enter(CanopenCStep.DISENGAGE, now)
 
-    def _leave(self, now: float) -> None:
+    def _disengage(self, now: float) -> None:
         """Release the drive when the axes are at rest and the queues of the drives have ended."""
-        if self._axes.follower_rests(now):
+        if self._axes.is_follower_idle(now):
             self._part()
-            self._enter(Step.BACK, now)
+            self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
 
     def _back(self, now: float) -> None:
         drive = self._drive
-        drive.goal, drive.extra, drive.mode = DriveState.OFF, 0, PV
-        if drive.shown_mode == PV and not drive.enabled:
-            self._spindle.lent = False
-            self._spindle.leapt()
-            self.step = Step.FREE
-            self._spindle.resume()
-        elif now - self._since > _CHANGE and not self.trouble:
-            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=drive.shown_mode)
+        drive.goal_state, drive.mode_bits, drive.commanded_mode = DriveState.SWITCH_ON_DISABLED, 0, PV
+        if drive.reported_mode == PV and not drive.enabled:
+            self._spindle.is_used_as_c = False
+            self._spindle.accept_counter_jump()
+            self.step = CanopenCStep.SPINDLE_MODE
+            self._spindle.restore_speed()
+        elif now - self._since > _MODE_CHANGE_S and not self.failure:
+            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=drive.reported_mode)
 
     # --- inside ------------------------------------------------------------------------------------------
 
     def _demand(self) -> float:
-        return self._axes.queue.demand_at(self._axes.now())[0][self._number]
+        return self._axes.queue.commanded_state_at(self._axes.now())[0][self._number]
 
     def _place(self) -> float:
         return self._demand() if self._goal is None else self._goal
 
-    def _beside(self) -> float:
+    def _angle_to_position(self) -> float:
         """Return the angle in degrees from the spindle to its position, by the shortest path."""
         if not self._orient or self._phase.counts is None:
             return 0.0
         off = self._place() - self._phase.counts * self._axis.config.count
-        return (off + _TURN / 2.0) % _TURN - _TURN / 2.0
+        return (off + _DEGREES_PER_REV / 2.0) % _DEGREES_PER_REV - _DEGREES_PER_REV / 2.0
 
-    def _join(self) -> None:
+    def _add_to_axes(self) -> None:
         """Add the drive to the set of axis drives."""
         drives = self._axes.drives
         drives.axes.append(self._axis)
-        drives.indices.append(self._number)
-        self._axis.last, self._axis.homed = self._drive.position, True
-        self._axes.rest_here()
+        drives.axis_indices.append(self._number)
+        self._axis.last_counts, self._axis.is_homed = self._drive.position, True
+        self._axes.reset_queue()
 
     def _part(self) -> None:
         drives = self._axes.drives
         if self._axis in drives.axes:
             drives.axes.remove(self._axis)
-            drives.indices.remove(self._number)
+            drives.axis_indices.remove(self._number)
 
     def _begin_turn(self) -> None:
         axes, config = self._axes, self._axis.config
         off = self._off
         if abs(off) > config.count:
-            rest, _ = axes.queue.demand_at(axes.now())
-            speed = min(config.vmax, SEARCH_RPM * 6.0)
+            rest, _ = axes.queue.commanded_state_at(axes.now())
+            speed = min(config.vmax, INDEX_SEARCH_RPM * 6.0)
             start = axes.now() + axes.commit
             axes.splice(
-                straight(
-                    start, rest, self._number, to=rest[self._number] + off, speed=speed, accel=config.amax
+                plan_straight_move(
+                    start, rest, self._number, target=rest[self._number] + off, speed=speed, accel=config.amax
                 )
             )
 
     def _want(self, on: bool) -> None:
-        self._wanted = self._spindle.kept = on
+        self._wanted = self._spindle.is_c_requested = on
 
-    def _enter(self, step: Step, now: float) -> None:
+    def _enter(self, step: CanopenCStep, now: float) -> None:
         self.step, self._since = step, now
 
     def _fail(self, why: str, **values: object) -> None:
-        self.trouble = self.trouble or Fault(why, "c-coupling", **values)
+        self.failure = self.failure or Fault(why, "c-coupling", **values)
         self._want(False)
         self._part()
-        self._drive.extra = 0
-        self._enter(Step.BACK, self._axes.now())
+        self._drive.mode_bits = 0
+        self._enter(CanopenCStep.RESTORE_SPEED_MODE, self._axes.now())

@@ -5,9 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import KW_ONLY
 
-from core.key_declaration import Range, Unit, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, declare_key, make_key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, FileReading, Finding, Values, written
+from core.table_schema import (
+    DriverDeclaration,
+    DriverTable,
+    FileFinding,
+    FileValues,
+    MachineFileReading,
+    format_toml_value,
+)
 from drivers.canopen.canopen_nodes import (
     DRIVE,
     ENCODER_PROFILE,
@@ -16,64 +23,64 @@ from drivers.canopen.canopen_nodes import (
     NODES,
     SDO_REFERENCE,
     CanNode,
-    input_addresses,
-    node_of,
-    profile_of,
+    build_node,
+    get_slow_reply_divisor,
+    iterate_input_addresses,
+    parse_sdo_address,
+    read_node_profile,
     read_nodes,
-    sdo_address,
-    seldom,
-    terminal,
+    resolve_terminal,
 )
-from drivers.canopen.canopen_rules import bus_rules
+from drivers.canopen.canopen_rules import check_bus
 from drivers.canopen.drive_profiles import PROFILES
 
 _ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
 # Name of the table, and the position object of a CiA 406 node.
 ENCODER, POSITION = "spindle.encoder", "6004:0"
-_LEAST = 16  # Minimum counts per revolution.
-MODES = ("pvt", "csp", "ip", "pp")
+_MIN_COUNTS = 16  # Minimum counts per revolution.
+MOTION_MODE_NAMES = ("pvt", "csp", "ip", "pp")
 
 
-@key_table
+@make_key_table
 class CanopenTable:
     """Settings of the CAN bus and its nodes; times in seconds."""
 
     _: KW_ONLY
-    interface: str = file_key(
+    interface: str = declare_key(
         default="socketcan",
         meaning="Interface of python-can, such as `socketcan`, or `virtual` for a bus within one process.",
     )
-    channel: str = file_key(meaning="Channel of the interface, such as `can0`.")
-    bitrate: int = file_key(
-        Range(10_000, 1_000_000), default=1_000_000, meaning="Bit rate of the bus in bit/s."
+    channel: str = declare_key(meaning="Channel of the interface, such as `can0`.")
+    bitrate: int = declare_key(
+        KeyRange(10_000, 1_000_000), default=1_000_000, meaning="Bit rate of the bus in bit/s."
     )
-    sync: float = file_key(
-        Range(0.001, 0.1, Unit.MILLISECONDS),
+    sync: float = declare_key(
+        KeyRange(0.001, 0.1, FileUnit.MILLISECONDS),
         name="sync_ms",
         default=0.01,
         meaning='Time from one SYNC to the next; with "csp" and "ip", the time from setpoint to setpoint.',
     )
-    host_id: int = file_key(
-        Range(1, 127), default=127, meaning="Node number of TurnDesk, under which it sends its heartbeat."
+    host_id: int = declare_key(
+        KeyRange(1, 127), default=127, meaning="Node number of TurnDesk, under which it sends its heartbeat."
     )
-    heartbeat: float = file_key(
-        Range(0.02, 2.0, Unit.MILLISECONDS),
+    heartbeat: float = declare_key(
+        KeyRange(0.02, 2.0, FileUnit.MILLISECONDS),
         name="heartbeat_ms",
         default=0.1,
         meaning="Interval of the heartbeats. A drive or module stops if it misses three of them.",
     )
-    mode: str = file_key(
-        choices=MODES,
+    mode: str = declare_key(
+        choices=MOTION_MODE_NAMES,
         meaning='How the drives receive motion. "pvt": queued in the drive; "csp" and "ip": one setpoint '
         'at each SYNC; "pp": single moves only, no programs.',
     )
-    drive: str = file_key(
+    drive: str = declare_key(
         default="",
         choices=tuple(PROFILES),
         meaning="Family of all drives. Default: the family that the EDS file names, or plain CiA 402.",
     )
-    record: float = file_key(
-        Range(0.002, 0.05, Unit.MILLISECONDS),
+    record: float = declare_key(
+        KeyRange(0.002, 0.05, FileUnit.MILLISECONDS),
         name="record_ms",
         default=0.02,
         meaning='Longest PVT record; only for mode "pvt". `commit_ms` must cover three records and 40 ms.',
@@ -81,17 +88,17 @@ class CanopenTable:
     nodes: tuple[CanNode, ...] = ()
 
     @property
-    def seldom(self) -> int:
+    def slow_reply_divisor(self) -> int:
         """The number of SYNCs between two replies of slow values, which corresponds to about 10 ms."""
-        return seldom(self.sync)
+        return get_slow_reply_divisor(self.sync)
 
     @property
-    def patience(self) -> int:
+    def max_missing_replies(self) -> int:
         """The number of missing replies after which an axis drive counts as silent: 3, or those of 20 ms."""
         return max(_ANSWERS, round(_ANSWER_TIME / self.sync))
 
     @property
-    def own_process(self) -> bool:
+    def supports_separate_process(self) -> bool:
         """Whether another process can own the bus.
 
         The virtual bus of python-can exists in one process only.
@@ -99,104 +106,104 @@ class CanopenTable:
         return self.interface != "virtual"
 
 
-@key_table
+@make_key_table
 class EncoderTable:
     """Settings of a spindle encoder on the bus: a separate node, or the second input of a drive."""
 
     _: KW_ONLY
-    node: str = file_key(
+    node: str = declare_key(
         meaning="Name of the node in [canopen.nodes] that supplies the counts: an encoder, or a drive with "
         "a second encoder input."
     )
-    object: str = file_key(
+    object: str = declare_key(
         default="",
         meaning='Object of the position as index:sub-index, such as "60E4:1". Default: "6004:0" of an '
         "encoder; required for a drive.",
     )
-    counts_per_rev: int = file_key(
-        Range(-100_000_000, 100_000_000),
+    counts_per_rev: int = declare_key(
+        KeyRange(-100_000_000, 100_000_000),
         meaning="Counts per spindle revolution, at least 16; negative if the encoder counts down with M03.",
     )
 
     @property
-    def address(self) -> tuple[int, int]:
+    def object_address(self) -> tuple[int, int]:
         """The index and sub-index of the position object."""
-        return sdo_address(self.object or POSITION) or (0, 0)
+        return parse_sdo_address(self.object or POSITION) or (0, 0)
 
 
-def _encoder_rules(file: FileReading) -> Iterator[Finding]:
+def _encoder_rules(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
     if ENCODER in file.tables:
         yield from _beside(values)
         yield from _counts(file)
-    used = values.text(f"{ENCODER}.node") if values.has(f"{ENCODER}.node") else ""
-    for name in file.names(NODES):
+    used = values.text(f"{ENCODER}.node") if values.has_values(f"{ENCODER}.node") else ""
+    for name in file.list_table_keys(NODES):
         path = f"{NODES}.{name}.profile"
-        number = values.whole(path) if values.has(path) else MODULE
+        number = values.read_integer(path) if values.has_values(path) else MODULE
         if number not in {MODULE, DRIVE, ENCODER_PROFILE}:
-            yield Finding(
+            yield FileFinding(
                 path, str(number), "the profile must be 401 (terminals), 402 (drive) or 406 (encoder)"
             )
         elif number == ENCODER_PROFILE and name != used:
             why = Message(
                 "this encoder is not used; {encoder} names the encoder that is used", encoder=ENCODER
             )
-            yield Finding(path, str(number), why)
+            yield FileFinding(path, str(number), why)
 
 
-def _beside(values: Values) -> Iterator[Finding]:
-    if values.has("machine.backend") and values.text("machine.backend") != "canopen":
-        backend = written(values.text("machine.backend"))
-        yield Finding(
+def _beside(values: FileValues) -> Iterator[FileFinding]:
+    if values.has_values("machine.backend") and values.text("machine.backend") != "canopen":
+        backend = format_toml_value(values.text("machine.backend"))
+        yield FileFinding(
             ENCODER,
             "",
             Message(
                 "backend {backend} does not support an encoder on a bus; remove this entry", backend=backend
             ),
         )
-    if values.has("spindle.driver") and values.text("spindle.driver") != "vfd":
+    if values.has_values("spindle.driver") and values.text("spindle.driver") != "vfd":
         expected = (
             'spindle.driver must be "vfd"; a drive on the bus has its own encoder, set by '
             "counts_per_rev of its node"
         )
-        yield Finding(ENCODER, "", expected)
+        yield FileFinding(ENCODER, "", expected)
     path = f"{ENCODER}.counts_per_rev"
-    if values.has(path) and abs(values.number(path)) < _LEAST:
+    if values.has_values(path) and abs(values.read_number(path)) < _MIN_COUNTS:
         expected = Message(
             "enter at least {minimum} counts; if the encoder counts down with M03, put a "
             "minus sign before the number",
-            minimum=_LEAST,
+            minimum=_MIN_COUNTS,
         )
-        yield Finding(path, f"{values.number(path):g}", expected)
+        yield FileFinding(path, f"{values.read_number(path):g}", expected)
 
 
-def _counts(file: FileReading) -> Iterator[Finding]:
+def _counts(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
-    if not values.has(f"{ENCODER}.node", f"{ENCODER}.object"):
+    if not values.has_values(f"{ENCODER}.node", f"{ENCODER}.object"):
         return
     node, counted = values.text(f"{ENCODER}.node"), values.text(f"{ENCODER}.object")
-    if node not in file.names(NODES):
-        yield Finding(
+    if node not in file.list_table_keys(NODES):
+        yield FileFinding(
             f"{ENCODER}.node",
-            written(node),
+            format_toml_value(node),
             "the encoder node must be a node of [canopen.nodes] with profile = 406",
         )
-    elif profile_of(file, node) == MODULE:
-        yield Finding(
+    elif read_node_profile(file, node) == MODULE:
+        yield FileFinding(
             f"{ENCODER}.node",
-            written(node),
+            format_toml_value(node),
             "an I/O module does not count revolutions; use a node with profile 406 or a drive",
         )
-    elif profile_of(file, node) == DRIVE and not counted:
+    elif read_node_profile(file, node) == DRIVE and not counted:
         expected = (
             "this entry is missing; enter the object of the second encoder from the "
             'drive\'s manual, such as "60E4:1"'
         )
-        yield Finding(f"{ENCODER}.object", "", expected)
-    if counted and sdo_address(counted) is None:
-        yield Finding(
+        yield FileFinding(f"{ENCODER}.object", "", expected)
+    if counted and parse_sdo_address(counted) is None:
+        yield FileFinding(
             f"{ENCODER}.object",
-            written(counted),
+            format_toml_value(counted),
             Message(
                 'the encoder object must be an index and sub-index, such as "{position}"', position=POSITION
             ),
@@ -206,27 +213,27 @@ def _counts(file: FileReading) -> Iterator[Finding]:
 _ENCODER_TABLE = DriverTable(
     ENCODER,
     EncoderTable,
-    rules=_encoder_rules,
+    check_rules=_encoder_rules,
     purpose="An encoder on the CANopen bus for a spindle that an inverter drives.",
 )
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "canopen",
             CanopenTable,
-            lambda file: {"nodes": tuple(node_of(file, name) for name in file.names(NODES))},
+            lambda file: {"nodes": tuple(build_node(file, name) for name in file.list_table_keys(NODES))},
             ("nodes", "sdo"),
             read_nodes,
-            bus_rules,
+            check_bus,
             purpose='The CANopen bus and its drives (`backend = "canopen"`).',
-            parts=(NODE_REFERENCE, SDO_REFERENCE),
+            sub_tables=(NODE_REFERENCE, SDO_REFERENCE),
         ),
         _ENCODER_TABLE,
     ),
     backend="canopen",
     spindle="cia402",
     count_rate=2.0**23,
-    terminal=terminal,
-    inputs=input_addresses,
+    normalize_terminal=resolve_terminal,
+    inputs=iterate_input_addresses,
 )

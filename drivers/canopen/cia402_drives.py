@@ -12,232 +12,249 @@ from canopen.emcy import EmcyError
 from core.message import Message
 from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import Bus
-from drivers.canopen.canopen_nodes import CanNode, Objects
+from drivers.canopen.canopen_bus import CanBus
+from drivers.canopen.canopen_nodes import CanNode, ObjectValues
 from drivers.canopen.canopen_objects import (
     QUICK,
     DriveState,
-    reset_step,
-    state_of,
-    towards_enabled,
+    decode_state,
+    get_enabling_word,
+    get_fault_reset_word,
 )
-from drivers.canopen.canopen_setup import Setup
-from drivers.canopen.drive_profiles import Entry
+from drivers.canopen.canopen_setup import NodeSetup
+from drivers.canopen.drive_profiles import PdoEntry
 
-_FOLLOWING = 0x8611  # EMCY
-SYNCS = 3  # Replies that may be missing from a device that replies every 10 ms.
-_COMMAND = struct.Struct("<Hbi")  # control word, mode, target
-_SHOWN = struct.Struct("<Hbi")  # status word, mode, position
-_TORQUE = struct.Struct("<h")  # Per mille of the rated torque.
+_FOLLOWING_ERROR_CODE = 0x8611  # EMCY
+MAX_MISSING_REPLIES = 3  # Replies that may be missing from a device that replies every 10 ms.
+_COMMAND_FORMAT = struct.Struct("<Hbi")  # control word, mode, target
+_REPLY_FORMAT = struct.Struct("<Hbi")  # status word, mode, position
+_TORQUE_FORMAT = struct.Struct("<h")  # Per mille of the rated torque.
 _NAN = float("nan")
 # Factor of the interval of slow values, and the maximum interval in SYNCs by CiA 301.
 _RARER, _MOST_RARE = 5, 240
-SPEED_TARGET, SPEED = Entry(od.TARGET_SPEED, 0, 32), Entry(od.VELOCITY, 0, 32, signed=True)
-_NEEDED = (
-    Entry(od.CONTROL, 0, 16),
-    Entry(od.MODE, 0, 8),
-    Entry(od.STATUS, 0, 16),
-    Entry(od.MODE_SHOWN, 0, 8),
+SPEED_TARGET, SPEED = PdoEntry(od.TARGET_SPEED, 0, 32), PdoEntry(od.VELOCITY, 0, 32, is_signed=True)
+_REQUIRED_OBJECTS = (
+    PdoEntry(od.CONTROL, 0, 16),
+    PdoEntry(od.MODE, 0, 8),
+    PdoEntry(od.STATUS, 0, 16),
+    PdoEntry(od.MODE_SHOWN, 0, 8),
 )
 
 
-class Drive402:
+class Cia402Drive:
     """CiA 402 drive with its commanded and reported values.
 
-    ``goal``, ``mode``, ``extra`` and ``target`` are the commanded values, which ``command`` sends. ``target``
-    is a position, or a speed for a spindle. The dictionary of reported values holds optional objects by
-    index.
+    ``goal_state``, ``commanded_mode``, ``mode_bits`` and ``target`` are the commanded values, which
+    ``send_command`` sends. ``target`` is a position, or a speed for a spindle. The dictionary of reported
+    values holds optional objects by index.
     """
 
-    def __init__(self, bus: Bus, config: CanNode, target: Entry, told: tuple[Entry, ...]) -> None:
+    def __init__(
+        self, bus: CanBus, config: CanNode, target: PdoEntry, optional_entries: tuple[PdoEntry, ...]
+    ) -> None:
         self.bus = bus
         self.name = config.name
-        self.id = config.id
-        objects, self.profile = od.drive_dictionary(config)
-        self.setup = Setup(bus, self.name, self.id, objects)
+        self.node_id = config.id
+        objects, self.profile = od.load_drive_dictionary(config)
+        self.setup = NodeSetup(bus, self.name, self.node_id, objects)
         self.node = self.setup.node
         self._target_object = target
-        self._asked_for = (*told, self.profile.inputs)
-        self._told_as: tuple[Entry, ...] = ()  # Optional objects that the drive has.
-        self.told: dict[int, int] = {}  # By object index.
-        self.tracks: int | None = None  # In all other modes, the target is the present position.
-        self.goal = DriveState.OFF
-        self.extra = 0  # bits 4, 5, 6, 8 of the control word, while enabled
-        self.mode = 0
-        self.target = 0
-        self.word = 0  # Control word of the last command.
-        self.status = 0
-        self.shown_mode = 0
+        self._asked_for = (*optional_entries, self.profile.inputs)
+        self._told_as: tuple[PdoEntry, ...] = ()  # Optional objects that the drive has.
+        self.reported_values: dict[int, int] = {}  # By object index.
+        self.setpoint_mode: int | None = None  # In all other modes, the target is the present position.
+        self.goal_state = DriveState.SWITCH_ON_DISABLED
+        self.mode_bits = 0  # bits 4, 5, 6, 8 of the control word, while enabled
+        self.commanded_mode = 0
+        self.target_value = 0
+        self.control_word = 0  # Control word of the last command.
+        self.status_word = 0
+        self.reported_mode = 0
         self.position = 0  # counts
         self._load = _NAN
-        self.missing = 0  # SYNCs without an answer
+        self.missing_reply_count = 0  # SYNCs without an answer
         # The last one is the time of the SYNC of the last reply.
-        self.heard = self.asked = self.answered = bus.clock.now()
-        self.trouble: Fault | str = ""
-        self.rebooted = False
+        self.last_heartbeat_s = self.last_request_s = self.last_reply_s = bus.clock.now()
+        self.failure: Fault | str = ""
+        self.has_restarted = False
         self._resetting = False
-        self._patience = bus.config.patience  # Number of replies that may be missing.
+        self._patience = bus.config.max_missing_replies  # Number of replies that may be missing.
         self._beats = True  # The drive has a heartbeat.
 
     @property
     def state(self) -> DriveState:
         """The state in the last status word."""
-        return state_of(self.status)
+        return decode_state(self.status_word)
 
     @property
     def enabled(self) -> bool:
         """Whether the drive has power and follows commands."""
-        return self.state is DriveState.ENABLED
+        return self.state is DriveState.OPERATION_ENABLED
 
     @property
-    def silent(self) -> bool:
+    def is_silent(self) -> bool:
         """Whether too many replies to SYNC are missing, so that the reported values are old."""
-        return self.missing > self._patience
+        return self.missing_reply_count > self._patience
 
     @property
-    def tells_inputs(self) -> bool:
+    def reports_inputs(self) -> bool:
         """Whether the drive reports digital inputs."""
         return self.profile.inputs in self._told_as
 
     @property
-    def inputs(self) -> int:
+    def digital_inputs(self) -> int:
         """The digital inputs as bits, or 0 if the drive does not report them."""
-        return self.told.get(self.profile.inputs.object, 0)
+        return self.reported_values.get(self.profile.inputs.object_index, 0)
 
     @property
     def speed(self) -> int:
         """The measured speed in the drive's unit, or 0 if it is not mapped."""
-        return self.told.get(od.VELOCITY, 0)
+        return self.reported_values.get(od.VELOCITY, 0)
 
     @property
-    def load(self) -> float:
+    def torque_percent(self) -> float:
         """The torque in percent of the rated torque, signed.
 
         The value is nan if the drive does not report its torque, or while the drive is silent.
         """
-        return _NAN if self.silent else self._load
+        return _NAN if self.is_silent else self._load
 
-    def connect(self, work: DriveWork) -> None:
+    def connect(self, setup_data: DriveSetupData) -> None:
         """Check, configure and map the drive in PRE-OPERATIONAL. Raises DriverError if it does not match."""
-        setup, records = self.setup, work.records
-        setup.pre_operational()
-        setup.demand_profile(402)
-        setup.demand_modes(work.modes, self.profile.modes)
-        setup.configure(work.standing, work.own, work.needed)
-        setup.demand(*_NEEDED, self._target_object)
-        if work.period:
-            setup.watch_setpoints(work.period)
-        setup.receive(1, (od.CONTROL, 16), (od.MODE, 8), _mapped(self._target_object))
+        setup, records = self.setup, setup_data.record_object
+        setup.enter_pre_operational()
+        setup.require_profile(402)
+        setup.require_modes(setup_data.mode_bits, self.profile.mode_bits)
+        setup.configure_objects(
+            setup_data.default_objects, setup_data.file_objects, setup_data.required_objects
+        )
+        setup.require_objects(*_REQUIRED_OBJECTS, self._target_object)
+        if setup_data.setpoint_period_s:
+            setup.monitor_setpoints(setup_data.setpoint_period_s)
+        setup.map_received_objects(1, (od.CONTROL, 16), (od.MODE, 8), _to_object_address(self._target_object))
         if records:
-            setup.receive(2, (records, 64), at_once=True)
+            setup.map_received_objects(2, (records, 64), event_driven=True)
         shown = ((od.STATUS, 16), (od.MODE_SHOWN, 8), (od.POSITION, 32))
-        setup.transmit(1, self._shown, *shown, every=1 if work.axis else self.bus.config.seldom)
-        self._told_as = tuple(each for each in self._asked_for if setup.has(each.object, each.sub))
+        setup.map_sent_objects(
+            1, self._shown, *shown, every=1 if setup_data.is_axis else self.bus.config.slow_reply_divisor
+        )
+        self._told_as = tuple(
+            each for each in self._asked_for if setup.has_object(each.object_index, each.subindex)
+        )
         if self._told_as:
-            more = [_mapped(entry) for entry in self._told_as]
-            setup.transmit(2, self._told, *more, every=self.bus.config.seldom)
-        self._ask_load()
-        self._beats = od.HEARTBEAT not in setup.lacks
-        self._patience = self.bus.config.patience if work.axis else SYNCS
+            more = [_to_object_address(entry) for entry in self._told_as]
+            setup.map_sent_objects(2, self._told, *more, every=self.bus.config.slow_reply_divisor)
+        self._map_torque()
+        self._beats = od.HEARTBEAT not in setup.missing_objects
+        self._patience = self.bus.config.max_missing_replies if setup_data.is_axis else MAX_MISSING_REPLIES
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.node.emcy.add_callback(self._emergency)
-        self.status = setup.read(od.STATUS)
-        self.position = self.target = setup.read(od.POSITION)
-        self.heard, self.missing, self.rebooted, self.trouble = self.bus.clock.now(), 0, False, ""
+        self.status_word = setup.read(od.STATUS)
+        self.position = self.target_value = setup.read(od.POSITION)
+        self.last_heartbeat_s, self.missing_reply_count, self.has_restarted, self.failure = (
+            self.bus.clock.now(),
+            0,
+            False,
+            "",
+        )
 
-    def _ask_load(self) -> None:
+    def _map_torque(self) -> None:
         """Map the torque for the scope if possible; a failure does not prevent operation."""
         self._load = _NAN
-        if self.setup.has(od.TORQUE, 0):
-            every = min(_RARER * self.bus.config.seldom, _MOST_RARE)
+        if self.setup.has_object(od.ACTUAL_TORQUE, 0):
+            every = min(_RARER * self.bus.config.slow_reply_divisor, _MOST_RARE)
             with suppress(DriverError):  # Some drives cannot map the torque or have no fourth PDO.
-                self.setup.transmit(4, self._torque, (od.TORQUE, 16), every=every)
+                self.setup.map_sent_objects(4, self._torque, (od.ACTUAL_TORQUE, 16), every=every)
 
-    def operational(self) -> None:
+    def start_node(self) -> None:
         """Start the drive by NMT, after all nodes are configured."""
         self.node.nmt.state = "OPERATIONAL"
 
-    def command(self) -> None:
+    def send_command(self) -> None:
         """Send the commanded values, which the drive applies at the next SYNC."""
-        if self.tracks is not None and not (self.enabled and self.shown_mode == self.tracks):
-            self.target = self.position  # The drive starts at its present position.
-        self.word = self._next_word()
-        data = _COMMAND.pack(self.word, self.mode, self.target)
-        self.bus.send_message(0x200 + self.id, data)
+        if self.setpoint_mode is not None and not (self.enabled and self.reported_mode == self.setpoint_mode):
+            self.target_value = self.position  # The drive starts at its present position.
+        self.control_word = self._next_word()
+        data = _COMMAND_FORMAT.pack(self.control_word, self.commanded_mode, self.target_value)
+        self.bus.send_message(0x200 + self.node_id, data)
 
-    def sync_sent(self, now: float, *, counted: bool = True) -> None:
-        """Record that a SYNC is sent; with ``counted``, a reply is expected."""
-        self.missing, self.asked = self.missing + counted, now
+    def record_sync(self, now: float, *, reply_expected: bool = True) -> None:
+        """Record that a SYNC is sent; with ``reply_expected``, a reply is expected."""
+        self.missing_reply_count, self.last_request_s = self.missing_reply_count + reply_expected, now
 
-    def push(self, record: bytes) -> None:
+    def send_record(self, record: bytes) -> None:
         """Send one record to the queue in the drive."""
-        self.bus.send_message(0x300 + self.id, record)
+        self.bus.send_message(0x300 + self.node_id, record)
 
-    def clear(self) -> None:
+    def reset_fault(self) -> None:
         """Start to reset a fault; the drive is without power afterwards."""
-        self.goal, self.extra, self._resetting = DriveState.OFF, 0, True
+        self.goal_state, self.mode_bits, self._resetting = DriveState.SWITCH_ON_DISABLED, 0, True
 
-    def look(self, patience: float) -> None:
-        """Set a fault for missing heartbeats or replies, or a drive fault; it remains until ``forget``.
+    def supervise(self, heartbeat_timeout_s: float) -> None:
+        """Set a fault for missing heartbeats or replies, or a drive fault; it remains until
+        ``clear_failure``.
 
         ``patience`` is the heartbeat timeout in seconds.
         """
         now = self.bus.clock.now()
-        if self._beats and now - self.heard > patience:
+        if self._beats and now - self.last_heartbeat_s > heartbeat_timeout_s:
             self._wrong(
                 "{name}: no heartbeat from the drive for {now} s; check cable and power",
                 "drive-silent",
                 name=self.name,
-                now=f"{now - self.heard:.2f}",
+                now=f"{now - self.last_heartbeat_s:.2f}",
             )
-        elif self.silent:
+        elif self.is_silent:
             self._wrong(
                 "{name}: the drive does not respond to SYNC; check cable and power",
                 "drive-silent",
                 name=self.name,
             )
-        elif self.state in {DriveState.FAULT, DriveState.REACTING} and not self._resetting:
+        elif self.state in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE} and not self._resetting:
             self._wrong("{name}: drive fault", "axis", name=self.name)
 
-    def forget(self) -> None:
+    def clear_failure(self) -> None:
         """Clear the stored fault."""
-        self.trouble = ""
+        self.failure = ""
 
     def _next_word(self) -> int:
         state = self.state
         if self._resetting:
-            self._resetting = state in {DriveState.FAULT, DriveState.REACTING}
-            return reset_step(state, self.word)
-        if self.goal is DriveState.ENABLED:
-            word = towards_enabled(state)
-            return word | self.extra if state is DriveState.ENABLED else word
-        if self.goal is DriveState.QUICK_STOP and state in {DriveState.ENABLED, DriveState.QUICK_STOP}:
+            self._resetting = state in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE}
+            return get_fault_reset_word(state, self.control_word)
+        if self.goal_state is DriveState.OPERATION_ENABLED:
+            word = get_enabling_word(state)
+            return word | self.mode_bits if state is DriveState.OPERATION_ENABLED else word
+        if self.goal_state is DriveState.QUICK_STOP_ACTIVE and state in {
+            DriveState.OPERATION_ENABLED,
+            DriveState.QUICK_STOP_ACTIVE,
+        }:
             return QUICK
         return 0
 
     def _wrong(self, what: str, code: FaultCode, **values: object) -> None:
-        self.trouble = self.trouble or Fault(what, code, **values)
+        self.failure = self.failure or Fault(what, code, **values)
 
     def _shown(self, map_: canopen.pdo.PdoMap) -> None:
-        self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
-        self.missing, self.answered = 0, self.asked
+        self.status_word, self.reported_mode, self.position = _REPLY_FORMAT.unpack(map_.data)
+        self.missing_reply_count, self.last_reply_s = 0, self.last_request_s
 
     def _torque(self, map_: canopen.pdo.PdoMap) -> None:
-        self._load = _TORQUE.unpack(map_.data)[0] / 10.0
+        self._load = _TORQUE_FORMAT.unpack(map_.data)[0] / 10.0
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
-        if len(map_.data) != sum(entry.bits for entry in self._told_as) // 8:
+        if len(map_.data) != sum(entry.bit_count for entry in self._told_as) // 8:
             raise ValueError(f"{len(map_.data)} bytes")
         at = 0
         for index, _, bits, signed in self._told_as:
             size = bits // 8
-            self.told[index] = int.from_bytes(map_.data[at : at + size], "little", signed=signed)
+            self.reported_values[index] = int.from_bytes(map_.data[at : at + size], "little", signed=signed)
             at += size
 
     def _heartbeat(self, state: int) -> None:
-        self.heard = self.bus.clock.now()
+        self.last_heartbeat_s = self.bus.clock.now()
         if state == 0:
-            self.rebooted = True
+            self.has_restarted = True
             self._wrong(
                 "{name}: the drive has restarted; its position is lost", "drive-restarted", name=self.name
             )
@@ -252,26 +269,26 @@ class Drive402:
                 description=error.get_desc().lower() or "drive error",
                 code=f"{error.code:04X}",
             )
-            self._wrong(what, "following" if error.code == _FOLLOWING else "axis")
+            self._wrong(what, "following" if error.code == _FOLLOWING_ERROR_CODE else "axis")
 
 
-def _mapped(entry: Entry) -> tuple[int, int]:
+def _to_object_address(entry: PdoEntry) -> tuple[int, int]:
     """Return a PDO entry as (object + sub · 65536, bits)."""
-    return entry.object | entry.sub << 16, entry.bits
+    return entry.object_index | entry.subindex << 16, entry.bit_count
 
 
 @dataclass(frozen=True, slots=True)
-class DriveWork:
+class DriveSetupData:
     """Configuration of a drive: modes as bits of 0x6502, written objects, and the object of its queue.
 
-    ``needed`` lists objects without which the drive cannot be used. ``period`` is the setpoint period in
-    seconds that the drive must monitor.
+    ``required_objects`` lists objects without which the drive cannot be used. ``setpoint_period_s`` is the
+    setpoint period in seconds that the drive must monitor.
     """
 
-    modes: int
-    standing: Objects
-    own: Objects = ()
-    needed: tuple[int, ...] = ()
-    records: int = 0
-    period: float = 0.0
-    axis: bool = True  # Replies to each SYNC; a spindle replies every 10 ms.
+    mode_bits: int
+    default_objects: ObjectValues
+    file_objects: ObjectValues = ()
+    required_objects: tuple[int, ...] = ()
+    record_object: int = 0
+    setpoint_period_s: float = 0.0
+    is_axis: bool = True  # Replies to each SYNC; a spindle replies every 10 ms.

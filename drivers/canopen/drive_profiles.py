@@ -11,100 +11,102 @@ from enum import Enum
 from typing import NamedTuple
 
 
-class Entry(NamedTuple):
+class PdoEntry(NamedTuple):
     """Object that a PDO contains."""
 
-    object: int
-    sub: int
-    bits: int
-    signed: bool = False
+    object_index: int
+    subindex: int
+    bit_count: int
+    is_signed: bool = False
 
 
-class Records(Enum):
+class RecordFormat(Enum):
     """Record formats of queues with position, velocity and time."""
 
     EPOS2 = "20C1"
     COPLEY = "2010"
 
 
-INPUTS = Entry(0x60FD, 0, 32)
+INPUT_ENTRY = PdoEntry(0x60FD, 0, 32)
 
 
-class Queue(NamedTuple):
+class DriveQueue(NamedTuple):
     """Queue in a drive: record format, object, sub-mode for 0x60C0, and the number of records to use."""
 
-    records: Records
-    object: int
+    record_format: RecordFormat
+    object_index: int
     submode: int
-    most: int
+    max_records: int
 
 
 @dataclass(frozen=True, slots=True)
 class DriveProfile:
-    """Drive family; with ``rpm``, its units are rpm and rpm/s, which requires counts per revolution."""
+    """Drive family; with ``uses_rpm``, its units are rpm and rpm/s, which requires counts per revolution."""
 
     name: str
     title: str
-    rpm: bool = False
-    modes: int = 0  # Bits of 0x6502 that apply even if not reported.
-    inputs: Entry = INPUTS  # digital inputs
-    home_place: int = 0x607C  # Object of the home offset.
-    queue: Queue | None = None
-    units: tuple[tuple[int, int, int], ...] = ()  # Written first to select these units.
-    vendor: int = 0  # Vendor in the EDS file; `words` are parts of the product name.
-    words: tuple[str, ...] = ()
+    uses_rpm: bool = False
+    mode_bits: int = 0  # Bits of 0x6502 that apply even if not reported.
+    inputs: PdoEntry = INPUT_ENTRY  # digital inputs
+    home_offset_object: int = 0x607C  # Object of the home offset.
+    queue: DriveQueue | None = None
+    unit_objects: tuple[tuple[int, int, int], ...] = ()  # Written first to select these units.
+    vendor_id: int = 0  # Vendor in the EDS file; `words` are parts of the product name.
+    product_words: tuple[str, ...] = ()
 
 
 _MAXON, _COPLEY = 0x000000FB, 0x000000AB
-CIA402 = DriveProfile("cia402", "a CiA 402 drive")
+CIA402_PROFILE = DriveProfile("cia402", "a CiA 402 drive")
 PROFILES = {
     profile.name: profile
     for profile in (
-        CIA402,
+        CIA402_PROFILE,
         DriveProfile(
             "epos2",
             "maxon EPOS2",
-            rpm=True,
-            inputs=Entry(0x2071, 1, 16),
-            queue=Queue(Records.EPOS2, 0x20C1, -1, 56),  # The drive accepts 64.
-            vendor=_MAXON,
-            words=("EPOS2",),
+            uses_rpm=True,
+            inputs=PdoEntry(0x2071, 1, 16),
+            queue=DriveQueue(RecordFormat.EPOS2, 0x20C1, -1, 56),  # The drive accepts 64.
+            vendor_id=_MAXON,
+            product_words=("EPOS2",),
         ),
         DriveProfile(
             "epos4",
             "maxon EPOS4",
-            rpm=True,
-            modes=0x01 | 0x04 | 0x20 | 0x80,  # PP, PV, homing, CSP
-            home_place=0x30B0,
+            uses_rpm=True,
+            mode_bits=0x01 | 0x04 | 0x20 | 0x80,  # PP, PV, homing, CSP
+            home_offset_object=0x30B0,
             # SI unit codes: positions in increments, speeds in rpm, accelerations in rpm/s.
-            units=((0x60A8, 0, 0x00B50000), (0x60A9, 0, 0x00B44700), (0x60AA, 0, 0x00C00300)),
-            vendor=_MAXON,
-            words=("EPOS4",),
+            unit_objects=((0x60A8, 0, 0x00B50000), (0x60A9, 0, 0x00B44700), (0x60AA, 0, 0x00C00300)),
+            vendor_id=_MAXON,
+            product_words=("EPOS4",),
         ),
         DriveProfile(
             "copley",
             "Copley Accelnet or Xenus",
-            queue=Queue(Records.COPLEY, 0x2010, -2, 26),  # The drive accepts 32.
-            vendor=_COPLEY,
+            queue=DriveQueue(RecordFormat.COPLEY, 0x2010, -2, 26),  # The drive accepts 32.
+            vendor_id=_COPLEY,
         ),
     )
 }
-QUEUED = tuple(name for name, profile in PROFILES.items() if profile.queue is not None)
-IN_RPM = tuple(name for name, profile in PROFILES.items() if profile.rpm)
+QUEUE_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.queue is not None)
+RPM_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.uses_rpm)
 
 
-def profile_of(name: str, vendor: int | None, product: str | None) -> DriveProfile:
+def find_profile(name: str, vendor: int | None, product: str | None) -> DriveProfile:
     """Return the family by its name, or without a name by vendor and product of the EDS file."""
     if name:
         return PROFILES[name]
     for profile in PROFILES.values():
-        named = not profile.words or any(word in (product or "").upper() for word in profile.words)
-        if profile.vendor and profile.vendor == vendor and named:
+        named = not profile.product_words or any(
+            word in (product or "").upper() for word in profile.product_words
+        )
+        if profile.vendor_id and profile.vendor_id == vendor and named:
             return profile
-    return CIA402
+    return CIA402_PROFILE
 
 
-WITHOUT = {
+MISSING_OBJECT_EFFECTS = {
     0x1006: "SYNC period: the drive does not detect a missing SYNC",
     0x1016: ("heartbeat monitoring: the drive does not detect that this computer has stopped responding"),
     0x1017: "heartbeat: TurnDesk detects a lost drive only when the drive stops responding to SYNC",

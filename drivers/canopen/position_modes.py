@@ -13,15 +13,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.ports import DriverError, Fault, Segments, at_rest
+from core.ports import DriverError, Fault, Segments, is_queue_finished
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_nodes import EVENED_OUT
+from drivers.canopen.canopen_nodes import MAX_SYNC_DELAY_FRACTION
 from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, IP, NEW, PP
-from drivers.canopen.driven_axes import DrivenAxis
+from drivers.canopen.drive_set import DrivenAxis
 from drivers.setpoint_queue import SetpointQueue
 
 
-class Follower(ABC):
+class SetpointFollower(ABC):
     """Base class that makes the drives follow the setpoint queue from their present positions."""
 
     mode: int  # Mode of CiA 402.
@@ -31,46 +31,48 @@ class Follower(ABC):
         self._axes = axes
         self._indices = indices
         self._queue = queue
-        self.trouble: Fault | str = ""  # Reason why the drives cannot follow the queue.
-        self.urgent = False  # The commands must be sent in this tick.
-        self.off_path = 0.0  # Largest unavoidable deviation in counts.
+        self.failure: Fault | str = ""  # Reason why the drives cannot follow the queue.
+        self.must_send_now = False  # The commands must be sent in this tick.
+        self.max_deviation_counts = 0.0  # Largest unavoidable deviation in counts.
 
     @property
-    def playing(self) -> bool:
+    def is_playing(self) -> bool:
         """Whether the drives have not yet completed the transferred setpoints."""
         return False
 
-    def path_time(self, t: float) -> float:
+    def get_path_time(self, t: float) -> float:
         """Return the time in the queue that the drives had reached at time ``t``."""
         return t
 
-    def check(self, segments: Segments) -> None:
+    def check_segments(self, segments: Segments) -> None:
         """Raise DriverError if the drives cannot follow ``segments``; the default accepts any path."""
 
-    def braked(self, at: float) -> None:
-        """Handle a queue that brakes from ``at`` on; the default relies on the next ``feed``."""
+    def handle_braking(self, brake_time: float) -> None:
+        """Handle a queue that brakes from ``brake_time`` on; the default relies on the next
+        ``feed_setpoints``.
+        """
 
     @abstractmethod
-    def feed(self, now: float) -> None:
+    def feed_setpoints(self, now: float) -> None:
         """Transfer setpoints; called once per tick before the commands are sent."""
 
-    def prepare(self) -> None:
+    def prepare_targets(self) -> None:
         """Set the targets to the present positions before the drives are switched on."""
         for axis in self._axes:
-            axis.drive.target = axis.drive.position
+            axis.drive.target_value = axis.drive.position
 
-    def abort(self) -> None:
+    def abort_transfer(self) -> None:
         """Stop transferring setpoints, because the drives stop on their own."""
-        self.trouble = ""
+        self.failure = ""
 
 
 # --- Profile position: the drive plans jogs and single moves, for drives without a path queue.
 
 
-_ANSWER = 0.2  # Seconds in which a drive must acknowledge a target.
+_ACKNOWLEDGE_TIMEOUT_S = 0.2  # Seconds in which a drive must acknowledge a target.
 
 
-class ProfiledFollower(Follower):
+class ProfiledFollower(SetpointFollower):
     """Follower that sends each drive the end of the queue as its target, with the speeds of the path.
 
     It supports straight moves only, because each drive plans its own motion.
@@ -84,11 +86,11 @@ class ProfiledFollower(Follower):
         self._told = -1.0
 
     @property
-    def playing(self) -> bool:
+    def is_playing(self) -> bool:
         """Whether a target is pending or not yet acknowledged."""
         return self._pending is not None or self._told >= 0.0
 
-    def check(self, segments: Segments) -> None:
+    def check_segments(self, segments: Segments) -> None:
         """Store a straight move. Raises DriverError if the path is not straight."""
         dt = segments.dt[-1]
         end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
@@ -107,33 +109,33 @@ class ProfiledFollower(Follower):
             )
         self._pending = (float(segments.t[0]), segments)
 
-    def braked(self, at: float) -> None:
+    def handle_braking(self, brake_time: float) -> None:
         """Send the new end of the queue as the target, with maximum deceleration."""
-        self._pending = (at, None)
+        self._pending = (brake_time, None)
 
-    def prepare(self) -> None:
+    def prepare_targets(self) -> None:
         """Discard the pending target and set the targets to the present positions."""
         self._pending = None
-        super().prepare()
+        super().prepare_targets()
 
-    def abort(self) -> None:
+    def abort_transfer(self) -> None:
         """Discard the pending target."""
-        self._pending, self._told, self.trouble = None, -1.0, ""
+        self._pending, self._told, self.failure = None, -1.0, ""
         for axis in self._axes:
-            axis.drive.extra &= ~(NEW | AT_ONCE)
+            axis.drive.mode_bits &= ~(NEW | AT_ONCE)
 
-    def feed(self, now: float) -> None:
+    def feed_setpoints(self, now: float) -> None:
         """Send a target at its time, then wait for the acknowledgment."""
         if self._told >= 0.0:
-            self._finish(now)
+            self._await_acknowledgment(now)
         elif self._pending is not None and now >= self._pending[0]:
             _, segments = self._pending
             self._pending, self._told = None, now
             self._hand_over(segments)
 
     def _hand_over(self, segments: Segments | None) -> None:
-        rest, _ = self._queue.demand_at(float("inf"))
-        self.urgent = True
+        rest, _ = self._queue.commanded_state_at(float("inf"))
+        self.must_send_now = True
         for axis, i in zip(self._axes, self._indices, strict=True):
             config, drive = axis.config, axis.drive
             accel = config.amax
@@ -143,18 +145,18 @@ class ProfiledFollower(Follower):
                 drive.setup.write(od.PROFILE_SPEED, 0, max(round(speed), 1))
             drive.setup.try_write(od.PROFILE_ACCEL, 0, config.acceleration(accel))
             drive.setup.try_write(od.PROFILE_DECEL, 0, config.acceleration(accel))
-            drive.target = round(rest[i] / config.count)
-            drive.extra |= NEW | AT_ONCE
+            drive.target_value = round(rest[i] / config.count)
+            drive.mode_bits |= NEW | AT_ONCE
 
-    def _finish(self, now: float) -> None:
+    def _await_acknowledgment(self, now: float) -> None:
         """Clear bit 4 after the drives have acknowledged by bit 12."""
-        late = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
+        late = [a.config.name for a in self._axes if not a.drive.status_word & BIT_12]
         if not late:
             self._told = -1.0
             for axis in self._axes:
-                axis.drive.extra &= ~(NEW | AT_ONCE)
-        elif now - self._told > _ANSWER:
-            self.trouble = self.trouble or Fault(
+                axis.drive.mode_bits &= ~(NEW | AT_ONCE)
+        elif now - self._told > _ACKNOWLEDGE_TIMEOUT_S:
+            self.failure = self.failure or Fault(
                 "{late}: the drive did not accept its target position", "axis", late=", ".join(late)
             )
 
@@ -162,35 +164,35 @@ class ProfiledFollower(Follower):
 # --- One setpoint per SYNC: cyclic synchronous position, and interpolated position.
 
 
-LONGEST = 0.01  # Seconds without a setpoint in motion; more is a fault.
-_MADE_GOOD = 0.02  # Fraction of a period, per period.
-_BEGIN = 0.3  # Seconds in which a drive must start to interpolate.
+MAX_SETPOINT_GAP_S = 0.01  # Seconds without a setpoint in motion; more is a fault.
+_RECOVERY_FRACTION = 0.02  # Fraction of a period, per period.
+_START_TIMEOUT_S = 0.3  # Seconds in which a drive must start to interpolate.
 
 
 class SyncSchedule:
     """Schedule of the SYNCs, which remain in phase even if one is late."""
 
-    def __init__(self, period: float, now: float) -> None:
-        self.period = period
-        self.due = now
-        self.worst = 0.0  # Largest delay in s since the last report.
+    def __init__(self, period_s: float, now: float) -> None:
+        self.period_s = period_s
+        self.due_time_s = now
+        self.max_delay_s = 0.0  # Largest delay in s since the last report.
         self._late = 0.0  # Delay of the last SYNC.
 
-    def sent(self, now: float) -> float:
+    def record_sync(self, now: float) -> float:
         """Record a SYNC at ``now`` and return the extra seconds that the drives have waited.
 
         The result is 0 for a delay that a drive tolerates, and for the return to the schedule.
         """
-        late = max(now - self.due, 0.0)
-        self.worst = max(self.worst, late)
-        longer = late - self._late if late > EVENED_OUT * self.period else 0.0
-        missed = int(late / self.period + 1e-6)
-        self._late = late - missed * self.period
-        self.due += (missed + 1) * self.period
+        late = max(now - self.due_time_s, 0.0)
+        self.max_delay_s = max(self.max_delay_s, late)
+        longer = late - self._late if late > MAX_SYNC_DELAY_FRACTION * self.period_s else 0.0
+        missed = int(late / self.period_s + 1e-6)
+        self._late = late - missed * self.period_s
+        self.due_time_s += (missed + 1) * self.period_s
         return max(longer, 0.0)
 
 
-class CyclicFollower(Follower):
+class CyclicFollower(SetpointFollower):
     """Follower with one setpoint per SYNC, in mode CSP or IP.
 
     Mode IP must be started by bit 4 and is confirmed by bit 12.
@@ -207,49 +209,53 @@ class CyclicFollower(Follower):
         super().__init__(axes, indices, queue)
         self.mode = mode
         self.schedule = schedule
-        self.lag = 0.0  # Delay of the path relative to the clock in s.
+        self.lag_s = 0.0  # Delay of the path relative to the clock in s.
         self._fed = -math.inf  # Time in the queue up to which the drives have setpoints.
-        self.gaps = 0  # Number of times that the drives waited at a setpoint in motion.
+        self.gap_count = 0  # Number of times that the drives waited at a setpoint in motion.
         self._asked: float | None = None  # Time of the start command for interpolation in s.
-        queue.handed_out = lambda: self._fed
+        queue.get_transferred_until = lambda: self._fed
 
     @property
-    def playing(self) -> bool:
+    def is_playing(self) -> bool:
         """Whether the path is delayed and has not ended yet."""
-        return self.lag > 0.0 and not at_rest(self._queue.horizon(-1e9), self.path_time(self.schedule.due))
+        return self.lag_s > 0.0 and not is_queue_finished(
+            self._queue.queue_end(-1e9), self.get_path_time(self.schedule.due_time_s)
+        )
 
-    def path_time(self, t: float) -> float:
+    def get_path_time(self, t: float) -> float:
         """Return the time in the queue at ``t``, which is reduced by the lag."""
-        return t - self.lag
+        return t - self.lag_s
 
-    def abort(self) -> None:
+    def abort_transfer(self) -> None:
         """Stop transferring setpoints and clear the lag."""
-        self.lag, self.trouble, self._asked = 0.0, "", None
+        self.lag_s, self.failure, self._asked = 0.0, "", None
         for axis in self._axes:
-            axis.drive.extra &= ~NEW
+            axis.drive.mode_bits &= ~NEW
 
-    def waited(self, away: float) -> None:
+    def delay_path(self, waited_s: float) -> None:
         """Delay the path by the seconds that the drives have waited at a setpoint."""
-        if at_rest(self._queue.horizon(-1e9), self.path_time(self.schedule.due) - away):
-            self.lag = 0.0
+        if is_queue_finished(
+            self._queue.queue_end(-1e9), self.get_path_time(self.schedule.due_time_s) - waited_s
+        ):
+            self.lag_s = 0.0
             return
-        self.gaps += 1
-        self.lag += away
-        if self.lag > LONGEST:
-            self.trouble = self.trouble or Fault(
+        self.gap_count += 1
+        self.lag_s += waited_s
+        if self.lag_s > MAX_SETPOINT_GAP_S:
+            self.failure = self.failure or Fault(
                 "setpoints were {lag} ms late because this computer stalled for too long",
                 "queue-dry",
-                lag=f"{1000 * self.lag:.0f}",
+                lag=f"{1000 * self.lag_s:.0f}",
             )
 
-    def feed(self, now: float) -> None:
+    def feed_setpoints(self, now: float) -> None:
         """Set the targets for the next SYNC, which the drives reach at the SYNC after it."""
-        standing = at_rest(self._queue.horizon(-1e9), self.path_time(now))
-        self.lag = 0.0 if standing else max(self.lag - _MADE_GOOD * self.schedule.period, 0.0)
-        self._fed = self.path_time(self.schedule.due + self.schedule.period)
-        p, _ = self._queue.demand_at(self._fed)
+        standing = is_queue_finished(self._queue.queue_end(-1e9), self.get_path_time(now))
+        self.lag_s = 0.0 if standing else max(self.lag_s - _RECOVERY_FRACTION * self.schedule.period_s, 0.0)
+        self._fed = self.get_path_time(self.schedule.due_time_s + self.schedule.period_s)
+        p, _ = self._queue.commanded_state_at(self._fed)
         for axis, index in zip(self._axes, self._indices, strict=True):
-            axis.drive.target = round(p[index] / axis.config.count)
+            axis.drive.target_value = round(p[index] / axis.config.count)
         if self.mode == IP:
             self._interpolate(now)
 
@@ -258,9 +264,9 @@ class CyclicFollower(Follower):
         if self._asked is None:
             self._asked = now
             for axis in self._axes:
-                axis.drive.extra |= NEW
-        stand = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
-        if stand and now - self._asked > _BEGIN:
-            self.trouble = self.trouble or Fault(
+                axis.drive.mode_bits |= NEW
+        stand = [a.config.name for a in self._axes if not a.drive.status_word & BIT_12]
+        if stand and now - self._asked > _START_TIMEOUT_S:
+            self.failure = self.failure or Fault(
                 "{stand}: the drive did not start interpolated motion", "queue-dry", stand=", ".join(stand)
             )

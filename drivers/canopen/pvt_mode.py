@@ -9,11 +9,11 @@ from enum import Enum
 from typing import NamedTuple
 
 from core.message import Message
-from core.ports import DriverError, Fault, at_rest
+from core.ports import DriverError, Fault, is_queue_finished
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
-from drivers.canopen.drive_profiles import QUEUED
-from drivers.canopen.driven_axes import DrivenAxis, RecordQueue
-from drivers.canopen.position_modes import Follower
+from drivers.canopen.drive_profiles import QUEUE_PROFILE_NAMES
+from drivers.canopen.drive_set import DrivenAxis, RecordQueue
+from drivers.canopen.position_modes import SetpointFollower
 from drivers.setpoint_queue import SetpointQueue
 
 # --- Conversion of setpoints to PVT records: path points in counts, times in whole milliseconds. A drive
@@ -22,60 +22,68 @@ from drivers.setpoint_queue import SetpointQueue
 # the shortest record time.
 
 
-Demand = Callable[[float], tuple[tuple[float, ...], tuple[float, ...]]]  # Time to positions and velocities.
+MotionFunction = Callable[
+    [float], tuple[tuple[float, ...], tuple[float, ...]]
+]  # Time to positions and velocities.
 
-SHORTEST = 2  # Milliseconds; shorter records would overload queue and bus.
-_LOOKS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
+MIN_RECORD_MS = 2  # Milliseconds; shorter records would overload queue and bus.
+_CHECK_FRACTIONS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 
 
-class Span(NamedTuple):
+class PathPiece(NamedTuple):
     """Piece of the path: its duration, and the deviation of its cubic from the path in counts."""
 
-    ms: int
-    off: float
+    duration_ms: int
+    deviation_counts: float
 
 
-def span(demand: Demand, t: float, longest: int, counts: Sequence[float]) -> Span:
-    """Return the longest piece of at most ``longest`` ms whose cubic stays within half a count of the path.
+def fit_longest_piece(
+    motion_at: MotionFunction, t: float, max_duration_ms: int, count_sizes: Sequence[float]
+) -> PathPiece:
+    """Return the longest piece of at most ``max_duration_ms`` ms whose cubic stays within half a count of
+    the path.
 
-    ``counts`` is the length of a count for each axis. The shortest piece is used regardless of its deviation.
+    ``count_sizes`` is the length of a count for each axis. The shortest piece is used regardless of its
+    deviation.
     """
-    ms = longest
+    ms = max_duration_ms
     while True:
-        off = deviation(demand, t, 0.001 * ms, counts)
-        if off <= 0.5 or ms <= SHORTEST:
-            return Span(ms, off)
-        ms = max(ms // 2, SHORTEST)
+        off = find_max_deviation(motion_at, t, 0.001 * ms, count_sizes)
+        if off <= 0.5 or ms <= MIN_RECORD_MS:
+            return PathPiece(ms, off)
+        ms = max(ms // 2, MIN_RECORD_MS)
 
 
-def deviation(demand: Demand, t: float, dt: float, counts: Sequence[float]) -> float:
+def find_max_deviation(motion_at: MotionFunction, t: float, dt: float, count_sizes: Sequence[float]) -> float:
     """Return the largest deviation of the cubic from ``t`` to ``t + dt`` in counts of the worst axis."""
-    p0, v0 = demand(t)
-    p1, v1 = demand(t + dt)
+    p0, v0 = motion_at(t)
+    p1, v1 = motion_at(t + dt)
     worst = 0.0
-    for s in _LOOKS:
-        p, _ = demand(t + s * dt)
-        for i, count in enumerate(counts):
-            cubic = hermite(p0[i], v0[i], p1[i], v1[i], dt, s)
+    for s in _CHECK_FRACTIONS:
+        p, _ = motion_at(t + s * dt)
+        for i, count in enumerate(count_sizes):
+            cubic = interpolate_hermite(p0[i], v0[i], p1[i], v1[i], dt, s)
             worst = max(worst, abs(cubic - p[i]) / count)
     return worst
 
 
-def hermite(p0: float, v0: float, p1: float, v1: float, dt: float, s: float) -> float:
-    """Return the cubic through two points with their velocities, at fraction ``s`` of ``dt``."""
-    r = 1.0 - s
-    return r * r * (p0 + s * (2.0 * p0 + v0 * dt)) + s * s * (p1 + r * (2.0 * p1 - v1 * dt))
+def interpolate_hermite(p0: float, v0: float, p1: float, v1: float, dt: float, fraction: float) -> float:
+    """Return the cubic through two points with their velocities, at fraction ``fraction`` of ``dt``."""
+    r = 1.0 - fraction
+    return r * r * (p0 + fraction * (2.0 * p0 + v0 * dt)) + fraction * fraction * (
+        p1 + r * (2.0 * p1 - v1 * dt)
+    )
 
 
 _log = logging.getLogger(__name__)
 
-_BY_NAME = " or ".join(f'"{name}"' for name in QUEUED)
-_DRY = "the drives' queues ran empty because this computer stalled for too long"
-LOW_WATER = 2  # Records; with fewer, a drive faults.
-RESTART = 0.04  # Seconds between the last point of one PVT motion and the first of the next.
-_LINGER = 0.5  # Seconds at rest after which the queues are ended; until then, points at rest are sent.
-_BEGIN = 0.3  # Seconds in which a drive must start.
-_PREFILL = 2  # Records at rest before the queues are started.
+_QUEUE_PROFILES_TEXT = " or ".join(f'"{name}"' for name in QUEUE_PROFILE_NAMES)
+_QUEUE_EMPTY_TEXT = "the drives' queues ran empty because this computer stalled for too long"
+MIN_QUEUED_RECORDS = 2  # Records; with fewer, a drive faults.
+RESTART_DELAY_S = 0.04  # Seconds between the last point of one PVT motion and the first of the next.
+_REST_TIME_S = 0.5  # Seconds at rest after which the queues are ended; until then, points at rest are sent.
+_START_TIMEOUT_S = 0.3  # Seconds in which a drive must start.
+_PREFILL_RECORDS = 2  # Records at rest before the queues are started.
 
 
 class _Phase(Enum):
@@ -84,7 +92,7 @@ class _Phase(Enum):
     ENDING = "the last path point has been sent to the drives"
 
 
-class PvtFollower(Follower):
+class PvtFollower(SetpointFollower):
     """Follower that fills the drives' queues a fixed time ahead, with the same points for all axes.
 
     The duration of each record is a whole number of milliseconds.
@@ -97,116 +105,121 @@ class PvtFollower(Follower):
         axes: Sequence[DrivenAxis],
         indices: Sequence[int],
         queue: SetpointQueue,
-        ahead: float,
+        lead_time_s: float,
         record: float,
     ) -> None:
         super().__init__(axes, indices, queue)
-        self._ahead = ahead - RESTART
+        self._ahead = lead_time_s - RESTART_DELAY_S
         self._longest = round(1000 * record)
         self._phase = _Phase.REST
-        self.front = 0.0  # Time of the next point.
+        self.next_point_time_s = 0.0  # Time of the next point.
         self._begun = 0.0
         self._sent: deque[float] = deque()  # End time of each sent record.
-        self.lowest = float("inf")  # Shortest time that was queued in the drives, in s.
+        self.min_queued_time_s = float("inf")  # Shortest time that was queued in the drives, in s.
 
     @property
-    def playing(self) -> bool:
+    def is_playing(self) -> bool:
         """Whether the queues of the drives are running."""
         return self._phase is not _Phase.REST
 
-    def prepare(self) -> None:
+    def prepare_targets(self) -> None:
         """Clear the queues of the drives."""
         for axis in self._axes:
-            _records(axis).clear()
-        self.abort()
+            _get_record_queue(axis).clear()
+        self.abort_transfer()
 
-    def abort(self) -> None:
+    def abort_transfer(self) -> None:
         """Stop filling the queues."""
-        self._phase, self.trouble = _Phase.REST, ""
+        self._phase, self.failure = _Phase.REST, ""
         self._sent.clear()
         for axis in self._axes:
-            axis.drive.extra &= ~NEW
+            axis.drive.mode_bits &= ~NEW
 
-    def feed(self, now: float) -> None:
+    def feed_setpoints(self, now: float) -> None:
         """Start, fill or end the queues."""
-        if self._phase is _Phase.REST and not at_rest(self._queue.horizon(now), now):
-            self._begin(now)
+        if self._phase is _Phase.REST and not is_queue_finished(self._queue.queue_end(now), now):
+            self._start_queues(now)
         elif self._phase is _Phase.PLAYING:
             self._watch(now)
             self._top_up(now)
-        elif self._phase is _Phase.ENDING and now > self.front and not self._active(any):
-            self.abort()
-            self.urgent = True  # The drives must detect the fall of bit 4 before it rises again.
+        elif self._phase is _Phase.ENDING and now > self.next_point_time_s and not self._active(any):
+            self.abort_transfer()
+            self.must_send_now = True  # The drives must detect the fall of bit 4 before it rises again.
 
-    def _begin(self, now: float) -> None:
+    def _start_queues(self, now: float) -> None:
         """Send points at rest, then start all drives at one SYNC from their present positions."""
-        if any(self._queue.demand_at(now)[1]):
-            self.trouble = Fault("the drives started late, after the path had begun", "queue-dry")
+        if any(self._queue.commanded_state_at(now)[1]):
+            self.failure = Fault("the drives started late, after the path had begun", "queue-dry")
             return
-        self.front = self._begun = now
-        for _ in range(_PREFILL):
+        self.next_point_time_s = self._begun = now
+        for _ in range(_PREFILL_RECORDS):
             self._push(self._longest)
         for axis in self._axes:
-            axis.drive.extra |= NEW
-        self._phase, self.urgent = _Phase.PLAYING, True  # The time of this SYNC is that of the first point.
+            axis.drive.mode_bits |= NEW
+        self._phase, self.must_send_now = (
+            _Phase.PLAYING,
+            True,
+        )  # The time of this SYNC is that of the first point.
         self._top_up(now)
 
     def _watch(self, now: float) -> None:
-        left = self.front - now
-        if left < LOW_WATER * 0.001 * self._longest and left < self.lowest:
+        left = self.next_point_time_s - now
+        if left < MIN_QUEUED_RECORDS * 0.001 * self._longest and left < self.min_queued_time_s:
             _log.warning("the drives' queues are low: %.0f ms left", 1000 * left)
-        self.lowest = min(self.lowest, left)
+        self.min_queued_time_s = min(self.min_queued_time_s, left)
         if left <= 0.0:
-            self.trouble = self.trouble or Fault(_DRY, "queue-dry")
-        if now - self._begun > _BEGIN and not self._active(all):
-            names = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
+            self.failure = self.failure or Fault(_QUEUE_EMPTY_TEXT, "queue-dry")
+        if now - self._begun > _START_TIMEOUT_S and not self._active(all):
+            names = [a.config.name for a in self._axes if not a.drive.status_word & BIT_12]
             why = Message("{names}: the drive has stopped executing its queue", names=", ".join(names))
-            self.trouble = self.trouble or Fault(why, "queue-dry")
+            self.failure = self.failure or Fault(why, "queue-dry")
 
     def _top_up(self, now: float) -> None:
-        rests = at_rest(self._queue.horizon(now), min(self.front, now))
-        if rests and now - self._queue.horizon(-1e9) > _LINGER:
+        rests = is_queue_finished(self._queue.queue_end(now), min(self.next_point_time_s, now))
+        if rests and now - self._queue.queue_end(-1e9) > _REST_TIME_S:
             self._push(0)
             self._phase = _Phase.ENDING
             return
-        most = min(_records(axis).queue.most for axis in self._axes)
-        while self._in_drives(now) < most:
-            piece = span(self._demand, self.front, self._longest, self._counts())
-            if self.front + 0.001 * piece.ms > now + self._ahead:
+        most = min(_get_record_queue(axis).queue.max_records for axis in self._axes)
+        while self._queued_record_count(now) < most:
+            piece = fit_longest_piece(
+                self._demand, self.next_point_time_s, self._longest, self._count_sizes()
+            )
+            if self.next_point_time_s + 0.001 * piece.duration_ms > now + self._ahead:
                 return
-            self.off_path = max(self.off_path, piece.off)
-            self._push(piece.ms)
+            self.max_deviation_counts = max(self.max_deviation_counts, piece.deviation_counts)
+            self._push(piece.duration_ms)
 
-    def _in_drives(self, now: float) -> int:
+    def _queued_record_count(self, now: float) -> int:
         """Return the number of records that are not yet executed."""
         while self._sent and self._sent[0] < now:
             self._sent.popleft()
         return len(self._sent)
 
     def _push(self, ms: int) -> None:
-        positions, velocities = self._demand(self.front)
+        positions, velocities = self._demand(self.next_point_time_s)
         for axis, p, v in zip(self._axes, positions, velocities, strict=True):
             try:
-                _records(axis).push(ms, v, p)
+                _get_record_queue(axis).send_record(ms, v, p)
             except ValueError as error:
-                self.trouble = self.trouble or Fault(f"{axis.config.name}: {error}", "drive-limits")
-        self.front += 0.001 * ms
-        self._sent.append(self.front)
+                self.failure = self.failure or Fault(f"{axis.config.name}: {error}", "drive-limits")
+        self.next_point_time_s += 0.001 * ms
+        self._sent.append(self.next_point_time_s)
 
-    def _counts(self) -> list[float]:
+    def _count_sizes(self) -> list[float]:
         """Return the length of a count for each axis, including C while it is engaged."""
         return [axis.config.count for axis in self._axes]
 
     def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        p, v = self._queue.demand_at(t)
+        p, v = self._queue.commanded_state_at(t)
         return tuple([p[i] for i in self._indices]), tuple([v[i] for i in self._indices])
 
     def _active(self, some: object) -> bool:
-        active = [bool(axis.drive.status & BIT_12) for axis in self._axes]
+        active = [bool(axis.drive.status_word & BIT_12) for axis in self._axes]
         return all(active) if some is all else any(active)
 
 
-def _records(axis: DrivenAxis) -> RecordQueue:
+def _get_record_queue(axis: DrivenAxis) -> RecordQueue:
     """Return the queue of a drive. Raises DriverError if its family does not have one."""
     if axis.records is None:
         raise DriverError(
@@ -215,6 +228,6 @@ def _records(axis: DrivenAxis) -> RecordQueue:
             "drive-setup",
             name=axis.config.name,
             title=axis.config.profile.title,
-            by_name=_BY_NAME,
+            by_name=_QUEUE_PROFILES_TEXT,
         )
     return axis.records

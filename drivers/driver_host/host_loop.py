@@ -10,38 +10,40 @@ from functools import partial
 
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.driver_host.host_messages import Inbox, packed
-from drivers.driver_host.host_server import Driven, DriverHost
-from drivers.process_rights import ask_real_time, lock_memory
-from drivers.waiting import RealClock
+from drivers.driver_host.host_messages import MessageDecoder, encode_message
+from drivers.driver_host.host_server import DriverBundle, DriverHost
+from drivers.process_rights import lock_process_memory, request_scheduling
+from drivers.wakeups import RealClock
 
-PRIORITY = 50
+REAL_TIME_PRIORITY = 50
 _CHUNK = 1 << 16
-TRIAL = 0.3  # s
-_LAST = 30.0  # Seconds for an orphaned driver host to bring the axes to rest; no queue is longer.
+TRIAL_TIME_S = 0.3  # s
+_STOP_TIME_LIMIT_S = (
+    30.0  # Seconds for an orphaned driver host to bring the axes to rest; no queue is longer.
+)
 
 
-def real_time(priority: int = PRIORITY) -> list[str]:
+def request_real_time(priority: int = REAL_TIME_PRIORITY) -> list[str]:
     """Request SCHED_FIFO and return a message for the operator if it was refused."""
-    cause = ask_real_time("SCHED_FIFO", priority)
+    cause = request_scheduling("SCHED_FIFO", priority)
     words = "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md"
     return [Message(words, cause=cause)] if cause else []
 
 
-def late_at_trial(period: float) -> float:
+def measure_wakeup_delay(period_s: float) -> float:
     """Return the longest wake-up delay in seconds of a loop that only waits; the trial takes 0.3 s."""
     clock = RealClock()
     due, most = 0.0, 0.0
-    while due < TRIAL:
-        due += period
+    while due < TRIAL_TIME_S:
+        due += period_s
         clock.sleep_until(due)
         most = max(most, clock.now() - due)
     return most
 
 
-def keep_memory() -> list[str]:
+def lock_host_memory() -> list[str]:
     """Lock the memory after the drivers are created; return messages for the operator about limits."""
-    cause, limit = lock_memory()
+    cause, limit = lock_process_memory()
     if cause:
         return [Message("the driver host's memory is not locked ({cause})", cause=cause)]
     if not limit:
@@ -55,22 +57,22 @@ def keep_memory() -> list[str]:
     ]
 
 
-def serve(
-    sock: socket.socket,
-    driven: Driven,
+def run_driver_host(
+    control_socket: socket.socket,
+    drivers: DriverBundle,
     warnings: list[str],
-    refresh: Mapping[str, float] | None = None,
-    bell: socket.socket | None = None,
+    refresh_periods: Mapping[str, float] | None = None,
+    wakeup_bell: socket.socket | None = None,
 ) -> None:
     """Run the driver host until the control has ended and the axes are at rest.
 
     ``bell`` wakes a control that sleeps.
     """
-    host = DriverHost(driven, warnings, refresh, partial(_ring, bell))
+    host = DriverHost(drivers, warnings, refresh_periods, partial(_ring, wakeup_bell))
     try:
-        _rounds(sock, host, driven)
+        _rounds(control_socket, host, drivers)
     finally:  # In all cases: stop the axes, switch off, close the bus.
-        driven.close()
+        drivers.close()
 
 
 def _ring(bell: socket.socket | None) -> None:
@@ -79,68 +81,70 @@ def _ring(bell: socket.socket | None) -> None:
             bell.send(b"!")
 
 
-def _rounds(sock: socket.socket, host: DriverHost, driven: Driven) -> None:
+def _rounds(sock: socket.socket, host: DriverHost, driven: DriverBundle) -> None:
     clock = driven.ports.clock
-    ear = Ear(sock, host, clock)
+    ear = MessageListener(sock, host, clock)
     due = clock.now()
     gone: float | None = None  # Time since which the control is lost.
-    while not host.done:
-        host.late(clock.now() - due)
-        host.tick()
-        due = ear.listen(host.next_round(due), punctual=driven.wake() is not None)
-        if host.orphaned:
+    while not host.is_done:
+        host.record_wakeup_delay(clock.now() - due)
+        host.run_cycle()
+        due = ear.listen_until_due(
+            host.get_next_cycle_time(due), is_punctual=driven.get_next_tick_time() is not None
+        )
+        if host.is_orphaned:
             sock.close()
             gone = clock.now() if gone is None else gone
-            if clock.now() - gone > _LAST:
+            if clock.now() - gone > _STOP_TIME_LIMIT_S:
                 break
 
 
-_TALK = 0.0003  # Duration of a reply in s.
-EARLY = 0.03  # Seconds by which a cycle may be early to combine it with a poll in one wake-up.
-_DEAF = 0.005  # Seconds after which messages are read even if the drivers are late.
+_REPLY_DURATION_S = 0.0003  # Duration of a reply in s.
+EARLY_CYCLE_S = 0.03  # Seconds by which a cycle may be early to combine it with a poll in one wake-up.
+_MAX_UNREAD_S = 0.005  # Seconds after which messages are read even if the drivers are late.
 
 
-class Ear:
+class MessageListener:
     """Listener for messages of the control between two cycles."""
 
     def __init__(self, sock: socket.socket, host: DriverHost, clock: Clock) -> None:
         self._sock, self._host, self._clock = sock, host, clock
-        self._inbox = Inbox()
+        self._inbox = MessageDecoder()
         self._listened = clock.now()
         sock.setblocking(False)
 
-    def listen(self, due: float, *, punctual: bool) -> float:
+    def listen_until_due(self, due_time: float, *, is_punctual: bool) -> float:
         """Reply to messages until the next cycle is due and return its time, at once if a control wakes up.
 
-        ``punctual`` prevents starting a reply that would end after this time.
+        ``is_punctual`` prevents starting a reply that would end after this time.
         """
         host, clock = self._host, self._clock
-        keep = _TALK if punctual else 0.0
+        keep = _REPLY_DURATION_S if is_punctual else 0.0
         while True:
             now = clock.now()
-            left = due - now
-            if left <= keep and now - self._listened < _DEAF:
-                clock.sleep_until(due)
-                return due
-            slept, self._listened = host.asleep, now
-            if host.orphaned:
-                clock.sleep_until(due)
+            left = due_time - now
+            if left <= keep and now - self._listened < _MAX_UNREAD_S:
+                clock.sleep_until(due_time)
+                return due_time
+            slept, self._listened = host.is_asleep, now
+            if host.is_orphaned:
+                clock.sleep_until(due_time)
             elif select.select([self._sock], [], [], max(left - keep, 0.0))[0]:
-                host.orphaned = not _talk(self._sock, self._inbox, host)
-                if host.asleep and not punctual and 0.0 < due - clock.now() < EARLY:
+                host.is_orphaned = not _handle_messages(self._sock, self._inbox, host)
+                if host.is_asleep and not is_punctual and 0.0 < due_time - clock.now() < EARLY_CYCLE_S:
                     return clock.now()
-            if slept and not host.asleep:
+            if slept and not host.is_asleep:
                 return clock.now()
 
 
-def _talk(sock: socket.socket, inbox: Inbox, host: DriverHost) -> bool:
+def _handle_messages(sock: socket.socket, inbox: MessageDecoder, host: DriverHost) -> bool:
     """Reply to the received messages; return False if the control has ended."""
     try:
         data = sock.recv(_CHUNK)
         if not data:
             return False
-        for message in inbox.feed(data):
-            _send(sock, packed(host.handle(message)))
+        for message in inbox.decode(data):
+            _send_bytes(sock, encode_message(host.handle_message(message)))
     except BlockingIOError:
         return True
     except (OSError, DriverError):
@@ -148,7 +152,7 @@ def _talk(sock: socket.socket, inbox: Inbox, host: DriverHost) -> bool:
     return True
 
 
-def _send(sock: socket.socket, data: bytes) -> None:
+def _send_bytes(sock: socket.socket, data: bytes) -> None:
     """Send all bytes or fail; a control that does not read its replies counts as ended."""
     sock.settimeout(0.05)
     try:

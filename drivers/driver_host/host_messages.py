@@ -9,14 +9,14 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments
 
 _LENGTHS = struct.Struct("<II")  # Lengths of the head and of the numbers in bytes.
-LARGEST = 64_000_000  # Maximum size of a message in bytes.
-_HUGE = 1e300  # Larger numbers and NaN are invalid.
+MAX_MESSAGE_BYTES = 64_000_000  # Maximum size of a message in bytes.
+_MAX_NUMBER = 1e300  # Larger numbers and NaN are invalid.
 _NO_MESSAGE: tuple[str, FaultCode] = "the driver host's socket received an invalid message", "feeder-silent"
-VERSION = 5  # Version of the protocol, which both sides exchange first.
+PROTOCOL_VERSION = 5  # Version of the protocol, which both sides exchange first.
 
 
 class Message(NamedTuple):
@@ -26,29 +26,29 @@ class Message(NamedTuple):
     numbers: FloatArray
 
 
-NOTHING: FloatArray = np.empty(0)
+NO_NUMBERS: FloatArray = np.empty(0)
 
 
-def packed(message: Message) -> bytes:
+def encode_message(message: Message) -> bytes:
     """Return the bytes of one message."""
     head = json.dumps(message.head).encode()
     numbers = np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
     return _LENGTHS.pack(len(head), len(numbers)) + head + numbers
 
 
-class Inbox:
+class MessageDecoder:
     """Decoder of messages from received bytes."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()
 
-    def feed(self, data: bytes) -> Iterator[Message]:
+    def decode(self, data: bytes) -> Iterator[Message]:
         """Add bytes and yield every complete message. Raises DriverError for invalid data."""
         self._bytes += data
         while len(self._bytes) >= _LENGTHS.size:
             head, numbers = _LENGTHS.unpack_from(self._bytes)
             end = _LENGTHS.size + head + numbers
-            if end > LARGEST or numbers % 8:
+            if end > MAX_MESSAGE_BYTES or numbers % 8:
                 raise DriverError(*_NO_MESSAGE, reason="no-message")
             if len(self._bytes) < end:
                 return
@@ -68,12 +68,12 @@ def _head(text: bytes) -> Mapping[str, object]:
     return head
 
 
-def rows(segments: Segments | None) -> FloatArray:
+def flatten_segments(segments: Segments | None) -> FloatArray:
     """Return segments in one flat row: t, dt, p, v, a."""
-    return NOTHING if segments is None else np.concatenate([part.ravel() for part in segments])
+    return NO_NUMBERS if segments is None else np.concatenate([part.ravel() for part in segments])
 
 
-def segments(numbers: FloatArray, axes: int) -> Segments:
+def parse_segments(numbers: FloatArray, axes: int) -> Segments:
     """Return the segments of one flat row. Raises DriverError for an invalid length or value."""
     width = 2 + 3 * axes
     count, left = divmod(len(numbers), width)
@@ -88,17 +88,17 @@ def segments(numbers: FloatArray, axes: int) -> Segments:
     return Segments(t, dt, p.reshape(count, axes), v.reshape(count, axes), a.reshape(count, axes))
 
 
-def cam_message(cam: Cam) -> Message:
+def encode_cam(cam: Cam) -> Message:
     """Return a request to follow the spindle."""
-    way = rows(cam.way)
-    head = {"do": "mesh", "zero": cam.zero, "sign": cam.sign, "way": len(way)}
-    return Message(head, np.concatenate([way, rows(cam.then)]))
+    way = flatten_segments(cam.way)
+    head = {"do": "mesh", "zero": cam.start_revolutions, "sign": cam.sign, "way": len(way)}
+    return Message(head, np.concatenate([way, flatten_segments(cam.following_segments)]))
 
 
 def number(head: Mapping[str, object], key: str) -> float:
     """Return a finite number of the head. Raises DriverError if it is missing or invalid."""
     value = head.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _MAX_NUMBER:
         raise DriverError(
             "the driver host received an invalid number for {key}",
             "feeder-silent",
@@ -114,19 +114,19 @@ def text(head: Mapping[str, object], key: str) -> str:
     return value if isinstance(value, str) else ""
 
 
-def cam_of(message: Message, axes: int) -> Cam:
+def decode_cam(message: Message, axes: int) -> Cam:
     """Return the cam of a request. Raises DriverError if it is invalid."""
     split = int(number(message.head, "way"))
     way, then = message.numbers[:split], message.numbers[split:]
     return Cam(
         number(message.head, "zero"),
         number(message.head, "sign"),
-        segments(way, axes),
-        segments(then, axes) if len(then) else None,
+        parse_segments(way, axes),
+        parse_segments(then, axes) if len(then) else None,
     )
 
 
-def floats(values: object) -> tuple[float, ...]:
+def parse_floats(values: object) -> tuple[float, ...]:
     """Return a list of numbers from JSON as a tuple. Raises DriverError if it is invalid."""
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
         raise DriverError(
@@ -135,22 +135,22 @@ def floats(values: object) -> tuple[float, ...]:
     return tuple(float(v) for v in values)
 
 
-def items(value: object) -> list[object]:
+def parse_list(value: object) -> list[object]:
     """Return a list from JSON, or an empty list for any other value."""
     return value if isinstance(value, list) else []
 
 
-def fault_of(head: Mapping[str, object], key: str, otherwise: FaultCode) -> Fault:
+def read_fault(head: Mapping[str, object], key: str, default_code: FaultCode) -> Fault:
     """Return a fault of the head with its code, or an empty fault."""
-    code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), otherwise)
+    code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), default_code)
     return Fault(text(head, key), code)
 
 
-def with_code(key: str, fault: str, otherwise: FaultCode) -> Mapping[str, str]:
+def make_fault_entries(key: str, fault: str, default_code: FaultCode) -> Mapping[str, str]:
     """Return a fault and its code as entries of a head."""
-    return {key: fault, f"{key}_code": code_of(fault, otherwise)}
+    return {key: fault, f"{key}_code": get_fault_code(fault, default_code)}
 
 
-def texts(value: object) -> list[str]:
+def parse_texts(value: object) -> list[str]:
     """Return the texts of a list."""
-    return [one for one in items(value) if isinstance(one, str)]
+    return [one for one in parse_list(value) if isinstance(one, str)]

@@ -6,49 +6,49 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from core.faults import Trip
+from core.faults import DriverHostTrip
 from core.ports import (
     AxisSample,
     Cam,
     DriverError,
     FloatArray,
-    Geared,
-    Latch,
+    GearState,
     MachinePorts,
     Segments,
     StationState,
-    Stop,
+    StopMode,
+    TouchLatch,
 )
-from drivers.driver_host.host_line import Line
+from drivers.driver_host.host_connection import HostConnection
 from drivers.driver_host.host_messages import (
-    NOTHING,
+    NO_NUMBERS,
     Message,
-    cam_message,
-    fault_of,
-    floats,
-    items,
+    encode_cam,
+    flatten_segments,
     number,
-    rows,
-    texts,
+    parse_floats,
+    parse_list,
+    parse_texts,
+    read_fault,
 )
-from drivers.operator_station import PostedHands
-from drivers.waiting import Bell
+from drivers.operator_station import PostedControls
+from drivers.wakeups import ProcessBell
 
 
-class _OnLine:
+class _HostPort:
     """Base class of the ports on a connection."""
 
-    def __init__(self, line: Line) -> None:
-        self._line = line
+    def __init__(self, connection: HostConnection) -> None:
+        self._line = connection
 
 
-class HostAxes(_OnLine):
+class HostAxes(_HostPort):
     """``core.ports.AxisSink`` of the driver host."""
 
-    def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
-        super().__init__(line)
-        self.axes = tuple(texts(hello.get("axes")))
-        self.commit = number(hello, "commit")
+    def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
+        super().__init__(connection)
+        self.axes = tuple(parse_texts(properties.get("axes")))
+        self.commit = number(properties, "commit")
 
     def now(self) -> float:
         """Return the time of the machine's clock in seconds, which is the same in both processes."""
@@ -56,259 +56,261 @@ class HostAxes(_OnLine):
 
     def horizon(self) -> float:
         """Return the end time of the setpoint queue."""
-        return number(self._line.ask(Message({"do": "horizon"}, NOTHING)).head, "value")
+        return number(self._line.send_request(Message({"do": "horizon"}, NO_NUMBERS)).head, "value")
 
     def splice(self, segments: Segments) -> None:
         """Splice setpoints into the queue. Raises DriverError if the driver rejects them."""
-        self._line.ask(Message({"do": "splice"}, rows(segments)))
+        self._line.send_request(Message({"do": "splice"}, flatten_segments(segments)))
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at time ``t``."""
-        numbers = self._line.ask(Message({"do": "demand", "t": t}, NOTHING)).numbers.tolist()
+        numbers = self._line.send_request(Message({"do": "demand", "t": time_s}, NO_NUMBERS)).numbers.tolist()
         half = len(self.axes)
         return tuple(numbers[:half]), tuple(numbers[half:])
 
     def sample(self) -> AxisSample:
         """Return the present state of the axes; a lost driver host is a fault of all axes."""
-        raw = self._line.look(anew=True).get("sample")
+        raw = self._line.poll_state(force=True).get("sample")
         shown = raw if isinstance(raw, dict) else {}
         none = (0.0,) * len(self.axes)
         return AxisSample(
             t=number(shown, "t") if shown else self.now(),
-            demand=floats(shown.get("demand", none)),
-            actual=floats(shown.get("actual", none)),
-            following_error=floats(shown.get("following_error", none)),
-            enabled=shown.get("enabled") is True and not self._line.lost,
-            homed=tuple(one is True for one in items(shown.get("homed"))) or (False,) * len(self.axes),
-            moving=shown.get("moving") is True and not self._line.lost,
-            fault=self._line.fault or fault_of(shown, "fault", "axis"),
+            demand=parse_floats(shown.get("demand", none)),
+            actual=parse_floats(shown.get("actual", none)),
+            following_error=parse_floats(shown.get("following_error", none)),
+            enabled=shown.get("enabled") is True and not self._line.is_lost,
+            homed=tuple(one is True for one in parse_list(shown.get("homed"))) or (False,) * len(self.axes),
+            moving=shown.get("moving") is True and not self._line.is_lost,
+            fault=self._line.fault or read_fault(shown, "fault", "axis"),
         )
 
     def enable(self, on: bool) -> None:
         """Switch the drives on or off."""
-        self._line.order("enable", on=on)
+        self._line.send_command("enable", on=on)
 
-    def stop(self, how: Stop) -> None:
+    def stop(self, mode: StopMode) -> None:
         """Stop the axes by the drives."""
-        self._line.order("stop", how=how.value)
+        self._line.send_command("stop", how=mode.value)
 
     def home(self, axis: str) -> None:
         """Start to home an axis."""
-        self._line.order("home", name=axis)
+        self._line.send_command("home", name=axis)
 
     def clear_fault(self) -> None:
         """Clear the fault, or restart a lost driver host. Raises DriverError."""
         if self._line.fault:
-            self._line.restart()
+            self._line.restart_host()
         else:
-            self._line.order("clear_fault")
+            self._line.send_command("clear_fault")
 
 
-class HostGear(_OnLine):
-    """``core.ports.Gear`` of the driver host."""
+class HostGear(_HostPort):
+    """``core.ports.SpindleGear`` of the driver host."""
 
     def mesh(self, cam: Cam) -> None:
         """Make the axes follow the spindle. Raises DriverError."""
-        self._line.ask(cam_message(cam))
+        self._line.send_request(encode_cam(cam))
 
-    def geared(self) -> Geared | None:
+    def geared(self) -> GearState | None:
         """Return the position of the axes on the cam, or None if they do not follow the spindle."""
-        shown = self._line.look(anew=True).get("geared")
-        return None if shown is None or self._line.lost else Geared(*floats(shown))
+        shown = self._line.poll_state(force=True).get("geared")
+        return None if shown is None or self._line.is_lost else GearState(*parse_floats(shown))
 
 
-class HostSpindle(_OnLine):
+class HostSpindle(_HostPort):
     """``core.ports.Spindle`` of the driver host."""
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed."""
-        self._line.order("run", rpm=rpm)
+        self._line.send_command("run", rpm=rpm)
 
     def coast(self) -> None:
         """Remove the torque."""
-        self._line.order("coast")
+        self._line.send_command("coast")
 
     def speed(self) -> float:
         """Return the measured speed in rpm, or 0 if it is unknown."""
-        shown = self._line.look()
+        shown = self._line.poll_state()
         return number(shown, "speed") if shown else 0.0
 
-    def lag(self) -> float:
+    def get_line_delay(self) -> float:
         """Return the seconds by which the line to the spindle drive delays commands and speeds."""
-        shown = self._line.look()
+        shown = self._line.poll_state()
         return number(shown, "spindle_lag") if shown else 0.0
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, revolutions) pair of the encoder, or None without an encoder."""
-        shown = self._line.look().get("angle")
+        shown = self._line.poll_state().get("angle")
         if shown is None:
             return None
-        t, turns = floats(shown)
+        t, turns = parse_floats(shown)
         return t, turns
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the fault of the spindle, or an empty text."""
-        return self._line.fault or fault_of(self._line.look(), "spindle", "spindle")
+        return self._line.fault or read_fault(self._line.poll_state(), "spindle", "spindle")
 
 
-class HostWakeup(_OnLine):
+class HostWakeup(_HostPort):
     """``core.ports.Wakeup`` of the driver host, which polls the drivers and sends wake-ups."""
 
-    def __init__(self, line: Line, bell: Bell) -> None:
-        super().__init__(line)
-        self._bell = bell
-        self.ring = bell.ring
+    def __init__(self, connection: HostConnection, wakeup_bell: ProcessBell) -> None:
+        super().__init__(connection)
+        self._bell = wakeup_bell
+        self.wake = wakeup_bell.ring
 
-    def settled(self) -> bool:
+    def is_settled(self) -> bool:
         """Return whether the driver host sends a wake-up for each change."""
-        return not self._line.lost
+        return not self._line.is_lost
 
     def wait(self, seconds: float) -> bool:
         """Wait for a wake-up or the end of the driver host; return whether there was one."""
         try:
-            self._line.sleep()
+            self._line.enter_sleep()
         except DriverError:
             return True  # The next poll has the reason.
-        rung = self._bell.wait(seconds, self._line.files)
+        rung = self._bell.wait(seconds, self._line.end_signals)
         if rung:
-            self._line.awake()
+            self._line.leave_sleep()
         return rung
 
 
-class HostSamples(_OnLine):
+class HostSamples(_HostPort):
     """``core.ports.SampleSource`` of the driver host, whose polls contain the samples."""
 
-    def __init__(self, line: Line, hello: Mapping[str, object]) -> None:
-        super().__init__(line)
-        self.rate = number(hello, "samples")
-        self._width = 5 + 3 * len(texts(hello.get("axes")))
+    def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
+        super().__init__(connection)
+        self.sample_rate_hz = number(properties, "samples")
+        self._width = 5 + 3 * len(parse_texts(properties.get("axes")))
 
-    def take(self, most: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
+    def take(self, max_rows: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
         """Return the samples since the last call; batches of the wrong length are ignored."""
-        waiting = self._line.sampled
+        waiting = self._line.sample_batches
         told = [waiting.popleft() for _ in range(len(waiting))]
         whole = [rows.reshape(-1, self._width) for rows in told if not len(rows) % self._width]
         return np.concatenate(whole) if whole else np.empty((0, self._width))
 
 
-class HostLock(_OnLine):
-    """``core.ports.SpindleHold`` of the driver host."""
+class HostSpindleCAxis(_HostPort):
+    """``core.ports.SpindleCAxis`` of the driver host."""
 
-    def hold(self, on: bool, orient: bool = False) -> None:
+    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
         """Engage the spindle drive as C, or release it."""
-        self._line.order("hold", on=on, orient=orient)
+        self._line.send_command("hold", on=enabled, orient=orient)
 
-    def held(self) -> bool:
+    def is_c_ready(self) -> bool:
         """Return whether C may move."""
-        return self._line.look().get("held") is True and not self._line.lost
+        return self._line.poll_state().get("held") is True and not self._line.is_lost
 
 
-class HostOrientation(_OnLine):
-    """``core.ports.SpindleOrientation`` of the driver host."""
+class HostOrientation(_HostPort):
+    """``core.ports.OrientingSpindle`` of the driver host."""
 
-    def orient(self, angle: float, sense: int = 0) -> None:
+    def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Turn the spindle to an angle in degrees."""
-        self._line.order("orient", angle=angle, sense=sense)
+        self._line.send_command("orient", angle=angle, sense=direction)
 
-    def release(self) -> None:
+    def release_spindle(self) -> None:
         """Cancel the orientation."""
-        self._line.order("release")
+        self._line.send_command("release")
 
-    def oriented(self) -> bool:
+    def is_oriented(self) -> bool:
         """Return whether the spindle is at the commanded angle; after a loss, the last known state."""
-        return self._line.look().get("oriented") is True
+        return self._line.poll_state().get("oriented") is True
 
 
-class HostIO(_OnLine):
+class HostIO(_HostPort):
     """``core.ports.DigitalIO`` of the driver host."""
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name."""
-        return _flags(self._line.look().get("inputs"))
+        return _flags(self._line.poll_state().get("inputs"))
 
     def outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name."""
-        return _flags(self._line.look().get("outputs"))
+        return _flags(self._line.poll_state().get("outputs"))
 
     def write(self, name: str, on: bool) -> None:
         """Switch one output."""
-        self._line.order("write", name=name, on=on)
+        self._line.send_command("write", name=name, on=on)
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
-        self._line.order("safe")
+        self._line.send_command("safe")
 
 
-class HostStation(_OnLine):
+class HostStation(_HostPort):
     """``core.ports.Station`` of the driver host."""
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         """Return the present state of the station; after a loss, no button is pressed and the age is inf."""
-        shown = self._line.look().get("station")
-        if self._line.lost or not isinstance(shown, dict):
+        shown = self._line.poll_state().get("station")
+        if self._line.is_lost or not isinstance(shown, dict):
             return StationState(age=float("inf"))
         return StationState(**shown)
 
 
-class HostTouch(_OnLine):
+class HostTouch(_HostPort):
     """``core.ports.TouchInput`` of the driver host."""
 
-    def arm(self) -> None:
+    def arm_latch(self) -> None:
         """Clear the latched touch."""
-        self._line.order("arm")
+        self._line.send_command("arm")
 
-    def latched(self) -> Latch | None:
-        """Return the first touch since ``arm``, or None."""
-        shown = self._line.look().get("latch")
-        if shown is None or self._line.lost:
+    def read_latch(self) -> TouchLatch | None:
+        """Return the first touch since ``arm_latch``, or None."""
+        shown = self._line.poll_state().get("latch")
+        if shown is None or self._line.is_lost:
             return None
-        t, place, late = items(shown)
-        (t_s, late_s) = floats([t, late])
-        return Latch(t_s, floats(place), late_s)
+        t, place, late = parse_list(shown)
+        (t_s, late_s) = parse_floats([t, late])
+        return TouchLatch(t_s, parse_floats(place), late_s)
 
 
-class HostTrips(_OnLine):
-    """``core.faults.Tripping`` of the driver host."""
+class HostTripMonitor(_HostPort):
+    """``core.faults.TrippingDriverHost`` of the driver host."""
 
-    def tripped(self) -> Trip | None:
+    def get_active_trip(self) -> DriverHostTrip | None:
         """Return the functions that the driver host has switched off since the last acknowledgment.
 
         The result is None without a trip.
         """
-        shown = self._line.look().get("trip")
+        shown = self._line.poll_state().get("trip")
         if shown is None:
             return None
-        count, away, spindle, outputs, found = items(shown)
-        (away_s,) = floats([away])
-        (number_,) = floats([count])
-        return Trip(int(number_), away_s, spindle is True, tuple(texts(outputs)), found is True)
+        count, away, spindle, outputs, found = parse_list(shown)
+        (away_s,) = parse_floats([away])
+        (number_,) = parse_floats([count])
+        return DriverHostTrip(
+            int(number_), away_s, spindle is True, tuple(parse_texts(outputs)), found is True
+        )
 
-    def acknowledge(self, trip: Trip) -> None:
+    def acknowledge(self, trip: DriverHostTrip) -> None:
         """Acknowledge a trip, so that the machine may continue."""
-        self._line.order("acknowledge", number=trip.number)
+        self._line.send_command("acknowledge", number=trip.number)
 
 
-def host_ports(line: Line) -> MachinePorts:
+def create_host_ports(connection: HostConnection) -> MachinePorts:
     """Build the ports of the driver host. Raises DriverError without a reply."""
-    hello, spindle = line.greet(), HostSpindle(line)
+    hello, spindle = connection.read_properties(), HostSpindle(connection)
     return MachinePorts(
-        clock=line.clock,
-        axes=HostAxes(line, hello),
+        clock=connection.clock,
+        axes=HostAxes(connection, hello),
         spindle=spindle,
-        spindle_lag=spindle.lag,
-        io=HostIO(line),
-        station=HostStation(line),
-        warnings=tuple(texts(hello.get("warnings"))),
-        gear=HostGear(line) if hello.get("gear") is True else None,
-        lock=HostLock(line) if hello.get("lock") is True else None,
-        orientation=HostOrientation(line) if hello.get("orientation") is True else None,
-        trips=HostTrips(line),
-        halt=line.hang_up,
+        spindle_lag=spindle.get_line_delay,
+        io=HostIO(connection),
+        station=HostStation(connection),
+        warnings=tuple(parse_texts(hello.get("warnings"))),
+        gear=HostGear(connection) if hello.get("gear") is True else None,
+        lock=HostSpindleCAxis(connection) if hello.get("lock") is True else None,
+        orientation=HostOrientation(connection) if hello.get("orientation") is True else None,
+        trip_monitor=HostTripMonitor(connection),
+        halt_machine=connection.disconnect,
         untraced=str(hello.get("untraced") or ""),
-        samples=HostSamples(line, hello) if hello.get("samples") else None,
-        wakeup=HostWakeup(line, line.bell) if line.bell is not None else None,
-        unknown=line.unknown,
-        touch=HostTouch(line) if hello.get("touch") is True else None,
+        samples=HostSamples(connection, hello) if hello.get("samples") else None,
+        wakeup=HostWakeup(connection, connection.wakeup_bell) if connection.wakeup_bell is not None else None,
+        unknown=connection.find_unknown_items,
+        touch=HostTouch(connection) if hello.get("touch") is True else None,
     )
 
 
@@ -319,23 +321,23 @@ def _flags(value: object) -> dict[str, bool]:
 # --- Controls of a station in the driver host: the simulated one, or the one on the screen.
 
 
-class HostHands(PostedHands):
+class HostStationControls(PostedControls):
     """Station controls whose actions are sent to the driver host, from any thread.
 
-    ``app.desk.station_hands.StationPanel`` explains the actions.
+    ``app.desk.station_controls.StationPanel`` explains the actions.
     """
 
-    def __init__(self, line: Line) -> None:
-        self._line = line
+    def __init__(self, connection: HostConnection) -> None:
+        self._line = connection
 
     def set_input(self, name: str, on: bool) -> None:
         """Set an input of a simulated machine at once. Raises DriverError."""
-        self._line.ask(_act("set_input", name, on))
+        self._line.send_request(_act("set_input", name, on))
 
-    def post(self, name: str, *values: object) -> None:
+    def post_action(self, name: str, *values: object) -> None:
         """Send the name of a station method and its arguments, without waiting."""
-        self._line.post(_act(name, *values))
+        self._line.post_message(_act(name, *values))
 
 
 def _act(name: str, *values: object) -> Message:
-    return Message({"do": "hand", "name": name, "values": list(values)}, NOTHING)
+    return Message({"do": "hand", "name": name, "values": list(values)}, NO_NUMBERS)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.ports import AxisSample, DriverError, Segments, Stop
+from core.ports import AxisSample, DriverError, Segments, StopMode
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
-from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_wire import Wire
-from drivers.waiting import Opening
+from drivers.grblhal.grblhal_controller import GrblController
+from drivers.grblhal.grblhal_transport import GrblTransport
+from drivers.wakeups import ConnectionAttempt
 
-_REPORTED = 0.002  # Difference in mm between the end of a block and a report, which has three decimals.
+_REPORT_TOLERANCE_MM = (
+    0.002  # Difference in mm between the end of a block and a report, which has three decimals.
+)
 _STEPS = 100  # Number of the setting for steps per millimeter.
 
 
@@ -22,22 +24,22 @@ class GrblAxes:
 
     def __init__(
         self,
-        controller: Controller,
+        controller: GrblController,
         blocks: GrblBlocks,
-        pump: Callable[[], None],
-        reopen: Callable[[], Opening[Wire]],
+        run_cycle: Callable[[], None],
+        reopen: Callable[[], ConnectionAttempt[GrblTransport]],
     ) -> None:
         """Create the axes.
 
-        ``pump`` runs one cycle of the driver. ``reopen`` starts to reopen the connection.
+        ``run_cycle`` runs one cycle of the driver. ``reopen`` starts to reopen the connection.
         """
         self._c = controller
         self._reopen = reopen
         self._blocks = blocks
-        self._pump = pump
+        self._pump = run_cycle
         self.axes = tuple(axis.name for axis in controller.config.axes)
-        self._known = {axis.name: axis.absolute or not axis.wired for axis in controller.config.axes}
-        self._wired = {axis.name for axis in controller.wired}
+        self._known = {axis.name: axis.is_absolute or not axis.is_wired for axis in controller.config.axes}
+        self._wired = {axis.name for axis in controller.wired_axes}
         self._homing = ""
 
     def now(self) -> float:
@@ -54,7 +56,7 @@ class GrblAxes:
             "this controller plans its own motion; it accepts blocks, not setpoints", reason="blocks-only"
         )
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
         """Return the positions at rest and zero velocities.
 
         The positions are the exact end of the last block where this end is known.
@@ -65,22 +67,22 @@ class GrblAxes:
         """Run one cycle of the driver and return the state of the last report."""
         self._pump()
         c = self._c
-        if c.restarted:
-            c.restarted = False
-            self._forget_places()
-        if c.fault or not c.trusted:
+        if c.has_restarted:
+            c.has_restarted = False
+            self._mark_not_homed()
+        if c.fault or not c.is_position_reliable:
             self._homing = ""
-        if self._homing and not c.busy and (c.ready or c.is_homed(self._homing)):
+        if self._homing and not c.is_busy and (c.is_ready or c.is_homed(self._homing)):
             self._known[self._homing], self._homing = True, ""
         places = self._places()
         return AxisSample(
-            t=c.heard_at,
+            t=c.last_report_s,
             demand=places,
             actual=places,
             following_error=(0.0,) * len(self.axes),
-            enabled=self._blocks.powered and not c.fault,
+            enabled=self._blocks.is_motion_enabled and not c.fault,
             homed=tuple(self._is_known(name) for name in self.axes),
-            moving=not self._blocks.state().resting,
+            moving=not self._blocks.state().is_at_rest,
             fault=c.fault,
         )
 
@@ -90,13 +92,13 @@ class GrblAxes:
             raise DriverError(
                 "the controller stays locked: {fault}; press Reset first", "no-power", fault=self._c.fault
             )
-        self._blocks.powered = on
+        self._blocks.is_motion_enabled = on
 
-    def stop(self, how: Stop) -> None:
-        """Abort the motion; unless ``how`` is RAMP_HOLD, also block further motion."""
-        self._blocks.powered = self._blocks.powered and how is Stop.RAMP_HOLD
-        if self._c.alarm not in grblhal_codes.ENDED:
-            self._blocks.abort()
+    def stop(self, mode: StopMode) -> None:
+        """Abort the motion; unless ``mode`` is RAMP_HOLD, also block further motion."""
+        self._blocks.is_motion_enabled = self._blocks.is_motion_enabled and mode is StopMode.RAMP_HOLD
+        if self._c.alarm_number not in grblhal_codes.STANDSTILL_ALARMS:
+            self._blocks.abort_blocks()
 
     def home(self, axis: str) -> None:
         """Start to home an axis.
@@ -104,36 +106,39 @@ class GrblAxes:
         Raises DriverError if the controller does not have the axis, without power, or if it cannot start.
         """
         axes = {each.name: each for each in self._c.config.axes}
-        if axis not in axes or not axes[axis].wired:
+        if axis not in axes or not axes[axis].is_wired:
             raise DriverError(
                 "the controller does not have an axis {axis} to home", reason="no-axis", axis=f"{axis!r}"
             )
-        self._blocks.demand_power()
-        if self._blocks.hindrance() and self._c.alarm == 0:
+        self._blocks.require_motion_enabled()
+        if self._blocks.describe_start_refusal() and self._c.alarm_number == 0:
             raise DriverError(
-                "{axis} cannot home: {hindrance}", "homing", axis=axis, hindrance=self._blocks.hindrance()
+                "{axis} cannot home: {hindrance}",
+                "homing",
+                axis=axis,
+                hindrance=self._blocks.describe_start_refusal(),
             )
         self._known[axis], self._homing = False, axis
-        self._c.trusted = True
-        self._blocks.home(axis)
+        self._c.is_position_reliable = True
+        self._blocks.start_homing(axis)
 
     def clear_fault(self) -> None:
         """Reset, unlock and verify the controller, or start to reopen a lost connection.
 
         If reopening fails, the reason becomes the next fault.
         """
-        self._blocks.powered = False
-        if not self._c.trusted:
-            self._forget_places()
-        if self._c.lost:
-            self._c.reconnect(self._reopen(), lambda: grblhal_scripts.reconnect(self._c))
+        self._blocks.is_motion_enabled = False
+        if not self._c.is_position_reliable:
+            self._mark_not_homed()
+        if self._c.is_lost:
+            self._c.reconnect(self._reopen(), lambda: grblhal_scripts.reconnect_controller(self._c))
         elif self._c.fault:
             self._c.fault = ""
-            self._c.run(grblhal_scripts.recover(self._c))
+            self._c.run_script(grblhal_scripts.recover_from_alarm(self._c))
 
-    def _forget_places(self) -> None:
+    def _mark_not_homed(self) -> None:
         """Mark the wired axes as not homed, because their counted positions may be wrong."""
-        self._known = {axis.name: not axis.wired for axis in self._c.config.axes}
+        self._known = {axis.name: not axis.is_wired for axis in self._c.config.axes}
 
     def _is_known(self, name: str) -> bool:
         """Return whether the position of an axis is known.
@@ -142,17 +147,19 @@ class GrblAxes:
         """
         told = self._c.is_homed(name)
         known = self._known[name] if told is None or name not in self._wired else told
-        return known and self._c.trusted and self._homing != name
+        return known and self._c.is_position_reliable and self._homing != name
 
     def _places(self) -> tuple[float, ...]:
         places = [self._c.position.get(name, 0.0) for name in self.axes]
-        rest = self._blocks.rest
+        rest = self._blocks.last_block_end
         if rest is not None:
             for i, exact in enumerate(rest):
-                places[i] = exact if abs(places[i] - exact) <= self._grain(self.axes[i]) else places[i]
+                places[i] = (
+                    exact if abs(places[i] - exact) <= self._position_tolerance(self.axes[i]) else places[i]
+                )
         return tuple(places)
 
-    def _grain(self, name: str) -> float:
+    def _position_tolerance(self, name: str) -> float:
         """Return half a step of the controller in mm, with the rounding of its reports."""
-        steps = self._c.figure(_STEPS, name)
-        return max(_REPORTED, 0.5 / steps + 0.001) if steps else _REPORTED
+        steps = self._c.read_axis_setting(_STEPS, name)
+        return max(_REPORT_TOLERANCE_MM, 0.5 / steps + 0.001) if steps else _REPORT_TOLERANCE_MM

@@ -5,51 +5,53 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.faults import code_of
-from core.ports import BlockOp, BlockState, DriverError, ThreadOp
+from core.faults import get_fault_code
+from core.ports import BlockOperation, BlockState, DriverError, ThreadOperation
 from drivers.grblhal import grblhal_codes, grblhal_scripts
-from drivers.grblhal.grblhal_codes import line_number, line_of
+from drivers.grblhal.grblhal_codes import format_block, get_ticket_line_number
 from drivers.grblhal.grblhal_config import GrblAxis
-from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_operator import Holds, Jogs, Overrides
-from drivers.grblhal.grblhal_report import Report
-from drivers.port_parts import demand_power
+from drivers.grblhal.grblhal_controller import GrblController
+from drivers.grblhal.grblhal_operator import FeedHolds, GrblJogs, GrblOverrides
+from drivers.grblhal.grblhal_report import StatusReport
+from drivers.port_checks import require_power
 
-AHEAD = 0.4  # Seconds of motion beyond the present block, which continue if the host is lost.
-_ABORT = "abort"
+QUEUED_TIME_S = 0.4  # Seconds of motion beyond the present block, which continue if the host is lost.
+_ABORT_PURPOSE = "abort"
 
 
 class GrblBlocks:
-    """``core.ports.BlockSink`` of one controller, called by the executor's thread only."""
+    """``core.ports.BlockController`` of one controller, called by the executor's thread only."""
 
-    ahead = AHEAD
+    max_lead_s = QUEUED_TIME_S
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: GrblController) -> None:
         self._c = controller
-        self.overrides = Overrides(lambda data: controller.realtime(*data), controller.fail)
-        self._jogs = Jogs(controller)
-        self._holds = Holds(controller)
-        self.powered = False  # Motion is permitted; set by ``GrblAxes``.
+        self.overrides = GrblOverrides(lambda data: controller.send_realtime(*data), controller.set_fault)
+        self._jogs = GrblJogs(controller)
+        self._holds = FeedHolds(controller)
+        self.is_motion_enabled = False  # Motion is permitted; set by ``GrblAxes``.
         self._last = 0  # ticket
         self._done = 0
         self._active = 0
         self._threads: set[int] = set()  # Tickets of thread passes that are not complete.
         self._settled = False  # A report after the last line shows that all blocks are complete.
         self._target: tuple[float, float] | None = None
-        self.highest = 0.0  # Highest rpm for constant surface speed; 0: constant rpm.
-        self.reach = 0.0 if controller.config.own_spindle else math.inf  # Set by ``GrblSpindle``.
-        self.rest: tuple[float, float] | None = None  # Exact end of the last block in X and Z.
-        self.terminals: Callable[[], frozenset[str]] = frozenset  # Capabilities of the inputs and outputs.
-        controller.on_report, controller.on_void = self._reported, self._voided
-        controller.settled = lambda: self._settled
+        self.max_css_rpm = 0.0  # Highest rpm for constant surface speed; 0: constant rpm.
+        self.css_max_rpm = 0.0 if controller.config.has_own_spindle else math.inf  # Set by ``GrblSpindle``.
+        self.last_block_end: tuple[float, float] | None = None  # Exact end of the last block in X and Z.
+        self.list_terminals: Callable[[], frozenset[str]] = (
+            frozenset  # Capabilities of the inputs and outputs.
+        )
+        controller.on_status_report, controller.on_discard = self._reported, self._discard_tickets
+        controller.are_blocks_settled = lambda: self._settled
 
     @property
-    def listens(self) -> bool:
+    def is_listening(self) -> bool:
         """Whether the controller reads and executes lines, which is not the case in a jog or feed hold."""
-        return self._c.ready and not self._jogs.active and self._c.state not in {"Jog", "Hold"}
+        return self._c.is_ready and not self._jogs.is_active and self._c.state not in {"Jog", "Hold"}
 
     @property
-    def caps(self) -> frozenset[str]:
+    def capabilities(self) -> frozenset[str]:
         """The requirements that the controller meets, as named in ``machine_requirements``.
 
         Threads need an encoder at the controller, which appears as a third speed in its reports. A constant
@@ -57,28 +59,34 @@ class GrblBlocks:
         the spindle override to 100 %, so that the controller's own spindle cannot follow the radius in a
         thread.
         """
-        report, own = self._c.report, self._c.config.own_spindle
+        report, own = self._c.report, self._c.config.has_own_spindle
         able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
         able |= set() if own else {"surface-thread"}
-        return self.terminals() | able | ({"surface-speed"} if not own or self._c.varies else set())
+        return (
+            self.list_terminals()
+            | able
+            | ({"surface-speed"} if not own or self._c.has_variable_speed else set())
+        )
 
-    def fastest(self, dx: float, dz: float) -> float:
+    def max_line_speed(self, dx: float, dz: float) -> float:
         """Return the speed limit in mm/s along a direction.
 
         The limit is the lower of the machine file's and the controller's.
         """
-        return self._along(dx, dz, lambda axis: min(axis.vmax, self._c.speed_of(axis.name) or axis.vmax))
+        return self._directional_limit(
+            dx, dz, lambda axis: min(axis.vmax, self._c.get_max_axis_speed(axis.name) or axis.vmax)
+        )
 
-    def lay_out(self, highest: float) -> None:
+    def prepare_css(self, max_rpm: float) -> None:
         """Store the highest speed in rpm for constant surface speed, or 0 for a constant speed."""
-        self.highest = highest
+        self.max_css_rpm = max_rpm
 
     @property
-    def quiet(self) -> bool:
+    def is_quiet(self) -> bool:
         """Whether nothing moves and nothing is pending, so that lines which need a standstill can be sent."""
-        return self._settled and not self._c.busy
+        return self._settled and not self._c.is_busy
 
-    def submit(self, op: BlockOp) -> int | None:
+    def submit_block(self, operation: BlockOperation) -> int | None:
         """Send one block and return its ticket, or None while the controller's buffer is full.
 
         Raises DriverError if the controller is not ready. A thread also waits until the reported overrides
@@ -86,159 +94,169 @@ class GrblBlocks:
         """
         c = self._c
         self._demand_ready()
-        self.overrides.level = isinstance(op, ThreadOp)
-        if self.overrides.level and not self.overrides.true_to(c.overrides):
+        self.overrides.is_thread_active = isinstance(operation, ThreadOperation)
+        if self.overrides.is_thread_active and not self.overrides.are_confirmed(c.overrides):
             return None
         ticket = self._last + 1
-        line = line_of(op, ticket, self._rapid(op), self.overrides.commanded[0] / 100.0, c.origin)
-        if not c.stream.fits(line):
+        line = format_block(
+            operation, ticket, self._rapid_rate(operation), self.overrides.commanded[0] / 100.0, c.home_origin
+        )
+        if not c.line_sender.can_send(line):
             return None
-        c.send(line, ticket)
-        self._last, self._settled, self._target = ticket, False, (op.x, op.z)
-        self.rest = None
-        if isinstance(op, ThreadOp):
+        c.send_line(line, ticket)
+        self._last, self._settled, self._target = ticket, False, (operation.x, operation.z)
+        self.last_block_end = None
+        if isinstance(operation, ThreadOperation):
             self._threads.add(ticket)
-            c.index_wait = True
+            c.waits_for_index = True
         return ticket
 
     def state(self) -> BlockState:
         """Return the state of the blocks by the last report and the lines sent since then."""
         c = self._c
-        resting = self.quiet or c.lost or (c.fault != "" and self._dead())
-        return BlockState(self._done, self._active, resting, self._holds.stands, self.hindrance())
+        resting = self.is_quiet or c.is_lost or (c.fault != "" and self._is_motion_ended())
+        return BlockState(
+            self._done, self._active, resting, self._holds.is_holding, self.describe_start_refusal()
+        )
 
-    def hindrance(self) -> str:
+    def describe_start_refusal(self) -> str:
         """Return the reason why no block can be started, or an empty text."""
-        return self._c.hindrance
+        return self._c.start_refusal
 
-    def hold(self) -> None:
+    def hold_on_path(self) -> None:
         """Start a feed hold immediately (0x82).
 
         The caller must not do so in a thread pass, because the controller would stop within the cut.
         """
-        self._holds.begin()
+        self._holds.start_hold()
 
     def resume(self) -> None:
         """End any feed hold (0x81), also one that was started at the controller."""
-        self._holds.end()
+        self._holds.end_hold()
 
-    def abort(self) -> None:
+    def abort_blocks(self) -> None:
         """Stop the motion and discard all tickets."""
-        self._holds.forget()
-        if not self._c.lost and not (self._c.busy and self._c.doing == _ABORT):
-            self._c.run(grblhal_scripts.abort(self._c), _ABORT)
+        self._holds.clear_request()
+        if not self._c.is_lost and not (self._c.is_busy and self._c.script_purpose == _ABORT_PURPOSE):
+            self._c.run_script(grblhal_scripts.abort_and_verify(self._c), _ABORT_PURPOSE)
 
-    def override(self, feed: float, rapid: float) -> None:
+    def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Set the feed and rapid overrides as fractions; ``pump`` sends and verifies them."""
-        self.overrides.want(feed, rapid)
+        self.overrides.set_feed_and_rapid(feed_fraction, rapid_fraction)
 
-    def jog(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
+    def start_jog(
+        self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
+    ) -> bool:
         """Start or renew a jog.
 
         Return False at the end of the travel. Raises DriverError if the controller is not ready.
         """
-        if not self._jogs.active:
+        if not self._jogs.is_active:
             self._demand_ready()
-        moves = self._jogs.move(axis, velocity, lease, limits)
+        moves = self._jogs.start_or_renew(axis, velocity, lease_s, limits)
         if moves:
-            self._settled, self.rest = False, None
+            self._settled, self.last_block_end = False, None
         return moves
 
-    def jog_to(self, axis: str, target: float, speed: float) -> None:
+    def step_to(self, axis: str, target: float, speed: float) -> None:
         """Jog by one step to ``target``. Raises DriverError if the controller is not ready."""
         self._demand_ready()
-        place = self.rest or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))
-        self._jogs.step(axis, target, speed)
-        self._settled, self.rest = False, None
+        place = self.last_block_end or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))
+        self._jogs.start_step(axis, target, speed)
+        self._settled, self.last_block_end = False, None
         self._target = (target, place[1]) if axis == "X" else (place[0], target)
 
-    def jog_stop(self) -> None:
+    def stop_jog(self) -> None:
         """Stop the jog (0x85), and wait for the replies to lines that the controller has discarded."""
-        if self._jogs.active or not self._settled:
-            self._jogs.forget()
+        if self._jogs.is_active or not self._settled:
+            self._jogs.clear_jog()
             self._settled = False
-            self._c.realtime(grblhal_codes.JOG_CANCEL)
-            if self._c.stream.quiet:
-                self._c.question()
+            self._c.send_realtime(grblhal_codes.JOG_CANCEL)
+            if self._c.line_sender.is_quiet:
+                self._c.request_report()
             else:
-                self._c.run(grblhal_scripts.jog_end(self._c))
+                self._c.run_script(grblhal_scripts.finish_jog(self._c))
 
-    def home(self, axis: str) -> None:
+    def start_homing(self, axis: str) -> None:
         """Start to home an axis."""
-        self._settled, self.rest = False, None
-        self._c.run(grblhal_scripts.home(self._c, axis))
+        self._settled, self.last_block_end = False, None
+        self._c.run_script(grblhal_scripts.home_axis(self._c, axis))
 
-    def pump(self) -> None:
+    def send_pending(self) -> None:
         """Send jogs and overrides; called once per tick after the controller's own cycle."""
         c = self._c
-        self._jogs.pump()
-        steady = self._threads or c.busy or not c.ready
-        c.see_overrides(not self.overrides.true_to(c.overrides) and not steady)
+        self._jogs.send_travel()
+        steady = self._threads or c.is_busy or not c.is_ready
+        c.request_overrides(not self.overrides.are_confirmed(c.overrides) and not steady)
         if not steady:
-            self.overrides.correct(c.overrides, c.overrides_told, c.clock.now())
+            self.overrides.send_differences(c.overrides, c.override_report_count, c.clock.now())
 
-    def demand_power(self) -> None:
+    def require_motion_enabled(self) -> None:
         """Raise DriverError while motion is not permitted."""
-        demand_power("", self.powered)
+        require_power("", self.is_motion_enabled)
 
     # --- inside -------------------------------------------------------------------------------------------
 
-    def _rapid(self, op: BlockOp) -> float:
+    def _rapid_rate(self, op: BlockOperation) -> float:
         """Return the speed of G0 to the end of a block in mm/s.
 
         The controller's axis limits apply, as in ``planner.c``.
         """
         at = self._c.position
-        x, z = self._target or self.rest or (at.get("X", 0.0), at.get("Z", 0.0))
-        return self._along(op.x - x, op.z - z, lambda axis: self._c.speed_of(axis.name) or axis.vmax)
+        x, z = self._target or self.last_block_end or (at.get("X", 0.0), at.get("Z", 0.0))
+        return self._directional_limit(
+            op.x - x, op.z - z, lambda axis: self._c.get_max_axis_speed(axis.name) or axis.vmax
+        )
 
-    def _along(self, dx: float, dz: float, most: Callable[[GrblAxis], float]) -> float:
-        """Return the speed in mm/s at which no axis exceeds ``most``; inf for a move without length."""
+    def _directional_limit(self, dx: float, dz: float, max_speed: Callable[[GrblAxis], float]) -> float:
+        """Return the speed in mm/s at which no axis exceeds ``max_speed``; inf for a move without length."""
         way = math.hypot(dx, dz)
         shares = {"X": abs(dx), "Z": abs(dz)}
-        told = ((most(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired)
+        told = ((max_speed(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired_axes)
         return min((speed * way / share for speed, share in told if share), default=math.inf)
 
     def _demand_ready(self) -> None:
-        why = self.hindrance()
+        why = self.describe_start_refusal()
         if self._c.fault:
-            raise DriverError(why, code_of(why, "controller-refuses"))  # Report only the cause.
+            raise DriverError(why, get_fault_code(why, "controller-refuses"))  # Report only the cause.
         if why:
             raise DriverError(
-                "the controller does not accept blocks: {why}", code_of(why, "controller-refuses"), why=why
+                "the controller does not accept blocks: {why}",
+                get_fault_code(why, "controller-refuses"),
+                why=why,
             )
-        self.demand_power()
+        self.require_motion_enabled()
 
-    def _dead(self) -> bool:
+    def _is_motion_ended(self) -> bool:
         """Return whether an alarm has stopped all motion, or the last report shows no motion."""
         c = self._c
-        return not c.busy and (c.alarm != 0 or c.report is None or not c.report.moves)
+        return not c.is_busy and (c.alarm_number != 0 or c.report is None or not c.report.moves)
 
-    def _reported(self, report: Report) -> None:
+    def _reported(self, report: StatusReport) -> None:
         c = self._c
-        empty = report.free is None or report.free >= c.most_free
-        if report.state in {"Idle", "Alarm"} and c.stream.quiet and empty:
-            self._finished(report)
+        empty = report.free is None or report.free >= c.max_free_blocks
+        if report.state in {"Idle", "Alarm"} and c.line_sender.is_quiet and empty:
+            self._update_tickets(report)
         elif report.line is not None and report.line and self._last:
-            self._active = self._last - (line_number(self._last) - report.line) % 9_000_000
+            self._active = self._last - (get_ticket_line_number(self._last) - report.line) % 9_000_000
             self._done = max(self._done, self._active - 1)
             self._threads = {ticket for ticket in self._threads if ticket > self._done}
-            c.index_wait = bool(self._threads)
-        self._holds.reported(report)
+            c.waits_for_index = bool(self._threads)
+        self._holds.process_report(report)
 
-    def _finished(self, report: Report) -> None:
+    def _update_tickets(self, report: StatusReport) -> None:
         """Mark all blocks as complete."""
         if self._target is not None and report.state == "Idle":
-            self.rest = self._target
+            self.last_block_end = self._target
         self._target = None
         self._done, self._active, self._settled = self._last, 0, True
         self._threads.clear()
-        self._c.index_wait = False
-        self._jogs.rested()
+        self._c.waits_for_index = False
+        self._jogs.handle_rest()
 
-    def _voided(self) -> None:
+    def _discard_tickets(self) -> None:
         """Discard all tickets after a stop, reset or alarm; the position is the reported one."""
-        self._done, self._active, self._target, self.rest = self._last, 0, None, None
+        self._done, self._active, self._target, self.last_block_end = self._last, 0, None, None
         self._threads.clear()
         self._settled = False
-        self._jogs.forget()
+        self._jogs.clear_jog()

@@ -9,31 +9,41 @@ import math
 from collections.abc import Mapping
 
 from core.message import Message
-from core.ports import ArcOp, BlockOp, FaultCode, LineOp, RapidOp, ThreadOp
+from core.ports import ArcOperation, BlockOperation, FaultCode, LineOperation, RapidOperation, ThreadOperation
 
 # The equivalent characters ? ~ ! would be plain text inside comments and $ lines.
 STATUS, START, HOLD, TELL_MODES, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x83, 0x85, 0x87
 RESET, STOP = 0x18, 0x19
 # To 100 %, then up and down by 10 and by 1.
 FEED, SPINDLE = tuple(range(0x90, 0x95)), tuple(range(0x99, 0x9E))
-RAPIDS = {100: 0x95, 50: 0x96, 25: 0x97}
+RAPID_OVERRIDES = {100: 0x95, 50: 0x96, 25: 0x97}
 SPINDLE_PAUSE = 0x9E  # In a feed hold only: stops or restarts the spindle.
 
-OFF = ("M5", "M9")  # spindle and coolant
+OFF_CODES = ("M5", "M9")  # spindle and coolant
 # X is always a radius, so that no reset changes its meaning. Without G97, S could be a surface speed.
-MODES = ("G8", "G18", "G21", "G90", "G94", "G97", "G54")
-SILENT = frozenset(("G97",))  # Modes that a controller without a variable spindle does not report.
+REQUIRED_MODES = ("G8", "G18", "G21", "G90", "G94", "G97", "G54")
+UNREPORTED_MODES = frozenset(("G97",))  # Modes that a controller without a variable spindle does not report.
 # Modes that another host may have left active, as ``$G`` reports them, and the code that ends each.
-CURES = {"G96": "G97", "G51": "G50", "G43": "G49", "G92": "G92.1", "M50": "M48", "M51": "M48", "M53": "M53P1"}
+MODE_RESETS = {
+    "G96": "G97",
+    "G51": "G50",
+    "G43": "G49",
+    "G92": "G92.1",
+    "M50": "M48",
+    "M51": "M48",
+    "M53": "M53P1",
+}
 
-DOOR = "the controller's safety door is open"
-HOMING_REQUIRED = 11
-LOCKED = 255  # TurnDesk's own number: locked without a reported alarm number.
-ERROR_LOCKED = 9  # error: locked by an alarm or a jog
-LOST = frozenset((1, 3))  # Alarms after which the position is unknown.
-TORN = frozenset((10, 17))  # Alarms that stop a moving axis without a ramp and do not report it.
-CRITICAL = frozenset((1, 2, 10, 17))  # Only a reset clears them; settings cannot be written before.
-ENDED = CRITICAL | {HOMING_REQUIRED}  # Alarms after which nothing turns or moves.
+DOOR_OPEN_TEXT = "the controller's safety door is open"
+HOMING_REQUIRED_ALARM = 11
+LOCKED_ALARM = 255  # TurnDesk's own number: locked without a reported alarm number.
+LOCKED_ERROR = 9  # error: locked by an alarm or a jog
+POSITION_LOST_ALARMS = frozenset((1, 3))  # Alarms after which the position is unknown.
+ABRUPT_STOP_ALARMS = frozenset(
+    (10, 17)
+)  # Alarms that stop a moving axis without a ramp and do not report it.
+CRITICAL_ALARMS = frozenset((1, 2, 10, 17))  # Only a reset clears them; settings cannot be written before.
+STANDSTILL_ALARMS = CRITICAL_ALARMS | {HOMING_REQUIRED_ALARM}  # Alarms after which nothing turns or moves.
 _ALARMS = {
     1: "hard limit: an axis has reached its limit switch",
     2: "soft limit: a block goes beyond the controller's travel limits",
@@ -55,7 +65,7 @@ _ALARMS = {
     18: "homing failed",
     19: "Modbus: no response from the spindle inverter",
     20: "I/O expander",
-    LOCKED: "the controller is locked and does not report the reason",
+    LOCKED_ALARM: "the controller is locked and does not report the reason",
 }
 _ERRORS = {
     2: "bad number",
@@ -87,7 +97,7 @@ _ERRORS = {
 }
 
 
-_OF_AXES: dict[int, FaultCode] = {
+_AXIS_ALARM_CODES: dict[int, FaultCode] = {
     1: "limit-switch",
     2: "drive-limits",
     3: "position-lost",
@@ -99,12 +109,12 @@ _OF_AXES: dict[int, FaultCode] = {
 _HOMING = frozenset((6, 7, 8, 9, 15, 18))
 
 
-def alarm_code(number: int) -> FaultCode:
+def get_alarm_code(number: int) -> FaultCode:
     """Return the fault code of the alarm catalog for an alarm of the controller."""
-    return "homing" if number in _HOMING else _OF_AXES.get(number, "controller-alarm")
+    return "homing" if number in _HOMING else _AXIS_ALARM_CODES.get(number, "controller-alarm")
 
 
-def alarm_text(number: int) -> str:
+def describe_alarm(number: int) -> str:
     """Return a sentence that describes an alarm."""
     return Message(
         "the controller reports ALARM:{number} ({number2})",
@@ -113,7 +123,7 @@ def alarm_text(number: int) -> str:
     )
 
 
-def error_text(number: int, line: str) -> str:
+def describe_error(number: int, line: str) -> str:
     """Return a sentence that describes an error and the rejected line."""
     return Message(
         "the controller rejects {line} with error:{number} ({number2})",
@@ -126,9 +136,9 @@ def error_text(number: int, line: str) -> str:
 # --- Blocks as lines of G-code.
 
 
-_LAST_NUMBER = 9_000_000
-_DOT = 0.002  # mm; see ``_arc``
-_SAME = 1.01  # Rapids that differ by less than this ratio are equal.
+_MAX_LINE_NUMBER = 9_000_000
+_MIN_ARC_MM = 0.002  # mm; see ``_format_arc``
+_EQUAL_RAPID_RATIO = 1.01  # Rapids that differ by less than this ratio are equal.
 
 
 def number(value: float) -> str:
@@ -140,13 +150,17 @@ def number(value: float) -> str:
     return "0" if text in {"-0", ""} else text
 
 
-def line_number(ticket: int) -> int:
+def get_ticket_line_number(ticket: int) -> int:
     """Return the N word of a ticket."""
-    return (ticket - 1) % _LAST_NUMBER + 1
+    return (ticket - 1) % _MAX_LINE_NUMBER + 1
 
 
-def line_of(
-    op: BlockOp, ticket: int, rapid: float, feed_override: float, origin: Mapping[str, float] | None = None
+def format_block(
+    operation: BlockOperation,
+    ticket: int,
+    rapid: float,
+    feed_override: float,
+    origin: Mapping[str, float] | None = None,
 ) -> str:
     """Return the line of one block.
 
@@ -155,52 +169,52 @@ def line_of(
     feed override above 1 does not speed up a rapid. ``origin`` is the home position in the controller's
     coordinates.
     """
-    head = f"N{line_number(ticket)}"
+    head = f"N{get_ticket_line_number(ticket)}"
     home = origin or {}
-    to = f"X{number(op.x + home.get('X', 0.0))}Z{number(op.z + home.get('Z', 0.0))}"
-    match op:
-        case RapidOp(rate=rate) if _SAME * rate >= rapid:
+    to = f"X{number(operation.x + home.get('X', 0.0))}Z{number(operation.z + home.get('Z', 0.0))}"
+    match operation:
+        case RapidOperation(rapid_rate=rate) if _EQUAL_RAPID_RATIO * rate >= rapid:
             return f"{head}G0{to}"
-        case RapidOp(rate=rate):
+        case RapidOperation(rapid_rate=rate):
             return f"{head}G1{to}{_feed(rate / max(feed_override, 1.0))}"
-        case LineOp(feed=feed):
+        case LineOperation(feed=feed):
             return f"{head}G1{to}{_feed(feed)}"
-        case ThreadOp():
-            return f"{head}G33{to}K{number(_pitch(op))}"
-        case ArcOp():
-            return f"{head}{_arc(op)}{to}{_centre(op)}{_feed(op.feed)}"
+        case ThreadOperation():
+            return f"{head}G33{to}K{number(_thread_pitch(operation))}"
+        case ArcOperation():
+            return f"{head}{_format_arc(operation)}{to}{_format_center(operation)}{_feed(operation.feed)}"
 
 
-def jog_line(letter: str, target: float, speed: float) -> str:
+def format_jog(letter: str, target: float, speed: float) -> str:
     """Return the line of an absolute jog in machine coordinates."""
     return f"$J=G53G21G90{letter}{number(target)}{_feed(speed)}"
 
 
-def _arc(op: ArcOp) -> str:
+def _format_arc(op: ArcOperation) -> str:
     """Return G2 or G3, or G1 for a very short arc.
 
     The angle counts from the first axis of the plane, Z, to the second, X, so G3 turns from Z+ to X+. The
     controller treats an arc whose angle rounds to zero or less as a full circle.
     """
-    if _dot(op):
+    if _is_point(op):
         return "G1"
     return "G3" if op.clockwise else "G2"
 
 
-def _dot(op: ArcOp) -> bool:
+def _is_point(op: ArcOperation) -> bool:
     """Return whether the ends of an arc practically coincide and the arc is shorter than half a circle."""
-    if math.hypot(op.x - op.x0, op.z - op.z0) >= _DOT:
+    if math.hypot(op.x - op.x0, op.z - op.z0) >= _MIN_ARC_MM:
         return False
     turned = (op.z0 - op.cz) * (op.x - op.cx) - (op.x0 - op.cx) * (op.z - op.cz)  # sign as from Z+ to X+
     return turned > 0.0 if op.clockwise else turned < 0.0
 
 
-def _centre(op: ArcOp) -> str:
+def _format_center(op: ArcOperation) -> str:
     """Return the I and K words of an arc, relative to its start; I is a radius in G7 too."""
-    return "" if _dot(op) else f"I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}"
+    return "" if _is_point(op) else f"I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}"
 
 
-def _pitch(op: ThreadOp) -> float:
+def _thread_pitch(op: ThreadOperation) -> float:
     """Return the K word of a thread, which the controller measures along the path.
 
     ``stepper.c`` compares the spindle angle times K with the length of the block, so a tapered thread needs

@@ -10,18 +10,18 @@ from drivers.grblhal.grblhal_table import GrblhalTable
 
 @dataclass(frozen=True, slots=True)
 class GrblAxis:
-    """One axis of the machine file, in mm and seconds; ``wired`` is True if the controller has the axis.
+    """One axis of the machine file, in mm and seconds; ``is_wired`` is True if the controller has the axis.
 
-    ``here``: homing sets the present position to this value in mm without motion. None: the controller homes
-    on a switch.
+    ``home_position_mm``: homing sets the present position to this value in mm without motion. None: the
+    controller homes on a switch.
     """
 
     name: str
     vmax: float
     amax: float
-    absolute: bool
-    wired: bool
-    here: float | None = None
+    is_absolute: bool
+    is_wired: bool
+    home_position_mm: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class GrblOutput:
     """
 
     terminal: str
-    safe: bool | None
+    safe_state: bool | None
 
 
 ESTOP, HARDWARE = "estop", "hardware"  # Terminal of an E-stop that only cuts the power and is not detected.
@@ -53,8 +53,8 @@ class GrblInput:
 class GrblConfig:
     """Configuration of the controller with its axes, spindle and terminals.
 
-    ``own_spindle`` is True if the controller drives the spindle. Otherwise an inverter drives the spindle,
-    and the controller may only measure it.
+    ``has_own_spindle`` is True if the controller drives the spindle. Otherwise an inverter drives the
+    spindle, and the controller may only measure it.
     """
 
     table: GrblhalTable
@@ -62,4 +62,4 @@ class GrblConfig:
     rpm_max: float
     outputs: Mapping[str, GrblOutput]
     inputs: Mapping[str, GrblInput]
-    own_spindle: bool = True
+    has_own_spindle: bool = True

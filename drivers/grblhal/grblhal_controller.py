@@ -9,142 +9,161 @@ import re
 from collections import deque
 from collections.abc import Callable
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblConfig
-from drivers.grblhal.grblhal_report import Report, read_report
-from drivers.grblhal.grblhal_reported import ReportedState
-from drivers.grblhal.grblhal_wire import Ask, Runner, Script, Stream, Wire, WireLostError
-from drivers.waiting import Opening
+from drivers.grblhal.grblhal_report import StatusReport, parse_report
+from drivers.grblhal.grblhal_state import ReportedState
+from drivers.grblhal.grblhal_transport import (
+    GrblTransport,
+    LineSender,
+    Script,
+    ScriptRunner,
+    SentLine,
+    TransportLostError,
+)
+from drivers.wakeups import ConnectionAttempt
 
 _LINE = 1024  # Bytes; the controller sends no longer line.
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # Seconds between two report requests.
-_SILENT = 1.0  # Seconds without a requested report.
-_ASKED_AGAIN = 0.5  # Seconds after which a lost request is repeated.
-_INDEX = 8.0  # Seconds that a thread may wait for its index, without reports or replies.
-_UNANSWERED = 2.0  # Seconds for the reply to a line while the controller is idle.
+_SILENCE_TIMEOUT_S = 1.0  # Seconds without a requested report.
+_REPEAT_REQUEST_S = 0.5  # Seconds after which a lost request is repeated.
+_INDEX_TIMEOUT_S = 8.0  # Seconds that a thread may wait for its index, without reports or replies.
+_REPLY_TIMEOUT_S = 2.0  # Seconds for the reply to a line while the controller is idle.
 _GARBAGE, _WITHIN = 3, 10.0  # Invalid lines within this number of seconds while nothing moves.
 _SETTING = re.compile(r"\$\d+=.*")
-_ANSWER = re.compile(r"error:(\d+)")
+_ERROR_PATTERN = re.compile(r"error:(\d+)")
 _ALARM = re.compile(r"ALARM:(\d+)")
-_IDLERS = frozenset(("Check", "Sleep", "Tool"))  # States in which the controller cannot run a program.
-_HURRIED = 0.02  # Seconds, while a tool is touched off.
-_COALESCED = 0.5  # Seconds; requests that are further apart never share one report.
-_LISTENING = 0.1  # Seconds; a longer pause of this computer does not count as silence of the controller.
+_BLOCKING_STATES = frozenset(
+    ("Check", "Sleep", "Tool")
+)  # States in which the controller cannot run a program.
+_FAST_INTERVAL_S = 0.02  # Seconds, while a tool is touched off.
+_MERGED_REQUEST_S = 0.5  # Seconds; requests that are further apart never share one report.
+_MAX_LISTEN_SLICE_S = (
+    0.1  # Seconds; a longer pause of this computer does not count as silence of the controller.
+)
 
 
-class Controller(ReportedState):
+class GrblController(ReportedState):
     """Connection to one controller, with the pending lines and the reported state."""
 
-    def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
+    def __init__(self, config: GrblConfig, wire: GrblTransport, clock: Clock) -> None:
         super().__init__(config, clock)
-        self.stream = Stream(self._write)
-        self.banners = 0  # Number of reported resets.
+        self.line_sender = LineSender(self._write)
+        self.reset_count = 0  # Number of reported resets.
         self.fault: Fault | str = ""
-        self.lost = False  # The connection is lost.
-        self.mute = True  # The controller is silent, so the reported state is old.
-        self.alarm = 0
-        self.trusted = True  # The position is reliable.
-        self.ready = False  # The modes are verified, without a fault.
-        self.index_wait = False  # A thread pass is running, so reports may be missing for seconds.
-        self.on_report: Callable[[Report], None] = lambda _: None
-        self.on_void: Callable[[], None] = lambda: None
-        self.settled: Callable[[], bool] = lambda: True  # All submitted blocks are known to be complete.
-        self.runner = Runner()
-        self.expected = False  # A reset by the driver is expected.
-        self.doubtful = False  # An invalid line was received, so a full report is needed.
-        # Time since which a report is due, on the clock of ``listened``.
-        self.owed_since: float | None = None
+        self.is_lost = False  # The connection is lost.
+        self.is_silent = True  # The controller is silent, so the reported state is old.
+        self.alarm_number = 0
+        self.is_position_reliable = True  # The position is reliable.
+        self.is_ready = False  # The modes are verified, without a fault.
+        self.waits_for_index = False  # A thread pass is running, so reports may be missing for seconds.
+        self.on_status_report: Callable[[StatusReport], None] = lambda _: None
+        self.on_discard: Callable[[], None] = lambda: None
+        self.are_blocks_settled: Callable[[], bool] = lambda: (
+            True
+        )  # All submitted blocks are known to be complete.
+        self.script_runner = ScriptRunner()
+        self.is_reset_expected = False  # A reset by the driver is expected.
+        self.needs_full_report = False  # An invalid line was received, so a full report is needed.
+        # Time since which a report is due, on the clock of ``listened_s``.
+        self.report_due_since_s: float | None = None
         self._looked_at = clock.now()
-        self.listened = 0.0  # Seconds during which the driver was reading; the base of all timeouts.
-        self.answered_at = 0.0
+        self.listened_s = 0.0  # Seconds during which the driver was reading; the base of all timeouts.
+        self.last_reply_s = 0.0
         self._garbage: deque[float] = deque()
         self._wire = wire
         self._inbox = b""
-        self._next_question = self._questioned_at = 0.0  # The second time is on the clock of ``listened``.
-        self.hurry_until = 0.0  # End of the time with the shortest request interval.
+        self._next_question = self._questioned_at = 0.0  # The second time is on the clock of ``listened_s``.
+        self.fast_polling_until = 0.0  # End of the time with the shortest request interval.
         # An implausible report that is not yet confirmed, and its line.
-        self._leapt: tuple[Report, str] | None = None
+        self._leapt: tuple[StatusReport, str] | None = None
         self._sees_overrides = self._halted = self._asks_modes = False
-        self._opening: Opening[Wire] | None = None  # Opening of a lost connection.
+        self._opening: ConnectionAttempt[GrblTransport] | None = None  # Opening of a lost connection.
         self._then: Callable[[], Script] | None = None  # Script to run after opening.
-        self.modes = ""  # Modes as reported after a real-time request.
+        self.reported_modes = ""  # Modes as reported after a real-time request.
         # The controller restarted during the silence, so counted positions are invalid.
-        self.restarted = False
-        self.found_on: tuple[float, str] | None = (
+        self.has_restarted = False
+        self.active_at_silence: tuple[float, str] | None = (
             None  # Seconds of silence, and the accessories that were on and have been switched off.
         )
 
-    def send(self, line: str, ticket: int = 0) -> Ask:
+    def send_line(self, line: str, ticket: int = 0) -> SentLine:
         """Queue a line for the controller and return its entry, which later calls of ``pump`` complete."""
-        return self.stream.send(line, self.listened, ticket)
+        return self.line_sender.send_line(line, self.listened_s, ticket)
 
-    def run(self, script: Script, doing: str = "") -> None:
+    def run_script(self, script: Script, purpose: str = "") -> None:
         """Start a script; a script that is running is canceled."""
-        self.ready, self.expected = False, False
-        self.runner.begin(script, doing, self.listened)
+        self.is_ready, self.is_reset_expected = False, False
+        self.script_runner.start_script(script, purpose, self.listened_s)
         self._advance()
 
     @property
-    def doing(self) -> str:
+    def script_purpose(self) -> str:
         """The purpose of the present script."""
-        return self.runner.doing
+        return self.script_runner.purpose
 
-    def expect_reset(self) -> None:
+    def expect_driver_reset(self) -> None:
         """Declare that the next banner results from a reset by the driver."""
-        self.expected = True
+        self.is_reset_expected = True
 
-    def see_overrides(self, on: bool) -> None:
+    def request_overrides(self, enabled: bool) -> None:
         """Select plain reports that contain the overrides.
 
         A full report omits the overrides when it contains the offsets, which is always the case.
         """
-        self._sees_overrides = on
+        self._sees_overrides = enabled
 
-    def question(self, *, full: bool = False) -> None:
+    def request_report(self, *, full: bool = False) -> None:
         """Request a status report; a full one does not delay a plain one that is needed for the overrides."""
-        self.realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
+        self.send_realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
-        while self.asked and now - self.asked[0] > _COALESCED and self.asked[0] < self.heard_at:
-            self.asked.popleft()
-        self.asked.append(now)
-        self._questioned_at = self.listened
-        self.owed_since = self.listened if self.owed_since is None else self.owed_since
+        while (
+            self.request_times
+            and now - self.request_times[0] > _MERGED_REQUEST_S
+            and self.request_times[0] < self.last_report_s
+        ):
+            self.request_times.popleft()
+        self.request_times.append(now)
+        self._questioned_at = self.listened_s
+        self.report_due_since_s = (
+            self.listened_s if self.report_due_since_s is None else self.report_due_since_s
+        )
         if not (full and self._sees_overrides):
             self._next_question = now + self._interval()
 
-    def question_modes(self) -> None:
-        """Request the parser state with a real-time byte; ``modes`` receives the reply."""
-        self.modes, self._asks_modes = "", True
-        self.realtime(grblhal_codes.TELL_MODES)
+    def request_modes(self) -> None:
+        """Request the parser state with a real-time byte; ``reported_modes`` receives the reply."""
+        self.reported_modes, self._asks_modes = "", True
+        self.send_realtime(grblhal_codes.TELL_MODES)
 
-    def reconnect(self, opening: Opening[Wire], script: Callable[[], Script]) -> None:
+    def reconnect(self, opening: ConnectionAttempt[GrblTransport], script: Callable[[], Script]) -> None:
         """Start to open the connection again, then run a script; a failure becomes the fault."""
-        self.fault, self.ready = "", False
+        self.fault, self.is_ready = "", False
         self._opening, self._then = opening, script
 
     def close(self) -> None:
         """Close the connection."""
         self._wire.close()
 
-    def pump(self) -> None:
+    def update(self) -> None:
         """Read, continue the script, send and check timeouts, without waiting or raising an error."""
         if self._opening is not None:
             self._reopen(self._opening)
-        if self.lost:
+        if self.is_lost:
             return
         try:
             self._listen()
             self._read()
             self._advance()
-            self.stream.pump(self.listened)
+            self.line_sender.send_waiting(self.listened_s)
             self._ask()
-            self._watch()
-        except WireLostError as error:
+            self._check_timeouts()
+        except TransportLostError as error:
             self._gone(error)
 
-    def halt(self) -> None:
+    def halt_motion(self) -> None:
         """Stop the motion from any thread if ``pump`` has stopped being called.
 
         The first call sends a jog cancel and a feed hold. The next call, for axes that are then at rest,
@@ -158,78 +177,80 @@ class Controller(ReportedState):
     # --- state ---------------------------------------------------------------------------------------
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Whether a script is running."""
-        return self.runner.busy
+        return self.script_runner.is_busy
 
     @property
-    def hindrance(self) -> str:
+    def start_refusal(self) -> str:
         """The reason why nothing can be started now, or an empty text."""
         if self.fault:
             return self.fault
-        if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
+        if self.alarm_number == grblhal_codes.HOMING_REQUIRED_ALARM and not self.is_busy:
             return "the controller must be homed first"
         if self._opening is not None:
             return "the connection to the controller is being restored"
-        if self.busy or not self.ready:
+        if self.is_busy or not self.is_ready:
             return "the controller's modal state is being verified"
         return ""
 
-    def realtime(self, *codes_: int) -> None:
+    def send_realtime(self, *codes_: int) -> None:
         """Send real-time bytes, which bypass all buffers."""
         self._write(bytes(codes_))
 
-    def fail(self, why: str, code: FaultCode, **values: object) -> None:
+    def set_fault(self, reason: str, code: FaultCode, **values: object) -> None:
         """Set the fault, discard waiting lines and stop the motion; the operator must clear the fault.
 
         A jog is canceled, and any other motion is stopped by a feed hold.
         """
         if not self.fault:
-            self.fault = Fault(why, code, **values)
-        self.ready = False
-        self.stream.waiting.clear()
-        if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
-            self.realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
+            self.fault = Fault(reason, code, **values)
+        self.is_ready = False
+        self.line_sender.waiting_lines.clear()
+        if not self.is_lost and self.report is not None and self.report.moves and self.alarm_number == 0:
+            self.send_realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
 
-    def void(self) -> None:
+    def discard_pending(self) -> None:
         """Discard all pending lines and tickets."""
-        self.stream.void()
-        self.index_wait = False
-        self.on_void()
+        self.line_sender.discard_lines()
+        self.waits_for_index = False
+        self.on_discard()
 
-    def hear(self, line: str) -> None:
+    def handle_line(self, line: str) -> None:
         """Handle one complete line; an unknown line that begins with ``[`` is passed on as a message."""
         if line.startswith("<"):
-            self._reported(read_report(line), line)
-        elif line == "ok" or _ANSWER.fullmatch(line):
+            self._reported(parse_report(line), line)
+        elif line == "ok" or _ERROR_PATTERN.fullmatch(line):
             self._answer(0 if line == "ok" else int(line[6:]))
         elif alarm := _ALARM.fullmatch(line):
-            self.alarmed(int(alarm[1]))
+            self.handle_alarm(int(alarm[1]))
         elif line.startswith("[") and line.endswith("]"):
             self._told(line)
         elif _SETTING.fullmatch(line):
-            self.stream.message(line)
+            self.line_sender.add_message(line)
         elif line.lower().startswith("grbl"):
             self._restarted()
         elif line and not line.startswith((">", "$")):
-            self.damaged(line)
+            self.handle_invalid_line(line)
 
-    def alarmed(self, number: int) -> None:
+    def handle_alarm(self, number: int) -> None:
         """Handle an alarm, which locks the controller."""
-        self.alarm = number
-        lost = number in grblhal_codes.LOST or (number in grblhal_codes.TORN and self._may_move())
-        self.trusted = self.trusted and not lost
-        self.void()
-        if number != grblhal_codes.HOMING_REQUIRED:
-            self.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
-        self.ready = False
+        self.alarm_number = number
+        lost = number in grblhal_codes.POSITION_LOST_ALARMS or (
+            number in grblhal_codes.ABRUPT_STOP_ALARMS and self._may_move()
+        )
+        self.is_position_reliable = self.is_position_reliable and not lost
+        self.discard_pending()
+        if number != grblhal_codes.HOMING_REQUIRED_ALARM:
+            self.set_fault(grblhal_codes.describe_alarm(number), grblhal_codes.get_alarm_code(number))
+        self.is_ready = False
 
     def _may_move(self) -> bool:
         """Return whether an axis may have been moving when the alarm occurred."""
         last = self._before_alarm
-        return last is not None and (last.moves or (last.state == "Idle" and not self.settled()))
+        return last is not None and (last.moves or (last.state == "Idle" and not self.are_blocks_settled()))
 
-    def damaged(self, line: str) -> None:
+    def handle_invalid_line(self, line: str) -> None:
         """Handle a line that is not valid, which may have been a reply.
 
         The driver never guesses which line was acknowledged. It sets a fault if a reply may be missing.
@@ -239,94 +260,94 @@ class Controller(ReportedState):
         while self._garbage[0] < now - _WITHIN:
             self._garbage.popleft()
         moving = self.report is not None and self.report.moves
-        if self.stream.stale or (self.busy and self.identity is None):
+        if self.line_sender.has_stale_replies or (self.is_busy and self.identity is None):
             return
-        if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
-            self.fail(
+        if moving or not self.line_sender.is_quiet or len(self._garbage) >= _GARBAGE:
+            self.set_fault(
                 "interference on the line to the controller: {line} is not a valid response",
                 "controller-silent",
                 line=f"{line!r}",
             )
-            self.doubtful = True
+            self.needs_full_report = True
 
     # --- received lines ------------------------------------------------------------------------------
 
     def _told(self, line: str) -> None:
         if self._asks_modes and line.startswith("[GC:"):
-            self.modes, self._asks_modes = line, False
+            self.reported_modes, self._asks_modes = line, False
             return
-        if self.stream.stale and line.startswith("[GC:"):
-            self.stream.stale = False
+        if self.line_sender.has_stale_replies and line.startswith("[GC:"):
+            self.line_sender.has_stale_replies = False
         if not line.startswith("[MSG:"):
-            self.stream.message(line)
+            self.line_sender.add_message(line)
 
     def _answer(self, error: int) -> None:
-        self.answered_at = self.listened
-        self.owed_since = None if self.owed_since is None else self.listened
-        if self.stream.stale:
+        self.last_reply_s = self.listened_s
+        self.report_due_since_s = None if self.report_due_since_s is None else self.listened_s
+        if self.line_sender.has_stale_replies:
             return
         first = self.fault == ""
-        ask = self.stream.answered(error)
+        ask = self.line_sender.handle_reply(error)
         if ask is None:
-            self.damaged("ok" if not error else f"error:{error}")
-        elif error == grblhal_codes.ERROR_LOCKED and ask.line.startswith("M66"):
+            self.handle_invalid_line("ok" if not error else f"error:{error}")
+        elif error == grblhal_codes.LOCKED_ERROR and ask.line.startswith("M66"):
             return  # A request for an input; the next report shows the reason for the lock.
-        elif error and first and not self.busy:
+        elif error and first and not self.is_busy:
             # The error is sticky: later lines get the same error and are not executed.
-            self.fail(grblhal_codes.error_text(error, ask.line), "controller-refuses")
+            self.set_fault(grblhal_codes.describe_error(error, ask.line), "controller-refuses")
 
     def _restarted(self) -> None:
-        self.banners += 1
-        self.void()
-        self.diameter = self.overrides = None
-        if not self.expected and self.identity is not None:
-            self.fail("the controller was reset and has lost its pending commands", "controller-reset")
+        self.reset_count += 1
+        self.discard_pending()
+        self.is_diameter_mode = self.overrides = None
+        if not self.is_reset_expected and self.identity is not None:
+            self.set_fault("the controller was reset and has lost its pending commands", "controller-reset")
 
-    def _reported(self, report: Report | None, line: str) -> None:
+    def _reported(self, report: StatusReport | None, line: str) -> None:
         if report is None:
-            self.damaged(line)
+            self.handle_invalid_line(line)
             return
-        if not (self.busy or not self.ready or self.plausible(report)):
+        if not (self.is_busy or not self.is_ready or self.is_plausible(report)):
             if self._leapt is None:
                 self._leapt = report, line
-                self.question()  # The next report shows whether the position is correct.
+                self.request_report()  # The next report shows whether the position is correct.
                 return
-            if not self._confirms(report, self._leapt[0]):
-                self.damaged(line)
+            if not self._confirms_jump(report, self._leapt[0]):
+                self.handle_invalid_line(line)
                 return
-        elif self._leapt is not None and not self._confirms(report, self._leapt[0]):
+        elif self._leapt is not None and not self._confirms_jump(report, self._leapt[0]):
             # This report continues from the earlier position, so the last one was corrupted.
-            self.damaged(self._leapt[1])
+            self.handle_invalid_line(self._leapt[1])
         self._leapt = None
-        self.keep(report)
-        if report.diameter and self.ready:
-            self.fail(
+        self.store_report(report)
+        if report.diameter and self.is_ready:
+            self.set_fault(
                 "X is in diameter mode (D:1), so the controller has lost its modal state",
                 "controller-modes",
             )
-        self.owed_since, self.mute = None, False
-        self._mind(report)
-        self.on_report(report)
+        self.report_due_since_s, self.is_silent = None, False
+        self._check_report(report)
+        self.on_status_report(report)
 
-    def _mind(self, report: Report) -> None:
+    def _check_report(self, report: StatusReport) -> None:
         """Handle a state in a report that shows an event, even if its message was missed."""
         if report.state != "Alarm":
-            self.alarm = 0
-        if self.busy:
+            self.alarm_number = 0
+        if self.is_busy:
             return
         if report.state == "Alarm":
-            number = report.sub or self.alarm or grblhal_codes.LOCKED
-            if number != grblhal_codes.HOMING_REQUIRED and not self.fault:
-                self.alarmed(number)
-            self.alarm, self.ready = number, False
+            number = report.sub or self.alarm_number or grblhal_codes.LOCKED_ALARM
+            if number != grblhal_codes.HOMING_REQUIRED_ALARM and not self.fault:
+                self.handle_alarm(number)
+            self.alarm_number, self.is_ready = number, False
         elif report.state == "Door":
-            self.fail(
+            self.set_fault(
                 "{door}; spindle and coolant are off. Close the door, then press Reset",
                 "door",
-                door=grblhal_codes.DOOR,
+                door=grblhal_codes.DOOR_OPEN_TEXT,
             )
-        elif report.state in _IDLERS:
-            self.fail(
+        elif report.state in _BLOCKING_STATES:
+            self.set_fault(
                 "the controller is in state {state} and cannot run a program from TurnDesk",
                 "controller-modes",
                 state=report.state,
@@ -335,109 +356,113 @@ class Controller(ReportedState):
     # --- connection and timeouts ---------------------------------------------------------------------
 
     def _write(self, data: bytes) -> None:
-        if self.lost or not data:
+        if self.is_lost or not data:
             return
         try:
             self._wire.write(data)
-        except WireLostError as error:
+        except TransportLostError as error:
             self._gone(error)
 
-    def _reopen(self, opening: Opening[Wire]) -> None:
+    def _reopen(self, opening: ConnectionAttempt[GrblTransport]) -> None:
         """Complete the opening of the connection and discard everything that belongs to the old one."""
         try:
             wire = opening.take()
         except DriverError as error:
             self._opening = None
-            self.fail("the connection to the controller is lost: {error}", "controller-lost", error=error)
+            self.set_fault(
+                "the connection to the controller is lost: {error}", "controller-lost", error=error
+            )
             return
         if wire is None:
             return
-        self._opening, self._wire, self.lost, self._halted = None, wire, False, False
-        self._inbox, self.alarm, self.identity = b"", 0, None
-        self.asked.clear()
-        self.owed_since = None
+        self._opening, self._wire, self.is_lost, self._halted = None, wire, False, False
+        self._inbox, self.alarm_number, self.identity = b"", 0, None
+        self.request_times.clear()
+        self.report_due_since_s = None
         self._garbage.clear()
-        self.void()
+        self.discard_pending()
         assert self._then is not None
-        self.run(self._then(), "reconnect")
+        self.run_script(self._then(), "reconnect")
 
-    def _gone(self, error: WireLostError) -> None:
-        self.lost = self.mute = True
-        self.runner.drop()
-        self.fail(
+    def _gone(self, error: TransportLostError) -> None:
+        self.is_lost = self.is_silent = True
+        self.script_runner.cancel_script()
+        self.set_fault(
             "the connection to the controller is lost: {error}; the controller finishes its "
             "buffered moves, then stops",
             "controller-lost",
             error=error,
         )
-        self.void()
+        self.discard_pending()
 
     def _listen(self) -> None:
         now = self.clock.now()
-        self.listened += min(now - self._looked_at, _LISTENING)
+        self.listened_s += min(now - self._looked_at, _MAX_LISTEN_SLICE_S)
         self._looked_at = now
 
     def _read(self) -> None:
         *lines, self._inbox = (self._inbox + self._wire.read()).split(b"\n")
         if len(self._inbox) > _LINE:
             self._inbox = b""
-            self.damaged("an unterminated line")
+            self.handle_invalid_line("an unterminated line")
         for line in lines:
-            self.hear(line.decode("ascii", "replace").strip("\r"))
+            self.handle_line(line.decode("ascii", "replace").strip("\r"))
 
     def _advance(self) -> None:
         """Continue the script; the reason for a failure becomes the fault."""
-        why = self.runner.go_on(self.listened)
-        self.expected = self.expected and self.busy
+        why = self.script_runner.advance(self.listened_s)
+        self.is_reset_expected = self.is_reset_expected and self.is_busy
         if why:
             if self.identity is None:
                 self.fault = ""  # The reason for rejecting the controller has priority over its alarms.
-            self.fail(why, code_of(why, "controller-silent"))
+            self.set_fault(why, get_fault_code(why, "controller-silent"))
 
     def _interval(self) -> float:
-        if self.busy:
+        if self.is_busy:
             return _ASKING
-        if self.clock.now() < self.hurry_until:
-            return _HURRIED
-        resting = self.report is not None and self.report.state == "Idle" and self.stream.quiet
+        if self.clock.now() < self.fast_polling_until:
+            return _FAST_INTERVAL_S
+        resting = self.report is not None and self.report.state == "Idle" and self.line_sender.is_quiet
         return _RESTING if resting and not self._sees_overrides else _RUNNING
 
     def _ask(self) -> None:
-        if self.doubtful:
-            self.doubtful = False
-            self.question(full=True)
-        elif self.clock.now() >= self._next_question and self._may_ask():
+        if self.needs_full_report:
+            self.needs_full_report = False
+            self.request_report(full=True)
+        elif self.clock.now() >= self._next_question and self._can_request():
             resting = self.report is None or self.report.state in {"Idle", "Alarm"}
-            self.question(full=resting and self.stream.quiet and not self._sees_overrides)
+            self.request_report(full=resting and self.line_sender.is_quiet and not self._sees_overrides)
 
-    def _may_ask(self) -> bool:
+    def _can_request(self) -> bool:
         """Return whether a report can be requested now.
 
         Only one request is pending at a time, because each one delays the lines after it.
         """
-        return self.owed_since is None or self.listened - self._questioned_at >= _ASKED_AGAIN
+        return self.report_due_since_s is None or self.listened_s - self._questioned_at >= _REPEAT_REQUEST_S
 
-    def _watch(self) -> None:
+    def _check_timeouts(self) -> None:
         """Set a fault if the controller does not respond in time.
 
         The limit is longer while a thread waits for its index. A reply to a line counts as a response,
         because a report request may be delayed by lines.
         """
-        if self.busy:
+        if self.is_busy:
             return
-        patience = _INDEX if self.index_wait else _SILENT
-        if self.owed_since is not None and self.listened - self.owed_since > patience:
-            self.owed_since, self.mute = self.listened, True
-            self.fail(
+        patience = _INDEX_TIMEOUT_S if self.waits_for_index else _SILENCE_TIMEOUT_S
+        if self.report_due_since_s is not None and self.listened_s - self.report_due_since_s > patience:
+            self.report_due_since_s, self.is_silent = self.listened_s, True
+            self.set_fault(
                 "no response from the controller; check the cable and the controller", "controller-silent"
             )
         idle = self.report is not None and self.report.state == "Idle"
-        if not (self.stream.unanswered and idle) or self.fault:
+        if not (self.line_sender.unacknowledged_lines and idle) or self.fault:
             return
-        first = self.stream.unanswered[0]
-        patience = _INDEX if self.index_wait else _UNANSWERED + self.wait_of(first.line)
-        if self.listened - max(first.sent_at, self.answered_at) > patience:
-            self.fail(
+        first = self.line_sender.unacknowledged_lines[0]
+        patience = (
+            _INDEX_TIMEOUT_S if self.waits_for_index else _REPLY_TIMEOUT_S + self.get_max_wait(first.line)
+        )
+        if self.listened_s - max(first.sent_time_s, self.last_reply_s) > patience:
+            self.set_fault(
                 "no response to {line}; there may be interference on the line",
                 "controller-silent",
                 line=f"{first.line!r}",

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.faults import Trip
+from core.faults import DriverHostTrip
 from core.message import Message
-from core.ports import ALL_UNKNOWN, PROBE, Clock, DriverError, MachinePorts, Stop, Unknown
+from core.ports import ALL_UNKNOWN_PARTS, PROBE_INPUT, Clock, DriverError, MachinePorts, StopMode, UnknownPart
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE, GrblConfig
-from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_controller import GrblController
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
-from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO, GrblProbe
-from drivers.grblhal.grblhal_wire import Wire, open_wire
-from drivers.operator_station import PanelStation
-from drivers.waiting import Opening
+from drivers.grblhal.grblhal_terminals import ACCESSORY_LETTERS, GrblInputs, GrblIO, GrblProbe
+from drivers.grblhal.grblhal_transport import GrblTransport, open_transport
+from drivers.operator_station import OnScreenStation
+from drivers.wakeups import ConnectionAttempt
 
-_ROUND = 0.005  # Seconds between two cycles during the connection.
-_CONNECTING = 15.0
-_LEAVING = 4.0
+_CYCLE_S = 0.005  # Seconds between two cycles during the connection.
+_CONNECT_TIMEOUT_S = 15.0
+_CLOSE_TIMEOUT_S = 4.0
 
 
 class GrblMachine:
@@ -34,118 +34,128 @@ class GrblMachine:
         self,
         config: GrblConfig,
         clock: Clock,
-        wire: Wire | None = None,
+        wire: GrblTransport | None = None,
         idle: Callable[[], None] = lambda: None,
     ) -> None:
         self._clock = clock
         self._idle = idle
         self._wire = wire
         self._trips = 0
-        self.controller = Controller(config, wire or open_wire(config.table.port, config.table.baud), clock)
-        self.blocks = GrblBlocks(self.controller)
-        self.spindle = GrblSpindle(self.controller, self.blocks)
+        self.controller = GrblController(
+            config, wire or open_transport(config.table.port, config.table.baud), clock
+        )
+        self.block_controller = GrblBlocks(self.controller)
+        self.spindle = GrblSpindle(self.controller, self.block_controller)
         self.encoder = GrblEncoder(self.controller)
-        self.inputs = GrblInputs(self.controller, self.blocks)
-        self.io = GrblIO(self.controller, self.blocks, self.inputs)
-        self.axes = GrblAxes(self.controller, self.blocks, self.pump, self._reopen)
-        self.blocks.terminals = self.io.able
-        self.touch = GrblProbe(self.controller, self.axes, self.inputs) if PROBE in config.inputs else None
-        voided = self.controller.on_void
+        self.controller_inputs = GrblInputs(self.controller, self.block_controller)
+        self.io = GrblIO(self.controller, self.block_controller, self.controller_inputs)
+        self.axes = GrblAxes(self.controller, self.block_controller, self.run_cycle, self._reopen)
+        self.block_controller.list_terminals = self.io.list_available_terminals
+        self.touch_input = (
+            GrblProbe(self.controller, self.axes, self.controller_inputs)
+            if PROBE_INPUT in config.inputs
+            else None
+        )
+        voided = self.controller.on_discard
 
         def void() -> None:
             voided()
-            self.spindle.voided()
-            self.io.voided()
+            self.spindle.handle_reset()
+            self.io.handle_reset()
 
-        self.controller.on_void = void
+        self.controller.on_discard = void
         self._connect()
-        self.panel = PanelStation(clock, self.inputs.states)
+        self.on_screen_station = OnScreenStation(clock, self.controller_inputs.read_states)
         self.ports = MachinePorts(
             clock=clock,
             axes=self.axes,
             spindle=self.spindle,
             io=self.io,
-            station=self.panel,
+            station=self.on_screen_station,
             warnings=self._warnings(),
-            blocks=self.blocks,
-            halt=self.controller.halt,
-            touch=self.touch,
-            unknown=self.unknown,
-            trips=self,
+            blocks=self.block_controller,
+            halt_machine=self.controller.halt_motion,
+            touch=self.touch_input,
+            unknown=self.find_unknown_items,
+            trip_monitor=self,
         )
 
-    def pump(self) -> None:
+    def run_cycle(self) -> None:
         """Run one cycle of all parts without waiting."""
-        self.controller.pump()
-        self.blocks.pump()
-        self.spindle.pump()
-        self.io.pump()
-        self.inputs.pump()
-        if self.touch is not None:
-            self.touch.pump()
+        self.controller.update()
+        self.block_controller.send_pending()
+        self.spindle.send_commands()
+        self.io.send_changes()
+        self.controller_inputs.request_next()
+        if self.touch_input is not None:
+            self.touch_input.check_touch()
 
-    def unknown(self) -> frozenset[Unknown]:
+    def find_unknown_items(self) -> frozenset[UnknownPart]:
         """Return the states that are unknown because the controller is silent.
 
         A silent controller may continue its blocks, and its spindle may turn.
         """
-        return ALL_UNKNOWN if self.controller.mute else frozenset()
+        return ALL_UNKNOWN_PARTS if self.controller.is_silent else frozenset()
 
-    def tripped(self) -> Trip | None:
+    def get_active_trip(self) -> DriverHostTrip | None:
         """Return the functions that were still on after a silence, or None.
 
         The driver has switched this spindle and these outputs off after the silence.
         """
-        found = self.controller.found_on
+        found = self.controller.active_at_silence
         if found is None:
             return None
         unheard, letters = found
         outputs = self.controller.config.outputs
-        on = (name for name, output in outputs.items() if LETTERS.get(output.terminal, " ") in letters)
-        return Trip(self._trips, unheard, bool({"S", "C"} & set(letters)), tuple(on), found=True)
+        on = (
+            name for name, output in outputs.items() if ACCESSORY_LETTERS.get(output.terminal, " ") in letters
+        )
+        return DriverHostTrip(
+            self._trips, unheard, bool({"S", "C"} & set(letters)), tuple(on), was_connection_lost=True
+        )
 
-    def acknowledge(self, trip: Trip) -> None:
+    def acknowledge(self, trip: DriverHostTrip) -> None:
         """Clear the trip that the control has handled."""
         if trip.number == self._trips:
-            self._trips, self.controller.found_on = self._trips + 1, None
+            self._trips, self.controller.active_at_silence = self._trips + 1, None
 
-    def _reopen(self) -> Opening[Wire]:
+    def _reopen(self) -> ConnectionAttempt[GrblTransport]:
         """Start to reopen the connection; the old one is closed first to release the port."""
         close, config = self.controller.close, self.controller.config
 
-        def opened() -> Wire:
+        def opened() -> GrblTransport:
             close()
-            return self._wire or open_wire(config.table.port, config.table.baud)
+            return self._wire or open_transport(config.table.port, config.table.baud)
 
-        return Opening(opened, at_once=self._wire is not None)
+        return ConnectionAttempt(opened, synchronous=self._wire is not None)
 
     def close(self) -> None:
         """Stop all motion, then close the connection."""
-        self.axes.stop(Stop.RAMP_OFF)
-        self._rounds(_LEAVING)
+        self.axes.stop(StopMode.RAMP_OFF)
+        self._rounds(_CLOSE_TIMEOUT_S)
         self.controller.close()
 
     def _connect(self) -> None:
         c = self.controller
-        c.run(grblhal_scripts.connect(c))
-        self._rounds(_CONNECTING)
-        if c.busy or c.identity is None or (c.fault and c.alarm == 0):
+        c.run_script(grblhal_scripts.connect_controller(c))
+        self._rounds(_CONNECT_TIMEOUT_S)
+        if c.is_busy or c.identity is None or (c.fault and c.alarm_number == 0):
             c.close()
             raise DriverError(f"{c.config.table.port}: {c.fault or 'no response from controller'}")
 
     def _rounds(self, limit: float) -> None:
         end = self._clock.now() + limit
-        while self.controller.busy and not self.controller.lost and self._clock.now() < end:
+        while self.controller.is_busy and not self.controller.is_lost and self._clock.now() < end:
             self._idle()
-            self.pump()
-            self._clock.sleep_until(self._clock.now() + _ROUND)
+            self.run_cycle()
+            self._clock.sleep_until(self._clock.now() + _CYCLE_S)
 
-    def _unlike(self) -> list[str]:
+    def _list_differences(self) -> list[str]:
         """Return warnings about controller settings that differ from the machine file."""
         c = self.controller
         told: list[str] = []
-        for axis in c.wired:
-            speed, accel = c.speed_of(axis.name), c.figure(120, axis.name)
+        for axis in c.wired_axes:
+            speed, accel = c.get_max_axis_speed(axis.name), c.read_axis_setting(120, axis.name)
             if speed and not 0.99 * axis.vmax <= speed <= 1.01 * axis.vmax:
                 told.append(
                     Message(
@@ -165,21 +175,25 @@ class GrblMachine:
                         amax=f"{axis.amax:.0f}",
                     )
                 )
-        if c.config.own_spindle and 0.0 < self.spindle.highest < c.config.rpm_max:
+        if c.config.has_own_spindle and 0.0 < self.spindle.max_controller_rpm < c.config.rpm_max:
             told.append(
                 Message(
                     "spindle: $30 allows {highest} rpm, but the machine file specifies {rpm_max} rpm",
-                    highest=f"{self.spindle.highest:g}",
+                    highest=f"{self.spindle.max_controller_rpm:g}",
                     rpm_max=f"{c.config.rpm_max:g}",
                 )
             )
         return told
 
-    def _homes(self) -> list[str]:
+    def _list_homing_warnings(self) -> list[str]:
         """Return a warning about axes that need a home switch although homing is off in the controller."""
-        if self.controller.homing:
+        if self.controller.homing_setting:
             return []
-        names = [axis.name for axis in self.controller.wired if not axis.absolute and axis.here is None]
+        names = [
+            axis.name
+            for axis in self.controller.wired_axes
+            if not axis.is_absolute and axis.home_position_mm is None
+        ]
         if not names:
             return []
         return [
@@ -194,29 +208,31 @@ class GrblMachine:
     def _warnings(self) -> list[str]:
         config = self.controller.config
         outputs = {
-            f"{name} ({each.terminal})": self.io.lacking(name) for name, each in config.outputs.items()
+            f"{name} ({each.terminal})": self.io.describe_missing(name)
+            for name, each in config.outputs.items()
         }
-        told = _grouped(outputs, "output {names}: {reason}", "outputs {names}: {reason}")
+        told = _group_texts(outputs, "output {names}: {reason}", "outputs {names}: {reason}")
         inputs = {
-            f"{name} ({config.inputs[name].terminal})": why for name, why in self.inputs.lacking().items()
+            f"{name} ({config.inputs[name].terminal})": why
+            for name, why in self.controller_inputs.list_missing().items()
         }
-        told += _grouped(inputs, "input {names}: {reason}", "inputs {names}: {reason}")
-        told += self._unlike() + self._homes()
+        told += _group_texts(inputs, "input {names}: {reason}", "inputs {names}: {reason}")
+        told += self._list_differences() + self._list_homing_warnings()
         estop = self.controller.config.inputs.get(ESTOP)
         if estop is not None and estop.terminal == HARDWARE:
             told.append(
                 "the E-stop acts only on the hardware: the controller does not detect it, and the "
                 "screen does not show its state"
             )
-        if "thread" not in self.blocks.caps:
+        if "thread" not in self.block_controller.capabilities:
             told.append("the controller does not report a spindle encoder, so threading is rejected")
         return told
 
 
-def _grouped(lacking: Mapping[str, str], one: str, several: str) -> list[str]:
+def _group_texts(items: Mapping[str, str], one: str, several: str) -> list[str]:
     """Return one sentence for all names with the same reason; a name without a reason is omitted."""
     reasons: dict[str, list[str]] = {}
-    for name, reason in lacking.items():
+    for name, reason in items.items():
         if reason:
             reasons.setdefault(reason, []).append(name)
     return [

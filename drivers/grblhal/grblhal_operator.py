@@ -12,53 +12,58 @@ from collections.abc import Callable
 from core.message import Message
 from core.ports import DriverError, FaultCode
 from drivers.grblhal import grblhal_codes
-from drivers.grblhal.grblhal_codes import jog_line
-from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_report import Report
-from drivers.grblhal.grblhal_wire import Ask
+from drivers.grblhal.grblhal_codes import format_jog
+from drivers.grblhal.grblhal_controller import GrblController
+from drivers.grblhal.grblhal_report import StatusReport
+from drivers.grblhal.grblhal_transport import SentLine
 
-_APART = 0.1  # Seconds between two corrections.
+_SEND_INTERVAL_S = 0.1  # Seconds between two corrections.
 # Seconds without a report of the overrides, which at least every twentieth plain report contains.
-_AGAIN = 2.5
-_PATIENCE = 7.0  # Seconds after which an override counts as rejected.
+_RESEND_DELAY_S = 2.5
+_OVERRIDE_TIMEOUT_S = 7.0  # Seconds after which an override counts as rejected.
 LEAST, MOST = 10, 200  # Range of the controller in percent.
 
 
-def steps_to(percent: int, told: int, steps: tuple[int, ...] = grblhal_codes.FEED) -> bytes:
+def encode_override_steps(
+    target_percent: int, reported_percent: int, step_codes: tuple[int, ...] = grblhal_codes.FEED
+) -> bytes:
     """Return the bytes that change an override from the reported percentage to ``percent``.
 
     The path through 100 % is used only if 100 % is in between, because the reset to 100 % is immediate and
     slow axes would jump. The number of bytes never exceeds the controller's queue.
     """
-    reset, *moves = steps
-    straight, over = _from(told, percent, moves), bytes([reset]) + _from(100, percent, moves)
-    crosses = (percent - 100) * (told - 100) <= 0
+    reset, *moves = step_codes
+    straight, over = (
+        _encode_steps(reported_percent, target_percent, moves),
+        bytes([reset]) + _encode_steps(100, target_percent, moves),
+    )
+    crosses = (target_percent - 100) * (reported_percent - 100) <= 0
     return over if crosses and len(over) < len(straight) else straight
 
 
-def _from(told: int, percent: int, moves: list[int]) -> bytes:
+def _encode_steps(reported_percent: int, percent: int, moves: list[int]) -> bytes:
     """Return coarse steps before fine steps, or fine steps first if a coarse step would exceed a limit."""
     up_10, down_10, up_1, down_1 = moves
-    tens, ones = divmod(abs(percent - told), 10)
+    tens, ones = divmod(abs(percent - reported_percent), 10)
     tens, ones = (tens + 1, ones - 10) if ones > 5 else (tens, ones)
-    sign = 1 if percent > told else -1
+    sign = 1 if percent > reported_percent else -1
     coarse, fine, back = (up_10, up_1, down_1) if sign > 0 else (down_10, down_1, up_1)
     steps = [coarse] * tens, [fine if ones > 0 else back] * abs(ones)
-    fits = LEAST <= told + sign * 10 * tens <= MOST
+    fits = LEAST <= reported_percent + sign * 10 * tens <= MOST
     return bytes([*steps[0], *steps[1]] if fits else [*steps[1], *steps[0]])
 
 
-def rapid_step(fraction: float) -> int:
+def round_rapid_override(fraction: float) -> int:
     """Return the largest rapid override of the controller that is not above ``fraction``, at least 25 %."""
     return 100 if fraction >= 1.0 else 50 if fraction >= 0.5 else 25
 
 
-def in_reach(fraction: float) -> int:
+def limit_override_percent(fraction: float) -> int:
     """Return a fraction in percent, limited to the range of the controller."""
     return min(max(round(100 * fraction), LEAST), MOST)
 
 
-class Overrides:
+class GrblOverrides:
     """Commanded overrides, which are compared with the reported ones and sent again if they differ."""
 
     def __init__(self, write: Callable[[bytes], None], fail: Callable[[str, FaultCode], None]) -> None:
@@ -68,40 +73,40 @@ class Overrides:
         self._sent_at, self._seen = -1.0, 0
         self._since: float | None = None  # Start of the time without a change toward the commanded values.
         self._last: tuple[int, ...] | None = None  # Last reported values.
-        self.level = False  # A thread is active and requires 100 %.
+        self.is_thread_active = False  # A thread is active and requires 100 %.
 
     @property
     def commanded(self) -> list[int]:
         """The commanded overrides in percent: feed, rapid and spindle."""
-        return [100, self._asked[1], 100] if self.level else self._asked
+        return [100, self._asked[1], 100] if self.is_thread_active else self._asked
 
-    def want(self, feed: float, rapid: float) -> None:
+    def set_feed_and_rapid(self, feed: float, rapid: float) -> None:
         """Set the feed and rapid overrides as fractions above 0."""
-        self._asked[:2] = in_reach(feed), rapid_step(rapid)
+        self._asked[:2] = limit_override_percent(feed), round_rapid_override(rapid)
 
-    def want_spindle(self, percent: int) -> None:
+    def set_spindle(self, percent: int) -> None:
         """Set the spindle override in percent of the last S word."""
         self._asked[2] = percent
 
-    def true_to(self, reported: tuple[int, ...] | None) -> bool:
+    def are_confirmed(self, reported: tuple[int, ...] | None) -> bool:
         """Return whether the reported overrides equal the commanded ones."""
         return reported is not None and list(reported[:3]) == self.commanded
 
-    def correct(self, reported: tuple[int, ...] | None, told: int, now: float) -> None:
+    def send_differences(self, reported: tuple[int, ...] | None, report_count: int, now: float) -> None:
         """Send the steps for differences, based on a report that is newer than the last steps sent.
 
         The second argument is the number of override reports. If no report arrives, the steps are sent again.
         """
-        if reported is None or self.true_to(reported) or reported != self._last:
+        if reported is None or self.are_confirmed(reported) or reported != self._last:
             self._since = None  # A spindle that follows the radius changes continuously.
         self._last = reported
-        if reported is None or self.true_to(reported):
+        if reported is None or self.are_confirmed(reported):
             return
-        fresh = told > self._seen and now - self._sent_at >= _APART
-        if not fresh and now - self._sent_at < _AGAIN:
+        fresh = report_count > self._seen and now - self._sent_at >= _SEND_INTERVAL_S
+        if not fresh and now - self._sent_at < _RESEND_DELAY_S:
             return
         self._since = now if self._since is None else self._since
-        if now - self._since > _PATIENCE:
+        if now - self._since > _OVERRIDE_TIMEOUT_S:
             self._fail(
                 Message(
                     "the controller does not accept an override: {commanded} was commanded, but "
@@ -112,26 +117,28 @@ class Overrides:
                 "controller-refuses",
             )
             return
-        self._sent_at, self._seen = now, told
+        self._sent_at, self._seen = now, report_count
         self._write(self._steps(reported))
 
     def _steps(self, reported: tuple[int, ...]) -> bytes:
         feed, rapid, spindle = self.commanded
-        data = steps_to(feed, reported[0])
-        data += bytes([grblhal_codes.RAPIDS[rapid]]) if reported[1] != rapid else b""
-        return data + (steps_to(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b"")
+        data = encode_override_steps(feed, reported[0])
+        data += bytes([grblhal_codes.RAPID_OVERRIDES[rapid]]) if reported[1] != rapid else b""
+        return data + (
+            encode_override_steps(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b""
+        )
 
 
 # --- Feed holds by TurnDesk and at the controller, and their ends.
 
 
-_LATE = 3  # Reports that may still show the state before a hold or before its end.
+_MAX_STALE_REPORTS = 3  # Reports that may still show the state before a hold or before its end.
 
 
-class Holds:
+class FeedHolds:
     """Feed holds (0x82) and their ends (0x81), tracked from report to report."""
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: GrblController) -> None:
         self._c = controller
         self._asked = False  # A hold is requested.
         self._ours = False  # TurnDesk may end the present hold.
@@ -139,32 +146,32 @@ class Holds:
         self._released = self._again = 0
 
     @property
-    def stands(self) -> bool:
+    def is_holding(self) -> bool:
         """Whether the controller is at rest in a feed hold."""
         c = self._c
         held = c.report is not None and c.report.state == "Hold" and not c.report.sub
-        return held and c.reports >= self._released and not c.busy
+        return held and c.report_count >= self._released and not c.is_busy
 
-    def begin(self) -> None:
+    def start_hold(self) -> None:
         """Start a feed hold immediately."""
         self._asked = self._ours = True
         self._released = 0
         self._say()
 
-    def end(self) -> None:
+    def end_hold(self) -> None:
         """End any feed hold as soon as the axes are at rest."""
         self._asked, self._ours = False, True
-        self._go_on()
+        self._send_resume()
 
-    def forget(self) -> None:
+    def clear_request(self) -> None:
         """Clear the hold request, because a final stop does not need it."""
         self._asked = self._ours = False
 
-    def reported(self, report: Report) -> None:
+    def process_report(self, report: StatusReport) -> None:
         """Update the hold from a report."""
         if report.state == "Hold":
-            self._go_on()
-        elif self._asked and report.state == "Run" and self._c.reports >= self._again:
+            self._send_resume()
+        elif self._asked and report.state == "Run" and self._c.report_count >= self._again:
             self._say()  # A button at the controller has ended the hold.
         else:
             self._ours = self._ours and (self._asked or report.state in {"Run", "Jog"})
@@ -172,11 +179,11 @@ class Holds:
     # --- inside -------------------------------------------------------------------------------------------
 
     def _say(self) -> None:
-        self._again = self._c.reports + _LATE
-        self._c.realtime(grblhal_codes.HOLD)
-        self._c.question()
+        self._again = self._c.report_count + _MAX_STALE_REPORTS
+        self._c.send_realtime(grblhal_codes.HOLD)
+        self._c.request_report()
 
-    def _go_on(self) -> None:
+    def _send_resume(self) -> None:
         """Resume if the axes are at rest and the operator has ended the hold.
 
         A hold that was started at the controller is never ended automatically.
@@ -190,74 +197,76 @@ class Holds:
             and not report.sub
         ):
             self._ours = False
-            self._released = self._c.reports + _LATE
-            self._c.realtime(grblhal_codes.START)
-            self._c.question()
+            self._released = self._c.report_count + _MAX_STALE_REPORTS
+            self._c.send_realtime(grblhal_codes.START)
+            self._c.request_report()
 
 
 # --- Jog with a motion lease.
 
 
-_LEAST = 0.002  # Minimum travel in mm.
-_ROOM = 0.02  # Seconds; a shorter renewal is not sent.
+_MIN_JOG_MM = 0.002  # Minimum travel in mm.
+_MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 
 
-class Jogs:
+class GrblJogs:
     """Sender of ``$J`` lines, with one unacknowledged line at a time.
 
     At time ``t``, the target is the position that an axis at full speed since the start would reach one lease
     later. The remaining travel is therefore at most lease · v plus the braking distance.
     """
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: GrblController) -> None:
         self._c = controller
-        self.active = False
+        self.is_active = False
         self._axis, self._velocity = "", 0.0
         self._from, self._since = 0.0, 0.0
         self._sent = 0.0  # Target of the last line.
         self._wanted = 0.0
-        self._ask: Ask | None = None
+        self._ask: SentLine | None = None
 
-    def move(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
+    def start_or_renew(
+        self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None
+    ) -> bool:
         """Start or renew a jog; return False at the end of the travel."""
         now = self._c.clock.now()
-        if not self.active or axis != self._axis or velocity != self._velocity:
+        if not self.is_active or axis != self._axis or velocity != self._velocity:
             self._begin(axis, velocity, now)
         target = self._from + velocity * (now - self._since + lease)
         if limits is not None:
             target = min(max(target, limits[0]), limits[1])
-        if (target - self._from) * math.copysign(1.0, velocity) < _LEAST:
-            self.active = False
+        if (target - self._from) * math.copysign(1.0, velocity) < _MIN_JOG_MM:
+            self.is_active = False
             return False
-        self._wanted, self.active = target, True
-        self.pump()
+        self._wanted, self.is_active = target, True
+        self.send_travel()
         return True
 
-    def step(self, axis: str, target: float, speed: float) -> None:
+    def start_step(self, axis: str, target: float, speed: float) -> None:
         """Jog to ``target`` from rest to rest."""
         self._begin(axis, speed, self._c.clock.now())
-        self._wanted, self.active = target, True
-        self.pump()
+        self._wanted, self.is_active = target, True
+        self.send_travel()
 
-    def pump(self) -> None:
+    def send_travel(self) -> None:
         """Send the added travel after the last line is acknowledged."""
-        if not self.active or (self._ask is not None and not self._ask.done):
+        if not self.is_active or (self._ask is not None and not self._ask.is_done):
             return
         added = abs(self._wanted - self._sent)
-        if added < max(_LEAST, _ROOM * abs(self._velocity)) and self._ask is not None:
+        if added < max(_MIN_JOG_MM, _MIN_RENEWAL_S * abs(self._velocity)) and self._ask is not None:
             return
         self._sent = self._wanted
-        target = self._wanted + self._c.origin.get(self._axis, 0.0)
-        self._ask = self._c.send(jog_line(self._axis, target, abs(self._velocity)))
+        target = self._wanted + self._c.home_origin.get(self._axis, 0.0)
+        self._ask = self._c.send_line(format_jog(self._axis, target, abs(self._velocity)))
 
-    def rested(self) -> None:
+    def handle_rest(self) -> None:
         """Handle a report that the controller has no motion left."""
-        if self._ask is None or self._ask.done:
-            self.forget()
+        if self._ask is None or self._ask.is_done:
+            self.clear_jog()
 
-    def forget(self) -> None:
+    def clear_jog(self) -> None:
         """End the jog."""
-        self.active, self._ask = False, None
+        self.is_active, self._ask = False, None
 
     def _begin(self, axis: str, velocity: float, now: float) -> None:
         place = self._c.position.get(axis)
@@ -265,7 +274,7 @@ class Jogs:
             raise DriverError(
                 "the controller does not have an axis {axis} to jog", "controller-refuses", axis=axis
             )
-        if self.active:
+        if self.is_active:
             # With another speed or direction, continue from the end of the present travel.
             place = self._sent
         self._axis, self._velocity = axis, velocity

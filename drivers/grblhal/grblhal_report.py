@@ -13,7 +13,7 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Check", "Sleep", "Tool"))
 
 
-class Report(NamedTuple):
+class StatusReport(NamedTuple):
     """Status report with None for missing fields; positions in mm, X as the controller counts it."""
 
     state: str
@@ -44,7 +44,7 @@ class Report(NamedTuple):
         return self.speeds[2] if self.speeds is not None and len(self.speeds) > 2 else None
 
 
-def read_report(line: str) -> Report | None:
+def parse_report(line: str) -> StatusReport | None:
     """Parse a line and return its report, or None if the line is damaged."""
     if not (line.startswith("<") and line.endswith(">")):
         return None
@@ -55,7 +55,7 @@ def read_report(line: str) -> Report | None:
     values: dict[str, object] = {}
     for field in fields:
         name, colon, text = field.partition(":")
-        reader = _READERS.get(name)
+        reader = _FIELD_READERS.get(name)
         if reader is None or not colon:
             continue
         found = reader(text)
@@ -65,7 +65,7 @@ def read_report(line: str) -> Report | None:
     work = values.pop("work", None)
     if "position" not in values and not work:
         return None
-    return Report(state, int(sub) if sub else None, **values)  # type: ignore[arg-type]  # readers name the fields
+    return StatusReport(state, int(sub) if sub else None, **values)  # type: ignore[arg-type]  # readers name the fields
 
 
 def _numbers(text: str) -> tuple[float, ...] | None:
@@ -95,7 +95,7 @@ def _whole(name: str, index: int | None = None) -> Callable[[str], Mapping[str, 
     return read
 
 
-_READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
+_FIELD_READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
     "MPos": _floats("position"),
     "WPos": lambda text: {"work": True} if _numbers(text) else None,  # Until $10 has the required value.
     "FS": _floats("speeds"),
@@ -114,28 +114,30 @@ _READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
 # --- Identity of the controller by ``$I``, without assumptions about missing fields.
 
 
-_LEAST_BUFFER = 256
+_MIN_BUFFER_SIZE = 256
 # Control inputs: reset, feed hold, cycle start, door, block delete, optional stop, E-stop, probe lost, motor
 # fault, motor warning. Other pins (limits by axis, probe) are not in [SIGNALS:…].
 _AXES = frozenset("XYZABCUVW")
 _CONTROL_INPUTS = "RHSDLTEOFMQ"
 
 
-class Identity(NamedTuple):
+class ControllerIdentity(NamedTuple):
     """Identity of a controller, with the axis letters in the order of the reports.
 
-    ``blocks`` is the size of the planner and ``buffer`` the number of bytes for lines.
+    ``planner_block_count`` is the size of the planner and ``buffer_size`` the number of bytes for lines.
     """
 
     version: str
-    blocks: int
-    buffer: int
-    axes: str
+    planner_block_count: int
+    buffer_size: int
+    axis_letters: str
     options: frozenset[str]
-    inputs: int  # auxiliary digital inputs
-    outputs: int
-    letters: str = ""  # Build options: V variable spindle, M mist.
-    signals: str | None = None  # Control inputs of the board, by their letters in the pins of a report.
+    input_count: int  # auxiliary digital inputs
+    output_count: int
+    build_letters: str = ""  # Build options: V variable spindle, M mist.
+    signal_letters: str | None = (
+        None  # Control inputs of the board, by their letters in the pins of a report.
+    )
 
     def has_pin(self, letter: str) -> bool:
         """Return whether the board has an input with this letter, as far as it is reported.
@@ -144,16 +146,16 @@ class Identity(NamedTuple):
         axes.
         """
         if letter in _AXES:
-            return letter in self.axes
-        return self.signals is None or letter not in _CONTROL_INPUTS or letter in self.signals
+            return letter in self.axis_letters
+        return self.signal_letters is None or letter not in _CONTROL_INPUTS or letter in self.signal_letters
 
     @property
-    def lathe(self) -> bool:
+    def is_lathe_mode(self) -> bool:
         """Whether the controller reports lathe mode."""
         return any(option.startswith("LATHE") for option in self.options)
 
 
-def read_identity(lines: Iterable[str]) -> Identity:
+def parse_identity(lines: Iterable[str]) -> ControllerIdentity:
     """Parse the reply to ``$I``.
 
     Raises DriverError if the device is not grblHAL or its buffer is too small.
@@ -171,16 +173,16 @@ def read_identity(lines: Iterable[str]) -> Identity:
             reason="no-grblhal",
         )
     blocks, buffer = int(sizes[0]), int(sizes[1])
-    if buffer < _LEAST_BUFFER:
+    if buffer < _MIN_BUFFER_SIZE:
         raise DriverError(
             "the controller's buffer of {buffer} bytes is too small; {least_buffer} are needed",
             reason="small-buffer",
             buffer=buffer,
-            least_buffer=_LEAST_BUFFER,
+            least_buffer=_MIN_BUFFER_SIZE,
         )
     axes = told.get("AXS", "3:XYZ").partition(":")[2]
     options = frozenset(told.get("NEWOPT", "").split(",")) - {""}
     ports = [int(port) if port.isdecimal() else 0 for port in told.get("AUX IO", "0,0").split(",")]
     inputs, outputs = (*ports, 0, 0)[:2]
     signals = told.get("SIGNALS")
-    return Identity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters, signals)
+    return ControllerIdentity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters, signals)

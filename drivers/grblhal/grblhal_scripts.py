@@ -1,6 +1,6 @@
 """Scripts for tasks with several requests: connect, verify modes, stop, clear an alarm and home.
 
-Each script is a generator that ``Controller.pump`` advances. A script raises ScriptError if it fails.
+Each script is a generator that ``GrblController.pump`` advances. A script raises ScriptError if it fails.
 """
 
 from __future__ import annotations
@@ -11,79 +11,90 @@ from collections.abc import Callable, Generator, Mapping
 from core.message import Message
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
-from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_report import Identity, read_identity
-from drivers.grblhal.grblhal_wire import Ask, Script, ScriptError, Step
+from drivers.grblhal.grblhal_controller import GrblController
+from drivers.grblhal.grblhal_report import ControllerIdentity, parse_identity
+from drivers.grblhal.grblhal_transport import Script, ScriptError, ScriptStep, SentLine
 
 # --- Parts of scripts: one line with its reply, a full report, the modes.
 
 
-ANSWER = 2.0  # Seconds for a line.
-MISSED = "the controller does not send status reports"
+REPLY_TIMEOUT_S = 2.0  # Seconds for a line.
+NO_REPORTS_TEXT = "the controller does not send status reports"
 _TRIES = 3
 
 
-def full_report(c: Controller, within: float = ANSWER) -> Script:
+def request_full_report(controller: GrblController, timeout_s: float = REPLY_TIMEOUT_S) -> Script:
     """Request a full report and wait for it."""
-    before = c.fulls
-    c.question(full=True)
-    yield lambda: c.fulls > before, within, MISSED
+    before = controller.full_report_count
+    controller.request_report(full=True)
+    yield lambda: controller.full_report_count > before, timeout_s, NO_REPORTS_TEXT
 
 
-def fresh(c: Controller) -> Script:
+def synchronize(controller: GrblController) -> Script:
     """Synchronize with the controller: clear a partial line and a sticky error, and wait for ``$G``.
 
     Replies are counted again from ``$G`` on.
     """
     # The controller reads these lines before ``$G``.
-    slow = max((c.wait_of(ask.line) for ask in c.stream.unanswered), default=0.0)
+    slow = max(
+        (controller.get_max_wait(ask.line) for ask in controller.line_sender.unacknowledged_lines),
+        default=0.0,
+    )
     for _ in range(_TRIES):
-        c.stream.void()
-        c.realtime(ord("\n"))
-        ask, by = c.send("$G"), c.clock.now() + ANSWER / _TRIES + slow
-        yield _by(c, ask, by), ANSWER + slow, ""
-        if ask.done:
+        controller.line_sender.discard_lines()
+        controller.send_realtime(ord("\n"))
+        ask, by = controller.send_line("$G"), controller.clock.now() + REPLY_TIMEOUT_S / _TRIES + slow
+        yield _by(controller, ask, by), REPLY_TIMEOUT_S + slow, ""
+        if ask.is_done:
             return
     raise ScriptError("no response from the controller to '$G'")
 
 
-def _by(c: Controller, ask: Ask, by: float) -> Callable[[], bool]:
-    return _by_time(c, lambda: ask.done, by)
+def _by(c: GrblController, ask: SentLine, by: float) -> Callable[[], bool]:
+    return _ready_by(c, lambda: ask.is_done, by)
 
 
-def _by_time(c: Controller, ready: Callable[[], bool], by: float) -> Callable[[], bool]:
+def _ready_by(c: GrblController, ready: Callable[[], bool], deadline_s: float) -> Callable[[], bool]:
     """Return a function that is true when ``ready`` is true or the time has passed."""
-    return lambda: ready() or c.clock.now() >= by
+    return lambda: ready() or c.clock.now() >= deadline_s
 
 
-def asked(c: Controller, line: str, within: float = ANSWER) -> Generator[Step, None, list[str]]:
+def query_line(
+    controller: GrblController, line: str, timeout_s: float = REPLY_TIMEOUT_S
+) -> Generator[ScriptStep, None, list[str]]:
     """Send a line, wait for its ``ok`` and return the lines received before it.
 
     Raises ScriptError if the controller rejects the line.
     """
-    ask = c.send(line)
+    ask = controller.send_line(line)
     yield (
-        lambda: ask.done,
-        within + c.wait_of(line),
+        lambda: ask.is_done,
+        timeout_s + controller.get_max_wait(line),
         Message("no response from the controller to {line}", line=f"{line!r}"),
     )
-    if ask.error:
-        raise ScriptError(grblhal_codes.error_text(ask.error, line))
+    if ask.error_code:
+        raise ScriptError(grblhal_codes.describe_error(ask.error_code, line))
     return ask.lines
 
 
-def modes(c: Controller) -> Script:
+def send_modes(controller: GrblController) -> Script:
     """Send the modes, end foreign modes that another host has left active, and verify the result."""
-    yield from asked(c, "".join(grblhal_codes.MODES))
-    told = yield from _words(c)
+    yield from query_line(controller, "".join(grblhal_codes.REQUIRED_MODES))
+    told = yield from _read_modes(controller)
     cures = dict.fromkeys(
-        grblhal_codes.CURES[_stem(word)] for word in told if _stem(word) in grblhal_codes.CURES
+        grblhal_codes.MODE_RESETS[_mode_stem(word)]
+        for word in told
+        if _mode_stem(word) in grblhal_codes.MODE_RESETS
     )
     for cure in cures:
-        yield from asked(c, cure)
-    told = (yield from _words(c)) if cures else told
-    missing = [mode for mode in grblhal_codes.MODES if mode not in told and mode not in grblhal_codes.SILENT]
-    kept = [word for word in told if _stem(word) in grblhal_codes.CURES]
+        yield from query_line(controller, cure)
+    told = (yield from _read_modes(controller)) if cures else told
+    missing = [
+        mode
+        for mode in grblhal_codes.REQUIRED_MODES
+        if mode not in told and mode not in grblhal_codes.UNREPORTED_MODES
+    ]
+    kept = [word for word in told if _mode_stem(word) in grblhal_codes.MODE_RESETS]
     if missing or kept:
         template = (
             "{wrong}; the controller reports [GC:{details}]; check that the controller is in lathe mode "
@@ -99,27 +110,27 @@ def modes(c: Controller) -> Script:
         raise ScriptError(template, wrong=wrong, details=" ".join(told))
 
 
-def _stem(word: str) -> str:
+def _mode_stem(word: str) -> str:
     """Return the basic code of a word: G43 for ``G43.1``, G51 for ``G51:X``."""
     return word.partition(":")[0].partition(".")[0]
 
 
-def _words(c: Controller) -> Generator[Step, None, list[str]]:
+def _read_modes(c: GrblController) -> Generator[ScriptStep, None, list[str]]:
     """Request the parser state and return its words, including those that the driver does not use."""
-    told = " ".join(line for line in (yield from asked(c, "$G")) if line.startswith("[GC:"))
+    told = " ".join(line for line in (yield from query_line(c, "$G")) if line.startswith("[GC:"))
     return told.removeprefix("[GC:").rstrip("]").split()
 
 
-def demand(c: Controller, identity: Identity) -> None:
+def require_hardware(controller: GrblController, identity: ControllerIdentity) -> None:
     """Raise ScriptError if the controller lacks an axis of the machine file or the E-stop input."""
-    missing = [axis.name for axis in c.wired if axis.name not in identity.axes]
+    missing = [axis.name for axis in controller.wired_axes if axis.name not in identity.axis_letters]
     if missing:
         raise ScriptError(
             "the controller has axes {axes}, but not {missing}",
-            axes=identity.axes,
+            axes=identity.axis_letters,
             missing=", ".join(missing),
         )
-    estop = c.config.inputs.get(ESTOP)
+    estop = controller.config.inputs.get(ESTOP)
     if estop is not None and not identity.has_pin(estop.terminal.removeprefix("pn.")):
         raise ScriptError(
             "the controller's board does not have the input {terminal} for the E-stop: it reports "
@@ -127,7 +138,7 @@ def demand(c: Controller, identity: Identity) -> None:
             'the power, write io.in.estop = {{ at = "{hardware}" }}',
             "controller-estop",
             terminal=estop.terminal,
-            signals=identity.signals,
+            signals=identity.signal_letters,
             hardware=HARDWARE,
         )
 
@@ -138,71 +149,77 @@ def demand(c: Controller, identity: Identity) -> None:
 # a feed hold or a jog cancel is sent first, and 0x18 after the axes are at rest.
 
 
-_LATE = 0.4  # Seconds in addition to the ramp until a stop is detected.
+_STOP_DETECTION_S = 0.4  # Seconds in addition to the ramp until a stop is detected.
 _BANNER = 3.0  # Duration of a reset in s.
 _NO_RESET = "the controller does not respond after its reset; check that the E-stop is released"
-_STALE = 0.5  # Seconds in which reports from before a reset may still arrive.
-_MUTE = 0.4  # Seconds without a report in a thread, which then waits for its index and reacts only to a stop.
+_STALE_REPORT_S = 0.5  # Seconds in which reports from before a reset may still arrive.
+_NO_REPORT_S = (
+    0.4  # Seconds without a report in a thread, which then waits for its index and reacts only to a stop.
+)
 _INDEX = 7.0  # Longest duration of that wait in s.
 
 
-def stop(c: Controller, *, waits: bool = False) -> Script:
+def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
     """Brake, then reset to clear the queue; the position is lost only if an axis does not come to rest.
 
-    ``waits``: a thread pass is running and may wait for its index at rest. In this case, 0x18 would lose the
-    position, but 0x19 acts as a reset. An alarm is not changed.
+    ``in_thread_pass``: a thread pass is running and may wait for its index at rest. In this case, 0x18 would
+    lose the position, but 0x19 acts as a reset. An alarm is not changed.
     """
-    if c.state != "Home":  # Only a reset ends the state Home.
-        yield from _brake(c)
-    if c.state == "Alarm":
+    if controller.state != "Home":  # Only a reset ends the state Home.
+        yield from _brake(controller)
+    if controller.state == "Alarm":
         return
-    if not (waits and c.clock.now() - c.heard_at > _MUTE):
-        yield from reset(c)
+    if not (in_thread_pass and controller.clock.now() - controller.last_report_s > _NO_REPORT_S):
+        yield from soft_reset(controller)
         return
-    before, reports = c.banners, c.reports
-    c.expect_reset()
-    c.realtime(grblhal_codes.STOP)
-    yield lambda: c.banners > before or c.reports > reports, _INDEX, MISSED
-    if c.state != "Alarm" and c.banners == before:
-        yield from reset(c)
+    before, reports = controller.reset_count, controller.report_count
+    controller.expect_driver_reset()
+    controller.send_realtime(grblhal_codes.STOP)
+    yield (
+        lambda: controller.reset_count > before or controller.report_count > reports,
+        _INDEX,
+        NO_REPORTS_TEXT,
+    )
+    if controller.state != "Alarm" and controller.reset_count == before:
+        yield from soft_reset(controller)
 
 
-def reset(c: Controller) -> Script:
+def soft_reset(controller: GrblController) -> Script:
     """Perform a soft reset and wait for its banner.
 
     If reports arrive instead, the controller has ignored the reset and the script fails.
     """
-    before, reports, began = c.banners, c.reports, c.clock.now()
+    before, reports, began = controller.reset_count, controller.report_count, controller.clock.now()
 
     def answers() -> bool:
-        return c.reports > reports and c.heard_at > began + _STALE
+        return controller.report_count > reports and controller.last_report_s > began + _STALE_REPORT_S
 
-    c.expect_reset()
-    c.realtime(grblhal_codes.RESET)
-    yield lambda: c.banners > before or answers(), _BANNER, _NO_RESET
-    yield lambda: c.banners > before, 0.0, _NO_RESET
+    controller.expect_driver_reset()
+    controller.send_realtime(grblhal_codes.RESET)
+    yield lambda: controller.reset_count > before or answers(), _BANNER, _NO_RESET
+    yield lambda: controller.reset_count > before, 0.0, _NO_RESET
 
 
-def _brake(c: Controller) -> Generator[Step, None, None]:
+def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
     """Brake until the axes rest, the controller is silent, or the time has passed."""
-    after, began = c.reports + 1, c.clock.now()  # One earlier report may still arrive.
-    by = began + _stopping(c)
-    c.realtime(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
+    after, began = c.report_count + 1, c.clock.now()  # One earlier report may still arrive.
+    by = began + _stopping_time(c)
+    c.send_realtime(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
 
     def rests() -> bool:
-        return c.reports > after and c.report is not None and not c.report.moves
+        return c.report_count > after and c.report is not None and not c.report.moves
 
-    yield lambda: rests() or c.clock.now() >= by, _stopping(c) + 1.0, MISSED
+    yield lambda: rests() or c.clock.now() >= by, _stopping_time(c) + 1.0, NO_REPORTS_TEXT
 
 
-def _stopping(c: Controller) -> float:
+def _stopping_time(c: GrblController) -> float:
     """Return the seconds that the slowest axis needs to brake, by the controller's settings if reported."""
-    ramps = [axis.vmax / axis.amax for axis in c.wired]
-    for axis in c.wired:
-        speed, accel = c.speed_of(axis.name), c.figure(120, axis.name)
+    ramps = [axis.vmax / axis.amax for axis in c.wired_axes]
+    for axis in c.wired_axes:
+        speed, accel = c.get_max_axis_speed(axis.name), c.read_axis_setting(120, axis.name)
         if speed and accel:
             ramps.append(speed / accel)
-    return _LATE + max(ramps)
+    return _STOP_DETECTION_S + max(ramps)
 
 
 # --- Settings: read, corrected according to the machine file, and read back.
@@ -216,28 +233,32 @@ _LISTED = 6.0  # Seconds for all settings, which are a few hundred lines.
 _MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
 
 
-def settings(c: Controller) -> Script:
+def write_settings(controller: GrblController) -> Script:
     """Write settings that differ from the required values, and read them back."""
-    there = c.settings = _values((yield from asked(c, "$$", _LISTED)))
-    wrong = {n: value for n, value in _wanted(c, there).items() if not same(there.get(n), value)}
+    there = controller.settings = _values((yield from query_line(controller, "$$", _LISTED)))
+    wrong = {
+        n: value
+        for n, value in _wanted(controller, there).items()
+        if not is_same_setting(there.get(n), value)
+    }
     if not wrong:
         return
     for n, value in wrong.items():
-        yield from asked(c, f"${n}={written(value)}")
-    there = c.settings = _values((yield from asked(c, "$$", _LISTED)))
+        yield from query_line(controller, f"${n}={format_setting(value)}")
+    there = controller.settings = _values((yield from query_line(controller, "$$", _LISTED)))
     for n, value in wrong.items():
-        if not same(there.get(n), value):
+        if not is_same_setting(there.get(n), value):
             raise ScriptError(
                 "${number}={written} was written, but the setting reads back as {number2}",
                 number=n,
-                written=written(value),
+                written=format_setting(value),
                 number2=there.get(n, "nothing"),
             )
 
 
-def _wanted(c: Controller, there: Mapping[int, str]) -> dict[int, float | str]:
+def _wanted(c: GrblController, there: Mapping[int, str]) -> dict[int, float | str]:
     wanted: dict[int, float | str] = dict(c.config.table.settings)
-    always = c.identity is not None and c.identity.lathe and _MODE not in there
+    always = c.identity is not None and c.identity.is_lathe_mode and _MODE not in there
     if always and wanted.get(_MODE) == _LATHE:
         del wanted[_MODE]  # Firmware built for lathes only does not have this setting.
     wanted[_MASK] = (int(float(there.get(_MASK, "0"))) | _REPORTS) & ~_PARSER
@@ -251,18 +272,18 @@ def _values(lines: list[str]) -> dict[int, str]:
     return {int(n): value for n, value in pairs}
 
 
-def same(there: str | None, wanted: float | str) -> bool:
+def is_same_setting(present: str | None, required: float | str) -> bool:
     """Return whether a setting equals the required value within its reported decimals."""
-    if there is None or isinstance(wanted, str):
-        return there == wanted
-    decimals = len(there.partition(".")[2])
+    if present is None or isinstance(required, str):
+        return present == required
+    decimals = len(present.partition(".")[2])
     try:
-        return math.isclose(float(there), wanted, rel_tol=1e-6, abs_tol=0.5001 * 10.0**-decimals)
+        return math.isclose(float(present), required, rel_tol=1e-6, abs_tol=0.5001 * 10.0**-decimals)
     except ValueError:
         return False
 
 
-def written(value: float | str) -> str:
+def format_setting(value: float | str) -> str:
     """Return a setting value as text without an exponent, which the controller cannot read."""
     if isinstance(value, str):
         return value
@@ -272,201 +293,216 @@ def written(value: float | str) -> str:
 _BOOT = 6.0  # Seconds; some boards restart when their port is opened.
 _HOMING = 120.0
 _COASTING, _LOOK = 8.0, 0.1  # Seconds for the spindle to stop, and between two checks.
-_STANDS = 5.0  # rpm
-_TELLS = 0.5  # Seconds for the modes by a real-time byte, which firmware before 2020 ignores.
-_LASTING = ("G8", "G18")  # Required modes that a reset would change.
+_STANDSTILL_RPM = 5.0  # rpm
+_MODES_TIMEOUT_S = 0.5  # Seconds for the modes by a real-time byte, which firmware before 2020 ignores.
+_RESET_MODES = ("G8", "G18")  # Required modes that a reset would change.
 _AT_ZERO = 0.002  # Mm; reports have three decimals.
-_ALONE = 2  # Bit of $22: axes can be homed one at a time.
+_SINGLE_AXIS_BIT = 2  # Bit of $22: axes can be homed one at a time.
 
 
-def connect(c: Controller) -> Script:
+def connect_controller(controller: GrblController) -> Script:
     """Set up a controller after opening; an alarm remains active until the operator clears it."""
-    yield from full_report(c, _BOOT)
-    yield from _set_up(c)
+    yield from request_full_report(controller, _BOOT)
+    yield from _set_up(controller)
 
 
-def reconnect(c: Controller) -> Script:
+def reconnect_controller(controller: GrblController) -> Script:
     """Set up a controller after a lost connection and record the accessories that were still on."""
-    unheard = c.clock.now() - c.heard_at
-    yield from full_report(c, _BOOT)
-    yield from same_session(c)
-    on = c.accessories[1] if c.accessories is not None else ""
-    yield from _set_up(c)
-    c.found_on = (unheard, on) if on else None
+    unheard = controller.clock.now() - controller.last_report_s
+    yield from request_full_report(controller, _BOOT)
+    yield from check_restart(controller)
+    on = controller.reported_accessories[1] if controller.reported_accessories is not None else ""
+    yield from _set_up(controller)
+    controller.active_at_silence = (unheard, on) if on else None
 
 
-def same_session(c: Controller) -> Script:
+def check_restart(controller: GrblController) -> Script:
     """Detect a restart of the controller during the silence.
 
     After a reset, the modes differ from those of TurnDesk (G17 by ``gc_init``). A restarted controller counts
     from 0, so any other position proves that it has not restarted.
     """
-    by = c.clock.now() + _TELLS
-    c.question_modes()
-    yield _by_time(c, lambda: c.modes != "", by), ANSWER, ""
-    told = c.modes.removeprefix("[GC:").rstrip("]").split()
-    places = c.report.position if c.report is not None else None
-    if all(mode in told for mode in _LASTING) or any(abs(place) > _AT_ZERO for place in places or ()):
+    by = controller.clock.now() + _MODES_TIMEOUT_S
+    controller.request_modes()
+    yield _ready_by(controller, lambda: controller.reported_modes != "", by), REPLY_TIMEOUT_S, ""
+    told = controller.reported_modes.removeprefix("[GC:").rstrip("]").split()
+    places = controller.report.position if controller.report is not None else None
+    if all(mode in told for mode in _RESET_MODES) or any(abs(place) > _AT_ZERO for place in places or ()):
         return
-    c.restarted = True
-    c.origin.clear()
+    controller.has_restarted = True
+    controller.home_origin.clear()
 
 
-def _set_up(c: Controller) -> Script:
+def _set_up(c: GrblController) -> Script:
     if c.report is not None and c.report.state not in {"Idle", "Alarm"}:
         yield from stop(c)
-    yield from fresh(c)
-    identity = read_identity((yield from asked(c, "$I")))
-    demand(c, identity)
+    yield from synchronize(c)
+    identity = parse_identity((yield from query_line(c, "$I")))
+    require_hardware(c, identity)
     c.identity = identity
-    c.stream.use(c.identity.buffer)
-    number = _alarm_of(c)
-    if number not in grblhal_codes.CRITICAL:
-        yield from settings(c)
-    yield from full_report(c)
-    number = _alarm_of(c)
+    c.line_sender.set_buffer_size(c.identity.buffer_size)
+    number = _present_alarm(c)
+    if number not in grblhal_codes.CRITICAL_ALARMS:
+        yield from write_settings(c)
+    yield from request_full_report(c)
+    number = _present_alarm(c)
     if number:
-        c.alarm = number
-        c.trusted = c.trusted and number not in grblhal_codes.LOST
-        if number != grblhal_codes.HOMING_REQUIRED:
-            c.fail(grblhal_codes.alarm_text(number), grblhal_codes.alarm_code(number))
+        c.alarm_number = number
+        c.is_position_reliable = c.is_position_reliable and number not in grblhal_codes.POSITION_LOST_ALARMS
+        if number != grblhal_codes.HOMING_REQUIRED_ALARM:
+            c.set_fault(grblhal_codes.describe_alarm(number), grblhal_codes.get_alarm_code(number))
         return
-    yield from _quiet(c)
-    yield from verify(c)
+    yield from _switch_accessories_off(c)
+    yield from verify_modes(c)
 
 
-def _quiet(c: Controller) -> Script:
+def _switch_accessories_off(c: GrblController) -> Script:
     """Switch off spindle and coolant, which may still be on if the control was killed."""
-    for code in grblhal_codes.OFF:
-        yield from asked(c, code)
+    for code in grblhal_codes.OFF_CODES:
+        yield from query_line(c, code)
     by = c.clock.now() + _COASTING
-    while _turns(c) and c.clock.now() < by:
+    while _is_spindle_turning(c) and c.clock.now() < by:
         yield _past(c, c.clock.now() + _LOOK), 2.0 * _LOOK, ""
-        yield from full_report(c)
+        yield from request_full_report(c)
 
 
-def _turns(c: Controller) -> bool:
+def _is_spindle_turning(c: GrblController) -> bool:
     """Return whether the controller's own spindle turns, as measured by its encoder."""
     measured = c.report.measured if c.report is not None else None
-    return c.config.own_spindle and (measured or 0.0) > _STANDS
+    return c.config.has_own_spindle and (measured or 0.0) > _STANDSTILL_RPM
 
 
-def _past(c: Controller, t: float) -> Callable[[], bool]:
+def _past(c: GrblController, t: float) -> Callable[[], bool]:
     return lambda: c.clock.now() >= t
 
 
-def verify(c: Controller) -> Script:
+def verify_modes(controller: GrblController) -> Script:
     """Send and verify the modes; check that X is a radius and that no offsets are active.
 
     Raises ScriptError if the check fails.
     """
-    yield from fresh(c)
-    yield from modes(c)
-    yield from full_report(c)
-    if any(abs(offset) > 1e-9 for offset in c.offset):
-        yield from asked(c, "G10L2P1" + "".join(f"{letter}0" for letter in c.letters))
-        yield from asked(c, "G92.1")
-        yield from asked(c, "G49")
-        yield from full_report(c)
-    if any(abs(offset) > 1e-9 for offset in c.offset):
+    yield from synchronize(controller)
+    yield from send_modes(controller)
+    yield from request_full_report(controller)
+    if any(abs(offset) > 1e-9 for offset in controller.work_offset):
+        yield from query_line(
+            controller, "G10L2P1" + "".join(f"{letter}0" for letter in controller.axis_letters)
+        )
+        yield from query_line(controller, "G92.1")
+        yield from query_line(controller, "G49")
+        yield from request_full_report(controller)
+    if any(abs(offset) > 1e-9 for offset in controller.work_offset):
         raise ScriptError(
             "the controller applies offsets {offset}, but TurnDesk sends blocks in machine coordinates",
             "controller-modes",
-            offset=c.offset,
+            offset=controller.work_offset,
         )
-    if c.diameter:
+    if controller.is_diameter_mode:
         raise ScriptError("X is in diameter mode (D:1) although G8 is active", "controller-modes")
-    if c.report is None or c.report.state not in {"Idle", "Jog"}:
+    if controller.report is None or controller.report.state not in {"Idle", "Jog"}:
         raise ScriptError(
-            "the controller is in state {state}, not Idle", state=c.report.state if c.report else "unknown"
+            "the controller is in state {state}, not Idle",
+            state=controller.report.state if controller.report else "unknown",
         )
-    c.ready = c.fault == ""
+    controller.is_ready = controller.fault == ""
 
 
-def abort(c: Controller) -> Script:
+def abort_and_verify(controller: GrblController) -> Script:
     """Stop, discard the queue and verify the modes; the position is preserved where possible."""
-    waits = c.index_wait
-    c.void()
-    if c.alarm:
-        yield from reset(c)  # An alarm stops only the axes; a reset stops spindle and coolant.
+    waits = controller.waits_for_index
+    controller.discard_pending()
+    if controller.alarm_number:
+        yield from soft_reset(controller)  # An alarm stops only the axes; a reset stops spindle and coolant.
         return
-    if _alarm_of(c):
+    if _present_alarm(controller):
         return
-    yield from stop(c, waits=waits)
-    yield from full_report(c)
-    if not (_alarm_of(c) or _door(c)):
-        yield from verify(c)
+    yield from stop(controller, in_thread_pass=waits)
+    yield from request_full_report(controller)
+    if not (_present_alarm(controller) or _is_door_open(controller)):
+        yield from verify_modes(controller)
 
 
-def recover(c: Controller) -> Script:
+def recover_from_alarm(controller: GrblController) -> Script:
     """Reset, unlock and verify after the operator has cleared an alarm; the planner is empty afterwards."""
-    c.void()
-    unheard = c.mute
-    yield from full_report(c)
+    controller.discard_pending()
+    unheard = controller.is_silent
+    yield from request_full_report(controller)
     if unheard:
-        yield from same_session(c)
-    if c.report is not None and "E" in c.report.pins:
+        yield from check_restart(controller)
+    if controller.report is not None and "E" in controller.report.pins:
         raise ScriptError(
             "E-stop is pressed at the controller: release it, then press Reset", "controller-estop"
         )
-    if c.report is not None and c.report.moves:
-        yield from stop(c)
-    yield from reset(c)
-    yield from full_report(c)
-    if _door(c):
-        raise ScriptError("{door}: close the door, then press Reset", "door", door=grblhal_codes.DOOR)
-    number = _alarm_of(c)
-    if number == grblhal_codes.HOMING_REQUIRED:
+    if controller.report is not None and controller.report.moves:
+        yield from stop(controller)
+    yield from soft_reset(controller)
+    yield from request_full_report(controller)
+    if _is_door_open(controller):
+        raise ScriptError(
+            "{door}: close the door, then press Reset", "door", door=grblhal_codes.DOOR_OPEN_TEXT
+        )
+    number = _present_alarm(controller)
+    if number == grblhal_codes.HOMING_REQUIRED_ALARM:
         return
-    yield from fresh(c)
+    yield from synchronize(controller)
     if number:
-        yield from asked(c, "$X")
-    yield from settings(c)
-    yield from verify(c)
+        yield from query_line(controller, "$X")
+    yield from write_settings(controller)
+    yield from verify_modes(controller)
 
 
-def home(c: Controller, letter: str) -> Script:
+def home_axis(controller: GrblController, letter: str) -> Script:
     """Home one axis on its switch, or set its home at the present position."""
-    axis = next(axis for axis in c.config.axes if axis.name == letter)
-    yield from fresh(c)
-    if axis.here is not None:
-        yield from full_report(c)
-        c.origin[letter] = c.position[letter] + c.origin.get(letter, 0.0) - axis.here
-    elif not (axis.absolute and not c.homing):  # Otherwise the operator confirms the position.
-        yield from _look_for_switch(c, letter)
-    yield from full_report(c)
+    axis = next(axis for axis in controller.config.axes if axis.name == letter)
+    yield from synchronize(controller)
+    if axis.home_position_mm is not None:
+        yield from request_full_report(controller)
+        controller.home_origin[letter] = (
+            controller.position[letter] + controller.home_origin.get(letter, 0.0) - axis.home_position_mm
+        )
+    elif not (
+        axis.is_absolute and not controller.homing_setting
+    ):  # Otherwise the operator confirms the position.
+        yield from _look_for_switch(controller, letter)
+    yield from request_full_report(controller)
     # With "homing on startup required", the controller stays locked until all axes are homed.
-    c.alarm = _alarm_of(c)
-    if not c.alarm:
-        yield from verify(c)
+    controller.alarm_number = _present_alarm(controller)
+    if not controller.alarm_number:
+        yield from verify_modes(controller)
 
 
-def _look_for_switch(c: Controller, letter: str) -> Script:
-    c.origin.pop(letter, None)
-    if not c.homing or c.homing & _ALONE:
-        yield from asked(c, f"$H{letter}", _HOMING)
+def _look_for_switch(c: GrblController, letter: str) -> Script:
+    c.home_origin.pop(letter, None)
+    if not c.homing_setting or c.homing_setting & _SINGLE_AXIS_BIT:
+        yield from query_line(c, f"$H{letter}", _HOMING)
     elif not c.is_homed(letter):
-        yield from asked(c, "$H", _HOMING)  # All axes are homed together, so the next one is already homed.
+        yield from query_line(
+            c, "$H", _HOMING
+        )  # All axes are homed together, so the next one is already homed.
 
 
-def jog_end(c: Controller) -> Script:
+def finish_jog(controller: GrblController) -> Script:
     """Wait for rest after a canceled jog, then verify the modes to account for discarded lines."""
-    began = c.reports
+    began = controller.report_count
     yield (
-        lambda: c.reports > began + 1 and c.report is not None and not c.report.moves,
-        ANSWER,
+        lambda: (
+            controller.report_count > began + 1
+            and controller.report is not None
+            and not controller.report.moves
+        ),
+        REPLY_TIMEOUT_S,
         "the jog was canceled, but the axes do not stop",
     )
-    yield from verify(c)
+    yield from verify_modes(controller)
 
 
-def _door(c: Controller) -> bool:
+def _is_door_open(c: GrblController) -> bool:
     """Return whether the controller reads no lines because its door is open."""
     return c.report is not None and c.report.state == "Door"
 
 
-def _alarm_of(c: Controller) -> int:
+def _present_alarm(c: GrblController) -> int:
     """Return the alarm number of the last report, or 0 without an alarm."""
     if c.report is None or c.report.state != "Alarm":
         return 0
-    return c.report.sub or c.alarm or grblhal_codes.LOCKED
+    return c.report.sub or c.alarm_number or grblhal_codes.LOCKED_ALARM

@@ -12,31 +12,31 @@ from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_codes import number
-from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_controller import GrblController
 from drivers.grblhal.grblhal_operator import LEAST, MOST
-from drivers.grblhal.grblhal_wire import Ask
-from drivers.port_parts import demand_spindle
+from drivers.grblhal.grblhal_transport import SentLine
+from drivers.port_checks import require_spindle_ready
 
-_OBEYS = 1.0  # Seconds until a spindle stopped in a hold must be reported as off.
-_CLIPS = 2.0  # Seconds in which report, override and S word may be from different times.
-_HIGHEST = 30  # Number of the setting.
+_OBEY_TIME_S = 1.0  # Seconds until a spindle stopped in a hold must be reported as off.
+_CLIPPING_TIME_S = 2.0  # Seconds in which report, override and S word may be from different times.
+_MAX_SPEED_SETTING = 30  # Number of the setting.
 _OVER, _UNDER = MOST / 100.0, LEAST / 100.0  # Range of the override as fractions of the S word.
 # Seconds without a reply to M3 or M4, after which the controller is assumed to wait for the speed.
-_IN_WAIT = 0.3
-_STANDS = 30.0  # Rpm, between two reports of a spindle that reverses.
+_WAIT_DETECTION_S = 0.3
+_STANDSTILL_RPM = 30.0  # Rpm, between two reports of a spindle that reverses.
 
 
 class GrblEncoder:
     """Encoder at the controller for a spindle with another drive; it does not report the direction."""
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: GrblController) -> None:
         self._c = controller
         # Signed rpm reported by the device that turns the spindle.
-        self.way: Callable[[], float] = lambda: 0.0
+        self.get_reported_rpm: Callable[[], float] = lambda: 0.0
         self._sign = 1.0
 
     @property
-    def measures(self) -> bool:
+    def is_measuring(self) -> bool:
         """Whether the controller reports a measured speed."""
         return self._c.report is not None and self._c.report.measured is not None
 
@@ -46,31 +46,31 @@ class GrblEncoder:
         At a reported speed of 0, the previous sign remains, for example while the spindle runs down. While
         the controller is silent, return the speed that the drive reports.
         """
-        way, report = self.way(), self._c.report
-        if self._c.mute:
+        way, report = self.get_reported_rpm(), self._c.report
+        if self._c.is_silent:
             return way
         self._sign = math.copysign(1.0, way) if way else self._sign
         return self._sign * abs(report.measured or 0.0) if report is not None else 0.0
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return None, because the controller does not report the angle."""
         return None
 
 
-class _Way:
+class _SpeedSign:
     """Sign of a speed that is measured without direction, which changes only after the speed has fallen."""
 
     def __init__(self) -> None:
         self._sign, self._least = 1.0, math.inf
 
-    def of(self, rpm: float, asked: float) -> float:
-        """Return ``rpm`` with its sign, where ``asked`` has the commanded sign."""
+    def apply_sign(self, rpm: float, commanded_rpm: float) -> float:
+        """Return ``rpm`` with its sign, where ``commanded_rpm`` has the commanded sign."""
         rpm = abs(rpm)
-        if math.copysign(1.0, asked) == self._sign:
+        if math.copysign(1.0, commanded_rpm) == self._sign:
             self._least = math.inf
             return self._sign * rpm
         self._least = min(self._least, rpm)
-        if rpm < _STANDS or rpm > 1.05 * self._least + _STANDS:
+        if rpm < _STANDSTILL_RPM or rpm > 1.05 * self._least + _STANDSTILL_RPM:
             self._sign, self._least = -self._sign, math.inf
         return self._sign * rpm
 
@@ -78,27 +78,27 @@ class _Way:
 class GrblSpindle:
     """``core.ports.Spindle``: M3, M4 and M5 at standstill, otherwise the override of the last S word."""
 
-    def __init__(self, controller: Controller, blocks: GrblBlocks) -> None:
+    def __init__(self, controller: GrblController, blocks: GrblBlocks) -> None:
         self._c = controller
         self._blocks = blocks
         self._wanted = 0.0
         self._said = 0.0  # Speed of the last M3 or M4, signed.
         self._runs = False  # The spindle is on in the controller until a stop or a reset.
-        self._way = _Way()
+        self._way = _SpeedSign()
         self._paused_at: float | None = None  # Stopped in a feed hold, in which lines are not read.
-        self._word: Ask | None = None  # Last M3 or M4.
+        self._word: SentLine | None = None  # Last M3 or M4.
         self._unlike_since: float | None = None  # Start of a difference between reported and expected speed.
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed and limited to the machine's maximum; 0 stops it.
 
         Raises DriverError above the controller's own limit, which would silently reduce the speed, and while
         the controller accepts no lines.
         """
         if rpm:
-            demand_spindle(self._blocks.hindrance())
+            require_spindle_ready(self._blocks.describe_start_refusal())
         rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
-        highest = self.highest
+        highest = self.max_controller_rpm
         if highest and abs(rpm) > 1.001 * highest:
             raise DriverError(
                 "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
@@ -107,16 +107,16 @@ class GrblSpindle:
                 rpm=f"{abs(rpm):.0f}",
             )
         self._wanted = rpm
-        self.pump()
+        self.send_commands()
 
     def coast(self) -> None:
         """Stop with M5, because the controller has no other stop."""
-        self.run(0.0)
+        self.run_at(0.0)
 
     @property
-    def highest(self) -> float:
+    def max_controller_rpm(self) -> float:
         """The controller's speed limit in rpm, to which it reduces higher speeds; 0 if not reported."""
-        return float(self._c.settings.get(_HIGHEST, "0"))
+        return float(self._c.settings.get(_MAX_SPEED_SETTING, "0"))
 
     def speed(self) -> float:
         """Return the measured speed in rpm, or the commanded one without an encoder; signed."""
@@ -125,52 +125,56 @@ class GrblSpindle:
             return 0.0
         if report.measured is None:
             return math.copysign(report.speeds[1], self._said)
-        return self._way.of(report.measured, self._said)
+        return self._way.apply_sign(report.measured, self._said)
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return None, because the controller does not report the angle."""
         return None
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return an empty text, because the axes report the alarms."""
         return ""
 
-    def voided(self) -> None:
+    def handle_reset(self) -> None:
         """Handle a stop or reset, which switches the spindle off until the program starts it again."""
         self._wanted, self._runs, self._paused_at, self._word = 0.0, False, None, None
 
-    def pump(self) -> None:
+    def send_commands(self) -> None:
         """Send the commands that bring the spindle to the requested speed."""
         c = self._c
         self.speed()  # Evaluate each report; otherwise a reversal could be missed.
-        if not c.ready:
+        if not c.is_ready:
             return
         if c.state == "Hold":
-            self._in_hold()
+            self._handle_hold()
         elif self._paused_at is not None:
-            self._after_hold()
+            self._restore_after_hold()
         elif self._wanted == 0.0:
             self._stop()
-        elif self._blocks.quiet and self._blocks.listens and (not self._runs or self._base != self._said):
+        elif (
+            self._blocks.is_quiet
+            and self._blocks.is_listening
+            and (not self._runs or self._base_rpm != self._said)
+        ):
             self._start()
-        elif self._runs and not (self._blocks.quiet and not self._blocks.highest):
-            self._follow(self._said)
-        self._watch_clipping()
-        if c.config.own_spindle:
-            laid = self._blocks.highest and self._runs and self._base == self._said
-            self._blocks.reach = _OVER * abs(self._said) if laid else 0.0
+        elif self._runs and not (self._blocks.is_quiet and not self._blocks.max_css_rpm):
+            self._follow_by_override(self._said)
+        self._check_clipping()
+        if c.config.has_own_spindle:
+            laid = self._blocks.max_css_rpm and self._runs and self._base_rpm == self._said
+            self._blocks.css_max_rpm = _OVER * abs(self._said) if laid else 0.0
 
     # --- inside -------------------------------------------------------------------------------------------
 
     @property
-    def _base(self) -> float:
+    def _base_rpm(self) -> float:
         """The S word, signed.
 
         For constant surface speed, it is half of the highest speed, because the override ranges from 10 to
         200 %. A reset of the override to 100 %, for example by a pendant, then never exceeds the programmed
         limit.
         """
-        highest, wanted = self._blocks.highest, abs(self._wanted)
+        highest, wanted = self._blocks.max_css_rpm, abs(self._wanted)
         if not highest:
             return self._wanted
         said = abs(self._said)
@@ -181,17 +185,17 @@ class GrblSpindle:
 
     def _start(self) -> None:
         """Send M3 or M4; for constant surface speed, first wait until the override is reported."""
-        base = self._base
-        if self._blocks.highest:
-            self._follow(base)
-            if not self._blocks.overrides.true_to(self._c.overrides):
+        base = self._base_rpm
+        if self._blocks.max_css_rpm:
+            self._follow_by_override(base)
+            if not self._blocks.overrides.are_confirmed(self._c.overrides):
                 return
         else:
-            self._blocks.overrides.want_spindle(100)
+            self._blocks.overrides.set_spindle(100)
         self._runs, self._said = True, base
-        self._word = self._c.send(f"M{3 if base > 0.0 else 4}S{number(abs(base))}")
+        self._word = self._c.send_line(f"M{3 if base > 0.0 else 4}S{number(abs(base))}")
 
-    def _watch_clipping(self) -> None:
+    def _check_clipping(self) -> None:
         """Set a fault if the controller limits the speed without a message.
 
         A changed $30 may take effect only after a restart of the controller. The reported commanded speed is
@@ -200,7 +204,7 @@ class GrblSpindle:
         c = self._c
         now, told = c.clock.now(), c.report.speeds if c.report is not None else None
         share = c.overrides[2] / 100.0 if c.overrides is not None and len(c.overrides) > 2 else None
-        said = self._runs and self._word is not None and self._word.done and c.state != "Hold"
+        said = self._runs and self._word is not None and self._word.is_done and c.state != "Hold"
         if not said or told is None or share is None or len(told) < 2:
             self._unlike_since = None
             return
@@ -209,8 +213,8 @@ class GrblSpindle:
             self._unlike_since = None
         elif self._unlike_since is None:
             self._unlike_since = now
-        elif now - self._unlike_since > _CLIPS:
-            c.fail(
+        elif now - self._unlike_since > _CLIPPING_TIME_S:
+            c.set_fault(
                 "the controller runs the spindle at {details} rpm instead of {expected} rpm "
                 "because the controller limits the speed ($30, $31; a changed setting may take "
                 "effect only after the controller restarts)",
@@ -219,54 +223,58 @@ class GrblSpindle:
                 expected=f"{expected:.0f}",
             )
 
-    def _follow(self, base: float) -> None:
+    def _follow_by_override(self, base: float) -> None:
         """Set the override that gives the requested speed with S word ``base``."""
         if self._wanted * base > 0.0:
             share = round(100.0 * self._wanted / base)
-            self._blocks.overrides.want_spindle(min(max(share, LEAST), MOST))
+            self._blocks.overrides.set_spindle(min(max(share, LEAST), MOST))
 
     def _stop(self) -> None:
-        if not self._runs or self._ends_wait():
+        if not self._runs or self._abort_start_wait():
             return
-        if self._blocks.listens:
+        if self._blocks.is_listening:
             self._runs = False
-            self._c.send("M5")
+            self._c.send_line("M5")
         else:
-            self._blocks.jog_stop()  # A line would be rejected; M5 follows when the axes rest.
+            self._blocks.stop_jog()  # A line would be rejected; M5 follows when the axes rest.
 
-    def _ends_wait(self) -> bool:
+    def _abort_start_wait(self) -> bool:
         """Return whether M3 or M4 is not yet acknowledged.
 
         While the firmware waits for the speed, it does not read M5 and ignores the spindle toggle. Only an
         abort with a reset then stops the spindle.
         """
         word = self._word
-        if word is None or word.done:
+        if word is None or word.is_done:
             return False
-        if self._c.listened - word.sent_at > _IN_WAIT:
-            self._blocks.abort()
+        if self._c.listened_s - word.sent_time_s > _WAIT_DETECTION_S:
+            self._blocks.abort_blocks()
         return True
 
-    def _in_hold(self) -> None:
+    def _handle_hold(self) -> None:
         """Stop or restart the spindle in a feed hold by one toggle, and verify it."""
         stops = self._runs and self._wanted == 0.0
-        if self._paused_at is None and stops and self._ends_wait():
+        if self._paused_at is None and stops and self._abort_start_wait():
             return
         if self._paused_at is None and stops:
             self._paused_at = self._c.clock.now()
-            self._c.realtime(grblhal_codes.SPINDLE_PAUSE)
+            self._c.send_realtime(grblhal_codes.SPINDLE_PAUSE)
         elif self._paused_at is not None and self._runs and self._wanted * self._said > 0.0:
             self._paused_at = None
-            self._c.realtime(grblhal_codes.SPINDLE_PAUSE)
-        elif self._paused_at is not None and self._c.clock.now() - self._paused_at > _OBEYS and self._turns():
-            self._c.fail(
+            self._c.send_realtime(grblhal_codes.SPINDLE_PAUSE)
+        elif (
+            self._paused_at is not None
+            and self._c.clock.now() - self._paused_at > _OBEY_TIME_S
+            and self._turns()
+        ):
+            self._c.set_fault(
                 "the controller does not stop its spindle in feed hold: PRESS E-STOP", "ignores-stop"
             )
 
-    def _after_hold(self) -> None:
+    def _restore_after_hold(self) -> None:
         """Send M5 after a feed hold, in case the controller has restarted the spindle."""
         self._paused_at, self._runs = None, False
-        self._c.send("M5")
+        self._c.send_line("M5")
 
     def _turns(self) -> bool:
         report = self._c.report

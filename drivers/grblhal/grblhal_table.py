@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 
-from core.key_declaration import Range, file_key, key_table
+from core.key_declaration import KeyRange, declare_key, make_key_table
 from core.message import Message
 from core.table_schema import (
-    Driver,
+    DriverDeclaration,
     DriverTable,
-    FileReading,
-    Finding,
+    FileFinding,
+    MachineFileReading,
     TableReference,
-    expected_table,
-    written,
+    format_toml_value,
+    make_table_finding,
 )
 
 _SETTINGS, _WHEEL, _GUARD = "grblhal.settings", "io.analog.handwheel", "io.in.guard.at"
 # Required values of settings on a lathe.
-_NEEDED = (
+_REQUIRED_SETTINGS = (
     (13, 0, "reports must be in mm, because reports in inches have too few decimals"),
     (32, 2, "lathe mode"),
 )
@@ -29,13 +29,13 @@ _LIMITS = ((110, "vmax", 60.0, "mm/min"), (120, "amax", 1.0, "mm/s²"))
 _TRAVEL = 130
 
 
-@key_table
+@make_key_table
 class GrblhalTable:
     """Settings of a motion controller with its own planner, which are written at each connection."""
 
-    port: str = file_key(meaning="Serial port of the controller, or its address as `tcp://host:port`.")
-    baud: int = file_key(Range(110, 4_000_000), default=115_200, meaning="Bit rate of the serial port.")
-    x_mode: str = file_key(
+    port: str = declare_key(meaning="Serial port of the controller, or its address as `tcp://host:port`.")
+    baud: int = declare_key(KeyRange(110, 4_000_000), default=115_200, meaning="Bit rate of the serial port.")
+    x_mode: str = declare_key(
         default="G8",
         choices=("G7", "G8"),
         meaning='How the controller reads X. "G8": a radius, which is the only accepted value.',
@@ -43,81 +43,85 @@ class GrblhalTable:
     settings: Mapping[int, float | str] = field(default_factory=dict)
 
 
-def _read(file: FileReading) -> Iterator[Finding]:
+def _read(file: MachineFileReading) -> Iterator[FileFinding]:
     table = file.raw(_SETTINGS)
     if table is not None and not isinstance(table, dict):
-        yield expected_table(_SETTINGS, table)
+        yield make_table_finding(_SETTINGS, table)
         return
     for key, value in (table or {}).items():
         if not key.isdecimal():
             expected = "the key must be a setting number, such as 13 for $13"
-            yield Finding(f"{_SETTINGS}.{key}", written(value), expected)
+            yield FileFinding(f"{_SETTINGS}.{key}", format_toml_value(value), expected)
         elif not _is_setting(value):
-            yield Finding(f"{_SETTINGS}.{key}", written(value), "the setting must be a number or text")
+            yield FileFinding(
+                f"{_SETTINGS}.{key}", format_toml_value(value), "the setting must be a number or text"
+            )
 
 
 def _is_setting(value: object) -> bool:
     return isinstance(value, int | float | str) and not isinstance(value, bool)
 
 
-def _settings(file: FileReading) -> dict[int, float | str]:
+def _read_settings(file: MachineFileReading) -> dict[int, float | str]:
     """Return the valid entries of the settings table by number."""
     table = file.raw(_SETTINGS)
     entries = table.items() if isinstance(table, dict) else ()
     return {int(key): value for key, value in entries if key.isdecimal() and _is_setting(value)}
 
 
-def _rules(file: FileReading) -> Iterator[Finding]:
-    values, settings = file.values, _settings(file)
-    if "handwheel" in file.names("io.analog") and values.says("machine.backend", "grblhal"):
-        yield Finding(_WHEEL, "", "this backend does not have a counter input; remove this entry")
-    if values.says("machine.backend", "grblhal"):
-        yield from _guard(file)
+def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
+    values, settings = file.values, _read_settings(file)
+    if "handwheel" in file.list_table_keys("io.analog") and values.has_text("machine.backend", "grblhal"):
+        yield FileFinding(_WHEEL, "", "this backend does not have a counter input; remove this entry")
+    if values.has_text("machine.backend", "grblhal"):
+        yield from _check_guard(file)
     for axis in file.axes:
         if axis in _AXES:
-            yield from _outside(file, settings, axis)
-    for number, value, why in _NEEDED:
+            yield from _check_travel(file, settings, axis)
+    for number, value, why in _REQUIRED_SETTINGS:
         if settings.get(number, value) != value:
-            yield Finding(
+            yield FileFinding(
                 f"{_SETTINGS}.{number}",
-                written(settings[number]),
+                format_toml_value(settings[number]),
                 Message("this value must be {details}; {why}", details=value, why=why),
             )
-    if values.says("grblhal.x_mode", "G7"):
-        yield Finding(
+    if values.has_text("grblhal.x_mode", "G7"):
+        yield FileFinding(
             "grblhal.x_mode",
             '"G7"',
             'the X mode must be "G8", because a reset would change the meaning of X',
         )
 
 
-def _guard(file: FileReading) -> Iterator[Finding]:
+def _check_guard(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding if a guard that stops the cycle uses an input that is read only at standstill."""
     values, path = file.values, "interlocks.guard_stops"
-    stops = values.has(path, _GUARD) and values.flag(path)
+    stops = values.has_values(path, _GUARD) and values.read_flag(path)
     if stops and values.text(_GUARD).startswith("in."):
         expected = (
             'this input must be the door input, "pn.D", because auxiliary inputs are read only at standstill'
         )
-        yield Finding(_GUARD, written(values.text(_GUARD)), expected, "broken-rule")
+        yield FileFinding(_GUARD, format_toml_value(values.text(_GUARD)), expected, "broken-rule")
 
 
-def _outside(file: FileReading, settings: Mapping[int, float | str], axis: str) -> Iterator[Finding]:
+def _check_travel(
+    file: MachineFileReading, settings: Mapping[int, float | str], axis: str
+) -> Iterator[FileFinding]:
     """Yield findings for an axis whose limits exceed those in the controller's settings."""
     values, offset = file.values, _AXES[axis]
     for first, key, factor, unit in _LIMITS:
         path = f"axis.{axis}.{key}"
-        if values.has(path):
-            yield from _too_small(settings, first + offset, values.number(path) * factor, path, unit)
+        if values.has_values(path):
+            yield from _too_small(settings, first + offset, values.read_number(path) * factor, path, unit)
     path = f"axis.{axis}.travel"
-    if values.has(path):
-        low, high = values.pair(path)
+    if values.has_values(path):
+        low, high = values.read_pair(path)
         yield from _too_small(settings, _TRAVEL + offset, high - low, path, "mm")
 
 
 def _too_small(
     settings: Mapping[int, float | str], number: int, needed: float, path: str, unit: str
-) -> Iterator[Finding]:
+) -> Iterator[FileFinding]:
     setting = settings.get(number)
     if isinstance(setting, str) or setting is None or setting >= needed * (1 - 1e-6):
         return
@@ -127,21 +131,21 @@ def _too_small(
         unit=unit,
         path=path,
     )
-    yield Finding(f"{_SETTINGS}.{number}", f"{setting:g}", expected)
+    yield FileFinding(f"{_SETTINGS}.{number}", f"{setting:g}", expected)
 
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "grblhal",
             GrblhalTable,
-            lambda file: {"settings": _settings(file)},
+            lambda file: {"settings": _read_settings(file)},
             ("settings",),
             _read,
             _rules,
-            port="grblhal.port",
+            serial_port_key="grblhal.port",
             purpose='The connection to a grblHAL controller (`backend = "grblhal"`).',
-            parts=(
+            sub_tables=(
                 TableReference(
                     "grblhal.settings",
                     "Settings of the controller that TurnDesk writes at each connection and reads back: the "

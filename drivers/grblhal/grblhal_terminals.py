@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.message import Message
-from core.ports import PROBE, DriverError, Latch
+from core.ports import PROBE_INPUT, DriverError, TouchLatch
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
-from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_report import Report
-from drivers.grblhal.grblhal_wire import Ask
-from drivers.port_parts import FirstTouch, output_of
+from drivers.grblhal.grblhal_controller import GrblController
+from drivers.grblhal.grblhal_report import StatusReport
+from drivers.grblhal.grblhal_transport import SentLine
+from drivers.port_checks import FirstTouchInput, find_output
 
 # --- Inputs: pins are in every report; auxiliary inputs are requested at standstill.
 
 
 _PIN, _AUX = "pn.", "in."
-_APART = 0.2  # Seconds between two requests.
+_REQUEST_INTERVAL_S = 0.2  # Seconds between two requests.
 
 
 class GrblInputs:
@@ -28,16 +28,16 @@ class GrblInputs:
     it only at standstill, so the last state applies while anything moves.
     """
 
-    def __init__(self, controller: Controller, blocks: GrblBlocks) -> None:
+    def __init__(self, controller: GrblController, blocks: GrblBlocks) -> None:
         self._c = controller
         self._blocks = blocks
         self._read: dict[str, bool] = {}
         self._order = [name for name in controller.config.inputs if self._port(name) is not None]
-        self._asked: tuple[str, Ask] | None = None
+        self._asked: tuple[str, SentLine] | None = None
         self._fulls = 0
         self._next = 0.0
 
-    def states(self) -> Mapping[str, bool]:
+    def read_states(self) -> Mapping[str, bool]:
         """Return the inputs by name, without those that have never been read or do not exist on the board."""
         states, report = dict(self._read), self._c.report
         if report is None:
@@ -48,9 +48,9 @@ class GrblInputs:
                 states[name] = (letter in report.pins) != wired.active_low
         return states
 
-    def lacking(self) -> dict[str, str]:
+    def list_missing(self) -> dict[str, str]:
         """Return the inputs that the controller does not have, with the reason."""
-        have = self._c.identity.inputs if self._c.identity is not None else 0
+        have = self._c.identity.input_count if self._c.identity is not None else 0
         missing: dict[str, str] = {}
         for name, wired in self._c.config.inputs.items():
             port = self._port(name)
@@ -66,27 +66,27 @@ class GrblInputs:
                 )
         return missing
 
-    def pump(self) -> None:
+    def request_next(self) -> None:
         """Request one auxiliary input at a time, and only at standstill."""
         c, now = self._c, self._c.clock.now()
         if self._asked is not None:
             self._take(*self._asked)
-        elif self._order and now >= self._next and self._blocks.quiet and self._blocks.listens:
+        elif self._order and now >= self._next and self._blocks.is_quiet and self._blocks.is_listening:
             name = self._order.pop(0)
             self._order.append(name)
             port = self._port(name)
-            if name not in self.lacking() and port is not None:
-                self._next = now + _APART / len(self._order)
-                self._asked = name, c.send(f"M66P{port}L0")
+            if name not in self.list_missing() and port is not None:
+                self._next = now + _REQUEST_INTERVAL_S / len(self._order)
+                self._asked = name, c.send_line(f"M66P{port}L0")
 
-    def _take(self, name: str, ask: Ask) -> None:
+    def _take(self, name: str, ask: SentLine) -> None:
         c = self._c
-        if c.fault or c.busy or ask.error:
+        if c.fault or c.is_busy or ask.error_code:
             self._asked = None
-        elif ask.done and not self._fulls:
-            self._fulls = c.fulls + 1
-            c.question(full=True)
-        elif ask.done and c.fulls >= self._fulls and c.report is not None:
+        elif ask.is_done and not self._fulls:
+            self._fulls = c.full_report_count + 1
+            c.request_report(full=True)
+        elif ask.is_done and c.full_report_count >= self._fulls and c.report is not None:
             if c.report.input is not None:
                 self._read[name] = (c.report.input > 0) != self._c.config.inputs[name].active_low
             self._asked, self._fulls = None, 0
@@ -99,15 +99,15 @@ class GrblInputs:
 
 _COOLANT = {"flood": "M8", "mist": "M7"}
 _MIST = "M"  # A letter of the build options.
-LETTERS = {"flood": "F", "mist": "M"}  # Letters of the accessories in a report.
-_OBEYS = 1.0  # Seconds from the reply to a line to a report that shows its effect.
+ACCESSORY_LETTERS = {"flood": "F", "mist": "M"}  # Letters of the accessories in a report.
+_OBEY_TIME_S = 1.0  # Seconds from the reply to a line to a report that shows its effect.
 _COLLET = "collet"  # Assumed to be closed at the start.
 
 
 class GrblIO:
     """``core.ports.DigitalIO`` of the controller: flood, mist and auxiliary outputs."""
 
-    def __init__(self, controller: Controller, blocks: GrblBlocks, inputs: GrblInputs) -> None:
+    def __init__(self, controller: GrblController, blocks: GrblBlocks, inputs: GrblInputs) -> None:
         self._c = controller
         self._blocks = blocks
         self._inputs = inputs
@@ -115,11 +115,11 @@ class GrblIO:
         self._wanted = {name: name == _COLLET for name in outputs}
         self._sent: dict[str, bool] = {}  # States sent since the last reset.
         self._said_at: dict[str, float] = {}  # Time when the controller executed the change.
-        self._asks: dict[str, Ask] = {}  # Lines not yet executed, which wait for earlier blocks and M3.
+        self._asks: dict[str, SentLine] = {}  # Lines not yet executed, which wait for earlier blocks and M3.
 
     def inputs(self) -> Mapping[str, bool]:
         """Return the inputs by name."""
-        return self._inputs.states()
+        return self._inputs.read_states()
 
     def outputs(self) -> Mapping[str, bool]:
         """Return the outputs by name, without those that the controller does not have.
@@ -127,14 +127,14 @@ class GrblIO:
         Coolant is as reported, with a delay of 1 s. Auxiliary outputs are as written, because they are not
         reported.
         """
-        told = self._c.accessories
-        shown = {name: on for name, on in self._wanted.items() if not self.lacking(name)}
+        told = self._c.reported_accessories
+        shown = {name: on for name, on in self._wanted.items() if not self.describe_missing(name)}
         for name, output in self._c.config.outputs.items():
-            letter = LETTERS.get(output.terminal)
+            letter = ACCESSORY_LETTERS.get(output.terminal)
             said_at = self._said_at.get(name)
             if letter is None or told is None or said_at is None or name in self._asks:
                 continue
-            if told[0] > said_at + _OBEYS and self._sent.get(name) == self._wanted[name]:
+            if told[0] > said_at + _OBEY_TIME_S and self._sent.get(name) == self._wanted[name]:
                 shown[name] = letter in told[1]
         return shown
 
@@ -144,8 +144,8 @@ class GrblIO:
         Raises DriverError if the machine does not have the output, or if it is switched on and the controller
         does not have it.
         """
-        output_of(name, self._wanted)
-        why = self.lacking(name)
+        find_output(name, self._wanted)
+        why = self.describe_missing(name)
         if on and why:
             terminal = self._c.config.outputs[name].terminal
             raise DriverError(
@@ -161,23 +161,23 @@ class GrblIO:
         if not why:
             self._tell(name)
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Set every output to its safe state, as soon as the controller accepts lines."""
         for name, output in self._c.config.outputs.items():
-            if output.safe is not None and self._wanted[name] != output.safe:
-                self.write(name, output.safe)
+            if output.safe_state is not None and self._wanted[name] != output.safe_state:
+                self.write(name, output.safe_state)
 
-    def lacking(self, name: str) -> str:
+    def describe_missing(self, name: str) -> str:
         """Return the reason why the controller does not have an output, or an empty text."""
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
-            mist = self._c.identity is not None and _MIST in self._c.identity.letters
+            mist = self._c.identity is not None and _MIST in self._c.identity.build_letters
             return (
                 ""
                 if terminal != "mist" or mist
                 else ("the controller's firmware does not support mist coolant")
             )
-        have = self._c.identity.outputs if self._c.identity is not None else 0
+        have = self._c.identity.output_count if self._c.identity is not None else 0
         port = terminal.removeprefix("out.")
         if port.isdecimal() and int(port) < have:
             return ""
@@ -185,14 +185,16 @@ class GrblIO:
             "the terminal does not exist; the controller has {count} auxiliary outputs", count=have
         )
 
-    def able(self) -> frozenset[str]:
+    def list_available_terminals(self) -> frozenset[str]:
         """Return the terminals that a program may use, as named in ``machine_requirements``."""
-        outputs = {Message("output {name}", name=name) for name in self._wanted if not self.lacking(name)}
-        there = {name for name in self._c.config.inputs if name not in self._inputs.lacking()}
+        outputs = {
+            Message("output {name}", name=name) for name in self._wanted if not self.describe_missing(name)
+        }
+        there = {name for name in self._c.config.inputs if name not in self._inputs.list_missing()}
         names = there | {self._c.config.inputs[name].terminal for name in there}
         return frozenset(outputs | {Message("input {name}", name=name) for name in names})
 
-    def voided(self) -> None:
+    def handle_reset(self) -> None:
         """Handle a stop or reset, which switches coolant off; auxiliary outputs may or may not change."""
         self._asks.clear()
         for name, output in self._c.config.outputs.items():
@@ -201,9 +203,9 @@ class GrblIO:
                 self._sent[name] = False
                 self._said_at[name] = self._c.clock.now()
 
-    def pump(self) -> None:
+    def send_changes(self) -> None:
         """Send changes that could not be sent while the controller was locked, jogging or in feed hold."""
-        for name in [name for name, ask in self._asks.items() if ask.done]:
+        for name in [name for name, ask in self._asks.items() if ask.is_done]:
             del self._asks[name]
             self._said_at[name] = self._c.clock.now()
         for name, on in self._wanted.items():
@@ -211,19 +213,19 @@ class GrblIO:
                 self._tell(name)
 
     def _tell(self, name: str) -> None:
-        if not self._blocks.listens:
+        if not self._blocks.is_listening:
             self._sent.setdefault(name, not self._wanted[name])
             return
         on = self._sent[name] = self._wanted[name]
         self._said_at[name] = self._c.clock.now()
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
-            for line in [_COOLANT[terminal]] if on else self._coolant_off():
-                self._asks[name] = self._c.send(line)
+            for line in [_COOLANT[terminal]] if on else self._coolant_off_lines():
+                self._asks[name] = self._c.send_line(line)
         else:
-            self._c.send(f"M{64 if on else 65}P{terminal.removeprefix('out.')}")
+            self._c.send_line(f"M{64 if on else 65}P{terminal.removeprefix('out.')}")
 
-    def _coolant_off(self) -> list[str]:
+    def _coolant_off_lines(self) -> list[str]:
         """Return the lines that switch coolant off.
 
         M9 ends both kinds of coolant, so the other kind is switched on again.
@@ -239,34 +241,34 @@ class GrblIO:
 # --- Probe: a report contains the pin and the position of the same moment.
 
 
-_ASKS = 60.0  # Seconds after arming with more frequent requests.
-_BEHIND = 0.5  # Seconds after a touch with more frequent requests.
+_ARMED_POLLING_S = 60.0  # Seconds after arming with more frequent requests.
+_TOUCH_POLLING_S = 0.5  # Seconds after a touch with more frequent requests.
 
 
-class GrblProbe(FirstTouch):
+class GrblProbe(FirstTouchInput):
     """Touch input by reports, which are requested more often while the probe is armed.
 
     G38.2 is not used, because it would continue after a loss of the host. A jog ends with its motion lease.
     """
 
-    def __init__(self, controller: Controller, axes: GrblAxes, inputs: GrblInputs) -> None:
+    def __init__(self, controller: GrblController, axes: GrblAxes, inputs: GrblInputs) -> None:
         super().__init__()
         self._c, self._axes, self._inputs = controller, axes, inputs
-        self._report: Report | None = None
+        self._report: StatusReport | None = None
         self._at = controller.clock.now()  # Time of the last evaluated report.
 
-    def arm(self) -> None:
+    def arm_latch(self) -> None:
         """Clear the latched touch and request reports more often."""
-        super().arm()
-        self._c.hurry_until = self._c.clock.now() + _ASKS
+        super().arm_latch()
+        self._c.fast_polling_until = self._c.clock.now() + _ARMED_POLLING_S
 
-    def pump(self) -> None:
+    def check_touch(self) -> None:
         """Check a new report for a touch; called once per cycle after the controller's own cycle."""
         now, report = self._c.clock.now(), self._c.report
         if report is self._report or report is None:
             return
         late, self._report, self._at = now - self._at, report, now
-        if self._touches(self._inputs.states().get(PROBE, False)):
+        if self._is_first_touch(self._inputs.read_states().get(PROBE_INPUT, False)):
             sample = self._axes.sample()
-            self._kept = Latch(sample.t, sample.actual, late)
-            self._c.hurry_until = min(self._c.hurry_until, now + _BEHIND)
+            self._kept = TouchLatch(sample.t, sample.actual, late)
+            self._c.fast_polling_until = min(self._c.fast_polling_until, now + _TOUCH_POLLING_S)

@@ -6,41 +6,47 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest
+from core.ports import AxisSample, Cam, DriverError, Fault, GearState, Segments, StopMode, is_queue_finished
 from drivers.hal.bridge.packets import number
-from drivers.hal.bridge.packets import pieces_of as pieces_told
+from drivers.hal.bridge.packets import parse_pieces as pieces_told
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_homing import HalTouch, Homing
-from drivers.hal.hal_link import HalLink, told_fault
-from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
-from drivers.setpoint_pieces import Piece
-from drivers.setpoint_queue import check_limits, pieces_of
-from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
+from drivers.hal.hal_homing import HalHoming, HalTouch
+from drivers.hal.hal_link import HalLink, parse_bridge_fault
+from drivers.port_checks import (
+    require_axis,
+    require_no_fault,
+    require_no_homing,
+    require_power,
+    require_standstill,
+)
+from drivers.setpoint_pieces import MotionPiece
+from drivers.setpoint_queue import check_limits, convert_segments
+from drivers.spindle_gear import AxisMotion, GearAxes, GearedQueue, SpindlePhaseFilter
 
-_PAST = 0.5  # Age in s of setpoints that are still available.
-_POWER = 1.5  # Seconds for the drives to switch on.
-_STILL = 0.1  # Seconds without a count after which an axis is at standstill.
-_SPEED_OVER = 0.05  # s
+_HISTORY_S = 0.5  # Age in s of setpoints that are still available.
+_POWER_ON_S = 1.5  # Seconds for the drives to switch on.
+_STANDSTILL_TIME_S = 0.1  # Seconds without a count after which an axis is at standstill.
+_SPEED_WINDOW_S = 0.05  # s
 _NAN = float("nan")
 
 
 class HalQueue(GearedQueue):
     """Geared setpoint queue for which the bridge decides when a cam has ended."""
 
-    def follow(self, t: float, turns: float) -> Motion | None:
+    def follow_spindle(self, t: float, turns: float) -> AxisMotion | None:
         """Return the setpoint for one sample of the spindle, or None without an active cam."""
-        return None if self._gearing is None else self._gearing.play(t, t, turns)
+        return None if self._gearing is None else self._gearing.play_setpoint(t, t, turns)
 
-    def left(self, t: float) -> None:
+    def end_cam(self, t: float) -> None:
         """End the cam at time ``t``; the tail that follows by time has started."""
         if self._gearing is not None:
-            self._leave(t, self._gearing)
+            self._leave_gearing(t, self._gearing)
 
-    def braked(self, t: float, pieces: list[Piece]) -> None:
+    def replace_by_braking(self, t: float, pieces: list[MotionPiece]) -> None:
         """Replace the queue by a deceleration that the bridge has performed."""
         if self._gearing is not None:
-            self.rest_at(pieces[0].p)
-        self.replace(t, pieces)
+            self.reset_to(pieces[0].positions)
+        self.replace_from(t, pieces)
 
 
 class HalAxes:
@@ -51,23 +57,27 @@ class HalAxes:
         self._link = link
         self._now = now
         self.axes = tuple(axis.name for axis in config.axes)
-        self.commit = config.commit
+        self.commit = config.commit_time_s
         self._driven = [n for n, axis in enumerate(config.axes) if axis.pins is not None]
-        self.queue = HalQueue(Slides.of(config.axes, config.commit), (0.0,) * len(self.axes))
-        self.zero = [0.0] * len(self.axes)  # Home positions in HAL's count.
+        self.queue = HalQueue(GearAxes.from_axes(config.axes, config.commit_time_s), (0.0,) * len(self.axes))
+        self.home_positions = [0.0] * len(self.axes)  # Home positions in HAL's count.
         self._homed = [axis.absolute or axis.pins is None for axis in config.axes]
-        self.homing: Homing | None = None
+        self.active_homing: HalHoming | None = None
         self.fault: Fault | str = ""
-        self.clearing: list[Callable[[], None]] = []  # Functions that clear the faults of other parts.
-        self.connecting: list[Callable[[], None]] = []  # Functions to call after HAL was loaded again.
-        self.spindle_at: tuple[float, float] | None = None  # Time and revolutions of the newest sample.
-        self.index_at = 0.0  # Revolutions at the spindle's index in HAL's count.
-        probe = config.probe
-        self.touch = HalTouch(config.table.period, active_low=probe.active_low) if probe is not None else None
+        self.fault_clearers: list[Callable[[], None]] = []  # Functions that clear the faults of other parts.
+        self.reconnect_handlers: list[
+            Callable[[], None]
+        ] = []  # Functions to call after HAL was loaded again.
+        self.spindle_sample: tuple[float, float] | None = None  # Time and revolutions of the newest sample.
+        self.index_rev = 0.0  # Revolutions at the spindle's index in HAL's count.
+        probe = config.probe_input
+        self.touch_input = (
+            HalTouch(config.table.period, active_low=probe.active_low) if probe is not None else None
+        )
         # An axis that is used as the spindle and retains its count. None: C is engaged or does not exist.
         self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
-        self.c_turns = False  # C turns to its position relative to the index.
-        self.rps = 0.0
+        self.is_c_turning = False  # C turns to its position relative to the index.
+        self.spindle_rev_per_s = 0.0
         self._on = False
         self._order = 0  # Number of the command after which the bridge's power report is valid.
         self._t = 0.0
@@ -75,53 +85,53 @@ class HalAxes:
         self._moved = -math.inf  # Time of the last motion.
         self._still = self._actual
         self._brakings = 0.0
-        self._samples: Callable[..., None] = _nobody
+        self._samples: Callable[..., None] = _discard_sample
         self._marks = [n for n, axis in enumerate(config.axes) if axis.switch]
         self._turned: deque[tuple[float, float]] = deque()
 
     # --- data from the bridge -----------------------------------------------------------------------------
 
-    def connected(self) -> None:
+    def handle_connection(self) -> None:
         """Handle a new connection to HAL, after which only absolute axes know their position."""
         self._homed = [axis.absolute or axis.pins is None for axis in self.config.axes]
-        self._brakings = number(self._link.told, "brakings")
+        self._brakings = number(self._link.last_report, "brakings")
         self._on = False
-        for forget in self.connecting:
+        for forget in self.reconnect_handlers:
             forget()
-        self.take()
-        self.queue.rest_at(self._actual)
+        self.process_samples()
+        self.queue.reset_to(self._actual)
 
-    def keep_samples(self, keep: Callable[..., None]) -> None:
+    def set_sample_handler(self, handler: Callable[..., None]) -> None:
         """Set the function that receives each sample as a row of ``core.ports.SampleSource``."""
-        self._samples = keep
+        self._samples = handler
 
-    def take(self) -> None:
+    def process_samples(self) -> None:
         """Process the samples that have been received."""
         axes, config = len(self._driven), self.config
         turning, telling = bool(config.spindle.pins.position), bool(config.spindle.pins.velocity)
-        width = 1 + 2 * axes + turning + telling + len(self._marks) + (self.touch is not None)
-        for told in self._link.take_rows():
+        width = 1 + 2 * axes + turning + telling + len(self._marks) + (self.touch_input is not None)
+        for told in self._link.pop_sample_rows():
             for at in range(0, len(told) - width + 1, width):
                 self._sample(told[at : at + width], axes, turning=turning, telling=telling)
 
     def _sample(self, row: Sequence[float], axes: int, *, turning: bool, telling: bool) -> None:
         t = row[0]
-        self._command = self._counted(row[1 : 1 + axes], t)
-        self._actual = self._counted(row[1 + axes : 1 + 2 * axes], t)
+        self._command = self._to_machine_position(row[1 : 1 + axes], t)
+        self._actual = self._to_machine_position(row[1 + axes : 1 + 2 * axes], t)
         if turning:
-            self.spindle_at = t, row[1 + 2 * axes]
-            self.queue.follow(t, row[1 + 2 * axes] - self.index_at)
+            self.spindle_sample = t, row[1 + 2 * axes]
+            self.queue.follow_spindle(t, row[1 + 2 * axes] - self.index_rev)
         if telling:
-            self.rps = row[1 + 2 * axes + turning]
+            self.spindle_rev_per_s = row[1 + 2 * axes + turning]
         elif turning:
-            self._speed_of_turns(t, row[1 + 2 * axes])
+            self._estimate_speed(t, row[1 + 2 * axes])
         self._t = t
         bits = row[1 + 2 * axes + turning + telling :]
-        if self.touch is not None:
-            self.touch.see(t, self._actual, bool(bits[-1]))
+        if self.touch_input is not None:
+            self.touch_input.add_sample(t, self._actual, bool(bits[-1]))
         for index, on in zip(self._marks, bits[: len(self._marks)], strict=True):
-            if self.homing is not None and self._homes(index):
-                self.homing.see(self.raw(index), bool(on))
+            if self.active_homing is not None and self._homes(index):
+                self.active_homing.add_sample(self.read_hal_position(index), bool(on))
         moved = zip(self._actual, self._still, self.config.axes, strict=True)
         if any(abs(a - b) > 1.5 * axis.count for a, b, axis in moved):
             self._moved, self._still = t, self._actual
@@ -130,58 +140,58 @@ class HalAxes:
             *self._command,
             *self._actual,
             *(_NAN,) * len(self.axes),
-            60.0 * self.rps,
-            row[1 + 2 * axes] - self.index_at if turning else _NAN,
+            60.0 * self.spindle_rev_per_s,
+            row[1 + 2 * axes] - self.index_rev if turning else _NAN,
             _NAN,
-            self.queue.horizon(t) - t,
+            self.queue.queue_end(t) - t,
         )
 
-    def _speed_of_turns(self, t: float, turns: float) -> None:
+    def _estimate_speed(self, t: float, turns: float) -> None:
         """Calculate the speed in rev/s from the last samples, if HAL does not provide a velocity."""
         turned = self._turned
         turned.append((t, turns))
-        while turned[0][0] < t - _SPEED_OVER:
+        while turned[0][0] < t - _SPEED_WINDOW_S:
             turned.popleft()
         since = t - turned[0][0]
-        self.rps = (turns - turned[0][1]) / since if since > 0.0 else self.rps
+        self.spindle_rev_per_s = (turns - turned[0][1]) / since if since > 0.0 else self.spindle_rev_per_s
 
-    def _counted(self, raw: Sequence[float], t: float) -> tuple[float, ...]:
+    def _to_machine_position(self, raw: Sequence[float], t: float) -> tuple[float, ...]:
         """Convert HAL positions into those of the control; an axis without pins is at its queued position."""
-        place = list(self.queue.demand_at(t)[0])
+        place = list(self.queue.commanded_state_at(t)[0])
         for value, index in zip(raw, self._driven, strict=True):
             if index != self._lent:
-                place[index] = value - self.zero[index]
+                place[index] = value - self.home_positions[index]
         return tuple(place)
 
-    def tick(self) -> None:
+    def run_cycle(self) -> None:
         """Supervise and home, without raising errors; errors become the fault."""
-        self.take()
-        told = self._link.told
-        trouble = self._link.trouble or told_fault(told)
+        self.process_samples()
+        told = self._link.last_report
+        trouble = self._link.failure_reason or parse_bridge_fault(told)
         if trouble and not self.fault:
             self.fault = trouble
             self._forget()
-        if self._on and self._link.done(self._order) and told.get("on") is not True:
-            self._taken_away()
-        self._follow_bridge()
+        if self._on and self._link.is_executed(self._order) and told.get("on") is not True:
+            self._handle_power_loss()
+        self._process_bridge_state()
         self._home_on()
-        self.queue.trim(self._now() - _PAST)
+        self.queue.discard_before(self._now() - _HISTORY_S)
 
-    def _follow_bridge(self) -> None:
+    def _process_bridge_state(self) -> None:
         """Update the queue after the bridge has ended a cam or braked."""
-        told = self._link.told
-        if self.queue.meshed and told.get("geared") is False and "left" in told:
+        told = self._link.last_report
+        if self.queue.is_engaged and told.get("geared") is False and "left" in told:
             left = told["left"]
             if isinstance(left, float | int):
-                self.queue.left(float(left))
+                self.queue.end_cam(float(left))
         count, numbers = number(told, "brakings"), told.get("braked")
         if count > self._brakings and isinstance(numbers, list) and numbers:
             self._brakings = count
             raw = pieces_told([float(each) for each in numbers], len(self._driven))
             pieces = [self._from_hal(piece) for piece in raw]
-            self.queue.braked(pieces[0].t, pieces)
+            self.queue.replace_by_braking(pieces[0].start_time_s, pieces)
 
-    def _taken_away(self) -> None:
+    def _handle_power_loss(self) -> None:
         """Handle a loss of power by E-stop or a drive fault.
 
         Axes without an absolute encoder lose their home.
@@ -191,8 +201,8 @@ class HalAxes:
             self._homed[index] = self.config.axes[index].absolute
 
     def _forget(self) -> None:
-        self._on, self.homing = False, None
-        self.queue.rest_at(self._actual)
+        self._on, self.active_homing = False, None
+        self.queue.reset_to(self._actual)
 
     # --- the port -----------------------------------------------------------------------------------------
 
@@ -202,45 +212,51 @@ class HalAxes:
 
     def horizon(self) -> float:
         """Return the end time of the setpoint queue, or the present time if it is empty."""
-        return self.queue.horizon(self._now())
+        return self.queue.queue_end(self._now())
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at time ``t``."""
-        return self.queue.demand_at(t)
+        return self.queue.commanded_state_at(time_s)
 
     def splice(self, segments: Segments) -> None:
         """Splice setpoints into the queue. Raises DriverError if they are invalid or exceed axis limits."""
         self._need_power()
-        demand_no_homing(self.homing.name if self.homing is not None else "")
+        require_no_homing(self.active_homing.name if self.active_homing is not None else "")
         self._check(segments)
         self.queue.splice(segments, self._now())
-        self._send("splice", pieces_of(segments, len(self.axes)))
+        self._send("splice", convert_segments(segments, len(self.axes)))
 
     def mesh(self, cam: Cam) -> None:
         """Make the axes follow the spindle. Raises DriverError without an encoder or for an invalid cam."""
         self._need_power()
-        if self.spindle_at is None:
+        if self.spindle_sample is None:
             raise DriverError(
                 "HAL does not report the spindle position, so no axis can follow the spindle",
                 "thread-no-encoder",
             )
-        t, turns = self.spindle_at[0], self.spindle_at[1] - self.index_at
-        self._check(cam.way._replace(v=cam.way.v * abs(self.rps) / 1.1))
-        phase = Phase(t, turns, self.rps)
-        self.queue.mesh(cam, phase, self._now())
-        way = pieces_of(cam.way, len(self.axes))
-        then = pieces_of(cam.then, len(self.axes)) if cam.then is not None else []
-        self._send("mesh", [*way, *then], zero=cam.zero + self.index_at, sign=cam.sign, way=len(way))
+        t, turns = self.spindle_sample[0], self.spindle_sample[1] - self.index_rev
+        self._check(cam.way._replace(v=cam.way.v * abs(self.spindle_rev_per_s) / 1.1))
+        phase = SpindlePhaseFilter(t, turns, self.spindle_rev_per_s)
+        self.queue.engage_cam(cam, phase, self._now())
+        way = convert_segments(cam.way, len(self.axes))
+        then = (
+            convert_segments(cam.following_segments, len(self.axes))
+            if cam.following_segments is not None
+            else []
+        )
+        self._send(
+            "mesh", [*way, *then], zero=cam.start_revolutions + self.index_rev, sign=cam.sign, way=len(way)
+        )
 
-    def geared(self) -> Geared | None:
+    def geared(self) -> GearState | None:
         """Return the position of the axes on the cam, or None if they do not follow the spindle."""
-        return self.queue.geared()
+        return self.queue.read_gear_state()
 
     def sample(self) -> AxisSample:
         """Return the state of the axes from HAL's last sample."""
         t, actual, powered = self._t, self._actual, self._powered
-        demand = self._command if powered and self.homing is None else actual
-        velocity = self.queue.demand_at(t)[1]
+        demand = self._command if powered and self.active_homing is None else actual
+        velocity = self.queue.commanded_state_at(t)[1]
         return AxisSample(
             t=t,
             demand=demand,
@@ -248,8 +264,10 @@ class HalAxes:
             following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
             enabled=powered,
             homed=tuple([on and not self._homes(n) for n, on in enumerate(self._homed)]),
-            moving=not self._link.blind
-            and (self.homing is not None or self.c_turns or any(velocity) or self._rolls),
+            moving=not self._link.is_state_unknown
+            and (
+                self.active_homing is not None or self.is_c_turning or any(velocity) or self._is_axis_rolling
+            ),
             fault=self.fault,
         )
 
@@ -257,48 +275,48 @@ class HalAxes:
         """Switch the power on or off and wait. Raises DriverError if the E-stop chain does not close."""
         if not on:
             self._forget()
-            if not self._link.lost:
-                self._link.say("off")
+            if not self._link.failure:
+                self._link.send_command("off")
             return
-        demand_no_fault(self.fault)
+        require_no_fault(self.fault)
         if self._powered:
             return
-        self._order = self._link.say("enable")
-        if not self._link.wait(lambda: self._link.told.get("powered") is True, _POWER):
-            self._link.say("off")
+        self._order = self._link.send_command("enable")
+        if not self._link.wait_until(lambda: self._link.last_report.get("powered") is True, _POWER_ON_S):
+            self._link.send_command("off")
             raise DriverError(
                 "the drives stay off because HAL's E-stop chain does not close; check the E-stop "
                 "button and look for faults",
                 "no-power",
             )
-        self.take()
-        self.queue.rest_at(self._actual)
+        self.process_samples()
+        self.queue.reset_to(self._actual)
         self._on = True
 
-    def stop(self, how: Stop) -> None:
-        """Brake on the path within a few milliseconds, or switch off at once with ``Stop.OFF``."""
-        if self._link.lost:
+    def stop(self, mode: StopMode) -> None:
+        """Brake on the path within a few milliseconds, or switch off at once with ``StopMode.OFF``."""
+        if self._link.failure:
             self._forget()
             return
-        if how is Stop.RAMP_HOLD and self._powered:
-            self.homing = None
-            self._link.say("brake")
-            self.queue.brake(self._now() + self.commit, [axis.amax for axis in self.config.axes])
+        if mode is StopMode.RAMP_HOLD and self._powered:
+            self.active_homing = None
+            self._link.send_command("brake")
+            self.queue.brake_to_rest(self._now() + self.commit, [axis.amax for axis in self.config.axes])
             return
         self._forget()
-        self._link.say("off" if how is Stop.OFF else "ramp-off")
+        self._link.send_command("off" if mode is StopMode.OFF else "ramp-off")
 
     def home(self, axis: str) -> None:
         """Start to home an axis; ``sample().homed`` becomes True when it is done. Raises DriverError."""
-        demand_axis(axis, self.axes)
+        require_axis(axis, self.axes)
         index = self.axes.index(axis)
         figures = self.config.axes[index]
         if figures.absolute or figures.pins is None:
             return
         self._need_power()
-        demand_standstill(axis, self.sample().moving)
+        require_standstill(axis, self.sample().moving)
         self._homed[index] = False
-        self.homing = Homing(figures, index, self)
+        self.active_homing = HalHoming(figures, index, self)
 
     def clear_fault(self) -> None:
         """Clear the fault; the drives remain off. Raises DriverError.
@@ -306,134 +324,145 @@ class HalAxes:
         HAL is loaded again if the bridge has ended, the servo thread has stopped or the board is not
         reachable. hm2_eth reconnects to a card only when it is loaded.
         """
-        if self._link.told.get("stands") is True or self._link.is_stale:
-            self._link.give_up()
-        if self._link.lost:
+        if self._link.last_report.get("stands") is True or self._link.are_inputs_stale:
+            self._link.end_session()
+        if self._link.failure:
             self._link.connect()
-            self.connected()
+            self.handle_connection()
         self._forget()
-        order = self._link.say("clear")
-        self._link.wait(lambda: self._link.done(order), 0.5)
-        for clear in self.clearing:
+        order = self._link.send_command("clear")
+        self._link.wait_until(lambda: self._link.is_executed(order), 0.5)
+        for clear in self.fault_clearers:
             clear()
         self.fault = ""
 
     # --- for C on the spindle drive ------------------------------------------------------------------------
 
-    def lend(self, axis: int | None, raw: float = 0.0, count: float = 0.0) -> None:
+    def transfer_c(self, axis_index: int | None, hal_position: float = 0.0, count: float = 0.0) -> None:
         """Release C to the spindle with an unchanged count, or engage C if ``axis`` is None.
 
         When C is engaged, ``raw`` is its position in HAL and ``count`` is its position in the control.
         """
-        held, self._lent = self._lent, axis
+        held, self._lent = self._lent, axis_index
         # HAL continues to play this setpoint, independent of the feedback.
-        place = list(self.queue.demand_at(self._now())[0])
-        if held is not None and axis is None:
-            self.zero[held] = raw - count
+        place = list(self.queue.commanded_state_at(self._now())[0])
+        if held is not None and axis_index is None:
+            self.home_positions[held] = hal_position - count
             place[held] = count
             self._actual, self._still, self._command = (
                 tuple([count if n == held else p for n, p in enumerate(each)])
                 for each in (self._actual, self._actual, self._command)
             )
-        self.queue.rest_at(place)
+        self.queue.reset_to(place)
 
     # --- for homing ---------------------------------------------------------------------------------------
 
-    def bit(self, name: str) -> bool:
+    def read_bit(self, name: str) -> bool:
         """Return a bit of the bridge by its pin, such as ``X.index``."""
-        return self._link.bit(name)
+        return self._link.read_bit(name)
 
-    def figure(self, name: str) -> float:
+    def read_number(self, name: str) -> float:
         """Return a number of the bridge by its pin, such as ``X.index-at``."""
-        return self._link.figure(name)
+        return self._link.read_number(name)
 
-    def ask_index(self, pin: str, on: bool) -> None:
+    def request_index(self, pin: str, enabled: bool) -> None:
         """Request the index of an encoder, or cancel the request."""
-        self._link.say("index", pin=pin, on=on)
+        self._link.send_command("index", pin=pin, on=enabled)
 
-    def let_limit(self, axis: str, on: bool) -> None:
+    def ignore_limit_switch(self, axis: str, ignored: bool) -> None:
         """Select whether the limit switch of an axis is ignored, as needed for homing on it."""
-        self._link.say("homing", axis=axis, on=on)
+        self._link.send_command("homing", axis=axis, on=ignored)
 
-    def move(self, segments: Segments) -> None:
+    def splice_homing(self, segments: Segments) -> None:
         """Splice the setpoints of a homing. Raises DriverError."""
         self.queue.splice(segments, self._now())
-        self._send("splice", pieces_of(segments, len(self.axes)))
+        self._send("splice", convert_segments(segments, len(self.axes)))
 
-    def halt(self) -> None:
+    def brake(self) -> None:
         """Brake as soon as possible."""
-        self._link.say("brake")
+        self._link.send_command("brake")
 
-    def raw(self, index: int) -> float:
+    def read_hal_position(self, index: int) -> float:
         """Return the position of an axis in HAL's count."""
-        return self._actual[index] + self.zero[index]
+        return self._actual[index] + self.home_positions[index]
 
-    def found(self, index: int, zero: float) -> None:
+    def set_home(self, index: int, hal_position: float) -> None:
         """Set the home position of an axis to ``zero`` in HAL's count."""
-        leap = self.zero[index] - zero
-        self.zero[index] = zero
+        leap = self.home_positions[index] - hal_position
+        self.home_positions[index] = hal_position
         self._homed[index] = True
         self._actual, self._still, self._command = (
             tuple([p + leap if n == index else p for n, p in enumerate(each)])
             for each in (self._actual, self._still, self._command)
         )
-        place = list(self.queue.demand_at(self._now())[0])
+        place = list(self.queue.commanded_state_at(self._now())[0])
         place[index] += leap
-        self.queue.rest_at(place)
+        self.queue.reset_to(place)
 
     # --- inside -------------------------------------------------------------------------------------------
 
     def _homes(self, index: int) -> bool:
-        return self.homing is not None and self.homing.index == index
+        return self.active_homing is not None and self.active_homing.axis_index == index
 
     @property
-    def _rolls(self) -> bool:
+    def _is_axis_rolling(self) -> bool:
         """Whether an axis has moved recently, according to its feedback."""
-        return self._t - self._moved < _STILL
+        return self._t - self._moved < _STANDSTILL_TIME_S
 
     @property
     def _powered(self) -> bool:
-        return self._on and self._link.told.get("powered") is True and not self.fault
+        return self._on and self._link.last_report.get("powered") is True and not self.fault
 
     def _need_power(self) -> None:
-        demand_power(self.fault, self._powered)
+        require_power(self.fault, self._powered)
 
     def _check(self, segments: Segments) -> None:
         check_limits(segments, self.config.axes, self._homed, self._actual)
 
-    def _send(self, what: str, pieces: Sequence[Piece], **values: object) -> None:
-        self._link.say_pieces(what, [self._to_hal(piece) for piece in pieces], **values)
+    def _send(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
+        self._link.send_pieces(what, [self._to_hal(piece) for piece in pieces], **values)
 
-    def _to_hal(self, piece: Piece) -> Piece:
-        p = tuple([piece.p[n] + self.zero[n] for n in self._driven])
-        return Piece(
-            piece.t, piece.dt, p, *(tuple([each[n] for n in self._driven]) for each in (piece.v, piece.a))
+    def _to_hal(self, piece: MotionPiece) -> MotionPiece:
+        p = tuple([piece.positions[n] + self.home_positions[n] for n in self._driven])
+        return MotionPiece(
+            piece.start_time_s,
+            piece.duration_s,
+            p,
+            *(tuple([each[n] for n in self._driven]) for each in (piece.velocities, piece.accelerations)),
         )
 
-    def _from_hal(self, piece: Piece) -> Piece:
-        p, v, a = list(self.queue.demand_at(piece.t)[0]), [0.0] * len(self.axes), [0.0] * len(self.axes)
+    def _from_hal(self, piece: MotionPiece) -> MotionPiece:
+        p, v, a = (
+            list(self.queue.commanded_state_at(piece.start_time_s)[0]),
+            [0.0] * len(self.axes),
+            [0.0] * len(self.axes),
+        )
         for k, n in enumerate(self._driven):
-            p[n], v[n], a[n] = piece.p[k] - self.zero[n], piece.v[k], piece.a[k]
-        return Piece(piece.t, piece.dt, tuple(p), tuple(v), tuple(a))
+            p[n], v[n], a[n] = (
+                piece.positions[k] - self.home_positions[n],
+                piece.velocities[k],
+                piece.accelerations[k],
+            )
+        return MotionPiece(piece.start_time_s, piece.duration_s, tuple(p), tuple(v), tuple(a))
 
     def _home_on(self) -> None:
-        homing = self.homing
+        homing = self.active_homing
         if homing is None:
             return
         try:
-            homing.step(self._now())
+            homing.advance(self._now())
         except DriverError as error:
             self.fault = self.fault or error.fault
-            self.stop(Stop.RAMP_OFF)
+            self.stop(StopMode.RAMP_OFF)
             return
-        if homing.done:
-            self.homing = None
+        if homing.is_done:
+            self.active_homing = None
 
     @property
-    def resting(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Whether the queue is empty and no axis moves."""
-        return at_rest(self.queue.horizon(self._now()), self._now()) and not self._rolls
+        return is_queue_finished(self.queue.queue_end(self._now()), self._now()) and not self._is_axis_rolling
 
 
-def _nobody(*_figures: float) -> None:
+def _discard_sample(*_figures: float) -> None:
     """Ignore a sample."""

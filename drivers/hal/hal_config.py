@@ -6,51 +6,57 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.ports import PROBE
-from drivers.hal.hal_table import NEEDS, HalAxisPins, HalSpindlePins, HalTable
-from drivers.setpoint_queue import AxisFigures
+from core.ports import PROBE_INPUT
+from drivers.hal.hal_table import HOMING_METHOD_PINS, HalAxisPins, HalSpindlePins, HalTable
+from drivers.setpoint_queue import AxisProperties
 
 
 @dataclass(frozen=True, slots=True)
-class HalAxis(AxisFigures):
+class HalAxis(AxisProperties):
     """One axis; without ``pins`` it only counts."""
 
     pins: HalAxisPins | None = None
     home_method: int = 0
-    home_latch: float = 0.0  # mm/s
+    home_latch_speed: float = 0.0  # mm/s
     home_offset: float = 0.0
     is_spindle: bool = False  # C uses the spindle drive.
 
     @property
     def switch(self) -> str:
         """The key of the pin that homing searches for, or an empty text."""
-        needs = NEEDS.get(self.home_method, ()) if not self.absolute and self.pins is not None else ()
+        needs = (
+            HOMING_METHOD_PINS.get(self.home_method, ())
+            if not self.absolute and self.pins is not None
+            else ()
+        )
         return next((key for key in needs if key != "index_enable"), "")
 
 
 @dataclass(frozen=True, slots=True)
-class HalSpindle:
-    """Spindle in rpm and rpm/s; ``turned`` is True if HAL drives the spindle, False for an inverter."""
+class HalSpindleConfig:
+    """Spindle in rpm and rpm/s; ``is_driven_by_hal`` is True if HAL drives the spindle, False for an
+    inverter.
+    """
 
     pins: HalSpindlePins
     rpm_max: float
     accel: float
     decel: float
-    encoder: bool
-    turned: bool = True
+    has_encoder: bool
+    is_driven_by_hal: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class HalOutput:
     """Output with its pin and safe state; None leaves the output unchanged.
 
-    ``lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so an open chain does not
+    ``is_lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so an open chain does not
     switch it to its safe state. Only a silent bridge does.
     """
 
     pin: str
-    safe: bool | None = False
-    lamp: bool = False
+    safe_state: bool | None = False
+    is_lamp: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,30 +72,30 @@ class HalPot:
     """Pot with its pin (0…1), or a handwheel that counts; ``switch`` names its input."""
 
     pin: str
-    low: float = 0.0
-    high: float = 1.0
-    switch: str = ""
+    low_value: float = 0.0
+    high_value: float = 1.0
+    switch_input: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class HalConfig:
-    """Configuration of the complete machine; times in seconds, ``file`` is the path of the HAL file."""
+    """Configuration of the complete machine; times in seconds, ``hal_file`` is the path of the HAL file."""
 
     table: HalTable
-    file: Path
-    commit: float
+    hal_file: Path
+    commit_time_s: float
     axes: tuple[HalAxis, ...]
-    spindle: HalSpindle
+    spindle: HalSpindleConfig
     outputs: Mapping[str, HalOutput] = field(default_factory=dict)
     inputs: Mapping[str, HalInput] = field(default_factory=dict)
     pots: Mapping[str, HalPot] = field(default_factory=dict)
 
     @property
-    def probe(self) -> HalInput | None:
+    def probe_input(self) -> HalInput | None:
         """The input of a probe or tool setter, which is sampled with the axes, or None."""
-        return self.inputs.get(PROBE)
+        return self.inputs.get(PROBE_INPUT)
 
     @property
-    def driven(self) -> tuple[HalAxis, ...]:
+    def driven_axes(self) -> tuple[HalAxis, ...]:
         """The axes that have pins."""
         return tuple(axis for axis in self.axes if axis.pins is not None)

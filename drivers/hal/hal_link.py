@@ -8,16 +8,18 @@ from contextlib import suppress
 from typing import get_args
 
 from core.ports import Clock, DriverError, Fault, FaultCode
-from drivers.hal.bridge.packets import BridgeConfig, Head, number, pack, packets_of, text
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead, build_packets, number, pack_packet, text
 from drivers.hal.hal_session import BridgeLink
-from drivers.setpoint_pieces import Piece
+from drivers.setpoint_pieces import MotionPiece
 
-_SILENT = 0.15  # Seconds without a report.
-_AT_ONCE = 0.05  # Maximum silence in s that one check counts, so that a delay of this process is not counted.
-_SETTLES = 0.5  # Seconds after which debounced inputs are valid.
-_STARTS = 5.0  # Seconds for bus slaves to become operational after HAL was loaded.
-_DOWN = 4.0  # Seconds for HAL to shut down, including its continuation after a crashed bridge.
-_LOOK = 0.002  # Seconds between two checks during a wait.
+_BRIDGE_TIMEOUT_S = 0.15  # Seconds without a report.
+_MAX_WAIT_SLICE_S = (
+    0.05  # Maximum silence in s that one check counts, so that a delay of this process is not counted.
+)
+_SETTLING_TIME_S = 0.5  # Seconds after which debounced inputs are valid.
+_START_TIMEOUT_S = 5.0  # Seconds for bus slaves to become operational after HAL was loaded.
+_SHUTDOWN_TIMEOUT_S = 4.0  # Seconds for HAL to shut down, including its continuation after a crashed bridge.
+_POLL_INTERVAL_S = 0.002  # Seconds between two checks during a wait.
 
 
 class HalLink:
@@ -40,144 +42,150 @@ class HalLink:
         self._sent = 0
         self._reports = 0  # Number of reports of this bridge.
         self._looked, self._silent = 0.0, 0.0  # Time of the last check, and the silence at that time in s.
-        self.told: Head = {}
-        self.rows: list[Sequence[float]] = []  # Samples that have not been taken.
-        self.lost: Fault | str = ""  # Reason why the connection is lost.
-        self.worst = 0.0  # Maximum wake-up delay of the bridge in s.
+        self.last_report: PacketHead = {}
+        self.sample_rows: list[Sequence[float]] = []  # Samples that have not been taken.
+        self.failure: Fault | str = ""  # Reason why the connection is lost.
+        self.max_bridge_delay_s = 0.0  # Maximum wake-up delay of the bridge in s.
 
     def connect(self) -> None:
         """Start HAL and wait for the first report. Raises DriverError."""
-        if self._link is not None and not self._goes_down(self._link):
+        if self._link is not None and not self._wait_for_shutdown(self._link):
             raise DriverError("HAL is still shutting down; press Reset again in a few seconds", "hal-bridge")
         self.close()
-        self.lost, self.rows, self._reports = "", [], 0
+        self.failure, self.sample_rows, self._reports = "", [], 0
         try:
             self._link = self._open()
         except DriverError as error:
-            self.lost = error.fault  # The next Reset tries again.
+            self.failure = error.fault  # The next Reset tries again.
             raise
         self._looked, self._silent = self._clock.now(), 0.0
-        if not self.wait(lambda: self._reports > 0, 3.0):
+        if not self.wait_until(lambda: self._reports > 0, 3.0):
             raise DriverError("the HAL bridge does not send reports; restart TurnDesk", "hal-silent")
-        self.wait(lambda: False, _SETTLES)
-        self.wait(lambda: not self.is_stale, _STARTS)
+        self.wait_until(lambda: False, _SETTLING_TIME_S)
+        self.wait_until(lambda: not self.are_inputs_stale, _START_TIMEOUT_S)
 
-    def _goes_down(self, link: BridgeLink) -> bool:
+    def _wait_for_shutdown(self, link: BridgeLink) -> bool:
         """Return whether HAL has shut down after its bridge has ended, within 4 s."""
-        end = self._clock.now() + _DOWN
-        while not link.down and self._clock.now() < end:
+        end = self._clock.now() + _SHUTDOWN_TIMEOUT_S
+        while not link.has_shut_down and self._clock.now() < end:
             if self._idle is not None:
                 self._idle()
-            self._clock.sleep_until(self._clock.now() + _LOOK)
-        return link.down
+            self._clock.sleep_until(self._clock.now() + _POLL_INTERVAL_S)
+        return link.has_shut_down
 
-    def give_up(self) -> None:
+    def end_session(self) -> None:
         """End the bridge and HAL, for example after the servo thread has stopped."""
-        if self._link is not None and not self.lost:
-            self._link.hang_up()
-            self.lost = Fault("HAL was shut down", "hal-thread")
+        if self._link is not None and not self.failure:
+            self._link.stop_bridge()
+            self.failure = Fault("HAL was shut down", "hal-thread")
 
-    def pump(self) -> None:
-        """Process received packets, without raising errors; a failure is stored in ``lost``."""
-        if self._link is None or self.lost:
+    def process_packets(self) -> None:
+        """Process received packets, without raising errors; a failure is stored in ``failure``."""
+        if self._link is None or self.failure:
             return
-        self._silent, self._looked = self.age, self._clock.now()
+        self._silent, self._looked = self.report_age_s, self._clock.now()
         try:
             for head, numbers in self._link.receive():
-                self.told = head
+                self.last_report = head
                 self._reports += 1
                 self._silent = 0.0
-                self.worst = max(self.worst, number(head, "late"))
+                self.max_bridge_delay_s = max(self.max_bridge_delay_s, number(head, "late"))
                 if len(numbers):
-                    self.rows.append(numbers)
+                    self.sample_rows.append(numbers)
         except DriverError as error:
-            self.lost = error.fault
+            self.failure = error.fault
         except (ValueError, struct.error):
-            self.lost = Fault("the HAL bridge sent an invalid packet", "hal-silent")
-            self._link.hang_up()
+            self.failure = Fault("the HAL bridge sent an invalid packet", "hal-silent")
+            self._link.stop_bridge()
 
     @property
-    def trouble(self) -> Fault | str:
+    def failure_reason(self) -> Fault | str:
         """The reason why the state of the machine is unknown, or an empty text."""
-        silent = self.age
-        if self.lost or silent <= _SILENT:
-            return self.lost
+        silent = self.report_age_s
+        if self.failure or silent <= _BRIDGE_TIMEOUT_S:
+            return self.failure
         return Fault(
             "the HAL bridge has not sent a report for {silent} s", "hal-silent", silent=f"{silent:.2f}"
         )
 
     @property
-    def blind(self) -> bool:
+    def is_state_unknown(self) -> bool:
         """Whether the state of the machine is unknown because bridge, servo thread or board are silent."""
-        return bool(self.trouble) or self.told.get("stands") is True or self.is_stale
+        return bool(self.failure_reason) or self.last_report.get("stands") is True or self.are_inputs_stale
 
     @property
-    def is_stale(self) -> bool:
+    def are_inputs_stale(self) -> bool:
         """Whether HAL's inputs are old because the board is not reachable."""
-        return self.told.get("stale") is True
+        return self.last_report.get("stale") is True
 
     @property
-    def input_age(self) -> float:
+    def input_age_s(self) -> float:
         """The age of the inputs in seconds, or inf while the board is not reachable."""
-        return float("inf") if self.is_stale else self.age
+        return float("inf") if self.are_inputs_stale else self.report_age_s
 
     @property
-    def age(self) -> float:
+    def report_age_s(self) -> float:
         """The seconds without a report while this side was listening, or inf after a loss."""
-        return float("inf") if self.lost else self._silent + min(self._clock.now() - self._looked, _AT_ONCE)
+        return (
+            float("inf")
+            if self.failure
+            else self._silent + min(self._clock.now() - self._looked, _MAX_WAIT_SLICE_S)
+        )
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """The warnings of the present HAL session."""
         return self._link.warnings if self._link is not None else ()
 
-    def beat(self) -> None:
+    def send_heartbeat(self) -> None:
         """Send a sign of life, unless the bridge is silent."""
-        if not self.trouble:
+        if not self.failure_reason:
             with suppress(DriverError):  # The loss is reported separately.
-                self.say("beat")
+                self.send_command("beat")
 
-    def say(self, what: str, **values: object) -> int:
+    def send_command(self, command: str, **values: object) -> int:
         """Send a command and return its number, which the bridge later reports. Raises DriverError."""
         self._sent += 1
-        self._send(pack({"do": what, "n": self._sent, **values}))
+        self._send(pack_packet({"do": command, "n": self._sent, **values}))
         return self._sent
 
-    def say_pieces(self, what: str, pieces: Sequence[Piece], **values: object) -> None:
+    def send_pieces(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
         """Send a command with setpoints. Raises DriverError."""
         self._sent += 1
-        for data in packets_of({"do": what, "n": self._sent, **values}, pieces, self._axes):
+        for data in build_packets({"do": what, "n": self._sent, **values}, pieces, self._axes):
             self._send(data)
 
-    def done(self, order: int) -> bool:
+    def is_executed(self, command_number: int) -> bool:
         """Return whether the bridge has executed the command with this number."""
-        return number(self.told, "n") >= order
+        return number(self.last_report, "n") >= command_number
 
-    def wait(self, ready: Callable[[], bool], longest: float) -> bool:
-        """Process packets until ``ready`` returns True; return False after ``longest`` seconds or a loss."""
-        end = self._clock.now() + longest
-        while not self.lost and self._clock.now() < end:
-            self.pump()
-            if ready():
+    def wait_until(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
+        """Process packets until ``is_ready`` returns True; return False after ``timeout_s`` seconds or a
+        loss.
+        """
+        end = self._clock.now() + timeout_s
+        while not self.failure and self._clock.now() < end:
+            self.process_packets()
+            if is_ready():
                 return True
             if self._idle is not None:
                 self._idle()
-            self._clock.sleep_until(self._clock.now() + _LOOK)
+            self._clock.sleep_until(self._clock.now() + _POLL_INTERVAL_S)
         return False
 
-    def bit(self, name: str) -> bool:
+    def read_bit(self, name: str) -> bool:
         """Return a bit of the bridge by its pin; False for an unknown pin."""
-        told, at = self.told.get("bits"), self._bits.get(name)
+        told, at = self.last_report.get("bits"), self._bits.get(name)
         return isinstance(told, list) and at is not None and told[at] is True
 
-    def figure(self, name: str) -> float:
+    def read_number(self, name: str) -> float:
         """Return a number of the bridge by its pin; 0 for an unknown pin."""
-        told, at = self.told.get("figures"), self._figures.get(name)
+        told, at = self.last_report.get("figures"), self._figures.get(name)
         return float(told[at]) if isinstance(told, list) and at is not None else 0.0
 
-    def take_rows(self) -> Iterator[Sequence[float]]:
+    def pop_sample_rows(self) -> Iterator[Sequence[float]]:
         """Remove and yield the received samples."""
-        rows, self.rows = self.rows, []
+        rows, self.sample_rows = self.sample_rows, []
         yield from rows
 
     def close(self) -> None:
@@ -187,20 +195,20 @@ class HalLink:
         self._link = None
 
     def _send(self, data: bytes) -> None:
-        if self.lost or self._link is None:
+        if self.failure or self._link is None:
             raise DriverError(
-                self.lost or "the HAL bridge is not connected", reason="" if self.lost else "no-bridge"
+                self.failure or "the HAL bridge is not connected", reason="" if self.failure else "no-bridge"
             )
         try:
             self._link.send(data)
         except DriverError as error:
             if error.code != "hal-silent":
-                self.lost = error.fault
+                self.failure = error.fault
             raise
 
 
-def told_fault(told: Mapping[str, object]) -> Fault | str:
+def parse_bridge_fault(report: Mapping[str, object]) -> Fault | str:
     """Return the fault that the bridge reports, or an empty text."""
-    words = text(told, "fault")
-    code: FaultCode = next((each for each in get_args(FaultCode) if each == told.get("code")), "axis")
+    words = text(report, "fault")
+    code: FaultCode = next((each for each in get_args(FaultCode) if each == report.get("code")), "axis")
     return Fault(words, code) if words else ""

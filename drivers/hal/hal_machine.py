@@ -7,14 +7,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts, StationState, Unknown
+from core.ports import (
+    ALL_UNKNOWN_PARTS,
+    Clock,
+    DriverError,
+    FloatArray,
+    MachinePorts,
+    StationState,
+    UnknownPart,
+)
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
-from drivers.hal.hal_session import BridgeLink, bridge_config
-from drivers.hal.hal_spindle import HalOrientation, HalSpindle, HalSpindleC
-from drivers.operator_station import station_of
-from drivers.port_parts import KEPT, SampleLog, demand_output, output_of
+from drivers.hal.hal_session import BridgeLink, create_bridge_config
+from drivers.hal.hal_spindle import HalOrientation, HalSpindle, HalSpindleCAxis
+from drivers.operator_station import build_station_state
+from drivers.port_checks import LOG_ROWS, SampleLog, find_output, require_output_allowed
 
 
 class HalTerminals:
@@ -28,18 +36,18 @@ class HalTerminals:
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name; True is active."""
-        told = self._link.told.get("in")
+        told = self._link.last_report.get("in")
         raw = told if isinstance(told, list) else [False] * len(self._config.inputs)
         wired = zip(self._config.inputs.items(), raw, strict=True)
         return {name: on is not each.active_low for (name, each), on in wired}
 
     def outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name with the states of their HAL pins."""
-        told = self._link.told.get("is")
+        told = self._link.last_report.get("is")
         real = told if isinstance(told, list) else [False] * len(self._config.outputs)
         found = {name: on is True for name, on in zip(self._config.outputs, real, strict=True)}
         for name, (on, order) in list(self._written.items()):
-            if self._link.done(order):
+            if self._link.is_executed(order):
                 del self._written[name]
             else:
                 found[name] = on
@@ -47,10 +55,10 @@ class HalTerminals:
 
     def write(self, name: str, on: bool) -> None:
         """Switch one output. Raises DriverError if the bridge is silent or the E-stop chain is open."""
-        output = output_of(name, self._config.outputs)
-        demand_output(name, on, self._link.trouble)
-        chained = output.safe is not None and not output.lamp
-        if chained and on is not output.safe and self._link.told.get("ok") is not True:
+        output = find_output(name, self._config.outputs)
+        require_output_allowed(name, on, self._link.failure_reason)
+        chained = output.safe_state is not None and not output.is_lamp
+        if chained and on is not output.safe_state and self._link.last_report.get("ok") is not True:
             raise DriverError(
                 "output {name} does not change because the E-stop chain is open; press Reset",
                 "output",
@@ -58,31 +66,31 @@ class HalTerminals:
             )
         self._say(name, on)
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
-        if self._link.lost:
+        if self._link.failure:
             return
-        order = self._link.say("safe")
+        order = self._link.send_command("safe")
         for name, output in self._config.outputs.items():
-            if output.safe is not None:
-                self._written[name] = output.safe, order
+            if output.safe_state is not None:
+                self._written[name] = output.safe_state, order
 
     def _say(self, name: str, on: bool) -> None:
-        self._written[name] = on, self._link.say("out", name=name, on=on)
+        self._written[name] = on, self._link.send_command("out", name=name, on=on)
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         """Return the state of the operator station; its age is that of the inputs."""
-        return station_of(
+        return build_station_state(
             self.inputs(),
             self._config.pots,
-            self._analog,
-            handwheel=round(self._analog("handwheel")),
-            age=self._link.input_age,
+            self._read_analog,
+            handwheel=round(self._read_analog("handwheel")),
+            age_s=self._link.input_age_s,
         )
 
-    def _analog(self, name: str) -> float:
+    def _read_analog(self, name: str) -> float:
         """Return the value of an analog pin: 1 is the end of a pot's range, 0 if it is not wired."""
-        told, names = self._link.told.get("analog"), list(self._config.pots)
+        told, names = self._link.last_report.get("analog"), list(self._config.pots)
         if not isinstance(told, list) or name not in names:
             return 0.0
         return float(told[names.index(name)])
@@ -92,13 +100,13 @@ class HalSamples:
     """``core.ports.SampleSource`` with each period of the servo thread."""
 
     def __init__(self, axes: HalAxes, period: float) -> None:
-        self.rate = 1.0 / period
+        self.sample_rate_hz = 1.0 / period
         self._log = SampleLog(len(axes.axes))
-        axes.keep_samples(self._log.add)
+        axes.set_sample_handler(self._log.append_row)
 
-    def take(self, most: int = KEPT) -> FloatArray:
-        """Return at most ``most`` samples since the last call, oldest first."""
-        return self._log.take(most)
+    def take(self, max_rows: int = LOG_ROWS) -> FloatArray:
+        """Return at most ``max_rows`` samples since the last call, oldest first."""
+        return self._log.pop_rows(max_rows)
 
 
 class HalMachine:
@@ -116,27 +124,27 @@ class HalMachine:
     ) -> None:
         self.config = config
         self.clock = clock
-        self.link = HalLink(open_link, clock, bridge_config(config), idle)
-        self.axes = HalAxes(config, self.link, clock.now)
-        self.spindle = HalSpindle(config, self.link, self.axes)
-        self.c = _spindle_as_c(config, self.axes, self.spindle, self.link)
-        turned = config.spindle.turned and bool(config.spindle.pins.orient)
-        self.orientation = HalOrientation(self.axes, self.spindle, self.link) if turned else None
-        self.axes.clearing.append(self.spindle.index.clear)
-        self.axes.connecting.append(self.spindle.index.forget)
-        self.io = HalTerminals(config, self.link, clock.now)
+        self.bridge_link = HalLink(open_link, clock, create_bridge_config(config), idle)
+        self.axes = HalAxes(config, self.bridge_link, clock.now)
+        self.spindle = HalSpindle(config, self.bridge_link, self.axes)
+        self.spindle_c = _create_spindle_c(config, self.axes, self.spindle, self.bridge_link)
+        turned = config.spindle.is_driven_by_hal and bool(config.spindle.pins.orient)
+        self.orientation = HalOrientation(self.axes, self.spindle, self.bridge_link) if turned else None
+        self.axes.fault_clearers.append(self.spindle.spindle_index.clear_fault)
+        self.axes.reconnect_handlers.append(self.spindle.spindle_index.discard)
+        self.io = HalTerminals(config, self.bridge_link, clock.now)
         self.samples = HalSamples(self.axes, config.table.period)
         try:
-            self.link.connect()
+            self.bridge_link.connect()
         except DriverError:
-            self.link.close()
+            self.bridge_link.close()
             raise
-        self.axes.connected()
+        self.axes.handle_connection()
 
     @property
     def ports(self) -> MachinePorts:
         """The ports for the executor; the terminals are also the operator station."""
-        follows = self.config.spindle.encoder and bool(self.config.spindle.pins.position)
+        follows = self.config.spindle.has_encoder and bool(self.config.spindle.pins.position)
         return MachinePorts(
             clock=self.clock,
             axes=self.axes,
@@ -144,41 +152,43 @@ class HalMachine:
             io=self.io,
             station=self.io,
             gear=self.axes if follows else None,
-            lock=self.c,
+            lock=self.spindle_c,
             orientation=self.orientation,
-            touch=self.axes.touch,
+            touch=self.axes.touch_input,
             samples=self.samples,
-            unknown=self.unknown,
-            warnings=self.link.warnings,
+            unknown=self.find_unknown_items,
+            warnings=self.bridge_link.warnings,
         )
 
-    def unknown(self) -> frozenset[Unknown]:
+    def find_unknown_items(self) -> frozenset[UnknownPart]:
         """Return the unknown states: all of them if bridge, HAL or board do not respond."""
-        return ALL_UNKNOWN if self.link.blind else frozenset()
+        return ALL_UNKNOWN_PARTS if self.bridge_link.is_state_unknown else frozenset()
 
-    def tick(self) -> None:
+    def run_cycle(self) -> None:
         """Run one cycle: receive, supervise and send a sign of life.
 
         It must be called every few milliseconds.
         """
-        self.link.pump()
-        self.axes.tick()
-        self.spindle.tick()
-        if self.c is not None:
-            self.c.tick()
+        self.bridge_link.process_packets()
+        self.axes.run_cycle()
+        self.spindle.update()
+        if self.spindle_c is not None:
+            self.spindle_c.update()
         if self.orientation is not None:
-            self.orientation.tick()
-        self.link.beat()
+            self.orientation.update()
+        self.bridge_link.send_heartbeat()
 
     def close(self) -> None:
         """Close the connection; the bridge brakes and switches off, and HAL is shut down."""
-        self.link.close()
+        self.bridge_link.close()
 
 
-def _spindle_as_c(config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink) -> HalSpindleC | None:
+def _create_spindle_c(
+    config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink
+) -> HalSpindleCAxis | None:
     """Create the C axis of the spindle drive, or return None if C has its own drive or does not exist."""
     number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
     if number is None:
         return None
     told = "spindle.in_position_mode" if config.spindle.pins.in_position_mode else ""
-    return HalSpindleC(axes, spindle, link, number, told)
+    return HalSpindleCAxis(axes, spindle, link, number, told)

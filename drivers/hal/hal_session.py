@@ -24,53 +24,69 @@ from typing import NamedTuple, Protocol
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, number, pack, text, unpack
-from drivers.hal.hal_border import BIT, BRIDGE, Border, border_of, bridge_nets, columns, session_text
+from drivers.hal.bridge.packets import (
+    BridgeAxis,
+    BridgeConfig,
+    PacketHead,
+    number,
+    pack_packet,
+    text,
+    unpack_packet,
+)
 from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_section import (
+    BIT,
+    BRIDGE_COMPONENT,
+    HalSection,
+    build_section,
+    count_columns,
+    insert_section,
+    list_bridge_nets,
+)
 
 # --- Session folders, and the remains of sessions whose control was killed.
 
 
-PREFIX = "turndesk-hal-"
-_LOCK = "session.lock"
+FOLDER_PREFIX = "turndesk-hal-"
+_LOCK_NAME = "session.lock"
 
 
-def new_folder() -> tuple[Path, int]:
+def create_session_folder() -> tuple[Path, int]:
     """Create a session folder and return it with its lock; closing the lock releases the folder."""
-    folder = Path(tempfile.mkdtemp(prefix=PREFIX))
-    lock = os.open(folder / _LOCK, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
+    folder = Path(tempfile.mkdtemp(prefix=FOLDER_PREFIX))
+    lock = os.open(folder / _LOCK_NAME, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     return folder, lock
 
 
-def clear_away(goes_on: Callable[[], bool]) -> None:
+def remove_old_folders(should_continue: Callable[[], bool]) -> None:
     """Remove the folders of sessions without a control, as soon as their processes have ended.
 
-    ``goes_on`` is called between two checks and must wait briefly. When it returns False, folders with
-    running processes remain.
+    ``should_continue`` is called between two checks and must wait briefly. When it returns False, folders
+    with running processes remain.
     """
     for folder in _deserted():
-        while _runs(folder) and goes_on():
+        while _is_running(folder) and should_continue():
             pass
-        if not _runs(folder):
+        if not _is_running(folder):
             shutil.rmtree(folder, ignore_errors=True)
 
 
 def _deserted() -> Iterator[Path]:
-    for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
+    for folder in Path(tempfile.gettempdir()).glob(f"{FOLDER_PREFIX}*"):
         with suppress(OSError):  # The folder belongs to another user or was just removed.
             found = folder.lstat()
-            if stat.S_ISDIR(found.st_mode) and os.geteuid() in {0, found.st_uid} and not _locked(folder):
+            if stat.S_ISDIR(found.st_mode) and os.geteuid() in {0, found.st_uid} and not _is_locked(folder):
                 yield folder
 
 
-def _locked(folder: Path) -> bool:
+def _is_locked(folder: Path) -> bool:
     """Return whether a session folder is locked.
 
     Raises OSError for a folder without a lock file, which is just being created or does not belong to
     TurnDesk.
     """
-    lock = os.open(folder / _LOCK, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
+    lock = os.open(folder / _LOCK_NAME, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -80,7 +96,7 @@ def _locked(folder: Path) -> bool:
     return False
 
 
-def _runs(folder: Path) -> bool:
+def _is_running(folder: Path) -> bool:
     """Return whether a process that was started with this folder is still running."""
     name = os.fsencode(str(folder))
     for told in Path("/proc").glob("[0-9]*/cmdline"):
@@ -93,21 +109,23 @@ def _runs(folder: Path) -> bool:
 # --- The session.
 
 
-PYTHON = "/usr/bin/python3"
+SYSTEM_PYTHON = "/usr/bin/python3"
 _SCRIPT = Path(__file__).parent / "bridge" / "bridge_process.py"
 _START = 30.0  # Seconds for boards that need long to be configured.
-_END = 15.0
-_LINGER = 0.5  # Seconds for which HAL continues after the end of its setpoints when the bridge has crashed.
-_LOOK = 0.05  # Seconds between two checks for another session.
+_END_TIMEOUT_S = 15.0
+_CRASH_DELAY_S = (
+    0.5  # Seconds for which HAL continues after the end of its setpoints when the bridge has crashed.
+)
+_POLL_INTERVAL_S = 0.05  # Seconds between two checks for another session.
 _LARGEST = 1 << 17
-_ALIVE = "alive"  # File that the bridge locks while it runs.
-_IN_ORDER = "ended"  # File that the bridge creates when it ends normally.
+_ALIVE_FILE = "alive"  # File that the bridge locks while it runs.
+_ENDED_FILE = "ended"  # File that the bridge creates when it ends normally.
 # The shared memory of streamer and bridge remains when the last of them is killed. halrun -U removes only
 # HAL's other shared memory, and streamer rejects a segment that is too small.
-CLEAR_STREAMS = "for key in 0x48535430 0x48535431; do ipcrm -M $key 2>/dev/null; done; true\n"
+CLEAR_STREAMS_SCRIPT = "for key in 0x48535430 0x48535431; do ipcrm -M $key 2>/dev/null; done; true\n"
 
 # Messages of halrun and their texts for the operator.
-_PLAIN = {
+_HALRUN_MESSAGES = {
     "Refusing to run as root": "LinuxCNC does not run as root; start TurnDesk as a regular user",
     "Realtime already running": (
         "another LinuxCNC or HAL session is running; close that session, or run halrun -U after a crash"
@@ -118,12 +136,12 @@ _PLAIN = {
 _ENDED, _MUTE = "HAL bridge process has ended", "no error message"
 
 
-class Verdict(NamedTuple):
+class PinVerdict(NamedTuple):
     """Result of the check of one pin: its key in the machine file, its name, and its error."""
 
     path: str
     pin: str
-    trouble: str
+    error_text: str
 
 
 class BridgeLink(Protocol):
@@ -135,16 +153,16 @@ class BridgeLink(Protocol):
         """Send a packet. Raises DriverError if the bridge does not accept it."""
         ...
 
-    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield the received packets. Raises DriverError if the bridge has ended."""
         ...
 
     @property
-    def down(self) -> bool:
+    def has_shut_down(self) -> bool:
         """Whether HAL has ended after its bridge, so that it can be started again."""
         ...
 
-    def hang_up(self) -> None:
+    def stop_bridge(self) -> None:
         """Make the bridge brake and switch the power off, and stop communicating."""
         ...
 
@@ -153,28 +171,30 @@ class BridgeLink(Protocol):
         ...
 
 
-def bridge_config(config: HalConfig) -> BridgeConfig:
+def create_bridge_config(config: HalConfig) -> BridgeConfig:
     """Return the configuration of the bridge."""
-    pins = border_of(config).pins
-    read = [pin for pin in pins if pin.way != "out" and not pin.name.startswith(("in.", "is.", "analog."))]
-    written = [pin.name for pin in pins if pin.way == "out"]
+    pins = build_section(config).bridge_pins
+    read = [
+        pin for pin in pins if pin.direction != "out" and not pin.name.startswith(("in.", "is.", "analog."))
+    ]
+    written = [pin.name for pin in pins if pin.direction == "out"]
     return BridgeConfig(
         axes=tuple(
             BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time, axis.is_spindle)
-            for axis in config.driven
+            for axis in config.driven_axes
         ),
         period=config.table.period,
         ahead=config.table.ahead,
-        outputs={name: output.safe for name, output in config.outputs.items()},
-        lamps=tuple(name for name, output in config.outputs.items() if output.lamp),
+        outputs={name: output.safe_state for name, output in config.outputs.items()},
+        lamps=tuple(name for name, output in config.outputs.items() if output.is_lamp),
         inputs=tuple(config.inputs),
         analog=tuple(config.pots),
-        bits=tuple(pin.name for pin in read if pin.kind == BIT),
+        bits=tuple(pin.name for pin in read if pin.hal_type == BIT),
         spindle=tuple(name.removeprefix("spindle.") for name in written if name.startswith("spindle.")),
         turns=bool(config.spindle.pins.position),
         speed=bool(config.spindle.pins.velocity),
-        marks=sum(bool(axis.switch) for axis in config.driven) + (config.probe is not None),
-        figures=tuple(pin.name for pin in read if pin.kind != BIT),
+        marks=sum(bool(axis.switch) for axis in config.driven_axes) + (config.probe_input is not None),
+        figures=tuple(pin.name for pin in read if pin.hal_type != BIT),
     )
 
 
@@ -184,14 +204,14 @@ class HalSession:
     The constructor raises DriverError if halrun is missing or fails.
     """
 
-    def __init__(self, config: HalConfig, zero: float, *, only_check: bool = False) -> None:
-        _demand_halrun()
-        _clear_leftovers()
-        self._folder, self._lock = new_folder()
+    def __init__(self, config: HalConfig, clock_zero: float, *, check_only: bool = False) -> None:
+        _require_halrun()
+        _remove_leftovers()
+        self._folder, self._lock = create_session_folder()
         self.warnings: tuple[str, ...] = ()
-        self.verdicts: tuple[Verdict, ...] = ()
+        self.pin_verdicts: tuple[PinVerdict, ...] = ()
         try:
-            self._start(config, zero, only_check=only_check)
+            self._start(config, clock_zero, only_check=check_only)
         except BaseException:
             self.close()
             raise
@@ -206,13 +226,13 @@ class HalSession:
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._socket = ours
         with theirs:
-            self._write(config, theirs.fileno(), zero, only_check=only_check)
+            self._write(config, theirs.fileno(), zero, check_only=only_check)
             log = (self._folder / "halrun.log").open("wb")
             with log:
                 # A separate process session: Ctrl-C reaches only the control, which then ends HAL in order.
                 self._halrun = subprocess.Popen(
                     ["halrun", "-f", str(self._folder / "session.hal")],
-                    cwd=config.file.parent,
+                    cwd=config.hal_file.parent,
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
@@ -222,45 +242,49 @@ class HalSession:
         self._wait_for_bridge(only_check=only_check)
         ours.setblocking(False)
 
-    def _write(self, config: HalConfig, fd: int, zero: float, *, only_check: bool) -> None:
+    def _write(self, config: HalConfig, fd: int, zero: float, *, check_only: bool) -> None:
         """Write the files of the session."""
-        border = border_of(config)
+        border = build_section(config)
         try:
-            machine = config.file.read_text(encoding="utf-8")
+            machine = config.hal_file.read_text(encoding="utf-8")
         except (OSError, UnicodeError) as error:
             raise DriverError(
-                "{file}: the HAL file cannot be read: {error}", file=config.file, error=error
+                "{file}: the HAL file cannot be read: {error}", file=config.hal_file, error=error
             ) from error
-        folder, session = self._folder, session_text(machine, border, config.table.thread, str(config.file))
+        folder, session = (
+            self._folder,
+            insert_section(machine, border, config.table.thread, str(config.hal_file)),
+        )
         (folder / "bridge.json").write_text(
-            json.dumps(_told(config, border, folder, fd, zero, only_check=only_check)), encoding="utf-8"
+            json.dumps(_bridge_settings(config, border, folder, fd, zero, only_check=check_only)),
+            encoding="utf-8",
         )
         # The bridge holds a lock while it runs, because waitusr of HAL does not detect a crash. After a
         # crash, HAL continues for a while: the setpoints are played, and the limits brake.
-        ramp = max((axis.vmax / axis.amax for axis in config.driven), default=0.0)
-        left = _LINGER + config.table.ahead + config.table.watchdog + ramp
-        linger = f'[ -e "{folder / _IN_ORDER}" ] || sleep {left:.2f}\n'
+        ramp = max((axis.vmax / axis.amax for axis in config.driven_axes), default=0.0)
+        left = _CRASH_DELAY_S + config.table.ahead + config.table.watchdog + ramp
+        linger = f'[ -e "{folder / _ENDED_FILE}" ] || sleep {left:.2f}\n'
         (folder / "linger.sh").write_text(linger, encoding="utf-8")
-        (folder / "clear.sh").write_text(CLEAR_STREAMS, encoding="utf-8")
-        start = () if only_check else ("start",)
+        (folder / "clear.sh").write_text(CLEAR_STREAMS_SCRIPT, encoding="utf-8")
+        start = () if check_only else ("start",)
         lines = (
             f"loadusr -w /bin/sh {folder / 'clear.sh'}",
             session,
-            f"loadusr -Wn {BRIDGE} {PYTHON} {_SCRIPT} {folder / 'bridge.json'}",
+            f"loadusr -Wn {BRIDGE_COMPONENT} {SYSTEM_PYTHON} {_SCRIPT} {folder / 'bridge.json'}",
             *start,
-            f"loadusr -w flock {folder / _ALIVE} /bin/sh {folder / 'linger.sh'}",
+            f"loadusr -w flock {folder / _ALIVE_FILE} /bin/sh {folder / 'linger.sh'}",
         )
         (folder / "session.hal").write_text("\n".join((*lines, "")), encoding="utf-8")
 
     def _wait_for_bridge(self, *, only_check: bool) -> None:
         deadline = time.monotonic() + _START
         while True:
-            head = self._first_words(deadline)
+            head = self._read_first_packet(deadline)
             if why := text(head, "error"):
                 raise DriverError("HAL: {why}", "hal-setup", why=why)
             if isinstance(said := head.get("verdicts"), list):
-                self.verdicts = tuple(Verdict(*each) for each in said)
-                wrong = [each for each in self.verdicts if each.trouble]
+                self.pin_verdicts = tuple(PinVerdict(*each) for each in said)
+                wrong = [each for each in self.pin_verdicts if each.error_text]
                 if only_check:
                     return
                 if wrong:
@@ -274,7 +298,7 @@ class HalSession:
                         template,
                         path=first.path,
                         pin=first.pin,
-                        fault=first.trouble,
+                        fault=first.error_text,
                         count=len(wrong) - 1,
                     )
                     raise DriverError(words, "hal-setup")
@@ -286,7 +310,7 @@ class HalSession:
                 self.warnings = tuple(map(str, warnings)) if isinstance(warnings, list) else ()
                 return
 
-    def _first_words(self, deadline: float) -> Head:
+    def _read_first_packet(self, deadline: float) -> PacketHead:
         """Return the next packet during startup. Raises DriverError with the output of halrun."""
         assert self._socket is not None
         assert self._halrun is not None
@@ -301,24 +325,24 @@ class HalSession:
             if not data:
                 with suppress(subprocess.TimeoutExpired):
                     self._halrun.wait(3.0)
-                words = Message("halrun ended during startup: {output}", output=self._said() or _MUTE)
+                words = Message("halrun ended during startup: {output}", output=self._read_output() or _MUTE)
                 raise DriverError(words, "hal-setup")
-            return unpack(data)[0]
+            return unpack_packet(data)[0]
         words = Message(
             "HAL did not start within {seconds} s: {output}",
             seconds=f"{_START:g}",
-            output=self._said() or _MUTE,
+            output=self._read_output() or _MUTE,
         )
         raise DriverError(words, "hal-setup")
 
-    def _said(self) -> str:
+    def _read_output(self) -> str:
         """Return the last lines of the output of halrun that explain a failure."""
         try:
             lines = (self._folder / "halrun.log").read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:
             lines = []
         told = [line.strip() for line in lines if line.strip() and not line.startswith("Note:")]
-        for words, plain in _PLAIN.items():
+        for words, plain in _HALRUN_MESSAGES.items():
             if any(words in line for line in told):
                 return plain
         return " / ".join(told[-3:]).replace(f"{self._folder}/", "")
@@ -337,7 +361,7 @@ class HalSession:
                 "the HAL bridge has ended ({cause})", "hal-bridge", cause=error.strerror
             ) from error
 
-    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield all received packets. Raises DriverError if the bridge has ended."""
         assert self._socket is not None
         while True:
@@ -349,19 +373,19 @@ class HalSession:
                 data = b""
             if not data:
                 raise DriverError(_ENDED, "hal-bridge")
-            yield unpack(data)
+            yield unpack_packet(data)
         if self._bridge is not None and select.select([self._bridge], [], [], 0.0)[0]:
-            raise DriverError(": ".join(filter(None, (_ENDED, self._said()))), "hal-bridge")
+            raise DriverError(": ".join(filter(None, (_ENDED, self._read_output()))), "hal-bridge")
 
-    def hang_up(self) -> None:
+    def stop_bridge(self) -> None:
         """Make the bridge brake at once and end."""
         assert self._socket is not None
         with suppress(OSError):
-            self._socket.send(pack({"do": "ramp-off"}))
+            self._socket.send(pack_packet({"do": "ramp-off"}))
             self._socket.shutdown(socket.SHUT_RDWR)
 
     @property
-    def down(self) -> bool:
+    def has_shut_down(self) -> bool:
         """Whether HAL has been shut down after its bridge has ended."""
         return self._halrun is None or self._halrun.poll() is not None
 
@@ -369,36 +393,36 @@ class HalSession:
         """End the bridge, which brakes the axes, and wait until halrun has shut HAL down."""
         if self._socket is not None:
             with suppress(OSError):
-                self._socket.send(pack({"do": "end"}))
+                self._socket.send(pack_packet({"do": "end"}))
             self._socket.close()
         if self._bridge is not None:
             os.close(self._bridge)
             self._bridge = None
         if self._halrun is not None:
             try:
-                failed = self._halrun.wait(_END)
+                failed = self._halrun.wait(_END_TIMEOUT_S)
             except subprocess.TimeoutExpired:
                 self._halrun.kill()
                 failed = self._halrun.wait()
             if failed:  # halrun or HAL's process was killed, so HAL is not shut down.
                 with suppress(OSError, subprocess.TimeoutExpired):
-                    subprocess.run(["halrun", "-U"], capture_output=True, timeout=_END, check=False)
+                    subprocess.run(["halrun", "-U"], capture_output=True, timeout=_END_TIMEOUT_S, check=False)
         shutil.rmtree(self._folder, ignore_errors=True)
         os.close(self._lock)
 
 
-def _clear_leftovers() -> None:
+def _remove_leftovers() -> None:
     """Wait until the HAL of a killed control has been shut down."""
-    deadline = time.monotonic() + _END
+    deadline = time.monotonic() + _END_TIMEOUT_S
 
     def goes_on() -> bool:
-        time.sleep(_LOOK)
+        time.sleep(_POLL_INTERVAL_S)
         return time.monotonic() < deadline
 
-    clear_away(goes_on)
+    remove_old_folders(goes_on)
 
 
-def _demand_halrun() -> None:
+def _require_halrun() -> None:
     """Raise DriverError if LinuxCNC is not installed."""
     if shutil.which("halrun") is None:
         raise DriverError(
@@ -406,22 +430,25 @@ def _demand_halrun() -> None:
         )
 
 
-def _told(
-    config: HalConfig, border: Border, folder: Path, fd: int, zero: float, *, only_check: bool
+def _bridge_settings(
+    config: HalConfig, section: HalSection, folder: Path, fd: int, zero: float, *, only_check: bool
 ) -> dict[str, object]:
     """Return the contents of the configuration file for the bridge's process."""
     return {
         "fd": fd,
         "zero": zero,
-        "name": BRIDGE,
+        "name": BRIDGE_COMPONENT,
         "only_check": only_check,
-        "wanted": [(link.path, link.pin, link.kind, link.drives, link.ours[0]) for link in border.links],
-        "pins": [(pin.name, pin.kind, pin.way) for pin in border.pins],
-        "own": dict(bridge_nets(border)),
+        "wanted": [
+            (link.path, link.pin, link.hal_type, link.is_driven, link.turndesk_signals[0])
+            for link in section.machine_links
+        ],
+        "pins": [(pin.name, pin.hal_type, pin.direction) for pin in section.bridge_pins],
+        "own": dict(list_bridge_nets(section)),
         "nets": str(folder / "nets.hal"),
-        "alive": str(folder / _ALIVE),
-        "ended": str(folder / _IN_ORDER),
-        "columns": "f" * columns(config),
-        "sampled": border.columns,
-        "bridge": asdict(bridge_config(config)),
+        "alive": str(folder / _ALIVE_FILE),
+        "ended": str(folder / _ENDED_FILE),
+        "columns": "f" * count_columns(config),
+        "sampled": section.sample_columns,
+        "bridge": asdict(create_bridge_config(config)),
     }

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable, Iterator
 
 from core.message import Message
-from core.table_schema import Finding
+from core.table_schema import FileFinding
 from drivers.inverter.family_table import (
-    ABSENT,
+    ABSENT_REGISTER,
     FamilyTable,
     ParameterKeys,
     ReadKeys,
@@ -18,11 +18,11 @@ from drivers.inverter.family_table import (
 )
 
 _PARITIES = {"N", "E", "O"}
-_SHOWN = re.compile(r"[^{}]*\{code(:0?\d?[dX])?\}[^{}]*")
-Address = tuple[str, int]  # "register" or "coil", and its number
+_CODE_FORMAT_PATTERN = re.compile(r"[^{}]*\{code(:0?\d?[dX])?\}[^{}]*")
+RegisterAddress = tuple[str, int]  # "register" or "coil", and its number
 
 
-def broken(table: FamilyTable) -> Iterator[Finding]:
+def check_family(table: FamilyTable) -> Iterator[FileFinding]:
     """Yield the findings about a table whose keys all have values of the right type."""
     said = table.line.parity.split()
     if not said or not set(said) <= _PARITIES:
@@ -32,30 +32,30 @@ def broken(table: FamilyTable) -> Iterator[Finding]:
         yield from _registers(table.registers)
 
 
-def _finding(path: str, text: str) -> Finding:
-    return Finding(path, "", text, "broken-rule")
+def _finding(path: str, text: str) -> FileFinding:
+    return FileFinding(path, "", text, "broken-rule")
 
 
-def _parameters(parameters: Iterable[ParameterKeys]) -> Iterator[Finding]:
+def _parameters(parameters: Iterable[ParameterKeys]) -> Iterator[FileFinding]:
     taken: dict[int, str] = {}
     for number, each in enumerate(parameters, 1):
         path = f"parameter[{number}]"
-        if (each.value == ABSENT) is (each.counts_per_s == 0.0):
+        if (each.value == ABSENT_REGISTER) is (each.counts_per_s == 0.0):
             yield _finding(path, "expected either value or counts_per_s; use one of them")
-        if each.value != ABSENT and not each.why.strip():
+        if each.value != ABSENT_REGISTER and not each.why.strip():
             yield _finding(f"{path}.why", "this value is missing; say what the value does")
         first = taken.setdefault(each.register, path)
         if first != path:
             yield _used(f"{path}.register", each.register, first)
 
 
-def _used(path: str, register: int, first: str) -> Finding:
+def _used(path: str, register: int, first: str) -> FileFinding:
     text = "register {register} is already in {first}; use each register once"
     return _finding(path, Message(text, register=f"0x{register:04X}", first=first))
 
 
-def _registers(table: RegisterTable) -> Iterator[Finding]:
-    read: dict[Address, str] = {}
+def _registers(table: RegisterTable) -> Iterator[FileFinding]:
+    read: dict[RegisterAddress, str] = {}
     for number, each in enumerate(table.reads, 1):
         yield from _read(each, f"read[{number}]", read)
     written = {table.frequency.register + n: "frequency" for n in range(table.frequency.words)}
@@ -68,17 +68,17 @@ def _registers(table: RegisterTable) -> Iterator[Finding]:
     yield from _code(table)
 
 
-def _one_kind(each: ReadKeys | WriteKeys | StateKeys, path: str) -> Iterator[Finding]:
-    if (each.register == ABSENT) is (each.coil == ABSENT):
+def _one_kind(each: ReadKeys | WriteKeys | StateKeys, path: str) -> Iterator[FileFinding]:
+    if (each.register == ABSENT_REGISTER) is (each.coil == ABSENT_REGISTER):
         yield _finding(path, "expected either register or coil; use one of them")
 
 
-def _addresses(each: ReadKeys | StateKeys, count: int = 1) -> list[Address]:
-    kind, first = ("coil", each.coil) if each.register == ABSENT else ("register", each.register)
+def _addresses(each: ReadKeys | StateKeys, count: int = 1) -> list[RegisterAddress]:
+    kind, first = ("coil", each.coil) if each.register == ABSENT_REGISTER else ("register", each.register)
     return [(kind, first + n) for n in range(count)]
 
 
-def _read(each: ReadKeys, path: str, read: dict[Address, str]) -> Iterator[Finding]:
+def _read(each: ReadKeys, path: str, read: dict[RegisterAddress, str]) -> Iterator[FileFinding]:
     yield from _one_kind(each, path)
     addresses = _addresses(each, each.count)
     if addresses[-1][1] > 0xFFFF:
@@ -88,39 +88,41 @@ def _read(each: ReadKeys, path: str, read: dict[Address, str]) -> Iterator[Findi
     read |= dict.fromkeys(addresses, path)
 
 
-def _write(each: WriteKeys, path: str, written: dict[int, str]) -> Iterator[Finding]:
+def _write(each: WriteKeys, path: str, written: dict[int, str]) -> Iterator[FileFinding]:
     yield from _one_kind(each, path)
-    if (each.register == ABSENT) is not (each.value == ABSENT):
+    if (each.register == ABSENT_REGISTER) is not (each.value == ABSENT_REGISTER):
         yield _finding(path, "a register needs a value, and a coil needs on; correct the keys")
     if each.register in written:
         yield _used(path, each.register, written[each.register])
 
 
-def _state(state: StateKeys, path: str, read: dict[Address, str]) -> Iterator[Finding]:
+def _state(state: StateKeys, path: str, read: dict[RegisterAddress, str]) -> Iterator[FileFinding]:
     yield from _one_kind(state, path)
-    if state.register != ABSENT and not state.values:
+    if state.register != ABSENT_REGISTER and not state.values:
         yield _finding(f"{path}.values", "this value is missing; list the values for which the state is on")
     if [value for value in state.values if value != int(value) & state.mask]:
         yield _finding(f"{path}.values", "a value has bits outside mask; correct mask or values")
     yield from _unread(path, _addresses(state), read)
 
 
-def _reported(table: RegisterTable, read: dict[Address, str]) -> Iterator[Finding]:
+def _reported(table: RegisterTable, read: dict[RegisterAddress, str]) -> Iterator[FileFinding]:
     for name, each in (("output", table.output), ("setpoint", table.setpoint)):
         addresses = [("register", each.register + n) for n in range(each.words)]
         yield from _unread(f"report.{name}", addresses, read)
     yield from _unread("report.current", [("register", table.current.register)], read)
 
 
-def _unread(path: str, addresses: Iterable[Address], read: dict[Address, str]) -> Iterator[Finding]:
+def _unread(
+    path: str, addresses: Iterable[RegisterAddress], read: dict[RegisterAddress, str]
+) -> Iterator[FileFinding]:
     for kind, address in addresses:
-        if address != ABSENT and (kind, address) not in read:
+        if address != ABSENT_REGISTER and (kind, address) not in read:
             text = "{kind} {address} is not in any read; add it to a [[read]] table"
             yield _finding(path, Message(text, kind=kind, address=f"0x{address:04X}"))
 
 
-def _code(table: RegisterTable) -> Iterator[Finding]:
-    if not _SHOWN.fullmatch(table.code.shown):
+def _code(table: RegisterTable) -> Iterator[FileFinding]:
+    if not _CODE_FORMAT_PATTERN.fullmatch(table.fault_code.shown):
         yield _finding("report.fault_code.shown", "expected text with one {code}, {code:02d} or {code:04X}")
     if "fault" not in table.states and not table.code_is_polled:
         text = "a fault code that is not in any read needs report.fault; add the fault state or the read"

@@ -8,60 +8,60 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from core.key_declaration import Pair, Range, Unit, Words, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, Pair, Words, declare_key, make_key_table
 from core.table_schema import TableReference
 
 MODBUS, HUANYANG = "modbus", "huanyang"
-_ADDRESS = Range(0, 0xFFFF)
-_COUNTS = Range(0.01, 10_000.0)
-ABSENT = -1  # Used for an address or value that is not in the file.
+_ADDRESS = KeyRange(0, 0xFFFF)
+_COUNT_RANGE = KeyRange(0.01, 10_000.0)
+ABSENT_REGISTER = -1  # Used for an address or value that is not in the file.
 
 
-@key_table
+@make_key_table
 class FamilyKeys:
     """Name of the inverter and the protocol of its frames."""
 
-    name: str = file_key(meaning="Name of the inverter, for messages.")
-    manual: str = file_key(meaning="Manual from which the registers come, with its number or date.")
-    protocol: str = file_key(
+    name: str = declare_key(meaning="Name of the inverter, for messages.")
+    manual: str = declare_key(meaning="Manual from which the registers come, with its number or date.")
+    protocol: str = declare_key(
         choices=(MODBUS, HUANYANG), meaning="Frames on the line: Modbus RTU, or those of a Huanyang HY."
     )
 
 
-@key_table
+@make_key_table
 class LineKeys:
     """Serial line settings that the inverter supports."""
 
-    baud: Pair = file_key(Range(110, 1_000_000), meaning="Lowest and highest bit rate.")
-    parity: Words = file_key(meaning="Parities: `N`, `E` and `O`.")
-    write_multiple: bool = file_key(
+    baud: Pair = declare_key(KeyRange(110, 1_000_000), meaning="Lowest and highest bit rate.")
+    parity: Words = declare_key(meaning="Parities: `N`, `E` and `O`.")
+    write_multiple: bool = declare_key(
         default=False, meaning="Registers are written with function 16. Default: function 6."
     )
 
 
-@key_table
+@make_key_table
 class FrequencyKeys:
     """Frequency in one or two registers."""
 
-    register: int = file_key(_ADDRESS, meaning="Address of the register in the frame.")
-    counts_per_hz: float = file_key(_COUNTS, meaning="Register value for 1 Hz.")
-    words: int = file_key(
-        Range(1, 2), default=1, meaning="Number of registers; of two, the first has the high word."
+    register: int = declare_key(_ADDRESS, meaning="Address of the register in the frame.")
+    counts_per_hz: float = declare_key(_COUNT_RANGE, meaning="Register value for 1 Hz.")
+    words: int = declare_key(
+        KeyRange(1, 2), default=1, meaning="Number of registers; of two, the first has the high word."
     )
-    signed: bool = file_key(default=False, meaning="A negative value is the reverse direction.")
+    signed: bool = declare_key(default=False, meaning="A negative value is the reverse direction.")
 
     @property
-    def highest(self) -> float:
+    def max_hz(self) -> float:
         """The highest frequency in Hz that the registers can contain."""
         bits = 16 * self.words - self.signed
         return float((1 << bits) - 1) / self.counts_per_hz
 
-    def words_of(self, hz: float) -> tuple[int, ...]:
+    def encode_hz(self, hz: float) -> tuple[int, ...]:
         """Return the register values for a frequency in Hz; without ``signed``, the sign is ignored."""
         counts = round((hz if self.signed else abs(hz)) * self.counts_per_hz)
         return tuple(counts >> 16 * place & 0xFFFF for place in reversed(range(self.words)))
 
-    def hertz(self, words: Mapping[int, int]) -> float:
+    def decode_hz(self, words: Mapping[int, int]) -> float:
         """Return the frequency in Hz, never negative, from register values by address."""
         counts = 0
         for address in range(self.register, self.register + self.words):
@@ -71,120 +71,126 @@ class FrequencyKeys:
         return counts / self.counts_per_hz
 
 
-@key_table
+@make_key_table
 class CurrentKeys:
     """Register that contains the output current."""
 
-    register: int = file_key(_ADDRESS, meaning="Address of the register.")
-    counts_per_a: float = file_key(_COUNTS, meaning="Register value for 1 A.")
+    register: int = declare_key(_ADDRESS, meaning="Address of the register.")
+    counts_per_a: float = declare_key(_COUNT_RANGE, meaning="Register value for 1 A.")
 
 
-@key_table
+@make_key_table
 class StateKeys:
     """State of the inverter: a coil that is on, or a register with one of several values."""
 
-    register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the register.")
-    coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the coil, if not a register.")
-    mask: int = file_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
-    values: tuple[float, ...] = file_key(
+    register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the register.")
+    coil: int = declare_key(
+        _ADDRESS, default=ABSENT_REGISTER, meaning="Address of the coil, if not a register."
+    )
+    mask: int = declare_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
+    values: tuple[float, ...] = declare_key(
         _ADDRESS, default=(), meaning="One to four values of these bits for which the state is on."
     )
 
-    def applies(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> bool:
+    def is_active(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> bool:
         """Return whether the state is on, from register values and coils by address."""
-        if self.coil != ABSENT:
+        if self.coil != ABSENT_REGISTER:
             return coils[self.coil]
         return words[self.register] & self.mask in self.values
 
 
-@key_table
+@make_key_table
 class CodeKeys:
     """Register that contains the fault code; 0 means no fault."""
 
-    register: int = file_key(_ADDRESS, meaning="Address of the register.")
-    mask: int = file_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
-    shown: str = file_key(
+    register: int = declare_key(_ADDRESS, meaning="Address of the register.")
+    mask: int = declare_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
+    shown: str = declare_key(
         default="{code}",
         meaning="How the manual writes the number: `{code:04X}H` (0021H), `E{code:02d}` (E33).",
     )
 
 
-@key_table
+@make_key_table
 class ReadKeys:
     """Read request of each poll."""
 
-    register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the first register.")
-    coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the first coil, if not a register.")
-    count: int = file_key(Range(1, 125), default=1, meaning="Number of registers or coils.")
+    register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the first register.")
+    coil: int = declare_key(
+        _ADDRESS, default=ABSENT_REGISTER, meaning="Address of the first coil, if not a register."
+    )
+    count: int = declare_key(KeyRange(1, 125), default=1, meaning="Number of registers or coils.")
 
 
-@key_table
+@make_key_table
 class WriteKeys:
     """Write request of a command."""
 
-    register: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the register.")
-    value: int = file_key(_ADDRESS, default=ABSENT, meaning="Value for the register.")
-    coil: int = file_key(_ADDRESS, default=ABSENT, meaning="Address of the coil, if not a register.")
-    on: bool = file_key(default=False, meaning="Whether the coil is switched on.")
+    register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the register.")
+    value: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Value for the register.")
+    coil: int = declare_key(
+        _ADDRESS, default=ABSENT_REGISTER, meaning="Address of the coil, if not a register."
+    )
+    on: bool = declare_key(default=False, meaning="Whether the coil is switched on.")
 
 
-@key_table
+@make_key_table
 class CommandKeys:
     """Settings for sending commands."""
 
-    repeat: bool = file_key(
+    repeat: bool = declare_key(
         default=True,
         meaning="Every frequency is followed by the run command. false: only after a change.",
     )
-    reset_tries: int = file_key(
-        Range(1, 3), default=3, meaning="Number of times that a reset is sent without a response."
+    reset_tries: int = declare_key(
+        KeyRange(1, 3), default=3, meaning="Number of times that a reset is sent without a response."
     )
-    reset_pause: float = file_key(
-        Range(0.0, 3.0, Unit.SECONDS),
+    reset_pause: float = declare_key(
+        KeyRange(0.0, 3.0, FileUnit.SECONDS),
         name="reset_pause_s",
         default=0.0,
         meaning="Time after a reset in which the inverter does not respond.",
     )
 
 
-@key_table
+@make_key_table
 class ParameterKeys:
     """Parameter that TurnDesk checks at each connection."""
 
-    name: str = file_key(meaning="Number of the parameter at the keypad.")
-    register: int = file_key(_ADDRESS, meaning="Address of the register.")
-    value: int = file_key(_ADDRESS, default=ABSENT, meaning="Value that the parameter must have.")
-    counts_per_s: float = file_key(
-        Range(0.1, 1000.0),
+    name: str = declare_key(meaning="Number of the parameter at the keypad.")
+    register: int = declare_key(_ADDRESS, meaning="Address of the register.")
+    value: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Value that the parameter must have.")
+    counts_per_s: float = declare_key(
+        KeyRange(0.1, 1000.0),
         default=0.0,
         meaning="In place of a value: this is the communication timeout, which must be `comm_loss_s`.",
     )
-    why: str = file_key(default="", meaning="What the value does, for the message.")
-    write: bool = file_key(
+    why: str = declare_key(default="", meaning="What the value does, for the message.")
+    write: bool = declare_key(
         default=False, meaning="TurnDesk writes the value if it differs. false: TurnDesk only reports it."
     )
 
 
-@key_table
+@make_key_table
 class TopKeys:
     """Parameter that limits the output frequency."""
 
-    name: str = file_key(meaning="Number of the parameter at the keypad.")
-    register: int = file_key(_ADDRESS, meaning="Address of the register.")
-    counts_per_hz: float = file_key(_COUNTS, meaning="Register value for 1 Hz.")
+    name: str = declare_key(meaning="Number of the parameter at the keypad.")
+    register: int = declare_key(_ADDRESS, meaning="Address of the register.")
+    counts_per_hz: float = declare_key(_COUNT_RANGE, meaning="Register value for 1 Hz.")
 
 
-@key_table
+@make_key_table
 class LimitKeys:
     """Limits of the inverter that are independent of its parameters."""
 
-    max_hz: float = file_key(
-        Range(1.0, 5000.0), default=0.0, meaning="Highest output frequency. Default: that of the register."
+    max_hz: float = declare_key(
+        KeyRange(1.0, 5000.0), default=0.0, meaning="Highest output frequency. Default: that of the register."
     )
 
 
-STATES = ("run", "reverse", "asked_reverse", "fault")
-COMMANDS = ("stop", "forward", "reverse", "reset")
+STATE_NAMES = ("run", "reverse", "asked_reverse", "fault")
+COMMAND_NAMES = ("stop", "forward", "reverse", "reset")
 
 
 def _table(path: str, keys: type, *, purpose: str) -> TableReference:
@@ -192,7 +198,7 @@ def _table(path: str, keys: type, *, purpose: str) -> TableReference:
 
 
 # Tables of a family file, for the reference of the machine file.
-TABLES = (
+FAMILY_TABLES = (
     _table(
         "(top)",
         purpose="The keys before the first table. A family file describes the registers of an "
@@ -272,23 +278,23 @@ class RegisterTable:
     """Registers and coils of an inverter on Modbus, with commands by name and fault texts by code."""
 
     frequency: FrequencyKeys
-    sending: CommandKeys
+    command_settings: CommandKeys
     commands: Mapping[str, tuple[WriteKeys, ...]]
     reads: tuple[ReadKeys, ...]
     output: FrequencyKeys
     setpoint: FrequencyKeys
     current: CurrentKeys
     states: Mapping[str, StateKeys]
-    code: CodeKeys
+    fault_code: CodeKeys
     faults: Mapping[int, str]
 
     @property
     def code_is_polled(self) -> bool:
         """Whether a poll contains the fault code; otherwise the code is read only after a trip."""
         return any(
-            each.register <= self.code.register < each.register + each.count
+            each.register <= self.fault_code.register < each.register + each.count
             for each in self.reads
-            if each.register != ABSENT
+            if each.register != ABSENT_REGISTER
         )
 
 
@@ -300,18 +306,18 @@ class FamilyTable:
     protocol: str
     line: LineKeys
     parameters: tuple[ParameterKeys, ...] = ()
-    top: TopKeys | None = None
+    max_frequency_parameter: TopKeys | None = None
     limits: LimitKeys = field(default_factory=LimitKeys)
     registers: RegisterTable | None = None
 
     @property
     def max_hz(self) -> float:
         """The highest output frequency in Hz that can be commanded."""
-        own = self.registers.frequency.highest if self.registers else 0xFFFF / 100.0
+        own = self.registers.frequency.max_hz if self.registers else 0xFFFF / 100.0
         return min(own, self.limits.max_hz or own)
 
     @property
-    def step(self) -> float:
+    def setpoint_step_hz(self) -> float:
         """The resolution of the reported setpoint in Hz."""
         if self.registers is None:
             return 0.01

@@ -13,58 +13,67 @@ from collections.abc import Callable, Iterator
 
 from core.ports import Clock
 from drivers.inverter.family_table import FamilyTable
-from drivers.inverter.inverter_family import Look, check_parameters
-from drivers.inverter.modbus_rtu import PACE, HeldBackError, NoAnswerError, never, sealed, whole
-from drivers.serial_line import Wire
+from drivers.inverter.inverter_family import InverterState, write_and_check
+from drivers.inverter.modbus_rtu import (
+    REQUEST_INTERVAL_S,
+    NoResponseError,
+    RequestWithheldError,
+    append_crc,
+    has_valid_crc,
+    return_false,
+)
+from drivers.serial_line import SerialTransport
 
 _READ, _CONTROL, _VALUE, _FREQUENCY = 1, 3, 4, 5
 _RUN, _RUN_BACK, _HALT = 0x01, 0x11, 0x08
 _SETPOINT, _OUTPUT, _CURRENT = 0, 1, 2
-_TIMEOUT = 0.5  # s
-_TRIES = 2
+_REPLY_TIMEOUT_S = 0.5  # s
+_MAX_TRIES = 2
 
 
-class HuanyangHy:
+class HuanyangInverter:
     """Huanyang HY inverter, which reports its state only in the response to a command.
 
     Each poll therefore repeats the present command.
     """
 
-    warm_up = 10
+    required_response_count = 10
 
-    def __init__(self, table: FamilyTable, wire: Wire, clock: Clock, unit: int, character: float) -> None:
+    def __init__(
+        self, table: FamilyTable, wire: SerialTransport, clock: Clock, unit_address: int, character_s: float
+    ) -> None:
         self._table = table
-        self._wire, self._clock, self._unit = wire, clock, unit
-        self._gap = max(3.5 * character, 0.00175)
+        self._wire, self._clock, self._unit = wire, clock, unit_address
+        self._gap = max(3.5 * character_s, 0.00175)
         self._free = clock.now()
         self._word = _HALT
-        self.hurry: Callable[[], bool] = never
+        self.is_stop_pending: Callable[[], bool] = return_false
         self._good = 0
 
     @property
-    def good(self) -> int:
+    def valid_response_count(self) -> int:
         return self._good
 
-    def prepare(self, comm_loss: float, highest: float) -> list[str]:
+    def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
         """Check the parameters, which are never written; the inverter has no communication timeout.
 
         Return the messages for the operator.
         """
-        return check_parameters(self._table, comm_loss, highest, self._parameter, _never_written)
+        return write_and_check(self._table, comm_timeout_s, max_hz, self._parameter, _reject_write)
 
     def stop(self) -> None:
         """Stop by the inverter's ramp, which requires PD026 = 0."""
         self._word = _HALT
         self._control()
 
-    def command(self, hz: float) -> None:
+    def command_hz(self, hz: float) -> None:
         """Send the frequency in Hz, then the run command; a negative frequency turns in reverse."""
         value = struct.pack(">H", round(abs(hz) * 100.0))
-        self._ask(_FREQUENCY, value, value)
+        self._send_request(_FREQUENCY, value, value)
         self._word = _RUN_BACK if hz < 0.0 else _RUN
         self._control()
 
-    def looks(self) -> Iterator[Look | None]:
+    def poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter request by request; yield None between requests and the state at the end.
 
         State bits: 0 run command, 2 reverse command, 3 running, 5 running in reverse.
@@ -75,16 +84,16 @@ class HuanyangHy:
         for index in (_SETPOINT, _OUTPUT, _CURRENT):
             values.append(self._value(index))
             yield None
-        yield Look(
-            output=values[1] / 100.0,
-            setpoint=values[0] / 100.0,
-            run=bool(state & 0x01),
-            reverse=bool(state & 0x20),
-            asked_reverse=bool(state & 0x04),
-            current=values[2] / 10.0,
+        yield InverterState(
+            output_hz=values[1] / 100.0,
+            setpoint_hz=values[0] / 100.0,
+            is_running=bool(state & 0x01),
+            is_reverse=bool(state & 0x20),
+            is_reverse_commanded=bool(state & 0x04),
+            current_a=values[2] / 10.0,
         )
 
-    def reset(self) -> None:
+    def reset_trip(self) -> None:
         """Send a stop, because a trip can be reset only at the keypad.
 
         Without a trip, the stop makes the inverter ready again.
@@ -95,52 +104,52 @@ class HuanyangHy:
         self._wire.close()
 
     def _control(self) -> int:
-        return self._ask(_CONTROL, bytes((self._word,)), b"")[0]
+        return self._send_request(_CONTROL, bytes((self._word,)), b"")[0]
 
     def _value(self, index: int) -> int:
         head = bytes((index,))
-        return int.from_bytes(self._ask(_VALUE, head, head)[1:], "big")
+        return int.from_bytes(self._send_request(_VALUE, head, head)[1:], "big")
 
     def _parameter(self, which: int) -> int:
         head = bytes((which,))
-        return int.from_bytes(self._ask(_READ, head + b"\0\0", head)[1:], "big")
+        return int.from_bytes(self._send_request(_READ, head + b"\0\0", head)[1:], "big")
 
-    def _ask(self, function: int, data: bytes, begins: bytes) -> bytes:
+    def _send_request(self, function: int, data: bytes, begins: bytes) -> bytes:
         """Return the data of the response, which begins with ``begins``.
 
         Raises NoAnswerError without a valid response.
         """
-        for left in reversed(range(_TRIES)):
+        for left in reversed(range(_MAX_TRIES)):
             answer = self._once(function, data, begins)
             if answer is not None:
                 self._good += 1
                 return answer
             self._good = 0
-            if not self.hurry():
-                self._wire.receive(_TIMEOUT)  # A late response must be discarded.
-            if left and self.hurry() and function in (_READ, _VALUE):
+            if not self.is_stop_pending():
+                self._wire.receive(_REPLY_TIMEOUT_S)  # A late response must be discarded.
+            if left and self.is_stop_pending() and function in (_READ, _VALUE):
                 break
-        raise NoAnswerError(
+        raise NoResponseError(
             "the inverter does not respond; check the cable, PD163 (id), PD164 and PD165 (line settings)",
             reason="silent",
         )
 
     def _once(self, function: int, data: bytes, begins: bytes) -> bytes | None:
         self._clock.sleep_until(self._free)
-        if self._can_turn(function) and self.hurry():
-            raise HeldBackError
-        self._wire.discard()
+        if self._can_start_motor(function) and self.is_stop_pending():
+            raise RequestWithheldError
+        self._wire.discard_input()
         began = self._clock.now()
-        self._wire.send(sealed(bytes((self._unit, function, len(data))) + data))
+        self._wire.send(append_crc(bytes((self._unit, function, len(data))) + data))
         come = b""
         answer: bytes | None = None
-        while answer is None and (left := began + _TIMEOUT - self._clock.now()) > 0:
+        while answer is None and (left := began + _REPLY_TIMEOUT_S - self._clock.now()) > 0:
             come += self._wire.receive(left)
             answer = self._found(come, function, begins)
-        self._free = max(self._clock.now() + self._gap, began + PACE)
+        self._free = max(self._clock.now() + self._gap, began + REQUEST_INTERVAL_S)
         return answer
 
-    def _can_turn(self, function: int) -> bool:
+    def _can_start_motor(self, function: int) -> bool:
         """Return whether the next frame can start or accelerate the motor."""
         return function == _FREQUENCY or (function == _CONTROL and self._word != _HALT)
 
@@ -149,12 +158,16 @@ class HuanyangHy:
         for start in range(len(come) - 5):
             if come[start : start + 2] == head:
                 frame = come[start : start + 5 + come[start + 2]]
-                if len(frame) == 5 + come[start + 2] and whole(frame) and frame[3:].startswith(begins):
+                if (
+                    len(frame) == 5 + come[start + 2]
+                    and has_valid_crc(frame)
+                    and frame[3:].startswith(begins)
+                ):
                     return frame[3:-2]
         return None
 
 
-def _never_written(_parameter: int, _value: int) -> None:
+def _reject_write(_parameter: int, _value: int) -> None:
     """Leave the parameter unchanged.
 
     It is unknown which parameters the inverter accepts during operation.

@@ -7,45 +7,45 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from core.message import Message
-from drivers.inverter.family_table import ABSENT, FamilyTable, ParameterKeys, TopKeys
-from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
+from drivers.inverter.family_table import ABSENT_REGISTER, FamilyTable, ParameterKeys, TopKeys
+from drivers.inverter.modbus_rtu import NoResponseError, RequestRejectedError
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class InverterState:
     """Polled state of an inverter; frequencies are in Hz and never negative."""
 
-    output: float
-    setpoint: float  # As the inverter has received it.
-    run: bool  # Run command as the inverter has received it.
-    reverse: bool  # Turns, or last turned, in reverse.
-    asked_reverse: bool  # A reverse command is active.
-    trip: str = ""  # Reason for a trip.
-    current: float = 0.0  # A
+    output_hz: float
+    setpoint_hz: float  # As the inverter has received it.
+    is_running: bool  # Run command as the inverter has received it.
+    is_reverse: bool  # Turns, or last turned, in reverse.
+    is_reverse_commanded: bool  # A reverse command is active.
+    trip_text: str = ""  # Reason for a trip.
+    current_a: float = 0.0  # A
 
     @property
-    def signed(self) -> float:
+    def signed_output_hz(self) -> float:
         """The output frequency in Hz, positive as M03 and negative as M04."""
-        return -self.output if self.reverse else self.output
+        return -self.output_hz if self.is_reverse else self.output_hz
 
 
-class Family(Protocol):
+class InverterFamily(Protocol):
     """Inverter on its line. Methods that communicate raise NoAnswerError, RefusedError or WireError.
 
-    ``hurry`` returns whether a stop is pending. It is called between requests, so that other requests are
-    canceled. It is also called directly before each frame that can turn the motor; the frame is then not sent
-    and HeldBackError is raised.
+    ``is_stop_pending`` returns whether a stop is pending. It is called between requests, so that other
+    requests are canceled. It is also called directly before each frame that can turn the motor; the frame is
+    then not sent and HeldBackError is raised.
     """
 
-    warm_up: int  # Consecutive valid responses before the inverter is trusted.
-    hurry: Callable[[], bool]
+    required_response_count: int  # Consecutive valid responses before the inverter is trusted.
+    is_stop_pending: Callable[[], bool]
 
     @property
-    def good(self) -> int:
+    def valid_response_count(self) -> int:
         """The number of consecutive valid responses."""
         ...
 
-    def prepare(self, comm_loss: float, highest: float) -> list[str]:
+    def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
         """Check the communication timeout (``comm_loss``, seconds) and the settings, once per connection.
 
         ``highest`` is the required frequency in Hz. Return the messages for the operator.
@@ -56,18 +56,18 @@ class Family(Protocol):
         """Stop by the inverter's ramp."""
         ...
 
-    def command(self, hz: float) -> None:
+    def command_hz(self, hz: float) -> None:
         """Turn at a frequency in Hz, negative against M03. Raises HeldBackError if a stop is pending."""
         ...
 
-    def looks(self) -> Iterator[Look | None]:
+    def poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter; yield None between requests and the state at the end.
 
         Raises HeldBackError if a stop is pending.
         """
         ...
 
-    def reset(self) -> None:
+    def reset_trip(self) -> None:
         """Reset a trip once."""
         ...
 
@@ -79,29 +79,29 @@ class Family(Protocol):
 # --- Required parameters of an inverter: read, written if permitted, and read back.
 
 
-Read = Callable[[int], int]  # Returns the value of a parameter by its register.
-Write = Callable[[int, int], None]
+ReadParameter = Callable[[int], int]  # Returns the value of a parameter by its register.
+WriteParameter = Callable[[int, int], None]
 
 
-class Setting(NamedTuple):
+class RequiredParameter(NamedTuple):
     """Required parameter value: register, value, name at the keypad, and purpose."""
 
     register: int
     value: int
     name: str
-    why: str
+    purpose: str
 
-    def differs(self, read: Read) -> str:
+    def describe_difference(self, read_value: ReadParameter) -> str:
         """Return a message if the inverter has another value, or an empty text; nothing is written."""
         try:
-            there = read(self.register)
-        except RefusedError as error:
+            there = read_value(self.register)
+        except RequestRejectedError as error:
             return Message(
                 "{name} cannot be read ({error}); its value must be {value} ({why})",
                 name=self.name,
                 error=error,
                 value=self.value,
-                why=self.why,
+                why=self.purpose,
             )
         if there == self.value:
             return ""
@@ -110,64 +110,78 @@ class Setting(NamedTuple):
             name=self.name,
             present=there,
             value=self.value,
-            why=self.why,
+            why=self.purpose,
         )
 
 
-def check_parameters(
-    table: FamilyTable, comm_loss: float, highest: float, read: Read, write: Write
+def write_and_check(
+    table: FamilyTable,
+    comm_timeout_s: float,
+    max_hz: float,
+    read_parameter: ReadParameter,
+    write_parameter: WriteParameter,
 ) -> list[str]:
     """Write the parameters that may be written and return a message for each wrong parameter.
 
     ``comm_loss`` is in seconds, ``highest`` in Hz. Raises NoAnswerError or WireError.
     """
-    known = [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_loss)]
-    known += _settled(_settings(table, comm_loss, write=True), read, write)
-    known += [text for each in _settings(table, comm_loss, write=False) if (text := each.differs(read))]
-    if table.top is not None and (text := _below(table.top, highest, read)):
+    known = (
+        [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_timeout_s)]
+    )
+    known += _apply_setting(_settings(table, comm_timeout_s, write=True), read_parameter, write_parameter)
+    known += [
+        text
+        for each in _settings(table, comm_timeout_s, write=False)
+        if (text := each.describe_difference(read_parameter))
+    ]
+    if table.max_frequency_parameter is not None and (
+        text := _check_max_frequency(table.max_frequency_parameter, max_hz, read_parameter)
+    ):
         known.append(text)
     return known
 
 
-def _settings(table: FamilyTable, comm_loss: float, *, write: bool) -> list[Setting]:
+def _settings(table: FamilyTable, comm_loss: float, *, write: bool) -> list[RequiredParameter]:
     return [_setting(each, comm_loss) for each in table.parameters if each.write is write]
 
 
-def _setting(each: ParameterKeys, comm_loss: float) -> Setting:
-    if each.value != ABSENT:
-        return Setting(each.register, each.value, each.name, each.why)
+def _setting(each: ParameterKeys, comm_loss: float) -> RequiredParameter:
+    if each.value != ABSENT_REGISTER:
+        return RequiredParameter(each.register, each.value, each.name, each.why)
     why = Message("communication timeout of {comm_loss} s", comm_loss=f"{comm_loss:g}")
-    return Setting(each.register, round(comm_loss * each.counts_per_s), each.name, why)
+    return RequiredParameter(each.register, round(comm_loss * each.counts_per_s), each.name, why)
 
 
-def _settled(wanted: Iterable[Setting], read: Read, write: Write) -> list[str]:
+def _apply_setting(
+    required: Iterable[RequiredParameter], read: ReadParameter, write: WriteParameter
+) -> list[str]:
     """Write the values that differ, read them back, and return a message for each wrong value.
 
     Equal values are not written, because the memory wears out.
     """
-    wanted = list(wanted)
-    for setting in wanted:
-        if setting.differs(read):
+    required = list(required)
+    for setting in required:
+        if setting.describe_difference(read):
             try:
                 write(setting.register, setting.value)
-            except (RefusedError, NoAnswerError):
+            except (RequestRejectedError, NoResponseError):
                 continue  # Reported below with the present value.
-    return [text for setting in wanted if (text := setting.differs(read))]
+    return [text for setting in required if (text := setting.describe_difference(read))]
 
 
-def _below(top: TopKeys, highest: float, read: Read) -> str:
+def _check_max_frequency(parameter: TopKeys, highest: float, read: ReadParameter) -> str:
     """Return a message if the inverter limits its output below ``highest`` Hz, or an empty text."""
     try:
-        there = read(top.register)
-    except RefusedError as error:
-        return Message("{path} cannot be read: {cause}", path=top.name, cause=error)
-    if there * 100 >= round(highest * 100.0) * top.counts_per_hz:
+        there = read(parameter.register)
+    except RequestRejectedError as error:
+        return Message("{path} cannot be read: {cause}", path=parameter.name, cause=error)
+    if there * 100 >= round(highest * 100.0) * parameter.counts_per_hz:
         return ""
     return Message(
         "{name} limits the frequency to {ends} Hz, but the maximum spindle speed needs "
         "{highest} Hz; change one of these values",
-        name=top.name,
-        ends=f"{there / top.counts_per_hz:g}",
+        name=parameter.name,
+        ends=f"{there / parameter.counts_per_hz:g}",
         highest=f"{highest:g}",
     )
 

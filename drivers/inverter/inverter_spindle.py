@@ -9,26 +9,31 @@ from typing import Protocol
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault
-from drivers.inverter.family_files import family_table
+from drivers.inverter.family_files import load_family
 from drivers.inverter.family_table import FamilyTable
-from drivers.inverter.huanyang_hy import HuanyangHy
-from drivers.inverter.inverter_attendant import DEAD, PRESS, Agreement, Attendant
-from drivers.inverter.inverter_family import Family
+from drivers.inverter.huanyang_hy import HuanyangInverter
+from drivers.inverter.inverter_control import (
+    MAX_SILENCE_S,
+    PRESS_ESTOP_TEXT,
+    InverterControl,
+    SpeedComparison,
+)
+from drivers.inverter.inverter_family import InverterFamily
 from drivers.inverter.inverter_table import InverterTable
-from drivers.inverter.modbus_rtu import Modbus
-from drivers.inverter.register_family import RegisterFamily
-from drivers.port_parts import demand_estop_released, demand_spindle
-from drivers.serial_line import Wire
+from drivers.inverter.modbus_rtu import ModbusMaster
+from drivers.inverter.register_family import RegisterInverter
+from drivers.port_checks import require_estop_released, require_spindle_ready
+from drivers.serial_line import SerialTransport
 
 
-class Encoder(Protocol):
+class SpindleEncoder(Protocol):
     """Encoder that measures the spindle independently of the inverter."""
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed."""
         ...
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, revolutions) pair, or None."""
         ...
 
@@ -36,41 +41,46 @@ class Encoder(Protocol):
 class InverterSpindle:
     """``core.ports.Spindle`` of an inverter. Without an encoder, its speed is the inverter's output.
 
-    ``alive`` returns whether the inverter is still monitored, and ``revive`` restarts the monitoring.
-    ``estop`` returns whether the E-stop is pressed. ``lost`` returns the reason why the encoder is invalid,
-    which is a fault while the spindle turns or must turn.
+    ``is_thread_alive`` returns whether the inverter is still monitored, and ``restart_thread`` restarts the
+    monitoring. ``is_estop_pressed`` returns whether the E-stop is pressed. ``get_encoder_fault`` returns the
+    reason why the encoder is invalid, which is a fault while the spindle turns or must turn.
     """
 
     def __init__(
         self,
         config: InverterTable,
-        attendant: Attendant,
+        control: InverterControl,
         clock: Clock,
         *,
-        encoder: Encoder | None = None,
-        alive: Callable[[], bool] = lambda: True,
-        revive: Callable[[], None] = lambda: None,
-        estop: Callable[[], bool] = lambda: False,
-        lost: Callable[[], str] = str,
+        encoder: SpindleEncoder | None = None,
+        is_thread_alive: Callable[[], bool] = lambda: True,
+        restart_thread: Callable[[], None] = lambda: None,
+        is_estop_pressed: Callable[[], bool] = lambda: False,
+        get_encoder_fault: Callable[[], str] = str,
     ) -> None:
-        self._config, self._attendant, self._clock = config, attendant, clock
-        self._encoder, self._alive, self._estop, self._lost = encoder, alive, estop, lost
-        self._agreement = Agreement(config.disagree)
-        self._revive = revive
+        self._config, self._attendant, self._clock = config, control, clock
+        self._encoder, self._alive, self._estop, self._lost = (
+            encoder,
+            is_thread_alive,
+            is_estop_pressed,
+            get_encoder_fault,
+        )
+        self._agreement = SpeedComparison(config.disagree)
+        self._revive = restart_thread
         self._unmeasured = ""  # Reason for an invalid measurement, latched until ``clear_fault``.
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops it.
 
         Raises DriverError if the speed is not 0 in E-stop, with a fault, or before a stopped inverter has
         sent enough valid responses.
         """
         if rpm:
-            demand_estop_released(self._estop())
-            demand_spindle(self.fault() or self._lost())
+            require_estop_released(self._estop())
+            require_spindle_ready(self.read_fault() or self._lost())
             # A spindle that turns may change its speed, because a rejected surface speed would scrap the
             # part.
-            if not (self._attendant.want or self._attendant.warm):
+            if not (self._attendant.commanded_hz or self._attendant.is_trusted):
                 raise DriverError(
                     "the spindle stays off until the inverter has sent the required number of "
                     "valid responses",
@@ -78,17 +88,17 @@ class InverterSpindle:
                     reason="not-ready",
                 )
         limit = self._config.rpm_max
-        self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
+        self._attendant.commanded_hz = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
     def coast(self) -> None:
         """Stop by the inverter's ramp, because coasting is possible only by its STO input."""
-        self._attendant.want = 0.0
+        self._attendant.commanded_hz = 0.0
 
     def clear_fault(self) -> None:
         """Clear the fault and reset a trip of the inverter, without turning the spindle."""
         if not self._alive():
             self._revive()
-        self._attendant.clear()
+        self._attendant.clear_fault()
         self._unmeasured = ""
 
     def speed(self) -> float:
@@ -106,104 +116,111 @@ class InverterSpindle:
     @property
     def reported_rpm(self) -> float:
         """The speed in rpm, signed, by the last poll of the inverter."""
-        seen = self._attendant.seen
-        return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
+        seen = self._attendant.last_poll
+        return seen.state.signed_output_hz / self._config.hz_per_rpm if seen else 0.0
 
-    def lag(self) -> float:
+    def get_line_delay(self) -> float:
         """Return the seconds by which the line delays a command and the speed that shows its effect."""
-        return self._attendant.lag
+        return self._attendant.line_delay_s
 
     @property
-    def load(self) -> float:
+    def load_percent(self) -> float:
         """The output current in percent of the motor's rated current, or nan if unknown."""
-        seen, rated = self._attendant.seen, self._config.rated
-        if not rated or seen is None or self._attendant.unheard:
+        seen, rated = self._attendant.last_poll, self._config.rated
+        if not rated or seen is None or self._attendant.is_state_unknown:
             return math.nan
-        return 100.0 * seen.look.current / rated
+        return 100.0 * seen.state.current_a / rated
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, revolutions) pair of the encoder, or None without a valid encoder."""
         if self._encoder is None or self._unmeasured or self._lost():
             return None
-        return self._encoder.angle()
+        return self._encoder.read_angle()
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the fault with the instruction for the operator, or an empty text.
 
         The method is called continuously, so an E-stop also cancels the commanded speed.
         """
         attendant = self._attendant
         if self._estop():
-            attendant.want = 0.0
-        if attendant.trouble:
-            return attendant.trouble
-        if self._encoder is not None and self._wrong(self._encoder):
-            attendant.want = 0.0
+            attendant.commanded_hz = 0.0
+        if attendant.failure:
+            return attendant.failure
+        if self._encoder is not None and self._is_encoder_wrong(self._encoder):
+            attendant.commanded_hz = 0.0
             return self._unmeasured
         if not self._alive():
-            return Fault("TurnDesk no longer monitors the inverter; {press}", "inverter-silent", press=PRESS)
-        if attendant.silent_for > DEAD:
+            return Fault(
+                "TurnDesk no longer monitors the inverter; {press}", "inverter-silent", press=PRESS_ESTOP_TEXT
+            )
+        if attendant.silence_s > MAX_SILENCE_S:
             return Fault(
                 "no response from the inverter for {dead} s; {press}",
                 "inverter-silent",
-                dead=f"{DEAD:g}",
-                press=PRESS,
+                dead=f"{MAX_SILENCE_S:g}",
+                press=PRESS_ESTOP_TEXT,
             )
         return ""
 
-    def _wrong(self, encoder: Encoder) -> bool:
+    def _is_encoder_wrong(self, encoder: SpindleEncoder) -> bool:
         """Return whether the spindle turns or must turn without a valid measurement."""
-        needed = self._attendant.want != 0.0 or self.reported_rpm != 0.0
+        needed = self._attendant.commanded_hz != 0.0 or self.reported_rpm != 0.0
         if needed and not self._unmeasured:
             now = self._clock.now()
-            self._unmeasured = self._lost() or self._agreement.look(encoder.speed(), self.reported_rpm, now)
+            self._unmeasured = self._lost() or self._agreement.compare_speeds(
+                encoder.speed(), self.reported_rpm, now
+            )
         return bool(self._unmeasured)
 
     @property
-    def unknown(self) -> bool:
+    def is_state_unknown(self) -> bool:
         """Whether it is unknown if the spindle turns, because encoder and inverter are both unavailable."""
         if self._encoder is not None and not (self._unmeasured or self._lost()):
             return False
-        return not self._alive() or self._attendant.unheard
+        return not self._alive() or self._attendant.is_state_unknown
 
-    def status(self) -> str:
+    def describe_status(self) -> str:
         """Return one line about the state of the inverter for a check."""
-        seen = self._attendant.seen
+        seen = self._attendant.last_poll
         if seen is None:
             return "no response yet"
-        look = seen.look
-        what = f"turns {'back' if look.reverse else 'forward'}" if look.output else "stands"
+        look = seen.state
+        what = f"turns {'back' if look.is_reverse else 'forward'}" if look.output_hz else "stands"
         return Message(
             "{what}, output {output} Hz, setpoint {setpoint} Hz, current {current} A",
             what=what,
-            output=f"{look.output:.2f}",
-            setpoint=f"{look.setpoint:.2f}",
-            current=f"{look.current:.1f}",
+            output=f"{look.output_hz:.2f}",
+            setpoint=f"{look.setpoint_hz:.2f}",
+            current=f"{look.current_a:.1f}",
         )
 
 
 # --- Creation from a configuration.
 
 
-def attendant(
-    config: InverterTable, open_wire: Callable[[], Wire], clock: Clock, folder: Path = Path()
-) -> Attendant:
+def create_inverter_control(
+    config: InverterTable,
+    open_wire: Callable[[], SerialTransport],
+    clock: Clock,
+    family_folder: Path = Path(),
+) -> InverterControl:
     """Create the control of an inverter without opening its line; ``open_wire`` raises WireError.
 
-    ``folder`` contains the file of a family that is not shipped. Raises DriverError if the family cannot be
-    read or does not fit the machine.
+    ``family_folder`` contains the file of a family that is not shipped. Raises DriverError if the family
+    cannot be read or does not fit the machine.
     """
-    table = family_table(config.family, folder)
+    table = load_family(config.family, family_folder)
     highest = config.rpm_max * config.hz_per_rpm
-    _check_fits(table, config, highest)
+    _check_limits(table, config, highest)
 
-    def opened() -> Family:
-        return _family(table, config, open_wire(), clock)
+    def opened() -> InverterFamily:
+        return _create_family(table, config, open_wire(), clock)
 
-    return Attendant(opened, clock, config.comm_loss, highest, table.step)
+    return InverterControl(opened, clock, config.comm_loss, highest, table.setpoint_step_hz)
 
 
-def _check_fits(table: FamilyTable, config: InverterTable, highest: float) -> None:
+def _check_limits(table: FamilyTable, config: InverterTable, max_hz: float) -> None:
     """Raise DriverError if the inverter does not support the line settings or the maximum frequency in Hz."""
     slowest, fastest = table.line.baud
     if not slowest <= config.baud <= fastest:
@@ -224,20 +241,22 @@ def _check_fits(table: FamilyTable, config: InverterTable, highest: float) -> No
             name=table.name,
             known=table.line.parity,
         )
-    if highest > table.max_hz:
+    if max_hz > table.max_hz:
         raise DriverError(
             "the maximum spindle speed needs {highest} Hz, but {name} has {limit} Hz at most; reduce "
             "spindle.rpm or check hz_per_rpm",
             reason="max-hz",
-            highest=f"{highest:g}",
+            highest=f"{max_hz:g}",
             name=table.name,
             limit=f"{table.max_hz:g}",
         )
 
 
-def _family(table: FamilyTable, config: InverterTable, wire: Wire, clock: Clock) -> Family:
+def _create_family(
+    table: FamilyTable, config: InverterTable, wire: SerialTransport, clock: Clock
+) -> InverterFamily:
     """Create the inverter on an open line."""
     if table.registers is None:
-        return HuanyangHy(table, wire, clock, config.unit, config.line.character)
-    line = Modbus(wire, clock, config.unit, config.line.character)
-    return RegisterFamily(table, table.registers, line, clock)
+        return HuanyangInverter(table, wire, clock, config.unit, config.line_settings.character_s)
+    line = ModbusMaster(wire, clock, config.unit, config.line_settings.character_s)
+    return RegisterInverter(table, table.registers, line, clock)

@@ -7,19 +7,25 @@ from dataclasses import KW_ONLY
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from core.key_declaration import Range, Unit, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, declare_key, make_key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, FileReading, Finding, written
+from core.table_schema import (
+    DriverDeclaration,
+    DriverTable,
+    FileFinding,
+    MachineFileReading,
+    format_toml_value,
+)
 
 if TYPE_CHECKING:
     from drivers.serial_line import LineSettings
 
-FOLDER = Path(__file__).with_name("families")
-FAMILIES = tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
-_PATH = "spindle.vfd"
+FAMILY_FOLDER = Path(__file__).with_name("families")
+FAMILY_NAMES = tuple(sorted(path.stem for path in FAMILY_FOLDER.glob("*.toml")))
+_TABLE_PATH = "spindle.vfd"
 
 
-@key_table
+@make_key_table
 class InverterTable:
     """Settings of an inverter and its serial line.
 
@@ -28,37 +34,40 @@ class InverterTable:
     """
 
     _: KW_ONLY
-    family: str = file_key(
-        meaning=f"Family of the inverter: {', '.join(f'`{name}`' for name in FAMILIES)}, or the name of a "
+    family: str = declare_key(
+        meaning=f"Family of the inverter: {', '.join(f'`{name}`' for name in FAMILY_NAMES)}, or the "
+        f"name of a "
         "TOML file with its registers, such as `my-drive.toml`, in the folder of the machine file."
     )
-    port: str = file_key(meaning="Serial port of the inverter, such as `/dev/serial/by-id/…`.")
-    baud: int = file_key(Range(110, 1_000_000), default=9600, meaning="Bit rate of the line.")
-    parity: str = file_key(
+    port: str = declare_key(meaning="Serial port of the inverter, such as `/dev/serial/by-id/…`.")
+    baud: int = declare_key(KeyRange(110, 1_000_000), default=9600, meaning="Bit rate of the line.")
+    parity: str = declare_key(
         default="N", choices=("N", "E", "O"), meaning="Parity: none (N), even (E) or odd (O)."
     )
-    stop: int = file_key(Range(1, 2), default=1, meaning="Stop bits of a character.")
-    unit: int = file_key(Range(1, 247), name="id", default=1, meaning="Station number set at the inverter.")
-    comm_loss: float = file_key(
-        Range(0.2, 10.0, Unit.SECONDS),
+    stop: int = declare_key(KeyRange(1, 2), default=1, meaning="Stop bits of a character.")
+    unit: int = declare_key(
+        KeyRange(1, 247), name="id", default=1, meaning="Station number set at the inverter."
+    )
+    comm_loss: float = declare_key(
+        KeyRange(0.2, 10.0, FileUnit.SECONDS),
         name="comm_loss_s",
         default=1.5,
         meaning="Time without a message after which the inverter stops the spindle. A Huanyang does not "
         "have this function.",
     )
-    hz_per_rpm: float = file_key(
-        Range(0.001, 1.0),
+    hz_per_rpm: float = declare_key(
+        KeyRange(0.001, 1.0),
         meaning="Output frequency in Hz per rpm of the spindle: pole pairs ÷ 60 × belt ratio.",
     )
-    rated: float = file_key(
-        Range(0.1, 1000.0),
+    rated: float = declare_key(
+        KeyRange(0.1, 1000.0),
         name="rated_a",
         default=0.0,
         meaning="Rated current of the motor in A, for the spindle load in percent. Default: not specified, "
         "and no load is shown.",
     )
-    disagree: float = file_key(
-        Range(0.05, 0.5, Unit.PERCENT),
+    disagree: float = declare_key(
+        KeyRange(0.05, 0.5, FileUnit.PERCENT),
         name="disagree_pct",
         default=0.15,
         meaning="Largest difference between the speeds of the encoder and the inverter before alarm 209.",
@@ -66,32 +75,38 @@ class InverterTable:
     rpm_max: float
 
     @property
-    def line(self) -> LineSettings:
+    def line_settings(self) -> LineSettings:
         """The settings of the serial line with eight data bits."""
         from drivers.serial_line import LineSettings  # noqa: PLC0415  few machines have one
 
         return LineSettings(self.port, self.baud, parity=self.parity, stop=self.stop)
 
 
-def _unknown_family(file: FileReading) -> Iterator[Finding]:
+def _check_family(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for a family that is neither shipped nor the name of a TOML file.
 
     A file is read only when the line is opened.
     """
-    path = f"{_PATH}.family"
-    if file.values.has(path) and (name := file.values.text(path)) not in FAMILIES and name[-5:] != ".toml":
+    path = f"{_TABLE_PATH}.family"
+    if (
+        file.values.has_values(path)
+        and (name := file.values.text(path)) not in FAMILY_NAMES
+        and name[-5:] != ".toml"
+    ):
         text = "expected one of {families}, or the name of a .toml file in the folder of the machine file"
-        yield Finding(path, written(name), Message(text, families=", ".join(FAMILIES)), "wrong-value")
+        yield FileFinding(
+            path, format_toml_value(name), Message(text, families=", ".join(FAMILY_NAMES)), "wrong-value"
+        )
 
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
-            _PATH,
+            _TABLE_PATH,
             InverterTable,
-            lambda file: {"rpm_max": file.values.pair("spindle.rpm")[1]},
-            rules=_unknown_family,
-            port=f"{_PATH}.port",
+            lambda file: {"rpm_max": file.values.read_pair("spindle.rpm")[1]},
+            check_rules=_check_family,
+            serial_port_key=f"{_TABLE_PATH}.port",
             purpose='The inverter of the spindle on a serial line (`driver = "vfd"` of [spindle]).',
         ),
     ),

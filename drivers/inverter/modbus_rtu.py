@@ -6,15 +6,15 @@ import struct
 from collections.abc import Callable, Sequence
 
 from core.ports import Clock, DriverError
-from drivers.serial_line import Wire
+from drivers.serial_line import SerialTransport
 
 # --- Frames of Modbus RTU (Modbus over Serial Line V1.02): unit, function, data, CRC-16 low byte first.
 
 
 READ_COILS, READ_REGISTERS = 1, 3
 WRITE_COIL, WRITE_REGISTER, LOOPBACK, WRITE_REGISTERS = 5, 6, 8, 16
-FAILED = 0x80
-_SHORTEST = 5
+EXCEPTION_BIT = 0x80
+_MIN_FRAME_BYTES = 5
 
 
 def crc16(data: bytes) -> int:
@@ -27,58 +27,58 @@ def crc16(data: bytes) -> int:
     return crc
 
 
-def sealed(body: bytes) -> bytes:
+def append_crc(body: bytes) -> bytes:
     """Return a frame with its CRC appended."""
     return body + struct.pack("<H", crc16(body))
 
 
-def whole(frame: bytes) -> bool:
+def has_valid_crc(frame: bytes) -> bool:
     """Return whether the CRC at the end of a frame is correct."""
-    return len(frame) >= _SHORTEST - 1 and crc16(frame[:-2]) == int.from_bytes(frame[-2:], "little")
+    return len(frame) >= _MIN_FRAME_BYTES - 1 and crc16(frame[:-2]) == int.from_bytes(frame[-2:], "little")
 
 
-def read(function: int, address: int, count: int) -> bytes:
+def encode_read(function: int, address: int, count: int) -> bytes:
     """Return function and data of a read request."""
     return struct.pack(">BHH", function, address, count)
 
 
-def write_coil(address: int, on: bool) -> bytes:
+def encode_write_coil(address: int, on: bool) -> bytes:
     """Return function and data of a request to write one coil (05)."""
     return struct.pack(">BHH", WRITE_COIL, address, 0xFF00 if on else 0)
 
 
-def write_register(address: int, value: int) -> bytes:
+def encode_write_register(address: int, value: int) -> bytes:
     """Return function and data of a request to write one register (06)."""
     return struct.pack(">BHH", WRITE_REGISTER, address, value)
 
 
-def write_registers(address: int, values: Sequence[int]) -> bytes:
+def encode_write_registers(address: int, values: Sequence[int]) -> bytes:
     """Return function and data of a request to write several registers (10 hex)."""
     head = struct.pack(">BHHB", WRITE_REGISTERS, address, len(values), 2 * len(values))
     return head + struct.pack(f">{len(values)}H", *values)
 
 
-def loopback(value: int) -> bytes:
+def encode_loopback(value: int) -> bytes:
     """Return function and data of an echo request (08, sub-function 0)."""
     return struct.pack(">BHH", LOOPBACK, 0, value)
 
 
-def answer_in(buffer: bytes, unit: int, function: int) -> bytes | None:
+def find_response(buffer: bytes, unit: int, function: int) -> bytes | None:
     """Return the first complete response to ``function`` in the buffer, or None if it is incomplete.
 
     Noise before and after the response is ignored.
     """
-    for start in range(len(buffer) - _SHORTEST + 1):
-        if buffer[start] != unit or buffer[start + 1] & ~FAILED != function:
+    for start in range(len(buffer) - _MIN_FRAME_BYTES + 1):
+        if buffer[start] != unit or buffer[start + 1] & ~EXCEPTION_BIT != function:
             continue
         frame = buffer[start : start + _length(buffer[start:])]
-        if whole(frame) and len(frame) == _length(buffer[start:]):
+        if has_valid_crc(frame) and len(frame) == _length(buffer[start:]):
             return frame
     return None
 
 
 def _length(frame: bytes) -> int:
-    if frame[1] & FAILED:
+    if frame[1] & EXCEPTION_BIT:
         return 5
     return 5 + frame[2] if frame[1] <= READ_REGISTERS else 8
 
@@ -86,22 +86,24 @@ def _length(frame: bytes) -> int:
 # --- Errors between a request and its response.
 
 
-class NoAnswerError(DriverError):
+class NoResponseError(DriverError):
     """Failure to receive a readable response from the device."""
 
 
-class RefusedError(DriverError):
+class RequestRejectedError(DriverError):
     """Rejection of a request by the device."""
 
 
-class HeldBackError(Exception):
+class RequestWithheldError(Exception):
     """Request that was not sent because a stop is pending."""
 
 
-PACE = 0.03  # Seconds between the starts of two requests; inverters lose more frequent requests.
-TIMEOUT = 0.2  # Seconds for a response.
-TRIES = 3
-_EXCEPTIONS = {
+REQUEST_INTERVAL_S = (
+    0.03  # Seconds between the starts of two requests; inverters lose more frequent requests.
+)
+REPLY_TIMEOUT_S = 0.2  # Seconds for a response.
+MAX_TRIES = 3
+_EXCEPTION_TEXTS = {
     1: "illegal function",
     2: "illegal data address",
     3: "illegal data value",
@@ -111,110 +113,120 @@ _EXCEPTIONS = {
 }
 
 
-def never() -> bool:
+def return_false() -> bool:
     """Return False, because no stop can be pending."""
     return False
 
 
-class Modbus:
-    """Modbus RTU master; ``hurry`` returns whether a stop is pending, which ends the retries of a read.
+class ModbusMaster:
+    """Modbus RTU master; ``is_stop_pending`` returns whether a stop is pending, which ends the retries of a
+    read.
 
     A write with ``gives_way`` is then not sent or repeated, and raises HeldBackError.
     """
 
-    def __init__(self, wire: Wire, clock: Clock, unit: int, character: float, pace: float = PACE) -> None:
-        self.wire, self._clock, self._unit, self._pace = wire, clock, unit, pace
-        self._gap = max(3.5 * character, 0.00175)  # A fixed 1.75 ms above 19200 baud.
+    def __init__(
+        self,
+        wire: SerialTransport,
+        clock: Clock,
+        unit_address: int,
+        character_s: float,
+        request_interval_s: float = REQUEST_INTERVAL_S,
+    ) -> None:
+        self.wire, self._clock, self._unit, self._pace = wire, clock, unit_address, request_interval_s
+        self._gap = max(3.5 * character_s, 0.00175)  # A fixed 1.75 ms above 19200 baud.
         self._free = clock.now()
         self._doubt = False  # A late response may still arrive.
         self._echo = 0
-        self.hurry: Callable[[], bool] = never
-        self.good = 0  # Consecutive responses.
-        self.bad = 0  # Failures since the start.
+        self.is_stop_pending: Callable[[], bool] = return_false
+        self.valid_response_count = 0  # Consecutive responses.
+        self.failure_count = 0  # Failures since the start.
 
-    def registers(self, address: int, count: int = 1) -> list[int]:
+    def read_registers(self, address: int, count: int = 1) -> list[int]:
         """Read holding registers (03). Raises NoAnswerError, RefusedError or WireError, as all methods do."""
-        frame = self._read(read(READ_REGISTERS, address, count), 2 * count)
+        frame = self._send_read(encode_read(READ_REGISTERS, address, count), 2 * count)
         return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]
 
-    def coils(self, address: int, count: int = 1) -> list[bool]:
+    def read_coils(self, address: int, count: int = 1) -> list[bool]:
         """Read coils (01)."""
-        packed = self._read(read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
+        packed = self._send_read(encode_read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
-    def write_coil(self, address: int, on: bool, tries: int = TRIES, *, gives_way: bool = False) -> None:
+    def write_coil(
+        self, address: int, on: bool, max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
+    ) -> None:
         """Write one coil (05)."""
-        self._write(write_coil(address, on), tries, gives_way)
+        self._send_write(encode_write_coil(address, on), max_tries, yields_to_stop)
 
     def write_register(
-        self, address: int, value: int, tries: int = TRIES, *, gives_way: bool = False
+        self, address: int, value: int, max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
     ) -> None:
         """Write one register (06); ``tries`` 1 prevents a repeated command."""
-        self._write(write_register(address, value), tries, gives_way)
+        self._send_write(encode_write_register(address, value), max_tries, yields_to_stop)
 
     def write_registers(
-        self, address: int, values: Sequence[int], tries: int = TRIES, *, gives_way: bool = False
+        self, address: int, values: Sequence[int], max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
     ) -> None:
         """Write several registers (10 hex)."""
-        self._write(write_registers(address, values), tries, gives_way)
+        self._send_write(encode_write_registers(address, values), max_tries, yields_to_stop)
 
-    def _read(self, pdu: bytes, size: int) -> bytes:
+    def _send_read(self, pdu: bytes, size: int) -> bytes:
         """Send a read request and return its response.
 
         A response does not identify its request, so an echo is exchanged first after an error.
         """
-        for left in reversed(range(TRIES)):
+        for left in reversed(range(MAX_TRIES)):
             try:
                 if self._doubt:
-                    self._settle()
+                    self._resynchronize()
                 frame = self._once(pdu)
                 if frame[2] == size:
                     return frame
                 self._failed()
-            except NoAnswerError:
-                if not left or self.hurry():
+            except NoResponseError:
+                if not left or self.is_stop_pending():
                     raise
-        raise NoAnswerError("the inverter's responses do not match the requests")
+        raise NoResponseError("the inverter's responses do not match the requests")
 
-    def _write(self, pdu: bytes, tries: int, gives_way: bool) -> None:
+    def _send_write(self, pdu: bytes, tries: int, yields_to_stop: bool) -> None:
         """Send a write request, whose response must repeat the address and the value or count."""
         for left in reversed(range(tries)):
             try:
-                if self._once(pdu, gives_way)[1:6] == pdu[:5]:
+                if self._once(pdu, yields_to_stop)[1:6] == pdu[:5]:
                     return
                 self._failed()
-            except NoAnswerError:
+            except NoResponseError:
                 if not left:
                     raise
-        raise NoAnswerError("the inverter's response does not match the write request")
+        raise NoResponseError("the inverter's response does not match the write request")
 
-    def _settle(self) -> None:
+    def _resynchronize(self) -> None:
         """Exchange an echo with a new value, so that late responses are detected."""
         self._echo = self._echo % 0xFFFF + 1
-        pdu = loopback(self._echo)
+        pdu = encode_loopback(self._echo)
         try:
             frame = self._once(pdu)
-        except RefusedError:
+        except RequestRejectedError:
             self._doubt = False  # The device has rejected the echo, so it is synchronized.
             return
         if frame[1:6] != pdu:
             self._failed()
-            raise NoAnswerError("the inverter responds too late", reason="late")
+            raise NoResponseError("the inverter responds too late", reason="late")
         self._doubt = False
 
     def _once(self, pdu: bytes, gives_way: bool = False) -> bytes:
         self._clock.sleep_until(self._free)
-        if gives_way and self.hurry():
-            raise HeldBackError
-        self.wire.discard()
+        if gives_way and self.is_stop_pending():
+            raise RequestWithheldError
+        self.wire.discard_input()
         began = self._clock.now()
-        self.wire.send(sealed(bytes((self._unit,)) + pdu))
-        frame = self._answer(pdu[0], began + TIMEOUT)
+        self.wire.send(append_crc(bytes((self._unit,)) + pdu))
+        frame = self._answer(pdu[0], began + REPLY_TIMEOUT_S)
         self._free = max(self._clock.now() + self._gap, began + self._pace)
-        self.good += 1
-        if frame[1] & FAILED:
-            why = _EXCEPTIONS.get(frame[2], f"exception {frame[2]}")
-            raise RefusedError(
+        self.valid_response_count += 1
+        if frame[1] & EXCEPTION_BIT:
+            why = _EXCEPTION_TEXTS.get(frame[2], f"exception {frame[2]}")
+            raise RequestRejectedError(
                 "the inverter rejects Modbus function {pdu}: {why}",
                 reason=f"exception-{frame[2]}",
                 pdu=f"{pdu[0]:02X}",
@@ -226,23 +238,23 @@ class Modbus:
         come = b""
         while (left := until - self._clock.now()) > 0:
             come += self.wire.receive(left)
-            frame = answer_in(come, self._unit, function)
+            frame = find_response(come, self._unit, function)
             if frame is not None:
                 return frame
         self._free = self._clock.now() + self._gap
         self._failed()
         if come:
-            raise NoAnswerError(
+            raise NoResponseError(
                 "the inverter sent {come_count} bytes but not a valid response; check the line "
                 "settings and id",
                 reason="garbled",
                 come_count=len(come),
             )
-        raise NoAnswerError(
+        raise NoResponseError(
             "the inverter does not respond; check the cable, id and line settings", reason="silent"
         )
 
     def _failed(self) -> None:
         self._doubt = True
-        self.good = 0
-        self.bad += 1
+        self.valid_response_count = 0
+        self.failure_count += 1

@@ -6,40 +6,46 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from core.message import Message
 from core.ports import Clock
-from drivers.inverter.family_table import ABSENT, FamilyTable, RegisterTable, WriteKeys
-from drivers.inverter.inverter_family import Look, check_parameters
-from drivers.inverter.modbus_rtu import TRIES, Modbus
+from drivers.inverter.family_table import ABSENT_REGISTER, FamilyTable, RegisterTable, WriteKeys
+from drivers.inverter.inverter_family import InverterState, write_and_check
+from drivers.inverter.modbus_rtu import MAX_TRIES, ModbusMaster
 
 
-class RegisterFamily:
+class RegisterInverter:
     """``Family`` with a register table and the exclusive use of its line."""
 
-    warm_up = 1
+    required_response_count = 1
 
-    def __init__(self, table: FamilyTable, registers: RegisterTable, line: Modbus, clock: Clock) -> None:
+    def __init__(
+        self, table: FamilyTable, registers: RegisterTable, line: ModbusMaster, clock: Clock
+    ) -> None:
         self._table, self._registers, self._line, self._clock = table, registers, line, clock
         self._said: Sequence[WriteKeys] = ()  # Run command that is known to be active.
 
     @property
-    def hurry(self) -> Callable[[], bool]:
+    def is_stop_pending(self) -> Callable[[], bool]:
         """The function that returns whether a stop is pending."""
-        return self._line.hurry
+        return self._line.is_stop_pending
 
-    @hurry.setter
-    def hurry(self, asked: Callable[[], bool]) -> None:
+    @is_stop_pending.setter
+    def is_stop_pending(self, is_stop_pending: Callable[[], bool]) -> None:
         """Set the function that returns whether a stop is pending and other requests must be canceled."""
-        self._line.hurry = asked
+        self._line.is_stop_pending = is_stop_pending
 
     @property
-    def good(self) -> int:
+    def valid_response_count(self) -> int:
         """The number of consecutive valid responses."""
-        return self._line.good
+        return self._line.valid_response_count
 
-    def prepare(self, comm_loss: float, highest: float) -> list[str]:
-        """Check the parameters of the table; ``comm_loss`` in seconds, ``highest`` in Hz."""
+    def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
+        """Check the parameters of the table; ``comm_timeout_s`` in seconds, ``max_hz`` in Hz."""
         self._said = ()
-        return check_parameters(
-            self._table, comm_loss, highest, lambda register: self._line.registers(register)[0], self._write
+        return write_and_check(
+            self._table,
+            comm_timeout_s,
+            max_hz,
+            lambda register: self._line.read_registers(register)[0],
+            self._write,
         )
 
     def stop(self) -> None:
@@ -48,38 +54,38 @@ class RegisterFamily:
         for each in self._registers.commands["stop"]:
             self._send(each)
 
-    def command(self, hz: float) -> None:
+    def command_hz(self, hz: float) -> None:
         """Send the frequency first, so that the inverter never starts with an old frequency."""
         frequency = self._registers.frequency
-        words = frequency.words_of(hz)
+        words = frequency.encode_hz(hz)
         if len(words) > 1:
-            self._line.write_registers(frequency.register, words, gives_way=True)
+            self._line.write_registers(frequency.register, words, yields_to_stop=True)
         else:
             self._write(frequency.register, words[0], gives_way=True)
         writes = self._registers.commands["reverse" if hz < 0.0 else "forward"]
-        if writes == self._said and not self._registers.sending.repeat:
+        if writes == self._said and not self._registers.command_settings.repeat:
             return
         self._said = ()  # Until all writes are acknowledged.
         for each in writes:
             self._send(each, gives_way=True)
         self._said = writes
 
-    def looks(self) -> Iterator[Look | None]:
+    def poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter read by read; yield None between requests and the state at the end."""
         words: dict[int, int] = {}
         coils: dict[int, bool] = {}
         for each in self._registers.reads:
-            if each.coil == ABSENT:
-                words |= enumerate(self._line.registers(each.register, each.count), each.register)
+            if each.coil == ABSENT_REGISTER:
+                words |= enumerate(self._line.read_registers(each.register, each.count), each.register)
             else:
-                coils |= enumerate(self._line.coils(each.coil, each.count), each.coil)
+                coils |= enumerate(self._line.read_coils(each.coil, each.count), each.coil)
             yield None
         yield self._look(words, coils)
 
-    def reset(self) -> None:
+    def reset_trip(self) -> None:
         """Reset a trip; the next command is then sent completely."""
         self._said = ()
-        sending = self._registers.sending
+        sending = self._registers.command_settings
         for each in self._registers.commands["reset"]:
             self._send(each, sending.reset_tries)
         if sending.reset_pause:
@@ -89,38 +95,38 @@ class RegisterFamily:
         """Close the line."""
         self._line.wire.close()
 
-    def _send(self, each: WriteKeys, tries: int = TRIES, *, gives_way: bool = False) -> None:
-        if each.coil == ABSENT:
+    def _send(self, each: WriteKeys, tries: int = MAX_TRIES, *, gives_way: bool = False) -> None:
+        if each.coil == ABSENT_REGISTER:
             self._write(each.register, each.value, tries, gives_way=gives_way)
         else:
-            self._line.write_coil(each.coil, each.on, tries, gives_way=gives_way)
+            self._line.write_coil(each.coil, each.on, tries, yields_to_stop=gives_way)
 
-    def _write(self, register: int, value: int, tries: int = TRIES, *, gives_way: bool = False) -> None:
+    def _write(self, register: int, value: int, tries: int = MAX_TRIES, *, gives_way: bool = False) -> None:
         if self._table.line.write_multiple:
-            self._line.write_registers(register, (value,), tries, gives_way=gives_way)
+            self._line.write_registers(register, (value,), tries, yields_to_stop=gives_way)
         else:
-            self._line.write_register(register, value, tries, gives_way=gives_way)
+            self._line.write_register(register, value, tries, yields_to_stop=gives_way)
 
-    def _look(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> Look:
+    def _look(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> InverterState:
         table = self._registers
-        on = {name: state.applies(words, coils) for name, state in table.states.items()}
-        return Look(
-            output=table.output.hertz(words),
-            setpoint=table.setpoint.hertz(words),
-            run=on["run"],
-            reverse=on["reverse"],
-            asked_reverse=on["asked_reverse"],
-            trip=self._trip(words) if on.get("fault", True) else "",
-            current=words[table.current.register] / table.current.counts_per_a,
+        on = {name: state.is_active(words, coils) for name, state in table.states.items()}
+        return InverterState(
+            output_hz=table.output.decode_hz(words),
+            setpoint_hz=table.setpoint.decode_hz(words),
+            is_running=on["run"],
+            is_reverse=on["reverse"],
+            is_reverse_commanded=on["asked_reverse"],
+            trip_text=self._describe_trip(words) if on.get("fault", True) else "",
+            current_a=words[table.current.register] / table.current.counts_per_a,
         )
 
-    def _trip(self, words: Mapping[int, int]) -> str:
+    def _describe_trip(self, words: Mapping[int, int]) -> str:
         """Return the text of the fault code; without a fault state, code 0 means no fault."""
         table = self._registers
-        register = table.code.register
-        code = words[register] if table.code_is_polled else self._line.registers(register)[0]
-        code &= table.code.mask
+        register = table.fault_code.register
+        code = words[register] if table.code_is_polled else self._line.read_registers(register)[0]
+        code &= table.fault_code.mask
         if code == 0 and "fault" not in table.states:
             return ""
-        number = table.code.shown.format(code=code)
+        number = table.fault_code.shown.format(code=code)
         return table.faults.get(code, Message("fault code {code} in the inverter manual", code=number))

@@ -11,33 +11,39 @@ from core.ports import (
     Cam,
     Clock,
     FloatArray,
-    Geared,
-    Latch,
+    GearState,
     MachinePorts,
     Segments,
     StationState,
-    Stop,
+    StopMode,
+    TouchLatch,
 )
-from drivers.port_parts import KEPT, SampleLog, demand_axis, demand_estop_released, demand_spindle
-from drivers.simulators.plant import Plant
+from drivers.port_checks import (
+    LOG_ROWS,
+    SampleLog,
+    require_axis,
+    require_estop_released,
+    require_spindle_ready,
+)
+from drivers.simulators.plant import SimulatedPlant
 from drivers.simulators.plant_config import SimConfig
-from drivers.simulators.plant_hands import PlantHands, Schedule
+from drivers.simulators.plant_controls import FaultSchedule, PlantControls
 
 
-class _OnPlant:
+class _PlantPort:
     """Base class of the ports of a plant."""
 
-    def __init__(self, plant: Plant) -> None:
+    def __init__(self, plant: SimulatedPlant) -> None:
         self._plant = plant
 
 
-class SimAxes(_OnPlant):
+class SimAxes(_PlantPort):
     """``core.ports.AxisSink`` of the simulated machine."""
 
-    def __init__(self, plant: Plant) -> None:
+    def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant)
-        self.axes = plant.names
-        self.commit = plant.config.commit
+        self.axes = plant.axis_names
+        self.commit = plant.config.commit_time_s
 
     def now(self) -> float:
         """Return the time of the machine's clock in seconds."""
@@ -46,7 +52,7 @@ class SimAxes(_OnPlant):
     def horizon(self) -> float:
         """Return the end time of the setpoint queue, or the present time if it is empty."""
         with self._plant.lock:
-            return self._plant.queue.horizon(self._plant.clock.now())
+            return self._plant.queue.queue_end(self._plant.clock.now())
 
     def splice(self, segments: Segments) -> None:
         """Splice setpoints into the queue.
@@ -55,11 +61,11 @@ class SimAxes(_OnPlant):
         """
         self._plant.splice(segments)
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at time ``t``."""
         with self._plant.lock:
             self._plant.advance()
-            return self._plant.queue.demand_at(t)
+            return self._plant.queue.commanded_state_at(time_s)
 
     def sample(self) -> AxisSample:
         """Return the state of the axes at the last grid point of the model."""
@@ -67,11 +73,11 @@ class SimAxes(_OnPlant):
         with plant.lock:
             plant.advance()
             actual = tuple([servo.reading for servo in plant.servos])
-            demand, velocity = plant.queue.demand_at(plant.t)
+            demand, velocity = plant.queue.commanded_state_at(plant.model_time_s)
             if not plant.enabled:
                 demand = actual
             return AxisSample(
-                t=plant.t,
+                t=plant.model_time_s,
                 demand=demand,
                 actual=actual,
                 following_error=tuple([d - a for d, a in zip(demand, actual, strict=True)]),
@@ -86,16 +92,16 @@ class SimAxes(_OnPlant):
 
         Raises DriverError when switching on in E-stop or with a fault; switching off is always possible.
         """
-        self._plant.power(on)
+        self._plant.set_power(on)
 
-    def stop(self, how: Stop) -> None:
+    def stop(self, mode: StopMode) -> None:
         """Stop the axes by the ramps of the drives."""
-        self._plant.stop(how)
+        self._plant.stop(mode)
 
     def home(self, axis: str) -> None:
         """Start to home an axis; ``sample().homed`` becomes True when it is done."""
-        demand_axis(axis, self.axes)
-        self._plant.home(axis)
+        require_axis(axis, self.axes)
+        self._plant.home_axis(axis)
 
     def clear_fault(self) -> None:
         """Clear the fault; the drives remain off."""
@@ -103,40 +109,40 @@ class SimAxes(_OnPlant):
             self._plant.clear_fault()
 
 
-class SimGear(_OnPlant):
-    """``core.ports.Gear`` of the simulated machine."""
+class SimGear(_PlantPort):
+    """``core.ports.SpindleGear`` of the simulated machine."""
 
     def mesh(self, cam: Cam) -> None:
         """Make the axes follow the spindle. Raises DriverError if the cam is invalid or too fast."""
-        self._plant.mesh(cam)
+        self._plant.engage_cam(cam)
 
-    def geared(self) -> Geared | None:
+    def geared(self) -> GearState | None:
         """Return the position of the axes on the cam, or None if they do not follow the spindle."""
         with self._plant.lock:
             self._plant.advance()
-            return self._plant.queue.geared()
+            return self._plant.queue.read_gear_state()
 
 
-class SimSamples(_OnPlant):
+class SimSamples(_PlantPort):
     """``core.ports.SampleSource`` of the simulated machine; sampling starts with the first request."""
 
-    def __init__(self, plant: Plant) -> None:
+    def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant)
-        self.rate = 1.0 / plant.config.step
+        self.sample_rate_hz = 1.0 / plant.config.step_s
 
-    def take(self, most: int = KEPT) -> FloatArray:
-        """Return at most ``most`` samples since the last call, oldest first."""
+    def take(self, max_rows: int = LOG_ROWS) -> FloatArray:
+        """Return at most ``max_rows`` samples since the last call, oldest first."""
         plant = self._plant
         with plant.lock:
-            if plant.log is None:
-                plant.log = SampleLog(len(plant.names))
-            return plant.log.take(most)
+            if plant.sample_log is None:
+                plant.sample_log = SampleLog(len(plant.axis_names))
+            return plant.sample_log.pop_rows(max_rows)
 
 
-class SimSpindlePort(_OnPlant):
+class SimSpindlePort(_PlantPort):
     """``core.ports.Spindle`` of the simulated machine."""
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops it.
 
         Raises DriverError in E-stop or with an inverter fault if the speed is not 0.
@@ -145,13 +151,13 @@ class SimSpindlePort(_OnPlant):
         with plant.lock:
             now = plant.advance()
             if rpm:
-                _demand_spindle(plant)
-            plant.spindle.order(now, rpm)
+                _require_spindle(plant)
+            plant.spindle.command_speed(now, rpm)
 
     def coast(self) -> None:
         """Remove the torque, so that the spindle coasts to a stop."""
         with self._plant.lock:
-            self._plant.spindle.order(self._plant.advance(), 0.0, coast=True)
+            self._plant.spindle.command_speed(self._plant.advance(), 0.0, coast=True)
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed."""
@@ -159,59 +165,59 @@ class SimSpindlePort(_OnPlant):
             self._plant.advance()
             return self._plant.spindle.speed
 
-    def angle(self) -> tuple[float, float] | None:
+    def read_angle(self) -> tuple[float, float] | None:
         """Return a (time, counted revolutions) pair, or None without an encoder.
 
         The resolution is a quarter of a pulse.
         """
-        if not self._plant.config.spindle.ppr:
+        if not self._plant.config.spindle.pulses_per_rev:
             return None
         with self._plant.lock:
             self._plant.advance()
-            return self._plant.spindle.t, self._plant.spindle.counted
+            return self._plant.spindle.time_s, self._plant.spindle.counted_revolutions
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the fault text of the inverter, or an empty text without a fault."""
-        return self._plant.spindle.faults.fault
+        return self._plant.spindle.faults.fault_text
 
 
-def _demand_spindle(plant: Plant) -> None:
+def _require_spindle(plant: SimulatedPlant) -> None:
     """Raise DriverError in E-stop or with an inverter fault."""
-    demand_estop_released(plant.panel.estop)
-    demand_spindle(plant.spindle.faults.fault)
+    require_estop_released(plant.station_panel.estop)
+    require_spindle_ready(plant.spindle.faults.fault_text)
 
 
-class SimOrientation(_OnPlant):
-    """``core.ports.SpindleOrientation`` of the simulated machine."""
+class SimOrientation(_PlantPort):
+    """``core.ports.OrientingSpindle`` of the simulated machine."""
 
-    def orient(self, angle: float, sense: int = 0) -> None:
+    def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Turn the spindle to an angle in degrees. Raises DriverError in E-stop or with an inverter fault."""
         plant = self._plant
         with plant.lock:
             now = plant.advance()
-            _demand_spindle(plant)
-            plant.spindle.orient(now, angle, sense)
+            _require_spindle(plant)
+            plant.spindle.orient_spindle(now, angle, direction)
 
-    def release(self) -> None:
+    def release_spindle(self) -> None:
         """Cancel the orientation."""
         with self._plant.lock:
             self._plant.advance()
-            self._plant.spindle.release()
+            self._plant.spindle.cancel_orientation()
 
-    def oriented(self) -> bool:
+    def is_oriented(self) -> bool:
         """Return whether the spindle is at the commanded angle."""
         with self._plant.lock:
             self._plant.advance()
-            return self._plant.spindle.oriented
+            return self._plant.spindle.is_oriented
 
 
-class SimIO(_OnPlant):
+class SimIO(_PlantPort):
     """``core.ports.DigitalIO`` of the simulated machine."""
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name; True is active."""
         with self._plant.lock:
-            return self._plant.terminals.read(self._plant.advance())
+            return self._plant.terminals.read_inputs(self._plant.advance())
 
     def outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name, as last written."""
@@ -223,40 +229,40 @@ class SimIO(_OnPlant):
         with self._plant.lock:
             self._plant.terminals.write(name, on, self._plant.advance())
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
         with self._plant.lock:
-            self._plant.terminals.safe(self._plant.advance())
+            self._plant.terminals.switch_to_safe_state(self._plant.advance())
 
 
-class SimTouch(_OnPlant):
+class SimTouch(_PlantPort):
     """``core.ports.TouchInput`` of the simulated machine, at the resolution of the model's grid."""
 
-    def arm(self) -> None:
+    def arm_latch(self) -> None:
         """Clear the latched touch."""
         with self._plant.lock:
             self._plant.advance()
             if self._plant.terminals.setter is not None:
                 self._plant.terminals.setter.kept = None
 
-    def latched(self) -> Latch | None:
-        """Return the first touch since ``arm``, or None."""
+    def read_latch(self) -> TouchLatch | None:
+        """Return the first touch since ``arm_latch``, or None."""
         with self._plant.lock:
             self._plant.advance()
             setter = self._plant.terminals.setter
             kept = setter.kept if setter is not None else None
-            return Latch(*kept, self._plant.config.step) if kept is not None else None
+            return TouchLatch(*kept, self._plant.config.step_s) if kept is not None else None
 
 
-class SimStation(_OnPlant):
+class SimStation(_PlantPort):
     """``core.ports.Station`` of the simulated machine."""
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         """Return the present state of the operator station."""
         plant = self._plant
         with plant.lock:
-            state, _ = plant.hands(plant.clock.now())
-            load = plant.spindle.load if plant.config.measures_load else None
+            state, _ = plant.read_station(plant.clock.now())
+            load = plant.spindle.load_percent if plant.config.has_load_input else None
         return state if load is None else replace(state, spindle_load=load)
 
 
@@ -264,12 +270,12 @@ class Simulation(NamedTuple):
     """Ports for the executor, and the controls by which a test or operator acts on the machine."""
 
     ports: MachinePorts
-    machine: PlantHands
+    machine: PlantControls
 
 
 def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
     """Create a simulated machine on ``clock`` and return its ports and its controls."""
-    plant = Plant(config, clock)
+    plant = SimulatedPlant(config, clock)
     ports = MachinePorts(
         clock=clock,
         axes=SimAxes(plant),
@@ -277,13 +283,13 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         io=SimIO(plant),
         station=SimStation(plant),
         gear=SimGear(plant),
-        orientation=SimOrientation(plant) if config.spindle.orients else None,
-        halt=plant.halt,
+        orientation=SimOrientation(plant) if config.spindle.can_orient else None,
+        halt_machine=plant.stop_machine,
         wakeup=plant.wakeup,
         samples=SimSamples(plant),
         touch=SimTouch(plant) if config.setter is not None else None,
     )
-    machine = PlantHands(plant)
+    machine = PlantControls(plant)
     if config.faults:
-        plant.due = Schedule(machine, config.faults).due
+        plant.apply_due_faults = FaultSchedule(machine, config.faults).apply_due
     return Simulation(ports, machine)

@@ -19,22 +19,22 @@ _OPERATIONAL, _PRE_OPERATIONAL, _STOPPED = 5, 127, 4
 _START, _STOP, _PRE, _RESET, _RESET_COMMUNICATION = 1, 2, 128, 129, 130
 _STATES = {_START: _OPERATIONAL, _STOP: _STOPPED, _PRE: _PRE_OPERATIONAL}
 _SYNCHRONOUS = 240
-_PATIENT = 10  # periods without a SYNC
-_OFF = 1 << 31
+_MAX_MISSING_SYNCS = 10  # periods without a SYNC
+_PDO_DISABLED = 1 << 31
 
 
-class Device(Protocol):
+class NodeDevice(Protocol):
     """Device that provides the values of a node's objects."""
 
-    def read(self, index: int, sub: int, /) -> int | None:
+    def read(self, index: int, subindex: int, /) -> int | None:
         """Return the value of an object that the device calculates, or None if the stored value applies."""
         ...
 
-    def write(self, index: int, sub: int, value: int, /) -> None:
+    def write(self, index: int, subindex: int, value: int, /) -> None:
         """Apply a written value; called after each write by SDO or PDO."""
         ...
 
-    def host_lost(self) -> None:
+    def handle_host_loss(self) -> None:
         """React to the loss of the host's heartbeat, SYNC or PDO."""
         ...
 
@@ -55,7 +55,7 @@ class DeviceNetwork(canopen.Network):
             self.bus.send(frame)
 
     def send_periodic(self, *_: object, **__: object) -> _NoTask:
-        """Return a task that does nothing, because ``DeviceNode.tick`` sends the heartbeat."""
+        """Return a task that does nothing, because ``DeviceNode.update`` sends the heartbeat."""
         return _NoTask()
 
 
@@ -74,19 +74,19 @@ _Entry = tuple[int, int, int, bool]  # Index, sub-index, number of bytes and sig
 _SIGNED = frozenset(datatypes.SIGNED_TYPES)
 
 
-class _Taken(NamedTuple):
+class _ReceivePdo(NamedTuple):
     """RPDO with its mapped objects."""
 
     number: int
-    waits: bool  # The RPDO takes effect at the next SYNC.
+    waits_for_sync: bool  # The RPDO takes effect at the next SYNC.
     entries: list[_Entry]
 
 
-class _Sent(NamedTuple):
-    """TPDO that is sent at every ``kind``-th SYNC."""
+class _TransmitPdo(NamedTuple):
+    """TPDO that is sent at every ``sync_divisor``-th SYNC."""
 
-    cob: int
-    kind: int
+    cob_id: int
+    sync_divisor: int
     entries: list[_Entry]
 
 
@@ -96,32 +96,32 @@ class _Communication(NamedTuple):
     Times are in seconds; 0 disables the function.
     """
 
-    beat: float
-    watched: int  # COB-ID of the monitored heartbeat.
-    patience: float
-    sync: float
-    longest: float  # Longest time between two frames of the first RPDO.
-    taken: dict[int, _Taken]
-    sent: list[_Sent]
-    hears: frozenset[int]
+    heartbeat_s: float
+    monitored_id: int  # COB-ID of the monitored heartbeat.
+    heartbeat_timeout_s: float
+    sync_period_s: float
+    max_setpoint_gap_s: float  # Longest time between two frames of the first RPDO.
+    received_pdos: dict[int, _ReceivePdo]
+    sent_pdos: list[_TransmitPdo]
+    accepted_ids: frozenset[int]
 
 
 class DeviceNode:
-    """One node on the bus. Tests can set ``silent`` or call ``boot``."""
+    """One node on the bus. Tests can set ``is_silent`` or call ``boot_up``."""
 
     def __init__(
-        self, network: DeviceNetwork, node_id: int, objects: ObjectDictionary, device: Device
+        self, network: DeviceNetwork, node_id: int, objects: ObjectDictionary, device: NodeDevice
     ) -> None:
         self.network = network
-        self.id = node_id
+        self.node_id = node_id
         self.device = device
-        self.local = LocalNode(node_id, objects)
-        network.add_node(self.local)
-        self.local.add_read_callback(self._on_read)
-        self.local.add_write_callback(self._on_write)
+        self.local_node = LocalNode(node_id, objects)
+        network.add_node(self.local_node)
+        self.local_node.add_read_callback(self._on_read)
+        self.local_node.add_write_callback(self._on_write)
         self.state = _PRE_OPERATIONAL
-        self.silent = False
-        self.now = 0.0
+        self.is_silent = False
+        self.time_s = 0.0
         self._next_beat = 0.0
         self._host_heard: float | None = None
         self._syncs = 0
@@ -131,84 +131,96 @@ class DeviceNode:
             int, tuple[list[_Entry], bytes]
         ] = {}  # By number of the RPDO, until the next SYNC.
         self._communication: _Communication | None = None  # None: the settings must be read again.
-        self.boot()
+        self.boot_up()
 
-    def boot(self) -> None:
+    def boot_up(self) -> None:
         """Clear all volatile values and send the boot-up message."""
         self.state = _PRE_OPERATIONAL
-        self.local.data_store.clear()
+        self.local_node.data_store.clear()
         self._communication = None
         self._waiting.clear()
         self._host_heard = self._sync_at = self._told_at = None
         self.device.reset()
-        self.network.send_message(0x700 + self.id, b"\x00")
+        self.network.send_message(0x700 + self.node_id, b"\x00")
 
     @property
-    def hears(self) -> frozenset[int]:
+    def accepted_ids(self) -> frozenset[int]:
         """The identifiers of the frames that the node accepts."""
-        return self._told().hears
+        return self._get_communication().accepted_ids
 
-    def take(self, can_id: int, data: bytes) -> None:
+    def handle_frame(self, can_id: int, data: bytes) -> None:
         """Handle one accepted frame."""
-        told = self._told()
-        if self.silent:
+        told = self._get_communication()
+        if self.is_silent:
             return
-        if can_id == 0 and len(data) >= 2 and data[1] in {0, self.id}:
+        if can_id == 0 and len(data) >= 2 and data[1] in {0, self.node_id}:
             self._command(data[0])
-        elif can_id == 0x600 + self.id and self.state != _STOPPED:
-            self.local.sdo.on_request(can_id, bytearray(data), self.now)
-        elif can_id == told.watched:
-            self._host_heard = self.now
+        elif can_id == 0x600 + self.node_id and self.state != _STOPPED:
+            self.local_node.sdo.on_request(can_id, bytearray(data), self.time_s)
+        elif can_id == told.monitored_id:
+            self._host_heard = self.time_s
         elif self.state == _OPERATIONAL:
             self._process_data(can_id, data, told)
 
-    def tick(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Send the heartbeat when it is due, and check the host's heartbeat and setpoints."""
-        self.now = now
-        told = self._told()
-        if told.beat and now >= self._next_beat and not self.silent:
-            self._next_beat = now + told.beat
-            self.network.send_message(0x700 + self.id, bytes([self.state]))
-        if told.patience and self._host_heard is not None and now - self._host_heard > told.patience:
+        self.time_s = now
+        told = self._get_communication()
+        if told.heartbeat_s and now >= self._next_beat and not self.is_silent:
+            self._next_beat = now + told.heartbeat_s
+            self.network.send_message(0x700 + self.node_id, bytes([self.state]))
+        if (
+            told.heartbeat_timeout_s
+            and self._host_heard is not None
+            and now - self._host_heard > told.heartbeat_timeout_s
+        ):
             self._host_heard = None
-            self.emergency(0x8130)
-            self.device.host_lost()
-        self._miss_setpoints(now, told)
+            self.send_emergency(0x8130)
+            self.device.handle_host_loss()
+        self._check_setpoints(now, told)
 
-    def _miss_setpoints(self, now: float, told: _Communication) -> None:
+    def _check_setpoints(self, now: float, communication: _Communication) -> None:
         """Report the host as lost if SYNC or the first RPDO is missing for longer than configured."""
         if self.state != _OPERATIONAL:
             self._sync_at = self._told_at = None
-        if told.sync and self._sync_at is not None and now - self._sync_at > _PATIENT * told.sync:
+        if (
+            communication.sync_period_s
+            and self._sync_at is not None
+            and now - self._sync_at > _MAX_MISSING_SYNCS * communication.sync_period_s
+        ):
             self._sync_at = None
-            self.emergency(0x8700)
-            self.device.host_lost()
-        elif told.longest and self._told_at is not None and now - self._told_at > told.longest:
+            self.send_emergency(0x8700)
+            self.device.handle_host_loss()
+        elif (
+            communication.max_setpoint_gap_s
+            and self._told_at is not None
+            and now - self._told_at > communication.max_setpoint_gap_s
+        ):
             self._told_at = None
-            self.emergency(0x8250)
-            self.device.host_lost()
+            self.send_emergency(0x8250)
+            self.device.handle_host_loss()
 
-    def emergency(self, code: int, register: int = 1) -> None:
+    def send_emergency(self, code: int, register: int = 1) -> None:
         """Send an EMCY unless the node is silent."""
-        if not self.silent:
-            self.network.send_message(0x80 + self.id, struct.pack("<HB5x", code, register))
+        if not self.is_silent:
+            self.network.send_message(0x80 + self.node_id, struct.pack("<HB5x", code, register))
 
     def _command(self, code: int) -> None:
         if code in _STATES:
             self.state = _STATES[code]
         elif code in {_RESET, _RESET_COMMUNICATION}:
-            self.boot()
+            self.boot_up()
 
     def _process_data(self, can_id: int, data: bytes, told: _Communication) -> None:
         if can_id == 0x80:
-            self._syncs, self._sync_at = self._syncs + 1, self.now
+            self._syncs, self._sync_at = self._syncs + 1, self.time_s
             for _, (entries, waiting) in sorted(self._waiting.items()):
                 self._apply(entries, waiting)
             self._waiting.clear()
             self._answer(told)
-        elif can_id in told.taken:
-            number, waits, entries = told.taken[can_id]
-            self._told_at = self._told_at if number else self.now
+        elif can_id in told.received_pdos:
+            number, waits, entries = told.received_pdos[can_id]
+            self._told_at = self._told_at if number else self.time_s
             if waits:
                 self._waiting[number] = entries, data
             else:
@@ -219,69 +231,71 @@ class DeviceNode:
         for index, sub, size, signed in entries:  # Faster than the node of the library.
             part = data[at : at + size]
             if len(part) == size:
-                self.local.data_store.setdefault(index, {})[sub] = part
+                self.local_node.data_store.setdefault(index, {})[sub] = part
                 self.device.write(index, sub, int.from_bytes(part, "little", signed=signed))
             at += size
 
     def _answer(self, told: _Communication) -> None:
-        for cob, kind, entries in told.sent:
+        for cob, kind, entries in told.sent_pdos:
             if self._syncs % kind == 0:
-                self.network.send_message(cob, b"".join([self._value(*entry) for entry in entries]))
+                self.network.send_message(cob, b"".join([self._encode_value(*entry) for entry in entries]))
 
-    def _value(self, index: int, sub: int, size: int, _signed: bool) -> bytes:
+    def _encode_value(self, index: int, sub: int, size: int, _signed: bool) -> bytes:
         """Return an object value in bytes, faster than the node of the library does."""
         value = self.device.read(index, sub)
         if value is None:
-            stored = self.local.data_store.setdefault(index, {})
+            stored = self.local_node.data_store.setdefault(index, {})
             if sub not in stored:
-                stored[sub] = bytes(self.local.get_data(index, sub))
+                stored[sub] = bytes(self.local_node.get_data(index, sub))
             return bytes(stored[sub])
         return value.to_bytes(size, "little", signed=value < 0)
 
-    def _told(self) -> _Communication:
+    def _get_communication(self) -> _Communication:
         """Return the communication settings, which are read again after a change."""
         if self._communication is None:
             self._communication = self._read()
         return self._communication
 
     def _read(self) -> _Communication:
-        stored, numbers = self._stored, range(4)
+        stored, numbers = self._stored_value, range(4)
         taken = {
-            cob: _Taken(number, stored(0x1400 + number, 2) <= _SYNCHRONOUS, self._mapped(0x1600 + number))
+            cob: _ReceivePdo(
+                number, stored(0x1400 + number, 2) <= _SYNCHRONOUS, self._read_mapping(0x1600 + number)
+            )
             for number in numbers
             if (cob := stored(0x1400 + number, 1))
         }
         sent = [
-            _Sent(cob & 0x7FF, kind, self._mapped(0x1A00 + number))
+            _TransmitPdo(cob & 0x7FF, kind, self._read_mapping(0x1A00 + number))
             for number in numbers
-            if (cob := stored(0x1800 + number, 1)) and not cob & _OFF
+            if (cob := stored(0x1800 + number, 1)) and not cob & _PDO_DISABLED
             if 1 <= (kind := stored(0x1800 + number, 2)) <= _SYNCHRONOUS
         ]
         watched = 0x700 + (stored(od.WATCHED, 1) >> 16 & 0x7F)
         return _Communication(
-            beat=stored(od.HEARTBEAT, 0) / 1000.0,
-            watched=watched,
-            patience=(stored(od.WATCHED, 1) & 0xFFFF) / 1000.0,
-            sync=1e-6 * stored(od.SYNC_PERIOD, 0),
-            longest=0.001 * stored(od.COMMANDED, 5),
-            taken=taken,
-            sent=sent,
-            hears=frozenset({0, 0x80, 0x600 + self.id, watched, *taken}),
+            heartbeat_s=stored(od.HEARTBEAT, 0) / 1000.0,
+            monitored_id=watched,
+            heartbeat_timeout_s=(stored(od.WATCHED, 1) & 0xFFFF) / 1000.0,
+            sync_period_s=1e-6 * stored(od.SYNC_PERIOD, 0),
+            max_setpoint_gap_s=0.001 * stored(od.COMMANDED, 5),
+            received_pdos=taken,
+            sent_pdos=sent,
+            accepted_ids=frozenset({0, 0x80, 0x600 + self.node_id, watched, *taken}),
         )
 
-    def _mapped(self, index: int) -> list[_Entry]:
+    def _read_mapping(self, index: int) -> list[_Entry]:
         """Return the entries that are mapped into a PDO."""
-        entries = [self._stored(index, sub) for sub in range(1, self._stored(index, 0) + 1)]
+        entries = [self._stored_value(index, sub) for sub in range(1, self._stored_value(index, 0) + 1)]
         places = [(entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries]
         return [(index, sub, size, self._is_signed(index, sub)) for index, sub, size in places]
 
     def _is_signed(self, index: int, sub: int) -> bool:
-        variable = self.local.object_dictionary.get_variable(index, sub)
+        variable = self.local_node.object_dictionary.get_variable(index, sub)
         return variable is not None and variable.data_type in _SIGNED
 
-    def _stored(self, index: int, sub: int) -> int:
+    def _stored_value(self, index: int, sub: int) -> int:
         """Return a stored number such as a communication parameter, or 0 if no value is stored."""
-        return int.from_bytes(self.local.data_store.get(index, {}).get(sub, b""), "little")
+        return int.from_bytes(self.local_node.data_store.get(index, {}).get(sub, b""), "little")
 
     def _on_read(self, index: int, subindex: int, **_: object) -> int | None:
         return self.device.read(index, subindex)

@@ -8,18 +8,18 @@ from dataclasses import replace
 
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import HM, IP, NEW, PV, REACHED, DriveState
-from drivers.canopen.drive_profiles import CIA402, DriveProfile
+from drivers.canopen.drive_profiles import CIA402_PROFILE, DriveProfile
 from drivers.simulators.canopen_axis_drive import AxisDrive
 from drivers.simulators.plant_config import SimAxis
-from drivers.simulators.servo_axis import Servo
+from drivers.simulators.servo_axis import SimulatedServo
 from drivers.simulators.spindle_motor import SpindleMotor
 
 EMCY_FAULT = 0x7120  # motor blocked
 _INDEX = (33, 34)
-_TURN = 360.0
+_DEGREES_PER_REV = 360.0
 
 
-class SpindleSlide(Servo):
+class SpindleServo(SimulatedServo):
     """Spindle as an axis in degrees that follows its setpoints exactly and homes on its index."""
 
     def __init__(self, axis: SimAxis, motor: SpindleMotor) -> None:
@@ -31,21 +31,21 @@ class SpindleSlide(Servo):
     @property
     def place(self) -> float:
         """The angle in degrees in the count of the drive."""
-        return self._motor.turns * _TURN - self._zero
+        return self._motor.revolutions * _DEGREES_PER_REV - self._zero
 
-    def adopt(self) -> None:
+    def adopt_motor_angle(self) -> None:
         """Take over the motor's angle after the spindle has turned."""
         self.p, self.v = self.place, 0.0
 
-    def seek(self, method: int) -> None:
+    def set_switch_position(self, method: int) -> None:
         """Set the home position: the next index for an index method, otherwise the present position."""
-        ahead = (math.floor(self._motor.turns + 1e-9) + 1) * _TURN - self._zero
+        ahead = (math.floor(self._motor.revolutions + 1e-9) + 1) * _DEGREES_PER_REV - self._zero
         self.switch = ahead if method in _INDEX else self.p
 
-    def follow(self, p: float, v: float, _dt: float) -> bool:
+    def follow_setpoint(self, p: float, v: float, _dt: float) -> bool:
         """Move the spindle exactly to setpoint ``p``, ``v``; never trip."""
         self.p, self.v = p, v
-        self._motor.turns = (p + self._zero) / _TURN
+        self._motor.revolutions = (p + self._zero) / _DEGREES_PER_REV
         return False
 
     def roll(self, _dt: float) -> None:
@@ -57,43 +57,47 @@ class SpindleSlide(Servo):
         self.p = self.offset
 
 
-class SpindleDrive:
+class SimulatedSpindleDrive:
     """Simulated spindle drive; ``step`` is called with the time of the plant."""
 
     def __init__(
         self,
         motor: SpindleMotor,
         counts: int,
-        emergency: Callable[[int], None],
+        send_emergency: Callable[[int], None],
         axis: SimAxis | None = None,
-        profile: DriveProfile = CIA402,
+        profile: DriveProfile = CIA402_PROFILE,
     ) -> None:
         self.motor = motor
-        self.emergency = emergency
-        self.positions = axis is not None
+        self.send_emergency = send_emergency
+        self.can_position = axis is not None
         made = axis or SimAxis("C", 1.0, 1.0, 1.0, 1.0, 1.0)
-        made = replace(made, count=_TURN / max(counts, 1))
-        self.slide = SpindleSlide(made, motor)
-        self.axis = AxisDrive(self.slide, emergency, profile, counts)
-        self.power = self.axis.power
+        made = replace(made, count=_DEGREES_PER_REV / max(counts, 1))
+        self.spindle_servo = SpindleServo(made, motor)
+        self.axis_drive = AxisDrive(self.spindle_servo, send_emergency, profile, counts)
+        self.power_states = self.axis_drive.power_states
         self.mode = 0
         self.target = 0
         self._counts = counts
         self._ordered: int | None = None
-        self.at = 0.0  # time of the last step, s
+        self.last_step_s = 0.0  # time of the last step, s
         self.values: dict[tuple[int, int], int] = {}
         self._readers: dict[int, Callable[[], int]] = {
             od.DEVICE_TYPE: lambda: 0x00020192,
-            od.SUPPORTED: lambda: 0x64 if self.positions else 0x04,
-            od.STATUS: lambda: self.axis.status() if self.as_axis else self.power.word | self._reached(),
+            od.SUPPORTED: lambda: 0x64 if self.can_position else 0x04,
+            od.STATUS: lambda: (
+                self.axis_drive.status_word()
+                if self.is_axis_mode
+                else self.power_states.status_word | self._reached()
+            ),
             od.MODE_SHOWN: lambda: self.mode,
-            od.VELOCITY: lambda: round(self.slide.v / 6.0 if self.as_axis else self.motor.speed),
-            od.TORQUE: lambda: 0 if self.as_axis else round(10.0 * self.motor.load),
+            od.VELOCITY: lambda: round(self.spindle_servo.v / 6.0 if self.is_axis_mode else self.motor.speed),
+            od.ACTUAL_TORQUE: lambda: 0 if self.is_axis_mode else round(10.0 * self.motor.load_percent),
             od.POSITION: self._position,
         }
 
     @property
-    def as_axis(self) -> bool:
+    def is_axis_mode(self) -> bool:
         """Whether the mode of operation is interpolated position or homing."""
         return self.mode in {IP, HM}
 
@@ -103,73 +107,77 @@ class SpindleDrive:
         return None if reader is None else reader()
 
     def _position(self) -> int:
-        counted = self.slide.place / _TURN * self._counts
+        counted = self.spindle_servo.place / _DEGREES_PER_REV * self._counts
         return (round(counted) + 2**31) % 2**32 - 2**31
 
     def _reached(self) -> int:
         return REACHED if abs(self.motor.speed - self.target) < 10 else 0
 
-    def write(self, index: int, sub: int, value: int) -> None:
+    def write(self, index: int, subindex: int, value: int) -> None:
         """Apply an object value that the host has written."""
-        self.values[index, sub] = value
+        self.values[index, subindex] = value
         if index == od.MODE:
-            self._change(value)
+            self._change_mode(value)
         elif index == od.TARGET_SPEED:
             self.target = value
         elif index != od.CONTROL:
-            self.axis.write(index, sub, value)
-        elif self.as_axis:
-            if self.mode == HM and value & NEW and not self.power.last & NEW:
-                self.slide.offset = self.values.get((od.HOME_OFFSET, 0), 0) * _TURN / self._counts
-                self.slide.seek(self.values.get((od.HOME_METHOD, 0), 0))
-            self.axis.write(index, sub, value)
+            self.axis_drive.write(index, subindex, value)
+        elif self.is_axis_mode:
+            if self.mode == HM and value & NEW and not self.power_states.last_control_word & NEW:
+                self.spindle_servo.offset = (
+                    self.values.get((od.HOME_OFFSET, 0), 0) * _DEGREES_PER_REV / self._counts
+                )
+                self.spindle_servo.set_switch_position(self.values.get((od.HOME_METHOD, 0), 0))
+            self.axis_drive.write(index, subindex, value)
         else:
-            self.power.control(value)
+            self.power_states.apply_control_word(value)
 
-    def _change(self, mode: int) -> None:
+    def _change_mode(self, mode: int) -> None:
         """Change the mode of operation, only at standstill and while no positions are played."""
-        if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis.playing:
+        if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
             return
         self.mode = mode
-        self.axis.write(od.MODE, 0, mode)
-        if self.as_axis:
-            self.slide.adopt()
-            self.axis.p, self.axis.v = self.slide.p, 0.0
+        self.axis_drive.write(od.MODE, 0, mode)
+        if self.is_axis_mode:
+            self.spindle_servo.adopt_motor_angle()
+            self.axis_drive.setpoint_position, self.axis_drive.setpoint_velocity = self.spindle_servo.p, 0.0
 
-    def host_lost(self) -> None:
+    def handle_host_loss(self) -> None:
         """Quick stop after the loss of the host if the abort connection option is 3."""
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
-            self.power.quick_stop()
+            self.power_states.quick_stop()
 
     def reset(self) -> None:
         """Clear power, mode, target and all stored values."""
-        self.axis.reset()
+        self.axis_drive.reset()
         self.mode = self.target = 0
         self.values.clear()
 
     @property
-    def rests(self) -> bool:
+    def is_idle(self) -> bool:
         """Whether further steps change nothing until a frame arrives or the motor's speed changes."""
-        obeyed = self.power.powered == (self._ordered is not None)
-        return obeyed and not self.as_axis and not self.power.braking
+        obeyed = self.power_states.is_powered == (self._ordered is not None)
+        return obeyed and not self.is_axis_mode and not self.power_states.is_braking
 
-    def step(self, now: float) -> None:
+    def advance(self, now: float) -> None:
         """Command the motor's speed by mode and power state, and end braking at standstill."""
-        dt, self.at = now - self.at, now
-        if self.motor.faults.fault and self.power.state is not DriveState.FAULT:
-            self.power.trip()
-            self.emergency(EMCY_FAULT)
-        if self.as_axis:
-            self.axis.step(dt)
+        dt, self.last_step_s = now - self.last_step_s, now
+        if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:
+            self.power_states.trip()
+            self.send_emergency(EMCY_FAULT)
+        if self.is_axis_mode:
+            self.axis_drive.step(dt)
             self._ordered = None
             return
-        wanted = self.target if self.power.state is DriveState.ENABLED and self.mode == PV else 0
-        if not self.power.powered:
+        wanted = (
+            self.target if self.power_states.state is DriveState.OPERATION_ENABLED and self.mode == PV else 0
+        )
+        if not self.power_states.is_powered:
             if self._ordered is not None:
-                self.motor.cut(now)
+                self.motor.cut_power(now)
                 self._ordered = None
         elif wanted != self._ordered:
-            self.motor.order(now, float(wanted))
+            self.motor.command_speed(now, float(wanted))
             self._ordered = wanted
-        if self.power.braking and abs(self.motor.speed) < 1.0:
-            self.power.stopped()
+        if self.power_states.is_braking and abs(self.motor.speed) < 1.0:
+            self.power_states.end_braking()

@@ -6,141 +6,151 @@ import math
 from dataclasses import dataclass
 
 from core.ports import Clock
-from drivers.simulators.grblhal_program import Modes, Program
-from drivers.simulators.grblhal_settings import Quirks, Registers
-from drivers.simulators.grblhal_slides import PlannedBlock, Slides
+from drivers.simulators.grblhal_motion import GrblMotion, PlannedBlock
+from drivers.simulators.grblhal_program import LineInterpreter, ModalState
+from drivers.simulators.grblhal_settings import SettingRegisters, SimulatorBehavior
 from drivers.simulators.plant_config import SimSpindle
-from drivers.simulators.spindle_motor import SpindleMotor, TurnedSpindle
+from drivers.simulators.spindle_motor import SimulatedSpindle, SpindleMotor
 
 # --- Effects of the real-time bytes in all states.
 
 
-_STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
+_OVERRIDE_STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
 
 
-def act(m: Firmware, byte: int) -> None:
+def execute_realtime_byte(firmware: GrblFirmware, byte: int) -> None:
     """Execute a real-time byte immediately."""
     if byte == 0x18:
-        m.reset()
+        firmware.reset()
     elif byte == 0x19:
-        _stop(m)
-    elif m.waits:
+        _stop_motion(firmware)
+    elif firmware.is_waiting_for_index:
         return  # The firmware reads its flags after the wait; here they are discarded.
     elif byte in {0x80, 0x87}:
-        m.say(m.reports.text(m, full=byte == 0x87) + "\r\n")
+        firmware.send_text(firmware.report_generator.format_report(firmware, full=byte == 0x87) + "\r\n")
     elif byte == 0x83:
-        m.say(m.program.told() + "\r\n")
+        firmware.send_text(firmware.program.format_modes() + "\r\n")
     elif byte == 0x82:
-        m.hold = m.hold or not (m.alarm or m.jogs or m.quirks.hold_broken)
+        firmware.is_in_hold = firmware.is_in_hold or not (
+            firmware.alarm_number or firmware.is_jogging or firmware.behavior.hold_broken
+        )
     elif byte == 0x81:
-        _go_on(m)
+        _go_on(firmware)
     elif byte == 0x85:
-        m.rx.clear()
-        m.program.error = 0
-        m.cancels = m.jogs and bool(m.slides.queue)
+        firmware.receive_buffer.clear()
+        firmware.program.last_error = 0
+        firmware.is_canceling_jog = firmware.is_jogging and bool(firmware.motion.block_queue)
     elif 0x90 <= byte <= 0x9E:
-        _override(m, byte)
+        _override(firmware, byte)
 
 
-def _stop(m: Firmware) -> None:
+def _stop_motion(m: GrblFirmware) -> None:
     """Stop without deceleration and clear most alarms; while a thread waits for its index, reset instead."""
-    if m.blocking:
+    if m.is_reset_required:
         return
-    if m.waits:
+    if m.is_waiting_for_index:
         m.restart(False)
         return
-    m.torn += m.slides.moving
-    m.halt()
-    m.rx.clear()
-    m.program.modes = Modes()
-    if m.alarm not in {11, 12}:
-        m.alarm = 0
-        m.say("[MSG:Stop]\r\n")
+    m.abrupt_stop_count += m.motion.is_moving
+    m.stop_everything()
+    m.receive_buffer.clear()
+    m.program.modes = ModalState()
+    if m.alarm_number not in {11, 12}:
+        m.alarm_number = 0
+        m.send_text("[MSG:Stop]\r\n")
 
 
-def _go_on(m: Firmware) -> None:
-    if m.slides.moving or m.alarm or not (m.hold or m.door):
+def _go_on(m: GrblFirmware) -> None:
+    if m.motion.is_moving or m.alarm_number or not (m.is_in_hold or m.is_door_open):
         return
-    m.hold = m.door = False
-    if m.paused and not int(m.registers[63]) & 2:
-        m.rpm = 0.0
-    m.paused = False
-    m.turn(m.rpm)
+    m.is_in_hold = m.is_door_open = False
+    if m.is_spindle_paused and not int(m.registers[63]) & 2:
+        m.programmed_rpm = 0.0
+    m.is_spindle_paused = False
+    m.command_spindle(m.programmed_rpm)
 
 
-def _override(m: Firmware, byte: int) -> None:
-    if m.quirks.stubborn:
+def _override(m: GrblFirmware, byte: int) -> None:
+    if m.behavior.stubborn:
         return
-    m.reports.overrides_due = True
+    m.report_generator.overrides_due = True
     if byte == 0x90:
         m.feed_percent = 100
-    elif byte in _STEPS:
-        m.feed_percent = min(max(m.feed_percent + _STEPS[byte], 10), 200)
+    elif byte in _OVERRIDE_STEPS:
+        m.feed_percent = min(max(m.feed_percent + _OVERRIDE_STEPS[byte], 10), 200)
     elif byte in {0x95, 0x96, 0x97}:
         m.rapid_percent = {0x95: 100, 0x96: 50, 0x97: 25}[byte]
     elif byte == 0x99:
         m.spindle_percent = 100
-    elif byte - 9 in _STEPS:
-        m.spindle_percent = min(max(m.spindle_percent + _STEPS[byte - 9], 10), 200)
-    elif byte == 0x9E and m.hold and m.rpm and not (m.quirks.toggle_broken or m.program.wait):
-        m.paused = not m.paused
-    m.turn(m.rpm)
+    elif byte - 9 in _OVERRIDE_STEPS:
+        m.spindle_percent = min(max(m.spindle_percent + _OVERRIDE_STEPS[byte - 9], 10), 200)
+    elif (
+        byte == 0x9E
+        and m.is_in_hold
+        and m.programmed_rpm
+        and not (m.behavior.toggle_broken or m.program.active_wait)
+    ):
+        m.is_spindle_paused = not m.is_spindle_paused
+    m.command_spindle(m.programmed_rpm)
 
 
 # --- One step of the machine: homing, the wait for an index, motion and stops.
 
 
-STEP = 0.001  # s
-_INDEX = 5.0  # Seconds that a thread waits for the index.
+STEP_S = 0.001  # s
+_INDEX_TIMEOUT_S = 5.0  # Seconds that a thread waits for the index.
 
 
-def step(m: Firmware) -> None:
-    """Advance the controller by ``STEP``."""
-    if m.homing is not None:
-        _home(m, *m.homing)
+def step_firmware(firmware: GrblFirmware) -> None:
+    """Advance the controller by ``STEP_S``."""
+    if firmware.homing_end is not None:
+        _home(firmware, *firmware.homing_end)
         return
-    if m.alarm:
+    if firmware.alarm_number:
         return
-    slides = m.slides
-    slides.feed, slides.rapid = m.feed_percent / 100.0, m.rapid_percent / 100.0
-    first = slides.queue[0] if slides.queue else None
-    resting = (m.hold or m.door) and not slides.moving
-    if first is not None and not resting and _wants_index(m, first):
+    slides = firmware.motion
+    slides.feed_override, slides.rapid_override = (
+        firmware.feed_percent / 100.0,
+        firmware.rapid_percent / 100.0,
+    )
+    first = slides.block_queue[0] if slides.block_queue else None
+    resting = (firmware.is_in_hold or firmware.is_door_open) and not slides.is_moving
+    if first is not None and not resting and _waits_for_index(firmware, first):
         return
-    if first is not None and first.per_rev and not first.thread and abs(m.spindle.speed) < 1.0:
-        m.raise_alarm(14)
+    if first is not None and first.is_per_rev and not first.is_thread and abs(firmware.spindle.speed) < 1.0:
+        firmware.raise_alarm(14)
         return
-    slides.held = m.hold or m.door or m.cancels
-    slides.step(STEP, abs(m.spindle.speed) / 60.0)
-    if m.cancels and not slides.moving:
-        m.cancels = False
-        slides.drop()
-        m.program.end = slides.place
-    if not slides.queue:
-        m.jogs = False
+    slides.is_in_hold = firmware.is_in_hold or firmware.is_door_open or firmware.is_canceling_jog
+    slides.advance(STEP_S, abs(firmware.spindle.speed) / 60.0)
+    if firmware.is_canceling_jog and not slides.is_moving:
+        firmware.is_canceling_jog = False
+        slides.discard_blocks()
+        firmware.program.end_position = slides.position
+    if not slides.block_queue:
+        firmware.is_jogging = False
 
 
-def _home(m: Firmware, until: float, axes: int) -> None:
-    if m.k >= until:
-        m.homing, m.homed = None, m.homed | axes
-        m.alarm = 11 if int(m.registers[22]) & 4 and m.homed & 5 != 5 else 0
-        m.say("[MSG:]\r\n")
-        m.answer()
+def _home(m: GrblFirmware, until: float, axes: int) -> None:
+    if m.time_s >= until:
+        m.homing_end, m.homed_axes = None, m.homed_axes | axes
+        m.alarm_number = 11 if int(m.registers[22]) & 4 and m.homed_axes & 5 != 5 else 0
+        m.send_text("[MSG:]\r\n")
+        m.acknowledge_line()
 
 
-def _wants_index(m: Firmware, block: PlannedBlock) -> bool:
+def _waits_for_index(m: GrblFirmware, block: PlannedBlock) -> bool:
     """Return whether a thread still waits for its start, which is at the second index after the request.
 
     No byte is processed during the wait. A missing index raises alarm 14 after 5 s.
     """
-    if not block.thread or m.slides.begun:
+    if not block.is_thread or m.motion.has_started:
         return False
-    if m.index_since is None:
-        m.index_since, m.index_at = m.k, math.floor(abs(m.spindle.turns)) + 2
-    if not m.quirks.index_missing and abs(m.spindle.turns) >= m.index_at:
-        m.index_since = None
+    if m.index_wait_start_s is None:
+        m.index_wait_start_s, m.index_target_rev = m.time_s, math.floor(abs(m.spindle.revolutions)) + 2
+    if not m.behavior.index_missing and abs(m.spindle.revolutions) >= m.index_target_rev:
+        m.index_wait_start_s = None
         return False
-    if m.k - m.index_since > _INDEX:
+    if m.time_s - m.index_wait_start_s > _INDEX_TIMEOUT_S:
         m.raise_alarm(14)
     return True
 
@@ -150,306 +160,318 @@ def _wants_index(m: Firmware, block: PlannedBlock) -> bool:
 
 _OFFSETS_BUSY, _OFFSETS_IDLE = 30, 10  # Intervals in reports.
 _OVERRIDES_BUSY, _OVERRIDES_IDLE = 20, 10
-_BUSY = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
+_BUSY_STATES = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 
 
 @dataclass(slots=True)
-class Reports:
+class ReportGenerator:
     """Generator of status reports that decides when offsets and overrides are included.
 
     Both are included at intervals and after a change. If both are due, the offsets wait for the next report.
     A full report has both. Firmware of 2023 delayed the overrides and never put them into a full report.
     """
 
-    offsets_in: int = 0
-    overrides_in: int = 0
+    reports_until_offsets: int = 0
+    reports_until_overrides: int = 0
     offsets_due: bool = False
     overrides_due: bool = False
     accessories_due: bool = False
 
-    def text(self, m: Firmware, *, full: bool) -> str:
+    def format_report(self, firmware: GrblFirmware, *, full: bool) -> str:
         """Return one report without its line end."""
-        busy = m.state.partition(":")[0] in _BUSY
+        busy = firmware.state.partition(":")[0] in _BUSY_STATES
         overrides = self._overrides(full, busy)
         offsets = self._offsets(full, overrides, busy)
-        text = f"<{m.told_state(full)}{_motion(m)}{_extras(m, offsets, overrides, full)}>"
+        text = (
+            f"<{firmware.format_state(full)}{_motion(firmware)}{_extras(firmware, offsets, overrides, full)}>"
+        )
         self.accessories_due = False
         return text
 
     def _overrides(self, full: bool, busy: bool) -> bool:
-        told = full or self.overrides_due or self.overrides_in == 0
-        self.overrides_in = (
-            (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1 if told else self.overrides_in - 1
+        told = full or self.overrides_due or self.reports_until_overrides == 0
+        self.reports_until_overrides = (
+            (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1 if told else self.reports_until_overrides - 1
         )
         self.overrides_due = False
         return told
 
     def _offsets(self, full: bool, overrides: bool, busy: bool) -> bool:
-        wanted = full or self.offsets_due or self.offsets_in == 0
-        self.offsets_in = (_OFFSETS_BUSY if busy else _OFFSETS_IDLE) - 1 if wanted else self.offsets_in - 1
+        wanted = full or self.offsets_due or self.reports_until_offsets == 0
+        self.reports_until_offsets = (
+            (_OFFSETS_BUSY if busy else _OFFSETS_IDLE) - 1 if wanted else self.reports_until_offsets - 1
+        )
         self.offsets_due = wanted and overrides and not full
         return wanted and not self.offsets_due
 
 
-def _stepped(place: float, steps: float) -> float:
+def _round_to_step(position: float, steps: float) -> float:
     """Round a position to whole steps."""
-    return round(place * steps) / steps
+    return round(position * steps) / steps
 
 
-def _motion(m: Firmware) -> str:
+def _motion(m: GrblFirmware) -> str:
     scale = 2.0 if m.program.modes.radius == "G7" else 1.0
     x, z = (
-        _stepped(place, m.registers[number]) for place, number in zip(m.slides.place, (100, 102), strict=True)
+        _round_to_step(place, m.registers[number])
+        for place, number in zip(m.motion.position, (100, 102), strict=True)
     )
-    text = f"|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{m.slides.free},{m.rx_free}"
-    if m.slides.queue and m.slides.queue[0].number:
-        text += f"|Ln:{m.slides.queue[0].number}"
-    text += f"|FS:{60.0 * m.slides.v:.0f},{abs(m.commanded):.0f}"
-    if m.quirks.encoder:
+    text = f"|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{m.motion.free_blocks},{m.receive_buffer_free}"
+    if m.motion.block_queue and m.motion.block_queue[0].number:
+        text += f"|Ln:{m.motion.block_queue[0].number}"
+    text += f"|FS:{60.0 * m.motion.speed:.0f},{abs(m.commanded_rpm):.0f}"
+    if m.behavior.encoder:
         text += f",{abs(m.spindle.speed):.0f}"
-    return text + (f"|Pn:{m.pins}" if m.pins else "")
+    return text + (f"|Pn:{m.active_pins}" if m.active_pins else "")
 
 
-def _extras(m: Firmware, offsets: bool, overrides: bool, full: bool) -> str:
-    text = "|WCO:" + ",".join(f"{value:.3f}" for value in m.program.offset) if offsets else ""
+def _extras(m: GrblFirmware, offsets: bool, overrides: bool, full: bool) -> str:
+    text = "|WCO:" + ",".join(f"{value:.3f}" for value in m.program.work_offset) if offsets else ""
     text += "|WCS:G54" if full else ""
     text += f"|Ov:{m.feed_percent},{m.rapid_percent},{m.spindle_percent}" if overrides else ""
-    accessories = "" if not m.commanded else "S" if m.commanded > 0.0 else "C"
-    accessories += "F" * m.outputs.get("flood", False) + "M" * m.outputs.get("mist", False)
-    told = full or m.reports.accessories_due or (overrides and accessories)
+    accessories = "" if not m.commanded_rpm else "S" if m.commanded_rpm > 0.0 else "C"
+    accessories += "F" * m.output_states.get("flood", False) + "M" * m.output_states.get("mist", False)
+    told = full or m.report_generator.accessories_due or (overrides and accessories)
     text += f"|A:{accessories}" if told else ""
     if not full:
         return text
-    homed = f"|H:{int(m.homed & 5 == 5)}" + (f",{m.homed}" if int(m.registers[22]) & 2 else "")
-    read = "" if m.read is None else f"|In:{m.read}"
-    lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.lathe else ""
+    homed = f"|H:{int(m.homed_axes & 5 == 5)}" + (f",{m.homed_axes}" if int(m.registers[22]) & 2 else "")
+    read = "" if m.input_result is None else f"|In:{m.input_result}"
+    lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.is_lathe_mode else ""
     return f"{text}|Sc:|MPG:0{homed}{lathe}|T:0|P:0|TLR:0{read}|FW:grblHAL"
 
 
-_STEP = 0.001  # s
-_BUFFER = 1023  # Bytes for lines; one of the 1024 stays free.
-_CRITICAL = frozenset((1, 2, 10, 17))
-_BANNER = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
-_GATE = 100  # With this many free bytes or fewer, the simulator reads nothing from its socket.
+_STEP_S = 0.001  # s
+_BUFFER_SIZE = 1023  # Bytes for lines; one of the 1024 stays free.
+_CRITICAL_ALARMS = frozenset((1, 2, 10, 17))
+_BANNER_TEXT = "\r\nGrblHAL 1.1f ['$' or '$HELP' for help]\r\n"
+_MIN_FREE_BYTES = 100  # With this many free bytes or fewer, the simulator reads nothing from its socket.
 
 
-class Firmware:
-    """Simulated controller: ``feed`` takes received bytes, ``take`` returns bytes for the host.
+class GrblFirmware:
+    """Simulated controller: ``feed`` takes received bytes, ``pop_output`` returns bytes for the host.
 
-    ``out`` buffers bytes for the host. ``rx`` buffers received bytes that are not yet interpreted.
+    ``send_buffer`` buffers bytes for the host. ``receive_buffer`` buffers received bytes that are not yet
+    interpreted.
     """
 
-    def __init__(self, clock: Clock, quirks: Quirks | None = None) -> None:
+    def __init__(self, clock: Clock, behavior: SimulatorBehavior | None = None) -> None:
         self.clock = clock
-        self.quirks = quirks or Quirks()
-        self.registers = Registers(self.quirks)
-        self.slides = Slides(self.registers, 100)
-        self.spindle: TurnedSpindle = SpindleMotor(SimSpindle())
-        self.outputs: dict[str, bool] = {}
-        self.pins = ""
-        self.inputs: dict[int, bool] = {}
-        self.read: int | None = None  # Result of the last M66.
-        self.homed = 0  # One bit per axis.
-        self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
-        self.blocking = False  # After a critical alarm, only a reset is accepted.
-        self.door = False
-        self.overflowed = 0  # Number of bytes lost because the buffer was full.
-        self.torn = 0  # Number of stops without deceleration.
+        self.behavior = behavior or SimulatorBehavior()
+        self.registers = SettingRegisters(self.behavior)
+        self.motion = GrblMotion(self.registers, 100)
+        self.spindle: SimulatedSpindle = SpindleMotor(SimSpindle())
+        self.output_states: dict[str, bool] = {}
+        self.active_pins = ""
+        self.auxiliary_inputs: dict[int, bool] = {}
+        self.input_result: int | None = None  # Result of the last M66.
+        self.homed_axes = 0  # One bit per axis.
+        self.alarm_number = 11 if int(self.registers[22]) & 5 == 5 else 0
+        self.is_reset_required = False  # After a critical alarm, only a reset is accepted.
+        self.is_door_open = False
+        self.lost_byte_count = 0  # Number of bytes lost because the buffer was full.
+        self.abrupt_stop_count = 0  # Number of stops without deceleration.
         self.feed_percent, self.rapid_percent, self.spindle_percent = 100, 100, 100
-        self.rpm = 0.0
-        self.jogs = False
-        self.hold = False
-        self.paused = False  # The spindle is stopped during a feed hold.
-        self.rx = bytearray()
-        self.out = bytearray()
-        self.k = clock.now()
-        self.cancels = False  # A jog is being canceled.
-        self.index_since: float | None = None
-        self.index_at = 0
-        self.homing: tuple[float, int] | None = None  # End time and axes.
-        self.reports = Reports()
-        self.program = Program(self)
+        self.programmed_rpm = 0.0
+        self.is_jogging = False
+        self.is_in_hold = False
+        self.is_spindle_paused = False  # The spindle is stopped during a feed hold.
+        self.receive_buffer = bytearray()
+        self.send_buffer = bytearray()
+        self.time_s = clock.now()
+        self.is_canceling_jog = False  # A jog is being canceled.
+        self.index_wait_start_s: float | None = None
+        self.index_target_rev = 0
+        self.homing_end: tuple[float, int] | None = None  # End time and axes.
+        self.report_generator = ReportGenerator()
+        self.program = LineInterpreter(self)
         self._wire = bytearray()  # Bytes not yet read from the socket.
         self._next_byte = 0.0
 
     # --- the wire -----------------------------------------------------------------------------------------
 
-    def feed(self, data: bytes) -> None:
+    def receive_bytes(self, data: bytes) -> None:
         """Receive bytes from the host; real-time bytes take effect immediately, others are buffered."""
         self.advance()
         self._wire += data
         self._take_in()
-        self.program.pump()
+        self.program.execute_lines()
 
-    def take(self) -> bytes:
+    def pop_output(self) -> bytes:
         """Return the buffered bytes for the host."""
         self.advance()
-        data, self.out = bytes(self.out), bytearray()
-        return b"" if self.quirks.deaf else data
+        data, self.send_buffer = bytes(self.send_buffer), bytearray()
+        return b"" if self.behavior.sends_nothing else data
 
     def advance(self) -> None:
         """Advance the controller to the present time of the clock."""
-        now, idle = self.clock.now(), self._idle
-        while self.k + _STEP <= now + 1e-9:
-            self.k += _STEP
+        now, idle = self.clock.now(), self._is_idle
+        while self.time_s + _STEP_S <= now + 1e-9:
+            self.time_s += _STEP_S
             if idle:
                 continue
-            self.spindle.advance(self.k)
-            step(self)
+            self.spindle.advance_to(self.time_s)
+            step_firmware(self)
             self._take_in()
-            self.program.pump()
+            self.program.execute_lines()
         if idle:
-            self.spindle.advance(self.k)
+            self.spindle.advance_to(self.time_s)
 
     def reset(self) -> None:
         """Perform the reset 0x18: modes are lost, and also the position if an axis moves."""
-        if "E" in self.pins:
+        if "E" in self.active_pins:
             return
-        moved = self.slides.moving or self.homing is not None or self.index_since is not None
+        moved = self.motion.is_moving or self.homing_end is not None or self.index_wait_start_s is not None
         self.restart(moved)
 
     def power_cycle(self) -> None:
         """Switch the power off and on: the position becomes 0 and homing is lost."""
-        self.alarm, self.homed = 0, 0
-        self.door = self.blocking = False
-        self.slides.place = (0.0, 0.0)
+        self.alarm_number, self.homed_axes = 0, 0
+        self.is_door_open = self.is_reset_required = False
+        self.motion.position = (0.0, 0.0)
         self.restart(False)
-        self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
+        self.alarm_number = 11 if int(self.registers[22]) & 5 == 5 else 0
 
     # --- inside -------------------------------------------------------------------------------------------
 
     @property
-    def _idle(self) -> bool:
+    def _is_idle(self) -> bool:
         """Whether only the spindle changes until the host sends something."""
-        busy = self.slides.queue or self.homing is not None or not self.program.reads_on
-        return not (busy or self.rx or self._wire)
+        busy = self.motion.block_queue or self.homing_end is not None or not self.program.is_line_complete
+        return not (busy or self.receive_buffer or self._wire)
 
     def _take_in(self) -> None:
-        while self._wire and self.rx_free > _GATE and not (self.waits and self.quirks.mute):
-            if self.k < self._next_byte:
+        while (
+            self._wire
+            and self.receive_buffer_free > _MIN_FREE_BYTES
+            and not (self.is_waiting_for_index and self.behavior.mute)
+        ):
+            if self.time_s < self._next_byte:
                 return
-            self._next_byte = self.k + self.quirks.drip if self.quirks.drip else 0.0
+            self._next_byte = self.time_s + self.behavior.drip if self.behavior.drip else 0.0
             byte = self._wire.pop(0)
             if byte >= 0x80 or byte in {0x18, 0x19}:
-                act(self, byte)
+                execute_realtime_byte(self, byte)
             else:
-                self.rx.append(byte)
+                self.receive_buffer.append(byte)
 
-    def restart(self, moved: bool) -> None:
-        """Restart the controller; with ``moved``, the position is lost and alarm 3 is raised."""
-        self.torn += self.slides.moving
-        self.halt()
-        self.blocking = False
-        self.program.modes = Modes()
-        self.rx.clear()
+    def restart(self, position_lost: bool) -> None:
+        """Restart the controller; with ``position_lost``, the position is lost and alarm 3 is raised."""
+        self.abrupt_stop_count += self.motion.is_moving
+        self.stop_everything()
+        self.is_reset_required = False
+        self.program.modes = ModalState()
+        self.receive_buffer.clear()
         self.feed_percent = self.rapid_percent = self.spindle_percent = 100
-        self.reports = Reports()
-        if moved:
-            self.alarm, self.homed = 3, 0
-            self.say("ALARM:3\r\n")
-        self.say(_BANNER)
-        if self.alarm:
-            self.say("[MSG:'$H'|'$X' to unlock]\r\n")
+        self.report_generator = ReportGenerator()
+        if position_lost:
+            self.alarm_number, self.homed_axes = 3, 0
+            self.send_text("ALARM:3\r\n")
+        self.send_text(_BANNER_TEXT)
+        if self.alarm_number:
+            self.send_text("[MSG:'$H'|'$X' to unlock]\r\n")
 
-    def halt(self) -> None:
+    def stop_everything(self) -> None:
         """Stop motion, spindle, coolant and program immediately."""
-        self.slides.drop()
-        self.program.drop()
-        self.hold = self.cancels = self.jogs = self.slides.held = self.paused = False
-        self.index_since = self.homing = None
-        self.turn(0.0)
-        self.outputs.update(flood=False, mist=False)
+        self.motion.discard_blocks()
+        self.program.discard()
+        self.is_in_hold = self.is_canceling_jog = self.is_jogging = self.motion.is_in_hold = (
+            self.is_spindle_paused
+        ) = False
+        self.index_wait_start_s = self.homing_end = None
+        self.command_spindle(0.0)
+        self.output_states.update(flood=False, mist=False)
 
     # --- state: alarms, holds, spindle and pending lines ------------------------------------------------
 
     @property
-    def rx_free(self) -> int:
+    def receive_buffer_free(self) -> int:
         """The free bytes of the receive buffer."""
-        return _BUFFER - len(self.rx)
+        return _BUFFER_SIZE - len(self.receive_buffer)
 
     @property
     def state(self) -> str:
         """The state as in a status report."""
-        if self.alarm:
-            return f"Alarm:{self.alarm}"
-        if self.homing is not None:
+        if self.alarm_number:
+            return f"Alarm:{self.alarm_number}"
+        if self.homing_end is not None:
             return "Home"
-        if self.door:
-            return "Door:2" if self.slides.moving else "Door:1"
-        if self.hold:
-            return f"Hold:{int(self.slides.moving)}"
-        if self.slides.queue:
-            return "Jog" if self.jogs else "Run"
+        if self.is_door_open:
+            return "Door:2" if self.motion.is_moving else "Door:1"
+        if self.is_in_hold:
+            return f"Hold:{int(self.motion.is_moving)}"
+        if self.motion.block_queue:
+            return "Jog" if self.is_jogging else "Run"
         return "Idle"
 
-    def told_state(self, full: bool) -> str:
+    def format_state(self, full: bool) -> str:
         """Return the state as it is reported; ``$10`` decides whether an alarm has its number."""
         numbered = full or int(self.registers[10]) & 0x400
-        return self.state if numbered else self.state.replace(f"Alarm:{self.alarm}", "Alarm")
+        return self.state if numbered else self.state.replace(f"Alarm:{self.alarm_number}", "Alarm")
 
     @property
-    def waits(self) -> bool:
+    def is_waiting_for_index(self) -> bool:
         """Whether a thread waits for its index."""
-        return self.index_since is not None
+        return self.index_wait_start_s is not None
 
     @property
-    def reads(self) -> bool:
+    def is_reading(self) -> bool:
         """Whether lines are read now."""
-        held = (self.hold or self.door) and not self.alarm
-        return not (self.waits or self.homing is not None or held)
+        held = (self.is_in_hold or self.is_door_open) and not self.alarm_number
+        return not (self.is_waiting_for_index or self.homing_end is not None or held)
 
     @property
-    def commanded(self) -> float:
+    def commanded_rpm(self) -> float:
         """The commanded spindle speed in rpm, signed, after override and limits."""
-        if not self.rpm or self.paused:
+        if not self.programmed_rpm or self.is_spindle_paused:
             return 0.0
-        rpm = abs(self.rpm) * self.spindle_percent / 100.0
-        return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.rpm)
+        rpm = abs(self.programmed_rpm) * self.spindle_percent / 100.0
+        return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.programmed_rpm)
 
     def raise_alarm(self, number: int) -> None:
         """Stop immediately and raise an alarm; the present block stays in the planner."""
-        self.alarm = number
-        self.torn += self.slides.moving
-        self.slides.v = 0.0
-        self.index_since = None
-        self.blocking = number in _CRITICAL
-        if self.blocking:
-            self.rx.clear()
-        self.say(f"ALARM:{number}\r\n")
+        self.alarm_number = number
+        self.abrupt_stop_count += self.motion.is_moving
+        self.motion.speed = 0.0
+        self.index_wait_start_s = None
+        self.is_reset_required = number in _CRITICAL_ALARMS
+        if self.is_reset_required:
+            self.receive_buffer.clear()
+        self.send_text(f"ALARM:{number}\r\n")
 
-    def begin_homing(self, axes: int) -> None:
+    def start_homing(self, axes: int) -> None:
         """Start homing of the axes in a bit mask, which takes 0.5 s in the simulator."""
-        self.homing = self.k + 0.5, axes
+        self.homing_end = self.time_s + 0.5, axes
 
-    def next_line(self) -> str | None:
+    def read_next_line(self) -> str | None:
         """Return the next complete line of the buffer, or None."""
-        if b"\n" not in self.rx:
+        if b"\n" not in self.receive_buffer:
             return None
-        line, _, rest = bytes(self.rx).partition(b"\n")
-        self.rx = bytearray(rest)
+        line, _, rest = bytes(self.receive_buffer).partition(b"\n")
+        self.receive_buffer = bytearray(rest)
         return line.decode("ascii", "replace").strip()
 
-    def queue(self, block: PlannedBlock) -> None:
+    def queue_block(self, block: PlannedBlock) -> None:
         """Append a block to the planner; a block without length is ignored."""
-        if block.length > 0.0:
-            self.slides.queue.append(block)
-            self.jogs = block.jog
+        if block.length_mm > 0.0:
+            self.motion.block_queue.append(block)
+            self.is_jogging = block.is_jog
 
-    def say(self, text: str) -> None:
+    def send_text(self, text: str) -> None:
         """Send text to the host."""
-        self.out += text.encode("ascii")
+        self.send_buffer += text.encode("ascii")
 
-    def answer(self, error: int = 0) -> None:
+    def acknowledge_line(self, error: int = 0) -> None:
         """Acknowledge a line with ``ok`` or an error code."""
-        if not error and self.quirks.garble:
-            self.out += self.quirks.garble.pop(0) + b"\r\n"
+        if not error and self.behavior.garbled_replies:
+            self.send_buffer += self.behavior.garbled_replies.pop(0) + b"\r\n"
         else:
-            self.say(f"error:{error}\r\n" if error else "ok\r\n")
+            self.send_text(f"error:{error}\r\n" if error else "ok\r\n")
 
-    def turn(self, rpm: float) -> None:
+    def command_spindle(self, rpm: float) -> None:
         """Command the spindle speed in rpm, signed."""
-        self.reports.accessories_due = self.reports.accessories_due or (rpm > 0.0) - (rpm < 0.0) != (
-            self.rpm > 0.0
-        ) - (self.rpm < 0.0)
-        self.rpm = rpm
-        self.spindle.order(self.k, self.commanded)
+        self.report_generator.accessories_due = self.report_generator.accessories_due or (rpm > 0.0) - (
+            rpm < 0.0
+        ) != (self.programmed_rpm > 0.0) - (self.programmed_rpm < 0.0)
+        self.programmed_rpm = rpm
+        self.spindle.command_speed(self.time_s, self.commanded_rpm)

@@ -7,51 +7,64 @@ import re
 from dataclasses import dataclass
 from typing import Protocol
 
-from drivers.simulators.grblhal_settings import Quirks, Registers, Wait, coolant_wait, spindle_wait
-from drivers.simulators.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
-from drivers.simulators.spindle_motor import TurnedSpindle
+from drivers.simulators.grblhal_motion import (
+    GrblMotion,
+    PlannedBlock,
+    Position,
+    Shape,
+    make_arc_path,
+    make_line_path,
+)
+from drivers.simulators.grblhal_settings import (
+    FunctionWait,
+    SettingRegisters,
+    SimulatorBehavior,
+    create_coolant_wait,
+    create_spindle_wait,
+)
+from drivers.simulators.spindle_motor import SimulatedSpindle
 
 
-class Controller(Protocol):
+class ProgramController(Protocol):
     """Parts of the controller that the line interpreter uses."""
 
-    quirks: Quirks
-    registers: Registers
-    slides: Slides
-    spindle: TurnedSpindle
-    outputs: dict[str, bool]
-    inputs: dict[int, bool]
-    pins: str
-    alarm: int
-    blocking: bool
-    homed: int
-    jogs: bool
-    read: int | None
-    rpm: float
+    behavior: SimulatorBehavior
+    registers: SettingRegisters
+    motion: GrblMotion
+    spindle: SimulatedSpindle
+    output_states: dict[str, bool]
+    auxiliary_inputs: dict[int, bool]
+    active_pins: str
+    alarm_number: int
+    is_reset_required: bool
+    homed_axes: int
+    is_jogging: bool
+    input_result: int | None
+    programmed_rpm: float
     spindle_percent: int
-    k: float
-    hold: bool
+    time_s: float
+    is_in_hold: bool
 
     @property
-    def commanded(self) -> float: ...
+    def commanded_rpm(self) -> float: ...
 
     @property
     def state(self) -> str: ...
 
     @property
-    def reads(self) -> bool: ...
+    def is_reading(self) -> bool: ...
 
-    def begin_homing(self, axes: int) -> None: ...
+    def start_homing(self, axes: int) -> None: ...
 
-    def next_line(self) -> str | None: ...
+    def read_next_line(self) -> str | None: ...
 
-    def queue(self, block: PlannedBlock) -> None: ...
+    def queue_block(self, block: PlannedBlock) -> None: ...
 
-    def say(self, text: str) -> None: ...
+    def send_text(self, text: str) -> None: ...
 
-    def answer(self, error: int = 0) -> None: ...
+    def acknowledge_line(self, error: int = 0) -> None: ...
 
-    def turn(self, rpm: float) -> None: ...
+    def command_spindle(self, rpm: float) -> None: ...
 
     def raise_alarm(self, number: int) -> None: ...
 
@@ -59,7 +72,7 @@ class Controller(Protocol):
 # --- Modal state and the words that change it.
 
 
-_MODAL = {
+_MODAL_GROUPS = {
     **dict.fromkeys(("G0", "G1", "G2", "G3", "G33"), "motion"),
     **dict.fromkeys(("G17", "G18"), "plane"),
     **dict.fromkeys(("G20", "G21"), "units"),
@@ -69,12 +82,12 @@ _MODAL = {
     **dict.fromkeys(("G96", "G97"), "speed"),
     **dict.fromkeys(("G50", "G51"), "scaling"),
 }
-_LATHE = frozenset(("G7", "G8", "G96", "G97"))
-_PLAIN = frozenset(("G4", "G10", "G49", "G53", "G54", "G92.1"))
+_LATHE_CODES = frozenset(("G7", "G8", "G96", "G97"))
+_PLAIN_CODES = frozenset(("G4", "G10", "G49", "G53", "G54", "G92.1"))
 
 
 @dataclass(slots=True)
-class Modes:
+class ModalState:
     """Modal state with the values after a reset or stop."""
 
     motion: str = "G0"
@@ -85,15 +98,15 @@ class Modes:
     radius: str = "G8"
     speed: str = "G97"
     scaling: str = "G50"
-    hold_disabled: bool = False  # M53 P0
+    is_hold_disabled: bool = False  # M53 P0
 
     def take(self, code: str, *, lathe: bool) -> int:
         """Apply a G word and return the error code, or 0 without an error."""
-        if code in _LATHE and not lathe:
+        if code in _LATHE_CODES and not lathe:
             return 20
-        if code in _MODAL:
-            setattr(self, _MODAL[code], code)
-        elif code not in _PLAIN:
+        if code in _MODAL_GROUPS:
+            setattr(self, _MODAL_GROUPS[code], code)
+        elif code not in _PLAIN_CODES:
             return 20
         return 0
 
@@ -103,7 +116,7 @@ class Modes:
         coolant = "M7 " * outputs.get("mist", False) + "M8 " * outputs.get("flood", False) or "M9 "
         radius, speed = (f" {self.radius}", f" {self.speed}") if lathe else ("", "")
         scaling = "G51:X" if self.scaling == "G51" else "G50"
-        held = "M53 " if self.hold_disabled else ""
+        held = "M53 " if self.is_hold_disabled else ""
         return (
             f"[GC:{self.motion} G54{radius} {self.plane} {self.units} {self.distance} {self.feed_mode}"
             f"{speed} G49 G98 {scaling} {spindle} {coolant}{held}T0 F{feed:.0f} S{abs(rpm):.0f}.]"
@@ -117,11 +130,11 @@ _AXES = {"": 7, "X": 1, "Y": 2, "Z": 4}
 _BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # Rejected after a critical alarm.
 
 
-def identity(m: Controller) -> list[str]:
+def format_identity(controller: ProgramController) -> list[str]:
     """Return the lines of ``$I``; the auxiliary ports appear only if there are any."""
-    quirks = m.quirks
-    lathe = "LATHE," if m.registers.lathe else ""
-    home = "HOME," if int(m.registers[22]) & 1 else ""
+    quirks = controller.behavior
+    lathe = "LATHE," if controller.registers.is_lathe_mode else ""
+    home = "HOME," if int(controller.registers[22]) & 1 else ""
     ports = [f"[AUX IO:{quirks.inputs},{quirks.outputs},0,0]"] if quirks.inputs + quirks.outputs else []
     return [
         "[VER:1.1f.20260817:]",
@@ -137,56 +150,56 @@ def identity(m: Controller) -> list[str]:
     ]
 
 
-def answer(m: Controller, line: str, modes: str) -> int | None:
+def execute_system_command(controller: ProgramController, line: str, modes: str) -> int | None:
     """Execute a ``$`` line and return its error code, or 0 without an error.
 
     Return None if the acknowledgment follows later. ``modes`` is the report of ``$G``.
     """
     command = line.partition("=")[0]
-    if m.blocking and (command in _BLOCKING):
+    if controller.is_reset_required and (command in _BLOCKING):
         return 79
     if command.startswith("$H"):
-        return _home(m, command.removeprefix("$H"))
+        return _home(controller, command.removeprefix("$H"))
     if command == "$X":
-        return _unlock(m)
-    told = _told(m, line, modes)
+        return _unlock(controller)
+    told = _told(controller, line, modes)
     if told:
-        m.say("".join(f"{text}\r\n" for text in told))
+        controller.send_text("".join(f"{text}\r\n" for text in told))
         return 0
     found = re.fullmatch(r"\$(\d+)=(.*)", line)
     if found is None:
         return 3
-    idle = m.state == "Idle" or m.alarm
-    return m.registers.store(int(found[1]), found[2]) if idle else 8
+    idle = controller.state == "Idle" or controller.alarm_number
+    return controller.registers.store_setting(int(found[1]), found[2]) if idle else 8
 
 
-def _told(m: Controller, line: str, modes: str) -> list[str]:
+def _told(m: ProgramController, line: str, modes: str) -> list[str]:
     if line == "$I":
-        return identity(m)
+        return format_identity(m)
     if line == "$$":
-        return m.registers.told()
+        return m.registers.format_settings()
     return [modes] if line == "$G" else []
 
 
-def _unlock(m: Controller) -> int:
-    if not m.alarm:
+def _unlock(m: ProgramController) -> int:
+    if not m.alarm_number:
         return 0
-    if "E" in m.pins:
+    if "E" in m.active_pins:
         return 50
-    if int(m.registers[22]) & 5 == 5 and m.homed & 5 != 5:
+    if int(m.registers[22]) & 5 == 5 and m.homed_axes & 5 != 5:
         return 46
-    m.alarm = 0
-    m.say("[MSG:Caution: Unlocked]\r\n")
+    m.alarm_number = 0
+    m.send_text("[MSG:Caution: Unlocked]\r\n")
     return 0
 
 
-def _home(m: Controller, letter: str) -> int | None:
+def _home(m: ProgramController, letter: str) -> int | None:
     flags = int(m.registers[22])
     if letter not in _AXES:
         return 3
     if not flags & 1 or (letter and not flags & 2):
         return 5
-    m.begin_homing(_AXES[letter])
+    m.start_homing(_AXES[letter])
     return None
 
 
@@ -194,106 +207,106 @@ _WORD = re.compile(r"([A-Z])(-?\d*\.?\d+)")
 _WORDS = re.compile(
     r"([A-Z] *[-+]?(\d+\.?\d*|\.\d+) *)*", re.IGNORECASE
 )  # A letter without a number is not a word.
-_MOST_LINES = 10_000_000
+_MAX_LINES = 10_000_000
 
-__all__ = ["Modes", "Program"]
+__all__ = ["LineInterpreter", "ModalState"]
 
 
-class Program:
+class LineInterpreter:
     """Executor of the received lines in order, as the planner and required standstills permit."""
 
-    def __init__(self, machine: Controller) -> None:
+    def __init__(self, machine: ProgramController) -> None:
         self._m = machine
-        self.modes = Modes(radius="G7" if machine.quirks.diameter else "G8")
-        self.offset = [0.0, 0.0, 0.0]  # G54
-        self.executed: list[str] = []  # Executed lines.
-        self.end: Place = (0.0, 0.0)  # End point of the planner's last block.
-        self.error = 0
+        self.modes = ModalState(radius="G7" if machine.behavior.diameter else "G8")
+        self.work_offset = [0.0, 0.0, 0.0]  # G54
+        self.executed_lines: list[str] = []  # Executed lines.
+        self.end_position: Position = (0.0, 0.0)  # End point of the planner's last block.
+        self.last_error = 0
         self._f = 0.0
         self._waits: str | None = None  # Line that waits for a standstill.
         self._cuts = False  # A thread, which is acknowledged at its end.
-        self.wait: Wait | None = None  # Wait of a function, which is acknowledged at its end.
+        self.active_wait: FunctionWait | None = None  # Wait of a function, which is acknowledged at its end.
 
-    def told(self) -> str:
+    def format_modes(self) -> str:
         """Return the report of ``$G``."""
         m = self._m
-        return self.modes.told(m.rpm, self._f, m.outputs, lathe=m.registers.lathe)
+        return self.modes.told(m.programmed_rpm, self._f, m.output_states, lathe=m.registers.is_lathe_mode)
 
-    def drop(self) -> None:
+    def discard(self) -> None:
         """Discard pending lines and waits after a stop or a reset."""
-        self._waits, self._cuts, self.error, self.end = None, False, 0, self._m.slides.place
-        self.wait = None
+        self._waits, self._cuts, self.last_error, self.end_position = None, False, 0, self._m.motion.position
+        self.active_wait = None
 
-    def pump(self) -> None:
+    def execute_lines(self) -> None:
         """Execute the received lines until one has to wait."""
         machine = self._m
-        if self.wait is not None and not self._end_wait(self.wait):
+        if self.active_wait is not None and not self._end_wait(self.active_wait):
             return
-        if (self._waits is not None or self._cuts) and (machine.slides.queue or machine.alarm):
+        if (self._waits is not None or self._cuts) and (machine.motion.block_queue or machine.alarm_number):
             return
         if self._cuts:
             self._cuts = False
-            machine.answer()
+            machine.acknowledge_line()
         if self._waits is not None:
             line, self._waits = self._waits, None
             self._carry_out(line)
-        while self.reads_on and machine.reads and machine.slides.free > 0:
-            line_ = machine.next_line()
+        while self.is_line_complete and machine.is_reading and machine.motion.free_blocks > 0:
+            line_ = machine.read_next_line()
             if line_ is None:
                 return
             self._line(line_)
 
     @property
-    def reads_on(self) -> bool:
+    def is_line_complete(self) -> bool:
         """Whether the preceding line is complete."""
-        return self._waits is None and not self._cuts and self.wait is None
+        return self._waits is None and not self._cuts and self.active_wait is None
 
-    def _end_wait(self, wait: Wait) -> bool:
+    def _end_wait(self, wait: FunctionWait) -> bool:
         """Acknowledge the function when its wait is over; a speed that is not reached raises alarm 14."""
-        if not wait.is_over(self._m):
+        if not wait.update_and_check(self._m):
             return False
-        self.wait = None
-        if wait.failed:
-            self._m.turn(0.0)
+        self.active_wait = None
+        if wait.has_failed:
+            self._m.command_spindle(0.0)
             self._m.raise_alarm(14)
-        self._m.answer()
+        self._m.acknowledge_line()
         return True
 
     def _line(self, line: str) -> None:
         machine = self._m
         if not line:
-            self.error = 0
-            machine.answer()
-        elif line.startswith("$J=") and not machine.blocking:
-            self.error = self._jogged(line[3:])
-            machine.answer(self.error)
+            self.last_error = 0
+            machine.acknowledge_line()
+        elif line.startswith("$J=") and not machine.is_reset_required:
+            self.last_error = self._jogged(line[3:])
+            machine.acknowledge_line(self.last_error)
         elif line.startswith("$"):
-            error = answer(machine, line, self.told())
-            self.error = error or 0
+            error = execute_system_command(machine, line, self.format_modes())
+            self.last_error = error or 0
             if error is not None:
-                machine.answer(error)
-        elif machine.alarm or machine.jogs:
-            self.error = 9
-            machine.answer(9)
-        elif self.error:
-            machine.answer(self.error)
+                machine.acknowledge_line(error)
+        elif machine.alarm_number or machine.is_jogging:
+            self.last_error = 9
+            machine.acknowledge_line(9)
+        elif self.last_error:
+            machine.acknowledge_line(self.last_error)
         elif _waits_for_rest(line):
             self._waits = line
-            self.pump()
+            self.execute_lines()
         else:
             self._carry_out(line)
 
     def _jogged(self, text: str) -> int:
         words = {letter: float(value) for letter, value in _WORD.findall(text) if letter != "G"}
         machine = self._m
-        if machine.alarm or (machine.slides.queue and not machine.jogs):
+        if machine.alarm_number or (machine.motion.block_queue and not machine.is_jogging):
             return 8
         if "F" not in words:
             return 22
         target = self._target(words)
-        length, way = straight(self.end, target)
-        self.end = target
-        machine.queue(PlannedBlock(0, length, words["F"] / 60.0, way, jog=True))
+        length, way = make_line_path(self.end_position, target)
+        self.end_position = target
+        machine.queue_block(PlannedBlock(0, length, words["F"] / 60.0, way, is_jog=True))
         return 0
 
     def _carry_out(self, line: str) -> None:
@@ -301,24 +314,24 @@ class Program:
         codes = [f"{letter}{float(value):g}" for letter, value in found if letter in "GM"]
         words = {letter: float(value) for letter, value in found if letter not in "GM"}
         if not _WORDS.fullmatch(line):
-            self.error = 2
-            self._m.answer(2)
+            self.last_error = 2
+            self._m.acknowledge_line(2)
             return
-        self.error = 27 if words.get("N", 0) > _MOST_LINES else self._obey(codes, words)
-        if not self.error:
-            self.executed.append(line)
-        if self.error or not (self._cuts or self.wait is not None):
-            self._m.answer(self.error)
+        self.last_error = 27 if words.get("N", 0) > _MAX_LINES else self._obey(codes, words)
+        if not self.last_error:
+            self.executed_lines.append(line)
+        if self.last_error or not (self._cuts or self.active_wait is not None):
+            self._m.acknowledge_line(self.last_error)
 
     def _obey(self, codes: list[str], words: dict[str, float]) -> int:
-        if "G95" in codes and not self._m.quirks.encoder:
+        if "G95" in codes and not self._m.behavior.encoder:
             return 20
         for code in (code for code in codes if code[0] == "G"):
-            error = self.modes.take(code, lathe=self._m.registers.lathe)
+            error = self.modes.take(code, lathe=self._m.registers.is_lathe_mode)
             if error:
                 return error
         if "G10" in codes:
-            self.offset = [words.get(letter, 0.0) for letter in "XYZ"]
+            self.work_offset = [words.get(letter, 0.0) for letter in "XYZ"]
             return 0
         return self._functions(codes, words) or self._motion(words)
 
@@ -333,59 +346,59 @@ class Program:
         machine = self._m
         port = int(words.get("P", -1))
         if code in {"M3", "M4", "M5"}:
-            self._turn(code, words.get("S", abs(machine.rpm)))
+            self._apply_spindle(code, words.get("S", abs(machine.programmed_rpm)))
         elif code in {"M7", "M8"}:
-            machine.outputs["mist" if code == "M7" else "flood"] = True
-            self.wait = coolant_wait(machine)
+            machine.output_states["mist" if code == "M7" else "flood"] = True
+            self.active_wait = create_coolant_wait(machine)
         elif code == "M9":
-            machine.outputs.update(mist=False, flood=False)
+            machine.output_states.update(mist=False, flood=False)
         elif code == "M53":
-            self.modes.hold_disabled = port == 0
-        elif code in {"M64", "M65"} and machine.quirks.outputs:
-            if not 0 <= port < machine.quirks.outputs:
+            self.modes.is_hold_disabled = port == 0
+        elif code in {"M64", "M65"} and machine.behavior.outputs:
+            if not 0 <= port < machine.behavior.outputs:
                 return 39
-            machine.outputs[f"out.{port}"] = code == "M64"
-        elif code == "M66" and machine.quirks.inputs:
-            machine.read = int(machine.inputs.get(port, False))
+            machine.output_states[f"out.{port}"] = code == "M64"
+        elif code == "M66" and machine.behavior.inputs:
+            machine.input_result = int(machine.auxiliary_inputs.get(port, False))
         else:
             return 20
         return 0
 
-    def _turn(self, code: str, rpm: float) -> None:
+    def _apply_spindle(self, code: str, rpm: float) -> None:
         """Command the spindle; only a start, stop or reversal waits for the speed."""
         machine = self._m
-        before = math.copysign(1.0, machine.rpm) if machine.rpm else 0.0
+        before = math.copysign(1.0, machine.programmed_rpm) if machine.programmed_rpm else 0.0
         way = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
-        machine.turn(way * rpm)
+        machine.command_spindle(way * rpm)
         if way != before:
-            self.wait = spindle_wait(machine, on=code != "M5")
+            self.active_wait = create_spindle_wait(machine, spindle_on=code != "M5")
 
-    def _target(self, words: dict[str, float]) -> Place:
+    def _target(self, words: dict[str, float]) -> Position:
         scale = 0.5 if self.modes.radius == "G7" else 1.0
-        x = words["X"] * scale + self.offset[0] if "X" in words else self.end[0]
-        return x, words["Z"] + self.offset[2] if "Z" in words else self.end[1]
+        x = words["X"] * scale + self.work_offset[0] if "X" in words else self.end_position[0]
+        return x, words["Z"] + self.work_offset[2] if "Z" in words else self.end_position[1]
 
     def _motion(self, words: dict[str, float]) -> int:
         if not {"X", "Z"} & words.keys():
             return 0
         self._f = words.get("F", self._f)
         motion, target = self.modes.motion, self._target(words)
-        shape: Shape | None = straight(self.end, target)
+        shape: Shape | None = make_line_path(self.end_position, target)
         if motion in {"G2", "G3"}:
-            centre = self.end[0] + words.get("I", 0.0), self.end[1] + words.get("K", 0.0)
-            shape = circle(self.end, target, centre, counter=motion == "G3")
+            centre = self.end_position[0] + words.get("I", 0.0), self.end_position[1] + words.get("K", 0.0)
+            shape = make_arc_path(self.end_position, target, centre, counterclockwise=motion == "G3")
         if shape is None or (motion in {"G2", "G3"} and self.modes.plane != "G18"):
             return 33
         error = self._thread_error(words) if motion == "G33" else 0
         if error or (motion not in {"G0", "G33"} and self._f <= 0.0):
             return error or 22
         self._hand_over(motion, shape, words)
-        self.end = target
+        self.end_position = target
         return 0
 
     def _thread_error(self, words: dict[str, float]) -> int:
         machine = self._m
-        if not machine.quirks.encoder:
+        if not machine.behavior.encoder:
             return 20
         feed = words.get("K", 0.0) * abs(machine.spindle.speed)
         if words.get("K", 0.0) == 0.0:
@@ -400,14 +413,16 @@ class Program:
         if motion == "G33":
             self._cuts = True
             self._m.spindle_percent = 100
-            self._m.turn(self._m.rpm)
-            block = PlannedBlock(number, length, words.get("K", 0.0), way, per_rev=True, thread=True)
+            self._m.command_spindle(self._m.programmed_rpm)
+            block = PlannedBlock(number, length, words.get("K", 0.0), way, is_per_rev=True, is_thread=True)
         elif motion == "G0":
-            block = PlannedBlock(number, length, 1e9, way, rapid=True)
+            block = PlannedBlock(number, length, 1e9, way, is_rapid=True)
         else:
             per_rev = self.modes.feed_mode == "G95"
-            block = PlannedBlock(number, length, self._f if per_rev else self._f / 60.0, way, per_rev=per_rev)
-        self._m.queue(block)
+            block = PlannedBlock(
+                number, length, self._f if per_rev else self._f / 60.0, way, is_per_rev=per_rev
+            )
+        self._m.queue_block(block)
 
 
 def _waits_for_rest(line: str) -> bool:

@@ -10,13 +10,13 @@ import re
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from drivers.simulators.spindle_motor import TurnedSpindle
+from drivers.simulators.spindle_motor import SimulatedSpindle
 
 # --- Behavior of the controller that can be switched.
 
 
 @dataclass(slots=True)
-class Quirks:
+class SimulatorBehavior:
     """Behavior of the simulator that tests can change.
 
     The defaults are those of the firmware's simulator, with an encoder, auxiliary ports and the values of a
@@ -36,8 +36,8 @@ class Quirks:
     homing: int | bool = 0  # Value of $22. True: 3 (single axes, homing not required).
     mute: bool = True  # Reads nothing while a thread waits for its index, as the firmware's simulator does.
     drip: float = 0.0  # Seconds between two bytes that are read, as on a busy computer.
-    deaf: bool = False  # Sends nothing.
-    garble: list[bytes] = field(default_factory=list)  # Sent instead of the next ``ok``s.
+    sends_nothing: bool = False  # Sends nothing.
+    garbled_replies: list[bytes] = field(default_factory=list)  # Sent instead of the next ``ok``s.
     hold_broken: bool = False  # 0x82 does nothing
     stubborn: bool = False  # Ignores override commands.
     toggle_broken: bool = False  # 0x9E does nothing
@@ -50,7 +50,7 @@ _MODE, _LATHE = 32, 2
 _DECIMALS = {11: 3, 12: 3, 24: 1, 25: 1, 27: 3, 30: 3, 31: 3, **dict.fromkeys((340, 394, 539, 673), 1)}
 _AXES = {100: 5, 110: 3, 120: 3, 130: 3}  # first number of three, decimals
 # Travel, rates and accelerations are those of the machine file, so that programs take the forecast time.
-_THERE = {
+_DEFAULT_VALUES = {
     **{10: 511.0, 11: 0.01, 12: 0.002, 13: 0.0, 20: 0.0, 22: 0.0, 24: 25.0, 25: 500.0, 27: 1.0},
     **{30: 3500.0, 31: 0.0, 32: 2.0, 40: 0.0, 60: 0.0, 63: 3.0},
     **dict.fromkeys((340, 394, 539, 673), 0.0),  # waits for the spindle and for coolant
@@ -61,32 +61,32 @@ _THERE = {
 }
 
 
-class Registers:
+class SettingRegisters:
     """Setting values of the controller by number."""
 
-    def __init__(self, quirks: Quirks) -> None:
+    def __init__(self, behavior: SimulatorBehavior) -> None:
         self._values = {
-            **_THERE,
-            22: 3.0 if quirks.homing is True else float(quirks.homing),
-            **quirks.settings,
+            **_DEFAULT_VALUES,
+            22: 3.0 if behavior.homing is True else float(behavior.homing),
+            **behavior.settings,
         }
-        self._values[_MODE] = float(_LATHE) if quirks.lathe else 0.0
-        if quirks.built_for_lathes:
+        self._values[_MODE] = float(_LATHE) if behavior.lathe else 0.0
+        if behavior.built_for_lathes:
             del self._values[_MODE]
 
     def __getitem__(self, number: int) -> float:
         return self._values[number]
 
     @property
-    def lathe(self) -> bool:
+    def is_lathe_mode(self) -> bool:
         """Whether the controller is in lathe mode."""
         return self._values.get(_MODE, _LATHE) == _LATHE
 
-    def told(self) -> list[str]:
+    def format_settings(self) -> list[str]:
         """Return all settings as lines of ``$$``."""
         return [f"${n}={self._text(n)}" for n in sorted(self._values)]
 
-    def store(self, number: int, text: str) -> int:
+    def store_setting(self, number: int, text: str) -> int:
         """Store a setting and return the error code, or 0 without an error."""
         if number not in self._values:
             return 53
@@ -111,61 +111,64 @@ class Registers:
 
 
 TOLERANCE, SPINDLE_ON, SPINDLE_OFF, COOLANT_ON = 340, 394, 539, 673
-_AT_MOST = 60.0  # Longest wait in s if no delay is set.
-_LOOK = 0.2  # Seconds between two checks of the speed.
-_STANDS = 1.0  # rpm
+_MAX_WAIT_S = 60.0  # Longest wait in s if no delay is set.
+_CHECK_PERIOD_S = 0.2  # Seconds between two checks of the speed.
+_STANDSTILL_RPM = 1.0  # rpm
 
 
-class Waiting(Protocol):
+class WaitContext(Protocol):
     """State of the controller that a wait reads."""
 
-    registers: Registers
-    spindle: TurnedSpindle
-    k: float
-    hold: bool
+    registers: SettingRegisters
+    spindle: SimulatedSpindle
+    time_s: float
+    is_in_hold: bool
 
     @property
-    def commanded(self) -> float: ...
+    def commanded_rpm(self) -> float: ...
 
 
 @dataclass(slots=True)
-class Wait:
-    """Wait inside a function: at most ``left`` seconds, or until the spindle is at speed.
+class FunctionWait:
+    """Wait inside a function: at most ``remaining_s`` seconds, or until the spindle is at speed.
 
-    The speed ends the wait only if ``tolerance`` (percent) is above 0.
+    The speed ends the wait only if ``tolerance_percent`` (percent) is above 0.
     """
 
-    left: float
-    tolerance: float
-    since: float
-    look_in: float = _LOOK
-    failed: bool = False  # The speed was not reached (ALARM:14).
+    remaining_s: float
+    tolerance_percent: float
+    last_update_s: float
+    time_to_check_s: float = _CHECK_PERIOD_S
+    has_failed: bool = False  # The speed was not reached (ALARM:14).
 
-    def is_over(self, m: Waiting) -> bool:
+    def update_and_check(self, context: WaitContext) -> bool:
         """Update the wait to the controller's time and return whether it has ended."""
-        passed, self.since = m.k - self.since, m.k
-        if m.hold:
+        passed, self.last_update_s = context.time_s - self.last_update_s, context.time_s
+        if context.is_in_hold:
             return False
-        self.left, self.look_in = self.left - passed, self.look_in - passed
-        if self.tolerance <= 0.0:
-            return self.left <= 0.0
-        if self.look_in > 1e-9:
+        self.remaining_s, self.time_to_check_s = self.remaining_s - passed, self.time_to_check_s - passed
+        if self.tolerance_percent <= 0.0:
+            return self.remaining_s <= 0.0
+        if self.time_to_check_s > 1e-9:
             return False
-        self.look_in += _LOOK
-        slack = abs(m.commanded) * self.tolerance / 100.0 + _STANDS
-        self.failed = self.left < -1e-9
-        return self.failed or abs(m.spindle.speed - m.commanded) <= slack
+        self.time_to_check_s += _CHECK_PERIOD_S
+        slack = abs(context.commanded_rpm) * self.tolerance_percent / 100.0 + _STANDSTILL_RPM
+        self.has_failed = self.remaining_s < -1e-9
+        return self.has_failed or abs(context.spindle.speed - context.commanded_rpm) <= slack
 
 
-def spindle_wait(m: Waiting, *, on: bool) -> Wait | None:
+def create_spindle_wait(context: WaitContext, *, spindle_on: bool) -> FunctionWait | None:
     """Return the wait of M3, M4 or M5, or None if its settings are 0."""
-    delay, tolerance = m.registers[SPINDLE_ON if on else SPINDLE_OFF], m.registers[TOLERANCE]
+    delay, tolerance = (
+        context.registers[SPINDLE_ON if spindle_on else SPINDLE_OFF],
+        context.registers[TOLERANCE],
+    )
     if not delay and not tolerance:
         return None
-    return Wait(delay or _AT_MOST, tolerance, m.k)
+    return FunctionWait(delay or _MAX_WAIT_S, tolerance, context.time_s)
 
 
-def coolant_wait(m: Waiting) -> Wait | None:
+def create_coolant_wait(context: WaitContext) -> FunctionWait | None:
     """Return the wait of M7 or M8, or None if its setting is 0."""
-    delay = m.registers[COOLANT_ON]
-    return Wait(delay, 0.0, m.k) if delay else None
+    delay = context.registers[COOLANT_ON]
+    return FunctionWait(delay, 0.0, context.time_s) if delay else None

@@ -10,18 +10,18 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-Cells = dict[str, float]  # By signal, or by pin if it is not connected to a signal.
-Pin = Callable[[str], str]  # Maps the name of a pin to its cell.
-Step = Callable[[float], None]  # One call of a thread function, with the period in s.
+SignalCells = dict[str, float]  # By signal, or by pin if it is not connected to a signal.
+PinLookup = Callable[[str], str]  # Maps the name of a pin to its cell.
+PeriodFunction = Callable[[float], None]  # One call of a thread function, with the period in s.
 
-_DEPTH = 8192  # Default depth of a stream.
-_HAIR = 1e-9
+_DEFAULT_DEPTH = 8192  # Default depth of a stream.
+_COMPARE_TOLERANCE = 1e-9
 
 
-class Fifo:
+class RowFifo:
     """Replacement for ``hal.stream``: a FIFO of rows between a process and the servo thread."""
 
-    def __init__(self, depth: int = _DEPTH) -> None:
+    def __init__(self, depth: int = _DEFAULT_DEPTH) -> None:
         self._rows: deque[tuple[float, ...]] = deque()
         self._most = depth
 
@@ -63,41 +63,46 @@ _FORMULAS = {
 }
 
 
-class Program:
+class ThreadProgram:
     """Function calls of a thread in their order, compiled into one function on ``cells``."""
 
-    def __init__(self, cells: Cells) -> None:
+    def __init__(self, cells: SignalCells) -> None:
         self._cells = cells
-        self._steps: list[Step] = []
+        self._steps: list[PeriodFunction] = []
         self._lines: list[str] = []
 
-    def add(self, step: Step) -> None:
+    def add_call(self, step: PeriodFunction) -> None:
         """Append a call."""
         self._lines.append(f"steps[{len(self._steps)}](period)")
         self._steps.append(step)
 
-    def add_component(self, component: str, name: str, at: Pin, value: Callable[[str], float]) -> None:
+    def add_component(
+        self, component: str, name: str, pin_lookup: PinLookup, get_pin_value: Callable[[str], float]
+    ) -> None:
         """Append the function of one component; ``value`` returns the value set for a pin or parameter."""
         if component in _FORMULAS:
-            self._lines.append(f"cells[{at(f'{name}.out')!r}] = {_formula(component, name, at, value)}")
+            self._lines.append(
+                f"cells[{pin_lookup(f'{name}.out')!r}] = "
+                f"{_formula(component, name, pin_lookup, get_pin_value)}"
+            )
         else:
-            self.add(_STEPS[component](self._cells, name, at, value))
+            self.add_call(_COMPONENT_STEPS[component](self._cells, name, pin_lookup, get_pin_value))
 
-    def compiled(self) -> Step:
+    def compile_calls(self) -> PeriodFunction:
         """Compile the calls into one function, which is several times faster than single calls."""
         names: dict[str, Any] = {"cells": self._cells, "steps": self._steps}
         exec("\n    ".join(["def run(period):", *self._lines, "return"]), names)
-        run: Step = names["run"]
+        run: PeriodFunction = names["run"]
         return run
 
 
-def _formula(component: str, name: str, at: Pin, value: Callable[[str], float]) -> str:
+def _formula(component: str, name: str, at: PinLookup, value: Callable[[str], float]) -> str:
     pins = {pin: f"cells[{at(f'{name}.{pin}')!r}]" for pin in ("in", "in0", "in1", "in2", "sel")}
     gains = {f"gain{n}": value(f"{name}.gain{n}") or 1.0 for n in range(2)}
     return _FORMULAS[component].format(**pins, **gains, difference=value(f"{name}.difference"))
 
 
-def _flipflop(cells: Cells, name: str, at: Pin, _value: Callable[[str], float]) -> Step:
+def _flipflop(cells: SignalCells, name: str, at: PinLookup, _value: Callable[[str], float]) -> PeriodFunction:
     set_, reset, out = (at(f"{name}.{pin}") for pin in ("set", "reset", "out"))
 
     def step(_period: float) -> None:
@@ -109,7 +114,7 @@ def _flipflop(cells: Cells, name: str, at: Pin, _value: Callable[[str], float]) 
     return step
 
 
-def _latch(cells: Cells, name: str, at: Pin, _value: Callable[[str], float]) -> Step:
+def _latch(cells: SignalCells, name: str, at: PinLookup, _value: Callable[[str], float]) -> PeriodFunction:
     ok_in, fault_in, reset, ok_out, watchdog = (
         at(f"{name}.{pin}") for pin in ("ok-in", "fault-in", "reset", "ok-out", "watchdog")
     )
@@ -127,7 +132,7 @@ def _latch(cells: Cells, name: str, at: Pin, _value: Callable[[str], float]) -> 
     return step
 
 
-def _timedelay(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> Step:
+def _timedelay(cells: SignalCells, name: str, at: PinLookup, value: Callable[[str], float]) -> PeriodFunction:
     in_, out, longest = at(f"{name}.in"), at(f"{name}.out"), value(f"{name}.on-delay")
     on = [0.0]
 
@@ -138,7 +143,9 @@ def _timedelay(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) 
     return step
 
 
-def _limit3(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> Step:
+def _create_limit3(
+    cells: SignalCells, name: str, at: PinLookup, value: Callable[[str], float]
+) -> PeriodFunction:
     """Return the function of ``limit3``.
 
     Values within the limits pass unchanged. Otherwise the output brakes and catches up.
@@ -155,7 +162,9 @@ def _limit3(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> 
             cells[out], was[1] = wanted, 0.0
             return
         room = maxa * period
-        if abs(need) <= maxv * (1 + _HAIR) and abs(need - speed) <= room * (1 + _HAIR):
+        if abs(need) <= maxv * (1 + _COMPARE_TOLERANCE) and abs(need - speed) <= room * (
+            1 + _COMPARE_TOLERANCE
+        ):
             cells[out], was[1] = wanted, need
             return
         off = wanted - place
@@ -167,10 +176,15 @@ def _limit3(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> 
     return step
 
 
-_STEPS = {"flipflop": _flipflop, "estop_latch": _latch, "timedelay": _timedelay, "limit3": _limit3}
+_COMPONENT_STEPS = {
+    "flipflop": _flipflop,
+    "estop_latch": _latch,
+    "timedelay": _timedelay,
+    "limit3": _create_limit3,
+}
 
 
-def streamer(cells: Cells, fifo: Fifo, enable: str, pins: list[str]) -> Step:
+def create_streamer(cells: SignalCells, fifo: RowFifo, enable: str, pins: list[str]) -> PeriodFunction:
     """Return a function that writes one row of ``fifo`` to the pins per period while ``enable`` is on.
 
     Without a new row, the pins keep their values.
@@ -184,7 +198,7 @@ def streamer(cells: Cells, fifo: Fifo, enable: str, pins: list[str]) -> Step:
     return step
 
 
-def sampler(cells: Cells, fifo: Fifo, pins: list[str]) -> Step:
+def create_sampler(cells: SignalCells, fifo: RowFifo, pins: list[str]) -> PeriodFunction:
     """Return a function that appends the values of the pins to ``fifo`` in each period."""
 
     def step(_period: float) -> None:
@@ -193,8 +207,8 @@ def sampler(cells: Cells, fifo: Fifo, pins: list[str]) -> Step:
     return step
 
 
-def watchdog(cells: Cells, input_: str, enable: str, out: str, timeout: float) -> Step:
-    """Return a function that clears ``out`` when the input does not change for ``timeout`` seconds.
+def watchdog(cells: SignalCells, input_: str, enable: str, ok_output: str, timeout: float) -> PeriodFunction:
+    """Return a function that clears ``ok_output`` when the input does not change for ``timeout`` seconds.
 
     The output remains off until ``enable`` is switched off and on again.
     """
@@ -205,9 +219,9 @@ def watchdog(cells: Cells, input_: str, enable: str, out: str, timeout: float) -
         now, on = cells[input_], bool(cells[enable])
         since = 0.0 if bool(now) is not last else since + period
         if on and not enabled:
-            cells[out], since = True, 0.0
+            cells[ok_output], since = True, 0.0
         elif not on or since > timeout:
-            cells[out] = False
+            cells[ok_output] = False
         was[:] = [since, bool(now), on]
 
     return step

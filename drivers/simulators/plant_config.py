@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from drivers.setpoint_queue import AxisFigures
+from drivers.setpoint_queue import AxisProperties
 from drivers.simulated.simulated_table import PlannedFault
 
 
 @dataclass(frozen=True, slots=True)
-class SimAxis(AxisFigures):
+class SimAxis(AxisProperties):
     """Simulated servo axis."""
 
-    power_up: float = 0.0  # Position relative to home at power-up.
+    power_up_position: float = 0.0  # Position relative to home at power-up.
     bandwidth: float = 40.0  # Bandwidth of the position loop in Hz.
     feed_forward: float = 0.9  # Fraction of the velocity; the rest appears as following error.
-    reserve: float = 1.3  # Factor by which the servo can exceed amax.
+    accel_reserve: float = 1.3  # Factor by which the servo can exceed amax.
     own_drive: bool = False  # C only: the axis can be positioned while the spindle turns.
 
 
@@ -27,10 +27,10 @@ class SimSpindle:
     rpm_max: float = 3500.0
     accel: float = 1500.0
     decel: float = 2500.0
-    coast: float = 600.0
-    latency: float = 0.08
-    ppr: int = 1024
-    orients: bool = False  # The drive can stop the spindle at an angle; it turns there at orient_rpm.
+    coast_decel: float = 600.0
+    latency_s: float = 0.08
+    pulses_per_rev: int = 1024
+    can_orient: bool = False  # The drive can stop the spindle at an angle; it turns there at orient_rpm.
     orient_rpm: float = 60.0
 
 
@@ -38,35 +38,35 @@ class SimSpindle:
 class SimOutput:
     """Simulated output with its state at power-up and its safe state; None leaves the output unchanged."""
 
-    safe: bool | None = False
-    initial: bool = False
+    safe_state: bool | None = False
+    initial_state: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SimCollet:
     """Simulated collet with its switch; the output is on while the collet is clamped.
 
-    Times are in seconds. ``spread`` is the random variation of the times as a fraction.
+    Times are in seconds. ``time_spread`` is the random variation of the times as a fraction.
     """
 
-    output: str = "collet"
+    output_name: str = "collet"
     closed_input: str = "collet_closed"
-    open_time: float = 0.25
-    close_time: float = 0.30
-    spread: float = 0.2
+    open_time_s: float = 0.25
+    close_time_s: float = 0.30
+    time_spread: float = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class SimSetter:
+class SimToolSetter:
     """Simulated tool setter: center of its stylus relative to part zero, and its width, in mm.
 
-    ``tips`` has X and Z of the axes when the tip is at part zero, for each tool on the plate.
+    ``tip_positions`` has X and Z of the axes when the tip is at part zero, for each tool on the plate.
     """
 
-    x: float
-    z: float
-    width: float
-    tips: tuple[tuple[float, float], ...]
+    x_mm: float
+    z_mm: float
+    width_mm: float
+    tip_positions: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +78,11 @@ class SimConfig:
     collet: SimCollet = field(default_factory=SimCollet)
     outputs: Mapping[str, SimOutput] = field(default_factory=dict)
     inputs: tuple[str, ...] = ()
-    commit: float = 0.03
-    step: float = 0.001  # Interval of the servo model in s.
+    commit_time_s: float = 0.03
+    step_s: float = 0.001  # Interval of the servo model in s.
     seed: int = 1
     faults: tuple[PlannedFault, ...] = ()
-    setter: SimSetter | None = None
-    measures_load: bool = False  # An input measures the spindle load.
-    palms: float = 0.5  # Seconds within which both palm buttons must be pressed.
-    start_pulse: float = 0.1  # Minimum pulse of the two-hand relay in s.
+    setter: SimToolSetter | None = None
+    has_load_input: bool = False  # An input measures the spindle load.
+    palm_window_s: float = 0.5  # Seconds within which both palm buttons must be pressed.
+    start_pulse_s: float = 0.1  # Minimum pulse of the two-hand relay in s.

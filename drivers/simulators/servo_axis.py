@@ -1,8 +1,9 @@
 """Simulated servo axis: position loop with feed-forward, drive limits, encoder, wear and faults.
 
-``Servo.follow`` advances a linear second-order difference equation by one step. While no limit of the drive
-acts, the solution is known: a steady part that follows the setpoint, and two decaying modes. One evaluation
-of ``ServoLoop`` therefore replaces any number of steps. Both results agree within rounding (1e-9 mm).
+``SimulatedServo.follow_setpoint`` advances a linear second-order difference equation by one step. While no
+limit of the drive acts, the solution is known: a steady part that follows the setpoint, and two decaying
+modes. One evaluation of ``ServoLoop`` therefore replaces any number of steps. Both results agree within
+rounding (1e-9 mm).
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ from drivers.simulators.plant_config import SimAxis
 
 # Lowest speed in mm/s and fraction of the rapid between which an axis is assumed to cut.
 _FEEDS, _CUTS = 0.05, 0.25
-_SETTLED = 1e-4  # Mm or degrees; an axis closer than this and almost at rest is set to its setpoint.
+_SETTLED_MM = 1e-4  # Mm or degrees; an axis closer than this and almost at rest is set to its setpoint.
 
 
-class Servo:
+class SimulatedServo:
     """Simulated axis with its drive. Positions are in the control's count, from home after homing."""
 
     def __init__(self, axis: SimAxis, step: float = 0.001) -> None:
@@ -28,13 +29,13 @@ class Servo:
         self.axis = axis
         self._step = step
         self.homed = axis.absolute
-        self.switch = 0.0 if axis.absolute else -axis.power_up  # Home position in the present count.
-        self.p = axis.power_up if axis.absolute else 0.0
+        self.switch = 0.0 if axis.absolute else -axis.power_up_position  # Home position in the present count.
+        self.p = axis.power_up_position if axis.absolute else 0.0
         self.v = 0.0
         self.jammed = False
         self.stuck: float | None = None  # Reading of a stuck encoder.
         self.runaway = 0.0  # Speed of a runaway drive with power.
-        self.worn = WornAxis()
+        self.worn = AxisWear()
         self.over = 0.0  # Seconds outside the following error window.
         self.load = 0.0  # Percent of the drive's capacity, signed.
         self.feeds = (_FEEDS, _CUTS * axis.vmax)  # Speed range in which the axis is assumed to cut.
@@ -47,7 +48,13 @@ class Servo:
         if self.stuck is not None:
             return self.stuck
         worn = self.worn
-        p = worn.slide if worn.gib else worn.counted(self.p) if worn.deceives else self.p
+        p = (
+            worn.slide_position
+            if worn.gib
+            else worn.to_encoder_position(self.p)
+            if worn.has_encoder_error
+            else self.p
+        )
         return round(p / self.axis.count) * self.axis.count
 
     @property
@@ -67,30 +74,30 @@ class Servo:
     @property
     def where(self) -> float:
         """The true position of the axis."""
-        return self.worn.slide if self.worn.gib else self.p
+        return self.worn.slide_position if self.worn.gib else self.p
 
-    def push(self, way: float) -> None:
+    def push(self, distance: float) -> None:
         """Displace the axis by a distance."""
-        self.p += way
-        self.worn.slide += way
+        self.p += distance
+        self.worn.slide_position += distance
 
     def lead(self, p: float, v: float, a: float) -> float:
         """Return the setpoint that brings the axis to ``p`` despite its following error.
 
-        The result inverts ``follow``: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn² for the
-        acceleration ``a``.
+        The result inverts ``follow_setpoint``: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn²
+        for the acceleration ``a``.
         """
         return p + (2.0 * (1.0 - self.axis.feed_forward) * v + a / self._wn) / self._wn
 
-    def follow(self, p: float, v: float, dt: float) -> bool:
+    def follow_setpoint(self, p: float, v: float, dt: float) -> bool:
         """Advance the powered drive by ``dt`` toward setpoint ``p``, ``v``. Return True if it trips.
 
         The drive trips when the following error is outside its window for too long. The model is of second
         order with damping 1. Without full feed-forward, the axis lags by 2(1 - ff)v/wn.
         """
         wn, axis = self._wn, self.axis
-        seen = self.p if self.stuck is None and not self.worn.deceives else self._seen()
-        limit = axis.amax * axis.reserve
+        seen = self.p if self.stuck is None and not self.worn.has_encoder_error else self._encoder_reading()
+        limit = axis.amax * axis.accel_reserve
         force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
         # Faster than min and max; this code runs three times per millisecond.
         if not -limit <= force <= limit:
@@ -106,56 +113,60 @@ class Servo:
             self.v = speed if -top <= speed <= top else math.copysign(top, speed)
             self.p += self.v * dt
         if self.worn.gib:
-            self.worn.carry(self.p, self.v)
+            self.worn.move_slide(self.p, self.v)
         if abs(p - seen) > axis.following_window:
             self.over += dt
             return self.over > axis.following_time
         self.over = 0.0
         return False
 
-    def foresee(self, setpoints: Setpoints, steps: int) -> Response | None:
+    def predict_response(self, setpoints: SetpointPolynomial, point_count: int) -> ServoResponse | None:
         """Return the response to ``steps`` setpoints, or None where a fault or a limit may act.
 
-        The limits are those of ``follow``. The first force is exact; the other bounds are sums of absolute
-        parts.
+        The limits are those of ``follow_setpoint``. The first force is exact; the other bounds are sums of
+        absolute parts.
         """
         loop, axis, dt = self._loop, self.axis, self._step
         if not self.sound or loop is None:
             return None
         p, dp, ddp = setpoints
         if self.p == p and not (self.v or dp or ddp):
-            return AT_REST
-        response = loop.response(self.p, self.v * dt, setpoints)
+            return RESPONSE_AT_REST
+        response = loop.calculate_response(self.p, self.v * dt, setpoints)
         lag, drift, slow, fast = response
         slow, fast = abs(slow), abs(fast)
-        if abs(lag) + abs(drift) * steps + slow + fast > axis.following_window:
+        if abs(lag) + abs(drift) * point_count + slow + fast > axis.following_window:
             return None
-        bent = 2.0 * abs(ddp) + slow * loop.slow_bend + fast * loop.fast_bend
+        bent = 2.0 * abs(ddp) + slow * loop.slow_curvature + fast * loop.fast_curvature
         first = self._wn * (self._wn * (p - self.p) + 2.0 * (axis.feed_forward * dp / dt - self.v))
-        if max(bent / (dt * dt), abs(first)) > axis.amax * axis.reserve:
+        if max(bent / (dt * dt), abs(first)) > axis.amax * axis.accel_reserve:
             return None
-        fastest = max(abs(dp), abs(dp + 2.0 * ddp * steps)) + abs(drift) + slow + fast
+        fastest = max(abs(dp), abs(dp + 2.0 * ddp * point_count)) + abs(drift) + slow + fast
         return response if fastest <= axis.vmax * 1.1 * dt else None
 
-    def glide(self, setpoints: Setpoints, response: Response, steps: int) -> None:
-        """Move as ``steps`` calls of ``follow`` do, by the response that ``foresee`` returned."""
-        self.p, self.v, self.load = self.states(setpoints, response, steps)
+    def follow_response(
+        self, setpoints: SetpointPolynomial, response: ServoResponse, point_count: int
+    ) -> None:
+        """Move as ``steps`` calls of ``follow_setpoint`` do, by the response that ``predict_response``
+        returned.
+        """
+        self.p, self.v, self.load = self.states(setpoints, response, point_count)
         self.over = 0.0
 
     def states(
-        self, setpoints: Setpoints, response: Response, steps: Number
-    ) -> tuple[Number, Number, Number]:
+        self, setpoints: SetpointPolynomial, response: ServoResponse, steps: FloatOrArray
+    ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
         """Return position, velocity and load after ``steps`` grid points, for one number or an array."""
         assert self._loop is not None
         dt = self._step
-        place, moved, bent = self._loop.states(setpoints, response, steps)
-        return place, moved / dt, 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.reserve)
+        place, moved, bent = self._loop.get_states_at(setpoints, response, steps)
+        return place, moved / dt, 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.accel_reserve)
 
-    def _seen(self) -> float:
+    def _encoder_reading(self) -> float:
         """Return the position that the drive measures."""
         if self.stuck is not None:
             return self.stuck
-        return self.worn.counted(self.p) if self.worn.deceives else self.p
+        return self.worn.to_encoder_position(self.p) if self.worn.has_encoder_error else self.p
 
     def roll(self, dt: float) -> None:
         """Advance by one step without power, while friction stops the axis."""
@@ -163,15 +174,15 @@ class Servo:
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * dt
         if self.worn.gib:
-            self.worn.carry(self.p, self.v)
+            self.worn.move_slide(self.p, self.v)
         self.over = self.load = 0.0
 
-    def settle(self, p: float) -> bool:
+    def settle_at(self, p: float) -> bool:
         """Return whether the axis rests at setpoint ``p``; an axis that is close is set exactly to ``p``."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
-        if abs(self._seen() - p) < _SETTLED and abs(self.v) < _SETTLED * self._wn:
-            self.p = self.p if self.worn.deceives else p
+        if abs(self._encoder_reading() - p) < _SETTLED_MM and abs(self.v) < _SETTLED_MM * self._wn:
+            self.p = self.p if self.worn.has_encoder_error else p
             self.v = self.over = self.load = 0.0
             return True
         return False
@@ -182,7 +193,7 @@ class Servo:
         self.switch = 0.0
         self.homed = True
 
-    def power_lost(self) -> None:
+    def handle_power_loss(self) -> None:
         """Clear the reference of an incremental encoder, as a loss of power does."""
         self.load = 0.0
         if not self.axis.absolute and self.homed:
@@ -192,11 +203,11 @@ class Servo:
 # --- Limits of the drives: setpoints beyond them are rejected.
 
 
-_STANDS = 10.0  # Rpm above which the spindle drive cannot position.
-_SLIPS = 1.1  # Factor of an axis' speed: above it a cam is rejected, below it the gear slips.
+_STANDSTILL_RPM = 10.0  # Rpm above which the spindle drive cannot position.
+_SLIP_SPEED_FACTOR = 1.1  # Factor of an axis' speed: above it a cam is rejected, below it the gear slips.
 
 
-def check_drives(segments: Segments, servos: Sequence[Servo], rpm: float) -> None:
+def check_drive_limits(segments: Segments, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check setpoints against the limits of the drives.
 
     Raises DriverError if a speed or position is out of range, or if C moves while the spindle turns.
@@ -204,7 +215,7 @@ def check_drives(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
     axes = [servo.axis for servo in servos]
     check_limits(segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos])
     for i, axis in enumerate(axes):
-        if axis.name == "C" and not axis.own_drive and abs(rpm) > _STANDS and segments.v[:, i].any():
+        if axis.name == "C" and not axis.own_drive and abs(rpm) > _STANDSTILL_RPM and segments.v[:, i].any():
             raise DriverError(
                 "C axis: the spindle is turning at {rpm} rpm, so no setpoints were queued",
                 "drive-limits",
@@ -212,26 +223,26 @@ def check_drives(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
             )
 
 
-def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:
+def check_cam_limits(cam: Cam, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check a cam against the limits of the drives at a spindle speed of ``rpm``.
 
-    Raises DriverError as ``check_drives`` does.
+    Raises DriverError as ``check_drive_limits`` does.
     """
-    by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIPS)
-    check_drives(cam.way._replace(v=by_time), servos, rpm)
-    if cam.then is not None:
-        check_drives(cam.then, servos, rpm)
+    by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIP_SPEED_FACTOR)
+    check_drive_limits(cam.way._replace(v=by_time), servos, rpm)
+    if cam.following_segments is not None:
+        check_drive_limits(cam.following_segments, servos, rpm)
 
 
 # --- Wear: a loose gib, and an encoder error once per revolution of the screw.
 
 
-_CREEP = 2.0  # Speed in mm/s below which a loose slide sticks and slips.
-_STICKS = 0.25  # Fraction of the play by which the screw winds up before a sticking slide moves.
-TURN = 5.0  # Travel in mm per revolution of the screw.
+_STICK_SLIP_SPEED = 2.0  # Speed in mm/s below which a loose slide sticks and slips.
+_STICK_FRACTION = 0.25  # Fraction of the play by which the screw winds up before a sticking slide moves.
+SCREW_LEAD_MM = 5.0  # Travel in mm per revolution of the screw.
 
 
-class WornAxis:
+class AxisWear:
     """Mechanical wear and encoder errors between the motor and the measured position.
 
     With a loose gib, the drive controls the motor, but the slide is measured. The slide lags by half of the
@@ -246,55 +257,55 @@ class WornAxis:
         self.gib = 0.0  # mm of play
         self.ripple = 0.0  # mm
         self.missed = 0.0  # mm
-        self.turn = TURN
-        self.slide = 0.0  # Position of the slide while the gib is loose.
+        self.turn = SCREW_LEAD_MM
+        self.slide_position = 0.0  # Position of the slide while the gib is loose.
 
     @property
-    def deceives(self) -> bool:
+    def has_encoder_error(self) -> bool:
         """Whether the drive measures a position other than that of its motor."""
         return self.ripple != 0.0 or self.missed != 0.0
 
-    def loosen(self, play: float, p: float) -> None:
+    def set_gib_play(self, play_mm: float, p: float) -> None:
         """Set the gib play in mm, with the slide at ``p``; 0 removes the play."""
-        self.gib, self.slide = play, p
+        self.gib, self.slide_position = play_mm, p
 
-    def counted(self, p: float) -> float:
+    def to_encoder_position(self, p: float) -> float:
         """Return the position that the encoder measures for a motor position ``p``."""
         turns = p / self.turn
         return p + self.ripple * math.sin(2.0 * math.pi * turns) - self.missed * math.floor(turns)
 
-    def carry(self, p: float, v: float) -> None:
+    def move_slide(self, p: float, v: float) -> None:
         """Move the slide with the motor, which is at ``p`` with velocity ``v``."""
         play = 0.5 * self.gib
-        behind = p - self.slide
-        if abs(behind) > play * (1.0 + 2.0 * _STICKS if abs(v) < _CREEP else 1.0):
-            self.slide = p - math.copysign(play, behind)
+        behind = p - self.slide_position
+        if abs(behind) > play * (1.0 + 2.0 * _STICK_FRACTION if abs(v) < _STICK_SLIP_SPEED else 1.0):
+            self.slide_position = p - math.copysign(play, behind)
 
 
 # --- Closed-form response of the servo to setpoints of constant acceleration.
 
 
-Number = TypeVar("Number", float, FloatArray)
+FloatOrArray = TypeVar("FloatOrArray", float, FloatArray)
 
 
-class Setpoints(NamedTuple):
+class SetpointPolynomial(NamedTuple):
     """Setpoints of one axis on the grid of the model: ``p + dp * k + ddp * k * k`` at grid point ``k``."""
 
-    p: float
-    dp: float
-    ddp: float
+    position: float
+    linear_term: float
+    quadratic_term: float
 
 
-class Response(NamedTuple):
+class ServoResponse(NamedTuple):
     """Position minus setpoint at grid point ``k``: ``lag + drift * k + slow * slow_mode**k + ...``."""
 
     lag: float
     drift: float
-    slow: float
-    fast: float
+    slow_amplitude: float
+    fast_amplitude: float
 
 
-AT_REST = Response(0.0, 0.0, 0.0, 0.0)
+RESPONSE_AT_REST = ServoResponse(0.0, 0.0, 0.0, 0.0)
 
 
 class ServoLoop:
@@ -312,9 +323,11 @@ class ServoLoop:
         # The characteristic equation m² - (2 - 2w - w²)m + (1 - 2w) = 0 has two real roots.
         middle, half = 1.0 - w - 0.5 * w * w, 0.5 * w * math.sqrt(w * (4.0 + w))
         self.slow_mode, self.fast_mode = middle + half, middle - half
-        self.slow_bend, self.fast_bend = (self.slow_mode - 1.0) ** 2, (self.fast_mode - 1.0) ** 2
+        self.slow_curvature, self.fast_curvature = (self.slow_mode - 1.0) ** 2, (self.fast_mode - 1.0) ** 2
 
-    def response(self, position: float, step: float, setpoints: Setpoints) -> Response:
+    def calculate_response(
+        self, position: float, step: float, setpoints: SetpointPolynomial
+    ) -> ServoResponse:
         """Return the response from ``position``, reached by a last move of ``step`` (mm or degrees)."""
         w, missing, (p, dp, ddp) = self._w, self._missing, setpoints
         drift = -4.0 * ddp * missing / w
@@ -323,9 +336,11 @@ class ServoLoop:
         before = position - step - (p - dp + ddp) - (lag - drift)
         after = (2.0 - 2.0 * w - w * w) * now - (1.0 - 2.0 * w) * before
         slow = (after - self.fast_mode * now) / (self.slow_mode - self.fast_mode)
-        return Response(lag, drift, slow, now - slow)
+        return ServoResponse(lag, drift, slow, now - slow)
 
-    def states(self, setpoints: Setpoints, response: Response, k: Number) -> tuple[Number, Number, Number]:
+    def get_states_at(
+        self, setpoints: SetpointPolynomial, response: ServoResponse, k: FloatOrArray
+    ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
         """Return the position at grid point ``k``, the last move and the change of the move.
 
         Units are mm (or degrees) and intervals of the grid.
@@ -336,5 +351,9 @@ class ServoLoop:
         place = place + (slow * self.slow_mode + fast * self.fast_mode)
         moved = dp + ddp * (2 * k - 1) + drift
         moved = moved + slow * (self.slow_mode - 1.0) + fast * (self.fast_mode - 1.0)
-        bent = 2.0 * ddp + slow * self.slow_bend / self.slow_mode + fast * self.fast_bend / self.fast_mode
+        bent = (
+            2.0 * ddp
+            + slow * self.slow_curvature / self.slow_mode
+            + fast * self.fast_curvature / self.fast_mode
+        )
         return place, moved, bent

@@ -9,7 +9,7 @@ from hashlib import sha256
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.serial_line import PARITIES, LineSettings, parity_of
+from drivers.serial_line import PARITY_VALUES, LineSettings, calculate_parity
 
 DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"
 
@@ -19,48 +19,48 @@ class TransferSettings:
     """Settings for the transfer of a program, in addition to the line settings.
 
     ``wrap`` is the line before and after a program; if it is empty, only silence marks the end. ``dc_codes``:
-    DC2 before and DC4 after a sent program, DC1 and DC3 around reception. ``wait``: send only after DC1 from
-    the other side. ``leader``: number of NULs before and after a program.
+    DC2 before and DC4 after a sent program, DC1 and DC3 around reception. ``waits_for_dc1``: send only after
+    DC1 from the other side. ``leader_length``: number of NULs before and after a program.
     """
 
-    line: LineSettings
-    wrap: str = "%"
-    eol: str = "\r\n"
+    line_settings: LineSettings
+    delimiter: str = "%"
+    line_end: str = "\r\n"
     dc_codes: bool = False
-    wait: bool = False
-    leader: int = 0
+    waits_for_dc1: bool = False
+    leader_length: int = 0
 
     @property
-    def own_parity(self) -> bool:
+    def checks_parity(self) -> bool:
         """Whether TurnDesk checks the parity itself.
 
         The line then has eight bits and carries seven bits with parity.
         """
-        return self.line.bits == 7 and self.line.parity in PARITIES
+        return self.line_settings.bits == 7 and self.line_settings.parity in PARITY_VALUES
 
     @property
-    def sending(self) -> LineSettings:
+    def sending_settings(self) -> LineSettings:
         """The line settings for sending, without flow control in the port while a DC1 is awaited."""
-        held = self.line.flow == "xonxoff" and self.wait
-        return replace(self.line, flow="none") if held else self.line
+        held = self.line_settings.flow == "xonxoff" and self.waits_for_dc1
+        return replace(self.line_settings, flow="none") if held else self.line_settings
 
     @property
-    def receiving(self) -> LineSettings:
+    def receiving_settings(self) -> LineSettings:
         """The line settings for receiving, without XON/XOFF because the input is read at once."""
-        flow = "rtscts" if self.line.flow == "rtscts" else "none"
-        if self.own_parity:
-            return replace(self.line, bits=8, parity="N", flow=flow)
-        return replace(self.line, flow=flow)
+        flow = "rtscts" if self.line_settings.flow == "rtscts" else "none"
+        if self.checks_parity:
+            return replace(self.line_settings, bits=8, parity="N", flow=flow)
+        return replace(self.line_settings, flow=flow)
 
 
 # --- Lines and name of a received program, as tapes and controls write them.
 
 
 _LINE_ENDS = re.compile(rb"[\r\n]+")
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,39}")
+_NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,39}")
 
 
-def lines_of(text: bytes) -> list[bytes]:
+def split_lines(text: bytes) -> list[bytes]:
     """Split text at LF, CR LF, CR or the LF CR CR of tapes; empty lines in between remain."""
     lines: list[bytes] = []
     at = 0
@@ -71,34 +71,34 @@ def lines_of(text: bytes) -> list[bytes]:
     return [*lines, text[at:]] if text[at:].strip() else lines
 
 
-def name_of(head: bytes, lines: list[bytes]) -> str:
+def find_program_name(first_characters: bytes, lines: list[bytes]) -> str:
     """Return the name after the first %, or the O number of the first line that is not blank."""
-    said = head.decode("ascii", "replace").strip().strip("()").strip()
+    said = first_characters.decode("ascii", "replace").strip().strip("()").strip()
     header = re.fullmatch(r"_N_(.+)_(MPF|SPF)", said, re.IGNORECASE)
     if header is not None:
         said = f"{header[1]}.{header[2].lower()}"
-    if _NAME.fullmatch(said):
+    if _NAME_PATTERN.fullmatch(said):
         return said
     first = next((line for line in lines if line.strip()), b"").decode("ascii", "replace")
     number = re.match(r"\s*[O:](\d{1,8})\b", first, re.IGNORECASE)
     return f"O{number[1]}" if number else ""
 
 
-LARGEST = 50_000_000  # Maximum size of a program in bytes.
-HEARD = 32  # Number of characters before the first % that are shown.
-_SEVEN = 0x7F
+MAX_PROGRAM_BYTES = 50_000_000  # Maximum size of a program in bytes.
+SHOWN_CHARACTERS = 32  # Number of characters before the first % that are shown.
+_SEVEN_BIT_MASK = 0x7F
 _CR, _LF, _TAB, _DC3 = 0x0D, 0x0A, 0x09, 0x13
-_ENDS = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: end of the sender's data.
+_END_CODES = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: end of the sender's data.
 # Leader, tape and flow control characters, and DEL.
-_SKIPPED = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))
+_SKIPPED_CODES = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))
 
 
-class Phase(StrEnum):
+class ReceptionPhase(StrEnum):
     """Phases of a reception."""
 
     WAITING = "waiting"  # Waiting for the first %.
     STORING = "storing"
-    WHOLE = "whole"
+    COMPLETE = "whole"
 
 
 class IncompleteError(DriverError):
@@ -106,100 +106,102 @@ class IncompleteError(DriverError):
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class ReceivedText:
     """Received complete program; ``name`` is empty if the program does not contain one."""
 
-    text: bytes
+    program_bytes: bytes
     name: str
-    lines: int
-    digest: str  # SHA-256
-    seven: bool  # Received with even parity through a line of eight bits.
-    skipped: int  # Number of characters before the first %.
+    line_count: int
+    sha256: str  # SHA-256
+    is_seven_bit: bool  # Received with even parity through a line of eight bits.
+    skipped_bytes: int  # Number of characters before the first %.
 
 
-class Incoming:
+class ProgramParser:
     """Parser of received characters.
 
-    ``feed`` adds characters, and ``program`` returns the result when complete.
+    ``add_characters`` adds characters, and ``build_program`` returns the result when complete.
 
-    ``silence`` reports the end of the input. On a line of eight bits, the first % shows the encoding: 25 is
-    eight bits, A5 is seven bits with even parity.
+    ``handle_silence`` reports the end of the input. On a line of eight bits, the first % shows the encoding:
+    25 is eight bits, A5 is seven bits with even parity.
     """
 
     def __init__(self, settings: TransferSettings) -> None:
         self._settings = settings
-        self._wrap = settings.wrap.encode("ascii")
-        self._parity = PARITIES[settings.line.parity] if settings.own_parity else None
+        self._wrap = settings.delimiter.encode("ascii")
+        self._parity = PARITY_VALUES[settings.line_settings.parity] if settings.checks_parity else None
         self._raw = bytearray()  # Characters with parity bits, after the first %.
         self._skipped = 0
         self._before = bytearray()  # Last characters before the first %, without leaders.
         self._begins = 0  # Start of the present line.
         self._feeds = self._returns = 0
-        self.phase = Phase.WAITING
-        self.count = 0  # Number of received characters.
+        self.phase = ReceptionPhase.WAITING
+        self.character_count = 0  # Number of received characters.
 
     @property
-    def heard(self) -> str:
+    def leading_text(self) -> str:
         """The last characters before the first %, with codes for those that are not text."""
         return "".join(self._told())
 
     @property
-    def noise(self) -> bool:
+    def is_noise(self) -> bool:
         """Whether most characters before the first % are not text in seven or eight bits."""
         return sum(len(one) > 1 for one in self._told()) * 2 > len(self._before)
 
     def _told(self) -> list[str]:
-        parity = PARITIES["E"] if self._parity is None else self._parity
-        return [_shown(character, parity) for character in self._before]
+        parity = PARITY_VALUES["E"] if self._parity is None else self._parity
+        return [_format_character(character, parity) for character in self._before]
 
     @property
-    def lines(self) -> int:
+    def line_count(self) -> int:
         """The number of received lines, including that of the first %."""
         return self._feeds or self._returns
 
-    def feed(self, come: bytes) -> None:
+    def add_characters(self, received: bytes) -> None:
         """Add received characters. Raises IncompleteError at the first invalid one."""
-        self.count += len(come)
-        if self.count > LARGEST:
+        self.character_count += len(received)
+        if self.character_count > MAX_PROGRAM_BYTES:
             raise IncompleteError(
                 "more than {largest} MB were received; the received data is not a program",
-                largest=LARGEST // 1000000,
+                largest=MAX_PROGRAM_BYTES // 1000000,
             )
-        for character in come:
-            if self.phase is Phase.WAITING:
+        for character in received:
+            if self.phase is ReceptionPhase.WAITING:
                 self._wait(character)
-            elif self.phase is Phase.STORING:
+            elif self.phase is ReceptionPhase.STORING:
                 self._store(character)
 
-    def silence(self) -> None:
+    def handle_silence(self) -> None:
         """Finish at the end of the input; a final % needs no line end.
 
         Raises IncompleteError if the final % is missing.
         """
-        if self.phase is Phase.WHOLE:
+        if self.phase is ReceptionPhase.COMPLETE:
             return
-        if self.phase is Phase.WAITING or (self._wrap and not self._at_end()):
+        if self.phase is ReceptionPhase.WAITING or (self._wrap and not self._is_at_end()):
             raise self._lacking()
-        self.phase = Phase.WHOLE
+        self.phase = ReceptionPhase.COMPLETE
 
-    def program(self) -> Program:
+    def build_program(self) -> ReceivedText:
         """Return the complete program. Raises IncompleteError if its text is invalid or empty."""
         raw = bytes(self._raw)
-        seven = self._parity is not None or (not self._wrap and _even(raw))
-        text = bytes(character & _SEVEN for character in raw) if seven else raw
-        head, lines = self._parted(text.translate(None, _SKIPPED))
+        seven = self._parity is not None or (not self._wrap and _has_even_parity(raw))
+        text = bytes(character & _SEVEN_BIT_MASK for character in raw) if seven else raw
+        head, lines = self._split_text(text.translate(None, _SKIPPED_CODES))
         for number, line in enumerate(lines, 1):
             self._check(line, number)
         whole = b"".join(line + b"\n" for line in lines)
         if not whole.strip():
             raise IncompleteError("the received program is empty; send the program again", reason="empty")
-        detected = seven and not self._settings.own_parity
+        detected = seven and not self._settings.checks_parity
         digest = sha256(whole).hexdigest()
-        return Program(whole, name_of(head, lines), len(lines), digest, detected, self._skipped)
+        return ReceivedText(
+            whole, find_program_name(head, lines), len(lines), digest, detected, self._skipped
+        )
 
-    def _parted(self, text: bytes) -> tuple[bytes, list[bytes]]:
+    def _split_text(self, text: bytes) -> tuple[bytes, list[bytes]]:
         """Return the text after the first %, and the lines."""
-        lines = lines_of(text)
+        lines = split_lines(text)
         if not self._wrap:
             return b"", lines
         if lines and lines[-1].strip() == self._wrap:
@@ -213,7 +215,7 @@ class Incoming:
                 "only one program",
                 reason="several",
                 number=number,
-                wrap=self._settings.wrap,
+                wrap=self._settings.delimiter,
             )
         for character in line:
             if character < 0x20 and character != _TAB:
@@ -226,31 +228,31 @@ class Incoming:
                 )
 
     def _wait(self, character: int) -> None:
-        wrong = self._parity is not None and parity_of(character) != self._parity
-        plain = character & _SEVEN
-        begins = plain == self._wrap[0] if self._wrap else plain > 0x20 and plain != _SEVEN
+        wrong = self._parity is not None and calculate_parity(character) != self._parity
+        plain = character & _SEVEN_BIT_MASK
+        begins = plain == self._wrap[0] if self._wrap else plain > 0x20 and plain != _SEVEN_BIT_MASK
         if wrong or not begins:
             self._skipped += 1
-            if plain and plain != _SEVEN:
-                self._before = (self._before + bytes([character]))[-HEARD:]
+            if plain and plain != _SEVEN_BIT_MASK:
+                self._before = (self._before + bytes([character]))[-SHOWN_CHARACTERS:]
             return
-        self.phase = Phase.STORING
+        self.phase = ReceptionPhase.STORING
         if not self._wrap:
             self._raw.append(character)
-        elif character > _SEVEN:
-            self._parity = PARITIES["E"]
+        elif character > _SEVEN_BIT_MASK:
+            self._parity = PARITY_VALUES["E"]
 
     def _store(self, character: int) -> None:
         # A leader has no parity.
-        if character and self._parity is not None and parity_of(character) != self._parity:
-            self._bad_parity(character)
+        if character and self._parity is not None and calculate_parity(character) != self._parity:
+            self._handle_bad_parity(character)
             return
-        plain = character if self._parity is None else character & _SEVEN
-        if plain in _ENDS or plain in {_CR, _LF}:
-            if self._wrap and self._at_end():
-                self.phase = Phase.WHOLE
+        plain = character if self._parity is None else character & _SEVEN_BIT_MASK
+        if plain in _END_CODES or plain in {_CR, _LF}:
+            if self._wrap and self._is_at_end():
+                self.phase = ReceptionPhase.COMPLETE
                 return
-            if plain in _ENDS:
+            if plain in _END_CODES:
                 self._sender_ends(plain)
                 return
             self._feeds, self._returns = self._feeds + (plain == _LF), self._returns + (plain == _CR)
@@ -261,20 +263,20 @@ class Incoming:
 
     def _sender_ends(self, plain: int) -> None:
         if not self._wrap:
-            self.phase = Phase.WHOLE
+            self.phase = ReceptionPhase.COMPLETE
         elif plain != _DC3:  # DC3 may also be the XOFF of flow control that is not active here.
             raise self._lacking()
 
-    def _bad_parity(self, character: int) -> None:
+    def _handle_bad_parity(self, character: int) -> None:
         """Handle a parity error.
 
         In noise before an eight-bit program, a character may look like a % with parity; reception then starts
         again. Raises IncompleteError otherwise.
         """
-        if not self._settings.own_parity and not self.lines:
+        if not self._settings.checks_parity and not self.line_count:
             self._skipped += len(self._raw) + 1
             self._raw.clear()
-            self._parity, self.phase = None, Phase.WAITING
+            self._parity, self.phase = None, ReceptionPhase.WAITING
             self._wait(character)
             return
         raise IncompleteError(
@@ -282,30 +284,30 @@ class Incoming:
             "settings ({line}) and the shield and ground of the cable, then send the "
             "program again",
             reason="parity",
-            lines=self.lines,
-            line=self._settings.line.words,
+            lines=self.line_count,
+            line=self._settings.line_settings.description,
         )
 
-    def _at_end(self) -> bool:
+    def _is_at_end(self) -> bool:
         """Return whether the present line is the final %."""
-        line = bytes(character & _SEVEN for character in self._raw[self._begins :])
-        return bool(self._begins) and line.translate(None, _SKIPPED).strip() == self._wrap
+        line = bytes(character & _SEVEN_BIT_MASK for character in self._raw[self._begins :])
+        return bool(self._begins) and line.translate(None, _SKIPPED_CODES).strip() == self._wrap
 
     def _lacking(self) -> IncompleteError:
-        wrap = self._settings.wrap
-        if self.phase is Phase.WAITING:
+        wrap = self._settings.delimiter
+        if self.phase is ReceptionPhase.WAITING:
             came = (
                 Message(
                     "{count} characters were received, but not the start character {wrap}",
-                    count=self.count,
+                    count=self.character_count,
                     wrap=wrap,
                 )
-                if self.count
+                if self.character_count
                 else "nothing came"
             )
             return IncompleteError(
                 "{came}; check the serial port settings and the other device, then send the program again",
-                reason="no-begin" if self.count else "nothing",
+                reason="no-begin" if self.character_count else "nothing",
                 came=came,
             )
         return IncompleteError(
@@ -313,50 +315,52 @@ class Incoming:
             "and was not saved; send the program again",
             reason="no-end",
             wrap=wrap,
-            lines=self.lines,
+            lines=self.line_count,
         )
 
 
-def _shown(character: int, parity: int) -> str:
+def _format_character(character: int, parity: int) -> str:
     """Return a character as text in eight bits, or in seven with this parity; otherwise its code."""
-    plain = character & _SEVEN if parity_of(character) == parity else character
+    plain = character & _SEVEN_BIT_MASK if calculate_parity(character) == parity else character
     if plain in {_CR, _LF, _TAB}:
         return " "
-    return chr(plain) if 0x20 <= plain < _SEVEN else f"<{character:02X}>"
+    return chr(plain) if 0x20 <= plain < _SEVEN_BIT_MASK else f"<{character:02X}>"
 
 
-def _even(raw: bytes) -> bool:
+def _has_even_parity(raw: bytes) -> bool:
     """Return whether all characters have seven bits with even parity, at least one with the top bit set."""
-    return any(character > _SEVEN for character in raw) and not any(parity_of(c) for c in raw if c)
+    return any(character > _SEVEN_BIT_MASK for character in raw) and not any(
+        calculate_parity(c) for c in raw if c
+    )
 
 
 # --- Sent bytes: leader, DC2, %, lines, %, DC4, trailer.
 
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
-_TOP = 0x80
+_PARITY_BIT = 0x80
 
 
-def outgoing(text: bytes, settings: TransferSettings) -> bytes:
+def encode_program(text: bytes, settings: TransferSettings) -> bytes:
     """Return the bytes to send for a program.
 
     Raises DriverError if the program is empty or contains characters that cannot be transferred.
     """
-    eol, wrap = settings.eol.encode("ascii"), settings.wrap.encode("ascii")
+    eol, wrap = settings.line_end.encode("ascii"), settings.delimiter.encode("ascii")
     lines = _LINE_END.split(text.rstrip(b"\x1a\r\n"))
     if wrap:
-        lines = _bare(lines, wrap)
+        lines = _strip_framing(lines, wrap)
     if not any(line.strip() for line in lines):
         raise DriverError("the program is empty; there is nothing to send", reason="empty")
     for number, line in enumerate(lines, 1):
-        _check(line, number, wrap, seven=settings.line.bits == 7)
+        _check(line, number, wrap, seven=settings.line_settings.bits == 7)
     framed = [wrap, *lines, wrap] if wrap else lines
     body = b"".join(line + eol for line in framed)
-    nulls = bytes(settings.leader)
+    nulls = bytes(settings.leader_length)
     return nulls + (DC2 + body + DC4 if settings.dc_codes else body) + nulls
 
 
-def _bare(lines: list[bytes], wrap: bytes) -> list[bytes]:
+def _strip_framing(lines: list[bytes], wrap: bytes) -> list[bytes]:
     """Return the lines without their own frame, which would otherwise be sent twice."""
     if lines and lines[0].strip() == wrap:
         lines = lines[1:]
@@ -382,7 +386,7 @@ def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
                 number=number,
                 character=f"{character:02X}",
             )
-        if seven and character >= _TOP:
+        if seven and character >= _PARITY_BIT:
             raise DriverError(
                 "line {number} contains a character that 7 bits cannot represent; remove this "
                 "character, or use 8 bits",

@@ -14,6 +14,6 @@ import sys
 def console() -> int:
     """Run the installed ``turndesk`` command."""
     sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-    from app.cli.main import console as run  # noqa: PLC0415  found only since the line above
+    from app.cli.main import run_console as run  # noqa: PLC0415  found only since the line above
 
     return run()

@@ -14,15 +14,15 @@ import xml.etree.ElementTree as ET
 from collections.abc import Container, Mapping
 from pathlib import Path
 
-from app.compose.extra import extras
-from core.access.access_table import Act, Level
+from app.compose.optional_features import extras
+from core.access.access_table import AccessLevel, ProtectedChange
 from core.alarms import CATALOGUE
-from core.interpreter.dialects import code_book
-from core.interpreter.omniturn.codes.code_table import CHAPTERS
+from core.interpreter.dialects import get_code_book
+from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
 from core.language.klartext import klartext_faults
-from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
-from core.language.sinumerik.outside_words import OUTSIDE
-from core.language.sinumerik.word_table import FUNCTIONS, IDLE
+from core.language.sinumerik.cycle_names import UNSUPPORTED_CYCLES
+from core.language.sinumerik.unsupported_words import UNSUPPORTED_WORDS
+from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WORDS
 from core.language.source import Dialect
 from resources.translations.message_list import write_list
 from resources.translations.reading import marked, texts_of
@@ -35,7 +35,7 @@ LANGUAGES = ("es",)
 COMPOSING = "app/compose"
 COMPOSED = (
     "accepted_machine.py",
-    "desk_part.py",
+    "part_prover.py",
     "journal.py",
     "desk_assembly.py",
     "desk_services.py",
@@ -43,7 +43,7 @@ COMPOSED = (
     *("control_client.py", "control_place.py", "live_control.py"),
     "simulated_backend.py",
     "stored_offsets.py",
-    "workshop.py",
+    "program_proving.py",
 )
 ROOMS = (
     *(
@@ -82,19 +82,19 @@ APART = frozenset(
             "code_table.py",
             *("move_codes.py", "cycle_codes.py", "flow_codes.py"),
             "language_page.py",
-            "keys.py",
-            "run_without_screen.py",
+            "key_table.py",
+            "headless_run.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *(
             "proof_scheduler.py",
             "sharing/version_record.py",
             "share_command.py",
-            "place_answer.py",
+            "location_wait.py",
         ),
         *("sharing_table.py", "sharing_check.py"),
-        *("mtconnect/shop_floor.py", "mtconnect_command.py", "pendant_wire.py"),
-        *("office_desk.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
+        *("mtconnect/adapter_setup.py", "mtconnect_command.py", "pendant_setup.py"),
+        *("office_setup.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         "profile_command.py",
         *("shapes_command.py", "shape_steps.py"),
         "convert/reasons.py",
@@ -103,7 +103,7 @@ APART = frozenset(
         *(
             "sinumerik/cycle_names.py",
             "word_table.py",
-            "outside_words.py",
+            "unsupported_words.py",
         ),  # see _of_books
     }
 )
@@ -193,7 +193,17 @@ ALSO = (
     "PgUp",
     "PgDn",
     # Of the event log: its kinds; what has changed in the file are its own words.
-    *("access", "alarm", "change", "cleared", "confirmed", "disturbed", "end", "estop", "force"),
+    *(
+        "access",
+        "alarm",
+        "change",
+        "cleared",
+        "confirmed",
+        "disturbed",
+        "end",
+        "estop",
+        "force",
+    ),
     *(
         "interrupted",
         "load",
@@ -230,8 +240,9 @@ NO_SENTENCES = (
     "_lines.py",
     "cycle_names.py",
     "word_table.py",
-    "outside_words.py",
-    "hal_border.py",
+    "unsupported_words.py",
+    "hal_section.py",
+    "hal_file_builder.py",
     "_keys.py",
     "alarms_page.py",
 )
@@ -301,31 +312,31 @@ def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:
 
 def _of_levels() -> list[str]:
     """The levels, and what each may change."""
-    return [*(level.name for level in Level), *(act.value for act in Act)]
+    return [*(level.name for level in AccessLevel), *(act.value for act in ProtectedChange)]
 
 
 def _of_codes() -> list[str]:
     """What the code table says of codes to an operator; the rest of it is documentation."""
-    codes = [code for _, chapter in CHAPTERS for code in chapter]
-    said = {code.not_in_mdi for code in codes if code.not_in_mdi} | {code.group for code in codes}
-    for refusal in (each for code in codes for each in code.plain_refusals):
+    codes = [code for _, chapter in CODE_CHAPTERS for code in chapter]
+    said = {code.mdi_error_text for code in codes if code.mdi_error_text} | {code.group for code in codes}
+    for refusal in (each for code in codes for each in code.entry_errors):
         said |= {refusal.text, refusal.hint}
     rules = [rule for code in codes for rule in code.rules.values()]
-    said |= {rule.what for rule in rules if any("{what}" in each.text for each in rule.refusals)}
+    said |= {rule.description for rule in rules if any("{what}" in each.text for each in rule.errors)}
     return sorted(text for text in said if _is_read(text, False))
 
 
 def _of_books() -> list[str]:
     """Chapters and meanings of the code books, which the editor shows."""
-    books = [code_book(dialect) for dialect in Dialect]
+    books = [get_code_book(dialect) for dialect in Dialect]
     chapters = {title for book in books for title, _ in book.chapters}
     shown = chapters | {entry.what for book in books for entry in book.entries}
-    shown |= {what for book in books for entry in book.entries for _, what in book.words_of(entry)}
-    refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()}
+    shown |= {what for book in books for entry in book.entries for _, what in book.list_words(entry)}
+    refused = {*UNSUPPORTED_WORDS.values(), *UNSUPPORTED_CYCLES.values()}
     refused |= {
         name for key, name in vars(klartext_faults).items() if key.isupper() and isinstance(name, str)
     }
-    return sorted(shown | refused | {*FUNCTIONS.values(), *IDLE.values()})
+    return sorted(shown | refused | {*GROUP_BY_FUNCTION.values(), *INEFFECTIVE_WORDS.values()})
 
 
 def _of_extras() -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-_MARKS = frozenset({"tr", "Message", "end_cut_off_runs"})
+_MARKS = frozenset({"tr", "Message", "end_interrupted_runs"})
 _WITH_VALUES = frozenset({"DriverError", "ScriptError", "Fault"})  # templates where values follow by name
 _OF_PAGES = frozenset({"meaning", "purpose"})  # of keys of the machine file, for its page
 _MISTAKES = frozenset(

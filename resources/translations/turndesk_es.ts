@@ -5459,36 +5459,6 @@
       <translation>archivo de máquina: {item}</translation>
     </message>
     <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>Change the specified stock or the tool shapes.</source>
-      <translation>Cambie el material en bruto indicado o las formas de herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>Enter the stock again on the PART page.</source>
-      <translation>Indique de nuevo el material en bruto en la página PIEZA.</translation>
-    </message>
-    <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>LINE {line}: {check}</source>
-      <translation>LÍNEA {line}: {check}</translation>
-    </message>
-    <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>PART NOT PROVED WITH THE SPECIFIED STOCK AND TOOLS</source>
-      <translation>PIEZA NO COMPROBADA CON EL MATERIAL Y LAS HERRAMIENTAS INDICADOS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>The part could not be proved: {error}.</source>
-      <translation>La pieza no se pudo comprobar: {error}.</translation>
-    </message>
-    <message>
-      <location filename="app/compose/desk_part.py" />
-      <source>The specified stock cannot be used ({why}). An assumed stock is used instead.</source>
-      <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
-    </message>
-    <message>
       <location filename="app/compose/desk_services.py" />
       <source>CONTROL WATCHDOG</source>
       <translation>VIGILANCIA DEL CONTROL</translation>
@@ -5562,6 +5532,36 @@
       <location filename="app/compose/machine/accepted_machine.py" />
       <source>machine file {path} accepted by {name}</source>
       <translation>archivo de máquina {path} aceptado por {name}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/part_prover.py" />
+      <source>Change the specified stock or the tool shapes.</source>
+      <translation>Cambie el material en bruto indicado o las formas de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/part_prover.py" />
+      <source>Enter the stock again on the PART page.</source>
+      <translation>Indique de nuevo el material en bruto en la página PIEZA.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/part_prover.py" />
+      <source>LINE {line}: {check}</source>
+      <translation>LÍNEA {line}: {check}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/part_prover.py" />
+      <source>PART NOT PROVED WITH THE SPECIFIED STOCK AND TOOLS</source>
+      <translation>PIEZA NO COMPROBADA CON EL MATERIAL Y LAS HERRAMIENTAS INDICADOS</translation>
+    </message>
+    <message>
+      <location filename="app/compose/part_prover.py" />
+      <source>The part could not be proved: {error}.</source>
+      <translation>La pieza no se pudo comprobar: {error}.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/part_prover.py" />
+      <source>The specified stock cannot be used ({why}). An assumed stock is used instead.</source>
+      <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
       <location filename="app/compose/runs/journal.py" />
@@ -7094,7 +7094,7 @@
       <translation>{command} ha fallado</translation>
     </message>
     <message>
-      <location filename="app/desk/status/standing_prompt.py" />
+      <location filename="app/desk/status/state_prompt.py" />
       <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
       <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
     </message>
@@ -7134,59 +7134,49 @@
       <translation>ESCRIBIR</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>ENTER A PROGRAM NAME</source>
       <translation>ESCRIBA UN NOMBRE DE PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>EXTENSION {ending} IS NOT ALLOWED. USE ONE OF {allowed} OR NONE</source>
       <translation>EXTENSIÓN {ending} NO PERMITIDA. USE UNA DE {allowed} O NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>changed by another program</source>
       <translation>cambiado por otro programa</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>saved in the editor</source>
       <translation>guardado en el editor</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>text before editing</source>
       <translation>texto antes de editar</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>unsaved draft</source>
       <translation>borrador sin guardar</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>{name} WOULD BE A HIDDEN FILE. START WITH A LETTER OR DIGIT</source>
       <translation>{name} SERÍA UN ARCHIVO OCULTO. EMPIECE CON LETRA O NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>{name}: INVALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE</source>
       <translation>{name}: NOMBRE NO VÁLIDO. USE LETRAS, NÚMEROS, PUNTO, GUION, ESPACIO</translation>
     </message>
     <message>
-      <location filename="app/editor/document.py" />
+      <location filename="app/editor/edited_document.py" />
       <source>{path} has over {most_lines} lines, too many for this editor; split the file in another editor</source>
       <translation>{path} tiene más de {most_lines} líneas, demasiadas para este editor; divida el archivo en otro editor</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor.py" />
-      <source>{document} SAVED</source>
-      <translation>{document} GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor.py" />
-      <source>{error}. ESC: BACK</source>
-      <translation>{error}. ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -7317,6 +7307,16 @@
       <location filename="app/editor/editor_messages.py" />
       <source>{} CHANGED ON DISK. F6: OVERWRITE   ESC: CONTINUE EDITING</source>
       <translation>{} CAMBIÓ EN EL DISCO. F6: SOBRESCRIBIR   ESC: SEGUIR EDITANDO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_model.py" />
+      <source>{document} SAVED</source>
+      <translation>{document} GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_model.py" />
+      <source>{error}. ESC: BACK</source>
+      <translation>{error}. ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
@@ -7574,27 +7574,27 @@
       <translation>MUESTRA, CAMBIADA</translation>
     </message>
     <message>
-      <location filename="app/editor/versions.py" />
+      <location filename="app/editor/version_history.py" />
       <source>CHANGES FROM VERSION {number} TO THE EDITOR TEXT</source>
       <translation>CAMBIOS DE LA VERSIÓN {number} AL TEXTO DEL EDITOR</translation>
     </message>
     <message>
-      <location filename="app/editor/versions.py" />
+      <location filename="app/editor/version_history.py" />
       <source>COMPARING</source>
       <translation>COMPARANDO</translation>
     </message>
     <message>
-      <location filename="app/editor/versions.py" />
+      <location filename="app/editor/version_history.py" />
       <source>IDENTICAL TO THE TEXT IN THE EDITOR</source>
       <translation>IDÉNTICO AL TEXTO DEL EDITOR</translation>
     </message>
     <message>
-      <location filename="app/editor/versions.py" />
+      <location filename="app/editor/version_history.py" />
       <source>NO VERSION OF THIS PROGRAM STORED YET</source>
       <translation>AÚN NO HAY NINGUNA VERSIÓN GUARDADA DE ESTE PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/editor/versions.py" />
+      <location filename="app/editor/version_history.py" />
       <source>version {version} of {name} is not in the program history</source>
       <translation>la versión {version} de {name} no está en el historial de programas</translation>
     </message>
@@ -8184,91 +8184,6 @@
       <translation>dispara a los {position}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>90° PHASE LAG</source>
-      <translation>DESFASE DE 90°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>BANDWIDTH, −3 dB</source>
-      <translation>ANCHO DE BANDA, −3 dB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>DELAY</source>
-      <translation>RETARDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>GAIN</source>
-      <translation>GANANCIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>LAG AT CONSTANT SPEED</source>
-      <translation>RETRASO A VELOCIDAD CONSTANTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>Nothing was written to the drive.</source>
-      <translation>No se escribió nada en el accionamiento.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>OUTBOUND</source>
-      <translation>IDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>PHASE LAG</source>
-      <translation>DESFASE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>RAMP</source>
-      <translation>RAMPA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>RETURN</source>
-      <translation>VUELTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>SINE</source>
-      <translation>SENO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>SPEED / LAG (GAIN)</source>
-      <translation>VELOCIDAD / RETRASO (GANANCIA)</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>drive test</source>
-      <translation>prueba de accionamiento</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>the key was released before the test ended; hold the key until the axis has returned</source>
-      <translation>la tecla se soltó antes de terminar la prueba; mantenga la tecla hasta que el eje haya vuelto</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>this machine has no {axis} axis</source>
-      <translation>esta máquina no tiene eje {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>{words}, {item} Hz</source>
-      <translation>{words}, {item} Hz</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>−3 dB is not reached at frequencies up to {maximum} Hz</source>
-      <translation>no se alcanzan −3 dB en frecuencias hasta {maximum} Hz</translation>
-    </message>
-    <message>
       <location filename="app/extras/analyses/drive_test_model.py" />
       <source>DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT</source>
       <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE LA FLECHA SIN MAYÚS</translation>
@@ -8320,8 +8235,18 @@
     </message>
     <message>
       <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>RAMP</source>
+      <translation>RAMPA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
       <source>SETTING</source>
       <translation>AJUSTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SINE</source>
+      <translation>SENO</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/drive_test_model.py" />
@@ -8377,6 +8302,81 @@
       <location filename="app/extras/analyses/drive_test_model.py" />
       <source>{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP</source>
       <translation>{travel}: MANTENGA {key} PARA HACER LA PRUEBA, SUELTE PARA PARAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>90° PHASE LAG</source>
+      <translation>DESFASE DE 90°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>BANDWIDTH, −3 dB</source>
+      <translation>ANCHO DE BANDA, −3 dB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>DELAY</source>
+      <translation>RETARDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>GAIN</source>
+      <translation>GANANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>LAG AT CONSTANT SPEED</source>
+      <translation>RETRASO A VELOCIDAD CONSTANTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>Nothing was written to the drive.</source>
+      <translation>No se escribió nada en el accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>OUTBOUND</source>
+      <translation>IDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>PHASE LAG</source>
+      <translation>DESFASE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>RETURN</source>
+      <translation>VUELTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>SPEED / LAG (GAIN)</source>
+      <translation>VELOCIDAD / RETRASO (GANANCIA)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>drive test</source>
+      <translation>prueba de accionamiento</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>the key was released before the test ended; hold the key until the axis has returned</source>
+      <translation>la tecla se soltó antes de terminar la prueba; mantenga la tecla hasta que el eje haya vuelto</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>this machine has no {axis} axis</source>
+      <translation>esta máquina no tiene eje {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>{words}, {item} Hz</source>
+      <translation>{words}, {item} Hz</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_results.py" />
+      <source>−3 dB is not reached at frequencies up to {maximum} Hz</source>
+      <translation>no se alcanzan −3 dB en frecuencias hasta {maximum} Hz</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/drive_test_view.py" />
@@ -8709,11 +8709,6 @@
       <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/jobs_desk.py" />
-      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
-      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
-    </message>
-    <message>
       <location filename="app/extras/jobs/jobs_model.py" />
       <source>CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK</source>
       <translation>NO SE PUEDE CARGAR: MÁQUINA O PROGRAMA EN MARCHA. ESC: VOLVER</translation>
@@ -8859,6 +8854,11 @@
       <translation>{program}: {made} DE {wanted} HECHAS. Y: QUITAR DE LA COLA   N: CONSERVAR</translation>
     </message>
     <message>
+      <location filename="app/extras/jobs/jobs_setup.py" />
+      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
+      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
+    </message>
+    <message>
       <location filename="app/extras/jobs/jobs_watch.py" />
       <source>ALL TOOLS READY</source>
       <translation>TODAS LAS HERRAMIENTAS LISTAS</translation>
@@ -8969,27 +8969,27 @@
       <translation>el broker MQTT {host}:{port}</translation>
     </message>
     <message>
-      <location filename="app/extras/office/other_desks.py" />
+      <location filename="app/extras/office/other_machines.py" />
       <source>access token rejected</source>
       <translation>token de acceso rechazado</translation>
     </message>
     <message>
-      <location filename="app/extras/office/other_desks.py" />
+      <location filename="app/extras/office/other_machines.py" />
       <source>no response for {age} s</source>
       <translation>sin respuesta desde hace {age} s</translation>
     </message>
     <message>
-      <location filename="app/extras/office/other_desks.py" />
+      <location filename="app/extras/office/other_machines.py" />
       <source>the MTConnect agent reports that the machine is unavailable</source>
       <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
     <message>
-      <location filename="app/extras/office/other_desks.py" />
+      <location filename="app/extras/office/other_machines.py" />
       <source>the server at this address is not a TurnDesk server</source>
       <translation>el servidor de esta dirección no es un servidor TurnDesk</translation>
     </message>
     <message>
-      <location filename="app/extras/office/other_desks.py" />
+      <location filename="app/extras/office/other_machines.py" />
       <source>the server returns HTTP status {answer}</source>
       <translation>el servidor devuelve el estado HTTP {answer}</translation>
     </message>
@@ -9459,67 +9459,22 @@
       <translation>{value} no es un número entero</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
-      <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>GAUGE: {why}. MEASURE AGAIN</source>
-      <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>Listening to the gauge: {count} readings.</source>
-      <translation>Calibrador a la escucha: {count} lecturas.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
-      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
-      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
-      <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>Not listening to the gauge. Press F5 to start.</source>
-      <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>the gauge is not connected or is switched off</source>
-      <translation>el calibrador no está conectado o está apagado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>the gauge sent unreadable data</source>
-      <translation>el calibrador envió datos ilegibles</translation>
-    </message>
-    <message>
       <location filename="app/extras/quality/plots_view.py" />
       <source>NOTHING TO DRAW YET</source>
       <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/quality_desk.py" />
+      <location filename="app/extras/quality/quality_setup.py" />
       <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
       <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/quality_desk.py" />
+      <location filename="app/extras/quality/quality_setup.py" />
       <source>MEASUREMENT DUE</source>
       <translation>MEDICIÓN PENDIENTE</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/quality_desk.py" />
+      <location filename="app/extras/quality/quality_setup.py" />
       <source>Press Enter to open the page, or press W in the main menu.</source>
       <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
     </message>
@@ -9704,34 +9659,49 @@
       <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>No part was started in this period.</source>
-      <translation>En este período no se empezó ninguna pieza.</translation>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
+      <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
-      <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>GAUGE: {why}. MEASURE AGAIN</source>
+      <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
-      <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>Listening to the gauge: {count} readings.</source>
+      <translation>Calibrador a la escucha: {count} lecturas.</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
-      <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
+      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The shift has not started.</source>
-      <translation>El turno no ha empezado.</translation>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
+      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The shift is still running; this report covers it up to {time}.</source>
-      <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
+      <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>Not listening to the gauge. Press F5 to start.</source>
+      <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>the gauge is not connected or is switched off</source>
+      <translation>el calibrador no está conectado o está apagado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/serial_gauge.py" />
+      <source>the gauge sent unreadable data</source>
+      <translation>el calibrador envió datos ilegibles</translation>
     </message>
     <message>
       <location filename="app/extras/quality/shift_function.py" />
@@ -9964,6 +9934,36 @@
       <translation>{unit} mm</translation>
     </message>
     <message>
+      <location filename="app/extras/quality/shift_results.py" />
+      <source>No part was started in this period.</source>
+      <translation>En este período no se empezó ninguna pieza.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_results.py" />
+      <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
+      <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_results.py" />
+      <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
+      <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_results.py" />
+      <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
+      <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_results.py" />
+      <source>The shift has not started.</source>
+      <translation>El turno no ha empezado.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_results.py" />
+      <source>The shift is still running; this report covers it up to {time}.</source>
+      <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
+    </message>
+    <message>
       <location filename="app/extras/quality/wear_correction.py" />
       <source>NO OFFSETS SET FOR T{number}</source>
       <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
@@ -10169,21 +10169,6 @@
       <translation>{program} ya es la versión elegida</translation>
     </message>
     <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>PROGRAMS NOT SHARED: {why}</source>
-      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
-      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{path} cannot be used: {error}</source>
-      <translation>{path} no se puede usar: {error}</translation>
-    </message>
-    <message>
       <location filename="app/extras/sharing/sharing_model.py" />
       <source>AVAILABLE ON</source>
       <translation>DISPONIBLE EN</translation>
@@ -10314,6 +10299,21 @@
       <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
     </message>
     <message>
+      <location filename="app/extras/sharing/sharing_setup.py" />
+      <source>PROGRAMS NOT SHARED: {why}</source>
+      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_setup.py" />
+      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
+      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_setup.py" />
+      <source>{path} cannot be used: {error}</source>
+      <translation>{path} no se puede usar: {error}</translation>
+    </message>
+    <message>
       <location filename="app/extras/sharing/sharing_view.py" />
       <source>VERSIONS ON OTHER CONTROLS</source>
       <translation>VERSIONES EN OTROS CONTROLES</translation>
@@ -10332,111 +10332,6 @@
       <location filename="app/extras/tool_tables/import_plan.py" />
       <source>not imported before the tool is touched off: {names}; touch off T{number}, then import the file again with --replace</source>
       <translation>no se importa hasta tocar la herramienta: {names}; toque T{number} y vuelva a importar el archivo con --replace</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R</source>
-      <translation>HAY UNA LÍNEA EN EJECUCIÓN. DEJE QUE TERMINE, O PÁRELA Y PULSE R</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R</source>
-      <translation>HAY UNA ALARMA ACTIVA. CORRIJA SU CAUSA Y PULSE R</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>AXES ARE STILL MOVING</source>
-      <translation>LOS EJES TODAVÍA SE MUEVEN</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>AXES WERE MOVED. PICK THE FUNCTION AGAIN</source>
-      <translation>LOS EJES SE HAN MOVIDO. ELIJA LA FUNCIÓN OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>CANNOT OPEN COLLET WHILE SPINDLE TURNS. 0: STOP SPINDLE</source>
-      <translation>NO SE ABRE LA PINZA CON EL HUSILLO GIRANDO. 0: PARAR HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>CHECKING THE LINE FOR ERRORS</source>
-      <translation>COMPROBANDO SI LA LÍNEA TIENE ERRORES</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>DRIVES ARE OFF. PRESS D TO TURN THEM ON</source>
-      <translation>LOS SERVOS ESTÁN APAGADOS. PULSE D PARA ENCENDERLOS</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>E-STOP IS PRESSED. NO AXIS CAN MOVE</source>
-      <translation>EL PARO DE EMERGENCIA ESTÁ PULSADO. NINGÚN EJE SE PUEDE MOVER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>HOMING. PRESS H TO STOP</source>
-      <translation>BUSCANDO REFERENCIA. PULSE H PARA DETENER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>MACHINE IS BUSY. LET IT FINISH, OR PRESS R TO CANCEL</source>
-      <translation>LA MÁQUINA ESTÁ OCUPADA. DEJE QUE TERMINE, O PULSE R PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>NOTHING SELECTED. PICK 1–6, THEN CYCLE START</source>
-      <translation>NADA ELEGIDO. ELIJA 1–6, LUEGO ARRANQUE DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>PICK 1–6, THEN CYCLE START. 9: RPM. B: TOOL SETTING</source>
-      <translation>ELIJA 1–6, LUEGO ARRANQUE DE CICLO. 9: RPM. B: AJUSTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>RUN {line}: {start}   ESC: CANCEL</source>
-      <translation>EJECUTAR {line}: {start}   ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>SPINDLE IS TURNING. KEEP CLEAR. 0: STOP   HOLD AN ARROW: JOG</source>
-      <translation>EL HUSILLO GIRA. APÁRTESE. 0: PARAR   MANTENER FLECHA: MOVER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>THE LINE CANNOT BE CHECKED: {why}</source>
-      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>TYPE THE RPM AND PRESS ENTER. ESC: CANCEL</source>
-      <translation>ESCRIBA LAS RPM Y PULSE ENTER. ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>coolant off</source>
-      <translation>refrigerante fuera</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>coolant on</source>
-      <translation>refrigerante en marcha</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>{line} IS RUNNING. 0: STOP SPINDLE</source>
-      <translation>{line} EN EJECUCIÓN. 0: PARAR HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>{line} STOPPED. CYCLE START: RESUME   0: STOP SPINDLE, CANCEL</source>
-      <translation>{line} DETENIDA. ARRANQUE DE CICLO: REANUDAR   0: PARAR HUSILLO, CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>{rpm:g} RPM REJECTED. ENTER MORE THAN 0, UP TO {highest:g} RPM</source>
-      <translation>{rpm:g} RPM RECHAZADAS. ESCRIBA MÁS DE 0, HASTA {highest:g} RPM</translation>
     </message>
     <message>
       <location filename="app/jog/held_jog.py" />
@@ -10555,8 +10450,28 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
+      <source>ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R</source>
+      <translation>HAY UNA ALARMA ACTIVA. CORRIJA SU CAUSA Y PULSE R</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
       <source>ARROWS DO NOT JOG WHILE YOU TYPE A VALUE. PRESS ENTER OR ESC</source>
       <translation>LAS FLECHAS NO MUEVEN MIENTRAS ESCRIBE UN VALOR. PULSE ENTER O ESC</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>AXES ARE STILL MOVING</source>
+      <translation>LOS EJES TODAVÍA SE MUEVEN</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>DRIVES ARE OFF. PRESS D TO TURN THEM ON</source>
+      <translation>LOS SERVOS ESTÁN APAGADOS. PULSE D PARA ENCENDERLOS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>E-STOP IS PRESSED. NO AXIS CAN MOVE</source>
+      <translation>EL PARO DE EMERGENCIA ESTÁ PULSADO. NINGÚN EJE SE PUEDE MOVER</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -10622,6 +10537,11 @@
       <location filename="app/jog/jog_model.py" />
       <source>HOMING CANCELED. PRESS THE ARROW AGAIN TO JOG</source>
       <translation>REFERENCIA CANCELADA. PULSE OTRA VEZ LA FLECHA PARA MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>HOMING. PRESS H TO STOP</source>
+      <translation>BUSCANDO REFERENCIA. PULSE H PARA DETENER</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -10842,6 +10762,86 @@
       <location filename="app/jog/jog_view.py" />
       <source>TOOL SETTING</source>
       <translation>AJUSTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R</source>
+      <translation>HAY UNA LÍNEA EN EJECUCIÓN. DEJE QUE TERMINE, O PÁRELA Y PULSE R</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>AXES WERE MOVED. PICK THE FUNCTION AGAIN</source>
+      <translation>LOS EJES SE HAN MOVIDO. ELIJA LA FUNCIÓN OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>CANNOT OPEN COLLET WHILE SPINDLE TURNS. 0: STOP SPINDLE</source>
+      <translation>NO SE ABRE LA PINZA CON EL HUSILLO GIRANDO. 0: PARAR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>CHECKING THE LINE FOR ERRORS</source>
+      <translation>COMPROBANDO SI LA LÍNEA TIENE ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>MACHINE IS BUSY. LET IT FINISH, OR PRESS R TO CANCEL</source>
+      <translation>LA MÁQUINA ESTÁ OCUPADA. DEJE QUE TERMINE, O PULSE R PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>NOTHING SELECTED. PICK 1–6, THEN CYCLE START</source>
+      <translation>NADA ELEGIDO. ELIJA 1–6, LUEGO ARRANQUE DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>PICK 1–6, THEN CYCLE START. 9: RPM. B: TOOL SETTING</source>
+      <translation>ELIJA 1–6, LUEGO ARRANQUE DE CICLO. 9: RPM. B: AJUSTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>RUN {line}: {start}   ESC: CANCEL</source>
+      <translation>EJECUTAR {line}: {start}   ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>SPINDLE IS TURNING. KEEP CLEAR. 0: STOP   HOLD AN ARROW: JOG</source>
+      <translation>EL HUSILLO GIRA. APÁRTESE. 0: PARAR   MANTENER FLECHA: MOVER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>THE LINE CANNOT BE CHECKED: {why}</source>
+      <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>TYPE THE RPM AND PRESS ENTER. ESC: CANCEL</source>
+      <translation>ESCRIBA LAS RPM Y PULSE ENTER. ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>coolant off</source>
+      <translation>refrigerante fuera</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>coolant on</source>
+      <translation>refrigerante en marcha</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>{line} IS RUNNING. 0: STOP SPINDLE</source>
+      <translation>{line} EN EJECUCIÓN. 0: PARAR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>{line} STOPPED. CYCLE START: RESUME   0: STOP SPINDLE, CANCEL</source>
+      <translation>{line} DETENIDA. ARRANQUE DE CICLO: REANUDAR   0: PARAR HUSILLO, CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/manual_functions.py" />
+      <source>{rpm:g} RPM REJECTED. ENTER MORE THAN 0, UP TO {highest:g} RPM</source>
+      <translation>{rpm:g} RPM RECHAZADAS. ESCRIBA MÁS DE 0, HASTA {highest:g} RPM</translation>
     </message>
     <message>
       <location filename="app/jog/skim_and_setter.py" />
@@ -12259,142 +12259,142 @@
       <translation>posición fijada a {value}</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>CHECK OFF</source>
       <translation>DESACT.</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>DELETE</source>
       <translation>BORRAR</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>FINDINGS</source>
       <translation>HALLAZGOS</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>LEFT/RIGHT: CHANGE STOCK TYPE   F6: DELETE STOCK DATA</source>
       <translation>IZQUIERDA/DERECHA: CAMBIAR TIPO DE MATERIAL   F6: BORRAR DATOS DEL MATERIAL</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM</source>
       <translation>CARGUE ANTES UN PROGRAMA. LOS DATOS DEL MATERIAL SE GUARDAN CON EL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>NO STOCK IS SPECIFIED FOR THIS PROGRAM</source>
       <translation>ESTE PROGRAMA NO TIENE MATERIAL INDICADO</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>NOT SAVED: {why}</source>
       <translation>SIN GUARDAR: {why}</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>ON A MILL, TURNDESK DOES NOT CHECK THE FINISHED PART</source>
       <translation>EN UNA FRESADORA, TURNDESK NO COMPRUEBA LA PIEZA TERMINADA</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>PROGRAM CHECKS CANNOT BE TURNED OFF, ONLY PART CHECKS</source>
       <translation>SOLO SE DESACTIVAN COMPROBACIONES DE LA PIEZA, NO LAS DEL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>PROGRAM RUNNING. EDIT STOCK OR PART CHECKS ONLY BETWEEN CYCLES</source>
       <translation>PROGRAMA EN MARCHA. EDITE EL MATERIAL O LAS COMPROBACIONES DE PIEZA SOLO ENTRE CICLOS</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF</source>
       <translation>SELECCIONE EL HALLAZGO CUYA COMPROBACIÓN QUIERE DESACTIVAR</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>STOCK</source>
       <translation>MATERIAL EN BRUTO</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>STOCK DATA DELETED</source>
       <translation>DATOS DEL MATERIAL BORRADOS</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>STOCK DATA SAVED WITH {name}</source>
       <translation>DATOS DEL MATERIAL GUARDADOS CON {name}</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>THE PROGRAM IS BEING PROVED: WAIT A MOMENT</source>
       <translation>SE ESTÁ COMPROBANDO EL PROGRAMA: ESPERE UN MOMENTO</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>TYPE A LENGTH OR EXPRESSION   ENTER: SAVE   0: NOT SPECIFIED</source>
       <translation>ESCRIBA UNA LONGITUD O EXPRESIÓN   ENTER: GUARDAR   0: SIN INDICAR</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>TYPE THE FILE NAME   ENTER: ACCEPT   ESC: CANCEL</source>
       <translation>ESCRIBA EL NOMBRE DEL ARCHIVO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON</source>
       <translation>ESCRIBA EL MOTIVO   ENTER: DESACTIVAR   ESC: DEJAR ACTIVA</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>UP/DOWN: SHOW EACH FINDING   F2: STOCK   F4: TURN CHECK OFF</source>
       <translation>ARRIBA/ABAJO: VER CADA HALLAZGO   F2: MATERIAL   F4: DESACTIVAR</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK</source>
       <translation>ARRIBA/ABAJO: MOSTRAR DÓNDE ESTÁ CADA HALLAZGO   F2: MATERIAL</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>enter a reason to turn a check off</source>
       <translation>escriba un motivo para desactivar una comprobación</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>file {name} was not found in the program's folder</source>
       <translation>no se encontró el archivo {name} en la carpeta del programa</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>not specified</source>
       <translation>sin indicar</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>{check} CHECK IS ON AGAIN</source>
       <translation>LA COMPROBACIÓN {check} ESTÁ ACTIVA OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>{check} CHECK IS TURNED OFF IN THE MACHINE FILE, SECTION [checks]</source>
       <translation>LA COMPROBACIÓN {check} ESTÁ DESACTIVADA EN EL ARCHIVO DE MÁQUINA, SECCIÓN [checks]</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>{check} CHECK TURNED OFF</source>
       <translation>COMPROBACIÓN {check} DESACTIVADA</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet.py" />
+      <location filename="app/part/part_model.py" />
       <source>{name}: stock {stock}, checks turned off: {silenced}</source>
       <translation>{name}: material {stock}, comprobaciones desactivadas: {silenced}</translation>
     </message>
     <message>
-      <location filename="app/part/part_sheet_view.py" />
+      <location filename="app/part/part_page_view.py" />
       <source>PART</source>
       <translation>PIEZA</translation>
     </message>
@@ -12744,109 +12744,34 @@
       <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
     </message>
     <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>COPIED AS {name}</source>
-      <translation>COPIADO COMO {name}</translation>
+      <location filename="app/programs/atomic_files.py" />
+      <source>FILES IN {folder} CANNOT BE SAVED TO THE DISK: {cause}</source>
+      <translation>LOS ARCHIVOS DE {folder} NO SE PUEDEN GUARDAR EN EL DISCO: {cause}</translation>
     </message>
     <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>NAME FOR THE COPY?</source>
-      <translation>¿NOMBRE PARA LA COPIA?</translation>
+      <location filename="app/programs/atomic_files.py" />
+      <source>NOT SAVED: TEXT HAS CHARACTERS A PROGRAM FILE CANNOT STORE</source>
+      <translation>NO SE GUARDÓ: EL TEXTO TIENE CARACTERES NO VÁLIDOS EN UN PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>NEW NAME?</source>
-      <translation>¿NOMBRE NUEVO?</translation>
+      <location filename="app/programs/atomic_files.py" />
+      <source>VERIFICATION OF {target} FAILED. USE ANOTHER USB STICK</source>
+      <translation>LA VERIFICACIÓN DE {target} FALLÓ. USE OTRA MEMORIA USB</translation>
     </message>
     <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>PROGRAM NOT DELETED. ITS CURRENT VERSION CANNOT BE SAVED FIRST: {error}</source>
-      <translation>PROGRAMA NO BORRADO. NO SE PUEDE GUARDAR ANTES SU VERSIÓN ACTUAL: {error}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER THE NAME {source}: {error}</source>
-      <translation>PROGRAMA RENOMBRADO, PERO SUS VERSIONES SIGUEN CON EL NOMBRE {source}: {error}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>RENAMED TO {name}</source>
-      <translation>NOMBRE CAMBIADO A {name}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>SAMPLES ARE READ-ONLY. F4: COPY THE SAMPLE FIRST</source>
-      <translation>LAS MUESTRAS SON DE SOLO LECTURA. F4: COPIE PRIMERO LA MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>SELECT A PROGRAM FIRST</source>
-      <translation>SELECCIONE ANTES UN PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE</source>
-      <translation>TODAVÍA OCUPADO. ESPERE A QUE TERMINE LA ÚLTIMA ORDEN</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>THE PROGRAM IS ALREADY NAMED {name}</source>
-      <translation>EL PROGRAMA YA SE LLAMA {name}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>TYPE A NAME FIRST</source>
-      <translation>ESCRIBA PRIMERO UN NOMBRE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>Y: DELETE {name} (STORED VERSIONS REMAIN)   N: KEEP IT</source>
-      <translation>Y: BORRAR {name} (QUEDAN SUS VERSIONES)   N: CONSERVARLO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>program {words}</source>
-      <translation>programa {words}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} DELETED. ITS STORED VERSIONS REMAIN</source>
-      <translation>{name} BORRADO. SUS VERSIONES GUARDADAS SE CONSERVAN</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS RUNNING. LET IT FINISH FIRST</source>
-      <translation>{name} ESTÁ EN MARCHA. DEJE QUE TERMINE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST</source>
-      <translation>{name} FUE INTERRUMPIDO. PRIMERO TERMINE O CANCELE LA EJECUCIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} WOULD BE HIDDEN. USE A NAME WITHOUT A LEADING PERIOD</source>
-      <translation>{name} QUEDARÍA OCULTO. USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
+      <location filename="app/programs/atomic_files.py" />
       <source>{other} ALREADY EXISTS. USE ANOTHER NAME</source>
       <translation>{other} YA EXISTE. USE OTRO NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{path} CANNOT BE DELETED: {cause}</source>
-      <translation>NO SE PUEDE BORRAR {path}: {cause}</translation>
+      <location filename="app/programs/atomic_files.py" />
+      <source>{path} CANNOT BE READ: {cause}</source>
+      <translation>NO SE PUEDE LEER {path}: {cause}</translation>
     </message>
     <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{path} NO LONGER EXISTS</source>
-      <translation>{path} YA NO EXISTE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/copy_rename_delete.py" />
-      <source>{source} CANNOT BE RENAMED: {cause}</source>
-      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE {source}: {cause}</translation>
+      <location filename="app/programs/atomic_files.py" />
+      <source>{target} CANNOT BE WRITTEN: {cause}</source>
+      <translation>NO SE PUEDE ESCRIBIR {target}: {cause}</translation>
     </message>
     <message>
       <location filename="app/programs/file_prompt_view.py" />
@@ -12955,11 +12880,6 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>{path} CANNOT BE READ: {cause}</source>
-      <translation>NO SE PUEDE LEER {path}: {cause}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/import_export.py" />
       <source>{path} IS NOT A PROGRAM: {error}</source>
       <translation>{path} NO ES UN PROGRAMA: {error}</translation>
     </message>
@@ -12974,137 +12894,237 @@
       <translation>{target} NO SE REEMPLAZÓ. NO SE PUEDE GUARDAR SU VERSIÓN ANTERIOR: {error}</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_commands.py" />
+      <source>COPIED AS {name}</source>
+      <translation>COPIADO COMO {name}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>NAME FOR THE COPY?</source>
+      <translation>¿NOMBRE PARA LA COPIA?</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>NEW NAME?</source>
+      <translation>¿NOMBRE NUEVO?</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>PROGRAM NOT DELETED. ITS CURRENT VERSION CANNOT BE SAVED FIRST: {error}</source>
+      <translation>PROGRAMA NO BORRADO. NO SE PUEDE GUARDAR ANTES SU VERSIÓN ACTUAL: {error}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER THE NAME {source}: {error}</source>
+      <translation>PROGRAMA RENOMBRADO, PERO SUS VERSIONES SIGUEN CON EL NOMBRE {source}: {error}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>RENAMED TO {name}</source>
+      <translation>NOMBRE CAMBIADO A {name}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>SAMPLES ARE READ-ONLY. F4: COPY THE SAMPLE FIRST</source>
+      <translation>LAS MUESTRAS SON DE SOLO LECTURA. F4: COPIE PRIMERO LA MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>SELECT A PROGRAM FIRST</source>
+      <translation>SELECCIONE ANTES UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE</source>
+      <translation>TODAVÍA OCUPADO. ESPERE A QUE TERMINE LA ÚLTIMA ORDEN</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>THE PROGRAM IS ALREADY NAMED {name}</source>
+      <translation>EL PROGRAMA YA SE LLAMA {name}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>TYPE A NAME FIRST</source>
+      <translation>ESCRIBA PRIMERO UN NOMBRE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>Y: DELETE {name} (STORED VERSIONS REMAIN)   N: KEEP IT</source>
+      <translation>Y: BORRAR {name} (QUEDAN SUS VERSIONES)   N: CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>program {words}</source>
+      <translation>programa {words}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{name} DELETED. ITS STORED VERSIONS REMAIN</source>
+      <translation>{name} BORRADO. SUS VERSIONES GUARDADAS SE CONSERVAN</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{name} IS RUNNING. LET IT FINISH FIRST</source>
+      <translation>{name} ESTÁ EN MARCHA. DEJE QUE TERMINE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST</source>
+      <translation>{name} FUE INTERRUMPIDO. PRIMERO TERMINE O CANCELE LA EJECUCIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{name} WOULD BE HIDDEN. USE A NAME WITHOUT A LEADING PERIOD</source>
+      <translation>{name} QUEDARÍA OCULTO. USE UN NOMBRE SIN PUNTO AL PRINCIPIO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{path} CANNOT BE DELETED: {cause}</source>
+      <translation>NO SE PUEDE BORRAR {path}: {cause}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{path} NO LONGER EXISTS</source>
+      <translation>{path} YA NO EXISTE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
+      <source>{source} CANNOT BE RENAMED: {cause}</source>
+      <translation>NO SE PUEDE CAMBIAR EL NOMBRE DE {source}: {cause}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
       <source>BEST</source>
       <translation>MEJOR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>BEST CYCLE</source>
       <translation>MEJOR CICLO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>COPY</source>
       <translation>COPIAR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>EXPORT</source>
       <translation>EXPORTAR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>LAST CYCLE</source>
       <translation>ÚLTIMO CICLO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>LAST PROOF</source>
       <translation>ÚLTIMA COMPROBACIÓN</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>LAST RUN</source>
       <translation>ÚLTIMA CORRIDA</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>NAME</source>
       <translation>NOMBRE</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>NAME TO FIND OR CREATE</source>
       <translation>NOMBRE A BUSCAR O CREAR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>NEVER PROVED</source>
       <translation>NUNCA COMPROBADO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>NO PROGRAM NAME CONTAINS THIS TEXT. F3: NEW PROGRAM</source>
       <translation>NINGÚN NOMBRE DE PROGRAMA CONTIENE ESE TEXTO. F3: PROGRAMA NUEVO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>PARTS</source>
       <translation>PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>PLANNED TIME</source>
       <translation>TIEMPO PREVISTO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>PROGRAMS  ·  {count}  ·  SORTED BY {order}</source>
       <translation>PROGRAMAS  ·  {count}  ·  ORDENADOS POR {order}</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>PROVED</source>
       <translation>COMPROBADO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>RENAME</source>
       <translation>NOMBRAR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>SIZE</source>
       <translation>TAMAÑO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>SORT</source>
       <translation>ORDENAR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>TYPE</source>
       <translation>TIPO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>TYPE A NAME   BACKSPACE: EDIT   ENTER: ACCEPT   ESC: CANCEL</source>
       <translation>ESCRIBA UN NOMBRE   RETROCESO: EDITAR   ENTER: ACEPTAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>TYPE PART OF A NAME   PAUSE: FEED HOLD   ESC: AUTOMATIC</source>
       <translation>ESCRIBA PARTE DE UN NOMBRE   PAUSA: RETENCIÓN DE AVANCE   ESC: AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>TYPE PART OF A NAME OR USE ARROWS   ENTER: LOAD   ESC: BACK</source>
       <translation>PARTE DEL NOMBRE O FLECHAS   ENTER: CARGAR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>TYPE PART OF NAME   F3: EDIT   PAUSE: FEED HOLD   ESC: BACK</source>
       <translation>ESCRIBA PARTE DEL NOMBRE   F3: EDITAR   PAUSA: RETENCIÓN DE AVANCE   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>USER PROGRAM</source>
       <translation>PROGRAMA DEL USUARIO</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>{listed_count} OF {all_count} PROGRAMS</source>
       <translation>{listed_count} DE {all_count} PROGRAMAS</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT</source>
       <translation>{name} ES UN DIBUJO. F3: HACER UN PROGRAMA A PARTIR DE ÉL</translation>
     </message>
     <message>
-      <location filename="app/programs/program_list.py" />
+      <location filename="app/programs/program_list_model.py" />
       <source>{rows_count} PROGRAMS</source>
       <translation>{rows_count} PROGRAMAS</translation>
     </message>
@@ -13239,32 +13259,12 @@
       <translation>{program}: el control se apagó durante la última ejecución de este programa</translation>
     </message>
     <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>FILES IN {folder} CANNOT BE SAVED TO THE DISK: {cause}</source>
-      <translation>LOS ARCHIVOS DE {folder} NO SE PUEDEN GUARDAR EN EL DISCO: {cause}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>NOT SAVED: TEXT HAS CHARACTERS A PROGRAM FILE CANNOT STORE</source>
-      <translation>NO SE GUARDÓ: EL TEXTO TIENE CARACTERES NO VÁLIDOS EN UN PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>VERIFICATION OF {target} FAILED. USE ANOTHER USB STICK</source>
-      <translation>LA VERIFICACIÓN DE {target} FALLÓ. USE OTRA MEMORIA USB</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
-      <source>{target} CANNOT BE WRITTEN: {cause}</source>
-      <translation>NO SE PUEDE ESCRIBIR {target}: {cause}</translation>
-    </message>
-    <message>
-      <location filename="app/scope/record_shelf.py" />
+      <location filename="app/scope/recording_store.py" />
       <source>alarm time</source>
       <translation>hora de la alarma</translation>
     </message>
     <message>
-      <location filename="app/scope/record_shelf.py" />
+      <location filename="app/scope/recording_store.py" />
       <source>{path} NOT SAVED: DISK FULL. DELETE RECORDS OR PROGRAMS</source>
       <translation>{path} NO SE GUARDÓ: DISCO LLENO. BORRE REGISTROS O PROGRAMAS</translation>
     </message>
@@ -13384,102 +13384,102 @@
       <translation>{item} Hz</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   CTRL+ARROWS: PAN</source>
       <translation>FLECHAS: MOVER CURSOR   TAB: OTRO CURSOR   CTRL+FLECHAS: DESPLAZAR</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>CURVES</source>
       <translation>CURVAS</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>ENTER: NEXT CHOICE   DIGITS: TYPE LEVEL   ESC: BACK</source>
       <translation>ENTER: OPCIÓN SIGUIENTE   CIFRAS: ESCRIBIR NIVEL   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>ENTER: SHOW OR HIDE CURVE   ESC: BACK TO CURVES</source>
       <translation>ENTER: MOSTRAR U OCULTAR CURVA   ESC: VOLVER A LAS CURVAS</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>F2: SAVE THE VIEW   ENTER: OPEN RECORD   ESC: BACK TO CURVES</source>
       <translation>F2: GUARDAR LA VISTA   ENTER: ABRIR REGISTRO   ESC: VOLVER A LAS CURVAS</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>LEVEL</source>
       <translation>NIVEL</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>LEVEL?</source>
       <translation>¿NIVEL?</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>LINE?</source>
       <translation>¿LÍNEA?</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>No scope records yet. F2 saves the current view.</source>
       <translation>Aún no hay registros del osciloscopio. F2 guarda la vista actual.</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>OVERLAY</source>
       <translation>ENCIMA</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>RECORDS</source>
       <translation>REGISTROS</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>SAVED ON</source>
       <translation>GUARDADO EL</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>SIGNAL</source>
       <translation>SEÑAL</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>TRIGGER</source>
       <translation>DISPARO</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>TRIGGER EVENT</source>
       <translation>EVENTO DE DISPARO</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>TRIGGER POSITION IN WINDOW</source>
       <translation>POSICIÓN DEL DISPARO EN LA VENTANA</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>The trigger freezes the curves only once.</source>
       <translation>El disparo congela las curvas una sola vez.</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>UP/DOWN: SELECT CURVE   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH</source>
       <translation>ARRIBA/ABAJO: ELEGIR CURVA   Z: ZOOM   CTRL+FLECHAS: DESPLAZAR, ESTIRAR</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>Velocities and ripple are calculated over the time shown next to their names.</source>
       <translation>Velocidades y rizado se calculan en el tiempo indicado junto a sus nombres.</translation>
     </message>
     <message>
-      <location filename="app/scope/scope_sheets.py" />
+      <location filename="app/scope/scope_tables.py" />
       <source>enter the number of the program line as a whole number, 1 or more</source>
       <translation>escriba el número de la línea del programa como número entero, 1 o más</translation>
     </message>
@@ -13829,11 +13829,6 @@
       <translation>ESPACIO</translation>
     </message>
     <message>
-      <location filename="app/screen/look.py" />
-      <source>catalog turndesk_{language}.qm not found in {folder}</source>
-      <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>
-    </message>
-    <message>
       <location filename="app/screen/main_menu.py" />
       <source>PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC</source>
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
@@ -13984,17 +13979,22 @@
       <translation>{title}  ·  INICIO: LÍNEA ACTUAL</translation>
     </message>
     <message>
-      <location filename="app/screen/run_screen.py" />
+      <location filename="app/screen/screen_startup.py" />
       <source>SCREEN FAULT (MACHINE OK): {name}: {error}</source>
       <translation>FALLA DE LA PANTALLA (MÁQUINA OK): {name}: {error}</translation>
     </message>
     <message>
-      <location filename="app/screen/sheet_panel.py" />
+      <location filename="app/screen/screen_theme.py" />
+      <source>catalog turndesk_{language}.qm not found in {folder}</source>
+      <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/table_panel.py" />
       <source>NEXT ROWS</source>
       <translation>FILAS SIGUIENTES</translation>
     </message>
     <message>
-      <location filename="app/screen/sheet_panel.py" />
+      <location filename="app/screen/table_panel.py" />
       <source>PREVIOUS ROWS</source>
       <translation>FILAS ANTERIORES</translation>
     </message>
@@ -14234,6 +14234,121 @@
       <translation>{start} PARA CONTINUAR</translation>
     </message>
     <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>C AXIS HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL THE TOOL IS FREE, THEN JOG T{tool} OUT</source>
+      <translation>EL EJE C GIRÓ DESDE QUE T{tool} ENTRÓ EN LA PIEZA: GIRE EL HUSILLO A MANO HASTA LIBERAR LA HERRAMIENTA Y LUEGO SAQUE T{tool} EN JOG</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>CALLED FROM LINE</source>
+      <translation>LLAMADA DESDE LA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>CHECK {axis}: NO EARLIER LINE POSITIONS THIS AXIS. IT STAYS AT {position}</source>
+      <translation>REVISE {axis}: NINGUNA LÍNEA ANTERIOR POSICIONA ESTE EJE. SE QUEDA EN {position}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>COLLET CLOSED BUT MUST BE OPEN AT THIS LINE: RUN M13 IN MDI</source>
+      <translation>PINZA CERRADA; EN ESTA LÍNEA DEBE ESTAR ABIERTA: EJECUTE M13 EN MDI</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>COLLET OPEN BUT MUST BE CLOSED AT THIS LINE: RUN M12 IN MDI</source>
+      <translation>PINZA ABIERTA; EN ESTA LÍNEA DEBE ESTAR CERRADA: EJECUTE M12 EN MDI</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>LINE {line} SKIPPED. MATERIAL REMAINS</source>
+      <translation>LÍNEA {line} OMITIDA. QUEDA MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>LINES {first} TO {last} SKIPPED. MATERIAL REMAINS</source>
+      <translation>LÍNEAS {first} A {last} OMITIDAS. QUEDA MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>MACHINE {axis}</source>
+      <translation>MÁQUINA {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>NO SAFE PATH: AXES HAVE NO LIMITS. START FROM THE FIRST LINE</source>
+      <translation>SIN TRAYECTORIA SEGURA: EJES SIN LÍMITES. EMPIECE DESDE LA PRIMERA LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>REPETITION OF LINES {first}-{last}</source>
+      <translation>REPETICIÓN DE LAS LÍNEAS {first}-{last}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>SPINDLE FORWARD</source>
+      <translation>HUSILLO ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>SPINDLE LOCKED AS C AXIS AND TURNED INTO POSITION</source>
+      <translation>HUSILLO BLOQUEADO COMO EJE C Y GIRADO A SU POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>SPINDLE ORIENTED AT {angle}</source>
+      <translation>HUSILLO ORIENTADO A {angle}</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>SPINDLE REVERSE</source>
+      <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>TAP T{tool} IS STILL IN THE THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW</source>
+      <translation>EL MACHO T{tool} SIGUE EN LA ROSCA: GIRE EL HUSILLO A MANO PARA SACARLO Y DEJE QUE Z LO SIGA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>TURNDESK DOES NOT KNOW HOW T{tool} ENTERED THE PART. JOG THE TOOL OUT ALONG ITS ENTRY PATH</source>
+      <translation>TURNDESK NO SABE CÓMO ENTRÓ T{tool} EN LA PIEZA. SAQUE LA HERRAMIENTA EN JOG POR DONDE ENTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>T{tool} IN THE PART: JOG Z+ FIRST, NOT X, UNTIL IT IS CLEAR</source>
+      <translation>T{tool} EN LA PIEZA: MUEVA PRIMERO Z+ EN JOG, NO X, HASTA LIBRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>T{tool} IN THE PART: JOG {x} FIRST, NOT Z, UNTIL IT IS CLEAR</source>
+      <translation>T{tool} EN LA PIEZA: MUEVA PRIMERO {x} EN JOG, NO Z, HASTA LIBRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>T{tool} IS ALREADY CLEAR OF THE PART</source>
+      <translation>T{tool} YA ESTÁ FUERA DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>T{tool} IS IN A THREAD: JOG X FIRST, NOT Z, UNTIL IT IS CLEAR</source>
+      <translation>T{tool} ESTÁ EN UNA ROSCA: MUEVA PRIMERO X EN JOG, NO Z, HASTA LIBRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>T{tool} IS IN THE PART: JOG IT BACK OUT ALONG ITS ENTRY PATH, {x} AND Z+ TOGETHER</source>
+      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA EN JOG POR SU TRAYECTORIA DE ENTRADA, {x} Y Z+ A LA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>{name} ON</source>
+      <translation>{name} ENCENDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/restart_plan.py" />
+      <source>{number} OF {count}</source>
+      <translation>{number} DE {count}</translation>
+    </message>
+    <message>
       <location filename="app/searchto/searchto_model.py" />
       <source>(RETRACT FROM THE PART)</source>
       <translation>(RETIRADA DE LA PIEZA)</translation>
@@ -14327,121 +14442,6 @@
       <location filename="app/searchto/searchto_model.py" />
       <source>{text} NOT FOUND IN ANY LINE</source>
       <translation>{text} NO ESTÁ EN NINGUNA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>C AXIS HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL THE TOOL IS FREE, THEN JOG T{tool} OUT</source>
-      <translation>EL EJE C GIRÓ DESDE QUE T{tool} ENTRÓ EN LA PIEZA: GIRE EL HUSILLO A MANO HASTA LIBERAR LA HERRAMIENTA Y LUEGO SAQUE T{tool} EN JOG</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>CALLED FROM LINE</source>
-      <translation>LLAMADA DESDE LA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>CHECK {axis}: NO EARLIER LINE POSITIONS THIS AXIS. IT STAYS AT {position}</source>
-      <translation>REVISE {axis}: NINGUNA LÍNEA ANTERIOR POSICIONA ESTE EJE. SE QUEDA EN {position}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>COLLET CLOSED BUT MUST BE OPEN AT THIS LINE: RUN M13 IN MDI</source>
-      <translation>PINZA CERRADA; EN ESTA LÍNEA DEBE ESTAR ABIERTA: EJECUTE M13 EN MDI</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>COLLET OPEN BUT MUST BE CLOSED AT THIS LINE: RUN M12 IN MDI</source>
-      <translation>PINZA ABIERTA; EN ESTA LÍNEA DEBE ESTAR CERRADA: EJECUTE M12 EN MDI</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>LINE {line} SKIPPED. MATERIAL REMAINS</source>
-      <translation>LÍNEA {line} OMITIDA. QUEDA MATERIAL</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>LINES {first} TO {last} SKIPPED. MATERIAL REMAINS</source>
-      <translation>LÍNEAS {first} A {last} OMITIDAS. QUEDA MATERIAL</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>MACHINE {axis}</source>
-      <translation>MÁQUINA {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>NO SAFE PATH: AXES HAVE NO LIMITS. START FROM THE FIRST LINE</source>
-      <translation>SIN TRAYECTORIA SEGURA: EJES SIN LÍMITES. EMPIECE DESDE LA PRIMERA LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>REPETITION OF LINES {first}-{last}</source>
-      <translation>REPETICIÓN DE LAS LÍNEAS {first}-{last}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>SPINDLE FORWARD</source>
-      <translation>HUSILLO ADELANTE</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>SPINDLE LOCKED AS C AXIS AND TURNED INTO POSITION</source>
-      <translation>HUSILLO BLOQUEADO COMO EJE C Y GIRADO A SU POSICIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>SPINDLE ORIENTED AT {angle}</source>
-      <translation>HUSILLO ORIENTADO A {angle}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>SPINDLE REVERSE</source>
-      <translation>HUSILLO REVERSA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>TAP T{tool} IS STILL IN THE THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW</source>
-      <translation>EL MACHO T{tool} SIGUE EN LA ROSCA: GIRE EL HUSILLO A MANO PARA SACARLO Y DEJE QUE Z LO SIGA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>TURNDESK DOES NOT KNOW HOW T{tool} ENTERED THE PART. JOG THE TOOL OUT ALONG ITS ENTRY PATH</source>
-      <translation>TURNDESK NO SABE CÓMO ENTRÓ T{tool} EN LA PIEZA. SAQUE LA HERRAMIENTA EN JOG POR DONDE ENTRÓ</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IN THE PART: JOG Z+ FIRST, NOT X, UNTIL IT IS CLEAR</source>
-      <translation>T{tool} EN LA PIEZA: MUEVA PRIMERO Z+ EN JOG, NO X, HASTA LIBRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IN THE PART: JOG {x} FIRST, NOT Z, UNTIL IT IS CLEAR</source>
-      <translation>T{tool} EN LA PIEZA: MUEVA PRIMERO {x} EN JOG, NO Z, HASTA LIBRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IS ALREADY CLEAR OF THE PART</source>
-      <translation>T{tool} YA ESTÁ FUERA DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IS IN A THREAD: JOG X FIRST, NOT Z, UNTIL IT IS CLEAR</source>
-      <translation>T{tool} ESTÁ EN UNA ROSCA: MUEVA PRIMERO X EN JOG, NO Z, HASTA LIBRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IS IN THE PART: JOG IT BACK OUT ALONG ITS ENTRY PATH, {x} AND Z+ TOGETHER</source>
-      <translation>T{tool} ESTÁ EN LA PIEZA: SÁQUELA EN JOG POR SU TRAYECTORIA DE ENTRADA, {x} Y Z+ A LA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>{name} ON</source>
-      <translation>{name} ENCENDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>{number} OF {count}</source>
-      <translation>{number} DE {count}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_state_view.py" />
@@ -14709,162 +14709,162 @@
       <translation>{size} KB</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)</source>
       <translation>EL TRABAJO ACTIVO TIENE SU CUENTA. CÁMBIELA EN TRABAJOS (MAYÚS+F6)</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT</source>
       <translation>ELIJA PRIMERO UN PROGRAMA: CADA PROGRAMA TIENE SU PROPIA CUENTA</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>Cycle Repeat turns off during the cycle that reaches the part target. Enter 0 for no part target.</source>
       <translation>Repetir ciclo se apaga durante el ciclo que alcanza la meta de piezas. Escriba 0 para no tener meta de piezas.</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>MINUTES</source>
       <translation>MINUTOS</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
       <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>NO TARGET</source>
       <translation>SIN META</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>NO TOOL HAS OFFSETS YET</source>
       <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
       <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>PART TARGET</source>
       <translation>META DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>PARTS COUNTER</source>
       <translation>CONTADOR DE PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>PARTS MADE</source>
       <translation>PIEZAS HECHAS</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>PARTS TO GO</source>
       <translation>PIEZAS POR HACER</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT</source>
       <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>REMAINING</source>
       <translation>RESTANTE</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>STOP AT HOW MANY PARTS?</source>
       <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT</source>
       <translation>META DEMASIADO BAJA: YA SE HICIERON {count} PIEZAS. F4: PONER LA CUENTA EN CERO</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>THE COUNT IS ALREADY ZERO</source>
       <translation>LA CUENTA YA ESTÁ EN CERO</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>TIME FOR REMAINING PARTS</source>
       <translation>TIEMPO PARA LAS PIEZAS POR HACER</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
       <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK</source>
       <translation>ESCRIBA EL NÚMERO DE PIEZAS   ENTER: ACEPTAR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
       <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart that skips lines is not counted either.</source>
       <translation>Use SIN CONT en las marchas en vacío; el ciclo entonces no se cuenta como pieza. Tampoco se cuenta un rearranque que omite líneas.</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>WARN</source>
       <translation>AVISO</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>WARN AT %</source>
       <translation>AVISAR AL %</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>insert life in parts and minutes</source>
       <translation>vida de plaquita en piezas y minutos</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>no stop at end of tool life</source>
       <translation>sin paro al agotarse la vida de la herramienta</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>parts made, target, times</source>
       <translation>piezas hechas, meta, tiempos</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>{count} (SET BY JOB)</source>
       <translation>{count} (SEGÚN EL TRABAJO)</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>{count} parts</source>
       <translation>{count} piezas</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>{limit_seconds} min</source>
       <translation>{limit_seconds} min</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>{value} is not a valid number of parts; enter a whole number from 0 to {maximum}</source>
       <translation>{value} no es un número de piezas válido; escriba un entero de 0 a {maximum}</translation>
     </message>
     <message>
-      <location filename="app/special/counters.py" />
+      <location filename="app/special/counter_functions.py" />
       <source>{value} is not a valid number of parts; type a whole number</source>
       <translation>{value} no es un número de piezas válido; escriba un entero</translation>
     </message>
@@ -19044,27 +19044,27 @@
       <translation>el paso</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
+      <location filename="core/extras/drawings/contour_tracing.py" />
       <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
       <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
+      <location filename="core/extras/drawings/contour_tracing.py" />
       <source>the contour crosses the axis {distance} mm from the face. Choose another axis.</source>
       <translation>el contorno cruza el eje a {distance} mm de la cara. Elija otro eje.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
+      <location filename="core/extras/drawings/contour_tracing.py" />
       <source>the contour has no bore at its face. Choose the outside, or another contour.</source>
       <translation>el contorno no tiene agujero en su cara. Elija el exterior u otro contorno.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
+      <location filename="core/extras/drawings/contour_tracing.py" />
       <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
       <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/contour_walk.py" />
+      <location filename="core/extras/drawings/contour_tracing.py" />
       <source>this side has no contour. Choose another contour.</source>
       <translation>este lado no tiene contorno. Elija otro contorno.</translation>
     </message>
@@ -19114,6 +19114,31 @@
       <translation>{path} necesita más memoria de la permitida para un dibujo. Guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>CENTRE LINE {found_count}</source>
+      <translation>LÍNEA DE EJE {found_count}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>LOWEST LINE</source>
+      <translation>LÍNEA MÁS BAJA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
+      <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
+      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
+      <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
+    </message>
+    <message>
       <location filename="core/extras/drawings/drawing_process.py" />
       <source>{path} cannot be read because the process that reads drawings cannot be started.</source>
       <translation>{path} no se puede leer porque no se puede iniciar el proceso que lee los dibujos.</translation>
@@ -19127,31 +19152,6 @@
       <location filename="core/extras/drawings/drawing_process.py" />
       <source>{path} takes more than {seconds} s to read. Save only the contour of the part.</source>
       <translation>{path} tarda más de {seconds} s en leerse. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/drawing_view.py" />
-      <source>CENTRE LINE {found_count}</source>
-      <translation>LÍNEA DE EJE {found_count}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/drawing_view.py" />
-      <source>LOWEST LINE</source>
-      <translation>LÍNEA MÁS BAJA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/drawing_view.py" />
-      <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
-      <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/drawing_view.py" />
-      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
-      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/drawings/drawing_view.py" />
-      <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
-      <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/dxf_reader.py" />
@@ -19254,12 +19254,12 @@
       <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/reader_parts.py" />
+      <location filename="core/extras/drawings/reader_tools.py" />
       <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
       <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/reader_parts.py" />
+      <location filename="core/extras/drawings/reader_tools.py" />
       <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
       <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
     </message>
@@ -19474,17 +19474,17 @@
       <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/stops.py" />
+      <location filename="core/extras/quality/production_stops.py" />
       <source>the end of a cycle is earlier than its start because the clock was set back</source>
       <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/stops.py" />
+      <location filename="core/extras/quality/production_stops.py" />
       <source>the end of a shift must be later than its start; correct the shift times</source>
       <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/stops.py" />
+      <location filename="core/extras/quality/production_stops.py" />
       <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
       <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
     </message>
@@ -19619,6 +19619,21 @@
       <translation>{number} rpm a {number2} por vuelta son {rate} por minuto: borre uno de los valores.</translation>
     </message>
     <message>
+      <location filename="core/extras/shapes/common_fields.py" />
+      <source>A feed of {word} per revolution is more than {maximum}: did you mean F.003?</source>
+      <translation>Un avance de {word} por vuelta es más que {maximum}: ¿quería decir F.003?</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/common_fields.py" />
+      <source>Depth {depth} is more than the flute length of T{number}, which is {length}: use a longer tool.</source>
+      <translation>La profundidad {depth} es más que el largo de estrías de T{number}, que es {length}: use una herramienta más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/common_fields.py" />
+      <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
+      <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
+    </message>
+    <message>
       <location filename="core/extras/shapes/contour.py" />
       <source>A contour needs at least two points: enter the next point.</source>
       <translation>Un contorno necesita al menos dos puntos: introduzca el siguiente.</translation>
@@ -19682,6 +19697,16 @@
       <location filename="core/extras/shapes/cutting_data.py" />
       <source>TOOL STEEL</source>
       <translation>ACERO PARA HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/editor_shape.py" />
+      <source>The tool data of T{tool_word} specifies the type {kind}, but this shape needs {expected}</source>
+      <translation>Los datos de herramienta de T{tool_word} indican el tipo {kind}, pero esta forma necesita {expected}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/editor_shape.py" />
+      <source>{what}: enter another tool.</source>
+      <translation>{what}: introduzca otra herramienta.</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
@@ -20249,16 +20274,6 @@
       <translation>el extremo de la pieza refrentado a escuadra, en una o varias pasadas</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/shape.py" />
-      <source>The tool data of T{tool_word} specifies the type {kind}, but this shape needs {expected}</source>
-      <translation>Los datos de herramienta de T{tool_word} indican el tipo {kind}, pero esta forma necesita {expected}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/shape.py" />
-      <source>{what}: enter another tool.</source>
-      <translation>{what}: introduzca otra herramienta.</translation>
-    </message>
-    <message>
       <location filename="core/extras/shapes/shape_fields.py" />
       <source>{label} is missing: enter a value, or choose one with the arrows.</source>
       <translation>{label} falta: introduzca un valor, o elija uno con las flechas.</translation>
@@ -20549,21 +20564,6 @@
       <translation>cono previo al roscado: diámetro {number} al inicio, {distance} al final</translation>
     </message>
     <message>
-      <location filename="core/extras/shapes/usual_fields.py" />
-      <source>A feed of {word} per revolution is more than {maximum}: did you mean F.003?</source>
-      <translation>Un avance de {word} por vuelta es más que {maximum}: ¿quería decir F.003?</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/usual_fields.py" />
-      <source>Depth {depth} is more than the flute length of T{number}, which is {length}: use a longer tool.</source>
-      <translation>La profundidad {depth} es más que el largo de estrías de T{number}, que es {length}: use una herramienta más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/usual_fields.py" />
-      <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
-      <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
-    </message>
-    <message>
       <location filename="core/extras/sharing/shared_database.py" />
       <source>{named} (TLS certificate not verified)</source>
       <translation>{named} (certificado TLS sin verificar)</translation>
@@ -20574,82 +20574,82 @@
       <translation>{mark} está dañado</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
       <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
       <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
       <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>the database {address}</source>
       <translation>la base de datos {address}</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>the disk of {place} is full; free up space on that disk</source>
       <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>the folder {folder}</source>
       <translation>la carpeta {folder}</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
       <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
       <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
       <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
       <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
       <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} is not set up for shared programs ({why}); specify another location</source>
       <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
       <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
       <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
       <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
     </message>
     <message>
-      <location filename="core/extras/sharing/shared_place.py" />
+      <location filename="core/extras/sharing/shared_location.py" />
       <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
       <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
@@ -21099,66 +21099,6 @@
       <translation>se fresa de nuevo toda la cajera, también la zona que ya vació la herramienta de desbaste previo (Q18).</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>A vertical arc inside an SL cycle contour</source>
-      <translation>Un arco vertical dentro de un contorno de ciclos SL</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>Contour {figure} ends {gap} mm from its start.</source>
-      <translation>El contorno {figure} termina a {gap} mm de su inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>Correct the contours.</source>
-      <translation>Corrija los contornos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>Correct the entries named in the message.</source>
-      <translation>Corrija los datos que indica el mensaje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>Cycle 14 lists only islands and no pocket, so there is nothing to clear.</source>
-      <translation>El ciclo 14 sólo contiene islas y ninguna cajera, así que no hay nada que vaciar.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>End the contour at its start point.</source>
-      <translation>Termine el contorno en su punto de inicio.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>No machining side is programmed for contour {figure}.</source>
-      <translation>No hay ningún lado de mecanizado programado para el contorno {figure}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>Program the outer contour clockwise with RR.</source>
-      <translation>Programe el contorno exterior en sentido horario con RR.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>The contours cannot be combined: {problem}.</source>
-      <translation>Los contornos no se pueden combinar: {problem}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>The contours do not enclose an area because the islands cover the pockets.</source>
-      <translation>Los contornos no encierran ninguna superficie porque las islas cubren las cajeras.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>Write RL or RR in the first block of the contour.</source>
-      <translation>Escriba RL o RR en el primer bloque del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles/contour_figures.py" />
-      <source>{form} inside an SL cycle contour</source>
-      <translation>{form} dentro de un contorno de ciclos SL</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/klartext/cycles/cycle_calls.py" />
       <source> (cylinder surface, {kind})</source>
       <translation> (superficie cilíndrica, {kind})</translation>
@@ -21480,6 +21420,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
+      <source>Correct the entries named in the message.</source>
+      <translation>Corrija los datos que indica el mensaje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/hole_cycles.py" />
       <source>Cycle 204 moves through the hole with the spindle oriented, but {unoriented}.</source>
       <translation>El ciclo 204 pasa por el agujero con el husillo orientado, pero {unoriented}.</translation>
     </message>
@@ -21707,6 +21652,61 @@
       <location filename="core/interpreter/klartext/cycles/point_patterns.py" />
       <source>{form}: {number} is not a valid number of points.</source>
       <translation>{form}: {number} no es un número de puntos válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>A vertical arc inside an SL cycle contour</source>
+      <translation>Un arco vertical dentro de un contorno de ciclos SL</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>Contour {figure} ends {gap} mm from its start.</source>
+      <translation>El contorno {figure} termina a {gap} mm de su inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>Correct the contours.</source>
+      <translation>Corrija los contornos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>Cycle 14 lists only islands and no pocket, so there is nothing to clear.</source>
+      <translation>El ciclo 14 sólo contiene islas y ninguna cajera, así que no hay nada que vaciar.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>End the contour at its start point.</source>
+      <translation>Termine el contorno en su punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>No machining side is programmed for contour {figure}.</source>
+      <translation>No hay ningún lado de mecanizado programado para el contorno {figure}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>Program the outer contour clockwise with RR.</source>
+      <translation>Programe el contorno exterior en sentido horario con RR.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>The contours cannot be combined: {problem}.</source>
+      <translation>Los contornos no se pueden combinar: {problem}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>The contours do not enclose an area because the islands cover the pockets.</source>
+      <translation>Los contornos no encierran ninguna superficie porque las islas cubren las cajeras.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>Write RL or RR in the first block of the contour.</source>
+      <translation>Escriba RL o RR en el primer bloque del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles/sl_contours.py" />
+      <source>{form} inside an SL cycle contour</source>
+      <translation>{form} dentro de un contorno de ciclos SL</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/flow/blocks_without_motion.py" />
@@ -24234,6 +24234,16 @@
       <translation>líneas {first} a {last}</translation>
     </message>
     <message>
+      <location filename="core/interpreter/shared/c_turn_at_centerline.py" />
+      <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
+      <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/shared/c_turn_at_centerline.py" />
+      <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
+      <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/shared/control_flow.py" />
       <source>{source} line {line}: {value}</source>
       <translation>{source} línea {line}: {value}</translation>
@@ -24382,16 +24392,6 @@
       <location filename="core/interpreter/shared/machine_requirements.py" />
       <source>write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if the code does nothing on this machine</source>
       <translation>escriba {code} = {{ output = "NAME", on = true }} en [m_codes] del archivo de máquina, donde NAME es una salida de [io.out], o {code2} = {{ ignored = true }} si el código no hace nada en esta máquina</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/turn_at_axis.py" />
-      <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
-      <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/shared/turn_at_axis.py" />
-      <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
-      <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
@@ -29084,6 +29084,121 @@
       <translation>IF sin salto</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>A CASE branch needs a jump</source>
+      <translation>Una rama de CASE necesita un salto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>A jump needs a label</source>
+      <translation>Un salto necesita una etiqueta</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>CASE has no branch</source>
+      <translation>CASE no tiene ninguna rama</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>CASE needs OF</source>
+      <translation>CASE necesita OF</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>DEF needs REAL, INT, BOOL or STRING</source>
+      <translation>DEF necesita REAL, INT, BOOL o STRING</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>DEF needs a variable name</source>
+      <translation>DEF necesita un nombre de variable</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>FOR needs TO</source>
+      <translation>FOR necesita TO</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>FOR needs a variable and =</source>
+      <translation>FOR necesita una variable y =</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>MSG needs its text in parentheses</source>
+      <translation>MSG necesita su texto entre paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Put the extra text in a separate block.</source>
+      <translation>Ponga el texto sobrante en un bloque aparte.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>SETAL needs a number in parentheses</source>
+      <translation>SETAL necesita un número entre paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Unexpected text after {steering}</source>
+      <translation>Texto inesperado después de {steering}</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Use REAL, INT, BOOL or STRING.</source>
+      <translation>Use REAL, INT, BOOL o STRING.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Variables of type {name} are not supported</source>
+      <translation>Las variables de tipo {name} no se admiten</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write MSG("TEXT").</source>
+      <translation>Escriba MSG("TEXT").</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write a label, or N with a block number.</source>
+      <translation>Escriba una etiqueta, o N con un número de bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write, for example, 1 GOTOF LABEL.</source>
+      <translation>Escriba, por ejemplo, 1 GOTOF LABEL.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</source>
+      <translation>Escriba, por ejemplo, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write, for example, CASE R1 OF 1 GOTOF A.</source>
+      <translation>Escriba, por ejemplo, CASE R1 OF 1 GOTOF A.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write, for example, DEF REAL NAME = 0.</source>
+      <translation>Escriba, por ejemplo, DEF REAL NAME = 0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write, for example, FOR R1 = 1 TO 5.</source>
+      <translation>Escriba, por ejemplo, FOR R1 = 1 TO 5.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>Write, for example, SETAL(65000).</source>
+      <translation>Escriba, por ejemplo, SETAL(65000).</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/control_statements.py" />
+      <source>{steering} needs a subprogram name</source>
+      <translation>{steering} necesita un nombre de subprograma</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/iso_words.py" />
       <source>#{word}: on this control, variables are R parameters.</source>
       <translation>#{word}: en este control, las variables son parámetros R.</translation>
@@ -29199,121 +29314,6 @@
       <translation>{word}: en este control, el nombre del archivo es el nombre del programa.</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>A CASE branch needs a jump</source>
-      <translation>Una rama de CASE necesita un salto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>A jump needs a label</source>
-      <translation>Un salto necesita una etiqueta</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>CASE has no branch</source>
-      <translation>CASE no tiene ninguna rama</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>CASE needs OF</source>
-      <translation>CASE necesita OF</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>DEF needs REAL, INT, BOOL or STRING</source>
-      <translation>DEF necesita REAL, INT, BOOL o STRING</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>DEF needs a variable name</source>
-      <translation>DEF necesita un nombre de variable</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>FOR needs TO</source>
-      <translation>FOR necesita TO</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>FOR needs a variable and =</source>
-      <translation>FOR necesita una variable y =</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>MSG needs its text in parentheses</source>
-      <translation>MSG necesita su texto entre paréntesis</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Put the extra text in a separate block.</source>
-      <translation>Ponga el texto sobrante en un bloque aparte.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>SETAL needs a number in parentheses</source>
-      <translation>SETAL necesita un número entre paréntesis</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Unexpected text after {steering}</source>
-      <translation>Texto inesperado después de {steering}</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Use REAL, INT, BOOL or STRING.</source>
-      <translation>Use REAL, INT, BOOL o STRING.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Variables of type {name} are not supported</source>
-      <translation>Las variables de tipo {name} no se admiten</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write MSG("TEXT").</source>
-      <translation>Escriba MSG("TEXT").</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write a label, or N with a block number.</source>
-      <translation>Escriba una etiqueta, o N con un número de bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write, for example, 1 GOTOF LABEL.</source>
-      <translation>Escriba, por ejemplo, 1 GOTOF LABEL.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</source>
-      <translation>Escriba, por ejemplo, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write, for example, CASE R1 OF 1 GOTOF A.</source>
-      <translation>Escriba, por ejemplo, CASE R1 OF 1 GOTOF A.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write, for example, DEF REAL NAME = 0.</source>
-      <translation>Escriba, por ejemplo, DEF REAL NAME = 0.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write, for example, FOR R1 = 1 TO 5.</source>
-      <translation>Escriba, por ejemplo, FOR R1 = 1 TO 5.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write, for example, SETAL(65000).</source>
-      <translation>Escriba, por ejemplo, SETAL(65000).</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>{steering} needs a subprogram name</source>
-      <translation>{steering} necesita un nombre de subprograma</translation>
-    </message>
-    <message>
       <location filename="core/language/sinumerik/sinumerik_alarms.py" />
       <source>Alarm {code}: {where}: {what}</source>
       <translation>Alarma {code}: {where}: {what}</translation>
@@ -29329,7 +29329,7 @@
       <translation>{place} eje {axis}</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/sinumerik_colours.py" />
+      <location filename="core/language/sinumerik/sinumerik_colors.py" />
       <source>in line</source>
       <translation>en la línea</translation>
     </message>
@@ -31424,44 +31424,44 @@
       <translation>use 'turndesk prove --stock' para programas más largos</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_proof.py" />
+      <source>with {moves} moves, the part cannot be computed unless stock is specified</source>
+      <translation>con {moves} movimientos, la pieza no se puede calcular si no se especifica el material en bruto</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_simulation.py" />
       <source>collisions with the chuck and jaws, and stock whip (these checks require a diameter in [clamping] and a stick-out)</source>
       <translation>choques con plato y garras, y cabeceo del material en bruto (estas comprobaciones requieren un diámetro en [clamping] y un voladizo)</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_simulation.py" />
       <source>cuts made by {tool} with the spindle stopped, from line {line} on</source>
       <translation>cortes de {tool} con el husillo parado, a partir de la línea {line}</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_simulation.py" />
       <source>maximum chuck speed (unknown: no max_rpm in [clamping])</source>
       <translation>velocidad máxima del plato (desconocida: sin max_rpm en [clamping])</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_simulation.py" />
       <source>no stock could be assumed: feed moves cut in front of Z0, so the stock face cannot be at Z0</source>
       <translation>no se pudo suponer un material en bruto: hay avances que cortan delante de Z0, así que la cara del material no puede estar en Z0</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_simulation.py" />
       <source>{short}: maximum tool depth (unknown: no flute length defined)</source>
       <translation>{short}: profundidad máxima de la herramienta (desconocida: sin largo de hélice definido)</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_simulation.py" />
       <source>{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)</source>
       <translation>{tools}: choques en la placa mientras corta una herramienta vecina (sin forma de herramienta definida)</translation>
     </message>
     <message>
-      <location filename="core/proving/part_making.py" />
+      <location filename="core/proving/part_simulation.py" />
       <source>{without}: tool holder, edge length and hand of the tool not defined</source>
       <translation>{without}: portaherramientas, largo de filo y mano de la herramienta sin definir</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>with {moves} moves, the part cannot be computed unless stock is specified</source>
-      <translation>con {moves} movimientos, la pieza no se puede calcular si no se especifica el material en bruto</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -32059,21 +32059,6 @@
       <translation>el corrector de {number} nunca se fijó; tome referencia en X y Z</translation>
     </message>
     <message>
-      <location filename="core/store/people.py" />
-      <source>a name must have 1 to {name_longest} characters</source>
-      <translation>un nombre debe tener de 1 a {name_longest} caracteres</translation>
-    </message>
-    <message>
-      <location filename="core/store/people.py" />
-      <source>the list of users must contain one user with SERVICE level who can add the others; add this user first</source>
-      <translation>la lista de usuarios debe contener un usuario de nivel SERVICIO que pueda añadir a los demás; añada antes a ese usuario</translation>
-    </message>
-    <message>
-      <location filename="core/store/people.py" />
-      <source>{name} is not in the list of users</source>
-      <translation>{name} no está en la lista de usuarios</translation>
-    </message>
-    <message>
       <location filename="core/store/production/job_queue.py" />
       <source>a job must have 1 to {most_parts} parts, not {expected}</source>
       <translation>un trabajo debe tener de 1 a {most_parts} piezas, no {expected}</translation>
@@ -32347,6 +32332,21 @@
       <location filename="core/store/store_writer.py" />
       <source>{dropped} events were lost because memory was full while no data could be saved</source>
       <translation>{dropped} eventos se perdieron porque la memoria estaba llena mientras no se podían guardar datos</translation>
+    </message>
+    <message>
+      <location filename="core/store/user_records.py" />
+      <source>a name must have 1 to {name_longest} characters</source>
+      <translation>un nombre debe tener de 1 a {name_longest} caracteres</translation>
+    </message>
+    <message>
+      <location filename="core/store/user_records.py" />
+      <source>the list of users must contain one user with SERVICE level who can add the others; add this user first</source>
+      <translation>la lista de usuarios debe contener un usuario de nivel SERVICIO que pueda añadir a los demás; añada antes a ese usuario</translation>
+    </message>
+    <message>
+      <location filename="core/store/user_records.py" />
+      <source>{name} is not in the list of users</source>
+      <translation>{name} no está en la lista de usuarios</translation>
     </message>
   </context>
 </TS>

@@ -13,8 +13,8 @@ from typing import Literal, get_args, get_origin
 
 import pytest
 
-from core.alarms import CATALOGUE, SUBJECTS, Entry, Reaction
-from core.alarms.alarm_entry import Code, OwnCode
+from core.alarms import CATALOGUE, SUBJECTS, AlarmEntry, Reaction
+from core.alarms.alarm_entry import AlarmCode, ControlAlarmCode
 from core.faults import FaultCode
 
 pytestmark = pytest.mark.long
@@ -32,8 +32,8 @@ def codes_of(alias: object) -> set[str]:
 
 
 def test_every_code_has_its_entry_and_every_entry_a_code() -> None:
-    assert codes_of(Code) == codes_of(FaultCode) | codes_of(OwnCode) == set(CATALOGUE)
-    assert not codes_of(FaultCode) & codes_of(OwnCode)
+    assert codes_of(AlarmCode) == codes_of(FaultCode) | codes_of(ControlAlarmCode) == set(CATALOGUE)
+    assert not codes_of(FaultCode) & codes_of(ControlAlarmCode)
 
 
 def test_no_code_and_no_number_is_given_twice() -> None:
@@ -56,7 +56,7 @@ def test_numbers_that_were_there_before_stay() -> None:
 
 
 @ENTRIES
-def test_an_entry_says_what_why_and_what_to_do(code: Code) -> None:
+def test_an_entry_says_what_why_and_what_to_do(code: AlarmCode) -> None:
     entry = CATALOGUE[code]
     assert [each for each in CATALOGUE.values() if each.number == entry.number] == [entry]
     assert 100 <= entry.number <= 999
@@ -69,7 +69,7 @@ def test_an_entry_says_what_why_and_what_to_do(code: Code) -> None:
 
 
 @ENTRIES
-def test_the_remedy_names_the_key_that_goes_on(code: Code) -> None:
+def test_the_remedy_names_the_key_that_goes_on(code: AlarmCode) -> None:
     """What stops with an alarm is acknowledged by Reset, what holds goes on by Cycle Start."""
     entry = CATALOGUE[code]
     if entry.reaction is Reaction.HOLD:
@@ -135,4 +135,4 @@ def test_an_alarm_is_made_in_one_place() -> None:
 
 
 def test_a_plain_entry_is_whole() -> None:
-    assert Entry(999, "text", ("cause",), "remedy", Reaction.STOP).tells is False
+    assert AlarmEntry(999, "text", ("cause",), "remedy", Reaction.STOP).shows_detail is False

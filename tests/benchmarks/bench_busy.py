@@ -27,9 +27,9 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, QObject
 
-from app.cli.main import console
+from app.cli.main import run_console
 from app.compose.control.control_client import ControlClient
-from app.screen import run_screen
+from app.screen import screen_startup
 from core.store.store import Store
 from tests.benchmarks.footprint import keep_result
 from tests.stories.x11 import Server, server
@@ -81,7 +81,7 @@ while True:
 
 def screen(words: list[str]) -> int:
     """The screen as it is; each change of state and each second of painting is a line of JSON."""
-    take, application = ControlClient._take, run_screen._application
+    take, application = ControlClient._take, screen_startup._application
     before: list[object] = [None]
 
     def told(client: ControlClient, message: object, events: Any) -> None:
@@ -90,13 +90,13 @@ def screen(words: list[str]) -> int:
         now = (
             shot.state.value,
             shot.parts,
-            shot.hold_later,
+            shot.hold_delay_s,
             shot.underruns,
             [each.number for each in shot.alarms],
         )
         if now != before[0]:
             before[0] = now
-            seconds = client.hello.zero + shot.t
+            seconds = client.hello_message.clock_zero_s + shot.t
             names = ("state", "parts", "later", "underruns", "alarms")
             say({"t": seconds, **dict(zip(names, now, strict=True))})
 
@@ -123,9 +123,9 @@ def screen(words: list[str]) -> int:
         return app
 
     ControlClient._take = told  # type: ignore[method-assign, assignment]
-    run_screen._application = watched
+    screen_startup._application = watched
     sys.argv[1:] = words
-    return console()
+    return run_console()
 
 
 def say(line: dict[str, object]) -> None:

@@ -12,21 +12,21 @@ from contextlib import contextmanager
 from dataclasses import replace
 from unittest import mock
 
-from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.part.cutter import Cutter
 from core.part.stock import Clamping
 from core.part.tool_shape import ToolKind, ToolShape
-from core.part.turned_part import NOTHING, Cut
-from core.proving.checks.cut_checks import AirChecks
+from core.part.turned_part import NO_CUT, Cut
+from core.proving.checks.cut_checks import AirCutChecks
 from core.proving.checks.edge_checks import EdgeChecks
 from core.proving.checks.part_findings import PartFindings
 from core.proving.checks.thread_checks import ThreadChecks
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from core.proving.prove_program import prove
 
 ROUNDS = 15
@@ -42,12 +42,12 @@ def _none(*_args: object, **_words: object) -> tuple[()]:
 
 
 def _no_metal(*_args: object) -> Cut:
-    return NOTHING
+    return NO_CUT
 
 
 # What is left out, by the name of the row; a holder is that of each move.
 CHECKS: dict[str, tuple[tuple[type, str, object], ...]] = {
-    "slips: what meets no metal": ((AirChecks, "feed", _none), (AirChecks, "rapid", _none)),
+    "slips: what meets no metal": ((AirCutChecks, "feed", _none), (AirCutChecks, "rapid", _none)),
     "edge: side, feed, direction": ((EdgeChecks, "look", _none),),
     "threads and taps": ((ThreadChecks, "look", _none), (ThreadChecks, "before", _none)),
     "holder into metal": ((Cutter, "strikes", _no_metal),),
@@ -89,12 +89,12 @@ def main() -> int:
     """Prints the table."""
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7 - 60.0 * (n - 1), -50.8) for n in SHAPES}
-    setup = setup_for(machine, tools=tools, secondary={})
-    known = known_part(machine, tools, SHAPES)
+    setup = create_setup(machine, tool_offsets=tools, secondary_offsets={})
+    known = read_known_part(machine, tools, SHAPES)
     setting = replace(known, clamping=Clamping(100.0, 40.0, 10.0, 60.0, 5000.0))
-    text = Source("CHECKS", program())
+    text = ProgramSource("CHECKS", program())
 
-    def proved(by: PartSetting) -> float:
+    def proved(by: PartSettings) -> float:
         return spent(lambda: prove_with_part(text, setup, machine, by))
 
     plain, whole = spent(lambda: prove(text, setup, machine)), proved(setting)

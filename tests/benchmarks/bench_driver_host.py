@@ -38,18 +38,23 @@ import numpy as np
 from can.interfaces.socketcan.socketcan import build_can_frame, dissect_can_frame
 
 import resources
-from app.compose.backends.canopen_backend import canopen_peers
-from app.compose.backends.driver_host_process import driven
-from app.compose.backends.played_machine import play_peers
+from app.compose.backends.canopen_backend import create_canopen_peers
+from app.compose.backends.driver_host_process import create_host_drivers
+from app.compose.backends.simulated_devices import simulate_devices
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError, FloatArray, MachinePorts, Segments
 from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
-from drivers.driver_host.host_line import Line, SocketLink
-from drivers.driver_host.host_loop import PRIORITY, keep_memory, real_time, serve
-from drivers.driver_host.host_messages import NOTHING, Inbox, Message, packed
-from drivers.driver_host.host_ports import host_ports
-from drivers.setpoint_queue import straight
-from drivers.waiting import RealClock
+from drivers.driver_host.host_connection import HostConnection, SocketLink
+from drivers.driver_host.host_loop import (
+    REAL_TIME_PRIORITY,
+    lock_host_memory,
+    request_real_time,
+    run_driver_host,
+)
+from drivers.driver_host.host_messages import NO_NUMBERS, Message, MessageDecoder, encode_message
+from drivers.driver_host.host_ports import create_host_ports
+from drivers.setpoint_queue import plan_straight_move
+from drivers.wakeups import RealClock
 from tests.benchmarks.footprint import keep_result
 
 GROUP = "239.74.163.2"
@@ -133,29 +138,32 @@ def host(arguments: list[str]) -> None:
     on_pair(int(bus))
     late: list[tuple[float, float]] = []
     gaps: list[float] = []
-    sent, waited = SyncSchedule.sent, CyclicFollower.waited
+    sent, waited = SyncSchedule.record_sync, CyclicFollower.delay_path
 
     def noted(schedule: SyncSchedule, now: float) -> float:
-        late.append((schedule.due + float(zero), now - schedule.due))
+        late.append((schedule.due_time_s + float(zero), now - schedule.due_time_s))
         return sent(schedule, now)
 
     def missed(follower: CyclicFollower, away: float) -> None:
-        before = follower.gaps
+        before = follower.gap_count
         waited(follower, away)
-        if follower.gaps > before:
+        if follower.gap_count > before:
             gaps.append(away)
 
     if fifo == "yes":
-        real_time()
-    keep_memory()
-    owned = driven(load_machine(Path(file)), RealClock(float(zero)))
+        request_real_time()
+    lock_host_memory()
+    owned = create_host_drivers(load_machine(Path(file)), RealClock(float(zero)))
     gc.freeze()
     late.clear()
     sock = socket.socket(fileno=int(descriptor))
-    sock.sendall(packed(Message({"ready": True}, NOTHING)))
+    sock.sendall(encode_message(Message({"ready": True}, NO_NUMBERS)))
     begun, used = time.monotonic(), time.process_time()
-    with mock.patch.object(SyncSchedule, "sent", noted), mock.patch.object(CyclicFollower, "waited", missed):
-        serve(sock, owned, [])
+    with (
+        mock.patch.object(SyncSchedule, "record_sync", noted),
+        mock.patch.object(CyclicFollower, "delay_path", missed),
+    ):
+        run_driver_host(sock, owned, [])
     share = (time.process_time() - used) / (time.monotonic() - begun)
     Path(out).write_text(json.dumps({"late": late, "gaps": gaps, "share": share}))
 
@@ -170,15 +178,15 @@ def far_end(arguments: list[str]) -> None:
     """Drives and terminals, until they are killed."""
     file, bus = arguments
     on_pair(int(bus))
-    play_peers(load_machine(Path(file)), lambda: True, say, tuple, canopen_peers)
+    simulate_devices(load_machine(Path(file)), lambda: True, say, tuple, create_canopen_peers)
 
 
 def witness(core: int, out: str) -> None:
     """How late a process is that only waits, until its input ends."""
     with contextlib.suppress(OSError):
         os.sched_setaffinity(0, {core})
-    real_time(PRIORITY + 10)
-    keep_memory()
+    request_real_time(REAL_TIME_PRIORITY + 10)
+    lock_host_memory()
     say("ready")
     due, late = time.monotonic(), []
     while not select.select([sys.stdin], [], [], 0.0)[0]:
@@ -236,7 +244,9 @@ def to_and_fro(ports: MachinePorts, seconds: float) -> str:
             rest = axes.demand_at(axes.horizon())[0]
             start = axes.now() + axes.commit + 0.1
             try:
-                axes.splice(in_pieces(straight(start, rest, 0, to=to, speed=SPEED, accel=ACCEL)))
+                axes.splice(
+                    in_pieces(plan_straight_move(start, rest, 0, target=to, speed=SPEED, accel=ACCEL))
+                )
             except DriverError as error:
                 if error.code != "late":  # this process has real-time priority no more than the control has
                     raise
@@ -286,16 +296,16 @@ def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: boo
     ours, theirs = socket.socketpair()
     clock = RealClock()
     how = "yes" if fifo else "no"
-    words = [str(theirs.fileno()), repr(clock.zero), str(file), how, str(out), str(near)]
+    words = [str(theirs.fileno()), repr(clock.origin_s), str(file), how, str(out), str(near)]
     child = started(["--driver-host", *words], theirs.fileno(), near)
     for each in (theirs, *(pair or ())):
         each.close()
     ours.settimeout(60.0)
-    inbox = Inbox()
-    while not list(inbox.feed(ours.recv(1 << 16))):
+    inbox = MessageDecoder()
+    while not list(inbox.decode(ours.recv(1 << 16))):
         pass
     try:
-        ports = host_ports(Line(SocketLink(ours), clock))
+        ports = create_host_ports(HostConnection(SocketLink(ours), clock))
         with load(busy), witnesses(folder) as seen:
             fault = to_and_fro(ports, seconds)
     except DriverError as error:

@@ -21,11 +21,11 @@ from PySide6.QtCore import QEventLoop, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from app.compose.program_proving import get_samples_folder
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
-from app.screen.look import DARK, Look, dress, load_fonts
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 
 LINES = 2000
@@ -49,20 +49,20 @@ def main() -> None:
     """Print the table."""
     app = QApplication(sys.argv[:1])
     load_fonts()
-    dress(DARK)
+    style_application(DARK_PALETTE)
     with tempfile.TemporaryDirectory() as home:
         os.environ["TURNDESK_HOME"] = home
         folder = Path(home) / "programs"
         folder.mkdir()
         (folder / "long.nc").write_text(program())
-        desk = build_desk(None, lambda: read_offsets(samples() / "offsets.toml"))
-        window = MainWindow(Look(DARK))
+        desk = build_desk(None, lambda: read_offsets(get_samples_folder() / "offsets.toml"))
+        window = MainWindow(ScreenTheme(DARK_PALETTE))
         window.resize(1920, 1080)
         window.show()
-        window.open_desk(desk)
+        window.show_model(desk)
         window.activateWindow()
         _measured(app, window)
-        window.put_away()
+        window.close_silently()
         app.processEvents()
         desk.close()
 
@@ -70,13 +70,18 @@ def main() -> None:
 def _measured(app: QApplication, window: MainWindow) -> None:
     assert window.frame is not None
     desk = window.frame.desk
-    desk.programs.choose("long")
-    desk.session.settled(60)
-    window.press("F3")
-    page = window.frame.page
+    desk.program_choice.load_by_name("long")
+    desk.program_loader.wait_until_loaded(60)
+    window.press_key("F3")
+    page = window.frame.current_page
     assert isinstance(page, EditorPage)
-    _until(app, lambda: page.editor.proof.now.picture is not None and page.field.blockCount() > LINES - 5)
-    page.go_to(LINES // 2, 1)
+    _until(
+        app,
+        lambda: (
+            page.editor.live_proof.current.picture is not None and page.text_field.blockCount() > LINES - 5
+        ),
+    )
+    page.move_cursor_to(LINES // 2, 1)
     keys, found, drawn = [], [], []
     for _ in range(ROUNDS):
         for key in KEYS:
@@ -90,17 +95,17 @@ def _measured(app: QApplication, window: MainWindow) -> None:
 
 def _key(app: QApplication, page: EditorPage, key: str) -> tuple[float, float, float]:
     """Press a key; seconds it took, until its findings and until its path were on the screen."""
-    checker = page.editor.proof
-    before, old = checker.now.number, page.path.picture
+    checker = page.editor.live_proof
+    before, old = checker.current.number, page.path_view.picture
     begun = time.perf_counter()
     if key == "\b":
-        QTest.keyClick(page.field, Qt.Key.Key_Backspace)
+        QTest.keyClick(page.text_field, Qt.Key.Key_Backspace)
     else:
-        QTest.keyClicks(page.field, key)
+        QTest.keyClicks(page.text_field, key)
     took = time.perf_counter() - begun
-    _until(app, lambda: page.findings.findings.number > before)
+    _until(app, lambda: page.finding_list.findings.number > before)
     at = time.perf_counter() - begun
-    _until(app, lambda: page.path.picture is not old)
+    _until(app, lambda: page.path_view.picture is not old)
     path = time.perf_counter() - begun
     _until(app, lambda: time.perf_counter() - begun > TYPIST)
     return took, at, path

@@ -10,10 +10,10 @@ import resource
 import sys
 import time
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
@@ -24,25 +24,25 @@ MACHINES = {
     Dialect.KLARTEXT: ("ac-table-mill", "fuzz.h"),
     Dialect.SINUMERIK: ("sinumerik-modulo", "fuzz.mpf"),
 }
-SECONDARY = {1: SecondaryOffset(-0.381, -0.381, 0.381), 3: SecondaryOffset(r=0.2)}
+SECONDARY = {1: SecondaryOffset(-0.381, -0.381, 0.381), 3: SecondaryOffset(nose_radius=0.2)}
 
 
 def main() -> None:
     """Fuzz each language for its share of the time."""
     minutes = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
     for dialect, (machine, name) in MACHINES.items():
-        _fuzz(dialect, shipped_machine(machine), name, minutes * 60 / len(MACHINES))
+        _fuzz(dialect, load_shipped_machine(machine), name, minutes * 60 / len(MACHINES))
 
 
 def _fuzz(dialect: Dialect, machine: Machine, name: str, seconds: float) -> None:
-    setup = setup_for(machine, tools=OFFSETS, secondary=SECONDARY)
+    setup = create_setup(machine, tool_offsets=OFFSETS, secondary_offsets=SECONDARY)
     seed, end, slowest, accepted = 0, time.monotonic() + seconds, (0.0, 0), 0
     while time.monotonic() < end:
         seed += 1
         text = mutated(random.Random(seed), dialect)
         begun = time.perf_counter()
         try:
-            report = prove(Source(name, text), setup, machine)
+            report = prove(ProgramSource(name, text), setup, machine)
         except Exception:
             sys.stdout.write(f"{dialect}, seed {seed}:\n{text}\n")
             raise

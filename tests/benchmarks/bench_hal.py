@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
-from app.compose.backends.hal_backend import hal_config
+from app.compose.backends.hal_backend import create_hal_config
 from app.compose.machine.machine_files import load_machine
-from drivers.hal.bridge.packets import Head, number
+from drivers.hal.bridge.packets import PacketHead, number
 from drivers.hal.hal_machine import HalMachine
 from drivers.hal.hal_session import HalSession
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.drivers.hal.halrun import folder_with_halrun, one_session
 from tests.drivers.hal.lathes import lathe
 
@@ -52,24 +52,24 @@ def _compute() -> None:
         sum(range(100_000))
 
 
-def _heads(folder: Path, seconds: float) -> list[Head]:
+def _heads(folder: Path, seconds: float) -> list[PacketHead]:
     """What the bridge told, report by report."""
-    config, clock = hal_config(load_machine(lathe(folder))), RealClock()
-    machine = HalMachine(config, clock, lambda: HalSession(config, clock.zero))
-    found: list[Head] = []
+    config, clock = create_hal_config(load_machine(lathe(folder))), RealClock()
+    machine = HalMachine(config, clock, lambda: HalSession(config, clock.origin_s))
+    found: list[PacketHead] = []
     try:
         machine.axes.enable(True)
         end = clock.now() + seconds
         while clock.now() < end:
-            machine.tick()
-            found.append(machine.link.told)
+            machine.run_cycle()
+            found.append(machine.bridge_link.last_report)
             clock.sleep_until(clock.now() + TICK)
     finally:
         machine.close()
     return found
 
 
-def _report(heads: list[Head]) -> None:
+def _report(heads: list[PacketHead]) -> None:
     for word, key, scale in (
         ("bridge late, ms", "late", 1e3),
         ("clocks apart, ms", "off_by", 1e3),

@@ -11,15 +11,15 @@ import statistics
 import sys
 import time
 
-from app.compose.backends.simulated_backend import simulated
-from app.compose.machine.machine_setup import read_machine, setup_for
+from app.compose.backends.simulated_backend import create_simulation
+from app.compose.machine.machine_setup import create_setup, read_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
-from drivers.waiting import StepClock
+from core.language.source import ProgramSource
+from drivers.wakeups import ManualClock
 
 TICK = 0.01
 PRESSES = 20
@@ -40,11 +40,11 @@ class Machine:
 
     def __init__(self, text: str) -> None:
         self.machine = read_machine(None)
-        self.clock = StepClock()
-        self.ports = simulated(self.machine, self.clock).ports
+        self.clock = ManualClock()
+        self.ports = create_simulation(self.machine, self.clock).ports
         self.executor = Executor(self.machine, self.ports, lambda _: None)
-        setup = setup_for(self.machine, tools={1: ToolOffset()}, secondary={})
-        self.job = make_job(Source("bench", text), setup)
+        setup = create_setup(self.machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+        self.job = make_job(ProgramSource("bench", text), setup)
         self.tick()
         self.executor.post(EnableDrives())
         self.tick()
@@ -55,7 +55,7 @@ class Machine:
     def tick(self) -> float:
         """One tick; the seconds it took."""
         begun = time.perf_counter()
-        self.executor.tick()
+        self.executor.run_tick()
         took = time.perf_counter() - begun
         self.clock.advance(TICK)
         return took
@@ -67,7 +67,7 @@ class Machine:
         self.executor.post(FeedHold())
         self.tick()
         rest = self.ports.axes.horizon()
-        while self.executor.snapshot.state is not State.HOLD:
+        while self.executor.snapshot.state is not MachineState.HOLD:
             self.tick()
         return rest - t, math.hypot(before[0], before[1])
 

@@ -45,22 +45,22 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 
 def desk(words: list[str]) -> int:
     """The screen as it is; its threads are named for whoever looks from outside, and setpoints are told."""
-    from app.cli.main import console  # noqa: PLC0415  the parent needs none of it
-    from drivers.simulators.plant import Plant  # noqa: PLC0415
+    from app.cli.main import run_console  # noqa: PLC0415  the parent needs none of it
+    from drivers.simulators.plant import SimulatedPlant  # noqa: PLC0415
 
-    begin, splice = threading.Thread.run, Plant.splice
+    begin, splice = threading.Thread.run, SimulatedPlant.splice
 
     def named(thread: threading.Thread) -> None:
         Path(f"/proc/self/task/{threading.get_native_id()}/comm").write_text(thread.name[:15])
         begin(thread)
 
-    def told(plant: Plant, segments: Any) -> None:
+    def told(plant: SimulatedPlant, segments: Any) -> None:
         say(f"{time.monotonic()!r}\n")
         splice(plant, segments)
 
     sys.argv = ["turndesk", *words]
-    with mock.patch.object(threading.Thread, "run", named), mock.patch.object(Plant, "splice", told):
-        return console()
+    with mock.patch.object(threading.Thread, "run", named), mock.patch.object(SimulatedPlant, "splice", told):
+        return run_console()
 
 
 class Used(NamedTuple):

@@ -22,13 +22,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import resources
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
-from core.store.store_file import FILE_NAME
-from drivers.simulators.plant_hands import PlantHands
+from core.language.source import ProgramSource
+from core.store.store_file import STORE_FILE_NAME
+from drivers.simulators.plant_controls import PlantControls
 
 SHOWN = 0.01  # s between two lines of the child
 STALLS = (0.1, 0.3, 0.5, 1.0, 5.0)
@@ -54,9 +54,9 @@ class Child:
         from app.compose.machine.machine_setup import read_machine  # noqa: PLC0415
         from app.compose.screen_desk import build_desk  # noqa: PLC0415  the parent needs none of it
 
-        self.desk = build_desk(machine_file, begun=(read_machine(machine_file), None))
-        assert self.desk.machine.model is not None
-        self.lathe = self.desk.machine.model
+        self.desk = build_desk(machine_file, begun_control=(read_machine(machine_file), None))
+        assert self.desk.machine.machine is not None
+        self.lathe = self.desk.machine.machine
         thread = next(t for t in threading.enumerate() if t.name == "executor")
         self.executor = thread._target.__self__.executor  # type: ignore[attr-defined]
         self.jogging = 0.0
@@ -87,16 +87,18 @@ class Child:
 
     def _load(self, text: str) -> None:
         self.programs += 1
-        setup = setup_for(self.lathe, tools={1: ToolOffset(0.0, 0.0)}, secondary={})
-        job = make_job(Source(f"PART{self.programs}", text), setup)
+        setup = create_setup(self.lathe, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        job = make_job(ProgramSource(f"PART{self.programs}", text), setup)
         self.desk.post(LoadJob(job, Proof(job.digest, ())))
 
     def _show(self) -> None:
         while True:
-            shot, played = self.desk.snapshot(), self.desk.control.panel
+            shot, played = self.desk.read_snapshot(), self.desk.desk_control.station_panel
             rpm, on, at = shot.rpm_actual, set(shot.outputs), shot.actual[:2]
-            if isinstance(played, PlantHands):  # as the machine really is, also where nobody looks any more
-                rpm, at = played.spindle_rpm(), played.true_position()[:2]
+            if isinstance(
+                played, PlantControls
+            ):  # as the machine really is, also where nobody looks any more
+                rpm, at = played.get_spindle_rpm(), played.get_true_position()[:2]
                 on = {name for name, lit in played.outputs().items() if lit}
             told = {
                 "t": time.monotonic(),
@@ -108,7 +110,7 @@ class Child:
                 "on": sorted(on - {"collet"}),
                 "alarms": [f"{alarm.number} {alarm.text}" for alarm in shot.alarms],
                 "starts": list(shot.announced),
-                "refused": shot.start_refused,
+                "refused": shot.start_refusal,
             }
             sys.stdout.write(json.dumps(told) + "\n")
             sys.stdout.flush()
@@ -330,7 +332,7 @@ def starved(pid: int, seconds: float) -> None:
 
 def disk_blocked(home: Path, seconds: float) -> None:
     """Somebody else holds the store."""
-    other = sqlite3.connect(home / FILE_NAME, isolation_level=None)
+    other = sqlite3.connect(home / STORE_FILE_NAME, isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     time.sleep(seconds)
     other.execute("ROLLBACK")

@@ -16,19 +16,19 @@ from dataclasses import replace
 import numpy as np
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import turned_field
+from core.part.polar_field import field_from_section
 from core.part.ray_cuts import FloatArray
 from core.part.solid_picture import SolidPicture
-from core.part.solid_view import SolidView, fitted
-from core.part.surface_points import Solid, solid_of, turned_solid
+from core.part.solid_view import SolidView, fit_view
+from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 
 FINE, LENGTH, RADIUS = 7500, 60.0, 18.0
 WIDTH, HEIGHT, FRAMES = 720, 400, 15
 VIEWS = (
-    ("from the side", SolidView(azimuth=0.0)),
-    ("30 towards the face", SolidView(azimuth=30.0)),
-    ("60 towards the face", SolidView(azimuth=60.0)),
-    ("a quarter open", SolidView(azimuth=30.0, opening=(0.0, 90.0))),
+    ("from the side", SolidView(azimuth_deg=0.0)),
+    ("30 towards the face", SolidView(azimuth_deg=30.0)),
+    ("60 towards the face", SolidView(azimuth_deg=60.0)),
+    ("a quarter open", SolidView(azimuth_deg=30.0, open_range_deg=(0.0, 90.0))),
 )
 
 
@@ -82,7 +82,7 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
         ),
         (
             "rapid past all of it",
-            lambda part: part.meets_axial(np.array([[25.0, 0.0, 5.0], [25.0, 0.0, -60.0]]), 5.0),
+            lambda part: part.hits_axial(np.array([[25.0, 0.0, 5.0], [25.0, 0.0, -60.0]]), 5.0),
         ),
     ]
 
@@ -90,17 +90,17 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
 def removal(edges: FloatArray, low: FloatArray, high: FloatArray) -> Solid:
     """Print what each operation costs; the part that is left."""
     begin = time.process_time()
-    part = MilledPart(turned_field(edges, low, high))
+    part = MilledPart(field_from_section(edges, low, high))
     sys.stdout.write(f"{'rays from the section':<32}{1000 * (time.process_time() - begin):>9.1f}\n")
     for name, work in operations():
         begin = time.process_time()
         work(part)
         sys.stdout.write(f"{name:<32}{1000 * (time.process_time() - begin):>9.1f}\n")
     field = part.field
-    layers, columns, rays = field.low.shape
-    size = 2 * field.low.nbytes / 1e6
+    layers, columns, rays = field.inner_radii.shape
+    size = 2 * field.inner_radii.nbytes / 1e6
     sys.stdout.write(f"{columns} columns, {rays} rays, {layers} layers, {size:.1f} MB\n\n")
-    return solid_of(field)
+    return make_milled_solid(field)
 
 
 def frame_ms(solid: Solid, view: SolidView, *, changes: bool, quick: bool) -> float:
@@ -108,7 +108,7 @@ def frame_ms(solid: Solid, view: SolidView, *, changes: bool, quick: bool) -> fl
     picture, taken = SolidPicture(), []
     for count in range(FRAMES):
         begin = time.process_time()
-        picture.draw(solid, view, WIDTH, HEIGHT, version=count * changes, quick=quick)
+        picture.draw(solid, view, WIDTH, HEIGHT, version=count * changes, is_preview=quick)
         taken.append(time.process_time() - begin)
     return 1000.0 * statistics.median(taken[1:])
 
@@ -117,12 +117,12 @@ def main() -> None:
     """Print the tables."""
     sys.stdout.write(f"{'removal':<32}{'ms':>9}\n")
     edges, low, high = section()
-    milled, turned = removal(edges, low, high), turned_solid(edges, low, high)
+    milled, turned = removal(edges, low, high), make_turned_solid(edges, low, high)
     heads = ("same", "new metal", "new, quick")
     sys.stdout.write(f"{'picture, ms':<24}" + "".join(f"{head:>12}" for head in heads * 2) + "\n")
     for name, looked in VIEWS:
-        scale, centre = fitted(-LENGTH, 0.0, RADIUS, WIDTH, HEIGHT, looked.azimuth)
-        view = replace(looked, scale=scale, centre=centre)
+        scale, centre = fit_view(-LENGTH, 0.0, RADIUS, WIDTH, HEIGHT, looked.azimuth_deg)
+        view = replace(looked, pixels_per_mm=scale, center_z_mm=centre)
         sys.stdout.write(f"{name:<24}")
         for solid in (turned, milled):
             for changes, quick in ((False, False), (True, False), (True, True)):

@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from app.desk.data_folder import HOME, data_folder
+from app.desk.data_folder import HOME_VARIABLE, find_data_folder
 from core.store.production import part_cycles
 from core.store.store import Store
 from tests.benchmarks.footprint import Footprint, footprint, keep_result, plain
@@ -44,7 +44,7 @@ def soak(parts: int, seed: int, say: Callable[[str], object], keep: Callable[[Fi
         for number in range(LINES):
             operator.make(parts * (number + 1) // LINES - shift.shot.parts)
             shift.saved()
-            marks[str(shift.shot.parts)] = mark = footprint(data_folder())
+            marks[str(shift.shot.parts)] = mark = footprint(find_data_folder())
             say(f"{shift.shot.parts:6d} parts, {shift.clock.now() / 3600:5.2f} h, {mark}\n")
             keep({**_figures(shift, operator, marks), "seed": seed})
         operator.finish()
@@ -70,20 +70,20 @@ def _figures(shift: NightShift, operator: Operator, marks: dict[str, Footprint])
 
 def counted(shift: NightShift) -> dict[str, int]:
     """Parts by everybody who counts them, and what was seen of the slides."""
-    by = {"executor": shift.shot.parts, "desk": shift.desk.runs.counter.count}
+    by = {"executor": shift.shot.parts, "desk": shift.desk.program_runs.part_counter.count}
     return by | counted_in(shift.store, shift.witness.truth)
 
 
 def counted_in(store: Store, truth: Truth) -> dict[str, int]:
     """The same of the store alone."""
     with store.read() as connection:
-        cycles = Counter(row.outcome for row in part_cycles.cycles(connection, NAME, -1))
+        cycles = Counter(row.outcome for row in part_cycles.read_cycles(connection, NAME, -1))
         [(readings,)] = connection.execute("SELECT count(*) FROM part_readings").fetchall()
         [(events,)] = connection.execute("SELECT count(*) FROM events WHERE kind = 'part'").fetchall()
         [(inserts,)] = connection.execute("SELECT count(*) FROM insert_changes").fetchall()
     return {
         "seen at the slides": truth.pins - truth.given_up - truth.uncounted,
-        "store": store.runs.count_parts(NAME),
+        "store": store.runs.read_part_count(NAME),
         "log": events,
         "cycles": cycles["COMPLETE"],
         "pins without count": truth.uncounted,
@@ -136,7 +136,7 @@ def main() -> int:
     wanted = parser.parse_args()
     keep = partial(keep_result, "night_shift", folder=wanted.keep)
     with tempfile.TemporaryDirectory() as home:
-        os.environ[HOME] = home
+        os.environ[HOME_VARIABLE] = home
         figures = soak(wanted.parts, wanted.seed, _say, keep)
     _say(f"{keep(figures)}\n")
     for wrong in figures["disagree"]:

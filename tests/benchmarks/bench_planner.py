@@ -15,8 +15,8 @@ from collections.abc import Callable
 
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_plan import plan
-from core.motion.window_planner import ChunkPlanner
+from core.motion.motion_plan import plan_motion
+from core.motion.window_planner import WindowPlanner
 from tests.motion.moves import chords, rounded_chords
 from tests.motion.paths import build_path
 
@@ -41,10 +41,10 @@ def row(count: int, times: int) -> str:
     angle = count * CHORD / RADIUS
     blocks = chords(RADIUS, angle, count, FEED)
     path = build_path(blocks, LIMITS)
-    planned = plan(path).duration
+    planned = plan_motion(path).duration_s
     ideal = path.length / FEED + FEED / LIMITS.plane_acceleration
     building = median_ms(lambda: build_path(blocks, LIMITS), max(times // 2, 1))
-    planning = median_ms(lambda: plan(path), times)
+    planning = median_ms(lambda: plan_motion(path), times)
     windows = median_ms(lambda: _in_windows(blocks), 1)
     return (
         f"{count:>9} {planned:>11.4f} {ideal:>11.4f} {planned / ideal:>8.5f}"
@@ -56,16 +56,16 @@ def rounded(grid: float) -> str:
     """One line of the second table: with words as written, and with joints moved by the machine's step."""
     blocks = rounded_chords(round(math.pi * RADIUS / CHORD), FEED, grid)
     ideal = math.pi * RADIUS / FEED + FEED / LIMITS.plane_acceleration
-    written, moved = (plan(build_path(blocks, limits)).duration for limits in (LIMITS, STEPPED))
+    written, moved = (plan_motion(build_path(blocks, limits)).duration_s for limits in (LIMITS, STEPPED))
     building = median_ms(lambda: build_path(blocks, STEPPED), PAIRS)
     return f"{grid:>9} {written / ideal:>11.4f} {moved / ideal:>11.4f} {building:>9.1f}\n"
 
 
 def _in_windows(blocks: list[Block]) -> None:
-    planner = ChunkPlanner(LIMITS)
-    for _ in planner.add(blocks):
+    planner = WindowPlanner(LIMITS)
+    for _ in planner.plan_blocks(blocks):
         pass
-    for _ in planner.finish():
+    for _ in planner.finish_section():
         pass
 
 

@@ -15,10 +15,10 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from app.compose.machine.machine_setup import read_machine, setup_for
-from core.interpreter.dialects import interpretation
+from app.compose.machine.machine_setup import create_setup, read_machine
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.job_setup import Setup, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.benchmarks.installed import installed
 
@@ -49,9 +49,9 @@ def loop(passes: int) -> str:
     return f"{HEAD}X.5Z0\nLS{passes}\n{cuts(900)}LF\nG00X1\nZ1\nM30\n"
 
 
-def interpreted(source: Source, setup: Setup) -> None:
+def interpreted(source: ProgramSource, setup: Setup) -> None:
     """Go through all blocks, and do nothing with them."""
-    deque(interpretation(source, setup).series(), maxlen=0)
+    deque(interpret_program(source, setup).generate_series(), maxlen=0)
 
 
 def median_of(work: Callable[[], object]) -> float:
@@ -68,7 +68,7 @@ def median_of(work: Callable[[], object]) -> float:
 def main() -> None:
     """Print the table."""
     machine = read_machine(None)
-    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
+    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     with tempfile.TemporaryDirectory() as folder:
         small = Path(folder) / "small.nc"
         small.write_text(program(200))
@@ -84,10 +84,10 @@ def main() -> None:
             ),
         ]
     for moves in (200, 10_000, 100_000, 1_000_000):
-        source = Source("bench", program(moves))
+        source = ProgramSource("bench", program(moves))
         rows.append((f"prove {moves:,} blocks, warm", median_of(partial(prove, source, setup, machine))))
     rows.append((f"interpret {moves:,} blocks", median_of(partial(interpreted, source, setup))))
-    source = Source("bench", loop(2000))
+    source = ProgramSource("bench", loop(2000))
     rows.append(("prove a loop of 1,800,000 blocks", median_of(partial(prove, source, setup, machine))))
     for name, seconds in rows:
         sys.stdout.write(f"{name:34s} {seconds * 1000:10.1f} ms\n")

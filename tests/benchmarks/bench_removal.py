@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from core.part.cutter import Cutter, Side
-from core.part.stock import bar
-from core.part.swept_edge import FloatArray, Point, sweep, towards_axis
+from core.part.cutter import CutSide, Cutter
+from core.part.stock import make_bar
+from core.part.swept_edge import FloatArray, Point, axis_facing_edge, sweep_edge
 from core.part.turned_part import TurnedPart
 
 MOVES, ROUNDS, STEP = 1000, 7, 0.01
@@ -52,20 +52,20 @@ def moves() -> list[Move]:
 
 def checked(work: list[Move]) -> float:
     """As the proof does it; the area that is left, mm²."""
-    part, cutter = TurnedPart(bar(2 * RADIUS, FRONT, BACK), STEP), Cutter([nose()], [], Side.OUTSIDE)
+    part, cutter = TurnedPart(make_bar(2 * RADIUS, FRONT, BACK), STEP), Cutter([nose()], [], CutSide.OUTSIDE)
     for start, end in work:
-        cutter.cut(part, start, end)
-    return float((part.high - part.low).sum()) * part.columns.step
+        cutter.cut_material(part, start, end)
+    return float((part.outer_radii - part.inner_radii).sum()) * part.columns.step_mm
 
 
 def alone(work: list[Move]) -> float:
     """The metal alone."""
-    part, edge = TurnedPart(bar(2 * RADIUS, FRONT, BACK), STEP), towards_axis(nose())
+    part, edge = TurnedPart(make_bar(2 * RADIUS, FRONT, BACK), STEP), axis_facing_edge(nose())
     for start, end in work:
-        first, reach = sweep(edge, start, end, part.columns)
-        high = part.high[0, first : first + len(reach)]
+        first, reach = sweep_edge(edge, start, end, part.columns)
+        high = part.outer_radii[0, first : first + len(reach)]
         np.minimum(high, reach, out=high)
-    return float((part.high - part.low).sum()) * part.columns.step
+    return float((part.outer_radii - part.inner_radii).sum()) * part.columns.step_mm
 
 
 def by_shapely() -> Work:

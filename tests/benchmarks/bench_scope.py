@@ -23,14 +23,14 @@ import numpy as np
 from PySide6.QtCore import QCoreApplication, QSize
 from PySide6.QtWidgets import QApplication
 
-from app.desk.programs.program_loading import Phase
-from app.scope.scope_model import Scope
+from app.desk.programs.program_loading import LoadingPhase
+from app.scope.scope_model import ScopeModel
 from app.scope.scope_view import ScopePage
 from app.screen import page_table
-from app.screen.look import DARK, Look, dress, load_fonts
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.executor.recorder import Recorder
-from core.records.record import Record
+from core.records.record import ScopeRecord
 from tests.benchmarks.bench_screen import Bench
 from tests.scope.played_record import CHANNELS, RATE, PlayedSamples, record_of, seconds
 from tests.screen.desks import desk_on
@@ -54,18 +54,18 @@ class LiveSamples(PlayedSamples):
     def __init__(self) -> None:
         super().__init__()
         self.all = record_of(seconds(0.0, 400.0))
-        noise = np.random.default_rng(7).normal(scale=1.5, size=len(self.all.times))
-        self.all.columns["spindle speed"][:] += noise
+        noise = np.random.default_rng(7).normal(scale=1.5, size=len(self.all.times_s))
+        self.all.values_by_channel["spindle speed"][:] += noise
         self.began = time.monotonic() - 110.0
 
     @property
-    def last(self) -> float:
+    def newest_time_s(self) -> float:
         """The newest sample."""
         return float(np.floor((time.monotonic() - self.began) * RATE) / RATE)
 
-    def between(self, begin: float, end: float, _names: object = None) -> Record:
+    def read_between(self, start_s: float, end_s: float, _names: object = None) -> ScopeRecord:
         """Out of what was computed."""
-        return self.all.between(begin, min(end, self.last))
+        return self.all.select_between(start_s, min(end_s, self.newest_time_s))
 
 
 # --- samples that were computed ----------------------------------------------------------------------------
@@ -77,26 +77,26 @@ def played() -> None:
         os.environ["TURNDESK_HOME"] = home
         app = QApplication.instance() or QApplication(sys.argv[:1])
         load_fonts()
-        dress(DARK)
+        style_application(DARK_PALETTE)
         live = LiveSamples()
         desk = desk_on(FakeMachine(), live=live)
-        window = MainWindow(Look(DARK))
+        window = MainWindow(ScreenTheme(DARK_PALETTE))
         window.resize(SIZE)
         window.show()
-        window.open_desk(desk)
+        window.show_model(desk)
         window._timer.stop()  # frames are made here, one by one
         assert window.frame is not None
-        window.frame.go(page_table.SCOPE)
-        page, scope = window.frame.page, desk.pages.find(Scope)
+        window.frame.open_page(page_table.SCOPE)
+        page, scope = window.frame.current_page, desk.page_registry.find(ScopeModel)
         assert isinstance(page, ScopePage)
         assert scope is not None
-        scope.chosen = SHOWN
-        scope.window.begin = -WINDOW
+        scope.selected_keys = SHOWN
+        scope.time_window.begin_s = -WINDOW
         _frames(window, page, 60)
         frames, drawn = _frames(window, page, FRAMES)
         _tell(frames)
         say(f"{drawn} of {len(frames)} frames showed a new picture; {len(CHANNELS)} channels\n")
-        window.put_away()
+        window.close_silently()
         desk.close()
         app.processEvents()
 
@@ -109,8 +109,8 @@ def _frames(window: MainWindow, page: ScopePage, count: int) -> tuple[np.ndarray
         window.refresh()
         QCoreApplication.processEvents()
         found.append((1e3 * (time.thread_time() - cpu), 1e3 * (time.perf_counter() - clock)))
-        drawn += page.scope.sight is not before
-        before = page.scope.sight
+        drawn += page.scope_model.picture is not before
+        before = page.scope_model.picture
         time.sleep(max(0.0, 0.016 - (time.perf_counter() - clock)))
     return np.array(found), drawn
 
@@ -130,14 +130,14 @@ def running() -> None:
     """Frames with the scope open, once its window is full of samples of the program."""
     with tempfile.TemporaryDirectory() as home:
         bench, _recorder = _on_a_run(Path(home))
-        scope = bench.desk.pages.find(Scope)
+        scope = bench.desk.page_registry.find(ScopeModel)
         assert scope is not None
-        bench.window.press("Scope")
-        scope.chosen = SHOWN
-        scope.window.begin = -WINDOW
+        bench.window.press_key("Scope")
+        scope.selected_keys = SHOWN
+        scope.time_window.begin_s = -WINDOW
         bench.rest(WINDOW + 5.0)
         bench.frames.clear()
-        begun = scope.live.last if scope.live is not None else 0.0
+        begun = scope.live_samples.newest_time_s if scope.live_samples is not None else 0.0
         bench.rest(RUNS)
         _tell(_of(bench))
         _late(_recorder, begun)
@@ -153,7 +153,7 @@ def opening(key: str, *then: str) -> None:
         bench.rest(OPENS)
         say("before\n")
         _tell(_of(bench))
-        begun = recorder.ring.samples.last
+        begun = recorder.ring.samples.last_time_s
         _late(recorder, begun - OPENS)
         _opened(bench, recorder, key, *then)
         _end(bench)
@@ -168,10 +168,10 @@ def hurried() -> None:
 
 
 def _opened(bench: Bench, recorder: Recorder, *keys: str) -> None:
-    begun = recorder.ring.samples.last
+    begun = recorder.ring.samples.last_time_s
     bench.frames.clear()
     for each in keys:
-        bench.window.press(each)
+        bench.window.press_key(each)
         bench.rest(OPENS / 2)
     bench.rest(OPENS / 2)
     say(f"{' '.join(keys)}\n")
@@ -186,8 +186,8 @@ def pages() -> None:
         bench, recorder = _on_a_run(Path(home))
         frame = bench.window.frame
         assert frame is not None
-        begun = recorder.ring.samples.last
-        for entry in page_table.pages_of(bench.desk.machine.language):
+        begun = recorder.ring.samples.last_time_s
+        for entry in page_table.list_pages(bench.desk.machine.language):
             bench.frames.clear()
             bench.window.press_to(entry.name)
             bench.rest(0.5)
@@ -203,22 +203,22 @@ def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, Recorder]:
     bench = Bench(home, SIZE)
     bench.folder.mkdir(exist_ok=True)
     (bench.folder / "fro.nc").write_text(program())
-    bench.desk.programs.choose("fro")
-    session = bench.desk.session
-    bench.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED})
-    assert not session.now.errors, session.now.errors[0].message
+    bench.desk.program_choice.load_by_name("fro")
+    session = bench.desk.program_loader
+    bench.until(lambda: session.loaded.phase in {LoadingPhase.READY, LoadingPhase.REFUSED})
+    assert not session.loaded.blocking_errors, session.loaded.blocking_errors[0].message
     if rested:
-        bench.until(lambda: bench.window.ahead is not None and bench.window.ahead.done)
+        bench.until(lambda: bench.window.page_preloader is not None and bench.window.page_preloader.is_done)
     bench.start()
-    recorder = bench.desk.control.recordings
+    recorder = bench.desk.desk_control.recordings
     assert isinstance(recorder, Recorder)
     return bench, recorder
 
 
 def _end(bench: Bench) -> None:
-    bench.window.press("H")
+    bench.window.press_key("H")
     bench.rest(0.5)
-    bench.window.put_away()
+    bench.window.close_silently()
     bench.app.processEvents()
     bench.desk.close()
 
@@ -240,7 +240,7 @@ def _tell(frames: np.ndarray) -> None:
 
 def _late(recorder: Recorder, since: float) -> None:
     """By how much ticks came late since an instant of the record."""
-    late = 1e3 * recorder.between(since, np.inf, {"lateness"}).columns["lateness"]
+    late = 1e3 * recorder.get_record_between(since, np.inf, {"lateness"}).values_by_channel["lateness"]
     late = late[np.isfinite(late)]
     say(f"  the control late: {np.percentile(late, 99):.1f} ms p99, {late.max(initial=0.0):.1f} most\n")
 

@@ -25,10 +25,10 @@ from PySide6.QtWidgets import QApplication
 
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import read_offsets
-from app.desk.programs.program_loading import Phase
-from app.screen.look import DARK, Look, dress, load_fonts
+from app.desk.programs.program_loading import LoadingPhase
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.benchmarks.bench_hold import chords
 from tests.benchmarks.footprint import keep_result
 
@@ -44,26 +44,26 @@ class Window(MainWindow):
     began: tuple[float, float] | None = None
     over: Callable[[], None] | None = None  # the frame before is, also where the thread had no time to sleep
 
-    def _tick(self) -> None:
+    def _handle_tick(self) -> None:
         if self.over is not None:
             self.over()
-        super()._tick()
+        super()._handle_tick()
 
     def refresh(self) -> None:
         """Once a frame, and after a key."""
         self._begin()
         super().refresh()
 
-    def press(self, key: str) -> None:
+    def press_key(self, key_name: str) -> None:
         """What a key does is part of its frame: a page that is opened is made there."""
         self._begin(anew=True)
-        super().press(key)
+        super().press_key(key_name)
 
     def press_to(self, page: str) -> None:
         """The key of a page, wherever it is a key."""
         self._begin(anew=True)
         if self.frame is not None:
-            self.frame.go(page)
+            self.frame.open_page(page)
         super().refresh()
 
     def _begin(self, *, anew: bool = False) -> None:
@@ -122,14 +122,14 @@ class Bench:
     def __init__(self, home: Path, size: QSize) -> None:
         self.app = QApplication.instance() or QApplication(sys.argv[:1])
         load_fonts()
-        dress(DARK)
+        style_application(DARK_PALETTE)
         offsets = home / "offsets.toml"
         offsets.write_text(OFFSETS)
         self.desk = build_desk(None, lambda: read_offsets(offsets))
-        self.window = Window(Look(DARK))
+        self.window = Window(ScreenTheme(DARK_PALETTE))
         self.window.resize(size)
         self.window.show()
-        self.window.open_desk(self.desk)
+        self.window.show_model(self.desk)
         self.window.activateWindow()
         self.frames = Frames(self.window)
         self.folder = home / "programs"
@@ -140,7 +140,7 @@ class Bench:
         while not true():
             self.app.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
             if time.perf_counter() - begun > most:
-                raise TimeoutError(f"not so after {most:g} s: {self.desk.snapshot().state.value}")
+                raise TimeoutError(f"not so after {most:g} s: {self.desk.read_snapshot().state.value}")
         return time.perf_counter() - begun
 
     def rest(self, seconds: float) -> None:
@@ -159,42 +159,42 @@ class Bench:
         (self.folder / "many.nc").write_text(chords(blocks))
         self.rest(0.5)  # the writing was no frame
         self.frames.clear()
-        self.desk.programs.choose("many")
-        session = self.desk.session
-        self.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED}, LOADING)
-        if session.now.errors:
-            raise ValueError(session.now.errors[0].message)
+        self.desk.program_choice.load_by_name("many")
+        session = self.desk.program_loader
+        self.until(lambda: session.loaded.phase in {LoadingPhase.READY, LoadingPhase.REFUSED}, LOADING)
+        if session.loaded.blocking_errors:
+            raise ValueError(session.loaded.blocking_errors[0].message)
         self.say(self.frames.row("loading"))
-        path = self.window.frame.automatic.path if self.window.frame else None
+        path = self.window.frame.automatic_page.path_view if self.window.frame else None
         assert path is not None
-        self.until(lambda: bool(path.panes) and all(pane.complete for pane in path.panes))
+        self.until(lambda: bool(path.panes) and all(pane.is_complete for pane in path.panes))
         self.say(self.frames.row("whole path drawn"))
         for key in ("Zoom in", "Zoom in", "Pan right", "Zoom out", "F5"):
-            self.window.press(key)
+            self.window.press_key(key)
             self.rest(0.3)
         self.say(self.frames.row("zoom, pan and fit"))
 
     def start(self) -> None:
         """Drives on, both palms."""
         desk = self.desk
-        if desk.snapshot().state is State.DISABLED:
-            desk.enable()
-            self.until(lambda: desk.snapshot().state is State.IDLE)
-        desk.hands.palm("left", down=True)
-        desk.hands.palm("right", down=True)
-        self.until(lambda: desk.snapshot().state is State.RUN, 10)
-        desk.hands.let_go()
+        if desk.read_snapshot().state is MachineState.DISABLED:
+            desk.enable_drives()
+            self.until(lambda: desk.read_snapshot().state is MachineState.IDLE)
+        desk.station_controls.palm("left", is_down=True)
+        desk.station_controls.palm("right", is_down=True)
+        self.until(lambda: desk.read_snapshot().state is MachineState.RUN, 10)
+        desk.station_controls.release_all()
 
     def hold(self) -> tuple[float, float, float]:
         """Press H; seconds until the screen says so, until it stands, and what is allowed for that."""
-        speed = self.desk.snapshot().velocity
+        speed = self.desk.read_snapshot().velocity
         begun = time.perf_counter()
-        self.window.press("H")
-        told = self.until(lambda: self.desk.snapshot().state is not State.RUN)
-        while abs(self.desk.snapshot().velocity) > 0.5:
+        self.window.press_key("H")
+        told = self.until(lambda: self.desk.read_snapshot().state is not MachineState.RUN)
+        while abs(self.desk.read_snapshot().velocity) > 0.5:
             self.app.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
         stood = time.perf_counter() - begun
-        self.until(lambda: self.desk.snapshot().state is State.HOLD)
+        self.until(lambda: self.desk.read_snapshot().state is MachineState.HOLD)
         return told, stood, speed
 
 
@@ -229,9 +229,9 @@ def main() -> None:
         stands = [round(1000.0 * each, 1) for each in (statistics.median(stood), max(stood))]
         figures = {"blocks": blocks, "rows": bench.frames.kept, "a hold stands after, ms": stands}
         bench.say(f"{keep_result('frames', figures)}\n")
-        bench.window.press("H")
+        bench.window.press_key("H")
         bench.rest(0.5)
-        bench.window.put_away()
+        bench.window.close_silently()
         bench.app.processEvents()
         bench.desk.close()
 

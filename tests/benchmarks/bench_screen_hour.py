@@ -44,13 +44,13 @@ def desk(words: list[str]) -> int:
     X is behind the middle of the parting tool only while a pin is parted off, and the plant knows the slide
     at every millisecond, however late its control is.
     """
-    from app.cli.main import console  # noqa: PLC0415  the parent needs none of it
-    from drivers.simulators.plant import Plant  # noqa: PLC0415
+    from app.cli.main import run_console  # noqa: PLC0415  the parent needs none of it
+    from drivers.simulators.plant import SimulatedPlant  # noqa: PLC0415
 
-    follow, middle = Plant._servos_follow, TOOLS[3][0] * INCH
+    follow, middle = SimulatedPlant._follow_setpoints, TOOLS[3][0] * INCH
     pins, behind = 0, False
 
-    def seen(plant: Plant, *how: Any) -> bool:
+    def seen(plant: SimulatedPlant, *how: Any) -> bool:
         nonlocal pins, behind
         answer = follow(plant, *how)
         now = plant.servos[0].where < middle
@@ -60,8 +60,8 @@ def desk(words: list[str]) -> int:
 
     sys.argv = ["turndesk", *words]
     try:
-        with mock.patch.object(Plant, "_servos_follow", seen):
-            return console()
+        with mock.patch.object(SimulatedPlant, "_follow_setpoints", seen):
+            return run_console()
     finally:
         say(json.dumps({"pins": pins}) + "\n")
 
@@ -143,7 +143,9 @@ def begun(stage: Server, home: Path, seed: int) -> Iterator[Looker]:
     program.write_text(PROGRAM)
     with Store.open(home) as store:
         for number, (x, z) in TOOLS.items():
-            store.offsets.tools.change_row(number, "touched off", {"x": x * INCH, "z": z * INCH}).result()
+            store.offsets.tool_offsets.change_row(
+                number, "touched off", {"x": x * INCH, "z": z * INCH}
+            ).result()
     words = [sys.executable, "-m", __spec__.name, "--desk", "--program", str(program)]
     popen = subprocess.Popen(
         words,

@@ -53,7 +53,7 @@ from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.language.source import load_source
-from drivers.waiting import StepClock
+from drivers.wakeups import StepClock
 machine = read_machine(None)
 tools, secondary, *_ = chosen_offsets(sys.argv[2])()
 clock = StepClock()

@@ -57,12 +57,12 @@ def screen(path: str, words: list[str]) -> int:
     """Run the screen; its load is read from standard input."""
     from PySide6.QtCore import QTimer  # noqa: PLC0415
 
-    from app.cli.main import console  # noqa: PLC0415
-    from app.screen.window.keyboard import Keyboard  # noqa: PLC0415
+    from app.cli.main import run_console  # noqa: PLC0415
+    from app.screen.window.keyboard import KeyboardFilter  # noqa: PLC0415
     from app.screen.window.main_window import MainWindow  # noqa: PLC0415
 
     loads: list[_Loads] = []
-    begin, opens, watches = subprocess.Popen, MainWindow.open_desk, Keyboard.watch_stops
+    begin, opens, watches = subprocess.Popen, MainWindow.show_model, KeyboardFilter.start_key_watcher
 
     def started(command: list[str], *more: Any, **named: Any) -> Any:
         if "app.compose.control.control_process" in command:
@@ -77,30 +77,30 @@ def screen(path: str, words: list[str]) -> int:
         loads.append(_Loads(window))
         QTimer.singleShot(3000, loads[0].begin)
 
-    def watched(keyboard: Keyboard, open_line: Any) -> Any:
+    def watched(keyboard: KeyboardFilter, open_line: Any) -> Any:
         return watches(keyboard, open_line) if path == "watcher" else None
 
     sys.argv = ["turndesk", *words]
     with (
         mock.patch("subprocess.Popen", started),
-        mock.patch.object(MainWindow, "open_desk", opened),
-        mock.patch.object(Keyboard, "watch_stops", watched),
+        mock.patch.object(MainWindow, "show_model", opened),
+        mock.patch.object(KeyboardFilter, "start_key_watcher", watched),
     ):
-        return console()
+        return run_console()
 
 
 def _watch(desk: Any) -> None:
     """The trial: the same raw events, read by a thread of the screen."""
     import select  # noqa: PLC0415
 
-    from app.desk.stop_keys.raw_keys import RawKeys  # noqa: PLC0415
+    from app.desk.stop_keys.raw_keys import RawKeyReader  # noqa: PLC0415
     from core.executor.commands import FeedHold  # noqa: PLC0415
 
-    keys = RawKeys()
+    keys = RawKeyReader()
     while True:
         select.select([keys], [], [])
-        for _key in keys.pressed():
-            keys.focus()
+        for _key in keys.read_presses():
+            keys.find_focus_window()
             desk.post(FeedHold("thread"))
 
 

@@ -13,15 +13,15 @@ import time
 
 import numpy as np
 
-from app.compose.backends.connection import connect
-from app.compose.machine.machine_setup import read_machine, setup_for
+from app.compose.backends.connection import connect_machine
+from app.compose.machine.machine_setup import create_setup, read_machine
 from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import Event, State
+from core.executor.snapshot import LogEvent, MachineState
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
-from drivers.waiting import RealClock
+from core.language.source import ProgramSource
+from drivers.wakeups import RealClock
 from tests.benchmarks.bench_hold import TICK, chords
 
 HOG = "while True: sum(range(1000))"
@@ -33,28 +33,31 @@ def hogs(count: int) -> list[subprocess.Popen[bytes]]:
     return [subprocess.Popen([sys.executable, "-c", HOG]) for _ in range(count)]
 
 
-def stream(minutes: float) -> tuple[list[float], int, list[Event]]:
+def stream(minutes: float) -> tuple[list[float], int, list[LogEvent]]:
     """How late each tick of the executor came, s; underruns; what was said."""
     base = read_machine(None)
-    machine = dataclasses.replace(base, hardware=dataclasses.replace(base.hardware, feeder=True))
-    clock, said, late = RealClock(), list[Event](), list[float]()
-    job = make_job(Source("bench", chords(CHORDS)), setup_for(machine, tools={1: ToolOffset()}, secondary={}))
-    job.reading.begin(job.setup)  # as its proof would have read it
-    connected = connect(machine, clock)
+    machine = dataclasses.replace(base, hardware=dataclasses.replace(base.hardware, uses_driver_host=True))
+    clock, said, late = RealClock(), list[LogEvent](), list[float]()
+    job = make_job(
+        ProgramSource("bench", chords(CHORDS)),
+        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+    )
+    job.shared_program.start_pass(job.setup)  # as its proof would have read it
+    connected = connect_machine(machine, clock)
     executor = Executor(machine, connected.ports, said.append)
-    said += [Event(clock.now(), "warning", warning) for warning in connected.ports.warnings]
+    said += [LogEvent(clock.now(), "warning", warning) for warning in connected.ports.warnings]
     todo: list[Command] = [EnableDrives(), LoadJob(job, Proof(job.digest, ())), CycleStart()]
     due = end = clock.now()
     end += 60.0 * minutes
-    while (now := clock.now()) < end and executor.snapshot.state is not State.FAULT:
+    while (now := clock.now()) < end and executor.snapshot.state is not MachineState.FAULT:
         late.append(now - due)
-        executor.tick()
+        executor.run_tick()
         if todo:
             executor.post(todo.pop(0))
         due = max(due + TICK, clock.now())
         clock.sleep_until(due)
     underruns = executor.snapshot.underruns
-    executor.shut()
+    executor.shut_down()
     connected.close()
     return late, underruns, said
 
@@ -81,7 +84,9 @@ def main(arguments: list[str]) -> None:
     for kind in ("warning", "alarm", "starved"):
         of_it = [event for event in said if event.kind == kind]
         if of_it:
-            sys.stdout.write(f"{kind}: {len(of_it)}, the last after {of_it[-1].t:.0f} s: {of_it[-1].text}\n")
+            sys.stdout.write(
+                f"{kind}: {len(of_it)}, the last after {of_it[-1].time_s:.0f} s: {of_it[-1].text}\n"
+            )
 
 
 if __name__ == "__main__":

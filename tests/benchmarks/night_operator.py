@@ -10,16 +10,16 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.desk.programs.program_loading import Phase
-from app.screen.page_table import PAGES, class_of
-from app.special.counters import ToolLifeFunction
-from app.special.special_functions import SpecialFunction, SpecialFunctions
+from app.desk.programs.program_loading import LoadingPhase
+from app.screen.page_table import ALL_PAGES, import_class
+from app.special.counter_functions import ToolLifeFunction
+from app.special.special_functions import SpecialFunction, SpecialFunctionList
 from core.executor.commands import ForceOutput
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.store.production import measured_parts, tool_lives
 from core.store.production.measured_parts import FeatureRow
-from core.store.production.tool_lives import LifeRow
-from core.store.store_rows import Kind
+from core.store.production.tool_lives import ToolLifeRow
+from core.store.store_rows import OffsetKind
 from tests.benchmarks.night_shift import FRAME, INCH, NAME, PATIENCE, TICK, TOOLS, NightShift
 
 PINS, INSERT = 40, 1500  # pins of a bar, parts of an insert
@@ -66,16 +66,16 @@ class Operator:
         """Tools, the feature that is measured, the life of an insert, drives, program."""
         store = self.shift.store
         for number, (x, z) in TOOLS.items():
-            store.offsets.tools.change_row(number, "touched off", {"x": x * INCH, "z": z * INCH}).result(
-                PATIENCE
-            )
+            store.offsets.tool_offsets.change_row(
+                number, "touched off", {"x": x * INCH, "z": z * INCH}
+            ).result(PATIENCE)
         store.write(lambda c: measured_parts.save_feature(c, FEATURE)).result(PATIENCE)
-        life = LifeRow(1, limit_parts=INSERT, stops=True)
-        store.write(lambda c: tool_lives.set_limits(c, life)).result(PATIENCE)
-        self.desk.book.read()
-        self.desk.enable()
+        life = ToolLifeRow(1, limit_parts=INSERT, stops=True)
+        store.write(lambda c: tool_lives.save_limits(c, life)).result(PATIENCE)
+        self.desk.offset_book.read_store()
+        self.desk.enable_drives()
         self.shift.run(0.3)
-        if not self.desk.programs.choose(NAME):
+        if not self.desk.program_choice.load_by_name(NAME):
             raise FileNotFoundError(NAME)
         self._loaded()
 
@@ -85,7 +85,7 @@ class Operator:
         while self.shift.shot.parts < end:
             self.step()
             if self.shift.clock.now() - self._since > STUCK:
-                raise StuckError(f"no part for {STUCK:g} s: {self.desk.notice!r} {self.shift.shot}")
+                raise StuckError(f"no part for {STUCK:g} s: {self.desk.prompt_notice!r} {self.shift.shot}")
 
     def meets(self, what: str, after: float = 0.5) -> None:
         """One of ``CHANCES``, so many seconds of the machine from now, instead of what chance had in mind."""
@@ -94,9 +94,9 @@ class Operator:
     def finish(self) -> None:
         """Cycle Repeat off, and the part under way is made."""
         if self.shift.shot.cycle_repeat:
-            self.desk.switch("cycle_repeat")
+            self.desk.toggle_switch("cycle_repeat")
         self._plan = None
-        while self.shift.shot.state is not State.IDLE:
+        while self.shift.shot.state is not MachineState.IDLE:
             self.step()
         self.shift.saved()
 
@@ -110,13 +110,13 @@ class Operator:
         if self._mends and self.shift.clock.now() > self._mend_at:
             self._mend()
         acts = {
-            State.ESTOP: self._twist_out,
-            State.FAULT: self._acknowledge,
-            State.DISABLED: self._enable,
-            State.IDLE: self._start,
-            State.PROGRAM_STOP: self._new_bar,
-            State.HOLD: self._go_on,
-            State.BLOCK_END: self._go_on,
+            MachineState.ESTOP: self._twist_out,
+            MachineState.FAULT: self._acknowledge,
+            MachineState.DISABLED: self._enable,
+            MachineState.IDLE: self._start,
+            MachineState.PROGRAM_STOP: self._new_bar,
+            MachineState.HOLD: self._go_on,
+            MachineState.BLOCK_END: self._go_on,
         }
         act = acts.get(shot.state)
         if act is not None:
@@ -136,7 +136,7 @@ class Operator:
         if self._pins >= PINS:
             self._bar_ends(ended=True)
         if shift.shot.no_count and shift.shot.ends:
-            self.desk.switch("no_count")
+            self.desk.toggle_switch("no_count")
         if shift.shot.parts and shift.shot.parts % EVERY == 0:
             self._measure()
         dice = self.chance.random() * 1000.0
@@ -147,24 +147,24 @@ class Operator:
                 break
 
     def _palms(self) -> None:
-        hands = self.desk.hands
+        hands = self.desk.station_controls
         for down, pause in ((True, 0.1), (False, 0.4)):
             for side in ("left", "right"):
-                hands.palm(side, down=down)
+                hands.palm(side, is_down=down)
             self.shift.run(pause)
 
     def _start(self) -> None:
         """Both palms, when the program is ready and what stands in the way was done."""
         desk, shot = self.desk, self.shift.shot
         self._loaded()
-        told = "LIFE" in desk.notice and "FRESH INSERT" not in desk.notice
-        if shot.next_barred or told or "life of T1" in shot.start_refused:
+        told = "LIFE" in desk.prompt_notice and "FRESH INSERT" not in desk.prompt_notice
+        if shot.next_barred or told or "life of T1" in shot.start_refusal:
             self.fresh_insert()
         if not shot.cycle_repeat:
-            desk.switch("cycle_repeat")
+            desk.toggle_switch("cycle_repeat")
         if shot.interrupted is not None:
-            desk.clear()
-            desk.yes()
+            desk.clear_prompt_line()
+            desk.confirm_question()
         self._first_move_is_checked()
         self.shift.run(0.9)  # what it warns of is read
         self.shift.witness.anew()
@@ -172,16 +172,16 @@ class Operator:
         self._palms()
 
     def _go_on(self) -> None:
-        if self._gives_up or COLLET_OPEN in self.shift.shot.start_refused:
+        if self._gives_up or COLLET_OPEN in self.shift.shot.start_refusal:
             self._gives_up = False
-            self.desk.reset()
+            self.desk.reset_control()
             self.shift.run(0.6)
-            self.desk.answer()
+            self.desk.confirm_if_unchanged()
             return
         if self._steps:
             self._steps -= 1
         elif self.shift.shot.single_block:
-            self.desk.switch("single_block")
+            self.desk.toggle_switch("single_block")
         self.shift.run(0.9)
         self._palms()
 
@@ -193,13 +193,13 @@ class Operator:
         self._palms()
 
     def _bar_ends(self, *, ended: bool) -> None:
-        assert self.desk.control.set_input is not None
-        self.desk.control.set_input("TB2-9", ended)
+        assert self.desk.desk_control.set_input is not None
+        self.desk.desk_control.set_input("TB2-9", ended)
 
     def _acknowledge(self) -> None:
         self._mend()
         self.shift.run(0.5)
-        self.desk.reset()
+        self.desk.reset_control()
         self.shift.run(0.5)
         if "collet" not in self.shift.shot.outputs:
             self.desk.post(ForceOutput("collet", True))
@@ -207,12 +207,12 @@ class Operator:
 
     def _enable(self) -> None:
         self.shift.run(0.2)
-        self.desk.enable()
+        self.desk.enable_drives()
         self.shift.run(0.3)
 
     def _twist_out(self) -> None:
         self.shift.run(1.0)
-        self.desk.hands.estop(pressed=False)
+        self.desk.station_controls.estop(is_pressed=False)
         self.shift.run(0.3)
 
     def _loaded(self) -> None:
@@ -220,25 +220,29 @@ class Operator:
         desk = self.desk
 
         def ready() -> bool:
-            waits = desk.rebuilding.wanted or desk.book.busy or desk.session.worker.busy
-            return desk.session.now.phase in {Phase.READY, Phase.REFUSED} and not waits
+            waits = (
+                desk.renewal.is_requested or desk.offset_book.is_saving or desk.program_loader.worker.is_busy
+            )
+            return (
+                desk.program_loader.loaded.phase in {LoadingPhase.READY, LoadingPhase.REFUSED} and not waits
+            )
 
         self.shift.settle(ready)
 
     def _first_move_is_checked(self) -> None:
         """Wait for the worker: a start that comes before its verdict is refused."""
-        watch = self.desk.first_move
+        watch = self.desk.start_watch
         assert watch is not None
         self.shift.run(FRAME * TICK)
-        self.shift.settle(lambda: not watch.checking)
+        self.shift.settle(lambda: not watch.is_checking)
 
     # --- measuring ------------------------------------------------------------------------------------------
 
     def _sections(self) -> Sequence[SpecialFunction]:
         """The sections of the page of measured parts; none where that feature is not installed."""
-        entry = next((page for page in PAGES if page.name == "MEASURED PARTS"), None)
-        found = self.desk.pages.find(class_of(entry.model)) if entry is not None else None
-        return found.functions if isinstance(found, SpecialFunctions) else ()
+        entry = next((page for page in ALL_PAGES if page.name == "MEASURED PARTS"), None)
+        found = self.desk.page_registry.find(import_class(entry.model_class)) if entry is not None else None
+        return found.functions if isinstance(found, SpecialFunctionList) else ()
 
     def _measure(self) -> None:
         """Type what the gauge shows; behind a few readings ask for the correction and take it."""
@@ -255,47 +259,47 @@ class Operator:
             self._correct(readings)
 
     def _correct(self, readings: Any) -> None:
-        changes = self.desk.book.changes
+        changes = self.desk.offset_book.changes
         for _ in range(20):
             readings.propose()
-            if not self.desk.asked:
+            if not self.desk.confirm_key:
                 return  # within the dead band
             self.shift.run(0.6)  # he reads what is asked
-            self.desk.answer()
-            if self.desk.book.busy or self.desk.book.changes != changes:
+            self.desk.confirm_if_unchanged()
+            if self.desk.offset_book.is_saving or self.desk.offset_book.changes != changes:
                 break
         self._kept()
-        if self.desk.book.changes != changes:
+        if self.desk.offset_book.changes != changes:
             self.did["correction"] += 1
             self._readings = 0
 
     def _kept(self) -> None:
         """What was typed is on the disk and read back, and the program proved with it."""
         desk, book = self.desk, self.shift.parts_book
-        worker = desk.rebuilding.renewing.worker
-        self.shift.settle(lambda: book.settled and not desk.book.busy and not worker.busy)
+        worker = desk.renewal.running_renewal.worker
+        self.shift.settle(lambda: book.is_settled and not desk.offset_book.is_saving and not worker.is_busy)
 
     def fresh_insert(self) -> None:
         """The insert has made its parts: a new one, and its wear is nought again."""
-        functions = self.desk.pages.find(SpecialFunctions)
+        functions = self.desk.page_registry.find(SpecialFunctionList)
         assert functions is not None
         lives = next(
             each for each in (*self._sections(), *functions.functions) if isinstance(each, ToolLifeFunction)
         )
         lives.marked = 0  # T1
         self._kept()  # right behind the start its life may not be read yet
-        self.shift.settle(lambda: 1 in self.shift.parts_book.now.lives)  # its worker may be late
-        made = self.shift.parts_book.now.lives[1].parts
+        self.shift.settle(lambda: 1 in self.shift.parts_book.current.tool_lives)  # its worker may be late
+        made = self.shift.parts_book.current.tool_lives[1].parts
         for _ in range(20):  # another answer may have taken the place of the question
-            lives.insert()
+            lives.confirm_new_insert()
             self.shift.run(0.6)
-            self.desk.answer()
+            self.desk.confirm_if_unchanged()
             self._kept()
-            if self.shift.parts_book.now.lives[1].parts < made:
+            if self.shift.parts_book.current.tool_lives[1].parts < made:
                 break
         else:
-            raise StuckError(f"the insert cannot be changed: {self.desk.notice!r}")
-        why = self.desk.book.change(Kind.TOOL, 1, {"wear_x": 0.0}, "fresh insert")
+            raise StuckError(f"the insert cannot be changed: {self.desk.prompt_notice!r}")
+        why = self.desk.offset_book.change_fields(OffsetKind.TOOL, 1, {"wear_x": 0.0}, "fresh insert")
         assert not why, why
         self._kept()
         self._loaded()
@@ -314,33 +318,33 @@ class Operator:
             mend()
 
     def _hold(self) -> None:
-        self.desk.hands.hold(down=True)
+        self.desk.station_controls.hold(is_down=True)
         self.shift.run(0.2)
-        self.desk.hands.hold(down=False)
+        self.desk.station_controls.hold(is_down=False)
 
     def _single_block(self) -> None:
         if not self.shift.shot.single_block:
-            self.desk.switch("single_block")
+            self.desk.toggle_switch("single_block")
         self._steps = self.chance.randint(1, 12)
 
     def _feed_pot(self) -> None:
-        self.desk.hands.feed_pot.set(self.chance.choice((0.0, 0.1, 0.5, 0.8, 1.2, 1.5)))
-        self._later(lambda: self.desk.hands.feed_pot.set(1.0))
+        self.desk.station_controls.feed_pot.set(self.chance.choice((0.0, 0.1, 0.5, 0.8, 1.2, 1.5)))
+        self._later(lambda: self.desk.station_controls.feed_pot.set(1.0))
 
     def _spindle_pot(self) -> None:
-        self.desk.hands.spindle_pot.set(self.chance.choice((0.6, 0.8, 0.9)))
-        self._later(lambda: self.desk.hands.spindle_pot.set(1.0))
+        self.desk.station_controls.spindle_pot.set(self.chance.choice((0.6, 0.8, 0.9)))
+        self._later(lambda: self.desk.station_controls.spindle_pot.set(1.0))
 
     def _no_count(self) -> None:
         if not self.shift.shot.no_count:
-            self.desk.switch("no_count")
+            self.desk.toggle_switch("no_count")
 
     def _give_up(self) -> None:
         self._gives_up = True
-        self.desk.feed_hold()
+        self.desk.start_feed_hold()
 
     def _e_stop(self) -> None:
-        self.desk.hands.estop(pressed=True)
+        self.desk.station_controls.estop(is_pressed=True)
 
     def _drive_trips(self) -> None:
         self.lathe.drive_fault(self._slide())
@@ -374,8 +378,8 @@ class Operator:
         self.lathe.push(self._slide(), self.chance.choice((-0.05, 0.05)))
 
     def _spindle_switch(self) -> None:
-        self.desk.hands.set_spindle_auto(False)
-        self._later(lambda: self.desk.hands.set_spindle_auto(True))
+        self.desk.station_controls.set_spindle_auto(False)
+        self._later(lambda: self.desk.station_controls.set_spindle_auto(True))
 
     def _slide(self) -> str:
         return self.chance.choice(("X", "Z"))

@@ -12,22 +12,22 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
-from app.compose.desk_assembly import desk_and_executor
-from app.compose.runs.error_log import Log
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.runs.error_log import ErrorLog
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import stored_offsets
-from app.desk.data_folder import RECORDS, data_folder
+from app.compose.stored_offsets import read_stored_offsets
+from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
 from app.desk.desk import Desk
-from app.desk.status.standing_prompt import prompt
+from app.desk.status.state_prompt import make_page_prompt
 from app.production.parts_book import PartsBook
 from app.production.parts_watch import PartsWatch
-from app.programs.whole_file import write_whole
+from app.programs.atomic_files import write_program_file
 from core.executor.executor import Executor
 from core.executor.recorder import Recorder
-from core.executor.snapshot import Alarm, Snapshot, State
+from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.store.store import Store
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import StepClock
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ManualClock
 
 INCH = 25.4
 NAME = "night.nc"
@@ -105,9 +105,9 @@ class Witness:
         """``offsets``: X of T1 by job; ``where`` the slides really are."""
         if shot.line == PARTING:
             self._parting(shot.actual[0] - TOOLS[3][0] * INCH)
-        elif shot.line == TURNING and shot.state is State.RUN and shot.job in offsets:
+        elif shot.line == TURNING and shot.state is MachineState.RUN and shot.job in offsets:
             self._turning(shot, offsets[shot.job])
-        elif shot.line == PUSHING and shot.state is State.WAIT:
+        elif shot.line == PUSHING and shot.state is MachineState.WAIT:
             self._at_stop(shot, where())
         if shot.alarms != self._alarms:
             self.truth.alarms.update(each.code for each in shot.alarms if each not in self._alarms)
@@ -147,10 +147,10 @@ class Witness:
 class NightShift:
     """The lathe, its desk and its store; all of it goes on by ``tick``."""
 
-    def __init__(self, desk: Desk, executor: Executor, clock: StepClock, journal: Journal) -> None:
+    def __init__(self, desk: Desk, executor: Executor, clock: ManualClock, journal: Journal) -> None:
         self.desk, self.executor, self.clock, self.journal = desk, executor, clock, journal
-        assert isinstance(desk.control.panel, PlantHands)
-        self.lathe = desk.control.panel
+        assert isinstance(desk.desk_control.station_panel, PlantControls)
+        self.lathe = desk.desk_control.station_panel
         self.witness = Witness()
         self._ticks = 0
         self._offsets: dict[str, float] = {}  # X of T1 by job
@@ -165,31 +165,31 @@ class NightShift:
     @property
     def store(self) -> Store:
         """What the lathe remembers."""
-        assert self.desk.book.store is not None
-        return self.desk.book.store
+        assert self.desk.offset_book.store is not None
+        return self.desk.offset_book.store
 
     @property
     def parts_book(self) -> PartsBook:
         """Measured parts and lives."""
-        watch = self.desk.pages.find(PartsWatch)
+        watch = self.desk.page_registry.find(PartsWatch)
         assert watch is not None
-        return watch.book
+        return watch.parts_book
 
     def tick(self) -> None:
         """One tick of the executor, and every so often a frame of the desk."""
         self.clock.advance(TICK)
-        self.executor.tick()
-        self.witness.look(self.shot, self._jobs(), self.lathe.true_position)
+        self.executor.run_tick()
+        self.witness.look(self.shot, self._jobs(), self.lathe.get_true_position)
         self._ticks += 1
         if self._ticks % FRAME == 0:
             self.frame()
-        if self._ticks % DRAIN == 0 and isinstance(self.desk.control.recordings, Recorder):
-            self.desk.control.recordings.drain()
+        if self._ticks % DRAIN == 0 and isinstance(self.desk.desk_control.recordings, Recorder):
+            self.desk.desk_control.recordings.store_queued_ticks()
 
     def frame(self) -> None:
         """What the window asks for in a frame, without its drawing."""
-        shot, _view, loaded = self.desk.look()
-        prompt(self.desk, shot, loaded)
+        shot, _view, loaded = self.desk.update()
+        make_page_prompt(self.desk, shot, loaded)
 
     def run(self, seconds: float) -> None:
         """So much time of the machine."""
@@ -201,7 +201,7 @@ class NightShift:
         end = time.monotonic() + PATIENCE
         while not true():
             if time.monotonic() > end:
-                raise TimeoutError(f"a worker does not come back: {self.desk.notice or self.shot}")
+                raise TimeoutError(f"a worker does not come back: {self.desk.prompt_notice or self.shot}")
             time.sleep(0.001)
             self.frame()
 
@@ -212,7 +212,7 @@ class NightShift:
 
     def _jobs(self) -> dict[str, float]:
         """X of T1 of the job on the desk, by its digest; the last few that were."""
-        job = self.desk.session.now.job
+        job = self.desk.program_loader.loaded.job
         if job is not None and job.digest not in self._offsets:
             self._offsets = dict([*self._offsets.items()][-3:])
             self._offsets[job.digest] = job.setup.tools[1].x
@@ -222,16 +222,18 @@ class NightShift:
 @contextmanager
 def night_shift() -> Iterator[NightShift]:
     """The lathe in the product's folder, tools in its store and the program in its folder; put away after."""
-    write_whole(data_folder() / "programs" / NAME, PROGRAM.encode())
-    clock, journal, log = StepClock(), Journal.at_home(), Log()
-    desk, executor = desk_and_executor(None, stored_offsets, clock, journal, data_folder() / RECORDS)
-    desk.hands.clock = clock.now
+    write_program_file(find_data_folder() / "programs" / NAME, PROGRAM.encode())
+    clock, journal, log = ManualClock(), Journal.open_default(), ErrorLog()
+    desk, executor = create_desk_and_executor(
+        None, read_stored_offsets, clock, journal, find_data_folder() / RECORDS_FOLDER
+    )
+    desk.station_controls.clock = clock.now
     try:
         yield NightShift(desk, executor, clock, journal)
     finally:
-        executor.shut()
-        if isinstance(desk.control.recordings, Recorder):
-            desk.control.recordings.close()
+        executor.shut_down()
+        if isinstance(desk.desk_control.recordings, Recorder):
+            desk.desk_control.recordings.close()
         desk.close()
         journal.close()
         log.close()

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from core.alarms import CATALOGUE
-from core.page_contents import anchor_of
+from core.page_contents import make_anchor
 from tests.benchmarks.footprint import RESULTS
 
 Result = dict[str, Any]
@@ -102,7 +102,7 @@ def _contents(folder: Path) -> str:
     file = folder / "night_shift.json"
     parts = json.loads(file.read_text())["parts"] if file.exists() else "many"
     return "".join(
-        f"- [{title}](#{anchor_of(title)}): {what.format(parts=parts)}\n" for _, title, what in _SECTIONS
+        f"- [{title}](#{make_anchor(title)}): {what.format(parts=parts)}\n" for _, title, what in _SECTIONS
     )
 
 
@@ -146,7 +146,8 @@ def _night(result: Result, _folder: Path) -> Iterator[str]:
         f"**Not counted.** {counts['pins without count']} pins were made with NO COUNT. "
         f"Programs that were then canceled parted off {counts['pins of programs that were broken off']} "
         "pins.",
-        f"**Records.** The store recorded {counts['readings']} part measurements and {counts['inserts']} "
+        f"**Records.** The store recorded {counts['readings']} part measurements and "
+        f"{counts['insert_changes']} "
         f"insert changes. The setpoint queue had {result['underruns']} underruns.",
         f"**Drift.** {_places(result['at the bar stop'])} With {drift['offsets that were turned with']} "
         f"different X offsets, the turned radius varied by {spread:g} mm among pins with the same offset. It "

@@ -25,13 +25,13 @@ from pathlib import Path
 from typing import Any
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import Setup, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_plan import plan
-from core.page_contents import contents
+from core.motion.motion_plan import plan_motion
+from core.page_contents import make_contents
 from core.proving.prove_program import prove
 from tests.benchmarks import bench_driver_host, bench_removal, bench_start
 from tests.benchmarks.bench_prove import feeds, program
@@ -111,7 +111,7 @@ def _head() -> str:
 This page lists the CPU time and memory that TurnDesk needs, with goals. If a goal is not met, the
 reason is given below the table.
 
-{contents(TITLES)}
+{make_contents(TITLES)}
 `python -m tests.benchmarks.speed_page docs/speed.md` created this page on {time.strftime("%Y-%m-%d")}:
 {_machine()}.
 
@@ -249,13 +249,13 @@ def _median_ms(work: Callable[[], object], rounds: int) -> str:
 
 def _proved(text: str, setup: Setup, machine: Machine) -> None:
     """Read and prove a text."""
-    prove(Source("speed", text), setup, machine)
+    prove(ProgramSource("speed", text), setup, machine)
 
 
 def _warm() -> str:
     """Proofs in a process that has proved before, as the editor's."""
     machine = load_machine(None)
-    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
+    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     rows, figures = [], {}
     for count, rounds in ((200, 50), (20_000, 7)):
         text, name = program(count), f"prove {count:,} blocks, read again"
@@ -301,7 +301,7 @@ def _chords() -> str:
         blocks = rounded_chords(round(math.pi * RADIUS / CHORD), FEED, grid)
         for each in tolerances:
             limits = MotionLimits(grain=max(count, each / math.sqrt(2.0)))
-            yield f"{plan(build_path(blocks, limits)).duration / ideal:.3f}"
+            yield f"{plan_motion(build_path(blocks, limits)).duration_s / ideal:.3f}"
 
     rows = [(f"coordinates rounded to {grid} mm", *ratios(grid)) for grid in (0.00127, 0.00254, 0.005)]
     head = ("program", *(f"corner_tolerance {each} mm" for each in tolerances))

@@ -13,15 +13,15 @@ import pytest
 
 from app.cli.main import main
 from app.compose.runs import headless_run
-from core.access.access_table import Level
+from core.access.access_table import AccessLevel
 from core.message import CodedError
-from core.store import people
+from core.store import user_records
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
-from core.store.store_rows import utc
-from drivers.waiting import StepClock
+from core.store.store_rows import format_utc
+from drivers.wakeups import ManualClock
 from tests.coded import recorded_refusals
 from tests.worked import worked
 
@@ -76,7 +76,7 @@ def turndesk(home: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest
 @pytest.fixture
 def paced_by_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let ``--realtime`` run on a clock of steps, so that a busy computer changes nothing that is counted."""
-    monkeypatch.setattr(headless_run, "RealClock", StepClock)
+    monkeypatch.setattr(headless_run, "RealClock", ManualClock)
 
 
 @pytest.fixture
@@ -99,11 +99,14 @@ def filled(home: Path) -> Path:
     """A store with something in each of its tables."""
     feature = FeatureRow(0, "peg.nc", "SPIGOT", "diameter", 12.7, -0.05, 0.05, "tool", 1, 1, 0, 1)
     began = datetime.now(UTC) - timedelta(hours=2)
-    at = utc(began)
+    at = format_utc(began)
     with Store.open(home) as store:
         of = store.write(lambda c: measured_parts.save_feature(c, feature)).result(60)
         for part in range(1, 13):
-            times = (utc(began + timedelta(minutes=part)), utc(began + timedelta(minutes=part, seconds=50)))
+            times = (
+                format_utc(began + timedelta(minutes=part)),
+                format_utc(began + timedelta(minutes=part, seconds=50)),
+            )
             outcome = "COMPLETE" if part > 1 else "ALARM"
             cycle = CycleRow(f"c{part}", "peg.nc", part if part > 1 else 0, *times, 50.0, outcome)
             store.write(partial(part_cycles.save_cycle, row=cycle)).result(60)
@@ -112,12 +115,14 @@ def filled(home: Path) -> Path:
             store.write(partial(measured_parts.add_reading, row=reading)).result(60)
         stop = StopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
         store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
-        store.write(lambda c: tool_lives.set_limits(c, tool_lives.LifeRow(1, 50))).result(60)
-        store.write(lambda c: tool_lives.change_insert(c, 1, "worn")).result(60)
-        store.offsets.tools.change_row(1, "first", {"x": 0.0, "z": 0.0}).result(60)
-        store.offsets.tools.change_row(1, "wear", {"wear_x": -0.01}).result(60)
-        store.offsets.tools.undo_last_step("undone").result(60)
+        store.write(lambda c: tool_lives.save_limits(c, tool_lives.ToolLifeRow(1, 50))).result(60)
+        store.write(lambda c: tool_lives.record_insert_change(c, 1, "worn")).result(60)
+        store.offsets.tool_offsets.change_row(1, "first", {"x": 0.0, "z": 0.0}).result(60)
+        store.offsets.tool_offsets.change_row(1, "wear", {"wear_x": -0.01}).result(60)
+        store.offsets.tool_offsets.undo_last_step("undone").result(60)
         store.write(
-            lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, b"salt", b"hash"))
+            lambda c: user_records.save_user(
+                c, user_records.UserRow("ANN", AccessLevel.SERVICE, b"salt", b"hash")
+            )
         ).result(60)
     return home

@@ -53,4 +53,4 @@ def say(home: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, refusals:
 @pytest.fixture
 def any_pin(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if every PIN was the right one."""
-    monkeypatch.setattr("app.cli.who_changes._demand_pin", lambda _store, _row: None)
+    monkeypatch.setattr("app.cli.change_author._require_pin", lambda _store, _row: None)

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.cli.main import all_commands, build_parser
-from core.access.access_table import Level
+from app.cli.main import build_parser, list_commands
+from core.access.access_table import AccessLevel
 from core.message import CodedError
-from core.store.people import PersonRow, keep_person
 from core.store.store import Store
+from core.store.user_records import UserRow, save_user
 from tests.cli.say import Say, codes, home, say
 from tests.extras.modules import of_extras
 
@@ -25,15 +25,15 @@ __all__ = ["home", "say"]
 def people(home: Path) -> None:
     """ANNA of SERVICE, BEN of SETUP; no PIN fits what is stored of theirs."""
     with Store.open(home) as store:
-        for name, level in (("ANNA", Level.SERVICE), ("BEN", Level.SETUP)):
-            row = PersonRow(name, level, b"salt", b"hash")
-            store.write(partial(keep_person, row=row)).result(60)
+        for name, level in (("ANNA", AccessLevel.SERVICE), ("BEN", AccessLevel.SETUP)):
+            row = UserRow(name, level, b"salt", b"hash")
+            store.write(partial(save_user, row=row)).result(60)
 
 
 @pytest.fixture
 def no_sign_in(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if the feature that checks PINs was deleted."""
-    monkeypatch.setattr("app.compose.extra.extras", dict)
+    monkeypatch.setattr("app.compose.optional_features.extras", dict)
 
 
 @pytest.mark.parametrize("words", [
@@ -108,7 +108,7 @@ def commands(parser: argparse.ArgumentParser, *words: str) -> Iterator[tuple[str
 
 def _installed(command: str) -> bool:
     """Whether a command exists here: it is not one of an optional feature that is absent."""
-    return command.split(maxsplit=1)[0] in all_commands()
+    return command.split(maxsplit=1)[0] in list_commands()
 
 
 def test_each_command_says_who_changes_or_is_known_to_read() -> None:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from core.alarms import CATALOGUE
-from core.alarms.alarms_page import document, main
+from core.alarms.alarms_page import main, render_page
 from tests.cli.conftest import Turndesk
 
 PAGE = Path(__file__).parents[2] / "docs" / "alarms.md"
@@ -42,7 +42,7 @@ def test_a_number_that_is_none_is_refused_in_one_line(turndesk: Turndesk) -> Non
 
 def test_the_page_of_alarms_is_current() -> None:
     """python -m core.alarms.alarms_page docs/alarms.md"""
-    assert PAGE.read_text(encoding="utf-8") == document()
+    assert PAGE.read_text(encoding="utf-8") == render_page()
 
 
 def test_the_page_is_written_where_it_is_asked_for(tmp_path: Path) -> None:

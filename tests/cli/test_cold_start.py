@@ -13,7 +13,7 @@ OF_THE_REST = (
     *("core.executor", "core.alarms", "core.ports", "core.records", "core.store.store"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("drivers.canopen", "drivers.grblhal", "drivers.hal", "drivers.inverter"),
-    *("core.machine.desk_tables", "core.machine.setter_table"),
+    *("core.machine.serial_and_backup_tables", "core.machine.setter_table"),
     *("app.extras.mtconnect.driver", "app.extras.pendant.driver", "core.extras"),
     *("drivers.simulators", "drivers.setpoint_queue"),
 )

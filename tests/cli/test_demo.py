@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.demo_store import demo_program, open_demo
-from app.compose.machine.machine_setup import read_machine, setup_for
+from app.compose.demo_store import find_demo_program, open_demo
+from app.compose.machine.machine_setup import create_setup, read_machine
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import book_of, stored_offsets
+from app.compose.stored_offsets import create_offset_book, read_stored_offsets
 from app.desk.command_errors import CommandError
-from app.desk.kept_part import NOTHING_KEPT, kept_part
-from app.desk.pages.first_job import FirstJob
-from app.desk.programs.program_choice import LAST_PROGRAM
+from app.desk.pages.first_job import FirstJobCard
+from app.desk.programs.program_choice import LAST_PROGRAM_SETTING
+from app.desk.stored_part import EMPTY_STORED_PART, load_stored_part
 from core.language.diagnostics import Severity
 from core.language.source import load_source
 from core.message import CodedError
@@ -36,9 +36,9 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> None:
     folder = open_demo(None)
     assert folder == home / "demo"
-    journal = Journal.at_home()
-    book = book_of(stored_offsets, journal)
-    assert not book.locked
+    journal = Journal.open_default()
+    book = create_offset_book(read_stored_offsets, journal)
+    assert not book.lock_reason
     assert book.tools[1].x == pytest.approx(-0.5 * INCH)
     journal.close()
     assert not (home / "turndesk.db").exists()  # nothing of it in the store of the machine
@@ -46,8 +46,8 @@ def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> 
 
 def test_the_stock_of_its_lathe_program_is_specified_and_in_a_collet(home: Path) -> None:
     with Store.open(open_demo(None), read_only=True) as store:
-        kept = kept_part(store.settings.read_setting, "bushing.nc")
-        assert kept_part(store.settings.read_setting, "pinbar.nc") == NOTHING_KEPT
+        kept = load_stored_part(store.settings.read_setting, "bushing.nc")
+        assert load_stored_part(store.settings.read_setting, "pinbar.nc") == EMPTY_STORED_PART
     assert (kept.stock, kept.stick_out) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
     assert read_machine(None).clamping.diameter == pytest.approx(2.5 * INCH)
 
@@ -64,10 +64,10 @@ def test_the_tool_table_of_a_mill_has_what_its_samples_use(home: Path) -> None:
 
 def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with Store.open(open_demo(None)) as store:
-        store.offsets.tools.change_row(1, values={"x": 3.0}, why="test", who="test").result()
+        store.offsets.tool_offsets.change_row(1, values={"x": 3.0}, why="test", who="test").result()
     monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
     with Store.open(open_demo(None), read_only=True) as store:
-        assert store.offsets.tools.read_rows()[1].x == 3.0
+        assert store.offsets.tool_offsets.read_rows()[1].x == 3.0
 
 
 def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:
@@ -101,9 +101,9 @@ MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")
 @pytest.mark.parametrize("machine", [None, "sinumerik-modulo", "sinumerik-linear", *MILLS])
 def test_its_program_is_one_that_the_machine_runs(machine: str | None) -> None:
     """A mill's desk began with a lathe's part, which it refuses."""
-    source = load_source(Path(demo_program(machine)))
+    source = load_source(Path(find_demo_program(machine)))
     found = read_machine(machine)
-    report = prove(source, setup_for(found, tools={}, secondary={}), found)
+    report = prove(source, create_setup(found, tool_offsets={}, secondary_offsets={}), found)
     assert [each for each in report.diagnostics if each.severity is Severity.ERROR] == []
     assert str(source.dialect) == found.language
 
@@ -114,16 +114,16 @@ def test_it_comes_back_with_the_program_and_the_step_of_the_first_job(
     open_demo(None)
     own = home / "demo" / "mine.nc"
     own.write_text("M30\n")
-    journal = Journal.at_home()
-    card = FirstJob(3)
-    card.save(journal)
-    journal.save_setting(LAST_PROGRAM, str(own))
+    journal = Journal.open_default()
+    card = FirstJobCard(3)
+    card.save_step(journal)
+    journal.save_setting(LAST_PROGRAM_SETTING, str(own))
     journal.close()
     monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
     open_demo(None)
-    assert demo_program(None) == str(own)
-    journal = Journal.at_home()
-    assert FirstJob.stored(journal).at == 3
+    assert find_demo_program(None) == str(own)
+    journal = Journal.open_default()
+    assert FirstJobCard.from_store(journal).step_index == 3
     journal.close()
     own.unlink()
-    assert Path(demo_program(None)).name == "bushing.nc"
+    assert Path(find_demo_program(None)).name == "bushing.nc"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.program_options import read_inputs
-from app.compose.stored_offsets import NONE, read_offsets
+from app.cli.program_options import read_inputs_file
+from app.compose.stored_offsets import NO_OFFSETS, read_offsets
 from app.desk.command_errors import CommandError
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from tests.coded import raises_code
@@ -27,7 +27,7 @@ def test_offsets_become_millimetres(tmp_path: Path) -> None:
 
 
 def test_empty_file_sets_nothing(tmp_path: Path) -> None:
-    assert read_offsets(written(tmp_path, "")) == NONE
+    assert read_offsets(written(tmp_path, "")) == NO_OFFSETS
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_all_mistakes_at_once(tmp_path: Path) -> None:
 
 
 def test_inputs_by_number_and_terminal(tmp_path: Path) -> None:
-    assert read_inputs(written(tmp_path, '[inputs]\n10 = true\n"TB2-5" = false\n')) == {
+    assert read_inputs_file(written(tmp_path, '[inputs]\n10 = true\n"TB2-5" = false\n')) == {
         "10": True,
         "TB2-5": False,
     }
@@ -78,7 +78,7 @@ def test_inputs_by_number_and_terminal(tmp_path: Path) -> None:
     ],
 )
 def test_input_7_is_the_terminal_that_m95_asks(tmp_path: Path, text: str, on: bool) -> None:
-    assert read_inputs(written(tmp_path, f"[inputs]\n{text}\n"))["TB2-9"] is on
+    assert read_inputs_file(written(tmp_path, f"[inputs]\n{text}\n"))["TB2-9"] is on
 
 
 @pytest.mark.parametrize(
@@ -93,16 +93,16 @@ def test_input_7_is_the_terminal_that_m95_asks(tmp_path: Path, text: str, on: bo
 )
 def test_bad_inputs_are_refused(tmp_path: Path, text: str, code: str, value: str) -> None:
     with raises_code(CommandError, code, value):
-        read_inputs(written(tmp_path, text))
+        read_inputs_file(written(tmp_path, text))
 
 
 def test_inputs_that_the_machine_does_not_have(tmp_path: Path) -> None:
     path = written(tmp_path, '[inputs]\n"TB25" = true\n')
-    assert read_inputs(path) == {"TB25": True}
-    assert read_inputs(written(tmp_path, "[inputs]\n7 = true\n"), known=("7",)) == {"7": True}
+    assert read_inputs_file(path) == {"TB25": True}
+    assert read_inputs_file(written(tmp_path, "[inputs]\n7 = true\n"), known=("7",)) == {"7": True}
     path = written(tmp_path, '[inputs]\n"TB25" = true\n')
     with raises_code(CommandError, "unknown-key", "TB2-5"):
-        read_inputs(path, known=("TB2-5", "10"))
+        read_inputs_file(path, known=("TB2-5", "10"))
 
 
 def test_missing_file_is_refused(tmp_path: Path) -> None:

@@ -10,13 +10,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.cli.figures.omniturn_figures import block_json, decimals, rounded, row, series_json, series_rows
+from app.cli.figures.omniturn_output import (
+    format_decimals,
+    format_row,
+    format_series,
+    make_block_json,
+    make_series_json,
+    round_exactly,
+)
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.shared.elementary_blocks import Series, TimedSeries
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.shared.elementary_blocks import StraightMoveSeries, TimedSeries
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
-from core.proving.program_timeline import TimedBlock, Timeline, timed_blocks
+from core.language.source import ProgramSource
+from core.proving.program_timeline import TimedBlock, Timeline, iter_timed_blocks
 
 MACHINE = load_machine(None)
 HEADS = (
@@ -29,16 +36,20 @@ MOVES = "".join(f"X{0.5 + k % 7 * 0.01:.4f}Z{-0.0001 * k:.5f}\n" for k in range(
 
 def moves_of(head: str) -> tuple[TimedSeries, list[TimedBlock]]:
     """The program's plain moves as a series, and the same one by one."""
-    setup = setup_for(
-        MACHINE, tools={1: ToolOffset(x=-3.1, z=2.7)}, secondary={1: SecondaryOffset(x=0.0133, z=-0.02)}
+    setup = create_setup(
+        MACHINE,
+        tool_offsets={1: ToolOffset(x=-3.1, z=2.7)},
+        secondary_offsets={1: SecondaryOffset(x=0.0133, z=-0.02)},
     )
-    source = Source("A", f"{head}{MOVES}M30\n")
-    alone = [each for each in timed_blocks(Timeline.of(source, setup, MACHINE)) if each[0].line > 6]
+    source = ProgramSource("A", f"{head}{MOVES}M30\n")
+    alone = [
+        each for each in iter_timed_blocks(Timeline.from_program(source, setup, MACHINE)) if each[0].line > 6
+    ]
     alone = [each for each in alone if each[0].moves]
     blocks = [block for block, _, _ in alone]
     n, line = (np.array([getattr(block, name) for block in blocks]) for name in ("n", "line"))
     ways = {name: np.array([getattr(each, name) for each in blocks]) for name in ("x0", "z0", "x", "z")}
-    series = Series(blocks[0], source.lines, n, line, **ways)
+    series = StraightMoveSeries(blocks[0], source.lines, n, line, **ways)
     assert list(map(repr, series)) == list(map(repr, blocks))
     t0, t1 = (np.array(column) for column in list(zip(*alone, strict=True))[1:])
     return TimedSeries(series, t0, t1), alone
@@ -47,14 +58,14 @@ def moves_of(head: str) -> tuple[TimedSeries, list[TimedBlock]]:
 @pytest.mark.parametrize("head", HEADS)
 def test_the_table_is_the_same(head: str) -> None:
     together, alone = moves_of(head)
-    assert series_rows(together) == "".join(row(block, t0) for block, t0, _ in alone)
+    assert format_series(together) == "".join(format_row(block, t0) for block, t0, _ in alone)
 
 
 @pytest.mark.parametrize("head", HEADS)
 def test_the_objects_are_the_same(head: str) -> None:
     together, alone = moves_of(head)
-    told = [json.dumps(block_json(block, block.text, t0, t1)) + "\n" for block, t0, t1 in alone]
-    assert series_json(together) == "".join(told)
+    told = [json.dumps(make_block_json(block, block.text, t0, t1)) + "\n" for block, t0, t1 in alone]
+    assert make_series_json(together) == "".join(told)
 
 
 FIGURES = (
@@ -68,7 +79,7 @@ def same(values: list[float], places: int) -> bool:
     """Whether a column is rounded and written as each value by itself."""
     alone = [repr(round(value, places) + 0.0) for value in values]
     column = np.array(values)
-    return list(map(repr, rounded(column, places).tolist())) == decimals(column, places) == alone
+    return list(map(repr, round_exactly(column, places).tolist())) == format_decimals(column, places) == alone
 
 
 @given(st.lists(FIGURES, min_size=1, max_size=20), st.sampled_from([6, 9]))
@@ -93,8 +104,8 @@ def test_halves_and_what_is_near_them(value: float) -> None:
     ],
 )  # fmt: skip
 def test_noughts_at_both_ends_are_left_out(value: float, text: str) -> None:
-    assert decimals(np.array([value, value]), 9) == [text, text]
+    assert format_decimals(np.array([value, value]), 9) == [text, text]
 
 
 def test_no_numbers_are_no_texts() -> None:
-    assert decimals(np.empty(0), 6) == []
+    assert format_decimals(np.empty(0), 6) == []

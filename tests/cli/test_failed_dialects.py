@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_files import load_shipped_machine
 from tests.cli.conftest import Turndesk
 from tests.sinumerik.test_linear_third_axis import SLIDE
 
@@ -78,7 +78,7 @@ def test_the_groove_has_its_flanks(turndesk: Turndesk) -> None:
 
 def test_a_linear_third_axis_counts_in_mm(turndesk: Turndesk, tmp_path: Path) -> None:
     """50 mm at 100 mm/min: 30 s."""
-    text = shipped_machine("sinumerik-linear").text
+    text = load_shipped_machine("sinumerik-linear").text
     file = tmp_path / "y.toml"
     file.write_text(re.sub(r"\[axis\.C\].*?(?=\[spindle\])", SLIDE, text, flags=re.DOTALL), encoding="utf-8")
     found = proved(turndesk, "third_axis_linear.mpf", "--machine", file)

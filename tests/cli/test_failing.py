@@ -15,8 +15,8 @@ import pytest
 from app.cli.bug_report.crash_report import report_crash, report_thread
 from app.cli.main import main
 from app.compose.runs import error_log
-from app.compose.runs.error_log import Log
-from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm
+from app.compose.runs.error_log import ErrorLog
+from core.executor.raised_alarm import AlarmError, log_alarm, make_alarm_and_reaction
 
 CODE = "from app.cli.main import console; import sys; sys.argv = ['turndesk']; sys.exit(console())"
 
@@ -120,7 +120,7 @@ def test_a_library_of_the_system_that_is_missing_is_no_fault_of_ours(
         raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
 
     monkeypatch.setenv("QT_QPA_PLATFORM", "offscreen")
-    monkeypatch.setattr("app.screen.display.trouble", missing)
+    monkeypatch.setattr("app.screen.display.find_display_error", missing)
     assert main([]) == 2
     said = capsys.readouterr().err
     assert said.startswith("turndesk: libGL.so.1: cannot open shared object file")
@@ -132,7 +132,7 @@ def test_a_module_of_ours_that_is_missing_is_a_fault(home: Path, monkeypatch: py
         raise ImportError("cannot import name 'x' from 'app'")
 
     monkeypatch.setenv("QT_QPA_PLATFORM", "offscreen")
-    monkeypatch.setattr("app.screen.display.trouble", missing)
+    monkeypatch.setattr("app.screen.display.find_display_error", missing)
     with pytest.raises(ImportError):
         main([])
 
@@ -140,8 +140,8 @@ def test_a_module_of_ours_that_is_missing_is_a_fault(home: Path, monkeypatch: py
 def test_a_log_folder_that_cannot_be_made_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "logs").write_text("a file stands where the folder should be")
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    log = Log()
-    assert log.trouble.startswith(f"the log cannot be written to {tmp_path / 'logs'}: ")
+    log = ErrorLog()
+    assert log.error_text.startswith(f"the log cannot be written to {tmp_path / 'logs'}: ")
     log.close()
 
 
@@ -151,17 +151,17 @@ def test_a_full_disk_under_the_log_is_told_without_a_traceback(
 ) -> None:
     (home / "logs").mkdir(parents=True)
     (home / "logs" / "turndesk.log").symlink_to("/dev/full")
-    log = Log()
-    assert log.trouble == ""
+    log = ErrorLog()
+    assert log.error_text == ""
     logging.getLogger("test").warning("lost")
     log.close()
-    assert "No space left on device" in log.trouble
+    assert "No space left on device" in log.error_text
     assert "Traceback" not in capfd.readouterr().err
 
 
 def test_the_log_rotates_by_its_size(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(error_log, "_SIZE", 2_000)
-    log = Log()
+    monkeypatch.setattr(error_log, "_MAX_BYTES", 2_000)
+    log = ErrorLog()
     for number in range(200):
         logging.getLogger("test").warning("line %d of the night", number)
     log.close()
@@ -177,8 +177,8 @@ def test_a_log_folder_that_goes_away_is_told_without_a_traceback(
     home: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """The file is open yet; that the folder has gone is found when the next one is begun."""
-    monkeypatch.setattr(error_log, "_SIZE", 300)
-    log = Log()
+    monkeypatch.setattr(error_log, "_MAX_BYTES", 300)
+    log = ErrorLog()
     logging.getLogger("test").warning("the first line")
     log._listener.stop()
     log._listener.start()
@@ -187,14 +187,14 @@ def test_a_log_folder_that_goes_away_is_told_without_a_traceback(
         logging.getLogger("test").warning("line %d of the night", number)
     log._listener.stop()
     log._listener.start()
-    assert "the log cannot be written" in log.trouble
+    assert "the log cannot be written" in log.error_text
     log.close()
     assert "Traceback" not in capfd.readouterr().err
 
 
 def test_a_record_of_the_log_has_time_thread_and_alarm(home: Path) -> None:
-    log = Log()
-    log_alarm(alarm_and_reaction(AlarmError("driver", "setpoints of a wrong shape", 7), 0, 1.0)[0])
+    log = ErrorLog()
+    log_alarm(make_alarm_and_reaction(AlarmError("driver", "setpoints of a wrong shape", 7), 0, 1.0)[0])
     log.close()
     (line,) = (home / "logs" / "turndesk.log").read_text().splitlines()
     assert "MainThread" in line

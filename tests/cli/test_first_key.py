@@ -12,7 +12,7 @@ import pytest
 
 from app import VERSION
 from app.cli.command_parser import is_for_screen
-from app.cli.main import COMMANDS, all_commands, build_parser
+from app.cli.main import CORE_COMMANDS, build_parser, list_commands
 
 ROOT = Path(__file__).parents[2]
 LISTED = """
@@ -58,13 +58,13 @@ def test_a_command_imports_its_own_module_alone() -> None:
 
 
 def test_the_bare_parser_has_the_help_of_the_whole_one() -> None:
-    assert build_parser(bare=True).format_help() == build_parser().format_help()
-    assert set(COMMANDS) <= set(all_commands())
+    assert build_parser(without_options=True).format_help() == build_parser().format_help()
+    assert set(CORE_COMMANDS) <= set(list_commands())
 
 
 def test_a_command_has_its_line_of_help_once() -> None:
     text = " ".join(build_parser().format_help().split())
-    assert all(text.count(COMMANDS[name]) == 1 for name in COMMANDS)
+    assert all(text.count(CORE_COMMANDS[name]) == 1 for name in CORE_COMMANDS)
 
 
 @pytest.mark.parametrize(

@@ -15,13 +15,13 @@ from typing import Any
 
 import pytest
 
-from app.cli.proofs.proof_cache import ProofCache, plain
+from app.cli.proofs.proof_cache import ProofCache, format_for_hash
 from app.cli.proofs.proof_job import ProofJob
-from app.cli.proofs.proof_pool import KILLED, Proving, Workers
+from app.cli.proofs.proof_pool import WORKER_KILLED_TEXT, LocalWorkers, WorkDistributor
 from app.cli.proofs.proof_work import Proof
-from app.compose.machine.machine_setup import read_machine, setup_for
-from core.language.source import Source
-from core.proving.program_tools import PartSetting
+from app.compose.machine.machine_setup import create_setup, read_machine
+from core.language.source import ProgramSource
+from core.proving.program_tools import PartSettings
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk
 from tests.texts import text as wording
@@ -101,7 +101,7 @@ def test_the_second_time_nothing_is_proved(
 ) -> None:
     first = turndesk("prove", parts, "--offsets", offsets, "--json")
     assert len(kept(home)) == 3
-    monkeypatch.setattr(Workers, "open", lambda *_: pytest.fail("a worker was started"))
+    monkeypatch.setattr(LocalWorkers, "start_workers", lambda *_: pytest.fail("a worker was started"))
     assert turndesk("prove", parts, "--offsets", offsets, "--json") == first
 
 
@@ -145,22 +145,22 @@ def test_a_damaged_proof_is_made_again(turndesk: Turndesk, parts: Path, offsets:
 @pytest.fixture
 def job() -> ProofJob:
     machine = read_machine(None)
-    return ProofJob(machine, setup_for(machine, tools={}, secondary={}), PartSetting())
+    return ProofJob(machine, create_setup(machine, tool_offsets={}, secondary_offsets={}), PartSettings())
 
 
 def test_the_oldest_go_when_there_are_too_many(tmp_path: Path, job: ProofJob) -> None:
-    cache = ProofCache(tmp_path, job, largest=2000)
-    keys = [cache.key(Source(f"{n}.nc", GOOD)) for n in range(40)]
+    cache = ProofCache(tmp_path, job, max_bytes=2000)
+    keys = [cache.get_key(ProgramSource(f"{n}.nc", GOOD)) for n in range(40)]
     for age, key in enumerate(keys):
-        cache.keep(key, Proof({"file": os.urandom(40).hex(), "diagnostics": []}))
+        cache.save_proof(key, Proof({"file": os.urandom(40).hex(), "diagnostics": []}))
         os.utime(tmp_path / key[:2] / key[2:], (1000.0 - age, 1000.0 - age))
     aside = tmp_path / keys[0][:2] / "left.1.part"
     aside.write_text("half")
     os.utime(aside, (1.0, 1.0))
-    cache.trim()
+    cache.delete_oldest()
     sizes = [path.stat().st_size for path in tmp_path.glob("??/*")]
     assert 1000 < sum(sizes) <= 1600
-    assert [cache.find(key) is not None for key in (keys[0], keys[-1])] == [True, False]
+    assert [cache.find_proof(key) is not None for key in (keys[0], keys[-1])] == [True, False]
     assert not aside.exists()
 
 
@@ -179,9 +179,9 @@ def test_a_full_disk_is_told_once_and_proving_goes_on(
 
 
 def test_only_what_has_a_lasting_text_is_hashed() -> None:
-    assert plain({"b": frozenset({2, 1}), "a": (0.1, None)}) == "{'a':[0.1,None],'b':<1,2>}"
+    assert format_for_hash({"b": frozenset({2, 1}), "a": (0.1, None)}) == "{'a':[0.1,None],'b':<1,2>}"
     with pytest.raises(TypeError):
-        plain(plain)
+        format_for_hash(format_for_hash)
 
 
 def test_a_stock_that_is_kept_with_a_program_counts_in_a_folder_too(
@@ -214,7 +214,7 @@ def _submit(executor: Executor, number: int) -> Future[int]:
 
 
 def test_what_kills_its_worker_twice_is_told_and_the_rest_goes_on() -> None:
-    made = dict(Proving(Workers(2), _submit).results(iter(range(30))))
+    made = dict(WorkDistributor(LocalWorkers(2), _submit).iterate_results(iter(range(30))))
     assert isinstance(made.pop(13), BrokenExecutor)
     assert made == {n: n * n for n in range(30) if n != 13}
 
@@ -372,4 +372,4 @@ def test_a_fault_of_ours_is_told_with_its_program(
     told = turndesk("prove", parts, "--offsets", offsets, "--json")
     assert told.status == 2
     assert told.err.count("internal error in TurnDesk (made for this test)") == 3
-    assert KILLED not in told.err
+    assert WORKER_KILLED_TEXT not in told.err

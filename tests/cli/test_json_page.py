@@ -10,14 +10,14 @@ import pytest
 
 import resources
 from app.cli.json_reference import json_keys
-from app.cli.json_reference.json_page import document, main
+from app.cli.json_reference.json_page import generate_page, main
 from app.shopfloor import json_keys as floor_keys
-from core.json_key import keys, row_keys
+from core.json_keys import declare_keys, declare_row_keys
 from core.store.store import Store
-from core.store.store_export import EVENTS, RUNS, TABLES
+from core.store.store_export import EVENTS, RUNS, TABLES_BY_FILE_NAME
 from core.store.store_rows import EventRow
-from core.store.table_keys import RUNS_FILE
-from core.store.table_keys import TABLES as PUBLIC
+from core.store.table_keys import PUBLIC_TABLES as PUBLIC
+from core.store.table_keys import RUN_FILE_COLUMNS
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
 from tests.whole_product import WHOLE_PRODUCT
@@ -29,17 +29,19 @@ HEAD = "G90G94F300\nM03S600\nT1\n"
 
 @WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
-    assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_reference.json_page docs/json.md"
+    assert PAGE.read_text("utf-8") == generate_page(), (
+        "python -m app.cli.json_reference.json_page docs/json.md"
+    )
 
 
 def test_the_command_writes_the_page(tmp_path: Path) -> None:
     assert main([str(tmp_path / "page.md")]) == 0
-    assert (tmp_path / "page.md").read_text("utf-8") == document()
+    assert (tmp_path / "page.md").read_text("utf-8") == generate_page()
 
 
 def test_meanings_are_sentences() -> None:
-    tables = [each.keys for each in json_keys.OUTPUTS] + [table.columns for table in PUBLIC]
-    for key in (key for table in (*tables, floor_keys.FILE) for key in table):
+    tables = [each.keys for each in json_keys.ALL_OUTPUTS] + [table.columns for table in PUBLIC]
+    for key in (key for table in (*tables, floor_keys.FILE_KEYS) for key in table):
         assert key.meaning.endswith("."), key
         assert "|" not in key.meaning, key
 
@@ -51,13 +53,15 @@ def test_every_command_with_json_is_on_the_page() -> None:
         for path in (*folder.glob("*_command.py"), *folder.parent.glob("extras/*/*_command.py"))
         if '"--json"' in path.read_text("utf-8") or "add_program_options" in path.read_text("utf-8")
     }
-    assert commands == {each.command.split()[0] for each in json_keys.OUTPUTS}
+    assert commands == {each.command.split()[0] for each in json_keys.ALL_OUTPUTS}
 
 
 # --- The checker itself: a key too many, a key too few, another type.
 
 
-NAMED = keys("a | integer | | A.\nb | list | | B.\nb[].c | string or null | mm | C.\nd.* | number | | D.")
+NAMED = declare_keys(
+    "a | integer | | A.\nb | list | | B.\nb[].c | string or null | mm | C.\nd.* | number | | D."
+)
 
 
 @pytest.mark.parametrize(
@@ -82,13 +86,13 @@ def test_a_row_type_with_another_field_is_refused() -> None:
         one: int
         other: float | None
 
-    declared = row_keys("rows[].", Pair, "one | | One.\nother | mm | Other.")
+    declared = declare_row_keys("rows[].", Pair, "one | | One.\nother | mm | Other.")
     assert [each.type for each in declared] == ["integer", "number or null"]
     assert declared[1].name == "rows[].other"
     with pytest.raises(ValueError, match="one, other"):
-        row_keys("", Pair, "one | | One.")
+        declare_row_keys("", Pair, "one | | One.")
     with pytest.raises(ValueError, match="expected 4 cells"):
-        keys("one | integer | One.")
+        declare_keys("one | integer | One.")
 
 
 # --- Programs.
@@ -107,7 +111,7 @@ def test_prove(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     values = [*told.lines, *back.lines]
     for machine in ("ac-table-mill", "bc-table-mill"):
         values += turndesk("prove", mill, "--machine", machine, "--json").lines
-    declared_alone(values, json_keys.PROVE.keys)
+    declared_alone(values, json_keys.PROVE_OUTPUT.keys)
 
 
 @pytest.mark.long
@@ -115,9 +119,9 @@ def test_expand(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     lathe = tmp_path / "part.nc"
     lathe.write_text(HEAD + "X.5Z.1\nG02X.6Z0R.1F10\nM30\n")
     for name, output in (
-        (lathe, json_keys.EXPAND_OMNITURN),
-        (PROGRAMS / "shaft.mpf", json_keys.EXPAND_SINUMERIK),
-        (PROGRAMS / "nozzle.h", json_keys.EXPAND_KLARTEXT),
+        (lathe, json_keys.EXPAND_OMNITURN_OUTPUT),
+        (PROGRAMS / "shaft.mpf", json_keys.EXPAND_SINUMERIK_OUTPUT),
+        (PROGRAMS / "nozzle.h", json_keys.EXPAND_KLARTEXT_OUTPUT),
     ):
         machine = {".mpf": ("--machine", "sinumerik-live"), ".h": ("--machine", "bc-table-mill")}
         told = turndesk("expand", name, "--json", *machine.get(name.suffix, ()))
@@ -128,7 +132,7 @@ def test_trace(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(HEAD + "X.5Z.1\nM30\n")
     told = turndesk("trace", path, "--out", tmp_path / "out.csv", "--json")
-    declared_alone(told.lines, json_keys.TRACE.keys)
+    declared_alone(told.lines, json_keys.TRACE_OUTPUT.keys)
 
 
 @pytest.mark.long
@@ -144,7 +148,7 @@ def test_run(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     words = ("--headless", "--offsets", offsets, "--json", "--machine")
     values = [turndesk("run", program, *words, machine).lines[-1] for program, machine in runs]
     assert [each["state"] for each in values] == ["complete", "alarm", "complete", "complete"]
-    declared_alone(values, json_keys.RUN.keys)
+    declared_alone(values, json_keys.RUN_OUTPUT.keys)
 
 
 # --- Machine files and the alarm catalog.
@@ -160,18 +164,18 @@ def test_machine_check(turndesk: Turndesk, tmp_path: Path) -> None:
     path.write_text(text.replace("vmax = 300", "vmax = -1"))
     bad = whole(turndesk("machine", "check", path, "--json"), 2)
     assert set(bad) == {"file", "errors", "ports"}
-    declared_alone([good, bad], json_keys.MACHINE_CHECK.keys)
+    declared_alone([good, bad], json_keys.MACHINE_CHECK_OUTPUT.keys)
 
 
 def test_machine_hal(turndesk: Turndesk) -> None:
     values = [
         whole(turndesk("machine", "hal", f"gt75-{board}", "--json")) for board in ("mesa-7i97", "ethercat")
     ]
-    declared_alone(values, json_keys.MACHINE_HAL.keys)
+    declared_alone(values, json_keys.MACHINE_HAL_OUTPUT.keys)
 
 
 def test_alarms(turndesk: Turndesk) -> None:
-    declared_alone([whole(turndesk("alarms", "--json"))], json_keys.ALARMS.keys)
+    declared_alone([whole(turndesk("alarms", "--json"))], json_keys.ALARMS_OUTPUT.keys)
 
 
 # --- The store.
@@ -190,13 +194,13 @@ def test_offsets(turndesk: Turndesk, home: Path) -> None:
     history = whole(turndesk("offsets", "history", "--json"))
     assert turndesk("offsets", "undo").status == 0
     history += whole(turndesk("offsets", "history", "--json"))
-    declared_alone([history], json_keys.OFFSETS_HISTORY.keys)
+    declared_alone([history], json_keys.OFFSETS_HISTORY_OUTPUT.keys)
     assert turndesk("offsets", "set", "T1", "x=1.25", "z=-.5", "--yes").status == 0
-    declared_alone([whole(turndesk("offsets", "show", "--json"))], json_keys.OFFSETS_SHOW.keys)
+    declared_alone([whole(turndesk("offsets", "show", "--json"))], json_keys.OFFSETS_SHOW_OUTPUT.keys)
 
 
 def test_store_verify(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("store", "verify", "--json"))], json_keys.STORE_VERIFY.keys)
+    declared_alone([whole(turndesk("store", "verify", "--json"))], json_keys.STORE_VERIFY_OUTPUT.keys)
 
 
 def test_public_tables_have_the_declared_columns(home: Path) -> None:
@@ -214,11 +218,11 @@ def test_exported_files_have_the_declared_columns(turndesk: Turndesk, filled: Pa
     out = tmp_path / "out"
     assert turndesk("store", "export", out).status == 0
     heads = {path.name: next(csv.reader(path.read_text("utf-8").splitlines())) for path in out.glob("*.csv")}
-    files = {table.file: [key.name for key in table.columns] for table in PUBLIC if table.file}
-    assert heads.pop(RUNS) == list(RUNS_FILE)
+    files = {table.export_file: [key.name for key in table.columns] for table in PUBLIC if table.export_file}
+    assert heads.pop(RUNS) == list(RUN_FILE_COLUMNS)
     assert heads.pop(EVENTS) == list(EventRow._fields)
     assert heads == files
-    assert {table.file: table.name for table in PUBLIC if table.file} == TABLES
+    assert {table.export_file: table.name for table in PUBLIC if table.export_file} == TABLES_BY_FILE_NAME
 
 
 # --- Scope.
@@ -229,4 +233,4 @@ def test_scope(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) ->
     path.write_text(HEAD + "X.5Z.1\nM30\n")
     assert turndesk("run", path, "--headless", "--offsets", offsets).status == 0
     told = turndesk("scope", home / "records" / "run.ring", "--json")
-    declared_alone(told.lines, json_keys.SCOPE.keys)
+    declared_alone(told.lines, json_keys.SCOPE_OUTPUT.keys)

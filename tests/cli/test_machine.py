@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.cli.machine_command import summary, table
+from app.cli.machine_command import format_check_table, summarize_names
 from app.cli.main import main
 from app.compose.backends import simulated_backend
-from app.compose.backends.backend_entry import FAILED, Backend, Row, backend_of
-from app.compose.machine.machine_files import shipped_machine
+from app.compose.backends.backend_entry import FAILED_STATES, Backend, CheckRow, find_backend
+from app.compose.machine.machine_files import load_shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 
 Captured = pytest.CaptureFixture[str]
@@ -74,7 +74,7 @@ def test_the_table_fits_a_terminal() -> None:
         ("node X", "1", "ok", "CiA 402, " + "vendor 0000015Ah, " * 5),
         ("input a", "401.6000.1.0", "on", ""),
     ]
-    lines = list(table(rows))
+    lines = list(format_check_table(rows))
     assert max(map(len, lines)) <= 80
     assert lines[0].startswith("  node X   1             ok  CiA 402, vendor")
     assert lines[1].startswith(" " * 29 + "vendor") or lines[1].startswith(" " * 29 + "0000015Ah")
@@ -83,7 +83,9 @@ def test_the_table_fits_a_terminal() -> None:
 
 def board(monkeypatch: pytest.MonkeyPatch, *measured: str) -> None:
     """Replace the simulated backend by a real one, whose hardware reports these rows."""
-    backend = Backend("board", connect=simulated_backend.BACKEND.connect, measured=lambda _machine: measured)
+    backend = Backend(
+        "board", connect=simulated_backend.BACKEND.connect, list_measured_rows=lambda _machine: measured
+    )
     monkeypatch.setattr(simulated_backend, "BACKEND", backend)
 
 
@@ -107,9 +109,9 @@ def test_a_driver_that_talks_to_nothing_is_not_ok(capsys: Captured, monkeypatch:
     assert {port["verdict"] for port in ports} == {"not checked"}
 
 
-@pytest.mark.parametrize("state", FAILED)
+@pytest.mark.parametrize("state", FAILED_STATES)
 def test_a_failure_stays_one_although_nothing_was_measured(state: str) -> None:
-    row = Row("X", "", state, "why").checked(())
+    row = CheckRow("X", "", state, "why").mark_unchecked(())
     assert (row.verdict, row.state, row.detail) == ("FAIL", state, "why")
 
 
@@ -128,15 +130,15 @@ def test_a_failure_stays_one_although_nothing_was_measured(state: str) -> None:
     ],
 )
 def test_step_drives_simulated_boards_and_outputs_are_not_measured(name: str, measured: set[str]) -> None:
-    machine = shipped_machine(name)
-    rows = set(backend_of(machine).measured(machine))
+    machine = load_shipped_machine(name)
+    rows = set(find_backend(machine).list_measured_rows(machine))
     inputs = {f"input {each}" for each in machine.inputs} if measured else set()
     assert rows == measured | inputs
 
 
 def test_the_summary_counts_terminals_and_names_a_single_one() -> None:
-    assert summary(["X", "input estop", "output a", "output b"]) == "X, input estop, 2 outputs"
-    assert summary([]) == ""
+    assert summarize_names(["X", "input estop", "output a", "output b"]) == "X, input estop, 2 outputs"
+    assert summarize_names([]) == ""
 
 
 def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: Path) -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from core.store.production import tool_lives
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
-from core.store.store_rows import Kind, MillRow, PresetRow
+from core.store.store_rows import MillRow, OffsetKind, PresetRow
 from tests.cli.conftest import Turndesk
 from tests.texts import shows
 
@@ -104,14 +104,14 @@ def test_a_part_with_a_tool_whose_life_is_gone_is_refused(
     assert "set its CUR.TIME to 0 in the tool table" in second.err
     with Store.open(home) as store:
         with store.read() as connection:
-            life = tool_lives.lives(connection, Kind.MILL_TOOL)[7]
-            assert tool_lives.lives(connection) == {}  # nothing of it goes to a lathe's T7
+            life = tool_lives.read_tool_lives(connection, OffsetKind.MILL_TOOL)[7]
+            assert tool_lives.read_tool_lives(connection) == {}  # nothing of it goes to a lathe's T7
         assert (life.parts, life.limit_seconds, life.stops) == (1, pytest.approx(0.06), True)
         assert life.seconds >= 0.09
-        store.write(lambda c: tool_lives.change_insert(c, 7, "fresh", Kind.MILL_TOOL)).result(60)
+        store.write(lambda c: tool_lives.record_insert_change(c, 7, "fresh", OffsetKind.MILL_TOOL)).result(60)
         with store.read() as connection:
-            fresh = tool_lives.lives(connection, Kind.MILL_TOOL)[7]
-            (kept,) = tool_lives.insert_changes(connection, 9)
-    assert fresh._replace(limit_seconds=0.0) == LifeRow(7, 0, 0.0, 0.9, True)
+            fresh = tool_lives.read_tool_lives(connection, OffsetKind.MILL_TOOL)[7]
+            (kept,) = tool_lives.read_insert_changes(connection, 9)
+    assert fresh._replace(limit_seconds=0.0) == ToolLifeRow(7, 0, 0.0, 0.9, True)
     assert fresh.limit_seconds == pytest.approx(0.06)
     assert (kept.number, kept.parts, kept.kind) == (7, 1, "mill tool")

@@ -11,14 +11,14 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.desk_assembly import desk_and_executor
-from app.compose.machine.machine_setup import remember_machine
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.machine.machine_setup import store_machine
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import stored_offsets
+from app.compose.stored_offsets import read_stored_offsets
 from core.message import CodedError
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
@@ -70,8 +70,8 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
         "secondary": {"4": {"x": -0.0005, "z": 0.0, "r": 0.0}},
     }
     with Store.open(home, read_only=True) as store:  # millimetres inside; D's x is the radius as given
-        assert store.offsets.tools.read_rows() == {3: ToolRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
-        assert store.offsets.secondary.read_rows() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
+        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
 
 
 def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
@@ -169,7 +169,7 @@ def test_one_bad_value_of_two_sets_neither(capsys: Captured) -> None:
 
 def test_store_in_use_is_refused_and_still_shown(capsys: Captured, home: Path) -> None:
     with Store.open(home) as store:
-        store.offsets.tools.change_row(1, "screen", {"x": 25.4}).result()
+        store.offsets.tool_offsets.change_row(1, "screen", {"x": 25.4}).result()
         assert refused(capsys, "set", "T1", "x=2").code == "in-use"
         assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
 
@@ -354,7 +354,7 @@ def test_the_travel_is_that_of_the_machine_of_the_screen(
     machine = shorter(tmp_path)
     assert main(["offsets", "set", "T1", "x=3", "z=0"]) == 0  # the shipped lathe travels 4 in
     journal = Journal(home)
-    desk, _executor = desk_and_executor(str(machine), stored_offsets, StepClock(), journal)
+    desk, _executor = create_desk_and_executor(str(machine), read_stored_offsets, ManualClock(), journal)
     desk.close()
     journal.close()
     capsys.readouterr()
@@ -366,7 +366,7 @@ def test_the_travel_is_that_of_the_machine_of_the_screen(
 def test_without_the_file_of_the_machine_nothing_is_set(capsys: Captured, tmp_path: Path, home: Path) -> None:
     machine = shorter(tmp_path)
     journal = Journal(home)
-    remember_machine(str(machine), journal)
+    store_machine(str(machine), journal)
     journal.close()
     machine.unlink()
     assert "--machine" in str(refused(capsys, "set", "T1", "x=1", "z=0"))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_parser import BEFORE
+from app.cli.command_parser import PRE_COMMAND_OPTIONS
 from app.cli.main import build_parser, main
 from core.message import CodedError, Message
 from tests.cli.conftest import Turndesk
@@ -130,7 +130,7 @@ def test_every_option_of_every_command_is_in_the_table() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, _ in parsers()])
-@pytest.mark.parametrize("option", BEFORE)
+@pytest.mark.parametrize("option", PRE_COMMAND_OPTIONS)
 def test_an_option_before_a_command_acts_or_is_refused(
     name: str,
     option: str,

@@ -14,7 +14,7 @@ from textwrap import indent
 import pytest
 
 import resources
-from app.cli.main import all_commands
+from app.cli.main import list_commands
 
 RULES = Path(__file__).with_name("as_on_windows")
 PART = "G90G94F300\nT1\nM03S1000\nX.5Z.1\nG95F.01Z0\nX.6\nG94F300Z1\nM30\n"
@@ -53,12 +53,12 @@ desk = build_desk()
 assert not desk.book.locked
 desk.close()
 from pathlib import Path
-from app.programs.whole_file import settle, write_out, write_whole
+from app.programs.atomic_files import settle, write_out, write_whole
 for write in (write_whole, write_out):
     for text in (b"G90\nM30\n", b"G90\nX1\nM30\n"):
         write(Path("part.nc").resolve(), text)
 settle(Path.cwd())
-import app.screen.run_screen
+import app.screen.screen_startup
 print("a desk")
 """
 
@@ -98,7 +98,7 @@ def office(tmp_path: Path) -> Path:
 
 @pytest.mark.long
 def test_the_commands_hold_the_rules_of_windows(office: Path) -> None:
-    lines = [line for line in COMMANDS.splitlines() if line.split()[0] in all_commands()]
+    lines = [line for line in COMMANDS.splitlines() if line.split()[0] in list_commands()]
     script = (
         "import sys; from app.cli.main import console\n"
         f"for line in {lines!r}:\n"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from core.file_placing import put_in_place
+from core.file_replacement import replace_atomically
 
 
 @pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no device here that is always full")
@@ -33,6 +33,6 @@ def test_no_file_takes_the_place_of_a_pipe_or_a_device(tmp_path: Path) -> None:
     os.mkfifo(pipe)
     finished.write_bytes(b"t,x\n")
     with pytest.raises(OSError) as caught:  # noqa: PT011  the number and the name tell it
-        put_in_place(finished, pipe)
+        replace_atomically(finished, pipe)
     assert (caught.value.errno, caught.value.filename) == (errno.EINVAL, str(pipe))
     assert (pipe.is_fifo(), finished.read_bytes()) == (True, b"t,x\n")

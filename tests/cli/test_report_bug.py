@@ -14,8 +14,8 @@ from app.cli.bug_report import bug_report
 from app.cli.bug_report.private_texts import event_line, machine_without_names, program_without_comments
 from app.cli.bug_report.replaced_names import Replacements
 from core.message import Message
-from core.store.people import PersonRow
 from core.store.store import Store
+from core.store.user_records import UserRow
 from tests.cli.conftest import Turndesk
 
 MACHINE = """\
@@ -49,8 +49,8 @@ def shop(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     Path("WIDGET 77.nc").write_text(PROGRAM)
     with Store.open(home) as store:
         store.settings.save_setting("machine in use", str(tmp_path / "hopkins.toml")).result(60)
-        store.people.save_person(PersonRow("QUIMBY", 3, b"", b"")).result(60)
-        store.programs.save_version("WIDGET 77.nc", PROGRAM.encode(), "saved", who="Quimby").result(60)
+        store.people.save_user(UserRow("QUIMBY", 3, b"", b"")).result(60)
+        store.programs.save_version("WIDGET 77.nc", PROGRAM.encode(), "saved", author="Quimby").result(60)
         store.runs.record_start("WIDGET 77.nc").result(60)
         text = Message("{name} loaded by {who}, {count} blocks", name="WIDGET 77", who="QUIMBY", count=12)
         store.events.log_event("load", text).result(60)

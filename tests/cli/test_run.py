@@ -131,7 +131,7 @@ def test_an_input_that_the_machine_does_not_have_is_told_before_anything_moves(
 @pytest.fixture
 def metal(monkeypatch: pytest.MonkeyPatch) -> None:
     """The slides are simulated all the same."""
-    monkeypatch.setattr("app.compose.runs.headless_run.played", lambda _machine: False)
+    monkeypatch.setattr("app.compose.runs.headless_run.is_simulated", lambda _machine: False)
 
 
 @pytest.mark.usefixtures("metal")

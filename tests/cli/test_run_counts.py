@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from core.store.production import part_cycles, tool_lives
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
 from tests.texts import shows
@@ -26,15 +26,15 @@ def part(tmp_path: Path) -> Path:
     return path
 
 
-def life(home: Path, number: int = 1) -> LifeRow:
+def life(home: Path, number: int = 1) -> ToolLifeRow:
     with Store.open(home, read_only=True) as store, store.read() as connection:
-        return tool_lives.lives(connection).get(number, LifeRow(number))
+        return tool_lives.read_tool_lives(connection).get(number, ToolLifeRow(number))
 
 
 def limited(home: Path, parts: int, *, stops: bool) -> None:
     with Store.open(home) as store:
-        row = LifeRow(1, limit_parts=parts, stops=stops)
-        store.write(lambda connection: tool_lives.set_limits(connection, row)).result(60)
+        row = ToolLifeRow(1, limit_parts=parts, stops=stops)
+        store.write(lambda connection: tool_lives.save_limits(connection, row)).result(60)
 
 
 def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
@@ -46,9 +46,9 @@ def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
         assert life(home).parts == made
         assert life(home).seconds == pytest.approx(0.5 * made, abs=0.2 * made)
     with Store.open(home, read_only=True) as store:
-        assert store.runs.count_parts("part.nc") == 2
+        assert store.runs.read_part_count("part.nc") == 2
         with store.read() as connection:
-            rows = part_cycles.cycles(connection, "part.nc", -1)
+            rows = part_cycles.read_cycles(connection, "part.nc", -1)
     assert [row.outcome for row in rows] == ["COMPLETE", "COMPLETE"]
 
 
@@ -99,7 +99,7 @@ def test_a_tool_that_the_program_does_not_use_stops_nothing(
 ) -> None:
     limited(home, 1, stops=True)
     with Store.open(home) as store:
-        store.write(lambda connection: tool_lives.set_use(connection, 1, 5, 10.0)).result(60)
+        store.write(lambda connection: tool_lives.save_use(connection, 1, 5, 10.0)).result(60)
     path: Callable[[str], Path] = tmp_path.joinpath
     other = path("other.nc")
     other.write_text(TEXT.replace("T1", "T2"))

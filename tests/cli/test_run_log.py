@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from app.compose.runs import run_log
-from app.compose.runs.error_log import Log
+from app.compose.runs.error_log import ErrorLog
 from app.compose.runs.run_log import EventLog
-from core.executor.snapshot import Event
+from core.executor.snapshot import LogEvent
 
 DAY = 86_400.0
 
@@ -29,7 +29,7 @@ def a_file(folder: Path, name: str, days: float, size: int = 10) -> Path:
 
 def begun(home: Path) -> set[str]:
     """The files that are left once another run has begun its own, without that."""
-    with EventLog.new("PIN.nc") as log:
+    with EventLog.create("PIN.nc") as log:
         return {path.name for path in (home / "logs").iterdir() if path != log.path}
 
 
@@ -44,8 +44,8 @@ def test_files_of_more_than_a_year_go(home: Path) -> None:
 def test_logs_are_their_owners_alone(home: Path) -> None:
     before = os.umask(0)
     try:
-        failures = Log()
-        with EventLog.new("PIN.nc") as log:
+        failures = ErrorLog()
+        with EventLog.create("PIN.nc") as log:
             modes = {path.name: path.stat().st_mode & 0o777 for path in (home / "logs").iterdir()}
         failures.close()
     finally:
@@ -54,14 +54,14 @@ def test_logs_are_their_owners_alone(home: Path) -> None:
 
 
 def test_no_more_files_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run_log, "MOST", 3)
+    monkeypatch.setattr(run_log, "MAX_FILES", 3)
     for days in (1, 2, 3, 4):
         a_file(home / "logs", f"{days}.jsonl", days)
     assert begun(home) == {"1.jsonl", "2.jsonl"}  # three with the new one
 
 
 def test_no_more_bytes_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run_log, "MOST_BYTES", 250)
+    monkeypatch.setattr(run_log, "MAX_TOTAL_BYTES", 250)
     for days in (1, 2, 3):
         a_file(home / "logs", f"{days}.jsonl", days, size=100)
     assert begun(home) == {"1.jsonl", "2.jsonl"}
@@ -96,11 +96,11 @@ def test_a_full_disk_under_the_events_stops_no_run_and_is_told(
     opened = Path.open
     full = Path("/dev/full")
     monkeypatch.setattr(Path, "open", lambda _path, *_how, **_named: opened(full, "w", encoding="utf-8"))
-    with EventLog.new("PIN.nc") as log:
-        log.add(Event(0.1, "stop", "M01 optional stop", 7))
-        assert log.trouble == ""  # it waits in memory yet
-    assert log.trouble == f"{log.path}: the event log cannot be written: No space left on device"
-    with EventLog.new("PIN.nc") as log:
+    with EventLog.create("PIN.nc") as log:
+        log.write_event(LogEvent(0.1, "stop", "M01 optional stop", 7))
+        assert log.error_text == ""  # it waits in memory yet
+    assert log.error_text == f"{log.path}: the event log cannot be written: No space left on device"
+    with EventLog.create("PIN.nc") as log:
         for number in range(2_000):
-            log.add(Event(0.1 * number, "stop", "M01 optional stop", 7))
-        assert "No space left on device" in log.trouble
+            log.write_event(LogEvent(0.1 * number, "stop", "M01 optional stop", 7))
+        assert "No space left on device" in log.error_text

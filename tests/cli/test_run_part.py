@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.kept_part import KeptPart
+from app.desk.stored_part import StoredPart
 from core.store.store import Store
 from tests.cli.conftest import Told, Turndesk
 from tests.cli.test_prove import written
@@ -69,9 +69,9 @@ def test_a_check_that_is_silenced_for_the_program_refuses_nothing(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path, home: Path
 ) -> None:
     path = written(tmp_path, SLIP)
-    kept = KeptPart("bar:1:2+.02", silenced={"rapid-into-stock": "soft wax"})
+    kept = StoredPart("bar:1:2+.02", silenced_checks={"rapid-into-stock": "soft wax"})
     with Store.open(home) as store:
-        for key, value in kept.settings(path.name).items():
+        for key, value in kept.make_settings(path.name).items():
             store.settings.save_setting(key, value).result()
     told = turndesk("run", path, "--headless", "--json", "--offsets", offsets, "--tools", tools)
     assert state(told) == (0, "complete")

@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.cli.setup_command import SHELLS
+from app.cli.setup_command import SHELL_NAMES
 from app.compose.machine import setup_archive
 from tests.cli.conftest import Turndesk
 
@@ -238,7 +238,7 @@ def test_a_desktop_entry_is_written_and_taken_away(
 
 
 def test_every_shell_gets_its_completion(turndesk: Turndesk) -> None:
-    for shell in SHELLS:
+    for shell in SHELL_NAMES:
         told = turndesk("setup", "completion", shell).out
         assert "keep-stock" in told
         assert "completion" in told
@@ -357,8 +357,8 @@ def test_a_member_that_the_manifest_does_not_list_is_refused(
 def test_what_unpacks_to_more_than_a_setup_holds_is_refused_while_it_is_counted(
     name: str, saved: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    most = dict(setup_archive.MOST_BYTES) | {name.partition("/")[0]: 3}
-    monkeypatch.setattr(setup_archive, "MOST_BYTES", most)
+    most = dict(setup_archive.MAX_BYTES_BY_KIND) | {name.partition("/")[0]: 3}
+    monkeypatch.setattr(setup_archive, "MAX_BYTES_BY_KIND", most)
     told = turndesk("setup", "load", saved, "--check")
     assert (told.status, told.code) == (2, "member-too-large")
 
@@ -366,7 +366,7 @@ def test_what_unpacks_to_more_than_a_setup_holds_is_refused_while_it_is_counted(
 def test_all_members_together_have_a_limit(
     saved: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(setup_archive, "MOST_BYTES_OF_ALL", 1000)
+    monkeypatch.setattr(setup_archive, "MAX_TOTAL_BYTES", 1000)
     told = turndesk("setup", "load", saved, "--check")
     assert (told.status, told.code) == (2, "member-too-large")
 
@@ -388,7 +388,7 @@ def test_a_manifest_of_gigabytes_is_not_unpacked(saved: Path, turndesk: Turndesk
 
 
 def test_a_list_of_too_many_members_is_not_read(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
-    more = {f"programs/{number}": b"" for number in range(setup_archive.MOST_MEMBERS)}
+    more = {f"programs/{number}": b"" for number in range(setup_archive.MAX_MEMBERS)}
     told = turndesk("setup", "load", _with(saved, tmp_path / "bad.setup", more), "--check")
     assert (told.status, told.code) == (2, "too-many-members")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.desk.kept_part import KeptPart
+from app.desk.stored_part import StoredPart
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
 from tests.cli.test_prove import written
@@ -285,8 +285,10 @@ def test_what_the_store_silences_for_a_program_counts_for_that_alone(
     given = ("--offsets", offsets, "--stock", "bar:1.2")
     assert turndesk("prove", path, *given).status == 1
     with Store.open(home) as store:
-        kept = KeptPart(silenced={"rapid-into-stock": "drilled before", "through-part": "drilled before"})
-        for key, value in kept.settings("part.nc").items():
+        kept = StoredPart(
+            silenced_checks={"rapid-into-stock": "drilled before", "through-part": "drilled before"}
+        )
+        for key, value in kept.make_settings("part.nc").items():
             store.settings.save_setting(key, value).result()
     told = turndesk("prove", path, *given)
     assert (told.status, wording("findings.check-off", why="drilled before") in told.out) == (0, True)

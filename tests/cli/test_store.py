@@ -29,8 +29,8 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def filled(home: Path) -> Path:
     with Store.open(home) as store:
-        store.offsets.tools.change_row(1, "x", {"x": 31.75, "nose_radius": 0.015 * 25.4})
-        store.offsets.secondary.change_row(4, "x", {"x": -0.0127})
+        store.offsets.tool_offsets.change_row(1, "x", {"x": 31.75, "nose_radius": 0.015 * 25.4})
+        store.offsets.secondary_offsets.change_row(4, "x", {"x": -0.0127})
         store.programs.save_version("PIN.nc", b"G90\r\n", "x").result()
     return home
 
@@ -38,8 +38,8 @@ def filled(home: Path) -> Path:
 def test_the_store_of_an_older_turndesk_is_brought_up_to_date(
     filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, refusals: list[CodedError]
 ) -> None:
-    newer = (*database.migrations(), "CREATE TABLE extra (a);")
-    monkeypatch.setattr(database, "migrations", lambda: newer)
+    newer = (*database.load_migrations(), "CREATE TABLE extra (a);")
+    monkeypatch.setattr(database, "load_migrations", lambda: newer)
     assert main(["offsets", "show"]) == 2
     (error,) = refusals
     assert error.code == "older-version"
@@ -58,8 +58,8 @@ def test_without_a_store_nothing_is_brought_up_to_date(home: Path, capsys: Captu
 def test_the_store_of_a_newer_turndesk_is_left_as_it_is(
     filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    older = database.migrations()[:-1]
-    monkeypatch.setattr(database, "migrations", lambda: older)
+    older = database.load_migrations()[:-1]
+    monkeypatch.setattr(database, "load_migrations", lambda: older)
     assert refused(capsys, "upgrade").code == "newer-version"
 
 
@@ -78,14 +78,14 @@ def test_backup_and_restore(capsys: Captured, filled: Path, tmp_path: Path) -> N
     target = str(tmp_path / "b.db")
     assert main(["store", "backup", target]) == 0
     with Store.open(filled) as store:
-        store.offsets.tools.change_row(1, "x", {"x": 0.0}).result()
+        store.offsets.tool_offsets.change_row(1, "x", {"x": 0.0}).result()
     assert main(["store", "restore", target]) == 0
     told = capsys.readouterr().out
     (replaced,) = filled.glob("turndesk-replaced-*.db")
     saved = wording("cli.previous-data", path=replaced)
     assert told.endswith(wording("cli.restored", folder=filled, path=target, saved=saved) + "\n")
     with Store.open(filled) as store:
-        assert store.offsets.tools.read_rows()[1].x == 31.75
+        assert store.offsets.tool_offsets.read_rows()[1].x == 31.75
 
 
 def test_a_restore_without_a_previous_store_names_no_saved_file(
@@ -108,8 +108,8 @@ def test_export_and_import_into_an_empty_home(
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "second"))
     assert main(["store", "import", folder]) == 0
     with Store.open(tmp_path / "second") as store:
-        assert store.offsets.tools.read_rows() == {1: ToolRow(31.75, 0.0, 0.015 * 25.4)}
-        assert store.offsets.secondary.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(31.75, 0.0, 0.015 * 25.4)}
+        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
         assert store.programs.load_version("PIN.nc") == b"G90\r\n"
         assert store.offsets.read_history()[0].why == wording("cli.import-from", folder="out")
 
@@ -119,13 +119,13 @@ def test_every_field_goes_with_an_export(
 ) -> None:
     row = ToolRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, 'a "rough" one, 45°', master=True)
     with Store.open(filled) as store:
-        store.offsets.tools.change_row(2, "x", row._asdict()).result()
+        store.offsets.tool_offsets.change_row(2, "x", row._asdict()).result()
     folder = tmp_path / "out"
     main(["store", "export", str(folder)])
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "second"))
     assert main(["store", "import", str(folder)]) == 0
     with Store.open(tmp_path / "second") as store:
-        again = store.offsets.tools.read_rows()[2]
+        again = store.offsets.tool_offsets.read_rows()[2]
     assert again[:6] == pytest.approx(row[:6])
     assert again[6:] == row[6:]
     text = (folder / "offsets.toml").read_text().replace("master = false", "master = true")

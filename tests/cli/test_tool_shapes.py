@@ -10,11 +10,11 @@ import pytest
 
 from app.cli.main import main
 from app.desk.command_errors import CommandError
-from app.offsets.offsets_file import read_rows, read_shape_rows, read_tool_shapes
+from app.offsets.offsets_file import read_offset_rows, read_shape_rows, read_tool_shapes
 from core.message import CodedError
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.store import Store
-from core.store.store_rows import HANDS, TOOL_KINDS, ShapeRow, ToolRow
+from core.store.store_rows import TOOL_HANDS, TOOL_KINDS, ShapeRow, ToolRow
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
@@ -56,7 +56,7 @@ def wrong(path: Path, text: str) -> CommandError:
     """Return the error with which every reader refuses a file with mistakes."""
     path.write_text(text, encoding="utf-8")
     told = {}
-    for read in (read_tool_shapes, read_shape_rows, read_rows):
+    for read in (read_tool_shapes, read_shape_rows, read_offset_rows):
         with pytest.raises(CommandError) as caught:
             read(path)
         told[str(caught.value), caught.value.code] = caught.value
@@ -82,7 +82,7 @@ def refused(capsys: Captured, *argv: str) -> CodedError:
 
 def test_words_of_the_store_are_those_of_the_part() -> None:
     assert tuple(ToolKind) == TOOL_KINDS
-    assert tuple(Hand) == HANDS
+    assert tuple(Hand) == TOOL_HANDS
     stated = {each.name: each.default for each in fields(ToolShape)}
     assert stated == ShapeRow()._asdict() | {
         "kind": ToolKind.TURNING,  # a row without a kind is no shape yet
@@ -109,7 +109,7 @@ def test_shapes_may_stand_in_the_offsets_file(tmp_path: Path) -> None:
         "[secondary.1]\nx = 0.001\n[zero.54]\nz = 5\n",
         encoding="utf-8",
     )
-    tools, secondary, zero = read_rows(path)
+    tools, secondary, zero = read_offset_rows(path)
     assert tools == {1: ToolRow(), 2: ToolRow(25.4)}
     assert (sorted(secondary), sorted(zero)) == ([1], [54])
     assert sorted(read_tool_shapes(path)) == [1]
@@ -117,7 +117,7 @@ def test_shapes_may_stand_in_the_offsets_file(tmp_path: Path) -> None:
 
 def test_tool_with_a_shape_alone_was_never_touched_off(sheet: Path) -> None:
     """A nose radius is not a place: the machine still refuses to start with this tool."""
-    assert read_rows(sheet)[0] == {}
+    assert read_offset_rows(sheet)[0] == {}
 
 
 @pytest.mark.parametrize(
@@ -182,7 +182,7 @@ def test_every_mistake_is_named_at_once(tmp_path: Path) -> None:
 def test_point_before_the_first_figure_is_a_figure(tmp_path: Path) -> None:
     path = tmp_path / "tools.toml"
     path.write_text('[tool.1]\nx = -.5\nz = +.25\nremark = "a = .5"\n', encoding="utf-8")
-    (row,) = read_rows(path)[0].values()
+    (row,) = read_offset_rows(path)[0].values()
     assert (row.x, row.z, row.remark) == (-12.7, 6.35, "a = .5")
 
 
@@ -199,7 +199,7 @@ def test_shape_is_set_shown_and_told(capsys: Captured, home: Path) -> None:
     assert told["shape"]["5"]["diameter"] == 0.25
     assert told["shape"]["3"]["holder"] == "MCLNR-124B"
     with Store.open(home, read_only=True) as store:
-        assert store.offsets.shapes.read_rows()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
+        assert store.offsets.tool_shapes.read_rows()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
 
 
 def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home: Path) -> None:
@@ -212,28 +212,28 @@ def test_shape_is_changed_with_its_history_and_taken_back(capsys: Captured, home
     assert "T5  not set → drill right  diameter=0.25" in oldest
     assert offsets("undo", "shape") == 0
     with Store.open(home, read_only=True) as store:
-        assert store.offsets.shapes.read_rows()[5].diameter == 6.35
-        assert store.offsets.tools.read_history() == (), "offsets have a history of their own"
+        assert store.offsets.tool_shapes.read_rows()[5].diameter == 6.35
+        assert store.offsets.tool_offsets.read_history() == (), "offsets have a history of their own"
     assert offsets("set", "T5", "kind=none") == 0
     assert capsys.readouterr().out.endswith("T5 has no shape\n")
     assert offsets("undo", "shape") == 0
     with Store.open(home, read_only=True) as store:
-        assert store.offsets.shapes.read_rows()[5].kind == "drill"
+        assert store.offsets.tool_shapes.read_rows()[5].kind == "drill"
 
 
 def test_shapes_go_with_an_export(capsys: Captured, home: Path, tmp_path: Path) -> None:
     assert offsets("set", "T3", "kind=turning", "insert=CNMG432", "x=0", "z=0", "tip=3") == 0
     assert offsets("set", "T5", "kind=drill", "diameter=.25", 'holder=a "collet"') == 0
     with Store.open(home, read_only=True) as store:
-        before = store.offsets.shapes.read_rows(), store.offsets.tools.read_rows()
+        before = store.offsets.tool_shapes.read_rows(), store.offsets.tool_offsets.read_rows()
     assert main(["store", "export", str(tmp_path / "out")]) == 0
     for _ in range(2):  # again it changes nothing
         assert main(["store", "import", str(tmp_path / "out")]) == 0
     (home / "turndesk.db").unlink()
     assert main(["store", "import", str(tmp_path / "out")]) == 0
     with Store.open(home, read_only=True) as store:
-        assert (store.offsets.shapes.read_rows(), store.offsets.tools.read_rows()) == before
-        assert len(store.offsets.shapes.read_history()) == 2
+        assert (store.offsets.tool_shapes.read_rows(), store.offsets.tool_offsets.read_rows()) == before
+        assert len(store.offsets.tool_shapes.read_history()) == 2
 
 
 @pytest.mark.parametrize(
@@ -278,7 +278,7 @@ def test_shape_that_has_become_wrong_is_told_before_it_is_proved(capsys: Capture
     program.write_text("G90G94F300G72\nT3\nX1Z.1\nM30\n", encoding="utf-8")
     assert offsets("set", "T3", "kind=grooving", "insert=MGMN300", "x=1", "z=2") == 0
     with Store.open(tmp_path / "home") as store:
-        store.offsets.shapes.change_row(3, "on the page", {"kind": "turning"}).result()
+        store.offsets.tool_shapes.change_row(3, "on the page", {"kind": "turning"}).result()
     capsys.readouterr()
     with pytest.MonkeyPatch.context() as patch:
         refusals = recorded_refusals(patch)

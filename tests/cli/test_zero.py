@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.command_errors import CommandError
-from app.offsets.offsets_file import read_rows
+from app.offsets.offsets_file import read_offset_rows
 from core.store.store_rows import ZeroRow
 from tests.cli.conftest import Turndesk
 from tests.coded import raises_code
@@ -44,8 +44,8 @@ def test_a_program_under_the_offsets_of_a_file(turndesk: Turndesk, tmp_path: Pat
 
 def test_what_a_file_may_hold(tmp_path: Path) -> None:
     path = written(tmp_path, "[zero.54]\nc = 5\n[zero.59]\nz = 1\n[secondary.1]\nx = 0.1\n")
-    assert read_rows(path)[2] == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
-    assert sorted(read_rows(path)[1]) == [1]
+    assert read_offset_rows(path)[2] == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
+    assert sorted(read_offset_rows(path)[1]) == [1]
 
 
 def test_every_mistake_at_once(tmp_path: Path) -> None:
@@ -53,9 +53,9 @@ def test_every_mistake_at_once(tmp_path: Path) -> None:
     codes = "unknown-number unknown-key wrong-type out-of-range out-of-range"
     values = ("[zero.53]", "[zero.54] y", "zero.54.x", "mm", "zero.54.c = 400", "zero.54.z = nan")
     with raises_code(CommandError, codes, *values):
-        read_rows(path)
+        read_offset_rows(path)
     with raises_code(CommandError, "not-tables", "[zero.54]"):
-        read_rows(written(tmp_path, "zero = 3\n"))
+        read_offset_rows(written(tmp_path, "zero = 3\n"))
 
 
 def test_set_by_the_command_line_and_used_by_programs(turndesk: Turndesk, tmp_path: Path) -> None:

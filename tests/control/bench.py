@@ -10,18 +10,26 @@ from multiprocessing.connection import Pipe
 from pathlib import Path
 from typing import TypeVar
 
-from app.compose.control.control_messages import Alive, Hand, Happened, Heard, Hello, Post, Shown
+from app.compose.control.control_messages import (
+    CommandMessage,
+    EventMessage,
+    EventStored,
+    HelloMessage,
+    ScreenAlive,
+    SnapshotMessage,
+    StationAction,
+)
 from app.compose.control.control_server import ControlServer
-from app.compose.control.passed_files import SharedMemory, receive_file
+from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import control_limits
-from core.executor.commands import Clearance, Command, CycleStart, EnableDrives, GiveClearance, LoadJob
+from app.compose.machine.machine_setup import get_control_limits
+from core.executor.commands import Clearance, Command, CycleStart, EnableDrives, LoadJob, ReplaceClearances
 from core.executor.job import Job, Proof, make_job
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import Setup
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 PATIENCE = 30.0  # s for what happens at once on a computer that is not busy
 LONG = "G90G94\nM03S600\nG01X1.Z1.F10\nX0.Z0.\nM30\n"  # 12 s a part and more
@@ -43,18 +51,18 @@ def one_button(*, alone: bool = False) -> Machine:
     return replace(
         machine,
         interlocks=replace(machine.interlocks, two_hand_start=False),
-        hardware=replace(machine.hardware, continues_alone=alone),
+        hardware=replace(machine.hardware, continues_without_screen=alone),
     )
 
 
 def job_of(text: str, machine: Machine, **changes: object) -> Job:
     """The job of this program on this machine."""
     setup = Setup(
-        limits=control_limits(machine),
+        limits=get_control_limits(machine),
         last_rapid=machine.limits.manual_rapid,
         **changes,  # type: ignore[arg-type]
     )
-    return make_job(Source("part.nc", text), setup)
+    return make_job(ProgramSource("part.nc", text), setup)
 
 
 class Screen:
@@ -63,25 +71,25 @@ class Screen:
     def __init__(self, server: ControlServer, clock: RealClock) -> None:
         self._clock = clock
         self.end, theirs = Pipe()
-        self.thread = threading.Thread(target=server.serve, args=(theirs,), daemon=True)
+        self.thread = threading.Thread(target=server.serve_screen, args=(theirs,), daemon=True)
         self.thread.start()
 
-    def meet(self) -> Hello:
+    def meet(self) -> HelloMessage:
         """Take the first message, and the memory that comes behind it."""
         assert self.end.poll(PATIENCE)
         hello = self.end.recv()
-        assert isinstance(hello, Hello), hello
-        self.memory = SharedMemory(receive_file(self.end))
+        assert isinstance(hello, HelloMessage), hello
+        self.memory = SharedMemory(receive_descriptor(self.end))
         assert self.end.poll(PATIENCE)  # the first snapshot: it is connected
         return hello
 
     def post(self, command: Command, late: float = 0.0) -> None:
         """As a screen does it; ``late`` seconds ago."""
-        self.end.send(Post(command, self.now - late))
+        self.end.send(CommandMessage(command, self.now - late))
 
     def hand(self, name: str, *values: object, late: float = 0.0) -> None:
         """What a hand does at the station on the screen."""
-        self.end.send(Hand(name, values, self.now - late))
+        self.end.send(StationAction(name, values, self.now - late))
 
     @property
     def now(self) -> float:
@@ -98,20 +106,20 @@ class Screen:
                 return message
         raise AssertionError(kind)
 
-    def events(self, kind: str) -> list[Happened]:
+    def events(self, kind: str) -> list[EventMessage]:
         """What has happened of this kind up to now and has not been read yet."""
-        found, now, behind = list[Happened](), self.now, 0
+        found, now, behind = list[EventMessage](), self.now, 0
         while behind < 2:  # the first of them may have been sent behind an older look at the events
             message = self.take(object)
-            if isinstance(message, Shown):
+            if isinstance(message, SnapshotMessage):
                 behind += message.snapshot.t > now
-            elif isinstance(message, Happened) and message.event.kind == kind:
+            elif isinstance(message, EventMessage) and message.event.kind == kind:
                 found.append(message)
         return found
 
-    def hear(self, message: Happened) -> None:
+    def hear(self, message: EventMessage) -> None:
         """Say that the event is kept."""
-        self.end.send(Heard(message.number))
+        self.end.send(EventStored(message.number))
 
     def lose(self) -> None:
         """As a killed screen leaves it."""
@@ -143,30 +151,30 @@ class Bench:
     def looks(self, times: int) -> None:
         """Look at the screen so many times, each some ticks after the other."""
         for _ in range(times):
-            self.server.look()
-        ticks = self.server.executor.ticks
-        until(lambda: self.server.executor.ticks > ticks + 2)
+            self.server.check_screen()
+        ticks = self.server.executor.tick_count
+        until(lambda: self.server.executor.tick_count > ticks + 2)
 
     def alive(self, screen: Screen) -> None:
         """The screen says that it is, and it is heard."""
         feed = 1.0 if self.shot.feed_override < 1.0 else 0.9
-        screen.end.send(Alive())
+        screen.end.send(ScreenAlive())
         screen.hand("set_feed_pot", feed)
         until(lambda: self.shot.feed_override == feed)
 
-    def until(self, *states: State) -> None:
+    def until(self, *states: MachineState) -> None:
         """Wait for one of these states."""
-        until(lambda: self.shot.state in states, lambda: (self.shot.state, self.shot.start_refused))
+        until(lambda: self.shot.state in states, lambda: (self.shot.state, self.shot.start_refusal))
 
     def run(self, screen: Screen, text: str = LONG) -> Job:
         """Drives on, program loaded and started."""
         job = job_of(text, self.machine)
         screen.post(EnableDrives())
-        self.until(State.IDLE)
+        self.until(MachineState.IDLE)
         screen.post(LoadJob(job, Proof(job.digest, ())))
         until(lambda: self.shot.program == "part.nc")
         self.start(screen, job)
-        self.until(State.RUN, State.WAIT)
+        self.until(MachineState.RUN, MachineState.WAIT)
         return job
 
     def start(self, screen: Screen, job: Job, late: float = 0.0) -> None:
@@ -174,12 +182,12 @@ class Bench:
         last = self.clock.now()
         until(lambda: self.clock.now() > last + 0.4)  # a start right behind the last one is its bounce
         shot = self.shot
-        screen.post(GiveClearance((Clearance(job.digest, shot.demand, shot.begun),)))
+        screen.post(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)))
         screen.post(CycleStart(), late)
 
     def close(self) -> None:
         self._stack.close()
-        self.server.closing.set()
+        self.server.closing_event.set()
         self.server.close()
 
 

@@ -16,39 +16,44 @@ from pathlib import Path
 import pytest
 
 from app.compose.control import control_client
-from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands, find_control
+from app.compose.control.control_client import (
+    ControlClient,
+    ControlEventHandlers,
+    ControlStationControls,
+    find_control,
+)
 from app.compose.control.control_messages import (
-    BUSY,
-    VERSION,
-    Alive,
-    Close,
-    Closed,
-    Failed,
-    Hand,
-    Happened,
-    Heard,
-    Hello,
-    Noted,
-    Post,
-    Shown,
+    PROTOCOL_VERSION,
+    SCREEN_CONNECTED,
+    CloseRequest,
+    CommandMessage,
+    ControlFailed,
+    EventMessage,
+    EventStored,
+    HelloMessage,
+    InterruptedJobNote,
+    MachineClosed,
+    ScreenAlive,
+    SnapshotMessage,
+    StationAction,
     ThreadEnded,
     is_own_user,
 )
 from app.compose.control.control_start import StartedControl, socket_paths, start_control
-from app.compose.control.passed_files import SharedMemory, send_file
+from app.compose.control.descriptor_passing import SharedMemory, send_descriptor
 from app.compose.runs.receipt import Receipt
-from core.executor.commands import GiveProof, LoadJob, SetSwitch
+from core.executor.commands import LoadJob, SetSwitch, SupplyProof
 from core.executor.job import Proof
-from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
+from core.executor.snapshot import InterruptedJob, LogEvent, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from core.records.record_ring import Recorded
+from core.records.record_ring import RingLayout
 from core.store.store_rows import EventOrigin
 from tests.control.bench import PATIENCE, SHORT, job_of, one_button, until
 from tests.executor.rig import Rig
 from tests.interrupted import broken_off
 
-RECORDED = Recorded({"X": False, "Z": False}, lasts=1.0)
+RECORDED = RingLayout({"X": False, "Z": False}, duration_s=1.0)
 MACHINE = one_button()
 
 
@@ -66,12 +71,12 @@ class Peer:
     end: Connection
     snapshot: Snapshot
     machine: Machine = MACHINE
-    version: int = VERSION
-    memory: SharedMemory = field(default_factory=lambda: SharedMemory.of_size(RECORDED.ring_bytes))
+    version: int = PROTOCOL_VERSION
+    memory: SharedMemory = field(default_factory=lambda: SharedMemory.create(RECORDED.size_bytes))
 
     def greet(self, noted: InterruptedJob | None = None) -> None:
         """Hello, and the memory behind it."""
-        hello = Hello(
+        hello = HelloMessage(
             self.version,
             0,  # no process that could be ended
             "a control",
@@ -87,7 +92,7 @@ class Peer:
             noted,
         )
         self.end.send(hello)
-        send_file(self.end, self.memory.file)
+        send_descriptor(self.end, self.memory.descriptor)
 
     def next(self, *kinds: type) -> object:
         """The next message of one of these kinds."""
@@ -100,8 +105,8 @@ class Peer:
     def sent(self) -> list[object]:
         """What the client posted before a mark."""
         found = list[object]()
-        while not isinstance(message := self.next(Post, Heard, Hand), Heard):
-            found.append(message.command if isinstance(message, Post) else message)
+        while not isinstance(message := self.next(CommandMessage, EventStored, StationAction), EventStored):
+            found.append(message.command if isinstance(message, CommandMessage) else message)
         return found
 
 
@@ -109,14 +114,14 @@ class Peer:
 class Ear:
     """Everything that the client tells."""
 
-    events: list[Event] = field(default_factory=list)
+    events: list[LogEvent] = field(default_factory=list)
     origins: list[EventOrigin] = field(default_factory=list)
     notes: list[InterruptedJob | None] = field(default_factory=list)
     ended: list[str] = field(default_factory=list)
     stirs: list[int] = field(default_factory=list)
     fails: bool = False
 
-    def hear(self, event: Event, receipt: Receipt | None) -> None:
+    def hear(self, event: LogEvent, receipt: Receipt | None) -> None:
         """An event, which cannot be kept while this fails."""
         if self.fails:
             raise ValueError
@@ -138,9 +143,9 @@ class Ear:
         self.stirs.append(1)
 
     @property
-    def all(self) -> ControlEvents:
+    def all(self) -> ControlEventHandlers:
         """What the client calls."""
-        return ControlEvents(self.hear, self.note, self.ended.append, self.stir)
+        return ControlEventHandlers(self.hear, self.note, self.ended.append, self.stir)
 
 
 @dataclass
@@ -153,11 +158,11 @@ class Pair:
 
     def begin(self) -> None:
         """Listen and send."""
-        self.client.begin(self.ear.all)
+        self.client.start_threads(self.ear.all)
 
     def mark(self) -> list[object]:
         """What the client has sent so far."""
-        self.peer.end.send(Happened(999, Event(0.0, "test", "mark")))
+        self.peer.end.send(EventMessage(999, LogEvent(0.0, "test", "mark")))
         return self.peer.sent()
 
 
@@ -167,7 +172,7 @@ def pair(idle: Snapshot, tmp_path: Path) -> Iterator[Pair]:
     made.begin()
     yield made
     made.peer.end.close()
-    made.client.close()
+    made.client.stop_and_close()
 
 
 def connected(snapshot: Snapshot, folder: Path) -> Pair:
@@ -179,10 +184,10 @@ def connected(snapshot: Snapshot, folder: Path) -> Pair:
 
 def test_events_are_acknowledged_and_notes_are_handed_on(pair: Pair) -> None:
     job = broken_off()
-    pair.peer.end.send(Happened(3, Event(1.0, "part", "part 1")))
-    assert pair.peer.next(Heard) == Heard(3)
+    pair.peer.end.send(EventMessage(3, LogEvent(1.0, "part", "part 1")))
+    assert pair.peer.next(EventStored) == EventStored(3)
     assert pair.ear.origins == [EventOrigin("a control", 3)]
-    pair.peer.end.send(Noted(job))
+    pair.peer.end.send(InterruptedJobNote(job))
     pair.peer.end.send(ThreadEnded("recorder"))
     pair.mark()
     assert [event.kind for event in pair.ear.events] == ["part", "test"]
@@ -194,8 +199,8 @@ def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, id
     pair.peer.end.send("what is this?")
     pair.ear.fails = True
     later = replace(idle, t=77.0)
-    pair.peer.end.send(Noted(None))
-    pair.peer.end.send(Shown(later, stirred=True))
+    pair.peer.end.send(InterruptedJobNote(None))
+    pair.peer.end.send(SnapshotMessage(later, has_changed=True))
     pair.peer.end.send(ThreadEnded("a mark"))
     until(lambda: bool(pair.ear.ended))
     assert pair.client.snapshot == later
@@ -203,29 +208,29 @@ def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, id
 
 def test_an_event_that_could_not_be_kept_is_not_acknowledged(pair: Pair) -> None:
     pair.ear.fails = True
-    pair.peer.end.send(Happened(1, Event(1.0, "part", "part 1")))
+    pair.peer.end.send(EventMessage(1, LogEvent(1.0, "part", "part 1")))
     pair.peer.end.send(ThreadEnded("a mark"))
     until(lambda: bool(pair.ear.ended))
     pair.ear.fails = False
-    pair.client.post(SetSwitch("single_block", True))
+    pair.client.post_command(SetSwitch("single_block", True))
     assert pair.mark() == [SetSwitch("single_block", True)]
 
 
 def test_what_cannot_be_pickled_keeps_nothing_else_from_the_control(pair: Pair) -> None:
-    pair.client.post(SetSwitch("single_block", threading.Lock()))  # type: ignore[arg-type]
-    pair.client.post(SetSwitch("single_block", True))
+    pair.client.post_command(SetSwitch("single_block", threading.Lock()))  # type: ignore[arg-type]
+    pair.client.post_command(SetSwitch("single_block", True))
     assert pair.mark() == [SetSwitch("single_block", True)]
 
 
 def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) -> None:
-    ControlHands(pair.client.hand).press_left()
-    hand = pair.peer.next(Hand)
-    assert isinstance(hand, Hand)
+    ControlStationControls(pair.client.operate_station).press_left()
+    hand = pair.peer.next(StationAction)
+    assert isinstance(hand, StationAction)
     assert hand[:2] == ("press_left", ())
-    assert hand.at == pytest.approx(pair.client.clock.now(), abs=PATIENCE)
-    pair.client.see(idle)
-    assert pair.peer.next(Alive) == Alive()
-    pair.client.see(idle)  # at once: it was told a moment ago
+    assert hand.acted_at_s == pytest.approx(pair.client.clock.now(), abs=PATIENCE)
+    pair.client.report_alive(idle)
+    assert pair.peer.next(ScreenAlive) == ScreenAlive()
+    pair.client.report_alive(idle)  # at once: it was told a moment ago
     assert pair.mark() == []
 
 
@@ -233,15 +238,15 @@ def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) 
 def test_damaged_bytes_are_a_lost_control(pair: Pair, data: bytes) -> None:
     pair.peer.end.send_bytes(data)
     until(lambda: bool(pair.ear.events))
-    assert pair.client.snapshot.state is State.FAULT
+    assert pair.client.snapshot.state is MachineState.FAULT
 
 
 @pytest.mark.parametrize("closed", [False, True])
 def test_a_control_that_ends_by_itself_is_an_alarm(pair: Pair, closed: bool) -> None:
     if closed:  # as SIGTERM ends it
-        pair.peer.end.send(Closed())
+        pair.peer.end.send(MachineClosed())
     pair.peer.end.close()
-    until(lambda: pair.client.snapshot.state is State.FAULT)
+    until(lambda: pair.client.snapshot.state is MachineState.FAULT)
     until(lambda: bool(pair.ear.stirs))
     (event,) = pair.ear.events
     assert event.alarm is not None
@@ -252,14 +257,14 @@ def test_a_control_that_ends_by_itself_is_an_alarm(pair: Pair, closed: bool) -> 
 def test_a_control_that_the_screen_has_closed_is_none(idle: Snapshot, tmp_path: Path) -> None:
     pair = connected(idle, tmp_path)
     pair.begin()
-    closing = threading.Thread(target=pair.client.close)
+    closing = threading.Thread(target=pair.client.stop_and_close)
     closing.start()
-    assert pair.peer.next(Close) == Close()
-    pair.peer.end.send(Closed())
+    assert pair.peer.next(CloseRequest) == CloseRequest()
+    pair.peer.end.send(MachineClosed())
     pair.peer.end.close()
     closing.join(PATIENCE)
     assert pair.ear.events == []
-    assert pair.client.snapshot.state is State.IDLE
+    assert pair.client.snapshot.state is MachineState.IDLE
     names = {thread.name for thread in threading.enumerate()}
     assert not names & {"control-events", "control-posts"}
 
@@ -268,29 +273,31 @@ def test_a_control_that_the_screen_has_closed_is_none(idle: Snapshot, tmp_path: 
 
 
 def test_a_program_that_is_loaded_during_a_cycle_follows_behind_it(idle: Snapshot, tmp_path: Path) -> None:
-    running = replace(idle, state=State.RUN)
+    running = replace(idle, state=MachineState.RUN)
     pair = connected(running, tmp_path)
     pair.begin()
     first, second = job_of(SHORT, MACHINE), job_of(SHORT + "\n", MACHINE)
     for job in (first, second):
-        pair.client.post(LoadJob(job))
-    pair.client.post(GiveProof(Proof(second.digest, ())))
-    pair.client.post(SetSwitch("single_block", True))
-    pair.client.see(running)
+        pair.client.post_command(LoadJob(job))
+    pair.client.post_command(SupplyProof(Proof(second.digest, ())))
+    pair.client.post_command(SetSwitch("single_block", True))
+    pair.client.report_alive(running)
     assert pair.mark() == [SetSwitch("single_block", True)]
-    pair.peer.end.send(Shown(idle, stirred=False))
+    pair.peer.end.send(SnapshotMessage(idle, has_changed=False))
     pair.mark()
-    pair.client.post(GiveProof(Proof(second.digest, (), blocks=3)))  # not before the job that is kept
-    pair.client.see(idle)
-    assert pair.mark() == [LoadJob(second), GiveProof(Proof(second.digest, (), blocks=3))]
-    pair.client.post(LoadJob(first))
+    pair.client.post_command(
+        SupplyProof(Proof(second.digest, (), block_count=3))
+    )  # not before the job that is kept
+    pair.client.report_alive(idle)
+    assert pair.mark() == [LoadJob(second), SupplyProof(Proof(second.digest, (), block_count=3))]
+    pair.client.post_command(LoadJob(first))
     assert pair.mark() == [LoadJob(first)]
     pair.peer.end.close()
-    pair.client.close()
+    pair.client.stop_and_close()
 
 
 def test_a_program_that_a_worker_loads_just_then_is_not_lost(idle: Snapshot, tmp_path: Path) -> None:
-    running = replace(idle, state=State.RUN)
+    running = replace(idle, state=MachineState.RUN)
     pair = connected(running, tmp_path)
     pair.begin()
     job = job_of(SHORT, MACHINE)
@@ -298,24 +305,24 @@ def test_a_program_that_a_worker_loads_just_then_is_not_lost(idle: Snapshot, tmp
 
     def load() -> None:
         while not over.is_set():
-            pair.client.post(LoadJob(job))
-            pair.client.post(GiveProof(Proof(job.digest, ())))
+            pair.client.post_command(LoadJob(job))
+            pair.client.post_command(SupplyProof(Proof(job.digest, ())))
 
     worker = threading.Thread(target=load)
     worker.start()
     for _ in range(300):
         pair.client.snapshot = running
-        pair.client.see(running)
+        pair.client.report_alive(running)
         pair.client.snapshot = idle
-        pair.client.see(idle)
+        pair.client.report_alive(idle)
     over.set()
     worker.join()
     pair.client.snapshot = running
-    pair.client.post(LoadJob(job))
-    pair.client.see(idle)
+    pair.client.post_command(LoadJob(job))
+    pair.client.report_alive(idle)
     assert pair.mark()[-1] == LoadJob(job)
     pair.peer.end.close()
-    pair.client.close()
+    pair.client.stop_and_close()
 
 
 # --- what may be at the other end ---------------------------------------------------------------------------
@@ -376,14 +383,14 @@ def test_a_control_with_the_same_machine_file_is_taken(tmp_path: Path, path: Pat
 
     found = find(tmp_path, path, serve)
     assert found is not None
-    assert found.attached
-    assert found.hello.noted == broken_off()
-    found.leave(close=False)
+    assert found.is_attached
+    assert found.hello_message.interrupted_job == broken_off()
+    found.disconnect(end_control=False)
 
 
-@pytest.mark.parametrize("state", [State.RUN, State.HOLD])
+@pytest.mark.parametrize("state", [MachineState.RUN, MachineState.HOLD])
 def test_another_machine_file_under_way_is_refused(
-    tmp_path: Path, path: Path, idle: Snapshot, state: State
+    tmp_path: Path, path: Path, idle: Snapshot, state: MachineState
 ) -> None:
     other, running = replace(MACHINE, name="another"), replace(idle, state=state)
     with pytest.raises(DriverError):
@@ -397,17 +404,17 @@ def test_another_machine_file_at_rest_is_closed(tmp_path: Path, path: Path, idle
     def serve(end: Connection) -> None:
         Peer(end, idle, other).greet()
         got.append(end.recv())
-        end.send(Shown(idle, stirred=False))
+        end.send(SnapshotMessage(idle, has_changed=False))
         end.close()  # without a word: its process has ended
 
     assert find(tmp_path, path, serve) is None
-    assert got == [Close()]
+    assert got == [CloseRequest()]
 
 
 def test_another_machine_file_at_rest_that_does_not_end_keeps_nobody_waiting(
     tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(control_client, "CLOSES_IN", 0.1)
+    monkeypatch.setattr(control_client, "CLOSE_TIMEOUT_S", 0.1)
     ends: list[Connection] = []
 
     def serve(end: Connection) -> None:
@@ -417,7 +424,7 @@ def test_another_machine_file_at_rest_that_does_not_end_keeps_nobody_waiting(
     assert find(tmp_path, path, serve) is None
 
 
-@pytest.mark.parametrize("version", [VERSION + 1, 0, "x"])
+@pytest.mark.parametrize("version", [PROTOCOL_VERSION + 1, 0, "x"])
 def test_another_version_is_refused(tmp_path: Path, path: Path, idle: Snapshot, version: int) -> None:
     with pytest.raises(DriverError):
         find(tmp_path, path, lambda end: Peer(end, idle, version=version).greet())
@@ -432,7 +439,7 @@ def test_a_message_that_cannot_be_read_is_another_version(tmp_path: Path, path: 
 def test_a_control_that_says_nothing_is_not_joined_by_another(
     tmp_path: Path, path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(control_client, "ANSWERS_IN", 0.1)
+    monkeypatch.setattr(control_client, "REPLY_TIMEOUT_S", 0.1)
     ends: list[Connection] = []
     with pytest.raises(DriverError):
         find(tmp_path, path, ends.append)
@@ -441,7 +448,7 @@ def test_a_control_that_says_nothing_is_not_joined_by_another(
 def test_a_control_whose_queue_is_full_keeps_nobody_waiting(
     tmp_path: Path, path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(control_client, "ANSWERS_IN", 0.1)
+    monkeypatch.setattr(control_client, "REPLY_TIMEOUT_S", 0.1)
     with socket.socket(socket.AF_UNIX) as listener:
         listener.bind(str(path))
         listener.listen(0)
@@ -451,9 +458,9 @@ def test_a_control_whose_queue_is_full_keeps_nobody_waiting(
                 find_control(MACHINE, tmp_path, path)
 
 
-@pytest.mark.parametrize("why", [BUSY])
+@pytest.mark.parametrize("why", [SCREEN_CONNECTED])
 def test_a_control_that_has_a_screen_is_left_alone(tmp_path: Path, path: Path, why: str) -> None:
-    assert find(tmp_path, path, lambda end: end.send(Failed(why))) is None
+    assert find(tmp_path, path, lambda end: end.send(ControlFailed(why))) is None
 
 
 def test_a_control_that_ends_just_then_is_none(tmp_path: Path, path: Path) -> None:
@@ -478,7 +485,7 @@ def test_a_process_that_does_not_start_is_told_of(tmp_path: Path, monkeypatch: p
     started = start_control(MACHINE, tmp_path)
     with pytest.raises(DriverError):
         ControlClient(started, tmp_path)
-    started.abandon()
+    started.kill_process()
     assert started.process is not None
     assert started.process.returncode is not None
 
@@ -486,15 +493,15 @@ def test_a_process_that_does_not_start_is_told_of(tmp_path: Path, monkeypatch: p
 def test_a_process_that_does_not_end_is_killed(
     idle: Snapshot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(control_client, "CLOSES_IN", 0.1)
-    monkeypatch.setattr(control_client, "ENDS", 0.1)
+    monkeypatch.setattr(control_client, "CLOSE_TIMEOUT_S", 0.1)
+    monkeypatch.setattr(control_client, "JOIN_TIMEOUT_S", 0.1)
     ours, theirs = Pipe()
     peer = Peer(theirs, idle)
     peer.greet()
     process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     client = ControlClient(StartedControl(ours, process), tmp_path)
-    client.begin(Ear().all)
-    client.close()
+    client.start_threads(Ear().all)
+    client.stop_and_close()
     assert process.returncode is not None
     assert process.returncode < 0
     assert process.stdin is not None

@@ -12,50 +12,50 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.control.control_messages import Shown
-from app.compose.control.control_server import watched
-from app.compose.desk_services import SUPERVISED
+from app.compose.control.control_messages import SnapshotMessage
+from app.compose.control.control_server import list_watched_threads
+from app.compose.desk_services import SUPERVISED_THREADS
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import control_limits, read_machine
+from app.compose.machine.machine_setup import get_control_limits, read_machine
 from core.executor import commands
 from core.executor.commands import (
-    BarNextPart,
+    BlockNextPart,
+    ChangeOffsets,
     Command,
     CycleStart,
+    DeselectHandwheel,
     EnableDrives,
     FeedHold,
-    JogStop,
     LoadJob,
-    Prepare,
-    Renew,
+    PrepareStart,
     Reset,
     SetSwitch,
-    SpindleStop,
-    WheelOff,
+    StopJog,
+    StopSpindle,
 )
 from core.executor.hand_motion.drive_test import DriveTestPath, Shape
-from core.executor.job import Job, Proof, interpret, make_job
-from core.executor.snapshot import Event, Starts, State
-from core.interpreter.dialects import ReadProgram, line_alone
-from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.executor.job import Job, Proof, make_job, start_program_pass
+from core.executor.snapshot import LogEvent, MachineState, StartAction
+from core.interpreter.dialects import SharedProgram, interpret_mdi_line
+from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Dialect, Source
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
-from drivers.simulators.plant_hands import PlantHands
+from drivers.simulators.plant_controls import PlantControls
 from tests.control.bench import SHORT, Bench, control, job_of, until
 from tests.executor.rig import Rig
 from tests.interrupted import broken_off
 
-OMNITURN = Source("part.nc", SHORT, Dialect.OMNITURN)
-SINUMERIK = Source("part.mpf", "G90 G94 G71\nG1 X10 Z-5 F100\nM30\n", Dialect.SINUMERIK)
-KLARTEXT = Source(
+OMNITURN = ProgramSource("part.nc", SHORT, Dialect.OMNITURN)
+SINUMERIK = ProgramSource("part.mpf", "G90 G94 G71\nG1 X10 Z-5 F100\nM30\n", Dialect.SINUMERIK)
+KLARTEXT = ProgramSource(
     "part.h", "0 BEGIN PGM PART MM\n1 L X+10 Y+5 R0 FMAX\n2 M30\n3 END PGM PART MM\n", Dialect.KLARTEXT
 )
 LINES = {
-    "gt75.toml": Source("MDI", "G90G94G01X1F10", Dialect.OMNITURN),
-    "sinumerik-live.toml": Source("MDI", "G1 X10 F100", Dialect.SINUMERIK),
-    "ac-table-mill.toml": Source("MDI", "L X+10 R0 FMAX", Dialect.KLARTEXT),
+    "gt75.toml": ProgramSource("MDI", "G90G94G01X1F10", Dialect.OMNITURN),
+    "sinumerik-live.toml": ProgramSource("MDI", "G1 X10 F100", Dialect.SINUMERIK),
+    "ac-table-mill.toml": ProgramSource("MDI", "L X+10 R0 FMAX", Dialect.KLARTEXT),
 }
 
 
@@ -94,7 +94,7 @@ def _values() -> Mapping[str, object]:
         "Mapping[int, SecondaryOffset]": {4: SecondaryOffset(1.0)},
         "tuple[Clearance, ...]": (commands.Clearance(job.digest, (1.0, 2.0, 0.0), 3),),
         "Clearance | None": commands.Clearance(job.digest, (1.0, 2.0, 0.0), 3),
-        "Starts": Starts.LINE,
+        "StartAction": StartAction.MDI_LINE,
     }
 
 
@@ -117,42 +117,44 @@ def test_every_command_arrives_as_it_was_sent(kind: type[Command]) -> None:
 
 
 @pytest.mark.parametrize("source", [OMNITURN, SINUMERIK, KLARTEXT], ids=lambda source: source.name)
-def test_a_job_of_each_language_runs_as_it_was_proved(source: Source) -> None:
+def test_a_job_of_each_language_runs_as_it_was_proved(source: ProgramSource) -> None:
     machine = machine_of("ac-table-mill.toml" if source is KLARTEXT else "gt75.toml")
-    job = make_job(source, Setup(limits=control_limits(machine)))
+    job = make_job(source, Setup(limits=get_control_limits(machine)))
     arrived: Job = pickle.loads(pickle.dumps(job))
     assert arrived == job
-    assert arrived.reading.is_same(job.reading)
-    there, here = interpret(arrived, arrived.setup), interpret(job, job.setup)
+    assert arrived.shared_program.has_same_source(job.shared_program)
+    there, here = start_program_pass(arrived, arrived.setup), start_program_pass(job, job.setup)
     assert repr(list(there.blocks)) == repr(list(here.blocks))
-    assert list(there.problems()) == list(here.problems())
+    assert list(there.get_diagnostics()) == list(here.get_diagnostics())
 
 
 @pytest.mark.parametrize("machine", LINES)
 def test_what_a_line_leaves_is_the_same_in_both_processes(machine: str) -> None:
-    limits = control_limits(machine_of(machine))
-    line = line_alone(LINES[machine], Setup(begin=Begin(Checkpoint(Modal()), single=True), limits=limits))
-    list(line.blocks())
+    limits = get_control_limits(machine_of(machine))
+    line = interpret_mdi_line(
+        LINES[machine], Setup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
+    )
+    list(line.generate_blocks())
     left = line.checkpoint
     arrived = pickle.loads(pickle.dumps(left))
     assert arrived == left
     assert hash(arrived.kept) == hash(left.kept)
     here, there = (
-        make_job(LINES[machine], Setup(begin=Begin(each, single=True), limits=limits))
+        make_job(LINES[machine], Setup(begin=PassStart(each, is_mdi_line=True), limits=limits))
         for each in (left, arrived)
     )
     assert here.digest == there.digest
     again: Job = pickle.loads(pickle.dumps(there))
-    blocks, same = (repr(list(interpret(each, each.setup).blocks)) for each in (again, here))
+    blocks, same = (repr(list(start_program_pass(each, each.setup).blocks)) for each in (again, here))
     assert blocks == same
 
 
 def test_what_two_lines_leave_differs() -> None:
-    limits = control_limits(machine_of("sinumerik-live.toml"))
-    setup = Setup(begin=Begin(Checkpoint(Modal()), single=True), limits=limits)
-    first, second = (line_alone(LINES["sinumerik-live.toml"], setup) for _ in range(2))
+    limits = get_control_limits(machine_of("sinumerik-live.toml"))
+    setup = Setup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
+    first, second = (interpret_mdi_line(LINES["sinumerik-live.toml"], setup) for _ in range(2))
     for line in (first, second):
-        list(line.blocks())
+        list(line.generate_blocks())
     assert first.checkpoint.kept is not None
     assert first.checkpoint.kept != pickle.loads(pickle.dumps(second.checkpoint.kept))
     assert first.checkpoint.kept != None  # noqa: E711  it is compared, not looked for
@@ -161,11 +163,11 @@ def test_what_two_lines_leave_differs() -> None:
 def test_snapshots_and_events_arrive_as_they_were_sent() -> None:
     rig = Rig()
     rig.start(SHORT)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.sim.machine.press_estop()
     rig.run(0.2)
     assert pickle.loads(pickle.dumps(rig.shot)) == rig.shot
-    arrived: list[Event] = pickle.loads(pickle.dumps(rig.events))
+    arrived: list[LogEvent] = pickle.loads(pickle.dumps(rig.events))
     assert arrived == rig.events
     assert any(event.alarm is not None for event in arrived)
     for kept in rig.notes:
@@ -173,7 +175,7 @@ def test_snapshots_and_events_arrive_as_they_were_sent() -> None:
 
 
 def test_the_screen_can_name_every_thread_that_the_control_tells_of() -> None:
-    assert {"recorder", "pendant"} < set(watched()) <= SUPERVISED.keys()
+    assert {"recorder", "pendant"} < set(list_watched_threads()) <= SUPERVISED_THREADS.keys()
 
 
 def test_every_shipped_machine_file_is_recognized_by_the_next_screen() -> None:
@@ -194,7 +196,7 @@ class SlowReading:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.begun, self.over = threading.Event(), threading.Event()
-        monkeypatch.setattr(ReadProgram, "read", self.read)
+        monkeypatch.setattr(SharedProgram, "read", self.read)
 
     def read(self, _read: object = None) -> None:
         """Begin, and end when the test says so."""
@@ -202,14 +204,14 @@ class SlowReading:
         self.over.wait(30.0)
 
 
-@pytest.mark.parametrize("stop", [FeedHold(), JogStop(), Reset(), SpindleStop(), WheelOff()])
+@pytest.mark.parametrize("stop", [FeedHold(), StopJog(), Reset(), StopSpindle(), DeselectHandwheel()])
 def test_a_stop_overtakes_a_program_that_is_being_read(
     bench: Bench, stop: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     screen = bench.screen()
     screen.meet()
     screen.post(EnableDrives())
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     slow = SlowReading(monkeypatch)
     obeyed = list[Command]()
     post = bench.server.executor.post
@@ -240,7 +242,7 @@ def test_a_hand_that_stops_drops_the_starts_before_it(
     screen = bench.screen()
     screen.meet()
     screen.post(EnableDrives())
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     slow = SlowReading(monkeypatch)
     job = job_of(SHORT, bench.machine)
     screen.post(LoadJob(job, Proof(job.digest, ())))
@@ -254,7 +256,7 @@ def test_a_hand_that_stops_drops_the_starts_before_it(
     slow.over.set()
     until(lambda: bench.shot.program == "part.nc")
     screen.post(SetSwitch("optional_stop", True))
-    screen.take(Shown, lambda each: each.snapshot.optional_stop)
+    screen.take(SnapshotMessage, lambda each: each.snapshot.optional_stop)
     assert bench.shot.begun == 0
 
 
@@ -262,9 +264,9 @@ def test_a_start_that_comes_late_is_refused_and_what_is_no_start_is_not(bench: B
     screen = bench.screen()
     screen.meet()
     screen.post(EnableDrives(), late=0.6)
-    screen.post(BarNextPart("WHY"), late=60.0)
+    screen.post(BlockNextPart("WHY"), late=60.0)
     until(lambda: bench.shot.next_barred == "WHY")
-    assert bench.shot.state is State.DISABLED
+    assert bench.shot.state is MachineState.DISABLED
     assert len(screen.events("refused")) == 1
 
 
@@ -274,15 +276,15 @@ def test_a_program_is_read_once_for_all_commands_with_it(
     screen = bench.screen()
     screen.meet()
     read = list[str]()
-    monkeypatch.setattr(ReadProgram, "read", lambda self: read.append(self.source.text))
+    monkeypatch.setattr(SharedProgram, "read", lambda self: read.append(self.source.text))
     job = job_of(SHORT, bench.machine)
     worn = job_of(SHORT, bench.machine, tools={1: ToolOffset(1.0)})
     screen.post(LoadJob(job, Proof(job.digest, ())))
-    screen.post(Renew(worn, Proof(worn.digest, ())))
-    screen.post(Prepare(Starts.PROGRAM))
+    screen.post(ChangeOffsets(worn, Proof(worn.digest, ())))
+    screen.post(PrepareStart(StartAction.PROGRAM))
     screen.post(LoadJob(job_of(SHORT + "\n", bench.machine)))
     screen.post(SetSwitch("optional_stop", True))
-    screen.take(Shown, lambda each: each.snapshot.optional_stop)
+    screen.take(SnapshotMessage, lambda each: each.snapshot.optional_stop)
     assert read == [SHORT, SHORT + "\n"]
 
 
@@ -298,7 +300,7 @@ class Station:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.did = list[str]()
         for name in HANDS:
-            monkeypatch.setattr(PlantHands, name, lambda *_, name=name: self.did.append(name))
+            monkeypatch.setattr(PlantControls, name, lambda *_, name=name: self.did.append(name))
 
 
 def test_palms_that_come_late_do_nothing_and_all_else_does(
@@ -320,13 +322,13 @@ def test_what_a_lost_screen_has_held_is_released_but_for_the_estop(bench: Bench)
     screen.hand("press_hold")
     screen.hand("press_left")
     screen.hand("press_estop")
-    bench.until(State.ESTOP)
+    bench.until(MachineState.ESTOP)
     screen.lose()
     bench.looks(1)
     other = bench.screen()
-    assert other.meet().snapshot.state is State.ESTOP
+    assert other.meet().snapshot.state is MachineState.ESTOP
     other.hand("press_right")  # the left one alone would make a start of it
     other.hand("release_estop")
-    bench.until(State.DISABLED)
+    bench.until(MachineState.DISABLED)
     other.post(EnableDrives())
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)

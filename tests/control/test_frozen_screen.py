@@ -11,7 +11,7 @@ import pytest
 
 import resources
 from core.store.store import Store
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.killed.bench import Process, process, until
 
 pytestmark = [
@@ -71,7 +71,7 @@ def test_a_frozen_screen_lets_the_part_be_finished_and_goes_on(tmp_path: Path) -
     with Store.open(home, read_only=True) as store:
         kinds = [event.kind for event in store.events.read_events()]
         assert "stop" not in kinds
-        assert kinds.count("part") == store.runs.count_parts("part.nc") >= made + 2
+        assert kinds.count("part") == store.runs.read_part_count("part.nc") >= made + 2
 
 
 def test_a_frozen_control_holds_and_is_served_again(tmp_path: Path) -> None:

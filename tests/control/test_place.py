@@ -21,7 +21,7 @@ from app.compose.backends.driver_host_process import DriverHostProcess
 from app.compose.control.control_place import ControlPlace, ScreenListener
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 NAMES = ["control.sock", "control-2.sock", "control-3.sock", "control-4.sock"]
 

@@ -8,32 +8,32 @@ import pytest
 
 from app.compose.control.posted_state import PostedState
 from core.executor.commands import (
-    BarNextPart,
+    BlockNextPart,
+    ChangeOffsets,
     Command,
     ConfirmStart,
     CycleStart,
     EnableDrives,
-    FeedOverride,
-    GiveClearance,
-    GiveProof,
-    Home,
+    HomeAxes,
     Jog,
-    LeftInterrupted,
     LoadJob,
-    PartsMade,
-    Prepare,
-    Renew,
+    PrepareStart,
+    ReplaceClearances,
+    ReportInterruptedJob,
     Reset,
+    SetFeedOverride,
+    SetPartCount,
+    SetSpindleLimit,
     SetSwitch,
-    SpindleLimit,
+    SupplyProof,
     UseOffsets,
 )
 from core.executor.job import Proof
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.snapshot import MachineState, Snapshot, StartAction
 from tests.control.bench import LONG, SHORT, job_of, one_button
 from tests.interrupted import broken_off
 
-LAST = Snapshot(state=State.RUN, made=17)
+LAST = Snapshot(state=MachineState.RUN, made=17)
 FIRST, SECOND = job_of(SHORT, one_button()), job_of(LONG, one_button())
 
 
@@ -50,23 +50,26 @@ def test_a_control_without_a_program_gets_nothing() -> None:
 
 def test_the_program_comes_with_its_proof_and_its_parts() -> None:
     proof = Proof(FIRST.digest, ())
-    assert after(LoadJob(FIRST), GiveProof(proof)) == [LoadJob(FIRST, proof), PartsMade(17)]
+    assert after(LoadJob(FIRST), SupplyProof(proof)) == [LoadJob(FIRST, proof), SetPartCount(17)]
 
 
 def test_a_proof_of_another_program_is_left_out() -> None:
     old = Proof(FIRST.digest, ())
-    assert after(LoadJob(FIRST, old), LoadJob(SECOND)) == [LoadJob(SECOND), PartsMade(17)]
-    assert after(LoadJob(SECOND), GiveProof(old)) == [LoadJob(SECOND), PartsMade(17)]
+    assert after(LoadJob(FIRST, old), LoadJob(SECOND)) == [LoadJob(SECOND), SetPartCount(17)]
+    assert after(LoadJob(SECOND), SupplyProof(old)) == [LoadJob(SECOND), SetPartCount(17)]
 
 
 def test_changed_offsets_are_those_of_the_program() -> None:
     proof = Proof(SECOND.digest, ())
-    assert after(LoadJob(FIRST), Renew(), Renew(SECOND, proof)) == [LoadJob(SECOND, proof), PartsMade(17)]
+    assert after(LoadJob(FIRST), ChangeOffsets(), ChangeOffsets(SECOND, proof)) == [
+        LoadJob(SECOND, proof),
+        SetPartCount(17),
+    ]
 
 
-@pytest.mark.parametrize("announced", [Renew(), Renew(trouble="no proof")])
-def test_announced_offsets_still_prevent_a_start(announced: Renew) -> None:
-    assert after(LoadJob(FIRST), announced) == [LoadJob(FIRST), PartsMade(17), announced]
+@pytest.mark.parametrize("announced", [ChangeOffsets(), ChangeOffsets(trouble="no proof")])
+def test_announced_offsets_still_prevent_a_start(announced: ChangeOffsets) -> None:
+    assert after(LoadJob(FIRST), announced) == [LoadJob(FIRST), SetPartCount(17), announced]
 
 
 @pytest.mark.parametrize(
@@ -74,31 +77,31 @@ def test_announced_offsets_still_prevent_a_start(announced: Renew) -> None:
     [
         CycleStart(),
         EnableDrives(),
-        Home(),
+        HomeAxes(),
         Jog("X", 1.0, 0.3),
         Reset(),
         ConfirmStart("now"),
-        GiveClearance(()),
-        Prepare(Starts.PROGRAM),
+        ReplaceClearances(()),
+        PrepareStart(StartAction.PROGRAM),
     ],
 )
 def test_what_moves_starts_or_permits_a_start_is_not_repeated(command: Command) -> None:
     assert after(command) == []
 
 
-@pytest.mark.parametrize("starts", [Starts.LINE, Starts.RESTART])
-def test_a_prepared_line_or_restart_must_be_prepared_again(starts: Starts) -> None:
-    prepared = Prepare(starts, FIRST, Proof(FIRST.digest, ()))
-    assert after(prepared) == [Prepare(Starts.LINE)]
-    assert after(prepared, Prepare(Starts.PROGRAM)) == []
+@pytest.mark.parametrize("starts", [StartAction.MDI_LINE, StartAction.RESTART])
+def test_a_prepared_line_or_restart_must_be_prepared_again(starts: StartAction) -> None:
+    prepared = PrepareStart(starts, FIRST, Proof(FIRST.digest, ()))
+    assert after(prepared) == [PrepareStart(StartAction.MDI_LINE)]
+    assert after(prepared, PrepareStart(StartAction.PROGRAM)) == []
 
 
 @pytest.mark.parametrize(
     ("first", "last"),
     [
-        (SpindleLimit(3000.0), SpindleLimit(2000.0)),
-        (FeedOverride(1.2), FeedOverride(0.5)),
-        (BarNextPart("tool 3"), BarNextPart("")),
+        (SetSpindleLimit(3000.0), SetSpindleLimit(2000.0)),
+        (SetFeedOverride(1.2), SetFeedOverride(0.5)),
+        (BlockNextPart("tool 3"), BlockNextPart("")),
         (UseOffsets({}, {}), UseOffsets({}, {})),
     ],
 )
@@ -116,7 +119,7 @@ def test_switches_are_as_last_shown_except_cycle_repeat() -> None:
 
 def test_an_interrupted_job_is_reported_once_more() -> None:
     state = PostedState(broken_off())
-    assert state.commands(LAST) == [LeftInterrupted(broken_off(), logged=True)]
+    assert state.commands(LAST) == [ReportInterruptedJob(broken_off(), logged=True)]
     state.interrupted = None
     assert state.commands(LAST) == []
 

@@ -15,22 +15,27 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands, find_control
+from app.compose.control.control_client import (
+    ControlClient,
+    ControlEventHandlers,
+    ControlStationControls,
+    find_control,
+)
 from app.compose.control.control_start import socket_paths, start_control
-from app.compose.control.left_note import NAME
-from app.compose.control.rights import PRIORITY, READING
+from app.compose.control.process_rights_check import READING, REAL_TIME_PRIORITY
+from app.compose.control.unattended_notes import NOTE_FILE
 from app.compose.runs.receipt import Receipt
-from app.desk.data_folder import HOME
+from app.desk.data_folder import HOME_VARIABLE
 from core.executor.commands import (
     Clearance,
     CycleStart,
     EnableDrives,
-    GiveClearance,
     LoadJob,
+    ReplaceClearances,
     SetSwitch,
 )
 from core.executor.job import Proof
-from core.executor.snapshot import Event, State
+from core.executor.snapshot import LogEvent, MachineState
 from tests.control.bench import LONG, job_of, one_button, until
 from tests.killed.bench import until as until_long
 
@@ -46,47 +51,47 @@ class Desk:
 
     def __init__(self, client: ControlClient) -> None:
         self.client = client
-        self.events = list[Event]()
-        client.begin(ControlEvents(self.hear, lambda _: None, lambda _: None))
+        self.events = list[LogEvent]()
+        client.start_threads(ControlEventHandlers(self.hear, lambda _: None, lambda _: None))
 
-    def hear(self, event: Event, receipt: Receipt | None) -> None:
+    def hear(self, event: LogEvent, receipt: Receipt | None) -> None:
         self.events.append(event)
         if receipt is not None:
             receipt.confirm()
 
     @property
-    def state(self) -> State:
+    def state(self) -> MachineState:
         return self.client.snapshot.state
 
     def see(self) -> bool:
         """A frame."""
-        self.client.see(self.client.snapshot)
+        self.client.report_alive(self.client.snapshot)
         return True
 
-    def until(self, *states: State) -> None:
+    def until(self, *states: MachineState) -> None:
         """Look until it is in one of these states."""
         until_long(lambda: self.see() and self.state in states, lambda: self.client.snapshot)
 
     def run(self) -> None:
         """A program that takes its time."""
         job = job_of(LONG, MACHINE)
-        self.client.post(EnableDrives())
-        self.until(State.IDLE)
-        self.client.post(LoadJob(job, Proof(job.digest, ())))
+        self.client.post_command(EnableDrives())
+        self.until(MachineState.IDLE)
+        self.client.post_command(LoadJob(job, Proof(job.digest, ())))
         until(lambda: self.client.snapshot.program == "part.nc")
         shot = self.client.snapshot
-        self.client.post(GiveClearance((Clearance(job.digest, shot.demand, shot.begun),)))
-        self.client.post(CycleStart())
-        self.until(State.RUN)
+        self.client.post_command(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)))
+        self.client.post_command(CycleStart())
+        self.until(MachineState.RUN)
 
     def vanish(self) -> None:
         """As a killed screen does."""
-        self.client.leave(close=False)
+        self.client.disconnect(end_control=False)
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv(HOME, str(tmp_path))
+    monkeypatch.setenv(HOME_VARIABLE, str(tmp_path))
     return tmp_path
 
 
@@ -99,7 +104,7 @@ def desk(folder: Path) -> Iterator[tuple[Desk, subprocess.Popen[bytes]]]:
     made = Desk(ControlClient(started, folder))
     try:
         yield made, process
-        made.client.close()
+        made.client.stop_and_close()
         until_long(lambda: process.poll() is not None, lambda: process.pid)
     finally:
         process.kill()
@@ -123,8 +128,8 @@ def found(folder: Path, place: int = 0) -> ControlClient:
 def test_closing_ends_everything(folder: Path) -> None:
     before = sockets()
     with desk(folder) as (screen, process):
-        screen.client.post(EnableDrives())
-        screen.until(State.IDLE)
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
         assert (folder / "control.sock").is_socket()
         assert (folder / "control.sock").stat().st_mode & 0o177 == 0
     assert process.returncode == 0
@@ -138,7 +143,7 @@ def test_a_control_that_is_terminated_is_an_alarm_of_its_screen(folder: Path) ->
     with desk(folder) as (screen, process):
         screen.run()
         process.send_signal(signal.SIGTERM)
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
         assert screen.events[-1].alarm is not None
         assert screen.events[-1].alarm.code == "control-silent"
         assert process.wait(30.0) == 0
@@ -148,7 +153,7 @@ def test_a_control_that_is_terminated_is_an_alarm_of_its_screen(folder: Path) ->
 def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path) -> None:
     with desk(folder) as (screen, process):
         process.kill()
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
     assert (folder / "control.sock").is_socket()
     path = socket_paths(folder)[0]
     assert find_control(MACHINE, folder, path) is None
@@ -158,20 +163,20 @@ def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path
 
 def test_a_control_that_stood_still_goes_on(folder: Path) -> None:
     with desk(folder) as (screen, process):
-        screen.client.post(EnableDrives())
-        screen.until(State.IDLE)
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
         process.send_signal(signal.SIGSTOP)
-        ControlHands(screen.client.hand).press_left()
-        ControlHands(screen.client.hand).press_right()
-        screen.client.post(CycleStart())
+        ControlStationControls(screen.client.operate_station).press_left()
+        ControlStationControls(screen.client.operate_station).press_right()
+        screen.client.post_command(CycleStart())
         for _ in range(3000):  # more than the socket holds: nobody waits
-            screen.client.post(SetSwitch("optional_stop", False))
+            screen.client.post_command(SetSwitch("optional_stop", False))
         began = screen.client.clock.now()
         until(lambda: screen.client.clock.now() > began + 3.0)
         process.send_signal(signal.SIGCONT)
-        screen.client.post(SetSwitch("single_block", True))
+        screen.client.post_command(SetSwitch("single_block", True))
         until_long(lambda: screen.client.snapshot.single_block, lambda: screen.client.snapshot)
-        assert screen.state is State.IDLE
+        assert screen.state is MachineState.IDLE
         assert [event.kind for event in screen.events].count("refused") == 1  # the start that came late
 
 
@@ -179,15 +184,15 @@ def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
     with desk(folder) as (screen, process):
         screen.run()
         screen.vanish()
-        until_long((folder / NAME).exists, lambda: "")
+        until_long((folder / NOTE_FILE).exists, lambda: "")
         client = found(folder)
         second = Desk(client)
-        second.until(State.HOLD)
-        assert client.hello.noted is not None
-        assert not (folder / NAME).exists()
-        second.client.close()
+        second.until(MachineState.HOLD)
+        assert client.hello_message.interrupted_job is not None
+        assert not (folder / NOTE_FILE).exists()
+        second.client.stop_and_close()
         assert process.wait(30.0) == 0
-        assert second.state is not State.FAULT
+        assert second.state is not MachineState.FAULT
 
 
 def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: Path) -> None:
@@ -197,25 +202,25 @@ def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: 
         for _ in range(5):  # none of them is left in the queue
             assert find_control(MACHINE, folder, path) is None
         with desk(folder) as (second, _):
-            second.client.post(EnableDrives())
-            second.until(State.IDLE)
-            assert first.state is not State.IDLE
+            second.client.post_command(EnableDrives())
+            second.until(MachineState.IDLE)
+            assert first.state is not MachineState.IDLE
         assert path.is_socket()  # of the first
-        first.client.post(EnableDrives())
-        first.until(State.IDLE)
+        first.client.post_command(EnableDrives())
+        first.until(MachineState.IDLE)
 
 
 def test_the_second_control_of_a_folder_is_found_at_its_own_socket(folder: Path) -> None:
     with desk(folder), desk(folder) as (second, process):
-        second.client.post(EnableDrives())
-        second.until(State.IDLE)
+        second.client.post_command(EnableDrives())
+        second.until(MachineState.IDLE)
         second.vanish()
         paths = socket_paths(folder)
         assert find_control(MACHINE, folder, paths[0]) is None  # it has its screen
         client = found(folder, 1)
-        assert client.snapshot.state is State.IDLE
+        assert client.snapshot.state is MachineState.IDLE
         again = Desk(client)
-        again.client.close()
+        again.client.stop_and_close()
         assert process.wait(30.0) == 0
         assert not paths[1].exists()
         assert paths[0].is_socket()
@@ -226,7 +231,7 @@ def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None
     started = start_control(MACHINE, folder)
     ControlClient(started, folder)
     until(lambda: _listens(path))
-    started.abandon()
+    started.kill_process()
     assert path.is_socket()  # left by the killed control
     assert not _listens(path)
     with desk(folder):
@@ -236,22 +241,22 @@ def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None
 
 def test_only_the_reading_thread_has_the_lowest_priority(folder: Path) -> None:
     with desk(folder) as (screen, process):
-        screen.client.post(EnableDrives())
-        screen.until(State.IDLE)
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
         if os.sched_getscheduler(process.pid) != os.SCHED_RR:
             pytest.skip("the system grants no real-time priority")
         threads = [int(path.name) for path in Path(f"/proc/{process.pid}/task").iterdir()]
         priorities = [os.sched_getparam(thread).sched_priority for thread in threads]
         assert priorities.count(READING) == 1
-        assert set(priorities) <= {READING, PRIORITY, 0}  # 0: threads of numpy
-        assert os.sched_getparam(process.pid).sched_priority == PRIORITY
+        assert set(priorities) <= {READING, REAL_TIME_PRIORITY, 0}  # 0: threads of numpy
+        assert os.sched_getparam(process.pid).sched_priority == REAL_TIME_PRIORITY
 
 
 def test_two_folders_have_two_controls(folder: Path) -> None:
     with desk(folder / "one") as (first, _), desk(folder / "two") as (second, _):
-        first.client.post(EnableDrives())
-        first.until(State.IDLE)
-        assert second.state is not State.IDLE
+        first.client.post_command(EnableDrives())
+        first.until(MachineState.IDLE)
+        assert second.state is not MachineState.IDLE
         assert (folder / "one" / "control.sock").is_socket()
         assert (folder / "two" / "control.sock").is_socket()
 
@@ -259,8 +264,8 @@ def test_two_folders_have_two_controls(folder: Path) -> None:
 def test_a_folder_in_which_no_socket_can_be_made_is_no_obstacle(folder: Path) -> None:
     (folder / "control.sock").mkdir()
     with desk(folder) as (screen, _):
-        screen.client.post(EnableDrives())
-        screen.until(State.IDLE)
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
     assert (folder / "control.sock").is_dir()
 
 
@@ -268,21 +273,21 @@ def test_a_folder_whose_path_is_too_long_for_a_socket_is_no_obstacle(folder: Pat
     long = folder / ("long" * 30)
     assert socket_paths(long) == []
     with desk(long) as (screen, _):
-        screen.client.post(EnableDrives())
-        screen.until(State.IDLE)
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
 
 
 def test_a_disk_that_takes_nothing_is_no_obstacle(folder: Path) -> None:
     (folder / "file").write_text("")
     with desk(folder / "file" / "home") as (screen, _):  # no folder can be made there
-        screen.client.post(EnableDrives())
-        screen.until(State.IDLE)
-        assert screen.client.hello.trouble
+        screen.client.post_command(EnableDrives())
+        screen.until(MachineState.IDLE)
+        assert screen.client.hello_message.disk_error
 
 
 def test_a_process_that_is_closed_at_once_leaves_nothing(folder: Path) -> None:
     started = start_control(MACHINE, folder)
-    started.abandon()
+    started.kill_process()
     assert started.process is not None
     assert started.process.returncode is not None
     assert not (folder / "control.sock").exists()
@@ -293,7 +298,7 @@ def test_a_screen_that_dies_at_once_leaves_a_control_that_ends(folder: Path) -> 
     started.connection.close()
     assert started.process is not None
     client = found(folder)
-    client.leave(close=True)
+    client.disconnect(end_control=True)
     assert started.process.wait(30.0) == 0
 
 

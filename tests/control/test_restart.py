@@ -13,24 +13,24 @@ from pathlib import Path
 import pytest
 
 from app.compose.control import control_client, live_control
-from app.compose.control.control_client import ControlClient, ControlEvents
+from app.compose.control.control_client import ControlClient, ControlEventHandlers
 from app.compose.control.control_start import start_control
 from app.compose.control.live_control import LiveControl
 from app.compose.control.process_handle import ProcessHandle
-from app.desk.data_folder import HOME
-from app.desk.stop_keys.stop_records import Stop, StopKind
+from app.desk.data_folder import HOME_VARIABLE
+from app.desk.stop_keys.stop_records import StopKind, StopPress
 from core.executor.commands import (
     Clearance,
     Command,
     CycleStart,
     EnableDrives,
-    GiveClearance,
     LoadJob,
+    ReplaceClearances,
     Reset,
     SetSwitch,
 )
 from core.executor.job import Job, Proof
-from core.executor.snapshot import Event, InterruptedJob, State
+from core.executor.snapshot import InterruptedJob, LogEvent, MachineState
 from core.machine.machine_model import Machine
 from tests.control.bench import LONG, job_of, one_button
 from tests.killed.bench import until
@@ -47,23 +47,25 @@ class Desk:
     """A screen without a window, and what its control has said."""
 
     live: LiveControl
-    events: list[Event] = field(default_factory=list)
+    events: list[LogEvent] = field(default_factory=list)
     notes: list[InterruptedJob | None] = field(default_factory=list)
     said: list[str] = field(default_factory=list)
 
     def begin(self) -> None:
-        heard = ControlEvents(lambda event, _: self.events.append(event), self.notes.append, lambda _: None)
+        heard = ControlEventHandlers(
+            lambda event, _: self.events.append(event), self.notes.append, lambda _: None
+        )
         self.live.begin(heard, self.said.append)
 
     @property
     def process(self) -> int:
-        return self.live.client.hello.process
+        return self.live.client.hello_message.process
 
     @property
     def alarms(self) -> list[str]:
         return [event.alarm.code for event in self.events if event.alarm is not None]
 
-    def until(self, *states: State) -> None:
+    def until(self, *states: MachineState) -> None:
         self.wait(lambda: self.live.snapshot.state in states)
 
     def wait(self, ready: Callable[[], bool]) -> None:
@@ -80,12 +82,12 @@ class Desk:
     def run(self) -> Job:
         job = job_of(LONG, MACHINE)
         self.post(EnableDrives())
-        self.until(State.IDLE)
+        self.until(MachineState.IDLE)
         self.post(LoadJob(job, Proof(job.digest, ())))
         self.wait(lambda: self.live.snapshot.program == "part.nc")
         shot = self.live.snapshot
-        self.post(GiveClearance((Clearance(job.digest, shot.demand, shot.begun),)), CycleStart())
-        self.until(State.RUN)
+        self.post(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)), CycleStart())
+        self.until(MachineState.RUN)
         self.wait(lambda: bool(self.notes))
         return job
 
@@ -102,8 +104,10 @@ def desk(folder: Path, machine: Machine = MACHINE) -> Iterator[Desk]:
         with suppress(ProcessLookupError):
             os.kill(made.process, signal.SIGCONT)
         made.live.close()
-        assert all(client.handle.wait(0.0) or client.process is not None for client in seen)
-        assert all(client.process is None or client.process.poll() is not None for client in seen)
+        assert all(client.handle.wait(0.0) or client.control_process is not None for client in seen)
+        assert all(
+            client.control_process is None or client.control_process.poll() is not None for client in seen
+        )
 
 
 @pytest.fixture(autouse=True)
@@ -115,7 +119,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv(HOME, str(tmp_path))
+    monkeypatch.setenv(HOME_VARIABLE, str(tmp_path))
     return tmp_path
 
 
@@ -126,18 +130,18 @@ def test_reset_replaces_a_killed_control_with_its_program_and_starts_nothing(fol
         screen.wait(lambda: screen.live.snapshot.optional_stop)
         killed, time = screen.process, screen.live.snapshot.t
         os.kill(killed, signal.SIGKILL)
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
         assert screen.alarms == ["control-silent"]
         screen.post(Reset())
         screen.wait(lambda: screen.process != killed and screen.live.snapshot.job == job.digest)
         shot = screen.live.snapshot
-        assert shot.state is State.DISABLED
+        assert shot.state is MachineState.DISABLED
         assert shot.optional_stop
         assert shot.interrupted is not None
         assert shot.rpm_command == 0.0
         assert shot.t > time  # the same clock
         screen.post(EnableDrives())
-        screen.until(State.IDLE)
+        screen.until(MachineState.IDLE)
         assert [event.kind for event in screen.events].count("start") == 1
 
 
@@ -153,7 +157,7 @@ def test_reset_ends_a_control_that_hangs_and_replaces_it(folder: Path) -> None:
         with pytest.raises(ProcessLookupError):
             os.kill(hanging, 0)
         assert screen.alarms == ["control-silent"]
-        assert screen.live.snapshot.state is State.DISABLED
+        assert screen.live.snapshot.state is MachineState.DISABLED
 
 
 def test_a_control_that_responds_again_is_not_ended(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,7 +172,7 @@ def test_a_control_that_responds_again_is_not_ended(folder: Path, monkeypatch: p
         screen.wait(lambda: len(screen.said) == 2)
         assert screen.process == process
         screen.post(Reset())
-        screen.until(State.IDLE, State.HOLD)
+        screen.until(MachineState.IDLE, MachineState.HOLD)
         assert "control-silent" not in screen.alarms
 
 
@@ -178,22 +182,22 @@ def test_a_control_that_does_not_start_can_be_started_again(
     with desk(folder) as screen:
         killed = screen.process
         os.kill(killed, signal.SIGKILL)
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
         with monkeypatch.context() as patch:
             patch.setattr(sys, "executable", "/bin/false")
             screen.post(Reset())
             screen.wait(lambda: len(screen.said) == 2)
-        assert screen.live.snapshot.state is State.FAULT
+        assert screen.live.snapshot.state is MachineState.FAULT
         screen.wait(lambda: not screen.live.restarting)
         screen.post(Reset())
-        screen.until(State.DISABLED)
+        screen.until(MachineState.DISABLED)
         assert screen.process != killed
 
 
 def test_no_control_is_started_after_the_screen_is_closed(folder: Path) -> None:
     with desk(folder) as screen:
         os.kill(screen.process, signal.SIGKILL)
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
         screen.live.close()
         screen.post(Reset())
         assert not screen.live.restarting
@@ -219,29 +223,29 @@ def test_the_estop_and_the_stop_keys_act_on_the_new_control(folder: Path) -> Non
         assert line is not None
         assert screen.live.hands is not None
         screen.live.hands.press_estop()
-        screen.until(State.ESTOP)
+        screen.until(MachineState.ESTOP)
         killed = screen.process
         os.kill(killed, signal.SIGKILL)
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
         screen.post(Reset())
         screen.wait(lambda: screen.process != killed)
-        screen.until(State.ESTOP)  # still pressed
+        screen.until(MachineState.ESTOP)  # still pressed
         screen.live.hands.release_estop()
-        screen.until(State.DISABLED)
-        line.send(Stop(StopKind.ESTOP, 1).packed())
-        screen.until(State.ESTOP)
+        screen.until(MachineState.DISABLED)
+        line.send(StopPress(StopKind.ESTOP, 1).to_bytes())
+        screen.until(MachineState.ESTOP)
         line.close()
 
 
 def test_the_driver_host_of_a_killed_control_ends_before_another_begins(folder: Path) -> None:
-    machine = replace(MACHINE, hardware=replace(MACHINE.hardware, feeder=True))
+    machine = replace(MACHINE, hardware=replace(MACHINE.hardware, uses_driver_host=True))
     with desk(folder, machine) as screen:
         screen.run()
         killed = screen.process
         (host,) = children(killed)
         os.kill(host, signal.SIGSTOP)
         os.kill(killed, signal.SIGKILL)
-        screen.until(State.FAULT)
+        screen.until(MachineState.FAULT)
         screen.post(Reset())
         screen.wait(lambda: len(screen.said) == 1)
         ended = ProcessHandle(host)
@@ -252,7 +256,7 @@ def test_the_driver_host_of_a_killed_control_ends_before_another_begins(folder: 
         os.kill(host, signal.SIGCONT)
         screen.wait(lambda: bool(children(new)))
         assert ended.wait(0.0)
-        screen.until(State.DISABLED)
+        screen.until(MachineState.DISABLED)
         assert screen.process == new
         ended.close()
 
@@ -278,7 +282,7 @@ def test_a_control_of_another_screen_is_replaced_too(folder: Path, monkeypatch: 
     assert started.process is not None
     path = folder / "control.sock"
     until(path.is_socket, lambda: "")
-    first.leave(close=False)
+    first.disconnect(end_control=False)
     found: list[ControlClient] = []
 
     def look() -> bool:
@@ -295,5 +299,5 @@ def test_a_control_of_another_screen_is_replaced_too(folder: Path, monkeypatch: 
     hanging = started.process.pid
     screen.wait(lambda: screen.process != hanging)
     assert started.process.wait(30.0) == -signal.SIGKILL
-    screen.until(State.DISABLED)
+    screen.until(MachineState.DISABLED)
     screen.live.close()

@@ -9,8 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.control import rights
-from app.compose.control.rights import NICE, PRIORITY, READING, acquire_rights, check_rights
+from app.compose.control import process_rights_check
+from app.compose.control.process_rights_check import (
+    NICE_VALUE,
+    READING,
+    REAL_TIME_PRIORITY,
+    acquire_rights,
+    check_rights,
+)
 from drivers.process_rights import lower_thread
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="rights of Linux")
@@ -29,7 +35,7 @@ class System:
         monkeypatch.setattr(os, "sched_setscheduler", self.schedule)
         monkeypatch.setattr(os, "setpriority", self.be_nice)
         self.memory = ("", 0) if grants else ("not allowed", 1 << 23)
-        monkeypatch.setattr(rights, "lock_memory", lambda **_: self.memory)
+        monkeypatch.setattr(process_rights_check, "lock_process_memory", lambda **_: self.memory)
 
     def schedule(self, _who: int, policy: int, param: os.sched_param) -> None:
         """Another policy; back to the usual one is always granted."""
@@ -48,17 +54,17 @@ def test_all_that_is_granted_misses_nothing(monkeypatch: pytest.MonkeyPatch) -> 
     system = System(monkeypatch, grants=True)
     granted = acquire_rights()
     assert [right.missing for right in granted] == ["", ""]
-    assert system.asked == [(os.SCHED_RR, PRIORITY)]  # no nice value beside it
+    assert system.asked == [(os.SCHED_RR, REAL_TIME_PRIORITY)]  # no nice value beside it
 
 
 def test_all_that_is_refused_has_its_remedy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     grouped = tmp_path / "autogroup"
     grouped.write_text("1\n")
-    monkeypatch.setattr(rights, "_AUTOGROUP", grouped)
+    monkeypatch.setattr(process_rights_check, "_AUTOGROUP", grouped)
     system = System(monkeypatch, grants=False)
     refused = acquire_rights()
     assert [bool(right.missing) for right in refused] == [True, True, True, False]
-    assert NICE in system.asked
+    assert NICE_VALUE in system.asked
     grouped.write_text("0\n")
     assert len(acquire_rights()) == 3
     grouped.unlink()
@@ -70,8 +76,8 @@ def test_a_nice_value_helps_where_there_is_no_real_time(monkeypatch: pytest.Monk
     monkeypatch.setattr(os, "setpriority", lambda *_: None)
     real_time, _, nice, *_ = acquire_rights()
     assert real_time.missing
-    assert (nice.granted, nice.missing) == (str(NICE), "")
-    assert system.asked == [(os.SCHED_RR, PRIORITY)]
+    assert (nice.granted, nice.missing) == (str(NICE_VALUE), "")
+    assert system.asked == [(os.SCHED_RR, REAL_TIME_PRIORITY)]
 
 
 def test_a_limited_memory_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,7 +104,7 @@ def test_a_thread_of_a_real_time_process_has_a_lower_priority(
     monkeypatch.setattr(os, "sched_getscheduler", lambda _: policy)
     lower_thread(READING)
     assert system.asked == [(policy, 1)]
-    assert READING < PRIORITY
+    assert READING < REAL_TIME_PRIORITY
 
 
 def test_a_thread_without_real_time_priority_remains_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:

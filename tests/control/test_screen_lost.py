@@ -9,21 +9,28 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.control.control_messages import Failed, Happened, Heard, Noted, SetInput, Shown
-from app.compose.control.control_server import REST_LOOKS, SILENT_LOOKS, STOPPED_LOOKS
-from app.compose.control.left_note import (
-    EVENTS,
-    NAME,
+from app.compose.control.control_messages import (
+    ControlFailed,
+    EventMessage,
+    EventStored,
+    InputChange,
+    InterruptedJobNote,
+    SnapshotMessage,
+)
+from app.compose.control.control_server import REST_CHECKS, SILENT_CHECKS, STOPPED_CHECKS
+from app.compose.control.unattended_notes import (
+    EVENTS_FILE,
+    NOTE_FILE,
     LeftEvents,
+    pop_events,
+    read_note,
     remove_note,
     save_events,
     save_note,
-    take_events,
-    take_note,
 )
 from app.compose.runs.journal import Journal
-from core.executor.commands import BarNextPart, SetSwitch
-from core.executor.snapshot import ACTIVE, Event, InterruptedJob, State
+from core.executor.commands import BlockNextPart, SetSwitch
+from core.executor.snapshot import ACTIVE_STATES, InterruptedJob, LogEvent, MachineState
 from core.store.store import Store
 from core.store.store_rows import EventOrigin, EventRow
 from tests.control.bench import SHORT, Bench, control, one_button, until
@@ -40,7 +47,7 @@ def test_a_screen_that_comes_gets_what_the_lost_one_has_not_kept(bench: Bench) -
     first = bench.screen()
     first.meet()
     for text in ("one", "two"):
-        bench.server.outbox.put(Event(0.0, "warning", text))
+        bench.server.outbox.add_event(LogEvent(0.0, "warning", text))
     assert [each.event.text for each in first.events("warning")] == ["one", "two"]
     first.lose()
     second = bench.screen()
@@ -48,7 +55,7 @@ def test_a_screen_that_comes_gets_what_the_lost_one_has_not_kept(bench: Bench) -
     again = second.events("warning")
     assert [each.event.text for each in again] == ["one", "two"]
     second.hear(again[0])
-    bench.server.outbox.put(Event(0.0, "warning", "three"))
+    bench.server.outbox.add_event(LogEvent(0.0, "warning", "three"))
     assert [each.event.text for each in second.events("warning")] == ["three"]
     second.lose()
     third = bench.screen()
@@ -58,10 +65,10 @@ def test_a_screen_that_comes_gets_what_the_lost_one_has_not_kept(bench: Bench) -
 
 def test_events_without_a_screen_do_not_fill_the_memory(bench: Bench) -> None:
     for number in range(10_050):
-        bench.server.outbox.put(Event(0.0, "test", str(number)))
+        bench.server.outbox.add_event(LogEvent(0.0, "test", str(number)))
     screen = bench.screen()
     screen.meet()
-    got = [screen.take(Happened).event.text for _ in range(10_000)]
+    got = [screen.take(EventMessage).event.text for _ in range(10_000)]
     assert got[-1] == "10049"
     assert len(set(got)) == 10_000
 
@@ -70,11 +77,11 @@ def test_the_executor_does_not_wait_for_a_screen_that_does_not_read(bench: Bench
     screen = bench.screen()
     screen.meet()
     for number in range(3000):  # more than the socket holds
-        bench.server.outbox.put(Event(0.0, "test", "x" * 200 + str(number)))
-    ticks, t = bench.server.executor.ticks, bench.shot.t
-    until(lambda: bench.server.executor.ticks > ticks + 10 and bench.shot.t > t + 0.5)
-    screen.take(Happened, lambda each: each.event.text.endswith("x2999"))
-    shown = screen.take(Shown)
+        bench.server.outbox.add_event(LogEvent(0.0, "test", "x" * 200 + str(number)))
+    ticks, t = bench.server.executor.tick_count, bench.shot.t
+    until(lambda: bench.server.executor.tick_count > ticks + 10 and bench.shot.t > t + 0.5)
+    screen.take(EventMessage, lambda each: each.event.text.endswith("x2999"))
+    shown = screen.take(SnapshotMessage)
     assert shown.snapshot.t > t + 0.4  # those in between were replaced
 
 
@@ -82,7 +89,7 @@ def test_a_screen_that_does_not_read_can_be_lost(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     for number in range(3000):
-        bench.server.outbox.put(Event(0.0, "test", "x" * 200 + str(number)))
+        bench.server.outbox.add_event(LogEvent(0.0, "test", "x" * 200 + str(number)))
     screen.lose()
     other = bench.screen()
     other.meet()
@@ -93,10 +100,10 @@ def test_a_second_screen_is_refused_while_one_is_connected(bench: Bench) -> None
     first = bench.screen()
     first.meet()
     second = bench.screen()
-    assert second.take(Failed).why == "busy"
+    assert second.take(ControlFailed).reason == "busy"
     second.thread.join()
     first.post(SetSwitch("single_block", True))
-    first.take(Shown, lambda each: each.snapshot.single_block)
+    first.take(SnapshotMessage, lambda each: each.snapshot.single_block)
     first.lose()
     bench.screen().meet()
 
@@ -118,11 +125,11 @@ def test_damaged_bytes_end_the_connection_and_nothing_else(bench: Bench, data: b
     screen.thread.join(10.0)
     assert not screen.thread.is_alive()
     with pytest.raises(EOFError):
-        screen.take(Failed)
+        screen.take(ControlFailed)
     bench.screen().meet()
 
 
-@pytest.mark.parametrize("message", ["what", 3, None, ("Post", 1), SetInput("no such input", True)])
+@pytest.mark.parametrize("message", ["what", 3, None, ("Post", 1), InputChange("no such input", True)])
 def test_an_unknown_message_changes_nothing(bench: Bench, message: object) -> None:
     screen = bench.screen()
     screen.meet()
@@ -130,16 +137,16 @@ def test_an_unknown_message_changes_nothing(bench: Bench, message: object) -> No
     screen.hand("no_such_hand")
     screen.hand("press_hold", "too", "much")
     screen.post(SetSwitch("single_block", True))
-    screen.take(Shown, lambda each: each.snapshot.single_block)
+    screen.take(SnapshotMessage, lambda each: each.snapshot.single_block)
 
 
 def test_what_cannot_be_pickled_keeps_nothing_else_from_the_screen(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
-    bench.server.outbox.put(Event(0.0, "test", threading.Lock()))  # type: ignore[arg-type]
-    bench.server.outbox.put(Event(0.0, "test", "behind it"))
-    assert screen.take(Happened).event.text == "behind it"
-    assert screen.take(Shown)
+    bench.server.outbox.add_event(LogEvent(0.0, "test", threading.Lock()))  # type: ignore[arg-type]
+    bench.server.outbox.add_event(LogEvent(0.0, "test", "behind it"))
+    assert screen.take(EventMessage).event.text == "behind it"
+    assert screen.take(SnapshotMessage)
 
 
 # --- hold and continue ------------------------------------------------------------------------------------
@@ -151,9 +158,9 @@ def test_a_screen_that_is_lost_holds_the_program(bench: Bench) -> None:
     bench.run(screen)
     screen.lose()
     bench.looks(1)
-    bench.until(State.HOLD)
+    bench.until(MachineState.HOLD)
     other = bench.screen()
-    assert other.meet().snapshot.state is State.HOLD
+    assert other.meet().snapshot.state is MachineState.HOLD
     assert len(other.events("stop")) == 1
 
 
@@ -163,25 +170,25 @@ def test_a_silent_screen_holds_although_its_threads_answer(bench: Bench) -> None
     bench.run(screen)
     bench.alive(screen)
     bench.looks(1)
-    assert bench.shot.state in ACTIVE
-    for _ in range(SILENT_LOOKS):
-        screen.end.send(Heard(0))
-        bench.server.look()
-    bench.until(State.HOLD)
+    assert bench.shot.state in ACTIVE_STATES
+    for _ in range(SILENT_CHECKS):
+        screen.end.send(EventStored(0))
+        bench.server.check_screen()
+    bench.until(MachineState.HOLD)
 
 
 def test_a_screen_that_is_alive_holds_nothing(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
-    for _ in range(SILENT_LOOKS - 2):
-        bench.server.look()
+    for _ in range(SILENT_CHECKS - 2):
+        bench.server.check_screen()
     bench.alive(screen)
     bench.looks(5)
-    for _ in range(SILENT_LOOKS - 7):
-        bench.server.look()
+    for _ in range(SILENT_CHECKS - 7):
+        bench.server.check_screen()
     bench.looks(1)
-    assert bench.shot.state in ACTIVE
+    assert bench.shot.state in ACTIVE_STATES
 
 
 def test_what_the_machine_starts_by_itself_while_the_screen_is_silent_is_held(bench: Bench) -> None:
@@ -189,18 +196,18 @@ def test_what_the_machine_starts_by_itself_while_the_screen_is_silent_is_held(be
     screen.meet()
     job = bench.run(screen)
     bench.alive(screen)
-    bench.looks(SILENT_LOOKS)
-    bench.until(State.HOLD)
+    bench.looks(SILENT_CHECKS)
+    bench.until(MachineState.HOLD)
     bench.start(screen, job)  # not ``Alive``: as buttons of the machine do it
-    bench.until(State.RUN)
+    bench.until(MachineState.RUN)
     bench.looks(1)
-    bench.until(State.HOLD)
+    bench.until(MachineState.HOLD)
     bench.alive(screen)
     bench.looks(1)
     bench.start(screen, job)
-    bench.until(State.RUN)
+    bench.until(MachineState.RUN)
     bench.looks(1)
-    assert bench.shot.state in ACTIVE
+    assert bench.shot.state in ACTIVE_STATES
 
 
 def test_a_part_is_finished_without_a_screen_and_no_other_begins(tmp_path: Path) -> None:
@@ -208,21 +215,21 @@ def test_a_part_is_finished_without_a_screen_and_no_other_begins(tmp_path: Path)
         screen = bench.screen()
         screen.meet()
         screen.post(SetSwitch("cycle_repeat", True))
-        screen.post(BarNextPart("NO MORE TODAY"))
-        screen.post(BarNextPart(""))
+        screen.post(BlockNextPart("NO MORE TODAY"))
+        screen.post(BlockNextPart(""))
         bench.run(screen, SHORT)
         screen.lose()
         bench.looks(1)
         barred = bench.shot.next_barred
         assert barred
-        bench.until(State.IDLE)
+        bench.until(MachineState.IDLE)
         assert bench.shot.parts >= 1
         other = bench.screen()
         hello = other.meet()
         assert hello.snapshot.next_barred == barred
-        assert hello.noted is None
+        assert hello.interrupted_job is None
         assert len(other.events("part")) == bench.shot.parts
-        bench.looks(SILENT_LOOKS + 1)
+        bench.looks(SILENT_CHECKS + 1)
         assert bench.shot.next_barred == barred  # its window is not open yet
         bench.alive(other)
         bench.looks(1)
@@ -236,26 +243,26 @@ def test_why_the_screen_had_barred_the_next_part_stands_again(tmp_path: Path, la
         screen.meet()
         bench.alive(screen)
         if not late:
-            screen.post(BarNextPart("TOOL 3 IS WORN"))
+            screen.post(BlockNextPart("TOOL 3 IS WORN"))
             until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
-        bench.looks(SILENT_LOOKS)
+        bench.looks(SILENT_CHECKS)
         until(lambda: bench.shot.next_barred not in {"", "TOOL 3 IS WORN"})
         if late:  # it is back, and nobody has looked yet
-            screen.post(BarNextPart("TOOL 3 IS WORN"))
+            screen.post(BlockNextPart("TOOL 3 IS WORN"))
             until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
         bench.alive(screen)
         bench.looks(1)
         assert bench.shot.next_barred == "TOOL 3 IS WORN"
 
 
-@pytest.mark.parametrize(("looks", "runs"), [(REST_LOOKS - 1, False), (REST_LOOKS, False)])
+@pytest.mark.parametrize(("looks", "runs"), [(REST_CHECKS - 1, False), (REST_CHECKS, False)])
 def test_a_machine_at_rest_without_a_screen_is_closed(bench: Bench, looks: int, runs: bool) -> None:
     screen = bench.screen()
     screen.meet()
     screen.lose()
     for _ in range(looks):
-        bench.server.look()
-    assert bench.server.closing.is_set() is (looks >= REST_LOOKS)
+        bench.server.check_screen()
+    assert bench.server.closing_event.is_set() is (looks >= REST_CHECKS)
 
 
 def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
@@ -264,12 +271,12 @@ def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
     bench.run(screen)
     screen.lose()
     bench.looks(1)
-    bench.until(State.HOLD)
-    for _ in range(STOPPED_LOOKS - 2):
-        bench.server.look()
-    assert not bench.server.closing.is_set()
-    bench.server.look()
-    assert bench.server.closing.is_set()
+    bench.until(MachineState.HOLD)
+    for _ in range(STOPPED_CHECKS - 2):
+        bench.server.check_screen()
+    assert not bench.server.closing_event.is_set()
+    bench.server.check_screen()
+    assert bench.server.closing_event.is_set()
 
 
 # --- the note -------------------------------------------------------------------------------------------
@@ -281,16 +288,16 @@ def test_what_is_interrupted_without_a_screen_is_noted_for_the_next_start(
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
-    noted = screen.take(Noted, lambda each: each.job is not None).job
-    assert not (tmp_path / NAME).exists()
+    noted = screen.take(InterruptedJobNote, lambda each: each.job is not None).job
+    assert not (tmp_path / NOTE_FILE).exists()
     screen.lose()
     bench.looks(1)
-    known, left = take_note(tmp_path)
+    known, left = read_note(tmp_path)
     assert known
     assert left is not None
     assert noted is not None
     assert left.program == noted.program == "part.nc"
-    assert take_note(tmp_path) == (False, None)
+    assert read_note(tmp_path) == (False, None)
 
 
 def test_that_nothing_is_interrupted_is_noted_too(bench: Bench, tmp_path: Path) -> None:
@@ -298,10 +305,10 @@ def test_that_nothing_is_interrupted_is_noted_too(bench: Bench, tmp_path: Path) 
     screen.meet()
     screen.lose()  # its store may have the note of a part that has ended since
     bench.looks(1)
-    assert json.loads((tmp_path / NAME).read_bytes()) is None
+    assert json.loads((tmp_path / NOTE_FILE).read_bytes()) is None
     other = bench.screen()
     other.meet()
-    assert not (tmp_path / NAME).exists()
+    assert not (tmp_path / NOTE_FILE).exists()
 
 
 def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path) -> None:
@@ -310,12 +317,12 @@ def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path
     bench.run(screen)
     screen.lose()
     bench.looks(1)
-    assert (tmp_path / NAME).exists()
+    assert (tmp_path / NOTE_FILE).exists()
     other = bench.screen()  # with another machine file
     other.meet()
     other.lose()
     bench.looks(1)
-    known, left = take_note(tmp_path)
+    known, left = read_note(tmp_path)
     assert known
     assert left is not None
 
@@ -324,12 +331,12 @@ def test_a_screen_that_takes_its_time_to_open_is_not_silent(bench: Bench) -> Non
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
-    bench.looks(SILENT_LOOKS + 1)
-    assert bench.shot.state in ACTIVE
+    bench.looks(SILENT_CHECKS + 1)
+    assert bench.shot.state in ACTIVE_STATES
 
 
 def test_a_control_that_closes_takes_no_screen(bench: Bench) -> None:
-    bench.server.closing.set()
+    bench.server.closing_event.set()
     screen = bench.screen()
     with pytest.raises(EOFError):
         screen.end.recv()
@@ -348,7 +355,7 @@ def test_a_screen_that_comes_while_the_note_is_saved_leaves_none(
 
     monkeypatch.setattr("app.compose.control.control_server.save_note", slowly)
     bench.looks(1)
-    assert not (tmp_path / NAME).exists()
+    assert not (tmp_path / NOTE_FILE).exists()
 
 
 def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> None:
@@ -359,20 +366,20 @@ def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> N
         for each in screen.events("load"):
             screen.hear(each)
         screen.lose()
-        bench.until(State.IDLE)
+        bench.until(MachineState.IDLE)
         parts = bench.shot.parts
-    left = take_events(tmp_path)
+    left = pop_events(tmp_path)
     program, rows, _ = left
     assert (program, parts) == ("part.nc", 1)
     assert [row.kind for row in rows].count("part") == 1
     assert "load" not in {row.kind for row in rows}
     assert rows[0].at < rows[-1].at
-    assert take_events(tmp_path) == LeftEvents()
+    assert pop_events(tmp_path) == LeftEvents()
     save_events(tmp_path, left)
     for _ in range(2):
         Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.runs.count_parts("part.nc") == 1
+        assert store.runs.read_part_count("part.nc") == 1
         assert store.events.read_events()[::-1] == rows
 
 
@@ -384,13 +391,13 @@ def test_the_note_of_a_control_without_a_screen_is_newer_than_the_store(
     before.note(broken_off(program="old.nc"))
     before.close()
     save_note(tmp_path, left)
-    attached = Journal(tmp_path, goes_on=True)  # the control that wrote it is running
+    attached = Journal(tmp_path, control_running=True)  # the control that wrote it is running
     assert attached.left is None
     attached.close()
     for logged in (False, True):
         journal = Journal(tmp_path)
         assert journal.left == left
-        assert journal.left_is_logged is logged
+        assert journal.is_interruption_logged is logged
         journal.close()
 
 
@@ -406,7 +413,7 @@ def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_pat
     assert journal.left == broken_off()
     journal.close()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.runs.count_parts("part.nc") == 1
+        assert store.runs.read_part_count("part.nc") == 1
 
 
 def test_left_events_that_a_screen_has_stored_are_not_stored_again(tmp_path: Path) -> None:
@@ -418,25 +425,25 @@ def test_left_events_that_a_screen_has_stored_are_not_stored_again(tmp_path: Pat
     journal = Journal(tmp_path)
     journal.close()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.runs.count_parts("part.nc") == 2
+        assert store.runs.read_part_count("part.nc") == 2
         assert store.runs.read_last_origin() == origins[2]
     other = tuple(EventOrigin("another", number) for number in (1, 2, 3))
     save_events(tmp_path, LeftEvents("part.nc", (row, row, row), other))
     Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.runs.count_parts("part.nc") == 5
+        assert store.runs.read_part_count("part.nc") == 5
 
 
 def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path) -> None:
     screen = bench.screen()
     screen.meet()
-    bench.server.outbox.put(Event(0.0, "test", "text"))
+    bench.server.outbox.add_event(LogEvent(0.0, "test", "text"))
     for each in screen.events("test"):
         screen.hear(each)
-    until(lambda: not bench.server.outbox.unheard)
+    until(lambda: not bench.server.outbox.unconfirmed_events)
     screen.lose()
     bench.close()
-    assert take_events(tmp_path) == LeftEvents()
+    assert pop_events(tmp_path) == LeftEvents()
 
 
 @pytest.mark.parametrize(
@@ -444,28 +451,28 @@ def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path
     [b"", b"{", b"\xff", b"[]", b"3", b'["a", [[1]]]', b'["a", 3]', b'["a", [["2", "part", "", 1, "", ""]]]'],
 )
 def test_damaged_events_are_none(tmp_path: Path, data: bytes) -> None:
-    (tmp_path / EVENTS).write_bytes(data)
-    assert take_events(tmp_path) == LeftEvents()
-    assert not (tmp_path / EVENTS).exists()
+    (tmp_path / EVENTS_FILE).write_bytes(data)
+    assert pop_events(tmp_path) == LeftEvents()
+    assert not (tmp_path / EVENTS_FILE).exists()
 
 
 @pytest.mark.parametrize("data", [b"", b"{", b"\xff\xfe", b"[1"])
 def test_a_damaged_note_is_none(tmp_path: Path, data: bytes) -> None:
-    (tmp_path / NAME).write_bytes(data)
-    assert take_note(tmp_path) == (False, None)
+    (tmp_path / NOTE_FILE).write_bytes(data)
+    assert read_note(tmp_path) == (False, None)
 
 
 def test_a_note_that_is_no_job_says_that_nothing_is_known_to_be_interrupted(tmp_path: Path) -> None:
-    (tmp_path / NAME).write_text('{"program": 3}')
-    assert take_note(tmp_path) == (True, None)
+    (tmp_path / NOTE_FILE).write_text('{"program": 3}')
+    assert read_note(tmp_path) == (True, None)
 
 
 def test_a_note_comes_back_as_it_was(tmp_path: Path) -> None:
     job = broken_off(program="part.nc")
     save_note(tmp_path, job)
-    assert take_note(tmp_path) == (True, job)
+    assert read_note(tmp_path) == (True, job)
     remove_note(tmp_path)
     save_note(tmp_path / "part.nc" / "no folder", job)
     (tmp_path / "file").write_text("")
     save_note(tmp_path / "file", job)  # a disk that fails
-    assert take_note(tmp_path / "file") == (False, None)
+    assert read_note(tmp_path / "file") == (False, None)

@@ -10,10 +10,10 @@ from multiprocessing.connection import Pipe
 import numpy as np
 import pytest
 
-from app.compose.control.passed_files import SharedMemory, receive_file, send_file
-from core.records.record_ring import Recorded, Ring, Rows, bytes_of
+from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor, send_descriptor
+from core.records.record_ring import RingLayout, RowBuffer, ScopeRing, calculate_buffer_size
 
-RECORDED = Recorded({"X": False, "Z": False}, lasts=1.0)
+RECORDED = RingLayout({"X": False, "Z": False}, duration_s=1.0)
 _WRITER = """
 import sys, numpy as np, mmap, os
 from core.records.record_ring import Rows
@@ -31,8 +31,8 @@ while n < 300_000:
 
 def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
     file = os.memfd_create("ring")
-    os.ftruncate(file, bytes_of(64, 8))
-    rows = Rows(64, 8, SharedMemory(file).view)
+    os.ftruncate(file, calculate_buffer_size(64, 8))
+    rows = RowBuffer(64, 8, SharedMemory(file).memory_view)
     writer = subprocess.Popen(
         [sys.executable, "-c", _WRITER, str(file)], pass_fds=(file,), stdout=subprocess.PIPE
     )
@@ -40,23 +40,26 @@ def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
     writer.stdout.read(1)
     seen = 0
     while writer.poll() is None:
-        read = rows.between(-np.inf, np.inf)
+        read = rows.copy_between(-np.inf, np.inf)
         seen += len(read)
         assert (read == read[:, :1]).all()
         assert (np.diff(read[:, 0]) > 0).all()
     writer.stdout.close()
     os.close(file)
     assert seen > 1000
-    assert rows.last >= 300_000
+    assert rows.last_time_s >= 300_000
 
 
 def test_a_ring_in_shared_memory_shows_what_the_other_end_writes() -> None:
     ours, theirs = Pipe()
-    memory = SharedMemory.of_size(RECORDED.ring_bytes)
-    send_file(theirs, memory.file)
-    there, here = Ring.of(RECORDED, memory.view), Ring.of(RECORDED, SharedMemory(receive_file(ours)).view)
+    memory = SharedMemory.create(RECORDED.size_bytes)
+    send_descriptor(theirs, memory.descriptor)
+    there, here = (
+        ScopeRing.from_layout(RECORDED, memory.memory_view),
+        ScopeRing.from_layout(RECORDED, SharedMemory(receive_descriptor(ours)).memory_view),
+    )
     there.samples.write(np.full((1, RECORDED.sample_width), 5.0))
-    assert here.samples.last == 5.0
+    assert here.samples.last_time_s == 5.0
     ours.close()
     theirs.close()
 
@@ -65,5 +68,5 @@ def test_memory_that_does_not_come_is_the_end_of_the_connection() -> None:
     ours, theirs = Pipe()
     theirs.close()
     with pytest.raises(EOFError):
-        SharedMemory(receive_file(ours))
+        SharedMemory(receive_descriptor(ours))
     ours.close()

@@ -11,21 +11,21 @@ from typing import TypeVar
 import pytest
 
 import resources
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import stored_offsets
-from app.desk.access import Access, Session
+from app.compose.stored_offsets import read_stored_offsets
+from app.desk.access import SignInSession, UserAccess
 from app.desk.desk import Desk
-from app.special.special_functions import SpecialFunction, SpecialFunctions
-from core.access.access_table import Level
+from app.special.special_functions import SpecialFunction, SpecialFunctionList
+from core.access.access_table import AccessLevel
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot
-from core.store.people import PersonRow
 from core.store.store import Store
-from drivers.waiting import StepClock
+from core.store.user_records import UserRow
+from drivers.wakeups import ManualClock
 
 LIMIT = 60.0
-LEVELS = {"ANNA": Level.SERVICE, "BEN": Level.SETUP, "CARLA": Level.OPERATOR}
+LEVELS = {"ANNA": AccessLevel.SERVICE, "BEN": AccessLevel.SETUP, "CARLA": AccessLevel.OPERATOR}
 T = TypeVar("T", bound=SpecialFunction)
 R = TypeVar("R", bound="Room")
 
@@ -34,13 +34,13 @@ R = TypeVar("R", bound="Room")
 class Room:
     desk: Desk
     executor: Executor
-    clock: StepClock
+    clock: ManualClock
     journal: Journal
     at: float = 1000.0
 
     @property
-    def access(self) -> Access:
-        return self.desk.access
+    def access(self) -> UserAccess:
+        return self.desk.user_access
 
     @property
     def store(self) -> Store:
@@ -51,30 +51,30 @@ class Room:
     def run(self, ticks: int = 20) -> None:
         for _ in range(ticks):
             self.clock.advance(0.01)
-            self.executor.tick()
-        self.desk.look()
+            self.executor.run_tick()
+        self.desk.update()
 
     def settle(self) -> None:
         """Until what was asked of workers and of the disk is there."""
         self.store.write(lambda _connection: None).result(LIMIT)
-        self.desk.look()
-        self.desk.book.poll()
+        self.desk.update()
+        self.desk.offset_book.poll_saving()
 
     def find(self, kind: type[T]) -> T:
-        special = self.desk.pages.find(SpecialFunctions)
+        special = self.desk.page_registry.find(SpecialFunctionList)
         assert special is not None
         return next(each for each in special.functions if isinstance(each, kind))
 
     def enter_people(self) -> None:
         """No PIN fits what is stored of theirs."""
         for name, level in LEVELS.items():
-            self.journal.opened().people.save_person(PersonRow(name, level, b"salt", b"hash")).result()
+            self.journal.require_store().people.save_user(UserRow(name, level, b"salt", b"hash")).result()
         self.access.reload()
 
     def sign_in(self, name: str) -> None:
         """As if the PIN was entered."""
-        self.access.name, self.access.level = name, LEVELS[name]
-        self.access.used()
+        self.access.user_name, self.access.access_level = name, LEVELS[name]
+        self.access.note_activity()
         self.settle()
 
     def log(self, kind: str) -> list[tuple[str, str]]:
@@ -82,13 +82,13 @@ class Room:
         return [(row.text, row.who) for row in self.store.events.read_events(kinds={kind})][::-1]
 
 
-class NoPins(Session):
+class NoPins(SignInSession):
     """A session in which nothing happens, where signing in is not installed."""
 
-    def used(self) -> None:
+    def note_activity(self) -> None:
         pass
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         pass
 
     def reload(self) -> None:
@@ -104,12 +104,12 @@ def opened_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: type[R]) 
     file = tmp_path / "own.toml"
     file.write_text(resources.machine_file("gt75.toml"))
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(str(file), stored_offsets, clock, journal)
+    clock, journal = ManualClock(), Journal.open_default()
+    desk, executor = create_desk_and_executor(str(file), read_stored_offsets, clock, journal)
     made = kind(desk, executor, clock, journal)
-    made.access.clock = lambda: made.at
-    if made.access.session is None:
-        made.access.session = NoPins()
+    made.access.read_time_s = lambda: made.at
+    if made.access.sign_in_session is None:
+        made.access.sign_in_session = NoPins()
     made.run(2)
     yield made
     desk.close()

@@ -11,29 +11,29 @@ from pathlib import Path
 import pytest
 
 from app.compose.runs.journal import Journal
-from app.editor.editor import Editor
+from app.editor.editor_model import EditorModel
 from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
 from app.production.parts_watch import PartsWatch
-from app.programs.program_list import ProgramList
-from app.special.counters import PartsCounterFunction
-from app.special.inputs_outputs import InputsOutputs
-from app.special.inputs_outputs import Kind as Shown
-from app.special.lamps_and_sound import LampsAndSound
-from app.special.machine_records import FILTERS, MachineFileAcceptance
-from app.special.operator_settings import SpindleSpeedLimit
+from app.programs.program_list_model import ProgramListModel
+from app.special.counter_functions import PartsCounterFunction
+from app.special.inputs_outputs import SignalListKind as Shown
+from app.special.inputs_outputs import SignalsFunction
+from app.special.lamps_and_sound import LampsAndSoundFunction
+from app.special.machine_records import EVENT_FILTERS, MachineFileFunction
+from app.special.operator_settings import SpindleLimitFunction
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.transfer.line_transfer import Received
-from app.transfer.serial_transfer import SerialTransfer
-from core.access.access_page import page
-from core.access.access_table import RULES, Act, Level
-from core.executor.snapshot import State
+from app.transfer.line_transfer import ReceivedProgram
+from app.transfer.serial_transfer import SerialTransferFunction
+from core.access.access_page import make_page
+from core.access.access_table import ACCESS_RULES, AccessLevel, ProtectedChange
+from core.executor.snapshot import MachineState
 from core.store import database
-from core.store.offsets.touch_off import Touch
-from core.store.production.tool_lives import insert_changes
+from core.store.offsets.touch_off import TouchPosition
+from core.store.production.tool_lives import read_insert_changes
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind
+from core.store.store_file import STORE_FILE_NAME
+from core.store.store_rows import OffsetKind
 from tests.desk.levels_room import LIMIT, Room, room
 from tests.texts import begins, pattern, shows
 from tests.texts import text as wording
@@ -41,26 +41,40 @@ from tests.whole_product import WHOLE_PRODUCT
 
 __all__ = ["room"]
 HOUSE = Path(__file__).parents[2]
-OPERATORS = {Act.WEAR, Act.COUNTS, Act.INSERTS, Act.READINGS, Act.JOBS, Act.SCREEN, Act.INPUTS, Act.BACKUPS}
-SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.SHARED_PLACE, Act.PEOPLE}
+OPERATORS = {
+    ProtectedChange.WEAR,
+    ProtectedChange.COUNTS,
+    ProtectedChange.INSERTS,
+    ProtectedChange.READINGS,
+    ProtectedChange.JOBS,
+    ProtectedChange.SCREEN,
+    ProtectedChange.INPUTS,
+    ProtectedChange.BACKUPS,
+}
+SERVICES = {
+    ProtectedChange.MACHINE_FILE,
+    ProtectedChange.RESTORE,
+    ProtectedChange.SHARED_PLACE,
+    ProtectedChange.PEOPLE,
+}
 WRITES = re.compile(
-    r"\.(save_setting|keep_settings|save_version|add_parts|reset_parts|import_all|change_row)\("
-    r"|\.(save_person|remove_person|remove_all_people|keep_loaded_version|renamed|set_input|unlink)\("
+    r"\.(save_setting|save_settings|save_version|add_parts|reset_parts|import_programs_and_offsets|change_row)\("
+    r"|\.(save_user|remove_user|remove_all_users|save_loaded_version|renamed|set_input|unlink)\("
     r"|\.(rename|write_text)\("
-    r"|\b(write_whole|write_new|write_out|write_in_place|store_new|ForceOutput|SpindleLimit)\("
+    r"|\b(write_program_file|write_new_file|copy_to_medium|write_atomically|store_received|ForceOutput|SetSpindleLimit)\("
 )
 BEHIND_A_RULE = {
     "compose/machine/accepted_machine.py": "asked by machine_records.py",
     "compose/runs/journal.py": "does what pages ask that have asked",
-    "compose/known_part.py": "asked by part_options.py and part_sheet.py",
+    "compose/part_data.py": "asked by part_options.py and part_model.py",
     "compose/machine/setup_file.py": "asked by setup_command.py",
-    "extras/sharing/sharing_desk.py": "asked by share_command.py",
+    "extras/sharing/sharing_setup.py": "asked by share_command.py",
     "extras/access/sign_in.py": "asked by access_levels.py",
     "desk/persistence.py": "as journal.py",
     "desk/screen_settings.py": "asked by desk.py",
-    "editor/document.py": "asked by may_save of the editor; drafts are not saved",
+    "editor/edited_document.py": "asked by may_save of the editor; drafts are not saved",
     "extras/quality/sample_plan.py": "asked by features_section.py",
-    "programs/run_history.py": "asked by counters.py",
+    "programs/run_history.py": "asked by counter_functions.py",
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
 NO_CHANGE = {
@@ -73,23 +87,23 @@ NO_CHANGE = {
     "compose/control/control_place.py": "the socket of a control",
     "compose/control/live_control.py": "inputs of a machine that is simulated",
     "compose/control/control_server.py": "inputs of a machine that is simulated",
-    "compose/control/left_note.py": "the job that is interrupted",
+    "compose/control/unattended_notes.py": "the job that is interrupted",
     "compose/demo_store.py": "a store for trying",
     "compose/dialects_page.py": "a page of the manual",
     "compose/runs/headless_run.py": "inputs of a run that is simulated",
     "compose/machine/machine_setup.py": "which machine the screen was opened for",
     "compose/machine_file_page.py": "a page of the manual",
-    "compose/backends/played_machine.py": "the other end of a machine that is simulated",
+    "compose/backends/simulated_devices.py": "the other end of a machine that is simulated",
     "compose/runs/run_log.py": "old files of the machine's own log",
     "compose/thumbnails.py": "pictures that can be made again",
     "desk/daily_backup.py": "the machine's own backups",
     "desk/pages/first_job.py": "how far the first job has come",
-    "jog/hand_functions.py": "coolant off: it brings to rest",
+    "jog/manual_functions.py": "coolant off: it brings to rest",
     "mdi/mdi_model.py": "the lines that were typed",
-    "programs/whole_file.py": "how a file is written; who calls it asks",
+    "programs/atomic_files.py": "how a file is written; who calls it asks",
     "extras/quality/parts_data.py": "readings, to a file of whoever asks",
     "extras/quality/shift_function.py": "a report",
-    "scope/record_shelf.py": "how records are kept; asked by scope_model.py",
+    "scope/recording_store.py": "how records are kept; asked by scope_model.py",
     "shopfloor/status_file.py": "what the machine does, for other programs",
     "special/setup_sheet_work.py": "the sheet on paper",
 }
@@ -101,24 +115,24 @@ NO_CHANGE = {
 def test_each_level_may_what_stands_in_the_table(room: Room) -> None:
     room.enter_people()
     may = {}
-    for level in Level:
-        room.access.level = level
-        may[level] = {act for act in Act if not room.access.refusal(act)}
-    assert may[Level.OPERATOR] == OPERATORS
-    assert set(Act) - may[Level.SETUP] == SERVICES
-    assert may[Level.SERVICE] == set(Act) == set(RULES)
+    for level in AccessLevel:
+        room.access.access_level = level
+        may[level] = {act for act in ProtectedChange if not room.access.find_refusal(act)}
+    assert may[AccessLevel.OPERATOR] == OPERATORS
+    assert set(ProtectedChange) - may[AccessLevel.SETUP] == SERVICES
+    assert may[AccessLevel.SERVICE] == set(ProtectedChange) == set(ACCESS_RULES)
 
 
 def test_the_page_is_the_table() -> None:
-    assert (HOUSE / "docs" / "access.md").read_text("utf-8") == page()
+    assert (HOUSE / "docs" / "access.md").read_text("utf-8") == make_page()
 
 
 @WHOLE_PRODUCT
-@pytest.mark.parametrize("act", list(Act))
-def test_somebody_asks_for_every_act(act: Act) -> None:
+@pytest.mark.parametrize("act", list(ProtectedChange))
+def test_somebody_asks_for_every_act(act: ProtectedChange) -> None:
     """A rule that no page and no command asks for would be a promise that nobody keeps."""
     sources = (path.read_text("utf-8") for path in (HOUSE / "app").rglob("*.py"))
-    assert any(f"Act.{act.name}" in text for text in sources)
+    assert any(f"ProtectedChange.{act.name}" in text for text in sources)
 
 
 def test_whoever_writes_asks_a_rule_or_is_known_to_need_none() -> None:
@@ -135,15 +149,15 @@ def test_whoever_writes_asks_a_rule_or_is_known_to_need_none() -> None:
 
 
 def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) -> None:
-    assert [room.access.refusal(act) for act in Act] == [""] * len(Act)
-    assert room.access.words == ""
-    room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
-    room.desk.runs.counter.program = "pin.nc"
-    room.find(PartsCounterFunction).correct(1)
+    assert [room.access.find_refusal(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
+    assert room.access.header_text == ""
+    room.desk.offset_book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
+    room.desk.program_runs.part_counter.program = "pin.nc"
+    room.find(PartsCounterFunction).correct_count(1)
     room.settle()
-    assert room.store.offsets.tools.read_history()[0].who == "operator"
+    assert room.store.offsets.tool_offsets.read_history()[0].who == "operator"
     assert room.log("change") == []
-    assert room.desk.notice == ""
+    assert room.desk.prompt_notice == ""
 
 
 # --- refusals --------------------------------------------------------------------------------------------
@@ -151,102 +165,110 @@ def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) 
 
 def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
     room.enter_people()
-    why = room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
+    why = room.desk.offset_book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
     assert why == wording("screen.level-needed", what="TOOL OFFSETS", level="SETUP", now="OPERATOR")
     room.settle()
-    assert room.store.offsets.tools.read_rows() == {}
+    assert room.store.offsets.tool_offsets.read_rows() == {}
 
 
 def test_where_nobody_can_sign_in_stored_people_still_have_levels(room: Room) -> None:
     room.enter_people()
-    with_sign_in = room.access.refusal(Act.TOOLS)
-    session, room.access.session = room.access.session, None
-    assert {act for act in Act if not room.access.refusal(act)} == OPERATORS
-    assert room.access.refusal(Act.TOOLS) != with_sign_in
-    room.access.look(room.desk.snapshot())
-    room.access.used()
-    room.access.session = session
+    with_sign_in = room.access.find_refusal(ProtectedChange.TOOLS)
+    session, room.access.sign_in_session = room.access.sign_in_session, None
+    assert {act for act in ProtectedChange if not room.access.find_refusal(act)} == OPERATORS
+    assert room.access.find_refusal(ProtectedChange.TOOLS) != with_sign_in
+    room.access.update(room.desk.read_snapshot())
+    room.access.note_activity()
+    room.access.sign_in_session = session
 
 
 def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
-    room.store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
+    room.store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
     room.enter_people()
-    book = room.desk.book
+    book = room.desk.offset_book
     assert shows(
-        book.change(Kind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both"), "screen.level-needed", level="SETUP"
+        book.change_fields(OffsetKind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both"),
+        "screen.level-needed",
+        level="SETUP",
     )
-    assert shows(book.undo(Kind.TOOL, 3, 1), "screen.level-needed", level="SETUP")
-    assert shows(book.clear(Kind.ZERO, "all"), "screen.level-needed", level="SETUP")
+    assert shows(book.undo_step(OffsetKind.TOOL, 3, 1), "screen.level-needed", level="SETUP")
+    assert shows(book.clear_table(OffsetKind.ZERO, "all"), "screen.level-needed", level="SETUP")
     assert shows(book.choose_master(3, "master"), "screen.level-needed", level="SETUP")
-    assert book.change(Kind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""
+    assert book.change_fields(OffsetKind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""
     room.settle()
-    assert book.change(Kind.SECONDARY, 1, {"x": -0.01}, "too large") == ""
+    assert book.change_fields(OffsetKind.SECONDARY, 1, {"x": -0.01}, "too large") == ""
     room.settle()
-    assert (room.store.offsets.tools.read_rows()[3].wear_x, room.store.offsets.tools.read_rows()[3].x) == (
+    assert (
+        room.store.offsets.tool_offsets.read_rows()[3].wear_x,
+        room.store.offsets.tool_offsets.read_rows()[3].x,
+    ) == (
         0.01,
         1.0,
     )
-    assert room.store.offsets.secondary.read_rows()[1].x == -0.01
+    assert room.store.offsets.secondary_offsets.read_rows()[1].x == -0.01
 
 
 def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
-    room.store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
-    room.desk.book.read()
+    room.store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
+    room.desk.offset_book.read_store()
     room.enter_people()
-    questions = OffsetQuestions(OffsetHistory(room.desk, Kind.TOOL))
+    questions = OffsetQuestions(OffsetHistory(room.desk, OffsetKind.TOOL))
     refusals = (
-        questions.change(Kind.TOOL, 3, {"x": -1.0}, "typed"),
-        questions.touch_off(3, Touch(x=-1.0), "touched off"),
-        questions.choose_master(3),
-        questions.undo(Kind.TOOL, 3),
+        questions.change_fields(OffsetKind.TOOL, 3, {"x": -1.0}, "typed"),
+        questions.touch_off(3, TouchPosition(x=-1.0), "touched off"),
+        questions.ask_master(3),
+        questions.ask_undo(OffsetKind.TOOL, 3),
     )
     assert all(shows(why, "screen.level-needed", level="SETUP") for why in refusals)
-    assert not room.desk.asked
-    assert questions.change(Kind.TOOL, 3, {"wear_x": 1.0}, "typed") == ""
-    assert room.desk.asked  # wear is the operator's, and this wear is large
+    assert not room.desk.confirm_key
+    assert questions.change_fields(OffsetKind.TOOL, 3, {"wear_x": 1.0}, "typed") == ""
+    assert room.desk.confirm_key  # wear is the operator's, and this wear is large
 
 
 def test_pages_without_a_book_refuse_too(room: Room) -> None:
     room.enter_people()
-    programs, editor = room.desk.pages.find(ProgramList), room.desk.pages.find(Editor)
+    programs, editor = (
+        room.desk.page_registry.find(ProgramListModel),
+        room.desk.page_registry.find(EditorModel),
+    )
     assert programs is not None
     assert editor is not None
-    assert shows(editor.may_save(), "screen.level-needed", what="PROGRAMS", level="SETUP")
-    programs.transfer.begin((), None, out=False)
-    assert not programs.transfer.open
-    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
-    room.find(MachineFileAcceptance)._accept()
-    assert shows(room.desk.notice, "screen.level-needed", what="THE MACHINE FILE", level="SERVICE")
+    assert shows(editor.find_save_refusal(), "screen.level-needed", what="PROGRAMS", level="SETUP")
+    programs.import_export.open_chooser((), None, is_export=False)
+    assert not programs.import_export.is_open
+    assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
+    room.find(MachineFileFunction)._accept()
+    assert shows(room.desk.prompt_notice, "screen.level-needed", what="THE MACHINE FILE", level="SERVICE")
     room.sign_in("BEN")
-    assert editor.may_save() == ""
-    programs.transfer.begin((), None, out=False)
-    assert programs.transfer.open
+    assert editor.find_save_refusal() == ""
+    programs.import_export.open_chooser((), None, is_export=False)
+    assert programs.import_export.is_open
 
 
 def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room) -> None:
     room.enter_people()
-    limit = room.find(SpindleSpeedLimit)
+    limit = room.find(SpindleLimitFunction)
     assert limit.take("1500")
     room.run()
     assert limit.take("1200")
     room.run()
     assert not limit.take("1500")
     assert shows(
-        room.desk.notice,
+        room.desk.prompt_notice,
         "screen.level-needed",
         what="HIGHER SPINDLE SPEED LIMIT",
         level="SETUP",
         now="OPERATOR",
     )
-    limit.lift()
-    assert shows(room.desk.notice, "screen.level-needed", level="SETUP")
+    limit.confirm_remove_limit()
+    assert shows(room.desk.prompt_notice, "screen.level-needed", level="SETUP")
     room.run()
-    assert room.desk.snapshot().spindle_limit == 1200.0
+    assert room.desk.read_snapshot().spindle_limit_rpm == 1200.0
     room.sign_in("BEN")
-    limit.lift()
+    limit.confirm_remove_limit()
     limit._lifted()
     room.run()
-    assert room.desk.snapshot().spindle_limit == 0.0
+    assert room.desk.read_snapshot().spindle_limit_rpm == 0.0
     assert room.log("change") == [
         (wording("log.spindle-limit", change="none → 1500 rpm"), "operator"),
         (wording("log.spindle-limit", change="1500 rpm → 1200 rpm"), "operator"),
@@ -256,50 +278,50 @@ def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room)
 
 def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> None:
     room.enter_people()
-    page = room.find(InputsOutputs)
-    page.kind = Shown.OUTPUTS
+    page = room.find(SignalsFunction)
+    page.list_kind = Shown.OUTPUTS
     page.marked = tuple(page.machine.outputs).index("coolant")
-    room.desk.clear()
-    page.act()
-    assert shows(room.desk.notice, "screen.level-needed", what="MANUAL OUTPUTS", level="SETUP")
+    room.desk.clear_prompt_line()
+    page.execute_row()
+    assert shows(room.desk.prompt_notice, "screen.level-needed", what="MANUAL OUTPUTS", level="SETUP")
     page._force("coolant", True)  # the level fell back while it was asked
     room.run()
-    assert "coolant" not in room.desk.snapshot().outputs
+    assert "coolant" not in room.desk.read_snapshot().outputs
     room.sign_in("BEN")
     page._force("coolant", True)
     room.run()
-    assert "coolant" in room.desk.snapshot().outputs
+    assert "coolant" in room.desk.read_snapshot().outputs
     assert room.log("change") == [(wording("log.output-on-by-hand", name="coolant"), "BEN")]
 
 
 def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    line = room.find(SerialTransfer)
-    line.received = Received(b"M30\n", "PIN", 1, "", False, 0, (), 0.0)
+    line = room.find(SerialTransferFunction)
+    line.received_program = ReceivedProgram(b"M30\n", "PIN", 1, "", False, 0, (), 0.0)
     room.access.sign_out()
     line._store()
-    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
-    assert line.received is not None
-    assert not (line.own / "PIN").exists()
+    assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
+    assert line.received_program is not None
+    assert not (line.own_folder / "PIN").exists()
 
 
 def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
     room.enter_people()
     desk = room.desk
-    desk.enable()
+    desk.enable_drives()
     room.run()
-    assert desk.snapshot().state is State.IDLE
-    desk.feed_hold()
-    desk.station.press_estop()
+    assert desk.read_snapshot().state is MachineState.IDLE
+    desk.start_feed_hold()
+    desk.station_keys.press_estop()
     room.run()
-    assert desk.snapshot().state is State.ESTOP
-    desk.hands.estop(pressed=False)
+    assert desk.read_snapshot().state is MachineState.ESTOP
+    desk.station_controls.estop(is_pressed=False)
     room.run()
-    desk.reset()
+    desk.reset_control()
     room.run()
-    assert desk.snapshot().state is State.DISABLED
-    assert "LEVEL" not in desk.notice
+    assert desk.read_snapshot().state is MachineState.DISABLED
+    assert "LEVEL" not in desk.prompt_notice
 
 
 # --- who did it ------------------------------------------------------------------------------------------
@@ -308,46 +330,46 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
 def test_every_history_has_the_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    book, watch = room.desk.book, room.desk.pages.find(PartsWatch)
+    book, watch = room.desk.offset_book, room.desk.page_registry.find(PartsWatch)
     assert watch is not None
     for kind, number, values in (
-        (Kind.TOOL, 3, {"x": 1.0, "z": -1.0}),
-        (Kind.SECONDARY, 1, {"x": -0.01}),
-        (Kind.ZERO, 54, {"z": -120.0}),
-        (Kind.SHAPE, 3, {"kind": "turning"}),
-        (Kind.MILL_TOOL, 20, {"length": 80.0}),
-        (Kind.PRESET, 3, {"x": 5.0}),
+        (OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}),
+        (OffsetKind.SECONDARY, 1, {"x": -0.01}),
+        (OffsetKind.ZERO, 54, {"z": -120.0}),
+        (OffsetKind.SHAPE, 3, {"kind": "turning"}),
+        (OffsetKind.MILL_TOOL, 20, {"length": 80.0}),
+        (OffsetKind.PRESET, 3, {"x": 5.0}),
     ):
-        assert book.change(kind, number, values, "set up") == ""
+        assert book.change_fields(kind, number, values, "set up") == ""
         room.settle()
-        assert room.store.offsets.table(kind).read_history()[0].who == "BEN"
+        assert room.store.offsets.get_table(kind).read_history()[0].who == "BEN"
     room.journal.save_version("pin.nc", b"M30\n", "saved in the editor")
     assert room.store.programs.list_versions("pin.nc")[0].who == "BEN"
-    watch.lives.change_insert(3, "worn", lambda _text: None)
+    watch.tool_life_watch.change_insert(3, "worn", lambda _text: None)
     room.settle()
     with room.store.read() as connection:
-        assert [row.who for row in insert_changes(connection, 9)] == ["BEN"]
-    room.desk.runs.counter.program = "pin.nc"
-    room.find(PartsCounterFunction).correct(1)
+        assert [row.who for row in read_insert_changes(connection, 9)] == ["BEN"]
+    room.desk.program_runs.part_counter.program = "pin.nc"
+    room.find(PartsCounterFunction).correct_count(1)
     assert room.log("change")[-1] == (
         wording("log.parts-changed", program="pin.nc", before=0, after=1),
         "BEN",
     )
-    assert "change" in FILTERS["OPERATOR"]
+    assert "change" in EVENT_FILTERS["OPERATOR"]
 
 
 def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
     room.enter_people()
     room.sign_in("CARLA")
-    room.desk.choose_setting("theme", "light")
-    room.desk.next_readout()  # many times a shift: no line
-    room.find(LampsAndSound)._choose(40, frozenset())
+    room.desk.apply_setting("theme", "light")
+    room.desk.select_next_readout()  # many times a shift: no line
+    room.find(LampsAndSoundFunction)._choose(40, frozenset())
     sheet = room.find(SetupSheetFunction)
-    room.desk.session._now = replace(room.desk.session.now, path=Path("pin.nc"))
+    room.desk.program_loader._now = replace(room.desk.program_loader.loaded, path=Path("pin.nc"))
     sheet._keep(["soft jaws"])
     sheet._keep(["soft jaws", "stop 12 mm"])
     sheet._keep(["stop 12 mm"])
-    sheet.next_paper()
+    sheet.select_next_paper()
     texts = [text for text, who in room.log("change") if who == "CARLA"]
     assert texts[:5] == [
         wording("log.screen-setting", what="theme", before="dark", after="light"),
@@ -362,7 +384,7 @@ def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
 def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("ANNA")
-    room.desk.changes.accept()
+    room.desk.changes.accept_changes()
     assert shows(room.log("machine")[-1][0], "desk.machine-file-accepted-by", name="ANNA")
 
 
@@ -372,35 +394,35 @@ def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
 def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    room.journal.opened().people.remove_person("BEN").result()
+    room.journal.require_store().people.remove_user("BEN").result()
     room.access.reload()
-    assert room.access.words == "OPERATOR"
+    assert room.access.header_text == "OPERATOR"
 
 
 def test_a_second_desk_has_the_levels_of_the_first(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     beside = Journal(tmp_path / "home")
-    assert beside.people() == room.store.people.read_people()
+    assert beside.people() == room.store.people.read_users()
     beside.close()
 
 
 def test_one_of_service_stays(room: Room) -> None:
     room.enter_people()
     with pytest.raises(StoreError, match=pattern("desk.service-stays")):
-        room.journal.opened().people.remove_person("ANNA").result()
+        room.journal.require_store().people.remove_user("ANNA").result()
     for name in ("BEN", "CARLA", "ANNA"):
-        room.journal.opened().people.remove_person(name).result()
+        room.journal.require_store().people.remove_user(name).result()
     room.access.reload()
-    assert not room.access.people.on
+    assert not room.access.users.is_access_restricted
 
 
 def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_path: Path) -> None:
     room.enter_people()
-    with closing(sqlite3.connect(tmp_path / "home" / FILE_NAME)) as outside, outside:
+    with closing(sqlite3.connect(tmp_path / "home" / STORE_FILE_NAME)) as outside, outside:
         outside.execute("UPDATE people SET level = 3 WHERE name = 'CARLA'")
     room.access.reload()
-    assert room.access.people.on
-    assert room.access.people.named("CARLA") is None
+    assert room.access.users.is_access_restricted
+    assert room.access.users.find_user("CARLA") is None
     assert any(
         begins(text, "desk.not-as-saved", what=f"{wording('desk.pin-of')} CARLA")
         for text in room.store.find_damaged_rows()
@@ -410,14 +432,14 @@ def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_p
 def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> None:
     folder = tmp_path / "older"
     folder.mkdir()
-    before = next(n for n, text in enumerate(database.migrations()) if "CREATE TABLE people" in text)
-    with closing(sqlite3.connect(folder / FILE_NAME, isolation_level=None)) as connection:
+    before = next(n for n, text in enumerate(database.load_migrations()) if "CREATE TABLE people" in text)
+    with closing(sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
-        database.migrate(connection, database.migrations()[:before])
+        database.migrate(connection, database.load_migrations()[:before])
         connection.execute("INSERT INTO events (at, kind, text) VALUES ('2026-01-02', 'start', 'pin.nc')")
         connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, -1.0, 0.0)")
     with Store.open(folder) as store:
-        assert not store.people.read_people().on
+        assert not store.people.read_users().is_access_restricted
         assert [(row.text, row.who) for row in store.events.read_events()] == [("pin.nc", "")]
-        assert store.offsets.tools.read_rows()[3].x == 1.0
+        assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
         assert store.find_damaged_rows() == ()

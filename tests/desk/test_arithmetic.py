@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.desk.arithmetic import EntryError, line_of, value_of
+from app.desk.arithmetic import EntryError, evaluate_expression, evaluate_line_number
 from tests.texts import pattern
 
 
@@ -30,7 +30,7 @@ from tests.texts import pattern
     ],
 )
 def test_entries(entry: str, value: float) -> None:
-    assert value_of(entry) == pytest.approx(value, abs=1e-12)
+    assert evaluate_expression(entry) == pytest.approx(value, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -56,24 +56,24 @@ def test_entries(entry: str, value: float) -> None:
 )
 def test_refusals(entry: str, told: str) -> None:
     with pytest.raises(EntryError, match=told):
-        value_of(entry)
+        evaluate_expression(entry)
 
 
 def test_no_entry_is_too_deep() -> None:
-    assert value_of("(" * 39 + "1" + ")" * 39) == 1.0
+    assert evaluate_expression("(" * 39 + "1" + ")" * 39) == 1.0
     with pytest.raises(EntryError, match=pattern("desk.stops-short")):
-        value_of("(" * 80)
+        evaluate_expression("(" * 80)
 
 
 @given(st.floats(-1000, 1000), st.floats(-1000, 1000))
 def test_difference_of_two_numbers(a: float, b: float) -> None:
-    assert value_of(f"{a:.6f}-{b:.6f}") == float(f"{a:.6f}") - float(f"{b:.6f}")
+    assert evaluate_expression(f"{a:.6f}-{b:.6f}") == float(f"{a:.6f}") - float(f"{b:.6f}")
 
 
 @given(st.text(max_size=30))
 def test_any_text_is_a_number_or_a_sentence(text: str) -> None:
     try:
-        assert isfinite(value_of(text))
+        assert isfinite(evaluate_expression(text))
     except EntryError as error:
         sentence = str(error)
     else:
@@ -96,4 +96,4 @@ def test_any_text_is_a_number_or_a_sentence(text: str) -> None:
     ],
 )
 def test_a_line_is_a_whole_number_from_one(entry: str, line: int | None) -> None:
-    assert line_of(entry) == line
+    assert evaluate_line_number(entry) == line

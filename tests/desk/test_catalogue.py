@@ -6,9 +6,9 @@ import pickle
 
 import pytest
 
-from app.desk.translation import data, speak, tr
-from core.language.sinumerik.sinumerik_alarms import fault
-from core.message import Message, join_messages, named_values
+from app.desk.translation import mark_untranslated, set_translator, tr
+from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.message import Message, collect_values, join_messages
 
 KNOWN = {
     "READY": "LISTO",
@@ -27,9 +27,9 @@ KNOWN = {
 
 @pytest.fixture
 def spanish() -> object:
-    speak(lambda text: KNOWN.get(text, ""), "es")
+    set_translator(lambda text: KNOWN.get(text, ""), "es")
     yield
-    speak(None)
+    set_translator(None)
 
 
 OFF = Message("{axis} is {distance} off", axis="Z", distance=2.1)
@@ -53,8 +53,8 @@ OFF = Message("{axis} is {distance} off", axis="Z", distance=2.1)
         (Message("{word} is not defined.", word="STEP"), "STEP no está definido."),  # a word of the program
         (Message("{name} SAVED", name="STEP"), "STEP GUARDADO"),  # a program of that name
         (Message("CONTROL IN {mode}", mode="STEP"), "CONTROL EN PASO"),  # the screen's own word
-        (Message("CONTROL IN {mode}", mode=data("STEP")), "CONTROL EN STEP"),
-        (data("STEP"), "STEP"),
+        (Message("CONTROL IN {mode}", mode=mark_untranslated("STEP")), "CONTROL EN STEP"),
+        (mark_untranslated("STEP"), "STEP"),
         ("−0.12345", "−0.12345"),
         ("bushing.nc", "bushing.nc"),
         ("", ""),
@@ -76,13 +76,13 @@ def test_a_message_in_a_hole_for_names_is_translated() -> None:
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize("code", [14011, "following"])
 def test_the_sentence_of_a_sinumerik_fault_is_translated(code: int | str) -> None:
-    found = fault(1, 1, code, "N10", "following error", "")
+    found = make_alarm(1, 1, code, "N10", "following error", "")
     assert tr(found.message).endswith("block N10: error de seguimiento")
 
 
 def test_without_a_language_texts_stay_english() -> None:
     assert tr(OFF) == "Z is 2.1 off"
-    assert tr(data("STEP")) == "STEP"
+    assert tr(mark_untranslated("STEP")) == "STEP"
     assert type(tr(OFF)) is str
 
 
@@ -99,7 +99,7 @@ def test_a_value_that_is_missing_is_refused() -> None:
 
 def test_the_values_of_messages_in_messages_are_named_too() -> None:
     nested = Message("REFUSED: {why}", why=Message("{axis}: {why}", axis="X", why=OFF))
-    values = named_values(nested)
+    values = collect_values(nested)
     assert values == {"axis": "X", "distance": 2.1, "why": "X: Z is 2.1 off"}
     assert all(type(value) in {str, float} for value in values.values())
-    assert named_values("plain") == {}
+    assert collect_values("plain") == {}

@@ -11,9 +11,9 @@ import pytest
 
 from app.compose.screen_desk import build_desk
 from app.desk.desk import Desk
-from core.closing import ClosingStep
+from core.closing_steps import ClosingStep
 from core.executor.commands import EnableDrives
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 
@@ -63,14 +63,14 @@ def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
     """A desk whose every step of closing is noted."""
     desk = desk_on(machine)
     step = partial(partial, closings.run)
-    desk.closing.wait = closings.wait
-    desk.closing.stops = [ClosingStep("executor", step("executor"))]
-    desk.closing.shut = step("drivers")
-    desk.session = Part(step("loading"))  # type: ignore[misc, assignment]
-    desk.access = Part(step("levels"))  # type: ignore[misc, assignment]
-    desk.pages.attach(Part(step("Part")))
-    desk.closing.workers = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
-    desk.closing.ends = [ClosingStep(name, step(name)) for name in ("store", "log")]
+    desk.closing_sequence.wait_for_step = closings.wait
+    desk.closing_sequence.stop_steps = [ClosingStep("executor", step("executor"))]
+    desk.closing_sequence.close_drivers = step("drivers")
+    desk.program_loader = Part(step("loading"))  # type: ignore[misc, assignment]
+    desk.user_access = Part(step("levels"))  # type: ignore[misc, assignment]
+    desk.page_registry.attach_model(Part(step("Part")))
+    desk.closing_sequence.worker_steps = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
+    desk.closing_sequence.final_steps = [ClosingStep(name, step(name)) for name in ("store", "log")]
     return desk
 
 
@@ -106,21 +106,21 @@ def test_a_load_that_hangs_does_not_keep_the_machine_running(
         release.wait()
 
     desk.post(EnableDrives())
-    desk.session.worker.ask(hang, lambda _: None, lambda _: None)
+    desk.program_loader.worker.request(hang, lambda _: None, lambda _: None)
     assert reads.wait(LONG)
-    let_go = desk.closing.shut
+    let_go = desk.closing_sequence.close_drivers
 
     def shut() -> None:
         let_go()
         off.set()
 
-    desk.closing.shut = shut
+    desk.closing_sequence.close_drivers = shut
     closing = threading.Thread(target=desk.close, daemon=True)
     closing.start()
     safe = off.wait(10.0)
-    state = desk.snapshot().state
+    state = desk.read_snapshot().state
     release.set()
     closing.join(LONG)
     assert safe
-    assert state is State.DISABLED
+    assert state is MachineState.DISABLED
     assert not closing.is_alive()

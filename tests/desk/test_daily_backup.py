@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.daily_backup import ENDING, DailyBackup
+from app.desk.daily_backup import BACKUP_SUFFIX, DailyBackup
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -32,14 +32,20 @@ class Days:
             os.utime(target, (at, at))
 
         return DailyBackup(
-            folder, keep, stamped, backup.problems, lambda: not self.runs, self.told.append, lambda: self.now
+            folder,
+            keep,
+            stamped,
+            backup.find_problems,
+            lambda: not self.runs,
+            self.told.append,
+            lambda: self.now,
         )
 
 
 @pytest.fixture
 def home(tmp_path: Path) -> Path:
     with Store.open(tmp_path / "home") as store:
-        store.offsets.tools.change_row(3, "touched", {"x": 1.0, "z": 2.0}).result()
+        store.offsets.tool_offsets.change_row(3, "touched", {"x": 1.0, "z": 2.0}).result()
     return tmp_path / "home"
 
 
@@ -49,34 +55,34 @@ def names(folder: Path) -> list[str]:
 
 def test_one_a_day_and_the_newest_stay(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "nas" / "lathe3"
-    daily = days.daily(folder, lambda target: backup.backup(home, target))
+    daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     for _ in range(5 * 24):
-        daily.look()
+        daily.make_if_due()
         days.now += timedelta(hours=1)
-    assert names(folder) == [f"daily-2026-11-{day}-060000{ENDING}" for day in (25, 26, 27)]
+    assert names(folder) == [f"daily-2026-11-{day}-060000{BACKUP_SUFFIX}" for day in (25, 26, 27)]
     assert days.told == []
-    backup.restore(tmp_path / "other", folder / names(folder)[-1])
+    backup.restore_store(tmp_path / "other", folder / names(folder)[-1])
     with Store.open(tmp_path / "other") as store:
-        assert store.offsets.tools.read_rows()[3].x == 1.0
+        assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
 
 
 def test_it_waits_for_a_standstill_but_not_for_ever(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
-    daily = days.daily(folder, lambda target: backup.backup(home, target))
-    daily.look()
+    daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
+    daily.make_if_due()
     days.runs = True
     days.now += timedelta(hours=35)
-    assert daily.look() is None
+    assert daily.make_if_due() is None
     days.now += timedelta(hours=2)
-    assert daily.look() is not None
+    assert daily.make_if_due() is not None
 
 
 def test_a_clock_that_was_set_back_keeps_nothing_from_being_backed_up(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
-    daily = days.daily(folder, lambda target: backup.backup(home, target))
-    daily.look()
+    daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
+    daily.make_if_due()
     days.now -= timedelta(days=400)
-    assert daily.look() is not None
+    assert daily.make_if_due() is not None
 
 
 def test_a_backup_that_is_no_good_is_told_once_a_day_and_leaves_the_others(
@@ -85,29 +91,29 @@ def test_a_backup_that_is_no_good_is_told_once_a_day_and_leaves_the_others(
     days, folder = Days(), tmp_path / "b"
 
     def copy(target: Path) -> None:
-        backup.backup(home, target)
+        backup.back_up_store(home, target)
         if days.now.day > 23:
             with target.open("r+b") as file:
                 file.seek(8192)
                 file.write(b"\xff" * 4096)
 
     daily = days.daily(folder, copy)
-    daily.look()
+    daily.make_if_due()
     for _ in range(3):
         days.now += timedelta(hours=30)
-        assert daily.look() is None
-    assert names(folder) == [f"daily-2026-11-23-060000{ENDING}"]
+        assert daily.make_if_due() is None
+    assert names(folder) == [f"daily-2026-11-23-060000{BACKUP_SUFFIX}"]
     assert len(days.told) == 3  # once a day
     assert shows(days.told[0], "desk.backup-damaged", what=pattern("desk.file-damaged"))
-    daily.look()
+    daily.make_if_due()
     assert len(days.told) == 3
 
 
 def test_a_folder_that_is_not_there_and_cannot_be_made_is_told(home: Path, tmp_path: Path) -> None:
     days = Days()
     (tmp_path / "nas").write_text("a file")
-    daily = days.daily(tmp_path / "nas" / "lathe3", lambda target: backup.backup(home, target))
-    assert daily.look() is None
+    daily = days.daily(tmp_path / "nas" / "lathe3", lambda target: backup.back_up_store(home, target))
+    assert daily.make_if_due() is None
     assert "lathe3" in days.told[0]
 
 
@@ -118,12 +124,12 @@ def test_a_damaged_store_is_not_backed_up_over_good_ones(tmp_path: Path) -> None
         raise StoreError("T3 is not as it was saved")
 
     daily = days.daily(tmp_path / "b", copy, keep=2)
-    daily.look()
+    daily.make_if_due()
     assert days.told == [f"{tmp_path / 'b'}: T3 is not as it was saved"]
 
 
 def test_it_ends_with_the_desk(home: Path, tmp_path: Path) -> None:
-    daily = Days().daily(tmp_path / "b", lambda target: backup.backup(home, target))
+    daily = Days().daily(tmp_path / "b", lambda target: backup.back_up_store(home, target))
     daily.start()
     daily.close()
     assert not (tmp_path / "b").exists()  # the first look is a minute later
@@ -132,30 +138,30 @@ def test_it_ends_with_the_desk(home: Path, tmp_path: Path) -> None:
 def test_with_an_empty_battery_of_the_clock_the_backup_of_today_stays(home: Path, tmp_path: Path) -> None:
     """What is dated later than now was made before the clock went back, and goes first."""
     days, folder = Days(), tmp_path / "b"
-    daily = days.daily(folder, lambda target: backup.backup(home, target))
+    daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     for _ in range(4):
-        daily.look()
+        daily.make_if_due()
         days.now += timedelta(days=1)
     days.now = datetime(2000, 1, 1, 6, 0)
     made = []
     for _ in range(3 * 24 * 6):
-        made += [path for path in (daily.look(),) if path is not None]
+        made += [path for path in (daily.make_if_due(),) if path is not None]
         days.now += timedelta(minutes=10)
     assert [path.name for path in made] == names(folder)
-    assert names(folder) == [f"daily-2000-01-0{day}-060000{ENDING}" for day in (1, 2, 3)]
+    assert names(folder) == [f"daily-2000-01-0{day}-060000{BACKUP_SUFFIX}" for day in (1, 2, 3)]
     days.now = datetime(2026, 11, 27, 6, 0)
-    daily.look()
-    assert names(folder)[-1] == f"daily-2026-11-27-060000{ENDING}"
+    daily.make_if_due()
+    assert names(folder)[-1] == f"daily-2026-11-27-060000{BACKUP_SUFFIX}"
     assert len(names(folder)) == 3
 
 
 def test_a_place_that_is_no_other_disk_is_said_once(home: Path, tmp_path: Path) -> None:
     """A disk that is not mounted leaves its folder on this one: better such a backup than none."""
     days, hints = Days(), list[str]()
-    daily = days.daily(tmp_path / "mnt" / "nas", lambda target: backup.backup(home, target))
-    daily.apart, daily.hint = home, lambda: hints.append("same disk")
+    daily = days.daily(tmp_path / "mnt" / "nas", lambda target: backup.back_up_store(home, target))
+    daily.data_folder, daily.report_same_disk = home, lambda: hints.append("same disk")
     for _ in range(3):
-        assert daily.look() is not None
+        assert daily.make_if_due() is not None
         days.now += timedelta(days=1)
     assert hints == ["same disk"]
 
@@ -163,12 +169,12 @@ def test_a_place_that_is_no_other_disk_is_said_once(home: Path, tmp_path: Path) 
 def test_a_place_on_another_disk_is_not_hinted_at(home: Path, tmp_path: Path) -> None:
     days, hints = Days(), list[str]()
     with small_disk(tmp_path / "mnt") as disk:
-        daily = days.daily(disk.path / "lathe3", lambda target: backup.backup(home, target))
-        daily.apart, daily.hint = home, lambda: hints.append("same disk")
-        assert daily.look() is not None
+        daily = days.daily(disk.path / "lathe3", lambda target: backup.back_up_store(home, target))
+        daily.data_folder, daily.report_same_disk = home, lambda: hints.append("same disk")
+        assert daily.make_if_due() is not None
         assert hints == []
         disk.fill()
         days.now += timedelta(days=1)
-        assert daily.look() is None
+        assert daily.make_if_due() is None
         assert shows(days.told[0], "desk.disk-full")
         assert len(names(disk.path / "lathe3")) == 1

@@ -15,7 +15,7 @@ from core.executor.snapshot import Snapshot
 
 class Model:
     def __init__(self, why: str = "") -> None:
-        self.open, self._why = False, why
+        self.is_open, self._why = False, why
 
     def barred(self) -> str:
         return self._why
@@ -30,10 +30,10 @@ class Other(Model):
 
 def test_a_model_is_found_by_its_class_and_no_other_is() -> None:
     pages, model = PageRegistry(), Model()
-    pages.attach(model)
+    pages.attach_model(model)
     assert pages.find(Model) is model
     assert pages.find(Other) is None
-    assert [step.name for step in pages.closing_steps()] == ["Model"]
+    assert [step.name for step in pages.make_closing_steps()] == ["Model"]
 
 
 def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
@@ -43,9 +43,9 @@ def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
         made.append(Other())
         return made[-1]
 
-    pages.attach_later(f"{Other.__module__}.Other", make)
+    pages.attach_lazily(f"{Other.__module__}.Other", make)
     assert pages.find(Model) is None
-    assert (made, pages.closing_steps()) == ([], [])
+    assert (made, pages.make_closing_steps()) == ([], [])
     assert pages.find(Other) is pages.find(Other)
     assert len(made) == 1
 
@@ -53,15 +53,15 @@ def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
 def test_of_the_pages_with_a_start_the_open_one_has_the_buttons() -> None:
     pages, first, second = PageRegistry(), Model("first"), Model("second")
     for each in (first, second):
-        pages.add_start(each)
-    assert pages.open_start is None
-    second.open = True
-    assert pages.open_start is second
+        pages.add_start_handler(each)
+    assert pages.active_start_handler is None
+    second.is_open = True
+    assert pages.active_start_handler is second
 
 
 def test_without_a_feature_nothing_is_offered() -> None:
     pages = PageRegistry()
-    assert pages.offered_notice(Snapshot()) is None
+    assert pages.find_notice(Snapshot()) is None
     assert dict(pages.program_keys) == {}
     key = ProgramKey("JOB", "JOBS", lambda _path: None)
     pages.add_program_key("F10", key)
@@ -70,37 +70,41 @@ def test_without_a_feature_nothing_is_offered() -> None:
 
 def test_a_window_that_is_not_there_bars_nothing_and_a_page_may() -> None:
     window = WindowState(LatePresses(Snapshot, float))
-    assert (window.starts_here, window.keyboard_away, window.is_stop_held()) == (True, False, False)
-    assert (window.has_field(), window.press_age()) == (False, 0.0)
+    assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_held()) == (True, False, False)
+    assert (window.has_text_field(), window.find_press_age()) == (False, 0.0)
     woken: list[bool] = []
-    window.connect(lambda: woken.append(True), lambda: True, lambda: 0.25)
-    window.show_page(starts=False, has_field=lambda: True)
-    window.set_keyboard_away(True)
-    window.wake()
-    assert (window.starts_here, window.keyboard_away, window.is_stop_held()) == (False, True, True)
-    assert (window.has_field(), window.press_age(), woken) == (True, 0.25, [True])
+    window.connect_window(lambda: woken.append(True), lambda: True, lambda: 0.25)
+    window.set_page(can_start=False, has_field=lambda: True)
+    window.set_keyboard_lost(True)
+    window.wake_window()
+    assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_held()) == (False, True, True)
+    assert (window.has_text_field(), window.find_press_age(), woken) == (True, 0.25, [True])
 
 
 @pytest.mark.parametrize("problem", ["", "the disk is full"])
 def test_the_state_of_storage_is_that_of_the_store_it_follows(problem: str) -> None:
     storage, checked = StorageState(), list[bool]()
-    assert (storage.problem(), storage.waiting(), storage.difference()) == ("", "", "")
-    storage.follow_store(lambda: problem, lambda: "20 parts")
-    storage.follow_program(lambda: "DIFFERENT", lambda: checked.append(True))
+    assert (storage.read_problem(), storage.read_unsaved(), storage.read_file_difference()) == ("", "", "")
+    storage.set_store_readers(lambda: problem, lambda: "20 parts")
+    storage.set_file_readers(lambda: "DIFFERENT", lambda: checked.append(True))
     storage.recheck_file()
-    assert (storage.problem(), storage.waiting(), storage.difference()) == (problem, "20 parts", "DIFFERENT")
+    assert (storage.read_problem(), storage.read_unsaved(), storage.read_file_difference()) == (
+        problem,
+        "20 parts",
+        "DIFFERENT",
+    )
     assert checked == [True]
 
 
 def test_starts_are_barred_from_the_begin_of_a_restore_to_its_end() -> None:
     storage = StorageState()
-    assert not storage.restoring
+    assert not storage.is_restoring
     storage.begin_restore()
-    assert storage.restoring
+    assert storage.is_restoring
     storage.end_restore()
-    assert not storage.restoring
+    assert not storage.is_restoring
 
 
 def test_a_machine_without_a_file_is_an_omniturn_lathe() -> None:
     machine = DeskMachine()
-    assert (machine.language, machine.third_axis, machine.table_turns) == ("omniturn", "C", True)
+    assert (machine.language, machine.third_axis_name, machine.is_table_rotary) == ("omniturn", "C", True)

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from app.desk.pages.sheet import Entry
+from app.desk.pages.table_content import InputField
 
 
 def test_the_first_character_replaces_what_is_offered() -> None:
-    entry = Entry(words=True)
-    entry.offer("knob")
+    entry = InputField(words=True)
+    entry.propose("knob")
     for key in "kn2":
-        assert entry.type(key)
+        assert entry.handle_key(key)
     assert entry.text == "kn2"
 
 
 def test_back_edits_what_is_offered() -> None:
-    entry = Entry(words=True)
-    entry.offer("knob")
-    entry.type("Back")
-    entry.type("t")
+    entry = InputField(words=True)
+    entry.propose("knob")
+    entry.handle_key("Back")
+    entry.handle_key("t")
     assert entry.text == "knot"
 
 
 def test_what_was_typed_is_not_replaced() -> None:
-    entry = Entry(words=True)
+    entry = InputField(words=True)
     for key in "ab":
-        entry.type(key)
+        entry.handle_key(key)
     assert entry.text == "ab"
-    assert not entry.type("Enter")
+    assert not entry.handle_key("Enter")

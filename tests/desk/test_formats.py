@@ -27,25 +27,25 @@ from app.desk.status import formats
     ],
 )
 def test_length(mm: float, metric: bool, shown: str) -> None:
-    assert formats.length(mm, metric) == shown
+    assert formats.format_length(mm, metric) == shown
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_what_is_no_number_is_a_dash(value: float) -> None:
-    assert formats.length(value, metric=False) == "—"
-    assert formats.duration(value) == "—"
+    assert formats.format_length(value, metric=False) == "—"
+    assert formats.format_duration(value) == "—"
 
 
 @given(st.floats(-1000, 1000), st.booleans())
 def test_no_figure_is_a_negative_zero(mm: float, metric: bool) -> None:
-    shown = formats.length(mm, metric)
+    shown = formats.format_length(mm, metric)
     assert not (shown.startswith("−") and set(shown) <= set("−0."))
 
 
 @given(st.floats(-1000, 1000))
 def test_figures_have_the_places_of_their_unit(mm: float) -> None:
-    assert len(formats.length(mm, metric=True).partition(".")[2]) == 4
-    assert len(formats.length(mm, metric=False).partition(".")[2]) == 5
+    assert len(formats.format_length(mm, metric=True).partition(".")[2]) == 4
+    assert len(formats.format_length(mm, metric=False).partition(".")[2]) == 5
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_figures_have_the_places_of_their_unit(mm: float) -> None:
     ],
 )
 def test_feed(value: float, metric: bool, per_rev: bool, shown: str) -> None:
-    assert formats.feed(value, metric, per_rev) == shown
+    assert formats.format_feed(value, metric, per_rev) == shown
 
 
 @pytest.mark.parametrize(
@@ -67,13 +67,13 @@ def test_feed(value: float, metric: bool, per_rev: bool, shown: str) -> None:
     [(False, False, "in/min"), (False, True, "in/rev"), (True, False, "mm/min"), (True, True, "mm/rev")],
 )
 def test_feed_unit(metric: bool, per_rev: bool, unit: str) -> None:
-    assert formats.feed_unit(metric, per_rev) == unit
+    assert formats.find_feed_unit(metric, per_rev) == unit
 
 
 def test_surface_speed_has_no_sign() -> None:
     # 400 ft/min = 400 · 304.8 / 60 mm/s
-    assert formats.surface_speed(-2032.0, metric=False) == "400"
-    assert formats.surface_speed(-2000.0, metric=True) == "120"
+    assert formats.format_surface_speed(-2032.0, metric=False) == "400"
+    assert formats.format_surface_speed(-2000.0, metric=True) == "120"
 
 
 @pytest.mark.parametrize(
@@ -81,11 +81,11 @@ def test_surface_speed_has_no_sign() -> None:
     [(0.0, "0:00"), (59.99, "0:59"), (60.0, "1:00"), (3599.0, "59:59"), (3661.0, "1:01:01"), (-1.0, "—")],
 )
 def test_duration(seconds: float, shown: str) -> None:
-    assert formats.duration(seconds) == shown
+    assert formats.format_duration(seconds) == shown
 
 
 @pytest.mark.parametrize(
     ("fraction", "shown"), [(1.0, "100 %"), (0.0, "0 %"), (1.5, "150 %"), (0.555, "56 %")]
 )
 def test_percent(fraction: float, shown: str) -> None:
-    assert formats.percent(fraction) == shown
+    assert formats.format_percent(fraction) == shown

@@ -12,18 +12,18 @@ from typing import NoReturn
 
 import pytest
 
-from app.compose.desk_assembly import DeskEvents
-from app.compose.runs.journal import UNDER_WAY, Journal
+from app.compose.desk_assembly import EventDistributor
+from app.compose.runs.journal import INTERRUPTED_JOB_KEY, Journal
 from app.compose.runs.receipt import Receipt
 from app.desk.persistence import Persistence
-from app.offsets.offset_values import not_set
-from core.executor.snapshot import Event, plain
+from app.offsets.offset_values import describe_unset
+from core.executor.snapshot import LogEvent, interrupted_job_to_json
 from core.store.production.run_records import ORIGIN
 from core.store.store import Store
-from core.store.store_errors import Cause, StoreError
-from core.store.store_file import FILE_NAME
-from core.store.store_rows import EventOrigin, Kind
-from drivers.waiting import StepClock
+from core.store.store_errors import StoreError, StoreErrorCause
+from core.store.store_file import STORE_FILE_NAME
+from core.store.store_rows import EventOrigin, OffsetKind
+from drivers.wakeups import ManualClock
 from tests.interrupted import broken_off
 from tests.texts import begins, pattern, shows
 
@@ -47,27 +47,27 @@ def test_the_journal_keeps_all_that_there_is_to_keep() -> None:
 def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Path) -> None:
     bad = tmp_path / "bad.db"
     bad.write_bytes(b"no database" * 50)
-    journal.hear(Event(0.0, "start", "before"))
+    journal.hear(LogEvent(0.0, "start", "before"))
     with pytest.raises(StoreError, match=pattern("screen.not-a-database")):
         journal.restore(bad)
-    journal.hear(Event(0.0, "start", "after"))
+    journal.hear(LogEvent(0.0, "start", "after"))
     journal.save_version("a.nc", b"M30", "so that all is written")
     assert [event.text for event in journal.events("", (), 9)] == ["after", "before"]
     assert journal.trouble == ""
 
 
 def test_a_part_made_meanwhile_is_counted_in_the_restored_store(journal: Journal, tmp_path: Path) -> None:
-    journal.hear(Event(0.0, "load", "/programs/pin.nc"))
+    journal.hear(LogEvent(0.0, "load", "/programs/pin.nc"))
     journal.save_version("pin.nc", b"M30", "test")
     target = tmp_path / "copy.db"
     journal.backup(target)
     book = journal.book()
     before = book.store
     journal.restore(target)
-    journal.hear(Event(0.0, "part", "part 1"))
+    journal.hear(LogEvent(0.0, "part", "part 1"))
     journal.save_version("pin.nc", b"M02", "so that all is written")
-    assert journal.runs.count_parts("pin.nc") == 1
-    assert book.poll() == ""
+    assert journal.runs.read_part_count("pin.nc") == 1
+    assert book.poll_saving() == ""
     assert book.store is not before
     assert book.changes == 1
 
@@ -93,7 +93,7 @@ def test_a_backup_brings_no_interrupted_job_and_takes_none_away(journal: Journal
 
 
 def test_a_job_that_cannot_be_read_is_none(journal: Journal, tmp_path: Path) -> None:
-    journal.save_setting(UNDER_WAY, {"line": "eight"})
+    journal.save_setting(INTERRUPTED_JOB_KEY, {"line": "eight"})
     journal.close()
     again = Journal(tmp_path / "home")
     assert (again.left, again.trouble) == (None, "")
@@ -110,23 +110,23 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
         journal.restore(tmp_path / "x.db")
     journal.save_setting("a", 1)
     assert journal.read_setting("a") is None
-    assert journal.runs.count_parts("pin.nc") == 0
+    assert journal.runs.read_part_count("pin.nc") == 0
     journal.close()
 
 
 # --- events of a control process ----------------------------------------------------------------------------
 
 
-def part(number: int, confirmed: list[int], control: str = "control") -> tuple[Event, Receipt]:
+def part(number: int, confirmed: list[int], control: str = "control") -> tuple[LogEvent, Receipt]:
     """A finished part, and the receipt of its event."""
     receipt = Receipt(EventOrigin(control, number), partial(confirmed.append, number))
-    return Event(float(number), "part", f"part {number}"), receipt
+    return LogEvent(float(number), "part", f"part {number}"), receipt
 
 
 def test_an_event_is_confirmed_when_it_is_on_the_disk(journal: Journal, tmp_path: Path) -> None:
     confirmed = list[int]()
-    journal.hear(Event(0.0, "load", "pin.nc"))
-    with sqlite3.connect(tmp_path / "home" / FILE_NAME, timeout=30.0) as other:
+    journal.hear(LogEvent(0.0, "load", "pin.nc"))
+    with sqlite3.connect(tmp_path / "home" / STORE_FILE_NAME, timeout=30.0) as other:
         other.execute("BEGIN IMMEDIATE")  # nothing else can be written meanwhile
         journal.hear(*part(1, confirmed))
         assert confirmed == []
@@ -136,33 +136,33 @@ def test_an_event_is_confirmed_when_it_is_on_the_disk(journal: Journal, tmp_path
     journal.close()
     assert confirmed[-1] == 2
     with Store.open(tmp_path / "home", read_only=True) as store:
-        assert store.runs.count_parts("pin.nc") == 2
+        assert store.runs.read_part_count("pin.nc") == 2
         assert store.runs.read_last_origin() == EventOrigin("control", 2)
 
 
 def test_an_event_that_an_earlier_screen_has_stored_is_not_counted_again(
     journal: Journal, tmp_path: Path
 ) -> None:
-    journal.hear(Event(0.0, "load", "pin.nc"))
+    journal.hear(LogEvent(0.0, "load", "pin.nc"))
     journal.hear(*part(1, []))
     journal.hear(*part(2, []))
     journal.close()  # killed before the control has received the confirmations
-    again, confirmed, desk = Journal(tmp_path / "home", goes_on=True), list[int](), list[Event]()
-    again.hear(Event(0.0, "load", "pin.nc"))
-    events = DeskEvents(StepClock(), again)
+    again, confirmed, desk = Journal(tmp_path / "home", control_running=True), list[int](), list[LogEvent]()
+    again.hear(LogEvent(0.0, "load", "pin.nc"))
+    events = EventDistributor(ManualClock(), again)
     events.desk = SimpleNamespace(hear=desk.append)  # type: ignore[assignment]
     for number in (1, 2, 3):
         events.hear(*part(number, confirmed))
     again.save_version("pin.nc", b"M30", "so that all is written")
     again.close()
     assert confirmed == [1, 2, 3]
-    assert [event.t for event in desk] == [3.0]
+    assert [event.time_s for event in desk] == [3.0]
     with Store.open(tmp_path / "home", read_only=True) as store:
-        assert store.runs.count_parts("pin.nc") == 3
+        assert store.runs.read_part_count("pin.nc") == 3
 
 
 def test_the_events_of_another_control_have_their_own_numbers(journal: Journal, tmp_path: Path) -> None:
-    journal.hear(Event(0.0, "load", "pin.nc"))
+    journal.hear(LogEvent(0.0, "load", "pin.nc"))
     journal.hear(*part(7, []))
     journal.close()
     again = Journal(tmp_path / "home")
@@ -197,12 +197,14 @@ def test_a_damaged_origin_is_none(journal: Journal, tmp_path: Path, value: objec
 def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     """Begun while the disk was full; the store holds a job that was interrupted before."""
     with Store.open(tmp_path / "home") as store:
-        store.offsets.tools.change_row(3, "test", {"x": 1.25}).result(60)
-        store.settings.save_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
-    full = Cause.FULL.error(tmp_path / "home" / "turndesk.db", "")
-    monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test opens it
+        store.offsets.tool_offsets.change_row(3, "test", {"x": 1.25}).result(60)
+        store.settings.save_setting(INTERRUPTED_JOB_KEY, interrupted_job_to_json(broken_off(line=8))).result(
+            60
+        )
+    full = StoreErrorCause.FULL.make_error(tmp_path / "home" / "turndesk.db", "")
+    monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 1e6)  # the test opens it
     with monkeypatch.context() as disk:
-        disk.setattr("core.store.store.open_to_write", raising(full))
+        disk.setattr("core.store.store.open_for_writing", raising(full))
         journal = Journal(tmp_path / "home")
     assert shows(journal.trouble, "desk.disk-full")
     yield journal
@@ -217,45 +219,47 @@ def raising(error: StoreError) -> Callable[[object], NoReturn]:
 
 
 def test_offsets_are_changed_as_soon_as_the_store_is_there(away: Journal) -> None:
-    book, parts = away.book(), away.parts_book()
+    book, parts = away.book(), away.create_parts_book()
     assert shows(
-        book.change(Kind.TOOL, 3, {"x": 2.0}, "test"), "desk.offsets-not-kept", why=pattern("desk.disk-full")
+        book.change_fields(OffsetKind.TOOL, 3, {"x": 2.0}, "test"),
+        "desk.offsets-not-kept",
+        why=pattern("desk.disk-full"),
     )
-    assert shows(parts.locked, "desk.parts-not-kept", why=pattern("desk.disk-full"))
-    away._open_again()
-    assert book.poll() == ""
+    assert shows(parts.lock_reason, "desk.parts-not-kept", why=pattern("desk.disk-full"))
+    away._reopen()
+    assert book.poll_saving() == ""
     assert book.tools[3].x == 1.25
     assert book.changes == 1  # what is on the desk is proved anew
-    assert book.change(Kind.TOOL, 3, {"x": 2.0}, "test") == ""
+    assert book.change_fields(OffsetKind.TOOL, 3, {"x": 2.0}, "test") == ""
     away.save_version("a.nc", b"M30", "so that all is written")
-    assert book.poll() == ""
+    assert book.poll_saving() == ""
     assert book.tools[3].x == 2.0
-    parts.look("")
-    assert (parts.locked, parts.store) == ("", book.store)
+    parts.update("")
+    assert (parts.lock_reason, parts.store) == ("", book.store)
     parts.worker.close()
 
 
 def test_a_store_that_stays_away_changes_nothing(away: Journal, monkeypatch: pytest.MonkeyPatch) -> None:
-    book, parts = away.book(), away.parts_book()
-    locked = Cause.LOCKED.error(Path("turndesk.db"), "")
-    monkeypatch.setattr("core.store.store.open_to_write", raising(locked))
-    away._open_again()
-    assert book.poll() == ""
-    assert begins(book.locked, "desk.offsets-not-kept", why=pattern("desk.locked", path="turndesk.db"))
+    book, parts = away.book(), away.create_parts_book()
+    locked = StoreErrorCause.LOCKED.make_error(Path("turndesk.db"), "")
+    monkeypatch.setattr("core.store.store.open_for_writing", raising(locked))
+    away._reopen()
+    assert book.poll_saving() == ""
+    assert begins(book.lock_reason, "desk.offsets-not-kept", why=pattern("desk.locked", path="turndesk.db"))
     assert book.changes == 0
-    parts.look("")
-    assert begins(parts.locked, "desk.parts-not-kept", why=pattern("desk.locked", path="turndesk.db"))
+    parts.update("")
+    assert begins(parts.lock_reason, "desk.parts-not-kept", why=pattern("desk.locked", path="turndesk.db"))
     parts.worker.close()
 
 
 def test_an_interrupted_job_is_still_one_when_its_store_comes_late(away: Journal, tmp_path: Path) -> None:
     """The tool stands in that part, whatever the disk was at the start."""
     told: list[object] = []
-    away.when_late(lambda: told.append(away.left))
+    away.on_late_open(lambda: told.append(away.left))
     assert (away.left, told) == (None, [])
-    away._open_again()
+    away._reopen()
     assert told == [broken_off(line=8)]
-    away.when_late(lambda: told.append("who asks later"))
+    away.on_late_open(lambda: told.append("who asks later"))
     assert told[1:] == ["who asks later"]
     away.close()
     again = Journal(tmp_path / "home")
@@ -265,7 +269,7 @@ def test_an_interrupted_job_is_still_one_when_its_store_comes_late(away: Journal
 
 def test_what_this_control_has_begun_counts_more(away: Journal, tmp_path: Path) -> None:
     away.note(broken_off(line=3))
-    away._open_again()
+    away._reopen()
     assert away.left is None
     away.close()
     again = Journal(tmp_path / "home")
@@ -281,33 +285,35 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
 ) -> None:
     """The first try had opened it: its lock must be free again, and what happened meanwhile is written."""
     with Store.open(tmp_path / "home") as store:
-        store.settings.save_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
-    locked = Cause.LOCKED.error(tmp_path / "home" / "turndesk.db", "")
-    monkeypatch.setattr("app.compose.runs.journal.AGAIN", 1e6)  # the test tries again
+        store.settings.save_setting(INTERRUPTED_JOB_KEY, interrupted_job_to_json(broken_off(line=8))).result(
+            60
+        )
+    locked = StoreErrorCause.LOCKED.make_error(tmp_path / "home" / "turndesk.db", "")
+    monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 1e6)  # the test tries again
     with monkeypatch.context() as disk:
         disk.setattr(Store, "find_damaged_rows", raising(locked))
         journal = Journal(tmp_path / "home")
         assert shows(journal.trouble, "desk.locked")
         assert journal.waiting
         with pytest.raises(StoreError, match=pattern("desk.locked")):
-            journal.opened()
-        journal.hear(Event(0.0, "load", "/programs/pin.nc"))
-        journal.hear(Event(0.0, "part", "part 1"))
-        journal._open_again()
+            journal.require_store()
+        journal.hear(LogEvent(0.0, "load", "/programs/pin.nc"))
+        journal.hear(LogEvent(0.0, "part", "part 1"))
+        journal._reopen()
         assert journal.waiting  # read as little as the first time
         assert journal.held == "1 part, 2 events"
-    journal._open_again()
+    journal._reopen()
     assert (journal.trouble, journal.waiting, journal.held) == ("", False, "")
     assert journal.left == broken_off(line=8)
     journal.save_version("pin.nc", b"M30", "so that all is written")
-    assert journal.runs.count_parts("pin.nc") == 1
+    assert journal.runs.read_part_count("pin.nc") == 1
     journal.close()
 
 
 def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    damaged = Cause.DAMAGED.error(tmp_path / "home" / "turndesk.db", "a page is torn")
+    damaged = StoreErrorCause.DAMAGED.make_error(tmp_path / "home" / "turndesk.db", "a page is torn")
     with monkeypatch.context() as disk:
         disk.setattr(Store, "find_damaged_rows", raising(damaged))
         journal = Journal(tmp_path / "home")
@@ -321,23 +327,23 @@ def test_offsets_that_cannot_be_read_are_unknown_and_not_unset(tmp_path: Path) -
     """Every tool was shown as not set."""
     home = tmp_path / "home"
     Store.open(home).close()
-    whole = (home / FILE_NAME).read_bytes()
-    (home / FILE_NAME).write_bytes(whole[:50])
+    whole = (home / STORE_FILE_NAME).read_bytes()
+    (home / STORE_FILE_NAME).write_bytes(whole[:50])
     journal = Journal(home)
     book = journal.book()
-    assert (book.unread, book.tools) == (True, {})
-    assert not_set(unread=book.unread) != not_set()
-    (home / FILE_NAME).write_bytes(whole)
-    journal._open_again()
-    book.poll()
-    assert not book.unread
+    assert (book.has_read_failed, book.tools) == (True, {})
+    assert describe_unset(is_unread=book.has_read_failed) != describe_unset()
+    (home / STORE_FILE_NAME).write_bytes(whole)
+    journal._reopen()
+    book.poll_saving()
+    assert not book.has_read_failed
     journal.close()
 
 
 def test_offsets_of_a_machine_without_a_store_are_unset(tmp_path: Path) -> None:
     (tmp_path / "home").write_bytes(b"no folder")
     journal = Journal(tmp_path / "home")
-    assert not journal.book().unread
+    assert not journal.book().has_read_failed
     journal.close()
 
 
@@ -354,16 +360,16 @@ def test_what_a_second_instance_cannot_keep_names_the_first(tmp_path: Path) -> N
 def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> None:
     """It showed every tool as not set."""
     first = Journal(tmp_path / "home")
-    first.opened().offsets.tools.change_row(3, "test", {"x": -12.5}).result(60)
+    first.require_store().offsets.tool_offsets.change_row(3, "test", {"x": -12.5}).result(60)
     second = Journal(tmp_path / "home")
     book = second.book()
     assert second.trouble
-    assert book.locked
+    assert book.lock_reason
     assert book.tools[3].x == -12.5
-    assert book.change(Kind.TOOL, 3, {"x": 1.0}, "test") == book.locked
-    first.opened().offsets.tools.change_row(3, "test", {"x": -13.0}).result(60)
-    second._open_again()  # as its thread does every few seconds
-    book.poll()
+    assert book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0}, "test") == book.lock_reason
+    first.require_store().offsets.tool_offsets.change_row(3, "test", {"x": -13.0}).result(60)
+    second._reopen()  # as its thread does every few seconds
+    book.poll_saving()
     assert (book.tools[3].x, book.changes) == (-13.0, 1)
     second.close()
     first.close()

@@ -10,8 +10,14 @@ from typing import cast
 import pytest
 
 from app.desk.stop_keys.key_watcher import KeyWatcher
-from app.desk.stop_keys.raw_keys import RawKey, RawKeys
-from app.desk.stop_keys.stop_records import LONGEST, Focus, Stop, StopKind, press_number
+from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
+from app.desk.stop_keys.stop_records import (
+    MAX_RECORD_BYTES,
+    FocusRecord,
+    StopKind,
+    StopPress,
+    make_press_number,
+)
 
 PAUSE, SCROLL_LOCK, ESC, SPACE = 127, 78, 9, 65
 OURS, OTHER = 0x600007, 0x800001
@@ -24,10 +30,10 @@ class Keys:
     front: int = OURS
     escape: int = ESC
 
-    def focus(self) -> int:
+    def find_focus_window(self) -> int:
         return self.front
 
-    def escape_code(self) -> int:
+    def find_escape_code(self) -> int:
         return self.escape
 
 
@@ -38,18 +44,18 @@ class Bench:
     control: socket.socket
     screen: socket.socket
 
-    def show(self, focus: Focus) -> None:
-        self.screen.send(focus.packed())
+    def show(self, focus: FocusRecord) -> None:
+        self.screen.send(focus.to_bytes())
         assert self.watcher.read_focus()
 
-    def sent(self) -> list[Stop]:
+    def sent(self) -> list[StopPress]:
         """What the control got, which the screen learns too."""
-        found: dict[str, list[Stop]] = {}
+        found: dict[str, list[StopPress]] = {}
         for name, end in (("control", self.control), ("screen", self.screen)):
             found[name] = []
             try:
-                while record := end.recv(LONGEST, socket.MSG_DONTWAIT):
-                    found[name].append(Stop.unpacked(record))
+                while record := end.recv(MAX_RECORD_BYTES, socket.MSG_DONTWAIT):
+                    found[name].append(StopPress.from_bytes(record))
             except BlockingIOError:
                 pass
         assert found["control"] == found["screen"]
@@ -62,32 +68,32 @@ def bench() -> Iterator[Bench]:
     theirs, screen = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     keys = Keys()
     with line, control, theirs, screen:
-        yield Bench(KeyWatcher(cast("RawKeys", keys), line, theirs), keys, control, screen)
+        yield Bench(KeyWatcher(cast("RawKeyReader", keys), line, theirs), keys, control, screen)
 
 
-HERE = Focus(frozenset({OURS}), esc_holds=False)
-MOVING = Focus(frozenset({OURS}), esc_holds=True)
+HERE = FocusRecord(frozenset({OURS}), is_esc_stop_key=False)
+MOVING = FocusRecord(frozenset({OURS}), is_esc_stop_key=True)
 
 
 @pytest.mark.parametrize(("code", "kind"), [(PAUSE, StopKind.HOLD), (SCROLL_LOCK, StopKind.ESTOP)])
 def test_a_stop_key_is_sent_with_its_press(bench: Bench, code: int, kind: StopKind) -> None:
     bench.show(HERE)
-    bench.watcher.see(RawKey(code, 5000))
-    assert bench.sent() == [Stop(kind, press_number(code, 5000))]
+    bench.watcher.handle_press(RawKey(code, 5000))
+    assert bench.sent() == [StopPress(kind, make_press_number(code, 5000))]
 
 
 def test_every_press_is_another(bench: Bench) -> None:
     bench.show(HERE)
     for stamp in (5000, 5100):
-        bench.watcher.see(RawKey(PAUSE, stamp))
+        bench.watcher.handle_press(RawKey(PAUSE, stamp))
     first, second = bench.sent()
-    assert first.press != second.press
+    assert first.press_number != second.press_number
 
 
 @pytest.mark.parametrize("code", [SPACE, ESC, 38, 66])
 def test_no_other_key_is_sent(bench: Bench, code: int) -> None:
     bench.show(HERE)
-    bench.watcher.see(RawKey(code, 5000))
+    bench.watcher.handle_press(RawKey(code, 5000))
     assert bench.sent() == []
 
 
@@ -96,21 +102,21 @@ def test_nothing_is_sent_while_another_program_has_the_keyboard(bench: Bench, fr
     bench.show(MOVING)
     bench.keys.front = front
     for code in (PAUSE, SCROLL_LOCK, ESC):
-        bench.watcher.see(RawKey(code, 5000))
+        bench.watcher.handle_press(RawKey(code, 5000))
     assert bench.sent() == []
 
 
 def test_nothing_is_sent_before_there_is_a_window(bench: Bench) -> None:
-    bench.watcher.see(RawKey(PAUSE, 5000))
+    bench.watcher.handle_press(RawKey(PAUSE, 5000))
     assert bench.sent() == []
 
 
 def test_esc_is_sent_where_it_holds_by_the_layout_of_now(bench: Bench) -> None:
     bench.show(MOVING)
-    bench.watcher.see(RawKey(ESC, 5000))
+    bench.watcher.handle_press(RawKey(ESC, 5000))
     assert [each.kind for each in bench.sent()] == [StopKind.ESC]
     bench.keys.escape = 66
-    bench.watcher.see(RawKey(ESC, 5100))
+    bench.watcher.handle_press(RawKey(ESC, 5100))
     assert bench.sent() == []
 
 
@@ -121,7 +127,7 @@ def test_the_end_of_the_screen_ends_it(bench: Bench) -> None:
 
 def test_a_screen_that_ends_without_reading_all_ends_it_too(bench: Bench) -> None:
     bench.show(HERE)
-    bench.watcher.see(RawKey(PAUSE, 5000))
+    bench.watcher.handle_press(RawKey(PAUSE, 5000))
     bench.screen.close()
     assert not bench.watcher.read_focus()
 
@@ -129,30 +135,30 @@ def test_a_screen_that_ends_without_reading_all_ends_it_too(bench: Bench) -> Non
 def test_a_control_that_has_ended_is_no_end_of_the_watcher(bench: Bench) -> None:
     bench.show(HERE)
     bench.control.close()
-    bench.watcher.see(RawKey(PAUSE, 5000))
-    assert Stop.unpacked(bench.screen.recv(LONGEST)).kind is StopKind.HOLD
+    bench.watcher.handle_press(RawKey(PAUSE, 5000))
+    assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)).kind is StopKind.HOLD
 
 
 @pytest.mark.parametrize("record", [b"", b"1", bytes(8), bytes(10), b"\x09" + bytes(8)])
 def test_a_record_that_is_no_stop_is_rejected(record: bytes) -> None:
     with pytest.raises(ValueError, match="not a"):
-        Stop.unpacked(record)
+        StopPress.from_bytes(record)
 
 
 @pytest.mark.parametrize("record", [b"", b"12", bytes(4)])
 def test_a_record_that_is_no_focus_is_rejected(record: bytes) -> None:
     with pytest.raises(ValueError, match="not a"):
-        Focus.unpacked(record)
+        FocusRecord.from_bytes(record)
 
 
 def test_records_are_read_as_they_were_written() -> None:
     focus, stop = (
-        Focus(frozenset({OURS, OTHER}), esc_holds=True),
-        Stop(StopKind.ESC, press_number(9, 2**32 - 1)),
+        FocusRecord(frozenset({OURS, OTHER}), is_esc_stop_key=True),
+        StopPress(StopKind.ESC, make_press_number(9, 2**32 - 1)),
     )
-    assert Focus.unpacked(focus.packed()) == focus
-    assert Stop.unpacked(stop.packed()) == stop
+    assert FocusRecord.from_bytes(focus.to_bytes()) == focus
+    assert StopPress.from_bytes(stop.to_bytes()) == stop
 
 
 def test_an_event_without_a_stamp_has_no_number() -> None:
-    assert press_number(PAUSE, 0) == 0
+    assert make_press_number(PAUSE, 0) == 0

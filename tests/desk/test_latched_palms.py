@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import cast
 
-from app.desk.station_hands import LATCHED, StationHands, StationPanel
+from app.desk.station_controls import LATCH_TIME_S, StationControls, StationPanel
 
 
 class Station:
@@ -28,9 +28,9 @@ class Bench:
     said: list[str] = field(default_factory=list)
     pressed: list[str] = field(default_factory=list)
 
-    def hands(self) -> StationHands:
+    def hands(self) -> StationControls:
         station = cast("StationPanel", Station(self.pressed.append))
-        return StationHands(
+        return StationControls(
             station, lambda: self.now, self.said.append, lambda: None, lambda: None, lambda: self.barred
         )
 
@@ -39,36 +39,36 @@ def test_one_after_the_other_presses_both_at_once_and_lets_both_go() -> None:
     bench = Bench()
     hands = bench.hands()
     hands.latch("left")
-    hands.latch_up()
-    assert (bench.pressed, hands.latch_now()) == ([], "left")
-    bench.now += LATCHED - 0.1
+    hands.release_latched()
+    assert (bench.pressed, hands.update_latched_side()) == ([], "left")
+    bench.now += LATCH_TIME_S - 0.1
     hands.latch("right")
     assert bench.pressed == ["press_left", "press_right"]
-    hands.latch_up()
+    hands.release_latched()
     assert bench.pressed[2:] == ["release_left", "release_right"]
-    assert not hands.latch_now()
+    assert not hands.update_latched_side()
 
 
 def test_a_latched_palm_waits_only_for_a_while_and_the_same_again_lets_it_go() -> None:
     bench = Bench()
     hands = bench.hands()
     hands.latch("left")
-    bench.now += LATCHED + 0.1
+    bench.now += LATCH_TIME_S + 0.1
     hands.latch("right")
-    assert (bench.pressed, hands.latch_now()) == ([], "right")
+    assert (bench.pressed, hands.update_latched_side()) == ([], "right")
     hands.latch("right")
-    assert (bench.pressed, hands.latch_now()) == ([], "")
+    assert (bench.pressed, hands.update_latched_side()) == ([], "")
 
 
 def test_nothing_starts_while_it_is_barred_or_after_hands_off() -> None:
     bench = Bench(barred="NO START: THE PROGRAM IS BEING READ ANEW")
     hands = bench.hands()
     hands.latch("left")
-    assert (hands.latch_now(), bench.said) == ("", [bench.barred])
+    assert (hands.update_latched_side(), bench.said) == ("", [bench.barred])
     bench.barred = ""
     hands.latch("left")
-    hands.hold(down=True)  # whoever holds the feed does not want a start
+    hands.hold(is_down=True)  # whoever holds the feed does not want a start
     hands.latch("right")
     assert bench.pressed == ["press_hold"]
-    hands.let_go()
-    assert not hands.latch_now()
+    hands.release_all()
+    assert not hands.update_latched_side()

@@ -8,14 +8,22 @@ from typing import cast
 
 import pytest
 
-from app.desk.late_presses import HARMLESS, STARTS, TOLD, LatePresses, Starting, name_of, starts
-from app.desk.posted_values import ARRIVES, PostedValues
-from app.desk.station_hands import StationHands, StationPanel
+from app.desk.late_presses import (
+    HARMLESS_COMMANDS,
+    REPORT_INTERVAL_S,
+    STARTING_COMMANDS,
+    LatePresses,
+    StartingAction,
+    find_starting_action,
+    name_starting_action,
+)
+from app.desk.posted_values import ARRIVAL_TIMEOUT_S, PostedValues
+from app.desk.station_controls import StationControls, StationPanel
 from core.executor import commands
 from core.executor.commands import Command
-from core.executor.executor import STARTS as STARTS_OF_CONTROL
+from core.executor.executor import MOTION_COMMANDS as STARTS_OF_CONTROL
 from core.executor.hand_motion.drive_test import DriveTestPath
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 
 
 def every_command() -> set[type[Command]]:
@@ -24,13 +32,13 @@ def every_command() -> set[type[Command]]:
 
 
 def test_every_command_is_either_one_that_starts_or_one_that_does_not() -> None:
-    assert STARTS.keys() | HARMLESS == every_command()
-    assert not STARTS.keys() & HARMLESS
-    assert set(STARTS_OF_CONTROL) <= STARTS.keys()
+    assert STARTING_COMMANDS.keys() | HARMLESS_COMMANDS == every_command()
+    assert not STARTING_COMMANDS.keys() & HARMLESS_COMMANDS
+    assert set(STARTS_OF_CONTROL) <= STARTING_COMMANDS.keys()
 
 
 def test_every_name_is_another() -> None:
-    assert len({name_of(each) for each in Starting}) == len(Starting)
+    assert len({name_starting_action(each) for each in StartingAction}) == len(StartingAction)
 
 
 @dataclass
@@ -38,7 +46,7 @@ class Bench:
     """Late presses with a clock that is moved by hand; ``posted`` came through."""
 
     now: float = 100.0
-    shown: Snapshot = field(default_factory=lambda: Snapshot(state=State.IDLE))
+    shown: Snapshot = field(default_factory=lambda: Snapshot(state=MachineState.IDLE))
     posted: list[Command] = field(default_factory=list)
     told: list[tuple[str, ...]] = field(default_factory=list)
     answers: int = 0
@@ -51,102 +59,105 @@ class Bench:
         self.late = LatePresses(lambda: self.shown, lambda: self.now, self.told.append, answered)
 
     def post(self, command: Command) -> None:
-        self.late.guard(self.posted.append)(command)
+        self.late.guard_post(self.posted.append)(command)
 
 
 STARTING = (
-    (commands.CycleStart(), Starting.CYCLE),
-    (commands.EnableDrives(), Starting.DRIVES),
-    (commands.Jog("X", 1.0, 0.2), Starting.JOG),
-    (commands.JogStep("X", 1.0, 1.0), Starting.JOG),
-    (commands.Touch("X", 1, 0.2, 1), Starting.TOUCH_OFF),
-    (commands.Wheel("X", 0.1, 0.2), Starting.HANDWHEEL),
-    (commands.DriveTest(cast("DriveTestPath", None), 0.2), Starting.DRIVE_TEST),
-    (commands.Home("X"), Starting.HOME),
-    (commands.ForceOutput("collet", True), Starting.OUTPUT),
-    (commands.ForceOutput("collet", False), Starting.OUTPUT),
-    (commands.ForceOutput("coolant", True), Starting.OUTPUT),
-    (commands.ConfirmStart("yesterday"), Starting.LINE_1),
+    (commands.CycleStart(), StartingAction.CYCLE),
+    (commands.EnableDrives(), StartingAction.DRIVES),
+    (commands.Jog("X", 1.0, 0.2), StartingAction.JOG),
+    (commands.JogByStep("X", 1.0, 1.0), StartingAction.JOG),
+    (commands.TouchOffTool("X", 1, 0.2, 1), StartingAction.TOUCH_OFF),
+    (commands.SelectHandwheel("X", 0.1, 0.2), StartingAction.HANDWHEEL),
+    (commands.RunDriveTest(cast("DriveTestPath", None), 0.2), StartingAction.DRIVE_TEST),
+    (commands.HomeAxes("X"), StartingAction.HOME),
+    (commands.ForceOutput("collet", True), StartingAction.OUTPUT),
+    (commands.ForceOutput("collet", False), StartingAction.OUTPUT),
+    (commands.ForceOutput("coolant", True), StartingAction.OUTPUT),
+    (commands.ConfirmStart("yesterday"), StartingAction.START_AT_LINE_1),
 )
 NOT_STARTING = (
     commands.FeedHold(),
     commands.Reset(),  # without an alarm it stops
-    commands.SpindleStop(),
-    commands.JogStop(),
-    commands.WheelOff(),
+    commands.StopSpindle(),
+    commands.StopJog(),
+    commands.DeselectHandwheel(),
     commands.ConfirmStart(""),
     commands.ForceOutput("coolant", False),
     commands.SetSwitch("single_block", True),
     commands.SetSwitch("optional_stop", False),
-    commands.FeedOverride(0.5),
+    commands.SetFeedOverride(0.5),
 )
 
 
 @pytest.mark.parametrize(("command", "starting"), STARTING)
-def test_a_late_press_starts_nothing(command: Command, starting: Starting) -> None:
+def test_a_late_press_starts_nothing(command: Command, starting: StartingAction) -> None:
     bench = Bench()
-    bench.late.late = True
+    bench.late.is_late = True
     bench.post(command)
     assert bench.posted == []
-    assert bench.told == [(name_of(starting),)]
+    assert bench.told == [(name_starting_action(starting),)]
 
 
 @pytest.mark.parametrize(("command", "starting"), STARTING)
-def test_a_press_in_time_starts_it(command: Command, starting: Starting) -> None:
+def test_a_press_in_time_starts_it(command: Command, starting: StartingAction) -> None:
     bench = Bench()
     bench.post(command)
     assert bench.posted == [command]
     assert bench.told == []
-    assert starts(command, bench.shown) is starting
+    assert find_starting_action(command, bench.shown) is starting
 
 
 @pytest.mark.parametrize("command", NOT_STARTING)
 def test_what_starts_nothing_is_posted_however_late(command: Command) -> None:
     bench = Bench()
-    bench.late.late = True
+    bench.late.is_late = True
     bench.post(command)
     assert bench.posted == [command]
     assert bench.told == []
 
 
 def test_a_late_reset_acknowledges_no_alarm() -> None:
-    bench = Bench(shown=Snapshot(state=State.FAULT))
-    bench.late.late = True
+    bench = Bench(shown=Snapshot(state=MachineState.FAULT))
+    bench.late.is_late = True
     bench.post(commands.Reset())
     assert bench.posted == []
 
 
 def test_a_late_override_from_zero_moves_nothing() -> None:
-    bench = Bench(shown=Snapshot(state=State.RUN, feed_override=0.0))
-    bench.late.late = True
-    bench.post(commands.FeedOverride(0.1))
+    bench = Bench(shown=Snapshot(state=MachineState.RUN, feed_override=0.0))
+    bench.late.is_late = True
+    bench.post(commands.SetFeedOverride(0.1))
     assert bench.posted == []
 
 
 def test_one_message_names_all_that_was_dropped_once() -> None:
     bench = Bench()
-    bench.late.late = True
+    bench.late.is_late = True
     for command in (commands.EnableDrives(), commands.CycleStart(), commands.CycleStart()):
         bench.post(command)
-    assert bench.told[-1] == (name_of(Starting.DRIVES), name_of(Starting.CYCLE))
-    bench.now += TOLD + 0.1
-    bench.post(commands.Home(""))
-    assert bench.told[-1] == (name_of(Starting.HOME),)
+    assert bench.told[-1] == (
+        name_starting_action(StartingAction.DRIVES),
+        name_starting_action(StartingAction.CYCLE),
+    )
+    bench.now += REPORT_INTERVAL_S + 0.1
+    bench.post(commands.HomeAxes(""))
+    assert bench.told[-1] == (name_starting_action(StartingAction.HOME),)
 
 
 def test_an_answer_that_is_dropped_is_noted_and_nothing_else_is() -> None:
     bench = Bench()
-    bench.late.late = True
-    assert bench.late.refuses(Starting.CYCLE)
+    bench.late.is_late = True
+    assert bench.late.refuse_late_press(StartingAction.CYCLE)
     assert bench.answers == 0
-    assert bench.late.refuses(Starting.YES)
+    assert bench.late.refuse_late_press(StartingAction.YES)
     assert bench.answers == 1
 
 
 def test_what_is_renewed_once_a_frame_is_not_the_press() -> None:
     bench = Bench()
-    bench.late.late = True
-    with bench.late.suspended():
+    bench.late.is_late = True
+    with bench.late.suspend_check():
         bench.post(commands.Jog("X", 1.0, 0.2))
     assert len(bench.posted) == 1
     bench.post(commands.Jog("X", 1.0, 0.2))
@@ -166,29 +177,29 @@ class Station:
         return lambda *values: self._note(" ".join((name, *map(str, values))))
 
 
-def hands_on(bench: Bench, pressed: list[str]) -> StationHands:
+def hands_on(bench: Bench, pressed: list[str]) -> StationControls:
     station = cast("StationPanel", Station(pressed.append))
-    hands = StationHands(station, lambda: bench.now, lambda _: None, lambda: None, lambda: None)
-    hands.refuse_late(bench.late)
+    hands = StationControls(station, lambda: bench.now, lambda _: None, lambda: None, lambda: None)
+    hands.use_late_presses(bench.late)
     return hands
 
 
 def test_late_palms_press_nothing_and_one_that_stays_down_is_no_half_of_a_pair() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.late = True
-    hands.palm("left", down=True)
-    bench.late.late = False
-    hands.palm("right", down=True)
+    bench.late.is_late = True
+    hands.palm("left", is_down=True)
+    bench.late.is_late = False
+    hands.palm("right", is_down=True)
     assert pressed == ["press_right"]
 
 
 def test_a_late_tap_latches_no_palm() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.late = True
+    bench.late.is_late = True
     hands.latch("left")
-    bench.late.late = False
+    bench.late.is_late = False
     hands.latch("right")
     assert pressed == []
 
@@ -197,7 +208,7 @@ def test_a_late_tap_latches_no_palm() -> None:
 def test_a_late_press_turns_the_spindle_switch_off_only(auto: bool, done: list[str]) -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.late = True
+    bench.late.is_late = True
     hands.set_spindle_auto(auto)
     assert pressed == done
 
@@ -205,9 +216,9 @@ def test_a_late_press_turns_the_spindle_switch_off_only(auto: bool, done: list[s
 def test_a_late_press_hits_the_mushroom_and_frees_it_not() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.late = True
-    hands.estop(pressed=True)
-    hands.estop(pressed=False)
+    bench.late.is_late = True
+    hands.estop(is_pressed=True)
+    hands.estop(is_pressed=False)
     assert pressed == ["press_estop"]
     assert hands.estop_pressed
 
@@ -216,12 +227,12 @@ def test_a_late_press_hits_the_mushroom_and_frees_it_not() -> None:
 def test_a_pot_at_zero_stays_there_and_any_other_turns(which: str) -> None:
     bench = Bench()
     pot = getattr(hands_on(bench, []), which)
-    bench.late.late = True
+    bench.late.is_late = True
     pot.set(0.8)
     pot.set(0.0)
     pot.set(0.1)
     assert pot.wanted == 0.0
-    bench.late.late = False
+    bench.late.is_late = False
     pot.set(0.1)
     assert pot.wanted == 0.1
 
@@ -232,14 +243,14 @@ def test_a_pot_at_zero_stays_there_and_any_other_turns(which: str) -> None:
 def test_a_switch_pressed_twice_at_once_is_as_it_was() -> None:
     now = [5.0]
     posted = PostedValues(lambda: now[0])
-    assert posted.toggled("single_block", False)
-    assert not posted.toggled("single_block", False)
-    now[0] += ARRIVES + 0.01
-    assert posted.toggled("single_block", False)
+    assert posted.toggle_value("single_block", False)
+    assert not posted.toggle_value("single_block", False)
+    now[0] += ARRIVAL_TIMEOUT_S + 0.01
+    assert posted.toggle_value("single_block", False)
 
 
 def test_an_override_turned_twice_at_once_turns_by_two_steps() -> None:
     posted = PostedValues(lambda: 5.0)
-    assert posted.changed("feed", 1.0, lambda value: value - 0.25) == 0.75
-    assert posted.changed("feed", 1.0, lambda value: value - 0.25) == 0.5
-    assert posted.changed("other", 1.0, lambda value: value - 0.25) == 0.75
+    assert posted.change_value("feed", 1.0, lambda value: value - 0.25) == 0.75
+    assert posted.change_value("feed", 1.0, lambda value: value - 0.25) == 0.5
+    assert posted.change_value("other", 1.0, lambda value: value - 0.25) == 0.75

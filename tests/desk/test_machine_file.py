@@ -10,20 +10,20 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.desk_assembly import desk_and_executor
-from app.compose.machine.accepted_machine import differences, key_of, record_of
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.machine.accepted_machine import create_record, get_settings_key, list_differences
 from app.compose.machine.machine_files import load_machine
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import NONE
+from app.compose.stored_offsets import NO_OFFSETS
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
-from app.desk.status.standing_prompt import prompt
-from app.special.machine_records import MachineFileAcceptance
-from app.special.special_functions import SpecialFunctions
+from app.desk.status.state_prompt import make_page_prompt
+from app.special.machine_records import MachineFileFunction
+from app.special.special_functions import SpecialFunctionList
 from core.executor.executor import Executor
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.attached import attached
 from tests.texts import begins, shows
 from tests.texts import text as wording
@@ -35,30 +35,30 @@ SHIPPED = resources.machine_file("gt75.toml")
 class Room:
     desk: Desk
     executor: Executor
-    clock: StepClock
+    clock: ManualClock
 
     def run(self, ticks: int = 20) -> None:
         for _ in range(ticks):
             self.clock.advance(0.01)
-            self.executor.tick()
-        self.desk.look()
+            self.executor.run_tick()
+        self.desk.update()
 
     @property
-    def state(self) -> State:
-        return self.desk.snapshot().state
+    def state(self) -> MachineState:
+        return self.desk.read_snapshot().state
 
     @property
     def prompt(self) -> str:
-        return prompt(self.desk, self.desk.snapshot(), self.desk.session.now)
+        return make_page_prompt(self.desk, self.desk.read_snapshot(), self.desk.program_loader.loaded)
 
     @property
-    def section(self) -> MachineFileAcceptance:
-        functions = attached(self.desk, SpecialFunctions).functions
-        (found,) = [each for each in functions if isinstance(each, MachineFileAcceptance)]
+    def section(self) -> MachineFileFunction:
+        functions = attached(self.desk, SpecialFunctionList).functions
+        (found,) = [each for each in functions if isinstance(each, MachineFileFunction)]
         return found
 
     def cells(self) -> list[tuple[str, ...]]:
-        return [row.cells for row in self.section.sheet(self.desk.snapshot()).rows]
+        return [row.cells for row in self.section.make_table(self.desk.read_snapshot()).rows]
 
 
 @pytest.fixture
@@ -72,8 +72,8 @@ def file(tmp_path: Path) -> Path:
 def room(file: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
     """The control from its start to its end, on one store."""
     monkeypatch.setenv("TURNDESK_HOME", str(file.parent / "home"))
-    clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(str(file), lambda: NONE, clock, journal)
+    clock, journal = ManualClock(), Journal.open_default()
+    desk, executor = create_desk_and_executor(str(file), lambda: NO_OFFSETS, clock, journal)
     made = Room(desk, executor, clock)
     made.run(2)
     try:
@@ -90,10 +90,10 @@ def test_a_file_that_is_new_here_is_accepted_by_being_chosen(
         with room(file, monkeypatch) as made:
             assert made.desk.changes.barred == ""
             assert made.cells() == []
-            assert made.section.keys() == {}
-            made.desk.enable()
+            assert made.section.function_keys() == {}
+            made.desk.enable_drives()
             made.run()
-            assert made.state is State.IDLE
+            assert made.state is MachineState.IDLE
 
 
 def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
@@ -105,25 +105,25 @@ def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
         SHIPPED.replace("vmax = 300", "vmax = 280", 1).replace("max_feed = 300", "max_feed = 250")
     )
     with room(file, monkeypatch) as made:
-        assert shows(made.desk.notice, "desk.machine-file-changed", count=2)
+        assert shows(made.desk.prompt_notice, "desk.machine-file-changed", count=2)
         assert made.cells() == [("limits.max_feed", "300", "250"), ("axis.X.vmax", "300", "280")]
-        made.desk.enable()
+        made.desk.enable_drives()
         made.run()
-        assert made.state is State.DISABLED
-        assert shows(made.desk.notice, "desk.machine-file-changed", count=2)
+        assert made.state is MachineState.DISABLED
+        assert shows(made.desk.prompt_notice, "desk.machine-file-changed", count=2)
         assert shows(made.prompt, "desk.machine-file-changed", count=2)
-        accept = made.section.keys()["F2"].action
+        accept = made.section.function_keys()["F2"].action
         accept()
         accept()
-        assert begins(made.desk.notice, "desk.accept-machine-file")
+        assert begins(made.desk.prompt_notice, "desk.accept-machine-file")
         assert made.desk.changes.barred
-        made.desk.answers._since = float("-inf")
-        made.desk.answer()
+        made.desk.prompt_answers._since = float("-inf")
+        made.desk.confirm_if_unchanged()
         assert made.cells() == []
         assert not shows(made.prompt, "desk.machine-file-changed", count=2)
-        made.desk.enable()
+        made.desk.enable_drives()
         made.run()
-        assert made.state is State.IDLE
+        assert made.state is MachineState.IDLE
     with room(file, monkeypatch) as made:
         assert made.desk.changes.barred == ""
 
@@ -147,8 +147,8 @@ def test_the_changes_and_their_acceptance_are_in_the_log(file: Path, monkeypatch
         pass
     file.write_text(SHIPPED.replace("seed = 1", "seed = 2"))
     with room(file, monkeypatch) as made:
-        made.desk.changes.accept()
-    journal = Journal.at_home()
+        made.desk.changes.accept_changes()
+    journal = Journal.open_default()
     told = [event.text for event in journal.events("", (), 50)]
     journal.close()
     assert any(text == wording("desk.machine-file", what="sim.seed: 1 → 2") for text in told)
@@ -165,14 +165,14 @@ def bus_machine(tmp_path: Path) -> Machine:
 
 def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: Path) -> None:
     machine, kept = bus_machine(tmp_path), Persistence()
-    record = record_of(machine)
+    record = create_record(machine)
     drives = record["drives"]
     assert isinstance(drives, dict)
     assert sorted(drives) == ["X", "Z", "io", "spindle"]
-    kept.save_setting(key_of(machine), record)
-    assert differences(machine, kept) == ()
-    kept.save_setting(key_of(machine), {**record, "drives": {**drives, "Z": "0123456789ab"}})
-    (change,) = differences(machine, kept) or ()
+    kept.save_setting(get_settings_key(machine), record)
+    assert list_differences(machine, kept) == ()
+    kept.save_setting(get_settings_key(machine), {**record, "drives": {**drives, "Z": "0123456789ab"}})
+    (change,) = list_differences(machine, kept) or ()
     assert change.path.startswith("canopen.nodes.Z")
     assert change.old == "0123456789ab"
 
@@ -180,5 +180,5 @@ def test_the_same_file_that_means_other_values_in_a_drive_is_a_change(tmp_path: 
 @pytest.mark.parametrize("damaged", [None, 3, {}, {"text": 5}])
 def test_a_record_that_is_none_counts_as_a_first_start(tmp_path: Path, damaged: object) -> None:
     machine, kept = bus_machine(tmp_path), Persistence()
-    kept.save_setting(key_of(machine), damaged)
-    assert differences(machine, kept) is None
+    kept.save_setting(get_settings_key(machine), damaged)
+    assert list_differences(machine, kept) is None

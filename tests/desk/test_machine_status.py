@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.status.machine_status import Tone, status_of
-from app.desk.status.readouts import Lamp, Readout, coordinates, drives_lamp
+from app.desk.status.machine_status import Tone, make_status
+from app.desk.status.readouts import Lamp, ReadoutKind, find_coordinates, make_drives_lamp
 from core.alarms import CATALOGUE
 from core.executor.raised_alarm import make_alarm
-from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.shared.modal_state import Modal
-from core.ports import ALL_UNKNOWN, Unknown
+from core.executor.snapshot import Alarm, MachineState, Snapshot
+from core.interpreter.shared.modal_state import ModalState
+from core.ports import ALL_UNKNOWN_PARTS, UnknownPart
 from tests.texts import text
 
 INCH = 25.4
 AT = Snapshot(
-    state=State.RUN,
+    state=MachineState.RUN,
     actual=(1.5 * INCH, -2 * INCH, 90.0),
     block=3,
     block_end=(1.75 * INCH, -2.25 * INCH, 90.0),
@@ -27,9 +27,12 @@ AT = Snapshot(
 )
 
 
-def shown(snapshot: Snapshot, readout: Readout = Readout.POSITION) -> list[tuple[str, str, str]]:
+def shown(snapshot: Snapshot, readout: ReadoutKind = ReadoutKind.POSITION) -> list[tuple[str, str, str]]:
     """(mark, large, small) of each axis."""
-    return [(a.mark, a.value, a.beside) for a in status_of(snapshot, readout, with_c=True).position.axes]
+    return [
+        (a.diameter_mark, a.value, a.second_value)
+        for a in make_status(snapshot, readout, has_c_axis=True).position.axes
+    ]
 
 
 def test_radius_in_inch() -> None:
@@ -41,38 +44,41 @@ def test_radius_in_inch() -> None:
 
 
 def test_a_diameter_doubles_position_and_distance_to_go_of_x_alone() -> None:
-    diameter = replace(AT, modal=Modal(diameter=True))
+    diameter = replace(AT, modal=ModalState(diameter=True))
     assert shown(diameter)[0] == ("Ø", "1.00000", "0.50000")
     assert shown(diameter)[1] == shown(AT)[1]
 
 
 def test_metric_has_four_places_and_says_so() -> None:
-    metric = replace(AT, modal=Modal(metric=True))
+    metric = replace(AT, modal=ModalState(metric=True))
     assert shown(metric)[0] == ("R", "12.7000", "6.3500")
-    assert status_of(metric, Readout.POSITION, with_c=True).position.unit == "MM"
+    assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).position.unit == "MM"
 
 
 @pytest.mark.parametrize(
-    ("readout", "x"), [(Readout.POSITION, 0.5), (Readout.TO_GO, 0.25), (Readout.HOME, 1.5)]
+    ("readout", "x"), [(ReadoutKind.POSITION, 0.5), (ReadoutKind.TO_GO, 0.25), (ReadoutKind.HOME, 1.5)]
 )
-def test_three_readouts(readout: Readout, x: float) -> None:
-    assert coordinates(AT, readout)[0] == pytest.approx(x * INCH)
+def test_three_readouts(readout: ReadoutKind, x: float) -> None:
+    assert find_coordinates(AT, readout)[0] == pytest.approx(x * INCH)
 
 
 def test_nothing_to_go_outside_a_block() -> None:
-    assert coordinates(replace(AT, block=0), Readout.TO_GO) == (0.0, 0.0, 0.0)
+    assert find_coordinates(replace(AT, block=0), ReadoutKind.TO_GO) == (0.0, 0.0, 0.0)
 
 
 def test_readouts_come_round() -> None:
-    assert Readout.POSITION.following.following.following is Readout.POSITION
+    assert ReadoutKind.POSITION.next_kind.next_kind.next_kind is ReadoutKind.POSITION
 
 
 def test_beside_distance_to_go_stands_the_position() -> None:
-    assert status_of(AT, Readout.TO_GO, with_c=True).position.beside is Readout.POSITION
+    assert make_status(AT, ReadoutKind.TO_GO, has_c_axis=True).position.second_kind is ReadoutKind.POSITION
 
 
 def test_a_lathe_without_c_shows_two_axes() -> None:
-    assert [a.name for a in status_of(AT, Readout.POSITION, with_c=False).position.axes] == ["X", "Z"]
+    assert [a.name for a in make_status(AT, ReadoutKind.POSITION, has_c_axis=False).position.axes] == [
+        "X",
+        "Z",
+    ]
 
 
 def test_tiny_negative_positions_have_no_sign() -> None:
@@ -82,43 +88,51 @@ def test_tiny_negative_positions_have_no_sign() -> None:
 
 def test_feed_per_revolution_is_measured_against_the_spindle() -> None:
     # .005 in/rev at 1200 rpm = 20 rev/s: 2.54 mm/s
-    modal = Modal(per_rev=True)
-    view = status_of(
-        replace(AT, modal=modal, feed=0.127, velocity=2.54, rpm_actual=1200), Readout.POSITION, True
+    modal = ModalState(per_rev=True)
+    view = make_status(
+        replace(AT, modal=modal, feed=0.127, velocity=2.54, rpm_actual=1200), ReadoutKind.POSITION, True
     )
-    assert (view.feed.value, view.feed.actual, view.feed.actual_unit) == ("0.00500", "0.00500", "in/rev")
+    assert (view.feed.programmed_value, view.feed.measured_value, view.feed.measured_unit) == (
+        "0.00500",
+        "0.00500",
+        "in/rev",
+    )
 
 
 def test_feed_per_revolution_of_a_standing_spindle_is_not_a_number() -> None:
-    view = status_of(replace(AT, modal=Modal(per_rev=True), feed=0.127, velocity=0.0), Readout.POSITION, True)
-    assert view.feed.actual == "—"
+    view = make_status(
+        replace(AT, modal=ModalState(per_rev=True), feed=0.127, velocity=0.0), ReadoutKind.POSITION, True
+    )
+    assert view.feed.measured_value == "—"
 
 
 def test_a_rapid_is_told_per_minute_even_under_g95() -> None:
-    view = status_of(
-        replace(AT, modal=Modal(per_rev=True), rapid=True, velocity=127.0), Readout.POSITION, True
+    view = make_status(
+        replace(AT, modal=ModalState(per_rev=True), rapid=True, velocity=127.0), ReadoutKind.POSITION, True
     )
-    assert (view.feed.value, view.feed.unit) == ("RAPID", "")
-    assert (view.feed.actual, view.feed.actual_unit) == ("300.00", "in/min")
+    assert (view.feed.programmed_value, view.feed.programmed_unit) == ("RAPID", "")
+    assert (view.feed.measured_value, view.feed.measured_unit) == ("300.00", "in/min")
 
 
 def test_metric_feeds_carry_the_prefix() -> None:
-    view = status_of(replace(AT, modal=Modal(metric=True), feed=2.0, velocity=1.9), Readout.POSITION, True)
-    assert (view.feed.value, view.feed.actual) == ("120.0", "114.0")
+    view = make_status(
+        replace(AT, modal=ModalState(metric=True), feed=2.0, velocity=1.9), ReadoutKind.POSITION, True
+    )
+    assert (view.feed.programmed_value, view.feed.measured_value) == ("120.0", "114.0")
 
 
 def test_surface_speed_of_a_reversed_spindle_and_a_tool_behind_the_centre() -> None:
     # 2 · pi · .5 in · 1000 rpm / 12 = 261.8 ft/min
     back = replace(AT, actual=(0.5 * INCH, 0.0, 0.0), rpm_command=-1000.0, rpm_actual=-1000.0)
-    spindle = status_of(back, Readout.POSITION, True).spindle
+    spindle = make_status(back, ReadoutKind.POSITION, True).spindle
     assert math.isclose(2 * math.pi * 0.5 * 1000 / 12, 261.8, rel_tol=1e-4)
-    assert (spindle.surface, spindle.surface_label) == ("262", "SFM")
-    assert (spindle.direction, spindle.rpm, spindle.actual) == ("M04 REV", "1000", "1000")
+    assert (spindle.surface_speed, spindle.surface_label) == ("262", "SFM")
+    assert (spindle.direction, spindle.commanded_rpm, spindle.measured_rpm) == ("M04 REV", "1000", "1000")
 
 
 def test_constant_surface_speed_is_named() -> None:
-    turning = replace(AT, modal=Modal(css=True, metric=True), rpm_command=500.0)
-    spindle = status_of(turning, Readout.POSITION, True).spindle
+    turning = replace(AT, modal=ModalState(css=True, metric=True), rpm_command=500.0)
+    spindle = make_status(turning, ReadoutKind.POSITION, True).spindle
     assert spindle.direction == "M03 FWD · G96"
     assert spindle.surface_label == "M/MIN"
 
@@ -136,67 +150,73 @@ def test_constant_surface_speed_is_named() -> None:
 def test_spindle_lamp_tells_what_turns(
     command: float, actual: float, word: str, lit: bool, warn: bool
 ) -> None:
-    view = status_of(replace(AT, rpm_command=command, rpm_actual=actual), Readout.POSITION, True)
+    view = make_status(replace(AT, rpm_command=command, rpm_actual=actual), ReadoutKind.POSITION, True)
     lamp = view.lamps[0]
-    assert (lamp.word, lamp.lit, lamp.warn) == (word, lit, warn)
+    assert (lamp.label, lamp.is_lit, lamp.is_warning) == (word, lit, warn)
 
 
 def test_a_spindle_that_is_held_at_an_angle_is_told_and_does_not_coast_on_its_way_there() -> None:
-    turning = status_of(replace(AT, orienting=True, rpm_actual=90.0), Readout.POSITION, True)
-    held = status_of(replace(AT, oriented=90.0), Readout.POSITION, True)
-    assert (turning.lamps[0].word, turning.lamps[0].warn) == (text("desk.spindle-orients"), True)
+    turning = make_status(replace(AT, is_orienting=True, rpm_actual=90.0), ReadoutKind.POSITION, True)
+    held = make_status(replace(AT, oriented=90.0), ReadoutKind.POSITION, True)
+    assert (turning.lamps[0].label, turning.lamps[0].is_warning) == (text("desk.spindle-orients"), True)
     lamp = held.lamps[0]
-    assert (lamp.word, lamp.lit, lamp.warn) == (text("desk.spindle-oriented"), True, False)
+    assert (lamp.label, lamp.is_lit, lamp.is_warning) == (text("desk.spindle-oriented"), True, False)
     assert held.spindle.direction.startswith(text("desk.held-angle", angle=90))
-    assert status_of(AT, Readout.POSITION, True).spindle.direction == "M05 OFF"
+    assert make_status(AT, ReadoutKind.POSITION, True).spindle.direction == "M05 OFF"
 
 
 def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
-    make_alarm = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
-    words = {lamp.word: lamp.lit for lamp in status_of(make_alarm, Readout.POSITION, True).lamps}
+    make_alarm = replace(AT, modal=ModalState(coolant=True, collet_closed=True), outputs=frozenset())
+    words = {lamp.label: lamp.is_lit for lamp in make_status(make_alarm, ReadoutKind.POSITION, True).lamps}
     assert words["COOLANT"] is False
     assert text("desk.collet-open") in words
     done = replace(make_alarm, outputs=frozenset({"coolant", "collet", "live2"}))
-    words = {lamp.word: lamp.lit for lamp in status_of(done, Readout.POSITION, True).lamps}
+    words = {lamp.label: lamp.is_lit for lamp in make_status(done, ReadoutKind.POSITION, True).lamps}
     assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
 
 
 def test_every_state_has_a_word_and_a_tone() -> None:
-    for state in State:
-        view = status_of(replace(AT, state=state), Readout.POSITION, True)
-        assert view.state == state.value
+    for state in MachineState:
+        view = make_status(replace(AT, state=state), ReadoutKind.POSITION, True)
+        assert view.state_text == state.value
         assert isinstance(view.tone, Tone)
-    assert status_of(replace(AT, state=State.FAULT), Readout.POSITION, True).tone is Tone.ALARM
+    assert make_status(replace(AT, state=MachineState.FAULT), ReadoutKind.POSITION, True).tone is Tone.ALARM
 
 
 def test_a_wait_says_for_what() -> None:
-    view = status_of(replace(AT, state=State.WAIT, waiting_for="AT SPEED"), Readout.POSITION, True)
-    assert view.state == text("desk.waiting", what="AT SPEED")
+    view = make_status(
+        replace(AT, state=MachineState.WAIT, waiting_for="AT SPEED"), ReadoutKind.POSITION, True
+    )
+    assert view.state_text == text("desk.waiting", what="AT SPEED")
 
 
 def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
-    stop = replace(AT, state=State.PROGRAM_STOP, message="CHECK THE BORE")
-    assert status_of(stop, Readout.POSITION, True).message == "CHECK THE BORE"
-    assert status_of(replace(stop, message=""), Readout.POSITION, True).message == text("screen.program-stop")
-    assert status_of(replace(stop, state=State.RUN), Readout.POSITION, True).message == ""
+    stop = replace(AT, state=MachineState.PROGRAM_STOP, message="CHECK THE BORE")
+    assert make_status(stop, ReadoutKind.POSITION, True).message == "CHECK THE BORE"
+    assert make_status(replace(stop, message=""), ReadoutKind.POSITION, True).message == text(
+        "screen.program-stop"
+    )
+    assert make_status(replace(stop, state=MachineState.RUN), ReadoutKind.POSITION, True).message == ""
 
 
 def test_the_alarm_that_came_first_is_named_first() -> None:
     """What comes behind it follows from it more often than not."""
     first, then = (Alarm(n, "axis", f"TROUBLE {n}", "", "") for n in (101, 102))
-    view = status_of(replace(AT, state=State.FAULT, alarms=(first, then)), Readout.POSITION, True)
+    view = make_status(
+        replace(AT, state=MachineState.FAULT, alarms=(first, then)), ReadoutKind.POSITION, True
+    )
     assert view.alarms == (first, then)
-    assert view.state == text("screen.alarm", number=101, what="TROUBLE 101")
+    assert view.state_text == text("screen.alarm", number=101, what="TROUBLE 101")
 
 
 def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -> None:
     silent = make_alarm("station-silent", "", 4, 0.0)
-    view = status_of(replace(AT, state=State.HOLD, stop=silent), Readout.POSITION, True)
-    assert view.stop is silent
-    assert view.state == text("screen.feed-hold", number=601, what=text("screen.station-silent"))
+    view = make_status(replace(AT, state=MachineState.HOLD, stop=silent), ReadoutKind.POSITION, True)
+    assert view.stop_cause is silent
+    assert view.state_text == text("screen.feed-hold", number=601, what=text("screen.station-silent"))
     pressed = make_alarm("feed-hold", "H at the keyboard", 4, 0.0)
-    view = status_of(replace(AT, state=State.HOLD, stop=pressed), Readout.POSITION, True)
-    assert (view.stop, view.state) == (None, "FEED HOLD")
+    view = make_status(replace(AT, state=MachineState.HOLD, stop=pressed), ReadoutKind.POSITION, True)
+    assert (view.stop_cause, view.state_text) == (None, "FEED HOLD")
 
 
 @pytest.mark.parametrize(
@@ -213,66 +233,72 @@ def test_c_from_0_to_under_360_or_as_it_counts(
     machine: float, shift: float, wraps: bool, c: str, home: str
 ) -> None:
     """With the offsets of C in the program's figure, without them in the machine's."""
-    at = replace(AT, actual=(0.0, 0.0, machine), modal=Modal(offset_c=shift, wraps_c=wraps))
+    at = replace(AT, actual=(0.0, 0.0, machine), modal=ModalState(offset_c=shift, is_c_modulo=wraps))
     assert shown(at)[2][1] == c
-    assert shown(at, Readout.HOME)[2][1] == home
+    assert shown(at, ReadoutKind.HOME)[2][1] == home
 
 
 def test_the_feed_of_c_alone_is_in_degrees() -> None:
-    alone = replace(AT, turns=True, feed=50.0, modal=Modal(metric=True))
-    feed = status_of(alone, Readout.POSITION, with_c=True).feed
-    assert (feed.value, feed.unit) == ("3000.0", "°/min")
-    by_turn = replace(alone, feed=2.0, modal=Modal(metric=True, per_rev=True))
-    feed = status_of(by_turn, Readout.POSITION, with_c=True).feed
-    assert (feed.value, feed.unit) == ("2.0000", "°/rev")
+    alone = replace(AT, turns=True, feed=50.0, modal=ModalState(metric=True))
+    feed = make_status(alone, ReadoutKind.POSITION, has_c_axis=True).feed
+    assert (feed.programmed_value, feed.programmed_unit) == ("3000.0", "°/min")
+    by_turn = replace(alone, feed=2.0, modal=ModalState(metric=True, per_rev=True))
+    feed = make_status(by_turn, ReadoutKind.POSITION, has_c_axis=True).feed
+    assert (feed.programmed_value, feed.programmed_unit) == ("2.0000", "°/rev")
 
 
 def test_what_nothing_is_heard_of_is_not_shown_as_standing_or_off() -> None:
     """The last that was known: 0 rpm, coolant off, collet closed. None of it may be read as so."""
-    stood = replace(AT, outputs=frozenset({"collet"}), unknown=ALL_UNKNOWN)
-    view = status_of(stood, Readout.POSITION, True)
-    assert not any(axis.known for axis in view.position.axes)
-    assert (view.spindle.rpm, view.spindle.actual, view.spindle.surface) == ("?", "?", "?")
-    assert (view.spindle.direction, view.spindle.known) == ("UNKNOWN", False)
-    assert view.feed.actual == "?"
-    told = [(lamp.word, lamp.lit, lamp.warn) for lamp in view.lamps]
+    stood = replace(AT, outputs=frozenset({"collet"}), unknown=ALL_UNKNOWN_PARTS)
+    view = make_status(stood, ReadoutKind.POSITION, True)
+    assert not any(axis.is_known for axis in view.position.axes)
+    assert (view.spindle.commanded_rpm, view.spindle.measured_rpm, view.spindle.surface_speed) == (
+        "?",
+        "?",
+        "?",
+    )
+    assert (view.spindle.direction, view.spindle.is_known) == ("UNKNOWN", False)
+    assert view.feed.measured_value == "?"
+    told = [(lamp.label, lamp.is_lit, lamp.is_warning) for lamp in view.lamps]
     words = ("SPINDLE UNKNOWN", "COOLANT ?", "COLLET ?", "LIVE TOOL ?")
     assert told == [(word, True, True) for word in words]
 
 
 def test_drives_are_on_where_they_say_so_whatever_the_state_is() -> None:
     """An alarm that takes the power leaves FAULT, not DRIVES OFF; what is not heard is neither."""
-    assert drives_lamp(replace(AT, state=State.FAULT, powered=False), "D") == Lamp("DRIVES ON", False, "D")
-    assert drives_lamp(replace(AT, state=State.FAULT, powered=True)) == Lamp("DRIVES ON", True)
-    unheard = replace(AT, powered=True, unknown=ALL_UNKNOWN)
-    assert drives_lamp(unheard) == Lamp("DRIVES ?", True, warn=True)
+    assert make_drives_lamp(replace(AT, state=MachineState.FAULT, powered=False), "D") == Lamp(
+        "DRIVES ON", False, "D"
+    )
+    assert make_drives_lamp(replace(AT, state=MachineState.FAULT, powered=True)) == Lamp("DRIVES ON", True)
+    unheard = replace(AT, powered=True, unknown=ALL_UNKNOWN_PARTS)
+    assert make_drives_lamp(unheard) == Lamp("DRIVES ?", True, is_warning=True)
 
 
 def test_only_the_part_that_is_silent_is_unknown() -> None:
-    view = status_of(replace(AT, unknown=frozenset({Unknown.SPINDLE})), Readout.POSITION, True)
-    assert all(axis.known for axis in view.position.axes)
-    assert view.lamps[0].word == text("screen.spindle-unknown")
-    assert view.lamps[1].word == "COOLANT"
+    view = make_status(replace(AT, unknown=frozenset({UnknownPart.SPINDLE})), ReadoutKind.POSITION, True)
+    assert all(axis.is_known for axis in view.position.axes)
+    assert view.lamps[0].label == text("screen.spindle-unknown")
+    assert view.lamps[1].label == "COOLANT"
 
 
 def test_a_hold_that_waits_for_a_tap_is_in_the_title() -> None:
-    held = replace(AT, state=State.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
-    assert status_of(held, Readout.POSITION, True).state == text("desk.hold-after-tap")
+    held = replace(AT, state=MachineState.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
+    assert make_status(held, ReadoutKind.POSITION, True).state_text == text("desk.hold-after-tap")
 
 
 def test_a_metric_feed_has_its_prefix_and_an_inch_feed_has_none() -> None:
-    metric = replace(Snapshot(), modal=Modal(metric=True), feed=5.0)
-    assert status_of(metric, Readout.POSITION, with_c=True).feed.prefix == "MM"
-    assert status_of(Snapshot(), Readout.POSITION, with_c=True).feed.prefix == ""
+    metric = replace(Snapshot(), modal=ModalState(metric=True), feed=5.0)
+    assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).feed.prefix == "MM"
+    assert make_status(Snapshot(), ReadoutKind.POSITION, has_c_axis=True).feed.prefix == ""
 
 
 def test_the_readout_is_doubled_exactly_where_it_is_marked() -> None:
     """The mode that remains after a program is that of the value, of the mark and of the words."""
     left = replace(Snapshot(), actual=(12.7, 0.0, 0.0), x_diameter=True)
-    view = status_of(left, Readout.POSITION, with_c=True)
+    view = make_status(left, ReadoutKind.POSITION, has_c_axis=True)
     x = view.position.axes[0]
-    assert (x.mark, x.value) == ("Ø", "1.00000")
-    assert "G73" in view.position.x_words  # what a typed program begins with
+    assert (x.diameter_mark, x.value) == ("Ø", "1.00000")
+    assert "G73" in view.position.x_label  # what a typed program begins with
 
 
 def test_an_overloaded_computer_is_the_first_cause_of_a_silent_control() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import Desk
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.benchmarks import night_operator
 from tests.benchmarks.bench_night_shift import counted, disagreeing, drift
 from tests.benchmarks.night_operator import Operator, StuckError
@@ -52,7 +52,7 @@ def test_a_count_that_is_not_what_was_made_is_told(shift: NightShift) -> None:
     operator.make(1)
     operator.finish()
     made = counted(shift)["seen at the slides"]
-    shift.desk.runs.counter.correct(1)
+    shift.desk.program_runs.part_counter.correct_count(1)
     shift.saved()
     assert disagreeing(shift, operator, counted(shift)) == [
         f"desk: {made + 1} of {made}",
@@ -77,7 +77,9 @@ def test_an_insert_that_cannot_be_changed_is_told_and_not_counted(
 ) -> None:
     operator = Operator(shift, 1, {})
     operator.begin()
-    monkeypatch.setattr(Desk, "answer", Desk.clear)  # something else is always said meanwhile
+    monkeypatch.setattr(
+        Desk, "confirm_if_unchanged", Desk.clear_prompt_line
+    )  # something else is always said meanwhile
     with pytest.raises(StuckError, match="the insert cannot be changed"):
         operator.fresh_insert()
     assert operator.did["insert"] == 0
@@ -92,4 +94,4 @@ def test_whoever_cannot_get_a_part_says_so_instead_of_going_on_for_ever(
     shift.lathe.spindle_fault("overvoltage")  # nobody mends it
     with pytest.raises(AssertionError, match="no part for"):
         operator.make(1)
-    assert shift.shot.state is not State.RUN
+    assert shift.shot.state is not MachineState.RUN

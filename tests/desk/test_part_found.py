@@ -9,18 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.desk_part import NO_STOCK, NOT_MADE
 from app.compose.machine.machine_files import load_machine
+from app.compose.part_prover import NO_STOCK, NOT_MADE
+from app.compose.program_proving import create_loading_steps
 from app.compose.stored_offsets import Offsets
-from app.compose.workshop import workshop
-from app.desk.background_work import Watch
-from app.desk.kept_part import NOTHING_KEPT, KeptPart
-from app.desk.programs.program_loading import Loaded, PartProved, Phase, ProgramLoader
+from app.desk.background_work import ProgressCallback
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase, PartProof, ProgramLoader
 from app.desk.programs.program_renewal import RunningRenewal
-from app.desk.status.prompt_line import announced, remedy
-from app.path.path_picture import Picture
-from core.executor.commands import Command, GiveProof, LoadJob, Renew
-from core.executor.snapshot import Snapshot, State
+from app.desk.status.prompt_line import find_announcements, find_remedy
+from app.desk.stored_part import EMPTY_STORED_PART, StoredPart
+from app.path.path_picture import ProgramPicture
+from core.executor.commands import ChangeOffsets, Command, LoadJob, SupplyProof
+from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
 from core.machine.machine_model import ClampingModel, Machine
@@ -33,7 +33,7 @@ LIMIT = 60.0
 SHAFT = "G90G94F100\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.008Z-.5\nX.45Z-.6\nX.55\nG94F100Z.05\nM30\n"
 SLIP = SHAFT.replace("M30", "X.3\nG00Z-.3\nX.55\nM30")  # the G00 of line 11 goes into metal
 TURNING = ToolShape(ToolKind.TURNING, tip=3, insert="DCMT11T304")
-BAR = KeptPart(stock="bar:1.0+.02")
+BAR = StoredPart(stock="bar:1.0+.02")
 TOOLS = {1: ToolOffset(-12.7, -50.8)}
 
 
@@ -41,21 +41,21 @@ class Desk:
     """Loads real programs as the desk does; what it posts is kept."""
 
     def __init__(
-        self, kept: KeptPart, shapes: Mapping[int, ToolShape], folder: Path, machine: Machine | None = None
+        self, kept: StoredPart, shapes: Mapping[int, ToolShape], folder: Path, machine: Machine | None = None
     ) -> None:
         self.folder, self.posted = folder, list[Command]()
-        steps = workshop(
+        steps = create_loading_steps(
             machine or load_machine(None),
             lambda: Offsets(TOOLS, {}, {}),
-            shapes=lambda: shapes,
-            kept=lambda program: kept if program == "part.nc" else NOTHING_KEPT,
+            read_shapes=lambda: shapes,
+            read_stored_part=lambda program: kept if program == "part.nc" else EMPTY_STORED_PART,
         )
         self.session = ProgramLoader(steps, self.posted.append)
 
-    def load(self, text: str) -> Loaded:
+    def load(self, text: str) -> LoadedProgram:
         (self.folder / "part.nc").write_text(text)
-        self.session.load(self.folder / "part.nc")
-        return self.session.settled(LIMIT)
+        self.session.start_loading(self.folder / "part.nc")
+        return self.session.wait_until_loaded(LIMIT)
 
     @property
     def kinds(self) -> list[type[Command]]:
@@ -70,11 +70,11 @@ def desk(tmp_path: Path) -> Iterator[Make]:
     made: list[Desk] = []
 
     def make(
-        kept: KeptPart | None = None,
+        kept: StoredPart | None = None,
         shapes: Mapping[int, ToolShape] | None = None,
         machine: Machine | None = None,
     ) -> Desk:
-        made.append(Desk(kept or KeptPart(), shapes or {}, tmp_path, machine))
+        made.append(Desk(kept or StoredPart(), shapes or {}, tmp_path, machine))
         return made[-1]
 
     yield make
@@ -82,116 +82,116 @@ def desk(tmp_path: Path) -> Iterator[Make]:
         each.session.close()
 
 
-def part_of(loaded: Loaded) -> PartProved:
-    assert loaded.part is not None
-    return loaded.part
+def part_of(loaded: LoadedProgram) -> PartProof:
+    assert loaded.part_proof is not None
+    return loaded.part_proof
 
 
 def test_a_sound_program_has_nothing_to_announce_and_is_given_once(desk: Make) -> None:
     bench = desk()
     loaded = bench.load(SHAFT)
-    assert (loaded.phase, loaded.diagnostics, part_of(loaded).warned) == (Phase.READY, (), ())
-    assert bench.kinds == [LoadJob, GiveProof]
+    assert (loaded.phase, loaded.diagnostics, part_of(loaded).warning_texts) == (LoadingPhase.READY, (), ())
+    assert bench.kinds == [LoadJob, SupplyProof]
 
 
 def test_what_rests_on_an_assumed_bar_is_a_warning_that_is_announced(desk: Make) -> None:
     bench = desk()
     loaded = bench.load(SLIP)
     (found,) = loaded.diagnostics
-    assert (found.line, found.check, found.severity) == (11, "rapid-into-stock", Severity.WARNING)
-    assert found.assumed == ("stock",)  # the tip of any tool is in the material
+    assert (found.line, found.check_name, found.severity) == (11, "rapid-into-stock", Severity.WARNING)
+    assert found.assumptions == ("stock",)  # the tip of any tool is in the material
     assert found.hint.endswith("Assumed: stock.")
     assert wording("desk.left-on") in found.hint
-    assert found.n > 0
-    assert loaded.phase is Phase.READY
-    assert bench.kinds == [LoadJob, GiveProof, GiveProof]
-    first, last = (command.proof for command in bench.posted if isinstance(command, GiveProof))
-    assert first.warned == ()  # it may be started before its part is known
-    assert (last.errors, last.warned) == ((), ("LINE 11: RAPID-INTO-STOCK",))
+    assert found.block_number > 0
+    assert loaded.phase is LoadingPhase.READY
+    assert bench.kinds == [LoadJob, SupplyProof, SupplyProof]
+    first, last = (command.proof for command in bench.posted if isinstance(command, SupplyProof))
+    assert first.warnings == ()  # it may be started before its part is known
+    assert (last.errors, last.warnings) == ((), ("LINE 11: RAPID-INTO-STOCK",))
 
 
 def test_a_stated_stock_makes_an_error_of_what_every_tool_would_hit(desk: Make) -> None:
     bench = desk(BAR)
     loaded = bench.load(SLIP)
-    assert [(d.assumed, d.severity) for d in loaded.diagnostics] == [((), Severity.ERROR)]
-    assert bench.kinds == [LoadJob, GiveProof]  # it has waited for the part
-    assert loaded.phase is Phase.REFUSED
+    assert [(d.assumptions, d.severity) for d in loaded.diagnostics] == [((), Severity.ERROR)]
+    assert bench.kinds == [LoadJob, SupplyProof]  # it has waited for the part
+    assert loaded.phase is LoadingPhase.REFUSED
 
 
 def test_on_a_stock_and_a_tool_that_were_said_it_refuses_the_start(desk: Make) -> None:
     bench = desk(BAR, {1: TURNING})
     loaded = bench.load(SLIP)
-    assert loaded.phase is Phase.REFUSED
-    assert [(d.line, d.assumed) for d in loaded.errors] == [(11, ())]
-    (given,) = (command.proof for command in bench.posted if isinstance(command, GiveProof))
+    assert loaded.phase is LoadingPhase.REFUSED
+    assert [(d.line, d.assumptions) for d in loaded.blocking_errors] == [(11, ())]
+    (given,) = (command.proof for command in bench.posted if isinstance(command, SupplyProof))
     assert len(given.errors) == 1
     assert "rapid-into-stock" in given.errors[0]
-    assert desk(BAR, {1: TURNING}).load(SHAFT).phase is Phase.READY
+    assert desk(BAR, {1: TURNING}).load(SHAFT).phase is LoadingPhase.READY
 
 
 def test_it_is_not_proved_before_its_part_is_known_where_that_may_refuse(desk: Make) -> None:
-    for kept, given in ((BAR, [LoadJob]), (KeptPart(), [LoadJob, GiveProof])):
+    for kept, given in ((BAR, [LoadJob]), (StoredPart(), [LoadJob, SupplyProof])):
         bench = desk(kept, {1: TURNING})
         making, go_on = threading.Event(), threading.Event()
-        real = bench.session.workshop.part
+        real = bench.session.steps.prove_part
 
         def held(
-            picture: Picture,
-            watch: Watch,
+            picture: ProgramPicture,
+            watch: ProgressCallback,
             made: threading.Event = making,
             let: threading.Event = go_on,
-            then: Callable[[Picture, Watch], PartProved | None] = real,
-        ) -> PartProved | None:
+            then: Callable[[ProgramPicture, ProgressCallback], PartProof | None] = real,
+        ) -> PartProof | None:
             made.set()
             assert let.wait(LIMIT)
             return then(picture, watch)
 
-        bench.session.workshop = replace(bench.session.workshop, part=held)
+        bench.session.steps = replace(bench.session.steps, prove_part=held)
         (bench.folder / "part.nc").write_text(SLIP)
-        bench.session.load(bench.folder / "part.nc")
+        bench.session.start_loading(bench.folder / "part.nc")
         assert making.wait(LIMIT)
         assert bench.kinds == given
-        assert bench.session.now.busy is (kept is BAR)
-        assert bench.session.now.picture is not None  # what there is, is shown
+        assert bench.session.loaded.is_busy is (kept is BAR)
+        assert bench.session.loaded.picture is not None  # what there is, is shown
         go_on.set()
-        bench.session.settled(LIMIT)
+        bench.session.wait_until_loaded(LIMIT)
 
 
 def test_a_silenced_check_is_a_note_with_its_reason(desk: Make) -> None:
-    silenced = replace(BAR, silenced={"rapid-into-stock": "the bar is drilled before"})
+    silenced = replace(BAR, silenced_checks={"rapid-into-stock": "the bar is drilled before"})
     loaded = desk(silenced, {1: TURNING}).load(SLIP)
     (found,) = loaded.diagnostics
-    assert (found.severity, found.silenced) == (Severity.NOTE, "the bar is drilled before")
+    assert (found.severity, found.downgrade_reason) == (Severity.NOTE, "the bar is drilled before")
     assert found.hint == wording("desk.silenced", why="the bar is drilled before")
-    assert loaded.phase is Phase.READY
-    assert part_of(loaded).warned == ()
+    assert loaded.phase is LoadingPhase.READY
+    assert part_of(loaded).warning_texts == ()
 
 
 def test_too_fast_for_its_chuck_rests_on_no_stock(desk: Make) -> None:
     machine = replace(load_machine(None), clamping=ClampingModel(max_rpm=1200.0))
     bench = desk(machine=machine)
     loaded = bench.load(SHAFT)
-    assert loaded.phase is Phase.REFUSED
-    assert {(d.check, d.assumed) for d in loaded.errors} == {("spindle-overspeed", ())}
-    assert bench.kinds == [LoadJob, GiveProof]
+    assert loaded.phase is LoadingPhase.REFUSED
+    assert {(d.check_name, d.assumptions) for d in loaded.blocking_errors} == {("spindle-overspeed", ())}
+    assert bench.kinds == [LoadJob, SupplyProof]
 
 
 @pytest.mark.parametrize("stock", ["rod", "profile:gone.csv", "after:gone.nc"])
 def test_a_stock_that_cannot_be_used_is_told_before_the_start(desk: Make, stock: str) -> None:
-    loaded = desk(KeptPart(stock=stock)).load(SHAFT)
+    loaded = desk(StoredPart(stock=stock)).load(SHAFT)
     (found,) = loaded.diagnostics
     assert (found.line, found.code, found.severity) == (0, NO_STOCK, Severity.WARNING)
-    assert part_of(loaded).warned == (wording("desk.not-as-specified"),)
-    assert loaded.phase is Phase.READY
+    assert part_of(loaded).warning_texts == (wording("desk.not-as-specified"),)
+    assert loaded.phase is LoadingPhase.READY
 
 
 def test_the_stock_is_what_another_program_leaves(desk: Make, tmp_path: Path) -> None:
     (tmp_path / "before.nc").write_text(SHAFT)
-    loaded = desk(KeptPart(stock=f"after:{tmp_path / 'before.nc'}")).load(SHAFT)
+    loaded = desk(StoredPart(stock=f"after:{tmp_path / 'before.nc'}")).load(SHAFT)
     report = part_of(loaded).report
     assert report is not None
-    assert report.removed == pytest.approx(0.0, abs=1.0)  # mm³: it is made already
-    assert desk(KeptPart()).load(SHAFT).part != loaded.part
+    assert report.removed_volume_mm3 == pytest.approx(0.0, abs=1.0)  # mm³: it is made already
+    assert desk(StoredPart()).load(SHAFT).part_proof != loaded.part_proof
 
 
 def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
@@ -200,49 +200,49 @@ def test_a_proof_of_the_part_that_fails_keeps_nobody_from_his_program(
     def broken(*_given: object) -> None:
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr("core.proving.part_proof.PartProof.report", broken)
+    monkeypatch.setattr("core.proving.part_proof.PartProof.make_report", broken)
     loaded = desk(BAR).load(SHAFT)
     assert [d.code for d in loaded.diagnostics] == [NOT_MADE]
-    assert loaded.phase is Phase.READY
-    assert part_of(loaded).warned
+    assert loaded.phase is LoadingPhase.READY
+    assert part_of(loaded).warning_texts
     assert [each.exc_info[0] for each in caplog.records if each.exc_info] == [ZeroDivisionError]
 
 
 def test_of_a_program_that_is_too_long_it_is_told_why_there_is_no_part(
     desk: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(part_history, "MOST_MOVES", 5)
+    monkeypatch.setattr(part_history, "MAX_MOVES", 5)
     bench = desk(BAR, {1: TURNING})
     loaded = bench.load(SLIP)
-    assert begins(part_of(loaded).trouble, "desk.too-many-blocks", count=12, most=5)
+    assert begins(part_of(loaded).error_text, "desk.too-many-blocks", count=12, most=5)
     assert loaded.picture is not None
-    assert loaded.picture.no_part == part_of(loaded).trouble
-    assert loaded.phase is Phase.READY
-    assert bench.kinds == [LoadJob, GiveProof]
+    assert loaded.picture.no_part == part_of(loaded).error_text
+    assert loaded.phase is LoadingPhase.READY
+    assert bench.kinds == [LoadJob, SupplyProof]
 
 
 # --- under a running program --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("kept", "errors"), [(BAR, 1), (KeptPart(), 0)])
+@pytest.mark.parametrize(("kept", "errors"), [(BAR, 1), (StoredPart(), 0)])
 def test_changed_offsets_are_taken_up_with_what_the_part_says(
-    desk: Make, kept: KeptPart, errors: int
+    desk: Make, kept: StoredPart, errors: int
 ) -> None:
     bench = desk(kept, {1: TURNING})
     bench.load(SLIP)
     bench.posted.clear()
     renewing = RunningRenewal(bench.session)
-    assert renewing.begin()
-    renewing.worker.settle(LIMIT)
-    (renewed,) = (c for c in bench.posted if isinstance(c, Renew) and c.job is not None)
+    assert renewing.begin_renewal()
+    renewing.worker.wait_for_results(LIMIT)
+    (renewed,) = (c for c in bench.posted if isinstance(c, ChangeOffsets) and c.job is not None)
     assert renewed.job is not None
     assert renewed.proof is not None
     assert len(renewed.proof.errors) == errors
-    assert renewing.taken(Snapshot(state=State.IDLE, job=renewed.job.digest))
-    given = [c.proof.warned for c in bench.posted if isinstance(c, GiveProof)]
+    assert renewing.is_in_use(Snapshot(state=MachineState.IDLE, job=renewed.job.digest))
+    given = [c.proof.warnings for c in bench.posted if isinstance(c, SupplyProof)]
     assert given == [("LINE 11: RAPID-INTO-STOCK",)] * (1 - errors)
-    assert renewing.taken(Snapshot(state=State.IDLE, job=renewed.job.digest))
-    assert len([c for c in bench.posted if isinstance(c, GiveProof)]) == 1 - errors
+    assert renewing.is_in_use(Snapshot(state=MachineState.IDLE, job=renewed.job.digest))
+    assert len([c for c in bench.posted if isinstance(c, SupplyProof)]) == 1 - errors
 
 
 # --- on the prompt line -------------------------------------------------------------------------------
@@ -251,14 +251,14 @@ def test_changed_offsets_are_taken_up_with_what_the_part_says(
 def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
     starts = wording("screen.spindle-starts", rpm=900, direction="FORWARD")
     shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", starts))
-    assert announced(shot) == ("WARNING: LINE 11: RAPID-INTO-STOCK", starts)
-    assert announced(shot, starts_here=False) == (starts,)
+    assert find_announcements(shot) == ("WARNING: LINE 11: RAPID-INTO-STOCK", starts)
+    assert find_announcements(shot, can_start_here=False) == (starts,)
 
 
 def test_beside_the_warning_stands_what_to_do(desk: Make) -> None:
     loaded = desk().load(SLIP)
-    words = remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START: PRESS BOTH PALM BUTTONS")
-    assert remedy(loaded, wording("search.start-restart", start="CYCLE START")) == words
-    assert remedy(loaded, "NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT") == ""
+    words = find_remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START: PRESS BOTH PALM BUTTONS")
+    assert find_remedy(loaded, wording("search.start-restart", start="CYCLE START")) == words
+    assert find_remedy(loaded, "NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT") == ""
     assert begins(words, "screen.line-what", line=11, what=pattern("desk.rapid-into-stock"))
     assert wording("desk.left-on") in words

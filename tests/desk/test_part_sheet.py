@@ -10,25 +10,25 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
+from app.compose.program_proving import create_loading_steps
 from app.compose.stored_offsets import Offsets
-from app.compose.workshop import workshop
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.kept_part import KeptPart, kept_part
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
-from app.desk.programs.program_loading import Phase, ProgramLoader
+from app.desk.programs.program_loading import LoadingPhase, ProgramLoader
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
-from app.part.part_sheet import PartSheet, Section
-from app.part.part_tables import table
+from app.desk.stored_part import StoredPart, load_stored_part
+from app.part.part_model import PartModel, PartSection
+from app.part.part_tables import make_table
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.executor.commands import Command
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
-from core.part.stock_spec import stock_spec
-from core.proving.checks.part_checks import CHECKS
+from core.part.stock_spec import parse_specification
+from core.proving.checks.part_checks import PART_CHECKS
 from core.store.store_errors import StoreError
 from tests.desk.test_part_found import LIMIT, SHAFT, SLIP, TOOLS, TURNING
 from tests.texts import begins, shows
@@ -41,57 +41,57 @@ class Bench:
     def __init__(
         self, folder: Path, of_machine: frozenset[str] = frozenset(), model: Machine | None = None
     ) -> None:
-        self.state, self.folder = State.IDLE, folder
+        self.state, self.folder = MachineState.IDLE, folder
         self.keep, posted = Persistence(), list[Command]()
-        steps = workshop(
+        steps = create_loading_steps(
             load_machine(None),
             lambda: Offsets(TOOLS, {}, {}),
-            shapes=lambda: {1: TURNING},
-            kept=partial(kept_part, self.keep.read_setting),
+            read_shapes=lambda: {1: TURNING},
+            read_stored_part=partial(load_stored_part, self.keep.read_setting),
         )
         self.desk = Desk(
             DeskControl(posted.append, lambda: Snapshot(state=self.state)),
             ProgramLoader(steps, posted.append),
             ProgramFolders((folder,)),
-            machine=DeskMachine(model=model),
+            machine=DeskMachine(machine=model),
         )
-        self.page = PartSheet(self.desk, self.keep, frozenset(CHECKS), of_machine)
+        self.page = PartModel(self.desk, self.keep, frozenset(PART_CHECKS), of_machine)
         self.shown: list[Diagnostic] = []
-        self.page.shows = self.shown.append
-        self.desk.pages.attach(self.page)
+        self.page.show_location = self.shown.append
+        self.desk.page_registry.attach_model(self.page)
 
     def load(self, text: str, name: str = "part.nc") -> None:
         (self.folder / name).write_text(text)
-        self.desk.session.load(self.folder / name)
+        self.desk.program_loader.start_loading(self.folder / name)
         self.settle()
 
     def settle(self) -> None:
-        self.page.worker.settle(LIMIT)
-        self.desk.session.settled(LIMIT)
-        self.page.look()
+        self.page.worker.wait_for_results(LIMIT)
+        self.desk.program_loader.wait_until_loaded(LIMIT)
+        self.page.poll()
 
     def types(self, text: str) -> None:
         for key in text:
-            assert self.page.typed(key), key
-        assert self.page.typed("Enter")
+            assert self.page.handle_key(key), key
+        assert self.page.handle_key("Enter")
         self.settle()
 
     def press(self, *keys: str) -> None:
         for key in keys:
-            named = self.page.keys().get(key)
+            named = self.page.function_keys().get(key)
             if named is not None:
                 named.action()
             else:
-                self.page.typed(key)
+                self.page.handle_key(key)
         self.settle()
 
     @property
-    def kept(self) -> KeptPart:
-        return kept_part(self.keep.read_setting, "part.nc")
+    def kept(self) -> StoredPart:
+        return load_stored_part(self.keep.read_setting, "part.nc")
 
     @property
     def cells(self) -> Mapping[str, tuple[str, ...]]:
-        return {row.cells[0]: row.cells[1:] for row in table(self.page).rows}
+        return {row.cells[0]: row.cells[1:] for row in make_table(self.page).rows}
 
 
 @pytest.fixture
@@ -109,16 +109,16 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
     ["bar:1", "bar:0.75:3+0.02", "bar:25mm", "tube:1:0.5:2.5", "profile:/a/blank.csv+0.1", "after:/b/op1.nc"],
 )
 def test_what_is_kept_comes_back_as_it_was_said(words: str) -> None:
-    entry = StockEntry.of(KeptPart(words, 20.0))
+    entry = StockEntry.of(StoredPart(words, 20.0))
     assert entry.words == words
     assert entry.stick_out == 20.0
-    assert entry.lacks is None
+    assert entry.missing_field is None
 
 
 def test_words_mean_the_lengths_that_were_typed() -> None:
     entry = StockEntry(StockKind.TUBE).typed(StockField.DIAMETER, "1+1/8", metric=False)
     entry = entry.typed(StockField.BORE, "10", metric=True)
-    spec = stock_spec(entry.words)
+    spec = parse_specification(entry.words)
     assert (spec.diameter, spec.bore) == (pytest.approx(28.575, abs=1e-6), pytest.approx(10.0))
 
 
@@ -141,25 +141,27 @@ def test_what_no_stock_can_be_is_refused(name: StockField, text: str) -> None:
 
 def test_a_bar_is_said_kept_and_the_program_proved_on_it(bench: Bench) -> None:
     bench.load(SLIP)
-    assert bench.desk.session.now.phase is Phase.READY
+    assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
     bench.press("F2")
-    assert bench.page.section is Section.STOCK
+    assert bench.page.shown_section is PartSection.STOCK
     assert bench.cells["STOCK"] == ("–", "BAR")  # what is assumed stands beside it
     bench.press("Right")
-    assert bench.kept == KeptPart()  # without a diameter it is none yet
-    assert table(bench.page).notes == (wording("desk.still-to-say", field="DIAMETER"),)
+    assert bench.kept == StoredPart()  # without a diameter it is none yet
+    assert make_table(bench.page).notes == (wording("desk.still-to-say", field="DIAMETER"),)
     bench.press("Down")
     bench.types("1")
     assert bench.kept.stock == "bar:1"
     assert bench.cells["DIAMETER"] == ("1.00000", "")
-    assert bench.desk.session.now.phase is Phase.REFUSED  # the tool has a shape: nothing is assumed
+    assert (
+        bench.desk.program_loader.loaded.phase is LoadingPhase.REFUSED
+    )  # the tool has a shape: nothing is assumed
     bench.press("Down", "Down")
     bench.types(".02")
     assert bench.kept.stock == "bar:1+0.02"
     bench.press("Down")
     bench.types(".8")
-    assert bench.kept == KeptPart("bar:1+0.02", pytest.approx(20.32))
-    assert shows(table(bench.page).notes[0], "desk.needs-clamping")
+    assert bench.kept == StoredPart("bar:1+0.02", pytest.approx(20.32))
+    assert shows(make_table(bench.page).notes[0], "desk.needs-clamping")
 
 
 def test_what_was_said_is_forgotten(bench: Bench) -> None:
@@ -167,11 +169,11 @@ def test_what_was_said_is_forgotten(bench: Bench) -> None:
     bench.press("F2", "Right", "Down")
     bench.types("1")
     bench.press("F6")
-    assert bench.kept == KeptPart()
-    assert bench.desk.session.now.phase is Phase.READY
-    assert shows(bench.desk.notice, "desk.stock-forgotten")
+    assert bench.kept == StoredPart()
+    assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
+    assert shows(bench.desk.prompt_notice, "desk.stock-forgotten")
     bench.press("F6")
-    assert bench.desk.notice == wording("desk.no-stock")
+    assert bench.desk.prompt_notice == wording("desk.no-stock")
 
 
 def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Bench) -> None:
@@ -182,15 +184,15 @@ def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Be
     bench.press("Down", "Enter")
     assert bench.page.has_keyboard
     bench.types("gone.csv")
-    assert shows(bench.desk.notice, "desk.no-file-beside", name="gone.csv")
+    assert shows(bench.desk.prompt_notice, "desk.no-file-beside", name="gone.csv")
     bench.press(*["Back"] * 8)
     bench.types("blank.csv")
     assert bench.kept.stock == f"profile:{bench.folder / 'blank.csv'}"
-    part = bench.desk.session.now.part
+    part = bench.desk.program_loader.loaded.part_proof
     assert part is not None
     assert part.report is not None
     assert part.report.stock is not None
-    assert part.report.stock.radius == pytest.approx(12.7)
+    assert part.report.stock.max_radius_mm == pytest.approx(12.7)
 
 
 @pytest.mark.parametrize("text", ["-1", "1..", ""])
@@ -198,19 +200,19 @@ def test_what_is_no_length_changes_nothing(bench: Bench, text: str) -> None:
     bench.load(SHAFT)
     bench.press("F2", "Right", "Down")
     bench.types(text)
-    assert begins(bench.desk.notice, "screen.refused")
-    assert bench.kept == KeptPart()
+    assert begins(bench.desk.prompt_notice, "screen.refused")
+    assert bench.kept == StoredPart()
 
 
 def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
     bench.load(SLIP)
-    bench.state = State.RUN
+    bench.state = MachineState.RUN
     bench.press("F4")
-    assert shows(bench.desk.notice, "desk.stock-between-cycles")
+    assert shows(bench.desk.prompt_notice, "desk.stock-between-cycles")
     assert not bench.page.has_keyboard
     bench.press("F2", "Right")
     assert bench.cells["STOCK"][0] == "–"
-    assert bench.kept == KeptPart()
+    assert bench.kept == StoredPart()
 
 
 def test_on_a_mill_no_stock_is_said(tmp_path: Path) -> None:
@@ -218,17 +220,17 @@ def test_on_a_mill_no_stock_is_said(tmp_path: Path) -> None:
     bench = Bench(tmp_path, model=mill)
     bench.load(SHAFT)
     bench.press("F2", "Right")
-    assert bench.desk.notice == wording("desk.no-part-on-mill")
-    assert bench.kept == KeptPart()
+    assert bench.desk.prompt_notice == wording("desk.no-part-on-mill")
+    assert bench.kept == StoredPart()
     bench.desk.close()
 
 
 def test_without_a_program_there_is_nothing_to_say(bench: Bench) -> None:
-    bench.page.look()
-    assert table(bench.page).rows == ()
+    bench.page.poll()
+    assert make_table(bench.page).rows == ()
     bench.press("F2", "Right")
-    assert shows(bench.desk.notice, "screen.load-program-for-stock")
-    assert not bench.page.takes("1")
+    assert shows(bench.desk.prompt_notice, "screen.load-program-for-stock")
+    assert not bench.page.accepts_key("1")
 
 
 def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -236,11 +238,11 @@ def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.Mon
         raise StoreError("the disk is full")
 
     bench.load(SHAFT)
-    monkeypatch.setattr(Persistence, "keep_settings", full)
+    monkeypatch.setattr(Persistence, "save_settings", full)
     bench.press("F2", "Right", "Down")
     bench.types("1")
-    assert bench.desk.notice == wording("screen.not-kept", why="the disk is full")
-    assert bench.desk.session.now.phase is Phase.READY
+    assert bench.desk.prompt_notice == wording("screen.not-kept", why="the disk is full")
+    assert bench.desk.program_loader.loaded.phase is LoadingPhase.READY
 
 
 # --- findings -----------------------------------------------------------------------------------------
@@ -248,9 +250,9 @@ def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.Mon
 
 def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -> None:
     bench.load(SLIP)
-    (row,) = table(bench.page).rows
+    (row,) = make_table(bench.page).rows
     assert row.cells[:2] == ("11", "rapid-into-stock")
-    assert wording("desk.left-on") in " ".join(table(bench.page).notes)
+    assert wording("desk.left-on") in " ".join(make_table(bench.page).notes)
     bench.press("Enter")
     assert [found.line for found in bench.shown] == [11]
 
@@ -258,34 +260,34 @@ def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -
 def test_a_check_is_silenced_with_a_reason_and_speaks_again(bench: Bench) -> None:
     bench.load(SLIP)
     bench.press("F4")
-    assert table(bench.page).question == wording("desk.why-silenced", check="rapid-into-stock")
+    assert make_table(bench.page).question == wording("desk.why-silenced", check="rapid-into-stock")
     bench.types("")
-    assert shows(bench.desk.notice, "desk.reason-needed")
+    assert shows(bench.desk.prompt_notice, "desk.reason-needed")
     bench.types("drilled before")
-    assert bench.kept.silenced == {"rapid-into-stock": "drilled before"}
-    (found,) = bench.desk.session.now.diagnostics
-    assert (found.severity, found.silenced) == (Severity.NOTE, "drilled before")
-    assert bench.page.keys()["F4"].label == "UNDO"
+    assert bench.kept.silenced_checks == {"rapid-into-stock": "drilled before"}
+    (found,) = bench.desk.program_loader.loaded.diagnostics
+    assert (found.severity, found.downgrade_reason) == (Severity.NOTE, "drilled before")
+    assert bench.page.function_keys()["F4"].label == "UNDO"
     bench.press("F4")
-    assert bench.kept == KeptPart()
-    assert bench.desk.session.now.diagnostics[0].severity is Severity.WARNING
+    assert bench.kept == StoredPart()
+    assert bench.desk.program_loader.loaded.diagnostics[0].severity is Severity.WARNING
 
 
 def test_escape_leaves_the_check_on(bench: Bench) -> None:
     bench.load(SLIP)
     bench.press("F4")
-    bench.page.typed("x")
-    assert bench.page.escape()
+    bench.page.handle_key("x")
+    assert bench.page.handle_escape()
     assert not bench.page.has_keyboard
-    assert bench.kept == KeptPart()
-    assert not bench.page.escape()
+    assert bench.kept == StoredPart()
+    assert not bench.page.handle_escape()
 
 
 def test_what_the_interpreter_has_found_is_not_silenced(bench: Bench) -> None:
     bench.load("G90G94F100\nT1\nX.5Q7\nM30\n")
-    assert bench.page.finding is not None
+    assert bench.page.selected_finding is not None
     bench.press("F4")
-    assert shows(bench.desk.notice, "desk.only-part-checks")
+    assert shows(bench.desk.prompt_notice, "desk.only-part-checks")
     assert not bench.page.has_keyboard
 
 
@@ -293,5 +295,5 @@ def test_what_the_machine_file_silences_is_not_undone_here(tmp_path: Path) -> No
     bench = Bench(tmp_path, frozenset({"rapid-into-stock"}))
     bench.load(SLIP)
     bench.press("F4")
-    assert shows(bench.desk.notice, "desk.machine-silences", check="rapid-into-stock")
+    assert shows(bench.desk.prompt_notice, "desk.machine-silences", check="rapid-into-stock")
     bench.desk.close()

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from app.desk.programs import program_folder
-from app.desk.programs.program_folder import ProgramFile, ProgramFolders
-from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.programs.program_folder import ProgramFileMonitor, ProgramFolders
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from core.language.source import load_source
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.texts import begins
 
 
@@ -32,28 +32,28 @@ def program_folders(tmp_path: Path) -> ProgramFolders:
 
 
 def test_the_operators_folder_hides_the_samples(program_folders: ProgramFolders) -> None:
-    assert [entry.name for entry in program_folders.entries()] == ["knob.nc", "PART1", "part10.nc"]
-    assert program_folders.find("part1") == program_folders.folders[0] / "PART1"
+    assert [entry.name for entry in program_folders.list_programs()] == ["knob.nc", "PART1", "part10.nc"]
+    assert program_folders.find_path("part1") == program_folders.folders[0] / "PART1"
 
 
 @pytest.mark.parametrize("typed", ["knob", "KNOB.NC", " knob.nc "])
 def test_case_and_ending_do_not_matter(program_folders: ProgramFolders, typed: str) -> None:
-    assert program_folders.find(typed) == program_folders.folders[1] / "knob.nc"
+    assert program_folders.find_path(typed) == program_folders.folders[1] / "knob.nc"
 
 
 def test_a_path_is_taken_as_it_is(program_folders: ProgramFolders) -> None:
     there = program_folders.folders[1] / "notes.md"
-    assert program_folders.find(str(there)) == there
+    assert program_folders.find_path(str(there)) == there
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "nosuch", "par", "/nowhere/knob.nc", "notes"])
 def test_unknown_names_find_nothing(program_folders: ProgramFolders, typed: str) -> None:
-    assert program_folders.find(typed) is None
+    assert program_folders.find_path(typed) is None
 
 
 def test_typing_narrows_the_list(program_folders: ProgramFolders) -> None:
-    assert [entry.name for entry in program_folders.matching("PART")] == ["PART1", "part10.nc"]
-    assert program_folders.matching("xyz") == ()
+    assert [entry.name for entry in program_folders.find_matching("PART")] == ["PART1", "part10.nc"]
+    assert program_folders.find_matching("xyz") == ()
 
 
 # --- The file that was read, changed behind the desk's back by somebody else.
@@ -62,9 +62,9 @@ def test_typing_narrows_the_list(program_folders: ProgramFolders) -> None:
 TEXT = "G90G94\nX.5F10\nM30\n"
 
 
-def on_the_desk(path: Path) -> Loaded:
+def on_the_desk(path: Path) -> LoadedProgram:
     """What loading this file leaves on the desk."""
-    return Loaded(Phase.READY, path, source=load_source(path))
+    return LoadedProgram(LoadingPhase.READY, path, source=load_source(path))
 
 
 def touched(path: Path, text: str) -> None:
@@ -77,43 +77,43 @@ def touched(path: Path, text: str) -> None:
 def test_a_file_that_stays_is_no_news(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
-    file = ProgramFile(lambda: on_the_desk(path))
-    file.look()
-    assert file.differs == ""
+    file = ProgramFileMonitor(lambda: on_the_desk(path))
+    file.compare_files()
+    assert file.difference_text == ""
     touched(path, TEXT)  # saved again as it was
-    file.look()
-    assert file.differs == ""
+    file.compare_files()
+    assert file.difference_text == ""
 
 
 def test_a_changed_file_is_told_until_it_is_read_or_put_back(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     desk = [on_the_desk(path)]
-    file = ProgramFile(lambda: desk[0])
-    file.look()
+    file = ProgramFileMonitor(lambda: desk[0])
+    file.compare_files()
     touched(path, TEXT.replace("X.5", "X1.5"))
-    file.look()
-    assert begins(file.differs, "programs.changed-on-disk", name="part.nc")
+    file.compare_files()
+    assert begins(file.difference_text, "programs.changed-on-disk", name="part.nc")
     touched(path, TEXT)
-    file.look()
-    assert file.differs == ""
+    file.compare_files()
+    assert file.difference_text == ""
     touched(path, TEXT.replace("X.5", "X2.5"))
     desk[0] = on_the_desk(path)
-    file.look()
-    assert file.differs == ""
+    file.compare_files()
+    assert file.difference_text == ""
 
 
 def test_a_file_that_is_gone_or_spoilt_is_told(tmp_path: Path) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     loaded = on_the_desk(path)
-    file = ProgramFile(lambda: loaded)
+    file = ProgramFileMonitor(lambda: loaded)
     path.write_bytes(b"G90\0\0")
-    file.look()
-    assert begins(file.differs, "programs.changed-on-disk", name="part.nc")
+    file.compare_files()
+    assert begins(file.difference_text, "programs.changed-on-disk", name="part.nc")
     path.unlink()
-    file.look()
-    assert begins(file.differs, "programs.not-on-disk", name="part.nc")
+    file.compare_files()
+    assert begins(file.difference_text, "programs.not-on-disk", name="part.nc")
 
 
 def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
@@ -123,18 +123,18 @@ def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
     loaded = on_the_desk(path)
     assert loaded.source is not None
     loaded = replace(loaded, source=replace(loaded.source, subprograms=(load_source(called),)))
-    file = ProgramFile(lambda: loaded)
-    file.look()
-    assert file.differs == ""
+    file = ProgramFileMonitor(lambda: loaded)
+    file.compare_files()
+    assert file.difference_text == ""
     touched(called, "G1 X50\nM17\n")
-    file.look()
-    assert begins(file.differs, "programs.changed-on-disk", name="cut.spf")
+    file.compare_files()
+    assert begins(file.difference_text, "programs.changed-on-disk", name="cut.spf")
 
 
 def test_without_a_program_there_is_nothing_to_compare() -> None:
-    file = ProgramFile(Loaded)
-    file.look()
-    assert file.differs == ""
+    file = ProgramFileMonitor(LoadedProgram)
+    file.compare_files()
+    assert file.difference_text == ""
 
 
 # --- A disk that cannot be read: the watch goes on, and says so.
@@ -147,7 +147,7 @@ def test_a_folder_that_cannot_be_read_is_shown_and_watched_on(
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     loaded = on_the_desk(path)
-    file = ProgramFile(lambda: loaded)
+    file = ProgramFileMonitor(lambda: loaded)
 
     def broken(*_args: object, **_named: object) -> object:
         raise OSError(number, os.strerror(number))
@@ -155,61 +155,61 @@ def test_a_folder_that_cannot_be_read_is_shown_and_watched_on(
     with monkeypatch.context() as patch:
         patch.setattr(Path, "stat", broken)
         patch.setattr(os, "open", broken)
-        file.look()
-        assert begins(file.differs, "programs.unreadable", name="part.nc")
-    file.look()
-    assert file.differs == ""
+        file.compare_files()
+        assert begins(file.difference_text, "programs.unreadable", name="part.nc")
+    file.compare_files()
+    assert file.difference_text == ""
     touched(path, TEXT.replace("X.5", "X1.5"))
-    file.look()
-    assert begins(file.differs, "programs.changed-on-disk", name="part.nc")
+    file.compare_files()
+    assert begins(file.difference_text, "programs.changed-on-disk", name="part.nc")
 
 
 def test_the_watch_survives_any_failure_of_a_look(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
     loaded = on_the_desk(path)
-    file = ProgramFile(lambda: loaded)
+    file = ProgramFileMonitor(lambda: loaded)
 
     def broken(_path: Path) -> object:
         raise RuntimeError("a network file system")
 
     with monkeypatch.context() as patch:
         patch.setattr(program_folder, "load_source", broken)
-        file.watch_once()
-        assert begins(file.differs, "programs.unreadable", name="part.nc")
-    file.watch_once()
-    assert file.differs == ""
+        file.check_safely()
+        assert begins(file.difference_text, "programs.unreadable", name="part.nc")
+    file.check_safely()
+    assert file.difference_text == ""
 
 
 def test_a_look_that_hangs_is_shown_while_it_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "part.nc"
     path.write_text(TEXT)
-    loaded, clock, seen = on_the_desk(path), StepClock(), list[str]()
-    file = ProgramFile(lambda: loaded, clock.now)
+    loaded, clock, seen = on_the_desk(path), ManualClock(), list[str]()
+    file = ProgramFileMonitor(lambda: loaded, clock.now)
 
     def slow(_path: Path) -> object:
-        seen.append(file.differs)
-        clock.sleep_until(clock.now() + program_folder.HANGS + 1.0)
-        seen.append(file.differs)
+        seen.append(file.difference_text)
+        clock.sleep_until(clock.now() + program_folder.CHECK_TIMEOUT_S + 1.0)
+        seen.append(file.difference_text)
         return loaded.source
 
     monkeypatch.setattr(program_folder, "load_source", slow)
-    file.look()
+    file.compare_files()
     assert seen[0] == ""
     assert begins(seen[1], "programs.unreadable", name="part.nc")
-    assert file.differs == ""
+    assert file.difference_text == ""
 
 
 @pytest.mark.parametrize(("name", "known"), [("a.DXF", True), ("a.dxf.nc", False), ("dxf", False)])
 def test_a_drawing_is_known_by_the_endings_that_a_feature_names(name: str, known: bool) -> None:
     folders = ProgramFolders((), (".dxf",))
-    assert folders.is_drawing(name) is known
-    assert not ProgramFolders(()).is_drawing(name)
+    assert folders.is_drawing_name(name) is known
+    assert not ProgramFolders(()).is_drawing_name(name)
 
 
 def test_drawings_are_listed_beside_the_programs_only_where_a_feature_reads_them(tmp_path: Path) -> None:
     for name in ("a.nc", "b.dxf", "c.pdf"):
         (tmp_path / name).write_text("")
-    assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).drawings()] == ["b.dxf"]
-    assert ProgramFolders((tmp_path,)).drawings() == ()
-    assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).entries()] == ["a.nc"]
+    assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).list_drawings()] == ["b.dxf"]
+    assert ProgramFolders((tmp_path,)).list_drawings() == ()
+    assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).list_programs()] == ["a.nc"]

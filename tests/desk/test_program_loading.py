@@ -8,17 +8,23 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.background_work import Watch
-from app.desk.programs.program_loading import Loaded, LoadingSteps, Phase, ProgramLoader, Proved
-from app.desk.status.prompt_line import prompt, refusal
-from app.path.path_picture import Picture, PictureBuilder
-from core.executor.commands import Command, GiveProof, LoadJob
+from app.desk.background_work import ProgressCallback
+from app.desk.programs.program_loading import (
+    LoadedProgram,
+    LoadingPhase,
+    LoadingSteps,
+    ProgramLoader,
+    ProvedJob,
+)
+from app.desk.status.prompt_line import make_prompt, make_refusal
+from app.path.path_picture import PictureBuilder, ProgramPicture
+from core.executor.commands import Command, LoadJob, SupplyProof
 from core.executor.job import Job, Proof
-from core.executor.snapshot import Snapshot, State
-from core.interpreter.dialects import ReadProgram
+from core.executor.snapshot import MachineState, Snapshot
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.texts import text as wording
 
 LIMIT = 60.0  # seconds after which a test that waits for the worker has failed
@@ -38,30 +44,32 @@ class Bench:
             LoadingSteps(self.read, self.make, self.prove, self.draw), self.posted.append
         )
 
-    def read(self, path: Path) -> Source:
+    def read(self, path: Path) -> ProgramSource:
         if path.name == "gone.nc":
             raise FileNotFoundError(2, "No such file or directory", str(path))
         if path.name == "broken.nc":
             raise RuntimeError("the reader fell over")
-        return Source(path.name, "G90\nM30\n")
+        return ProgramSource(path.name, "G90\nM30\n")
 
-    def make(self, source: Source, block_delete: bool) -> Job:
-        return Job(source, Setup(block_delete=block_delete), f"digest of {source.name}", ReadProgram(source))
+    def make(self, source: ProgramSource, block_delete: bool) -> Job:
+        return Job(
+            source, Setup(block_delete=block_delete), f"digest of {source.name}", SharedProgram(source)
+        )
 
-    def prove(self, job: Job, watch: Watch) -> Proved:
+    def prove(self, job: Job, watch: ProgressCallback) -> ProvedJob:
         self.proving.set()
         assert self.go_on.wait(LIMIT)
         watch(1000)
-        return Proved(Proof(job.digest, tuple(d.message for d in self.found)), self.found)
+        return ProvedJob(Proof(job.digest, tuple(d.message for d in self.found)), self.found)
 
-    def draw(self, _job: Job, watch: Watch) -> Picture:
+    def draw(self, _job: Job, watch: ProgressCallback) -> ProgramPicture:
         watch(500)
-        return PictureBuilder().picture()
+        return PictureBuilder().build_picture()
 
-    def settled(self) -> Loaded:
+    def settled(self) -> LoadedProgram:
         """The program on the desk once loading is over."""
-        now = self.session.settled(LIMIT)
-        assert not now.busy
+        now = self.session.wait_until_loaded(LIMIT)
+        assert not now.is_busy
         return now
 
 
@@ -74,50 +82,54 @@ def bench() -> Iterator[Bench]:
 
 
 def test_a_program_is_loaded_proved_and_drawn(bench: Bench) -> None:
-    bench.session.load(Path("part.nc"))
+    bench.session.start_loading(Path("part.nc"))
     loaded = bench.settled()
-    assert loaded.phase is Phase.READY
+    assert loaded.phase is LoadingPhase.READY
     assert loaded.source is not None
     assert loaded.source.lines == ("G90", "M30")
     assert loaded.picture is not None
-    assert [type(command) for command in bench.posted] == [LoadJob, GiveProof]
+    assert [type(command) for command in bench.posted] == [LoadJob, SupplyProof]
 
 
 def test_it_is_loaded_before_it_is_proved_and_then_without_a_proof(bench: Bench) -> None:
     bench.go_on.clear()
-    bench.session.load(Path("part.nc"))
+    bench.session.start_loading(Path("part.nc"))
     assert bench.proving.wait(LIMIT)
     (load,) = bench.posted
     assert isinstance(load, LoadJob)
     assert load.proof is None
-    assert bench.session.now.phase is Phase.PROVING
+    assert bench.session.loaded.phase is LoadingPhase.PROVING
 
 
 def test_a_newer_choice_goes_before_the_one_under_way(bench: Bench) -> None:
     bench.go_on.clear()
-    bench.session.load(Path("first.nc"))
+    bench.session.start_loading(Path("first.nc"))
     assert bench.proving.wait(LIMIT)
-    bench.session.load(Path("second.nc"))
+    bench.session.start_loading(Path("second.nc"))
     bench.go_on.set()
     loaded = bench.settled()
     assert loaded.name == "second.nc"
-    proofs = [command.proof.digest for command in bench.posted if isinstance(command, GiveProof)]
+    proofs = [command.proof.digest for command in bench.posted if isinstance(command, SupplyProof)]
     assert proofs == ["digest of second.nc"]
 
 
 def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
     bench.found = (BAD, BAD)
-    bench.session.load(Path("part.nc"))
+    bench.session.start_loading(Path("part.nc"))
     loaded = bench.settled()
-    assert loaded.phase is Phase.REFUSED
-    assert refusal(loaded) == wording("screen.will-not-run-at-line", line=7, why=f"{BAD.message} (1 MORE)")
+    assert loaded.phase is LoadingPhase.REFUSED
+    assert make_refusal(loaded) == wording(
+        "screen.will-not-run-at-line", line=7, why=f"{BAD.message} (1 MORE)"
+    )
 
 
 def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
-    source = Source("part.nc", "G90")
-    job = Job(source, Setup(), "digest", ReadProgram(source), frozenset({1}))
-    loaded = Loaded(Phase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tools=(3, 1, 2)))
-    text = prompt(Snapshot(state=State.IDLE, program="part.nc"), loaded, "PRESS", "")
+    source = ProgramSource("part.nc", "G90")
+    job = Job(source, Setup(), "digest", SharedProgram(source), frozenset({1}))
+    loaded = LoadedProgram(
+        LoadingPhase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tool_numbers=(3, 1, 2))
+    )
+    text = make_prompt(Snapshot(state=MachineState.IDLE, program="part.nc"), loaded, "PRESS", "")
     assert text == wording("screen.no-offset-set", tools="T2, T3")
 
 
@@ -125,16 +137,16 @@ def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
     ("name", "why"), [("gone.nc", "No such file or directory"), ("broken.nc", "the reader fell over")]
 )
 def test_what_cannot_be_loaded_says_why(bench: Bench, name: str, why: str) -> None:
-    bench.session.load(Path(name))
+    bench.session.start_loading(Path(name))
     loaded = bench.settled()
-    assert loaded.phase is Phase.UNREADABLE
+    assert loaded.phase is LoadingPhase.UNREADABLE
     assert bench.posted == []
-    text = prompt(Snapshot(state=State.IDLE), loaded, "", "")
+    text = make_prompt(Snapshot(state=MachineState.IDLE), loaded, "", "")
     assert text == wording("screen.cannot-be-loaded", name=name, why=why)
 
 
 def test_block_delete_is_part_of_the_job(bench: Bench) -> None:
-    bench.session.load(Path("part.nc"), block_delete=True)
+    bench.session.start_loading(Path("part.nc"), block_delete=True)
     bench.settled()
     (load, _proof) = bench.posted
     assert isinstance(load, LoadJob)
@@ -143,7 +155,7 @@ def test_block_delete_is_part_of_the_job(bench: Bench) -> None:
 
 def test_closing_gives_up_what_is_under_way(bench: Bench) -> None:
     bench.go_on.clear()
-    bench.session.load(Path("part.nc"))
+    bench.session.start_loading(Path("part.nc"))
     assert bench.proving.wait(LIMIT)
     closing = threading.Thread(target=bench.session.close)
     closing.start()
@@ -151,4 +163,4 @@ def test_closing_gives_up_what_is_under_way(bench: Bench) -> None:
     closing.join(LIMIT)
     assert not closing.is_alive()
     assert len(bench.posted) <= 2
-    assert bench.session.now.picture is None
+    assert bench.session.loaded.picture is None

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.programs.program_loading import LoadingSteps, Phase
+from app.desk.programs.program_loading import LoadingPhase, LoadingSteps
 from app.desk.programs.program_renewal import RunningRenewal
-from core.executor.commands import Renew
+from core.executor.commands import ChangeOffsets
 from core.executor.job import Job
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from tests.desk.test_program_loading import BAD, LIMIT, Bench
 
 
@@ -23,9 +23,9 @@ class Shop(Bench):
         super().__init__()
         self.renewals = 0
         self.broken = False
-        self.session.workshop = LoadingSteps(self.read, self.make, self.prove, self.draw, self.renewed)
+        self.session.steps = LoadingSteps(self.read, self.make, self.prove, self.draw, self.renewed)
         self.renewing = RunningRenewal(self.session)
-        self.session.load(Path("part.nc"))
+        self.session.start_loading(Path("part.nc"))
         self.settled()
         self.posted.clear()
         self.proving.clear()
@@ -38,7 +38,7 @@ class Shop(Bench):
 
     def running(self, digest: str) -> Snapshot:
         """The executor goes by this job."""
-        return Snapshot(state=State.RUN, job=digest)
+        return Snapshot(state=MachineState.RUN, job=digest)
 
 
 @pytest.fixture
@@ -51,76 +51,78 @@ def shop() -> Iterator[Shop]:
 
 def test_it_is_announced_before_it_is_proved(shop: Shop) -> None:
     shop.go_on.clear()
-    assert shop.renewing.begin()
-    assert shop.posted == [Renew()]
+    assert shop.renewing.begin_renewal()
+    assert shop.posted == [ChangeOffsets()]
     shop.go_on.set()
-    shop.renewing.worker.settle(LIMIT)
+    shop.renewing.worker.wait_for_results(LIMIT)
     ready = shop.posted[1]
-    assert isinstance(ready, Renew)
+    assert isinstance(ready, ChangeOffsets)
     assert ready.job is not None
     assert ready.proof is not None
     assert (ready.job.digest, ready.proof.digest) == ("renewed 1", "renewed 1")
 
 
 def test_the_screen_keeps_the_old_program_until_the_executor_has_the_new_one(shop: Shop) -> None:
-    before = shop.session.now
-    shop.renewing.begin()
-    shop.renewing.worker.settle(LIMIT)
-    assert not shop.renewing.taken(shop.running("digest of part.nc"))
-    assert shop.session.now is before
-    assert shop.renewing.taken(shop.running("renewed 1"))
-    now = shop.session.now
+    before = shop.session.loaded
+    shop.renewing.begin_renewal()
+    shop.renewing.worker.wait_for_results(LIMIT)
+    assert not shop.renewing.is_in_use(shop.running("digest of part.nc"))
+    assert shop.session.loaded is before
+    assert shop.renewing.is_in_use(shop.running("renewed 1"))
+    now = shop.session.loaded
     assert now.job is not None
-    assert (now.job.digest, now.phase, now.path) == ("renewed 1", Phase.READY, before.path)
+    assert (now.job.digest, now.phase, now.path) == ("renewed 1", LoadingPhase.READY, before.path)
     assert now.picture is not None
 
 
 def test_a_later_one_takes_its_place(shop: Shop) -> None:
     shop.go_on.clear()
-    shop.renewing.begin()
+    shop.renewing.begin_renewal()
     assert shop.proving.wait(LIMIT)
-    shop.renewing.begin()
+    shop.renewing.begin_renewal()
     shop.go_on.set()
-    shop.renewing.worker.settle(LIMIT)
-    jobs = [command.job.digest for command in shop.posted if isinstance(command, Renew) and command.job]
+    shop.renewing.worker.wait_for_results(LIMIT)
+    jobs = [
+        command.job.digest for command in shop.posted if isinstance(command, ChangeOffsets) and command.job
+    ]
     assert jobs == ["renewed 2"]
-    assert shop.renewing.trouble() == ""
+    assert shop.renewing.poll_error() == ""
 
 
 def test_a_program_that_is_loaded_meanwhile_ends_it(shop: Shop) -> None:
     shop.go_on.clear()
-    shop.renewing.begin()
+    shop.renewing.begin_renewal()
     assert shop.proving.wait(LIMIT)
-    shop.session.load(Path("other.nc"))
+    shop.session.start_loading(Path("other.nc"))
     shop.go_on.set()
-    shop.renewing.worker.settle(LIMIT)
+    shop.renewing.worker.wait_for_results(LIMIT)
     assert shop.settled().name == "other.nc"
-    assert not shop.renewing.taken(shop.running("renewed 1"))
-    assert shop.renewing.trouble() == ""
-    assert [command for command in shop.posted if isinstance(command, Renew)] == [Renew()]
+    assert not shop.renewing.is_in_use(shop.running("renewed 1"))
+    assert shop.renewing.poll_error() == ""
+    assert [command for command in shop.posted if isinstance(command, ChangeOffsets)] == [ChangeOffsets()]
 
 
 def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
     shop.found = (BAD,)
-    shop.renewing.begin()
-    shop.renewing.worker.settle(LIMIT)
-    assert shop.renewing.trouble() == BAD.message
-    assert shop.renewing.trouble() == ""
-    assert shop.renewing.taken(shop.running("renewed 1"))
-    assert shop.session.now.phase is Phase.REFUSED
+    shop.renewing.begin_renewal()
+    shop.renewing.worker.wait_for_results(LIMIT)
+    assert shop.renewing.poll_error() == BAD.message
+    assert shop.renewing.poll_error() == ""
+    assert shop.renewing.is_in_use(shop.running("renewed 1"))
+    assert shop.session.loaded.phase is LoadingPhase.REFUSED
 
 
 def test_offsets_that_cannot_be_read_are_told_to_the_executor_too(shop: Shop) -> None:
     shop.broken = True
-    shop.renewing.begin()
-    shop.renewing.worker.settle(LIMIT)
-    assert shop.renewing.trouble() == "Input/output error"
-    assert shop.posted[-1] == Renew(trouble="Input/output error")
-    assert shop.renewing.trouble() == ""
+    shop.renewing.begin_renewal()
+    shop.renewing.worker.wait_for_results(LIMIT)
+    assert shop.renewing.poll_error() == "Input/output error"
+    assert shop.posted[-1] == ChangeOffsets(trouble="Input/output error")
+    assert shop.renewing.poll_error() == ""
 
 
 def test_without_a_program_there_is_nothing_to_renew() -> None:
     bench = Bench()
-    assert not RunningRenewal(bench.session).begin()
+    assert not RunningRenewal(bench.session).begin_renewal()
     assert bench.posted == []
     bench.session.close()

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from app.desk.run_without_screen import HeadlessRun, Outcome
-from core.executor.commands import Command, EnableDrives, Home
+from app.desk.headless_run import HeadlessRun, RunOutcome
+from core.executor.commands import Command, EnableDrives, HomeAxes
 from core.executor.job import Proof, make_job
 from core.executor.raised_alarm import make_alarm
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import Setup
-from core.language.source import Source
-from drivers.waiting import StepClock
+from core.language.source import ProgramSource
+from drivers.wakeups import ManualClock
 
 ESTOP = make_alarm("estop", "", 0, 0.0)
 
@@ -23,26 +23,26 @@ class Idle:
     """An executor that switches its drives on, homes where it can, and starts nothing."""
 
     homes: bool = True
-    snapshot: Snapshot = field(default_factory=lambda: Snapshot(state=State.DISABLED))
+    snapshot: Snapshot = field(default_factory=lambda: Snapshot(state=MachineState.DISABLED))
     posted: list[Command] = field(default_factory=list)
 
     def post(self, command: Command) -> None:
         self.posted.append(command)
 
-    def tick(self) -> None:
+    def run_tick(self) -> None:
         if any(isinstance(each, EnableDrives) for each in self.posted):
-            self.snapshot = replace(self.snapshot, state=State.IDLE)
-        if any(isinstance(each, Home) for each in self.posted):
+            self.snapshot = replace(self.snapshot, state=MachineState.IDLE)
+        if any(isinstance(each, HomeAxes) for each in self.posted):
             done = self.homes
             self.snapshot = replace(
-                self.snapshot, homed=(done,) * 3, state=State.IDLE if done else State.HOME
+                self.snapshot, homed=(done,) * 3, state=MachineState.IDLE if done else MachineState.HOME
             )
 
 
-def outcome(executor: Idle, said: list[str]) -> Outcome:
-    job = make_job(Source("part.nc", "G90G94F300\nM30\n"), Setup())
-    run = HeadlessRun(executor, StepClock(), said.append, lambda _t: None, lambda: said.append("palms"))
-    return run.run(job, Proof(job.digest, ()))
+def outcome(executor: Idle, said: list[str]) -> RunOutcome:
+    job = make_job(ProgramSource("part.nc", "G90G94F300\nM30\n"), Setup())
+    run = HeadlessRun(executor, ManualClock(), said.append, lambda _t: None, lambda: said.append("palms"))
+    return run.run_job(job, Proof(job.digest, ()))
 
 
 @dataclass
@@ -51,29 +51,29 @@ class Stopped(Idle):
 
     released: bool = False
 
-    def tick(self) -> None:
-        super().tick()
-        if self.snapshot.state is State.IDLE:
-            state = State.DISABLED if self.released else State.ESTOP
+    def run_tick(self) -> None:
+        super().run_tick()
+        if self.snapshot.state is MachineState.IDLE:
+            state = MachineState.DISABLED if self.released else MachineState.ESTOP
             self.snapshot = replace(self.snapshot, state=state, stop=ESTOP)
 
 
 @pytest.mark.parametrize("released", [False, True])
 def test_an_estop_is_an_alarm_with_its_name_and_no_refusal(released: bool) -> None:
-    ended = outcome(Stopped(snapshot=Snapshot(state=State.DISABLED), released=released), [])
-    assert ended.state == "alarm"
-    assert ended.why.startswith(ESTOP.text)
+    ended = outcome(Stopped(snapshot=Snapshot(state=MachineState.DISABLED), released=released), [])
+    assert ended.final_state == "alarm"
+    assert ended.reason.startswith(ESTOP.text)
 
 
 def test_palms_that_nobody_presses_are_waited_for_and_then_it_is_said() -> None:
     said: list[str] = []
     ended = outcome(Idle(), said)
     assert said == ["homing X, Z, C", "palms"]
-    assert ended.state == "waiting"
-    assert "no Cycle Start received" in ended.why
+    assert ended.final_state == "waiting"
+    assert "no Cycle Start received" in ended.reason
 
 
 def test_slides_that_do_not_find_home_are_no_complete_run() -> None:
     ended = outcome(Idle(homes=False), [])
-    assert ended.state == "waiting"
-    assert "homing did not finish" in ended.why
+    assert ended.final_state == "waiting"
+    assert "homing did not finish" in ended.reason

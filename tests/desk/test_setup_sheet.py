@@ -6,29 +6,31 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import load_machine, shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from app.special.setup_sheet import SetupSheet, setup_sheet
+from app.compose.machine.machine_files import load_machine, load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from app.special.setup_sheet import SetupSheet, make_setup_sheet
 from core.geometry.rotary_axes import DatumPreset
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import MillTool, ToolOffset
-from core.language.source import Source
-from core.part.stock import Stock, bar
+from core.language.source import ProgramSource
+from core.part.stock import Stock, make_bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from tests.texts import begins
 from tests.texts import text as wording
 
 TURNED = "G90G94F300\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.004Z-.5\nX.55\nG94F300Z1\nM30\n"
 SLIP = TURNED.replace("G95F.004Z-.5", "G00Z-.5")
 TOOL = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
-ROD = bar(25.4, 0.0, -60.0)
+ROD = make_bar(25.4, 0.0, -60.0)
 
 
 def sheet_of(text: str, stock: Stock | None = None, shapes: dict[int, ToolShape] | None = None) -> SetupSheet:
     machine = load_machine(None)
-    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
-    return setup_sheet(ReadProgram(Source("P", text)), setup, machine, PartSetting(stock, shapes or {}))
+    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    return make_setup_sheet(
+        SharedProgram(ProgramSource("P", text)), setup, machine, PartSettings(stock, shapes or {})
+    )
 
 
 @pytest.mark.parametrize(("stock", "shapes"), [(None, {}), (None, {1: TOOL})])
@@ -36,31 +38,31 @@ def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
     stock: Stock | None, shapes: dict[int, ToolShape]
 ) -> None:
     sheet = sheet_of(SLIP, stock, shapes)
-    assert sheet.errors == 0
+    assert sheet.error_count == 0
     one = wording("desk.one-warning")
-    some = wording("desk.many-warnings", count=sheet.warnings)
-    assert sheet.verdict == (one if sheet.warnings == 1 else some)
+    some = wording("desk.many-warnings", count=sheet.warning_count)
+    assert sheet.summary == (one if sheet.warning_count == 1 else some)
 
 
 def test_one_warning_is_told_as_one() -> None:
-    assert sheet_of(SLIP).verdict == wording("desk.one-warning")
+    assert sheet_of(SLIP).summary == wording("desk.one-warning")
 
 
 def test_an_error_of_what_is_said_is_one() -> None:
     sheet = sheet_of(SLIP, ROD, {1: TOOL})
-    assert begins(sheet.verdict, "desk.many-errors")
-    assert sheet_of(TURNED, ROD, {1: TOOL}).verdict == ""
+    assert begins(sheet.summary, "desk.many-errors")
+    assert sheet_of(TURNED, ROD, {1: TOOL}).summary == ""
 
 
 def test_a_groove_tool_without_a_width_is_assumed_and_so_is_its_width() -> None:
     grooved = "G90G94F300\nM03S900\nT1\nX.6Z-.5\nG95F.002X.4\nG94F300X.6\nZ1\nM30\n"
     groover = ToolShape(ToolKind.GROOVING, tip=3, stick_out=30.0)
-    (tool,) = sheet_of(grooved, ROD, {1: groover}).tools
-    assert tool.assumed
-    assert tool.shape is not None
-    assert tool.shape.width == 2.0
-    (said,) = sheet_of(grooved, ROD, {1: ToolShape(ToolKind.GROOVING, tip=3, width=3.0)}).tools
-    assert not said.assumed
+    (tool,) = sheet_of(grooved, ROD, {1: groover}).setup_tools
+    assert tool.is_assumed
+    assert tool.tool_shape is not None
+    assert tool.tool_shape.width == 2.0
+    (said,) = sheet_of(grooved, ROD, {1: ToolShape(ToolKind.GROOVING, tip=3, width=3.0)}).setup_tools
+    assert not said.is_assumed
 
 
 MILLED = """BEGIN PGM P MM
@@ -76,25 +78,29 @@ END PGM P MM
 
 
 def milled(preset: int = 0) -> SetupSheet:
-    machine = shipped_machine("ac-table-mill")
+    machine = load_shipped_machine("ac-table-mill")
     setup = replace(
-        setup_for(machine, tools={8: ToolOffset(z=101.6, nose_radius=4.25)}, secondary={}),
-        tool_names={"DRILL 8.5": 8}, mill_tools={8: MillTool(teeth=2, point=118.0)}, preset=preset,
+        create_setup(machine, tool_offsets={8: ToolOffset(z=101.6, nose_radius=4.25)}, secondary_offsets={}),
+        tool_names={"DRILL 8.5": 8},
+        mill_tools={8: MillTool(tooth_count=2, point_angle_deg=118.0)},
+        preset=preset,
         presets={3: DatumPreset((10.0, -20.0, -81.5), 2.5, (("C", 30.0),))},
-    )  # fmt: skip
-    return setup_sheet(ReadProgram(Source("P.h", MILLED)), setup, machine, PartSetting(None, {}))
+    )
+    return make_setup_sheet(
+        SharedProgram(ProgramSource("P.h", MILLED)), setup, machine, PartSettings(None, {})
+    )
 
 
 def test_a_mill_has_blank_preset_length_and_radius_and_no_bar_nor_chuck() -> None:
     sheet = milled()
-    assert sheet.stock_words == wording("desk.stock", size="104.000 mm × 74.000 mm × 20.000 mm")
-    assert sheet.held_words == (("PRESET", f"0   {wording('desk.of-machine-file')}"),)
-    (tool,) = sheet.tools
-    assert sheet.shape_words(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"
-    assert sheet.offset_words(tool) == "L 101.600 mm   R 4.250 mm"
-    assert [sheet.stop_word(stop) for stop in sheet.stops if stop.optional] == ["M1"]
+    assert sheet.stock_text == wording("desk.stock", size="104.000 mm × 74.000 mm × 20.000 mm")
+    assert sheet.clamping_texts == (("PRESET", f"0   {wording('desk.of-machine-file')}"),)
+    (tool,) = sheet.setup_tools
+    assert sheet.describe_shape(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"
+    assert sheet.format_offset(tool) == "L 101.600 mm   R 4.250 mm"
+    assert [sheet.format_stop(stop) for stop in sheet.program_stops if stop.is_optional] == ["M1"]
 
 
 def test_the_preset_in_force_says_where_it_lies() -> None:
     wanted = "3   X 10.000 mm   Y -20.000 mm   Z -81.500 mm   C 30.000°   ROT 2.500°"
-    assert milled(preset=3).held_words == (("PRESET", wanted),)
+    assert milled(preset=3).clamping_texts == (("PRESET", wanted),)

@@ -17,13 +17,13 @@ import pytest
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.status import sounds
-from app.desk.status.sounds import Sounds, play_aloud, tune
-from app.special.lamps_and_sound import DeskSounds
-from core.executor.snapshot import Snapshot, State
-from core.machine.hardware_model import SIGNALS
+from app.desk.status.sounds import SoundPlayer, make_tone_wav, play_wav
+from app.special.lamps_and_sound import EventSounds
+from core.executor.snapshot import MachineState, Snapshot
+from core.machine.hardware_model import MACHINE_SIGNALS
 from tests.texts import text as wording
 
-REST = Snapshot(state=State.IDLE)
+REST = Snapshot(state=MachineState.IDLE)
 
 
 class Heard:
@@ -39,40 +39,40 @@ class Heard:
             raise OSError(self.trouble)
 
 
-class Noted(Sounds):
+class Noted(SoundPlayer):
     """Keeps what is to be played."""
 
     def __init__(self) -> None:
         super().__init__()
         self.asked: list[tuple[int, ...]] = []
 
-    def play(self, tones: object, volume: int) -> None:  # noqa: ARG002
-        self.asked.append(cast("tuple[int, ...]", tones))
+    def play_tones(self, frequencies_hz: object, volume: int) -> None:  # noqa: ARG002
+        self.asked.append(cast("tuple[int, ...]", frequencies_hz))
 
 
-def desk_sounds(volume: int = 50, silent: frozenset[str] = frozenset()) -> tuple[DeskSounds, list[str]]:
+def desk_sounds(volume: int = 50, silent: frozenset[str] = frozenset()) -> tuple[EventSounds, list[str]]:
     said: list[str] = []
     keep = Persistence({"sound": {"volume": volume, "silent": sorted(silent)}})
-    return DeskSounds(cast("Desk", SimpleNamespace(say=said.append)), keep, Noted()), said
+    return EventSounds(cast("Desk", SimpleNamespace(say=said.append)), keep, Noted()), said
 
 
-def day(made: DeskSounds, *snapshots: Snapshot) -> list[tuple[int, ...]]:
+def day(made: EventSounds, *snapshots: Snapshot) -> list[tuple[int, ...]]:
     for snapshot in snapshots:
-        made.see(snapshot)
-    return cast("Noted", made.sounds).asked
+        made.play_new_events(snapshot)
+    return cast("Noted", made.sound_player).asked
 
 
-RUNS = replace(REST, state=State.RUN)
+RUNS = replace(REST, state=MachineState.RUN)
 
 
 def test_ends_stops_and_alarms_sound_once_when_they_begin() -> None:
     made, _ = desk_sounds()
-    held, fault = replace(REST, state=State.HOLD), replace(REST, state=State.FAULT)
+    held, fault = replace(REST, state=MachineState.HOLD), replace(REST, state=MachineState.FAULT)
     done = replace(REST, ends=1)
     assert day(made, REST, RUNS, RUNS, held, held, RUNS, done, done, fault, fault) == [
-        SIGNALS["stop"].tones,
-        SIGNALS["part"].tones,
-        SIGNALS["alarm"].tones,
+        MACHINE_SIGNALS["stop"].tones_hz,
+        MACHINE_SIGNALS["part"].tones_hz,
+        MACHINE_SIGNALS["alarm"].tones_hz,
     ]
 
 
@@ -84,50 +84,50 @@ def test_a_part_that_the_next_one_follows_is_not_heard() -> None:
 def test_a_tool_at_the_end_of_its_life_is_heard_while_the_cycle_runs() -> None:
     made, _ = desk_sounds()
     assert day(made, RUNS, replace(RUNS, next_barred="T1"), replace(RUNS, next_barred="T1")) == [
-        SIGNALS["tool-life"].tones
+        MACHINE_SIGNALS["tool-life"].tones_hz
     ]
 
 
 def test_what_is_silenced_and_what_has_no_volume_is_not_heard() -> None:
-    assert day(desk_sounds(silent=frozenset({"stop"}))[0], RUNS, replace(REST, state=State.HOLD)) == []
-    assert day(desk_sounds(volume=0)[0], RUNS, replace(REST, state=State.FAULT)) == []
-    fresh = DeskSounds(cast("Desk", SimpleNamespace()), Persistence(), Noted())
-    assert day(fresh, RUNS, replace(REST, state=State.FAULT)) == []  # off by default
+    assert day(desk_sounds(silent=frozenset({"stop"}))[0], RUNS, replace(REST, state=MachineState.HOLD)) == []
+    assert day(desk_sounds(volume=0)[0], RUNS, replace(REST, state=MachineState.FAULT)) == []
+    fresh = EventSounds(cast("Desk", SimpleNamespace()), Persistence(), Noted())
+    assert day(fresh, RUNS, replace(REST, state=MachineState.FAULT)) == []  # off by default
 
 
 def test_an_alarm_that_stands_when_the_desk_begins_is_shown_and_not_heard() -> None:
-    assert day(desk_sounds()[0], replace(REST, state=State.FAULT)) == []
+    assert day(desk_sounds()[0], replace(REST, state=MachineState.FAULT)) == []
 
 
 @pytest.mark.parametrize("kept", [7, {"volume": "loud"}, {"volume": 5}, [], {"volume": 10**9, "silent": [3]}])
 def test_a_setting_that_is_none_is_not_believed(kept: object) -> None:
-    made = DeskSounds(cast("Desk", SimpleNamespace()), Persistence({"sound": kept}), Noted())
-    made.recall()
-    assert 0 <= made.volume <= 100
+    made = EventSounds(cast("Desk", SimpleNamespace()), Persistence({"sound": kept}), Noted())
+    made.load_settings()
+    assert 0 <= made.volume_percent <= 100
 
 
 def test_why_nothing_is_heard_is_said_once() -> None:
     made, said = desk_sounds()
-    made.sounds.trouble = "no such device"
+    made.sound_player.error_text = "no such device"
     day(made, RUNS, REST, RUNS)
     assert said == [wording("desk.no-sound", why="no such device")]
 
 
 def test_a_sound_is_played_by_a_thread_and_a_failure_is_kept() -> None:
     heard = Heard("no loudspeaker")
-    played = Sounds(heard)
-    played.play((440,), 0)
-    played.play((), 50)
-    played.play((440,), 50)
+    played = SoundPlayer(heard)
+    played.play_tones((440,), 0)
+    played.play_tones((), 50)
+    played.play_tones((440,), 50)
     assert heard.there.acquire(timeout=60)
     played.close()
     assert played._thread is not None
     played._thread.join(60)
-    assert (heard.count, played.trouble) == (1, "no loudspeaker")
+    assert (heard.count, played.error_text) == (1, "no loudspeaker")
 
 
 def test_a_tune_is_a_wave_of_its_pitch_and_loudness() -> None:
-    with wave.open(io.BytesIO(tune((441,), 50))) as file:
+    with wave.open(io.BytesIO(make_tone_wav((441,), 50))) as file:
         assert (file.getframerate(), file.getnchannels(), file.getnframes()) == (22_050, 1, 4410)
         samples = np.frombuffer(file.readframes(4410), "<i2").astype(float)
     assert np.abs(samples).max() == pytest.approx(
@@ -140,7 +140,7 @@ def test_a_tune_is_a_wave_of_its_pitch_and_loudness() -> None:
 def test_without_a_player_that_is_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda _name: None)
     with pytest.raises(ValueError, match="none of pw-play, paplay and aplay"):
-        play_aloud(b"")
+        play_wav(b"")
 
 
 def test_a_player_that_fails_gives_way_to_the_next(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,9 +148,9 @@ def test_a_player_that_fails_gives_way_to_the_next(tmp_path: Path, monkeypatch: 
         (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n")
         (tmp_path / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
-    monkeypatch.setattr(sounds, "PLAYERS", (("paplay",), ("aplay", "-q")))
-    play_aloud(b"RIFF")
+    monkeypatch.setattr(sounds, "AUDIO_PLAYERS", (("paplay",), ("aplay", "-q")))
+    play_wav(b"RIFF")
     assert (tmp_path / "out").read_bytes() == b"RIFF"
     (tmp_path / "aplay").write_text("#!/bin/sh\nexit 3\n")
     with pytest.raises(ValueError, match="connection refused"):
-        play_aloud(b"RIFF")
+        play_wav(b"RIFF")

@@ -8,15 +8,15 @@ from functools import cache
 import pytest
 
 from app.compose.machine.machine_files import load_machine
+from app.compose.program_proving import create_loading_steps, get_samples_folder
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples, workshop
 from app.desk.background_work import AbandonedError
-from app.desk.programs.program_loading import Proved
-from app.desk.programs.start_watch import KnownPart, StartJudge, StartQuestion, with_verdict
-from core.executor.commands import CROSSES, INSIDE
+from app.desk.programs.program_loading import ProvedJob
+from app.desk.programs.start_watch import FirstMoveChecker, FirstMoveQuery, PreviousPart, add_verdict
+from core.executor.commands import FIRST_MOVE_CROSSES, TOOL_IN_PART
 from core.executor.job import Proof
-from core.executor.snapshot import ESTOP, InterruptedJob, Starts
-from core.language.source import Source, load_source
+from core.executor.snapshot import ESTOP_REASON, InterruptedJob, StartAction
+from core.language.source import ProgramSource, load_source
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartHistory
 from core.proving.tip_moves import TipMove
@@ -29,55 +29,59 @@ def watch(_reached: float = 0.0) -> None:
     """Nothing gives the work up."""
 
 
-def part_of(source: Source) -> KnownPart:
+def part_of(source: ProgramSource) -> PreviousPart:
     """A program and its part, with stock and tools as assumed."""
-    steps = workshop(load_machine(None), lambda: read_offsets(samples() / "offsets.toml"))
+    steps = create_loading_steps(
+        load_machine(None), lambda: read_offsets(get_samples_folder() / "offsets.toml")
+    )
     job = steps.make_job(source, False)
-    steps.prove(job, watch)
-    return KnownPart(job, steps.draw(job, watch))
+    steps.prove_job(job, watch)
+    return PreviousPart(job, steps.draw_path(job, watch))
 
 
 @cache
-def known(name: str, *, described: bool = False) -> KnownPart:
+def known(name: str, *, described: bool = False) -> PreviousPart:
     """A sample program and its part; ``described``: its stock and T1 are specified."""
-    part = part_of(load_source(samples() / name))
+    part = part_of(load_source(get_samples_folder() / name))
     job, picture = part.job, part.picture
     assert picture.part is not None
     if described:
         stock = PartHistory(picture.part).stock
-        setting = replace(picture.part.setting, stock=stock, shapes={1: TURNING})
-        picture = replace(picture, part=replace(picture.part, setting=setting))
-    return KnownPart(job, picture)
+        setting = replace(picture.part.part_settings, stock=stock, shapes={1: TURNING})
+        picture = replace(picture, part=replace(picture.part, part_settings=setting))
+    return PreviousPart(job, picture)
 
 
-def tip_at(part: KnownPart, x: float, z: float) -> tuple[float, ...]:
+def tip_at(part: PreviousPart, x: float, z: float) -> tuple[float, ...]:
     """Return machine X, Z and C with the tip of T1 there in the part, mm, X a radius."""
     offset = part.job.setup.tools[1]
     return offset.x + x, offset.z + z, 0.0
 
 
-def question(part: KnownPart, at: tuple[float, ...], starts: Starts = Starts.PROGRAM) -> StartQuestion:
-    return StartQuestion(part.job, starts, at, 0, 1, part)
+def question(
+    part: PreviousPart, at: tuple[float, ...], starts: StartAction = StartAction.PROGRAM
+) -> FirstMoveQuery:
+    return FirstMoveQuery(part.job, starts, at, 0, 1, part)
 
 
-def broken_in(part: KnownPart, line: int) -> KnownPart:
+def broken_in(part: PreviousPart, line: int) -> PreviousPart:
     """Return the program after an E-stop at the end of a line."""
     moves = part.picture.part
     assert moves is not None
     step = next(s for s in PartHistory(moves).steps if isinstance(s, TipMove) and s.line == line)
     z, r = step.points[-1]
-    where = (r + step.zero[0], z + step.zero[1], 0.0)
+    where = (r + step.part_zero[0], z + step.part_zero[1], 0.0)
     job, tool = part.job, step.modal.tool
     found = InterruptedJob(
         job.source.name, job.digest, job.text_digest, line, step.n, step.n, tool, 1, ("X", "Z", "C"), where,
-        ESTOP, "",
+        ESTOP_REASON, "",
     )  # fmt: skip
-    return part._replace(broken=found)
+    return part._replace(interrupted_job=found)
 
 
-def code(asked: StartQuestion) -> tuple[str, bool]:
+def code(asked: FirstMoveQuery) -> tuple[str, bool]:
     """The code of the refusal, and whether the start is announced instead."""
-    found = StartJudge().judge(asked, watch).clearance
+    found = FirstMoveChecker().check_first_move(asked, watch).start_clearance
     return found.code, bool(found.warned)
 
 
@@ -85,8 +89,8 @@ def code(asked: StartQuestion) -> tuple[str, bool]:
 @pytest.mark.parametrize("described", [False, True])
 def test_a_sample_starts_from_home_and_repeats(name: str, *, described: bool) -> None:
     part = known(name, described=described)
-    seen = StartJudge().judge(question(part, HOME)._replace(tool=0), watch)
-    assert [(each.code, each.warned, each.repeats) for each in seen.verdicts] == [
+    seen = FirstMoveChecker().check_first_move(question(part, HOME)._replace(active_tool=0), watch)
+    assert [(each.code, each.warned, each.is_for_repeat) for each in seen.verdicts] == [
         ("", "", False),
         ("", "", True),
     ]
@@ -95,7 +99,7 @@ def test_a_sample_starts_from_home_and_repeats(name: str, *, described: bool) ->
 
 def test_a_tool_inside_specified_stock_is_refused_without_any_interruption() -> None:
     part = known("knob.nc", described=True)
-    assert code(question(part, tip_at(part, 10.0, -10.0))) == (INSIDE, False)
+    assert code(question(part, tip_at(part, 10.0, -10.0))) == (TOOL_IN_PART, False)
 
 
 def test_what_rests_on_assumed_stock_is_only_announced() -> None:
@@ -104,41 +108,41 @@ def test_what_rests_on_assumed_stock_is_only_announced() -> None:
 
 
 def test_without_a_tool_in_work_its_place_says_nothing() -> None:
-    part = part_of(Source("NO TOOL", "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"))
-    assert code(question(part, HOME)._replace(tool=0)) == ("", False)
+    part = part_of(ProgramSource("NO TOOL", "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"))
+    assert code(question(part, HOME)._replace(active_tool=0)) == ("", False)
 
 
 def test_after_an_estop_in_a_groove_the_way_to_line_1_is_refused_and_a_jog_is_named() -> None:
     part = broken_in(known("grooves.nc"), 16)
-    assert part.broken is not None
-    asked = question(part, part.broken.where)._replace(tool=3)
-    found = StartJudge().judge(asked, watch).clearance
-    assert found.code == CROSSES
+    assert part.interrupted_job is not None
+    asked = question(part, part.interrupted_job.where)._replace(active_tool=3)
+    found = FirstMoveChecker().check_first_move(asked, watch).start_clearance
+    assert found.code == FIRST_MOVE_CROSSES
     assert all(key in found.why for key in ("F6", "F4", "X+"))
 
 
 def test_a_part_that_is_not_known_is_announced() -> None:
     part = known("knob.nc")
-    asked = question(part, HOME)._replace(part=None, unknown=True)
+    asked = question(part, HOME)._replace(previous_part=None, is_part_unknown=True)
     assert code(asked) == ("", True)
-    assert code(asked._replace(unknown=False)) == ("", False)
+    assert code(asked._replace(is_part_unknown=False)) == ("", False)
 
 
 def test_a_line_may_cut_where_a_program_may_not_begin() -> None:
     part = known("knob.nc", described=True)
-    assert code(question(part, tip_at(part, 10.0, -10.0), Starts.LINE))[0] != INSIDE
+    assert code(question(part, tip_at(part, 10.0, -10.0), StartAction.MDI_LINE))[0] != TOOL_IN_PART
 
 
 def test_a_refused_line_has_an_error_and_a_clear_one_none() -> None:
     part = known("knob.nc", described=True)
-    proved = Proved(Proof(part.job.digest, ()))
+    proved = ProvedJob(Proof(part.job.digest, ()))
     inside = question(part, tip_at(part, 10.0, -10.0))
-    refused = with_verdict(proved, StartJudge().judge(inside, watch))
-    assert [each.code for each in refused.diagnostics] == [INSIDE]
+    refused = add_verdict(proved, FirstMoveChecker().check_first_move(inside, watch))
+    assert [each.code for each in refused.diagnostics] == [TOOL_IN_PART]
     assert refused.proof.errors
-    clear = with_verdict(proved, StartJudge().judge(question(part, HOME), watch))
+    clear = add_verdict(proved, FirstMoveChecker().check_first_move(question(part, HOME), watch))
     assert (clear.diagnostics, clear.proof.errors) == ((), ())
-    assert clear.clearance is not None
+    assert clear.first_move_clearance is not None
 
 
 def test_a_check_that_nobody_wants_any_more_ends() -> None:
@@ -147,4 +151,4 @@ def test_a_check_that_nobody_wants_any_more_ends() -> None:
 
     part = broken_in(known("knob.nc"), 21)
     with pytest.raises(AbandonedError):
-        StartJudge().judge(question(part, HOME), given_up)
+        FirstMoveChecker().check_first_move(question(part, HOME), given_up)

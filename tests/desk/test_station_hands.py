@@ -4,25 +4,25 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.station_hands import Palms, Pot
+from app.desk.station_controls import OverridePot, PalmButtons
 
 
 @pytest.mark.parametrize(("gap", "together"), [(0.0, True), (0.5, True), (0.51, False), (3.0, False)])
 def test_palms_must_come_within_half_a_second(gap: float, together: bool) -> None:
-    palms = Palms()
+    palms = PalmButtons()
     assert palms.press("left", 10.0) is False
     assert palms.press("right", 10.0 + gap) is together
 
 
 def test_a_palm_that_repeats_keeps_its_first_time() -> None:
-    palms = Palms()
+    palms = PalmButtons()
     palms.press("left", 0.0)
     palms.press("left", 2.0)
     assert palms.press("right", 2.1) is False
 
 
 def test_a_palm_alone_is_told_and_a_good_pair_is_not() -> None:
-    palms = Palms()
+    palms = PalmButtons()
     palms.press("left", 0.0)
     assert palms.release("left") is True
     palms.press("left", 1.0)
@@ -34,22 +34,22 @@ def test_a_palm_alone_is_told_and_a_good_pair_is_not() -> None:
 
 
 def test_releasing_what_is_not_down_is_nothing() -> None:
-    assert Palms().release("left") is False
+    assert PalmButtons().release("left") is False
 
 
 def test_a_pot_turns_after_the_finger_and_arrives() -> None:
-    pot = Pot(1.5)
+    pot = OverridePot(1.5)
     pot.set(0.2)
-    assert pot.turn(0.1) is True
-    assert pot.value == pytest.approx(0.9)
+    assert pot.advance(0.1) is True
+    assert pot.position == pytest.approx(0.9)
     for _ in range(20):
-        pot.turn(0.1)
-    assert pot.value == 0.2
-    assert pot.turn(0.1) is False
+        pot.advance(0.1)
+    assert pot.position == 0.2
+    assert pot.advance(0.1) is False
 
 
 @pytest.mark.parametrize(("asked", "stands"), [(9.0, 1.5), (-1.0, 0.0)])
 def test_a_pot_has_ends(asked: float, stands: float) -> None:
-    pot = Pot(1.5)
+    pot = OverridePot(1.5)
     pot.set(asked)
     assert pot.wanted == stands

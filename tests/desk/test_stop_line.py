@@ -9,8 +9,8 @@ from multiprocessing.connection import Connection
 
 import pytest
 
-from app.compose.control.passed_files import obey_line, receive_file, send_file
-from app.desk.stop_keys.stop_records import Stop, StopKind
+from app.compose.control.descriptor_passing import handle_stop_keys, receive_descriptor, send_descriptor
+from app.desk.stop_keys.stop_records import StopKind, StopPress
 
 LIMIT = 20.0  # s
 
@@ -25,33 +25,33 @@ def ends() -> Iterator[tuple[Connection, Connection]]:
 
 def test_what_is_sent_on_a_line_is_obeyed_in_its_order(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
-    obeyed: queue.Queue[Stop] = queue.Queue()
+    obeyed: queue.Queue[StopPress] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with theirs:
-        send_file(screen, theirs.fileno())
-    obey_line(receive_file(control), obeyed.put)
-    stops = [Stop(StopKind.HOLD, 1), Stop(StopKind.ESTOP, 2), Stop(StopKind.ESC, 3)]
+        send_descriptor(screen, theirs.fileno())
+    handle_stop_keys(receive_descriptor(control), obeyed.put)
+    stops = [StopPress(StopKind.HOLD, 1), StopPress(StopKind.ESTOP, 2), StopPress(StopKind.ESC, 3)]
     with line:
         for stop in stops:
-            line.send(stop.packed())
+            line.send(stop.to_bytes())
         assert [obeyed.get(timeout=LIMIT) for _ in stops] == stops
 
 
 def test_a_record_of_another_version_is_skipped(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
-    obeyed: queue.Queue[Stop] = queue.Queue()
+    obeyed: queue.Queue[StopPress] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with theirs:
-        send_file(screen, theirs.fileno())
-    obey_line(receive_file(control), obeyed.put)
+        send_descriptor(screen, theirs.fileno())
+    handle_stop_keys(receive_descriptor(control), obeyed.put)
     with line:
         line.send(b"what is this")
-        line.send(Stop(StopKind.HOLD, 4).packed())
-        assert obeyed.get(timeout=LIMIT) == Stop(StopKind.HOLD, 4)
+        line.send(StopPress(StopKind.HOLD, 4).to_bytes())
+        assert obeyed.get(timeout=LIMIT) == StopPress(StopKind.HOLD, 4)
 
 
 def test_a_message_without_a_line_is_rejected(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
     screen.close()
     with pytest.raises(EOFError):
-        receive_file(control)
+        receive_descriptor(control)

@@ -6,21 +6,21 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.status.alarm_log import KEPT, AlarmLog, read_back
-from core.alarms import CATALOGUE, Code
-from core.executor.raised_alarm import log_line, make_alarm
-from core.executor.snapshot import Event
+from app.desk.status.alarm_log import MAX_ENTRIES, AlarmLog, parse_alarm
+from core.alarms import CATALOGUE, AlarmCode
+from core.executor.raised_alarm import format_log_line, make_alarm
+from core.executor.snapshot import LogEvent
 from core.store.store_rows import EventRow
 from tests.texts import text as wording
 
 
-def event(code: Code, detail: str = "", line: int = 0) -> Event:
+def event(code: AlarmCode, detail: str = "", line: int = 0) -> LogEvent:
     alarm = make_alarm(code, detail, line, 1.0)
     kind = {"estop": "estop", "feed-hold": "stop"}.get(code, "alarm")
-    return Event(1.0, kind, log_line(alarm), line, alarm)
+    return LogEvent(1.0, kind, format_log_line(alarm), line, alarm)
 
 
-def row(event: Event, at: str = "2020-02-03T04:05:06Z") -> EventRow:
+def row(event: LogEvent, at: str = "2020-02-03T04:05:06Z") -> EventRow:
     return EventRow(at, event.kind, event.text, event.line)
 
 
@@ -32,37 +32,40 @@ def log() -> AlarmLog:
 def test_the_newest_stands_on_top_with_its_time(log: AlarmLog) -> None:
     log.hear(event("following", "X is 2.345 off its setpoint", 4))
     log.hear(event("estop"))
-    assert [(entry.at, entry.alarm.number) for entry in log.entries] == [("09:41:07", 701), ("09:41:07", 102)]
+    assert [(entry.local_time, entry.alarm.number) for entry in log.entries] == [
+        ("09:41:07", 701),
+        ("09:41:07", 102),
+    ]
     assert log.entries[1].alarm.cause == wording("screen.off-setpoint", axis="X", distance="2.345")
 
 
 def test_an_entry_leads_to_the_record_of_the_seconds_before_it(log: AlarmLog) -> None:
-    log.hear(replace(event("following"), record="today-alarm102.scope"))
-    log.recall([row(event("following"))._replace(record="before-alarm102.scope"), row(event("estop"))])
-    records = [entry.record for entry in log.entries]
+    log.hear(replace(event("following"), record_name="today-alarm102.scope"))
+    log.add_stored([row(event("following"))._replace(record="before-alarm102.scope"), row(event("estop"))])
+    records = [entry.recording_name for entry in log.entries]
     assert records == ["today-alarm102.scope", "before-alarm102.scope", ""]
 
 
 def test_what_is_no_stop_is_none_of_it(log: AlarmLog) -> None:
-    log.hear(Event(1.0, "switch", "single block on"))
+    log.hear(LogEvent(1.0, "switch", "single block on"))
     assert log.entries == ()
 
 
 def test_it_keeps_as_many_as_it_says_and_no_more(log: AlarmLog) -> None:
-    for line in range(KEPT + 10):
+    for line in range(MAX_ENTRIES + 10):
         log.hear(event("feed-hold", line=line))
-    assert len(log.entries) == KEPT
+    assert len(log.entries) == MAX_ENTRIES
     log.hear(event("estop"))
-    assert len(log.entries) == KEPT
+    assert len(log.entries) == MAX_ENTRIES
     assert log.entries[0].alarm.code == "estop"
 
 
 def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None:
     log.hear(event("estop"))
-    log.recall([row(event("following", "Z is 1.2 off its setpoint", 7))])
+    log.add_stored([row(event("following", "Z is 1.2 off its setpoint", 7))])
     today, before = log.entries
     assert today.alarm.code == "estop"
-    assert before.at.startswith("2020-02-0")  # a day that is not today
+    assert before.local_time.startswith("2020-02-0")  # a day that is not today
     alarm = before.alarm
     assert (alarm.number, alarm.code, alarm.line) == (102, "following", 7)
     assert alarm.cause == wording("screen.off-setpoint", axis="Z", distance="1.2")
@@ -70,9 +73,9 @@ def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None
 
 
 @pytest.mark.parametrize("code", sorted(CATALOGUE))
-def test_every_alarm_comes_back_out_of_the_store(code: Code) -> None:
+def test_every_alarm_comes_back_out_of_the_store(code: AlarmCode) -> None:
     made = event(code, "what was seen: here", 3)
-    back = read_back(row(made))
+    back = parse_alarm(row(made))
     assert back is not None
     assert made.alarm is not None
     assert (back.number, back.code, back.text, back.cause, back.line) == (
@@ -92,10 +95,10 @@ def test_every_alarm_comes_back_out_of_the_store(code: Code) -> None:
     ],
 )
 def test_what_cannot_be_understood_is_left_out(log: AlarmLog, kind: str, text: str) -> None:
-    log.recall([EventRow("rubbish", kind, text, 0)])
+    log.add_stored([EventRow("rubbish", kind, text, 0)])
     assert log.entries == ()
 
 
 def test_a_time_that_is_none_is_shown_as_it_is(log: AlarmLog) -> None:
-    log.recall([row(event("estop"), at="yesterday")])
-    assert log.entries[0].at == "yesterday"
+    log.add_stored([row(event("estop"), at="yesterday")])
+    assert log.entries[0].local_time == "yesterday"

@@ -18,8 +18,8 @@ of them, ``extent X X Y Y Z Z`` for the least and the greatest ends of all moves
 Z`` on a lathe), ``way MM`` for the length of them all, ``blank X X Y Y Z Z`` for the corners of BLK FORM;
 ``*`` in a row is any figure. ``warning`` and ``note LINE CODE`` are all that is told beside. ``refused
 LINE COLUMN CODE`` is the first error of the lines that the book has as the entry's refusal, with ``on
-MACHINE`` behind it where it is another one that refuses. Lines that begin with ``#`` say how a figure was
-reckoned; ``machine NAME`` asks for another shipped machine, ``axes`` for the rotary axes in the rows,
+MACHINE`` behind it where it is another one that refuses. Lines that start_pass with ``#`` say how a figure
+was reckoned; ``machine NAME`` asks for another shipped machine, ``axes`` for the rotary axes in the rows,
 ``positions`` for those of the machine.
 """
 
@@ -29,15 +29,15 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.dialects import ReadProgram, code_book
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.dialects import SharedProgram, get_code_book
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.code_book import Entry
+from core.language.code_book import CodeBookEntry
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Dialect, Source
-from core.tool_edges import edge_key
+from core.language.source import Dialect, ProgramSource
+from core.tool_edges import make_edge_key
 from tests.dialects.golden_rows import Row, row, same
 
 FOLDER = Path(__file__).parents[1] / "programs" / "constructs"
@@ -58,7 +58,7 @@ GROUNDS = {
     Dialect.SINUMERIK: Ground(
         "sinumerik-modulo",
         "EXAMPLE.MPF",
-        {1: ToolOffset(name="ROUGHER", quadrant=3), edge_key(1, 2): ToolOffset(z=-3.0)},
+        {1: ToolOffset(name="ROUGHER", quadrant=3), make_edge_key(1, 2): ToolOffset(z=-3.0)},
     ),
 }
 
@@ -140,7 +140,7 @@ class Ran:
     def feeds(self) -> list[Block]:
         """Their moves that cut."""
         mine = [each for each in self.blocks if each.line > self.before and each.line not in self.tail]
-        return [each for each in mine if each.moves and not each.rapid and each.kind is not Kind.PLANE]
+        return [each for each in mine if each.moves and not each.rapid and each.kind is not BlockKind.PLANE]
 
     def told(self, *weights: Severity) -> list[str]:
         """Findings of these weights: ``weight LINE CODE``."""
@@ -157,17 +157,19 @@ class Ran:
         return finding.line - self.before if finding.line else 0
 
 
-def ran(dialect: Dialect, entry: Entry, lines: str, machine: str = "") -> Ran:
+def ran(dialect: Dialect, entry: CodeBookEntry, lines: str, machine: str = "") -> Ran:
     """Run these lines as the book's entry stands: between head and tail, with the programs beside it."""
-    ground, book = GROUNDS[dialect], code_book(dialect)
+    ground, book = GROUNDS[dialect], get_code_book(dialect)
     head, tail = ("", "") if entry.whole else (book.head, book.tail)
     lines = lines if lines.endswith("\n") or entry.whole else f"{lines}\n"
     last = "" if entry.whole else entry.behind + ground.last
-    files = tuple(Source(name, each) for name, each in entry.files)
-    source = Source(ground.name, f"{head}{lines}{tail}{last}", subprograms=files)
-    setup = setup_for(shipped_machine(machine or ground.machine), tools=ground.tools, secondary={})
-    run = ReadProgram(source).begin(setup)
-    blocks = list(run.blocks())
+    files = tuple(ProgramSource(name, each) for name, each in entry.files)
+    source = ProgramSource(ground.name, f"{head}{lines}{tail}{last}", subprograms=files)
+    setup = create_setup(
+        load_shipped_machine(machine or ground.machine), tool_offsets=ground.tools, secondary_offsets={}
+    )
+    run = SharedProgram(source).start_pass(setup)
+    blocks = list(run.generate_blocks())
     before, behind = head.count("\n"), head.count("\n") + lines.count("\n") + 1
     return Ran(blocks, run.diagnostics, before, range(behind, behind + tail.count("\n")))
 
@@ -205,5 +207,5 @@ def way(blocks: list[Block]) -> float:
 
 def blank(blocks: list[Block]) -> list[float]:
     """Corners of the blank that BLK FORM has told, axis by axis; empty without one."""
-    found = next((each.swivel.system.blank for each in blocks if each.swivel is not None), None)
+    found = next((each.swivel.system.blank_corners for each in blocks if each.swivel is not None), None)
     return [] if found is None else [figure for axis in zip(*found, strict=True) for figure in axis]

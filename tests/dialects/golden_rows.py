@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 from core.interpreter.shared import actions
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 
 NEAR = 6e-7
 Row = list[str | float]
@@ -52,7 +52,7 @@ def _action(action: actions.Action) -> Row:
 
 
 def _feed(block: Block) -> Row:
-    if block.kind is Kind.THREAD:
+    if block.kind is BlockKind.THREAD:
         return ["lead", block.feed]
     if block.per_rev:
         return ["F", block.feed, "rev"]
@@ -60,7 +60,7 @@ def _feed(block: Block) -> Row:
 
 
 def _on_lathe(block: Block) -> Row:
-    centre: Row = ["centre", block.cx, block.cz] if block.kind is Kind.ARC else []
+    centre: Row = ["centre", block.cx, block.cz] if block.kind is BlockKind.ARC else []
     turned: Row = ["C", block.c] if block.c != block.c0 else []
     return [str(block.kind), block.x, block.z, *centre, *turned, *_feed(block)]
 
@@ -68,11 +68,11 @@ def _on_lathe(block: Block) -> Row:
 def _on_mill(block: Block, *, axes: bool, machine: bool) -> Row:
     assert block.swivel is not None
     assert block.travel is not None
-    stands = zip("ABC", block.swivel.rotary, strict=True)
+    stands = zip("ABC", block.swivel.rotary_angles, strict=True)
     rotary: Row = [word for name, at in stands if at is not None for word in (name, at)]
-    if block.kind is Kind.PLANE:
+    if block.kind is BlockKind.PLANE:
         return ["plane", *rotary]
-    arc = block.kind is Kind.PLANE_ARC
+    arc = block.kind is BlockKind.PLANE_ARC
     way: Row = ["way", block.travel.length] if arc else []
     place: Row = [*(block.travel.end[:3] if machine else block.swivel.end)]
     return ["arc" if arc else str(block.kind), *place, *way, *_feed(block), *(rotary if axes else [])]
@@ -100,15 +100,15 @@ def switch_words(action: actions.Action) -> Row:
     """M functions that switch something; nothing for any other."""
     words: Row = []
     match action:
-        case actions.Coolant(on):
+        case actions.CoolantSwitch(on):
             words = ["coolant", "on" if on else "off"]
-        case actions.Collet(closed):
+        case actions.ColletSwitch(closed):
             words = ["collet", "closed" if closed else "open"]
-        case actions.Output(name, on):
+        case actions.OutputSwitch(name, on):
             words = ["output", name, "on" if on else "off"]
         case actions.SpindleLock(orient):
             words = ["lock", "orient"] if orient else ["lock"]
-        case actions.SpindleOrient(angle, sense):
+        case actions.SpindlePositioning(angle, sense):
             words = ["oriented", angle, *(["as", "M3" if sense > 0 else "M4"] if sense else [])]
     return words
 
@@ -121,8 +121,8 @@ def flow_words(action: actions.Action) -> Row:
             words = ["optional-stop" if optional else "stop", *message.split()]
         case actions.ProgramEnd(reset):
             words = ["end", "reset"] if reset else ["end"]
-        case actions.WaitInput(terminal, closed):
+        case actions.InputWait(terminal, closed):
             words = ["wait", terminal, "closed" if closed else "open"]
-        case actions.AskInput(terminal):
+        case actions.InputRead(terminal):
             words = ["ask", terminal]
     return words

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from core.interpreter.dialects import code_book
-from core.language.code_book import Entry
+from core.interpreter.dialects import get_code_book
+from core.language.code_book import CodeBookEntry
 from core.language.diagnostics import Severity
 from core.language.source import Dialect
 from tests.dialects.golden_constructs import GROUNDS, Golden, blank, differences, extent, goldens, ran, way
@@ -15,12 +15,12 @@ from tests.dialects.golden_constructs import GROUNDS, Golden, blank, differences
 CONSTRUCTS = [
     (dialect, entry, goldens(dialect)[entry.head])
     for dialect in GROUNDS
-    for entry in code_book(dialect).entries
+    for entry in get_code_book(dialect).entries
     if entry.head in goldens(dialect)
 ]
 
 
-def cases(chosen: Sequence[tuple[Dialect, Entry, Golden]]) -> pytest.MarkDecorator:
+def cases(chosen: Sequence[tuple[Dialect, CodeBookEntry, Golden]]) -> pytest.MarkDecorator:
     """A test for each of them, by its name."""
     return pytest.mark.parametrize(
         ("dialect", "entry", "golden"),
@@ -30,9 +30,11 @@ def cases(chosen: Sequence[tuple[Dialect, Entry, Golden]]) -> pytest.MarkDecorat
 
 
 @cases(CONSTRUCTS)
-def test_a_construct_makes_what_its_golden_says(dialect: Dialect, entry: Entry, golden: Golden) -> None:
+def test_a_construct_makes_what_its_golden_says(
+    dialect: Dialect, entry: CodeBookEntry, golden: Golden
+) -> None:
     came = ran(dialect, entry, golden.program, golden.machine)
-    assert [each.in_one_line("") for each in came.findings if each.severity is Severity.ERROR] == []
+    assert [each.format_one_line("") for each in came.findings if each.severity is Severity.ERROR] == []
     assert golden.rows or golden.sums
     if golden.rows:
         assert differences(came.rows(golden), golden.rows) == ""
@@ -46,20 +48,20 @@ def test_a_construct_makes_what_its_golden_says(dialect: Dialect, entry: Entry, 
 
 
 @cases([each for each in CONSTRUCTS if each[1].refused])
-def test_its_refusal_is_told_where_it_stands(dialect: Dialect, entry: Entry, golden: Golden) -> None:
+def test_its_refusal_is_told_where_it_stands(dialect: Dialect, entry: CodeBookEntry, golden: Golden) -> None:
     came = ran(dialect, entry, entry.refused, golden.refusing)
     assert came.first_error == golden.refused
 
 
 @pytest.mark.parametrize("dialect", GROUNDS)
 def test_a_golden_belongs_to_an_entry(dialect: Dialect) -> None:
-    assert set(goldens(dialect)) - {entry.head for entry in code_book(dialect).entries} == set()
+    assert set(goldens(dialect)) - {entry.head for entry in get_code_book(dialect).entries} == set()
 
 
 @pytest.mark.parametrize("dialect", GROUNDS)
 def test_every_entry_has_its_golden_and_its_refusal(dialect: Dialect) -> None:
     """What nothing can be written wrongly of has no refusal; what is refused by its name has no example."""
-    entries = [each for each in code_book(dialect).entries if each.example]
+    entries = [each for each in get_code_book(dialect).entries if each.example]
     assert [each.head for each in entries if each.head not in goldens(dialect)] == []
     wanted = [each.head for each in entries if each.refused]
     assert [head for head in wanted if not goldens(dialect)[head].refused] == []

@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from core.page_contents import anchor_of
+from core.page_contents import make_anchor
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -117,7 +117,7 @@ class Page:
         """Anchors of the headings, and those that the page itself sets."""
         found: dict[str, int] = {}
         for _, _, title in self.headings:
-            anchor = anchor_of(title)
+            anchor = make_anchor(title)
             found[anchor] = found.get(anchor, -1) + 1
         repeated = {f"{anchor}-{n}" for anchor, most in found.items() for n in range(1, most + 1)}
         return frozenset(found) | repeated | set(re.findall(r'<a id="([^"]+)">', self.text))

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_parser import settled
+from app.cli.command_parser import assign_screen_options
 from app.cli.main import build_parser
 from app.desk.command_errors import CommandError
-from core.page_contents import anchor_of, contents
+from core.page_contents import make_anchor, make_contents
 from tests.documents.pages import DOCS, GENERATED, ROOT, TRANSLATED, Command, Page, is_record, pages
 from tests.glossary import AVOIDED, avoided
 
@@ -117,7 +117,7 @@ def test_a_long_page_has_a_table_of_contents(page: Page) -> None:
         return
     chapters = [(number, title) for number, level, title in page.headings if level == 2]
     linked = {target for number, target in page.links if number < chapters[0][0]}
-    assert [title for _, title in chapters if f"#{anchor_of(title)}" not in linked] == []
+    assert [title for _, title in chapters if f"#{make_anchor(title)}" not in linked] == []
 
 
 @named
@@ -197,11 +197,11 @@ def _is_right(command: Command, arguments: list[str]) -> bool:
     """Return whether a command parses; of one that is only named, commands and options must exist."""
     try:
         if command.complete:
-            settled(_parser().parse_args(arguments))
+            assign_screen_options(_parser().parse_args(arguments))
             return True
         parser, rest = _named_parser(arguments)
         if parser is _parser() or any(not word.startswith("-") for word in rest):
-            settled(_parser().parse_args(arguments))
+            assign_screen_options(_parser().parse_args(arguments))
         return all(
             word.partition("=")[0] in parser._option_string_actions for word in rest if word[:2] == "--"
         )
@@ -261,7 +261,7 @@ def test_a_page_is_read_as_it_is_written(tmp_path: Path) -> None:
 
 def test_contents_link_to_the_headings() -> None:
     assert (
-        contents(["Tools, offsets", "G02/G03"])
+        make_contents(["Tools, offsets", "G02/G03"])
         == "- [Tools, offsets](#tools-offsets)\n- [G02/G03](#g02g03)\n"
     )
 

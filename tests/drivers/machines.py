@@ -10,8 +10,8 @@ import numpy as np
 from core.ports import FloatArray, Segments
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulators.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import StepClock
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ManualClock
 
 SLIDE = SimAxis(
     name="X",
@@ -35,9 +35,9 @@ CONFIG = SimConfig(
 )
 
 
-def simulation(config: SimConfig = CONFIG, powered: bool = True) -> tuple[Simulation, StepClock]:
+def simulation(config: SimConfig = CONFIG, powered: bool = True) -> tuple[Simulation, ManualClock]:
     """A machine on a clock of its own, drives on unless said otherwise."""
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(config, clock)
     if powered:
         sim.ports.axes.enable(True)
@@ -60,7 +60,7 @@ def ramp(start: float, p: Sequence[float] | FloatArray, x_speed: float, cruise: 
     )
 
 
-def play(sim: Simulation, clock: StepClock, seconds: float, tick: float = 0.01) -> None:
+def play(sim: Simulation, clock: ManualClock, seconds: float, tick: float = 0.01) -> None:
     """Let time pass, looking at the axes every ``tick``."""
     end = clock.now() + seconds
     while clock.now() < end - 1e-9:
@@ -68,4 +68,4 @@ def play(sim: Simulation, clock: StepClock, seconds: float, tick: float = 0.01) 
         sim.ports.axes.sample()
 
 
-__all__ = ["CONFIG", "SLIDE", "PlantHands", "play", "ramp", "simulation"]
+__all__ = ["CONFIG", "SLIDE", "PlantControls", "play", "ramp", "simulation"]

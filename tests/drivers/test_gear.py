@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from core.ports import Cam, DriverError, Gear, Segments, Stop, at_rest
+from core.ports import Cam, DriverError, Segments, SpindleGear, StopMode, is_queue_finished
 from drivers.simulated.simulated_machine import Simulation
-from drivers.spindle_gear import Phase
-from drivers.waiting import StepClock
+from drivers.spindle_gear import SpindlePhaseFilter
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.machines import play, ramp, simulation
 
@@ -18,10 +18,10 @@ ZERO = (0.0, 0.0, 0.0)
 LEAD = 2.0  # mm a turn
 
 
-def turning(rpm: float = 600.0) -> tuple[Simulation, StepClock, Gear]:
+def turning(rpm: float = 600.0) -> tuple[Simulation, ManualClock, SpindleGear]:
     """A lathe whose spindle is up to speed, and its gear."""
     sim, clock = simulation()
-    sim.ports.spindle.run(rpm)
+    sim.ports.spindle.run_at(rpm)
     play(sim, clock, 4.0)
     assert sim.ports.gear is not None
     return sim, clock, sim.ports.gear
@@ -29,9 +29,9 @@ def turning(rpm: float = 600.0) -> tuple[Simulation, StepClock, Gear]:
 
 def cam(sim: Simulation, lead: float = LEAD, turns: float = 10.0, start: float = 1.0) -> Cam:
     """Z, from ``start`` turns ahead: half a turn of running up, ``turns`` in step, half a turn to rest."""
-    read = sim.ports.spindle.angle()
+    read = sim.ports.spindle.read_angle()
     assert read is not None
-    sign = math.copysign(1.0, sim.machine.spindle_rpm())
+    sign = math.copysign(1.0, sim.machine.get_spindle_rpm())
     a = 2.0 * lead
     z = np.array([0.0, 0.25 * lead, (0.25 + turns) * lead])
     v, acc, still = np.array([0.0, lead, lead]), np.array([a, 0.0, -a]), np.zeros(3)
@@ -45,7 +45,7 @@ def cam(sim: Simulation, lead: float = LEAD, turns: float = 10.0, start: float =
     return Cam(read[1] + sign * start, sign, way)
 
 
-def z_of(sim: Simulation, clock: StepClock) -> float:
+def z_of(sim: Simulation, clock: ManualClock) -> float:
     return sim.ports.axes.demand_at(clock.now())[0][1]
 
 
@@ -60,7 +60,7 @@ def test_setpoints_follow_the_true_angle(rpm: float) -> None:
         clock.advance(0.01)
         z = z_of(sim, clock)
         if LEAD < z < 10.0 * LEAD:
-            turns = made.sign * (sim.machine.spindle_turns() - made.zero)
+            turns = made.sign * (sim.machine.spindle_turns() - made.start_revolutions)
             off.append(z - LEAD * (turns - 0.25))  # running up for half a turn covers a quarter of a lead
     assert len(off) > 80
     assert np.abs(off).max() < LEAD * 0.0003  # a tenth of a degree
@@ -73,7 +73,7 @@ def test_then_goes_on_by_time_at_once() -> None:
     sim, clock, gear = turning()
     made = cam(sim)
     end = (0.0, 10.5 * LEAD, 0.0)
-    gear.mesh(made._replace(then=ramp(0.0, end, 60.0, 0.2)))
+    gear.mesh(made._replace(following_segments=ramp(0.0, end, 60.0, 0.2)))
     while gear.geared() is not None:
         clock.advance(0.001)
     clock.advance(0.02)
@@ -86,7 +86,7 @@ def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim, turns=60.0))
     play(sim, clock, 0.5)
-    sim.ports.spindle.run(0.0)
+    sim.ports.spindle.run_at(0.0)
     play(sim, clock, 3.0)
     stood = z_of(sim, clock)
     assert stood > LEAD
@@ -94,7 +94,7 @@ def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
     assert z_of(sim, clock) == pytest.approx(stood, abs=1e-6)
     assert sim.ports.axes.horizon() == math.inf
     assert sim.ports.axes.sample().fault == ""
-    sim.ports.spindle.run(600.0)
+    sim.ports.spindle.run_at(600.0)
     play(sim, clock, 1.0)
     assert z_of(sim, clock) > stood + 4 * LEAD
 
@@ -108,7 +108,7 @@ def test_a_gear_slips_at_the_slides_greatest_speed_and_catches_up() -> None:
         clock.advance(0.005)
         speeds.append(sim.ports.axes.demand_at(clock.now())[1][1])
         geared = gear.geared()
-        lags.append(geared.lag if geared else 0.0)
+        lags.append(geared.lag_revolutions if geared else 0.0)
     assert max(speeds) < 127.0 * 1.001
     assert max(lags) > 0.01
     caught_up = lags[np.argmax(lags) :]
@@ -137,7 +137,7 @@ def test_the_drives_own_stop_brakes_from_where_they_are() -> None:
     gear.mesh(cam(sim, turns=60.0))
     play(sim, clock, 0.6)
     began = z_of(sim, clock)
-    sim.ports.axes.stop(Stop.RAMP_HOLD)
+    sim.ports.axes.stop(StopMode.RAMP_HOLD)
     assert gear.geared() is None
     play(sim, clock, 0.5)
     speed = LEAD * 10.0
@@ -150,7 +150,7 @@ def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
     sim, clock, gear = turning(600.0)
     lead = 4.0
     gear.mesh(cam(sim, lead=lead, turns=20.0))
-    sim.ports.spindle.run(1600.0)
+    sim.ports.spindle.run_at(1600.0)
     speeds, p = [], []
     while gear.geared() is not None:
         clock.advance(0.001)
@@ -166,11 +166,11 @@ def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
 def test_it_is_never_foretold_as_over_while_it_is_played() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim))
-    sim.ports.spindle.run(150.0)
+    sim.ports.spindle.run_at(150.0)
     while gear.geared() is not None:
-        assert not at_rest(sim.ports.axes.horizon(), clock.now())
+        assert not is_queue_finished(sim.ports.axes.horizon(), clock.now())
         clock.advance(0.00037)
-    assert at_rest(sim.ports.axes.horizon(), clock.now())
+    assert is_queue_finished(sim.ports.axes.horizon(), clock.now())
 
 
 def test_what_rounding_leaves_of_a_motion_is_rest() -> None:
@@ -180,7 +180,7 @@ def test_what_rounding_leaves_of_a_motion_is_rest() -> None:
     end = sim.ports.axes.horizon()
     clock.advance(end - clock.now() - 1e-9)
     assert sim.ports.axes.horizon() > clock.now()
-    assert at_rest(sim.ports.axes.horizon(), clock.now())
+    assert is_queue_finished(sim.ports.axes.horizon(), clock.now())
     made = cam(sim)
     x = np.array([sim.ports.axes.demand_at(end)[0][0], 0.0, 0.0])
     gear.mesh(made._replace(way=made.way._replace(p=made.way.p + x)))
@@ -241,11 +241,11 @@ def test_a_way_has_to_begin_where_the_slides_are_and_end_at_rest() -> None:
 def test_another_index_is_refused_once_it_moves() -> None:
     sim, clock, gear = turning()
     made = cam(sim, turns=60.0)
-    gear.mesh(made._replace(zero=made.zero + 1.0))
+    gear.mesh(made._replace(start_revolutions=made.start_revolutions + 1.0))
     gear.mesh(made)  # nothing has moved yet
     play(sim, clock, 0.5)
     with raises_code(DriverError, "broken-path") as told:
-        gear.mesh(made._replace(zero=made.zero + 1.0))
+        gear.mesh(made._replace(start_revolutions=made.start_revolutions + 1.0))
     assert told.value.reason == "other-index"
 
 
@@ -300,27 +300,27 @@ def test_the_angle_of_a_swinging_spindle_from_an_encoder_with_steps() -> None:
     def truth(t: float) -> float:
         return 50.0 * (t - 0.02 * 0.25 / (2 * math.pi) * math.cos(2 * math.pi * t / 0.25))  # 3000 rpm
 
-    phase = Phase(0.0, truth(0.0), 50.0)
+    phase = SpindlePhaseFilter(0.0, truth(0.0), 50.0)
     off = []
     for k in range(1, 2000):
         t = 0.001 * k
-        phase.note(t, round(truth(t) * 4096) / 4096)
-        off.append(phase.turns - truth(t))
+        phase.add_reading(t, round(truth(t) * 4096) / 4096)
+        off.append(phase.revolutions - truth(t))
     assert np.abs(off[100:]).max() * 360.0 < 0.06
     jerk = 50.0 * 0.02 * (2 * math.pi / 0.25) ** 2  # what the filter trails: jerk over the cube of its pole
     assert np.abs(off[100:]).max() < jerk / 250.0**3 + 1.0 / 4096
 
 
 def test_an_accelerating_spindle_is_met_without_lag() -> None:
-    phase = Phase(0.0, 0.0, 0.0)
+    phase = SpindlePhaseFilter(0.0, 0.0, 0.0)
     for k in range(1, 1000):
-        phase.note(0.001 * k, 12.5 * (0.001 * k) ** 2)
-    assert phase.turns == pytest.approx(12.5 * 0.999**2, abs=1e-9)
-    assert phase.at(1.009) == pytest.approx(12.5 * 1.009**2, abs=1e-6)
+        phase.add_reading(0.001 * k, 12.5 * (0.001 * k) ** 2)
+    assert phase.revolutions == pytest.approx(12.5 * 0.999**2, abs=1e-9)
+    assert phase.predict(1.009) == pytest.approx(12.5 * 1.009**2, abs=1e-6)
 
 
 def test_the_same_reading_again_says_nothing() -> None:
-    phase = Phase(1.0, 5.0, 10.0)
-    phase.note(1.0, 7.0)
-    phase.note(0.5, 9.0)
-    assert (phase.t, phase.turns, phase.speed) == (1.0, 5.0, 10.0)
+    phase = SpindlePhaseFilter(1.0, 5.0, 10.0)
+    phase.add_reading(1.0, 7.0)
+    phase.add_reading(0.5, 9.0)
+    assert (phase.time_s, phase.revolutions, phase.speed_rev_per_s) == (1.0, 5.0, 10.0)

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from core.faults import code_of
-from core.ports import DriverError, Stop
+from core.faults import get_fault_code
+from core.ports import DriverError, StopMode
 from tests.coded import raises_code
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
@@ -36,11 +36,11 @@ def test_it_does_not_matter_who_looks_when(tick: float) -> None:
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     play(sim, clock, 0.185, tick)
     clock.sleep_until(0.5)
-    looked = sim.machine.true_position()
+    looked = sim.machine.get_true_position()
     other, clock2 = simulation()
     other.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     clock2.sleep_until(0.5)
-    assert other.machine.true_position() == looked
+    assert other.machine.get_true_position() == looked
 
 
 def test_a_jammed_slide_trips_and_takes_the_others_down() -> None:
@@ -50,7 +50,7 @@ def test_a_jammed_slide_trips_and_takes_the_others_down() -> None:
     sim.machine.jam("X")
     play(sim, clock, 0.15)
     sample = sim.ports.axes.sample()
-    assert code_of(sample.fault, "driver") == "following"
+    assert get_fault_code(sample.fault, "driver") == "following"
     assert sample.fault.startswith("X: ")
     assert not sample.enabled
     with raises_code(DriverError, "no-power", "X: "):
@@ -70,23 +70,23 @@ def test_a_stuck_encoder_trips() -> None:
     sim.machine.encoder_stuck("X")
     play(sim, clock, 0.2)
     fault = sim.ports.axes.sample().fault
-    assert code_of(fault, "driver") == "following"
+    assert get_fault_code(fault, "driver") == "following"
     assert fault.startswith("X: ")
 
 
-@pytest.mark.parametrize("how", [Stop.RAMP_OFF, Stop.RAMP_HOLD, Stop.OFF])
-def test_the_drives_own_stop(how: Stop) -> None:
+@pytest.mark.parametrize("how", [StopMode.RAMP_OFF, StopMode.RAMP_HOLD, StopMode.OFF])
+def test_the_drives_own_stop(how: StopMode) -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
-    before = sim.machine.true_position()[0]
+    before = sim.machine.get_true_position()[0]
     sim.ports.axes.stop(how)
     play(sim, clock, 0.3)
     sample = sim.ports.axes.sample()
     assert not sample.moving
-    assert sample.enabled == (how is Stop.RAMP_HOLD)
+    assert sample.enabled == (how is StopMode.RAMP_HOLD)
     # v²/2a = 2.36 mm braked and the following error; friction alone takes 4.7 mm
-    assert sim.machine.true_position()[0] - before < (2.6 if how is not Stop.OFF else 4.8)
+    assert sim.machine.get_true_position()[0] - before < (2.6 if how is not StopMode.OFF else 4.8)
 
 
 def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
@@ -103,34 +103,34 @@ def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
     sim.machine.drive_fault("Z", "overtemperature")
     with raises_code(DriverError, "axis", "Z: overtemperature"):
         sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.1))
-    assert sim.machine.true_position() == ZERO
+    assert sim.machine.get_true_position() == ZERO
     assert clock.now() == 0.0
 
 
 def test_estop_is_hardware() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run(1000.0)
+    sim.ports.spindle.run_at(1000.0)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
     sim.machine.press_estop()
     play(sim, clock, 0.1)
-    assert sim.ports.station.snapshot().estop
+    assert sim.ports.station.read_state().estop
     assert not sim.ports.axes.sample().enabled
     assert not sim.ports.axes.sample().moving
     with raises_code(DriverError, "no-power", "E-stop"):
         sim.ports.axes.enable(True)
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        sim.ports.spindle.run(500.0)
+        sim.ports.spindle.run_at(500.0)
     play(sim, clock, 3.0)
-    assert sim.machine.spindle_rpm() == 0.0
+    assert sim.machine.get_spindle_rpm() == 0.0
     sim.machine.release_estop()
     play(sim, clock, 1.0)
     assert not sim.ports.axes.sample().enabled
-    assert sim.machine.spindle_rpm() == 0.0
+    assert sim.machine.get_spindle_rpm() == 0.0
 
 
 def test_homing_finds_the_switch_and_power_loss_forgets_it() -> None:
-    lost = dataclasses.replace(CONFIG.axes[1], absolute=False, power_up=-12.0, home_speed=20.0)
+    lost = dataclasses.replace(CONFIG.axes[1], absolute=False, power_up_position=-12.0, home_speed=20.0)
     config = dataclasses.replace(CONFIG, axes=(CONFIG.axes[0], lost, CONFIG.axes[2]))
     sim, clock = simulation(config)
     assert sim.ports.axes.sample().homed == (True, False, True)
@@ -162,18 +162,18 @@ def test_homing_refuses_while_moving_and_an_unknown_axis() -> None:
 
 def test_spindle_ramps_after_its_latency() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run(1500.0)
+    sim.ports.spindle.run_at(1500.0)
     clock.sleep_until(0.08)
     assert sim.ports.spindle.speed() == pytest.approx(0.0)
     clock.sleep_until(0.58)
     assert sim.ports.spindle.speed() == pytest.approx(750.0)
     clock.sleep_until(2.08)
     assert sim.ports.spindle.speed() == 1500.0
-    angle = sim.ports.spindle.angle()
+    angle = sim.ports.spindle.read_angle()
     assert angle is not None
     # half of 1500/min for 1 s, then 1500/min for 1 s
     assert angle[1] == pytest.approx(12.5 + 25.0, abs=0.0003)
-    sim.ports.spindle.run(-1500.0)
+    sim.ports.spindle.run_at(-1500.0)
     clock.sleep_until(2.16 + 0.6)
     assert sim.ports.spindle.speed() == pytest.approx(0.0, abs=1e-6)
     clock.sleep_until(2.76 + 0.5)
@@ -184,9 +184,9 @@ def test_spindle_ramps_after_its_latency() -> None:
 def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bool) -> None:
     sim, clock = simulation()
     spindle = sim.ports.spindle
-    spindle.run(1500.0)
+    spindle.run_at(1500.0)
     clock.advance(0.01)
-    spindle.coast() if coast else spindle.run(0.0)
+    spindle.coast() if coast else spindle.run_at(0.0)
     for _ in range(30):
         clock.advance(0.005)
         assert spindle.speed() == 0.0
@@ -195,17 +195,17 @@ def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bo
 def test_a_stop_that_is_repeated_stops_after_the_latency_of_the_first() -> None:
     sim, clock = simulation()
     spindle = sim.ports.spindle
-    spindle.run(600.0)
+    spindle.run_at(600.0)
     clock.advance(2.0)
     for _ in range(20):  # as the watchdog does
-        spindle.run(0.0)
+        spindle.run_at(0.0)
         clock.advance(0.01)
     assert spindle.speed() == pytest.approx(600.0 - 2500.0 * (0.2 - 0.08))
 
 
 def test_spindle_faults() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run(9000.0)
+    sim.ports.spindle.run_at(9000.0)
     clock.sleep_until(5.0)
     assert sim.ports.spindle.speed() == 3500.0
     sim.machine.spindle_bog(0.6)
@@ -213,13 +213,13 @@ def test_spindle_faults() -> None:
     assert sim.ports.spindle.speed() == pytest.approx(2100.0)
     sim.machine.spindle_bog(1.0)
     sim.machine.spindle_ignores_stop()
-    sim.ports.spindle.run(0.0)
+    sim.ports.spindle.run_at(0.0)
     clock.sleep_until(12.0)
     assert sim.ports.spindle.speed() == 3500.0
     sim.machine.spindle_fault("overcurrent")
-    assert sim.ports.spindle.fault() == "overcurrent"
+    assert sim.ports.spindle.read_fault() == "overcurrent"
     with raises_code(DriverError, "spindle-off", "overcurrent"):
-        sim.ports.spindle.run(100.0)
+        sim.ports.spindle.run_at(100.0)
     clock.sleep_until(20.0)
     assert sim.ports.spindle.speed() == 0.0
 
@@ -244,7 +244,7 @@ def test_collet_takes_its_time() -> None:
 def test_safe_keeps_the_collet() -> None:
     sim, _ = simulation()
     sim.ports.io.write("coolant", True)
-    sim.ports.io.safe()
+    sim.ports.io.switch_to_safe_state()
     assert sim.ports.io.outputs() == {"collet": True, "coolant": False, "catcher": False}
 
 
@@ -260,11 +260,11 @@ def test_c_is_not_positioned_by_a_spindle_that_turns() -> None:
     sim, clock = simulation()
     turn = ramp(0.03, ZERO, 100.0, 0.2)
     turn = turn._replace(p=turn.p[:, [1, 2, 0]], v=turn.v[:, [1, 2, 0]], a=turn.a[:, [1, 2, 0]])
-    sim.ports.spindle.run(500.0)
+    sim.ports.spindle.run_at(500.0)
     play(sim, clock, 1.0)
     with raises_code(DriverError, "drive-limits", "C axis", "500 rpm"):
         sim.ports.axes.splice(turn._replace(t=turn.t + 1.0))
-    sim.ports.spindle.run(0.0)
+    sim.ports.spindle.run_at(0.0)
     play(sim, clock, 1.0)
     sim.ports.axes.splice(turn._replace(t=turn.t + 2.0))
     play(sim, clock, 1.0)
@@ -275,13 +275,13 @@ def test_the_station_is_read_again_only_after_a_change() -> None:
     sim, clock = simulation()
     station = sim.ports.station
     play(sim, clock, 1.0)
-    first = station.snapshot()
+    first = station.read_state()
     play(sim, clock, 1.0)
-    assert station.snapshot() is first
+    assert station.read_state() is first
     sim.machine.set_feed_pot(0.5)
-    assert station.snapshot().feed_pot == pytest.approx(0.5)
+    assert station.read_state().feed_pot == pytest.approx(0.5)
     sim.ports.io.write("coolant", True)
-    assert station.snapshot() is not first
+    assert station.read_state() is not first
 
 
 @pytest.mark.parametrize("act", ["start", "noise", "silence"])
@@ -294,6 +294,6 @@ def test_a_station_that_changes_by_itself_is_read_each_time(act: str) -> None:
     }
     acts[act]()
     clock.advance(0.05)
-    before = sim.ports.station.snapshot()
+    before = sim.ports.station.read_state()
     clock.advance(0.2)
-    assert sim.ports.station.snapshot() != before
+    assert sim.ports.station.read_state() != before

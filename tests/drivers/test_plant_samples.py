@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from core.ports import FloatArray, Segments, Stop
-from drivers.port_parts import SampleLog
+from core.ports import FloatArray, Segments, StopMode
+from drivers.port_checks import SampleLog
 from drivers.simulated.simulated_machine import Simulation
 from drivers.simulators import plant
 from tests.drivers.machines import play, ramp, simulation
@@ -45,7 +45,7 @@ def test_the_samples_are_the_same_whoever_looks_when(tick: float) -> None:
         sim, clock = simulation()
         taken(sim)
         sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
-        sim.ports.spindle.run(900.0)
+        sim.ports.spindle.run_at(900.0)
         rows = []
         while clock.now() < 0.5:
             clock.advance(every)
@@ -63,7 +63,7 @@ def test_a_foreseen_motion_is_the_stepped_one(act: str, monkeypatch: pytest.Monk
     def sampled() -> FloatArray:
         sim, clock = simulation()
         taken(sim)
-        sim.ports.spindle.run(900.0)
+        sim.ports.spindle.run_at(900.0)
         sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.4))
         play(sim, clock, 0.2)
         if act == "push":
@@ -80,7 +80,7 @@ def test_a_foreseen_motion_is_the_stepped_one(act: str, monkeypatch: pytest.Monk
         return taken(sim)
 
     foreseen = sampled()
-    monkeypatch.setattr(plant, "foresee", lambda *_: None)
+    monkeypatch.setattr(plant, "predict_motion", lambda *_: None)
     np.testing.assert_allclose(foreseen, sampled(), rtol=0.0, atol=1e-9)
 
 
@@ -94,7 +94,7 @@ def test_a_spindle_is_sampled_also_while_the_slides_rest_and_its_ripple_is_the_k
     sim, clock = simulation()
     taken(sim)
     sim.machine.spindle_wander(0.02, 0.25)
-    sim.ports.spindle.run(1200.0)
+    sim.ports.spindle.run_at(1200.0)
     play(sim, clock, 3.0)
     taken(sim)
     play(sim, clock, 1.0)
@@ -122,7 +122,7 @@ def test_without_power_the_demand_is_where_the_slide_is() -> None:
     taken(sim)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     play(sim, clock, 0.15)
-    sim.ports.axes.stop(Stop.OFF)
+    sim.ports.axes.stop(StopMode.OFF)
     taken(sim)
     play(sim, clock, 0.2)
     rows = taken(sim)
@@ -132,7 +132,7 @@ def test_without_power_the_demand_is_where_the_slide_is() -> None:
 
 def test_nobody_who_takes_them_costs_nothing_and_a_late_one_has_the_last_eight_seconds() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run(600.0)
+    sim.ports.spindle.run_at(600.0)
     play(sim, clock, 1.0)
     assert taken(sim).shape == (0, 14)
     play(sim, clock, 20.0)
@@ -143,35 +143,35 @@ def test_nobody_who_takes_them_costs_nothing_and_a_late_one_has_the_last_eight_s
 
 
 def test_a_log_gives_each_row_once_the_oldest_first() -> None:
-    log = SampleLog(0, kept=4)
+    log = SampleLog(0, capacity=4)
     for n in range(6):
-        log.add(float(n), 0.0, 0.0, 0.0, 0.0)
-    assert log.take(3)[:, T].tolist() == [2.0, 3.0, 4.0]
-    log.add(6.0, 0.0, 0.0, 0.0, 0.0)
-    assert log.take()[:, T].tolist() == [5.0, 6.0]
-    assert log.take().shape == (0, 5)
+        log.append_row(float(n), 0.0, 0.0, 0.0, 0.0)
+    assert log.pop_rows(3)[:, T].tolist() == [2.0, 3.0, 4.0]
+    log.append_row(6.0, 0.0, 0.0, 0.0, 0.0)
+    assert log.pop_rows()[:, T].tolist() == [5.0, 6.0]
+    assert log.pop_rows().shape == (0, 5)
 
 
 def test_rows_added_at_once_are_as_those_one_by_one() -> None:
     for count in (1, 3, 4, 5, 9):
-        single, block = SampleLog(0, kept=4), SampleLog(0, kept=4)
+        single, block = SampleLog(0, capacity=4), SampleLog(0, capacity=4)
         rows = np.arange(5.0 * count).reshape(count, 5)
         for log in (single, block):
-            log.add(-2.0, 0.0, 0.0, 0.0, 0.0)
-            log.add(-1.0, 0.0, 0.0, 0.0, 0.0)
-            log.take(1)
+            log.append_row(-2.0, 0.0, 0.0, 0.0, 0.0)
+            log.append_row(-1.0, 0.0, 0.0, 0.0, 0.0)
+            log.pop_rows(1)
         for row in rows:
-            single.add(*row)
-        block.extend(rows)
-        assert block.last == single.last
-        np.testing.assert_array_equal(block.take(), single.take())
+            single.append_row(*row)
+        block.append_rows(rows)
+        assert block.newest_time_s == single.newest_time_s
+        np.testing.assert_array_equal(block.pop_rows(), single.pop_rows())
 
 
 def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:
     """By the speed up to 10 %, 70 % more while it speeds up, 30 % more while a slide feeds."""
     sim, clock = simulation()
     taken(sim)
-    sim.ports.spindle.run(900.0)
+    sim.ports.spindle.run_at(900.0)
     play(sim, clock, 0.25)
     early = taken(sim)[-1]
     assert 70.0 < early[SPINDLE_LOAD] < 80.0
@@ -189,4 +189,4 @@ def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:
 def test_the_rate_is_that_of_the_models_grid() -> None:
     sim, _ = simulation()
     assert sim.ports.samples is not None
-    assert sim.ports.samples.rate == pytest.approx(1000.0)  # every millisecond
+    assert sim.ports.samples.sample_rate_hz == pytest.approx(1000.0)  # every millisecond

@@ -7,22 +7,22 @@ import pytest
 
 from core.faults import DriverError, Fault
 from core.message import Message
-from core.ports import Latch
-from drivers.port_parts import (
-    FirstTouch,
-    demand_axis,
-    demand_free_drive,
-    demand_no_homing,
-    demand_output,
-    demand_power,
-    output_of,
+from core.ports import TouchLatch
+from drivers.port_checks import (
+    FirstTouchInput,
+    find_output,
+    require_axis,
+    require_free_drive,
+    require_no_homing,
+    require_output_allowed,
+    require_power,
 )
 
 
-class Touch(FirstTouch):
+class Touch(FirstTouchInput):
     def see(self, t: float, *, on: bool) -> None:
-        if self._touches(on):
-            self._kept = Latch(t, (), 0.001)
+        if self._is_first_touch(on):
+            self._kept = TouchLatch(t, (), 0.001)
 
 
 def test_an_error_keeps_template_and_values_and_a_sentence_without_values_keeps_its_braces() -> None:
@@ -45,15 +45,15 @@ def test_a_fault_that_is_handed_on_keeps_its_code_also_to_another_process() -> N
 @pytest.mark.parametrize(
     ("order", "code", "reason"),
     [
-        (lambda: demand_power(Fault("Z: drive fault", "following"), on=True), "following", ""),
-        (lambda: demand_power("cable out", on=True), "axis", ""),
-        (lambda: demand_power("", on=False), "power-lost", ""),
-        (lambda: demand_no_homing("X"), "driver", "homing"),
-        (lambda: demand_axis("Q", "XZ"), "driver", "no-axis"),
-        (lambda: demand_free_drive(enabled=False, turning=True), "c-coupling", "drives-off"),
-        (lambda: demand_free_drive(enabled=True, turning=True), "c-coupling", "spindle-turns"),
-        (lambda: output_of("lamp", {"collet": 1}), "output", ""),
-        (lambda: demand_output("lamp", True, "cable out"), "output", ""),
+        (lambda: require_power(Fault("Z: drive fault", "following"), powered=True), "following", ""),
+        (lambda: require_power("cable out", powered=True), "axis", ""),
+        (lambda: require_power("", powered=False), "power-lost", ""),
+        (lambda: require_no_homing("X"), "driver", "homing"),
+        (lambda: require_axis("Q", "XZ"), "driver", "no-axis"),
+        (lambda: require_free_drive(enabled=False, turning=True), "c-coupling", "drives-off"),
+        (lambda: require_free_drive(enabled=True, turning=True), "c-coupling", "spindle-turns"),
+        (lambda: find_output("lamp", {"collet": 1}), "output", ""),
+        (lambda: require_output_allowed("lamp", True, "cable out"), "output", ""),
     ],
 )
 def test_what_is_refused_and_why(order: Callable[[], object], code: str, reason: str) -> None:
@@ -63,22 +63,22 @@ def test_what_is_refused_and_why(order: Callable[[], object], code: str, reason:
 
 
 def test_what_may_be_done_is_not_refused() -> None:
-    demand_power("", on=True)
-    demand_no_homing("")
-    demand_axis("X", "XZ")
-    demand_free_drive(enabled=True, turning=False)
-    demand_output("lamp", False, "cable out")
-    assert output_of("collet", {"collet": 1}) == 1
+    require_power("", powered=True)
+    require_no_homing("")
+    require_axis("X", "XZ")
+    require_free_drive(enabled=True, turning=False)
+    require_output_allowed("lamp", False, "cable out")
+    assert find_output("collet", {"collet": 1}) == 1
 
 
 def test_the_first_touch_after_arming_is_kept_and_one_that_was_there_is_none() -> None:
     touch = Touch()
     touch.see(1.0, on=True)
-    touch.arm()
+    touch.arm_latch()
     touch.see(2.0, on=True)
-    assert touch.latched() is None
+    assert touch.read_latch() is None
     touch.see(3.0, on=False)
     touch.see(4.0, on=True)
     touch.see(5.0, on=False)
     touch.see(6.0, on=True)
-    assert touch.latched() == Latch(4.0, (), 0.001)
+    assert touch.read_latch() == TouchLatch(4.0, (), 0.001)

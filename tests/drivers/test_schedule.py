@@ -8,18 +8,18 @@ from collections.abc import Callable
 import pytest
 
 from app.compose.machine.machine_files import load_machine, parse_machine
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import DriverError
 from core.table_schema import MachineFileError
 from drivers.simulated.simulated_machine import SimAxes, Simulation, build_simulation
-from drivers.simulated.simulated_table import FAULTS, PlannedFault, SimulatedTable
-from drivers.simulators.plant import Plant
-from drivers.waiting import StepClock
+from drivers.simulated.simulated_table import FAULT_KINDS, PlannedFault, SimulatedTable
+from drivers.simulators.plant import SimulatedPlant
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 
-def broken(*faults: PlannedFault) -> tuple[Simulation, StepClock]:
+def broken(*faults: PlannedFault) -> tuple[Simulation, ManualClock]:
     return simulation(dataclasses.replace(CONFIG, faults=faults))
 
 
@@ -30,28 +30,28 @@ def test_a_jam_comes_in_the_middle_of_a_move() -> None:
     assert sim.ports.axes.sample().fault == ""
     play(sim, clock, 0.2)
     fault = sim.ports.axes.sample().fault
-    assert code_of(fault, "driver") == "following"
+    assert get_fault_code(fault, "driver") == "following"
     assert fault.startswith("X: ")
 
 
 def test_what_lasts_is_mended() -> None:
     sim, clock = broken(PlannedFault(0.1, "station_silent", seconds=0.5))
     play(sim, clock, 0.3)
-    assert sim.ports.station.snapshot().age > 0.1
+    assert sim.ports.station.read_state().age > 0.1
     play(sim, clock, 0.5)
-    assert sim.ports.station.snapshot().age == 0.0
+    assert sim.ports.station.read_state().age == 0.0
 
 
 def test_a_bogged_spindle_gets_its_speed_back() -> None:
     sim, clock = broken(PlannedFault(3.0, "spindle_bog", value=0.4, seconds=2.0))
-    sim.ports.spindle.run(1000.0)
+    sim.ports.spindle.run_at(1000.0)
     play(sim, clock, 4.9)
     assert sim.ports.spindle.speed() == pytest.approx(400.0)
     play(sim, clock, 2.0)
     assert sim.ports.spindle.speed() == pytest.approx(1000.0)
 
 
-@pytest.mark.parametrize("what", FAULTS)
+@pytest.mark.parametrize("what", FAULT_KINDS)
 def test_whatever_a_machine_file_may_name_the_simulation_can_break(what: str) -> None:
     sim, clock = broken(PlannedFault(0.05, what, "Z", 0.1, 0.05))
     play(sim, clock, 0.3)
@@ -60,7 +60,7 @@ def test_whatever_a_machine_file_may_name_the_simulation_can_break(what: str) ->
 def test_an_unknown_fault_is_refused() -> None:
     config = dataclasses.replace(CONFIG, faults=(PlannedFault(1.0, "rust"),))
     with raises_code(DriverError, "driver", "'rust'"):
-        build_simulation(config, StepClock())
+        build_simulation(config, ManualClock())
 
 
 # --- their table in the machine file ------------------------------------------------------------------------
@@ -69,7 +69,7 @@ def test_an_unknown_fault_is_refused() -> None:
 def table_with(lines: str) -> SimulatedTable:
     """[sim] of the shipped lathe with these lines. Raises MachineFileError."""
     text = load_machine().text.replace("[sim]\n", f"[sim]\n{lines}\n", 1)
-    table = parse_machine(text, "lathe.toml").hardware.table(SimulatedTable)
+    table = parse_machine(text, "lathe.toml").hardware.find_driver_table(SimulatedTable)
     assert table is not None
     return table
 
@@ -107,7 +107,7 @@ def test_every_fault_and_tip_of_a_list_is_read_in_its_order() -> None:
 def test_a_fault_that_makes_no_sense_is_refused_where_it_stands(lines: str, path: str, value: str) -> None:
     with pytest.raises(MachineFileError) as told:
         table_with(lines)
-    (finding,) = told.value.errors
+    (finding,) = told.value.findings
     assert (finding.path, finding.value) == (path, value)
 
 
@@ -116,32 +116,32 @@ def test_a_fault_that_makes_no_sense_is_refused_where_it_stands(lines: str, path
 
 @pytest.mark.parametrize(("speed", "moving"), [(0.5, True), (-0.02, True), (0.005, False)])
 def test_a_slide_moves_from_a_hundredth_of_a_millimetre_a_second_on(speed: float, moving: bool) -> None:
-    plant = Plant(CONFIG, StepClock())
+    plant = SimulatedPlant(CONFIG, ManualClock())
     plant.servos[0].v = speed
     assert SimAxes(plant).sample().moving is moving
 
 
 @pytest.mark.parametrize("measures", [True, False])
 def test_the_load_of_the_spindle_is_told_where_an_input_measures_it(measures: bool) -> None:
-    sim, clock = simulation(dataclasses.replace(CONFIG, measures_load=measures))
+    sim, clock = simulation(dataclasses.replace(CONFIG, has_load_input=measures))
     play(sim, clock, 0.1)
-    assert (sim.ports.station.snapshot().spindle_load is not None) is measures
+    assert (sim.ports.station.read_state().spindle_load is not None) is measures
 
 
 # --- what the ports refuse ----------------------------------------------------------------------------------
 
-ORIENTS = dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, orients=True))
+ORIENTS = dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, can_orient=True))
 
 
 @pytest.mark.parametrize("broken", [False, True])
 def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle(broken: bool) -> None:
     sim, clock = simulation(ORIENTS)
     assert sim.ports.orientation is not None
-    sim.ports.orientation.orient(90.0)
+    sim.ports.orientation.orient_spindle(90.0)
     play(sim, clock, 3.0)
-    assert sim.ports.orientation.oriented()
-    sim.ports.orientation.release()
-    assert not sim.ports.orientation.oriented()
+    assert sim.ports.orientation.is_oriented()
+    sim.ports.orientation.release_spindle()
+    assert not sim.ports.orientation.is_oriented()
     if broken:
         sim.machine.spindle_fault("over-current")
     else:
@@ -149,19 +149,21 @@ def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle
     why = "over-current" if broken else "E-stop"
     orientation = sim.ports.orientation
     acts: tuple[Callable[[], None], ...] = (
-        lambda: orientation.orient(0.0),
-        lambda: sim.ports.spindle.run(100.0),
+        lambda: orientation.orient_spindle(0.0),
+        lambda: sim.ports.spindle.run_at(100.0),
     )
     for act in acts:
         with raises_code(DriverError, "spindle-off", why):
             act()
-    sim.ports.spindle.run(0.0)  # to stop is always taken
-    assert (sim.ports.spindle.fault() == "over-current") is broken
+    sim.ports.spindle.run_at(0.0)  # to stop is always taken
+    assert (sim.ports.spindle.read_fault() == "over-current") is broken
 
 
 def test_without_an_encoder_there_is_no_angle_and_without_a_setter_no_touch() -> None:
-    sim, _ = simulation(dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, ppr=0)))
-    assert sim.ports.spindle.angle() is None
+    sim, _ = simulation(
+        dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, pulses_per_rev=0))
+    )
+    assert sim.ports.spindle.read_angle() is None
     assert (sim.ports.touch, sim.ports.orientation) == (None, None)
 
 
@@ -177,4 +179,4 @@ def test_axes_and_outputs_that_are_not_there_are_named() -> None:
 def test_the_rate_of_the_samples_is_that_of_the_grid() -> None:
     sim, _ = simulation()
     assert sim.ports.samples is not None
-    assert sim.ports.samples.rate == pytest.approx(1.0 / CONFIG.step)
+    assert sim.ports.samples.sample_rate_hz == pytest.approx(1.0 / CONFIG.step_s)

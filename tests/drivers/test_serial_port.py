@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from drivers.serial_line import LineSettings, WireError
-from drivers.serial_port import SerialWire, Unmarker
+from drivers.serial_line import LineSettings, SerialLineError
+from drivers.serial_port import ParityMarkDecoder, SerialPort
 from tests.coded import raises_code
 from tests.drivers.ptys import open_pty
 
@@ -19,38 +19,38 @@ MARKED, MEANT = b"A\xff\xffB\xff\x00CD\xff\x00\x00", b"A\xffBCD\x00"
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4, 5, len(MARKED)])
 def test_marks_are_taken_out_and_counted_wherever_the_bytes_are_cut(size: int) -> None:
-    marks = Unmarker()
-    come = b"".join(marks.feed(MARKED[at : at + size]) for at in range(0, len(MARKED), size))
-    assert (come, marks.damaged) == (MEANT, 2)
+    marks = ParityMarkDecoder()
+    come = b"".join(marks.decode(MARKED[at : at + size]) for at in range(0, len(MARKED), size))
+    assert (come, marks.damaged_count) == (MEANT, 2)
 
 
 def test_a_mark_whose_end_has_not_come_waits_for_it() -> None:
-    marks = Unmarker()
-    assert [marks.feed(each) for each in (b"G\xff", b"\x00", b"1")] == [b"G", b"", b"1"]
-    assert marks.damaged == 1
+    marks = ParityMarkDecoder()
+    assert [marks.decode(each) for each in (b"G\xff", b"\x00", b"1")] == [b"G", b"", b"1"]
+    assert marks.damaged_count == 1
 
 
 def test_a_port_that_is_not_there_or_is_none_says_which_and_why(tmp_path: Path) -> None:
-    with raises_code(WireError, "driver", "/dev/ttyNone") as told:
-        SerialWire(LineSettings("/dev/ttyNone"))
+    with raises_code(SerialLineError, "driver", "/dev/ttyNone") as told:
+        SerialPort(LineSettings("/dev/ttyNone"))
     assert told.value.reason == "not-opened"
     file = tmp_path / "file"
     file.write_bytes(b"")
-    with raises_code(WireError, "driver", file) as told:
-        SerialWire(LineSettings(str(file)))
+    with raises_code(SerialLineError, "driver", file) as told:
+        SerialPort(LineSettings(str(file)))
     assert told.value.reason == "not-opened"
 
 
 def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
     far, near = open_pty()
     name = os.ttyname(near)
-    wire = SerialWire(LineSettings(name))
+    wire = SerialPort(LineSettings(name))
     os.close(near)
     os.write(far, b"G90\n")
     assert wire.receive(1.0) == b"G90\n"
     os.close(far)
-    for ask in (lambda: wire.receive(0.0), lambda: wire.send(b"x"), lambda: wire.offer(b"x")):
-        with raises_code(WireError, "driver", name) as told:
+    for ask in (lambda: wire.receive(0.0), lambda: wire.send(b"x"), lambda: wire.send_available(b"x")):
+        with raises_code(SerialLineError, "driver", name) as told:
             ask()
         assert told.value.reason == "failed"
     wire.close()
@@ -60,15 +60,15 @@ def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
 def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() -> None:
     """What the kernel holds is known, can be dropped, and does not keep the port."""
     far, near = open_pty()
-    wire = SerialWire(LineSettings(os.ttyname(near)))
-    taken = wire.offer(b"X" * 4096)
+    wire = SerialPort(LineSettings(os.ttyname(near)))
+    taken = wire.send_available(b"X" * 4096)
     # The kernel moves what it holds on to the far side, which makes room once more.
     while select.select([], [near], [], 0.2)[1]:
-        taken += wire.offer(b"X" * 4096)
+        taken += wire.send_available(b"X" * 4096)
     assert taken > 4096
-    assert wire.offer(b"X") == 0
-    wire.drop_output()
-    wire.discard()
+    assert wire.send_available(b"X") == 0
+    wire.discard_output()
+    wire.discard_input()
     assert wire.receive(0.0) == b""
     wire.close()
     os.close(near)
@@ -78,11 +78,11 @@ def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() 
 def test_nothing_is_damaged_where_nobody_watches() -> None:
     far, near = open_pty()
     for watch in (False, True):
-        wire = SerialWire(LineSettings(os.ttyname(near)), watch=watch)
+        wire = SerialPort(LineSettings(os.ttyname(near)), count_damaged=watch)
         os.write(far, b"\xff\x01")
         assert wire.receive(1.0) == b"\xff\x01"
-        assert wire.damaged == 0
-        assert wire.waiting() == 0
+        assert wire.damaged_count == 0
+        assert wire.count_unsent() == 0
         wire.close()
     os.close(near)
     os.close(far)

@@ -10,15 +10,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drivers.simulators.plant_config import SimAxis
-from drivers.simulators.servo_axis import Servo, ServoLoop, Setpoints
+from drivers.simulators.servo_axis import ServoLoop, SetpointPolynomial, SimulatedServo
 from tests.drivers.machines import SLIDE
 
 DT = 0.001  # s
 NEAR = 1e-9  # mm, and mm/s per 1000
 
 
-def moving(p: float, v: float) -> Servo:
-    servo = Servo(SLIDE, DT)
+def moving(p: float, v: float) -> SimulatedServo:
+    servo = SimulatedServo(SLIDE, DT)
     servo.p, servo.v = p, v
     return servo
 
@@ -33,15 +33,15 @@ def moving(p: float, v: float) -> Servo:
 def test_one_evaluation_is_as_many_steps(
     start: float, speed: float, off: float, accel: float, steps: int
 ) -> None:
-    setpoints = Setpoints(start + off, speed * DT, 0.5 * accel * DT * DT)
+    setpoints = SetpointPolynomial(start + off, speed * DT, 0.5 * accel * DT * DT)
     stepped, glided = moving(start, speed), moving(start, speed)
-    response = glided.foresee(setpoints, steps)
+    response = glided.predict_response(setpoints, steps)
     assume(response is not None)
     assert response is not None
-    glided.glide(setpoints, response, steps)
+    glided.follow_response(setpoints, response, steps)
     for k in range(steps):
         t = k * DT
-        assert not stepped.follow(start + off + (speed + 0.5 * accel * t) * t, speed + accel * t, DT)
+        assert not stepped.follow_setpoint(start + off + (speed + 0.5 * accel * t) * t, speed + accel * t, DT)
     assert glided.p == pytest.approx(stepped.p, abs=NEAR)
     assert glided.v == pytest.approx(stepped.v, abs=1000 * NEAR)
     assert glided.load == pytest.approx(stepped.load, abs=1e-4)
@@ -49,10 +49,10 @@ def test_one_evaluation_is_as_many_steps(
 
 
 def test_an_even_move_is_foreseen() -> None:
-    assert moving(0.0, 100.0).foresee(Setpoints(0.08, 0.1, 0.0), 1000) is not None
+    assert moving(0.0, 100.0).predict_response(SetpointPolynomial(0.08, 0.1, 0.0), 1000) is not None
 
 
-EVEN = Setpoints(0.017, 0.02, 0.0)  # 20 mm/s; the following error at that speed is 0.016 mm
+EVEN = SetpointPolynomial(0.017, 0.02, 0.0)  # 20 mm/s; the following error at that speed is 0.016 mm
 
 
 @pytest.mark.parametrize(
@@ -65,32 +65,32 @@ EVEN = Setpoints(0.017, 0.02, 0.0)  # 20 mm/s; the following error at that speed
     ids=["window", "force", "speed"],
 )
 def test_where_one_limit_may_act_it_is_stepped(limited: SimAxis) -> None:
-    free, bound = Servo(SLIDE, DT), Servo(limited, DT)
+    free, bound = SimulatedServo(SLIDE, DT), SimulatedServo(limited, DT)
     free.v = bound.v = 20.0
-    assert free.foresee(EVEN, 50) is not None
-    assert bound.foresee(EVEN, 50) is None
+    assert free.predict_response(EVEN, 50) is not None
+    assert bound.predict_response(EVEN, 50) is None
 
 
 def test_a_start_beside_the_setpoint_counts_for_the_window() -> None:
-    narrow = Servo(dataclasses.replace(SLIDE, following_window=0.005), DT)
-    assert narrow.foresee(Setpoints(0.001, 0.0, 0.0), 50) is not None
-    assert narrow.foresee(Setpoints(0.006, 0.0, 0.0), 50) is None
+    narrow = SimulatedServo(dataclasses.replace(SLIDE, following_window=0.005), DT)
+    assert narrow.predict_response(SetpointPolynomial(0.001, 0.0, 0.0), 50) is not None
+    assert narrow.predict_response(SetpointPolynomial(0.006, 0.0, 0.0), 50) is None
 
 
 @pytest.mark.parametrize(("share", "foreseen"), [(0.9, True), (1.1, False)])
 def test_the_force_of_the_first_step_counts(share: float, foreseen: bool) -> None:
     """In its fast mode alone the servo needs more force in the first step than in all that follow."""
     loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth * DT, SLIDE.feed_forward)
-    first = share * SLIDE.amax * SLIDE.reserve * DT * DT
-    p = first * loop.fast_mode / loop.fast_bend
+    first = share * SLIDE.amax * SLIDE.accel_reserve * DT * DT
+    p = first * loop.fast_mode / loop.fast_curvature
     servo = moving(p, (p - p / loop.fast_mode) / DT)
-    assert (servo.foresee(Setpoints(0.0, 0.0, 0.0), 50) is not None) is foreseen
+    assert (servo.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 50) is not None) is foreseen
 
 
 @pytest.mark.parametrize(("accel", "foreseen"), [(1500.0, True), (4000.0, False)])
 def test_an_acceleration_beyond_the_drives_is_stepped(accel: float, foreseen: bool) -> None:
     """The drive has 1.3 times 3048 mm/s²; here the first step needs no force."""
-    response = moving(0.0, 0.0).foresee(Setpoints(0.0, 0.0, 0.5 * accel * DT * DT), 4)
+    response = moving(0.0, 0.0).predict_response(SetpointPolynomial(0.0, 0.0, 0.5 * accel * DT * DT), 4)
     assert (response is not None) is foreseen
 
 
@@ -101,18 +101,18 @@ def test_a_faulty_slide_is_stepped(fault: dict[str, float]) -> None:
     servo = moving(0.0, 0.0)
     for name, value in fault.items():
         setattr(servo, name, value)
-    assert servo.foresee(Setpoints(0.0, 0.0, 0.0), 10) is None
+    assert servo.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 10) is None
 
 
 @pytest.mark.parametrize("worn", ["gib", "ripple", "missed"])
 def test_a_worn_slide_is_stepped(worn: str) -> None:
     servo = moving(0.0, 0.0)
     setattr(servo.worn, worn, 0.01)
-    assert servo.foresee(Setpoints(0.0, 0.0, 0.0), 10) is None
+    assert servo.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 10) is None
 
 
 def test_a_loop_that_would_oscillate_is_refused_and_its_axis_is_stepped() -> None:
     with pytest.raises(ValueError, match=r"0\.5"):
         ServoLoop(0.5, 1.0)
-    stiff = Servo(dataclasses.replace(SLIDE, bandwidth=100.0), DT)
-    assert stiff.foresee(Setpoints(0.0, 0.0, 0.0), 10) is None
+    stiff = SimulatedServo(dataclasses.replace(SLIDE, bandwidth=100.0), DT)
+    assert stiff.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 10) is None

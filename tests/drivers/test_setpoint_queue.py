@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.ports import DriverError, Segments
-from drivers.setpoint_queue import SetpointQueue, Tolerance
+from drivers.setpoint_queue import JunctionTolerance, SetpointQueue
 from tests.coded import raises_code
 from tests.drivers.machines import ramp
 
@@ -16,44 +16,44 @@ REST = (1.0, 2.0, 3.0)
 
 
 def queue() -> SetpointQueue:
-    return SetpointQueue(("X", "Z", "C"), REST, 0.03, Tolerance((0.001,) * 3, (3.0, 3.0, 3.6)))
+    return SetpointQueue(("X", "Z", "C"), REST, 0.03, JunctionTolerance((0.001,) * 3, (3.0, 3.0, 3.6)))
 
 
 def test_plays_what_was_queued_and_rests_after_it() -> None:
     q = queue()
     q.splice(ramp(0.05, REST, 60.0, 0.2), now=0.0)
-    assert q.demand_at(0.0) == (REST, (0.0, 0.0, 0.0))
-    p, v = q.demand_at(0.05 + 0.02 + 0.1)
+    assert q.commanded_state_at(0.0) == (REST, (0.0, 0.0, 0.0))
+    p, v = q.commanded_state_at(0.05 + 0.02 + 0.1)
     assert v == pytest.approx((60.0, 0.0, 0.0))
     assert p[0] == pytest.approx(1.0 + 0.6 + 6.0)  # half of 60*0.02, then 60*0.1
-    p, v = q.demand_at(9.0)
+    p, v = q.commanded_state_at(9.0)
     assert p == pytest.approx((1.0 + 1.2 + 12.0, 2.0, 3.0))
     assert v == (0.0, 0.0, 0.0)
-    assert q.horizon(0.0) == pytest.approx(0.29)
-    assert q.horizon(7.0) == 7.0
+    assert q.queue_end(0.0) == pytest.approx(0.29)
+    assert q.queue_end(7.0) == 7.0
 
 
 def test_a_splice_replaces_what_came_later() -> None:
     q = queue()
     q.splice(ramp(0.03, REST, 60.0, 1.0), now=0.0)
-    p, v = q.demand_at(0.5)
+    p, v = q.commanded_state_at(0.5)
     brake = Segments(
         np.array([0.5]), np.array([0.02]), np.array([p]), np.array([v]), np.array([[-3000.0, 0.0, 0.0]])
     )
     q.splice(brake, now=0.47)
-    assert q.horizon(0.47) == pytest.approx(0.52)
-    assert q.demand_at(1.0)[0][0] == pytest.approx(p[0] + 0.6)
-    assert q.demand_at(0.4)[1][0] == pytest.approx(60.0)
+    assert q.queue_end(0.47) == pytest.approx(0.52)
+    assert q.commanded_state_at(1.0)[0][0] == pytest.approx(p[0] + 0.6)
+    assert q.commanded_state_at(0.4)[1][0] == pytest.approx(60.0)
 
 
 def test_splice_after_the_end_waits_at_rest() -> None:
     q = queue()
     q.splice(ramp(0.03, REST, 60.0, 0.1), now=0.0)
-    rest = q.demand_at(1.0)[0]
+    rest = q.commanded_state_at(1.0)[0]
     q.splice(ramp(2.0, (rest[0], rest[1], rest[2]), -60.0, 0.1), now=1.0)
-    assert q.demand_at(1.9)[0] == pytest.approx(rest)
-    assert q.demand_at(1.9)[1] == (0.0, 0.0, 0.0)
-    assert q.demand_at(3.0)[0] == pytest.approx(REST)
+    assert q.commanded_state_at(1.9)[0] == pytest.approx(rest)
+    assert q.commanded_state_at(1.9)[1] == (0.0, 0.0, 0.0)
+    assert q.commanded_state_at(3.0)[0] == pytest.approx(REST)
 
 
 def test_refuses_what_starts_before_commit() -> None:
@@ -61,7 +61,7 @@ def test_refuses_what_starts_before_commit() -> None:
     with raises_code(DriverError, "late") as told:
         q.splice(ramp(0.029, REST, 60.0, 0.1), now=0.0)
     assert told.value.reason == "too-early"
-    assert q.horizon(0.0) == 0.0
+    assert q.queue_end(0.0) == 0.0
 
 
 def in_slices(start: float, count: int) -> Segments:
@@ -74,11 +74,11 @@ def in_slices(start: float, count: int) -> Segments:
 def test_a_long_path_gives_way_to_what_has_to_go_on() -> None:
     q = queue()
     asked: list[float] = []
-    q.give_way = lambda: asked.append(q.horizon(0.0))
+    q.yield_cpu = lambda: asked.append(q.queue_end(0.0))
     q.splice(in_slices(0.05, 1000), now=0.0)
     assert len(asked) == 10
     assert asked == [0.0] * 10  # nothing of it is played before all of it is there
-    assert q.horizon(0.0) == pytest.approx(2.05)
+    assert q.queue_end(0.0) == pytest.approx(2.05)
 
 
 def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
@@ -88,13 +88,13 @@ def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
     def go_on() -> None:
         fed[0] += 0.01
 
-    q.give_way, q.handed_out = go_on, lambda: fed[0]
+    q.yield_cpu, q.get_transferred_until = go_on, lambda: fed[0]
     q.splice(in_slices(0.05, 400), now=0.0)
     fed[0] = 0.0
     with raises_code(DriverError, "late", "10.0 ms") as error:
         q.splice(in_slices(0.05, 600), now=0.0)
     assert error.value.reason == "too-early"
-    assert q.horizon(0.0) == pytest.approx(0.85)
+    assert q.queue_end(0.0) == pytest.approx(0.85)
 
 
 @pytest.mark.parametrize(("off", "axis"), [(0.0011, 0), (-0.0011, 1), (0.0011, 2)])
@@ -161,21 +161,21 @@ def test_refuses_no_numbers_and_wrong_shapes() -> None:
 def test_brake_needs_nobody() -> None:
     q = queue()
     q.splice(ramp(0.03, REST, 60.0, 1.0), now=0.0)
-    before = q.demand_at(0.5)[0][0]
-    assert q.brake(0.5, (3000.0, 3000.0, 3600.0)) == pytest.approx(0.52)
-    assert q.demand_at(0.52)[1] == (0.0, 0.0, 0.0)
-    assert q.demand_at(9.0)[0][0] == pytest.approx(before + 0.6)  # v²/2a
+    before = q.commanded_state_at(0.5)[0][0]
+    assert q.brake_to_rest(0.5, (3000.0, 3000.0, 3600.0)) == pytest.approx(0.52)
+    assert q.commanded_state_at(0.52)[1] == (0.0, 0.0, 0.0)
+    assert q.commanded_state_at(9.0)[0][0] == pytest.approx(before + 0.6)  # v²/2a
 
 
 def test_trimming_forgets_only_the_past() -> None:
     q, rest = queue(), REST
     for k in range(100):
         q.splice(ramp(0.1 + k, rest, 60.0 if k % 2 else -60.0, 0.1), now=float(k))
-        after = q.demand_at(k + 0.9)[0]
+        after = q.commanded_state_at(k + 0.9)[0]
         rest = (after[0], after[1], after[2])
-    late = q.demand_at(99.15)
-    q.trim(99.1)
-    assert q.demand_at(99.15) == late
+    late = q.commanded_state_at(99.15)
+    q.discard_before(99.1)
+    assert q.commanded_state_at(99.15) == late
     assert len(q._pieces) < 20
 
 
@@ -194,11 +194,11 @@ def test_any_splices_leave_a_continuous_queue_that_ends_at_rest(
     for wait, speed, cruise in calls:
         now += wait
         try:
-            p, _ = q.demand_at(now + 0.03)
+            p, _ = q.commanded_state_at(now + 0.03)
             q.splice(ramp(now + 0.03, (p[0], p[1], p[2]), speed, cruise), now)
         except DriverError:
             continue
-    assert q.demand_at(q.horizon(now) + 1e-9)[1] == (0.0, 0.0, 0.0)
-    times = np.arange(0.0, q.horizon(now) + 0.01, 0.0005)
-    x = np.array([q.demand_at(float(t))[0][0] for t in times])
+    assert q.commanded_state_at(q.queue_end(now) + 1e-9)[1] == (0.0, 0.0, 0.0)
+    times = np.arange(0.0, q.queue_end(now) + 0.01, 0.0005)
+    x = np.array([q.commanded_state_at(float(t))[0][0] for t in times])
     assert np.abs(np.diff(x)).max() <= 120.0 * 0.0005 + 0.0011

@@ -11,22 +11,22 @@ def test_both_palms_together_start() -> None:
     sim, clock = simulation()
     sim.machine.press_left()
     clock.advance(0.49)
-    assert not sim.ports.station.snapshot().start
+    assert not sim.ports.station.read_state().start
     sim.machine.press_right()
-    assert sim.ports.station.snapshot().start
+    assert sim.ports.station.read_state().start
     clock.advance(3.0)
-    assert sim.ports.station.snapshot().start
+    assert sim.ports.station.read_state().start
     sim.machine.release_right()
-    assert not sim.ports.station.snapshot().start
+    assert not sim.ports.station.read_state().start
 
 
 def test_a_short_press_lasts_one_pulse() -> None:
     sim, clock = simulation()
     sim.machine.press_start()
     clock.advance(0.09)
-    assert sim.ports.station.snapshot().start
+    assert sim.ports.station.read_state().start
     clock.advance(0.02)
-    assert not sim.ports.station.snapshot().start
+    assert not sim.ports.station.read_state().start
 
 
 @pytest.mark.parametrize("apart", [0.51, 5.0])
@@ -35,7 +35,7 @@ def test_palms_too_far_apart_do_not_start(apart: float) -> None:
     sim.machine.press_left()
     clock.advance(apart)
     sim.machine.press_right()
-    assert not sim.ports.station.snapshot().start
+    assert not sim.ports.station.read_state().start
 
 
 def test_a_palm_tied_down_never_starts_again() -> None:
@@ -46,15 +46,15 @@ def test_a_palm_tied_down_never_starts_again() -> None:
         sim.machine.release_right()
         clock.advance(0.2)
         sim.machine.press_right()
-        assert not sim.ports.station.snapshot().start
+        assert not sim.ports.station.read_state().start
     sim.machine.release_left()
     clock.advance(0.2)
     sim.machine.press_left()
-    assert not sim.ports.station.snapshot().start
+    assert not sim.ports.station.read_state().start
     sim.machine.release_left()
     sim.machine.release_right()
     sim.machine.press_start()
-    assert sim.ports.station.snapshot().start
+    assert sim.ports.station.read_state().start
 
 
 def test_hold_and_estop() -> None:
@@ -62,14 +62,14 @@ def test_hold_and_estop() -> None:
     sim.machine.press_hold()
     sim.machine.release_hold()
     clock.advance(0.05)
-    assert sim.ports.station.snapshot().hold
+    assert sim.ports.station.read_state().hold
     clock.advance(0.1)
-    assert not sim.ports.station.snapshot().hold
+    assert not sim.ports.station.read_state().hold
     sim.machine.press_estop()
     clock.advance(60.0)
-    assert sim.ports.station.snapshot().estop
+    assert sim.ports.station.read_state().estop
     sim.machine.release_estop()
-    assert not sim.ports.station.snapshot().estop
+    assert not sim.ports.station.read_state().estop
 
 
 def test_a_silent_station_ages_but_its_estop_does_not() -> None:
@@ -79,26 +79,26 @@ def test_a_silent_station_ages_but_its_estop_does_not() -> None:
     sim.machine.set_feed_pot(0.1)
     sim.machine.press_start()
     clock.advance(0.4)
-    state = sim.ports.station.snapshot()
+    state = sim.ports.station.read_state()
     assert state.age == pytest.approx(0.4)
     assert state.feed_pot == 0.8
     assert not state.start
     sim.machine.press_estop()
-    assert sim.ports.station.snapshot().estop
+    assert sim.ports.station.read_state().estop
     sim.machine.station_silent(False)
-    assert sim.ports.station.snapshot().age == 0.0
+    assert sim.ports.station.read_state().age == 0.0
 
 
 def test_pots_are_clamped_and_noise_is_seeded() -> None:
     first, _ = simulation()
     second, _ = simulation()
     first.machine.set_feed_pot(7.0)
-    assert first.ports.station.snapshot().feed_pot == 1.5
+    assert first.ports.station.read_state().feed_pot == 1.5
     first.machine.set_feed_pot(1.0)
     for sim in (first, second):
         sim.machine.pot_noise(0.4)
-    a = [first.ports.station.snapshot().feed_pot for _ in range(20)]
-    b = [second.ports.station.snapshot().feed_pot for _ in range(20)]
+    a = [first.ports.station.read_state().feed_pot for _ in range(20)]
+    b = [second.ports.station.read_state().feed_pot for _ in range(20)]
     assert a == b
     assert max(a) - min(a) > 0.4
     assert all(0.6 <= pot <= 1.4 for pot in a)

@@ -5,21 +5,21 @@ from __future__ import annotations
 import pytest
 
 from drivers.simulated.simulated_machine import build_simulation
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.drivers.machines import CONFIG
 
 
 def test_turns_follow_the_swinging_speed() -> None:
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     sim.machine.spindle_wander(0.02, 2.0)
-    sim.ports.spindle.run(600.0)
+    sim.ports.spindle.run_at(600.0)
     clock.advance(2.0)
-    area, before, began = 0.0, sim.machine.spindle_rpm(), sim.machine.spindle_turns()
+    area, before, began = 0.0, sim.machine.get_spindle_rpm(), sim.machine.spindle_turns()
     speeds = []
     for _ in range(4000):
         clock.advance(0.0005)
-        speed = sim.machine.spindle_rpm()
+        speed = sim.machine.get_spindle_rpm()
         area += 0.5 * (before + speed) / 60.0 * 0.0005
         before = speed
         speeds.append(speed)
@@ -31,10 +31,10 @@ def test_turns_follow_the_swinging_speed() -> None:
 def test_it_does_not_matter_how_often_one_looks() -> None:
     turns = []
     for step in (0.001, 0.25):
-        clock = StepClock()
+        clock = ManualClock()
         sim = build_simulation(CONFIG, clock)
         sim.machine.spindle_wander(0.05, 0.7)
-        sim.ports.spindle.run(-900.0)
+        sim.ports.spindle.run_at(-900.0)
         for _ in range(round(1.5 / step)):
             clock.advance(step)
             sim.ports.spindle.speed()
@@ -44,9 +44,9 @@ def test_it_does_not_matter_how_often_one_looks() -> None:
 
 
 def test_no_wander_is_an_even_spindle() -> None:
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
-    sim.ports.spindle.run(600.0)
+    sim.ports.spindle.run_at(600.0)
     clock.advance(1.0)
     began = sim.machine.spindle_turns()
     clock.advance(0.37)

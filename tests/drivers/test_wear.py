@@ -11,7 +11,7 @@ import pytest
 from core.ports import FloatArray
 from drivers.simulated.simulated_machine import Simulation
 from drivers.simulated.simulated_table import PlannedFault
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 WN = 2.0 * math.pi * 40.0
@@ -19,7 +19,7 @@ COUNT = 0.00127
 T, DEMAND, ACTUAL, SPEED, TURNS = 0, 1, 4, 10, 11
 
 
-def moved(sim: Simulation, clock: StepClock, speed: float, seconds: float) -> FloatArray:
+def moved(sim: Simulation, clock: ManualClock, speed: float, seconds: float) -> FloatArray:
     """X at an even speed; the samples of the last 60 % of the way."""
     assert sim.ports.samples is not None
     sim.ports.samples.take()
@@ -91,14 +91,14 @@ def test_counts_that_are_missed_once_a_turn_are_a_step_of_that_size() -> None:
     assert np.diff(steps) == pytest.approx(100, abs=2)  # ms: 5 mm at 50 mm/s
     assert off.max() == pytest.approx(0.03, abs=0.004)
     assert np.median(off) == pytest.approx(0.0, abs=2 * COUNT)  # the drive goes by it: the slide is wrong
-    lost = sim.machine.true_position()[0] - sim.ports.axes.sample().actual[0]
-    assert lost == pytest.approx(0.03 * math.floor(sim.machine.true_position()[0] / 5.0), abs=COUNT)
+    lost = sim.machine.get_true_position()[0] - sim.ports.axes.sample().actual[0]
+    assert lost == pytest.approx(0.03 * math.floor(sim.machine.get_true_position()[0] / 5.0), abs=COUNT)
 
 
 def test_a_belt_slips_in_the_cut_alone_and_the_turns_are_the_area_under_the_speed() -> None:
     sim, clock = simulation()
     sim.machine.belt_slip(0.2)
-    sim.ports.spindle.run(1200.0)
+    sim.ports.spindle.run_at(1200.0)
     play(sim, clock, 2.0)
     assert sim.ports.spindle.speed() == pytest.approx(1200.0)
     rows = moved(sim, clock, 10.0, 2.0)

@@ -8,17 +8,17 @@ from hashlib import sha256
 from pathlib import Path
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.workshop import proof_of
-from app.desk.background_work import Watch
-from app.desk.programs.program_loading import LoadingSteps, Proved
-from app.editor.editor import Editor, LeftProgram
-from app.path.path_picture import Picture, picture_of
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import create_proof
+from app.desk.background_work import ProgressCallback
+from app.desk.programs.program_loading import LoadingSteps, ProvedJob
+from app.editor.editor_model import ClosedProgram, EditorModel
+from app.path.path_picture import ProgramPicture, build_picture
 from core.executor.job import Job
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source, load_source
-from core.proving.program_timeline import Timeline, timed_blocks
+from core.language.source import ProgramSource, load_source
+from core.proving.program_timeline import Timeline, iter_timed_blocks
 from core.proving.prove_program import prove
 from core.store.store_errors import StoreError
 from core.store.store_rows import VersionRow
@@ -41,15 +41,15 @@ class Memory:
         ]
         return tuple(reversed(rows))
 
-    def text_of(self, name: str, version: int) -> bytes:
+    def read_version_text(self, name: str, version: int) -> bytes:
         return self.kept[name][version - 1][0]
 
-    def save_version(self, name: str, text: bytes, why: str) -> int:
+    def save_version(self, name: str, text: bytes, reason: str) -> int:
         if self.full:
             raise StoreError("the disk is full")
         rows = self.kept.setdefault(name, [])
         if not rows or rows[-1][0] != text:
-            rows.append((text, why))
+            rows.append((text, reason))
         return len(rows)
 
 
@@ -57,23 +57,23 @@ def workshop() -> LoadingSteps:
     """The real interpreter and prover on the shipped lathe."""
     lathe = load_machine(None)
 
-    def make_job(source: Source, block_delete: bool) -> Job:
-        setup = setup_for(lathe, tools=TOOLS, secondary={}, block_delete=block_delete)
-        return Job(source, setup, source.text, ReadProgram(source), frozenset(TOOLS))
+    def make_job(source: ProgramSource, block_delete: bool) -> Job:
+        setup = create_setup(lathe, tool_offsets=TOOLS, secondary_offsets={}, block_delete=block_delete)
+        return Job(source, setup, source.text, SharedProgram(source), frozenset(TOOLS))
 
-    def proved(job: Job, watch: Watch) -> Proved:
+    def proved(job: Job, watch: ProgressCallback) -> ProvedJob:
         report = prove(job.source, job.setup, lathe, watch)
-        return Proved(proof_of(job, report), report.diagnostics)
+        return ProvedJob(create_proof(job, report), report.diagnostics)
 
-    def draw(job: Job, watch: Watch) -> Picture:
-        return picture_of(timed_blocks(Timeline.of(job.source, job.setup, lathe)), watch)
+    def draw(job: Job, watch: ProgressCallback) -> ProgramPicture:
+        return build_picture(iter_timed_blocks(Timeline.from_program(job.source, job.setup, lathe)), watch)
 
     return LoadingSteps(load_source, make_job, proved, draw)
 
 
 def editor_in(
-    folder: Path, archive: Memory | None = None, left: Callable[[LeftProgram], None] = lambda _: None
-) -> Editor:
+    folder: Path, archive: Memory | None = None, left: Callable[[ClosedProgram], None] = lambda _: None
+) -> EditorModel:
     """The operator's programs and the samples, both empty at first."""
     (folder / "samples").mkdir(exist_ok=True)
-    return Editor(workshop(), archive or Memory(), folder / "programs", folder / "samples", left)
+    return EditorModel(workshop(), archive or Memory(), folder / "programs", folder / "samples", left)

@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from app.editor.code_help_view import _PICTURES, picture_of
-from core.interpreter.dialects import code_book
+from app.editor.code_help_view import _CODE_SKETCHES, make_code_sketch
+from core.interpreter.dialects import get_code_book
 from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS
 
@@ -16,15 +16,15 @@ OURS, THEIRS = Dialect.OMNITURN, Dialect.SINUMERIK
 
 @pytest.mark.parametrize("dialect", list(Dialect))
 def test_every_picture_belongs_to_a_code(dialect: Dialect) -> None:
-    heads = {each.head for each in code_book(dialect).entries}
-    assert set(_PICTURES.get(dialect, {})) <= heads
-    assert picture_of("G90", dialect) is None
+    heads = {each.head for each in get_code_book(dialect).entries}
+    assert set(_CODE_SKETCHES.get(dialect, {})) <= heads
+    assert make_code_sketch("G90", dialect) is None
 
 
 def test_the_fixed_point_of_sinumerik_is_no_roughing_cycle() -> None:
-    assert picture_of("G75", OURS) is not None
-    assert picture_of("G75", THEIRS) is None
-    assert picture_of("CYCLE95", THEIRS) is not None
+    assert make_code_sketch("G75", OURS) is not None
+    assert make_code_sketch("G75", THEIRS) is None
+    assert make_code_sketch("CYCLE95", THEIRS) is not None
 
 
 @pytest.mark.parametrize(
@@ -33,9 +33,9 @@ def test_the_fixed_point_of_sinumerik_is_no_roughing_cycle() -> None:
 )
 def test_one_arc_rounds_a_shoulder_and_one_fills_its_corner(head: str, dialect: Dialect, side: float) -> None:
     """All from (0, 4) to (-4, 8): the middle of the convex arc lies outside of their chord."""
-    drawn = picture_of(head, dialect)
+    drawn = make_code_sketch(head, dialect)
     assert drawn is not None
-    arc = next(each.points for each in drawn.outlines if each.ink == "cut")
+    arc = next(each.points for each in drawn.outlines if each.role == "cut")
     assert math.dist(arc[0], (0, 4)) < 1e-9
     assert math.dist(arc[-1], (-4, 8)) < 1e-9
     middle = arc[len(arc) // 2]
@@ -48,15 +48,18 @@ def test_one_arc_rounds_a_shoulder_and_one_fills_its_corner(head: str, dialect: 
 )
 def test_the_nose_goes_on_the_side_of_the_code(head: str, dialect: Dialect, above: bool) -> None:
     """Towards the chuck along a shaft: G41 there where X is seen downwards, G42 where it is seen upwards."""
-    drawn = picture_of(head, dialect)
+    drawn = make_code_sketch(head, dialect)
     assert drawn is not None
-    path = next(each.points for each in drawn.outlines if each.ink == "cut")
+    path = next(each.points for each in drawn.outlines if each.role == "cut")
     assert (path[0][1] > 5.0) is above
 
 
 def test_the_quadrants_lie_where_their_tips_are() -> None:
-    drawn = picture_of("T")
+    drawn = make_code_sketch("T")
     assert drawn is not None
-    for dim in drawn.dims:
-        z, x = TIP_DIRECTIONS[int(dim.word)]
-        assert (math.copysign(1, dim.a[0]) if z else 0, math.copysign(1, dim.a[1]) if x else 0) == (z, x)
+    for dim in drawn.dimensions:
+        z, x = TIP_DIRECTIONS[int(dim.field_word)]
+        assert (math.copysign(1, dim.start[0]) if z else 0, math.copysign(1, dim.start[1]) if x else 0) == (
+            z,
+            x,
+        )

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from app.editor.editor import Editor, Stage
+from app.editor.editor_model import EditorModel, EditorStage
 from tests.editor.shop import GOOD, Memory, editor_in
 from tests.texts import pattern, text
 
 TYPED = GOOD.replace("Z-.5", "Z-.75")
 LIMIT = 60.0
-Start = Callable[[], Editor]
+Start = Callable[[], EditorModel]
 
 
 @pytest.fixture
@@ -25,9 +25,9 @@ def memory() -> Memory:
 @pytest.fixture
 def start(tmp_path: Path, memory: Memory) -> Iterator[Start]:
     """Another control on the same folder."""
-    editors: list[Editor] = []
+    editors: list[EditorModel] = []
 
-    def begin() -> Editor:
+    def begin() -> EditorModel:
         editors.append(editor_in(tmp_path, memory))
         return editors[-1]
 
@@ -36,30 +36,30 @@ def start(tmp_path: Path, memory: Memory) -> Iterator[Start]:
         editor.close()
 
 
-def settle(editor: Editor) -> None:
+def settle(editor: EditorModel) -> None:
     for _ in range(3):
-        editor.worker.settle(LIMIT)
-        editor.drafts.worker.settle(LIMIT)
+        editor.worker.wait_for_results(LIMIT)
+        editor.draft_store.worker.wait_for_results(LIMIT)
     editor.poll()
 
 
-def program(editor: Editor, text: str = GOOD) -> Path:
-    path = editor.programs / "part.nc"
+def program(editor: EditorModel, text: str = GOOD) -> Path:
+    path = editor.programs_folder / "part.nc"
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
     return path
 
 
-def type_in(editor: Editor, path: Path, *texts: str) -> None:
-    editor.open(path)
+def type_in(editor: EditorModel, path: Path, *texts: str) -> None:
+    editor.open_program(path)
     settle(editor)
     for typed in texts:
-        editor.changed(typed)
+        editor.update_text(typed)
     settle(editor)
 
 
-def drafts(editor: Editor) -> list[str]:
-    folder = editor.drafts.folder
+def drafts(editor: EditorModel) -> list[str]:
+    folder = editor.draft_store.folder
     return sorted(each.name for each in folder.iterdir()) if folder.is_dir() else []
 
 
@@ -68,26 +68,26 @@ def test_what_was_typed_before_the_end_is_in_the_history(start: Start, memory: M
     path = program(dead)
     type_in(dead, path, "G90\n", TYPED)
     after = start()  # nobody has closed the first
-    after.open(path)
+    after.open_program(path)
     settle(after)
     assert after.text == GOOD  # the file is what it was
-    assert text("editor.in-history") in after.notice
+    assert text("editor.in-history") in after.message
     assert memory.kept["part.nc"] == [(TYPED.encode(), "unsaved draft")]
     assert drafts(after) == []
 
 
 def test_a_new_file_that_was_never_saved_too(start: Start, memory: Memory) -> None:
     dead = start()
-    dead.offer("new.nc")
-    dead.create()
+    dead.offer_new("new.nc")
+    dead.create_document()
     settle(dead)
-    dead.changed(TYPED)
+    dead.update_text(TYPED)
     settle(dead)
     after = start()
-    after.offer("new.nc")
-    after.create()
+    after.offer_new("new.nc")
+    after.create_document()
     settle(after)
-    assert after.stage is Stage.OPEN
+    assert after.stage is EditorStage.OPEN
     assert memory.kept["new.nc"][0][0] == TYPED.encode()
 
 
@@ -95,7 +95,7 @@ def test_saving_and_leaving_leave_nothing(start: Start) -> None:
     editor = start()
     type_in(editor, program(editor), TYPED)
     assert drafts(editor) == ["part.nc.draft"]
-    editor.save(TYPED)
+    editor.save_document(TYPED)
     settle(editor)
     assert drafts(editor) == []
 
@@ -103,10 +103,10 @@ def test_saving_and_leaving_leave_nothing(start: Start) -> None:
 def test_giving_up_what_was_typed_leaves_nothing(start: Start) -> None:
     editor = start()
     type_in(editor, program(editor), TYPED)
-    editor.abandon(TYPED)
-    editor.answer(TYPED)
+    editor.discard_and_leave(TYPED)
+    editor.confirm_question(TYPED)
     settle(editor)
-    assert editor.stage is Stage.CLOSED
+    assert editor.stage is EditorStage.CLOSED
     assert drafts(editor) == []
 
 
@@ -119,11 +119,11 @@ def test_taking_back_what_was_typed_leaves_nothing(start: Start) -> None:
 def test_closing_the_control_over_a_text_keeps_it(start: Start) -> None:
     editor = start()
     path = program(editor)
-    editor.open(path)
+    editor.open_program(path)
     settle(editor)
-    editor.changed(TYPED)
+    editor.update_text(TYPED)
     editor.close()
-    assert (editor.drafts.folder / "part.nc.draft").read_text() == TYPED
+    assert (editor.draft_store.folder / "part.nc.draft").read_text() == TYPED
 
 
 def test_without_a_history_it_stays_where_it_is_told(start: Start, memory: Memory) -> None:
@@ -132,28 +132,28 @@ def test_without_a_history_it_stays_where_it_is_told(start: Start, memory: Memor
     type_in(dead, path, TYPED)
     memory.full = True
     after = start()
-    after.open(path)
+    after.open_program(path)
     settle(after)
-    after.changed(GOOD)
+    after.update_text(GOOD)
     settle(after)
-    assert "part.nc.left: the disk is full" in after.notice
-    assert (after.drafts.folder / "part.nc.left").read_text() == TYPED
+    assert "part.nc.left: the disk is full" in after.message
+    assert (after.draft_store.folder / "part.nc.left").read_text() == TYPED
 
 
 def test_a_damaged_draft_is_set_aside_and_told(start: Start) -> None:
     editor = start()
     path = program(editor)
-    editor.drafts.folder.mkdir()
-    (editor.drafts.folder / "part.nc.draft").write_bytes(b"G90\xff\n")
+    editor.draft_store.folder.mkdir()
+    (editor.draft_store.folder / "part.nc.draft").write_bytes(b"G90\xff\n")
     type_in(editor, path, GOOD)
-    assert "part.nc.left" in editor.notice
-    assert (editor.drafts.folder / "part.nc.left").read_bytes() == b"G90\xff\n"
+    assert "part.nc.left" in editor.message
+    assert (editor.draft_store.folder / "part.nc.left").read_bytes() == b"G90\xff\n"
 
 
 def test_a_folder_that_cannot_be_written_is_told_and_typing_goes_on(start: Start) -> None:
     editor = start()
     path = program(editor)
-    editor.drafts.folder.write_text("a file where the folder should be")
+    editor.draft_store.folder.write_text("a file where the folder should be")
     type_in(editor, path, TYPED)
-    assert re.search(pattern("editor.safe-when-saved"), editor.notice)
-    assert editor.stage is Stage.OPEN
+    assert re.search(pattern("editor.safe-when-saved"), editor.message)
+    assert editor.stage is EditorStage.OPEN

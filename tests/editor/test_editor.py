@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.editor import editor_messages as messages
-from app.editor.editor import Editor, LeftProgram, Stage
-from app.editor.versions import VersionHistory
+from app.editor.editor_model import ClosedProgram, EditorModel, EditorStage
+from app.editor.version_history import VersionHistory
 from tests.editor.shop import GOOD, Memory, editor_in
 from tests.texts import text
 
@@ -20,146 +20,152 @@ def memory() -> Memory:
 
 
 @pytest.fixture
-def left() -> list[LeftProgram]:
+def left() -> list[ClosedProgram]:
     return []
 
 
 @pytest.fixture
-def editor(tmp_path: Path, memory: Memory, left: list[LeftProgram]) -> Iterator[Editor]:
+def editor(tmp_path: Path, memory: Memory, left: list[ClosedProgram]) -> Iterator[EditorModel]:
     editor = editor_in(tmp_path, memory, left.append)
     yield editor
     editor.close()
 
 
-def settle(editor: Editor) -> None:
-    editor.worker.settle(60.0)
+def settle(editor: EditorModel) -> None:
+    editor.worker.wait_for_results(60.0)
 
 
-def own(editor: Editor, name: str, text: str = GOOD) -> Path:
+def own(editor: EditorModel, name: str, text: str = GOOD) -> Path:
     """A program of the operator, open in the editor."""
-    path = editor.programs / name
+    path = editor.programs_folder / name
     path.parent.mkdir(exist_ok=True)
     path.write_text(text)
-    editor.open(path)
+    editor.open_program(path)
     settle(editor)
     return path
 
 
 def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
-    editor: Editor, left: list[LeftProgram], memory: Memory
+    editor: EditorModel, left: list[ClosedProgram], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
-    editor.leave(editor.text)
-    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [LeftProgram(path, False, False, GOOD)], {})
+    editor.save_and_leave(editor.text)
+    assert (editor.stage, left, memory.kept) == (
+        EditorStage.CLOSED,
+        [ClosedProgram(path, False, False, GOOD)],
+        {},
+    )
 
 
 def test_leaving_saves_and_keeps_the_old_and_the_new(
-    editor: Editor, left: list[LeftProgram], memory: Memory
+    editor: EditorModel, left: list[ClosedProgram], memory: Memory
 ) -> None:
     path = own(editor, "part.nc")
-    editor.leave(GOOD + "(END)\n")
+    editor.save_and_leave(GOOD + "(END)\n")
     settle(editor)
-    assert left == [LeftProgram(path, True, False, GOOD + "(END)\n")]
+    assert left == [ClosedProgram(path, True, False, GOOD + "(END)\n")]
     assert path.read_text() == GOOD + "(END)\n"
     assert len(memory.kept["part.nc"]) == 2
 
 
-def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: list[LeftProgram]) -> None:
+def test_a_saving_that_fails_keeps_the_text_and_the_page(
+    editor: EditorModel, left: list[ClosedProgram]
+) -> None:
     path = own(editor, "part.nc")
-    editor.leave("X1\0\n")
+    editor.save_and_leave("X1\0\n")
     settle(editor)
-    assert editor.stage is Stage.OPEN
+    assert editor.stage is EditorStage.OPEN
     assert left == []
-    assert text("editor.zero-bytes", file="part.nc").split(":")[0] in editor.notice
+    assert text("editor.zero-bytes", file="part.nc").split(":")[0] in editor.message
     assert path.read_text() == GOOD
 
 
-def test_a_file_that_is_gone_is_told(editor: Editor, tmp_path: Path) -> None:
-    editor.open(tmp_path / "gone.nc")
+def test_a_file_that_is_gone_is_told(editor: EditorModel, tmp_path: Path) -> None:
+    editor.open_program(tmp_path / "gone.nc")
     settle(editor)
-    assert editor.stage is Stage.CLOSED
-    assert "cannot be read" in editor.notice
+    assert editor.stage is EditorStage.CLOSED
+    assert "cannot be read" in editor.message
 
 
-def test_a_change_from_outside_is_replaced_only_by_the_answer(editor: Editor) -> None:
+def test_a_change_from_outside_is_replaced_only_by_the_answer(editor: EditorModel) -> None:
     path = own(editor, "part.nc")
     path.write_text("M02\n")
     for _ in range(3):
-        editor.save("M30\n")
+        editor.save_document("M30\n")
         settle(editor)
     assert path.read_text() == "M02\n"
-    editor.answer("M30\n")
+    editor.confirm_question("M30\n")
     settle(editor)
     assert path.read_text() == "M30\n"
 
 
-def test_the_first_asking_says_what_happened(editor: Editor) -> None:
+def test_the_first_asking_says_what_happened(editor: EditorModel) -> None:
     path = own(editor, "part.nc")
     path.write_text("M02\n")
-    editor.leave("M30\n")
+    editor.save_and_leave("M30\n")
     settle(editor)
-    assert editor.notice == messages.CHANGED_OUTSIDE.format("part.nc")
-    assert (editor.stage, path.read_text()) == (Stage.OPEN, "M02\n")
+    assert editor.message == messages.CHANGED_ON_DISK.format("part.nc")
+    assert (editor.stage, path.read_text()) == (EditorStage.OPEN, "M02\n")
 
 
-def test_a_new_file_does_not_take_a_name_that_is_there(editor: Editor) -> None:
+def test_a_new_file_does_not_take_a_name_that_is_there(editor: EditorModel) -> None:
     own(editor, "part.nc")
-    editor.abandon(editor.text)
-    editor.offer("part")
-    editor.create()
-    assert editor.notice == messages.THERE_ALREADY.format("part.nc")
-    assert editor.stage is Stage.OFFERED
+    editor.discard_and_leave(editor.text)
+    editor.offer_new("part")
+    editor.create_document()
+    assert editor.message == messages.NAME_EXISTS.format("part.nc")
+    assert editor.stage is EditorStage.OFFERED
 
 
-def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[LeftProgram]) -> None:
+def test_a_sample_is_saved_under_a_free_name_only(editor: EditorModel, left: list[ClosedProgram]) -> None:
     own(editor, "mine.nc", "M02\n")
-    editor.abandon(editor.text)
-    sample = editor.samples / "knob.nc"
+    editor.discard_and_leave(editor.text)
+    sample = editor.samples_folder / "knob.nc"
     sample.write_text(GOOD)
-    editor.open(sample)
+    editor.open_program(sample)
     settle(editor)
-    editor.leave(GOOD + "(X)\n")
-    assert editor.stage is Stage.NAMING
-    assert not editor.take_name("mine")
-    assert not editor.take_name("a/b")
-    assert editor.take_name("other")
+    editor.save_and_leave(GOOD + "(X)\n")
+    assert editor.stage is EditorStage.NAMING
+    assert not editor.save_under_name("mine")
+    assert not editor.save_under_name("a/b")
+    assert editor.save_under_name("other")
     settle(editor)
-    assert left == [LeftProgram(editor.programs / "other.nc", True, False, GOOD + "(X)\n")]
+    assert left == [ClosedProgram(editor.programs_folder / "other.nc", True, False, GOOD + "(X)\n")]
     assert sample.read_text() == GOOD
 
 
-def test_a_sample_of_another_language_keeps_its_ending(editor: Editor) -> None:
-    sample = editor.samples / "plate.h"
+def test_a_sample_of_another_language_keeps_its_ending(editor: EditorModel) -> None:
+    sample = editor.samples_folder / "plate.h"
     sample.write_text("BEGIN PGM PLATE MM\nEND PGM PLATE MM\n")
-    editor.open(sample)
+    editor.open_program(sample)
     settle(editor)
-    editor.leave(editor.text + "; X\n")
-    assert editor.take_name("mine")
+    editor.save_and_leave(editor.text + "; X\n")
+    assert editor.save_under_name("mine")
     settle(editor)
-    assert (editor.programs / "mine.h").exists()
+    assert (editor.programs_folder / "mine.h").exists()
 
 
-def test_a_new_program_has_the_ending_of_the_language_of_the_machine(editor: Editor) -> None:
-    editor.usual_ending = ".h"
-    editor.offer("roof")
-    editor.create()
+def test_a_new_program_has_the_ending_of_the_language_of_the_machine(editor: EditorModel) -> None:
+    editor.default_extension = ".h"
+    editor.offer_new("roof")
+    editor.create_document()
     assert editor.document is not None
     assert editor.document.name == "roof.h"
 
 
-def test_a_version_that_cannot_be_kept_is_told_after_leaving(editor: Editor, memory: Memory) -> None:
+def test_a_version_that_cannot_be_kept_is_told_after_leaving(editor: EditorModel, memory: Memory) -> None:
     own(editor, "part.nc")
     memory.full = True
-    editor.leave("M30\n")
+    editor.save_and_leave("M30\n")
     settle(editor)
-    assert editor.stage is Stage.CLOSED
-    assert editor.notice == messages.NOT_KEPT.format("the disk is full")
+    assert editor.stage is EditorStage.CLOSED
+    assert editor.message == messages.VERSION_NOT_SAVED.format("the disk is full")
 
 
-def test_history_compares_with_the_text_in_the_editor(editor: Editor, memory: Memory) -> None:
+def test_history_compares_with_the_text_in_the_editor(editor: EditorModel, memory: Memory) -> None:
     memory.kept["part.nc"] = [(b"X1\r\nM30\r\n", "first"), (b"X2\nM30\n", "second")]
     history = VersionHistory(memory, editor.worker)
-    history.look("part.nc", "X2\nM30\n")
+    history.open_history("part.nc", "X2\nM30\n")
     settle(editor)
     assert (history.number, history.words()) == (2, text("editor.same"))
     history.mark(99)
@@ -168,9 +174,9 @@ def test_history_compares_with_the_text_in_the_editor(editor: Editor, memory: Me
     assert [row.sign for row in history.changes] == ["-", "+", " "]
 
 
-def test_no_history_is_said(editor: Editor, memory: Memory) -> None:
+def test_no_history_is_said(editor: EditorModel, memory: Memory) -> None:
     history = VersionHistory(memory, editor.worker)
-    history.look("part.nc", "")
+    history.open_history("part.nc", "")
     settle(editor)
     assert history.words() == text("editor.no-version")
     history.mark(1)

@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.background_work import Watch
-from app.desk.programs.program_loading import Proved
-from app.editor.live_proof import Findings, LiveProof, by_line
+from app.desk.background_work import ProgressCallback
+from app.desk.programs.program_loading import ProvedJob
+from app.editor.live_proof import LiveProof, ProofFindings, map_by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from tests.editor.shop import GOOD, workshop
@@ -25,44 +25,44 @@ def checker() -> Iterator[LiveProof]:
     checker.close()
 
 
-def settled(checker: LiveProof) -> Findings:
-    checker.worker.settle(60.0)
-    return checker.now
+def settled(checker: LiveProof) -> ProofFindings:
+    checker.worker.wait_for_results(60.0)
+    return checker.current
 
 
 def test_a_good_program_is_proved_and_drawn(checker: LiveProof) -> None:
-    number = checker.submit("a.nc", GOOD)
+    number = checker.submit_text("a.nc", GOOD)
     found = settled(checker)
-    assert (found.number, found.diagnostics, found.trouble) == (number, (), "")
+    assert (found.number, found.diagnostics, found.error_text) == (number, (), "")
     assert found.picture is not None
-    assert found.cycle_time > 0
+    assert found.cycle_time_s > 0
 
 
 def test_an_error_stands_at_its_line(checker: LiveProof) -> None:
-    checker.submit("a.nc", GOOD.replace("Z-.5", "Z-.5.5"))
+    checker.submit_text("a.nc", GOOD.replace("Z-.5", "Z-.5.5"))
     found = settled(checker)
-    assert set(found.by_line) == {5}
-    assert found.by_line[5].severity is Severity.ERROR
-    assert found.errors >= 1
+    assert set(found.line_findings) == {5}
+    assert found.line_findings[5].severity is Severity.ERROR
+    assert found.error_count >= 1
 
 
 def test_an_empty_text_is_no_trouble(checker: LiveProof) -> None:
-    number = checker.submit("a.nc", "")
+    number = checker.submit_text("a.nc", "")
     found = settled(checker)
-    assert (found.number, found.trouble) == (number, "")
+    assert (found.number, found.error_text) == (number, "")
 
 
 def test_only_the_latest_of_a_burst_is_proved() -> None:
     proved: list[str] = []
     real = workshop()
 
-    def prove(job: Job, watch: Watch) -> Proved:
+    def prove(job: Job, watch: ProgressCallback) -> ProvedJob:
         proved.append(job.source.text)
-        return real.prove(job, watch)
+        return real.prove_job(job, watch)
 
-    checker = LiveProof(replace(real, prove=prove))
+    checker = LiveProof(replace(real, prove_job=prove))
     for n in range(30):
-        checker.submit("a.nc", GOOD.replace("S1000", f"S{1000 + n}"))
+        checker.submit_text("a.nc", GOOD.replace("S1000", f"S{1000 + n}"))
     assert settled(checker).number == 30
     assert proved[-1] == GOOD.replace("S1000", "S1029")
     assert len(proved) < 30
@@ -72,18 +72,18 @@ def test_only_the_latest_of_a_burst_is_proved() -> None:
 def test_a_long_proof_gives_way_to_a_newer_text() -> None:
     running, tries = threading.Event(), []
 
-    def prove(job: Job, watch: Watch) -> Proved:
+    def prove(job: Job, watch: ProgressCallback) -> ProvedJob:
         tries.append(job.source.text)
         running.set()
         while job.source.text == "old":
             watch(1)
-        return Proved(Proof(job.digest, ()))
+        return ProvedJob(Proof(job.digest, ()))
 
-    checker = LiveProof(replace(workshop(), prove=prove))
-    checker.submit("a.nc", "old")
+    checker = LiveProof(replace(workshop(), prove_job=prove))
+    checker.submit_text("a.nc", "old")
     assert running.wait(60)
     checker.worker.clock = lambda: time.monotonic() + 1000.0  # all patience is at its end
-    checker.submit("a.nc", "M30\n")
+    checker.submit_text("a.nc", "M30\n")
     assert settled(checker).number == 2
     assert tries == ["old", "M30\n"]
     checker.close()
@@ -92,13 +92,13 @@ def test_a_long_proof_gives_way_to_a_newer_text() -> None:
 def test_closing_ends_a_proof_under_way() -> None:
     running = threading.Event()
 
-    def prove(_job: Job, watch: Watch) -> Proved:
+    def prove(_job: Job, watch: ProgressCallback) -> ProvedJob:
         running.set()
         while True:
             watch(1)
 
-    checker = LiveProof(replace(workshop(), prove=prove))
-    checker.submit("a.nc", GOOD)
+    checker = LiveProof(replace(workshop(), prove_job=prove))
+    checker.submit_text("a.nc", GOOD)
     assert running.wait(60)
     checker.close()
     assert not [t for t in threading.enumerate() if t.name.startswith("editing-proof")]
@@ -109,15 +109,15 @@ def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
         raise ValueError("the store is damaged")
 
     checker = LiveProof(replace(workshop(), make_job=make_job))
-    checker.submit("a.nc", GOOD)
-    assert settled(checker).trouble == text("editor.proving-failed", why="the store is damaged")
-    checker.workshop = workshop()
-    checker.submit("a.nc", GOOD)
-    assert settled(checker).trouble == ""
+    checker.submit_text("a.nc", GOOD)
+    assert settled(checker).error_text == text("editor.proving-failed", why="the store is damaged")
+    checker.steps = workshop()
+    checker.submit_text("a.nc", GOOD)
+    assert settled(checker).error_text == ""
     checker.close()
 
 
 def test_the_weightiest_of_a_line_is_shown() -> None:
     note = Diagnostic(3, 1, Severity.NOTE, "n", "note")
     error = Diagnostic(3, 5, Severity.ERROR, "e", "error")
-    assert by_line((note, error, replace(error, code="second"))) == {3: error}
+    assert map_by_line((note, error, replace(error, code="second"))) == {3: error}

@@ -8,8 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from app.editor.document import CHANGED, MOST_LINES, TooLongError, new_document, open_document, save_document
-from app.programs.whole_file import FileError, write_whole
+from app.editor.edited_document import (
+    CHANGED_EXTERNALLY,
+    MAX_LINES,
+    TooLongError,
+    create_document,
+    open_document,
+    save_document,
+)
+from app.programs.atomic_files import FileOperationError, write_program_file
 from core.language.source import SourceError
 from tests.coded import raises_code
 from tests.editor.shop import GOOD, Memory
@@ -24,7 +31,7 @@ def part(tmp_path: Path) -> Path:
 
 def test_a_file_is_replaced_and_nothing_is_left_beside_it(part: Path) -> None:
     part.chmod(0o640)
-    write_whole(part, b"M30\n")
+    write_program_file(part, b"M30\n")
     assert part.read_bytes() == b"M30\n"
     assert part.stat().st_mode & 0o777 == 0o640
     assert list(part.parent.iterdir()) == [part]
@@ -33,22 +40,22 @@ def test_a_file_is_replaced_and_nothing_is_left_beside_it(part: Path) -> None:
 def test_a_link_stays_a_link(part: Path) -> None:
     link = part.parent / "link.nc"
     link.symlink_to(part)
-    write_whole(link, b"M30\n")
+    write_program_file(link, b"M30\n")
     assert link.is_symlink()
     assert part.read_bytes() == b"M30\n"
 
 
 @pytest.mark.parametrize("data", [b"X1\0\n", b"  \n", b"X" * 9000 + b"\n", b"X\xff\n"])
 def test_what_would_not_read_back_is_refused_and_the_file_stays(part: Path, data: bytes) -> None:
-    with pytest.raises(FileError):
-        write_whole(part, data)
+    with pytest.raises(FileOperationError):
+        write_program_file(part, data)
     assert part.read_text() == GOOD
     assert list(part.parent.iterdir()) == [part]
 
 
 def test_a_folder_that_cannot_be_is_told_in_a_sentence(part: Path) -> None:
-    with raises_code(FileError, "cannot-write"):
-        write_whole(part / "below.nc", b"M30\n")
+    with raises_code(FileOperationError, "cannot-write"):
+        write_program_file(part / "below.nc", b"M30\n")
 
 
 def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,8 +63,8 @@ def test_a_failure_in_the_middle_leaves_the_old_file(part: Path, monkeypatch: py
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with raises_code(FileError, "cannot-write", os.strerror(errno.ENOSPC)):
-        write_whole(part, b"M30\n")
+    with raises_code(FileOperationError, "cannot-write", os.strerror(errno.ENOSPC)):
+        write_program_file(part, b"M30\n")
     assert part.read_text() == GOOD
     assert list(part.parent.iterdir()) == [part]
 
@@ -67,7 +74,7 @@ def test_line_ends_of_dos_stay(tmp_path: Path) -> None:
     path.write_bytes(b"X1\r\nM30\r\n")
     document = open_document(path, tmp_path / "samples")
     assert document.text == "X1\nM30\n"
-    assert save_document(document, "X2\nM30", Memory(), replacing=False) == ""
+    assert save_document(document, "X2\nM30", Memory(), may_overwrite=False) == ""
     assert path.read_bytes() == b"X2\r\nM30\r\n"
 
 
@@ -78,7 +85,7 @@ def test_files_of_other_days_are_known_again(tmp_path: Path, data: bytes) -> Non
     path, memory = tmp_path / "old.nc", Memory()
     path.write_bytes(data)
     document = open_document(path, tmp_path / "samples")
-    assert save_document(document, document.text + "(NEW)", memory, replacing=False) == ""
+    assert save_document(document, document.text + "(NEW)", memory, may_overwrite=False) == ""
     assert memory.kept["old.nc"][0][0] == data  # the very bytes that were there
     assert open_document(path, tmp_path / "samples").text.startswith(document.text + "(NEW)")
 
@@ -86,34 +93,34 @@ def test_files_of_other_days_are_known_again(tmp_path: Path, data: bytes) -> Non
 def test_what_another_program_wrote_is_shown_first_and_kept(part: Path) -> None:
     document, memory = open_document(part, part.parent / "samples"), Memory()
     part.write_text("M02\n")
-    assert save_document(document, "M30\n", memory, replacing=False) == CHANGED
+    assert save_document(document, "M30\n", memory, may_overwrite=False) == CHANGED_EXTERNALLY
     assert part.read_text() == "M02\n"
-    assert save_document(document, "M30\n", memory, replacing=True) == ""
+    assert save_document(document, "M30\n", memory, may_overwrite=True) == ""
     assert [text for text, _why in memory.kept["part.nc"]] == [b"M02\n", b"M30\n"]
 
 
 def test_what_another_program_wrote_is_not_replaced_when_it_cannot_be_kept(part: Path) -> None:
     document = open_document(part, part.parent / "samples")
     part.write_text("M02\n")
-    assert save_document(document, "M30\n", Memory(full=True), replacing=True) == CHANGED
+    assert save_document(document, "M30\n", Memory(full=True), may_overwrite=True) == CHANGED_EXTERNALLY
     assert part.read_text() == "M02\n"
 
 
 def test_a_full_archive_does_not_keep_the_file_from_being_saved(part: Path) -> None:
     document = open_document(part, part.parent / "samples")
-    assert save_document(document, "M30\n", Memory(full=True), replacing=False) == "the disk is full"
+    assert save_document(document, "M30\n", Memory(full=True), may_overwrite=False) == "the disk is full"
     assert part.read_text() == "M30\n"
 
 
 def test_a_file_that_has_come_meanwhile_is_not_overwritten_by_a_new_one(tmp_path: Path) -> None:
-    document = new_document(tmp_path, "part", ".nc")
+    document = create_document(tmp_path, "part", ".nc")
     (tmp_path / "part.nc").write_text("M02\n")
-    assert save_document(document, "M30\n", Memory(), replacing=False) == CHANGED
+    assert save_document(document, "M30\n", Memory(), may_overwrite=False) == CHANGED_EXTERNALLY
 
 
 def test_samples_are_protected_and_an_empty_file_can_be_written(tmp_path: Path) -> None:
     (tmp_path / "empty.nc").write_text("")
-    assert open_document(tmp_path / "empty.nc", tmp_path).protected
+    assert open_document(tmp_path / "empty.nc", tmp_path).is_read_only
     assert open_document(tmp_path / "empty.nc", tmp_path / "samples").text == ""
 
 
@@ -124,8 +131,8 @@ def test_what_is_no_program_is_not_opened(tmp_path: Path) -> None:
 
 
 def test_a_text_too_long_for_the_field_is_not_opened(tmp_path: Path) -> None:
-    (tmp_path / "long.nc").write_text("X1\n" * MOST_LINES)
+    (tmp_path / "long.nc").write_text("X1\n" * MAX_LINES)
     with raises_code(TooLongError, "too-long", 50000):
         open_document(tmp_path / "long.nc", tmp_path)
-    (tmp_path / "long.nc").write_text("X1\n" * (MOST_LINES - 1))
+    (tmp_path / "long.nc").write_text("X1\n" * (MAX_LINES - 1))
     assert open_document(tmp_path / "long.nc", tmp_path).text

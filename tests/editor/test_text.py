@@ -4,48 +4,48 @@ from __future__ import annotations
 
 import pytest
 
-from app.editor.document import NameRefusedError, program_name
-from app.editor.question_view import Search, following, preceding
-from app.editor.versions import DifferenceRow as Row
-from app.editor.versions import differences
-from core.language.source import Dialect, dialect_of, usual_ending
+from app.editor.edited_document import InvalidNameError, make_program_name
+from app.editor.question_view import TextSearch, find_preceding, following
+from app.editor.version_history import DifferenceRow as Row
+from app.editor.version_history import compare_texts
+from core.language.source import Dialect, default_extension, guess_dialect
 from tests.texts import text as wording
 
 TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
 
 
 def test_whole_numbers_are_found_and_longer_ones_are_only_counted() -> None:
-    places = Search("F100").places(TEXT)
+    places = TextSearch("F100").find_matches(TEXT)
     assert [TEXT[p : p + 5] for p in places] == ["F100\n", "f100(", "F100.", "F100X"]
-    assert Search("F100").words(TEXT) == wording("editor.longer-words", found="4 FOUND", more=2)
-    assert Search("F100", whole=False).words(TEXT) == "6 FOUND, INCLUDING PARTS OF WORDS"
+    assert TextSearch("F100").words(TEXT) == wording("editor.longer-words", found="4 FOUND", more=2)
+    assert TextSearch("F100", matches_whole_words=False).words(TEXT) == "6 FOUND, INCLUDING PARTS OF WORDS"
 
 
 @pytest.mark.parametrize(("needle", "text"), [(".5", "X1.5"), ("5", "X15"), ("M3", "CM3"), ("M", "MM")])
 def test_the_end_of_a_longer_word_is_not_that_word(needle: str, text: str) -> None:
-    assert Search(needle).places(text) == ()
-    assert Search(needle, whole=False).places(text)
+    assert TextSearch(needle).find_matches(text) == ()
+    assert TextSearch(needle, matches_whole_words=False).find_matches(text)
 
 
 def test_signs_of_patterns_mean_themselves() -> None:
-    assert Search("X.5", whole=False).places("X15 X.5") == (4,)
-    assert Search("(", whole=False).places("a(b(") == (1, 3)
+    assert TextSearch("X.5", matches_whole_words=False).find_matches("X15 X.5") == (4,)
+    assert TextSearch("(", matches_whole_words=False).find_matches("a(b(") == (1, 3)
 
 
 def test_nothing_is_found_of_nothing() -> None:
-    assert Search("").places(TEXT) == ()
-    assert Search("Q9").words(TEXT) == "NOT FOUND"
+    assert TextSearch("").find_matches(TEXT) == ()
+    assert TextSearch("Q9").words(TEXT) == "NOT FOUND"
     assert following((), 3) is None
-    assert preceding((), 3) is None
+    assert find_preceding((), 3) is None
 
 
 def test_finding_goes_round() -> None:
     assert [following((2, 5), at) for at in (0, 2, 3, 6)] == [2, 2, 5, 2]
-    assert [preceding((2, 5), at) for at in (9, 5, 2)] == [5, 2, 5]
+    assert [find_preceding((2, 5), at) for at in (9, 5, 2)] == [5, 2, 5]
 
 
 def test_differences_show_lines_with_both_numbers() -> None:
-    assert differences("a\nb\nc\n", "a\nB\nc\n") == (
+    assert compare_texts("a\nb\nc\n", "a\nB\nc\n") == (
         Row(" ", 1, 1, "a"),
         Row("-", 2, 0, "b"),
         Row("+", 0, 2, "B"),
@@ -54,11 +54,11 @@ def test_differences_show_lines_with_both_numbers() -> None:
 
 
 def test_the_same_text_has_no_differences() -> None:
-    assert differences("a\n", "a\n") == ()
+    assert compare_texts("a\n", "a\n") == ()
 
 
 def test_what_is_left_out_is_told() -> None:
-    rows = differences("".join(f"{n}\n" for n in range(20)), "".join(f"{n}\n" for n in range(19)))
+    rows = compare_texts("".join(f"{n}\n" for n in range(20)), "".join(f"{n}\n" for n in range(19)))
     assert rows[0].sign == "…"
     assert rows[-1] == Row("-", 20, 0, "19")
 
@@ -66,7 +66,10 @@ def test_what_is_left_out_is_told() -> None:
 def test_a_huge_text_is_compared_from_both_ends() -> None:
     lines = [f"X{n}" for n in range(30_000)]
     changed = [*lines[:500], "M00", *lines[500:]]
-    assert differences("\n".join(lines), "\n".join(changed)) == (Row("…", 0, 0, ""), Row("+", 0, 501, "M00"))
+    assert compare_texts("\n".join(lines), "\n".join(changed)) == (
+        Row("…", 0, 0, ""),
+        Row("+", 0, 501, "M00"),
+    )
 
 
 @pytest.mark.parametrize(
@@ -81,15 +84,15 @@ def test_a_huge_text_is_compared_from_both_ends() -> None:
     ],
 )
 def test_a_name_gets_the_usual_ending(typed: str, usual: str, name: str) -> None:
-    assert program_name(typed, usual) == name
+    assert make_program_name(typed, usual) == name
 
 
 @pytest.mark.parametrize("dialect", Dialect)
 def test_the_usual_ending_of_a_language_is_read_as_that_language(dialect: Dialect) -> None:
-    assert dialect_of(f"part{usual_ending(dialect)}") is dialect
+    assert guess_dialect(f"part{default_extension(dialect)}") is dialect
 
 
 @pytest.mark.parametrize("typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "x" * 300])
 def test_a_name_that_no_program_can_have_is_refused(typed: str) -> None:
-    with pytest.raises(NameRefusedError):
-        program_name(typed, ".nc")
+    with pytest.raises(InvalidNameError):
+        make_program_name(typed, ".nc")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from core.interpreter.shared.actions import Action, ProgramEnd
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 
 
 class Maker:
@@ -15,7 +15,7 @@ class Maker:
         self._x, self._z = at
         self.rpm = 0.0
 
-    def _add(self, kind: Kind, x: float, z: float, **more: object) -> Maker:
+    def _add(self, kind: BlockKind, x: float, z: float, **more: object) -> Maker:
         block = Block(
             n=len(self.blocks) + 1,
             line=len(self.blocks) + 1,
@@ -29,7 +29,7 @@ class Maker:
             c=0.0,
             offset_x=0.0,
             offset_z=0.0,
-            modal=Modal(),
+            modal=ModalState(),
             rpm=self.rpm,
             **more,  # type: ignore[arg-type]
         )
@@ -38,16 +38,16 @@ class Maker:
         return self
 
     def act(self, action: Action) -> Maker:
-        return self._add(Kind.ACTION, self._x, self._z, action=action)
+        return self._add(BlockKind.ACTION, self._x, self._z, action=action)
 
     def rapid(self, x: float, z: float) -> Maker:
-        return self._add(Kind.RAPID, x, z, feed=100.0)
+        return self._add(BlockKind.RAPID, x, z, feed=100.0)
 
     def feed(self, x: float, z: float, feed: float) -> Maker:
-        return self._add(Kind.FEED, x, z, feed=feed)
+        return self._add(BlockKind.FEED, x, z, feed=feed)
 
     def thread(self, x: float, z: float, lead: float) -> Maker:
-        return self._add(Kind.THREAD, x, z, feed=lead, per_rev=True)
+        return self._add(BlockKind.THREAD, x, z, feed=lead, per_rev=True)
 
     def end(self) -> list[Block]:
         self.act(ProgramEnd(reset=True))

@@ -11,27 +11,27 @@ from collections.abc import Callable
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
 
-from app.compose.workshop import proof_of
+from app.compose.program_proving import create_proof
 from core.executor.commands import (
     Command,
     CycleStart,
+    DeselectHandwheel,
     EnableDrives,
     FeedHold,
-    FeedOverride,
     ForceOutput,
-    Home,
+    HomeAxes,
     Jog,
-    JogStep,
-    JogStop,
-    Prepare,
+    JogByStep,
+    PrepareStart,
     Reset,
+    SelectHandwheel,
+    SetFeedOverride,
+    SetSpindleLimit,
     SetSwitch,
-    SpindleLimit,
-    SpindleStop,
-    Wheel,
-    WheelOff,
+    StopJog,
+    StopSpindle,
 )
-from core.executor.snapshot import ACTIVE, CYCLE, Starts, State
+from core.executor.snapshot import ACTIVE_STATES, CYCLE_STATES, MachineState, StartAction
 from core.interpreter.shared.job_setup import ToolOffset
 from core.ports import DriverError
 from core.proving.prove_program import prove
@@ -112,9 +112,9 @@ class ExecutorModel(RuleBasedStateMachine):
     def presses_start_after_reading(self) -> None:
         """As a job is worked: what is off is switched on, what was asked is answered, then both palms."""
         machine = self.machine
-        if machine.state is State.FAULT:
+        if machine.state is MachineState.FAULT:
             machine.post(Reset())
-        if machine.state is State.DISABLED:
+        if machine.state is MachineState.DISABLED:
             machine.post(EnableDrives())
         if machine.shot.interrupted is not None:
             machine.confirm()
@@ -146,7 +146,7 @@ class ExecutorModel(RuleBasedStateMachine):
         assert self.machine.state not in MOVES or was not in MOVES or self._stopping()
 
     def _stopping(self) -> bool:
-        return self.machine.state in {State.HOLDING, State.JOG}
+        return self.machine.state in {MachineState.HOLDING, MachineState.JOG}
 
     @rule()
     def hold_button(self) -> None:
@@ -161,7 +161,7 @@ class ExecutorModel(RuleBasedStateMachine):
         self._count("estop", harms=True)
         self.hands.press_estop()
         self.machine.tick()
-        assert self.machine.state is State.ESTOP
+        assert self.machine.state is MachineState.ESTOP
         self.machine.run(1.0)
         self.hands.release_estop()
         self.machine.run(0.2)
@@ -174,27 +174,29 @@ class ExecutorModel(RuleBasedStateMachine):
                 Reset(),
                 EnableDrives(),
                 EnableDrives(),
-                JogStop(),
-                WheelOff(),
-                SpindleStop(),
-                SpindleLimit(500.0),
-                SpindleLimit(None),
+                StopJog(),
+                DeselectHandwheel(),
+                StopSpindle(),
+                SetSpindleLimit(500.0),
+                SetSpindleLimit(None),
                 ForceOutput("coolant", True),
                 ForceOutput("coolant", False),
                 ForceOutput("collet", False),
                 ForceOutput("collet", True),
-                Home(),
-                Home("X"),
+                HomeAxes(),
+                HomeAxes("X"),
             ]
         )
     )
     def asks(self, command: Command) -> None:
-        self.machine.homed = isinstance(command, Home)
+        self.machine.homed = isinstance(command, HomeAxes)
         self.machine.harmed |= command == ForceOutput("collet", False)  # no spindle starts then
         self._post(command)
 
     @rule(
-        command=st.sampled_from([JogStop(), WheelOff(), SpindleStop(), FeedHold(), EnableDrives(), Reset()]),
+        command=st.sampled_from(
+            [StopJog(), DeselectHandwheel(), StopSpindle(), FeedHold(), EnableDrives(), Reset()]
+        ),
         ticks=st.integers(1, 200),
         times=st.integers(1, 3),
     )
@@ -221,7 +223,7 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(fraction=st.sampled_from([0.0, 0.1, 0.5, 1.0, 1.0, 1.5]))
     def overrides(self, fraction: float) -> None:
-        self._post(FeedOverride(fraction))
+        self._post(SetFeedOverride(fraction))
 
     @rule(
         command=st.sampled_from(
@@ -230,9 +232,9 @@ class ExecutorModel(RuleBasedStateMachine):
                 Jog("Z", -40.0, 0.3),
                 Jog("C", 90.0, 0.2),
                 Jog("X", 1e6, 0.3),
-                JogStep("X", 0.5, 10.0),
-                JogStep("Z", -200.0, 10.0),
-                Wheel("X", 0.01, 0.3),
+                JogByStep("X", 0.5, 10.0),
+                JogByStep("Z", -200.0, 10.0),
+                SelectHandwheel("X", 0.01, 0.3),
             ]
         )
     )
@@ -268,25 +270,25 @@ class ExecutorModel(RuleBasedStateMachine):
     def writes_a_line_of_mdi(self, line: str, starts: bool) -> None:
         """A line typed and proved as the screen does it, started or left standing; then MDI is left."""
         machine = self.machine
-        if machine.state is not State.IDLE or not all(machine.shot.homed):
+        if machine.state is not MachineState.IDLE or not all(machine.shot.homed):
             return
         self._count("mdi")
         job = line_job(machine, line)
         report = prove(job.source, job.setup, machine.machine)
         if report.errors:
             return
-        machine.post(Prepare(Starts.LINE, job, proof_of(job, report)))
+        machine.post(PrepareStart(StartAction.MDI_LINE, job, create_proof(job, report)))
         machine.run(0.4)
         if starts:
             self._start(lambda: machine.executor.post(CycleStart()))
             machine.run(1.5)
-        machine.post(Prepare(Starts.PROGRAM))
+        machine.post(PrepareStart(StartAction.PROGRAM))
 
     @rule(line=st.integers(1, 9))
     def restarts(self, line: int) -> None:
         """SEARCHTO: the state rebuilt to a line, the way there proved, and both palms."""
         machine = self.machine
-        if machine.state is not State.IDLE or machine.shot.alarms or not all(machine.shot.homed):
+        if machine.state is not MachineState.IDLE or machine.shot.alarms or not all(machine.shot.homed):
             return
         self._count("restart")
         if not machine.shot.job:
@@ -297,7 +299,7 @@ class ExecutorModel(RuleBasedStateMachine):
         report = prove(job.source, job.setup, machine.machine)
         if report.errors:
             return
-        machine.post(Prepare(Starts.RESTART, job, proof_of(job, report)))
+        machine.post(PrepareStart(StartAction.RESTART, job, create_proof(job, report)))
         machine.run(0.4)
         self._start(lambda: machine.executor.post(CycleStart()))
         machine.run(1.0)
@@ -411,24 +413,24 @@ class ExecutorModel(RuleBasedStateMachine):
         self.machine.switched = True
         for _ in range(150):
             self.machine.tick()
-        self.machine.post(FeedOverride(1.0))
+        self.machine.post(SetFeedOverride(1.0))
         for name in ("single_block", "optional_stop", "cycle_repeat", "no_count"):
             self.machine.post(SetSwitch(name, False))
 
     def _make_a_part(self) -> None:
         machine = self.machine
         for _ in range(8):
-            if machine.state is State.IDLE:
+            if machine.state is MachineState.IDLE:
                 break
-            off = machine.state is State.DISABLED and not machine.shot.alarms
+            off = machine.state is MachineState.DISABLED and not machine.shot.alarms
             machine.post(EnableDrives() if off else Reset())
             machine.run(2.0)
-        assert machine.state is State.IDLE, f"{machine.state} cannot be left: {machine.shot.alarms}"
+        assert machine.state is MachineState.IDLE, f"{machine.state} cannot be left: {machine.shot.alarms}"
         if not all(machine.shot.homed):
             machine.homed = True
-            machine.post(Home())
-            machine.until(State.IDLE, limit=120.0)
-        machine.post(Prepare(Starts.PROGRAM), SpindleStop(), ForceOutput("collet", True))
+            machine.post(HomeAxes())
+            machine.until(MachineState.IDLE, limit=120.0)
+        machine.post(PrepareStart(StartAction.PROGRAM), StopSpindle(), ForceOutput("collet", True))
         machine.run(3.0)
         self._back_into_the_travel()
         machine.load(SAFE)
@@ -438,9 +440,9 @@ class ExecutorModel(RuleBasedStateMachine):
         parts = machine.shot.parts
         machine.pressed = True
         machine.post(CycleStart())
-        assert not machine.shot.start_refused, machine.shot.start_refused
+        assert not machine.shot.start_refusal, machine.shot.start_refusal
         for _ in range(3000):
-            if machine.state is State.IDLE:
+            if machine.state is MachineState.IDLE:
                 break
             machine.tick()
         assert machine.shot.parts == parts + 1, machine.shot
@@ -460,7 +462,7 @@ class ExecutorModel(RuleBasedStateMachine):
                 machine.run(0.2)
                 if low + 1.0 < machine.shot.actual[index] < high - 1.0:
                     break
-            machine.until(State.IDLE)
+            machine.until(MachineState.IDLE)
 
     # --- helpers ------------------------------------------------------------------------------------------
 
@@ -482,9 +484,13 @@ class ExecutorModel(RuleBasedStateMachine):
         machine.pressed = True
         press()
         machine.tick()
-        if old not in ACTIVE and machine.state is old and old in CYCLE | {State.IDLE, State.DISABLED}:
+        if (
+            old not in ACTIVE_STATES
+            and machine.state is old
+            and old in CYCLE_STATES | {MachineState.IDLE, MachineState.DISABLED}
+        ):
             said = len(machine.said("refused")) > refused or self._acted() > starts
-            assert said or recent or machine.shot.start_refused, f"{old}: a start says nothing"
+            assert said or recent or machine.shot.start_refusal, f"{old}: a start says nothing"
 
     def _acted(self) -> int:
         """How often something was begun or gone on with, as the log has it."""
@@ -498,7 +504,7 @@ class ExecutorModel(RuleBasedStateMachine):
             machine.last_press = machine.clock.now()
         old, told = machine.shot, len(machine.events)
         machine.post(command)
-        if moves and machine.state is old.state and machine.state is not State.JOG:
+        if moves and machine.state is old.state and machine.state is not MachineState.JOG:
             words = [event.kind for event in machine.events[told:]]
             assert (
                 "refused" in words

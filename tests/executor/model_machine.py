@@ -16,16 +16,29 @@ from typing import Any
 from core.executor.commands import Command
 from core.executor.executor import Executor
 from core.executor.job import Job, ProgramPass
-from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Snapshot, State
-from core.executor.start_conditions import TIME_TO_READ
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.executor.snapshot import (
+    ACTIVE_STATES,
+    CYCLE_STATES,
+    MANUAL_STATES,
+    STOPPED_STATES,
+    MachineState,
+    Snapshot,
+)
+from core.executor.start_conditions import READING_TIME_S
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup
-from core.ports import Unknown
+from core.ports import UnknownPart
 from tests.executor.rig import Rig
 from tests.texts import pattern
 
-STARTS_FROM = {State.IDLE, State.HOLD, State.HOLDING, State.BLOCK_END, State.PROGRAM_STOP}
-MOVES = ACTIVE | {State.JOG, State.HOME}
+STARTS_FROM = {
+    MachineState.IDLE,
+    MachineState.HOLD,
+    MachineState.HOLDING,
+    MachineState.BLOCK_END,
+    MachineState.PROGRAM_STOP,
+}
+MOVES = ACTIVE_STATES | {MachineState.JOG, MachineState.HOME}
 SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind it
 LONGEST_JOG = 8.0  # s; the handwheel's way is long, and the host may be late by 5 s
 RUNS_OUT = 12.0  # s; the spindle's own ramp from full speed, bogged or not
@@ -37,9 +50,9 @@ FINE = 0.002  # s between two looks at the setpoints
 UNHEARD = 0.1  # s after which a driver reports that what it tells is old
 PORTS = ("axes", "spindle", "io")
 FREEZES = {  # what a port goes on telling, and what it reports as unknown then
-    "axes": (("sample",), Unknown.SLIDES),
-    "spindle": (("speed", "angle", "fault"), Unknown.SPINDLE),
-    "io": (("inputs", "outputs"), Unknown.INPUTS),
+    "axes": (("sample",), UnknownPart.AXES),
+    "spindle": (("speed", "angle", "fault"), UnknownPart.SPINDLE),
+    "io": (("inputs", "outputs"), UnknownPart.INPUTS),
 }
 
 
@@ -83,8 +96,8 @@ class Seen:
     def __init__(self) -> None:
         self.steps = self.ticks = self.runs = self.parts = 0
         self.seconds = 0.0
-        self.states: Counter[State] = Counter()
-        self.changes: Counter[tuple[State, State]] = Counter()
+        self.states: Counter[MachineState] = Counter()
+        self.changes: Counter[tuple[MachineState, MachineState]] = Counter()
         self.alarms: Counter[str] = Counter()
         self.rules: Counter[str] = Counter()
 
@@ -135,22 +148,22 @@ class Machine(Rig):
         self.fed_badly = self.stopped = self.powerless = self.moved_unseen = 0.0
         self.announced = 0.0  # s for which the start of the spindle has stood in the snapshot
         self.before = self.shot
-        self.executor.tick()
+        self.executor.run_tick()
 
     def close(self) -> None:
         """TurnDesk is closed: nothing may be left moving or switched on. It is started again afterwards."""
-        self.executor.shut()
+        self.executor.shut_down()
         for port in self.broken.values():
             port.breaks.clear()
         hands, began = self.sim.machine, self.clock.now()
         for _ in range(round(RUNS_OUT / self.every)):
-            place = hands.true_position()
+            place = hands.get_true_position()
             self.clock.advance(self.every)
-            way = math.dist(hands.true_position()[:2], place[:2])
+            way = math.dist(hands.get_true_position()[:2], place[:2])
             at_rest = self.clock.now() - began > SETTLES
             assert not at_rest or way < STILL or self.blind, f"{way} mm after TurnDesk was closed"
         assert not self.true_ports.axes.sample().enabled, "the drives are on after TurnDesk was closed"
-        assert abs(hands.spindle_rpm()) < 1.0, "the spindle turns after TurnDesk was closed"
+        assert abs(hands.get_spindle_rpm()) < 1.0, "the spindle turns after TurnDesk was closed"
         assert not self.true_ports.io.outputs()["coolant"], "the coolant is on"
         self.left = self.notes[-1] if self.notes else None
         self.owed.clear()
@@ -169,7 +182,7 @@ class Machine(Rig):
         for port in self.broken.values():
             port.frozen.clear()
 
-    def _unheard(self) -> frozenset[Unknown]:
+    def _unheard(self) -> frozenset[UnknownPart]:
         now = self.clock.now()
         old = {FREEZES[port][1] for port, since in self.frozen_since.items() if now - since > UNHEARD}
         return frozenset(old) | self.true_ports.unknown()
@@ -183,12 +196,12 @@ class Machine(Rig):
     def tick(self, dt: float | None = None) -> None:
         """One tick, and all that must hold after it."""
         dt = self.every if dt is None else dt
-        before, place = self.shot, self.sim.machine.true_position()
+        before, place = self.shot, self.sim.machine.get_true_position()
         self._setpoints(dt)
         self.clock.advance(dt)
         self._release()
         queue, self._stalled = self._demand(), 0.0
-        self.executor.tick()
+        self.executor.run_tick()
         dt += self._stalled
         if not self._stalled:
             self._spliced(queue)
@@ -271,15 +284,17 @@ class Machine(Rig):
     def _nothing_moves_unasked(
         self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float
     ) -> None:
-        begins = old.state not in ACTIVE or (old.state is State.HOLDING and new.state is not State.HOLDING)
-        if new.state in ACTIVE and begins:
+        begins = old.state not in ACTIVE_STATES or (
+            old.state is MachineState.HOLDING and new.state is not MachineState.HOLDING
+        )
+        if new.state in ACTIVE_STATES and begins:
             assert self.pressed, f"{old.state} became {new.state} and nobody pressed a start"
             assert old.state in STARTS_FROM, f"a cycle was started from {old.state}"
-        if new.state is State.JOG and old.state is not State.JOG:
+        if new.state is MachineState.JOG and old.state is not MachineState.JOG:
             assert self.jogged, f"{old.state} became a jog and nobody asked for one"
-        if new.state is State.HOME and old.state is not State.HOME:
+        if new.state is MachineState.HOME and old.state is not MachineState.HOME:
             assert self.homed
-        way = math.dist(self.sim.machine.true_position()[:2], place[:2])
+        way = math.dist(self.sim.machine.get_true_position()[:2], place[:2])
         if new.state not in MOVES and new.t - self.stood > SETTLES + dt:
             # How far a slide goes behind an encoder that stands is measured in test_following_error.
             assert way < STILL or self.blind, f"{way} mm in {new.state}"
@@ -288,21 +303,25 @@ class Machine(Rig):
         """From no command to one: a word of the program under way, a start that was announced, the switch."""
         if old.rpm_command != 0.0 or new.rpm_command == 0.0:
             return
-        fresh = old.spindle_asked == 0.0 and (new.state in ACTIVE or old.state in ACTIVE or self.pressed)
-        word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE
-        announced = self.pressed and self.announced > TIME_TO_READ - 1e-6
-        switched = self.switched and new.state in BY_HAND and self.announced > TIME_TO_READ - 1e-6
+        fresh = old.requested_rpm == 0.0 and (
+            new.state in ACTIVE_STATES or old.state in ACTIVE_STATES or self.pressed
+        )
+        word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE_STATES
+        announced = self.pressed and self.announced > READING_TIME_S - 1e-6
+        switched = self.switched and new.state in MANUAL_STATES and self.announced > READING_TIME_S - 1e-6
         assert fresh or word or announced or switched, (
             f"the spindle starts by itself in {new.state}: {old.announced}"
         )
 
     def _feeds_as_commanded(self, new: Snapshot) -> None:
         """A cut with the spindle or the coolant not as the program has it ends within half a second."""
-        cutting = new.state is State.RUN and not new.rapid and new.velocity > 0.05 and not new.modal.c_locked
+        cutting = (
+            new.state is MachineState.RUN and not new.rapid and new.velocity > 0.05 and not new.modal.c_locked
+        )
         bad = cutting and (
             (
                 new.modal.spindle != 0
-                and abs(self.sim.machine.spindle_rpm()) < 0.3 * abs(new.rpm_command) - 30.0
+                and abs(self.sim.machine.get_spindle_rpm()) < 0.3 * abs(new.rpm_command) - 30.0
             )
             or (new.modal.spindle != 0 and new.rpm_command == 0.0)
             or (new.modal.coolant and "coolant" not in new.outputs)
@@ -311,7 +330,7 @@ class Machine(Rig):
         both = bad and self._fed_badly_before
         self.fed_badly = self.fed_badly + (new.t - self.before.t) if both else 0.0
         self.before, self._fed_badly_before = new, bad
-        assert self.fed_badly < 1.2, f"it cuts in line {new.line} at {self.sim.machine.spindle_rpm()} rpm"
+        assert self.fed_badly < 1.2, f"it cuts in line {new.line} at {self.sim.machine.get_spindle_rpm()} rpm"
 
     def _known(self, new: Snapshot) -> None:
         """At rest the place on the screen is the place of the slides, or the screen says that it is not."""
@@ -320,45 +339,49 @@ class Machine(Rig):
             or self.frozen_since
             or new.state in MOVES
             or new.alarms
-            or new.state in {State.ESTOP, State.DISABLED}
+            or new.state in {MachineState.ESTOP, MachineState.DISABLED}
         ):
             return
         if new.t - self.stood > SETTLES and all(new.homed):
-            true = self.sim.machine.true_position()
+            true = self.sim.machine.get_true_position()
             assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
 
     def _stopped_is_off(self, new: Snapshot, dt: float) -> None:
         """An alarm and the E-stop leave no command to the spindle, and it comes to rest, whatever it did."""
-        off = new.state in {State.FAULT, State.ESTOP} and not self.unexpected
+        off = new.state in {MachineState.FAULT, MachineState.ESTOP} and not self.unexpected
         self.stopped = self.stopped + dt if off else 0.0
         if self.stopped > 2 * dt:  # an output that cannot be read makes the picture one tick old
             assert new.rpm_command == 0.0, f"{new.rpm_command} rpm in {new.state}"
         if self.stopped > RUNS_OUT:
-            assert abs(self.sim.machine.spindle_rpm()) < 1.0, f"it turns in {new.state}"
+            assert abs(self.sim.machine.get_spindle_rpm()) < 1.0, f"it turns in {new.state}"
 
     def _power_is_seen(self, old: Snapshot, new: Snapshot, dt: float) -> None:
         """Drives that are off end every state in which something may move or be started."""
         on = self.true_ports.axes.sample().enabled
-        dark = not on and new.state not in {State.DISABLED, State.FAULT, State.ESTOP}
+        dark = not on and new.state not in {MachineState.DISABLED, MachineState.FAULT, MachineState.ESTOP}
         self.powerless = self.powerless + dt if dark and old.state is new.state else 0.0
         seen = POWER_SEEN + ("axes" in self.frozen_since) * (UNHEARD + NO_NEWS)
         assert self.powerless <= max(seen, dt), f"{new.state} without power for {self.powerless:.2f} s"
 
     def _frozen_is_seen(self, new: Snapshot, dt: float) -> None:
         """A control that hears nothing of the slides soon moves nothing, and is not ready."""
-        frozen = "axes" in self.frozen_since and new.state in CYCLE | {State.IDLE, State.JOG, State.HOME}
+        frozen = "axes" in self.frozen_since and new.state in CYCLE_STATES | {
+            MachineState.IDLE,
+            MachineState.JOG,
+            MachineState.HOME,
+        }
         self.moved_unseen = self.moved_unseen + dt if frozen else 0.0
         assert self.moved_unseen <= UNHEARD + NO_NEWS + 2 * dt, f"{new.state} without news of the slides"
 
     def _jog_ends(self, new: Snapshot) -> None:
         """Nothing is jogged for longer than its lease, its step and the braking take."""
-        if self.jogged or new.state is not State.JOG:
+        if self.jogged or new.state is not MachineState.JOG:
             self.jog_asked = new.t
         assert new.t - self.jog_asked < LONGEST_JOG, f"jogged for {new.t - self.jog_asked:.1f} s"
 
     def _on_the_path(self, new: Snapshot) -> None:
         """Wherever a cycle was stopped: on a line or circle of its program."""
-        if new.state not in STOPPED or new.t - self.stood < SETTLES or new.waiting_for == "THREAD":
+        if new.state not in STOPPED_STATES or new.t - self.stood < SETTLES or new.waiting_for == "THREAD":
             return
         x, z = new.demand[:2]
         off = min((_off(block, x, z) for block in self.blocks if block.moves), default=0.0)
@@ -368,7 +391,7 @@ class Machine(Rig):
 def _off(block: Block, x: float, z: float) -> float:
     """Distance of a place from the way of a block, mm, machine coordinates."""
     ax, az, bx, bz = block.x0 + block.offset_x, block.z0 + block.offset_z, block.mx, block.mz
-    if block.kind is Kind.ARC:
+    if block.kind is BlockKind.ARC:
         cx, cz = block.cx + block.offset_x, block.cz + block.offset_z
         return abs(math.hypot(x - cx, z - cz) - math.hypot(ax - cx, az - cz))
     long = (bx - ax) ** 2 + (bz - az) ** 2

@@ -6,46 +6,46 @@ import dataclasses
 import math
 from dataclasses import dataclass, field
 
-from app.compose.backends.simulated_backend import simulated
+from app.compose.backends.simulated_backend import create_simulation
 from app.compose.machine.machine_files import load_machine
 from core.executor.machine_context import MachineContext
 from core.executor.signals import CommandedOutputs, StationSignals
-from core.executor.snapshot import Event
+from core.executor.snapshot import LogEvent
 from core.executor.spindle_control import SpindleControl
 from core.machine.machine_model import Machine
-from core.ports import BlockOp, BlockState
-from drivers.waiting import StepClock
+from core.ports import BlockOperation, BlockState
+from drivers.wakeups import ManualClock
 
 
 @dataclass
 class PlayedController:
     """``ops`` are the blocks that it was given, ``asked`` what else was asked of it, in order."""
 
-    ahead: float = 100.0
-    reach: float = math.inf
+    max_lead_s: float = 100.0
+    css_max_rpm: float = math.inf
     room: int = 100  # blocks that it takes in all
     fast: float = 50.0  # mm/s of its slides
-    caps: frozenset[str] = frozenset()
+    capabilities: frozenset[str] = frozenset()
     done: int = 0
     resting: bool = True
     held: bool = False
     hindrance: str = ""
     jogs: bool = True  # there is a way before the limits
-    ops: list[BlockOp] = field(default_factory=list)
+    ops: list[BlockOperation] = field(default_factory=list)
     asked: list[str] = field(default_factory=list)
     jogged: list[tuple[str, float, float, tuple[float, float] | None]] = field(default_factory=list)
     steps: list[tuple[str, float, float]] = field(default_factory=list)
 
-    def lay_out(self, highest: float) -> None:
+    def prepare_css(self, max_rpm: float) -> None:
         """Not used here."""
 
-    def fastest(self, _dx: float, _dz: float) -> float:
+    def max_line_speed(self, _dx: float, _dz: float) -> float:
         return self.fast
 
-    def submit(self, op: BlockOp) -> int | None:
+    def submit_block(self, operation: BlockOperation) -> int | None:
         if len(self.ops) >= self.room:
             return None
-        self.ops.append(op)
+        self.ops.append(operation)
         self.resting = False
         return len(self.ops)
 
@@ -56,33 +56,35 @@ class PlayedController:
     def state(self) -> BlockState:
         return BlockState(self.done, 0, self.resting, self.held, self.hindrance)
 
-    def hold(self) -> None:
+    def hold_on_path(self) -> None:
         self.asked.append("hold")
 
     def resume(self) -> None:
         self.asked.append("resume")
 
-    def abort(self) -> None:
+    def abort_blocks(self) -> None:
         self.asked.append("abort")
 
-    def override(self, feed: float, rapid: float) -> None:
+    def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Not used here."""
 
-    def jog(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
-        self.jogged.append((axis, velocity, lease, limits))
+    def start_jog(
+        self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
+    ) -> bool:
+        self.jogged.append((axis, velocity, lease_s, limits))
         return self.jogs
 
-    def jog_to(self, axis: str, target: float, speed: float) -> None:
+    def step_to(self, axis: str, target: float, speed: float) -> None:
         self.steps.append((axis, target, speed))
 
-    def jog_stop(self) -> None:
+    def stop_jog(self) -> None:
         self.asked.append("jog stop")
 
 
 def context_of(controller: PlayedController | None, machine: Machine | None = None) -> MachineContext:
     """What the executor's parts look at, at time 0, with the slides of the simulated machine at home."""
-    model, clock, events = machine or load_machine(), StepClock(), list[Event]()
-    ports = dataclasses.replace(simulated(model, clock).ports, blocks=controller)
+    model, clock, events = machine or load_machine(), ManualClock(), list[LogEvent]()
+    ports = dataclasses.replace(create_simulation(model, clock).ports, blocks=controller)
     return MachineContext(
         machine=model,
         ports=ports,
@@ -98,5 +100,11 @@ def context_of(controller: PlayedController | None, machine: Machine | None = No
 def turn_feed_pot(context: MachineContext, feed: float) -> None:
     """The pot of the feed stands at this fraction."""
     context.signals = StationSignals(
-        estop=False, start=False, hold=False, feed=feed, spindle=1.0, auto=True, trouble=""
+        estop_pressed=False,
+        start_requested=False,
+        hold_requested=False,
+        feed_override=feed,
+        spindle=1.0,
+        spindle_auto=True,
+        station_fault="",
     )

@@ -7,26 +7,26 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
-from app.compose.backends.simulated_backend import simulated
+from app.compose.backends.simulated_backend import create_simulation
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import control_limits
+from app.compose.machine.machine_setup import get_control_limits
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
-from core.executor.job import Job, ProgramPass, Proof, interpret, make_job
-from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
+from core.executor.job import Job, ProgramPass, Proof, make_job, start_program_pass
+from core.executor.snapshot import InterruptedJob, LogEvent, MachineState, Snapshot
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import Setup, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from drivers.simulated.simulated_machine import Simulation
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 
 INCH = 25.4
 TICK = 0.02  # s; the longest that the executor has between two ticks
 FINE = 0.01  # s; what it has mostly, for tests of what a tick tells apart
 
 
-class CreepingClock(StepClock):
+class CreepingClock(ManualClock):
     """A clock that goes on with every look at it, as a real one does."""
 
     def now(self) -> float:
@@ -39,9 +39,9 @@ class Rig:
     """Drive it with ``post``, ``run`` and the simulated hands of ``sim.machine``."""
 
     machine: Machine = field(default_factory=load_machine)
-    events: list[Event] = field(default_factory=list)
+    events: list[LogEvent] = field(default_factory=list)
     watch: list[Callable[[Snapshot], None]] = field(default_factory=list)
-    clock_kind: type[StepClock] = StepClock
+    clock_kind: type[ManualClock] = ManualClock
     made: Iterable[Block] | None = None  # run these instead of interpreting
     gear: bool = True  # whether the driver follows the spindle by itself
     every: float = TICK  # s between two ticks
@@ -52,23 +52,23 @@ class Rig:
 
     def __post_init__(self) -> None:
         self.clock = self.clock_kind()
-        self.sim: Simulation = simulated(self.machine, self.clock)
+        self.sim: Simulation = create_simulation(self.machine, self.clock)
         if not self.gear:
             self.sim = self.sim._replace(ports=dataclasses.replace(self.sim.ports, gear=None))
         self.executor = Executor(
             self.machine, self.sim.ports, self.events.append, self._passes, self.notes.append, self.left
         )
-        self.executor.tick()
+        self.executor.run_tick()
 
     def _passes(self, job: Job, setup: Setup) -> ProgramPass:
-        return interpret(job, setup) if self.made is None else ProgramPass(iter(self.made), list)
+        return start_program_pass(job, setup) if self.made is None else ProgramPass(iter(self.made), list)
 
     @property
     def shot(self) -> Snapshot:
         return self.executor.snapshot
 
     @property
-    def state(self) -> State:
+    def state(self) -> MachineState:
         return self.executor.snapshot.state
 
     def post(self, *commands: Command) -> None:
@@ -79,7 +79,7 @@ class Rig:
 
     def tick(self, dt: float | None = None) -> None:
         self.clock.advance(self.every if dt is None else dt)
-        self.executor.tick()
+        self.executor.run_tick()
         for look in self.watch:
             look(self.executor.snapshot)
 
@@ -88,7 +88,7 @@ class Rig:
         while self.clock.now() < end - 1e-9:
             self.tick()
 
-    def until(self, *states: State, limit: float = 60.0) -> float:
+    def until(self, *states: MachineState, limit: float = 60.0) -> float:
         """Run until one of these states; returns how long it took."""
         began = self.clock.now()
         while self.state not in states:
@@ -115,21 +115,21 @@ class Rig:
             changes.setdefault("metric", self.shot.modal.metric)  # what stands in for a program needs no unit
         setup = Setup(
             tools=dict(tools or {}),
-            limits=control_limits(self.machine),
+            limits=get_control_limits(self.machine),
             last_rapid=self.machine.limits.manual_rapid,
             **changes,  # type: ignore[arg-type]
         )
-        job = make_job(Source(name, text), setup)
+        job = make_job(ProgramSource(name, text), setup)
         self.post(LoadJob(job, Proof(job.digest, ())))
         return job
 
     def ready(self) -> None:
         self.post(EnableDrives())
-        assert self.state is State.IDLE, self.shot
+        assert self.state is MachineState.IDLE, self.shot
 
     def start(self, text: str, tools: Mapping[int, ToolOffset] | None = None) -> None:
         """Drives on, program loaded, Cycle Start."""
-        if self.state is State.DISABLED:
+        if self.state is MachineState.DISABLED:
             self.ready()
         self.run(0.3)  # no bounce of the last start
         self.load(text, tools)

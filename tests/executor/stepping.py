@@ -7,18 +7,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from core.executor.commands import CycleStart, LoadJob, SetSwitch
-from core.executor.job import Job, ProgramPass, Proof, interpret, make_job
-from core.executor.snapshot import State
-from core.interpreter.dialects import interpretation
+from core.executor.job import Job, ProgramPass, Proof, make_job, start_program_pass
+from core.executor.snapshot import MachineState
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.actions import Dwell, ProgramEnd
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from tests.executor.rig import Rig
 
-STOPPED = {State.BLOCK_END, State.PROGRAM_STOP}
+STOPPED = {MachineState.BLOCK_END, MachineState.PROGRAM_STOP}
 _QUICK = 8.0  # times the feeds and through the dwells: steps and places are the same
 _LEAST_FEED = 1.0  # mm/s
 _TICK = 0.02
@@ -38,7 +38,7 @@ def with_room(machine: Machine) -> Machine:
 def _quick(block: Block) -> Block:
     if isinstance(block.action, Dwell):
         return dataclasses.replace(block, action=Dwell(block.action.seconds / _QUICK))
-    if block.action is None and block.kind is not Kind.THREAD and not block.rapid:
+    if block.action is None and block.kind is not BlockKind.THREAD and not block.rapid:
         least = 0.0 if block.per_rev else _LEAST_FEED
         return dataclasses.replace(block, feed=max(block.feed * _QUICK, least))
     return block
@@ -52,7 +52,7 @@ class QuickRig(Rig):
 
     def _passes(self, job: Job, setup: Setup) -> ProgramPass:
         self.blocks = []
-        whole = interpret(job, setup)
+        whole = start_program_pass(job, setup)
         return whole._replace(blocks=self._kept(whole.blocks))
 
     def _kept(self, blocks: Iterator[Block]) -> Iterator[Block]:
@@ -61,10 +61,10 @@ class QuickRig(Rig):
             yield _quick(block)
 
 
-def has_errors(source: Source, setup: Setup) -> bool:
+def has_errors(source: ProgramSource, setup: Setup) -> bool:
     """Whether a program is refused."""
-    program = interpretation(source, setup)
-    for _ in program.blocks():
+    program = interpret_program(source, setup)
+    for _ in program.generate_blocks():
         pass
     return any(found.severity is Severity.ERROR for found in program.diagnostics)
 
@@ -75,27 +75,29 @@ def steps_of(blocks: Iterable[Block]) -> list[int]:
     threading = False
     for block in blocks:
         moves = block.action is None
-        pulls = moves and threading and (block.kind is Kind.THREAD or (block.rapid and block.z == block.z0))
+        pulls = (
+            moves and threading and (block.kind is BlockKind.THREAD or (block.rapid and block.z == block.z0))
+        )
         if pulls:
             steps[-1] = block.n
         elif not isinstance(block.action, ProgramEnd):
             steps.append(block.n)
-        threading = moves and block.kind is Kind.THREAD and not pulls
+        threading = moves and block.kind is BlockKind.THREAD and not pulls
     return steps
 
 
 def _answered(rig: Rig) -> None:
     """The loader or bar feeder for whose terminal the program waits does what it waits for."""
     for model in rig.machine.inputs.values():
-        if rig.state is State.WAIT and model.terminal and rig.shot.waiting_for == model.terminal:
+        if rig.state is MachineState.WAIT and model.terminal and rig.shot.waiting_for == model.terminal:
             rig.sim.machine.set_input(model.name, model.name not in rig.shot.inputs)
 
 
 def stepped_through(
-    source: Source, setup: Setup, machine: Machine, limit: int = 2000
+    source: ProgramSource, setup: Setup, machine: Machine, limit: int = 2000
 ) -> tuple[QuickRig, list[int]]:
     """The rig at the end, and the block at which each start of single block ended."""
-    rig = QuickRig(machine=dataclasses.replace(with_room(machine), inch=not setup.metric))
+    rig = QuickRig(machine=dataclasses.replace(with_room(machine), is_inch=not setup.metric))
     for model in rig.machine.inputs.values():
         if model.terminal and setup.inputs(model.terminal):
             rig.sim.machine.set_input(model.name, True)
@@ -105,8 +107,8 @@ def stepped_through(
     job = make_job(source, setup)
     rig.post(LoadJob(job, Proof(job.digest, ())), CycleStart())
     stops: list[int] = []
-    while rig.state not in {State.IDLE, State.FAULT}:
-        assert rig.state is not State.HOLD, rig.shot.waiting_for
+    while rig.state not in {MachineState.IDLE, MachineState.FAULT}:
+        assert rig.state is not MachineState.HOLD, rig.shot.waiting_for
         assert rig.clock.now() < _LONGEST, (
             f"still {rig.state} in line {rig.shot.line}: {rig.shot.waiting_for}"
         )

@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.backends.simulated_backend import sim_config
+from app.compose.backends.simulated_backend import create_sim_config
 from app.compose.machine.machine_files import load_machine
 from core.executor.commands import EnableDrives, ForceOutput, Jog, SetSwitch
-from core.executor.executor import RESTS, Executor
-from core.executor.snapshot import State
-from core.ports import DriverError, Stop
+from core.executor.executor import REST_TICK_S, Executor
+from core.executor.snapshot import MachineState
+from core.ports import DriverError, StopMode
 from drivers.simulated.simulated_machine import build_simulation
 from drivers.simulated.simulated_table import PlannedFault
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.executor.rig import FINE, Rig
 
 
@@ -47,19 +47,19 @@ def test_it_is_shown_twenty_times_a_second_once_it_has_rested_for_one(powered: b
     rig.run(1.0)
     assert shown(rig, 100) == 20
     assert rig.shot.t > rig.clock.now() - 0.051
-    assert rig.executor.ticks > 290  # the watchdog sees each of them
+    assert rig.executor.tick_count > 290  # the watchdog sees each of them
 
 
 HAPPENS = pytest.mark.parametrize(
     ("happens", "seen"),
     [
-        (lambda rig: rig.sim.machine.press_estop(), lambda rig: rig.state is State.ESTOP),
-        (lambda rig: rig.sim.machine.drive_fault("X"), lambda rig: rig.state is State.FAULT),
+        (lambda rig: rig.sim.machine.press_estop(), lambda rig: rig.state is MachineState.ESTOP),
+        (lambda rig: rig.sim.machine.drive_fault("X"), lambda rig: rig.state is MachineState.FAULT),
         (lambda rig: rig.sim.machine.set_input("TB2-5", True), lambda rig: "TB2-5" in rig.shot.inputs),
         (lambda rig: rig.sim.machine.set_feed_pot(0.5), lambda rig: rig.shot.feed_override == 0.5),
         (lambda rig: rig.sim.machine.push("X", 0.5), lambda rig: abs(rig.shot.following_error[0]) > 0.01),
         (lambda rig: rig.executor.post(SetSwitch("single_block", True)), lambda rig: rig.shot.single_block),
-        (lambda rig: rig.executor.post(Jog("X", 5.0, 0.2)), lambda rig: rig.state is State.JOG),
+        (lambda rig: rig.executor.post(Jog("X", 5.0, 0.2)), lambda rig: rig.state is MachineState.JOG),
     ],
 )
 
@@ -87,7 +87,7 @@ def test_what_goes_on_is_shown_every_time() -> None:
 def test_a_late_tick_at_rest_is_still_told() -> None:
     rig = rested()
     late: list[float] = []
-    rig.executor._tell = lambda tick: late.append(tick.late)
+    rig.executor._tell = lambda tick: late.append(tick.delay_s)
     rig.tick(0.07)
     rig.run(0.1)
     assert max(late) == pytest.approx(0.06)
@@ -99,7 +99,7 @@ def test_whoever_shows_it_is_called_when_it_changes(
 ) -> None:
     rig = rested()
     called: list[bool] = []
-    rig.executor.stirs = lambda: called.append(seen(rig))
+    rig.executor.on_change_at_rest = lambda: called.append(seen(rig))
     rig.run(1.0)
     assert not called
     happens(rig)
@@ -112,9 +112,9 @@ def test_what_moves_is_shown_anyway_and_calls_nobody() -> None:
     rig.executor.post(Jog("X", 5.0, 2.0))
     rig.run(0.2)
     called: list[bool] = []
-    rig.executor.stirs = lambda: called.append(True)
+    rig.executor.on_change_at_rest = lambda: called.append(True)
     rig.run(0.5)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     assert not called
 
 
@@ -145,13 +145,13 @@ def test_a_machine_that_rests_is_looked_at_ten_times_a_second(powered: bool) -> 
     rig = rested(powered=powered)
     ringing = Ringing(rig)
     late: list[float] = []
-    rig.executor._tell = lambda tick: late.append(tick.late)
+    rig.executor._tell = lambda tick: late.append(tick.delay_s)
     for _ in range(5):
         before = rig.shot
-        assert rig.executor.rest()
-        rig.tick(RESTS)
+        assert rig.executor.wait_at_rest()
+        rig.tick(REST_TICK_S)
         assert rig.shot is not before  # each of them is shown
-    assert ringing.slept == [RESTS] * 5
+    assert ringing.slept == [REST_TICK_S] * 5
     assert not any(ringing.rung)
     assert max(late) < 1e-9  # as was meant
 
@@ -163,19 +163,19 @@ def test_whatever_happens_ends_its_rest_at_once(
     rig = rested()
     ringing = Ringing(rig)
     ringing.meanwhile = lambda: happens(rig)
-    assert rig.executor.rest()
+    assert rig.executor.wait_at_rest()
     assert ringing.rung == [True]
     rig.tick(0.001)
     assert seen(rig)
     for _ in range(99):
-        assert not rig.executor.rest()
+        assert not rig.executor.wait_at_rest()
         rig.tick()
 
 
 def test_what_was_posted_before_it_would_rest_is_not_kept_waiting() -> None:
     rig = rested()
     rig.executor.post(SetSwitch("single_block", True))
-    assert not rig.executor.rest()
+    assert not rig.executor.wait_at_rest()
 
 
 @pytest.mark.parametrize(
@@ -192,10 +192,10 @@ def test_what_may_change_by_itself_is_looked_at_in_every_tick(goes_on: Callable[
     Ringing(rig)
     goes_on(rig)
     rig.run(3.0)
-    assert rig.state in {State.IDLE, State.FAULT}
+    assert rig.state in {MachineState.IDLE, MachineState.FAULT}
     for _ in range(20):
         rig.tick()
-        assert not rig.executor.rest()
+        assert not rig.executor.wait_at_rest()
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_what_may_change_by_itself_is_looked_at_in_every_tick(goes_on: Callable[
         (lambda rig: rig.sim.ports.io.write("collet", False), 0.31),  # .25 s ± 20 %
         (lambda rig: rig.sim.machine.press_start(), 0.11),
         (lambda rig: rig.sim.machine.push("X", 0.01), 0.3),
-        (lambda rig: rig.sim.ports.axes.stop(Stop.RAMP_OFF), 0.05),
+        (lambda rig: rig.sim.ports.axes.stop(StopMode.RAMP_OFF), 0.05),
     ],
 )
 def test_a_driver_does_not_say_that_it_rests_before_it_does(
@@ -213,19 +213,19 @@ def test_a_driver_does_not_say_that_it_rests_before_it_does(
     rig = rested()
     wakeup = rig.sim.ports.wakeup
     assert wakeup is not None
-    assert wakeup.settled()
+    assert wakeup.is_settled()
     act(rig)
-    assert not wakeup.settled()
+    assert not wakeup.is_settled()
     rig.clock.advance(seconds)
-    assert wakeup.settled()
+    assert wakeup.is_settled()
 
 
 def test_a_machine_on_which_something_is_planned_to_break_never_rests() -> None:
     faults = (PlannedFault(at=1000.0, what="estop"),)
-    config = replace(sim_config(load_machine()), faults=faults)
-    ports, _hands = build_simulation(config, StepClock())
+    config = replace(create_sim_config(load_machine()), faults=faults)
+    ports, _hands = build_simulation(config, ManualClock())
     assert ports.wakeup is not None
-    assert not ports.wakeup.settled()
+    assert not ports.wakeup.is_settled()
 
 
 def test_drivers_that_do_not_ring_are_looked_at_in_every_tick() -> None:
@@ -233,8 +233,8 @@ def test_drivers_that_do_not_ring_are_looked_at_in_every_tick() -> None:
     ports = replace(rig.sim.ports, wakeup=None)
     executor = Executor(rig.machine, ports, rig.events.append)
     for _ in range(300):
-        executor.tick()
-        assert not executor.rest()
+        executor.run_tick()
+        assert not executor.wait_at_rest()
         rig.clock.advance(0.01)
 
 
@@ -246,16 +246,16 @@ def test_a_driver_that_breaks_when_it_is_asked_whether_it_rests_is_an_alarm(
     def broken() -> bool:
         raise DriverError("the wire is cut")
 
-    monkeypatch.setattr(rig.sim.ports.wakeup, "settled", broken)
-    assert not rig.executor.rest()
+    monkeypatch.setattr(rig.sim.ports.wakeup, "is_settled", broken)
+    assert not rig.executor.wait_at_rest()
     rig.tick()
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
 
 
 def test_the_recorder_is_told_that_the_machine_rests() -> None:
     rig = rested()
     told: list[bool] = []
-    rig.executor._tell = lambda tick: told.append(tick.rests)
+    rig.executor._tell = lambda tick: told.append(tick.is_at_rest)
     rig.run(0.2)
     assert set(told) == {True}
     rig.sim.machine.set_input("guard", False)

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_files import load_shipped_machine
 from core.executor.commands import (
     CycleStart,
     FeedHold,
     ForceOutput,
-    Prepare,
+    PrepareStart,
     Reset,
-    SpindleLimit,
-    SpindleStop,
+    SetSpindleLimit,
+    StopSpindle,
     UseOffsets,
 )
-from core.executor.control_status import modal_given_up
-from core.executor.snapshot import Starts, State
+from core.executor.control_status import modal_after_cancel
+from core.executor.snapshot import MachineState, StartAction
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from tests.executor.rig import INCH, Rig
 from tests.texts import text
 
@@ -37,15 +37,15 @@ def test_the_state_of_power_up() -> None:
 def test_m30_leaves_units_and_the_frame_of_the_tool_and_m02_the_m_functions_too() -> None:
     rig = Rig()
     rig.start("G90G94F300G71G72\nT1\nX10Z10M08\nM03S900\nG95F.1\nM02\n", TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     left = rig.shot.modal
     assert (left.metric, left.diameter, left.per_rev, left.absolute) == (True, False, False, None)
     assert (left.tool, left.tool_x, left.tool_z) == (1, -12.7, -50.8)
     assert (left.spindle, left.rpm, left.coolant) == (1, 900.0, True)
     assert rig.shot.offset == (-12.7, -50.8)
-    assert rig.shot.spindle_asked == 900.0
+    assert rig.shot.requested_rpm == 900.0
     rig.start("G90G70G94F300\nX-.3\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert (rig.shot.modal.tool, rig.shot.modal.spindle, rig.shot.modal.coolant) == (0, 0, False)
     assert rig.shot.rpm_command == 0.0
 
@@ -56,9 +56,9 @@ def test_a_reset_leaves_what_m30_would_have_left() -> None:
     rig.until_true(lambda shot: shot.line == 7)
     assert rig.shot.modal.shift_x == pytest.approx(0.1 * INCH)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.tick()
     left = rig.shot.modal
     assert (left.tool, left.shift_x, left.diameter, left.spindle, left.coolant) == (1, 0.0, False, 0, False)
@@ -68,18 +68,18 @@ def test_a_reset_leaves_what_m30_would_have_left() -> None:
 def test_an_estop_takes_spindle_and_coolant_from_what_stands() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM08\nM03S900\nM02\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert (rig.shot.modal.spindle, rig.shot.modal.coolant) == (1, True)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.tick()
-    assert (rig.shot.modal.spindle, rig.shot.modal.coolant, rig.shot.spindle_asked) == (0, False, 0.0)
+    assert (rig.shot.modal.spindle, rig.shot.modal.coolant, rig.shot.requested_rpm) == (0, False, 0.0)
 
 
 def test_changed_offsets_count_at_once_for_the_loaded_tool() -> None:
     rig = Rig()
     rig.start("G90G94F300\nT1D3\nX1Z.5\nM02\n", TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.offset == (-12.7, -50.8)
     rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {}))
     assert rig.shot.offset == (-12.0, -50.0)
@@ -90,7 +90,7 @@ def test_changed_offsets_count_at_once_for_the_loaded_tool() -> None:
 def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
     rig = Rig()
     rig.start("G90G94F300\nT1\nX1Z.5\nM00\nX.5\nM30\n", TOOLS)
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {1: SecondaryOffset(1.0)}))
     assert rig.shot.offset == (-12.7, -50.8)
     assert rig.said("refused")[-1].startswith(text("executor.program-keeps-offsets"))
@@ -99,28 +99,28 @@ def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
 def test_the_speed_asked_for_is_told_before_pot_and_limit() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM04S2000\nM02\n")
-    rig.until(State.IDLE)
-    rig.post(SpindleLimit(1500.0))
+    rig.until(MachineState.IDLE)
+    rig.post(SetSpindleLimit(1500.0))
     rig.sim.machine.set_spindle_pot(0.5)
     rig.run(1.0)
-    assert rig.shot.spindle_asked == -2000.0
+    assert rig.shot.requested_rpm == -2000.0
     assert rig.shot.rpm_command == pytest.approx(-750.0)
 
 
 def test_the_spindle_is_stopped_by_hand_between_programs_only() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S900\nM00\nM02\n")
-    rig.until(State.PROGRAM_STOP)
-    rig.post(SpindleStop())
-    assert rig.shot.spindle_asked == 900.0
+    rig.until(MachineState.PROGRAM_STOP)
+    rig.post(StopSpindle())
+    assert rig.shot.requested_rpm == 900.0
     assert text("executor.program-keeps-spindle") in rig.said("refused")[-1]
     rig.run(0.3)
     rig.sim.machine.press_left()
     rig.sim.machine.press_right()
-    rig.until(State.IDLE)
-    rig.post(SpindleStop())
+    rig.until(MachineState.IDLE)
+    rig.post(StopSpindle())
     rig.tick()
-    assert (rig.shot.spindle_asked, rig.shot.rpm_command, rig.shot.modal.spindle) == (0.0, 0.0, 0)
+    assert (rig.shot.requested_rpm, rig.shot.rpm_command, rig.shot.modal.spindle) == (0.0, 0.0, 0)
 
 
 def test_an_output_is_forced_at_rest_and_told_in_the_log() -> None:
@@ -158,9 +158,9 @@ def test_no_output_is_forced_while_a_program_runs_nor_one_that_is_not_there(
 def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S900\nM02\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(1.0)
-    rig.post(SpindleStop())
+    rig.post(StopSpindle())
     rig.post(ForceOutput("collet", False))  # it still runs down
     assert rig.said("refused")[-1] == text("executor.collet-spindle-turns")
     rig.run(3.0)
@@ -171,9 +171,9 @@ def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
 
 @pytest.mark.parametrize(("machine", "diameter"), [("sinumerik-modulo", True), ("gt75", False)])
 def test_sinumerik_counts_x_in_diameters_at_power_up_and_behind_a_reset(machine: str, diameter: bool) -> None:
-    rig = Rig(machine=shipped_machine(machine))
+    rig = Rig(machine=load_shipped_machine(machine))
     assert rig.shot.modal.diameter is diameter
-    left = modal_given_up(Modal(diameter=not diameter), rig.machine.language)
+    left = modal_after_cancel(ModalState(diameter=not diameter), rig.machine.language)
     assert left.diameter is diameter
 
 
@@ -188,14 +188,14 @@ def test_a_program_begins_with_x_as_its_language_counts_it(
     machine: str, name: str, text: str, diameter: bool
 ) -> None:
     """Before its first block has said anything: what the page shows of X must not jump for a tick."""
-    rig = Rig(machine=shipped_machine(machine))
+    rig = Rig(machine=load_shipped_machine(machine))
     shown: list[bool] = []
     rig.ready()
     rig.run(0.3)
     rig.load(text, name=name)
     rig.watch.append(lambda shot: shown.append(shot.modal.diameter))
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert set(shown) == {diameter}
 
@@ -206,39 +206,39 @@ G72 = "G90G94F300G72\nX.85Z.1\nM30\n"
 def test_the_readout_remains_a_diameter_after_end_reset_and_estop() -> None:
     rig = Rig()
     rig.start(G72)
-    rig.until(State.IDLE)
-    assert rig.shot.reads_diameter
+    rig.until(MachineState.IDLE)
+    assert rig.shot.shows_diameter
     assert not rig.shot.modal.diameter
     rig.start(G72.replace("M30", "X.9\nM00\nM30"))
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.post(Reset())
-    rig.until(State.IDLE)
-    assert rig.shot.reads_diameter
+    rig.until(MachineState.IDLE)
+    assert rig.shot.shows_diameter
     rig.start(G72.replace("M30", "X.9\nM00\nM30"))
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
-    assert rig.shot.reads_diameter
+    rig.until(MachineState.ESTOP)
+    assert rig.shot.shows_diameter
 
 
 def test_another_program_and_mdi_bring_the_mode_of_the_control() -> None:
     rig = Rig()
     rig.start(G72)
-    rig.until(State.IDLE)
-    rig.post(Prepare(Starts.LINE))
-    assert not rig.shot.reads_diameter  # a typed X counts as a radius now
+    rig.until(MachineState.IDLE)
+    rig.post(PrepareStart(StartAction.MDI_LINE))
+    assert not rig.shot.shows_diameter  # a typed X counts as a radius now
     rig = Rig()
     rig.start(G72)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.load("G90G94F300\nX1\nM30\n", name="OTHER")
     rig.tick()
-    assert not rig.shot.reads_diameter
+    assert not rig.shot.shows_diameter
 
 
 def test_a_comment_goes_with_its_program() -> None:
     rig = Rig()
     rig.start("(FIRST PART)\nG90G94F300\nX.5\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.comment == "FIRST PART"
     rig.load("G90G94F300\nX1\nM30\n", name="OTHER")
     rig.tick()

@@ -8,19 +8,19 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.executor.commands import CycleStart
-from core.executor.snapshot import State
-from core.interpreter.dialects import interpretation
+from core.executor.snapshot import MachineState
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 from tests.texts import text
 
-ORIENTED = shipped_machine("ac-table-mill")
+ORIENTED = load_shipped_machine("ac-table-mill")
 MILL = replace(ORIENTED, spindle=replace(ORIENTED.spindle, oriented=False))  # whose spindle stops anywhere
 PROGRAM = (
     "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL X+0 Y+0 Z+5 R0 FMAX M3\n"
@@ -33,8 +33,10 @@ BOTTOM = -356.0  # mm from home: Z0 lies at -350 without a preset
 
 def boring(direction: int) -> Rig:
     """The program begun, and played until the bar stands on the ground of its bore."""
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    blocks: list[Block] = list(interpretation(Source("T.H", PROGRAM.format(direction)), setup).blocks())
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    blocks: list[Block] = list(
+        interpret_program(ProgramSource("T.H", PROGRAM.format(direction)), setup).generate_blocks()
+    )
     rig = Rig(machine=MILL, made=blocks)
     rig.start("anything")
     rig.until_true(lambda shot: shot.actual[Z] < BOTTOM + 0.01)
@@ -54,7 +56,7 @@ def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int)
 
     rig.watch.append(watch)
     if direction:
-        rig.until(State.PROGRAM_STOP)
+        rig.until(MachineState.PROGRAM_STOP)
         assert rig.shot.rpm_actual == 0.0
         rig.run(0.4)
         rig.post(CycleStart())
@@ -72,15 +74,15 @@ def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int)
 )
 def test_the_operator_is_told_where_the_edge_has_to_be(direction: int, message: str) -> None:
     rig = boring(direction)
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     assert rig.shot.message == message
 
 
 def test_the_proof_counts_the_time_in_which_the_spindle_runs_down() -> None:
     """From 3000 rpm, at the deceleration of the machine file, down to the speed that counts as rest."""
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    whole = prove(Source("T.H", PROGRAM.format(0)), setup, MILL)
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    whole = prove(ProgramSource("T.H", PROGRAM.format(0)), setup, MILL)
     without = PROGRAM.format(0).replace("CYCL DEF 202 BORING", "CYCL DEF 201 REAMING")
-    reamed = prove(Source("T.H", without), setup, MILL)
+    reamed = prove(ProgramSource("T.H", without), setup, MILL)
     down = (3000.0 - MILL.spindle.stop_below) / MILL.spindle.decel
-    assert whole.times.cycle - reamed.times.cycle >= down - 0.01
+    assert whole.times.cycle_s - reamed.times.cycle_s >= down - 0.01

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_setup import setup_for
-from core.executor.commands import CycleStart, FeedHold, FeedOverride, LoadJob, Reset, SetSwitch
+from app.compose.machine.machine_setup import create_setup
+from core.executor.commands import CycleStart, FeedHold, LoadJob, Reset, SetFeedOverride, SetSwitch
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
@@ -33,18 +33,20 @@ NAMES = (
 
 def run(rig: Rig, name: str, text: str) -> None:
     """Prove, start, and come to the end that was proved in the time that was proved."""
-    source = Source(name, text)
-    setup = setup_for(rig.machine, tools={n: ToolOffset() for n in range(1, 33)}, secondary={})
+    source = ProgramSource(name, text)
+    setup = create_setup(
+        rig.machine, tool_offsets={n: ToolOffset() for n in range(1, 33)}, secondary_offsets={}
+    )
     report = prove(source, setup, rig.machine)
     assert report.errors == ()
     rig.ready()
     job = make_job(source, setup)
-    rig.post(LoadJob(job, Proof(job.digest, (), tools=report.tools)), CycleStart())
-    rig.until(State.IDLE, State.FAULT, limit=300)
+    rig.post(LoadJob(job, Proof(job.digest, (), tool_numbers=report.tool_numbers)), CycleStart())
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=300)
     assert rig.shot.alarms == ()
     assert rig.shot.underruns == 0
-    assert rig.shot.demand == pytest.approx(report.machine_final, abs=1e-6)
-    assert rig.shot.last_cycle == pytest.approx(report.times.cycle, rel=0.05, abs=0.06)
+    assert rig.shot.demand == pytest.approx(report.machine_final_position, abs=1e-6)
+    assert rig.shot.last_cycle == pytest.approx(report.times.cycle_s, rel=0.05, abs=0.06)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -78,7 +80,7 @@ def test_a_part_after_six_flats_begins_at_zero_again_without_unwinding() -> None
     assert rig.shot.demand[2] == pytest.approx(-400.0)
     rig.run(0.3)
     rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT, limit=60)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60)
     # M19 turns 40 degrees to -360, which counts as 0; C-400 then ends at -760.
     assert rig.shot.demand[2] == pytest.approx(-760.0)
 
@@ -105,12 +107,12 @@ def test_a_hold_in_a_plane_stays_on_the_flat_and_goes_on() -> None:
     rig.until_true(on_the_flat)
     rig.run(0.3)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.line == 6
     rig.run(0.5)
-    rig.post(FeedOverride(1.5), CycleStart())
+    rig.post(SetFeedOverride(1.5), CycleStart())
     rig.until_true(lambda shot: shot.line != 6)
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert max(worst[:-2]) < 0.00005 * INCH
     assert rig.shot.demand == pytest.approx((-0.6 * INCH, 0.0, -135.0), abs=1e-6)
@@ -122,8 +124,8 @@ def test_single_block_stops_at_every_corner_of_the_mill() -> None:
     rig.start(FLAT)
     stops = []
     for _ in range(20):
-        rig.until(State.BLOCK_END, State.IDLE)
-        if rig.state is State.IDLE:
+        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        if rig.state is MachineState.IDLE:
             break
         stops.append((rig.shot.line, round(rig.shot.demand[2], 3)))
         rig.run(0.4)
@@ -137,13 +139,13 @@ def test_reset_in_a_plane_and_a_new_start() -> None:
     rig.until_true(on_the_flat)
     rig.run(0.2)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     turned = rig.shot.demand[2]
     assert -45.0 < turned < 45.0
     rig.run(0.4)
     rig.confirm()
     rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[2] == pytest.approx(-135.0)
 
@@ -151,11 +153,11 @@ def test_reset_in_a_plane_and_a_new_start() -> None:
 def test_no_flat_beyond_the_travel_of_x() -> None:
     """X at the entry lies inside, a corner of the figure does not."""
     rig = Rig()
-    source = Source("FAR", "G90G94F300M27\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
-    setup = setup_for(rig.machine, tools={}, secondary={})
+    source = ProgramSource("FAR", "G90G94F300M27\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
+    setup = create_setup(rig.machine, tool_offsets={}, secondary_offsets={})
     assert [(d.line, d.code) for d in prove(source, setup, rig.machine).errors] == [(5, "soft-limit")]
     rig.start(source.text)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "travel"
 
 
@@ -164,6 +166,6 @@ def test_a_spindle_that_does_not_stop_never_lets_c_turn() -> None:
     rig.start("G90G94F300\nM03S1000\nG04F2\nM19\nC90\nG04F1\nM30\n")
     rig.run(1.0)
     rig.sim.machine.spindle_ignores_stop()
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "ignores-stop"
     assert rig.shot.demand[2] == 0.0

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import CycleStart, LoadJob, Prepare, SetSwitch
+from core.executor.commands import CycleStart, LoadJob, PrepareStart, SetSwitch
 from core.executor.job import Job, Proof, make_job
-from core.executor.snapshot import State
-from core.interpreter.omniturn.setup.carry_over import RAPID, UNITS, inherited_settings
-from core.language.source import Dialect, Source
+from core.executor.snapshot import MachineState
+from core.interpreter.omniturn.setup.inherited_state import RAPID, UNITS, find_inherited_settings
+from core.language.source import Dialect, ProgramSource
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
 from tests.texts import text
@@ -30,11 +30,11 @@ NAMES_NONE = "G90G94F300\nX.1\nM30\n"
     ],
 )
 def test_what_the_first_line_does_not_say_is_carried_over(first: str, carries: set[str]) -> None:
-    assert inherited_settings(Source("PART", f"{first}\nX1\nM30\n")) == carries
+    assert find_inherited_settings(ProgramSource("PART", f"{first}\nX1\nM30\n")) == carries
 
 
 def test_other_dialects_say_all_themselves() -> None:
-    assert inherited_settings(Source("PART", "G90 X1\n", Dialect.SINUMERIK)) == frozenset()
+    assert find_inherited_settings(ProgramSource("PART", "G90 X1\n", Dialect.SINUMERIK)) == frozenset()
 
 
 def after_a_metric_job() -> Rig:
@@ -54,24 +54,24 @@ def test_a_program_proved_in_inches_does_not_start_in_millimetres() -> None:
     rig = after_a_metric_job()
     job = rig.load(NAMES_NONE)
     load(rig, job)
-    assert rig.shot.start_refused.startswith(text("executor.no-line"))  # MDI is still open
-    rig.post(Prepare())
+    assert rig.shot.start_refusal.startswith(text("executor.no-line"))  # MDI is still open
+    rig.post(PrepareStart())
     load(rig, job)
-    assert rig.shot.start_refused == (
+    assert rig.shot.start_refusal == (
         text("executor.program-silent-on", change=text("executor.counts-in-mm"))
     )
     load(rig, make_job(job.source, replace(job.setup, metric=True)))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(0.1, abs=0.006)
 
 
 def test_a_program_that_names_its_unit_starts_whatever_was_before() -> None:
     rig = Rig()
     rig.start("G90G71G94F300\nX1\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.modal.metric
     rig.start("G90G70G94F300\nX.1\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
 
 
@@ -79,14 +79,14 @@ def test_no_repeat_in_another_unit_than_the_first_time() -> None:
     rig = Rig()
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start("G90G94F300\nX.1\nG71\nX2\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.said("refused")[-1].startswith(text("executor.no-repeat", why=text("executor.counts-in-mm")))
 
 
 @pytest.mark.parametrize(("inch", "metric"), [(True, False), (False, True)])
 def test_the_control_is_switched_on_in_what_its_builder_counts_in(inch: bool, metric: bool) -> None:
-    rig = Rig(replace(load_machine(), inch=inch))
+    rig = Rig(replace(load_machine(), is_inch=inch))
     assert rig.shot.modal.metric is metric
 
 
@@ -95,11 +95,11 @@ def test_a_program_of_another_dialect_leaves_the_unit_as_it_was(unit: str) -> No
     rig = Rig()
     mdi(rig, unit)
     before = rig.shot.modal.metric
-    rig.post(Prepare())
+    rig.post(PrepareStart())
     other = "G70" if before else "G71"
-    source = Source("PART.MPF", f"{other} G0 X1\nG1 Z-.1 F100\nM30\n", Dialect.SINUMERIK)
+    source = ProgramSource("PART.MPF", f"{other} G0 X1\nG1 Z-.1 F100\nM30\n", Dialect.SINUMERIK)
     load(rig, make_job(source, replace(rig.load(NAMES_NONE).setup, metric=before)))
     rig.until_true(lambda shot: shot.line == 2)
     assert rig.shot.modal.metric is not before
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.modal.metric is before

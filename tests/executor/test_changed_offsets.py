@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from core.executor.commands import CycleStart, FeedHold, LoadJob, Renew, Reset, SetSwitch
+from core.executor.commands import ChangeOffsets, CycleStart, FeedHold, LoadJob, Reset, SetSwitch
 from core.executor.job import Job, Proof, make_job
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
 from tests.texts import text
@@ -50,22 +50,22 @@ def test_the_next_part_is_cut_with_the_new_offset_and_this_one_is_not() -> None:
     job = running(rig)
     assert rig.shot.demand[0] == pytest.approx(DEPTH, abs=1e-6)
     new = corrected(job, -0.00254)  # -.0002 on the diameter is a tenth of a thousandth on the slide
-    rig.post(Renew(), Renew(new, good(new)))
+    rig.post(ChangeOffsets(), ChangeOffsets(new, good(new)))
     rig.run(0.05)
     assert rig.shot.demand[0] == pytest.approx(DEPTH, abs=1e-6)
     assert depth(rig) == pytest.approx(DEPTH - 0.00254, abs=1e-6)
     assert depth(rig) == pytest.approx(DEPTH - 0.00254, abs=1e-6)
     assert rig.shot.cycle_repeat
     assert rig.shot.parts == 2
-    assert State.WAIT.value not in rig.said("state")
+    assert MachineState.WAIT.value not in rig.said("state")
 
 
 def test_the_part_waits_for_its_proof() -> None:
     """M30 has come before the proof: everything stands until it is there."""
     rig = Rig()
     job = running(rig)
-    rig.post(Renew())
-    rig.until(State.WAIT)
+    rig.post(ChangeOffsets())
+    rig.until(MachineState.WAIT)
     assert rig.shot.waiting_for == text("executor.proof-wait")
     assert rig.shot.parts == 1
     assert not rig.shot.counts
@@ -73,8 +73,8 @@ def test_the_part_waits_for_its_proof() -> None:
     rig.run(5.0)
     assert rig.shot.demand == stood
     new = corrected(job, -0.0254)
-    rig.post(Renew(new, good(new)))
-    rig.until(State.RUN)
+    rig.post(ChangeOffsets(new, good(new)))
+    rig.until(MachineState.RUN)
     rig.until_true(lambda shot: shot.line == 5)
     assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
     assert rig.shot.cycle_elapsed < 1.0  # the wait is not a part's time
@@ -84,35 +84,35 @@ def test_a_program_that_fails_its_proof_is_not_repeated() -> None:
     rig = Rig()
     job = running(rig)
     new = corrected(job, 99.0)
-    rig.post(Renew(new, Proof(new.digest, ("line 4: X leaves its travel",))))
-    rig.until(State.IDLE)
+    rig.post(ChangeOffsets(new, Proof(new.digest, ("line 4: X leaves its travel",))))
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.said("refused") == [
         text("executor.no-repeat", why=text("executor.program-errors", errors="line 4: X leaves its travel"))
     ]
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.state is State.IDLE
-    assert rig.shot.start_refused.startswith(text("executor.program-errors", errors="line 4"))
+    assert rig.state is MachineState.IDLE
+    assert rig.shot.start_refusal.startswith(text("executor.program-errors", errors="line 4"))
 
 
 def test_a_proof_of_other_offsets_does_not_count() -> None:
     rig = Rig()
     job = running(rig)
-    rig.post(Renew(corrected(job, -0.1), good(job)))
-    rig.until(State.IDLE)
+    rig.post(ChangeOffsets(corrected(job, -0.1), good(job)))
+    rig.until(MachineState.IDLE)
     assert text("executor.other-proof") in rig.said("refused")[0]
 
 
 def test_what_could_not_be_proved_stops_with_its_reason() -> None:
     rig = Rig()
     running(rig)
-    rig.post(Renew(), Renew(trouble="the offsets cannot be read"))
-    rig.until(State.IDLE)
+    rig.post(ChangeOffsets(), ChangeOffsets(trouble="the offsets cannot be read"))
+    rig.until(MachineState.IDLE)
     assert rig.said("refused") == [text("executor.no-repeat", why="the offsets cannot be read")]
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.not-proved")
+    assert rig.shot.start_refusal == text("executor.not-proved")
 
 
 def test_the_second_correction_takes_the_place_of_the_first() -> None:
@@ -120,7 +120,11 @@ def test_the_second_correction_takes_the_place_of_the_first() -> None:
     rig = Rig()
     job = running(rig)
     bad, mended = corrected(job, 99.0), corrected(job, 0.0127)
-    rig.post(Renew(bad, Proof(bad.digest, ("too far",))), Renew(), Renew(mended, good(mended)))
+    rig.post(
+        ChangeOffsets(bad, Proof(bad.digest, ("too far",))),
+        ChangeOffsets(),
+        ChangeOffsets(mended, good(mended)),
+    )
     assert depth(rig) == pytest.approx(DEPTH + 0.0127, abs=1e-6)
     assert rig.said("refused") == []
 
@@ -128,8 +132,8 @@ def test_the_second_correction_takes_the_place_of_the_first() -> None:
 def test_another_program_is_not_slipped_in() -> None:
     rig = Rig()
     job = running(rig)
-    other = make_job(Source("PART", PART.replace("X.5", "X.1")), job.setup)
-    rig.post(Renew(other, good(other)))
+    other = make_job(ProgramSource("PART", PART.replace("X.5", "X.1")), job.setup)
+    rig.post(ChangeOffsets(other, good(other)))
     assert rig.said("refused") == [text("executor.other-program-runs")]
     assert depth(rig) == pytest.approx(DEPTH, abs=1e-6)
 
@@ -139,10 +143,10 @@ def test_without_repeat_the_next_start_takes_it(end: str) -> None:
     rig = Rig()
     job = running(rig, repeat=False, text=PART.replace("M30", end))
     new = corrected(job, -0.0254)
-    rig.post(Renew(new, good(new)))
-    rig.until(State.IDLE)
+    rig.post(ChangeOffsets(new, good(new)))
+    rig.until(MachineState.IDLE)
     assert rig.shot.program == "PART"
-    assert not rig.shot.proof_wanted
+    assert not rig.shot.needs_proof
     rig.run(0.4)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.line == 5)
@@ -154,23 +158,23 @@ def test_given_up_the_old_offsets_start_nothing(how: str) -> None:
     """Announced and not yet proved: neither the old job nor an unproved one may begin."""
     rig = Rig()
     job = running(rig)
-    rig.post(Renew())
+    rig.post(ChangeOffsets())
     if how == "reset":
         rig.post(Reset())
-        rig.until(State.IDLE)
+        rig.until(MachineState.IDLE)
     else:
         rig.sim.machine.press_estop()
-        rig.until(State.ESTOP)
+        rig.until(MachineState.ESTOP)
         rig.sim.machine.release_estop()
-        rig.until(State.DISABLED)
+        rig.until(MachineState.DISABLED)
         rig.ready()
-    assert rig.shot.proof_wanted
+    assert rig.shot.needs_proof
     assert rig.shot.interrupted_line == 5
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     new = corrected(job, -0.0254)
-    rig.post(Renew(new, good(new)))
+    rig.post(ChangeOffsets(new, good(new)))
     rig.run(0.4)
     rig.confirm()
     rig.post(CycleStart())
@@ -181,21 +185,21 @@ def test_given_up_the_old_offsets_start_nothing(how: str) -> None:
 def test_between_two_parts_hold_reset_and_the_switch_work() -> None:
     rig = Rig()
     job = running(rig)
-    rig.post(Renew())
-    rig.until(State.WAIT)
+    rig.post(ChangeOffsets())
+    rig.until(MachineState.WAIT)
     rig.post(FeedHold())
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     new = corrected(job, -0.0254)
-    rig.post(Renew(new, good(new)))
+    rig.post(ChangeOffsets(new, good(new)))
     rig.run(1.0)
-    assert rig.state is State.HOLD  # nothing begins behind a hand that holds
+    assert rig.state is MachineState.HOLD  # nothing begins behind a hand that holds
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.line == 5)
     assert rig.shot.demand[0] == pytest.approx(DEPTH - 0.0254, abs=1e-6)
-    rig.post(Renew())
-    rig.until(State.WAIT)
+    rig.post(ChangeOffsets())
+    rig.until(MachineState.WAIT)
     rig.post(SetSwitch("cycle_repeat", False))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 2
     assert rig.shot.interrupted_line == 0
 
@@ -203,10 +207,10 @@ def test_between_two_parts_hold_reset_and_the_switch_work() -> None:
 def test_reset_between_two_parts_has_broken_nothing_off() -> None:
     rig = Rig()
     running(rig)
-    rig.post(Renew())
-    rig.until(State.WAIT)
+    rig.post(ChangeOffsets())
+    rig.until(MachineState.WAIT)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert (rig.shot.parts, rig.shot.interrupted_line) == (1, 0)
 
 
@@ -214,8 +218,8 @@ def test_m31_ends_the_repeating_all_the_same() -> None:
     rig = Rig()
     job = running(rig, text=PART.replace("M30", "M31\nM30"))
     new = corrected(job, -0.0254)
-    rig.post(Renew(new, good(new)))
-    rig.until(State.IDLE)
+    rig.post(ChangeOffsets(new, good(new)))
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -225,7 +229,7 @@ def test_at_rest_it_counts_at_once_and_mdi_knows_it() -> None:
     job = rig.load(PART, TOOLS)
     mdi(rig, "G90T1X1Z.1G94F300")
     moved = make_job(job.source, replace(job.setup, tools={1: ToolOffset(-12.6, -50.8)}))
-    rig.post(Renew(moved, good(moved)))
+    rig.post(ChangeOffsets(moved, good(moved)))
     assert rig.shot.modal.tool_x == -12.6
     assert rig.said("refused") == []
 
@@ -233,9 +237,9 @@ def test_at_rest_it_counts_at_once_and_mdi_knows_it() -> None:
 def test_another_program_that_is_loaded_forgets_it() -> None:
     rig = Rig()
     job = running(rig, repeat=False)
-    rig.until(State.IDLE)
-    other = make_job(Source("OTHER", "G90G94F300\nX.5\nX0\nM30\n"), job.setup)
-    rig.post(Renew(), LoadJob(other, good(other)), SetSwitch("cycle_repeat", True))
+    rig.until(MachineState.IDLE)
+    other = make_job(ProgramSource("OTHER", "G90G94F300\nX.5\nX0\nM30\n"), job.setup)
+    rig.post(ChangeOffsets(), LoadJob(other, good(other)), SetSwitch("cycle_repeat", True))
     rig.run(0.4)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.parts == 3)

@@ -7,8 +7,8 @@ import random
 
 import pytest
 
-from core.executor.commands import CycleStart, FeedHold, FeedOverride, SetSwitch
-from core.executor.snapshot import State
+from core.executor.commands import CycleStart, FeedHold, SetFeedOverride, SetSwitch
+from core.executor.snapshot import MachineState
 from tests.executor.rig import INCH, Rig
 
 RADIUS = 0.5  # in
@@ -36,17 +36,17 @@ def test_rounded_chords_run_through_holds_and_overrides(places: int, seed: int) 
             chance.choice(
                 [
                     FeedHold(),
-                    FeedOverride(chance.uniform(0.2, 1.5)),
+                    SetFeedOverride(chance.uniform(0.2, 1.5)),
                     SetSwitch("single_block", False),
                     CycleStart(),
                 ]
             )
         )
-    rig.post(FeedOverride(1.0))
+    rig.post(SetFeedOverride(1.0))
     rig.run(0.5)
-    if rig.state is State.HOLD:
+    if rig.state is MachineState.HOLD:
         rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT, limit=120)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=120)
     assert rig.shot.alarms == ()
     assert rig.shot.underruns == 0
     assert rig.shot.demand[:2] == pytest.approx((0.0, -RADIUS * INCH), abs=1e-6)

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.executor.commands import CycleStart, LoadJob
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
@@ -42,18 +42,20 @@ def test_runs_as_it_was_proved(name: str) -> None:
     if not path.exists():
         pytest.skip("the worked examples are not here")
     rig = Rig()
-    source = Source(name, path.read_text(encoding="utf-8"))
+    source = ProgramSource(name, path.read_text(encoding="utf-8"))
     tools = {number: ToolOffset() for number in range(1, 33)}
-    setup = setup_for(rig.machine, tools=tools, secondary={1: SecondaryOffset(-RADIUS, -RADIUS, RADIUS)})
+    setup = create_setup(
+        rig.machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-RADIUS, -RADIUS, RADIUS)}
+    )
     report = prove(source, setup, rig.machine)
     assert report.errors == ()
     rig.ready()
     job = make_job(source, setup)
-    rig.post(LoadJob(job, Proof(job.digest, (), tools=report.tools)), CycleStart())
-    rig.until(State.IDLE, State.FAULT, limit=120)
+    rig.post(LoadJob(job, Proof(job.digest, (), tool_numbers=report.tool_numbers)), CycleStart())
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=120)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 1
     assert rig.shot.underruns == 0
-    assert rig.shot.demand[:2] == pytest.approx(report.machine_final[:2], abs=1e-6)
+    assert rig.shot.demand[:2] == pytest.approx(report.machine_final_position[:2], abs=1e-6)
     # what proving leaves out: in position, ticks, the collet's spread
-    assert rig.shot.last_cycle == pytest.approx(report.times.cycle, rel=0.05, abs=0.06)
+    assert rig.shot.last_cycle == pytest.approx(report.times.cycle_s, rel=0.05, abs=0.06)

@@ -6,8 +6,8 @@ import dataclasses
 
 import pytest
 
-from core.executor.hand_motion.jog_line import LIMIT_MARGIN, JogLine
-from core.executor.hand_motion.jogging import BlockJogger, Jogger, jogger_of
+from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, JogLine
+from core.executor.hand_motion.jogging import BlockJogger, Jogger, create_jogger
 from core.executor.machine_context import MachineContext
 from tests.executor.played_controller import PlayedController, context_of
 from tests.texts import text
@@ -17,13 +17,13 @@ LEASE = 0.4
 
 def jogger_on(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
     context = context_of(controller)
-    jogger = jogger_of(context)
+    jogger = create_jogger(context)
     assert isinstance(jogger, BlockJogger)
     return jogger, context
 
 
 def test_who_jogs_follows_from_what_the_driver_has() -> None:
-    assert type(jogger_of(context_of(None))) is Jogger
+    assert type(create_jogger(context_of(None))) is Jogger
 
 
 @pytest.mark.parametrize(
@@ -36,40 +36,40 @@ def test_who_jogs_follows_from_what_the_driver_has() -> None:
 )
 def test_a_controller_that_is_not_ready_does_not_jog(controller: PlayedController, why: str) -> None:
     jogger, _ = jogger_on(controller)
-    assert jogger.refusal("X", 5.0, LEASE) == why
-    assert jogger.step_refusal("X", 0.1, 5.0) == why
+    assert jogger.find_jog_refusal("X", 5.0, LEASE) == why
+    assert jogger.find_step_refusal("X", 0.1, 5.0) == why
 
 
 def test_it_jogs_along_its_own_axes_only() -> None:
     jogger, _ = jogger_on(PlayedController())
     why = text("executor.controller-axes-only", axis="X")
-    assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
-    assert jogger.step_refusal("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
+    assert jogger.find_jog_refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
+    assert jogger.find_step_refusal("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
 
 
 def test_it_is_told_the_travel_less_a_margin_and_a_lease_of_a_second_at_most() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
-    low, high = context.machine.axis("X").travel or (0.0, 0.0)
-    assert jogger.move("X", -5.0, 7.0)
-    assert controller.jogged == [("X", -5.0, 1.0, (low + LIMIT_MARGIN, high - LIMIT_MARGIN))]
-    assert jogger.axis == "X"
+    low, high = context.machine.find_axis("X").travel or (0.0, 0.0)
+    assert jogger.jog("X", -5.0, 7.0)
+    assert controller.jogged == [("X", -5.0, 1.0, (low + SOFT_LIMIT_MARGIN, high - SOFT_LIMIT_MARGIN))]
+    assert jogger.axis_name == "X"
 
 
 def test_an_axis_that_is_not_homed_has_no_travel_and_goes_at_a_tenth() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     context.sample = context.sample._replace(homed=(False, False, False))
-    tenth = 0.1 * min(context.machine.axis("X").vmax, context.machine.limits.manual_rapid)
-    assert jogger.move("X", 500.0, LEASE)
+    tenth = 0.1 * min(context.machine.find_axis("X").vmax, context.machine.limits.manual_rapid)
+    assert jogger.jog("X", 500.0, LEASE)
     assert controller.jogged == [("X", pytest.approx(tenth), LEASE, None)]
 
 
 def test_at_the_end_of_the_travel_nothing_is_jogged() -> None:
     jogger, _ = jogger_on(PlayedController(jogs=False))
-    assert not jogger.move("X", 5.0, LEASE)
-    assert not jogger.toward("X", 1.0, 5.0, LEASE)
-    assert jogger.axis == ""
+    assert not jogger.jog("X", 5.0, LEASE)
+    assert not jogger.jog_to_target("X", 1.0, 5.0, LEASE)
+    assert jogger.axis_name == ""
 
 
 @pytest.mark.parametrize(
@@ -80,7 +80,7 @@ def test_towards_a_place_it_goes_no_further(
 ) -> None:
     controller = PlayedController()
     jogger, _ = jogger_on(controller)
-    assert jogger.toward("Z", target, 5.0, LEASE)
+    assert jogger.jog_to_target("Z", target, 5.0, LEASE)
     assert controller.jogged == [("Z", velocity, LEASE, limits)]
 
 
@@ -88,9 +88,9 @@ def test_a_step_goes_from_where_the_axis_is_sent_to() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     context.sample = context.sample._replace(demand=(1.0, 2.0, 0.0))
-    jogger.step("Z", -0.5, 5.0)
+    jogger.start_step("Z", -0.5, 5.0)
     assert controller.steps == [("Z", 1.5, 5.0)]
-    assert jogger.step_refusal("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
+    assert jogger.find_step_refusal("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
 
 
 def test_what_does_not_jog_is_not_stopped() -> None:
@@ -105,23 +105,23 @@ def test_a_step_that_is_stopped_is_said_to_be_short() -> None:
     jogger, context = jogger_on(controller)
     said: list[str] = []
     context.on_event = lambda event: said.append(event.text)
-    jogger.step("Z", -0.5, 5.0)
+    jogger.start_step("Z", -0.5, 5.0)
     jogger.stop()
     assert controller.asked == ["jog stop"]
     controller.resting = False
-    assert not jogger.over()
+    assert not jogger.finish_if_at_rest()
     controller.resting = True
-    assert jogger.over()
+    assert jogger.finish_if_at_rest()
     assert said == [text("executor.step-cut-short", axis="Z")]
 
 
 def let_go(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
     """X was jogged and let go, and is pressed the other way while it still ends."""
     jogger, context = jogger_on(controller)
-    jogger.move("X", 5.0, LEASE)
+    jogger.jog("X", 5.0, LEASE)
     controller.resting = False
     jogger.stop()
-    assert jogger.move("X", -5.0, LEASE)
+    assert jogger.jog("X", -5.0, LEASE)
     assert len(controller.jogged) == 1
     return jogger, context
 
@@ -131,7 +131,7 @@ def test_a_key_pressed_again_waits_for_the_end_and_has_what_is_left_of_its_lease
     jogger, context = let_go(controller)
     context.now += 0.3
     controller.resting = True
-    assert not jogger.over()
+    assert not jogger.finish_if_at_rest()
     assert controller.jogged[1][:2] == ("X", -5.0)
     assert controller.jogged[1][2] == pytest.approx(0.1)
 
@@ -147,7 +147,7 @@ def test_a_key_pressed_again_begins_nothing_once_it_does_not_hold(spoilt: str) -
         controller.hindrance = "it is reset"
     else:
         jogger.stop()
-    assert jogger.over()
+    assert jogger.finish_if_at_rest()
     assert len(controller.jogged) == 1
 
 
@@ -156,7 +156,7 @@ def test_a_key_pressed_again_begins_nothing_once_it_does_not_hold(spoilt: str) -
 
 def test_a_lathe_has_no_tilted_plane() -> None:
     jogger = Jogger(context_of(None))
-    assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith(text("executor.tilted-needs"))
+    assert jogger.find_jog_refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith(text("executor.tilted-needs"))
 
 
 def three_axes() -> MachineContext:
@@ -169,15 +169,15 @@ def three_axes() -> MachineContext:
 
 @pytest.mark.parametrize("direction", [(0.6, 0.8, 0.1), (0.0, 0.0, 0.0), (float("nan"), 0.0, 1.0)])
 def test_a_direction_that_is_none_is_refused(direction: tuple[float, float, float]) -> None:
-    why = Jogger(three_axes()).refusal("X", 5.0, LEASE, direction)
+    why = Jogger(three_axes()).find_jog_refusal("X", 5.0, LEASE, direction)
     assert why == text("executor.tilted-needs")
 
 
 def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
     context = three_axes()
-    assert Jogger(context).refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
+    assert Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
     context.sample = context.sample._replace(homed=(True, False, True))
-    why = Jogger(context).refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0))
+    why = Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0))
     assert why == text("executor.tilted-homed")
 
 
@@ -186,12 +186,12 @@ def test_a_line_of_three_goes_as_far_as_its_first_end_and_as_hard_as_its_weakest
     x, z, y = three_axes().machine.axes
     axes = (
         dataclasses.replace(x, travel=(-100.0, 100.0), amax=3000.0),
-        dataclasses.replace(z, travel=(-100.0, 8.0 + LIMIT_MARGIN), amax=800.0),
+        dataclasses.replace(z, travel=(-100.0, 8.0 + SOFT_LIMIT_MARGIN), amax=800.0),
         dataclasses.replace(y, travel=(0.0, 0.0)),
     )
-    line = JogLine.along(axes, (0.6, 1e-12, 0.8))
-    assert [(axis.name, share) for _, axis, share in line.moving()] == [("X", 0.6), ("Z", 0.8)]
-    assert line.room((0.0, 0.0, 0.0), 1.0) == pytest.approx(10.0)
-    assert line.amax == pytest.approx(1000.0)
-    assert not line.same(JogLine.of_axis(axes, 0))
-    assert not line.same(None)
+    line = JogLine.from_direction(axes, (0.6, 1e-12, 0.8))
+    assert [(axis.name, share) for _, axis, share in line.iter_moving_axes()] == [("X", 0.6), ("Z", 0.8)]
+    assert line.distance_to_limit((0.0, 0.0, 0.0), 1.0) == pytest.approx(10.0)
+    assert line.max_acceleration == pytest.approx(1000.0)
+    assert not line.has_same_direction(JogLine.from_axis(axes, 0))
+    assert not line.has_same_direction(None)

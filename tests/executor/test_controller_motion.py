@@ -8,34 +8,39 @@ import math
 import pytest
 
 from core.executor.job import ProgramPass, ReadAhead
-from core.executor.program_motion.controller_motion import LONGEST, ControllerMotion, Turning, parts_of
-from core.executor.program_motion.path_section import Progress
+from core.executor.program_motion.controller_motion import (
+    MAX_PART_S,
+    ControllerMotion,
+    SpindleSpeed,
+    split_block,
+)
+from core.executor.program_motion.path_section import SectionProgress
 from core.executor.raised_alarm import AlarmError
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.machine_requirements import first_needs, needs_of
-from core.interpreter.shared.modal_state import Modal
-from core.ports import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.machine_requirements import find_requirements, remove_repeated_requirements
+from core.interpreter.shared.modal_state import ModalState
+from core.ports import ArcOperation, BlockOperation, LineOperation, RapidOperation, ThreadOperation
 from tests.coded import raises_code
 from tests.executor.played_controller import PlayedController, context_of, turn_feed_pot
 from tests.texts import text
 
-FULL = Turning(1.0, 3500.0)
+FULL = SpindleSpeed(1.0, 3500.0)
 
 
-def block(kind: Kind, **words: object) -> Block:
+def block(kind: BlockKind, **words: object) -> Block:
     """From X 0, Z 0 of a frame that lies at X 1, Z 2 of the machine."""
     values: dict[str, object] = {
         **{"x0": 0.0, "z0": 0.0, "c0": 0.0, "x": 0.0, "z": 0.0, "c": 0.0, "offset_x": 1.0, "offset_z": 2.0},
-        **{"n": 1, "line": 7, "text": "", "modal": Modal(), "feed": 10.0, "kind": kind},
+        **{"n": 1, "line": 7, "text": "", "modal": ModalState(), "feed": 10.0, "kind": kind},
     }
     return Block(**{**values, **words})  # type: ignore[arg-type]
 
 
 def test_a_line_goes_out_in_pieces_of_a_fifth_of_a_second() -> None:
-    pieces = list(parts_of(block(Kind.FEED, x=3.0, z=-4.0), FULL))  # 5 mm at 10 mm/s
-    assert [piece.seconds for piece in pieces] == pytest.approx([0.5 / 3] * 3)
-    ops = [piece.op for piece in pieces]
-    assert all(isinstance(op, LineOp) for op in ops)
+    pieces = list(split_block(block(BlockKind.FEED, x=3.0, z=-4.0), FULL))  # 5 mm at 10 mm/s
+    assert [piece.min_duration_s for piece in pieces] == pytest.approx([0.5 / 3] * 3)
+    ops = [piece.operation for piece in pieces]
+    assert all(isinstance(op, LineOperation) for op in ops)
     assert [(op.x, op.z) for op in ops] == [
         pytest.approx((2.0, 2.0 - 4.0 / 3)),
         pytest.approx((3.0, 2.0 - 8.0 / 3)),
@@ -44,12 +49,12 @@ def test_a_line_goes_out_in_pieces_of_a_fifth_of_a_second() -> None:
 
 
 def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
-    arc = block(Kind.ARC, x=10.0, z=-10.0, cx=10.0, cz=0.0, feed=20.0)  # a quarter of 15.7 mm, 0.79 s
-    ops = [piece.op for piece in parts_of(arc, FULL)]
+    arc = block(BlockKind.ARC, x=10.0, z=-10.0, cx=10.0, cz=0.0, feed=20.0)  # a quarter of 15.7 mm, 0.79 s
+    ops = [piece.operation for piece in split_block(arc, FULL)]
     assert len(ops) == 4
     before = (1.0, 2.0)
     for op in ops:
-        assert isinstance(op, ArcOp)
+        assert isinstance(op, ArcOperation)
         assert (op.x0, op.z0) == before
         assert math.hypot(op.x - op.cx, op.z - op.cz) == pytest.approx(10.0)
         assert (op.cx, op.cz, op.clockwise) == (11.0, 2.0, False)
@@ -58,47 +63,47 @@ def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
 
 
 def test_a_slow_controller_makes_the_pieces_shorter() -> None:
-    rapid = block(Kind.RAPID, z=-100.0, feed=127.0)
-    assert len(list(parts_of(rapid, FULL))) == 4
-    slow = list(parts_of(rapid, FULL, lambda _: 10.0))
+    rapid = block(BlockKind.RAPID, z=-100.0, feed=127.0)
+    assert len(list(split_block(rapid, FULL))) == 4
+    slow = list(split_block(rapid, FULL, lambda _: 10.0))
     assert len(slow) == 50
-    assert all(piece.seconds <= LONGEST + 1e-9 for piece in slow)
-    assert isinstance(slow[0].op, RapidOp)
+    assert all(piece.min_duration_s <= MAX_PART_S + 1e-9 for piece in slow)
+    assert isinstance(slow[0].operation, RapidOperation)
 
 
 def test_a_thread_is_one_piece() -> None:
-    (piece,) = parts_of(block(Kind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
-    assert piece.op == ThreadOp(1.0, 2.0, 1.0, -98.0, 1.5)
+    (piece,) = split_block(block(BlockKind.THREAD, z=-100.0, feed=1.5, per_rev=True, rpm=600.0), FULL)
+    assert piece.operation == ThreadOperation(1.0, 2.0, 1.0, -98.0, 1.5)
 
 
 def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
     """Three quarters of a turn about Z 0.1, 5 ms long: from behind the centre to X+ of it, by X-."""
-    quick = block(Kind.ARC, x=0.1, z=0.1, cx=0.0, cz=0.1, clockwise=True, feed=100.0)
-    ops = [piece.op for piece in parts_of(quick, FULL)]
+    quick = block(BlockKind.ARC, x=0.1, z=0.1, cx=0.0, cz=0.1, clockwise=True, feed=100.0)
+    ops = [piece.operation for piece in split_block(quick, FULL)]
     assert len(ops) == 2
     for op in ops:
-        assert isinstance(op, ArcOp)
+        assert isinstance(op, ArcOperation)
         start, end = complex(op.z0 - op.cz, op.x0 - op.cx), complex(op.z - op.cz, op.x - op.cx)
         assert cmath.phase(end / start) == pytest.approx(3 * math.pi / 4)
 
 
 def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> None:
-    cut = block(Kind.FEED, z=-0.1, feed=0.1, per_rev=True, rpm=-1200.0)
-    (piece,) = parts_of(cut, Turning(0.5, 3500.0))
-    assert isinstance(piece.op, LineOp)
-    assert piece.op.feed == pytest.approx(0.1 * 1200 / 60 * 0.5)
-    (piece,) = parts_of(cut, Turning(1.0, 600.0))
-    assert isinstance(piece.op, LineOp)
-    assert piece.op.feed == pytest.approx(0.1 * 600 / 60)
+    cut = block(BlockKind.FEED, z=-0.1, feed=0.1, per_rev=True, rpm=-1200.0)
+    (piece,) = split_block(cut, SpindleSpeed(0.5, 3500.0))
+    assert isinstance(piece.operation, LineOperation)
+    assert piece.operation.feed == pytest.approx(0.1 * 1200 / 60 * 0.5)
+    (piece,) = split_block(cut, SpindleSpeed(1.0, 600.0))
+    assert isinstance(piece.operation, LineOperation)
+    assert piece.operation.feed == pytest.approx(0.1 * 600 / 60)
 
 
 def test_a_surface_speed_on_an_arc_is_that_of_the_part_not_of_the_machine() -> None:
     """400π mm/s at a radius of 20 mm are 10 turns a second; at the machine's X of 21 they would be 9.5."""
     at = {"x0": 10.0, "x": 20.0, "z": -10.0, "cx": 20.0, "feed": 0.1, "per_rev": True, "rpm": 600.0}
-    arc = block(Kind.ARC, cz=0.0, css=400 * math.pi, modal=Modal(css_min=0.0), **at)
-    *_, last = parts_of(arc, FULL)
-    assert isinstance(last.op, ArcOp)
-    assert (last.op.x, last.op.feed) == pytest.approx((21.0, 1.0))
+    arc = block(BlockKind.ARC, cz=0.0, css=400 * math.pi, modal=ModalState(min_css_rpm=0.0), **at)
+    *_, last = split_block(arc, FULL)
+    assert isinstance(last.operation, ArcOperation)
+    assert (last.operation.x, last.operation.feed) == pytest.approx((21.0, 1.0))
 
 
 @pytest.mark.parametrize(
@@ -110,19 +115,19 @@ def test_a_surface_speed_on_an_arc_is_that_of_the_part_not_of_the_machine() -> N
 )
 def test_what_cannot_be_moved_is_refused(words: dict[str, object], expected: str) -> None:
     with raises_code(AlarmError, "program", expected):
-        list(parts_of(block(Kind.FEED, **words), FULL))
+        list(split_block(block(BlockKind.FEED, **words), FULL))
 
 
 def test_needs_are_told_once_with_their_first_line() -> None:
     blocks = [
-        block(Kind.ARC, x=1.0, z=-1.0, cx=1.0, line=3),
-        block(Kind.ARC, x=1.0, z=-1.0, cx=1.0, line=4),
-        block(Kind.THREAD, z=-1.0, line=5),
-        block(Kind.THREAD, z=-1.0, line=6),
-        block(Kind.FEED, z=-1.0, css=100.0, rpm=500.0, line=7),
+        block(BlockKind.ARC, x=1.0, z=-1.0, cx=1.0, line=3),
+        block(BlockKind.ARC, x=1.0, z=-1.0, cx=1.0, line=4),
+        block(BlockKind.THREAD, z=-1.0, line=5),
+        block(BlockKind.THREAD, z=-1.0, line=6),
+        block(BlockKind.FEED, z=-1.0, css=100.0, rpm=500.0, line=7),
     ]
-    needs = first_needs(needs_of(blocks))
-    assert [(need.what, need.line) for need in needs] == [
+    needs = remove_repeated_requirements(find_requirements(blocks))
+    assert [(need.function, need.line) for need in needs] == [
         ("arc", 3),
         ("thread", 5),
         ("pull-out", 6),
@@ -133,10 +138,10 @@ def test_needs_are_told_once_with_their_first_line() -> None:
 # --- handed over, piece by piece ----------------------------------------------------------------------------
 
 
-PULL_OUT = block(Kind.RAPID, n=2, z0=-9.0, x=5.0, z=-9.0, feed=40.0)
-THREAD = block(Kind.THREAD, z=-9.0, feed=1.5, per_rev=True, rpm=600.0)
-CUT = block(Kind.FEED, x=3.0, z=-4.0)  # 5 mm at 10 mm/s: three pieces of a sixth of a second
-NEXT = block(Kind.FEED, n=2, x0=3.0, z0=-4.0, x=3.0, z=-5.0, line=8)  # 1 mm, a tenth of a second: one
+PULL_OUT = block(BlockKind.RAPID, n=2, z0=-9.0, x=5.0, z=-9.0, feed=40.0)
+THREAD = block(BlockKind.THREAD, z=-9.0, feed=1.5, per_rev=True, rpm=600.0)
+CUT = block(BlockKind.FEED, x=3.0, z=-4.0)  # 5 mm at 10 mm/s: three pieces of a sixth of a second
+NEXT = block(BlockKind.FEED, n=2, x0=3.0, z0=-4.0, x=3.0, z=-5.0, line=8)  # 1 mm, a tenth of a second: one
 
 
 def motion_of(
@@ -147,7 +152,7 @@ def motion_of(
     turn_feed_pot(context, feed)
     context.switches.single_block = single
     motion = ControllerMotion(context, controller)
-    motion.begin(list(blocks))
+    motion.start_section(list(blocks))
     return motion
 
 
@@ -155,16 +160,16 @@ def nothing_read() -> ReadAhead:
     return ReadAhead(ProgramPass(iter(()), list), context_of(None).machine)
 
 
-def ends(ops: list[BlockOp]) -> list[float]:
+def ends(ops: list[BlockOperation]) -> list[float]:
     return [op.z for op in ops]
 
 
 def test_without_a_path_section_there_is_nothing_to_do() -> None:
     controller = PlayedController()
     motion = ControllerMotion(context_of(controller), controller)
-    assert motion.progress(nothing_read()) is Progress.DONE
-    assert (motion.block, motion.following, motion.moving) == (None, None, False)
-    motion.forget()
+    assert motion.update_progress(nothing_read()) is SectionProgress.DONE
+    assert (motion.current_block, motion.following_block, motion.is_moving) == (None, None, False)
+    motion.clear_section()
     assert controller.asked == []
 
 
@@ -173,16 +178,16 @@ def test_a_controller_that_takes_no_more_gets_the_rest_later() -> None:
     motion = motion_of(controller, CUT)
     assert ends(controller.ops) == [pytest.approx(2 - 4 / 3)]
     controller.room = 9
-    assert motion.progress(nothing_read()) is Progress.MOVING
+    assert motion.update_progress(nothing_read()) is SectionProgress.MOVING
     assert ends(controller.ops) == pytest.approx([2 - 4 / 3, 2 - 8 / 3, -2.0])
     controller.finish()
-    assert motion.progress(nothing_read()) is Progress.DONE
+    assert motion.update_progress(nothing_read()) is SectionProgress.DONE
 
 
 @pytest.mark.parametrize(("ahead", "feed", "pieces"), [(0.1, 1.0, 2), (0.3, 1.0, 3), (0.3, 0.5, 2)])
 def test_it_gets_no_more_than_it_may_run_on_alone(ahead: float, feed: float, pieces: int) -> None:
     """Behind the piece that it moves: none, a sixth, two sixths of a second; twice that at half the feed."""
-    controller = PlayedController(ahead=ahead)
+    controller = PlayedController(max_lead_s=ahead)
     motion_of(controller, CUT, feed=feed)
     assert len(controller.ops) == pieces
 
@@ -192,13 +197,13 @@ def test_at_override_0_nothing_is_handed_over_until_it_is_turned_up() -> None:
     context = context_of(controller)
     turn_feed_pot(context, 0.0)
     motion = ControllerMotion(context, controller)
-    motion.begin([CUT])
+    motion.start_section([CUT])
     assert (controller.asked, controller.ops) == (["hold"], [])
-    assert motion.progress(nothing_read()) is Progress.STILL
-    motion.go_on(None)
+    assert motion.update_progress(nothing_read()) is SectionProgress.AT_REST
+    motion.resume(None)
     assert (controller.asked, controller.ops) == (["hold"], [])
     turn_feed_pot(context, 1.0)
-    motion.progress(nothing_read())
+    motion.update_progress(nothing_read())
     assert controller.asked == ["hold", "resume"]
     assert len(controller.ops) == 3
 
@@ -207,16 +212,16 @@ def test_a_thread_knows_no_override_of_0() -> None:
     controller = PlayedController()
     motion_of(controller, THREAD, PULL_OUT, feed=0.0)
     assert controller.asked == []
-    assert isinstance(controller.ops[0], ThreadOp)
+    assert isinstance(controller.ops[0], ThreadOperation)
 
 
 def test_a_hold_that_the_controller_makes_by_itself_is_told() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
     controller.held = True
-    assert motion.progress(nothing_read()) is Progress.HELD
-    assert not motion.moving
-    motion.go_on(None)
+    assert motion.update_progress(nothing_read()) is SectionProgress.IN_FEED_HOLD
+    assert not motion.is_moving
+    motion.resume(None)
     assert controller.asked == ["resume"]
 
 
@@ -224,16 +229,16 @@ def test_a_hold_reaches_a_line_and_leaves_a_thread_to_end() -> None:
     controller = PlayedController(room=1)
     line = motion_of(controller, CUT)
     controller.room = 9
-    line.hold()
-    line.keep_up()
+    line.hold_on_path()
+    line.extend_queue()
     assert (controller.asked, len(controller.ops)) == (["hold"], 1)
     controller = PlayedController(room=1)
     thread = motion_of(controller, THREAD, PULL_OUT)
     controller.room = 2
-    thread.hold()
-    thread.keep_up()
+    thread.hold_on_path()
+    thread.extend_queue()
     assert controller.asked == []
-    assert controller.ops[1:] == [RapidOp(6.0, -7.0, 40.0)]
+    assert controller.ops[1:] == [RapidOperation(6.0, -7.0, 40.0)]
 
 
 @pytest.mark.parametrize("hindrance", ["", "the controller is being reset"])
@@ -242,23 +247,23 @@ def test_a_thread_without_its_spindle_draws_x_back_or_says_why_not(hindrance: st
     controller = PlayedController(hindrance=hindrance)
     motion = motion_of(controller, THREAD, PULL_OUT)
     controller.ops.clear()
-    motion.retract(THREAD)
+    motion.start_retract(THREAD)
     assert controller.asked == ["abort"]
     if hindrance:
         with raises_code(AlarmError, "thread-lost"):
-            motion.retracted()
+            motion.continue_retract()
         return
-    motion.retracted()
-    assert controller.ops == [RapidOp(6.0, 0.0, THREAD.modal.rapid_rate)]
+    motion.continue_retract()
+    assert controller.ops == [RapidOperation(6.0, 0.0, THREAD.modal.rapid_rate)]
 
 
 def test_what_is_forgotten_is_forgotten_by_the_controller_too() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
-    motion.forget()
+    motion.clear_section()
     assert controller.asked == ["abort"]
-    assert not motion.active
-    assert motion.complete
+    assert not motion.has_section
+    assert motion.is_complete
 
 
 def test_single_block_hands_over_one_block_and_the_next_when_it_goes_on() -> None:
@@ -266,9 +271,9 @@ def test_single_block_hands_over_one_block_and_the_next_when_it_goes_on() -> Non
     motion = motion_of(controller, CUT, NEXT, single=True)
     assert len(controller.ops) == 3
     controller.finish()
-    assert motion.progress(nothing_read()) is Progress.BLOCK_END
-    assert (motion.block, motion.following) == (CUT, NEXT)
-    motion.go_on(None)
+    assert motion.update_progress(nothing_read()) is SectionProgress.BLOCK_END
+    assert (motion.current_block, motion.following_block) == (CUT, NEXT)
+    motion.resume(None)
     assert ends(controller.ops)[3:] == [-3.0]
 
 
@@ -276,9 +281,9 @@ def test_single_block_turned_on_under_way_ends_behind_what_the_controller_has() 
     controller = PlayedController(room=3)
     context = context_of(controller)
     motion = ControllerMotion(context, controller)
-    motion.begin([CUT, NEXT])
+    motion.start_section([CUT, NEXT])
     context.switches.single_block, controller.room = True, 9
-    motion.progress(nothing_read())
+    motion.update_progress(nothing_read())
     assert len(controller.ops) == 3
 
 
@@ -286,9 +291,9 @@ def test_what_was_read_meanwhile_goes_out_behind_the_rest() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
     feed = ReadAhead(ProgramPass(iter([NEXT]), list), context_of(None).machine)
-    feed.pending.append(NEXT)
-    motion.progress(feed)
-    assert not feed.pending
+    feed.pending_blocks.append(NEXT)
+    motion.update_progress(feed)
+    assert not feed.pending_blocks
     assert ends(controller.ops)[3:] == [-3.0]
 
 
@@ -296,23 +301,23 @@ def test_a_control_that_was_away_does_not_go_on_by_itself() -> None:
     controller = PlayedController(room=1)
     context = context_of(controller)
     motion = ControllerMotion(context, controller)
-    motion.begin([CUT])
-    assert motion.starving == math.inf
+    motion.start_section([CUT])
+    assert motion.starvation_time_s == math.inf
     context.now += 1.1
     controller.room = 9
-    motion.progress(nothing_read())
-    assert motion.starving == -math.inf
+    motion.update_progress(nothing_read())
+    assert motion.starvation_time_s == -math.inf
     assert len(controller.ops) == 1
 
 
 def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
     """Radius .1 mm: the square root of .8 of 3048 mm/s² times .1 mm is 15.6154 mm/s."""
     controller = PlayedController()
-    motion_of(controller, block(Kind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
-    assert {round(op.feed, 4) for op in controller.ops if isinstance(op, ArcOp)} == {15.6154}
+    motion_of(controller, block(BlockKind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
+    assert {round(op.feed, 4) for op in controller.ops if isinstance(op, ArcOperation)} == {15.6154}
     controller = PlayedController(fast=3.0)
-    motion_of(controller, block(Kind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
-    assert {op.feed for op in controller.ops if isinstance(op, ArcOp)} == {3.0}
+    motion_of(controller, block(BlockKind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
+    assert {op.feed for op in controller.ops if isinstance(op, ArcOperation)} == {3.0}
 
 
 # --- constant surface speed of a spindle whose steps count from its last S ----------------------------------
@@ -321,34 +326,34 @@ def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
 def surface(n: int = 1, rpm: float = 600.0) -> Block:
     """At radius 10, 200π mm/s: ten turns a second, of .1 mm."""
     at = {"x0": 10.0, "x": 10.0, "z": -0.1, "feed": 0.1, "per_rev": True, "css": 200 * math.pi}
-    return block(Kind.FEED, n=n, rpm=rpm, modal=Modal(css_min=0.0), **at)
+    return block(BlockKind.FEED, n=n, rpm=rpm, modal=ModalState(min_css_rpm=0.0), **at)
 
 
 @pytest.mark.parametrize(("reach", "feed"), [(2000.0, 1.0), (300.0, 0.5)])
 def test_nothing_moves_until_the_spindle_is_laid_out_for_its_surface_speed(reach: float, feed: float) -> None:
     """Seen in four looks, of which the start is the first; then by the speed that the spindle comes to."""
-    controller = PlayedController(reach=0.0)
+    controller = PlayedController(css_max_rpm=0.0)
     motion = motion_of(controller, surface())
-    motion.progress(nothing_read())
-    motion.progress(nothing_read())
+    motion.update_progress(nothing_read())
+    motion.update_progress(nothing_read())
     assert controller.ops == []
-    motion.progress(nothing_read())
+    motion.update_progress(nothing_read())
     assert controller.ops == []  # looked at often enough, but not laid out
-    controller.reach = reach
-    motion.progress(nothing_read())
+    controller.css_max_rpm = reach
+    motion.update_progress(nothing_read())
     (op,) = controller.ops
-    assert isinstance(op, LineOp)
+    assert isinstance(op, LineOperation)
     assert op.feed == pytest.approx(feed)
 
 
 def test_a_surface_speed_is_not_laid_out_before_what_went_before_rests() -> None:
-    controller = PlayedController(reach=2000.0)
+    controller = PlayedController(css_max_rpm=2000.0)
     motion = motion_of(controller, CUT, surface(2))
     for _ in range(6):
-        motion.progress(nothing_read())
+        motion.update_progress(nothing_read())
     assert len(controller.ops) == 3
     controller.finish()
     for _ in range(4):
         assert len(controller.ops) == 3
-        motion.progress(nothing_read())
+        motion.update_progress(nothing_read())
     assert len(controller.ops) == 4

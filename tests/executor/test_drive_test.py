@@ -9,26 +9,26 @@ import pytest
 
 from core.executor.commands import (
     Command,
-    DriveTest,
-    DriveTestOn,
     FeedHold,
     Jog,
-    JogStep,
-    JogStop,
+    JogByStep,
+    RenewDriveTest,
     Reset,
-    Wheel,
+    RunDriveTest,
+    SelectHandwheel,
+    StopJog,
 )
 from core.executor.hand_motion.drive_test import (
-    PAUSE,
+    PAUSE_S,
     DriveTestPath,
     Limits,
     Shape,
-    braking,
-    cut,
-    reach,
-    seconds,
+    make_braking_ramp,
+    slice_ramps,
+    total_duration_s,
+    travel_range,
 )
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.executor.rig import FINE, INCH, TICK, Rig
 from tests.executor.test_jog_steps import nothing_homed
 from tests.texts import text
@@ -38,7 +38,7 @@ LEASE = 0.2
 STEP = DriveTestPath("X", Shape.STEP, 0.5)
 RAMP = DriveTestPath("Z", Shape.RAMP, -5.0, speed=20.0)
 SINE = DriveTestPath("X", Shape.SINE, 0.5, frequencies=(5.0,))
-LIMITS = Limits(top=100 * INCH / 60, amax=AMAX, rate=1000.0)
+LIMITS = Limits(max_speed=100 * INCH / 60, max_acceleration=AMAX, sample_rate_hz=1000.0)
 
 
 def ready() -> Rig:
@@ -49,13 +49,13 @@ def ready() -> Rig:
 
 def hold(rig: Rig, path: DriveTestPath, most: float = 30.0) -> tuple[list[float], np.ndarray]:
     """Held until it is over, or for ``most`` s: times and demand."""
-    rig.post(DriveTest(path, LEASE))
+    rig.post(RunDriveTest(path, LEASE))
     times, seen = [], []
     began = rig.clock.now()
-    while rig.state is State.JOG and rig.clock.now() - began < most:
+    while rig.state is MachineState.JOG and rig.clock.now() - began < most:
         times.append(rig.clock.now())
         seen.append(rig.sim.ports.axes.sample().demand)
-        rig.post(DriveTestOn(LEASE))
+        rig.post(RenewDriveTest(LEASE))
     return times, np.array(seen)
 
 
@@ -66,32 +66,32 @@ def hold(rig: Rig, path: DriveTestPath, most: float = 30.0) -> tuple[list[float]
 def test_it_goes_its_size_and_comes_back_to_where_it_began(path: DriveTestPath) -> None:
     rig = ready()
     _, seen = hold(rig, path)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.said("refused") == []
     assert rig.said("test") == [text("executor.test-kind", axis=path.axis)]
-    assert rig.shot.drive_test.whole == 1
+    assert rig.shot.drive_test.completed_test_count == 1
     index, other = (0, 1) if path.axis == "X" else (1, 0)
     assert rig.shot.demand[index] == pytest.approx(0.0, abs=1e-9)
     assert rig.shot.demand[other] == 0.0
-    extreme = seen[:, index].max() if path.size > 0.0 else seen[:, index].min()
+    extreme = seen[:, index].max() if path.travel_mm > 0.0 else seen[:, index].min()
     # a tick beside its crest a sine of 5 Hz lacks s/2·(1 − cos(π/10)) at most, and .2 % by its pieces
     lacks = 0.25 * (1.0 - math.cos(math.pi / 10.0)) + 0.001 if path is SINE else 1e-9
-    assert abs(extreme - path.size) <= lacks
-    assert (seen[:, index] * math.copysign(1.0, path.size)).min() >= -1e-9
+    assert abs(extreme - path.travel_mm) <= lacks
+    assert (seen[:, index] * math.copysign(1.0, path.travel_mm)).min() >= -1e-9
 
 
 def test_a_step_takes_the_time_that_its_acceleration_asks_for() -> None:
     """Speeding up over half of the way: s = 2·½·a·(t/2)², so t = 2·√(s/a), and no faster than the hand."""
-    ramps = STEP.ramps(LIMITS)
+    ramps = STEP.make_ramps(LIMITS)
     peak = math.sqrt(0.5 * AMAX)
-    assert peak < LIMITS.top
-    assert seconds(ramps) == pytest.approx(2.0 * (2.0 * math.sqrt(0.5 / AMAX) + PAUSE))
+    assert peak < LIMITS.max_speed
+    assert total_duration_s(ramps) == pytest.approx(2.0 * (2.0 * math.sqrt(0.5 / AMAX) + PAUSE_S))
 
 
 def test_the_pieces_of_a_sine_lie_on_it() -> None:
     """s/2·(1 − cos ωt) and its velocity, at the ends of pieces; the place is short by (ω dt)²/12."""
     frequency, size = 2.0, 1.0
-    ramps = DriveTestPath("X", Shape.SINE, size, frequencies=(frequency,)).ramps(LIMITS)
+    ramps = DriveTestPath("X", Shape.SINE, size, frequencies=(frequency,)).make_ramps(LIMITS)
     omega, t, p = 2.0 * math.pi * frequency, 0.0, 0.0
     for dt, v, a in ramps[:-1]:
         assert v == pytest.approx(0.5 * size * omega * math.sin(omega * t), abs=1e-9)
@@ -105,19 +105,19 @@ def test_the_pieces_of_a_sine_lie_on_it() -> None:
 def test_a_sine_that_the_axis_cannot_do_whole_is_smaller() -> None:
     """An acceleration of s/2·ω² leaves s = 2a/ω² at 40 Hz."""
     path = DriveTestPath("X", Shape.SINE, -2.0, frequencies=(2.0, 40.0))
-    assert path.size_at(40.0, LIMITS) == pytest.approx(-2.0 * AMAX / (80.0 * math.pi) ** 2)
-    ramps = path.ramps(LIMITS)
+    assert path.sine_travel_mm(40.0, LIMITS) == pytest.approx(-2.0 * AMAX / (80.0 * math.pi) ** 2)
+    ramps = path.make_ramps(LIMITS)
     assert max(abs(a) for _, _, a in ramps) <= AMAX * (1.0 + 1e-9)
-    assert max(abs(v) for _, v, _ in ramps) <= LIMITS.top
+    assert max(abs(v) for _, v, _ in ramps) <= LIMITS.max_speed
 
 
 def test_wherever_it_is_cut_it_comes_to_rest_within_its_reach() -> None:
-    ramps = DriveTestPath("X", Shape.SINE, 2.0, frequencies=(2.0, 10.0)).ramps(LIMITS)
-    low, high = reach(ramps)
+    ramps = DriveTestPath("X", Shape.SINE, 2.0, frequencies=(2.0, 10.0)).make_ramps(LIMITS)
+    low, high = travel_range(ramps)
     ends = []
-    for begun in np.arange(0.0, seconds(ramps), 0.0037):
-        kept = cut(ramps, 0.0, float(begun))
-        kept += braking(kept, AMAX)
+    for begun in np.arange(0.0, total_duration_s(ramps), 0.0037):
+        kept = slice_ramps(ramps, 0.0, float(begun))
+        kept += make_braking_ramp(kept, AMAX)
         ends.append(sum((v + 0.5 * a * dt) * dt for dt, v, a in kept))
         if kept:
             dt, v, a = kept[-1]
@@ -129,27 +129,27 @@ def test_wherever_it_is_cut_it_comes_to_rest_within_its_reach() -> None:
 # --- held, as a jog -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("stopper", [JogStop(), FeedHold(), Reset()])
+@pytest.mark.parametrize("stopper", [StopJog(), FeedHold(), Reset()])
 def test_let_go_it_brakes_where_it_is_and_says_so(stopper: Command) -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     rig.post(stopper)
-    assert rig.until(State.IDLE) < 0.03 + 20.0 / AMAX + 3 * TICK
+    assert rig.until(MachineState.IDLE) < 0.03 + 20.0 / AMAX + 3 * TICK
     assert -5.0 < rig.shot.demand[1] < -0.5
     assert rig.said("refused") == [text("executor.test-cut-short", axis="Z")]
-    assert rig.shot.drive_test.whole == 0
+    assert rig.shot.drive_test.completed_test_count == 0
 
 
 def test_a_host_that_dies_leaves_it_at_rest_within_its_lease() -> None:
     rig = ready()
-    rig.post(DriveTest(RAMP, LEASE))
+    rig.post(RunDriveTest(RAMP, LEASE))
     began = rig.sim.ports.axes.sample().demand[1]
     rig.clock.advance(LEASE + 0.03 + 20.0 / AMAX + 0.1)  # and until the slide has settled
     sample = rig.sim.ports.axes.sample()
     assert not sample.moving
     assert abs(sample.demand[1] - began) < 20.0 * (LEASE + 0.03)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.said("refused") == [text("executor.test-cut-short", axis="Z")]
 
 
@@ -157,10 +157,10 @@ def test_a_host_that_dies_leaves_it_at_rest_within_its_lease() -> None:
 def test_a_lease_that_ran_out_is_not_taken_up_again(late: float) -> None:
     """What is committed is as good as over: a tick before its end nothing can be added any more."""
     rig = ready()
-    rig.post(DriveTest(RAMP, 0.1))
+    rig.post(RunDriveTest(RAMP, 0.1))
     rig.run(late)
-    rig.post(DriveTestOn(LEASE))
-    rig.until(State.IDLE, limit=0.3)
+    rig.post(RenewDriveTest(LEASE))
+    rig.until(MachineState.IDLE, limit=0.3)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[1] > -4.0
 
@@ -168,33 +168,33 @@ def test_a_lease_that_ran_out_is_not_taken_up_again(late: float) -> None:
 def test_a_renewal_behind_the_release_counts_for_nothing() -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
-    rig.post(JogStop(), DriveTestOn(LEASE), DriveTestOn(LEASE))
-    rig.until(State.IDLE, limit=0.1)
+    rig.post(StopJog(), RenewDriveTest(LEASE), RenewDriveTest(LEASE))
+    rig.until(MachineState.IDLE, limit=0.1)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[1] > -4.0
 
 
 def test_renewing_never_begins_one() -> None:
     rig = ready()
-    rig.post(DriveTestOn(LEASE))
+    rig.post(RenewDriveTest(LEASE))
     rig.run(0.5)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     hold(rig, STEP)
-    rig.post(DriveTestOn(LEASE))  # the key is still down when it is over
+    rig.post(RenewDriveTest(LEASE))  # the key is still down when it is over
     rig.run(0.5)
-    assert (rig.shot.drive_test.number, rig.shot.drive_test.whole) == (1, 1)
-    assert rig.state is State.IDLE
+    assert (rig.shot.drive_test.number, rig.shot.drive_test.completed_test_count) == (1, 1)
+    assert rig.state is MachineState.IDLE
 
 
 def test_a_slide_that_does_not_follow_trips_as_always() -> None:
     rig = ready()
-    rig.post(DriveTest(RAMP, LEASE))
+    rig.post(RunDriveTest(RAMP, LEASE))
     rig.sim.machine.jam("Z")
     for _ in range(60):
-        rig.post(DriveTestOn(LEASE))
-    assert rig.state is State.FAULT
+        rig.post(RenewDriveTest(LEASE))
+    assert rig.state is MachineState.FAULT
     assert "Z" in rig.shot.alarms[0].cause
-    assert rig.shot.drive_test.axis == "" or rig.state is State.FAULT
+    assert rig.shot.drive_test.axis == "" or rig.state is MachineState.FAULT
 
 
 def test_estop_in_the_middle_and_another_test_afterwards() -> None:
@@ -202,20 +202,20 @@ def test_estop_in_the_middle_and_another_test_afterwards() -> None:
     hold(rig, SINE, most=0.3)
     rig.sim.machine.press_estop()
     rig.run(0.5)
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     assert not rig.sim.ports.axes.sample().enabled
-    rig.post(DriveTest(STEP, LEASE))
+    rig.post(RunDriveTest(STEP, LEASE))
     assert rig.said("refused")[-1] == text("executor.no-jog", state="E-STOP")
 
 
 @pytest.mark.parametrize(
-    "other", [Jog("Z", 5.0, LEASE), JogStep("X", 0.1, 5.0), DriveTest(STEP, LEASE), Jog("X", 5.0, LEASE)]
+    "other", [Jog("Z", 5.0, LEASE), JogByStep("X", 0.1, 5.0), RunDriveTest(STEP, LEASE), Jog("X", 5.0, LEASE)]
 )
 def test_whatever_else_is_asked_meanwhile_ends_it(other: Command) -> None:
     rig = ready()
     hold(rig, SINE, most=0.3)
     rig.post(other)
-    assert rig.until(State.IDLE, limit=0.3) < 0.3
+    assert rig.until(MachineState.IDLE, limit=0.3) < 0.3
     assert rig.said("refused")
     stood = rig.shot.demand
     rig.run(0.5)
@@ -250,31 +250,31 @@ def test_whatever_else_is_asked_meanwhile_ends_it(other: Command) -> None:
 )
 def test_tests_without_sense_are_refused(path: DriveTestPath, why: str) -> None:
     rig = ready()
-    rig.post(DriveTest(path, LEASE))
+    rig.post(RunDriveTest(path, LEASE))
     rig.run(0.3)
     assert why in rig.said("refused")[0]
     assert rig.shot.demand == (0.0, 0.0, 0.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 @pytest.mark.parametrize("lease", [0.0, -1.0, math.nan, math.inf])
 def test_a_lease_without_sense_is_refused(lease: float) -> None:
     rig = ready()
-    rig.post(DriveTest(STEP, lease))
+    rig.post(RunDriveTest(STEP, lease))
     assert rig.said("refused") == [text("executor.drive-test", why=text("executor.test-lease"))]
 
 
 def test_the_whole_of_it_has_to_fit_with_its_braking() -> None:
     """Half a millimetre before the end of the travel; a hundredth is kept from it."""
     rig = ready()
-    x = rig.machine.axis("X")
+    x = rig.machine.find_axis("X")
     assert x.travel is not None
     for _ in range(600):
         rig.executor.post(Jog("X", 40.0, 0.2))
         rig.tick()
-    rig.until(State.IDLE)
-    rig.post(JogStep("X", -0.5, 10.0))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
+    rig.post(JogByStep("X", -0.5, 10.0))
+    rig.until(MachineState.IDLE)
     here = rig.shot.demand
     for size, fits in ((0.49, True), (0.52, False)):
         rig.events.clear()
@@ -290,38 +290,38 @@ def test_the_whole_of_it_has_to_fit_with_its_braking() -> None:
 def test_an_axis_that_is_not_homed_is_not_tested() -> None:
     rig = Rig(nothing_homed())
     rig.ready()
-    rig.post(DriveTest(STEP, LEASE))
+    rig.post(RunDriveTest(STEP, LEASE))
     assert text("executor.test-not-homed", axis="X") in rig.said("refused")[0]
 
 
 def test_not_while_the_spindle_turns() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM02\n")
-    rig.until(State.IDLE)
-    rig.post(DriveTest(STEP, LEASE))
+    rig.until(MachineState.IDLE)
+    rig.post(RunDriveTest(STEP, LEASE))
     assert rig.said("refused") == [text("executor.drive-test", why=text("executor.spindle-turns-stop"))]
 
 
 def test_not_with_the_guard_open_and_it_ends_where_one_is_opened() -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
-    rig.executor._context.spindle.guard_open = True
-    rig.executor._control.drive_test.look()
-    assert rig.executor._control.jogger.ending
-    rig.until(State.IDLE)
+    rig.executor._context.spindle.is_guard_open = True
+    rig.executor._control.drive_tester.check_guard()
+    assert rig.executor._control.jogger.is_stopping
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[1] > -4.0
 
 
-@pytest.mark.parametrize("command", [DriveTest(STEP, LEASE), DriveTestOn(LEASE)])
+@pytest.mark.parametrize("command", [RunDriveTest(STEP, LEASE), RenewDriveTest(LEASE)])
 def test_nothing_is_tested_while_a_program_is_under_way(command: Command) -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
     rig.run(0.2)
     rig.post(command)
     assert rig.said("refused") == (
-        [text("executor.no-jog", state="RUNNING")] if isinstance(command, DriveTest) else []
+        [text("executor.no-jog", state="RUNNING")] if isinstance(command, RunDriveTest) else []
     )
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.post(command)
     rig.run(0.3)
     assert rig.shot.demand[0] == 0.0
@@ -329,9 +329,9 @@ def test_nothing_is_tested_while_a_program_is_under_way(command: Command) -> Non
 
 def test_a_late_one_is_refused() -> None:
     rig = ready()
-    rig.executor.post(DriveTest(STEP, LEASE))
+    rig.executor.post(RunDriveTest(STEP, LEASE))
     rig.clock.advance(0.6)
-    rig.executor.tick()
+    rig.executor.run_tick()
     rig.run(0.2)
     assert rig.shot.demand[0] == 0.0
     assert text("executor.came-too-late", command="DriveTest") in rig.said("refused")[0]
@@ -340,6 +340,6 @@ def test_a_late_one_is_refused() -> None:
 def test_the_handwheel_does_not_move_under_it() -> None:
     rig = ready()
     hold(rig, SINE, most=0.2)
-    rig.post(Wheel("X", 0.01, LEASE))
+    rig.post(SelectHandwheel("X", 0.01, LEASE))
     rig.run(0.3)
-    assert rig.shot.drive_test.whole == 0
+    assert rig.shot.drive_test.completed_test_count == 0

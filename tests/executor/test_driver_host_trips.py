@@ -11,8 +11,8 @@ import pytest
 
 from core.executor.commands import CycleStart, ForceOutput
 from core.executor.executor import Executor
-from core.executor.snapshot import State
-from core.faults import Trip
+from core.executor.snapshot import MachineState
+from core.faults import DriverHostTrip
 from tests.executor.rig import Rig
 from tests.executor.test_signal_lamps import with_lamps
 from tests.texts import text
@@ -24,13 +24,13 @@ PART = "G90G94F300\nM03S1000\nM08\nG01F20Z-1\nM30\n"
 class PlayedDriverHost:
     """Tells of one trip until it is acknowledged."""
 
-    trip: Trip | None = None
+    trip: DriverHostTrip | None = None
     acknowledged: list[int] = field(default_factory=list)
 
-    def tripped(self) -> Trip | None:
+    def get_active_trip(self) -> DriverHostTrip | None:
         return self.trip
 
-    def acknowledge(self, trip: Trip) -> None:
+    def acknowledge(self, trip: DriverHostTrip) -> None:
         self.acknowledged.append(trip.number)
         self.trip = None
 
@@ -41,15 +41,15 @@ class FedRig(Rig):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.host = PlayedDriverHost()
-        ports = dataclasses.replace(self.sim.ports, trips=self.host)
+        ports = dataclasses.replace(self.sim.ports, trip_monitor=self.host)
         self.executor = Executor(self.machine, ports, self.events.append, self._passes)
-        self.executor.tick()
+        self.executor.run_tick()
 
     def trips(self, *outputs: str, spindle: bool = False, found: bool = False) -> None:
         """It has heard nothing for a second and a half; the outputs are off at the machine."""
         for name in outputs:
             self.sim.ports.io.write(name, False)
-        self.host.trip = Trip(7, 1.5, spindle, outputs, found)
+        self.host.trip = DriverHostTrip(7, 1.5, spindle, outputs, found)
         self.tick()
         assert self.host.acknowledged == [7]
 
@@ -64,7 +64,7 @@ def test_at_rest_it_is_told_and_nothing_is_held() -> None:
     rig.post(ForceOutput("coolant", True))
     rig.trips("coolant")
     assert rig.said("disturbed") == [tripped("control", "COOLANT")]
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.alarms == ()
 
 
@@ -88,7 +88,7 @@ def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> N
     rig.until_true(lambda shot: shot.actual[1] < -1.0)
     rig.trips("coolant", spindle=True, found=found)
     assert rig.said("disturbed") == [words]
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     z = rig.shot.demand[1]
     rig.run(1.0)
     outputs: set[str] = set()
@@ -96,7 +96,7 @@ def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> N
     assert rig.shot.demand[1] == z > -25.4  # of an inch: it has not gone on
     assert rig.shot.rpm_command == 0.0
     assert "coolant" not in rig.shot.outputs
-    while rig.state is not State.IDLE:
+    while rig.state is not MachineState.IDLE:
         rig.post(CycleStart())  # announced first, then done
         rig.run(0.9)
     assert "coolant" in outputs

@@ -9,13 +9,13 @@ from collections.abc import Callable
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
+from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, HomeAxes, Reset, SetSwitch
 from core.executor.safety.watchdog import ExecutorThread
-from core.executor.snapshot import Snapshot, State
-from core.interpreter.shared.actions import Collet, Dwell, SpindleRun
+from core.executor.snapshot import MachineState, Snapshot
+from core.interpreter.shared.actions import ColletSwitch, Dwell, SpindleRun
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN, StationState
-from drivers.waiting import RealClock
+from core.ports import ALL_UNKNOWN_PARTS, StationState
+from drivers.wakeups import RealClock
 from tests.executor.made import Maker
 from tests.executor.rig import FINE, INCH, Rig, unhomed_machine
 from tests.texts import text
@@ -28,7 +28,7 @@ BUSY = "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F20Z-1\nG02X1.5Z-1.5I1.5K-1\nG04F
 
 def alarm(rig: Rig, code: str, limit: float = 20.0) -> float:
     """Run into an alarm and check what every alarm means."""
-    took = rig.until(State.FAULT, limit=limit)
+    took = rig.until(MachineState.FAULT, limit=limit)
     assert rig.shot.alarms[0].code == code
     assert rig.shot.rpm_command == 0.0
     assert not {"coolant", "catcher", "live1"} & rig.shot.outputs
@@ -37,7 +37,7 @@ def alarm(rig: Rig, code: str, limit: float = 20.0) -> float:
     stood = rig.shot.demand
     rig.run(2.0)
     assert rig.shot.demand == stood
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     return took
 
 
@@ -48,18 +48,18 @@ def test_an_estop_pressed_behind_the_look_at_the_station_is_one_and_no_loss_of_p
     rig.start("G90G94F300\nG01F20Z-2\nM30\n")
     rig.run(1.0)
     station = rig.sim.ports.station
-    look = station.snapshot
+    look = station.read_state
 
     def pressed_behind() -> StationState:
         seen = look()
         rig.sim.machine.press_estop()
         return seen
 
-    monkeypatch.setattr(station, "snapshot", pressed_behind)
+    monkeypatch.setattr(station, "read_state", pressed_behind)
     rig.tick()
     monkeypatch.undo()
     rig.run(1.0)
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     assert rig.shot.alarms == ()
     assert rig.said("alarm") == []
 
@@ -84,14 +84,14 @@ def test_a_stalled_host_leaves_the_slides_on_their_path_without_a_fault(stall: f
     assert rig.shot.alarms == ()
     assert any(re.search(r"[0-9.]+ s$", said) for said in rig.said("starved"))
     if stall > 2:
-        assert rig.state is State.HOLD
+        assert rig.state is MachineState.HOLD
         assert rig.shot.stop is not None
         assert rig.shot.stop.code == "low-queue"
         assert rig.shot.underruns == 1
         rig.run(1.0)
-        assert rig.state is State.HOLD
+        assert rig.state is MachineState.HOLD
         rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
 
@@ -106,9 +106,9 @@ def test_a_stalled_host_in_one_long_move_stops_too() -> None:
     # 1.25 s queued and a little braking: nowhere near the 5 in of the block
     assert -at.actual[1] < 5 * INCH / 60 * 3.0
     rig.run(0.1)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     rig.post(CycleStart())
-    rig.until(State.IDLE, limit=90)
+    rig.until(MachineState.IDLE, limit=90)
     assert rig.shot.demand[1] == pytest.approx(-5 * INCH)
 
 
@@ -123,7 +123,7 @@ def test_a_late_host_shows_the_block_in_which_the_slides_stand() -> None:
     rig.clock.advance(10.0)
     assert not rig.sim.ports.axes.sample().moving
     rig.run(0.1)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     assert rig.shot.underruns == 1
     x, z, _ = rig.shot.actual
     assert x == pytest.approx(0.2 * INCH, abs=0.001)
@@ -132,19 +132,21 @@ def test_a_late_host_shows_the_block_in_which_the_slides_stand() -> None:
     assert rig.shot.block_end[:2] == pytest.approx((0.2 * INCH, -3 * INCH))
     assert [event.line for event in rig.events if event.kind == "stop"][-1:] == [5]
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
-@pytest.mark.parametrize(("pressed", "state"), [(FeedHold(), State.HOLD), (Reset(), State.IDLE)])
-def test_so_does_what_was_pressed_while_the_host_was_away(pressed: Command, state: State) -> None:
+@pytest.mark.parametrize(
+    ("pressed", "state"), [(FeedHold(), MachineState.HOLD), (Reset(), MachineState.IDLE)]
+)
+def test_so_does_what_was_pressed_while_the_host_was_away(pressed: Command, state: MachineState) -> None:
     rig = Rig()
     rig.start(STEPS)
     rig.until_true(lambda shot: shot.line == 3)
     rig.clock.advance(10.0)
     rig.post(pressed)
     rig.until(state)
-    assert rig.shot.line == (5 if state is State.HOLD else 0)
+    assert rig.shot.line == (5 if state is MachineState.HOLD else 0)
     left = rig.notes[-1]  # what SEARCHTO is offered with, after a power cut too
     assert left is not None
     assert left.line == 5
@@ -155,10 +157,10 @@ def test_a_hold_behind_which_the_host_is_late_shows_it_too() -> None:
     rig.start("G90G94F300\nG01F200\nZ-1.2\nX1.2Z-2.4\nM30\n")
     rig.until_true(lambda shot: shot.line == 3 and shot.actual[1] < -1.17 * INCH)
     rig.post(FeedHold())
-    assert (rig.state, rig.shot.line) == (State.HOLDING, 3)
+    assert (rig.state, rig.shot.line) == (MachineState.HOLDING, 3)
     rig.clock.advance(10.0)
     rig.tick()
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     assert rig.shot.actual[0] > 0.01 * INCH
     assert rig.shot.line == 4
 
@@ -193,7 +195,7 @@ def test_a_dead_driver_is_an_alarm_too(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(rig.sim.ports.axes, "sample", dead)
     rig.tick()
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     assert rig.shot.alarms[0].code == "internal"
 
 
@@ -203,12 +205,12 @@ def test_the_thread_ticks_and_leaves_nothing_on() -> None:
     thread = ExecutorThread(rig.executor, clock, tick=0.001)
     rig.executor.post(EnableDrives())
     thread.start()
-    while rig.executor.snapshot.state is not State.IDLE:
+    while rig.executor.snapshot.state is not MachineState.IDLE:
         clock.sleep_until(clock.now() + 0.001)
-    assert thread.alive
+    assert thread.is_alive
     thread.close()
-    assert not thread.alive
-    assert rig.executor.snapshot.state is State.DISABLED
+    assert not thread.is_alive
+    assert rig.executor.snapshot.state is MachineState.DISABLED
 
 
 # --- axes ---------------------------------------------------------------------------------------------------
@@ -225,11 +227,11 @@ def test_a_jammed_slide_stops_all() -> None:
     assert not rig.sim.ports.axes.sample().enabled
     rig.sim.machine.jam("X", False)
     rig.post(Reset())
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     rig.run(1.0)
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     rig.post(EnableDrives())
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.block == 0
 
 
@@ -280,17 +282,17 @@ def test_a_bogged_spindle_holds_the_feed_and_going_on_waits_for_its_speed(code: 
     rig.run(3.0)
     rig.sim.machine.spindle_bog(0.4)
     rig.run(1.5)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     assert rig.shot.waiting_for == text("executor.below-half-speed")
     at = rig.shot.actual
     rig.post(CycleStart())
-    rig.until(State.HOLD, limit=rig.machine.spindle.timeout + 1.0)
+    rig.until(MachineState.HOLD, limit=rig.machine.spindle.timeout + 1.0)
     assert rig.shot.waiting_for == text("executor.not-at-speed")
     assert rig.shot.actual == at
     rig.sim.machine.spindle_bog(1.0)
     rig.run(2.0)
     rig.post(CycleStart())
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_a_pot_turned_up_in_a_cut_by_the_minute_holds_nothing() -> None:
@@ -301,7 +303,7 @@ def test_a_pot_turned_up_in_a_cut_by_the_minute_holds_nothing() -> None:
     rig.until_true(lambda shot: shot.actual[1] < -0.1)
     rig.sim.machine.set_spindle_pot(1.0)
     rig.until_true(lambda shot: shot.rpm_actual > 2900.0)
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_a_spindle_drive_fault() -> None:
@@ -331,7 +333,7 @@ def test_the_spindle_switch_stops_and_keeps_the_command() -> None:
     rig.run(2.0)
     assert rig.shot.rpm_actual == 0.0
     assert not rig.shot.spindle_auto
-    assert (rig.state, rig.shot.waiting_for) == (State.HOLD, text("executor.spindle-switch-off"))
+    assert (rig.state, rig.shot.waiting_for) == (MachineState.HOLD, text("executor.spindle-switch-off"))
     rig.sim.machine.set_spindle_auto(True)
     rig.run(2.0)
     assert rig.shot.rpm_actual == 0.0
@@ -345,7 +347,7 @@ def test_a_start_of_the_spindle_with_its_switch_off_is_a_hold_and_no_alarm() -> 
     rig.sim.machine.set_spindle_auto(False)
     rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
     rig.run(20.0)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     assert rig.shot.waiting_for == text("executor.spindle-switch-off")
     assert rig.shot.actual[1] == 0.0
     rig.sim.machine.set_spindle_auto(True)
@@ -361,7 +363,7 @@ def test_spindle_start_with_the_collet_open_is_refused() -> None:
     rig.sim.machine.set_input("collet_closed", False)
     rig.start("G90G94F300\nM03S1000\nG04F1\nM30\n")
     alarm(rig, "collet-open")
-    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
 
 
 def test_unclamping_at_speed_is_refused_where_the_machine_file_says_so() -> None:
@@ -372,14 +374,14 @@ def test_unclamping_at_speed_is_refused_where_the_machine_file_says_so() -> None
     assert rig.shot.rpm_actual > 300
     rig.until_true(lambda shot: "collet" not in shot.outputs)
     assert rig.shot.rpm_actual < 5
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 def test_unclamping_a_running_spindle_is_an_alarm_where_the_machine_file_says_so() -> None:
     rig = Rig(strict_machine())
     maker = Maker()
     maker.rpm = 300.0
-    rig.made = maker.act(SpindleRun(300.0)).act(Dwell(2.0)).act(Collet(closed=False)).end()
+    rig.made = maker.act(SpindleRun(300.0)).act(Dwell(2.0)).act(ColletSwitch(closed=False)).end()
     rig.start("G90\nM30\n")
     alarm(rig, "unclamp")
     assert "collet" in rig.shot.outputs
@@ -436,7 +438,7 @@ def test_passes_enter_at_one_angle_of_the_spindle() -> None:
     before = [0.0, 0.0]
 
     def look(shot: Snapshot) -> None:
-        z, turns = shot.demand[1], rig.sim.ports.spindle.angle()
+        z, turns = shot.demand[1], rig.sim.ports.spindle.read_angle()
         assert turns is not None
         if shot.block_text == "thread" and before[0] > 0.0 >= z:
             share = before[0] / (before[0] - z)
@@ -444,7 +446,7 @@ def test_passes_enter_at_one_angle_of_the_spindle() -> None:
         before[:] = [z, turns[1]]
 
     rig.watch.append(look)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert len(seen) == len(PASS_X)
     assert max(seen) - min(seen) < 0.01  # of a turn: 13 µm of lead
 
@@ -465,16 +467,16 @@ def test_hold_in_a_thread_waits_for_the_pull_out(how: str) -> None:
     in_thread(rig)
     if how == "button":
         rig.post(FeedHold())
-        assert rig.state is State.HOLDING
-        rig.until(State.HOLD)
+        assert rig.state is MachineState.HOLDING
+        rig.until(MachineState.HOLD)
     else:
         rig.sim.machine.set_feed_pot(0.0)
-        rig.until(State.WAIT)
+        rig.until(MachineState.WAIT)
     assert rig.shot.demand[:2] == pytest.approx((OUT_X, -25.0))
     rig.run(1.0)
     rig.sim.machine.set_feed_pot(1.0)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -484,11 +486,11 @@ def test_single_block_does_not_stop_in_the_groove() -> None:
     threading(rig, (11.9,))
     stops = []
     for _ in range(5):
-        rig.until(State.BLOCK_END)
+        rig.until(MachineState.BLOCK_END)
         stops.append(rig.shot.demand[:2])
         rig.run(0.4)
         rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert stops == [
         pytest.approx(stop) for stop in [(0.0, 0.0), (OUT_X, 5.0), (11.9, 5.0), (OUT_X, -25.0), (OUT_X, 5.0)]
     ]
@@ -504,7 +506,7 @@ def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(kill: str) ->
         rig.sim.machine.spindle_bog(0.3)
     else:
         rig.sim.machine.set_spindle_auto(False)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "thread-lost"
     assert rig.shot.alarms[0].line == inside
     rig.run(0.3)
@@ -518,7 +520,7 @@ def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(kill: str) ->
 
 def test_a_thread_without_an_encoder_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
-    monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
+    monkeypatch.setattr(rig.sim.ports.spindle, "read_angle", lambda: None)
     threading(rig)
     alarm(rig, "thread-no-encoder")
     assert rig.shot.demand[:2] == pytest.approx((11.9, 5.0))
@@ -535,8 +537,8 @@ def test_a_silent_station_keeps_its_pots_and_holds() -> None:
     rig.run(0.5)
     rig.sim.machine.station_silent()
     rig.run(0.29)
-    assert rig.state is State.RUN
-    rig.until(State.HOLD, limit=0.3)
+    assert rig.state is MachineState.RUN
+    rig.until(MachineState.HOLD, limit=0.3)
     assert rig.shot.feed_override == pytest.approx(0.8)
     assert rig.shot.waiting_for == text("executor.station-silent")
 
@@ -548,7 +550,7 @@ def test_a_jumping_pot_never_speeds_up_and_holds() -> None:
     fastest = []
     rig.watch.append(lambda shot: fastest.append(shot.velocity))
     rig.sim.machine.pot_noise(0.5)
-    rig.until(State.HOLD, limit=1.0)
+    rig.until(MachineState.HOLD, limit=1.0)
     assert rig.shot.waiting_for == text("executor.pot-jumps")
     assert max(fastest) <= 30 * INCH / 60 * 1.2 + 0.2
 
@@ -577,22 +579,22 @@ def test_estop_at_any_moment(after: float) -> None:
     rig.run(after)
     rig.sim.machine.press_estop()
     rig.tick()
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     assert not {"coolant", "catcher"} & rig.shot.outputs
     rig.run(0.3)
     assert not rig.sim.ports.axes.sample().enabled
     assert not rig.sim.ports.axes.sample().moving
     rig.run(4.0)
-    assert rig.sim.machine.spindle_rpm() == 0.0
-    stood = rig.sim.machine.true_position()
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
+    stood = rig.sim.machine.get_true_position()
     rig.sim.machine.release_estop()
     rig.run(2.0)
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     rig.post(EnableDrives())
     rig.run(2.0)
-    assert rig.state is State.IDLE
-    assert rig.sim.machine.true_position() == pytest.approx(stood, abs=0.01)
-    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.state is MachineState.IDLE
+    assert rig.sim.machine.get_true_position() == pytest.approx(stood, abs=0.01)
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
     assert rig.shot.parts == 0
     assert not {"coolant", "catcher"} & rig.shot.outputs
     rig.post(CycleStart())
@@ -602,8 +604,8 @@ def test_estop_at_any_moment(after: float) -> None:
 def test_estop_loses_the_home_of_axes_that_only_count() -> None:
     rig = Rig(unhomed_machine())
     rig.ready()
-    rig.post(Home())
-    rig.until(State.IDLE)
+    rig.post(HomeAxes())
+    rig.until(MachineState.IDLE)
     assert rig.shot.homed == (True, True, True)
     rig.sim.machine.press_estop()
     rig.run(0.5)
@@ -613,12 +615,12 @@ def test_estop_loses_the_home_of_axes_that_only_count() -> None:
 def test_the_drives_stay_off_while_nothing_is_heard_of_the_machine() -> None:
     it = Rig()
     heard = it.executor._ports
-    it.executor._ports = dataclasses.replace(heard, unknown=lambda: ALL_UNKNOWN)
+    it.executor._ports = dataclasses.replace(heard, unknown=lambda: ALL_UNKNOWN_PARTS)
     it.run(0.1)
     it.post(EnableDrives())
-    assert it.state is State.DISABLED
+    assert it.state is MachineState.DISABLED
     assert text("executor.machine-not-said") in it.events[-1].text
     it.executor._ports = heard
     it.run(0.1)
     it.post(EnableDrives())
-    assert it.state is State.IDLE
+    assert it.state is MachineState.IDLE

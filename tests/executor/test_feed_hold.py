@@ -7,10 +7,10 @@ from itertools import count
 
 import pytest
 
-from core.executor.commands import CycleStart, FeedHold, FeedOverride, Reset, SetSwitch
-from core.executor.snapshot import State
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.executor.commands import CycleStart, FeedHold, Reset, SetFeedOverride, SetSwitch
+from core.executor.snapshot import MachineState
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 from tests.executor.rig import INCH, TICK, Rig, off_line
 from tests.texts import text
 
@@ -26,7 +26,7 @@ def moving_rig(program: str = RAPID, seconds: float = 0.4) -> Rig:
     rig = Rig()
     rig.start(program)
     rig.run(seconds)
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
     return rig
 
 
@@ -38,8 +38,8 @@ def test_hold_from_full_speed_is_at_rest_in_time_and_on_the_path() -> None:
     rig.watch.append(lambda shot: seen.append(off_line(shot, (0.0, 0.0), END)))
     pressed = rig.clock.now()
     rig.executor.post(FeedHold())
-    rig.executor.tick()
-    rig.until(State.HOLD)
+    rig.executor.run_tick()
+    rig.until(MachineState.HOLD)
     # the slower axis share: 3-4-5, so along the path a = 120 in/s² / .8
     ramp = speed / (120 * INCH / 0.8)
     assert rig.clock.now() - pressed <= 0.03 + ramp + TICK + 1e-9
@@ -50,15 +50,15 @@ def test_hold_from_full_speed_is_at_rest_in_time_and_on_the_path() -> None:
 def test_the_stations_button_holds_too() -> None:
     rig = moving_rig()
     rig.sim.machine.press_hold()
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(CycleStart())
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused == text("executor.hold-pressed")
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal == text("executor.hold-pressed")
     rig.sim.machine.release_hold()
     rig.run(0.4)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
-    assert rig.shot.start_refused == ""
+    rig.until(MachineState.IDLE)
+    assert rig.shot.start_refusal == ""
 
 
 @pytest.mark.parametrize("after", [0.001, 0.1, 0.333, 0.77, 1.01, 1.4, 1.99])
@@ -67,12 +67,12 @@ def test_resume_ends_at_the_same_place(after: float) -> None:
     rig.start("G90G94F300\nX1\nG01F60Z-.5\nG02X1.5Z-1I1.5K-.5\nX2Z-1.2\nM30\n")
     rig.clock.advance(after)
     rig.executor.post(FeedHold())
-    rig.executor.tick()
-    rig.until(State.HOLD, limit=3.0)
+    rig.executor.run_tick()
+    rig.until(MachineState.HOLD, limit=3.0)
     rig.run(1.0)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[:2] == pytest.approx((2 * INCH, -1.2 * INCH), abs=1e-6)
     assert rig.shot.parts == 1
 
@@ -81,11 +81,11 @@ def test_hold_twice_and_start_twice_change_nothing() -> None:
     rig = moving_rig()
     rig.post(FeedHold(), FeedHold())
     rig.post(CycleStart())
-    assert rig.state is State.HOLDING
-    rig.until(State.HOLD)
+    assert rig.state is MachineState.HOLDING
+    rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(CycleStart(), CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -95,7 +95,7 @@ def test_hold_does_not_start_anything() -> None:
     rig.load(RAPID)
     rig.post(FeedHold())
     rig.run(1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.actual == (0.0, 0.0, 0.0)
 
 
@@ -104,10 +104,10 @@ def test_a_held_dwell_waits_the_rest() -> None:
     rig.start("G90G94F300\nG04F2\nM30\n")
     rig.run(0.5)
     rig.post(FeedHold())
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     rig.run(10.0)
     rig.post(CycleStart())
-    assert rig.until(State.IDLE) == pytest.approx(1.5, abs=0.05)
+    assert rig.until(MachineState.IDLE) == pytest.approx(1.5, abs=0.05)
 
 
 def test_the_spindle_turns_on_in_hold_and_starts_nowhere() -> None:
@@ -115,11 +115,11 @@ def test_the_spindle_turns_on_in_hold_and_starts_nowhere() -> None:
     rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
     rig.run(3.0)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.run(2.0)
     assert rig.shot.rpm_actual == pytest.approx(1000)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(3.0)
     assert rig.shot.rpm_actual == 0.0
     rig.post(CycleStart())
@@ -132,23 +132,23 @@ def test_resume_into_a_cut_without_the_spindle_is_refused() -> None:
     rig.start("G90G94F300\nM03S1000\nG01F10Z-1\nM30\n")
     rig.run(3.0)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.sim.machine.set_spindle_auto(False)
     rig.run(2.0)
     assert rig.shot.rpm_actual == 0.0
     rig.post(CycleStart())
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused == text("executor.switch-off-refused")
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal == text("executor.switch-off-refused")
     rig.sim.machine.set_spindle_auto(True)
     rig.run(2.0)
     assert rig.shot.announced == (text("executor.spindle-starts", rpm=1000, direction="FORWARD"),)
     at = rig.shot.actual
     rig.post(CycleStart())
     assert rig.shot.waiting_for == text("executor.at-speed")
-    while rig.state is State.WAIT:
+    while rig.state is MachineState.WAIT:
         assert rig.shot.actual == at
         rig.tick()
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
     assert rig.shot.rpm_actual == pytest.approx(1000.0, rel=0.1)
 
 
@@ -156,9 +156,9 @@ def test_half_override_takes_twice_as_long() -> None:
     whole = Rig()
     whole.start("G90G94F300\nG01F30Z-1\nM30\n")
     half = Rig()
-    half.post(FeedOverride(0.5))
+    half.post(SetFeedOverride(0.5))
     half.start("G90G94F300\nG01F30Z-1\nM30\n")
-    assert half.until(State.IDLE) == pytest.approx(2 * whole.until(State.IDLE), rel=0.03)
+    assert half.until(MachineState.IDLE) == pytest.approx(2 * whole.until(MachineState.IDLE), rel=0.03)
 
 
 @pytest.mark.parametrize("program", ["G90G94F300\nG01F30Z-1\nM30\n", RAPID])
@@ -166,27 +166,27 @@ def test_override_0_holds_and_more_goes_on(program: str) -> None:
     rig = moving_rig(program)
     rig.sim.machine.set_feed_pot(0.0)
     rig.run(1.0)
-    assert rig.state is State.WAIT
+    assert rig.state is MachineState.WAIT
     assert rig.shot.waiting_for == text("executor.feed-override-0")
     stood = rig.shot.actual
     rig.run(5.0)
     assert rig.shot.actual == stood
     rig.sim.machine.set_feed_pot(1.0)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
 def test_override_changes_the_speed_on_the_way() -> None:
     rig = moving_rig("G90G94F300\nG01F30Z-5\nM30\n", 1.0)
     for fraction in (0.5, 1.5, 1.0, 0.3):
-        rig.post(FeedOverride(fraction))
+        rig.post(SetFeedOverride(fraction))
         rig.run(0.5)
         assert rig.shot.velocity == pytest.approx(fraction * 30 * INCH / 60, rel=0.03)
 
 
 def test_override_never_makes_a_rapid_faster() -> None:
     rig = Rig()
-    rig.post(FeedOverride(1.5))
+    rig.post(SetFeedOverride(1.5))
     rig.start("G90G94F100\nX3\nM30\n")
     rig.run(1.0)
     assert rig.shot.velocity == pytest.approx(100 * INCH / 60, rel=0.02)
@@ -195,7 +195,7 @@ def test_override_never_makes_a_rapid_faster() -> None:
 @pytest.mark.parametrize("fraction", [-0.1, 1.51, float("nan")])
 def test_an_override_out_of_range_is_refused(fraction: float) -> None:
     rig = moving_rig()
-    rig.post(FeedOverride(fraction))
+    rig.post(SetFeedOverride(fraction))
     assert rig.shot.feed_override == 1.0
     assert rig.said("refused")
 
@@ -206,12 +206,12 @@ def test_single_block_stops_behind_every_block() -> None:
     rig.start("G90G94F300\nX1\nG01F100Z-1\nM08\nX1.5\nM30\n")
     stops = []
     for _ in range(4):
-        rig.until(State.BLOCK_END)
+        rig.until(MachineState.BLOCK_END)
         stops.append((rig.shot.block, rig.shot.line, tuple(round(v / INCH, 4) for v in rig.shot.demand[:2])))
         rig.run(0.5)
-        assert rig.state is State.BLOCK_END
+        assert rig.state is MachineState.BLOCK_END
         rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert stops == [(1, 2, (1, 0)), (2, 3, (1, -1)), (3, 4, (1, -1)), (4, 5, (1.5, -1))]
     assert rig.shot.parts == 1
 
@@ -221,11 +221,11 @@ def test_single_block_switched_on_in_motion_stops_at_the_end_of_the_block() -> N
     rig.start("G90G94F300\nG01F60Z-1\nX1\nZ-2\nM30\n")
     rig.until_true(lambda shot: shot.actual[1] < -0.5 * INCH)
     rig.post(SetSwitch("single_block", True))
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     assert rig.shot.demand[:2] == pytest.approx((0.0, -INCH))
     rig.run(0.5)
     rig.post(SetSwitch("single_block", False), CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[:2] == pytest.approx((INCH, -2 * INCH))
 
 
@@ -236,24 +236,24 @@ def test_single_block_too_late_for_this_block_takes_the_next() -> None:
     rig.until_true(lambda shot: shot.actual[1] < -0.5 * INCH)
     block = rig.shot.block
     rig.post(SetSwitch("single_block", True))
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     # 30 ms commit and v²/2a = 2.4 mm at 200 in/min: some blocks of .254 mm further, and exactly at an end
     assert block < rig.shot.block < block + 30
     assert rig.shot.demand[1] == pytest.approx(-0.254 * rig.shot.block)
     rig.run(0.4)
     rig.post(CycleStart())
     before = rig.shot.block
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     assert rig.shot.block == before + 1
 
 
 def test_hold_then_single_block_then_on() -> None:
     rig = moving_rig()
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(SetSwitch("single_block", True), CycleStart())
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     assert rig.shot.demand[:2] == pytest.approx(END)
 
 
@@ -268,7 +268,7 @@ def test_reset_in_motion_stops_on_the_path_and_forgets_the_program() -> None:
     seen = []
     rig.watch.append(lambda shot: seen.append(off_line(shot, (0.0, 0.0), END)))
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert max(seen) < STEP_OFF
     assert rig.shot.parts == 0
     stood = rig.shot.demand
@@ -277,13 +277,13 @@ def test_reset_in_motion_stops_on_the_path_and_forgets_the_program() -> None:
     rig.confirm()
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.block == 1)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
 def test_the_log_tells_of_overrides_once() -> None:
     rig = Rig()
-    rig.post(FeedOverride(0.5))
+    rig.post(SetFeedOverride(0.5))
     rig.run(1.0)
     rig.sim.machine.set_feed_pot(0.0)
     rig.run(1.0)
@@ -310,15 +310,15 @@ def test_a_million_blocks_do_not_keep_a_hold_waiting() -> None:
     assert pulled < 20_000  # a second done, 1.5 s planned and 1 s read, 5000 blocks each, and a tick
     rig.post(FeedHold())
     # 30 ms commit, v/a = 33 ms, a tick to see it
-    assert rig.until(State.HOLD) <= 0.03 + 100.0 / AMAX + 2 * TICK
+    assert rig.until(MachineState.HOLD) <= 0.03 + 100.0 / AMAX + 2 * TICK
     assert rig.shot.underruns == 0
 
 
 def endless() -> Iterator[Block]:
     """Chords of .02 mm at 100 mm/s, up and down X."""
-    x, modal = 0.0, Modal()
+    x, modal = 0.0, ModalState()
     for n in count(1):
         end = x + (0.02 if (n // 4000) % 2 == 0 else -0.02)
         z0, z = -0.00001 * (n - 1), -0.00001 * n
-        yield Block(n, n, Kind.FEED, "", x, z0, 0.0, end, z, 0.0, 0.0, 0.0, modal, feed=100.0)
+        yield Block(n, n, BlockKind.FEED, "", x, z0, 0.0, end, z, 0.0, 0.0, 0.0, modal, feed=100.0)
         x = end

@@ -7,18 +7,18 @@ from dataclasses import dataclass, replace
 import pytest
 
 from core.executor.commands import (
-    CROSSES,
-    INSIDE,
-    UNCHECKED,
+    FIRST_MOVE_CROSSES,
+    START_UNCHECKED,
+    TOOL_IN_PART,
     Clearance,
     CycleStart,
-    GiveClearance,
-    JogStep,
-    Prepare,
+    JogByStep,
+    PrepareStart,
+    ReplaceClearances,
     SetSwitch,
 )
 from core.executor.job import Job
-from core.executor.snapshot import Starts, State
+from core.executor.snapshot import MachineState, StartAction
 from tests.executor.lines import TOOLS
 from tests.executor.rig import Rig
 from tests.executor.test_restart import PART
@@ -33,18 +33,18 @@ class Checked(Rig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.executor._control.status.checks_starts = True
+        self.executor._control.status.requires_clearance = True
 
     def clear(self, loaded: Job, code: str = "", warned: str = "", **changes: object) -> None:
         shot = self.shot
         why = WHY if code else ""
         found = Clearance(loaded.digest, shot.demand, shot.begun, code, why, warned)
-        self.post(GiveClearance((replace(found, **changes),)))  # type: ignore[arg-type]
+        self.post(ReplaceClearances((replace(found, **changes),)))  # type: ignore[arg-type]
 
     def starts(self) -> bool:
         self.run(0.4)
         self.post(CycleStart())
-        return self.state is not State.IDLE
+        return self.state is not MachineState.IDLE
 
 
 def loaded() -> tuple[Checked, Job]:
@@ -56,28 +56,28 @@ def loaded() -> tuple[Checked, Job]:
 def test_without_a_verdict_nothing_starts_and_with_a_good_one_it_does() -> None:
     rig, job = loaded()
     assert not rig.starts()
-    assert rig.shot.start_code == UNCHECKED
+    assert rig.shot.start_code == START_UNCHECKED
     rig.clear(job)
-    assert (rig.shot.start_refused, rig.shot.start_code) == ("", "")
+    assert (rig.shot.start_refusal, rig.shot.start_code) == ("", "")
     assert rig.starts()
 
 
-@pytest.mark.parametrize("code", [INSIDE, CROSSES])
+@pytest.mark.parametrize("code", [TOOL_IN_PART, FIRST_MOVE_CROSSES])
 def test_a_refusal_has_its_code_and_its_sentence(code: str) -> None:
     rig, job = loaded()
     rig.clear(job, code)
     assert not rig.starts()
-    assert (rig.shot.start_code, rig.shot.start_refused) == (code, WHY)
+    assert (rig.shot.start_code, rig.shot.start_refusal) == (code, WHY)
 
 
 def test_a_verdict_for_another_position_is_none() -> None:
     rig, job = loaded()
     rig.clear(job)
-    rig.post(JogStep("X", -0.5, 5.0))
+    rig.post(JogByStep("X", -0.5, 5.0))
     rig.run(1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert not rig.starts()
-    assert rig.shot.start_code == UNCHECKED
+    assert rig.shot.start_code == START_UNCHECKED
     rig.clear(job)
     assert rig.starts()
 
@@ -88,7 +88,7 @@ def test_a_verdict_for_another_job_or_before_another_run_is_none() -> None:
     assert not rig.starts()
     rig.clear(job, begun=rig.shot.begun + 1)
     assert not rig.starts()
-    assert rig.shot.start_code == UNCHECKED
+    assert rig.shot.start_code == START_UNCHECKED
 
 
 def test_what_was_computed_before_a_run_does_not_count_after_it() -> None:
@@ -98,10 +98,10 @@ def test_what_was_computed_before_a_run_does_not_count_after_it() -> None:
     rig.clear(job)
     early = rig.executor._control.status.clearances
     assert rig.starts()
-    rig.until(State.IDLE)
-    rig.post(GiveClearance(tuple(replace(each, at=rig.shot.demand) for each in early)))
+    rig.until(MachineState.IDLE)
+    rig.post(ReplaceClearances(tuple(replace(each, at=rig.shot.demand) for each in early)))
     assert not rig.starts()
-    assert rig.shot.start_code == UNCHECKED
+    assert rig.shot.start_code == START_UNCHECKED
 
 
 def test_what_is_assumed_is_announced_before_the_start() -> None:
@@ -113,7 +113,7 @@ def test_what_is_assumed_is_announced_before_the_start() -> None:
 
 def prepares(rig: Checked, job: Job, clearance: Clearance | None) -> None:
     proof = rig.executor._control.status.proof
-    rig.post(Prepare(Starts.LINE, job, proof, clearance))
+    rig.post(PrepareStart(StartAction.MDI_LINE, job, proof, clearance))
 
 
 def test_the_verdict_on_the_program_is_none_on_a_line() -> None:
@@ -121,7 +121,7 @@ def test_the_verdict_on_the_program_is_none_on_a_line() -> None:
     prepares(rig, job, None)
     rig.clear(job)
     assert not rig.starts()
-    assert rig.shot.start_code == UNCHECKED
+    assert rig.shot.start_code == START_UNCHECKED
 
 
 def test_a_line_is_prepared_with_its_verdict_and_starts() -> None:
@@ -133,11 +133,11 @@ def test_a_line_is_prepared_with_its_verdict_and_starts() -> None:
 def test_a_line_whose_first_move_crosses_is_refused_until_another_is_prepared() -> None:
     rig, job = loaded()
     rig.clear(job)
-    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun, CROSSES, WHY))
+    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun, FIRST_MOVE_CROSSES, WHY))
     assert not rig.starts()
-    assert (rig.shot.start_code, rig.shot.start_refused) == (CROSSES, WHY)
-    rig.post(Prepare(Starts.PROGRAM))
-    assert (rig.shot.start_code, rig.shot.start_refused) == ("", "")
+    assert (rig.shot.start_code, rig.shot.start_refusal) == (FIRST_MOVE_CROSSES, WHY)
+    rig.post(PrepareStart(StartAction.PROGRAM))
+    assert (rig.shot.start_code, rig.shot.start_refusal) == ("", "")
     assert rig.starts()
 
 
@@ -148,9 +148,11 @@ def test_cycle_repeat_does_not_begin_a_move_that_crosses_the_part() -> None:
     shot = rig.shot
     end = (TOOLS[1].x + 25.4, TOOLS[1].z + 0.2 * 25.4, shot.demand[2])
     here = Clearance(job.digest, shot.demand, shot.begun)
-    rig.post(GiveClearance((here, replace(here, at=end, code=CROSSES, why=WHY, repeats=True))))
+    rig.post(
+        ReplaceClearances((here, replace(here, at=end, code=FIRST_MOVE_CROSSES, why=WHY, is_for_repeat=True)))
+    )
     rig.post(SetSwitch("cycle_repeat", True))
     assert rig.starts()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert any(WHY in each for each in rig.said("refused"))

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Jog, Reset, SetSwitch
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset, SetFeedOverride, SetSwitch
 from core.executor.raised_alarm import AlarmError
 from core.executor.safety.supervision import FollowingErrorWatch
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.ports import AxisSample
 from tests.coded import raises_code
 from tests.executor.rig import FINE, Rig
@@ -32,7 +32,7 @@ def held(rig: Rig) -> None:
     rig.start(FEED)
     rig.run(1.0)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.run(0.5)
 
 
@@ -45,28 +45,28 @@ def waiting(rig: Rig) -> None:
 def override_zero(rig: Rig) -> None:
     rig.start(FEED)
     rig.run(1.0)
-    rig.post(FeedOverride(0.0))
-    rig.until(State.WAIT)
+    rig.post(SetFeedOverride(0.0))
+    rig.until(MachineState.WAIT)
     rig.run(0.3)
 
 
 def program_stop(rig: Rig) -> None:
     rig.start("G90G94F300\nX.5\nM00\nX1\nM30\n")
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.run(0.3)
 
 
 def block_end(rig: Rig) -> None:
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX.5\nX1\nM30\n")
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     rig.run(0.3)
 
 
 def alarm_stands(rig: Rig) -> None:
     """Powered, with an alarm that only stops."""
     rig.start("G90G94F300\nX.5\nX99\nM30\n")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.sim.ports.axes.sample().enabled
     rig.run(0.3)
 
@@ -84,13 +84,13 @@ AT_REST: dict[str, Callable[[Rig], None]] = {
 
 def way_until_off(rig: Rig, limit: float = 2.0) -> tuple[float, float]:
     """Seconds until the drives are off, and how far Z really went until it stood."""
-    began, place = rig.clock.now(), rig.sim.machine.true_position()[1]
+    began, place = rig.clock.now(), rig.sim.machine.get_true_position()[1]
     while rig.sim.ports.axes.sample().enabled:
         assert rig.clock.now() - began < limit, rig.shot
         rig.tick()
     took = rig.clock.now() - began
     rig.run(1.0)
-    return took, abs(rig.sim.machine.true_position()[1] - place)
+    return took, abs(rig.sim.machine.get_true_position()[1] - place)
 
 
 @pytest.mark.parametrize("state", AT_REST)
@@ -102,7 +102,7 @@ def test_a_drive_that_runs_away_at_rest(state: str, speed: float, most: float) -
     took, way = way_until_off(rig)
     assert way < most
     assert took < 0.5
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     assert rig.shot.alarms[-1].code in {"standstill", "following", "axis"}
 
 
@@ -122,12 +122,12 @@ def test_a_slide_that_is_jammed_beside_its_place_does_not_stand_there_in_peace(
     assert "Z" in rig.shot.alarms[-1].cause
     rig.sim.machine.jam("Z", False)
     rig.run(0.5)
-    stood = rig.sim.machine.true_position()[1]
+    stood = rig.sim.machine.get_true_position()[1]
     rig.post(Reset())
     rig.post(EnableDrives())
     rig.run(1.0)
-    assert rig.state is State.IDLE
-    assert rig.sim.machine.true_position()[1] == pytest.approx(stood, abs=0.002)  # and does not jump back
+    assert rig.state is MachineState.IDLE
+    assert rig.sim.machine.get_true_position()[1] == pytest.approx(stood, abs=0.002)  # and does not jump back
 
 
 def test_a_jam_at_the_end_of_a_move_does_not_end_in_ready_with_a_demand_elsewhere() -> None:
@@ -135,11 +135,11 @@ def test_a_jam_at_the_end_of_a_move_does_not_end_in_ready_with_a_demand_elsewher
     rig.start("G90G94F300\nG01F100Z-1\nM30\n")
     rig.until_true(lambda shot: shot.demand[1] < -25.4 + 1.0)
     rig.sim.machine.jam("Z")
-    rig.until(State.FAULT, limit=1.0)
+    rig.until(MachineState.FAULT, limit=1.0)
     rig.run(2.0)
     rig.post(Reset())
     rig.run(1.0)
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     assert abs(rig.shot.following_error[1]) < 0.01
 
 
@@ -153,7 +153,7 @@ def test_an_encoder_that_stops_counting_in_motion(text: str, most: float) -> Non
     rig.sim.machine.encoder_stuck("Z")
     way_until_off(rig)
     read = rig.shot.actual[1]
-    assert abs(rig.sim.machine.true_position()[1] - read) < most
+    assert abs(rig.sim.machine.get_true_position()[1] - read) < most
     assert rig.shot.alarms[0].code in {"encoder-still", "following", "axis"}
 
 
@@ -166,20 +166,20 @@ def test_an_encoder_that_stops_counting_as_a_hold_begins(text: str, after: float
     rig.executor.post(FeedHold())
     rig.run(after)
     rig.sim.machine.encoder_stuck("Z")
-    place = rig.sim.machine.true_position()[1]
+    place = rig.sim.machine.get_true_position()[1]
     rig.run(10.0)
-    way = abs(rig.sim.machine.true_position()[1] - place)
+    way = abs(rig.sim.machine.get_true_position()[1] - place)
     speed = 25.4 / 60.0 * {FEED: 20.0, RAPID: 240.0}.get(text, 60.0)
     assert way < 0.1 * speed + 10.0
     if abs(rig.shot.following_error[1]) > 0.004:
-        assert rig.state is State.FAULT
+        assert rig.state is MachineState.FAULT
 
 
 def test_a_slow_jog_into_a_jam() -> None:
     rig = Rig()
     ready(rig)
     rig.sim.machine.jam("Z")
-    while rig.state is not State.FAULT:
+    while rig.state is not MachineState.FAULT:
         rig.post(Jog("Z", -0.5, 0.2))
         assert abs(rig.shot.demand[1]) < 0.15
     assert rig.shot.alarms[0].code == "encoder-still"
@@ -200,7 +200,7 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told_and_one_in_estop_is_
     assert codes(rig) == []
     rig.sim.machine.release_estop()
     rig.run(1.0)
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     assert codes(rig) == []
     rig.sim.machine.push("Z", 0.15)
     rig.run(1.0)
@@ -213,7 +213,7 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told_and_one_in_estop_is_
     rig.run(1.0)
     assert codes(rig) == []
     rig.post(EnableDrives())
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_a_healthy_machine_is_left_alone() -> None:
@@ -225,9 +225,9 @@ def test_a_healthy_machine_is_left_alone() -> None:
     )
     for _ in range(200):
         rig.run(0.13)
-        if rig.state is State.RUN:
+        if rig.state is MachineState.RUN:
             rig.post(FeedHold())
-            rig.until(State.HOLD)
+            rig.until(MachineState.HOLD)
             rig.run(0.35)
             rig.post(CycleStart())
         assert rig.shot.alarms == ()
@@ -238,9 +238,9 @@ def test_a_healthy_machine_is_left_alone() -> None:
 
 def test_limits_grow_with_the_commanded_speed_and_not_beyond_the_window() -> None:
     z = load_machine().axes[1]
-    assert z.following_limit(0.0) == pytest.approx(0.2032)
-    assert z.following_limit(-0.5 * z.vmax) == pytest.approx(0.5 * (0.2032 + 2.032))
-    assert z.following_limit(3.0 * z.vmax) == pytest.approx(2.032)
+    assert z.max_following_error(0.0) == pytest.approx(0.2032)
+    assert z.max_following_error(-0.5 * z.vmax) == pytest.approx(0.5 * (0.2032 + 2.032))
+    assert z.max_following_error(3.0 * z.vmax) == pytest.approx(2.032)
 
 
 def sample(t: float, demand: float, actual: float, *, enabled: bool = True) -> AxisSample:
@@ -259,10 +259,10 @@ def sample(t: float, demand: float, actual: float, *, enabled: bool = True) -> A
 def test_a_sample_that_is_no_new_one_counts_for_no_time() -> None:
     """A wire that repeats its last answer, and a control that was away, make nothing last longer."""
     watch = FollowingErrorWatch(load_machine().axes)
-    watch.look(sample(0.0, 0.0, 0.0), unpowered=False)
-    watch.look(sample(0.01, 0.0, 0.0), unpowered=False)
+    watch.check_sample(sample(0.0, 0.0, 0.0), is_unpowered=False)
+    watch.check_sample(sample(0.01, 0.0, 0.0), is_unpowered=False)
     for _ in range(100):
-        watch.look(sample(1.0, 0.0, 0.5), unpowered=False)
-    watch.look(sample(1.01, 0.0, 0.5), unpowered=False)
+        watch.check_sample(sample(1.0, 0.0, 0.5), is_unpowered=False)
+    watch.check_sample(sample(1.01, 0.0, 0.5), is_unpowered=False)
     with raises_code(AlarmError, "standstill", text("executor.off-setpoint", axis="Z", distance="0.500 mm")):
-        watch.look(sample(1.3, 0.0, 0.5), unpowered=False)
+        watch.check_sample(sample(1.3, 0.0, 0.5), is_unpowered=False)

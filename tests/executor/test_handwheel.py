@@ -11,18 +11,18 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.executor.commands import (
     CycleStart,
+    DeselectHandwheel,
     EnableDrives,
     FeedHold,
     Jog,
-    JogStep,
-    JogStop,
+    JogByStep,
     Reset,
-    Wheel,
-    WheelOff,
+    SelectHandwheel,
+    StopJog,
 )
-from core.executor.hand_motion.handwheel import WheelClicks
-from core.executor.snapshot import State
-from core.machine.hardware_model import AnalogModel
+from core.executor.hand_motion.handwheel import ClickCounter
+from core.executor.snapshot import MachineState
+from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, Machine
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import pattern, text
@@ -36,19 +36,19 @@ RAPID = 100 * INCH / 60
 def wheeled(*inputs: str, per: int = 1) -> Machine:
     """The shipped lathe with a handwheel and these inputs beside it."""
     machine = load_machine()
-    wheel = AnalogModel("handwheel", "wheel", (0.0, 1.0), counts_per_click=per)
+    wheel = AnalogInputModel("handwheel", "wheel", (0.0, 1.0), counts_per_click=per)
     wired = {name: InputModel(name, f"test {name}") for name in inputs}
     return dataclasses.replace(
         machine,
         inputs={**machine.inputs, **wired},
-        hardware=dataclasses.replace(machine.hardware, analog={"handwheel": wheel}),
+        hardware=dataclasses.replace(machine.hardware, analog_inputs={"handwheel": wheel}),
     )
 
 
 class WheelRig(Rig):
     """Its page renews the lease as long as ``page`` is set."""
 
-    page: Wheel | None = None
+    page: SelectHandwheel | None = None
 
     def __post_init__(self) -> None:
         self.every = FINE
@@ -61,14 +61,14 @@ class WheelRig(Rig):
 
     def select(self, axis: str = "X", step: float = THOU) -> None:
         """The page selects the wheel; it has stood still."""
-        self.page = Wheel(axis, step, LEASE)
+        self.page = SelectHandwheel(axis, step, LEASE)
         self.run(0.2)
         assert self.shot.wheel == axis, self.said("refused")
 
     def drop(self) -> None:
         """The page lets it go."""
         self.page = None
-        self.post(WheelOff())
+        self.post(DeselectHandwheel())
 
     def spin(self, clicks: int, each: int = 1, ticks: int = 1) -> None:
         """``each`` clicks at a time, so many ticks apart, until there were ``clicks``."""
@@ -77,9 +77,9 @@ class WheelRig(Rig):
             self.run(ticks * FINE)
 
     def rests(self) -> float:
-        took = self.until(State.IDLE, limit=5.0)
+        took = self.until(MachineState.IDLE, limit=5.0)
         self.run(0.3)
-        assert self.state is State.IDLE
+        assert self.state is MachineState.IDLE
         return took
 
 
@@ -99,7 +99,7 @@ def test_a_click_is_exactly_one_step(axis: str, index: int, sign: int, step: flo
     rig = ready()
     rig.select(axis, step)
     rig.spin(sign)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     rig.rests()
     assert rig.shot.demand[index] == pytest.approx(sign * step, abs=1e-9)
     assert rig.shot.demand[1 - index] == 0.0
@@ -215,7 +215,7 @@ def test_what_was_turned_before_it_was_selected_moves_nothing() -> None:
 
 def test_a_wheel_that_turns_while_it_is_selected_has_to_stand_first() -> None:
     rig = ready()
-    rig.page = Wheel("X", THOU, LEASE)
+    rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.spin(50)
     assert rig.shot.demand == (0.0, 0.0, 0.0)
     rig.run(0.15)
@@ -239,7 +239,7 @@ def test_another_step_or_axis_drops_what_is_on_its_way() -> None:
     rig.select("Z", 0.01 * INCH)
     rig.spin(30)
     moving = rig.shot.demand[1]
-    rig.page = Wheel("Z", THOU, LEASE)
+    rig.page = SelectHandwheel("Z", THOU, LEASE)
     rig.spin(10)
     rig.rests()
     assert rig.shot.demand[1] < 30 * 0.01 * INCH
@@ -252,7 +252,7 @@ def test_another_step_or_axis_drops_what_is_on_its_way() -> None:
 def ended(rig: WheelRig, why: str) -> None:
     """It was taken away, stays so, and further clicks move nothing until it is selected anew."""
     assert (rig.shot.wheel, rig.shot.wheel_ended) == ("", why)
-    rig.until_true(lambda shot: shot.state is not State.JOG, limit=1.0)
+    rig.until_true(lambda shot: shot.state is not MachineState.JOG, limit=1.0)
     at = rig.shot.demand
     rig.run(0.3)
     rig.spin(20)
@@ -304,7 +304,7 @@ def test_estop_takes_it_away_and_its_release_gives_nothing_back() -> None:
     rig.spin(20)
     rig.sim.machine.press_estop()
     rig.spin(5)
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     rig.sim.machine.release_estop()
     rig.run(0.5)
     rig.post(EnableDrives())
@@ -337,12 +337,12 @@ def test_a_key_while_it_turns_stops_both() -> None:
         rig.sim.machine.turn_handwheel(1)
         rig.tick()
     at = rig.shot.demand
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.wheel_ended == text("executor.key-while-turned")
     rig.run(0.6)
     assert rig.shot.demand == at
     rig.post(Jog("Z", 10.0, 0.2))
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
 
 
 def test_the_wheel_while_a_key_is_held_stops_both() -> None:
@@ -353,7 +353,7 @@ def test_the_wheel_while_a_key_is_held_stops_both() -> None:
         if turn > 30:
             rig.sim.machine.turn_handwheel(1)
         rig.tick()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.wheel_ended == text("executor.turned-while-held")
     assert text("executor.jog", why=text("executor.key-and-wheel")) in rig.said("refused")
 
@@ -363,7 +363,7 @@ def test_a_step_while_it_turns_stops_it_and_is_not_done() -> None:
     rig.select("Z", 0.01 * INCH)
     rig.spin(20)
     at = rig.shot.demand[1]
-    rig.post(JogStep("Z", 2.54, 8.0))
+    rig.post(JogByStep("Z", 2.54, 8.0))
     rig.rests()
     assert rig.shot.demand[1] - at < 1.0
 
@@ -373,7 +373,7 @@ def test_clicks_behind_a_key_that_was_let_go_are_dropped_until_it_rests() -> Non
     rig.select("Z")
     rig.post(Jog("Z", RAPID, 0.2))
     rig.run(0.1)
-    rig.post(JogStop())
+    rig.post(StopJog())
     rig.spin(2)
     rig.rests()
     assert rig.shot.wheel == "Z"
@@ -386,7 +386,7 @@ def test_a_cycle_takes_it_away() -> None:
     rig.post(CycleStart())
     rig.run(0.1)
     assert rig.shot.wheel == ""
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[0] == pytest.approx(0.1 * INCH)
     ended(rig, text("executor.moves-nothing", state="RUNNING"))
 
@@ -394,16 +394,16 @@ def test_a_cycle_takes_it_away() -> None:
 @pytest.mark.parametrize(
     ("wheel", "why"),
     [
-        (Wheel("B", THOU, LEASE), pattern("executor.no-jog-axis", axis="B")),
-        (Wheel("X", 0.0, LEASE), pattern("executor.click-length", limit="0.254")),
-        (Wheel("X", 2.54, LEASE), pattern("executor.click-length", limit="0.254", length="2.54")),
-        (Wheel("X", math.nan, LEASE), pattern("executor.click-length", limit="0.254")),
-        (Wheel("C", 1.0, LEASE), pattern("executor.click-length", limit="0.5")),
-        (Wheel("X", THOU, 0.0), pattern("executor.wheel-lease")),
-        (Wheel("X", THOU, math.nan), pattern("executor.wheel-lease")),
+        (SelectHandwheel("B", THOU, LEASE), pattern("executor.no-jog-axis", axis="B")),
+        (SelectHandwheel("X", 0.0, LEASE), pattern("executor.click-length", limit="0.254")),
+        (SelectHandwheel("X", 2.54, LEASE), pattern("executor.click-length", limit="0.254", length="2.54")),
+        (SelectHandwheel("X", math.nan, LEASE), pattern("executor.click-length", limit="0.254")),
+        (SelectHandwheel("C", 1.0, LEASE), pattern("executor.click-length", limit="0.5")),
+        (SelectHandwheel("X", THOU, 0.0), pattern("executor.wheel-lease")),
+        (SelectHandwheel("X", THOU, math.nan), pattern("executor.wheel-lease")),
     ],
 )
-def test_what_makes_no_sense_is_refused(wheel: Wheel, why: str) -> None:
+def test_what_makes_no_sense_is_refused(wheel: SelectHandwheel, why: str) -> None:
     rig = ready()
     rig.page = wheel
     rig.run(0.2)
@@ -414,7 +414,7 @@ def test_what_makes_no_sense_is_refused(wheel: Wheel, why: str) -> None:
 
 def test_with_the_drives_off_it_is_refused() -> None:
     rig = WheelRig(wheeled())
-    rig.page = Wheel("X", THOU, LEASE)
+    rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.run(0.2)
     assert rig.shot.wheel_ended == text("executor.moves-nothing", state="DRIVES OFF")
 
@@ -422,7 +422,7 @@ def test_with_the_drives_off_it_is_refused() -> None:
 def test_a_machine_without_one_says_so() -> None:
     rig = WheelRig()
     rig.ready()
-    rig.post(Wheel("X", THOU, LEASE))
+    rig.post(SelectHandwheel("X", THOU, LEASE))
     assert rig.shot.wheel_ended == text("executor.no-wheel")
 
 
@@ -434,8 +434,8 @@ def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
     assert rig.shot.demand[2] == pytest.approx(0.2, abs=1e-9)
     rig.drop()
     rig.start("G90G94F50\nM03S500\nG04F1\nM02")
-    rig.until(State.IDLE)
-    rig.page = Wheel("C", 0.02, LEASE)
+    rig.until(MachineState.IDLE)
+    rig.page = SelectHandwheel("C", 0.02, LEASE)
     rig.run(0.2)
     assert text("executor.c-is-spindle") in rig.shot.wheel_ended
 
@@ -445,7 +445,7 @@ def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
 
 def test_the_enabling_switch_must_be_held() -> None:
     rig = ready("wheel_enable")
-    rig.page = Wheel("X", THOU, LEASE)
+    rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.run(0.2)
     assert rig.shot.wheel_ended == text("executor.wheel-switch")
     rig.drop()
@@ -460,7 +460,7 @@ def test_the_enabling_switch_must_be_held() -> None:
 def test_the_axis_is_the_one_that_the_switch_selects() -> None:
     rig = ready("wheel_x", "wheel_z")
     rig.sim.machine.set_input("wheel_z", True)
-    rig.page = Wheel("X", THOU, LEASE)
+    rig.page = SelectHandwheel("X", THOU, LEASE)
     rig.run(0.1)
     assert rig.shot.wheel_ended == text("executor.wheel-axis", axis="X")
     rig.drop()
@@ -475,19 +475,19 @@ def test_the_axis_is_the_one_that_the_switch_selects() -> None:
 
 
 def test_where_a_counter_stands_at_first_is_nothing() -> None:
-    clicks = WheelClicks(4)
-    assert clicks.take(123456, 1.0) == 0
-    assert clicks.take(123464, 1.01) == 2
-    assert clicks.take(123463, 1.02) == 0
-    assert clicks.take(123460, 1.03) == -1
+    clicks = ClickCounter(4)
+    assert clicks.read_clicks(123456, 1.0) == 0
+    assert clicks.read_clicks(123464, 1.01) == 2
+    assert clicks.read_clicks(123463, 1.02) == 0
+    assert clicks.read_clicks(123460, 1.03) == -1
 
 
 def test_a_leap_and_what_is_old_are_no_clicks() -> None:
-    clicks = WheelClicks(1)
-    clicks.take(0, 1.0)
-    assert clicks.take(21, 1.01) == 0  # 20 in 10 ms is what a hand may
-    assert clicks.leapt
-    assert clicks.take(22, 1.02) == 1
-    assert not clicks.leapt
-    assert clicks.take(30, 1.2) == 0
-    assert clicks.take(31, 1.21) == 1
+    clicks = ClickCounter(1)
+    clicks.read_clicks(0, 1.0)
+    assert clicks.read_clicks(21, 1.01) == 0  # 20 in 10 ms is what a hand may
+    assert clicks.has_jumped
+    assert clicks.read_clicks(22, 1.02) == 1
+    assert not clicks.has_jumped
+    assert clicks.read_clicks(30, 1.2) == 0
+    assert clicks.read_clicks(31, 1.21) == 1

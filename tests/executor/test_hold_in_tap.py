@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
-from core.executor.snapshot import State
-from core.interpreter.dialects import interpretation
+from core.executor.snapshot import MachineState
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.executor.rig import Rig
 from tests.texts import text
 
-MILL = shipped_machine("ac-table-mill")
+MILL = load_shipped_machine("ac-table-mill")
 Z = [axis.name for axis in MILL.axes].index("Z")
 ZERO = -350.0  # mm, where Z0 of the program lies in the machine without a preset
 CLEAR = 2.0  # mm above it
@@ -36,8 +36,8 @@ OLD = (
 def tapping(cycle: str) -> Rig:
     """The program begun, from where the machine stands."""
     text = HEAD + cycle + (TAIL if "M99" not in cycle else TAIL.replace("\nCYCL CALL", ""))
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    blocks: list[Block] = list(interpretation(Source("T.H", text), setup).blocks())
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    blocks: list[Block] = list(interpret_program(ProgramSource("T.H", text), setup).generate_blocks())
     rig = Rig(machine=MILL, made=blocks)
     rig.start("anything")
     return rig
@@ -60,10 +60,10 @@ def test_a_hold_waits_until_the_tap_is_out(cycle: str, z: float) -> None:
     deep(rig, z)
     rig.post(FeedHold())
     assert rig.shot.waiting_for == text("executor.hold-after-tap")
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert height(rig) >= CLEAR - 0.01
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.said("alarm") == []
 
 
@@ -73,13 +73,13 @@ def test_single_block_stops_nowhere_in_the_hole(cycle: str) -> None:
     rig.post(SetSwitch("single_block", True))
     stops: list[float] = []
     for _ in range(40):
-        rig.until(State.BLOCK_END, State.IDLE)
-        if rig.state is State.IDLE:
+        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        if rig.state is MachineState.IDLE:
             break
         stops.append(height(rig))
         rig.run(0.5)
         rig.post(CycleStart())
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert min(stops) >= CLEAR - 0.01
     assert len(stops) >= 3
 
@@ -90,7 +90,7 @@ def test_a_second_press_changes_nothing() -> None:
     rig.post(FeedHold())
     rig.run(0.1)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert height(rig) >= CLEAR - 0.01
     assert rig.numbers("stop") == [702]
 
@@ -99,7 +99,7 @@ def test_a_hold_before_the_tap_is_at_once() -> None:
     rig = tapping(RIGID)
     rig.run(0.05)
     rig.post(FeedHold())
-    rig.until(State.HOLD, limit=1.0)
+    rig.until(MachineState.HOLD, limit=1.0)
     assert height(rig) > CLEAR
 
 
@@ -123,25 +123,25 @@ def test_a_tap_that_loses_its_spindle_stops_in_the_hole() -> None:
     deep(rig, -3.0)
     rig.post(FeedHold())
     rig.sim.machine.set_spindle_auto(False)
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert height(rig) < 0.0
 
 
-LATHE = shipped_machine("sinumerik-live")
+LATHE = load_shipped_machine("sinumerik-live")
 COMPENSATING = "S600 M3 G95 F.1 G17\nG0 X0 Z5\nCYCLE840(5,0,2,-10,,0,0,5,0,,1.5)\nG0 Z5\nM30\n"
 
 
 @pytest.mark.parametrize("feeds", ["G95 F.1", "G94 F100"])
 def test_a_compensating_chuck_comes_out_first_too(feeds: str) -> None:
-    setup = replace(setup_for(LATHE, tools={}, secondary={}), start=(0.0, 0.0, 0.0))
-    made = interpretation(Source("T.MPF", COMPENSATING.replace("G95 F.1", feeds)), setup)
-    blocks = list(made.blocks())
-    taps = [block for block in blocks if block.coupled]
+    setup = replace(create_setup(LATHE, tool_offsets={}, secondary_offsets={}), start=(0.0, 0.0, 0.0))
+    made = interpret_program(ProgramSource("T.MPF", COMPENSATING.replace("G95 F.1", feeds)), setup)
+    blocks = list(made.generate_blocks())
+    taps = [block for block in blocks if block.follows_spindle]
     assert [(b.z, b.in_hole) for b in taps] == [(-10.0, True), (2.0, False)]
     rig = Rig(machine=LATHE, made=blocks)
     rig.start("anything")
     z = [axis.name for axis in LATHE.axes].index("Z")
     rig.until_true(lambda shot: shot.block_text.startswith("CYCLE840") and shot.actual[z] < -3.0)
     rig.post(SetSwitch("single_block", True), FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.actual[z] >= CLEAR - 0.01

@@ -12,14 +12,23 @@ from core.executor.commands import (
     ConfirmStart,
     CycleStart,
     FeedHold,
-    JogStep,
-    LeftInterrupted,
-    PartsMade,
-    Prepare,
+    JogByStep,
+    PrepareStart,
+    ReportInterruptedJob,
     Reset,
+    SetPartCount,
     SetSwitch,
 )
-from core.executor.snapshot import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, Starts, State, of_plain, plain
+from core.executor.snapshot import (
+    CLOSED_REASON,
+    ESTOP_REASON,
+    POWER_LOST_REASON,
+    RESET_REASON,
+    MachineState,
+    StartAction,
+    interrupted_job_from_json,
+    interrupted_job_to_json,
+)
 from tests.executor.lines import TOOLS, mdi, press
 from tests.executor.rig import INCH, Rig
 from tests.executor.test_restart import PART, broken_off, restart
@@ -40,7 +49,7 @@ def begins(rig: Rig) -> bool:
     """Both palms now: whether something starts."""
     rig.run(0.4)
     rig.post(CycleStart())
-    return rig.state is not State.IDLE
+    return rig.state is not MachineState.IDLE
 
 
 # --- what interrupts ----------------------------------------------------------------------------------------
@@ -48,12 +57,12 @@ def begins(rig: Rig) -> bool:
 
 def test_an_estop_in_the_cut_leaves_the_job_with_line_tool_part_and_place() -> None:
     rig = Rig()
-    rig.post(PartsMade(11))
+    rig.post(SetPartCount(11))
     broken_off(rig)
     rig.run(0.5)
     found = rig.shot.interrupted
     assert found is not None
-    assert (found.program, found.line, found.tool, found.part, found.why) == ("PART", 8, 1, 12, ESTOP)
+    assert (found.program, found.line, found.tool, found.part, found.why) == ("PART", 8, 1, 12, ESTOP_REASON)
     assert found.axes == ("X", "Z", "C")
     assert found.where == pytest.approx(rig.shot.actual, abs=1e-3)  # not where the braking began
     assert found.job == rig.shot.job
@@ -80,19 +89,19 @@ def test_reset_twice_is_an_interrupted_job_too() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.interrupted is None  # a hold goes on with Cycle Start
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.interrupted is not None
-    assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, GIVEN_UP)
+    assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, RESET_REASON)
 
 
 def test_an_alarm_names_itself_as_the_cause() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.sim.machine.jam("Z")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.shot.interrupted is not None
     assert rig.shot.interrupted.why == text(
         "executor.alarm-number", number=rig.shot.alarms[0].number, text=rig.shot.alarms[0].text
@@ -102,16 +111,16 @@ def test_an_alarm_names_itself_as_the_cause() -> None:
 def test_closing_the_control_in_the_cut() -> None:
     rig = Rig()
     in_the_cut(rig)
-    rig.executor.shut()
+    rig.executor.shut_down()
     assert rig.shot.interrupted is not None
-    assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, CLOSED)
+    assert (rig.shot.interrupted.line, rig.shot.interrupted.why) == (8, CLOSED_REASON)
     assert rig.notes[-1] == rig.shot.interrupted
 
 
 def test_a_program_that_ends_leaves_nothing() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.shot.interrupted is None
     assert rig.notes[-1] is None
@@ -125,7 +134,7 @@ def test_a_line_of_mdi_is_no_job() -> None:
     press(rig, "G90G94F10X1Z1")
     rig.run(0.3)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     assert rig.shot.interrupted is None
     assert rig.notes == []
 
@@ -140,7 +149,7 @@ def test_both_palms_do_not_begin_at_the_first_line_unasked() -> None:
     for _ in range(3):
         assert not begins(rig)
         assert re.fullmatch(
-            pattern("executor.interrupted-in-part", line=8, program="PART", tool="T1"), rig.shot.start_refused
+            pattern("executor.interrupted-in-part", line=8, program="PART", tool="T1"), rig.shot.start_refusal
         )
     rig.run(2.0)
     assert rig.shot.demand == stood
@@ -156,7 +165,7 @@ def test_a_confirmed_start_begins_once_and_the_next_break_asks_again() -> None:
     assert not rig.shot.confirmed
     assert [said for said in rig.said("cleared") if re.fullmatch(pattern("executor.begins-anew"), said)]
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert not begins(rig)
 
 
@@ -192,19 +201,19 @@ def test_an_answer_is_taken_back_by_a_jog() -> None:
     rig = Rig()
     broken_off(rig)
     rig.confirm()
-    rig.post(JogStep("X", 1.0, 5.0))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("X", 1.0, 5.0))
+    rig.until(MachineState.IDLE)
     assert not rig.shot.confirmed
     assert not begins(rig)
 
 
 def test_an_answer_is_taken_back_by_searchto_and_mdi() -> None:
-    for starts in (Starts.RESTART, Starts.LINE):
+    for starts in (StartAction.RESTART, StartAction.MDI_LINE):
         rig = Rig()
         broken_off(rig)
         rig.confirm()
-        rig.post(Prepare(starts))
-        rig.post(Prepare(Starts.PROGRAM))
+        rig.post(PrepareStart(starts))
+        rig.post(PrepareStart(StartAction.PROGRAM))
         assert not rig.shot.confirmed
         assert not begins(rig)
 
@@ -213,10 +222,10 @@ def test_an_answer_while_the_drives_are_off_does_not_count() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.confirm()
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.confirm()
     rig.ready()
     assert not begins(rig)
@@ -232,12 +241,12 @@ def test_it_outlives_reset_drives_off_mdi_and_jog() -> None:
     first = rig.shot.interrupted
     rig.post(Reset())
     mdi(rig, "G90", "G94F100X1.4")
-    rig.post(JogStep("Z", 2.0, 5.0))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("Z", 2.0, 5.0))
+    rig.until(MachineState.IDLE)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.ready()
     assert rig.shot.interrupted == first  # where it stood; where it stands now the readouts tell
     assert rig.shot.actual != first.where if first else False
@@ -265,7 +274,7 @@ def test_a_restart_to_the_end_finishes_it() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 8)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.shot.interrupted is None
     assert rig.notes[-1] is None
@@ -279,7 +288,7 @@ def test_a_restart_that_is_itself_interrupted_on_its_way_stays_at_the_line() -> 
     restart(rig, 6)
     rig.until_true(lambda shot: shot.actual[0] > first.where[0] + 1.0)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.run(0.5)
     again = rig.shot.interrupted
     assert again is not None
@@ -293,7 +302,7 @@ def test_a_restart_that_is_interrupted_in_the_program_is_at_its_new_line() -> No
     restart(rig, 8)
     rig.until_true(lambda shot: shot.line == 10)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.interrupted_line == 10
 
 
@@ -302,7 +311,7 @@ def test_a_restart_that_is_interrupted_in_the_program_is_at_its_new_line() -> No
 
 def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
     rig = Rig()
-    rig.post(PartsMade(11))
+    rig.post(SetPartCount(11))
     rig.load(PART, TOOLS)
     rig.ready()
     rig.run(0.4)
@@ -311,7 +320,7 @@ def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
     note = rig.notes[0]
     assert note is not None
     assert rig.shot.demand == stood
-    assert (note.program, note.line, note.part, note.why) == ("PART", 1, 12, CONTROL_LOST)
+    assert (note.program, note.line, note.part, note.why) == ("PART", 1, 12, POWER_LOST_REASON)
 
 
 def test_notes_follow_the_tool_at_once_and_lines_once_a_second() -> None:
@@ -332,7 +341,7 @@ def test_a_hold_is_noted_where_it_came_to_rest() -> None:
     rig = Rig()
     in_the_cut(rig)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.tick()
     note = rig.notes[-1]
     assert note is not None
@@ -342,16 +351,16 @@ def test_a_hold_is_noted_where_it_came_to_rest() -> None:
 def test_after_a_power_cut_the_job_stands_there_and_the_palms_are_asked() -> None:
     before = Rig()
     in_the_cut(before)
-    kept = json.loads(json.dumps(plain(before.notes[-1]))) if before.notes[-1] else None
-    rig = Rig(left=of_plain(kept))
+    kept = json.loads(json.dumps(interrupted_job_to_json(before.notes[-1]))) if before.notes[-1] else None
+    rig = Rig(left=interrupted_job_from_json(kept))
     assert rig.shot.interrupted is not None
-    assert rig.shot.interrupted.why == CONTROL_LOST
+    assert rig.shot.interrupted.why == POWER_LOST_REASON
     rig.load(PART, TOOLS)
     rig.ready()
     assert rig.shot.interrupted_line in {6, 7, 8}
     assert not begins(rig)
     restart(rig, rig.shot.interrupted_line)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1  # nothing was left out, so it is a part
     assert rig.shot.interrupted is None
 
@@ -361,8 +370,8 @@ def test_a_job_that_is_known_late_asks_the_palms_too() -> None:
     rig = Rig()
     rig.load(PART, TOOLS)
     rig.ready()
-    rig.post(LeftInterrupted(made()))
-    rig.post(LeftInterrupted(made()))
+    rig.post(ReportInterruptedJob(made()))
+    rig.post(ReportInterruptedJob(made()))
     rig.run(0.1)
     assert rig.shot.interrupted == made()
     assert rig.said("interrupted") == [made().words]
@@ -371,7 +380,7 @@ def test_a_job_that_is_known_late_asks_the_palms_too() -> None:
 
 def test_a_job_that_the_log_has_is_not_logged_again() -> None:
     rig = Rig()
-    rig.post(LeftInterrupted(made(), logged=True))
+    rig.post(ReportInterruptedJob(made(), logged=True))
     assert rig.shot.interrupted == made()
     assert rig.said("interrupted") == []
 
@@ -379,11 +388,11 @@ def test_a_job_that_the_log_has_is_not_logged_again() -> None:
 def test_a_program_begun_meanwhile_is_what_counts() -> None:
     rig = Rig()
     in_the_cut(rig)
-    rig.post(LeftInterrupted(made()))
+    rig.post(ReportInterruptedJob(made()))
     rig.run(0.1)
     assert rig.shot.interrupted is None
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.interrupted is not None
     assert rig.shot.interrupted.program == "PART"
 
@@ -391,11 +400,11 @@ def test_a_program_begun_meanwhile_is_what_counts() -> None:
 def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing() -> None:
     rig = Rig()
     rig.post(SetSwitch("cycle_repeat", True))
-    rig.post(PartsMade(3))
+    rig.post(SetPartCount(3))
     rig.start(PART, TOOLS)
     rig.until_true(lambda shot: shot.parts == 1 and shot.line == 8)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.interrupted is not None
     assert rig.shot.interrupted.part == 5
 
@@ -412,11 +421,11 @@ def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing(
     ],
 )
 def test_what_cannot_be_understood_is_no_job(change: dict[str, object]) -> None:
-    good = plain(made())
-    assert of_plain(good) == made()
-    assert of_plain(good | change) is None
-    assert of_plain([good]) is None
-    assert of_plain(None) is None
+    good = interrupted_job_to_json(made())
+    assert interrupted_job_from_json(good) == made()
+    assert interrupted_job_from_json(good | change) is None
+    assert interrupted_job_from_json([good]) is None
+    assert interrupted_job_from_json(None) is None
 
 
 def test_the_log_says_which_job() -> None:

@@ -9,16 +9,16 @@ import pytest
 from core.executor.commands import (
     Command,
     CycleStart,
+    DeselectHandwheel,
     EnableDrives,
     FeedHold,
-    Home,
+    HomeAxes,
     Jog,
-    JogStep,
-    JogStop,
+    JogByStep,
     Reset,
-    WheelOff,
+    StopJog,
 )
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
 from tests.texts import text
 
@@ -37,9 +37,9 @@ def ready() -> Rig:
 def test_a_lease_that_nobody_renews_ends_the_jog(lease: float, speed: float) -> None:
     rig = ready()
     rig.executor.post(Jog("Z", -speed, lease))
-    rig.executor.tick()
+    rig.executor.run_tick()
     began = rig.clock.now()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.clock.now() - began < lease + 0.1
     run = -rig.shot.demand[1]
     assert 0 < run <= lease * speed + speed * speed / (2 * AMAX) + 1e-9
@@ -55,7 +55,7 @@ def test_a_dead_host_ends_a_jog_as_well() -> None:
     rig.tick()
     assert rig.shot.alarms == ()
     rig.tick()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_a_renewed_lease_goes_on_at_one_speed() -> None:
@@ -68,9 +68,9 @@ def test_a_renewed_lease_goes_on_at_one_speed() -> None:
         rig.run(0.1)
         speeds.append(rig.shot.velocity)
     assert speeds == pytest.approx([10.0] * 10, rel=0.02)
-    rig.post(JogStop())
+    rig.post(StopJog())
     stood = rig.shot.demand[0]
-    assert rig.until(State.IDLE) < 0.05
+    assert rig.until(MachineState.IDLE) < 0.05
     assert rig.shot.demand[0] - stood < 10.0 * 0.04
 
 
@@ -79,7 +79,7 @@ def test_reversing_passes_through_standstill() -> None:
     rig.post(Jog("X", 40.0, 0.2))
     rig.run(0.15)
     rig.post(Jog("X", -40.0, 0.2))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.alarms == ()
 
 
@@ -92,12 +92,12 @@ def test_soft_limits_end_a_jog(axis: str, speed: float, limit: float) -> None:
     for _ in range(600):
         rig.executor.post(Jog(axis, speed, 0.2))
         rig.tick()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.alarms == ()
     assert abs(rig.shot.demand[index] - limit * INCH) < 0.011
     assert abs(rig.shot.demand[index]) < abs(limit) * INCH
     rig.post(Jog(axis, -speed, 0.2))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert abs(rig.shot.demand[index]) < abs(limit) * INCH - 1.0
 
 
@@ -106,7 +106,7 @@ def test_jog_is_never_faster_than_the_manual_rapid() -> None:
     fastest = []
     rig.watch.append(lambda shot: fastest.append(shot.velocity))
     rig.post(Jog("Z", 500.0, 1.0))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert max(fastest) == pytest.approx(FAST, rel=0.04)  # the slide swings a little over its setpoint
 
 
@@ -131,7 +131,7 @@ def test_jogs_without_sense_are_refused(jog: Jog, why: str) -> None:
 def test_no_lease_is_longer_than_a_second() -> None:
     rig = ready()
     rig.post(Jog("X", 1.0, 3600.0))
-    assert rig.until(State.IDLE) < 1.2
+    assert rig.until(MachineState.IDLE) < 1.2
 
 
 def test_jog_with_the_drives_off_or_a_cycle_running_is_refused() -> None:
@@ -142,7 +142,7 @@ def test_jog_with_the_drives_off_or_a_cycle_running_is_refused() -> None:
     rig.run(0.2)
     rig.post(Jog("X", 10.0, 0.2))
     assert "RUNNING" in rig.said("refused")[1]
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.post(Jog("X", 10.0, 0.2))
     rig.run(0.5)
     assert "PROGRAM STOP" in rig.said("refused")[2]
@@ -154,18 +154,18 @@ def test_another_axis_ends_the_jog() -> None:
     rig.post(Jog("X", 10.0, 1.0))
     rig.run(0.2)
     rig.post(Jog("Z", 10.0, 1.0))
-    assert rig.until(State.IDLE) < 0.1
+    assert rig.until(MachineState.IDLE) < 0.1
     assert rig.shot.demand[1] == 0.0
     assert text("executor.being-jogged", axis="X") in rig.said("refused")[0]
 
 
-@pytest.mark.parametrize("stopper", [FeedHold(), Reset(), JogStop()])
-def test_everything_that_stops_ends_a_jog(stopper: FeedHold | Reset | JogStop) -> None:
+@pytest.mark.parametrize("stopper", [FeedHold(), Reset(), StopJog()])
+def test_everything_that_stops_ends_a_jog(stopper: FeedHold | Reset | StopJog) -> None:
     rig = ready()
     rig.post(Jog("X", 10.0, 1.0))
     rig.run(0.2)
     rig.post(stopper)
-    assert rig.until(State.IDLE) < 0.03 + 10.0 / AMAX + 2 * TICK + 0.001
+    assert rig.until(MachineState.IDLE) < 0.03 + 10.0 / AMAX + 2 * TICK + 0.001
 
 
 def test_the_hold_button_refuses_jogs() -> None:
@@ -174,7 +174,7 @@ def test_the_hold_button_refuses_jogs() -> None:
     rig.run(0.05)
     rig.post(Jog("X", 10.0, 0.2))
     assert text("executor.hold-pressed") in rig.said("refused")[0]
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_cycle_start_while_jogging_is_refused() -> None:
@@ -183,8 +183,8 @@ def test_cycle_start_while_jogging_is_refused() -> None:
     rig.run(0.4)
     rig.post(Jog("X", 1.0, 1.0))
     rig.post(CycleStart())
-    assert rig.state is State.JOG
-    assert rig.shot.start_refused == text("executor.machine-jogged")
+    assert rig.state is MachineState.JOG
+    assert rig.shot.start_refusal == text("executor.machine-jogged")
 
 
 def test_estop_ends_a_jog() -> None:
@@ -193,7 +193,7 @@ def test_estop_ends_a_jog() -> None:
     rig.run(0.2)
     rig.sim.machine.press_estop()
     rig.tick()
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     rig.run(0.3)
     assert not rig.sim.ports.axes.sample().moving
 
@@ -204,22 +204,22 @@ def test_an_axis_that_is_not_homed_jogs_slowly_and_homes() -> None:
     fastest = []
     rig.watch.append(lambda shot: fastest.append(shot.velocity))
     rig.post(Jog("Z", FAST, 0.5))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert max(fastest) == pytest.approx(0.1 * FAST, rel=0.05)
-    rig.post(Home())
-    assert rig.state is State.HOME
-    rig.until(State.IDLE)
+    rig.post(HomeAxes())
+    assert rig.state is MachineState.HOME
+    rig.until(MachineState.IDLE)
     assert rig.shot.homed == (True, True, True)
     assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.002)
 
 
 def test_homing_that_makes_no_sense_is_refused() -> None:
     rig = Rig(unhomed_machine())
-    rig.post(Home())
-    assert rig.state is State.DISABLED
-    rig.post(EnableDrives(), Home("B"))
-    rig.post(Home("X"))
-    assert rig.state is State.IDLE
+    rig.post(HomeAxes())
+    assert rig.state is MachineState.DISABLED
+    rig.post(EnableDrives(), HomeAxes("B"))
+    rig.post(HomeAxes("X"))
+    assert rig.state is MachineState.IDLE
     why = (
         text("executor.state", state="DRIVES OFF"),
         text("executor.no-home-axis", axis="B"),
@@ -232,11 +232,11 @@ def test_hold_ends_homing() -> None:
     rig = Rig(unhomed_machine())
     rig.ready()
     rig.post(Jog("Z", -FAST, 0.9))
-    rig.until(State.IDLE)
-    rig.post(Home())
+    rig.until(MachineState.IDLE)
+    rig.post(HomeAxes())
     rig.run(0.1)
     rig.post(FeedHold())
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     rig.run(0.5)
     assert not rig.shot.homed[1]
     assert not rig.sim.ports.axes.sample().moving
@@ -251,16 +251,16 @@ def test_a_slide_beyond_its_travel_is_jogged_back_and_no_further_out(side: float
     rig.ready()
     rig.post(Jog("X", side * 20.0, 0.3))
     rig.run(1.0)
-    assert rig.sim.machine.true_position()[0] == pytest.approx(edge + side * 5.0, abs=0.01)
+    assert rig.sim.machine.get_true_position()[0] == pytest.approx(edge + side * 5.0, abs=0.01)
     assert not rig.shot.alarms
     for _ in range(3):
-        rig.post(JogStep("X", -side * 2.5, 20.0))
+        rig.post(JogByStep("X", -side * 2.5, 20.0))
         rig.run(1.0)
     assert not rig.shot.alarms
-    assert rig.sim.machine.true_position()[0] == pytest.approx(edge - side * 2.5, abs=0.01)
+    assert rig.sim.machine.get_true_position()[0] == pytest.approx(edge - side * 2.5, abs=0.01)
 
 
-@pytest.mark.parametrize("release", [JogStop(), WheelOff()], ids=["jog", "wheel"])
+@pytest.mark.parametrize("release", [StopJog(), DeselectHandwheel()], ids=["jog", "wheel"])
 @pytest.mark.parametrize("stop", ["estop", "fault", "mistake"])
 def test_a_release_that_comes_after_a_stop_and_in_a_cut_breaks_nothing(stop: str, release: Command) -> None:
     """The jog was ended by the stop, and its release was lost until a program cuts."""
@@ -277,19 +277,19 @@ def test_a_release_that_comes_after_a_stop_and_in_a_cut_breaks_nothing(stop: str
             rig.run(0.5)
             rig.sim.machine.spindle_fault("")
         case _:
-            rig.executor.failed(ValueError("a mistake"))
+            rig.executor.handle_failure(ValueError("a mistake"))
     rig.run(1.0)
     for _ in range(2):
         rig.post(Reset())
         rig.run(0.5)
-    if rig.state is State.DISABLED:
+    if rig.state is MachineState.DISABLED:
         rig.ready()
     rig.start("G90G94F300\nX1Z1\nG01X.5Z-1F30\nM30\n")
-    rig.until_true(lambda shot: shot.state is State.RUN and not shot.rapid and shot.velocity > 1.0)
+    rig.until_true(lambda shot: shot.state is MachineState.RUN and not shot.rapid and shot.velocity > 1.0)
     for _ in range(3):
         rig.post(release)
         rig.run(0.1)
-    assert rig.state is State.RUN
-    rig.until(State.IDLE)
+    assert rig.state is MachineState.RUN
+    rig.until(MachineState.IDLE)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 1

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import pytest
 
-from core.executor.commands import Jog, JogStop, SpindleStop
-from core.executor.snapshot import State
+from core.executor.commands import Jog, StopJog, StopSpindle
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
 from tests.executor.lines import mdi
 from tests.executor.rig import Rig
@@ -25,7 +25,7 @@ def turning(machine: Machine | None = None) -> Rig:
     rig.run(2.0)
     assert rig.shot.rpm_actual == pytest.approx(900, rel=0.05)
     held(rig, 0.3)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     return rig
 
 
@@ -46,7 +46,7 @@ def pot_to_nought(rig: Rig) -> None:
 
 
 def stopped_by_hand(rig: Rig) -> None:
-    rig.post(SpindleStop())
+    rig.post(StopSpindle())
 
 
 @pytest.mark.parametrize("stops", [switch_off, pot_to_nought, stopped_by_hand])
@@ -57,10 +57,10 @@ def test_what_stops_the_spindle_ends_the_jog_and_a_held_key_begins_no_other(
     stops(rig)
     at = rig.shot.demand[1]
     held(rig, 1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert at - rig.shot.demand[1] < SPEED * 0.3  # it braked, and stood
     assert any(re.search(pattern("executor.spindle-has-stopped"), each) for each in rig.said("refused"))
-    rig.post(JogStop())  # the key comes up, and is pressed anew: away from the part
+    rig.post(StopJog())  # the key comes up, and is pressed anew: away from the part
     stood = rig.shot.demand[1]
     rig.post(Jog("Z", SPEED, LEASE))
     rig.run(0.1)
@@ -76,28 +76,28 @@ def test_an_open_guard_stops_spindle_and_jog() -> None:
     mdi(rig, "M03S900")
     rig.run(2.0)
     held(rig, 0.3)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     rig.sim.machine.set_input("guard", False)
     held(rig, 0.5)
-    assert (rig.state, rig.shot.rpm_command) == (State.IDLE, 0.0)
+    assert (rig.state, rig.shot.rpm_command) == (MachineState.IDLE, 0.0)
     rig.sim.machine.set_input("guard", True)
     held(rig, 0.5)
-    assert (rig.state, rig.shot.rpm_command) == (State.IDLE, 0.0)  # neither comes on again by itself
+    assert (rig.state, rig.shot.rpm_command) == (MachineState.IDLE, 0.0)  # neither comes on again by itself
 
 
 def test_a_jog_with_a_spindle_that_stands_is_nobodys_business() -> None:
     rig = Rig()
     rig.ready()
     held(rig, 0.5)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     switch_off(rig)
     held(rig, 0.5)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
 
 
 def test_a_slower_spindle_is_no_lost_one() -> None:
     rig = turning()
     rig.sim.machine.set_spindle_pot(0.4)
     held(rig, 3.0)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     assert rig.shot.rpm_actual == pytest.approx(360, rel=0.05)

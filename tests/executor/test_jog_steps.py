@@ -13,13 +13,13 @@ from core.executor.commands import (
     CycleStart,
     EnableDrives,
     FeedHold,
-    Home,
+    HomeAxes,
     Jog,
-    JogStep,
-    JogStop,
+    JogByStep,
     Reset,
+    StopJog,
 )
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
 from tests.texts import pattern, text
@@ -51,8 +51,8 @@ def nothing_homed() -> Machine:
 @pytest.mark.parametrize(("axis", "sign"), [("X", 1), ("X", -1), ("Z", 1), ("Z", -1)])
 def test_a_step_is_exactly_its_length_and_ends_at_rest(axis: str, sign: int, inches: float) -> None:
     rig = ready()
-    rig.post(JogStep(axis, sign * inches * INCH, SPEED))
-    rig.until(State.IDLE)
+    rig.post(JogByStep(axis, sign * inches * INCH, SPEED))
+    rig.until(MachineState.IDLE)
     index = "XZ".index(axis)
     assert rig.shot.demand[index] == pytest.approx(sign * inches * INCH, abs=1e-9)
     assert rig.shot.demand[1 - index] == 0.0
@@ -64,44 +64,44 @@ def test_a_step_is_exactly_its_length_and_ends_at_rest(axis: str, sign: int, inc
 def test_ten_steps_are_ten_times_one_and_take_the_time_they_must() -> None:
     rig = ready()
     for _ in range(10):
-        rig.post(JogStep("Z", -0.001 * INCH, SPEED))
-        rig.until(State.IDLE)
+        rig.post(JogByStep("Z", -0.001 * INCH, SPEED))
+        rig.until(MachineState.IDLE)
     assert rig.shot.demand[1] == pytest.approx(-0.01 * INCH, abs=1e-9)
-    rig.post(JogStep("Z", 0.1 * INCH, SPEED))
+    rig.post(JogByStep("Z", 0.1 * INCH, SPEED))
     # way/v + v/a, and what is queued already
-    assert rig.until(State.IDLE) == pytest.approx(2.54 / SPEED + SPEED / AMAX + 0.03, abs=2 * TICK)
+    assert rig.until(MachineState.IDLE) == pytest.approx(2.54 / SPEED + SPEED / AMAX + 0.03, abs=2 * TICK)
 
 
 def test_c_steps_in_degrees() -> None:
     rig = ready()
-    rig.post(JogStep("C", 1.0, 90.0))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("C", 1.0, 90.0))
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[2] == pytest.approx(1.0, abs=1e-9)
 
 
 def test_a_step_under_way_refuses_the_next_and_goes_on() -> None:
     rig = ready()
-    rig.post(JogStep("X", 2.54, SPEED))
+    rig.post(JogByStep("X", 2.54, SPEED))
     rig.run(0.1)
-    rig.post(JogStep("X", 2.54, SPEED))
+    rig.post(JogByStep("X", 2.54, SPEED))
     assert text("executor.step-not-over", axis="X") in rig.said("refused")[0]
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[0] == pytest.approx(2.54, abs=1e-9)
 
 
 @pytest.mark.parametrize(
     ("step", "why"),
     [
-        (JogStep("B", 0.1, SPEED), pattern("executor.no-jog-axis", axis="B")),
-        (JogStep("X", 0.0, SPEED), pattern("executor.step-length", limit="2.54")),
-        (JogStep("X", 2.6, SPEED), pattern("executor.step-length", limit="2.54", length="2.6")),
-        (JogStep("X", math.nan, SPEED), pattern("executor.step-length", limit="2.54")),
-        (JogStep("X", math.inf, SPEED), pattern("executor.step-length", limit="2.54")),
-        (JogStep("X", 0.1, 0.0), pattern("executor.step-speed")),
-        (JogStep("X", 0.1, math.nan), pattern("executor.step-speed")),
+        (JogByStep("B", 0.1, SPEED), pattern("executor.no-jog-axis", axis="B")),
+        (JogByStep("X", 0.0, SPEED), pattern("executor.step-length", limit="2.54")),
+        (JogByStep("X", 2.6, SPEED), pattern("executor.step-length", limit="2.54", length="2.6")),
+        (JogByStep("X", math.nan, SPEED), pattern("executor.step-length", limit="2.54")),
+        (JogByStep("X", math.inf, SPEED), pattern("executor.step-length", limit="2.54")),
+        (JogByStep("X", 0.1, 0.0), pattern("executor.step-speed")),
+        (JogByStep("X", 0.1, math.nan), pattern("executor.step-speed")),
     ],
 )
-def test_steps_without_sense_are_refused(step: JogStep, why: str) -> None:
+def test_steps_without_sense_are_refused(step: JogByStep, why: str) -> None:
     rig = ready()
     rig.post(step)
     rig.run(0.3)
@@ -115,14 +115,14 @@ def test_a_step_that_would_leave_the_travel_is_refused_whole() -> None:
         rig.executor.post(Jog("X", FAST, 0.2))
         rig.tick()
     before = rig.shot.demand[0]
-    rig.post(JogStep("X", 0.0254, SPEED))
-    assert rig.state is State.IDLE
+    rig.post(JogByStep("X", 0.0254, SPEED))
+    assert rig.state is MachineState.IDLE
     assert rig.said("refused")[-1] == text(
         "executor.jog", why=text("executor.travel-end", axis="X", sign="+")
     )
     assert rig.shot.demand[0] == before
-    rig.post(JogStep("X", -0.0254, SPEED))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("X", -0.0254, SPEED))
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[0] == pytest.approx(before - 0.0254, abs=1e-9)
 
 
@@ -136,20 +136,20 @@ def test_a_jog_against_the_end_of_the_travel_is_told() -> None:
     }
 
 
-@pytest.mark.parametrize("stopper", [JogStop(), FeedHold(), Reset()])
-def test_a_step_that_is_stopped_says_that_it_is_short(stopper: JogStop | FeedHold | Reset) -> None:
+@pytest.mark.parametrize("stopper", [StopJog(), FeedHold(), Reset()])
+def test_a_step_that_is_stopped_says_that_it_is_short(stopper: StopJog | FeedHold | Reset) -> None:
     rig = ready()
-    rig.post(JogStep("X", 2.54, SPEED))
+    rig.post(JogByStep("X", 2.54, SPEED))
     rig.run(0.1)
     rig.post(stopper)
-    assert rig.until(State.IDLE) < 0.03 + SPEED / AMAX + 2 * TICK + 0.001
+    assert rig.until(MachineState.IDLE) < 0.03 + SPEED / AMAX + 2 * TICK + 0.001
     assert 0.0 < rig.shot.demand[0] < 2.5
     assert rig.said("refused") == [text("executor.step-cut-short", axis="X")]
 
 
 def test_a_step_whose_host_dies_ends_at_its_end() -> None:
     rig = ready()
-    rig.post(JogStep("X", 2.54, SPEED))
+    rig.post(JogByStep("X", 2.54, SPEED))
     rig.clock.advance(5.0)
     sample = rig.sim.ports.axes.sample()
     assert not sample.moving
@@ -163,17 +163,17 @@ def test_a_step_while_a_jog_is_held_ends_both() -> None:
     rig = ready()
     rig.post(Jog("X", 10.0, 1.0))
     rig.run(0.1)
-    rig.post(JogStep("X", 0.1, SPEED))
-    assert rig.until(State.IDLE) < 0.1
+    rig.post(JogByStep("X", 0.1, SPEED))
+    assert rig.until(MachineState.IDLE) < 0.1
     assert text("executor.moving", what="X") in rig.said("refused")[0]
 
 
 def test_a_held_jog_during_a_step_ends_the_step() -> None:
     rig = ready()
-    rig.post(JogStep("X", 2.54, SPEED))
+    rig.post(JogByStep("X", 2.54, SPEED))
     rig.run(0.1)
     rig.post(Jog("Z", 10.0, 0.2))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[0] < 2.5
     assert rig.shot.demand[1] == 0.0
     assert rig.said("refused") == [
@@ -192,28 +192,28 @@ def test_after_an_estop_in_the_middle_of_a_jog_another_axis_may_be_jogged() -> N
     rig.run(0.1)
     rig.post(EnableDrives())
     rig.post(Jog("Z", 10.0, 0.2))
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     assert rig.said("refused") == []
 
 
 def test_a_late_step_is_refused() -> None:
     rig = ready()
-    rig.executor.post(JogStep("X", 0.1, SPEED))
+    rig.executor.post(JogByStep("X", 0.1, SPEED))
     rig.clock.advance(0.6)
-    rig.executor.tick()
+    rig.executor.run_tick()
     rig.run(0.2)
     assert rig.shot.demand[0] == 0.0
     assert text("executor.came-too-late", command="JogStep") in rig.said("refused")[0]
 
 
-@pytest.mark.parametrize("command", [Jog("X", 10.0, 0.2), JogStep("X", 0.1, SPEED)])
-def test_nothing_is_jogged_while_a_program_is_under_way(command: Jog | JogStep) -> None:
+@pytest.mark.parametrize("command", [Jog("X", 10.0, 0.2), JogByStep("X", 0.1, SPEED)])
+def test_nothing_is_jogged_while_a_program_is_under_way(command: Jog | JogByStep) -> None:
     rig = Rig()
     rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
     rig.run(0.2)
     rig.post(command)
     assert rig.said("refused") == [text("executor.no-jog", state="RUNNING")]
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.post(command)
     rig.run(0.3)
     assert rig.shot.demand[0] == 0.0
@@ -222,14 +222,14 @@ def test_nothing_is_jogged_while_a_program_is_under_way(command: Jog | JogStep) 
 def test_c_is_not_jogged_while_the_spindle_turns() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM02\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(0.5)
     assert rig.shot.rpm_actual > 100
     rig.post(Jog("C", 90.0, 0.2))
     assert rig.said("refused") == [text("executor.jog", why=text("executor.c-is-spindle"))]
     assert rig.shot.alarms == ()
-    rig.post(JogStep("X", 0.254, SPEED))  # touching off on a turning part
-    rig.until(State.IDLE)
+    rig.post(JogByStep("X", 0.254, SPEED))  # touching off on a turning part
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[0] == pytest.approx(0.254, abs=1e-9)
 
 
@@ -240,38 +240,40 @@ def test_unhomed_only_slow_jogs_and_no_program() -> None:
     rig = ready(nothing_homed())
     fastest: list[float] = []
     rig.watch.append(lambda shot: fastest.append(shot.velocity))
-    rig.post(JogStep("Z", 2.54, FAST))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("Z", 2.54, FAST))
+    rig.until(MachineState.IDLE)
     assert max(fastest) == pytest.approx(0.1 * FAST, rel=0.05)
     rig.load("G90G94F300\nX1Z1\nM30\n")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.not-homed", axes="X, Z")
+    assert rig.shot.start_refusal == text("executor.not-homed", axes="X, Z")
 
 
 def test_home_takes_the_axes_in_their_order() -> None:
     rig = ready(nothing_homed())
     order: list[tuple[bool, ...]] = []
     rig.watch.append(lambda shot: order.append(tuple(shot.homed[:2])))
-    rig.post(Home())
-    rig.until(State.IDLE)
+    rig.post(HomeAxes())
+    rig.until(MachineState.IDLE)
     assert list(dict.fromkeys(order)) == [(False, False), (False, True), (True, True)]
 
 
 def test_one_axis_is_homed_alone() -> None:
     rig = ready(nothing_homed())
-    rig.post(Home("X"))
-    rig.until(State.IDLE)
+    rig.post(HomeAxes("X"))
+    rig.until(MachineState.IDLE)
     assert rig.shot.homed[:2] == (True, False)
 
 
-@pytest.mark.parametrize("command", [Jog("Z", 5.0, 0.2), JogStep("Z", 0.1, SPEED), Home(), CycleStart()])
-def test_nothing_else_moves_while_it_is_homing(command: Jog | JogStep | Home | CycleStart) -> None:
+@pytest.mark.parametrize(
+    "command", [Jog("Z", 5.0, 0.2), JogByStep("Z", 0.1, SPEED), HomeAxes(), CycleStart()]
+)
+def test_nothing_else_moves_while_it_is_homing(command: Jog | JogByStep | HomeAxes | CycleStart) -> None:
     rig = ready(unhomed_machine())
     rig.post(Jog("Z", -5.0, 0.9))
-    rig.until(State.IDLE)
-    rig.post(Home())
+    rig.until(MachineState.IDLE)
+    rig.post(HomeAxes())
     rig.run(0.05)
     rig.post(command)
-    assert rig.state is State.HOME
+    assert rig.state is MachineState.HOME
     assert rig.said("refused")

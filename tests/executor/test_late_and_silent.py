@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from core.executor.commands import CycleStart, FeedHold, JogStop, Reset, WheelOff
-from core.executor.snapshot import State
-from core.ports import DriverError, Unknown
+from core.executor.commands import CycleStart, DeselectHandwheel, FeedHold, Reset, StopJog
+from core.executor.snapshot import MachineState
+from core.ports import DriverError, UnknownPart
 from tests.executor.model_machine import Machine
 from tests.executor.rig import Rig
 
@@ -41,7 +41,7 @@ def test_a_repeated_reset_while_the_spindle_speeds_up_is_no_alarm(times: int) ->
         rig.post(Reset())
     rig.run(5.0)
     assert codes(rig) == []
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_repeated_stops_give_a_spindle_no_more_time_to_obey() -> None:
@@ -55,14 +55,14 @@ def test_repeated_stops_give_a_spindle_no_more_time_to_obey() -> None:
     assert codes(machine) == ["ignores-stop"]
 
 
-@pytest.mark.parametrize("release", [JogStop(), WheelOff()])
+@pytest.mark.parametrize("release", [StopJog(), DeselectHandwheel()])
 def test_a_release_that_comes_twice_in_a_cut_changes_nothing(release: Any) -> None:
     rig = Rig()
     rig.start(CUT)
     rig.run(0.5)
     rig.post(release, release)
     rig.run(0.2)
-    assert (rig.state, codes(rig)) == (State.RUN, [])
+    assert (rig.state, codes(rig)) == (MachineState.RUN, [])
 
 
 def test_palms_that_were_pressed_while_the_control_was_away_are_refused_and_not_ignored() -> None:
@@ -74,7 +74,7 @@ def test_palms_that_were_pressed_while_the_control_was_away_are_refused_and_not_
     machine.tick()
     machine.sim.machine.press_start()
     machine.tick()
-    assert machine.state is State.IDLE
+    assert machine.state is MachineState.IDLE
     assert len(machine.said("refused")) == 1
 
 
@@ -84,7 +84,7 @@ def test_slides_that_nobody_hears_are_not_ready() -> None:
     machine.harmed = True
     machine.freeze("axes")
     machine.run(0.6)
-    assert (machine.state, codes(machine)) == (State.FAULT, ["drive-silent"])
+    assert (machine.state, codes(machine)) == (MachineState.FAULT, ["drive-silent"])
 
 
 def test_slides_that_nobody_hears_move_no_further_even_where_no_driver_reports_a_fault() -> None:
@@ -93,9 +93,9 @@ def test_slides_that_nobody_hears_move_no_further_even_where_no_driver_reports_a
     machine.harmed = True
     machine.freeze("axes")
     machine.run(0.6)
-    assert machine.state is State.FAULT
+    assert machine.state is MachineState.FAULT
     assert codes(machine) == ["drive-silent"]
-    assert Unknown.SLIDES in machine.shot.unknown
+    assert UnknownPart.AXES in machine.shot.unknown
 
 
 @pytest.mark.parametrize("times", [1, 50])
@@ -103,7 +103,7 @@ def test_drives_that_refuse_to_brake_lose_their_power_when_turndesk_is_closed(ti
     machine = begun(CUT)
     machine.run(0.5)
     machine.broken["axes"].breaks["stop"] = (DriverError("the wire is out"), times)
-    machine.executor.shut()
+    machine.executor.shut_down()
     machine.clock.advance(1.0)  # the drives brake by themselves
     assert not machine.true_ports.axes.sample().enabled
 
@@ -115,13 +115,13 @@ def test_an_encoder_that_freezes_as_a_hold_ends_is_found_when_its_axis_is_sent_o
     rig.run(1.0)
     rig.post(FeedHold())
     rig.run(0.3)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     rig.sim.machine.encoder_stuck("Z")
     rig.run(2.0)
-    begins = rig.sim.machine.true_position()[1]
+    begins = rig.sim.machine.get_true_position()[1]
     rig.post(CycleStart())
-    took = rig.until(State.FAULT, limit=1.0)
+    took = rig.until(MachineState.FAULT, limit=1.0)
     assert codes(rig) == ["encoder-still"]
     assert took <= 0.12
     rig.run(1.0)
-    assert abs(rig.sim.machine.true_position()[1] - begins) < 4.0  # mm, at 8.5 mm/s
+    assert abs(rig.sim.machine.get_true_position()[1] - begins) < 4.0  # mm, at 8.5 mm/s

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.workshop import proof_of
-from core.executor.commands import CycleStart, FeedHold, Prepare, Reset, SetSwitch
-from core.executor.snapshot import Starts, State
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.program_proving import create_proof
+from core.executor.commands import CycleStart, FeedHold, PrepareStart, Reset, SetSwitch
+from core.executor.snapshot import MachineState, StartAction
 from core.interpreter.shared.job_setup import ToolOffset
 from core.proving.prove_program import prove
 from tests.executor.lines import errors, line_job, mdi, press
@@ -23,7 +23,7 @@ def test_modes_feed_and_tool_are_inherited_from_line_to_line() -> None:
     assert (rig.shot.modal.absolute, rig.shot.modal.diameter, rig.shot.modal.tool) == (True, True, 1)
     assert rig.shot.modal.feed == pytest.approx(100 * INCH / 60)
     assert rig.shot.parts == 0
-    assert rig.shot.state is State.IDLE
+    assert rig.shot.state is MachineState.IDLE
 
 
 def test_the_spindle_stays_on_and_the_next_line_knows_it() -> None:
@@ -31,7 +31,7 @@ def test_the_spindle_stays_on_and_the_next_line_knows_it() -> None:
     mdi(rig, "M03S900")
     rig.run(2.0)
     assert rig.shot.rpm_actual == pytest.approx(900, rel=0.05)
-    rig.post(Prepare(Starts.PROGRAM))  # MDI is left
+    rig.post(PrepareStart(StartAction.PROGRAM))  # MDI is left
     rig.run(1.0)
     assert rig.shot.rpm_command == 900
     mdi(rig, "G90", "G95F.005X.1")
@@ -51,12 +51,12 @@ def test_a_line_without_any_block_changes_its_modes() -> None:
 def test_the_first_move_after_a_tool_needs_both_axes_in_mdi_too() -> None:
     rig = Rig()
     mdi(rig, "G90F100", "T1")
-    assert rig.shot.tool_open
+    assert rig.shot.is_tool_move_pending
     (found,) = errors(rig, "X1")
     assert found.code == "tool-first-move"
     assert "Z" in found.message
     mdi(rig, "X1Z1")
-    assert not rig.shot.tool_open
+    assert not rig.shot.is_tool_move_pending
     assert errors(rig, "X.9") == []
 
 
@@ -97,10 +97,10 @@ def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() 
     rig = Rig()
     rig.ready()
     rig.load("G90G94F300\nX1\nM30\n")
-    rig.post(Prepare(Starts.LINE))
+    rig.post(PrepareStart(StartAction.MDI_LINE))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.no-line")
-    assert rig.state is State.IDLE
+    assert rig.shot.start_refusal == text("executor.no-line")
+    assert rig.state is MachineState.IDLE
 
 
 def test_a_line_runs_once() -> None:
@@ -108,7 +108,7 @@ def test_a_line_runs_once() -> None:
     mdi(rig, "G91", "X.1F100")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused.startswith(text("executor.no-line"))
+    assert rig.shot.start_refusal.startswith(text("executor.no-line"))
     assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
 
 
@@ -116,19 +116,19 @@ def test_a_line_proved_elsewhere_or_under_another_state_does_not_start() -> None
     rig = Rig()
     mdi(rig, "G91", "X.1F100")
     old = line_job(rig, "X.1")
-    proof = proof_of(old, prove(old.source, old.setup, rig.machine))
+    proof = create_proof(old, prove(old.source, old.setup, rig.machine))
     mdi(rig, "Z-.1")
     rig.run(0.4)
-    rig.post(Prepare(Starts.LINE, old, proof))
+    rig.post(PrepareStart(StartAction.MDI_LINE, old, proof))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.moved-since", remedy=text("executor.ask-again"))
+    assert rig.shot.start_refusal == text("executor.moved-since", remedy=text("executor.ask-again"))
     fresh = line_job(rig, "X.1")
-    proof = proof_of(fresh, prove(fresh.source, fresh.setup, rig.machine))
+    proof = create_proof(fresh, prove(fresh.source, fresh.setup, rig.machine))
     mdi(rig, "G90")
     rig.run(0.4)
-    rig.post(Prepare(Starts.LINE, fresh, proof))
+    rig.post(PrepareStart(StartAction.MDI_LINE, fresh, proof))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.state-changed", remedy=text("executor.ask-again"))
+    assert rig.shot.start_refusal == text("executor.state-changed", remedy=text("executor.ask-again"))
 
 
 def test_a_tool_that_nobody_has_set_is_not_called() -> None:
@@ -136,9 +136,11 @@ def test_a_tool_that_nobody_has_set_is_not_called() -> None:
     mdi(rig, "G90")
     job = line_job(rig, "T9")
     rig.run(0.4)
-    rig.post(Prepare(Starts.LINE, job, proof_of(job, prove(job.source, job.setup, rig.machine))))
+    rig.post(
+        PrepareStart(StartAction.MDI_LINE, job, create_proof(job, prove(job.source, job.setup, rig.machine)))
+    )
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.tool-offset-unset", tools="T9")
+    assert rig.shot.start_refusal == text("executor.tool-offset-unset", tools="T9")
 
 
 def test_hold_go_on_and_reset_keep_the_modes() -> None:
@@ -147,12 +149,12 @@ def test_hold_go_on_and_reset_keep_the_modes() -> None:
     press(rig, "X1F10")
     rig.run(0.5)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(CycleStart())
     rig.run(0.5)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.tick()
     assert (rig.shot.modal.absolute, rig.shot.modal.diameter, rig.shot.modal.coolant) == (True, True, False)
     assert 0.0 < rig.shot.actual[0] < 0.5 * INCH
@@ -164,17 +166,17 @@ def test_single_block_and_optional_stop_work_in_mdi() -> None:
     mdi(rig, "G90G94F300")
     rig.post(SetSwitch("optional_stop", True))
     press(rig, "X.1M01")
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.run(0.4)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.post(SetSwitch("single_block", True))
     press(rig, "G81Z-.1F50")
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     assert rig.shot.actual[1] == pytest.approx(-0.1 * INCH, abs=0.02)
     rig.run(0.4)
     rig.post(CycleStart())
-    rig.until(State.BLOCK_END, State.IDLE)
+    rig.until(MachineState.BLOCK_END, MachineState.IDLE)
     assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.006)
 
 
@@ -202,9 +204,9 @@ def test_work_shift_and_preset_stay_for_the_next_line() -> None:
 def test_after_a_line_the_program_starts_from_its_first_line_with_its_own_modes() -> None:
     rig = Rig()
     mdi(rig, "G91G72F100", "X.2")
-    rig.post(Prepare(Starts.PROGRAM))
+    rig.post(PrepareStart(StartAction.PROGRAM))
     rig.start("G90G94F300\nX.3\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(0.3 * INCH, abs=0.006)  # a radius again
     assert rig.shot.parts == 1
 
@@ -223,7 +225,7 @@ def test_nothing_moves_before_g90_or_g91_has_been_said(line: str) -> None:
 
 def test_the_live_tool_that_runs_is_known_to_the_next_line() -> None:
     """It is switched by M2=3, and so stands beside no M code of the machine file."""
-    rig = Rig(shipped_machine("sinumerik-live"))
+    rig = Rig(load_shipped_machine("sinumerik-live"))
     mdi(rig, "S2=900 M2=3", "G4 F0.1")
     assert rig.shot.modal.outputs == {"live"}
     mdi(rig, "M2=5", "G4 F0.1")

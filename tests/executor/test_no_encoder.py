@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.executor.rig import Rig
 
 
@@ -19,13 +19,13 @@ def rig_without_encoder() -> Rig:
 def test_a_program_with_a_turning_spindle_runs() -> None:
     rig = rig_without_encoder()
     rig.start("G90G94F300\nM03S1000\nX.5Z.1\nG95F.004X.4\nM30\n")
-    rig.until(State.IDLE, State.FAULT)
-    assert rig.state is State.IDLE, rig.shot.alarms
+    rig.until(MachineState.IDLE, MachineState.FAULT)
+    assert rig.state is MachineState.IDLE, rig.shot.alarms
     assert not rig.shot.alarms
 
 
 def test_a_thread_is_refused_with_a_sentence() -> None:
     rig = rig_without_encoder()
     rig.start("G90G94F300\nM03S1000\nX.25Z.2\nG33X.24Z-.2I.01K.05O\nM30\n")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert "encoder" in rig.shot.alarms[0].cause

@@ -8,14 +8,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from core.executor.commands import CycleStart, FeedHold, FeedOverride, SetSwitch
-from core.executor.snapshot import State
+from core.executor.commands import CycleStart, FeedHold, SetFeedOverride, SetSwitch
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import ToolOffset
 from tests.executor.rig import INCH, Rig
 
 TOOLS = {1: ToolOffset(), 2: ToolOffset()}
 _PLACES = [(0.0, 0.0), (0.5, -0.2), (0.50005, -0.2), (0.5001, -0.20005), (0.7, -0.4)]  # in, some a step apart
-_STOPPED = {State.BLOCK_END, State.HOLD, State.PROGRAM_STOP}
+_STOPPED = {MachineState.BLOCK_END, MachineState.HOLD, MachineState.PROGRAM_STOP}
 
 
 @st.composite
@@ -62,11 +62,11 @@ def prove_out(rig: Rig, chance: Random | None) -> int:
     """
     starts, last = 1, rig.clock.now()
     rig.post(CycleStart())
-    while rig.state not in {State.IDLE, State.FAULT}:
+    while rig.state not in {MachineState.IDLE, MachineState.FAULT}:
         assert rig.clock.now() < 600.0, f"still {rig.state} in line {rig.shot.line}"
         if chance is not None and rig.clock.now() > 300.0:
             chance = None
-            rig.post(FeedOverride(1.0))
+            rig.post(SetFeedOverride(1.0))
         if rig.state in _STOPPED and rig.clock.now() - last > 0.31:
             last, starts = rig.clock.now(), starts + 1
             rig.post(CycleStart())
@@ -77,7 +77,7 @@ def prove_out(rig: Rig, chance: Random | None) -> int:
         elif chance is not None and draw < 0.1:
             rig.post(FeedHold())
         elif chance is not None and draw < 0.2:
-            rig.post(FeedOverride(chance.choice([0.0, 0.1, 1.0, 1.0, 1.0, 1.5])))
+            rig.post(SetFeedOverride(chance.choice([0.0, 0.1, 1.0, 1.0, 1.0, 1.5])))
         rig.tick()
     return starts
 
@@ -109,11 +109,11 @@ def test_it_stands_where_the_first_move_goes_and_single_block_is_switched_off() 
     rig.post(SetSwitch("single_block", True))
     for _ in range(2):
         rig.post(CycleStart())
-        rig.until(State.BLOCK_END)
+        rig.until(MachineState.BLOCK_END)
         rig.run(0.4)
     rig.post(SetSwitch("single_block", False))
     rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[:2] == pytest.approx((0.7 * INCH, -0.5 * INCH), abs=1e-6)
 

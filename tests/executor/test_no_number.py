@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.ports import AxisSample, StationState
 from tests.executor.rig import Rig
 from tests.texts import text
@@ -44,7 +44,7 @@ def test_a_position_that_is_no_number_stops_the_machine(
 
     monkeypatch.setattr(rig.sim.ports.axes, "sample", told)
     rig.tick()
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     assert text("executor.has-no-number", axis="Z") in rig.shot.alarms[0].cause
     monkeypatch.setattr(rig.sim.ports.axes, "sample", sample)
     rig.run(0.5)
@@ -58,11 +58,11 @@ def test_a_speed_that_is_no_number_is_no_spindle_that_stands(
     rig = cutting()
     monkeypatch.setattr(rig.sim.ports.spindle, "speed", lambda: odd)
     rig.tick()
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     assert rig.shot.alarms[0].code == "spindle-encoder"
     assert rig.shot.rpm_actual == pytest.approx(600.0, rel=0.05)  # the last one: nobody opens a collet now
     rig.run(3.0)
-    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
 
 
 @ODD
@@ -73,13 +73,13 @@ def test_a_pot_that_is_no_number_is_a_silent_station(
     if field == "age" and odd < 0.0:
         pytest.skip("younger than now is young enough")
     rig = cutting()
-    snapshot = rig.sim.ports.station.snapshot
+    snapshot = rig.sim.ports.station.read_state
 
     def told() -> StationState:
         return dataclasses.replace(snapshot(), **{field: odd})  # type: ignore[arg-type]
 
-    monkeypatch.setattr(rig.sim.ports.station, "snapshot", told)
-    rig.until(State.HOLD, limit=0.5)
+    monkeypatch.setattr(rig.sim.ports.station, "read_state", told)
+    rig.until(MachineState.HOLD, limit=0.5)
     assert rig.shot.waiting_for == text("executor.station-silent")
     assert rig.shot.feed_override == 1.0
     assert rig.shot.alarms == ()

@@ -9,7 +9,7 @@ import pytest
 
 from core.executor.commands import CycleStart, EnableDrives, Reset
 from core.executor.executor import Executor
-from core.executor.snapshot import Event, State
+from core.executor.snapshot import LogEvent, MachineState
 from core.ports import MachinePorts
 from tests.executor.rig import Rig
 from tests.texts import text
@@ -29,7 +29,7 @@ NAMED = ["-".join(each) for each in EACH]
 MOMENTS: dict[str, Callable[[Rig], object]] = {
     "cutting": lambda rig: rig.until_true(lambda shot: shot.actual[1] < -3.0),
     "dwell": lambda rig: rig.until_true(lambda shot: shot.waiting_for == "DWELL"),
-    "stopped": lambda rig: rig.until(State.PROGRAM_STOP),
+    "stopped": lambda rig: rig.until(MachineState.PROGRAM_STOP),
 }
 
 
@@ -62,7 +62,7 @@ class OddRig(Rig):
         odd = Odd(getattr(real, port), call, error)
         ports: MachinePorts = dataclasses.replace(real, **{port: odd})  # type: ignore[arg-type]
         self.executor = Executor(self.machine, ports, self.events.append, self._passes)
-        self.executor.tick()
+        self.executor.run_tick()
         return odd
 
 
@@ -70,7 +70,9 @@ def all_off(rig: Rig) -> bool:
     """By the machine itself."""
     on = {name for name, lit in rig.sim.ports.io.outputs().items() if lit}
     return (
-        on <= {"collet"} and rig.sim.machine.spindle_rpm() == 0.0 and not rig.sim.ports.axes.sample().moving
+        on <= {"collet"}
+        and rig.sim.machine.get_spindle_rpm() == 0.0
+        and not rig.sim.ports.axes.sample().moving
     )
 
 
@@ -88,10 +90,10 @@ def test_estop_with_a_driver_that_breaks_takes_every_other_step(port: str, call:
         outputs = {name for name, lit in rig.sim.ports.io.outputs().items() if lit}
         if (port, call) not in {("io", "write"), ("io", "safe")}:
             assert outputs <= {"collet"}
-        assert rig.sim.machine.spindle_rpm() == 0.0
+        assert rig.sim.machine.get_spindle_rpm() == 0.0
         assert not rig.sim.ports.axes.sample().enabled
-        assert rig.state in {State.ESTOP, State.FAULT}
-        assert rig.state is State.ESTOP or port == "station" or rig.shot.alarms
+        assert rig.state in {MachineState.ESTOP, MachineState.FAULT}
+        assert rig.state is MachineState.ESTOP or port == "station" or rig.shot.alarms
         odd.broken = False
         rig.run(0.3)
         assert all_off(rig)
@@ -109,7 +111,7 @@ def test_a_driver_that_breaks_in_a_cut_stops_the_machine_or_is_not_needed(
     odd.broken = True
     rig.run(4.0)
     if odd.raised:
-        assert rig.state is State.FAULT
+        assert rig.state is MachineState.FAULT
         assert "internal" in {alarm.code for alarm in rig.shot.alarms}
     odd.broken = False
     rig.run(4.0)
@@ -119,7 +121,7 @@ def test_a_driver_that_breaks_in_a_cut_stops_the_machine_or_is_not_needed(
         rig.post(Reset())
         rig.post(EnableDrives())
         rig.run(0.5)
-        assert rig.state is State.IDLE
+        assert rig.state is MachineState.IDLE
         assert all_off(rig)
 
 
@@ -150,7 +152,7 @@ def test_an_output_that_cannot_be_switched_off_is_tried_on_and_an_alarm_of_its_o
 
 
 def test_who_keeps_the_log_may_break_too() -> None:
-    def lost(event: Event) -> None:
+    def lost(event: LogEvent) -> None:
         raise RuntimeError(f"no disk for {event.kind}")
 
     rig = Rig()
@@ -159,7 +161,7 @@ def test_who_keeps_the_log_may_break_too() -> None:
     rig.until_true(lambda shot: shot.actual[1] < -3.0)
     rig.sim.machine.drive_fault("X")
     rig.run(4.0)
-    assert executor.snapshot.state is State.FAULT
+    assert executor.snapshot.state is MachineState.FAULT
     assert [alarm.code for alarm in executor.snapshot.alarms] == ["axis"]
     assert all_off(rig)
 
@@ -175,7 +177,7 @@ def test_a_start_seen_before_the_drivers_broke_starts_nothing_afterwards() -> No
     rig.run(0.5)
     odd.broken = False
     rig.run(1.0)
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     assert rig.shot.actual[0] == 0.0
     rig.post(CycleStart())
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT

@@ -7,22 +7,26 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.job import Proof
-from core.executor.snapshot import State
-from core.executor.start_conditions import lacking
-from core.interpreter.dialects import interpretation
+from core.executor.snapshot import MachineState
+from core.executor.start_conditions import find_missing_function
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
-from core.interpreter.shared.machine_requirements import ORIENT, first_needs, needs_of
-from core.language.source import Source
+from core.interpreter.shared.machine_requirements import (
+    SPINDLE_ORIENTATION,
+    find_requirements,
+    remove_repeated_requirements,
+)
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 from tests.texts import pattern, text
 
-MILL = shipped_machine("ac-table-mill")
+MILL = load_shipped_machine("ac-table-mill")
 ANGLE = 90.0
 BACK = (
     "CYCL DEF 204 BACK BORING Q200=+2 Q249=+5 Q250=+20 Q251=+3.5 Q252=+15 Q253=+3000 Q254=+900 Q255=+0 "
@@ -36,8 +40,8 @@ LOW = -350.0 - 37.0  # Z0 lies at -350 without a preset; the tip 2 below the par
 
 
 def blocks_of(program: str = PROGRAM) -> list[Block]:
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    return list(interpretation(Source("T.H", program), setup).blocks())
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    return list(interpret_program(ProgramSource("T.H", program), setup).generate_blocks())
 
 
 def begun() -> Rig:
@@ -58,7 +62,7 @@ def angle(rig: Rig) -> float:
 
 
 def held(rig: Rig) -> bool:
-    return rig.sim.machine.spindle_rpm() == 0.0 and abs(angle(rig) - ANGLE) < 1e-6
+    return rig.sim.machine.get_spindle_rpm() == 0.0 and abs(angle(rig) - ANGLE) < 1e-6
 
 
 def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_angle() -> None:
@@ -75,7 +79,7 @@ def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_an
             beside.append(held(rig))
 
     rig.watch.append(watch)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert text("executor.spindle-orient") in waited
     assert len(beside) > 20
     assert all(beside)
@@ -84,7 +88,7 @@ def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_an
 @pytest.mark.parametrize("how", ["hold", "reset", "estop"])
 def test_whatever_stops_the_cycle_stops_the_spindle_on_its_way_to_the_angle(how: str) -> None:
     rig = orienting()
-    rig.until_true(lambda _: rig.sim.machine.spindle_rpm() != 0.0)
+    rig.until_true(lambda _: rig.sim.machine.get_spindle_rpm() != 0.0)
     at = rig.shot.actual
     if how == "estop":
         rig.sim.machine.press_estop()
@@ -96,18 +100,18 @@ def test_whatever_stops_the_cycle_stops_the_spindle_on_its_way_to_the_angle(how:
     rig.run(2.0)
     assert rig.sim.machine.spindle_turns() == turns
     assert rig.shot.actual == pytest.approx(at, abs=0.01)
-    assert rig.state in {State.HOLD, State.IDLE, State.ESTOP}
+    assert rig.state in {MachineState.HOLD, MachineState.IDLE, MachineState.ESTOP}
 
 
 def test_behind_a_hold_the_angle_is_asked_for_again_and_the_part_is_finished() -> None:
     rig = orienting()
     rig.post(FeedHold())
     rig.run(1.0)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.actual[Z] < -352.0)
     assert held(rig)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.alarms == ()
 
 
@@ -116,9 +120,9 @@ def test_held_in_its_hole_the_bar_stays_at_its_angle() -> None:
     rig.until_true(lambda shot: shot.actual[Z] < -360.0)
     rig.post(FeedHold())
     rig.run(1.0)
-    assert (rig.state, held(rig)) == (State.HOLD, True)
+    assert (rig.state, held(rig)) == (MachineState.HOLD, True)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.alarms == ()
 
 
@@ -127,7 +131,7 @@ def test_a_drive_that_never_arrives_is_one_alarm_and_nothing_has_moved() -> None
     rig.sim.machine.spindle_never_oriented()
     rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-orient"))
     at = rig.shot.actual
-    took = rig.until(State.FAULT)
+    took = rig.until(MachineState.FAULT)
     assert took == pytest.approx(MILL.spindle.timeout + 3.0 * 60.0 / MILL.spindle.orient_rpm, abs=3.0)
     assert [alarm.code for alarm in rig.shot.alarms] == ["spindle-orient"]
     assert rig.shot.actual == pytest.approx(at, abs=0.01)
@@ -137,7 +141,7 @@ def test_a_drive_that_lets_its_angle_go_stops_the_bar_in_its_hole() -> None:
     rig = begun()
     rig.until_true(lambda shot: shot.actual[Z] < -360.0)
     rig.sim.machine.spindle_never_oriented()
-    rig.until(State.FAULT, limit=1.0)
+    rig.until(MachineState.FAULT, limit=1.0)
     assert [alarm.code for alarm in rig.shot.alarms] == ["spindle-orient"]
     rig.run(0.3)
     assert rig.shot.actual[Z] > LOW + 5.0
@@ -158,38 +162,41 @@ def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
 
 
 def test_no_bar_is_turned_to_an_angle_in_an_open_chuck() -> None:
-    lathe = shipped_machine("sinumerik-modulo")
-    setup = setup_for(lathe, tools={}, secondary={})
-    source = Source("T.MPF", "G4 F2\nSPOS=90\nG4 F1\nM30\n")
-    rig = Rig(machine=lathe, made=list(interpretation(source, setup).blocks()))
+    lathe = load_shipped_machine("sinumerik-modulo")
+    setup = create_setup(lathe, tool_offsets={}, secondary_offsets={})
+    source = ProgramSource("T.MPF", "G4 F2\nSPOS=90\nG4 F1\nM30\n")
+    rig = Rig(machine=lathe, made=list(interpret_program(source, setup).generate_blocks()))
     rig.start("anything")
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
     rig.sim.machine.collet_sensor_stuck()
     rig.sim.machine.set_input("collet_closed", False)
-    rig.until(State.FAULT, limit=4.0)
+    rig.until(MachineState.FAULT, limit=4.0)
     assert [alarm.code for alarm in rig.shot.alarms] == ["collet-open"]
     rig.run(5.0)
     assert rig.shot.oriented is None
-    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
 
 
 def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
-    needs = first_needs(needs_of(blocks_of()))
-    assert ORIENT in {need.what for need in needs}
+    needs = remove_repeated_requirements(find_requirements(blocks_of()))
+    assert SPINDLE_ORIENTATION in {need.function for need in needs}
     rig = Rig(machine=replace(MILL, spindle=replace(MILL.spindle, oriented=False)))
     context = rig.executor._context
-    assert re.fullmatch(pattern("executor.no-orient"), lacking(context, Proof("x", (), needs=needs)))
+    assert re.fullmatch(
+        pattern("executor.no-orient"),
+        find_missing_function(context, Proof("x", (), required_functions=needs)),
+    )
     able = Rig(machine=MILL).executor._context
-    assert lacking(able, Proof("x", (), needs=needs)) == ""
+    assert find_missing_function(able, Proof("x", (), required_functions=needs)) == ""
 
 
 def test_the_proof_counts_stop_and_the_longest_way_to_the_angle() -> None:
     """M19 at 3000 rpm: down to the speed that counts as rest, .08 s of the drive, half a turn at 100 rpm."""
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     head = "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL Z+5 R0 FMAX M3\n"
     whole = head + "CYCL DEF 9.0 D\nCYCL DEF 9.1 D 5\n{}M30\nEND PGM T MM\n"
-    with_it = prove(Source("T.H", whole.format("M19\n")), setup, MILL)
-    without = prove(Source("T.H", whole.format("")), setup, MILL)
+    with_it = prove(ProgramSource("T.H", whole.format("M19\n")), setup, MILL)
+    without = prove(ProgramSource("T.H", whole.format("")), setup, MILL)
     down = 0.08 + (3000.0 - MILL.spindle.stop_below) / MILL.spindle.decel
     assert with_it.errors == ()
-    assert with_it.times.cycle - without.times.cycle == pytest.approx(down + 0.08 + 0.3, abs=0.01)
+    assert with_it.times.cycle_s - without.times.cycle_s == pytest.approx(down + 0.08 + 0.3, abs=0.01)

@@ -12,19 +12,19 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.executor.hand_motion.drive_test import DriveTester, DriveTestPath, Shape
 from core.executor.hand_motion.jogging import Jogger
-from core.executor.job import Job, Proof, check_block, make_job, outdated
+from core.executor.job import Job, Proof, check_block, find_outdated_setting, make_job
 from core.executor.program_motion.path_section import PathSection
 from core.executor.program_run import ChangedOffsets
 from core.executor.raised_alarm import AlarmError, ReportedAttempt
 from core.executor.signals import StationSignals
-from core.executor.snapshot import State
-from core.executor.spindle_control import SpindleAngle, SpindleControl, SpindleDemand
-from core.executor.start_conditions import hindrance, lacking
-from core.interpreter.shared.elementary_blocks import Kind
+from core.executor.snapshot import MachineState
+from core.executor.spindle_control import SpindleAnglePredictor, SpindleControl, SpindleRequest
+from core.executor.start_conditions import find_missing_function, find_state_refusal
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.machine_requirements import ARC, THREAD, Need
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Source
+from core.interpreter.shared.machine_requirements import ARC_MOTION, THREADING, MachineRequirement
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import ProgramSource
 from core.motion.axis_limits import MotionLimits
 from tests.coded import raises_code
 from tests.executor.made import Maker
@@ -36,36 +36,40 @@ from tests.texts import pattern, text
 
 def test_a_controller_that_may_not_begin_says_why() -> None:
     context = context_of(PlayedController(hindrance="its modes are being verified"))
-    assert hindrance(context, State.IDLE) == "its modes are being verified"
+    assert find_state_refusal(context, MachineState.IDLE) == "its modes are being verified"
 
 
 def test_what_a_controller_cannot_do_is_named_with_its_line() -> None:
-    context = context_of(PlayedController(caps=frozenset({ARC})))
-    proof = Proof("", (), needs=(Need(ARC, 3), Need(THREAD, 5)))
-    assert re.fullmatch(pattern("executor.controller-cannot", line=5), lacking(context, proof))
+    context = context_of(PlayedController(capabilities=frozenset({ARC_MOTION})))
+    proof = Proof(
+        "", (), required_functions=(MachineRequirement(ARC_MOTION, 3), MachineRequirement(THREADING, 5))
+    )
+    assert re.fullmatch(pattern("executor.controller-cannot", line=5), find_missing_function(context, proof))
 
 
 def test_what_the_machine_has_not_is_named_with_its_line() -> None:
     context = context_of(None)
-    context.machine = dataclasses.replace(context.machine, absent=frozenset({"catcher"}))
-    proof = Proof("", (), needs=(Need("output catcher", 4),))
-    assert re.fullmatch(pattern("executor.no-such-for-line", line=4), lacking(context, proof))
+    context.machine = dataclasses.replace(context.machine, missing_outputs=frozenset({"catcher"}))
+    proof = Proof("", (), required_functions=(MachineRequirement("output catcher", 4),))
+    assert re.fullmatch(pattern("executor.no-such-for-line", line=4), find_missing_function(context, proof))
 
 
 def job_of(text: str, **changes: object) -> Job:
-    return make_job(Source("PART", text), Setup(**changes))  # type: ignore[arg-type]
+    return make_job(ProgramSource("PART", text), Setup(**changes))  # type: ignore[arg-type]
 
 
 def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> None:
     job = job_of("G90G94\nX1\nM30\n", last_rapid=50.0)
-    left = Modal(rapid_rate=50.0)
-    assert outdated(job, left) == ""
-    assert outdated(job, Modal(rapid_rate=50.0, metric=True)) == text("executor.counts-in-mm")
-    assert outdated(job, Modal(rapid_rate=60.0)) == text("executor.other-rapid-rate")
+    left = ModalState(rapid_rate=50.0)
+    assert find_outdated_setting(job, left) == ""
+    assert find_outdated_setting(job, ModalState(rapid_rate=50.0, metric=True)) == text(
+        "executor.counts-in-mm"
+    )
+    assert find_outdated_setting(job, ModalState(rapid_rate=60.0)) == text("executor.other-rapid-rate")
 
 
 def test_nothing_asked_for_bars_no_next_part() -> None:
-    assert ChangedOffsets(context_of(None)).refusal(Modal()) == ""
+    assert ChangedOffsets(context_of(None)).find_repeat_refusal(ModalState()) == ""
 
 
 @pytest.mark.parametrize(
@@ -79,12 +83,18 @@ def test_nothing_asked_for_bars_no_next_part() -> None:
 def test_no_drive_test_under_feed_hold_or_with_the_guard_open(held: bool, guard: bool, why: str) -> None:
     context = context_of(None)
     context.signals = StationSignals(
-        estop=False, start=False, hold=held, feed=1.0, spindle=1.0, auto=True, trouble=""
+        estop_pressed=False,
+        start_requested=False,
+        hold_requested=held,
+        feed_override=1.0,
+        spindle=1.0,
+        spindle_auto=True,
+        station_fault="",
     )
-    context.spindle.guard_open = guard
+    context.spindle.is_guard_open = guard
     path = DriveTestPath("X", Shape.STEP, 1.0)
     context.sample = context.sample._replace(demand=(50.0, -50.0, 0.0))
-    assert DriveTester(context, Jogger(context)).refusal(path, 0.5) == why
+    assert DriveTester(context, Jogger(context)).find_refusal(path, 0.5) == why
 
 
 # --- inputs by name and terminal ----------------------------------------------------------------------------
@@ -94,11 +104,11 @@ def test_an_input_goes_by_its_name_and_by_its_terminal_and_no_other_is_on() -> N
     context = context_of(None)
     name, model = next((name, each) for name, each in context.machine.inputs.items() if each.terminal)
     context.inputs = {name: True}
-    assert context.terminal(name)
-    assert context.terminal(model.terminal)
-    assert not context.terminal("TB99-9")
+    assert context.is_input_on(name)
+    assert context.is_input_on(model.terminal)
+    assert not context.is_input_on("TB99-9")
     context.inputs = {}
-    assert not context.terminal(model.terminal)
+    assert not context.is_input_on(model.terminal)
 
 
 # --- a block checked once more before it moves --------------------------------------------------------------
@@ -111,19 +121,19 @@ def test_a_feed_by_the_turn_of_a_spindle_that_stands_is_refused() -> None:
 
 
 def test_c_does_not_move_while_it_turns_as_the_spindle() -> None:
-    machine = dataclasses.replace(load_machine(), c_own_drive=False)
+    machine = dataclasses.replace(load_machine(), has_c_own_drive=False)
     (block,) = Maker().feed(0.0, -1.0, 0.5).blocks
-    block = dataclasses.replace(block, c=90.0, modal=Modal(spindle=1), kind=Kind.ROTATE)
+    block = dataclasses.replace(block, c=90.0, modal=ModalState(spindle=1), kind=BlockKind.ROTATE)
     with raises_code(AlarmError, "c-is-spindle", text("executor.line-moves-c", line=1)):
         check_block(block, machine)
 
 
 def test_a_section_forgets_no_block_that_it_does_not_hold() -> None:
     section = PathSection(MotionLimits(), 3500.0)
-    section.add(Maker().feed(0.0, -1.0, 5.0).feed(0.0, -2.0, 5.0).blocks)
+    section.append_blocks(Maker().feed(0.0, -1.0, 5.0).feed(0.0, -2.0, 5.0).blocks)
     for n in (None, 7):
-        section.drop_before(n)
-        assert [block.n for block in section.behind(0)] == [1, 2]
+        section.drop_blocks_before(n)
+        assert [block.n for block in section.following_blocks(0)] == [1, 2]
 
 
 # --- the spindle --------------------------------------------------------------------------------------------
@@ -136,10 +146,10 @@ class PlayedLock:
         self.asked: list[tuple[bool, bool]] = []
         self.ready = False
 
-    def hold(self, on: bool, orient: bool = False) -> None:
-        self.asked.append((on, orient))
+    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
+        self.asked.append((enabled, orient))
 
-    def held(self) -> bool:
+    def is_c_ready(self) -> bool:
         return self.ready
 
 
@@ -150,13 +160,13 @@ def locked() -> tuple[SpindleControl, PlayedLock]:
 
 def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
     spindle, lock = locked()
-    assert not spindle.hold(orient=True)
+    assert not spindle.engage_c_axis(orient=True)
     assert lock.asked == [(True, True)]
     lock.ready = True
-    assert spindle.hold(orient=True)
-    assert spindle.held
+    assert spindle.engage_c_axis(orient=True)
+    assert spindle.is_c_axis_ready
     assert lock.asked == [(True, True)]
-    spindle.break_off()
+    spindle.cancel_orientation()
     assert lock.asked == [(True, True)]  # what is C already stays it
     spindle.stop()
     assert lock.asked[1:] == [(False, False)]
@@ -164,41 +174,41 @@ def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
 
 def test_a_hold_ends_a_change_over_that_is_under_way() -> None:
     spindle, lock = locked()
-    spindle.hold(orient=False)
-    spindle.break_off()
+    spindle.engage_c_axis(orient=False)
+    spindle.cancel_orientation()
     assert lock.asked == [(True, False), (False, False)]
 
 
 def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> None:
     spindle, _ = locked()
-    assert (spindle.start_barred, spindle.why_slow) == ("", text("executor.spindle-stopped"))
-    spindle.ask(SpindleDemand(600.0))
-    assert spindle.why_slow == ""
+    assert (spindle.start_inhibit_reason, spindle.slow_reason) == ("", text("executor.spindle-stopped"))
+    spindle.request_speed(SpindleRequest(600.0))
+    assert spindle.slow_reason == ""
     spindle.override = 0.0
-    assert spindle.why_slow == text("executor.spindle-override-0")
-    spindle.auto = False
-    assert spindle.why_slow == text("executor.spindle-switch-off")
-    spindle.guard_open = True
-    assert spindle.why_slow == text("executor.guard-open")
-    spindle.dropped("THE FEEDER HAS SWITCHED OFF")
-    assert spindle.would_turn == 0.0  # at an override of 0
-    spindle.permit()
-    assert spindle.waits  # barred: nothing is permitted
+    assert spindle.slow_reason == text("executor.spindle-override-0")
+    spindle.is_auto = False
+    assert spindle.slow_reason == text("executor.spindle-switch-off")
+    spindle.is_guard_open = True
+    assert spindle.slow_reason == text("executor.guard-open")
+    spindle.record_external_stop("THE FEEDER HAS SWITCHED OFF")
+    assert spindle.waiting_start_rpm == 0.0  # at an override of 0
+    spindle.permit_start()
+    assert spindle.waiting_reason  # barred: nothing is permitted
 
 
 def test_an_encoder_that_counts_nothing_or_stands_carries_no_thread() -> None:
-    angle = SpindleAngle()
+    angle = SpindleAnglePredictor()
     with raises_code(AlarmError, "thread-no-encoder", text("executor.counts-nothing")):
-        angle.turning_at(1.0)
-    assert math.isnan(angle.turns)
+        angle.predict_turning(1.0)
+    assert math.isnan(angle.latest_revolutions)
     for k in range(10):
-        angle.note((0.01 * k, 2.5))
+        angle.add_reading((0.01 * k, 2.5))
     with raises_code(AlarmError, "thread-no-encoder", text("executor.does-not-turn")):
-        angle.turning_at(0.1)
-    angle.note((0.09, 9.0))  # not later than the last one
-    assert angle.turns == 2.5
-    angle.note(None)
-    assert not angle.known
+        angle.predict_turning(0.1)
+    angle.add_reading((0.09, 9.0))  # not later than the last one
+    assert angle.latest_revolutions == 2.5
+    angle.add_reading(None)
+    assert not angle.is_predictable
 
 
 # --- what must not stop the rest ----------------------------------------------------------------------------

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import CycleStart, Prepare, Reset, SetSwitch
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.commands import CycleStart, PrepareStart, Reset, SetSwitch
+from core.executor.snapshot import MachineState, Snapshot, StartAction
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import Rig
 from tests.executor.test_restart import PART, broken_off, prepare, restart, restart_job
@@ -25,7 +25,7 @@ def test_a_dry_run_is_no_part() -> None:
     rig.start(SHORT)
     assert rig.shot.no_count
     assert not rig.shot.counts
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (0, 0)
     assert rig.shot.ends == 1
     assert rig.said("uncounted")[0].startswith(text("executor.no-count"))
@@ -40,7 +40,7 @@ def test_what_stands_at_the_end_decides(at_the_end: bool) -> None:
     rig.run(0.1)
     rig.post(SetSwitch("no_count", at_the_end))
     assert rig.shot.counts is not at_the_end
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == ((0, 0) if at_the_end else (1, 1))
 
 
@@ -52,7 +52,7 @@ def test_dry_runs_repeat_uncounted() -> None:
     rig.post(SetSwitch("no_count", False))
     rig.until_true(lambda shot: shot.ends == 3)
     rig.post(SetSwitch("cycle_repeat", False))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (2, 2)
     assert rig.shot.ends == 4
 
@@ -62,8 +62,8 @@ def test_block_by_block_is_a_part() -> None:
     rig.post(SetSwitch("single_block", True))
     rig.start(SHORT)
     for _ in range(10):
-        rig.until(State.BLOCK_END, State.IDLE)
-        if rig.state is State.IDLE:
+        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        if rig.state is MachineState.IDLE:
             break
         rig.run(0.4)
         rig.post(CycleStart())
@@ -74,12 +74,12 @@ def test_a_line_of_mdi_and_a_program_given_up_are_none() -> None:
     rig = Rig()
     rig.ready()
     mdi(rig, "G90")
-    rig.post(Prepare(Starts.PROGRAM))
+    rig.post(PrepareStart(StartAction.PROGRAM))
     rig.start(SHORT)
     rig.run(0.1)
     assert rig.shot.counts
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (0, 0)
     assert rig.shot.ends == 0
 
@@ -89,7 +89,7 @@ def test_a_restart_where_it_was_broken_off_finishes_the_part() -> None:
     broken_off(rig)
     restart(rig, 8)
     assert rig.shot.counts
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (1, 1)
 
 
@@ -99,7 +99,7 @@ def test_a_restart_that_leaves_something_out_makes_none() -> None:
     broken_off(rig)
     restart(rig, 10)
     assert not rig.shot.counts
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (0, 0)
     assert text("executor.left-out") in rig.said("uncounted")[0]
 
@@ -109,7 +109,7 @@ def test_a_restart_in_a_piece_that_was_never_begun_makes_none() -> None:
     rig.ready()
     rig.load(PART, TOOLS)
     restart(rig, 8)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (0, 0)
 
 
@@ -120,9 +120,9 @@ def test_a_mistaken_restart_given_up_can_be_made_good() -> None:
     restart(rig, 10)
     rig.run(0.2)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     restart(rig, 8)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (1, 1)
 
 
@@ -132,9 +132,9 @@ def test_broken_off_twice_it_is_still_one_part() -> None:
     restart(rig, 8)
     rig.until_true(lambda shot: shot.line == 9)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     restart(rig, 9)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (1, 1)
 
 
@@ -145,7 +145,7 @@ def test_the_part_after_a_restart_is_a_part_of_its_own() -> None:
     restart(rig, 10)
     rig.until_true(lambda shot: shot.ends == 1)
     rig.post(SetSwitch("cycle_repeat", False))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (1, 1)
 
 
@@ -153,10 +153,10 @@ def test_another_program_of_the_same_length_is_another_piece() -> None:
     rig = Rig()
     broken_off(rig)
     rig.start(SHORT)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.load(PART, TOOLS)
     restart(rig, 8)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert counted(rig) == (1, 1)  # the short one
 
 
@@ -164,17 +164,17 @@ def test_the_time_of_a_restart_is_not_that_of_a_cycle() -> None:
     rig = Rig()
     seen: list[Snapshot] = []
     rig.start(PART, TOOLS)
-    rig.until(State.IDLE)
-    whole, timed = rig.shot.last_cycle, rig.shot.timed
+    rig.until(MachineState.IDLE)
+    whole, timed = rig.shot.last_cycle, rig.shot.timed_cycle_count
     rig.run(0.4)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.line == 8)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.watch.append(seen.append)
     rig.run(0.4)
     prepare(rig, restart_job(rig, 8))
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 2
-    assert (rig.shot.last_cycle, rig.shot.timed) == (whole, timed)
+    assert (rig.shot.last_cycle, rig.shot.timed_cycle_count) == (whole, timed)

@@ -7,9 +7,9 @@ import dataclasses
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import CycleStart, Jog, Wheel
-from core.executor.snapshot import State
-from core.machine.hardware_model import AnalogModel
+from core.executor.commands import CycleStart, Jog, SelectHandwheel
+from core.executor.snapshot import MachineState
+from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, Machine
 from core.ports import StationState
 from tests.executor.rig import Rig
@@ -21,9 +21,9 @@ CUT = "G90G94F300\nG71G72\nG01Z-50F300\nM30\n"
 
 def wired(*names: str) -> Machine:
     machine = load_machine()
-    wheel = AnalogModel("handwheel", "wheel", (0.0, 1.0))
+    wheel = AnalogInputModel("handwheel", "wheel", (0.0, 1.0))
     inputs = {name: InputModel(name, f"test {name}") for name in names}
-    hardware = dataclasses.replace(machine.hardware, analog={"handwheel": wheel})
+    hardware = dataclasses.replace(machine.hardware, analog_inputs={"handwheel": wheel})
     return dataclasses.replace(machine, inputs={**machine.inputs, **inputs}, hardware=hardware)
 
 
@@ -34,12 +34,12 @@ class PendantRig(Rig):
         super().__post_init__()
         self.pendant: dict[str, object] = {}
         station = self.sim.ports.station
-        plain = station.snapshot
+        plain = station.read_state
 
         def snapshot() -> StationState:
             return dataclasses.replace(plain(), **self.pendant)  # type: ignore[arg-type]
 
-        station.snapshot = snapshot  # type: ignore[method-assign]
+        station.read_state = snapshot  # type: ignore[method-assign]
 
     def cutting(self) -> None:
         self.start(CUT)
@@ -56,21 +56,21 @@ def test_a_pendant_that_is_lost_holds_the_cycle_and_starts_nothing() -> None:
     rig = ready()
     rig.cutting()
     rig.pendant = {"trouble": AWAY, "wheel_trouble": AWAY}
-    rig.until(State.HOLD, limit=1.0)
+    rig.until(MachineState.HOLD, limit=1.0)
     assert rig.shot.stop is not None
     assert (rig.shot.stop.number, rig.shot.stop.cause) == (605, AWAY.lower())
     assert rig.said("disturbed") == [AWAY.upper()]
     rig.run(0.5)  # another press is no bounce of the last
     rig.post(CycleStart())
     rig.run(0.1)
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused == AWAY
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal == AWAY
     rig.pendant = {}
     rig.run(0.5)
     assert rig.said("disturbed")[-1] == "THE PENDANT IS CONNECTED AGAIN"
-    assert rig.state is State.HOLD  # nothing goes on by itself
+    assert rig.state is MachineState.HOLD  # nothing goes on by itself
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 def test_a_jog_by_key_is_held_once_and_may_begin_again() -> None:
@@ -79,15 +79,15 @@ def test_a_jog_by_key_is_held_once_and_may_begin_again() -> None:
     rig.run(0.1)
     rig.pendant = {"trouble": AWAY}
     rig.run(0.2)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     rig.post(Jog("X", 5.0, 0.25))
     rig.run(0.1)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
 
 
 def test_the_wheel_is_taken_away_and_comes_back_by_a_new_choice() -> None:
     rig = ready()
-    wheel = Wheel("X", 0.0254, 0.25)
+    wheel = SelectHandwheel("X", 0.0254, 0.25)
     rig.post(wheel)
     rig.run(0.15)
     assert rig.shot.wheel == "X"
@@ -105,18 +105,18 @@ def test_start_inhibit_bars_every_start_and_going_on() -> None:
     rig = ready("start_inhibit")
     rig.cutting()
     rig.sim.machine.press_hold()
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.sim.machine.release_hold()
     rig.sim.machine.set_input("start_inhibit", True)
     rig.run(0.5)
     rig.post(CycleStart())
     rig.run(0.1)
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused == text("executor.inhibit-switch")
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal == text("executor.inhibit-switch")
     rig.sim.machine.set_input("start_inhibit", False)
     rig.run(0.5)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 @pytest.mark.parametrize("name", ["jog_x_plus", "wheel_enable"])
@@ -129,13 +129,13 @@ def test_a_jog_ends_with_its_button_and_with_the_enabling_switch(name: str) -> N
     jog = Jog("X", 5.0, 0.25, "jog_x_plus")
     rig.post(jog)
     rig.run(0.1)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     rig.sim.machine.set_input(name, False)
     rig.tick()
     at = rig.shot.actual[0]
     for _ in range(30):
         rig.post(jog)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.actual[0] - at < 5.0 * 0.05  # what is committed, and the ramp
     assert rig.said("refused") == []
 
@@ -148,14 +148,14 @@ def test_a_screen_that_stands_still_cannot_hold_a_button() -> None:
     rig.post(Jog("X", 5.0, 0.25, "jog_x_plus"))
     rig.sim.machine.set_input("jog_x_plus", False)
     rig.run(0.1)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_a_jog_whose_button_is_up_never_begins() -> None:
     rig = ready("jog_x_plus")
     rig.post(Jog("X", 5.0, 0.25, "jog_x_plus"))
     rig.run(0.2)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.demand[0] == 0.0
 
 

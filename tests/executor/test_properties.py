@@ -13,15 +13,15 @@ from core.executor.commands import (
     CycleStart,
     EnableDrives,
     FeedHold,
-    FeedOverride,
-    Home,
+    HomeAxes,
     Jog,
-    JogStop,
     Reset,
+    SetFeedOverride,
+    SetSpindleLimit,
     SetSwitch,
-    SpindleLimit,
+    StopJog,
 )
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.executor.rig import INCH, Rig
 
 pytestmark = pytest.mark.long
@@ -51,14 +51,14 @@ COMMANDS = st.one_of(
     st.just(FeedHold()),
     st.just(Reset()),
     st.just(EnableDrives()),
-    st.just(JogStop()),
-    st.just(Home()),
-    st.builds(FeedOverride, st.sampled_from([0.0, 0.07, 0.5, 1.0, 1.5])),
+    st.just(StopJog()),
+    st.just(HomeAxes()),
+    st.builds(SetFeedOverride, st.sampled_from([0.0, 0.07, 0.5, 1.0, 1.5])),
     st.builds(SetSwitch, st.sampled_from(["single_block", "optional_stop", "cycle_repeat"]), st.booleans()),
     st.builds(
         Jog, st.sampled_from("XZC"), st.sampled_from([-50.0, -1.0, 3.0, 50.0]), st.sampled_from([0.05, 0.3])
     ),
-    st.builds(SpindleLimit, st.sampled_from([None, 900.0])),
+    st.builds(SetSpindleLimit, st.sampled_from([None, 900.0])),
 )
 HANDS = st.sampled_from(
     [
@@ -138,11 +138,11 @@ def estop(rig: Rig) -> None:
     """Wherever it got to: E-stop ends it, and release starts nothing."""
     rig.sim.machine.press_estop()
     rig.run(0.3)
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     rig.sim.machine.release_estop()
     rig.run(4.0)
-    assert rig.state is State.DISABLED
-    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.state is MachineState.DISABLED
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
     assert not rig.sim.ports.axes.sample().moving
     assert rig.shot.outputs <= {"collet"}
 
@@ -159,12 +159,12 @@ def test_stops_and_overrides_never_change_where_a_program_ends(
     rig.start("G90G94F300\nX1Z-.5\nG01F150Z-1\nG02X1.5Z-1.5I1.5K-1\nX2Z-1.8\nX2.1Z-1.7\nM08\nZ-1\nM30\n")
     for wait, fraction in zip(holds, overrides, strict=False):
         rig.run(wait)
-        rig.post(FeedOverride(fraction), FeedHold())
-        rig.until(State.HOLD, State.IDLE, limit=5.0)
-        if rig.state is State.HOLD:
+        rig.post(SetFeedOverride(fraction), FeedHold())
+        rig.until(MachineState.HOLD, MachineState.IDLE, limit=5.0)
+        if rig.state is MachineState.HOLD:
             rig.run(0.35)
             rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.shot.alarms == ()
     assert rig.shot.demand == pytest.approx((2.1 * INCH, -1.0 * INCH, 0.0), abs=1e-6)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.executor.hand_motion.jog_line import Ramp
-from core.executor.hand_motion.jogging import reach_ramps
+from core.executor.hand_motion.jogging import plan_stop_at_distance
 
 A = 3048.0
 SPEEDS = st.floats(-42.0, 42.0)
@@ -32,7 +32,7 @@ def ridden(pieces: list[Ramp], v0: float) -> tuple[float, float, float]:
 
 @given(SPEEDS, WAYS, TOPS)
 def test_it_arrives_exactly_and_at_rest(v0: float, way: float, top: float) -> None:
-    pieces = reach_ramps(v0, way, top, A)
+    pieces = plan_stop_at_distance(v0, way, top, A)
     gone, v, most = ridden(pieces, v0)
     assert gone == pytest.approx(way, abs=1e-6)
     assert v == pytest.approx(0.0, abs=1e-6)
@@ -43,7 +43,7 @@ def test_it_arrives_exactly_and_at_rest(v0: float, way: float, top: float) -> No
 def test_it_never_passes_a_place_that_it_can_stop_at(v0: float, way: float, top: float) -> None:
     stop = v0 * v0 / (2.0 * A)
     at, furthest = 0.0, 0.0
-    for dt, begins, a in reach_ramps(v0, way, top, A):
+    for dt, begins, a in plan_stop_at_distance(v0, way, top, A):
         turns = -begins / a if a and 0.0 < -begins / a < dt else dt
         furthest = max(furthest, at + (begins + 0.5 * a * turns) * turns)
         at += (begins + 0.5 * a * dt) * dt
@@ -60,4 +60,6 @@ def test_it_never_passes_a_place_that_it_can_stop_at(v0: float, way: float, top:
     ],
 )
 def test_times_by_hand(v0: float, way: float, top: float, seconds: float) -> None:
-    assert sum(piece[0] for piece in reach_ramps(v0, way, top, A)) == pytest.approx(seconds, abs=1e-9)
+    assert sum(piece[0] for piece in plan_stop_at_distance(v0, way, top, A)) == pytest.approx(
+        seconds, abs=1e-9
+    )

@@ -14,14 +14,14 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
-from core.executor.recorder import Recorder, recorded_of, rotate
-from core.executor.snapshot import Event, State, Tick
-from core.machine.hardware_model import AnalogModel
-from core.ports import ALL_UNKNOWN, DriverError, FloatArray, SampleSource, Unknown
+from core.executor.recorder import Recorder, delete_oldest_records, list_recorded_signals
+from core.executor.snapshot import LogEvent, MachineState, TickData
+from core.machine.hardware_model import AnalogInputModel
+from core.ports import ALL_UNKNOWN_PARTS, DriverError, FloatArray, SampleSource, UnknownPart
 from core.records.record import RecordError
 from core.records.record_file import open_record
-from core.records.recordings import KEPT
-from core.records.ring_file import NOW, read_ring
+from core.records.recordings import MAX_ALARM_RECORDS
+from core.records.ring_file import NOW, read_ring_file
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import pattern
 
@@ -39,21 +39,23 @@ class Recorded(Rig):
         self.every = FINE
         super().__post_init__()
         ports = self.sim.ports if self.own else dataclasses.replace(self.sim.ports, samples=None)
-        self.recorder = Recorder(recorded_of(self.machine, ports), self.folder)
+        self.recorder = Recorder(list_recorded_signals(self.machine, ports), self.folder)
 
-        def hear(event: Event) -> None:
-            self.events.append(self.recorder.note(event))
+        def hear(event: LogEvent) -> None:
+            self.events.append(self.recorder.assign_record_name(event))
 
-        self.executor = Executor(self.machine, ports, hear, self._passes, tell=self.recorder.tell)
-        self.executor.tick()
+        self.executor = Executor(
+            self.machine, ports, hear, self._passes, record_tick=self.recorder.queue_tick
+        )
+        self.executor.run_tick()
 
     def make_part(self) -> None:
         """One part."""
         self.post(EnableDrives())
         self.load(PART)
         self.post(CycleStart())
-        self.until(State.RUN)
-        self.until(State.IDLE)
+        self.until(MachineState.RUN)
+        self.until(MachineState.IDLE)
 
 
 def rig(folder: Path | None = None, *, own: bool = True) -> Recorded:
@@ -65,10 +67,10 @@ def rig(folder: Path | None = None, *, own: bool = True) -> Recorded:
 def test_a_part_is_recorded_with_line_block_state_and_outputs() -> None:
     it = rig()
     it.make_part()
-    it.recorder.drain()
-    record = it.recorder.between(-np.inf, np.inf)
-    columns = record.columns
-    assert record.rate == 1000.0
+    it.recorder.store_queued_ticks()
+    record = it.recorder.get_record_between(-np.inf, np.inf)
+    columns = record.values_by_channel
+    assert record.sampling_rate_hz == 1000.0
     assert columns["X demand"].max() == pytest.approx(0.2 * INCH, abs=1e-3)
     assert columns["Z demand"].min() == pytest.approx(-0.2 * INCH, abs=1e-3)
     feeding = columns["line"] == 4
@@ -77,31 +79,31 @@ def test_a_part_is_recorded_with_line_block_state_and_outputs() -> None:
     states = record.about["states"].split("|")
     assert {states[int(each)] for each in columns["state"][feeding]} == {"RUNNING"}
     assert columns["queue"][feeding].max() > 0.2
-    assert np.diff(record.times[feeding]) == pytest.approx(0.001, abs=1e-9)
+    assert np.diff(record.times_s[feeding]) == pytest.approx(0.001, abs=1e-9)
 
 
 def test_a_driver_without_samples_is_recorded_as_it_is_seen() -> None:
     it = rig(own=False)
     it.make_part()
-    it.recorder.drain()
-    record = it.recorder.between(-np.inf, np.inf)
-    moving = record.columns["line"] == 4
-    assert record.rate == 100.0
-    assert np.diff(record.times[moving]) == pytest.approx(0.01, abs=1e-9)
-    assert record.columns["X demand"].max() == pytest.approx(0.2 * INCH, abs=1e-3)
-    assert np.isnan(record.columns["X load"]).all()
-    assert record.columns["spindle turns"].max() > 5.0
-    assert record.columns["queue"].max() > 0.2
+    it.recorder.store_queued_ticks()
+    record = it.recorder.get_record_between(-np.inf, np.inf)
+    moving = record.values_by_channel["line"] == 4
+    assert record.sampling_rate_hz == 100.0
+    assert np.diff(record.times_s[moving]) == pytest.approx(0.01, abs=1e-9)
+    assert record.values_by_channel["X demand"].max() == pytest.approx(0.2 * INCH, abs=1e-3)
+    assert np.isnan(record.values_by_channel["X load"]).all()
+    assert record.values_by_channel["spindle turns"].max() > 5.0
+    assert record.values_by_channel["queue"].max() > 0.2
 
 
 class Loadless:
     """The driver's samples without the load of its spindle."""
 
     def __init__(self, source: SampleSource) -> None:
-        self._source, self.rate = source, source.rate
+        self._source, self.sample_rate_hz = source, source.sample_rate_hz
 
-    def take(self, most: int = 8192) -> FloatArray:
-        rows = self._source.take(most).copy()
+    def take(self, max_rows: int = 8192) -> FloatArray:
+        rows = self._source.take(max_rows).copy()
         rows[:, -2] = np.nan
         return rows
 
@@ -109,8 +111,8 @@ class Loadless:
 @pytest.mark.parametrize("own", [True, False])
 def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: bool) -> None:
     machine = load_machine()
-    pots = {"spindle_load": AnalogModel("spindle_load", "AI-1", (0.0, 150.0))}
-    hardware = dataclasses.replace(machine.hardware, analog=pots)
+    pots = {"spindle_load": AnalogInputModel("spindle_load", "AI-1", (0.0, 150.0))}
+    hardware = dataclasses.replace(machine.hardware, analog_inputs=pots)
     kind = type("LoadRecorded", (Recorded,), {"own": own})
     it: Recorded = kind(machine=dataclasses.replace(machine, hardware=hardware))
     source = it.sim.ports.samples
@@ -120,8 +122,8 @@ def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: boo
     told: list[float] = []
     it.watch.append(lambda shot: told.append(shot.spindle_load or 0.0))
     it.make_part()
-    it.recorder.drain()
-    columns = it.recorder.between(-np.inf, np.inf).columns
+    it.recorder.store_queued_ticks()
+    columns = it.recorder.get_record_between(-np.inf, np.inf).values_by_channel
     assert max(told) > 10.0
     assert np.nanmax(columns["spindle load"]) == pytest.approx(max(told))
 
@@ -130,9 +132,9 @@ def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: boo
 def test_a_machine_at_rest_takes_ten_rows_a_second(own: bool) -> None:
     it = rig(own=own)
     it.run(10.0)
-    it.recorder.drain()
-    assert it.recorder.ring.ticks.whole == pytest.approx(100, abs=12)
-    assert it.recorder.ring.samples.whole == pytest.approx(100, abs=12)
+    it.recorder.store_queued_ticks()
+    assert it.recorder.ring.ticks.rows_completed == pytest.approx(100, abs=12)
+    assert it.recorder.ring.samples.rows_completed == pytest.approx(100, abs=12)
 
 
 def test_a_late_tick_is_told_also_by_a_machine_at_rest() -> None:
@@ -140,8 +142,10 @@ def test_a_late_tick_is_told_also_by_a_machine_at_rest() -> None:
     it.run(1.0)
     it.tick(0.08)
     it.run(0.5)
-    it.recorder.drain()
-    assert it.recorder.between(0.0, 9.0, ("lateness",)).columns["lateness"].max() == pytest.approx(0.07)
+    it.recorder.store_queued_ticks()
+    assert it.recorder.get_record_between(0.0, 9.0, ("lateness",)).values_by_channel[
+        "lateness"
+    ].max() == pytest.approx(0.07)
 
 
 def test_a_driver_that_cannot_tell_its_samples_stops_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -158,13 +162,13 @@ def test_a_driver_that_cannot_tell_its_samples_stops_nothing(monkeypatch: pytest
 def test_a_recorder_that_raises_stops_nothing_and_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
     it = Rig()
 
-    def raises(_tick: Tick) -> None:
+    def raises(_tick: TickData) -> None:
         raise ValueError("no room")
 
-    it.executor = Executor(it.machine, it.sim.ports, it.events.append, tell=raises)
+    it.executor = Executor(it.machine, it.sim.ports, it.events.append, record_tick=raises)
     it.post(EnableDrives())
     it.run(0.1)
-    assert it.state is State.IDLE
+    assert it.state is MachineState.IDLE
     assert it.shot.alarms == ()
     assert [each.message for each in caplog.records] == ["the scope misses what the machine does"]
 
@@ -178,25 +182,25 @@ def test_an_alarm_keeps_the_ten_seconds_before_it_until_the_machine_stands(tmp_p
     it.run(11.0)
     it.load(PART)
     it.post(CycleStart())
-    it.until(State.RUN)
+    it.until(MachineState.RUN)
     it.run(1.2)
-    it.recorder.drain()
+    it.recorder.store_queued_ticks()
     it.sim.machine.drive_fault("X", "overcurrent")
-    it.until(State.FAULT)
+    it.until(MachineState.FAULT)
     for _ in range(300):
         it.tick()
-        it.recorder.drain()
+        it.recorder.store_queued_ticks()
     (alarm,) = [event for event in it.events if event.kind == "alarm"]
     assert alarm.alarm is not None
-    assert alarm.record.endswith(f"-alarm{alarm.alarm.number}.scope")
-    record = open_record(tmp_path / alarm.record)
-    assert record.times[0] == pytest.approx(alarm.t - 10.0, abs=0.11)
-    assert alarm.t + 0.2 < record.times[-1] < alarm.t + 2.001
-    assert float(record.about["alarm time"]) == alarm.t
+    assert alarm.record_name.endswith(f"-alarm{alarm.alarm.number}.scope")
+    record = open_record(tmp_path / alarm.record_name)
+    assert record.times_s[0] == pytest.approx(alarm.time_s - 10.0, abs=0.11)
+    assert alarm.time_s + 0.2 < record.times_s[-1] < alarm.time_s + 2.001
+    assert float(record.about["alarm time"]) == alarm.time_s
     assert record.about["alarm"].startswith(f"{alarm.alarm.number} ")
     assert record.about["program"] == "PART"
-    assert abs(record.columns["spindle speed"][-1]) < 1.0 or record.times[-1] > alarm.t + 1.9
-    np.testing.assert_array_equal(it.recorder.alarm_record(alarm.record).times, record.times)
+    assert abs(record.values_by_channel["spindle speed"][-1]) < 1.0 or record.times_s[-1] > alarm.time_s + 1.9
+    np.testing.assert_array_equal(it.recorder.open_alarm_record(alarm.record_name).times_s, record.times_s)
     assert not [each for each in tmp_path.iterdir() if each.name.endswith(".part")]
 
 
@@ -209,9 +213,9 @@ def test_alarms_that_come_together_have_one_record_and_a_closing_desk_writes_it(
     it.sim.machine.press_estop()
     it.run(0.05)
     it.recorder.close()
-    names = {event.record for event in it.events if event.kind in {"alarm", "estop"}}
+    names = {event.record_name for event in it.events if event.kind in {"alarm", "estop"}}
     assert len(names) == 1
-    assert open_record(tmp_path / names.pop()).times.size > 5
+    assert open_record(tmp_path / names.pop()).times_s.size > 5
 
 
 def test_a_record_that_is_not_there_is_told(tmp_path: Path) -> None:
@@ -219,34 +223,34 @@ def test_a_record_that_is_not_there_is_told(tmp_path: Path) -> None:
     it.post(EnableDrives())
     it.sim.machine.drive_fault("X", "overcurrent")
     it.run(0.05)
-    it.recorder.drain()
-    (name,) = {event.record for event in it.events if event.kind == "alarm"}
+    it.recorder.store_queued_ticks()
+    (name,) = {event.record_name for event in it.events if event.kind == "alarm"}
     with pytest.raises(RecordError, match=pattern("executor.record-being-written")):
-        it.recorder.alarm_record(name)
+        it.recorder.open_alarm_record(name)
     it.recorder.close()
-    assert it.recorder.alarm_record(name).times.size
+    assert it.recorder.open_alarm_record(name).times_s.size
     for gone in ("20250101T000000-alarm507.scope", f"../{tmp_path.name}/{name}", "now.ring/"):
         with pytest.raises(RecordError, match=pattern("executor.record-gone", number=50)):
-            it.recorder.alarm_record(gone)
+            it.recorder.open_alarm_record(gone)
     with pytest.raises(RecordError, match=pattern("executor.record-gone")):
-        rig().recorder.alarm_record(name)
+        rig().recorder.open_alarm_record(name)
 
 
 def test_a_stop_has_no_record(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.make_part()
     it.recorder.close()
-    assert {event.record for event in it.events} == {""}
+    assert {event.record_name for event in it.events} == {""}
     assert [each.name for each in tmp_path.iterdir()] == [NOW]
 
 
 def test_the_oldest_records_of_alarms_go(tmp_path: Path) -> None:
-    for n in range(KEPT + 3):
+    for n in range(MAX_ALARM_RECORDS + 3):
         (tmp_path / f"20260101T1200{n:02d}-alarm507.scope").write_bytes(b"")
     (tmp_path / "mine.scope").write_bytes(b"")
-    rotate(tmp_path)
+    delete_oldest_records(tmp_path)
     left = sorted(each.name for each in tmp_path.iterdir())
-    assert len(left) == KEPT + 1
+    assert len(left) == MAX_ALARM_RECORDS + 1
     assert left[0] == "20260101T120003-alarm507.scope"
     assert left[-1] == "mine.scope"
 
@@ -258,10 +262,10 @@ def test_the_file_has_what_the_memory_has(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.make_part()
     it.recorder.close()
-    kept, found = it.recorder.between(-np.inf, np.inf), read_ring(tmp_path / NOW)
-    np.testing.assert_array_equal(found.times, kept.times)
+    kept, found = it.recorder.get_record_between(-np.inf, np.inf), read_ring_file(tmp_path / NOW)
+    np.testing.assert_array_equal(found.times_s, kept.times_s)
     for name in ("X demand", "Z actual", "line", "output coolant", "spindle turns"):
-        np.testing.assert_array_equal(found.columns[name], kept.columns[name], name)
+        np.testing.assert_array_equal(found.values_by_channel[name], kept.values_by_channel[name], name)
 
 
 def test_a_full_disk_is_told_and_the_record_goes_on_in_memory(
@@ -273,11 +277,11 @@ def test_a_full_disk_is_told_and_the_record_goes_on_in_memory(
     monkeypatch.setattr(os, "posix_fallocate", full)
     it = rig(tmp_path)
     full_disk = pattern("executor.disk-full", path="now.ring")
-    assert re.search(full_disk, it.recorder.trouble)
-    assert re.fullmatch(pattern("executor.record-in-memory"), it.recorder.trouble)
+    assert re.search(full_disk, it.recorder.storage_error)
+    assert re.fullmatch(pattern("executor.record-in-memory"), it.recorder.storage_error)
     it.make_part()
-    it.recorder.drain()
-    assert it.recorder.between(-np.inf, np.inf).columns["X demand"].max() > 5.0
+    it.recorder.store_queued_ticks()
+    assert it.recorder.get_record_between(-np.inf, np.inf).values_by_channel["X demand"].max() > 5.0
     it.recorder.close()
 
 
@@ -286,18 +290,18 @@ def test_a_disk_that_fails_later_ends_the_file_and_not_the_record(
 ) -> None:
     it = rig(tmp_path)
     it.run(1.0)
-    it.recorder.drain()
+    it.recorder.store_queued_ticks()
 
     def fails(*_: object) -> int:
         raise OSError(errno.EIO, os.strerror(errno.EIO))
 
     monkeypatch.setattr(os, "pwrite", fails)
     it.make_part()
-    it.recorder.drain()
+    it.recorder.store_queued_ticks()
     monkeypatch.undo()
-    assert "now.ring: Input/output error" in it.recorder.trouble
-    assert it.recorder.between(-np.inf, np.inf).columns["X demand"].max() > 5.0
-    assert read_ring(tmp_path / NOW).times.size >= 10
+    assert "now.ring: Input/output error" in it.recorder.storage_error
+    assert it.recorder.get_record_between(-np.inf, np.inf).values_by_channel["X demand"].max() > 5.0
+    assert read_ring_file(tmp_path / NOW).times_s.size >= 10
 
 
 @pytest.mark.parametrize("own", [True, False])
@@ -305,17 +309,17 @@ def test_of_what_nothing_is_heard_the_record_has_a_gap(own: bool) -> None:
     """0.5 s without a word, then it is heard again: nothing is drawn across."""
     it = rig(own=own)
     it.make_part()
-    unknown: list[frozenset[Unknown]] = [frozenset()]
+    unknown: list[frozenset[UnknownPart]] = [frozenset()]
     it.executor._ports = dataclasses.replace(it.executor._ports, unknown=lambda: unknown[0])
     it.run(0.2)
-    lost, unknown[0] = it.executor._ports.clock.now(), ALL_UNKNOWN
+    lost, unknown[0] = it.executor._ports.clock.now(), ALL_UNKNOWN_PARTS
     it.run(0.5)
     back, unknown[0] = it.executor._ports.clock.now(), frozenset()
     it.run(0.5)
-    it.recorder.drain()
-    record = it.recorder.between(lost - 0.1, back + 0.3)
-    dark = (record.times > lost + 0.0099) & (record.times < back - 0.02)
+    it.recorder.store_queued_ticks()
+    record = it.recorder.get_record_between(lost - 0.1, back + 0.3)
+    dark = (record.times_s > lost + 0.0099) & (record.times_s < back - 0.02)
     assert dark.sum() == 1
     for name in ("X actual", "X demand", "spindle speed", "output collet"):
-        assert np.isnan(record.columns[name][dark]).all()
-        assert np.isfinite(record.columns[name][[0, -1]]).all()
+        assert np.isnan(record.values_by_channel[name][dark]).all()
+        assert np.isfinite(record.values_by_channel[name][[0, -1]]).all()

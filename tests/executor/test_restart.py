@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.workshop import proof_of
-from app.searchto.searchto_model import WAY_OUT
-from app.searchto.searchto_plan import way_out_of
-from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
+from app.compose.program_proving import create_proof
+from app.searchto.restart_plan import plan_retract
+from app.searchto.searchto_model import RETRACT_TEXT
+from core.executor.commands import CycleStart, FeedHold, LoadJob, PrepareStart, Reset
 from core.executor.control_status import Workpiece
 from core.executor.job import Job, Proof, make_job
-from core.executor.snapshot import Snapshot, Starts, State
-from core.interpreter.restart.restart_approach import Choices
-from core.interpreter.restart.state_rebuild import StateRebuild
-from core.interpreter.shared.checkpoint import Leg
-from core.language.source import Source
+from core.executor.snapshot import MachineState, Snapshot, StartAction
+from core.interpreter.restart.restart_approach import OperatorChoices
+from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.shared.checkpoint import StraightLeg
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.executor import lines
 from tests.executor.lines import TOOLS, mdi
@@ -31,7 +31,7 @@ PART = (
 )
 
 
-def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int = 0) -> Job:
+def restart_job(rig: Rig, line: int, choices: OperatorChoices | None = None, number: int = 0) -> Job:
     """As an operator would have it: the line can be begun at."""
     job = lines.restart_job(rig, line, choices, number)
     assert job is not None
@@ -41,15 +41,15 @@ def restart_job(rig: Rig, line: int, choices: Choices | None = None, number: int
 def prepare(rig: Rig, job: Job) -> None:
     report = prove(job.source, job.setup, rig.machine)
     assert not report.errors, report.errors
-    rig.post(Prepare(Starts.RESTART, job, proof_of(job, report)))
+    rig.post(PrepareStart(StartAction.RESTART, job, create_proof(job, report)))
     rig.run(0.9)  # a start counts when it was meant before the hands came down
 
 
-def restart(rig: Rig, line: int, choices: Choices | None = None) -> None:
+def restart(rig: Rig, line: int, choices: OperatorChoices | None = None) -> None:
     rig.run(0.4)
     prepare(rig, restart_job(rig, line, choices))
     rig.post(CycleStart())
-    assert not rig.shot.start_refused, rig.shot.start_refused
+    assert not rig.shot.start_refusal, rig.shot.start_refusal
 
 
 def broken_off(rig: Rig, at_z: float = -0.3) -> None:
@@ -57,9 +57,9 @@ def broken_off(rig: Rig, at_z: float = -0.3) -> None:
     rig.start(PART, TOOLS)
     rig.until_true(lambda shot: shot.line == 8 and shot.actual[1] < -50.8 + at_z * INCH)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.ready()
 
 
@@ -71,7 +71,7 @@ def test_the_line_that_was_running_is_offered_and_forgotten_when_the_part_is_don
     assert rig.shot.interrupted_line == 8
     restart(rig, 8)
     assert rig.shot.interrupted_line == 0
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.interrupted_line == 0
     assert rig.shot.parts == 1
 
@@ -82,7 +82,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line() -> None:
     seen: list[Snapshot] = []
     rig.watch.append(seen.append)
     restart(rig, 8)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     way = [shot for shot in seen if shot.block_text in {"X", "Z"}]
     x = [round((shot.demand[0] + 12.7) / INCH, 4) for shot in way]
     z = [round((shot.demand[1] + 50.8) / INCH, 4) for shot in way]
@@ -118,8 +118,8 @@ def test_coolant_that_is_not_confirmed_stays_off() -> None:
     broken_off(rig)
     seen: list[Snapshot] = []
     rig.watch.append(seen.append)
-    restart(rig, 8, Choices(coolant=False))
-    rig.until(State.IDLE)
+    restart(rig, 8, OperatorChoices(coolant=False))
+    rig.until(MachineState.IDLE)
     assert not any("coolant" in shot.outputs for shot in seen)
 
 
@@ -131,7 +131,7 @@ def test_the_spindle_of_mdi_is_stopped_where_the_line_has_none() -> None:
     rig.until_true(lambda shot: shot.line == 13 and shot.block_text == "Z")
     assert rig.shot.rpm_command == 0.0
     assert "coolant" not in rig.shot.outputs
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 def test_a_program_is_repeated_from_its_first_line_after_a_restart() -> None:
@@ -142,15 +142,15 @@ def test_a_program_is_repeated_from_its_first_line_after_a_restart() -> None:
     rig.until_true(lambda shot: shot.parts == 1)
     rig.until_true(lambda shot: shot.line == 3)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 def test_the_next_start_is_the_whole_program_again() -> None:
     rig = Rig()
     broken_off(rig)
     restart(rig, 13)
-    rig.until(State.IDLE)
-    assert rig.shot.starts is Starts.PROGRAM
+    rig.until(MachineState.IDLE)
+    assert rig.shot.starts is StartAction.PROGRAM
     rig.run(0.4)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.line == 3)
@@ -159,8 +159,8 @@ def test_the_next_start_is_the_whole_program_again() -> None:
 def refused(rig: Rig) -> str:
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.state is State.IDLE
-    return rig.shot.start_refused
+    assert rig.state is MachineState.IDLE
+    return rig.shot.start_refusal
 
 
 def test_no_start_from_another_place_than_was_proved() -> None:
@@ -193,9 +193,9 @@ def test_loading_a_program_takes_a_prepared_restart_back() -> None:
     rig = Rig()
     broken_off(rig)
     prepare(rig, restart_job(rig, 8))
-    assert rig.shot.starts is Starts.RESTART
+    assert rig.shot.starts is StartAction.RESTART
     rig.load(PART, TOOLS)
-    assert (rig.shot.starts, rig.shot.prepared) == (Starts.RESTART, "")
+    assert (rig.shot.starts, rig.shot.prepared_digest) == (StartAction.RESTART, "")
     assert refused(rig) == text("executor.no-restart")
 
 
@@ -206,12 +206,14 @@ def test_palms_in_one_slap_with_the_answer_start_no_restart(seconds: float, star
     broken_off(rig)
     job = restart_job(rig, 8)
     rig.run(1.0)
-    rig.post(Prepare(Starts.RESTART, job, proof_of(job, prove(job.source, job.setup, rig.machine))))
+    rig.post(
+        PrepareStart(StartAction.RESTART, job, create_proof(job, prove(job.source, job.setup, rig.machine)))
+    )
     rig.run(seconds)
     rig.sim.machine.press_start()
     rig.run(0.1)
-    assert (rig.state is not State.IDLE) is starts
-    assert (text("executor.meant-just-now") in rig.shot.start_refused) is not starts
+    assert (rig.state is not MachineState.IDLE) is starts
+    assert (text("executor.meant-just-now") in rig.shot.start_refusal) is not starts
 
 
 def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
@@ -219,12 +221,12 @@ def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
     rig = Rig()
     broken_off(rig)
     rig.run(1.0)
-    rig.post(Prepare(Starts.RESTART))
+    rig.post(PrepareStart(StartAction.RESTART))
     rig.run(0.3)
     rig.sim.machine.press_start()
     rig.run(0.1)
-    assert rig.state is State.IDLE
-    assert rig.shot.start_refused == text("executor.no-restart")
+    assert rig.state is MachineState.IDLE
+    assert rig.shot.start_refusal == text("executor.no-restart")
 
 
 def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
@@ -234,7 +236,7 @@ def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
     begin = job.setup.begin
     assert begin is not None
     far = tuple(
-        step._replace(z=500.0) if isinstance(step, Leg) and step.z is not None else step
+        step._replace(z=500.0) if isinstance(step, StraightLeg) and step.z is not None else step
         for step in begin.approach
     )
     setup = replace(job.setup, begin=begin._replace(approach=far))
@@ -246,9 +248,9 @@ def test_an_unproved_restart_does_not_start() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
-    rig.post(Prepare(Starts.RESTART, job))
+    rig.post(PrepareStart(StartAction.RESTART, job))
     assert refused(rig) == text("executor.not-proved")
-    rig.post(Prepare(Starts.RESTART, job, Proof("another", ())))
+    rig.post(PrepareStart(StartAction.RESTART, job, Proof("another", ())))
     assert refused(rig).startswith(text("executor.other-proof"))
 
 
@@ -257,10 +259,10 @@ def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
     rig.start(PART, TOOLS)
     job = rig.executor._control.status.job
     assert job is not None
-    rig.post(Prepare(Starts.RESTART, job))
+    rig.post(PrepareStart(StartAction.RESTART, job))
     assert text("executor.program-keeps-others-out") in rig.said("refused")[-1]
     rig.post(LoadJob(job))
-    assert rig.shot.starts is Starts.PROGRAM
+    assert rig.shot.starts is StartAction.PROGRAM
 
 
 def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
@@ -270,7 +272,7 @@ def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
     restart(rig, 4)  # so early that the way has more blocks than the program before it
     texts = []
     for _ in range(20):
-        rig.until(State.BLOCK_END, State.IDLE)
+        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
         texts.append(rig.shot.block_text)
         if rig.shot.line == 6:
             break
@@ -288,7 +290,7 @@ def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
     whole = rig.executor._control.status.job
     assert whole is not None
     bare = replace(whole, tools_set=frozenset())
-    rig.post(LoadJob(bare, Proof(bare.digest, (), tools=(1,))))
+    rig.post(LoadJob(bare, Proof(bare.digest, (), tool_numbers=(1,))))
     prepare(rig, job)
     assert refused(rig) == text("executor.tool-offset-unset", tools="T1")
 
@@ -310,9 +312,9 @@ def stopped_in_a_groove(rig: Rig, at_z: float = -0.4) -> None:
         )
     )
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.ready()
 
 
@@ -321,16 +323,16 @@ def way_out_alone(rig: Rig) -> None:
     rig.run(0.4)
     whole = rig.executor._control.status.job
     assert whole is not None
-    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = way_out_of(cut, rig.shot, whole, Choices())
-    assert not out.trouble, out.trouble
-    setup = replace(whole.setup, start=rig.shot.demand, begin=out.begin)
-    job = make_job(Source("WAY OUT", WAY_OUT), setup)
-    report = prove(job.reading, job.setup, rig.machine)
+    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    out = plan_retract(cut, rig.shot, whole, OperatorChoices())
+    assert not out.error_text, out.error_text
+    setup = replace(whole.setup, start=rig.shot.demand, begin=out.start_state)
+    job = make_job(ProgramSource("WAY OUT", RETRACT_TEXT), setup)
+    report = prove(job.shared_program, job.setup, rig.machine)
     assert not report.errors, report.errors
-    rig.post(Prepare(Starts.WAY_OUT, job, proof_of(job, report)))
+    rig.post(PrepareStart(StartAction.RETRACT, job, create_proof(job, report)))
     rig.post(CycleStart())
-    assert not rig.shot.start_refused, rig.shot.start_refused
+    assert not rig.shot.start_refusal, rig.shot.start_refusal
 
 
 def test_a_restart_that_leaves_a_cut_incomplete_makes_no_part() -> None:
@@ -339,11 +341,11 @@ def test_a_restart_that_leaves_a_cut_incomplete_makes_no_part() -> None:
     job = restart_job(rig, 8)
     begin, piece = job.setup.begin, Workpiece()
     assert begin is not None
-    piece.begin(job, begin.checkpoint.blocks)
-    assert piece.why_none == ""
+    piece.start_run(job, begin.checkpoint.blocks)
+    assert piece.uncounted_reason == ""
     skips = replace(job.setup, begin=begin._replace(skips_cuts=True))
-    piece.begin(replace(job, setup=skips), begin.checkpoint.blocks)
-    assert piece.why_none == text("executor.left-out")
+    piece.start_run(replace(job, setup=skips), begin.checkpoint.blocks)
+    assert piece.uncounted_reason == text("executor.left-out")
 
 
 def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() -> None:
@@ -352,11 +354,11 @@ def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() ->
     seen: list[Snapshot] = []
     rig.watch.append(seen.append)
     way_out_alone(rig)
-    rig.until(State.IDLE)
-    rig.post(Prepare(Starts.RESTART))
+    rig.until(MachineState.IDLE)
+    rig.post(PrepareStart(StartAction.RESTART))
     rig.tick()
-    assert rig.shot.reads_diameter
-    assert all(shot.reads_diameter for shot in seen)
+    assert rig.shot.shows_diameter
+    assert all(shot.shows_diameter for shot in seen)
     for shot in seen:
         x, z = (shot.actual[0] + 12.7) / INCH, (shot.actual[1] + 50.8) / INCH
         assert z == pytest.approx(-0.4, abs=2e-3) or x > 0.45 - 2e-3  # X.9 is where it came from
@@ -372,13 +374,13 @@ def test_the_way_out_can_be_held_and_the_rest_of_it_asked_for_anew() -> None:
     way_out_alone(rig)
     rig.until_true(lambda shot: (shot.actual[0] + 12.7) / INCH > 0.41)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     held = rig.shot.actual[0]
     way_out_alone(rig)
     rig.until_true(lambda shot: shot.actual[0] > held + 0.1)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert (rig.shot.actual[1] + 50.8) / INCH == pytest.approx(0.5, abs=2e-3)
 
 
@@ -392,7 +394,7 @@ def test_a_loop_is_gone_on_with_in_the_pass_that_was_interrupted() -> None:
             seen.append(round((shot.actual[1] + 50.8) / INCH, 2)) if shot.waiting_for == "DWELL" else None
         )
     )
-    rig.until(State.IDLE, limit=120.0)
+    rig.until(MachineState.IDLE, limit=120.0)
     assert sorted(set(seen)) == [-0.7, -0.4]  # the first groove is not cut again
     assert rig.shot.parts == 1
 
@@ -403,15 +405,15 @@ def test_a_turned_pass_that_is_fed_off_is_left_along_itself() -> None:
     rig.start(PART.replace("G94F300X1.2\nZ.2", "X1.2\nG94F300Z.2"), TOOLS)
     rig.until_true(lambda shot: shot.line == 8 and shot.actual[1] < -50.8 - 0.3 * INCH)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.ready()
     x = rig.shot.actual[0]
     seen: list[Snapshot] = []
     rig.watch.append(seen.append)
     way_out_alone(rig)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert all(shot.actual[0] == pytest.approx(x, abs=0.01) for shot in seen if shot.actual[1] < -50.8)
 
 
@@ -421,9 +423,9 @@ def test_a_restart_that_breaks_off_on_its_way_out_still_knows_the_way_out() -> N
     restart(rig, 7)
     rig.until_true(lambda shot: (shot.actual[0] + 12.7) / INCH > 0.41)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.ready()
     rig.run(0.5)
     z = rig.shot.actual[1]
@@ -432,7 +434,7 @@ def test_a_restart_that_breaks_off_on_its_way_out_still_knows_the_way_out() -> N
     seen: list[Snapshot] = []
     rig.watch.append(seen.append)
     way_out_alone(rig)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     low = [shot for shot in seen if (shot.actual[0] + 12.7) / INCH < 0.448]
     assert low
     assert all(shot.actual[1] == pytest.approx(z, abs=0.02) for shot in low)
@@ -444,17 +446,17 @@ def test_a_turned_pass_broken_off_again_on_its_way_off_the_part() -> None:
     restart(rig, 8)
     rig.until_true(lambda shot: (shot.actual[0] + 12.7) / INCH > 0.45)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.ready()
     rig.run(0.5)
     whole = rig.executor._control.status.job
     assert whole is not None
-    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = way_out_of(cut, rig.shot, whole, Choices())
-    assert not out.trouble
-    assert [leg.label for leg in out.legs] == ["", "1 X", "2 Z", "3 Z"]
+    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    out = plan_retract(cut, rig.shot, whole, OperatorChoices())
+    assert not out.error_text
+    assert [leg.label for leg in out.drawn_legs] == ["", "1 X", "2 Z", "3 Z"]
 
 
 def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stands() -> None:
@@ -464,10 +466,10 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     whole = rig.executor._control.status.job
     assert whole is not None
     assert rig.shot.interrupted_line == 7
-    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = way_out_of(cut, rig.shot, whole, Choices())
-    assert out.trouble == text("executor.how-tool-came", tool=1)
-    assert not out.begin.approach
+    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    out = plan_retract(cut, rig.shot, whole, OperatorChoices())
+    assert out.error_text == text("executor.how-tool-came", tool=1)
+    assert not out.start_state.approach
 
 
 def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
@@ -476,10 +478,13 @@ def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
     rig.run(0.4)
     whole = rig.executor._control.status.job
     assert whole is not None
-    cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
-    out = way_out_of(cut, rig.shot, whole, Choices())
-    job = make_job(Source("WAY OUT", WAY_OUT), replace(whole.setup, start=rig.shot.demand, begin=out.begin))
-    report = prove(job.reading, job.setup, rig.machine)
+    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    out = plan_retract(cut, rig.shot, whole, OperatorChoices())
+    job = make_job(
+        ProgramSource("WAY OUT", RETRACT_TEXT),
+        replace(whole.setup, start=rig.shot.demand, begin=out.start_state),
+    )
+    report = prove(job.shared_program, job.setup, rig.machine)
     mdi(rig, "G91", "X.01F5")
-    rig.post(Prepare(Starts.LINE, job, proof_of(job, report)))
+    rig.post(PrepareStart(StartAction.MDI_LINE, job, create_proof(job, report)))
     assert refused(rig) == text("executor.moved-since", remedy=text("executor.ask-way-out-again"))

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine.machine_setup import setup_for
-from core.executor.commands import CycleStart, FeedHold, FeedOverride, Jog, SetSwitch
-from core.executor.snapshot import State
+from app.compose.machine.machine_setup import create_setup
+from core.executor.commands import CycleStart, FeedHold, Jog, SetFeedOverride, SetSwitch
+from core.executor.snapshot import MachineState
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from tests.executor.rig import FINE, INCH, CreepingClock, Rig
 from tests.motion.paths import build_path
 from tests.texts import text
@@ -22,7 +22,7 @@ LINE = "G90G94F300\nG01F60Z-1\nX1\nM30\n"
 def test_runs_to_the_end_and_counts_the_part() -> None:
     rig = Rig()
     rig.start(LINE)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(1.0 * INCH, abs=0.006)
     assert rig.shot.actual[1] == pytest.approx(-1.0 * INCH, abs=0.006)
     assert rig.shot.parts == 1
@@ -53,7 +53,7 @@ def test_feed_waits_for_the_spindle_and_rapids_do_not() -> None:
     assert rig.shot.rpm_actual < 1500
     rig.until_true(lambda shot: shot.actual[1] < -0.001)
     assert rig.shot.rpm_actual == pytest.approx(3000, rel=0.05)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.rpm_command == 0.0
 
 
@@ -64,7 +64,7 @@ def test_dwell_and_collet_take_their_time() -> None:
     assert rig.until_true(lambda shot: shot.waiting_for == "COLLET") == pytest.approx(1.5, abs=0.02)
     assert "collet" not in rig.shot.outputs
     # 0.25 s to open and 0.30 s to close, 20 % spread each
-    assert rig.until(State.IDLE) == pytest.approx(0.55, abs=0.13)
+    assert rig.until(MachineState.IDLE) == pytest.approx(0.55, abs=0.13)
     assert "collet" in rig.shot.outputs
 
 
@@ -72,11 +72,11 @@ def test_wait_input_waits_for_its_terminal() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM92\nX1\nM30\n")
     rig.run(3.0)
-    assert rig.state is State.WAIT
+    assert rig.state is MachineState.WAIT
     assert rig.shot.waiting_for == "TB2-5"
     assert rig.shot.actual[0] == 0.0
     rig.sim.machine.set_input("TB2-5", True)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(INCH, abs=0.006)
 
 
@@ -86,7 +86,7 @@ def test_a_branch_asks_its_input_when_its_turn_comes(closed: bool) -> None:
     rig.start("G90G94F300\nG04F1\nM97I10C1P1\nZ-.5\nM30\n}1\nX1\nM99\n")
     rig.run(0.5)
     rig.sim.machine.set_input("10", closed)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(INCH if closed else 0.0, abs=0.006)
     assert rig.shot.actual[1] == pytest.approx(-0.5 * INCH, abs=0.006)
 
@@ -94,13 +94,13 @@ def test_a_branch_asks_its_input_when_its_turn_comes(closed: bool) -> None:
 def test_m00_waits_with_its_message_and_goes_on() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM00(TURN THE PART)\nX1\nM30\n")
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     assert rig.shot.message == "TURN THE PART"
     rig.run(5.0)
-    assert rig.state is State.PROGRAM_STOP
+    assert rig.state is MachineState.PROGRAM_STOP
     rig.post(CycleStart())
     assert rig.shot.message == ""
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -109,19 +109,19 @@ def test_m01_stops_only_with_optional_stop(on: bool) -> None:
     rig = Rig()
     rig.post(SetSwitch("optional_stop", on))
     rig.start("G90G94F300\nM01(LOOK)\nX1\nM30\n")
-    assert rig.until(State.PROGRAM_STOP, State.IDLE) < 1.0
-    assert rig.state is (State.PROGRAM_STOP if on else State.IDLE)
+    assert rig.until(MachineState.PROGRAM_STOP, MachineState.IDLE) < 1.0
+    assert rig.state is (MachineState.PROGRAM_STOP if on else MachineState.IDLE)
     assert rig.shot.message == ("LOOK" if on else "")
 
 
 def test_m30_switches_off_and_m02_leaves_on() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S500\nM08\nM25\nX.1\nM02\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert {"coolant", "catcher"} <= rig.shot.outputs
     assert rig.shot.rpm_command == 500
     rig.start("G90G94F300\nX.2\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert not {"coolant", "catcher"} & rig.shot.outputs
     assert rig.shot.rpm_command == 0
     assert "collet" in rig.shot.outputs
@@ -133,13 +133,13 @@ def test_cycle_repeat_starts_over_until_m31() -> None:
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start("G90G94F300\nX.5\nX0\nM30\n")
     rig.until_true(lambda shot: shot.parts == 3)
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
     rig.post(SetSwitch("cycle_repeat", False))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 4
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start("G90G94F300\nX.5\nX0\nM31\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 5
     assert not rig.shot.cycle_repeat
 
@@ -147,10 +147,10 @@ def test_cycle_repeat_starts_over_until_m31() -> None:
 def test_stops_do_not_count_in_the_cycle_time() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM00\nG04F1\nM30\n")
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.run(30.0)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.last_cycle == pytest.approx(1.0, abs=0.05)
 
 
@@ -179,7 +179,7 @@ def test_a_long_program_of_short_moves_keeps_its_feed() -> None:
     rig = Rig()
     moves = "".join(f"Z-{0.002 * k:.4f}\n" for k in range(1, 1501))
     rig.start("G90G94F300\nG01F100\n" + moves + "M30\n")
-    took = rig.until(State.IDLE)
+    took = rig.until(MachineState.IDLE)
     assert took == pytest.approx(3.0 / 100 * 60, abs=0.15)  # 3 in at 100 in/min
     assert rig.shot.underruns == 0
 
@@ -188,7 +188,7 @@ def test_an_error_that_only_a_live_input_brings_stops_the_run() -> None:
     rig = Rig()
     rig.sim.machine.set_input("10", True)
     rig.start("G90G94F300\nX.5\nM97I10C1P1\nM30\n}1\nM97I10C1P1\nM99\n")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     alarm = rig.shot.alarms[0]
     assert (alarm.code, alarm.line) == ("program", 6)
     assert rig.shot.actual[0] == pytest.approx(0.5 * INCH, abs=0.006)
@@ -198,7 +198,7 @@ def test_an_error_that_only_a_live_input_brings_stops_the_run() -> None:
 def test_a_block_beyond_the_travel_is_not_begun() -> None:
     rig = Rig()
     rig.start("G90G94F300\nX1\nX4.5\nM30\n")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "travel"
     assert "X" in rig.shot.alarms[0].cause
     assert rig.shot.actual[0] <= INCH + 0.006
@@ -207,7 +207,7 @@ def test_a_block_beyond_the_travel_is_not_begun() -> None:
 def test_feed_per_revolution_with_a_still_spindle_moves_nothing() -> None:
     rig = Rig()
     rig.start("G90G94F300\nG95F.01Z-1\nM30\n")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.shot.actual[1] == 0.0
     assert rig.shot.alarms[0].code in {"spindle-still", "program"}
 
@@ -218,15 +218,15 @@ def test_a_clock_that_never_stands_still_changes_nothing() -> None:
     for wait in (0.2, 1.5, 0.4):
         rig.run(wait)
         rig.post(FeedHold())
-        rig.until(State.HOLD, limit=1.0)
+        rig.until(MachineState.HOLD, limit=1.0)
         rig.run(0.4)
-        rig.post(FeedOverride(0.8), CycleStart())
-    rig.until(State.IDLE)
+        rig.post(SetFeedOverride(0.8), CycleStart())
+    rig.until(MachineState.IDLE)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 1
     assert rig.shot.demand[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
     rig.post(Jog("X", 10.0, 0.2))
-    rig.until(State.IDLE, limit=1.0)
+    rig.until(MachineState.IDLE, limit=1.0)
 
 
 def test_the_run_obeys_the_law_of_the_whole_path() -> None:
@@ -234,9 +234,9 @@ def test_the_run_obeys_the_law_of_the_whole_path() -> None:
     zigzag = "".join(f"X{0.02 * k:.4f}Z-{0.01 * k + 0.1 * (k // 5 % 2):.4f}\n" for k in range(1, 150))
     text = f"G90G94F300\nG01F100\n{zigzag}G02X3.2Z-2R.4\nG01X3.5Z-1\nX0Z0\nX1\nX2Z-1\nM30\n"
     rig = Rig()
-    setup = setup_for(rig.machine, tools={}, secondary={})
-    blocks = Interpreter(read_program(Source("PART", text)), setup).blocks()
-    whole = plan(
+    setup = create_setup(rig.machine, tool_offsets={}, secondary_offsets={})
+    blocks = Interpreter(read_program(ProgramSource("PART", text)), setup).generate_blocks()
+    whole = plan_motion(
         build_path(
             [block for block in blocks if block.moves],
             MotionLimits.of(rig.machine.axes, rig.machine.timing.setpoint),
@@ -245,10 +245,10 @@ def test_the_run_obeys_the_law_of_the_whole_path() -> None:
     rig.start(text)
     began = rig.clock.now() + rig.machine.timing.commit
     furthest = 0.0
-    while rig.state is not State.IDLE:
+    while rig.state is not MachineState.IDLE:
         rig.tick()
         there = rig.sim.ports.axes.demand_at(rig.clock.now())[0]
-        wanted = whole.position(rig.clock.now() - began)[0]
+        wanted = whole.positions_at(rig.clock.now() - began)[0]
         furthest = max(furthest, *(abs(a - b) for a, b in zip(there, wanted, strict=True)))
     assert rig.shot.parts == 1
     assert furthest < 1e-4
@@ -257,7 +257,7 @@ def test_the_run_obeys_the_law_of_the_whole_path() -> None:
 def test_the_next_block_is_never_the_one_that_is_carried_out() -> None:
     rig = Rig()
     rig.start("G90G94F300\nX1\nG04F1\nX0\nX1\nM30\n")
-    rig.until_true(lambda shot: shot.line == 2 and shot.state is State.RUN)
+    rig.until_true(lambda shot: shot.line == 2 and shot.state is MachineState.RUN)
     assert rig.shot.next_text == "G04F1"
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
     assert (rig.shot.block_text, rig.shot.next_text) == ("G04F1", "")  # read once the dwell is over

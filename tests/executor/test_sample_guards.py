@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
 from tests.executor.rig import Rig
 
@@ -48,24 +48,24 @@ def cutting(name: str) -> Rig:
 def test_an_opened_guard_stops_the_cycle_of_each_sample(name: str) -> None:
     rig = cutting(name)
     rig.sim.machine.set_input("guard", False)
-    rig.until(State.HOLD, limit=0.5)
+    rig.until(MachineState.HOLD, limit=0.5)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0, limit=4.0)
     assert rig.shot.stop is not None
     assert rig.shot.stop.code == "guard-open"
     rig.sim.machine.set_input("guard", True)
     rig.run(1.0)
-    assert (rig.state, rig.shot.rpm_actual) == (State.HOLD, 0.0)
+    assert (rig.state, rig.shot.rpm_actual) == (MachineState.HOLD, 0.0)
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_the_hold_button_of_each_sample_holds(name: str) -> None:
     rig = cutting(name)
     rig.sim.machine.press_hold()
-    rig.until(State.HOLD, limit=0.5)
+    rig.until(MachineState.HOLD, limit=0.5)
 
 
 def test_the_safety_circuit_of_a_parallel_port_with_its_guard_is_an_emergency_stop() -> None:
     rig = cutting("gt75-parport")
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP, limit=0.1)
+    rig.until(MachineState.ESTOP, limit=0.1)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0, limit=4.0)

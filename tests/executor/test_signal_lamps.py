@@ -7,11 +7,11 @@ import dataclasses
 import pytest
 
 from app.compose.machine.machine_files import load_machine, parse_machine
-from core.executor.commands import BarNextPart, CycleStart, FeedHold, ForceOutput, Reset, SetSwitch
+from core.executor.commands import BlockNextPart, CycleStart, FeedHold, ForceOutput, Reset, SetSwitch
 from core.executor.executor import Executor
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
-from core.ports import DriverError, Unknown
+from core.ports import DriverError, UnknownPart
 from core.table_schema import MachineFileError
 from tests.executor.rig import FINE, Rig
 from tests.texts import text
@@ -65,7 +65,7 @@ def test_green_while_a_cycle_runs_and_amber_when_the_part_is_done(rig: Rig) -> N
     rig.start(PART)
     rig.run(0.5)
     assert tower(rig) == {"green"}
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(0.1)
     assert tower(rig) == {"amber", "buzzer"}
     rig.run(0.5)
@@ -93,7 +93,7 @@ def test_a_stop_blinks_amber_and_buzzes_once(rig: Rig, how: str) -> None:
     if how == "hold":
         rig.run(0.5)
         rig.post(FeedHold())
-    rig.until(State.HOLD, State.PROGRAM_STOP)
+    rig.until(MachineState.HOLD, MachineState.PROGRAM_STOP)
     assert times(rig, 0.05)["buzzer"] <= 1
     assert times(rig, 10.0) == {"red": 0, "amber": 10, "green": 0, "buzzer": 0}  # once a second
 
@@ -102,7 +102,7 @@ def test_an_alarm_blinks_red_and_the_rest_is_safe(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     rig.sim.machine.drive_fault("X")
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert "green" not in tower(rig)
     found = times(rig, 10.0)
     assert found["red"] in {9, 10}  # once a second
@@ -114,7 +114,7 @@ def test_an_estop_is_red_and_silent(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.run(1.5)
     assert tower(rig) == {"red"}
     assert times(rig, 5.0) == {"red": 0, "amber": 0, "green": 0, "buzzer": 0}
@@ -123,7 +123,7 @@ def test_an_estop_is_red_and_silent(rig: Rig) -> None:
 def test_a_barred_part_blinks_amber_beside_green(rig: Rig) -> None:
     rig.start(PART.replace("F30", "F10"))
     rig.run(0.3)
-    rig.post(BarNextPart("T1: its life is gone"))
+    rig.post(BlockNextPart("T1: its life is gone"))
     rig.run(1.2)
     found = times(rig, 2.0)
     assert (found["amber"], found["green"]) == (2, 0)
@@ -133,7 +133,7 @@ def test_a_barred_part_blinks_amber_beside_green(rig: Rig) -> None:
 def test_the_end_of_the_control_leaves_what_the_file_calls_safe(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
-    rig.executor.shut()
+    rig.executor.shut_down()
     assert tower(rig) == {"red"}
 
 
@@ -144,8 +144,8 @@ def test_what_switches_a_lamp_off_holds_no_cycle_and_it_is_lit_again(rig: Rig) -
     rig.run(0.02)
     assert tower(rig) == set()
     rig.run(1.1)
-    assert (rig.state, tower(rig)) == (State.RUN, {"green"})
-    rig.until(State.IDLE)
+    assert (rig.state, tower(rig)) == (MachineState.RUN, {"green"})
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -170,10 +170,10 @@ def test_a_lamp_that_is_refused_is_told_once_and_stops_nothing(rig: Rig, error: 
     broken = Broken(rig.sim.ports.io, error)
     ports = dataclasses.replace(rig.sim.ports, io=broken)  # type: ignore[arg-type]
     rig.executor = Executor(rig.machine, ports, rig.events.append, rig._passes)
-    rig.executor.tick()
+    rig.executor.run_tick()
     rig.start(PART)
     rig.run(1.0)
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
     assert broken.tried <= 8  # four lamps, and no more for five seconds
     assert [said for said in rig.said("disturbed") if "LAMP_GREEN" in said] == [
         text("executor.lamp-not-switched", lamp="LAMP_GREEN", why=error)
@@ -183,10 +183,10 @@ def test_a_lamp_that_is_refused_is_told_once_and_stops_nothing(rig: Rig, error: 
 def test_of_a_lost_wire_nothing_is_told_or_switched(rig: Rig) -> None:
     rig.start(PART)
     rig.run(0.5)
-    lost = dataclasses.replace(rig.sim.ports, unknown=lambda: frozenset({Unknown.OUTPUTS}))
+    lost = dataclasses.replace(rig.sim.ports, unknown=lambda: frozenset({UnknownPart.OUTPUTS}))
     rig.executor = Executor(rig.machine, lost, rig.events.append, rig._passes)
     rig.run(1.0)
-    assert Unknown.OUTPUTS in rig.shot.unknown  # F10 3 shows no state of them then
+    assert UnknownPart.OUTPUTS in rig.shot.unknown  # F10 3 shows no state of them then
     assert tower(rig) == {"green"}  # as it was left: nothing was written
 
 
@@ -207,17 +207,17 @@ def test_the_lamps_are_tested_by_hand_at_rest_alone(rig: Rig) -> None:
 
 def test_a_machine_at_rest_sleeps_with_a_lamp_on(rig: Rig) -> None:
     rig.start(PART)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(4.0)
     assert tower(rig) == {"amber"}
-    assert rig.executor._rest.wait()
+    assert rig.executor._rest.wait_for_wakeup()
 
 
 def test_a_machine_without_lamps_is_as_it_was() -> None:
     rig = Rig(every=FINE)
-    assert rig.machine.lamps == ()
+    assert rig.machine.lamp_outputs == ()
     rig.start(PART)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.outputs == frozenset({"collet"})
 
 
@@ -226,7 +226,7 @@ def test_the_snapshot_has_the_lamps_and_the_modes_have_not(rig: Rig) -> None:
     rig.run(0.5)
     assert "lamp_green" in rig.shot.outputs
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(Reset())
     assert "lamp_green" not in rig.shot.modal.outputs
 
@@ -250,5 +250,5 @@ def test_a_machine_file_with_a_lamp_that_cannot_be_is_refused(
 ) -> None:
     with pytest.raises(MachineFileError) as told:
         with_lamps(lamps, also)
-    finding = told.value.errors[0]
+    finding = told.value.findings[0]
     assert (finding.path, finding.value) == (path, value)

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_files import load_machine, shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from app.compose.stored_offsets import read_offsets
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
-from core.language.called_files import with_called_files
-from core.language.source import Source, load_source
+from core.language.called_files import load_called_files
+from core.language.source import ProgramSource, load_source
 from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, Rig
 from tests.executor.stepping import has_errors, stepped_through, steps_of
@@ -37,11 +37,11 @@ RADIUS = 0.015 * INCH  # of the tool nose in the worked examples
 TOOLS = {number: ToolOffset() for number in range(1, 33)}
 
 
-def check(source: Source, setup: Setup, machine: Machine = LATHE) -> None:
+def check(source: ProgramSource, setup: Setup, machine: Machine = LATHE) -> None:
     """Every block once, in order; then the place where the program ends, and one part."""
     rig, stops = stepped_through(source, setup, machine)
     assert rig.shot.alarms == ()
-    assert (rig.state, rig.shot.parts) == (State.IDLE, 1)
+    assert (rig.state, rig.shot.parts) == (MachineState.IDLE, 1)
     assert stops == steps_of(rig.blocks)
     moves = [block for block in rig.blocks if block.moves]
     if moves:
@@ -50,7 +50,7 @@ def check(source: Source, setup: Setup, machine: Machine = LATHE) -> None:
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
 def test_a_golden_is_stepped_through_to_its_end(path: Path) -> None:
-    check(Source(path.stem, path.read_text("utf-8")), golden_setup(path))
+    check(ProgramSource(path.stem, path.read_text("utf-8")), golden_setup(path))
 
 
 @pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
@@ -58,7 +58,7 @@ def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
     if not path.exists():
         pytest.skip(f"the worked examples are not here: {FOLDER}")
     nose = {1: SecondaryOffset(-RADIUS, -RADIUS, RADIUS)}
-    source, setup = load_source(path), setup_for(LATHE, tools=TOOLS, secondary=nose)
+    source, setup = load_source(path), create_setup(LATHE, tool_offsets=TOOLS, secondary_offsets=nose)
     if has_errors(source, setup):
         assert path.stem == "caxis-too-little-turn"
         return
@@ -68,7 +68,10 @@ def test_a_worked_example_is_stepped_through_to_its_end(path: Path) -> None:
 @pytest.mark.parametrize("name", ["pinbar", "bushing", "grooves", "knob", "pin"])
 def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
-    check(load_source(SAMPLES / f"{name}.nc"), setup_for(LATHE, tools=tools, secondary=secondary))
+    check(
+        load_source(SAMPLES / f"{name}.nc"),
+        create_setup(LATHE, tool_offsets=tools, secondary_offsets=secondary),
+    )
 
 
 @pytest.mark.parametrize(
@@ -77,9 +80,9 @@ def test_a_sample_is_stepped_through_to_its_end(name: str) -> None:
 )
 def test_a_sample_of_another_dialect_is_stepped_through_to_its_end(name: str, machine: str) -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
-    model = shipped_machine(machine)
-    source = with_called_files(load_source(SAMPLES / name), [SAMPLES])
-    check(source, setup_for(model, tools=tools, secondary=secondary), model)
+    model = load_shipped_machine(machine)
+    source = load_called_files(load_source(SAMPLES / name), [SAMPLES])
+    check(source, create_setup(model, tool_offsets=tools, secondary_offsets=secondary), model)
 
 
 # --- blocks that go nowhere
@@ -91,9 +94,9 @@ NOWHERE = "G90G94F300\nX.3Z.3\nX.3\nG00X.3\nG01X.4F10\nX.4\nZ.3\nM08\nX.4\nG00X.
 def stops_of(rig: Rig, most: int = 40) -> list[int]:
     """Start after start: the line of each stop."""
     lines: list[int] = []
-    while rig.state not in {State.IDLE, State.FAULT}:
-        rig.until(State.BLOCK_END, State.IDLE, State.FAULT, limit=20.0)
-        if rig.state is State.BLOCK_END:
+    while rig.state not in {MachineState.IDLE, MachineState.FAULT}:
+        rig.until(MachineState.BLOCK_END, MachineState.IDLE, MachineState.FAULT, limit=20.0)
+        if rig.state is MachineState.BLOCK_END:
             lines.append(rig.shot.line)
             assert len(lines) < most, lines
             rig.run(0.4)
@@ -121,7 +124,7 @@ def test_the_same_place_is_shown_block_by_block_and_nothing_moves() -> None:
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX.3Z.3\nX.3\nX.3\nX.3\nG01X.4F10\nM30\n")
     for line in (2, 3, 4, 5):
-        rig.until(State.BLOCK_END)
+        rig.until(MachineState.BLOCK_END)
         assert rig.shot.line == line
         assert rig.shot.demand[:2] == pytest.approx((0.3 * INCH, 0.3 * INCH))
         rig.run(0.4)
@@ -134,7 +137,7 @@ def test_a_hold_in_a_step_ends_at_the_end_of_its_block() -> None:
     rig.start("G90G94F300\nG01X1F60\nX1\nX1.5\nM30\n")
     rig.run(0.4)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.line == 2
     rig.run(0.4)
     rig.post(CycleStart())
@@ -156,10 +159,10 @@ def test_single_block_is_switched_off_and_on_again_at_any_block(off: int) -> Non
     rig.post(SetSwitch("single_block", True))
     rig.start(NOWHERE)
     for _ in range(off):
-        rig.until(State.BLOCK_END)
+        rig.until(MachineState.BLOCK_END)
         rig.run(0.4)
         rig.post(CycleStart())
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     rig.run(0.4)
     rig.post(SetSwitch("single_block", False), CycleStart(), SetSwitch("single_block", True))
     stops_of(rig)
@@ -174,7 +177,7 @@ def test_single_block_switched_on_at_any_moment_stops_at_the_end_of_a_block(on: 
     rig.start("G90G94F300\nG01X.1F60\nX.1\nX.2\nX.2\nX.3\nZ.1\nZ.1\nM30\n")
     rig.run(0.06 * on)
     rig.post(SetSwitch("single_block", True))
-    if rig.state is not State.IDLE:
+    if rig.state is not MachineState.IDLE:
         stops_of(rig)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[:2] == pytest.approx((0.3 * INCH, 0.1 * INCH), abs=1e-6)
@@ -185,9 +188,9 @@ def test_a_thread_begins_behind_a_moment_in_which_the_control_was_away() -> None
     rig = Rig()
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nM03S600\nX.5Z.1\nG33X.49Z-.2I.05K.05\nG00X1\nM30\n")
-    while rig.state is not State.IDLE:
-        rig.until(State.BLOCK_END, State.IDLE, State.FAULT)
-        assert rig.state is not State.FAULT, rig.shot.alarms
+    while rig.state is not MachineState.IDLE:
+        rig.until(MachineState.BLOCK_END, MachineState.IDLE, MachineState.FAULT)
+        assert rig.state is not MachineState.FAULT, rig.shot.alarms
         rig.run(0.4)
         rig.tick(0.9)
         rig.post(CycleStart())

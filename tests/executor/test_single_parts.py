@@ -8,28 +8,28 @@ from dataclasses import dataclass, field
 import pytest
 
 from core.executor.commands import (
-    BarNextPart,
+    BlockNextPart,
     Command,
     ConfirmStart,
     EnableDrives,
-    FeedOverride,
     ForceOutput,
-    Home,
+    HomeAxes,
     Jog,
+    SetFeedOverride,
+    SetSpindleLimit,
     SetSwitch,
-    SpindleLimit,
 )
 from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
-from core.executor.hand_motion.jogging import jog_ramps
+from core.executor.hand_motion.jogging import plan_jog_ramps
 from core.executor.hand_motion.touch_off import Homing
 from core.executor.machine_context import MachineContext
-from core.executor.program_motion.standstill import at_speed
+from core.executor.program_motion.standstill import make_spindle_speed_wait
 from core.executor.program_motion.thread_path import ThreadPath
 from core.executor.raised_alarm import AlarmError
-from core.executor.snapshot import State
-from core.executor.spindle_control import SpindleAngle, SpindleDemand
-from core.executor.spindle_orientation import Orientation
-from core.ports import AxisSample, Stop
+from core.executor.snapshot import MachineState
+from core.executor.spindle_control import SpindleAnglePredictor, SpindleRequest
+from core.executor.spindle_orientation import OrientationControl
+from core.ports import AxisSample, StopMode
 from tests.coded import raises_code
 from tests.executor.played_controller import context_of
 from tests.executor.rig import Rig
@@ -44,12 +44,12 @@ from tests.texts import text
     [
         (EnableDrives(), text("executor.no-drives-on", state="READY")),
         (SetSwitch("no such", True), text("executor.no-switch", switch="'no such'")),
-        (FeedOverride(1.51), text("executor.feed-override-range", value="1.51")),
-        (FeedOverride(-0.01), text("executor.feed-override-range", value="-0.01")),
-        (SpindleLimit(0.0), text("executor.spindle-limit-range", rpm=0, limit=3500)),
-        (SpindleLimit(1e5), text("executor.spindle-limit-range", rpm=100000, limit=3500)),
+        (SetFeedOverride(1.51), text("executor.feed-override-range", value="1.51")),
+        (SetFeedOverride(-0.01), text("executor.feed-override-range", value="-0.01")),
+        (SetSpindleLimit(0.0), text("executor.spindle-limit-range", rpm=0, limit=3500)),
+        (SetSpindleLimit(1e5), text("executor.spindle-limit-range", rpm=100000, limit=3500)),
         (ConfirmStart("12:00"), text("executor.no-interrupted-job")),
-        (Home("Q"), text("executor.homing", why=text("executor.no-home-axis", axis="Q"))),
+        (HomeAxes("Q"), text("executor.homing", why=text("executor.no-home-axis", axis="Q"))),
         (ForceOutput("no such", True), text("executor.no-output", output="no such")),
     ],
 )
@@ -60,7 +60,7 @@ def test_what_cannot_be_is_refused_with_its_reason_and_changes_nothing(asked: Co
     rig.post(asked)
     (told,) = rig.said("refused")
     assert why in told
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     for name in ("demand", "outputs", "feed_override", "spindle_override", "modal"):
         assert getattr(rig.shot, name) == getattr(before, name)
 
@@ -79,7 +79,7 @@ def test_drives_stay_off_while_an_alarm_stands_and_no_jog_begins() -> None:
 def test_a_bar_for_the_next_part_is_told_once_and_taken_back_once() -> None:
     rig = Rig()
     for why in ("the insert is worn", "the insert is worn", "", ""):
-        rig.post(BarNextPart(why))
+        rig.post(BlockNextPart(why))
     assert rig.said("switch") == [
         text("executor.no-other-part", why="the insert is worn"),
         text("executor.parts-may-go-on"),
@@ -95,7 +95,7 @@ def test_a_wave_has_forty_pieces_none_shorter_than_two_milliseconds_and_twelve_a
 ) -> None:
     """20 Hz: a wave takes 50 ms. Five waves at least, and .8 s."""
     path = DriveTestPath("X", Shape.SINE, 0.1, frequencies=(frequency,))
-    ramps = path.ramps(Limits(top=42.3, amax=3048.0, rate=1000.0))
+    ramps = path.make_ramps(Limits(max_speed=42.3, max_acceleration=3048.0, sample_rate_hz=1000.0))
     assert len(ramps) == waves * pieces + 1  # and the rest behind it
     assert [dt for dt, _, _ in ramps[:-1]] == pytest.approx([1.0 / frequency / pieces] * waves * pieces)
 
@@ -126,7 +126,7 @@ def test_a_jog_goes_for_its_time_and_no_further_than_its_way(
     v0: float, v1: float, time: float, way: float, seconds: float, mm: float
 ) -> None:
     """At 100 mm/s²."""
-    assert played(jog_ramps(v0, v1, 100.0, time, way)) == pytest.approx((seconds, mm))
+    assert played(plan_jog_ramps(v0, v1, 100.0, time, way)) == pytest.approx((seconds, mm))
 
 
 # --- threads ------------------------------------------------------------------------------------------------
@@ -135,14 +135,14 @@ def test_a_jog_goes_for_its_time_and_no_further_than_its_way(
 def test_a_chain_begins_at_its_first_place_with_its_first_lead() -> None:
     """Half a turn more lead each turn: 3 mm in two turns are 1.5 on average, 1 at the begin."""
     growing = thread(1, 0.0, -3.0, 1.5, growth=0.5, x0=4.0)
-    path = ThreadPath.of([growing, thread(2, -3.0, -7.0, 2.0), OUT], LIMITS)
+    path = ThreadPath.from_blocks([growing, thread(2, -3.0, -7.0, 2.0), OUT], LIMITS)
     assert (path.x, path.z, path.lead) == pytest.approx((4.0, 0.0, 1.0))
 
 
 def test_joints_closer_than_a_turn_are_followed() -> None:
     """Half a turn of lead 1, .75 of lead 2, half of lead 4: each joint within a turn of both ends."""
     chain = [thread(1, 0.0, -0.5, 1.0), thread(2, -0.5, -2.0, 2.0), thread(3, -2.0, -4.0, 4.0)]
-    way, left = ThreadPath.of([*chain, OUT], LIMITS).onwards(0.0, 0.0, 1.0, [])
+    way, left = ThreadPath.from_blocks([*chain, OUT], LIMITS).plan_remaining_pass(0.0, 0.0, 1.0, [])
     for t, z in ((0.25, -0.25), (0.75, -1.0), (1.0, -1.5), (1.5, -3.0)):
         assert place(way, t) == pytest.approx((5.0, z), abs=1e-6)
     assert left == pytest.approx(1.75, abs=0.002)
@@ -153,11 +153,11 @@ def test_joints_closer_than_a_turn_are_followed() -> None:
 
 def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
     """Turns t³ + 2t² + 3t: at .3 s .027 + .18 + .9, and 3t² + 4t + 3 turns a second there."""
-    angle = SpindleAngle()
+    angle = SpindleAnglePredictor()
     for n in range(21):
         t = 0.01 * n
-        angle.note((t, t**3 + 2.0 * t * t + 3.0 * t))
-    turns, speed = angle.at(0.21) or (math.nan, math.nan)
+        angle.add_reading((t, t**3 + 2.0 * t * t + 3.0 * t))
+    turns, speed = angle.predict(0.21) or (math.nan, math.nan)
     assert turns == pytest.approx(0.21**3 + 2.0 * 0.21**2 + 3.0 * 0.21, abs=1e-9)
     assert speed == pytest.approx(3.0 * 0.21**2 + 4.0 * 0.21 + 3.0, abs=1e-6)
 
@@ -166,11 +166,11 @@ def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
 def test_readings_of_4096_steps_tell_45_ms_ahead_within_three_steps(rpm: float) -> None:
     """Each reading is off by half a step at most; a polynomial of a higher degree makes five of it."""
     for phase in range(7):
-        angle, first = SpindleAngle(), 0.13 * phase / 4096.0
+        angle, first = SpindleAnglePredictor(), 0.13 * phase / 4096.0
         for n in range(60):
             t = 0.01 * n
-            angle.note((t, round((rpm / 60.0 * t + first) * 4096.0) / 4096.0))
-            told = angle.at(t + 0.045)
+            angle.add_reading((t, round((rpm / 60.0 * t + first) * 4096.0) / 4096.0))
+            told = angle.predict(t + 0.045)
             if n > 30 and told is not None:
                 assert abs(told[0] - rpm / 60.0 * (t + 0.045) - first) < 3.0 / 4096.0
 
@@ -181,7 +181,7 @@ class _Port:
 
     told: list[float] = field(default_factory=list)
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         self.told.append(rpm)
 
     def coast(self) -> None:
@@ -190,10 +190,10 @@ class _Port:
     def speed(self) -> float:
         return self.told[-1] if self.told else 0.0
 
-    def angle(self) -> None:
+    def read_angle(self) -> None:
         """It has no encoder."""
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         return ""
 
 
@@ -202,11 +202,11 @@ def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> No
     context, port = context_of(None), _Port()
     spindle = context.spindle
     spindle._port = port
-    spindle.ask(SpindleDemand(600.0))
+    spindle.request_speed(SpindleRequest(600.0))
     for n in range(5):
         spindle.update(0.01 * n, 10.0)
     assert port.told == [600.0]
-    spindle.permit()
+    spindle.permit_start()
     for n in range(5, 10):
         spindle.update(0.01 * n, 10.0)
     assert port.told == [600.0, 600.0]
@@ -215,28 +215,28 @@ def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> No
 def test_a_wait_for_the_speed_says_what_keeps_the_spindle() -> None:
     """The operator where it is he, by what he can change; else only that it is waited for."""
     context = context_of(None)
-    context.spindle.ask(SpindleDemand(600.0))
-    wait = at_speed(context)
-    assert wait.label() == text("executor.at-speed")
+    context.spindle.request_speed(SpindleRequest(600.0))
+    wait = make_spindle_speed_wait(context)
+    assert wait.make_label() == text("executor.at-speed")
     context.spindle.override = 0.0
-    assert wait.label() == text("executor.spindle-override-0")
+    assert wait.make_label() == text("executor.spindle-override-0")
 
 
 def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn() -> None:
     """A minute with the pot at 0 is no alarm; then the timeout of the machine file counts whole."""
     context = context_of(None)
-    context.spindle.ask(SpindleDemand(600.0))
+    context.spindle.request_speed(SpindleRequest(600.0))
     context.spindle.override = 0.0
-    wait = at_speed(context)
+    wait = make_spindle_speed_wait(context)
     for second in range(60):
         context.now = float(second)
-        assert not wait.over(context.now)
+        assert not wait.is_over(context.now)
     context.spindle.override = 1.0
     context.now = 59.0 + context.machine.spindle.timeout - 0.1
-    assert not wait.over(context.now)
+    assert not wait.is_over(context.now)
     context.now += 0.2
     with pytest.raises(AlarmError) as told:
-        wait.over(context.now)
+        wait.is_over(context.now)
     assert told.value.code == "at-speed"
 
 
@@ -247,46 +247,46 @@ class _Held:
     there: bool = False
     told: list[object] = field(default_factory=list)
 
-    def orient(self, angle: float, sense: int = 0) -> None:
-        self.told.append((angle, sense))
+    def orient_spindle(self, angle: float, direction: int = 0) -> None:
+        self.told.append((angle, direction))
 
-    def release(self) -> None:
+    def release_spindle(self) -> None:
         self.told.append("release")
 
-    def oriented(self) -> bool:
+    def is_oriented(self) -> bool:
         return self.there
 
 
 def test_an_angle_counts_from_when_the_drive_holds_it_until_it_is_let_go() -> None:
     port = _Held()
-    held = Orientation(port, 100.0)
-    assert (held.at, held.on_its_way, held.turns_at) == (None, False, 0.0)
-    held.let_go()
+    held = OrientationControl(port, 100.0)
+    assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
+    held.release()
     assert port.told == []
-    assert not held.bring(90.0, 1)
-    assert (held.at, held.on_its_way, held.turns_at) == (None, True, 100.0)
+    assert not held.request_angle(90.0, 1)
+    assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, True, 100.0)
     port.there = True
-    assert held.bring(90.0, 1)
-    assert (held.at, held.on_its_way) == (90.0, False)
+    assert held.request_angle(90.0, 1)
+    assert (held.angle_deg, held.is_moving) == (90.0, False)
     port.there = False
-    assert not held.bring(90.0, -1)  # the same angle from the other side is another
-    assert held.at is None
-    held.let_go()
-    assert (held.at, held.on_its_way, held.turns_at) == (None, False, 0.0)
+    assert not held.request_angle(90.0, -1)  # the same angle from the other side is another
+    assert held.angle_deg is None
+    held.release()
+    assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
     assert port.told == [(90.0, 1), (90.0, -1), "release"]
 
 
 def test_an_angle_that_the_drive_lets_slip_is_an_alarm_once() -> None:
     port = _Held(there=True)
-    held = Orientation(port, 100.0)
-    held.bring(45.0, 0)
-    held.look()
+    held = OrientationControl(port, 100.0)
+    held.request_angle(45.0, 0)
+    held.check_angle()
     port.there = False
     with raises_code(AlarmError, "spindle-orient", text("executor.not-held-at", angle=45)):
-        held.look()
-    held.look()
+        held.check_angle()
+    held.check_angle()
     with raises_code(AlarmError, "spindle-orient", text("executor.nothing-orients")):
-        Orientation(None, 100.0).bring(0.0, 0)
+        OrientationControl(None, 100.0).request_angle(0.0, 0)
 
 
 # --- homing -------------------------------------------------------------------------------------------------
@@ -300,7 +300,7 @@ class _Asked:
     """What the homing asks of the axes."""
 
     homed: list[str] = field(default_factory=list)
-    stopped: list[Stop] = field(default_factory=list)
+    stopped: list[StopMode] = field(default_factory=list)
 
 
 def homing(monkeypatch: pytest.MonkeyPatch) -> tuple[Homing, MachineContext, _Asked]:
@@ -319,39 +319,39 @@ def sample(context: MachineContext, homed: tuple[bool, ...], *, moving: bool = F
 
 def test_the_next_axis_waits_until_the_one_before_stands(monkeypatch: pytest.MonkeyPatch) -> None:
     order, context, asked = homing(monkeypatch)
-    assert order.begin("") == ""
-    assert not order.step()
+    assert order.start_homing("") == ""
+    assert not order.advance()
     first = asked.homed[0]
     for n in range(5):
         context.now, context.sample = 0.01 * n, sample(context, LOST, moving=True)
-        assert not order.step()
+        assert not order.advance()
     found = {"X": (True, False, True), "Z": (False, True, True)}[first]
     context.now, context.sample = 0.06, sample(context, found, moving=True)
-    assert not order.step()
+    assert not order.advance()
     assert len(asked.homed) == 1  # found, and still braking
     context.now, context.sample = 0.07, sample(context, found)
-    assert not order.step()
+    assert not order.advance()
     assert sorted(asked.homed) == ["X", "Z"]
     context.now, context.sample = 0.08, sample(context, FOUND, moving=True)
-    assert not order.step()
+    assert not order.advance()
     context.sample = sample(context, FOUND)
-    assert order.step()
+    assert order.advance()
 
 
 def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_stops(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     order, context, asked = homing(monkeypatch)
-    assert order.begin("Q") == text("executor.no-home-axis", axis="Q")
+    assert order.start_homing("Q") == text("executor.no-home-axis", axis="Q")
     context.sample = sample(context, FOUND)
-    assert order.begin("") == text("executor.all-homed")
+    assert order.start_homing("") == text("executor.all-homed")
     context.sample = sample(context, LOST)
-    order.begin("X")
-    order.step()
+    order.start_homing("X")
+    order.advance()
     order.stop()
-    assert (asked.homed, asked.stopped) == (["X"], [Stop.RAMP_HOLD])
+    assert (asked.homed, asked.stopped) == (["X"], [StopMode.RAMP_HOLD])
     context.sample = sample(context, (True, False, True))
-    assert order.step()
+    assert order.advance()
     assert asked.homed == ["X"]
 
 

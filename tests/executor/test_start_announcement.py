@@ -8,10 +8,18 @@ import re
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import CycleStart, FeedHold, ForceOutput, GiveProof, Prepare, Reset, SpindleLimit
+from core.executor.commands import (
+    CycleStart,
+    FeedHold,
+    ForceOutput,
+    PrepareStart,
+    Reset,
+    SetSpindleLimit,
+    SupplyProof,
+)
 from core.executor.job import Proof
-from core.executor.snapshot import Starts, State
-from core.executor.start_conditions import TIME_TO_READ
+from core.executor.snapshot import MachineState, StartAction
+from core.executor.start_conditions import READING_TIME_S
 from tests.executor.rig import TICK, Rig
 from tests.texts import pattern, text
 
@@ -26,7 +34,7 @@ def held(program: str = CUT) -> Rig:
     rig.start(program)
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.run(0.5)
     assert abs(rig.shot.rpm_actual) == pytest.approx(1500.0)
     return rig
@@ -41,7 +49,7 @@ def never_turns(rig: Rig, seconds: float = 3.0) -> None:
     until = rig.clock.now() + seconds
     while rig.clock.now() < until:
         rig.tick()
-        assert rig.sim.machine.spindle_rpm() == 0.0
+        assert rig.sim.machine.get_spindle_rpm() == 0.0
         assert rig.shot.rpm_command == 0.0
 
 
@@ -51,12 +59,12 @@ def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do() -> None:
     assert rig.shot.announced == ()
     rig.sim.machine.set_spindle_auto(True)
     never_turns(rig)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     assert rig.shot.announced == (SAID,)
     rig.sim.machine.press_start()
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
     assert rig.shot.announced == ()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -74,13 +82,13 @@ def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() ->
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
     rig.tick()
-    rig.run(TIME_TO_READ - 2 * TICK)
+    rig.run(READING_TIME_S - 2 * TICK)
     rig.post(CycleStart())
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused == text("executor.look-first", what=SAID)
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal == text("executor.look-first", what=SAID)
     never_turns(rig, 1.0)
     rig.post(CycleStart())
-    assert (rig.state, rig.shot.start_refused) == (State.WAIT, "")
+    assert (rig.state, rig.shot.start_refusal) == (MachineState.WAIT, "")
 
 
 def test_a_start_and_the_switch_in_one_tick_turn_nothing() -> None:
@@ -88,8 +96,8 @@ def test_a_start_and_the_switch_in_one_tick_turn_nothing() -> None:
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
     rig.post(CycleStart())
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal
     never_turns(rig)
 
 
@@ -103,7 +111,7 @@ def test_a_pot_turned_up_meanwhile_is_another_announcement() -> None:
     rig.sim.machine.set_spindle_pot(1.0)
     rig.until_true(lambda shot: shot.announced == (SAID,))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.look-first", what=SAID)
+    assert rig.shot.start_refusal == text("executor.look-first", what=SAID)
     never_turns(rig, 1.0)
 
 
@@ -112,16 +120,16 @@ def test_a_pot_at_0_stops_and_more_turns_nothing_before_the_palms() -> None:
     rig.start(CUT)
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     rig.sim.machine.set_spindle_pot(0.0)
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.waiting_for == text("executor.spindle-override-0")
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.spindle-override-0-refused")
+    assert rig.shot.start_refusal == text("executor.spindle-override-0-refused")
     rig.sim.machine.set_spindle_pot(1.0)
     never_turns(rig)
     assert rig.shot.announced == (SAID,)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -146,7 +154,7 @@ def test_a_spindle_that_stopped_by_itself_does_not_come_back_by_itself() -> None
     never_turns(rig)
     assert rig.shot.announced == (SAID,)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 def test_estop_in_a_cut_leaves_nothing_that_could_start() -> None:
@@ -165,7 +173,7 @@ def test_reset_leaves_nothing_that_could_start() -> None:
     rig = held()
     switched_off(rig)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.sim.machine.set_spindle_auto(True)
     never_turns(rig)
     assert rig.shot.announced == ()
@@ -175,7 +183,7 @@ def test_m05_with_the_switch_off_passes_and_a_cut_does_not() -> None:
     rig = Rig()
     rig.sim.machine.set_spindle_auto(False)
     rig.start("G90G94F300\nM03S1500\nM05\nG01F10Z-.1\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -183,7 +191,7 @@ def test_nothing_is_announced_where_the_spindle_turns() -> None:
     rig = held()
     assert rig.shot.announced == ()
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
 
 
 def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
@@ -194,7 +202,7 @@ def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
     rig.sim.machine.set_spindle_auto(True)
     rig.run(1.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.collet-open")
+    assert rig.shot.start_refusal == text("executor.collet-open")
     never_turns(rig)
 
 
@@ -203,22 +211,22 @@ def test_a_collet_that_the_program_has_opened_is_closed_behind_a_reset() -> None
     rig.start("G90G94F300\nM03S600\nM13\nG04F5\nM12\nM30\n")
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
     switched_off(rig)
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.sim.machine.set_spindle_auto(True)
     rig.run(1.0)
     stop = rig.shot.stop
     assert stop is not None
     assert stop.number == 223
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.collet-opened-by-program")
+    assert rig.shot.start_refusal == text("executor.collet-opened-by-program")
     never_turns(rig)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.post(ForceOutput("collet", True))
     rig.run(1.0)
     rig.post(CycleStart())
     assert re.fullmatch(
-        pattern("executor.interrupted-in-part", line=4, program="PART"), rig.shot.start_refused
+        pattern("executor.interrupted-in-part", line=4, program="PART"), rig.shot.start_refusal
     )  # the collet is no reason
 
 
@@ -231,7 +239,7 @@ def left_turning() -> Rig:
     rig.start("G90G94F300\nM03S1500\nG04F1\nM02\n")
     rig.until_true(lambda shot: shot.ends == 1)
     rig.run(0.5)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.rpm_actual == pytest.approx(1500.0)
     return rig
 
@@ -262,7 +270,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
     rig.sim.machine.set_spindle_pot(1.0)
     never_turns(rig)
     switched_off(rig)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.sim.machine.set_spindle_auto(True)
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
 
@@ -270,7 +278,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
 def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_programs() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.sim.machine.station_silent(True)
     rig.run(1.0)
     rig.sim.machine.set_spindle_auto(True)
@@ -282,7 +290,7 @@ def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_p
 def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.sim.machine.set_spindle_auto(True)
     rig.tick(0.5)
     never_turns(rig)
@@ -291,7 +299,7 @@ def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
 def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.sim.machine.collet_sensor_stuck()
     rig.sim.machine.set_input("collet_closed", False)
     rig.sim.machine.set_spindle_auto(True)
@@ -301,14 +309,14 @@ def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
 
 def test_a_limit_is_not_raised_under_a_spindle_that_turns() -> None:
     rig = Rig()
-    rig.post(SpindleLimit(500.0))
+    rig.post(SetSpindleLimit(500.0))
     rig.start("G90G94F300\nM03S1500\nG04F60\nM30\n")
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(500.0))
-    rig.post(SpindleLimit(3000.0))
+    rig.post(SetSpindleLimit(3000.0))
     rig.run(2.0)
     assert rig.shot.rpm_actual == pytest.approx(500.0)
     assert any(text("executor.limit-while-still") in said for said in rig.said("refused"))
-    rig.post(SpindleLimit(300.0))
+    rig.post(SetSpindleLimit(300.0))
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(300.0))
 
 
@@ -329,19 +337,19 @@ def guarded(program: str = CUT) -> Rig:
 def test_an_opened_guard_stops_feed_and_spindle_and_closing_it_starts_nothing() -> None:
     rig = guarded()
     rig.sim.machine.set_input("guard", False)
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     assert rig.shot.stop is not None
     assert (rig.shot.stop.code, rig.shot.stop.number) == ("guard-open", 604)
     rig.post(CycleStart())
     rig.run(0.1)
-    assert rig.shot.start_refused == text("executor.guard-close")
+    assert rig.shot.start_refusal == text("executor.guard-close")
     rig.sim.machine.set_input("guard", True)
     never_turns(rig)
-    assert rig.state is State.HOLD
+    assert rig.state is MachineState.HOLD
     assert rig.shot.announced == (SAID,)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
@@ -349,7 +357,7 @@ def test_an_opened_guard_lets_a_thread_be_followed_or_drawn_out() -> None:
     rig = guarded("G90G94F300\nM03S600\nX.5Z.2\nG01F40Z.1\nG33X.48Z-.6I.01K.05O\nM30\n")
     rig.until_true(lambda shot: shot.line == 5 and shot.actual[1] < -5.0)
     rig.sim.machine.set_input("guard", False)
-    rig.until(State.HOLD, State.FAULT)
+    rig.until(MachineState.HOLD, MachineState.FAULT)
     assert rig.shot.actual[0] > 0.48 * 25.4 + 0.05  # out of the thread
 
 
@@ -360,22 +368,22 @@ def test_no_start_with_the_guard_open_and_none_by_closing_it() -> None:
     rig.sim.machine.set_input("guard", False)
     rig.start(CUT)
     rig.run(0.2)
-    assert (rig.state, rig.shot.start_refused) == (State.IDLE, text("executor.guard-close"))
+    assert (rig.state, rig.shot.start_refusal) == (MachineState.IDLE, text("executor.guard-close"))
     rig.sim.machine.set_input("guard", True)
     never_turns(rig, 1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_a_refusal_ends_with_its_cause() -> None:
     rig = guarded()
     rig.sim.machine.set_input("guard", False)
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(CycleStart())
     rig.run(0.5)
-    assert rig.shot.start_refused == text("executor.guard-close")
+    assert rig.shot.start_refusal == text("executor.guard-close")
     rig.sim.machine.set_input("guard", True)
     rig.run(0.1)
-    assert rig.shot.start_refused == ""
+    assert rig.shot.start_refusal == ""
 
 
 # --- what the proof has warned of ----------------------------------------------------------------------
@@ -387,7 +395,7 @@ def warned(*what: str) -> Rig:
     job = rig.load(CUT)
     rig.ready()
     rig.run(1.0)
-    rig.post(GiveProof(Proof(job.digest, (), warned=what)))
+    rig.post(SupplyProof(Proof(job.digest, (), warnings=what)))
     return rig
 
 
@@ -395,43 +403,43 @@ def test_what_was_warned_of_is_read_before_the_first_start() -> None:
     rig = warned(WARNED, "LINE 4: CUTS-AIR")
     said = text("executor.warning", what=text("executor.more-warnings", what=WARNED, count=1))
     rig.post(CycleStart())
-    assert rig.state is State.IDLE
-    assert rig.shot.start_refused == text("executor.look-first", what=said)
+    assert rig.state is MachineState.IDLE
+    assert rig.shot.start_refusal == text("executor.look-first", what=said)
     assert rig.shot.announced == (said,)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.post(CycleStart())
-    assert rig.state in {State.RUN, State.WAIT}
+    assert rig.state in {MachineState.RUN, MachineState.WAIT}
     assert rig.shot.announced == ()
 
 
 def test_it_is_read_while_the_drives_are_off_too() -> None:
     rig = Rig()
     job = rig.load(CUT)
-    rig.post(GiveProof(Proof(job.digest, (), warned=(WARNED,))))
-    assert rig.state is State.DISABLED
+    rig.post(SupplyProof(Proof(job.digest, (), warnings=(WARNED,))))
+    assert rig.state is MachineState.DISABLED
     assert rig.shot.announced == (text("executor.warning", what=WARNED),)
     rig.run(1.0)
     rig.ready()
     rig.post(CycleStart())
-    assert rig.state in {State.RUN, State.WAIT}
+    assert rig.state in {MachineState.RUN, MachineState.WAIT}
 
 
 def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> None:
     rig = warned(WARNED)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
-    rig.run(TIME_TO_READ + TICK)
+    rig.until(MachineState.IDLE)
+    rig.run(READING_TIME_S + TICK)
     assert rig.shot.announced == (text("executor.warning", what=WARNED),)
     rig.post(CycleStart())
-    assert rig.state in {State.RUN, State.WAIT}
+    assert rig.state in {MachineState.RUN, MachineState.WAIT}
 
 
 def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
     rig = warned(WARNED)
-    rig.post(Prepare(Starts.LINE))
+    rig.post(PrepareStart(StartAction.MDI_LINE))
     assert rig.shot.announced == ()
-    rig.post(Prepare(Starts.PROGRAM))
+    rig.post(PrepareStart(StartAction.PROGRAM))
     assert rig.shot.announced
     rig.load(CUT.replace("1500", "1200"))
     assert rig.shot.announced == ()
@@ -439,11 +447,11 @@ def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
 
 def test_going_on_after_a_hold_announces_nothing_of_it() -> None:
     rig = warned(WARNED)
-    rig.run(TIME_TO_READ)
+    rig.run(READING_TIME_S)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.announced == ()
     rig.post(CycleStart())
-    assert rig.state in {State.RUN, State.WAIT}
+    assert rig.state in {MachineState.RUN, MachineState.WAIT}

@@ -14,17 +14,17 @@ from core.executor.commands import (
     CycleStart,
     EnableDrives,
     FeedHold,
-    GiveProof,
     Jog,
     LoadJob,
     Reset,
-    SpindleLimit,
+    SetSpindleLimit,
+    SupplyProof,
 )
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import TRANSITIONS, State, TransitionError, demand_allowed
+from core.executor.snapshot import TRANSITIONS, MachineState, TransitionError, require_transition
 from core.interpreter.shared.job_setup import Setup, ToolOffset
-from core.interpreter.shared.machine_requirements import THREAD, Need
-from core.language.source import Dialect, Source
+from core.interpreter.shared.machine_requirements import THREADING, MachineRequirement
+from core.language.source import Dialect, ProgramSource
 from tests.executor.rig import Rig, unhomed_machine
 from tests.texts import pattern, text
 
@@ -33,16 +33,16 @@ TEXT = "G90G94F300\nX1\nM30\n"
 
 def nothing_moved(rig: Rig) -> bool:
     rig.run(1.0)
-    return rig.sim.machine.true_position() == (0.0, 0.0, 0.0) and rig.sim.machine.spindle_rpm() == 0.0
+    return rig.sim.machine.get_true_position() == (0.0, 0.0, 0.0) and rig.sim.machine.get_spindle_rpm() == 0.0
 
 
 def refused(rig: Rig) -> str:
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.state not in {State.RUN, State.WAIT}
-    assert rig.said("refused")[-1] == rig.shot.start_refused
+    assert rig.state not in {MachineState.RUN, MachineState.WAIT}
+    assert rig.said("refused")[-1] == rig.shot.start_refusal
     assert nothing_moved(rig)
-    return rig.shot.start_refused
+    return rig.shot.start_refusal
 
 
 def test_without_a_program() -> None:
@@ -54,21 +54,21 @@ def test_without_a_program() -> None:
 def test_without_a_proof_until_it_comes() -> None:
     rig = Rig()
     rig.ready()
-    job = make_job(Source("PART", TEXT), rig.load(TEXT).setup)
+    job = make_job(ProgramSource("PART", TEXT), rig.load(TEXT).setup)
     rig.post(LoadJob(job))
-    assert rig.shot.proof_wanted
+    assert rig.shot.needs_proof
     assert text("executor.not-proved") in refused(rig)
-    rig.post(GiveProof(Proof(job.digest, ())))
-    assert not rig.shot.proof_wanted
+    rig.post(SupplyProof(Proof(job.digest, ())))
+    assert not rig.shot.needs_proof
     rig.post(CycleStart())
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_with_a_proof_of_another_program() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    other = make_job(Source("PART", TEXT.replace("X1", "X2")), job.setup)
+    other = make_job(ProgramSource("PART", TEXT.replace("X1", "X2")), job.setup)
     rig.post(LoadJob(other, Proof(job.digest, ())))
     assert text("executor.other-proof") in refused(rig)
 
@@ -87,7 +87,7 @@ def test_with_errors_in_the_proof() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    rig.post(GiveProof(Proof(job.digest, ("line 2: no",))))
+    rig.post(SupplyProof(Proof(job.digest, ("line 2: no",))))
     assert refused(rig) == text("executor.program-errors", errors="line 2: no")
 
 
@@ -95,7 +95,7 @@ def test_with_a_tool_that_was_never_set() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4))))
+    rig.post(SupplyProof(Proof(job.digest, (), tool_numbers=(3, 4))))
     assert refused(rig) == text("executor.tool-offset-unset", tools="T3, T4")
 
 
@@ -103,7 +103,7 @@ def test_a_tool_that_the_program_measures_itself_needs_no_offset() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4), measured=(4,))))
+    rig.post(SupplyProof(Proof(job.digest, (), tool_numbers=(3, 4), measured_tools=(4,))))
     assert refused(rig) == text("executor.tool-offset-unset", tools="T3")
 
 
@@ -120,14 +120,14 @@ def test_in_estop_and_after_its_release() -> None:
     rig.sim.machine.press_estop()
     assert "E-stop" in refused(rig)
     rig.post(EnableDrives())
-    assert rig.state is State.ESTOP
+    assert rig.state is MachineState.ESTOP
     rig.sim.machine.release_estop()
     rig.run(0.5)
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     assert text("executor.drives-off") in refused(rig)
     rig.post(EnableDrives())
     rig.post(CycleStart())
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_with_an_alarm_until_reset() -> None:
@@ -136,12 +136,12 @@ def test_with_an_alarm_until_reset() -> None:
     rig.load(TEXT)
     rig.sim.machine.drive_fault("Z")
     rig.run(0.2)
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     assert "alarm" in refused(rig)
     rig.post(EnableDrives())
-    assert rig.state is State.FAULT
+    assert rig.state is MachineState.FAULT
     rig.post(Reset())
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
     assert rig.shot.alarms == ()
 
 
@@ -167,7 +167,7 @@ def test_one_button_is_not_two_hands_on_a_real_machine() -> None:
     assert refused(rig) == text("executor.press-palms")
     rig.sim.machine.press_start()
     rig.tick()
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_two_starts_within_a_bounce_are_one_cycle() -> None:
@@ -189,7 +189,7 @@ def test_start_while_running_is_nothing() -> None:
     for _ in range(3):
         rig.run(0.35)
         rig.sim.machine.press_start()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.said("refused") == []
 
@@ -200,22 +200,22 @@ def test_another_program_during_a_cycle_is_refused() -> None:
     digest = rig.shot.program
     rig.load("G90G94F300\nX-3\nM30\n")
     assert text("executor.program-keeps-others-out") in rig.said("refused")[-1]
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.load("G90G94F300\nX-3\nM30\n")
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[0] == pytest.approx(3 * 25.4)
     assert rig.shot.program == digest
 
 
-@pytest.mark.parametrize("state", [State.ESTOP, State.DISABLED, State.FAULT])
-@pytest.mark.parametrize("command", [CycleStart(), SpindleLimit(1000.0)])
-def test_nothing_moves_in_dead_states(state: State, command: Command) -> None:
+@pytest.mark.parametrize("state", [MachineState.ESTOP, MachineState.DISABLED, MachineState.FAULT])
+@pytest.mark.parametrize("command", [CycleStart(), SetSpindleLimit(1000.0)])
+def test_nothing_moves_in_dead_states(state: MachineState, command: Command) -> None:
     rig = Rig()
     rig.load(TEXT)
-    if state is State.ESTOP:
+    if state is MachineState.ESTOP:
         rig.sim.machine.press_estop()
-    if state is State.FAULT:
+    if state is MachineState.FAULT:
         rig.sim.machine.drive_fault("X")
     rig.run(0.4)
     assert rig.state is state
@@ -227,7 +227,7 @@ def test_nothing_moves_in_dead_states(state: State, command: Command) -> None:
 @pytest.mark.parametrize("rpm", [-1.0, 0.0, 3501.0])
 def test_a_spindle_limit_out_of_range_is_refused(rpm: float) -> None:
     rig = Rig()
-    rig.post(SpindleLimit(rpm))
+    rig.post(SetSpindleLimit(rpm))
     assert text("executor.spindle-limit-range", rpm=f"{rpm:g}", limit=3500) in rig.said("refused")[0]
     rig.start("G90G94F300\nM03S3000\nG04F1\nM30\n")
     rig.run(0.5)
@@ -236,12 +236,12 @@ def test_a_spindle_limit_out_of_range_is_refused(rpm: float) -> None:
 
 def test_the_spindle_limit_holds_until_it_is_lifted() -> None:
     rig = Rig()
-    rig.post(SpindleLimit(1200.0))
+    rig.post(SetSpindleLimit(1200.0))
     rig.start("G90G94F300\nM03S3000\nG04F3\nM05\nG04F3\nM03S3000\nG04F9\nM30\n")
     rig.run(3.0)
     assert rig.shot.rpm_actual == 1200
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
-    rig.post(SpindleLimit(None))
+    rig.post(SetSpindleLimit(None))
     rig.until_true(lambda shot: shot.rpm_actual == 3000)
 
 
@@ -253,7 +253,7 @@ def test_a_press_that_a_stalled_host_finds_too_late_moves_nothing(command: Comma
     rig.executor.post(command)
     rig.clock.advance(2.0)
     rig.tick()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert text("executor.came-too-late", command=type(command).__name__) in rig.said("refused")[-1]
     assert nothing_moved(rig)
 
@@ -264,37 +264,37 @@ def test_a_hold_is_never_too_late() -> None:
     rig.executor.post(FeedHold())
     rig.clock.advance(0.8)
     rig.tick()
-    assert rig.state is State.HOLDING
+    assert rig.state is MachineState.HOLDING
 
 
 ALLOWED = sorted((old, new) for old, after in TRANSITIONS.items() for new in after)
-FORBIDDEN = sorted((old, new) for old in State for new in State if new not in TRANSITIONS[old])
+FORBIDDEN = sorted((old, new) for old in MachineState for new in MachineState if new not in TRANSITIONS[old])
 
 
 @pytest.mark.parametrize(("old", "new"), ALLOWED)
-def test_allowed_transitions(old: State, new: State) -> None:
-    demand_allowed(old, new)
+def test_allowed_transitions(old: MachineState, new: MachineState) -> None:
+    require_transition(old, new)
 
 
 @pytest.mark.parametrize(("old", "new"), FORBIDDEN)
-def test_forbidden_transitions(old: State, new: State) -> None:
+def test_forbidden_transitions(old: MachineState, new: MachineState) -> None:
     with pytest.raises(TransitionError, match=f"{old.value} .* {new.value}$"):
-        demand_allowed(old, new)
+        require_transition(old, new)
 
 
 def test_nothing_leads_from_dead_states_into_motion() -> None:
-    moving = {State.RUN, State.WAIT, State.HOLDING, State.JOG, State.HOME}
-    for dead in (State.ESTOP, State.DISABLED, State.FAULT):
+    moving = {MachineState.RUN, MachineState.WAIT, MachineState.HOLDING, MachineState.JOG, MachineState.HOME}
+    for dead in (MachineState.ESTOP, MachineState.DISABLED, MachineState.FAULT):
         assert not TRANSITIONS[dead] & moving
-    assert TRANSITIONS[State.ESTOP] == {State.DISABLED}
+    assert TRANSITIONS[MachineState.ESTOP] == {MachineState.DISABLED}
 
 
 def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     rig.start("G90G94F300\nX3\nM30\n")
     rig.run(0.3)
-    monkeypatch.setitem(TRANSITIONS, State.RUN, frozenset())
-    rig.until(State.FAULT)
+    monkeypatch.setitem(TRANSITIONS, MachineState.RUN, frozenset())
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "internal"
     rig.run(0.5)
     assert not rig.sim.ports.axes.sample().enabled
@@ -304,17 +304,22 @@ def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatc
     rig = Rig()
     rig.ready()
     program = "G90G94F300\nT1\nM03S500\nX.5Z.2\nG33X.45Z-.5K.05\nM30\n"
-    job = make_job(Source("thread.nc", program), Setup(tools={1: ToolOffset(0.0, 0.0, 0.0)}))
-    monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
-    rig.post(LoadJob(job, Proof(job.digest, (), tools=(1,), needs=(Need(THREAD, 5),))))
+    job = make_job(ProgramSource("thread.nc", program), Setup(tools={1: ToolOffset(0.0, 0.0, 0.0)}))
+    monkeypatch.setattr(rig.sim.ports.spindle, "read_angle", lambda: None)
+    rig.post(
+        LoadJob(
+            job,
+            Proof(job.digest, (), tool_numbers=(1,), required_functions=(MachineRequirement(THREADING, 5),)),
+        )
+    )
     assert refused(rig) == text("executor.thread-no-encoder", line=5)
 
 
 def test_an_m_function_that_nothing_answers_says_which_lines_bind_it() -> None:
     rig = Rig()
     rig.ready()
-    job = make_job(Source("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), Setup())
-    rig.post(LoadJob(job, Proof(job.digest, (), needs=(Need("M80", 1),))))
+    job = make_job(ProgramSource("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), Setup())
+    rig.post(LoadJob(job, Proof(job.digest, (), required_functions=(MachineRequirement("M80", 1),))))
     said = refused(rig)
     assert re.match(pattern("executor.no-m-code", line=1, code="M80"), said)
     for written in ("80 = { output =", "80 = { ignored = true }", "[m_codes]"):
@@ -342,8 +347,8 @@ def test_an_answer_and_palms_in_one_slap_start_nothing(seconds: float, starts: b
     assert rig.shot.interrupted is not None
     rig.post(ConfirmStart(rig.shot.interrupted.at))
     slapped(rig, seconds)
-    assert (rig.state is not State.IDLE) is starts
-    assert bool(rig.shot.start_refused) is not starts
+    assert (rig.state is not MachineState.IDLE) is starts
+    assert bool(rig.shot.start_refusal) is not starts
 
 
 @pytest.mark.parametrize(("seconds", "starts"), [(0.0, False), (0.7, False), (0.9, True)])
@@ -364,4 +369,4 @@ def test_an_answer_and_the_one_button_in_one_slap_start_nothing(seconds: float, 
     rig.post(ConfirmStart(rig.shot.interrupted.at))
     rig.run(seconds)
     rig.post(CycleStart())
-    assert (rig.state is not State.IDLE) is starts
+    assert (rig.state is not MachineState.IDLE) is starts

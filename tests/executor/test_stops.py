@@ -10,8 +10,8 @@ import pytest
 
 from core.alarms import CATALOGUE, Reaction
 from core.executor.commands import CycleStart, FeedHold, Jog, Reset, SetSwitch
-from core.executor.raised_alarm import CODES_OF_HOLDS, code_of_hold
-from core.executor.snapshot import State
+from core.executor.raised_alarm import HOLD_CODES, find_hold_code
+from core.executor.snapshot import MachineState
 from core.ports import DriverError, Segments
 from tests.executor.rig import Rig
 from tests.texts import text
@@ -35,43 +35,43 @@ def stop_of(rig: Rig) -> tuple[str, str]:
 def test_a_hold_says_who_pressed_it() -> None:
     rig = cutting()
     rig.post(FeedHold("Esc at the screen"))
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert stop_of(rig) == ("feed-hold", text("executor.asked-by", source="Esc at the screen"))
     assert rig.numbers("stop") == [702]
     rig.post(CycleStart())
-    rig.until(State.RUN, State.WAIT)
+    rig.until(MachineState.RUN, MachineState.WAIT)
     assert rig.shot.stop is None
 
 
 def test_a_press_that_arrives_again_holds_no_cycle_that_was_started_since() -> None:
     rig = cutting()
     rig.post(FeedHold(press=7))
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(CycleStart())
-    rig.until(State.RUN, State.WAIT)
+    rig.until(MachineState.RUN, MachineState.WAIT)
     rig.post(FeedHold(press=7))
     rig.run(0.3)
-    assert rig.shot.state in {State.RUN, State.WAIT}
+    assert rig.shot.state in {MachineState.RUN, MachineState.WAIT}
     assert rig.numbers("stop") == [702]
     rig.post(FeedHold(press=8))
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
 
 
 def test_presses_without_a_number_all_hold() -> None:
     rig = cutting()
     for _ in range(2):
         rig.post(FeedHold())
-        rig.until(State.HOLD)
+        rig.until(MachineState.HOLD)
         rig.run(0.5)  # longer than a bounce
         rig.post(CycleStart())
-        rig.until(State.RUN, State.WAIT)
+        rig.until(MachineState.RUN, MachineState.WAIT)
     assert rig.numbers("stop") == [702, 702]
 
 
 def test_a_hold_by_the_station_says_so() -> None:
     rig = cutting()
     rig.sim.machine.press_hold()
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.sim.machine.release_hold()
     assert stop_of(rig) == (
         "feed-hold",
@@ -82,11 +82,11 @@ def test_a_hold_by_the_station_says_so() -> None:
 def test_an_estop_has_its_entry() -> None:
     rig = cutting()
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     assert stop_of(rig)[0] == "estop"
     assert rig.numbers("estop") == [701]
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     assert rig.shot.stop is None
 
 
@@ -94,16 +94,16 @@ def test_stops_of_the_program_and_single_block_are_told_apart() -> None:
     rig = Rig()
     rig.post(SetSwitch("optional_stop", True))
     rig.start(CUT)
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     assert stop_of(rig)[0] == "program-stop"
     rig.post(SetSwitch("single_block", True))
     rig.post(CycleStart())
-    rig.until(State.BLOCK_END)
+    rig.until(MachineState.BLOCK_END)
     assert stop_of(rig)[0] == "single-block"
     rig.post(SetSwitch("single_block", False))
     rig.run(0.5)
     rig.post(CycleStart())
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     assert stop_of(rig)[0] == "optional-stop"
 
 
@@ -113,7 +113,7 @@ def test_blocks_stepped_through_are_one_line_of_the_log_and_each_is_shown() -> N
     rig.start("G90G94F300\nX0Z0\nG01F20X.1\nX.2\nX.3\nX.4\nM30\n")
     lines = []
     for _ in range(4):
-        rig.until(State.BLOCK_END)
+        rig.until(MachineState.BLOCK_END)
         assert rig.shot.stop is not None
         lines.append((rig.shot.stop.code, rig.shot.stop.line))
         rig.run(0.5)
@@ -127,9 +127,9 @@ def test_blocks_stepped_through_are_one_line_of_the_log_and_each_is_shown() -> N
 def test_a_reset_that_gives_the_program_up_is_in_the_log() -> None:
     rig = cutting()
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.numbers("stop") == [702, 703]
     assert rig.shot.stop is None
 
@@ -137,7 +137,7 @@ def test_a_reset_that_gives_the_program_up_is_in_the_log() -> None:
 def test_a_silent_station_is_a_hold_of_its_own() -> None:
     rig = cutting()
     rig.sim.machine.station_silent()
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert stop_of(rig)[0] == "station-silent"
     assert rig.shot.waiting_for == text("executor.station-silent")
 
@@ -163,7 +163,7 @@ def test_a_late_computer_in_a_cut_is_a_hold_and_the_part_is_made(
 ) -> None:
     rig = cutting()
     too_late(rig, True)
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert stop_of(rig)[0] == "late"
     assert rig.shot.alarms == ()
     assert "349.4" not in rig.shot.waiting_for + stop_of(rig)[1]
@@ -171,7 +171,7 @@ def test_a_late_computer_in_a_cut_is_a_hold_and_the_part_is_made(
     too_late(rig, False)
     rig.run(0.5)
     rig.post(CycleStart())
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
 
 
@@ -182,22 +182,22 @@ def test_a_computer_that_is_late_within_a_tick_does_not_go_on_by_itself(
     rig = cutting()
     cycle = rig.executor._control.cycle
     assert cycle is not None
-    step = cycle.step
+    step = cycle.advance
 
     def late() -> None:
-        monkeypatch.setattr(cycle, "step", step)
+        monkeypatch.setattr(cycle, "advance", step)
         rig.clock.advance(3.0)
         step()
 
-    monkeypatch.setattr(cycle, "step", late)
+    monkeypatch.setattr(cycle, "advance", late)
     rig.tick()
-    stood = rig.sim.machine.true_position()
-    rig.until(State.HOLD, limit=0.1)
+    stood = rig.sim.machine.get_true_position()
+    rig.until(MachineState.HOLD, limit=0.1)
     rig.run(1.0)
-    assert rig.state is State.HOLD
-    assert rig.sim.machine.true_position() == pytest.approx(stood, abs=1e-4)
+    assert rig.state is MachineState.HOLD
+    assert rig.sim.machine.get_true_position() == pytest.approx(stood, abs=1e-4)
     rig.post(CycleStart())
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
 
 
@@ -208,13 +208,13 @@ def test_a_late_computer_before_the_first_move_is_a_hold_too(
     too_late(rig, True)
     rig.start(CUT)
     stood = rig.shot.demand
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert stop_of(rig)[0] == "late"
     assert rig.shot.demand == stood
     too_late(rig, False)
     rig.run(0.5)
     rig.post(CycleStart())
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
 
 
 def test_a_late_computer_in_a_jog_ends_the_jog_and_is_in_the_log(
@@ -225,14 +225,14 @@ def test_a_late_computer_in_a_jog_ends_the_jog_and_is_in_the_log(
     too_late(rig, True)
     rig.post(Jog("X", 5.0, 0.2))
     rig.run(1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.alarms == ()
     assert rig.said("refused")[0] == text("executor.computer-late")
 
 
 def test_a_hold_without_an_entry_tells_its_reason_all_the_same() -> None:
-    assert code_of_hold("SOMETHING NEW", "") == ("held", "something new")
-    assert code_of_hold("", "") == ("feed-hold", "")
+    assert find_hold_code("SOMETHING NEW", "") == ("held", "something new")
+    assert find_hold_code("", "") == ("feed-hold", "")
 
 
 def reasons() -> list[str]:
@@ -251,9 +251,9 @@ def reasons() -> list[str]:
 def test_every_reason_of_a_hold_is_in_the_catalogue() -> None:
     found = reasons()
     assert len(found) >= 3
-    assert [reason for reason in found if reason not in CODES_OF_HOLDS] == []
+    assert [reason for reason in found if reason not in HOLD_CODES] == []
 
 
 def test_holds_are_found_by_their_words() -> None:
     holds = [entry for entry in CATALOGUE.values() if entry.reaction is Reaction.HOLD]
-    assert len(CODES_OF_HOLDS) == len(holds)
+    assert len(HOLD_CODES) == len(holds)

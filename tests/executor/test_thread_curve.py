@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from core.executor.program_motion.setpoint_motion import SetpointMotion
-from core.executor.program_motion.thread_curve import curve_of
+from core.executor.program_motion.thread_curve import build_thread_curve
 from core.executor.program_motion.thread_path import ThreadPath, ThreadRetract
 from core.executor.raised_alarm import AlarmError
-from core.executor.spindle_control import SpindleDemand
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.executor.spindle_control import SpindleRequest
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 from core.motion.axis_limits import MotionLimits
 from core.ports import Segments
 from tests.coded import raises_code
@@ -31,8 +31,8 @@ def thread(n: int, z0: float, z: float, lead: float, **words: object) -> Block:
     values: dict[str, object] = {
         **{"x0": 5.0, "x": 5.0, "c0": 0.0, "c": 0.0, "offset_x": 0.0, "offset_z": 0.0, "line": n, "text": ""},
         **{
-            "modal": Modal(metric=True),
-            "kind": Kind.THREAD,
+            "modal": ModalState(metric=True),
+            "kind": BlockKind.THREAD,
             "per_rev": True,
             "rpm": 60.0,
             "continues": n > 1,
@@ -51,66 +51,66 @@ def place(way: Segments, t: float) -> tuple[float, float]:
 
 # Four turns of lead 1, then two of lead 2: six turns, 8 mm.
 CHAIN = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 2.0)]
-OUT = thread(3, -8.0, -8.0, 40.0, kind=Kind.RAPID, x=9.0, per_rev=False, continues=False)
+OUT = thread(3, -8.0, -8.0, 40.0, kind=BlockKind.RAPID, x=9.0, per_rev=False, continues=False)
 
 
 def test_behind_a_joint_z_goes_as_the_next_lead_says() -> None:
-    curve = curve_of(CHAIN, LIMITS)
+    curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.length == pytest.approx(6.0)
     for s, z, lead in ((2.0, -2.0, -1.0), (5.0, -6.0, -2.0)):
-        assert curve.at(s) == pytest.approx((5.0, z, 0.0, lead))
-        assert curve.place(z) == pytest.approx(s)
-    assert curve.acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
+        assert curve.evaluate(s) == pytest.approx((5.0, z, 0.0, lead))
+        assert curve.find_s(z) == pytest.approx(s)
+    assert curve.max_acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
 
 
 def test_a_joint_is_rounded_off_as_far_as_half_of_the_acceleration_takes() -> None:
     """From 1 to 2 mm/s at A/2 takes 2/A s, so 1/A mm of s on each side; in its middle Z is 1/4A behind."""
-    curve = curve_of(CHAIN, LIMITS)
+    curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.s[1] == pytest.approx(4.0 - 1.0 / A)
     assert curve.s[-2] == pytest.approx(4.0 + 1.0 / A)
-    assert curve.at(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
+    assert curve.evaluate(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
 
 
 def test_where_x_changes_its_speed_more_than_z_x_says_how_far_a_joint_is_rounded() -> None:
     """A cylinder goes over into 45 degrees outwards: from 0 to 1 mm/s of X at half of A/4 takes 8/A s."""
     cone = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 1.0, x=9.0)]
-    curve = curve_of(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
+    curve = build_thread_curve(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
     assert curve.s[1] == pytest.approx(4.0 - 4.0 / A)
     assert curve.s[-2] == pytest.approx(4.0 + 4.0 / A)
-    assert curve.at(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
+    assert curve.evaluate(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
 
 
 def test_a_joint_that_changes_nothing_stays_as_it_is() -> None:
     same = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -6.0, 1.0)]
-    assert curve_of(same, LIMITS).s.tolist() == [0.0, 4.0, 6.0]
+    assert build_thread_curve(same, LIMITS).s.tolist() == [0.0, 4.0, 6.0]
 
 
 def test_a_lead_that_grows_is_followed_turn_by_turn() -> None:
     """From 1 mm on .5 mm more a turn: (1 + q/4)·q, 1.25 mm in a turn and 3 mm in two; 1.5 on average."""
-    curve = curve_of([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
+    curve = build_thread_curve([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
     assert len(curve.s) == 33  # sixteen a turn
     assert curve.length == pytest.approx(2.0)
-    assert curve.at(1.0)[1] == pytest.approx(-1.25)
-    assert curve.at(2.0)[1] == pytest.approx(-3.0)
+    assert curve.evaluate(1.0)[1] == pytest.approx(-1.25)
+    assert curve.evaluate(2.0)[1] == pytest.approx(-3.0)
 
 
 @pytest.mark.parametrize("block", [thread(1, -4.0, -4.0, 1.0), thread(1, 0.0, -4.0, 0.0)])
 def test_a_thread_without_way_or_lead_is_refused(block: Block) -> None:
     with raises_code(AlarmError, "program", text("executor.thread-nothing")):
-        ThreadPath.of([block], LIMITS)
+        ThreadPath.from_blocks([block], LIMITS)
 
 
 def test_the_slides_follow_a_chain_and_leave_it_by_its_rapid() -> None:
     """At 1 mm/s of s: Z −2 after two seconds, −6 after five, at rest at −8; then X goes out to 9."""
-    path = ThreadPath.of([*CHAIN, OUT], LIMITS)
-    assert (path.lead, path.along, path.out, path.beyond) == (1.0, -1.0, 9.0, 0.0)
-    way, left = path.onwards(0.0, 0.0, 1.0, [])
+    path = ThreadPath.from_blocks([*CHAIN, OUT], LIMITS)
+    assert (path.lead, path.z_direction, path.retract_x_mm, path.exit_length_mm) == (1.0, -1.0, 9.0, 0.0)
+    way, left = path.plan_remaining_pass(0.0, 0.0, 1.0, [])
     assert place(way, 2.0) == pytest.approx((5.0, -2.0))
     assert place(way, 5.0) == pytest.approx((5.0, -6.0))
     assert left == pytest.approx(6.0, abs=0.001)
     assert place(way, 99.0) == pytest.approx((9.0, -8.0))
-    assert path.place(-6.0, -2.0) == pytest.approx((5.0, 1.0))
-    back = path.drawn_back()
+    assert path.find_s_and_speed(-6.0, -2.0) == pytest.approx((5.0, 1.0))
+    back = path.make_retract()
     assert back is not None
     assert place(back, 0.0) == pytest.approx((5.0, -8.0))
     assert place(back, 99.0) == pytest.approx((9.0, -8.0))
@@ -119,26 +119,26 @@ def test_the_slides_follow_a_chain_and_leave_it_by_its_rapid() -> None:
 def test_a_pull_out_in_step_goes_on_by_its_own_way() -> None:
     """1 mm of Z at a lead of 2 is half a turn of the first lead."""
     out = thread(3, -8.0, -9.0, 2.0, x=6.0, continues=False)
-    path = ThreadPath.of([*CHAIN, out], LIMITS)
-    assert path.beyond == pytest.approx(0.5)
-    assert path.drawn_back() is None
-    way, left = path.onwards(0.0, 0.0, 1.0, [])
+    path = ThreadPath.from_blocks([*CHAIN, out], LIMITS)
+    assert path.exit_length_mm == pytest.approx(0.5)
+    assert path.make_retract() is None
+    way, left = path.plan_remaining_pass(0.0, 0.0, 1.0, [])
     assert place(way, left) == pytest.approx((5.0, -8.0))
     assert place(way, 99.0) == pytest.approx((6.0, -9.0))
 
 
 def test_a_chain_is_stopped_along_itself() -> None:
     """At s 5 with 1 mm/s; s brakes with A/2: 1/A mm further, of which Z makes two."""
-    path = ThreadPath.of([*CHAIN, OUT], LIMITS)
-    assert place(path.stopping(0.0, 5.0, 1.0), 99.0) == pytest.approx((5.0, -6.0 - 2.0 / A), abs=1e-9)
+    path = ThreadPath.from_blocks([*CHAIN, OUT], LIMITS)
+    assert place(path.make_stop(0.0, 5.0, 1.0), 99.0) == pytest.approx((5.0, -6.0 - 2.0 / A), abs=1e-9)
 
 
 def retract(measured: float, behind: Sequence[Block], **words: object) -> ThreadRetract:
     """S600 is asked, so much is measured."""
     spindle = context_of(None).spindle
-    spindle.ask(SpindleDemand(600.0))
-    spindle.command, spindle.measured = 600.0, measured
-    return ThreadRetract.of(thread(1, 0.0, -4.0, 1.0, **words), behind, spindle)
+    spindle.request_speed(SpindleRequest(600.0))
+    spindle.commanded_rpm, spindle.measured_rpm = 600.0, measured
+    return ThreadRetract.from_block(thread(1, 0.0, -4.0, 1.0, **words), behind, spindle)
 
 
 @pytest.mark.parametrize(
@@ -150,19 +150,19 @@ def retract(measured: float, behind: Sequence[Block], **words: object) -> Thread
 )
 def test_why_a_thread_was_left_is_told(measured: float, why: str) -> None:
     lost = retract(measured, [OUT])
-    lost.demand_left((8.0, -2.0, 0.0))  # not out yet
+    lost.require_axes_in_thread((8.0, -2.0, 0.0))  # not out yet
     with raises_code(AlarmError, "thread-lost", text("executor.left-thread", why=why, z="-2.000")):
-        lost.demand_left((9.0, -2.0, 0.0))
+        lost.require_axes_in_thread((9.0, -2.0, 0.0))
 
 
 def test_a_thread_left_in_its_pull_out_is_told_so_and_inches_are_inches() -> None:
     fell = text("executor.spindle-fell", rpm=20, ordered=600)
     with raises_code(AlarmError, "thread-lost", text("executor.thread-cut", why=fell)):
-        retract(20.0, []).demand_left((5.0, -4.0, 0.0))
-    inch = retract(20.0, [OUT], modal=Modal(metric=False))
+        retract(20.0, []).require_axes_in_thread((5.0, -4.0, 0.0))
+    inch = retract(20.0, [OUT], modal=ModalState(metric=False))
     with raises_code(AlarmError, "thread-lost", text("executor.left-thread", why=fell, z="-0.1000")):
-        inch.demand_left((9.0, -2.54, 0.0))
-    way = inch.way_out((5.0, -2.54, 0.0))
+        inch.require_axes_in_thread((9.0, -2.54, 0.0))
+    way = inch.make_retract_block((5.0, -2.54, 0.0))
     assert (way.x0, way.z0, way.x, way.z) == (5.0, -2.54, 9.0, -2.54)
     assert not math.isclose(way.feed, 0.0)
 
@@ -187,6 +187,6 @@ def test_a_late_tick_draws_the_tool_out_from_where_it_is_at_rest(monkeypatch: py
     monkeypatch.setattr(motion, "_retract", retract(0.0, [OUT]), raising=False)
     monkeypatch.setattr(motion, "_begin_section", begun.extend)
     monkeypatch.setattr(motion, "_splice", lambda _overrides, _last: None)
-    motion.retracted()
+    motion.continue_retract()
     (block,) = begun
     assert (block.x0, block.z0, block.x, block.z) == (5.0, -11.0, 9.0, -11.0)

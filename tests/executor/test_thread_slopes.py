@@ -16,10 +16,10 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from core.executor.commands import CycleStart, FeedHold
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
 from core.ports import DriverError
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.executor.rig import INCH, CreepingClock, Rig
 from tests.texts import pattern, text
 
@@ -80,7 +80,7 @@ def begun(
     pot: float = 1.0,
     *,
     gear: bool = True,
-    clock_kind: type[StepClock] = StepClock,
+    clock_kind: type[ManualClock] = ManualClock,
 ) -> tuple[Rig, Slides]:
     """A rig under way to the thread."""
     rig = Rig(gear=gear, clock_kind=clock_kind)
@@ -136,13 +136,13 @@ _PAIRS = [(60, 0.2), (150, 0.4), (300, 0.1), (300, 0.4), (600, 0.05), (600, 0.2)
 def test_a_pass_is_followed_to_its_end_or_drawn_out(
     pair: tuple[int, float], form: str, slope: str, to: float, z: float, gear: bool, clock: str
 ) -> None:
-    kind = CreepingClock if clock == "creeping" else StepClock
+    kind = CreepingClock if clock == "creeping" else ManualClock
     rig, slides = begun(*pair, form, to if slope == "up" else 1.0, gear=gear, clock_kind=kind)
     if clock == "fine":
         rig.every = 0.0025
     rig.until_true(at_z(z), limit=100.0)
     SLOPES[slope](rig, to)
-    rig.until(State.IDLE, State.FAULT, State.HOLD, limit=200.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, MachineState.HOLD, limit=200.0)
     rig.run(0.2)
     slides.demand_sane()
     codes = [alarm.code for alarm in rig.shot.alarms]
@@ -150,7 +150,7 @@ def test_a_pass_is_followed_to_its_end_or_drawn_out(
     out = FORMS[form][1]
     if codes == ["thread-lost"] and out is not None:
         assert rig.shot.demand[0] == pytest.approx(out * INCH, abs=1e-4)
-    if rig.state is State.HOLD:  # behind the pass, or before it
+    if rig.state is MachineState.HOLD:  # behind the pass, or before it
         assert slope in {"switch off", "pot at 0", "stall", "load"}
         assert out is None or rig.shot.demand[0] == pytest.approx(out * INCH, abs=1e-4) or _clear(rig)
     if not codes and gear and not rig.said("thread"):
@@ -172,7 +172,7 @@ def test_a_pot_turned_up_is_no_lost_spindle(z: float, gear: bool) -> None:
     rig, _ = begun(300, 0.1, "P", 0.4, gear=gear)
     rig.until_true(at_z(z))
     rig.sim.machine.set_spindle_pot(1.0)
-    rig.until(State.IDLE, State.FAULT, State.HOLD)
+    rig.until(MachineState.IDLE, MachineState.FAULT, MachineState.HOLD)
     assert (rig.shot.alarms, rig.shot.parts) == ((), 1)
 
 
@@ -180,8 +180,8 @@ def test_a_pot_turned_up_is_no_lost_spindle(z: float, gear: bool) -> None:
 def test_a_drive_that_turns_the_wrong_way_is_a_lost_spindle(gear: bool) -> None:
     rig, _ = begun(300, 0.1, "P", gear=gear)
     rig.until_true(at_z(-0.2))
-    rig.sim.ports.spindle.run(-300.0)  # an inverter gone mad: nobody asked for it
-    rig.until(State.FAULT)
+    rig.sim.ports.spindle.run_at(-300.0)  # an inverter gone mad: nobody asked for it
+    rig.until(MachineState.FAULT)
     rig.run(0.5)
     assert rig.shot.alarms[0].code == "thread-lost"
     assert rig.shot.demand[0] == pytest.approx(OUT * INCH, abs=1e-4)
@@ -193,7 +193,7 @@ def test_the_tool_leaves_the_thread_by_x_alone_and_never_deeper(gear: bool) -> N
     rig.until_true(at_z(-0.3))
     began = len(slides.rows)
     rig.sim.machine.set_spindle_auto(False)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     x, z = (np.array(slides.rows[began:])[:, part] for part in (1, 2))
     leaving = np.flatnonzero(x > x[0] + 1e-6)[0]
     assert (x >= x[0] - 1e-6).all()
@@ -205,7 +205,7 @@ def test_the_alarm_tells_why_and_what_the_thread_is() -> None:
     rig, slides = begun(300, 0.1, "P")
     rig.until_true(at_z(-0.3))
     rig.sim.machine.set_spindle_auto(False)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     left = slides.rows[-1][2] / INCH
     assert rig.shot.alarms[0].cause == (
         text("executor.left-thread", why=text("executor.switch-off-refused"), z=f"{left:.4f}")
@@ -216,7 +216,7 @@ def test_in_the_pull_out_the_thread_is_told_as_cut() -> None:
     rig, _ = begun(300, 0.1, "P")
     rig.until_true(lambda shot: shot.block_text.endswith("P"))
     rig.sim.machine.spindle_bog(0.1)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert re.fullmatch(pattern("executor.thread-cut"), rig.shot.alarms[0].cause)
 
 
@@ -227,16 +227,16 @@ def test_a_pass_that_waits_for_its_index_is_given_back(gear: bool) -> None:
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
     stood = rig.shot.demand
     rig.sim.machine.set_spindle_auto(False)
-    rig.until(State.HOLD, State.FAULT, limit=0.5)
+    rig.until(MachineState.HOLD, MachineState.FAULT, limit=0.5)
     rig.run(3.0)
     assert rig.shot.alarms == ()
     assert rig.shot.demand == pytest.approx(stood)
     rig.sim.machine.set_spindle_auto(True)
     for _ in range(40):
-        if rig.state is State.HOLD:
+        if rig.state is MachineState.HOLD:
             rig.run(1.0)
             rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT, limit=300.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=300.0)
     assert (rig.shot.alarms, rig.shot.parts) == ((), 1)
     assert max(slides.lead_errors()) < 0.0002
 
@@ -247,7 +247,7 @@ def test_a_stall_is_seen_while_the_command_still_rises() -> None:
     rig.start("G90G94F300G73\nG96S300\nM03\nT4\nX1Z0\nG95F.004X.2\nM30\n", TOOLS)
     rig.until_true(lambda shot: shot.demand[0] < 0.9 * INCH and shot.block_text.startswith("G95"))
     rig.sim.machine.spindle_bog(0.2)
-    rig.until(State.HOLD, State.FAULT, limit=3.0)
+    rig.until(MachineState.HOLD, MachineState.FAULT, limit=3.0)
     assert rig.shot.demand[0] > 0.6 * INCH
 
 
@@ -262,7 +262,7 @@ def test_a_hold_that_comes_as_the_pass_begins_acts_at_its_end(monkeypatch: pytes
     with monkeypatch.context() as begins:
         begins.setattr(rig.sim.ports.axes, "splice", refused)
         rig.post(FeedHold())
-    rig.until(State.HOLD, State.FAULT)
+    rig.until(MachineState.HOLD, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert rig.shot.demand[0] == pytest.approx(OUT * INCH, abs=1e-4)
 
@@ -271,6 +271,6 @@ def test_a_spindle_that_turns_the_other_way_at_its_full_speed_is_lost() -> None:
     rig, _ = begun(300, 0.1, "P")
     rig.until_true(at_z(0.1))
     spindle = rig.executor._context.spindle
-    assert not spindle.lost
-    spindle.measured = -spindle.measured
-    assert spindle.lost
+    assert not spindle.is_speed_lost
+    spindle.measured_rpm = -spindle.measured_rpm
+    assert spindle.is_speed_lost

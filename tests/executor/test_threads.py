@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from core.executor.commands import CycleStart, FeedHold, Reset
-from core.executor.snapshot import Snapshot, State
-from core.executor.spindle_control import SpindleAngle
+from core.executor.snapshot import MachineState, Snapshot
+from core.executor.spindle_control import SpindleAnglePredictor
 from core.interpreter.shared.job_setup import ToolOffset
 from core.motion.axis_limits import FloatArray
 from tests.executor.rig import FINE, INCH, CreepingClock, Rig
@@ -45,7 +45,7 @@ class Recorder:
         if shot.block_text.startswith("G33") and not shot.block_text.endswith("P"):
             machine = self.rig.sim.machine
             (_, z, _), _ = self.rig.sim.ports.axes.demand_at(self.rig.clock.now())
-            row = z / INCH, machine.true_position()[1] / INCH, machine.spindle_turns()
+            row = z / INCH, machine.get_true_position()[1] / INCH, machine.spindle_turns()
             self.rows.setdefault(shot.block, []).append(row)
 
     def phases(self, column: int) -> list[FloatArray]:
@@ -86,7 +86,7 @@ def test_lead_and_entry_on_a_wandering_spindle(period: float, clock: str, gear: 
     rig.sim.machine.spindle_wander(0.02, period)
     recorder = Recorder(rig)
     rig.start(EXTERNAL, TOOLS)
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert len(recorder.rows) == 4
     # Setpoints, and where the slide truly is: known on a grid of 1 ms only, which a creeping clock leaves.
@@ -124,7 +124,7 @@ def test_a_gear_follows_a_fast_swing_and_coarse_leads(lead: float, rpm: int, per
     end_x = 0.237 - first
     end = -0.2 if lead * rpm < 60.0 else -1.2  # in: several swings of the speed, two at the least
     rig.start(f"{head}G33X{end_x:.4f}Z{end}I{first}K{lead}P\nM30\n", TOOLS)
-    rig.until(State.IDLE, State.FAULT, limit=300)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=300)
     assert rig.shot.alarms == ()
     assert len(recorder.rows) == 4
     for column in (0, 1):
@@ -138,7 +138,7 @@ def test_a_slide_that_runs_up_to_a_coarse_lead_is_no_thread_out_of_step() -> Non
     """It lags behind the spindle by half of its run-up, which lies before the thread."""
     rig = Rig(gear=False)
     rig.start(EXTERNAL.replace("K.05", "K.16").replace("Z-1.2", "Z-.4"), TOOLS)
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert rig.said("thread") == []
 
@@ -157,7 +157,7 @@ def test_passes_at_other_speeds_enter_at_the_same_angle(gear: bool) -> None:
         rig.until_true(lambda shot: shot.block_text.endswith("P"))
         rig.sim.machine.set_spindle_pot(pot)
         rig.until_true(lambda shot: shot.block_text.startswith("G00"))
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.parts == 1
     assert entries(recorder.phases(0)).max() < 0.2
 
@@ -166,7 +166,7 @@ def test_a_spindle_that_turns_backwards(gear: bool) -> None:
     rig = Rig(gear=gear)
     recorder = Recorder(rig)
     rig.start(EXTERNAL.replace("M03", "M04"), TOOLS)
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert max(lead_errors(recorder.phases(0))) < 0.0001
     assert entries(recorder.phases(0)).max() < 0.2
 
@@ -184,7 +184,7 @@ def test_the_pull_out_stays_in_step(gear: bool) -> None:
 
     rig.watch.append(look)
     rig.start(HEAD + "G33X.237Z-.5I.025K.05PO\nM30\n".replace("X.237", "X.2"), TOOLS)
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     (x0, z0, turns0), (x1, z1, turns1) = seen[0], seen[-1]
     assert x1 - x0 > 1.0
     assert (z0 - z1) / (turns1 - turns0) == pytest.approx(LEAD * INCH, rel=2e-3)
@@ -197,7 +197,7 @@ def test_it_ends_where_the_block_says(gear: bool) -> None:
     rig.start(HEAD + "G33X.2Z-.5I.025K.05PO\nM00\nM30\n", TOOLS)
     ends: list[tuple[float, ...]] = []
     rig.watch.append(lambda shot: ends.append(shot.demand[:2]) if shot.block_text.endswith("P") else None)
-    rig.until(State.PROGRAM_STOP, State.FAULT)
+    rig.until(MachineState.PROGRAM_STOP, MachineState.FAULT)
     out = 0.312 - 0.2
     assert ends[-1] == pytest.approx((0.312 * INCH, (-0.5 - out) * INCH), abs=1e-6)
     assert rig.shot.demand[:2] == pytest.approx((0.237 * INCH, 0.2 * INCH), abs=1e-6)
@@ -214,11 +214,11 @@ def test_hold_in_a_pass_acts_at_its_end(program: str, z: float, gear: bool) -> N
     rig.start(program, TOOLS)
     in_thread(rig)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     assert rig.shot.demand[:2] == pytest.approx((RETRACT, z * INCH), abs=1e-4)
     rig.run(1.0)
     rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.parts == 1
     assert entries(recorder.phases(0)).max() < 0.2
 
@@ -236,7 +236,7 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) ->
     deepest = [depth]
     rig.watch.append(lambda shot: deepest.append(min(deepest[-1], shot.demand[0])))
     rig.sim.machine.spindle_bog(0.2)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     rig.run(0.5)
     assert rig.shot.alarms[0].code == "thread-lost"
     assert rig.shot.demand[0] == pytest.approx(RETRACT, abs=1e-4)
@@ -251,7 +251,7 @@ def test_a_lost_thread_is_left_once(gear: bool, z: float) -> None:
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig, z)
     rig.sim.machine.spindle_bog(0.2)
-    rig.until(State.FAULT)
+    rig.until(MachineState.FAULT)
     assert rig.said("thread").count(text("executor.spindle-lost")) == 1
 
 
@@ -262,11 +262,11 @@ def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -
     rig.until_true(lambda shot: shot.block_text.startswith("G33"))
     stood = rig.shot.demand
     rig.post(FeedHold())
-    rig.until(State.HOLD, limit=0.2)
+    rig.until(MachineState.HOLD, limit=0.2)
     rig.run(3.0)
     assert rig.shot.demand == pytest.approx(stood)
     rig.post(CycleStart())
-    rig.until(State.IDLE, State.FAULT, limit=300)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=300)
     assert rig.shot.parts == 1
     assert entries(recorder.phases(0)).max() < 0.2
 
@@ -276,7 +276,7 @@ def test_a_thread_at_the_slides_greatest_speed_is_no_alarm(gear: bool) -> None:
     rig = Rig(gear=gear)
     rig.sim.machine.spindle_wander(0.02, 2.0)
     rig.start(HEAD.replace("S600", "S2000").replace("Z.2", "Z.5") + "G33X.212Z-2.I.025K.15P\nM30\n", TOOLS)
-    rig.until(State.IDLE, State.FAULT)
+    rig.until(MachineState.IDLE, MachineState.FAULT)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 1
     assert rig.said("thread")
@@ -286,8 +286,8 @@ def test_an_encoder_that_dies_in_a_pass_lets_it_end(monkeypatch: pytest.MonkeyPa
     rig = Rig(gear=gear)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig)
-    monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
-    rig.until(State.FAULT)
+    monkeypatch.setattr(rig.sim.ports.spindle, "read_angle", lambda: None)
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "thread-no-encoder"
     assert rig.shot.demand[1] == pytest.approx(0.2 * INCH)  # the next pass did not begin
 
@@ -299,7 +299,7 @@ def test_reset_in_a_pass_stops_along_the_thread(gear: bool) -> None:
     before = rig.shot.demand
     rig.post(Reset())
     rig.run(1.0)
-    assert rig.state in {State.IDLE, State.DISABLED}
+    assert rig.state in {MachineState.IDLE, MachineState.DISABLED}
     assert rig.shot.demand[0] == pytest.approx(before[0], abs=1e-6)
     assert -2.0 < rig.shot.demand[1] - before[1] < 0.0
 
@@ -340,35 +340,35 @@ def test_feed_override_does_not_touch_a_pass(gear: bool) -> None:
 
 
 def test_an_even_spindle_is_foretold_exactly() -> None:
-    turns = SpindleAngle()
+    turns = SpindleAnglePredictor()
     for i in range(20):
-        turns.note((0.01 * i, -3.0 - 0.1 * i))
-    assert turns.at(0.5) == pytest.approx((-8.0, -10.0))
+        turns.add_reading((0.01 * i, -3.0 - 0.1 * i))
+    assert turns.predict(0.5) == pytest.approx((-8.0, -10.0))
 
 
 def test_nothing_is_foretold_from_too_little() -> None:
-    turns = SpindleAngle()
-    assert turns.at(0.0) is None
+    turns = SpindleAnglePredictor()
+    assert turns.predict(0.0) is None
     for i in range(30):
-        turns.note((1.0, 5.0 + i))  # the same moment again says nothing
-    assert turns.at(1.0) is None
+        turns.add_reading((1.0, 5.0 + i))  # the same moment again says nothing
+    assert turns.predict(1.0) is None
     for i in range(30):
-        turns.note((1.0 + 0.01 * i, 5.0 + 0.1 * i))
-    assert turns.at(1.0) is not None
-    turns.note(None)
-    assert turns.at(2.0) is None
+        turns.add_reading((1.0 + 0.01 * i, 5.0 + 0.1 * i))
+    assert turns.predict(1.0) is not None
+    turns.add_reading(None)
+    assert turns.predict(2.0) is None
 
 
 def test_a_swinging_speed_is_foretold_within_a_fifth_of_a_degree() -> None:
-    turns, worst = SpindleAngle(), 0.0
+    turns, worst = SpindleAnglePredictor(), 0.0
 
     def truth(t: float) -> float:
         return 10.0 * (t - 0.02 / math.pi * math.cos(math.pi * t))  # 600 rpm, 2 % in 2 s
 
     for i in range(400):
         t = 0.01 * i
-        turns.note((t, round(truth(t) * 4096) / 4096))
-        found = turns.at(t + 0.045)
+        turns.add_reading((t, round(truth(t) * 4096) / 4096))
+        found = turns.predict(t + 0.045)
         if found is not None and i > 25:
             worst = max(worst, abs(found[0] - truth(t + 0.045)))
     assert worst * 360.0 < 0.2

@@ -5,15 +5,15 @@ from __future__ import annotations
 import pytest
 
 from core.executor.commands import (
-    BarNextPart,
+    BlockNextPart,
     CycleStart,
     FeedHold,
-    FeedOverride,
-    Prepare,
+    PrepareStart,
     Reset,
+    SetFeedOverride,
     SetSwitch,
 )
-from core.executor.snapshot import Starts, State
+from core.executor.snapshot import MachineState, StartAction
 from core.interpreter.shared.job_setup import ToolOffset
 from tests.executor.lines import mdi
 from tests.executor.rig import Rig
@@ -32,7 +32,7 @@ def cut(rig: Rig) -> list[float]:
 def test_time_at_feed_is_that_of_the_tool_that_cuts() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert cut(rig) == pytest.approx([2.0, 2.0], abs=0.06)
     assert set(rig.shot.cutting) == {1, 2}
 
@@ -40,16 +40,16 @@ def test_time_at_feed_is_that_of_the_tool_that_cuts() -> None:
 def test_a_slower_feed_takes_longer_and_a_hold_takes_nothing() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
-    rig.post(FeedOverride(0.5))
+    rig.post(SetFeedOverride(0.5))
     rig.until_true(lambda shot: shot.line == 4)
     rig.run(0.5)
     rig.post(FeedHold())
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     before = cut(rig)
     rig.run(5.0)
     assert cut(rig) == before
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert cut(rig) == pytest.approx([4.0, 4.0], abs=0.2)
 
 
@@ -59,7 +59,7 @@ def test_a_part_that_is_given_up_has_worn_its_tool_all_the_same() -> None:
     rig.until_true(lambda shot: shot.line == 4)
     rig.run(1.0)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert cut(rig) == pytest.approx([1.0, 0.0], abs=0.1)
 
 
@@ -67,7 +67,7 @@ def test_a_dry_run_cuts_nothing() -> None:
     rig = Rig()
     rig.post(SetSwitch("no_count", True))
     rig.start(PART, TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.cutting == {}
 
 
@@ -86,30 +86,30 @@ def test_the_part_under_way_is_finished_and_no_other_begins() -> None:
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start(PART, TOOLS)
     rig.run(0.5)
-    rig.post(BarNextPart(SPENT))
-    assert rig.state is State.RUN
-    rig.until(State.IDLE)
+    rig.post(BlockNextPart(SPENT))
+    assert rig.state is MachineState.RUN
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.said("refused") == [text("executor.no-repeat", why=SPENT)]
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.state is State.IDLE
-    assert rig.shot.start_refused == SPENT
+    assert rig.state is MachineState.IDLE
+    assert rig.shot.start_refusal == SPENT
 
 
 def test_a_new_insert_and_parts_go_on() -> None:
     rig = Rig()
     rig.ready()
     rig.load(PART, TOOLS)
-    rig.post(BarNextPart(SPENT))
+    rig.post(BlockNextPart(SPENT))
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == SPENT
-    rig.post(BarNextPart(""))
-    assert (rig.shot.start_refused, rig.shot.next_barred) == ("", "")
+    assert rig.shot.start_refusal == SPENT
+    rig.post(BlockNextPart(""))
+    assert (rig.shot.start_refusal, rig.shot.next_barred) == ("", "")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_a_hold_is_gone_on_from() -> None:
@@ -117,38 +117,38 @@ def test_a_hold_is_gone_on_from() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     rig.run(0.5)
-    rig.post(BarNextPart(SPENT), FeedHold())
-    rig.until(State.HOLD)
+    rig.post(BlockNextPart(SPENT), FeedHold())
+    rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
 
 
 def test_a_line_of_mdi_is_no_part() -> None:
     rig = Rig()
     rig.ready()
-    rig.post(BarNextPart(SPENT))
+    rig.post(BlockNextPart(SPENT))
     mdi(rig, "G90")
     assert rig.shot.lines == 1
-    rig.post(Prepare(Starts.PROGRAM))
+    rig.post(PrepareStart(StartAction.PROGRAM))
 
 
 def test_what_does_not_start_for_another_reason_says_that_one() -> None:
     """The cause told first is the one to be removed first."""
     rig = Rig()
-    rig.post(BarNextPart(SPENT))
+    rig.post(BlockNextPart(SPENT))
     rig.ready()
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == text("executor.no-program")
+    assert rig.shot.start_refusal == text("executor.no-program")
 
 
 def test_the_same_bar_again_is_told_once() -> None:
     rig = Rig()
-    rig.post(BarNextPart(SPENT))
-    rig.post(BarNextPart(SPENT))
-    rig.post(BarNextPart(""))
+    rig.post(BlockNextPart(SPENT))
+    rig.post(BlockNextPart(SPENT))
+    rig.post(BlockNextPart(""))
     assert rig.said("switch") == [text("executor.no-other-part", why=SPENT), text("executor.parts-may-go-on")]
 
 
@@ -162,7 +162,7 @@ def recorded(rig: Rig) -> Rig:
 
 
 def loads(rig: Rig) -> list[float | None]:
-    return [event.load for event in rig.events if event.kind in {"part", "uncounted"}]
+    return [event.mean_load_percent for event in rig.events if event.kind in {"part", "uncounted"}]
 
 
 def test_a_part_tells_the_mean_load_of_its_spindle_at_feed() -> None:
@@ -170,8 +170,8 @@ def test_a_part_tells_the_mean_load_of_its_spindle_at_feed() -> None:
     rig = recorded(Rig())
     for _ in range(2):
         rig.start(PART.replace("G73\n", "G73\nM03S500\n"), TOOLS)
-        rig.until(State.IDLE)
-    expected = 30.0 + 10.0 * 500.0 / rig.machine.spindle.rpm_max
+        rig.until(MachineState.IDLE)
+    expected = 30.0 + 10.0 * 500.0 / rig.machine.spindle.max_rpm
     assert loads(rig) == [pytest.approx(expected, rel=0.1)] * 2
     assert rig.shot.spindle_load is not None
 
@@ -179,14 +179,14 @@ def test_a_part_tells_the_mean_load_of_its_spindle_at_feed() -> None:
 def test_the_next_part_begins_with_no_load_of_the_one_before() -> None:
     rig = recorded(Rig())
     rig.start(PART.replace("G73\n", "G73\nM03S500\n"), TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.start("G90G94F300\nG00X1\nM30\n", TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert loads(rig)[1] is None, "nothing was cut"
 
 
 def test_a_machine_that_tells_no_load_has_none() -> None:
     rig = Rig()  # nobody takes the samples
     rig.start(PART, TOOLS)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert (loads(rig), rig.shot.spindle_load) == ([None], None)

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import EnableDrives, Jog, JogStep, JogStop, Reset, Touch, Wheel
-from core.executor.snapshot import State, TouchPhase
-from core.machine.hardware_model import AnalogModel
+from core.executor.commands import EnableDrives, Jog, JogByStep, Reset, SelectHandwheel, StopJog, TouchOffTool
+from core.executor.snapshot import MachineState, TouchPhase
+from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, Machine
-from core.machine.setter_table import SetterModel, runs_on
+from core.machine.setter_table import SetterModel, stopping_distance
 from drivers.simulated.simulated_table import SimulatedTable
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import text
@@ -35,14 +35,14 @@ def with_setter(setter: SetterModel = SETTER, *inputs: str, tip: tuple[float, fl
 
 def wheeled(machine: Machine) -> Machine:
     """With a handwheel."""
-    analog = {"handwheel": AnalogModel("handwheel", "wheel", (0.0, 1.0))}
-    return dataclasses.replace(machine, hardware=dataclasses.replace(machine.hardware, analog=analog))
+    analog = {"handwheel": AnalogInputModel("handwheel", "wheel", (0.0, 1.0))}
+    return dataclasses.replace(machine, hardware=dataclasses.replace(machine.hardware, analog_inputs=analog))
 
 
 class TouchRig(Rig):
     """``held`` is what the key that is held asks for; ``deepest`` how far the stylus was pushed."""
 
-    held: Touch | None = None
+    held: TouchOffTool | None = None
     presses = 0
 
     def __post_init__(self) -> None:
@@ -56,12 +56,12 @@ class TouchRig(Rig):
 
     def hold(self, axis: str = "X", sign: int = -1, while_on: str = "") -> None:
         self.presses += 1
-        self.held = Touch(axis, sign, LEASE, self.presses, while_on)
+        self.held = TouchOffTool(axis, sign, LEASE, self.presses, while_on)
         self.tick()
 
     def let_go(self) -> None:
         self.held = None
-        self.post(JogStop())
+        self.post(StopJog())
 
     def put(self, x: float, z: float) -> None:
         """The slides stand there, the tip so far from part zero."""
@@ -69,8 +69,8 @@ class TouchRig(Rig):
             index = self.shot.axes.index(name)
             while abs(way := want - self.shot.demand[index]) > 1e-6:
                 step = max(-2.5, min(2.5, way))
-                self.post(JogStep(name, step, 40.0))
-                self.until(State.IDLE)
+                self.post(JogByStep(name, step, 40.0))
+                self.until(MachineState.IDLE)
 
     @property
     def deepest(self) -> float:
@@ -97,17 +97,19 @@ def ready(machine: Machine | None = None, *, x: float = 20.0, z: float = 20.0) -
 def test_the_place_of_the_touch(x: float, z: float, axis: str, sign: int, face: float) -> None:
     rig = ready(x=x, z=z)
     rig.hold(axis, sign)
-    assert rig.shot.touching is TouchPhase.SEARCH
-    rig.until(State.IDLE)
+    assert rig.shot.touch_phase is TouchPhase.SEARCH
+    rig.until(MachineState.IDLE)
     touched = rig.shot.touched
     assert touched is not None
     assert touched.why == ""
-    assert touched.place is not None
+    assert touched.touch_position is not None
     index = "XZ".index(axis)
-    assert touched.place == pytest.approx(face + TIP[index], abs=0.0013 + 0.0003)  # a count, and 1 ms of way
-    assert SETTER.face(axis, sign) == face
-    assert touched.error == pytest.approx(0.25 * 0.001 / 2 + 0.00127 / 2)  # .00005 in is a count
-    assert abs(rig.shot.actual[index] - (touched.place - sign * 1.0)) < 0.005  # it stands off
+    assert touched.touch_position == pytest.approx(
+        face + TIP[index], abs=0.0013 + 0.0003
+    )  # a count, and 1 ms of way
+    assert SETTER.touch_position(axis, sign) == face
+    assert touched.uncertainty_mm == pytest.approx(0.25 * 0.001 / 2 + 0.00127 / 2)  # .00005 in is a count
+    assert abs(rig.shot.actual[index] - (touched.touch_position - sign * 1.0)) < 0.005  # it stands off
     assert rig.deepest < SETTER.overtravel
     assert "probe" not in rig.shot.inputs
 
@@ -118,7 +120,7 @@ def test_its_phases_come_in_their_order_and_it_is_slow_at_last() -> None:
     slow: list[float] = []
 
     def note(shot: object) -> None:
-        phase = rig.shot.touching
+        phase = rig.shot.touch_phase
         if phase is not None and (not seen or seen[-1] is not phase):
             seen.append(phase)
         if phase is TouchPhase.SLOW and "probe" in rig.shot.inputs:
@@ -126,7 +128,7 @@ def test_its_phases_come_in_their_order_and_it_is_slow_at_last() -> None:
 
     rig.watch.append(note)
     rig.hold()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert seen == [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW, TouchPhase.RETREAT]
     assert max(slow) == pytest.approx(0.25, rel=0.6)  # in counts a tick
 
@@ -136,11 +138,11 @@ def test_without_a_driver_that_keeps_the_place_a_tick_is_what_it_may_be_off() ->
     context = rig.executor._context
     context.ports = dataclasses.replace(context.ports, touch=None)
     rig.hold()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     touched = rig.shot.touched
     assert touched is not None
-    assert touched.error == pytest.approx(0.25 * 0.01 / 2 + 0.00127 / 2)
-    assert touched.place == pytest.approx(13.0 + TIP[0], abs=touched.error + 0.0013)
+    assert touched.uncertainty_mm == pytest.approx(0.25 * 0.01 / 2 + 0.00127 / 2)
+    assert touched.touch_position == pytest.approx(13.0 + TIP[0], abs=touched.uncertainty_mm + 0.0013)
 
 
 # --- what stops it ----------------------------------------------------------------------------------------
@@ -150,15 +152,15 @@ def test_without_a_driver_that_keeps_the_place_a_tick_is_what_it_may_be_off() ->
 def test_letting_go_stops_in_every_phase(phase: TouchPhase) -> None:
     rig = ready()
     rig.hold()
-    rig.until_true(lambda shot: shot.touching is phase)
+    rig.until_true(lambda shot: shot.touch_phase is phase)
     rig.run(0.05)
     before = rig.shot.actual[0]
     rig.let_go()
-    rig.until(State.IDLE)
-    assert abs(rig.shot.actual[0] - before) < runs_on(8.0, 120 * INCH, 0.03)
+    rig.until(MachineState.IDLE)
+    assert abs(rig.shot.actual[0] - before) < stopping_distance(8.0, 120 * INCH, 0.03)
     touched = rig.shot.touched
     assert touched is not None
-    assert (touched.place, touched.why) == (None, text("executor.let-go"))
+    assert (touched.touch_position, touched.why) == (None, text("executor.let-go"))
 
 
 def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
@@ -167,22 +169,22 @@ def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
     rig.run(0.3)
     before = rig.shot.actual[0]
     rig.held = None  # no word more
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert before - rig.shot.actual[0] < 8.0 * (LEASE + 0.05)
     assert rig.shot.touched is not None
-    assert rig.shot.touched.place is None
+    assert rig.shot.touched.touch_position is None
 
 
 def test_a_key_that_is_still_held_begins_nothing_again() -> None:
     rig = ready()
     rig.hold()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.touched is not None
     assert rig.shot.touched.number == 1
     rig.hold()  # pressed anew: from where it stands now
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.touched.number == 2
     assert rig.shot.touched.why == ""
 
@@ -191,10 +193,10 @@ def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
     rig = ready(z=60.0)  # beside the setter
     begin = rig.shot.actual[0]
     rig.hold()
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
     assert rig.shot.touched.why == text("executor.not-touched", distance="0.472 in")
-    assert rig.shot.touched.place is None
+    assert rig.shot.touched.touch_position is None
     assert rig.shot.actual[0] == pytest.approx(begin, abs=0.005)
     assert rig.shot.alarms == ()
 
@@ -202,21 +204,21 @@ def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
 def test_an_input_that_stays_on_while_backing_off_stops_there() -> None:
     rig = ready()
     rig.hold()
-    rig.until_true(lambda shot: shot.touching is TouchPhase.BACK_OFF)
+    rig.until_true(lambda shot: shot.touch_phase is TouchPhase.BACK_OFF)
     rig.sim.machine.set_input("probe", True)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
     assert text("executor.input-stays", distance="0.039 in") in rig.shot.touched.why
-    assert rig.shot.touched.place is None
+    assert rig.shot.touched.touch_position is None
 
 
 def test_a_setter_that_gives_way_is_told() -> None:
     """The second touch does not come: the stylus is loose, or it was a chip."""
     rig = ready()
     rig.hold()
-    rig.until_true(lambda shot: shot.touching is TouchPhase.SLOW)
+    rig.until_true(lambda shot: shot.touch_phase is TouchPhase.SLOW)
     rig.sim.ports.axes._plant.terminals.setter = None  # type: ignore[attr-defined]
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
     assert text("executor.no-second-touch") in rig.shot.touched.why
 
@@ -234,8 +236,8 @@ def test_feed_hold_e_stop_and_another_key_end_it() -> None:
         rig.run(0.2)
         act(rig)
         rig.run(0.5)
-        assert rig.shot.touching is None
-        assert rig.state in {State.IDLE, State.ESTOP}
+        assert rig.shot.touch_phase is None
+        assert rig.state in {MachineState.IDLE, MachineState.ESTOP}
         assert rig.shot.touched is not None
         assert why in rig.shot.touched.why
         assert rig.shot.velocity == 0.0
@@ -247,11 +249,11 @@ def test_a_button_that_comes_up_ends_it_though_the_screen_goes_on_asking() -> No
     rig.tick()
     rig.hold(while_on="jog_x_minus")
     rig.run(0.2)
-    assert rig.state is State.JOG
+    assert rig.state is MachineState.JOG
     rig.sim.machine.set_input("jog_x_minus", False)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
-    assert rig.shot.touched.place is None
+    assert rig.shot.touched.touch_position is None
 
 
 def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
@@ -260,7 +262,7 @@ def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
     while not rig.said("refused"):
         rig.post(jog)
     assert text("executor.setter-touched") in rig.said("refused")[0]
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.deepest < 8.0 * 0.05 + 0.1  # a tick, what is committed, the braking
     for _ in range(30):
         rig.post(Jog("X", 8.0, LEASE))
@@ -270,7 +272,7 @@ def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
 
 def test_the_handwheel_is_taken_away_at_the_setter() -> None:
     rig = ready(wheeled(with_setter()), x=13.5)
-    wheel = Wheel("X", 0.1, LEASE)
+    wheel = SelectHandwheel("X", 0.1, LEASE)
     rig.post(wheel)
     for _ in range(12):
         rig.post(wheel)
@@ -290,7 +292,7 @@ def test_the_input_is_on_already() -> None:
     rig.sim.machine.set_input("probe", True)
     rig.run(0.05)
     rig.hold()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(text("executor.setter-on") in said for said in rig.said("refused"))
 
 
@@ -298,26 +300,26 @@ def test_no_input_and_no_setter() -> None:
     rig = TouchRig(load_machine())
     rig.ready()
     rig.hold()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(text("executor.no-setter") in said for said in rig.said("refused"))
 
 
 def test_the_spindle_turns() -> None:
     rig = ready()
     rig.start("G90G94F300\nM03S900\nM02\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.hold()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(text("executor.spindle-turns-touch") in said for said in rig.said("refused"))
 
 
 def test_an_axis_that_is_not_homed() -> None:
     machine = with_setter()
-    x = dataclasses.replace(machine.axis("X"), absolute=False, home_order=1, home_speed=10.0)
+    x = dataclasses.replace(machine.find_axis("X"), absolute=False, home_order=1, home_speed=10.0)
     rig = TouchRig(dataclasses.replace(machine, axes=(x, *machine.axes[1:])))
     rig.post(EnableDrives())
     rig.hold()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(text("executor.position-means-nothing", axis="X") in said for said in rig.said("refused"))
 
 
@@ -325,7 +327,7 @@ def test_a_search_that_would_leave_the_travel() -> None:
     rig = ready()
     rig.put(-TIP[0] - 4.0 * INCH + 10.0, 60.0)  # 10 mm from the end, and it looks 12 mm far
     rig.hold()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(
         text("executor.search-leaves-travel", axis="X", distance="0.197 in") in said
         for said in rig.said("refused")
@@ -336,7 +338,7 @@ def test_a_search_that_would_leave_the_travel() -> None:
 def test_no_direction_at_all(axis: str, sign: int) -> None:
     rig = ready()
     rig.hold(axis, sign)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(text("executor.not-along", axis=axis or "no axis") in said for said in rig.said("refused"))
 
 
@@ -348,12 +350,12 @@ def test_drives_off_and_feed_hold() -> None:
     rig.sim.machine.press_hold()
     rig.tick()
     rig.hold()
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert any(text("executor.hold-pressed") in said for said in rig.said("refused"))
 
 
 def test_the_handwheel_is_selected() -> None:
     rig = ready()
-    rig.executor._control.wheel.axis = "X"
-    rig.executor._control.touch.asked(Touch("X", -1, LEASE, 9), State.IDLE, "X")
+    rig.executor._control.handwheel.axis = "X"
+    rig.executor._control.touch_off.handle_request(TouchOffTool("X", -1, LEASE, 9), MachineState.IDLE, "X")
     assert any(text("executor.wheel-selected") in said for said in rig.said("refused"))

@@ -11,17 +11,17 @@ import pytest
 from core.executor.commands import EnableDrives
 from core.executor.executor import Executor
 from core.executor.safety.watchdog import (
-    AGAIN,
-    OTHERS,
-    PATIENT,
-    STUCK,
-    WATCHDOG,
+    CHECKS_BETWEEN_HALTS,
+    CHECKS_PER_THREAD_CHECK,
+    PATIENT_STUCK_CHECKS,
+    STUCK_CHECKS,
+    WATCHDOG_THREAD_NAME,
     ExecutorThread,
     Watchdog,
-    WatchdogWatch,
-    running,
+    WatchdogSupervisor,
+    is_thread_running,
 )
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from drivers.grblhal import grblhal_codes
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.grbl import Grblhal
@@ -68,11 +68,11 @@ def away(rig: Rig, seconds: float, look: Callable[[], None] | None = None) -> No
 @pytest.mark.parametrize("dead", [True, False], ids=["dead", "stuck"])
 def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, dead: bool) -> None:
     rig, control = cutting(name)
-    dog, thread = watched(control.executor, control.executor.halt)
-    dog.look()
+    dog, thread = watched(control.executor, control.executor.halt_function)
+    dog.check()
     thread.alive = not dead
     place = control.world.place()[1]
-    away(rig, 6.0, dog.look)
+    away(rig, 6.0, dog.check)
     # a second to be sure that it is stuck, what was queued meanwhile, and the ramp
     assert abs(control.world.place()[1] - place) < 12.7 * (
         0.5 if dead and not name.startswith("fed") else 3.5
@@ -83,7 +83,7 @@ def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, de
     assert control.world.rpm() == 0.0
     assert not control.world.outputs()["coolant"]
     assert control.world.outputs()["collet"]
-    assert control.shot.state is State.FAULT
+    assert control.shot.state is MachineState.FAULT
     (alarm,) = control.shot.alarms
     assert alarm.code == "control-silent"
     assert ("ended" if dead else "stuck") in alarm.cause
@@ -94,12 +94,12 @@ def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, de
 
 def test_an_executor_that_comes_back_begins_with_the_alarm() -> None:
     rig, control = cutting("simulated")
-    dog, _ = watched(control.executor, control.executor.halt)
-    away(rig, 2.0, dog.look)
+    dog, _ = watched(control.executor, control.executor.halt_function)
+    away(rig, 2.0, dog.check)
     for _ in range(100):
         control.tick()
-        dog.look()
-    assert control.state is State.FAULT
+        dog.check()
+    assert control.state is MachineState.FAULT
     assert [alarm.code for alarm in control.shot.alarms] == ["control-silent"]
     assert not rig.ports.axes.sample().enabled
     assert control.nothing_moves()
@@ -107,32 +107,32 @@ def test_an_executor_that_comes_back_begins_with_the_alarm() -> None:
 
 def test_a_process_that_stood_still_is_not_blamed() -> None:
     rig, control = cutting("simulated")
-    dog, _ = watched(control.executor, control.executor.halt)
+    dog, _ = watched(control.executor, control.executor.halt_function)
     for _ in range(5):
         away(rig, 5.0)  # both stood
-        for _ in range(STUCK - 2):
-            dog.look()  # and the watchdog is the first to be woken
+        for _ in range(STUCK_CHECKS - 2):
+            dog.check()  # and the watchdog is the first to be woken
         control.tick()
-        dog.look()
+        dog.check()
     assert control.shot.alarms == ()
 
 
 def test_a_wait_for_drives_is_no_stuck_thread() -> None:
     rig = Simulated()
-    dog, _ = watched(rig.executor, rig.executor.halt)
+    dog, _ = watched(rig.executor, rig.executor.halt_function)
     enable = rig.sim.ports.axes.enable
     waited: list[bool] = []
 
     def slow(on: bool) -> None:
-        for _ in range(PATIENT - 5):
-            dog.look()
+        for _ in range(PATIENT_STUCK_CHECKS - 5):
+            dog.check()
         waited.append(True)
         enable(on)
 
     rig.sim.ports.axes.enable = slow  # type: ignore[method-assign]
     rig.post(EnableDrives())
     assert waited
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.alarms == ()
 
 
@@ -147,11 +147,11 @@ def test_a_controller_is_held_first_and_then_reset() -> None:
         write(data)
 
     rig.wire.write = noting  # type: ignore[method-assign]
-    dog, thread = watched(control.executor, control.executor.halt)
+    dog, thread = watched(control.executor, control.executor.halt_function)
     thread.alive = False
-    for _ in range(3 * AGAIN):
+    for _ in range(3 * CHECKS_BETWEEN_HALTS):
         away(rig, 0.1)
-        dog.look()
+        dog.check()
     assert sent[0] == bytes([grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
     assert set(sent[1:]) == {bytes([grblhal_codes.RESET])}
     rig.close()
@@ -175,19 +175,19 @@ def test_a_thread_that_is_killed_leaves_nothing_on(error: type[BaseException]) -
     rig.start(CUT)
     rig.until_true(lambda shot: shot.actual[1] < -3.0)
     thread = ExecutorThread(rig.executor, Waiting(rig), tick=0.01)
-    dog = Watchdog(thread, rig.executor.halt, (), lambda _: None)
+    dog = Watchdog(thread, rig.executor.halt_function, (), lambda _: None)
     thread.start()
     kill(thread_of("executor"), error)
     for _ in range(30_000):
         if rig.executor.snapshot.alarms:
             break
         Waiting.pause()
-        dog.look()
+        dog.check()
     assert rig.executor.snapshot.alarms
     thread.close()
-    assert not thread.alive
+    assert not thread.is_alive
     rig.clock.advance(3.0)
-    assert rig.sim.machine.spindle_rpm() == 0.0
+    assert rig.sim.machine.get_spindle_rpm() == 0.0
     assert {name for name, on in rig.sim.ports.io.outputs().items() if on} == {"collet"}
     assert not rig.sim.ports.axes.sample().enabled
 
@@ -235,7 +235,7 @@ def test_between_two_ticks_it_sleeps_only_where_the_executor_has_not_rested(
             enough.set()
         return rested.pop(0) if rested else True
 
-    monkeypatch.setattr(rig.executor, "rest", rest)
+    monkeypatch.setattr(rig.executor, "wait_at_rest", rest)
     thread = ExecutorThread(rig.executor, noting, tick=0.01)
     thread.start()
     assert enough.wait(60.0)
@@ -251,13 +251,13 @@ def test_another_thread_that_ends_is_told_once() -> None:
     other.start()
     told: list[str] = []
     dog = Watchdog(Ticked(rig.executor), None, (name, "never-there"), told.append)  # type: ignore[arg-type]
-    dog.look()
+    dog.check()
     assert told == []
     ending.set()
     other.join()
-    assert not running(name)
-    for _ in range(3 * OTHERS):
-        dog.look()
+    assert not is_thread_running(name)
+    for _ in range(3 * CHECKS_PER_THREAD_CHECK):
+        dog.check()
     assert told == [name]
 
 
@@ -265,17 +265,17 @@ def test_a_thread_that_starts_after_the_watchdog_is_supervised() -> None:
     """In whatever order they are started; one that is announced also when it ends before the next look."""
     rig, ending, told = Simulated(), threading.Event(), list[str]()
     dog = Watchdog(Ticked(rig.executor), None, ("late-in-this-test",), told.append)  # type: ignore[arg-type]
-    for _ in range(OTHERS):
-        dog.look()
+    for _ in range(CHECKS_PER_THREAD_CHECK):
+        dog.check()
     late = threading.Thread(target=ending.wait, name="late-in-this-test", daemon=True)
     late.start()
-    for _ in range(OTHERS):
-        dog.look()
+    for _ in range(CHECKS_PER_THREAD_CHECK):
+        dog.check()
     ending.set()
     late.join()
-    dog.watch("gone-before-the-next-look")
-    for _ in range(OTHERS):
-        dog.look()
+    dog.watch_thread("gone-before-the-next-look")
+    for _ in range(CHECKS_PER_THREAD_CHECK):
+        dog.check()
     assert sorted(told) == ["gone-before-the-next-look", "late-in-this-test"]
 
 
@@ -291,8 +291,8 @@ def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
     thread.alive = False
 
     def look() -> None:
-        for _ in range(3 * AGAIN):
-            dog.look()
+        for _ in range(3 * CHECKS_BETWEEN_HALTS):
+            dog.check()
 
     looking = threading.Thread(target=look, daemon=True)
     looking.start()
@@ -309,20 +309,20 @@ def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
 def test_the_executor_reports_a_watchdog_that_looks_no_more(looks: bool) -> None:
     rig, told = Simulated(), list[str]()
     dog, _ = watched(rig.executor, None)
-    watch = WatchdogWatch(dog, told.append)
+    watch = WatchdogSupervisor(dog, told.append)
     for tick in range(1000):
         if looks and tick % 10 == 0:
-            dog.look()
-        watch.look(tick * TICK)
-    assert told == ([] if looks else [WATCHDOG])
+            dog.check()
+        watch.check(tick * TICK)
+    assert told == ([] if looks else [WATCHDOG_THREAD_NAME])
 
 
 def test_a_computer_that_was_late_is_no_dead_watchdog() -> None:
     rig, told = Simulated(), list[str]()
     dog, _ = watched(rig.executor, None)
-    watch = WatchdogWatch(dog, told.append)
+    watch = WatchdogSupervisor(dog, told.append)
     for minute in range(10):
-        watch.look(minute * 60.0)
+        watch.check(minute * 60.0)
     assert told == []
 
 
@@ -337,12 +337,12 @@ def test_closing_waits_for_no_executor_that_hangs_and_halts_the_machine() -> Non
     rig.start(CUT)
     rig.until_true(lambda shot: shot.actual[1] < -3.0)
     thread = ExecutorThread(rig.executor, Waiting(rig), tick=0.01)
-    rig.executor.tick = hang  # type: ignore[method-assign]
+    rig.executor.run_tick = hang  # type: ignore[method-assign]
     thread.start()
     assert hangs.wait(60.0)
-    thread.close(limit=0.0)
+    thread.close(timeout_s=0.0)
     rig.clock.advance(3.0)
-    alive, rpm = thread.alive, rig.sim.machine.spindle_rpm()
+    alive, rpm = thread.is_alive, rig.sim.machine.get_spindle_rpm()
     released.set()
     assert alive
     assert rpm == 0.0
@@ -357,12 +357,12 @@ def test_closing_waits_for_no_watchdog_that_hangs() -> None:
         released.wait()
 
     dog = Watchdog(Ticked(rig.executor), None, (), hang)  # type: ignore[arg-type]
-    dog.watch("not-there")
+    dog.watch_thread("not-there")
     dog.start()
     assert hangs.wait(60.0)
-    dog.end()
-    dog.close(limit=0.0)
-    alive = dog.alive
+    dog.stop_checks()
+    dog.close(timeout_s=0.0)
+    alive = dog.is_alive
     released.set()
     assert alive
 
@@ -376,6 +376,6 @@ def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
     dog, thread = watched(control.executor, broken)
     thread.alive = False
     for _ in range(20):
-        dog.look()
+        dog.check()
     assert control.shot.alarms[0].code == "control-silent"
     rig.close()

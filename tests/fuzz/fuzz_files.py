@@ -18,24 +18,24 @@ import numpy as np
 
 import resources
 from app.cli import scope_command
-from app.cli.program_options import read_inputs
-from app.compose.machine.machine_files import parse_machine, shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.machine.setup_archive import FORMAT, MANIFEST
+from app.cli.program_options import read_inputs_file
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
+from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.setup_archive import ARCHIVE_FORMAT, MANIFEST
 from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
-from app.offsets.offsets_file import read_rows, read_tool_shapes
+from app.offsets.offsets_file import read_offset_rows, read_tool_shapes
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Dialect, SourceError, source_of
-from core.machine.machine_file import text_of
-from core.part.stock_spec import StockError, profile_stock
+from core.language.source import Dialect, SourceError, decode_source
+from core.machine.machine_file import read_machine_text
+from core.part.stock_spec import StockError, parse_profile
 from core.ports import DriverError
 from core.proving.prove_program import prove
 from core.records.record_file import save_record
-from core.records.record_ring import Recorded, Ring
+from core.records.record_ring import RingLayout, ScopeRing
 from core.records.ring_file import RingFile
 from core.table_schema import MachineFileError
-from drivers.canopen.canopen_objects import dictionary, drive_objects
+from drivers.canopen.canopen_objects import build_drive_dictionary, load_dictionary
 from drivers.canopen.drive_profiles import PROFILES
 from tests.extras.modules import of_extras
 from tests.fuzz.damage import EDITS, in_archive
@@ -47,7 +47,7 @@ from tests.records.test_record_file import record
 # --- programs ---------------------------------------------------------------------------------------------
 
 _TOOLS = {n: ToolOffset() for n in range(1, 9)}
-_SECONDARY = {1: SecondaryOffset(-0.381, -0.381, 0.381), 3: SecondaryOffset(r=0.2)}
+_SECONDARY = {1: SecondaryOffset(-0.381, -0.381, 0.381), 3: SecondaryOffset(nose_radius=0.2)}
 _PROGRAMS = {
     Dialect.OMNITURN: ("gt75", "fuzz.nc"),
     Dialect.KLARTEXT: ("ac-table-mill", "fuzz.h"),
@@ -59,11 +59,11 @@ def _language(dialect: Dialect) -> Target:
     machine_name, name = _PROGRAMS[dialect]
 
     def run(data: bytes) -> Iterator[str]:
-        machine = shipped_machine(machine_name)
-        setup = setup_for(machine, tools=_TOOLS, secondary=_SECONDARY)
-        report = prove(source_of(name, data), setup, machine)
+        machine = load_shipped_machine(machine_name)
+        setup = create_setup(machine, tool_offsets=_TOOLS, secondary_offsets=_SECONDARY)
+        report = prove(decode_source(name, data), setup, machine)
         for each in report.diagnostics:
-            yield each.in_one_line(name)
+            yield each.format_one_line(name)
 
     def change(data: bytes, chance: random.Random) -> bytes:
         """Lines of another program of the book between those of this one."""
@@ -84,7 +84,7 @@ _VALUES = ("0", "-1", "1e308", "nan", "inf", "true", '""', '"x"', "[]", "[1, 2]"
 
 
 def _machine(data: bytes) -> Iterable[str]:
-    parse_machine(text_of(_file("fuzz.toml", data)), "fuzz.toml")
+    parse_machine(read_machine_text(_file("fuzz.toml", data)), "fuzz.toml")
     return ()
 
 
@@ -151,7 +151,7 @@ def _file(name: str, data: bytes) -> Path:
 
 
 def _profile_stock(data: bytes) -> Iterable[str]:
-    profile_stock("fuzz", data.decode("utf-8", "replace"), 1.0, 0.0)
+    parse_profile("fuzz", data.decode("utf-8", "replace"), 1.0, 0.0)
     return ()
 
 
@@ -184,13 +184,15 @@ def _records() -> Iterator[bytes]:
 
 def _rings() -> Iterator[bytes]:
     path = scratch() / "good.ring"
-    recorded = Recorded({"X": False, "C": True}, ("estop",), ("coolant",), 100.0, 1e6, "LATHE", lasts=0.5)
-    ring = Ring.of(recorded)
+    recorded = RingLayout(
+        {"X": False, "C": True}, ("estop",), ("coolant",), 100.0, 1e6, "LATHE", duration_s=0.5
+    )
+    ring = ScopeRing.from_layout(recorded)
     file = RingFile(path, ring)
     rows = np.linspace(0.0, 0.2, 20)[:, None] * np.ones(recorded.sample_width)
-    file.write(ring.samples, ring.samples.write(rows))
+    file.write_rows(ring.samples, ring.samples.write(rows))
     ticks = np.linspace(0.0, 0.2, 10)[:, None] * np.ones(recorded.tick_width)
-    file.write(ring.ticks, ring.ticks.write(ticks))
+    file.write_rows(ring.ticks, ring.ticks.write(ticks))
     file.close()
     yield path.read_bytes()
 
@@ -234,7 +236,7 @@ _OWN_MACHINE = resources.machine_file("gt75.toml").encode()
 
 def _manifest(members: dict[str, bytes]) -> bytes:
     hashes = {name: sha256(content).hexdigest() for name, content in members.items()}
-    return json.dumps({"format": FORMAT, "made": "2026-01-01T00:00:00", "sha256": hashes}).encode()
+    return json.dumps({"format": ARCHIVE_FORMAT, "made": "2026-01-01T00:00:00", "sha256": hashes}).encode()
 
 
 def _sealed(data: bytes, chance: random.Random) -> bytes:
@@ -255,22 +257,22 @@ def _sealed(data: bytes, chance: random.Random) -> bytes:
 
 
 def _dictionary(data: bytes) -> Iterable[str]:
-    dictionary("X", str(_file("fuzz.eds", data)), canopen.ObjectDictionary)
+    load_dictionary("X", str(_file("fuzz.eds", data)), canopen.ObjectDictionary)
     return ()
 
 
 def _dictionaries() -> Iterator[bytes]:
     path = scratch() / "good.eds"
-    canopen.export_od(drive_objects(PROFILES["epos2"]), str(path), "eds")
+    canopen.export_od(build_drive_dictionary(PROFILES["epos2"]), str(path), "eds")
     yield path.read_bytes()[:6000]
 
 
 FILES: tuple[Target, ...] = (
     *(_language(each) for each in Dialect),
     Target("machine file", _machine_files, _machine, (MachineFileError,), _other_value),
-    Target("offsets file", lambda: (_OFFSETS,), _toml(read_rows), (CommandError,), _other_value),
+    Target("offsets file", lambda: (_OFFSETS,), _toml(read_offset_rows), (CommandError,), _other_value),
     Target("tools file", lambda: (_OFFSETS,), _toml(read_tool_shapes), (CommandError,), _other_value),
-    Target("inputs file", lambda: (_INPUTS,), _toml(read_inputs), (CommandError,), _other_value),
+    Target("inputs file", lambda: (_INPUTS,), _toml(read_inputs_file), (CommandError,), _other_value),
     Target("profile of a blank", lambda: (_PROFILE,), _profile_stock, (StockError,)),
     Target("record", _records, _record_of("fuzz.scope"), (CommandError,), in_archive),
     Target("ring", _rings, _record_of("fuzz.ring"), (CommandError,), _in_head),

@@ -11,16 +11,16 @@ from contextlib import closing, suppress
 from functools import cache, partial
 from pathlib import Path
 
-from app.production.parts_book import production
+from app.production.parts_book import read_production
 from core.store import backup
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_export import export
-from core.store.store_file import FILE_NAME, stock_key
-from core.store.store_rows import Kind
+from core.store.store_export import export_store
+from core.store.store_file import STORE_FILE_NAME, make_stock_setting_key
+from core.store.store_rows import OffsetKind
 from tests.fuzz.fuzz_target import Target
 
 _EDIT = 6  # bytes of one change
@@ -34,10 +34,10 @@ def _good() -> Path:
     home = Path(tempfile.mkdtemp(prefix="fuzz-store-", dir=fast if fast.is_dir() else None)) / "good"
     with Store.open(home) as store:
         for number in (1, 3, 101):
-            store.offsets.tools.change_row(
+            store.offsets.tool_offsets.change_row(
                 number % 32 + 1, "touched off", {"x": 1.0 * number, "z": -2.0}
             ).result()
-        store.offsets.secondary.change_row(2, "worn", {"x": -0.01}).result()
+        store.offsets.secondary_offsets.change_row(2, "worn", {"x": -0.01}).result()
         store.programs.save_version("part.nc", b"G90\nM30\n" * 100, "written").result()
         store.events.log_event("alarm", "alarm 101 x line 3: X", 3).result()
         store.runs.add_parts("part.nc").result()
@@ -47,14 +47,14 @@ def _good() -> Path:
         store.write(lambda c: measured_parts.save_feature(c, row)).result()
         reading = ReadingRow(0, 1, 1, 10.0, "mm", "", "typed", "")
         store.write(lambda c: measured_parts.add_reading(c, reading)).result()
-        store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, limit_parts=5))).result()
+        store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(1, limit_parts=5))).result()
     return home
 
 
 def good_store() -> bytes:
     """Return a backup of it."""
     copy = _good().with_name("copy.db")
-    backup.backup(_good(), copy)
+    backup.back_up_store(_good(), copy)
     return copy.read_bytes()
 
 
@@ -63,7 +63,7 @@ def _spoilt(data: bytes) -> Path:
     home = _good().with_name("spoilt")
     shutil.rmtree(home, ignore_errors=True)
     shutil.copytree(_good(), home)
-    path = home / FILE_NAME
+    path = home / STORE_FILE_NAME
     flips = []
     with closing(sqlite3.connect(path, isolation_level=None)) as connection:
         tables = [row[0] for row in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
@@ -90,39 +90,39 @@ def _spoilt(data: bytes) -> Path:
 def _measured(store: Store) -> None:
     """Read everything that is kept of measured parts."""
     with store.read() as connection:
-        measured_parts.features(connection, "part.nc")
-        measured_parts.readings(connection, "part.nc", 1000)
-        measured_parts.last_corrections(connection)
-        part_cycles.cycles(connection, "part.nc", 1000)
-        part_cycles.stops(connection, None, 1000)
-        part_cycles.corrections(connection, "part.nc", 1000)
-        part_cycles.times_since(connection, "2026-01-01T00:00:00Z")
-    for tools in (Kind.TOOL, Kind.MILL_TOOL):
-        production(store, "part.nc", tools, {})
+        measured_parts.read_features(connection, "part.nc")
+        measured_parts.read_readings(connection, "part.nc", 1000)
+        measured_parts.read_last_corrections(connection)
+        part_cycles.read_cycles(connection, "part.nc", 1000)
+        part_cycles.read_stops(connection, None, 1000)
+        part_cycles.read_corrections(connection, "part.nc", 1000)
+        part_cycles.read_cycle_times_since(connection, "2026-01-01T00:00:00Z")
+    for tools in (OffsetKind.TOOL, OffsetKind.MILL_TOOL):
+        read_production(store, "part.nc", tools, {})
 
 
 def _read(data: bytes) -> Iterator[str]:
     """Opened as the desk opens it, and everything read that a page shows; each may refuse in a sentence."""
     home = _spoilt(data)
     with suppress(StoreError):
-        yield from backup.problems(home / FILE_NAME)
+        yield from backup.find_problems(home / STORE_FILE_NAME)
     with Store.open(home) as store:
-        yield from store.repaired
+        yield from store.repair_messages
         yield from store.find_damaged_rows()
         readers: tuple[Callable[[], object], ...] = (
-            *(store.offsets.table(kind).read_rows for kind in Kind),
-            *(partial(store.offsets.table(kind).read_history, 50) for kind in Kind),
+            *(store.offsets.get_table(kind).read_rows for kind in OffsetKind),
+            *(partial(store.offsets.get_table(kind).read_history, 50) for kind in OffsetKind),
             store.programs.list_programs, lambda: store.programs.list_versions("part.nc"),
             lambda: store.programs.load_version("part.nc"), store.events.read_events,
-            store.runs.read_records, store.jobs.read_jobs, lambda: store.runs.count_parts("part.nc"),
+            store.runs.read_records, store.jobs.read_jobs, lambda: store.runs.read_part_count("part.nc"),
             lambda: store.settings.read_setting("target:part.nc"),
             lambda: store.settings.read_setting("under_way"),
-            lambda: store.settings.read_setting(stock_key("part.nc")), lambda: _measured(store),
-            lambda: export(store, home / "out"),
-            lambda: store.offsets.tools.change_row(5, "x", {"x": 1.0}).result(),
+            lambda: store.settings.read_setting(make_stock_setting_key("part.nc")), lambda: _measured(store),
+            lambda: export_store(store, home / "out"),
+            lambda: store.offsets.tool_offsets.change_row(5, "x", {"x": 1.0}).result(),
             lambda: store.runs.add_parts("part.nc").result(), lambda: store.offsets.undo_last_step().result(),
             lambda: store.programs.rename_program("part.nc", "other.nc").result(),
-            lambda: backup.backup(home, home / "copy.db"),
+            lambda: backup.back_up_store(home, home / "copy.db"),
         )  # fmt: skip
         for reader in readers:
             try:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from core.ports import DriverError
-from drivers.grblhal.grblhal_report import read_identity, read_report
-from drivers.inverter.modbus_rtu import answer_in
+from drivers.grblhal.grblhal_report import parse_identity, parse_report
+from drivers.inverter.modbus_rtu import find_response
 from drivers.serial_line import LineSettings
-from drivers.transfer.program_framing import Incoming, Phase, TransferSettings, outgoing
+from drivers.transfer.program_framing import ProgramParser, ReceptionPhase, TransferSettings, encode_program
 from tests.extras.modules import of_extras
 from tests.fuzz.fuzz_files import FILES
 from tests.fuzz.fuzz_target import Target
@@ -21,24 +21,24 @@ def _transfer(data: bytes) -> Iterator[str]:
     """The first byte says how the line is set; the others come in, in pieces."""
     how, rest = (data[0], data[1:]) if data else (0, b"")
     line = LineSettings("fuzz", 9600, 7 if how & 1 else 8, "E" if how & 1 else "N", 1, "none")
-    settings = TransferSettings(line, wrap="" if how & 2 else "%", dc_codes=bool(how & 4))
-    incoming, size = Incoming(settings), 1 + (how >> 4)
+    settings = TransferSettings(line, delimiter="" if how & 2 else "%", dc_codes=bool(how & 4))
+    incoming, size = ProgramParser(settings), 1 + (how >> 4)
     for at in range(0, len(rest), size):
-        incoming.feed(rest[at : at + size])
-    incoming.silence()
-    assert incoming.phase is Phase.WHOLE
-    whole = incoming.program()
-    outgoing(whole.text, settings)
+        incoming.add_characters(rest[at : at + size])
+    incoming.handle_silence()
+    assert incoming.phase is ReceptionPhase.COMPLETE
+    whole = incoming.build_program()
+    encode_program(whole.program_bytes, settings)
     yield whole.name or "no name"
-    answer_in(rest, 1, 3)
+    find_response(rest, 1, 3)
 
 
 def _lines(data: bytes) -> Iterable[str]:
     """What a controller may say at start: its identity, its reports."""
     lines = data.decode("ascii", "replace").split("\n")
     for line in lines:
-        read_report(line)
-    read_identity(lines)
+        parse_report(line)
+    parse_identity(lines)
     return ()
 
 

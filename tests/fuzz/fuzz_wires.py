@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import can
 
-from core.executor.snapshot import ACTIVE, State
+from core.executor.snapshot import ACTIVE_STATES, MachineState
 from core.ports import DriverError
 from tests.drivers.canopen.bench import CanBench
 from tests.drivers.grblhal.bench import GrblBench
@@ -40,9 +40,9 @@ def _frames(data: bytes) -> Iterable[str]:
         bench.run(1.0)
         sample = axes.sample()
         assert not (sample.fault and sample.enabled), f"enabled with {sample.fault}"
-        before = bench.peers.machine.true_position()
+        before = bench.peers.machine.get_true_position()
         bench.run(0.1)
-        after = bench.peers.machine.true_position()
+        after = bench.peers.machine.get_true_position()
         assert max(abs(a - b) for a, b in zip(before, after, strict=True)) < _STANDS, "a slide moves on"
         return [sample.fault] if sample.fault else []
     finally:
@@ -108,8 +108,14 @@ def _spoken_into(data: bytes) -> Iterable[str]:
     bench.run(2.0)
     wrong = [alarm for alarm in bench.shot.alarms if alarm.code == "internal"]
     assert not wrong, wrong[0]
-    assert bench.state is not State.FAULT or bench.shot.alarms, "an alarm without its sentence"
-    assert bench.state in ACTIVE | {State.IDLE, State.FAULT, State.HOLD, State.DISABLED, State.ESTOP}
+    assert bench.state is not MachineState.FAULT or bench.shot.alarms, "an alarm without its sentence"
+    assert bench.state in ACTIVE_STATES | {
+        MachineState.IDLE,
+        MachineState.FAULT,
+        MachineState.HOLD,
+        MachineState.DISABLED,
+        MachineState.ESTOP,
+    }
     return [alarm.cause for alarm in bench.shot.alarms]
 
 
@@ -117,7 +123,7 @@ def _once(bench: GrblBench, part: bytes):  # type: ignore[no-untyped-def]
     waiting = [part]
 
     def read() -> bytes:
-        return (waiting.pop() if waiting else b"") + bench.peer.take()
+        return (waiting.pop() if waiting else b"") + bench.peer.pop_output()
 
     return read
 

@@ -11,14 +11,20 @@ from typing import NamedTuple
 import canopen
 import pytest
 
-from app.cli.program_options import read_inputs
+from app.cli.program_options import read_inputs_file
 from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
-from app.offsets.offsets_file import read_rows, read_tool_shapes
-from app.programs.whole_file import FileError, present
-from core.input_file import NotAFileError, TooLargeError, failures_as, input_bytes, open_input
+from app.offsets.offsets_file import read_offset_rows, read_tool_shapes
+from app.programs.atomic_files import FileOperationError, read_if_exists
+from core.input_file import (
+    NotAFileError,
+    TooLargeError,
+    convert_exceptions,
+    open_input_file,
+    read_input_bytes,
+)
 from core.language.source import SourceError, load_source
-from core.machine.machine_file import text_of
+from core.machine.machine_file import read_machine_text
 from core.message import CodedError
 from core.ports import DriverError
 from core.records.record import RecordError
@@ -26,7 +32,7 @@ from core.records.record_file import open_record
 from core.store import backup
 from core.store.store_errors import StoreError
 from core.table_schema import MachineFileError
-from drivers.canopen.canopen_objects import dictionary
+from drivers.canopen.canopen_objects import load_dictionary
 from tests.coded import raises_code
 from tests.extras.modules import of_extras
 
@@ -44,25 +50,27 @@ class Door(NamedTuple):
 
 
 def _dictionary(path: Path) -> object:
-    return dictionary("X", str(path), canopen.ObjectDictionary)
+    return load_dictionary("X", str(path), canopen.ObjectDictionary)
 
 
 DOORS = (
     Door("part.nc", load_source, SourceError, "file-unreadable", "file-too-large"),
     Door("part.h", load_source, SourceError, "file-unreadable", "file-too-large"),
     Door("part.mpf", load_source, SourceError, "file-unreadable", "file-too-large"),
-    Door("old.nc", present, FileError, "unreadable", "unreadable"),
-    Door("lathe.toml", text_of, MachineFileError, "unreadable", "too-large"),
-    Door("offsets.toml", read_rows, CommandError, "unreadable", "too-large"),
+    Door("old.nc", read_if_exists, FileOperationError, "unreadable", "unreadable"),
+    Door("lathe.toml", read_machine_text, MachineFileError, "unreadable", "too-large"),
+    Door("offsets.toml", read_offset_rows, CommandError, "unreadable", "too-large"),
     Door("tools.toml", read_tool_shapes, CommandError, "unreadable", "too-large"),
-    Door("inputs.toml", read_inputs, CommandError, "unreadable", "too-large"),
+    Door("inputs.toml", read_inputs_file, CommandError, "unreadable", "too-large"),
     Door("alarm.scope", open_record, RecordError, "unusable", "too-large"),
     Door("now.ring", open_record, RecordError, "unusable", "too-large"),
     Door("lathe.setup", check_setup, CommandError, "unreadable", "too-large"),
-    Door("backup.db", backup.problems, StoreError, "not-a-file", "not-a-database"),  # it is read by pages
+    Door(
+        "backup.db", backup.find_problems, StoreError, "not-a-file", "not-a-database"
+    ),  # it is read by pages
     Door(
         "x.eds",
-        lambda path: dictionary("X", str(path), canopen.ObjectDictionary),
+        lambda path: load_dictionary("X", str(path), canopen.ObjectDictionary),
         DriverError,
         "driver",
         "driver",
@@ -118,22 +126,22 @@ def test_a_name_that_no_file_can_have_is_refused(door: Door, tmp_path: Path) -> 
 def test_a_file_has_as_many_bytes_as_its_limit(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(bytes(100))
-    assert input_bytes(path, 100) == bytes(100)
+    assert read_input_bytes(path, 100) == bytes(100)
     with pytest.raises(TooLargeError):
-        input_bytes(path, 99)
+        read_input_bytes(path, 99)
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no files here whose size is not known")
 def test_a_file_that_hides_its_size_has_its_limit_all_the_same() -> None:
     with pytest.raises(TooLargeError):
-        input_bytes(Path("/proc/self/status"), 10)
+        read_input_bytes(Path("/proc/self/status"), 10)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
 def test_what_is_no_file_is_closed_again(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(NotAFileError):
-        open_input(tmp_path / "pipe")
+        open_input_file(tmp_path / "pipe")
     with pytest.raises(OSError, match="No such device"):  # nobody has it open for reading
         os.open(tmp_path / "pipe", os.O_WRONLY | os.O_NONBLOCK)
 
@@ -142,12 +150,12 @@ def test_what_is_no_file_is_closed_again(tmp_path: Path) -> None:
     "error", [ValueError(), KeyError("x"), MemoryError(), RecursionError(), OSError(5, "x")]
 )
 def test_whatever_a_parser_raises_is_the_readers_error(error: Exception) -> None:
-    with pytest.raises(CodedError) as raised, failures_as(lambda _: CodedError("damaged", "damaged")):
+    with pytest.raises(CodedError) as raised, convert_exceptions(lambda _: CodedError("damaged", "damaged")):
         raise error
     assert raised.value.__cause__ is error
 
 
 def test_what_has_a_code_stays_as_it_is() -> None:
     own = partial(CodedError, "own", "own")
-    with raises_code(CodedError, "own"), failures_as(lambda _: CodedError("other", "other")):
+    with raises_code(CodedError, "own"), convert_exceptions(lambda _: CodedError("other", "other")):
         raise own()

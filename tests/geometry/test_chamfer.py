@@ -13,9 +13,9 @@ from core.geometry.chamfer_and_rounding import (
     CornerTooLargeError,
     NoCornerError,
     chamfer,
-    rounding,
+    make_rounding,
 )
-from core.geometry.lines_and_arcs import Line, distance, turn
+from core.geometry.lines_and_arcs import Line, distance_to_point, turn_angle
 from tests.coded import raises_code
 from tests.geometry.contours import follow
 
@@ -29,16 +29,16 @@ def test_a_chamfer_at_a_right_angle() -> None:
 
 
 def test_a_fillet_at_a_convex_corner_is_clockwise_on_the_way_to_the_spindle() -> None:
-    first, round_, last = rounding(FACE, CYLINDER, 1)
+    first, round_, last = make_rounding(FACE, CYLINDER, 1)
     assert first.end == (4, 0)
     assert round_.end == last.start == pytest.approx((5, -1))
-    assert round_.centre == pytest.approx((4, -1))
+    assert round_.center == pytest.approx((4, -1))
     assert round_.clockwise
 
 
 def test_a_fillet_at_a_hollow_corner_turns_the_other_way() -> None:
-    _, round_, _ = rounding(CYLINDER, Line((5, -9), (8, -9)), 1)
-    assert (*round_.start, *round_.end, *round_.centre) == pytest.approx((5, -8, 6, -9, 6, -8))
+    _, round_, _ = make_rounding(CYLINDER, Line((5, -9), (8, -9)), 1)
+    assert (*round_.start, *round_.end, *round_.center) == pytest.approx((5, -8, 6, -9, 6, -8))
     assert not round_.clockwise
 
 
@@ -50,7 +50,7 @@ def test_the_set_back_of_a_chamfer_counts_along_both_lines() -> None:
 
 
 def test_the_set_back_of_a_fillet_is_by_the_half_turn() -> None:
-    first, _, _ = rounding(FACE, Line((5, 0), (8, -3)), 2)
+    first, _, _ = make_rounding(FACE, Line((5, 0), (8, -3)), 2)
     assert first.end == pytest.approx((5 - 2 * tan(pi / 8), 0))
 
 
@@ -58,15 +58,15 @@ def test_the_set_back_of_a_fillet_is_by_the_half_turn() -> None:
 def test_a_set_back_longer_than_the_line_is_refused(size: float) -> None:
     with pytest.raises(CornerTooLargeError) as refused:
         chamfer(FACE, CYLINDER, size)
-    assert refused.value.first
+    assert refused.value.is_first_move
     with pytest.raises(CornerTooLargeError):
-        rounding(FACE, CYLINDER, size)
+        make_rounding(FACE, CYLINDER, size)
 
 
 def test_a_set_back_longer_than_the_next_line_is_refused() -> None:
     with pytest.raises(CornerTooLargeError) as refused:
-        rounding(CYLINDER, Line((5, -9), (7, -9)), 2.5)
-    assert (refused.value.first, refused.value.needed) == (False, pytest.approx(2.5))
+        make_rounding(CYLINDER, Line((5, -9), (7, -9)), 2.5)
+    assert (refused.value.is_first_move, refused.value.needed_length) == (False, pytest.approx(2.5))
 
 
 def test_a_corner_may_take_the_whole_line() -> None:
@@ -81,7 +81,7 @@ def test_lines_in_one_direction_have_no_corner() -> None:
 
 def test_lines_that_run_back_have_no_corner() -> None:
     with raises_code(CornerError, "straight-back"):
-        rounding(FACE, Line((5, 0), (1, 0)), 1)
+        make_rounding(FACE, Line((5, 0), (1, 0)), 1)
 
 
 def test_a_line_of_no_length_takes_no_corner() -> None:
@@ -95,13 +95,13 @@ def test_a_fillet_touches_both_lines(angle: float, radius: float) -> None:
     assert isinstance(before, Line)
     assert isinstance(after, Line)
     try:
-        first, round_, last = rounding(before, after, radius)
+        first, round_, last = make_rounding(before, after, radius)
     except CornerTooLargeError:
         assume(radius * tan(abs(angle) / 2) < 50)
         raise
-    assert abs(turn(first.end_direction, round_.start_direction)) < 1e-5
-    assert abs(turn(round_.end_direction, last.start_direction)) < 1e-5
+    assert abs(turn_angle(first.end_direction, round_.start_direction)) < 1e-5
+    assert abs(turn_angle(round_.end_direction, last.start_direction)) < 1e-5
     assert round_.radius == pytest.approx(radius)
-    assert dist(round_.end, round_.centre) == pytest.approx(radius, abs=1e-6)
-    assert distance(before, round_.centre) == pytest.approx(radius, abs=1e-6)
-    assert distance(after, round_.centre) == pytest.approx(radius, abs=1e-6)
+    assert dist(round_.end, round_.center) == pytest.approx(radius, abs=1e-6)
+    assert distance_to_point(before, round_.center) == pytest.approx(radius, abs=1e-6)
+    assert distance_to_point(after, round_.center) == pytest.approx(radius, abs=1e-6)

@@ -12,20 +12,20 @@ from core.geometry.chamfer_and_rounding import (
     CornerTooLargeError,
     NoCornerError,
     chamfer,
-    leg_of,
+    find_chamfer_leg,
 )
-from core.geometry.lines_and_arcs import Arc, Element, Line, arc_between, turn
+from core.geometry.lines_and_arcs import Arc, Element, Line, make_arc, turn_angle
 from tests.coded import raises_code
 
 LONG = Line((0.0, 90.0), (0.0, 10.0))
 LINE = Line((0.0, 30.0), (0.0, 10.0))
-BALL = arc_between((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+BALL = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
 
 
 def test_two_lines_are_cut_as_ever() -> None:
     one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
     assert chamfer(one, other, 3.0) == chamfer(one, other, 3.0)
-    assert leg_of(one, other, 3.0) == pytest.approx(3.0 / 2**0.5)
+    assert find_chamfer_leg(one, other, 3.0) == pytest.approx(3.0 / 2**0.5)
 
 
 def test_a_line_onto_a_ball_worked_out() -> None:
@@ -54,10 +54,10 @@ def test_random_pairs() -> None:
             if isinstance(part, Arc) and isinstance(whole, Arc):
                 assert part.radius == pytest.approx(whole.radius, abs=1e-9)
                 assert abs(part.sweep) < abs(whole.sweep)
-        corner = turn(before.end_direction, after.start_direction)
+        corner = turn_angle(before.end_direction, after.start_direction)
         if first.length > 1e-3 and last.length > 1e-3:
-            assert turn(first.end_direction, cut.start_direction) * corner > 0
-            assert turn(cut.end_direction, last.start_direction) * corner > 0
+            assert turn_angle(first.end_direction, cut.start_direction) * corner > 0
+            assert turn_angle(cut.end_direction, last.start_direction) * corner > 0
     assert made > 1000
 
 
@@ -67,7 +67,7 @@ def test_the_leg_of_a_length_makes_it() -> None:
         before, after = _way(dice).reversed(), _way(dice)
         length = dice.uniform(0.01, 2.0)
         try:
-            _, cut, _ = chamfer(before, after, leg_of(before, after, length))
+            _, cut, _ = chamfer(before, after, find_chamfer_leg(before, after, length))
         except CornerError:
             continue
         made += 1
@@ -94,13 +94,13 @@ def _way(dice: random.Random) -> Element:
         (LINE, BALL, 15.0, False),  # a quarter of 10 has a chord of 14.14
         (LONG, BALL, 21.0, False),  # longer than the circle is wide
         (Line((0.0, 12.0), (0.0, 10.0)), BALL, 3.0, True),
-        (LONG, Arc(BALL.start, BALL.start, BALL.centre, clockwise=True), 20.5, False),
+        (LONG, Arc(BALL.start, BALL.start, BALL.center, clockwise=True), 20.5, False),
     ],
 )
 def test_what_is_too_short_is_named(before: Element, after: Element, leg: float, first: bool) -> None:
     with pytest.raises(CornerTooLargeError) as caught:
         chamfer(before, after, leg)
-    assert caught.value.first is first
+    assert caught.value.is_first_move is first
 
 
 def test_a_chamfer_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
@@ -127,4 +127,4 @@ def test_a_chamfer_that_would_cross_the_arc_is_refused() -> None:
 
 def test_a_length_that_fits_nowhere() -> None:
     with raises_code(CornerError, "too-short"):
-        leg_of(LINE, BALL, 60.0)
+        find_chamfer_leg(LINE, BALL, 60.0)

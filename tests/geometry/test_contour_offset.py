@@ -9,8 +9,15 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.contour_offset import JOINED, WINDOW, GougeError, Offset, offset_element, pieces_beside
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, clearance, distance
+from core.geometry.contour_offset import (
+    JOIN_TOLERANCE_MM,
+    WINDOW_ELEMENTS,
+    GougeError,
+    OffsetBuilder,
+    offset_element,
+    offset_known_contour,
+)
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance_to_point, min_distance
 from tests.geometry.contours import CONTOURS, arc, follow, polyline, sampled
 
 pytestmark = pytest.mark.long
@@ -18,7 +25,7 @@ pytestmark = pytest.mark.long
 
 def offset_contour(elements: list[Element], left: float) -> list[Element]:
     """The whole path beside a contour."""
-    return [piece.element for piece in pieces_beside(elements, left)]
+    return [piece.element for piece in offset_known_contour(elements, left)]
 
 
 def test_the_left_of_a_way_outwards_is_away_from_the_spindle() -> None:
@@ -108,7 +115,7 @@ REFUSED: list[tuple[str, list[Element], float, int]] = [
 def test_gouges(contour: list[Element], left: float, index: int) -> None:
     with pytest.raises(GougeError) as refused:
         offset_contour(contour, left)
-    assert refused.value.index == index
+    assert refused.value.element_index == index
 
 
 @pytest.mark.parametrize(
@@ -128,7 +135,7 @@ def check(contour: list[Element], path: list[Element], apart: float) -> None:
     """No point too near to any element; where it runs along elements, exactly the distance."""
     for piece in path:
         for point in sampled(piece):
-            nearest = min(distance(element, point) for element in contour)
+            nearest = min(distance_to_point(element, point) for element in contour)
             assert apart - 0.002 <= nearest <= apart + 0.001
     for before, after in pairwise(path):
         assert dist(before.end, after.start) < 1e-6
@@ -156,11 +163,11 @@ def test_forth_and_back_are_the_same_offset(contour: list[Element], apart: float
     except GougeError:
         assume(False)
     if len(back) != len(path):  # by an arc so short that it is left out
-        assert min(piece.length for piece in path + back) < 2 * JOINED
+        assert min(piece.length for piece in path + back) < 2 * JOIN_TOLERANCE_MM
         return
     for forth, other in zip(path, reversed(back), strict=True):
-        assert dist(forth.start, other.end) < JOINED
-        assert dist(forth.end, other.start) < JOINED
+        assert dist(forth.start, other.end) < JOIN_TOLERANCE_MM
+        assert dist(forth.end, other.start) < JOIN_TOLERANCE_MM
 
 
 @settings(max_examples=200, deadline=None)
@@ -170,23 +177,23 @@ def test_the_clearance_of_two_elements_is_the_least_distance(contour: list[Eleme
     a, b = contour[0], contour[-1]
     measured = min(dist(p, q) for p in sampled(a, 61) for q in sampled(b, 61))
     longest = max(a.length, b.length) / 60
-    assert measured - longest <= clearance(a, b) <= measured + 1e-9
+    assert measured - longest <= min_distance(a, b) <= measured + 1e-9
 
 
 @given(CONTOURS, st.floats(0, 1))
 def test_the_place_of_a_point_along_an_element(contour: list[Element], share: float) -> None:
     for element in contour:
         at = share * element.length
-        assert element.along(element.point(at)) == pytest.approx(at, abs=1e-6)
-        assert distance(element, element.point(at)) < 1e-6
+        assert element.distance_from_start(element.point_at(at)) == pytest.approx(at, abs=1e-6)
+        assert distance_to_point(element, element.point_at(at)) < 1e-6
 
 
 def test_a_long_contour_comes_out_while_it_goes_in() -> None:
-    offset, out = Offset(0.2), 0
+    offset, out = OffsetBuilder(0.2), 0
     for k in range(1000):
         out += len(list(offset.add(Line((10.0, -k), (10.0, -k - 1)))))
-    assert out == 1000 - 1 - WINDOW
-    assert len(list(offset.close())) == WINDOW + 1
+    assert out == 1000 - 1 - WINDOW_ELEMENTS
+    assert len(list(offset.finish())) == WINDOW_ELEMENTS + 1
 
 
 def test_the_inside_of_a_cone() -> None:

@@ -8,26 +8,33 @@ from itertools import pairwise
 
 import pytest
 
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance
-from core.geometry.pocket_area import AreaError, Loop, Winding, boundary, goes_round, inset
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance_to_point
+from core.geometry.pocket_area import (
+    AreaError,
+    ElementLoop,
+    Winding,
+    find_boundary,
+    inset_loops,
+    is_counterclockwise,
+)
 
 
-def polygon(*points: Point) -> Loop:
+def polygon(*points: Point) -> ElementLoop:
     return [Line(a, b) for a, b in zip(points, (*points[1:], points[0]), strict=True)]
 
 
-def circle(centre: Point, radius: float, *, clockwise: bool = False) -> Loop:
+def circle(centre: Point, radius: float, *, clockwise: bool = False) -> ElementLoop:
     start = centre[0] + radius, centre[1]
     return [Arc(start, start, centre, clockwise)]
 
 
-def enclosed(loops: list[Loop]) -> float:
+def enclosed(loops: list[ElementLoop]) -> float:
     """Area by Green's formula, sampled finely on arcs: islands count against it."""
     total = 0.0
     for loop in loops:
         for element in loop:
             steps = 1 if isinstance(element, Line) else 400
-            points = [element.point(element.length * at / steps) for at in range(steps + 1)]
+            points = [element.point_at(element.length * at / steps) for at in range(steps + 1)]
             total += sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(points)) / 2.0
     return total
 
@@ -35,11 +42,13 @@ def enclosed(loops: list[Loop]) -> float:
 SQUARE = polygon((0.0, 0.0), (60.0, 0.0), (60.0, 40.0), (0.0, 40.0))
 
 
-def area(pockets: list[Loop], islands: list[Loop]) -> tuple[list[Loop], list[Winding], list[Winding]]:
+def area(
+    pockets: list[ElementLoop], islands: list[ElementLoop]
+) -> tuple[list[ElementLoop], list[Winding], list[Winding]]:
     within, stay = [Winding(loop) for loop in pockets], [Winding(loop) for loop in islands]
-    found = boundary(
+    found = find_boundary(
         [*pockets, *islands],
-        lambda p: any(w.round(p) for w in within) and not any(w.round(p) for w in stay),
+        lambda p: any(w.winding_number(p) for w in within) and not any(w.winding_number(p) for w in stay),
     )
     return found, within, stay
 
@@ -47,8 +56,8 @@ def area(pockets: list[Loop], islands: list[Loop]) -> tuple[list[Loop], list[Win
 def test_a_rectangle_shrinks_by_its_closed_formula_until_nothing_is_left() -> None:
     loops, _, _ = area([SQUARE], [])
     for by in (1.0, 7.5, 19.9):
-        assert enclosed(inset(loops, by)) == pytest.approx((60 - 2 * by) * (40 - 2 * by), abs=1e-6)
-    assert inset(loops, 20.001) == []
+        assert enclosed(inset_loops(loops, by)) == pytest.approx((60 - 2 * by) * (40 - 2 * by), abs=1e-6)
+    assert inset_loops(loops, 20.001) == []
 
 
 def test_an_island_grows_round_and_eats_its_pocket() -> None:
@@ -56,10 +65,10 @@ def test_an_island_grows_round_and_eats_its_pocket() -> None:
     loops, _, _ = area([SQUARE], [circle((30.0, 20.0), 8.0)])
     for by in (1.0, 5.0):
         expected = (60 - 2 * by) * (40 - 2 * by) - math.pi * (8 + by) ** 2
-        assert enclosed(inset(loops, by)) == pytest.approx(expected, abs=1e-2)
-    assert len(inset(loops, 5.0)) == 2
-    assert len(inset(loops, 7.0)) == 2  # fallen apart into a left and a right room
-    assert all(goes_round(loop) for loop in inset(loops, 7.0))
+        assert enclosed(inset_loops(loops, by)) == pytest.approx(expected, abs=1e-2)
+    assert len(inset_loops(loops, 5.0)) == 2
+    assert len(inset_loops(loops, 7.0)) == 2  # fallen apart into a left and a right room
+    assert all(is_counterclockwise(loop) for loop in inset_loops(loops, 7.0))
 
 
 def test_two_circles_come_to_one_and_an_island_that_crosses_a_wall_cuts_in() -> None:
@@ -76,11 +85,11 @@ def test_edges_that_lie_on_one_another_are_no_boundary() -> None:
     assert enclosed(loops) == pytest.approx(60 * 40 + 20 * 20)
 
 
-def _nearest(loops: list[Loop], point: Point) -> float:
-    return min(distance(element, point) for loop in loops for element in loop)
+def _nearest(loops: list[ElementLoop], point: Point) -> float:
+    return min(distance_to_point(element, point) for loop in loops for element in loop)
 
 
-def _random_loop(dice: random.Random) -> Loop:
+def _random_loop(dice: random.Random) -> ElementLoop:
     middle = dice.uniform(0, 40), dice.uniform(0, 40)
     if dice.random() < 0.3:
         return circle(middle, dice.uniform(5, 20), clockwise=dice.random() < 0.5)
@@ -101,17 +110,19 @@ def test_a_point_is_inside_the_inset_just_where_no_boundary_is_nearer() -> None:
                                    [_random_loop(dice) for _ in range(dice.randint(0, 2))])  # fmt: skip
         by = dice.choice((0.5, 2.0, 4.0))
         try:
-            inner = [Winding(loop) for loop in inset(loops, by)]
+            inner = [Winding(loop) for loop in inset_loops(loops, by)]
         except AreaError:
             given_up += 1
             continue
         for _ in range(80):
             point = dice.uniform(-20, 60), dice.uniform(-20, 60)
-            inside = any(w.round(point) for w in within) and not any(w.round(point) for w in stay)
+            inside = any(w.winding_number(point) for w in within) and not any(
+                w.winding_number(point) for w in stay
+            )
             away = _nearest(loops, point) if loops else 0.0
             if inside and abs(away - by) > 0.002:
                 judged += 1
-                assert (sum(w.round(point) for w in inner) == 1) == (away > by)
+                assert (sum(w.winding_number(point) for w in inner) == 1) == (away > by)
     assert judged > 100
     assert given_up <= 1
 
@@ -119,4 +130,4 @@ def test_a_point_is_inside_the_inset_just_where_no_boundary_is_nearer() -> None:
 def test_a_way_that_breaks_off_is_refused() -> None:
     open_end: list[Element] = [Line((0.0, 0.0), (10.0, 0.0)), Line((10.0, 0.0), (10.0, 10.0))]
     with pytest.raises(AreaError):
-        boundary([open_end], lambda point: point[1] > 0.0)
+        find_boundary([open_end], lambda point: point[1] > 0.0)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.contour_offset import Area, TrimError, trimmed_offset
-from core.geometry.lines_and_arcs import Arc, Element, Line, distance
+from core.geometry.contour_offset import RoughingArea, TrimError, trim_offset
+from core.geometry.lines_and_arcs import Arc, Element, Line, distance_to_point
 from tests.geometry.contours import arc, polyline, sampled
 
 STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))
@@ -18,45 +18,45 @@ STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))
 
 
 def test_passes_end_at_the_shoulder_and_at_the_face() -> None:
-    area = Area(STEP, 0.5)
-    assert area.spans(1) == [(0, pytest.approx(19.5))]
-    assert area.spans(5) == [(0, pytest.approx(19.5))]
-    assert area.spans(5.5) == [(0, pytest.approx(19.5))]  # on the offset of the cylinder itself
-    assert area.spans(5.6) == [(0, pytest.approx(1 - sqrt(0.25 - 0.4**2), abs=1e-5))]
-    assert area.spans(9) == [(0, pytest.approx(0.5))]
-    assert area.spans(10.1) == []
+    area = RoughingArea(STEP, 0.5)
+    assert area.find_spans(1) == [(0, pytest.approx(19.5))]
+    assert area.find_spans(5) == [(0, pytest.approx(19.5))]
+    assert area.find_spans(5.5) == [(0, pytest.approx(19.5))]  # on the offset of the cylinder itself
+    assert area.find_spans(5.6) == [(0, pytest.approx(1 - sqrt(0.25 - 0.4**2), abs=1e-5))]
+    assert area.find_spans(9) == [(0, pytest.approx(0.5))]
+    assert area.find_spans(10.1) == []
 
 
 def test_nothing_left_is_the_contour_itself() -> None:
-    area = Area(STEP, 0)
+    area = RoughingArea(STEP, 0)
     assert area.path == STEP
-    assert area.spans(5.9) == [(0, pytest.approx(20))]
-    assert area.spans(7) == [(0, pytest.approx(1))]
+    assert area.find_spans(5.9) == [(0, pytest.approx(20))]
+    assert area.find_spans(7) == [(0, pytest.approx(1))]
 
 
 def test_a_rise_divides_a_pass_in_two() -> None:
     bump = [*polyline((6, 0), (6, 10)), arc((6, 10), (6, 14), 2, clockwise=True), *polyline((6, 14), (6, 30))]
-    assert bump[1].point(bump[1].length / 2) == pytest.approx((4, 12))
-    area = Area(bump, 1)
+    assert bump[1].point_at(bump[1].length / 2) == pytest.approx((4, 12))
+    area = RoughingArea(bump, 1)
     half = sqrt(3**2 - 1**2)  # the offset circle of radius 3 about (6, 12), cut at depth 5
-    assert area.spans(2.9) == [(0, 30)]
-    assert area.spans(5) == [
+    assert area.find_spans(2.9) == [(0, 30)]
+    assert area.find_spans(5) == [
         (0, pytest.approx(12 - half, abs=1e-5)),
         (pytest.approx(12 + half, abs=1e-5), 30),
     ]
-    assert not area.turns_back
+    assert not area.reverses_in_z
 
 
 def test_no_stretch_reaches_under_an_edge() -> None:
     """A hook: depth 6, up to depth 2 at way 20, back to way 12 at depth 3."""
     hook = polyline((6, 0), (6, 20), (2, 20), (2, 12), (1, 12))
-    area = Area(hook, 0)
-    assert area.turns_back
-    assert area.spans(4) == [(0, 12)]
+    area = RoughingArea(hook, 0)
+    assert area.reverses_in_z
+    assert area.find_spans(4) == [(0, 12)]
 
 
 def test_the_way_along_goes_round_outside_corners_and_meets_in_inside_ones() -> None:
-    path = trimmed_offset(STEP, 0.5)
+    path = trim_offset(STEP, 0.5)
     assert [type(element) for element in path] == [Line, Arc, Line, Line]
     assert path[0].start == pytest.approx((10, 0.5))
     assert path[1].start == pytest.approx((6, 0.5))
@@ -71,7 +71,7 @@ def test_a_fillet_smaller_than_what_is_left_is_passed_by() -> None:
         arc((6, 19.7), (5.7, 20), 0.3, clockwise=False),
         Line((5.7, 20), (2, 20)),
     ]
-    path = trimmed_offset(fillet, 0.5)
+    path = trim_offset(fillet, 0.5)
     assert [element.end for element in path] == [pytest.approx((5.5, 19.5)), pytest.approx((2, 19.5))]
 
 
@@ -82,18 +82,18 @@ def test_behind_a_fillet_that_is_passed_by_the_way_goes_round_the_corner() -> No
         arc((4, 9.6), (3.6, 10), 0.4, clockwise=False),
         *polyline((3.6, 10), (3.6, 20)),
     ]
-    path = trimmed_offset(contour, 0.5)
+    path = trim_offset(contour, 0.5)
     assert path[-1].end == pytest.approx((3.1, 20))
     assert all(dist(a.end, b.start) < 0.01 for a, b in pairwise(path))
     round_corner = next(each for each in path if isinstance(each, Arc))
-    assert round_corner.centre == (3.6, 10)
+    assert round_corner.center == (3.6, 10)
 
 
 def test_a_groove_too_narrow_is_passed_by() -> None:
     groove = polyline((6, 0), (6, 10), (9, 10), (9, 10.8), (6, 10.8), (6, 20))
-    path = trimmed_offset(groove, 0.5)
+    path = trim_offset(groove, 0.5)
     # The two round corners of radius .5 meet half way between the walls, .4 from each: depth 6 - .3.
-    deepest = max(element.box[1] for element in path)
+    deepest = max(element.bounding_box[1] for element in path)
     assert deepest == pytest.approx(6 - sqrt(0.5**2 - 0.4**2))
 
 
@@ -101,18 +101,18 @@ def test_a_bottle_is_not_entered_through_a_narrow_neck() -> None:
     bottle = polyline(
         (6, 0), (6, 10), (9, 10), (9, 5), (12, 5), (12, 15), (9, 15), (9, 10.8), (6, 10.8), (6, 20)
     )
-    assert max(element.box[1] for element in trimmed_offset(bottle, 0.5)) < 6
+    assert max(element.bounding_box[1] for element in trim_offset(bottle, 0.5)) < 6
 
 
 def test_a_step_lower_than_what_is_left_ends_the_way_before_it() -> None:
     """The step of .2 at way 20: at depth 5.5 its corner (5.8, 20) is .5 away at 20 - .4."""
-    path = trimmed_offset(polyline((6, 0), (6, 20), (5.8, 20)), 0.5)
+    path = trim_offset(polyline((6, 0), (6, 20), (5.8, 20)), 0.5)
     assert [element.end for element in path] == [pytest.approx((5.5, 19.6), abs=1e-6)]
 
 
 def test_a_contour_that_runs_straight_back_is_refused() -> None:
     with pytest.raises(TrimError):
-        trimmed_offset(polyline((6, 0), (6, 10), (3, 10), (6, 10), (6, 20)), 0.5)
+        trim_offset(polyline((6, 0), (6, 10), (3, 10), (6, 10), (6, 20)), 0.5)
 
 
 _SHAPE = st.tuples(
@@ -149,10 +149,10 @@ PROFILES = st.lists(_SHAPE, min_size=1, max_size=8).map(profile)
 LEFT = st.sampled_from([0.0, 0.1, 0.5, 1.3])
 
 
-def area_of(contour: list[Element], left: float) -> Area:
+def area_of(contour: list[Element], left: float) -> RoughingArea:
     assume(len(contour) > 0 and not straight_back(contour))
     try:
-        return Area(contour, left)
+        return RoughingArea(contour, left)
     except TrimError:
         assume(False)
         raise
@@ -166,7 +166,7 @@ def test_the_way_along_is_unbroken_and_never_too_near(contour: list[Element], le
         assert dist(before.end, after.start) < 0.0051
     for element in path:
         for point in sampled(element, 21):
-            assert min(distance(each, point) for each in contour) >= left - 0.002
+            assert min(distance_to_point(each, point) for each in contour) >= left - 0.002
 
 
 @settings(max_examples=150, deadline=None)
@@ -176,18 +176,20 @@ def test_stretches_are_far_from_the_contour_and_reach_it(
 ) -> None:
     """No point of a stretch, nor above it, is too near; just past its ends there is a reason to stop."""
     area = area_of(contour, left)
-    for start, end in area.spans(depth):
+    for start, end in area.find_spans(depth):
         for k in range(21):
             way = start + (end - start) * k / 20
             for level in (depth, depth * 0.7, depth * 0.3):
-                assert min(distance(each, (level, way)) for each in contour) >= left - 0.002
+                assert min(distance_to_point(each, (level, way)) for each in contour) >= left - 0.002
     if left > 0:
-        for start, end in area.spans(depth):
+        for start, end in area.find_spans(depth):
             at_wall = [start] * (start > 0) + [end] * (end < area.path[-1].end[1] - 1e-6)
             for way in at_wall:
                 if way == pytest.approx(area.path[0].start[1]):
                     continue
-                nearest = min(distance(each, (depth * k / 200, way)) for each in contour for k in range(201))
+                nearest = min(
+                    distance_to_point(each, (depth * k / 200, way)) for each in contour for k in range(201)
+                )
                 assert nearest <= left + 0.1
 
 
@@ -197,6 +199,6 @@ def test_deeper_stretches_lie_within_shallower_ones(
     contour: list[Element], left: float, depth: float, more: float
 ) -> None:
     area = area_of(contour, left)
-    shallow = area.spans(depth)
-    for start, end in area.spans(depth + more):
+    shallow = area.find_spans(depth)
+    for start, end in area.find_spans(depth + more):
         assert any(a - 1e-6 <= start and end <= b + 1e-6 for a, b in shallow)

@@ -8,8 +8,8 @@ from math import cos, dist, pi, sin
 
 import pytest
 
-from core.geometry.chamfer_and_rounding import CornerError, NoCornerError, rounding
-from core.geometry.lines_and_arcs import Arc, Element, Line, arc_between
+from core.geometry.chamfer_and_rounding import CornerError, NoCornerError, make_rounding
+from core.geometry.lines_and_arcs import Arc, Element, Line, make_arc
 from tests.coded import raises_code
 
 Point = tuple[float, float]
@@ -21,7 +21,7 @@ def near(one: Point, other: Point) -> bool:
 
 def check(before: Element, after: Element, radius: float) -> None:
     """Everything that makes a rounding one, seen from the points and directions alone."""
-    first, arc, last = rounding(before, after, radius)
+    first, arc, last = make_rounding(before, after, radius)
     assert near(first.start, before.start)
     assert near(last.end, after.end)
     assert near(first.end, arc.start)
@@ -33,7 +33,7 @@ def check(before: Element, after: Element, radius: float) -> None:
     for part, whole in ((first, before), (last, after)):
         assert part.length <= whole.length + 1e-6
         if isinstance(part, Arc) and isinstance(whole, Arc):
-            assert near(part.centre, whole.centre)
+            assert near(part.center, whole.center)
 
 
 def test_from_a_cylinder_into_a_ball_worked_out() -> None:
@@ -41,9 +41,9 @@ def test_from_a_cylinder_into_a_ball_worked_out() -> None:
     the middle of the ball.
     """
     line = Line((0.0, 30.0), (0.0, 10.0))
-    ball = arc_between((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
-    first, arc, last = rounding(line, ball, 2.0)
-    assert arc.centre == pytest.approx((2.0, math.sqrt(12.0**2 - 2.0**2)))
+    ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+    first, arc, last = make_rounding(line, ball, 2.0)
+    assert arc.center == pytest.approx((2.0, math.sqrt(12.0**2 - 2.0**2)))
     assert first.end == pytest.approx((0.0, math.sqrt(140.0)))
     assert last.start == pytest.approx((10.0 / 12.0 * 2.0, 10.0 / 12.0 * math.sqrt(140.0)))
     check(line, ball, 2.0)
@@ -51,7 +51,7 @@ def test_from_a_cylinder_into_a_ball_worked_out() -> None:
 
 def test_two_lines_are_rounded_as_ever() -> None:
     one, other = Line((0.0, 0.0), (0.0, -20.0)), Line((0.0, -20.0), (15.0, -20.0))
-    assert rounding(one, other, 3.0) == rounding(one, other, 3.0)
+    assert make_rounding(one, other, 3.0) == make_rounding(one, other, 3.0)
 
 
 def test_random_pairs() -> None:
@@ -78,33 +78,33 @@ def _way(dice: random.Random, start: Point) -> Element:
     centre = start[0] + radius * sin(angle), start[1] + radius * cos(angle)
     turned = angle + pi + (1 if clockwise else -1) * dice.uniform(0.6, 2.5)
     end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
-    return arc_between(start, end, centre, clockwise=clockwise)
+    return make_arc(start, end, centre, clockwise=clockwise)
 
 
 def test_what_goes_on_smoothly_has_no_corner() -> None:
     line = Line((10.0, 20.0), (10.0, 0.0))
-    arc = arc_between((10.0, 0.0), (0.0, -10.0), (0.0, 0.0), clockwise=True)
+    arc = make_arc((10.0, 0.0), (0.0, -10.0), (0.0, 0.0), clockwise=True)
     with pytest.raises(NoCornerError):
-        rounding(line, arc, 1.0)
+        make_rounding(line, arc, 1.0)
 
 
 def test_one_that_is_longer_than_the_line() -> None:
     """r 45 would touch the axis at sqrt(55² - 45²) = 31.6; the line begins at 30, where r 40 does."""
     line = Line((0.0, 30.0), (0.0, 10.0))
-    ball = arc_between((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+    ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
     check(line, ball, 39.9)
     with raises_code(CornerError, "no-touching-arc"):
-        rounding(line, ball, 45.0)
+        make_rounding(line, ball, 45.0)
 
 
 @pytest.mark.parametrize("radius", [2.6, 5.0, 6.0])
 def test_one_that_is_too_large_for_the_inside_of_an_arc(radius: float) -> None:
     """From the middle of a bowl of 5 out to its rim: r 2.5 is the largest that lies between both."""
     spoke = Line((0.0, 0.0), (0.0, 5.0))
-    bowl = arc_between((0.0, 5.0), (5.0, 0.0), (0.0, 0.0), clockwise=True)
+    bowl = make_arc((0.0, 5.0), (5.0, 0.0), (0.0, 0.0), clockwise=True)
     check(spoke, bowl, 2.4)
     with pytest.raises(CornerError):
-        rounding(spoke, bowl, radius)
+        make_rounding(spoke, bowl, radius)
 
 
 def test_a_rounding_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
@@ -112,4 +112,4 @@ def test_a_rounding_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
     line = Line((0.0, 30.0), (0.0, 10.0))
     touch = 10.0 / 12.0 * 2.0, 10.0 / 12.0 * math.sqrt(140.0)
     with raises_code(CornerError, "no-touching-arc"):
-        rounding(line, arc_between((0.0, 10.0), touch, (0.0, 0.0), clockwise=True), 2.0)
+        make_rounding(line, make_arc((0.0, 10.0), touch, (0.0, 0.0), clockwise=True), 2.0)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import resources
-from app.compose.machine.kinematics_chain import kinematics_of
-from app.compose.machine.machine_files import named_machine
+from app.compose.machine.kinematics_chain import build_kinematics
+from app.compose.machine.machine_files import load_named_machine
 from core.geometry.rotary_axes import Kinematics
 
 MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")
@@ -61,7 +61,7 @@ def on_workpiece(name: str, angles: dict[str, float], slides: Any, length: float
 
 
 def shipped(name: str) -> Kinematics:
-    found = kinematics_of(named_machine(name))
+    found = build_kinematics(load_named_machine(name))
     assert found is not None
     return found
 
@@ -69,8 +69,11 @@ def shipped(name: str) -> Kinematics:
 def some_place(
     machine: Kinematics, dice: random.Random
 ) -> tuple[dict[str, float], tuple[float, float, float]]:
-    angles = {axis.name: dice.uniform(max(axis.low, -360), min(axis.high, 360)) for axis in machine.rotaries}
-    x, y, z = (dice.uniform(slide.low, slide.high) for slide in machine.slides)
+    angles = {
+        axis.name: dice.uniform(max(axis.travel_min, -360), min(axis.travel_max, 360))
+        for axis in machine.rotary_axes
+    }
+    x, y, z = (dice.uniform(slide.travel_min, slide.travel_max) for slide in machine.linear_axes)
     return angles, (x, y, z)
 
 
@@ -80,17 +83,19 @@ def test_points_and_tool_lie_where_the_matrices_have_them(name: str) -> None:
     for _ in range(200):
         (angles, slides), length = some_place(machine, dice), dice.uniform(0, 150)
         tip, along = on_workpiece(name, angles, slides, length)
-        assert machine.place(angles, tool_length=length).point(slides) == pytest.approx(tuple(tip), abs=1e-9)
-        frame = machine.frame(angles)
+        assert machine.make_transform(angles, tool_length=length).to_frame_point(slides) == pytest.approx(
+            tuple(tip), abs=1e-9
+        )
+        frame = machine.tool_frame(angles)
         assert [row[2] for row in frame] == pytest.approx(list(along), abs=1e-12)
 
 
 @pytest.mark.parametrize("name", MILLS)
 def test_another_angle_or_length_is_another_place(name: str) -> None:
     machine = shipped(name)
-    angles = {axis.name: 10.0 for axis in machine.rotaries}
+    angles = {axis.name: 10.0 for axis in machine.rotary_axes}
     tip, _ = on_workpiece(name, angles, (0.0, 0.0, 0.0), 80.0)
     for wrong, length in (({**angles, "C": 11.0}, 80.0), (angles, 80.1)):
-        assert machine.place(wrong, tool_length=length).point((0.0, 0.0, 0.0)) != pytest.approx(
-            tuple(tip), abs=1e-3
-        )
+        assert machine.make_transform(wrong, tool_length=length).to_frame_point(
+            (0.0, 0.0, 0.0)
+        ) != pytest.approx(tuple(tip), abs=1e-3)

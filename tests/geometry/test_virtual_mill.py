@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.geometry.virtual_mill import Face, PlaneMove, Side
+from core.geometry.virtual_mill import FacePlane, PlaneMove, SidePlane
 
 ENDS = np.array([0.0, 1.0])
 MANY = np.linspace(0.0, 1.0, 2001)
@@ -20,13 +20,13 @@ angle = st.floats(-720.0, 720.0)
 
 def at(move: PlaneMove, share: float) -> list[float]:
     """Lathe X, Z, C at a fraction of the way."""
-    row: list[float] = move.machine(np.array([share]))[0].tolist()
+    row: list[float] = move.machine_positions(np.array([share]))[0].tolist()
     return row
 
 
 def test_a_point_up_on_the_face_comes_under_the_tool_when_c_turns_back() -> None:
     """Seen by the tool C+ is counter-clockwise; what is up has to turn clockwise to come to the right."""
-    move = PlaneMove(Face(c0=10.0), (3.0, 0.0, -1.0), (0.0, 4.0, -2.0))
+    move = PlaneMove(FacePlane(c_start_deg=10.0), (3.0, 0.0, -1.0), (0.0, 4.0, -2.0))
     assert at(move, 0.0) == pytest.approx([-3.0, -1.0, 10.0])
     assert at(move, 1.0) == pytest.approx([-4.0, -2.0, 10.0 - 90.0])
 
@@ -34,54 +34,60 @@ def test_a_point_up_on_the_face_comes_under_the_tool_when_c_turns_back() -> None
 def test_a_tool_above_the_axis_stands_at_its_height_at_the_entry() -> None:
     """H 3 and X 4: rho 5, machine x -4, and C where it was; (0, 5) is 53.13 degrees further round."""
     theta = math.atan2(3.0, 4.0)
-    move = PlaneMove(Face(c0=0.0, h=3.0), (4.0, 3.0, 0.0), (0.0, 5.0, 0.0), theta)
+    move = PlaneMove(FacePlane(c_start_deg=0.0, tool_height_mm=3.0), (4.0, 3.0, 0.0), (0.0, 5.0, 0.0), theta)
     assert at(move, 0.0) == pytest.approx([-4.0, 0.0, 0.0])
     assert at(move, 1.0) == pytest.approx([-4.0, 0.0, -math.degrees(math.pi / 2 - theta)])
 
 
 def test_the_side_is_unrolled_at_its_diameter() -> None:
     """Half the circumference up is 180 degrees back; right is towards the spindle; Z counts outwards."""
-    move = PlaneMove(Side(c0=5.0, z0=-2.0, diameter=20.0), (0.0, 0.0, 12.0), (7.0, math.pi * 10.0, 9.0))
+    move = PlaneMove(
+        SidePlane(c_start_deg=5.0, z_start_mm=-2.0, diameter=20.0),
+        (0.0, 0.0, 12.0),
+        (7.0, math.pi * 10.0, 9.0),
+    )
     assert at(move, 0.0) == pytest.approx([-12.0, -2.0, 5.0])
     assert at(move, 1.0) == pytest.approx([-9.0, -9.0, 5.0 - 180.0])
 
 
 def test_clockwise_is_clockwise_with_y_up() -> None:
-    quarter = PlaneMove(Face(0.0), (-2.0, 0.0, 0.0), (0.0, 2.0, 0.0), centre=(0.0, 0.0), clockwise=True)
-    assert quarter.points(np.array([0.5]))[0].tolist() == pytest.approx([-math.sqrt(2), math.sqrt(2), 0.0])
+    quarter = PlaneMove(FacePlane(0.0), (-2.0, 0.0, 0.0), (0.0, 2.0, 0.0), center=(0.0, 0.0), clockwise=True)
+    assert quarter.mill_points(np.array([0.5]))[0].tolist() == pytest.approx(
+        [-math.sqrt(2), math.sqrt(2), 0.0]
+    )
     assert quarter.length == pytest.approx(math.pi)
-    other = PlaneMove(Face(0.0), (-2.0, 0.0, 0.0), (0.0, 2.0, 0.0), centre=(0.0, 0.0))
+    other = PlaneMove(FacePlane(0.0), (-2.0, 0.0, 0.0), (0.0, 2.0, 0.0), center=(0.0, 0.0))
     assert other.length == pytest.approx(3.0 * math.pi)
 
 
 def test_an_arc_that_ends_where_it_starts_is_a_full_circle() -> None:
-    move = PlaneMove(Face(0.0), (5.0, 0.0, 0.0), (5.0, 0.0, 0.0), centre=(2.0, 0.0))
+    move = PlaneMove(FacePlane(0.0), (5.0, 0.0, 0.0), (5.0, 0.0, 0.0), center=(2.0, 0.0))
     assert move.length == pytest.approx(6.0 * math.pi)
     # round the axis C turns once; beside it C comes back
     assert at(move, 1.0)[2] == pytest.approx(-360.0)
-    beside = PlaneMove(Face(0.0), (5.0, 0.0, 0.0), (5.0, 0.0, 0.0), centre=(8.0, 0.0))
+    beside = PlaneMove(FacePlane(0.0), (5.0, 0.0, 0.0), (5.0, 0.0, 0.0), center=(8.0, 0.0))
     assert at(beside, 1.0)[2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_rounded_centre_is_moved_so_that_the_arc_meets_its_end() -> None:
-    move = PlaneMove(Side(0.0, 0.0, 20.0), (0.0, 0.0, 1.0), (3.0, 3.0, 1.0), centre=(3.0, 0.01))
-    assert move.points(ENDS)[1].tolist() == pytest.approx([3.0, 3.0, 1.0])
+    move = PlaneMove(SidePlane(0.0, 0.0, 20.0), (0.0, 0.0, 1.0), (3.0, 3.0, 1.0), center=(3.0, 0.01))
+    assert move.mill_points(ENDS)[1].tolist() == pytest.approx([3.0, 3.0, 1.0])
 
 
 def test_nearest_to_the_axis() -> None:
-    line = PlaneMove(Face(0.0), (8.0, -6.0, 0.0), (8.0, 2.0, 0.0))
-    assert line.nearest() == pytest.approx(0.75)
-    assert line.rho(line.nearest()) == pytest.approx(8.0)
-    behind = PlaneMove(Face(0.0), (8.0, 1.0, 0.0), (8.0, 2.0, 0.0))
-    assert behind.nearest() == 0.0
-    arc = PlaneMove(Face(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), centre=(5.0, 0.0), clockwise=True)
-    assert arc.rho(arc.nearest()) == pytest.approx(2.0)
-    away = PlaneMove(Face(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), centre=(5.0, 0.0))
-    assert away.rho(away.nearest()) == pytest.approx(math.hypot(5.0, 3.0))
+    line = PlaneMove(FacePlane(0.0), (8.0, -6.0, 0.0), (8.0, 2.0, 0.0))
+    assert line.critical_fraction() == pytest.approx(0.75)
+    assert line.distance_from_axis(line.critical_fraction()) == pytest.approx(8.0)
+    behind = PlaneMove(FacePlane(0.0), (8.0, 1.0, 0.0), (8.0, 2.0, 0.0))
+    assert behind.critical_fraction() == 0.0
+    arc = PlaneMove(FacePlane(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), center=(5.0, 0.0), clockwise=True)
+    assert arc.distance_from_axis(arc.critical_fraction()) == pytest.approx(2.0)
+    away = PlaneMove(FacePlane(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), center=(5.0, 0.0))
+    assert away.distance_from_axis(away.critical_fraction()) == pytest.approx(math.hypot(5.0, 3.0))
 
 
 def test_reach_of_a_chord_holds_its_nearest_point() -> None:
-    low, high = PlaneMove(Face(0.0), (8.0, -6.0, 1.0), (8.0, 6.0, -1.0)).reach()
+    low, high = PlaneMove(FacePlane(0.0), (8.0, -6.0, 1.0), (8.0, 6.0, -1.0)).find_travel_range()
     assert low.tolist() == pytest.approx([-10.0, -1.0, -2 * math.degrees(math.atan2(6.0, 8.0))])
     assert high.tolist() == pytest.approx([-8.0, 1.0, 0.0])
 
@@ -89,19 +95,19 @@ def test_reach_of_a_chord_holds_its_nearest_point() -> None:
 @settings(max_examples=150, deadline=None)
 @given(size, size, size, angle, st.floats(-3.0, 3.0))
 def test_the_face_and_back(x: float, y: float, z: float, c0: float, h: float) -> None:
-    face, rho = Face(c0, h), math.hypot(x, y)
+    face, rho = FacePlane(c0, h), math.hypot(x, y)
     if rho < abs(h) + 0.01:
         return
     point = np.array([[x, y, z]])
-    back = face.mill(face.machine(point, np.array([math.atan2(y, x)])))
+    back = face.to_mill(face.to_lathe(point, np.array([math.atan2(y, x)])))
     assert back[0].tolist() == pytest.approx([x, y, z], abs=1e-9)
 
 
 @settings(max_examples=100, deadline=None)
 @given(size, size, size, angle, st.floats(0.5, 100.0))
 def test_the_side_and_back(x: float, y: float, z: float, c0: float, diameter: float) -> None:
-    side = Side(c0, 3.0, diameter)
-    back = side.mill(side.machine(np.array([[x, y, z]])))
+    side = SidePlane(c0, 3.0, diameter)
+    back = side.to_mill(side.to_lathe(np.array([[x, y, z]])))
     assert back[0].tolist() == pytest.approx([x, y, z], abs=1e-9)
 
 
@@ -112,14 +118,14 @@ def test_c_goes_on_without_a_jump(
 ) -> None:
     """No two of 2001 points lie further apart in C than their distance and their nearness to the axis say."""
     start = (x, y, 0.0)
-    move = PlaneMove(Face(0.0), start, (i, j, 0.0), math.atan2(y, x))
+    move = PlaneMove(FacePlane(0.0), start, (i, j, 0.0), math.atan2(y, x))
     if round_:
-        move = PlaneMove(Face(0.0), start, start, math.atan2(y, x), (i, j), clockwise)
-    if move.length < 1.0 or move.rho(move.nearest()) < 0.05:
+        move = PlaneMove(FacePlane(0.0), start, start, math.atan2(y, x), (i, j), clockwise)
+    if move.length < 1.0 or move.distance_from_axis(move.critical_fraction()) < 0.05:
         return
-    points, machine = move.points(MANY), move.machine(MANY)
+    points, machine = move.mill_points(MANY), move.machine_positions(MANY)
     step = move.length / (len(MANY) - 1)
     nearest = np.minimum(np.hypot(points[:-1, 0], points[:-1, 1]), np.hypot(points[1:, 0], points[1:, 1]))
     most = 2.0 * np.degrees(np.arcsin(np.minimum(step / np.maximum(nearest, step), 1.0)))
     assert (np.abs(np.diff(machine[:, 2])) <= most + 1e-6).all()
-    assert move.frame.mill(machine) == pytest.approx(points, abs=1e-8)
+    assert move.frame.to_mill(machine) == pytest.approx(points, abs=1e-8)

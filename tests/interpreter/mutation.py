@@ -5,11 +5,11 @@ from __future__ import annotations
 import random
 from functools import cache
 
-from core.interpreter.dialects import code_book
-from core.interpreter.omniturn.codes.code_table import CHAPTERS
+from core.interpreter.dialects import get_code_book
+from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
 from core.language.source import Dialect
 
-SEEDS = tuple(code.program for _, codes in CHAPTERS for code in codes)
+SEEDS = tuple(code.example_program for _, codes in CODE_CHAPTERS for code in codes)
 _SIGNS = {
     Dialect.OMNITURN: "GMXZCIKRPSFTDLUAOQN()/}.-+,~0123456789 ",
     Dialect.KLARTEXT: 'LCRPQXYZABCFMSDTEIN;~*/="+-.,0123456789 ',
@@ -136,7 +136,7 @@ _LINES = {
 def _seeds(dialect: Dialect) -> tuple[str, ...]:
     if dialect is Dialect.OMNITURN:
         return SEEDS
-    book = code_book(dialect)
+    book = get_code_book(dialect)
     end = "END PGM EXAMPLE MM\n" if dialect is Dialect.KLARTEXT else ""
     return tuple(
         each.example if each.whole else f"{book.head}{each.example}\n{book.tail}{each.behind}{end}"

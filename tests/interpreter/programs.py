@@ -11,7 +11,7 @@ from core.interpreter.shared.actions import Action
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 
 INCH = 25.4
 ALL_TOOLS: Mapping[int, ToolOffset] = {number: ToolOffset() for number in range(1, 33)}
@@ -104,9 +104,9 @@ def in_feed(block: Block) -> float:
 
 def passed(text: str, given: Setup | None = None, *, strict: bool = False) -> Pass:
     """A program gone through to its end; lines may be separated by blanks or line ends."""
-    program = read_program(Source("PART", text), strict)
+    program = read_program(ProgramSource("PART", text), strict)
     interpreter = Interpreter(program, given or setup())
-    return Pass(program, interpreter, list(interpreter.blocks()))
+    return Pass(program, interpreter, list(interpreter.generate_blocks()))
 
 
 def lines(*each: str) -> str:

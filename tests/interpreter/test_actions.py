@@ -8,19 +8,19 @@ import pickle
 import pytest
 
 from core.executor import commands
-from core.executor.commands import FeedHold, GiveProof, JogStep
+from core.executor.commands import FeedHold, JogByStep, SupplyProof
 from core.interpreter.shared import actions
-from core.interpreter.shared.actions import Collet, Coolant, RepeatOff, SpindleRun
+from core.interpreter.shared.actions import ColletSwitch, CoolantSwitch, CycleRepeatCancel, SpindleRun
 from core.plain_value import PlainValue
 
 
 @pytest.mark.parametrize(
     ("one", "other"),
     [
-        (Coolant(True), Coolant(True)),
-        (RepeatOff(), RepeatOff()),
+        (CoolantSwitch(True), CoolantSwitch(True)),
+        (CycleRepeatCancel(), CycleRepeatCancel()),
         (SpindleRun(-900.0), SpindleRun(-900.0, None)),
-        (JogStep("X", 1.0, 2.0), JogStep("X", 1.0, 2.0, None)),
+        (JogByStep("X", 1.0, 2.0), JogByStep("X", 1.0, 2.0, None)),
         (FeedHold("key", 3), FeedHold("panel", 4)),
     ],
 )
@@ -32,13 +32,13 @@ def test_equal_values_have_one_hash(one: PlainValue, other: PlainValue) -> None:
 @pytest.mark.parametrize(
     ("one", "other"),
     [
-        (Coolant(True), Coolant(False)),
-        (Coolant(True), Collet(True)),
-        (Coolant(True), True),
-        (RepeatOff(), commands.Reset()),
+        (CoolantSwitch(True), CoolantSwitch(False)),
+        (CoolantSwitch(True), ColletSwitch(True)),
+        (CoolantSwitch(True), True),
+        (CycleRepeatCancel(), commands.Reset()),
         (FeedHold(), commands.Reset()),
         (SpindleRun(900.0, 1.0), SpindleRun(900.0, 2.0)),
-        (actions.SpindleStop(), commands.SpindleStop()),
+        (actions.SpindleStop(), commands.StopSpindle()),
     ],
 )
 def test_values_of_other_classes_or_with_other_attributes_differ(one: PlainValue, other: object) -> None:
@@ -46,22 +46,22 @@ def test_values_of_other_classes_or_with_other_attributes_differ(one: PlainValue
 
 
 def test_a_value_shows_its_attributes() -> None:
-    assert repr(actions.Output("m25", True)) == "Output(name='m25', on=True)"
+    assert repr(actions.OutputSwitch("m25", True)) == "Output(name='m25', on=True)"
 
 
 def test_a_pattern_finds_the_attributes_in_the_order_of_the_arguments() -> None:
-    match actions.WaitInput("TB2-9", False):
-        case actions.WaitInput(terminal, closed):
+    match actions.InputWait("TB2-9", False):
+        case actions.InputWait(terminal, closed):
             assert (terminal, closed) == ("TB2-9", False)
 
 
 def test_a_copy_is_equal() -> None:
-    step = JogStep("Z", -0.5, 3.0, (0.0, 0.0, 1.0))
+    step = JogByStep("Z", -0.5, 3.0, (0.0, 0.0, 1.0))
     assert copy.deepcopy(step) == step == pickle.loads(pickle.dumps(step))
 
 
 def test_a_value_has_no_other_attributes_and_no_other_arguments() -> None:
     with pytest.raises(AttributeError):
-        Coolant(True).off = False  # type: ignore[attr-defined]
+        CoolantSwitch(True).off = False  # type: ignore[attr-defined]
     with pytest.raises(TypeError):
-        GiveProof()  # type: ignore[call-arg]
+        SupplyProof()  # type: ignore[call-arg]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.interpreter.programs import INCH, body, passed, setup
 
 QUARTER = ("X.1Z0F20", "G02X.25Z-.15R.15")
@@ -31,7 +31,7 @@ def test_centres(program: tuple[str, ...], centre: tuple[float, float], clockwis
     result = passed(body(*program))
     assert result.errors == []
     arc = result.moves[-1]
-    assert (arc.kind, arc.clockwise) == (Kind.ARC, clockwise)
+    assert (arc.kind, arc.clockwise) == (BlockKind.ARC, clockwise)
     assert (arc.cx / INCH, arc.cz / INCH) == pytest.approx(centre, abs=6e-6)
 
 
@@ -44,7 +44,7 @@ def test_the_end_stays_as_programmed_where_the_radii_differ_a_little() -> None:
 
 def test_an_arc_is_one_shot() -> None:
     result = passed(body(*QUARTER, "X.5Z-.3"))
-    assert [block.kind for block in result.moves] == [Kind.FEED, Kind.ARC, Kind.FEED]
+    assert [block.kind for block in result.moves] == [BlockKind.FEED, BlockKind.ARC, BlockKind.FEED]
 
 
 def test_a_constant_secondary_offset_carries_the_centre_along() -> None:

@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.machine_requirements import (
-    SURFACE,
-    SURFACE_THREAD,
-    THREAD,
+    SURFACE_SPEED,
+    SURFACE_SPEED_THREAD,
     THREAD_CHAIN,
-    Need,
-    first_needs,
-    needs_of,
+    THREADING,
+    MachineRequirement,
+    find_requirements,
+    remove_repeated_requirements,
 )
 from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
 from tests.interpreter.programs import lines, passed, setup
@@ -42,12 +42,12 @@ def test_the_reach_of_a_line_is_its_end_and_of_an_arc_all_of_it() -> None:
     half = arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0))
     assert half.reach() == pytest.approx((0.0, 3.0, -3.0, 3.0))
     moved = replace(half, offset_x=10.0, offset_z=-1.0)
-    assert moved.machine_reach()[:2] == (pytest.approx((10.0, 13.0)), pytest.approx((-4.0, 2.0)))
+    assert moved.compute_machine_bounds()[:2] == (pytest.approx((10.0, 13.0)), pytest.approx((-4.0, 2.0)))
 
 
 def test_a_secondary_offset_moves_all_that_a_milled_way_reaches() -> None:
     text = lines("G90G94F300", "M19", "X-.5Z-.1F5", "(~PLXC)", "(X0Y.4)", "(END)", "M30")
-    (way,) = (block for block in passed(text).moves if block.kind is Kind.PLANE_LINE)
+    (way,) = (block for block in passed(text).moves if block.kind is BlockKind.PLANE_LINE)
     low_x, high_x, low_z, high_z = way.reach()
     assert low_x < high_x
     moved = replace(way, modal=way.modal._replace(secondary_x=1.5, secondary_z=-2.0))
@@ -57,14 +57,14 @@ def test_a_secondary_offset_moves_all_that_a_milled_way_reaches() -> None:
 def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once() -> None:
     still = replace(line((0, 0), (0, 1)), line=1, css=2000.0)
     turns = replace(still, line=2, rpm=500.0)
-    thread = replace(turns, line=3, kind=Kind.THREAD, per_rev=True)
-    chain = replace(turns, line=4, kind=Kind.THREAD, continues=True, css=None)
-    assert list(needs_of([still])) == []
-    assert first_needs(needs_of([still, turns, turns, thread, chain])) == (
-        Need(SURFACE, 2),
-        Need(THREAD, 3),
-        Need(SURFACE_THREAD, 3),
-        Need(THREAD_CHAIN, 4),
+    thread = replace(turns, line=3, kind=BlockKind.THREAD, per_rev=True)
+    chain = replace(turns, line=4, kind=BlockKind.THREAD, continues=True, css=None)
+    assert list(find_requirements([still])) == []
+    assert remove_repeated_requirements(find_requirements([still, turns, turns, thread, chain])) == (
+        MachineRequirement(SURFACE_SPEED, 2),
+        MachineRequirement(THREADING, 3),
+        MachineRequirement(SURFACE_SPEED_THREAD, 3),
+        MachineRequirement(THREAD_CHAIN, 4),
     )
 
 
@@ -75,28 +75,28 @@ def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once(
     "frame",
     [
         ProgrammedFrame(),
-        ProgrammedFrame().rotated(30.0),
-        ProgrammedFrame().scaled(2.0, 0.5),
-        ProgrammedFrame().rotated(-75.0).scaled(1.0, -1.0).rotated(20.0),
-        ProgrammedFrame().scaled(3.0, 1.5).rotated(40.0),
+        ProgrammedFrame().rotate(30.0),
+        ProgrammedFrame().scale(2.0, 0.5),
+        ProgrammedFrame().rotate(-75.0).scale(1.0, -1.0).rotate(20.0),
+        ProgrammedFrame().scale(3.0, 1.5).rotate(40.0),
     ],
 )
 def test_what_is_turned_into_the_machine_turns_back(frame: ProgrammedFrame) -> None:
     for x, z in ((1.0, 0.0), (0.0, 1.0), (-3.5, 7.25)):
-        assert frame.unturned(*frame.turned(x, z)) == pytest.approx((x, z), abs=1e-12)
+        assert frame.invert_distance(*frame.transform_distance(x, z)) == pytest.approx((x, z), abs=1e-12)
 
 
 def test_a_frame_turns_from_z_towards_x() -> None:
     """By 90 degrees Z of the program is X of the machine, and X its -Z."""
-    frame = ProgrammedFrame().rotated(90.0)
-    assert frame.turned(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
-    assert frame.unturned(1.0, 0.0) == pytest.approx((0.0, 1.0), abs=1e-12)
-    assert frame.unturned(0.0, 1.0) == pytest.approx((-1.0, 0.0), abs=1e-12)
-    assert not frame.plain
-    assert frame.uniform
-    assert not frame.mirrored
-    assert ProgrammedFrame().scaled(-1.0, 1.0).mirrored
-    assert not ProgrammedFrame().scaled(2.0, 1.0).uniform
+    frame = ProgrammedFrame().rotate(90.0)
+    assert frame.transform_distance(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
+    assert frame.invert_distance(1.0, 0.0) == pytest.approx((0.0, 1.0), abs=1e-12)
+    assert frame.invert_distance(0.0, 1.0) == pytest.approx((-1.0, 0.0), abs=1e-12)
+    assert not frame.is_shift_only
+    assert frame.is_uniform
+    assert not frame.is_mirrored
+    assert ProgrammedFrame().scale(-1.0, 1.0).is_mirrored
+    assert not ProgrammedFrame().scale(2.0, 1.0).is_uniform
 
 
 # --- a program without a line to execute --------------------------------------------------------------------

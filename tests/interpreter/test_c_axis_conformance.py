@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, OUTPUTS, Pass, passed, setup
@@ -34,7 +34,7 @@ def milled(result: Pass) -> list[Block]:
 
 def test_cross_drill() -> None:
     result = good("caxis-cross-drill")
-    holes = [b.c for b in result.moves if b.kind is Kind.FEED and b.x < b.x0]
+    holes = [b.c for b in result.moves if b.kind is BlockKind.FEED and b.x < b.x0]
     assert holes == pytest.approx([27.5, 117.5, 207.5, 297.5])
     # the first turn is followed by the drill without a dwell, the others have a second
     assert result.warnings == [(7, 1, "dwell-too-short")]
@@ -70,7 +70,7 @@ def test_oval() -> None:
     assert way[-1].c - way[0].c == pytest.approx(-360.0)
     for block in way[1:-1]:
         assert block.plane is not None
-        x, y, _ = (block.plane.points(np.linspace(0.0, 1.0, 50)) / INCH).T
+        x, y, _ = (block.plane.mill_points(np.linspace(0.0, 1.0, 50)) / INCH).T
         off = np.hypot(x - np.clip(x, -0.1875, 0.1875), y)
         assert off == pytest.approx(np.full(50, 0.1875))
 

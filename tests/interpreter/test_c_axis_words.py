@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.shared.actions import SpindleLock, SpindleRun
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ControlLimits
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
@@ -14,7 +14,7 @@ HEAD = "G90G94F300"
 
 def run(*each: str, limits: ControlLimits | None = None, start_c: float = 0.0) -> Pass:
     """Lines from line 2 on, between a head and M30, from C ``start_c``."""
-    given = setup(limits=limits or ControlLimits(c_feedback=True))
+    given = setup(limits=limits or ControlLimits(has_c_feedback=True))
     x, z, _ = given.start
     object.__setattr__(given, "start", (x, z, start_c))
     return passed(lines(HEAD, *each, "M30"), given)
@@ -22,7 +22,7 @@ def run(*each: str, limits: ControlLimits | None = None, start_c: float = 0.0) -
 
 def turns(result: Pass) -> list[tuple[float, float, float]]:
     """(from, to, rpm) of each turn of C alone."""
-    return [(b.c0, b.c, b.rpm) for b in result.moves if b.kind is Kind.ROTATE]
+    return [(b.c0, b.c, b.rpm) for b in result.moves if b.kind is BlockKind.ROTATE]
 
 
 def test_m19_stands_at_zero_already() -> None:
@@ -91,20 +91,20 @@ def test_m05_releases_and_the_position_is_kept() -> None:
 def test_with_a_slide_under_g94_c_ends_with_it() -> None:
     result = run("M19", "G94F5", "X.5C90")
     move = result.moves[-1]
-    assert (move.kind, move.c0, move.c, move.per_rev, move.rpm) == (Kind.FEED, 0.0, 90.0, False, 0.0)
+    assert (move.kind, move.c0, move.c, move.per_rev, move.rpm) == (BlockKind.FEED, 0.0, 90.0, False, 0.0)
     assert move.feed == pytest.approx(5 * INCH / 60)
 
 
 def test_a_rapid_turns_c_along() -> None:
     result = run("M19", "G00", "X.5Z.5C90")
-    assert result.moves[-1].kind is Kind.RAPID
+    assert result.moves[-1].kind is BlockKind.RAPID
     assert result.moves[-1].c == 90.0
 
 
 def test_with_a_slide_under_g95_c_feeds_it() -> None:
     result = run("M19", "G95F.1", "Z-.1CI-360S20")
     move = result.moves[-1]
-    assert (move.kind, move.c, move.per_rev, move.rpm) == (Kind.FEED, -360.0, True, -20.0)
+    assert (move.kind, move.c, move.per_rev, move.rpm) == (BlockKind.FEED, -360.0, True, -20.0)
     assert move.feed == pytest.approx(0.1 * INCH)
     assert move.css is None
 
@@ -114,7 +114,7 @@ def test_the_speed_given_once_holds_while_locked() -> None:
 
 
 def test_where_the_slide_stands_c_turns_alone() -> None:
-    assert [b.kind for b in run("X.5", "M19", "X.5C90").moves] == [Kind.RAPID, Kind.ROTATE]
+    assert [b.kind for b in run("X.5", "M19", "X.5C90").moves] == [BlockKind.RAPID, BlockKind.ROTATE]
 
 
 def test_a_corner_stays_a_corner_while_the_spindle_is_free() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.geometry.lines_and_arcs import Element
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, Pass, in_feed, passed
 from tests.interpreter.roughing import Bar, contour_of, nearest
@@ -27,7 +27,7 @@ def on_line(result: Pass, line: int) -> list[Block]:
 
 
 def pecks(result: Pass, line: int) -> list[float]:
-    return [round(b.z / INCH, 5) for b in on_line(result, line) if b.kind is Kind.FEED]
+    return [round(b.z / INCH, 5) for b in on_line(result, line) if b.kind is BlockKind.FEED]
 
 
 def test_a_drill() -> None:
@@ -39,12 +39,12 @@ def test_a_drill() -> None:
 def test_pecks() -> None:
     result = example("drill-peck-g83")
     assert pecks(result, 6) == [-0.09, -0.19, -0.29, -0.39, -0.49, -0.5]
-    rapids = [b for b in on_line(result, 6) if b.kind is Kind.RAPID]
+    rapids = [b for b in on_line(result, 6) if b.kind is BlockKind.RAPID]
     assert [round(b.z / INCH, 5) for b in rapids] == [
         0.5, -0.04, 0.5, -0.14, 0.5, -0.24, 0.5, -0.34, 0.5, -0.44, 0.5, 0.01,
     ]  # fmt: skip
     assert {round(in_feed(b), 6) for b in rapids} == {300}
-    assert {round(in_feed(b), 6) for b in on_line(result, 6) if b.kind is Kind.FEED} == {0.003}
+    assert {round(in_feed(b), 6) for b in on_line(result, 6) if b.kind is BlockKind.FEED} == {0.003}
 
 
 def test_two_drills() -> None:
@@ -58,7 +58,7 @@ def test_rings() -> None:
     result = example("loop-rings")
     assert pecks(result, 8) == [-0.2, -0.5, -0.8, -1]
     drilled = on_line(result, 8)
-    assert [round(b.z / INCH, 5) for b in drilled if b.kind is Kind.RAPID] == [
+    assert [round(b.z / INCH, 5) for b in drilled if b.kind is BlockKind.RAPID] == [
         0.1,
         0,
         0.1,
@@ -67,18 +67,18 @@ def test_rings() -> None:
         -0.6,
         0.1,
     ]
-    rings = [b for b in on_line(result, 22) if b.kind is Kind.FEED]
+    rings = [b for b in on_line(result, 22) if b.kind is BlockKind.FEED]
     assert [round((b.mz - b.z) / INCH, 5) for b in rings] == [round(-0.15 * k, 5) for k in range(6)]
 
 
 def test_a_box() -> None:
     result = example("rough-box-g74")
     moves = on_line(result, 7)
-    passes = [b for b in moves if b.kind is Kind.FEED and b.z != b.z0]
+    passes = [b for b in moves if b.kind is BlockKind.FEED and b.z != b.z0]
     assert [round(b.x / INCH, 5) for b in passes] == [0.4585, 0.392, 0.3255, 0.259, 0.1925]
     assert {round(b.z / INCH, 5) for b in passes} == {-0.747}
     for block in moves:
-        if block.kind is Kind.RAPID and block.z0 < 0 and block.z == block.z0:
+        if block.kind is BlockKind.RAPID and block.z0 < 0 and block.z == block.z0:
             assert (block.x - block.x0) / INCH == pytest.approx(0.02)
     assert (round(moves[-1].x / INCH, 5), round(moves[-1].z / INCH, 5)) == (0.525, 0.1)
 
@@ -103,7 +103,7 @@ def test_contours(name: str, start: tuple[float, float], x: int) -> None:
     assert nearest(moves, contour(name), 0.05) >= (0.02 - 0.0001) * INCH
     bar = Bar((start[0] * INCH, start[1] * INCH), x, -1, 1.08 * INCH, 500)
     for block in moves:
-        assert bar.cuts(block) <= (0.0001 if block.kind is Kind.RAPID else 0.0501) * INCH
+        assert bar.cuts(block) <= (0.0001 if block.kind is BlockKind.RAPID else 0.0501) * INCH
     assert (round(moves[-1].x / INCH, 5), round(moves[-1].z / INCH, 5)) == start
 
 

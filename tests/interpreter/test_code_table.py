@@ -11,28 +11,28 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.omniturn.codes.code_entry import (
-    HEAD,
-    TAIL,
-    Acts,
-    Code,
+    EXAMPLE_HEAD,
+    EXAMPLE_TAIL,
+    ActionKind,
+    CodeEntry,
     CodeEntryError,
-    FWord,
-    Limit,
-    Refusal,
+    ErrorTemplate,
+    FMeaning,
+    WordLimit,
     WordRule,
     names,
 )
 from core.interpreter.omniturn.codes.code_table import (
-    CHAPTERS,
+    CODE_CHAPTERS,
     FLOW_CODES,
     G_CODES,
-    LETTERS,
+    LETTER_ENTRIES,
     M_CODES,
-    carry_out,
+    load_handler,
 )
-from core.interpreter.omniturn.codes.language_page import page
+from core.interpreter.omniturn.codes.language_page import render_language_reference
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.setup import spindle_and_dwell
@@ -40,16 +40,16 @@ from core.interpreter.shared.actions import Dwell
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Severity
-from core.language.omniturn.omniturn_words import RANGES
-from core.language.source import Source
+from core.language.omniturn.omniturn_words import VALUE_RANGES
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.coded import raises_code
 from tests.interpreter.programs import passed
 
-CODES = [code for _, codes in CHAPTERS for code in codes]
+CODES = [code for _, codes in CODE_CHAPTERS for code in codes]
 PAGE = Path(__file__).parents[2] / "docs" / "language.md"
 ROOM = Path(__file__).parents[2] / "core" / "interpreter" / "omniturn"
-SHARED = ROOM.parent / "shared" / "turn_at_axis.py"  # what all languages say alike
+SHARED = ROOM.parent / "shared" / "c_turn_at_centerline.py"  # what all languages say alike
 REFUSAL = re.compile(r'"([a-z0-9]+(?:-[a-z0-9]+)+)"')
 NOSE = 0.015 * 25.4
 
@@ -62,98 +62,102 @@ FAMILIES = sorted(
 def test_no_code_has_two_entries() -> None:
     written = [code.name for code in CODES]
     assert sorted(written) == sorted(set(written))
-    assert len(G_CODES) + len(M_CODES) + len(FLOW_CODES) + len(LETTERS) == len(CODES)
+    assert len(G_CODES) + len(M_CODES) + len(FLOW_CODES) + len(LETTER_ENTRIES) == len(CODES)
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
-def test_an_entry_is_whole(code: Code) -> None:
-    assert code.form
-    assert code.what.endswith(".")
+def test_an_entry_is_whole(code: CodeEntry) -> None:
+    assert code.syntax
+    assert code.description.endswith(".")
     assert code.name.strip("()") in code.example + code.subroutine
-    assert callable(carry_out(code))
-    assert code.acts is Acts.WORD or not code.rules.keys() - code.words
+    assert callable(load_handler(code))
+    assert code.action_kind is ActionKind.WORD or not code.rules.keys() - code.allowed_words
     # Either it may stand alone, or something says why not: nothing falls through in MDI.
-    assert bool(code.not_in_mdi) or code.acts not in {Acts.FLOW, Acts.CONTOUR}
+    assert bool(code.mdi_error_text) or code.action_kind not in {ActionKind.FLOW, ActionKind.CONTOUR}
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
-def test_the_example_proves(code: Code) -> None:
+def test_the_example_proves(code: CodeEntry) -> None:
     machine = load_machine(None)
     secondary = {
         1: SecondaryOffset(-NOSE, -NOSE, NOSE),
         2: SecondaryOffset(x=-0.0127),
         3: SecondaryOffset(-NOSE, -NOSE, NOSE),
     }
-    setup = setup_for(machine, tools={n: ToolOffset() for n in range(1, 9)}, secondary=secondary)
-    report = prove(Source(code.name, code.program), setup, machine)
-    assert [d.in_one_line("") for d in report.diagnostics if d.severity is Severity.ERROR] == []
-    assert report.elementary > 0
+    setup = create_setup(
+        machine, tool_offsets={n: ToolOffset() for n in range(1, 9)}, secondary_offsets=secondary
+    )
+    report = prove(ProgramSource(code.name, code.example_program), setup, machine)
+    assert [d.format_one_line("") for d in report.diagnostics if d.severity is Severity.ERROR] == []
+    assert report.elementary_block_count > 0
 
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_each_refusal_of_a_family_stands_in_an_entry(family: str) -> None:
     told = set(REFUSAL.findall((ROOM / f"{family}.py").read_text(encoding="utf-8")))
-    assert told - OF_NO_CODE - frozenset().union(*(code.refusals for code in CODES)) == set()
+    assert told - OF_NO_CODE - frozenset().union(*(code.diagnostic_codes for code in CODES)) == set()
 
 
 def test_no_entry_names_a_refusal_that_is_none() -> None:
     tables = {"move_codes.py", "cycle_codes.py", "flow_codes.py"}
     files = [*(file for file in ROOM.rglob("*.py") if file.name not in tables), SHARED]
     text = "".join(file.read_text(encoding="utf-8") for file in files)
-    further = frozenset().union(*(code.further for code in CODES))
-    stated = {each.code for code in CODES for each in code.plain_refusals}
+    further = frozenset().union(*(code.other_diagnostic_codes for code in CODES))
+    stated = {each.diagnostic_code for code in CODES for each in code.entry_errors}
     assert [code for code in sorted(further - stated) if f'"{code}"' not in text] == []
 
 
-def spoilt(letter: str, rule: WordRule) -> Iterator[tuple[str | None, Refusal | None]]:
+def spoilt(letter: str, rule: WordRule) -> Iterator[tuple[str | None, ErrorTemplate | None]]:
     """What to write behind the letter (None: leave the word out) for each refusal of a rule."""
-    yield None, rule.missing
-    yield "", rule.numberless
-    yield "1", rule.numbered
-    if rule.least > -inf:
-        yield f"{rule.least if rule.over else rule.least / 2 or -1:f}", rule.wrong
-    if rule.nonzero:
-        yield "0", rule.wrong
-    if rule.whole:
-        yield f"{max(rule.least, 0) + 0.5:g}", rule.wrong
-    most = RANGES[letter][1] if isinstance(rule.most, Limit) else rule.most + 1
+    yield None, rule.missing_error
+    yield "", rule.no_number_error
+    yield "1", rule.unwanted_number_error
+    if rule.minimum > -inf:
+        yield f"{rule.minimum if rule.excludes_minimum else rule.minimum / 2 or -1:f}", rule.invalid_error
+    if rule.is_nonzero:
+        yield "0", rule.invalid_error
+    if rule.is_whole:
+        yield f"{max(rule.minimum, 0) + 0.5:g}", rule.invalid_error
+    most = VALUE_RANGES[letter][1] if isinstance(rule.maximum, WordLimit) else rule.maximum + 1
     if most < inf:
-        yield f"{most:g}", rule.too_great or rule.wrong
+        yield f"{most:g}", rule.too_large_error or rule.invalid_error
 
 
 REFUSED = [
-    pytest.param(code, letter, number, refusal, id=f"{code.name}-{letter}{number}-{refusal.code}")
+    pytest.param(code, letter, number, refusal, id=f"{code.name}-{letter}{number}-{refusal.diagnostic_code}")
     for code in CODES
     for letter, rule in code.rules.items()
     for number, refusal in spoilt(letter, rule)
-    if refusal is not None and not (code.acts is Acts.WORD and number == "")
+    if refusal is not None and not (code.action_kind is ActionKind.WORD and number == "")
 ]
 
 
 @pytest.mark.parametrize(("code", "letter", "number", "refusal"), REFUSED)
-def test_a_rule_refuses_what_it_says(code: Code, letter: str, number: str | None, refusal: Refusal) -> None:
+def test_a_rule_refuses_what_it_says(
+    code: CodeEntry, letter: str, number: str | None, refusal: ErrorTemplate
+) -> None:
     """The example, its word left out or written with a number that the rule does not take."""
     lines = code.example.splitlines()
     at = next(k for k, line in enumerate(lines) if code.name.strip("()") in line)
     word = re.compile(rf"(?<![A-Z]){letter}(?:[-+.\d]+|(?![A-Z]))")
-    others = {each for letters, _ in code.apart if letter in letters for each in letters} - {letter}
+    others = {each for letters, _ in code.exclusive_words if letter in letters for each in letters} - {letter}
     for other in sorted(others):
         lines[at] = re.sub(rf"{other}[-+.\d]+", "", lines[at])
     bare = word.sub("", lines[at], count=1)
     lines[at] = bare if number is None else f"{bare}{letter}{number}"
-    text = HEAD + "\n".join(lines) + "\n" + TAIL + code.subroutine
-    assert refusal.code in [found for _, _, found in passed(text).errors], text
+    text = EXAMPLE_HEAD + "\n".join(lines) + "\n" + EXAMPLE_TAIL + code.subroutine
+    assert refusal.diagnostic_code in [found for _, _, found in passed(text).errors], text
 
 
 def test_a_rule_in_the_entry_is_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    strict = replace(G_CODES[4], rules={"F": replace(G_CODES[4].rules["F"], most=1.0)})
+    strict = replace(G_CODES[4], rules={"F": replace(G_CODES[4].rules["F"], maximum=1.0)})
     assert passed(program("G04F2")).errors == []
     monkeypatch.setitem(G_CODES, 4, strict)
     assert [code for _, _, code in passed(program("G04F2")).errors] == ["dwell-range"]
 
 
 def test_the_page_is_written_from_the_table() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(), (
+    assert PAGE.read_text(encoding="utf-8") == render_language_reference(), (
         "python -m core.interpreter.omniturn.codes.language_page > docs/language.md"
     )
 
@@ -163,19 +167,26 @@ def test_the_page_is_written_from_the_table() -> None:
 
 def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
     """G05F2: waits for two turns of the spindle."""
-    seconds = (made.value("F") or 0.0) * 60.0 / state.modal.rpm
-    yield state.action(made.line, made.part("move"), Dwell(seconds))
+    seconds = (made.get_value("F") or 0.0) * 60.0 / state.modal.rpm
+    yield state.action(made.line, made.get_block_text("move"), Dwell(seconds))
 
 
-TRIAL = Code(
-    "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION,
+TRIAL = CodeEntry(
+    "G05",
+    "G05Fn",
+    "Waits for n turns.",
+    "G05F2",
+    action_kind=ActionKind.MOTION,
     handler="setup.spindle_and_dwell:wait_in_turns",
-    words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="{code} is a trial.",
-)  # fmt: skip
+    allowed_words=names("F S T D"),
+    f_meaning=FMeaning.SECONDS,
+    min_block_count=1,
+    mdi_error_text="{code} is a trial.",
+)
 
 
 def program(*lines: str) -> str:
-    return HEAD + "\n".join(lines) + "\nM30\n"
+    return EXAMPLE_HEAD + "\n".join(lines) + "\nM30\n"
 
 
 def test_a_code_without_an_entry_does_not_exist() -> None:
@@ -196,17 +207,24 @@ def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_code_whose_f_means_nothing_is_none() -> None:
     with raises_code(CodeEntryError, "f-word", "G05"):
-        replace(TRIAL, f=FWord.NONE)
+        replace(TRIAL, f_meaning=FMeaning.NONE)
     with raises_code(CodeEntryError, "f-word", "G05"):
-        replace(TRIAL, words=names("S T D"))
+        replace(TRIAL, allowed_words=names("S T D"))
     with pytest.raises(TypeError):
-        Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="setup.spindle_and_dwell:dwell")  # type: ignore[call-arg]
+        CodeEntry(
+            "G05",
+            "G05Fn",
+            "Waits.",
+            "G05F2",
+            action_kind=ActionKind.MOTION,
+            handler="setup.spindle_and_dwell:execute_dwell",
+        )  # type: ignore[call-arg]
     with raises_code(CodeEntryError, "rule-without-word", "G05"):
         replace(TRIAL, rules={"K": WordRule("a lead")})
     with raises_code(CodeEntryError, "no-group", "G05"):
-        replace(TRIAL, acts=Acts.MODE)
+        replace(TRIAL, action_kind=ActionKind.MODE)
 
 
 def test_a_handler_that_is_nowhere_is_an_error() -> None:
     with pytest.raises(AttributeError):
-        carry_out(replace(TRIAL, handler="setup.spindle_and_dwell:nowhere"))
+        load_handler(replace(TRIAL, handler="setup.spindle_and_dwell:nowhere"))

@@ -7,8 +7,8 @@ from math import sqrt, tan
 
 import pytest
 
-from core.interpreter.shared.actions import Coolant
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import CoolantSwitch
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
 from tests.texts import text
 
@@ -56,7 +56,7 @@ def test_a_radius_in_diameter_mode() -> None:
         Cut(6, "Z-.45", 0.25, -0.45),
     ]
     arc = result.moves[2]
-    assert (arc.kind, arc.clockwise) == (Kind.ARC, True)
+    assert (arc.kind, arc.clockwise) == (BlockKind.ARC, True)
     assert (arc.cx / INCH, arc.cz / INCH) == pytest.approx((0.225, -0.375))
 
 
@@ -108,21 +108,24 @@ def test_an_action_between_the_moves_happens_after_the_corner() -> None:
     result = passed(body(HEAD, "X.5C.03M09", "Z-.4M08"))
     told = [(b.line, b.kind, round(b.x / INCH, 5), round(b.z / INCH, 5)) for b in result.blocks[2:-1]]
     assert told == [
-        (4, Kind.FEED, 0.47, 0),
-        (4, Kind.FEED, 0.5, -0.03),
-        (4, Kind.ACTION, 0.5, -0.03),
-        (5, Kind.ACTION, 0.5, -0.03),
-        (5, Kind.FEED, 0.5, -0.4),
+        (4, BlockKind.FEED, 0.47, 0),
+        (4, BlockKind.FEED, 0.5, -0.03),
+        (4, BlockKind.ACTION, 0.5, -0.03),
+        (5, BlockKind.ACTION, 0.5, -0.03),
+        (5, BlockKind.FEED, 0.5, -0.4),
     ]
-    assert result.actions[1:3] == [Coolant(on=False), Coolant(on=True)]
+    assert result.actions[1:3] == [CoolantSwitch(on=False), CoolantSwitch(on=True)]
 
 
 def test_rapids_and_feeds_keep_what_they_are() -> None:
     result = passed(body("F9", "G00X.5Z0", "Z-.3C.05", "G01X.9", "G00Z0"))
     assert [(b.kind, b.text) for b in result.moves] == [
-        (Kind.RAPID, "G00X.5Z0"), (Kind.RAPID, "Z-.25"), (Kind.RAPID, "X.55Z-.3"), (Kind.FEED, "G01X.9"),
-        (Kind.RAPID, "G00Z0"),
-    ]  # fmt: skip
+        (BlockKind.RAPID, "G00X.5Z0"),
+        (BlockKind.RAPID, "Z-.25"),
+        (BlockKind.RAPID, "X.55Z-.3"),
+        (BlockKind.FEED, "G01X.9"),
+        (BlockKind.RAPID, "G00Z0"),
+    ]
 
 
 def test_an_offset_that_changes_at_the_corner() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.interpreter.programs import INCH, body, in_feed, passed, setup
 
 
@@ -18,8 +18,8 @@ def drilled(*each: str) -> list[tuple[str, float]]:
 def test_a_hole_in_one_go() -> None:
     result = passed(body("X0Z.1", "G95G81Z-.3F.004"))
     way_in, way_out = result.moves[1:]
-    assert (way_in.kind, way_in.per_rev, in_feed(way_in), way_in.line) == (Kind.FEED, True, 0.004, 4)
-    assert (way_out.kind, way_out.per_rev, in_feed(way_out)) == (Kind.RAPID, False, pytest.approx(300))
+    assert (way_in.kind, way_in.per_rev, in_feed(way_in), way_in.line) == (BlockKind.FEED, True, 0.004, 4)
+    assert (way_out.kind, way_out.per_rev, in_feed(way_out)) == (BlockKind.RAPID, False, pytest.approx(300))
     assert [b.text for b in (way_in, way_out)] == ["Z-.3", "G00Z.1"]
     assert result.ends[1:] == [(0, -0.3), (0, 0.1)]
 
@@ -49,7 +49,7 @@ def test_pecks_with_the_usual_retract_and_clearance() -> None:
 def test_the_usual_retract_runs_at_200_and_l_says_otherwise() -> None:
     for word, rate in (("", 200), ("L150", 150)):
         result = passed(body("X0Z.1", f"G83Z-.1K.1F4{word}"))
-        rapids = [in_feed(b) for b in result.moves[1:] if b.kind is Kind.RAPID]
+        rapids = [in_feed(b) for b in result.moves[1:] if b.kind is BlockKind.RAPID]
         assert rapids == [pytest.approx(rate)] * len(rapids)
 
 
@@ -58,7 +58,7 @@ def test_metric_pecks() -> None:
     result = passed("G90G71G94F3000\nM03S1000\nX0Z1\nG83Z-9K4F100L1200\nM30\n")
     assert result.errors == []
     assert [round(b.z, 4) for b in result.moves[1:]] == [-3, 1, -2.492, -7, 1, -6.492, -9, 1]
-    assert {round(b.feed * 60, 6) for b in result.moves[1:] if b.kind is Kind.RAPID} == {1200}
+    assert {round(b.feed * 60, 6) for b in result.moves[1:] if b.kind is BlockKind.RAPID} == {1200}
 
 
 def test_distances_of_g83_count_from_the_start() -> None:

@@ -14,7 +14,7 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic
-from core.language.source import Source
+from core.language.source import ProgramSource
 
 SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)}, limits=ControlLimits(max_feed=300 * 25.4 / 60))
 HEAD = ["G90G94F300G72", "M03S2000", "T1", "X1Z.1", "G95F.003"]
@@ -40,13 +40,13 @@ STRANGE = [f"F{each}" for each in (".06", ".3", "0", ".00001", "5", "6.5", "300"
 
 def gone_through(text: str, setup: Setup = SETUP) -> tuple[list[str], list[Diagnostic]]:
     """All fields of all blocks, and what was found."""
-    interpreter = Interpreter(read_program(Source("PART", text)), setup)
-    return [repr(block) for block in interpreter.blocks()], list(interpreter.diagnostics)
+    interpreter = Interpreter(read_program(ProgramSource("PART", text)), setup)
+    return [repr(block) for block in interpreter.generate_blocks()], list(interpreter.diagnostics)
 
 
 def by_statements(text: str) -> tuple[list[str], list[Diagnostic]]:
     """The same, each line with another F by its statement."""
-    with patch.object(straight_moves, "another_feed", lambda _state, _f: False):
+    with patch.object(straight_moves, "set_plain_feed", lambda _state, _f: False):
         return gone_through(text)
 
 
@@ -78,16 +78,18 @@ def test_every_block_is_that_of_the_statements(seed: int) -> None:
 
 def test_the_feed_in_force_is_that_of_the_line_and_no_statement_is_made() -> None:
     moves = [f"X.{5 + k % 2}Z-.{k + 1}F.00{k + 3}" for k in range(4)]
-    with patch("core.interpreter.omniturn.omniturn_interpreter.statement_of") as made:
+    with patch("core.interpreter.omniturn.omniturn_interpreter.make_statement") as made:
         interpreter = Interpreter(
-            read_program(Source("PART", "\n".join([*HEAD, "X.5Z0", *moves, "M30"]))), SETUP
+            read_program(ProgramSource("PART", "\n".join([*HEAD, "X.5Z0", *moves, "M30"]))), SETUP
         )
         cuts = [
-            block for block in interpreter.blocks() if block.line > len(HEAD) + 1 and block.action is None
+            block
+            for block in interpreter.generate_blocks()
+            if block.line > len(HEAD) + 1 and block.action is None
         ]
     # F of G95 in inches a turn: .003 in are .0762 mm; the first is in force already.
     assert [round(block.feed, 6) for block in cuts] == [0.0762, 0.1016, 0.127, 0.1524]
-    assert [block.modal.cut_feed for block in cuts] == [block.feed for block in cuts]
+    assert [block.modal.last_cutting_feed for block in cuts] == [block.feed for block in cuts]
     made.assert_not_called()
 
 

@@ -103,7 +103,13 @@ def test_a_title_beside_g00_turns_cuts_into_rapids(
 def test_the_state_is_that_of_power_up() -> None:
     modal = passed(lines("G90", "G00X1", "M30")).moves[0].modal
     assert (modal.per_rev, modal.metric, modal.diameter, modal.css) == (False, False, False, False)
-    assert (modal.nose_comp, modal.coarse, modal.tool, modal.secondary, modal.spindle) == (40, 0, 0, 0, 0)
+    assert (modal.compensation_code, modal.coarse, modal.tool, modal.secondary, modal.spindle) == (
+        40,
+        0,
+        0,
+        0,
+        0,
+    )
 
 
 @pytest.mark.parametrize(("text", "warned"), [("G90F10", True), ("G90G70F10", False), ("G90G71F250", False)])

@@ -20,10 +20,10 @@ import pytest
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared import actions
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.dialects.golden_rows import flow_words, switch_words
 from tests.interpreter.programs import ALL_TOOLS, INCH, in_feed, setup
 
@@ -53,7 +53,9 @@ def circumstances(header: list[list[str]]) -> Setup:
 def action_words(action: actions.Action) -> list[str | float]:
     """What a block does, in the words of the tables."""
     words = frame_words(action) or switch_words(action) or flow_words(action)
-    return words or [{actions.SpindleStop: "spindle-off", actions.RepeatOff: "repeat-off"}[type(action)]]
+    return words or [
+        {actions.SpindleStop: "spindle-off", actions.CycleRepeatCancel: "repeat-off"}[type(action)]
+    ]
 
 
 def frame_words(action: actions.Action) -> list[str | float]:
@@ -81,11 +83,11 @@ def row(block: Block, *, machine: bool) -> list[str | float]:
         return [block.line, *action_words(block.action)]
     place = (block.mx, block.mz) if machine else (block.x, block.z)
     words: list[str | float] = [block.line, str(block.kind), place[0] / INCH, place[1] / INCH]
-    if block.kind is Kind.ARC:
+    if block.kind is BlockKind.ARC:
         words += ["cw" if block.clockwise else "ccw", block.cx / INCH, block.cz / INCH]
     if block.c != block.c0:
         words += ["c", block.c]
-    if block.kind is Kind.ROTATE:
+    if block.kind is BlockKind.ROTATE:
         return [*words, block.rpm, "rpm"]
     return [*words, in_feed(block), "in/rev" if block.per_rev else "in/min", block.rpm]
 
@@ -121,16 +123,16 @@ def test_a_program_does_what_its_table_says(name: str) -> None:
     findings = [words for words in table if words and words[0] in set(Severity)]
     blocks = [words for words in table if words and words[0].isdigit()]
     assert len(header) + len(findings) + len(blocks) == len(table), "a row that says nothing"
-    source = Source(name, (PROGRAMS / f"{name}.nc").read_text("utf-8"))
+    source = ProgramSource(name, (PROGRAMS / f"{name}.nc").read_text("utf-8"))
     interpreter = Interpreter(read_program(source), circumstances(header))
-    found = [row(block, machine=["machine"] in header) for block in interpreter.blocks()]
+    found = [row(block, machine=["machine"] in header) for block in interpreter.generate_blocks()]
     told = [[str(d.severity), str(d.line), str(d.column), d.code] for d in interpreter.diagnostics]
     if any(words[0] == "error" for words in findings):
         assert not blocks
         errors = [words for words in told if words[0] == "error"]
         assert errors[: len(findings)] == findings  # what follows from the mistake may follow
         _, line, column, _ = findings[0]
-        assert column == "0" or not [r for r in found if str(r[0]) == line and str(r[1]) in set(Kind)]
+        assert column == "0" or not [r for r in found if str(r[0]) == line and str(r[1]) in set(BlockKind)]
         return
     assert sorted(told) == sorted(findings)
     for have, want in zip(found, blocks, strict=False):

@@ -18,12 +18,12 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.dialects import ReadProgram
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from tests.dialects.golden_rows import row, same
 
 PROGRAMS = Path(__file__).parents[1] / "programs"
@@ -38,10 +38,12 @@ def test_a_program_does_what_its_table_says(path: Path) -> None:
     findings = [text for text in table if text.split()[0] in set(Severity)]
     blocks = [text.split() for text in table if text.split()[0].isdigit()]
     assert len(findings) + len(blocks) + axes == len(table), "a row that says nothing"
-    source = Source(path.name, path.read_text("utf-8"))
-    machine = shipped_machine(MACHINE[source.dialect])
-    run = ReadProgram(source).begin(setup_for(machine, tools={1: ToolOffset()}, secondary={}))
-    found = [row(block, axes=axes) for block in run.blocks()]
+    source = ProgramSource(path.name, path.read_text("utf-8"))
+    machine = load_shipped_machine(MACHINE[source.dialect])
+    run = SharedProgram(source).start_pass(
+        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    )
+    found = [row(block, axes=axes) for block in run.generate_blocks()]
     told = [f"{d.severity} {d.line} {d.column} {d.code}" for d in run.diagnostics]
     if any(text.startswith("error") for text in findings):
         assert [text for text in told if text.startswith("error")] == findings

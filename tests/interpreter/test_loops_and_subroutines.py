@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
-from core.interpreter.shared.actions import AskInput
+from core.interpreter.shared.actions import InputRead
 from tests.interpreter.programs import body, lines, passed, setup
 
 SUBS = ("}1", "X1", "X2", "M99", "}2", "Z5", "M98P1", "M99")
@@ -55,15 +55,15 @@ def test_conditional_calls(call: str, terminal: str, on: bool, taken: bool) -> N
     text = lines("G90F300", call, "M30", "}1", "X1", "M99")
     result = passed(text, setup(inputs=lambda asked: on if asked == terminal else not on))
     assert result.errors == []
-    assert result.actions[0] == AskInput(terminal)
+    assert result.actions[0] == InputRead(terminal)
     assert [block.line for block in result.moves] == ([5] if taken else [])
 
 
 def test_an_input_is_asked_only_after_its_block_was_taken() -> None:
     state = {"TB2-9": False}
     program = passed(lines("G90F300", "M95", "M30", "}1", "X1", "M99")).program
-    blocks = Interpreter(program, setup(inputs=lambda terminal: state[terminal])).blocks()
-    assert next(blocks).action == AskInput("TB2-9")
+    blocks = Interpreter(program, setup(inputs=lambda terminal: state[terminal])).generate_blocks()
+    assert next(blocks).action == InputRead("TB2-9")
     state["TB2-9"] = True
     assert [block.line for block in blocks] == [5, 3]
 
@@ -83,7 +83,7 @@ def test_the_first_line_is_the_first_that_runs() -> None:
 def test_a_comment_in_a_loop_is_warned_of() -> None:
     result = passed(body("LS2", "X1(a)", "LS2", "X2(b)", "LF", "LF(c)", "X3(d)"))
     assert result.warnings == [(4, 0, "comment-in-loop")]
-    assert [found.count for found in result.interpreter.diagnostics] == [2]  # lines 4 and 6
+    assert [found.occurrence_count for found in result.interpreter.diagnostics] == [2]  # lines 4 and 6
 
 
 def test_calls_may_nest_sixteen_deep() -> None:

@@ -6,15 +6,15 @@ import pytest
 
 from core.interpreter.shared.actions import (
     Action,
-    Collet,
-    Coolant,
+    ColletSwitch,
+    CoolantSwitch,
+    CycleRepeatCancel,
     Dwell,
-    Output,
+    InputWait,
+    OutputSwitch,
     ProgramEnd,
     ProgramStop,
-    RepeatOff,
     SpindleStop,
-    WaitInput,
 )
 from core.interpreter.shared.job_setup import ControlLimits
 from tests.interpreter.programs import body, lines, passed, setup
@@ -27,19 +27,19 @@ from tests.interpreter.programs import body, lines, passed, setup
         ("M00", ProgramStop(optional=False)),
         ("M01( measure Ø5 )", ProgramStop(optional=True, message="measure Ø5")),
         ("M05", SpindleStop()),
-        ("M08", Coolant(on=True)),
-        ("M09", Coolant(on=False)),
-        ("M12", Collet(closed=True)),
-        ("M13", Collet(closed=False)),
-        ("M25", Output("catcher", on=True)),
-        ("M26", Output("catcher", on=False)),
-        ("M15", Output("live", on=True)),
-        ("M16", Output("live", on=False)),
-        ("M31", RepeatOff()),
-        ("M91", WaitInput("TB2-5", closed=False)),
-        ("M92", WaitInput("TB2-5", closed=True)),
-        ("M93", WaitInput("TB2-7", closed=False)),
-        ("M94", WaitInput("TB2-7", closed=True)),
+        ("M08", CoolantSwitch(on=True)),
+        ("M09", CoolantSwitch(on=False)),
+        ("M12", ColletSwitch(closed=True)),
+        ("M13", ColletSwitch(closed=False)),
+        ("M25", OutputSwitch("catcher", on=True)),
+        ("M26", OutputSwitch("catcher", on=False)),
+        ("M15", OutputSwitch("live", on=True)),
+        ("M16", OutputSwitch("live", on=False)),
+        ("M31", CycleRepeatCancel()),
+        ("M91", InputWait("TB2-5", closed=False)),
+        ("M92", InputWait("TB2-5", closed=True)),
+        ("M93", InputWait("TB2-7", closed=False)),
+        ("M94", InputWait("TB2-7", closed=True)),
         ("G04F.1", Dwell(0.1)),
     ],
 )
@@ -100,6 +100,6 @@ def test_comments_last_until_the_next() -> None:
 
 
 def test_interlocks_of_the_machine_file_can_be_lifted() -> None:
-    free = ControlLimits(start_with_collet_open=True)
+    free = ControlLimits(can_start_with_collet_open=True)
     assert passed(lines("G90F300", "M13", "M03S500", "M30"), setup(limits=free)).errors == []
     assert passed(body("M13", "X1")).errors == []

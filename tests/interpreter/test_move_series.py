@@ -15,14 +15,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.omniturn.motion.plain_moves import Columns, read_columns, read_move
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.omniturn.motion.plain_moves import LineColumns, parse_columns, parse_plain_move
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.interpreter.shared.elementary_blocks import Block, Series
+from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Diagnostic
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import SEEDS, mutated
 from tests.interpreter.programs import body, inches, lines, setup
@@ -38,10 +38,10 @@ def at_once(least: int, most: int = 20_000) -> Iterator[None]:
     """Series from ``least`` moves on, of ``most`` at most; lines are read all at once, or each alone."""
     long = NEVER if least == NEVER else 1
     with (
-        patch("core.interpreter.omniturn.omniturn_interpreter.LONG", long),
-        patch("core.interpreter.omniturn.motion.move_series.LEAST", least),
-        patch("core.interpreter.omniturn.motion.move_series.MOST", most),
-        patch("core.interpreter.omniturn.motion.plain_moves.MOST", most),
+        patch("core.interpreter.omniturn.omniturn_interpreter.LONG_PROGRAM_LINES", long),
+        patch("core.interpreter.omniturn.motion.move_series.MIN_SERIES_LENGTH", least),
+        patch("core.interpreter.omniturn.motion.move_series.MAX_RUN_LENGTH", most),
+        patch("core.interpreter.omniturn.motion.plain_moves.MAX_RUN_LENGTH", most),
         patch("core.interpreter.omniturn.motion.plain_moves._FEW", long),
     ):
         yield
@@ -49,10 +49,10 @@ def at_once(least: int, most: int = 20_000) -> Iterator[None]:
 
 def gone_through(text: str, given: Setup) -> tuple[list[str], list[Diagnostic], int]:
     """The blocks with all their fields, what was found, and how many series there were."""
-    interpreter = Interpreter(read_program(Source("PART", text)), given)
-    passed = list(interpreter.series())
-    series = sum(isinstance(each, Series) for each in passed)
-    blocks = chain.from_iterable(each if isinstance(each, Series) else [each] for each in passed)
+    interpreter = Interpreter(read_program(ProgramSource("PART", text)), given)
+    passed = list(interpreter.generate_series())
+    series = sum(isinstance(each, StraightMoveSeries) for each in passed)
+    blocks = chain.from_iterable(each if isinstance(each, StraightMoveSeries) else [each] for each in passed)
     return [repr(block) for block in blocks], interpreter.diagnostics, series
 
 
@@ -60,7 +60,10 @@ def assert_same(text: str, given: Setup | None = None, most: int = 20_000) -> in
     """Both ways give the same; how many series there were."""
     given = given or setup()
     with at_once(NEVER):
-        blocks = [repr(block) for block in Interpreter(read_program(Source("PART", text)), given).blocks()]
+        blocks = [
+            repr(block)
+            for block in Interpreter(read_program(ProgramSource("PART", text)), given).generate_blocks()
+        ]
         alone = gone_through(text, given)
     with at_once(2, most):
         many = gone_through(text, given)
@@ -115,17 +118,17 @@ def test_any_lines(moves: list[str], most: int) -> None:
 @settings(max_examples=60, deadline=None)
 @given(st.lists(MOVE, min_size=1, max_size=30))
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
-    read, alone = Columns.empty(len(moves)), Columns.empty(len(moves))
+    read, alone = LineColumns.empty(len(moves)), LineColumns.empty(len(moves))
     with patch("core.interpreter.omniturn.motion.plain_moves._FEW", 1):
-        read_columns("\n".join(moves), read)
+        parse_columns("\n".join(moves), read)
     for at, text in enumerate(moves):
-        if (move := read_move(text)) is not None:
-            alone.put(at, move)
+        if (move := parse_plain_move(text)) is not None:
+            alone.store_line(at, move)
     for column, expected in zip(read, alone, strict=True):
-        many, one = np.asarray(column)[alone.known], np.asarray(expected)[alone.known]
+        many, one = np.asarray(column)[alone.is_plain_move], np.asarray(expected)[alone.is_plain_move]
         assert np.array_equal(many, one, equal_nan=True)
         assert np.array_equal(np.signbit(many), np.signbit(one))
-    assert (read.known == alone.known).all()
+    assert (read.is_plain_move == alone.is_plain_move).all()
 
 
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
@@ -145,8 +148,8 @@ def test_spoilt_programs(seed: int) -> None:
 
 def reported(text: str) -> str:
     machine = load_machine(None)
-    given = setup_for(machine, tools={n: ToolOffset() for n in range(1, 33)}, secondary={})
-    return repr(prove(Source("PART", text), given, machine))
+    given = create_setup(machine, tool_offsets={n: ToolOffset() for n in range(1, 33)}, secondary_offsets={})
+    return repr(prove(ProgramSource("PART", text), given, machine))
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -212,10 +215,10 @@ def test_words_off_the_step_are_told_until_there_are_too_many() -> None:
 
 
 def test_the_bounds_of_a_run_are_those_of_single_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MOST_BLOCKS", 77)
+    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_BLOCKS", 77)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
-    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MOST_LINES", 50)
+    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_LINES", 50)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
 
@@ -224,13 +227,13 @@ def test_a_series_is_a_sequence_of_its_blocks() -> None:
     """X and Z alternate, so that the ends can be said without counting: 1, 1 → 2, 1 → 2, 0 → 1, 0."""
     with at_once(2):
         text = lines("G90G94F300", "F20", "X1Z1", "X2", "Z0", "X1", "M30")
-        made = list(Interpreter(read_program(Source("A", text)), setup()).series())
-    row = next(each for each in made if isinstance(each, Series))
+        made = list(Interpreter(read_program(ProgramSource("A", text)), setup()).generate_series())
+    row = next(each for each in made if isinstance(each, StraightMoveSeries))
     ends = [inches(x=2, z=1), inches(x=2, z=0), inches(x=1, z=0)]
     assert [{"x": block.x, "z": block.z} for block in row] == [pytest.approx(end) for end in ends]
     assert [(block.n, block.line, block.text) for block in row] == [(2, 4, "X2"), (3, 5, "Z0"), (4, 6, "X1")]
     assert (row[-1].line, row[1].x0, [block.line for block in row[1:]]) == (6, row[0].x, [5, 6])
-    assert isinstance(row[1:], Series)
+    assert isinstance(row[1:], StraightMoveSeries)
     with pytest.raises(IndexError):
         row[3]
 
@@ -238,12 +241,13 @@ def test_a_series_is_a_sequence_of_its_blocks() -> None:
 def test_lines_of_a_long_program_are_those_of_a_short_one() -> None:
     texts = ["X1.5Z-2", "", "G01X1F.003", "X1.23456", "M08", "Z3"] * 500
     with at_once(2):
-        steps = read_program(Source("A", lines(*texts))).ready
-    assert [read_move(text) for text in texts] == [s if isinstance(s, tuple) else None for s in steps]
+        steps = read_program(ProgramSource("A", lines(*texts))).executable_lines
+    assert [parse_plain_move(text) for text in texts] == [s if isinstance(s, tuple) else None for s in steps]
     changed = steps[5]
     steps[5] = None
-    assert (steps[5], steps[4:6], steps.moves_until(5)) == (None, [steps[4], None], 5)
+    assert (steps[5], steps[4:6], steps.find_next_statement(5)) == (None, [steps[4], None], 5)
     assert changed == (None, 3.0, None, -1, False)
     assert isinstance(
-        next(iter(Interpreter(read_program(Source("A", body("X1F9"))), setup()).series())), Block
+        next(iter(Interpreter(read_program(ProgramSource("A", body("X1F9"))), setup()).generate_series())),
+        Block,
     )

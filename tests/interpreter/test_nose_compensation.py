@@ -7,13 +7,13 @@ from math import sqrt
 
 import pytest
 
-from core.geometry.contour_offset import WINDOW
+from core.geometry.contour_offset import WINDOW_ELEMENTS
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared.actions import Dwell, ProgramStop
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
 
 D = {1: (-0.015, -0.015, 0.015), 2: (0, 0, 0.02), 3: (0, 0, -0.02), 4: (0.001, 0.002)}
@@ -138,8 +138,8 @@ def test_a_move_of_no_length_changes_nothing() -> None:
 
 def test_blocks_know_that_they_are_compensated() -> None:
     result = run(*SHAFT)
-    assert [b.modal.nose_comp for b in result.moves] == [40, 41, 41, 41, 41, 41, 41]
-    assert result.interpreter.modal.nose_comp == 40
+    assert [b.modal.compensation_code for b in result.moves] == [40, 41, 41, 41, 41, 41, 41]
+    assert result.interpreter.modal.compensation_code == 40
     assert not any("G4" in b.text for b in result.blocks)
 
 
@@ -153,7 +153,10 @@ def test_arcs_stay_arcs() -> None:
         ("feed", 0.4, -0.33),
         ("feed", 0.4, 1),
     ]
-    assert [b.text for b in result.moves if b.kind is Kind.ARC] == ["G02X.22Z-.1R.12", "G03X.25Z-.33R.03"]
+    assert [b.text for b in result.moves if b.kind is BlockKind.ARC] == [
+        "G02X.22Z-.1R.12",
+        "G03X.25Z-.33R.03",
+    ]
     assert (result.moves[3].cx / INCH, result.moves[3].cz / INCH) == pytest.approx((0.1, -0.1))
 
 
@@ -352,12 +355,12 @@ def test_the_message_says_the_radius() -> None:
 def test_a_long_contour_is_never_held_whole() -> None:
     loop = ("LS2000", "G91", "Z-.05", "X.03", "LF", "G90")
     text = lines("G90G94F300", "M03S1000", *FACING, "X.2", *loop, "X61F300", "Z200", "G40", "M30")
-    interpreter = Interpreter(read_program(Source("LONG", text)), given())
+    interpreter = Interpreter(read_program(ProgramSource("LONG", text)), given())
     most = count = 0
-    for block in interpreter.blocks():
+    for block in interpreter.generate_blocks():
         count = block.n
         contour = interpreter._modifier._nose._contour
         most = max(most, len(contour._held) if contour is not None else 0)
-    assert not interpreter.failed
+    assert not interpreter.has_errors
     assert count > 6000
-    assert 64 < most < 2 * WINDOW
+    assert 64 < most < 2 * WINDOW_ELEMENTS

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.lines_and_arcs import Element, Point, centre_from_radius, distance
-from core.interpreter.shared.contour_stage import element_of
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.geometry.lines_and_arcs import Element, Point, center_from_radius, distance_to_point
+from core.interpreter.shared.contour_stage import make_element
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.geometry.contours import sampled
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
@@ -55,7 +55,7 @@ class Writer:
             round(self.at[1] + length * cos(self.heading), 4),
         )
         if kind in {"02", "03"}:
-            centre = centre_from_radius(self.at, end, share * length, clockwise=kind == "02")
+            centre = center_from_radius(self.at, end, share * length, clockwise=kind == "02")
             i, k = centre[0] - self.at[0] * self._diameter, centre[1] - self.at[1] * self._diameter
             self.lines.append(f"G{kind}{self.words(end)}I{number(i)}K{number(k)}")
         else:
@@ -86,7 +86,7 @@ def contour_of(text: str) -> list[Element]:
     """The contour as programmed: the same program without compensation, approach and departure apart."""
     plain = text.replace("G41\n", "").replace("G42\n", "").replace("G40\n", "").replace("D1\n", "\n")
     blocks = passed(plain).moves
-    return [element_of(block) for block in blocks[2:-1] if length(block) > 1e-6]
+    return [make_element(block) for block in blocks[2:-1] if length(block) > 1e-6]
 
 
 def length(block: Block) -> float:
@@ -94,7 +94,7 @@ def length(block: Block) -> float:
 
 
 def path_of(result: Pass) -> list[Element]:
-    return [element_of(block) for block in result.moves[2:-1] if length(block) > 1e-6]
+    return [make_element(block) for block in result.moves[2:-1] if length(block) > 1e-6]
 
 
 @settings(max_examples=250, deadline=None)
@@ -113,7 +113,11 @@ def test_the_path_keeps_the_nose_off_the_contour(
     radius = nose * INCH
     for piece in path_of(result):
         for point in sampled(piece, 21):
-            assert radius - 0.002 <= min(distance(element, point) for element in contour) <= radius + 0.001
+            assert (
+                radius - 0.002
+                <= min(distance_to_point(element, point) for element in contour)
+                <= radius + 0.001
+            )
     for before, after in pairwise(result.blocks):
         assert dist((before.x, before.z), (after.x0, after.z0)) < 1e-9
 
@@ -165,10 +169,10 @@ def test_blocks_follow_each_other_whatever_stands_in_the_program(parts: list[lis
         assert after.x0 + after.offset_x == pytest.approx(before.mx, abs=1e-6)
         assert after.z0 + after.offset_z == pytest.approx(before.mz, abs=1e-6)
     for block in result.blocks:
-        if block.kind is Kind.ARC:
+        if block.kind is BlockKind.ARC:
             radii = [dist(end, (block.cx, block.cz)) for end in ((block.x0, block.z0), (block.x, block.z))]
             assert radii[0] == pytest.approx(radii[1], abs=0.013)  # what the language allows
     if not result.errors:
-        assert not result.interpreter._state.contour.active
+        assert not result.interpreter._state.contour.is_buffering
         lost = {number for number, line in enumerate(text.splitlines(), 1) if line[0] in "XZ"}
         assert lost <= {block.line for block in result.blocks}

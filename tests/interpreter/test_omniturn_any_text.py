@@ -65,7 +65,7 @@ def test_likely_programs(text: str, on: bool, strict: bool) -> None:
 @given(st.text(max_size=200))
 def test_any_text(text: str) -> None:
     result = passed(text)
-    assert result.interpreter.failed or result.blocks
+    assert result.interpreter.has_errors or result.blocks
 
 
 @settings(max_examples=100, deadline=None)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from core.interpreter.shared.actions import Dwell, SpindleRun
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, Pass, in_feed, passed, setup
 
@@ -82,7 +82,7 @@ def test_arcs(
     name: str, line: int, end: tuple[float, float], middle: tuple[float, float], clockwise: bool
 ) -> None:
     arc = on_line(example(name), line)
-    assert arc.kind is Kind.ARC
+    assert arc.kind is BlockKind.ARC
     assert arc.clockwise is clockwise
     assert (arc.x / INCH, arc.z / INCH) == pytest.approx(end)
     assert centre(arc) == pytest.approx(middle, abs=1e-9)
@@ -130,7 +130,7 @@ def test_three_bores_each_with_its_own_offset() -> None:
 
 def test_sixteen_notches() -> None:
     result = example("loop-notches")
-    cuts = [block for block in result.moves if block.kind is Kind.FEED]
+    cuts = [block for block in result.moves if block.kind is BlockKind.FEED]
     assert [round(block.z / INCH, 5) for block in cuts] == [round(-0.035 - 0.085 * k, 5) for k in range(16)]
     assert {round(block.x / INCH, 5) for block in cuts} == {0.15}
     assert [action for action in result.actions if isinstance(action, Dwell)] == [Dwell(0.5)] * 16
@@ -140,7 +140,7 @@ def test_sixteen_notches() -> None:
 
 def test_tapping_turns_the_spindle_back_on_the_way_out() -> None:
     result = example("tapping")
-    way_in, way_out = (block for block in result.moves if block.kind is Kind.FEED)
+    way_in, way_out = (block for block in result.moves if block.kind is BlockKind.FEED)
     assert (in_feed(way_in), way_in.rpm, way_in.z / INCH) == pytest.approx((0.05, 1000, -0.4))
     assert (in_feed(way_out), way_out.rpm, way_out.z / INCH) == pytest.approx((0.05, -1000, 0.1))
     assert SpindleRun(-1000) in result.actions
@@ -169,7 +169,7 @@ def test_corners_of_a_contour_with_compensation() -> None:
         (0.105, 0), (0.135, -0.03), (0.135, -0.32), (0.165, -0.35), (0.225, -0.35), (0.25, -0.375),
         (0.25, -0.45), (0.27, -0.45),
     ]  # fmt: skip
-    (arc,) = (block for block in result.moves if block.kind is Kind.ARC)
+    (arc,) = (block for block in result.moves if block.kind is BlockKind.ARC)
     assert arc.clockwise
     assert centre(arc) == pytest.approx((0.225, -0.375))
     # Compensated, the path is .015 off each straight, less .015 to the left and below for the tip.
@@ -190,7 +190,7 @@ def test_the_nose_beside_a_contour() -> None:
         ("feed", 0.255, -0.3),
         ("rapid", 0.255, 1.985),
     ]
-    arcs = [block for block in result.moves if block.kind is Kind.ARC]
+    arcs = [block for block in result.moves if block.kind is BlockKind.ARC]
     assert [centre(arc) for arc in arcs] == [
         pytest.approx((0.205, -0.015)),
         pytest.approx((0.235, -0.045)),

@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.omniturn.motion.plain_moves import read_move
+from core.interpreter.omniturn.motion.plain_moves import parse_plain_move
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.interpreter.programs import lines
 
 
 def test_any_line_can_be_had_as_words_and_as_a_statement() -> None:
-    program = read_program(Source("A", lines("G90F300", "X1Z2", "", "M30")))
-    assert [word.text for word in program.line(2).words] == ["X1", "Z2"]
-    made = program.statement(2)
+    program = read_program(ProgramSource("A", lines("G90F300", "X1Z2", "", "M30")))
+    assert [word.text for word in program.get_line(2).words] == ["X1", "Z2"]
+    made = program.get_statement(2)
     assert made is not None
-    assert (made.value("X"), made.column("Z"), made.value("F"), made.column("F")) == (1, 3, None, 0)
-    assert program.statement(3) is None
-    end = program.statement(4)
+    assert (made.get_value("X"), made.get_column("Z"), made.get_value("F"), made.get_column("F")) == (
+        1,
+        3,
+        None,
+        0,
+    )
+    assert program.get_statement(3) is None
+    end = program.get_statement(4)
     assert end is not None
-    assert end.m == 30
+    assert end.m_number == 30
 
 
 @pytest.mark.parametrize(
@@ -34,7 +39,7 @@ def test_any_line_can_be_had_as_words_and_as_a_statement() -> None:
     ],
 )
 def test_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:
-    assert read_move(text) == move
+    assert parse_plain_move(text) == move
 
 
 @pytest.mark.parametrize(
@@ -42,37 +47,42 @@ def test_moves_are_read_as_numbers(text: str, move: tuple[object, ...]) -> None:
     ["", "G00", "F20", "G01F2", "Z1X1", "X 1", "X1.000001", "X12345", "X1F0", "G02X1", "X1.2.3", "X", "X1X1"],
 )
 def test_everything_else_is_read_word_by_word(text: str) -> None:
-    assert read_move(text) is None
+    assert parse_plain_move(text) is None
 
 
 def test_a_flood_of_warnings_hides_no_error() -> None:
     inside = ["(PLXC)"] * 150
-    program = read_program(Source("A", lines("G90F300", *inside, "X1N5", "M30")))
+    program = read_program(ProgramSource("A", lines("G90F300", *inside, "X1N5", "M30")))
     weighty = [found for found in program.diagnostics if found.severity != "note"]
     assert len(weighty) == 100
     assert weighty[-1].code == "n-word"
 
 
 def test_a_flood_of_errors_is_cut_too() -> None:
-    program = read_program(Source("A", lines("G90F300", *["X1Z"] * 300, "M30")))
+    program = read_program(ProgramSource("A", lines("G90F300", *["X1Z"] * 300, "M30")))
     assert [found.code for found in program.diagnostics] == ["number-missing"] * 100
 
 
 @pytest.mark.parametrize(("times", "found"), [(4, [1, 1, 1, 1]), (5, [5]), (300, [300])])
 def test_a_habit_that_repeats_is_one_error_with_its_count(times: int, found: list[int]) -> None:
-    program = read_program(Source("A", lines("G90F300", *["G2X1"] * times, "M30")))
-    assert [each.count for each in program.diagnostics if each.code == "g-digits"] == found
+    program = read_program(ProgramSource("A", lines("G90F300", *["G2X1"] * times, "M30")))
+    assert [each.occurrence_count for each in program.diagnostics if each.code == "g-digits"] == found
 
 
 def test_what_repeats_in_every_line_is_told_once_with_its_count() -> None:
-    program = read_program(Source("A", lines("G90F300", *["N5X1"] * 300, "M30")))
-    assert [(found.line, found.code, found.count) for found in program.diagnostics] == [(2, "n-word", 300)]
+    program = read_program(ProgramSource("A", lines("G90F300", *["N5X1"] * 300, "M30")))
+    assert [(found.line, found.code, found.occurrence_count) for found in program.diagnostics] == [
+        (2, "n-word", 300)
+    ]
     text = "\r\n".join(("G90F300", "", "X1", "", "", "M30", ""))
-    told = [(found.code, found.line, found.count) for found in read_program(Source("A", text)).diagnostics]
+    told = [
+        (found.code, found.line, found.occurrence_count)
+        for found in read_program(ProgramSource("A", text)).diagnostics
+    ]
     assert told == [("blank-line", 2, 3), ("line-ends", 1, 6)]
 
 
 def test_reading_raises_nothing_for_a_program_of_faults() -> None:
-    program = read_program(Source("A", "G2\n}1\nLF\n(\n)\nM99\nLS0\n"))
+    program = read_program(ProgramSource("A", "G2\n}1\nLF\n(\n)\nM99\nLS0\n"))
     codes = {found.code for found in program.diagnostics}
     assert {"g-digits", "no-end", "loop-unopened", "comment-open", "comment-close", "loop-count"} <= codes

@@ -7,7 +7,7 @@ import pytest
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared.job_setup import ControlLimits
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.interpreter.programs import body, lines, passed, setup
 
 END = "M30"
@@ -125,7 +125,7 @@ def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
     result = passed(body(*program))
     assert error in result.errors
     assert all(block.line < error[0] or not block.moves for block in result.blocks if block.line <= error[0])
-    assert result.interpreter.failed
+    assert result.interpreter.has_errors
 
 
 @pytest.mark.parametrize("program", [
@@ -175,7 +175,7 @@ def test_an_empty_program_is_refused() -> None:
 
 
 def test_unclamping_while_turning_can_be_refused() -> None:
-    strict = setup(limits=ControlLimits(unclamp_while_turning=False))
+    strict = setup(limits=ControlLimits(can_unclamp_while_turning=False))
     assert passed(body("M13"), strict).errors == [(3, 1, "unclamp-turning")]
     assert passed(body("M05", "M13"), strict).errors == []
 
@@ -188,7 +188,7 @@ def test_no_block_comes_after_an_error_and_all_errors_are_told() -> None:
 
 def test_what_runs_a_program_gets_no_more_after_the_first_error() -> None:
     program = passed(body("X1", "X2F999", "S9000")).program
-    from_run = list(Interpreter(program, setup()).blocks(to_first_error=True))
+    from_run = list(Interpreter(program, setup()).generate_blocks(to_first_error=True))
     assert [block.line for block in from_run] == [2, 3]
 
 
@@ -215,7 +215,7 @@ def test_errors_are_never_crowded_out_by_warnings() -> None:
 
 def test_a_warning_that_repeats_takes_the_room_of_one() -> None:
     result = passed(body(*["X.00001"] * 300, "F.05X9"))
-    assert [(d.line, d.code, d.count) for d in result.interpreter.diagnostics] == [
+    assert [(d.line, d.code, d.occurrence_count) for d in result.interpreter.diagnostics] == [
         (3, "finer-than-step", 300),
         (303, "feed-low", 1),
     ]
@@ -233,5 +233,5 @@ def test_a_warning_that_repeats_takes_the_room_of_one() -> None:
 )
 def test_what_follows_from_a_mistake_is_no_second_one(body: tuple[str, ...]) -> None:
     text = "\n".join(("G90F300", *body, *(() if END in body else (END,))))
-    found = [d.code for d in read_program(Source("A", text)).diagnostics if d.severity == "error"]
+    found = [d.code for d in read_program(ProgramSource("A", text)).diagnostics if d.severity == "error"]
     assert len(found) == 1, found

@@ -6,7 +6,7 @@ from math import atan2, degrees, hypot, pi
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.interpreter.programs import INCH, Pass, lines, passed, setup
 
 LATHE = ("G90G94F300", "M19", "X-.5Z-.1F5")
@@ -34,7 +34,7 @@ def stand(block: Block) -> tuple[float, float, float]:
 def test_the_face_frame() -> None:
     up, deeper = milled(face("(X0Y.4)", "(Z-.2F2)"))
     assert stand(up) == pytest.approx((-0.4, -0.1, -90.0))
-    assert up.kind is Kind.PLANE_LINE
+    assert up.kind is BlockKind.PLANE_LINE
     assert up.feed == pytest.approx(5 * INCH / 60)
     assert stand(deeper) == pytest.approx((-0.4, -0.2, -90.0))
     assert deeper.feed == pytest.approx(2 * INCH / 60)
@@ -82,7 +82,11 @@ def test_d_scales_y() -> None:
 
 def test_arcs_are_one_shot() -> None:
     result = side("(Y.1)", "(G02X.1Y.2I.1J.1)", "(X.2Y.2)")
-    assert [b.kind for b in milled(result)] == [Kind.PLANE_LINE, Kind.PLANE_ARC, Kind.PLANE_LINE]
+    assert [b.kind for b in milled(result)] == [
+        BlockKind.PLANE_LINE,
+        BlockKind.PLANE_ARC,
+        BlockKind.PLANE_LINE,
+    ]
     assert milled(result)[1].clockwise
 
 
@@ -115,9 +119,9 @@ def test_the_tools_own_frame_and_d_are_added() -> None:
 def test_straight_through_the_axis_c_turns_half_round_there() -> None:
     result = face("(X-.3Y0)")
     assert [(b.kind, round(b.x / INCH, 9), round(b.c, 9)) for b in milled(result)] == [
-        (Kind.PLANE_LINE, 0.0, 0.0),
-        (Kind.ROTATE, 0.0, -180.0),
-        (Kind.PLANE_LINE, -0.3, -180.0),
+        (BlockKind.PLANE_LINE, 0.0, 0.0),
+        (BlockKind.ROTATE, 0.0, -180.0),
+        (BlockKind.PLANE_LINE, -0.3, -180.0),
     ]
     assert result.warnings == [(5, 1, "plane-centre")]
     assert "180" in result.interpreter.diagnostics[-1].message
@@ -126,9 +130,9 @@ def test_straight_through_the_axis_c_turns_half_round_there() -> None:
 def test_to_the_axis_and_out_another_way() -> None:
     result = face("(X0Y0)", "(X0Y.4)")
     assert [(b.kind, round(b.c, 9)) for b in milled(result)] == [
-        (Kind.PLANE_LINE, 0.0),
-        (Kind.ROTATE, -90.0),
-        (Kind.PLANE_LINE, -90.0),
+        (BlockKind.PLANE_LINE, 0.0),
+        (BlockKind.ROTATE, -90.0),
+        (BlockKind.PLANE_LINE, -90.0),
     ]
     assert result.warnings == [(6, 1, "plane-centre")]
 
@@ -137,10 +141,10 @@ def test_an_arc_through_the_axis() -> None:
     """From (.4, 0) round (.2, 0) counter-clockwise: into the centre from above, out of it downwards."""
     result = face("(X.4)", "(G03X.4Y0I.2J0)")
     assert [(b.kind, round(b.x / INCH, 6), round(b.c, 6)) for b in milled(result)] == [
-        (Kind.PLANE_LINE, -0.4, 0.0),
-        (Kind.PLANE_ARC, 0.0, -90.0),
-        (Kind.ROTATE, 0.0, -270.0),
-        (Kind.PLANE_ARC, -0.4, -360.0),
+        (BlockKind.PLANE_LINE, -0.4, 0.0),
+        (BlockKind.PLANE_ARC, 0.0, -90.0),
+        (BlockKind.ROTATE, 0.0, -270.0),
+        (BlockKind.PLANE_ARC, -0.4, -360.0),
     ]
 
 

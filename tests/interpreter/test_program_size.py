@@ -10,8 +10,8 @@ import pytest
 from core.interpreter.omniturn import omniturn_interpreter
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.language.omniturn import Line, lex_line
-from core.language.source import Source
+from core.language.omniturn import LexedLine, lex_line
+from core.language.source import ProgramSource
 from tests.interpreter.programs import body, lines, passed, setup
 
 
@@ -41,30 +41,30 @@ def test_subroutines_count_where_they_are_called() -> None:
 @pytest.mark.parametrize(("on", "refused"), [(True, True), (False, False)])
 def test_conditional_calls_count_as_the_inputs_stand(on: bool, refused: bool) -> None:
     text = lines("G90F300", "LS30", "M95", "LF", "M30", "}1", "LS200000", "X1", "LF", "M99")
-    interpreter = Interpreter(read_program(Source("A", text)), setup(inputs=lambda _terminal: on))
-    assert interpreter.failed is refused
+    interpreter = Interpreter(read_program(ProgramSource("A", text)), setup(inputs=lambda _terminal: on))
+    assert interpreter.has_errors is refused
 
 
 def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) -> None:
     answers = iter([False])  # when counted; afterwards the input is on
     text = lines("G90F300", "M95", "M30", "}1", "LS200", "X1", "LF", "M99")
     given = setup(inputs=lambda _terminal: next(answers, True))
-    monkeypatch.setattr(omniturn_interpreter, "MOST_BLOCKS", 50)
-    interpreter = Interpreter(read_program(Source("A", text)), given)
-    blocks = list(interpreter.blocks())
+    monkeypatch.setattr(omniturn_interpreter, "MAX_BLOCKS", 50)
+    interpreter = Interpreter(read_program(ProgramSource("A", text)), given)
+    blocks = list(interpreter.generate_blocks())
     assert len(blocks) == 50
     assert interpreter.diagnostics[-1].code == "too-many-blocks"
 
 
 def test_lines_without_blocks_are_bounded_while_running(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(omniturn_interpreter, "MOST_LINES", 50)
+    monkeypatch.setattr(omniturn_interpreter, "MAX_LINES", 50)
     result = passed(lines("G90F300", "LS100", "F20", "LF", "M30"))
     assert [code for _, _, code in result.errors] == ["too-many-blocks"]
 
 
 def test_a_million_passes_start_at_once_and_keep_no_memory() -> None:
-    program = read_program(Source("A", body("LS1000000", "G91X.001", "X-.001", "LF")))
-    blocks = Interpreter(program, setup()).blocks()
+    program = read_program(ProgramSource("A", body("LS1000000", "G91X.001", "X-.001", "LF")))
+    blocks = Interpreter(program, setup()).generate_blocks()
     assert [block.line for block in islice(blocks, 3)] == [2, 4, 5]
     tracemalloc.start()
     try:
@@ -80,14 +80,14 @@ def test_a_million_passes_start_at_once_and_keep_no_memory() -> None:
 
 
 def test_lines_are_not_lexed_again_in_a_loop(monkeypatch: pytest.MonkeyPatch) -> None:
-    program = read_program(Source("A", body("LS50", "X1.23455Z1", "G01X2F20", "G00X1", "X3M08", "LF")))
+    program = read_program(ProgramSource("A", body("LS50", "X1.23455Z1", "G01X2F20", "G00X1", "X3M08", "LF")))
     lexed: list[int] = []
 
-    def counted(number: int, text: str) -> Line:
+    def counted(number: int, text: str) -> LexedLine:
         lexed.append(number)
         return lex_line(number, text)
 
     monkeypatch.setattr("core.interpreter.omniturn.motion.straight_moves.lex_line", counted)
     monkeypatch.setattr(omniturn_interpreter, "lex_line", counted)
-    assert sum(1 for _ in Interpreter(program, setup()).blocks()) == 252
+    assert sum(1 for _ in Interpreter(program, setup()).generate_blocks()) == 252
     assert len(lexed) == len(set(lexed))

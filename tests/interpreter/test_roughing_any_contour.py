@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.interpreter.programs import Pass, passed, setup
 from tests.interpreter.roughing import Bar, contour_of, nearest
 
@@ -86,7 +86,7 @@ def check(steps: list[tuple[float, float, str, float]], side: Side, cut: float, 
     bar = Bar((side[0], 3), side[1], side[2], way)
     for block in cycle:
         depth = bar.cuts(block)
-        assert depth <= (0.002 if block.kind is Kind.RAPID else cut + 0.002)
+        assert depth <= (0.002 if block.kind is BlockKind.RAPID else cut + 0.002)
 
 
 @settings(max_examples=100, deadline=None)
@@ -115,6 +115,6 @@ def test_one_pass_along_the_contour(
     assert nearest(cycle, contour) >= left - 0.002
     assert (cycle[-1].x, cycle[-1].z) == pytest.approx((side[0], 3))
     # Everything along the way is cut: no rapid but to the contour and from it.
-    kinds = [block.kind is Kind.RAPID for block in cycle]
+    kinds = [block.kind is BlockKind.RAPID for block in cycle]
     first, last = kinds.index(False), len(kinds) - 1 - kinds[::-1].index(False)
     assert not any(kinds[first : last + 1])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.interpreter.programs import INCH, body, passed
 
 
@@ -12,7 +12,7 @@ def cuts(*each: str) -> list[float]:
     """X of each pass along Z."""
     result = passed(body(*each))
     assert result.errors == []
-    return [round(b.x / INCH, 5) for b in result.moves if b.kind is Kind.FEED and b.z != b.z0]
+    return [round(b.x / INCH, 5) for b in result.moves if b.kind is BlockKind.FEED and b.z != b.z0]
 
 
 def test_one_pass_move_by_move() -> None:
@@ -57,10 +57,10 @@ def test_all_quadrants(x: int, outwards: int, z: int) -> None:
     corner = 0.5 + outwards * 0.1
     result = passed(body(f"X{x * 0.5}Z0", f"G74X{x * corner}Z{z * 0.3}I.05U.02F4"))
     assert result.errors == []
-    passes = [b for b in result.moves if b.kind is Kind.FEED and b.z != b.z0]
+    passes = [b for b in result.moves if b.kind is BlockKind.FEED and b.z != b.z0]
     assert [b.x / INCH for b in passes] == pytest.approx([x * (0.5 + outwards * d) for d in (0.04, 0.08)])
     assert [b.z / INCH for b in passes] == pytest.approx([z * 0.3] * 2)
-    backs = [b.x / INCH for b in result.moves[1:] if b.kind is Kind.RAPID and b.z == b.z0]
+    backs = [b.x / INCH for b in result.moves[1:] if b.kind is BlockKind.RAPID and b.z == b.z0]
     assert backs == pytest.approx([x * (0.5 + outwards * d) for d in (0.02, 0.06)] + [x * 0.5])
     assert result.ends[-1] == (x * 0.5, 0)
 
@@ -69,7 +69,7 @@ def test_going_back_is_never_nearer_than_the_lift() -> None:
     result = passed(body("X.5Z.1", "G74X.4Z-.2I.03F4"))
     level = 0.5
     for block in result.moves[1:]:
-        if block.kind is Kind.FEED:
+        if block.kind is BlockKind.FEED:
             level = block.x / INCH
         elif block.z != block.z0:
             assert block.x / INCH == pytest.approx(level + 0.02)

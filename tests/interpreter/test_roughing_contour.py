@@ -6,7 +6,7 @@ from math import sqrt
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.interpreter.programs import INCH, Pass, body, passed, setup
 from tests.texts import text
 
@@ -70,7 +70,7 @@ def test_corners_count_in_the_contour() -> None:
     """C.1 between face and cylinder; the way round its two corners in arcs of radius U."""
     result = rough("X0Z0", "X.2C.1", "Z-.5", "X.4", start="X.4Z.1", code="G78U.02F4")
     assert result.errors == []
-    arcs = [b for b in result.moves if b.kind is Kind.ARC]
+    arcs = [b for b in result.moves if b.kind is BlockKind.ARC]
     assert [(b.cx / INCH, b.cz / INCH) for b in arcs] == [
         pytest.approx((0.1, 0), abs=1e-9), pytest.approx((0.2, -0.1)),
     ]  # fmt: skip
@@ -80,7 +80,7 @@ def test_corners_count_in_the_contour() -> None:
 def test_a_radius_between_two_lines_of_the_contour() -> None:
     """R.05 in the inside corner at (.2, -.5): its offset has the radius .03 about (.25, -.45)."""
     result = rough("X.2Z0", "Z-.5R.05", "X.4", code="G78U.02F4")
-    (fillet,) = [b for b in result.moves if b.kind is Kind.ARC]
+    (fillet,) = [b for b in result.moves if b.kind is BlockKind.ARC]
     assert (fillet.cx / INCH, fillet.cz / INCH) == pytest.approx((0.25, -0.45))
     assert (fillet.x / INCH, fillet.z / INCH) == pytest.approx((0.25, -0.48))
     assert fillet.clockwise is False
@@ -163,7 +163,7 @@ def test_what_small_radii_cannot_hold_is_passed_by() -> None:
 
 def test_the_feed_is_that_of_the_moment() -> None:
     result = rough(*SHAFT, code="G95G75I.1U.02F.003")
-    cuts = [b for b in result.moves if b.line == 4 and b.kind is not Kind.RAPID]
+    cuts = [b for b in result.moves if b.line == 4 and b.kind is not BlockKind.RAPID]
     assert {(round(b.feed / INCH, 6), b.per_rev) for b in cuts} == {(0.003, True)}
 
 

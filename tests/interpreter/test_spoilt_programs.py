@@ -6,10 +6,10 @@ import random
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.proving.prove_program import prove
 from tests.interpreter.mutation import mutated
 
@@ -29,15 +29,19 @@ CASES = [
 @pytest.mark.parametrize(("dialect", "seed"), CASES)
 def test_a_spoilt_program_is_proved_or_refused(dialect: Dialect, seed: int) -> None:
     name, source = MACHINES[dialect]
-    machine = shipped_machine(name)
+    machine = load_shipped_machine(name)
     text = mutated(random.Random(seed), dialect)
-    report = prove(Source(source, text), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine)
-    assert report.elementary > 0 or report.errors
-    low, high = report.ways.cycle
-    assert report.ways.proved >= 1
-    assert report.errors or low - 1e-6 <= report.times.cycle <= high + 1e-6
+    report = prove(
+        ProgramSource(source, text),
+        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        machine,
+    )
+    assert report.elementary_block_count > 0 or report.errors
+    low, high = report.branch_summary.cycle_time_range
+    assert report.branch_summary.proved_count >= 1
+    assert report.errors or low - 1e-6 <= report.times.cycle_s <= high + 1e-6
     for found in report.diagnostics:
         assert 0 <= found.line <= text.count("\n") + 1
         assert found.message
-        assert found.count >= 1
-        assert not found.check or (found.code == found.check and found.hint)
+        assert found.occurrence_count >= 1
+        assert not found.check_name or (found.code == found.check_name and found.hint)

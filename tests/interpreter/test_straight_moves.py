@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.interpreter.programs import INCH, body, lines, passed, setup
 
 
@@ -100,7 +100,7 @@ def test_words_finer_than_the_step_are_rounded_with_a_warning(
 def test_each_word_too_fine_is_told_once_even_in_a_loop() -> None:
     result = passed(body("LS3", "X.00001Z.00001", "X1", "LF"))
     assert result.warnings == [(4, 1, "finer-than-step")]
-    assert [found.count for found in result.interpreter.diagnostics] == [2]
+    assert [found.occurrence_count for found in result.interpreter.diagnostics] == [2]
 
 
 def test_the_rounding_message_speaks_the_programs_numbers() -> None:
@@ -111,10 +111,10 @@ def test_the_rounding_message_speaks_the_programs_numbers() -> None:
 
 def test_a_move_to_where_the_tool_stands_is_a_block_of_no_length() -> None:
     move = passed(body("X0Z0")).moves[0]
-    assert (move.x0, move.z0, move.x, move.z, move.kind) == (0, 0, 0, 0, Kind.RAPID)
+    assert (move.x0, move.z0, move.x, move.z, move.kind) == (0, 0, 0, 0, BlockKind.RAPID)
 
 
 def test_a_dwell_is_a_block_and_its_f_no_feed() -> None:
     result = passed(body("F20X1", "G04F.5", "X2"))
-    assert [b.kind for b in result.blocks[1:4]] == [Kind.FEED, Kind.DWELL, Kind.FEED]
+    assert [b.kind for b in result.blocks[1:4]] == [BlockKind.FEED, BlockKind.DWELL, BlockKind.FEED]
     assert result.feeds == [("feed", 20), ("feed", 20)]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import load_source
 from tests.interpreter.programs import INCH, Pass, body, in_feed, lines, passed, setup
@@ -26,11 +26,11 @@ def example(name: str) -> Pass:
 
 def threads(result: Pass) -> list[Block]:
     """The synchronous parts that are no pull-out."""
-    return [b for b in result.moves if b.kind is Kind.THREAD and not b.text.endswith("P")]
+    return [b for b in result.moves if b.kind is BlockKind.THREAD and not b.text.endswith("P")]
 
 
 def pull_outs(result: Pass) -> list[Block]:
-    return [b for b in result.moves if b.kind is Kind.THREAD and b.text.endswith("P")]
+    return [b for b in result.moves if b.kind is BlockKind.THREAD and b.text.endswith("P")]
 
 
 def begin(block: Block) -> tuple[float, float]:
@@ -74,7 +74,7 @@ def test_the_internal_thread_stops_and_comes_straight_out() -> None:
     assert [end(block)[0] for block in (cuts[0], cuts[1], cuts[-1])] == [0.4425, 0.44664, 0.46875]
     assert pull_outs(result) == []
     after = [result.moves[result.moves.index(block) + 1] for block in cuts]
-    assert {(block.kind, *end(block)) for block in after} == {(Kind.RAPID, 0.4125, -0.75)}
+    assert {(block.kind, *end(block)) for block in after} == {(BlockKind.RAPID, 0.4125, -0.75)}
     assert end(result.moves[-3]) == (0.4425, 0.2)
 
 
@@ -102,7 +102,7 @@ def test_the_taper() -> None:
     assert (6, 1, "thread-passes") in result.warnings
     assert any("121 passes" in found.message for found in result.interpreter.diagnostics)
     # 3 I is .0075, and the cone's far end stands .0175 above S: a retract to .215 would cross it
-    back = [b for b in result.moves if b.kind is Kind.RAPID and end(b)[1] == -0.5]
+    back = [b for b in result.moves if b.kind is BlockKind.RAPID and end(b)[1] == -0.5]
     assert {end(block)[0] for block in back} == {0.2325}
 
 
@@ -184,7 +184,7 @@ def test_short_run_up_warns() -> None:
     run = "M03S3000"
     assert (5, 1, "thread-run-up") in passed(body(run, "X.3Z.1", "G33X.29Z-.5I.01K.1")).warnings
     assert passed(body(run, "X.3Z.11", "G33X.29Z-.5I.01K.1")).warnings == []
-    weak = setup(limits=ControlLimits(slide_accel=60 * INCH))
+    weak = setup(limits=ControlLimits(z_acceleration=60 * INCH))
     assert (5, 1, "thread-run-up") in passed(body(run, "X.3Z.11", "G33X.29Z-.5I.01K.1"), weak).warnings
 
 

@@ -63,5 +63,6 @@ def test_what_is_never_tolerated(line: str, column: int, code: str) -> None:
 
 def test_source_blocks_are_counted_without_comments_and_blanks() -> None:
     assert (
-        passed(lines("(A)", "G90F300", "", "X1", "X1.23456", "T1(B)", "LS2", "LF", "M30")).program.blocks == 7
+        passed(lines("(A)", "G90F300", "", "X1", "X1.23456", "T1(B)", "LS2", "LF", "M30")).program.block_count
+        == 7
     )

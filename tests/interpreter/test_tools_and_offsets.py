@@ -86,7 +86,7 @@ def test_a_new_tool_clears_preset_and_secondary_offset() -> None:
     result = passed(body("G92X1Z1", "X2Z2D3", "T2"), setup(tools=TOOLS))
     modal = result.blocks[-2].modal
     assert (modal.tool, modal.preset_x, modal.preset_z) == (2, 0, 0)
-    assert (modal.secondary, modal.secondary_x, modal.secondary_z, modal.nose_comp) == (0, 0, 0, 40)
+    assert (modal.secondary, modal.secondary_x, modal.secondary_z, modal.compensation_code) == (0, 0, 0, 40)
 
 
 @pytest.mark.parametrize("end", ["M30", "M02"])
@@ -118,10 +118,10 @@ def test_warnings(program: tuple[str, ...], warnings: list[tuple[int, int, str]]
 def test_tools_used_and_missing() -> None:
     interpreter = passed(body("T2", "X0Z0", "T7", "X0Z0", "T2", "T9", "T0"), setup(tools=TOOLS)).interpreter
     assert interpreter.used_tools == [2, 7, 9]
-    assert interpreter.missing_tools == [7, 9]
+    assert interpreter.tools_without_offset == [7, 9]
 
 
 def test_a_missing_tool_counts_as_zero() -> None:
     result = passed(body("T7", "X1Z1"), setup(tools=TOOLS))
     assert machine(result) == [(1, 1)]
-    assert not result.interpreter.failed
+    assert not result.interpreter.has_errors

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.jog.held_jog import CONTINUOUS, HeldJog, JogSpeeds
-from core.executor.commands import Command, Jog, JogStep, JogStop
-from core.executor.snapshot import Snapshot, State
-from core.interpreter.shared.modal_state import Modal
+from app.jog.held_jog import CONTINUOUS_STEP, HeldJog, JogSpeeds
+from core.executor.commands import Command, Jog, JogByStep, StopJog
+from core.executor.snapshot import MachineState, Snapshot
+from core.interpreter.shared.modal_state import ModalState
 from tests.texts import shows, text
 
 INCH = 25.4
@@ -27,8 +27,8 @@ class Scene:
     said: list[str] = field(default_factory=list)
     why: str = ""
     t: float = 100.0
-    modal: Modal = field(default_factory=Modal)
-    state: State = State.IDLE
+    modal: ModalState = field(default_factory=ModalState)
+    state: MachineState = MachineState.IDLE
 
     def __post_init__(self) -> None:
         speeds = JogSpeeds(load_machine())
@@ -42,12 +42,12 @@ class Scene:
             lambda: self.why,
         )
 
-    def frames(self, seconds: float, state: State = State.JOG) -> None:
+    def frames(self, seconds: float, state: MachineState = MachineState.JOG) -> None:
         """So much time, a look every frame."""
         end = self.t + seconds
         while self.t < end - 1e-9:
             self.t += FRAME
-            self.hold.look(Snapshot(state=state, modal=self.modal))
+            self.hold.update(Snapshot(state=state, modal=self.modal))
 
     @property
     def jogs(self) -> list[Jog]:
@@ -56,12 +56,12 @@ class Scene:
     @property
     def stopped(self) -> bool:
         """The last word is a stop, and nothing is held any more."""
-        return self.posted[-1] == JogStop() and self.hold.held is None
+        return self.posted[-1] == StopJog() and self.hold.active_jog is None
 
     def nothing_more(self) -> bool:
         """However long one waits, nothing else is posted."""
         count = len(self.posted)
-        self.frames(2.0, State.IDLE)
+        self.frames(2.0, MachineState.IDLE)
         return len(self.posted) == count
 
 
@@ -71,9 +71,9 @@ def scene() -> Scene:
 
 
 def held(scene: Scene) -> Scene:
-    scene.hold.press("Left", "Z", -1, rapid=False)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     scene.frames(0.5)
-    assert scene.hold.held is not None
+    assert scene.hold.active_jog is not None
     return scene
 
 
@@ -85,18 +85,18 @@ def test_a_held_key_renews_its_lease_before_it_ends(scene: Scene) -> None:
 
 
 def test_the_release_ends_it(scene: Scene) -> None:
-    held(scene).hold.release("Left")
+    held(scene).hold.release_key("Left")
     assert scene.stopped
     assert scene.nothing_more()
 
 
 def test_a_release_that_never_arrives_is_noticed_by_the_silence_of_the_key(scene: Scene) -> None:
-    scene.hold.press("Left", "Z", -1, rapid=False)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     for _ in range(20):
         scene.frames(0.032)
-        scene.hold.repeated("Left")
+        scene.hold.note_repeat("Left")
     scene.frames(0.48)
-    assert scene.hold.held is not None
+    assert scene.hold.active_jog is not None
     scene.frames(0.05)
     assert scene.stopped
     assert shows(scene.said[-1], "jog.key-silent")
@@ -104,9 +104,9 @@ def test_a_release_that_never_arrives_is_noticed_by_the_silence_of_the_key(scene
 
 
 def test_the_loss_of_the_keyboard_ends_it_and_the_key_counts_as_up(scene: Scene) -> None:
-    held(scene).hold.let_go("THE KEYBOARD WENT ELSEWHERE")
+    held(scene).hold.release_all("THE KEYBOARD WENT ELSEWHERE")
     assert scene.stopped
-    scene.hold.release("Left")  # the release arrives after all
+    scene.hold.release_key("Left")  # the release arrives after all
     assert scene.nothing_more()
     held(scene)
 
@@ -123,79 +123,82 @@ def test_a_screen_that_stood_still_does_not_go_on(scene: Scene) -> None:
 
 
 def test_two_keys_at_once_move_nothing_until_both_are_up(scene: Scene) -> None:
-    held(scene).hold.press("Up", "X", -1, rapid=False)
+    held(scene).hold.press_direction("Up", "X", -1, is_rapid=False)
     assert scene.stopped
-    scene.hold.release("Left")
-    scene.hold.press("Left", "Z", -1, rapid=False)  # Up is still down
+    scene.hold.release_key("Left")
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)  # Up is still down
     assert scene.nothing_more()
     assert shows(scene.said[-1], "jog.two-at-once")
-    scene.hold.release("Up")
-    scene.hold.release("Left")
+    scene.hold.release_key("Up")
+    scene.hold.release_key("Left")
     held(scene)
 
 
 def test_the_other_direction_while_moving_stops_and_does_not_reverse(scene: Scene) -> None:
-    held(scene).hold.press("Right", "Z", 1, rapid=False)
+    held(scene).hold.press_direction("Right", "Z", 1, is_rapid=False)
     assert scene.stopped
     assert all(jog.velocity < 0 for jog in scene.jogs)
     assert scene.nothing_more()
 
 
 def test_a_finger_beside_a_key_moves_nothing(scene: Scene) -> None:
-    held(scene).hold.press("finger Z-1", "Z", -1, rapid=False)
+    held(scene).hold.press_direction("finger Z-1", "Z", -1, is_rapid=False)
     assert scene.stopped
     assert scene.nothing_more()
 
 
 def test_any_other_key_ends_it(scene: Scene) -> None:
-    held(scene).hold.other_key()
+    held(scene).hold.stop_for_other_key()
     assert scene.stopped
     assert scene.nothing_more()
 
 
 def test_a_rapid_ends_with_its_shift_and_does_not_go_on_slowly(scene: Scene) -> None:
-    scene.hold.press("Left", "Z", -1, rapid=True)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=True)
     scene.frames(0.1)
     assert scene.jogs[-1].velocity == pytest.approx(-100 * INCH / 60)
-    scene.hold.shift_released()
+    scene.hold.release_shift()
     assert scene.stopped
     assert scene.nothing_more()
 
 
 def test_shift_that_comes_up_means_nothing_to_a_slow_jog(scene: Scene) -> None:
-    held(scene).hold.shift_released()
-    assert scene.hold.held is not None
+    held(scene).hold.release_shift()
+    assert scene.hold.active_jog is not None
 
 
 def test_the_pairs_that_a_repeating_key_makes_are_no_presses(scene: Scene) -> None:
     held(scene)
     for _ in range(10):
-        scene.hold.repeated("Left")
+        scene.hold.note_repeat("Left")
         scene.frames(0.03)
-    assert scene.hold.held is not None
-    assert JogStop() not in scene.posted
+    assert scene.hold.active_jog is not None
+    assert StopJog() not in scene.posted
 
 
-@pytest.mark.parametrize("state", [State.IDLE, State.FAULT, State.ESTOP, State.DISABLED, State.RUN])
-def test_what_the_machine_has_ended_is_not_begun_again(scene: Scene, state: State) -> None:
+@pytest.mark.parametrize(
+    "state",
+    [MachineState.IDLE, MachineState.FAULT, MachineState.ESTOP, MachineState.DISABLED, MachineState.RUN],
+)
+def test_what_the_machine_has_ended_is_not_begun_again(scene: Scene, state: MachineState) -> None:
     held(scene)
     before = len(scene.jogs)
     scene.frames(FRAME, state)
-    assert scene.hold.held is None
-    scene.frames(1.0, State.IDLE)
+    assert scene.hold.active_jog is None
+    scene.frames(1.0, MachineState.IDLE)
     assert len(scene.jogs) == before
 
 
 def test_a_machine_that_does_not_begin_is_not_asked_for_ever(scene: Scene) -> None:
-    scene.hold.press("Left", "Z", -1, rapid=False)
-    scene.frames(1.0, State.IDLE)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.frames(1.0, MachineState.IDLE)
     assert len(scene.jogs) == 1
     assert scene.stopped
 
 
 def test_what_is_barred_moves_nothing_and_says_why(scene: Scene) -> None:
     scene.why = "A PROGRAM IS UNDER WAY"
-    scene.hold.press("Left", "Z", -1, rapid=False)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     assert scene.posted == []
     assert scene.said == ["A PROGRAM IS UNDER WAY"]
 
@@ -215,41 +218,41 @@ def test_what_is_barred_moves_nothing_and_says_why(scene: Scene) -> None:
 def test_a_step_changes_the_figure_by_its_length(
     scene: Scene, step: int, metric: bool, diameter: bool, axis: str, length: float
 ) -> None:
-    scene.modal = Modal(metric=metric, diameter=diameter)
-    scene.frames(FRAME, State.IDLE)
-    scene.hold.speeds.step = step
-    scene.hold.press("key", axis, -1, rapid=False)
+    scene.modal = ModalState(metric=metric, diameter=diameter)
+    scene.frames(FRAME, MachineState.IDLE)
+    scene.hold.jog_speeds.step_index = step
+    scene.hold.press_direction("key", axis, -1, is_rapid=False)
     (command,) = scene.posted
-    assert isinstance(command, JogStep)
+    assert isinstance(command, JogByStep)
     assert command.distance == pytest.approx(-length, abs=1e-12)
 
 
 def test_a_step_is_not_repeated_by_holding_and_not_ended_by_the_release(scene: Scene) -> None:
-    scene.hold.speeds.step = 1
-    scene.hold.press("Left", "Z", -1, rapid=False)
+    scene.hold.jog_speeds.step_index = 1
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     for _ in range(30):
-        scene.hold.repeated("Left")
+        scene.hold.note_repeat("Left")
         scene.frames(0.03)
-    scene.hold.release("Left")
+    scene.hold.release_key("Left")
     assert len(scene.posted) == 1
-    scene.hold.press("Left", "Z", -1, rapid=False)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     assert len(scene.posted) == 2
 
 
 def test_shift_in_a_step_is_refused(scene: Scene) -> None:
-    scene.hold.speeds.step = 1
-    scene.hold.press("Left", "Z", -1, rapid=True)
+    scene.hold.jog_speeds.step_index = 1
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=True)
     assert scene.posted == []
     assert shows(scene.said[-1], "jog.continuous-for-rapid")
 
 
 def test_steps_and_speeds_go_round(scene: Scene) -> None:
-    speeds = scene.hold.speeds
+    speeds = scene.hold.jog_speeds
     seen = []
     for _ in range(6):
-        seen.append(speeds.step)
-        speeds.next_step()
-    assert seen == [CONTINUOUS, 0, 1, 2, 3, CONTINUOUS]
-    speeds.speed = 3
-    speeds.next_speed()
-    assert speeds.speed == 0
+        seen.append(speeds.step_index)
+        speeds.select_next_step()
+    assert seen == [CONTINUOUS_STEP, 0, 1, 2, 3, CONTINUOUS_STEP]
+    speeds.speed_index = 3
+    speeds.select_next_speed()
+    assert speeds.speed_index == 0

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.executor.commands import Command, Jog, JogStep, JogStop
-from core.executor.snapshot import State
+from core.executor.commands import Command, Jog, JogByStep, StopJog
+from core.executor.snapshot import MachineState
 from tests.jog.test_held_jog import FRAME, Scene
 
 SOURCES = {"Left": ("Z", -1), "Right": ("Z", 1), "Up": ("X", -1), "Down": ("X", 1), "finger C1": ("C", 1)}
@@ -18,26 +18,26 @@ EVENTS = st.one_of(
 )
 
 
-def do(scene: Scene, event: tuple[str, str | None, bool | None], state: State) -> None:
+def do(scene: Scene, event: tuple[str, str | None, bool | None], state: MachineState) -> None:
     what, source, rapid = event
     if what == "press" and source is not None:
         axis, sign = SOURCES[source]
-        scene.hold.press(source, axis, sign, rapid=bool(rapid))
+        scene.hold.press_direction(source, axis, sign, is_rapid=bool(rapid))
     elif what == "release" and source is not None:
-        scene.hold.release(source)
+        scene.hold.release_key(source)
     elif what == "repeat" and source is not None:
-        scene.hold.repeated(source)
+        scene.hold.note_repeat(source)
     elif what == "other":
-        scene.hold.other_key()
+        scene.hold.stop_for_other_key()
     elif what == "shift":
-        scene.hold.shift_released()
+        scene.hold.release_shift()
     elif what == "step":
-        scene.hold.let_go("another step")
-        scene.hold.speeds.next_step()
+        scene.hold.release_all("another step")
+        scene.hold.jog_speeds.select_next_step()
     elif what == "away":
         scene.t += 1.0
     elif what == "lost":
-        scene.hold.let_go("the keyboard")
+        scene.hold.release_all("the keyboard")
     else:
         scene.frames(5 * FRAME, state)
 
@@ -46,32 +46,35 @@ def moving_after(posted: list[Command]) -> set[tuple[str, float]]:
     """What the machine would still be asked to do, in how many directions since the last stop."""
     asked: set[tuple[str, float]] = set()
     for command in posted:
-        if isinstance(command, JogStop):
+        if isinstance(command, StopJog):
             asked.clear()
         elif isinstance(command, Jog):
             asked.add((command.axis, command.velocity))
     return asked
 
 
-@given(st.lists(EVENTS, max_size=40), st.sampled_from([State.IDLE, State.JOG, State.RUN, State.FAULT]))
+@given(
+    st.lists(EVENTS, max_size=40),
+    st.sampled_from([MachineState.IDLE, MachineState.JOG, MachineState.RUN, MachineState.FAULT]),
+)
 @settings(max_examples=300, deadline=None)
 def test_one_direction_at_a_time_and_nothing_without_a_hand(
-    events: list[tuple[str, str | None, bool | None]], state: State
+    events: list[tuple[str, str | None, bool | None]], state: MachineState
 ) -> None:
     scene = Scene()
     for event in events:
         count = len(scene.posted)
         do(scene, event, state)
         assert len(moving_after(scene.posted)) <= 1
-        if len(scene.hold.down) != 1:
-            assert scene.hold.held is None
+        if len(scene.hold.keys_down) != 1:
+            assert scene.hold.active_jog is None
             assert not any(isinstance(command, Jog) for command in scene.posted[count:])
         if event[0] != "press":
-            assert not any(isinstance(command, JogStep) for command in scene.posted[count:])
+            assert not any(isinstance(command, JogByStep) for command in scene.posted[count:])
     for source in SOURCES:
-        scene.hold.release(source)
-    assert scene.hold.held is None
+        scene.hold.release_key(source)
+    assert scene.hold.active_jog is None
     assert moving_after(scene.posted) == set()
     count = len(scene.posted)
-    scene.frames(1.0, State.IDLE)
+    scene.frames(1.0, MachineState.IDLE)
     assert len(scene.posted) == count

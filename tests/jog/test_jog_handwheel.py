@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.jog.held_jog import CONTINUOUS, HeldJog, JogSpeeds
+from app.jog.held_jog import CONTINUOUS_STEP, HeldJog, JogSpeeds
 from app.jog.jog_handwheel import JogHandwheel
-from core.executor.commands import Command, Jog, JogStop, Wheel, WheelOff
-from core.executor.snapshot import Snapshot, State
-from core.interpreter.shared.modal_state import Modal
-from core.machine.hardware_model import AnalogModel
+from core.executor.commands import Command, DeselectHandwheel, Jog, SelectHandwheel, StopJog
+from core.executor.snapshot import MachineState, Snapshot
+from core.interpreter.shared.modal_state import ModalState
+from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel
 from tests.texts import shows, text
 
@@ -23,9 +23,9 @@ FRAME = 0.016
 LEASE = 0.2
 
 
-def clicks(command: Wheel, axis: str, step: float) -> bool:
+def clicks(command: SelectHandwheel, axis: str, step: float) -> bool:
     """Whether the wheel moves the axis by so much a click, mm or degrees."""
-    return command == Wheel(axis, command.step, LEASE) and command.step == pytest.approx(step)
+    return command == SelectHandwheel(axis, command.step, LEASE) and command.step == pytest.approx(step)
 
 
 @dataclass
@@ -38,17 +38,17 @@ class Scene:
     said: list[str] = field(default_factory=list)
     why: str = ""
     t: float = 100.0
-    modal: Modal = field(default_factory=Modal)
+    modal: ModalState = field(default_factory=ModalState)
     on: frozenset[str] = frozenset()
     taken: bool = False  # the control has taken it away
 
     def __post_init__(self) -> None:
         machine = load_machine()
-        wheel = {"handwheel": AnalogModel("handwheel", "w", (0.0, 1.0), counts_per_click=4)}
+        wheel = {"handwheel": AnalogInputModel("handwheel", "w", (0.0, 1.0), counts_per_click=4)}
         machine = dataclasses.replace(
             machine,
             inputs={**machine.inputs, **{name: InputModel(name, f"t {name}") for name in self.switches}},
-            hardware=dataclasses.replace(machine.hardware, analog=wheel if self.there else {}),
+            hardware=dataclasses.replace(machine.hardware, analog_inputs=wheel if self.there else {}),
         )
         post, say, clock = self.posted.append, self.said.append, lambda: self.t
         self.hold = HeldJog(JogSpeeds(machine), LEASE, post, say, lambda: None, clock, lambda: self.why)
@@ -59,14 +59,14 @@ class Scene:
         end = self.t + seconds
         while self.t < end - 1e-9:
             self.t += FRAME
-            axis = self.wheel.choice[0] if self.wheel.choice and not self.taken else ""
-            shot = Snapshot(state=State.IDLE, modal=self.modal, wheel=axis, inputs=self.on)
-            self.hold.look(shot)
-            self.wheel.look(shot)
+            axis = self.wheel.wheel_choice[0] if self.wheel.wheel_choice and not self.taken else ""
+            shot = Snapshot(state=MachineState.IDLE, modal=self.modal, wheel=axis, inputs=self.on)
+            self.hold.update(shot)
+            self.wheel.update(shot)
 
     @property
-    def wheels(self) -> list[Wheel]:
-        return [command for command in self.posted if isinstance(command, Wheel)]
+    def wheels(self) -> list[SelectHandwheel]:
+        return [command for command in self.posted if isinstance(command, SelectHandwheel)]
 
     def nothing_more(self) -> bool:
         count = len(self.wheels)
@@ -75,27 +75,27 @@ class Scene:
 
 
 def chosen(scene: Scene, axis: str = "X") -> Scene:
-    scene.wheel.choose(axis)
+    scene.wheel.select_axis(axis)
     scene.frames(0.1)
-    assert scene.wheel.choice is not None
+    assert scene.wheel.wheel_choice is not None
     return scene
 
 
 def test_the_key_goes_through_the_axes_and_lets_go_at_last() -> None:
     scene, seen = Scene(), []
     for _ in range(4):
-        scene.wheel.next_axis()
+        scene.wheel.select_next_axis()
         scene.frames(0.1)
-        seen.append(scene.wheel.choice[0] if scene.wheel.choice else "")
+        seen.append(scene.wheel.wheel_choice[0] if scene.wheel.wheel_choice else "")
     assert seen == ["X", "Z", "C", ""]
-    assert scene.posted[-1] == WheelOff()
+    assert scene.posted[-1] == DeselectHandwheel()
     assert scene.nothing_more()
 
 
 def test_it_is_renewed_before_its_lease_ends() -> None:
     scene = chosen(Scene())
     scene.frames(1.0)
-    assert set(scene.wheels) == {Wheel("X", THOU, LEASE)}  # continuous: a thousandth
+    assert set(scene.wheels) == {SelectHandwheel("X", THOU, LEASE)}  # continuous: a thousandth
     assert len(scene.wheels) >= 1.0 / LEASE * 3
 
 
@@ -114,49 +114,49 @@ def test_it_is_renewed_before_its_lease_ends() -> None:
 def test_a_click_is_the_step_of_the_page(
     step: int, metric: bool, diameter: bool, axis: str, way: float
 ) -> None:
-    scene = Scene(modal=Modal(metric=metric, diameter=diameter))
-    scene.hold.speeds.step = step
+    scene = Scene(modal=ModalState(metric=metric, diameter=diameter))
+    scene.hold.jog_speeds.step_index = step
     chosen(scene, axis)
     assert clicks(scene.wheels[-1], axis, way)
 
 
 def test_another_step_lets_go_first() -> None:
     scene = chosen(Scene())
-    scene.hold.speeds.step = 3
+    scene.hold.jog_speeds.step_index = 3
     scene.frames(0.1)
-    off = scene.posted.index(WheelOff())
-    assert all(isinstance(c, Wheel) and clicks(c, "X", 0.1 * THOU) for c in scene.posted[off + 1 :])
+    off = scene.posted.index(DeselectHandwheel())
+    assert all(isinstance(c, SelectHandwheel) and clicks(c, "X", 0.1 * THOU) for c in scene.posted[off + 1 :])
     assert len(scene.posted) > off + 1
 
 
-@pytest.mark.parametrize("step", [CONTINUOUS, 0])
+@pytest.mark.parametrize("step", [CONTINUOUS_STEP, 0])
 def test_steps_that_are_none_for_a_wheel_let_it_go_for_good(step: int) -> None:
     scene = chosen(Scene())
-    scene.hold.speeds.step = step
+    scene.hold.jog_speeds.step_index = step
     scene.frames(0.1)
-    assert scene.posted[-1] == WheelOff()
-    scene.hold.speeds.step = 2
+    assert scene.posted[-1] == DeselectHandwheel()
+    scene.hold.jog_speeds.step_index = 2
     assert scene.nothing_more()
 
 
 def test_a_jog_that_is_held_ends_when_it_is_chosen() -> None:
     scene = Scene()
-    scene.hold.press("Left", "Z", -1, rapid=False)
+    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     assert isinstance(scene.posted[-1], Jog)
-    scene.wheel.choose("X")
-    assert JogStop() in scene.posted
+    scene.wheel.select_axis("X")
+    assert StopJog() in scene.posted
 
 
 def test_what_bars_a_jog_bars_it_and_ends_it() -> None:
     scene = Scene(why="THE DRIVES ARE OFF")
-    scene.wheel.choose("X")
+    scene.wheel.select_axis("X")
     assert scene.said == ["THE DRIVES ARE OFF"]
     assert scene.nothing_more()
     scene.why = ""
     chosen(scene)
     scene.why = "A PROGRAM IS UNDER WAY"
     scene.frames(0.1)
-    assert scene.posted[-1] == WheelOff()
+    assert scene.posted[-1] == DeselectHandwheel()
     scene.why = ""
     assert scene.nothing_more()
 
@@ -166,7 +166,7 @@ def test_what_the_control_has_taken_away_is_not_asked_for_again() -> None:
     scene.frames(0.5)
     scene.taken = True
     scene.frames(0.1)
-    assert scene.posted[-1] == WheelOff()
+    assert scene.posted[-1] == DeselectHandwheel()
     scene.taken = False
     assert scene.nothing_more()
 
@@ -175,14 +175,14 @@ def test_a_screen_that_was_away_lets_it_go() -> None:
     scene = chosen(Scene())
     scene.t += 0.3
     scene.frames(0.05)
-    assert scene.posted[-1] == WheelOff()
+    assert scene.posted[-1] == DeselectHandwheel()
     assert set(scene.said) == {text("jog.screen-away")}
     assert scene.nothing_more()
 
 
 def test_without_a_wheel_the_key_says_so() -> None:
     scene = Scene(there=False)
-    scene.wheel.next_axis()
+    scene.wheel.select_next_axis()
     assert scene.said == [text("jog.no-wheel")]
     assert scene.nothing_more()
 
@@ -206,7 +206,7 @@ def test_switches_choose_axis_and_step() -> None:
     scene.on = frozenset({"wheel_x", "wheel_x1"})
     scene.frames(0.1)
     assert clicks(scene.wheels[-1], "X", 0.1 * THOU)
-    assert WheelOff() in scene.posted
+    assert DeselectHandwheel() in scene.posted
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_switches_choose_axis_and_step() -> None:
 def test_switches_between_their_places_choose_nothing(on: tuple[str, ...]) -> None:
     scene = switched(*on)
     assert scene.wheels == []
-    scene.wheel.choose("X")
+    scene.wheel.select_axis("X")
     assert shows(scene.said[0], "jog.station-chooses-axis")
     assert scene.nothing_more()
 
@@ -231,7 +231,7 @@ def test_what_was_taken_away_needs_the_switch_moved() -> None:
     scene.frames(0.1)
     scene.on = frozenset({"wheel_x", "wheel_x10"})
     scene.frames(0.1)
-    assert scene.wheel.choice == ("X", 2)
+    assert scene.wheel.wheel_choice == ("X", 2)
 
 
 def test_a_switch_that_stood_there_waits_for_the_drives() -> None:
@@ -241,4 +241,4 @@ def test_a_switch_that_stood_there_waits_for_the_drives() -> None:
     assert scene.said == []
     scene.why = ""
     scene.frames(0.1)
-    assert scene.wheel.choice == ("X", 2)
+    assert scene.wheel.wheel_choice == ("X", 2)

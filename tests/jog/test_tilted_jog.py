@@ -8,14 +8,14 @@ from math import cos, radians, sin, sqrt
 import numpy as np
 import pytest
 
-from app.compose.machine.kinematics_chain import kinematics_of
-from app.compose.machine.machine_files import parse_machine, shipped_machine
-from app.jog.tilted_jog import JogFrame, TiltedJog, jog_frame
-from core.executor.commands import Jog, JogStep, JogStop
+from app.compose.machine.kinematics_chain import build_kinematics
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
+from app.jog.tilted_jog import JogFrame, TiltedJog, make_jog_frame
+from core.executor.commands import Jog, JogByStep, StopJog
 from core.executor.hand_motion.jog_line import JogLine
-from core.executor.snapshot import Snapshot, State
-from core.geometry.rotation_frames import IDENTITY, X_AXIS, turned
-from core.interpreter.shared.working_plane import PlaneSystem, Swivel
+from core.executor.snapshot import MachineState, Snapshot
+from core.geometry.rotation_frames import IDENTITY, X_AXIS, rotation_about
+from core.interpreter.shared.working_plane import PlanePosition, PlaneSystem
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 from tests.texts import begins, shows, text
@@ -36,8 +36,8 @@ def held(rig: Rig, velocity: float, seconds: float, along: tuple[float, float, f
     for _ in range(round(seconds / 0.03)):
         rig.post(Jog("Z", velocity, LEASE, along=along))
         rig.run(0.03)
-    rig.post(JogStop())
-    rig.until(State.IDLE)
+    rig.post(StopJog())
+    rig.until(MachineState.IDLE)
 
 
 # --- the machine ----------------------------------------------------------------------------------------
@@ -55,25 +55,25 @@ def test_the_slides_stay_on_the_line_of_the_plane(rig: Rig) -> None:
 
 
 def test_a_step_along_the_plane_is_exactly_its_length(rig: Rig) -> None:
-    rig.post(JogStep("Z", -1.0, 8.0, ALONG))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("Z", -1.0, 8.0, ALONG))
+    rig.until(MachineState.IDLE)
     assert rig.shot.demand[:3] == pytest.approx([-share for share in ALONG], abs=1e-9)
 
 
 def test_the_first_axis_at_its_end_ends_the_way(rig: Rig) -> None:
     """At 45 degrees: Z has .51 mm to its end, of which .01 is kept; .5 of it is .5 √2 of way."""
-    rig.post(JogStep("Z", 1.0, 20.0))
-    rig.until(State.IDLE)
+    rig.post(JogByStep("Z", 1.0, 20.0))
+    rig.until(MachineState.IDLE)
     machine = rig.machine
     axes = [
         dataclasses.replace(axis, travel=(-500.0, 1.51)) if axis.name == "Z" else axis
         for axis in machine.axes
     ]
     slanted = (0.0, sqrt(0.5), sqrt(0.5))
-    line = JogLine.along(axes, slanted)
-    assert line.room(rig.shot.demand, 1.0) == pytest.approx(0.5 * sqrt(2.0))
-    assert line.room(rig.shot.demand, -1.0) == pytest.approx((499.99) * sqrt(2.0))
-    assert line.amax == pytest.approx(machine.axes[1].amax * sqrt(2.0))
+    line = JogLine.from_direction(axes, slanted)
+    assert line.distance_to_limit(rig.shot.demand, 1.0) == pytest.approx(0.5 * sqrt(2.0))
+    assert line.distance_to_limit(rig.shot.demand, -1.0) == pytest.approx((499.99) * sqrt(2.0))
+    assert line.max_acceleration == pytest.approx(machine.axes[1].amax * sqrt(2.0))
 
 
 def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
@@ -85,7 +85,7 @@ def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
     rig.post(Jog("Z", 25.0, LEASE, along=ALONG))
     rig.run(0.1)
     assert text("jog.end-of-travel", axis="Z", side="+") in rig.said("refused")[-1]
-    rig.post(JogStep("Z", 1.0, 8.0, ALONG))
+    rig.post(JogByStep("Z", 1.0, 8.0, ALONG))
     rig.run(0.05)
     assert shows(rig.said("refused")[-1], "jog.end-of-travel")
 
@@ -102,7 +102,7 @@ def test_a_jog_does_not_go_on_along_another_line(rig: Rig) -> None:
     rig.post(Jog("Z", 25.0, LEASE, along=ALONG))
     rig.run(0.03)
     rig.post(Jog("Z", 25.0, LEASE))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert text("jog.still-jogged", axis="Z") in rig.said("refused")[-1]
     at = np.array(rig.shot.demand[:3])
     assert np.abs(at - (at @ np.array(ALONG)) * np.array(ALONG)).max() < 1e-9
@@ -119,81 +119,83 @@ def test_a_lathe_has_no_plane_to_jog_in() -> None:
 # --- which way ------------------------------------------------------------------------------------------
 
 
-PLANE = turned(X_AXIS, 30.0)
+PLANE = rotation_about(X_AXIS, 30.0)
 
 
 def shot(machine: str, *at: float, tilted: bool = False) -> Snapshot:
     """The machine stands there; ``tilted``: in a plane of 30 degrees about X of the workpiece."""
-    chain = kinematics_of(shipped_machine(machine))
+    chain = build_kinematics(load_shipped_machine(machine))
     assert chain is not None
-    place = chain.place({"A": 30.0}, PLANE) if tilted else chain.place({})
+    place = chain.make_transform({"A": 30.0}, PLANE) if tilted else chain.make_transform({})
     frame, targets = (PLANE, (30.0, 0.0, 0.0)) if tilted else (IDENTITY, (0.0, 0.0, 0.0))
-    system = PlaneSystem(place, chain, frame, tilted=tilted, targets=targets, line=7)
+    system = PlaneSystem(place, chain, frame, is_tilted=tilted, target_angles=targets, plane_block_line=7)
     zero = (0.0, 0.0, 0.0)
     rig = Rig()
     rig.ready()
-    swivel = Swivel(zero, zero, zero, (0.0, None, 0.0), system)
-    return dataclasses.replace(rig.shot, axes=chain.names, actual=at, swivel=swivel)
+    swivel = PlanePosition(zero, zero, zero, (0.0, None, 0.0), system)
+    return dataclasses.replace(rig.shot, axes=chain.axis_names, actual=at, swivel=swivel)
 
 
 def test_once_the_table_has_turned_z_of_the_plane_is_z_of_the_machine() -> None:
-    machine = kinematics_of(shipped_machine("ac-table-mill"))
-    frame = jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True))
+    machine = build_kinematics(load_shipped_machine("ac-table-mill"))
+    frame = make_jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True))
     assert isinstance(frame, JogFrame)
-    assert frame.direction("Z") == pytest.approx((0.0, 0.0, 1.0))
-    assert frame.direction("A") is None
-    assert frame.words == text("screen.tilted-plane", line=7)
+    assert frame.find_direction("Z") == pytest.approx((0.0, 0.0, 1.0))
+    assert frame.find_direction("A") is None
+    assert frame.frame_text == text("screen.tilted-plane", line=7)
 
 
 def test_a_head_that_stands_in_its_plane_leans_the_keys() -> None:
-    machine = kinematics_of(shipped_machine("fork-head-mill"))
+    machine = build_kinematics(load_shipped_machine("fork-head-mill"))
     assert machine is not None
-    at = dict.fromkeys(machine.names, 0.0) | {"A": 30.0}
-    frame = jog_frame(machine, shot("fork-head-mill", *(at[name] for name in machine.names), tilted=True))
+    at = dict.fromkeys(machine.axis_names, 0.0) | {"A": 30.0}
+    frame = make_jog_frame(
+        machine, shot("fork-head-mill", *(at[name] for name in machine.axis_names), tilted=True)
+    )
     assert isinstance(frame, JogFrame)
-    assert frame.direction("Z") == pytest.approx(ALONG)
-    assert frame.direction("X") == pytest.approx((1.0, 0.0, 0.0))
+    assert frame.find_direction("Z") == pytest.approx(ALONG)
+    assert frame.find_direction("X") == pytest.approx((1.0, 0.0, 0.0))
 
 
 def test_a_table_that_stands_elsewhere_than_the_plane_asks_is_told() -> None:
-    machine = kinematics_of(shipped_machine("ac-table-mill"))
-    told = jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 29.9, 0.02, tilted=True))
+    machine = build_kinematics(load_shipped_machine("ac-table-mill"))
+    told = make_jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 29.9, 0.02, tilted=True))
     assert isinstance(told, str)
     assert begins(told, "jog.plane-asks-turn", axes="A AND C")
 
 
 def test_without_a_plane_a_leaning_head_moves_along_its_tool() -> None:
     """The fork head at A 40, C 0: the tool leans about X."""
-    machine = kinematics_of(shipped_machine("fork-head-mill"))
+    machine = build_kinematics(load_shipped_machine("fork-head-mill"))
     assert machine is not None
-    at = dict.fromkeys(machine.names, 0.0) | {"A": 40.0}
-    frame = jog_frame(machine, shot("fork-head-mill", *(at[name] for name in machine.names)))
+    at = dict.fromkeys(machine.axis_names, 0.0) | {"A": 40.0}
+    frame = make_jog_frame(machine, shot("fork-head-mill", *(at[name] for name in machine.axis_names)))
     assert isinstance(frame, JogFrame)
-    assert frame.direction("Z") == pytest.approx((0.0, -sin(radians(40.0)), cos(radians(40.0))))
-    upright = jog_frame(machine, shot("fork-head-mill", *(0.0,) * 5))
+    assert frame.find_direction("Z") == pytest.approx((0.0, -sin(radians(40.0)), cos(radians(40.0))))
+    upright = make_jog_frame(machine, shot("fork-head-mill", *(0.0,) * 5))
     assert isinstance(upright, str)
 
 
 def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None:
     told: list[str] = []
     ended: list[str] = []
-    tilt = TiltedJog(kinematics_of(shipped_machine("ac-table-mill")), ended.append, told.append)
+    tilt = TiltedJog(build_kinematics(load_shipped_machine("ac-table-mill")), ended.append, told.append)
     flat = shot("ac-table-mill", *(0.0,) * 5)
-    tilt.look(flat)
-    tilt.key()
-    assert not tilt.on
+    tilt.update(flat)
+    tilt.toggle()
+    assert not tilt.is_on
     assert shows(told[-1], "screen.nothing-tilted")
     there = shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True)
-    tilt.look(there)
-    tilt.key("A PROGRAM IS UNDER WAY")
-    assert (tilt.on, told[-1]) == (False, "A PROGRAM IS UNDER WAY")
-    tilt.key()
-    assert tilt.along("Z") == pytest.approx((0.0, 0.0, 1.0))
-    tilt.look(flat)  # PLANE RESET
-    assert (tilt.on, tilt.along("Z")) == (False, None)
+    tilt.update(there)
+    tilt.toggle("A PROGRAM IS UNDER WAY")
+    assert (tilt.is_on, told[-1]) == (False, "A PROGRAM IS UNDER WAY")
+    tilt.toggle()
+    assert tilt.find_direction("Z") == pytest.approx((0.0, 0.0, 1.0))
+    tilt.update(flat)  # PLANE RESET
+    assert (tilt.is_on, tilt.find_direction("Z")) == (False, None)
     assert shows(ended[-1], "jog.plane-off")
 
 
 def test_a_frame_is_that_of_the_keys() -> None:
-    frame = JogFrame(turned(X_AXIS, 90.0), "")
-    assert frame.direction("Y") == pytest.approx((0.0, 0.0, 1.0))
+    frame = JogFrame(rotation_about(X_AXIS, 90.0), "")
+    assert frame.find_direction("Y") == pytest.approx((0.0, 0.0, 1.0))

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 PATIENCE = 90.0  # s for what must happen at once on a computer that is not busy
 Line = dict[str, object]

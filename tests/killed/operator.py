@@ -17,10 +17,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.status.prompt_line import RESTART_CONTROL
-from app.screen.run_screen import run_screen
+from app.screen.screen_startup import run_screen
 from app.screen.window.main_window import MainWindow
-from app.screen.window.window_frame import Frame
-from core.executor.snapshot import State
+from app.screen.window.window_frame import WindowFrame
+from core.executor.snapshot import MachineState
 
 LOOK = 20  # ms
 Key = Qt.Key
@@ -55,22 +55,22 @@ class Operator:
             elif self._asked:
                 self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
                 yield from self._wait(1.2)  # an answer is no start: he looks before his hands come down
-            elif self._state is State.IDLE and self._checked:
+            elif self._state is MachineState.IDLE and self._checked:
                 yield from self._press_palms()
             yield True
         while True:
             yield False
 
     def _until_drawn(self) -> Iterator[bool]:
-        while self._frame.desk.session.now.picture is None:
+        while self._frame.desk.program_loader.loaded.picture is None:
             yield False
 
     def _switch_on(self) -> Iterator[bool]:
         yield from self._until_drawn()
-        while self._state is not State.DISABLED:
+        while self._state is not MachineState.DISABLED:
             yield False
         self._key(Key.Key_D)
-        while self._state is not State.IDLE:
+        while self._state is not MachineState.IDLE:
             yield False
         yield from self._set_tool_nine()
 
@@ -89,7 +89,7 @@ class Operator:
             yield False
 
     def _set_tool_nine(self) -> Iterator[bool]:
-        if 9 in self._frame.desk.book.tools:
+        if 9 in self._frame.desk.offset_book.tools:
             return  # before he was killed
         self._key(Key.Key_F8)
         for _ in range(8):
@@ -98,47 +98,47 @@ class Operator:
             yield True
             QTest.keyClicks(self._focus, words)
             self._key(Key.Key_Return)
-        book = self._frame.desk.book
+        book = self._frame.desk.offset_book
         while book is None or 9 not in book.tools:
             yield False
         self._key(Key.Key_Escape)
-        while self._frame.page is not self._frame.automatic or not self._ready:
+        while self._frame.current_page is not self._frame.automatic_page or not self._ready:
             yield False
 
     def _reset(self) -> Iterator[bool]:
         self._key(Key.Key_R)
-        while self._state is not State.DISABLED:
+        while self._state is not MachineState.DISABLED:
             yield False
         yield from self._switch_on()
 
     @property
     def _lost(self) -> bool:
-        return self._frame.prompt.text.startswith(RESTART_CONTROL)
+        return self._frame.prompt_line.main_text.startswith(RESTART_CONTROL)
 
     @property
     def _ready(self) -> bool:
-        return self._frame.prompt.text.startswith(("TO START", "PRESS", "LINE"))
+        return self._frame.prompt_line.main_text.startswith(("TO START", "PRESS", "LINE"))
 
     @property
     def _checked(self) -> bool:
-        watch = self._frame.desk.first_move
-        return watch is None or not watch.checking
+        watch = self._frame.desk.start_watch
+        return watch is None or not watch.is_checking
 
     @property
     def _asked(self) -> bool:
-        shot = self._frame.desk.snapshot()
-        return shot.state is State.IDLE and bool(shot.interrupted_line) and not shot.confirmed
+        shot = self._frame.desk.read_snapshot()
+        return shot.state is MachineState.IDLE and bool(shot.interrupted_line) and not shot.confirmed
 
     def _tell(self) -> None:
         """What has changed since the last time, as a line of JSON."""
         if not self._windows() or self._windows()[0].frame is None:
             return
-        shot = self._frame.desk.snapshot()
+        shot = self._frame.desk.read_snapshot()
         now: dict[str, object] = {
             "state": shot.state.value,
             "parts": shot.parts,
             "x": round(shot.actual[0]),  # mm
-            "prompt": self._frame.prompt.text,
+            "prompt": self._frame.prompt_line.main_text,
             "alarms": [f"{alarm.text}: {alarm.cause}" for alarm in shot.alarms],
         }
         if now != self._told:
@@ -154,7 +154,7 @@ class Operator:
         return self._windows()[0]
 
     @property
-    def _frame(self) -> Frame:
+    def _frame(self) -> WindowFrame:
         frame = self._window.frame
         assert frame is not None
         return frame
@@ -164,8 +164,8 @@ class Operator:
         return QApplication.focusWidget() or self._window
 
     @property
-    def _state(self) -> State:
-        return self._frame.desk.snapshot().state
+    def _state(self) -> MachineState:
+        return self._frame.desk.read_snapshot().state
 
     def _key(self, key: Qt.Key) -> None:
         QTest.keyClick(self._focus, key)
@@ -174,7 +174,7 @@ class Operator:
 def main(machine: str, program: str, *words: str) -> int:
     operator = Operator(words)  # Qt alone would let it go
     QTimer.singleShot(LOOK, operator.look)
-    return run_screen(machine=machine, program=program)
+    return run_screen(machine=machine, program_file=program)
 
 
 if __name__ == "__main__":

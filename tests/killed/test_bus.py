@@ -11,7 +11,7 @@ import pytest
 
 from core.store.store import Store
 from drivers.simulators.canopen_devices import CanopenDevices
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.drivers.driver_host.bus import SteadyClock, bus_file, peers_on
 from tests.killed.bench import Process, process
 
@@ -39,17 +39,17 @@ class Shop:
         while not ready():
             assert deadline.now() < self.clock.patience, what()
             while self.clock.step():
-                self.peers.pump()
-            self.peers.pump(0.001)
+                self.peers.process_frames()
+            self.peers.process_frames(0.001)
 
     @property
     def place(self) -> tuple[float, float]:
-        drives = self.peers.plant.drives
-        return drives["X"].p, drives["Z"].p
+        drives = self.peers.plant.axis_drives
+        return drives["X"].setpoint_position, drives["Z"].setpoint_position
 
     @property
     def powered(self) -> bool:
-        return any(drive.power.powered for drive in self.peers.plant.drives.values())
+        return any(drive.power_states.is_powered for drive in self.peers.plant.axis_drives.values())
 
 
 @pytest.fixture
@@ -101,7 +101,9 @@ def test_a_killed_control_stops_on_the_path_with_everything_off(
 
         shop.until(gone, lambda: (control.family(), shop.place))
         shop.until(lambda: not shop.powered, lambda: shop.place)
-        shop.until(lambda: abs(shop.peers.machine.spindle_rpm()) < 1.0, shop.peers.machine.spindle_rpm)
+        shop.until(
+            lambda: abs(shop.peers.machine.get_spindle_rpm()) < 1.0, shop.peers.machine.get_spindle_rpm
+        )
         stands = shop.place
         later = shop.clock.now() + 1.0
         shop.until(lambda: shop.clock.now() >= later, lambda: "")

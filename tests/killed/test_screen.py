@@ -13,8 +13,8 @@ import pytest
 import resources
 from app.compose.runs.journal import Journal
 from core.alarms import CATALOGUE
-from core.records.record import Record
-from core.records.ring_file import LAST, NOW, read_ring
+from core.records.record import ScopeRecord
+from core.records.ring_file import LAST, NOW, read_ring_file
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
 from tests.late_computer import tell
@@ -53,11 +53,11 @@ def cutting(desk: Process, parts: int) -> None:
     until(so, lambda: desk.lines[-3:])
 
 
-def parts_in(record: Record) -> int:
+def parts_in(record: ScopeRecord) -> int:
     """How often X went out to .2 in and came back, in what the scope has recorded at 1 ms."""
-    out = record.columns["X demand"] > 5.0
-    moving = np.diff(record.times)[out[1:] & out[:-1]]
-    assert record.rate == 1000.0
+    out = record.values_by_channel["X demand"] > 5.0
+    moving = np.diff(record.times_s)[out[1:] & out[:-1]]
+    assert record.sampling_rate_hz == 1000.0
     assert moving == pytest.approx(0.001, abs=1e-6)
     return int(np.count_nonzero(out[:-1] & ~out[1:]))
 
@@ -65,13 +65,13 @@ def parts_in(record: Record) -> int:
 def kept_parts(home: Path) -> int:
     """The part count on the disk, while the desk runs."""
     with Store.open(home, read_only=True) as store:
-        return store.runs.count_parts("part.nc")
+        return store.runs.read_part_count("part.nc")
 
 
 def between_start_and_end(home: Path) -> bool:
     """Whether a part has been counted and the next is under way, both as the disk has it."""
     with Store.open(home, read_only=True) as store:
-        return store.runs.count_parts("part.nc") >= 1 and [
+        return store.runs.read_part_count("part.nc") >= 1 and [
             run.outcome for run in store.runs.read_records()
         ] == [""]
 
@@ -87,23 +87,23 @@ def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
         made = kept_parts(home)
         desk.kill_all()
         until(lambda: not desk.family(), lambda: "the driver host has not ended")
-    assert parts_in(read_ring(home / "records" / NOW)) >= made
+    assert parts_in(read_ring_file(home / "records" / NOW)) >= made
     with Store.open(home) as store:
-        assert store.offsets.tools.read_rows()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
-        assert store.runs.count_parts("part.nc") >= made
+        assert store.offsets.tool_offsets.read_rows()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
+        assert store.runs.read_part_count("part.nc") >= made
         assert store.programs.load_version("part.nc") == PROGRAM.encode()
         assert {"load", "part"} <= {event.kind for event in store.events.read_events()}
         (run,) = store.runs.read_records()
         assert (run.program, run.outcome, run.started is not None) == ("part.nc", "", True)
-        counted = store.runs.count_parts("part.nc")
+        counted = store.runs.read_part_count("part.nc")
     with process(home, OPERATOR, *files) as again:
         cutting(again, 1)
         assert again.lines[-1]["alarms"] == []
         again.kill_all()
-        assert parts_in(read_ring(home / "records" / LAST)) >= made  # of the control before
+        assert parts_in(read_ring_file(home / "records" / LAST)) >= made  # of the control before
         until(lambda: not again.family(), lambda: "the driver host has not ended")
     with Store.open(home, read_only=True) as store:
-        assert store.runs.count_parts("part.nc") > counted
+        assert store.runs.read_part_count("part.nc") > counted
         told = [event.text for event in store.events.read_events() if event.kind == "warning"]
         assert text("shopfloor.ended-in-run", program="part.nc") in told
 
@@ -115,7 +115,7 @@ def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
         store.runs.record_end("whole.nc", "COMPLETE")
         store.runs.add_parts("counted.nc")
     journal = Journal(tmp_path)
-    ended = {run.program: run.outcome for run in journal.opened().runs.read_records()}
+    ended = {run.program: run.outcome for run in journal.require_store().runs.read_records()}
     journal.close()
     assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
 
@@ -146,7 +146,7 @@ def test_a_killed_screen_holds_its_program_and_finds_it_again(files: tuple[str, 
     with Store.open(home, read_only=True) as store:
         kinds = [event.kind for event in store.events.read_events()]
         assert kinds.count("stop") == 1  # the feed hold by the control
-        assert kinds.count("part") == store.runs.count_parts("part.nc") >= made + 1
+        assert kinds.count("part") == store.runs.read_part_count("part.nc") >= made + 1
         assert [run.outcome for run in store.runs.read_records()] != ["CUT OFF"]
 
 
@@ -174,7 +174,7 @@ def test_reset_starts_another_control_from_the_window(files: tuple[str, str], tm
         until(lambda: not desk.family(), desk.family)
     with Store.open(home, read_only=True) as store:
         kinds = [event.kind for event in store.events.read_events()]
-        assert kinds.count("part") == store.runs.count_parts("part.nc") >= 2
+        assert kinds.count("part") == store.runs.read_part_count("part.nc") >= 2
 
 
 def test_a_killed_screen_that_does_not_come_back_is_closed_in_order(tmp_path: Path) -> None:

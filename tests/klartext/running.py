@@ -9,10 +9,10 @@ from core.geometry.rotary_axes import Kinematics
 from core.interpreter.klartext.klartext_interpreter import Interpreter
 from core.interpreter.klartext.klartext_program import read_program
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.klartext.table import AC
 
 HOME = (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -31,7 +31,7 @@ class Ran:
 
     def __post_init__(self) -> None:
         self.errors = [d for d in self.diagnostics if d.severity is Severity.ERROR]
-        self.planes = [block for block in self.blocks if block.kind is Kind.PLANE]
+        self.planes = [block for block in self.blocks if block.kind is BlockKind.PLANE]
 
     @property
     def codes(self) -> list[str]:
@@ -46,7 +46,7 @@ class Ran:
     def axes(self, block: Block) -> dict[str, float]:
         """Machine positions of all axes at the end of a block, by name."""
         assert block.travel is not None
-        return dict(zip(self.state.kinematics.names, block.travel.end, strict=True))
+        return dict(zip(self.state.kinematics.axis_names, block.travel.end, strict=True))
 
 
 def whole(text: str, unit: str = "MM") -> str:
@@ -61,13 +61,16 @@ def run(text: str, machine: Kinematics = AC, *, unit: str = "MM", tool: str = TO
 
 def run_file(text: str, machine: Kinematics = AC, **setup: Any) -> Ran:
     """Interpret a whole program."""
-    return run_source(Source("T.H", text), machine, **setup)
+    return run_source(ProgramSource("T.H", text), machine, **setup)
 
 
-def run_source(source: Source, machine: Kinematics = AC, **setup: Any) -> Ran:
+def run_source(source: ProgramSource, machine: Kinematics = AC, **setup: Any) -> Ran:
     """Interpret a program with the programs that it calls."""
-    around: dict[str, Any] = {"start": HOME[: len(machine.names)], "limits": ControlLimits(max_rpm=12000.0)}
+    around: dict[str, Any] = {
+        "start": HOME[: len(machine.axis_names)],
+        "limits": ControlLimits(max_rpm=12000.0),
+    }
     around |= {"tools": {1: ToolOffset()}, **setup}
     interpreter = Interpreter(read_program(source), Setup(kinematics=machine, **around), machine)
-    blocks = list(interpreter.blocks())
+    blocks = list(interpreter.generate_blocks())
     return Ran(blocks, interpreter.diagnostics, interpreter.state)

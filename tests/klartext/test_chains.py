@@ -10,20 +10,28 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from core.geometry.rotary_axes import Kinematics, PivotMove, Rotary
-from core.geometry.rotation_frames import X_AXIS, Y_AXIS, Z_AXIS, Vector, from_points, product, turned
-from core.geometry.swivel_angles import SolutionSide, choose, solutions
+from core.geometry.rotary_axes import Kinematics, PivotMove, RotaryAxis
+from core.geometry.rotation_frames import (
+    X_AXIS,
+    Y_AXIS,
+    Z_AXIS,
+    Vector,
+    frame_from_points,
+    multiply_matrices,
+    rotation_about,
+)
+from core.geometry.swivel_angles import SolutionSide, choose_solution, find_all_solutions
 from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C
 
 Array = npt.NDArray[np.float64]
 
-A_HEAD = Rotary("A", False, X_AXIS, (0.0, 0.0, 150.0), -120.0, 120.0)
-B_HEAD = Rotary("B", False, Y_AXIS, (0.0, 0.0, 150.0), -120.0, 120.0)
-C_HEAD = Rotary("C", False, Z_AXIS, (0.0, 30.0, 0.0), -360.0, 360.0)
-B_TABLE = Rotary("B", True, Y_AXIS, (310.0, 0.0, -430.0), -120.0, 120.0)
+A_HEAD = RotaryAxis("A", False, X_AXIS, (0.0, 0.0, 150.0), -120.0, 120.0)
+B_HEAD = RotaryAxis("B", False, Y_AXIS, (0.0, 0.0, 150.0), -120.0, 120.0)
+C_HEAD = RotaryAxis("C", False, Z_AXIS, (0.0, 30.0, 0.0), -360.0, 360.0)
+B_TABLE = RotaryAxis("B", True, Y_AXIS, (310.0, 0.0, -430.0), -120.0, 120.0)
 
 
-def machine(*chain: Rotary) -> Kinematics:
+def machine(*chain: RotaryAxis) -> Kinematics:
     return Kinematics(SLIDES, chain, ORIGIN)
 
 
@@ -48,15 +56,17 @@ def rotation(axis: Vector, degrees: float) -> Array:
 def test_forward_of_inverse_is_the_frame(name: str) -> None:
     chain, dice = CHAINS[name], random.Random(7)
     for _ in range(300):
-        frame = product(
-            turned(Z_AXIS, dice.uniform(-180, 180)),
-            turned(X_AXIS, dice.uniform(0.0, 179.0)),
-            turned(Z_AXIS, dice.uniform(-180, 180)),
+        frame = multiply_matrices(
+            rotation_about(Z_AXIS, dice.uniform(-180, 180)),
+            rotation_about(X_AXIS, dice.uniform(0.0, 179.0)),
+            rotation_about(Z_AXIS, dice.uniform(-180, 180)),
         )
-        found = solutions(chain, frame)
+        found = find_all_solutions(chain, frame)
         assert len(found) == 2
         for solution in found:
-            back = product(chain.frame(solution.angles), turned(Z_AXIS, solution.spin))
+            back = multiply_matrices(
+                chain.tool_frame(solution.axis_angles), rotation_about(Z_AXIS, solution.tool_rotation_deg)
+            )
             assert np.abs(np.array(back) - np.array(frame)).max() < 1e-9
 
 
@@ -64,29 +74,33 @@ def test_forward_of_inverse_is_the_frame(name: str) -> None:
 def test_the_tool_stands_square_to_the_plane_in_the_machine(name: str) -> None:
     """The tool axis as the machine sees it, and the plane's normal carried along by the tables, are one."""
     chain = CHAINS[name]
-    frame = from_points(*CHAMFERS[2])
-    found = choose(chain, frame, {})
+    frame = frame_from_points(*CHAMFERS[2])
+    found = choose_solution(chain, frame, {})
     assert found is not None
     table = np.eye(3)
     tool = np.array(Z_AXIS)
-    for axis in reversed(chain.rotaries):
-        if axis.table:
-            table = table @ rotation(axis.direction, -found.angles[axis.name])
+    for axis in reversed(chain.rotary_axes):
+        if axis.is_table:
+            table = table @ rotation(axis.direction, -found.axis_angles[axis.name])
         else:
-            tool = rotation(axis.direction, found.angles[axis.name]) @ tool
+            tool = rotation(axis.direction, found.axis_angles[axis.name]) @ tool
     assert np.allclose(table @ np.array(frame)[:, 2], tool, atol=1e-12)
-    assert np.allclose(chain.tool_axis(found.angles), tool, atol=1e-12)
+    assert np.allclose(chain.tool_direction(found.axis_angles), tool, atol=1e-12)
 
 
 def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
     """A fork head, a tool of 80 mm: the tip, carried from the nose about both lines, is where it should."""
     chain = CHAINS["C fork head, A at the tool"]
-    frame = from_points(*CHAMFERS[2])
-    found = choose(chain, frame, {})
+    frame = frame_from_points(*CHAMFERS[2])
+    found = choose_solution(chain, frame, {})
     assert found is not None
-    a, c = found.angles["A"], found.angles["C"]
+    a, c = found.axis_angles["A"], found.axis_angles["C"]
     q = np.array((50.0, -7.0, 3.0))
-    slides = np.array(chain.place(found.angles, frame, (90.0, 0.0, 0.0), 80.0).machine((50.0, -7.0, 3.0)))
+    slides = np.array(
+        chain.make_transform(found.axis_angles, frame, (90.0, 0.0, 0.0), 80.0).to_machine_position(
+            (50.0, -7.0, 3.0)
+        )
+    )
     pivot_a, pivot_c = np.array(A_HEAD.point), np.array(C_HEAD.point)
     tip = pivot_a + rotation(X_AXIS, a) @ (np.array((0, 0, -80.0)) - pivot_a)
     tip = pivot_c + rotation(Z_AXIS, c) @ (tip - pivot_c)
@@ -95,94 +109,104 @@ def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
 
 
 def test_a_longer_tool_lifts_the_slides_of_a_table_machine() -> None:
-    short, long = AC.place({"A": 45.0}), AC.place({"A": 45.0}, tool_length=80.0)
-    low, high = short.machine((1.0, 2.0, 3.0)), long.machine((1.0, 2.0, 3.0))
+    short, long = AC.make_transform({"A": 45.0}), AC.make_transform({"A": 45.0}, tool_length=80.0)
+    low, high = short.to_machine_position((1.0, 2.0, 3.0)), long.to_machine_position((1.0, 2.0, 3.0))
     assert np.subtract(high, low) == pytest.approx((0.0, 0.0, 80.0), abs=1e-12)
 
 
 @pytest.mark.parametrize(("chamfer", "a", "spin"), [(1, 45.0, 0.0), (3, -45.0, 180.0)])
 def test_one_rotary_axis_reaches_what_lies_across_it(chamfer: int, a: float, spin: float) -> None:
-    found = choose(machine(A), from_points(*CHAMFERS[chamfer]), {})
+    found = choose_solution(machine(A), frame_from_points(*CHAMFERS[chamfer]), {})
     assert found is not None
-    assert found.angles["A"] == pytest.approx(a)
-    assert abs(found.spin) == pytest.approx(spin)
+    assert found.axis_angles["A"] == pytest.approx(a)
+    assert abs(found.tool_rotation_deg) == pytest.approx(spin)
 
 
 @pytest.mark.parametrize("chamfer", [2, 4])
 def test_one_rotary_axis_does_not_reach_the_others(chamfer: int) -> None:
-    assert choose(machine(A), from_points(*CHAMFERS[chamfer]), {}) is None
+    assert choose_solution(machine(A), frame_from_points(*CHAMFERS[chamfer]), {}) is None
 
 
 def test_one_rotary_axis_has_one_side() -> None:
-    frame = from_points(*CHAMFERS[1])
-    assert choose(machine(A), frame, {}, SolutionSide.SYM_PLUS) is not None
-    assert choose(machine(A), frame, {}, SolutionSide.SYM_MINUS) is None
+    frame = frame_from_points(*CHAMFERS[1])
+    assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_PLUS) is not None
+    assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_MINUS) is None
 
 
 def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
-    flat = turned(Z_AXIS, 30.0)
-    standing, turning = choose(machine(C), flat, {}), choose(machine(C), flat, {}, table_rot=True)
+    flat = rotation_about(Z_AXIS, 30.0)
+    standing, turning = (
+        choose_solution(machine(C), flat, {}),
+        choose_solution(machine(C), flat, {}, rotates_table=True),
+    )
     assert standing is not None
     assert turning is not None
-    assert (standing.angles["C"], standing.spin) == pytest.approx((0.0, 30.0))
-    assert (turning.angles["C"], turning.spin) == pytest.approx((30.0, 0.0))
-    assert choose(machine(C), from_points(*CHAMFERS[1]), {}) is None
+    assert (standing.axis_angles["C"], standing.tool_rotation_deg) == pytest.approx((0.0, 30.0))
+    assert (turning.axis_angles["C"], turning.tool_rotation_deg) == pytest.approx((30.0, 0.0))
+    assert choose_solution(machine(C), frame_from_points(*CHAMFERS[1]), {}) is None
 
 
 def test_c_above_a_only_spins_about_the_tool() -> None:
     """Workpiece, A, C: Rx(A) Rz(C)."""
-    found = choose(machine(A, C), from_points(*CHAMFERS[1]), {})
+    found = choose_solution(machine(A, C), frame_from_points(*CHAMFERS[1]), {})
     assert found is not None
-    assert (found.angles["A"], found.angles["C"], found.spin) == pytest.approx((45.0, 0.0, 0.0))
-    assert choose(machine(A, C), from_points(*CHAMFERS[2]), {}) is None
+    assert (found.axis_angles["A"], found.axis_angles["C"], found.tool_rotation_deg) == pytest.approx(
+        (45.0, 0.0, 0.0)
+    )
+    assert choose_solution(machine(A, C), frame_from_points(*CHAMFERS[2]), {}) is None
 
 
 def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
-    limited = dataclasses.replace(C, modulo=False, low=-360.0, high=360.0)
-    chain, frame = machine(limited, A), from_points(*CHAMFERS[2])
+    limited = dataclasses.replace(C, is_modulo=False, travel_min=-360.0, travel_max=360.0)
+    chain, frame = machine(limited, A), frame_from_points(*CHAMFERS[2])
     for present, wanted in ((0.0, 90.0), (-200.0, -270.0), (359.0, 90.0)):
-        found = choose(chain, frame, {"A": 45.0, "C": present}, SolutionSide.SYM_PLUS)
+        found = choose_solution(chain, frame, {"A": 45.0, "C": present}, SolutionSide.SYM_PLUS)
         assert found is not None
-        assert found.angles["C"] == pytest.approx(wanted)
+        assert found.axis_angles["C"] == pytest.approx(wanted)
 
 
 def test_a_reversed_axis_counts_the_other_way() -> None:
     backwards = dataclasses.replace(A, direction=(-1.0, 0.0, 0.0))
-    found = choose(machine(C, backwards), from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS)
+    found = choose_solution(
+        machine(C, backwards), frame_from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS
+    )
     assert found is not None
-    assert (found.angles["A"], found.angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
+    assert (found.axis_angles["A"], found.axis_angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
 
 
 def test_a_table_that_counts_the_other_way_swaps_no_side() -> None:
     """SYM+ is the side of the greater A angle, whichever way C counts."""
-    chain, frame = machine(dataclasses.replace(C, direction=(0.0, 0.0, -1.0)), A), from_points(*CHAMFERS[2])
+    chain, frame = (
+        machine(dataclasses.replace(C, direction=(0.0, 0.0, -1.0)), A),
+        frame_from_points(*CHAMFERS[2]),
+    )
     for side, wanted in ((SolutionSide.SYM_PLUS, (45.0, 270.0)), (SolutionSide.SYM_MINUS, (-45.0, 90.0))):
-        found = choose(chain, frame, {}, side)
+        found = choose_solution(chain, frame, {}, side)
         assert found is not None
-        assert (found.angles["A"], found.angles["C"]) == pytest.approx(wanted)
+        assert (found.axis_angles["A"], found.axis_angles["C"]) == pytest.approx(wanted)
 
 
 def test_a_machine_without_rotary_axes_knows_its_own_plane_alone() -> None:
-    assert choose(machine(), turned(Z_AXIS, 30.0), {}) is not None
-    assert choose(machine(), from_points(*CHAMFERS[1]), {}) is None
+    assert choose_solution(machine(), rotation_about(Z_AXIS, 30.0), {}) is not None
+    assert choose_solution(machine(), frame_from_points(*CHAMFERS[1]), {}) is None
 
 
 def test_the_basic_rotation_turns_the_workpiece_about_its_zero() -> None:
-    turned_part = dataclasses.replace(AC, basic_rotation=90.0)
-    place = turned_part.place({}, turned_part.basic)
-    assert place.machine((10.0, 0.0, 0.0)) == pytest.approx((230.0, 220.0, -350.0))
+    turned_part = dataclasses.replace(AC, basic_rotation_deg=90.0)
+    place = turned_part.make_transform({}, turned_part.workpiece_rotation)
+    assert place.to_machine_position((10.0, 0.0, 0.0)) == pytest.approx((230.0, 220.0, -350.0))
 
 
 def on_the_workpiece(chain: Kinematics, angles: dict[str, float], slides: Array, length: float) -> Array:
     """The tip in the machine-parallel system of the workpiece, by rotations about each line in turn."""
     tip = np.array((0.0, 0.0, -length))
-    for axis in reversed(chain.rotaries):
-        if not axis.table:
+    for axis in reversed(chain.rotary_axes):
+        if not axis.is_table:
             point = np.array(axis.point)
             tip = point + rotation(axis.direction, angles[axis.name]) @ (tip - point)
     spot = slides + tip
-    for axis in reversed(chain.rotaries):
-        if axis.table:
+    for axis in reversed(chain.rotary_axes):
+        if axis.is_table:
             point = np.array(axis.point)
             spot = point + rotation(axis.direction, angles[axis.name]) @ (spot - point)
     return np.asarray(spot - np.array(ORIGIN))
@@ -192,12 +216,12 @@ def on_the_workpiece(chain: Kinematics, angles: dict[str, float], slides: Array,
 @pytest.mark.parametrize("depth", [0.0, 35.0])
 def test_move_keeps_its_pivot_on_any_chain(name: str, depth: float) -> None:
     chain, length = CHAINS[name], 80.0
-    names = [axis.name for axis in chain.rotaries]
+    names = [axis.name for axis in chain.rotary_axes]
     start, end = dict.fromkeys(names, 5.0), dict(zip(names, (70.0, -40.0), strict=True))
     pivot = (12.0, -7.0, 25.0)
     way = PivotMove(chain, start, end, pivot, depth, length, 1.0)
-    for row in way.machine(np.linspace(0.0, 1.0, 9)).tolist():
-        at = dict(zip(chain.names, row, strict=True))
+    for row in way.machine_positions(np.linspace(0.0, 1.0, 9)).tolist():
+        at = dict(zip(chain.axis_names, row, strict=True))
         slides = np.array((at["X"], at["Y"], at["Z"]))
         # A tool as much longer as the pivot lies deeper has its tip on it.
         assert on_the_workpiece(chain, at, slides, length + depth) == pytest.approx(pivot, abs=1e-9)

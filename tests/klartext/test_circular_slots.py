@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.klartext.running import Ran, run
 from tests.klartext.test_pocket_cycles import Points, cuts, left_standing, rounded, way
 
@@ -84,7 +84,7 @@ def test_allowances_of_a_circular_slot_are_taken_at_the_finishing_feed() -> None
     points = cuts(both)
     assert in_slot(points[points[:, 2] < -1e-9][:, :2]).max() == pytest.approx(-R, abs=2e-3)
     assert points[:, 2].min() == pytest.approx(-7.0)
-    assert 250 in {round(block.feed * 60) for block in both.blocks if block.kind is Kind.PLANE_ARC}
+    assert 250 in {round(block.feed * 60) for block in both.blocks if block.kind is BlockKind.PLANE_ARC}
 
 
 def test_older_pockets_and_studs_are_gone_round_at_their_walls() -> None:
@@ -103,9 +103,9 @@ def test_thread_cutting_starts_and_stops_the_spindle_itself() -> None:
     cycle = "CYCL DEF 18.0 THREAD CUTTING\nCYCL DEF 18.1 DEPTH -20\nCYCL DEF 18.2 PITCH +1\nCYCL CALL"
     ran = run("L Z-5 R0 FMAX M5\n" + cycle, tool=TOOL)
     assert ran.codes == []
-    (cut,) = [block for block in ran.blocks if block.kind is Kind.FEED]
+    (cut,) = [block for block in ran.blocks if block.kind is BlockKind.FEED]
     assert way(cut)[-1, 2] == pytest.approx(-25.0)
-    assert (cut.feed, cut.per_rev, cut.coupled) == (pytest.approx(1.0), True, True)
+    assert (cut.feed, cut.per_rev, cut.follows_spindle) == (pytest.approx(1.0), True, True)
     assert cut.rpm == 2000.0
     assert ran.state.modal.spindle == 0
     assert "tapping-uncoupled" in ran.warned

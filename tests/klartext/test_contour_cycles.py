@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
-from core.language.klartext.named_files import called_programs
-from core.language.source import Source
+from core.interpreter.shared.elementary_blocks import BlockKind
+from core.language.klartext.named_files import find_called_programs
+from core.language.source import ProgramSource
 from tests.klartext.running import Ran, run, run_source, whole
 from tests.klartext.test_pocket_cycles import Points, cuts, left_standing, rounded, way
 
@@ -54,7 +54,7 @@ def milled(cycles: tuple[int, ...] | int, *contours: str, **q: float) -> Ran:
 def no_rapid_in_the_part(ran: Ran) -> None:
     """Below the surface a rapid goes up or down alone, and down no deeper than the set-up clearance."""
     for block in ran.blocks:
-        if block.kind is Kind.RAPID and block.moves:
+        if block.kind is BlockKind.RAPID and block.moves:
             spots = way(block)
             assert spots[:, 2].min() >= 3.0 - 1e-9 or (
                 np.ptp(spots[:, :2], axis=0).max() < 1e-9 and spots[-1, 2] > spots[0, 2]
@@ -101,7 +101,7 @@ def test_allowances_stay_on_walls_floor_and_island_and_are_taken_by_finishing() 
 def test_a_wall_is_led_to_and_off_on_arcs_that_touch_it() -> None:
     """A point of the wall that is gone over first is come to along it, not square to it."""
     ran = milled(24, POCKET)
-    arcs = [block for block in ran.blocks if block.kind is Kind.PLANE_ARC]
+    arcs = [block for block in ran.blocks if block.kind is BlockKind.PLANE_ARC]
     first, last = way(arcs[0]), way(arcs[-1])
     assert rounded(first[-1:, :2] - (30.0, 20.0), 30, 20, 6)[0] == pytest.approx(-R, abs=1e-6)
     assert rounded(first[:1, :2] - (30.0, 20.0), 30, 20, 6)[0] == pytest.approx(-2 * R, abs=1e-6)
@@ -111,9 +111,9 @@ def test_a_wall_is_led_to_and_off_on_arcs_that_touch_it() -> None:
 
 def test_pilot_holes_stand_where_the_tool_goes_down() -> None:
     """With Q19 0 the tool goes straight down into the holes of cycle 21, and into no other place."""
-    holes = [block for block in milled(21).blocks if block.kind is Kind.FEED]
+    holes = [block for block in milled(21).blocks if block.kind is BlockKind.FEED]
     rough = milled(22, q19=0)
-    down = [block for block in rough.blocks if block.kind is Kind.FEED
+    down = [block for block in rough.blocks if block.kind is BlockKind.FEED
             and np.ptp(way(block)[:, :2], axis=0).max() < 1e-9 and block.length > 1e-6]  # fmt: skip
     assert down
     there = {(round(w[0], 5), round(w[1], 5)) for block in holes for w in way(block)[-1:]}
@@ -176,7 +176,7 @@ def test_a_narrow_place_parts_the_pocket_and_the_tool_goes_over_it_above_the_par
 def test_climb_milling_has_the_wall_on_its_right() -> None:
     for q9, sense in ((1, 1), (-1, -1)):
         arcs = [block for block in milled(24, CIRCLE.format(10, "RR", 35), q9=q9).blocks
-                if block.kind is Kind.PLANE_ARC]  # fmt: skip
+                if block.kind is BlockKind.PLANE_ARC]  # fmt: skip
         path = way(max(arcs, key=lambda block: block.length))[:, :2] - (35.0, 50.0)
         (x0, y0), (x1, y1) = path[:2]
         assert np.sign(x0 * y1 - y0 * x1) == sense
@@ -192,7 +192,7 @@ def test_a_contour_train_runs_at_its_side_by_levels() -> None:
     back = cuts(milled(25, line, q3=0.5, q15=-1))
     assert back[-1, :2] == pytest.approx([0.0, R + 0.5])
     to_and_fro = milled(25, line, q15=0)
-    ups = [block for block in to_and_fro.blocks if block.kind is Kind.RAPID and block.length > 1e-6]
+    ups = [block for block in to_and_fro.blocks if block.kind is BlockKind.RAPID and block.length > 1e-6]
     assert sum(way(block)[-1, 2] > way(block)[0, 2] for block in ups) == 1  # out once, at the end
 
 
@@ -206,14 +206,14 @@ def test_contour_def_says_what_is_pocket_and_island() -> None:
 
 def test_contour_def_takes_contours_of_programs_beside() -> None:
     files = tuple(
-        Source(f"{name}.H", f"BEGIN PGM {name} MM\n{contour}\nEND PGM {name} MM\n")
+        ProgramSource(f"{name}.H", f"BEGIN PGM {name} MM\n{contour}\nEND PGM {name} MM\n")
         for name, contour in (("POCKET", POCKET), ("ISLE", ISLAND))
     )
     cycles = f"{told(20, DATA)}\n{told(22, OF[22])}\nCYCL CALL\nM30"
     text = whole(f'{TOOL}CONTOUR DEF P1 = "POCKET" I2 = "ISLE.H"\n{cycles}')
-    assert set(called_programs(Source("T.H", text))) == {"POCKET.H", "ISLE.H"}
-    assert np.allclose(cuts(run_source(Source("T.H", text, subprograms=files))), cuts(milled(22)))
-    assert run_source(Source("T.H", text)).codes == ["Program not found"]
+    assert set(find_called_programs(ProgramSource("T.H", text))) == {"POCKET.H", "ISLE.H"}
+    assert np.allclose(cuts(run_source(ProgramSource("T.H", text, subprograms=files))), cuts(milled(22)))
+    assert run_source(ProgramSource("T.H", text)).codes == ["Program not found"]
 
 
 def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:

@@ -8,8 +8,8 @@ from itertools import pairwise
 import pytest
 
 from core.interpreter.shared.actions import SpindleRun
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.language.klartext.klartext_faults import INPUT_VALUE
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.language.klartext.klartext_faults import INPUT_VALUE_INCORRECT
 from tests.klartext.running import Ran, run
 from tests.klartext.test_klartext_cycles import ran_of
 
@@ -52,7 +52,7 @@ def test_which_way_the_spindle_turns_into_a_thread_and_out_of_it(
     ran = run(f"L X+0 Y+0 Z+50 R0 FMAX {before}\n{cycle}L Z+2 FMAX M99", tool="TOOL CALL 1 Z S1000 F500\n")
     assert ran.codes == []
     assert turned(ran) == told
-    down, up = (block for block in ran.blocks if block.coupled)
+    down, up = (block for block in ran.blocks if block.follows_spindle)
     if cycle is not FLOATING:
         assert math.copysign(1.0, down.rpm) == (-1.0 if "PITCH-" in cycle else 1.0)
     assert down.rpm == -up.rpm
@@ -76,7 +76,7 @@ def test_a_tap_breaks_its_chips_by_depth_on_any_surface(
         "L X+10 R0 FMAX M99"
     )
     assert ran.codes == []
-    assert [z for _, _, z in ends([block for block in ran.blocks if block.coupled])] == heights
+    assert [z for _, _, z in ends([block for block in ran.blocks if block.follows_spindle])] == heights
     assert turned(ran) == [1000.0, *[-1000.0, 1000.0] * turns]
 
 
@@ -118,7 +118,7 @@ def test_a_slot_is_as_long_as_its_first_side(width: int) -> None:
 @pytest.mark.parametrize("length", ["+0", "-0"])
 def test_a_slot_without_a_length_is_refused(length: str, width: int) -> None:
     ran = ran_of(SLOT.format(length, width))
-    assert ran.codes == [INPUT_VALUE]
+    assert ran.codes == [INPUT_VALUE_INCORRECT]
     assert all(z >= 2.0 for _, _, z in ends(ran.blocks))
 
 
@@ -129,7 +129,7 @@ def test_a_round_pocket_leaves_nothing_between_its_circles() -> None:
         "CYCL DEF 5.4 RADIUS 20\nCYCL DEF 5.5 F300 DR-\nL Z+2 FMAX M99"
     )
     assert ran.codes == []
-    circles = [block.length / (2.0 * math.pi) for block in ran.blocks if block.kind is Kind.PLANE_ARC]
+    circles = [block.length / (2.0 * math.pi) for block in ran.blocks if block.kind is BlockKind.PLANE_ARC]
     assert circles == pytest.approx([16.0 / 3.0, 32.0 / 3.0, 16.0] * 2)
 
 

@@ -7,18 +7,18 @@ from typing import Any
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import MillTool
 from tests.klartext.running import Ran, run
 
-CUTTER = {1: MillTool(radius=5.0, teeth=4)}
+CUTTER = {1: MillTool(radius=5.0, tooth_count=4)}
 START = "TOOL CALL 1 Z S1200\nL X+0 Y+0 Z+0 R0 FMAX M3\n"
 
 
 def feeds(text: str, **setup: Any) -> list[float]:
     ran = run(START + text, mill_tools=CUTTER, **setup)
     assert ran.codes == []
-    return [block.feed for block in ran.blocks if block.kind in {Kind.FEED, Kind.PLANE_ARC}]
+    return [block.feed for block in ran.blocks if block.kind in {BlockKind.FEED, BlockKind.PLANE_ARC}]
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_a_cycle_takes_a_feed_of_the_tool_call_by_the_revolution() -> None:
     drill = "CYCL DEF 200 DRILLING Q200=+2 Q201=-5 Q206=FAUTO Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0"
     ran = run(f"TOOL CALL 1 Z S1200 FU0.1\nL X+0 Y+0 Z+10 R0 FMAX M3\n{drill}\nCYCL CALL")
     assert ran.codes == []
-    assert {round(block.feed, 9) for block in ran.blocks if block.kind is Kind.FEED} == {2.0}
+    assert {round(block.feed, 9) for block in ran.blocks if block.kind is BlockKind.FEED} == {2.0}
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_m103_keeps_the_share_of_z(text: str, per_second: list[float]) -> None:
 
 def refused(text: str, **setup: Any) -> Ran:
     ran = run(START + text, mill_tools=CUTTER, **setup)
-    assert len([block for block in ran.blocks if block.kind is Kind.FEED]) == 0
+    assert len([block for block in ran.blocks if block.kind is BlockKind.FEED]) == 0
     return ran
 
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.language.klartext import read_line
-from core.language.klartext.canonical_text import written
+from core.language.klartext import parse_line
+from core.language.klartext.canonical_text import format_block
 from tests.klartext.chamfers import AXIAL, POINTS
 from tests.klartext.running import run, run_file
 
@@ -64,7 +64,7 @@ WORDS = (
 
 @given(st.text(max_size=60))
 def test_any_line(text: str) -> None:
-    line = read_line(7, text)
+    line = parse_line(7, text)
     assert line.error is None or line.error.line == 7
     if line.error is not None:
         assert line.node is None
@@ -73,12 +73,12 @@ def test_any_line(text: str) -> None:
 
 @given(st.lists(st.sampled_from(WORDS), max_size=10), st.sampled_from(["", " "]))
 def test_any_words_round_trip(words: list[str], gap: str) -> None:
-    line = read_line(1, (gap or " ").join(words))
+    line = parse_line(1, (gap or " ").join(words))
     if line.node is not None:
-        text = written(line)
-        again = read_line(1, text)
+        text = format_block(line)
+        again = parse_line(1, text)
         assert again.error is None, text
-        assert written(again) == text
+        assert format_block(again) == text
 
 
 @given(st.lists(st.lists(st.sampled_from(WORDS), max_size=8), max_size=6))
@@ -100,7 +100,7 @@ def test_one_sign_changed_raises_nothing(text: str) -> None:
 
 
 def test_a_section_repeated_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.interpreter.shared.interpretation.MOST_LINES", 1000)
+    monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_LINES", 1000)
     ran = run("LBL 1\nQ1 = +1\nCALL LBL 1 REP 65534\nCALL LBL 1 REP 65534")
     assert ran.codes == ["too-many-blocks"]
     assert "repeat counts" in ran.errors[0].hint

@@ -6,38 +6,38 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.code_book_page import page
-from core.interpreter.dialects import code_book
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.code_book_page import render_code_book
+from core.interpreter.dialects import get_code_book
 from core.interpreter.klartext.cycles import contour_cycles, cycle_calls, older_cycles
 from core.interpreter.klartext.setup import m_functions
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.code_book import Entry
+from core.language.code_book import CodeBookEntry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext import klartext_line, path_block, plane_block, q_parameters
-from core.language.klartext.klartext_faults import INSTEAD_OF_CYCLE
-from core.language.source import Dialect, Source
+from core.language.klartext.klartext_faults import CYCLE_ALTERNATIVES
+from core.language.source import Dialect, ProgramSource
 from core.proving.prove_program import prove
 
-BOOK = code_book(Dialect.KLARTEXT)
+BOOK = get_code_book(Dialect.KLARTEXT)
 END = "END PGM EXAMPLE MM\n"
-MILL = shipped_machine("ac-table-mill")
+MILL = load_shipped_machine("ac-table-mill")
 
 
-def errors_of(entry: Entry, lines: str) -> list[Diagnostic]:
+def errors_of(entry: CodeBookEntry, lines: str) -> list[Diagnostic]:
     text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.tail}{entry.behind}{END}"
-    files = tuple(Source(name, each) for name, each in entry.files)
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    report = prove(Source("EXAMPLE.H", text, subprograms=files), setup, MILL)
+    files = tuple(ProgramSource(name, each) for name, each in entry.files)
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    report = prove(ProgramSource("EXAMPLE.H", text, subprograms=files), setup, MILL)
     return [each for each in report.diagnostics if each.severity is Severity.ERROR]
 
 
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.example], ids=lambda entry: entry.head
 )
-def test_the_example_proves(entry: Entry) -> None:
-    assert [each.in_one_line("") for each in errors_of(entry, entry.example)] == []
+def test_the_example_proves(entry: CodeBookEntry) -> None:
+    assert [each.format_one_line("") for each in errors_of(entry, entry.example)] == []
     assert any(BOOK.at(line, 1) is not None for line in entry.example.splitlines())
     assert entry.what.endswith(".")
 
@@ -45,33 +45,44 @@ def test_the_example_proves(entry: Entry) -> None:
 def test_every_construct_has_its_entry() -> None:
     """What the reader and the interpreter know, by their own tables."""
     heads = {entry.head for entry in BOOK.entries}
-    blocks = {*klartext_line._KEYWORDS, *path_block.FORMS} - {
+    blocks = {*klartext_line._KEYWORDS, *path_block.PATH_FORMS} - {
         "PLANE",
         "FUNCTION",
         "CYCL DEF",
         "BLK FORM",
         "TRANS",
     }
-    planes = {f"PLANE {form}" for form in plane_block.FORMS}
+    planes = {f"PLANE {form}" for form in plane_block.PLANE_FORMS}
     told = {
         *cycle_calls._MACHINING,
-        *contour_cycles.CONTOURS,
-        *older_cycles.OLDER,
-        *cycle_calls._NO_CYCLE,
+        *contour_cycles.CONTOUR_CYCLES,
+        *older_cycles.OLDER_CYCLES,
+        *cycle_calls._NON_MACHINING_CYCLES,
     }
-    told |= {*cycle_calls._TRANSFORMS, *cycle_calls._AT_ONCE, 7}
-    codes = m_functions.BEFORE | m_functions._BEHIND | m_functions._OF_THE_BLOCK | m_functions.UNHEEDED
+    told |= {*cycle_calls._TRANSFORMS, *cycle_calls._IMMEDIATE_CYCLES, 7}
+    codes = (
+        m_functions.CODES_BEFORE_MOTION
+        | m_functions._CODES_AFTER_MOTION
+        | m_functions._BLOCKWISE_CODES
+        | m_functions.IGNORED_CODES
+    )
     known = blocks | planes | {f"CYCL DEF {number}" for number in told} | {f"M{code}" for code in codes}
-    jumps_and_sums = {*q_parameters._JUMPS, *q_parameters._TWO, *q_parameters._ONE, 0, q_parameters._ANGLE}
-    known |= {f"FN {n}" for n in (*jumps_and_sums, *q_parameters._READERS, *q_parameters._UNHEEDED)}
-    known |= {f"CYCL DEF {number}" for number in INSTEAD_OF_CYCLE}
+    jumps_and_sums = {
+        *q_parameters._JUMPS,
+        *q_parameters._TWO_OPERANDS,
+        *q_parameters._ONE_OPERAND,
+        0,
+        q_parameters._ANGLE,
+    }
+    known |= {f"FN {n}" for n in (*jumps_and_sums, *q_parameters._READERS, *q_parameters._IGNORED_FUNCTIONS)}
+    known |= {f"CYCL DEF {number}" for number in CYCLE_ALTERNATIVES}
     assert known - heads == set()
 
 
-@pytest.mark.parametrize("number", INSTEAD_OF_CYCLE)
+@pytest.mark.parametrize("number", CYCLE_ALTERNATIVES)
 def test_the_entry_of_a_rejected_cycle_has_the_hint_of_the_error(number: int) -> None:
     (entry,) = (each for each in BOOK.entries if each.head == f"CYCL DEF {number}")
-    assert entry.what.endswith(INSTEAD_OF_CYCLE[number])
+    assert entry.what.endswith(CYCLE_ALTERNATIVES[number])
 
 
 def test_what_can_be_written_wrongly_has_its_refusal() -> None:
@@ -84,7 +95,7 @@ def test_what_can_be_written_wrongly_has_its_refusal() -> None:
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.refused], ids=lambda entry: entry.head
 )
-def test_what_is_no_program_is_refused(entry: Entry) -> None:
+def test_what_is_no_program_is_refused(entry: CodeBookEntry) -> None:
     said = [f"{each.message} {each.hint}" for each in errors_of(entry, entry.refused)]
     assert said, entry.refused
     assert any(entry.why in each for each in said), said
@@ -92,4 +103,6 @@ def test_what_is_no_program_is_refused(entry: Entry) -> None:
 
 def test_the_page_is_that_of_the_book() -> None:
     written = Path(__file__).parents[2] / "docs" / "klartext-codes.md"
-    assert written.read_text(encoding="utf-8") == page(Dialect.KLARTEXT), "print it anew: CONTRIBUTING.md"
+    assert written.read_text(encoding="utf-8") == render_code_book(Dialect.KLARTEXT), (
+        "print it anew: CONTRIBUTING.md"
+    )

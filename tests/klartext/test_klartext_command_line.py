@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.machine.kinematics_chain import kinematics_of
-from app.compose.machine.machine_files import parse_machine, shipped_machine
+from app.compose.machine.kinematics_chain import build_kinematics
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
 from core.table_schema import MachineFileError
 from resources import machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
@@ -33,12 +33,12 @@ def written(tmp_path: Path) -> Path:
 
 
 def test_the_shipped_mill_is_the_machine_of_the_tables() -> None:
-    made = kinematics_of(shipped_machine("ac-table-mill"))
+    made = build_kinematics(load_shipped_machine("ac-table-mill"))
     assert made is not None
-    assert made.order == AC.order
+    assert made.axis_order == AC.axis_order
     assert made.origin == AC.origin
-    assert made.basic_rotation == 0.0
-    for here, there in zip(made.rotaries, AC.rotaries, strict=True):
+    assert made.basic_rotation_deg == 0.0
+    for here, there in zip(made.rotary_axes, AC.rotary_axes, strict=True):
         assert dataclasses.replace(here, vmax=there.vmax) == there
         assert here.vmax == pytest.approx(there.vmax)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.klartext.running import Ran, run_file
 
 SPECIFICATION = Path(__file__).parents[2].parent / "shared" / "spec" / "klartext-planes.md"
@@ -46,12 +46,12 @@ def test_both_ways_to_tell_the_planes_are_one_way_on_the_machine(programs: tuple
 
 
 def test_the_cuts_of_the_first_chamfer(programs: tuple[str, str]) -> None:
-    feeds = [block for block in run_file(programs[0]).blocks if block.kind is Kind.FEED]
+    feeds = [block for block in run_file(programs[0]).blocks if block.kind is BlockKind.FEED]
     down, along = (block.swivel for block in feeds[:2])
     assert down is not None
     assert along is not None
-    assert down.slides == pytest.approx((218.0, 278.2843, -352.2183), abs=6e-5)
-    assert along.slides == pytest.approx((342.0, 278.2843, -352.2183), abs=6e-5)
+    assert down.machine_position == pytest.approx((218.0, 278.2843, -352.2183), abs=6e-5)
+    assert along.machine_position == pytest.approx((342.0, 278.2843, -352.2183), abs=6e-5)
 
 
 def test_the_positions_named_in_its_comments(programs: tuple[str, str]) -> None:
@@ -66,5 +66,5 @@ def test_the_positions_named_in_its_comments(programs: tuple[str, str]) -> None:
     for block in run_file(text).planes:
         if block.line in said:
             assert block.swivel is not None
-            a, _, c = block.swivel.rotary
+            a, _, c = block.swivel.rotary_angles
             assert (a, c) == pytest.approx(said[block.line], abs=1e-9)

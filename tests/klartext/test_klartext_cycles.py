@@ -9,7 +9,7 @@ import pytest
 
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.shared.actions import Dwell, ProgramStop, SpindleRun, SpindleStop
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import MillTool, ToolOffset
 from tests.klartext.running import Ran, run
 from tests.klartext.table import ORIGIN
@@ -42,7 +42,7 @@ def _shown(block: Block) -> str:
             return message
         case None:
             assert block.swivel is not None
-            letter = {Kind.RAPID: "R", Kind.FEED: "F", Kind.PLANE_ARC: "A"}[block.kind]
+            letter = {BlockKind.RAPID: "R", BlockKind.FEED: "F", BlockKind.PLANE_ARC: "A"}[block.kind]
             return f"{letter} {round(block.swivel.end[2], 6):g}"
         case _:
             return "other"
@@ -126,7 +126,7 @@ def test_default_distances_of_pecks_are_0_2_mm_in_an_inch_program(
     """Surface 1 in, infeed 5 in: the tool is at -4 in = -101.6 mm; Q256, Q258 and Q259 are 0.2 mm."""
     ran = run(HERE + cycle(number, q201=-8, q208=0, **more), tool=TOOL, unit="INCH")
     assert ran.codes == []
-    rapids = [_height(block) for block in ran.blocks if block.kind is Kind.RAPID]
+    rapids = [_height(block) for block in ran.blocks if block.kind is BlockKind.RAPID]
     assert pytest.approx(-101.4) in rapids
     assert min(rapids) == pytest.approx(-101.4)
 
@@ -143,14 +143,14 @@ def test_a_rejected_cycle_of_a_pattern_does_not_change_the_surface() -> None:
         "PATTERN DEF POS1 (X+0 Y+0 Z-5) POS2 (X+9 Y+0 Z+0)\nCYCL CALL PAT FMAX"
     )
     assert ran.codes == ["Cycle incomplete"]
-    assert ran.state.q[203] == 1.0
+    assert ran.state.q_values[203] == 1.0
 
 
 def test_tapping_turns_the_spindle_round() -> None:
     assert told(cycle(206, q201=-8)) == ["turn 1000", "R 3", "F -7", "turn -1000", "F 3", "turn 1000", "R 31"]
     ran = ran_of(cycle(207, q201=-8, q239=1.25))
-    taps = [block for block in ran.blocks if block.kind is Kind.FEED]
-    assert {(block.feed, block.per_rev, block.coupled) for block in taps} == {(1.25, True, True)}
+    taps = [block for block in ran.blocks if block.kind is BlockKind.FEED]
+    assert {(block.feed, block.per_rev, block.follows_spindle) for block in taps} == {(1.25, True, True)}
 
 
 @pytest.mark.parametrize(
@@ -168,9 +168,9 @@ def test_tapping_turns_the_spindle_round() -> None:
 def test_a_tap_goes_by_its_lead_and_the_spindle(text: str, unit: str, lead: float) -> None:
     ran = run("L X+0 Y+0 Z+50 R0 FMAX M3\n" + text, unit=unit, tool="TOOL CALL 1 Z S1000 F500\n")
     assert ran.codes == []
-    taps = [block for block in ran.blocks if block.coupled]
+    taps = [block for block in ran.blocks if block.follows_spindle]
     assert len(taps) >= 2
-    assert {block.kind for block in taps} == {Kind.FEED}
+    assert {block.kind for block in taps} == {BlockKind.FEED}
     assert [block.feed for block in taps] == pytest.approx([lead] * len(taps))
 
 
@@ -192,7 +192,7 @@ def test_bore_milling_is_a_helix_of_the_tools_way() -> None:
     """A tool of R 4 in a hole of 20 goes round on R 6; 13 mm down from 3 at 4 a turn, and once more."""
     ran = ran_of(cycle(208, q201=-11, q334=4, q335=20))
     assert ran.codes == []
-    arcs = [block for block in ran.blocks if block.kind is Kind.PLANE_ARC]
+    arcs = [block for block in ran.blocks if block.kind is BlockKind.PLANE_ARC]
     assert [round(block.swivel.end[2], 6) for block in arcs if block.swivel] == [
         -1.0,
         -5.0,
@@ -208,7 +208,7 @@ def test_m99_calls_once_and_m89_until_m99() -> None:
     define = f"{COMMON}CYCL DEF 240 CENTRE ~\n Q343=+0 ;SELECT ~\n Q201=-1 ;DEPTH\n"
     ran = ran_of(f"{define}L X+0 FMAX M89\nL X+10 FMAX\nL X+20 FMAX M99\nL X+30 FMAX")
     assert ran.codes == []
-    cut = [block.swivel.end[0] for block in ran.blocks if block.kind is Kind.FEED and block.swivel]
+    cut = [block.swivel.end[0] for block in ran.blocks if block.kind is BlockKind.FEED and block.swivel]
     assert cut == pytest.approx([0.0, 10.0, 20.0])
 
 
@@ -217,7 +217,7 @@ def test_a_pattern_on_a_circle() -> None:
     circle = "CYCL DEF 220 POLAR ~\n Q216=+50 ~\n Q217=+40 ~\n Q244=+20 ~\n Q245=+0 ~\n Q246=+360 ~\n"
     ran = ran_of(f"{define}{circle} Q247=+0 ~\n Q241=+4 ~\n Q301=+1")
     assert ran.codes == []
-    cut = [block.swivel.end[:2] for block in ran.blocks if block.kind is Kind.FEED and block.swivel]
+    cut = [block.swivel.end[:2] for block in ran.blocks if block.kind is BlockKind.FEED and block.swivel]
     assert cut == [pytest.approx(each) for each in ((60, 40), (50, 50), (40, 40), (50, 30))]
 
 
@@ -225,7 +225,7 @@ def test_a_pattern_in_rows_there_and_back() -> None:
     define = cycle(240, q343=0, q201=-1).replace("CYCL CALL M3\n", "")
     rows = "CYCL DEF 221 ROWS ~\n Q225=+5 ~\n Q226=+6 ~\n Q237=+10 ~\n Q238=+20 ~\n"
     ran = ran_of(f"{define}{rows} Q242=+2 ~\n Q243=+2 ~\n Q224=+0")
-    cut = [block.swivel.end[:2] for block in ran.blocks if block.kind is Kind.FEED and block.swivel]
+    cut = [block.swivel.end[:2] for block in ran.blocks if block.kind is BlockKind.FEED and block.swivel]
     assert cut == [pytest.approx(each) for each in ((5, 6), (15, 6), (15, 26), (5, 26))]
 
 
@@ -245,7 +245,7 @@ def test_old_circular_pocket_keeps_inside_its_radius() -> None:
     )
     ran = ran_of(text)
     assert ran.codes == []
-    arcs = [block for block in ran.blocks if block.kind is Kind.PLANE_ARC]
+    arcs = [block for block in ran.blocks if block.kind is BlockKind.PLANE_ARC]
     assert max(block.length for block in arcs) == pytest.approx(2 * math.pi * 16.0)
     assert {round(block.swivel.end[2], 6) for block in arcs if block.swivel} == {-3.0, -6.0}
 
@@ -256,8 +256,8 @@ def test_cycle_9_rests_and_cycle_19_tilts() -> None:
     )
     assert ran.codes == []
     assert [block.action for block in ran.blocks if isinstance(block.action, Dwell)] == [Dwell(1.5)]
-    assert ran.state.q[120] == pytest.approx(45.0)
-    assert ran.state.at["A"] == 0.0
+    assert ran.state.q_values[120] == pytest.approx(45.0)
+    assert ran.state.position_by_axis["A"] == 0.0
 
 
 DRILL = f"{COMMON}CYCL DEF 240 CENTRE ~\n Q343=+0 ~\n Q201=-1\n"
@@ -269,7 +269,7 @@ def test_call_at_a_place_goes_over_it_before_it_goes_down() -> None:
     assert ran.codes == []
     at = [(b.kind, b.swivel.end) for b in ran.blocks if b.moves and b.line > 4 and b.swivel is not None]
     first, low, second = at[0], at[4], at[5:7]
-    assert first == (Kind.FEED, pytest.approx((30.0, 40.0, 50.0)))
+    assert first == (BlockKind.FEED, pytest.approx((30.0, 40.0, 50.0)))
     assert low[1] == pytest.approx((30.0, 40.0, -5.0))
     assert [place for _, place in second] == [pytest.approx((30, 40, 3)), pytest.approx((0, 0, 3))]
 
@@ -365,7 +365,7 @@ def bottoms(pattern: str) -> list[tuple[float, ...]]:
     """Where the holes of CYCL CALL PAT end."""
     ran = ran_of(f"{CENTRE}\nPATTERN DEF {pattern}\nCYCL CALL PAT FMAX M8")
     assert ran.codes == []
-    feeds = [block.swivel.end for block in ran.blocks if block.kind is Kind.FEED and block.swivel]
+    feeds = [block.swivel.end for block in ran.blocks if block.kind is BlockKind.FEED and block.swivel]
     return [tuple(round(at, 4) + 0.0 for at in end) for end in feeds]
 
 
@@ -403,7 +403,7 @@ def test_between_points_the_tool_is_at_the_safe_height_and_q203_is_as_before() -
     ran = ran_of(f"{CENTRE}\nPATTERN DEF POS1 (X+0 Y+0 Z-5) POS2 (X+9 Y+0 Z+0)\nCYCL CALL PAT FMAX")
     aside = [block for block in ran.blocks if block.swivel and block.swivel.start[:2] != block.swivel.end[:2]]
     assert [block.swivel.end[2] for block in aside if block.swivel] == pytest.approx([50.0, 50.0, 31.0])
-    assert ran.state.q[203] == pytest.approx(1.0)
+    assert ran.state.q_values[203] == pytest.approx(1.0)
 
 
 # --- presets, tools of the table -------------------------------------------------------------------------
@@ -431,7 +431,7 @@ def test_a_plane_counts_in_the_preset_that_is_in_force() -> None:
     """SPA+45 of a workpiece turned by 90 degrees: the table turns by C 90 first."""
     plane = "PLANE SPATIAL SPA+45 SPB+0 SPC+0 STAY SYM+"
     ran = run(f"{SET.format('+3')}{plane}", presets=PRESETS)
-    assert (ran.state.q[120], ran.state.q[122]) == pytest.approx((45.0, 90.0))
+    assert (ran.state.q_values[120], ran.state.q_values[122]) == pytest.approx((45.0, 90.0))
 
 
 def test_a_part_clamped_turned_on_its_table_runs_as_before_and_c_goes_on_from_there() -> None:
@@ -443,10 +443,12 @@ def test_a_part_clamped_turned_on_its_table_runs_as_before_and_c_goes_on_from_th
     )
     spot = DatumPreset((100.0, 50.0, -300.0), 12.0)
     for zero in (30.0, -75.0):
-        turned = DatumPreset(spot.origin, spot.rotation, (("C", zero),))
+        turned = DatumPreset(spot.origin, spot.rotation_deg, (("C", zero),))
         plain, other = (run(SET.format("+3") + text, presets={0: spot, 3: each}) for each in (spot, turned))
         assert plain.codes == other.codes == []
-        assert [other.state.q[q] for q in (120, 122)] == pytest.approx([plain.state.q[q] for q in (120, 122)])
+        assert [other.state.q_values[q] for q in (120, 122)] == pytest.approx(
+            [plain.state.q_values[q] for q in (120, 122)]
+        )
         for one, two in zip(plain.blocks, other.blocks, strict=True):
             a, b = plain.axes(one), other.axes(two)
             assert [b[name] for name in "XYZA"] == pytest.approx([a[name] for name in "XYZA"], abs=1e-9)
@@ -477,7 +479,7 @@ def test_a_tool_is_called_by_its_name_in_the_table() -> None:
 def test_centring_by_diameter_with_the_point_of_the_table() -> None:
     """A point of 90 degrees makes 8 mm at a depth of 4."""
     q = "CYCL DEF 240 C ~\n Q200=2 ~\n Q343=+1 ~\n Q201=-1 ~\n Q344=-8 ~\n Q206=100 ~\n Q203=+1 ~\n Q204=9"
-    ran = run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL", mill_tools={1: MillTool(point=90.0)})
+    ran = run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL", mill_tools={1: MillTool(point_angle_deg=90.0)})
     assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) == pytest.approx(-3.0)
     assert run(f"L Z+50 R0 FMAX M3\n{q}\nCYCL CALL").codes == ["Input value incorrect"]
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import pytest
 
-from core.interpreter.klartext.flow.word_values import MOST_Q
+from core.interpreter.klartext.flow.word_values import MAX_Q_VALUE
 from tests.klartext.running import Ran, run
 
 
 def q(text: str, number: int = 1, **setup: Any) -> float:
     ran = run(text, **setup)
     assert ran.codes == []
-    return ran.state.q[number]
+    return ran.state.q_values[number]
 
 
 @pytest.mark.parametrize(
@@ -89,13 +89,13 @@ def test_a_jump(condition: str, jumps: bool) -> None:
     goto = "" if "GOTO" in condition else " GOTO LBL 1"
     ran = run(f"Q2 = 10\nQ1 = 1\n{condition}{goto}\nQ1 = 2\nLBL 1")
     assert ran.codes == []
-    assert ran.state.q[1] == (1.0 if jumps else 2.0)
+    assert ran.state.q_values[1] == (1.0 if jumps else 2.0)
 
 
 def test_a_loop_that_counts_by_a_jump() -> None:
     ran = run("L X+0 Y+0 FMAX\nQ1 = 0\nLBL 1\nL IX+5 FMAX\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +4 GOTO LBL 1")
     assert ran.codes == []
-    assert ran.state.programmed[0] == pytest.approx(20.0)
+    assert ran.state.programmed_position[0] == pytest.approx(20.0)
 
 
 @pytest.mark.parametrize(
@@ -118,7 +118,7 @@ def test_long_loops_that_count_are_none() -> None:
     text = "Q1 = 0\nLBL 1\nQ1 = Q1 + 0.001\nQ2 = INT( Q1 )\nFN 12: IF +Q2 LT +2 GOTO LBL 1\nL X+Q1 FMAX"
     ran = run(text)
     assert ran.codes == []
-    assert ran.state.programmed[0] == pytest.approx(2.0, abs=2e-3)
+    assert ran.state.programmed_position[0] == pytest.approx(2.0, abs=2e-3)
 
 
 def test_a_loop_within_repeats_is_none() -> None:
@@ -129,7 +129,7 @@ def test_a_loop_within_repeats_is_none() -> None:
 
 def test_what_reads_the_control_is_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     """FN 18 may read what no parameter shows, so only the count of blocks ends such a loop."""
-    monkeypatch.setattr("core.interpreter.shared.interpretation.MOST_BLOCKS", 200)
+    monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_BLOCKS", 200)
     text = "LBL 1\nFN 18: SYSREAD Q5 = ID20 NR1\nL IX+1 FMAX\nFN 9: IF +0 EQU +0 GOTO LBL 1"
     assert run(text).codes == ["too-many-blocks"]
 
@@ -137,11 +137,11 @@ def test_what_reads_the_control_is_not_judged(monkeypatch: pytest.MonkeyPatch) -
 def test_local_and_kept_parameters_are_others() -> None:
     ran = run("Q1 = 1\nQL1 = 2\nQR1 = 3\nQ2 = Q1 + 10 * QL1 + 100 * QR1\nL X+QL1 Y-QR1 FMAX")
     assert ran.codes == []
-    assert ran.state.q[2] == 321.0
-    assert ran.state.programmed[:2] == pytest.approx((2.0, -3.0))
+    assert ran.state.q_values[2] == 321.0
+    assert ran.state.programmed_position[:2] == pytest.approx((2.0, -3.0))
 
 
-@pytest.mark.parametrize("block", ["Q1 = 10 ^ 300", "Q1 = EXP 1000", f"Q1 = {MOST_Q:.0f} * 2"])
+@pytest.mark.parametrize("block", ["Q1 = 10 ^ 300", "Q1 = EXP 1000", f"Q1 = {MAX_Q_VALUE:.0f} * 2"])
 def test_a_result_that_is_too_large(block: str) -> None:
     assert run(block).codes
 
@@ -155,7 +155,7 @@ def test_what_the_control_keeps_up_to_date() -> None:
         "FN 18: SYSREAD Q5 = ID20 NR1\nFN 18: SYSREAD Q6 = ID270 NR1 IDX1"
     )
     assert ran.codes == []
-    assert [ran.state.q[at] for at in range(1, 7)] == pytest.approx([4.5, 30.0, 0.0, 2.0, 5.0, 7.0])
+    assert [ran.state.q_values[at] for at in range(1, 7)] == pytest.approx([4.5, 30.0, 0.0, 2.0, 5.0, 7.0])
 
 
 def test_print_does_nothing_and_says_so() -> None:

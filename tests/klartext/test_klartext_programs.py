@@ -9,18 +9,18 @@ from core.interpreter.klartext.klartext_interpreter import Interpreter
 from core.interpreter.klartext.klartext_program import read_program
 from core.interpreter.shared.actions import (
     Action,
-    Coolant,
+    CoolantSwitch,
     ProgramEnd,
     ProgramStop,
     SpindleRun,
     SpindleStop,
     ToolChange,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
-from core.language.klartext import read_line
-from core.language.klartext.canonical_text import written
-from core.language.source import Source
+from core.language.klartext import parse_line
+from core.language.klartext.canonical_text import format_block
+from core.language.source import ProgramSource
 from tests.klartext.chamfers import AXIAL, POINTS, SYM_MINUS
 from tests.klartext.running import HOME, Ran, run, run_file, whole
 from tests.klartext.table import AC
@@ -35,14 +35,14 @@ def machine(ran: Ran) -> np.ndarray:
 def rotary(block: Block) -> list[float]:
     """The rotary axes that are there, as shown."""
     assert block.swivel is not None
-    return [angle for angle in block.swivel.rotary if angle is not None]
+    return [angle for angle in block.swivel.rotary_angles if angle is not None]
 
 
 def cuts(ran: Ran) -> list[tuple[np.ndarray, np.ndarray]]:
     """Start and end of every feed move on the workpiece."""
     found = []
     for block in ran.blocks:
-        if block.kind is Kind.FEED and block.swivel is not None:
+        if block.kind is BlockKind.FEED and block.swivel is not None:
             r, o = np.array(block.swivel.system.frame), np.array(block.swivel.system.datum)
             found.append((o + r @ np.array(block.swivel.start), o + r @ np.array(block.swivel.end)))
     return found
@@ -59,18 +59,18 @@ def test_both_programs_go_the_same_way_on_the_machine() -> None:
 def test_the_cuts_start_and_end_where_the_tables_say() -> None:
     """With nothing left to turn, a point of the plane is the machine's place of the datum plus its words."""
     ran = run_file(AXIAL)
-    feeds = [block for block in ran.blocks if block.kind is Kind.FEED]
+    feeds = [block for block in ran.blocks if block.kind is BlockKind.FEED]
     assert len(feeds) == 8
     for chamfer, (down, along) in enumerate(zip(feeds[::2], feeds[1::2], strict=True), start=1):
         (a, c, _), _, origin = STANDS[chamfer][0]
         for block, q in ((down, (-15.0, -7.071, 0.0)), (along, (115.0, -7.071, 0.0))):
             assert block.swivel is not None
-            assert block.swivel.slides == pytest.approx(np.add(origin, q), abs=6e-5)
+            assert block.swivel.machine_position == pytest.approx(np.add(origin, q), abs=6e-5)
             assert rotary(block) == pytest.approx((a, c))
             assert block.swivel.end == pytest.approx(q, abs=1e-9)
     first = feeds[0].swivel
     assert first is not None
-    assert first.slides == pytest.approx((215.0, 278.2843, -352.2183), abs=6e-5)
+    assert first.machine_position == pytest.approx((215.0, 278.2843, -352.2183), abs=6e-5)
 
 
 def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
@@ -78,14 +78,14 @@ def test_the_other_side_cuts_the_same_lines_of_the_workpiece() -> None:
     assert not minus.errors
     for here, there in zip(cuts(plus), cuts(minus), strict=True):
         assert np.allclose(here, there, atol=1e-9)
-    feeds = [block for block in minus.blocks if block.kind is Kind.FEED]
+    feeds = [block for block in minus.blocks if block.kind is BlockKind.FEED]
     for chamfer in STANDS:
         swivel = feeds[2 * chamfer - 1].swivel
         (a, c, _), _, origin = STANDS[chamfer][1]
         assert swivel is not None
         assert rotary(feeds[2 * chamfer - 1]) == pytest.approx((a, c))
         turned = (-115.0, 7.071, 0.0)  # half a turn about the tool is left over
-        assert swivel.slides == pytest.approx(np.add(origin, turned), abs=6e-5)
+        assert swivel.machine_position == pytest.approx(np.add(origin, turned), abs=6e-5)
 
 
 def test_the_cuts_lie_on_the_chamfers() -> None:
@@ -101,23 +101,23 @@ def test_the_cuts_lie_on_the_chamfers() -> None:
 def test_an_end_at_the_bottom_is_no_second_end() -> None:
     ran = run_file(AXIAL)
     assert sum(isinstance(block.action, ProgramEnd) for block in ran.blocks) == 1
-    assert ran.state.at["C"] == pytest.approx(360.0)
-    assert ran.state.at["A"] == 0.0
+    assert ran.state.position_by_axis["C"] == pytest.approx(360.0)
+    assert ran.state.position_by_axis["A"] == 0.0
 
 
 def test_every_line_is_written_as_it_is_read() -> None:
     for text in (*AXIAL.splitlines(), *POINTS.splitlines()):
-        line = read_line(1, text)
-        again = read_line(1, written(line))
+        line = parse_line(1, text)
+        again = parse_line(1, format_block(line))
         assert again.error is None
-        assert written(again) == written(line)
+        assert format_block(again) == format_block(line)
 
 
 # --- flow ------------------------------------------------------------------------------------------------
 
 
 def xs(ran: Ran) -> list[float]:
-    return [round(ran.axes(block)["X"] - 230.0, 6) for block in ran.blocks if block.kind is Kind.RAPID]
+    return [round(ran.axes(block)["X"] - 230.0, 6) for block in ran.blocks if block.kind is BlockKind.RAPID]
 
 
 def test_a_section_is_repeated() -> None:
@@ -145,7 +145,7 @@ def test_skipped_blocks() -> None:
 def test_parameters() -> None:
     ran = run("Q1 = +10\nFN 0: Q2 = -Q1\nL X+Q1 Y-Q2 FMAX\nL XQ2 FMAX")
     assert xs(ran) == [10.0, -10.0]
-    assert ran.state.at["Y"] == pytest.approx(220.0)
+    assert ran.state.position_by_axis["Y"] == pytest.approx(220.0)
 
 
 def test_structure_and_comments_do_nothing() -> None:
@@ -173,13 +173,13 @@ def test_a_second_tool_stops_the_spindle_and_waits_for_whoever_changes_it() -> N
     assert actions(ran) == [
         ToolChange(1),
         SpindleRun(3000.0),
-        Coolant(on=True),
+        CoolantSwitch(on=True),
         SpindleStop(),
         ToolChange(2),
         ProgramStop(optional=False, message="TOOL 2"),
         ProgramEnd(reset=True),
     ]
-    assert ran.state.at["Z"] == pytest.approx(-350.0 + 100.0 + 80.5)
+    assert ran.state.position_by_axis["Z"] == pytest.approx(-350.0 + 100.0 + 80.5)
 
 
 def test_a_call_without_a_tool_changes_the_speed_of_the_running_spindle() -> None:
@@ -204,7 +204,7 @@ def test_stops() -> None:
 
 def test_m91_counts_in_the_machine_and_ignores_the_plane_for_its_block() -> None:
     ran = run("PLANE AXIAL A+45 TURN FMAX\nL Z-5 R0 FMAX M91\nL X+100 Y+20 FMAX M91\nL X+0 Y+0 Z+0 FMAX")
-    moves = [ran.axes(block) for block in ran.blocks if block.kind is Kind.RAPID]
+    moves = [ran.axes(block) for block in ran.blocks if block.kind is BlockKind.RAPID]
     assert [moves[0][axis] for axis in "XYZ"] == [0.0, 0.0, -5.0]
     assert [moves[1][axis] for axis in "XYZ"] == [100.0, 20.0, -5.0]
     assert [moves[2][axis] for axis in "XYZ"] == pytest.approx((230.0, 278.2843, -345.1472), abs=6e-5)
@@ -261,7 +261,7 @@ def test_inch_programs_count_lengths_in_inches_and_feeds_in_tenths_a_minute() ->
 
 def test_points_and_datum_in_inches() -> None:
     ran = run("TRANS DATUM AXIS X+1\nL X+0 Y+0 Z+0 FMAX", unit="INCH")
-    assert ran.state.at["X"] == pytest.approx(255.4)
+    assert ran.state.position_by_axis["X"] == pytest.approx(255.4)
 
 
 @pytest.mark.parametrize(
@@ -280,17 +280,17 @@ def test_the_blank_is_known_where_it_is_given_in_numbers(
     ran = run(f"BLK FORM 0.1 Z X+0 Y+0 Z-1\nBLK FORM 0.2 {second}", unit=unit)
     assert not ran.errors
     if corners is None:
-        assert ran.state.blank is None
+        assert ran.state.blank_corners is None
     else:
-        assert ran.state.blank is not None
-        assert np.allclose(ran.state.blank, corners)
+        assert ran.state.blank_corners is not None
+        assert np.allclose(ran.state.blank_corners, corners)
 
 
 def test_a_cylinder_is_drawn_by_the_block_around_it() -> None:
-    blank = run("BLK FORM CYLINDER Z D100 L80 DIST+5 RI10").state.blank
+    blank = run("BLK FORM CYLINDER Z D100 L80 DIST+5 RI10").state.blank_corners
     assert blank is not None
     assert np.allclose(blank, ((-50.0, -50.0, -75.0), (50.0, 50.0, 5.0)))
-    lying = run("BLK FORM CYLINDER X R1 L2", unit="INCH").state.blank
+    lying = run("BLK FORM CYLINDER X R1 L2", unit="INCH").state.blank_corners
     assert lying is not None
     assert np.allclose(lying, ((-50.8, -25.4, -25.4), (0.0, 25.4, 25.4)))
 
@@ -298,9 +298,9 @@ def test_a_cylinder_is_drawn_by_the_block_around_it() -> None:
 def test_a_tool_that_the_program_measures_is_one_of_its_tools() -> None:
     """TOOL DEF tells length and radius, the tool table none: it is used all the same, and not missing."""
     text = whole("TOOL DEF 7 L+0 R+4\nTOOL CALL 7 Z S100 DR2:+0.05\nTOOL CALL 1 Z")
-    program = read_program(Source("T.H", text))
+    program = read_program(ProgramSource("T.H", text))
     setup = Setup(kinematics=AC, start=HOME, limits=ControlLimits(max_rpm=12000.0), tools={1: ToolOffset()})
     interpreter = Interpreter(program, setup, AC)
-    list(interpreter.blocks())
-    assert (interpreter.used_tools, interpreter.missing_tools) == ([7, 1], [])
+    list(interpreter.generate_blocks())
+    assert (interpreter.used_tools, interpreter.tools_without_offset) == ([7, 1], [])
     assert interpreter.diagnostics == []

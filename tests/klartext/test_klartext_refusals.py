@@ -210,21 +210,21 @@ def test_after_a_refused_plane_the_old_one_stands_and_nothing_has_moved() -> Non
     ran = run("PLANE AXIAL A+100 TURN FMAX\nPLANE AXIAL IA+30 TURN MB MAX FMAX")
     assert ran.codes == [ANGLE]
     assert ran.errors[0].line == 4
-    assert ran.state.at["A"] == 100.0
-    assert ran.state.q[120] == 100.0
-    assert ran.state.plane is not None
-    assert ran.state.plane.line == 3
+    assert ran.state.position_by_axis["A"] == 100.0
+    assert ran.state.q_values[120] == 100.0
+    assert ran.state.active_plane is not None
+    assert ran.state.active_plane.line == 3
     assert len(ran.planes) == 1
 
 
 def test_a_refused_turn_without_feed_leaves_the_targets_alone() -> None:
     ran = run("PLANE AXIAL A+45 TURN", tool="TOOL CALL 1 Z S3000\n")
-    assert 120 not in ran.state.q
-    assert ran.state.plane is None
+    assert 120 not in ran.state.q_values
+    assert ran.state.active_plane is None
 
 
 def test_chamfers_across_a_single_axis_are_refused() -> None:
-    single = Kinematics(SLIDES, (A,), ORIGIN, order=("X", "Y", "Z", "A"))
+    single = Kinematics(SLIDES, (A,), ORIGIN, axis_order=("X", "Y", "Z", "A"))
     ran = run(f"PLANE POINTS P1X+0 P1Y+0 P1Z+0 P2X+0 P2Y+1 P2Z+0 P3X-1 P3Y+0 P3Z+1 {TAIL}", single)
     assert ran.codes == [ANGLE]
 
@@ -266,7 +266,7 @@ def test_no_block_comes_after_an_error_and_the_other_errors_are_found() -> None:
 def test_the_same_words_in_lower_case_with_commas() -> None:
     ran = run_file(whole(TOOL + "l x+1,5 r0 fmax").lower())
     assert not ran.errors
-    assert ran.state.at["X"] == pytest.approx(231.5)
+    assert ran.state.position_by_axis["X"] == pytest.approx(231.5)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.kinematics_chain import build_kinematics
 from app.compose.machine.machine_files import parse_machine
 from resources import machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
@@ -113,9 +113,9 @@ def test_a_mill_without_rotary_axes_runs_what_tilts_nothing(
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_the_chain_of_a_file(name: str) -> None:
-    made = kinematics_of(parse_machine(MACHINES[name], "m"))
+    made = build_kinematics(parse_machine(MACHINES[name], "m"))
     assert made is not None
-    assert [axis.table for axis in made.rotaries] == sorted(
-        (axis.table for axis in made.rotaries), reverse=True
+    assert [axis.is_table for axis in made.rotary_axes] == sorted(
+        (axis.is_table for axis in made.rotary_axes), reverse=True
     )
-    assert made.rotaries[0].name == "C"
+    assert made.rotary_axes[0].name == "C"

@@ -8,31 +8,33 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
-from core.proving.program_timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, iter_timed_blocks
 from core.proving.prove_program import prove
-from core.proving.setpoint_trace import setpoints
+from core.proving.setpoint_trace import iter_setpoints
 from tests.klartext.chamfers import AXIAL, POINTS
 from tests.klartext.running import TOOL, whole
 
 pytestmark = pytest.mark.long
 
 DT = 0.001
-MILL = shipped_machine("ac-table-mill")
+MILL = load_shipped_machine("ac-table-mill")
 Array = npt.NDArray[np.float64]
 
 
 def traced(text: str, machine: Machine = MILL) -> tuple[Array, Array]:
     """Axes (n, 5) and lines (n,) of a program's setpoints."""
-    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
-    timeline = Timeline.of(Source("T.H", text, Dialect.KLARTEXT), setup, machine)
-    chunks = list(setpoints(timeline, DT))
-    assert not timeline.errors, timeline.diagnostics
-    return np.concatenate([chunk.at for chunk in chunks]), np.concatenate([chunk.line for chunk in chunks])
+    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    timeline = Timeline.from_program(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, machine)
+    chunks = list(iter_setpoints(timeline, DT))
+    assert not timeline.has_errors, timeline.diagnostics
+    return np.concatenate([chunk.positions for chunk in chunks]), np.concatenate(
+        [chunk.line_numbers for chunk in chunks]
+    )
 
 
 def speeds(axes: Array) -> Array:
@@ -115,19 +117,19 @@ def test_the_swivel_takes_the_time_of_its_feed() -> None:
 def test_a_move_that_leaves_the_travel_on_its_way_is_found() -> None:
     """The table swivels the tip down and back; between the ends Z goes lower than at either of them."""
     text = whole(TOOL + "L X+0 Y+0 Z-80 R0 FMAX\nPLANE AXIAL A-60 MOVE FMAX\nPLANE AXIAL A+60 MOVE FMAX")
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    report = prove(Source("T.H", text, Dialect.KLARTEXT), setup, MILL)
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    report = prove(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, MILL)
     low = min(limits[0] for limits in _z_reach(text))
     assert low < -430.0
     assert not report.errors
     tight = tuple(dataclasses.replace(a, travel=(low + 1.0, 0.0)) if a.name == "Z" else a for a in MILL.axes)
     machine = dataclasses.replace(MILL, axes=tight)
-    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
-    found = prove(Source("T.H", text, Dialect.KLARTEXT), setup, machine).errors
+    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    found = prove(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, machine).errors
     assert {error.code for error in found} == {"soft-limit"}
 
 
 def _z_reach(text: str) -> list[tuple[float, float]]:
-    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
-    timeline = Timeline.of(Source("T.H", text, Dialect.KLARTEXT), setup, MILL)
-    return [block.machine_reach()[2] for block, _, _ in timed_blocks(timeline) if block.moves]
+    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    timeline = Timeline.from_program(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, MILL)
+    return [block.compute_machine_bounds()[2] for block, _, _ in iter_timed_blocks(timeline) if block.moves]

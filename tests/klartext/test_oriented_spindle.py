@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.shared.actions import ProgramEnd, ProgramStop, SpindleOrient, SpindleRun
+from core.interpreter.shared.actions import ProgramEnd, ProgramStop, SpindlePositioning, SpindleRun
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ControlLimits
 from tests.klartext.running import Ran, run
 
-ABLE = ControlLimits(max_rpm=12000.0, spindle_oriented=True)
+ABLE = ControlLimits(max_rpm=12000.0, can_orient_spindle=True)
 BORE = (
     "CYCL DEF 202 BORING ~\n Q200=2 ~\n Q201=-8 ~\n Q206=99 ~\n Q211=0 ~\n Q208=0 ~\n Q203=0 ~\n Q204=9 ~\n"
     " Q214={} ~\n Q336=+90\nL X+10 Y+20 R0 FMAX M99\n"
@@ -32,7 +32,7 @@ def back(**changes: float) -> Ran:
 
 def told(block: Block) -> object:
     match block.action:
-        case SpindleOrient(angle=angle):
+        case SpindlePositioning(angle=angle):
             return f"held {angle:g}"
         case SpindleRun():
             return "turns"
@@ -93,7 +93,7 @@ def test_cycle_13_is_the_angle_of_m19_until_another_is_told() -> None:
     told_at = "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE Q1\n"
     ran = on(f"M19\nQ1 = 45\n{told_at}L X+5 FMAX M19\nL X+6 FMAX M19\nM3\n")
     assert ran.errors == []
-    held = [each.action.angle for each in ran.blocks if isinstance(each.action, SpindleOrient)]
+    held = [each.action.angle for each in ran.blocks if isinstance(each.action, SpindlePositioning)]
     assert held == [0.0, 45.0, 45.0]
     assert ran.state.modal.oriented is None
 

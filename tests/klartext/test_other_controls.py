@@ -33,20 +33,20 @@ def ran_of(text: str, **setup: Any) -> Ran:
 def test_a_block_of_one_axis(block: str, x: float) -> None:
     ran = ran_of(block)
     assert not ran.errors
-    assert ran.state.programmed == pytest.approx((x, 0.0, 50.0))
+    assert ran.state.programmed_position == pytest.approx((x, 0.0, 50.0))
 
 
 def test_ln_goes_to_its_point_where_nothing_is_to_compensate() -> None:
     ran = ran_of("LN X+3 Y+4 Z+40 NX+0.6 NY+0 NZ+0.8 F100")
     assert not ran.errors
-    assert ran.state.programmed == pytest.approx((3.0, 4.0, 40.0))
+    assert ran.state.programmed_position == pytest.approx((3.0, 4.0, 40.0))
 
 
 @pytest.mark.parametrize(
     ("text", "setup"),
     [
         ("TOOL CALL 5 Z S2000 F500 DR+0.1\nLN X+3 NX+0 NY+0 NZ+1", {}),
-        ("LN X+3 NX+0 NY+0 NZ+1", {"mill_tools": {5: MillTool(0.0, 4.0, dr2=0.02)}}),
+        ("LN X+3 NX+0 NY+0 NZ+1", {"mill_tools": {5: MillTool(0.0, 4.0, delta_corner_radius=0.02)}}),
         ("LN X+3 NX+0 NY+0 NZ+1 RL", {}),
         ("LN X+3 NX+0 NY+0 NZ+1 TX+0 TY+0 TZ+1", {}),
     ],
@@ -61,7 +61,7 @@ def test_predef_takes_what_global_def_has_told_last() -> None:
     hole = "CYCL DEF 200 DRILLING Q200=PREDEF Q201=-8 Q206=+150 Q202=+8 Q203=+0\nCYCL CALL\n"
     ran = ran_of(f"GLOBAL DEF 100 GENERAL Q200=+3\nGLOBAL DEF 100 GENERAL Q200=+5\n{hole}")
     assert not ran.errors
-    assert ran.state.programmed[2] == pytest.approx(5.0)
+    assert ran.state.programmed_position[2] == pytest.approx(5.0)
     assert ran_of(hole).codes == ["Cycle incomplete"]
 
 
@@ -80,7 +80,7 @@ def test_function_dwell_rests() -> None:
 
 def test_whether_a_parameter_is_defined() -> None:
     text = "Q1 = 1\nFN 9: IF Q{0} IS {1} GOTO LBL 1\nL X+7 F100\nLBL 1"
-    jumped = {(q, word): ran_of(text.format(q, word)).state.programmed[0] < 1.0
+    jumped = {(q, word): ran_of(text.format(q, word)).state.programmed_position[0] < 1.0
               for q in (1, 2) for word in ("DEFINED", "UNDEFINED")}  # fmt: skip
     assert jumped == {(1, "DEFINED"): True, (1, "UNDEFINED"): False,
                       (2, "DEFINED"): False, (2, "UNDEFINED"): True}  # fmt: skip
@@ -90,11 +90,11 @@ def test_cycle_19_with_a_feed_turns_the_axes() -> None:
     """With F the control positions them; the point at the set-up clearance keeps its place."""
     turned = ran_of("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+30 C+0 F1000 SETUP50")
     assert not turned.errors
-    assert turned.state.at["A"] == pytest.approx(30.0)
+    assert turned.state.position_by_axis["A"] == pytest.approx(30.0)
     stays = ran_of("CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+30 C+0")
-    assert stays.state.at["A"] == 0.0
+    assert stays.state.position_by_axis["A"] == 0.0
     moved = ran_of("PLANE SPATIAL SPA+30 SPB+0 SPC+0 MOVE DIST50 F1000")
-    assert turned.state.slides == pytest.approx(moved.state.slides)
+    assert turned.state.linear_position == pytest.approx(moved.state.linear_position)
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from core.geometry.working_plane import HelixMove
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.language.source import Source
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.language.source import ProgramSource
 from tests.klartext.running import Ran, run, run_file, run_source, whole
 
 HERE = "L X+0 Y+0 Z+0 FMAX M3\n"
@@ -32,7 +32,7 @@ def on_the_way(block: Block, count: int = 33) -> np.ndarray:
     assert block.travel is not None
     way = block.travel.way
     assert isinstance(way, HelixMove)
-    return way.part(way.machine(np.linspace(0.0, 1.0, count)))
+    return way.workpiece_points(way.machine_positions(np.linspace(0.0, 1.0, count)))
 
 
 @pytest.mark.parametrize(
@@ -55,8 +55,8 @@ def test_an_arc(
     text: str, centre: tuple[float, float], radius: float, length: float, stop: tuple[float, float, float]
 ) -> None:
     (arc,) = ways(text)
-    assert arc.kind is Kind.PLANE_ARC
-    assert not arc.swivels
+    assert arc.kind is BlockKind.PLANE_ARC
+    assert not arc.has_angular_feed
     assert arc.length == pytest.approx(length)
     assert end(arc) == pytest.approx(stop, abs=1e-9)
     points = on_the_way(arc)
@@ -73,7 +73,7 @@ def test_an_arc(
 
 def test_a_helix_of_three_turns_and_a_half() -> None:
     arcs = ways("CC X+10 Y+0\nCP IPA-1260 IZ-7 DR- F100")
-    assert [arc.kind for arc in arcs] == [Kind.PLANE_ARC] * 4
+    assert [arc.kind for arc in arcs] == [BlockKind.PLANE_ARC] * 4
     assert [end(arc)[2] for arc in arcs] == pytest.approx([-2.0, -4.0, -6.0, -7.0])
     assert end(arcs[-1])[:2] == pytest.approx((20.0, 0.0))
     assert sum(arc.length for arc in arcs) == pytest.approx(math.hypot(70 * math.pi, 7.0))
@@ -96,7 +96,7 @@ def test_a_tangential_arc_goes_on_in_the_direction_before() -> None:
 
 def test_a_tangential_arc_straight_on_is_a_line() -> None:
     blocks = ways("L X+10 F100\nCT X+20")
-    assert [block.kind for block in blocks] == [Kind.FEED, Kind.FEED]
+    assert [block.kind for block in blocks] == [BlockKind.FEED, BlockKind.FEED]
 
 
 def test_polar_words_count_from_the_pole() -> None:
@@ -138,7 +138,7 @@ def test_two_corners_on_one_element() -> None:
 def test_what_stands_before_a_corner_comes_before_it() -> None:
     blocks = [block for block in run(f"{HERE}L X+20 F100 M8\nRND R5\nL Y+20 M9").blocks if block.line >= 4]
     kinds = [(block.line, block.kind) for block in blocks]
-    assert kinds[:3] == [(4, Kind.ACTION), (4, Kind.FEED), (6, Kind.PLANE_ARC)]
+    assert kinds[:3] == [(4, BlockKind.ACTION), (4, BlockKind.FEED), (6, BlockKind.PLANE_ARC)]
 
 
 # --- transformations -------------------------------------------------------------------------------------
@@ -148,7 +148,7 @@ def test_rotation_turns_about_the_datum() -> None:
     (line,) = ways("TRANS DATUM AXIS X+10\nTRANS ROTATION ROT+90\nL X+5 Y+0 FMAX")
     assert end(line)[:2] == pytest.approx((0.0, 5.0), abs=1e-9)  # the datum's own coordinates
     assert line.swivel is not None
-    assert line.swivel.slides[:2] == pytest.approx((230.0 + 10.0, 210.0 + 5.0))
+    assert line.swivel.machine_position[:2] == pytest.approx((230.0 + 10.0, 210.0 + 5.0))
 
 
 def test_mirroring_turns_an_arc_round() -> None:
@@ -193,33 +193,33 @@ def test_a_block_over_several_lines_tells_errors_where_they_stand() -> None:
 def test_repeats_in_the_old_way_of_writing() -> None:
     ran = ran_of("LBL 5\nL IX+1 FMAX\nCALL LBL 5 REP 3/3")
     assert ran.codes == []
-    assert ran.state.programmed[0] == pytest.approx(4.0)
+    assert ran.state.programmed_position[0] == pytest.approx(4.0)
 
 
 def test_repeats_by_a_parameter() -> None:
     ran = ran_of("Q106 = 2.9\nLBL 5\nL IX+1 FMAX\nCALL LBL 5 REP Q106")
     assert ran.codes == []
-    assert ran.state.programmed[0] == pytest.approx(3.0)
+    assert ran.state.programmed_position[0] == pytest.approx(3.0)
 
 
 def test_a_called_program_runs_and_its_faults_are_told_at_the_call() -> None:
-    hole = Source(
+    hole = ProgramSource(
         "HOLE.H", "0 BEGIN PGM HOLE MM\n1 LBL 1\n2 L IX+5 FMAX\n3 CALL LBL 1 REP 1\n4 END PGM HOLE MM\n"
     )
     text = whole("TOOL CALL 1 Z S100\nL X+0 FMAX\nCALL PGM TNC:\\PARTS\\hole\nL IX+1 FMAX")
-    ran = run_source(Source("T.H", text, subprograms=(hole,)))
+    ran = run_source(ProgramSource("T.H", text, subprograms=(hole,)))
     assert ran.codes == []
-    assert ran.state.programmed[0] == pytest.approx(11.0)
+    assert ran.state.programmed_position[0] == pytest.approx(11.0)
     assert [block.line for block in ran.blocks if block.moves] == [3, 4, 4, 5]
-    bad = Source("HOLE.H", "0 BEGIN PGM HOLE MM\n1 L X+1 FOO\n2 END PGM HOLE MM\n")
-    (error,) = run_source(Source("T.H", text, subprograms=(bad,))).errors
+    bad = ProgramSource("HOLE.H", "0 BEGIN PGM HOLE MM\n1 L X+1 FOO\n2 END PGM HOLE MM\n")
+    (error,) = run_source(ProgramSource("T.H", text, subprograms=(bad,))).errors
     assert error.line == 4
     assert "HOLE.H line 2" in error.message
 
 
 def test_a_program_that_calls_itself_ends() -> None:
     text = whole("TOOL CALL 1 Z S100\nCALL PGM T")
-    ran = run_source(Source("T.H", text, subprograms=(Source("T.H", text),)))
+    ran = run_source(ProgramSource("T.H", text, subprograms=(ProgramSource("T.H", text),)))
     assert ran.codes == ["Excessive nesting"]
 
 

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.language.klartext import klartext_line as long_way
-from core.language.klartext import read_line
-from core.language.klartext.klartext_line import read_plain
+from core.language.klartext import parse_line
+from core.language.klartext.klartext_line import parse_plain_move
 from core.language.klartext.klartext_nodes import KlartextLine
 
 WORDS = st.sampled_from(
@@ -31,8 +31,8 @@ WORDS = st.sampled_from(
 
 
 def by_the_long_way(text: str, monkeypatch: pytest.MonkeyPatch) -> KlartextLine:
-    monkeypatch.setattr(long_way, "read_plain", lambda _number, _text: None)
-    made = read_line(3, text)
+    monkeypatch.setattr(long_way, "parse_plain_move", lambda _number, _text: None)
+    made = parse_line(3, text)
     monkeypatch.undo()
     return made
 
@@ -42,7 +42,7 @@ def by_the_long_way(text: str, monkeypatch: pytest.MonkeyPatch) -> KlartextLine:
     ["L X+10", "12 L X-12 Y-7.071 R0 FMAX", "L IX+1 Y2 Z-0 A+1 B2 C-3 R0 F12.5", "7 L Z+0 F200", "L X-0.0"],
 )
 def test_both_ways_read_the_same(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    short = read_plain(3, text)
+    short = parse_plain_move(3, text)
     assert short is not None
     assert short == by_the_long_way(text, monkeypatch)
 
@@ -50,7 +50,7 @@ def test_both_ways_read_the_same(text: str, monkeypatch: pytest.MonkeyPatch) -> 
 @given(st.lists(WORDS, max_size=6), st.sampled_from(["L", "5 L"]))
 def test_whatever_the_short_way_reads_the_long_one_reads_the_same(words: list[str], head: str) -> None:
     text = " ".join((head, *words))
-    short = read_plain(3, text)
+    short = parse_plain_move(3, text)
     if short is not None:
         with pytest.MonkeyPatch.context() as patch:
             assert short == by_the_long_way(text, patch)
@@ -60,4 +60,4 @@ def test_whatever_the_short_way_reads_the_long_one_reads_the_same(words: list[st
     "text", ["L X+1 X+2", "L X+1 M3", "L", "L X+Q1", "l x+1", "L X+1 ; c", "/L X+1", "L X1O", "L X+1 F0 F1"]
 )
 def test_everything_else_goes_the_long_way(text: str) -> None:
-    assert read_plain(1, text) is None
+    assert parse_plain_move(1, text) is None

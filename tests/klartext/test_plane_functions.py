@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.geometry.rotary_axes import Kinematics
-from core.geometry.working_plane import Figure
-from core.interpreter.shared.elementary_blocks import Kind
+from core.geometry.working_plane import ProgramTransform
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.klartext.running import Ran, run
 from tests.klartext.table import AC, C, limited
 
@@ -27,13 +27,13 @@ def shown(ran: Ran) -> list[tuple[float, float]]:
     found = []
     for block in ran.planes:
         assert block.swivel is not None
-        a, _, c = block.swivel.rotary
+        a, _, c = block.swivel.rotary_angles
         found.append((a or 0.0, c or 0.0))
     return found
 
 
 def targets(ran: Ran) -> tuple[float, float]:
-    return ran.state.q[120], ran.state.q[122]
+    return ran.state.q_values[120], ran.state.q_values[122]
 
 
 def test_axial_blocks_add_up_to_one_plane() -> None:
@@ -48,7 +48,7 @@ def test_axial_blocks_add_up_to_one_plane() -> None:
     assert fifth is not None
     assert np.array(fifth.system.frame)[:, 2] == pytest.approx((-0.5, 0.0, 0.866025404), abs=1e-9)
     assert ran.planes[5].swivel is not None
-    assert ran.planes[5].swivel.system.tilted  # A+0 ends no plane
+    assert ran.planes[5].swivel.system.is_tilted  # A+0 ends no plane
 
 
 # 30 about Y, mirrored at X, is -30: the tool leans to -X, A30 with C at 270. All forms tell the same.
@@ -80,7 +80,7 @@ def test_what_is_programmed_in_the_plane_is_the_mirrored_picture() -> None:
     ran = run("TRANS MIRROR AXIS X\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+")
     assert ran.planes[0].swivel is not None
     frame = np.array(ran.planes[0].swivel.system.frame)
-    assert frame @ Figure("X").plane((10.0, 0.0, 0.0)) == pytest.approx((-8.660254, 0.0, -5.0))
+    assert frame @ ProgramTransform("X").to_plane((10.0, 0.0, 0.0)) == pytest.approx((-8.660254, 0.0, -5.0))
 
 
 @pytest.mark.parametrize("before", WITH_IT)
@@ -123,7 +123,7 @@ def test_axial_a_minus_45_c_180_is_not_chamfer_1_with_sym_minus() -> None:
     points = run(f"{CHAMFER_1} TURN FMAX SYM-").planes[0].swivel
     assert axial is not None
     assert points is not None
-    assert axial.rotary == points.rotary
+    assert axial.rotary_angles == points.rotary_angles
     assert np.allclose(axial.system.frame, ((-1, 0, 0), (0, -S, -S), (0, -S, S)), atol=1e-12)
     assert np.allclose(points.system.frame, ((1, 0, 0), (0, S, -S), (0, S, S)), atol=1e-12)
 
@@ -186,7 +186,7 @@ def test_coord_rot_and_table_rot_where_c_is_free() -> None:
 def test_mb_max_ends_just_short_of_the_limit_and_comes_before_the_swivel() -> None:
     ran = run("L Z+100 R0 FMAX\nPLANE AXIAL A+45 C+90 TURN MB MAX FMAX")
     up, swivel = ran.blocks[-3:-1]
-    assert (up.kind, swivel.kind) == (Kind.RAPID, Kind.PLANE)
+    assert (up.kind, swivel.kind) == (BlockKind.RAPID, BlockKind.PLANE)
     assert ran.axes(up)["Z"] == pytest.approx(-0.001, abs=1e-12)
     assert (ran.axes(up)["A"], ran.axes(up)["C"]) == (0.0, 0.0)
     assert (ran.axes(swivel)["A"], ran.axes(swivel)["C"]) == (45.0, 90.0)
@@ -196,7 +196,7 @@ def test_mb_max_ends_just_short_of_the_limit_and_comes_before_the_swivel() -> No
 def test_mb_with_a_length_goes_up_at_the_feed_of_the_block() -> None:
     ran = run("L Z+100 R0 FMAX\nPLANE AXIAL A+45 TURN MB 50 F600")
     up, swivel = ran.blocks[-3:-1]
-    assert up.kind is Kind.FEED
+    assert up.kind is BlockKind.FEED
     assert up.feed == pytest.approx(10.0)  # mm/s
     assert ran.axes(up)["Z"] == pytest.approx(-200.0)
     assert swivel.feed == pytest.approx(10.0)  # degrees/s
@@ -204,7 +204,7 @@ def test_mb_with_a_length_goes_up_at_the_feed_of_the_block() -> None:
 
 def test_mb_at_the_limit_moves_nothing() -> None:
     ran = run("PLANE AXIAL A+45 TURN MB MAX FMAX")  # home is the upper end of Z
-    assert [block.kind for block in ran.blocks] == [Kind.ACTION, Kind.PLANE, Kind.ACTION]
+    assert [block.kind for block in ran.blocks] == [BlockKind.ACTION, BlockKind.PLANE, BlockKind.ACTION]
 
 
 def test_turn_counts_the_path_of_both_rotary_axes() -> None:
@@ -241,7 +241,7 @@ def test_move_keeps_it_all_the_way(words: str, depth: float) -> None:
     travel = ran.planes[0].travel
     assert travel is not None
     assert travel.way is not None
-    for x, y, z, a, c in travel.way.machine(np.linspace(0.0, 1.0, 11)).tolist():
+    for x, y, z, a, c in travel.way.machine_positions(np.linspace(0.0, 1.0, 11)).tolist():
         ca, sa = math.cos(math.radians(a)), math.sin(math.radians(a))
         cc, sc = math.cos(math.radians(c)), math.sin(math.radians(c))
         dy, dz = y - 250.0, z - depth + 430.0
@@ -281,7 +281,7 @@ def test_reset_drives_the_axes_home_the_short_way_and_stay_leaves_them() -> None
     stay = run("PLANE AXIAL A+45 C+270 TURN FMAX\nPLANE RESET STAY")
     assert shown(stay)[1] == (45.0, 270.0)
     assert stay.planes[1].swivel is not None
-    assert not stay.planes[1].swivel.system.tilted
+    assert not stay.planes[1].swivel.system.is_tilted
     bare = run("PLANE AXIAL A+45 TURN FMAX\nPLANE RESET")
     assert shown(bare)[1] == (45.0, 0.0)
 
@@ -301,8 +301,8 @@ def test_reset_without_a_plane_does_its_positioning_alone() -> None:
 @pytest.mark.parametrize("end", ["M2", "M30", ""])
 def test_the_end_of_the_program_ends_the_plane_and_moves_nothing(end: str) -> None:
     ran = run(f"PLANE AXIAL A+45 TURN FMAX\n{end}")
-    assert ran.state.plane is None
-    assert ran.state.at["A"] == 45.0
+    assert ran.state.active_plane is None
+    assert ran.state.position_by_axis["A"] == 45.0
 
 
 # --- datum and basic rotation ----------------------------------------------------------------------------
@@ -344,7 +344,7 @@ def test_cycle_7_shifts_axis_by_axis() -> None:
 
 
 def turned_part(angle: float) -> Kinematics:
-    return dataclasses.replace(AC, basic_rotation=angle)
+    return dataclasses.replace(AC, basic_rotation_deg=angle)
 
 
 def test_points_follow_the_basic_rotation_and_axial_does_not() -> None:
@@ -368,13 +368,13 @@ def test_ranges_of_the_machine() -> None:
 
 
 def test_b_on_a_b_c_table() -> None:
-    b = dataclasses.replace(AC.rotaries[1], name="B", direction=(0.0, 1.0, 0.0))
-    machine = dataclasses.replace(AC, rotaries=(C, b), order=("X", "Y", "Z", "B", "C"))
+    b = dataclasses.replace(AC.rotary_axes[1], name="B", direction=(0.0, 1.0, 0.0))
+    machine = dataclasses.replace(AC, rotary_axes=(C, b), axis_order=("X", "Y", "Z", "B", "C"))
     ran = run("PLANE AXIAL B+45 C+90 TURN FMAX", machine)
     assert not ran.errors
     swivel = ran.planes[0].swivel
     assert swivel is not None
-    assert (swivel.rotary, swivel.system.targets) == ((None, 45.0, 90.0), (0.0, 45.0, 90.0))
+    assert (swivel.rotary_angles, swivel.system.target_angles) == ((None, 45.0, 90.0), (0.0, 45.0, 90.0))
     assert np.array(swivel.system.frame)[:, 2] == pytest.approx((0.0, S, S), abs=1e-12)
 
 

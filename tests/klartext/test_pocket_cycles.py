@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from core.geometry.working_plane import HelixMove
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.klartext.running import Ran, run
 
 R = 4.0
@@ -39,7 +39,7 @@ def way(block: Block) -> Points:
     assert block.swivel is not None
     share = np.linspace(0.0, 1.0, max(2, math.ceil(block.length / 0.1)))
     if block.travel is not None and isinstance(block.travel.way, HelixMove):
-        return block.travel.way.part(block.travel.way.machine(share))
+        return block.travel.way.workpiece_points(block.travel.way.machine_positions(share))
     start, end = np.array(block.swivel.start), np.array(block.swivel.end)
     straight: Points = start + share[:, None] * (end - start)
     return straight
@@ -47,7 +47,7 @@ def way(block: Block) -> Points:
 
 def cuts(ran: Ran) -> Points:
     assert ran.codes == []
-    feeds = [way(block) for block in ran.blocks if block.kind in {Kind.FEED, Kind.PLANE_ARC}]
+    feeds = [way(block) for block in ran.blocks if block.kind in {BlockKind.FEED, BlockKind.PLANE_ARC}]
     return np.concatenate(feeds)
 
 
@@ -111,14 +111,17 @@ def test_allowances_are_left_by_clearing_and_taken_by_finishing() -> None:
     points = cuts(whole)
     assert rounded(points[:, :2] - (10, 20), 30, 18, 6).max() == pytest.approx(-R, abs=1e-6)
     assert points[:, 2].min() == pytest.approx(-6.0)
-    assert {round(block.feed * 60) for block in whole.blocks if block.kind is Kind.PLANE_ARC} == {250, 400}
+    assert {round(block.feed * 60) for block in whole.blocks if block.kind is BlockKind.PLANE_ARC} == {
+        250,
+        400,
+    }
 
 
 def test_climb_milling_goes_round_a_pocket_counter_clockwise_and_a_stud_clockwise() -> None:
     for number, q351, sense in ((252, 1, 1), (252, -1, -1), (257, 1, -1), (257, -1, 1)):
         ran = milled(number, q351=q351, q366=0)
         assert ran.codes == []
-        arcs = [block for block in ran.blocks if block.kind is Kind.PLANE_ARC]
+        arcs = [block for block in ran.blocks if block.kind is BlockKind.PLANE_ARC]
         path = way(max(arcs, key=lambda block: block.length))[:, :2] - (10.0, 20.0)
         (x0, y0), (x1, y1) = path[:2]
         assert np.sign(x0 * y1 - y0 * x1) == sense
@@ -137,7 +140,7 @@ def test_a_stud_is_left_standing_and_its_blank_cleared(number: int, a: float, b:
     outside = blank[rounded(blank, a, b, r) >= 0.0]
     assert left_standing(floor, outside) <= R + 0.05
     for block in ran.blocks:  # no rapid goes aside below the surface
-        if block.kind is Kind.RAPID and block.moves:
+        if block.kind is BlockKind.RAPID and block.moves:
             spots = way(block)
             assert np.ptp(spots[:, :2], axis=0).max() == 0.0 or spots[:, 2].min() >= 1.0
 

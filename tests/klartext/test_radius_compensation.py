@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.klartext.running import Ran, run
 from tests.klartext.test_path_functions import on_the_way
 
@@ -45,7 +45,7 @@ def test_a_square_cut_round_the_outside_with_the_tool_on_the_left() -> None:
     text = "L X+0 Y+0 RL F100\nL Y+20\nL X+20\nL Y+0\nL X+0\nL X-20 Y-20 R0 FMAX"
     wanted = [(-5, 0), (-5, 20), (0, 25), (20, 25), (25, 20), (25, 0), (20, -5), (0, -5), (-20, -20)]
     assert ends(text) == about(*wanted)
-    arcs = [block for block in moves(text) if block.kind is Kind.PLANE_ARC]
+    arcs = [block for block in moves(text) if block.kind is BlockKind.PLANE_ARC]
     assert [arc.length for arc in arcs] == pytest.approx([2.5 * math.pi] * 3)
 
 
@@ -62,7 +62,7 @@ def test_a_start_in_an_inside_corner_would_cut_into_the_other_wall() -> None:
 def test_the_feed_of_each_element_is_its_own() -> None:
     blocks = moves("L X+0 Y+0 RL F100\nL Y+20 F200\nL X+20 F300\nL X+40 Y+40 R0 FMAX")
     assert [round(block.feed * 60.0) for block in blocks[:4]] == [100, 200, 200, 300]
-    assert blocks[-1].kind is Kind.RAPID
+    assert blocks[-1].kind is BlockKind.RAPID
 
 
 def test_down_between_two_elements_and_up_at_the_end_stay_beside_the_contour() -> None:
@@ -81,7 +81,7 @@ def test_m_functions_keep_their_place_in_the_contour() -> None:
 
 def test_a_rounding_inside_is_smaller_by_the_tool() -> None:
     blocks = moves("L X+0 Y+0 RR F100\nL Y+40\nRND R8\nL X+40\nL X+20 Y+20 R0")
-    (arc,) = (block for block in blocks if block.kind is Kind.PLANE_ARC)
+    (arc,) = (block for block in blocks if block.kind is BlockKind.PLANE_ARC)
     points = on_the_way(arc)
     assert np.hypot(points[:, 0] - 8.0, points[:, 1] - 32.0) == pytest.approx(3.0)
 

@@ -2,41 +2,43 @@
 
 from __future__ import annotations
 
-from app.compose.machine.machine_files import load_machine, shipped_machine
-from app.jog.held_jog import JogSpeeds, directions_of
-from app.offsets.offset_values import Mode
+from app.compose.machine.machine_files import load_machine, load_shipped_machine
+from app.jog.held_jog import JogSpeeds, make_jog_directions
+from app.offsets.offset_values import ValueMode
 
-MILL, LATHE = shipped_machine("ac-table-mill"), load_machine()
+MILL, LATHE = load_shipped_machine("ac-table-mill"), load_machine()
 
 
 def test_every_axis_has_both_ways() -> None:
     for machine, names in ((MILL, "XYZAC"), (LATHE, "XZC")):
-        ways = directions_of(machine)
-        assert sorted((way.axis, way.sign) for way in ways) == sorted((n, s) for n in names for s in (-1, 1))
+        ways = make_jog_directions(machine)
+        assert sorted((way.axis, way.direction_sign) for way in ways) == sorted(
+            (n, s) for n in names for s in (-1, 1)
+        )
 
 
 def test_no_two_share_a_key_or_a_cell() -> None:
     for machine in (MILL, LATHE):
-        ways = directions_of(machine)
-        assert len({way.key for way in ways}) == len(ways)
+        ways = make_jog_directions(machine)
+        assert len({way.key_name for way in ways}) == len(ways)
         cells = {(way.column, way.row) for way in ways}
         assert len(cells) == len(ways)
         assert (1, 1) not in cells  # the figures stand there
 
 
 def test_x_of_a_lathe_comes_towards_the_operator_and_y_of_a_mill_goes_away() -> None:
-    down = next(way for way in directions_of(LATHE) if way.key == "Down")
-    up = next(way for way in directions_of(MILL) if way.key == "Up")
-    assert (down.axis, down.sign) == ("X", 1)
-    assert (up.axis, up.sign) == ("Y", 1)
+    down = next(way for way in make_jog_directions(LATHE) if way.key_name == "Down")
+    up = next(way for way in make_jog_directions(MILL) if way.key_name == "Up")
+    assert (down.axis, down.direction_sign) == ("X", 1)
+    assert (up.axis, up.direction_sign) == ("Y", 1)
 
 
 def test_a_slow_table_is_not_asked_for_more_than_it_can() -> None:
-    speeds, mode = JogSpeeds(MILL, speed=3), Mode(metric=True)
-    assert speeds.velocity("A", mode, rapid=True) == 60.0  # degrees/s: 3600 a minute
-    assert speeds.velocity("A", mode, rapid=False) == 60.0
-    assert speeds.velocity("C", mode, rapid=True) == 120.0
-    assert speeds.step_speed("A") == 60.0
-    speeds.step = 0
-    assert speeds.distance("A", mode) == 1.0  # degrees
-    assert speeds.distance("Y", mode) == 1.0  # mm
+    speeds, mode = JogSpeeds(MILL, speed_index=3), ValueMode(is_metric=True)
+    assert speeds.find_velocity("A", mode, is_rapid=True) == 60.0  # degrees/s: 3600 a minute
+    assert speeds.find_velocity("A", mode, is_rapid=False) == 60.0
+    assert speeds.find_velocity("C", mode, is_rapid=True) == 120.0
+    assert speeds.find_step_speed("A") == 60.0
+    speeds.step_index = 0
+    assert speeds.find_step_length("A", mode) == 1.0  # degrees
+    assert speeds.find_step_length("Y", mode) == 1.0  # mm

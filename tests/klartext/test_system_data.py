@@ -23,7 +23,7 @@ def with_table(text: str, **setup: Any) -> Ran:
 def read(place: str, before: str = "", **setup: Any) -> float:
     ran = with_table(f"{before}\nFN 18: SYSREAD Q1 = {place}", **setup)
     assert ran.codes == []
-    return ran.state.q[1]
+    return ran.state.q_values[1]
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_a_column_that_the_table_lacks_reads_as_empty_and_says_so(number: int, e
     """R-OFFS is preset to R, the tool's radius, which reads as 99999.9999."""
     ran = with_table(f"FN 18: SYSREAD Q1 = ID50 NR{number} IDX1")
     assert ran.codes == []
-    assert ran.state.q[1] == empty
+    assert ran.state.q_values[1] == empty
     assert [each.code for each in ran.diagnostics] == ["tool-table-column"]
 
 
@@ -105,7 +105,7 @@ def test_what_is_refused(block: str, code: str, names: str) -> None:
     ran = with_table(f"Q1 = 5\n{block}")
     assert ran.codes == [code]
     assert any(names in each.message for each in ran.diagnostics)
-    assert ran.state.q[1] == 5.0
+    assert ran.state.q_values[1] == 5.0
 
 
 def test_what_fn_17_writes_is_read_back_and_moves_nothing() -> None:
@@ -114,6 +114,6 @@ def test_what_fn_17_writes_is_read_back_and_moves_nothing() -> None:
         "FN 18: SYSREAD Q1 = ID50 NR22 IDX7"
     )
     assert ran.codes == []
-    assert ran.state.q[1] == 0.2
+    assert ran.state.q_values[1] == 0.2
     assert [each.code for each in ran.diagnostics] == ["unheeded", "unheeded"]
     assert "RBREAK" in ran.diagnostics[0].message

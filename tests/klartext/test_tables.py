@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
-from core.language.called_files import with_called_files
-from core.language.klartext import read_line
-from core.language.klartext.named_files import called_programs, table_rows
-from core.language.source import Source, load_source
+from core.interpreter.shared.elementary_blocks import BlockKind
+from core.language.called_files import load_called_files
+from core.language.klartext import parse_line
+from core.language.klartext.named_files import find_called_programs, read_table_rows
+from core.language.source import ProgramSource, load_source
 from tests.klartext.running import TOOL, Ran, run_source, whole
 
 DATUMS = """BEGIN VICE .D MM
@@ -34,18 +34,19 @@ DRILL = "CYCL DEF 200 DRILLING ~\n Q200=2 ~\n Q201=-5 ~\n Q206=150 ~\n Q202=5 ~\
 
 def beside(text: str) -> Ran:
     files = tuple(
-        Source(name, each) for name, each in (("VICE.D", DATUMS), ("HOLES.PNT", HOLES), ("SLOT.H", SLOT))
+        ProgramSource(name, each)
+        for name, each in (("VICE.D", DATUMS), ("HOLES.PNT", HOLES), ("SLOT.H", SLOT))
     )
-    return run_source(Source("T.H", whole(TOOL + text), subprograms=files))
+    return run_source(ProgramSource("T.H", whole(TOOL + text), subprograms=files))
 
 
 def test_rows_are_read_by_their_columns() -> None:
-    rows = table_rows(Source("VICE.D", DATUMS))
+    rows = read_table_rows(ProgramSource("VICE.D", DATUMS))
     assert rows[2] == {"X": 10.5, "Y": -5.0, "Z": 3.0, "C": 0.0}
     assert rows[7] == {"Y": 8.0}
-    assert table_rows(Source("V.D", DATUMS.replace("MM", "INCH")))[2]["X"] == pytest.approx(266.7)
-    assert [*table_rows(Source("HOLES.PNT", HOLES))] == [0, 1]
-    assert table_rows(Source("EMPTY.D", "BEGIN EMPTY .D MM\n[END]\n")) == {}
+    assert read_table_rows(ProgramSource("V.D", DATUMS.replace("MM", "INCH")))[2]["X"] == pytest.approx(266.7)
+    assert [*read_table_rows(ProgramSource("HOLES.PNT", HOLES))] == [0, 1]
+    assert read_table_rows(ProgramSource("EMPTY.D", "BEGIN EMPTY .D MM\n[END]\n")) == {}
 
 
 @pytest.mark.parametrize("block", ["CYCL DEF 7.0 DATUM\nCYCL DEF 7.1 #2", "TRANS DATUM TABLE TABLINE2",
@@ -64,20 +65,20 @@ def test_an_empty_cell_leaves_its_axis() -> None:
 def test_points_of_a_table_are_those_of_the_pattern() -> None:
     ran = beside(f'L Z+40 R0 FMAX M3\n{DRILL}SEL PATTERN "HOLES.PNT"\nCYCL CALL PAT FMAX')
     assert ran.codes == []
-    ends = [block.swivel.end for block in ran.blocks if block.kind is Kind.FEED and block.swivel]
+    ends = [block.swivel.end for block in ran.blocks if block.kind is BlockKind.FEED and block.swivel]
     assert ends == [pytest.approx((10, 20, -5)), pytest.approx((30, 20, -7))]
 
 
 def test_a_selected_program_is_called() -> None:
     ran = beside('SEL PGM "SLOT.H"\nL X+1 FMAX\nCALL SELECTED PGM')
     assert ran.codes == []
-    assert sum(block.kind is Kind.FEED for block in ran.blocks) == 1
+    assert sum(block.kind is BlockKind.FEED for block in ran.blocks) == 1
 
 
 def test_tables_are_found_beside_the_program(tmp_path: Path) -> None:
     (tmp_path / "vice.d").write_text(DATUMS)
     (tmp_path / "t.h").write_text(whole('SEL TABLE "TNC:\\VICE.D"\nCYCL DEF 7.0 D\nCYCL DEF 7.1 #2'))
-    source = with_called_files(load_source(tmp_path / "t.h"), [tmp_path])
+    source = load_called_files(load_source(tmp_path / "t.h"), [tmp_path])
     assert [each.name.upper() for each in source.subprograms] == ["VICE.D"]
     assert run_source(source).state.datum == (10.5, -5.0, 3.0)
 
@@ -105,12 +106,12 @@ def test_refused(text: str, code: str, names: str) -> None:
 
 def test_files_are_named_without_their_folder() -> None:
     text = 'CALL PGM TNC:\\PARTS\\SLOT.H\nTRANS DATUM TABLE "VICE.D" TABLINE1\nCYCL DEF 12.1 %50'
-    assert list(called_programs(Source("T.H", whole(text)))) == ["SLOT.H", "VICE.D", "50.H"]
+    assert list(find_called_programs(ProgramSource("T.H", whole(text)))) == ["SLOT.H", "VICE.D", "50.H"]
 
 
 def test_words_of_older_and_of_german_controls() -> None:
     """R, F and M without a value leave all as it is; ABST is DIST."""
-    line = read_line(1, "L X+10 Y+5 R F M")
+    line = parse_line(1, "L X+10 Y+5 R F M")
     assert line.error is None
-    assert read_line(1, "PLANE SPATIAL SPA+10 SPB+0 SPC+0 MOVE ABST50 F500").error is None
-    assert read_line(1, "L X+10 R5").error is not None
+    assert parse_line(1, "PLANE SPATIAL SPA+10 SPB+0 SPC+0 MOVE ABST50 F500").error is None
+    assert parse_line(1, "L X+10 R5").error is not None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.klartext.running import Ran, run
 from tests.klartext.table import AC, ORIGIN
 from tests.klartext.test_chains import on_the_workpiece
@@ -24,38 +24,38 @@ def tips(block: Block, count: int = 9) -> np.ndarray:
     """Where the tip is on the workpiece along a block, by the tests' own matrices."""
     assert block.travel is not None
     assert block.travel.way is not None
-    rows = block.travel.way.machine(np.linspace(0.0, 1.0, count))
+    rows = block.travel.way.machine_positions(np.linspace(0.0, 1.0, count))
     found = []
     for row in rows.tolist():
-        at = dict(zip(AC.names, row, strict=True))
+        at = dict(zip(AC.axis_names, row, strict=True))
         found.append(on_the_workpiece(AC, at, np.array((at["X"], at["Y"], at["Z"])), 60.0))
     return np.array(found)
 
 
 def test_the_tip_stands_while_the_table_turns() -> None:
     ran = ran_of("L A+30 C+50 F200")
-    (move,) = (block for block in ran.blocks if block.kind is Kind.FEED)
+    (move,) = (block for block in ran.blocks if block.kind is BlockKind.FEED)
     assert tips(move) == pytest.approx(np.tile((10.0, 20.0, 5.0), (9, 1)), abs=1e-9)
-    assert move.swivels  # degrees are what the feed counts
+    assert move.has_angular_feed  # degrees are what the feed counts
     assert move.swivel is not None
     assert move.swivel.end == pytest.approx((10.0, 20.0, 5.0))
 
 
 def test_the_tip_runs_straight_while_the_table_turns() -> None:
     ran = ran_of("L X+40 Y+0 Z+10 A+30 C+50 F200")
-    (move,) = (block for block in ran.blocks if block.kind is Kind.FEED)
+    (move,) = (block for block in ran.blocks if block.kind is BlockKind.FEED)
     share = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
     straight = np.array((10.0, 20.0, 5.0)) + share * (
         np.array((40.0, 0.0, 10.0)) - np.array((10.0, 20.0, 5.0))
     )
     assert tips(move) == pytest.approx(straight, abs=1e-9)
     assert move.length == pytest.approx(np.linalg.norm((30.0, -20.0, 5.0)))
-    assert not move.swivels
+    assert not move.has_angular_feed
 
 
 def test_moves_behind_it_count_on_the_turned_workpiece() -> None:
     ran = ran_of("L A+30 C+50 F200\nL X+60 F300")
-    last = [block for block in ran.blocks if block.kind is Kind.FEED][-1]
+    last = [block for block in ran.blocks if block.kind is BlockKind.FEED][-1]
     at = ran.axes(last)
     slides = np.array((at["X"], at["Y"], at["Z"]))
     assert on_the_workpiece(AC, at, slides, 60.0) == pytest.approx((60.0, 20.0, 5.0))
@@ -65,7 +65,7 @@ def test_m129_gives_the_old_way_of_counting_back() -> None:
     ran = ran_of("L A+30 FMAX\nM129\nL X+10 Y+20 Z+5 FMAX")
     last = [block for block in ran.blocks if block.moves][-1]
     assert last.swivel is not None
-    assert last.swivel.slides == pytest.approx(np.add(ORIGIN, (10.0, 20.0, 5.0 + 60.0)))
+    assert last.swivel.machine_position == pytest.approx(np.add(ORIGIN, (10.0, 20.0, 5.0 + 60.0)))
 
 
 def test_function_tcpm_is_m128() -> None:
@@ -73,7 +73,7 @@ def test_function_tcpm_is_m128() -> None:
     other = ran_of("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL A+30 C+50 F200", HERE.replace("M128\n", ""))
     assert one.axes(one.blocks[-2]) == pytest.approx(other.axes(other.blocks[-2]))
     ended = ran_of("FUNCTION RESET TCPM\nL A+30 F200")
-    assert ended.state.slides == pytest.approx(np.add(ORIGIN, (10.0, 20.0, 65.0)))
+    assert ended.state.linear_position == pytest.approx(np.add(ORIGIN, (10.0, 20.0, 65.0)))
 
 
 @pytest.mark.parametrize("call", ["TOOL CALL S2857", "TOOL CALL Z S2857 F400", "TOOL CALL F400"])

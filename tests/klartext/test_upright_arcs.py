@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from tests.klartext.running import Ran, run
 from tests.klartext.test_path_functions import end, on_the_way
 
@@ -36,7 +36,7 @@ def arcs(text: str, start: str = "L X+1 Y+2 Z+3 FMAX M3") -> Ran:
     ],
 )
 def test_an_upright_arc(text: str, middle: tuple[float, ...], stop: tuple[float, ...], length: float) -> None:
-    block = next(block for block in arcs(text).blocks if block.kind is Kind.PLANE_ARC)
+    block = next(block for block in arcs(text).blocks if block.kind is BlockKind.PLANE_ARC)
     assert np.allclose(on_the_way(block, 3)[1], middle)
     assert end(block) == pytest.approx(stop)
     assert block.length == pytest.approx(length)
@@ -47,7 +47,7 @@ def test_mirrored_turned_and_scaled() -> None:
     told = "TRANS MIRROR AXIS X\nTRANS ROTATION ROT+90\nTRANS SCALE SCL0.5\nCC X-3 Z+3\nCP IPA-90 DR- F100"
     ran = run(f"L X+0 Y+0 Z+0 FMAX M3\n{told.replace('CC', 'L X+1 Y+2 Z+3 FMAX{0}CC').format(chr(10))}")
     assert ran.codes == []
-    block = next(block for block in ran.blocks if block.kind is Kind.PLANE_ARC)
+    block = next(block for block in ran.blocks if block.kind is BlockKind.PLANE_ARC)
     x, y, z = -3 + 4 * HALF, 2.0, 3 + 4 * HALF
     assert np.allclose(on_the_way(block, 3)[1], (-y / 2, -x / 2, z / 2))
     assert end(block) == pytest.approx((-1.0, 1.5, 3.5))
@@ -56,7 +56,7 @@ def test_mirrored_turned_and_scaled() -> None:
 def test_in_a_tilted_plane_the_machine_follows() -> None:
     """A 90: the plane's Z is the workpiece's -Y; the slides go the arc as it stands in the plane."""
     tilted = arcs("PLANE AXIAL A+90 TURN FMAX\nL X+1 Y+2 Z+3 FMAX\nCC Y+0 Z+3\nCP IPA-90 DR- F100")
-    block = next(block for block in tilted.blocks if block.kind is Kind.PLANE_ARC)
+    block = next(block for block in tilted.blocks if block.kind is BlockKind.PLANE_ARC)
     before = tilted.blocks[tilted.blocks.index(block) - 1]
     moved = np.subtract(
         [tilted.axes(block)[name] for name in "XYZ"], [tilted.axes(before)[name] for name in "XYZ"]

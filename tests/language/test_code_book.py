@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.dialects import code_book
-from core.language.sinumerik.cycle_names import CYCLES
+from core.interpreter.dialects import get_code_book
+from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS
 from core.language.source import Dialect
 
 OMNITURN, KLARTEXT, SINUMERIK = Dialect.OMNITURN, Dialect.KLARTEXT, Dialect.SINUMERIK
@@ -31,7 +31,7 @@ OMNITURN, KLARTEXT, SINUMERIK = Dialect.OMNITURN, Dialect.KLARTEXT, Dialect.SINU
     ],
 )
 def test_the_code_at_the_cursor(dialect: Dialect, line: str, column: int, head: str) -> None:
-    found = code_book(dialect).at(line, column)
+    found = get_code_book(dialect).at(line, column)
     assert found is not None
     assert found.head == head
 
@@ -47,7 +47,7 @@ def test_the_code_at_the_cursor(dialect: Dialect, line: str, column: int, head: 
     ],
 )
 def test_no_code_stands_there(dialect: Dialect, line: str, column: int) -> None:
-    assert code_book(dialect).at(line, column) is None
+    assert get_code_book(dialect).at(line, column) is None
 
 
 @pytest.mark.parametrize(
@@ -69,18 +69,18 @@ def test_no_code_stands_there(dialect: Dialect, line: str, column: int) -> None:
 def test_typing_is_completed_by_what_it_may_become(
     dialect: Dialect, typed: str, column: int, heads: list[str]
 ) -> None:
-    begin, found = code_book(dialect).completions(typed, len(typed) + 1)
+    begin, found = get_code_book(dialect).find_completions(typed, len(typed) + 1)
     assert (begin, [each.head for each in found]) == (column, heads)
 
 
 @pytest.mark.parametrize("typed", ["", "L X+10 ", "XYZ", "; M1"])
 def test_nothing_completes_a_blank_a_comment_or_what_begins_no_code(typed: str) -> None:
-    assert code_book(KLARTEXT).completions(typed, len(typed) + 1)[1] == ()
+    assert get_code_book(KLARTEXT).find_completions(typed, len(typed) + 1)[1] == ()
 
 
 def _words(dialect: Dialect, head: str) -> dict[str, str]:
-    book = code_book(dialect)
-    return dict(book.words_of(next(each for each in book.entries if each.head == head)))
+    book = get_code_book(dialect)
+    return dict(book.list_words(next(each for each in book.entries if each.head == head)))
 
 
 @pytest.mark.parametrize(
@@ -106,8 +106,8 @@ def test_the_words_of_a_code_come_as_it_has_them() -> None:
 
 @pytest.mark.parametrize("dialect", list(Dialect))
 def test_no_meaning_is_told_of_a_word_that_no_code_has(dialect: Dialect) -> None:
-    book = code_book(dialect)
-    used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.words_of(entry)}
+    book = get_code_book(dialect)
+    used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.list_words(entry)}
     bare = {each.rpartition(".")[2] for each in used}
     assert {word for word in book.meanings if "." not in word} <= bare
     told = {
@@ -118,7 +118,9 @@ def test_no_meaning_is_told_of_a_word_that_no_code_has(dialect: Dialect) -> None
     assert told <= used
 
 
-@pytest.mark.parametrize("head", CYCLES)
+@pytest.mark.parametrize("head", CYCLE_PARAMETERS)
 def test_each_cycle_of_sinumerik_tells_its_parameters(head: str) -> None:
     """Those of the newer controls, which begin with _, apart."""
-    assert {name for name in CYCLES[head] if not name.startswith("_")} == _words(SINUMERIK, head).keys()
+    assert {name for name in CYCLE_PARAMETERS[head] if not name.startswith("_")} == _words(
+        SINUMERIK, head
+    ).keys()

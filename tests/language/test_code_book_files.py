@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.language.code_book import CodeBook
-from core.language.code_book_files import BOOKS, read_book
+from core.language.code_book_files import CODE_BOOKS_FOLDER, read_book
 
 HOUSE = Path(__file__).parents[2]
 FRAME = """
@@ -40,7 +40,7 @@ def book(folder: Path, codes: str, **further: str) -> CodeBook:
 
 def test_an_entry_has_what_its_file_says(tmp_path: Path) -> None:
     found = book(tmp_path, CODE)
-    assert (found.head, found.tail, found.comment) == ("BEGIN\n", "END\n", ";")
+    assert (found.head, found.tail, found.comment_sign) == ("BEGIN\n", "END\n", ";")
     (entry,) = found.entries
     assert (entry.form, entry.what, entry.example) == ("G1", "Straight line.", "G1 X5 F2")
     assert (entry.refused, entry.why, entry.written, entry.whole) == ("G1 F-1", "F", "G1", False)
@@ -129,14 +129,14 @@ def test_a_code_with_two_entries_is_rejected(tmp_path: Path) -> None:
         book(tmp_path, CODE, more=CODE)
 
 
-@pytest.mark.parametrize("path", sorted(BOOKS.rglob("*.*")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted(CODE_BOOKS_FOLDER.rglob("*.*")), ids=lambda path: path.name)
 def test_each_file_is_part_of_a_book_and_of_the_package(path: Path) -> None:
     frame = (path.parent / "book.toml").read_text(encoding="utf-8")
     assert path.stem == "book" or f'"{path.stem}"' in frame
     config = configparser.ConfigParser()
     config.read(HOUSE / "setup.cfg", encoding="utf-8")
     patterns = config["options.package_data"]["core.language"].split()
-    assert any(path.relative_to(BOOKS.parent).match(pattern) for pattern in patterns)
+    assert any(path.relative_to(CODE_BOOKS_FOLDER.parent).match(pattern) for pattern in patterns)
 
 
 def test_no_book_is_read_before_it_is_needed() -> None:

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.language import source as module
-from core.language.long_lines import LongLines
-from core.language.source import Source
+from core.language.long_lines import LazyLines
+from core.language.source import ProgramSource
 
 TEXT = st.text(st.sampled_from("X1.\n "), min_size=1)
 
@@ -22,7 +22,7 @@ def split(text: str) -> list[str]:
 
 @given(TEXT, st.slices(8), st.integers(-9, 9))
 def test_lines_are_those_of_the_text(text: str, at: slice, one: int) -> None:
-    lines, known = LongLines(text), split(text)
+    lines, known = LazyLines(text), split(text)
     assert (len(lines), list(lines), list(lines[at])) == (len(known), known, known[at])
     if -len(known) <= one < len(known):
         assert lines[one] == known[one]
@@ -31,7 +31,7 @@ def test_lines_are_those_of_the_text(text: str, at: slice, one: int) -> None:
             lines[one]
     assert list(pickle.loads(pickle.dumps(lines))) == known
     if known:
-        assert lines.joined(range(len(known))) == "\n".join(known)
+        assert lines.join_lines(range(len(known))) == "\n".join(known)
 
 
 @pytest.mark.parametrize(
@@ -42,10 +42,10 @@ def test_only_a_long_ascii_text_keeps_no_lines(
     text: str, kept: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(module, "_LONG", 2)
-    source = Source("A", text)
+    source = ProgramSource("A", text)
     assert isinstance(source.lines, tuple) is kept
     assert [*source.lines] == text.replace("\r", "").removesuffix("\n").split("\n")
 
 
 def test_a_usual_program_keeps_its_lines() -> None:
-    assert Source("A", "X1\nZ2\n").lines == ("X1", "Z2")
+    assert ProgramSource("A", "X1\nZ2\n").lines == ("X1", "Z2")

@@ -70,9 +70,9 @@ def test_no_parenthesis_no_comment() -> None:
 
 def test_block_delete() -> None:
     line = lex_line(3, " /G00X1")
-    assert line.block_delete
+    assert line.has_block_delete
     assert [word.column for word in line.words] == [3, 6]
-    assert not lex_line(3, "G00X1").block_delete
+    assert not lex_line(3, "G00X1").has_block_delete
 
 
 REFUSED = [

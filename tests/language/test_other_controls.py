@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine.machine_files import load_machine, named_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, load_named_machine
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.texts import text
 
 
 def errors(*lines: str, name: str = "A", machine: str | None = None) -> list[Diagnostic]:
-    on = named_machine(machine)
-    source = Source(name, "\n".join((*lines, "")))
-    return list(prove(source, setup_for(on, tools={1: ToolOffset()}, secondary={}), on).errors)
+    on = load_named_machine(machine)
+    source = ProgramSource(name, "\n".join((*lines, "")))
+    return list(
+        prove(source, create_setup(on, tool_offsets={1: ToolOffset()}, secondary_offsets={}), on).errors
+    )
 
 
 @pytest.mark.parametrize(("text", "column", "shown", "words"), [
@@ -90,7 +92,7 @@ def test_a_habit_of_other_controls_says_what_it_is_here(line: str, code: str, sa
 
 def test_each_loader_code_of_the_shipped_lathe_is_told_as_switched_off() -> None:
     machine = load_machine(None)
-    assert machine.m_disabled == {10, 11, 43, 47, 48, 50, 51, 52, 53, 59}
+    assert machine.disabled_m_codes == {10, 11, 43, 47, 48, 50, 51, 52, 53, 59}
 
 
 def test_the_end_with_text_behind_it_is_no_missing_end() -> None:
@@ -103,7 +105,11 @@ def test_the_end_with_text_behind_it_is_no_missing_end() -> None:
 def test_a_plane_without_its_sign_is_suspected(behind: str, weight: str) -> None:
     machine = load_machine(None)
     text = "\n".join((*HEAD, "(PLXC)", "", behind, "(END)", "M30", ""))
-    report = prove(Source("A", text), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine)
+    report = prove(
+        ProgramSource("A", text),
+        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        machine,
+    )
     found = [each for each in report.diagnostics if each.code == "plane-sign"]
     assert [(each.line, str(each.severity), each.hint) for each in found] == [(4, weight, "Write (~PLXC).")]
 

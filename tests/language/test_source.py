@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from core.language.source import Source, SourceError, load_source
+from core.language.source import ProgramSource, SourceError, load_source
 from tests.coded import raises_code
 
 
@@ -48,7 +48,7 @@ def test_accents_survive(tmp_path: Path, data: bytes, comment: str) -> None:
 
 
 def test_a_line_separator_of_unicode_ends_no_line() -> None:
-    assert Source("a", "G90(a\u2028b)\nM30\n").lines == ("G90(a\u2028b)", "M30")
+    assert ProgramSource("a", "G90(a\u2028b)\nM30\n").lines == ("G90(a\u2028b)", "M30")
 
 
 def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from core.message import Message, worded
+from core.message import Message, fill_template
 
 
 def test_floats_have_six_digits_at_most_and_other_values_stay() -> None:
-    text = worded("{name} is {value} of {count}", {"name": "DP", "value": 1.0 / 3.0, "count": 1234567})
+    text = fill_template("{name} is {value} of {count}", {"name": "DP", "value": 1.0 / 3.0, "count": 1234567})
     assert isinstance(text, Message)
     assert text == "DP is 0.333333 of 1234567"
     assert text.values == {"name": "DP", "value": "0.333333", "count": 1234567}
@@ -16,13 +16,13 @@ def test_floats_have_six_digits_at_most_and_other_values_stay() -> None:
 
 def test_a_message_keeps_its_own_values() -> None:
     made = Message("line {line}", line=3)
-    assert worded(made, {"line": 4}) is made
+    assert fill_template(made, {"line": 4}) is made
 
 
 def test_a_text_without_values_stays_as_it_is() -> None:
-    assert worded("Write {name}.", {}) == "Write {name}."
+    assert fill_template("Write {name}.", {}) == "Write {name}."
 
 
 def test_a_text_without_one_of_its_values_is_refused() -> None:
     with pytest.raises(KeyError):
-        worded("{name} is {value}", {"name": "DP"})
+        fill_template("{name} is {value}", {"name": "DP"})

@@ -12,7 +12,7 @@ import pytest
 
 import resources
 from app.compose.machine.driver_modules import all_drivers
-from core.machine.driver_tables import tables_of
+from core.machine.driver_tables import all_driver_tables
 
 SPEC = Path(__file__).parents[2].parent / "shared" / "spec" / "drivers.md"
 Table = dict[str, object]
@@ -29,7 +29,7 @@ def spec_text() -> str:
         pytest.skip(f"the specification is not here: {SPEC}")
     section = SPEC.read_text(encoding="utf-8").partition("## 9. Machine file")[2]
     text = section.partition("```toml\n")[2].partition("```")[0]
-    absent = "|".join(_OF_FEATURES - {table.path for table in tables_of(all_drivers())})
+    absent = "|".join(_OF_FEATURES - {table.path for table in all_driver_tables(all_drivers())})
     if not absent:
         return text
     return re.sub(rf"^\[({absent})\].*?(?=^\[|\Z)", "", text, flags=re.MULTILINE | re.DOTALL)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.backends.hal_file import hal_file
+from app.compose.backends.hal_file_writer import build_hal_file
 from app.compose.machine.machine_files import parse_machine
 from app.desk.command_errors import CommandError
-from core.table_schema import Finding, MachineFileError
-from drivers.hal.boards.hal_lines import text_of
+from core.table_schema import FileFinding, MachineFileError
+from drivers.hal.boards.hal_file_builder import render_file
 from tests.coded import raises_code
 from tests.texts import text as wording
 
@@ -23,10 +23,10 @@ def changed(name: str, *pairs: tuple[str, str]) -> str:
     return text
 
 
-def refused(text: str) -> tuple[Finding, ...]:
+def refused(text: str) -> tuple[FileFinding, ...]:
     with pytest.raises(MachineFileError) as caught:
-        hal_file(parse_machine(text, "test.toml"))
-    return caught.value.errors
+        build_hal_file(parse_machine(text, "test.toml"))
+    return caught.value.findings
 
 
 STEP, SERVO, BUS, PORT = "mesa-7i76e", "mesa-7i97", "ethercat", "parport"
@@ -121,8 +121,8 @@ BOARDS = '"sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"'
 def test_what_the_file_says_of_its_board(name: str, old: str, new: str, path: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(changed(name, (old, new)), "test.toml")
-    found = [each for each in caught.value.errors if each.path == path]
-    assert found, caught.value.errors
+    found = [each for each in caught.value.findings if each.path == path]
+    assert found, caught.value.findings
     assert expected in str(found[0])
 
 
@@ -203,14 +203,16 @@ def test_a_value_that_is_none_is_told_once(name: str, old: str, new: str, path: 
     """Nothing is made of it: no rate of steps, no scale and no second channel is missed behind it."""
     with pytest.raises(MachineFileError) as caught:
         parse_machine(changed(name, (old, new)), "test.toml")
-    assert [each.path for each in caught.value.errors if "Q" not in each.path] == [path], caught.value.errors
+    assert [each.path for each in caught.value.findings if "Q" not in each.path] == [path], (
+        caught.value.findings
+    )
 
 
 def test_a_board_without_hal_has_nobody_to_drive() -> None:
     text = resources.machine_file("gt75.toml") + '\n[board]\nkind = "sim"\n'
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
-    (error, *_) = caught.value.errors
+    (error, *_) = caught.value.findings
     assert error.path == "hal"
     assert (
         "missing; [board] requires the table [hal], because [board] describes the hardware "
@@ -226,9 +228,9 @@ def test_a_pot_is_refused_where_the_board_has_none() -> None:
 
 def test_machines_without_a_board_or_without_hal() -> None:
     with raises_code(CommandError, "no-board", "[board]", '"sim", "parport"'):
-        hal_file(parse_machine(changed("hal", ('[board]\nkind = "sim"', "")), "test.toml"))
+        build_hal_file(parse_machine(changed("hal", ('[board]\nkind = "sim"', "")), "test.toml"))
     with raises_code(CommandError, "not-hal"):
-        hal_file(parse_machine(resources.machine_file("gt75.toml"), "gt75.toml"))
+        build_hal_file(parse_machine(resources.machine_file("gt75.toml"), "gt75.toml"))
 
 
 # --- what the words of the file become
@@ -237,7 +239,7 @@ def test_machines_without_a_board_or_without_hal() -> None:
 def lines(text: str) -> list[str]:
     return [
         line.split("#")[0].rstrip()
-        for line in text_of(hal_file(parse_machine(text, "test.toml"))).splitlines()
+        for line in render_file(build_hal_file(parse_machine(text, "test.toml"))).splitlines()
     ]
 
 
@@ -256,8 +258,8 @@ def test_position_mode_leaves_the_place_to_the_card() -> None:
 
 def test_one_switch_may_be_home_and_limit() -> None:
     both = changed(STEP, (f'home = "{INPUT}-10"', f'home = "{INPUT}-10"\nlimit_high = "{INPUT}-10"'))
-    file = hal_file(parse_machine(both, "test.toml"))
-    (wire,) = [wire for wire in file.wires if wire.pin == f"{INPUT}-10"]
+    file = build_hal_file(parse_machine(both, "test.toml"))
+    (wire,) = [wire for wire in file.wiring_rows if wire.pin == f"{INPUT}-10"]
     assert wire.names == ("hal.axes.X.home", "hal.axes.X.limit_high")
 
 

@@ -8,46 +8,48 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from core.machine.machine_file import ABSENT, changes
-from core.table_schema import HIDDEN, MachineFileError
+from core.machine.machine_file import MISSING_VALUE, compare_machine_files
+from core.table_schema import SECRET_MASK, MachineFileError
 
 SHIPPED = resources.machine_file("gt75.toml")
 
 
 def test_the_same_file_has_no_changes_whatever_its_comments_and_order() -> None:
-    assert changes(SHIPPED, SHIPPED) == ()
-    assert changes("a = 1\nb = 2\n", "b = 2  # first now\na = 1.0\n") == ()
+    assert compare_machine_files(SHIPPED, SHIPPED) == ()
+    assert compare_machine_files("a = 1\nb = 2\n", "b = 2  # first now\na = 1.0\n") == ()
 
 
 def test_a_changed_key_is_told_by_its_path_with_both_values() -> None:
     new = SHIPPED.replace("vmax = 300", "vmax = 200", 1).replace('safe = "keep"', "safe = false")
-    assert [tuple(change) for change in changes(SHIPPED, new)] == [
+    assert [tuple(change) for change in compare_machine_files(SHIPPED, new)] == [
         ("axis.X.vmax", "300", "200"),
         ("io.out.collet.safe", '"keep"', "false"),
     ]
 
 
 def test_keys_that_come_and_go() -> None:
-    assert [tuple(c) for c in changes("[a]\nx = 1\ny = [1, 2]\n", "[a]\nx = 1\n[b]\nz = true\n")] == [
-        ("b.z", ABSENT, "true"),
-        ("a.y", "[1, 2]", ABSENT),
+    assert [
+        tuple(c) for c in compare_machine_files("[a]\nx = 1\ny = [1, 2]\n", "[a]\nx = 1\n[b]\nz = true\n")
+    ] == [
+        ("b.z", MISSING_VALUE, "true"),
+        ("a.y", "[1, 2]", MISSING_VALUE),
     ]
 
 
 def test_true_is_not_one() -> None:
-    assert [str(change) for change in changes("a = 1\n", "a = true\n")] == ["a: 1 → true"]
+    assert [str(change) for change in compare_machine_files("a = 1\n", "a = true\n")] == ["a: 1 → true"]
 
 
 def test_an_empty_table_that_gets_keys_is_told() -> None:
-    assert [tuple(c) for c in changes("[sim]\n", "[sim]\nseed = 3\n")] == [
-        ("sim.seed", ABSENT, "3"),
-        ("sim", "{}", ABSENT),
+    assert [tuple(c) for c in compare_machine_files("[sim]\n", "[sim]\nseed = 3\n")] == [
+        ("sim.seed", MISSING_VALUE, "3"),
+        ("sim", "{}", MISSING_VALUE),
     ]
 
 
 def test_what_is_no_toml_raises() -> None:
     with pytest.raises(tomllib.TOMLDecodeError):
-        changes("a = \n", "a = 1\n")
+        compare_machine_files("a = \n", "a = 1\n")
 
 
 @pytest.mark.parametrize(
@@ -62,8 +64,8 @@ def test_what_is_no_toml_raises() -> None:
     ],
 )
 def test_passwords_and_tokens_are_in_no_list_of_changes(table: str, key: str, value: str) -> None:
-    (change,) = changes("", f"[{table}]\n{key} = {value}\n")
-    assert change == (f"{table}.{key}", ABSENT, HIDDEN)
+    (change,) = compare_machine_files("", f"[{table}]\n{key} = {value}\n")
+    assert change == (f"{table}.{key}", MISSING_VALUE, SECRET_MASK)
 
 
 @pytest.mark.parametrize(
@@ -81,4 +83,4 @@ def test_nor_in_what_is_wrong_with_a_file(lines: str) -> None:
     with pytest.raises(MachineFileError) as told:
         parse_machine(f"{SHIPPED}{lines}\n", "m.toml")
     assert "1234" not in str(told.value)
-    assert all("1234" not in finding.value for finding in told.value.errors)
+    assert all("1234" not in finding.value for finding in told.value.findings)

@@ -27,8 +27,8 @@ def with_encoder(*changes: tuple[str, str]) -> str:
 
 def test_an_encoder_that_is_a_node() -> None:
     hardware = parse_machine(with_encoder(), "can").hardware
-    assert hardware.table(EncoderTable) == EncoderTable(node="turns", counts_per_rev=4096)
-    inverter = hardware.table(InverterTable)
+    assert hardware.find_driver_table(EncoderTable) == EncoderTable(node="turns", counts_per_rev=4096)
+    inverter = hardware.find_driver_table(InverterTable)
     assert inverter is not None
     assert inverter.disagree == pytest.approx(0.15)
 
@@ -38,9 +38,9 @@ def test_an_encoder_at_a_drive() -> None:
         ('node = "turns", counts_per_rev = 4096', 'node = "Z", object = "60E4:1", counts_per_rev = -2000'),
         ("turns = { id = 20, profile = 406 }\n", ""),
     )
-    found = parse_machine(text, "can").hardware.table(EncoderTable)
+    found = parse_machine(text, "can").hardware.find_driver_table(EncoderTable)
     assert found is not None
-    assert (found.node, *found.address, found.counts_per_rev) == ("Z", 0x60E4, 1, -2000)
+    assert (found.node, *found.object_address, found.counts_per_rev) == ("Z", 0x60E4, 1, -2000)
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> No
     machine = parse_machine(text, "gt75-parport.toml")
     assert not machine.interlocks.guard_stops
     assert not machine.interlocks.two_hand_start
-    assert machine.inputs["estop"].active_low  # the guard opens this circuit
+    assert machine.inputs["estop"].is_active_low  # the guard opens this circuit
     assert_refused(
         text.replace("two_hand_start = false", "guard_stops = true\ntwo_hand_start = false"),
         "interlocks.guard_stops",

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from core.table_schema import Finding, MachineFileError
+from core.table_schema import FileFinding, MachineFileError
 from drivers.hal.hal_table import HalTable
 
 HAL = resources.machine_file("gt75-hal.toml")
@@ -24,16 +24,16 @@ def changed(*pairs: tuple[str, str]) -> str:
     return text
 
 
-def only_finding(text: str) -> Finding:
+def only_finding(text: str) -> FileFinding:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
-    (found,) = caught.value.errors
+    (found,) = caught.value.findings
     return found
 
 
 def test_shipped_table_in_model_units() -> None:
     machine = parse_machine(HAL, "hal")
-    table = machine.hardware.table(HalTable)
+    table = machine.hardware.find_driver_table(HalTable)
     assert table is not None
     assert (table.period, table.ahead, table.watchdog) == (0.001, 0.1, 0.25)
     assert table.axes["X"].command == "x-servo.in"
@@ -60,8 +60,8 @@ def test_shipped_table_in_model_units() -> None:
 def test_each_refusal_names_its_key(old: str, new: str, path: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(changed((old, new)), "test.toml")
-    found = [each for each in caught.value.errors if each.path == path]
-    assert found, caught.value.errors
+    found = [each for each in caught.value.findings if each.path == path]
+    assert found, caught.value.findings
     assert expected in str(found[0])
 
 
@@ -118,14 +118,14 @@ def test_axes_with_one_home_switch_leave_it_at_home(method: int, offset: float, 
     """An axis that rests on the switch would hide the switch of the other axis."""
     with pytest.raises(MachineFileError) as caught:
         parse_machine(on_one_switch(method, offset), "test.toml")
-    assert [found.path for found in caught.value.errors] == ["axis.X.home.offset", "axis.Z.home.offset"]
-    for found, other in zip(caught.value.errors, ("Z", "X"), strict=True):
+    assert [found.path for found in caught.value.findings] == ["axis.X.home.offset", "axis.Z.home.offset"]
+    for found, other in zip(caught.value.findings, ("Z", "X"), strict=True):
         assert f"expected a home offset {side} 0, because hal.axes.{other}.home uses the same" in str(found)
 
 
 @pytest.mark.parametrize(("method", "offset"), [(19, -0.1), (21, 0.1)])
 def test_axes_may_share_a_home_switch_that_they_leave(method: int, offset: float) -> None:
-    table = parse_machine(on_one_switch(method, offset), "test.toml").hardware.table(HalTable)
+    table = parse_machine(on_one_switch(method, offset), "test.toml").hardware.find_driver_table(HalTable)
     assert table is not None
     assert table.axes["X"].home == table.axes["Z"].home
 

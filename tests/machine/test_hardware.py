@@ -8,9 +8,9 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
-from core.machine.desk_tables import DncModel
-from core.table_schema import Finding, MachineFileError
-from drivers.canopen.canopen_nodes import CanTerminal, can_terminal
+from core.machine.serial_and_backup_tables import SerialLineModel
+from core.table_schema import FileFinding, MachineFileError
+from drivers.canopen.canopen_nodes import CanTerminal, parse_terminal
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.inverter.inverter_table import InverterTable
@@ -27,10 +27,10 @@ def changed(old: str, new: str, text: str = CAN) -> str:
     return text.replace(old, new, 1)
 
 
-def findings(text: str) -> tuple[Finding, ...]:
+def findings(text: str) -> tuple[FileFinding, ...]:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
-    return caught.value.errors
+    return caught.value.findings
 
 
 def assert_refused(text: str, path: str, expected: str) -> None:
@@ -42,7 +42,7 @@ def assert_refused(text: str, path: str, expected: str) -> None:
 
 def test_shipped_bus_in_model_units() -> None:
     machine = parse_machine(CAN, "can")
-    bus = machine.hardware.table(CanopenTable)
+    bus = machine.hardware.find_driver_table(CanopenTable)
     assert bus is not None
     assert (bus.interface, bus.channel, bus.bitrate) == ("socketcan", "can0", 1_000_000)
     assert (bus.sync, bus.heartbeat, bus.record, bus.host_id) == (0.01, 0.1, 0.02, 127)
@@ -55,9 +55,9 @@ def test_shipped_bus_in_model_units() -> None:
     assert (0x6007, 0, 3) in bus.nodes[0].sdo
     assert bus.nodes[3].sdo == ()  # "all" means the drives
     assert machine.hardware.spindle_driver == "cia402"
-    assert machine.hardware.homes["X"].method == 1
-    assert machine.hardware.homes["X"].latch == pytest.approx(6 * 25.4 / 60)
-    assert machine.hardware.analog["feed_pot"].high == 1.5
+    assert machine.hardware.homing_models["X"].method == 1
+    assert machine.hardware.homing_models["X"].latch == pytest.approx(6 * 25.4 / 60)
+    assert machine.hardware.analog_inputs["feed_pot"].high_value == 1.5
 
 
 @pytest.mark.parametrize(
@@ -82,9 +82,12 @@ def test_every_shipped_file_is_good(name: str) -> None:
 
 def test_other_lines() -> None:
     machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "vfd")
-    vfd, dnc = machine.hardware.table(InverterTable), machine.hardware.table(DncModel)
+    vfd, dnc = (
+        machine.hardware.find_driver_table(InverterTable),
+        machine.hardware.find_driver_table(SerialLineModel),
+    )
     assert vfd is not None
-    assert (vfd.family, vfd.line.baud, vfd.line.parity, vfd.comm_loss) == (
+    assert (vfd.family, vfd.line_settings.baud, vfd.line_settings.parity, vfd.comm_loss) == (
         "delta-vfdb",
         9600,
         "N",
@@ -92,7 +95,9 @@ def test_other_lines() -> None:
     )
     assert dnc is not None
     assert (dnc.bits, dnc.parity, dnc.flow, dnc.eol) == (7, "E", "xonxoff", "\r\n")
-    grbl = parse_machine(resources.machine_file("gt75-grblhal.toml"), "grbl").hardware.table(GrblhalTable)
+    grbl = parse_machine(resources.machine_file("gt75-grblhal.toml"), "grbl").hardware.find_driver_table(
+        GrblhalTable
+    )
     assert grbl is not None
     assert (grbl.x_mode, grbl.settings) == ("G8", {13: 0, 32: 2})
 
@@ -100,7 +105,10 @@ def test_other_lines() -> None:
 def test_faults_of_the_simulation() -> None:
     faults = 'faults = [{ at = 12.0, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]'
     machine = parse_machine(changed("[sim]\n", f"[sim]\nrealtime = true\n{faults}\n", SHIPPED), "t")
-    sim, shipped = machine.hardware.table(SimulatedTable), load_machine(None).hardware.table(SimulatedTable)
+    sim, shipped = (
+        machine.hardware.find_driver_table(SimulatedTable),
+        load_machine(None).hardware.find_driver_table(SimulatedTable),
+    )
     assert sim is not None
     assert sim.faults == (PlannedFault(12.0, "jam", "Z"), PlannedFault(1.0, "estop"))
     assert sim.realtime
@@ -108,11 +116,11 @@ def test_faults_of_the_simulation() -> None:
 
 
 def test_addresses_of_terminals() -> None:
-    assert can_terminal("401.6200.1.3") == CanTerminal("401", 0x6200, 1, 3)
-    assert can_terminal("X.60FD.0.16") == CanTerminal("X", 0x60FD, 0, 16)
-    assert can_terminal("401.6401.2") == CanTerminal("401", 0x6401, 2, -1)
+    assert parse_terminal("401.6200.1.3") == CanTerminal("401", 0x6200, 1, 3)
+    assert parse_terminal("X.60FD.0.16") == CanTerminal("X", 0x60FD, 0, 16)
+    assert parse_terminal("401.6401.2") == CanTerminal("401", 0x6401, 2, -1)
     for wrong in ("OUT-1", "401.62.1.0", "401.6200.1.0.0", "401.62000.1", ""):
-        assert can_terminal(wrong) is None
+        assert parse_terminal(wrong) is None
 
 
 @pytest.mark.parametrize(

@@ -7,52 +7,64 @@ from pathlib import Path
 
 import pytest
 
-from core.key_declaration import Kind, Pair, Range, Unit, Words, file_key, key_table, keys_of
-from core.table_schema import Values, read_table
+from core.key_declaration import (
+    FileUnit,
+    KeyRange,
+    Pair,
+    ValueKind,
+    Words,
+    declare_key,
+    get_declared_keys,
+    make_key_table,
+)
+from core.table_schema import FileValues, read_table
 
 
-@key_table
+@make_key_table
 class Line:
     """A table with a key of each form."""
 
-    port: str = file_key(meaning="Port.")
-    reply: float = file_key(
-        Range(0.01, 2.0, Unit.MILLISECONDS), name="reply_ms", default=0.2, meaning="Time."
+    port: str = declare_key(meaning="Port.")
+    reply: float = declare_key(
+        KeyRange(0.01, 2.0, FileUnit.MILLISECONDS), name="reply_ms", default=0.2, meaning="Time."
     )
-    parity: str = file_key(default="N", choices=("N", "E"), meaning="Parity.")
-    range: Pair = file_key(Range(0.0, 50.0, Unit.LENGTH), default=(0.0, 1.0), meaning="Range.")
-    words: Words = file_key(default="", secret=True, meaning="Words.")
+    parity: str = declare_key(default="N", choices=("N", "E"), meaning="Parity.")
+    range: Pair = declare_key(KeyRange(0.0, 50.0, FileUnit.LENGTH), default=(0.0, 1.0), meaning="Range.")
+    words: Words = declare_key(default="", secret=True, meaning="Words.")
     others: tuple[str, ...] = ()
 
 
 class Plain:
     """Keys of a table that is read into no object of its own."""
 
-    port: str = file_key(meaning="Port.")
-    count: int = file_key(Range(1, 9), derived=True, meaning="Count.")
+    port: str = declare_key(meaning="Port.")
+    count: int = declare_key(KeyRange(1, 9), derived=True, meaning="Count.")
 
 
 def found(table: object) -> list[tuple[str, str]]:
-    return [(each.path, each.code) for each in read_table(table, Line, "line", Values(True))]
+    return [(each.path, each.code) for each in read_table(table, Line, "line", FileValues(True))]
 
 
 def test_the_annotation_is_the_kind() -> None:
-    kinds = [(each.key, each.kind) for each in keys_of(Line)]
+    kinds = [(each.key, each.kind) for each in get_declared_keys(Line)]
     assert kinds == [
-        ("port", Kind.TEXT),
-        ("reply_ms", Kind.NUMBER),
-        ("parity", Kind.CHOICE),
-        ("range", Kind.PAIR),
-        ("words", Kind.WORDS),
+        ("port", ValueKind.TEXT),
+        ("reply_ms", ValueKind.NUMBER),
+        ("parity", ValueKind.CHOICE),
+        ("range", ValueKind.PAIR),
+        ("words", ValueKind.WORDS),
     ]
-    assert [(each.key, each.derived) for each in keys_of(Plain)] == [("port", False), ("count", True)]
+    assert [(each.key, each.is_derived) for each in get_declared_keys(Plain)] == [
+        ("port", False),
+        ("count", True),
+    ]
 
 
 def test_the_reader_fills_the_object_in_units_of_the_model() -> None:
-    values = Values(True)
+    values = FileValues(True)
     table = {"port": "tty0", "reply_ms": 500, "range": [0, 1], "words": ["one", "two"]}
     assert read_table(table, Line, "line", values) == []
-    line = values.model(Line, "line", others=("more",))
+    line = values.make_model(Line, "line", others=("more",))
     assert line == Line("tty0", 0.5, "N", (0.0, 25.4), "one two", ("more",))
 
 
@@ -86,10 +98,10 @@ def test_a_secret_is_not_printed_and_a_value_not_changed() -> None:
 
 def test_an_annotation_that_is_no_kind_is_refused() -> None:
     class Wrong:
-        file: Path = file_key(meaning="File.")
+        file: Path = declare_key(meaning="File.")
 
     with pytest.raises(KeyError):
-        keys_of(Wrong)
+        get_declared_keys(Wrong)
 
 
 def test_a_required_value_is_refused_where_it_is_missing() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
-from core.table_schema import Finding, MachineFileError
+from core.table_schema import FileFinding, MachineFileError
 from tests.coded import raises_code
 from tests.texts import text as wording
 
@@ -21,13 +21,13 @@ def changed(old: str, new: str) -> str:
     return SHIPPED.replace(old, new, 1)
 
 
-def findings(text: str) -> tuple[Finding, ...]:
+def findings(text: str) -> tuple[FileFinding, ...]:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
-    return caught.value.errors
+    return caught.value.findings
 
 
-def only(text: str) -> Finding:
+def only(text: str) -> FileFinding:
     found = findings(text)
     assert len(found) == 1, found
     return found[0]
@@ -53,7 +53,7 @@ def test_shipped_times_spindle_and_interlocks() -> None:
     assert (timing.commit, timing.lookahead, timing.low_water, timing.lease) == (0.03, 1.0, 0.08, 0.2)
     assert timing.setpoint == 0.001
     assert (machine.collet.open_time, machine.collet.close_time) == (0.25, 0.3)
-    assert (spindle.rpm_min, spindle.rpm_max, spindle.accel, spindle.decel) == (50, 3500, 1500, 2500)
+    assert (spindle.min_rpm, spindle.max_rpm, spindle.accel, spindle.decel) == (50, 3500, 1500, 2500)
     assert (spindle.at_speed, spindle.at_speed_time, spindle.timeout) == (0.05, 0.3, 5)
     assert not machine.interlocks.spindle_with_collet_open
     assert machine.interlocks.unclamp_while_turning
@@ -63,9 +63,9 @@ def test_shipped_times_spindle_and_interlocks() -> None:
 
 def test_shipped_signals() -> None:
     machine = load_machine(None)
-    assert machine.outputs["collet"].safe is None
-    assert machine.outputs["coolant"].safe is False
-    assert machine.inputs["estop"].active_low
+    assert machine.outputs["collet"].safe_state is None
+    assert machine.outputs["coolant"].safe_state is False
+    assert machine.inputs["estop"].is_active_low
     assert {"TB2-5", "TB2-7", "TB2-9", *(str(n) for n in range(1, 17))} <= set(machine.inputs)
     assert machine.m_codes[25] == ("catcher", True)
     assert machine.m_codes[16] == ("live1", False)
@@ -173,8 +173,8 @@ def test_m_codes_that_do_nothing_on_this_machine() -> None:
         changed("[m_codes]", "[m_codes]\n80 = { ignored = true }\n81 = { ignored = true, enabled = false }"),
         "t",
     )
-    assert machine.m_ignored == {80}
-    assert machine.m_disabled >= {81}
+    assert machine.ignored_m_codes == {80}
+    assert machine.disabled_m_codes >= {81}
     assert 80 not in machine.m_codes
     for wrong in ("{ ignored = false }", '{ ignored = true, output = "catcher" }', "{ ignored = 1 }"):
         assert findings(changed("[m_codes]", f"[m_codes]\n80 = {wrong}"))[0].path.startswith("m_codes.80.")
@@ -252,4 +252,4 @@ def test_a_turret_is_refused_while_nothing_indexes_it() -> None:
     text = resources.machine_file("gt75.toml").replace('kind = "gang" ', 'kind = "turret" ')
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "gt75.toml")
-    assert [(each.path, each.code) for each in caught.value.errors] == [("tooling.kind", "broken-rule")]
+    assert [(each.path, each.code) for each in caught.value.findings] == [("tooling.kind", "broken-rule")]

@@ -14,21 +14,23 @@ import app.extras
 import core.extras
 import core.machine
 import drivers
-from app.compose.machine_file_page import document, main, number, references
-from core.key_declaration import Field, Kind, file_key, keys_of
-from core.machine.machine_tables import TABLES_OF_A_LATHE
-from core.page_contents import anchor_of
+from app.compose.machine_file_page import generate_page, iterate_references, main, number
+from core.key_declaration import KeyField, ValueKind, declare_key, get_declared_keys
+from core.machine.machine_tables import LATHE_TABLES
+from core.page_contents import make_anchor
 from core.table_schema import TableReference
 from tests.whole_product import WHOLE_PRODUCT
 
 PAGE = Path(__file__).parents[2] / "docs" / "integrator" / "machine-file.md"
-TABLES = tuple(references())
-KEYS = tuple((f"{table.heading}: {field.key}", field) for table in TABLES for field in keys_of(table.keys))
-_NUMERIC = (Kind.NUMBER, Kind.WHOLE)
+TABLES = tuple(iterate_references())
+KEYS = tuple(
+    (f"{table.heading}: {field.key}", field) for table in TABLES for field in get_declared_keys(table.keys)
+)
+_NUMERIC = (ValueKind.NUMBER, ValueKind.INTEGER)
 
 
-def _declared(value: object) -> tuple[Field, ...]:
-    return keys_of(value) if isinstance(value, type) else ()
+def _declared(value: object) -> tuple[KeyField, ...]:
+    return get_declared_keys(value) if isinstance(value, type) else ()
 
 
 def _modules() -> Iterator[str]:
@@ -42,18 +44,20 @@ def _modules() -> Iterator[str]:
 @WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
     command = "python -m app.compose.machine_file_page docs/integrator/machine-file.md"
-    assert PAGE.read_text("utf-8") == document(), command
+    assert PAGE.read_text("utf-8") == generate_page(), command
 
 
 def test_the_command_writes_the_page(tmp_path: Path) -> None:
     page = tmp_path / "new" / "page.md"
     assert main([str(page)]) == 0
-    assert page.read_text("utf-8") == document()
+    assert page.read_text("utf-8") == generate_page()
 
 
 def test_every_declared_key_is_on_the_page() -> None:
     shown = {(field.key, field.meaning) for _, field in KEYS}
-    shown |= {(field.key, field.meaning) for each in TABLES_OF_A_LATHE.values() for field in keys_of(each)}
+    shown |= {
+        (field.key, field.meaning) for each in LATHE_TABLES.values() for field in get_declared_keys(each)
+    }
     for name in _modules():
         for variable, value in vars(importlib.import_module(name)).items():
             missing = [field.key for field in _declared(value) if (field.key, field.meaning) not in shown]
@@ -62,24 +66,24 @@ def test_every_declared_key_is_on_the_page() -> None:
 
 
 @pytest.mark.parametrize(("place", "field"), KEYS, ids=[place for place, _ in KEYS])
-def test_every_key_says_what_it_means(place: str, field: Field) -> None:
+def test_every_key_says_what_it_means(place: str, field: KeyField) -> None:
     meaning = field.meaning
     assert re.fullmatch(r"(true|false|Not|s32|[A-Z0-9\"`]).{11,300}\.", meaning), place
     assert "|" not in meaning, "ends the cell of the table"
     assert meaning.count("`") % 2 == 0
-    if field.default == 0 and field.kind in _NUMERIC and field.low > 0.0:
+    if field.default == 0 and field.kind in _NUMERIC and field.minimum > 0.0:
         assert not re.search(r"\b0:", meaning), "the file cannot contain this value"
 
 
 def test_a_field_without_a_meaning_is_refused() -> None:
     with pytest.raises(TypeError, match="meaning"):
-        file_key(default="")  # type: ignore[call-arg]
+        declare_key(default="")  # type: ignore[call-arg]
 
 
 def test_the_contents_lead_to_headings_that_differ() -> None:
-    text = document()
+    text = generate_page()
     links = re.findall(r"^- \[.*\]\(#(.*)\)$", text, re.MULTILINE)
-    headings = [anchor_of(title) for title in re.findall(r"^## (.*)$", text, re.MULTILINE)]
+    headings = [make_anchor(title) for title in re.findall(r"^## (.*)$", text, re.MULTILINE)]
     assert headings == links
     assert len(set(headings)) == len(headings)
 
@@ -104,7 +108,7 @@ def test_purposes_are_sentences() -> None:
     ],
 )
 def test_units_ranges_and_defaults_are_those_of_the_file(row: str) -> None:
-    assert row in document()
+    assert row in generate_page()
 
 
 def test_numbers_have_no_exponent() -> None:

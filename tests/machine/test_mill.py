@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from app.compose.machine.machine_files import named_machine, parse_machine
+from app.compose.machine.machine_files import load_named_machine, parse_machine
 from core.table_schema import MachineFileError
 from tests.machine.mill import MILL
 
@@ -20,7 +20,7 @@ def test_the_axes_come_slides_first() -> None:
 
 def test_rotary_figures_are_degrees_and_seconds() -> None:
     machine = parse_machine(MILL, "mill")
-    a, c = machine.axis("A"), machine.axis("C")
+    a, c = machine.find_axis("A"), machine.find_axis("C")
     assert a.travel == (-120.0, 120.0)
     assert c.travel is None
     assert math.isclose(a.vmax, 60.0)  # 3600 degrees a minute
@@ -51,11 +51,11 @@ def test_what_a_mill_cannot_be(change: tuple[str, str], path: str) -> None:
 
 def test_the_kind_decides_the_language() -> None:
     assert parse_machine(MILL, "mill").language == "klartext"
-    assert named_machine("gt75").language == "omniturn"
-    assert named_machine("sinumerik-linear").language == "sinumerik"
+    assert load_named_machine("gt75").language == "omniturn"
+    assert load_named_machine("sinumerik-linear").language == "sinumerik"
 
 
 def test_a_lathe_has_no_y() -> None:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(MILL.replace('kind = "mill"', 'kind = "lathe"'), "lathe")
-    assert ("axis.Y", "unknown-key") in {(each.path, each.code) for each in caught.value.errors}
+    assert ("axis.Y", "unknown-key") in {(each.path, each.code) for each in caught.value.findings}

@@ -31,10 +31,10 @@ def text(*changes: tuple[str, str]) -> str:
 
 
 def test_a_setter() -> None:
-    setter = parse_machine(text(), "test").hardware.table(SetterModel)
+    setter = parse_machine(text(), "test").hardware.find_driver_table(SetterModel)
     assert setter is not None
-    assert setter.face("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
-    assert setter.face("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))
+    assert setter.touch_position("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
+    assert setter.touch_position("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))
 
 
 @pytest.mark.parametrize(

@@ -5,30 +5,32 @@ from __future__ import annotations
 import pytest
 
 import resources
-from app.compose.known_part import OF_MACHINE, known_part
-from app.compose.machine.machine_files import SHIPPED, parse_machine
+from app.compose.machine.machine_files import DEFAULT_MACHINE_FILE, parse_machine
+from app.compose.part_data import MACHINE_FILE_REASON, read_known_part
 from core.machine.machine_model import Machine
-from core.proving.checks.part_checks import CHECKS
+from core.proving.checks.part_checks import PART_CHECKS
 from core.table_schema import MachineFileError
 from tests.texts import text as wording
 
-ALL_CHECKS = wording("machine.no-part-check", checks=", ".join(CHECKS))
+ALL_CHECKS = wording("machine.no-part-check", checks=", ".join(PART_CHECKS))
 
 
 def machine(checks: str) -> Machine:
-    return parse_machine(resources.machine_file(SHIPPED) + f"\n[checks]\n{checks}\n", "lathe.toml")
+    return parse_machine(
+        resources.machine_file(DEFAULT_MACHINE_FILE) + f"\n[checks]\n{checks}\n", "lathe.toml"
+    )
 
 
 def test_checks_are_silenced_by_their_ids() -> None:
     silenced = machine('silenced = ["chip-load", "cuts-air"]')
-    assert silenced.silenced == ("chip-load", "cuts-air")
-    setting = known_part(silenced, {}, {})
-    assert setting.silenced == {"chip-load": OF_MACHINE, "cuts-air": OF_MACHINE}
+    assert silenced.silenced_checks == ("chip-load", "cuts-air")
+    setting = read_known_part(silenced, {}, {})
+    assert setting.silenced == {"chip-load": MACHINE_FILE_REASON, "cuts-air": MACHINE_FILE_REASON}
 
 
 @pytest.mark.parametrize("checks", ["", "silenced = []"])
 def test_without_one_nothing_is_silenced(checks: str) -> None:
-    assert machine(checks).silenced == ()
+    assert machine(checks).silenced_checks == ()
 
 
 @pytest.mark.parametrize(

@@ -6,15 +6,15 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
-from core.table_schema import Finding, MachineFileError
+from core.table_schema import FileFinding, MachineFileError
 from tests.machine.spoil import spec_text
 from tests.texts import text as wording
 
 
-def findings(text: str) -> list[Finding]:
+def findings(text: str) -> list[FileFinding]:
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
-    return list(caught.value.errors)
+    return list(caught.value.findings)
 
 
 def without(*lines: str) -> str:
@@ -40,7 +40,7 @@ def test_the_example_of_the_specification_loads() -> None:
     assert (machine.limits.max_feed, machine.limits.manual_rapid) == pytest.approx((127.0, 100 * 25.4 / 60))
     assert (machine.limits.resolution, machine.limits.clearance) == pytest.approx((0.00127, 31.75))
     assert (machine.collet.open_time, machine.collet.close_time) == (0.5, 0.5)
-    assert machine.hardware.analog["spindle_pot"].switch == "spindle_auto"
+    assert machine.hardware.analog_inputs["spindle_pot"].switch == "spindle_auto"
 
 
 def test_the_example_on_a_bus_wants_the_switch_wired_and_says_the_line() -> None:
@@ -58,7 +58,7 @@ def test_a_switch_of_another_name_has_no_button_on_the_screen() -> None:
     (found,) = findings(text)
     assert found.path == "io.analog.spindle_pot.switch"
     assert 'auto = { at = "IN-…" }' in found.expected
-    assert parse_machine(text.replace('"auto"', '"spindle_auto"'), "t").hardware.analog["spindle_pot"]
+    assert parse_machine(text.replace('"auto"', '"spindle_auto"'), "t").hardware.analog_inputs["spindle_pot"]
 
 
 def test_figures_of_slides_that_say_nothing_follow_from_their_speed_and_count() -> None:

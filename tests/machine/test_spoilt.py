@@ -68,7 +68,7 @@ def paths_of(text: str, name: str) -> list[str]:
     try:
         parse_machine(text, name)
     except MachineFileError as error:
-        return [finding.path for finding in error.errors]
+        return [finding.path for finding in error.findings]
     return []
 
 

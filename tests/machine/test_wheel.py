@@ -20,9 +20,9 @@ def with_wheel(switches: str = "[io.in]") -> str:
 
 def test_a_wheel_with_its_switches() -> None:
     machine = parse_machine(with_wheel(SWITCHES), "can")
-    assert machine.hardware.analog["handwheel"].counts_per_click == -4
+    assert machine.hardware.analog_inputs["handwheel"].counts_per_click == -4
     assert {"wheel_x", "wheel_x10"} <= set(machine.inputs)
-    assert machine.hardware.analog["feed_pot"].counts_per_click == 1
+    assert machine.hardware.analog_inputs["feed_pot"].counts_per_click == 1
 
 
 @pytest.mark.parametrize(

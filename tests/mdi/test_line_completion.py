@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from app.mdi.mdi_model import LONGEST, LineCompletion, MdiLine
-from core.interpreter.dialects import code_book
+from app.mdi.mdi_model import MAX_LENGTH, LineCompletion, MdiInput
+from core.interpreter.dialects import get_code_book
 from core.language.source import Dialect
 
 
 def line(dialect: Dialect, text: str, at: int | None = None) -> LineCompletion:
-    typing = MdiLine()
-    typing.put(text, at)
-    return LineCompletion(typing, lambda: code_book(dialect))
+    typing = MdiInput()
+    typing.set_text(text, at)
+    return LineCompletion(typing, lambda: get_code_book(dialect))
 
 
 def press(completion: LineCompletion, *keys: str) -> str:
     for key in keys:
-        assert completion.typed(key), key
-    return completion.typing.text
+        assert completion.handle_key(key), key
+    return completion.mdi_input.text
 
 
 @pytest.mark.parametrize(
@@ -36,27 +36,27 @@ def press(completion: LineCompletion, *keys: str) -> str:
 def test_what_is_typed_is_completed(dialect: Dialect, typed: str, down: int, written: str) -> None:
     completion = line(dialect, typed)
     assert press(completion, "Tab", *(["Down"] * down), "Enter") == written
-    assert completion.typing.at == len(written)
-    assert not completion.open
+    assert completion.mdi_input.cursor == len(written)
+    assert not completion.is_open
 
 
 def test_a_code_is_put_in_at_the_cursor() -> None:
     completion = line(Dialect.OMNITURN, "G0 X5", 2)
     assert press(completion, "Tab", "Down", "Tab") == "G01 X5"
-    assert completion.typing.at == 3
+    assert completion.mdi_input.cursor == 3
 
 
 def test_what_begins_no_code_is_looked_up_by_chapters() -> None:
     """Behind a blank nothing is begun: the chapter of the code before, and the next ones by the arrows."""
     completion = line(Dialect.SINUMERIK, "G0 ")
     press(completion, "Tab")
-    assert completion.codes.chosen is not None
-    assert completion.codes.chosen.head == "G0"
-    first = completion.codes.title
+    assert completion.code_help.selected_entry is not None
+    assert completion.code_help.selected_entry.head == "G0"
+    first = completion.code_help.title
     press(completion, "Right")
-    assert completion.codes.title != first
+    assert completion.code_help.title != first
     press(completion, "Left")
-    assert completion.codes.title == first
+    assert completion.code_help.title == first
 
 
 def test_a_block_that_goes_on_is_written_in_one_line() -> None:
@@ -69,21 +69,21 @@ def test_a_block_that_goes_on_is_written_in_one_line() -> None:
 
 def test_of_what_does_not_fit_only_the_head_is_written() -> None:
     assert press(line(Dialect.KLARTEXT, "CYCL DEF 251"), "Tab", "Enter") == "CYCL DEF 251"
-    full = "M" * (LONGEST - 2) + " G"
+    full = "M" * (MAX_LENGTH - 2) + " G"
     completion = line(Dialect.OMNITURN, full)
     press(completion, "Tab", "Enter")
-    assert completion.typing.text == full
-    assert not completion.open
+    assert completion.mdi_input.text == full
+    assert not completion.is_open
 
 
 def test_any_other_key_goes_to_the_line_and_closes_the_choices() -> None:
     completion = line(Dialect.OMNITURN, "G0")
     press(completion, "Tab")
-    assert not completion.typed("X")
-    assert not completion.open
-    assert completion.typing.text == "G0"
+    assert not completion.handle_key("X")
+    assert not completion.is_open
+    assert completion.mdi_input.text == "G0"
 
 
 def test_closed_it_takes_nothing_but_tab() -> None:
     completion = line(Dialect.OMNITURN, "G0")
-    assert not any(completion.typed(key) for key in ("Up", "Left", "Enter", "5"))
+    assert not any(completion.handle_key(key) for key in ("Up", "Left", "Enter", "5"))

@@ -8,15 +8,15 @@ from math import atan2, cos, degrees, radians
 
 import pytest
 
-from app.compose.machine.machine_files import named_machine
-from app.compose.machine.machine_setup import setup_for
-from core.executor.control_status import modal_given_up
-from core.interpreter.dialects import line_alone
+from app.compose.machine.machine_files import load_named_machine
+from app.compose.machine.machine_setup import create_setup
+from core.executor.control_status import modal_after_cancel
+from core.interpreter.dialects import interpret_mdi_line
 from core.interpreter.shared.actions import ToolChange
-from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.job_setup import ToolOffset
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Dialect, Source
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import Dialect, ProgramSource
 from tests.texts import text as wording
 
 MILL, LATHE = "ac-table-mill", "sinumerik-modulo"
@@ -26,21 +26,21 @@ class Mdi:
     """A machine at which lines are typed one after the other; each runs to its end."""
 
     def __init__(self, machine: str, tools: Mapping[int, ToolOffset] | None = None) -> None:
-        self.machine = named_machine(machine)
+        self.machine = load_named_machine(machine)
         self.tools = dict(tools or {})
-        self.point = Checkpoint(Modal(metric=True))
+        self.point = Checkpoint(ModalState(metric=True))
         self.at: tuple[float, ...] = (0.0,) * len(self.machine.axes)
 
     def enters(self, text: str) -> str:
         """The block runs, or the code of what it is refused for."""
         setup = replace(
-            setup_for(self.machine, tools=self.tools, secondary={}),
+            create_setup(self.machine, tool_offsets=self.tools, secondary_offsets={}),
             start=self.at,
-            begin=Begin(self.point, single=True),
+            begin=PassStart(self.point, is_mdi_line=True),
         )
-        line = line_alone(Source("MDI", text, Dialect(self.machine.language)), setup)
-        blocks = list(line.blocks(to_first_error=True))
-        if line.failed:
+        line = interpret_mdi_line(ProgramSource("MDI", text, Dialect(self.machine.language)), setup)
+        blocks = list(line.generate_blocks(to_first_error=True))
+        if line.has_errors:
             return line.diagnostics[0].code
         self.at = blocks[-1].machine_end if blocks else self.at
         self.point = line.checkpoint
@@ -53,7 +53,7 @@ class Mdi:
     def line(self, key: str) -> str:
         """What is told of a group of functions."""
         assert self.point.kept is not None
-        return dict(self.point.kept.lines)[key]
+        return dict(self.point.kept.state_lines)[key]
 
 
 @pytest.fixture
@@ -110,7 +110,7 @@ def test_slides_that_were_jogged_meanwhile_count_where_they_stand(mill: Mdi) -> 
 
 
 def test_what_a_program_has_left_is_what_a_line_begins_with(mill: Mdi) -> None:
-    mill.point = Checkpoint(modal_given_up(Modal(tool=5, rpm=1200.0, spindle=1)))
+    mill.point = Checkpoint(modal_after_cancel(ModalState(tool=5, rpm=1200.0, spindle=1)))
     mill.runs("L Z+0 FMAX")
     assert mill.at[2] == pytest.approx(-270.0)
     assert (mill.line("tool"), mill.line("spindle"), mill.line("plane")) == ("T5 Z", "M5", "")
@@ -150,12 +150,12 @@ def test_what_transmit_refuses_is_refused_in_mdi_too() -> None:
 
 def test_a_tool_call_is_a_block_of_its_own(mill: Mdi) -> None:
     setup = replace(
-        setup_for(mill.machine, tools=mill.tools, secondary={}),
+        create_setup(mill.machine, tool_offsets=mill.tools, secondary_offsets={}),
         start=mill.at,
-        begin=Begin(mill.point, single=True),
+        begin=PassStart(mill.point, is_mdi_line=True),
     )
-    line = line_alone(Source("MDI", "TOOL CALL 5 Z", Dialect.KLARTEXT), setup)
-    assert [block.action for block in line.blocks()] == [ToolChange(5)]
+    line = interpret_mdi_line(ProgramSource("MDI", "TOOL CALL 5 Z", Dialect.KLARTEXT), setup)
+    assert [block.action for block in line.generate_blocks()] == [ToolChange(5)]
 
 
 # --- refusals -------------------------------------------------------------------------------------------

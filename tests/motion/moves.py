@@ -9,8 +9,8 @@ from itertools import pairwise
 
 from hypothesis import strategies as st
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 from core.motion.axis_limits import MotionLimits
 
 Point = tuple[float, float]
@@ -19,7 +19,9 @@ V, A, T = 127.0, 3048.0, 0.001  # mm/s, mm/s², s: the shipped lathe
 LIMITS = MotionLimits(vmax=(V, V, 1200.0), amax=(A, A, 12000.0), interval=T)
 
 
-def line(start: Point, end: Point, feed: float = 50.0, *, n: int = 1, kind: Kind = Kind.FEED) -> Block:
+def line(
+    start: Point, end: Point, feed: float = 50.0, *, n: int = 1, kind: BlockKind = BlockKind.FEED
+) -> Block:
     """A straight move from (x, z) to (x, z), mm and mm/s."""
     return Block(
         n=n,
@@ -34,7 +36,7 @@ def line(start: Point, end: Point, feed: float = 50.0, *, n: int = 1, kind: Kind
         c=0.0,
         offset_x=0.0,
         offset_z=0.0,
-        modal=Modal(),
+        modal=ModalState(),
         feed=feed,
     )
 
@@ -43,7 +45,7 @@ def arc(
     start: Point, end: Point, centre: Point, feed: float = 50.0, *, n: int = 1, clockwise: bool = True
 ) -> Block:
     """A circular move from (x, z) to (x, z) round the centre (x, z)."""
-    block = line(start, end, feed, n=n, kind=Kind.ARC)
+    block = line(start, end, feed, n=n, kind=BlockKind.ARC)
     return replace(block, cx=centre[0], cz=centre[1], clockwise=clockwise)
 
 
@@ -96,7 +98,7 @@ def programs(draw: st.DrawFn, most: int = 12) -> list[Block]:
     for i, (size, way, feed, half, rapid) in enumerate(draw(st.lists(_step, min_size=1, max_size=most)), 1):
         to = (at[0] + size * math.sin(way * math.pi / 12), at[1] + size * math.cos(way * math.pi / 12))
         if half is None:
-            blocks.append(line(at, to, feed, n=i, kind=Kind.RAPID if rapid else Kind.FEED))
+            blocks.append(line(at, to, feed, n=i, kind=BlockKind.RAPID if rapid else BlockKind.FEED))
         elif rapid:
             blocks.append(arc(at, to, _bulged(at, to, half), feed, n=i))
         else:

@@ -8,12 +8,12 @@ import numpy as np
 
 from core.motion.axis_limits import MotionLimits
 from core.motion.block_table import MotionBlock
-from core.motion.motion_path import Path, PathBuilder
+from core.motion.motion_path import MotionPath, PathBuilder
 
 
-def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: float = np.inf) -> Path:
+def build_path(blocks: Iterable[MotionBlock], limits: MotionLimits, *, rpm_max: float = np.inf) -> MotionPath:
     """The path of ``blocks``; see ``PathBuilder``. Raises MotionError when a block cannot be moved."""
     builder = PathBuilder(limits, rpm_max=rpm_max)
-    builder.add(blocks)
-    builder.close()
-    return builder.path()
+    builder.add_blocks(blocks)
+    builder.end_path()
+    return builder.build_path()

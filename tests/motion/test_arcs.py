@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.motion.axis_limits import MotionError
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, V, arc
 from tests.motion.paths import build_path
@@ -17,8 +17,8 @@ from tests.motion.paths import build_path
 def test_clockwise_from_above_is_the_convex_corner_of_a_shaft() -> None:
     """X.1 Z0 to X.25 Z-.15 round (.1, -.15), inches: halfway at 45 degrees outside the corner."""
     block = arc((2.54, 0.0), (6.35, -3.81), (2.54, -3.81), 20.0)
-    profile = plan(build_path([block], LIMITS))
-    halfway = profile.position(profile.duration / 2)[0]
+    profile = plan_motion(build_path([block], LIMITS))
+    halfway = profile.positions_at(profile.duration_s / 2)[0]
     side = 3.81 / math.sqrt(2)
     assert halfway == pytest.approx([2.54 + side, -3.81 + side, 0.0], abs=1e-9)
 
@@ -27,7 +27,7 @@ def test_counterclockwise_goes_the_other_way_round() -> None:
     block = arc((2.54, 0.0), (6.35, -3.81), (2.54, -3.81), 20.0, clockwise=False)
     path = build_path([block], LIMITS)
     assert path.length == pytest.approx(3.81 * 1.5 * math.pi)
-    middle = path.point(np.array([path.length / 2]))[0]
+    middle = path.positions_at(np.array([path.length / 2]))[0]
     assert middle[:2] == pytest.approx([2.54 - 3.81 / math.sqrt(2), -3.81 - 3.81 / math.sqrt(2)])
 
 
@@ -38,29 +38,31 @@ def test_start_equal_to_end_is_a_full_circle() -> None:
 
 def test_speed_and_vector_sum_stay_within_the_slides() -> None:
     radius = 2.0
-    profile = plan(build_path([arc((0, radius), (0, radius), (0, 0), 500.0)], LIMITS))
+    profile = plan_motion(build_path([arc((0, radius), (0, radius), (0, 0), 500.0)], LIMITS))
     limit = math.sqrt(0.8 * A * radius)
     assert profile.phases.v.max() == pytest.approx(limit)
     assert np.abs(profile.phases.a).max() == pytest.approx(0.6 * A)
-    t = np.linspace(0.0, profile.duration, 4001)
-    felt = np.diff(profile.position(t), 2, axis=0)[:, :2] / (t[1] - t[0]) ** 2
+    t = np.linspace(0.0, profile.duration_s, 4001)
+    felt = np.diff(profile.positions_at(t), 2, axis=0)[:, :2] / (t[1] - t[0]) ** 2
     assert np.hypot(*felt.T).max() <= A * (1.0 + 1e-6)
 
 
 def test_a_wide_arc_is_held_by_the_slides_speed() -> None:
-    profile = plan(build_path([arc((0, 900), (900, 0), (0, 0), 500.0)], LIMITS))
+    profile = plan_motion(build_path([arc((0, 900), (900, 0), (0, 0), 500.0)], LIMITS))
     assert profile.phases.v.max() == pytest.approx(V)
 
 
 def test_a_slow_arc_may_use_nearly_all_the_acceleration() -> None:
     path = build_path([arc((0, 10), (10, 0), (0, 0), 10.0)], LIMITS)
-    assert path.a[0] == pytest.approx(math.sqrt(A**2 - (15.0**2 / 10.0) ** 2))  # 15: half as much again
+    assert path.accelerations[0] == pytest.approx(
+        math.sqrt(A**2 - (15.0**2 / 10.0) ** 2)
+    )  # 15: half as much again
 
 
 def test_a_rounded_centre_still_meets_the_end_exactly() -> None:
     block = arc((0, 10), (10, 0), (0.0005, -0.0008))
-    profile = plan(build_path([block], LIMITS))
-    assert profile.position(np.array([0.0, profile.duration]))[:, :2] == pytest.approx(
+    profile = plan_motion(build_path([block], LIMITS))
+    assert profile.positions_at(np.array([0.0, profile.duration_s]))[:, :2] == pytest.approx(
         np.array([[0.0, 10.0], [10.0, 0.0]]), abs=1e-9
     )
 
@@ -73,4 +75,4 @@ def test_a_wrong_centre_is_refused() -> None:
 def test_an_arc_without_radius_is_no_motion() -> None:
     path = build_path([arc((0, 10), (0, 10), (0, 10))], LIMITS)
     assert len(path) == 0
-    assert plan(path).duration == 0.0
+    assert plan_motion(path).duration_s == 0.0

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import FloatArray
 from core.motion.joint_easing import SUPPORT
-from core.motion.motion_path import Path, PathBuilder
-from core.motion.motion_plan import plan, settled_joints
-from core.motion.motion_profile import Profile
-from core.motion.window_planner import ChunkPlanner
+from core.motion.motion_path import MotionPath, PathBuilder
+from core.motion.motion_plan import find_last_settled_joint, plan_motion
+from core.motion.motion_profile import MotionProfile
+from core.motion.window_planner import WindowPlanner
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, programs, rounded_chords
 from tests.motion.paths import build_path
 
@@ -25,19 +25,19 @@ GRAIN = 0.00127  # mm: the step of the shipped lathe, .00005 in
 STEPPED = dataclasses.replace(LIMITS, grain=GRAIN)
 
 
-def joints(path: Path) -> FloatArray:
-    return np.vstack([path.pieces.start, path.point(path.s[-1:])])
+def joints(path: MotionPath) -> FloatArray:
+    return np.vstack([path.pieces.start, path.positions_at(path.joint_distances[-1:])])
 
 
 def written(blocks: list[Block]) -> FloatArray:
     return joints(build_path(blocks, LIMITS))
 
 
-def felt(profile: Profile, dt: float) -> float:
+def felt(profile: MotionProfile, dt: float) -> float:
     """Largest second difference of setpoints ``dt`` apart, as a share of the acceleration."""
     worst = 0.0
     for begin in (0.0, 0.3 * dt, 0.7 * dt):
-        p = profile.position(np.arange(begin, profile.duration, dt))
+        p = profile.positions_at(np.arange(begin, profile.duration_s, dt))
         worst = max(worst, float(np.abs(np.diff(p, 2, axis=0)).max(initial=0.0)))
     return worst / dt**2 / A
 
@@ -46,8 +46,8 @@ def felt(profile: Profile, dt: float) -> float:
 @pytest.mark.parametrize("grid", [0.0001, 0.001, 0.00127, 0.00254])
 def test_rounded_chords_are_as_fast_as_their_circle(grid: float) -> None:
     """R 50 mm in 0.02 mm chords at 100 mm/s, words of 4 and 3 places of a mm, of .00005 and .0001 in."""
-    profile = plan(build_path(rounded_chords(7854, 100.0, grid), STEPPED))
-    assert profile.duration < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
+    profile = plan_motion(build_path(rounded_chords(7854, 100.0, grid), STEPPED))
+    assert profile.duration_s < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
     assert felt(profile, T) < 1.02
     assert felt(profile, T / 2) < 1.05
 
@@ -104,11 +104,11 @@ def test_nothing_but_short_chords_is_touched(blocks: list[Block]) -> None:
     path, as_written = build_path(blocks, STEPPED), build_path(blocks, LIMITS)
     off = np.abs(joints(path) - joints(as_written)).max(axis=1)
     assert off.max() <= GRAIN + 1e-12
-    short = (as_written.pieces.length < 0.05) & (as_written.pieces.curvature == 0.0)
+    short = (as_written.pieces.length < 0.05) & (as_written.pieces.curvatures == 0.0)
     between = np.concatenate([[False], short[:-1] & short[1:], [False]])
     assert (off[~between] < 1e-12).all()
-    assert path.blocks.tolist() == as_written.blocks.tolist()
-    assert plan(path).end_s == path.s[-1]
+    assert path.block_numbers.tolist() == as_written.block_numbers.tolist()
+    assert plan_motion(path).end_distance == path.joint_distances[-1]
 
 
 @pytest.mark.parametrize("kind", ["arc", "rapid", "long"])
@@ -118,11 +118,11 @@ def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
     here, to = (last.x, last.z), (last.x + 0.4, last.z)
     other = {
         "arc": arc(here, to, (last.x + 0.2, last.z), 60.0, n=301),
-        "rapid": dataclasses.replace(line(here, (last.x + 0.02, last.z), 60.0, n=301), kind=Kind.RAPID),
+        "rapid": dataclasses.replace(line(here, (last.x + 0.02, last.z), 60.0, n=301), kind=BlockKind.RAPID),
         "long": line(here, to, 60.0, n=301),
     }[kind]
     path = build_path([*blocks, other], STEPPED)
-    assert path.block_span(301)[0] == pytest.approx(path.s[300])
+    assert path.block_span(301)[0] == pytest.approx(path.joint_distances[300])
     assert joints(path)[300, :2] == pytest.approx(here, abs=0)
 
 
@@ -130,13 +130,16 @@ def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
 @pytest.mark.parametrize("window", [90, 300, 2000])
 def test_windows_equal_the_whole(window: int) -> None:
     blocks = rounded_chords(1500, 100.0, 0.00127)
-    whole = plan(build_path(blocks, STEPPED))
-    planner = ChunkPlanner(STEPPED, window=window)
-    chunks = [*planner.add(blocks), *planner.finish()]
-    assert chunks[-1].t1[-1] == pytest.approx(whole.duration, rel=1e-3)
-    assert [n for chunk in chunks for n in chunk.n.tolist()] == [b.n for b in blocks]
+    whole = plan_motion(build_path(blocks, STEPPED))
+    planner = WindowPlanner(STEPPED, window=window)
+    chunks = [*planner.plan_blocks(blocks), *planner.finish_section()]
+    assert chunks[-1].block_ends_s[-1] == pytest.approx(whole.duration_s, rel=1e-3)
+    assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == [b.n for b in blocks]
     for before, after in pairwise(chunks):
-        ends, begins = (before.profile.position(before.profile.duration), after.profile.position(0.0))
+        ends, begins = (
+            before.profile.positions_at(before.profile.duration_s),
+            after.profile.positions_at(0.0),
+        )
         assert ends == pytest.approx(begins, abs=1e-9)
 
 
@@ -148,18 +151,20 @@ def test_a_path_that_grows_does_not_move_under_the_slides(seed: int, grid: float
     chance = np.random.default_rng(seed)
     blocks = rounded_chords(700, 100.0, grid)
     builder, at = PathBuilder(STEPPED), 40
-    builder.add(blocks[:at])
-    profile = plan(builder.path())
+    builder.add_blocks(blocks[:at])
+    profile = plan_motion(builder.build_path())
     while at < len(blocks):
-        (s,), (v,) = profile.at(float(chance.random()) * profile.duration)
-        here = builder.path().point(np.array([s]))
-        builder.drop_before(int(builder.path().blocks[profile.path.piece_at(np.array([s]))[0]]))
+        (s,), (v,) = profile.distance_and_speed_at(float(chance.random()) * profile.duration_s)
+        here = builder.build_path().positions_at(np.array([s]))
+        builder.drop_blocks_before(
+            int(builder.build_path().block_numbers[profile.path.piece_at(np.array([s]))[0]])
+        )
         count = int(chance.integers(1, 150))
-        builder.add(blocks[at : at + count], s + v * v / (2.0 * 0.2 * A))
+        builder.add_blocks(blocks[at : at + count], s + v * v / (2.0 * 0.2 * A))
         at += count
-        assert builder.path().point(np.array([s])) == pytest.approx(here, abs=1e-9)
-        profile = plan(builder.path(), start_s=s, start_v=v)
-    assert profile.position(profile.duration)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
+        assert builder.build_path().positions_at(np.array([s])) == pytest.approx(here, abs=1e-9)
+        profile = plan_motion(builder.build_path(), start_distance=s, start_speed=v)
+    assert profile.positions_at(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
 
 
 def test_what_comes_in_late_still_smooths_the_old_end() -> None:
@@ -167,9 +172,9 @@ def test_what_comes_in_late_still_smooths_the_old_end() -> None:
     whole = joints(build_path(blocks, STEPPED))
     builder = PathBuilder(STEPPED)
     for part in range(0, 600, 150):
-        builder.add(blocks[part : part + 150])
-    builder.close()
-    assert joints(builder.path()) == pytest.approx(whole, abs=1e-9)
+        builder.add_blocks(blocks[part : part + 150])
+    builder.end_path()
+    assert joints(builder.build_path()) == pytest.approx(whole, abs=1e-9)
 
 
 @pytest.mark.parametrize("near", [0, 1, 5])
@@ -185,35 +190,35 @@ def test_what_is_no_chord_comes_in_late_as_it_is(near: int) -> None:
         dataclasses.replace(line(top, top, 120.0, n=204), c=90.0),
     ]
     builder = PathBuilder(STEPPED)
-    builder.add(there)
-    end = builder.path().s
-    builder.add(behind, float(end[-1 - near]))
-    path = builder.path()
+    builder.add_blocks(there)
+    end = builder.build_path().joint_distances
+    builder.add_blocks(behind, float(end[-1 - near]))
+    path = builder.build_path()
     assert path.block_span(202)[1] - path.block_span(202)[0] == pytest.approx(2.0 * math.pi, abs=1e-9)
     assert path.block_span(204)[1] - path.block_span(204)[0] == pytest.approx(90.0, abs=1e-9)
     ends = path.pieces.point(path.pieces.length)
     assert ends[:-1] == pytest.approx(path.pieces.start[1:], abs=1e-9)
-    assert path.point(path.s[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
+    assert path.positions_at(path.joint_distances[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
 
 
 def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> None:
     blocks = rounded_chords(400, 100.0, 0.00127)
     builder = PathBuilder(STEPPED)
-    builder.add(blocks[:200])
-    before = joints(builder.path())
-    builder.add(blocks[200:], float(builder.path().s[-1 - SUPPORT // 2]))
-    assert joints(builder.path())[:201] == pytest.approx(before, abs=0)
+    builder.add_blocks(blocks[:200])
+    before = joints(builder.build_path())
+    builder.add_blocks(blocks[200:], float(builder.build_path().joint_distances[-1 - SUPPORT // 2]))
+    assert joints(builder.build_path())[:201] == pytest.approx(before, abs=0)
 
 
 def test_a_turn_of_c_behind_a_path_under_way_keeps_its_length() -> None:
     """Its start differs from the end of the path by the noise of sums; a slide that stands has no chord."""
     builder = PathBuilder(STEPPED)
-    builder.add([dataclasses.replace(line((10.0, 5.0), (20.0, 7.0)), c=-345.0)])
+    builder.add_blocks([dataclasses.replace(line((10.0, 5.0), (20.0, 7.0)), c=-345.0)])
     turn = dataclasses.replace(line((20.0, 7.0), (20.0, 7.0), 120.0, n=2), c0=-345.0 + 1e-12, c=-355.0)
-    builder.add([turn], math.inf)
-    path = builder.path()
+    builder.add_blocks([turn], math.inf)
+    path = builder.build_path()
     assert path.pieces.length[-1] == pytest.approx(10.0)
-    assert path.point(path.s[-1:])[0] == pytest.approx([20.0, 7.0, -355.0])
+    assert path.positions_at(path.joint_distances[-1:])[0] == pytest.approx([20.0, 7.0, -355.0])
 
 
 _short = st.lists(
@@ -240,12 +245,14 @@ def test_nothing_before_a_corner_moves_for_what_comes_behind_it(
 
 def test_no_joint_that_is_settled_moves_when_more_chords_come_in() -> None:
     blocks, builder = rounded_chords(400, 5.0, 0.00254), PathBuilder(STEPPED)
-    builder.add(blocks[:200])
-    path = builder.path()
-    settled = settled_joints(path)
-    builder.add(blocks[200:])
+    builder.add_blocks(blocks[:200])
+    path = builder.build_path()
+    settled = find_last_settled_joint(path)
+    builder.add_blocks(blocks[200:])
     assert settled > 100
-    assert joints(builder.path())[: settled + 1] == pytest.approx(joints(path)[: settled + 1], abs=1e-12)
+    assert joints(builder.build_path())[: settled + 1] == pytest.approx(
+        joints(path)[: settled + 1], abs=1e-12
+    )
 
 
 def test_a_chord_of_two_steps_keeps_half_its_length() -> None:

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import resources
-from app.cli.figures.proof_json import report_json
+from app.cli.figures.proof_output import make_report_json
 from app.compose.machine.machine_files import parse_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from core.proving.prove_program import prove
 from core.table_schema import MachineFileError
 from tests.motion.moves import A, chords, rounded_chords
@@ -46,8 +46,8 @@ def moved(blocks: list[Block], tolerance: float) -> float:
 
 def test_coarse_words_run_as_the_curve_does_with_it_and_slowly_without() -> None:
     blocks = rounded_chords(2000, 100.0, 0.005)
-    assert plan(build_path(blocks, limits(0.005))).duration < 1.01 * IDEAL
-    assert plan(build_path(blocks, limits(0.0))).duration > 3.0 * IDEAL
+    assert plan_motion(build_path(blocks, limits(0.005))).duration_s < 1.01 * IDEAL
+    assert plan_motion(build_path(blocks, limits(0.0))).duration_s > 3.0 * IDEAL
 
 
 @pytest.mark.parametrize("grid", [0.001, 0.00254, 0.005, 0.01])
@@ -80,9 +80,9 @@ def test_without_it_the_count_is_all() -> None:
 
 def test_the_proof_shows_it() -> None:
     lathe = machine("0.0002")
-    setup = setup_for(lathe, tools={1: ToolOffset()}, secondary={})
-    report = prove(Source("A", "G90G94F300\nT1\nX.5Z.1\nM30\n"), setup, lathe)
-    assert report_json("A", report)["corner_tolerance"] == pytest.approx(0.0002)
+    setup = create_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    report = prove(ProgramSource("A", "G90G94F300\nT1\nX.5Z.1\nM30\n"), setup, lathe)
+    assert make_report_json("A", report)["corner_tolerance"] == pytest.approx(0.0002)
 
 
 @pytest.mark.parametrize(
@@ -97,4 +97,4 @@ def test_the_proof_shows_it() -> None:
 def test_what_cannot_be_kept_is_refused(said: str, expected: str) -> None:
     with pytest.raises(MachineFileError) as refused:
         machine(said)
-    assert any(f.path == "limits.corner_tolerance" and expected in f.expected for f in refused.value.errors)
+    assert any(f.path == "limits.corner_tolerance" and expected in f.expected for f in refused.value.findings)

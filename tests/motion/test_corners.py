@@ -7,23 +7,23 @@ import math
 import numpy as np
 import pytest
 
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, rounded_chords
 from tests.motion.paths import build_path
 
 
 def corner_speed(points: list[tuple[float, float]], feed: float = 100.0) -> float:
     path = build_path(polyline(points, feed), LIMITS)
-    profile = plan(path)
-    return float(profile.at(profile.time_at(path.s[1:2]))[1][0])
+    profile = plan_motion(path)
+    return float(profile.distance_and_speed_at(profile.times_at_distances(path.joint_distances[1:2]))[1][0])
 
 
 def felt(points: list[tuple[float, float]], feed: float = 100.0) -> float:
     """Largest second difference of setpoints an interval apart, as a share of the acceleration."""
-    profile = plan(build_path(polyline(points, feed), LIMITS))
+    profile = plan_motion(build_path(polyline(points, feed), LIMITS))
     worst = 0.0
     for begin in np.linspace(0.0, T, 8, endpoint=False):
-        p = profile.position(np.arange(begin - 2 * T, profile.duration + 2 * T, T))
+        p = profile.positions_at(np.arange(begin - 2 * T, profile.duration_s + 2 * T, T))
         worst = max(worst, float(np.abs(np.diff(p, 2, axis=0)).max()))
     return worst / T**2 / A
 
@@ -73,48 +73,48 @@ def test_a_tangential_joint_costs_nothing() -> None:
         arc((0, 30), (10, 40), (10, 30), 60.0, n=2),  # from +Z to +X, which is clockwise
         line((10, 40), (40, 40), 60.0, n=3),
     ]
-    profile = plan(build_path(blocks, LIMITS))
-    assert profile.duration == pytest.approx((60.0 + 5.0 * math.pi) / 60.0 + 60.0 / A, rel=1e-9)
+    profile = plan_motion(build_path(blocks, LIMITS))
+    assert profile.duration_s == pytest.approx((60.0 + 5.0 * math.pi) / 60.0 + 60.0 / A, rel=1e-9)
 
 
 def test_half_a_circle_in_short_chords_takes_no_longer_than_the_circle() -> None:
     """R 50 mm in 0.02 mm chords at 100 mm/s: the way at full feed plus one ramp."""
-    profile = plan(build_path(chords(50.0, math.pi, 7854, 100.0), LIMITS))
+    profile = plan_motion(build_path(chords(50.0, math.pi, 7854, 100.0), LIMITS))
     ideal = math.pi * 50.0 / 100.0 + 100.0 / A
-    assert ideal * (1.0 - 1e-4) < profile.duration < 1.01 * ideal
+    assert ideal * (1.0 - 1e-4) < profile.duration_s < 1.01 * ideal
 
 
 @pytest.mark.parametrize("chord", [0.002, 0.01, 0.05])
 def test_chords_run_at_the_centripetal_limit_however_short(chord: float) -> None:
     """Axis by axis: at 45 degrees the acceleration is shared, so v² may be sqrt(2) of what an arc takes."""
     count = round(5.0 * math.pi / chord)
-    profile = plan(build_path(chords(5.0, math.pi, count, 127.0), LIMITS))
+    profile = plan_motion(build_path(chords(5.0, math.pi, count, 127.0), LIMITS))
     limit = math.sqrt(0.8 * A * 5.0)
-    on_axis = profile.at(profile.duration / 2)[1][0]
+    on_axis = profile.distance_and_speed_at(profile.duration_s / 2)[1][0]
     assert on_axis == pytest.approx(limit, rel=0.02)
     assert profile.phases.v.max() <= limit * 2**0.25
 
 
 def test_chords_do_not_ask_more_of_an_axis_than_it_has() -> None:
     """What a drive sees: second differences of setpoints, away from the start and the end."""
-    profile = plan(build_path(chords(5.0, math.pi, 3000, 127.0), LIMITS))
-    t = np.arange(0.0, profile.duration, T)
-    felt = np.abs(np.diff(profile.position(t), 2, axis=0)) / T**2
+    profile = plan_motion(build_path(chords(5.0, math.pi, 3000, 127.0), LIMITS))
+    t = np.arange(0.0, profile.duration_s, T)
+    felt = np.abs(np.diff(profile.positions_at(t), 2, axis=0)) / T**2
     assert felt.max() < 1.02 * A
 
 
 def test_rounded_chords_are_as_fast_as_their_circle() -> None:
     """Four places of a millimetre on chords of 0.02 mm: a joint turns by up to half a degree to and fro."""
-    profile = plan(build_path(rounded_chords(7854, 100.0, 0.0001), LIMITS))
-    assert profile.duration < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
-    felt = np.abs(np.diff(profile.position(np.arange(0.0, profile.duration, T)), 2, axis=0)) / T**2
+    profile = plan_motion(build_path(rounded_chords(7854, 100.0, 0.0001), LIMITS))
+    assert profile.duration_s < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
+    felt = np.abs(np.diff(profile.positions_at(np.arange(0.0, profile.duration_s, T)), 2, axis=0)) / T**2
     assert felt.max() < 1.02 * A
 
 
 def test_a_coarse_grid_slows_the_chords() -> None:
     """Steps of .00005 in: joints turn by up to seven degrees, and an axis may step by amax · interval."""
-    profile = plan(build_path(rounded_chords(2000, 100.0, 0.00127), LIMITS))
-    assert profile.duration > 1.5 * (40.0 / 100.0 + 100.0 / A)
+    profile = plan_motion(build_path(rounded_chords(2000, 100.0, 0.00127), LIMITS))
+    assert profile.duration_s > 1.5 * (40.0 / 100.0 + 100.0 / A)
 
 
 def test_a_corner_between_short_chords_is_still_a_corner() -> None:
@@ -122,11 +122,15 @@ def test_a_corner_between_short_chords_is_still_a_corner() -> None:
     there = [(0.0, 0.02 * i) for i in range(200)]
     across = [(0.02 * i, 0.02 * 199) for i in range(1, 200)]
     path = build_path(polyline([*there, *across], 100.0), LIMITS)
-    profile = plan(path)
-    assert float(profile.at(profile.time_at(path.s[199:200]))[1][0]) == pytest.approx(A * T / 2)
+    profile = plan_motion(path)
+    assert float(
+        profile.distance_and_speed_at(profile.times_at_distances(path.joint_distances[199:200]))[1][0]
+    ) == pytest.approx(A * T / 2)
 
 
 def test_a_block_without_length_makes_no_corner() -> None:
     straight = corner_speed([(0, 0), (0, 50), (0, 100)])
     path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS)
-    assert plan(path).at(plan(path).time_at(path.s[1:2]))[1][0] == pytest.approx(straight)
+    assert plan_motion(path).distance_and_speed_at(
+        plan_motion(path).times_at_distances(path.joint_distances[1:2])
+    )[1][0] == pytest.approx(straight)

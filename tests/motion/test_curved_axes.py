@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.geometry.virtual_mill import Face, PlaneMove, Side, Spot
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.geometry.virtual_mill import FacePlane, MillPoint, PlaneMove, SidePlane
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError, MotionLimits
-from core.motion.motion_path import CHORD_ERROR, Path, chords
-from core.motion.motion_plan import plan
-from core.motion.motion_profile import Profile
+from core.motion.motion_path import MAX_CHORD_ERROR_MM, MotionPath, divide_into_chords
+from core.motion.motion_plan import plan_motion
+from core.motion.motion_profile import MotionProfile
 from core.motion.window_planner import sample_positions
 from tests.coded import raises_code
 from tests.motion.moves import line
@@ -31,29 +31,29 @@ ENDS = np.array([0.0, 1.0])
 
 def milled(move: PlaneMove, feed: float = 4.0, n: int = 1) -> Block:
     """A block of plane switching, as the interpreter makes it."""
-    (x0, z0, c0), (x, z, c) = move.machine(ENDS).tolist()
-    block = line((x0, z0), (x, z), feed, n=n, kind=Kind.PLANE_LINE)
+    (x0, z0, c0), (x, z, c) = move.machine_positions(ENDS).tolist()
+    block = line((x0, z0), (x, z), feed, n=n, kind=BlockKind.PLANE_LINE)
     return replace(block, c0=c0, c=c, plane=move)
 
 
 def face_line(start: tuple[float, float], end: tuple[float, float], h: float = 0.0) -> PlaneMove:
-    return PlaneMove(Face(0.0, h), (*start, 0.0), (*end, 0.0), math.atan2(start[1], start[0]))
+    return PlaneMove(FacePlane(0.0, h), (*start, 0.0), (*end, 0.0), math.atan2(start[1], start[0]))
 
 
 def turned(c0: float, c: float, feed: float, n: int = 1, **more: object) -> Block:
-    block = line((10.0, 5.0), (10.0, 5.0), feed, n=n, kind=Kind.ROTATE)
+    block = line((10.0, 5.0), (10.0, 5.0), feed, n=n, kind=BlockKind.ROTATE)
     return replace(block, c0=c0, c=c, **more)  # type: ignore[arg-type]
 
 
 def fed_by_c(z: float, c: float, feed: float, rpm: float) -> Block:
     block = line((10.0, 0.0), (10.0, z), feed)
-    return replace(block, c=c, per_rev=True, rpm=rpm, modal=Modal(c_locked=True))
+    return replace(block, c=c, per_rev=True, rpm=rpm, modal=ModalState(c_locked=True))
 
 
-def off_line(profile: Profile, move: PlaneMove, dt: float) -> float:
+def off_line(profile: MotionProfile, move: PlaneMove, dt: float) -> float:
     """How far the tool leaves the straight way on the part, mm, sampled every ``dt``."""
     _, positions, _ = sample_positions(profile, dt)
-    points = move.frame.mill(positions)
+    points = move.frame.to_mill(positions)
     (x0, y0, _), (x1, y1, _) = move.start, move.end
     across = (x1 - x0) * (points[:, 1] - y0) - (y1 - y0) * (points[:, 0] - x0)
     return float(np.abs(across).max() / math.hypot(x1 - x0, y1 - y0))
@@ -71,40 +71,42 @@ def off_line(profile: Profile, move: PlaneMove, dt: float) -> float:
     ids=["flat", "near", "past the centre", "tool above the axis"],
 )
 def test_a_flat_is_flat(move: PlaneMove, dt: float) -> None:
-    assert off_line(plan(build_path([milled(move)], LIMITS)), move, dt) < 0.5 * FLAT
+    assert off_line(plan_motion(build_path([milled(move)], LIMITS)), move, dt) < 0.5 * FLAT
 
 
 def test_what_the_drives_get_is_as_flat_and_ends_at_the_end() -> None:
     """Pieces of constant acceleration, looked at within them: the same chords."""
     move = face_line((2.0, -6.0), (2.0, 6.0))
-    profile = plan(build_path([milled(move)], LIMITS))
-    t, dt, p, v, a = profile.segments(0.0, profile.duration)
+    profile = plan_motion(build_path([milled(move)], LIMITS))
+    t, dt, p, v, a = profile.make_segments(0.0, profile.duration_s)
     for share in (0.0, 0.3, 0.7, 1.0):
         tau = (share * dt)[:, None]
-        points = move.frame.mill(p + (v + 0.5 * a * tau) * tau)
+        points = move.frame.to_mill(p + (v + 0.5 * a * tau) * tau)
         assert np.abs(points[:, 0] - 2.0).max() < 0.5 * FLAT
     assert np.abs(np.diff(t) - dt[:-1]).max() < 1e-9
-    assert profile.position(profile.duration)[0].tolist() == pytest.approx(move.machine(ENDS)[1].tolist())
+    assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx(
+        move.machine_positions(ENDS)[1].tolist()
+    )
 
 
 def test_the_feed_is_that_of_the_mill() -> None:
     """12 mm of a flat at 4 mm/s, 8 mm off the axis: 3 s, and a little for the ramps."""
     move = face_line((8.0, -6.0), (8.0, 6.0))
-    profile = plan(build_path([milled(move)], LIMITS))
-    assert profile.duration == pytest.approx(3.0, abs=0.03)
-    points = move.frame.mill(profile.position(np.array([1.0, 2.0])))
+    profile = plan_motion(build_path([milled(move)], LIMITS))
+    assert profile.duration_s == pytest.approx(3.0, abs=0.03)
+    points = move.frame.to_mill(profile.positions_at(np.array([1.0, 2.0])))
     assert points[1, 1] - points[0, 1] == pytest.approx(4.0, abs=2e-3)
 
 
 def test_near_the_centre_c_slows_the_feed() -> None:
     """A hundredth of a millimetre beside the axis C turns half round: over .4 s at 3600 degrees/s²."""
     move = face_line((3.0, 0.01), (-3.0, 0.01))
-    profile = plan(build_path([milled(move)], LIMITS))
-    assert profile.duration > 6.0 / 4.0 + 0.4
-    assert profile.duration < 6.0 / 4.0 + 1.5
+    profile = plan_motion(build_path([milled(move)], LIMITS))
+    assert profile.duration_s > 6.0 / 4.0 + 0.4
+    assert profile.duration_s < 6.0 / 4.0 + 1.5
 
 
-def axis_speeds(profile: Profile) -> FloatArray:
+def axis_speeds(profile: MotionProfile) -> FloatArray:
     _, _, _, v, a, piece = profile.phases
     fastest = np.maximum(v, v + a * profile.phases.dt)
     speeds: FloatArray = np.abs(profile.path.pieces.direction[piece]) * fastest[:, None]
@@ -118,76 +120,76 @@ def axis_speeds(profile: Profile) -> FloatArray:
 )  # fmt: skip
 def test_no_axis_goes_beyond_its_limits(x: float, y: float, u: float, v: float, feed: float) -> None:
     move = face_line((x, y), (u, v))
-    if move.length < 0.1 or move.rho(move.nearest()) < 0.01:
+    if move.length < 0.1 or move.distance_from_axis(move.critical_fraction()) < 0.01:
         return
     path = build_path([milled(move, feed)], LIMITS)
-    profile = plan(path)
+    profile = plan_motion(path)
     assert (axis_speeds(profile) <= LIMITS.speeds * (1.0 + 1e-6)).all()
-    assert (joint_steps(profile, path) <= LIMITS.accelerations * LIMITS.interval * (1.0 + 1e-6)).all()
+    assert (joint_steps(profile, path) <= LIMITS.acceleration_array * LIMITS.interval * (1.0 + 1e-6)).all()
     assert off_line(profile, move, 0.0047) < 0.5 * FLAT
 
 
-def joint_steps(profile: Profile, path: Path) -> FloatArray:
+def joint_steps(profile: MotionProfile, path: MotionPath) -> FloatArray:
     """Change of each axis' velocity (k, 3) at the joints of pieces."""
-    v = profile.at(profile.time_at(path.s[1:-1]))[1]
+    v = profile.distance_and_speed_at(profile.times_at_distances(path.joint_distances[1:-1]))[1]
     steps: FloatArray = np.abs(np.diff(path.pieces.direction, axis=0)) * v[:, None]
     return steps
 
 
 def test_chords_of_an_arc_on_the_side_stay_on_it() -> None:
     move = PlaneMove(
-        Side(0.0, 0.0, 22.0), (0.0, 0.0, 10.0), (5.0, 5.0, 10.0), 0.0, (5.0, 0.0), clockwise=True
+        SidePlane(0.0, 0.0, 22.0), (0.0, 0.0, 10.0), (5.0, 5.0, 10.0), 0.0, (5.0, 0.0), clockwise=True
     )
-    share = chords(move, 4.0, LIMITS)
+    share = divide_into_chords(move, 4.0, LIMITS)
     path = build_path([milled(move)], LIMITS)
     assert len(path) == len(share) - 1
-    profile = plan(path)
+    profile = plan_motion(path)
     _, positions, _ = sample_positions(profile, 0.0023)
-    points = move.frame.mill(positions)
-    assert np.abs(np.hypot(points[:, 0] - 5.0, points[:, 1]) - 5.0).max() < 1.1 * CHORD_ERROR
+    points = move.frame.to_mill(positions)
+    assert np.abs(np.hypot(points[:, 0] - 5.0, points[:, 1]) - 5.0).max() < 1.1 * MAX_CHORD_ERROR_MM
     assert path.length == pytest.approx(2.5 * math.pi)
 
 
 def test_a_line_on_the_side_is_one_piece() -> None:
     start, end = (0.0, 0.0, 11.0), (5.0, 5.0, 10.0)
-    path = build_path([milled(PlaneMove(Side(0.0, 0.0, 22.0), start, end))], LIMITS)
+    path = build_path([milled(PlaneMove(SidePlane(0.0, 0.0, 22.0), start, end))], LIMITS)
     assert len(path) == 1
     assert path.length == pytest.approx(math.dist(start, end))
 
 
 def test_c_alone_turns_at_its_speed() -> None:
     """90 degrees at 300 degrees/s and 3600 degrees/s²: 90/300 + 300/3600 s."""
-    profile = plan(build_path([turned(10.0, 100.0, 300.0)], LIMITS))
-    assert profile.duration == pytest.approx(90.0 / 300.0 + 300.0 / 3600.0)
-    assert profile.position(profile.duration)[0].tolist() == pytest.approx([10.0, 5.0, 100.0])
+    profile = plan_motion(build_path([turned(10.0, 100.0, 300.0)], LIMITS))
+    assert profile.duration_s == pytest.approx(90.0 / 300.0 + 300.0 / 3600.0)
+    assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx([10.0, 5.0, 100.0])
 
 
 def test_a_shifted_count_of_c_is_the_machines() -> None:
-    block = turned(-30.0, 0.0, 600.0, modal=Modal(offset_c=-360.0))
-    assert build_path([block], LIMITS).start.tolist() == pytest.approx([10.0, 5.0, -390.0])
+    block = turned(-30.0, 0.0, 600.0, modal=ModalState(offset_c=-360.0))
+    assert build_path([block], LIMITS).start_position.tolist() == pytest.approx([10.0, 5.0, -390.0])
 
 
 def test_the_slide_is_fed_by_the_turns_of_c() -> None:
     """The worked slot: .1 in at .8 in/rev takes 45 of 45.1 degrees; C at 3.5 rpm all the way."""
     way = 0.1 * 25.4
-    profile = plan(build_path([fed_by_c(-way, -45.1, 0.8 * 25.4, -3.5)], LIMITS))
+    profile = plan_motion(build_path([fed_by_c(-way, -45.1, 0.8 * 25.4, -3.5)], LIMITS))
     assert len(profile.path) == 2
-    t = np.linspace(0.0, profile.duration, 500)
-    at = profile.position(t)
+    t = np.linspace(0.0, profile.duration_s, 500)
+    at = profile.positions_at(t)
     arrived = at[:, 2] <= -45.0
     assert at[arrived, 1] == pytest.approx(-way)
     assert at[~arrived, 1] == pytest.approx(at[~arrived, 2] / 45.0 * way)
     # 45.1 degrees at 21 degrees/s; the ramps take next to nothing
-    assert profile.duration == pytest.approx(45.1 / 21.0, abs=0.02)
+    assert profile.duration_s == pytest.approx(45.1 / 21.0, abs=0.02)
 
 
 def test_a_c_of_its_own_drive_only_goes_along() -> None:
     """.2 mm a turn at 300 rpm is 1 mm/s: 10 mm take 10 s, however far C turns meanwhile."""
-    block = replace(fed_by_c(-10.0, 5.0, 0.2, 300.0), modal=Modal())
-    profile = plan(build_path([block], LIMITS))
+    block = replace(fed_by_c(-10.0, 5.0, 0.2, 300.0), modal=ModalState())
+    profile = plan_motion(build_path([block], LIMITS))
     assert len(profile.path) == 1
-    assert profile.duration == pytest.approx(10.0, abs=0.01)
-    assert profile.position(profile.duration)[0].tolist() == pytest.approx([10.0, -10.0, 5.0])
+    assert profile.duration_s == pytest.approx(10.0, abs=0.01)
+    assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx([10.0, -10.0, 5.0])
 
 
 def test_exactly_enough_is_one_piece() -> None:
@@ -211,23 +213,25 @@ def test_no_feed_is_refused() -> None:
 
 
 def test_no_way_at_all_is_no_piece() -> None:
-    spot: Spot = (8.0, 1.0, 0.0)
-    stand = PlaneMove(Face(0.0), spot, spot, math.atan2(1.0, 8.0))
+    spot: MillPoint = (8.0, 1.0, 0.0)
+    stand = PlaneMove(FacePlane(0.0), spot, spot, math.atan2(1.0, 8.0))
     path = build_path([milled(stand), milled(face_line((8.0, 1.0), (8.0, 2.0)), n=2)], LIMITS)
-    assert path.blocks.tolist() == [1, 2]
-    assert path.first.tolist()[1] == 0
+    assert path.block_numbers.tolist() == [1, 2]
+    assert path.first_pieces.tolist()[1] == 0
 
 
 def test_stopping_on_the_way_stays_on_the_way() -> None:
     move = face_line((8.0, -6.0), (8.0, 6.0))
     path = build_path([milled(move)], LIMITS)
-    running = plan(path)
-    s, v = running.at(1.5)
-    stopped = plan(path, start_s=float(s[0]), start_v=float(v[0]), stop=True)
-    assert stopped.duration < 0.05
+    running = plan_motion(path)
+    s, v = running.distance_and_speed_at(1.5)
+    stopped = plan_motion(path, start_distance=float(s[0]), start_speed=float(v[0]), stop=True)
+    assert stopped.duration_s < 0.05
     assert off_line(stopped, move, 0.0005) < 0.5 * FLAT
-    on = plan(path, start_s=stopped.end_s)
-    assert on.position(on.duration)[0].tolist() == pytest.approx(move.machine(ENDS)[1].tolist())
+    on = plan_motion(path, start_distance=stopped.end_distance)
+    assert on.positions_at(on.duration_s)[0].tolist() == pytest.approx(
+        move.machine_positions(ENDS)[1].tolist()
+    )
 
 
 @pytest.mark.parametrize("h", [0.5, -2.0])
@@ -235,27 +239,29 @@ def test_to_the_nearest_that_the_tool_reaches_and_on(h: float) -> None:
     """At rho = |H| X stands on the axis of the lathe and its speed for any feed would be endless."""
     reached = (abs(h), 0.0)
     to, on = face_line((9.0, 3.0), reached, h), face_line(reached, (5.0, -1.0), h)
-    turn_on = replace(on, frame=Face(to.machine(ENDS)[1, 2] - on.machine(ENDS)[0, 2], h))
+    turn_on = replace(
+        on, frame=FacePlane(to.machine_positions(ENDS)[1, 2] - on.machine_positions(ENDS)[0, 2], h)
+    )
     path = build_path([milled(to, 1.7), milled(turn_on, 1.7, n=2)], LIMITS)
     assert path.pieces.length.min() > 1e-6
-    profile = plan(path)
+    profile = plan_motion(path)
     assert (axis_speeds(profile) <= LIMITS.speeds * (1.0 + 1e-6)).all()
-    assert profile.duration < 20.0
-    _, _, _, v, a = (column[-1] for column in profile.segments(0.0, profile.duration))
-    dt = profile.segments(0.0, profile.duration)[1][-1]
+    assert profile.duration_s < 20.0
+    _, _, _, v, a = (column[-1] for column in profile.make_segments(0.0, profile.duration_s))
+    dt = profile.make_segments(0.0, profile.duration_s)[1][-1]
     assert np.abs(v + a * dt).max() < 1e-6
 
 
 def test_a_stop_beside_the_axis_brakes_c_too() -> None:
     """The mill creeps there while C turns fast: no speed is too small to be braked."""
     path = build_path([milled(face_line((3.0, 0.001), (-3.0, 0.001)), 8.0)], LIMITS)
-    running = plan(path)
-    near = running.time_at(path.s[:1] + 3.0)
-    s, v = running.at(near)
+    running = plan_motion(path)
+    near = running.times_at_distances(path.joint_distances[:1] + 3.0)
+    s, v = running.distance_and_speed_at(near)
     assert 0.0 < v[0] < 0.1
-    stopped = plan(path, start_s=float(s[0]), start_v=1e-3 * float(v[0]), stop=True)
-    assert stopped.duration > 0.0
-    _, dt, _, begin, a = stopped.segments(0.0, stopped.duration)
+    stopped = plan_motion(path, start_distance=float(s[0]), start_speed=1e-3 * float(v[0]), stop=True)
+    assert stopped.duration_s > 0.0
+    _, dt, _, begin, a = stopped.make_segments(0.0, stopped.duration_s)
     tangent = path.pieces.direction[path.piece_at(s)]
     assert begin[0] == pytest.approx(tangent[0] * 1e-3 * v[0])
     assert np.abs(begin[-1] + a[-1] * dt[-1]).max() < 1e-6
@@ -292,9 +298,9 @@ def circle(radius: float, length: float, *, seen: bool = True) -> Any:
 def test_a_long_way_is_cut_as_finely_as_a_short_one() -> None:
     """A chord c leaves a circle by c²/8R: of 1e-4 mm at R 50 with chords of .2 mm."""
     way = circle(50.0, 300.0)
-    ways = np.diff(chords(way, 1.0, LIMITS)) * way.length
-    assert ways.max() <= math.sqrt(8.0 * CHORD_ERROR * way.radius)
-    assert ways.min() > 0.4 * math.sqrt(8.0 * CHORD_ERROR * way.radius)
+    ways = np.diff(divide_into_chords(way, 1.0, LIMITS)) * way.length
+    assert ways.max() <= math.sqrt(8.0 * MAX_CHORD_ERROR_MM * way.radius)
+    assert ways.min() > 0.4 * math.sqrt(8.0 * MAX_CHORD_ERROR_MM * way.radius)
 
 
 def test_chords_are_cut_until_their_joints_cost_no_speed() -> None:
@@ -303,5 +309,5 @@ def test_chords_are_cut_until_their_joints_cost_no_speed() -> None:
     On a circle of 1000 mm the acceleration allows 1561 mm/s, so it is the speed of the axes that counts.
     """
     way = circle(1000.0, 360.0, seen=False)
-    assert len(chords(way, 127.0 / OVERRIDE_MAX, LIMITS)) - 1 == 32
-    assert len(chords(way, 60.0 / OVERRIDE_MAX, LIMITS)) - 1 == 16
+    assert len(divide_into_chords(way, 127.0 / OVERRIDE_MAX, LIMITS)) - 1 == 32
+    assert len(divide_into_chords(way, 60.0 / OVERRIDE_MAX, LIMITS)) - 1 == 16

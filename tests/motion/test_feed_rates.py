@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.geometry.surface_speed import surface_rpm
-from core.geometry.working_plane import Travel
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.geometry.surface_speed import find_surface_rpm
+from core.geometry.working_plane import AxisMove
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 from core.motion.axis_limits import MotionError
 from core.motion.block_table import read_blocks
-from core.motion.motion_plan import plan
-from core.motion.speed_limits import surface_rpms
+from core.motion.motion_plan import plan_motion
+from core.motion.speed_limits import find_surface_rpms
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, Point, arc, line
 from tests.motion.paths import build_path
@@ -27,7 +27,7 @@ SURFACE = 2000.0  # mm/s
 
 def turning(start: Point, end: Point, **words: Any) -> Block:
     """A move at 0.1 mm per revolution under constant surface speed, clamped at 3000 rpm."""
-    modal = Modal(css_max=3000.0)
+    modal = ModalState(max_css_rpm=3000.0)
     block = replace(line(start, end, 0.1), per_rev=True, rpm=500.0, css=SURFACE, modal=modal)
     return replace(block, **words)
 
@@ -45,9 +45,9 @@ def test_the_operators_limit_slows_the_feed_too() -> None:
 
 def test_facing_takes_the_time_of_the_growing_speed() -> None:
     """dt = dr / (f·S/(2·pi·r)): from r 100 to 50 the time is pi·(100² - 50²)/(f·S)."""
-    profile = plan(build_path([turning((100, 0), (50, 0))], LIMITS))
+    profile = plan_motion(build_path([turning((100, 0), (50, 0))], LIMITS))
     ideal = math.pi * (100.0**2 - 50.0**2) / (0.1 * SURFACE)
-    assert profile.duration == pytest.approx(ideal, rel=1e-4)
+    assert profile.duration_s == pytest.approx(ideal, rel=1e-4)
 
 
 def test_the_speed_changes_by_two_percent_at_most_within_a_piece() -> None:
@@ -55,7 +55,7 @@ def test_the_speed_changes_by_two_percent_at_most_within_a_piece() -> None:
     ends = path.pieces.point(path.pieces.length)[:, 0]
     assert (path.pieces.start[:, 0] / ends).max() <= 1.02 + 1e-9
     assert len(path) == 36  # ln 2 / ln 1.02 = 35.003
-    assert path.blocks.tolist() == [1]
+    assert path.block_numbers.tolist() == [1]
 
 
 def test_at_the_clamp_the_feed_is_constant() -> None:
@@ -73,7 +73,9 @@ def test_facing_to_the_centre_is_clamped_and_bounded() -> None:
 
 
 def test_the_lower_clamp_holds_far_out() -> None:
-    path = build_path([turning((100, 0), (200, 0), modal=Modal(css_min=400.0, css_max=3000.0))], LIMITS)
+    path = build_path(
+        [turning((100, 0), (200, 0), modal=ModalState(min_css_rpm=400.0, max_css_rpm=3000.0))], LIMITS
+    )
     assert path.pieces.rate == pytest.approx([0.1 * 400.0 / 60.0])
 
 
@@ -84,19 +86,19 @@ def test_the_radius_counts_from_the_program_axis() -> None:
 
 
 def test_an_arc_is_split_as_well_and_stays_the_arc() -> None:
-    quarter = replace(turning((20, 50), (60, 10)), kind=Kind.ARC, cx=20.0, cz=10.0, clockwise=True)
+    quarter = replace(turning((20, 50), (60, 10)), kind=BlockKind.ARC, cx=20.0, cz=10.0, clockwise=True)
     path = build_path([quarter], LIMITS)
     assert len(path) >= math.log(3) / math.log(1.02)
     assert path.length == pytest.approx(20.0 * math.pi)
-    x, z, _ = path.point(np.linspace(0.0, path.length, 100)).T
+    x, z, _ = path.positions_at(np.linspace(0.0, path.length, 100)).T
     assert np.hypot(x - 20.0, z - 10.0) == pytest.approx(np.full(100, 40.0), abs=1e-9)
     ends = path.pieces.point(path.pieces.length)[:, 0]
     assert (ends / path.pieces.start[:, 0]).max() < 1.03
 
 
 def test_rapids_do_not_care_for_the_spindle() -> None:
-    block = replace(line((0, 0), (0, 50), 100.0, kind=Kind.RAPID), per_rev=True, rpm=0.0)
-    assert plan(build_path([block], LIMITS)).duration == pytest.approx(0.5 + 100.0 / A)
+    block = replace(line((0, 0), (0, 50), 100.0, kind=BlockKind.RAPID), per_rev=True, rpm=0.0)
+    assert plan_motion(build_path([block], LIMITS)).duration_s == pytest.approx(0.5 + 100.0 / A)
 
 
 def test_feed_per_revolution_with_the_spindle_stopped_is_refused() -> None:
@@ -107,9 +109,9 @@ def test_feed_per_revolution_with_the_spindle_stopped_is_refused() -> None:
 
 def test_surface_speed_on_the_axis_without_a_limit_is_refused() -> None:
     with raises_code(MotionError, "no-speed-limit"):
-        build_path([turning((0, 0), (0, 9), modal=Modal())], LIMITS)
+        build_path([turning((0, 0), (0, 9), modal=ModalState())], LIMITS)
     with raises_code(MotionError, "no-speed-limit"):
-        build_path([turning((9, 0), (0, 0), modal=Modal())], LIMITS)
+        build_path([turning((9, 0), (0, 0), modal=ModalState())], LIMITS)
 
 
 def test_a_surface_speed_that_is_no_number_is_refused() -> None:
@@ -121,8 +123,10 @@ def test_a_surface_speed_that_is_no_number_is_refused() -> None:
 
 @pytest.mark.parametrize("radius", [0.0, 1e-9, 5.0, -5.0, 20.0, 1e4])
 def test_arrays_and_numbers_agree(radius: float) -> None:
-    words = read_blocks([turning((1, 0), (2, 0), modal=Modal(css_min=30.0, css_max=2500.0))], 2000.0)
-    assert surface_rpms(words, np.array([radius]))[0] == surface_rpm(SURFACE, radius, 30.0, 2000.0)
+    words = read_blocks(
+        [turning((1, 0), (2, 0), modal=ModalState(min_css_rpm=30.0, max_css_rpm=2500.0))], 2000.0
+    )
+    assert find_surface_rpms(words, np.array([radius]))[0] == find_surface_rpm(SURFACE, radius, 30.0, 2000.0)
 
 
 def test_an_arc_at_feed_per_minute_is_not_split() -> None:
@@ -142,7 +146,7 @@ def test_close_to_the_axis_is_not_on_it() -> None:
 
     At r .9 and .5 mm the speed is S/(2·pi·r); at .1 mm a turn the feed grows as 1/r.
     """
-    modal = Modal(css_max=None)
+    modal = ModalState(max_css_rpm=None)
     path = build_path([turning((0.9, 0), (0.5, 0), modal=modal)], LIMITS, rpm_max=math.inf)
     first, last = path.pieces.rate[0], path.pieces.rate[-1]
     assert first == pytest.approx(0.1 * SURFACE / (2.0 * math.pi * 0.9), rel=0.03)
@@ -153,14 +157,14 @@ def test_close_to_the_axis_is_not_on_it() -> None:
 
 def test_blocks_that_tell_of_all_axes_and_others_do_not_mix() -> None:
     whole = line((0, 0), (0, 5), n=4)
-    travel = Travel((0.0, 0.0, 0.0), (0.0, 5.0, 0.0), 5.0)
+    travel = AxisMove((0.0, 0.0, 0.0), (0.0, 5.0, 0.0), 5.0)
     with raises_code(MotionError, "axes-differ", "Block 4"):
         read_blocks([replace(whole, travel=travel), line((0, 5), (0, 6), n=5)], 3000.0)
 
 
 def test_the_axis_is_that_of_the_program() -> None:
     """Slides at 25 to 15 mm with the axis at 20: r 5 to -5, through it. With the axis at home: r 25 to 15."""
-    modal = Modal(css_max=None)
+    modal = ModalState(max_css_rpm=None)
     through = turning((5, 0), (-5, 0), modal=modal, offset_x=20.0)
     with raises_code(MotionError, "no-speed-limit"):
         build_path([through], LIMITS, rpm_max=math.inf)

@@ -9,82 +9,82 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.motion.axis_limits import MotionError, MotionLimits
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, V, line, polyline
 from tests.motion.paths import build_path
 
 
 def test_a_long_line_is_a_trapezoid() -> None:
-    profile = plan(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
-    assert profile.duration == pytest.approx(100.0 / 100.0 + 100.0 / A, rel=1e-12)
+    profile = plan_motion(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
+    assert profile.duration_s == pytest.approx(100.0 / 100.0 + 100.0 / A, rel=1e-12)
     assert profile.phases.v.max() == pytest.approx(100.0)
 
 
 def test_a_short_line_is_a_triangle() -> None:
-    profile = plan(build_path([line((0, 0), (1, 0), 100.0)], LIMITS))
-    assert profile.duration == pytest.approx(2.0 * math.sqrt(1.0 / A), rel=1e-12)
-    assert profile.at(profile.duration / 2)[1][0] == pytest.approx(math.sqrt(A))
+    profile = plan_motion(build_path([line((0, 0), (1, 0), 100.0)], LIMITS))
+    assert profile.duration_s == pytest.approx(2.0 * math.sqrt(1.0 / A), rel=1e-12)
+    assert profile.distance_and_speed_at(profile.duration_s / 2)[1][0] == pytest.approx(math.sqrt(A))
 
 
 def test_a_diagonal_uses_both_slides() -> None:
     """At 45 degrees the path may run and accelerate sqrt(2) faster than each slide."""
-    rapid = line((0, 0), (200, 200), 10 * V, kind=Kind.RAPID)
+    rapid = line((0, 0), (200, 200), 10 * V, kind=BlockKind.RAPID)
     v, a = math.sqrt(2) * V, math.sqrt(2) * A
-    profile = plan(build_path([rapid], LIMITS))
-    assert profile.duration == pytest.approx(200 * math.sqrt(2) / v + v / a, rel=1e-12)
+    profile = plan_motion(build_path([rapid], LIMITS))
+    assert profile.duration_s == pytest.approx(200 * math.sqrt(2) / v + v / a, rel=1e-12)
 
 
 def test_the_slower_axis_rules() -> None:
     limits = MotionLimits(vmax=(10.0, 127.0, 1.0), amax=(100.0, 3048.0, 1.0))
-    profile = plan(build_path([line((0, 0), (30, 40), 127.0)], limits))
+    profile = plan_motion(build_path([line((0, 0), (30, 40), 127.0)], limits))
     v, a = 10.0 / 0.6, 100.0 / 0.6
-    assert profile.duration == pytest.approx(50.0 / v + v / a, rel=1e-12)
+    assert profile.duration_s == pytest.approx(50.0 / v + v / a, rel=1e-12)
 
 
 def test_offsets_lead_to_machine_coordinates() -> None:
     block = replace(line((1, 2), (3, 4)), offset_x=10.0, offset_z=-20.0)
-    profile = plan(build_path([block], LIMITS))
-    assert profile.position(np.array([0.0, profile.duration])) == pytest.approx(
+    profile = plan_motion(build_path([block], LIMITS))
+    assert profile.positions_at(np.array([0.0, profile.duration_s])) == pytest.approx(
         np.array([[11.0, -18.0, 0.0], [13.0, -16.0, 0.0]]), abs=1e-12
     )
 
 
 def test_c_alone_turns_in_degrees() -> None:
     block = replace(line((5, 5), (5, 5), 600.0), c=360.0)
-    profile = plan(build_path([block], LIMITS))
-    assert profile.duration == pytest.approx(360.0 / 600.0 + 600.0 / 12000.0, rel=1e-12)
+    profile = plan_motion(build_path([block], LIMITS))
+    assert profile.duration_s == pytest.approx(360.0 / 600.0 + 600.0 / 12000.0, rel=1e-12)
 
 
 def test_c_holds_back_the_slide_that_moves_with_it() -> None:
     """10 degrees per mm: 1200 degrees/s allow 120 mm/s, 12000 degrees/s² allow 1200 mm/s²."""
     block = replace(line((0, 0), (0, 100), 127.0), c=1000.0)
-    profile = plan(build_path([block], LIMITS))
-    assert profile.duration == pytest.approx(100.0 / 120.0 + 120.0 / 1200.0, rel=1e-12)
+    profile = plan_motion(build_path([block], LIMITS))
+    assert profile.duration_s == pytest.approx(100.0 / 120.0 + 120.0 / 1200.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("parts", [2, 7, 100])
 def test_cutting_a_line_in_pieces_changes_nothing(parts: int) -> None:
-    whole = plan(build_path([line((0, 0), (30, 40), 80.0)], LIMITS))
+    whole = plan_motion(build_path([line((0, 0), (30, 40), 80.0)], LIMITS))
     points = [(30.0 * i / parts, 40.0 * i / parts) for i in range(parts + 1)]
-    cut = plan(build_path(polyline(points, 80.0), LIMITS))
-    assert cut.duration == pytest.approx(whole.duration, rel=1e-9)
-    t = np.linspace(0.0, whole.duration, 50)
-    assert cut.position(t) == pytest.approx(whole.position(t), abs=1e-9)
+    cut = plan_motion(build_path(polyline(points, 80.0), LIMITS))
+    assert cut.duration_s == pytest.approx(whole.duration_s, rel=1e-9)
+    t = np.linspace(0.0, whole.duration_s, 50)
+    assert cut.positions_at(t) == pytest.approx(whole.positions_at(t), abs=1e-9)
 
 
 def test_half_the_feed_takes_twice_the_time() -> None:
     path = build_path([line((0, 0), (0, 300), 20.0)], LIMITS)
-    half = plan(path, feed_scale=0.5)
-    assert half.duration == pytest.approx(300.0 / 10.0 + 10.0 / A, rel=1e-12)
+    half = plan_motion(path, feed_scale=0.5)
+    assert half.duration_s == pytest.approx(300.0 / 10.0 + 10.0 / A, rel=1e-12)
 
 
 def test_rapid_override_leaves_feeds_alone() -> None:
-    path = build_path([line((0, 0), (0, 50), 100.0, kind=Kind.RAPID)], LIMITS)
-    assert plan(path, feed_scale=0.1).duration == plan(path).duration
-    assert plan(path, rapid_scale=0.5).duration == pytest.approx(50.0 / 50.0 + 50.0 / A, rel=1e-12)
+    path = build_path([line((0, 0), (0, 50), 100.0, kind=BlockKind.RAPID)], LIMITS)
+    assert plan_motion(path, feed_scale=0.1).duration_s == plan_motion(path).duration_s
+    assert plan_motion(path, rapid_scale=0.5).duration_s == pytest.approx(50.0 / 50.0 + 50.0 / A, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_a_coordinate_must_be_a_number(word: str) -> None:
 
 def test_a_kind_without_a_law_is_refused() -> None:
     with raises_code(MotionError, "no-time-law", "Block 1"):
-        build_path([line((0, 0), (0, 1), kind=Kind.DWELL)], LIMITS)
+        build_path([line((0, 0), (0, 1), kind=BlockKind.DWELL)], LIMITS)
 
 
 @pytest.mark.parametrize(
@@ -126,6 +126,6 @@ def test_limits_must_be_positive(figures: dict[str, Any], named: str) -> None:
 def test_an_override_outside_its_range_is_refused(scale: float) -> None:
     path = build_path([line((0, 0), (0, 1))], LIMITS)
     with raises_code(MotionError, "feed-override"):
-        plan(path, feed_scale=scale)
+        plan_motion(path, feed_scale=scale)
     with raises_code(MotionError, "rapid-override"):
-        plan(path, rapid_scale=scale)
+        plan_motion(path, rapid_scale=scale)

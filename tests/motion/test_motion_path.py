@@ -9,8 +9,8 @@ import pytest
 
 from core.motion.axis_limits import MotionError
 from core.motion.motion_path import PathBuilder
-from core.motion.motion_plan import plan
-from core.motion.path_pieces import ends_in_chord
+from core.motion.motion_plan import plan_motion
+from core.motion.path_pieces import ends_with_chord
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, arc, line, polyline
 from tests.motion.paths import build_path
@@ -19,29 +19,34 @@ from tests.motion.paths import build_path
 def test_a_block_without_length_is_done_when_its_turn_comes() -> None:
     path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 50), (0, 90)], 100.0), LIMITS)
     assert len(path) == 2
-    numbers, start, end = plan(path).block_times()
+    numbers, start, end = plan_motion(path).find_block_times()
     assert numbers.tolist() == [1, 2, 3, 4]
     assert start[1] == end[1] == start[2] == end[2] == end[0]
     assert 0.0 < end[0] < end[3]
 
 
 def test_nothing_but_points_takes_no_time() -> None:
-    profile = plan(build_path(polyline([(3, 4), (3, 4), (3, 4)]), LIMITS))
-    numbers, start, end = profile.block_times()
-    assert (profile.duration, numbers.tolist(), start.tolist(), end.tolist()) == (0.0, [1, 2], [0, 0], [0, 0])
+    profile = plan_motion(build_path(polyline([(3, 4), (3, 4), (3, 4)]), LIMITS))
+    numbers, start, end = profile.find_block_times()
+    assert (profile.duration_s, numbers.tolist(), start.tolist(), end.tolist()) == (
+        0.0,
+        [1, 2],
+        [0, 0],
+        [0, 0],
+    )
 
 
 def test_the_block_at_a_time_is_the_one_that_moves() -> None:
-    profile = plan(build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS))
-    middle = profile.duration / 2
+    profile = plan_motion(build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS))
+    middle = profile.duration_s / 2
     times = [-1.0, 0.0, middle - 0.01, middle + 0.01, 99.0]
-    assert profile.block_at(np.array(times)).tolist() == [1, 1, 1, 3, 3]
-    assert [profile.block_of(t) for t in times] == [1, 1, 1, 3, 3]
+    assert profile.block_numbers_at(np.array(times)).tolist() == [1, 1, 1, 3, 3]
+    assert [profile.block_number_at(t) for t in times] == [1, 1, 1, 3, 3]
 
 
 def test_blocks_behind_the_start_are_done() -> None:
     path = build_path(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]), LIMITS)
-    _, start, end = plan(path, start_s=15.0).block_times()
+    _, start, end = plan_motion(path, start_distance=15.0).find_block_times()
     assert (start[0], end[0], start[1]) == (0.0, 0.0, 0.0)
     assert 0.0 < end[1] == start[2] < end[2]
 
@@ -54,10 +59,10 @@ def test_a_gap_is_refused() -> None:
 
 def test_a_gap_to_what_was_added_before_is_refused_and_nothing_is_added() -> None:
     builder = PathBuilder(LIMITS)
-    builder.add([line((0, 0), (0, 10), n=1)])
+    builder.add_blocks([line((0, 0), (0, 10), n=1)])
     with raises_code(MotionError, "broken-path", "Block 2", "1.0000 mm"):
-        builder.add([line((0, 11), (0, 20), n=2)])
-    assert builder.path().blocks.tolist() == [1]
+        builder.add_blocks([line((0, 11), (0, 20), n=2)])
+    assert builder.build_path().block_numbers.tolist() == [1]
 
 
 def test_another_offset_is_no_gap_while_the_machine_stays() -> None:
@@ -72,13 +77,13 @@ def test_without_blocks_there_is_no_path() -> None:
 
 def test_blocks_that_are_not_on_the_path() -> None:
     builder = PathBuilder(LIMITS)
-    builder.add(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]))
-    builder.drop_before(3)
-    assert builder.path().block_span(2) == (10.0, 20.0)  # kept for its corner
+    builder.add_blocks(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]))
+    builder.drop_blocks_before(3)
+    assert builder.build_path().block_span(2) == (10.0, 20.0)  # kept for its corner
     with raises_code(MotionError, "block-not-on-path", "Block 1"):
-        builder.path().block_span(1)
+        builder.build_path().block_span(1)
     with raises_code(MotionError, "block-not-on-path", "Block 4"):
-        builder.path().block_span(4)
+        builder.build_path().block_span(4)
 
 
 def test_a_full_arc_between_lines_is_met_exactly() -> None:
@@ -88,11 +93,11 @@ def test_a_full_arc_between_lines_is_met_exactly() -> None:
         line((0, 10), (0, 20), n=3),
     ]
     path = build_path(blocks, LIMITS)
-    assert path.point(path.s)[:, :2] == pytest.approx(
+    assert path.positions_at(path.joint_distances)[:, :2] == pytest.approx(
         np.array([[0, 0], [0, 10], [0, 10], [0, 20.0]]), abs=1e-9
     )
 
 
 def test_a_path_without_pieces_ends_in_no_chord() -> None:
     pieces = build_path([line((0, 0), (0, 5))], LIMITS).pieces
-    assert not ends_in_chord(pieces[:0], LIMITS)
+    assert not ends_with_chord(pieces[:0], LIMITS)

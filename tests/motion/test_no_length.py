@@ -15,12 +15,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import FloatArray, MotionLimits
-from core.motion.motion_path import Path, PathBuilder
-from core.motion.motion_plan import plan
-from core.motion.motion_profile import Profile
-from core.motion.window_planner import ChunkPlanner
+from core.motion.motion_path import MotionPath, PathBuilder
+from core.motion.motion_plan import plan_motion
+from core.motion.motion_profile import MotionProfile
+from core.motion.window_planner import WindowPlanner
 from tests.motion.moves import LIMITS, arc, line, polyline
 from tests.motion.paths import build_path
 
@@ -45,7 +45,7 @@ def mostly_nothing(draw: st.DrawFn) -> list[Block]:
             block = _arc(at, draw(_RADII), draw(st.floats(0.0, 6.28)), draw(_SWEEPS), feed, n)
         else:
             way = (0.0, 0.0) if what == "point" else (draw(_WAYS) * draw(_SIGNS), draw(_WAYS) * draw(_SIGNS))
-            kind = draw(st.sampled_from([Kind.RAPID, Kind.FEED]))
+            kind = draw(st.sampled_from([BlockKind.RAPID, BlockKind.FEED]))
             block = line(at, (at[0] + way[0], at[1] + way[1]), feed, n=n, kind=kind)
         blocks.append(dataclasses.replace(block, c0=c, c=c + turn))
         at, c = (block.x, block.z), c + turn
@@ -58,15 +58,15 @@ def _arc(at: tuple[float, float], radius: float, angle: float, sweep: float, fee
     return arc(at, end if sweep else at, centre, feed, n=n)
 
 
-def demand_setpoints(profile: Profile, limits: MotionLimits) -> None:
+def demand_setpoints(profile: MotionProfile, limits: MotionLimits) -> None:
     """What a driver demands of a plan: no jump, no axis beyond its limits, rest at the end."""
-    _, dt, p, v, a = profile.segments(0.0, profile.duration)
+    _, dt, p, v, a = profile.make_segments(0.0, profile.duration_s)
     if not len(dt):
         return
     assert all(np.isfinite(part).all() for part in (p, v, a))
     p_end, v_end = p + (v + 0.5 * a * dt[:, None]) * dt[:, None], v + a * dt[:, None]
     assert np.abs(p[1:] - p_end[:-1]).max(initial=0.0) < 5e-4
-    assert (np.abs(v[1:] - v_end[:-1]) <= limits.accelerations * limits.interval * 1.01 + 1e-3).all()
+    assert (np.abs(v[1:] - v_end[:-1]) <= limits.acceleration_array * limits.interval * 1.01 + 1e-3).all()
     assert (np.abs(v) <= limits.speeds * 1.001 + 0.01).all()
     assert np.abs(v_end[-1]).max() < 0.01
 
@@ -83,10 +83,10 @@ some = settings(max_examples=150, deadline=None)
 @some
 @given(mostly_nothing(), limits_of_both)
 def test_a_plan_ends_where_the_last_block_does(blocks: list[Block], limits: MotionLimits) -> None:
-    profile = plan(build_path(blocks, limits))
+    profile = plan_motion(build_path(blocks, limits))
     demand_setpoints(profile, limits)
-    assert profile.position(profile.duration)[0] == pytest.approx(end_of(blocks), abs=1e-6)
-    numbers, start, end = profile.block_times()
+    assert profile.positions_at(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
+    numbers, start, end = profile.find_block_times()
     assert numbers.tolist() == [block.n for block in blocks]
     assert (end >= start).all()
     assert np.isfinite(end).all()
@@ -96,10 +96,10 @@ def test_a_plan_ends_where_the_last_block_does(blocks: list[Block], limits: Moti
 @some
 @given(mostly_nothing(), limits_of_both, st.sampled_from([1, 2, 5]))
 def test_windows_take_every_block_once(blocks: list[Block], limits: MotionLimits, window: int) -> None:
-    planner = ChunkPlanner(limits, window=window)
-    chunks = [*planner.add(blocks), *planner.finish()]
-    assert [n for chunk in chunks for n in chunk.n.tolist()] == [block.n for block in blocks]
-    assert chunks[-1].profile.position(1e9)[0] == pytest.approx(end_of(blocks), abs=1e-6)
+    planner = WindowPlanner(limits, window=window)
+    chunks = [*planner.plan_blocks(blocks), *planner.finish_section()]
+    assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == [block.n for block in blocks]
+    assert chunks[-1].profile.positions_at(1e9)[0] == pytest.approx(end_of(blocks), abs=1e-6)
 
 
 @pytest.mark.long
@@ -110,43 +110,43 @@ def test_it_may_be_stopped_changed_and_continued_anywhere(
 ) -> None:
     """Blocks come in, single block, holds and overrides (0 too) come at any moment, again and again."""
     builder, taken = PathBuilder(limits), chance.randint(1, len(blocks))
-    builder.add(blocks[:taken])
-    profile = plan(builder.path())
+    builder.add_blocks(blocks[:taken])
+    profile = plan_motion(builder.build_path())
     for _ in range(30):
-        t = chance.choice([0.0, 1.0, 1.0, chance.random()]) * profile.duration
-        (s,), (v,) = profile.at(t)
-        here = profile.position(t)[0]
+        t = chance.choice([0.0, 1.0, 1.0, chance.random()]) * profile.duration_s
+        (s,), (v,) = profile.distance_and_speed_at(t)
+        here = profile.positions_at(t)[0]
         if chance.random() < 0.5:
-            builder.drop_before(int(profile.block_at(t)[0]))
+            builder.drop_blocks_before(int(profile.block_numbers_at(t)[0]))
         if taken < len(blocks) and chance.random() < 0.6:
             more = blocks[taken : taken + chance.randint(1, 4)]
-            builder.add(more, float(s + v * v / (0.4 * limits.plane_acceleration)))
+            builder.add_blocks(more, float(s + v * v / (0.4 * limits.plane_acceleration)))
             taken += len(more)
-        profile = _changed(builder.path(), float(s), float(v), chance)
+        profile = _changed(builder.build_path(), float(s), float(v), chance)
         demand_setpoints(profile, limits)
-        assert profile.position(0.0)[0] == pytest.approx(here, abs=1e-5)
-    (s,), (v,) = profile.at(profile.duration)
+        assert profile.positions_at(0.0)[0] == pytest.approx(here, abs=1e-5)
+    (s,), (v,) = profile.distance_and_speed_at(profile.duration_s)
     if taken < len(blocks):
-        builder.add(blocks[taken:], float(s))
-    builder.close()
-    profile = plan(builder.path(), start_s=float(s), start_v=float(v))
-    assert profile.position(profile.duration)[0] == pytest.approx(end_of(blocks), abs=1e-6)
+        builder.add_blocks(blocks[taken:], float(s))
+    builder.end_path()
+    profile = plan_motion(builder.build_path(), start_distance=float(s), start_speed=float(v))
+    assert profile.positions_at(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
 
 
-def _changed(path: Path, s: float, v: float, chance: Random) -> Profile:
+def _changed(path: MotionPath, s: float, v: float, chance: Random) -> MotionProfile:
     """Another plan from a state of the last one: a hold, an override, a stop behind a block, or just on."""
     match chance.choice(["hold", "override", "single", "on"]):
         case "hold":
-            return plan(path, start_s=s, start_v=v, stop=True)
+            return plan_motion(path, start_distance=s, start_speed=v, stop=True)
         case "override":
             feed, rapid = chance.choice([0.0, 0.01, 1.5]), chance.choice([0.0, 0.5, 1.0])
-            return plan(path, start_s=s, start_v=v, feed_scale=feed, rapid_scale=rapid)
+            return plan_motion(path, start_distance=s, start_speed=v, feed_scale=feed, rapid_scale=rapid)
         case "single":
-            last = chance.choice(path.blocks.tolist())
-            factor = np.repeat(np.where(path.blocks > last, 0.0, 1.0), np.diff(path.first))
+            last = chance.choice(path.block_numbers.tolist())
+            factor = np.repeat(np.where(path.block_numbers > last, 0.0, 1.0), np.diff(path.first_pieces))
             pieces = dataclasses.replace(path.pieces, rate=path.pieces.rate * factor)
-            return plan(dataclasses.replace(path, pieces=pieces), start_s=s, start_v=v)
-    return plan(path, start_s=s, start_v=v)
+            return plan_motion(dataclasses.replace(path, pieces=pieces), start_distance=s, start_speed=v)
+    return plan_motion(path, start_distance=s, start_speed=v)
 
 
 # --- by hand ------------------------------------------------------------------------------------------------
@@ -156,44 +156,48 @@ def _changed(path: Path, s: float, v: float, chance: Random) -> Profile:
 def test_blocks_join_on_to_a_path_of_no_length(limits: MotionLimits) -> None:
     """The machine stands where the first move goes, and what comes behind it comes in later."""
     builder = PathBuilder(limits)
-    builder.add([line((3, 4), (3, 4), n=1)])
-    assert plan(builder.path()).duration == 0.0
-    builder.add([line((3, 4), (3, 4), n=2)], 0.0)
-    builder.add(
+    builder.add_blocks([line((3, 4), (3, 4), n=1)])
+    assert plan_motion(builder.build_path()).duration_s == 0.0
+    builder.add_blocks([line((3, 4), (3, 4), n=2)], 0.0)
+    builder.add_blocks(
         [dataclasses.replace(block, n=block.n + 2) for block in polyline([(3, 4), (3, 4), (3, 9)])], 0.0
     )
-    path = builder.path()
-    assert path.blocks.tolist() == [1, 2, 3, 4]
+    path = builder.build_path()
+    assert path.block_numbers.tolist() == [1, 2, 3, 4]
     assert path.length == pytest.approx(5.0)
-    assert plan(path).position(99.0)[0, :2].tolist() == [3.0, 9.0]
+    assert plan_motion(path).positions_at(99.0)[0, :2].tolist() == [3.0, 9.0]
 
 
 def test_single_block_stops_behind_a_block_of_no_length() -> None:
     blocks = polyline([(0, 0), (0, 0), (0, 10)])
     path = build_path(blocks, LIMITS)
     still = dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=path.pieces.rate * 0.0))
-    profile = plan(still)
-    assert (profile.duration, profile.end_s) == (0.0, 0.0)
-    assert plan(still, start_s=0.0, stop=True).duration == 0.0
+    profile = plan_motion(still)
+    assert (profile.duration_s, profile.end_distance) == (0.0, 0.0)
+    assert plan_motion(still, start_distance=0.0, stop=True).duration_s == 0.0
 
 
 def test_a_path_of_no_length_is_braked_planned_and_scaled_like_any_other() -> None:
     path = build_path([line((1, 2), (1, 2))], LIMITS)
-    for profile in (plan(path), plan(path, stop=True), plan(path, feed_scale=0.0, rapid_scale=0.0)):
-        assert (profile.duration, profile.end_v) == (0.0, 0.0)
-        assert profile.position(np.array([0.0, 1.0])).tolist() == [[1.0, 2.0, 0.0]] * 2
-        assert profile.segments(0.0, 1.0)[0].size == 0
+    for profile in (
+        plan_motion(path),
+        plan_motion(path, stop=True),
+        plan_motion(path, feed_scale=0.0, rapid_scale=0.0),
+    ):
+        assert (profile.duration_s, profile.end_speed) == (0.0, 0.0)
+        assert profile.positions_at(np.array([0.0, 1.0])).tolist() == [[1.0, 2.0, 0.0]] * 2
+        assert profile.make_segments(0.0, 1.0)[0].size == 0
 
 
 @pytest.mark.parametrize("way", [1.2e-7, 1e-6, 5e-5])
 def test_a_turn_of_c_beside_a_way_of_no_step_is_a_turn_of_c(way: float) -> None:
     """Far along a path rounding of the distance would else be a jump of C."""
     far = line((0, 0), (0, 900.0), 126.0, n=1)
-    turn = dataclasses.replace(line((0, 900.0), (way, 900.0), 100.0, n=2, kind=Kind.RAPID), c=-3600.0)
+    turn = dataclasses.replace(line((0, 900.0), (way, 900.0), 100.0, n=2, kind=BlockKind.RAPID), c=-3600.0)
     path = build_path([far, turn], LIMITS)
     span = path.block_span(2)
     assert span[1] - span[0] == pytest.approx(3600.0)
-    assert path.point(np.array([span[1]]))[0] == pytest.approx([way, 900.0, -3600.0], abs=1e-9)
+    assert path.positions_at(np.array([span[1]]))[0] == pytest.approx([way, 900.0, -3600.0], abs=1e-9)
 
 
 def test_a_slow_turn_beside_a_real_way_is_measured_by_the_slides() -> None:

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
-from core.motion.block_table import table_of
+from core.motion.block_table import build_table
 from core.motion.motion_path import PathBuilder
-from core.motion.motion_plan import plan, reachable_forward, settled_joints
-from core.motion.path_pieces import unrounded
-from core.motion.speed_limits import JointDemand, demand_over_intervals
-from core.motion.window_planner import ChunkPlanner
+from core.motion.motion_plan import find_last_settled_joint, limit_forward, plan_motion
+from core.motion.path_pieces import smooth_joints
+from core.motion.speed_limits import JointLimits, find_joint_limits
+from core.motion.window_planner import WindowPlanner
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline
 from tests.motion.paths import build_path
@@ -31,7 +31,7 @@ def test_what_is_reached_grows_from_the_lowest_limit_across_the_rows_of_the_sums
     """1 at the last place of the first row of 256, half of one more each step."""
     limit = np.full(600, 100.0)
     limit[255] = 1.0
-    reached = reachable_forward(limit, np.full(599, 0.5))
+    reached = limit_forward(limit, np.full(599, 0.5))
     assert reached[254:257].tolist() == [100.0, 1.0, 1.5]
     assert reached[300] == pytest.approx(1.0 + 45 * 0.5)
     assert reached[500] == 100.0
@@ -40,23 +40,23 @@ def test_what_is_reached_grows_from_the_lowest_limit_across_the_rows_of_the_sums
 def test_a_corner_is_not_begun_faster_than_it_allows() -> None:
     """A right angle takes amax times the interval, 3.048 mm/s."""
     path = build_path(polyline([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)], 10.0), LIMITS)
-    assert plan(path, start_s=1.0, start_v=0.0).duration == pytest.approx(REVERSAL)
+    assert plan_motion(path, start_distance=1.0, start_speed=0.0).duration_s == pytest.approx(REVERSAL)
     with raises_code(MotionError, "too-fast", "8.000 mm/s"):
-        plan(path, start_s=1.0, start_v=8.0)
+        plan_motion(path, start_distance=1.0, start_speed=8.0)
 
 
 def test_a_feed_override_of_0_rests_before_the_first_feed_and_lets_a_rapid_go() -> None:
-    rapid, feed = line((0.0, 0.0), (0.0, 1.0), 10.0, kind=Kind.RAPID), line((0.0, 1.0), (0.0, 2.0), n=2)
-    assert plan(build_path([feed], LIMITS), feed_scale=0.0).duration == 0.0
-    before = plan(build_path([rapid, feed], LIMITS), feed_scale=0.0)
-    assert (before.end_s, before.duration) == (1.0, pytest.approx(REVERSAL))
+    rapid, feed = line((0.0, 0.0), (0.0, 1.0), 10.0, kind=BlockKind.RAPID), line((0.0, 1.0), (0.0, 2.0), n=2)
+    assert plan_motion(build_path([feed], LIMITS), feed_scale=0.0).duration_s == 0.0
+    before = plan_motion(build_path([rapid, feed], LIMITS), feed_scale=0.0)
+    assert (before.end_distance, before.duration_s) == (1.0, pytest.approx(REVERSAL))
 
 
 def test_a_stop_that_has_no_room_is_refused() -> None:
     """From 50 mm/s it takes 2500/2A = .41 mm."""
     path = build_path([line((0.0, 0.0), (0.0, 0.3))], LIMITS)
     with raises_code(MotionError, "cannot-stop", "0.3000 mm"):
-        plan(path, start_v=50.0, stop=True)
+        plan_motion(path, start_speed=50.0, stop=True)
 
 
 # --- what a path may yet become -----------------------------------------------------------------------------
@@ -65,17 +65,17 @@ def test_a_stop_that_has_no_room_is_refused() -> None:
 def test_joints_that_may_yet_be_moved_are_not_settled() -> None:
     """The last fifty of a run of chords that goes on; one interval of way before its end would be eight."""
     builder = PathBuilder(MotionLimits(LIMITS.vmax, LIMITS.amax, T, grain=0.001))
-    builder.add(polyline([(0.0, 0.01 * i) for i in range(201)], 5.0))
-    assert 100 < settled_joints(builder.path()) < 150
+    builder.add_blocks(polyline([(0.0, 0.01 * i) for i in range(201)], 5.0))
+    assert 100 < find_last_settled_joint(builder.build_path()) < 150
 
 
 def test_joints_within_an_interval_of_the_end_are_not_settled() -> None:
     """A right angle .03 mm before the end: chords that follow within .127 mm may yet allow it more."""
     builder = PathBuilder(LIMITS)
     there = [(0.0, 0.01 * i) for i in range(301)]
-    builder.add(polyline([*there, *((0.01 * i, 3.0) for i in range(1, 4))]))
-    path = builder.path()
-    assert path.s[settled_joints(path)] <= 3.03 - 127.0 * T
+    builder.add_blocks(polyline([*there, *((0.01 * i, 3.0) for i in range(1, 4))]))
+    path = builder.build_path()
+    assert path.joint_distances[find_last_settled_joint(path)] <= 3.03 - 127.0 * T
 
 
 @pytest.mark.parametrize("back", [2, 7, 1000])
@@ -83,11 +83,11 @@ def test_the_settled_joint_is_found_however_far_back_is_looked(
     back: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Joint 60 is a full reversal; behind it .6 mm are left, and to rest from 100 mm/s takes 1.64 mm."""
-    monkeypatch.setattr("core.motion.motion_plan._LOOK_BACK", back)
+    monkeypatch.setattr("core.motion.motion_plan._BACKWARD_PIECES", back)
     builder = PathBuilder(LIMITS)
     there = [(0.0, 0.2 * i) for i in range(61)]
-    builder.add(polyline([*there, *((0.0, 12.0 - 0.2 * i) for i in range(1, 4))], 100.0))
-    assert settled_joints(builder.path()) == 60
+    builder.add_blocks(polyline([*there, *((0.0, 12.0 - 0.2 * i) for i in range(1, 4))], 100.0))
+    assert find_last_settled_joint(builder.build_path()) == 60
 
 
 @pytest.mark.parametrize(
@@ -98,20 +98,20 @@ def test_what_is_dropped_leaves_the_way_of_an_interval_and_a_neighbour(
     chord: float, before: int, first: int
 ) -> None:
     builder = PathBuilder(LIMITS)
-    builder.add(polyline([(0.0, chord * i) for i in range(101)], 5.0))
-    builder.drop_before(before)
-    assert builder.path().blocks[0] == first
-    assert builder.path().block_span(before) == pytest.approx(((before - 1) * chord, before * chord))
+    builder.add_blocks(polyline([(0.0, chord * i) for i in range(101)], 5.0))
+    builder.drop_blocks_before(before)
+    assert builder.build_path().block_numbers[0] == first
+    assert builder.build_path().block_span(before) == pytest.approx(((before - 1) * chord, before * chord))
 
 
 @pytest.mark.parametrize("window", [1, 3, 4, 10, 99])
 def test_a_program_in_windows_takes_its_time_once(window: int) -> None:
-    planner = ChunkPlanner(LIMITS, window=window)
-    chunks = [*planner.add(ZIGZAG), *planner.finish()]
-    assert [n for chunk in chunks for n in chunk.n.tolist()] == list(range(1, 11))
-    ends = [t for chunk in chunks for t in chunk.t1.tolist()]
+    planner = WindowPlanner(LIMITS, window=window)
+    chunks = [*planner.plan_blocks(ZIGZAG), *planner.finish_section()]
+    assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == list(range(1, 11))
+    ends = [t for chunk in chunks for t in chunk.block_ends_s.tolist()]
     assert ends == pytest.approx([REVERSAL * n for n in range(1, 11)])
-    assert planner.t == pytest.approx(10 * REVERSAL)
+    assert planner.planned_time_s == pytest.approx(10 * REVERSAL)
     if window < 4:
         assert len(chunks) > 1
 
@@ -120,51 +120,55 @@ def test_a_program_in_windows_takes_its_time_once(window: int) -> None:
 
 
 def test_a_part_of_a_plan_ends_when_its_last_joint_is_reached() -> None:
-    profile = plan(build_path(ZIGZAG, LIMITS))
-    assert profile.until(3.0).duration == pytest.approx(3 * REVERSAL)
-    assert profile.until(0.0).duration == 0.0
+    profile = plan_motion(build_path(ZIGZAG, LIMITS))
+    assert profile.cut_at_distance(3.0).duration_s == pytest.approx(3 * REVERSAL)
+    assert profile.cut_at_distance(0.0).duration_s == 0.0
 
 
 def test_outside_its_time_a_plan_has_no_setpoints() -> None:
-    profile = plan(build_path(ZIGZAG, LIMITS))
+    profile = plan_motion(build_path(ZIGZAG, LIMITS))
     for begin, end in ((0.5, 0.5), (-2.0, -1.0), (9.0, 10.0)):
-        assert len(profile.segments(begin, end)[0]) == 0
+        assert len(profile.make_segments(begin, end)[0]) == 0
 
 
 def test_parts_of_an_arc_join_on_it_and_are_as_short_as_its_jerk_wants() -> None:
     """R 3 at 300 mm/s: v/R = 100 and v²/R = 30000, so j = 3e6 and h³ = 40.5·2.5e-4/j is .0015 s cubed."""
     limits = MotionLimits(vmax=(400.0, 400.0, 1200.0), amax=(40000.0, 40000.0, 12000.0), interval=T)
     path = build_path([arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0), 300.0)], limits)
-    profile = plan(path)
+    profile = plan_motion(path)
     cruise = int(np.flatnonzero(profile.phases.a == 0.0)[0])
     begin = float(profile.phases.t[cruise])
-    t, dt, p, v, a = profile.segments(begin, begin + 0.015)
+    t, dt, p, v, a = profile.make_segments(begin, begin + 0.015)
     assert dt == pytest.approx(np.full(10, 0.0015))
     assert np.hypot(p[:, 0], p[:, 1]) == pytest.approx(np.full(10, 3.0))
     ends = p + v * dt[:, None] + 0.5 * a * dt[:, None] ** 2
     assert ends[:-1] == pytest.approx(p[1:], abs=1e-9)
-    assert ends[-1] == pytest.approx(profile.position(t[-1] + dt[-1])[0], abs=1e-9)
+    assert ends[-1] == pytest.approx(profile.positions_at(t[-1] + dt[-1])[0], abs=1e-9)
 
 
 def test_a_place_is_reached_when_the_ramps_bring_it_there() -> None:
     """Up to 100 mm/s: s = At²/2; on; and down as it went up. Beyond the end it is never."""
-    profile = plan(build_path([line((0.0, 0.0), (0.0, 50.0), 100.0)], LIMITS))
+    profile = plan_motion(build_path([line((0.0, 0.0), (0.0, 50.0), 100.0)], LIMITS))
     ramp = 100.0 / A
     times = np.array([0.25, 0.5, 0.9]) * ramp
     ways = 0.5 * A * times**2
-    assert profile.time_at(ways) == pytest.approx(times)
-    assert profile.time_at(50.0 - ways) == pytest.approx(profile.duration - times)
-    assert profile.time_at(np.array([25.0])) == pytest.approx([0.5 * profile.duration])
-    assert profile.duration == pytest.approx(0.5 + ramp)
-    assert profile.time_at(np.array([-1.0, 50.0, 51.0])).tolist() == [0.0, profile.duration, math.inf]
+    assert profile.times_at_distances(ways) == pytest.approx(times)
+    assert profile.times_at_distances(50.0 - ways) == pytest.approx(profile.duration_s - times)
+    assert profile.times_at_distances(np.array([25.0])) == pytest.approx([0.5 * profile.duration_s])
+    assert profile.duration_s == pytest.approx(0.5 + ramp)
+    assert profile.times_at_distances(np.array([-1.0, 50.0, 51.0])).tolist() == [
+        0.0,
+        profile.duration_s,
+        math.inf,
+    ]
 
 
 def test_a_creep_at_the_end_of_the_path_is_rounding_and_2_hundredths_are_not() -> None:
     """Over the 1e-9 mm that are rounding sqrt(2e-9·A) = .0025 mm/s come to rest."""
     path = build_path([line((0.0, 0.0), (0.0, 1.0))], LIMITS)
-    assert plan(path, start_s=1.0, start_v=0.0024).duration == 0.0
+    assert plan_motion(path, start_distance=1.0, start_speed=0.0024).duration_s == 0.0
     with raises_code(MotionError, "cannot-stop-at-end"):
-        plan(path, start_s=1.0, start_v=0.02)
+        plan_motion(path, start_distance=1.0, start_speed=0.02)
 
 
 # --- chords -------------------------------------------------------------------------------------------------
@@ -174,7 +178,7 @@ def test_chords_of_a_straight_line_stay_where_they_are_however_uneven() -> None:
     ways = np.cumsum([0.0, *([0.01, 0.03, 0.02, 0.005] * 8)]).tolist()
     limits = MotionLimits(LIMITS.vmax, LIMITS.amax, T, grain=0.001)
     pieces = build_path(polyline([(0.0, z) for z in ways]), LIMITS).pieces
-    eased = unrounded(pieces, limits)
+    eased = smooth_joints(pieces, limits)
     assert eased.start[:, 1] == pytest.approx(np.array(ways[:-1]), abs=1e-12)
 
 
@@ -192,9 +196,9 @@ def bent(turned: tuple[float, float] = DIRECTION) -> list[Block]:
 def test_an_interval_asks_of_one_bend_what_the_bend_turns() -> None:
     """v·Δu over an interval of .8 amax: (.8·3048·.001/.1)², whatever the speed."""
     pieces = build_path(bent(), LIMITS).pieces
-    alone = JointDemand(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
-    asked = demand_over_intervals(pieces, alone, np.array([50.0]), LIMITS, more=False)
-    assert asked.squared == pytest.approx([(0.8 * A * T / BEND) ** 2], rel=1e-6)
+    alone = JointLimits(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
+    asked = find_joint_limits(pieces, alone, np.array([50.0]), LIMITS, has_more_pieces=False)
+    assert asked.squared_speeds == pytest.approx([(0.8 * A * T / BEND) ** 2], rel=1e-6)
 
 
 def test_one_bend_an_interval_is_left_to_its_own_limit() -> None:
@@ -204,10 +208,10 @@ def test_one_bend_an_interval_is_left_to_its_own_limit() -> None:
     """
     x = [0.0, 0.05 * BEND]
     points = [(x[i % 2], 0.05 * i * DIRECTION[1]) for i in range(21)]
-    alone = JointDemand(np.array([9]), np.array([1.0]), np.zeros((1, 3)))
+    alone = JointLimits(np.array([9]), np.array([1.0]), np.zeros((1, 3)))
     pieces = build_path(polyline(points), LIMITS).pieces
-    asked = demand_over_intervals(pieces, alone, np.array([20.0]), LIMITS, more=False)
-    assert asked.squared.tolist() == [math.inf]
+    asked = find_joint_limits(pieces, alone, np.array([20.0]), LIMITS, has_more_pieces=False)
+    assert asked.squared_speeds.tolist() == [math.inf]
 
 
 def test_chords_on_both_sides_of_a_bend_keep_room_for_it() -> None:
@@ -218,8 +222,8 @@ def test_chords_on_both_sides_of_a_bend_keep_room_for_it() -> None:
     points += [(0.01 * i * math.sin(after), 0.01 * i * math.cos(after)) for i in range(21)]
     path = build_path(polyline(points), LIMITS)
     asked = 1.5 * 50.0 * (math.sin(after) - math.sin(before)) / T
-    assert path.a[19:21] == pytest.approx([(A - asked) / math.sin(after)] * 2)
-    assert path.a[[10, 30]] == pytest.approx([A / math.sin(after)] * 2)
+    assert path.accelerations[19:21] == pytest.approx([(A - asked) / math.sin(after)] * 2)
+    assert path.accelerations[[10, 30]] == pytest.approx([A / math.sin(after)] * 2)
 
 
 # --- rows ---------------------------------------------------------------------------------------------------
@@ -247,7 +251,7 @@ class Columns:
 def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
     like = line((7.0, 7.0), (8.0, 8.0), 20.0)
     shifted = Block(**{**{f: getattr(like, f) for f in like.__slots__}, "offset_x": 10.0, "offset_z": 20.0})
-    table = table_of([Columns(shifted)], 3500.0)
+    table = build_table([Columns(shifted)], 3500.0)
     assert table.n.tolist() == [4.0, 5.0]
     assert table.start[:, :2].tolist() == [[11.0, 23.0], [12.0, 24.0]]
     assert table.end[:, :2].tolist() == [[12.0, 24.0], [15.0, 28.0]]
@@ -257,20 +261,20 @@ def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
 def test_a_row_of_moves_has_its_own_feeds() -> None:
     row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0), feed=np.array([20.0, 30.0]))
     before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0), line((5.0, 8.0), (9.0, 9.0), 6.0)
-    assert table_of([[before], row, [behind]], 3500.0).feed.tolist() == [5.0, 20.0, 30.0, 6.0]
+    assert build_table([[before], row, [behind]], 3500.0).feed.tolist() == [5.0, 20.0, 30.0, 6.0]
 
 
 def test_a_row_of_one_move_goes_where_it_says_and_not_where_its_pattern_does() -> None:
     row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0))
     single = Columns(row.pattern, row.n[:1], row.x0[:1], row.z0[:1], row.x[:1], row.z[:1])
-    table = table_of([single], 3500.0)
+    table = build_table([single], 3500.0)
     assert (table.n.tolist(), table.start[:, :2].tolist()) == ([4.0], [[1.0, 3.0]])
     assert table.end[:, :2].tolist() == [[2.0, 4.0]]
 
 
 def test_blocks_before_and_behind_a_row_stand_in_their_places() -> None:
     before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0, n=3), line((5.0, 8.0), (6.0, 8.0), 7.0, n=6)
-    table = table_of([[before], Columns(line((7.0, 7.0), (8.0, 8.0), 20.0)), [behind]], 3500.0)
+    table = build_table([[before], Columns(line((7.0, 7.0), (8.0, 8.0), 20.0)), [behind]], 3500.0)
     assert table.n.tolist() == [3.0, 4.0, 5.0, 6.0]
     assert table.start[:, 0].tolist() == [0.0, 1.0, 2.0, 5.0]
     assert table.feed.tolist() == [5.0, 20.0, 20.0, 7.0]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import FloatArray, MotionLimits
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from core.motion.motion_profile import SegmentArrays
 from core.ports import Segments
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
@@ -38,8 +38,8 @@ def evaluate(segments: SegmentArrays, t: FloatArray) -> FloatArray:
 
 
 def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
-    profile = plan(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
-    segments = Segments(*profile.segments(0.0, math.inf, 7.0))
+    profile = plan_motion(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
+    segments = Segments(*profile.make_segments(0.0, math.inf, 7.0))
     assert segments.t == pytest.approx([7.0, 7.0 + 100 / A, 8.0])
     assert segments.v[:, 1] == pytest.approx([0.0, 100.0, 100.0])
     assert segments.a[:, 1] == pytest.approx([A, 0.0, -A])
@@ -49,8 +49,8 @@ def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
 @few
 @given(programs())
 def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
-    profile = plan(build_path(blocks, LIMITS))
-    segments = profile.segments(0.0, profile.duration)
+    profile = plan_motion(build_path(blocks, LIMITS))
+    segments = profile.make_segments(0.0, profile.duration_s)
     t, dt, p, v, _ = segments
     end_p, end_v = ends(segments)
     assert (t + dt)[:-1] == pytest.approx(t[1:], abs=1e-12)
@@ -66,18 +66,18 @@ def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
 @few
 @given(programs())
 def test_they_follow_the_exact_motion_within_half_a_micrometre(blocks: list[Block]) -> None:
-    profile = plan(build_path(blocks, LIMITS))
-    t = np.linspace(0.0, profile.duration, 3000, endpoint=False)
-    played = evaluate(profile.segments(0.0, profile.duration), t)
-    assert np.linalg.norm(played - profile.position(t), axis=1).max() < 5e-4
+    profile = plan_motion(build_path(blocks, LIMITS))
+    t = np.linspace(0.0, profile.duration_s, 3000, endpoint=False)
+    played = evaluate(profile.make_segments(0.0, profile.duration_s), t)
+    assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 5e-4
 
 
 @pytest.mark.parametrize("radius", [0.002, 0.05, 0.16, 1.0, 6.6, 300.0])
 def test_arcs_of_every_size_stay_on_the_arc(radius: float) -> None:
-    profile = plan(build_path([arc((0, radius), (0, -radius), (0, 0), 500.0)], LIMITS))
-    segments = profile.segments(0.0, profile.duration)
+    profile = plan_motion(build_path([arc((0, radius), (0, -radius), (0, 0), 500.0)], LIMITS))
+    segments = profile.make_segments(0.0, profile.duration_s)
     assert segments[1].max() <= 0.002 * (1 + 1e-9)
-    x, z, _ = evaluate(segments, np.linspace(0.0, profile.duration, 5000, endpoint=False)).T
+    x, z, _ = evaluate(segments, np.linspace(0.0, profile.duration_s, 5000, endpoint=False)).T
     assert np.abs(np.hypot(x, z) - radius).max() < 2.5e-4
     jumps = np.abs(ends(segments)[1][:-1] - segments[3][1:])
     assert jumps.max(initial=0.0) < 0.3 * A * T
@@ -86,31 +86,31 @@ def test_arcs_of_every_size_stay_on_the_arc(radius: float) -> None:
 def test_a_faster_machine_gets_shorter_parts() -> None:
     """R 1 mm at 30 m/s²: parts of 2 ms, or of a quarter radian, would leave the arc by 0.9 µm and more."""
     limits = MotionLimits(vmax=(500.0, 500.0, 1.0), amax=(30_000.0, 30_000.0, 1.0))
-    profile = plan(build_path([arc((0, 1), (0, -1), (0, 0), 500.0)], limits))
-    t = np.linspace(0.0, profile.duration, 5000, endpoint=False)
-    x, z, _ = evaluate(profile.segments(0.0, profile.duration), t).T
+    profile = plan_motion(build_path([arc((0, 1), (0, -1), (0, 0), 500.0)], limits))
+    t = np.linspace(0.0, profile.duration_s, 5000, endpoint=False)
+    x, z, _ = evaluate(profile.make_segments(0.0, profile.duration_s), t).T
     assert np.abs(np.hypot(x, z) - 1.0).max() < 2.5e-4
-    played = evaluate(profile.segments(0.0, profile.duration), t)
-    assert np.linalg.norm(played - profile.position(t), axis=1).max() < 2.5e-4
+    played = evaluate(profile.make_segments(0.0, profile.duration_s), t)
+    assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 2.5e-4
 
 
 @pytest.mark.long
 @few
 @given(programs(), st.lists(st.floats(0.0, 1.0), max_size=4))
 def test_windows_put_together_are_the_whole(blocks: list[Block], cuts: list[float]) -> None:
-    profile = plan(build_path(blocks, LIMITS))
-    times = sorted({0.0, profile.duration, *(c * profile.duration for c in cuts)})
-    windows = [profile.segments(a, b) for a, b in pairwise(times)]
+    profile = plan_motion(build_path(blocks, LIMITS))
+    times = sorted({0.0, profile.duration_s, *(c * profile.duration_s for c in cuts)})
+    windows = [profile.make_segments(a, b) for a, b in pairwise(times)]
     together = tuple(np.concatenate(column) for column in zip(*windows, strict=True))
-    assert together[1].sum() == pytest.approx(profile.duration, rel=1e-9)
-    t = np.linspace(0.0, profile.duration, 500, endpoint=False)
+    assert together[1].sum() == pytest.approx(profile.duration_s, rel=1e-9)
+    t = np.linspace(0.0, profile.duration_s, 500, endpoint=False)
     played = evaluate((together[0], together[1], together[2], together[3], together[4]), t)
-    assert np.linalg.norm(played - profile.position(t), axis=1).max() < 5e-4
+    assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 5e-4
 
 
 def test_a_window_of_a_long_plan_converts_only_itself() -> None:
-    profile = plan(build_path(polyline([(0, 0.02 * i) for i in range(20_000)], 100.0), LIMITS))
-    t, dt, *_ = profile.segments(1.0, 1.01)
+    profile = plan_motion(build_path(polyline([(0, 0.02 * i) for i in range(20_000)], 100.0), LIMITS))
+    t, dt, *_ = profile.make_segments(1.0, 1.01)
     assert t[0] == 1.0
     assert t[-1] + dt[-1] == pytest.approx(1.01, abs=1e-12)
     assert len(t) <= 52  # 1 mm at 0.02 mm a piece, cut at both ends
@@ -118,12 +118,18 @@ def test_a_window_of_a_long_plan_converts_only_itself() -> None:
 
 @pytest.mark.parametrize(("t_from", "t_to"), [(5.0, 9.0), (-2.0, -1.0), (0.4, 0.4)])
 def test_a_window_outside_the_motion_is_empty(t_from: float, t_to: float) -> None:
-    profile = plan(build_path([line((0, 0), (0, 1))], LIMITS))
-    assert [column.shape for column in profile.segments(t_from, t_to)] == [(0,), (0,), (0, 3), (0, 3), (0, 3)]
+    profile = plan_motion(build_path([line((0, 0), (0, 1))], LIMITS))
+    assert [column.shape for column in profile.make_segments(t_from, t_to)] == [
+        (0,),
+        (0,),
+        (0, 3),
+        (0, 3),
+        (0, 3),
+    ]
 
 
 def test_no_motion_gives_no_pieces() -> None:
-    profile = plan(build_path([line((3, 4), (3, 4))], LIMITS))
-    assert len(profile.segments(0.0, 1.0)[0]) == 0
-    assert profile.position(0.0)[0] == pytest.approx([3.0, 4.0, 0.0])
-    assert profile.block_at(0.0).tolist() == [0]
+    profile = plan_motion(build_path([line((3, 4), (3, 4))], LIMITS))
+    assert len(profile.make_segments(0.0, 1.0)[0]) == 0
+    assert profile.positions_at(0.0)[0] == pytest.approx([3.0, 4.0, 0.0])
+    assert profile.block_numbers_at(0.0).tolist() == [0]

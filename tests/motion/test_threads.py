@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import MotionError
-from core.motion.motion_plan import plan
+from core.motion.motion_plan import plan_motion
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, Point, line
 from tests.motion.paths import build_path
@@ -17,7 +17,7 @@ from tests.motion.paths import build_path
 
 def thread(end: Point, rpm: float = 600.0) -> Block:
     """From the origin at 2 mm a turn."""
-    return replace(line((0, 0), end, 2.0, kind=Kind.THREAD), rpm=rpm)
+    return replace(line((0, 0), end, 2.0, kind=BlockKind.THREAD), rpm=rpm)
 
 
 def test_a_lead_is_fed_per_turn() -> None:
@@ -28,8 +28,8 @@ def test_a_lead_is_fed_per_turn() -> None:
 def test_a_taper_keeps_its_lead_along_z() -> None:
     path = build_path([thread((30, -40))], LIMITS)
     assert path.pieces.rate.tolist() == pytest.approx([20.0 * 50 / 40])
-    profile = plan(path)
-    middle = profile.position(0.5 * profile.duration + np.array([0.0, 0.1]))
+    profile = plan_motion(path)
+    middle = profile.positions_at(0.5 * profile.duration_s + np.array([0.0, 0.1]))
     assert middle[0][1] - middle[1][1] == pytest.approx(2.0)
 
 
@@ -38,7 +38,7 @@ def test_a_taper_keeps_its_lead_along_z() -> None:
 )
 def test_a_lead_counts_along_z_wherever_the_thread_begins(start: Point, end: Point) -> None:
     """Ways of 5 mm along 5, 3 and 4 mm of Z."""
-    block = replace(line(start, end, 2.0, kind=Kind.THREAD), rpm=600.0)
+    block = replace(line(start, end, 2.0, kind=BlockKind.THREAD), rpm=600.0)
     way = 5.0 if start[0] == end[0] else float(np.hypot(end[0] - start[0], end[1] - start[1]))
     path = build_path([block], LIMITS)
     assert path.pieces.rate.tolist() == pytest.approx([20.0 * way / abs(end[1] - start[1])])
@@ -47,7 +47,7 @@ def test_a_lead_counts_along_z_wherever_the_thread_begins(start: Point, end: Poi
 @pytest.mark.parametrize("z", [0.0, 4.0])
 def test_a_thread_across_z_is_refused_wherever_it_lies(z: float) -> None:
     with raises_code(MotionError, "no-lead"):
-        build_path([replace(line((1.0, z), (5.0, z), 2.0, kind=Kind.THREAD), rpm=600.0)], LIMITS)
+        build_path([replace(line((1.0, z), (5.0, z), 2.0, kind=BlockKind.THREAD), rpm=600.0)], LIMITS)
 
 
 def test_a_thread_that_does_not_advance_is_refused() -> None:

@@ -11,19 +11,19 @@ import pytest
 
 from app.desk.desk import Desk
 from app.desk.programs.program_folder import ProgramFolders
-from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, ProvedJob
 from app.desk.state.desk_clock import DeskClock
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
 from app.offsets.offset_book import OffsetBook
-from app.offsets.secondary_offsets import SecondaryOffsets
-from app.offsets.tool_offsets import ToolOffsets
+from app.offsets.secondary_offsets import SecondaryOffsetEntry
+from app.offsets.tool_offsets import ToolOffsetTable
 from app.path.path_picture import PictureBuilder
 from core.executor.commands import Command
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import Setup
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.store.store import Store
 from tests.screen.yes import read
 
@@ -40,30 +40,32 @@ class Room:
     loads: list[str] = field(default_factory=list)
     posted: list[Command] = field(default_factory=list)
 
-    def at(self, state: State = State.IDLE, *, metric: bool = False, diameter: bool = False) -> None:
+    def at(
+        self, state: MachineState = MachineState.IDLE, *, metric: bool = False, diameter: bool = False
+    ) -> None:
         """The machine is in this state and mode."""
         modal = self.now[0].modal._replace(metric=metric, diameter=diameter)
         self.now[0] = replace(self.now[0], state=state, modal=modal)
 
-    def page(self) -> SecondaryOffsets:
+    def page(self) -> SecondaryOffsetEntry:
         """F9, on the desk's book."""
-        return SecondaryOffsets(self.desk)
+        return SecondaryOffsetEntry(self.desk)
 
-    def grid(self) -> ToolOffsets:
+    def grid(self) -> ToolOffsetTable:
         """F8, on the desk's book."""
-        return ToolOffsets(self.desk)
+        return ToolOffsetTable(self.desk)
 
-    def enter(self, page: SecondaryOffsets | ToolOffsets, *answers: str, asked: bool = False) -> None:
+    def enter(self, page: SecondaryOffsetEntry | ToolOffsetTable, *answers: str, asked: bool = False) -> None:
         """Type each answer with its Return, and wait until what they change is saved.
 
         ``asked``: the last answer is questioned, and Y is pressed; otherwise nothing may be questioned.
         """
-        page.look(self.now[0])
+        page.update(self.now[0])
         for answer in answers:
             for key in answer:
-                assert page.typed(key)
-            assert page.typed("Enter")
-        assert bool(self.desk.asked) == asked, self.desk.notice
+                assert page.handle_key(key)
+            assert page.handle_key("Enter")
+        assert bool(self.desk.confirm_key) == asked, self.desk.prompt_notice
         if asked:
             self.confirm()
         self.settle(page)
@@ -71,13 +73,13 @@ class Room:
     def confirm(self) -> None:
         """Press Y to the question about a suspicious change, a new master or an undo."""
         read(self.desk)
-        self.desk.yes()
+        self.desk.confirm_question()
 
-    def settle(self, page: SecondaryOffsets | ToolOffsets) -> None:
+    def settle(self, page: SecondaryOffsetEntry | ToolOffsetTable) -> None:
         """Wait for the disk, then look as a frame would."""
         self.store.write(lambda _connection: None).result(LIMIT)
-        self.desk.look()
-        page.look(self.now[0])
+        self.desk.update()
+        page.update(self.now[0])
 
 
 @contextmanager
@@ -85,26 +87,26 @@ def room_on(
     folder: Path, machine: DeskMachine | None = None, book: OffsetBook | None = None
 ) -> Iterator[Room]:
     """A desk on this machine; its store is in a folder, and its book reads that unless one is given."""
-    store, now, loads = Store.open(folder / "home"), [Snapshot(state=State.IDLE)], []
+    store, now, loads = Store.open(folder / "home"), [Snapshot(state=MachineState.IDLE)], []
     posted: list[Command] = []
 
-    def read(path: Path) -> Source:
+    def read(path: Path) -> ProgramSource:
         loads.append(path.name)
-        return Source(path.name, "G90\nM30\n")
+        return ProgramSource(path.name, "G90\nM30\n")
 
     workshop = LoadingSteps(
         read,
         lambda source, block_delete: make_job(source, Setup(block_delete=block_delete)),
-        lambda job, _watch: Proved(Proof(job.digest, ())),
-        lambda _job, _watch: PictureBuilder().picture(),
+        lambda job, _watch: ProvedJob(Proof(job.digest, ())),
+        lambda _job, _watch: PictureBuilder().build_picture(),
     )
     desk = Desk(
         DeskControl(posted.append, lambda: now[0]),
         ProgramLoader(workshop, lambda _command: None),
         ProgramFolders(()),
         machine=machine or DeskMachine(),
-        clock=DeskClock(seconds=lambda: 0.0),
-        book=book or OffsetBook(store),
+        clock=DeskClock(read_seconds=lambda: 0.0),
+        offset_book=book or OffsetBook(store),
     )
     yield Room(desk, store, now, loads, posted)
     desk.close()

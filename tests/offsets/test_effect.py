@@ -8,14 +8,14 @@ from collections.abc import Iterator, Mapping
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.workshop import drawer
-from app.desk.background_work import Watch
-from app.offsets.offset_effect import Compared, Effect, Tables
-from app.path.path_picture import Picture
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import create_drawer
+from app.desk.background_work import ProgressCallback
+from app.offsets.offset_effect import ComparedPaths, OffsetEffect, OffsetTables
+from app.path.path_picture import ProgramPicture
 from core.executor.job import Job, make_job
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 
 INCH = 25.4
 LIMIT = 60.0
@@ -27,84 +27,86 @@ LATHE = load_machine()
 
 
 def job() -> Job:
-    setup = setup_for(LATHE, tools=TOOLS, secondary={})
-    return make_job(Source("part.nc", PROGRAM), setup)
+    setup = create_setup(LATHE, tool_offsets=TOOLS, secondary_offsets={})
+    return make_job(ProgramSource("part.nc", PROGRAM), setup)
 
 
 @pytest.fixture
-def effect() -> Iterator[Effect]:
-    effect = Effect(drawer(LATHE))
+def effect() -> Iterator[OffsetEffect]:
+    effect = OffsetEffect(create_drawer(LATHE))
     yield effect
     effect.close()
 
 
-def settled(effect: Effect) -> Compared | None:
-    effect.worker.settle(LIMIT)
-    return effect.now
+def settled(effect: OffsetEffect) -> ComparedPaths | None:
+    effect.worker.wait_for_results(LIMIT)
+    return effect.compared_paths
 
 
-def test_a_tool_that_moves_moves_its_own_path_alone(effect: Effect) -> None:
+def test_a_tool_that_moves_moves_its_own_path_alone(effect: OffsetEffect) -> None:
     after = {**TOOLS, 1: ToolOffset(-1.0 + 0.03, -50.0 - 0.04)}
-    effect.ask(job(), Tables(TOOLS), Tables(after))
+    effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(after))
     pair = settled(effect)
     assert pair is not None
-    assert pair.furthest == pytest.approx(0.05)  # 3, 4, 5
-    dx, dz = pair.after.x - pair.before.x, pair.after.z - pair.before.z
-    first = abs(pair.before.x - 0.5 * INCH) < 1e-9  # T1's cylinder
+    assert pair.largest_distance == pytest.approx(0.05)  # 3, 4, 5
+    dx, dz = pair.picture_after.x - pair.picture_before.x, pair.picture_after.z - pair.picture_before.z
+    first = abs(pair.picture_before.x - 0.5 * INCH) < 1e-9  # T1's cylinder
     assert dx[first] == pytest.approx(0.03)
     assert dz[first] == pytest.approx(-0.04)
-    second = abs(pair.before.x - 0.3 * INCH) < 1e-9  # T2's
+    second = abs(pair.picture_before.x - 0.3 * INCH) < 1e-9  # T2's
     assert second.any()
     assert dx[second] == pytest.approx(0.0)
     assert dz[second] == pytest.approx(0.0)
 
 
-def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: Effect) -> None:
+def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: OffsetEffect) -> None:
     correction = {1: SecondaryOffset(-0.01, 0.0)}
-    effect.ask(job(), Tables(TOOLS), Tables(TOOLS, correction))
+    effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(TOOLS, correction))
     pair = settled(effect)
     assert pair is not None
-    assert pair.furthest == pytest.approx(0.01)
-    moved = abs(pair.after.x - pair.before.x) > 1e-9
-    assert set(pair.before.x[moved].round(6)) == {round(0.6 * INCH, 6)}
+    assert pair.largest_distance == pytest.approx(0.01)
+    moved = abs(pair.picture_after.x - pair.picture_before.x) > 1e-9
+    assert set(pair.picture_before.x[moved].round(6)) == {round(0.6 * INCH, 6)}
 
 
-def test_no_difference_is_said(effect: Effect) -> None:
-    effect.ask(job(), Tables(TOOLS), Tables({**TOOLS, 9: ToolOffset(5.0, 5.0)}))
+def test_no_difference_is_said(effect: OffsetEffect) -> None:
+    effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables({**TOOLS, 9: ToolOffset(5.0, 5.0)}))
     pair = settled(effect)
     assert pair is not None
-    assert pair.same
+    assert pair.is_equal
 
 
 def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
-    longer = Source("part.nc", PROGRAM)
+    longer = ProgramSource("part.nc", PROGRAM)
 
-    def draw(of: Job, frame: Mapping[int, ToolOffset], watch: Watch) -> Picture:
+    def draw(of: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
         text = PROGRAM if not of.setup.secondary else PROGRAM.replace("Z-1.2\n", "Z-1.2\nX.7Z-1.2\n")
-        return drawer(LATHE)(make_job(Source("part.nc", text), of.setup), frame, watch)
+        return create_drawer(LATHE)(make_job(ProgramSource("part.nc", text), of.setup), frame, watch)
 
-    effect = Effect(draw)
-    effect.ask(make_job(longer, job().setup), Tables(TOOLS), Tables(TOOLS, {1: SecondaryOffset(1.0)}))
+    effect = OffsetEffect(draw)
+    effect.request_paths(
+        make_job(longer, job().setup), OffsetTables(TOOLS), OffsetTables(TOOLS, {1: SecondaryOffset(1.0)})
+    )
     pair = settled(effect)
     assert pair is not None
-    assert math.isinf(pair.furthest)
-    assert not pair.same
+    assert math.isinf(pair.largest_distance)
+    assert not pair.is_equal
     effect.close()
 
 
 def test_a_worker_that_fails_is_told() -> None:
-    def broken(_job: Job, _frame: Mapping[int, ToolOffset], _watch: Watch) -> Picture:
+    def broken(_job: Job, _frame: Mapping[int, ToolOffset], _watch: ProgressCallback) -> ProgramPicture:
         raise ValueError("no such path")
 
-    effect = Effect(broken)
-    effect.ask(job(), Tables(), Tables())
+    effect = OffsetEffect(broken)
+    effect.request_paths(job(), OffsetTables(), OffsetTables())
     assert settled(effect) is None
-    assert effect.trouble == "no such path"
+    assert effect.error_text == "no such path"
     effect.close()
 
 
-def test_what_nobody_looks_at_any_more_is_forgotten(effect: Effect) -> None:
-    effect.ask(job(), Tables(TOOLS), Tables(TOOLS))
-    effect.forget()
+def test_what_nobody_looks_at_any_more_is_forgotten(effect: OffsetEffect) -> None:
+    effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(TOOLS))
+    effect.clear()
     assert settled(effect) is None
-    assert effect.trouble == ""
+    assert effect.error_text == ""

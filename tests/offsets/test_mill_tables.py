@@ -7,20 +7,20 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.kinematics_chain import kinematics_of
-from app.compose.machine.machine_files import named_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.stored_offsets import book_of, read_offsets, setup_with
+from app.compose.machine.kinematics_chain import build_kinematics
+from app.compose.machine.machine_files import load_named_machine
+from app.compose.machine.machine_setup import create_setup
+from app.compose.stored_offsets import create_offset_book, create_setup_with, read_offsets
 from app.desk.status.machine_status import Tone
+from app.offsets.active_offsets import MillOffsets, add_mill_offsets
 from app.offsets.cell_table import CellTable
-from app.offsets.mill_tools import MillTools
-from app.offsets.mill_touch import MillLives, MillTouch
-from app.offsets.offsets_in_force import MillOffsets, with_mill
-from app.offsets.zero_offsets import Presets
-from core.executor.snapshot import State
+from app.offsets.mill_tools import MillToolTable
+from app.offsets.mill_touch import MillToolLives, MillTouchCalculator
+from app.offsets.zero_offsets import PresetTable
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import ToolOffset
 from core.production.tool_life import ToolLife
-from core.store.store_rows import Kind, MillRow, PresetRow
+from core.store.store_rows import MillRow, OffsetKind, PresetRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.texts import text
 
@@ -29,27 +29,27 @@ AXES = ("X", "Y", "Z", "A", "C")
 
 def mill(room: Room, *at: float, tool: int = 0) -> None:
     """The machine is an A-C table that stands there."""
-    machine = kinematics_of(named_machine("ac-table-mill"))
-    room.desk.pages.attach(MillTouch(room.desk, machine))
+    machine = build_kinematics(load_named_machine("ac-table-mill"))
+    room.desk.page_registry.attach_model(MillTouchCalculator(room.desk, machine))
     snapshot, place = room.now[0], (*at, *(0.0,) * (5 - len(at)))
     modal = snapshot.modal._replace(metric=True, tool=tool)
     room.now[0] = replace(snapshot, axes=AXES, actual=place, demand=place, homed=(True,) * 5, modal=modal)
 
 
 def types(room: Room, page: CellTable, text: str, *, name: str = "", row: int = 0) -> None:
-    page.look(room.now[0])
+    page.update(room.now[0])
     if name:
         page.choose(row, page.columns.index(name))
     for key in text:
-        assert page.typed(key)
-    page.typed("Enter")
+        assert page.handle_key(key)
+    page.handle_key("Enter")
     settle(room, page)
 
 
 def settle(room: Room, page: CellTable) -> None:
     room.store.write(lambda _connection: None).result(LIMIT)
-    room.desk.look()
-    page.look(room.now[0])
+    room.desk.update()
+    page.update(room.now[0])
 
 
 def kept(room: Room, tool: int = 1) -> MillRow:
@@ -61,13 +61,13 @@ def kept(room: Room, tool: int = 1) -> MillRow:
 
 def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
     mill(room)
-    page = MillTools(room.desk)
+    page = MillToolTable(room.desk)
     typed = {"length": "80.5", "radius": "12/2", "dl": "-.02", "teeth": "4", "life": "90"}
     for name, value in typed.items():
         types(room, page, value, name=name, row=19)
     row = kept(room, 20)
     assert row == MillRow(length=80.5, radius=6.0, dl=-0.02, teeth=4, life=90.0)
-    page.undo()
+    page.handle_undo()
     room.confirm()
     settle(room, page)
     assert kept(room, 20).life == 0.0
@@ -75,25 +75,25 @@ def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
 
 def test_a_name_takes_letters_once_return_has_opened_it(room: Room) -> None:
     mill(room)
-    page = MillTools(room.desk)
+    page = MillToolTable(room.desk)
     page.choose(4, 0)
-    assert not page.takes("H")
-    page.typed("Enter")
-    assert page.takes("H")
+    assert not page.accepts_key("H")
+    page.handle_key("Enter")
+    assert page.accepts_key("H")
     types(room, page, "Hole 8")
     assert kept(room, 5).name == "Hole 8"
 
 
 def test_a_preset_is_in_force_until_it_is_chosen_again(room: Room) -> None:
     mill(room)
-    page = Presets(room.desk)
+    page = PresetTable(room.desk)
     types(room, page, "10", name="x", row=2)
-    page.activate()
+    page.activate_preset()
     settle(room, page)
-    assert room.desk.book.preset == 3
-    page.activate()
+    assert room.desk.offset_book.active_preset == 3
+    page.activate_preset()
     settle(room, page)
-    assert room.desk.book.preset == 0
+    assert room.desk.offset_book.active_preset == 0
 
 
 # --- touched off ----------------------------------------------------------------------------------------
@@ -101,27 +101,29 @@ def test_a_preset_is_in_force_until_it_is_chosen_again(room: Room) -> None:
 
 def test_a_length_follows_from_a_tip_on_the_part(room: Room) -> None:
     mill(room, 250.0, 220.0, -265.0)  # zero lies at Z -350: the nose is 85 over it, the tip 5
-    page = MillTools(room.desk)
+    page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
-    page.look(room.now[0])
+    page.update(room.now[0])
     for key in "5":
-        page.typed(key)
-    page.here()
+        page.handle_key(key)
+    page.set_from_position()
     settle(room, page)
     assert kept(room).length == pytest.approx(80.0)
 
 
 def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
-    room.store.offsets.table(MillTools.kind).change_row(7, "", {"length": 60.0, "radius": 5.0}).result(LIMIT)
-    room.desk.book.read()
+    room.store.offsets.get_table(MillToolTable.kind).change_row(
+        7, "", {"length": 60.0, "radius": 5.0}
+    ).result(LIMIT)
+    room.desk.offset_book.read_store()
     mill(room, 100.0, 50.0, -200.0, tool=7)
-    page = Presets(room.desk)
+    page = PresetTable(room.desk)
     for name, reads in (("x", "-5"), ("y", ""), ("z", "2")):
         page.choose(0, page.columns.index(name))
-        page.look(room.now[0])
+        page.update(room.now[0])
         for key in reads:
-            page.typed(key)
-        page.here()
+            page.handle_key(key)
+        page.set_from_position()
         settle(room, page)
     # The tip is 60 below the nose; its centre stands 5 before the left side.
     assert room.store.offsets.presets.read_rows()[1] == PresetRow(x=105.0, y=50.0, z=-262.0)
@@ -129,21 +131,21 @@ def test_a_workpiece_follows_from_a_tip_that_touches_it(room: Room) -> None:
 
 def test_a_turned_table_is_reckoned_back_to_zero(room: Room) -> None:
     # C at 180 about X 300, Y 252: what touches at 340, 252 lies at 260, 252 with C at 0.
-    room.store.offsets.table(MillTools.kind).change_row(7, "", {"length": 60.0}).result(LIMIT)
-    room.desk.book.read()
+    room.store.offsets.get_table(MillToolTable.kind).change_row(7, "", {"length": 60.0}).result(LIMIT)
+    room.desk.offset_book.read_store()
     mill(room, 340.0, 252.0, -200.0, 0.0, 180.0, tool=7)
-    page = Presets(room.desk)
-    page.here()
+    page = PresetTable(room.desk)
+    page.set_from_position()
     settle(room, page)
     assert room.store.offsets.presets.read_rows()[1].x == pytest.approx(260.0)
 
 
-def touches(room: Room, page: MillTools | Presets, name: str, reads: str = "") -> None:
+def touches(room: Room, page: MillToolTable | PresetTable, name: str, reads: str = "") -> None:
     page.choose(0, page.columns.index(name))
-    page.look(room.now[0])
+    page.update(room.now[0])
     for key in reads:
-        page.typed(key)
-    page.here()
+        page.handle_key(key)
+    page.set_from_position()
     settle(room, page)
 
 
@@ -151,9 +153,9 @@ def test_a_rotary_axis_reads_what_is_typed_where_it_stands(room: Room) -> None:
     """C at 130 shall read 40: its zero is 90, and the part's zero goes along, 40 to the right of the table's
     line at X 300, Y 252, a quarter turn back."""
     room.store.offsets.presets.change_row(1, "", {"x": 340.0, "y": 252.0, "z": 7.0}).result(LIMIT)
-    room.desk.book.read()
+    room.desk.offset_book.read_store()
     mill(room, 0.0, 0.0, 0.0, 0.0, 130.0)
-    page = Presets(room.desk)
+    page = PresetTable(room.desk)
     assert page.columns == ("x", "y", "z", "rotation", "a", "c", "remark")
     touches(room, page, "c", "40")
     row = room.store.offsets.presets.read_rows()[1]
@@ -169,9 +171,9 @@ def at(room: Room, x: float, y: float) -> None:
 def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> None:
     """10 up on 100 along is atan .1 = 5.7106 degrees, from whichever end; an edge along Y reads 90."""
     room.store.offsets.mill_tools.change_row(7, "", {"length": 60.0}).result(LIMIT)
-    room.desk.book.read()
+    room.desk.offset_book.read_store()
     mill(room, 100.0, 50.0, -200.0, tool=7)
-    page = Presets(room.desk)
+    page = PresetTable(room.desk)
     page.choose(0, page.columns.index("rotation"))
     for first, last, reads, wanted in (
         ((100.0, 50.0), (200.0, 60.0), "", 5.7105931),
@@ -179,30 +181,30 @@ def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> No
         ((100.0, 50.0), (90.0, 150.0), "90", 5.7105931),
     ):
         at(room, *first)
-        page.here()
-        assert text("offsets.first-point") in room.desk.notice
+        page.set_from_position()
+        assert text("offsets.first-point") in room.desk.prompt_notice
         at(room, *last)
         for key in reads:
-            page.typed(key)
-        page.here()
+            page.handle_key(key)
+        page.set_from_position()
         settle(room, page)
         assert room.store.offsets.presets.read_rows()[1].rotation == pytest.approx(wanted, abs=1e-6)
 
 
 def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first(room: Room) -> None:
     room.store.offsets.mill_tools.change_row(7, "", {"length": 60.0}).result(LIMIT)
-    room.desk.book.read()
+    room.desk.offset_book.read_store()
     mill(room, 100.0, 50.0, -200.0, tool=7)
-    page = Presets(room.desk)
+    page = PresetTable(room.desk)
     page.choose(0, page.columns.index("rotation"))
-    page.here()
+    page.set_from_position()
     at(room, 100.5, 50.5)
-    page.here()
-    assert "LESS THAN 1 MM APART" in room.desk.notice
+    page.set_from_position()
+    assert "LESS THAN 1 MM APART" in room.desk.prompt_notice
     assert room.store.offsets.presets.read_rows() == {}
     page.choose(0, page.columns.index("rotation"))
-    page.here()
-    assert text("offsets.first-point") in room.desk.notice
+    page.set_from_position()
+    assert text("offsets.first-point") in room.desk.prompt_notice
 
 
 # --- tool life ------------------------------------------------------------------------------------------
@@ -210,32 +212,34 @@ def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first
 
 def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None:
     room.store.offsets.mill_tools.change_row(1, "", {"length": 60.0, "life": 30.0}).result(LIMIT)
-    room.desk.book.read()
+    room.desk.offset_book.read_store()
     mill(room)
     told: list[tuple[int, float]] = []
     lives = {1: ToolLife(1, limit_seconds=1800.0, seconds=1680.0)}
-    room.desk.pages.attach(MillLives(lambda: lives, lambda number, cut: told.append((number, cut))))
-    page = MillTools(room.desk)
+    room.desk.page_registry.attach_model(
+        MillToolLives(lambda: lives, lambda number, cut: told.append((number, cut)))
+    )
+    page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("used"))
     assert page.value_at(1, "used") == 28.0
     assert page.tone_at(1, "used") is Tone.PAUSE
     types(room, page, "0", name="used")
     assert told == [(1, 0.0)]
     types(room, page, "5", name="used", row=8)
-    assert text("offsets.not-in-table", number=9) in room.desk.notice
+    assert text("offsets.not-in-table", number=9) in room.desk.prompt_notice
     assert told == [(1, 0.0)]
 
 
 def test_return_turns_stop_on_and_off(room: Room) -> None:
     mill(room)
-    page = MillTools(room.desk)
+    page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("stops"))
     for wanted in (True, False):
-        page.typed("Enter")
+        page.handle_key("Enter")
         settle(room, page)
         assert kept(room).stops is wanted
     types(room, page, "2")
-    assert room.desk.notice.startswith("REJECTED")
+    assert room.desk.prompt_notice.startswith("REJECTED")
 
 
 # --- refusals -------------------------------------------------------------------------------------------
@@ -247,75 +251,77 @@ def test_return_turns_stop_on_and_off(room: Room) -> None:
 )
 def test_what_is_no_tool_is_refused(room: Room, name: str, text: str) -> None:
     mill(room)
-    page = MillTools(room.desk)
+    page = MillToolTable(room.desk)
     types(room, page, text, name=name)
-    assert room.desk.notice.startswith("REJECTED")
+    assert room.desk.prompt_notice.startswith("REJECTED")
     assert room.store.offsets.mill_tools.read_rows() == {}
 
 
 def test_nothing_changes_under_a_program(room: Room) -> None:
     mill(room)
-    room.at(State.RUN)
-    page = Presets(room.desk)
+    room.at(MachineState.RUN)
+    page = PresetTable(room.desk)
     types(room, page, "3", name="x")
     assert room.store.offsets.presets.read_rows() == {}
-    page.activate()
-    assert text("offsets.between-cycles") in room.desk.notice
+    page.activate_preset()
+    assert text("offsets.between-cycles") in room.desk.prompt_notice
 
 
 def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
     mill(room, 250.0, 220.0, -265.0, 30.0)
-    page = MillTools(room.desk)
+    page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
-    page.here()
-    assert "TILTED" in room.desk.notice
+    page.set_from_position()
+    assert "TILTED" in room.desk.prompt_notice
     assert room.store.offsets.mill_tools.read_rows() == {}
 
 
 def test_a_workpiece_is_not_touched_with_a_tool_of_unknown_length(room: Room) -> None:
     mill(room, 1.0, 2.0, 3.0, tool=9)
-    page = Presets(room.desk)
-    page.here()
-    assert "TOOL CALL" in room.desk.notice
+    page = PresetTable(room.desk)
+    page.set_from_position()
+    assert "TOOL CALL" in room.desk.prompt_notice
     assert room.store.offsets.presets.read_rows() == {}
 
 
 def test_an_axis_that_was_not_homed_touches_nothing_off(room: Room) -> None:
     mill(room)
     room.now[0] = replace(room.now[0], homed=(True, True, False, True, True))
-    MillTools(room.desk).here()
-    page = MillTools(room.desk)
+    MillToolTable(room.desk).set_from_position()
+    page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
-    page.here()
-    assert text("offsets.not-homed", axes="Z") in room.desk.notice
+    page.set_from_position()
+    assert text("offsets.not-homed", axes="Z") in room.desk.prompt_notice
 
 
 def test_a_preset_that_was_never_set_is_not_put_in_force(room: Room) -> None:
     mill(room)
-    page = Presets(room.desk)
-    page.activate()
-    assert "PRESET 1 IS NOT SET" in room.desk.notice
-    assert room.desk.book.preset == 0
+    page = PresetTable(room.desk)
+    page.activate_preset()
+    assert "PRESET 1 IS NOT SET" in room.desk.prompt_notice
+    assert room.desk.offset_book.active_preset == 0
 
 
 # --- what the interpreter counts with -------------------------------------------------------------------
 
 
 def test_tables_become_lengths_names_and_the_preset_in_force() -> None:
-    plain = setup_for(named_machine("ac-table-mill"), tools={}, secondary={})
+    plain = create_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
     tools = {5: MillRow("Mill 12", length=80.0, radius=6.0, dl=-0.1, dr=0.02, point=118.0)}
-    made = with_mill(plain, MillOffsets(tools, {3: PresetRow(1.0, 2.0, 3.0, 15.0)}, 3))
+    made = add_mill_offsets(plain, MillOffsets(tools, {3: PresetRow(1.0, 2.0, 3.0, 15.0)}, 3))
     assert (made.tools[5].z, made.tools[5].nose_radius) == pytest.approx((79.9, 6.02))
-    assert (made.tool_names, made.mill_tools[5].point, made.preset) == ({"MILL 12": 5}, 118.0, 3)
+    assert (made.tool_names, made.mill_tools[5].point_angle_deg, made.preset) == ({"MILL 12": 5}, 118.0, 3)
     assert made.kinematics is not None
-    assert (made.kinematics.origin, made.kinematics.basic_rotation) == ((1.0, 2.0, 3.0), 15.0)
+    assert (made.kinematics.origin, made.kinematics.basic_rotation_deg) == ((1.0, 2.0, 3.0), 15.0)
     assert made.presets[0].origin == (230.0, 210.0, -350.0)  # of the machine file
 
 
 def test_what_the_tool_table_does_not_show_does_not_count() -> None:
     """A store may have rows of a lathe: their Z counted as lengths while the tool table showed 0."""
-    plain = setup_for(named_machine("ac-table-mill"), tools={20: ToolOffset(z=76.2)}, secondary={})
-    made = with_mill(plain, MillOffsets({5: MillRow(length=80.0)}))
+    plain = create_setup(
+        load_named_machine("ac-table-mill"), tool_offsets={20: ToolOffset(z=76.2)}, secondary_offsets={}
+    )
+    made = add_mill_offsets(plain, MillOffsets({5: MillRow(length=80.0)}))
     assert {number: tool.z for number, tool in made.tools.items()} == {5: 80.0}
 
 
@@ -323,17 +329,20 @@ def test_tools_of_an_offsets_file_stand_in_the_tool_table(tmp_path: Path) -> Non
     file = tmp_path / "tools.toml"
     file.write_text('[tool.20]\nz = 3.0\nnose_radius = 0.25\nwear_z = -0.01\nremark = "Mill"\n')
     offsets = read_offsets(file)
-    book = book_of(lambda: offsets, None)
-    shown, counts = book.mill_tools[20], setup_with(named_machine("ac-table-mill"), offsets).tools[20]
+    book = create_offset_book(lambda: offsets, None)
+    shown, counts = (
+        book.mill_tools[20],
+        create_setup_with(load_named_machine("ac-table-mill"), offsets).tools[20],
+    )
     assert (shown.name, shown.length, shown.radius) == ("Mill", pytest.approx(75.946), pytest.approx(6.35))
     assert (counts.z, counts.nose_radius) == (shown.length, shown.radius)
-    assert "READ-ONLY" in book.change(Kind.MILL_TOOL, 20, {"length": 1.0}, "typed")
+    assert "READ-ONLY" in book.change_fields(OffsetKind.MILL_TOOL, 20, {"length": 1.0}, "typed")
 
 
 def test_a_lathe_and_a_preset_that_has_gone_are_left_as_they_were() -> None:
-    lathe = setup_for(named_machine("gt75"), tools={}, secondary={})
-    assert with_mill(lathe, MillOffsets({5: MillRow(length=1.0)})) is lathe
-    plain = setup_for(named_machine("ac-table-mill"), tools={}, secondary={})
-    made = with_mill(plain, MillOffsets({}, {}, 7))
+    lathe = create_setup(load_named_machine("gt75"), tool_offsets={}, secondary_offsets={})
+    assert add_mill_offsets(lathe, MillOffsets({5: MillRow(length=1.0)})) is lathe
+    plain = create_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
+    made = add_mill_offsets(plain, MillOffsets({}, {}, 7))
     assert made.preset == 0
     assert made.kinematics == plain.kinematics

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.desk.state.desk_machine import DeskMachine
-from app.desk.status.prompt_line import NOT_HERE, STALE
+from app.desk.status.prompt_line import RELOAD_IN_PROGRESS, START_ON_AUTOMATIC
 from core.executor.commands import Command, CycleStart, UseOffsets
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import pattern
 
@@ -21,42 +21,42 @@ from tests.texts import pattern
 @pytest.fixture
 def room(tmp_path: Path) -> Iterator[Room]:
     """At a machine with one start button."""
-    with room_on(tmp_path, DeskMachine(two_hand=False)) as made:
+    with room_on(tmp_path, DeskMachine(is_two_hand=False)) as made:
         yield made
 
 
 @pytest.fixture
 def posted(room: Room) -> list[Command]:
     """What the one start button of this machine has posted; a program is ready."""
-    room.desk.session.load(Path("part.nc"))
-    room.desk.session.settled(LIMIT)
+    room.desk.program_loader.start_loading(Path("part.nc"))
+    room.desk.program_loader.wait_until_loaded(LIMIT)
     return room.posted
 
 
 def test_a_program_that_is_ready_starts(room: Room, posted: list[Command]) -> None:
-    room.desk.station.press_start()
+    room.desk.station_keys.press_start()
     assert posted == [CycleStart()]
 
 
 def test_no_start_while_a_change_is_saved_and_until_the_program_is_read_anew(
     room: Room, posted: list[Command]
 ) -> None:
-    assert room.desk.book.change(Kind.SECONDARY, 1, {"x": 0.1}, "X .2") == ""
-    room.desk.station.press_start()
-    assert (posted, room.desk.notice) == ([], STALE)
+    assert room.desk.offset_book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "X .2") == ""
+    room.desk.station_keys.press_start()
+    assert (posted, room.desk.prompt_notice) == ([], RELOAD_IN_PROGRESS)
     room.store.write(lambda _connection: None).result(LIMIT)
-    room.desk.look()
-    room.desk.session.settled(LIMIT)
-    room.desk.station.press_start()
+    room.desk.update()
+    room.desk.program_loader.wait_until_loaded(LIMIT)
+    room.desk.station_keys.press_start()
     in_force, start = posted
     assert in_force == UseOffsets({}, {1: SecondaryOffset(0.1)})
     assert start == CycleStart()
 
 
 def test_an_interrupted_job_goes_on_with_its_own_offsets(room: Room, posted: list[Command]) -> None:
-    room.at(State.HOLD)
-    room.desk.book.change(Kind.SECONDARY, 1, {"x": 0.1}, "X .2")
-    room.desk.station.press_start()
+    room.at(MachineState.HOLD)
+    room.desk.offset_book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "X .2")
+    room.desk.station_keys.press_start()
     assert posted == [CycleStart()]
 
 
@@ -64,17 +64,17 @@ def test_no_start_when_the_program_cannot_be_read_again(room: Room, posted: list
     def gone(path: Path) -> None:
         raise FileNotFoundError(2, "No such file or directory", str(path))
 
-    object.__setattr__(room.desk.session.workshop, "read", gone)
-    room.desk.book.change(Kind.SECONDARY, 1, {"x": 0.1}, "X .2")
+    object.__setattr__(room.desk.program_loader.steps, "read_source", gone)
+    room.desk.offset_book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "X .2")
     room.store.write(lambda _connection: None).result(LIMIT)
-    room.desk.look()
-    room.desk.session.settled(LIMIT)
-    room.desk.station.press_start()
+    room.desk.update()
+    room.desk.program_loader.wait_until_loaded(LIMIT)
+    room.desk.station_keys.press_start()
     assert CycleStart() not in posted
-    assert re.fullmatch(pattern("offsets.cannot-load", program="part.nc"), room.desk.notice)
+    assert re.fullmatch(pattern("offsets.cannot-load", program="part.nc"), room.desk.prompt_notice)
 
 
 def test_no_start_beside_the_automatic_page(room: Room, posted: list[Command]) -> None:
-    room.desk.window.show_page(starts=False)
-    room.desk.station.press_start()
-    assert (posted, room.desk.notice) == ([], NOT_HERE)
+    room.desk.window_state.set_page(can_start=False)
+    room.desk.station_keys.press_start()
+    assert (posted, room.desk.prompt_notice) == ([], START_ON_AUTOMATIC)

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_values import Mode, in_words
-from app.offsets.secondary_offsets import Step
-from core.executor.snapshot import State
-from core.store.store_rows import Kind, SecondaryRow
+from app.offsets.offset_values import ValueMode, format_offset
+from app.offsets.secondary_offsets import SecondaryOffsetStep
+from core.executor.snapshot import MachineState
+from core.store.store_rows import OffsetKind, SecondaryRow
 from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import text
 
@@ -21,44 +21,48 @@ def test_the_questions_in_their_order(room: Room) -> None:
     page = room.page()
     asked = []
     for key in ("1", "", "", ""):
-        asked.append(page.question)
+        asked.append(page.question_text)
         room.enter(page, key)
     assert asked == ["Offset Number?", "X DIAMETER CORRECTION?", "Z CORRECTION?", "R?"]
-    assert page.step is Step.NUMBER
+    assert page.entry_step is SecondaryOffsetStep.NUMBER
 
 
 def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
     page = room.page()
     room.enter(page, "3", "-.001", ".002", ".0156")
     room.enter(page, "3", "-.001", ".002", ".0312")
-    x, z, r = (value / 25.4 for value in room.store.offsets.secondary.read_rows()[3])
+    x, z, r = (value / 25.4 for value in room.store.offsets.secondary_offsets.read_rows()[3])
     assert (x, z, r) == pytest.approx((-0.001, 0.004, 0.0312), abs=1e-12)
     assert (
-        in_words(room.store.offsets.secondary.read_rows()[3], Mode()) == "X −0.00100  Z +0.00400  R 0.03120"
+        format_offset(room.store.offsets.secondary_offsets.read_rows()[3], ValueMode())
+        == "X −0.00100  Z +0.00400  R 0.03120"
     )
 
 
 def test_an_empty_row_reads_as_on_the_control() -> None:
-    assert in_words(SecondaryRow(), Mode()) == "X +0.00000  Z +0.00000  R 0.00000"
-    assert in_words(SecondaryRow(0.0, -0.01, 0.4), Mode(metric=True)) == "X +0.0000  Z −0.0100  R 0.4000"
+    assert format_offset(SecondaryRow(), ValueMode()) == "X +0.00000  Z +0.00000  R 0.00000"
+    assert (
+        format_offset(SecondaryRow(0.0, -0.01, 0.4), ValueMode(is_metric=True))
+        == "X +0.0000  Z −0.0100  R 0.4000"
+    )
 
 
 def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
     page = room.page()
     for _ in range(10):
         room.enter(page, "1", ".0001", "", "")
-    assert room.store.offsets.secondary.read_rows()[1].x == 0.0005 * 25.4
+    assert room.store.offsets.secondary_offsets.read_rows()[1].x == 0.0005 * 25.4
 
 
 def test_bare_return_keeps(room: Room) -> None:
     page = room.page()
     room.enter(page, "2", ".1", ".2", ".3", asked=True)
     room.enter(page, "2", "", ".01", "")
-    assert room.store.offsets.secondary.read_rows()[2] == pytest.approx(
+    assert room.store.offsets.secondary_offsets.read_rows()[2] == pytest.approx(
         (0.05 * 25.4, 0.21 * 25.4, 0.3 * 25.4)
     )
     room.enter(page, "2", "", "", "")
-    assert room.desk.notice == text("offsets.as-it-was", number=2)
+    assert room.desk.prompt_notice == text("offsets.as-it-was", number=2)
     assert len(room.store.offsets.read_history()) == 2
 
 
@@ -66,15 +70,15 @@ def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
     page = room.page()
     room.enter(page, "1")
     for key in ".5-.002":
-        page.typed(key)
-    assert page.old_to_new.endswith("→  X +0.24900  Z +0.00000  R 0.00000")
-    page.typed("+")  # half a sum: the last figure that was one
-    assert page.preview == (0.0, 0.0, 0.0)
-    page.typed("Back")
+        page.handle_key(key)
+    assert page.change_text.endswith("→  X +0.24900  Z +0.00000  R 0.00000")
+    page.handle_key("+")  # half a sum: the last figure that was one
+    assert page.preview_row == (0.0, 0.0, 0.0)
+    page.handle_key("Back")
     room.enter(page, "", "", "", asked=True)
-    assert room.store.offsets.secondary.read_rows()[1].x == pytest.approx(0.249 * 25.4)
-    assert room.desk.notice == "D1 SAVED"
-    assert page.old_to_new == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
+    assert room.store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(0.249 * 25.4)
+    assert room.desk.prompt_notice == "D1 SAVED"
+    assert page.change_text == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
 
 
 def would_become(name: str, value: str, low: str, high: str) -> str:
@@ -100,16 +104,16 @@ def would_become(name: str, value: str, low: str, high: str) -> str:
 def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str, ...], why: str) -> None:
     page = room.page()
     room.enter(page, *answers)
-    assert room.desk.notice == text("offsets.refused", why=why)
+    assert room.desk.prompt_notice == text("offsets.refused", why=why)
     assert page.text == answers[-1]
-    assert room.store.offsets.secondary.read_rows() == {}
+    assert room.store.offsets.secondary_offsets.read_rows() == {}
 
 
 def test_metric_when_the_control_is_metric(room: Room) -> None:
     room.at(metric=True)
     page = room.page()
     room.enter(page, "1", ".02", "-.5", ".4", asked=True)
-    assert room.store.offsets.secondary.read_rows()[1] == (0.01, -0.5, 0.4)
+    assert room.store.offsets.secondary_offsets.read_rows()[1] == (0.01, -0.5, 0.4)
     assert room.store.offsets.read_history()[0].why == "MM X .02 Z -.5 R .4"
 
 
@@ -117,73 +121,73 @@ def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> Non
     page = room.page()
     room.enter(page, "1", ".02")
     room.at(metric=True)
-    page.look(room.now[0])
-    assert page.step is Step.NUMBER
-    assert "NOTHING SAVED" in room.desk.notice
-    assert room.store.offsets.secondary.read_rows() == {}
+    page.update(room.now[0])
+    assert page.entry_step is SecondaryOffsetStep.NUMBER
+    assert "NOTHING SAVED" in room.desk.prompt_notice
+    assert room.store.offsets.secondary_offsets.read_rows() == {}
 
 
 def test_escape_goes_back_step_by_step(room: Room) -> None:
     page = room.page()
     room.enter(page, "4", ".1")
-    assert page.escape()
-    assert room.desk.notice == text("offsets.as-it-was", number=4)
-    assert page.question == "Offset Number?"
-    assert not page.escape()
-    assert room.store.offsets.secondary.read_rows() == {}
+    assert page.handle_escape()
+    assert room.desk.prompt_notice == text("offsets.as-it-was", number=4)
+    assert page.question_text == "Offset Number?"
+    assert not page.handle_escape()
+    assert room.store.offsets.secondary_offsets.read_rows() == {}
 
 
 def test_clear_asks_once_more(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "9", "", ".1", "", asked=True)
-    assert page.typed("C")
-    assert room.desk.notice == text("offsets.clear-all")
-    assert page.escape()
-    page.typed("c")
-    page.typed("7")  # any other key takes the question back
-    page.typed("Back")
-    page.typed("C")
+    assert page.handle_key("C")
+    assert room.desk.prompt_notice == text("offsets.clear-all")
+    assert page.handle_escape()
+    page.handle_key("c")
+    page.handle_key("7")  # any other key takes the question back
+    page.handle_key("Back")
+    page.handle_key("C")
     room.settle(page)
-    assert len(room.store.offsets.secondary.read_rows()) == 2
-    page.typed("C")
+    assert len(room.store.offsets.secondary_offsets.read_rows()) == 2
+    page.handle_key("C")
     room.settle(page)
-    assert len(room.store.offsets.secondary.read_rows()) == 2
-    room.desk.answers._since = float("-inf")
-    room.desk.answer()
+    assert len(room.store.offsets.secondary_offsets.read_rows()) == 2
+    room.desk.prompt_answers._since = float("-inf")
+    room.desk.confirm_if_unchanged()
     room.settle(page)
-    assert room.store.offsets.secondary.read_rows() == {}
-    assert page.old_to_new == text("offsets.count-changed", count=2, keys="F5")
-    page.undo()
+    assert room.store.offsets.secondary_offsets.read_rows() == {}
+    assert page.change_text == text("offsets.count-changed", count=2, keys="F5")
+    page.handle_undo()
     room.confirm()
     room.settle(page)
-    assert sorted(room.store.offsets.secondary.read_rows()) == [1, 9]
+    assert sorted(room.store.offsets.secondary_offsets.read_rows()) == [1, 9]
 
 
 def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "1")
-    page.typed("C")
-    page.typed("C")
+    page.handle_key("C")
+    page.handle_key("C")
     room.settle(page)
-    assert room.store.offsets.secondary.read_rows()
-    assert room.desk.notice == text("offsets.only-at-number")
+    assert room.store.offsets.secondary_offsets.read_rows()
+    assert room.desk.prompt_notice == text("offsets.only-at-number")
 
 
 def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
-    room.store.offsets.tools.change_row(1, "touched off", {"x": 5.0}).result(LIMIT)
-    page.undo()
+    room.store.offsets.tool_offsets.change_row(1, "touched off", {"x": 5.0}).result(LIMIT)
+    page.handle_undo()
     room.confirm()
     room.settle(page)
-    assert room.store.offsets.secondary.read_rows() == {}
-    assert room.store.offsets.tools.read_rows()[1].x == 5.0
-    assert room.desk.notice == "D1 UNDONE"
-    page.undo()
-    assert not room.desk.asked
-    assert room.desk.notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
+    assert room.store.offsets.secondary_offsets.read_rows() == {}
+    assert room.store.offsets.tool_offsets.read_rows()[1].x == 5.0
+    assert room.desk.prompt_notice == "D1 UNDONE"
+    page.handle_undo()
+    assert not room.desk.confirm_key
+    assert room.desk.prompt_notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
 
 
 def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(room: Room) -> None:
@@ -191,122 +195,129 @@ def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(roo
     room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "2", ".2", "", "", asked=True)
     room.enter(page, "1", ".3")
-    page.undo()
-    assert not room.desk.asked
-    assert room.desk.notice == text("offsets.as-it-was", number=1)
+    page.handle_undo()
+    assert not room.desk.confirm_key
+    assert room.desk.prompt_notice == text("offsets.as-it-was", number=1)
     room.enter(page, "1")
-    page.undo()
+    page.handle_undo()
     room.confirm()
     room.settle(page)
-    assert set(room.store.offsets.secondary.read_rows()) == {2}
-    assert room.desk.notice == "D1 UNDONE"
-    assert page.step is Step.NUMBER
+    assert set(room.store.offsets.secondary_offsets.read_rows()) == {2}
+    assert room.desk.prompt_notice == "D1 UNDONE"
+    assert page.entry_step is SecondaryOffsetStep.NUMBER
 
 
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "", asked=True)
-    page.history.toggle()
-    assert page.history.listed is not None
-    at, which, change, why = page.history.in_words(page.history.listed[0])
+    page.offset_history.toggle_shown()
+    assert page.offset_history.listed_changes is not None
+    at, which, change, why = page.offset_history.format_change(page.offset_history.listed_changes[0])
     assert at.startswith("20")
     assert (which, why) == ("D1", "X .5-.002")
     assert change == "not set  →  X +0.24900  Z +0.00000  R 0.00000"
-    assert page.escape()
-    assert page.history.listed is None
+    assert page.handle_escape()
+    assert page.offset_history.listed_changes is None
 
 
 def test_a_change_loads_the_program_again(room: Room) -> None:
-    room.desk.session.load(Path("part.nc"), block_delete=True)
-    room.desk.session.settled(LIMIT)
+    room.desk.program_loader.start_loading(Path("part.nc"), block_delete=True)
+    room.desk.program_loader.wait_until_loaded(LIMIT)
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
-    room.desk.session.settled(LIMIT)
+    room.desk.program_loader.wait_until_loaded(LIMIT)
     assert room.loads == ["part.nc", "part.nc"]
-    assert room.desk.session.now.block_delete
+    assert room.desk.program_loader.loaded.block_delete
 
 
-UNDER_WAY = [State.RUN, State.WAIT, State.HOLD, State.HOLDING, State.BLOCK_END, State.PROGRAM_STOP]
+UNDER_WAY = [
+    MachineState.RUN,
+    MachineState.WAIT,
+    MachineState.HOLD,
+    MachineState.HOLDING,
+    MachineState.BLOCK_END,
+    MachineState.PROGRAM_STOP,
+]
 
 
 @pytest.mark.parametrize("state", UNDER_WAY)
 @pytest.mark.parametrize(("repeat", "when"), [(True, "next-part"), (False, "next-start")])
 def test_a_correction_while_parts_run_counts_from_the_next_one(
-    room: Room, state: State, repeat: bool, when: str
+    room: Room, state: MachineState, repeat: bool, when: str
 ) -> None:
     page = room.page()
     room.at(state)
     room.now[0] = replace(room.now[0], cycle_repeat=repeat)
-    assert text(f"offsets.prompt-{when}") in page.prompt(room.now[0])
+    assert text(f"offsets.prompt-{when}") in page.prompt_text(room.now[0])
     room.enter(page, "1", ".1", "", "", asked=True)
-    assert room.desk.notice == f"D1 SAVED{text(f'offsets.{when}')}"
-    assert room.store.offsets.secondary.read_rows()[1].x == pytest.approx(0.05 * 25.4)
-    page.undo()
+    assert room.desk.prompt_notice == f"D1 SAVED{text(f'offsets.{when}')}"
+    assert room.store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(0.05 * 25.4)
+    page.handle_undo()
     room.confirm()
     room.settle(page)
-    assert room.desk.notice == f"D1 UNDONE{text(f'offsets.{when}')}"
+    assert room.desk.prompt_notice == f"D1 UNDONE{text(f'offsets.{when}')}"
 
 
 @pytest.mark.parametrize("state", UNDER_WAY)
-def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: State) -> None:
+def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: MachineState) -> None:
     page = room.page()
     room.enter(page, "1", ".1", "", "", asked=True)
     room.at(state)
-    page.typed("C")
-    page.typed("C")
-    assert room.desk.notice == text("offsets.only-wear")
+    page.handle_key("C")
+    page.handle_key("C")
+    assert room.desk.prompt_notice == text("offsets.only-wear")
     room.settle(page)
-    assert room.store.offsets.secondary.read_rows()[1].x == pytest.approx(0.05 * 25.4)
+    assert room.store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(0.05 * 25.4)
 
 
-@pytest.mark.parametrize("state", [State.JOG, State.HOME])
-def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: State) -> None:
+@pytest.mark.parametrize("state", [MachineState.JOG, MachineState.HOME])
+def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: MachineState) -> None:
     page = room.page()
     room.at(state)
     room.enter(page, "1")
-    assert room.desk.notice == text("offsets.moving")
+    assert room.desk.prompt_notice == text("offsets.moving")
 
 
 def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(room: Room) -> None:
     """Every part begins with G73 and goes over to its G72; the correction is a diameter all the same."""
     page = room.page()
-    room.at(State.RUN, diameter=True)
+    room.at(MachineState.RUN, diameter=True)
     room.enter(page, "3", "-.0002")
-    room.at(State.RUN, diameter=False)
+    room.at(MachineState.RUN, diameter=False)
     room.enter(page, "", "")
-    assert room.store.offsets.secondary.read_rows()[3].x == pytest.approx(-0.0001 * 25.4)
+    assert room.store.offsets.secondary_offsets.read_rows()[3].x == pytest.approx(-0.0001 * 25.4)
 
 
 def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
     page = room.page()
-    room.at(State.RUN)
+    room.at(MachineState.RUN)
     room.enter(page, "3", "-.0002")
-    room.at(State.RUN, metric=True)
+    room.at(MachineState.RUN, metric=True)
     room.settle(page)
-    assert room.desk.notice == text("offsets.unit-changed")
-    assert 3 not in room.store.offsets.secondary.read_rows()
+    assert room.desk.prompt_notice == text("offsets.unit-changed")
+    assert 3 not in room.store.offsets.secondary_offsets.read_rows()
 
 
 def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> None:
-    room.desk.session.load(Path("part.nc"))
-    room.desk.session.settled(LIMIT)
+    room.desk.program_loader.start_loading(Path("part.nc"))
+    room.desk.program_loader.wait_until_loaded(LIMIT)
     page = room.page()
-    room.at(State.PROGRAM_STOP)
-    assert text("offsets.prompt-next-start") in page.prompt(room.now[0])
+    room.at(MachineState.PROGRAM_STOP)
+    assert text("offsets.prompt-next-start") in page.prompt_text(room.now[0])
     room.enter(page, "1", ".1", "", "", asked=True)
-    assert room.desk.notice == f"D1 SAVED{text('offsets.next-start')}"
-    room.at(State.RUN)
-    room.desk.look()
+    assert room.desk.prompt_notice == f"D1 SAVED{text('offsets.next-start')}"
+    room.at(MachineState.RUN)
+    room.desk.update()
     assert room.loads == ["part.nc"]
-    room.at(State.IDLE)
-    room.desk.look()
-    room.desk.session.settled(LIMIT)
+    room.at(MachineState.IDLE)
+    room.desk.update()
+    room.desk.program_loader.wait_until_loaded(LIMIT)
     assert room.loads == ["part.nc", "part.nc"]
 
 
 @pytest.fixture
 def read_only(tmp_path: Path) -> Iterator[Room]:
-    book = OffsetBook(locked="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
+    book = OffsetBook(lock_reason="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
     with room_on(tmp_path, book=book) as made:
         yield made
 
@@ -315,41 +326,41 @@ def test_offsets_of_a_file_are_read_only(read_only: Room) -> None:
     room = read_only
     page = room.page()
     room.enter(page, "1")
-    assert room.desk.notice == "READ ONLY"
-    page.typed("C")
-    page.undo()
-    assert not room.desk.asked
-    assert room.desk.notice == "READ ONLY"
-    assert page.old is None
-    assert page.book.secondary.get(1) == (0.0, 0.1, 0.0)
+    assert room.desk.prompt_notice == "READ ONLY"
+    page.handle_key("C")
+    page.handle_undo()
+    assert not room.desk.confirm_key
+    assert room.desk.prompt_notice == "READ ONLY"
+    assert page.present_row is None
+    assert page.offset_book.secondary.get(1) == (0.0, 0.1, 0.0)
 
 
 def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     book = OffsetBook(room.store)
-    assert book.change(Kind.SECONDARY, 1, {"x": 0.1}, "one") == ""
-    assert book.change(Kind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
-    assert book.undo(Kind.SECONDARY, 1, 1).startswith("STILL SAVING")
+    assert book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "one") == ""
+    assert book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
+    assert book.undo_step(OffsetKind.SECONDARY, 1, 1).startswith("STILL SAVING")
     room.store.write(lambda _connection: None).result(LIMIT)
-    assert book.poll() == ""
+    assert book.poll_saving() == ""
     assert book.secondary.get(1) == (0.1, 0.0, 0.0)
 
 
 def test_a_store_that_is_closed_is_told(room: Room) -> None:
     book = OffsetBook(room.store)
     room.store.close()
-    assert "closed" in book.change(Kind.SECONDARY, 1, {"x": 0.1}, "late")
+    assert "closed" in book.change_fields(OffsetKind.SECONDARY, 1, {"x": 0.1}, "late")
 
 
 def test_a_page_left_before_the_disk_answers_builds_the_program_all_the_same(room: Room) -> None:
-    room.desk.session.load(Path("part.nc"))
-    room.desk.session.settled(LIMIT)
+    room.desk.program_loader.start_loading(Path("part.nc"))
+    room.desk.program_loader.wait_until_loaded(LIMIT)
     page = room.page()
-    page.look(room.now[0])
+    page.update(room.now[0])
     for key in ("1", "Enter", ".", "0", "1", "Enter", "Enter", "Enter"):
-        page.typed(key)
-    page.leave()
+        page.handle_key(key)
+    page.on_close()
     room.store.write(lambda _connection: None).result(LIMIT)
-    room.desk.look()
-    room.desk.session.settled(LIMIT)
-    assert not room.desk.book.busy
+    room.desk.update()
+    room.desk.program_loader.wait_until_loaded(LIMIT)
+    assert not room.desk.offset_book.is_saving
     assert room.loads == ["part.nc", "part.nc"]

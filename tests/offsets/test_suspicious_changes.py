@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets.change_rules import Doubt, suspicions, suspicions_of
-from core.store.store_rows import Kind, MillRow, PresetRow, Row, SecondaryRow, ToolRow, ZeroRow
+from app.offsets.change_rules import SuspicionKind, find_suspicions, find_table_suspicions
+from core.store.store_rows import MillRow, OffsetKind, OffsetRow, PresetRow, SecondaryRow, ToolRow, ZeroRow
 from tests.offsets.conftest import Room
 from tests.texts import text
 
@@ -17,89 +17,103 @@ TOOL = ToolRow(10.0, -50.0, wear_x=0.05)
     ("old", "new", "doubts"),
     [
         (TOOL, TOOL._replace(x=10.5), []),
-        (TOOL, TOOL._replace(x=10.51), [("x", Doubt.LARGE)]),
+        (TOOL, TOOL._replace(x=10.51), [("x", SuspicionKind.LARGE_CHANGE)]),
         (TOOL, TOOL._replace(x=10.54, wear_x=0.0), []),  # a touch-off: the tip moves .49 mm
-        (TOOL, TOOL._replace(x=-10.0), [("x", Doubt.SIDE), ("x", Doubt.LARGE)]),
-        (TOOL, TOOL._replace(x=381.0), [("x", Doubt.TRAVEL), ("x", Doubt.LARGE)]),
-        (TOOL, TOOL._replace(z=-151.0), [("z", Doubt.TRAVEL), ("z", Doubt.LARGE)]),
-        (None, ToolRow(10.0, -151.0), [("z", Doubt.TRAVEL)]),
+        (TOOL, TOOL._replace(x=-10.0), [("x", SuspicionKind.WRONG_SIDE), ("x", SuspicionKind.LARGE_CHANGE)]),
+        (
+            TOOL,
+            TOOL._replace(x=381.0),
+            [("x", SuspicionKind.OUTSIDE_TRAVEL), ("x", SuspicionKind.LARGE_CHANGE)],
+        ),
+        (
+            TOOL,
+            TOOL._replace(z=-151.0),
+            [("z", SuspicionKind.OUTSIDE_TRAVEL), ("z", SuspicionKind.LARGE_CHANGE)],
+        ),
+        (None, ToolRow(10.0, -151.0), [("z", SuspicionKind.OUTSIDE_TRAVEL)]),
         (None, ToolRow(10.0, -50.0), []),
         (TOOL, TOOL._replace(wear_x=0.177), []),  # .254 on the diameter
-        (TOOL, TOOL._replace(wear_x=0.18), [("wear_x", Doubt.LARGE)]),
+        (TOOL, TOOL._replace(wear_x=0.18), [("wear_x", SuspicionKind.LARGE_CHANGE)]),
         (TOOL, TOOL._replace(wear_z=0.254), []),
-        (TOOL, TOOL._replace(wear_z=-0.26), [("wear_z", Doubt.LARGE)]),
+        (TOOL, TOOL._replace(wear_z=-0.26), [("wear_z", SuspicionKind.LARGE_CHANGE)]),
         (TOOL, TOOL._replace(remark="new", quadrant=3, nose_radius=0.8), []),
-        (SecondaryRow(), SecondaryRow(0.13, 0.0, 0.4), [("x", Doubt.LARGE)]),
-        (None, SecondaryRow(0.0, 0.3), [("z", Doubt.LARGE)]),
+        (SecondaryRow(), SecondaryRow(0.13, 0.0, 0.4), [("x", SuspicionKind.LARGE_CHANGE)]),
+        (None, SecondaryRow(0.0, 0.3), [("z", SuspicionKind.LARGE_CHANGE)]),
         (SecondaryRow(0.1, 0.1), SecondaryRow(0.2, 0.2), []),
-        (MillRow("A", 80.0), MillRow("A", 80.6), [("length", Doubt.LARGE)]),
+        (MillRow("A", 80.0), MillRow("A", 80.6), [("length", SuspicionKind.LARGE_CHANGE)]),
         (MillRow("A", 80.0), MillRow("A", 80.0, 6.0), []),
-        (MillRow("A", 80.0, 6.0), MillRow("A", -80.0, 6.0), [("length", Doubt.LARGE)]),
+        (MillRow("A", 80.0, 6.0), MillRow("A", -80.0, 6.0), [("length", SuspicionKind.LARGE_CHANGE)]),
         (
             MillRow("A", 80.0, 6.0, 1.0),
             MillRow("A", 80.0, 5.0, 2.0),
-            [("radius", Doubt.LARGE), ("corner", Doubt.LARGE)],
+            [("radius", SuspicionKind.LARGE_CHANGE), ("corner", SuspicionKind.LARGE_CHANGE)],
         ),
         (None, MillRow("A", 80.0, 6.0, dr=0.2), []),
-        (None, MillRow("A", 80.0, 6.0, dr2=0.3), [("dr2", Doubt.LARGE)]),
-        (None, ToolRow(10.0, -50.0, wear_x=0.2), [("wear_x", Doubt.LARGE)]),
-        (MillRow("A", 80.0), MillRow("A", 80.0, dl=0.3), [("dl", Doubt.LARGE)]),
+        (None, MillRow("A", 80.0, 6.0, dr2=0.3), [("dr2", SuspicionKind.LARGE_CHANGE)]),
+        (None, ToolRow(10.0, -50.0, wear_x=0.2), [("wear_x", SuspicionKind.LARGE_CHANGE)]),
+        (MillRow("A", 80.0), MillRow("A", 80.0, dl=0.3), [("dl", SuspicionKind.LARGE_CHANGE)]),
     ],
 )
-def test_doubts(old: Row | None, new: Row, doubts: list[tuple[str, Doubt]]) -> None:
-    assert [(each.name, each.doubt) for each in suspicions(1, old, new, TRAVEL)] == doubts
+def test_doubts(old: OffsetRow | None, new: OffsetRow, doubts: list[tuple[str, SuspicionKind]]) -> None:
+    assert [(each.name, each.kind) for each in find_suspicions(1, old, new, TRAVEL)] == doubts
 
 
 def test_a_new_master_names_itself_only_where_set_tools_follow() -> None:
     master = {1: {"x": 1.0, "z": 1.0, "master": True}}
-    assert suspicions_of(Kind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
-    found = suspicions_of(Kind.TOOL, {2: TOOL}, master, TRAVEL)
-    assert [(each.number, each.doubt) for each in found] == [(1, Doubt.MASTER)]
-    assert suspicions_of(Kind.TOOL, {1: ToolRow(1.0, 1.0, master=True), 2: TOOL}, master, TRAVEL) == ()
+    assert find_table_suspicions(OffsetKind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
+    found = find_table_suspicions(OffsetKind.TOOL, {2: TOOL}, master, TRAVEL)
+    assert [(each.number, each.kind) for each in found] == [(1, SuspicionKind.NEW_MASTER)]
+    assert (
+        find_table_suspicions(OffsetKind.TOOL, {1: ToolRow(1.0, 1.0, master=True), 2: TOOL}, master, TRAVEL)
+        == ()
+    )
 
 
 def test_a_value_that_the_store_refuses_is_not_questioned() -> None:
-    assert suspicions_of(Kind.TOOL, {1: TOOL}, {1: {"x": 5000.0}}, TRAVEL) == ()
-    assert suspicions_of(Kind.TOOL, {1: TOOL}, {1: {"colour": 1.0}}, TRAVEL) == ()
+    assert find_table_suspicions(OffsetKind.TOOL, {1: TOOL}, {1: {"x": 5000.0}}, TRAVEL) == ()
+    assert find_table_suspicions(OffsetKind.TOOL, {1: TOOL}, {1: {"colour": 1.0}}, TRAVEL) == ()
 
 
 def test_datums_are_not_questioned() -> None:
-    assert suspicions_of(Kind.ZERO, {54: ZeroRow(1.0)}, {54: {"x": 900.0}}, TRAVEL) == ()
-    assert suspicions_of(Kind.PRESET, {1: PresetRow(1.0)}, {1: {"x": 900.0}}, TRAVEL) == ()
+    assert find_table_suspicions(OffsetKind.ZERO, {54: ZeroRow(1.0)}, {54: {"x": 900.0}}, TRAVEL) == ()
+    assert find_table_suspicions(OffsetKind.PRESET, {1: PresetRow(1.0)}, {1: {"x": 900.0}}, TRAVEL) == ()
 
 
 def test_a_typed_x_of_a_tool_is_asked_and_esc_keeps_it(room: Room) -> None:
-    room.store.offsets.tools.change_row(1, "touched off", {"x": 12.7, "z": -76.2}).result(60)
-    room.desk.book.read()
+    room.store.offsets.tool_offsets.change_row(1, "touched off", {"x": 12.7, "z": -76.2}).result(60)
+    room.desk.offset_book.read_store()
     grid = room.grid()
-    grid.look(room.now[0])
-    grid.choose(1, 0)
+    grid.update(room.now[0])
+    grid.select_cell(1, 0)
     for key in "-.5":
-        grid.typed(key)
-    grid.typed("Enter")
+        grid.handle_key(key)
+    grid.handle_key("Enter")
     change = f"T1 X R +0.50000 → −0.50000 ({text('offsets.doubt-side')})"
-    assert room.desk.notice == text("offsets.suspicious", changes=change)
-    assert grid.escape()
+    assert room.desk.prompt_notice == text("offsets.suspicious", changes=change)
+    assert grid.handle_escape()
     room.settle(grid)
-    assert room.store.offsets.tools.read_rows()[1].x == 12.7
+    assert room.store.offsets.tool_offsets.read_rows()[1].x == 12.7
 
 
 def test_undo_takes_back_the_chosen_row_only(room: Room) -> None:
     for number in (1, 2):
-        room.store.offsets.tools.change_row(number, "touched off", {"x": 12.7, "z": -76.2})
-    room.store.offsets.tools.change_row(1, "moved", {"x": 12.8})
-    room.store.offsets.tools.change_row(2, "moved", {"x": 12.9}).result(60)
-    room.desk.book.read()
+        room.store.offsets.tool_offsets.change_row(number, "touched off", {"x": 12.7, "z": -76.2})
+    room.store.offsets.tool_offsets.change_row(1, "moved", {"x": 12.8})
+    room.store.offsets.tool_offsets.change_row(2, "moved", {"x": 12.9}).result(60)
+    room.desk.offset_book.read_store()
     grid = room.grid()
-    grid.look(room.now[0])
-    grid.choose(1, 0)
-    grid.undo()
+    grid.update(room.now[0])
+    grid.select_cell(1, 0)
+    grid.handle_undo()
     room.settle(grid)
-    assert room.store.offsets.tools.read_rows()[1].x == 12.8
-    assert room.desk.asked
+    assert room.store.offsets.tool_offsets.read_rows()[1].x == 12.8
+    assert room.desk.confirm_key
     room.confirm()
     room.settle(grid)
-    assert (room.store.offsets.tools.read_rows()[1].x, room.store.offsets.tools.read_rows()[2].x) == (
+    assert (
+        room.store.offsets.tool_offsets.read_rows()[1].x,
+        room.store.offsets.tool_offsets.read_rows()[2].x,
+    ) == (
         12.7,
         12.9,
     )
@@ -107,8 +121,8 @@ def test_undo_takes_back_the_chosen_row_only(room: Room) -> None:
 
 def test_undo_of_a_row_without_a_change_asks_nothing(room: Room) -> None:
     grid = room.grid()
-    grid.look(room.now[0])
-    grid.choose(9, 0)
-    grid.undo()
-    assert room.desk.notice == text("offsets.no-change-to-undo", row="T9")
-    assert not room.desk.asked
+    grid.update(room.now[0])
+    grid.select_cell(9, 0)
+    grid.handle_undo()
+    assert room.desk.prompt_notice == text("offsets.no-change-to-undo", row="T9")
+    assert not room.desk.confirm_key

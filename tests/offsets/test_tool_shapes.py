@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets.tool_shapes import ToolShapes
-from core.executor.snapshot import State
+from app.offsets.tool_shapes import ToolShapeTable
+from core.executor.snapshot import MachineState
 from core.part.tool_shape import ToolKind
 from core.store.store_rows import TOOL_KINDS, ShapeRow
 from tests.offsets.conftest import LIMIT, Room
@@ -17,27 +17,27 @@ INCH = 25.4
 
 def set_tools(room: Room) -> None:
     """T1 turns and was touched off, T2 was touched off and has no shape, T3 is a drill from the office."""
-    room.store.offsets.tools.change_row(
+    room.store.offsets.tool_offsets.change_row(
         1, "set", {"x": -12.7, "z": -76.2, "nose_radius": 0.79375, "quadrant": 3}
     )
-    room.store.offsets.tools.change_row(2, "set", {"x": 25.4, "z": -50.8})
-    room.store.offsets.shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
-    room.store.offsets.shapes.change_row(3, "set", {"kind": "drill", "diameter": 6.35}).result(LIMIT)
-    room.desk.book.read()
+    room.store.offsets.tool_offsets.change_row(2, "set", {"x": 25.4, "z": -50.8})
+    room.store.offsets.tool_shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
+    room.store.offsets.tool_shapes.change_row(3, "set", {"kind": "drill", "diameter": 6.35}).result(LIMIT)
+    room.desk.offset_book.read_store()
 
 
-def shape_of(room: Room, number: int, name: str = "kind") -> ToolShapes:
+def shape_of(room: Room, number: int, name: str = "kind") -> ToolShapeTable:
     """The page of this tool with the cursor on a field."""
     set_tools(room)
-    page = ToolShapes(room.desk)
-    page.history.opened()
-    page.look(room.now[0])
-    page.go_to_tool(number)
-    page.go(page.names.index(name))
+    page = ToolShapeTable(room.desk)
+    page.offset_history.on_open()
+    page.update(room.now[0])
+    page.select_tool(number)
+    page.move_cursor(page.field_names.index(name))
     return page
 
 
-def write(page: ToolShapes, *keys: str) -> None:
+def write(page: ToolShapeTable, *keys: str) -> None:
     """``Enter`` and the like are keys; other words are typed letter by letter."""
     for key in keys:
         named = key in {
@@ -53,53 +53,53 @@ def write(page: ToolShapes, *keys: str) -> None:
             "Delete",
         }
         for each in [key] if named else key:
-            assert page.typed(each)
+            assert page.handle_key(each)
 
 
-def save(room: Room, page: ToolShapes) -> None:
+def save(room: Room, page: ToolShapeTable) -> None:
     """Wait for the disk, then look as a frame would."""
     room.store.write(lambda _connection: None).result(LIMIT)
-    room.desk.book.poll()
-    page.look(room.now[0])
+    room.desk.offset_book.poll_saving()
+    page.update(room.now[0])
 
 
 def test_fields_are_those_of_the_kind(room: Room) -> None:
     page = shape_of(room, 1)
-    assert page.names[:4] == ("kind", "hand", "quadrant", "nose_radius")
-    assert "diameter" not in page.names
-    page.go_to_tool(3)
-    assert page.names == ("kind", "quadrant", "diameter", "point", "length", "stick_out", "flutes")
-    page.go_to_tool(2)
-    assert page.names == ("kind",)
+    assert page.field_names[:4] == ("kind", "hand", "quadrant", "nose_radius")
+    assert "diameter" not in page.field_names
+    page.select_tool(3)
+    assert page.field_names == ("kind", "quadrant", "diameter", "point", "length", "stick_out", "flutes")
+    page.select_tool(2)
+    assert page.field_names == ("kind",)
 
 
 @pytest.mark.parametrize("kind", TOOL_KINDS)
 def test_every_kind_has_its_fields_on_the_page(room: Room, kind: str) -> None:
     set_tools(room)
-    room.desk.book.shapes[5] = ShapeRow(kind)
-    page = ToolShapes(room.desk)
-    page.look(room.now[0])
-    page.go_to_tool(5)
-    assert len(page.names) <= 12, "two columns of six"
-    for name in page.names:
-        page.go(page.names.index(name))
-        assert page.question.startswith("T5  ")
-        page.cell(name)
-    assert page.outline is not None
+    room.desk.offset_book.shapes[5] = ShapeRow(kind)
+    page = ToolShapeTable(room.desk)
+    page.update(room.now[0])
+    page.select_tool(5)
+    assert len(page.field_names) <= 12, "two columns of six"
+    for name in page.field_names:
+        page.move_cursor(page.field_names.index(name))
+        assert page.question_text.startswith("T5  ")
+        page.format_field(name)
+    assert page.tool_outline is not None
     assert ToolKind(kind)
 
 
 def test_kind_is_turned_to_and_set(room: Room) -> None:
     page = shape_of(room, 2)
     write(page, "Right")
-    assert page.entered == "TURNING"
+    assert page.entered_text == "TURNING"
     write(page, "Right", "Right", "Left", "Left", "Left")
-    assert page.entered == "FORM TOOL", "it goes round"
+    assert page.entered_text == "FORM TOOL", "it goes round"
     write(page, "Right", "Enter")
     save(room, page)
-    assert room.store.offsets.shapes.read_rows()[2] == ShapeRow("turning")
-    assert room.desk.notice == "T2 SAVED"
-    assert page.history.last_in_words == "T2   not set  →  TURNING  RIGHT HAND"
+    assert room.store.offsets.tool_shapes.read_rows()[2] == ShapeRow("turning")
+    assert room.desk.prompt_notice == "T2 SAVED"
+    assert page.offset_history.last_change_text == "T2   not set  →  TURNING  RIGHT HAND"
 
 
 @pytest.mark.parametrize(
@@ -108,65 +108,65 @@ def test_kind_is_turned_to_and_set(room: Room) -> None:
 def test_length_is_typed_in_the_controls_unit(room: Room, metric: bool, typed: str, mm: float) -> None:
     page = shape_of(room, 3, "diameter")
     room.at(metric=metric, diameter=True)  # an X that is a diameter changes no size of a tool
-    page.look(room.now[0])
+    page.update(room.now[0])
     write(page, typed, "Enter")
     save(room, page)
-    assert room.store.offsets.shapes.read_rows()[3].diameter == pytest.approx(mm)
+    assert room.store.offsets.tool_shapes.read_rows()[3].diameter == pytest.approx(mm)
 
 
 def test_angle_is_typed_in_degrees(room: Room) -> None:
     page = shape_of(room, 3, "point")
     write(page, "118", "Enter")
     save(room, page)
-    assert room.store.offsets.shapes.read_rows()[3].point == 118.0
-    assert page.cell("point") == "118°"
+    assert room.store.offsets.tool_shapes.read_rows()[3].point == 118.0
+    assert page.format_field("point") == "118°"
 
 
 def test_text_is_opened_written_and_kept(room: Room) -> None:
     page = shape_of(room, 1, "insert")
-    assert not page.takes("D")
+    assert not page.accepts_key("D")
     write(page, "Enter")
-    assert (page.text, page.takes("D")) == ("CNMG432", True)
+    assert (page.text, page.accepts_key("D")) == ("CNMG432", True)
     write(page, "Delete", "DNMG 442", "Enter")
     save(room, page)
-    assert room.store.offsets.shapes.read_rows()[1].insert == "DNMG 442"
-    assert page.cell("insert") == "DNMG 442"
+    assert room.store.offsets.tool_shapes.read_rows()[1].insert == "DNMG 442"
+    assert page.format_field("insert") == "DNMG 442"
 
 
 def test_nose_radius_and_tip_are_those_of_the_offset(room: Room) -> None:
     page = shape_of(room, 1, "nose_radius")
-    assert page.cell("nose_radius") == "0.03125"
+    assert page.format_field("nose_radius") == "0.03125"
     write(page, ".0156", "Enter")
     save(room, page)
-    assert room.store.offsets.tools.read_rows()[1].nose_radius == pytest.approx(0.0156 * INCH)
-    assert len(room.store.offsets.shapes.read_history()) == 2, "the shape has not changed"
-    assert room.desk.notice == "SAVED"
-    assert page.outline is not None
-    assert page.outline.cutting[0][:, 1].min() == pytest.approx(0.0, abs=1e-9)
+    assert room.store.offsets.tool_offsets.read_rows()[1].nose_radius == pytest.approx(0.0156 * INCH)
+    assert len(room.store.offsets.tool_shapes.read_history()) == 2, "the shape has not changed"
+    assert room.desk.prompt_notice == "SAVED"
+    assert page.tool_outline is not None
+    assert page.tool_outline.cutting_outlines[0][:, 1].min() == pytest.approx(0.0, abs=1e-9)
 
 
 def test_page_keys_go_to_the_next_tool_and_the_table_stands_there_too(room: Room) -> None:
     page = shape_of(room, 1)
     write(page, "Page down", "Page down")
-    assert (page.number, room.grid().number) == (3, 3)
+    assert (page.tool_number, room.grid().tool_number) == (3, 3)
     write(page, *["Page up"] * 5)
-    assert page.number == 1
+    assert page.tool_number == 1
 
 
 def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room) -> None:
     page = shape_of(room, 3)
-    page.remove()
-    assert text("offsets.forget-shape", number=3) in room.desk.notice
-    assert 3 in room.store.offsets.shapes.read_rows()
+    page.delete_shape()
+    assert text("offsets.forget-shape", number=3) in room.desk.prompt_notice
+    assert 3 in room.store.offsets.tool_shapes.read_rows()
     read(room.desk)
-    room.desk.yes()
+    room.desk.confirm_question()
     save(room, page)
-    assert 3 not in room.store.offsets.shapes.read_rows()
-    page.undo()
+    assert 3 not in room.store.offsets.tool_shapes.read_rows()
+    page.handle_undo()
     room.confirm()
     save(room, page)
-    assert room.store.offsets.shapes.read_rows()[3].diameter == 6.35
-    assert room.desk.notice == "T3 UNDONE"
+    assert room.store.offsets.tool_shapes.read_rows()[3].diameter == 6.35
+    assert room.desk.prompt_notice == "T3 UNDONE"
 
 
 # --- refusals ---------------------------------------------------------------------------------------------
@@ -207,35 +207,38 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
     room: Room, number: int, name: str, keys: tuple[str, ...], says: str
 ) -> None:
     page = shape_of(room, number, name)
-    before = room.store.offsets.shapes.read_rows()[number], room.store.offsets.tools.read_rows().get(number)
+    before = (
+        room.store.offsets.tool_shapes.read_rows()[number],
+        room.store.offsets.tool_offsets.read_rows().get(number),
+    )
     write(page, *keys)
     if not says:  # a contradiction with another field is kept, and shown there
         save(room, page)
-        assert shows(page.prompt(room.now[0]), "offsets.front-quadrant", quadrant=3)
-        assert page.outline is None
+        assert shows(page.prompt_text(room.now[0]), "offsets.front-quadrant", quadrant=3)
+        assert page.tool_outline is None
         return
-    assert says in room.desk.notice
+    assert says in room.desk.prompt_notice
     assert page.text
     assert (
-        room.store.offsets.shapes.read_rows()[number],
-        room.store.offsets.tools.read_rows().get(number),
+        room.store.offsets.tool_shapes.read_rows()[number],
+        room.store.offsets.tool_offsets.read_rows().get(number),
     ) == before
 
 
 def test_letters_are_no_figures(room: Room) -> None:
     page = shape_of(room, 3, "diameter")
-    assert not page.typed("q")
+    assert not page.handle_key("q")
     write(page, "Up")
-    page.go(0)
+    page.move_cursor(0)
     write(page, "5")
-    assert room.desk.notice == text("offsets.choices")
+    assert room.desk.prompt_notice == text("offsets.choices")
     assert page.text == ""
 
 
 def test_text_takes_nothing_before_it_is_opened(room: Room) -> None:
     page = shape_of(room, 1, "insert")
     write(page, "5")
-    assert room.desk.notice == text("offsets.write-it")
+    assert room.desk.prompt_notice == text("offsets.write-it")
     assert page.text == ""
 
 
@@ -244,30 +247,30 @@ def test_what_is_not_entered_keeps_the_cursor(room: Room) -> None:
     write(page, ".3", "Down")
     assert page.name == "diameter"
     write(page, "Page down")
-    assert page.number == 3
-    assert room.desk.notice == text("offsets.set-it")
-    assert page.escape()
-    assert (page.text, room.desk.notice) == ("", text("offsets.shape-as-it-was", number=3))
-    assert not page.escape()
+    assert page.tool_number == 3
+    assert room.desk.prompt_notice == text("offsets.set-it")
+    assert page.handle_escape()
+    assert (page.text, room.desk.prompt_notice) == ("", text("offsets.shape-as-it-was", number=3))
+    assert not page.handle_escape()
 
 
 def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
     page = shape_of(room, 3, "diameter")
-    room.at(State.RUN)
+    room.at(MachineState.RUN)
     write(page, ".3", "Enter")
-    assert "PROGRAM RUNNING" in room.desk.notice
-    page.drop()
-    page.go(0)
+    assert "PROGRAM RUNNING" in room.desk.prompt_notice
+    page.discard_entry()
+    page.move_cursor(0)
     write(page, "Right")
     assert page.text == ""
-    page.remove()
-    page.undo()
-    assert not room.desk.asked
-    assert len(room.store.offsets.shapes.read_history()) == 2
+    page.delete_shape()
+    page.handle_undo()
+    assert not room.desk.confirm_key
+    assert len(room.store.offsets.tool_shapes.read_history()) == 2
 
 
 def test_there_is_no_shape_to_take_away(room: Room) -> None:
     page = shape_of(room, 2)
-    page.remove()
-    assert room.desk.notice == text("offsets.no-shape", number=2)
-    assert not room.desk.asked
+    page.delete_shape()
+    assert room.desk.prompt_notice == text("offsets.no-shape", number=2)
+    assert not room.desk.confirm_key

@@ -4,7 +4,7 @@ from math import radians, tan
 
 import pytest
 
-from core.part.insert_codes import CORNERS, InsertCodeError, decoded, metric_sizes
+from core.part.insert_codes import CORNER_ANGLES, InsertCodeError, decode_insert_code, metric_circle_sizes
 from tests.coded import raises_code
 
 # Code, point angle, inscribed circle, edge, thickness, nose radius, clearance. The edges are the catalogues'
@@ -48,57 +48,59 @@ PAIRS = (
 def test_metric_code_is_the_catalogues_insert(
     code: str, angle: float, circle: float, edge: float, thick: float, nose: float, clearance: float
 ) -> None:
-    insert = decoded(code)
+    insert = decode_insert_code(code)
     assert insert.point_angle == angle
     assert insert.inscribed_circle == pytest.approx(circle, abs=0.001)
-    assert insert.edges[0] == pytest.approx(edge, abs=0.01)
-    assert (insert.thickness, insert.nose_radius, insert.clearance) == (thick, nose, clearance)
+    assert insert.edge_lengths[0] == pytest.approx(edge, abs=0.01)
+    assert (insert.thickness, insert.nose_radius, insert.clearance_angle) == (thick, nose, clearance)
 
 
 @pytest.mark.parametrize(("inch", "metric"), PAIRS)
 def test_inch_code_is_the_metric_insert(inch: str, metric: str) -> None:
-    one, other = decoded(inch), decoded(metric)
-    assert one.corners == other.corners
+    one, other = decode_insert_code(inch), decode_insert_code(metric)
+    assert one.corner_angles == other.corner_angles
     assert one.inscribed_circle == pytest.approx(other.inscribed_circle, abs=0.001)
     assert one.thickness == pytest.approx(other.thickness, abs=0.01)  # 4.76 stands for 3/16 in
     assert one.nose_radius == pytest.approx(other.nose_radius, abs=0.01)  # .8 for 1/32 in
 
 
 def test_inch_corner_is_sixty_fourths_of_an_inch() -> None:
-    assert decoded("CNMG432").nose_radius == pytest.approx(25.4 / 32)
-    assert decoded("VCGT 22.50.5").nose_radius == pytest.approx(0.2032)
+    assert decode_insert_code("CNMG432").nose_radius == pytest.approx(25.4 / 32)
+    assert decode_insert_code("VCGT 22.50.5").nose_radius == pytest.approx(0.2032)
 
 
 @pytest.mark.parametrize("code", ["cnmg 12 04 08", "CNMG 120408-PM", "CNMG120408 EN", "CNMG_120408"])
 def test_writing_and_makers_marks_change_nothing(code: str) -> None:
-    assert decoded(code) == decoded("CNMG 120408")
+    assert decode_insert_code(code) == decode_insert_code("CNMG 120408")
 
 
 def test_round_insert_is_all_nose() -> None:
-    assert decoded("RCMT 10T3M0").nose_radius == 5.0
-    assert decoded("RNMG 120400").nose_radius == pytest.approx(6.35)
-    assert decoded("RCMT 1204M0").nose_radius == 6.0, "with M0 the size is metric"
-    assert decoded("RNMG 43").nose_radius == pytest.approx(6.35)
-    assert decoded("RNMG 43").corners == ()
+    assert decode_insert_code("RCMT 10T3M0").nose_radius == 5.0
+    assert decode_insert_code("RNMG 120400").nose_radius == pytest.approx(6.35)
+    assert decode_insert_code("RCMT 1204M0").nose_radius == 6.0, "with M0 the size is metric"
+    assert decode_insert_code("RNMG 43").nose_radius == pytest.approx(6.35)
+    assert decode_insert_code("RNMG 43").corner_angles == ()
 
 
 def test_knux_is_the_only_parallelogram() -> None:
-    insert = decoded("KNUX 160405R11")
-    assert insert.edges[1] == 16.15
-    assert insert.edges[0] == pytest.approx(9.525 / 0.81915, abs=0.001)  # the circle's width over sin 55°
+    insert = decode_insert_code("KNUX 160405R11")
+    assert insert.edge_lengths[1] == 16.15
+    assert insert.edge_lengths[0] == pytest.approx(
+        9.525 / 0.81915, abs=0.001
+    )  # the circle's width over sin 55°
 
 
-@pytest.mark.parametrize("shape", [shape for shape in CORNERS if shape not in "RK"])
+@pytest.mark.parametrize("shape", [shape for shape in CORNER_ANGLES if shape not in "RK"])
 def test_size_is_the_edge_in_whole_millimetres(shape: str) -> None:
     """ISO 1832, symbol 5; the standard's tables list 16 for T 3/8 in, 22 for 1/2 in, 08 for W 1/2 in."""
-    for figures, circle in metric_sizes(shape).items():
+    for figures, circle in metric_circle_sizes(shape).items():
         edge = decoded_edge(shape, circle)
         if figures not in {"L3", "03", "04"}:  # makers' and doubled names
             assert int(figures) == int(edge + 0.005)
 
 
 def decoded_edge(shape: str, circle: float) -> float:
-    first, second = CORNERS[shape][:2]
+    first, second = CORNER_ANGLES[shape][:2]
     return circle / 2 * (1 / tan(radians(first / 2)) + 1 / tan(radians(second / 2)))
 
 
@@ -131,7 +133,7 @@ def decoded_edge(shape: str, circle: float) -> float:
 )
 def test_code_that_means_nothing_says_which_character(insert: str, code: str, value: str) -> None:
     with raises_code(InsertCodeError, code, value) as caught:
-        decoded(insert)
+        decode_insert_code(insert)
     assert str(caught.value).startswith(f"{insert}: ")
 
 
@@ -150,15 +152,15 @@ def test_code_that_means_nothing_says_which_character(insert: str, code: str, va
 )
 def test_sizes_are_those_of_the_catalogues(circle: float, figures: tuple[str, ...]) -> None:
     for shape, name in zip("CDSTVW", figures, strict=True):
-        assert metric_sizes(shape)[name] == pytest.approx(circle)
+        assert metric_circle_sizes(shape)[name] == pytest.approx(circle)
 
 
 def test_thin_inserts_of_small_bars_have_makers_circles() -> None:
-    assert decoded("CCMT 040204").inscribed_circle == pytest.approx(4.7625)
-    assert decoded("CCGT 04T002").inscribed_circle == 4.3
-    assert decoded("CCGT 030102").inscribed_circle == 3.5
-    assert decoded("CCGT 03S102").thickness == 1.39
+    assert decode_insert_code("CCMT 040204").inscribed_circle == pytest.approx(4.7625)
+    assert decode_insert_code("CCGT 04T002").inscribed_circle == 4.3
+    assert decode_insert_code("CCGT 030102").inscribed_circle == 3.5
+    assert decode_insert_code("CCGT 03S102").thickness == 1.39
 
 
 def test_a_large_triangle_is_not_rounded_up() -> None:
-    assert metric_sizes("T")["54"] == pytest.approx(31.75)  # 54.993 mm
+    assert metric_circle_sizes("T")["54"] == pytest.approx(31.75)  # 54.993 mm

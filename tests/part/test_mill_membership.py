@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import turned_field
+from core.part.polar_field import field_from_section
 from core.part.ray_cuts import FloatArray
 
 LENGTH, RADIUS, BORE = 20.0, 10.0, 2.0
@@ -20,17 +20,17 @@ PLACES = 4001
 
 def tube() -> MilledPart:
     edges = np.linspace(-LENGTH, 0.0, 2001)
-    return MilledPart(turned_field(edges, np.full((1, 2000), BORE), np.full((1, 2000), RADIUS)))
+    return MilledPart(field_from_section(edges, np.full((1, 2000), BORE), np.full((1, 2000), RADIUS)))
 
 
 def somewhere(part: MilledPart, random: np.random.Generator, count: int) -> tuple[FloatArray, np.ndarray]:
     """Points r, angle, z on the field's own rays and columns, and whether it has metal there."""
     field = part.field
-    column, ray = random.integers(0, len(field.middles), count), random.integers(0, 720, count)
+    column, ray = random.integers(0, len(field.column_centers), count), random.integers(0, 720, count)
     r = random.uniform(BORE, RADIUS, count)
-    within = (field.low[:, column, ray] < r) & (r < field.high[:, column, ray])
+    within = (field.inner_radii[:, column, ray] < r) & (r < field.outer_radii[:, column, ray])
     metal = np.asarray(within.any(axis=0))
-    return np.column_stack([r, field.angles[ray], field.middles[column]]), metal
+    return np.column_stack([r, field.ray_angles[ray], field.column_centers[column]]), metal
 
 
 def along(path: FloatArray) -> FloatArray:
@@ -72,9 +72,9 @@ def test_mill_parallel_to_the_axis(seed: int) -> None:
     random, part = np.random.default_rng(seed), tube()
     path = np.column_stack([random.uniform(-12.0, 12.0, (4, 2)), random.uniform(-15.0, 1.0, 4)])
     radius, length = random.uniform(0.5, 4.0), random.choice([6.0, 100.0])
-    before = part.field.volume
+    before = part.field.volume_mm3
     told = part.mill_axial(path, radius, length=length)
-    assert part.field.volume == pytest.approx(before - told.volume, rel=1e-9)
+    assert part.field.volume_mm3 == pytest.approx(before - told.volume_mm3, rel=1e-9)
     points, metal = somewhere(part, random, 1500)
     check(metal, depth_axial(points, path, radius, length))
 
@@ -93,9 +93,9 @@ def test_mill_on_a_radius(seed: int, height: float) -> None:
     path[2, 1:] = path[1, 1:]  # in r alone,
     path[1, [0, 2]] = path[0, [0, 2]]  # and in Z alone
     radius = random.uniform(0.8, 3.0)
-    before = part.field.volume
+    before = part.field.volume_mm3
     told = part.mill_radial(path, radius, height=height)
-    assert part.field.volume == pytest.approx(before - told.volume, rel=1e-9)
+    assert part.field.volume_mm3 == pytest.approx(before - told.volume_mm3, rel=1e-9)
     points, metal = somewhere(part, random, 1500)
     check(metal, depth_radial(points, path, radius, height))
 
@@ -107,11 +107,11 @@ def test_what_meets_takes_and_what_does_not_leaves(seed: int) -> None:
         place = random.uniform(-14.0, 14.0, 2)
         axial = np.column_stack([place, place + random.uniform(-4.0, 4.0, 2)]).T
         path = np.column_stack([axial, random.uniform(-6.0, 3.0, 2)])
-        meets = part.meets_axial(path, 1.5)
-        assert bool(part.mill_axial(path, 1.5).depth > 0.01) <= meets
+        meets = part.hits_axial(path, 1.5)
+        assert bool(part.mill_axial(path, 1.5).depth_mm > 0.01) <= meets
         path = np.column_stack(
             [random.uniform(6.0, 13.0, 2), random.uniform(-25.0, 4.0, 2), random.uniform(0.0, 360.0, 2)]
         )
-        meets = part.meets_radial(path, 1.5)
-        assert bool(part.mill_radial(path, 1.5).depth > 0.03) <= meets
-        assert not part.meets_radial(path, 1.5)
+        meets = part.hits_radial(path, 1.5)
+        assert bool(part.mill_radial(path, 1.5).depth_mm > 0.03) <= meets
+        assert not part.hits_radial(path, 1.5)

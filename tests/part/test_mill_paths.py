@@ -8,15 +8,21 @@ import math
 import numpy as np
 import pytest
 
-from core.geometry.virtual_mill import Face, PlaneMove, Side
+from core.geometry.virtual_mill import FacePlane, PlaneMove, SidePlane
 from core.part.milled_part import MilledPart
-from core.part.polar_field import turned_field
-from core.part.ray_cuts import CHORD, axial_path, locked_path, plane_path, radial_path
+from core.part.polar_field import field_from_section
+from core.part.ray_cuts import (
+    MAX_CHORD_ERROR_MM,
+    make_axial_path,
+    make_locked_path,
+    make_plane_path,
+    make_radial_path,
+)
 
 
 def bar() -> MilledPart:
     low, high = np.zeros((1, 2000)), np.full((1, 2000), 10.0)
-    return MilledPart(turned_field(np.linspace(-20.0, 0.0, 2001), low, high))
+    return MilledPart(field_from_section(np.linspace(-20.0, 0.0, 2001), low, high))
 
 
 @pytest.mark.parametrize(
@@ -24,72 +30,74 @@ def bar() -> MilledPart:
 )
 def test_tool_at_minus_x_stands_at_minus_c(c: float, x: float, y: float) -> None:
     """C turns the part from X towards Y; what comes under a tool that stands still goes the other way."""
-    assert axial_path(np.array([[-7.0, -1.0, c]]))[0] == pytest.approx([x, y, -1.0])
-    r, z, angle = radial_path(np.array([[-7.0, -1.0, c]]))[0]
+    assert make_axial_path(np.array([[-7.0, -1.0, c]]))[0] == pytest.approx([x, y, -1.0])
+    r, z, angle = make_radial_path(np.array([[-7.0, -1.0, c]]))[0]
     assert (r, z) == (7.0, -1.0)
     assert (r * math.cos(math.radians(angle)), r * math.sin(math.radians(angle))) == pytest.approx((x, y))
 
 
 def test_tool_at_plus_x_stands_opposite() -> None:
-    assert axial_path(np.array([[7.0, 0.0, 90.0]]))[0] == pytest.approx([0.0, 7.0, 0.0])
-    assert radial_path(np.array([[7.0, 0.0, 90.0]]), far_side=True)[0] == pytest.approx([7.0, 0.0, 90.0])
+    assert make_axial_path(np.array([[7.0, 0.0, 90.0]]))[0] == pytest.approx([0.0, 7.0, 0.0])
+    assert make_radial_path(np.array([[7.0, 0.0, 90.0]]), far_side=True)[0] == pytest.approx([7.0, 0.0, 90.0])
 
 
 def test_tool_above_the_axis_stands_towards_y() -> None:
-    assert axial_path(np.array([[-4.0, 0.0, 0.0]]), height=3.0)[0] == pytest.approx([4.0, 3.0, 0.0])
-    assert axial_path(np.array([[-4.0, 0.0, 90.0]]), height=3.0)[0] == pytest.approx([3.0, -4.0, 0.0])
+    assert make_axial_path(np.array([[-4.0, 0.0, 0.0]]), height=3.0)[0] == pytest.approx([4.0, 3.0, 0.0])
+    assert make_axial_path(np.array([[-4.0, 0.0, 90.0]]), height=3.0)[0] == pytest.approx([3.0, -4.0, 0.0])
 
 
 def test_line_on_the_face_lies_on_the_part_as_c_stood_when_xc_was_entered() -> None:
-    move = PlaneMove(Face(90.0), (5.0, 0.0, -1.0), (5.0, 3.0, -1.0))
-    way = plane_path(move, lift=0.5)
+    move = PlaneMove(FacePlane(90.0), (5.0, 0.0, -1.0), (5.0, 3.0, -1.0))
+    way = make_plane_path(move, z_offset=0.5)
     assert way == pytest.approx(np.array([[0.0, -5.0, -0.5], [3.0, -5.0, -0.5]]))
 
 
 @pytest.mark.parametrize("h", [0.0, 0.75, -2.0])
 @pytest.mark.parametrize("c0", [0.0, 30.0])
 def test_path_on_the_face_is_where_the_slides_bring_the_mill(c0: float, h: float) -> None:
-    move = PlaneMove(Face(c0, h), (8.0, -3.0, 0.0), (5.0, 6.0, -2.0), theta=math.atan2(-3.0, 8.0))
+    move = PlaneMove(FacePlane(c0, h), (8.0, -3.0, 0.0), (5.0, 6.0, -2.0), start_angle=math.atan2(-3.0, 8.0))
     share = np.linspace(0.0, 1.0, 2)
-    assert plane_path(move) == pytest.approx(axial_path(move.machine(share), h))
+    assert make_plane_path(move) == pytest.approx(make_axial_path(move.machine_positions(share), h))
 
 
 def test_line_past_the_axis_nearer_than_the_mill_stands_high_goes_round_it() -> None:
-    move = PlaneMove(Face(0.0, 1.0), (8.0, 0.5, 0.0), (-8.0, 0.5, 0.0), theta=math.atan2(0.5, 8.0))
-    way = plane_path(move)
+    move = PlaneMove(FacePlane(0.0, 1.0), (8.0, 0.5, 0.0), (-8.0, 0.5, 0.0), start_angle=math.atan2(0.5, 8.0))
+    way = make_plane_path(move)
     assert len(way) > 100
     assert np.hypot(way[:, 0], way[:, 1]).min() == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("radius", [0.05, 1.0, 12.7, 200.0])
 def test_chords_of_an_arc_lie_within_their_error(radius: float) -> None:
-    move = PlaneMove(Face(0.0), (radius, 0.0, 0.0), (-radius, 0.0, 0.0), centre=(0.0, 0.0))
-    way = plane_path(move)
+    move = PlaneMove(FacePlane(0.0), (radius, 0.0, 0.0), (-radius, 0.0, 0.0), center=(0.0, 0.0))
+    way = make_plane_path(move)
     middle = 0.5 * (way[1:] + way[:-1])
-    assert radius - np.hypot(middle[:, 0], middle[:, 1]).min() <= CHORD * 1.0001
+    assert radius - np.hypot(middle[:, 0], middle[:, 1]).min() <= MAX_CHORD_ERROR_MM * 1.0001
     assert np.hypot(way[:, 0], way[:, 1]) == pytest.approx(np.full(len(way), radius))
 
 
 def test_side_is_unrolled_at_its_diameter() -> None:
     """A quarter of the round, towards the spindle: Y grows with the polar angle, X towards the spindle."""
     quarter = math.pi * 20.0 / 4.0
-    move = PlaneMove(Side(10.0, -2.0, 20.0), (0.0, 0.0, 9.0), (5.0, quarter, 8.0))
-    assert plane_path(move, lift=1.0) == pytest.approx(np.array([[9.0, -1.0, -10.0], [8.0, -6.0, 80.0]]))
+    move = PlaneMove(SidePlane(10.0, -2.0, 20.0), (0.0, 0.0, 9.0), (5.0, quarter, 8.0))
+    assert make_plane_path(move, z_offset=1.0) == pytest.approx(
+        np.array([[9.0, -1.0, -10.0], [8.0, -6.0, 80.0]])
+    )
 
 
 def test_full_turn_with_the_mill_held_off_the_centre_leaves_a_ring() -> None:
     part = bar()
-    way = locked_path(np.array([-6.0, -2.0, 0.0]), np.array([-6.0, -2.0, 360.0]))
-    told = part.mill_axial(axial_path(way), 1.0)
-    assert told.volume == pytest.approx(math.pi * (49.0 - 25.0) * 2.0, rel=1e-3)
-    assert part.field.volume == pytest.approx(math.pi * (2000.0 - 48.0), rel=1e-3)
+    way = make_locked_path(np.array([-6.0, -2.0, 0.0]), np.array([-6.0, -2.0, 360.0]))
+    told = part.mill_axial(make_axial_path(way), 1.0)
+    assert told.volume_mm3 == pytest.approx(math.pi * (49.0 - 25.0) * 2.0, rel=1e-3)
+    assert part.field.volume_mm3 == pytest.approx(math.pi * (2000.0 - 48.0), rel=1e-3)
 
 
 def test_chords_of_a_move_with_c_lie_within_their_error() -> None:
-    way = axial_path(locked_path(np.array([-10.0, 0.0, 0.0]), np.array([-10.0, 0.0, 200.0])))
+    way = make_axial_path(make_locked_path(np.array([-10.0, 0.0, 0.0]), np.array([-10.0, 0.0, 200.0])))
     middle = 0.5 * (way[1:] + way[:-1])
-    assert 10.0 - np.hypot(middle[:, 0], middle[:, 1]).min() <= CHORD
-    assert len(locked_path(np.array([-10.0, 0.0, 5.0]), np.array([-3.0, 0.0, 5.0]))) == 2
+    assert 10.0 - np.hypot(middle[:, 0], middle[:, 1]).min() <= MAX_CHORD_ERROR_MM
+    assert len(make_locked_path(np.array([-10.0, 0.0, 5.0]), np.array([-3.0, 0.0, 5.0]))) == 2
 
 
 def test_hexagon_by_xc_stands_as_it_was_entered() -> None:
@@ -100,9 +108,9 @@ def test_hexagon_by_xc_stands_as_it_was_entered() -> None:
         (corner * math.cos(a), corner * math.sin(a), -5.0) for a in np.radians(np.arange(30.0, 420.0, 60.0))
     ]
     for start, end in itertools.pairwise(spots):
-        move = PlaneMove(Face(90.0), start, end, theta=math.atan2(start[1], start[0]))
-        part.mill_axial(plane_path(move), 3.0)
+        move = PlaneMove(FacePlane(90.0), start, end, start_angle=math.atan2(start[1], start[0]))
+        part.mill_axial(make_plane_path(move), 3.0)
     left = math.pi * 100.0 * 15.0 + 2.0 * math.sqrt(3.0) * 64.0 * 5.0
-    assert part.field.volume == pytest.approx(left, rel=1e-3)
-    assert part.field.high[0, -1, 540] == pytest.approx(8.0)
-    assert part.field.high[0, -1, 0] > 9.0
+    assert part.field.volume_mm3 == pytest.approx(left, rel=1e-3)
+    assert part.field.outer_radii[0, -1, 540] == pytest.approx(8.0)
+    assert part.field.outer_radii[0, -1, 0] > 9.0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import turned_field
+from core.part.polar_field import field_from_section
 from core.part.ray_cuts import FloatArray
 from core.part.tool_polygons import PartError
 from tests.coded import raises_code
@@ -24,7 +24,7 @@ def bar(radius: float = R, bore: float = 0.0, length: float = LENGTH) -> MilledP
     """A bar or tube from Z -``length`` to its face at Z0."""
     count = round(length / 0.01)
     low, high = np.full((1, count), bore), np.full((1, count), radius)
-    return MilledPart(turned_field(np.linspace(-length, 0.0, count + 1), low, high))
+    return MilledPart(field_from_section(np.linspace(-length, 0.0, count + 1), low, high))
 
 
 def path(*points: tuple[float, float, float]) -> FloatArray:
@@ -55,8 +55,8 @@ def past(angle: float, apothem: float, tool: float, z: float) -> FloatArray:
 
 def check(part: MilledPart, removed: float, told: float, *, share: float = PER_CENT) -> None:
     """What is left within .1 %, and what was removed within ``share`` of itself; the two belong together."""
-    whole = part.field.volume + told
-    assert part.field.volume == pytest.approx(whole - removed, rel=THOUSANDTH)
+    whole = part.field.volume_mm3 + told
+    assert part.field.volume_mm3 == pytest.approx(whole - removed, rel=THOUSANDTH)
     assert told == pytest.approx(removed, rel=share)
 
 
@@ -69,22 +69,24 @@ def check(part: MilledPart, removed: float, told: float, *, share: float = PER_C
 )
 def test_prism_milled_at_the_end_of_a_bar(sides: int, apothem: float, area: float) -> None:
     part = bar()
-    told = sum(part.mill_axial(past(360.0 / sides * k, apothem, 3.0, -6.0), 3.0).volume for k in range(sides))
+    told = sum(
+        part.mill_axial(past(360.0 / sides * k, apothem, 3.0, -6.0), 3.0).volume_mm3 for k in range(sides)
+    )
     check(part, (math.pi * R * R - area) * 6.0, told, share=THOUSANDTH)
 
 
 def test_flat_milled_along_the_side_by_the_end_of_the_mill() -> None:
     part = bar()
     told = part.mill_radial(path((8.0, 10.0, 90.0), (8.0, -30.0, 90.0)), 6.5)
-    check(part, segment(R, 8.0) * LENGTH, told.volume, share=THOUSANDTH)
-    assert told.depth == pytest.approx(2.0)
-    assert part.field.high[0, 0, 180] == pytest.approx(8.0)  # ray 180 of 720 looks along the part's Y
-    assert part.field.high[0, 0, 540] == pytest.approx(10.0)
+    check(part, segment(R, 8.0) * LENGTH, told.volume_mm3, share=THOUSANDTH)
+    assert told.depth_mm == pytest.approx(2.0)
+    assert part.field.outer_radii[0, 0, 180] == pytest.approx(8.0)  # ray 180 of 720 looks along the part's Y
+    assert part.field.outer_radii[0, 0, 540] == pytest.approx(10.0)
 
 
 def test_two_flats_turned_by_c_in_between() -> None:
     part = bar()
-    told = sum(part.mill_radial(path((8.5, 10.0, c), (8.5, -5.0, c)), 7.0).volume for c in (0.0, 180.0))
+    told = sum(part.mill_radial(path((8.5, 10.0, c), (8.5, -5.0, c)), 7.0).volume_mm3 for c in (0.0, 180.0))
     # The mill's round stands in the bar where it stops: its half circle at Z -5.
     half = math.sqrt(R * R - 8.5**2)
     ends = integral(lambda u: np.sqrt(49.0 - u * u) * (np.sqrt(R * R - u * u) - 8.5), -half, half)
@@ -98,7 +100,7 @@ def test_cross_hole_through_a_bar() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -10.0, 37.0), (-12.0, -10.0, 37.0)), 3.0)
     hole = 8.0 * integral(lambda x: np.sqrt((R * R - x * x) * (9.0 - x * x)), 0.0, 3.0)
-    check(part, hole, told.volume)
+    check(part, hole, told.volume_mm3)
 
 
 def test_cross_hole_through_both_walls_of_a_tube() -> None:
@@ -107,37 +109,37 @@ def test_cross_hole_through_both_walls_of_a_tube() -> None:
     walls = 8.0 * integral(
         lambda x: (np.sqrt(R * R - x * x) - np.sqrt(36.0 - x * x)) * np.sqrt(4.0 - x * x), 0.0, 2.0
     )
-    check(part, walls, told.volume)
+    check(part, walls, told.volume_mm3)
 
 
 def test_cross_hole_beside_the_axis() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0, height=5.0)
     hole = 4.0 * integral(lambda v: np.sqrt(R * R - (5.0 + v) ** 2) * np.sqrt(4.0 - v * v), -2.0, 2.0)
-    check(part, hole, told.volume)
-    assert part.field.high[0, :, 60].min() < 8.0  # towards growing angles: at 30°
-    assert part.field.high[0, :, 660].min() == pytest.approx(R)
+    check(part, hole, told.volume_mm3)
+    assert part.field.outer_radii[0, :, 60].min() < 8.0  # towards growing angles: at 30°
+    assert part.field.outer_radii[0, :, 660].min() == pytest.approx(R)
 
 
 def test_blind_hole_on_the_side_with_the_point_of_a_drill() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -10.0, 200.0), (4.0, -10.0, 200.0)), 2.0, point=1.2)
     above = integral(lambda u: 2.0 * np.sqrt(4.0 - u * u) * (np.sqrt(R * R - u * u) - 4.0), -2.0, 2.0)
-    check(part, above - math.pi * 4.0 * 1.2 * 2.0 / 3.0, told.volume)
+    check(part, above - math.pi * 4.0 * 1.2 * 2.0 / 3.0, told.volume_mm3)
 
 
 @pytest.mark.parametrize("point", [0.0, 1.2])
 def test_hole_in_the_face_off_the_centre(point: float) -> None:
     part = bar()
     told = part.mill_axial(path((5.0, -1.0, 2.0), (5.0, -1.0, -12.0)), 2.0, point=point)
-    check(part, math.pi * 4.0 * (12.0 - point * 2.0 / 3.0), told.volume, share=0.003)
+    check(part, math.pi * 4.0 * (12.0 - point * 2.0 / 3.0), told.volume_mm3, share=0.003)
 
 
 def test_hole_in_the_face_over_the_axis() -> None:
     part = bar()
     told = part.mill_axial(path((0.5, 0.0, 2.0), (0.5, 0.0, -12.0)), 2.0)
-    check(part, math.pi * 4.0 * 12.0, told.volume, share=THOUSANDTH)
-    assert len(part.field.low) == 1  # what is left is a wall all round
+    check(part, math.pi * 4.0 * 12.0, told.volume_mm3, share=THOUSANDTH)
+    assert len(part.field.inner_radii) == 1  # what is left is a wall all round
 
 
 # --- slots and pockets
@@ -147,13 +149,13 @@ def test_key_slot_with_round_ends() -> None:
     part = bar()
     told = part.mill_radial(path((12.0, -14.0, 45.0), (7.0, -14.0, 45.0), (7.0, -6.0, 45.0)), 2.0)
     slot = integral(lambda u: (np.sqrt(R * R - u * u) - 7.0) * (8.0 + 2.0 * np.sqrt(4.0 - u * u)), -2.0, 2.0)
-    check(part, slot, told.volume)
+    check(part, slot, told.volume_mm3)
 
 
 def test_slot_round_the_part_is_a_groove() -> None:
     part = bar()
     told = part.mill_radial(path((8.0, -10.0, 0.0), (8.0, -10.0, 360.0)), 1.5)
-    check(part, math.pi * (R * R - 64.0) * 3.0, told.volume)
+    check(part, math.pi * (R * R - 64.0) * 3.0, told.volume_mm3)
 
 
 def test_slot_over_a_sector_by_turning_c() -> None:
@@ -161,20 +163,22 @@ def test_slot_over_a_sector_by_turning_c() -> None:
     told = part.mill_radial(path((17.0, -10.0, 10.0), (17.0, -10.0, 100.0)), 1.0)
     # Unrolled at each r it is as wide as the mill, with round ends; (1/17)² is left out.
     r = 0.5 * (400.0 - 289.0)
-    check(part, 2.0 * math.radians(90.0) * r + math.pi * 3.0, told.volume)
+    check(part, 2.0 * math.radians(90.0) * r + math.pi * 3.0, told.volume_mm3)
 
 
 def test_helical_slot() -> None:
     part = bar(radius=20.0)
     told = part.mill_radial(path((17.0, -16.0, 0.0), (17.0, -4.0, 120.0)), 1.0)
     turn = math.radians(120.0)
-    check(part, integral(lambda r: 2.0 * np.hypot(r * turn, 12.0) + math.pi, 17.0, 20.0), told.volume)
+    check(part, integral(lambda r: 2.0 * np.hypot(r * turn, 12.0) + math.pi, 17.0, 20.0), told.volume_mm3)
 
 
 def test_slot_across_the_face() -> None:
     part = bar()
     told = part.mill_axial(path((0.0, -15.0, -4.0), (0.0, 15.0, -4.0)), 2.5)
-    check(part, 4.0 * integral(lambda u: 2.0 * np.sqrt(R * R - u * u), -2.5, 2.5), told.volume, share=0.002)
+    check(
+        part, 4.0 * integral(lambda u: 2.0 * np.sqrt(R * R - u * u), -2.5, 2.5), told.volume_mm3, share=0.002
+    )
 
 
 def test_round_pocket_in_the_face_off_the_centre() -> None:
@@ -182,8 +186,8 @@ def test_round_pocket_in_the_face_off_the_centre() -> None:
     turn = np.linspace(0.0, 2.0 * math.pi, 361)
     circle = np.column_stack([4.0 + 1.5 * np.cos(turn), 1.0 + 1.5 * np.sin(turn), np.full(361, -3.0)])
     told = part.mill_axial(np.vstack([path((5.5, 1.0, 1.0)), circle]), 2.0)
-    check(part, math.pi * 3.5**2 * 3.0, told.volume, share=0.003)
-    assert told.back == pytest.approx(-3.0)
+    check(part, math.pi * 3.5**2 * 3.0, told.volume_mm3, share=0.003)
+    assert told.back_z_mm == pytest.approx(-3.0)
 
 
 def test_slot_with_a_ramp_down_is_as_deep_as_the_end_of_the_mill_came() -> None:
@@ -194,7 +198,7 @@ def test_slot_with_a_ramp_down_is_as_deep_as_the_end_of_the_mill_came() -> None:
     last = np.minimum(x + np.sqrt(4.0 - u * u), 4.0)
     covered = (np.hypot(np.maximum(np.abs(x) - 4.0, 0.0), u) < 2.0) & (last > -4.0)
     depth = np.where(covered, 0.5 * (last + 4.0), 0.0)
-    check(part, float(depth.sum()) * 0.005 * 0.005, told.volume)
+    check(part, float(depth.sum()) * 0.005 * 0.005, told.volume_mm3)
 
 
 def test_end_mill_no_longer_than_its_flutes_leaves_what_stands_above() -> None:
@@ -202,8 +206,8 @@ def test_end_mill_no_longer_than_its_flutes_leaves_what_stands_above() -> None:
     told = part.mill_axial(path((15.0, 0.0, -6.0), (9.0, 0.0, -6.0)), 2.0, length=3.0)
     other = bar()
     deep = other.mill_axial(path((15.0, 0.0, -6.0), (9.0, 0.0, -6.0)), 2.0)
-    assert deep.volume == pytest.approx(2.0 * told.volume, rel=1e-6)
-    assert (told.back, told.front) == pytest.approx((-6.0, -3.0))
+    assert deep.volume_mm3 == pytest.approx(2.0 * told.volume_mm3, rel=1e-6)
+    assert (told.back_z_mm, told.front_z_mm) == pytest.approx((-6.0, -3.0))
 
 
 # --- one after the other
@@ -213,22 +217,22 @@ def test_hexagon_turned_afterwards() -> None:
     part = bar()
     for k in range(6):
         part.mill_axial(past(60.0 * k, 8.0, 3.0, -30.0), 3.0)
-    count = len(part.field.middles)
-    part.turn(0, np.full(count, 8.5), np.full(count, math.inf))
+    count = len(part.field.column_centers)
+    part.remove_turned(0, np.full(count, 8.5), np.full(count, math.inf))
     area = math.pi * 8.5**2 - 6.0 * segment(8.5, 8.0)
-    assert part.field.volume == pytest.approx(area * LENGTH, rel=THOUSANDTH)
+    assert part.field.volume_mm3 == pytest.approx(area * LENGTH, rel=THOUSANDTH)
 
 
 def test_bore_turned_through_a_cross_hole() -> None:
     part = bar()
     part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0)
-    count = len(part.field.middles)
-    part.turn(0, np.zeros(count), np.full(count, 6.0))
+    count = len(part.field.column_centers)
+    part.remove_turned(0, np.zeros(count), np.full(count, 6.0))
     walls = 8.0 * integral(
         lambda x: (np.sqrt(R * R - x * x) - np.sqrt(36.0 - x * x)) * np.sqrt(4.0 - x * x), 0.0, 2.0
     )
     left = math.pi * (R * R - 36.0) * LENGTH - walls
-    assert part.field.volume == pytest.approx(left, rel=THOUSANDTH)
+    assert part.field.volume_mm3 == pytest.approx(left, rel=THOUSANDTH)
 
 
 def test_two_holes_behind_each_other_on_a_ray_leave_three_layers() -> None:
@@ -236,12 +240,12 @@ def test_two_holes_behind_each_other_on_a_ray_leave_three_layers() -> None:
     for x in (3.0, 7.0):
         part.mill_axial(path((x, 0.0, -5.0)), 1.0)
     field = part.field
-    assert field.low[:, -1, 0] == pytest.approx([0.0, 4.0, 8.0])
-    assert field.high[:, -1, 0] == pytest.approx([2.0, 6.0, 10.0])
+    assert field.inner_radii[:, -1, 0] == pytest.approx([0.0, 4.0, 8.0])
+    assert field.outer_radii[:, -1, 0] == pytest.approx([2.0, 6.0, 10.0])
     part.mill_axial(path((5.0, 0.0, -5.0)), 1.5)
-    there = field.high[:, -1, 0] > field.low[:, -1, 0]
-    assert field.low[there, -1, 0] == pytest.approx([0.0, 8.0])
-    assert field.high[there, -1, 0] == pytest.approx([2.0, 10.0])
+    there = field.outer_radii[:, -1, 0] > field.inner_radii[:, -1, 0]
+    assert field.inner_radii[there, -1, 0] == pytest.approx([0.0, 8.0])
+    assert field.outer_radii[there, -1, 0] == pytest.approx([2.0, 10.0])
 
 
 def test_same_cut_again_meets_nothing() -> None:
@@ -249,7 +253,7 @@ def test_same_cut_again_meets_nothing() -> None:
     way = path((7.0, -14.0, 45.0), (7.0, -6.0, 45.0))
     assert part.mill_radial(way, 2.0)
     assert not part.mill_radial(way, 2.0)
-    assert not part.meets_radial(way, 2.0)
+    assert not part.hits_radial(way, 2.0)
 
 
 # --- what is met and what is not
@@ -261,8 +265,8 @@ def test_same_cut_again_meets_nothing() -> None:
 )
 def test_rapid_of_a_mill_parallel_to_the_axis_meets_the_bar(x: float, z: float, met: bool) -> None:
     part = bar()
-    assert part.meets_axial(path((14.0, 0.0, z), (x, 0.0, z)) if z else path((x, 0.0, z)), 2.0) is met
-    assert part.field.volume == pytest.approx(BAR, rel=1e-4)
+    assert part.hits_axial(path((14.0, 0.0, z), (x, 0.0, z)) if z else path((x, 0.0, z)), 2.0) is met
+    assert part.field.volume_mm3 == pytest.approx(BAR, rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -271,15 +275,15 @@ def test_rapid_of_a_mill_parallel_to_the_axis_meets_the_bar(x: float, z: float, 
 )
 def test_rapid_of_a_mill_on_a_radius_meets_the_bar(r: float, z: float, met: bool) -> None:
     part = bar()
-    assert part.meets_radial(path((r, z, 10.0), (r, z, 70.0)), 2.0) is met
-    assert part.field.volume == pytest.approx(BAR, rel=1e-4)
+    assert part.hits_radial(path((r, z, 10.0), (r, z, 70.0)), 2.0) is met
+    assert part.field.volume_mm3 == pytest.approx(BAR, rel=1e-4)
 
 
 def test_mill_short_of_the_bar_takes_nothing() -> None:
     part = bar()
     assert not part.mill_axial(path((0.0, 0.0, 1.0), (5.0, 0.0, 0.0)), 3.0)
     assert not part.mill_radial(path((11.0, -5.0, 0.0), (10.0, -5.0, 300.0)), 3.0)
-    assert part.field.changes == 0
+    assert part.field.change_count == 0
 
 
 @pytest.mark.parametrize("wrong", [np.zeros((3, 2)), np.zeros(3), np.zeros((0, 3))])

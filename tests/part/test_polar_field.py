@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.part.polar_field import PolarField, in_order, turned_field
+from core.part.polar_field import PolarField, field_from_section, sort_intervals
 from core.part.tool_polygons import PartError
 from tests.coded import raises_code
 
@@ -23,8 +23,8 @@ def ring(columns: int = 10, rays: int = 36, most: int = 40) -> PolarField:
 def take(
     field: PolarField, start: float, end: float, columns: slice | None = None, *, cut: bool = True
 ) -> float:
-    there = columns or slice(0, len(field.middles))
-    return field.take(there, ALL, np.full((1, 1), start), np.full((1, 1), end), cut=cut).volume
+    there = columns or slice(0, len(field.column_centers))
+    return field.intersect(there, ALL, np.full((1, 1), start), np.full((1, 1), end), remove=cut).volume_mm3
 
 
 # --- from a half section
@@ -34,31 +34,31 @@ def take(
 def test_cone_keeps_its_volume_in_few_columns(columns: int) -> None:
     edges = np.linspace(-30.0, 0.0, 30_001)
     high = -0.4 * 0.5 * (edges[1:] + edges[:-1])
-    field = turned_field(edges, np.zeros((1, 30_000)), high[None], columns)
-    assert len(field.middles) <= columns
-    assert field.volume == pytest.approx(math.pi * 144.0 * 30.0 / 3.0, rel=1e-6)
+    field = field_from_section(edges, np.zeros((1, 30_000)), high[None], columns)
+    assert len(field.column_centers) <= columns
+    assert field.volume_mm3 == pytest.approx(math.pi * 144.0 * 30.0 / 3.0, rel=1e-6)
 
 
 def test_shoulder_stands_where_it_was_turned() -> None:
     edges = np.linspace(-20.0, 0.0, 2001)
     high = np.where(0.5 * (edges[1:] + edges[:-1]) > -7.33, 4.0, 9.0)
-    field = turned_field(edges, np.zeros((1, 2000)), high[None], 12)
-    assert np.min(np.abs(field.edges + 7.33)) < 1e-9
-    assert set(np.round(field.high[0, :, 0], 9)) == {4.0, 9.0}
+    field = field_from_section(edges, np.zeros((1, 2000)), high[None], 12)
+    assert np.min(np.abs(field.column_edges + 7.33)) < 1e-9
+    assert set(np.round(field.outer_radii[0, :, 0], 9)) == {4.0, 9.0}
 
 
 def test_air_at_both_ends_has_no_columns() -> None:
     edges = np.linspace(-20.0, 5.0, 2501)
     z = 0.5 * (edges[1:] + edges[:-1])
     high = np.where((z < 0.0) & (z > -15.0), 6.0, 0.0)
-    field = turned_field(edges, np.zeros((1, 2500)), high[None])
-    assert (field.edges[0], field.edges[-1]) == pytest.approx((-15.0, 0.0))
+    field = field_from_section(edges, np.zeros((1, 2500)), high[None])
+    assert (field.column_edges[0], field.column_edges[-1]) == pytest.approx((-15.0, 0.0))
 
 
 def test_layers_come_in_any_order_and_leave_in_that_of_r() -> None:
     low = np.array([[7.0, 0.0], [1.0, 3.0]])
     high = np.array([[9.0, 0.0], [2.0, 4.0]])
-    low, high = in_order(low, high)
+    low, high = sort_intervals(low, high)
     assert low.tolist() == [[1.0, 3.0], [7.0, 0.0]]
     assert high.tolist() == [[2.0, 4.0], [9.0, 0.0]]
 
@@ -68,39 +68,39 @@ def test_layers_come_in_any_order_and_leave_in_that_of_r() -> None:
 
 def test_ring_taken_from_the_middle_leaves_two() -> None:
     field = ring()
-    whole = field.volume
+    whole = field.volume_mm3
     assert take(field, 3.0, 4.0) == pytest.approx(math.pi * 7.0 * 10.0)
-    assert field.volume == pytest.approx(whole - math.pi * 7.0 * 10.0)
-    assert field.low[:, 0, 0].tolist() == [2.0, 4.0]
-    assert field.high[:, 0, 0].tolist() == [3.0, 5.0]
+    assert field.volume_mm3 == pytest.approx(whole - math.pi * 7.0 * 10.0)
+    assert field.inner_radii[:, 0, 0].tolist() == [2.0, 4.0]
+    assert field.outer_radii[:, 0, 0].tolist() == [3.0, 5.0]
 
 
 def test_looking_takes_nothing() -> None:
     field = ring()
     assert take(field, 3.0, 4.0, cut=False) == pytest.approx(math.pi * 7.0 * 10.0)
-    assert field.changes == 0
-    assert field.volume == pytest.approx(math.pi * 21.0 * 10.0)
+    assert field.change_count == 0
+    assert field.volume_mm3 == pytest.approx(math.pi * 21.0 * 10.0)
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.0, 2.0), (5.0, 9.0), (4.0, 3.0), (math.inf, math.inf)])
 def test_cut_beside_the_metal_or_turned_about_takes_nothing(start: float, end: float) -> None:
     field = ring()
     assert take(field, start, end) == 0.0
-    assert field.changes == 0
+    assert field.change_count == 0
 
 
 def test_cut_tells_where_it_was_and_how_deep() -> None:
     field = ring()
-    told = field.take(slice(3, 6), ALL, np.full((3, 1), 4.5), np.full((3, 1), math.inf))
-    assert (told.back, told.front, told.depth) == pytest.approx((-7.0, -4.0, 0.5))
+    told = field.intersect(slice(3, 6), ALL, np.full((3, 1), 4.5), np.full((3, 1), math.inf))
+    assert (told.back_z_mm, told.front_z_mm, told.depth_mm) == pytest.approx((-7.0, -4.0, 0.5))
 
 
 def test_copy_does_not_feel_what_is_cut_afterwards() -> None:
     field = ring()
-    copy = field.copied()
+    copy = field.copy()
     take(field, 0.0, 9.0)
-    assert field.volume == 0.0
-    assert copy.volume == pytest.approx(math.pi * 21.0 * 10.0)
+    assert field.volume_mm3 == 0.0
+    assert copy.volume_mm3 == pytest.approx(math.pi * 21.0 * 10.0)
 
 
 # --- columns that divide
@@ -109,25 +109,25 @@ def test_copy_does_not_feel_what_is_cut_afterwards() -> None:
 def test_dividing_moves_no_metal() -> None:
     field = ring()
     take(field, 4.0, 9.0, slice(2, 5))
-    before = field.volume
-    field.divide(np.array([-9.3, -6.5, -6.45]))
-    assert len(field.middles) == 13
-    assert field.volume == pytest.approx(before)
+    before = field.volume_mm3
+    field.divide_columns(np.array([-9.3, -6.5, -6.45]))
+    assert len(field.column_centers) == 13
+    assert field.volume_mm3 == pytest.approx(before)
 
 
 @pytest.mark.parametrize("place", [-10.0, 0.0, 3.0, -4.0, -4.001, -math.inf])
 def test_no_column_divides_at_its_edge_or_beside_the_part(place: float) -> None:
     field = ring()
-    field.divide(np.array([place]))
-    assert len(field.middles) == 10
+    field.divide_columns(np.array([place]))
+    assert len(field.column_centers) == 10
 
 
 def test_field_has_no_more_columns_than_it_may() -> None:
     field = ring(most=15)
-    field.divide(np.linspace(-9.9, -0.1, 500))
-    assert len(field.middles) == 15
-    field.divide(np.array([-3.21]))
-    assert len(field.middles) == 15
+    field.divide_columns(np.linspace(-9.9, -0.1, 500))
+    assert len(field.column_centers) == 15
+    field.divide_columns(np.array([-3.21]))
+    assert len(field.column_centers) == 15
 
 
 # --- what is refused
@@ -135,7 +135,7 @@ def test_field_has_no_more_columns_than_it_may() -> None:
 
 def test_section_without_metal_is_refused() -> None:
     with raises_code(PartError, "no-stock"):
-        turned_field(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
+        field_from_section(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
 
 
 @pytest.mark.parametrize(

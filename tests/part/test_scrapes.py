@@ -6,12 +6,12 @@ import math
 
 import pytest
 
-from core.part.cutter import Cutter, Side
+from core.part.cutter import CutSide, Cutter
 from core.part.stock import Stock
-from core.part.tool_outline import outline
+from core.part.tool_outline import make_outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
-from core.proving.checks.part_findings import RAPID
+from core.proving.checks.part_findings import RAPID_TOLERANCE_MM
 
 NOSE = 0.4
 TOOL = ToolShape(ToolKind.TURNING, tip=3, nose_radius=NOSE, insert="VNMG160404")
@@ -28,15 +28,15 @@ def scraped(slope: float, deep: float) -> Cut:
         off = NOSE - deep
         return z + across * off - NOSE, 5.0 + (-10.0 - z) * rise + up * off - NOSE
 
-    cutter = Cutter(outline(TOOL).cutting, (), Side.OUTSIDE)
-    return cutter.meets(TurnedPart(cone), tip(-13.0), tip(-16.0))
+    cutter = Cutter(make_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)
+    return cutter.find_cut(TurnedPart(cone), tip(-13.0), tip(-16.0))
 
 
 @pytest.mark.parametrize("slope", [0, 5, 15, 30, 45, 60, 75, 85])
 def test_a_rapid_along_a_cone_is_found(slope: float) -> None:
     met = scraped(slope, BOUND)
-    assert met.depth > RAPID
-    assert met.width > RAPID
+    assert met.depth_mm > RAPID_TOLERANCE_MM
+    assert met.width_mm > RAPID_TOLERANCE_MM
     assert not scraped(slope, -0.002)  # beside it
 
 
@@ -44,8 +44,8 @@ def test_a_rapid_along_a_cone_is_found(slope: float) -> None:
 def test_a_rapid_along_a_shoulder_is_found_wherever_its_columns_lie(place: float) -> None:
     wall = -10.0 - place
     step = Stock("", ((-40.0, 10.0), (wall, 10.0), (wall, 5.0), (0.0, 5.0)))
-    cutter = Cutter(outline(TOOL).cutting, (), Side.OUTSIDE)
-    met = cutter.meets(TurnedPart(step), (wall - BOUND, 6.0), (wall - BOUND, 9.0))
-    assert met.depth > RAPID
-    assert met.width > RAPID
-    assert not cutter.meets(TurnedPart(step), (wall + 0.005, 6.0), (wall + 0.005, 9.0))
+    cutter = Cutter(make_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)
+    met = cutter.find_cut(TurnedPart(step), (wall - BOUND, 6.0), (wall - BOUND, 9.0))
+    assert met.depth_mm > RAPID_TOLERANCE_MM
+    assert met.width_mm > RAPID_TOLERANCE_MM
+    assert not cutter.find_cut(TurnedPart(step), (wall + 0.005, 6.0), (wall + 0.005, 9.0))

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from core.part.insert_codes import Holder, holder_of
-from core.part.shape_rules import FIELDS_OF, shape_mistakes
+from core.part.insert_codes import ToolHolder, parse_holder
+from core.part.shape_rules import FIELDS_BY_KIND, find_shape_mistakes
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 
 STAR = ((0.0, 2.0), (2.0, 2.0), (0.5, 0.0), (1.0, 3.0), (1.5, 0.0))
@@ -15,7 +15,7 @@ SOUND = {
     "entry": ToolShape(tip=3, insert="SNMG432", entry=75.0),
     "tip": ToolShape(ToolKind.DRILL, tip=7),
     "length": ToolShape(ToolKind.DRILL, length=40.0, stick_out=60.0),
-    "width": ToolShape(ToolKind.CENTRE_DRILL, diameter=5.0, width=2.0),
+    "width": ToolShape(ToolKind.CENTER_DRILL, diameter=5.0, width=2.0),
     "pitch": ToolShape(ToolKind.TAP, diameter=6.0, pitch=1.0),
     "profile": ToolShape(ToolKind.FORM, profile=((0.0, 0.0), (2.0, 0.0), (1.0, 1.0))),
     "holder": ToolShape(tip=3, holder="0,10 20,10 20,50 0,50"),
@@ -39,17 +39,21 @@ SOUND = {
     ],
 )
 def test_contradiction_is_named_and_its_twin_is_none(field: str, value: object, code: str) -> None:
-    assert shape_mistakes(SOUND[field]) == ()
-    (mistake,) = shape_mistakes(replace(SOUND[field], **{field: value}))  # type: ignore[arg-type]
-    assert (mistake.field, mistake.code) == (field, code)
+    assert find_shape_mistakes(SOUND[field]) == ()
+    (mistake,) = find_shape_mistakes(replace(SOUND[field], **{field: value}))  # type: ignore[arg-type]
+    assert (mistake.field_name, mistake.code) == (field, code)
 
 
 def test_nose_larger_than_its_insert_or_mill() -> None:
-    assert not shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.3))
-    assert shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.4))[0].field == "nose_radius"
-    assert not shape_mistakes(ToolShape(ToolKind.END_MILL, diameter=6.0, nose_radius=3.0))
+    assert not find_shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.3))
     assert (
-        shape_mistakes(ToolShape(ToolKind.END_MILL, diameter=6.0, nose_radius=3.1))[0].field == "nose_radius"
+        find_shape_mistakes(ToolShape(tip=3, insert="CNMG432", nose_radius=6.4))[0].field_name
+        == "nose_radius"
+    )
+    assert not find_shape_mistakes(ToolShape(ToolKind.END_MILL, diameter=6.0, nose_radius=3.0))
+    assert (
+        find_shape_mistakes(ToolShape(ToolKind.END_MILL, diameter=6.0, nose_radius=3.1))[0].field_name
+        == "nose_radius"
     )
 
 
@@ -58,26 +62,29 @@ def test_nose_larger_than_its_insert_or_mill() -> None:
     [(ToolKind.TURNING, 2, 3), (ToolKind.PARTING, 6, 8), (ToolKind.BORING, 3, 2)],
 )
 def test_tip_of_a_tool_behind_the_spindle(kind: ToolKind, right: int, wrong: int) -> None:
-    assert shape_mistakes(ToolShape(kind, tip=right, rear=True)) == ()
-    (mistake,) = shape_mistakes(ToolShape(kind, tip=wrong, rear=True))
-    assert (mistake.field, mistake.code) == ("tip", "tool-in-front")
-    assert shape_mistakes(ToolShape(kind, tip=wrong)) == ()
+    assert find_shape_mistakes(ToolShape(kind, tip=right, rear=True)) == ()
+    (mistake,) = find_shape_mistakes(ToolShape(kind, tip=wrong, rear=True))
+    assert (mistake.field_name, mistake.code) == ("tip", "tool-in-front")
+    assert find_shape_mistakes(ToolShape(kind, tip=wrong)) == ()
 
 
 def test_entry_of_the_holder_counts_too() -> None:
-    assert shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MSRNR 2020K12")) == ()
-    assert shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MCLNR 2020K12"))[0].field == "entry"
+    assert find_shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MSRNR 2020K12")) == ()
+    assert (
+        find_shape_mistakes(ToolShape(tip=3, insert="SNMG432", holder="MCLNR 2020K12"))[0].field_name
+        == "entry"
+    )
 
 
 @pytest.mark.parametrize("letter", list("CDEMSVTWPHO"))
 def test_usual_holders_leave_every_insert_its_clearance(letter: str) -> None:
     for kind, tip in ((ToolKind.TURNING, 3), (ToolKind.BORING, 2)):
-        assert shape_mistakes(ToolShape(kind, tip=tip, insert=f"{letter}NMG432")) == ()
+        assert find_shape_mistakes(ToolShape(kind, tip=tip, insert=f"{letter}NMG432")) == ()
 
 
 def test_kinds_ask_for_fields_that_a_shape_has() -> None:
-    assert set(FIELDS_OF) == set(ToolKind)
-    for fields in FIELDS_OF.values():
+    assert set(FIELDS_BY_KIND) == set(ToolKind)
+    for fields in FIELDS_BY_KIND.values():
         assert set(fields) <= set(ToolShape.__slots__)
 
 
@@ -117,22 +124,26 @@ def test_without_a_quadrant_kind_and_hand_say_where_the_tip_points(
 )
 def test_holder_by_size_and_by_code(text: str, width: float, reach: float, entry: float) -> None:
     """ISO 5608: shank 20 has f 25, 25 has 32; ANSI B212.5: 3/4 in has 1 in, 1 in has 1 1/4 in."""
-    holder = holder_of(text)
+    holder = parse_holder(text)
     assert holder is not None
-    assert (holder.width, holder.reach, holder.entry) == pytest.approx((width, reach, entry))
+    assert (holder.shank_width_mm, holder.reach_mm, holder.entering_angle_deg) == pytest.approx(
+        (width, reach, entry)
+    )
 
 
 def test_boring_bars_by_code() -> None:
-    assert holder_of("S16R-SCLCR09") == Holder(bar=16.0, entry=95.0)
-    assert holder_of("A10-SCLCR2") == Holder(bar=15.875, entry=95.0), "ten sixteenths of an inch"
-    assert holder_of("S12M STFCR 11") == Holder(bar=12.0, entry=91.0)
+    assert parse_holder("S16R-SCLCR09") == ToolHolder(bar_diameter_mm=16.0, entering_angle_deg=95.0)
+    assert parse_holder("A10-SCLCR2") == ToolHolder(bar_diameter_mm=15.875, entering_angle_deg=95.0), (
+        "ten sixteenths of an inch"
+    )
+    assert parse_holder("S12M STFCR 11") == ToolHolder(bar_diameter_mm=12.0, entering_angle_deg=91.0)
 
 
 @pytest.mark.parametrize(
     "text", ["", "20", "the old one", "3/0", "0x0", "1,2 3,4", "1..2,3 4,5 6,7", "999mm", "MCLNR"]
 )
 def test_other_texts_are_names(text: str) -> None:
-    assert holder_of(text) is None
+    assert parse_holder(text) is None
 
 
 @pytest.mark.parametrize(

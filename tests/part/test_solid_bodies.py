@@ -7,22 +7,24 @@ import math
 import numpy as np
 import pytest
 
-from core.part.solid_bodies import Round, ToolBody, chuck_solid
-from core.part.solid_picture import Colours, Image, Scene, SolidPicture
+from core.part.solid_bodies import RoundAxis, ToolBody, make_chuck_solid
+from core.part.solid_picture import ImageArray, PartColors, PartScene, SolidPicture
 from core.part.solid_view import SolidView
-from core.part.stock import Clamping, bar
-from core.part.surface_points import Solid, turned_solid
+from core.part.stock import Clamping, make_bar
+from core.part.surface_points import Solid, make_turned_solid
 
 WIDTH, HEIGHT = 400, 300
-GOLD, GREY, BROWN = Colours().insert, Colours().holder, Colours().chuck
-SIDE = SolidView(azimuth=0.0, tilt=0.0, scale=8.0, centre=-10.0)
-ABOVE = SolidView(azimuth=0.0, tilt=90.0, scale=8.0, centre=-10.0)
+GOLD, GREY, BROWN = PartColors().insert, PartColors().holder, PartColors().chuck
+SIDE = SolidView(azimuth_deg=0.0, tilt_deg=0.0, pixels_per_mm=8.0, center_z_mm=-10.0)
+ABOVE = SolidView(azimuth_deg=0.0, tilt_deg=90.0, pixels_per_mm=8.0, center_z_mm=-10.0)
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 6.0], [0.0, 6.0]])
 
 
 def shaft(radius: float = 5.0) -> Solid:
     count = 2000
-    return turned_solid(np.linspace(-20.0, 0.0, count + 1), np.zeros((1, count)), np.full((1, count), radius))
+    return make_turned_solid(
+        np.linspace(-20.0, 0.0, count + 1), np.zeros((1, count)), np.full((1, count), radius)
+    )
 
 
 def at(z: float, x: float) -> np.ndarray:
@@ -30,11 +32,11 @@ def at(z: float, x: float) -> np.ndarray:
     return moved
 
 
-def drawn(view: SolidView, tool: ToolBody | None = None, chuck: Solid | None = None) -> Image:
-    return SolidPicture().draw(shaft(), view, WIDTH, HEIGHT, around=Scene(chuck, tool))
+def drawn(view: SolidView, tool: ToolBody | None = None, chuck: Solid | None = None) -> ImageArray:
+    return SolidPicture().draw(shaft(), view, WIDTH, HEIGHT, scene=PartScene(chuck, tool))
 
 
-def like(image: Image, colour: int) -> np.ndarray:
+def like(image: ImageArray, colour: int) -> np.ndarray:
     """Which pixels are of this colour, whatever its light: red and blue stand to green as they do."""
     r, g, b = (((image >> off) & 255).astype(float) + 1e-9 for off in (16, 8, 0))
     red, green, blue = ((colour >> 16) & 255, (colour >> 8) & 255, colour & 255)
@@ -55,7 +57,7 @@ def test_from_the_side_it_hides_the_shaft_and_from_behind_the_shaft_hides_it() -
     tool = ToolBody((at(-12.0, 5.0),), ())
     before = np.count_nonzero(like(drawn(SIDE, tool), GOLD))
     assert before == pytest.approx(4.0 * 4.0 * 64.0, rel=0.1)  # as thick as it is wide, below the rake face
-    behind = SolidView(azimuth=0.0, tilt=180.0, scale=8.0, centre=-10.0)
+    behind = SolidView(azimuth_deg=0.0, tilt_deg=180.0, pixels_per_mm=8.0, center_z_mm=-10.0)
     assert np.count_nonzero(like(drawn(behind, tool), GOLD)) == 0
 
 
@@ -63,13 +65,13 @@ def test_a_drill_is_round() -> None:
     """Seen from the side it is as high as it is wide; 6 mm thick, it stands 10 mm out of the face."""
     outline = np.array([[-5.0, -3.0], [10.0, -3.0], [10.0, 3.0], [-5.0, 3.0]])
     for view in (SIDE, ABOVE):
-        rows, columns = np.nonzero(like(drawn(view, ToolBody((outline,), (), Round.ALONG)), GOLD))
+        rows, columns = np.nonzero(like(drawn(view, ToolBody((outline,), (), RoundAxis.Z)), GOLD))
         assert np.ptp(rows) + 1 == pytest.approx(48, abs=2)
         assert (columns.min(), columns.max()) == pytest.approx((200 + 80, 200 + 159), abs=2)
 
 
 def test_a_holder_that_nobody_has_described_lets_the_part_shine_through() -> None:
-    solid, ghost = (drawn(ABOVE, ToolBody((), (at(-12.0, 0.0),), ghost=ghost)) for ghost in (False, True))
+    solid, ghost = (drawn(ABOVE, ToolBody((), (at(-12.0, 0.0),), is_ghost=ghost)) for ghost in (False, True))
     bare = drawn(ABOVE)
     there = like(solid, GREY)
     assert there.any()
@@ -79,19 +81,19 @@ def test_a_holder_that_nobody_has_described_lets_the_part_shine_through() -> Non
 
 
 def test_the_chuck_stands_behind_its_face_and_hides_the_bar() -> None:
-    chuck = chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), bar(10.0, 0.0, -20.0))
+    chuck = make_chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), make_bar(10.0, 0.0, -20.0))
     found = like(drawn(SIDE, chuck=chuck), BROWN)
     _, columns = np.nonzero(found)
     assert columns.max() == pytest.approx(200 - 5 * 8, abs=1)  # its face at Z-15
     high = {at: np.ptp(np.flatnonzero(found[:, at])) + 1 for at in (150, 100)}
     assert high == {150: pytest.approx(128, abs=3), 100: pytest.approx(192, abs=3)}  # jaws, body
-    assert math.isclose(float(chuck.low.max()), 5.0)
+    assert math.isclose(float(chuck.inner_radii.max()), 5.0)
 
 
 def test_a_centre_stands_before_the_face() -> None:
     """Its tip 2 mm in the part; 60 degrees: 8 mm of quill begin 4 / tan 30 = 6.93 mm further on."""
-    held = Clamping(0.0, 0.0, quill=8.0, point=60.0, centre=-2.0)
-    found = like(drawn(SIDE, chuck=chuck_solid(held, bar(10.0, 0.0, -20.0))), BROWN)
+    held = Clamping(0.0, 0.0, quill_diameter=8.0, center_angle_deg=60.0, center_z_mm=-2.0)
+    found = like(drawn(SIDE, chuck=make_chuck_solid(held, make_bar(10.0, 0.0, -20.0))), BROWN)
     assert not found[:, : 200 + 80].any()  # what is in the part is hidden
     for z in (2.0, 4.0):
         high = np.ptp(np.flatnonzero(found[:, round(200 + (10.0 + z) * 8)])) + 1

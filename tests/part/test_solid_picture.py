@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import turned_field
-from core.part.solid_picture import Colours, Image, SolidPicture
-from core.part.solid_view import SolidView, fitted
-from core.part.surface_points import Solid, solid_of, turned_solid
+from core.part.polar_field import field_from_section
+from core.part.solid_picture import ImageArray, PartColors, SolidPicture
+from core.part.solid_view import SolidView, fit_view
+from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 
 WIDTH, HEIGHT = 420, 300
 RED = ((-1e9, 1e9),)
@@ -23,25 +23,25 @@ def turned(*steps: tuple[float, float], bore: float = 0.0, deep: float = 0.0) ->
     high = np.concatenate([np.full(count, radius) for count, radius in parts[::-1]])
     edges = np.linspace(-0.01 * len(high), 0.0, len(high) + 1)
     low = np.where(0.5 * (edges[1:] + edges[:-1]) > -deep, bore, 0.0)
-    return turned_solid(edges, low[None], high[None])
+    return make_turned_solid(edges, low[None], high[None])
 
 
 def milled(length: float = 20.0, radius: float = 10.0) -> MilledPart:
     count = round(length / 0.01)
     edges = np.linspace(-length, 0.0, count + 1)
-    return MilledPart(turned_field(edges, np.zeros((1, count)), np.full((1, count), radius)))
+    return MilledPart(field_from_section(edges, np.zeros((1, count)), np.full((1, count), radius)))
 
 
-def draw(solid: Solid, view: SolidView, hits: tuple[tuple[float, float], ...] = ()) -> Image:
+def draw(solid: Solid, view: SolidView, hits: tuple[tuple[float, float], ...] = ()) -> ImageArray:
     return SolidPicture().draw(solid, view, WIDTH, HEIGHT, hits=hits)
 
 
-def red(image: Image) -> np.ndarray:
+def red(image: ImageArray) -> np.ndarray:
     """Where it is painted red; glints are paler."""
     return ((image >> 16) & 255) > 1.3 * ((image >> 8) & 255)
 
 
-def orange(image: Image) -> np.ndarray:
+def orange(image: ImageArray) -> np.ndarray:
     """Where a cut face is: its green lies between, twice its blue nearly."""
     r, g, b = (((image >> shift) & 255).astype(int) for shift in (16, 8, 0))
     return (r > 1.4 * g) & (r < 2.0 * g) & (g > 1.6 * b)
@@ -52,7 +52,7 @@ def orange(image: Image) -> np.ndarray:
 
 @pytest.mark.parametrize("azimuth", [0.0, 25.0, -25.0, 60.0, -80.0, 89.0])
 def test_outline_of_a_cylinder(azimuth: float) -> None:
-    image = draw(turned((30.0, 8.0)), SolidView(azimuth=azimuth, scale=7.0, centre=-15.0))
+    image = draw(turned((30.0, 8.0)), SolidView(azimuth_deg=azimuth, pixels_per_mm=7.0, center_z_mm=-15.0))
     cos, sin = math.cos(math.radians(azimuth)), abs(math.sin(math.radians(azimuth)))
     area = 30.0 * 16.0 * cos + math.pi * 64.0 * sin
     assert np.count_nonzero(image) == pytest.approx(area * 49.0, rel=0.02)
@@ -71,7 +71,9 @@ def test_flange_hides_the_pin_and_the_pin_the_flange(azimuth: float, least: floa
     That takes half the strip of 10 mm across its ellipse, and half the pin's own ellipse: 80 of 278 mm².
     """
     solid = turned((5.0, 10.0), (15.0, 5.0))
-    image = draw(solid, SolidView(azimuth=azimuth, scale=9.0, centre=-10.0), hits=((-5.0, 1.0),))
+    image = draw(
+        solid, SolidView(azimuth_deg=azimuth, pixels_per_mm=9.0, center_z_mm=-10.0), hits=((-5.0, 1.0),)
+    )
     cos, sin = math.cos(math.radians(azimuth)), abs(math.sin(math.radians(azimuth)))
     flange = (5.0 * 20.0 * cos + math.pi * 100.0 * sin) * 81.0
     assert least * flange < np.count_nonzero(red(image)) < most * flange
@@ -79,23 +81,25 @@ def test_flange_hides_the_pin_and_the_pin_the_flange(azimuth: float, least: floa
 
 def test_half_section_shows_what_is_metal() -> None:
     solid = turned((20.0, 9.0), (10.0, 6.0), bore=4.0, deep=12.0)
-    image = draw(solid, SolidView(azimuth=0.0, scale=9.0, centre=-15.0, opening=(-90.0, 90.0)))
+    image = draw(
+        solid, SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-15.0, open_range_deg=(-90.0, 90.0))
+    )
     area = 2.0 * (20.0 * 9.0 + 10.0 * 6.0 - 12.0 * 4.0)
     assert np.count_nonzero(orange(image)) == pytest.approx(area * 81.0, rel=0.02)
 
 
 def test_nothing_is_cut_open_that_was_not_asked_for() -> None:
-    image = draw(turned((20.0, 9.0), bore=4.0, deep=12.0), SolidView(scale=9.0, centre=-10.0))
+    image = draw(turned((20.0, 9.0), bore=4.0, deep=12.0), SolidView(pixels_per_mm=9.0, center_z_mm=-10.0))
     assert not orange(image).any()
     assert not red(image).any()
 
 
 def test_bore_is_seen_from_the_face_and_not_from_behind() -> None:
     solid = turned((20.0, 9.0), bore=5.0, deep=12.0)
-    bore = Colours(outside=0x0000FF, bore=0x00FF00)
+    bore = PartColors(outside=0x0000FF, bore=0x00FF00)
 
     def green(azimuth: float) -> int:
-        view = SolidView(azimuth=azimuth, scale=9.0, centre=-10.0)
+        view = SolidView(azimuth_deg=azimuth, pixels_per_mm=9.0, center_z_mm=-10.0)
         image = SolidPicture(bore).draw(solid, view, WIDTH, HEIGHT)
         return int(np.count_nonzero(((image >> 8) & 255) > (image & 255)))
 
@@ -112,7 +116,7 @@ def test_bore_is_seen_from_the_face_and_not_from_behind() -> None:
 def hole_at(angle: float, end: float = 2.0) -> Solid:
     part = milled()
     part.mill_radial(np.array([[12.0, -10.0, angle], [end, -10.0, angle]]), 2.0)
-    return solid_of(part.field)
+    return make_milled_solid(part.field)
 
 
 @pytest.mark.parametrize(
@@ -128,8 +132,8 @@ def hole_at(angle: float, end: float = 2.0) -> Solid:
     ],
 )
 def test_hole_stands_where_c_and_tilt_bring_it(angle: float, tilt: float, roll: float, place: str) -> None:
-    view = SolidView(azimuth=0.0, tilt=tilt, roll=roll, scale=12.0, centre=-10.0)
-    plain = draw(solid_of(milled().field), view)
+    view = SolidView(azimuth_deg=0.0, tilt_deg=tilt, roll_deg=roll, pixels_per_mm=12.0, center_z_mm=-10.0)
+    plain = draw(make_milled_solid(milled().field), view)
     blind, through = draw(hole_at(angle), view), draw(hole_at(angle, -12.0), view)
     gone = (plain != 0) & (blind == 0)
     assert bool(through[HEIGHT // 2, WIDTH // 2] == 0) is (place != "top")
@@ -143,18 +147,18 @@ def test_hole_stands_where_c_and_tilt_bring_it(angle: float, tilt: float, roll: 
 @pytest.mark.parametrize("roll", [0.0, 77.0])
 def test_point_on_the_screen_is_where_the_picture_has_it(azimuth: float, roll: float) -> None:
     """The middle of a blind hole that looks at the viewer as far as it can."""
-    view = SolidView(azimuth=azimuth, tilt=20.0, roll=roll, scale=11.0, centre=-9.0)
+    view = SolidView(azimuth_deg=azimuth, tilt_deg=20.0, roll_deg=roll, pixels_per_mm=11.0, center_z_mm=-9.0)
     angle = 180.0 - 20.0 - roll
-    plain, drilled = (draw(solid, view) for solid in (solid_of(milled().field), hole_at(angle)))
+    plain, drilled = (draw(solid, view) for solid in (make_milled_solid(milled().field), hole_at(angle)))
     rows, columns = np.nonzero(plain != drilled)
-    rim = view.on_screen(np.array([[10.0, -10.0, angle]]), WIDTH, HEIGHT)[0]
+    rim = view.project_to_screen(np.array([[10.0, -10.0, angle]]), WIDTH, HEIGHT)[0]
     assert rows.mean() == pytest.approx(rim[1], abs=2.0)
     assert columns.mean() == pytest.approx(rim[0], abs=8.0)
 
 
 def test_field_that_no_mill_has_touched_looks_as_the_turned_part() -> None:
-    view = SolidView(azimuth=30.0, scale=9.0, centre=-10.0)
-    one, other = draw(turned((20.0, 10.0)), view), draw(solid_of(milled().field), view)
+    view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
+    one, other = draw(turned((20.0, 10.0)), view), draw(make_milled_solid(milled().field), view)
     assert np.count_nonzero((one == 0) != (other == 0)) < 0.006 * np.count_nonzero(one)
     both = (one != 0) & (other != 0)
     level = [((image[both] >> 8) & 255).astype(int) for image in (one, other)]
@@ -164,7 +168,10 @@ def test_field_that_no_mill_has_touched_looks_as_the_turned_part() -> None:
 def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
     part = milled()
     part.mill_radial(np.array([[8.0, 5.0, 160.0], [8.0, -30.0, 160.0]]), 7.0)
-    image = draw(solid_of(part.field), SolidView(azimuth=0.0, tilt=20.0, scale=11.0, centre=-10.0))
+    image = draw(
+        make_milled_solid(part.field),
+        SolidView(azimuth_deg=0.0, tilt_deg=20.0, pixels_per_mm=11.0, center_z_mm=-10.0),
+    )
     rows = ((image[:, WIDTH // 2] >> 8) & 255).astype(int)
     middle = HEIGHT // 2
     assert np.ptp(rows[middle - 55 : middle + 55]) <= 2  # the flat is 12 wide: 66 pixels on either side
@@ -175,19 +182,19 @@ def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
 
 
 def test_part_beside_the_picture_leaves_the_ground() -> None:
-    view = SolidView(scale=10.0, centre=200.0)
+    view = SolidView(pixels_per_mm=10.0, center_z_mm=200.0)
     assert not draw(turned((20.0, 5.0)), view).any()
-    ground = SolidPicture(Colours(ground=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
+    ground = SolidPicture(PartColors(ground=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
     assert np.all(ground == 0xFF102030)
 
 
 def test_part_larger_than_the_picture_fills_it() -> None:
-    image = draw(turned((60.0, 30.0)), SolidView(azimuth=0.0, scale=40.0, centre=-30.0))
+    image = draw(turned((60.0, 30.0)), SolidView(azimuth_deg=0.0, pixels_per_mm=40.0, center_z_mm=-30.0))
     assert np.count_nonzero(image) == WIDTH * HEIGHT
 
 
 def test_hits_are_red_where_they_are_and_nowhere_else() -> None:
-    solid, view = turned((20.0, 5.0)), SolidView(azimuth=0.0, scale=10.0, centre=-10.0)
+    solid, view = turned((20.0, 5.0)), SolidView(azimuth_deg=0.0, pixels_per_mm=10.0, center_z_mm=-10.0)
     image = draw(solid, view, hits=((-12.0, -8.0),))
     columns = np.flatnonzero(red(image).any(axis=0))
     assert columns[0] == pytest.approx(WIDTH / 2 - 20, abs=2)
@@ -197,17 +204,19 @@ def test_hits_are_red_where_they_are_and_nowhere_else() -> None:
 
 def test_picture_changes_with_the_version_of_the_metal() -> None:
     part, picture = milled(), SolidPicture()
-    view = SolidView(azimuth=30.0, scale=9.0, centre=-10.0)
-    before = picture.draw(solid_of(part.field), view, WIDTH, HEIGHT, version=part.field.changes)
+    view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
+    before = picture.draw(make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count)
     part.mill_axial(np.array([[0.0, 0.0, -4.0]]), 6.0)
-    after = picture.draw(solid_of(part.field), view, WIDTH, HEIGHT, version=part.field.changes)
+    after = picture.draw(make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count)
     assert np.count_nonzero(before != after) > 1000
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 30.0, 90.0])
 def test_fitted_part_lies_within_the_picture(azimuth: float) -> None:
-    scale, centre = fitted(-40.0, 2.0, 9.0, WIDTH, HEIGHT, azimuth)
-    image = draw(turned((42.0, 9.0)), SolidView(azimuth=azimuth, scale=scale, centre=centre - 2.0))
+    scale, centre = fit_view(-40.0, 2.0, 9.0, WIDTH, HEIGHT, azimuth)
+    image = draw(
+        turned((42.0, 9.0)), SolidView(azimuth_deg=azimuth, pixels_per_mm=scale, center_z_mm=centre - 2.0)
+    )
     rows, columns = np.nonzero(image)
     assert rows.min() > 0
     assert rows.max() < HEIGHT - 1
@@ -217,9 +226,9 @@ def test_fitted_part_lies_within_the_picture(azimuth: float) -> None:
 
 
 def test_quick_picture_has_the_same_outline() -> None:
-    view = SolidView(azimuth=30.0, scale=9.0, centre=-10.0)
+    view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
     picture, solid = SolidPicture(), hole_at(150.0)
-    fine, quick = (picture.draw(solid, view, 421, 301, quick=quick) for quick in (False, True))
+    fine, quick = (picture.draw(solid, view, 421, 301, is_preview=quick) for quick in (False, True))
     assert quick.shape == fine.shape == (301, 421)
     assert np.count_nonzero((fine != 0) != (quick != 0)) < 0.02 * np.count_nonzero(fine)
 
@@ -229,8 +238,8 @@ def test_step_between_faces_that_are_lit_alike_has_an_edge() -> None:
     part = milled()
     turn = np.linspace(0.0, 2.0 * math.pi, 200)
     part.mill_axial(np.column_stack([7.5 * np.cos(turn), 7.5 * np.sin(turn), np.full(200, -4.0)]), 2.5)
-    view = SolidView(azimuth=60.0, tilt=0.0, scale=12.0, centre=-4.0)
-    image = draw(solid_of(part.field), view)
+    view = SolidView(azimuth_deg=60.0, tilt_deg=0.0, pixels_per_mm=12.0, center_z_mm=-4.0)
+    image = draw(make_milled_solid(part.field), view)
     # At phi 180 on the rim of the island, and 3 pixels within and beyond it.
     column = round(
         WIDTH / 2 + 12.0 * (4.0 * math.cos(math.radians(60.0)) + 5.0 * math.sin(math.radians(60.0)))

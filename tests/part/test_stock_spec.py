@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from core.part.stock_spec import StockError, profile_stock, stock_spec
+from core.part.stock_spec import StockError, parse_profile, parse_specification
 from tests.coded import raises_code
 
 
 def test_a_bar_is_as_long_as_the_program_needs() -> None:
-    stock = stock_spec("bar:1.0+.02").stock(back=-25.4, unit=25.4)
-    assert stock.given == "bar:1.0+.02"
-    assert stock.radius == pytest.approx(12.7)
-    assert stock.front == pytest.approx(0.508)
-    assert stock.back < -25.4
+    stock = parse_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit=25.4)
+    assert stock.specification == "bar:1.0+.02"
+    assert stock.max_radius_mm == pytest.approx(12.7)
+    assert stock.front_z_mm == pytest.approx(0.508)
+    assert stock.back_z_mm < -25.4
 
 
 def test_a_length_counts_from_the_face() -> None:
-    stock = stock_spec("bar:25mm:60mm+1mm").stock(back=-500.0, unit=25.4)
-    assert (stock.back, stock.front, stock.radius) == (
+    stock = parse_specification("bar:25mm:60mm+1mm").stock(back_z_mm=-500.0, unit=25.4)
+    assert (stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm) == (
         pytest.approx(-59.0),
         pytest.approx(1.0),
         pytest.approx(12.5),
@@ -26,16 +26,16 @@ def test_a_length_counts_from_the_face() -> None:
 
 
 def test_a_tube_has_its_bore() -> None:
-    stock = stock_spec("tube:1.5:.75:2").stock(back=0.0, unit=25.4)
-    assert stock.bore[0] == (pytest.approx(-50.8), pytest.approx(9.525))
-    assert stock.outside[0] == (pytest.approx(-50.8), pytest.approx(19.05))
+    stock = parse_specification("tube:1.5:.75:2").stock(back_z_mm=0.0, unit=25.4)
+    assert stock.bore_profile[0] == (pytest.approx(-50.8), pytest.approx(9.525))
+    assert stock.outside_profile[0] == (pytest.approx(-50.8), pytest.approx(19.05))
 
 
 def test_files_are_named_with_an_allowance_or_with_a_plus_in_the_name() -> None:
-    assert stock_spec("after:op 10+.5.nc").after == "op 10+.5.nc"
-    spec = stock_spec("after:op10.nc+.02")
+    assert parse_specification("after:op 10+.5.nc").after == "op 10+.5.nc"
+    spec = parse_specification("after:op10.nc+.02")
     assert (spec.after, spec.allowance) == ("op10.nc", pytest.approx(0.508))
-    assert stock_spec("profile:casting.csv").profile == "casting.csv"
+    assert parse_specification("profile:casting.csv").profile == "casting.csv"
 
 
 @pytest.mark.parametrize(
@@ -61,16 +61,16 @@ def test_files_are_named_with_an_allowance_or_with_a_plus_in_the_name() -> None:
 )
 def test_what_is_no_stock_is_refused(text: str, code: str) -> None:
     with raises_code(StockError, code, text):
-        stock_spec(text)
+        parse_specification(text)
 
 
 def test_a_profile_is_read_either_way_with_and_without_a_head() -> None:
-    rising = profile_stock("p", "z,r\n-2,1\n-1,1\n-1,.5\n0,.5\n", 25.4, 0.0)
-    falling = profile_stock("p", "0,.5\n-1,.5\n-1,1\n-2,1\n", 25.4, 0.0)
-    assert rising.outside == falling.outside
-    assert rising.outside[0] == (pytest.approx(-50.8), pytest.approx(25.4))
-    tubular = profile_stock("p", "-10,6,2\n0,6,3\n", 1.0, 0.5)
-    assert tubular.bore == ((-9.5, 2.0), (0.5, 3.0))
+    rising = parse_profile("p", "z,r\n-2,1\n-1,1\n-1,.5\n0,.5\n", 25.4, 0.0)
+    falling = parse_profile("p", "0,.5\n-1,.5\n-1,1\n-2,1\n", 25.4, 0.0)
+    assert rising.outside_profile == falling.outside_profile
+    assert rising.outside_profile[0] == (pytest.approx(-50.8), pytest.approx(25.4))
+    tubular = parse_profile("p", "-10,6,2\n0,6,3\n", 1.0, 0.5)
+    assert tubular.bore_profile == ((-9.5, 2.0), (0.5, 3.0))
 
 
 @pytest.mark.parametrize(
@@ -93,4 +93,4 @@ def test_a_profile_is_read_either_way_with_and_without_a_head() -> None:
 )
 def test_a_profile_that_is_none_is_refused(text: str, code: str) -> None:
     with raises_code(StockError, code):
-        profile_stock("p", text, 25.4, 0.0)
+        parse_profile("p", text, 25.4, 0.0)

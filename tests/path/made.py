@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from app.path.polyline import Polyline, Stroke
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.modal_state import ModalState
 
-LOCKED = Modal(c_locked=True, tool=1)
+LOCKED = ModalState(c_locked=True, tool=1)
 
 Way = tuple[float, float, float]
 
 
-def turned(n: int, kind: Kind, start: Way, end: Way, **more: object) -> Block:
+def turned(n: int, kind: BlockKind, start: Way, end: Way, **more: object) -> Block:
     """A block with C locked from (x, z, c) to (x, z, c)."""
     given = {"offset_x": 0.0, "offset_z": 0.0, "modal": LOCKED, **more}
     return Block(n, n, kind, "", *start, *end, **given)  # type: ignore[arg-type]

@@ -8,13 +8,13 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
-from app.compose.stored_offsets import NONE, Offsets
-from app.compose.workshop import workshop
-from app.path.part_player import FAST, PartPlayer, PartPlayers, SolidLook
-from app.path.path_aspects import Aspect, views_of
-from app.path.path_picture import Picture
+from app.compose.program_proving import create_loading_steps
+from app.compose.stored_offsets import NO_OFFSETS, Offsets
+from app.path.part_player import FAST_FACTOR, PartPlayer, PartPlayers, SolidRequest
+from app.path.path_aspects import PathAspect, find_views
+from app.path.path_picture import ProgramPicture
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.part.solid_view import SolidView
 from tests.texts import begins
 
@@ -23,13 +23,13 @@ SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG9
 RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
 
 
-def picture(text: str) -> Picture:
+def picture(text: str) -> ProgramPicture:
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 4)}
     machine = load_machine(None)
-    steps = workshop(machine, lambda: Offsets(tools, {}, {}))
-    job = steps.make_job(Source("part.nc", text), False)
-    steps.prove(job, lambda _count: None)
-    return steps.draw(job, lambda _count: None)
+    steps = create_loading_steps(machine, lambda: Offsets(tools, {}, {}))
+    job = steps.make_job(ProgramSource("part.nc", text), False)
+    steps.prove_job(job, lambda _count: None)
+    return steps.draw_path(job, lambda _count: None)
 
 
 class Clock:
@@ -52,124 +52,124 @@ def player(clock: Clock) -> Iterator[PartPlayer]:
 
 
 def settled(player: PartPlayer) -> PartPlayer:
-    player.settle(60.0)
+    player.wait_for_result(60.0)
     return player
 
 
 def line(player: PartPlayer) -> int:
-    shown = settled(player).played
+    shown = settled(player).result
     assert shown is not None
-    return shown.instant.line
+    return shown.part_instant.line
 
 
 def test_a_program_is_first_seen_at_its_end(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
-    assert player.t == player.duration > 5.0
+    player.load_picture(picture(SHAFT))
+    assert player.time_s == player.duration_s > 5.0
     assert line(player) == 13
 
 
 def test_without_a_program_nothing_is_shown_and_no_key_does_anything(player: PartPlayer) -> None:
-    player.play_or_pause()
-    player.step(1)
-    player.to_line(3)
-    player.look()
-    assert (player.played, player.playing, player.t, player.behind) == (None, False, 0.0, False)
+    player.toggle_playback()
+    player.step_blocks(1)
+    player.seek_line(3)
+    player.update()
+    assert (player.result, player.is_playing, player.time_s, player.is_outdated) == (None, False, 0.0, False)
 
 
 def test_a_program_that_is_taken_away_is_gone(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
+    player.load_picture(picture(SHAFT))
     settled(player)
-    player.show(None)
-    player.look()
-    assert player.played is None
+    player.load_picture(None)
+    player.update()
+    assert player.result is None
 
 
 def test_playing_begins_anew_at_the_end_and_goes_with_the_clock(player: PartPlayer, clock: Clock) -> None:
-    player.show(picture(SHAFT))
-    player.play_or_pause()
-    assert player.t == 0.0
+    player.load_picture(picture(SHAFT))
+    player.toggle_playback()
+    assert player.time_s == 0.0
     clock.now += 0.2
-    player.look()
-    assert player.t == pytest.approx(0.2)
-    player.faster()
+    player.update()
+    assert player.time_s == pytest.approx(0.2)
+    player.toggle_fast()
     clock.now += 0.2
-    player.look()
-    assert player.t == pytest.approx(0.2 + 0.2 * FAST)
-    player.play_or_pause()
+    player.update()
+    assert player.time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
+    player.toggle_playback()
     clock.now += 0.2
-    player.look()
-    assert player.t == pytest.approx(0.2 + 0.2 * FAST)
+    player.update()
+    assert player.time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
 
 
 def test_playing_stays_at_the_end(player: PartPlayer, clock: Clock) -> None:
-    player.show(picture(SHAFT))
-    player.seek(player.duration - 0.1)
-    player.play_or_pause()
+    player.load_picture(picture(SHAFT))
+    player.seek_time(player.duration_s - 0.1)
+    player.toggle_playback()
     clock.now += 0.2
-    player.look()
-    assert (player.playing, player.t) == (False, player.duration)
+    player.update()
+    assert (player.is_playing, player.time_s) == (False, player.duration_s)
 
 
 def test_a_screen_that_stood_still_does_not_jump(player: PartPlayer, clock: Clock) -> None:
-    player.show(picture(SHAFT))
-    player.play_or_pause()
+    player.load_picture(picture(SHAFT))
+    player.toggle_playback()
     clock.now += 5.0
-    player.look()
-    assert player.t <= 0.25
+    player.update()
+    assert player.time_s <= 0.25
 
 
 def test_steps_go_from_block_to_block(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
-    player.seek(0.0)
+    player.load_picture(picture(SHAFT))
+    player.seek_time(0.0)
     lines = []
     for _ in range(4):
-        player.step(1)
+        player.step_blocks(1)
         lines.append(line(player))
     assert lines == [4, 5, 6, 7]
-    player.step(-1)
+    player.step_blocks(-1)
     assert line(player) == 6
     for _ in range(9):
-        player.step(-1)
-    assert player.t == 0.0
+        player.step_blocks(-1)
+    assert player.time_s == 0.0
 
 
 def test_to_a_line(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
-    player.to_line(6)
+    player.load_picture(picture(SHAFT))
+    player.seek_line(6)
     assert line(player) == 6
-    shown = player.played
+    shown = player.result
     assert shown is not None
-    assert shown.instant.tool is not None
-    assert shown.instant.tool.at == pytest.approx((-12.7, 10.16))
+    assert shown.part_instant.tool is not None
+    assert shown.part_instant.tool.control_point == pytest.approx((-12.7, 10.16))
 
 
 def test_while_the_run_leads_the_keys_do_nothing(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
-    player.bound = True
-    at = player.t
-    player.play_or_pause()
-    player.step(-1)
-    player.to_line(1)
-    assert (player.t, player.playing) == (at, False)
+    player.load_picture(picture(SHAFT))
+    player.follows_run = True
+    at = player.time_s
+    player.toggle_playback()
+    player.step_blocks(-1)
+    player.seek_line(1)
+    assert (player.time_s, player.is_playing) == (at, False)
 
 
 def test_the_run_is_followed_to_where_the_tool_is(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
-    player.bound = True
-    turning = player._picture.block_of_line(6) if player._picture else 0
-    player.follow(turning, (0.55 * 25.4 / 2, 0.0))
-    shown = settled(player).played
+    player.load_picture(picture(SHAFT))
+    player.follows_run = True
+    turning = player._picture.find_block_for_line(6) if player._picture else 0
+    player.follow_run(turning, (0.55 * 25.4 / 2, 0.0))
+    shown = settled(player).result
     assert shown is not None
-    assert shown.instant.tool is not None
-    assert shown.instant.tool.at == pytest.approx((-0.225 * 25.4, 10.16))
+    assert shown.part_instant.tool is not None
+    assert shown.part_instant.tool.control_point == pytest.approx((-0.225 * 25.4, 10.16))
 
 
 def test_errors_have_their_time(player: PartPlayer) -> None:
     made = picture(RAPID)
-    player.show(made)
+    player.load_picture(made)
     settled(player)
-    (mark,) = player.marks().tolist()
-    assert mark == made.ends[made.block_of_line(11)]
+    (mark,) = player.find_error_times().tolist()
+    assert mark == made.ends[made.find_block_for_line(11)]
 
 
 def test_what_cannot_be_made_is_told(player: PartPlayer, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,58 +177,58 @@ def test_what_cannot_be_made_is_told(player: PartPlayer, monkeypatch: pytest.Mon
         raise ValueError("no such tool")
 
     monkeypatch.setattr("core.proving.part_history.PartHistory.__init__", broken)
-    player.show(picture(SHAFT))
+    player.load_picture(picture(SHAFT))
     settled(player)
-    assert (player.played, player.trouble) == (None, "no such tool")
+    assert (player.result, player.error_text) == (None, "no such tool")
 
 
 def test_a_program_with_errors_is_shown_as_far_as_it_goes(player: PartPlayer) -> None:
-    player.show(picture(SHAFT.replace("X.45Z-.6", "X.45Q7Z-.6")))
+    player.load_picture(picture(SHAFT.replace("X.45Z-.6", "X.45Q7Z-.6")))
     assert line(player) >= 6
 
 
 def test_a_mill_has_no_part() -> None:
     machine = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
-    steps = workshop(machine, lambda: NONE)
-    job = steps.make_job(Source("roof.h", "BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n"), False)
-    steps.prove(job, lambda _count: None)
-    assert steps.draw(job, lambda _count: None).part is None
+    steps = create_loading_steps(machine, lambda: NO_OFFSETS)
+    job = steps.make_job(ProgramSource("roof.h", "BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n"), False)
+    steps.prove_job(job, lambda _count: None)
+    assert steps.draw_path(job, lambda _count: None).part is None
 
 
 def test_players_end_with_the_desk() -> None:
     players = PartPlayers([PartPlayer()])
     players.close()
-    players[0].show(picture(SHAFT))
-    assert not players[0].worker.busy
+    players[0].load_picture(picture(SHAFT))
+    assert not players[0].worker.is_busy
 
 
 def test_of_a_program_that_is_too_long_the_view_says_why(
     player: PartPlayer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("core.proving.part_history.MOST_MOVES", 5)
+    monkeypatch.setattr("core.proving.part_history.MAX_MOVES", 5)
     made = picture(SHAFT)
-    assert views_of(made, part=True)[-1] == (Aspect.SECTION,)
-    assert views_of(made) == [(Aspect.PATH,)]
-    player.show(made)
-    assert begins(player.trouble, "findings.part-too-long", blocks=12, most=5)
-    assert settled(player).played is None
+    assert find_views(made, part=True)[-1] == (PathAspect.SECTION,)
+    assert find_views(made) == [(PathAspect.PATH,)]
+    player.load_picture(made)
+    assert begins(player.error_text, "findings.part-too-long", blocks=12, most=5)
+    assert settled(player).result is None
 
 
 def test_blocks_before_a_line_are_those_of_the_lines_before() -> None:
     made = picture(SHAFT)
     # M03S1500, T1, then one block a line: before line 6 are those of lines 2 to 5.
-    assert made.blocks_before(6) == 4
-    assert made.blocks_before(1) == 0
+    assert made.count_blocks_before(6) == 4
+    assert made.count_blocks_before(1) == 0
 
 
 def test_to_a_block(player: PartPlayer) -> None:
-    player.show(picture(SHAFT))
-    player.to_block(4)
-    player.look()
+    player.load_picture(picture(SHAFT))
+    player.seek_block(4)
+    player.update()
     assert line(player) == 5
-    player.bound = True
-    player.to_block(9)
-    player.look()
+    player.follows_run = True
+    player.seek_block(9)
+    player.update()
     assert line(player) == 5
 
 
@@ -244,9 +244,9 @@ MILLED = HEAD + (
 def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
     player: PartPlayer, program: str, red: bool
 ) -> None:
-    player.show(picture(program))
-    player.look_at(SolidLook(SolidView(scale=5.0, centre=-10.0), 200, 150))
-    shown = settled(player).played
+    player.load_picture(picture(program))
+    player.set_solid_request(SolidRequest(SolidView(pixels_per_mm=5.0, center_z_mm=-10.0), 200, 150))
+    shown = settled(player).result
     assert shown is not None
     assert shown.image is not None
     r, g = ((shown.image >> off) & 255 for off in (16, 8))
@@ -256,8 +256,8 @@ def test_what_a_live_tool_hits_at_a_rapid_is_red_in_space(
 @pytest.mark.parametrize(("name", "metric"), [("part.nc", False), ("part.mpf", True), ("part.h", True)])
 def test_a_picture_without_a_path_has_the_unit_that_its_language_begins_with(name: str, metric: bool) -> None:
     machine = load_machine(None)
-    steps = workshop(machine, lambda: NONE)
-    job = steps.make_job(Source(name, "(NO PROGRAM]\n"), False)
-    steps.prove(job, lambda _count: None)
-    drawn = steps.draw(job, lambda _count: None)
+    steps = create_loading_steps(machine, lambda: NO_OFFSETS)
+    job = steps.make_job(ProgramSource(name, "(NO PROGRAM]\n"), False)
+    steps.prove_job(job, lambda _count: None)
+    drawn = steps.draw_path(job, lambda _count: None)
     assert (drawn.blocks, drawn.metric) == (0, metric)

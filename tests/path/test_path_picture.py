@@ -7,16 +7,18 @@ import math
 import numpy as np
 import pytest
 
-from app.path.path_picture import PictureBuilder, picture_of
-from app.path.polyline import CHORD_ERROR, Stroke, arc_pieces
+from app.path.path_picture import PictureBuilder, build_picture
+from app.path.polyline import MAX_CHORD_ERROR_MM, Stroke, count_arc_chords
 from core.interpreter.shared.actions import SpindleStop
-from core.interpreter.shared.elementary_blocks import Block, Kind, Series, TimedSeries
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries, TimedSeries
+from core.interpreter.shared.modal_state import ModalState
 
-TURNING = Modal(spindle=1, tool=1)
+TURNING = ModalState(spindle=1, tool=1)
 
 
-def move(n: int, kind: Kind, start: tuple[float, float], end: tuple[float, float], **more: object) -> Block:
+def move(
+    n: int, kind: BlockKind, start: tuple[float, float], end: tuple[float, float], **more: object
+) -> Block:
     """A block from (x, z) to (x, z)."""
     given = {"offset_x": 0.0, "offset_z": 0.0, "modal": TURNING, **more}
     return Block(n, n, kind, "", start[0], start[1], 0.0, end[0], end[1], 0.0, **given)  # type: ignore[arg-type]
@@ -24,76 +26,78 @@ def move(n: int, kind: Kind, start: tuple[float, float], end: tuple[float, float
 
 def test_lines_share_their_corners() -> None:
     sketch = PictureBuilder()
-    sketch.add(move(1, Kind.RAPID, (10, 5), (8, 1)), 1.0)
-    sketch.add(move(2, Kind.FEED, (8, 1), (8, -20)), 3.0)
-    picture = sketch.picture()
+    sketch.add_block(move(1, BlockKind.RAPID, (10, 5), (8, 1)), 1.0)
+    sketch.add_block(move(2, BlockKind.FEED, (8, 1), (8, -20)), 3.0)
+    picture = sketch.build_picture()
     assert picture.x.tolist() == [10, 8, 8]
     assert picture.z.tolist() == [5, 1, -20]
     assert picture.stroke.tolist() == [Stroke.JUMP, Stroke.RAPID, Stroke.TURN]
-    assert [picture.points_done(n) for n in (-1, 0, 1, 2, 99)] == [0, 0, 2, 3, 3]
+    assert [picture.count_finished_points(n) for n in (-1, 0, 1, 2, 99)] == [0, 0, 2, 3, 3]
 
 
 def test_bounds_are_of_what_is_cut() -> None:
     sketch = PictureBuilder()
-    sketch.add(move(1, Kind.RAPID, (100, 90), (8, 1)), 1.0)
-    sketch.add(move(2, Kind.FEED, (8, 1), (6, -20)), 3.0)
-    assert sketch.picture().bounds == (-20, 1, 6, 8)
+    sketch.add_block(move(1, BlockKind.RAPID, (100, 90), (8, 1)), 1.0)
+    sketch.add_block(move(2, BlockKind.FEED, (8, 1), (6, -20)), 3.0)
+    assert sketch.build_picture().bounds == (-20, 1, 6, 8)
 
 
 def test_no_blocks_make_an_empty_picture() -> None:
-    picture = PictureBuilder().picture()
+    picture = PictureBuilder().build_picture()
     assert picture.blocks == 0
     assert picture.bounds == (0, 0, 0, 0)
     assert picture.time_left(1, 0.0) == 0.0
 
 
 def test_the_offset_of_the_tool_is_taken_out_and_the_shift_left_in() -> None:
-    modal = Modal(spindle=1, tool_x=-50.0, tool_z=-200.0)
-    block = move(1, Kind.FEED, (5, 0), (5, -3), modal=modal, offset_x=-50.0, offset_z=-230.0)
+    modal = ModalState(spindle=1, tool_x=-50.0, tool_z=-200.0)
+    block = move(1, BlockKind.FEED, (5, 0), (5, -3), modal=modal, offset_x=-50.0, offset_z=-230.0)
     sketch = PictureBuilder()
-    sketch.add(block, 1.0)
-    assert sketch.picture().z.tolist() == [-30, -33]
-    assert sketch.picture().x.tolist() == [5, 5]
+    sketch.add_block(block, 1.0)
+    assert sketch.build_picture().z.tolist() == [-30, -33]
+    assert sketch.build_picture().x.tolist() == [5, 5]
 
 
 def test_another_tool_jumps() -> None:
     sketch = PictureBuilder()
-    sketch.add(move(1, Kind.FEED, (5, 0), (5, -3)), 1.0)
-    sketch.add(move(2, Kind.FEED, (2, 7), (2, 6)), 2.0)
-    assert sketch.picture().stroke.tolist() == [Stroke.JUMP, Stroke.TURN, Stroke.JUMP, Stroke.TURN]
+    sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -3)), 1.0)
+    sketch.add_block(move(2, BlockKind.FEED, (2, 7), (2, 6)), 2.0)
+    assert sketch.build_picture().stroke.tolist() == [Stroke.JUMP, Stroke.TURN, Stroke.JUMP, Stroke.TURN]
 
 
 def test_a_feed_with_the_spindle_standing_is_milled() -> None:
     sketch = PictureBuilder()
-    sketch.add(move(1, Kind.FEED, (5, 0), (5, -3), modal=Modal()), 1.0)
-    assert sketch.picture().stroke[-1] == Stroke.MILL
+    sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -3), modal=ModalState()), 1.0)
+    assert sketch.build_picture().stroke[-1] == Stroke.MILL
 
 
 @pytest.mark.parametrize("clockwise", [True, False])
 def test_an_arc_stays_on_its_circle(clockwise: bool) -> None:
     # quarter of a circle of 10 mm about (x, z) = (0, -10), or three quarters the other way
     sketch = PictureBuilder()
-    sketch.add(move(1, Kind.ARC, (0, 0), (10, -10), cx=0.0, cz=-10.0, clockwise=clockwise), 1.0)
-    picture = sketch.picture()
+    sketch.add_block(move(1, BlockKind.ARC, (0, 0), (10, -10), cx=0.0, cz=-10.0, clockwise=clockwise), 1.0)
+    picture = sketch.build_picture()
     radius = np.hypot(picture.x, picture.z + 10)
     assert radius == pytest.approx(np.full(len(radius), 10.0))
     chords = np.hypot(np.diff(picture.x), np.diff(picture.z))
     sagitta = 10 - np.sqrt(100 - (chords / 2) ** 2)
-    assert sagitta.max() <= CHORD_ERROR * 1.001
+    assert sagitta.max() <= MAX_CHORD_ERROR_MM * 1.001
     turned = np.abs(np.diff(np.unwrap(np.arctan2(picture.x, picture.z + 10)))).sum()
     assert turned == pytest.approx(math.pi / 2 if clockwise else 3 * math.pi / 2)
 
 
 def test_tiny_arcs_are_few_chords() -> None:
-    assert arc_pieces(0.001, math.pi) == 4
-    assert arc_pieces(1000.0, 1e-9) == 1
+    assert count_arc_chords(0.001, math.pi) == 4
+    assert count_arc_chords(1000.0, 1e-9) == 1
 
 
 def test_time_left_counts_within_the_block() -> None:
     sketch = PictureBuilder()
-    sketch.add(move(1, Kind.FEED, (5, 0), (5, -10)), 4.0)
-    sketch.add(Block(2, 2, Kind.ACTION, "", 5, -10, 0, 5, -10, 0, 0, 0, TURNING, action=SpindleStop()), 5.0)
-    picture = sketch.picture()
+    sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -10)), 4.0)
+    sketch.add_block(
+        Block(2, 2, BlockKind.ACTION, "", 5, -10, 0, 5, -10, 0, 0, 0, TURNING, action=SpindleStop()), 5.0
+    )
+    picture = sketch.build_picture()
     assert picture.time_left(1, 10.0) == pytest.approx(5.0)
     assert picture.time_left(1, 2.5) == pytest.approx(2.0)
     assert picture.time_left(2, 0.0) == pytest.approx(1.0)
@@ -107,22 +111,22 @@ def test_the_watch_may_give_up() -> None:
     def watch(count: int) -> None:
         raise EnoughError
 
-    blocks = ((move(n, Kind.FEED, (5, 0), (5, -1)), 0.0, 1.0) for n in range(1, 5000))
+    blocks = ((move(n, BlockKind.FEED, (5, 0), (5, -1)), 0.0, 1.0) for n in range(1, 5000))
     with pytest.raises(EnoughError):
-        picture_of(blocks, watch)
+        build_picture(blocks, watch)
 
 
 def test_series_are_drawn_as_their_blocks_are() -> None:
     """A jump to the start, and each move a point and a block of its own."""
-    moves = [move(n, Kind.FEED, (10 - n, n), (9 - n, n + 1)) for n in range(1, 6)]
+    moves = [move(n, BlockKind.FEED, (10 - n, n), (9 - n, n + 1)) for n in range(1, 6)]
     ends = [1.0, 2.5, 3.0, 4.0, 7.0]
     columns = [np.array([getattr(b, name) for b in moves], dtype=float) for name in ("x0", "z0", "x", "z")]
     numbers = np.arange(1, 6)
     x0, z0, x, z = columns
-    series = Series(moves[0], [""] * 5, numbers, numbers, x0=x0, z0=z0, x=x, z=z)
+    series = StraightMoveSeries(moves[0], [""] * 5, numbers, numbers, x0=x0, z0=z0, x=x, z=z)
     told: list[int] = []
-    rows = picture_of([TimedSeries(series, np.array([0.0, *ends[:-1]]), np.array(ends))], told.append)
-    single = picture_of([(b, 0.0, end) for b, end in zip(moves, ends, strict=True)], told.append)
+    rows = build_picture([TimedSeries(series, np.array([0.0, *ends[:-1]]), np.array(ends))], told.append)
+    single = build_picture([(b, 0.0, end) for b, end in zip(moves, ends, strict=True)], told.append)
     for name in ("z", "x", "stroke", "first", "ends", "line"):
         assert getattr(rows, name).tolist() == getattr(single, name).tolist()
     assert rows.chord == pytest.approx(single.chord)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.path.measuring import Apart, farthest
+from app.path.measuring import LargestDistance, find_largest_distance
 from app.path.polyline import Stroke
 from tests.path.made import polyline
 
@@ -15,25 +15,25 @@ def test_the_farthest_point_that_is_cut() -> None:
         [(9, 9, JUMP), (7, 5, RAPID), (-9, 5.3, TURN), (-9.4, 8.3, TURN)],
         [0, 2, 3, 4],
     )
-    found = farthest(BEFORE, after)
+    found = find_largest_distance(BEFORE, after)
     assert found is not None
     assert abs(found.distance - 0.5) < 1e-12  # .4 and .3; the rapid's 7 mm do not count
     assert found[1:] == (-9.4, 8.3)
 
 
 def test_no_difference_is_told_as_none_at_all() -> None:
-    assert farthest(BEFORE, BEFORE) == Apart(0.0, -9.0, 5.0)
+    assert find_largest_distance(BEFORE, BEFORE) == LargestDistance(0.0, -9.0, 5.0)
 
 
 def test_another_number_of_points_cannot_be_compared() -> None:
-    assert farthest(BEFORE, polyline([(9, 9, JUMP), (0, 5, TURN)], [0, 2])) is None
+    assert find_largest_distance(BEFORE, polyline([(9, 9, JUMP), (0, 5, TURN)], [0, 2])) is None
 
 
 def test_other_strokes_cannot_be_compared() -> None:
     other = polyline([(9, 9, JUMP), (0, 5, TURN), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
-    assert farthest(BEFORE, other) is None
+    assert find_largest_distance(BEFORE, other) is None
 
 
 def test_nothing_is_cut() -> None:
     rapid = polyline([(9, 9, JUMP), (0, 5, RAPID)], [0, 2])
-    assert farthest(rapid, rapid) is None
+    assert find_largest_distance(rapid, rapid) is None

@@ -7,10 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from app.production.cycle_recorder import BETWEEN, COMPLETE, GIVEN_UP, RESTARTED, UNCOUNTED, CycleRecorder
-from core.executor.commands import CycleStart, FeedHold, PartsMade, Renew, Reset, SetSwitch
+from app.production.cycle_recorder import (
+    BETWEEN_CYCLES,
+    COMPLETE,
+    GIVEN_UP,
+    RESTARTED,
+    UNCOUNTED,
+    CycleRecorder,
+)
+from core.executor.commands import ChangeOffsets, CycleStart, FeedHold, Reset, SetPartCount, SetSwitch
 from core.executor.job import Proof
-from core.executor.snapshot import Event, State
+from core.executor.snapshot import LogEvent, MachineState
 from core.store.production import part_cycles
 from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
@@ -40,13 +47,13 @@ class Recorded:
     def cycles(self) -> tuple[CycleRow, ...]:
         self.settle()
         with self.store.read() as connection:
-            return part_cycles.cycles(connection, None, 100)
+            return part_cycles.read_cycles(connection, None, 100)
 
     @property
     def stops(self) -> tuple[StopRow, ...]:
         self.settle()
         with self.store.read() as connection:
-            return part_cycles.stops(connection, None, 100)
+            return part_cycles.read_stops(connection, None, 100)
 
     def outcomes(self) -> list[tuple[int, str]]:
         return [(row.part, row.outcome) for row in self.cycles]
@@ -60,9 +67,9 @@ def recorded(tmp_path: Path) -> Iterator[Recorded]:
 
 
 def test_a_part_is_a_row_with_its_time_and_its_number(recorded: Recorded) -> None:
-    recorded.rig.post(PartsMade(41))
+    recorded.rig.post(SetPartCount(41))
     recorded.rig.start(SHORT)
-    recorded.rig.until(State.IDLE)
+    recorded.rig.until(MachineState.IDLE)
     (row,) = recorded.cycles
     assert (row.program, row.part, row.outcome) == ("PART", 42, COMPLETE)
     assert row.seconds == pytest.approx(recorded.rig.shot.last_cycle, abs=0.021)
@@ -76,7 +83,7 @@ def test_each_part_of_cycle_repeat_is_a_row(recorded: Recorded) -> None:
     rig.until_true(lambda shot: shot.parts == 2)
     assert recorded.cycles[-1].ended is None, "the third is under way, and a kill would find it begun"
     rig.post(SetSwitch("cycle_repeat", False))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert recorded.outcomes() == [(1, COMPLETE), (2, COMPLETE), (3, COMPLETE)]
     assert recorded.cycles[1].seconds == pytest.approx(rig.shot.last_cycle, abs=0.03)
 
@@ -86,10 +93,10 @@ def test_a_hold_is_a_stop_and_not_cycle_time(recorded: Recorded) -> None:
     rig.start(SHORT)
     rig.run(0.1)
     rig.post(FeedHold("the test"))
-    rig.until(State.HOLD)
+    rig.until(MachineState.HOLD)
     rig.run(7.0)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     (row,), (stop,) = recorded.cycles, recorded.stops
     assert (stop.reason, stop.cycle) == ("FEED HOLD", row.key)
     assert stop.seconds == pytest.approx(7.0, abs=0.05)
@@ -99,10 +106,10 @@ def test_a_hold_is_a_stop_and_not_cycle_time(recorded: Recorded) -> None:
 def test_a_program_stop_has_its_name(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.start("G90G94F300\nX.5\nM00\nX0\nM30\n")
-    rig.until(State.PROGRAM_STOP)
+    rig.until(MachineState.PROGRAM_STOP)
     rig.run(3.0)
     rig.post(CycleStart())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     (stop,) = recorded.stops
     assert stop.reason.startswith("PROGRAM STOP")
     assert stop.seconds == pytest.approx(3.0, abs=0.05)
@@ -111,12 +118,12 @@ def test_a_program_stop_has_its_name(recorded: Recorded) -> None:
 def test_time_between_two_starts_is_a_stop_of_its_own(recorded: Recorded) -> None:
     rig = recorded.rig
     rig.start(SHORT)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(20.0)
     rig.start(SHORT)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     (stop,) = recorded.stops
-    assert (stop.reason, stop.cycle) == (BETWEEN, "")
+    assert (stop.reason, stop.cycle) == (BETWEEN_CYCLES, "")
     assert stop.seconds == pytest.approx(20.3, abs=0.1)
 
 
@@ -125,15 +132,15 @@ def test_an_estop_costs_until_the_next_start(recorded: Recorded) -> None:
     rig.start(SHORT)
     rig.run(0.1)
     rig.sim.machine.press_estop()
-    rig.until(State.ESTOP)
+    rig.until(MachineState.ESTOP)
     rig.run(4.0)
     rig.sim.machine.release_estop()
-    rig.until(State.DISABLED)
+    rig.until(MachineState.DISABLED)
     rig.run(2.0)
     rig.ready()
     rig.start(SHORT)
-    rig.until(State.IDLE)
-    assert recorded.outcomes() == [(0, State.ESTOP.value), (1, COMPLETE)]
+    rig.until(MachineState.IDLE)
+    assert recorded.outcomes() == [(0, MachineState.ESTOP.value), (1, COMPLETE)]
     (stop,) = recorded.stops
     assert "E-STOP" in stop.reason
     assert stop.seconds == pytest.approx(7.3, abs=0.3)
@@ -144,10 +151,10 @@ def test_given_up_and_dry_runs_are_no_parts(recorded: Recorded) -> None:
     rig.start(SHORT)
     rig.run(0.1)
     rig.post(Reset())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.post(SetSwitch("no_count", True))
     rig.start(SHORT)
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert recorded.outcomes() == [(0, GIVEN_UP), (0, UNCOUNTED)]
 
 
@@ -155,21 +162,21 @@ def test_a_part_that_was_finished_by_a_restart_says_so(recorded: Recorded) -> No
     """Its time is that of the rest of it."""
     broken_off(recorded.rig)
     restart(recorded.rig, 8)
-    recorded.rig.until(State.IDLE)
-    assert recorded.outcomes() == [(0, State.ESTOP.value), (1, RESTARTED)]
+    recorded.rig.until(MachineState.IDLE)
+    assert recorded.outcomes() == [(0, MachineState.ESTOP.value), (1, RESTARTED)]
 
 
 def test_the_wait_for_a_proof_is_not_a_parts_time(recorded: Recorded) -> None:
     rig = recorded.rig
     job = running(rig)
-    rig.post(Renew())
-    rig.until(State.WAIT)
+    rig.post(ChangeOffsets())
+    rig.until(MachineState.WAIT)
     rig.run(5.0)
     new = corrected(job, -0.0254)
-    rig.post(Renew(new, Proof(new.digest, ())))
-    rig.until(State.RUN)
+    rig.post(ChangeOffsets(new, Proof(new.digest, ())))
+    rig.until(MachineState.RUN)
     rig.post(SetSwitch("cycle_repeat", False))
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert [part for part, _ in recorded.outcomes()] == [1, 2]
     assert recorded.cycles[1].seconds == pytest.approx(rig.shot.last_cycle, abs=0.05)
 
@@ -178,11 +185,11 @@ def test_a_program_that_is_not_repeated_has_begun_no_other_part(recorded: Record
     rig = recorded.rig
     job = running(rig)
     new = corrected(job, 99.0)
-    rig.post(Renew())
-    rig.until(State.WAIT)
+    rig.post(ChangeOffsets())
+    rig.until(MachineState.WAIT)
     rig.run(1.0)
-    rig.post(Renew(new, Proof(new.digest, ("line 4: X leaves its travel",))))
-    rig.until(State.IDLE)
+    rig.post(ChangeOffsets(new, Proof(new.digest, ("line 4: X leaves its travel",))))
+    rig.until(MachineState.IDLE)
     assert recorded.outcomes() == [(1, COMPLETE)]
 
 
@@ -193,15 +200,17 @@ def test_events_without_a_cycle_leave_nothing(recorded: Recorded) -> None:
         ("mdi", "G90"),
         ("restart", "from line 3"),
     ):
-        recorded.recorder.hear(Event(0.0, kind, text), recorded.store.cycles)
+        recorded.recorder.hear(LogEvent(0.0, kind, text), recorded.store.cycles)
     assert recorded.cycles == ()
     assert recorded.stops == ()
 
 
 def test_the_load_that_a_part_tells_is_kept_with_its_cycle(recorded: Recorded) -> None:
     for kind, text in (("load", "peg.nc"), ("start", "peg.nc")):
-        recorded.recorder.hear(Event(0.0, kind, text), recorded.store.cycles)
-    recorded.recorder.hear(Event(9.0, "part", "part 1", part=1, load=31.5), recorded.store.cycles)
-    recorded.recorder.hear(Event(10.0, "start", "peg.nc"), recorded.store.cycles)
-    recorded.recorder.hear(Event(19.0, "part", "part 2", part=2), recorded.store.cycles)
+        recorded.recorder.hear(LogEvent(0.0, kind, text), recorded.store.cycles)
+    recorded.recorder.hear(
+        LogEvent(9.0, "part", "part 1", part_number=1, mean_load_percent=31.5), recorded.store.cycles
+    )
+    recorded.recorder.hear(LogEvent(10.0, "start", "peg.nc"), recorded.store.cycles)
+    recorded.recorder.hear(LogEvent(19.0, "part", "part 2", part_number=2), recorded.store.cycles)
     assert [row.load for row in recorded.cycles] == [31.5, None]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.production.tool_life import LifeState, ToolLife, ToolLifeError, check_life
+from core.production.tool_life import ToolLife, ToolLifeError, ToolLifeState, check_tool_life
 from tests.coded import raises_code
 
 
@@ -15,11 +15,11 @@ def test_by_parts() -> None:
     life = ToolLife(3, limit_parts=50)
     states = [replace(life, parts=parts).state for parts in (0, 44, 45, 49, 50, 51)]
     assert states == [
-        LifeState.GOOD,
-        LifeState.GOOD,
-        LifeState.WARNED,
-        LifeState.WARNED,
-        *[LifeState.SPENT] * 2,
+        ToolLifeState.OK,
+        ToolLifeState.OK,
+        ToolLifeState.WARNING,
+        ToolLifeState.WARNING,
+        *[ToolLifeState.USED_UP] * 2,
     ]
     assert replace(life, parts=49).parts_left == 1
     assert replace(life, parts=60).parts_left == 0
@@ -36,14 +36,14 @@ def test_by_minutes_what_a_part_has_taken_tells_how_many_are_left() -> None:
 def test_the_nearer_limit_counts() -> None:
     life = ToolLife(3, limit_parts=100, limit_seconds=600, parts=50, seconds=570)
     assert life.share == pytest.approx(0.95)
-    assert (life.state, life.words) == (LifeState.WARNED, "9.5 of 10 min")
+    assert (life.state, life.words) == (ToolLifeState.WARNING, "9.5 of 10 min")
     assert life.parts_left == 3  # 30 s at 11.4 s a part
     assert replace(life, parts=99).words == "99 of 100 parts"
 
 
 def test_without_a_limit_it_is_only_counted() -> None:
     life = ToolLife(3, parts=999, seconds=90)
-    assert (life.state, life.share, life.parts_left) == (LifeState.NO_LIMIT, 0.0, None)
+    assert (life.state, life.share, life.parts_left) == (ToolLifeState.NO_LIMIT, 0.0, None)
     assert life.words == "999 parts, 1.5 min"
 
 
@@ -60,6 +60,6 @@ def test_without_a_limit_it_is_only_counted() -> None:
     ],
 )
 def test_a_life_that_nobody_can_mean(changes: dict[str, float], code: str) -> None:
-    check_life(ToolLife(3))
+    check_tool_life(ToolLife(3))
     with raises_code(ToolLifeError, code, "T3"):
-        check_life(replace(ToolLife(3), **changes))  # type: ignore[arg-type]
+        check_tool_life(replace(ToolLife(3), **changes))  # type: ignore[arg-type]

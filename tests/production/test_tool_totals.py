@@ -8,32 +8,32 @@ from pathlib import Path
 import pytest
 
 from app.compose.runs.journal import Journal
-from app.production.parts_book import production
+from app.production.parts_book import read_production
 from app.production.tool_life_watch import ToolLifeWatch
 from app.production.tool_totals import TOTALS, ToolTotals
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 
-CUT = Snapshot(state=State.RUN)
+CUT = Snapshot(state=MachineState.RUN)
 
 
 class Screen:
     """A screen on this data folder that is connected to a control."""
 
     def __init__(self, folder: Path, control: str = "control") -> None:
-        self.journal = Journal(folder, goes_on=True)
+        self.journal = Journal(folder, control_running=True)
         self.control = control
-        book = self.journal.parts_book(Kind.TOOL)
+        book = self.journal.create_parts_book(OffsetKind.TOOL)
         book.access.persistence = self.journal
         assert book.store is not None
-        book.now, book.loads = production(book.store, "", Kind.TOOL, {}), 1
+        book.current, book.load_count = read_production(book.store, "", OffsetKind.TOOL, {}), 1
         self.watch = ToolLifeWatch(book, lambda: self.control)
 
-    def see(self, ends: int, state: State = State.RUN, **seconds: float) -> None:
+    def see(self, ends: int, state: MachineState = MachineState.RUN, **seconds: float) -> None:
         """A frame in which the tools have cut for so many seconds."""
         cutting = {int(name[1:]): value for name, value in seconds.items()}
-        self.watch.see(replace(CUT, state=state, ends=ends, cutting=cutting), lambda _: None)
+        self.watch.observe(replace(CUT, state=state, ends=ends, cutting=cutting), lambda _: None)
 
     def end(self) -> None:
         """As a killed screen: what was posted is written, and nothing more."""
@@ -43,7 +43,7 @@ class Screen:
 def lives(folder: Path) -> dict[int, tuple[int, float]]:
     """Parts and seconds of each tool, as the disk has them."""
     with Store.open(folder, read_only=True) as store:
-        rows = production(store, "", Kind.TOOL, {}).lives
+        rows = read_production(store, "", OffsetKind.TOOL, {}).tool_lives
     return {number: (row.parts, row.seconds) for number, row in rows.items()}
 
 
@@ -55,12 +55,12 @@ def test_a_part_that_was_finished_without_a_screen_is_counted_once(tmp_path: Pat
     first.end()
     assert lives(tmp_path) == {1: (0, 12.0)}
     second = Screen(tmp_path)
-    second.see(1, State.IDLE, T1=20.0, T2=9.0)  # it was finished meanwhile
+    second.see(1, MachineState.IDLE, T1=20.0, T2=9.0)  # it was finished meanwhile
     second.end()
     assert lives(tmp_path) == {1: (1, 20.0), 2: (1, 9.0)}
     third = Screen(tmp_path)
-    third.see(1, State.IDLE, T1=20.0, T2=9.0)
-    third.see(1, State.IDLE, T1=20.0, T2=9.0)
+    third.see(1, MachineState.IDLE, T1=20.0, T2=9.0)
+    third.see(1, MachineState.IDLE, T1=20.0, T2=9.0)
     third.end()
     assert lives(tmp_path) == {1: (1, 20.0), 2: (1, 9.0)}
 
@@ -72,7 +72,7 @@ def test_a_tool_that_has_cut_before_the_screen_was_lost_belongs_to_the_part(tmp_
     first.end()
     second = Screen(tmp_path)
     second.see(0, T1=11.0, T2=12.0)
-    second.see(1, State.IDLE, T1=11.0, T2=12.0)
+    second.see(1, MachineState.IDLE, T1=11.0, T2=12.0)
     second.end()
     assert lives(tmp_path) == {1: (1, 11.0), 2: (1, 12.0)}
 
@@ -85,7 +85,7 @@ def test_the_totals_of_another_control_are_not_those_of_this_one(tmp_path: Path,
     first.end()
     second = Screen(tmp_path, control)
     second.see(0, T1=0.0)
-    second.see(1, State.IDLE, T1=5.0)
+    second.see(1, MachineState.IDLE, T1=5.0)
     second.end()
     assert lives(tmp_path) == {1: (2, 35.0)}
 
@@ -95,8 +95,8 @@ def test_a_control_that_replaces_another_one_begins_at_its_own_totals(tmp_path: 
     screen.see(0)
     screen.see(3, T1=30.0)
     screen.control = "another"
-    screen.see(0, State.DISABLED)
-    screen.see(1, State.IDLE, T1=5.0)
+    screen.see(0, MachineState.DISABLED)
+    screen.see(1, MachineState.IDLE, T1=5.0)
     screen.end()
     assert lives(tmp_path) == {1: (4, 35.0)}
 
@@ -104,7 +104,7 @@ def test_a_control_that_replaces_another_one_begins_at_its_own_totals(tmp_path: 
 def test_a_control_in_the_process_of_the_screen_stores_no_totals(tmp_path: Path) -> None:
     screen = Screen(tmp_path, "")
     screen.see(0)
-    screen.see(1, State.IDLE, T1=5.0)
+    screen.see(1, MachineState.IDLE, T1=5.0)
     assert screen.journal.read_setting(TOTALS) is None
     screen.end()
     assert lives(tmp_path) == {1: (1, 5.0)}

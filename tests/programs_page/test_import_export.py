@@ -9,10 +9,10 @@ import pytest
 
 from app.desk.persistence import Persistence
 from app.programs import import_export
-from app.programs.copy_rename_delete import checked_name, delete_program, rename_program
-from app.programs.import_export import Carried, export_programs, import_programs
-from app.programs.removable_media import UP, FolderChooser, Stick
-from app.programs.whole_file import FileError
+from app.programs.atomic_files import FileOperationError
+from app.programs.import_export import TransferResult, export_programs, import_programs
+from app.programs.program_commands import check_name, delete_program, rename_program
+from app.programs.removable_media import PARENT_NAME, FolderChooser, UsbStick
 from tests.programs_page.test_run_history import Kept
 from tests.texts import pattern
 
@@ -20,8 +20,8 @@ from tests.texts import pattern
 class Keeping(Kept):
     """Versions are kept."""
 
-    def save_version(self, name: str, text: bytes, why: str) -> int:
-        self.told.append((name, text, why))
+    def save_version(self, name: str, text: bytes, reason: str) -> int:
+        self.told.append((name, text, reason))
         return 1
 
 
@@ -38,8 +38,8 @@ def test_nothing_is_written_while_one_stands_there_with_another_text(tmp_path: P
     sources = made(tmp_path / "stick", a="M30\n", b="M02\n")
     own = tmp_path / "own"
     made(own, b="M00\n")
-    carried = import_programs(sources, own, Keeping(), lambda _path: "", replace=False)
-    assert carried == Carried(differing=("b.nc",))
+    carried = import_programs(sources, own, Keeping(), lambda _path: "", may_overwrite=False)
+    assert carried == TransferResult(different_names=("b.nc",))
     assert not (own / "a.nc").exists()
 
 
@@ -48,7 +48,9 @@ def test_the_same_text_is_no_quarrel(tmp_path: Path) -> None:
     own = tmp_path / "own"
     made(own, a="M30\n")
     keep = Keeping()
-    assert import_programs(sources, own, keep, lambda _path: "", replace=False).done == ("a.nc",)
+    assert import_programs(sources, own, keep, lambda _path: "", may_overwrite=False).copied_names == (
+        "a.nc",
+    )
     assert keep.told == []
 
 
@@ -56,8 +58,8 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     sources = made(tmp_path / "stick", a="M30\n")
     own = tmp_path / "own"
     made(own, a="M00\n")
-    with pytest.raises(FileError, match=pattern("programs.not-replaced")):
-        import_programs(sources, own, Persistence(), lambda _path: "", replace=True)
+    with pytest.raises(FileOperationError, match=pattern("programs.not-replaced")):
+        import_programs(sources, own, Persistence(), lambda _path: "", may_overwrite=True)
     assert (own / "a.nc").read_text() == "M00\n"
 
 
@@ -65,16 +67,16 @@ def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
     sources = made(tmp_path / "stick", a="M30\n")
     bad = tmp_path / "stick" / "b.nc"
     bad.write_bytes(b"\x00\x01" * 40)
-    with pytest.raises(FileError, match=pattern("programs.no-program", name="b.nc")):
-        import_programs([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
+    with pytest.raises(FileOperationError, match=pattern("programs.no-program", name="b.nc")):
+        import_programs([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", may_overwrite=False)
     assert not (tmp_path / "own").exists()
 
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_export, "LARGEST", 3)
+    monkeypatch.setattr(import_export, "MAX_FILE_BYTES", 3)
     sources = made(tmp_path / "stick", a="M30\n")
-    with pytest.raises(FileError, match=pattern("programs.too-large")):
-        export_programs(sources, tmp_path, replace=False)
+    with pytest.raises(FileOperationError, match=pattern("programs.too-large")):
+        export_programs(sources, tmp_path, may_overwrite=False)
 
 
 def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,8 +85,8 @@ def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: 
     stick.mkdir()
     real = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".unfinished" in str(path) else real(path))
-    with pytest.raises(FileError, match=pattern("programs.bad-stick")):
-        export_programs(sources, stick, replace=False)
+    with pytest.raises(FileOperationError, match=pattern("programs.bad-stick")):
+        export_programs(sources, stick, may_overwrite=False)
     assert list(stick.iterdir()) == []
 
 
@@ -98,10 +100,10 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(
-        FileError,
+        FileOperationError,
         match=pattern("programs.some-copied", done=0, of=1) + ": " + pattern("programs.full", place="stick"),
     ):
-        export_programs(sources, stick, replace=False)
+        export_programs(sources, stick, may_overwrite=False)
     assert list(stick.iterdir()) == []
 
 
@@ -110,25 +112,25 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
     [("part", "part.nc"), (" part ", "part.nc"), ("part.TXT", "part.TXT"), ("3.5", "3.5.nc")],
 )
 def test_a_name_gets_the_ending_it_lacks(typed: str, name: str) -> None:
-    assert checked_name(typed, Path("like.nc")) == name
+    assert check_name(typed, Path("like.nc")) == name
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "x" * 300])
 def test_a_name_that_will_not_do(typed: str) -> None:
-    with pytest.raises(FileError):
-        checked_name(typed, Path("like.nc"))
+    with pytest.raises(FileOperationError):
+        check_name(typed, Path("like.nc"))
 
 
 def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     assert rename_program(path, "A", Persistence()) == "A.nc"
-    with pytest.raises(FileError, match=pattern("programs.same-name")):
+    with pytest.raises(FileOperationError, match=pattern("programs.same-name")):
         rename_program(path.with_name("A.nc"), "A.nc", Persistence())
 
 
 def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
-    with pytest.raises(FileError, match=pattern("programs.not-deleted")):
+    with pytest.raises(FileOperationError, match=pattern("programs.not-deleted")):
         delete_program(path, Persistence())
     assert path.exists()
 
@@ -138,15 +140,15 @@ def test_the_chooser_goes_in_and_up_to_the_places(tmp_path: Path) -> None:
     made(tmp_path / "stick" / "jobs", a="M30\n")
     (tmp_path / "stick" / "jobs" / ".hidden.nc").write_text("")
     (tmp_path / "stick" / "jobs" / "photo.jpg").write_text("")
-    chooser = FolderChooser(tmp_path, lambda: (Stick("STICK", tmp_path / "stick", 5),))
-    chooser.show_lines(chooser.look())
+    chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", tmp_path / "stick", 5),))
+    chooser.show_lines(chooser.list_lines())
     assert [line.name for line in chooser.lines] == ["STICK", "THIS CONTROL"]
     for name in ("STICK", "jobs"):
-        chooser.go(next(line for line in chooser.lines if line.name == name))
-        chooser.show_lines(chooser.look())
-    assert [line.name for line in chooser.lines] == [UP, "a.nc"]
-    assert [path.name for path in chooser.programs] == ["a.nc"]
+        chooser.open_line(next(line for line in chooser.lines if line.name == name))
+        chooser.show_lines(chooser.list_lines())
+    assert [line.name for line in chooser.lines] == [PARENT_NAME, "a.nc"]
+    assert [path.name for path in chooser.program_paths] == ["a.nc"]
     for _ in range(2):
-        chooser.go(chooser.lines[0])
-        chooser.show_lines(chooser.look())
-    assert chooser.at is None
+        chooser.open_line(chooser.lines[0])
+        chooser.show_lines(chooser.list_lines())
+    assert chooser.current_folder is None

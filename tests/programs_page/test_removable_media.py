@@ -8,16 +8,22 @@ from pathlib import Path
 
 import pytest
 
+from app.programs.atomic_files import FileOperationError
 from app.programs.import_export import export_programs
-from app.programs.removable_media import FolderChooser, Medium, Stick, sticks, why_not
-from app.programs.whole_file import FileError
+from app.programs.removable_media import (
+    FolderChooser,
+    TargetMedium,
+    UsbStick,
+    describe_media_error,
+    list_sticks,
+)
 from tests.texts import pattern
 from tests.texts import text as wording
 
 LINE = "{n} 28 {device} / {path} {options} shared:1 - vfat /dev/x {super}\n"
 
 
-def listed(tmp_path: Path, *rows: tuple[str, str, str, str]) -> tuple[Stick, ...]:
+def listed(tmp_path: Path, *rows: tuple[str, str, str, str]) -> tuple[UsbStick, ...]:
     """What is found where the kernel lists these: device, path, options, those of the file system."""
     mounts, blocks = tmp_path / "mountinfo", tmp_path / "block"
     text = "".join(
@@ -32,7 +38,7 @@ def listed(tmp_path: Path, *rows: tuple[str, str, str, str]) -> tuple[Stick, ...
         blocks.mkdir(exist_ok=True)
         if not (blocks / device).exists():
             (blocks / device).symlink_to(disk / "part")
-    return sticks((Path("/media"), Path("/run/media")), lambda _path: True, mounts, blocks)
+    return list_sticks((Path("/media"), Path("/run/media")), lambda _path: True, mounts, blocks)
 
 
 def test_what_is_mounted_under_media_or_can_be_taken_out_is_a_stick(tmp_path: Path) -> None:
@@ -54,12 +60,12 @@ def test_what_is_mounted_under_media_or_can_be_taken_out_is_a_stick(tmp_path: Pa
 @pytest.mark.parametrize(("options", "of_system"), [("ro,nosuid", "rw"), ("rw", "ro")])
 def test_one_that_takes_nothing_is_told_so(tmp_path: Path, options: str, of_system: str) -> None:
     (stick,) = listed(tmp_path, ("8:17", "/media/S", options, of_system))
-    assert stick.locked
+    assert stick.is_read_only
 
 
 def test_lines_that_are_none_are_left_out(tmp_path: Path) -> None:
     (tmp_path / "mountinfo").write_text("nonsense\n1 2 3\n")
-    assert sticks((Path("/media"),), lambda _path: True, tmp_path / "mountinfo", tmp_path) == ()
+    assert list_sticks((Path("/media"),), lambda _path: True, tmp_path / "mountinfo", tmp_path) == ()
 
 
 @pytest.mark.parametrize(
@@ -73,7 +79,7 @@ def test_lines_that_are_none_are_left_out(tmp_path: Path) -> None:
     ],
 )
 def test_the_cause_is_told(number: int, words: str) -> None:
-    assert why_not(OSError(number, "Permission denied"), Path("/media/STICK")).startswith(words)
+    assert describe_media_error(OSError(number, "Permission denied"), Path("/media/STICK")).startswith(words)
 
 
 def made(folder: Path, *names: str) -> list[Path]:
@@ -86,9 +92,11 @@ def made(folder: Path, *names: str) -> list[Path]:
 def test_a_folder_that_is_left_of_a_pulled_stick_takes_nothing(tmp_path: Path) -> None:
     sources, place = made(tmp_path / "own", "a.nc"), tmp_path / "STICK"
     place.mkdir()
-    there = Medium.of(place)
-    with pytest.raises(FileError, match=pattern("programs.pulled-out")):
-        export_programs(sources, place, replace=False, medium=replace(there, device=there.device + 1))
+    there = TargetMedium.from_folder(place)
+    with pytest.raises(FileOperationError, match=pattern("programs.pulled-out")):
+        export_programs(
+            sources, place, may_overwrite=False, medium=replace(there, device_number=there.device_number + 1)
+        )
     assert list(place.iterdir()) == []
 
 
@@ -101,12 +109,12 @@ def test_pulled_out_between_two_programs(tmp_path: Path) -> None:
             place.rename(tmp_path / "elsewhere")
 
     with pytest.raises(
-        FileError,
+        FileOperationError,
         match=pattern("programs.some-copied", done=1, of=2)
         + ": "
         + pattern("programs.pulled-out", place="STICK"),
     ):
-        export_programs(sources, place, replace=False, told=told)
+        export_programs(sources, place, may_overwrite=False, report_progress=told)
     assert [path.name for path in (tmp_path / "elsewhere").iterdir()] == ["a.nc"]
     assert all(path.exists() for path in sources)
 
@@ -117,19 +125,21 @@ def test_what_does_not_fit_is_told_before_anything_is_written(
     sources, place = made(tmp_path / "own", "a.nc", "b.nc"), tmp_path / "STICK"
     place.mkdir()
     monkeypatch.setattr("app.programs.removable_media._free", lambda _path: 7)
-    with pytest.raises(FileError, match=pattern("programs.no-room", place="STICK", size="8 B", free="7 B")):
-        export_programs(sources, place, replace=False)
+    with pytest.raises(
+        FileOperationError, match=pattern("programs.no-room", place="STICK", size="8 B", free="7 B")
+    ):
+        export_programs(sources, place, may_overwrite=False)
     assert list(place.iterdir()) == []
 
 
 def test_the_chooser_says_when_the_stick_has_gone(tmp_path: Path) -> None:
     place = tmp_path / "STICK"
     place.mkdir()
-    chooser = FolderChooser(tmp_path, lambda: (Stick("STICK", place, 5, locked=True),))
-    chooser.show_lines(chooser.look())
-    assert chooser.lines[0].locked
-    chooser.go(chooser.lines[0])
-    chooser.look()
+    chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", place, 5, is_read_only=True),))
+    chooser.show_lines(chooser.list_lines())
+    assert chooser.lines[0].is_read_only
+    chooser.open_line(chooser.lines[0])
+    chooser.list_lines()
     place.rmdir()
-    with pytest.raises(FileError, match=pattern("programs.pulled-out")):
-        chooser.look()
+    with pytest.raises(FileOperationError, match=pattern("programs.pulled-out")):
+        chooser.list_lines()

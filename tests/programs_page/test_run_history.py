@@ -7,21 +7,21 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.persistence import NoRunRecords, Persistence
-from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.persistence import NullRunRecords, Persistence
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from app.programs.run_history import RunHistory
 from core.executor.job import Proof
-from core.executor.snapshot import Alarm, Snapshot, State
-from core.language.source import Source
+from core.executor.snapshot import Alarm, MachineState, Snapshot
+from core.language.source import ProgramSource
 from core.store.store_errors import StoreError
 
-READY = Snapshot(state=State.IDLE, program="/programs/pin.nc")
-RUNNING = replace(READY, state=State.RUN, block=3)
-NO_PROGRAM = Loaded()
+READY = Snapshot(state=MachineState.IDLE, program="/programs/pin.nc")
+RUNNING = replace(READY, state=MachineState.RUN, block=3)
+NO_PROGRAM = LoadedProgram()
 
 
 @dataclass(frozen=True)
-class WrittenDown(NoRunRecords):
+class WrittenDown(NullRunRecords):
     """Writes down what is recorded."""
 
     told: list[tuple[object, ...]] = field(default_factory=list)
@@ -46,7 +46,7 @@ class Kept(Persistence):
     records: WrittenDown = field(default_factory=WrittenDown)
 
     @property
-    def runs(self) -> NoRunRecords:
+    def runs(self) -> NullRunRecords:
         return self.records
 
     @property
@@ -58,12 +58,12 @@ def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
     keep = Kept()
     record = RunHistory(keep)
     for snapshot in snapshots:
-        record.see(snapshot, NO_PROGRAM)
+        record.observe(snapshot, NO_PROGRAM)
     return keep.told
 
 
 def test_a_whole_cycle() -> None:
-    done = replace(READY, parts=1, timed=1, last_cycle=12.5)
+    done = replace(READY, parts=1, timed_cycle_count=1, last_cycle=12.5)
     assert told(READY, RUNNING, RUNNING, done, done) == [
         ("started", "pin.nc"),
         ("cycle", "pin.nc", 12.5),
@@ -74,7 +74,7 @@ def test_a_whole_cycle() -> None:
 @pytest.mark.parametrize("before", [0.0, 12.5])
 def test_a_part_that_a_restart_has_finished_has_no_cycle_time(before: float) -> None:
     """Behind a power cut it was kept as 0 s, the best of all for ever; else as that of the part before."""
-    ready, running = (replace(each, timed=4, last_cycle=before) for each in (READY, RUNNING))
+    ready, running = (replace(each, timed_cycle_count=4, last_cycle=before) for each in (READY, RUNNING))
     assert told(ready, running, replace(ready, parts=1)) == [
         ("started", "pin.nc"),
         ("ended", "pin.nc", "COMPLETE"),
@@ -82,7 +82,7 @@ def test_a_part_that_a_restart_has_finished_has_no_cycle_time(before: float) -> 
 
 
 def test_cycle_repeat_is_one_run_after_the_other() -> None:
-    again = replace(RUNNING, parts=1, timed=1, last_cycle=12.5)
+    again = replace(RUNNING, parts=1, timed_cycle_count=1, last_cycle=12.5)
     assert told(READY, RUNNING, again, again) == [
         ("started", "pin.nc"),
         ("cycle", "pin.nc", 12.5),
@@ -95,12 +95,15 @@ def test_cycle_repeat_is_one_run_after_the_other() -> None:
     ("last", "outcome"),
     [
         (READY, "GIVEN UP"),
-        (replace(READY, state=State.ESTOP), "E-STOP"),
-        (replace(READY, state=State.FAULT, alarms=(Alarm(102, "following", "", "", ""),)), "ALARM 102"),
+        (replace(READY, state=MachineState.ESTOP), "E-STOP"),
+        (
+            replace(READY, state=MachineState.FAULT, alarms=(Alarm(102, "following", "", "", ""),)),
+            "ALARM 102",
+        ),
     ],
 )
 def test_a_run_that_does_not_end_well(last: Snapshot, outcome: str) -> None:
-    held = replace(RUNNING, state=State.HOLD)
+    held = replace(RUNNING, state=MachineState.HOLD)
     assert told(READY, RUNNING, held, last)[-1] == ("ended", "pin.nc", outcome)
 
 
@@ -109,7 +112,7 @@ def test_parts_made_before_the_screen_looked_are_nobodys() -> None:
 
 
 def test_jogging_is_no_run() -> None:
-    assert told(READY, replace(READY, state=State.JOG), READY) == []
+    assert told(READY, replace(READY, state=MachineState.JOG), READY) == []
 
 
 def test_a_line_of_mdi_is_no_run_of_the_program() -> None:
@@ -122,11 +125,15 @@ def test_a_line_of_mdi_is_no_run_of_the_program() -> None:
 def test_a_proof_is_kept_once() -> None:
     keep = Kept()
     record = RunHistory(keep)
-    proof = Proof(digest="x", errors=(), blocks=3, cycle_time=9.5, tools=())
-    loaded = Loaded(Phase.READY, Path("pin.nc"), source=Source("pin.nc", "M30\n"), proof=proof)
+    proof = Proof(digest="x", errors=(), block_count=3, cycle_time_s=9.5, tool_numbers=())
+    loaded = LoadedProgram(
+        LoadingPhase.READY, Path("pin.nc"), source=ProgramSource("pin.nc", "M30\n"), proof=proof
+    )
     for _ in range(3):
-        record.see(READY, loaded)
-    record.see(READY, Loaded(Phase.UNREADABLE, Path("pin.nc"), trouble="gone"))  # has no text to belong to
+        record.observe(READY, loaded)
+    record.observe(
+        READY, LoadedProgram(LoadingPhase.UNREADABLE, Path("pin.nc"), error_text="gone")
+    )  # has no text to belong to
     assert keep.told == [("proved", "pin.nc", "PROVED", 9.5, "M30\n")]
 
 
@@ -137,8 +144,8 @@ def test_a_store_that_fails_stops_nobody() -> None:
 
     record = RunHistory(Kept(records=Broken()))
     for snapshot in (READY, RUNNING, READY):
-        record.see(snapshot, NO_PROGRAM)
-    assert record.running == ""
+        record.observe(snapshot, NO_PROGRAM)
+    assert record.running_program == ""
 
 
 def test_a_run_that_counts_as_no_part_has_no_cycle_time() -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import MAX_FINDINGS, prove
 
 MACHINE = load_machine(None)
@@ -17,8 +17,8 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
 def beyond(count: int) -> list[int]:
     """The lines that are refused when so many moves, from line 4 on, go beyond Z-6, where the travel ends."""
     moves = [f"Z-{7 + k / 1000:.3f}" for k in range(count)]
-    setup = setup_for(MACHINE, tools={1: ToolOffset()}, secondary={})
-    report = prove(Source("A", "\n".join((*HEAD, *moves, "Z.1", "M30", ""))), setup, MACHINE)
+    setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    report = prove(ProgramSource("A", "\n".join((*HEAD, *moves, "Z.1", "M30", ""))), setup, MACHINE)
     return [each.line for each in report.errors if each.code == "soft-limit"]
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from types import ModuleType
 
 from core.proving.checks import cut_checks, edge_checks, part_findings, thread_checks
-from core.proving.checks.part_checks import CHECKS, PROGRAM_CHECKS
-from core.proving.checks_page import main, page
+from core.proving.checks.part_checks import PART_CHECKS, PROGRAM_CHECKS
+from core.proving.checks_page import main, render_page
 
 MODULES = (part_findings, cut_checks, cut_checks, edge_checks, thread_checks)
 ROOT = Path(__file__).parents[2]
@@ -17,13 +17,13 @@ ROOT = Path(__file__).parents[2]
 
 def test_the_page_is_that_of_the_table(tmp_path: Path) -> None:
     """python -m core.proving.checks_page docs/checks.md"""
-    assert (ROOT / "docs/checks.md").read_text(encoding="utf-8") == page()
+    assert (ROOT / "docs/checks.md").read_text(encoding="utf-8") == render_page()
     assert main([str(tmp_path / "checks.md")]) == 0
-    assert (tmp_path / "checks.md").read_text(encoding="utf-8") == page()
+    assert (tmp_path / "checks.md").read_text(encoding="utf-8") == render_page()
 
 
 def test_what_is_found_has_an_entry_and_every_entry_is_found() -> None:
-    assert {name for module in MODULES for name in _named(module)} == set(CHECKS)
+    assert {name for module in MODULES for name in _named(module)} == set(PART_CHECKS)
 
 
 def _named(module: ModuleType) -> Iterator[str]:
@@ -44,9 +44,9 @@ PROMISED = (
 
 
 def test_every_check_that_is_promised_is_on_the_page() -> None:
-    assert [name for name in PROMISED.split() if f"**{name}** (" not in page()] == []
+    assert [name for name in PROMISED.split() if f"**{name}** (" not in render_page()] == []
 
 
 def test_every_check_has_a_program_that_triggers_it() -> None:
     tried = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests/proving").glob("test_*.py"))
-    assert [name for name in (*CHECKS, *PROGRAM_CHECKS) if tried.count(f'"{name}') < 1] == []
+    assert [name for name in (*PART_CHECKS, *PROGRAM_CHECKS) if tried.count(f'"{name}') < 1] == []

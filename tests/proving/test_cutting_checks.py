@@ -10,11 +10,11 @@ import pytest
 
 from app.cli.main import main
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
-from core.proving.proof_report import Report
+from core.proving.proof_report import ProofReport
 from core.proving.prove_program import prove
 from tests.worked import FOLDER
 
@@ -22,15 +22,19 @@ HEAD = ("G90G94F300", "M03S1000")
 MILL = ("G90G94F300", "T1", "X-.5Z.1", "G94F20", "M19S60", "G04F3")
 
 
-def proved(*lines: str, machine: Machine | None = None) -> Report:
+def proved(*lines: str, machine: Machine | None = None) -> ProofReport:
     machine = machine or load_machine(None)
     tools = {n: ToolOffset() for n in range(1, 9)}
-    return prove(Source("A", "\n".join((*lines, ""))), setup_for(machine, tools=tools, secondary={}), machine)
+    return prove(
+        ProgramSource("A", "\n".join((*lines, ""))),
+        create_setup(machine, tool_offsets=tools, secondary_offsets={}),
+        machine,
+    )
 
 
-def checks(report: Report) -> list[tuple[str, str, int]]:
+def checks(report: ProofReport) -> list[tuple[str, str, int]]:
     """Check, weight and line of each finding of a check."""
-    return [(d.check, str(d.severity), d.line) for d in report.diagnostics if d.check]
+    return [(d.check_name, str(d.severity), d.line) for d in report.diagnostics if d.check_name]
 
 
 CASES: list[tuple[tuple[str, ...], list[tuple[str, str, int]]]] = [
@@ -101,8 +105,8 @@ def test_a_check_finds_what_is_wrong_and_nothing_else(
 
 
 def test_the_first_block_of_it_and_a_remedy_are_told() -> None:
-    (found,) = [d for d in proved(*HEAD, "X.5Z.1", "G95F.004Z-.2", "M30").diagnostics if d.check]
-    assert (found.n, found.line) == (3, 4)  # M03, X.5Z.1, Z-.2
+    (found,) = [d for d in proved(*HEAD, "X.5Z.1", "G95F.004Z-.2", "M30").diagnostics if d.check_name]
+    assert (found.block_number, found.line) == (3, 4)  # M03, X.5Z.1, Z-.2
     assert "Write T" in found.hint
 
 
@@ -125,7 +129,7 @@ def test_the_worked_examples_have_no_error_by_a_check() -> None:
         pytest.skip(f"the worked examples are not here: {FOLDER}")
     for path in sorted(FOLDER.glob("*.nc")):
         report = proved(*path.read_text("utf-8").splitlines())
-        assert [d.in_one_line(path.name) for d in report.errors if d.check] == []
+        assert [d.format_one_line(path.name) for d in report.errors if d.check_name] == []
 
 
 def test_json_names_check_block_and_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

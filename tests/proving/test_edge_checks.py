@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
-from core.part.stock import Clamping, Stock, bar, tube
+from core.language.source import ProgramSource
+from core.part.stock import Clamping, Stock, make_bar, make_tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from core.proving.proof_report import PartReport
 from tests.proving.test_part_proof import WAYS, text
 from tests.texts import text as text_of
@@ -27,8 +27,8 @@ REAR_TOOL = ToolShape(ToolKind.GROOVING, tip=2, width=2.0, stick_out=30.0, rear=
 V = ToolShape(ToolKind.THREADING, tip=8, point=60.0)
 MILL = ToolShape(ToolKind.END_MILL, tip=7, diameter=6.35)
 SHAPES = {9: MILL, 7: REAR_TOOL, 8: V, 1: RIGHT, 2: BLADE, 3: DRILL, 4: BORER, 5: LEFT, 6: LEFT_DRILL}
-ROD = bar(25.4, 0.0, -60.0)
-PIPE = tube(38.1, 20.0, 0.0, -60.0)
+ROD = make_bar(25.4, 0.0, -60.0)
+PIPE = make_tube(38.1, 20.0, 0.0, -60.0)
 
 
 def part_of(
@@ -40,15 +40,15 @@ def part_of(
 ) -> PartReport:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
-    setup = setup_for(machine, tools=tools, secondary={})
-    setting = PartSetting(stock, shapes, clamping=clamping, gang=gang or {})
-    _, part = prove_with_part(Source("P", program), setup, machine, setting)
+    setup = create_setup(machine, tool_offsets=tools, secondary_offsets={})
+    setting = PartSettings(stock, shapes, clamping=clamping, gang=gang or {})
+    _, part = prove_with_part(ProgramSource("P", program), setup, machine, setting)
     assert part is not None
     return part
 
 
 def found(program: str, stock: Stock = ROD) -> list[tuple[str, int]]:
-    return [(each.check, each.line) for each in part_of(program, stock).findings]
+    return [(each.check_name, each.line) for each in part_of(program, stock).findings]
 
 
 SLOPE = "T1\nX[.6]Z[-.3]\nG95F[.004]X[.5]\nX[.4]Z[{z}]\nZ[-.7]\nX[.6]\nG94F[300]Z[1]"
@@ -65,7 +65,7 @@ GROOVE = "T2\nX[.6]Z[{z}]\nG95F[.004]X[.4]\nG94F[300]X[.6]"
 THREAD = "M05\nM03S600\nT8\nX[.24]Z[.2]\nG34Z[{z}]I[.01]K[.05]\nX[.4]"
 FACE_MILL = "T9\nX[-.3]Z[.1]\nM05\nM19S60\nG04F3\nM27\nG94F[20]\nZ[{z}]\n"
 FACE_MILL += "(~PLXC)\n(X[.2]Y0)\n(X[-.2]Y0)\n(END)\nM28\nM05"
-LONG = bar(25.4, 0.0, -80.0)
+LONG = make_bar(25.4, 0.0, -80.0)
 PASS = "T1\nX[.6]Z[.05]\nX[{r}]\nG95F[{f}]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
 BLADE_TURNS = "T2\nX[.6]Z[-.3]\nG95F[.002]X[{r}]\nZ[-.5]\nX[.6]"
 FACE = "T1\nX[.6]Z[.1]\nZ[{z}]\nG95F[.004]X[-.02]\nG94F[300]Z[1]"
@@ -142,7 +142,7 @@ CASES = {
         "T1\nX[.6]Z[.05]\nX[.51]\nZ[-.5]\nX[.6]\nZ[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]",
         "T1\nX[.6]Z[.05]\nX[.51]\nZ[-.5]\nM00\nX[.6]\nZ[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]", ROD, 6,
     ),
-    "unmade-cut, a thread": (THREAD.format(z=".5"), THREAD.format(z="-.5"), bar(12.7, 0.0, -60.0), 7),
+    "unmade-cut, a thread": (THREAD.format(z=".5"), THREAD.format(z="-.5"), make_bar(12.7, 0.0, -60.0), 7),
     # the face itself is where a tool is set to, and may be gone along
     "unmade-cut of a live tool": (FACE_MILL.format(z=".005"), FACE_MILL.format(z="0"), ROD, 10),
     "unmade-cut, out of the part": (BACKWARDS.format(z=".4"), BACKWARDS.format(z="-.3"), ROD, 10),
@@ -182,11 +182,11 @@ def test_faces_and_insert_backs_that_meet_nothing_are_no_wrong_side() -> None:
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 def test_a_long_thin_bar_turns_slower_than_it_whirls(metric: bool, diameter: bool) -> None:
     """f = 1.8751²/2π · 3500 m/s · (r/2) / L²: 6 mm thick, 200 mm long, that is 73.3 a second, 4397 rpm."""
-    rod, long = bar(6.0, 0.0, -220.0), Clamping(100.0, 200.0, 10.0, 60.0)
+    rod, long = make_bar(6.0, 0.0, -220.0), Clamping(100.0, 200.0, 10.0, 60.0)
     turned = "M05\nM03S{s}\nT1\nX[.2]Z[.1]\nX[.1]\nG95F[.004]Z[-.2]\nX[.2]\nG94F[300]Z[1]"
     wrong = text(turned.format(s=2250), metric=metric, diameter=diameter)
     fast = part_of(wrong, rod, clamping=long)
-    assert [each.check for each in fast.findings] == ["stock-whips"] * len(fast.findings)
+    assert [each.check_name for each in fast.findings] == ["stock-whips"] * len(fast.findings)
     assert fast.findings
     sound = text(turned.format(s=2150), metric=metric, diameter=diameter)
     assert part_of(sound, rod, clamping=long).findings == ()
@@ -195,9 +195,9 @@ def test_a_long_thin_bar_turns_slower_than_it_whirls(metric: bool, diameter: boo
 def test_what_could_not_be_checked_is_said() -> None:
     turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\n"
     plain = turned + "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[1]"
-    said = part_of(text(plain), shapes={3: ToolShape(ToolKind.DRILL, diameter=6.0)}).unchecked
+    said = part_of(text(plain), shapes={3: ToolShape(ToolKind.DRILL, diameter=6.0)}).unchecked_data
     assert said[0] == text_of("findings.shape-unknown", tools="T1")
     assert said[1] == text_of("findings.depth-unknown", tools="T3")
     assert len(said) == 4  # chuck, and its speed
     held = Clamping(100.0, 40.0, 10.0, 60.0, 5000.0)
-    assert part_of(text(plain), clamping=held).unchecked == ()
+    assert part_of(text(plain), clamping=held).unchecked_data == ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.proving.part_history import FinishedPart, finished_part
+from core.proving.part_history import FinishedPart, make_finished_part
 from tests.path.test_part_player import HEAD, SHAFT, picture
 
 INCH = 25.4
@@ -18,14 +18,14 @@ PINS = (
 def made(text: str) -> FinishedPart | None:
     moves = picture(text).part
     assert moves is not None
-    return finished_part(moves, lambda _count: None)
+    return make_finished_part(moves, lambda _count: None)
 
 
 def radius_at(part: FinishedPart, z: float) -> float:
     """The outermost metal at this Z (inches), in inches."""
     solid = part.solid
-    column = int(np.searchsorted(solid.edges, z * INCH)) - 1
-    return float(solid.high[:, column].max()) / INCH
+    column = int(np.searchsorted(solid.column_edges, z * INCH)) - 1
+    return float(solid.outer_radii[:, column].max()) / INCH
 
 
 def test_a_turned_shaft_at_its_end() -> None:
@@ -62,4 +62,4 @@ def test_it_is_given_up_when_nobody_wants_it() -> None:
     moves = picture(SHAFT).part
     assert moves is not None
     with pytest.raises(NoLongerError):
-        finished_part(moves, watch)
+        make_finished_part(moves, watch)

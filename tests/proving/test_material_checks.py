@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import pytest
 
-from core.part.stock import Stock, bar, tube
+from core.part.stock import Stock, make_bar, make_tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from tests.proving.test_edge_checks import part_of
 from tests.proving.test_part_proof import text
 
 INCH = 25.4
-ROD, PIPE = bar(25.4, 0.0, -76.2), tube(25.4, 12.0, 0.0, -76.2)
+ROD, PIPE = make_bar(25.4, 0.0, -76.2), make_tube(25.4, 12.0, 0.0, -76.2)
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.8, insert="CNMG120408")
 LEFT = ToolShape(ToolKind.TURNING, Hand.LEFT, tip=4, nose_radius=0.8, insert="CNMG120408")
 REAR = ToolShape(ToolKind.TURNING, tip=2, nose_radius=0.8, insert="CNMG120408", rear=True)
@@ -28,7 +28,7 @@ SHAPES = {1: TURNING, 2: FLAT, 3: BLADE, 4: LEFT, 5: REAR, 6: TAP, 7: POINTED, 8
 
 def found(program: str, stock: Stock = ROD, shapes: dict[int, ToolShape] = SHAPES) -> list[tuple[str, str]]:
     """Return the check and the severity of each finding."""
-    return [(each.check, str(each.severity)) for each in part_of(program, stock, shapes).findings]
+    return [(each.check_name, str(each.severity)) for each in part_of(program, stock, shapes).findings]
 
 
 def codes(program: str, stock: Stock = ROD) -> set[str]:
@@ -41,14 +41,14 @@ HOLE = "T{t}\nX[0]Z[.1]\nG95F[.004]Z[{z}]\nG94F[300]Z[1]"
 def test_a_flat_drill_leaves_a_cylinder() -> None:
     """.9 in deep: pi/4 x .25² x .9 = .04418 in³."""
     part = part_of(text(HOLE.format(t=2, z="-.9")), ROD, SHAPES)
-    assert part.removed / INCH**3 == pytest.approx(math.pi / 4 * 0.25**2 * 0.9, rel=2e-3)
+    assert part.removed_volume_mm3 / INCH**3 == pytest.approx(math.pi / 4 * 0.25**2 * 0.9, rel=2e-3)
 
 
 def test_a_pointed_drill_leaves_a_cone_at_the_bottom() -> None:
     """The cone of 118° is .125 / tan 59° = .0751 in high, and lacks two thirds of its cylinder."""
     part = part_of(text(HOLE.format(t=7, z="-.9")), ROD, SHAPES)
     solid = math.pi / 4 * 0.25**2 * (0.9 - 2 / 3 * 0.125 / math.tan(math.radians(59)))
-    assert part.removed / INCH**3 == pytest.approx(solid, rel=2e-3)
+    assert part.removed_volume_mm3 / INCH**3 == pytest.approx(solid, rel=2e-3)
 
 
 def test_a_drill_beside_the_bar_meets_nothing() -> None:
@@ -96,12 +96,12 @@ TURNED = "T{t}\nX[.6]Z[.05]\nX[.45]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[1]"
 
 @pytest.mark.parametrize(("t", "z", "expected"), [(1, "-2.9", False), (1, "-3.05", False), (1, "-5.5", True)])
 def test_a_feed_beyond_the_end_of_the_stock_is_an_error(t: int, z: str, expected: bool) -> None:
-    stock = Stock("bar:1:3", ROD.outside)
+    stock = Stock("bar:1:3", ROD.outside_profile)
     assert (("past-stock", "error") in found(text(TURNED.format(t=t, z=z)), stock)) is expected
 
 
 def test_a_drill_may_come_out_of_the_end_of_the_stock() -> None:
-    stock = Stock("bar:1:3", ROD.outside)
+    stock = Stock("bar:1:3", ROD.outside_profile)
     assert "past-stock" not in codes(text(HOLE.format(t=7, z="-3.2")), stock)
     assert "past-stock" in codes(text(HOLE.format(t=7, z="-3.5")), stock)
 
@@ -133,7 +133,7 @@ SOUND = "T{t}\nX[.3]Z[.2]\nM03S600\nX[.237]\nG33X[.212]Z[-.5]I[.012]K[.05]P\nX[.
 
 def test_the_return_of_a_thread_pass_is_examined_but_for_the_way_out_of_the_groove() -> None:
     """With start and end swapped each pass retracts towards the axis, and returns through the part."""
-    stock = bar(12.55, 0.0, -60.0)
+    stock = make_bar(12.55, 0.0, -60.0)
     v = {1: ToolShape(ToolKind.THREADING, tip=8, point=60.0)}
     assert ("through-part", "error") in found(text(SWAPPED.format(t=1)), stock, v)
     assert found(text(SOUND.format(t=1)), stock, v) == []
@@ -169,10 +169,12 @@ def test_what_rests_on_something_assumed_is_a_warning() -> None:
 
 def test_two_tools_with_one_offset_are_one_note_and_not_neighbours() -> None:
     part = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT})
-    assert {each.check for each in part.findings} == set()
+    assert {each.check_name for each in part.findings} == set()
     gang = {1: (0.0, -25.4), 4: (0.0, -25.4)}
     both = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT}, gang=gang)
-    assert [(each.check, str(each.severity)) for each in both.findings] == [("tools-in-one-place", "note")]
+    assert [(each.check_name, str(each.severity)) for each in both.findings] == [
+        ("tools-in-one-place", "note")
+    ]
 
 
 EDGE = "T1\nX[.6]Z[0]\nG95F[.004]X[-.02]\nG94F[300]Z[.05]\nX[{x}]\nG95F[.004]Z[{z}]\n{arc}\nZ[-.5]\nX[.6]"

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from app.compose.stored_offsets import read_offsets
 from core.interpreter.shared.job_setup import SecondaryOffset, Setup
-from core.language.source import Source, load_source
-from core.proving.program_timeline import Timeline, timed_series
+from core.language.source import ProgramSource, load_source
+from core.proving.program_timeline import Timeline, iter_timed_series
 from core.proving.prove_program import prove
-from core.proving.setpoint_trace import setpoints
+from core.proving.setpoint_trace import iter_setpoints
 from tests.interpreter.programs import ALL_TOOLS
 from tests.interpreter.test_golden import PROGRAMS, circumstances
 from tests.screen.desks import SAMPLES
@@ -27,18 +27,18 @@ R = 0.015 * 25.4
 NOSE = {n: SecondaryOffset(-R, -R, R) for n in (1, 2, 3, 4)}
 
 
-def ends(source: Source, setup: Setup) -> tuple[float, float, float]:
+def ends(source: ProgramSource, setup: Setup) -> tuple[float, float, float]:
     """Cycle time of the proof, last time of the trace, and end of the timeline that is drawn."""
-    shown = Timeline.of(source, setup, MACHINE)
-    for _ in timed_series(shown):
+    shown = Timeline.from_program(source, setup, MACHINE)
+    for _ in iter_timed_series(shown):
         pass
     last = 0.0
-    for rows in setpoints(Timeline.of(source, setup, MACHINE), DT):
-        last = float(rows.t[-1]) if len(rows.t) else last
-    return prove(source, setup, MACHINE).times.cycle, last, shown.t
+    for rows in iter_setpoints(Timeline.from_program(source, setup, MACHINE), DT):
+        last = float(rows.times_s[-1]) if len(rows.times_s) else last
+    return prove(source, setup, MACHINE).times.cycle_s, last, shown.time_s
 
 
-def check(source: Source, setup: Setup) -> None:
+def check(source: ProgramSource, setup: Setup) -> None:
     proof, trace, shown = ends(source, setup)
     assert shown == pytest.approx(proof, abs=1e-6)
     assert proof - 1e-6 <= trace <= proof + DT + 1e-6
@@ -55,13 +55,13 @@ GOLDEN = [
 @pytest.mark.skipif(not WORKED, reason="the worked examples are not at hand")
 @pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
 def test_worked_examples(path: Path) -> None:
-    check(load_source(path), setup_for(MACHINE, tools=ALL_TOOLS, secondary=NOSE))
+    check(load_source(path), create_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets=NOSE))
 
 
 @pytest.mark.parametrize("path", sorted(SAMPLES.glob("*.nc")), ids=lambda path: path.stem)
 def test_samples(path: Path) -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
-    check(load_source(path), setup_for(MACHINE, tools=tools, secondary=secondary))
+    check(load_source(path), create_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary))
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
@@ -75,6 +75,9 @@ def test_a_wait_for_speed_after_constant_surface_speed_is_the_same_for_all() -> 
     """G97 with another S behind a G96 move: the ramp begins at the speed that the move has led to."""
     css = ("G96S250", "G77S2500", "Z0", "G95F.002X0", "G94F300Z2", "G97", "S500")
     lines = ("G90G94F300", "M03S1500", "T1", "X.25Z.2", *css, "T2", "X0Z.2", "G95F.003Z-.5", "M30", "")
-    source, setup = Source("A", "\n".join(lines)), setup_for(MACHINE, tools=ALL_TOOLS, secondary={})
+    source, setup = (
+        ProgramSource("A", "\n".join(lines)),
+        create_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets={}),
+    )
     proof, trace, _ = ends(source, setup)
     assert proof <= trace <= proof + DT

@@ -7,32 +7,36 @@ import pickle
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
-from core.proving.proof_pass import turned_range
-from core.proving.proof_report import Report
+from core.language.source import ProgramSource
+from core.proving.proof_pass import modulo_angle_range
+from core.proving.proof_report import ProofReport
 from core.proving.prove_program import prove
-from core.tool_edges import NAMED_TOOLS, NamedTool, edge_key, edge_name, tool_of
+from core.tool_edges import FIRST_NAMED_TOOL, NamedTool, format_edge_name, get_tool_number, make_edge_key
 
-LATHE, MILL = shipped_machine("sinumerik-modulo"), shipped_machine("ac-table-mill")
+LATHE, MILL = load_shipped_machine("sinumerik-modulo"), load_shipped_machine("ac-table-mill")
 
 
-def turned(text: str) -> Report:
+def turned(text: str) -> ProofReport:
     """The proof of a SINUMERIK program with T1."""
     tools = {1: ToolOffset()}
-    return prove(Source("a.mpf", text), setup_for(LATHE, tools=tools, secondary={}), LATHE)
+    return prove(
+        ProgramSource("a.mpf", text), create_setup(LATHE, tool_offsets=tools, secondary_offsets={}), LATHE
+    )
 
 
-def milled(text: str) -> Report:
+def milled(text: str) -> ProofReport:
     """The proof of a Klartext program with tool 1."""
     tools = {1: ToolOffset()}
     whole = f"BEGIN PGM A MM\n{text}\nEND PGM A MM\n"
-    return prove(Source("a.h", whole), setup_for(MILL, tools=tools, secondary={}), MILL)
+    return prove(
+        ProgramSource("a.h", whole), create_setup(MILL, tool_offsets=tools, secondary_offsets={}), MILL
+    )
 
 
-def found(report: Report, code: str) -> list[tuple[int, str]]:
+def found(report: ProofReport, code: str) -> list[tuple[int, str]]:
     return [(each.line, str(each.severity)) for each in report.diagnostics if each.code == code]
 
 
@@ -75,20 +79,24 @@ def test_a_milled_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> 
     ],
 )
 def test_a_forgotten_m3(text: str, told: list[tuple[int, str]]) -> None:
-    around = setup_for(LATHE, tools={1: ToolOffset()}, secondary={})
-    report = prove(Source("a.mpf", text), around, LATHE)
+    around = create_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    report = prove(ProgramSource("a.mpf", text), around, LATHE)
     assert found(report, "spindle-off") == told
 
 
 def test_a_tool_by_name_keeps_its_name() -> None:
     """Beyond copies, processes and edges: it is shown as the program writes it."""
     report = turned(f'T="Rough er" D1\nS1000 M3\n{CUT}')
-    assert [edge_name(each) for each in report.tools] == ['T="Rough er"']
-    tool = NamedTool(NAMED_TOOLS, "ROUGH")
-    for same in (copy.deepcopy(tool), pickle.loads(pickle.dumps(tool)), tool_of(edge_key(tool, 2))):
-        assert (same, edge_name(same)) == (NAMED_TOOLS, 'T="ROUGH"')
-    assert edge_name(edge_key(tool, 2)) == 'T="ROUGH" D2'
-    assert (edge_name(3), edge_name(edge_key(3, 2))) == ("T3", "T3 D2")
+    assert [format_edge_name(each) for each in report.tool_numbers] == ['T="Rough er"']
+    tool = NamedTool(FIRST_NAMED_TOOL, "ROUGH")
+    for same in (
+        copy.deepcopy(tool),
+        pickle.loads(pickle.dumps(tool)),
+        get_tool_number(make_edge_key(tool, 2)),
+    ):
+        assert (same, format_edge_name(same)) == (FIRST_NAMED_TOOL, 'T="ROUGH"')
+    assert format_edge_name(make_edge_key(tool, 2)) == 'T="ROUGH" D2'
+    assert (format_edge_name(3), format_edge_name(make_edge_key(3, 2))) == ("T3", "T3 D2")
 
 
 @pytest.mark.parametrize(
@@ -103,14 +111,17 @@ def test_a_tool_by_name_keeps_its_name() -> None:
     ],
 )
 def test_the_range_of_a_modulo_axis(low: float, high: float, shown: tuple[float, float]) -> None:
-    assert turned_range(low, high) == pytest.approx(shown)
+    assert modulo_angle_range(low, high) == pytest.approx(shown)
 
 
 def test_modulo_axes_are_told_in_their_range() -> None:
     report = milled("TOOL CALL 1 Z S100\nL A+0 C+0 R0 FMAX\nL IC+810 FMAX")
-    assert report.mill is not None
-    assert dict(zip(report.mill.axes, report.mill.reach, strict=True))["C"] == (0.0, 360.0)
-    assert turned("T1 D1\nG0 X30 Z2\nG0 C=IC(-400)").reach.c == (0.0, 360.0)
+    assert report.mill_results is not None
+    assert dict(zip(report.mill_results.axis_names, report.mill_results.axis_ranges, strict=True))["C"] == (
+        0.0,
+        360.0,
+    )
+    assert turned("T1 D1\nG0 X30 Z2\nG0 C=IC(-400)").ranges.c_range == (0.0, 360.0)
 
 
 @pytest.mark.parametrize(("text", "named"), [("T1 D1\nG0 X40 Z-9000", False)])

@@ -4,44 +4,44 @@ from __future__ import annotations
 
 import pytest
 
-from core.part.turned_part import Piece, Profile
-from core.proving.other_offsets import Feature, FeatureKind, Pair, features, matched
+from core.part.turned_part import PartedPiece, ProfilePoints
+from core.proving.offset_comparison import FeatureKind, Pair, PartFeature, find_features, match_features
 
-STEPPED: Profile = [(0.0, 10.0), (-20.0, 10.0), (-20.0, 15.0), (-40.0, 15.0)]
+STEPPED: ProfilePoints = [(0.0, 10.0), (-20.0, 10.0), (-20.0, 15.0), (-40.0, 15.0)]
 
 
-def piece(outside: Profile, bore: Profile | None = None) -> Piece:
-    return Piece(0.0, outside, bore, None)
+def piece(outside: ProfilePoints, bore: ProfilePoints | None = None) -> PartedPiece:
+    return PartedPiece(0.0, outside, bore, None)
 
 
 def test_a_stepped_shaft_has_two_diameters_between_three_shoulders() -> None:
-    assert features(piece(STEPPED)) == [
-        Feature(FeatureKind.SHOULDER, 0.0, (0.0, 10.0)),
-        Feature(FeatureKind.DIAMETER, 20.0, (0.0, -20.0)),
-        Feature(FeatureKind.SHOULDER, -20.0, (10.0, 15.0)),
-        Feature(FeatureKind.DIAMETER, 30.0, (-20.0, -40.0)),
-        Feature(FeatureKind.SHOULDER, -40.0, (0.0, 15.0)),
+    assert find_features(piece(STEPPED)) == [
+        PartFeature(FeatureKind.SHOULDER, 0.0, (0.0, 10.0)),
+        PartFeature(FeatureKind.DIAMETER, 20.0, (0.0, -20.0)),
+        PartFeature(FeatureKind.SHOULDER, -20.0, (10.0, 15.0)),
+        PartFeature(FeatureKind.DIAMETER, 30.0, (-20.0, -40.0)),
+        PartFeature(FeatureKind.SHOULDER, -40.0, (0.0, 15.0)),
     ]
 
 
 def test_a_bore_and_its_bottom() -> None:
-    found = features(
+    found = find_features(
         piece([(0.0, 10.0), (-20.0, 10.0)], [(0.0, 4.0), (-8.0, 4.0), (-8.0, 0.0), (-20.0, 0.0)])
     )
     assert found[3:] == [
-        Feature(FeatureKind.BORE, 8.0, (0.0, -8.0)),
-        Feature(FeatureKind.BORE_SHOULDER, -8.0, (0.0, 4.0)),
+        PartFeature(FeatureKind.BORE, 8.0, (0.0, -8.0)),
+        PartFeature(FeatureKind.BORE_SHOULDER, -8.0, (0.0, 4.0)),
     ]
 
 
 def test_cones_chamfers_and_short_straights_are_none() -> None:
-    cone: Profile = [(0.0, 5.0), (-0.2, 5.0), (-10.0, 9.0), (-10.2, 9.0)]
-    assert [each.kind for each in features(piece(cone))] == [FeatureKind.SHOULDER] * 2
+    cone: ProfilePoints = [(0.0, 5.0), (-0.2, 5.0), (-10.0, 9.0), (-10.2, 9.0)]
+    assert [each.kind for each in find_features(piece(cone))] == [FeatureKind.SHOULDER] * 2
 
 
 def test_a_fillet_in_the_corner_does_not_count_into_the_shoulder() -> None:
     """The last of a fillet lies within the tolerance of the profile: the other end is the shoulder's."""
-    filleted: Profile = [
+    filleted: ProfilePoints = [
         (0.0, 10.0),
         (-19.6, 10.0),
         (-19.9, 10.1),
@@ -49,40 +49,42 @@ def test_a_fillet_in_the_corner_does_not_count_into_the_shoulder() -> None:
         (-20.0, 15.0),
         (-40.0, 15.0),
     ]
-    assert [each.at for each in features(piece(filleted)) if each.kind is FeatureKind.SHOULDER][1] == -20.0
+    assert [each.at for each in find_features(piece(filleted)) if each.kind is FeatureKind.SHOULDER][
+        1
+    ] == -20.0
 
 
 def test_no_metal_has_no_features() -> None:
-    assert features(piece([])) == []
+    assert find_features(piece([])) == []
 
 
 def test_each_finds_its_own_when_all_have_moved() -> None:
-    here = features(piece(STEPPED))
-    there = features(piece([(z - 0.5, r + 0.25) for z, r in STEPPED]))
-    assert [pair.difference for pair in matched(here, there)] == [
+    here = find_features(piece(STEPPED))
+    there = find_features(piece([(z - 0.5, r + 0.25) for z, r in STEPPED]))
+    assert [pair.difference for pair in match_features(here, there)] == [
         pytest.approx(-0.5), pytest.approx(0.5), pytest.approx(-0.5), pytest.approx(0.5), pytest.approx(-0.5),
     ]  # fmt: skip
 
 
 def test_what_only_one_part_has_stands_alone() -> None:
     """Face and first diameter are in both; a shoulder from r 10 to 15 is not the back from the axis to 10."""
-    here, there = features(piece(STEPPED)), features(piece([(0.0, 10.0), (-20.0, 10.0)]))
-    pairs = matched(here, there)
+    here, there = find_features(piece(STEPPED)), find_features(piece([(0.0, 10.0), (-20.0, 10.0)]))
+    pairs = match_features(here, there)
     assert pairs[:2] == [Pair(here[0], there[0]), Pair(here[1], there[1])]
     assert pairs[2:] == [Pair(each, None) for each in here[2:]] + [Pair(None, there[2])]
     assert {pair.difference for pair in pairs[2:]} == {None}
 
 
 def test_a_diameter_is_never_taken_for_a_bore_or_a_shoulder() -> None:
-    ring = Feature(FeatureKind.DIAMETER, 20.0, (0.0, -5.0))
+    ring = PartFeature(FeatureKind.DIAMETER, 20.0, (0.0, -5.0))
     for kind in (FeatureKind.BORE, FeatureKind.SHOULDER):
-        assert matched([ring], [ring._replace(kind=kind)]) == [
+        assert match_features([ring], [ring._replace(kind=kind)]) == [
             Pair(ring, None),
             Pair(None, ring._replace(kind=kind)),
         ]
 
 
 def test_nothing_far_away_is_the_same_feature() -> None:
-    ring = Feature(FeatureKind.DIAMETER, 20.0, (0.0, -5.0))
-    assert len(matched([ring], [ring._replace(at=33.0)])) == 2  # 6.5 mm of radius
-    assert len(matched([ring], [ring._replace(at=32.0)])) == 1
+    ring = PartFeature(FeatureKind.DIAMETER, 20.0, (0.0, -5.0))
+    assert len(match_features([ring], [ring._replace(at=33.0)])) == 2  # 6.5 mm of radius
+    assert len(match_features([ring], [ring._replace(at=32.0)])) == 1

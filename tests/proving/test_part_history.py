@@ -9,47 +9,47 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
-from core.part.solid_bodies import Round
-from core.part.stock import Clamping, bar
+from core.language.source import ProgramSource
+from core.part.solid_bodies import RoundAxis
+from core.part.stock import Clamping, make_bar
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history, part_instant
-from core.proving.part_history import PartGathering, PartHistory, PartMoves, share_along
+from core.proving.part_history import PartHistory, ProgramSteps, StepCollector, polyline_fraction
 from core.proving.part_instant import PartInstant
-from core.proving.part_making import PartMaking
-from core.proving.program_tools import PartSetting, ProgramTools
+from core.proving.part_simulation import PartSimulation
+from core.proving.program_tools import PartSettings, ProgramTools
 from core.proving.prove_program import prove
-from core.proving.tip_moves import LiveStep
+from core.proving.tip_moves import LiveToolStep
 
 INCH = 25.4
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.0, insert="DCMT11T304")
 BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
-SETTING = PartSetting(bar(INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BLADE})
+SETTING = PartSettings(make_bar(INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BLADE})
 HEAD = "G90G94F300\nM03S1500\nT1\n"
 SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
 RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
 
 
-def moves(text: str, setting: PartSetting = SETTING) -> PartMoves | None:
+def moves(text: str, setting: PartSettings = SETTING) -> ProgramSteps | None:
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 4)}
-    setup = setup_for(load_machine(None), tools=tools, secondary={1: SecondaryOffset()})
-    gathered = PartGathering(setting)
-    prove(Source("PART", text), setup, load_machine(None), seen=gathered.see)
-    return gathered.moves()
+    setup = create_setup(load_machine(None), tool_offsets=tools, secondary_offsets={1: SecondaryOffset()})
+    gathered = StepCollector(setting)
+    prove(ProgramSource("PART", text), setup, load_machine(None), on_span=gathered.add_span)
+    return gathered.collected_steps()
 
 
-def history(text: str, setting: PartSetting = SETTING) -> PartHistory:
+def history(text: str, setting: PartSettings = SETTING) -> PartHistory:
     found = moves(text, setting)
     assert found is not None
     return PartHistory(found)
 
 
-def straight_through(seen: PartHistory, blocks: int) -> PartMaking:
-    making = PartMaking(ProgramTools(seen.steps, SETTING), seen.stock, SETTING)
+def straight_through(seen: PartHistory, blocks: int) -> PartSimulation:
+    making = PartSimulation(ProgramTools(seen.steps, SETTING), seen.stock, SETTING)
     for step in seen.steps[:blocks]:
-        making.see(step)
+        making.apply_step(step)
     return making
 
 
@@ -57,30 +57,30 @@ def straight_through(seen: PartHistory, blocks: int) -> PartMaking:
 def test_any_block_in_any_order_is_as_made_straight_through(
     every: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(part_instant, "_EVERY", every)
+    monkeypatch.setattr(part_instant, "_COPY_INTERVAL", every)
     seen = history(SHAFT)
     count = len(seen.steps)
     for block in [count, 3, 7, 2, count - 1, 0, 5, 5, 6, count]:
         instant, made = seen.at(block), straight_through(seen, block)
         assert made.part is not None
-        assert instant.near is not None
-        np.testing.assert_array_equal(instant.near.low, made.part.low)
-        np.testing.assert_array_equal(instant.near.high, made.part.high)
+        assert instant.x_plus_half is not None
+        np.testing.assert_array_equal(instant.x_plus_half.inner_radii, made.part.inner_radii)
+        np.testing.assert_array_equal(instant.x_plus_half.outer_radii, made.part.outer_radii)
         assert instant.findings == made.findings.diagnostics
 
 
 def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
     seen = history(SHAFT)
     turning = next(
-        k for k, step in enumerate(seen.steps) if not isinstance(step, LiveStep) and step.line == 6
+        k for k, step in enumerate(seen.steps) if not isinstance(step, LiveToolStep) and step.line == 6
     )
     instant = seen.at(turning, 0.5)
-    assert instant.near is not None
+    assert instant.x_plus_half is not None
     assert instant.tool is not None
     # from Z.05 to Z-.5 it is half way at Z-.225, and what lies behind is still a bar of 1 in
-    z, r = instant.tool.at
+    z, r = instant.tool.control_point
     assert (z, r) == pytest.approx((-0.225 * INCH, 0.4 * INCH))
-    edges, high = instant.near.edges, instant.near.high[0]
+    edges, high = instant.x_plus_half.column_edges, instant.x_plus_half.outer_radii[0]
     there = (edges[1:] + edges[:-1]) / 2
     assert high[there > -0.2 * INCH] == pytest.approx(0.4 * INCH)  # beside the round of its nose
     assert high[there < -0.24 * INCH] == pytest.approx(0.5 * INCH)
@@ -89,23 +89,23 @@ def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
 def test_what_is_shown_does_not_change_with_what_is_made_next() -> None:
     seen = history(SHAFT)
     before = seen.at(3)
-    assert before.near is not None
-    high = before.near.high.copy()
+    assert before.x_plus_half is not None
+    high = before.x_plus_half.outer_radii.copy()
     seen.at(len(seen.steps))
-    np.testing.assert_array_equal(before.near.high, high)
+    np.testing.assert_array_equal(before.x_plus_half.outer_radii, high)
 
 
 def test_a_rapid_into_metal_has_its_place() -> None:
     seen = history(RAPID)
     (hit,) = seen.at(len(seen.steps)).hits
-    assert (hit.finding.check, hit.finding.line) == ("rapid-into-stock", 11)
+    assert (hit.finding.check_name, hit.finding.line) == ("rapid-into-stock", 11)
     # from the face to Z-.3, between the radius of the rapid and that of the cut before
-    assert hit.z.max() == pytest.approx(0.0, abs=0.01)
-    assert hit.z.min() == pytest.approx(-0.3 * INCH, abs=0.02)
-    assert hit.low[hit.z > -0.28 * INCH] == pytest.approx(
+    assert hit.z_positions.max() == pytest.approx(0.0, abs=0.01)
+    assert hit.z_positions.min() == pytest.approx(-0.3 * INCH, abs=0.02)
+    assert hit.inner_radii[hit.z_positions > -0.28 * INCH] == pytest.approx(
         0.3 * INCH, abs=0.001
     )  # beside the round of its nose
-    assert hit.high == pytest.approx(0.4 * INCH, abs=0.001)
+    assert hit.outer_radii == pytest.approx(0.4 * INCH, abs=0.001)
 
 
 def test_before_it_happens_nothing_is_hit() -> None:
@@ -123,22 +123,22 @@ def test_the_sound_twin_has_no_hits() -> None:
 def test_a_parted_piece_is_gone() -> None:
     seen = history(SHAFT.replace("M30", "T2\nX.6Z-.2\nG95F.002X-.01\nG94F300X.6\nM30"))
     instant = seen.at(len(seen.steps))
-    assert instant.pieces == 1
-    assert instant.near is not None
-    edges, high = instant.near.edges, instant.near.high[0]
+    assert instant.parted_piece_count == 1
+    assert instant.x_plus_half is not None
+    edges, high = instant.x_plus_half.column_edges, instant.x_plus_half.outer_radii[0]
     assert not high[edges[1:] > -0.19 * INCH].any()
 
 
 def test_copies_stay_within_their_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_instant, "_EVERY", 1)
-    monkeypatch.setattr(part_instant, "_MOST_COPIES", 4)
+    monkeypatch.setattr(part_instant, "_COPY_INTERVAL", 1)
+    monkeypatch.setattr(part_instant, "_MAX_COPIES", 4)
     seen = history(SHAFT)
     seen.at(len(seen.steps))
     assert len(seen._kept._copies) <= 4
     instant, made = seen.at(7), straight_through(seen, 7)
-    assert instant.near is not None
+    assert instant.x_plus_half is not None
     assert made.part is not None
-    np.testing.assert_array_equal(instant.near.high, made.part.high)
+    np.testing.assert_array_equal(instant.x_plus_half.outer_radii, made.part.outer_radii)
 
 
 class _EnoughError(Exception):
@@ -154,24 +154,24 @@ def test_work_that_is_given_up_can_be_gone_on_with() -> None:
     with pytest.raises(_EnoughError):
         seen.at(len(seen.steps), 0.0, enough)
     instant, made = seen.at(len(seen.steps)), straight_through(seen, len(seen.steps))
-    assert instant.near is not None
+    assert instant.x_plus_half is not None
     assert made.part is not None
-    np.testing.assert_array_equal(instant.near.high, made.part.high)
+    np.testing.assert_array_equal(instant.x_plus_half.outer_radii, made.part.outer_radii)
 
 
 def test_of_a_program_that_is_too_long_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_history, "MOST_MOVES", 5)
+    monkeypatch.setattr(part_history, "MAX_MOVES", 5)
     assert moves(SHAFT) is None
 
 
 def test_of_a_program_without_blocks_there_is_none() -> None:
-    assert PartGathering(SETTING).moves() is None
+    assert StepCollector(SETTING).collected_steps() is None
 
 
 def test_where_nothing_is_cut_there_is_no_stock_and_no_metal() -> None:
-    seen = history(HEAD + "X2Z2\nM30\n", PartSetting())
+    seen = history(HEAD + "X2Z2\nM30\n", PartSettings())
     instant = seen.at(len(seen.steps))
-    assert (instant.stock, instant.near, instant.far) == (None, None, None)
+    assert (instant.stock, instant.x_plus_half, instant.x_minus_half) == (None, None, None)
 
 
 def test_before_the_first_move_no_tool_stands_anywhere() -> None:
@@ -179,29 +179,31 @@ def test_before_the_first_move_no_tool_stands_anywhere() -> None:
 
 
 def test_a_block_that_is_none_is_done_to_no_share() -> None:
-    assert history(SHAFT).share_at(999, (0.0, 0.0)) == 0.0
+    assert history(SHAFT).executed_fraction(999, (0.0, 0.0)) == 0.0
 
 
 def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
     seen = history(SHAFT)
     turning = (
-        next(k for k, step in enumerate(seen.steps) if not isinstance(step, LiveStep) and step.line == 6) + 1
+        next(k for k, step in enumerate(seen.steps) if not isinstance(step, LiveToolStep) and step.line == 6)
+        + 1
     )
-    assert seen.share_at(turning, (0.0, 0.0)) == pytest.approx(1.0)
-    assert seen.share_at(turning, (0.55 * INCH / 4, 0.0)) == pytest.approx(0.75)
-    assert seen.share_at(turning, (0.55 * INCH / 4, 0.02)) == pytest.approx(0.75)  # beside its path
+    assert seen.executed_fraction(turning, (0.0, 0.0)) == pytest.approx(1.0)
+    assert seen.executed_fraction(turning, (0.55 * INCH / 4, 0.0)) == pytest.approx(0.75)
+    assert seen.executed_fraction(turning, (0.55 * INCH / 4, 0.02)) == pytest.approx(0.75)  # beside its path
 
 
 def test_shares_along_a_corner() -> None:
     corner = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0)]
-    assert share_along(corner, (1.0, -1.0)) == pytest.approx(0.25)
-    assert share_along(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
-    assert share_along([(1.0, 1.0), (1.0, 1.0)], (0.0, 0.0)) == 0.0
-    assert not math.isnan(share_along([(1.0, 1.0)], (0.0, 0.0)))
+    assert polyline_fraction(corner, (1.0, -1.0)) == pytest.approx(0.25)
+    assert polyline_fraction(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
+    assert polyline_fraction([(1.0, 1.0), (1.0, 1.0)], (0.0, 0.0)) == 0.0
+    assert not math.isnan(polyline_fraction([(1.0, 1.0)], (0.0, 0.0)))
 
 
-MILL = PartSetting(
-    bar(INCH, 0.0, -60.0), {1: TURNING, 6: ToolShape(ToolKind.END_MILL, tip=8, diameter=6.0, length=15.0)}
+MILL = PartSettings(
+    make_bar(INCH, 0.0, -60.0),
+    {1: TURNING, 6: ToolShape(ToolKind.END_MILL, tip=8, diameter=6.0, length=15.0)},
 )
 MILLED = HEAD + (
     "X.6Z.05\nX.45\nG95F.004Z-.5\nX.55\nG94F300X.6Z.1\nT6\nX.6Z-.4\nM05\nM15\nM19\nG04F3\nG94F4X.4\n"
@@ -210,27 +212,27 @@ MILLED = HEAD + (
 
 
 def test_what_is_milled_is_replayed_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_instant, "_EVERY", 2)
+    monkeypatch.setattr(part_instant, "_COPY_INTERVAL", 2)
     seen = history(MILLED, MILL)
     count = len(seen.steps)
     for block in [count, 4, count - 4, count - 3, 0, count]:
         instant = seen.at(block)
-        made = PartMaking(ProgramTools(seen.steps, MILL), seen.stock, MILL)
+        made = PartSimulation(ProgramTools(seen.steps, MILL), seen.stock, MILL)
         for step in seen.steps[:block]:
-            made.see(step)
-        found = seen.solid(instant)
+            made.apply_step(step)
+        found = seen.make_solid(instant)
         assert found is not None
         if made.milling is None:
-            assert found.low.shape[2] == 1
+            assert found.inner_radii.shape[2] == 1
         else:
-            np.testing.assert_array_equal(found.high, made.milling.field.high)
+            np.testing.assert_array_equal(found.outer_radii, made.milling.updated_field.outer_radii)
     # the slot is on one side alone: .1 in deep from a radius of .5 at Z-.6
-    assert instant.near is not None
-    assert instant.far is not None
+    assert instant.x_plus_half is not None
+    assert instant.x_minus_half is not None
     depths = []
-    for half in (instant.near, instant.far):
-        there = int(np.searchsorted(half.edges, -0.6 * INCH)) - 1
-        depths.append(half.high[:, there].max())
+    for half in (instant.x_plus_half, instant.x_minus_half):
+        there = int(np.searchsorted(half.column_edges, -0.6 * INCH)) - 1
+        depths.append(half.outer_radii[:, there].max())
     assert sorted(depths) == pytest.approx([0.4 * INCH, 0.5 * INCH], abs=0.01)
 
 
@@ -239,17 +241,17 @@ def test_half_of_a_milling_move_stands_half_way() -> None:
     along = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
     instant = seen.at(along, 0.5)
     assert instant.tool is not None
-    assert instant.tool.at == pytest.approx((-0.6 * INCH, 0.4 * INCH))
+    assert instant.tool.control_point == pytest.approx((-0.6 * INCH, 0.4 * INCH))
 
 
 def depth_at(seen: PartHistory, instant: PartInstant, z: float) -> float:
     """The greatest radius on the side of the mill, inches."""
-    assert instant.near is not None
-    assert instant.far is not None
+    assert instant.x_plus_half is not None
+    assert instant.x_minus_half is not None
     heights = []
-    for half in (instant.near, instant.far):
-        there = int(np.searchsorted(half.edges, z * INCH)) - 1
-        heights.append(half.high[:, there].max() / INCH)
+    for half in (instant.x_plus_half, instant.x_minus_half):
+        there = int(np.searchsorted(half.column_edges, z * INCH)) - 1
+        heights.append(half.outer_radii[:, there].max() / INCH)
     return float(min(heights))
 
 
@@ -266,13 +268,15 @@ def test_milled_metal_goes_along_the_block() -> None:
         instant = seen.at(along, share)
         assert depth_at(seen, instant, cut) == pytest.approx(0.4, abs=0.001)
         assert depth_at(seen, instant, left) == pytest.approx(0.5, abs=0.001)
-        found = seen.solid(instant)
+        found = seen.make_solid(instant)
         assert found is not None
-        assert found.high.shape[2] > 1
+        assert found.outer_radii.shape[2] > 1
     whole, again = seen.at(along + 1), history(MILLED, MILL).at(along + 1)
-    assert whole.near is not None
-    assert again.near is not None
-    np.testing.assert_array_equal(whole.near.high, again.near.high)  # what was shown ahead leaves no trace
+    assert whole.x_plus_half is not None
+    assert again.x_plus_half is not None
+    np.testing.assert_array_equal(
+        whole.x_plus_half.outer_radii, again.x_plus_half.outer_radii
+    )  # what was shown ahead leaves no trace
 
 
 def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
@@ -281,14 +285,14 @@ def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
     hit, along = instant.hits
     assert (hit.finding.code, hit.finding.line, along.finding.line) == ("rapid-into-stock", 15, 16)
     radius = 3.0 / INCH  # of the mill
-    back, front = hit.z[0] - hit.wide / 2, hit.z[0] + hit.wide / 2
+    back, front = hit.z_positions[0] - hit.column_width_mm / 2, hit.z_positions[0] + hit.column_width_mm / 2
     assert (back / INCH, front / INCH) == pytest.approx((-0.4 - radius, -0.4 + radius), abs=0.01)
-    assert (hit.low[0] / INCH, hit.high[0] / INCH) == pytest.approx((0.4, 0.5), abs=0.01)
+    assert (hit.inner_radii[0] / INCH, hit.outer_radii[0] / INCH) == pytest.approx((0.4, 0.5), abs=0.01)
     assert history(MILLED, MILL).at(len(seen.steps)).hits == ()
 
 
 def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_instant, "_EVERY", 1)
+    monkeypatch.setattr(part_instant, "_COPY_INTERVAL", 1)
     seen = history(MILLED, MILL)
     seen.at(len(seen.steps))
     kept = [field for _, field, _ in seen._kept._copies.values() if field is not None]
@@ -296,7 +300,7 @@ def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pyt
     one, other = kept[-2:]  # between them the tool goes away
     assert all(a is b for a, b in zip(one.columns.values(), other.columns.values(), strict=True))
     alone = sum(column.nbytes for column in kept[-1].columns.values())
-    assert seen._kept._size < 2.0 * alone + sum(m.nbytes for m, _, _ in seen._kept._copies.values())
+    assert seen._kept._total_bytes < 2.0 * alone + sum(m.nbytes for m, _, _ in seen._kept._copies.values())
 
 
 def test_what_stands_round_the_part() -> None:
@@ -304,10 +308,10 @@ def test_what_stands_round_the_part() -> None:
     instant = seen.at(len(seen.steps))
     around = seen.scene_at(instant)
     assert around.chuck is not None
-    assert around.chuck.radius == 20.0
-    assert float(around.chuck.edges[-1]) == -30.0
+    assert around.chuck.max_radius_mm == 20.0
+    assert float(around.chuck.column_edges[-1]) == -30.0
     assert around.tool is not None
-    assert around.tool.round is Round.ACROSS
+    assert around.tool.round_axis is RoundAxis.X
     assert history(MILLED, MILL).scene_at(instant).chuck is None
 
 
@@ -316,26 +320,26 @@ def test_what_stands_round_the_part() -> None:
     [(SHAFT, SETTING, [[-149.2, -87.3], [50.8, 22.7]]), (MILLED, MILL, [[-200.0, -100.0], [0.0, 10.0]])],
 )
 def test_the_limits_of_the_machine_as_the_tip_meets_them(
-    program: str, setting: PartSetting, limits: list[list[float]]
+    program: str, setting: PartSettings, limits: list[list[float]]
 ) -> None:
     """T1 stands at machine X-12.7 Z-50.8 with its tip on part zero; T6 has no offset."""
     seen = history(program, replace(setting, travel=((-100.0, 10.0), (-200.0, 0.0))))
-    assert seen.at(0).reach is None
-    reach = seen.at(len(seen.steps)).reach
+    assert seen.at(0).tip_range is None
+    reach = seen.at(len(seen.steps)).tip_range
     assert reach is not None
     assert np.array(reach) == pytest.approx(np.array(limits))
-    assert history(program, setting).at(len(seen.steps)).reach is None
+    assert history(program, setting).at(len(seen.steps)).tip_range is None
 
 
 def test_what_runs_into_the_chuck_is_red_in_the_chuck_and_not_in_the_part() -> None:
     """The jaws' face stands at Z-10 mm, .394 in; T1 turns on to Z-.5."""
     held = Clamping(60.0, 10.0, 5.0, 40.0)
     seen = history(SHAFT, replace(SETTING, clamping=held))
-    hits = {hit.finding.check: hit for hit in seen.at(len(seen.steps)).hits}
+    hits = {hit.finding.check_name: hit for hit in seen.at(len(seen.steps)).hits}
     hit = hits["into-chuck"]
-    assert hit.z.max() == pytest.approx(-10.0, abs=0.1)
-    assert hit.z.min() < -12.0
-    assert hit.high[-1] == pytest.approx(20.0, abs=0.01)  # of the jaws
+    assert hit.z_positions.max() == pytest.approx(-10.0, abs=0.1)
+    assert hit.z_positions.min() < -12.0
+    assert hit.outer_radii[-1] == pytest.approx(20.0, abs=0.01)  # of the jaws
     assert set(hits) == {"into-chuck"}
 
 
@@ -343,6 +347,6 @@ def test_c_is_told_along_a_block_that_turns_the_part() -> None:
     """From C0 to C90 with C locked: half way it is 45, and it stays at 90 behind it."""
     seen = history(MILLED.replace("Z-.8\nX.6\n", "C90\nX.6\n"), MILL)
     turning = next(k for k, step in enumerate(seen.steps) if part_history._line(step) == 16)
-    assert seen.at(turning).c == pytest.approx(0.0)
-    assert seen.at(turning, 0.5).c == pytest.approx(45.0)
-    assert seen.at(turning + 2).c == pytest.approx(90.0)
+    assert seen.at(turning).c_angle_deg == pytest.approx(0.0)
+    assert seen.at(turning, 0.5).c_angle_deg == pytest.approx(45.0)
+    assert seen.at(turning + 2).c_angle_deg == pytest.approx(90.0)

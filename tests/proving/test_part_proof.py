@@ -11,18 +11,18 @@ import re
 
 import pytest
 
-from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
-from core.part.stock import Clamping, Stock, bar, tube
+from core.language.source import ProgramSource
+from core.part.stock import Clamping, Stock, make_bar, make_tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
-from core.proving.assumed_tools import edge_width
+from core.proving.assumed_tools import parse_edge_width
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
-from core.proving.proof_report import PartReport, Report
+from core.proving.program_tools import PartSettings
+from core.proving.proof_report import PartReport, ProofReport
 from tests.texts import shows
 from tests.texts import text as text_of
 from tests.worked import FOLDER, worked
@@ -51,18 +51,20 @@ def text(lines: str, *, metric: bool = False, diameter: bool = False) -> str:
 
 def proved(
     program: str, stock: Stock | None = None, shapes: dict[int, ToolShape] | None = None
-) -> tuple[Report, PartReport]:
+) -> tuple[ProofReport, PartReport]:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
-    setup = setup_for(machine, tools=tools, secondary={1: SecondaryOffset(-0.381, -0.381, 0.381)})
-    setting = PartSetting(stock, TOOLS if shapes is None else shapes)
-    report, part = prove_with_part(Source("PART", program), setup, machine, setting)
+    setup = create_setup(
+        machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-0.381, -0.381, 0.381)}
+    )
+    setting = PartSettings(stock, TOOLS if shapes is None else shapes)
+    report, part = prove_with_part(ProgramSource("PART", program), setup, machine, setting)
     assert part is not None
     return report, part
 
 
 def checks(part: PartReport) -> list[tuple[str, int]]:
-    return [(each.check, each.line) for each in part.findings]
+    return [(each.check_name, each.line) for each in part.findings]
 
 
 SOUND = """T1
@@ -76,7 +78,7 @@ X[.55]
 G94F[300]X[.6]
 Z[1]"""
 
-BAR = bar(2 * 0.5 * INCH, 0.02 * INCH, -2.0 * INCH)
+BAR = make_bar(2 * 0.5 * INCH, 0.02 * INCH, -2.0 * INCH)
 
 CASES = {
     # G00 left on
@@ -108,17 +110,17 @@ CASES = {
     "part-off-unsupported": (
         "T2\nX[.6]Z[.1]\nZ[-1.9]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
         "T2\nX[.6]Z[.1]\nZ[-.9]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
-        bar(8.0, 0.0, -2.5 * INCH), 6,
+        make_bar(8.0, 0.0, -2.5 * INCH), 6,
     ),
     # a bar of 8 mm does not go into a bore of 7
     "holder-into-stock": (
         "T4\nX[.137]Z[.1]\nZ[-.4]\nM00\nX[.13]\nZ[1]", "T4\nX[.2]Z[.1]\nZ[-.4]\nM00\nX[.19]\nZ[1]",
-        tube(25.4, 7.0, 0.0, -50.0), 5,
+        make_tube(25.4, 7.0, 0.0, -50.0), 5,
     ),
     "feed-into-holder": (
         "T4\nX[.142]Z[.1]\nG95F[.002]Z[-.4]\nX[.13]\nG94F[300]Z[1]",
         "T4\nX[.24]Z[.1]\nG95F[.002]Z[-.4]\nX[.22]\nG94F[300]Z[1]",
-        tube(25.4, 7.0, 0.0, -50.0), 5,
+        make_tube(25.4, 7.0, 0.0, -50.0), 5,
     ),
 }  # fmt: skip
 
@@ -127,7 +129,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_check_finds_what_it_looks_for_and_spares_its_twin(name: str, metric: bool, diameter: bool) -> None:
     wrong, sound, stock, line = CASES[name]
-    stock_of_twin = tube(25.4, 11.0, 0.0, -50.0) if "holder" in name else stock
+    stock_of_twin = make_tube(25.4, 11.0, 0.0, -50.0) if "holder" in name else stock
     _, part = proved(text(wrong, metric=metric, diameter=diameter), stock)
     assert (name.split(maxsplit=1)[0], line) in checks(part)
     report, part = proved(text(sound, metric=metric, diameter=diameter), stock_of_twin)
@@ -141,11 +143,13 @@ def test_the_three_slips_are_warnings_without_a_word_about_stock_and_tools(slip:
     assert checks(part) == []
     assert part.stock is not None
     by_moves = text_of("findings.by-its-moves")
-    assert part.assumed == (text_of("findings.treated-as", tool="T1", kind="a turning tool", why=by_moves),)
+    assert part.assumptions == (
+        text_of("findings.treated-as", tool="T1", kind="a turning tool", why=by_moves),
+    )
     _, part = proved(text(SOUND.replace(*slip)), None, {})
     (first, *_) = part.findings
-    assert (first.line, first.severity, "stock" in first.assumed) == (9, "warning", True)
-    assert first.n > 0
+    assert (first.line, first.severity, "stock" in first.assumptions) == (9, "warning", True)
+    assert first.block_number > 0
     assert first.hint
 
 
@@ -155,17 +159,19 @@ def test_the_volume_that_a_program_removes() -> None:
     face = math.pi * 12.7**2 * 0.508
     corner = (1.0 - math.pi / 4.0) * nose**2  # of the fillet that the nose leaves
     turned = math.pi * (12.7**2 - r**2) * 12.7 - math.tau * (r + 0.22 * nose) * corner
-    assert part.removed == pytest.approx(face + turned, rel=1e-3)
-    assert part.left == pytest.approx(part.volume - part.removed, rel=1e-9)
-    assert part.last is not None
-    assert part.last.outside[0] == (pytest.approx(0.0, abs=0.01), pytest.approx(r))
+    assert part.removed_volume_mm3 == pytest.approx(face + turned, rel=1e-3)
+    assert part.remaining_volume_mm3 == pytest.approx(
+        part.stock_volume_mm3 - part.removed_volume_mm3, rel=1e-9
+    )
+    assert part.last_piece is not None
+    assert part.last_piece.outside_profile[0] == (pytest.approx(0.0, abs=0.01), pytest.approx(r))
 
 
 def test_parts_of_a_loop_come_off_one_by_one() -> None:
     loop = "LS3\nT2\nX[.3]Z[.1]\nZ[-.4]\nG95F[.002]X[-.01]\nG94F[300]X[.3]\nG10X0Z[-.4]\nLF"
-    _, part = proved(text(loop), bar(10.0, 0.0, -60.0))
+    _, part = proved(text(loop), make_bar(10.0, 0.0, -60.0))
     each = math.pi * 25.0 * (0.4 * INCH - 2.0)
-    assert [piece.volume for piece in part.pieces] == [pytest.approx(each, rel=2e-3)] * 3
+    assert [piece.volume_mm3 for piece in part.parted_pieces] == [pytest.approx(each, rel=2e-3)] * 3
     assert checks(part) == []
 
 
@@ -174,20 +180,20 @@ def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
     _, part = proved(text(fed + SOUND), None, {})
     assert checks(part) == []
     assert part.stock is not None
-    assert part.stock.front == pytest.approx(0.02 * INCH)
-    assert "T5 is treated as a bar stop" in part.assumed
+    assert part.stock.front_z_mm == pytest.approx(0.02 * INCH)
+    assert "T5 is treated as a bar stop" in part.assumptions
 
 
 def test_a_comment_says_more_than_the_moves() -> None:
     drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
-    _, part = proved(text(drilled), bar(20.0, 0.0, -40.0), {})
+    _, part = proved(text(drilled), make_bar(20.0, 0.0, -40.0), {})
     by_comment = text_of("findings.by-its-comment")
-    assert part.assumed == (
+    assert part.assumptions == (
         text_of("findings.treated-as", tool="T7", kind="a drill, 0.250 in", why=by_comment),
     )
-    assert part.last is not None
-    assert part.last.bore is not None
-    assert part.last.bore[0][1] == pytest.approx(3.175, abs=0.001)
+    assert part.last_piece is not None
+    assert part.last_piece.bore_profile is not None
+    assert part.last_piece.bore_profile[0][1] == pytest.approx(3.175, abs=0.001)
 
 
 @pytest.mark.parametrize(
@@ -197,29 +203,35 @@ def test_no_false_alarm_on_a_worked_example(example: str) -> None:
     machine = load_machine(None)
     d = (-0.381, -0.381, 0.381)
     tools = {n: ToolOffset() for n in range(1, 33)}
-    setup = setup_for(machine, tools=tools, secondary={n: SecondaryOffset(*d) for n in (1,)})
-    source = Source(example, worked(example).read_text(encoding="latin-1"))
-    _, part = prove_with_part(source, setup, machine, PartSetting(drives=known_part(machine, {}, {}).drives))
+    setup = create_setup(
+        machine, tool_offsets=tools, secondary_offsets={n: SecondaryOffset(*d) for n in (1,)}
+    )
+    source = ProgramSource(example, worked(example).read_text(encoding="latin-1"))
+    _, part = prove_with_part(
+        source, setup, machine, PartSettings(drives=read_known_part(machine, {}, {}).drives)
+    )
     assert part is not None
     assert checks(part) == []
 
 
 def test_six_flats_of_a_worked_example_have_their_volume() -> None:
     machine = load_machine(None)
-    setup = setup_for(machine, tools={21: ToolOffset()}, secondary={})
-    source = Source("SIX", worked("plane-xc-six-flats").read_text(encoding="latin-1"))
-    _, part = prove_with_part(source, setup, machine, PartSetting())
+    setup = create_setup(machine, tool_offsets={21: ToolOffset()}, secondary_offsets={})
+    source = ProgramSource("SIX", worked("plane-xc-six-flats").read_text(encoding="latin-1"))
+    _, part = prove_with_part(source, setup, machine, PartSettings())
     assert part is not None
-    assert part.milled
+    assert part.is_milled
     # The mill's axis goes round a hexagon of circumradius .38465 in, .1 deep: its .125 leave a hexagon of
     # this apothem, and at the middle of each side a segment of the bar beyond its outer side.
     assert part.stock is not None
-    bar_r, apothem = part.stock.radius, (0.38465 * math.cos(math.pi / 6) - 0.0625) * INCH
+    bar_r, apothem = part.stock.max_radius_mm, (0.38465 * math.cos(math.pi / 6) - 0.0625) * INCH
     outer = apothem + 0.125 * INCH
     segment = bar_r**2 * math.acos(outer / bar_r) - outer * math.sqrt(bar_r**2 - outer**2)
     area = math.pi * bar_r**2 - 2 * math.sqrt(3.0) * apothem**2 - 6.0 * segment
-    assert part.removed == pytest.approx(area * 0.1 * INCH, rel=5e-3)
-    assert part.left == pytest.approx(part.volume - part.removed, rel=1e-3)
+    assert part.removed_volume_mm3 == pytest.approx(area * 0.1 * INCH, rel=5e-3)
+    assert part.remaining_volume_mm3 == pytest.approx(
+        part.stock_volume_mm3 - part.removed_volume_mm3, rel=1e-3
+    )
 
 
 MILL = {6: ToolShape(ToolKind.END_MILL, tip=8, diameter=6.0, length=15.0)}
@@ -228,7 +240,7 @@ SLOT = "T6\nX[.6]Z[-.4]\nM05\nM15\nM19\nG04F3\nG94F[4]X[.4]\nZ[-.8]\nX[.6]\nG94F
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 def test_a_slot_milled_with_the_spindle_held(metric: bool, diameter: bool) -> None:
-    _, part = proved(text(SLOT, metric=metric, diameter=diameter), bar(25.4, 0.0, -60.0), MILL)
+    _, part = proved(text(SLOT, metric=metric, diameter=diameter), make_bar(25.4, 0.0, -60.0), MILL)
     assert checks(part) == []
     depth, width, length = 0.1 * INCH, 6.0, 0.4 * INCH
     # a flat floor 2.54 under the crown of the bar: the depth at y is less by r - sqrt(r² - y²)
@@ -236,22 +248,22 @@ def test_a_slot_milled_with_the_spindle_held(metric: bool, diameter: bool) -> No
     strip = (
         r * r * math.asin(width / 2 / r) + width / 2 * math.sqrt(r * r - width**2 / 4) - width * (r - depth)
     )
-    assert part.removed > strip * length
-    assert part.removed < strip * (length + width)
+    assert part.removed_volume_mm3 > strip * length
+    assert part.removed_volume_mm3 < strip * (length + width)
     _, part = proved(text(SLOT.replace("G94F[4]X", "G94F[200]X"), metric=metric, diameter=diameter),
-                     bar(25.4, 0.0, -60.0), MILL)  # fmt: skip
+                     make_bar(25.4, 0.0, -60.0), MILL)  # fmt: skip
     assert ("rapid-into-stock", 9) in checks(part)
 
 
 def test_what_is_parted_off_behind_a_slot_weighs_less() -> None:
     off = SLOT + "\nM05\nM03S900\nT2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"
     _, whole = proved(
-        text("T2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"), bar(25.4, 0.0, -60.0)
+        text("T2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"), make_bar(25.4, 0.0, -60.0)
     )
-    _, part = proved(text(off), bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
-    _, slot = proved(text(SLOT), bar(25.4, 0.0, -60.0), MILL)
-    (piece,), (full,) = part.pieces, whole.pieces
-    assert piece.volume == pytest.approx(full.volume - slot.removed, rel=1e-3)
+    _, part = proved(text(off), make_bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
+    _, slot = proved(text(SLOT), make_bar(25.4, 0.0, -60.0), MILL)
+    (piece,), (full,) = part.parted_pieces, whole.parted_pieces
+    assert piece.volume_mm3 == pytest.approx(full.volume_mm3 - slot.removed_volume_mm3, rel=1e-3)
 
 
 def chucked(
@@ -259,16 +271,18 @@ def chucked(
     diameter: bool = False,
 ) -> PartReport:  # fmt: skip
     machine = load_machine(None)
-    setup = setup_for(machine, tools={n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}, secondary={})
-    setting = PartSetting(bar(25.4, 0.0, -80.0), shapes, clamping=clamping)
+    setup = create_setup(
+        machine, tool_offsets={n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}, secondary_offsets={}
+    )
+    setting = PartSettings(make_bar(25.4, 0.0, -80.0), shapes, clamping=clamping)
     _, part = prove_with_part(
-        Source("PART", text(lines, metric=metric, diameter=diameter)), setup, machine, setting
+        ProgramSource("PART", text(lines, metric=metric, diameter=diameter)), setup, machine, setting
     )
     assert part is not None
     return part
 
 
-CHUCK = Clamping(diameter=100.0, stick_out=1.2 * INCH, jaws=10.0, jaw_diameter=60.0)
+CHUCK = Clamping(diameter=100.0, stick_out=1.2 * INCH, jaw_length=10.0, jaw_diameter=60.0)
 PARTED = "T2\nX[.6]Z[.1]\nZ[-1]\nG95F[.002]X[-.01]\nG94F[300]X[.6]\nZ[1]"
 
 
@@ -285,7 +299,7 @@ def test_a_rapid_beside_the_bar_clears_jaws_that_are_small_enough() -> None:
     assert checks(chucked(beside, Clamping(100.0, 1.2 * INCH, 20.0, 48.0))) == []
 
 
-CENTRE = Clamping(diameter=0.0, stick_out=0.0, quill=12.0, point=60.0, centre=-3.0)
+CENTRE = Clamping(diameter=0.0, stick_out=0.0, quill_diameter=12.0, center_angle_deg=60.0, center_z_mm=-3.0)
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
@@ -320,9 +334,13 @@ def ganged(lines: str, apart: float) -> PartReport:
     """T1 turns, and a drill stands on the plate beside it, ``apart`` mm further along X."""
     machine = load_machine(None)
     places = {1: (-12.7, -50.8), 3: (-12.7 + apart, -50.8)}
-    setup = setup_for(machine, tools={n: ToolOffset(*at) for n, at in places.items()}, secondary={})
-    setting = PartSetting(bar(25.4, 0.0, -80.0), TOOLS, gang={n: (z, x) for n, (x, z) in places.items()})
-    _, part = prove_with_part(Source("PART", text(lines)), setup, machine, setting)
+    setup = create_setup(
+        machine, tool_offsets={n: ToolOffset(*at) for n, at in places.items()}, secondary_offsets={}
+    )
+    setting = PartSettings(
+        make_bar(25.4, 0.0, -80.0), TOOLS, gang={n: (z, x) for n, (x, z) in places.items()}
+    )
+    _, part = prove_with_part(ProgramSource("PART", text(lines)), setup, machine, setting)
     assert part is not None
     return part
 
@@ -343,31 +361,31 @@ def test_a_neighbour_meets_the_bar_only_as_far_as_the_tool_goes_in() -> None:
 def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(part_proof, "MOST_MOVES", 5)
+    monkeypatch.setattr(part_proof, "MAX_MOVES", 5)
     _, part = proved(text(SOUND))
-    assert (part.stock, part.removed, part.findings) == (None, 0.0, ())
-    assert shows(part.assumed[0], "findings.no-part-without-stock")
+    assert (part.stock, part.removed_volume_mm3, part.findings) == (None, 0.0, ())
+    assert shows(part.assumptions[0], "findings.no-part-without-stock")
     _, part = proved(text(SOUND), BAR)
-    assert part.removed > 0.0
+    assert part.removed_volume_mm3 > 0.0
 
 
 def test_a_thread_in_a_bore_takes_its_grooves_and_no_more() -> None:
     machine = load_machine(None)
-    setup = setup_for(machine, tools={8: ToolOffset()}, secondary={})
-    source = Source("THREAD", worked("thread-internal").read_text(encoding="latin-1"))
-    _, part = prove_with_part(source, setup, machine, PartSetting())
+    setup = create_setup(machine, tool_offsets={8: ToolOffset()}, secondary_offsets={})
+    source = ProgramSource("THREAD", worked("thread-internal").read_text(encoding="latin-1"))
+    _, part = prove_with_part(source, setup, machine, PartSettings())
     assert part is not None
-    assert part.last is not None
-    assert part.last.bore is not None
+    assert part.last_piece is not None
+    assert part.last_piece.bore_profile is not None
     # Passes from r .4425 to .46875 in over .75 in of a lead of .05: at most half of that ring.
     ring = math.pi * (0.46875**2 - 0.43**2) * 0.8 * INCH**3
-    assert 0.2 * ring < part.removed < 0.7 * ring
-    assert max(r for _, r in part.last.bore) == pytest.approx(0.46875 * INCH, abs=0.02)
+    assert 0.2 * ring < part.removed_volume_mm3 < 0.7 * ring
+    assert max(r for _, r in part.last_piece.bore_profile) == pytest.approx(0.46875 * INCH, abs=0.02)
 
 
 def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
     cut = "T1\nX[1.1]Z[.05]\nX[{r}]\nG95F[.004]Z[-.5]\nX[1.1]\nG94F[300]Z[1]"
-    thick = bar(50.8, 0.0, -60.0)
+    thick = make_bar(50.8, 0.0, -60.0)
     _, part = proved(text(cut.format(r=0.3)), thick)  # .7 in; .5 of 11.2 mm is .22 in
     assert ("feed-into-holder", 6) in checks(part)
     _, part = proved(text(cut.format(r=0.9)), thick)
@@ -377,17 +395,17 @@ def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
 def test_an_arc_into_a_shoulder_is_as_deep_as_the_shoulder_is_high() -> None:
     """60 degrees of a fillet of .15: .1 in of metal above it, of which each chord meets another slice."""
     cut = "T1\nX[.7]Z[.05]\nX[.3]\nG95F[.004]Z[-.4]\nG03X[.375]Z[-.5299]R.15\nX[.7]\nG94F[300]Z[1]"
-    _, part = proved(text(cut), bar(20.32, 0.0, -60.0))
+    _, part = proved(text(cut), make_bar(20.32, 0.0, -60.0))
     assert checks(part) == []
 
 
 def test_a_slot_that_is_turned_away_again_counts_once() -> None:
     turned = "M05\nM03S1500\nT1\nX[.6]Z[.1]\nX[.35]\nG95F[.004]Z[-1]\nX[.55]\nG94F[300]Z[1]"
-    _, plain = proved(text(turned), bar(25.4, 0.0, -60.0), TOOLS)
-    _, slotted = proved(text(f"{SLOT}\n{turned}"), bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
-    assert slotted.milled
-    assert slotted.removed == pytest.approx(plain.removed, rel=2e-3)
-    assert slotted.left == pytest.approx(plain.left, rel=2e-3)
+    _, plain = proved(text(turned), make_bar(25.4, 0.0, -60.0), TOOLS)
+    _, slotted = proved(text(f"{SLOT}\n{turned}"), make_bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
+    assert slotted.is_milled
+    assert slotted.removed_volume_mm3 == pytest.approx(plain.removed_volume_mm3, rel=2e-3)
+    assert slotted.remaining_volume_mm3 == pytest.approx(plain.remaining_volume_mm3, rel=2e-3)
 
 
 # --- what an assumed tool is taken for, and what stands still
@@ -401,28 +419,28 @@ def test_a_slot_that_is_turned_away_again_counts_once() -> None:
     ],
 )  # fmt: skip
 def test_the_width_of_an_edge_by_its_comment(comment: str, width: float) -> None:
-    assert edge_width(comment) == pytest.approx(width)
+    assert parse_edge_width(comment) == pytest.approx(width)
 
 
 def test_a_spindle_that_stands_again_turns_nothing() -> None:
     """Turned to r .4, then fed in at r .2 with the spindle stopped: there is no groove, and that is told."""
     turned = "T1\nX[.55]Z[.1]\nX[.4]\nG95F.004Z[-.3]\nG94F300X[.55]\nZ[.1]\n"
     still = text(turned + "M05\nX[.2]\nG94F10Z[-.2]\nG00Z[.1]\nG01F300X[.6]\n")
-    stock = bar(INCH, 0.0, -2 * INCH)
+    stock = make_bar(INCH, 0.0, -2 * INCH)
     (_, alone), (report, part) = proved(text(turned), stock), proved(still, stock)
-    assert part.removed == pytest.approx(alone.removed)
-    assert text_of("findings.cuts-stopped", tool="T1", line=11) in part.unchecked
-    assert [each for each in report.errors if each.check] == []
+    assert part.removed_volume_mm3 == pytest.approx(alone.removed_volume_mm3)
+    assert text_of("findings.cuts-stopped", tool="T1", line=11) in part.unchecked_data
+    assert [each for each in report.errors if each.check_name] == []
     _, running = proved(still.replace("M05\n", ""), stock)
-    assert running.removed > 1.5 * alone.removed
-    assert not any("stands" in words for words in running.unchecked)
+    assert running.removed_volume_mm3 > 1.5 * alone.removed_volume_mm3
+    assert not any("stands" in words for words in running.unchecked_data)
 
 
 def test_a_live_tool_in_the_plane_zc_works_across() -> None:
     """A tool along the axis would cut a slot with its flank on the way out."""
     worked("plane-zc-figure-eight")
     path = FOLDER / "plane-zc-figure-eight.nc"
-    _, part = proved(path.read_text(), bar(0.98 * INCH, 0.0, -1.5 * INCH), {})
-    assert part.last is not None
+    _, part = proved(path.read_text(), make_bar(0.98 * INCH, 0.0, -1.5 * INCH), {})
+    assert part.last_piece is not None
     (shape,) = (each for each in part.shapes.values() if each is not None)
     assert shape.direction[0] == 0

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.dialects import interpretation
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 
-LATHE, MILL = shipped_machine("sinumerik-modulo"), shipped_machine("ac-table-mill")
+LATHE, MILL = load_shipped_machine("sinumerik-modulo"), load_shipped_machine("ac-table-mill")
 STOP, READ = "M0", "R1=$AA_IW[Z]"
 
 
 def told(name: str, text: str, code: str) -> list[tuple[int, str]]:
     machine = MILL if name.endswith(".h") else LATHE
-    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
-    report = prove(Source(name, text), setup, machine)
+    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    report = prove(ProgramSource(name, text), setup, machine)
     return [(each.line, str(each.severity)) for each in report.diagnostics if each.code == code]
 
 
@@ -55,6 +55,9 @@ def test_of_a_mill(lines: tuple[str, ...], weight: str) -> None:
 def test_the_run_itself_stops_there() -> None:
     """What the executor goes through has it as an error, for it knows where the axes stand."""
     text = f"T1 D1\nG0 X30 Z0\n{STOP}\n{READ}\nR2=10/R1\nM30\n"
-    running = interpretation(Source("a.mpf", text), setup_for(LATHE, tools={1: ToolOffset()}, secondary={}))
-    assert [block.line for block in running.blocks()] == [1, 2, 3]
-    assert running.failed
+    running = interpret_program(
+        ProgramSource("a.mpf", text),
+        create_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+    )
+    assert [block.line for block in running.generate_blocks()] == [1, 2, 3]
+    assert running.has_errors

@@ -10,17 +10,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.compose.machine.machine_files import load_machine, shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_machine, load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from app.compose.stored_offsets import read_offsets
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
-from core.language.source import Source, load_source
+from core.language.source import ProgramSource, load_source
 from core.proving import program_branches
-from core.proving.checks.machine_checks import travel_findings
-from core.proving.proof_report import Report
+from core.proving.checks.machine_checks import check_travel
+from core.proving.proof_report import ProofReport
 from core.proving.prove_program import prove
 from tests.screen.desks import SAMPLES
 
@@ -33,15 +33,17 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
 def circumstances(**inputs: bool) -> Setup:
     """All tools on part zero; inputs by number, such as ``i10=True``."""
     states = {name.removeprefix("i"): on for name, on in inputs.items()}
-    return setup_for(MACHINE, tools={1: ToolOffset(), 2: ToolOffset()}, secondary={}, inputs=states)
+    return create_setup(
+        MACHINE, tool_offsets={1: ToolOffset(), 2: ToolOffset()}, secondary_offsets={}, inputs=states
+    )
 
 
-def proved(*lines: str, deleted: bool = False, **inputs: bool) -> Report:
+def proved(*lines: str, deleted: bool = False, **inputs: bool) -> ProofReport:
     setup = replace(circumstances(**inputs), block_delete=deleted)
-    return prove(Source("A", "\n".join((*HEAD, *lines, ""))), setup, MACHINE)
+    return prove(ProgramSource("A", "\n".join((*HEAD, *lines, ""))), setup, MACHINE)
 
 
-def errors(report: Report) -> list[tuple[int, str]]:
+def errors(report: ProofReport) -> list[tuple[int, str]]:
     return [(d.line, d.code) for d in report.errors]
 
 
@@ -119,23 +121,23 @@ def test_block_delete_and_an_input_together() -> None:
 
 
 def test_a_first_line_that_block_delete_takes_away() -> None:
-    report = prove(Source("A", "/G90G94F300\nG04F1\nM30\n"), circumstances(), MACHINE)
+    report = prove(ProgramSource("A", "/G90G94F300\nG04F1\nM30\n"), circumstances(), MACHINE)
     assert [(d.line, d.severity) for d in report.diagnostics if d.code == "first-line"] == [
         (2, Severity.WARNING)
     ]
     given = replace(circumstances(), block_delete=True)
-    report = prove(Source("A", "/G90G94F300\nG04F1\nM30\n"), given, MACHINE)
+    report = prove(ProgramSource("A", "/G90G94F300\nG04F1\nM30\n"), given, MACHINE)
     assert errors(report) == [(2, "first-line")]
 
 
 def test_klartext_and_sinumerik_lines_with_a_slash_are_proved_both_ways() -> None:
     machine = load_machine(None)
     text = "N10 G18 G90 G54 G94 T1 D1\nN20 G0 X20 Z3\n/N30 G1 Z-900 F300\nN40 M30\n"
-    report = prove(Source("a.mpf", text), replace(circumstances(), block_delete=True), machine)
+    report = prove(ProgramSource("a.mpf", text), replace(circumstances(), block_delete=True), machine)
     assert [(d.line, d.code, d.severity) for d in report.diagnostics if d.line == 3] == [
         (3, "soft-limit", Severity.WARNING)
     ]
-    assert (3, "soft-limit") in errors(prove(Source("a.mpf", text), circumstances(), machine))
+    assert (3, "soft-limit") in errors(prove(ProgramSource("a.mpf", text), circumstances(), machine))
 
 
 ENDS_BEFORE = """BEGIN PGM BD MM
@@ -150,9 +152,9 @@ END PGM BD MM
 
 def test_the_start_goes_by_the_switch_as_it_stands() -> None:
     """With the switch on the program runs on into a parameter that nothing has set."""
-    mill = shipped_machine("ac-table-mill")
-    around = setup_for(mill, tools={1: ToolOffset()}, secondary={})
-    source = Source("bd.h", ENDS_BEFORE)
+    mill = load_shipped_machine("ac-table-mill")
+    around = create_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    source = ProgramSource("bd.h", ENDS_BEFORE)
     assert prove(source, around, mill).errors == ()
     report = prove(source, replace(around, block_delete=True), mill)
     assert [(d.line, d.code) for d in report.errors] == [(6, "Q parameter not defined")]
@@ -160,19 +162,19 @@ def test_the_start_goes_by_the_switch_as_it_stands() -> None:
 
 def test_a_tool_that_only_the_other_setting_calls_hinders_no_start() -> None:
     report = proved("/T7", "/X.5Z.1", "M30", deleted=True)
-    assert (report.missing_tools, report.tools) == ((), (1,))
+    assert (report.missing_tools, report.tool_numbers) == ((), (1,))
     assert proved("/T7", "/X.5Z.1", "M30").missing_tools == (7,)
 
 
 def test_a_tool_that_only_a_branch_uses_is_demanded_before_the_start() -> None:
     report = proved("M97I1C1P1", "M30", "}1", "T7", "X.5Z.1", "M99")
     assert report.missing_tools == (7,)
-    assert report.tools == (1, 7)
+    assert report.tool_numbers == (1, 7)
 
 
 def test_the_checks_of_cutting_hold_in_branches() -> None:
     report = proved("M03S500", "M97I1C1P1", "G95F.004Z-.2", "M30", "}1", "M13", "M99")
-    found = {(d.line, d.check, str(d.severity)) for d in report.diagnostics}
+    found = {(d.line, d.check_name, str(d.severity)) for d in report.diagnostics}
     assert (6, "collet-open", "error") in found  # the cut, after a subroutine that has left it open
 
 
@@ -188,25 +190,31 @@ def test_an_input_that_changes_between_two_questions_is_a_warning() -> None:
 def test_the_range_of_the_cycle_time_is_that_of_the_inputs() -> None:
     lines = ("LS4", "Z-1F20", "M97I1C1P1", "Z.1F300", "LF", "M30", "}1", "X1F10", "G04F2", "X.5", "M99")
     off, on = proved(*lines), proved(*lines, i1=True)
-    assert off.times.cycle < on.times.cycle - 10
+    assert off.times.cycle_s < on.times.cycle_s - 10
     for report in (off, on):
-        assert report.ways.cycle == pytest.approx((off.times.cycle, on.times.cycle), abs=0.05)
-        assert report.ways.proved == 5
+        assert report.branch_summary.cycle_time_range == pytest.approx(
+            (off.times.cycle_s, on.times.cycle_s), abs=0.05
+        )
+        assert report.branch_summary.proved_count == 5
 
 
 def test_block_delete_counts_in_the_range() -> None:
     lines = ("/G04F3", "G04F1", "M30")
     off, on = proved(*lines), proved(*lines, deleted=True)
-    assert off.times.cycle == pytest.approx(on.times.cycle + 3)
-    assert off.ways.cycle == on.ways.cycle == (on.times.cycle, off.times.cycle)
+    assert off.times.cycle_s == pytest.approx(on.times.cycle_s + 3)
+    assert (
+        off.branch_summary.cycle_time_range
+        == on.branch_summary.cycle_time_range
+        == (on.times.cycle_s, off.times.cycle_s)
+    )
 
 
 def test_a_program_that_asks_nothing_is_gone_through_once() -> None:
-    reading = ReadProgram(Source("A", "\n".join((*HEAD, "M98P1", *SUB))))
-    assert program_branches.Branches(reading, circumstances(), MACHINE, ideal=False).root is None
+    reading = SharedProgram(ProgramSource("A", "\n".join((*HEAD, "M98P1", *SUB))))
+    assert program_branches.BranchProof(reading, circumstances(), MACHINE, ideal=False).root_pass is None
     report = proved("Z-1", "M30")
-    assert (report.ways.proved, report.ways.unproved) == (1, 0)
-    assert report.ways.cycle == (report.times.cycle,) * 2
+    assert (report.branch_summary.proved_count, report.branch_summary.unproved_count) == (1, 0)
+    assert report.branch_summary.cycle_time_range == (report.times.cycle_s,) * 2
 
 
 def many(count: int) -> tuple[str, ...]:
@@ -218,21 +226,21 @@ def many(count: int) -> tuple[str, ...]:
 
 def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [d.code for d in proved(*many(5)).diagnostics] == []
-    monkeypatch.setattr(program_branches, "MOST_WAYS", 3)
+    monkeypatch.setattr(program_branches, "MAX_BRANCHES", 3)
     report = proved(*many(5))
     (found,) = report.diagnostics
-    assert (found.code, found.check, str(found.severity)) == (
+    assert (found.code, found.check_name, str(found.severity)) == (
         "unreached-branch",
         "unreached-branch",
         "warning",
     )
     assert "Branches not proved: input " in found.message
-    assert report.ways.proved == 3
+    assert report.branch_summary.proved_count == 3
 
 
 def test_outcomes_that_no_proof_could_go_through_one_by_one_end() -> None:
     report = proved(*many(14))
-    assert report.ways.unproved > 0
+    assert report.branch_summary.unproved_count > 0
     assert [d.code for d in report.diagnostics] == ["unreached-branch"]
     assert "Never proved" not in report.diagnostics[0].message  # every subroutine was
 
@@ -241,7 +249,7 @@ def test_a_loop_of_bar_work_with_many_passes_is_proved() -> None:
     sub = ("LF", "M30", "}1", "X.6Z.2", "X.5Z.1", "M99")
     report = proved("LS900", "Z-.1F50", "M97I1C1P1", "Z.1", *sub)
     assert errors(report) == []
-    assert report.ways.proved == program_branches.MOST_WAYS
+    assert report.branch_summary.proved_count == program_branches.MAX_BRANCHES
 
 
 def test_a_subroutine_that_nothing_calls_is_told() -> None:
@@ -253,8 +261,8 @@ def test_a_subroutine_that_nothing_calls_is_told() -> None:
 def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
     tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
     source = load_source(SAMPLES / "pinbar.nc")
-    setup = setup_for(MACHINE, tools=tools, secondary=secondary)
-    assert prove(source, setup, MACHINE).ways.proved == 2
+    setup = create_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary)
+    assert prove(source, setup, MACHINE).branch_summary.proved_count == 2
     worse = replace(source, text=source.text.replace("M31\n", "M31\nZ9.5\n"))
     (found,) = prove(worse, setup, MACHINE).errors
     assert (found.line, found.code) == (35, "soft-limit")
@@ -282,14 +290,14 @@ def in_turn(answers: Sequence[bool]) -> Callable[[str], bool]:
 
 def by_every_answer(text: str, questions: int) -> Iterator[int]:
     """The lines that leave the travel, with each set of answers to so many questions in turn."""
-    reading = ReadProgram(Source("A", text))
+    reading = SharedProgram(ProgramSource("A", text))
     for deleted, answers in product((False, True), product((False, True), repeat=questions)):
-        interpreter = reading.begin(replace(circumstances(), block_delete=deleted))
+        interpreter = reading.start_pass(replace(circumstances(), block_delete=deleted))
         assert isinstance(interpreter, Interpreter)
         state = interpreter._state
         state.setup = replace(state.setup, inputs=in_turn(answers))
-        moves = [block for block in interpreter.blocks() if block.moves]
-        yield from (found.line for found in travel_findings(moves, MACHINE))
+        moves = [block for block in interpreter.generate_blocks() if block.moves]
+        yield from (found.line for found in check_travel(moves, MACHINE))
 
 
 @settings(max_examples=40, deadline=None)
@@ -300,6 +308,6 @@ def test_the_proof_finds_what_some_set_of_answers_does_and_nothing_else(
     text = text_of(main, one, two, three)
     questions = sum((1 + (at < 2)) * (each.lstrip("/")[:3] in {"M97", "M95"}) for at, each in enumerate(main))
     expected = set(by_every_answer(text, questions))
-    report = prove(Source("A", text), circumstances(), MACHINE)
+    report = prove(ProgramSource("A", text), circumstances(), MACHINE)
     assert {d.line for d in report.diagnostics if d.code == "soft-limit"} == expected
-    assert report.ways.unproved == 0
+    assert report.branch_summary.unproved_count == 0

@@ -5,28 +5,30 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.shared.elementary_blocks import Kind
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Dialect, Source
-from core.proving.program_timeline import Timeline, timed_blocks
+from core.language.source import Dialect, ProgramSource
+from core.proving.program_timeline import Timeline, iter_timed_blocks
 from core.proving.prove_program import prove
 
 MACHINE = load_machine()
 HEAD = "G90G94F300G73\nM03S600\nT1\nX.3Z.2\nX.25\n"
 
 
-def laid(text: str, dialect: Dialect = Dialect.OMNITURN, *, ideal: bool = True) -> list[tuple[Kind, float]]:
-    setup = setup_for(MACHINE, tools={1: ToolOffset()}, secondary={})
-    timeline = Timeline.of(Source("T", text, dialect), setup, MACHINE, ideal=ideal)
-    found = [(block.kind, t1 - t0) for block, t0, t1 in timed_blocks(timeline)]
-    assert not timeline.errors, timeline.diagnostics
+def laid(
+    text: str, dialect: Dialect = Dialect.OMNITURN, *, ideal: bool = True
+) -> list[tuple[BlockKind, float]]:
+    setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    timeline = Timeline.from_program(ProgramSource("T", text, dialect), setup, MACHINE, ideal=ideal)
+    found = [(block.kind, t1 - t0) for block, t0, t1 in iter_timed_blocks(timeline)]
+    assert not timeline.has_errors, timeline.diagnostics
     return found
 
 
 def test_ways_take_length_over_speed() -> None:
     """.1 in of radius and .1 in of Z at 300 in/min, then 2 in at .01 in/rev and 600 rpm: 20 s."""
-    times = [t for kind, t in laid(HEAD + "G95F.01\nZ-1.8\nM30\n") if kind is Kind.FEED]
+    times = [t for kind, t in laid(HEAD + "G95F.01\nZ-1.8\nM30\n") if kind is BlockKind.FEED]
     assert times[-1] == pytest.approx(20.0, abs=1e-6)
 
 
@@ -35,16 +37,19 @@ def test_corners_and_waits_take_nothing() -> None:
     side = "Z-.8\nX.125\nZ.2\nX.25\n"
     text = HEAD + "G94F60\n" + side * 2 + "M30\n"
     report = prove(
-        Source("T", text), setup_for(MACHINE, tools={1: ToolOffset()}, secondary={}), MACHINE, ideal=True
+        ProgramSource("T", text),
+        create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        MACHINE,
+        ideal=True,
     )
-    assert report.times.wait == 0.0
-    assert report.times.cutting == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)
+    assert report.times.wait_s == 0.0
+    assert report.times.cutting_s == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)
 
 
 def test_a_thread_waits_for_no_index() -> None:
     """Ten turns of .1 s a pass, and nothing before it."""
     found = laid(HEAD + "G33X.249Z-.8I.01K.1\nM30\n")
-    assert [t for kind, t in found if kind is Kind.THREAD] == pytest.approx([1.0, 1.0], abs=1e-6)
+    assert [t for kind, t in found if kind is BlockKind.THREAD] == pytest.approx([1.0, 1.0], abs=1e-6)
 
 
 def test_a_real_machine_takes_longer() -> None:

@@ -16,15 +16,15 @@ from typing import Any
 
 import pytest
 
-from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.said_stock import ProgramBefore, said_stock
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
+from app.compose.specified_stock import StockContext, read_stock
 from app.offsets.offsets_file import read_tool_shapes
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import ClampingModel
-from core.proving.part_proof import prove_with_part, refusing_missing_offsets
+from core.proving.part_proof import prove_with_part, require_tool_offsets
 
 CATALOGUE = Path(__file__).parent / "slip_catalogue"
 JOBS: dict[str, dict[str, Any]] = tomllib.loads((CATALOGUE / "jobs.toml").read_text())
@@ -78,16 +78,20 @@ def findings(job: str, line: int, text: str, folder: Path) -> list[tuple[int, st
     shapes_file = folder / "tools.toml"
     shapes_file.write_text(told["tools"])
     shapes = read_tool_shapes(shapes_file)
-    machine = replace(load_machine(None), clamping=ClampingModel(diameter=3.0 * INCH), tooling="single")
+    machine = replace(load_machine(None), clamping=ClampingModel(diameter=3.0 * INCH), tooling_kind="single")
     tools = {n: ToolOffset(-12.7, -50.8, shape.nose_radius) for n, shape in shapes.items()}
-    setup = setup_for(machine, tools=tools, secondary={1: SecondaryOffset(-NOSE, -NOSE, NOSE)})
-    setting = known_part(machine, tools, shapes, told["stick_out"] * INCH)
-    before = ProgramBefore(lambda path: Source(path.name, ""), setup, machine, setting)
-    setting = replace(setting, stock=said_stock(told["stock"], before))
-    report, _ = prove_with_part(Source(job, "\n".join(lines) + "\n"), setup, machine, setting)
-    report = refusing_missing_offsets(report, setup)
+    setup = create_setup(
+        machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-NOSE, -NOSE, NOSE)}
+    )
+    setting = read_known_part(machine, tools, shapes, told["stick_out"] * INCH)
+    before = StockContext(lambda path: ProgramSource(path.name, ""), setup, machine, setting)
+    setting = replace(setting, stock=read_stock(told["stock"], before))
+    report, _ = prove_with_part(ProgramSource(job, "\n".join(lines) + "\n"), setup, machine, setting)
+    report = require_tool_offsets(report, setup)
     return [
-        (d.line, str(d.severity), d.check or d.code) for d in report.diagnostics if str(d.severity) != "note"
+        (d.line, str(d.severity), d.check_name or d.code)
+        for d in report.diagnostics
+        if str(d.severity) != "note"
     ]
 
 

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.checks.part_checks import is_serious
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 
 PROGRAMS = Path(__file__).parents[2] / "resources" / "programs"
 _FEED = re.compile(r"(G9[45])?F\.?\d[\d.]*|G01")
@@ -70,14 +70,16 @@ def slips(lines: list[str]) -> Iterator[tuple[str, int, str]]:
 def test_a_slip_in_a_sample_is_an_error_or_named_here(name: str) -> None:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 9)}
-    setup = setup_for(machine, tools=tools, secondary={1: SecondaryOffset(-0.381, -0.381, 0.381)})
-    setting = PartSetting(drives=known_part(machine, {}, {}).drives)
+    setup = create_setup(
+        machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-0.381, -0.381, 0.381)}
+    )
+    setting = PartSettings(drives=read_known_part(machine, {}, {}).drives)
     lines = (PROGRAMS / f"{name}.nc").read_text(encoding="utf-8").splitlines()
     missed: dict[str, set[int]] = {"rapid": set(), "point": set(), "minus": set()}
     made = 0
     for kind, at, line in slips(lines):
         text = "\n".join([*lines[: at - 1], line, *lines[at:]])
-        report, _ = prove_with_part(Source(name, text), setup, machine, setting)
+        report, _ = prove_with_part(ProgramSource(name, text), setup, machine, setting)
         made += 1
         if not any(map(is_serious, report.diagnostics)):
             missed[kind].add(at)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from core.proving.proof_report import PartReport
 
 PROGRAMS = {
@@ -178,8 +178,10 @@ M30
 
 def part_of(text: str) -> PartReport:
     machine = load_machine(None)
-    setup = setup_for(machine, tools={n: ToolOffset(12.7, -76.2) for n in range(1, 9)}, secondary={})
-    report, part = prove_with_part(Source("SOUND", text), setup, machine, PartSetting())
+    setup = create_setup(
+        machine, tool_offsets={n: ToolOffset(12.7, -76.2) for n in range(1, 9)}, secondary_offsets={}
+    )
+    report, part = prove_with_part(ProgramSource("SOUND", text), setup, machine, PartSettings())
     assert part is not None
     assert report.errors == ()
     return part
@@ -189,17 +191,17 @@ def part_of(text: str) -> PartReport:
 def test_a_sound_program_gives_no_alarm_and_cuts(name: str) -> None:
     part = part_of(PROGRAMS[name])
     assert part.findings == ()
-    assert part.removed > 100.0
+    assert part.removed_volume_mm3 > 100.0
 
 
 def test_what_is_made_of_them() -> None:
     first = part_of(PROGRAMS["a spindle switched by hand, and no G00"])
-    assert len(first.pieces) == 1
-    bored = part_of(PROGRAMS["drilled, bored, grooved inside"]).last
+    assert len(first.parted_pieces) == 1
+    bored = part_of(PROGRAMS["drilled, bored, grooved inside"]).last_piece
     assert bored is not None
-    assert bored.bore is not None
-    assert max(r for _, r in bored.bore) == pytest.approx(0.26 * 25.4, abs=0.01)
-    assert min(r for _, r in bored.bore) == 0.0  # where the drill has not been
-    rear = part_of(PROGRAMS["a tool behind the axis, spindle backwards"]).last
+    assert bored.bore_profile is not None
+    assert max(r for _, r in bored.bore_profile) == pytest.approx(0.26 * 25.4, abs=0.01)
+    assert min(r for _, r in bored.bore_profile) == 0.0  # where the drill has not been
+    rear = part_of(PROGRAMS["a tool behind the axis, spindle backwards"]).last_piece
     assert rear is not None
-    assert rear.outside[1][1] == pytest.approx(0.2 * 25.4, abs=0.01)
+    assert rear.outside_profile[1][1] == pytest.approx(0.2 * 25.4, abs=0.01)

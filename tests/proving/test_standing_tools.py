@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
-from core.part.stock import bar
+from core.part.stock import make_bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_proof import prove_with_part, refusing_missing_offsets
+from core.proving.part_proof import prove_with_part, require_tool_offsets
 
-ROD = bar(19.05, 0.0, -60.0)
+ROD = make_bar(19.05, 0.0, -60.0)
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
 BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.4, insert="DCMT070204", diameter=5.0, stick_out=40.0)
 DRILL = ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=40.0)
@@ -32,9 +32,9 @@ def found(
     machine = machine or load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in SHAPES}
     shapes = SHAPES if shapes is None else shapes
-    setting = replace(known_part(machine, {}, shapes), stock=ROD)
-    setup = setup_for(machine, tools=tools, secondary={})
-    report, _ = prove_with_part(Source("P", f"{HEAD}{program}\nM30\n"), setup, machine, setting)
+    setting = replace(read_known_part(machine, {}, shapes), stock=ROD)
+    setup = create_setup(machine, tool_offsets=tools, secondary_offsets={})
+    report, _ = prove_with_part(ProgramSource("P", f"{HEAD}{program}\nM30\n"), setup, machine, setting)
     return [(each.line, str(each.severity), each.code) for each in report.diagnostics]
 
 
@@ -88,9 +88,11 @@ def test_a_tool_without_an_offset_is_an_error_where_others_have_one(
 ) -> None:
     """T3 has none while T1 has one; or no offset has been entered at all, as in an office."""
     machine = load_machine(None)
-    setup = setup_for(machine, tools={n: ToolOffset(-12.7, -50.8) for n in known}, secondary={})
-    program = Source("P", f"{HEAD}{HOLE.format(t=3, x='0', stop='')}\nM30\n")
-    report, _ = prove_with_part(program, setup, machine, known_part(machine, {}, SHAPES))
-    report = refusing_missing_offsets(report, setup)
+    setup = create_setup(
+        machine, tool_offsets={n: ToolOffset(-12.7, -50.8) for n in known}, secondary_offsets={}
+    )
+    program = ProgramSource("P", f"{HEAD}{HOLE.format(t=3, x='0', stop='')}\nM30\n")
+    report, _ = prove_with_part(program, setup, machine, read_known_part(machine, {}, SHAPES))
+    report = require_tool_offsets(report, setup)
     (told,) = [each for each in report.diagnostics if each.code == "tool-offset-missing"]
     assert str(told.severity) == severity

@@ -7,23 +7,23 @@ from typing import Any
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
-from core.language.source import Source
-from core.part.stock import Clamping, Stock, bar, tube
+from core.language.source import ProgramSource
+from core.part.stock import Clamping, Stock, make_bar, make_tube
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.checks.part_checks import CHECKS
-from core.proving.checks.thread_checks import Drives
+from core.proving.checks.part_checks import PART_CHECKS
+from core.proving.checks.thread_checks import DriveLimits
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from core.proving.prove_program import prove
-from core.tool_edges import edge_key
+from core.tool_edges import make_edge_key
 from tests.proving import test_edge_checks, test_part_proof, test_thread_checks
 from tests.proving.test_part_proof import text
 
-LATHE = shipped_machine("sinumerik-modulo")
+LATHE = load_shipped_machine("sinumerik-modulo")
 # Code words that one language has and another has not, or means something else by.
 CODES = re.compile(r"\b(G(?!96\b)\d{2,3}\w*|M\d{1,3}|LIMS|L[SF]\d*|RF|TOOL CALL|CYCL\w*)\b")
 OMNITURN = re.compile(r"\b(G(7[0-9]|10|0\d|3[1-6]|92)\w*|M0\d|M1[0-9]|L[SF]\d*\b|RF\b|secondary|collet)")
@@ -31,10 +31,10 @@ KLARTEXT = re.compile(r"\bTOOL CALL|\bCYCL DEF|\bFMAX|\bL [XZ]")
 SINUMERIK = re.compile(r"\bLIMS|\bCYCLE\d|\bDIAM|\bT\d+ D\d|\bTRANS\b|\bG5[4-9]\b|\bMCALL")
 
 
-@pytest.mark.parametrize("name", CHECKS)
+@pytest.mark.parametrize("name", PART_CHECKS)
 def test_what_to_do_about_a_check_of_the_part_names_no_code(name: str) -> None:
     """These checks serve every language of a lathe; S, X, Z, F, K and G96 are the same in all of them."""
-    assert CODES.findall(CHECKS[name].remedy) == []
+    assert CODES.findall(PART_CHECKS[name].remedy) == []
 
 
 def in_sinumerik(program: str) -> str:
@@ -50,10 +50,12 @@ def in_sinumerik(program: str) -> str:
 
 def found(program: str, stock: Stock | None, shapes: dict[int, ToolShape], **said: Any) -> list[Diagnostic]:
     """Return what the proof finds in a SINUMERIK program; ``said`` are further fields of the setting."""
-    keys = {edge_key(n, 1): shape for n, shape in shapes.items()}
-    setup = setup_for(LATHE, tools=dict.fromkeys(keys, ToolOffset(-12.7, -50.8)), secondary={})
-    setting = PartSetting(stock, keys, **said)
-    report, part = prove_with_part(Source("a.mpf", program), setup, LATHE, setting)
+    keys = {make_edge_key(n, 1): shape for n, shape in shapes.items()}
+    setup = create_setup(
+        LATHE, tool_offsets=dict.fromkeys(keys, ToolOffset(-12.7, -50.8)), secondary_offsets={}
+    )
+    setting = PartSettings(stock, keys, **said)
+    report, part = prove_with_part(ProgramSource("a.mpf", program), setup, LATHE, setting)
     assert part is not None
     return list(report.diagnostics)
 
@@ -81,14 +83,14 @@ TURNED = {
 def test_a_mistake_in_sinumerik_is_told_in_its_words(name: str) -> None:
     program, stock, shapes, check = TURNED[name]
     told = found(program, stock, shapes)
-    assert check.split(maxsplit=1)[0].rstrip(",") in {each.check for each in told}
+    assert check.split(maxsplit=1)[0].rstrip(",") in {each.check_name for each in told}
     assert [each for each in told if not reads_as(each, OMNITURN, KLARTEXT)] == []
 
 
 HEAD = "G90 G94 G700 DIAMOF F300\nS1500 M3\n"
-ROD, PIPE = bar(25.4, 0.0, -60.0), tube(25.4, 12.0, 0.0, -60.0)
+ROD, PIPE = make_bar(25.4, 0.0, -60.0), make_tube(25.4, 12.0, 0.0, -60.0)
 CHUCK = Clamping(100.0, 40.0, 0.0, 60.0, max_rpm=1000.0)
-CENTRE = Clamping(0.0, 0.0, quill=12.0, point=60.0, centre=-3.0)
+CENTRE = Clamping(0.0, 0.0, quill_diameter=12.0, center_angle_deg=60.0, center_z_mm=-3.0)
 PASS = "T{t} D1\nX.6 Z.05\nX.4\nG95 F.004 Z{z}\nX.6\nG94 F300 Z1\n"
 HOLE = "T3 D1\nX{x} Z.1\nG95 F.004 Z{z}\nG94 F300 Z1\n"
 ARC = "T1 D1\nX.6 Z.05\nX.4\nG95 F.004 Z-.6\nG3 X.425 Z-.625 CR=.025\nG1 X.6\nG94 F300 Z1\n"
@@ -100,7 +102,7 @@ MORE: dict[str, tuple[str, Stock, dict[str, Any]]] = {
     "spindle-overspeed": (PASS.format(t=1, z="-.3"), ROD, {"clamping": CHUCK}),
     "into-tailstock": (PASS.format(t=1, z="-.3").replace("X.4", "X.03"), ROD, {"clamping": CENTRE}),
     "stock-whips": (
-        PASS.format(t=1, z="-.3").replace("X.4", "X.08"), bar(6.0, 0.0, -320.0),
+        PASS.format(t=1, z="-.3").replace("X.4", "X.08"), make_bar(6.0, 0.0, -320.0),
         {"clamping": Clamping(100.0, 300.0, 10.0, 60.0)},
     ),
     "neighbour-tool": (PASS.format(t=1, z="-.5"), ROD, {"gang": {1: (-50.8, -12.7), 3: (-50.8, 2.3)}}),
@@ -108,9 +110,9 @@ MORE: dict[str, tuple[str, Stock, dict[str, Any]]] = {
     "drill-off-axis": (HOLE.format(x=".02", z="-.3"), ROD, {}),
     "past-stock": (HOLE.format(x="0", z="-2.9"), ROD, {}),
     "no-bore": (PASS.format(t=4, z="-.5").replace("X.6", "X.3").replace("X.4", "X.4"), ROD, {}),
-    "contour-past-part-off": (ARC + OFF, bar(25.4, 0.0, -80.0), {}),
+    "contour-past-part-off": (ARC + OFF, make_bar(25.4, 0.0, -80.0), {}),
     "thread-in-air": (THREAD.format(r=".55"), ROD, {}),
-    "thread-run-up": (THREAD.format(r=".49").replace("Z.2", "Z.02"), ROD, {"drives": Drives(20.0)}),
+    "thread-run-up": (THREAD.format(r=".49").replace("Z.2", "Z.02"), ROD, {"drives": DriveLimits(20.0)}),
     "drill-without-limit": (
         HOLE.format(x="0", z="-.3").replace("D1", "D1\nG96 S90 F.004").replace("G95 F.004 ", ""), ROD, {},
     ),
@@ -131,15 +133,15 @@ def test_what_holds_the_part_is_told_in_its_words(check: str) -> None:
     program, stock, said = MORE[check]
     shapes = {**test_edge_checks.SHAPES, 10: TAP}
     if "gang" in said:
-        said = {"gang": {edge_key(n, 1): at for n, at in said["gang"].items()}}
+        said = {"gang": {make_edge_key(n, 1): at for n, at in said["gang"].items()}}
     told = found(f"{HEAD}{program}M30\n", stock, shapes, **said)
-    assert check in {each.check for each in told}
+    assert check in {each.check_name for each in told}
     assert [each for each in told if not reads_as(each, OMNITURN, KLARTEXT)] == []
 
 
 def test_every_check_of_the_part_is_raised_in_sinumerik() -> None:
     raised = {name.split(maxsplit=1)[0].rstrip(",") for *_, name in TURNED.values()} | set(MORE)
-    assert CHECKS.keys() - raised == set()
+    assert PART_CHECKS.keys() - raised == set()
 
 
 FACE = "G90 G94 G71 DIAMOF F3000\nT1 D1\nG0 X20 Z2\n{limit}G96 S200 F.1 M3\nG1 Z0\nX0\nM30\n"
@@ -174,8 +176,8 @@ def test_a_surface_speed_with_a_limit_is_right_in_sinumerik(limit: str) -> None:
     "body", ["L Z+5 R0 FMAX\nL Z-5 F200\nTOOL CALL 1 Z S100\nL Z-9 M3", "TOOL CALL 1 Z S100\nL Z+9000 FMAX"]
 )
 def test_a_mistake_in_klartext_is_told_in_its_words(body: str) -> None:
-    mill = shipped_machine("ac-table-mill")
-    setup = setup_for(mill, tools={1: ToolOffset()}, secondary={})
-    told = prove(Source("a.h", f"BEGIN PGM A MM\n{body}\nEND PGM A MM\n"), setup, mill).diagnostics
+    mill = load_shipped_machine("ac-table-mill")
+    setup = create_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    told = prove(ProgramSource("a.h", f"BEGIN PGM A MM\n{body}\nEND PGM A MM\n"), setup, mill).diagnostics
     assert told
     assert [each for each in told if not reads_as(each, OMNITURN, SINUMERIK)] == []

@@ -7,19 +7,19 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.known_part import known_part
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.shared.elementary_blocks import Kind
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Source
-from core.part.stock import Stock, bar, tube
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import ProgramSource
+from core.part.stock import Stock, make_bar, make_tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.proving.assumed_tools import groove_width, tap_size
-from core.proving.checks.thread_checks import Drives
+from core.proving.assumed_tools import find_groove_width, parse_tap_size
+from core.proving.checks.thread_checks import DriveLimits
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from core.proving.tip_moves import TipMove
 from tests.proving.test_part_proof import WAYS, text
 
@@ -27,29 +27,32 @@ TAP = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27)
 V = ToolShape(ToolKind.THREADING, tip=8, point=60.0, pitch=1.27)
 
 
-def move(start: tuple[float, float], end: tuple[float, float], kind: Kind = Kind.THREAD) -> TipMove:
+def move(start: tuple[float, float], end: tuple[float, float], kind: BlockKind = BlockKind.THREAD) -> TipMove:
     """One of 1 mm a turn."""
-    return TipMove(1, 1, kind, (start, end), 10.0, False, 1.0, 600.0, Modal())
+    return TipMove(1, 1, kind, (start, end), 10.0, False, 1.0, 600.0, ModalState())
 
 
 SHAPES = {4: TAP, 5: V}
-ROD = bar(12.7, 0.0, -60.0)
-DRILLED = tube(25.4, 5.1, 0.0, -60.0)
+ROD = make_bar(12.7, 0.0, -60.0)
+DRILLED = make_tube(25.4, 5.1, 0.0, -60.0)
 
 
 def findings(
-    program: str, stock: Stock = ROD, drives: Drives | None = None, shapes: dict[int, ToolShape] = SHAPES
+    program: str, stock: Stock = ROD, drives: DriveLimits | None = None, shapes: dict[int, ToolShape] = SHAPES
 ) -> list[tuple[str, int]]:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
-    known = known_part(machine, {}, shapes)
-    setting = PartSetting(stock, shapes, drives=drives or known.drives)
+    known = read_known_part(machine, {}, shapes)
+    setting = PartSettings(stock, shapes, drives=drives or known.drives)
     report, part = prove_with_part(
-        Source("P", program), setup_for(machine, tools=tools, secondary={}), machine, setting
+        ProgramSource("P", program),
+        create_setup(machine, tool_offsets=tools, secondary_offsets={}),
+        machine,
+        setting,
     )
     assert part is not None
     assert report.errors == tuple(each for each in part.findings if each.severity == "error")
-    return [(each.check, each.line) for each in part.findings]
+    return [(each.check_name, each.line) for each in part.findings]
 
 
 TAPPED = "M05\nM03S1000\nT4\nX[0]Z[.1]\nG95F[.05]Z[-.4]\nM04\nG04F.5\nZ[.1]\nG94F[300]Z[1]"
@@ -114,8 +117,10 @@ def test_a_left_hand_thread_tells_how_wide_the_groove_is_that_it_begins_in(
 
 def test_a_groove_of_unknown_width_is_two_millimetres_or_what_its_thread_needs() -> None:
     def width(z0: float, z1: float, tip: int = 3) -> float:
-        plunge = move((-10.0, 8.0), (-10.0, 5.0), Kind.FEED)
-        return groove_width(ToolShape(ToolKind.GROOVING, tip=tip), [plunge], [move((z0, 6.0), (z1, 6.0))])
+        plunge = move((-10.0, 8.0), (-10.0, 5.0), BlockKind.FEED)
+        return find_groove_width(
+            ToolShape(ToolKind.GROOVING, tip=tip), [plunge], [move((z0, 6.0), (z1, 6.0))]
+        )
 
     assert width(-8.0, 5.0) == pytest.approx(2.5)  # and half the lead of 1 mm
     assert width(-8.0, -9.0) == 2.0  # of a thread towards the chuck its end tells nothing
@@ -137,15 +142,15 @@ def test_a_thread_that_begins_in_front_of_part_zero_needs_its_run_up_there(
     """.05 in at 600 rpm are 12.7 mm/s: with 20 mm/s² that is 4.03 mm. The bar stands .1 in before Z0."""
     lines = THREAD.format(p="P")
     lines = lines.replace("I[.01]", "I[.02]") if diameter else lines
-    slow = Drives(slide_accel=20.0)
+    slow = DriveLimits(z_acceleration=20.0)
     program = text(lines, metric=metric, diameter=diameter)
-    assert findings(program, bar(12.7, 2.54, -60.0), slow) == [("thread-run-up", 8)]
-    assert findings(program, bar(12.7, 0.5, -60.0), slow) == []
+    assert findings(program, make_bar(12.7, 2.54, -60.0), slow) == [("thread-run-up", 8)]
+    assert findings(program, make_bar(12.7, 0.5, -60.0), slow) == []
 
 
 def test_a_slide_that_brakes_in_metal_for_more_than_a_lead() -> None:
     """12.7 mm/s and 50 mm/s² are 1.6 mm, more than the lead of 1.27; run-up is 5 mm."""
-    slow = Drives(slide_accel=50.0)
+    slow = DriveLimits(z_acceleration=50.0)
     assert findings(text(CUT), drives=slow) == [("thread-run-up", 8)]
     assert findings(text(THREAD.format(p="P")), drives=slow) == []  # goes on while it pulls out
     relief = Stock(
@@ -185,4 +190,4 @@ def test_a_left_hand_tap_goes_in_backwards() -> None:
     ],
 )
 def test_the_size_of_a_tap_in_a_comment(comment: str, size: tuple[float, float]) -> None:
-    assert tap_size(comment) == pytest.approx(size)
+    assert parse_tap_size(comment) == pytest.approx(size)

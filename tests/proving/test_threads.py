@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.shared.elementary_blocks import Kind
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
-from core.proving.program_timeline import MotionSpan, Timeline, timed_blocks
+from core.language.source import ProgramSource
+from core.proving.program_timeline import MotionSpan, Timeline, iter_timed_blocks
 from core.proving.prove_program import prove
-from core.proving.setpoint_trace import setpoints
+from core.proving.setpoint_trace import iter_setpoints
 from core.proving.spindle_forecast import SpindleForecast
 
 MACHINE = load_machine()
@@ -20,13 +20,13 @@ MULTI = "".join(f"Z{z}\nG33X.24Z-.5I.01K.15\n" for z in (".2", ".25", ".3"))
 
 
 def timeline(text: str) -> Timeline:
-    setup = setup_for(MACHINE, tools={1: ToolOffset()}, secondary={})
-    return Timeline.of(Source("T", text), setup, MACHINE)
+    setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    return Timeline.from_program(ProgramSource("T", text), setup, MACHINE)
 
 
 def test_a_pass_takes_its_turns() -> None:
     laid = timeline(HEAD + "G33X.25Z-.8I.01K.1\nM30\n".replace("X.25Z", "X.249Z"))
-    times = [t1 - t0 for block, t0, t1 in timed_blocks(laid) if block.kind is Kind.THREAD]
+    times = [t1 - t0 for block, t0, t1 in iter_timed_blocks(laid) if block.kind is BlockKind.THREAD]
     # ten turns of .1 s, and half a ramp of 25.4 mm/s at 3048 mm/s² at each end
     assert times == [pytest.approx(1.0 + 25.4 / 3048, abs=2e-3)] * len(times)
     assert len(times) == 2
@@ -37,8 +37,10 @@ def test_starts_a_third_of_the_lead_apart_make_helices_120_degrees_apart(rpm: in
     laid = timeline(HEAD.replace("600", str(rpm)) + MULTI + "M30\n")
     crossed: list[tuple[int, float]] = []
     before: tuple[float, float, int] | None = None
-    for rows in setpoints(laid, 0.001):
-        for z, degrees, line in zip(rows.at[:, 1], rows.turned, rows.line, strict=True):
+    for rows in iter_setpoints(laid, 0.001):
+        for z, degrees, line in zip(
+            rows.positions[:, 1], rows.spindle_angles_deg, rows.line_numbers, strict=True
+        ):
             fed = before and line == before[2] and 0.0 < before[0] - z < 2.2 * 25.4 * 0.15 * rpm / 60 * 0.001
             if before and fed and before[0] > 0.0 >= z and before[0] - z < 0.08:
                 share = before[0] / (before[0] - z)
@@ -55,10 +57,10 @@ def test_starts_a_third_of_the_lead_apart_make_helices_120_degrees_apart(rpm: in
 def test_the_wait_is_no_longer_than_a_turn() -> None:
     laid = timeline(HEAD + "G33X.24Z-.5I.01K.05PC\nM30\n")
     waits, rests = [], []
-    for span in laid.spans():
+    for span in laid.iter_spans():
         if not isinstance(span, MotionSpan):
-            rests.append(span.t1 - span.t0)
-        elif span.blocks[0].kind is Kind.THREAD:
+            rests.append(span.end_time_s - span.start_time_s)
+        elif span.blocks[0].kind is BlockKind.THREAD:
             waits.append(rests[-1])  # behind the settling and the commit
     assert len(waits) == 4
     assert all(0.0 <= wait <= 0.1 for wait in waits)
@@ -67,12 +69,14 @@ def test_the_wait_is_no_longer_than_a_turn() -> None:
 
 def test_turns_are_the_area_under_the_speed() -> None:
     spindle = SpindleForecast(MACHINE)
-    spindle.command(0.0, 600.0)  # from .08 on 1500 rpm/s: .4 s and 2 turns
-    assert spindle.turns(0.08) == 0.0
-    assert spindle.turns(0.48) == pytest.approx(2.0)
-    assert spindle.turns(1.48) == pytest.approx(12.0)
-    spindle.command(2.0, -300.0)  # .8 turns at speed, then 600 rpm down at 2500 rpm/s, 300 up at 1500 rpm/s
-    assert spindle.turns(3.0) == pytest.approx(
+    spindle.command_speed(0.0, 600.0)  # from .08 on 1500 rpm/s: .4 s and 2 turns
+    assert spindle.revolutions_at(0.08) == 0.0
+    assert spindle.revolutions_at(0.48) == pytest.approx(2.0)
+    assert spindle.revolutions_at(1.48) == pytest.approx(12.0)
+    spindle.command_speed(
+        2.0, -300.0
+    )  # .8 turns at speed, then 600 rpm down at 2500 rpm/s, 300 up at 1500 rpm/s
+    assert spindle.revolutions_at(3.0) == pytest.approx(
         17.2 + 0.8 + 5.0 * 0.24 - 2.5 * 0.2 - 5.0 * (1.0 - 0.08 - 0.44)
     )
 
@@ -86,5 +90,9 @@ def test_turns_are_the_area_under_the_speed() -> None:
     ],
 )
 def test_what_a_proof_refuses(text: str, code: str) -> None:
-    report = prove(Source("T", text), setup_for(MACHINE, tools={1: ToolOffset()}, secondary={}), MACHINE)
+    report = prove(
+        ProgramSource("T", text),
+        create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        MACHINE,
+    )
     assert code in {found.code for found in report.errors}

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.records.record import Channel, Record, channels_of
+from core.records.record import Channel, ScopeRecord, list_machine_channels
 
 
 def test_a_rotary_axis_counts_degrees_and_inputs_are_logic() -> None:
-    channels = channels_of({"X": False, "C": True}, ("COLLET",), ())
+    channels = list_machine_channels({"X": False, "C": True}, ("COLLET",), ())
     assert Channel("X following error", "mm") in channels
     assert Channel("C actual", "deg") in channels
     assert Channel("input COLLET", "", True) in channels
@@ -16,12 +16,12 @@ def test_a_rotary_axis_counts_degrees_and_inputs_are_logic() -> None:
 
 def test_a_stretch_has_its_ends_and_its_own_time_of_day() -> None:
     times = np.arange(5.0, dtype=np.float64) * 0.25 + 100.0
-    record = Record((Channel("queue", "s"),), times, {"queue": np.arange(5.0)}, 1_000.0, 4.0)
-    cut = record.between(100.25, 100.75)
-    assert cut.columns["queue"].tolist() == [1.0, 2.0, 3.0]
-    assert cut.started == 1_000.25
+    record = ScopeRecord((Channel("queue", "s"),), times, {"queue": np.arange(5.0)}, 1_000.0, 4.0)
+    cut = record.select_between(100.25, 100.75)
+    assert cut.values_by_channel["queue"].tolist() == [1.0, 2.0, 3.0]
+    assert cut.start_time_utc_s == 1_000.25
 
 
 def test_a_stretch_without_samples_is_empty() -> None:
-    record = Record((Channel("queue", "s"),), np.array([1.0]), {"queue": np.array([0.2])}, 5.0, 1.0)
-    assert record.between(2.0, 3.0).times.size == 0
+    record = ScopeRecord((Channel("queue", "s"),), np.array([1.0]), {"queue": np.array([0.2])}, 5.0, 1.0)
+    assert record.select_between(2.0, 3.0).times_s.size == 0

@@ -13,39 +13,42 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.records.record import MOST_BYTES, Channel, Record, RecordError
-from core.records.record_file import ENDING, open_record, save_csv, save_record, write_csv
+from core.records.record import MAX_RECORD_BYTES, Channel, RecordError, ScopeRecord
+from core.records.record_file import RECORD_SUFFIX, open_record, save_csv, save_record, write_csv_lines
 from tests.coded import raises_code
 
 NAN = float("nan")
 CHANNELS = (Channel("X demand", "mm"), Channel("spindle load", "%"), Channel("input guard, left", "", True))
 
 
-def record() -> Record:
+def record() -> ScopeRecord:
     columns = {
         "X demand": np.array([0.1, 1.0 / 3.0, -2.0]),
         "spindle load": np.array([NAN, 12.5, NAN]),
         "input guard, left": np.array([NAN, 0.0, 1.0]),
     }
-    return Record(
+    return ScopeRecord(
         CHANNELS, np.array([5.0, 5.001, 5.25]), columns, 1_700_000_000.5, 1000.0, {"program": "PIN"}
     )
 
 
 def test_what_is_opened_is_what_was_saved_to_the_bit(tmp_path: Path) -> None:
-    save_record(record(), tmp_path / f"one{ENDING}")
-    found, wanted = open_record(tmp_path / f"one{ENDING}"), record()
-    np.testing.assert_array_equal(found.times, wanted.times)
-    for name, column in wanted.columns.items():
-        np.testing.assert_array_equal(found.columns[name], column, name)
+    save_record(record(), tmp_path / f"one{RECORD_SUFFIX}")
+    found, wanted = open_record(tmp_path / f"one{RECORD_SUFFIX}"), record()
+    np.testing.assert_array_equal(found.times_s, wanted.times_s)
+    for name, column in wanted.values_by_channel.items():
+        np.testing.assert_array_equal(found.values_by_channel[name], column, name)
     assert (found.channels, found.about) == (wanted.channels, wanted.about)
-    assert (found.started, found.rate) == (wanted.started, wanted.rate)
+    assert (found.start_time_utc_s, found.sampling_rate_hz) == (
+        wanted.start_time_utc_s,
+        wanted.sampling_rate_hz,
+    )
     assert [each.name for each in tmp_path.iterdir()] == ["one.scope"]
 
 
 def test_csv_has_every_digit_and_leaves_out_what_is_not_known() -> None:
     out = io.StringIO()
-    write_csv(record(), out.write)
+    write_csv_lines(record(), out.write)
     assert out.getvalue().splitlines() == [
         "t [s],X demand [mm],spindle load [%],input guard  left",
         "0.000000,0.1,,",
@@ -74,7 +77,9 @@ def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path: Path) -> Non
         except RecordError as error:
             assert "bad.scope" in str(error)  # noqa: PT017  either it is refused, or nothing is lost
         else:
-            np.testing.assert_array_equal(found.columns["X demand"], record().columns["X demand"])
+            np.testing.assert_array_equal(
+                found.values_by_channel["X demand"], record().values_by_channel["X demand"]
+            )
 
 
 @pytest.mark.parametrize("text", [b"", b"G01X1\n", b"\x00" * 5000, b"PNG no record"])
@@ -145,15 +150,15 @@ def test_a_description_that_does_not_fit_is_refused(tmp_path: Path, changes: dic
 
 @pytest.mark.parametrize("times", [[0.0, NAN, 1.0], [0.0, np.inf, np.inf], [2.0, 1.0, 3.0]])
 def test_times_that_do_not_rise_are_refused(tmp_path: Path, times: list[float]) -> None:
-    save_record(replace(record(), times=np.array(times)), tmp_path / "odd.scope")
+    save_record(replace(record(), times_s=np.array(times)), tmp_path / "odd.scope")
     with raises_code(RecordError, "damaged", "odd.scope"):
         open_record(tmp_path / "odd.scope")
 
 
 def test_an_infinite_figure_is_not_known(tmp_path: Path) -> None:
-    columns = {**record().columns, "spindle load": np.array([1.0, np.inf, -np.inf])}
-    save_record(replace(record(), columns=columns), tmp_path / "one.scope")
-    found = open_record(tmp_path / "one.scope").columns["spindle load"]
+    columns = {**record().values_by_channel, "spindle load": np.array([1.0, np.inf, -np.inf])}
+    save_record(replace(record(), values_by_channel=columns), tmp_path / "one.scope")
+    found = open_record(tmp_path / "one.scope").values_by_channel["spindle load"]
     np.testing.assert_array_equal(found, [1.0, NAN, NAN])
 
 
@@ -164,7 +169,7 @@ def test_an_archive_that_unpacks_to_gigabytes_is_refused_packed(tmp_path: Path) 
     entry = data.index(b"PK\x01\x02")  # of the directory: it says what a member unpacks to
     data[entry + 24 : entry + 28] = (2**32 - 2).to_bytes(4, "little")
     path.write_bytes(data)
-    with raises_code(RecordError, "damaged", "bomb.scope", MOST_BYTES >> 20):
+    with raises_code(RecordError, "damaged", "bomb.scope", MAX_RECORD_BYTES >> 20):
         open_record(path)
 
 

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 from core.records.record import FloatArray, RecordError
-from core.records.record_ring import Recorded, Ring, Rows, bits_of
-from core.records.ring_file import LAST, NOW, RingFile, new_ring, read_ring
+from core.records.record_ring import RingLayout, RowBuffer, ScopeRing, pack_bits
+from core.records.ring_file import LAST, NOW, RingFile, create_ring_file, read_ring_file
 from tests.coded import raises_code
 
 OUTPUTS = tuple(f"out{n}" for n in range(60))  # more than one figure has bits for
-OF = Recorded({"X": False, "C": True}, ("estop", "guard"), OUTPUTS, 1000.0, 1_000_000.0, "LATHE", lasts=1.0)
+OF = RingLayout(
+    {"X": False, "C": True}, ("estop", "guard"), OUTPUTS, 1000.0, 1_000_000.0, "LATHE", duration_s=1.0
+)
 NAN = float("nan")
 
 
@@ -28,28 +30,28 @@ def samples(first: int, count: int) -> FloatArray:
 
 
 def tick(t: float, line: int, on: tuple[str, ...] = ()) -> list[float]:
-    bits = [*bits_of(OF.inputs, ()), *bits_of(OF.outputs, on)]
+    bits = [*pack_bits(OF.inputs, ()), *pack_bits(OF.outputs, on)]
     return [t, 600.0, 599.0, NAN, 1.0, 0.5, 0.25, 0.001, float(line), 7.0, 4.0, *bits]
 
 
-def filled() -> Ring:
-    ring = Ring.of(OF)
+def filled() -> ScopeRing:
+    ring = ScopeRing.from_layout(OF)
     ring.samples.write(samples(0, 500))
     ring.ticks.write(np.array([tick(0.1, 3), tick(0.2, 4, ("out1", "out59"))]))
     return ring
 
 
 def test_a_channel_is_the_drivers_own_or_stands_as_at_the_last_tick() -> None:
-    record = filled().between(0.05, 0.25)
-    assert record.times[[0, -1]] == pytest.approx([0.05, 0.25])
-    assert record.started == pytest.approx(1_000_000.05)
-    columns = record.columns
+    record = filled().get_record_between(0.05, 0.25)
+    assert record.times_s[[0, -1]] == pytest.approx([0.05, 0.25])
+    assert record.start_time_utc_s == pytest.approx(1_000_000.05)
+    columns = record.values_by_channel
     assert columns["X following error"] == pytest.approx(0.01)
-    assert columns["spindle turns"] == pytest.approx(10.0 * record.times)
+    assert columns["spindle turns"] == pytest.approx(10.0 * record.times_s)
     line = columns["line"]
-    assert np.isnan(line[record.times < 0.0999]).all()
-    assert set(line[(record.times > 0.1001) & (record.times < 0.1999)]) == {3.0}
-    assert set(line[record.times > 0.2001]) == {4.0}
+    assert np.isnan(line[record.times_s < 0.0999]).all()
+    assert set(line[(record.times_s > 0.1001) & (record.times_s < 0.1999)]) == {3.0}
+    assert set(line[record.times_s > 0.2001]) == {4.0}
     assert (columns["queue"][-1], columns["spindle speed"][-1]) == (0.25, 600.0)  # measured beats the tick's
     assert np.isnan(columns["C load"]).all()
     assert np.isnan(columns["spindle load"]).all()
@@ -57,54 +59,59 @@ def test_a_channel_is_the_drivers_own_or_stands_as_at_the_last_tick() -> None:
 
 
 def test_a_late_tick_between_two_samples_is_not_lost() -> None:
-    ring = Ring.of(OF)
+    ring = ScopeRing.from_layout(OF)
     ring.samples.write(samples(0, 400)[::100])  # at 0, .1, .2, .3
     late = {0.0: 0.001, 0.12: 0.05, 0.15: 0.002, 0.19: 0.003, 0.31: 0.9}
     ring.ticks.write(np.array([[*tick(t, 1)[:7], worst, *tick(t, 1)[8:]] for t, worst in late.items()]))
-    assert ring.between(0.0, 1.0).columns["lateness"].tolist() == [0.001, 0.001, 0.05, 0.003]
+    assert ring.get_record_between(0.0, 1.0).values_by_channel["lateness"].tolist() == [
+        0.001,
+        0.001,
+        0.05,
+        0.003,
+    ]
 
 
 def test_latest_has_only_what_is_new_and_only_what_is_asked_for() -> None:
-    record = filled().latest(0.497, ("X demand", "line"))
-    assert record.times == pytest.approx([0.498, 0.499])
-    assert set(record.columns) == {"X demand", "line"}
-    assert filled().latest(0.499).times.size == 0
+    record = filled().get_record_since(0.497, ("X demand", "line"))
+    assert record.times_s == pytest.approx([0.498, 0.499])
+    assert set(record.values_by_channel) == {"X demand", "line"}
+    assert filled().get_record_since(0.499).times_s.size == 0
 
 
 @pytest.mark.parametrize("batch", [1, 7, 999, 1000, 2600])
 def test_the_oldest_are_written_over(batch: int) -> None:
-    ring = Ring.of(OF)
+    ring = ScopeRing.from_layout(OF)
     everything = samples(0, 2600)
     for at in range(0, 2600, batch):
         ring.samples.write(everything[at : at + batch])
-    kept = ring.samples.between(-np.inf, np.inf)
+    kept = ring.samples.copy_between(-np.inf, np.inf)
     np.testing.assert_array_equal(kept, everything[-1000:])
-    np.testing.assert_array_equal(ring.samples.between(2.0, 2.1), everything[2000:2101])
+    np.testing.assert_array_equal(ring.samples.copy_between(2.0, 2.1), everything[2000:2101])
 
 
 def test_rows_that_are_being_written_over_are_not_read() -> None:
-    rows = Rows(100, 1)
+    rows = RowBuffer(100, 1)
     rows.write(np.arange(100.0)[:, None])
-    rows.begun = 130  # a writer is at work on the thirty oldest
-    assert rows.between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
+    rows.rows_started = 130  # a writer is at work on the thirty oldest
+    assert rows.copy_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
 
 
 def test_rows_that_are_written_over_while_they_are_copied_are_left_out() -> None:
     begun = iter((100, 130))  # before they are copied, and behind
 
-    class Overtaken(Rows):
-        begun = property(lambda _: next(begun), lambda _self, _value: None)
+    class Overtaken(RowBuffer):
+        rows_started = property(lambda _: next(begun), lambda _self, _value: None)
 
     rows = Overtaken(100, 1)
     rows.write(np.arange(100.0)[:, None])
-    assert rows.between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
+    assert rows.copy_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
 
 
 def test_a_torn_row_is_left_out() -> None:
     ring = filled()
-    ring.samples.data[20, -1] = 19.0  # of another round
-    ring.samples.data[30, 0] = 0.001  # its beginning is old
-    times = ring.between(0.0, 0.05).times
+    ring.samples.array[20, -1] = 19.0  # of another round
+    ring.samples.array[30, 0] = 0.001  # its beginning is old
+    times = ring.get_record_between(0.0, 0.05).times_s
     assert times.size == 49
     assert not {0.02, 0.03} & set(times.round(6).tolist())
 
@@ -112,36 +119,40 @@ def test_a_torn_row_is_left_out() -> None:
 # --- the file --------------------------------------------------------------------------------------------
 
 
-def written(folder: Path, count: int = 1700) -> tuple[RingFile, Ring]:
-    ring = Ring.of(OF)
-    file = new_ring(folder, NOW, ring)
+def written(folder: Path, count: int = 1700) -> tuple[RingFile, ScopeRing]:
+    ring = ScopeRing.from_layout(OF)
+    file = create_ring_file(folder, NOW, ring)
     everything = samples(0, count)
     for at in range(0, count, 300):
-        file.write(ring.samples, ring.samples.write(everything[at : at + 300]))
-    file.write(ring.ticks, ring.ticks.write(np.array([tick(0.1, 3), tick(1.2, 4, ("out59",))])))
+        file.write_rows(ring.samples, ring.samples.write(everything[at : at + 300]))
+    file.write_rows(ring.ticks, ring.ticks.write(np.array([tick(0.1, 3), tick(1.2, 4, ("out59",))])))
     return file, ring
 
 
 def test_a_reader_has_the_same_while_it_is_written_and_afterwards(tmp_path: Path) -> None:
     file, ring = written(tmp_path)
-    wanted = ring.between(-np.inf, np.inf)
+    wanted = ring.get_record_between(-np.inf, np.inf)
     for close in (file.close, lambda: None):
-        found = read_ring(tmp_path / NOW)
-        np.testing.assert_array_equal(found.times, wanted.times)
-        for name, column in wanted.columns.items():
-            np.testing.assert_array_equal(found.columns[name], column, name)
-        assert (found.channels, found.started, found.rate) == (wanted.channels, wanted.started, 1000.0)
+        found = read_ring_file(tmp_path / NOW)
+        np.testing.assert_array_equal(found.times_s, wanted.times_s)
+        for name, column in wanted.values_by_channel.items():
+            np.testing.assert_array_equal(found.values_by_channel[name], column, name)
+        assert (found.channels, found.start_time_utc_s, found.sampling_rate_hz) == (
+            wanted.channels,
+            wanted.start_time_utc_s,
+            1000.0,
+        )
         assert found.about["machine"] == "LATHE"
         close()
-    assert read_ring(tmp_path / NOW, 1.0, 1.1).times == pytest.approx(np.arange(1000, 1101) * 0.001)
+    assert read_ring_file(tmp_path / NOW, 1.0, 1.1).times_s == pytest.approx(np.arange(1000, 1101) * 0.001)
 
 
 def test_the_file_has_its_whole_size_before_anything_is_written(tmp_path: Path) -> None:
-    ring = Ring.of(OF)
-    file = new_ring(tmp_path, NOW, ring)
+    ring = ScopeRing.from_layout(OF)
+    file = create_ring_file(tmp_path, NOW, ring)
     before = (tmp_path / NOW).stat()
-    assert before.st_blocks * 512 >= ring.samples.data.nbytes + ring.ticks.data.nbytes
-    file.write(ring.samples, ring.samples.write(samples(0, 3000)))
+    assert before.st_blocks * 512 >= ring.samples.array.nbytes + ring.ticks.array.nbytes
+    file.write_rows(ring.samples, ring.samples.write(samples(0, 3000)))
     file.close()
     assert (tmp_path / NOW).stat().st_size == before.st_size
 
@@ -162,25 +173,25 @@ def test_a_writer_that_ended_in_the_middle_leaves_what_it_had_counted(
     parts = ring.samples.write(samples(1700, 200))
     monkeypatch.setattr(os, "pwrite", ends)
     with pytest.raises(RecordError):
-        file.write(ring.samples, parts)
+        file.write_rows(ring.samples, parts)
     monkeypatch.undo()
-    times = read_ring(tmp_path / NOW).times
+    times = read_ring_file(tmp_path / NOW).times_s
     assert times == pytest.approx(np.arange(900, 1700) * 0.001)  # the 200 oldest may be written over
     file.close()
 
 
 def test_the_last_one_stays_beside_the_new_one(tmp_path: Path) -> None:
     written(tmp_path, 20)[0].close()
-    new_ring(tmp_path, NOW, Ring.of(OF)).close()
-    assert read_ring(tmp_path / LAST).times.size == 20
-    assert read_ring(tmp_path / NOW).times.size == 0
+    create_ring_file(tmp_path, NOW, ScopeRing.from_layout(OF)).close()
+    assert read_ring_file(tmp_path / LAST).times_s.size == 20
+    assert read_ring_file(tmp_path / NOW).times_s.size == 0
 
 
 def test_two_do_not_write_one_file(tmp_path: Path) -> None:
     file, _ = written(tmp_path, 20)
     with raises_code(RecordError, "in-use", "now.ring"):
-        new_ring(tmp_path, NOW, Ring.of(OF))
-    assert read_ring(tmp_path / NOW).times.size == 20
+        create_ring_file(tmp_path, NOW, ScopeRing.from_layout(OF))
+    assert read_ring_file(tmp_path / NOW).times_s.size == 20
     file.close()
 
 
@@ -192,7 +203,7 @@ def test_a_full_disk_is_told_and_leaves_nothing_behind(
 
     monkeypatch.setattr(os, "posix_fallocate", full)
     with raises_code(RecordError, "disk-full", "now.ring"):
-        new_ring(tmp_path, NOW, Ring.of(OF))
+        create_ring_file(tmp_path, NOW, ScopeRing.from_layout(OF))
     assert (tmp_path / NOW).stat().st_size == 0
 
 
@@ -203,7 +214,9 @@ def test_systems_without_preallocation_and_locks_write_it_too(
     monkeypatch.delattr(os, "pwrite")
     monkeypatch.setitem(__import__("sys").modules, "fcntl", None)
     file, ring = written(tmp_path)
-    np.testing.assert_array_equal(read_ring(tmp_path / NOW).times, ring.between(0.0, 9.0).times)
+    np.testing.assert_array_equal(
+        read_ring_file(tmp_path / NOW).times_s, ring.get_record_between(0.0, 9.0).times_s
+    )
     file.close()
 
 
@@ -213,10 +226,10 @@ def test_a_ring_that_is_cut_off_or_newer_is_refused(tmp_path: Path) -> None:
     whole = path.read_bytes()
     path.write_bytes(whole[:-100])
     with raises_code(RecordError, "cut-off"):
-        read_ring(path)
+        read_ring_file(path)
     path.write_bytes(whole[:14] + b"\x07\x00\x00\x00" + whole[18:])
     with raises_code(RecordError, "newer-version", "file version 7"):
-        read_ring(path)
+        read_ring_file(path)
     path.write_bytes(whole[:40] + b"\xff" * 60 + whole[100:])
     with raises_code(RecordError, "damaged"):
-        read_ring(path)
+        read_ring_file(path)

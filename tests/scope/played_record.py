@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.executor.snapshot import State
-from core.records.record import Channel, FloatArray, Record, channels_of
+from core.executor.snapshot import MachineState
+from core.records.record import Channel, FloatArray, ScopeRecord, list_machine_channels
 
 RATE = 1000.0
-STATES = tuple(state.value for state in State)
+STATES = tuple(state.value for state in MachineState)
 
 
 def figures(times: FloatArray) -> dict[str, FloatArray]:
@@ -39,28 +39,28 @@ def figures(times: FloatArray) -> dict[str, FloatArray]:
         "lateness": 0.0005 * np.abs(np.sin(40.0 * times)),
         "line": np.floor(times) + 1.0,
         "block": np.floor(times) + 1.0,
-        "state": STATES.index(State.RUN.value) * whole,
+        "state": STATES.index(MachineState.RUN.value) * whole,
         "input collet": (np.sin(times) > 0.0).astype(float),
         "output coolant": (np.cos(times) > 0.0).astype(float),
     }
 
 
-CHANNELS: tuple[Channel, ...] = channels_of(
+CHANNELS: tuple[Channel, ...] = list_machine_channels(
     {"X": False, "Z": False, "C": True}, ("collet", "door"), ("coolant",)
 )
 
 
-def record_of(times: FloatArray, names: Collection[str] | None = None, **other: FloatArray) -> Record:
+def record_of(times: FloatArray, names: Collection[str] | None = None, **other: FloatArray) -> ScopeRecord:
     """A record at these times; ``other`` figures take the place of computed ones: names with _ for space."""
     named = {name.replace("_", " "): column for name, column in other.items()}
     known = figures(times) | named
     nothing = np.full(len(times), np.nan)
-    of_mill = channels_of({"Y": False}, (), ()) if "Y demand" in named else ()
+    of_mill = list_machine_channels({"Y": False}, (), ()) if "Y demand" in named else ()
     channels = (*CHANNELS, *(each for each in of_mill if each not in CHANNELS))
     wanted = [each for each in channels if names is None or each.name in names]
     columns = {each.name: known.get(each.name, nothing) for each in wanted}
     about = {"machine": "GT-75", "states": "|".join(STATES)}
-    return Record(tuple(wanted), times, columns, 1_700_000_000.0, RATE, about)
+    return ScopeRecord(tuple(wanted), times, columns, 1_700_000_000.0, RATE, about)
 
 
 def seconds(begin: float, end: float) -> FloatArray:
@@ -73,7 +73,7 @@ class PlayedSamples:
     """Live samples up to ``now``."""
 
     now: float = 100.0
-    lasts: float = 300.0
+    buffer_length_s: float = 300.0
     channels: tuple[Channel, ...] = CHANNELS
     asked: list[tuple[float, float]] = field(default_factory=list)
     other: dict[str, FloatArray] = field(default_factory=dict)
@@ -86,14 +86,16 @@ class PlayedSamples:
         self.lets.set()
 
     @property
-    def last(self) -> float:
+    def newest_time_s(self) -> float:
         """The newest sample."""
         if threading.current_thread() is not threading.main_thread():
             self.waits = not self.lets.is_set()
             self.lets.wait()
         return float(np.floor(self.now * RATE + 1e-6) / RATE)
 
-    def between(self, begin: float, end: float, names: Collection[str] | None = None) -> Record:
+    def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
         """As the recorder gives it."""
-        self.asked.append((begin, end))
-        return record_of(seconds(max(begin, 0.0, self.now - self.lasts), min(end, self.last)), names)
+        self.asked.append((start_s, end_s))
+        return record_of(
+            seconds(max(start_s, 0.0, self.now - self.buffer_length_s), min(end_s, self.newest_time_s)), names
+        )

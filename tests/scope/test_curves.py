@@ -8,27 +8,29 @@ import numpy as np
 import pytest
 
 from app.scope.scope_curves import (
-    Columns,
+    CurveColumns,
     LiveCurves,
-    RecordCurves,
-    Wanted,
-    kept_range,
-    points_of,
-    round_range,
+    PictureRequest,
+    RecordingCurves,
+    make_points,
+    make_round_range,
+    update_range,
 )
-from app.scope.signals import Quantity, first_chosen, signals_of
-from app.scope.time_window import Trigger, When
-from core.executor.snapshot import State
-from core.records.record import channels_of
+from app.scope.signals import Quantity, find_default_keys, list_signals
+from app.scope.time_window import Trigger, TriggerEvent
+from core.executor.snapshot import MachineState
+from core.records.record import list_machine_channels
 from tests.scope.played_record import CHANNELS, STATES, PlayedSamples, record_of, seconds
 from tests.texts import text
 
-SIGNALS = {each.key: each for each in signals_of(CHANNELS)}
+SIGNALS = {each.key: each for each in list_signals(CHANNELS)}
 
 
-def wanted(*keys: str, begin: float = -10.0, end: float = 0.0, pixels: int = 500, **more: object) -> Wanted:
+def wanted(
+    *keys: str, begin: float = -10.0, end: float = 0.0, pixels: int = 500, **more: object
+) -> PictureRequest:
     settings: dict[str, object] = {"metric": True, **more}
-    return Wanted(tuple(SIGNALS[key] for key in keys), begin, end, pixels, **settings)  # type: ignore[arg-type]
+    return PictureRequest(tuple(SIGNALS[key] for key in keys), begin, end, pixels, **settings)  # type: ignore[arg-type]
 
 
 # --- columns --------------------------------------------------------------------------------------------
@@ -37,8 +39,8 @@ def wanted(*keys: str, begin: float = -10.0, end: float = 0.0, pixels: int = 500
 def test_one_sample_that_stands_out_is_seen() -> None:
     times, values = np.arange(100_000) / 1000.0, np.zeros(100_000)
     values[54_321] = 7.0
-    found = points_of(times, values, 0.1)
-    assert found.pairs
+    found = make_points(times, values, 0.1)
+    assert found.has_line_pairs
     assert len(found.times) == 2 * 1000
     at = int(np.argmax(found.values))
     assert found.values[at] == 7.0
@@ -48,7 +50,7 @@ def test_one_sample_that_stands_out_is_seen() -> None:
 
 def test_a_flank_between_two_columns_closes() -> None:
     times = np.arange(20) / 10.0
-    found = points_of(times, np.where(times < 0.95, 0.0, 1.0), 0.5)
+    found = make_points(times, np.where(times < 0.95, 0.0, 1.0), 0.5)
     low, high = found.values[0::2], found.values[1::2]
     assert list(low) == [0.0, 0.0, 0.0, 1.0]
     assert list(high) == [0.0, 0.0, 1.0, 1.0]
@@ -56,30 +58,30 @@ def test_a_flank_between_two_columns_closes() -> None:
 
 def test_few_samples_are_drawn_as_they_are() -> None:
     times = np.array([0.0, 1.0, 2.0])
-    found = points_of(times, times**2, 0.5)
-    assert not found.pairs
+    found = make_points(times, times**2, 0.5)
+    assert not found.has_line_pairs
     assert list(found.values) == [0.0, 1.0, 4.0]
 
 
 def test_a_gap_of_what_is_not_told_stays_a_gap() -> None:
-    found = points_of(np.arange(5.0), np.array([1.0, 2.0, np.nan, 4.0, 5.0]), 1.0)
+    found = make_points(np.arange(5.0), np.array([1.0, 2.0, np.nan, 4.0, 5.0]), 1.0)
     assert list(found.values) == [1.0, 2.0, 4.0, 5.0]
-    assert found.joined is not None
-    assert list(found.joined) == [True, False, True, False]
+    assert found.is_joined is not None
+    assert list(found.is_joined) == [True, False, True, False]
 
 
 def test_a_gap_is_not_joined_in_columns() -> None:
-    columns = Columns.none(1.0)
-    columns.append(np.arange(8) / 2.0, np.array([0.0, 0.0, 0.0, np.nan, np.nan, np.nan, 9.0, 9.0]))
-    assert list(columns.numbers) == [0, 1, 3]
-    assert list(columns.least) == [0.0, 0.0, 9.0]
-    assert len(columns.points().times) == 6  # no level line over the gap
+    columns = CurveColumns.make_empty(1.0)
+    columns.append_samples(np.arange(8) / 2.0, np.array([0.0, 0.0, 0.0, np.nan, np.nan, np.nan, 9.0, 9.0]))
+    assert list(columns.column_numbers) == [0, 1, 3]
+    assert list(columns.minima) == [0.0, 0.0, 9.0]
+    assert len(columns.make_points().times) == 6  # no level line over the gap
 
 
 def test_rest_is_a_level_line_although_nothing_was_sampled() -> None:
-    columns = Columns.none(1.0)
-    columns.append(np.array([0.5, 9.5]), np.array([3.0, 3.0]))
-    points = columns.points()
+    columns = CurveColumns.make_empty(1.0)
+    columns.append_samples(np.array([0.5, 9.5]), np.array([3.0, 3.0]))
+    points = columns.make_points()
     assert list(points.times[-2:]) == [0.5, 9.5]
     assert list(points.values[-2:]) == [3.0, 3.0]
 
@@ -87,28 +89,28 @@ def test_rest_is_a_level_line_although_nothing_was_sampled() -> None:
 def test_in_pieces_as_in_one() -> None:
     rng = np.random.default_rng(3)
     times, values = np.sort(rng.uniform(0.0, 10.0, 5000)), rng.normal(size=5000)
-    whole, pieces = Columns.none(0.02), Columns.none(0.02)
-    whole.append(times, values)
+    whole, pieces = CurveColumns.make_empty(0.02), CurveColumns.make_empty(0.02)
+    whole.append_samples(times, values)
     for at in range(0, 5000, 37):
-        pieces.append(times[at : at + 37], values[at : at + 37])
-    assert (whole.numbers == pieces.numbers).all()
-    assert (whole.least == pieces.least).all()
-    assert (whole.greatest == pieces.greatest).all()
+        pieces.append_samples(times[at : at + 37], values[at : at + 37])
+    assert (whole.column_numbers == pieces.column_numbers).all()
+    assert (whole.minima == pieces.minima).all()
+    assert (whole.maxima == pieces.maxima).all()
 
 
 def test_nothing_gives_nothing() -> None:
-    assert len(points_of(np.empty(0), np.empty(0), 0.1).times) == 0
-    assert len(points_of(np.arange(3.0), np.full(3, np.nan), 0.1).times) == 0
+    assert len(make_points(np.empty(0), np.empty(0), 0.1).times) == 0
+    assert len(make_points(np.arange(3.0), np.full(3, np.nan), 0.1).times) == 0
 
 
 def test_a_lane_keeps_its_range_as_long_as_it_fits() -> None:
-    first = round_range(-0.9, 0.95, 0.1)
+    first = make_round_range(-0.9, 0.95, 0.1)
     assert first[0] <= -0.9
     assert first[1] >= 0.95
-    assert kept_range(first, -0.5, 0.8, 0.1) == first
-    assert kept_range(first, -0.5, 1.7, 0.1)[1] >= 1.7
-    assert kept_range(first, 0.0, 0.01, 0.01) != first  # too small to be read in it
-    assert kept_range(first, -0.5, first[1], 0.1)[1] > first[1]  # on the edge it would not be seen
+    assert update_range(first, -0.5, 0.8, 0.1) == first
+    assert update_range(first, -0.5, 1.7, 0.1)[1] >= 1.7
+    assert update_range(first, 0.0, 0.01, 0.01) != first  # too small to be read in it
+    assert update_range(first, -0.5, first[1], 0.1)[1] > first[1]  # on the edge it would not be seen
 
 
 # --- of a record ----------------------------------------------------------------------------------------
@@ -116,44 +118,49 @@ def test_a_lane_keeps_its_range_as_long_as_it_fits() -> None:
 
 def test_a_record_is_drawn_to_the_bit() -> None:
     record = record_of(seconds(100.0, 101.0))
-    sight = RecordCurves(record, 101.0).sight(wanted("X following error", begin=-1.0, pixels=4000))
+    sight = RecordingCurves(record, 101.0).make_picture(wanted("X following error", begin=-1.0, pixels=4000))
     (curve,) = sight.curves
-    assert (curve.points.values == record.columns["X following error"]).all()
-    assert curve.points.times == pytest.approx(record.times - 101.0)
+    assert (curve.points.values == record.values_by_channel["X following error"]).all()
+    assert curve.points.times == pytest.approx(record.times_s - 101.0)
 
 
 def test_inch_is_a_matter_of_showing() -> None:
     record = record_of(seconds(100.0, 101.0))
-    metric = RecordCurves(record, 101.0).sight(wanted("X demand", begin=-1.0, pixels=4000))
-    inch = RecordCurves(record, 101.0).sight(wanted("X demand", begin=-1.0, pixels=4000, metric=False))
+    metric = RecordingCurves(record, 101.0).make_picture(wanted("X demand", begin=-1.0, pixels=4000))
+    inch = RecordingCurves(record, 101.0).make_picture(
+        wanted("X demand", begin=-1.0, pixels=4000, metric=False)
+    )
     assert inch.curves[0].points.values * 25.4 == pytest.approx(metric.curves[0].points.values)
 
 
 def test_velocity_of_a_record() -> None:
     record = record_of(seconds(0.0, 10.0))
-    curves = RecordCurves(record, 0.0)
-    column = curves.column(SIGNALS["X demand velocity"])
+    curves = RecordingCurves(record, 0.0)
+    column = curves.read_column(SIGNALS["X demand velocity"])
     assert column is not None
-    assert column[10:-10] == pytest.approx(5.0 * np.cos(record.times[10:-10]), abs=1e-4)
+    assert column[10:-10] == pytest.approx(5.0 * np.cos(record.times_s[10:-10]), abs=1e-4)
 
 
 def test_cursors_read_the_samples_and_not_the_pixels() -> None:
     record = record_of(seconds(100.0, 110.0))
-    sight = RecordCurves(record, 110.0).sight(wanted("X demand", pixels=50, cursors=(-8.0, -3.0)))
-    a, b = sight.at["X demand"]
+    sight = RecordingCurves(record, 110.0).make_picture(wanted("X demand", pixels=50, cursors=(-8.0, -3.0)))
+    a, b = sight.cursor_values["X demand"]
     assert a == pytest.approx(10.0 + 5.0 * np.sin(102.0))
     assert b == pytest.approx(10.0 + 5.0 * np.sin(107.0))
 
 
 def test_a_cursor_beside_the_record_reads_nothing() -> None:
     record = record_of(seconds(100.0, 110.0))
-    sight = RecordCurves(record, 110.0).sight(wanted("X demand", cursors=(-12.0, 5.0)))
-    assert all(np.isnan(value) for value in sight.at["X demand"])
+    sight = RecordingCurves(record, 110.0).make_picture(wanted("X demand", cursors=(-12.0, 5.0)))
+    assert all(np.isnan(value) for value in sight.cursor_values["X demand"])
 
 
 def test_what_a_record_has_not_is_not_drawn() -> None:
     record = record_of(seconds(0.0, 1.0), {"X actual"})
-    assert RecordCurves(record, 0.0).sight(wanted("X demand", "X actual")).curves[0].signal.key == "X actual"
+    assert (
+        RecordingCurves(record, 0.0).make_picture(wanted("X demand", "X actual")).curves[0].signal.key
+        == "X actual"
+    )
 
 
 # --- live -----------------------------------------------------------------------------------------------
@@ -165,15 +172,15 @@ def test_live_curves_are_those_of_the_record() -> None:
     asked = wanted("X velocity", "Z following error", "spindle ripple")
     for now in np.arange(100.0, 112.0, 0.017):
         played.now = float(now)
-        sight = live.sight(asked)
+        sight = live.make_picture(asked)
     curves = {each.signal.key: each.points for each in sight.curves}
-    whole = RecordCurves(record_of(seconds(90.0, played.last)), 0.0)
+    whole = RecordingCurves(record_of(seconds(90.0, played.newest_time_s)), 0.0)
     for key, points in curves.items():
-        column = whole.column(SIGNALS[key])
+        column = whole.read_column(SIGNALS[key])
         assert column is not None
         middle = slice(200, -200)  # columns at the edges are not whole yet
-        for time, value in zip(points.times[middle] + sight.zero, points.values[middle], strict=True):
-            near = np.abs(whole.record.times - time) <= 0.5 * asked.width + 0.0011
+        for time, value in zip(points.times[middle] + sight.zero_s, points.values[middle], strict=True):
+            near = np.abs(whole.record.times_s - time) <= 0.5 * asked.width + 0.0011
             assert np.nanmin(column[near]) - 1e-9 <= value <= np.nanmax(column[near]) + 1e-9
 
 
@@ -181,9 +188,9 @@ def test_live_curves_are_those_of_the_record() -> None:
 def test_a_trigger_counts_from_where_it_was_armed(armed: float, released: float | None) -> None:
     """.01·cos t rises through .00762 at 106.1; the worker looks at 108 for the first time."""
     played = PlayedSamples(now=108.0)
-    trigger = Trigger(When.RISES, "X following error", 0.00762)
+    trigger = Trigger(TriggerEvent.RISES_ABOVE, "X following error", 0.00762)
     asked = replace(wanted("X following error"), trigger=trigger, armed=armed)
-    found = LiveCurves(played).sight(asked).released
+    found = LiveCurves(played).make_picture(asked).trigger_time
     assert found == (
         None if released is None else pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
     )
@@ -192,36 +199,36 @@ def test_a_trigger_counts_from_where_it_was_armed(armed: float, released: float 
 def test_nothing_but_level_lines_is_told() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)
-    assert live.sight(wanted("spindle command", "C actual")).level == (1000.0, 0.0)
-    assert live.sight(wanted("spindle command", "X actual")).level is None
+    assert live.make_picture(wanted("spindle command", "C actual")).constant_values == (1000.0, 0.0)
+    assert live.make_picture(wanted("spindle command", "X actual")).constant_values is None
     young = LiveCurves(PlayedSamples(now=5.0))  # it still grows across the window
-    assert young.sight(wanted("spindle command")).level is None
+    assert young.make_picture(wanted("spindle command")).constant_values is None
 
 
 def test_an_earlier_record_below_them_is_drawn_as_it_lies() -> None:
-    earlier = RecordCurves(record_of(seconds(90.0, 100.0)), 95.0)
-    assert LiveCurves(PlayedSamples()).sight(wanted("C actual"), earlier).level is None
+    earlier = RecordingCurves(record_of(seconds(90.0, 100.0)), 95.0)
+    assert LiveCurves(PlayedSamples()).make_picture(wanted("C actual"), earlier).constant_values is None
 
 
 def test_only_what_is_new_is_looked_at() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)
-    live.sight(wanted("X actual"))
+    live.make_picture(wanted("X actual"))
     played.asked.clear()
     played.now += 0.016
-    live.sight(wanted("X actual"))
+    live.make_picture(wanted("X actual"))
     assert max(end - begin for begin, end in played.asked) < 0.1
 
 
 def test_the_newest_figure() -> None:
     played = PlayedSamples()
-    sight = LiveCurves(played).sight(wanted("X demand"))
-    assert sight.curves[0].latest == pytest.approx(10.0 + 5.0 * np.sin(100.0))
+    sight = LiveCurves(played).make_picture(wanted("X demand"))
+    assert sight.curves[0].latest_value == pytest.approx(10.0 + 5.0 * np.sin(100.0))
 
 
 def test_before_the_first_sample_there_is_nothing() -> None:
     played = PlayedSamples(now=-np.inf)
-    assert LiveCurves(played).sight(wanted("X demand")).curves == ()
+    assert LiveCurves(played).make_picture(wanted("X demand")).curves == ()
 
 
 # --- trigger --------------------------------------------------------------------------------------------
@@ -232,34 +239,34 @@ TIMES = np.arange(6.0)
 @pytest.mark.parametrize(
     ("when", "values", "at"),
     [
-        (When.RISES, [0, 0, 2, 2, 0, 2], 2.0),
-        (When.FALLS, [2, 2, 2, 0, 2, 0], 3.0),
-        (When.BEYOND, [0, 0.5, -1.5, 0, 1.5, 0], 2.0),
-        (When.RISES, [2, 2, 2, 2, 2, 2], None),  # it is above and never rose
-        (When.FALLS, [0, 0, 0, 0, 0, 0], None),
-        (When.RISES, [0, np.nan, 2, 2, 2, 2], None),  # nobody saw it rise
-        (When.LINE, [6, 6, 7, 7, 8, 7], 2.0),
-        (When.OFF, [0, 2, 0, 2, 0, 2], None),
+        (TriggerEvent.RISES_ABOVE, [0, 0, 2, 2, 0, 2], 2.0),
+        (TriggerEvent.FALLS_BELOW, [2, 2, 2, 0, 2, 0], 3.0),
+        (TriggerEvent.EXCEEDS, [0, 0.5, -1.5, 0, 1.5, 0], 2.0),
+        (TriggerEvent.RISES_ABOVE, [2, 2, 2, 2, 2, 2], None),  # it is above and never rose
+        (TriggerEvent.FALLS_BELOW, [0, 0, 0, 0, 0, 0], None),
+        (TriggerEvent.RISES_ABOVE, [0, np.nan, 2, 2, 2, 2], None),  # nobody saw it rise
+        (TriggerEvent.LINE, [6, 6, 7, 7, 8, 7], 2.0),
+        (TriggerEvent.OFF, [0, 2, 0, 2, 0, 2], None),
     ],
 )
-def test_a_trigger_is_an_edge(when: When, values: list[float], at: float | None) -> None:
+def test_a_trigger_is_an_edge(when: TriggerEvent, values: list[float], at: float | None) -> None:
     trigger = Trigger(when, "X actual", 1.0, 7)
-    assert trigger.released(TIMES, np.array(values, dtype=float), frozenset()) == at
+    assert trigger.find_trigger_time(TIMES, np.array(values, dtype=float), frozenset()) == at
 
 
 def test_an_alarm_releases_it() -> None:
-    run, fault = STATES.index(State.RUN.value), STATES.index(State.FAULT.value)
+    run, fault = STATES.index(MachineState.RUN.value), STATES.index(MachineState.FAULT.value)
     states = np.array([run, run, fault, fault, run, fault], dtype=float)
-    assert Trigger(When.ALARM).released(TIMES, states, frozenset({fault})) == 2.0
+    assert Trigger(TriggerEvent.ALARM).find_trigger_time(TIMES, states, frozenset({fault})) == 2.0
 
 
 def test_a_live_trigger_finds_the_sample_between_two_pictures() -> None:
     played = PlayedSamples()
     live = LiveCurves(played)
-    asked = wanted("X demand", trigger=Trigger(When.RISES, "X demand", 12.5))
+    asked = wanted("X demand", trigger=Trigger(TriggerEvent.RISES_ABOVE, "X demand", 12.5))
     found = None
     while found is None and played.now < 110.0:
-        found = live.sight(asked).released
+        found = live.make_picture(asked).trigger_time
         played.now += 0.016
     # 10 + 5 sin t = 12.5 where sin t = 1/2: the first t above 100 is 16·2π + π/6
     assert found == pytest.approx(32.0 * np.pi + np.pi / 6.0, abs=0.001)
@@ -268,17 +275,17 @@ def test_a_live_trigger_finds_the_sample_between_two_pictures() -> None:
 def test_what_was_before_it_was_armed_does_not_release_it() -> None:
     played = PlayedSamples(now=101.4)
     live = LiveCurves(played)
-    asked = wanted("X demand", trigger=Trigger(When.RISES, "X demand", 12.5))
-    assert live.sight(asked).released is None
+    asked = wanted("X demand", trigger=Trigger(TriggerEvent.RISES_ABOVE, "X demand", 12.5))
+    assert live.make_picture(asked).trigger_time is None
     played.now += 0.1
-    assert live.sight(asked).released is None
+    assert live.make_picture(asked).trigger_time is None
 
 
 # --- signals --------------------------------------------------------------------------------------------
 
 
 def test_a_rotary_axis_is_in_degrees() -> None:
-    assert SIGNALS["C velocity"].quantity is Quantity.TURNING
+    assert SIGNALS["C velocity"].quantity is Quantity.ROTATION_SPEED
     assert SIGNALS["X velocity"].quantity is Quantity.VELOCITY
 
 
@@ -288,19 +295,19 @@ def test_what_is_derived_says_over_what_time() -> None:
 
 
 def test_channels_that_are_not_recorded_are_not_offered() -> None:
-    there = {each.key for each in signals_of([each for each in CHANNELS if "load" not in each.name])}
+    there = {each.key for each in list_signals([each for each in CHANNELS if "load" not in each.name])}
     assert "X load" not in there
-    assert first_chosen(signals_of(CHANNELS))[0] == "X following error"
+    assert find_default_keys(list_signals(CHANNELS))[0] == "X following error"
 
 
 def test_a_mill_shows_three_slides_and_a_lathe_two() -> None:
     rotary = dict.fromkeys("XYZ", False) | dict.fromkeys("AC", True)
-    shown = first_chosen(signals_of(channels_of(rotary, (), ())))
+    shown = find_default_keys(list_signals(list_machine_channels(rotary, (), ())))
     assert shown == (
         *(f"{letter} following error" for letter in "XYZ"),
         *(f"{letter} velocity" for letter in "XYZ"),
         "spindle speed",
     )
-    lathe = first_chosen(signals_of(CHANNELS))
+    lathe = find_default_keys(list_signals(CHANNELS))
     assert "spindle command" in lathe
     assert not any(key.startswith("C ") for key in lathe)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from app.editor.editor import Stage
+from app.editor.editor_model import EditorStage
 from app.editor.editor_view import EditorPage
 from app.screen import page_table
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.day import NEAR, Day, Key
 from tests.texts import begins, text
 
@@ -53,9 +53,14 @@ ENDS = {
 
 def editor(day: Day) -> EditorPage:
     """The editor, which must be in front, with what is typed proved."""
-    page = day.frame.page
+    page = day.frame.current_page
     assert isinstance(page, EditorPage)
-    day.sees(lambda: not page.editor.proof.behind and page.findings.findings is page.editor.proof.now)
+    day.sees(
+        lambda: (
+            not page.editor.live_proof.is_outdated
+            and page.finding_list.findings is page.editor.live_proof.current
+        )
+    )
     return page
 
 
@@ -63,17 +68,17 @@ def open_editor(day: Day) -> EditorPage:
     """F3, and the text is there."""
     day.key(Key.Key_F3)
     day.sees(lambda: day.page == page_table.EDITOR)
-    page = day.frame.page
+    page = day.frame.current_page
     assert isinstance(page, EditorPage)
-    day.sees(lambda: page.editor.stage is Stage.OPEN and bool(page.field.toPlainText()))
+    day.sees(lambda: page.editor.stage is EditorStage.OPEN and bool(page.text_field.toPlainText()))
     return editor(day)
 
 
 def drives_on(day: Day) -> None:
     """The first key of the day."""
-    day.reaches(State.DISABLED)
+    day.reaches(MachineState.DISABLED)
     day.key(Key.Key_D)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
 
 
 def write_program(day: Day) -> None:
@@ -88,13 +93,13 @@ def write_program(day: Day) -> None:
         if number:
             day.key(Key.Key_Return)
         day.type(line)
-    found = editor(day).findings.findings.diagnostics
+    found = editor(day).finding_list.findings.diagnostics
     wrong = next(diagnostic for diagnostic in found if diagnostic.line == 7)
     day.key(Key.Key_F6)
     day.sees(lambda: wrong.message in day.prompt)
     day.key(Key.Key_End, Key.Key_Backspace, Key.Key_Backspace)
-    assert editor(day).field.toPlainText() == PROGRAM
-    assert [d.message for d in editor(day).findings.findings.diagnostics if d.line == 7] == []
+    assert editor(day).text_field.toPlainText() == PROGRAM
+    assert [d.message for d in editor(day).finding_list.findings.diagnostics if d.line == 7] == []
     day.key(Key.Key_F3)
     day.sees(lambda: day.page == page_table.AUTOMATIC)
 
@@ -116,7 +121,7 @@ def set_tools(day: Day) -> None:
         day.enter(face)
         day.saved()
         assert day.prompt == f"T{number} SAVED"
-    tools = day.store.offsets.tools.read_rows()
+    tools = day.store.offsets.tool_offsets.read_rows()
     for row, (x, z) in ((tools[1], T1), (tools[2], T2)):
         assert (row.x / 25.4, row.z / 25.4) == (pytest.approx(x, abs=NEAR), pytest.approx(z, abs=NEAR))
     back_to_automatic(day)
@@ -126,7 +131,7 @@ def _step(day: Day, key: Key, presses: int) -> None:
     for _ in range(presses):
         day.key(key)
         day.run(0.05)
-        day.reaches(State.IDLE)
+        day.reaches(MachineState.IDLE)
 
 
 def back_to_automatic(day: Day) -> None:
@@ -141,7 +146,7 @@ def correct(day: Day, x: str, z: str = "") -> None:
     """F9, D1, X and Z, R as it is; back by Esc."""
     day.key(Key.Key_F9)
     day.enter("1", x, z, "")
-    day.sees(lambda: not day.desk.book.busy)
+    day.sees(lambda: not day.desk.offset_book.is_saving)
     # What the correction makes of the next part may be known, and shown, by then.
     assert begins(day.prompt, "screen.saved", names="D1") or begins(day.prompt, "screen.no-next-part")
     day.key(Key.Key_Escape)

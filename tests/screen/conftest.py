@@ -18,8 +18,8 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
-from app.desk.translation import ENGLISH
-from app.screen.look import DARK, Look, dress, load_fonts, speak_in
+from app.desk.translation import ENGLISH_CODE
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application, use_language
 from app.screen.window import keyboard
 from app.screen.window.main_window import MainWindow
 from tests.screen.desks import desk_on
@@ -28,7 +28,7 @@ from tests.screen.hands import Hands, window_on
 from tests.screen.lathe import Operator
 from tests.screen.pictures import Stage
 
-STALL = keyboard.STALL
+STALL = keyboard.STALL_TIME_S
 
 
 def left_over(*, collect: bool) -> list[str]:
@@ -56,27 +56,29 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
     before = set(left_over(collect=False))
     yield
     leaked = [name for name in left_over(collect=True) if name not in before]
-    speak_in(ENGLISH)  # a window on the desk speaks its language in every picture, also in the last one
+    use_language(
+        ENGLISH_CODE
+    )  # a window on the desk speaks its language in every picture, also in the last one
     assert not leaked, f"left over: {leaked}"
 
 
 @pytest.fixture(autouse=True)
 def never_late(monkeypatch: pytest.MonkeyPatch) -> None:
     """No key and no finger is late, however busy this computer is; ``stalls`` is for those that play it."""
-    monkeypatch.setattr(keyboard, "STALL", float("inf"))
+    monkeypatch.setattr(keyboard, "STALL_TIME_S", float("inf"))
 
 
 @pytest.fixture
 def stalls(monkeypatch: pytest.MonkeyPatch, never_late: None) -> None:
     """Who is late is late, as in the shop."""
-    monkeypatch.setattr(keyboard, "STALL", STALL)
+    monkeypatch.setattr(keyboard, "STALL_TIME_S", STALL)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def dressed(qapp: QApplication) -> None:
     """Fonts and palette as in the product."""
     load_fonts()
-    dress(DARK)
+    style_application(DARK_PALETTE)
 
 
 @pytest.fixture
@@ -89,7 +91,7 @@ def machine() -> FakeMachine:
 def journal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     """What is kept in an empty folder."""
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    journal = Journal.at_home()
+    journal = Journal.open_default()
     yield journal
     journal.close()
 
@@ -111,10 +113,10 @@ def hands(qtbot: QtBot, machine: FakeMachine, desk: Desk) -> Iterator[Hands]:
 def operator(qapp: QApplication) -> Iterator[Operator]:
     """An operator in front of the simulated lathe."""
     stage = Stage()
-    window = MainWindow(Look(DARK))
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
-    window.open_desk(stage.desk)
+    window.show_model(stage.desk)
     window.show()
     yield Operator(stage, window)
-    window.put_away()
+    window.close_silently()
     stage.close()

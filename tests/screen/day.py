@@ -15,20 +15,20 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import stored_offsets
-from app.desk.data_folder import data_folder
+from app.compose.stored_offsets import read_stored_offsets
+from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
-from app.programs.whole_file import write_whole
-from app.screen.look import DARK, Look
+from app.programs.atomic_files import write_program_file
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
-from app.screen.window.window_frame import Frame
+from app.screen.window.window_frame import WindowFrame
 from core.executor.executor import Executor
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import StepClock
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ManualClock
 
 Key = Qt.Key
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
@@ -46,11 +46,11 @@ class Day:
     window: MainWindow
     desk: Desk
     executor: Executor
-    clock: StepClock
+    clock: ManualClock
     journal: Journal
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> WindowFrame:
         """What is on the screen."""
         assert self.window.frame is not None
         return self.window.frame
@@ -59,13 +59,13 @@ class Day:
     def page(self) -> str:
         """The page that the title line names."""
         self.window.refresh()
-        return self.frame.title.page
+        return self.frame.title_line.page_title
 
     @property
     def prompt(self) -> str:
         """The prompt line."""
         self.window.refresh()
-        return self.frame.prompt.text
+        return self.frame.prompt_line.main_text
 
     @property
     def shot(self) -> Snapshot:
@@ -75,8 +75,8 @@ class Day:
     @property
     def slides(self) -> tuple[float, float]:
         """Where X and Z of the lathe really stand, inches from home."""
-        assert isinstance(self.desk.control.panel, PlantHands)
-        x, z = self.desk.control.panel.true_position()[:2]
+        assert isinstance(self.desk.desk_control.station_panel, PlantControls)
+        x, z = self.desk.desk_control.station_panel.get_true_position()[:2]
         return x / INCH, z / INCH
 
     # --- hands ---------------------------------------------------------------------------------------
@@ -121,7 +121,7 @@ class Day:
             assert self.clock.now() < end, f"not within {limit} s: {self.shot.state}, {self.prompt}"
             self._tick()
 
-    def reaches(self, *states: State) -> None:
+    def reaches(self, *states: MachineState) -> None:
         """Until the machine is in one of these states."""
         self.until(lambda: self.shot.state in states)
 
@@ -137,18 +137,18 @@ class Day:
     def checks_start(self) -> None:
         """The first move of the next start is checked, and the control knows it."""
         self.run(2 * TICK)
-        self.sees(lambda: self.desk.first_move is None or not self.desk.first_move.checking)
+        self.sees(lambda: self.desk.start_watch is None or not self.desk.start_watch.is_checking)
         self.run(2 * TICK)
 
     def saved(self) -> None:
         """Wait for the disk, then look."""
-        assert self.desk.book.store is not None
-        self.desk.book.store.write(lambda _connection: None).result(60)
+        assert self.desk.offset_book.store is not None
+        self.desk.offset_book.store.write(lambda _connection: None).result(60)
         self.run(2 * TICK)
 
     def _tick(self) -> None:
         self.clock.advance(TICK)
-        self.executor.tick()
+        self.executor.run_tick()
         self.window.refresh()
 
     # --- what is kept --------------------------------------------------------------------------------
@@ -156,8 +156,8 @@ class Day:
     @property
     def store(self) -> Store:
         """What the lathe remembers."""
-        assert self.desk.book.store is not None
-        return self.desk.book.store
+        assert self.desk.offset_book.store is not None
+        return self.desk.offset_book.store
 
     def count(self, kind: str) -> int:
         """So many events of this kind are in the store."""
@@ -172,20 +172,20 @@ def begun(qtbot: QtBot, name: str = "", program: str = "", machine: str | None =
     ``machine`` names another machine file than the lathe's.
     """
     if name:
-        write_whole(data_folder() / "programs" / name, program.encode())
-    clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(machine, stored_offsets, clock, journal)
-    desk.hands.clock = clock.now
-    window = MainWindow(Look(DARK))
+        write_program_file(find_data_folder() / "programs" / name, program.encode())
+    clock, journal = ManualClock(), Journal.open_default()
+    desk, executor = create_desk_and_executor(machine, read_stored_offsets, clock, journal)
+    desk.station_controls.clock = clock.now
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
-    executor.tick()
-    window.open_desk(desk)
+    executor.run_tick()
+    window.show_model(desk)
     with qtbot.waitExposed(window, timeout=PATIENCE):
         window.show()
     window.activateWindow()
     try:
         yield Day(qtbot, window, desk, executor, clock, journal)
     finally:
-        window.put_away()
+        window.close_silently()
         desk.close()
         journal.close()

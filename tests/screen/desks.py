@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.compose.desk_pages import (
     PageSetup,
-    own_folder,
+    get_program_folder,
     register_extras,
     register_pages,
     register_production,
@@ -16,32 +16,32 @@ from app.compose.desk_pages import (
     register_sounds,
     register_special_functions,
 )
-from app.compose.extra import drawing_endings
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
+from app.compose.optional_features import list_drawing_suffixes
+from app.compose.program_proving import create_drawer, create_proof
 from app.compose.runs.journal import Journal
-from app.compose.workshop import drawer, proof_of
-from app.desk.background_work import Watch
+from app.desk.background_work import ProgressCallback
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
-from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, ProvedJob
 from app.desk.state.desk_clock import DeskClock
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
-from app.editor.editor import Editor
-from app.editor.versions import Archive, NoArchive
-from app.jog.hand_functions import HandFunctions
+from app.editor.editor_model import EditorModel
+from app.editor.version_history import NullArchive, VersionArchive
+from app.jog.manual_functions import ManualFunctions
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_effect import Effect
-from app.path.path_picture import Picture, picture_of
+from app.offsets.offset_effect import OffsetEffect
+from app.path.path_picture import ProgramPicture, build_picture
 from app.scope.scope_curves import LiveSamples
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
-from core.interpreter.dialects import ReadProgram
+from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.language.source import Source, load_source
-from core.proving.program_timeline import Timeline, timed_blocks
+from core.language.source import ProgramSource, load_source
+from core.proving.program_timeline import Timeline, iter_timed_blocks
 from core.proving.prove_program import prove
 from tests.screen.fake import FakeMachine
 
@@ -62,7 +62,7 @@ def desk_on(
     *folders: Path,
     two_hand: bool = True,
     one_hand: bool = False,
-    archive: Archive | None = None,
+    archive: VersionArchive | None = None,
     keep: Persistence | None = None,
     live: LiveSamples | None = None,
     book: OffsetBook | None = None,
@@ -72,49 +72,51 @@ def desk_on(
 
     built: list[Desk] = []
 
-    def make_job(source: Source, block_delete: bool) -> Job:
-        setup = setup_for(lathe, tools=TOOLS, secondary=_secondary(built[0]), block_delete=block_delete)
-        return Job(source, setup, f"{source.name}{block_delete}", ReadProgram(source), frozenset(TOOLS))
+    def make_job(source: ProgramSource, block_delete: bool) -> Job:
+        setup = create_setup(
+            lathe, tool_offsets=TOOLS, secondary_offsets=_secondary(built[0]), block_delete=block_delete
+        )
+        return Job(source, setup, f"{source.name}{block_delete}", SharedProgram(source), frozenset(TOOLS))
 
-    def proved(job: Job, watch: Watch) -> Proved:
+    def proved(job: Job, watch: ProgressCallback) -> ProvedJob:
         report = prove(job.source, job.setup, lathe, watch)
-        return Proved(proof_of(job, report), report.diagnostics)
+        return ProvedJob(create_proof(job, report), report.diagnostics)
 
-    def draw(job: Job, watch: Watch) -> Picture:
-        machine.blocks = list(timed_blocks(Timeline.of(job.source, job.setup, lathe)))
-        return picture_of(machine.blocks, watch)
+    def draw(job: Job, watch: ProgressCallback) -> ProgramPicture:
+        machine.blocks = list(iter_timed_blocks(Timeline.from_program(job.source, job.setup, lathe)))
+        return build_picture(machine.blocks, watch)
 
     def renewed(job: Job) -> Job:
         setup = replace(job.setup, secondary=_secondary(built[0]))
         return replace(job, setup=setup, digest=f"{job.digest} {sorted(setup.secondary.items())}")
 
     work = LoadingSteps(load_source, make_job, proved, draw, renewed)
-    archive = archive or NoArchive()
+    archive = archive or NullArchive()
     own = folders[0] if folders else None
     persistence = keep or Persistence()
     desk = Desk(
         DeskControl(machine.post, machine.snapshot, machine),
         ProgramLoader(work, machine.post),
-        ProgramFolders(folders or (SAMPLES,), drawing_endings()),
-        machine=DeskMachine("GT-75 SIMULATED", lathe, two_hand=two_hand, one_hand=one_hand),
+        ProgramFolders(folders or (SAMPLES,), list_drawing_suffixes()),
+        machine=DeskMachine("GT-75 SIMULATED", lathe, is_two_hand=two_hand, allows_one_hand=one_hand),
         persistence=persistence,
-        book=book,
-        clock=DeskClock(time_of_day=lambda: "09:41:07"),
+        offset_book=book,
+        clock=DeskClock(format_local_time=lambda: "09:41:07"),
     )
-    desk.pages.attach(Effect(drawer(lathe)))
-    desk.pages.attach(Editor(work, archive, own or Path("/dev/null"), SAMPLES))
-    hand = HandFunctions(desk, lathe, unproved)
-    desk.pages.attach(hand)
-    desk.pages.add_start(hand)
+    desk.page_registry.attach_model(OffsetEffect(create_drawer(lathe)))
+    desk.page_registry.attach_model(EditorModel(work, archive, own or Path("/dev/null"), SAMPLES))
+    hand = ManualFunctions(desk, lathe, unproved)
+    desk.page_registry.attach_model(hand)
+    desk.page_registry.add_start_handler(hand)
     setup = PageSetup(
         desk=desk,
         machine=lathe,
         persistence=persistence,
         journal=keep if isinstance(keep, Journal) else None,
-        own=own or own_folder(),
-        work=work,
-        proving=work,
-        live=live,
+        program_folder=own or get_program_folder(),
+        loading_steps=work,
+        proof_steps=work,
+        live_samples=live,
     )
     register_pages(setup, PAGES)
     built.append(desk)
@@ -122,10 +124,10 @@ def desk_on(
     return desk
 
 
-def unproved(text: str, _snapshot: Snapshot, _watch: Watch) -> tuple[Job, Proved]:
+def unproved(text: str, _snapshot: Snapshot, _watch: ProgressCallback) -> tuple[Job, ProvedJob]:
     """No line is chosen by hand on this desk."""
     raise AssertionError(f"{text} was to be proved")
 
 
 def _secondary(desk: Desk) -> dict[int, SecondaryOffset]:
-    return {n: SecondaryOffset(*values) for n, values in desk.book.secondary.items()}
+    return {n: SecondaryOffset(*values) for n, values in desk.offset_book.secondary.items()}

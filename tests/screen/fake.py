@@ -12,21 +12,21 @@ from core.executor.commands import (
     CycleStart,
     EnableDrives,
     FeedHold,
-    FeedOverride,
     ForceOutput,
-    GiveProof,
     LoadJob,
-    Prepare,
+    PrepareStart,
     Reset,
+    SetFeedOverride,
+    SetSpindleLimit,
     SetSwitch,
-    SpindleLimit,
+    SupplyProof,
 )
 from core.executor.job import Job, Proof
-from core.executor.snapshot import Alarm, Event, Snapshot, State
+from core.executor.snapshot import Alarm, LogEvent, MachineState, Snapshot
 from core.interpreter.shared.actions import ProgramEnd, ProgramStop
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 
-STOPPED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
+STOPPED = frozenset({MachineState.HOLD, MachineState.BLOCK_END, MachineState.PROGRAM_STOP})
 
 
 @dataclass
@@ -36,13 +36,13 @@ class FakeMachine:
     blocks: Sequence[tuple[Block, float, float]] = ()
     step: float = 0.02
     posted: list[Command] = field(default_factory=list)
-    now: Snapshot = field(default_factory=lambda: Snapshot(state=State.IDLE, homed=(True, True, True)))
+    now: Snapshot = field(default_factory=lambda: Snapshot(state=MachineState.IDLE, homed=(True, True, True)))
     job: Job | None = None
     proof: Proof | None = None
     palms: set[str] = field(default_factory=set)
     t: float = 0.0
     at: int = 0
-    hear: Callable[[Event], None] = lambda _: None
+    hear: Callable[[LogEvent], None] = lambda _: None
     alive: bool = True  # a dead control goes on showing its last snapshot
     # A program is loaded from a thread of its own: only ``snapshot`` shows it, or one thread would undo what
     # the other has just written.
@@ -52,11 +52,11 @@ class FakeMachine:
         """One step on, then a picture of it."""
         while self.loaded:
             self._show_loaded(self.loaded.popleft())
-        if self.now.state is State.RUN:
+        if self.now.state is MachineState.RUN:
             self._run()
         wanted = self.job is not None and self.proof is None
         beat = self.now.t + 0.01 if self.alive else self.now.t
-        self.now = replace(self.now, t=beat, proof_wanted=wanted)
+        self.now = replace(self.now, t=beat, needs_proof=wanted)
         return self.now
 
     def post(self, command: Command) -> None:
@@ -66,19 +66,19 @@ class FakeMachine:
             case LoadJob(job):
                 self.job, self.proof = job, None
                 self.loaded.append(job)
-            case Prepare(starts):
+            case PrepareStart(starts):
                 self.now = replace(self.now, starts=starts)
-            case GiveProof(proof):
+            case SupplyProof(proof):
                 self.proof = proof
             case SetSwitch(name, on):
                 switched: dict[str, Any] = {name: on}
                 self.now = replace(self.now, **switched)
-            case SpindleLimit(rpm):
-                self.now = replace(self.now, spindle_limit=rpm or 0.0)
+            case SetSpindleLimit(rpm):
+                self.now = replace(self.now, spindle_limit_rpm=rpm or 0.0)
             case ForceOutput(name, on):
                 outputs = self.now.outputs | {name} if on else self.now.outputs - {name}
                 self.now = replace(self.now, outputs=outputs)
-            case FeedOverride(fraction):
+            case SetFeedOverride(fraction):
                 self.now = replace(self.now, feed_override=fraction)
             case CycleStart() | FeedHold() | Reset() | EnableDrives():
                 self._button(command)
@@ -91,26 +91,26 @@ class FakeMachine:
         state = self.now.state
         if isinstance(command, CycleStart):
             self._start()
-        elif isinstance(command, FeedHold) and state is State.RUN:
-            self.now = replace(self.now, state=State.HOLD, velocity=0.0)
-        elif isinstance(command, Reset) and state in {*STOPPED, State.FAULT}:
+        elif isinstance(command, FeedHold) and state is MachineState.RUN:
+            self.now = replace(self.now, state=MachineState.HOLD, velocity=0.0)
+        elif isinstance(command, Reset) and state in {*STOPPED, MachineState.FAULT}:
             self.t, self.at = 0.0, 0
-            back = State.IDLE if state in STOPPED else State.DISABLED
+            back = MachineState.IDLE if state in STOPPED else MachineState.DISABLED
             self.now = replace(self.now, state=back, alarms=(), block=0, line=0, block_text="", message="")
-        elif isinstance(command, EnableDrives) and state is State.DISABLED:
-            self.now = replace(self.now, state=State.IDLE)
+        elif isinstance(command, EnableDrives) and state is MachineState.DISABLED:
+            self.now = replace(self.now, state=MachineState.IDLE)
 
     def _start(self) -> None:
         why = self._refusal()
         if why:
-            self.now = replace(self.now, start_refused=why)
+            self.now = replace(self.now, start_refusal=why)
         else:
-            self.now = replace(self.now, state=State.RUN, start_refused="", message="")
+            self.now = replace(self.now, state=MachineState.RUN, start_refusal="", message="")
 
     def _refusal(self) -> str:
-        if self.now.state is State.FAULT:
+        if self.now.state is MachineState.FAULT:
             return "AN ALARM STANDS"
-        if self.now.state not in {State.IDLE, *STOPPED}:
+        if self.now.state not in {MachineState.IDLE, *STOPPED}:
             return "THE DRIVES ARE OFF"
         if self.job is None or self.proof is None:
             return "NO PROVED PROGRAM"
@@ -118,8 +118,8 @@ class FakeMachine:
 
     def fault(self, alarm: Alarm) -> None:
         """Something breaks."""
-        self.hear(Event(self.now.t, "alarm", alarm.text, alarm.line, alarm))
-        self.now = replace(self.now, state=State.FAULT, alarms=(alarm,), velocity=0.0)
+        self.hear(LogEvent(self.now.t, "alarm", alarm.text, alarm.line, alarm))
+        self.now = replace(self.now, state=MachineState.FAULT, alarms=(alarm,), velocity=0.0)
 
     def _run(self) -> None:
         self.t += self.step * self.now.feed_override
@@ -134,11 +134,11 @@ class FakeMachine:
         action = block.action
         if isinstance(action, ProgramEnd):
             self.t, self.at = 0.0, 0
-            self.now = replace(self.now, state=State.IDLE, block=0, line=0, parts=self.now.parts + 1)
+            self.now = replace(self.now, state=MachineState.IDLE, block=0, line=0, parts=self.now.parts + 1)
         elif isinstance(action, ProgramStop) and (not action.optional or self.now.optional_stop):
-            self.now = replace(self.now, state=State.PROGRAM_STOP, message=action.message)
+            self.now = replace(self.now, state=MachineState.PROGRAM_STOP, message=action.message)
         elif self.now.single_block:
-            self.now = replace(self.now, state=State.BLOCK_END)
+            self.now = replace(self.now, state=MachineState.BLOCK_END)
         else:
             return False
         return True
@@ -157,7 +157,7 @@ class FakeMachine:
             offset=(block.offset_x, block.offset_z),
             modal=block.modal,
             feed=block.feed,
-            rapid=block.kind is Kind.RAPID,
+            rapid=block.kind is BlockKind.RAPID,
             velocity=block.feed * (abs(block.rpm) / 60 if block.per_rev else 1.0) * self.now.feed_override,
             rpm_command=block.rpm,
             rpm_actual=block.rpm * 0.998,
@@ -193,13 +193,13 @@ class FakeMachine:
 
     def press_estop(self) -> None:
         self.t, self.at = 0.0, 0
-        self.now = replace(self.now, state=State.ESTOP, velocity=0.0, rpm_command=0.0, block=0, line=0)
+        self.now = replace(self.now, state=MachineState.ESTOP, velocity=0.0, rpm_command=0.0, block=0, line=0)
 
     def release_estop(self) -> None:
-        self.now = replace(self.now, state=State.DISABLED)
+        self.now = replace(self.now, state=MachineState.DISABLED)
 
-    def set_spindle_auto(self, auto: bool) -> None:
-        self.now = replace(self.now, spindle_auto=auto)
+    def set_spindle_auto(self, is_auto: bool) -> None:
+        self.now = replace(self.now, spindle_auto=is_auto)
 
     def set_spindle_pot(self, fraction: float) -> None:
         self.now = replace(self.now, spindle_override=fraction)
@@ -212,4 +212,4 @@ class FakeMachine:
 
     def idle(self) -> None:
         """Whatever was, the machine is at rest now, so that the window lets itself be closed."""
-        self.now = replace(self.now, state=State.IDLE)
+        self.now = replace(self.now, state=MachineState.IDLE)

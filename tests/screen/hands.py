@@ -13,10 +13,10 @@ from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
-from app.screen.window.window_frame import Frame
-from core.executor.snapshot import State
+from app.screen.window.window_frame import WindowFrame
+from core.executor.snapshot import MachineState
 from tests.screen.fake import FakeMachine
 from tests.texts import text as wording
 
@@ -27,11 +27,11 @@ LIMIT = 60_000  # ms after which what should have happened has not
 @contextmanager
 def window_on(qtbot: QtBot, desk: Desk, machine: FakeMachine) -> Iterator[MainWindow]:
     """The window with a desk open in it; both are put away at the end, whatever the machine was at."""
-    window = MainWindow(Look(DARK))
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
     with qtbot.waitExposed(window, timeout=LIMIT):
         window.show()
-    window.open_desk(desk)
+    window.show_model(desk)
     window.activateWindow()
     yield window
     machine.idle()
@@ -52,10 +52,10 @@ class Hands:
     @property
     def page(self) -> AutomaticPage:
         """The Automatic page."""
-        return self.frame.automatic
+        return self.frame.automatic_page
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> WindowFrame:
         """What he looks at."""
         assert self.window.frame is not None
         return self.window.frame
@@ -87,13 +87,13 @@ class Hands:
         """Wait until something is to be seen."""
         self.qtbot.waitUntil(true, timeout=LIMIT)
 
-    def sees_state(self, state: State) -> None:
+    def sees_state(self, state: MachineState) -> None:
         """Wait for a state in the title line."""
-        self.sees(lambda: self.frame.title.state.startswith(state.value))
+        self.sees(lambda: self.frame.title_line.state_text.startswith(state.value))
 
     def prompt(self) -> str:
         """The prompt line."""
-        return self.frame.prompt.text
+        return self.frame.prompt_line.main_text
 
     def load(self, name: str) -> None:
         """Pick a program by its name and wait until it may start."""

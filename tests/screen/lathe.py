@@ -10,8 +10,8 @@ from PySide6.QtTest import QTest
 
 from app.mdi.mdi_model import MdiModel
 from app.screen.window.main_window import MainWindow
-from app.screen.window.window_frame import Frame
-from core.executor.snapshot import Snapshot, State
+from app.screen.window.window_frame import WindowFrame
+from core.executor.snapshot import MachineState, Snapshot
 from tests.attached import attached
 from tests.screen.pictures import Stage
 
@@ -27,13 +27,13 @@ class Operator:
     window: MainWindow
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> WindowFrame:
         assert self.window.frame is not None
         return self.window.frame
 
     @property
     def shot(self) -> Snapshot:
-        return self.stage.desk.snapshot()
+        return self.stage.desk.read_snapshot()
 
     @property
     def mdi(self) -> MdiModel:
@@ -55,17 +55,17 @@ class Operator:
         self.stage.tick(true, limit)
         self.window.refresh()
 
-    def reaches(self, state: State, limit: float = LIMIT) -> None:
+    def reaches(self, state: MachineState, limit: float = LIMIT) -> None:
         self.until(lambda: self.shot.state is state, limit)
 
     def prompt(self) -> str:
         self.window.refresh()
-        return self.frame.prompt.text
+        return self.frame.prompt_line.main_text
 
     def drives_on(self) -> None:
-        self.until(lambda: self.shot.state is State.DISABLED)
+        self.until(lambda: self.shot.state is MachineState.DISABLED)
         self.key(Key.Key_D)
-        self.reaches(State.IDLE)
+        self.reaches(MachineState.IDLE)
 
     def palms(self) -> None:
         """Both palm buttons, and hands off; the relay wants them up for a while before it works again."""
@@ -82,12 +82,12 @@ class Operator:
         """Type a line of MDI and have it proved."""
         self.type(text)
         self.key(Key.Key_Return)
-        self.mdi.line.worker.settle(60.0)
+        self.mdi.prepared_line.worker.wait_for_results(60.0)
         self.pause(0.02)
 
     def run(self, text: str) -> None:
         """Type a line, start it, and wait for its end."""
         self.line(text)
-        assert self.mdi.line.ready is not None, self.mdi.line.found
+        assert self.mdi.prepared_line.ready_job is not None, self.mdi.prepared_line.diagnostics
         self.palms()
-        self.reaches(State.IDLE)
+        self.reaches(MachineState.IDLE)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, SetSwitch
-from core.executor.snapshot import State
-from drivers.simulators.plant_hands import PlantHands
+from core.executor.commands import CycleStart, EnableDrives, FeedHold, HomeAxes, Jog, SetSwitch
+from core.executor.snapshot import MachineState
+from drivers.simulators.plant_controls import PlantControls
 from tests.screen.day import Day
 
 
@@ -54,19 +54,23 @@ MACHINES = {"omniturn": OMNITURN, "klartext": KLARTEXT, "sinumerik": SINUMERIK}
 
 def choose(day: Day, program: str) -> None:
     """Load a program; it may be started then."""
-    assert day.desk.programs.choose(program)
-    day.sees(lambda: not day.desk.session.now.busy and bool(day.shot.program) and not day.shot.proof_wanted)
-    assert not day.desk.session.now.errors, day.desk.session.now.errors
+    assert day.desk.program_choice.load_by_name(program)
+    day.sees(
+        lambda: (
+            not day.desk.program_loader.loaded.is_busy and bool(day.shot.program) and not day.shot.needs_proof
+        )
+    )
+    assert not day.desk.program_loader.loaded.blocking_errors, day.desk.program_loader.loaded.blocking_errors
 
 
 def drives_on(day: Day) -> None:
     """The drives have power."""
-    day.reaches(State.DISABLED)
+    day.reaches(MachineState.DISABLED)
     day.desk.post(EnableDrives())
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
 
 
-def _started(day: Day, program: str, *states: State) -> None:
+def _started(day: Day, program: str, *states: MachineState) -> None:
     drives_on(day)
     choose(day, program)
     day.checks_start()
@@ -75,48 +79,48 @@ def _started(day: Day, program: str, *states: State) -> None:
 
 
 def _running(day: Day) -> None:
-    _started(day, "slow", State.RUN)
+    _started(day, "slow", MachineState.RUN)
 
 
 def _holding(day: Day) -> None:
     _running(day)
     day.run(0.5)
     day.desk.post(FeedHold())
-    day.reaches(State.HOLDING, State.HOLD)
+    day.reaches(MachineState.HOLDING, MachineState.HOLD)
 
 
 def _held(day: Day) -> None:
     _holding(day)
-    day.reaches(State.HOLD)
+    day.reaches(MachineState.HOLD)
 
 
 def _block_end(day: Day) -> None:
     day.desk.post(SetSwitch("single_block", True))
-    _started(day, "stops", State.BLOCK_END)
+    _started(day, "stops", MachineState.BLOCK_END)
 
 
 def _jogging(day: Day) -> None:
     drives_on(day)
     day.desk.post(Jog("X", 1.0, 0.25))
-    day.reaches(State.JOG)
+    day.reaches(MachineState.JOG)
 
 
 def _homing(day: Day) -> None:
     drives_on(day)
-    day.desk.post(Home(""))
-    day.reaches(State.HOME)
+    day.desk.post(HomeAxes(""))
+    day.reaches(MachineState.HOME)
 
 
 def _stopped(day: Day) -> None:
     _running(day)
-    day.desk.station.press_estop()
-    day.reaches(State.ESTOP)
+    day.desk.station_keys.press_estop()
+    day.reaches(MachineState.ESTOP)
 
 
 def _alarm(day: Day) -> None:
     _running(day)
     hands(day).drive_fault("X")
-    day.reaches(State.FAULT)
+    day.reaches(MachineState.FAULT)
 
 
 def _rest(day: Day) -> None:
@@ -128,23 +132,23 @@ def _empty(day: Day) -> None:
     drives_on(day)
 
 
-def hands(day: Day) -> PlantHands:
+def hands(day: Day) -> PlantControls:
     """What an operator does at the simulated machine, and what breaks in it."""
-    assert isinstance(day.desk.control.panel, PlantHands)
-    return day.desk.control.panel
+    assert isinstance(day.desk.desk_control.station_panel, PlantControls)
+    return day.desk.desk_control.station_panel
 
 
-STATES: dict[State, Callable[[Day], None]] = {
-    State.DISABLED: lambda day: day.reaches(State.DISABLED),
-    State.IDLE: _rest,
-    State.RUN: _running,
-    State.HOLDING: _holding,
-    State.HOLD: _held,
-    State.BLOCK_END: _block_end,
-    State.PROGRAM_STOP: lambda day: _started(day, "stops", State.PROGRAM_STOP),
-    State.WAIT: lambda day: _started(day, "waits", State.WAIT),
-    State.JOG: _jogging,
-    State.HOME: _homing,
-    State.ESTOP: _stopped,
-    State.FAULT: _alarm,
+STATES: dict[MachineState, Callable[[Day], None]] = {
+    MachineState.DISABLED: lambda day: day.reaches(MachineState.DISABLED),
+    MachineState.IDLE: _rest,
+    MachineState.RUN: _running,
+    MachineState.HOLDING: _holding,
+    MachineState.HOLD: _held,
+    MachineState.BLOCK_END: _block_end,
+    MachineState.PROGRAM_STOP: lambda day: _started(day, "stops", MachineState.PROGRAM_STOP),
+    MachineState.WAIT: lambda day: _started(day, "waits", MachineState.WAIT),
+    MachineState.JOG: _jogging,
+    MachineState.HOME: _homing,
+    MachineState.ESTOP: _stopped,
+    MachineState.FAULT: _alarm,
 }

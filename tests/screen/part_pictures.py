@@ -17,21 +17,21 @@ from PySide6.QtGui import QColor, QFont, QImage, QPainter
 from PySide6.QtWidgets import QApplication
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import get_samples_folder
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
-from app.path.part_pane_view import quarter
-from app.screen.look import FAMILY, load_fonts
+from app.path.part_pane_view import find_removed_quarter
+from app.screen.screen_theme import FONT_FAMILY, load_fonts
 from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
-from core.language.called_files import with_called_files
-from core.language.source import Dialect, Source, load_source
+from core.language.called_files import load_called_files
+from core.language.source import Dialect, ProgramSource, load_source
 from core.part.solid_picture import SolidPicture
-from core.part.solid_view import SolidView, fitted
-from core.part.surface_points import Solid, turned_solid
-from core.part.turned_part import Piece
-from core.proving.part_history import PartGathering, PartHistory
+from core.part.solid_view import SolidView, fit_view
+from core.part.surface_points import Solid, make_turned_solid
+from core.part.turned_part import PartedPiece
+from core.proving.part_history import PartHistory, StepCollector
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from tests.screen.pictures import lean
 
 WIDE, HIGH, HEAD = 210, 150, 20  # pixels
@@ -68,11 +68,11 @@ def part_image(path: Path) -> QImage:
     image = QImage(2 * WIDE, HIGH + HEAD, QImage.Format.Format_RGB32)
     image.fill(GROUND)
     painter = QPainter(image)
-    turned = solid.low.shape[2] == 1
-    open_ = SolidView(*OPEN, opening=quarter(OPEN[1]))
+    turned = solid.inner_radii.shape[2] == 1
+    open_ = SolidView(*OPEN, open_range_deg=find_removed_quarter(OPEN[1]))
     for number, view in enumerate((SolidView(*WHOLE), open_ if turned else SolidView(*WHOLE, MILLED))):
         painter.drawImage(number * WIDE, HEAD, _drawn(solid, view))
-    font = QFont(FAMILY)
+    font = QFont(FONT_FAMILY)
     font.setPixelSize(12)
     painter.setFont(font)
     painter.setPen(QColor(INK))
@@ -86,57 +86,57 @@ def part_of(path: Path) -> Solid:
     """What was parted off last, else what is held at the end."""
     source = load_source(path)
     if source.dialect is Dialect.SINUMERIK:
-        source = with_called_files(source, [path.parent])
+        source = load_called_files(source, [path.parent])
     setup, machine = _setup(path, source), load_machine(None)
-    setting = PartSetting(nose_radii={n: tool.nose_radius for n, tool in setup.tools.items()})
-    gathered = PartGathering(setting)
-    _, report = prove_with_part(source, setup, machine, setting, seen=gathered.see)
-    moves = gathered.moves()
+    setting = PartSettings(nose_radii={n: tool.nose_radius for n, tool in setup.tools.items()})
+    gathered = StepCollector(setting)
+    _, report = prove_with_part(source, setup, machine, setting, on_span=gathered.add_span)
+    moves = gathered.collected_steps()
     assert report is not None
     assert moves is not None
-    if report.pieces and not report.milled:
-        return _turned(report.pieces[-1])
+    if report.parted_pieces and not report.is_milled:
+        return _turned(report.parted_pieces[-1])
     history = PartHistory(moves)
-    solid = history.solid(history.at(len(history.steps)))
+    solid = history.make_solid(history.at(len(history.steps)))
     assert solid is not None, path
     return solid
 
 
-def _setup(path: Path, source: Source) -> Setup:
+def _setup(path: Path, source: ProgramSource) -> Setup:
     """The offsets of our samples; an example of the manual has all at nought."""
     machine = load_machine(None)
-    if path.resolve().parent == samples().resolve():
-        tools, secondary, zero, *_ = read_offsets(samples() / "offsets.toml")
-        return setup_for(machine, tools=tools, secondary=secondary, zero=zero)
-    return setup_for(
+    if path.resolve().parent == get_samples_folder().resolve():
+        tools, secondary, zero, *_ = read_offsets(get_samples_folder() / "offsets.toml")
+        return create_setup(machine, tool_offsets=tools, secondary_offsets=secondary, zero_offsets=zero)
+    return create_setup(
         machine,
-        tools={n: ToolOffset() for n in range(1, 33)},
-        secondary={n: SecondaryOffset() for n in range(1, 33)},
+        tool_offsets={n: ToolOffset() for n in range(1, 33)},
+        secondary_offsets={n: SecondaryOffset() for n in range(1, 33)},
     )
 
 
-def _turned(piece: Piece) -> Solid:
+def _turned(piece: PartedPiece) -> Solid:
     """What a piece is by its profiles."""
-    z, r = np.array(piece.outside).T
+    z, r = np.array(piece.outside_profile).T
     count = 3000
     edges = np.linspace(z.min(), z.max(), count + 1)
     middles = 0.5 * (edges[1:] + edges[:-1])
     order = np.argsort(z, kind="stable")
     high = np.interp(middles, z[order], r[order])
     low = np.zeros(count)
-    if piece.bore:
-        bore_z, bore_r = np.array(piece.bore).T
+    if piece.bore_profile:
+        bore_z, bore_r = np.array(piece.bore_profile).T
         order = np.argsort(bore_z, kind="stable")
         low = np.interp(middles, bore_z[order], bore_r[order], left=0.0, right=0.0)
-    return turned_solid(edges, low[None], high[None])
+    return make_turned_solid(edges, low[None], high[None])
 
 
 def _drawn(solid: Solid, view: SolidView) -> QImage:
     """A part that fills its picture."""
-    metal = np.flatnonzero((solid.high > solid.low).any(axis=(0, 2)))
-    back, front = float(solid.edges[metal[0]]), float(solid.edges[metal[-1] + 1])
-    scale, centre = fitted(back, front, 1.08 * solid.radius, WIDE, HIGH, view.azimuth)
-    view = replace(view, scale=scale, centre=centre)
+    metal = np.flatnonzero((solid.outer_radii > solid.inner_radii).any(axis=(0, 2)))
+    back, front = float(solid.column_edges[metal[0]]), float(solid.column_edges[metal[-1] + 1])
+    scale, centre = fit_view(back, front, 1.08 * solid.max_radius_mm, WIDE, HIGH, view.azimuth_deg)
+    view = replace(view, pixels_per_mm=scale, center_z_mm=centre)
     image = SolidPicture().draw(solid, view, WIDE, HIGH)
     image[image >> 24 == 0] = GROUND
     return QImage(image.tobytes(), WIDE, HIGH, 4 * WIDE, QImage.Format.Format_RGB32).copy()

@@ -21,26 +21,26 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
-from app.compose.desk_assembly import desk_and_executor
-from app.compose.extra import insert_after
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.optional_features import insert_after
+from app.compose.program_proving import get_samples_folder
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
 from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook
 from app.screen import page_table
-from app.screen.look import PALETTES, Look, dress, load_fonts
+from app.screen.screen_theme import PALETTES, ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
-from core.access.access_table import Level
-from core.executor.snapshot import State
-from core.store.people import PersonRow
+from core.access.access_table import AccessLevel
+from core.executor.snapshot import MachineState
 from core.store.production import job_queue, measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
-from drivers.waiting import StepClock
+from core.store.user_records import UserRow
+from drivers.wakeups import ManualClock
 from tests.extras.modules import of_extras
 from tests.offset_store import use_store
 
@@ -65,31 +65,31 @@ class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
-        self.clock = StepClock()
-        self.desk, self._executor = desk_and_executor(
-            machine, lambda: read_offsets(samples() / "offsets.toml"), self.clock, journal
+        self.clock = ManualClock()
+        self.desk, self._executor = create_desk_and_executor(
+            machine, lambda: read_offsets(get_samples_folder() / "offsets.toml"), self.clock, journal
         )
         self._folder = TemporaryDirectory()
         book = journal.book() if journal is not None else OffsetBook(Store.open(Path(self._folder.name)))
         if book.store is None:
-            raise OSError(book.locked)
+            raise OSError(book.lock_reason)
         self.store = book.store
         self._fill(self.store)
         use_store(self.desk, self.store)
-        self.desk.hands.clock = self.clock.now
-        self.desk.clock.time_of_day = lambda: "09:41:07"
+        self.desk.station_controls.clock = self.clock.now
+        self.desk.clock.format_local_time = lambda: "09:41:07"
 
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
-        for number, tool in read_offsets(samples() / "offsets.toml").tools.items():
-            store.offsets.tools.change_row(
+        for number, tool in read_offsets(get_samples_folder() / "offsets.toml").tool_offsets.items():
+            store.offsets.tool_offsets.change_row(
                 number, "touched off", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
             )
         sheet = {"kind": "turning", "insert": "CNMG432", "holder": "MCLNR-124B"}
-        store.offsets.tools.change_row(1, "set", {"quadrant": 3})
-        store.offsets.shapes.change_row(1, "entered", sheet)
+        store.offsets.tool_offsets.change_row(1, "set", {"quadrant": 3})
+        store.offsets.tool_shapes.change_row(1, "entered", sheet)
         for number, x, z, why in CORRECTIONS:
-            store.offsets.secondary.change_row(number, why, {"x": x * 25.4, "z": z * 25.4}).result()
+            store.offsets.secondary_offsets.change_row(number, why, {"x": x * 25.4, "z": z * 25.4}).result()
         _fill_parts(store)
 
     def close(self) -> None:
@@ -103,21 +103,21 @@ class Stage:
         end = self.clock.now() + most
         while not until():
             if self.clock.now() > end:
-                state = self.desk.snapshot().state.value
-                raise TimeoutError(f"not so after {most:g} s: {state}: {self.desk.notice}")
-            self._executor.tick()
+                state = self.desk.read_snapshot().state.value
+                raise TimeoutError(f"not so after {most:g} s: {state}: {self.desk.prompt_notice}")
+            self._executor.run_tick()
             self.clock.sleep_until(self.clock.now() + TICK)
 
     def make_ready(self, program: str = PROGRAM) -> None:
         """Load a program, prove it and switch the drives on."""
         desk = self.desk
-        desk.programs.choose(program)
-        loaded = desk.session.settled(LOADING)
-        if loaded.errors:
-            raise ValueError(f"{program} does not prove: {loaded.errors[0].message}")
-        self.tick(lambda: desk.snapshot().state is State.DISABLED)
-        desk.enable()
-        self.tick(lambda: desk.snapshot().state is State.IDLE)
+        desk.program_choice.load_by_name(program)
+        loaded = desk.program_loader.wait_until_loaded(LOADING)
+        if loaded.blocking_errors:
+            raise ValueError(f"{program} does not prove: {loaded.blocking_errors[0].message}")
+        self.tick(lambda: desk.read_snapshot().state is MachineState.DISABLED)
+        desk.enable_drives()
+        self.tick(lambda: desk.read_snapshot().state is MachineState.IDLE)
         self.checks_start()
 
     def hears(self) -> None:
@@ -134,20 +134,20 @@ class Stage:
         """What was posted is obeyed, and the first move of the next start is checked."""
         desk = self.desk
         self.hears()
-        desk.look()
-        if desk.first_move is not None:
-            desk.first_move.worker.settle(LOADING)
+        desk.update()
+        if desk.start_watch is not None:
+            desk.start_watch.worker.wait_for_results(LOADING)
 
     def press_start(self) -> None:
         """Both palms, until something happens."""
         desk = self.desk
-        desk.look()  # what was changed since is read anew first
-        desk.session.settled(LOADING)
+        desk.update()  # what was changed since is read anew first
+        desk.program_loader.wait_until_loaded(LOADING)
         self.checks_start()
-        desk.hands.palm("left", down=True)
-        desk.hands.palm("right", down=True)
-        self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
-        desk.hands.let_go()
+        desk.station_controls.palm("left", is_down=True)
+        desk.station_controls.palm("right", is_down=True)
+        self.tick(lambda: desk.read_snapshot().state is not MachineState.IDLE, 5.0)
+        desk.station_controls.release_all()
 
 
 SIZES_MEASURED = (
@@ -195,13 +195,13 @@ def _fill_parts(store: Store) -> None:
     for number, (reason, seconds) in enumerate(STOPS):
         row = StopRow(f"{number}", "", name, f"2026-03-02T09:{number:02d}:00.000Z", seconds, reason)
         store.write(partial(part_cycles.save_stop, row=row)).result()
-    for life in (LifeRow(1, 200, 0.0, 0.9, True), LifeRow(3, 0, 1800.0)):
-        store.write(partial(tool_lives.set_limits, row=life)).result()
-    store.write(lambda c: tool_lives.set_use(c, 1, 184, 4020.0)).result()
-    store.write(lambda c: tool_lives.set_use(c, 3, 61, 732.0)).result()
+    for life in (ToolLifeRow(1, 200, 0.0, 0.9, True), ToolLifeRow(3, 0, 1800.0)):
+        store.write(partial(tool_lives.save_limits, row=life)).result()
+    store.write(lambda c: tool_lives.save_use(c, 1, 184, 4020.0)).result()
+    store.write(lambda c: tool_lives.save_use(c, 3, 61, 732.0)).result()
     for program, wanted, note in JOBS:
-        store.write(partial(job_queue.add, program=program, wanted=wanted, note=note)).result()
-    store.write(lambda c: job_queue.begin(c, 1)).result()
+        store.write(partial(job_queue.add_job, program=program, parts_to_make=wanted, note=note)).result()
+    store.write(lambda c: job_queue.activate_job(c, 1)).result()
     store.runs.add_parts(name, len(SIZES_MEASURED)).result()
 
 
@@ -234,7 +234,7 @@ class Looks(NamedTuple):
 def _pictures(out: Path, looks: Looks) -> Iterator[Path]:
     """First what a standing machine shows, then what a running one does."""
     _app = QApplication.instance() or QApplication(sys.argv[:1])
-    journal = Journal.at_home()
+    journal = Journal.open_default()
     stage = Stage(journal)
     stage.make_ready()
     with TemporaryDirectory(prefix="shop-") as folder:
@@ -242,7 +242,7 @@ def _pictures(out: Path, looks: Looks) -> Iterator[Path]:
             each.prepare(stage.desk, journal, Path(folder))
         yield from taken(stage.desk, out, False, looks, heard=stage.hears)
     stage.press_start()
-    stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)
+    stage.tick(lambda: stage.desk.read_snapshot().line >= AT_LINE)
     stage.tick(lambda: _z(stage.desk) <= AT_Z)
     yield from taken(stage.desk, out, True, looks)
     stage.close()
@@ -256,10 +256,12 @@ def _of_the_mill(out: Path, looks: Looks) -> Iterator[Path]:
     stage = Stage(machine=MILL)
     stage.make_ready(TILTED)
     yield from taken(stage.desk, out, False, looks, mill=True)
-    stage.desk.window.show_page(starts=True)  # the editor was in front, and has handed its program over again
-    stage.desk.session.settled(LOADING)
+    stage.desk.window_state.set_page(
+        can_start=True
+    )  # the editor was in front, and has handed its program over again
+    stage.desk.program_loader.wait_until_loaded(LOADING)
     stage.press_start()
-    stage.tick(lambda: stage.desk.snapshot().block >= TILTED_BLOCK)
+    stage.tick(lambda: stage.desk.read_snapshot().block >= TILTED_BLOCK)
     yield from taken(stage.desk, out, True, looks, mill=True)
     stage.close()
 
@@ -268,12 +270,12 @@ def _of_levels(out: Path, looks: Looks) -> Iterator[Path]:
     """Signing in, where people have been entered."""
     with TemporaryDirectory() as home:
         os.environ["TURNDESK_HOME"] = home
-        journal = Journal.at_home()
+        journal = Journal.open_default()
         stage = Stage(journal)
-        for name, level in (("ANNA", Level.SERVICE), ("BEN", Level.SETUP)):
-            person = PersonRow(name, level, b"-", b"-")  # nobody has to sign in
-            journal.opened().people.save_person(person).result()
-        stage.desk.access.reload()
+        for name, level in (("ANNA", AccessLevel.SERVICE), ("BEN", AccessLevel.SETUP)):
+            person = UserRow(name, level, b"-", b"-")  # nobody has to sign in
+            journal.require_store().people.save_user(person).result()
+        stage.desk.user_access.reload()
         stage.make_ready()
         yield from taken(stage.desk, out, False, looks, levels=True)
         stage.close()
@@ -281,7 +283,7 @@ def _of_levels(out: Path, looks: Looks) -> Iterator[Path]:
 
 
 def _z(desk: Desk) -> float:
-    snapshot = desk.snapshot()
+    snapshot = desk.read_snapshot()
     return snapshot.actual[1] - snapshot.offset[1]
 
 
@@ -363,16 +365,16 @@ def taken(
     """
     load_fonts()
     for theme in looks.themes:
-        dress(PALETTES[theme])
+        style_application(PALETTES[theme])
         for width, height in looks.sizes:
             for scene in SCENES:
                 if (scene.running, scene.mill, scene.levels) != (running, mill, levels):
                     continue
-                desk.settings.choose("theme", theme)
-                desk.settings.choose("language", scene.language or looks.language)
-                window = MainWindow(Look(PALETTES[theme]))
+                desk.settings_store.choose("theme", theme)
+                desk.settings_store.choose("language", scene.language or looks.language)
+                window = MainWindow(ScreenTheme(PALETTES[theme]))
                 window.resize(width, height)
-                window.open_desk(desk)
+                window.show_model(desk)
                 path = out / f"{scene.name}-{theme}-{width}x{height}.png"
                 press(window, scene.keys)
                 heard()
@@ -385,9 +387,9 @@ def taken(
 def _leave(window: MainWindow) -> None:
     """As an operator leaves a page: nothing stays half done on the desk."""
     if window.frame is not None:
-        window.frame.desk.clear()
-        window.frame.go(page_table.AUTOMATIC)
-    window.put_away()
+        window.frame.desk.clear_prompt_line()
+        window.frame.open_page(page_table.AUTOMATIC)
+    window.close_silently()
 
 
 def press(window: MainWindow, keys: str) -> None:
@@ -396,18 +398,18 @@ def press(window: MainWindow, keys: str) -> None:
         for key in word[1:] if word.startswith('"') else [word]:
             _settle(window, 0.2)
             frame = window.frame
-            if frame is not None and not frame.page.typed(key):
-                window.press(key.replace("_", " "))
+            if frame is not None and not frame.current_page.handle_key(key):
+                window.press_key(key.replace("_", " "))
 
 
 def _to_line(window: MainWindow, line: int) -> None:
     """And until the optional features have shown what they work out."""
-    page = window.frame.page if window.frame is not None else None
+    page = window.frame.current_page if window.frame is not None else None
     for each in of_extras("pictures"):
         each.settle(page, partial(_settle, window, SETTLE))
     if line and isinstance(page, EditorPage):
         _settle(window, SETTLE)
-        page.go_to(line)
+        page.move_cursor_to(line)
 
 
 def _settle(window: MainWindow, seconds: float) -> None:

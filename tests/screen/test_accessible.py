@@ -12,12 +12,12 @@ from PySide6.QtGui import QAccessible, QAccessibleInterface
 from PySide6.QtWidgets import QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.desk.pages.sheet import Row, Sheet
+from app.desk.pages.table_content import TableContent, TableRow
 from app.screen import accessible, page_table
-from app.screen.look import DARK, Look, Painter
-from app.screen.page_table import pages_of
-from app.screen.panel import Control, FingerPanel
-from app.screen.sheet_panel import SheetPanel
+from app.screen.page_table import list_pages
+from app.screen.panel import TouchControl, TouchPanel
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, ThemedPainter
+from app.screen.table_panel import TablePanel
 from app.screen.window.main_window import MainWindow
 from core.executor.commands import SetSwitch
 from tests.screen.accessible_tree import DESCRIPTION, NAME, named, press, tree
@@ -30,7 +30,7 @@ Role = QAccessible.Role
 
 @pytest.fixture(autouse=True)
 def installed() -> None:
-    accessible.install()
+    accessible.register_accessibility()
 
 
 @pytest.fixture
@@ -53,8 +53,8 @@ def without_name(window: MainWindow) -> list[str]:
     """Each page on which something has no name or no role."""
     assert window.frame is not None
     found = []
-    for entry in pages_of(window.frame.desk.machine.language):
-        window.frame.go(entry.name)
+    for entry in list_pages(window.frame.desk.machine.language):
+        window.frame.open_page(entry.name)
         window.refresh()
         found += [
             f"{entry.name}: {node.role().name} {node.object()} at {node.rect()}"
@@ -78,10 +78,10 @@ def test_everything_on_every_page_of_a_mill_has_a_name(mill: Mill) -> None:
 
 def test_pages_open_by_the_names_of_keys(hands: Hands) -> None:
     press(named(hands.window, "F1  MENU"))
-    assert hands.frame.page.NAME == page_table.MENU
+    assert hands.frame.current_page.NAME == page_table.MENU
     hands.window.refresh()
     press(named(hands.window, "F8  TOOL OFFSETS"))
-    assert hands.frame.page.NAME == page_table.TOOLS
+    assert hands.frame.current_page.NAME == page_table.TOOLS
 
 
 def test_a_lamp_says_whether_it_is_lit(hands: Hands) -> None:
@@ -103,7 +103,7 @@ def test_a_list_says_its_rows_and_which_is_marked(above: QWidget) -> None:
     assert chosen == [2]
     press(named(panel, "NEXT ROWS"))
     panel.grab()
-    assert panel.top == panel.rows
+    assert panel.first_row == panel.rows
     assert rows[0].text(NAME) == f"row {panel.rows}  12"
 
 
@@ -121,14 +121,14 @@ def test_a_row_that_has_gone_is_neither_named_nor_pressed(above: QWidget) -> Non
 
 def test_a_key_that_would_be_refused_is_disabled(hands: Hands) -> None:
     press(named(hands.window, "F1  MENU"))
-    hands.frame.go(page_table.TOOLS)
+    hands.frame.open_page(page_table.TOOLS)
     hands.window.refresh()
     undo, history = (named(hands.window, name).state().disabled for name in ("F4  UNDO", "F5  HISTORY"))
     assert (undo, history) == (True, False)
 
 
 def test_what_acts_while_it_is_held_has_no_press(hands: Hands) -> None:
-    hands.frame.go(page_table.JOG)
+    hands.frame.open_page(page_table.JOG)
     hands.window.refresh()
     arrows = [
         node for node in tree(hands.window) if "  Z" in f"  {node.text(NAME)}" and node.rect().isValid()
@@ -147,16 +147,18 @@ def test_what_acts_while_it_is_held_has_no_press(hands: Hands) -> None:
 def test_a_control_goes_down_and_comes_up(above: QWidget) -> None:
     told: list[str] = []
 
-    class One(FingerPanel):
-        def draw(self, _painter: Painter) -> None:
+    class One(TouchPanel):
+        def draw(self, _painter: ThemedPainter) -> None:
             self.controls = [
-                Control(self.area(), lambda _at: told.append("down"), None, self.up, name="HORN")
+                TouchControl(
+                    self.find_full_area(), lambda _at: told.append("down"), None, self.up, name="HORN"
+                )
             ]
 
         def up(self) -> None:
             told.append("up")
 
-    panel = One(Look(DARK), above)
+    panel = One(ScreenTheme(DARK_PALETTE), above)
     panel.show()
     press(named(panel, "HORN"))
     assert told == ["down", "up"]
@@ -180,12 +182,12 @@ def test_a_panel_that_is_deleted_leaves_its_rows_invalid(above: QWidget) -> None
     assert rows[0].parent() is None
 
 
-def shown_sheet(above: QWidget, chosen: list[int], count: int, panel: SheetPanel | None = None) -> SheetPanel:
-    panel = panel or SheetPanel(Look(DARK, 6.4), chosen.append, above)
+def shown_sheet(above: QWidget, chosen: list[int], count: int, panel: TablePanel | None = None) -> TablePanel:
+    panel = panel or TablePanel(ScreenTheme(DARK_PALETTE, 6.4), chosen.append, above)
     panel.resize(500, 300)
     panel.show()
-    rows = tuple(Row((f"row {number}", "12")) for number in range(count))
-    panel.show_sheet(Sheet("PROGRAMS", ("NAME", "SIZE"), (0.6, 0.4), rows, 1))
+    rows = tuple(TableRow((f"row {number}", "12")) for number in range(count))
+    panel.show_table(TableContent("PROGRAMS", ("NAME", "SIZE"), (0.6, 0.4), rows, 1))
     panel.grab()
     return panel
 

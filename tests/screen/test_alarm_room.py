@@ -6,14 +6,14 @@ import pytest
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QApplication
 
-from app.desk.status.machine_status import status_of
-from app.desk.status.prompt_line import alarm_of, exactly, reason
-from app.desk.status.readouts import Readout
-from app.screen.look import DARK, Look, load_fonts
-from app.screen.window.readout_panels import stop_words
-from core.alarms import CATALOGUE, Code, Reaction
+from app.desk.status.machine_status import make_status
+from app.desk.status.prompt_line import describe_cause, make_alarm_prompt, reason
+from app.desk.status.readouts import ReadoutKind
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts
+from app.screen.window.readout_panels import describe_stop
+from core.alarms import CATALOGUE, AlarmCode, Reaction
 from core.executor.raised_alarm import make_alarm
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from tests.texts import text as wording
 
 UNIT = 600 / 90  # pixels at 1024×600
@@ -23,37 +23,37 @@ CODES = pytest.mark.parametrize("code", sorted(CATALOGUE))
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ScreenTheme:
     assert qapp is not None
     load_fonts()
-    return Look(DARK, min(1024 / 160, UNIT))
+    return ScreenTheme(DARK_PALETTE, min(1024 / 160, UNIT))
 
 
-def fits(look: Look, text: str, size: float, width: float, *, bold: bool = False) -> bool:
-    font = look.fit(text, size, width, bold=bold)
+def fits(look: ScreenTheme, text: str, size: float, width: float, *, bold: bool = False) -> bool:
+    font = look.fit_font(text, size, width, is_bold=bold)
     return QFontMetricsF(font).horizontalAdvance(text) <= width + 1
 
 
-def snapshot(code: Code) -> Snapshot:
+def snapshot(code: AlarmCode) -> Snapshot:
     alarm = make_alarm(code, "", 1234, 0.0)
-    if CATALOGUE[code].reaction in {Reaction.OFF, Reaction.STOP}:
-        return Snapshot(state=State.FAULT, alarms=(alarm,))
-    return Snapshot(state=State.HOLD, stop=alarm)
+    if CATALOGUE[code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP}:
+        return Snapshot(state=MachineState.FAULT, alarms=(alarm,))
+    return Snapshot(state=MachineState.HOLD, stop=alarm)
 
 
 @CODES
-def test_head_cause_and_remedy_are_whole(look: Look, code: Code) -> None:
+def test_head_cause_and_remedy_are_whole(look: ScreenTheme, code: AlarmCode) -> None:
     shot = snapshot(code)
-    view = status_of(shot, Readout.POSITION, True)
-    assert fits(look, view.state, 2.5, 42 * look.u, bold=True), view.state
-    assert fits(look, stop_words(view), 2.5, ACROSS - 24 * UNIT - 6 * UNIT, bold=True)
+    view = make_status(shot, ReadoutKind.POSITION, True)
+    assert fits(look, view.state_text, 2.5, 42 * look.u, bold=True), view.state_text
+    assert fits(look, describe_stop(view), 2.5, ACROSS - 24 * UNIT - 6 * UNIT, bold=True)
     assert fits(look, reason(view), 1.9, ACROSS), reason(view)
-    assert fits(look, alarm_of(shot, wording("stories.release-by-u")), 2.1, ACROSS, bold=True)
+    assert fits(look, make_alarm_prompt(shot, wording("stories.release-by-u")), 2.1, ACROSS, bold=True)
 
 
 @CODES
-def test_the_list_of_stops_has_room_for_it(look: Look, code: Code) -> None:
+def test_the_list_of_stops_has_room_for_it(look: ScreenTheme, code: AlarmCode) -> None:
     alarm = make_alarm(code, "", 1234, 0.0)
     assert fits(look, f"{alarm.number}  ·  {alarm.text}", 2.0, LIST, bold=True)
-    assert fits(look, exactly(alarm), 1.8, LIST), exactly(alarm)
+    assert fits(look, describe_cause(alarm), 1.8, LIST), describe_cause(alarm)
     assert fits(look, alarm.remedy, 1.8, LIST), alarm.remedy

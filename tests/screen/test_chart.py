@@ -13,8 +13,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.screen.chart import Chart, curve_colour, line_pen, set_curve
-from app.screen.look import CURVES, DARK, LIGHT, Look
+from app.screen.chart import Chart, find_curve_color, make_line_pen, set_curve_points
+from app.screen.screen_theme import CURVE_COLORS, DARK_PALETTE, LIGHT_PALETTE, ScreenTheme
 
 
 @pytest.fixture
@@ -25,15 +25,16 @@ def parent(qtbot: QtBot) -> QWidget:
     return widget
 
 
-def chart_of(parent: QWidget, look: Look | None = None) -> Chart:
-    chart = Chart(look or Look(DARK), parent)
+def chart_of(parent: QWidget, look: ScreenTheme | None = None) -> Chart:
+    chart = Chart(look or ScreenTheme(DARK_PALETTE), parent)
     chart.resize(parent.size())
     return chart
 
 
 def test_pyqtgraph_is_not_imported_at_the_start() -> None:
     code = (
-        "import sys; import app.screen.run_screen, app.compose.screen_desk, app.screen.window.main_window;"
+        "import sys; import app.screen.screen_startup, app.compose.screen_desk, "
+        "app.screen.window.main_window;"
         "from app.screen.page_table import PAGES; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
@@ -41,46 +42,46 @@ def test_pyqtgraph_is_not_imported_at_the_start() -> None:
 
 def test_a_curve_is_drawn_in_its_colour(parent: QWidget) -> None:
     chart = chart_of(parent)
-    plot = chart.add()
+    plot = chart.add_plot()
     plot.vb.setXRange(0.0, 10.0, padding=0)
     plot.vb.setYRange(-1.0, 1.0, padding=0)
-    curve = plot.curve(line_pen(curve_colour(chart.look, 1)))
-    set_curve(curve, np.array([0.0, 10.0]), np.array([0.43, 0.43]))
+    curve = plot.add_curve(make_line_pen(find_curve_color(chart.theme, 1)))
+    set_curve_points(curve, np.array([0.0, 10.0]), np.array([0.43, 0.43]))
     parent.show()
     image = chart.grab().toImage()
-    room = plot.room()
+    room = plot.find_curve_area()
     x, y = round(room.center().x()), round(room.y() + 0.285 * room.height())
     column = {image.pixelColor(x, y + d).name() for d in range(-2, 3)}
-    assert CURVES["dark"][1] in column
-    assert CURVES["dark"][0] not in column
+    assert CURVE_COLORS["dark"][1] in column
+    assert CURVE_COLORS["dark"][0] not in column
 
 
 def test_a_place_is_told_in_the_units_of_the_axes(parent: QWidget) -> None:
     chart = chart_of(parent)
-    plot = chart.add()
+    plot = chart.add_plot()
     plot.vb.setXRange(2.0, 6.0, padding=0)
     plot.vb.setYRange(-10.0, 10.0, padding=0)
     parent.show()
     chart.grab()
-    room = plot.room()
-    x, y = plot.value_at(QPointF(room.x() + 0.75 * room.width(), room.y() + 0.25 * room.height()))
+    room = plot.find_curve_area()
+    x, y = plot.find_values(QPointF(room.x() + 0.75 * room.width(), room.y() + 0.25 * room.height()))
     assert x == pytest.approx(5.0)
     assert y == pytest.approx(5.0)
 
 
 def test_colours_follow_the_theme(parent: QWidget) -> None:
-    look = Look(DARK)
+    look = ScreenTheme(DARK_PALETTE)
     chart = chart_of(parent, look)
-    chart.add()
-    look.repaint(LIGHT)
-    chart.dress()
+    chart.add_plot()
+    look.set_palette(LIGHT_PALETTE)
+    chart.apply_theme()
     parent.show()
-    assert chart.grab().toImage().pixelColor(1, 1) == QColor(LIGHT.panel)
+    assert chart.grab().toImage().pixelColor(1, 1) == QColor(LIGHT_PALETTE.panel)
 
 
 def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
     chart = chart_of(parent)
-    plot = chart.add()
+    plot = chart.add_plot()
     parent.show()
     before = plot.vb.viewRange()
     assert parent.childAt(200, 200) is None
@@ -93,31 +94,31 @@ def test_wheel_and_fingers_go_to_what_is_behind(parent: QWidget) -> None:
     ("value", "spacing", "text"), [(-0.002, 0.001, "−0.002"), (0.0, 0.5, "0.0"), (-1e-17, 1.0, "0")]
 )
 def test_figures_of_an_axis(parent: QWidget, value: float, spacing: float, text: str) -> None:
-    axis = chart_of(parent).add().axis("left")
+    axis = chart_of(parent).add_plot().find_axis("left")
     assert axis.tickStrings([value], 1.0, spacing) == [text]
 
 
 def test_a_plot_that_was_is_used_again_as_new(parent: QWidget) -> None:
     chart = chart_of(parent)
-    plot = chart.add()
-    set_curve(plot.curve(line_pen(QColor("red"))), np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+    plot = chart.add_plot()
+    set_curve_points(plot.add_curve(make_line_pen(QColor("red"))), np.array([0.0, 1.0]), np.array([0.0, 1.0]))
     plot.vb.invertY(True)
-    plot.axis("left").setLabel("parts")
-    plot.axis("bottom").hide()
-    chart.empty()
+    plot.find_axis("left").setLabel("parts")
+    plot.find_axis("bottom").hide()
+    chart.remove_plots()
     assert chart.plots == []
-    again = chart.add()
+    again = chart.add_plot()
     assert again is plot
     assert again.vb.addedItems == []
     assert not again.vb.yInverted()
-    assert again.axis("left").labelText == ""
-    assert again.axis("bottom").isVisible()
+    assert again.find_axis("left").labelText == ""
+    assert again.find_axis("bottom").isVisible()
 
 
 def test_plots_are_made_one_a_call(parent: QWidget) -> None:
     chart = chart_of(parent)
-    assert [chart.ready(2) for _ in range(3)] == [False, False, True]
-    chart.add()
-    chart.add()
-    assert chart.ready(2)
-    assert not chart.ready(3)
+    assert [chart.prepare_plots(2) for _ in range(3)] == [False, False, True]
+    chart.add_plot()
+    chart.add_plot()
+    assert chart.prepare_plots(2)
+    assert not chart.prepare_plots(3)

@@ -10,13 +10,18 @@ import pytest
 from app.compose.machine.machine_setup import read_machine
 from app.compose.runs.journal import Journal
 from app.compose.screen_desk import build_desk
-from app.compose.stored_offsets import NONE, book_of, chosen_offsets, stored_offsets
+from app.compose.stored_offsets import (
+    NO_OFFSETS,
+    create_offset_book,
+    make_offsets_reader,
+    read_stored_offsets,
+)
 from app.desk.command_errors import CommandError
-from core.executor.snapshot import Event
+from core.executor.snapshot import LogEvent
 from core.interpreter.shared.job_setup import SecondaryOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.store.store import Store
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 from tests.texts import shows
 
 
@@ -30,34 +35,34 @@ SHIPPED = Path(__file__).parents[2] / "resources" / "machines" / "gt75.toml"
 
 
 def test_an_offsets_file_takes_the_place_of_the_store() -> None:
-    tools, secondary, *_ = chosen_offsets(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
+    tools, secondary, *_ = make_offsets_reader(str(SHIPPED.parents[1] / "programs" / "offsets.toml"))()
     assert sorted(tools) == [1, 2, 3, 4, 6, 7, 8, 20]
     assert tools[1].z == pytest.approx(-3.0 * 25.4)
     assert secondary == {}
 
 
 def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
-    offsets = chosen_offsets(None)
-    assert offsets() == NONE
+    offsets = make_offsets_reader(None)
+    assert offsets() == NO_OFFSETS
     with Store.open(home) as store:
-        store.offsets.tools.change_row(7, values={"x": 1.0, "z": 2.0}, why="touched off").result(60)
+        store.offsets.tool_offsets.change_row(7, values={"x": 1.0, "z": 2.0}, why="touched off").result(60)
     assert sorted(offsets()[0]) == [7]
 
 
 def test_what_ran_is_kept(home: Path) -> None:
     journal = Journal(home)
-    journal.keep(Source("part.nc", "G90\nM30\n"))
+    journal.keep(ProgramSource("part.nc", "G90\nM30\n"))
     for kind, text in (
         ("load", "part.nc"),
         ("start", "part.nc"),
         ("part", "part 1, 3 s"),
         ("part", "part 2"),
     ):
-        journal.hear(Event(1.0, kind, text))
+        journal.hear(LogEvent(1.0, kind, text))
     journal.close()
     with Store.open(home, read_only=True) as store:
         assert store.programs.load_version("part.nc") == b"G90\nM30\n"
-        assert store.runs.count_parts("part.nc") == 2
+        assert store.runs.read_part_count("part.nc") == 2
         assert [event.kind for event in store.events.read_events()].count("part") == 2
 
 
@@ -66,7 +71,7 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
     (file,) = home.glob("*.db")
     file.write_bytes(b"not a database" * 100)
     journal = Journal(home)
-    journal.hear(Event(1.0, "part", "part 1"))
+    journal.hear(LogEvent(1.0, "part", "part 1"))
     journal.close()
     assert str(file) in journal.trouble
     assert file.read_bytes() == b"not a database" * 100
@@ -74,23 +79,23 @@ def test_a_store_that_cannot_be_trusted_is_told_and_left_alone(home: Path) -> No
 
 def test_offsets_are_written_by_the_journals_store_and_read_by_the_next_loading(home: Path) -> None:
     journal = Journal(home)
-    book = book_of(stored_offsets, journal)
-    assert book.change(Kind.SECONDARY, 4, {"x": 0.1, "z": -0.2, "r": 0.4}, "X .2") == ""
+    book = create_offset_book(read_stored_offsets, journal)
+    assert book.change_fields(OffsetKind.SECONDARY, 4, {"x": 0.1, "z": -0.2, "r": 0.4}, "X .2") == ""
     journal.close()  # writes what is queued
-    assert stored_offsets()[1] == {4: SecondaryOffset(0.1, -0.2, 0.4)}
+    assert read_stored_offsets()[1] == {4: SecondaryOffset(0.1, -0.2, 0.4)}
 
 
 def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     journal = Journal(home)
     file = str(SHIPPED.parents[1] / "programs" / "offsets.toml")
-    book = book_of(chosen_offsets(file), journal)
+    book = create_offset_book(make_offsets_reader(file), journal)
     assert sorted(book.tools) == [1, 2, 3, 4, 6, 7, 8, 20]
-    assert shows(book.change(Kind.TOOL, 1, {"x": 1.0}, "try"), "screen.offsets-read-only")
-    assert shows(book.clear(Kind.SECONDARY, "C"), "screen.offsets-read-only")
-    assert shows(book.undo(Kind.TOOL, 1, 1), "screen.offsets-read-only")
-    assert book.history(Kind.TOOL) == ()
+    assert shows(book.change_fields(OffsetKind.TOOL, 1, {"x": 1.0}, "try"), "screen.offsets-read-only")
+    assert shows(book.clear_table(OffsetKind.SECONDARY, "C"), "screen.offsets-read-only")
+    assert shows(book.undo_step(OffsetKind.TOOL, 1, 1), "screen.offsets-read-only")
+    assert book.read_history(OffsetKind.TOOL) == ()
     journal.close()
-    assert stored_offsets() == NONE
+    assert read_stored_offsets() == NO_OFFSETS
 
 
 def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> None:
@@ -98,7 +103,7 @@ def test_without_a_store_the_offsets_say_why_they_are_not_kept(home: Path) -> No
     (file,) = home.glob("*.db")
     file.write_bytes(b"not a database" * 100)
     journal = Journal(home)
-    assert str(file) in journal.book().change(Kind.TOOL, 1, {"x": 1.0}, "try")
+    assert str(file) in journal.book().change_fields(OffsetKind.TOOL, 1, {"x": 1.0}, "try")
     journal.close()
 
 
@@ -123,7 +128,7 @@ def test_closing_the_desk_ends_its_threads() -> None:
 
 
 def test_a_control_on_a_thread_ends_with_its_desk() -> None:
-    desk = build_desk(begun=(read_machine(None), None))
+    desk = build_desk(begun_control=(read_machine(None), None))
     assert any(thread.name == "executor" for thread in threading.enumerate())
     desk.close()
     assert not any(thread.name == "executor" for thread in threading.enumerate())

@@ -13,12 +13,12 @@ from pytestqt.qtbot import QtBot
 import resources
 from app.compose.screen_desk import build_desk
 from app.desk.desk import Desk
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
-from core.executor.snapshot import State
-from drivers.simulators.grblhal_far_end import TcpEnd, serve
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import RealClock
+from core.executor.snapshot import MachineState
+from drivers.simulators.grblhal_connections import TcpConnection, run_simulator
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import RealClock
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 from tests.texts import text as wording
@@ -31,14 +31,14 @@ class Controller:
     """The simulator in a thread; ``pull`` takes the cable out."""
 
     def __init__(self) -> None:
-        self.end = TcpEnd("127.0.0.1", 0)
+        self.end = TcpConnection("127.0.0.1", 0)
         self._going = threading.Event()
         self._going.set()
         self._thread = threading.Thread(target=self._serve, name="controller")
         self._thread.start()
 
     def _serve(self) -> None:
-        serve(self.end, Firmware(RealClock()), self._going.is_set)
+        run_simulator(self.end, GrblFirmware(RealClock()), self._going.is_set)
 
     def pull(self) -> None:
         self._going.clear()
@@ -61,25 +61,25 @@ def desk(
 ) -> Iterator[Desk]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     text = resources.machine_file("gt75-grblhal.toml")
-    for old, new in (("/dev/ttyACM0", controller.end.name), *CHANGES):
+    for old, new in (("/dev/ttyACM0", controller.end.device_name), *CHANGES):
         assert old in text, old
         text = text.replace(old, new, 1)
     (tmp_path / "grbl.toml").write_text(text)
     (tmp_path / "part.nc").write_text(PROGRAM)
     made = build_desk(str(tmp_path / "grbl.toml"))
-    made.programs.choose(str(tmp_path / "part.nc"))
+    made.program_choice.load_by_name(str(tmp_path / "part.nc"))
     yield made
     made.close()
 
 
 @pytest.fixture
 def window(desk: Desk) -> Iterator[MainWindow]:
-    window = MainWindow(Look(DARK))
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
-    window.open_desk(desk)
+    window.show_model(desk)
     window.show()
     yield window
-    window.put_away()
+    window.close_silently()
 
 
 def test_a_part_a_hold_a_reset_and_the_cable_out(
@@ -88,36 +88,41 @@ def test_a_part_a_hold_a_reset_and_the_cable_out(
     frame = window.frame
     assert frame is not None
 
-    def sees(state: State) -> None:
+    def sees(state: MachineState) -> None:
         def so() -> None:
             assert frame is not None
-            assert frame.title.state.startswith(state.value), (frame.prompt.text, desk.snapshot().alarms)
+            assert frame.title_line.state_text.startswith(state.value), (
+                frame.prompt_line.main_text,
+                desk.read_snapshot().alarms,
+            )
 
         qtbot.waitUntil(so, timeout=LIMIT)
 
     def start() -> None:
-        qtbot.waitUntil(lambda: frame.prompt.text.startswith(wording("screen.to-start")), timeout=LIMIT)
+        qtbot.waitUntil(
+            lambda: frame.prompt_line.main_text.startswith(wording("screen.to-start")), timeout=LIMIT
+        )
         QTest.keyClick(window, Key.Key_F12)
 
-    sees(State.DISABLED)
+    sees(MachineState.DISABLED)
     QTest.keyClick(window, Key.Key_D)
     start()
-    qtbot.waitUntil(lambda: desk.snapshot().actual[0] > 1.0, timeout=LIMIT)
+    qtbot.waitUntil(lambda: desk.read_snapshot().actual[0] > 1.0, timeout=LIMIT)
     QTest.keyClick(window, Key.Key_H)
-    sees(State.HOLD)
-    held = desk.snapshot().actual
+    sees(MachineState.HOLD)
+    held = desk.read_snapshot().actual
     assert 1.0 < held[0] < 10.16
     QTest.keyClick(window, Key.Key_F12)
-    qtbot.waitUntil(lambda: desk.snapshot().parts == 1, timeout=LIMIT)
-    sees(State.IDLE)
-    assert desk.snapshot().actual[:2] == pytest.approx((0.0, 0.0), abs=0.01)
+    qtbot.waitUntil(lambda: desk.read_snapshot().parts == 1, timeout=LIMIT)
+    sees(MachineState.IDLE)
+    assert desk.read_snapshot().actual[:2] == pytest.approx((0.0, 0.0), abs=0.01)
     start()
-    qtbot.waitUntil(lambda: desk.snapshot().actual[0] > 1.0, timeout=LIMIT)
+    qtbot.waitUntil(lambda: desk.read_snapshot().actual[0] > 1.0, timeout=LIMIT)
     QTest.keyClick(window, Key.Key_H)
-    sees(State.HOLD)
+    sees(MachineState.HOLD)
     QTest.keyClick(window, Key.Key_R)
     yes(window)
-    sees(State.IDLE)
+    sees(MachineState.IDLE)
     controller.pull()
-    sees(State.FAULT)
-    assert "connection" in str(desk.snapshot().alarms[-1]).lower(), desk.snapshot().alarms
+    sees(MachineState.FAULT)
+    assert "connection" in str(desk.read_snapshot().alarms[-1]).lower(), desk.read_snapshot().alarms

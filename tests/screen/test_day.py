@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen import chapters
 from tests.screen.chapters import (
     D1,
@@ -36,7 +36,9 @@ def shift_in_the_program(day: Day) -> None:
     chapters.open_editor(day)
     day.key(Key.Key_End, Key.Key_Return)
     day.type("G10Z1.")
-    assert not [d for d in chapters.editor(day).findings.findings.diagnostics if d.severity.value == "error"]
+    assert not [
+        d for d in chapters.editor(day).finding_list.findings.diagnostics if d.severity.value == "error"
+    ]
     day.key(Key.Key_F3)
     day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
 
@@ -46,14 +48,14 @@ def shift_out_of_it(day: Day) -> None:
     day.until(lambda: abs(day.shot.rpm_actual) < 1)
     page = chapters.open_editor(day)
     day.key(Key.Key_F7)
-    day.sees(lambda: len(page.history.rows) >= 2)
-    while "G10" in page.field.toPlainText():
+    day.sees(lambda: len(page.version_history.rows) >= 2)
+    while "G10" in page.text_field.toPlainText():
         day.key(Key.Key_F5)
         day.run(0.05)
-        day.sees(lambda: not page.history.words())
+        day.sees(lambda: not page.version_history.words())
         day.key(Key.Key_F2)
-        day.sees(page.field.isVisible)
-    assert page.field.toPlainText() == chapters.PROGRAM + "\n"
+        day.sees(page.text_field.isVisible)
+    assert page.text_field.toPlainText() == chapters.PROGRAM + "\n"
     day.key(Key.Key_F3)
     day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
 
@@ -63,17 +65,17 @@ def dry_run(day: Day) -> None:
     shift_in_the_program(day)
     day.key(Key.Key_O)
     day.palms()
-    day.reaches(State.PROGRAM_STOP)
+    day.reaches(MachineState.PROGRAM_STOP)
     day.run(0.1)
-    assert day.frame.notice.isVisible()
-    assert day.frame.notice.message == "GAUGE THE .9 AND CORRECT D1"
+    assert day.frame.alarm_notice.isVisible()
+    assert day.frame.alarm_notice.message == "GAUGE THE .9 AND CORRECT D1"
     stand_at(day, (ENDS[8][0], ENDS[8][1] + 1.0))
     day.key(Key.Key_O)
     day.palms()
     day.until(lambda: day.shot.line == 14 and day.shot.modal.tool == 2)  # lines are one further down
     day.until(lambda: day.slides[0] < ENDS[13][0] + 0.0005)
     assert day.slides[1] == pytest.approx(ENDS[13][1] + 1.0, abs=0.0005)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     shift_out_of_it(day)
 
 
@@ -83,12 +85,12 @@ def single_block_through(day: Day) -> None:
     ended: dict[int, tuple[float, float]] = {}
     for _ in range(40):
         day.palms()
-        day.reaches(State.BLOCK_END, State.PROGRAM_STOP, State.IDLE)
-        if day.shot.state is State.IDLE:
+        day.reaches(MachineState.BLOCK_END, MachineState.PROGRAM_STOP, MachineState.IDLE)
+        if day.shot.state is MachineState.IDLE:
             break
         ended[day.shot.line] = day.slides
-        assert day.frame.position.isVisible()
-    assert day.shot.state is State.IDLE
+        assert day.frame.position_panel.isVisible()
+    assert day.shot.state is MachineState.IDLE
     for line, place in ENDS.items():
         assert ended[line] == pytest.approx(place, abs=0.0005), f"line {line}"
     day.key(Key.Key_S)
@@ -100,11 +102,11 @@ def test_from_an_empty_folder_to_the_first_good_part(day: Day) -> None:
     write_program(day)
     day.sees(lambda: shows(day.prompt, "screen.no-offset-set", tools="T1, T2"))
     day.palms()
-    assert day.shot.state is State.IDLE  # a tool that nobody has set is not run
+    assert day.shot.state is MachineState.IDLE  # a tool that nobody has set is not run
     set_tools(day)
     correct(day, ".5-.502", "2/2000")
     day.sees(lambda: text("screen.to-start") in day.prompt)  # a warning of the first move may come before it
-    row = day.store.offsets.secondary.read_rows()[1]
+    row = day.store.offsets.secondary_offsets.read_rows()[1]
     assert (row.x / 25.4, row.z / 25.4) == pytest.approx(D1, abs=1e-9)
     dry_run(day)
     assert day.count("part") == 1

@@ -12,7 +12,7 @@ from app.mdi.mdi_model import MdiModel
 from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
 from app.searchto.searchto_model import SearchtoModel
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.attached import attached
 from tests.screen.chapters import (
     ENDS,
@@ -56,7 +56,7 @@ def turning(day: Day) -> float:
 def made(day: Day) -> str:
     """The count on the screen."""
     day.window.refresh()
-    times = day.frame.times.value
+    times = day.frame.times_panel.value
     assert isinstance(times, tuple)
     return str(dict(times)["PARTS"])
 
@@ -77,11 +77,11 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     day.until(lambda: made(day) == "2/5")
     assert day.shot.cycle_repeat
     day.key(Key.Key_O)
-    day.reaches(State.PROGRAM_STOP)  # the optional stop of the third part
+    day.reaches(MachineState.PROGRAM_STOP)  # the optional stop of the third part
     day.key(Key.Key_F1)
     day.run(0.05)
-    assert day.frame.run.message == "GAUGE THE .9 AND CORRECT D1"  # on every page
-    day.frame.run.grab()
+    assert day.frame.run_line.message_text == "GAUGE THE .9 AND CORRECT D1"  # on every page
+    day.frame.run_line.grab()
     day.key(Key.Key_F2)
     correct(day, "-.001")
     day.key(Key.Key_O)
@@ -89,12 +89,12 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     day.until(lambda: made(day) == "3/5")
     # .001 on the diameter more: half of it on the slide
     assert turning(day) == pytest.approx(0.45 - 0.0015 + T1[0], abs=NEAR / 2)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     assert made(day) == "5/5"
     assert not day.shot.cycle_repeat
     assert day.prompt == wording("screen.target-reached", count=5, target=5)
     assert day.count("part") == 5
-    assert day.journal.runs.count_parts(PARTS) == 5
+    assert day.journal.runs.read_part_count(PARTS) == 5
     assert [change.why for change in day.store.offsets.read_history()][:2] == ["X -.001", "X -.002 Z .001"]
 
 
@@ -107,13 +107,13 @@ def test_a_correction_while_parts_run_and_nothing_stops(day: Day) -> None:
     assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR / 2)  # this part as it was begun
     day.until(lambda: made(day) == "2")
     assert turning(day) == pytest.approx(0.45 - 0.0015 + T1[0], abs=NEAR / 2)
-    day.sees(lambda: day.desk.session.now.picture is not None)
-    job = day.desk.session.now.job
+    day.sees(lambda: day.desk.program_loader.loaded.picture is not None)
+    job = day.desk.program_loader.loaded.job
     assert job is not None
     assert job.digest == day.shot.job
     assert day.shot.cycle_repeat
     day.key(Key.Key_C)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     assert day.count("stop") == 0
     assert day.count("part") == 3
 
@@ -129,18 +129,18 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     day.sees(lambda: begins(day.prompt, "screen.no-next-part"))
     day.key(Key.Key_Escape)  # pressed as the proof ends: it must not remove what nobody has read
     assert begins(day.prompt, "screen.no-next-part")
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     day.sees(lambda: shows(day.prompt, "screen.will-not-run") or shows(day.prompt, "screen.no-repeat"))
     assert day.count("part") == 2
     day.palms()
-    assert day.shot.state is State.IDLE
+    assert day.shot.state is MachineState.IDLE
 
 
 def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     day.palms()
     turning(day)
     day.key(Key.Key_H)
-    day.reaches(State.HOLD)
+    day.reaches(MachineState.HOLD)
     day.run(0.1)
     stood = day.slides
     day.run(1.0)
@@ -148,16 +148,16 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     day.key(Key.Key_R)
     assert shows(day.prompt, "screen.give-up-program")
     yes(day.window)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     day.key(Key.Key_S)  # nobody lets the first restart of the day run through
     search(day, "X1.2", "11")
     restarts(day)
     ended = {}
-    day.reaches(State.BLOCK_END)
-    while day.shot.state is State.BLOCK_END:
+    day.reaches(MachineState.BLOCK_END)
+    while day.shot.state is MachineState.BLOCK_END:
         ended[day.shot.line] = day.slides
         day.palms()
-        day.reaches(State.BLOCK_END, State.IDLE)
+        day.reaches(MachineState.BLOCK_END, MachineState.IDLE)
     assert [ended[line] for line in (11, 12, 13, 14)] == [
         pytest.approx(ENDS[line], abs=NEAR) for line in (11, 12, 13, 14)
     ]
@@ -170,18 +170,18 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
 def search(day: Day, text: str, line: str) -> None:
     """F6, a text or nothing, Return to its state, F10 to take it."""
     day.key(Key.Key_F6)
-    assert day.page == page_table.SEARCHTO
-    model = day.desk.pages.find(SearchtoModel)
+    assert day.page == page_table.SEARCHTO_PAGE
+    model = day.desk.page_registry.find(SearchtoModel)
     assert model is not None
     if text:
         day.type(text)
         day.key(Key.Key_Return)
-    assert str(model.cursor.line) == line
+    assert str(model.line_cursor.selected_line) == line
     day.key(Key.Key_Return)
-    model.finder.worker.settle(60.0)
+    model.restart_finder.worker.wait_for_results(60.0)
     day.run(0.05)
     day.key(Key.Key_F10)
-    model.finder.worker.settle(60.0)
+    model.restart_finder.worker.wait_for_results(60.0)
     day.run(0.05)
 
 
@@ -195,20 +195,20 @@ def test_an_estop_and_the_part_is_finished_from_the_line_that_was_running(day: D
     day.palms()
     turning(day)
     day.key(Key.Key_E)
-    day.reaches(State.ESTOP)
+    day.reaches(MachineState.ESTOP)
     day.run(3.0)
     assert day.shot.rpm_actual == pytest.approx(0.0, abs=1.0)
     twist_out(day.window)
-    day.reaches(State.DISABLED)
+    day.reaches(MachineState.DISABLED)
     day.key(Key.Key_D)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     day.key(Key.Key_F6)
     assert begins(day.prompt, "search.broke-off", line=TURNING)
     day.key(Key.Key_F1, Key.Key_F2)
     search(day, "", str(TURNING))
     restarts(day)
     assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     assert day.slides == pytest.approx(ENDS[15], abs=NEAR)
     assert day.count("part") == 1
 
@@ -228,19 +228,19 @@ def test_mdi_between_two_parts_keeps_the_spindle(day: Day) -> None:
     assert begins(day.prompt, "screen.spindle-on-no-edit")
     day.palms()
     assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     assert day.count("part") == 1
-    assert day.frame.title.program == f"{NAME}.nc"
+    assert day.frame.title_line.program_text == f"{NAME}.nc"
 
 
 def mdi(day: Day, line: str) -> None:
     """One line of MDI to its end."""
-    page = day.frame.page
+    page = day.frame.current_page
     assert isinstance(page, MdiPage)
     day.type(line)
     day.key(Key.Key_Return)
-    attached(day.desk, MdiModel).line.worker.settle(60.0)
+    attached(day.desk, MdiModel).prepared_line.worker.wait_for_results(60.0)
     day.run(0.05)
     day.palms()
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     day.run(0.05)

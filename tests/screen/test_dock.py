@@ -7,16 +7,16 @@ from PySide6.QtGui import QTouchEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.station_dock import StationDock
-from app.screen.window_layout import FINGER, LEAST, places, unit
+from app.screen.window_layout import FINGERTIP_PX, MIN_WINDOW_PX, find_unit, make_layout
 from core.executor.commands import CycleStart
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands
 
 
 def dock_of(hands: Hands) -> StationDock:
-    dock = hands.frame.dock
+    dock = hands.frame.station_dock
     assert dock is not None
     hands.window.move(-300, 0)  # the offscreen screen is 800 pixels wide, and touches beyond it are dropped
     dock.grab()  # drawing declares the controls
@@ -75,20 +75,20 @@ def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
     track = dock.controls[9].box  # E-stop, twist, OFF, AUTO, less, more, spindle pot, less, more, feed pot
     end = QPointF(track.left(), track.center().y()).toPoint()
     fingers.press(0, track.center().toPoint())
-    assert hands.desk.hands.feed_pot.wanted == 0.75
+    assert hands.desk.station_controls.feed_pot.wanted == 0.75
     fingers.move(0, end)
-    assert hands.desk.hands.feed_pot.wanted == 0.0
+    assert hands.desk.station_controls.feed_pot.wanted == 0.0
     fingers.release(at=end)
 
 
 def test_whatever_stands_on_the_smallest_station_fits_a_finger(hands: Hands) -> None:
     """The tracks of the pots had 42 pixels."""
-    at = places(*LEAST, dock=True).dock
-    dock = StationDock(Look(DARK, unit(*LEAST)), hands.desk)
+    at = make_layout(*MIN_WINDOW_PX, has_dock=True).dock
+    dock = StationDock(ScreenTheme(DARK_PALETTE, find_unit(*MIN_WINDOW_PX)), hands.desk)
     dock.resize(at.w, at.h)
     dock.grab()
     assert len(dock.controls) == 13  # as above, feed hold and the palms
-    assert all(min(each.box.width(), each.box.height()) >= FINGER for each in dock.controls)
+    assert all(min(each.box.width(), each.box.height()) >= FINGERTIP_PX for each in dock.controls)
 
 
 def test_two_fingers_on_the_palms_start(hands: Hands) -> None:
@@ -115,16 +115,16 @@ def test_the_mouse_alone_cannot_start(hands: Hands) -> None:
 def test_the_mushroom_latches_and_is_twisted_out_beside_it(hands: Hands) -> None:
     dock = dock_of(hands)
     QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 0))
-    hands.sees_state(State.ESTOP)
+    hands.sees_state(MachineState.ESTOP)
     QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 0))
-    assert hands.machine.now.state is State.ESTOP
+    assert hands.machine.now.state is MachineState.ESTOP
     QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=middle(dock, 1))
-    hands.sees_state(State.DISABLED)
+    hands.sees_state(MachineState.DISABLED)
 
 
 def test_a_finger_that_leaves_with_the_window_lets_the_palm_go(hands: Hands) -> None:
     dock = dock_of(hands)
-    dock.controls[-1].down(QPointF())
+    dock.controls[-1].on_press(QPointF())
     assert hands.machine.palms == {"right"}
-    hands.window.let_go()
+    hands.window.release_all()
     assert hands.machine.palms == set()

@@ -10,12 +10,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.compose.extra import extras
+from app.compose.optional_features import extras
 from app.editor import editor_messages as messages
 from app.editor.editor_view import EditorPage
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.attached import attached
 from tests.screen.chapters import drives_on
 from tests.screen.day import Day, Key, begun
@@ -77,7 +77,7 @@ def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
         day.type("X1")
         day.key(Key.Key_Escape)
         assert day.page == page_table.MDI
-        assert attached(day.desk, MdiModel).typing.text == ""
+        assert attached(day.desk, MdiModel).mdi_input.text == ""
     day.key(Key.Key_Escape)
     assert day.page == page_table.AUTOMATIC
 
@@ -87,18 +87,18 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     opened(day, Key.Key_F4, page_table.MDI)
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)
-    attached(day.desk, MdiModel).line.worker.settle(60.0)
+    attached(day.desk, MdiModel).prepared_line.worker.wait_for_results(60.0)
     day.run(0.05)
     day.palms()
-    day.reaches(State.RUN)
+    day.reaches(MachineState.RUN)
     day.key(Key.Key_Escape)
-    day.reaches(State.HOLD)
+    day.reaches(MachineState.HOLD)
     assert day.page == page_table.MDI
     day.key(Key.Key_Escape)
     assert day.page == page_table.MDI  # a line that is held is not walked away from
     day.key(Key.Key_Escape, Key.Key_R)
     yes(day.window)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
 
 
 def test_no_list_and_no_answer_comes_before_the_hold(day: Day) -> None:
@@ -109,15 +109,15 @@ def test_no_list_and_no_answer_comes_before_the_hold(day: Day) -> None:
     assert model is not None
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)
-    model.line.worker.settle(60.0)
+    model.prepared_line.worker.wait_for_results(60.0)
     day.run(0.05)
     day.key(Key.Key_F3)
-    assert model.completion.open
+    assert model.completion.is_open
     day.palms()
-    day.reaches(State.RUN)
+    day.reaches(MachineState.RUN)
     day.desk.say("PEG.NC WAS CHANGED ON LATHE 2: F1, X SHOWS WHAT")
     day.key(Key.Key_Escape)
-    day.reaches(State.HOLD)
+    day.reaches(MachineState.HOLD)
     assert day.page == page_table.MDI
 
 
@@ -128,14 +128,14 @@ def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
     day.key(Key.Key_Escape)
     assert day.page == page_table.JOG
     QTest.keyPress(day.window, Key.Key_Right)
-    day.reaches(State.JOG)
+    day.reaches(MachineState.JOG)
     day.key(Key.Key_Escape)
     assert day.page == page_table.JOG
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     QTest.keyRelease(day.window, Key.Key_Right)
-    assert day.desk.notice == text("screen.jog-ended-by-key")
+    assert day.desk.prompt_notice == text("screen.jog-ended-by-key")
     day.key(Key.Key_Escape)
-    assert (day.page, day.desk.notice) == (page_table.JOG, "")
+    assert (day.page, day.desk.prompt_notice) == (page_table.JOG, "")
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == page_table.AUTOMATIC)
 
@@ -145,7 +145,7 @@ def test_an_answer_is_taken_back_before_the_page(day: Day) -> None:
     opened(day, Key.Key_F5, page_table.JOG)
     day.desk.say("AN ANSWER")
     day.key(Key.Key_Escape)
-    assert (day.page, day.desk.notice) == (page_table.JOG, "")
+    assert (day.page, day.desk.prompt_notice) == (page_table.JOG, "")
 
 
 def edited(day: Day) -> EditorPage:
@@ -156,9 +156,9 @@ def edited(day: Day) -> EditorPage:
     day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
     day.key(Key.Key_F3)
     day.sees(lambda: day.page == page_table.EDITOR)
-    page = day.frame.page
+    page = day.frame.current_page
     assert isinstance(page, EditorPage)
-    day.sees(lambda: bool(page.field.toPlainText()))
+    day.sees(lambda: bool(page.text_field.toPlainText()))
     return page
 
 
@@ -180,11 +180,11 @@ def test_the_editor_keeps_what_is_not_saved(day: Day, tmp_path: Path) -> None:
     day.key(Key.Key_End, modifier=CTRL)
     day.type("(END)")
     day.key(Key.Key_Escape)
-    assert day.prompt == messages.UNSAVED
+    assert day.prompt == messages.UNSAVED_CHANGES
     for _ in range(3):
         day.key(Key.Key_Escape)
         assert day.page == page_table.EDITOR
-    assert page.field.toPlainText().endswith("(END)")
+    assert page.text_field.toPlainText().endswith("(END)")
     assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
 
 
@@ -195,28 +195,28 @@ def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
     day.key(Key.Key_Return)
     day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
     day.palms()
-    day.reaches(State.RUN)
+    day.reaches(MachineState.RUN)
     day.key(Key.Key_Escape)
-    day.reaches(State.HOLD)
+    day.reaches(MachineState.HOLD)
     assert day.page == page_table.AUTOMATIC
     day.palms()
-    day.reaches(State.RUN)
+    day.reaches(MachineState.RUN)
     opened(day, Key.Key_F5, page_table.JOG)
     day.key(Key.Key_Escape)
-    day.reaches(State.HOLD)
+    day.reaches(MachineState.HOLD)
     assert day.page == page_table.JOG
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == page_table.AUTOMATIC)
     day.key(Key.Key_R)
     yes(day.window)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
 
 
 def test_the_emergency_stop_keeps_no_page_in_front(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F5, page_table.JOG)
     day.key(Key.Key_E)
-    day.reaches(State.ESTOP)
+    day.reaches(MachineState.ESTOP)
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == page_table.AUTOMATIC)
     twist_out(day.window)

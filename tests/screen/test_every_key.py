@@ -15,15 +15,15 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.desk.data_folder import data_folder
-from app.desk.status.prompt_line import MOVING, Sort
-from app.desk.status.standing_prompt import start_refusal
-from app.jog import hand_functions
-from app.programs.whole_file import write_whole
+from app.desk.data_folder import find_data_folder
+from app.desk.status.prompt_line import MOVING_STATES, MessageKind
+from app.desk.status.state_prompt import find_start_refusal
+from app.jog import manual_functions
+from app.programs.atomic_files import write_program_file
 from app.screen import page_table
-from app.screen.page_table import pages_of
-from app.screen.window.keys import OF_AUTOMATIC
-from core.executor.snapshot import BY_HAND, State
+from app.screen.page_table import list_pages
+from app.screen.window.key_table import AUTOMATIC_KEYS
+from core.executor.snapshot import MANUAL_STATES, MachineState
 from tests.screen.day import Day, Key, begun
 from tests.screen.jog.bench import shipped
 from tests.screen.machine_states import MACHINES, STATES
@@ -72,9 +72,9 @@ def _strokes() -> Iterator[Stroke]:
 STROKES = tuple(_strokes())
 FEWER = tuple(each for each in STROKES if each.modifiers is not SHIFT or len(each.name) > 1)
 """Without capitals: for the editor, in which every key takes longer, and for states like others."""
-SOME = frozenset({State.IDLE, State.RUN, State.JOG})  # on the other machines
+SOME = frozenset({MachineState.IDLE, MachineState.RUN, MachineState.JOG})  # on the other machines
 EVERY = [(kind, state) for kind in MACHINES for state in STATES if kind == "omniturn" or state in SOME]
-BY_MACHINE = frozenset({page_table.AUTOMATIC, page_table.JOG, page_table.MDI, page_table.SEARCHTO})
+BY_MACHINE = frozenset({page_table.AUTOMATIC, page_table.JOG, page_table.MDI, page_table.SEARCHTO_PAGE})
 """Pages of all machines that are not the same on each."""
 
 
@@ -99,8 +99,8 @@ def day(
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     programs = MACHINES[kind]
     for name, text in programs.texts.items():
-        write_whole(data_folder() / "programs" / f"{name}.{programs.ending}", text.encode())
-    machine = shipped(tmp_path, absolute=False) if state is State.HOME else programs.machine
+        write_program_file(find_data_folder() / "programs" / f"{name}.{programs.ending}", text.encode())
+    machine = shipped(tmp_path, absolute=False) if state is MachineState.HOME else programs.machine
     with begun(qtbot, machine=machine) as day:
         day.sees(lambda: QApplication.focusWindow() is day.window.windowHandle())
         STATES[state](day)
@@ -118,53 +118,57 @@ def offered(day: Day, stroke: Stroke) -> set[str]:
     always = {
         "Pause": {"FeedHold"},
         "ScrollLock": {"press_estop"},
-        "Escape": {"FeedHold"} if day.shot.state in MOVING else set(),
-        **dict.fromkeys(("F11", "F12"), PALMS if day.frame.page.STARTS else frozenset()),
+        "Escape": {"FeedHold"} if day.shot.state in MOVING_STATES else set(),
+        **dict.fromkeys(("F11", "F12"), PALMS if day.frame.current_page.STARTS else frozenset()),
     }
     if name in always:
         return set(always[name])
     if name[0] == "F" and len(name) > 1:
         return _of_label(day, int(name[1:])) if stroke.modifiers is NONE else set()
-    return _of_entry(day, stroke) if day.frame.has_field() else _of_letter(day, stroke)
+    return _of_entry(day, stroke) if day.frame.has_text_field() else _of_letter(day, stroke)
 
 
 def _of_letter(day: Day, stroke: Stroke) -> set[str]:
     """Of a key where no entry has the keyboard."""
-    frame, page, name = day.frame, day.frame.page, stroke.name
+    frame, page, name = day.frame, day.frame.current_page, stroke.name
     if name in STOPS:
         return {STOPS[name]}
     if page.NAME == page_table.JOG and (found := _of_jog(day, name)):
         return found
     if stroke.modifiers is not NONE:
         return set()
-    lit = {lamp.key for lamp in frame.strip.lamps} - frame.strip.mute
-    lit |= OF_AUTOMATIC if page is frame.automatic else set()
-    assert frame.dock is not None
-    lit |= {"A"} - frame.dock.mute
+    lit = {lamp.key for lamp in frame.strip.lamps} - frame.strip.hidden_keys
+    lit |= AUTOMATIC_KEYS if page is frame.automatic_page else set()
+    assert frame.station_dock is not None
+    lit |= {"A"} - frame.station_dock.hidden_keys
     lamps = {LAMPS[name.upper()]} if name.upper() in lit & LAMPS.keys() else set()
     return lamps | ({EVERYWHERE[name]} if name in EVERYWHERE else set())
 
 
 def _of_label(day: Day, number: int) -> set[str]:
-    if f"F{number}" in day.frame.keys.barred:
+    if f"F{number}" in day.frame.key_bar.disabled_keys:
         return set()
-    return LABELS.get(day.frame.keys.labels[number - 1], set())
+    return LABELS.get(day.frame.key_bar.key_labels[number - 1], set())
 
 
 def _of_entry(day: Day, stroke: Stroke) -> set[str]:
     """Return, where the prompt names it; Ctrl+S of the editor."""
-    prompts = f"{day.frame.page.prompt()} {day.frame.prompt.state}"
+    prompts = f"{day.frame.current_page.prompt_text()} {day.frame.prompt_line.state_text}"
     if stroke.name == "Return" and re.search(r"\bENTER(:| TO )", prompts):
         return {"load", "store"}
-    return {"file", "store"} if day.frame.page.NAME == page_table.EDITOR and stroke.name == "s" else set()
+    return (
+        {"file", "store"}
+        if day.frame.current_page.NAME == page_table.EDITOR and stroke.name == "s"
+        else set()
+    )
 
 
 def _of_jog(day: Day, name: str) -> set[str]:
     """Arrows while slides may be moved by hand, and what stops the spindle."""
-    if hand_functions.KEYS.get(name) == hand_functions.STOP:
+    if manual_functions.MANUAL_KEYS.get(name) == manual_functions.STOP:
         return {"SpindleStop"}
-    directions = {each.key for each in getattr(day.frame.page, "model").directions}  # noqa: B009
-    return {"Jog", "JogStep"} if name in directions and day.shot.state in BY_HAND else set()
+    directions = {each.key for each in getattr(day.frame.current_page, "model").directions}  # noqa: B009
+    return {"Jog", "JogStep"} if name in directions and day.shot.state in MANUAL_STATES else set()
 
 
 # --- what is wrong ----------------------------------------------------------------------------------------
@@ -173,12 +177,12 @@ def _of_jog(day: Day, name: str) -> set[str]:
 def faults_of_page(typist: Typist, name: str) -> Iterator[str]:
     """What keys change that the page does not offer, and offer without doing it."""
     frame, face = typist.day.frame, typist.face
-    whole = typist.day.shot.state in {State.IDLE, State.RUN} and name != page_table.EDITOR
+    whole = typist.day.shot.state in {MachineState.IDLE, MachineState.RUN} and name != page_table.EDITOR
     for stroke in STROKES if whole else FEWER:
         if typist.face != face:
             typist.opens(name)
         typist.clear()
-        if frame.look.caret is not frame.page.has_field():
+        if frame.theme.is_caret_shown is not frame.current_page.has_text_field():
             yield f"{name}: a caret without an entry, or an entry without its caret"
         for fault in _faults_of_stroke(typist, name, stroke):
             yield f"{name}: {stroke.modifiers.name} {stroke.name} {fault}"
@@ -186,10 +190,10 @@ def faults_of_page(typist: Typist, name: str) -> Iterator[str]:
 
 def _faults_of_stroke(typist: Typist, name: str, stroke: Stroke) -> Iterator[str]:
     day, frame = typist.day, typist.day.frame
-    may, must, has_field = offered(day, stroke), _must(day, stroke), frame.has_field()
-    label, barred = _label(frame.keys.labels, stroke), stroke.name in frame.keys.barred
+    may, must, has_field = offered(day, stroke), _must(day, stroke), frame.has_text_field()
+    label, barred = _label(frame.key_bar.key_labels, stroke), stroke.name in frame.key_bar.disabled_keys
     done = typist.press(stroke)
-    left = name != frame.page.NAME
+    left = name != frame.current_page.NAME
     if left:
         done -= {"JogStop"}
     if done - may:
@@ -198,21 +202,23 @@ def _faults_of_stroke(typist: Typist, name: str, stroke: Stroke) -> Iterator[str
         yield "is no text"
     if must - done:
         yield f"does not do {must}"
-    refused = bool(day.desk.answers.answer) and day.desk.answers.sort is Sort.ANSWER
+    refused = (
+        bool(day.desk.prompt_answers.message) and day.desk.prompt_answers.notice_kind is MessageKind.REFUSAL
+    )
     if label == "" and (left or done):
         yield "has no label"
     if label and refused is not barred:
-        yield f"{label} is {'dim' if barred else 'offered'}: {day.desk.notice}"
+        yield f"{label} is {'dim' if barred else 'offered'}: {day.desk.prompt_notice}"
 
 
 def _must(day: Day, stroke: Stroke) -> set[str]:
     """What a key has to do here: what stops the machine, and what is drawn at the station."""
     if stroke.name in {"Pause", "ScrollLock"}:
         return {"FeedHold" if stroke.name == "Pause" else "press_estop"}
-    if not day.frame.has_field() and stroke.name in STOPS:
+    if not day.frame.has_text_field() and stroke.name in STOPS:
         return {STOPS[stroke.name]}
-    dock = day.frame.dock
-    drawn = dock is not None and stroke.name == "a" and "A" not in dock.mute
+    dock = day.frame.station_dock
+    drawn = dock is not None and stroke.name == "a" and "A" not in dock.hidden_keys
     return {"set_spindle_auto"} if drawn and stroke.modifiers is NONE else set()
 
 
@@ -244,19 +250,23 @@ def named_keys(prompt: str) -> set[str]:
 def faults_of_prompt(typist: Typist, name: str) -> Iterator[str]:
     """Keys that the prompt line offers, and that are refused or are text."""
     frame, desk = typist.day.frame, typist.day.desk
-    prompt = frame.prompt.state
+    prompt = frame.prompt_line.state_text
     by_name = {each.name: each for each in STROKES if each.modifiers is NONE}
     for key in sorted(named_keys(prompt)):
         typist.opens(name)
         what = f"{name}: {key} is offered by {prompt!r}"
-        if len(key) == 1 and frame.has_field():
+        if len(key) == 1 and frame.has_text_field():
             yield f"{what} and is text"
         palms = by_name[key].name == "F12"
         typist.press(by_name[key])
         if palms and desk.barred():
             yield f"{what} and is refused: {desk.barred()}"
-        elif not palms and desk.answers.answer and desk.answers.sort is Sort.ANSWER:
-            yield f"{what} and is refused: {desk.answers.answer}"
+        elif (
+            not palms
+            and desk.prompt_answers.message
+            and desk.prompt_answers.notice_kind is MessageKind.REFUSAL
+        ):
+            yield f"{what} and is refused: {desk.prompt_answers.message}"
 
 
 @pytest.mark.parametrize("day", EVERY, indirect=True, ids="-".join)
@@ -266,7 +276,7 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
     faults: list[str] = []
     seen: list[str] = []
     language = day.desk.machine.language
-    for entry in pages_of(language):
+    for entry in list_pages(language):
         own = language == "omniturn" or entry.name in BY_MACHINE or len(entry.languages) < ALL
         if not own or not typist.opens(entry.name):
             continue
@@ -274,8 +284,10 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
         faults += faults_of_prompt(typist, entry.name)
         typist.opens(entry.name)
         faults += faults_of_page(typist, entry.name)
-        assert day.frame.dock is not None
-        if typist.opens(entry.name) and day.frame.dock.barred is not bool(start_refusal(day.desk, day.shot)):
+        assert day.frame.station_dock is not None
+        if typist.opens(entry.name) and day.frame.station_dock.is_start_disabled is not bool(
+            find_start_refusal(day.desk, day.shot)
+        ):
             faults.append(f"{entry.name}: the palm buttons are not as they are drawn")
     typist.opens(page_table.AUTOMATIC)
     assert faults == [], "\n".join(faults)
@@ -286,22 +298,25 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
 
 
 def _refused(day: Day, heard: list[str]) -> list[str]:
-    return [*heard, day.shot.start_refused] if day.shot.start_refused else heard
+    return [*heard, day.shot.start_refusal] if day.shot.start_refusal else heard
 
 
 ENDS = {
-    State.DISABLED: ("D", {State.IDLE}),
-    State.FAULT: ("R", {State.DISABLED, State.IDLE}),
-    State.HOLD: ("palms", {State.RUN, State.WAIT}),
-    State.BLOCK_END: ("palms", {State.RUN, State.WAIT, State.BLOCK_END, State.PROGRAM_STOP}),
-    State.PROGRAM_STOP: ("palms", {State.RUN, State.WAIT}),
-    State.IDLE: ("palms", {State.RUN, State.WAIT}),
-    State.RUN: ("Pause", {State.HOLD, State.HOLDING}),
-    State.WAIT: ("Pause", {State.HOLD, State.HOLDING}),
-    State.HOLDING: ("Pause", {State.HOLD}),
-    State.JOG: ("Pause", {State.IDLE}),
-    State.HOME: ("H", {State.IDLE}),
-    State.ESTOP: ("Y", {State.DISABLED}),
+    MachineState.DISABLED: ("D", {MachineState.IDLE}),
+    MachineState.FAULT: ("R", {MachineState.DISABLED, MachineState.IDLE}),
+    MachineState.HOLD: ("palms", {MachineState.RUN, MachineState.WAIT}),
+    MachineState.BLOCK_END: (
+        "palms",
+        {MachineState.RUN, MachineState.WAIT, MachineState.BLOCK_END, MachineState.PROGRAM_STOP},
+    ),
+    MachineState.PROGRAM_STOP: ("palms", {MachineState.RUN, MachineState.WAIT}),
+    MachineState.IDLE: ("palms", {MachineState.RUN, MachineState.WAIT}),
+    MachineState.RUN: ("Pause", {MachineState.HOLD, MachineState.HOLDING}),
+    MachineState.WAIT: ("Pause", {MachineState.HOLD, MachineState.HOLDING}),
+    MachineState.HOLDING: ("Pause", {MachineState.HOLD}),
+    MachineState.JOG: ("Pause", {MachineState.IDLE}),
+    MachineState.HOME: ("H", {MachineState.IDLE}),
+    MachineState.ESTOP: ("Y", {MachineState.DISABLED}),
 }
 """The key that the Automatic page offers in each state, and the states that follow."""
 
@@ -310,9 +325,9 @@ ENDS = {
 def test_the_control_does_what_the_prompt_offers(day: Day, monkeypatch: pytest.MonkeyPatch) -> None:
     key, states = ENDS[day.shot.state]
     heard: list[str] = []
-    before = day.desk.answers.hear
+    before = day.desk.prompt_answers.hear
     monkeypatch.setattr(
-        type(day.desk.answers),
+        type(day.desk.prompt_answers),
         "hear",
         lambda _self, event: heard.append(event.text) if event.kind == "refused" else before(event),
     )

@@ -9,18 +9,18 @@ import pytest
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
+from app.compose.machine.machine_setup import create_setup
 from app.compose.stored_offsets import Offsets
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
-from core.proving.proof_report import Report
+from core.proving.proof_report import ProofReport
 from core.proving.prove_program import prove
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.screen.hands import Key
 from tests.worked import worked
 
@@ -52,19 +52,19 @@ class Lathe:
     """The desk with its window, on a clock that the test moves; a frame is drawn every few ticks."""
 
     def __init__(self) -> None:
-        self.clock = StepClock()
-        self.desk, self._executor = desk_and_executor(None, lambda: OFFSETS, self.clock)
-        self.desk.hands.clock = self.clock.now
-        self.window = MainWindow(Look(DARK))
+        self.clock = ManualClock()
+        self.desk, self._executor = create_desk_and_executor(None, lambda: OFFSETS, self.clock)
+        self.desk.station_controls.clock = self.clock.now
+        self.window = MainWindow(ScreenTheme(DARK_PALETTE))
         self.window.resize(1024, 600)
-        self.window.open_desk(self.desk)
+        self.window.show_model(self.desk)
         self.window.show()
 
-    def until(self, *states: State) -> None:
+    def until(self, *states: MachineState) -> None:
         end, ticks = self.clock.now() + MOST, 0
-        while self.desk.snapshot().state not in states:
-            assert self.clock.now() < end, self.desk.snapshot().state
-            self._executor.tick()
+        while self.desk.read_snapshot().state not in states:
+            assert self.clock.now() < end, self.desk.read_snapshot().state
+            self._executor.run_tick()
             self.clock.sleep_until(self.clock.now() + TICK)
             ticks += 1
             if ticks % 20 == 0:
@@ -73,21 +73,21 @@ class Lathe:
     def checks_start(self) -> None:
         """The first move is checked, and what is said of it was read."""
         self.window.refresh()
-        assert self.desk.first_move is not None
-        self.desk.first_move.worker.settle(60.0)
+        assert self.desk.start_watch is not None
+        self.desk.start_watch.worker.wait_for_results(60.0)
         for _ in range(50):
-            self._executor.tick()
+            self._executor.run_tick()
             self.clock.sleep_until(self.clock.now() + TICK)
 
     def key(self, *keys: Key) -> None:
         for key in keys:
             QTest.keyPress(self.window, key)
-        self._executor.tick()
+        self._executor.run_tick()
         for key in keys:
             QTest.keyRelease(self.window, key)
 
     def close(self) -> None:
-        self.window.put_away()
+        self.window.close_silently()
         self.desk.close()
 
 
@@ -98,9 +98,11 @@ def lathe(qapp: object) -> Iterator[Lathe]:
     lathe.close()
 
 
-def proved(path: Path) -> Report:
+def proved(path: Path) -> ProofReport:
     machine = load_machine(None)
-    setup = setup_for(machine, tools=OFFSETS.tools, secondary=OFFSETS.secondary)
+    setup = create_setup(
+        machine, tool_offsets=OFFSETS.tool_offsets, secondary_offsets=OFFSETS.secondary_offsets
+    )
     return prove(load_source(path), setup, machine)
 
 
@@ -109,16 +111,16 @@ def test_it_ends_on_the_screen_where_the_proof_ends(lathe: Lathe, name: str) -> 
     path = worked(name)
     proof = proved(path)
     assert proof.errors == ()
-    lathe.desk.programs.choose(str(path))
-    lathe.desk.session.settled(60.0)
-    lathe.until(State.DISABLED)
+    lathe.desk.program_choice.load_by_name(str(path))
+    lathe.desk.program_loader.wait_until_loaded(60.0)
+    lathe.until(MachineState.DISABLED)
     lathe.key(Key.Key_D)
-    lathe.until(State.IDLE)
+    lathe.until(MachineState.IDLE)
     lathe.checks_start()
     lathe.key(Key.Key_F11, Key.Key_F12)
-    lathe.until(State.RUN)
-    lathe.until(State.IDLE, State.HOLD, State.FAULT, State.ESTOP)
-    end = lathe.desk.snapshot()
-    assert (end.state, end.alarms, end.underruns, end.parts) == (State.IDLE, (), 0, 1)
-    assert end.demand[:2] == pytest.approx(proof.machine_final[:2], abs=1e-6)
-    assert end.last_cycle == pytest.approx(proof.times.cycle, rel=0.025)
+    lathe.until(MachineState.RUN)
+    lathe.until(MachineState.IDLE, MachineState.HOLD, MachineState.FAULT, MachineState.ESTOP)
+    end = lathe.desk.read_snapshot()
+    assert (end.state, end.alarms, end.underruns, end.parts) == (MachineState.IDLE, (), 0, 1)
+    assert end.demand[:2] == pytest.approx(proof.machine_final_position[:2], abs=1e-6)
+    assert end.last_cycle == pytest.approx(proof.times.cycle_s, rel=0.025)

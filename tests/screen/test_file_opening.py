@@ -16,7 +16,7 @@ from app.screen.page_table import AUTOMATIC
 from app.screen.window.file_opening import FileOpening
 from app.screen.window.main_window import MainWindow
 from app.screen.window.running_screen import ACCEPTED, MOST, RunningScreen, socket_name
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.desks import SAMPLES
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands
@@ -54,15 +54,15 @@ def opening(window: MainWindow) -> FileOpening:
 def test_a_dropped_program_is_loaded_and_never_moved(opening: FileOpening, window: MainWindow) -> None:
     assert drop(opening, window, PIN) == Qt.DropAction.CopyAction
     assert window.frame is not None
-    assert window.frame.desk.session.now.name == "pin.nc"
-    assert window.frame.page.NAME == AUTOMATIC
+    assert window.frame.desk.program_loader.loaded.name == "pin.nc"
+    assert window.frame.current_page.NAME == AUTOMATIC
 
 
 def test_a_drop_that_can_only_move_the_file_is_rejected(opening: FileOpening, window: MainWindow) -> None:
     assert window.frame is not None
-    before = window.frame.desk.session.now.name
+    before = window.frame.desk.program_loader.loaded.name
     drop(opening, window, PIN, offered=Qt.DropAction.MoveAction)
-    assert window.frame.desk.session.now.name == before
+    assert window.frame.desk.program_loader.loaded.name == before
 
 
 @pytest.mark.parametrize("paths", [(PIN, SAMPLES / "knob.nc"), (SAMPLES,)])
@@ -70,21 +70,21 @@ def test_several_files_and_folders_are_rejected(
     opening: FileOpening, window: MainWindow, paths: tuple[Path, ...]
 ) -> None:
     assert window.frame is not None
-    before = window.frame.desk.session.now.name
+    before = window.frame.desk.program_loader.loaded.name
     drop(opening, window, *paths)
-    assert window.frame.desk.session.now.name == before
-    assert window.frame.desk.notice
+    assert window.frame.desk.program_loader.loaded.name == before
+    assert window.frame.desk.prompt_notice
 
 
 def test_no_program_is_loaded_while_one_runs(
     opening: FileOpening, window: MainWindow, machine: FakeMachine
 ) -> None:
-    machine.now = replace(machine.now, state=State.HOLD)
+    machine.now = replace(machine.now, state=MachineState.HOLD)
     assert window.frame is not None
-    before = window.frame.desk.session.now.name
+    before = window.frame.desk.program_loader.loaded.name
     drop(opening, window, PIN)
-    assert window.frame.desk.session.now.name == before
-    assert window.frame.desk.notice
+    assert window.frame.desk.program_loader.loaded.name == before
+    assert window.frame.desk.prompt_notice
 
 
 @pytest.fixture

@@ -14,14 +14,14 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
-from app.programs.copy_rename_delete import checked_name, without_ending
-from app.programs.program_list import ProgramList
+from app.programs.program_commands import check_name, remove_extension
+from app.programs.program_list_model import ProgramListModel
 from app.programs.programs_view import ProgramsPage
-from app.programs.removable_media import Stick, sticks
+from app.programs.removable_media import UsbStick, list_sticks
 from app.screen import page_table
-from app.screen.window_layout import FINGER
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.commands import FeedHold, LoadJob
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.language.source import load_source
 from tests.attached import attached
 from tests.screen.desks import SAMPLES, desk_on
@@ -42,20 +42,20 @@ class Shop(Hands):
 
     @property
     def programs(self) -> ProgramsPage:
-        page = self.frame.page
+        page = self.frame.current_page
         assert isinstance(page, ProgramsPage)
         return page
 
     def open_list(self) -> None:
         self.key(Key.Key_F1)
         self.key(Key.Key_F6)
-        self.sees(lambda: bool(self.programs.model.all) and not self.programs.model.worker.busy)
+        self.sees(lambda: bool(self.programs.model.all_programs) and not self.programs.model.worker.is_busy)
 
     def rows(self) -> list[str]:
-        return [row.cells[0] for row in self.programs.table.sheet.rows]
+        return [row.cells[0] for row in self.programs.table_panel.table.rows]
 
     def settle(self) -> None:
-        self.sees(lambda: not self.programs.model.worker.busy)
+        self.sees(lambda: not self.programs.model.worker.is_busy)
 
     def open_stick(self) -> None:
         self.settle()
@@ -73,19 +73,21 @@ def shop(qtbot: QtBot, machine: FakeMachine, journal: Journal, tmp_path: Path) -
     shutil.copy(SAMPLES / "pin.nc", own / "alpha.nc")
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
     desk = desk_on(machine, own, SAMPLES, keep=journal)
-    attached(desk, ProgramList).transfer.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
+    attached(desk, ProgramListModel).import_export.folder_chooser.list_sticks = lambda: (
+        UsbStick("STICK", stick, 1_000_000),
+    )
     with window_on(qtbot, desk, machine) as window:
         yield Shop(qtbot, window, desk, machine, own, stick, journal)
 
 
 def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     shop.open_list()
-    assert shop.frame.title.page == page_table.PROGRAMS
+    assert shop.frame.title_line.page_title == page_table.PROGRAMS
     shop.type("alp")
     shop.sees(lambda: shop.rows() == ["alpha.nc"])
-    shop.sees(lambda: shop.programs.path.picture is not None)
+    shop.sees(lambda: shop.programs.path_view.picture is not None)
     shop.key(Key.Key_Return)
-    assert shop.frame.page is shop.page
+    assert shop.frame.current_page is shop.page
     shop.sees(lambda: shop.prompt().startswith(wording("screen.to-start")))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
     shop.sees(
@@ -96,42 +98,45 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     )
     shop.open_list()
     shop.sees(
-        lambda: shop.programs.model.program is not None and shop.programs.model.program.run.proof == "PROVED"
+        lambda: (
+            shop.programs.model.selected_program is not None
+            and shop.programs.model.selected_program.run_row.proof == "PROVED"
+        )
     )
 
 
 def test_no_other_program_while_one_is_under_way(shop: Shop) -> None:
     shop.open_list()
-    shop.machine.now = replace(shop.machine.now, state=State.HOLD)
+    shop.machine.now = replace(shop.machine.now, state=MachineState.HOLD)
     shop.key(Key.Key_Return)
-    assert shows(shop.desk.notice, "screen.program-runs-no-other")
-    assert shop.programs.model.find.text == ""
+    assert shows(shop.desk.prompt_notice, "screen.program-runs-no-other")
+    assert shop.programs.model.search_field.text == ""
 
 
 def test_a_name_is_typed_in_a_cycle_and_no_letter_is_a_switch(shop: Shop) -> None:
     shop.open_list()
-    shop.machine.now = replace(shop.machine.now, state=State.RUN)
+    shop.machine.now = replace(shop.machine.now, state=MachineState.RUN)
     shop.type("cap")
-    assert shop.programs.model.find.text == "cap"
+    assert shop.programs.model.search_field.text == "cap"
     assert not shop.machine.now.cycle_repeat
     assert not shop.machine.now.no_count
     assert shop.machine.now.spindle_auto
     shop.type("bevel")
-    assert not shop.desk.hands.estop_pressed
+    assert not shop.desk.station_controls.estop_pressed
     shop.key(Key.Key_Escape)
     assert not any(isinstance(command, FeedHold) for command in shop.machine.posted)
-    assert shop.programs.model.find.text == ""
+    assert shop.programs.model.search_field.text == ""
     shop.type("capbevel")
     shop.key(Key.Key_F3)
-    assert shop.frame.title.page == page_table.EDITOR
+    assert shop.frame.title_line.page_title == page_table.EDITOR
 
 
 def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
     shop.open_list()
-    shop.machine.now = replace(shop.machine.now, state=State.RUN)
+    shop.machine.now = replace(shop.machine.now, state=MachineState.RUN)
     shop.key(Key.Key_F4)
     shop.type("c")
-    assert shop.programs.model.entry.text == "c"  # it takes the place of the name that is offered
+    assert shop.programs.model.name_field.text == "c"  # it takes the place of the name that is offered
     assert not shop.machine.now.cycle_repeat
 
 
@@ -139,23 +144,23 @@ def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
     shop.journal.keep(load_source(SAMPLES / "knob.nc"))
     shop.journal.runs.record_start("knob.nc")
-    shop.sees(lambda: shop.journal is not None and bool(shop.journal.opened().runs.read_records()))
+    shop.sees(lambda: shop.journal is not None and bool(shop.journal.require_store().runs.read_records()))
     shop.open_list()
     assert shop.rows() == sorted(shop.rows())
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
     shop.sees(lambda: shop.rows()[0] == "knob.nc")
-    assert shop.programs.table.sheet.title.endswith("BY LAST RUN")
+    assert shop.programs.table_panel.table.title.endswith("BY LAST RUN")
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
-    largest = max(shop.programs.model.all, key=lambda program: program.size).name
+    largest = max(shop.programs.model.all_programs, key=lambda program: program.size_bytes).name
     shop.sees(lambda: shop.rows()[0] == largest)
 
 
 def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: shop.programs.table.sheet.question == wording("programs.name-of-copy"))
+    shop.sees(lambda: shop.programs.table_panel.table.question == wording("programs.name-of-copy"))
     shop.key(Key.Key_Delete)
     shop.type("gamma")
     shop.key(Key.Key_Return)
@@ -176,8 +181,8 @@ def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
     ("name", "offered"), [("a.nc", "a"), ("1.5 pin.NC", "1.5 pin"), ("bare", "bare"), ("a.h.nc", "a.h.nc")]
 )
 def test_the_name_that_is_offered_becomes_the_same_again(name: str, offered: str) -> None:
-    assert without_ending(name) == offered
-    assert checked_name(offered, Path(name)) == name
+    assert remove_extension(name) == offered
+    assert check_name(offered, Path(name)) == name
 
 
 @pytest.mark.parametrize(
@@ -208,7 +213,7 @@ def test_versions_go_with_another_name(shop: Shop) -> None:
     shop.type("zeta")
     shop.key(Key.Key_Return)
     shop.sees(lambda: "zeta.nc" in shop.rows() and "alpha.nc" not in shop.rows())
-    assert shop.journal.text_of("zeta.nc", 1) == b"old"
+    assert shop.journal.read_version_text("zeta.nc", 1) == b"old"
 
 
 def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
@@ -223,7 +228,7 @@ def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
     assert (shop.own / "alpha.nc").exists()
     yes(shop.window)
     shop.sees(lambda: "alpha.nc" not in shop.rows())
-    assert shop.journal.text_of("alpha.nc", 1) == text
+    assert shop.journal.read_version_text("alpha.nc", 1) == text
 
 
 @pytest.mark.parametrize("key", [Key.Key_F5, Key.Key_F6])
@@ -237,10 +242,10 @@ def test_a_sample_stays_as_it_is(shop: Shop, key: Key) -> None:
 
 def test_the_program_under_way_is_not_deleted(shop: Shop) -> None:
     shop.load("alpha")
-    shop.machine.now = replace(shop.machine.now, state=State.HOLD)
+    shop.machine.now = replace(shop.machine.now, state=MachineState.HOLD)
     shop.open_list()
     shop.key(Key.Key_F6)
-    assert shop.desk.notice == wording("screen.program-being-cut", name="alpha.nc")
+    assert shop.desk.prompt_notice == wording("screen.program-being-cut", name="alpha.nc")
 
 
 def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
@@ -306,7 +311,7 @@ def test_what_an_import_replaces_is_asked_for_and_kept(shop: Shop) -> None:
     yes(shop.window)
     shop.sees(lambda: shows(shop.prompt(), "programs.imported-proved"))
     assert (shop.own / "alpha.nc").read_bytes() == (SAMPLES / "grooves.nc").read_bytes()
-    assert shop.journal.text_of("alpha.nc", 1) == old
+    assert shop.journal.read_version_text("alpha.nc", 1) == old
 
 
 def test_what_is_no_program_does_not_come_in(shop: Shop) -> None:
@@ -342,24 +347,24 @@ def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -
     for path in ("one", "user/two", "user/gone"):
         (tmp_path / path).mkdir(parents=True)
     mounted = {tmp_path / "one", tmp_path / "user" / "two"}
-    found = sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__, tmp_path / "no list")
+    found = list_sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__, tmp_path / "no list")
     assert [stick.label for stick in found] == ["one", "two"]
 
 
 def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
     shop.key(Key.Key_F2)
-    assert shop.page.files.isVisible()
+    assert shop.page.file_prompt.isVisible()
     shop.key(Key.Key_F2)
-    assert shop.frame.title.page == page_table.PROGRAMS
-    assert not shop.page.files.isVisible()
+    assert shop.frame.title_line.page_title == page_table.PROGRAMS
+    assert not shop.page.file_prompt.isVisible()
     shop.key(Key.Key_Escape)
-    assert shop.frame.page is shop.page
+    assert shop.frame.current_page is shop.page
 
 
 def test_a_finger_alone_names_a_copy(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    pad = shop.programs.letters
+    pad = shop.programs.letter_pad
     shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
     for _ in range(8):
         touch(shop, 10)  # DEL
@@ -374,44 +379,44 @@ def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
     """Letters came only behind the first letter of a keyboard, and a name that nobody has led nowhere."""
     shop.window.resize(1024, 600)
     shop.open_list()
-    table, pad = shop.programs.table, shop.programs.letters
+    table, pad = shop.programs.table_panel, shop.programs.letter_pad
     assert not pad.isVisible()
     table.grab()
     entry, *_ = table._places[-1]
     QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
     shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
     for box, *_ in pad._places:
-        assert min(box.width(), box.height()) >= FINGER - 1
-        assert pad.area().adjusted(-0.1, -0.1, 0.1, 0.1).contains(box)
+        assert min(box.width(), box.height()) >= FINGERTIP_PX - 1
+        assert pad.find_full_area().adjusted(-0.1, -0.1, 0.1, 0.1).contains(box)
     assert not table.geometry().intersects(pad.geometry())
     for place in (33, 33, 22):  # z, z, a
         touch(shop, place)
     shop.sees(lambda: shop.rows() == [])
     assert "F3" in shop.prompt()
-    keys = shop.frame.keys
+    keys = shop.frame.key_bar
     keys.grab()
     box = next(box for box, *_ in keys._places if box.center().x() > keys.width() * 0.2)
     QTest.mouseClick(keys, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
-    shop.sees(lambda: shop.frame.title.page == page_table.EDITOR)
-    shop.sees(lambda: shop.frame.keys.labels[0] == "CREATE")
+    shop.sees(lambda: shop.frame.title_line.page_title == page_table.EDITOR)
+    shop.sees(lambda: shop.frame.key_bar.key_labels[0] == "CREATE")
 
 
 def letters_are(shop: Shop, shown: bool) -> bool:
-    return shop.programs.letters.isVisible() is shown
+    return shop.programs.letter_pad.isVisible() is shown
 
 
 def test_a_finger_takes_the_letters_away_again(shop: Shop) -> None:
     shop.open_list()
-    table = shop.programs.table
+    table = shop.programs.table_panel
     for shown in (True, False):
         table.grab()
         entry, *_ = table._places[-1]
         QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
         shop.sees(partial(letters_are, shop, shown))
-    assert shop.programs.record.isVisible()
+    assert shop.programs.detail_panel.isVisible()
 
 
 def touch(shop: Shop, place: int) -> None:
-    pad = shop.programs.letters
+    pad = shop.programs.letter_pad
     box, *_ = pad._places[place]
     QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))

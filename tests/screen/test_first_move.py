@@ -9,8 +9,8 @@ import pytest
 from app.mdi.mdi_view import MdiPage
 from app.screen.window.station_dock import StationDock
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
-from core.executor.commands import CROSSES
-from core.executor.snapshot import Starts, State
+from core.executor.commands import FIRST_MOVE_CROSSES
+from core.executor.snapshot import MachineState, StartAction
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out
@@ -34,11 +34,11 @@ def in_the_bore(operator: Operator, tmp_path: Path) -> Operator:
     stage.press_start()
     operator.until(lambda: operator.shot.line == DEEP and depth(operator) < -0.4 * 25.4, 240.0)
     operator.key(Key.Key_E)
-    operator.reaches(State.ESTOP)
+    operator.reaches(MachineState.ESTOP)
     twist_out(operator.window)
-    operator.reaches(State.DISABLED)
+    operator.reaches(MachineState.DISABLED)
     operator.key(Key.Key_D)
-    operator.reaches(State.IDLE)
+    operator.reaches(MachineState.IDLE)
     stage.checks_start()
     return operator
 
@@ -50,25 +50,25 @@ def depth(operator: Operator) -> float:
 
 def offered(operator: Operator) -> list[str]:
     operator.window.refresh()
-    return [key for row in operator.frame.notices.rows for key, _ in row.keys]
+    return [key for row in operator.frame.notice_rows.notice_rows for key, _ in row.keys]
 
 
 def dock(operator: Operator) -> StationDock:
-    assert operator.frame.dock is not None
-    return operator.frame.dock
+    assert operator.frame.station_dock is not None
+    return operator.frame.station_dock
 
 
 def take_way_out(operator: Operator) -> None:
     """F6, F4, F10 and both palms; then back to the Automatic page."""
     model = attached(operator.stage.desk, SearchtoModel)
     operator.key(Key.Key_F6, Key.Key_F4)
-    model.finder.worker.settle(60.0)
+    model.restart_finder.worker.wait_for_results(60.0)
     operator.window.refresh()
     operator.key(Key.Key_F10)
-    model.finder.worker.settle(60.0)
+    model.restart_finder.worker.wait_for_results(60.0)
     assert model.stage is SearchtoStage.READY
     operator.palms()
-    operator.reaches(State.IDLE)
+    operator.reaches(MachineState.IDLE)
     operator.key(Key.Key_Escape, Key.Key_Escape)
     operator.stage.checks_start()
 
@@ -78,19 +78,19 @@ def test_out_of_the_bore_no_start_is_offered_and_the_way_out_is_named(in_the_bor
     assert shows(operator.prompt(), "screen.first-move-crosses", tool="T2")
     assert shows(operator.prompt(), "screen.jog-until-clear", direction="Z+")
     assert offered(operator) == ["F6"]
-    assert dock(operator).barred
-    assert len(operator.frame.automatic.path.legs) == 2  # the line that is refused is drawn
+    assert dock(operator).is_start_disabled
+    assert len(operator.frame.automatic_page.path_view.drawn_legs) == 2  # the line that is refused is drawn
 
 
 def test_y_and_both_palms_begin_nothing(in_the_bore: Operator) -> None:
     operator = in_the_bore
     at = operator.shot.actual
     operator.key(Key.Key_Y)
-    assert shows(operator.frame.prompt.answer, "screen.first-move-crosses")
+    assert shows(operator.frame.prompt_line.message_text, "screen.first-move-crosses")
     assert not operator.shot.confirmed
     operator.palms()
-    assert (operator.shot.state, operator.shot.actual) == (State.IDLE, at)
-    assert operator.shot.start_code == CROSSES
+    assert (operator.shot.state, operator.shot.actual) == (MachineState.IDLE, at)
+    assert operator.shot.start_code == FIRST_MOVE_CROSSES
 
 
 def test_a_line_of_mdi_through_the_wall_does_not_run_and_one_out_of_the_bore_does(
@@ -100,9 +100,9 @@ def test_a_line_of_mdi_through_the_wall_does_not_run_and_one_out_of_the_bore_doe
     operator.key(Key.Key_F1, Key.Key_F4)
     operator.pause(0.1)
     operator.line("G90G94F300X.9")
-    assert [each.code for each in operator.mdi.line.errors] == [CROSSES]
+    assert [each.code for each in operator.mdi.prepared_line.blocking_errors] == [FIRST_MOVE_CROSSES]
     operator.palms()
-    assert operator.shot.state is State.IDLE
+    assert operator.shot.state is MachineState.IDLE
     operator.key(Key.Key_Escape, Key.Key_Escape)
     operator.run("G90G94F300Z.5")
     assert depth(operator) > 0.0
@@ -111,14 +111,14 @@ def test_a_line_of_mdi_through_the_wall_does_not_run_and_one_out_of_the_bore_doe
 def test_the_way_out_is_taken_and_then_the_program_starts(in_the_bore: Operator) -> None:
     operator = in_the_bore
     take_way_out(operator)
-    assert operator.shot.starts is Starts.PROGRAM
+    assert operator.shot.starts is StartAction.PROGRAM
     assert depth(operator) > 0.0
-    assert operator.stage.desk.first_move_refusal(operator.shot) == ""
+    assert operator.stage.desk.find_first_move_refusal(operator.shot) == ""
     assert offered(operator) == ["F6", "Y"]
-    assert not dock(operator).barred
+    assert not dock(operator).is_start_disabled
     operator.key(Key.Key_Y)
     operator.palms()
-    operator.until(lambda: operator.shot.state is State.RUN, 5.0)
+    operator.until(lambda: operator.shot.state is MachineState.RUN, 5.0)
 
 
 def test_a_line_of_mdi_is_drawn_before_it_starts(operator: Operator) -> None:
@@ -126,22 +126,22 @@ def test_a_line_of_mdi_is_drawn_before_it_starts(operator: Operator) -> None:
     operator.key(Key.Key_F1, Key.Key_F4)
     operator.pause(0.05)
     operator.line("G90G94F50X.5")
-    page = operator.frame.page
+    page = operator.frame.current_page
     operator.window.refresh()
     assert isinstance(page, MdiPage)
-    assert [(leg.x, leg.rapid) for leg in page.path.legs] == [(0.0, True), (12.7, False)]
-    assert page.path.isVisible()
+    assert [(leg.x, leg.rapid) for leg in page.path_view.drawn_legs] == [(0.0, True), (12.7, False)]
+    assert page.path_view.isVisible()
     operator.palms()
-    operator.reaches(State.IDLE)
+    operator.reaches(MachineState.IDLE)
     operator.window.refresh()
-    assert not page.path.isVisible()
+    assert not page.path_view.isVisible()
 
 
 def test_where_nothing_was_interrupted_a_start_from_home_is_offered(operator: Operator) -> None:
     operator.stage.make_ready()
     operator.window.refresh()
     assert not shows(operator.prompt(), "screen.first-move-crosses")
-    assert not dock(operator).barred
-    assert len(operator.frame.automatic.path.legs) == 2
+    assert not dock(operator).is_start_disabled
+    assert len(operator.frame.automatic_page.path_view.drawn_legs) == 2
     operator.palms()
-    assert operator.shot.state in {State.RUN, State.WAIT}
+    assert operator.shot.state in {MachineState.RUN, MachineState.WAIT}

@@ -10,10 +10,10 @@ from PySide6.QtGui import QKeyEvent, QWindow
 from PySide6.QtWidgets import QApplication
 
 from app.screen import page_table
-from app.screen.window.keyboard import FRAMES, STALL, EventTimes
+from app.screen.window.keyboard import FRAMES_AFTER_STALL, STALL_TIME_S, InputTimes
 from app.screen.window.main_window import MainWindow
 from core.executor.commands import FeedHold
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import read
 from tests.texts import shows
@@ -67,7 +67,7 @@ def test_hold_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.Keyboa
 def test_estop_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
     for _ in range(3):  # nor does it free itself
         send(watched, key, modifiers=modifiers)
-        assert watched.desk.hands.estop_pressed
+        assert watched.desk.station_controls.estop_pressed
 
 
 def test_the_stop_key_acts_though_it_counts_as_down(watched: Hands) -> None:
@@ -80,11 +80,11 @@ def test_nothing_starts_while_a_stop_key_is_held(watched: Hands) -> None:
     watched.load("pin")
     send(watched, Key.Key_Pause)
     watched.both_palms()
-    assert watched.machine.now.state is State.IDLE
-    assert shows(watched.desk.notice, "screen.stopping-key-held")
+    assert watched.machine.now.state is MachineState.IDLE
+    assert shows(watched.desk.prompt_notice, "screen.stopping-key-held")
     send(watched, Key.Key_Pause, up=True)
     watched.both_palms()
-    watched.sees_state(State.RUN)
+    watched.sees_state(MachineState.RUN)
 
 
 def test_a_press_right_behind_its_release_is_a_repeat(watched: Hands) -> None:
@@ -114,16 +114,16 @@ class Server:
 def test_a_repeat_that_the_release_has_overtaken_is_no_press(
     watched: Hands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    server, keyboard = Server(), watched.window.keyboard
-    monkeypatch.setattr("app.screen.window.keyboard.x_server", lambda: server)
-    keyboard.watch(window_of(watched))
-    now = [keyboard.times.clock()]
-    monkeypatch.setattr(keyboard.times, "clock", lambda: now[0])
+    server, keyboard = Server(), watched.window.keyboard_filter
+    monkeypatch.setattr("app.screen.window.keyboard.open_x_server", lambda: server)
+    keyboard.filter_window(window_of(watched))
+    now = [keyboard.input_times.clock()]
+    monkeypatch.setattr(keyboard.input_times, "clock", lambda: now[0])
     send(watched, Key.Key_S, text="s", at=10_000)
     assert watched.machine.now.single_block
     now[0] += 0.1
     server.held = frozenset()
-    keyboard.look()  # up, says the server; two repeats and the release are still to come
+    keyboard.update()  # up, says the server; two repeats and the release are still to come
     for at in (10_040, 10_080):
         send(watched, Key.Key_S, text="s", at=at)
     assert watched.machine.now.single_block
@@ -145,9 +145,9 @@ def test_a_repeat_of_a_key_that_nobody_saw_go_down_is_dead(watched: Hands) -> No
 
 def test_a_key_held_from_another_page_is_dead(watched: Hands) -> None:
     send(watched, Key.Key_S, text="s")
-    watched.frame.go(page_table.MENU)
+    watched.frame.open_page(page_table.MENU)
     watched.window.refresh()
-    watched.frame.go(page_table.AUTOMATIC)
+    watched.frame.open_page(page_table.AUTOMATIC)
     watched.window.refresh()
     send(watched, Key.Key_S, text="s", repeat=True)
     assert watched.machine.now.single_block  # from the press, and turned once
@@ -155,10 +155,10 @@ def test_a_key_held_from_another_page_is_dead(watched: Hands) -> None:
 
 def test_an_answer_is_no_answer_while_another_key_is_down(watched: Hands) -> None:
     said: list[str] = []
-    watched.desk.ask("PRESS Y", lambda: said.append("yes"))
+    watched.desk.ask_operator("PRESS Y", lambda: said.append("yes"))
     read(watched.desk)
     send(watched, Key.Key_R, text="r")  # asks something else? it is down, in any case
-    watched.desk.ask("PRESS Y", lambda: said.append("yes"))
+    watched.desk.ask_operator("PRESS Y", lambda: said.append("yes"))
     read(watched.desk)
     send(watched, Key.Key_Y, text="y")
     send(watched, Key.Key_Y, up=True)
@@ -170,15 +170,15 @@ def test_an_answer_is_no_answer_while_another_key_is_down(watched: Hands) -> Non
 
 def test_a_finger_answers_on_the_prompt_line(watched: Hands) -> None:
     said: list[str] = []
-    watched.desk.ask("PRESS Y TO DO IT", lambda: said.append("yes"))
+    watched.desk.ask_operator("PRESS Y TO DO IT", lambda: said.append("yes"))
     watched.window.refresh()
-    assert watched.frame.prompt.asked == "Y"
-    watched.window.press("Yes")
+    assert watched.frame.prompt_line.confirm_key == "Y"
+    watched.window.press_key("Yes")
     assert said == []  # a double tap is quicker than any reading
-    assert not watched.desk.asked
-    watched.desk.ask("PRESS Y TO DO IT", lambda: said.append("yes"))
+    assert not watched.desk.confirm_key
+    watched.desk.ask_operator("PRESS Y TO DO IT", lambda: said.append("yes"))
     read(watched.desk)
-    watched.window.press("Yes")
+    watched.window.press_key("Yes")
     assert said == ["yes"]
 
 
@@ -194,64 +194,64 @@ class Time:
 @pytest.mark.usefixtures("stalls")
 def test_what_waited_behind_a_stall_is_late() -> None:
     time = Time()
-    times = EventTimes(time)
+    times = InputTimes(time)
     for _ in range(3):
         time.now += 0.016
         times.frame()
-    assert not times.late(50_000)  # the stamps count from somewhere else: now
+    assert not times.was_delayed(50_000)  # the stamps count from somewhere else: now
     before, during = 50_100, 52_900
     time.now += 3.0
-    times.alive()
-    assert times.late(before)
-    assert times.late(during)
-    for _ in range(FRAMES):
+    times.note_input()
+    assert times.was_delayed(before)
+    assert times.was_delayed(during)
+    for _ in range(FRAMES_AFTER_STALL):
         time.now += 0.016
         times.frame()
-    assert times.late(during)
-    assert not times.late(50_000 + round(1000 * 3.0 + 32))
-    assert times.stalled == pytest.approx(3.0)
+    assert times.was_delayed(during)
+    assert not times.was_delayed(50_000 + round(1000 * 3.0 + 32))
+    assert times.stall_duration_s == pytest.approx(3.0)
 
 
 @pytest.mark.usefixtures("stalls")
 def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
     time = Time()
-    times = EventTimes(time)
-    assert not times.late(50_000)
+    times = InputTimes(time)
+    assert not times.was_delayed(50_000)
     for _ in range(100):
         time.now += 0.01
         times.frame()
-    assert not times.late(51_000 - round(900 * STALL))
-    assert times.late(51_000 - round(1100 * STALL))
+    assert not times.was_delayed(51_000 - round(900 * STALL_TIME_S))
+    assert times.was_delayed(51_000 - round(1100 * STALL_TIME_S))
 
 
 @pytest.mark.usefixtures("stalls")
 def test_fingers_by_another_clock_are_not_late_for_ever() -> None:
     time = Time()
-    times = EventTimes(time)
-    assert not times.late(50_000)  # keys and mouse
+    times = InputTimes(time)
+    assert not times.was_delayed(50_000)  # keys and mouse
     for _ in range(100):
         time.now += 0.01
         times.frame()
-    assert not times.late(20_000, "touch")  # counts from elsewhere, a second of it behind
+    assert not times.was_delayed(20_000, "touch")  # counts from elsewhere, a second of it behind
     time.now += 0.01
-    assert not times.late(20_010, "touch")
-    assert times.late(20_010 - round(1100 * STALL), "touch")
-    assert not times.late(51_010)
+    assert not times.was_delayed(20_010, "touch")
+    assert times.was_delayed(20_010 - round(1100 * STALL_TIME_S), "touch")
+    assert not times.was_delayed(51_010)
 
 
 @pytest.mark.usefixtures("stalls")
 def test_stamps_that_run_over_are_no_stall() -> None:
     time = Time()
-    times = EventTimes(time)
-    assert not times.late(2**32 - 5)
+    times = InputTimes(time)
+    assert not times.was_delayed(2**32 - 5)
     time.now += 0.02
-    assert not times.late(15)
-    assert times.at(15) == pytest.approx(time.now, abs=0.01)
+    assert not times.was_delayed(15)
+    assert times.find_event_time(15) == pytest.approx(time.now, abs=0.01)
 
 
 def stopped_clock(hands: Hands) -> int:
     """Nothing is late by itself on a busy computer: only the stamps tell. The stamp of now."""
-    hands.window.times.clock = Time()
+    hands.window.input_times.clock = Time()
     return round(1000 * Time.now)
 
 
@@ -260,10 +260,10 @@ def test_two_palms_by_the_times_of_their_events(watched: Hands) -> None:
     now = stopped_clock(watched)
     send(watched, Key.Key_F5, at=now)
     send(watched, Key.Key_F11, at=now - 280)  # both within what is not late
-    watched.desk.hands.palms.down["left"] -= 0.4
+    watched.desk.station_controls.palms.press_times["left"] -= 0.4
     send(watched, Key.Key_F12, at=now)
-    assert watched.desk.hands.palms.dead
-    assert watched.machine.now.state is State.IDLE
+    assert watched.desk.station_controls.palms.is_pair_invalid
+    assert watched.machine.now.state is MachineState.IDLE
 
 
 def test_the_layer_sees_every_window_again_when_it_is_shown(watched: Hands) -> None:
@@ -281,23 +281,23 @@ def test_the_layer_sees_every_window_again_when_it_is_shown(watched: Hands) -> N
 def test_esc_leaves_a_page_that_says_so_and_holds_nothing(watched: Hands, name: str) -> None:
     watched.load("pin")
     watched.both_palms()
-    watched.sees_state(State.RUN)
-    watched.frame.go(name)
+    watched.sees_state(MachineState.RUN)
+    watched.frame.open_page(name)
     watched.window.refresh()
     send(watched, Key.Key_Escape)
-    assert watched.frame.page.NAME == page_table.AUTOMATIC
+    assert watched.frame.current_page.NAME == page_table.AUTOMATIC
     assert FeedHold() not in watched.machine.posted
-    watched.frame.go(name)
+    watched.frame.open_page(name)
     send(watched, Key.Key_Pause)
     assert watched.machine.posted[-1] == FeedHold()
 
 
 def test_letters_are_text_on_a_page_of_offsets_and_stop_nothing(watched: Hands) -> None:
-    watched.frame.go(page_table.SECCMP)
+    watched.frame.open_page(page_table.SECCMP)
     watched.window.refresh()
     before = len(watched.machine.posted)
     for letter in "hebevelcap":
         send(watched, Key(ord(letter.upper())), text=letter)
         send(watched, Key(ord(letter.upper())), text=letter, up=True)
     assert watched.machine.posted[before:] == []
-    assert not watched.desk.hands.estop_pressed
+    assert not watched.desk.station_controls.estop_pressed

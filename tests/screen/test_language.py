@@ -15,20 +15,20 @@ from PySide6.QtCore import QTranslator
 from PySide6.QtGui import QFont, QPainter, QRawFont
 
 import app
-from app.compose.extra import NAMES, extras
-from app.desk.status.modal_rows import NONE, rows_of
-from app.desk.status.prompt_line import exactly
+from app.compose.optional_features import FEATURE_NAMES, extras
+from app.desk.status.modal_rows import NO_CODE, make_modal_rows
+from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
-from app.screen import look
-from app.screen.look import CONTEXT, DARK, Look, speak_in
+from app.screen import screen_theme
 from app.screen.page_base import Page
+from app.screen.screen_theme import DARK_PALETTE, TRANSLATION_CONTEXT, ScreenTheme, use_language
 from app.screen.window.main_window import MainWindow
-from app.special.machine_records import event_row
-from core.alarms import CATALOGUE, Code, Entry
-from core.executor.raised_alarm import log_line, make_alarm
+from app.special.machine_records import make_event_row
+from core.alarms import CATALOGUE, AlarmCode, AlarmEntry
+from core.executor.raised_alarm import format_log_line, make_alarm
 from core.executor.snapshot import Alarm
 from core.interpreter.shared.checkpoint import Checkpoint
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.store.store_rows import EventRow
 from resources.translations.collect import (
     _NO_TEXT,
@@ -58,7 +58,7 @@ every_text = cache(texts)  # of every file there is: seconds
 
 @pytest.fixture
 def spanish(hands: Hands) -> Hands:
-    hands.desk.settings.choose("language", "es")
+    hands.desk.settings_store.choose("language", "es")
     hands.window.refresh()
     return hands
 
@@ -81,10 +81,10 @@ def drawn(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def test_the_screen_turns_spanish_at_once_and_back(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "MENU" in drawn(hands, monkeypatch)
-    hands.desk.settings.choose("language", "es")
+    hands.desk.settings_store.choose("language", "es")
     texts = drawn(hands, monkeypatch)
     assert {"MENÚ", "LISTO", "HUSILLO", "RETENCIÓN", "DE AVANCE"} <= set(texts)
-    hands.desk.settings.choose("language", "en")
+    hands.desk.settings_store.choose("language", "en")
     assert "MENU" in drawn(hands, monkeypatch)
 
 
@@ -119,12 +119,12 @@ def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch:
 
 def logged(kind: str, text: str) -> str:
     """Return how the log shows an event."""
-    return event_row(EventRow("2026-03-02T08:00:00.000Z", kind, text)).cells[2]
+    return make_event_row(EventRow("2026-03-02T08:00:00.000Z", kind, text)).cells[2]
 
 
 @pytest.mark.usefixtures("spanish")
 def test_the_log_shows_alarms_in_spanish() -> None:
-    assert logged("alarm", log_line(make_alarm("following", OFF, 4, 0.0))) == " ".join(
+    assert logged("alarm", format_log_line(make_alarm("following", OFF, 4, 0.0))) == " ".join(
         (
             "102",
             text_in_spanish("screen.following-error") + ":",
@@ -135,8 +135,8 @@ def test_the_log_shows_alarms_in_spanish() -> None:
 
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize(("code", "number"), [("program-stop", 704), ("optional-stop", 705)])
-def test_the_log_shows_the_words_of_the_program_as_they_are(code: Code, number: int) -> None:
-    text = logged("stop", log_line(make_alarm(code, "FACE", 4, 0.0)))
+def test_the_log_shows_the_words_of_the_program_as_they_are(code: AlarmCode, number: int) -> None:
+    text = logged("stop", format_log_line(make_alarm(code, "FACE", 4, 0.0)))
     assert text.startswith(f"{number} PARO ")
     assert text.endswith(": FACE")
 
@@ -156,25 +156,25 @@ def test_every_kind_of_the_log_has_its_word() -> None:
 
 
 @pytest.mark.parametrize("code", ["program-stop", "optional-stop"])
-def test_the_message_of_a_stop_is_the_programs(spanish: Hands, code: Code) -> None:
-    told = tr(exactly(make_alarm(code, "FACE", 4, 0.0)))
+def test_the_message_of_a_stop_is_the_programs(spanish: Hands, code: AlarmCode) -> None:
+    told = tr(describe_cause(make_alarm(code, "FACE", 4, 0.0)))
     assert told.startswith("FACE; M0")
     assert "the program" not in told
-    assert tr(exactly(make_alarm(code, "", 4, 0.0))).endswith(("en el programa", "está activo"))
+    assert tr(describe_cause(make_alarm(code, "", 4, 0.0))).endswith(("en el programa", "está activo"))
 
 
 def test_the_comment_in_force_is_the_programs(spanish: Hands) -> None:
-    point = Checkpoint(Modal(comment=" FACE ", outputs=frozenset({"coolant"})))
-    told = {row.key: tr(row.value) for row in rows_of(point)}
+    point = Checkpoint(ModalState(comment=" FACE ", outputs=frozenset({"coolant"})))
+    told = {row.key: tr(row.value) for row in make_modal_rows(point)}
     assert told["comment"] == "FACE"
     assert told["outputs"] == "COOLANT"
     assert told["units"] == "G70 PULGADAS"
-    assert {row.key: row.value for row in rows_of(Checkpoint(Modal()))}["comment"] == NONE
+    assert {row.key: row.value for row in make_modal_rows(Checkpoint(ModalState()))}["comment"] == NO_CODE
 
 
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize("entry", CATALOGUE.values(), ids=str)
-def test_every_alarm_has_its_spanish(entry: Entry) -> None:
+def test_every_alarm_has_its_spanish(entry: AlarmEntry) -> None:
     texts = (entry.text.upper(), *entry.causes, entry.remedy)
     assert [text for text in texts if tr(text) == text] in ([], ["RESET"])
 
@@ -182,13 +182,13 @@ def test_every_alarm_has_its_spanish(entry: Entry) -> None:
 def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
     why = message("screen.spindle-limit-between", limit=9000, most=3500)
     spanish.desk.say(message("screen.refused", why=why))
-    told = tr(spanish.desk.notice)
+    told = tr(spanish.desk.prompt_notice)
     in_spanish = text_in_spanish("screen.spindle-limit-between", limit=9000, most=3500)
     assert told == text_in_spanish("screen.refused", why=in_spanish)
 
 
 def test_no_letter_is_missing_in_the_font() -> None:
-    font = QFont(look.FAMILY)
+    font = QFont(screen_theme.FONT_FAMILY)
     missing = {sign for text in written("es").values() for sign in text if not _has(font, sign)}
     assert missing <= {"\n"}
 
@@ -201,7 +201,7 @@ def test_the_compiled_catalogue_is_that_of_the_texts() -> None:
     translator = QTranslator()
     assert translator.load(str(HERE / "turndesk_es.qm"))
     for text, told in written("es").items():
-        assert (translator.translate(CONTEXT, text) or "") == told
+        assert (translator.translate(TRANSLATION_CONTEXT, text) or "") == told
 
 
 def test_no_value_is_lost() -> None:
@@ -211,19 +211,19 @@ def test_no_value_is_lost() -> None:
 
 
 def test_another_window_speaks_its_own_language(spanish: Hands) -> None:
-    spanish.desk.settings.choose("language", "en")
-    other = MainWindow(Look(DARK))
-    assert spanish.window.ahead is not None
-    earlier = spanish.window.ahead
-    other.open_desk(spanish.desk)
-    assert earlier.done  # its thread has ended: one desk, one window that makes its pages
+    spanish.desk.settings_store.choose("language", "en")
+    other = MainWindow(ScreenTheme(DARK_PALETTE))
+    assert spanish.window.page_preloader is not None
+    earlier = spanish.window.page_preloader
+    other.show_model(spanish.desk)
+    assert earlier.is_done  # its thread has ended: one desk, one window that makes its pages
     assert tr("READY") == "READY"
-    other.put_away()
+    other.close_silently()
 
 
 def test_an_unknown_language_has_no_catalogue() -> None:
     with pytest.raises(FileNotFoundError, match="turndesk_xx"):
-        speak_in("xx")
+        use_language("xx")
 
 
 def test_key_labels_fit(spanish: Hands) -> None:
@@ -233,7 +233,7 @@ def test_key_labels_fit(spanish: Hands) -> None:
     labels = {label for page in _pages(Page) for label in getattr(page, "LABELS", ())}
     for key in (Key.Key_F10, Key.Key_F1, Key.Key_F6, Key.Key_F9):
         spanish.key(key)
-        labels.update(spanish.frame.keys.labels)
+        labels.update(spanish.frame.key_bar.key_labels)
     told = {label: tr(label) for label in labels}
     assert {label: text for label, text in told.items() if max(len(label), len(text)) > KEY_LABEL} == {}
     assert told["MENU"] == "MENÚ"
@@ -270,7 +270,7 @@ def test_the_list_has_every_text_once() -> None:
     shown = every_text()
     listed = read_list()
     known = {*shown, *console_texts(shown)}
-    if len(extras()) < len(NAMES):  # the list has the texts of all optional features
+    if len(extras()) < len(FEATURE_NAMES):  # the list has the texts of all optional features
         known |= set(listed.values())
     assert sorted(listed.values()) == sorted(known)
 

@@ -9,11 +9,11 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication
 
-from app.desk.late_presses import Starting, name_of
+from app.desk.late_presses import StartingAction, name_starting_action
 from app.screen import page_table
-from app.screen.window.keyboard import FRAMES, PAUSE
-from core.executor.commands import ConfirmStart, CycleStart, EnableDrives, FeedHold, Jog, JogStep, SetSwitch
-from core.executor.snapshot import State
+from app.screen.window.keyboard import FRAMES_AFTER_STALL, PAUSE_TIME_S
+from core.executor.commands import ConfirmStart, CycleStart, EnableDrives, FeedHold, Jog, JogByStep, SetSwitch
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.test_keyboard import SHIFT, Time, send, window_of
 from tests.screen.yes import read
@@ -27,10 +27,12 @@ class Stall:
 
     def __init__(self, hands: Hands) -> None:
         self.hands, self.time = hands, Time()
-        hands.window.times.clock = hands.desk.hands.clock = hands.desk.window.late.clock = self.time
+        hands.window.input_times.clock = hands.desk.station_controls.clock = (
+            hands.desk.window_state.late_presses.clock
+        ) = self.time
         send(hands, Key.Key_F5, at=round(1000 * self.time.now))  # the stamps are of our own clock
         send(hands, Key.Key_F5, up=True, at=round(1000 * self.time.now))
-        hands.window._faces.append((0.0, hands.frame.face))
+        hands.window._faces.append((0.0, hands.frame.screen_context))
         self.frames()
         self.begun = self.time.now
         hands.machine.posted.clear()
@@ -52,8 +54,8 @@ class Stall:
 
     def touch_f2(self, ms: int) -> None:
         """Click F2 where it was drawn."""
-        window, keys = self.hands.window, self.hands.frame.keys
-        at = QPointF(keys.mapTo(window, keys.spots()[1].box.center().toPoint()))
+        window, keys = self.hands.window, self.hands.frame.key_bar
+        at = QPointF(keys.mapTo(window, keys.list_targets()[1].box.center().toPoint()))
         left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
         for kind, buttons in (
             (QEvent.Type.MouseButtonPress, left),
@@ -63,16 +65,16 @@ class Stall:
             event.setTimestamp(round(1000 * self.begun) + ms)
             QCoreApplication.sendEvent(window_of(self.hands), event)
 
-    def frames(self, count: int = FRAMES, seconds: float = 0.016) -> None:
+    def frames(self, count: int = FRAMES_AFTER_STALL, seconds: float = 0.016) -> None:
         for _ in range(count):
             self.time.now += seconds
-            self.hands.window.times.frame()
-            self.hands.window.judge(late=False)
+            self.hands.window.input_times.frame()
+            self.hands.window.set_late(is_late=False)
 
-    def told(self, *names: Starting) -> bool:
+    def told(self, *names: StartingAction) -> bool:
         """Whether these were reported as not done."""
-        answer = self.hands.desk.answers.answer
-        return shows(answer, "screen.screen-stood-still", what=", ".join(map(name_of, names)))
+        answer = self.hands.desk.prompt_answers.message
+        return shows(answer, "screen.screen-stood-still", what=", ".join(map(name_starting_action, names)))
 
 
 @pytest.fixture
@@ -82,7 +84,7 @@ def stall(hands: Hands, stalls: None) -> Stall:
 
 
 def starts_of(stall: Stall) -> list[object]:
-    kinds = (CycleStart, EnableDrives, Jog, JogStep, ConfirmStart)
+    kinds = (CycleStart, EnableDrives, Jog, JogByStep, ConfirmStart)
     return [each for each in stall.hands.machine.posted if isinstance(each, kinds)]
 
 
@@ -94,22 +96,22 @@ def test_a_key_that_opens_a_field_and_the_text_in_it_are_done_in_their_order(sta
     stall.ends()
     stall.press(Key.Key_F2, 100)
     stall.type("spoc", 200)
-    assert hands.page.files.isVisible()
+    assert hands.page.file_prompt.isVisible()
     assert hands.machine.posted == []  # no letter was a command
     stall.press(Key.Key_Escape, 400)
-    assert not hands.page.files.isVisible()
-    assert not hands.desk.answers.answer
+    assert not hands.page.file_prompt.isVisible()
+    assert not hands.desk.prompt_answers.message
 
 
 def test_keys_of_pages_are_done_in_their_order(stall: Stall) -> None:
     hands = stall.hands
     stall.ends()
     stall.press(Key.Key_F1, 100)
-    assert hands.frame.page.NAME == page_table.MENU
+    assert hands.frame.current_page.NAME == page_table.MENU
     stall.press(Key.Key_F8, 200)
     stall.press(Key.Key_F1, 300)
-    assert hands.frame.page.NAME == page_table.MENU
-    assert not hands.desk.answers.answer
+    assert hands.frame.current_page.NAME == page_table.MENU
+    assert not hands.desk.prompt_answers.message
 
 
 def test_a_switch_pressed_twice_is_switched_twice(stall: Stall) -> None:
@@ -130,30 +132,30 @@ def test_a_shift_that_was_down_then_counts(stall: Stall) -> None:
         def buttons(self) -> bool:
             return False
 
-    keyboard = stall.hands.window.keyboard
+    keyboard = stall.hands.window.keyboard_filter
     keyboard._server = Server()  # type: ignore[assignment]
     stall.ends()
     at = round(1000 * stall.begun) + 100
     send(stall.hands, Key.Key_Shift, modifiers=SHIFT, at=at)
     send(stall.hands, Key.Key_F10, modifiers=SHIFT, at=at + 50)
-    assert stall.hands.frame.page.NAME == page_table.SCOPE
+    assert stall.hands.frame.current_page.NAME == page_table.SCOPE
 
 
 def test_repeats_of_a_key_that_was_held_in_the_stall_are_none(stall: Stall) -> None:
     hands = stall.hands
-    hands.frame.go(page_table.PROGRAMS)
+    hands.frame.open_page(page_table.PROGRAMS)
     hands.window.refresh()
     stall.ends()
     for ms in range(100, 600, 40):
         send(hands, Key.Key_A, text="a", at=round(1000 * stall.begun) + ms, repeat=ms > 100)
-    assert hands.frame.page.model.find.text == "a"  # type: ignore[attr-defined]
+    assert hands.frame.current_page.model.find.text == "a"  # type: ignore[attr-defined]
 
 
 def test_a_touch_on_what_is_still_shown_is_done(stall: Stall) -> None:
     stall.ends()
     stall.touch_f2(500)
-    assert stall.hands.page.files.isVisible()
-    assert not stall.hands.desk.answers.answer
+    assert stall.hands.page.file_prompt.isVisible()
+    assert not stall.hands.desk.prompt_answers.message
 
 
 # --- what is not done ---------------------------------------------------------------------------------------
@@ -168,9 +170,9 @@ def test_palms_start_nothing(stall: Stall, later: int) -> None:
     stall.press(Key.Key_F11, 300, up=False)
     stall.press(Key.Key_F12, 300 + later, up=False)
     assert starts_of(stall) == []
-    assert not hands.desk.hands.palms.down
+    assert not hands.desk.station_controls.palms.press_times
     assert not hands.machine.palms
-    assert stall.told(Starting.CYCLE)
+    assert stall.told(StartingAction.CYCLE)
 
 
 def test_a_palm_from_the_stall_and_one_from_after_it_are_no_pair(stall: Stall) -> None:
@@ -181,49 +183,49 @@ def test_a_palm_from_the_stall_and_one_from_after_it_are_no_pair(stall: Stall) -
     stall.press(Key.Key_F11, 1900, up=False)
     stall.frames(20)
     stall.press(Key.Key_F12, 2310, up=False)
-    assert hands.machine.now.state is State.IDLE
+    assert hands.machine.now.state is MachineState.IDLE
 
 
 def test_the_drives_stay_off_and_what_follows_is_done(stall: Stall) -> None:
     hands = stall.hands
-    hands.machine.now = type(hands.machine.now)(state=State.DISABLED)
+    hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()
     stall.ends()
     stall.press(Key.Key_D, 100, "d")
     stall.press(Key.Key_S, 200, "s")
     assert starts_of(stall) == []
-    assert hands.machine.now.state is State.DISABLED
+    assert hands.machine.now.state is MachineState.DISABLED
     assert hands.machine.now.single_block
-    assert stall.told(Starting.DRIVES)
+    assert stall.told(StartingAction.DRIVES)
 
 
 def test_all_that_was_dropped_is_named_in_one_message(stall: Stall) -> None:
     hands = stall.hands
-    hands.machine.now = type(hands.machine.now)(state=State.DISABLED)
+    hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()
     stall.ends()
     stall.press(Key.Key_D, 100, "d")
     stall.press(Key.Key_F11, 200)
     stall.press(Key.Key_F12, 250)
-    assert stall.told(Starting.DRIVES, Starting.CYCLE)
+    assert stall.told(StartingAction.DRIVES, StartingAction.CYCLE)
     for passed in (2.0, 1.9):
         stall.time.now += passed
         hands.desk.say("THE ANSWER TO ANOTHER KEY")
         hands.window.refresh()
-        assert stall.told(Starting.DRIVES, Starting.CYCLE)
-    hands.desk.ask("A QUESTION IS NEVER HIDDEN", lambda: None)
+        assert stall.told(StartingAction.DRIVES, StartingAction.CYCLE)
+    hands.desk.ask_operator("A QUESTION IS NEVER HIDDEN", lambda: None)
     hands.window.refresh()
-    assert hands.frame.prompt.question == "A QUESTION IS NEVER HIDDEN"
+    assert hands.frame.prompt_line.question_text == "A QUESTION IS NEVER HIDDEN"
     stall.time.now += 0.2
     hands.window.refresh()
-    assert hands.frame.prompt.answer == ""
+    assert hands.frame.prompt_line.message_text == ""
 
 
 @pytest.fixture
 def asked(stall: Stall) -> Callable[[], list[str]]:
     """A question was asked and read before the stall; the answers to it."""
     said: list[str] = []
-    stall.hands.desk.ask("PRESS Y", lambda: said.append("yes"))
+    stall.hands.desk.ask_operator("PRESS Y", lambda: said.append("yes"))
     read(stall.hands.desk)
     stall.hands.window.refresh()
     return lambda: said
@@ -233,14 +235,14 @@ def test_a_question_gets_no_answer(stall: Stall, asked: Callable[[], list[str]])
     stall.ends()
     stall.press(Key.Key_Y, 500, "y")
     assert asked() == []
-    assert stall.hands.desk.asked == "Y"  # it stands
-    assert stall.told(Starting.YES)
+    assert stall.hands.desk.confirm_key == "Y"  # it stands
+    assert stall.told(StartingAction.YES)
 
 
 def test_the_finger_on_yes_is_none_either(stall: Stall, asked: Callable[[], list[str]]) -> None:
     stall.ends()
-    stall.hands.window.judge(late=True)
-    stall.hands.window.press("Yes")
+    stall.hands.window.set_late(is_late=True)
+    stall.hands.window.press_key("Yes")
     assert asked() == []
 
 
@@ -248,7 +250,7 @@ def test_no_takes_the_question_back(stall: Stall, asked: Callable[[], list[str]]
     stall.ends()
     stall.press(Key.Key_N, 500, "n")
     assert asked() == []
-    assert not stall.hands.desk.asked
+    assert not stall.hands.desk.confirm_key
 
 
 @pytest.mark.parametrize("later", [100, 1300])
@@ -261,9 +263,9 @@ def test_what_was_pressed_after_a_dropped_answer_is_dropped_too(
     stall.press(Key.Key_F2, 300 + later)
     stall.press(Key.Key_S, 320 + later, "s")
     assert asked() == []
-    assert not hands.page.files.isVisible()
+    assert not hands.page.file_prompt.isVisible()
     assert not hands.machine.now.single_block
-    assert stall.told(Starting.YES, Starting.FOLLOWING)
+    assert stall.told(StartingAction.YES, StartingAction.FOLLOWING_KEY)
 
 
 def test_after_a_dropped_answer_a_pause_makes_keys_count_again(
@@ -276,7 +278,7 @@ def test_after_a_dropped_answer_a_pause_makes_keys_count_again(
     stall.press(Key.Key_S, 2190, "s")  # typed on without a look
     assert not hands.machine.now.single_block
     stall.frames(30, 0.05)
-    stall.press(Key.Key_S, round(2190 + 1000 * PAUSE + 100), "s")
+    stall.press(Key.Key_S, round(2190 + 1000 * PAUSE_TIME_S + 100), "s")
     assert hands.machine.now.single_block
     assert asked() == []
 
@@ -288,7 +290,7 @@ def test_what_stops_acts_also_after_a_dropped_answer(stall: Stall) -> None:
     stall.press(Key.Key_Pause, 400)
     assert stall.hands.machine.posted == [FeedHold()]
     stall.press(Key.Key_ScrollLock, 500)
-    assert stall.hands.desk.hands.estop_pressed
+    assert stall.hands.desk.station_controls.estop_pressed
 
 
 @pytest.mark.parametrize("key", [Key.Key_Pause, Key.Key_H, Key.Key_Space])
@@ -296,7 +298,7 @@ def test_a_hold_is_never_late(stall: Stall, key: Key) -> None:
     stall.ends()
     stall.press(key, 100)
     assert stall.hands.machine.posted == [FeedHold()]
-    assert not stall.hands.desk.answers.answer
+    assert not stall.hands.desk.prompt_answers.message
 
 
 def test_a_touch_on_a_screen_that_looks_different_now_is_dropped(stall: Stall) -> None:
@@ -304,16 +306,16 @@ def test_a_touch_on_a_screen_that_looks_different_now_is_dropped(stall: Stall) -
     stall.ends()
     stall.press(Key.Key_F1, 100)  # done: another page
     stall.touch_f2(500)
-    assert hands.frame.page.NAME == page_table.MENU
-    assert stall.told(Starting.TOUCH)
+    assert hands.frame.current_page.NAME == page_table.MENU
+    assert stall.told(StartingAction.TOUCH)
 
 
 def test_a_start_with_the_mouse_is_dropped(stall: Stall) -> None:
     hands = stall.hands
-    hands.machine.now = type(hands.machine.now)(state=State.DISABLED)
+    hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()
     stall.ends()
-    hands.window.judge(late=True)
-    hands.window.press("D")  # as its lamp does it
+    hands.window.set_late(is_late=True)
+    hands.window.press_key("D")  # as its lamp does it
     assert starts_of(stall) == []
-    assert stall.told(Starting.DRIVES)
+    assert stall.told(StartingAction.DRIVES)

@@ -10,11 +10,11 @@ import pytest
 from PySide6.QtCore import QRect
 from PySide6.QtGui import QScreen
 
-from app.screen.window_layout import LEAST, Rect, low_places, places, unit
+from app.screen.window_layout import MIN_WINDOW_PX, Rect, find_unit, make_layout, make_low_layout
 from tests.screen.hands import Hands
 
 SIZES = [
-    LEAST,
+    MIN_WINDOW_PX,
     (1024, 768),
     (1280, 720),
     (1280, 1024),
@@ -33,7 +33,7 @@ def apart(one: Rect, other: Rect) -> bool:
 @pytest.mark.parametrize("dock", [True, False])
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_overlaps_and_nothing_is_cut(size: tuple[int, int], dock: bool) -> None:
-    at = places(*size, dock)
+    at = make_layout(*size, dock)
     parts = [(name, rect) for name, rect in at._asdict().items() if dock or name != "dock"]
     for name, rect in parts:
         assert rect.w > 0, name
@@ -48,7 +48,7 @@ def test_nothing_overlaps_and_nothing_is_cut(size: tuple[int, int], dock: bool) 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
-    at, u = places(*size, dock=True), unit(*size)
+    at, u = make_layout(*size, has_dock=True), find_unit(*size)
     assert at.position.h >= 27 * u - 1
     assert at.feed.w >= 24 * u
     assert at.listing.h >= 18 * u
@@ -57,7 +57,7 @@ def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
 
 
 def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
-    at = places(*LEAST, dock=True)
+    at = make_layout(*MIN_WINDOW_PX, has_dock=True)
     least = 9 / (254 / (1024**2 + 600**2) ** 0.5)  # pixels: 9 mm where the corners are 10 inches apart
     assert at.keys.h >= least
     assert at.strip.h >= least
@@ -65,17 +65,19 @@ def test_targets_fit_a_finger_on_the_smallest_screen() -> None:
 
 
 def test_without_a_dock_its_room_goes_to_the_path() -> None:
-    assert places(1920, 1080, dock=False).path.w > places(1920, 1080, dock=True).path.w + 200
+    assert (
+        make_layout(1920, 1080, has_dock=False).path.w > make_layout(1920, 1080, has_dock=True).path.w + 200
+    )
 
 
 @pytest.mark.parametrize("dock", [True, False])
 @pytest.mark.parametrize("size", SIZES)
 def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: bool) -> None:
-    at, low = places(*size, dock), low_places(*size, dock)
+    at, low = make_layout(*size, dock), make_low_layout(*size, dock)
     parts = [at.title, *low, at.prompt, at.keys, *([at.dock] if dock else [])]
     for one, two in combinations(parts, 2):
         assert apart(one, two), (one, two)
-    assert low.work.h >= 49 * unit(*size) - 1
+    assert low.work_area.h >= 49 * find_unit(*size) - 1
 
 
 @pytest.mark.parametrize(
@@ -86,7 +88,7 @@ def test_a_window_among_others_is_a_quarter_of_a_large_glass(
     hands: Hands, glass: tuple[int, int], window: tuple[int, int]
 ) -> None:
     screen = SimpleNamespace(availableGeometry=lambda: QRect(0, 0, *glass))
-    hands.window.open_on(cast("QScreen", screen))
+    hands.window.show_on(cast("QScreen", screen))
     size = hands.window.size()
     assert (size.width(), size.height()) == window
     assert not hands.window.isMaximized()

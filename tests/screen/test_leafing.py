@@ -16,36 +16,38 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.desk.pages.sheet import Row, Sheet
+from app.desk.pages.table_content import TableContent, TableRow
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.status.machine_status import Tone
 from app.editor.editor_parts_view import FindingList
-from app.editor.live_proof import Findings
+from app.editor.live_proof import ProofFindings
 from app.offsets.cell_table_view import CellPanel
-from app.offsets.mill_tools import MillTools
-from app.offsets.offsets_view import HistoryList
+from app.offsets.mill_tools import MillToolTable
+from app.offsets.offsets_view import ChangeHistoryList
 from app.programs.file_prompt_view import FilePrompt
-from app.screen.look import DARK, Look, Painter
-from app.screen.main_menu import _Tiles
-from app.screen.page_table import menu_of
+from app.screen.main_menu import _MenuTiles
+from app.screen.page_table import list_menu_entries
 from app.screen.panel import Panel
-from app.screen.sheet_panel import SheetPanel
-from app.screen.window_layout import FINGER
-from app.special.special_view import ItemList
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, ThemedPainter
+from app.screen.table_panel import TablePanel
+from app.screen.window_layout import FINGERTIP_PX
+from app.special.special_view import FunctionList
 from core.language.diagnostics import Diagnostic, Severity
-from core.store.store_rows import FIELDS
+from core.store.store_rows import FIELDS_BY_KIND
 from tests.texts import text as wording
 
 if TYPE_CHECKING:
     from app.offsets.cell_table import CellTable
-    from app.special.special_functions import SpecialFunctions
+    from app.special.special_functions import SpecialFunctionList
 
 MANY = 30
 SMALL = 6.4  # pixels of the unit at 1024x600
 
 
-def sheet_of(count: int, marked: int = 0) -> Sheet:
-    return Sheet("PROGRAMS", ("NAME",), (1.0,), tuple(Row((f"row {n}",)) for n in range(count)), marked)
+def sheet_of(count: int, marked: int = 0) -> TableContent:
+    return TableContent(
+        "PROGRAMS", ("NAME",), (1.0,), tuple(TableRow((f"row {n}",)) for n in range(count)), marked
+    )
 
 
 @pytest.fixture
@@ -56,11 +58,11 @@ def above(qtbot: QtBot) -> QWidget:
     return made
 
 
-def sheet_panel(above: QWidget, sheet: Sheet, touch: Callable[[int], None]) -> SheetPanel:
+def sheet_panel(above: QWidget, sheet: TableContent, touch: Callable[[int], None]) -> TablePanel:
     """The table as it is drawn at 1024x600."""
-    panel = SheetPanel(Look(DARK, SMALL), touch, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), touch, above)
     panel.resize(500, 300)
-    panel.show_sheet(sheet)
+    panel.show_table(sheet)
     panel.grab()
     return panel
 
@@ -122,14 +124,16 @@ def test_a_finger_comes_to_every_program_that_is_asked_for(above: QWidget, tmp_p
         taken.append(Path(name).name)
         return False
 
-    panel = FilePrompt(Look(DARK, SMALL), ProgramFolders((tmp_path,)), choose, lambda: None, above)
+    panel = FilePrompt(
+        ScreenTheme(DARK_PALETTE, SMALL), ProgramFolders((tmp_path,)), choose, lambda: None, above
+    )
     panel.resize(500, 300)
-    panel.ask()
+    panel.show_prompt()
     panel.grab()
     keys = leaf_keys(panel)
 
     def look() -> int:
-        panel.not_found = False
+        panel.is_not_found = False
         panel.grab()
         return int(taken[-1][1:3])
 
@@ -140,75 +144,75 @@ def test_a_finger_comes_to_every_program_that_is_asked_for(above: QWidget, tmp_p
 def test_the_wheel_leaves_the_mark_behind(above: QWidget, marked: int) -> None:
     panel = sheet_panel(above, sheet_of(MANY, marked), lambda _row: None)
     turn_wheel(panel, 100)
-    assert panel.top == MANY - panel.rows
+    assert panel.first_row == MANY - panel.rows
     turn_wheel(panel, -100)
-    assert panel.top == 0
+    assert panel.first_row == 0
 
 
 def test_a_key_that_moves_the_mark_brings_it_into_sight_again(above: QWidget) -> None:
     panel = sheet_panel(above, sheet_of(MANY, 2), lambda _row: None)
     turn_wheel(panel, 100)
-    panel.show_sheet(sheet_of(MANY, 3))
+    panel.show_table(sheet_of(MANY, 3))
     panel.grab()
-    assert panel.top == 3
+    assert panel.first_row == 3
 
 
 def test_a_pad_that_comes_up_does_not_hide_the_mark(above: QWidget) -> None:
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 300)
-    panel.show_sheet(sheet_of(MANY, 4))
+    panel.show_table(sheet_of(MANY, 4))
     panel.grab()
-    assert panel.top == 0
+    assert panel.first_row == 0
     panel.resize(500, 180)
     panel.grab()
-    assert panel.top <= 4 < panel.top + panel.rows
+    assert panel.first_row <= 4 < panel.first_row + panel.rows
 
 
 def test_what_fits_has_no_keys_to_leaf(above: QWidget) -> None:
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 300)
-    panel.show_sheet(sheet_of(3))
+    panel.show_table(sheet_of(3))
     panel.grab()
     assert len(panel._places) == 3
     turn_wheel(panel, 5)
-    assert panel.top == 0
+    assert panel.first_row == 0
 
 
 def test_findings_and_changes_of_offsets_are_leafed_through(above: QWidget) -> None:
     """There were no keys: the third finding, and the fifth change, were the mouse wheel's alone."""
-    findings = FindingList(Look(DARK, SMALL), lambda _found: None, above)
+    findings = FindingList(ScreenTheme(DARK_PALETTE, SMALL), lambda _found: None, above)
     findings.resize(374, 106)  # as at 1024x600
     found = tuple(Diagnostic(n, 1, Severity.ERROR, "unknown", f"finding {n}") for n in range(1, 6))
-    findings.show_findings(Findings(diagnostics=found), 1)
+    findings.show_findings(ProofFindings(diagnostics=found), 1)
     press(findings, leaf_keys(findings)[1])
-    assert findings.top == findings.rows
-    history = HistoryList(Look(DARK, SMALL), above)
+    assert findings.first_row == findings.rows
+    history = ChangeHistoryList(ScreenTheme(DARK_PALETTE, SMALL), above)
     history.resize(500, 220)
-    history.entries = tuple(("now", f"D{n}", "X", "why") for n in range(MANY))
+    history.history_entries = tuple(("now", f"D{n}", "X", "why") for n in range(MANY))
     press(history, leaf_keys(history)[1])
-    assert history.top == history.rows
+    assert history.first_row == history.rows
 
 
 def test_keys_that_leaf_fit_a_finger(above: QWidget) -> None:
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 300)
-    panel.show_sheet(sheet_of(MANY))
+    panel.show_table(sheet_of(MANY))
     for box in leaf_keys(panel):
-        assert min(box.width(), box.height()) >= FINGER
-        assert panel.area().contains(box)
+        assert min(box.width(), box.height()) >= FINGERTIP_PX
+        assert panel.find_full_area().contains(box)
 
 
 @pytest.mark.parametrize("wide", [300, 500])
 def test_keys_that_leaf_lie_over_no_row(above: QWidget, wide: int) -> None:
     """Below the rows of a narrow table, as that of the analyses at 1024x600, beside those of a wide one."""
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(wide, 300)
-    panel.show_sheet(replace(sheet_of(MANY), notes=("one", "two")))
+    panel.show_table(replace(sheet_of(MANY), notes=("one", "two")))
     keys = leaf_keys(panel)
     rows = [box for box, *_ in panel._places if box not in keys]
     assert len(rows) == panel.rows > 1
     assert not [row for row in rows for key in keys if row.intersects(key)]
-    assert all(panel.area().contains(key) for key in keys)
+    assert all(panel.find_full_area().contains(key) for key in keys)
 
 
 @pytest.mark.parametrize(("count", "high", "fits"), [(8, 80.0, 15), (20, 60.4, 20), (60, 43.0, 28)])
@@ -219,42 +223,42 @@ def test_few_rows_are_as_large_as_the_rest_of_a_large_glass(
 
     Of 1340 pixels 4 units are the frame's and 2.6 the head's: 1208 are left.
     """
-    panel = SheetPanel(Look(DARK, 20.0), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, 20.0), lambda _row: None, above)
     panel.resize(1400, 1340)
-    panel.show_sheet(sheet_of(count))
+    panel.show_table(sheet_of(count))
     panel.grab()
     assert panel._high * 20.0 == pytest.approx(high, abs=1e-3)
     assert panel.rows == fits
 
 
 def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidget) -> None:
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(500, 110)
-    panel.show_sheet(sheet_of(MANY))
+    panel.show_table(sheet_of(MANY))
     panel.grab()
     first, second = (box for box, *_ in panel._places[:2])
     assert first.y() == second.y()
     assert first.right() < second.x()
-    assert min(first.height(), second.height()) >= FINGER
+    assert min(first.height(), second.height()) >= FINGERTIP_PX
     press(panel, second)
-    assert panel.top == 1 == panel.rows
+    assert panel.first_row == 1 == panel.rows
 
 
 @pytest.mark.parametrize(("high", "rows", "notes"), [(145, 1, 0), (176, 1, 2), (110, 0, 0)])
 def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes: int) -> None:
     """145 pixels are what drawn letters leave to a table of the special functions at 1024x600."""
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(640, high)
-    panel.show_sheet(replace(sheet_of(MANY), question=wording("screen.whose-name"), notes=("one", "two")))
+    panel.show_table(replace(sheet_of(MANY), question=wording("screen.whose-name"), notes=("one", "two")))
     drawn: dict[str, QRectF] = {}
-    write = Painter.write
+    write = ThemedPainter.draw_text_line
 
-    def writing(painter: Painter, rect: QRectF, text: str, *rest: Any, **more: Any) -> None:
+    def writing(painter: ThemedPainter, rect: QRectF, text: str, *rest: Any, **more: Any) -> None:
         drawn[text] = QRectF(rect)
         write(painter, rect, text, *rest, **more)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Painter, "write", writing)
+        patch.setattr(ThemedPainter, "draw_text_line", writing)
         panel.grab()
     assert sum(text.startswith("row ") for text in drawn) == rows == panel.rows
     assert sum(text in {"one", "two"} for text in drawn) == notes
@@ -268,30 +272,30 @@ def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:
     """Ten rows of 16 pixels stood there, and what was below them came by the arrows alone."""
     chosen: list[int] = []
     table = SimpleNamespace(
-        title="TOOL TABLE", words=("L", "R"), kind=MillTools.kind, numbers=tuple(range(1, MANY + 1)),
+        title="TOOL TABLE", words=("L", "R"), kind=MillToolTable.kind, numbers=tuple(range(1, MANY + 1)),
         columns=("length", "radius"), choose=lambda row, _column: chosen.append(row),
         tone_at=lambda *_: Tone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
     )  # fmt: skip
-    panel = CellPanel(Look(DARK, SMALL), cast("CellTable", table), above)
+    panel = CellPanel(ScreenTheme(DARK_PALETTE, SMALL), cast("CellTable", table), above)
     panel.resize(500, 300)
     assert chosen_rows(panel, lambda: chosen[-1], leaf_keys(panel)) == set(range(MANY))
-    assert all(box.height() >= FINGER for box, *_ in panel._places)
+    assert all(box.height() >= FINGERTIP_PX for box, *_ in panel._places)
 
 
 @pytest.mark.parametrize(("wide", "shown"), [(788, 12), (605, 10), (350, 5)])
 def test_cells_of_a_mills_tools_take_a_finger_beside_the_pad(above: QWidget, wide: int, shown: int) -> None:
     """With twelve columns at 1024x600 that of the teeth had 25 pixels beside the pad."""
-    names = (*FIELDS[MillTools.kind], "used")
+    names = (*FIELDS_BY_KIND[MillToolTable.kind], "used")
     chosen: list[int] = []
     table = SimpleNamespace(
-        title="TOOL TABLE", words=names, kind=MillTools.kind, numbers=(1, 2),
+        title="TOOL TABLE", words=names, kind=MillToolTable.kind, numbers=(1, 2),
         columns=names, choose=lambda _row, column: chosen.append(column),
         tone_at=lambda *_: Tone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
     )  # fmt: skip
-    panel = CellPanel(Look(DARK, SMALL), cast("CellTable", table), above)
+    panel = CellPanel(ScreenTheme(DARK_PALETTE, SMALL), cast("CellTable", table), above)
     panel.resize(wide, 150)
     for column in range(len(names)):
-        panel.cell = (0, column)
+        panel.selected_cell = (0, column)
         panel.grab()
         chosen.clear()
         for _box, press, *_ in panel._places:
@@ -299,17 +303,17 @@ def test_cells_of_a_mills_tools_take_a_finger_beside_the_pad(above: QWidget, wid
         assert column in chosen
         assert len(chosen) == 2 * len(set(chosen)) >= 2 * shown
         assert sorted(set(chosen)) == list(range(min(chosen), max(chosen) + 1))
-        assert all(box.width() >= FINGER for box, *_ in panel._places)
+        assert all(box.width() >= FINGERTIP_PX for box, *_ in panel._places)
     assert len(names) == 12
 
 
 def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
-    entries = menu_of("omniturn")
-    panel = _Tiles(Look(DARK, SMALL), lambda _key: None, entries, above)
+    entries = list_menu_entries("omniturn")
+    panel = _MenuTiles(ScreenTheme(DARK_PALETTE, SMALL), lambda _key: None, entries, above)
     panel.resize(858, 360)  # as at 1024x600
     panel.grab()
     assert len(panel._places) == len(entries)
-    assert all(box.height() >= FINGER for box, *_ in panel._places)
+    assert all(box.height() >= FINGERTIP_PX for box, *_ in panel._places)
 
 
 def test_a_finger_comes_to_every_special_function(above: QWidget) -> None:
@@ -317,7 +321,9 @@ def test_a_finger_comes_to_every_special_function(above: QWidget) -> None:
     entered: list[int] = []
     functions = [SimpleNamespace(name=f"FUNCTION {n}", use="what it does") for n in range(MANY)]
     model = SimpleNamespace(functions=functions, at=0, inside=False)
-    panel = ItemList(Look(DARK, SMALL), cast("SpecialFunctions", model), entered.append, above)
+    panel = FunctionList(
+        ScreenTheme(DARK_PALETTE, SMALL), cast("SpecialFunctionList", model), entered.append, above
+    )
     panel.resize(218, 360)  # as at 1024x600
     assert chosen_rows(panel, lambda: entered[-1], leaf_keys(panel)) == set(range(MANY))
-    assert all(box.height() >= FINGER for box, *_ in panel._places)
+    assert all(box.height() >= FINGERTIP_PX for box, *_ in panel._places)

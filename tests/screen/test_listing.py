@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtGui import QPixmap
 from PySide6.QtWidgets import QWidget
 
-from app.screen.look import DARK, Look
-from app.screen.program_listing import Listing
+from app.screen.program_listing import ProgramListing
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from tests.screen.test_leafing import above
 
 __all__ = ["above"]  # a fixture of this module too
@@ -35,17 +35,17 @@ class Counted(Sequence[str]):
 
 
 @pytest.fixture
-def listing(above: QWidget) -> Listing:
-    listing = Listing(Look(DARK, 8.0), above)
+def listing(above: QWidget) -> ProgramListing:
+    listing = ProgramListing(ScreenTheme(DARK_PALETTE, 8.0), above)
     listing.resize(400, 250)  # nine rows of 23 pixels
     return listing
 
 
-def painted(listing: Listing) -> QPixmap:
+def painted(listing: ProgramListing) -> QPixmap:
     return listing.grab()
 
 
-def test_a_million_lines_cost_what_is_seen(listing: Listing) -> None:
+def test_a_million_lines_cost_what_is_seen(listing: ProgramListing) -> None:
     lines = Counted()
     listing.show_source(lines, {})
     listing.show_run(500_000, "X1", "")
@@ -54,35 +54,35 @@ def test_a_million_lines_cost_what_is_seen(listing: Listing) -> None:
     assert 0 < lines.asked <= listing.rows
 
 
-def test_the_current_line_is_in_the_window(listing: Listing) -> None:
+def test_the_current_line_is_in_the_window(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     for line in (1, 2, 50, 99, 100):
         listing.show_run(line, "X1", "X2")
         painted(listing)
-        assert listing.top < line <= listing.top + listing.rows
+        assert listing.first_row < line <= listing.first_row + listing.rows
 
 
-def test_scrolling_stops_the_following_until_it_is_asked_for(listing: Listing) -> None:
+def test_scrolling_stops_the_following_until_it_is_asked_for(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     listing.show_run(50, "", "")
     painted(listing)
     listing.scroll_by(-1000)
-    assert (listing.top, listing.follows) == (0, False)
+    assert (listing.first_row, listing.follows_run) == (0, False)
     listing.show_run(51, "", "")
     painted(listing)
-    assert listing.top == 0
+    assert listing.first_row == 0
     listing.scroll_by(1000)
-    assert listing.top == 100 - listing.rows
-    listing.follow()
+    assert listing.first_row == 100 - listing.rows
+    listing.follow_run()
     painted(listing)
-    assert listing.top < 51 <= listing.top + listing.rows
+    assert listing.first_row < 51 <= listing.first_row + listing.rows
 
 
-def test_a_refused_program_opens_at_its_first_error(listing: Listing) -> None:
+def test_a_refused_program_opens_at_its_first_error(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {80: "no", 90: "no"})
     painted(listing)
-    assert listing.top < 80 <= listing.top + listing.rows
+    assert listing.first_row < 80 <= listing.first_row + listing.rows
 
 
-def test_an_empty_window_paints(listing: Listing) -> None:
+def test_an_empty_window_paints(listing: ProgramListing) -> None:
     assert not painted(listing).isNull()

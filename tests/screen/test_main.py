@@ -12,10 +12,10 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.exceptions import capture_exceptions
 
 from app.desk.desk import Desk
-from app.screen.run_screen import run_screen
+from app.screen.screen_startup import run_screen
 from app.screen.window.main_window import MainWindow
-from app.screen.window.window_frame import Frame
-from core.executor.snapshot import State
+from app.screen.window.window_frame import WindowFrame
+from core.executor.snapshot import MachineState
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
 from tests.texts import shows, text
@@ -27,47 +27,47 @@ def test_a_desk_that_cannot_be_built_ends_the_screen_with_its_reason(theme: str)
         raise ValueError("lathe.toml: no axis X")
 
     with pytest.raises(ValueError, match="no axis X"):
-        run_screen(theme=theme, build=broken)  # type: ignore[arg-type]
+        run_screen(theme=theme, build_model=broken)  # type: ignore[arg-type]
 
 
 def test_the_screen_opens_loads_and_closes(machine: FakeMachine) -> None:
     desk, closed = desk_on(machine), []
-    desk.closing.shut = lambda: closed.append(True)
+    desk.closing_sequence.close_drivers = lambda: closed.append(True)
 
     def leave() -> None:
-        if desk.session.now.picture is None:
+        if desk.program_loader.loaded.picture is None:
             QTimer.singleShot(5, leave)
             return
         (window,) = (w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible())
         window.close()
 
     QTimer.singleShot(0, leave)
-    assert run_screen(program=str(SAMPLES / "pin.nc"), build=lambda: desk) == 0
-    assert desk.session.now.name == "pin.nc"
+    assert run_screen(program_file=str(SAMPLES / "pin.nc"), build_model=lambda: desk) == 0
+    assert desk.program_loader.loaded.name == "pin.nc"
     assert closed == [True]
 
 
 def test_a_computer_going_down_ends_the_screen_in_the_middle_of_a_program(machine: FakeMachine) -> None:
     desk, closed = desk_on(machine), []
-    desk.closing.shut = lambda: closed.append(machine.now.state)
+    desk.closing_sequence.close_drivers = lambda: closed.append(machine.now.state)
 
     def strike() -> None:
-        if desk.session.now.picture is None:
+        if desk.program_loader.loaded.picture is None:
             QTimer.singleShot(5, strike)
             return
-        machine.now = replace(machine.now, state=State.HOLD)
+        machine.now = replace(machine.now, state=MachineState.HOLD)
         os.kill(os.getpid(), signal.SIGTERM)
 
     QTimer.singleShot(0, strike)
-    assert run_screen(program=str(SAMPLES / "pin.nc"), build=lambda: desk) == 0
-    assert closed == [State.HOLD]
+    assert run_screen(program_file=str(SAMPLES / "pin.nc"), build_model=lambda: desk) == 0
+    assert closed == [MachineState.HOLD]
 
 
 def test_a_program_that_is_not_there_is_told(machine: FakeMachine) -> None:
     desk = desk_on(machine)
     QTimer.singleShot(50, lambda: [w.close() for w in QApplication.topLevelWidgets()])
-    assert run_screen(program="nowhere.nc", build=lambda: desk) == 0
-    assert desk.notice == text("screen.file-not-found", name="nowhere.nc")
+    assert run_screen(program_file="nowhere.nc", build_model=lambda: desk) == 0
+    assert desk.prompt_notice == text("screen.file-not-found", name="nowhere.nc")
 
 
 def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
@@ -78,16 +78,16 @@ def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
     def broken(_desk: Desk) -> None:
         raise KeyError("a figure that is not there")
 
-    monkeypatch.setattr(Frame, "toggle_log", broken)
+    monkeypatch.setattr(WindowFrame, "toggle_alarm_log", broken)
 
     def press() -> None:
         (window,) = (w for w in QApplication.topLevelWidgets() if isinstance(w, MainWindow) and w.isVisible())
         QTimer.singleShot(20, window.close)
-        window.press("F7")
+        window.press_key("F7")
 
     QTimer.singleShot(50, press)
     with capture_exceptions() as caught:
-        assert run_screen(build=lambda: desk) == 0
+        assert run_screen(build_model=lambda: desk) == 0
     assert caught == []
-    assert shows(desk.notice, "screen.screen-mistake")
+    assert shows(desk.prompt_notice, "screen.screen-mistake")
     assert "a figure that is not there" in caplog.text

@@ -8,8 +8,8 @@ import pytest
 
 from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
-from app.screen.entry_panel import LINES
-from core.executor.snapshot import Starts, State
+from app.screen.entry_panel import LINE_KEYS
+from core.executor.snapshot import MachineState, StartAction
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import yes
 from tests.texts import begins, shows, text
@@ -22,20 +22,20 @@ def at_mdi(operator: Operator) -> Operator:
     """Drives on, MDI in front."""
     operator.drives_on()
     operator.key(Key.Key_F1, Key.Key_F4)
-    assert operator.frame.title.page == page_table.MDI
+    assert operator.frame.title_line.page_title == page_table.MDI
     operator.pause(0.05)
     return operator
 
 
 def page_of(operator: Operator) -> MdiPage:
-    page = operator.frame.page
+    page = operator.frame.current_page
     assert isinstance(page, MdiPage)
     operator.window.refresh()
     return page
 
 
 def value(operator: Operator, key: str) -> str:
-    return next(row.value for row in page_of(operator).inforce.rows if row.key == key)
+    return next(row.value for row in page_of(operator).modal_panel.rows if row.key == key)
 
 
 def test_a_line_is_typed_proved_started_and_its_modes_stay(at_mdi: Operator) -> None:
@@ -45,36 +45,36 @@ def test_a_line_is_typed_proved_started_and_its_modes_stay(at_mdi: Operator) -> 
     at_mdi.run("x.5f100")
     assert at_mdi.shot.actual[0] == pytest.approx(0.25 * INCH, abs=0.006)
     assert value(at_mdi, "feed") == "100.00 in/min"
-    assert page_of(at_mdi).history.lines == ("G90G72", "x.5f100")
-    assert page_of(at_mdi).line.text == ""
+    assert page_of(at_mdi).history_panel.history_lines == ("G90G72", "x.5f100")
+    assert page_of(at_mdi).line_panel.text == ""
 
 
 def test_what_is_wrong_is_marked_where_it_is_and_mended(at_mdi: Operator) -> None:
     at_mdi.run("G90")
     at_mdi.line("X.5F1000")
     page = page_of(at_mdi)
-    assert page.line.found[0].column == 4
-    assert shows(page.line.message, "screen.feed-out-of-range")
+    assert page.line_panel.diagnostics[0].column == 4
+    assert shows(page.line_panel.finding_text, "screen.feed-out-of-range")
     assert begins(at_mdi.prompt(), "screen.line-does-not-run")
     at_mdi.palms()
-    assert at_mdi.shot.state is State.IDLE
+    assert at_mdi.shot.state is MachineState.IDLE
     assert at_mdi.prompt() == text("screen.no-line-ready")
     at_mdi.key(Key.Key_Backspace)
-    assert page_of(at_mdi).line.found == ()
+    assert page_of(at_mdi).line_panel.diagnostics == ()
     at_mdi.key(Key.Key_Return)
-    at_mdi.mdi.line.worker.settle(60.0)
+    at_mdi.mdi.prepared_line.worker.wait_for_results(60.0)
     assert at_mdi.prompt() == text("screen.run-the-line", start=text("screen.both-palms"))
 
 
 def test_a_ready_line_that_is_changed_starts_no_more(at_mdi: Operator) -> None:
     at_mdi.run("G91F50")
     at_mdi.line("X.1")
-    assert page_of(at_mdi).line.ready
+    assert page_of(at_mdi).line_panel.is_ready
     at_mdi.type("0")
     at_mdi.palms()
-    assert at_mdi.shot.state is State.IDLE
+    assert at_mdi.shot.state is MachineState.IDLE
     assert at_mdi.shot.actual[0] == pytest.approx(0.0, abs=0.006)
-    assert not page_of(at_mdi).line.ready
+    assert not page_of(at_mdi).line_panel.is_ready
 
 
 def test_history_by_arrow_keys_and_by_finger(at_mdi: Operator) -> None:
@@ -82,62 +82,62 @@ def test_history_by_arrow_keys_and_by_finger(at_mdi: Operator) -> None:
         at_mdi.run(line)
     at_mdi.type("X.")
     at_mdi.key(Key.Key_Up, Key.Key_Up)
-    assert page_of(at_mdi).line.text == "X.1"
+    assert page_of(at_mdi).line_panel.text == "X.1"
     at_mdi.key(Key.Key_Down, Key.Key_Down)
-    assert page_of(at_mdi).line.text == "X."  # what was being typed
+    assert page_of(at_mdi).line_panel.text == "X."  # what was being typed
     page = page_of(at_mdi)
     at_mdi.window.grab()
-    page.history._places[0][1]()
-    assert page_of(at_mdi).line.text == "G90F50"
+    page.history_panel._places[0][1]()
+    assert page_of(at_mdi).line_panel.text == "G90F50"
 
 
 def test_the_cursor_goes_through_the_line(at_mdi: Operator) -> None:
     at_mdi.type("G9X.1")
     at_mdi.key(Key.Key_Left, Key.Key_Left, Key.Key_Left)
     at_mdi.type("1")
-    assert page_of(at_mdi).line.text == "G91X.1"
+    assert page_of(at_mdi).line_panel.text == "G91X.1"
     at_mdi.key(Key.Key_Delete)
-    assert page_of(at_mdi).line.text == "G91.1"
+    assert page_of(at_mdi).line_panel.text == "G91.1"
     at_mdi.key(Key.Key_Escape)
-    assert page_of(at_mdi).line.text == ""
+    assert page_of(at_mdi).line_panel.text == ""
 
 
 def test_the_history_is_there_again_the_next_day(at_mdi: Operator) -> None:
     at_mdi.run("G90F50")
     at_mdi.key(Key.Key_F1)
     at_mdi.key(Key.Key_F4)
-    at_mdi.mdi.typing.history = []
-    at_mdi.mdi.typing.reload()
-    assert at_mdi.mdi.typing.history == ["G90F50"]
+    at_mdi.mdi.mdi_input.history = []
+    at_mdi.mdi.mdi_input.reload()
+    assert at_mdi.mdi.mdi_input.history == ["G90F50"]
 
 
 def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> None:
     at_mdi.run("G90")
     at_mdi.line("X1F5")
     at_mdi.palms()
-    assert at_mdi.shot.state is State.RUN
+    assert at_mdi.shot.state is MachineState.RUN
     at_mdi.key(Key.Key_H)
-    at_mdi.reaches(State.HOLD)
+    at_mdi.reaches(MachineState.HOLD)
     at_mdi.key(Key.Key_F1)  # it is still under way
-    assert at_mdi.frame.title.page == page_table.MDI
+    assert at_mdi.frame.title_line.page_title == page_table.MDI
     at_mdi.key(Key.Key_R)
     yes(at_mdi.window)
-    at_mdi.reaches(State.IDLE)
+    at_mdi.reaches(MachineState.IDLE)
     assert value(at_mdi, "distance") == "G90"
     at_mdi.type("R")  # text again
-    assert page_of(at_mdi).line.text == "R"
+    assert page_of(at_mdi).line_panel.text == "R"
 
 
 def test_the_line_has_every_letter_also_with_the_drives_off(at_mdi: Operator) -> None:
     at_mdi.type("X.5 he")
-    assert page_of(at_mdi).line.text == "X.5 he"
-    assert at_mdi.shot.state is State.IDLE
-    at_mdi.window.estop()
-    at_mdi.reaches(State.ESTOP)
+    assert page_of(at_mdi).line_panel.text == "X.5 he"
+    assert at_mdi.shot.state is MachineState.IDLE
+    at_mdi.window.press_estop()
+    at_mdi.reaches(MachineState.ESTOP)
     override = at_mdi.shot.feed_override
     at_mdi.type("+-sod/")
     at_mdi.pause(1.0)
-    assert page_of(at_mdi).line.text == "X.5 he+-sod/"
+    assert page_of(at_mdi).line_panel.text == "X.5 he+-sod/"
     assert at_mdi.shot.feed_override == override
     assert not at_mdi.shot.single_block
     at_mdi.key(Key.Key_Return)
@@ -148,10 +148,10 @@ def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Ope
     at_mdi.run("M03S900")
     at_mdi.pause(2.0)
     at_mdi.key(Key.Key_F1)
-    assert at_mdi.frame.title.page == page_table.MENU
+    assert at_mdi.frame.title_line.page_title == page_table.MENU
     at_mdi.pause(1.0)
     assert at_mdi.shot.rpm_actual == pytest.approx(900, rel=0.05)
-    assert at_mdi.shot.starts is Starts.PROGRAM
+    assert at_mdi.shot.starts is StartAction.PROGRAM
     at_mdi.key(Key.Key_F4)
     assert value(at_mdi, "spindle") == "M03"
     at_mdi.key(Key.Key_F8)
@@ -163,26 +163,26 @@ def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Ope
 def test_mdi_does_not_open_while_a_program_is_under_way(operator: Operator) -> None:
     operator.stage.start()
     operator.key(Key.Key_F1, Key.Key_F4)
-    assert operator.frame.title.page == page_table.MENU
+    assert operator.frame.title_line.page_title == page_table.MENU
     assert begins(operator.prompt(), "screen.program-runs-no-mdi")
 
 
 def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:
     desk = at_mdi.stage.desk
-    desk.programs.choose("bushing")
-    desk.session.settled(30.0)
+    desk.program_choice.load_by_name("bushing")
+    desk.program_loader.wait_until_loaded(30.0)
     at_mdi.palms()
-    assert at_mdi.shot.state is State.IDLE
+    assert at_mdi.shot.state is MachineState.IDLE
     at_mdi.key(Key.Key_F2)
-    assert at_mdi.frame.page is at_mdi.frame.automatic
+    assert at_mdi.frame.current_page is at_mdi.frame.automatic_page
     at_mdi.palms()
-    assert at_mdi.shot.state in {State.RUN, State.WAIT}
+    assert at_mdi.shot.state in {MachineState.RUN, MachineState.WAIT}
 
 
 def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator) -> None:
     at_mdi.line("T9")
-    assert shows(page_of(at_mdi).line.message, "screen.tool-never-set", number=9)
-    assert at_mdi.mdi.line.ready is None
+    assert shows(page_of(at_mdi).line_panel.finding_text, "screen.tool-never-set", number=9)
+    assert at_mdi.mdi.prepared_line.ready_job is None
     at_mdi.key(Key.Key_Escape)
     at_mdi.run("T1")
     assert value(at_mdi, "tool").startswith("T1")
@@ -190,12 +190,12 @@ def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator)
 
 def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Operator) -> None:
     desk = at_mdi.stage.desk
-    desk.programs.choose("bushing")
-    desk.session.settled(30.0)
+    desk.program_choice.load_by_name("bushing")
+    desk.program_loader.wait_until_loaded(30.0)
     at_mdi.run("G71")
     at_mdi.key(Key.Key_F2)
     at_mdi.window.refresh()
-    loaded = desk.session.settled(30.0)
+    loaded = desk.program_loader.wait_until_loaded(30.0)
     assert loaded.job is not None
     assert loaded.job.setup.metric
     assert any(found.code == "units-unnamed" for found in loaded.diagnostics)
@@ -204,20 +204,20 @@ def test_a_unit_left_by_mdi_is_the_unit_of_a_program_that_names_none(at_mdi: Ope
 def test_a_line_is_typed_by_a_finger_alone(at_mdi: Operator) -> None:
     page = page_of(at_mdi)
     at_mdi.window.grab()
-    page.line._places[0][1]()
-    assert page.letters.isVisible()
+    page.line_panel._places[0][1]()
+    assert page.letter_pad.isVisible()
     at_mdi.window.grab()
-    keys = dict(zip(chain(*LINES), page.letters._places, strict=True))
+    keys = dict(zip(chain(*LINE_KEYS), page.letter_pad._places, strict=True))
     assert keys.keys() >= set("()/}=+~")  # without them no loop, no function in parentheses
     for key in (*"G91X.1F50", "Back", "Back", "8", "Enter"):
         box, press, *_ = keys[key]
         assert min(box.width(), box.height()) >= 42  # 9 mm
         press()
-    at_mdi.mdi.line.worker.settle(60.0)
+    at_mdi.mdi.prepared_line.worker.wait_for_results(60.0)
     at_mdi.pause(0.05)
-    assert page_of(at_mdi).line.ready
+    assert page_of(at_mdi).line_panel.is_ready
     at_mdi.palms()
-    at_mdi.reaches(State.IDLE)
+    at_mdi.reaches(MachineState.IDLE)
     assert at_mdi.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
-    page.line._places[0][1]()
-    assert page.letters.isHidden()
+    page.line_panel._places[0][1]()
+    assert page.letter_pad.isHidden()

@@ -12,17 +12,17 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.program_proving import get_samples_folder
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
 from app.jog.jog_view import JogPage
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
 from app.searchto.searchto_view import SearchtoPage
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.offset_store import use_store
 from tests.screen.hands import Key
 from tests.screen.yes import yes
@@ -37,23 +37,25 @@ class Mill:
     """The desk on the simulated mill, on a clock that the test moves, and the window in front of it."""
 
     def __init__(self, folder: Path, machine: str = "ac-table-mill") -> None:
-        self._clock = StepClock()
-        offsets = samples() / "offsets.toml"
-        self.desk, self._executor = desk_and_executor(machine, lambda: read_offsets(offsets), self._clock)
+        self._clock = ManualClock()
+        offsets = get_samples_folder() / "offsets.toml"
+        self.desk, self._executor = create_desk_and_executor(
+            machine, lambda: read_offsets(offsets), self._clock
+        )
         self._store = Store.open(folder)
-        for number, tool in read_offsets(offsets).tools.items():
-            self._store.offsets.tools.change_row(
+        for number, tool in read_offsets(offsets).tool_offsets.items():
+            self._store.offsets.tool_offsets.change_row(
                 number, "measured", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
             )
         use_store(self.desk, self._store)
-        self.desk.hands.clock = self._clock.now
-        self.window = MainWindow(Look(DARK))
+        self.desk.station_controls.clock = self._clock.now
+        self.window = MainWindow(ScreenTheme(DARK_PALETTE))
         self.window.resize(1024, 600)
-        self.window.open_desk(self.desk)
+        self.window.show_model(self.desk)
         self.window.show()
 
     def close(self) -> None:
-        self.window.put_away()
+        self.window.close_silently()
         self.desk.close()
         self._store.close()
 
@@ -65,45 +67,45 @@ class Mill:
 
     def goes_on(self, until: Callable[[Snapshot], bool]) -> Snapshot:
         end = self._clock.now() + LONG
-        while not until(self.desk.snapshot()):
-            assert self._clock.now() < end, self.desk.snapshot()
-            self._executor.tick()
+        while not until(self.desk.read_snapshot()):
+            assert self._clock.now() < end, self.desk.read_snapshot()
+            self._executor.run_tick()
             self._clock.sleep_until(self._clock.now() + TICK)
         self.window.refresh()
-        return self.desk.snapshot()
+        return self.desk.read_snapshot()
 
     def held(self, key: Key, until: Callable[[Snapshot], bool]) -> Snapshot:
         """Hold a key while the machine goes on and the screen looks at it, then let it go."""
         QTest.keyPress(QApplication.focusWidget() or self.window, key)
         end = self._clock.now() + LONG
-        while not until(self.desk.snapshot()):
-            assert self._clock.now() < end, self.desk.snapshot()
-            self._executor.tick()
+        while not until(self.desk.read_snapshot()):
+            assert self._clock.now() < end, self.desk.read_snapshot()
+            self._executor.run_tick()
             self.window.refresh()
             self._clock.sleep_until(self._clock.now() + TICK)
         QTest.keyRelease(QApplication.focusWidget() or self.window, key)
-        return self.goes_on(lambda s: s.state is State.IDLE)
+        return self.goes_on(lambda s: s.state is MachineState.IDLE)
 
     def choose(self, name: str) -> None:
         self.key(Key.Key_F2)
         self.type(name)
         self.key(Key.Key_Return)
-        assert not self.desk.session.settled(60.0).errors
-        self.goes_on(lambda s: s.state is State.DISABLED)
+        assert not self.desk.program_loader.wait_until_loaded(60.0).blocking_errors
+        self.goes_on(lambda s: s.state is MachineState.DISABLED)
         self.key(Key.Key_D)
-        self.goes_on(lambda s: s.state is State.IDLE)
+        self.goes_on(lambda s: s.state is MachineState.IDLE)
 
     def start(self) -> None:
         QTest.keyPress(self.window, Key.Key_F11)
         QTest.keyPress(self.window, Key.Key_F12)
-        self.goes_on(lambda s: s.state is not State.IDLE)
+        self.goes_on(lambda s: s.state is not MachineState.IDLE)
         QTest.keyRelease(self.window, Key.Key_F11)
         QTest.keyRelease(self.window, Key.Key_F12)
 
     @property
     def page(self) -> AutomaticPage:
         assert self.window.frame is not None
-        return self.window.frame.automatic
+        return self.window.frame.automatic_page
 
 
 @pytest.fixture
@@ -120,23 +122,25 @@ def mill(qapp: QApplication, tmp_path: Path, mill_home: None) -> Iterator[Mill]:
 
 def line_of(text: str) -> int:
     """The first line of the sample that holds this."""
-    lines = (samples() / "roof.h").read_text().splitlines()
+    lines = (get_samples_folder() / "roof.h").read_text().splitlines()
     return next(number for number, line in enumerate(lines, start=1) if text in line)
 
 
 def test_a_tilted_program_from_the_list_to_its_end(mill: Mill) -> None:
     mill.choose("roof")
     page = mill.page
-    assert page.space.isVisible()
+    assert page.plane_view.isVisible()
     mill.start()
     cut = line_of("L X+90 F900")
     mill.goes_on(lambda s: s.line == cut and s.modal.tool == 20)
     first = line_of("PLANE AXIAL")
-    assert page.space.words.startswith(f"{wording('screen.tilted-plane', line=first)}:  A+30.000  C+0.000")
-    picture = page.space.grab().toImage()
+    assert page.plane_view.words.startswith(
+        f"{wording('screen.tilted-plane', line=first)}:  A+30.000  C+0.000"
+    )
+    picture = page.plane_view.grab().toImage()
     mill.goes_on(lambda s: s.line == cut and s.actual[4] > 170.0)
-    assert page.space.grab().toImage() != picture
-    end = mill.goes_on(lambda s: s.state is State.IDLE)
+    assert page.plane_view.grab().toImage() != picture
+    end = mill.goes_on(lambda s: s.state is MachineState.IDLE)
     assert not end.alarms
     assert end.actual[3] == pytest.approx(0.0, abs=0.01)
 
@@ -147,15 +151,15 @@ def test_hold_in_the_middle_of_a_swivel_and_go_on(mill: Mill) -> None:
     swivel = line_of("PLANE AXIAL A+30 C+180")
     mill.goes_on(lambda s: s.line == swivel and s.actual[4] > 20.0)
     mill.key(Key.Key_H)
-    held = mill.goes_on(lambda s: s.state is State.HOLD).actual
+    held = mill.goes_on(lambda s: s.state is MachineState.HOLD).actual
     assert 20.0 < held[4] < 175.0
-    later = mill.desk.snapshot().t + 1.0
+    later = mill.desk.read_snapshot().t + 1.0
     mill.goes_on(lambda s: s.t > later)
-    assert mill.desk.snapshot().actual == pytest.approx(held, abs=0.01)
+    assert mill.desk.read_snapshot().actual == pytest.approx(held, abs=0.01)
     QTest.keyPress(mill.window, Key.Key_F11)
     QTest.keyPress(mill.window, Key.Key_F12)
-    mill.goes_on(lambda s: s.state is State.RUN)
-    end = mill.goes_on(lambda s: s.state is State.IDLE)
+    mill.goes_on(lambda s: s.state is MachineState.RUN)
+    end = mill.goes_on(lambda s: s.state is MachineState.IDLE)
     assert not end.alarms
 
 
@@ -165,71 +169,75 @@ def test_a_program_given_up_leaves_no_plane_behind(mill: Mill) -> None:
     cut = line_of("L X+90 F900")
     mill.goes_on(lambda s: s.line == cut and s.actual[0] > 260.0)
     mill.key(Key.Key_H)
-    held = mill.goes_on(lambda s: s.state is State.HOLD)
+    held = mill.goes_on(lambda s: s.state is MachineState.HOLD)
     assert held.swivel is not None
-    assert held.swivel.system.tilted  # it can go on
+    assert held.swivel.system.is_tilted  # it can go on
     mill.key(Key.Key_R)
     yes(mill.window)
-    end = mill.goes_on(lambda s: s.state is State.IDLE)
+    end = mill.goes_on(lambda s: s.state is MachineState.IDLE)
     assert end.swivel is not None
-    assert end.swivel.system.level
+    assert end.swivel.system.is_workpiece_system
     x, y, z, *_ = end.actual
-    assert end.swivel.system.place.point((x, y, z)) == pytest.approx((x - 230.0, y - 210.0, z + 350.0 - 76.2))
+    assert end.swivel.system.transform.to_frame_point((x, y, z)) == pytest.approx(
+        (x - 230.0, y - 210.0, z + 350.0 - 76.2)
+    )
 
 
 def test_keys_of_looking_around_are_the_spaces(mill: Mill) -> None:
     mill.choose("roof")
-    space = mill.page.space
+    space = mill.page.plane_view
     assert space.camera is not None
     mill.key(Key.Key_V)
-    assert space.camera.shown.name == "FRONT"
-    near = space.camera.nearness
+    assert space.camera.view_aspect.name == "FRONT"
+    near = space.camera.zoom_factor
     mill.key(Key.Key_Z)
-    assert space.camera.nearness > near
+    assert space.camera.zoom_factor > near
     mill.key(Key.Key_F5)
-    assert space.camera.nearness == near
+    assert space.camera.zoom_factor == near
 
 
 def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot) -> None:
     mill.choose("roof")
     mill.key(Key.Key_F3)
     assert mill.window.frame is not None
-    page = mill.window.frame.page
+    page = mill.window.frame.current_page
     assert isinstance(page, EditorPage)
-    qtbot.waitUntil(lambda: page.field.blockCount() > 40 and page.space.isVisible(), timeout=60_000)
+    qtbot.waitUntil(lambda: page.text_field.blockCount() > 40 and page.plane_view.isVisible(), timeout=60_000)
     plane = line_of("PLANE POINTS")
-    for _ in range(plane - page.field.line):
+    for _ in range(plane - page.text_field.cursor_line):
         mill.key(Key.Key_Down)
-    assert page.field.line == plane
+    assert page.text_field.cursor_line == plane
     wanted = f"{wording('screen.tilted-plane', line=plane)}:  A+59.999  C+90.000"
-    qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=60_000)
+    qtbot.waitUntil(lambda: page.plane_view.words.startswith(wanted), timeout=60_000)
 
 
 def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) -> None:
     mill.choose("roof")
     mill.key(Key.Key_F6)
     assert mill.window.frame is not None
-    page = mill.window.frame.page
+    page = mill.window.frame.current_page
     assert isinstance(page, SearchtoPage)
     mill.window.refresh()
-    assert page.space.isVisible()
+    assert page.plane_view.isVisible()
     line = line_of("PLANE AXIAL A+30 C+180") + 1
     mill.type(str(line))
     mill.key(Key.Key_Return)
 
     def found() -> bool:
         mill.window.refresh()
-        return page.model.plan is not None
+        return page.model.restart_plan is not None
 
     qtbot.waitUntil(found, timeout=60_000)
-    assert page.space.words.startswith(
+    assert page.plane_view.words.startswith(
         f"{wording('screen.tilted-plane', line=line - 1)}:  A+30.000  C+180.000"
     )
-    shown = page.space.instant
+    shown = page.plane_view.instant
     assert shown is not None
-    assert (shown.axes["A"], shown.axes["C"]) == pytest.approx((30.0, 180.0))  # turned, where the line begins
-    assert page.model.plan is not None
-    assert shown.block == page.model.plan.found.checkpoint.blocks
+    assert (shown.axis_positions["A"], shown.axis_positions["C"]) == pytest.approx(
+        (30.0, 180.0)
+    )  # turned, where the line begins
+    assert page.model.restart_plan is not None
+    assert shown.active_block == page.model.restart_plan.restart_point.checkpoint.blocks
 
 
 @pytest.mark.parametrize(
@@ -245,12 +253,12 @@ def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) ->
     ],
 )
 def test_every_axis_is_jogged_while_its_key_is_held(mill: Mill, key: Key, axis: int, sign: int) -> None:
-    mill.goes_on(lambda s: s.state is State.DISABLED)
+    mill.goes_on(lambda s: s.state is MachineState.DISABLED)
     mill.key(Key.Key_D)
-    mill.goes_on(lambda s: s.state is State.IDLE)
+    mill.goes_on(lambda s: s.state is MachineState.IDLE)
     mill.key(Key.Key_F1)
     mill.key(Key.Key_F5)
-    before = mill.desk.snapshot().actual
+    before = mill.desk.read_snapshot().actual
     after = mill.held(key, lambda s: abs(s.actual[axis] - before[axis]) > 0.5).actual
     assert sign * (after[axis] - before[axis]) > 0.5
     assert all(abs(after[other] - before[other]) < 0.01 for other in range(5) if other != axis)
@@ -263,20 +271,24 @@ def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
     mill.window.refresh()
     frame = mill.window.frame
     assert frame is not None
-    page = frame.page
+    page = frame.current_page
     assert isinstance(page, JogPage)
-    assert page.labels() == (
+    assert page.key_labels() == (
         *("MENU", "STEP", "SPEED", "", "3D-ROT", "", "ALARMS", "TOOLS", "PRESETS", "READOUT"),
     )
-    assert (page.mill.isVisible(), page.tool.isVisible(), page.asked.isVisible()) == (True, False, False)
+    assert (page.mill_panel.isVisible(), page.tool_panel.isVisible(), page.entry_panel.isVisible()) == (
+        True,
+        False,
+        False,
+    )
     for key in (Key.Key_T, Key.Key_X, Key.Key_W, Key.Key_M, Key.Key_F6):
         mill.key(key)
-        assert page.model.tool.asked == ""
+        assert page.model.tool_setting.question_name == ""
     mill.key(Key.Key_F5)
     mill.window.refresh()
-    assert shows(frame.prompt.text, "screen.nothing-tilted")
+    assert shows(frame.prompt_line.main_text, "screen.nothing-tilted")
     mill.key(Key.Key_F8)
-    assert frame.title.page == "TOOL TABLE"
+    assert frame.title_line.page_title == "TOOL TABLE"
 
 
 def test_a_tool_that_leans_is_drawn_out_along_itself(
@@ -285,28 +297,30 @@ def test_a_tool_that_leans_is_drawn_out_along_itself(
     """The fork head: A is jogged aside, 3D-ROT on, Z' moves Y and Z as -tan A; turning A again ends it."""
     mill = Mill(tmp_path / "store", "fork-head-mill")
     try:
-        mill.goes_on(lambda s: s.state is State.DISABLED)
+        mill.goes_on(lambda s: s.state is MachineState.DISABLED)
         mill.key(Key.Key_D)
-        mill.goes_on(lambda s: s.state is State.IDLE)
+        mill.goes_on(lambda s: s.state is MachineState.IDLE)
         mill.key(Key.Key_F1)
         mill.key(Key.Key_F5)
         frame = mill.window.frame
         assert frame is not None
-        page = frame.page
+        page = frame.current_page
         assert isinstance(page, JogPage)
-        axes = mill.desk.snapshot().axes
+        axes = mill.desk.read_snapshot().axes
         a, y, z = (axes.index(name) for name in "AYZ")
-        key = next(way.key for way in page.model.directions if (way.axis, way.sign) == ("A", 1))
+        key = next(
+            way.key_name for way in page.model.directions if (way.axis, way.direction_sign) == ("A", 1)
+        )
         mill.held(getattr(Key, f"Key_{key}"), lambda s: s.actual[a] > 20.0)
-        lean = math.radians(mill.desk.snapshot().actual[a])
+        lean = math.radians(mill.desk.read_snapshot().actual[a])
         mill.key(Key.Key_F5)
         mill.window.refresh()
-        assert page.model.tilt.on
-        before = mill.desk.snapshot().actual
+        assert page.model.tilted_jog.is_on
+        before = mill.desk.read_snapshot().actual
         after = mill.held(Key.Key_PageDown, lambda s: s.actual[z] - before[z] < -1.0).actual
         assert after[y] - before[y] == pytest.approx(-math.tan(lean) * (after[z] - before[z]), abs=0.005)
         mill.key(Key.Key_F1)
         mill.key(Key.Key_F5)
-        assert not page.model.tilt.on
+        assert not page.model.tilted_jog.is_on
     finally:
         mill.close()

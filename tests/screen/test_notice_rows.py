@@ -8,14 +8,14 @@ import pytest
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QApplication
 
-from app.desk.status.interrupted_notice import NoticeRow, _uncertain
+from app.desk.status.interrupted_notice import NoticeRow, _describe_uncertainty
 from app.desk.translation import tr
 from app.screen import page_table
-from app.screen.look import DARK, Look, load_fonts, speak_in
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, use_language
 from app.screen.window.window_bars import NoticeRows
-from app.screen.window_layout import FINGER
-from core.executor.snapshot import CONTROL_LOST, State
-from core.ports import ALL_UNKNOWN, Unknown
+from app.screen.window_layout import FINGERTIP_PX
+from core.executor.snapshot import POWER_LOST_REASON, MachineState
+from core.ports import ALL_UNKNOWN_PARTS, UnknownPart
 from tests.interrupted import broken_off
 from tests.screen.hands import Hands, Key
 from tests.texts import Pattern, begins, text
@@ -35,100 +35,102 @@ from tests.texts import Pattern, begins, text
 )
 def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, page: str) -> None:
     hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
-    hands.desk.storage.follow_store(lambda: "the disk is full", lambda: "20 parts")
-    hands.frame.go(page)
+    hands.desk.storage_state.set_store_readers(lambda: "the disk is full", lambda: "20 parts")
+    hands.frame.open_page(page)
     hands.window.refresh()
-    rows = hands.frame.notices
+    rows = hands.frame.notice_rows
     assert rows.isVisible()
-    assert [row.text.split(" LINE")[0] for row in rows.rows] == [
+    assert [row.text.split(" LINE")[0] for row in rows.notice_rows] == [
         "INTERRUPTED: PIN.NC",
         text("screen.not-kept", why="the disk is full"),
     ]
-    assert rows.rows[1].figures.startswith("NOT SAVED YET: 20 parts.")
-    assert not rows.geometry().intersects(hands.frame.page.geometry())
-    assert "NOT SAVED" in [lamp.word for lamp in hands.frame.strip.lamps]
+    assert rows.notice_rows[1].values_text.startswith("NOT SAVED YET: 20 parts.")
+    assert not rows.geometry().intersects(hands.frame.current_page.geometry())
+    assert "NOT SAVED" in [lamp.label for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, interrupted=None)
-    hands.desk.storage.follow_store()
+    hands.desk.storage_state.set_store_readers()
     hands.window.refresh()
     assert not rows.isVisible()
 
 
 def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     time = [100.0]
-    hands.desk.hands.clock = lambda: time[0]
-    hands.frame.go(page_table.JOG)
-    now = hands.desk.snapshot()
-    hands.desk.control.snapshot = lambda: replace(now, state=State.JOG)
+    hands.desk.station_controls.clock = lambda: time[0]
+    hands.frame.open_page(page_table.JOG)
+    now = hands.desk.read_snapshot()
+    hands.desk.desk_control.read_snapshot = lambda: replace(now, state=MachineState.JOG)
     hands.window.refresh()
-    stands = hands.frame.page.geometry()
-    hands.desk.storage.follow_store(lambda: "the disk is full")
-    hands.desk.control.snapshot = lambda: replace(now, state=State.IDLE)  # between two steps
+    stands = hands.frame.current_page.geometry()
+    hands.desk.storage_state.set_store_readers(lambda: "the disk is full")
+    hands.desk.desk_control.read_snapshot = lambda: replace(now, state=MachineState.IDLE)  # between two steps
     time[0] += 1.0
     hands.window.refresh()
-    assert hands.frame.page.geometry() == stands
-    assert "NOT SAVED" in [lamp.word for lamp in hands.frame.strip.lamps]  # the lamp says it at once
+    assert hands.frame.current_page.geometry() == stands
+    assert "NOT SAVED" in [lamp.label for lamp in hands.frame.strip.lamps]  # the lamp says it at once
     time[0] += 3.0
     hands.window.refresh()
-    assert hands.frame.page.geometry() != stands
-    assert hands.frame.notices.isVisible()
+    assert hands.frame.current_page.geometry() != stands
+    assert hands.frame.notice_rows.isVisible()
 
 
 def test_what_was_done_of_an_interrupted_program_stays_drawn(hands: Hands) -> None:
     hands.load("pin")
-    job = hands.desk.session.now.job
+    job = hands.desk.program_loader.loaded.job
     assert job is not None
     found = broken_off(program="pin.nc", text=job.text_digest, tool=1, block=9, line=8)
     hands.machine.now = replace(hands.machine.now, interrupted=found)
     hands.window.refresh()
-    tip = hands.page.path._tip
+    tip = hands.page.path_view._tip
     assert tip is not None
     tool = job.setup.tools[1]
-    assert (tip.block, tip.stood) == (9, (found.where[1] - tool.z, found.where[0] - tool.x))
+    assert (tip.block, tip.stop_position) == (9, (found.where[1] - tool.z, found.where[0] - tool.x))
     hands.machine.now = replace(hands.machine.now, interrupted=replace(found, text="changed"))
     hands.window.refresh()
-    assert hands.page.path._tip is not None
-    assert hands.page.path._tip.block == 0
+    assert hands.page.path_view._tip is not None
+    assert hands.page.path_view._tip.block == 0
 
 
 def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:
     hands.load("pin")
-    hands.machine.now = replace(hands.machine.now, interrupted=broken_off(program="pin.nc"), state=State.IDLE)
+    hands.machine.now = replace(
+        hands.machine.now, interrupted=broken_off(program="pin.nc"), state=MachineState.IDLE
+    )
     hands.window.refresh()
-    rows = hands.frame.notices
-    assert [key for key, _label in rows.rows[0].keys] == ["F6", "Y"]
-    hands.frame.go(page_table.JOG)
+    rows = hands.frame.notice_rows
+    assert [key for key, _label in rows.notice_rows[0].keys] == ["F6", "Y"]
+    hands.frame.open_page(page_table.JOG)
     hands.window.refresh()
-    assert rows.rows[0].keys == ()  # there these keys mean other things
+    assert rows.notice_rows[0].keys == ()  # there these keys mean other things
     hands.key(Key.Key_F1)
 
 
 @pytest.mark.parametrize("page", [page_table.AUTOMATIC, page_table.JOG, page_table.SPECIAL, page_table.TOOLS])
 def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: str) -> None:
-    hands.frame.go(page)
-    hands.machine.now = replace(hands.machine.now, unknown=ALL_UNKNOWN)
+    hands.frame.open_page(page)
+    hands.machine.now = replace(hands.machine.now, unknown=ALL_UNKNOWN_PARTS)
     hands.window.refresh()
-    (row,) = hands.frame.notices.rows
-    assert (row.text, row.tone) == (text("screen.spindle-may-turn"), "alarm")
-    assert begins(row.figures, "screen.not-known", what=Pattern("POSITIONS, SPINDLE, OUTPUTS, INPUTS.*"))
-    assert text("screen.spindle-unknown") in [lamp.word for lamp in hands.frame.strip.lamps]
-    hands.machine.now = replace(hands.machine.now, unknown=frozenset({Unknown.OUTPUTS}))
+    (row,) = hands.frame.notice_rows.notice_rows
+    assert (row.text, row.color_name) == (text("screen.spindle-may-turn"), "alarm")
+    assert begins(row.values_text, "screen.not-known", what=Pattern("POSITIONS, SPINDLE, OUTPUTS, INPUTS.*"))
+    assert text("screen.spindle-unknown") in [lamp.label for lamp in hands.frame.strip.lamps]
+    hands.machine.now = replace(hands.machine.now, unknown=frozenset({UnknownPart.OUTPUTS}))
     hands.window.refresh()
-    (row,) = hands.frame.notices.rows
+    (row,) = hands.frame.notice_rows.notice_rows
     assert row.text == text("screen.machine-not-heard", what="OUTPUTS")
 
 
 def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     told = (NoticeRow("INTERRUPTED", "T1", (("F6", "SEARCHTO"),)), NoticeRow("NOT SAVED", "20 parts"))
-    monkeypatch.setattr(hands.frame, "_notices_of", lambda *_what, **_more: told)
+    monkeypatch.setattr(hands.frame, "_make_notices", lambda *_what, **_more: told)
     hands.window.refresh()
-    rows = hands.frame.notices
+    rows = hands.frame.notice_rows
     rows.grab()
-    assert len(rows.rows) == 2
+    assert len(rows.notice_rows) == 2
     assert rows._places
     for box, *_ in rows._places:
-        assert box.height() >= FINGER
-        assert rows.area().contains(box)
-    with_key, read = rows._high_of(rows.rows[0]), rows._high_of(rows.rows[1])
+        assert box.height() >= FINGERTIP_PX
+        assert rows.find_full_area().contains(box)
+    with_key, read = rows._find_row_height(rows.notice_rows[0]), rows._find_row_height(rows.notice_rows[1])
     assert read < with_key
     assert rows.height() == with_key + read
 
@@ -141,7 +143,7 @@ def test_what_is_not_certain_behind_a_power_cut_is_whole_beside_its_keys(
     """At 1024x600 and 1280x800 its last words, to look at tool and part, were cut off."""
     assert qapp is not None
     load_fonts()
-    speak_in(language)
+    use_language(language)
     drawn: list[str] = []
     real = QPainter.drawText
 
@@ -151,18 +153,18 @@ def test_what_is_not_certain_behind_a_power_cut_is_whole_beside_its_keys(
 
     place = "X R−0.12500 Z −3.12130"
     stood = tr("WAS AT {stood}, NOW AT {now} FROM HOME").format(stood=place, now=place)
-    unsure = _uncertain(broken_off(why=CONTROL_LOST))
-    rows = NoticeRows(Look(DARK, unit), lambda _key: None)
+    unsure = _describe_uncertainty(broken_off(why=POWER_LOST_REASON))
+    rows = NoticeRows(ScreenTheme(DARK_PALETTE, unit), lambda _key: None)
     keys = (("F6", "SEARCHTO"), ("Y", tr("FROM LINE 1")))
-    rows.rows = (NoticeRow("INTERRUPTED", f"{stood}{unsure}", keys),)
-    rows.resize(wide, rows.high)
-    rows.resize(wide, rows.high)  # as the window does, which asks in every frame
+    rows.notice_rows = (NoticeRow("INTERRUPTED", f"{stood}{unsure}", keys),)
+    rows.resize(wide, rows.needed_height_px)
+    rows.resize(wide, rows.needed_height_px)  # as the window does, which asks in every frame
     monkeypatch.setattr(QPainter, "drawText", spy)
     rows.grab()
-    speak_in("en")
+    use_language("en")
     lines = len(drawn) - 1 - 2 * len(keys)
-    assert " ".join(drawn[1 : 1 + lines]) == rows.rows[0].figures
-    rows.rows = (NoticeRow("INTERRUPTED", "T1", keys),)
+    assert " ".join(drawn[1 : 1 + lines]) == rows.notice_rows[0].values_text
+    rows.notice_rows = (NoticeRow("INTERRUPTED", "T1", keys),)
     drawn.clear()
     rows.grab()
     assert drawn[:2] == ["INTERRUPTED", "T1"]  # what fits has one line

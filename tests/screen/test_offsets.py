@@ -10,14 +10,14 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.desk.programs.program_loading import Phase
+from app.desk.programs.program_loading import LoadingPhase
 from app.offsets.secondary_offsets_view import SecondaryOffsetsPage
 from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.screen import page_table
 from app.screen.panel import Panel
-from app.screen.window_layout import FINGER
-from core.executor.commands import LoadJob, Renew, UseOffsets
-from core.executor.snapshot import State
+from app.screen.window_layout import FINGERTIP_PX
+from core.executor.commands import ChangeOffsets, LoadJob, UseOffsets
+from core.executor.snapshot import MachineState
 from core.store.store import Store
 from core.store.store_rows import ToolRow
 from tests.offset_store import use_store
@@ -35,13 +35,13 @@ def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
 
 
 def page_of(hands: Hands) -> SecondaryOffsetsPage:
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SecondaryOffsetsPage)
     return page
 
 
 def tools_of(hands: Hands) -> ToolOffsetsPage:
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, ToolOffsetsPage)
     return page
 
@@ -62,23 +62,23 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     hands.load("bushing")
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    assert hands.frame.title.page == page_table.SECCMP
-    hands.sees(lambda: page.asked.asked.question == wording("screen.offset-number"))
-    assert (page.asked.asked.which, page.asked.asked.foot) == (
+    assert hands.frame.title_line.page_title == page_table.SECCMP
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == wording("screen.offset-number"))
+    assert (page.entry_panel.entry_texts.subject, page.entry_panel.entry_texts.footer_text) == (
         "Secondary offset number:",
         "Press Esc to exit offset adjustment screen        Press C to clear all offsets",
     )
     answer(hands, "1")
-    hands.sees(lambda: page.asked.asked.question == wording("screen.x-diameter-correction"))
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == wording("screen.x-diameter-correction"))
     answer(hands, ".5-.502", "")
-    hands.sees(lambda: page.asked.asked.question == "R?")
-    assert page.asked.asked.change.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == "R?")
+    assert page.entry_panel.entry_texts.change_text.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
     answer(hands, "")
-    hands.sees(lambda: 1 in page.table.offsets)
-    assert store.offsets.secondary.read_rows()[1].x == pytest.approx(-0.001 * 25.4)
+    hands.sees(lambda: 1 in page.table_panel.offsets)
+    assert store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(-0.001 * 25.4)
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="D1"))
     hands.key(Key.Key_Escape)
-    assert hands.frame.page is hands.page
+    assert hands.frame.current_page is hands.page
     hands.sees(lambda: hands.prompt().startswith(wording("screen.to-start")))
     job = [command.job for command in hands.machine.posted if isinstance(command, LoadJob)][-1]
     assert job.setup.secondary[1].x == pytest.approx(-0.001 * 25.4)
@@ -92,23 +92,26 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
         "screen.refused",
         why=wording("screen.no-number", what=",", entry="0,5", hint=wording("screen.decimal-point")),
     )
-    assert page.asked.asked.text == "0,5"
+    assert page.entry_panel.entry_texts.text == "0,5"
     hands.key(Key.Key_Backspace)
     hands.key(Key.Key_Delete)
     answer(hands, ".005", "", "")
-    hands.sees(lambda: 2 in page.table.offsets)
-    assert store.offsets.secondary.read_rows()[2].x == pytest.approx(0.0025 * 25.4)
+    hands.sees(lambda: 2 in page.table_panel.offsets)
+    assert store.offsets.secondary_offsets.read_rows()[2].x == pytest.approx(0.0025 * 25.4)
 
 
 def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
-    before = (hands.desk.hands.feed_pot.wanted, hands.desk.hands.spindle_pot.wanted)
+    before = (hands.desk.station_controls.feed_pot.wanted, hands.desk.station_controls.spindle_pot.wanted)
     hands.type("1+1-/.,")
     hands.type("c")
     assert not hands.machine.now.cycle_repeat
-    assert (hands.desk.hands.feed_pot.wanted, hands.desk.hands.spindle_pot.wanted) == before
-    assert page_of(hands).asked.asked.text == "1+1-/.,"
-    hands.sees(lambda: {"C", "/", "S", "O", "D", "R"} <= hands.frame.strip.mute)
+    assert (
+        hands.desk.station_controls.feed_pot.wanted,
+        hands.desk.station_controls.spindle_pot.wanted,
+    ) == before
+    assert page_of(hands).entry_panel.entry_texts.text == "1+1-/.,"
+    hands.sees(lambda: {"C", "/", "S", "O", "D", "R"} <= hands.frame.strip.hidden_keys)
     hands.type("sodrt")  # no letter is a switch while figures are typed
     assert not hands.machine.now.single_block
     assert hands.prompt() == wording("screen.entry-key", key="t")
@@ -122,44 +125,47 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
     for number in ("1", "32"):
         answer(hands, number, ".005", "", "")
         hands.sees(
-            lambda: not page.model.book.busy and page.asked.asked.question == wording("screen.offset-number")
+            lambda: (
+                not page.model.offset_book.is_saving
+                and page.entry_panel.entry_texts.question_text == wording("screen.offset-number")
+            )
         )
     hands.key(Key.Key_C)
     assert begins(hands.prompt(), "screen.clear-secondary")
     hands.key(Key.Key_Escape)
-    assert hands.frame.page is page
+    assert hands.frame.current_page is page
     hands.key(Key.Key_C)
     hands.key(Key.Key_C)
-    assert page.table.offsets
+    assert page.table_panel.offsets
     yes(hands.window)
-    hands.sees(lambda: page.table.offsets == {})
+    hands.sees(lambda: page.table_panel.offsets == {})
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: sorted(page.table.offsets) == [1, 32])
+    hands.sees(lambda: sorted(page.table_panel.offsets) == [1, 32])
 
 
 def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
     for step in range(40):
-        store.offsets.secondary.change_row(1, f"change {step}", {"z": step + 1.0})
+        store.offsets.secondary_offsets.change_row(1, f"change {step}", {"z": step + 1.0})
     store.write(lambda _connection: None).result(60)
     hands.key(Key.Key_F9)
     page = page_of(hands)
     hands.key(Key.Key_F5)
-    hands.sees(page.history.isVisible)
-    assert len(page.history.entries) == 40
-    assert page.history.entries[0][3] == "change 39"
-    hands.sees(lambda: page.history.rows > 1)
+    hands.sees(page.history_list.isVisible)
+    assert len(page.history_list.history_entries) == 40
+    assert page.history_list.history_entries[0][3] == "change 39"
+    hands.sees(lambda: page.history_list.rows > 1)
     hands.key(Key.Key_PageDown)
-    assert page.history.top == page.history.rows
+    assert page.history_list.first_row == page.history_list.rows
     hands.key(Key.Key_Escape)
-    hands.sees(page.table.isVisible)
+    hands.sees(page.table_panel.isVisible)
 
 
 def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store: Store) -> None:
     """Announced and proved with the new offset under the running part; reading anew waits for its end."""
     hands.load("bushing")
     hands.both_palms()
-    hands.sees_state(State.RUN)
+    hands.sees_state(MachineState.RUN)
     loads = sum(isinstance(command, LoadJob) for command in hands.machine.posted)
     hands.key(Key.Key_F9)
     hands.sees(lambda: begins(hands.prompt(), "screen.running-part-keeps-offsets"))
@@ -171,7 +177,7 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     )
     hands.sees(lambda: len(renewals(hands)) == 2)
     announced, ready = renewals(hands)
-    assert announced == Renew()
+    assert announced == ChangeOffsets()
     assert ready.job is not None
     assert ready.proof is not None
     assert (ready.proof.digest, ready.proof.errors) == (ready.job.digest, ())
@@ -179,97 +185,99 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     assert sum(isinstance(command, LoadJob) for command in hands.machine.posted) == loads
     hands.machine.idle()  # a machine that did not take it up: it is read anew
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
-    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
     used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
     assert used[-1].secondary[1].x == pytest.approx(0.0025 * 25.4)
 
 
-def renewals(hands: Hands) -> list[Renew]:
-    return [command for command in hands.machine.posted if isinstance(command, Renew)]
+def renewals(hands: Hands) -> list[ChangeOffsets]:
+    return [command for command in hands.machine.posted if isinstance(command, ChangeOffsets)]
 
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
-    store.offsets.secondary.change_row(1, "inch", {"z": 2.54}).result(60)
+    store.offsets.secondary_offsets.change_row(1, "inch", {"z": 2.54}).result(60)
     use_store(hands.desk, store)
     hands.key(Key.Key_F9)
     modal = hands.machine.now.modal._replace(metric=True)
     hands.machine.now = replace(hands.machine.now, modal=modal)
     answer(hands, "1")
-    hands.sees(lambda: "Z +2.5400" in page_of(hands).asked.asked.change)
+    hands.sees(lambda: "Z +2.5400" in page_of(hands).entry_panel.entry_texts.change_text)
 
 
 def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: Store) -> None:
     hands.load("pin")
     hands.key(Key.Key_F8)
     page = tools_of(hands)
-    assert hands.frame.title.page == page_table.TOOLS
+    assert hands.frame.title_line.page_title == page_table.TOOLS
     for _ in range(8):
         hands.key(Key.Key_Down)
-    hands.sees(lambda: page.asked.asked.question == "T9  X R?")
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == "T9  X R?")
     answer(hands, "-.5", "-3-.25")
-    hands.sees(lambda: 9 in page.model.book.tools)
+    hands.sees(lambda: 9 in page.model.offset_book.tools)
     hands.key(Key.Key_Right)
     answer(hands, ".0156")
-    hands.sees(lambda: page.asked.asked.change == "T9   NOSE RADIUS 0.00000 → 0.01560")
-    assert store.offsets.tools.read_rows()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
-    hands.machine.now = replace(hands.machine.now, state=State.HOLD)
+    hands.sees(lambda: page.entry_panel.entry_texts.change_text == "T9   NOSE RADIUS 0.00000 → 0.01560")
+    assert store.offsets.tool_offsets.read_rows()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
+    hands.machine.now = replace(hands.machine.now, state=MachineState.HOLD)
     answer(hands, "1")
     hands.sees(lambda: hands.prompt() == wording("screen.program-runs-wear-only"))
-    assert store.offsets.tools.read_rows()[9].nose_radius == 0.0156 * 25.4
+    assert store.offsets.tool_offsets.read_rows()[9].nose_radius == 0.0156 * 25.4
 
 
 def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
-    store.offsets.tools.change_row(1, "touched off", {"x": -12.7, "z": -76.2}).result(60)
+    store.offsets.tool_offsets.change_row(1, "touched off", {"x": -12.7, "z": -76.2}).result(60)
     use_store(hands.desk, store)
     hands.load("pin")
     hands.key(Key.Key_F8)
     for _ in range(4):
         hands.key(Key.Key_Right)
-    hands.sees(lambda: tools_of(hands).asked.asked.question == "T1  WEAR X Ø?")
+    hands.sees(lambda: tools_of(hands).entry_panel.entry_texts.question_text == "T1  WEAR X Ø?")
     hands.type("-.0005")
     hands.key(Key.Key_F2)
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="T1"))
     hands.type("-.0002")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.00035 * 25.4))
+    hands.sees(lambda: store.offsets.tool_offsets.read_rows()[1].wear_x == pytest.approx(-0.00035 * 25.4))
     hands.sees(lambda: in_force(hands) == pytest.approx(-12.7 - 0.00035 * 25.4))
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.00025 * 25.4))
+    hands.sees(lambda: store.offsets.tool_offsets.read_rows()[1].wear_x == pytest.approx(-0.00025 * 25.4))
 
 
 def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
-    store.offsets.tools.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
+    store.offsets.tool_offsets.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
     use_store(hands.desk, store)
     hands.key(Key.Key_F8)
     for _ in range(7):
         hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
     hands.type("she Dares")
-    hands.sees(lambda: {"S", "H", "E", "R", "D"} & hands.frame.strip.mute != set())
+    hands.sees(lambda: {"S", "H", "E", "R", "D"} & hands.frame.strip.hidden_keys != set())
     hands.key(Key.Key_Return)
-    hands.sees(lambda: store.offsets.tools.read_rows()[1].remark == "she Dares")
-    assert hands.machine.now.state is State.IDLE
+    hands.sees(lambda: store.offsets.tool_offsets.read_rows()[1].remark == "she Dares")
+    assert hands.machine.now.state is MachineState.IDLE
     assert not hands.machine.now.single_block
 
 
 def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     """The pad has figures; a text had no letters, and none of it could be typed."""
-    store.offsets.tools.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
+    store.offsets.tool_offsets.change_row(1, "touched off", {"x": 1.0, "z": 1.0}).result(60)
     use_store(hands.desk, store)
     hands.window.resize(1024, 600)
     hands.key(Key.Key_F8)
     page = tools_of(hands)
-    page.show_pad(True)
-    page.model.choose(1, 7)
-    hands.sees(page.letters.isHidden)
-    page.touched("Enter")  # on the pad: it opens the remark
-    hands.sees(lambda: not page.letters.isHidden())
+    page.set_pad_shown(True)
+    page.model.select_cell(1, 7)
+    hands.sees(page.letter_pad.isHidden)
+    page.handle_touched_key("Enter")  # on the pad: it opens the remark
+    hands.sees(lambda: not page.letter_pad.isHidden())
     for place in (11, 13):  # of the rows of ten: w, r
-        touch(hands, page.letters, place)
-    page.letters._places[-1][1]()
-    hands.sees(lambda: store.offsets.tools.read_rows()[1].remark == "wr")
-    hands.sees(lambda: page.letters.isHidden() and not page.pad.isHidden() and page.table.isVisible())
+        touch(hands, page.letter_pad, place)
+    page.letter_pad._places[-1][1]()
+    hands.sees(lambda: store.offsets.tool_offsets.read_rows()[1].remark == "wr")
+    hands.sees(
+        lambda: page.letter_pad.isHidden() and not page.number_pad.isHidden() and page.table_panel.isVisible()
+    )
 
 
 def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
@@ -281,27 +289,29 @@ def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
 def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    hands.sees(lambda: len(page.table._places) == 4)
-    assert page.pad.isHidden()  # until a finger is there
-    touch(hands, page.table, 2)  # the upper half of the right column
-    assert page.model.number == 0
-    assert page.table.near == 17
-    touch(hands, page.table, 0)
-    assert page.model.number == 17
-    assert page.table.near == 0
+    hands.sees(lambda: len(page.table_panel._places) == 4)
+    assert page.number_pad.isHidden()  # until a finger is there
+    touch(hands, page.table_panel, 2)  # the upper half of the right column
+    assert page.model.offset_number == 0
+    assert page.table_panel.first_enlarged == 17
+    touch(hands, page.table_panel, 0)
+    assert page.model.offset_number == 17
+    assert page.table_panel.first_enlarged == 0
     point, two, enter = 13, 9, 20  # places on the pad, row by row
     for key in (point, two, enter, enter, enter):
-        spot, *_ = page.pad._places[key]
-        QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
+        spot, *_ = page.number_pad._places[key]
+        QTest.mouseClick(
+            page.number_pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple()))
+        )
     yes(hands.window)
-    hands.sees(lambda: 17 in page.table.offsets)
-    assert store.offsets.secondary.read_rows()[17].x == pytest.approx(0.1 * 25.4)
+    hands.sees(lambda: 17 in page.table_panel.offsets)
+    assert store.offsets.secondary_offsets.read_rows()[17].x == pytest.approx(0.1 * 25.4)
 
 
 def touch(hands: Hands, panel: Panel, place: int) -> None:
     """A finger in the middle of a place, which is large enough for one; then what is shown now."""
     hands.window.grab()
-    assert all(min(box.width(), box.height()) >= FINGER for box, *_ in panel._places)
+    assert all(min(box.width(), box.height()) >= FINGERTIP_PX for box, *_ in panel._places)
     box, *_ = panel._places[place]
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
     hands.window.grab()
@@ -316,26 +326,26 @@ def test_every_offset_is_reached_by_a_finger(
     hands.key(Key.Key_F9)
     page = page_of(hands)
     for place in range(8):
-        touch(hands, page.table, zone)
-        touch(hands, page.table, place)
-        assert page.model.number == first + place
+        touch(hands, page.table_panel, zone)
+        touch(hands, page.table_panel, place)
+        assert page.model.offset_number == first + place
         hands.key(Key.Key_Escape)
 
 
 def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    touch(hands, page.table, 1)
-    touch(hands, page.table, 8)  # ALL 32
-    assert (page.table.near, page.model.number) == (0, 0)
-    touch(hands, page.table, 1)
+    touch(hands, page.table_panel, 1)
+    touch(hands, page.table_panel, 8)  # ALL 32
+    assert (page.table_panel.first_enlarged, page.model.offset_number) == (0, 0)
+    touch(hands, page.table_panel, 1)
     hands.key(Key.Key_Escape)
-    assert page.table.near == 0
-    assert hands.frame.page is page
-    touch(hands, page.table, 3)
+    assert page.table_panel.first_enlarged == 0
+    assert hands.frame.current_page is page
+    touch(hands, page.table_panel, 3)
     answer(hands, "7")  # typed all the same
-    hands.sees(lambda: page.table.near == 0)
-    assert page.model.number == 7
+    hands.sees(lambda: page.table_panel.first_enlarged == 0)
+    assert page.model.offset_number == 7
 
 
 def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store: Store) -> None:
@@ -347,29 +357,29 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     answer(hands, "1")
     hands.type("-.002")
     hands.key(Key.Key_F6)
-    hands.sees(lambda: page.effect.comparing)
-    assert not page.table.isVisible()
+    hands.sees(lambda: page.effect_view.is_comparing)
+    assert not page.table_panel.isVisible()
     # half of the diameter, and what R does to it is nothing here
     hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
-    whole = page.effect.view
+    whole = page.effect_view.first_projection
     hands.key(Key.Key_F6)
     hands.sees(lambda: begins(hands.prompt(), "screen.apart-table", far="0.00100 in"))
-    before = page.effect.view
+    before = page.effect_view.first_projection
     assert whole is not None
     assert before is not None
-    assert 0.0254 * before.scale >= 0.05 * page.effect.width()
+    assert 0.0254 * before.scale >= 0.05 * page.effect_view.width()
     hands.key(Key.Key_Z)
-    assert page.effect.view != before
+    assert page.effect_view.first_projection != before
     hands.key(Key.Key_F6)
-    hands.sees(page.table.isVisible)
+    hands.sees(page.table_panel.isVisible)
     answer(hands, "", "", "")
-    hands.sees(lambda: 1 in page.table.offsets)
-    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
+    hands.sees(lambda: 1 in page.table_panel.offsets)
+    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
     hands.key(Key.Key_F6)
     hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
     hands.key(Key.Key_Escape)
-    hands.sees(page.table.isVisible)
-    assert hands.frame.page is page
+    hands.sees(page.table_panel.isVisible)
+    assert hands.frame.current_page is page
 
 
 def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store) -> None:
@@ -380,13 +390,13 @@ def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store
 
 def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
-    table = tools_of(hands).table
+    table = tools_of(hands).table_panel
     touch(hands, table, 1)  # a page down
-    hands.sees(lambda: (tools_of(hands).model.number, table.top) == (6, 1))
+    hands.sees(lambda: (tools_of(hands).model.tool_number, table.first_row) == (6, 1))
     touch(hands, table, 2 + 8 * 4 + 4)  # the last row that is shown, wear X
-    hands.sees(lambda: tools_of(hands).asked.asked.question == "T6  WEAR X Ø?")
+    hands.sees(lambda: tools_of(hands).entry_panel.entry_texts.question_text == "T6  WEAR X Ø?")
     number, *_ = table._places[2 + 8 * 1]
     QTest.mouseClick(
         table, Qt.MouseButton.LeftButton, pos=QPoint(int(number.left()) + 9, int(number.center().y()))
     )
-    hands.sees(lambda: (tools_of(hands).model.number, tools_of(hands).model.column) == (3, 0))
+    hands.sees(lambda: (tools_of(hands).model.tool_number, tools_of(hands).model.column_index) == (3, 0))

@@ -9,9 +9,9 @@ import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtTest import QTest
 
-from app.screen.window.main_window import FRAME_MS, REST_MS, UNTOUCHED
-from app.screen.window.window_frame import STALE
-from core.executor.snapshot import State
+from app.screen.window.main_window import FRAME_MS, IDLE_AFTER_S, REST_FRAME_MS
+from app.screen.window.window_frame import MAX_AGE_S
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 
 
@@ -22,18 +22,20 @@ def interval(hands: Hands) -> int:
 
 def left_alone(hands: Hands) -> None:
     """Two seconds without a key or finger, and the next frame."""
-    assert hands.window.ahead is not None
-    hands.window.ahead.done = True
-    hands.window.times.touched = hands.window.times.clock() - UNTOUCHED - 0.1
-    hands.window._tick()
+    assert hands.window.page_preloader is not None
+    hands.window.page_preloader.is_done = True
+    hands.window.input_times.touch_time = hands.window.input_times.clock() - IDLE_AFTER_S - 0.1
+    hands.window._handle_tick()
 
 
-@pytest.mark.parametrize("state", [State.ESTOP, State.DISABLED, State.IDLE, State.FAULT])
-def test_a_machine_at_rest_that_nobody_touches_is_drawn_less_often(hands: Hands, state: State) -> None:
+@pytest.mark.parametrize(
+    "state", [MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT]
+)
+def test_a_machine_at_rest_that_nobody_touches_is_drawn_less_often(hands: Hands, state: MachineState) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
     assert interval(hands) == FRAME_MS
     left_alone(hands)
-    hands.sees(lambda: interval(hands) == REST_MS)
+    hands.sees(lambda: interval(hands) == REST_FRAME_MS)
 
 
 def test_the_first_key_ends_it_before_it_is_judged(hands: Hands) -> None:
@@ -47,18 +49,23 @@ def test_a_change_of_the_machine_ends_it_from_any_thread(
     hands: Hands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     left_alone(hands)
-    hands.sees(lambda: interval(hands) == REST_MS)
+    hands.sees(lambda: interval(hands) == REST_FRAME_MS)
     seen: list[int] = []
     monkeypatch.setattr(hands.window, "_pace", seen.append)
-    executor = threading.Thread(target=hands.desk.window.wake)
+    executor = threading.Thread(target=hands.desk.window_state.wake_window)
     executor.start()
     executor.join()
     hands.sees(lambda: FRAME_MS in seen)
     monkeypatch.undo()
 
 
-@pytest.mark.parametrize("state", sorted(set(State) - {State.ESTOP, State.DISABLED, State.IDLE, State.FAULT}))
-def test_whatever_may_move_is_drawn_sixty_times_a_second(hands: Hands, state: State) -> None:
+@pytest.mark.parametrize(
+    "state",
+    sorted(
+        set(MachineState) - {MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT}
+    ),
+)
+def test_whatever_may_move_is_drawn_sixty_times_a_second(hands: Hands, state: MachineState) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
     left_alone(hands)
     assert interval(hands) == FRAME_MS
@@ -70,15 +77,15 @@ def test_the_handwheel_and_a_page_that_lives_are_too(hands: Hands, monkeypatch: 
     assert interval(hands) == FRAME_MS
     hands.machine.now = replace(hands.machine.now, wheel="")
     left_alone(hands)
-    hands.sees(lambda: interval(hands) == REST_MS)
-    monkeypatch.setattr(hands.page, "lively", lambda: True)
+    hands.sees(lambda: interval(hands) == REST_FRAME_MS)
+    monkeypatch.setattr(hands.page, "is_animating", lambda: True)
     left_alone(hands)
     assert interval(hands) == FRAME_MS
 
 
 def test_a_motion_is_seen_with_the_next_frame(hands: Hands) -> None:
     left_alone(hands)
-    hands.machine.now = replace(hands.machine.now, state=State.JOG)
+    hands.machine.now = replace(hands.machine.now, state=MachineState.JOG)
     left_alone(hands)
     assert interval(hands) == FRAME_MS
 
@@ -93,7 +100,7 @@ class Counted:
         self._hands, self._window = hands, hands.window
         self._window._timer.stop()
         self.t = 1000.0
-        hands.desk.clock.seconds = self._window.times.clock = lambda: self.t
+        hands.desk.clock.read_seconds = self._window.input_times.clock = lambda: self.t
         self.frames = 0
         self._refresh, self._window.refresh = self._window.refresh, self._count  # type: ignore[method-assign]
         self.until_still()
@@ -105,7 +112,7 @@ class Counted:
     def until_still(self) -> None:
         """All is drawn, and nobody has touched anything for a while."""
         self._hands.machine.alive = False  # the same time in every snapshot would be a silent control
-        self._window.times.touched = self.t - UNTOUCHED - 0.1
+        self._window.input_times.touch_time = self.t - IDLE_AFTER_S - 0.1
         for _ in range(50):
             self.tick(0.0)
             self._hands.qtbot.wait(1)  # what is to be drawn is drawn
@@ -115,7 +122,7 @@ class Counted:
         """One tick so much later; the frames since the last one."""
         self.t += after
         before = self.frames
-        self._window._tick()
+        self._window._handle_tick()
         return self.frames - before
 
 
@@ -129,7 +136,7 @@ def test_a_picture_in_which_nothing_is_new_is_not_made(counted: Counted) -> None
 
 
 def test_all_is_looked_at_twice_a_second_all_the_same(counted: Counted) -> None:
-    counted.tick(STALE + 0.01)
+    counted.tick(MAX_AGE_S + 0.01)
     assert counted.frames == 1
 
 
@@ -142,12 +149,12 @@ def test_what_is_new_but_for_the_time_is_in_the_next_picture(hands: Hands, count
 
 
 def test_another_program_is_in_the_next_picture(hands: Hands, counted: Counted) -> None:
-    hands.desk.session.adopt(replace(hands.desk.session.now, reached=7))
+    hands.desk.program_loader.replace_loaded(replace(hands.desk.program_loader.loaded, progress=7))
     assert counted.tick() == 1
 
 
 def test_what_was_drawn_may_not_be_done_and_is_looked_at_again(hands: Hands, counted: Counted) -> None:
-    hands.frame.prompt.repaint()
+    hands.frame.prompt_line.repaint()
     assert [counted.tick() for _ in range(2)] == [1, 0]
 
 
@@ -159,7 +166,7 @@ def test_behind_a_stall_what_is_to_be_seen_is_shown_before_anything_starts(count
 def test_a_page_that_plays_is_not_played_where_nobody_can_see_it(
     hands: Hands, counted: Counted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(hands.page, "lively", lambda: True)
+    monkeypatch.setattr(hands.page, "is_animating", lambda: True)
     assert counted.tick(0.001) == 1
     monkeypatch.setattr(hands.window, "isMinimized", lambda: True)
     assert counted.tick(0.001) == 0

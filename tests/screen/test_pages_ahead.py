@@ -10,12 +10,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
-from app.desk.page_description import PageEntry
-from app.desk.programs.program_loading import Phase
+from app.desk.page_description import PageDescription
+from app.desk.programs.program_loading import LoadingPhase
 from app.scope.scope_view import ScopePage
 from app.screen import page_table
 from app.screen.page_base import Page
-from app.screen.page_table import APART, PagesAhead
+from app.screen.page_table import MIN_SLICE_INTERVAL_S, PagePreloader
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands
@@ -37,7 +37,7 @@ class Clock:
 def idle() -> Iterator[Desk]:
     """A desk without a window, and time that stands."""
     found = desk_on(FakeMachine())
-    found.clock.seconds = Clock()
+    found.clock.read_seconds = Clock()
     yield found
     found.close()
 
@@ -59,31 +59,35 @@ class Asked:
         return self.slices > 0
 
 
-def steps(ahead: PagesAhead, idle: Desk) -> int:
+def steps(ahead: PagePreloader, idle: Desk) -> int:
     """As many slices as there are, each at its time; how many looks it took."""
-    assert isinstance(idle.clock.seconds, Clock)
+    assert isinstance(idle.clock.read_seconds, Clock)
     for count in range(SLICES):
-        if ahead.done:
+        if ahead.is_done:
             return count
-        idle.clock.seconds.now += 2 * APART
-        ahead.step()
-        ahead._worker.settle(60.0)
+        idle.clock.read_seconds.now += 2 * MIN_SLICE_INTERVAL_S
+        ahead.run_slice()
+        ahead._worker.wait_for_results(60.0)
     raise AssertionError("it never ends")
 
 
-ONE = (PageEntry("ONE", "app.scope.scope_view.ScopePage", later=("app.screen.chart.Chart",)),)
-PLAIN = (PageEntry("PLAIN", "app.scope.scope_view.ScopePage"),)
-NO_FILE = (PageEntry("GONE", "app.scope.no_such_file.Page", later=("app.screen.chart.Chart",)),)
+ONE = (
+    PageDescription("ONE", "app.scope.scope_view.ScopePage", deferred_modules=("app.screen.chart.Chart",)),
+)
+PLAIN = (PageDescription("PLAIN", "app.scope.scope_view.ScopePage"),)
+NO_FILE = (
+    PageDescription("GONE", "app.scope.no_such_file.Page", deferred_modules=("app.screen.chart.Chart",)),
+)
 
 
-def entries(monkeypatch: pytest.MonkeyPatch, found: tuple[PageEntry, ...]) -> None:
-    monkeypatch.setattr(page_table, "pages_of", lambda _language: found)
+def entries(monkeypatch: pytest.MonkeyPatch, found: tuple[PageDescription, ...]) -> None:
+    monkeypatch.setattr(page_table, "list_pages", lambda _language: found)
 
 
 def test_a_page_with_charts_is_made_slice_by_slice(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
+    ahead = PagePreloader(idle, asked)
     steps(ahead, idle)
     assert asked.names == ["ONE"]
     assert asked.slices == 0
@@ -93,7 +97,7 @@ def test_a_page_with_charts_is_made_slice_by_slice(idle: Desk, monkeypatch: pyte
 def test_other_pages_are_only_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, PLAIN)
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
+    ahead = PagePreloader(idle, asked)
     steps(ahead, idle)
     assert not asked.names
     ahead.close()
@@ -102,13 +106,13 @@ def test_other_pages_are_only_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch
 def test_nothing_is_done_while_a_program_is_loaded(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
-    before = idle.session.now
-    idle.session.adopt(replace(before, phase=Phase.PROVING))
+    ahead = PagePreloader(idle, asked)
+    before = idle.program_loader.loaded
+    idle.program_loader.replace_loaded(replace(before, phase=LoadingPhase.PROVING))
     with pytest.raises(AssertionError, match="never ends"):
         steps(ahead, idle)
     assert not asked.names
-    idle.session.adopt(before)
+    idle.program_loader.replace_loaded(before)
     steps(ahead, idle)
     assert asked.names
     ahead.close()
@@ -117,11 +121,11 @@ def test_nothing_is_done_while_a_program_is_loaded(idle: Desk, monkeypatch: pyte
 def test_frames_between_two_slices_have_nothing_of_it(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
-    idle.clock.seconds.now += 2 * APART  # type: ignore[attr-defined]
+    ahead = PagePreloader(idle, asked)
+    idle.clock.read_seconds.now += 2 * MIN_SLICE_INTERVAL_S  # type: ignore[attr-defined]
     for _ in range(SLICES):
-        ahead.step()
-        ahead._worker.settle(60.0)
+        ahead.run_slice()
+        ahead._worker.wait_for_results(60.0)
     assert asked.slices == 3, "at one instant there is one slice: the modules were asked for"
     ahead.close()
 
@@ -131,17 +135,17 @@ def test_a_page_that_cannot_be_loaded_is_left_to_whoever_opens_it(
 ) -> None:
     entries(monkeypatch, NO_FILE + PLAIN)
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
+    ahead = PagePreloader(idle, asked)
     steps(ahead, idle)
     assert not asked.names
-    assert not idle.notice
+    assert not idle.prompt_notice
     ahead.close()
 
 
 def test_a_page_without_its_model_is_not_made(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    entries(monkeypatch, (replace(ONE[0], model="core.executor.recorder.Recorder"),))
+    entries(monkeypatch, (replace(ONE[0], model_class="core.executor.recorder.Recorder"),))
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
+    ahead = PagePreloader(idle, asked)
     steps(ahead, idle)
     assert not asked.names
     ahead.close()
@@ -150,7 +154,7 @@ def test_a_page_without_its_model_is_not_made(idle: Desk, monkeypatch: pytest.Mo
 def test_nothing_begins_once_it_is_closed(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     entries(monkeypatch, ONE)
     asked = Asked()
-    ahead = PagesAhead(idle, asked)
+    ahead = PagePreloader(idle, asked)
     ahead.close()
     assert steps(ahead, idle) == 0
     assert not asked.names
@@ -158,15 +162,15 @@ def test_nothing_begins_once_it_is_closed(idle: Desk, monkeypatch: pytest.Monkey
 
 @pytest.mark.parametrize("language", ["omniturn", "klartext", "sinumerik"])
 def test_everything_that_is_named_can_be_loaded(language: str) -> None:
-    for entry in page_table.pages_of(language):
-        page_table.load(entry)
+    for entry in page_table.list_pages(language):
+        page_table.import_page_classes(entry)
 
 
 def test_the_scope_opens_with_its_chart(hands: Hands) -> None:
-    hands.sees(lambda: hands.window.ahead is not None and hands.window.ahead.done)
-    assert hands.frame.page is hands.page, "nothing is opened by it"
+    hands.sees(lambda: hands.window.page_preloader is not None and hands.window.page_preloader.is_done)
+    assert hands.frame.current_page is hands.page, "nothing is opened by it"
     QTest.keyClick(hands.window, Qt.Key.Key_F10, Qt.KeyboardModifier.ShiftModifier)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, ScopePage)
-    assert page.curves.chart is not None
-    assert len(page.curves.chart._spare) == 4
+    assert page.curve_area.chart is not None
+    assert len(page.curve_area.chart._spare) == 4

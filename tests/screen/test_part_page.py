@@ -10,7 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.part.part_sheet_view import PartPage
+from app.part.part_page_view import PartPage
 from app.screen import page_table
 from tests.desk.test_part_found import SLIP
 from tests.screen.day import Day, Key, begun
@@ -28,7 +28,7 @@ def page(day: Day) -> PartPage:
     day.key(Key.Key_F2)
     day.type("slip.nc")
     day.key(Key.Key_Return)
-    day.sees(lambda: day.desk.session.now.part is not None)
+    day.sees(lambda: day.desk.program_loader.loaded.part_proof is not None)
     day.key(Key.Key_B)
     day.sees(lambda: day.page == page_table.PART)
     found = day.window.findChild(PartPage)
@@ -38,41 +38,41 @@ def page(day: Day) -> PartPage:
 
 def test_a_finding_stands_the_part_at_its_place(day: Day) -> None:
     shown = page(day)
-    day.sees(lambda: shown.path.shows_part)
-    player = shown.path.player
+    day.sees(lambda: shown.path_view.is_part_shown)
+    player = shown.path_view.part_player
     assert player is not None
-    day.sees(lambda: player.played is not None and player.played.instant.line == 11)
-    assert shown.model.marked == 1  # what weighs most, not the offset that nobody has set
+    day.sees(lambda: player.result is not None and player.result.part_instant.line == 11)
+    assert shown.model.selected_index == 1  # what weighs most, not the offset that nobody has set
     day.key(Key.Key_J)
-    day.sees(lambda: player.played is not None and player.played.instant.line == 10)
+    day.sees(lambda: player.result is not None and player.result.part_instant.line == 10)
     day.key(Key.Key_Return)
-    day.sees(lambda: player.played is not None and player.played.instant.line == 11)
+    day.sees(lambda: player.result is not None and player.result.part_instant.line == 11)
 
 
 def test_a_bar_is_said_by_fingers(day: Day) -> None:
     shown = page(day)
     day.key(Key.Key_F2)
-    day.sees(lambda: shown.table.sheet.title.startswith("STOCK"))
+    day.sees(lambda: shown.table_panel.table.title.startswith("STOCK"))
     day.key(Key.Key_F4)
-    day.sees(lambda: len(shown.table.sheet.rows) == 5)
-    shown.model.touch(1)
-    day.sees(lambda: not shown.pad.isHidden())
-    shown.pad.repaint()
+    day.sees(lambda: len(shown.table_panel.table.rows) == 5)
+    shown.model.touch_row(1)
+    day.sees(lambda: not shown.number_pad.isHidden())
+    shown.number_pad.repaint()
     for key in ("1", "Enter"):
-        box = next(box for box, press, *_ in shown.pad._places if key in getattr(press, "args", ()))
-        QTest.mouseClick(shown.pad, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
-    day.sees(lambda: shown.model.kept.stock == "bar:1")
-    day.sees(lambda: not day.desk.session.now.busy)
-    assert day.desk.session.now.diagnostics[-1].assumed == ()
+        box = next(box for box, press, *_ in shown.number_pad._places if key in getattr(press, "args", ()))
+        QTest.mouseClick(shown.number_pad, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+    day.sees(lambda: shown.model.stored_part.stock == "bar:1")
+    day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
+    assert day.desk.program_loader.loaded.diagnostics[-1].assumptions == ()
 
 
 def test_letters_are_a_reason_while_one_is_asked(day: Day) -> None:
     shown = page(day)
     day.key(Key.Key_F4)
-    day.sees(lambda: not shown.letters.isHidden())
+    day.sees(lambda: not shown.letter_pad.isHidden())
     day.type("had sickle")  # h, d and s would mean something elsewhere
-    assert shown.model.text == "had sickle"
+    assert shown.model.entry_text == "had sickle"
     day.key(Key.Key_Escape)
-    day.sees(shown.letters.isHidden)
+    day.sees(shown.letter_pad.isHidden)
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == page_table.AUTOMATIC)

@@ -11,12 +11,12 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.path.part_pane_view import quarter
+from app.path.part_pane_view import find_removed_quarter
 from app.path.part_player import PartPlayer
-from app.path.path_aspects import Aspect, Tip
-from app.path.path_marks_view import part_words
+from app.path.path_aspects import PathAspect, TipPosition
+from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
-from app.screen.look import DARK, LIGHT, Look
+from app.screen.screen_theme import DARK_PALETTE, LIGHT_PALETTE, ScreenTheme
 from core.part.stock import Clamping
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
 from tests.screen.hands import LIMIT
@@ -29,7 +29,7 @@ LEFT = Qt.MouseButton.LeftButton
 def view(qtbot: QtBot) -> Iterator[PathView]:
     """A path view with a player of the part."""
     player = PartPlayer(clock=Clock())
-    made = PathView(Look(DARK, 8.0), player=player)
+    made = PathView(ScreenTheme(DARK_PALETTE, 8.0), part_player=player)
     made.resize(800, 400)
     with qtbot.waitExposed(made, timeout=LIMIT):
         made.show()
@@ -42,117 +42,117 @@ def view(qtbot: QtBot) -> Iterator[PathView]:
 def shown(view: PathView, program: str) -> QImage:
     """The part at the end of a program."""
     view.show_picture(picture(program))
-    while not view.shows_part:
-        view.next_view()
+    while not view.is_part_shown:
+        view.select_next_view()
     return settled(view)
 
 
 def settled(view: PathView) -> QImage:
-    assert view.player is not None
-    view.player.settle(60.0)
-    view.advance()
-    view.player.settle(60.0)
-    view.advance()
+    assert view.part_player is not None
+    view.part_player.wait_for_result(60.0)
+    view.draw_slice()
+    view.part_player.wait_for_result(60.0)
+    view.draw_slice()
     return view.grab().toImage()
 
 
 def colour(view: PathView, image: QImage, z: float, x: float) -> set[str]:
     """The colours round a place of the section, inches."""
     pane = view.panes[0]
-    at = (pane.room.topLeft() + pane.spot(z * INCH, x * INCH)).toPoint()
+    at = (pane.area.topLeft() + pane.map_to_pane(z * INCH, x * INCH)).toPoint()
     return {QColor(image.pixel(at.x() + k, at.y() + j)).name() for k in range(-3, 4) for j in range(-3, 4)}
 
 
 @pytest.mark.parametrize("x", [0.2, -0.2])
 def test_metal_is_on_both_sides_of_the_centre_line(view: PathView, x: float) -> None:
     image = shown(view, SHAFT)
-    assert DARK.key in colour(view, image, -0.2, x)  # hatched metal
-    assert DARK.key in colour(view, image, -0.4, 2 * x * 0.9)
-    assert DARK.key not in colour(view, image, -0.2, 1.8 * x)  # turned off
-    assert DARK.key not in colour(view, image, 0.15, x)  # before the face
+    assert DARK_PALETTE.key in colour(view, image, -0.2, x)  # hatched metal
+    assert DARK_PALETTE.key in colour(view, image, -0.4, 2 * x * 0.9)
+    assert DARK_PALETTE.key not in colour(view, image, -0.2, 1.8 * x)  # turned off
+    assert DARK_PALETTE.key not in colour(view, image, 0.15, x)  # before the face
 
 
 def test_in_the_light_theme_too(view: PathView) -> None:
-    view.look.repaint(LIGHT)
-    view.restart()
+    view.theme.set_palette(LIGHT_PALETTE)
+    view.redraw()
     image = shown(view, SHAFT)
-    assert LIGHT.key in colour(view, image, -0.2, 0.2)
+    assert LIGHT_PALETTE.key in colour(view, image, -0.2, 0.2)
 
 
 @pytest.mark.parametrize("x", [0.35, -0.35])
 def test_what_a_rapid_has_hit_is_red(view: PathView, x: float) -> None:
     image = shown(view, RAPID)
-    assert DARK.alarm in colour(view, image, -0.2, x)
-    assert DARK.alarm not in colour(view, shown(view, SHAFT), -0.2, x)
+    assert DARK_PALETTE.alarm in colour(view, image, -0.2, x)
+    assert DARK_PALETTE.alarm not in colour(view, shown(view, SHAFT), -0.2, x)
 
 
 def test_fingers_play_and_step_and_go_along_the_line(view: PathView) -> None:
     shown(view, SHAFT)
-    player = view.player
+    player = view.part_player
     assert player is not None
     words = {press.__name__: rect for rect, press, *_ in view._places if hasattr(press, "__name__")}
     QTest.mouseClick(view, LEFT, pos=words["play_or_pause"].center().toPoint())
-    assert player.playing
-    assert player.t == 0.0
+    assert player.is_playing
+    assert player.time_s == 0.0
     assert view._bar is not None
     track = view._bar._track
     middle = QPoint(round(track.center().x()), round(track.center().y()))
     QTest.mousePress(view, LEFT, pos=middle)
-    assert not player.playing
-    assert player.t == pytest.approx(player.duration / 2, rel=0.01)
+    assert not player.is_playing
+    assert player.time_s == pytest.approx(player.duration_s / 2, rel=0.01)
     QTest.mouseMove(view, QPoint(round(track.right()), middle.y()))
     QTest.mouseRelease(view, LEFT, pos=QPoint(round(track.right()), middle.y()))
-    assert player.t == pytest.approx(player.duration, rel=0.01)
+    assert player.time_s == pytest.approx(player.duration_s, rel=0.01)
 
 
 def test_while_the_run_leads_the_line_is_not_for_fingers(view: PathView) -> None:
     shown(view, SHAFT)
-    player = view.player
+    player = view.part_player
     assert player is not None
-    player.bound, before = True, player.t
+    player.follows_run, before = True, player.time_s
     assert view._bar is not None
     track = view._bar._track
     QTest.mouseClick(view, LEFT, pos=track.center().toPoint())
-    assert player.t == before
+    assert player.time_s == before
 
 
 def test_the_tool_stands_where_the_run_is(view: PathView) -> None:
     shown(view, SHAFT)
     assert view.picture is not None
-    assert view.player is not None
-    block = view.picture.block_of_line(6)
-    view.show_tip(Tip(block, -0.225 * INCH, 0.4 * INCH))
+    assert view.part_player is not None
+    block = view.picture.find_block_for_line(6)
+    view.show_tip(TipPosition(block, -0.225 * INCH, 0.4 * INCH))
     settled(view)
-    now = view.player.played
+    now = view.part_player.result
     assert now is not None
-    assert now.instant.tool is not None
-    assert now.instant.tool.at == pytest.approx((-0.225 * INCH, 0.4 * INCH))
+    assert now.part_instant.tool is not None
+    assert now.part_instant.tool.control_point == pytest.approx((-0.225 * INCH, 0.4 * INCH))
 
 
 def test_zoom_pan_and_fit_are_those_of_the_path(view: PathView) -> None:
     shown(view, SHAFT)
-    before = view.view
-    view.zoom(1)
-    view.pan(1, 0)
-    assert view.view != before
-    view.fit()
-    assert view.view == before
+    before = view.first_projection
+    view.zoom_view(1)
+    view.pan_view(1, 0)
+    assert view.first_projection != before
+    view.fit_all()
+    assert view.first_projection == before
 
 
 def test_another_program_leaves_the_part_in_view(view: PathView) -> None:
     shown(view, SHAFT)
     view.show_picture(picture(RAPID))
-    assert view.shows_part
-    assert DARK.alarm in colour(view, settled(view), -0.2, 0.35)
+    assert view.is_part_shown
+    assert DARK_PALETTE.alarm in colour(view, settled(view), -0.2, 0.35)
 
 
 def test_without_a_player_there_is_only_the_path(qtbot: QtBot) -> None:
-    made = PathView(Look(DARK, 8.0))
+    made = PathView(ScreenTheme(DARK_PALETTE, 8.0))
     qtbot.addWidget(made)
     made.show_picture(picture(SHAFT))
-    made.next_view()
-    assert [pane.aspect for pane in made.panes] == [Aspect.PATH]
-    assert not made.several
+    made.select_next_view()
+    assert [pane.aspect for pane in made.panes] == [PathAspect.PATH]
+    assert not made.has_several_views
 
 
 def test_what_cannot_be_made_is_told_in_the_pane(view: PathView, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -161,37 +161,37 @@ def test_what_cannot_be_made_is_told_in_the_pane(view: PathView, monkeypatch: py
 
     monkeypatch.setattr("core.proving.part_history.PartHistory.__init__", broken)
     shown(view, SHAFT)
-    assert part_words(view.panes[0]) == "no such tool"
+    assert make_part_title(view.panes[0]) == "no such tool"
 
 
 def test_without_a_program_nothing_is_played(view: PathView) -> None:
     view.show_picture(None)
-    view.advance()
-    view.next_view()
-    assert not view.shows_part
+    view.draw_slice()
+    view.select_next_view()
+    assert not view.is_part_shown
 
 
-@pytest.mark.parametrize("aspect", [Aspect.SECTION, Aspect.SOLID])
-def test_measuring_goes_on_in_the_part(view: PathView, aspect: Aspect) -> None:
+@pytest.mark.parametrize("aspect", [PathAspect.SECTION, PathAspect.SOLID])
+def test_measuring_goes_on_in_the_part(view: PathView, aspect: PathAspect) -> None:
     shown(view, SHAFT)
     while view.panes[0].aspect is not aspect:
-        view.next_view()
-    view.measure(on=True)
-    assert view.ruler is not None
+        view.select_next_view()
+    view.set_measuring(is_on=True)
+    assert view.measurement is not None
     for key in (Qt.Key.Key_Right, Qt.Key.Key_Tab, Qt.Key.Key_Return, Qt.Key.Key_Left):
         QTest.keyClick(view, key)
         settled(view)
-    QTest.mouseClick(view, LEFT, pos=view.panes[0].room.center().toPoint())
+    QTest.mouseClick(view, LEFT, pos=view.panes[0].area.center().toPoint())
     settled(view)
     assert view.panes[0].aspect is aspect
 
 
 def test_nobody_makes_a_part_that_nobody_looks_at(view: PathView) -> None:
     view.show_picture(picture(SHAFT))
-    view.advance()
-    assert view.player is not None
-    assert not view.player.worker.busy
-    assert view.player.played is None
+    view.draw_slice()
+    assert view.part_player is not None
+    assert not view.part_player.worker.is_busy
+    assert view.part_player.result is None
 
 
 # --- in space -----------------------------------------------------------------------------------------
@@ -200,15 +200,15 @@ def test_nobody_makes_a_part_that_nobody_looks_at(view: PathView) -> None:
 def solid(view: PathView, program: str) -> QImage:
     """The part in space at the end of a program."""
     shown(view, program)
-    while view.panes[0].aspect is not Aspect.SOLID:
-        view.next_view()
+    while view.panes[0].aspect is not PathAspect.SOLID:
+        view.select_next_view()
     return settled(view)
 
 
 def drawn(view: PathView) -> int:
     """How many pixels of the picture are part."""
-    assert view.player is not None
-    now = view.player.played
+    assert view.part_player is not None
+    now = view.part_player.result
     assert now is not None
     assert now.image is not None
     return int((now.image >> 24 > 0).sum())
@@ -216,7 +216,7 @@ def drawn(view: PathView) -> int:
 
 def test_the_solid_fills_its_pane_and_turns_with_a_finger(view: PathView) -> None:
     before = solid(view, SHAFT)
-    room = view.panes[0].room
+    room = view.panes[0].area
     assert drawn(view) > 0.2 * room.height() ** 2
     middle = room.center().toPoint()
     QTest.mousePress(view, LEFT, pos=middle)
@@ -228,18 +228,18 @@ def test_the_solid_fills_its_pane_and_turns_with_a_finger(view: PathView) -> Non
 
 def test_keys_that_pan_turn_the_solid_and_stop_before_its_end(view: PathView) -> None:
     solid(view, SHAFT)
-    assert view.player is not None
-    first = view.player._wanted.solid
-    view.pan(1, 0)
-    turned = view.player._wanted.solid
+    assert view.part_player is not None
+    first = view.part_player._wanted.solid_request
+    view.pan_view(1, 0)
+    turned = view.part_player._wanted.solid_request
     assert first is not None
     assert turned is not None
-    assert turned.view.azimuth == first.view.azimuth + 10.0
+    assert turned.view.azimuth_deg == first.view.azimuth_deg + 10.0
     for _ in range(40):
-        view.pan(1, 0)
-    steepest = view.player._wanted.solid
+        view.pan_view(1, 0)
+    steepest = view.part_player._wanted.solid_request
     assert steepest is not None
-    assert steepest.view.azimuth == 85.0
+    assert steepest.view.azimuth_deg == 85.0
 
 
 def test_what_a_rapid_has_hit_is_red_in_space(view: PathView) -> None:
@@ -254,36 +254,36 @@ def test_what_a_rapid_has_hit_is_red_in_space(view: PathView) -> None:
 
 def test_c_turns_the_solid_while_it_is_held(view: PathView) -> None:
     solid(view, SHAFT)
-    view.show_tip(Tip(3, 0.0, 5.0, c=30.0))
-    assert view.player is not None
-    wanted = view.player._wanted.solid
+    view.show_tip(TipPosition(3, 0.0, 5.0, c=30.0))
+    assert view.part_player is not None
+    wanted = view.part_player._wanted.solid_request
     assert wanted is not None
-    assert wanted.view.roll == 30.0
+    assert wanted.view.roll_deg == 30.0
 
 
 def test_without_metal_there_is_no_solid(view: PathView) -> None:
     shown(view, "G90G94F300\nM03S1500\nT1\nX2Z2\nM30\n")
-    while view.panes[0].aspect is not Aspect.SOLID:
-        view.next_view()
+    while view.panes[0].aspect is not PathAspect.SOLID:
+        view.select_next_view()
     settled(view)
-    assert view.player is not None
-    now = view.player.played
+    assert view.part_player is not None
+    now = view.part_player.result
     assert now is not None
     assert now.image is None
 
 
 def test_after_the_solid_it_is_seen_open_and_then_the_path_comes_again(view: PathView) -> None:
     whole = solid(view, SHAFT)
-    view.next_view()
-    assert [pane.aspect for pane in view.panes] == [Aspect.OPEN]
+    view.select_next_view()
+    assert [pane.aspect for pane in view.panes] == [PathAspect.OPEN_SOLID]
     assert settled(view) != whole
-    view.next_view()
-    assert [pane.aspect for pane in view.panes] == [Aspect.PATH]
+    view.select_next_view()
+    assert [pane.aspect for pane in view.panes] == [PathAspect.PATH]
 
 
 @pytest.mark.parametrize("tilt", range(-180, 180, 15))
 def test_the_quarter_that_is_taken_out_is_on_the_side_that_is_looked_at(tilt: int) -> None:
-    first, last = quarter(float(tilt))
+    first, last = find_removed_quarter(float(tilt))
     assert last - first == 90.0
     assert -180.0 <= first < last <= 180.0
     if abs(tilt) <= 90:
@@ -294,15 +294,15 @@ def test_the_quarter_that_is_taken_out_is_on_the_side_that_is_looked_at(tilt: in
 def test_the_chuck_is_drawn_where_it_stands(view: PathView) -> None:
     bare = picture(SHAFT)
     assert bare.part is not None
-    held = replace(bare.part, setting=replace(bare.part.setting, clamping=Clamping(60.0, 8.0)))
+    held = replace(bare.part, part_settings=replace(bare.part.part_settings, clamping=Clamping(60.0, 8.0)))
     view.show_picture(replace(bare, part=held))
-    while not view.shows_part:
-        view.next_view()
+    while not view.is_part_shown:
+        view.select_next_view()
     image = settled(view)
-    assert view.player is not None
-    assert view.player.played is not None
-    stock = view.player.played.instant.stock
+    assert view.part_player is not None
+    assert view.part_player.result is not None
+    stock = view.part_player.result.part_instant.stock
     assert stock is not None
-    edge = -8.0 / INCH, (stock.radius + 0.7) / INCH
+    edge = -8.0 / INCH, (stock.max_radius_mm + 0.7) / INCH
     assert len(colour(view, image, *edge)) > 2  # a line, and hatching behind it
-    assert colour(view, shown(view, SHAFT), *edge) == {DARK.panel}
+    assert colour(view, shown(view, SHAFT), *edge) == {DARK_PALETTE.panel}

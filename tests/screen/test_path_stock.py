@@ -10,27 +10,27 @@ from pytestqt.qtbot import QtBot
 from app.path.path_aspects import DrawnLeg
 from app.path.path_stock_view import Blank, blank_of
 from app.path.path_view import FOOT, PathView
-from app.screen.look import DARK, Look
-from core.part.stock import Clamping, Stock, bar
-from core.part.stock_spec import StockSpec, stock_spec
-from core.proving.part_history import PartMoves
-from core.proving.program_tools import PartSetting
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from core.part.stock import Clamping, Stock, make_bar
+from core.part.stock_spec import StockSpec, parse_specification
+from core.proving.part_history import ProgramSteps
+from core.proving.program_tools import PartSettings
 from tests.path.test_part_player import SHAFT, picture
 from tests.screen.hands import LIMIT
 
 COLLET = Clamping(60.0, 30.0)
-BAR = bar(20.0, 0.0, -100.0)
+BAR = make_bar(20.0, 0.0, -100.0)
 
 
-def setting(stock: Stock | StockSpec | None, clamping: Clamping | None) -> PartSetting:
-    return PartSetting(stock=stock, clamping=clamping)
+def setting(stock: Stock | StockSpec | None, clamping: Clamping | None) -> PartSettings:
+    return PartSettings(stock=stock, clamping=clamping)
 
 
 def blank(stock: Stock | StockSpec | None, clamping: Clamping | None) -> Blank | None:
     """What the picture of the shaft shows of a stock and a clamping."""
     drawn = picture(SHAFT)
     assert drawn.part is not None
-    return blank_of(replace(drawn, part=PartMoves(drawn.part.parts, setting(stock, clamping))))
+    return blank_of(replace(drawn, part=ProgramSteps(drawn.part.parts, setting(stock, clamping))))
 
 
 def test_nothing_is_shown_of_a_part_that_is_not_specified() -> None:
@@ -48,13 +48,16 @@ def test_a_stock_that_cannot_be_read_shows_only_the_collet() -> None:
 
 
 def test_the_length_of_a_bar_is_that_of_the_program_unless_specified() -> None:
-    as_needed, given = blank(stock_spec("bar:1.0"), None), blank(stock_spec("bar:1.0:3"), None)
+    as_needed, given = (
+        blank(parse_specification("bar:1.0"), None),
+        blank(parse_specification("bar:1.0:3"), None),
+    )
     assert as_needed is not None
     assert as_needed.stock is not None
-    assert as_needed.stock.back < picture(SHAFT).bounds[0]
+    assert as_needed.stock.back_z_mm < picture(SHAFT).bounds[0]
     assert given is not None
     assert given.stock is not None
-    assert given.stock.back == pytest.approx(-3 * 25.4)
+    assert given.stock.back_z_mm == pytest.approx(-3 * 25.4)
 
 
 def test_a_far_retract_does_not_make_the_part_small() -> None:
@@ -76,40 +79,44 @@ def test_the_chuck_is_shown_up_to_a_part_of_its_length() -> None:
 @pytest.fixture
 def view(qtbot: QtBot) -> PathView:
     """A path view with a bar in a collet."""
-    made = PathView(Look(DARK, 8.0))
+    made = PathView(ScreenTheme(DARK_PALETTE, 8.0))
     made.resize(640, 280)
     qtbot.addWidget(made)
     with qtbot.waitExposed(made, timeout=LIMIT):
         made.show()
     drawn = picture(SHAFT)
     assert drawn.part is not None
-    made.show_picture(replace(drawn, part=PartMoves(drawn.part.parts, setting(BAR, COLLET))))
+    made.show_picture(replace(drawn, part=ProgramSteps(drawn.part.parts, setting(BAR, COLLET))))
     return made
 
 
 def test_legend_and_scale_are_below_all_panes(view: PathView) -> None:
     (pane,) = view.panes
-    texts = [(box, text) for box, text in view.written() if text in {"done", "remaining", "rapid", "0.2 in"}]
+    texts = [
+        (box, text)
+        for box, text in view.read_painted_texts()
+        if text in {"done", "remaining", "rapid", "0.2 in"}
+    ]
     assert {"done", "remaining", "rapid"} <= {text for _, text in texts}
     for box, text in texts:
-        assert not box.intersects(pane.room), text
+        assert not box.intersects(pane.area), text
         assert box.bottom() <= view.height(), text
-    assert pane.room.bottom() + FOOT * view.look.u <= view.height()
+    assert pane.area.bottom() + FOOT * view.theme.u <= view.height()
 
 
 def test_the_part_fills_the_height_of_the_pane(view: PathView) -> None:
     (pane,) = view.panes
-    top, bottom = pane.spot(0.0, -10.0).y(), pane.spot(0.0, 10.0).y()
-    assert bottom - top > 0.6 * pane.room.height()
+    top, bottom = pane.map_to_pane(0.0, -10.0).y(), pane.map_to_pane(0.0, 10.0).y()
+    assert bottom - top > 0.6 * pane.area.height()
 
 
 def test_an_approach_from_far_away_changes_the_visible_area_only_where_it_matters(view: PathView) -> None:
-    near = view.view
+    near = view.first_projection
     view.show_approach((DrawnLeg(400.0, 200.0), DrawnLeg(5.0, 12.0, label="START")))
     view.grab()
-    assert view.view == near
+    assert view.first_projection == near
     view.shows_whole_approach = True
     view.show_approach((DrawnLeg(400.0, 201.0), DrawnLeg(5.0, 12.0, label="START")))
-    assert view.view is not None
+    assert view.first_projection is not None
     assert near is not None
-    assert view.view.scale < near.scale / 3
+    assert view.first_projection.scale < near.scale / 3

@@ -6,48 +6,48 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.late_presses import Starting
-from app.desk.status.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
-from app.screen.page_table import menu_of
+from app.desk.late_presses import StartingAction
+from app.desk.status.prompt_line import CHOOSE_FILE, CONFIRM_CANCEL, MessageKind
+from app.screen.page_table import list_menu_entries
 from core.executor.commands import Reset
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.lathe import Operator
 
 
 def test_three_places_one_subject_each(hands: Hands) -> None:
     hands.load("pin")
-    hands.sees_state(State.IDLE)
-    hands.desk.ask(GIVE_UP, lambda: None)
+    hands.sees_state(MachineState.IDLE)
+    hands.desk.ask_operator(CONFIRM_CANCEL, lambda: None)
     hands.desk.say("AN ANSWER")
     hands.window.refresh()
-    line = hands.frame.prompt
-    assert (line.question, line.answer, line.asked) == (GIVE_UP, "AN ANSWER", "Y")
-    assert line.state not in {"", GIVE_UP, "AN ANSWER"}
-    assert line.sort is Sort.ANSWER
+    line = hands.frame.prompt_line
+    assert (line.question_text, line.message_text, line.confirm_key) == (CONFIRM_CANCEL, "AN ANSWER", "Y")
+    assert line.state_text not in {"", CONFIRM_CANCEL, "AN ANSWER"}
+    assert line.message_kind is MessageKind.REFUSAL
 
 
 def test_n_is_no_and_the_question_is_gone(hands: Hands) -> None:
     done: list[str] = []
-    hands.desk.ask(GIVE_UP, lambda: done.append("yes"))
+    hands.desk.ask_operator(CONFIRM_CANCEL, lambda: done.append("yes"))
     hands.window.refresh()
     hands.key(Key.Key_N)
-    assert (hands.desk.asked, done) == ("", [])
+    assert (hands.desk.confirm_key, done) == ("", [])
     assert not any(isinstance(each, Reset) for each in hands.machine.posted)
 
 
 def test_dropped_input_is_reported_whatever_is_pressed_next(hands: Hands) -> None:
-    hands.window.drop(Starting.CYCLE)
+    hands.window.report_dropped(StartingAction.CYCLE)
     hands.key(Key.Key_S)
     hands.key(Key.Key_O)
-    assert hands.frame.prompt.answer
+    assert hands.frame.prompt_line.message_text
 
 
 def test_the_question_for_a_file_offers_no_start(hands: Hands) -> None:
     hands.key(Key.Key_F2)
-    assert hands.page.files.isVisible()
+    assert hands.page.file_prompt.isVisible()
     hands.window.refresh()
-    assert hands.frame.prompt.state == CHOOSE_FILE
+    assert hands.frame.prompt_line.state_text == CHOOSE_FILE
 
 
 def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
@@ -55,11 +55,11 @@ def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
     assert frame is not None
     operator.stage.make_ready()
     operator.window.refresh()
-    assert desk.start_words in frame.prompt.state
-    for entry in menu_of(desk.machine.language):
-        if frame.go(entry.name):
+    assert desk.start_instruction in frame.prompt_line.state_text
+    for entry in list_menu_entries(desk.machine.language):
+        if frame.open_page(entry.name):
             operator.window.refresh()
-            assert desk.start_words not in frame.prompt.state or not desk.barred(), entry.name
+            assert desk.start_instruction not in frame.prompt_line.state_text or not desk.barred(), entry.name
 
 
 @pytest.mark.parametrize(
@@ -78,12 +78,12 @@ def test_the_palm_buttons_are_bright_only_for_a_start_that_would_begin(
     operator.drives_on()
     if text:
         (tmp_path / "part.nc").write_text(text)
-        operator.stage.desk.session.load(tmp_path / "part.nc")
-        operator.stage.desk.session.settled(30.0)
+        operator.stage.desk.program_loader.start_loading(tmp_path / "part.nc")
+        operator.stage.desk.program_loader.wait_until_loaded(30.0)
     operator.pause(0.2)
     operator.stage.checks_start()
     operator.window.refresh()
-    assert operator.frame.dock is not None
-    assert operator.frame.dock.barred is not starts
+    assert operator.frame.station_dock is not None
+    assert operator.frame.station_dock.is_start_disabled is not starts
     operator.palms()
-    assert (operator.shot.state is State.RUN) is starts
+    assert (operator.shot.state is MachineState.RUN) is starts

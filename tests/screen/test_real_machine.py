@@ -8,9 +8,9 @@ import pytest
 from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Key
 from tests.screen.pictures import Stage
 from tests.screen.yes import twist_out
@@ -26,16 +26,16 @@ def stage(qapp: object) -> Iterator[Stage]:
 
 @pytest.fixture
 def window(stage: Stage) -> Iterator[MainWindow]:
-    window = MainWindow(Look(DARK))
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
-    window.open_desk(stage.desk)
+    window.show_model(stage.desk)
     window.show()
     yield window
-    window.put_away()
+    window.close_silently()
 
 
-def reaches(stage: Stage, state: State) -> None:
-    stage.tick(lambda: stage.desk.snapshot().state is state)
+def reaches(stage: Stage, state: MachineState) -> None:
+    stage.tick(lambda: stage.desk.read_snapshot().state is state)
 
 
 def both_palms(window: MainWindow) -> None:
@@ -48,7 +48,7 @@ def let_go(window: MainWindow) -> None:
     QTest.keyRelease(window, Key.Key_F12)
 
 
-def cycle_start(stage: Stage, window: MainWindow, state: State) -> None:
+def cycle_start(stage: Stage, window: MainWindow, state: MachineState) -> None:
     """Press both, wait until it shows, let go; the relay wants both up before it works again."""
     both_palms(window)
     reaches(stage, state)
@@ -59,36 +59,36 @@ def cycle_start(stage: Stage, window: MainWindow, state: State) -> None:
 
 def test_start_hold_go_on_single_block_estop_recover(stage: Stage, window: MainWindow) -> None:
     stage.start()
-    stage.tick(lambda: stage.desk.snapshot().line > 6)
+    stage.tick(lambda: stage.desk.read_snapshot().line > 6)
     QTest.keyClick(window, Key.Key_H)
-    reaches(stage, State.HOLD)
-    held = stage.desk.snapshot().actual
+    reaches(stage, MachineState.HOLD)
+    held = stage.desk.read_snapshot().actual
     later = stage.clock.now() + 1.0
     stage.tick(lambda: stage.clock.now() >= later)
-    assert stage.desk.snapshot().actual == pytest.approx(held, abs=0.01)
-    cycle_start(stage, window, State.RUN)
+    assert stage.desk.read_snapshot().actual == pytest.approx(held, abs=0.01)
+    cycle_start(stage, window, MachineState.RUN)
     QTest.keyClick(window, Key.Key_S)
-    reaches(stage, State.BLOCK_END)
+    reaches(stage, MachineState.BLOCK_END)
     QTest.keyClick(window, Key.Key_E)
-    reaches(stage, State.ESTOP)
-    assert stage.desk.snapshot().rpm_command == 0.0
+    reaches(stage, MachineState.ESTOP)
+    assert stage.desk.read_snapshot().rpm_command == 0.0
     twist_out(window)
-    reaches(stage, State.DISABLED)
+    reaches(stage, MachineState.DISABLED)
     QTest.keyClick(window, Key.Key_D)
-    reaches(stage, State.IDLE)
+    reaches(stage, MachineState.IDLE)
 
 
 def test_one_palm_does_not_start_the_lathe(stage: Stage, window: MainWindow) -> None:
     stage.start()
     QTest.keyClick(window, Key.Key_H)
-    reaches(stage, State.HOLD)
+    reaches(stage, MachineState.HOLD)
     QTest.keyPress(window, Key.Key_F11)
     later = stage.clock.now() + 1.0
     stage.tick(lambda: stage.clock.now() >= later)
     QTest.keyPress(window, Key.Key_F12)
     later = stage.clock.now() + 0.5
     stage.tick(lambda: stage.clock.now() >= later)
-    assert stage.desk.snapshot().state is State.HOLD
+    assert stage.desk.read_snapshot().state is MachineState.HOLD
     let_go(window)
 
 
@@ -96,10 +96,10 @@ def test_no_start_with_the_drives_off_and_it_is_said(stage: Stage, window: MainW
     desk: Desk = stage.desk
     later = stage.clock.now() + 0.1  # a start that is on when the control begins to look is no press
     stage.tick(lambda: stage.clock.now() >= later)
-    reaches(stage, State.DISABLED)
+    reaches(stage, MachineState.DISABLED)
     both_palms(window)
-    stage.tick(lambda: desk.snapshot().start_refused != "", 2.0)
+    stage.tick(lambda: desk.read_snapshot().start_refusal != "", 2.0)
     let_go(window)
     window.refresh()
-    assert begins(desk.notice, "screen.no-start", why=pattern("screen.drives-off-reason"))
-    assert desk.snapshot().state is State.DISABLED
+    assert begins(desk.prompt_notice, "screen.no-start", why=pattern("screen.drives-off-reason"))
+    assert desk.read_snapshot().state is MachineState.DISABLED

@@ -15,17 +15,17 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
-from app.scope.record_shelf import RecordShelf, ShelfError
-from app.scope.scope_model import Scope, Side
+from app.scope.recording_store import RecordingFileError, RecordingStore
+from app.scope.scope_model import ScopeModel, SidePanel
 from app.scope.scope_view import ScopePage
-from app.scope.time_window import When
+from app.scope.time_window import TriggerEvent
 from app.screen import page_table
-from app.screen.look import CURVES
-from app.screen.window_layout import FINGER
+from app.screen.screen_theme import CURVE_COLORS
+from app.screen.window_layout import FINGERTIP_PX
 from app.special.special_view import SpecialPage
 from core.executor.commands import FeedHold
 from core.executor.raised_alarm import make_alarm
-from core.executor.snapshot import Event, State
+from core.executor.snapshot import LogEvent, MachineState
 from core.records.record_file import open_record, save_record
 from tests.scope.played_record import PlayedSamples, record_of, seconds
 from tests.screen.desks import desk_on
@@ -54,28 +54,28 @@ def desk(
 def opened(hands: Hands) -> ScopePage:
     """By the one key from any page, and until curves are seen."""
     hands.key(Key.Key_F10, SHIFT)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, ScopePage)
-    hands.sees(lambda: page.curves.chart is not None and bool(page.curves.chart.sight.curves))
+    hands.sees(lambda: page.curve_area.chart is not None and bool(page.curve_area.chart.picture.curves))
     return page
 
 
 def frozen(hands: Hands) -> ScopePage:
     page = opened(hands)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: not page.scope.sight.live and page.scope.frozen is not None)
-    chart = page.curves.chart
+    hands.sees(lambda: not page.scope_model.picture.is_live and page.scope_model.frozen_curves is not None)
+    chart = page.curve_area.chart
     assert chart is not None
-    hands.sees(lambda: not chart.sight.live and chart.room.height() > 100.0)  # drawn, and laid out
+    hands.sees(lambda: not chart.picture.is_live and chart.curve_area.height() > 100.0)  # drawn, and laid out
     return page
 
 
 def wheel(page: ScopePage, share: float, notches: int, held: Qt.KeyboardModifier = SHIFT) -> None:
-    chart = page.curves.chart
+    chart = page.curve_area.chart
     assert chart is not None
-    room = chart.room
+    room = chart.curve_area
     at = QPointF(room.x() + share * room.width(), room.center().y())
-    spot = QPointF(page.curves.mapToGlobal(at.toPoint()))
+    spot = QPointF(page.curve_area.mapToGlobal(at.toPoint()))
     event = QWheelEvent(
         at,
         spot,
@@ -86,120 +86,124 @@ def wheel(page: ScopePage, share: float, notches: int, held: Qt.KeyboardModifier
         Qt.ScrollPhase.NoScrollPhase,
         False,
     )
-    QApplication.sendEvent(page.curves, event)
+    QApplication.sendEvent(page.curve_area, event)
 
 
 def test_one_key_leads_there_and_back(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.key(Key.Key_F5)
-    hands.sees(lambda: hands.frame.page.NAME == page_table.JOG)
+    hands.sees(lambda: hands.frame.current_page.NAME == page_table.JOG)
     opened(hands)
     hands.key(Key.Key_F10, SHIFT)
-    assert hands.frame.page.NAME == page_table.JOG
+    assert hands.frame.current_page.NAME == page_table.JOG
 
 
 def test_f10_has_it_in_its_list(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     number = [each.name for each in page.model.functions].index("SCOPE")
     for _ in range(number):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.frame.page.NAME == page_table.SCOPE
+    assert hands.frame.current_page.NAME == page_table.SCOPE
 
 
 def test_curves_are_drawn_in_their_colours(hands: Hands) -> None:
     page = opened(hands)
-    image = page.curves.grab().toImage()
+    image = page.curve_area.grab().toImage()
     seen = {image.pixelColor(x, y).name() for x in range(60, image.width(), 3) for y in range(image.height())}
-    assert {QColor(each).name() for each in CURVES["dark"][:4]} <= seen
+    assert {QColor(each).name() for each in CURVE_COLORS["dark"][:4]} <= seen
 
 
 def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
     page = frozen(hands)
-    before = page.scope.sight.zero
+    before = page.scope_model.picture.zero_s
     played.now += 5.0
     hands.qtbot.wait(50)
-    assert page.scope.sight.zero == before
+    assert page.scope_model.picture.zero_s == before
     hands.key(Key.Key_F2)
-    hands.sees(lambda: page.scope.sight.live and page.scope.sight.zero > before + 4.9)
+    hands.sees(lambda: page.scope_model.picture.is_live and page.scope_model.picture.zero_s > before + 4.9)
 
 
 def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: PlayedSamples) -> None:
-    page, scope = opened(hands), hands.desk.pages.find(Scope)
+    page, scope = opened(hands), hands.desk.page_registry.find(ScopeModel)
     assert scope is not None
-    assert page.lively()  # they swing
-    scope.chosen = ("spindle command", "C actual")
-    hands.sees(lambda: not page.lively())
-    chart = page.curves.chart
+    assert page.is_animating()  # they swing
+    scope.selected_keys = ("spindle command", "C actual")
+    hands.sees(lambda: not page.is_animating())
+    chart = page.curve_area.chart
     assert chart is not None
-    hands.sees(lambda: page._drawn is not None and chart.sight.level == (0.0, 1000.0))
-    seen = chart.sight
+    hands.sees(lambda: page._drawn is not None and chart.picture.constant_values == (0.0, 1000.0))
+    seen = chart.picture
     played.now += 1.0
-    hands.sees(lambda: scope.sight.zero > played.now - 0.1)
-    assert chart.sight is seen
+    hands.sees(lambda: scope.picture.zero_s > played.now - 0.1)
+    assert chart.picture is seen
     played.now += 1.0
     hands.machine.now = replace(hands.machine.now, inputs=frozenset({"guard"}))  # something happens
-    before = hands.desk.clock.seconds()
-    hands.sees(lambda: scope.sight.zero > played.now - 0.1)
-    hands.desk.clock.seconds = lambda: before  # no second passes any more
-    scope.chosen = ("spindle command", "C actual", "Z actual")
+    before = hands.desk.clock.read_seconds()
+    hands.sees(lambda: scope.picture.zero_s > played.now - 0.1)
+    hands.desk.clock.read_seconds = lambda: before  # no second passes any more
+    scope.selected_keys = ("spindle command", "C actual", "Z actual")
 
     def three() -> bool:
         hands.window.refresh()  # on a clock that stands nothing grows old
-        return chart.sight is not seen and len(chart.sight.curves) == 3
+        return chart.picture is not seen and len(chart.picture.curves) == 3
 
     hands.sees(three)
-    assert page.lively()
+    assert page.is_animating()
 
 
 def test_the_wheel_zooms_about_the_pointer(hands: Hands) -> None:
     page = frozen(hands)
-    before = page.scope.window.begin + 0.25 * page.scope.window.span
+    before = page.scope_model.time_window.begin_s + 0.25 * page.scope_model.time_window.span_s
     wheel(page, 0.25, 1, Qt.KeyboardModifier.NoModifier)
-    window = page.scope.window
-    assert window.span == pytest.approx(5.0)
-    assert window.begin + 0.25 * window.span == pytest.approx(before, abs=0.02)
+    window = page.scope_model.time_window
+    assert window.span_s == pytest.approx(5.0)
+    assert window.begin_s + 0.25 * window.span_s == pytest.approx(before, abs=0.02)
 
 
 def test_shift_and_wheel_stretch_the_lane(hands: Hands) -> None:
     page = frozen(hands)
-    before = dict(page.scope.sight.ranges)
+    before = dict(page.scope_model.picture.lane_ranges)
     wheel(page, 0.5, 1)
-    hands.sees(lambda: page.scope.sight.ranges != before)
+    hands.sees(lambda: page.scope_model.picture.lane_ranges != before)
     wider = {name: b[1] - b[0] for name, b in before.items()}
-    narrower = [name for name, now in page.scope.sight.ranges.items() if now[1] - now[0] < 0.9 * wider[name]]
+    narrower = [
+        name
+        for name, now in page.scope_model.picture.lane_ranges.items()
+        if now[1] - now[0] < 0.9 * wider[name]
+    ]
     assert len(narrower) == 1
 
 
 def test_keys_zoom_pan_and_fit(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_Z)
-    assert page.scope.window.span == pytest.approx(5.0)
-    end = page.scope.window.end
+    assert page.scope_model.time_window.span_s == pytest.approx(5.0)
+    end = page.scope_model.time_window.end_s
     hands.key(Key.Key_Left, CTRL)
-    assert page.scope.window.end == pytest.approx(end - 0.5)
+    assert page.scope_model.time_window.end_s == pytest.approx(end - 0.5)
     hands.key(Key.Key_Z, SHIFT)
-    assert page.scope.window.span == pytest.approx(10.0)
+    assert page.scope_model.time_window.span_s == pytest.approx(10.0)
     hands.key(Key.Key_F6)
-    assert page.scope.window.span == pytest.approx(60.0, abs=0.01)
+    assert page.scope_model.time_window.span_s == pytest.approx(60.0, abs=0.01)
 
 
 def test_two_cursors_tell_the_difference(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F5)
-    scope = page.scope
-    hands.sees(lambda: text("scope.following-error", axis="X") in scope.sight.at)
-    first, second = scope.cursors.times
+    scope = page.scope_model
+    hands.sees(lambda: text("scope.following-error", axis="X") in scope.picture.cursor_values)
+    first, second = scope.cursors.times_s
     hands.key(Key.Key_Right)
-    assert scope.cursors.times[0] == pytest.approx(first + 10.0 / scope.pixels)
+    assert scope.cursors.times_s[0] == pytest.approx(first + 10.0 / scope.width_px)
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_Left)
-    assert scope.cursors.times[1] == pytest.approx(second - 10.0 / scope.pixels)
+    assert scope.cursors.times_s[1] == pytest.approx(second - 10.0 / scope.width_px)
     hands.key(Key.Key_Escape)
     assert not scope.cursors.shown
-    assert hands.frame.page is page
+    assert hands.frame.current_page is page
 
 
 def test_cursors_stand_on_frozen_curves_only(hands: Hands) -> None:
@@ -211,32 +215,32 @@ def test_cursors_stand_on_frozen_curves_only(hands: Hands) -> None:
 def test_a_finger_takes_a_cursor_along(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F5)
-    chart = page.curves.chart
+    chart = page.curve_area.chart
     assert chart is not None
     hands.sees(lambda: chart.cursors.shown)
-    x = round(chart.across(page.scope.cursors.times[0]))
-    y = page.curves.height() // 2
-    QTest.mousePress(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(x + 5, y))
-    QTest.mouseMove(page.curves, QPoint(x + 60, y))
-    QTest.mouseRelease(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(x + 60, y))
-    assert page.scope.cursors.times[0] == pytest.approx(chart.time_at(QPointF(x + 60, y)), abs=1e-6)
+    x = round(chart.find_column(page.scope_model.cursors.times_s[0]))
+    y = page.curve_area.height() // 2
+    QTest.mousePress(page.curve_area, Qt.MouseButton.LeftButton, pos=QPoint(x + 5, y))
+    QTest.mouseMove(page.curve_area, QPoint(x + 60, y))
+    QTest.mouseRelease(page.curve_area, Qt.MouseButton.LeftButton, pos=QPoint(x + 60, y))
+    assert page.scope_model.cursors.times_s[0] == pytest.approx(chart.find_time(QPointF(x + 60, y)), abs=1e-6)
 
 
 def spread(page: ScopePage, *steps: tuple[QPoint, QPoint]) -> None:
     """Two fingers go down on the curves, move, and come up again."""
     device, last = QTest.createTouchDevice(), steps[-1]
-    down = QTest.touchEvent(page.curves, device, False)
-    down.press(0, steps[0][0], page.curves)
-    down.press(1, steps[0][1], page.curves)
+    down = QTest.touchEvent(page.curve_area, device, False)
+    down.press(0, steps[0][0], page.curve_area)
+    down.press(1, steps[0][1], page.curve_area)
     down.commit()
     for one, other in steps[1:]:
-        moved = QTest.touchEvent(page.curves, device, False)
-        moved.move(0, one, page.curves)
-        moved.move(1, other, page.curves)
+        moved = QTest.touchEvent(page.curve_area, device, False)
+        moved.move(0, one, page.curve_area)
+        moved.move(1, other, page.curve_area)
         moved.commit()
-    up = QTest.touchEvent(page.curves, device, False)
-    up.release(0, last[0], page.curves)
-    up.release(1, last[1], page.curves)
+    up = QTest.touchEvent(page.curve_area, device, False)
+    up.release(0, last[0], page.curve_area)
+    up.release(1, last[1], page.curve_area)
     up.commit()
 
 
@@ -244,64 +248,74 @@ def test_two_fingers_beside_each_other_zoom_time_about_their_middle(hands: Hands
     """From 100 to 200 pixels apart: the window is half as wide, and what was between them still is."""
     page = frozen(hands)
     hands.key(Key.Key_Z)
-    chart, scope = page.curves.chart, page.scope
+    chart, scope = page.curve_area.chart, page.scope_model
     assert chart is not None
-    hands.sees(lambda: (chart.sight.begin, chart.sight.end) == (scope.window.begin, scope.window.end))
-    x, y = round(chart.room.center().x()), round(chart.room.center().y())
-    span, middle = scope.window.span, chart.time_at(QPointF(x, y))
+    hands.sees(
+        lambda: (
+            (chart.picture.begin_s, chart.picture.end_s)
+            == (scope.time_window.begin_s, scope.time_window.end_s)
+        )
+    )
+    x, y = round(chart.curve_area.center().x()), round(chart.curve_area.center().y())
+    span, middle = scope.time_window.span_s, chart.find_time(QPointF(x, y))
     spread(page, (QPoint(x - 50, y), QPoint(x + 50, y)), (QPoint(x - 100, y), QPoint(x + 100, y)))
-    assert scope.window.span == pytest.approx(span / 2.0)
-    assert (middle - scope.window.begin) / (span / 2.0) == pytest.approx(0.5, abs=0.02)
+    assert scope.time_window.span_s == pytest.approx(span / 2.0)
+    assert (middle - scope.time_window.begin_s) / (span / 2.0) == pytest.approx(0.5, abs=0.02)
 
 
 def test_two_fingers_over_each_other_stretch_the_lane_between_them(hands: Hands) -> None:
     page = frozen(hands)
-    chart, scope = page.curves.chart, page.scope
+    chart, scope = page.curve_area.chart, page.scope_model
     assert chart is not None
-    x, y = round(chart.room.center().x()), round(chart.room.y() + 0.15 * chart.room.height())
-    quantity = chart.quantity_at(QPointF(x, y))
+    x, y = (
+        round(chart.curve_area.center().x()),
+        round(chart.curve_area.y() + 0.15 * chart.curve_area.height()),
+    )
+    quantity = chart.find_quantity(QPointF(x, y))
     assert quantity is not None
-    low, high = scope.sight.ranges[quantity]
-    span = scope.window.span
+    low, high = scope.picture.lane_ranges[quantity]
+    span = scope.time_window.span_s
     spread(page, (QPoint(x, y - 20), QPoint(x, y + 20)), (QPoint(x, y - 40), QPoint(x, y + 40)))
-    hands.sees(lambda: scope.sight.ranges[quantity] != (low, high))
-    near = scope.sight.ranges[quantity]
+    hands.sees(lambda: scope.picture.lane_ranges[quantity] != (low, high))
+    near = scope.picture.lane_ranges[quantity]
     assert near[1] - near[0] == pytest.approx((high - low) / 2.0, rel=0.01)
-    assert scope.window.span == span
+    assert scope.time_window.span_s == span
 
 
 def test_one_finger_left_of_two_drags_nothing(hands: Hands) -> None:
     page = frozen(hands)
-    chart, scope = page.curves.chart, page.scope
+    chart, scope = page.curve_area.chart, page.scope_model
     assert chart is not None
-    x, y = round(chart.room.center().x()), round(chart.room.center().y())
-    before = scope.window.begin, scope.window.end
+    x, y = round(chart.curve_area.center().x()), round(chart.curve_area.center().y())
+    before = scope.time_window.begin_s, scope.time_window.end_s
     spread(page, (QPoint(x - 50, y), QPoint(x + 50, y)), (QPoint(x - 50, y), QPoint(x + 50, y)))
-    assert (scope.window.begin, scope.window.end) == pytest.approx(before)
+    assert (scope.time_window.begin_s, scope.time_window.end_s) == pytest.approx(before)
 
 
 def test_a_drag_goes_through_time(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_Z)
-    before = page.scope.window.end
-    hands.sees(lambda: page.curves.chart is not None and page.curves.chart.sight.end == before)
-    y = page.curves.height() // 2
-    QTest.mousePress(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(200, y))
-    QTest.mouseMove(page.curves, QPoint(300, y))
-    QTest.mouseRelease(page.curves, Qt.MouseButton.LeftButton, pos=QPoint(300, y))
-    assert page.scope.window.end == pytest.approx(before - 100 * 5.0 / page.scope.pixels, rel=0.01)
+    before = page.scope_model.time_window.end_s
+    hands.sees(lambda: page.curve_area.chart is not None and page.curve_area.chart.picture.end_s == before)
+    y = page.curve_area.height() // 2
+    QTest.mousePress(page.curve_area, Qt.MouseButton.LeftButton, pos=QPoint(200, y))
+    QTest.mouseMove(page.curve_area, QPoint(300, y))
+    QTest.mouseRelease(page.curve_area, Qt.MouseButton.LeftButton, pos=QPoint(300, y))
+    assert page.scope_model.time_window.end_s == pytest.approx(
+        before - 100 * 5.0 / page.scope_model.width_px, rel=0.01
+    )
 
 
 def test_curves_are_chosen_by_keys(hands: Hands) -> None:
     page = opened(hands)
     hands.key(Key.Key_F4)
-    assert page.scope.side is Side.CURVES
+    assert page.scope_model.side_panel is SidePanel.CURVES
     hands.key(Key.Key_Return)  # the first of the list: X commanded
-    assert "X demand" in page.scope.chosen
+    assert "X demand" in page.scope_model.selected_keys
     hands.key(Key.Key_Return)
-    assert "X demand" not in page.scope.chosen
+    assert "X demand" not in page.scope_model.selected_keys
     hands.key(Key.Key_Escape)
-    assert page.scope.side is Side.READINGS
+    assert page.scope_model.side_panel is SidePanel.READINGS
 
 
 def test_a_ninth_curve_is_refused(hands: Hands) -> None:
@@ -310,7 +324,7 @@ def test_a_ninth_curve_is_refused(hands: Hands) -> None:
     for key in (Key.Key_Return, Key.Key_Down, Key.Key_Return, Key.Key_Down, Key.Key_Down, Key.Key_Return):
         hands.key(key)
     hands.sees(lambda: shows(hands.prompt(), "scope.too-many-curves", most=8))
-    assert len(page.scope.shown) == 8
+    assert len(page.scope_model.shown) == 8
 
 
 def test_a_level_that_was_typed_meanwhile_is_the_one_that_freezes(
@@ -327,46 +341,46 @@ def test_a_level_that_was_typed_meanwhile_is_the_one_that_freezes(
     hands.key(Key.Key_Return)
     played.now += 20.0  # more than the time to the next crossing and half a window
     played.lets.set()  # it looks at what came, still for a rise through 0
-    hands.sees(lambda: page.scope.frozen is not None)
-    assert page.scope.frozen is not None
+    hands.sees(lambda: page.scope_model.frozen_curves is not None)
+    assert page.scope_model.frozen_curves is not None
     # .01·cos t = .00762 on the way up, 0 at 105.24: 2πn − arccos(.762)
-    assert page.scope.frozen.zero == pytest.approx(34.0 * np.pi - np.arccos(0.762), abs=0.002)
+    assert page.scope_model.frozen_curves.zero_s == pytest.approx(34.0 * np.pi - np.arccos(0.762), abs=0.002)
 
 
 def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     page = opened(hands)
-    scope = page.scope
+    scope = page.scope_model
     hands.key(Key.Key_F3)
     hands.key(Key.Key_Return)
-    assert scope.trigger.when is When.RISES
+    assert scope.trigger.event is TriggerEvent.RISES_ABOVE
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Down)
     hands.type(".0003")  # in, of the following error of X, that swings by .01 mm
     hands.key(Key.Key_Return)
     assert scope.trigger.level == pytest.approx(0.0003 * 25.4)
-    assert scope.armed
+    assert scope.is_armed
 
     def later() -> bool:
         """Samples come no faster than the worker looks at them, however busy the computer is."""
-        if played.asked[-1][1] >= played.last:
+        if played.asked[-1][1] >= played.newest_time_s:
             played.now += 0.25
-        return scope.frozen is not None
+        return scope.frozen_curves is not None
 
     played.now += 8.0  # before the worker has looked at all: what came since it was armed counts
     hands.sees(later)
     # .01·cos t = .00762 on the way up: 2πn − arccos(.762)
-    assert scope.frozen is not None
-    assert scope.frozen.zero == pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
-    assert scope.window.begin == pytest.approx(-5.0)
-    assert scope.window.end == pytest.approx(5.0)
-    assert not scope.armed
+    assert scope.frozen_curves is not None
+    assert scope.frozen_curves.zero_s == pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
+    assert scope.time_window.begin_s == pytest.approx(-5.0)
+    assert scope.time_window.end_s == pytest.approx(5.0)
+    assert not scope.is_armed
     assert played.now < 112.0
     played.now = 117.0  # while the curves stand the level is crossed once more, at 112.4 s
     hands.key(Key.Key_F3)
     hands.key(Key.Key_F2)
-    assert scope.armed
+    assert scope.is_armed
     hands.sees(later)
-    assert scope.frozen.zero == pytest.approx(32.0 * np.pi + 6 * np.pi - np.arccos(0.762), abs=0.002)
+    assert scope.frozen_curves.zero_s == pytest.approx(32.0 * np.pi + 6 * np.pi - np.arccos(0.762), abs=0.002)
 
 
 def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
@@ -378,35 +392,35 @@ def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
     hands.type("1/0")
     hands.key(Key.Key_Return)
     hands.sees(lambda: begins(hands.prompt(), "screen.refused"))
-    assert page.scope.trigger.level == 0.0
-    assert page.scope.frozen is None
+    assert page.scope_model.trigger.level == 0.0
+    assert page.scope_model.frozen_curves is None
 
 
 def test_what_is_seen_is_kept_and_opened_again(hands: Hands, tmp_path: Path) -> None:
     page = frozen(hands)
-    scope = page.scope
+    scope = page.scope_model
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: len(scope.shelf.files) == 1)
-    kept = open_record(scope.shelf.files[0].path)
+    hands.sees(lambda: len(scope.recording_store.recording_files) == 1)
+    kept = open_record(scope.recording_store.recording_files[0].path)
     whole = record_of(seconds(90.0, 100.0))
-    assert (kept.times == whole.times).all()
-    assert (kept.columns["X actual"] == whole.columns["X actual"]).all()
+    assert (kept.times_s == whole.times_s).all()
+    assert (kept.values_by_channel["X actual"] == whole.values_by_channel["X actual"]).all()
     hands.key(Key.Key_F3)
-    hands.sees(lambda: scope.name == scope.shelf.files[0].path.name)
-    assert scope.window.span == pytest.approx(10.0)
+    hands.sees(lambda: scope.recording_name == scope.recording_store.recording_files[0].path.name)
+    assert scope.time_window.span_s == pytest.approx(10.0)
 
 
 def test_an_earlier_record_lies_over(hands: Hands) -> None:
     page = frozen(hands)
-    scope = page.scope
+    scope = page.scope_model
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: len(scope.shelf.files) == 1)
+    hands.sees(lambda: len(scope.recording_store.recording_files) == 1)
     hands.key(Key.Key_F4)
-    hands.sees(lambda: bool(scope.sight.earlier))
+    hands.sees(lambda: bool(scope.picture.overlay_curves))
     hands.key(Key.Key_F4)
-    hands.sees(lambda: not scope.sight.earlier)
+    hands.sees(lambda: not scope.picture.overlay_curves)
 
 
 def test_a_table_and_a_picture_are_written(hands: Hands, tmp_path: Path) -> None:
@@ -434,12 +448,12 @@ def test_a_file_is_deleted_after_asking(hands: Hands, tmp_path: Path) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: len(page.scope.shelf.files) == 1)
+    hands.sees(lambda: len(page.scope_model.recording_store.recording_files) == 1)
     hands.key(Key.Key_F8)
-    assert hands.desk.asked
+    assert hands.desk.confirm_key
     assert list((tmp_path / "records").glob("*.scope"))
     yes(hands.window)
-    hands.sees(lambda: not page.scope.shelf.files)
+    hands.sees(lambda: not page.scope_model.recording_store.recording_files)
     assert not list((tmp_path / "records").glob("*.scope"))
 
 
@@ -448,16 +462,16 @@ def test_what_is_no_record_is_told(hands: Hands, tmp_path: Path) -> None:
     (tmp_path / "records" / "bad.scope").write_bytes(b"no record")
     page = opened(hands)
     hands.key(Key.Key_F9)
-    hands.sees(lambda: len(page.scope.shelf.files) == 1)
+    hands.sees(lambda: len(page.scope_model.recording_store.recording_files) == 1)
     hands.key(Key.Key_Return)
     hands.sees(lambda: begins(hands.prompt(), "screen.refused") and "bad.scope" in hands.prompt())
-    assert page.scope.is_live
+    assert page.scope_model.is_live
 
 
 def test_hold_and_escape_stop_here_too(hands: Hands) -> None:
     hands.load("bushing")
     hands.both_palms()
-    hands.sees(lambda: hands.machine.now.state is State.RUN)
+    hands.sees(lambda: hands.machine.now.state is MachineState.RUN)
     frozen(hands)
     hands.key(Key.Key_H)
     assert any(isinstance(each, FeedHold) for each in hands.machine.posted)
@@ -468,18 +482,18 @@ def test_hold_and_escape_stop_here_too(hands: Hands) -> None:
 
 def test_rows_are_large_enough_for_a_finger(hands: Hands) -> None:
     page = opened(hands)
-    assert page.readings.high >= FINGER
+    assert page.readings.row_height_px >= FINGERTIP_PX
     places = page.readings._places
-    assert len(places) == len(page.scope.shown)
+    assert len(places) == len(page.scope_model.shown)
     QTest.mouseClick(page.readings, Qt.MouseButton.LeftButton, pos=places[2][0].center().toPoint())
-    assert page.scope.marked == 2
+    assert page.scope_model.marked == 2
 
 
 def test_other_colours_at_once(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_T)
-    inks = {QColor(each).name() for each in CURVES["light"][:4]}
-    hands.sees(lambda: inks <= colours_of(page.curves.grab().toImage()))
+    inks = {QColor(each).name() for each in CURVE_COLORS["light"][:4]}
+    hands.sees(lambda: inks <= colours_of(page.curve_area.grab().toImage()))
 
 
 def colours_of(image: QImage) -> set[str]:
@@ -489,9 +503,9 @@ def colours_of(image: QImage) -> set[str]:
 
 
 def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
-    scope = hands.desk.pages.find(Scope)
+    scope = hands.desk.page_registry.find(ScopeModel)
     assert scope is not None
-    scope.live = scope._carried = None
+    scope.live_samples = scope._carried = None
     scope.signals = ()
     hands.key(Key.Key_F10, SHIFT)
     hands.key(Key.Key_F2)
@@ -502,16 +516,16 @@ def test_a_full_disk_is_told(tmp_path: Path) -> None:
     def full(_record: object, _path: Path) -> None:
         raise OSError(28, "No space left on device")
 
-    shelf = RecordShelf(tmp_path, full, open_record, lambda _record, _write: None)
-    with pytest.raises(ShelfError, match=r"scope .*: No space left on device"):
-        shelf.keep(record_of(seconds(0.0, 1.0)))
+    shelf = RecordingStore(tmp_path, full, open_record, lambda _record, _write: None)
+    with pytest.raises(RecordingFileError, match=r"scope .*: No space left on device"):
+        shelf.save_named(record_of(seconds(0.0, 1.0)))
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.long
 def test_the_desk_starts_without_pyqtgraph() -> None:
     code = (
-        "import sys; import app.screen.run_screen, app.compose.screen_desk;"
+        "import sys; import app.screen.screen_startup, app.compose.screen_desk;"
         "import app.scope.scope_view; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
@@ -523,28 +537,28 @@ def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path
     save_record(replace(record, about=told), tmp_path / "records" / "one-alarm301.scope")
     alarm = make_alarm("following", "X is .2 mm off its setpoint", 7, 0.0)
     stop = make_alarm("estop", "", 0, 0.0)
-    hands.desk.hear(Event(100.0, "alarm", alarm.text, 7, alarm, "one-alarm301.scope"))
-    hands.desk.hear(Event(100.0, "stop", stop.text, 0, stop))
+    hands.desk.hear(LogEvent(100.0, "alarm", alarm.text, 7, alarm, "one-alarm301.scope"))
+    hands.desk.hear(LogEvent(100.0, "stop", stop.text, 0, stop))
     hands.key(Key.Key_F7)
-    hands.sees(lambda: len(hands.frame.log.entries) == 2)
+    hands.sees(lambda: len(hands.frame.alarm_list.logged_stops) == 2)
     hands.key(Key.Key_F10, SHIFT)  # the newest has none
     hands.sees(lambda: shows(hands.prompt(), "scope.nothing-before"))
     hands.key(Key.Key_Down, CTRL)
     hands.key(Key.Key_F10, SHIFT)
-    scope = hands.desk.pages.find(Scope)
+    scope = hands.desk.page_registry.find(ScopeModel)
     assert scope is not None
-    hands.sees(lambda: scope.name == "one-alarm301.scope")
-    assert hands.frame.page.NAME == page_table.SCOPE
-    assert not hands.frame.log.isVisible()
-    assert scope.frozen is not None
-    assert scope.frozen.zero == 100.0
-    assert scope.window.begin == pytest.approx(-10.0)
+    hands.sees(lambda: scope.recording_name == "one-alarm301.scope")
+    assert hands.frame.current_page.NAME == page_table.SCOPE
+    assert not hands.frame.alarm_list.isVisible()
+    assert scope.frozen_curves is not None
+    assert scope.frozen_curves.zero_s == 100.0
+    assert scope.time_window.begin_s == pytest.approx(-10.0)
 
 
 def test_a_record_that_is_gone_is_told(hands: Hands) -> None:
     alarm = make_alarm("following", "X is .2 mm off its setpoint", 7, 0.0)
-    hands.desk.hear(Event(100.0, "alarm", alarm.text, 7, alarm, "gone-alarm301.scope"))
+    hands.desk.hear(LogEvent(100.0, "alarm", alarm.text, 7, alarm, "gone-alarm301.scope"))
     hands.key(Key.Key_F7)
-    hands.sees(lambda: len(hands.frame.log.entries) == 1)
+    hands.sees(lambda: len(hands.frame.alarm_list.logged_stops) == 1)
     hands.key(Key.Key_F10, SHIFT)
     hands.sees(lambda: begins(hands.prompt(), "screen.refused") and "gone-alarm301" in hands.prompt())

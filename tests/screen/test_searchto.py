@@ -6,13 +6,13 @@ import pytest
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtTest import QTest
 
-from app.desk.status.prompt_line import HOW_TO_HOLD
+from app.desk.status.prompt_line import HOLD_HINT
 from app.screen import page_table
 from app.screen.panel import Panel
-from app.screen.window_layout import FINGER
+from app.screen.window_layout import FINGERTIP_PX
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_view import SearchtoPage
-from core.executor.snapshot import Starts, State
+from core.executor.snapshot import MachineState, StartAction
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out
@@ -25,7 +25,7 @@ def model_of(operator: Operator) -> SearchtoModel:
 
 def page_of(operator: Operator) -> SearchtoPage:
     operator.window.refresh()
-    page = operator.frame.page
+    page = operator.frame.current_page
     assert isinstance(page, SearchtoPage)
     return page
 
@@ -33,31 +33,31 @@ def page_of(operator: Operator) -> SearchtoPage:
 def loaded(operator: Operator) -> None:
     """The sample program on the desk, proved; drives on."""
     desk = operator.stage.desk
-    desk.programs.choose("bushing")
-    desk.session.settled(30.0)
+    desk.program_choice.load_by_name("bushing")
+    desk.program_loader.wait_until_loaded(30.0)
     operator.drives_on()
 
 
 def estop_and_recover(operator: Operator) -> None:
     operator.key(Key.Key_E)
-    operator.reaches(State.ESTOP)
+    operator.reaches(MachineState.ESTOP)
     twist_out(operator.window)
-    operator.reaches(State.DISABLED)
+    operator.reaches(MachineState.DISABLED)
     operator.key(Key.Key_D)
-    operator.reaches(State.IDLE)
+    operator.reaches(MachineState.IDLE)
 
 
 def found(operator: Operator) -> SearchtoPage:
     """Enter, and wait for the worker."""
     operator.key(Key.Key_Return)
-    model_of(operator).finder.worker.settle(60.0)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     operator.pause(0.05)
     return page_of(operator)
 
 
 def confirmed(operator: Operator) -> None:
     operator.key(Key.Key_F10)
-    model_of(operator).finder.worker.settle(60.0)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     operator.pause(0.05)
     assert model_of(operator).stage is SearchtoStage.READY
 
@@ -68,23 +68,23 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     operator.pause(0.2)
     estop_and_recover(operator)
     operator.key(Key.Key_F6)
-    assert operator.frame.title.page == page_table.SEARCHTO
+    assert operator.frame.title_line.page_title == page_table.SEARCHTO_PAGE
     assert begins(operator.prompt(), "search.broke-off", line=18)
     page = found(operator)
-    assert page.state.shown.title == text("search.state-at-line", line=18)
-    assert page.starts.starts == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
-    assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z", "4 X", "5 Z"]
-    assert [leg.rapid for leg in page.path.legs[1:]] == [False, False, True, True, True]
+    assert page.state_panel.content.title == text("search.state-at-line", line=18)
+    assert page.functions_panel.started_functions == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
+    assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 X", "2 Z", "3 Z", "4 X", "5 Z"]
+    assert [leg.rapid for leg in page.path_view.drawn_legs[1:]] == [False, False, True, True, True]
     assert operator.shot.rpm_command == 0.0
     assert "coolant" not in operator.shot.outputs  # nothing starts before it is confirmed and started
     confirmed(operator)
     assert begins(operator.prompt(), "search.start-restart", start=pattern("screen.both-palms"))
     operator.palms()
     operator.window.refresh()
-    assert operator.frame.page is operator.frame.automatic
-    assert operator.shot.state in {State.RUN, State.WAIT}
+    assert operator.frame.current_page is operator.frame.automatic_page
+    assert operator.shot.state in {MachineState.RUN, MachineState.WAIT}
     operator.pause(0.1)
-    assert operator.prompt() == HOW_TO_HOLD  # nothing was refused on the way
+    assert operator.prompt() == HOLD_HINT  # nothing was refused on the way
     operator.until(lambda: operator.shot.line == 26, 60.0)
     assert operator.shot.modal.diameter
     assert operator.shot.modal.secondary == 1
@@ -96,13 +96,16 @@ def test_every_difference_is_marked_by_its_sign(operator: Operator) -> None:
     operator.key(Key.Key_F6)
     operator.type("7")
     page = found(operator)
-    rows = {row.label: row for row in page.state.shown.rows}
-    assert (rows["X VALUES"].wanted, rows["X VALUES"].now) == ("G72 Ø", "G73 R")
-    assert (rows["SPINDLE"].wanted, rows["SPINDLE"].now) == ("M03", "M05")
-    assert (rows[text("search.first-feed")].wanted, rows["FEED"].wanted) == ("300.00", "0.00600 in/rev")
-    assert rows["COOLANT"].differs
-    assert not rows["UNITS"].differs
-    assert page.state.grab().width() > 0
+    rows = {row.label: row for row in page.state_panel.content.state_rows}
+    assert (rows["X VALUES"].required_value, rows["X VALUES"].present_value) == ("G72 Ø", "G73 R")
+    assert (rows["SPINDLE"].required_value, rows["SPINDLE"].present_value) == ("M03", "M05")
+    assert (rows[text("search.first-feed")].required_value, rows["FEED"].required_value) == (
+        "300.00",
+        "0.00600 in/rev",
+    )
+    assert rows["COOLANT"].must_change
+    assert not rows["UNITS"].must_change
+    assert page.state_panel.grab().width() > 0
 
 
 def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) -> None:
@@ -110,13 +113,13 @@ def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) ->
     operator.key(Key.Key_F6)
     operator.type("(FINISH")
     operator.key(Key.Key_Return)
-    assert model_of(operator).cursor.line == 22
+    assert model_of(operator).line_cursor.selected_line == 22
     operator.key(Key.Key_Escape)
     operator.type("x.5")
     operator.key(Key.Key_F2)
-    assert model_of(operator).cursor.line == 37
+    assert model_of(operator).line_cursor.selected_line == 37
     operator.key(Key.Key_F3)
-    assert model_of(operator).cursor.line == 22
+    assert model_of(operator).line_cursor.selected_line == 22
     operator.key(Key.Key_Escape)
     operator.type("QQ")
     operator.key(Key.Key_Return)
@@ -133,50 +136,50 @@ def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
     operator.window.resize(1024, 600)
     operator.key(Key.Key_F6)
     page = page_of(operator)
-    page.listing.grab()
-    assert all(box.height() >= FINGER for box, *_ in page.listing._places)
-    press(page.listing, page.listing._places[3][0])
-    assert model_of(operator).cursor.line == page.listing.top + 4
-    page.asked.grab()
-    entry, *_ = page.asked._places[0]
-    assert entry.height() >= FINGER
-    press(page.asked, entry)
-    assert page.pad.isVisible()
-    page.pad.grab()
-    keys = dict(zip("789/456*123-0.(+", page.pad._places, strict=False))
+    page.program_listing.grab()
+    assert all(box.height() >= FINGERTIP_PX for box, *_ in page.program_listing._places)
+    press(page.program_listing, page.program_listing._places[3][0])
+    assert model_of(operator).line_cursor.selected_line == page.program_listing.first_row + 4
+    page.entry_panel.grab()
+    entry, *_ = page.entry_panel._places[0]
+    assert entry.height() >= FINGERTIP_PX
+    press(page.entry_panel, entry)
+    assert page.number_pad.isVisible()
+    page.number_pad.grab()
+    keys = dict(zip("789/456*123-0.(+", page.number_pad._places, strict=False))
     for figure in "12":
         box, *_ = keys[figure]
-        assert min(box.width(), box.height()) >= FINGER
-        press(page.pad, box)
-    press(page.pad, page.pad._places[-1][0])  # RETURN
-    assert model_of(operator).cursor.line == 12
-    assert page.pad.isHidden()
-    model_of(operator).finder.worker.settle(60.0)
+        assert min(box.width(), box.height()) >= FINGERTIP_PX
+        press(page.number_pad, box)
+    press(page.number_pad, page.number_pad._places[-1][0])  # RETURN
+    assert model_of(operator).line_cursor.selected_line == 12
+    assert page.number_pad.isHidden()
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     page_of(operator)
-    page.listing.grab()
-    place = 12 - page.listing.top - 1
-    press(page.listing, page.listing._places[place][0])  # on the marked one: its state again
-    model_of(operator).finder.worker.settle(60.0)
+    page.program_listing.grab()
+    place = 12 - page.program_listing.first_row - 1
+    press(page.program_listing, page.program_listing._places[place][0])  # on the marked one: its state again
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     page_of(operator)
-    assert model_of(operator).answer is not None or model_of(operator).plan is not None
+    assert model_of(operator).search_refusal is not None or model_of(operator).restart_plan is not None
 
 
 def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> None:
     desk = operator.stage.desk
-    desk.programs.choose("pin")
-    desk.session.settled(30.0)
+    desk.program_choice.load_by_name("pin")
+    desk.program_loader.wait_until_loaded(30.0)
     operator.drives_on()
     operator.key(Key.Key_F6)
     operator.type("8P9")
     page = found(operator)
-    assert page.state.shown.why == text("search.no-such-pass", line=8, count=5, wanted=9)
-    before, after = page.state.shown.near
-    assert (before.key, after.key) == ("F8", "F9")
+    assert page.state_panel.content.refusal_reason == text("search.no-such-pass", line=8, count=5, wanted=9)
+    before, after = page.state_panel.content.nearest_lines
+    assert (before.key_name, after.key_name) == ("F8", "F9")
     operator.key(Key.Key_F10)
     assert operator.prompt() == text("search.good-line-first")
     operator.key(Key.Key_F9)
-    model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.title == text("search.state-at-line", line=after.line)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
+    assert page_of(operator).state_panel.content.title == text("search.state-at-line", line=after.line)
 
 
 def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> None:
@@ -187,8 +190,8 @@ def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> N
     operator.type("7")
     found(operator)
     operator.palms()
-    assert operator.shot.state is State.IDLE
-    assert operator.shot.starts is Starts.RESTART
+    assert operator.shot.state is MachineState.IDLE
+    assert operator.shot.starts is StartAction.RESTART
 
 
 def test_leaving_the_page_takes_a_ready_restart_back(operator: Operator) -> None:
@@ -199,8 +202,8 @@ def test_leaving_the_page_takes_a_ready_restart_back(operator: Operator) -> None
     confirmed(operator)
     operator.key(Key.Key_F1, Key.Key_F2)
     operator.pause(0.05)
-    assert operator.shot.starts is Starts.PROGRAM
-    assert operator.shot.prepared == ""
+    assert operator.shot.starts is StartAction.PROGRAM
+    assert operator.shot.prepared_digest == ""
 
 
 def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> None:
@@ -208,19 +211,19 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     operator.key(Key.Key_F6)
     operator.type("38")
     page = found(operator)
-    assert page.starts.starts[-1] == "COOLANT"
-    assert page.starts.choices == (text("search.with-coolant"),)
+    assert page.functions_panel.started_functions[-1] == "COOLANT"
+    assert page.functions_panel.option_texts == (text("search.with-coolant"),)
     operator.key(Key.Key_F5)
     page = page_of(operator)
-    assert page.starts.starts == ("SPINDLE FORWARD G97 2200 RPM",)
-    assert page.starts.choices == (text("search.without-coolant"),)
-    assert page.starts.trouble == ""
+    assert page.functions_panel.started_functions == ("SPINDLE FORWARD G97 2200 RPM",)
+    assert page.functions_panel.option_texts == (text("search.without-coolant"),)
+    assert page.functions_panel.error_text == ""
     confirmed(operator)
     operator.key(Key.Key_F5)  # another start is not the one that was proved
-    assert model_of(operator).stage is SearchtoStage.SHOWN
-    assert operator.shot.prepared != ""
+    assert model_of(operator).stage is SearchtoStage.PLAN_SHOWN
+    assert operator.shot.prepared_digest != ""
     operator.pause(0.05)
-    assert operator.shot.prepared == ""
+    assert operator.shot.prepared_digest == ""
 
 
 def test_the_collet_must_be_as_the_line_has_it(operator: Operator) -> None:
@@ -231,15 +234,15 @@ def test_the_collet_must_be_as_the_line_has_it(operator: Operator) -> None:
     operator.key(Key.Key_F2, Key.Key_F6)
     operator.type("7")
     page = found(operator)
-    assert begins(page.starts.trouble, "search.collet-open")
+    assert begins(page.functions_panel.error_text, "search.collet-open")
     operator.key(Key.Key_F10)
     assert begins(operator.prompt(), "search.collet-open")
-    assert model_of(operator).stage is SearchtoStage.SHOWN
+    assert model_of(operator).stage is SearchtoStage.PLAN_SHOWN
 
 
 def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: Operator) -> None:
     operator.key(Key.Key_F6)
-    assert operator.frame.page is operator.frame.automatic
+    assert operator.frame.current_page is operator.frame.automatic_page
     assert operator.prompt() == text("screen.choose-program")
     operator.stage.start()
     operator.key(Key.Key_F6)
@@ -248,9 +251,9 @@ def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: O
 
 def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
     desk = operator.stage.desk
-    desk.programs.choose("bushing")
-    desk.session.settled(30.0)
-    operator.until(lambda: operator.shot.state is State.DISABLED)
+    desk.program_choice.load_by_name("bushing")
+    desk.program_loader.wait_until_loaded(30.0)
+    operator.until(lambda: operator.shot.state is MachineState.DISABLED)
     operator.key(Key.Key_F6)
     operator.type("7")
     found(operator)
@@ -265,23 +268,23 @@ def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> Non
     found(operator)
     confirmed(operator)
     desk = operator.stage.desk
-    path = desk.session.now.path
+    path = desk.program_loader.loaded.path
     assert path is not None
-    desk.session.load(path)
-    desk.session.settled(30.0)
+    desk.program_loader.start_loading(path)
+    desk.program_loader.wait_until_loaded(30.0)
     operator.pause(0.1)
     page_of(operator)
-    assert model_of(operator).stage is SearchtoStage.CHOOSE
+    assert model_of(operator).stage is SearchtoStage.CHOOSING
     operator.palms()
-    assert operator.shot.state is State.IDLE
+    assert operator.shot.state is MachineState.IDLE
 
 
 def test_the_question_has_every_letter(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.type("eh x")
-    assert page_of(operator).asked.text == "eh x"
-    assert operator.shot.state is State.IDLE
+    assert page_of(operator).entry_panel.entry_text == "eh x"
+    assert operator.shot.state is MachineState.IDLE
 
 
 def test_escape_goes_back_step_by_step(operator: Operator) -> None:
@@ -290,9 +293,9 @@ def test_escape_goes_back_step_by_step(operator: Operator) -> None:
     operator.type("7")
     found(operator)
     operator.key(Key.Key_Escape)
-    assert model_of(operator).stage is SearchtoStage.CHOOSE
+    assert model_of(operator).stage is SearchtoStage.CHOOSING
     operator.key(Key.Key_Escape)
-    assert operator.frame.page is operator.frame.automatic
+    assert operator.frame.current_page is operator.frame.automatic_page
 
 
 def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_is_told(
@@ -305,15 +308,15 @@ def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_
     operator.key(Key.Key_F6)
     operator.type("41")
     page = found(operator)
-    assert begins(page.starts.trouble, "search.left-out", first=18, last=39)
-    assert page.path.legs[1].label == "1 X"  # T1 stands on the outside
-    assert model_of(operator).plan is not None
+    assert begins(page.functions_panel.error_text, "search.left-out", first=18, last=39)
+    assert page.path_view.drawn_legs[1].label == "1 X"  # T1 stands on the outside
+    assert model_of(operator).restart_plan is not None
 
 
 def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator) -> None:
     desk = operator.stage.desk
-    desk.programs.choose("pin")
-    desk.session.settled(30.0)
+    desk.program_choice.load_by_name("pin")
+    desk.program_loader.wait_until_loaded(30.0)
     operator.drives_on()
     operator.key(Key.Key_F6)
     operator.key(Key.Key_Right)
@@ -321,26 +324,26 @@ def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator)
     operator.type("8P3")
     page = found(operator)
     assert (
-        page.state.shown.title
+        page.state_panel.content.title
         == f"{text('search.state-at-line', line=8)}, {text('search.pass', number=3, count=5)}"
     )
-    loop = page.state.shown.rows[0]
+    loop = page.state_panel.content.state_rows[0]
     assert loop.label == text("search.pass-of-lines", first=6, last=12)
-    assert (loop.wanted, loop.now) == ("3 OF 5", "—")
-    rows = {row.label: row.wanted for row in page.state.shown.rows}
+    assert (loop.required_value, loop.present_value) == ("3 OF 5", "—")
+    rows = {row.label: row.required_value for row in page.state_panel.content.state_rows}
     assert rows["X Ø"] == "0.37500"  # .54 and .055 in, .02 out and .02 in again, in each pass
     operator.key(Key.Key_Right)
-    model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.passes == text("search.pass", number=4, count=5)
-    page.state.grab()  # draws, so that a finger finds its place
-    assert page.state.touch(QPointF(page.state.width() * 0.1, page.state.height() - 25))
-    model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.passes == text("search.pass", number=3, count=5)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
+    assert page_of(operator).state_panel.content.pass_text == text("search.pass", number=4, count=5)
+    page.state_panel.grab()  # draws, so that a finger finds its place
+    assert page.state_panel.press_at(QPointF(page.state_panel.width() * 0.1, page.state_panel.height() - 25))
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
+    assert page_of(operator).state_panel.content.pass_text == text("search.pass", number=3, count=5)
     operator.key(Key.Key_Left, Key.Key_Left)
-    model_of(operator).finder.worker.settle(60.0)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     operator.key(Key.Key_Left, Key.Key_Left)
-    model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.passes == text("search.pass", number=1, count=5)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
+    assert page_of(operator).state_panel.content.pass_text == text("search.pass", number=1, count=5)
 
 
 def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> None:
@@ -349,45 +352,47 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     operator.pause(0.2)
     estop_and_recover(operator)
     operator.key(Key.Key_F6, Key.Key_F4)
-    model_of(operator).finder.worker.settle(60.0)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     page = page_of(operator)
     assert operator.prompt() == text("search.look-at-way-out")
-    assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z"]
-    assert page.starts.starts == (text("search.only-slides"),)
-    assert page.starts.choices[0] == text("search.leaves-part", feed="20.00 in/min")
+    assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 X", "2 Z", "3 Z"]
+    assert page.functions_panel.started_functions == (text("search.only-slides"),)
+    assert page.functions_panel.option_texts[0] == text("search.leaves-part", feed="20.00 in/min")
     operator.palms()
-    assert operator.shot.state is State.IDLE  # not before it is confirmed
+    assert operator.shot.state is MachineState.IDLE  # not before it is confirmed
     confirmed(operator)
     assert begins(operator.prompt(), "search.start-way-out", start=pattern("screen.both-palms"))
     operator.palms()
-    assert operator.shot.state is State.RUN
-    assert operator.frame.title.page == page_table.SEARCHTO
+    assert operator.shot.state is MachineState.RUN
+    assert operator.frame.title_line.page_title == page_table.SEARCHTO_PAGE
     operator.key(Key.Key_H)
-    operator.reaches(State.HOLD)
+    operator.reaches(MachineState.HOLD)
     operator.pause(0.4)
     assert begins(operator.prompt(), "screen.to-go-on", start=pattern("screen.both-palms"))
     operator.palms()
-    operator.stage.tick(lambda: operator.shot.state is State.IDLE, 60.0)
+    operator.stage.tick(lambda: operator.shot.state is MachineState.IDLE, 60.0)
     operator.key(Key.Key_F4)  # before the screen has shown that it is out
     operator.pause(0.1)
     assert operator.shot.rpm_command == 0.0
-    assert operator.shot.starts is Starts.RESTART
+    assert operator.shot.starts is StartAction.RESTART
     assert operator.shot.interrupted_line == 18
-    model_of(operator).finder.worker.settle(60.0)
+    model_of(operator).restart_finder.worker.wait_for_results(60.0)
     assert operator.prompt() == text("search.tool-is-clear", tool=1)
 
 
 def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
     operator.stage.start()
-    operator.until(lambda: operator.shot.state is State.PROGRAM_STOP or operator.shot.line == 38, 240.0)
+    operator.until(
+        lambda: operator.shot.state is MachineState.PROGRAM_STOP or operator.shot.line == 38, 240.0
+    )
     operator.pause(0.3)
     estop_and_recover(operator)
     operator.key(Key.Key_F6)
     page = found(operator)
-    assert page.state.shown.title == text("search.state-at-line", line=38)
+    assert page.state_panel.content.title == text("search.state-at-line", line=38)
     # The bar stands on X.5 already: out along Z, and in again; within the bore at a feed.
-    assert [leg.label for leg in page.path.legs] == ["", "1 Z", "2 Z", "3 Z"]
-    assert [leg.rapid for leg in page.path.legs[1:]] == [False, True, True]
+    assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 Z", "2 Z", "3 Z"]
+    assert [leg.rapid for leg in page.path_view.drawn_legs[1:]] == [False, True, True]
     confirmed(operator)
     x = operator.shot.demand[0]
     operator.palms()
@@ -400,19 +405,19 @@ def test_the_stock_is_shown_as_the_line_finds_it(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     page = page_of(operator)
-    player = page.path.player
+    player = page.path_view.part_player
     assert player is not None
-    page.path.show_part()
+    page.path_view.show_part()
     operator.type("9")
     found(operator)
-    plan = model_of(operator).plan
+    plan = model_of(operator).restart_plan
     assert plan is not None
     page_of(operator)
-    player.settle(60.0)
+    player.wait_for_result(60.0)
     page_of(operator)
-    player.settle(60.0)
-    assert player.played is not None
-    assert player.played.instant.block == plan.found.checkpoint.blocks
-    picture = operator.stage.desk.session.now.picture
+    player.wait_for_result(60.0)
+    assert player.result is not None
+    assert player.result.part_instant.block_count == plan.restart_point.checkpoint.blocks
+    picture = operator.stage.desk.program_loader.loaded.picture
     assert picture is not None
-    assert 0 < plan.found.checkpoint.blocks < len(picture.line)
+    assert 0 < plan.restart_point.checkpoint.blocks < len(picture.line)

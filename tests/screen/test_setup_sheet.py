@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.program_proving import get_samples_folder
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
 from app.desk.desk import Desk
-from app.desk.translation import spoken
-from app.programs.removable_media import Stick
-from app.report.pdf_file import Paper
+from app.desk.translation import get_language
+from app.programs.removable_media import UsbStick
+from app.report.pdf_file import PaperSize
 from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
 from app.special.special_view import SpecialPage
 from tests.pdf_text import Pdf
@@ -34,23 +34,23 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
 
 def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSheetFunction]:
     if program:
-        hands.desk.programs.choose(program)
-        hands.desk.session.settled(60.0)
+        hands.desk.program_choice.load_by_name(program)
+        hands.desk.program_loader.wait_until_loaded(60.0)
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     names = [function.name for function in page.model.functions]
-    page.model.enter(names.index(SETUP))
-    function = page.model.current
+    page.model.open_function(names.index(SETUP))
+    function = page.model.shown_function
     assert isinstance(function, SetupSheetFunction)
     if program:
-        hands.sees(lambda: function.made is not None)
-        hands.sees(lambda: len(page.table.sheet.rows) > 3)
+        hands.sees(lambda: function.made_sheet is not None)
+        hands.sees(lambda: len(page.table_panel.table.rows) > 3)
     return page, function
 
 
 def rows(page: SpecialPage) -> dict[str, str]:
-    return {row.cells[0]: row.cells[1] for row in page.table.sheet.rows}
+    return {row.cells[0]: row.cells[1] for row in page.table_panel.table.rows}
 
 
 def take_note(hands: Hands, text: str) -> None:
@@ -62,14 +62,14 @@ def take_note(hands: Hands, text: str) -> None:
 def test_tools_offsets_stock_and_stops_stand_on_it(hands: Hands) -> None:
     page, _ = opened(hands)
     said = rows(page)
-    offset = read_offsets(samples() / "offsets.toml").tools[2]
+    offset = read_offsets(get_samples_folder() / "offsets.toml").tool_offsets[2]
     assert f"X (radius) {offset.x / 25.4:.4f} in   Z {offset.z / 25.4:.4f} in" in said["T2"]
     assert said["T2"].startswith("BORING")
     assert "(assumed)" in said["T2"]
     assert "Ø 1." in said["STOCK"]
     assert "GAUGE THE OUTSIDE AND CORRECT D1" in said["M01"]
     assert {"TIME PER PART", "STICK-OUT", "T1", "T3", "D1"} <= set(said)
-    drawn = {row.cells[0] for row in page.table.sheet.rows if row.outline is not None}
+    drawn = {row.cells[0] for row in page.table_panel.table.rows if row.outline is not None}
     assert drawn == {"T1", "T2", "T3"}
 
 
@@ -83,10 +83,10 @@ def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
     hands.key(Key.Key_Return)
     assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
     hands.sees(lambda: journal.read_setting("notes:bushing.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"])
-    function.opened()  # read anew from what is kept
+    function.on_open()  # read anew from what is kept
     assert function.notes == ["SOFT JAWS", "BAR .02 OUT MORE"]
-    hands.desk.programs.choose("pin")
-    hands.desk.session.settled(60.0)
+    hands.desk.program_choice.load_by_name("pin")
+    hands.desk.program_loader.wait_until_loaded(60.0)
     assert function.notes == []
     store = journal.book().store
     assert store is not None
@@ -113,7 +113,7 @@ def test_escape_leaves_a_note_as_it_was(hands: Hands) -> None:
     hands.type("X")
     hands.key(Key.Key_Escape)
     assert function.notes == ["SOFT JAWS"]
-    assert function.entry is None
+    assert function.note_field is None
 
 
 def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
@@ -121,20 +121,20 @@ def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
     take_note(hands, "<SOFT> JAWS & MORE")
     stick = tmp_path / "stick"
     stick.mkdir()
-    function.plugged = lambda: (Stick("BLUE", stick, 10**9),)
-    before = function.paper
+    function.list_media = lambda: (UsbStick("BLUE", stick, 10**9),)
+    before = function.paper_size
     hands.key(Key.Key_F5)
-    assert function.paper is not before
-    if before is Paper.A4:
+    assert function.paper_size is not before
+    if before is PaperSize.A4:
         hands.key(Key.Key_F5)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: [place.label for place in function.places] == ["BLUE", "THIS CONTROL"])
+    hands.sees(lambda: [place.label for place in function.save_places] == ["BLUE", "THIS CONTROL"])
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
     page = (stick / "bushing.nc-setup.html").read_text()
     pdf = Pdf(stick / "bushing.nc-setup.pdf")
     made = "".join(pdf.pages)
-    digest = hashlib.sha256((samples() / "bushing.nc").read_bytes()).hexdigest()
+    digest = hashlib.sha256((get_samples_folder() / "bushing.nc").read_bytes()).hexdigest()
     for words in (
         wording("screen.setup-sheet", program="bushing.nc"),
         "GAUGE THE OUTSIDE AND CORRECT D1",
@@ -154,25 +154,25 @@ def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
 
 def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
     page, function = opened(hands, "")
-    hands.sees(lambda: page.table.sheet.title == SETUP)
-    assert page.table.sheet.rows == ()
+    hands.sees(lambda: page.table_panel.table.title == SETUP)
+    assert page.table_panel.table.rows == ()
     for key in (Key.Key_F2, Key.Key_F6):
         hands.key(key)
         assert begins(hands.prompt(), "screen.choose-program-for-sheet")
-    assert function.entry is None
-    assert function.places == ()
+    assert function.note_field is None
+    assert function.save_places == ()
 
 
 def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
     _, function = opened(hands)
-    function.plugged = lambda: (Stick("BLUE", tmp_path, 10**9),)
-    hands.desk.settings.choose("language", "es")
-    hands.sees(lambda: spoken() == "es")
+    function.list_media = lambda: (UsbStick("BLUE", tmp_path, 10**9),)
+    hands.desk.settings_store.choose("language", "es")
+    hands.sees(lambda: get_language() == "es")
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(function.places))
+    hands.sees(lambda: bool(function.save_places))
     hands.key(Key.Key_Return)
     hands.sees((tmp_path / "bushing.nc-setup.pdf").exists)
-    hands.sees(lambda: not function.busy)
+    hands.sees(lambda: not function.task_text)
     page = (tmp_path / "bushing.nc-setup.html").read_text(encoding="utf-8")
     assert '<html lang="es">' in page
     assert text_in_spanish("screen.setup-sheet", program="bushing.nc") in page
@@ -183,18 +183,18 @@ def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:
     function._keep([f"NOTE {n}" for n in range(MOST_NOTES)])
     hands.key(Key.Key_F2)
     assert shows(hands.prompt(), "screen.too-many-notes")
-    assert function.entry is None
+    assert function.note_field is None
 
 
 def test_a_place_that_cannot_be_written_is_told(hands: Hands, tmp_path: Path) -> None:
     _, function = opened(hands)
     (tmp_path / "file").write_text("no folder")
-    function.plugged = lambda: (Stick("GONE", tmp_path / "file", 0),)
+    function.list_media = lambda: (UsbStick("GONE", tmp_path / "file", 0),)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(function.places))
+    hands.sees(lambda: bool(function.save_places))
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.prompt(), "screen.cannot-be-written"))
-    assert function.busy == ""
+    assert function.task_text == ""
 
 
 def test_a_full_disk_is_told(hands: Hands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,9 +206,9 @@ def test_a_full_disk_is_told(hands: Hands, tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr("os.fsync", full)
     function.folder = tmp_path / "sheets"
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(function.places))
+    hands.sees(lambda: bool(function.save_places))
     hands.key(Key.Key_End)
-    function.marked = len(function.places) - 1
+    function.marked = len(function.save_places) - 1
     hands.key(Key.Key_Return)
     hands.sees(lambda: "No space left on device" in hands.prompt())
     assert list((tmp_path / "sheets").iterdir()) == []

@@ -8,19 +8,19 @@ from pathlib import Path
 import pytest
 
 from app.compose.runs.journal import Journal
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
-from app.programs.removable_media import Stick
+from app.programs.removable_media import UsbStick
 from app.screen import page_table
-from app.special.backup_and_restore import BARRED, BackupAndRestore
-from app.special.inputs_outputs import NOT_NOW
+from app.special.backup_and_restore import RESTORE_REFUSAL, BackupFunction
+from app.special.inputs_outputs import SWITCH_REFUSAL
 from app.special.special_view import SpecialPage
-from core.access.access_table import Act, Level
-from core.executor.commands import FeedHold, ForceOutput, SetSwitch, SpindleLimit
-from core.executor.snapshot import Alarm, Event, State
-from core.store.backup import Verdict
-from core.store.people import PersonRow
+from core.access.access_table import AccessLevel, ProtectedChange
+from core.executor.commands import FeedHold, ForceOutput, SetSpindleLimit, SetSwitch
+from core.executor.snapshot import Alarm, LogEvent, MachineState
+from core.store.backup import BackupVerdict
 from core.store.store_errors import StoreError
+from core.store.user_records import UserRow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
@@ -38,36 +38,36 @@ def open_function(hands: Hands, number: int) -> SpecialPage:
     hands.key(Key.Key_F10)
     hands.type(str(number))
     hands.key(Key.Key_Return)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
-    hands.sees(lambda: page.model.inside and page.table.sheet is not None)
+    hands.sees(lambda: page.model.inside and page.table_panel.table is not None)
     return page
 
 
 def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
-    return page.table.sheet.rows[row].cells
+    return page.table_panel.table.rows[row].cells
 
 
 def test_the_list_is_walked_by_arrows_and_left_by_escape(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    assert hands.frame.title.page == page_table.SPECIAL
-    page = hands.frame.page
+    assert hands.frame.title_line.page_title == page_table.SPECIAL
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     hands.key(Key.Key_Down)
-    assert page.model.current.name == "PARTS COUNTER"
+    assert page.model.shown_function.name == "PARTS COUNTER"
     hands.key(Key.Key_Return)
     assert page.model.inside
     hands.key(Key.Key_Escape)
     assert not page.model.inside
     hands.key(Key.Key_Escape)
-    assert hands.frame.page is hands.page
+    assert hands.frame.current_page is hands.page
 
 
 def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
     page = open_function(hands, 1)
     hands.type("1000+250")
     hands.key(Key.Key_Return)
-    assert SpindleLimit(1250.0) in hands.machine.posted
+    assert SetSpindleLimit(1250.0) in hands.machine.posted
     hands.sees(lambda: cells(page, 1)[1] == "1250")
     hands.key(Key.Key_F4)
     assert begins(hands.prompt(), "screen.lift-limit")
@@ -98,7 +98,7 @@ def test_a_limit_that_the_spindle_cannot_turn_is_refused(hands: Hands, typed: st
     hands.type(typed)
     hands.key(Key.Key_Return)
     assert hands.prompt().startswith(why)
-    assert not any(isinstance(command, SpindleLimit) for command in hands.machine.posted)
+    assert not any(isinstance(command, SetSpindleLimit) for command in hands.machine.posted)
 
 
 def test_lifting_no_limit_says_so(hands: Hands) -> None:
@@ -113,15 +113,17 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     hands.type("2")
     hands.key(Key.Key_Return)
     hands.sees(lambda: cells(page, 1) == ("PART TARGET", "2"))
-    hands.machine.now = replace(hands.machine.now, parts=1, cycle_repeat=True, counts=True, state=State.WAIT)
+    hands.machine.now = replace(
+        hands.machine.now, parts=1, cycle_repeat=True, counts=True, state=MachineState.WAIT
+    )
     hands.sees(lambda: SetSwitch("cycle_repeat", False) in hands.machine.posted)
     assert begins(hands.prompt(), "screen.last-part-of-target")
-    hands.machine.now = replace(hands.machine.now, parts=2, state=State.IDLE)
+    hands.machine.now = replace(hands.machine.now, parts=2, state=MachineState.IDLE)
     hands.sees(lambda: hands.prompt() == wording("screen.target-reached", count=2, target=2))
-    assert hands.desk.runs.counter.words == "2/2"
+    assert hands.desk.program_runs.part_counter.count_text == "2/2"
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: hands.desk.runs.counter.words == "0/2")
+    hands.sees(lambda: hands.desk.program_runs.part_counter.count_text == "0/2")
 
 
 def test_the_counter_without_a_program_refuses(hands: Hands) -> None:
@@ -143,12 +145,12 @@ def test_no_number_of_parts(hands: Hands, typed: str) -> None:
 
 
 def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) -> None:
-    for event in (Event(0.0, "load", "pin.nc"), *(Event(0.0, "part", "part"),) * 3):
+    for event in (LogEvent(0.0, "load", "pin.nc"), *(LogEvent(0.0, "part", "part"),) * 3):
         journal.hear(event)
-    hands.sees(lambda: journal.runs.count_parts("pin.nc") == 3)
+    hands.sees(lambda: journal.runs.read_part_count("pin.nc") == 3)
     hands.load("pin")
     open_function(hands, 2)
-    hands.sees(lambda: hands.desk.runs.counter.count == 3)
+    hands.sees(lambda: hands.desk.program_runs.part_counter.count == 3)
     hands.type("2")
     hands.key(Key.Key_Return)
     assert hands.prompt() == wording("screen.parts-made-already", made=3)
@@ -177,13 +179,15 @@ def test_moving_the_mark_takes_the_question_back(hands: Hands) -> None:
     assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
 
 
-@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.JOG, State.FAULT, State.ESTOP])
-def test_no_output_is_switched_while_something_is_under_way(hands: Hands, state: State) -> None:
+@pytest.mark.parametrize(
+    "state", [MachineState.RUN, MachineState.HOLD, MachineState.JOG, MachineState.FAULT, MachineState.ESTOP]
+)
+def test_no_output_is_switched_while_something_is_under_way(hands: Hands, state: MachineState) -> None:
     open_function(hands, 3)
     hands.machine.now = replace(hands.machine.now, state=state)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_Return)
-    assert hands.desk.notice == NOT_NOW
+    assert hands.desk.prompt_notice == SWITCH_REFUSAL
     assert not any(isinstance(command, ForceOutput) for command in hands.machine.posted)
 
 
@@ -191,11 +195,13 @@ def test_inputs_and_lamps_are_seen_and_not_switched(hands: Hands) -> None:
     page = open_function(hands, 3)
     hands.machine.now = replace(hands.machine.now, inputs=frozenset({"TB2-5"}))
     hands.key(Key.Key_F4)
-    hands.sees(lambda: ("TB2-5", "TB2-5", "ON", "M91 M92") in [row.cells for row in page.table.sheet.rows])
+    hands.sees(
+        lambda: ("TB2-5", "TB2-5", "ON", "M91 M92") in [row.cells for row in page.table_panel.table.rows]
+    )
     hands.key(Key.Key_Return)
     assert hands.prompt() == wording("screen.only-outputs-switched")
     hands.key(Key.Key_F4)
-    hands.sees(lambda: page.table.sheet.title == "MACHINE LAMPS")
+    hands.sees(lambda: page.table_panel.table.title == "MACHINE LAMPS")
 
 
 def test_a_drive_shows_its_fault(hands: Hands) -> None:
@@ -208,35 +214,37 @@ def test_a_drive_shows_its_fault(hands: Hands) -> None:
 
 def test_the_log_is_searched_and_filtered(hands: Hands, journal: Journal) -> None:
     for kind, text in (("start", "pin.nc"), ("alarm", "FOLLOWING ERROR: Z"), ("switch", "single block on")):
-        journal.hear(Event(0.0, kind, text))
+        journal.hear(LogEvent(0.0, kind, text))
     page = open_function(hands, 5)
-    hands.sees(lambda: len(page.table.sheet.rows) == 3)
+    hands.sees(lambda: len(page.table_panel.table.rows) == 3)
     hands.key(Key.Key_F5)
-    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows] == ["alarm"])
+    hands.sees(lambda: [row.cells[1] for row in page.table_panel.table.rows] == ["alarm"])
     for _ in range(3):
         hands.key(Key.Key_F5)
     hands.key(Key.Key_F4)
     hands.type("BLOCK h")
-    hands.sees(lambda: page.table.sheet.rows == ())
-    assert page.takes("h")
+    hands.sees(lambda: page.table_panel.table.rows == ())
+    assert page.accepts_key("h")
     hands.key(Key.Key_Backspace)
     hands.key(Key.Key_Backspace)
-    hands.sees(lambda: [row.cells[2] for row in page.table.sheet.rows] == ["single block on"])
+    hands.sees(lambda: [row.cells[2] for row in page.table_panel.table.rows] == ["single block on"])
     hands.key(Key.Key_Escape)
-    hands.sees(lambda: len(page.table.sheet.rows) == 3)
-    assert not page.takes("h")
+    hands.sees(lambda: len(page.table_panel.table.rows) == 3)
+    assert not page.accepts_key("h")
 
 
 def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
-    store = hands.desk.book.store
+    store = hands.desk.offset_book.store
     assert store is not None
     store.settings.save_setting("mark", "before").result(60)
     page = open_function(hands, 6)
-    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
+    hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.prompt(), "screen.backup-is-whole"))
     hands.sees(
-        lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == wording("screen.restore-is-whole")
+        lambda: (
+            len(page.table_panel.table.rows) >= 2 and cells(page, 1)[1] == wording("screen.restore-is-whole")
+        )
     )
     store.settings.save_setting("mark", "after").result(60)
     hands.key(Key.Key_Down)
@@ -245,47 +253,49 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     yes(hands.window)
     hands.sees(lambda: begins(hands.prompt(), "screen.restored"))
     assert journal.read_setting("mark") == "before"
-    assert hands.desk.book.store is not store
-    journal.hear(Event(0.0, "start", "after the restore"))
+    assert hands.desk.offset_book.store is not store
+    journal.hear(LogEvent(0.0, "start", "after the restore"))
     hands.sees(lambda: [e.text for e in journal.events("after the", (), 9)] == ["after the restore"])
 
 
 def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -> None:
-    store = hands.desk.book.store
+    store = hands.desk.offset_book.store
     assert store is not None
-    store.offsets.tools.change_row(3, "x", {"x": 1.0, "z": 0.0}).result(60)
+    store.offsets.tool_offsets.change_row(3, "x", {"x": 1.0, "z": 0.0}).result(60)
     page = open_function(hands, 6)
-    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
-    backups = page.model.current
-    assert isinstance(backups, BackupAndRestore)
+    hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
+    backups = page.model.shown_function
+    assert isinstance(backups, BackupFunction)
     folder = backups.places[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-good.turndesk.db")
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
-    store.offsets.tools.change_row(3, "x", {"x": 2.0}).result(60)
+    store.offsets.tool_offsets.change_row(3, "x", {"x": 2.0}).result(60)
     hands.key(Key.Key_F4)
     said = ["RESTORE (BACKUP IS INTACT)", "CANNOT RESTORE: BACKUP DAMAGED"]
-    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
+    hands.sees(lambda: [row.cells[1] for row in page.table_panel.table.rows[1:3]] == said)
     hands.key(Key.Key_Down)
-    hands.sees(lambda: page.table.sheet.notes[0] == wording("screen.other-than-now", what="tool offsets 1"))
+    hands.sees(
+        lambda: page.table_panel.table.notes[0] == wording("screen.other-than-now", what="tool offsets 1")
+    )
     hands.key(Key.Key_Return)
     assert shows(hands.prompt(), "screen.restore", what="tool offsets 1")
     hands.key(Key.Key_Escape)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert shows(hands.desk.notice, "screen.refused")
-    assert shows(hands.desk.notice, "screen.not-a-database")
-    assert store.offsets.tools.read_rows()[3].x == 2.0
+    assert shows(hands.desk.prompt_notice, "screen.refused")
+    assert shows(hands.desk.prompt_notice, "screen.not-a-database")
+    assert store.offsets.tool_offsets.read_rows()[3].x == 2.0
 
 
 @pytest.mark.parametrize("row", [0, 1])
 def test_only_a_backup_on_a_stick_speaks_of_a_stick(hands: Hands, row: int, tmp_path: Path) -> None:
     page = open_function(hands, 6)
-    backups = page.model.current
-    assert isinstance(backups, BackupAndRestore)
-    backups.plugged = lambda: (Stick("STICK", tmp_path, 1_000_000),)
+    backups = page.model.shown_function
+    assert isinstance(backups, BackupFunction)
+    backups.list_media = lambda: (UsbStick("STICK", tmp_path, 1_000_000),)
     hands.key(Key.Key_F4)
-    hands.sees(lambda: len(page.table.sheet.rows) == 2)
+    hands.sees(lambda: len(page.table_panel.table.rows) == 2)
     for _ in range(row):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
@@ -295,77 +305,84 @@ def test_only_a_backup_on_a_stick_speaks_of_a_stick(hands: Hands, row: int, tmp_
 def test_backups_beside_data_that_cannot_be_read_point_to_the_terminal(
     hands: Hands, journal: Journal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def unreadable(_source: object) -> Verdict:
+    def unreadable(_source: object) -> BackupVerdict:
         raise StoreError("the file is damaged", "damaged")
 
-    monkeypatch.setattr(journal, "judge", unreadable)
-    folder = data_folder() / "backups"
+    monkeypatch.setattr(journal, "check_backup", unreadable)
+    folder = find_data_folder() / "backups"
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-good.turndesk.db")
     page = open_function(hands, 6)
-    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:2]] == ["NOT CHECKED"])
+    hands.sees(lambda: [row.cells[1] for row in page.table_panel.table.rows[1:2]] == ["NOT CHECKED"])
     hands.key(Key.Key_Down)
-    hands.sees(lambda: page.table.sheet.notes[0] == "the file is damaged")
+    hands.sees(lambda: page.table_panel.table.notes[0] == "the file is damaged")
     hands.key(Key.Key_Return)
-    assert "turndesk store restore" in hands.desk.notice
+    assert "turndesk store restore" in hands.desk.prompt_notice
 
 
 def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
     """A backup of the time before levels switched them off."""
     page = open_function(hands, 6)
-    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
-    backups = page.model.current
-    assert isinstance(backups, BackupAndRestore)
+    hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
+    backups = page.model.shown_function
+    assert isinstance(backups, BackupFunction)
     folder = backups.places[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-before.turndesk.db")
-    journal.opened().people.save_person(PersonRow("ANNA", 3, b"salt", b"hash")).result()
-    access = hands.desk.access
+    journal.require_store().people.save_user(UserRow("ANNA", 3, b"salt", b"hash")).result()
+    access = hands.desk.user_access
     access.reload()
     hands.key(Key.Key_F4)
     hands.sees(
-        lambda: [row.cells[1] for row in page.table.sheet.rows[1:2]] == [wording("screen.restore-is-whole")]
+        lambda: (
+            [row.cells[1] for row in page.table_panel.table.rows[1:2]] == [wording("screen.restore-is-whole")]
+        )
     )
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.desk.notice == access.refusal(Act.RESTORE) != ""
-    access.name, access.level = "ANNA", Level.SERVICE
-    access.used()
+    assert hands.desk.prompt_notice == access.find_refusal(ProtectedChange.RESTORE) != ""
+    access.user_name, access.access_level = "ANNA", AccessLevel.SERVICE
+    access.note_activity()
     hands.key(Key.Key_Return)
     yes(hands.window)
-    hands.sees(lambda: shows(hands.desk.notice, "screen.restored"))
+    hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.restored"))
     access.reload()
-    assert [row.name for row in access.people.rows] == ["ANNA"]
-    hands.sees(lambda: len(journal.opened().events.read_events(kinds={"change"})) > 0)
-    [row] = journal.opened().events.read_events(kinds={"change"})
+    assert [row.name for row in access.users.rows] == ["ANNA"]
+    hands.sees(lambda: len(journal.require_store().events.read_events(kinds={"change"})) > 0)
+    [row] = journal.require_store().events.read_events(kinds={"change"})
     assert (row.who, row.text.startswith("restored; ")) == ("ANNA", True)
 
 
 def test_nothing_is_restored_under_way(hands: Hands) -> None:
     page = open_function(hands, 6)
-    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
+    hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: len(page.table.sheet.rows) >= 2 and not page.model.worker.busy)
-    hands.machine.now = replace(hands.machine.now, state=State.HOLD)
+    hands.sees(lambda: len(page.table_panel.table.rows) >= 2 and not page.model.worker.is_busy)
+    hands.machine.now = replace(hands.machine.now, state=MachineState.HOLD)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.desk.notice == BARRED
+    assert hands.desk.prompt_notice == RESTORE_REFUSAL
 
 
 def test_settings_act_at_once_and_are_kept(hands: Hands, journal: Journal) -> None:
     page = open_function(hands, 7)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.frame.head.view is not None and "MM" in hands.frame.head.view.position.unit)
+    hands.sees(
+        lambda: (
+            hands.frame.readout_line.status is not None
+            and "MM" in hands.frame.readout_line.status.position.unit
+        )
+    )
     assert cells(page, 0)[1] == "MM"
     for _ in range(3):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.window.look.palette.name == "light")
+    hands.sees(lambda: hands.window.theme.palette.name == "light")
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.frame.dock is not None
-    hands.sees(lambda: hands.frame.dock is not None and hands.frame.dock.isHidden())
+    assert hands.frame.station_dock is not None
+    hands.sees(lambda: hands.frame.station_dock is not None and hands.frame.station_dock.isHidden())
     wanted = {"units": "MM", "theme": "light", "dock": False, "language": "en", "readout": "POSITION"}
 
     def all_kept() -> bool:
@@ -381,18 +398,18 @@ def test_the_station_is_not_hidden_with_its_estop_pressed(hands: Hands) -> None:
     for _ in range(4):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert begins(hands.desk.notice, "screen.release-station-e-stop")
-    assert hands.desk.settings.now.dock
+    assert begins(hands.desk.prompt_notice, "screen.release-station-e-stop")
+    assert hands.desk.settings_store.current.dock
 
 
 def test_hold_and_estop_work_in_the_middle_of_an_entry(hands: Hands) -> None:
     open_function(hands, 1)
     hands.type("12")
-    hands.machine.now = replace(hands.machine.now, state=State.RUN)
-    hands.window.hold()
+    hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
+    hands.window.start_feed_hold()
     assert FeedHold() in hands.machine.posted
-    hands.window.estop()
-    hands.sees_state(State.ESTOP)
+    hands.window.press_estop()
+    hands.sees_state(MachineState.ESTOP)
 
 
 def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, journal: Journal) -> None:
@@ -401,16 +418,16 @@ def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, 
     hands.type("1")
     hands.key(Key.Key_Return)
     hands.sees(lambda: cells(page, 1) == ("PART TARGET", "1"))
-    hands.machine.now = replace(hands.machine.now, cycle_repeat=True, counts=False, state=State.WAIT)
+    hands.machine.now = replace(hands.machine.now, cycle_repeat=True, counts=False, state=MachineState.WAIT)
     hands.window.refresh()
     assert SetSwitch("cycle_repeat", False) not in hands.machine.posted
 
 
 def test_no_count_is_switched_by_key_and_finger_and_lights_a_lamp(hands: Hands) -> None:
-    assert not any(lamp.word == "NO COUNT" for lamp in hands.frame.strip.lamps)
+    assert not any(lamp.label == "NO COUNT" for lamp in hands.frame.strip.lamps)
     hands.key(Key.Key_P)
     assert hands.machine.now.no_count
-    hands.sees(lambda: any(lamp.word == "NO COUNT" and lamp.lit for lamp in hands.frame.strip.lamps))
+    hands.sees(lambda: any(lamp.label == "NO COUNT" and lamp.is_lit for lamp in hands.frame.strip.lamps))
     open_function(hands, 2)
     hands.key(Key.Key_F5)
     assert not hands.machine.now.no_count
@@ -425,7 +442,7 @@ def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
     hands.key(Key.Key_F2)
     hands.key(Key.Key_F3)
     hands.sees(lambda: cells(page, 0) == ("PARTS MADE", "1"))
-    hands.sees(lambda: journal.runs.count_parts("pin.nc") == 1)
+    hands.sees(lambda: journal.runs.read_part_count("pin.nc") == 1)
 
 
 def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:
@@ -437,37 +454,39 @@ def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:
 def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
     """At 600 lines not all fit: the foot leafs without opening anything, 0 is the tenth function."""
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
-    items, count = page.items, len(page.model.functions)
+    items, count = page.function_list, len(page.model.functions)
     items.grab()  # drawn
     assert 1 < items.rows < count
     items.scroll_by(items.rows)
-    assert items.top == min(items.rows, count - items.rows)
+    assert items.first_row == min(items.rows, count - items.rows)
     items.scroll_by(99)
-    assert items.top == count - items.rows
+    assert items.first_row == count - items.rows
     assert not page.model.inside
     items.scroll_by(-99)
-    assert items.top == 0
+    assert items.first_row == 0
     hands.type("10")
     assert not page.model.inside
     assert page.model.at == 9
     items.grab()  # drawn: the tenth is in sight
-    assert items.top <= 9 < items.top + items.rows
+    assert items.first_row <= 9 < items.first_row + items.rows
 
 
 def test_a_simulated_input_is_switched_and_one_of_the_station_is_not(hands: Hands) -> None:
     switched: list[tuple[str, bool]] = []
-    hands.desk.control.set_input = lambda name, on: switched.append((name, on))
+    hands.desk.desk_control.set_input = lambda name, on: switched.append((name, on))
     page = open_function(hands, 3)
-    hands.machine.now = replace(hands.machine.now, state=State.WAIT)  # also while a program waits for it
+    hands.machine.now = replace(
+        hands.machine.now, state=MachineState.WAIT
+    )  # also while a program waits for it
     hands.key(Key.Key_F4)
-    hands.sees(lambda: page.table.sheet.title == "INPUTS")
-    names = [row.cells[0] for row in page.table.sheet.rows]
-    page.model.current.marked = names.index("guard")
+    hands.sees(lambda: page.table_panel.table.title == "INPUTS")
+    names = [row.cells[0] for row in page.table_panel.table.rows]
+    page.model.shown_function.marked = names.index("guard")
     hands.key(Key.Key_Return)
     assert switched == [("guard", True)]
-    page.model.current.marked = names.index("estop")
+    page.model.shown_function.marked = names.index("estop")
     hands.key(Key.Key_Return)
     assert len(switched) == 1
     assert shows(hands.prompt(), "screen.output-follows-machine")
@@ -475,15 +494,21 @@ def test_a_simulated_input_is_switched_and_one_of_the_station_is_not(hands: Hand
 
 def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     page._enter([each.name for each in page.model.functions].index("LAMPS AND SOUND"))
-    assert wording("screen.volume", volume="OFF") in page.model.current.sheet(hands.desk.snapshot()).notes
+    assert (
+        wording("screen.volume", volume="OFF")
+        in page.model.shown_function.make_table(hands.desk.read_snapshot()).notes
+    )
     hands.sees(lambda: cells(page, 3)[1:] == ("AMBER BLINKING + BUZZER 1 s", "ON"))
     hands.key(Key.Key_F4)
     assert hands.prompt() == wording("screen.volume-nought")
     hands.key(Key.Key_F3)
-    assert wording("screen.volume", volume="20 %") in page.model.current.sheet(hands.desk.snapshot()).notes
+    assert (
+        wording("screen.volume", volume="20 %")
+        in page.model.shown_function.make_table(hands.desk.read_snapshot()).notes
+    )
     hands.key(Key.Key_Return)
     hands.sees(lambda: cells(page, 0)[2] == "OFF")
     hands.key(Key.Key_F5)
@@ -493,38 +518,43 @@ def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
 @pytest.mark.parametrize("number", range(1, 17))
 def test_every_function_is_chosen_by_its_number_and_return(hands: Hands, number: int) -> None:
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     if number > len(page.model.functions):
         pytest.skip("this desk has fewer functions")
     hands.type(str(number))
     assert (page.model.at, page.model.inside) == (number - 1, False)
-    assert not page.has_field()
+    assert not page.has_text_field()
 
 
 def test_no_digit_of_a_number_falls_into_a_field(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     for digit in "14" * 3 + "25":
         hands.type(digit)
-        assert page.table.sheet.text == ""
+        assert page.table_panel.table.text == ""
     assert not page.model.inside
     hands.key(Key.Key_Down)
     hands.type("0")
-    assert shows(hands.desk.notice, "screen.no-such-function", number="0", last=len(page.model.functions))
+    assert shows(
+        hands.desk.prompt_notice, "screen.no-such-function", number="0", last=len(page.model.functions)
+    )
 
 
 def test_the_next_digit_replaces_a_refused_speed(hands: Hands) -> None:
     page = open_function(hands, 1)
     hands.type("199999999999")
     hands.key(Key.Key_Return)
-    assert page.table.sheet.refused or page.model.current.sheet(hands.machine.now).refused
+    assert (
+        page.table_panel.table.is_rejected
+        or page.model.shown_function.make_table(hands.machine.now).is_rejected
+    )
     hands.type("2")
-    assert page.model.current.sheet(hands.machine.now).text == "2"
+    assert page.model.shown_function.make_table(hands.machine.now).text == "2"
     hands.key(Key.Key_Delete)
     hands.type("199999999999")
     hands.key(Key.Key_Return)
     hands.key(Key.Key_Backspace)  # corrects it instead
     hands.type("2")
-    assert page.model.current.sheet(hands.machine.now).text == "199999999992"
+    assert page.model.shown_function.make_table(hands.machine.now).text == "199999999992"

@@ -8,14 +8,14 @@ from importlib.util import find_spec
 
 import pytest
 
-from app.compose.extra import extras
+from app.compose.optional_features import extras
 
 DESK = """
 import sys
-import app.screen.run_screen
+import app.screen.screen_startup
 from app.compose.desk_assembly import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
-from drivers.waiting import StepClock
+from drivers.wakeups import StepClock
 desk, _ = desk_and_executor(None, stored_offsets, StepClock())
 read = [name for name in sys.modules["linecache"].cache if "/app/" in name or "/core/" in name]
 print(*sys.modules)
@@ -23,7 +23,13 @@ print(*read)
 desk.close()
 """
 OF_LATER = (
-    *("app.editor", "app.programs.program_list", "app.scope", "app.special.setup_sheet", "app.transfer"),
+    *(
+        "app.editor",
+        "app.programs.program_list_model",
+        "app.scope",
+        "app.special.setup_sheet",
+        "app.transfer",
+    ),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("core.language.sinumerik", "core.language.code_book", "app.offsets.mill_touch"),
     *("core.geometry.rotary_axes", "core.interpreter.shared.working_plane"),
@@ -35,9 +41,9 @@ OF_LATER = (
 )
 OF_FEATURES = (
     *("core.extras.quality.measured_feature", "core.extras.quality.control_charts"),
-    *("app.extras.quality.shift_page", "app.extras.shapes.shapes_model", "core.extras.shapes.shape"),
+    *("app.extras.quality.shift_page", "app.extras.shapes.shapes_model", "core.extras.shapes.editor_shape"),
     *("app.extras.sharing.sharing_model", "app.extras.pendant.driver.pendant_station"),
-    *("app.extras.mtconnect.shop_floor", "app.extras.office.office_desk"),
+    *("app.extras.mtconnect.adapter_setup", "app.extras.office.office_setup"),
     "core.extras.drawings.profile_program",
 )
 

@@ -10,10 +10,10 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.desk.status.prompt_line import MOVING
+from app.desk.status.prompt_line import MOVING_STATES
 from app.screen import page_table
-from app.screen.page_table import pages_of
-from core.executor.snapshot import State
+from app.screen.page_table import list_pages
+from core.executor.snapshot import MachineState
 from tests.screen.day import Day, Key
 from tests.screen.test_every_key import STROKES, day, typists
 from tests.screen.typist import NONE, Stroke, Typist
@@ -32,15 +32,15 @@ ENTRIES = {
     page_table.SHAPE,
 }
 """Pages that have an entry in every state in which they open."""
-WHERE = [("omniturn", state) for state in sorted(MOVING)]
+WHERE = [("omniturn", state) for state in sorted(MOVING_STATES)]
 
 
 def stops(typist: Typist) -> bool:
     """Whether both keys act, also after input was dropped, which another key does not survive."""
     acted = [bool(typist.press(PAUSE)), bool(typist.press(SCROLL_LOCK))]
-    typist.day.window.times.drop(0)
+    typist.day.window.input_times.note_dropped(0)
     acted += [not typist.press(LETTER), bool(typist.press(PAUSE)), bool(typist.press(SCROLL_LOCK))]
-    typist.day.window.times._dropped = float("-inf")
+    typist.day.window.input_times._dropped = float("-inf")
     return all(acted)
 
 
@@ -49,7 +49,7 @@ def entries(typist: Typist, name: str, known: set[object]) -> Iterator[Stroke]:
     for stroke in OPENING if name != page_table.EDITOR else OPENING[-24:]:
         typist.opens(name)
         typist.press(stroke)
-        if typist.day.frame.has_field() and typist.face not in known:
+        if typist.day.frame.has_text_field() and typist.face not in known:
             known.add(typist.face)
             yield stroke
 
@@ -59,34 +59,37 @@ def test_both_keys_stop_in_every_entry(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     deaf, written = [], set()
-    for entry in pages_of(day.desk.machine.language):
+    for entry in list_pages(day.desk.machine.language):
         if not typist.opens(entry.name):
             continue
         known: set[object] = {typist.face}
         deaf += [] if stops(typist) else [entry.name]
-        if day.frame.has_field():
+        if day.frame.has_text_field():
             written.add(entry.name)
         for stroke in entries(typist, entry.name, known):
-            written.add(day.frame.page.NAME)
+            written.add(day.frame.current_page.NAME)
             deaf += [] if stops(typist) else [f"{entry.name} {stroke.name}"]
     typist.opens(page_table.AUTOMATIC)
     assert deaf == []
-    assert ENTRIES - ({page_table.EDITOR} if day.shot.state in {State.JOG, State.HOME} else set()) <= written
+    assert (
+        ENTRIES - ({page_table.EDITOR} if day.shot.state in {MachineState.JOG, MachineState.HOME} else set())
+        <= written
+    )
 
 
 @pytest.mark.parametrize("day", WHERE, indirect=True, ids=lambda each: each[1])
 def test_both_drawn_buttons_stop_on_every_page(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
-    dock = day.frame.dock
+    dock = day.frame.station_dock
     assert dock is not None
-    for entry in pages_of(day.desk.machine.language):
+    for entry in list_pages(day.desk.machine.language):
         if not typist.opens(entry.name):
             continue
         dock.grab()
         typist.done.clear()
-        day.desk.hands.estop_pressed = False
-        for control in [each for each in dock.controls if each.always]:
+        day.desk.station_controls.estop_pressed = False
+        for control in [each for each in dock.controls if each.acts_when_late]:
             at = control.box.center().toPoint()
             QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=at)
         assert {"press_hold", "press_estop"} <= typist.done, entry.name

@@ -9,10 +9,10 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QApplication
 
-from app.desk.programs.program_loading import Phase
-from app.desk.status.prompt_line import GIVE_UP, NOT_FOUND, ONE_PALM
+from app.desk.programs.program_loading import LoadingPhase
+from app.desk.status.prompt_line import CONFIRM_CANCEL, FILE_NOT_FOUND, ONE_PALM_PRESSED
 from core.executor.commands import CycleStart, FeedHold, Reset
-from core.executor.snapshot import Alarm, State
+from core.executor.snapshot import Alarm, MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import twist_out, yes
 from tests.texts import begins, shows, text
@@ -20,35 +20,35 @@ from tests.texts import begins, shows, text
 
 def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None:
     hands.load("bushing")
-    assert hands.frame.title.program == "bushing.nc"
+    assert hands.frame.title_line.program_text == "bushing.nc"
     hands.both_palms()
-    hands.sees_state(State.RUN)
+    hands.sees_state(MachineState.RUN)
     hands.sees(lambda: hands.machine.now.line > 4)
     hands.key(Key.Key_H)
-    hands.sees_state(State.HOLD)
+    hands.sees_state(MachineState.HOLD)
     assert begins(hands.prompt(), "screen.to-go-on")
     hands.both_palms()
-    hands.sees_state(State.RUN)
+    hands.sees_state(MachineState.RUN)
     hands.key(Key.Key_S)
-    hands.sees_state(State.BLOCK_END)
+    hands.sees_state(MachineState.BLOCK_END)
     block = hands.machine.at
     hands.both_palms()
-    hands.sees(lambda: hands.machine.at > block and hands.machine.now.state is State.BLOCK_END)
+    hands.sees(lambda: hands.machine.at > block and hands.machine.now.state is MachineState.BLOCK_END)
     hands.key(Key.Key_E)
-    hands.sees_state(State.ESTOP)
+    hands.sees_state(MachineState.ESTOP)
     hands.key(Key.Key_D)
     assert shows(hands.prompt(), "screen.e-stop-pressed")
     twist_out(hands.window)
-    hands.sees_state(State.DISABLED)
+    hands.sees_state(MachineState.DISABLED)
     hands.key(Key.Key_D)
-    hands.sees_state(State.IDLE)
+    hands.sees_state(MachineState.IDLE)
     hands.key(Key.Key_S)
     hands.both_palms()
-    hands.sees_state(State.RUN)
+    hands.sees_state(MachineState.RUN)
 
 
 def counted(hands: Hands) -> object:
-    times = hands.frame.times.value
+    times = hands.frame.times_panel.value
     return times[0] if isinstance(times, tuple) else None
 
 
@@ -57,7 +57,7 @@ def test_a_whole_cycle_counts_a_part_and_comes_back(hands: Hands) -> None:
     hands.load("grooves")
     hands.both_palms()
     hands.sees(lambda: hands.machine.now.parts == 1)
-    hands.sees_state(State.IDLE)
+    hands.sees_state(MachineState.IDLE)
     hands.sees(lambda: counted(hands) == ("PARTS", "1"))
 
 
@@ -66,25 +66,25 @@ def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:
     hands.load("bushing")
     hands.key(Key.Key_O)
     hands.both_palms()
-    hands.sees_state(State.PROGRAM_STOP)
-    hands.sees(hands.frame.notice.isVisible)
-    assert hands.frame.notice.message == "GAUGE THE OUTSIDE AND CORRECT D1"
+    hands.sees_state(MachineState.PROGRAM_STOP)
+    hands.sees(hands.frame.alarm_notice.isVisible)
+    assert hands.frame.alarm_notice.message == "GAUGE THE OUTSIDE AND CORRECT D1"
     hands.both_palms()
-    hands.sees(lambda: not hands.frame.notice.isVisible())
+    hands.sees(lambda: not hands.frame.alarm_notice.isVisible())
 
 
 def test_file_not_found_and_any_key_goes_on(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     hands.type("nosuch")
     hands.key(Key.Key_Return)
-    assert hands.page.files.message == NOT_FOUND
+    assert hands.page.file_prompt.message_text == FILE_NOT_FOUND
     hands.key(Key.Key_X)
-    assert hands.page.files.message == ""
-    assert hands.page.files.edit.text() == "nosuch"
+    assert hands.page.file_prompt.message_text == ""
+    assert hands.page.file_prompt.name_edit.text() == "nosuch"
     hands.type("knob")  # what was wrong is marked and typed over
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
-    assert hands.desk.session.now.name == "knob.nc"
+    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    assert hands.desk.program_loader.loaded.name == "knob.nc"
 
 
 def test_escape_keeps_the_program_that_is_there(hands: Hands) -> None:
@@ -92,8 +92,8 @@ def test_escape_keeps_the_program_that_is_there(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     hands.type("knob")
     hands.key(Key.Key_Escape)
-    assert not hands.page.files.isVisible()
-    assert hands.desk.session.now.name == "pin.nc"
+    assert not hands.page.file_prompt.isVisible()
+    assert hands.desk.program_loader.loaded.name == "pin.nc"
     hands.key(Key.Key_S)  # the keyboard is the page's again
     hands.sees(lambda: hands.machine.now.single_block)
 
@@ -104,8 +104,8 @@ def test_the_list_is_picked_from_by_arrows(hands: Hands) -> None:
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Up)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
-    assert hands.desk.session.now.name == "fitting.mpf"
+    hands.sees(lambda: hands.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    assert hands.desk.program_loader.loaded.name == "fitting.mpf"
 
 
 @pytest.mark.parametrize("palm", [Key.Key_F11, Key.Key_F12])
@@ -114,7 +114,7 @@ def test_one_palm_is_no_start(hands: Hands, palm: Key) -> None:
     hands.down(palm)
     hands.up(palm)
     assert CycleStart() not in hands.machine.posted
-    assert hands.prompt() == ONE_PALM
+    assert hands.prompt() == ONE_PALM_PRESSED
 
 
 def test_palms_that_repeat_by_being_held_are_one_press(hands: Hands) -> None:
@@ -133,7 +133,7 @@ def test_losing_the_keyboard_lets_a_palm_go(hands: Hands) -> None:
     hands.load("pin")
     hands.down(Key.Key_F11)
     assert hands.machine.palms == {"left"}
-    hands.window.let_go()
+    hands.window.release_all()
     assert hands.machine.palms == set()
     hands.down(Key.Key_F12)
     assert CycleStart() not in hands.machine.posted
@@ -148,18 +148,18 @@ def test_no_start_without_a_program(hands: Hands) -> None:
 def test_no_start_while_an_alarm_stands(hands: Hands) -> None:
     hands.load("pin")
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
-    hands.sees_state(State.FAULT)
+    hands.sees_state(MachineState.FAULT)
     hands.both_palms()
     hands.sees(lambda: hands.prompt() == text("screen.no-start", why="AN ALARM STANDS"))
-    assert hands.frame.notice.isVisible()
+    assert hands.frame.alarm_notice.isVisible()
     hands.key(Key.Key_R)
-    hands.sees_state(State.DISABLED)
-    assert not hands.frame.notice.isVisible()
+    hands.sees_state(MachineState.DISABLED)
+    assert not hands.frame.alarm_notice.isVisible()
     hands.key(Key.Key_F7)
-    assert hands.frame.log.isVisible()
-    assert [entry.alarm.code for entry in hands.frame.log.entries] == ["following"]
+    assert hands.frame.alarm_list.isVisible()
+    assert [entry.alarm.code for entry in hands.frame.alarm_list.logged_stops] == ["following"]
     hands.key(Key.Key_Escape)
-    assert not hands.frame.log.isVisible()
+    assert not hands.frame.alarm_list.isVisible()
 
 
 def test_a_program_with_errors_is_shown_and_refused(
@@ -178,26 +178,26 @@ def test_a_program_with_errors_is_shown_and_refused(
 def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
     hands.load("pin")
     hands.both_palms()
-    hands.sees_state(State.RUN)
+    hands.sees_state(MachineState.RUN)
     hands.key(Key.Key_R)
     assert shows(hands.prompt(), "screen.feed-hold-first")
     hands.key(Key.Key_Space)
-    hands.sees_state(State.HOLD)
+    hands.sees_state(MachineState.HOLD)
     hands.key(Key.Key_R)
-    assert hands.prompt() == GIVE_UP
+    assert hands.prompt() == CONFIRM_CANCEL
     hands.key(Key.Key_R)
     assert Reset() not in hands.machine.posted  # never the key that asked
     yes(hands.window)
     assert Reset() in hands.machine.posted
-    hands.sees_state(State.IDLE)
+    hands.sees_state(MachineState.IDLE)
 
 
 def test_no_other_program_and_no_leaving_while_one_runs(hands: Hands) -> None:
     hands.load("pin")
     hands.both_palms()
-    hands.sees_state(State.RUN)
+    hands.sees_state(MachineState.RUN)
     hands.key(Key.Key_F2)
-    assert not hands.page.files.isVisible()
+    assert not hands.page.file_prompt.isVisible()
     hands.window.close()
     assert hands.window.isVisible()
     assert shows(hands.prompt(), "screen.program-runs-no-leaving")
@@ -207,7 +207,7 @@ def test_a_cycle_started_at_the_station_takes_the_keyboard_from_the_question(han
     hands.load("pin")
     hands.key(Key.Key_F2)
     hands.machine.post(CycleStart())
-    hands.sees(lambda: not hands.page.files.isVisible())
+    hands.sees(lambda: not hands.page.file_prompt.isVisible())
     hands.key(Key.Key_H)
     assert FeedHold() in hands.machine.posted
 
@@ -221,36 +221,40 @@ def test_palm_keys_do_nothing_while_a_name_is_typed(hands: Hands) -> None:
 
 def test_bare_arrows_do_nothing_and_with_control_they_move_the_picture(hands: Hands) -> None:
     hands.load("knob")
-    hands.sees(lambda: hands.page.path.view is not None)
-    before = hands.page.path.view
+    hands.sees(lambda: hands.page.path_view.first_projection is not None)
+    before = hands.page.path_view.first_projection
     hands.key(Key.Key_Left)
-    assert hands.page.path.view == before
+    assert hands.page.path_view.first_projection == before
     hands.key(Key.Key_Left, Qt.KeyboardModifier.ControlModifier)
-    assert hands.page.path.view != before
+    assert hands.page.path_view.first_projection != before
     hands.key(Key.Key_F5)
-    assert hands.page.path.view == before
+    assert hands.page.path_view.first_projection == before
 
 
 def test_block_delete_proves_the_program_again(hands: Hands) -> None:
     hands.load("grooves")
-    whole = hands.desk.session.now.picture
+    whole = hands.desk.program_loader.loaded.picture
     hands.key(Key.Key_Slash)
-    hands.sees(lambda: hands.machine.now.block_delete and hands.desk.session.now.phase is Phase.READY)
-    shorter = hands.desk.session.now.picture
+    hands.sees(
+        lambda: (
+            hands.machine.now.block_delete and hands.desk.program_loader.loaded.phase is LoadingPhase.READY
+        )
+    )
+    shorter = hands.desk.program_loader.loaded.picture
     assert whole is not None
     assert shorter is not None
     assert shorter.blocks < whole.blocks
 
 
 def test_drives_off_asks_for_the_drives(hands: Hands) -> None:
-    hands.machine.now = replace(hands.machine.now, state=State.DISABLED)
+    hands.machine.now = replace(hands.machine.now, state=MachineState.DISABLED)
     hands.sees(lambda: hands.prompt() == text("screen.drives-off"))
 
 
 def test_readout_and_theme_change_by_key(hands: Hands) -> None:
     hands.key(Key.Key_F4)
-    hands.sees(lambda: hands.frame.position.readout == text("screen.distance-to-go"))
+    hands.sees(lambda: hands.frame.position_panel.readout_kind == text("screen.distance-to-go"))
     hands.key(Key.Key_T)
-    assert hands.window.look.palette.name == "light"
+    assert hands.window.theme.palette.name == "light"
     hands.key(Key.Key_T)
-    assert hands.window.look.palette.name == "dark"
+    assert hands.window.theme.palette.name == "dark"

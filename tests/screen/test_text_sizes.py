@@ -7,9 +7,9 @@ from math import radians, tan
 import pytest
 
 from app.screen import page_table
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.text_sizes import CAPITALS, PanelSize, Role, panel_size
-from app.screen.window_layout import LOW, low_places, places, unit
+from app.screen.window_layout import LOW_WINDOW_PX, find_unit, make_layout, make_low_layout
 from tests.screen.lathe import Operator
 from tests.screen.text_heights import recorded
 
@@ -44,7 +44,7 @@ MOVING = {"7": 40, "10": 34, "10.1": 49, "12.1": 59, "15.6": 79, "21.5": 98, "27
 PAGES = (
     page_table.MENU,
     page_table.AUTOMATIC,
-    page_table.SEARCHTO,
+    page_table.SEARCHTO_PAGE,
     page_table.JOG,
     page_table.MDI,
     page_table.PROGRAMS,
@@ -90,7 +90,7 @@ def test_an_implausible_size_counts_as_a_monitor_of_96_dots_per_inch(reported: t
 
 
 def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
-    look = Look(DARK, 8.0)
+    look = ScreenTheme(DARK_PALETTE, 8.0)
     look.screen = PanelSize(5.0)  # A position has capitals of 58.2 pixels, and a table of 16.3 pixels.
     needed = 58.18 / CAPITALS / 8.0
     assert look.em(5.0, Role.POSITION, 200.0) == pytest.approx(needed, rel=1e-3)
@@ -105,11 +105,11 @@ def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
 @pytest.mark.parametrize("size", [(1024, 600), (1280, 800), (1920, 1080), (3840, 2160), (1080, 1920)])
 @pytest.mark.parametrize("dock", [True, False])
 def test_the_large_position_takes_2_8_units_of_a_page(size: tuple[int, int], dock: bool) -> None:
-    low, moves, u = low_places(*size, dock), low_places(*size, dock, moves=True), unit(*size)
-    more = 2.8 * u if size[1] >= LOW else 0.0  # a lower window keeps the room for fingers
-    assert moves.head.h - low.head.h == pytest.approx(more, abs=1)
-    assert low.work.h - moves.work.h == moves.head.h - low.head.h
-    assert moves.work.bottom == low.work.bottom <= places(*size, dock).prompt.y
+    low, moves, u = make_low_layout(*size, dock), make_low_layout(*size, dock, moves=True), find_unit(*size)
+    more = 2.8 * u if size[1] >= LOW_WINDOW_PX else 0.0  # a lower window keeps the room for fingers
+    assert moves.readout_line.h - low.readout_line.h == pytest.approx(more, abs=1)
+    assert low.work_area.h - moves.work_area.h == moves.readout_line.h - low.readout_line.h
+    assert moves.work_area.bottom == low.work_area.bottom <= make_layout(*size, dock).prompt.y
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -121,11 +121,11 @@ def test_texts_of_all_pages_are_as_high_as_stated(
     window, desk = operator.window, operator.stage.desk
     operator.stage.make_ready()
     window.resize(*PANELS[name][:2])
-    window.look.screen = size
-    desk.settings.choose("language", language)
+    window.theme.screen = size
+    desk.settings_store.choose("language", language)
     with recorded(monkeypatch) as texts:
         for page in PAGES:
-            assert operator.frame.go(page)
+            assert operator.frame.open_page(page)
             window.refresh()
             window.grab()
     for each in texts:
@@ -136,7 +136,7 @@ def test_texts_of_all_pages_are_as_high_as_stated(
         assert share >= SHORT[name].get(role, 98), (role, share, text)
 
 
-@pytest.mark.parametrize("page", [page_table.JOG, page_table.MDI, page_table.SEARCHTO])
+@pytest.mark.parametrize("page", [page_table.JOG, page_table.MDI, page_table.SEARCHTO_PAGE])
 @pytest.mark.parametrize("name", PANELS)
 def test_the_position_is_large_where_axes_can_move(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, page: str
@@ -144,11 +144,11 @@ def test_the_position_is_large_where_axes_can_move(
     size = panel_size(*PANELS[name])
     operator.stage.make_ready()
     operator.window.resize(*PANELS[name][:2])
-    operator.window.look.screen = size
-    assert operator.frame.go(page)
+    operator.window.theme.screen = size
+    assert operator.frame.open_page(page)
     operator.window.refresh()
     with recorded(monkeypatch) as texts:
-        operator.frame.head.grab()
+        operator.frame.readout_line.grab()
     least = MOVING[name] / 100 * Role.POSITION.least_mm(small=size.small) * size.pixels_per_mm
     heights = [each.capitals for each in texts if each.role is Role.POSITION]
     assert len(heights) == 3

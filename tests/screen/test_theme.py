@@ -7,7 +7,16 @@ from dataclasses import fields
 import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
-from app.screen.look import CURVES, DARK, LEAST, PALETTES, Look, Palette, load_fonts, width_of
+from app.screen.screen_theme import (
+    CURVE_COLORS,
+    DARK_PALETTE,
+    MIN_TEXT_SIZE,
+    PALETTES,
+    ColorPalette,
+    ScreenTheme,
+    load_fonts,
+    measure_text,
+)
 
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),
@@ -35,9 +44,9 @@ SHAPES = [
 
 def test_a_colour_that_is_made_faint_stays_as_it_is_elsewhere() -> None:
     """The part view draws holders through; the state in the title has the same colour."""
-    look = Look(DARK)
-    look.colour("off").setAlphaF(0.12)
-    assert look.colour("off").alphaF() == 1.0
+    look = ScreenTheme(DARK_PALETTE)
+    look.color("off").setAlphaF(0.12)
+    assert look.color("off").alphaF() == 1.0
 
 
 def luminance(colour: str) -> float:
@@ -63,20 +72,20 @@ def test_known_ratios() -> None:
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize(("ink", "ground"), TEXT)
-def test_text_is_readable(palette: Palette, ink: str, ground: str) -> None:
+def test_text_is_readable(palette: ColorPalette, ink: str, ground: str) -> None:
     assert contrast(getattr(palette, ink), getattr(palette, ground)) >= 4.5
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize(("shape", "ground"), SHAPES)
-def test_shapes_stand_out(palette: Palette, shape: str, ground: str) -> None:
+def test_shapes_stand_out(palette: ColorPalette, shape: str, ground: str) -> None:
     assert contrast(getattr(palette, shape), getattr(palette, ground)) >= 3.0
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize("number", range(8))
-def test_curves_stand_out(palette: Palette, number: int) -> None:
-    assert contrast(CURVES[palette.name][number], palette.panel) >= 3.0
+def test_curves_stand_out(palette: ColorPalette, number: int) -> None:
+    assert contrast(CURVE_COLORS[palette.name][number], palette.panel) >= 3.0
 
 
 # Machado, Oliveira and Fernandes (2009): what eyes without L, M or S cones see, in linear RGB.
@@ -127,7 +136,9 @@ def lab(rgb: list[float]) -> tuple[float, float, float]:
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
 @pytest.mark.parametrize("eyes", BLIND)
 @pytest.mark.parametrize(("one", "other"), TOLD_APART)
-def test_states_stay_apart_for_colour_blind_eyes(palette: Palette, eyes: str, one: str, other: str) -> None:
+def test_states_stay_apart_for_colour_blind_eyes(
+    palette: ColorPalette, eyes: str, one: str, other: str
+) -> None:
     """A difference of 10 in L*a*b* is seen at a glance; words and shapes tell the states as well."""
     seen = [
         lab(
@@ -142,12 +153,12 @@ def test_states_stay_apart_for_colour_blind_eyes(palette: Palette, eyes: str, on
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
-def test_done_and_to_come_differ_in_lightness(palette: Palette) -> None:
+def test_done_and_to_come_differ_in_lightness(palette: ColorPalette) -> None:
     assert contrast(palette.done, palette.todo) >= 2.5
 
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES)
-def test_colours_are_written_as_six_digits(palette: Palette) -> None:
+def test_colours_are_written_as_six_digits(palette: ColorPalette) -> None:
     for field in fields(palette):
         value = getattr(palette, field.name)
         assert field.name == "name" or (len(value) == 7 and int(value[1:], 16) >= 0)
@@ -155,32 +166,32 @@ def test_colours_are_written_as_six_digits(palette: Palette) -> None:
 
 def test_the_bundled_font_is_what_is_drawn_with() -> None:
     assert "B612" in load_fonts()
-    look = Look(DARK, 12.0)
-    info = QFontInfo(look.font(2.0, bold=True))
+    look = ScreenTheme(DARK_PALETTE, 12.0)
+    info = QFontInfo(look.make_font(2.0, is_bold=True))
     assert info.family() == "B612"
     assert info.bold()
 
 
 def test_figures_are_of_one_width() -> None:
-    metrics = QFontMetricsF(Look(DARK, 12.0).font(7.0, bold=True))
+    metrics = QFontMetricsF(ScreenTheme(DARK_PALETTE, 12.0).make_font(7.0, is_bold=True))
     assert len({metrics.horizontalAdvance(digit) for digit in "0123456789"}) == 1
 
 
 @pytest.mark.parametrize("sign", "Ø−·—°")
 def test_every_sign_is_in_the_font(sign: str) -> None:
-    assert QRawFont.fromFont(Look(DARK, 12.0).font(2.0)).supportsCharacter(ord(sign))
+    assert QRawFont.fromFont(ScreenTheme(DARK_PALETTE, 12.0).make_font(2.0)).supportsCharacter(ord(sign))
 
 
 def test_text_that_is_too_long_is_made_smaller_but_never_unreadable() -> None:
-    look, text = Look(DARK, 12.0), "A PROGRAM NAME OF SOME LENGTH"
-    font = look.fit(text, 3.0, 400.0, bold=True)
+    look, text = ScreenTheme(DARK_PALETTE, 12.0), "A PROGRAM NAME OF SOME LENGTH"
+    font = look.fit_font(text, 3.0, 400.0, is_bold=True)
     assert QFontMetricsF(font).horizontalAdvance(text) <= 400.0
-    assert look.fit(text, 3.0, 10.0, bold=True).pixelSize() == round(LEAST * 12.0)
+    assert look.fit_font(text, 3.0, 10.0, is_bold=True).pixelSize() == round(MIN_TEXT_SIZE * 12.0)
 
 
 @pytest.mark.parametrize("bold", [False, True])
 def test_a_width_is_that_of_the_font_it_is_asked_for(bold: bool) -> None:
-    look = Look(DARK, 12.0)
+    look = ScreenTheme(DARK_PALETTE, 12.0)
     for size in (1.5, 3.0, 1.5):
-        font = look.font(size, bold=bold)
-        assert width_of("X−12.3456", font) == QFontMetricsF(font).horizontalAdvance("X−12.3456")
+        font = look.make_font(size, is_bold=bold)
+        assert measure_text("X−12.3456", font) == QFontMetricsF(font).horizontalAdvance("X−12.3456")

@@ -10,12 +10,12 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.offsets.tool_offsets_view import ShapeTable, ToolShapePage
+from app.offsets.tool_offsets_view import ToolShapePage, ToolShapePanel
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad
+from app.screen.entry_panel import NumberPad
 from app.screen.panel import Panel
-from app.screen.window_layout import FINGER
-from core.executor.snapshot import State
+from app.screen.window_layout import FINGERTIP_PX
+from core.executor.snapshot import MachineState
 from core.store.store import Store
 from core.store.store_rows import ShapeRow
 from tests.offset_store import use_store
@@ -29,11 +29,11 @@ LIMIT = 60.0
 @pytest.fixture
 def store(hands: Hands, tmp_path: Path) -> Iterator[Store]:
     with Store.open(tmp_path / "home") as store:
-        store.offsets.tools.change_row(
+        store.offsets.tool_offsets.change_row(
             1, "set", {"x": -12.7, "z": -76.2, "nose_radius": 0.79375, "quadrant": 3}
         )
-        store.offsets.shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
-        store.offsets.tools.change_row(2, "set", {"x": 25.4, "z": -50.8}).result(LIMIT)
+        store.offsets.tool_shapes.change_row(1, "set", {"kind": "turning", "insert": "CNMG432"})
+        store.offsets.tool_offsets.change_row(2, "set", {"x": 25.4, "z": -50.8}).result(LIMIT)
         use_store(hands.desk, store)
         yield store
 
@@ -44,9 +44,9 @@ def opened(hands: Hands, number: int = 1) -> ToolShapePage:
     for _ in range(number - 1):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_F8)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, ToolShapePage)
-    assert hands.frame.title.page == page_table.SHAPE
+    assert hands.frame.title_line.page_title == page_table.SHAPE
     return page
 
 
@@ -54,12 +54,12 @@ def touch(hands: Hands, panel: Panel, place: int) -> None:
     """A finger in the middle of a place, which is large enough for one; then what is shown now."""
     hands.window.grab()
     box, *_ = panel._places[place]
-    assert isinstance(panel, KeyPad) or min(box.width(), box.height()) >= FINGER
+    assert isinstance(panel, NumberPad) or min(box.width(), box.height()) >= FINGERTIP_PX
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
     hands.window.grab()
 
 
-def colours(hands: Hands, table: ShapeTable) -> set[str]:
+def colours(hands: Hands, table: ToolShapePanel) -> set[str]:
     """What colours the right half, the picture, has."""
     image = table.grab().toImage()
     wide, high = image.width(), image.height()
@@ -68,30 +68,30 @@ def colours(hands: Hands, table: ShapeTable) -> set[str]:
 
 def test_shape_of_the_tool_under_the_cursor_comes_up_and_goes_back(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
-    hands.sees(lambda: page.asked.asked.question == "T2  KIND?")
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == "T2  KIND?")
     hands.key(Key.Key_F8)
-    assert hands.frame.title.page == page_table.TOOLS
+    assert hands.frame.title_line.page_title == page_table.TOOLS
     hands.key(Key.Key_F8)
-    assert page.model.number == 2
+    assert page.model.tool_number == 2
     hands.key(Key.Key_Escape)
-    assert hands.frame.title.page == page_table.TOOLS
+    assert hands.frame.title_line.page_title == page_table.TOOLS
     hands.key(Key.Key_Escape)
-    assert hands.frame.page is hands.page
+    assert hands.frame.current_page is hands.page
 
 
 def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: 2 in page.model.book.shapes)
+    hands.sees(lambda: 2 in page.model.offset_book.shapes)
     hands.sees(lambda: hands.prompt() == text("screen.saved", names="T2"))
     for _ in range(4):
         hands.key(Key.Key_Down)
-    hands.sees(lambda: page.asked.asked.question == "T2  INSERT?")
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == "T2  INSERT?")
     hands.key(Key.Key_Return)
     hands.type("DCMT 11T304")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: store.offsets.shapes.read_rows()[2] == ShapeRow("turning", insert="DCMT 11T304"))
+    hands.sees(lambda: store.offsets.tool_shapes.read_rows()[2] == ShapeRow("turning", insert="DCMT 11T304"))
 
 
 def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> None:
@@ -105,32 +105,32 @@ def test_letters_of_an_open_text_are_no_commands(hands: Hands, store: Store) -> 
     assert page.model.text == "the old one".upper() or page.model.text == "the old one"
     assert hands.machine.posted == []
     hands.key(Key.Key_Escape)
-    assert (page.model.text, hands.frame.page) == ("", page)
-    assert store.offsets.shapes.read_rows()[1].holder == ""
+    assert (page.model.text, hands.frame.current_page) == ("", page)
+    assert store.offsets.tool_shapes.read_rows()[1].holder == ""
 
 
 def test_a_finger_alone_makes_a_drill(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
     enter, point, two, five = 19, 13, 9, 5  # places on the pad, row by row
     for _ in range(6):
-        touch(hands, page.table, 0)
-    assert page.model.entered == "DRILL"
-    touch(hands, page.pad, enter)
-    hands.sees(lambda: page.model.row == ShapeRow("drill") and not page.model.book.busy)
-    hands.sees(lambda: len(page.model.names) == 7)
-    touch(hands, page.table, 2)
+        touch(hands, page.table_panel, 0)
+    assert page.model.entered_text == "DRILL"
+    touch(hands, page.number_pad, enter)
+    hands.sees(lambda: page.model.shape_row == ShapeRow("drill") and not page.model.offset_book.is_saving)
+    hands.sees(lambda: len(page.model.field_names) == 7)
+    touch(hands, page.table_panel, 2)
     for key in (point, two, five, enter):
-        touch(hands, page.pad, key)
-    hands.sees(lambda: store.offsets.shapes.read_rows()[2].diameter == pytest.approx(6.35))
+        touch(hands, page.number_pad, key)
+    hands.sees(lambda: store.offsets.tool_shapes.read_rows()[2].diameter == pytest.approx(6.35))
 
 
 def test_every_field_is_as_large_as_a_finger(hands: Hands, store: Store) -> None:
-    store.offsets.shapes.change_row(1, "set", {"kind": "threading"}).result(LIMIT)
-    hands.desk.book.read()
+    store.offsets.tool_shapes.change_row(1, "set", {"kind": "threading"}).result(LIMIT)
+    hands.desk.offset_book.read_store()
     page = opened(hands)
-    for place in reversed(range(1, len(page.model.names))):
-        touch(hands, page.table, place)
-        assert page.model.place == place
+    for place in reversed(range(1, len(page.model.field_names))):
+        touch(hands, page.table_panel, place)
+        assert page.model.field_index == place
 
 
 @pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
@@ -138,23 +138,23 @@ def test_outline_and_control_point_are_drawn(hands: Hands, store: Store, size: t
     hands.window.resize(*size)
     page = opened(hands)
     hands.window.grab()
-    look = hands.window.look
-    drawn = colours(hands, page.table)
-    assert {look.colour(name).name() for name in ("accent", "ghost", "tip")} <= drawn
+    look = hands.window.theme
+    drawn = colours(hands, page.table_panel)
+    assert {look.color(name).name() for name in ("accent", "ghost", "tip")} <= drawn
     hands.key(Key.Key_PageDown)
-    hands.sees(lambda: page.model.number == 2)
+    hands.sees(lambda: page.model.tool_number == 2)
     hands.window.refresh()
-    assert look.colour("ghost").name() not in colours(hands, page.table)
+    assert look.color("ghost").name() not in colours(hands, page.table_panel)
 
 
 def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> None:
-    store.offsets.shapes.change_row(1, "set", {"kind": "drill"}).result(LIMIT)
-    hands.desk.book.read()
+    store.offsets.tool_shapes.change_row(1, "set", {"kind": "drill"}).result(LIMIT)
+    hands.desk.offset_book.read_store()
     page = opened(hands)
     hands.sees(lambda: hands.prompt().startswith(f"T1: {text('screen.tip-not-round', tip=3)}"))
     hands.window.refresh()
-    assert hands.window.look.colour("ghost").name() not in colours(hands, page.table)
-    assert hands.window.look.colour("alarm").name() in colours(hands, page.table)
+    assert hands.window.theme.color("ghost").name() not in colours(hands, page.table_panel)
+    assert hands.window.theme.color("alarm").name() in colours(hands, page.table_panel)
 
 
 def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
@@ -162,21 +162,21 @@ def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F3)
     assert hands.prompt() == text("screen.forget-shape", number=1)
     hands.key(Key.Key_Escape)
-    assert 1 in store.offsets.shapes.read_rows()
+    assert 1 in store.offsets.tool_shapes.read_rows()
     hands.key(Key.Key_F3)
     yes(hands.window)
-    hands.sees(lambda: page.model.row is None)
+    hands.sees(lambda: page.model.shape_row is None)
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: page.model.row == ShapeRow("turning", insert="CNMG432"))
+    hands.sees(lambda: page.model.shape_row == ShapeRow("turning", insert="CNMG432"))
 
 
 def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
-    store.offsets.shapes.change_row(1, "sharper", {"insert": "CNMG431"}).result(LIMIT)
+    store.offsets.tool_shapes.change_row(1, "sharper", {"insert": "CNMG431"}).result(LIMIT)
     page = opened(hands)
     hands.key(Key.Key_F5)
-    hands.sees(page.history.isVisible)
-    assert [entry[2] for entry in page.history.entries] == [
+    hands.sees(page.history_list.isVisible)
+    assert [entry[2] for entry in page.history_list.history_entries] == [
         "INSERT CNMG432 → CNMG431",
         "not set  →  TURNING  RIGHT HAND  INSERT CNMG432",
     ]
@@ -184,12 +184,12 @@ def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
 
 def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
     opened(hands)
-    hands.machine.now = replace(hands.machine.now, state=State.RUN)
+    hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
     hands.sees(lambda: begins(hands.prompt(), "screen.program-runs-wear-only"))
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_F4)
-    assert len(store.offsets.shapes.read_history()) == 1
+    assert len(store.offsets.tool_shapes.read_history()) == 1
 
 
 def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
@@ -200,7 +200,7 @@ def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
 
 
 def test_refusal_is_spanish_where_the_operator_is(hands: Hands, store: Store) -> None:
-    hands.desk.settings.choose("language", "es")
+    hands.desk.settings_store.choose("language", "es")
     page = opened(hands)
     for _ in range(4):
         hands.key(Key.Key_Down)
@@ -208,6 +208,6 @@ def test_refusal_is_spanish_where_the_operator_is(hands: Hands, store: Store) ->
     hands.key(Key.Key_Delete)
     hands.type("CNXG 432")
     hands.key(Key.Key_Return)
-    told = hands.frame.prompt.text
+    told = hands.frame.prompt_line.main_text
     assert "CNXG 432" in told
     assert page.model.text == "CNXG 432"

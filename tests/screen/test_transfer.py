@@ -12,14 +12,14 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
-from app.desk.status.prompt_line import Sort
-from app.special.special_functions import SpecialFunctions
+from app.desk.status.prompt_line import MessageKind
+from app.special.special_functions import SpecialFunctionList
 from app.special.special_view import SpecialPage
-from app.transfer.line_transfer import Received
-from app.transfer.serial_transfer import SerialTransfer
+from app.transfer.line_transfer import ReceivedProgram
+from app.transfer.serial_transfer import SerialTransferFunction
 from core.executor.commands import FeedHold
-from core.executor.snapshot import State
-from core.machine.desk_tables import DncModel
+from core.executor.snapshot import MachineState
+from core.machine.serial_and_backup_tables import SerialLineModel
 from core.ports import DriverError
 from tests.attached import attached
 from tests.screen.desks import desk_on
@@ -28,26 +28,26 @@ from tests.screen.hands import Hands, Key, window_on
 from tests.screen.yes import yes
 from tests.texts import shows, text
 
-DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
-CAME = Received(b"O77\nM30\n", "O77.nc", 2, "ab" * 32, False, 3, (), 1.5)
+DEFAULT = SerialLineModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
+CAME = ReceivedProgram(b"O77\nM30\n", "O77.nc", 2, "ab" * 32, False, 3, (), 1.5)
 T = TypeVar("T")
 WAIT = 60.0
 
 
 @dataclass(frozen=True)
 class Reach:
-    done: int = 640
-    total: int = 1280
-    lines: int = 20
-    what: str = "held"
-    heard: str = ""
+    done_bytes: int = 640
+    total_bytes: int = 1280
+    line_count: int = 20
+    wait_reason: str = "held"
+    received_text: str = ""
 
 
 class Script(Generic[T]):
     """A transfer that goes on until the test lets it end, or somebody gives it up."""
 
     def __init__(self, answer: T, fails: Exception | None) -> None:
-        self.reach = Reach()
+        self.progress = Reach()
         self.answer, self.fails = answer, fails
         self.go = threading.Event()
         self.cancelled = False
@@ -56,7 +56,7 @@ class Script(Generic[T]):
         self.cancelled = True
         self.go.set()
 
-    def run(self) -> T:
+    def run_transfer(self) -> T:
         assert self.go.wait(WAIT)
         if self.cancelled:
             raise DriverError("cancelled")
@@ -70,18 +70,18 @@ class FakeLines:
     """A program that goes out, or ``CAME``; ``fails`` instead, where it is given."""
 
     fails: Exception | None = None
-    job: Script[int] | Script[Received] | None = None
-    said: list[tuple[DncModel, Path | None]] = field(default_factory=list)
+    job: Script[int] | Script[ReceivedProgram] | None = None
+    said: list[tuple[SerialLineModel, Path | None]] = field(default_factory=list)
 
-    def ports(self) -> list[tuple[str, str]]:
+    def list_ports(self) -> list[tuple[str, str]]:
         return [("/dev/ttyS0", ""), ("/dev/ttyUSB0", "adapter")]
 
-    def send(self, settings: DncModel, path: Path) -> Script[int]:
+    def make_send_transfer(self, settings: SerialLineModel, path: Path) -> Script[int]:
         self.said.append((settings, path))
         job = self.job = Script(1280, self.fails)
         return job
 
-    def receive(self, settings: DncModel) -> Script[Received]:
+    def make_receive_transfer(self, settings: SerialLineModel) -> Script[ReceivedProgram]:
         self.said.append((settings, None))
         job = self.job = Script(CAME, self.fails)
         return job
@@ -98,8 +98,8 @@ def hands(
 ) -> Iterator[Hands]:
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
-    section = SerialTransfer(desk, journal, lines, DEFAULT, tmp_path / "own")
-    special = attached(desk, SpecialFunctions)
+    section = SerialTransferFunction(desk, journal, lines, DEFAULT, tmp_path / "own")
+    special = attached(desk, SpecialFunctionList)
     functions = list(special.functions)
     (line,) = (number for number, each in enumerate(functions) if each.name == section.name)
     functions[line].close()
@@ -110,18 +110,18 @@ def hands(
         made.key(Key.Key_F10)
         made.type("9")
         made.key(Key.Key_Return)
-        made.sees(lambda: page(made).model.inside and section.ports != ())
+        made.sees(lambda: page(made).model.inside and section.port_names != ())
         yield made
 
 
 def page(hands: Hands) -> SpecialPage:
-    shown = hands.frame.page
+    shown = hands.frame.current_page
     assert isinstance(shown, SpecialPage)
     return shown
 
 
 def cells(hands: Hands) -> dict[str, str]:
-    return {row.cells[0]: row.cells[1] for row in page(hands).table.sheet.rows}
+    return {row.cells[0]: row.cells[1] for row in page(hands).table_panel.table.rows}
 
 
 def test_settings_by_arrows_and_return_are_kept(hands: Hands, journal: Journal) -> None:
@@ -149,16 +149,16 @@ def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
     assert lines.job is not None
     posted = len(hands.machine.posted)
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table.sheet.question == text("screen.name-of-new-program"))
-    assert page(hands).table.sheet.text == "O77.nc"
+    hands.sees(lambda: page(hands).table_panel.table.question == text("screen.name-of-new-program"))
+    assert page(hands).table_panel.table.text == "O77.nc"
     assert cells(hands)["PROVED"] == "NO ERRORS"
     hands.key(Key.Key_Delete)
     hands.type("new")
     hands.key(Key.Key_Return)
     target = tmp_path / "own" / "new.nc"
     hands.sees(target.exists)
-    assert target.read_bytes() == CAME.text
-    assert shows(hands.desk.notice, "screen.stored-as-new")
+    assert target.read_bytes() == CAME.program_bytes
+    assert shows(hands.desk.prompt_notice, "screen.stored-as-new")
     assert len(hands.machine.posted) == posted
 
 
@@ -171,25 +171,25 @@ def test_a_taken_name_is_refused_and_the_program_still_there(
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table.sheet.text == "O77-2.nc")
+    hands.sees(lambda: page(hands).table_panel.table.text == "O77-2.nc")
     hands.key(Key.Key_Delete)
     hands.type("o77")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: shows(hands.desk.notice, "screen.name-is-there"))
+    hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.name-is-there"))
     assert old.read_bytes() == b"OLD\n"
-    assert page(hands).table.sheet.question == text("screen.name-of-new-program")
+    assert page(hands).table_panel.table.question == text("screen.name-of-new-program")
 
 
 def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table.sheet.question != "")
+    hands.sees(lambda: page(hands).table_panel.table.question != "")
     hands.key(Key.Key_F6)
-    hands.sees(lambda: shows(hands.desk.notice, "screen.throw-away-received"))
-    assert page(hands).table.sheet.question != ""
+    hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.throw-away-received"))
+    assert page(hands).table_panel.table.question != ""
     yes(hands.window)
-    hands.sees(lambda: page(hands).table.sheet.question == "")
+    hands.sees(lambda: page(hands).table_panel.table.question == "")
     assert not (tmp_path / "own").exists()
 
 
@@ -197,7 +197,7 @@ def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path)
     hands.key(Key.Key_F5)
     hands.sees(lambda: "STATUS" in cells(hands))
     hands.key(Key.Key_F6)
-    hands.sees(lambda: text("screen.nothing-kept", why="cancelled") in hands.desk.notice)
+    hands.sees(lambda: text("screen.nothing-kept", why="cancelled") in hands.desk.prompt_notice)
     assert "PORT" in cells(hands)
     assert not (tmp_path / "own").exists()
 
@@ -207,37 +207,37 @@ def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: text("screen.nothing-kept", why="parity error in line 7") in hands.desk.notice)
-    assert hands.desk.answers.sort is Sort.ANSWER
+    hands.sees(lambda: text("screen.nothing-kept", why="parity error in line 7") in hands.desk.prompt_notice)
+    assert hands.desk.prompt_answers.notice_kind is MessageKind.REFUSAL
 
 
 def test_where_no_port_is_there_that_is_told(hands: Hands) -> None:
-    section = page(hands).model.current
-    assert isinstance(section, SerialTransfer)
-    port, section.ports = section.settings.port, ()
+    section = page(hands).model.shown_function
+    assert isinstance(section, SerialTransferFunction)
+    port, section.port_names = section.line_settings.port, ()
     hands.key(Key.Key_Return)
-    assert shows(hands.desk.notice, "screen.no-serial-port")
-    assert section.settings.port == port
+    assert shows(hands.desk.prompt_notice, "screen.no-serial-port")
+    assert section.line_settings.port == port
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)  # the other settings need none
-    assert not shows(hands.desk.notice, "screen.no-serial-port")
+    assert not shows(hands.desk.prompt_notice, "screen.no-serial-port")
 
 
 def test_without_a_program_on_the_desk_nothing_is_sent(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F4)
-    hands.sees(lambda: shows(hands.desk.notice, "screen.nothing-to-send"))
+    hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.nothing-to-send"))
     assert lines.said == []
 
 
 def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> None:
-    assert hands.desk.programs.choose("pin.nc")
-    hands.sees(lambda: hands.desk.session.now.path is not None)
+    assert hands.desk.program_choice.load_by_name("pin.nc")
+    hands.sees(lambda: hands.desk.program_loader.loaded.path is not None)
     hands.key(Key.Key_F4)
     hands.sees(lambda: lines.job is not None)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: text("screen.is-sent", name="pin.nc", count=1280) in hands.desk.notice)
-    assert hands.desk.answers.sort is Sort.DONE
+    hands.sees(lambda: text("screen.is-sent", name="pin.nc", count=1280) in hands.desk.prompt_notice)
+    assert hands.desk.prompt_answers.notice_kind is MessageKind.SUCCESS
     (said,) = lines.said
     assert said[1] is not None
     assert said[1].name == "pin.nc"
@@ -254,7 +254,7 @@ def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F10)
     hands.type("9")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: page(hands).table.sheet.question != "")
+    hands.sees(lambda: page(hands).table_panel.table.question != "")
 
 
 def test_while_a_program_runs_letters_are_the_name_of_what_was_received(
@@ -263,11 +263,11 @@ def test_while_a_program_runs_letters_are_the_name_of_what_was_received(
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table.sheet.question != "")
-    hands.machine.now = replace(hands.machine.now, state=State.WAIT)
+    hands.sees(lambda: page(hands).table_panel.table.question != "")
+    hands.machine.now = replace(hands.machine.now, state=MachineState.WAIT)
     hands.type("hec")
     assert FeedHold() not in hands.machine.posted
-    assert not hands.desk.hands.estop_pressed
+    assert not hands.desk.station_controls.estop_pressed
     assert not hands.machine.now.cycle_repeat
-    assert page(hands).table.sheet.text == "O77.nchec"
+    assert page(hands).table_panel.table.text == "O77.nchec"
     hands.machine.idle()

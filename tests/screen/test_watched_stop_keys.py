@@ -8,11 +8,11 @@ from typing import cast
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from app.desk.stop_keys.stop_records import Focus, Stop, StopKind, press_number
-from app.desk.stop_keys.watched_keys import WatchedKeys
+from app.desk.stop_keys.stop_records import FocusRecord, StopKind, StopPress, make_press_number
+from app.desk.stop_keys.watched_keys import KeyWatcherClient
 from app.screen import page_table
 from core.executor.commands import FeedHold
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.test_keyboard import send, window_of
 
@@ -23,75 +23,75 @@ AT = 10_000
 class Watched:
     """A watcher of which the test says what it has sent."""
 
-    sent: list[Stop] = field(default_factory=list)
-    told: list[Stop] = field(default_factory=list)
-    shown: list[Focus] = field(default_factory=list)
+    sent: list[StopPress] = field(default_factory=list)
+    told: list[StopPress] = field(default_factory=list)
+    shown: list[FocusRecord] = field(default_factory=list)
 
     def send(self, kind: StopKind, key: int) -> None:
-        self.sent.append(Stop(kind, press_number(key, AT)))
+        self.sent.append(StopPress(kind, make_press_number(key, AT)))
         self.told.append(self.sent[-1])
 
-    def show(self, focus: Focus) -> None:
+    def send_focus(self, focus: FocusRecord) -> None:
         self.shown.append(focus)
 
-    def news(self) -> list[Stop]:
+    def read_stops(self) -> list[StopPress]:
         told, self.told = self.told, []
         return told
 
     def was_sent(self, press: int) -> bool:
-        return press in {each.press for each in self.sent}
+        return press in {each.press_number for each in self.sent}
 
 
 @pytest.fixture
 def watched(hands: Hands) -> tuple[Hands, Watched]:
     hands.sees(lambda: QApplication.focusWindow() is window_of(hands))
     made = Watched()
-    hands.window.keyboard._watched = cast("WatchedKeys", made)
+    hands.window.keyboard_filter._watched = cast("KeyWatcherClient", made)
     return hands, made
 
 
-def moving(hands: Hands, state: State = State.RUN) -> None:
+def moving(hands: Hands, state: MachineState = MachineState.RUN) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
 
 
 def test_the_windows_and_whether_esc_holds_are_shown(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     hands.window.refresh()
-    assert made.shown[-1] == Focus(frozenset({int(window_of(hands).winId())}), esc_holds=False)
-    moving(hands, State.WAIT)
+    assert made.shown[-1] == FocusRecord(frozenset({int(window_of(hands).winId())}), is_esc_stop_key=False)
+    moving(hands, MachineState.WAIT)
     hands.window.refresh()
-    assert made.shown[-1].esc_holds
-    hands.frame.go(page_table.SECCMP)
+    assert made.shown[-1].is_esc_stop_key
+    hands.frame.open_page(page_table.SECCMP)
     hands.window.refresh()
-    assert not made.shown[-1].esc_holds
+    assert not made.shown[-1].is_esc_stop_key
 
 
 def test_a_hold_carries_the_number_of_its_press(watched: tuple[Hands, Watched]) -> None:
     hands, _ = watched
     send(hands, Key.Key_Pause, at=AT)
     (hold,) = [each for each in hands.machine.posted if isinstance(each, FeedHold)]
-    assert hold.press == press_number(Key.Key_Pause, AT)
+    assert hold.press == make_press_number(Key.Key_Pause, AT)
 
 
 def test_an_esc_that_has_held_leaves_no_page(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
-    hands.frame.go(page_table.MENU)
-    moving(hands, State.HOLD)  # by the watcher
+    hands.frame.open_page(page_table.MENU)
+    moving(hands, MachineState.HOLD)  # by the watcher
     hands.window.refresh()
     made.send(StopKind.ESC, Key.Key_Escape)
     send(hands, Key.Key_Escape, at=AT)
-    assert hands.frame.page.NAME == page_table.MENU
-    assert hands.machine.posted[-1].press == press_number(Key.Key_Escape, AT)  # type: ignore[attr-defined]
+    assert hands.frame.current_page.NAME == page_table.MENU
+    assert hands.machine.posted[-1].press == make_press_number(Key.Key_Escape, AT)  # type: ignore[attr-defined]
 
 
 def test_an_esc_that_has_not_held_leaves_the_page(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
-    hands.frame.go(page_table.MENU)
-    moving(hands, State.HOLD)
+    hands.frame.open_page(page_table.MENU)
+    moving(hands, MachineState.HOLD)
     hands.window.refresh()
     made.send(StopKind.ESC, Key.Key_Escape)
     send(hands, Key.Key_Escape, at=AT + 500)  # another press
-    assert hands.frame.page.NAME == page_table.AUTOMATIC
+    assert hands.frame.current_page.NAME == page_table.AUTOMATIC
     assert FeedHold() not in hands.machine.posted
 
 
@@ -99,7 +99,7 @@ def test_an_estop_whose_key_never_comes_is_shown_pressed(watched: tuple[Hands, W
     hands, made = watched
     made.send(StopKind.ESTOP, Key.Key_ScrollLock)
     hands.window.refresh()
-    assert hands.desk.hands.estop_pressed
+    assert hands.desk.station_controls.estop_pressed
 
 
 def test_a_hold_whose_key_never_comes_is_not_posted_again(watched: tuple[Hands, Watched]) -> None:
@@ -107,11 +107,11 @@ def test_a_hold_whose_key_never_comes_is_not_posted_again(watched: tuple[Hands, 
     made.send(StopKind.HOLD, Key.Key_Pause)
     hands.window.refresh()
     assert FeedHold() not in hands.machine.posted
-    assert not hands.desk.hands.estop_pressed
+    assert not hands.desk.station_controls.estop_pressed
 
 
 def test_without_an_x_server_nothing_is_started(hands: Hands) -> None:
     def never() -> None:
         raise AssertionError
 
-    assert hands.window.keyboard.watch_stops(never) is None
+    assert hands.window.keyboard_filter.start_key_watcher(never) is None

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.desk.status.readouts import spindle_figures
-from app.screen.page_table import menu_keys
-from app.special.inputs_outputs import InputsOutputs
+from app.compose.machine.machine_files import load_shipped_machine
+from app.desk.status.readouts import make_spindle_readout
+from app.screen.page_table import map_menu_keys
+from app.special.inputs_outputs import SignalsFunction
 from core.executor.snapshot import Snapshot
 from tests.screen.hands import Hands
 
@@ -25,7 +25,7 @@ from tests.screen.hands import Hands
 def test_f8_and_f9_of_the_main_menu_open_what_they_open_elsewhere(
     language: str, tools: str, offsets: str
 ) -> None:
-    keys = menu_keys(language)
+    keys = map_menu_keys(language)
     assert (keys["F8"].name, keys["F9"].name) == (tools, offsets)
 
 
@@ -38,7 +38,7 @@ def test_f8_and_f9_of_the_main_menu_open_what_they_open_elsewhere(
     ],
 )
 def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tuple[str, ...]) -> None:
-    told = (spindle_figures(Snapshot(rpm_command=rpm), True, language) for rpm in (0.0, 900.0, -900.0))
+    told = (make_spindle_readout(Snapshot(rpm_command=rpm), True, language) for rpm in (0.0, 900.0, -900.0))
     assert tuple(each.direction for each in told) == words
 
 
@@ -53,20 +53,20 @@ def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tup
 def test_outputs_are_told_with_the_codes_that_this_machine_reads(
     hands: Hands, name: str, switched: dict[str, str], asked: dict[str, str]
 ) -> None:
-    section = InputsOutputs(hands.desk, shipped_machine(name))
-    outputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
+    section = SignalsFunction(hands.desk, load_shipped_machine(name))
+    outputs = {row.cells[0]: row.cells[3] for row in section.make_table(Snapshot()).rows}
     assert {name: outputs[name] for name in switched} == switched
-    section.keys()["F4"].action()
-    inputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
+    section.function_keys()["F4"].action()
+    inputs = {row.cells[0]: row.cells[3] for row in section.make_table(Snapshot()).rows}
     assert {name: inputs[name] for name in asked} == asked
     assert name == "gt75" or not any(code.startswith("M9") for code in inputs.values())
 
 
 @pytest.mark.parametrize(("stops", "asked"), [(True, "GUARD"), (False, "")])
 def test_the_guard_is_asked_for_where_it_stops_the_cycle(hands: Hands, stops: bool, asked: str) -> None:
-    machine = shipped_machine("gt75")
+    machine = load_shipped_machine("gt75")
     interlocks = replace(machine.interlocks, guard_stops=stops)
-    section = InputsOutputs(hands.desk, replace(machine, interlocks=interlocks))
-    section.keys()["F4"].action()
-    inputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
+    section = SignalsFunction(hands.desk, replace(machine, interlocks=interlocks))
+    section.function_keys()["F4"].action()
+    inputs = {row.cells[0]: row.cells[3] for row in section.make_table(Snapshot()).rows}
     assert inputs["guard"] == asked

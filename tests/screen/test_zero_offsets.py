@@ -10,7 +10,7 @@ import pytest
 
 from app.offsets.cell_table_view import ZeroOffsetsPage
 from app.screen import page_table
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.store.store import Store
 from core.store.store_rows import ZeroRow
 from tests.offset_store import use_store
@@ -31,9 +31,9 @@ def opened(hands: Hands) -> ZeroOffsetsPage:
     """From the main menu."""
     hands.key(Key.Key_F1)
     hands.key(Key.Key_G)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, ZeroOffsetsPage)
-    assert hands.frame.title.page == page_table.ZERO
+    assert hands.frame.title_line.page_title == page_table.ZERO
     return page
 
 
@@ -44,21 +44,21 @@ def enter(hands: Hands, text: str) -> None:
 
 def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
     page = opened(hands)
-    hands.sees(lambda: page.asked.asked.question == f"G54  {wording('screen.x-radius')}")
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == f"G54  {wording('screen.x-radius')}")
     enter(hands, "1.5-.25")
-    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(x=1.25)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=1.25)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_Tab)
-    hands.sees(lambda: page.asked.asked.question == f"G54  {wording('screen.c-degrees')}")
+    hands.sees(lambda: page.entry_panel.entry_texts.question_text == f"G54  {wording('screen.c-degrees')}")
     hands.type("-15")
-    hands.sees(lambda: page.asked.asked.change == "G54 C   +0.000  →  −15.000")
+    hands.sees(lambda: page.entry_panel.entry_texts.change_text == "G54 C   +0.000  →  −15.000")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: page.table.stored == {54: ZeroRow(x=1.25, c=-15.0)})
+    hands.sees(lambda: page.table_panel.stored == {54: ZeroRow(x=1.25, c=-15.0)})
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Left)
     enter(hands, "33")
-    hands.sees(lambda: store.offsets.zero.read_rows().get(55) == ZeroRow(z=33.0))
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows().get(55) == ZeroRow(z=33.0))
 
 
 def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
@@ -74,48 +74,48 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     hands.key(Key.Key_Delete)
     enter(hands, "2+")
     assert begins(hands.prompt(), "screen.refused")
-    assert store.offsets.zero.read_rows() == {}
+    assert store.offsets.zero_offsets.read_rows() == {}
 
 
 def test_return_alone_goes_on_and_changes_nothing(hands: Hands, store: Store) -> None:
     page = opened(hands)
     for _ in range(18):
         hands.key(Key.Key_Return)
-    assert (page.model.row, page.model.column) == (0, 0)
-    assert store.offsets.zero.read_history() == ()
+    assert (page.model.row_index, page.model.column_index) == (0, 0)
+    assert store.offsets.zero_offsets.read_history() == ()
 
 
 def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "7")
-    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_C)
     assert begins(hands.prompt(), "screen.clear-zero")
     yes(hands.window)
-    hands.sees(lambda: store.offsets.zero.read_rows() == {})
-    hands.sees(lambda: not page.model.book.busy and page.table.stored == {})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {})
+    hands.sees(lambda: not page.model.offset_book.is_saving and page.table_panel.stored == {})
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.taken-back", names="G54"))
     hands.key(Key.Key_F5)
-    hands.sees(page.history.isVisible)
-    assert [entry[1] for entry in page.history.entries] == ["G54", "G54", "G54"]
-    assert page.history.entries[-1][2] == "not set  →  X +7.000  Z +0.000  C +0.000"
+    hands.sees(page.history_list.isVisible)
+    assert [entry[1] for entry in page.history_list.history_entries] == ["G54", "G54", "G54"]
+    assert page.history_list.history_entries[-1][2] == "not set  →  X +7.000  Z +0.000  C +0.000"
     hands.key(Key.Key_Escape)
-    hands.sees(page.table.isVisible)
+    hands.sees(page.table_panel.isVisible)
 
 
 def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
     opened(hands)
-    hands.machine.now = replace(hands.machine.now, state=State.RUN)
+    hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
     hands.sees(lambda: hands.prompt() == wording("screen.program-runs-no-zero"))
     enter(hands, "3")
     hands.key(Key.Key_F4)
     hands.key(Key.Key_C)
     hands.key(Key.Key_C)
-    assert store.offsets.zero.read_history() == ()
+    assert store.offsets.zero_offsets.read_history() == ()
 
 
 def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) -> None:
@@ -124,32 +124,37 @@ def test_escape_takes_an_entry_back_and_then_leaves(hands: Hands, store: Store) 
     hands.key(Key.Key_Escape)
     assert page.model.text == ""
     hands.key(Key.Key_Escape)
-    assert hands.frame.page is hands.page
-    assert store.offsets.zero.read_rows() == {}
+    assert hands.frame.current_page is hands.page
+    assert store.offsets.zero_offsets.read_rows() == {}
 
 
 def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
-    assert store.offsets.zero.read_rows() == {}
+    assert store.offsets.zero_offsets.read_rows() == {}
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F10)
-    assert isinstance(hands.frame.page, ZeroOffsetsPage)
+    assert isinstance(hands.frame.current_page, ZeroOffsetsPage)
     hands.key(Key.Key_F9)
-    assert hands.frame.title.page == page_table.SECCMP
+    assert hands.frame.title_line.page_title == page_table.SECCMP
 
 
 def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
     page = opened(hands)
     enter(hands, "3")
     hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
-    assert page.table.stored == {}
+    assert page.table_panel.stored == {}
 
 
 def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Store) -> None:
     hands.load("bushing")
-    before = hands.desk.session.now
+    before = hands.desk.program_loader.loaded
     opened(hands)
     enter(hands, "4")
-    hands.sees(lambda: store.offsets.zero.read_rows() != {} and hands.desk.session.now.job is not before.job)
+    hands.sees(
+        lambda: (
+            store.offsets.zero_offsets.read_rows() != {}
+            and hands.desk.program_loader.loaded.job is not before.job
+        )
+    )
 
 
 def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store) -> None:
@@ -159,12 +164,12 @@ def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store
     hands.key(Key.Key_Tab)
     hands.type("1.5")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(z=-85.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(z=-85.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.offsets.zero.read_rows() == {54: ZeroRow(z=-85.0, c=15.0)})
-    assert store.offsets.zero.read_history()[1].why == "Z position set to 1.5"
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(z=-85.0, c=15.0)})
+    assert store.offsets.zero_offsets.read_history()[1].why == "Z position set to 1.5"
     assert page.model.text == ""
 
 
@@ -173,4 +178,4 @@ def test_an_axis_that_is_not_homed_is_no_place_to_count_from(hands: Hands, store
     hands.machine.now = replace(hands.machine.now, homed=(False, True, True))
     hands.key(Key.Key_F2)
     assert hands.prompt() == wording("screen.position-unknown", axis="X")
-    assert store.offsets.zero.read_history() == ()
+    assert store.offsets.zero_offsets.read_history() == ()

@@ -11,7 +11,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter
 
 from app.desk.translation import tr
-from app.screen import look
+from app.screen import screen_theme
 from app.screen.text_sizes import Role
 from app.screen.window.window_bars import TitleLine
 
@@ -30,9 +30,9 @@ def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
     """Everything that is drawn inside, with the role of each text."""
     texts: list[Text] = []
     roles = [Role.TABLE]
-    write, put_raw = look.Painter.write, look.put_raw
+    write, put_raw = screen_theme.ThemedPainter.draw_text_line, screen_theme.draw_raw_text
 
-    def noted(painter: look.Painter, *args: Any, **more: Any) -> None:
+    def noted(painter: screen_theme.ThemedPainter, *args: Any, **more: Any) -> None:
         roles.append(more.get("role", Role.TABLE))
         write(painter, *args, **more)
         roles.pop()
@@ -40,14 +40,14 @@ def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
     def put(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
         panel = painter.device()
         role = roles[-1]
-        if isinstance(panel, TitleLine) and text == tr(panel.state):
+        if isinstance(panel, TitleLine) and text == tr(panel.state_text):
             role = Role.STATE
         if text.strip():
             capitals = QFontMetricsF(painter.font()).capHeight()
             texts.append(Text(text, role, capitals, type(panel).__name__))
         put_raw(painter, rect, flags, text)
 
-    patch.setattr(look.Painter, "write", noted)
-    patch.setattr(look, "put_raw", put)
+    patch.setattr(screen_theme.ThemedPainter, "draw_text_line", noted)
+    patch.setattr(screen_theme, "draw_raw_text", put)
     yield texts
     patch.undo()

@@ -16,29 +16,29 @@ import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, Qt
 from PySide6.QtGui import QKeyEvent
 
-from app.desk.background_work import Latest
-from app.desk.data_folder import data_folder
+from app.desk.background_work import LatestRequestWorker
+from app.desk.data_folder import find_data_folder
 from app.desk.programs.program_loading import ProgramLoader
-from app.editor.editor import Stage
+from app.editor.editor_model import EditorStage
 from app.editor.editor_view import EditorPage
 from app.screen import page_table
 from core.executor.commands import (
+    ChangeOffsets,
     Command,
     ConfirmStart,
-    GiveClearance,
-    GiveProof,
+    DeselectHandwheel,
     LoadJob,
-    PartsMade,
-    Prepare,
-    Renew,
+    PrepareStart,
+    ReplaceClearances,
+    SetPartCount,
     SetSwitch,
+    SupplyProof,
     UseOffsets,
-    WheelOff,
 )
 from core.executor.executor import Executor
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.store.store import Store
-from drivers.simulators.plant_hands import PlantHands
+from drivers.simulators.plant_controls import PlantControls
 from tests.screen.day import Day
 
 NONE, SHIFT, CTRL = (
@@ -48,14 +48,14 @@ NONE, SHIFT, CTRL = (
 )
 STATION = ("press_estop", "release_estop", "press_hold", "set_spindle_auto", "press_left", "press_right")
 QUIET = (
-    GiveClearance,
-    GiveProof,
+    ReplaceClearances,
+    SupplyProof,
     LoadJob,
-    PartsMade,
-    Prepare,
-    Renew,
+    SetPartCount,
+    PrepareStart,
+    ChangeOffsets,
     UseOffsets,
-    WheelOff,
+    DeselectHandwheel,
 )  # of pages and workers
 UNCHANGING = frozenset({"events"})  # tables that only log
 
@@ -77,7 +77,7 @@ class Typist:
     day: Day
     recorded: bool = True  # nothing reaches the machine
     done: set[str] = field(default_factory=set)
-    workers: list[Latest] = field(default_factory=list)
+    workers: list[LatestRequestWorker] = field(default_factory=list)
     changed: set[str] = field(default_factory=set)  # by the last key, each table and file by its name
     stored: int = 0  # writes of the store
     _dump: dict[str, int] = field(default_factory=dict)
@@ -86,8 +86,8 @@ class Typist:
         """Press and release a key; return what changed."""
         self.done.clear()
         if self.recorded:
-            pressed = stroke.name == "u" and self.day.shot.state is State.ESTOP
-            self.day.desk.hands.estop_pressed = pressed  # else it would be no other press
+            pressed = stroke.name == "u" and self.day.shot.state is MachineState.ESTOP
+            self.day.desk.station_controls.estop_pressed = pressed  # else it would be no other press
         before = self._all()
         for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
             event = QKeyEvent(kind, stroke.key, stroke.modifiers, stroke.text)
@@ -102,24 +102,24 @@ class Typist:
         """Wait until everything that the key has asked for is done."""
         while self.workers:
             worker = self.workers.pop()
-            if not worker.quiet:
-                worker.settle(30.0)
-        if self.day.desk.book.busy:
-            self.sees(lambda: not self.day.desk.book.busy)
+            if not worker.quiet_time_s:
+                worker.wait_for_results(30.0)
+        if self.day.desk.offset_book.is_saving:
+            self.sees(lambda: not self.day.desk.offset_book.is_saving)
 
     def _all(self) -> dict[str, object]:
         """All that a key may change, by name."""
         desk = self.day.desk
-        loaded, settings = desk.session.now, desk.settings.now
+        loaded, settings = desk.program_loader.loaded, desk.settings_store.current
         told: dict[str, object] = {f"setting {each}": getattr(settings, each) for each in settings.__slots__}
         told |= {
-            "feed_pot": desk.hands.feed_pot.wanted,
-            "spindle_pot": desk.hands.spindle_pot.wanted,
-            "counter": desk.runs.counter.count,
+            "feed_pot": desk.station_controls.feed_pot.wanted,
+            "spindle_pot": desk.station_controls.spindle_pot.wanted,
+            "counter": desk.program_runs.part_counter.count,
             "loaded program": (loaded.path, loaded.block_delete, loaded.source),
             "snapshot": self.day.shot,
         }
-        return told | self._store() | _files(data_folder())
+        return told | self._store() | _files(find_data_folder())
 
     def _store(self) -> dict[str, int]:
         """The tables of the store; read again only after somebody has written."""
@@ -134,52 +134,59 @@ class Typist:
     @property
     def face(self) -> tuple[object, ...]:
         """What the page shows of what its keys are for now."""
-        page = self.day.frame.page
-        mode = page.mode if isinstance(page, EditorPage) else page.prompt()
-        return page.NAME, self.day.frame.has_field(), page.labels(), mode, self.day.frame.log.isVisible()
+        page = self.day.frame.current_page
+        mode = page.mode if isinstance(page, EditorPage) else page.prompt_text()
+        return (
+            page.NAME,
+            self.day.frame.has_text_field(),
+            page.key_labels(),
+            mode,
+            self.day.frame.alarm_list.isVisible(),
+        )
 
     def opens(self, name: str) -> bool:
         """Open a page afresh; False where it does not open in this state."""
         frame = self.day.frame
         self.clear()
-        if isinstance(frame.page, EditorPage):
-            self._leaves_editor(frame.page)
-        elif frame.page.NAME != page_table.AUTOMATIC:
+        if isinstance(frame.current_page, EditorPage):
+            self._leaves_editor(frame.current_page)
+        elif frame.current_page.NAME != page_table.AUTOMATIC:
             for _ in range(9):
-                if not frame.page.escape():
+                if not frame.current_page.handle_escape():
                     break
-            frame.go(page_table.AUTOMATIC)
-        frame.log.hide()
-        frame.automatic.files.dismiss()
-        frame.automatic.path.measure(on=False)
-        opened = frame.page.NAME == page_table.AUTOMATIC and frame.go(name)
+            frame.open_page(page_table.AUTOMATIC)
+        frame.alarm_list.hide()
+        frame.automatic_page.file_prompt.close_prompt()
+        frame.automatic_page.path_view.set_measuring(is_on=False)
+        opened = frame.current_page.NAME == page_table.AUTOMATIC and frame.open_page(name)
         self._workers_end()
         self.day.window.refresh()
-        if isinstance(frame.page, EditorPage):
-            self.sees(lambda page=frame.page: page.editor.stage in {Stage.OPEN, Stage.OFFERED})  # type: ignore[misc]
+        if isinstance(frame.current_page, EditorPage):
+            editor = frame.current_page.editor
+            self.sees(lambda: editor.stage in {EditorStage.OPEN, EditorStage.OFFERED})
         return opened
 
     def clear(self) -> None:
         """Take answer and question back, also an answer that outlives keys."""
-        page = self.day.frame.page
+        page = self.day.frame.current_page
         if isinstance(page, EditorPage):
-            page.editor.clear()
-        self.day.desk.answers.lasting = False
-        self.day.desk.clear()
+            page.editor.clear_message()
+        self.day.desk.prompt_answers.is_lasting = False
+        self.day.desk.clear_prompt_line()
 
     def _leaves_editor(self, page: EditorPage) -> None:
         """Leave without saving what was typed."""
 
         def left() -> bool:
             editor = page.editor
-            if editor.stage is Stage.OFFERED:
-                editor.abort()
-            elif editor.stage is Stage.NAMING:
-                editor.keep_no_name()
-            elif editor.stage is Stage.OPEN:
-                page.abandon()
-                page.answer()
-            return self.day.frame.page is not page
+            if editor.stage is EditorStage.OFFERED:
+                editor.cancel_offer()
+            elif editor.stage is EditorStage.NAMING:
+                editor.cancel_naming()
+            elif editor.stage is EditorStage.OPEN:
+                page.discard_and_leave()
+                page.confirm_question()
+            return self.day.frame.current_page is not page
 
         self.sees(left)
 
@@ -227,19 +234,19 @@ def record(monkeypatch: pytest.MonkeyPatch, typists: list[Typist]) -> None:
     for kind, name in (
         (Executor, "post"),
         (ProgramLoader, "load"),
-        *((PlantHands, each) for each in STATION),
+        *((PlantControls, each) for each in STATION),
     ):
         monkeypatch.setattr(kind, name, _recorded(getattr(kind, name), name, typists))
     for name in ("write", "keep"):
         monkeypatch.setattr(Store, name, _counted(getattr(Store, name), typists))
-    begin = Latest._begin
+    begin = LatestRequestWorker._begin
 
-    def begun(self: Latest, *values: object, **more: object) -> None:
+    def begun(self: LatestRequestWorker, *values: object, **more: object) -> None:
         if typists:
             typists[0].workers.append(self)
         begin(self, *values, **more)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(Latest, "_begin", begun)
+    monkeypatch.setattr(LatestRequestWorker, "_begin", begun)
 
 
 def _recorded(does: Callable[..., None], name: str, typists: list[Typist]) -> Callable[..., None]:
@@ -256,7 +263,7 @@ def _is_again(loader: object, path: object = None, block_delete: object = False)
     """Whether the same program is loaded in the same way: with offsets that were changed."""
     if not isinstance(loader, ProgramLoader):
         return False
-    return (path, block_delete) == (loader.now.path, loader.now.block_delete)
+    return (path, block_delete) == (loader.loaded.path, loader.loaded.block_delete)
 
 
 def _named(name: str, *values: object) -> str:

@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from app.searchto.searchto_plan import jog_words, way_out_of
+from app.searchto.restart_plan import describe_manual_retract, plan_retract
 from core.executor.job import make_job
-from core.executor.snapshot import CONTROL_LOST, InterruptedJob, Snapshot
-from core.interpreter.restart.restart_approach import Choices, MachineNow, retract_from_work
+from core.executor.snapshot import POWER_LOST_REASON, InterruptedJob, Snapshot
+from core.interpreter.restart.restart_approach import OperatorChoices, PresentState, plan_retract_from_part
 from core.interpreter.restart.restart_point import Interruption
-from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
-from core.interpreter.restart.state_rebuild import StateRebuild
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Source
+from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolSituation
+from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, setup
 from tests.interrupted import broken_off
 from tests.texts import begins, text
@@ -23,49 +23,51 @@ from tests.texts import begins, text
 @pytest.mark.parametrize(
     ("found", "words"),
     [
-        (Retract(ToolPlace.CLEAR), ""),
-        (Retract(ToolPlace.WORK, (RetractLeg(1.0, 0.0),), (1, 0)), ""),
-        (Retract(ToolPlace.UNKNOWN, away=(1, 0)), text("search.jog-out-first", tool=3, x="X+")),
-        (Retract(ToolPlace.UNKNOWN, away=(-1, 0)), text("search.jog-out-first", tool=3, x="X-")),
-        (Retract(ToolPlace.UNKNOWN, away=(0, 1)), text("search.jog-z-out-first", tool=3)),
+        (Retract(ToolSituation.CLEAR), ""),
+        (Retract(ToolSituation.IN_PART, (RetractLeg(1.0, 0.0),), (1, 0)), ""),
+        (Retract(ToolSituation.UNKNOWN, direction=(1, 0)), text("search.jog-out-first", tool=3, x="X+")),
+        (Retract(ToolSituation.UNKNOWN, direction=(-1, 0)), text("search.jog-out-first", tool=3, x="X-")),
+        (Retract(ToolSituation.UNKNOWN, direction=(0, 1)), text("search.jog-z-out-first", tool=3)),
         (
-            Retract(ToolPlace.UNKNOWN, away=(1, 1)),
+            Retract(ToolSituation.UNKNOWN, direction=(1, 1)),
             text("search.jog-out-together", tool=3, x="X+"),
         ),
         (
-            Retract(ToolPlace.UNKNOWN),
+            Retract(ToolSituation.UNKNOWN),
             text("search.way-in-unknown", tool=3),
         ),
-        (Retract(ToolPlace.THREAD), text("search.in-thread", tool=3)),
+        (Retract(ToolSituation.IN_THREAD), text("search.in-thread", tool=3)),
         (
-            Retract(ToolPlace.TAP),
+            Retract(ToolSituation.IN_TAPPED_HOLE),
             text("search.tap-in-thread", tool=3),
         ),
         (
-            Retract(ToolPlace.TURNED, away=(1, 0)),
+            Retract(ToolSituation.PART_TURNED, direction=(1, 0)),
             text("search.c-has-turned", tool=3),
         ),
     ],
 )
 def test_the_words(found: Retract, words: str) -> None:
-    assert jog_words(found, 3) == words
+    assert describe_manual_retract(found, 3) == words
 
 
-PART = Source("PART", "G90G94F300\nT1\nX.75Z1\nZ-.3\nM19\nCA30\nG94F5X.5\nF300X.75\nZ1\nM05\nM30\n")
+PART = ProgramSource("PART", "G90G94F300\nT1\nX.75Z1\nZ-.3\nM19\nCA30\nG94F5X.5\nF300X.75\nZ1\nM05\nM30\n")
 
 
 def test_a_cross_hole_is_left_only_while_c_stands_as_it_stood() -> None:
-    cut = StateRebuild(PART, setup(), lambda _count: None).cut
-    row = next(n for n, line in zip(cut.n.tolist(), cut.line.tolist(), strict=True) if line == 7)
+    cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
+    row = next(
+        n for n, line in zip(cut.block_number.tolist(), cut.line_number.tolist(), strict=True) if line == 7
+    )
     at = (0.6 * INCH, -0.3 * INCH, 30.0)
     broken = Interruption(row, 1, at, row)
-    assert retract_from_work(cut, MachineNow(at, Modal(), broken))[0].known
-    assert retract_from_work(cut, MachineNow((*at[:2], 390.2), Modal(), broken))[
+    assert plan_retract_from_part(cut, PresentState(at, ModalState(), broken))[0].is_known
+    assert plan_retract_from_part(cut, PresentState((*at[:2], 390.2), ModalState(), broken))[
         0
-    ].known  # a whole turn, as C counts
-    found, tool = retract_from_work(cut, MachineNow((*at[:2], 35.0), Modal(), broken))
-    assert not found.known
-    assert begins(jog_words(found, tool), "search.c-has-turned", tool=1)
+    ].is_known  # a whole turn, as C counts
+    found, tool = plan_retract_from_part(cut, PresentState((*at[:2], 35.0), ModalState(), broken))
+    assert not found.is_known
+    assert begins(describe_manual_retract(found, tool), "search.c-has-turned", tool=1)
 
 
 def interrupted(block: int, **changes: object) -> tuple[Snapshot, InterruptedJob]:
@@ -79,22 +81,24 @@ def interrupted(block: int, **changes: object) -> tuple[Snapshot, InterruptedJob
 
 
 def test_the_feed_is_told_and_the_legs_are_in_the_frame_of_the_tool_that_stands_there() -> None:
-    cut = StateRebuild(PART, setup(), lambda _count: None).cut
-    row = next(n for n, line in zip(cut.n.tolist(), cut.line.tolist(), strict=True) if line == 7)
+    cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
+    row = next(
+        n for n, line in zip(cut.block_number.tolist(), cut.line_number.tolist(), strict=True) if line == 7
+    )
     snapshot, _ = interrupted(row)
-    out = way_out_of(cut, snapshot, make_job(PART, setup()), Choices())
-    assert (out.trouble, out.feed) == ("", "20.00 in/min")
-    assert [(leg.label, round(leg.x / INCH, 3), round(leg.z / INCH, 3)) for leg in out.legs] == [
+    out = plan_retract(cut, snapshot, make_job(PART, setup()), OperatorChoices())
+    assert (out.error_text, out.feed_text) == ("", "20.00 in/min")
+    assert [(leg.label, round(leg.x / INCH, 3), round(leg.z / INCH, 3)) for leg in out.drawn_legs] == [
         ("", 0.6, -0.3),
         ("1 X", 0.75, -0.3),
         ("2 Z", 0.75, 1.0),
     ]
-    assert out.begin.single
+    assert out.start_state.is_mdi_line
 
 
 def test_a_note_of_a_second_ago_is_told_from_a_place_at_rest() -> None:
-    cut = StateRebuild(PART, setup(), lambda _count: None).cut
-    before, _ = interrupted(3, why=CONTROL_LOST, where=(0.75 * INCH, -0.1 * INCH, 30.0))
-    assert way_out_of(cut, before, make_job(PART, setup()), Choices()).trouble == ""
+    cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
+    before, _ = interrupted(3, why=POWER_LOST_REASON, where=(0.75 * INCH, -0.1 * INCH, 30.0))
+    assert plan_retract(cut, before, make_job(PART, setup()), OperatorChoices()).error_text == ""
     moved, _ = interrupted(3, where=(0.75 * INCH, -0.1 * INCH, 30.0))
-    assert way_out_of(cut, moved, make_job(PART, setup()), Choices()).trouble
+    assert plan_retract(cut, moved, make_job(PART, setup()), OperatorChoices()).error_text

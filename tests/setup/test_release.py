@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.actions.desktop_entry import entry_text
-from app.cli.main import all_commands
+from app.cli.main import list_commands
 from resources.setup import release, release_check
 from resources.setup.bundle import BundleError
 from resources.setup.lock import HERE, PYTHONS
@@ -151,7 +151,7 @@ def test_the_manual_page_has_every_command_and_no_bare_special_line() -> None:
     headings = {
         line.removeprefix(".SS turndesk ").split()[0] for line in page.splitlines() if line[:3] == ".SS"
     }
-    assert {each.replace("-", r"\-") for each in all_commands()} == headings
+    assert {each.replace("-", r"\-") for each in list_commands()} == headings
     assert page.startswith('.TH TURNDESK 1 "2026-12-01"')
     assert {line.split()[0] for line in page.splitlines() if line.startswith(".")} <= {
         ".TH",

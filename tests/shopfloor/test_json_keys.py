@@ -6,12 +6,12 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from app.compose.machine.machine_files import shipped_machine
-from app.shopfloor.floor_reading import FloorReader
-from app.shopfloor.json_keys import FILE
-from app.shopfloor.status_file import StatusFile, status_of
+from app.compose.machine.machine_files import load_shipped_machine
+from app.shopfloor.json_keys import FILE_KEYS
+from app.shopfloor.machine_reading import MachineReader
+from app.shopfloor.status_file import StatusFileWriter, make_status
 from core.alarms import CATALOGUE
-from core.executor.snapshot import Alarm, InterruptedJob, Snapshot, State
+from core.executor.snapshot import Alarm, InterruptedJob, MachineState, Snapshot
 from tests.cli.json_output import declared_alone
 
 INTERRUPTED = InterruptedJob(
@@ -22,15 +22,19 @@ INTERRUPTED = InterruptedJob(
 def shots() -> list[Snapshot]:
     found = CATALOGUE["following"]
     alarm = Alarm(found.number, "following", found.text, "X", found.remedy, 4)
-    running = Snapshot(state=State.RUN, program="/p/pin.nc", counts=True, made=3, line=9, spindle_load=41.0)
-    return [running, replace(running, state=State.FAULT, alarms=(alarm,), interrupted=INTERRUPTED)]
+    running = Snapshot(
+        state=MachineState.RUN, program="/p/pin.nc", counts=True, made=3, line=9, spindle_load=41.0
+    )
+    return [running, replace(running, state=MachineState.FAULT, alarms=(alarm,), interrupted=INTERRUPTED)]
 
 
 def test_status_json(tmp_path: Path) -> None:
-    reader = FloorReader(shipped_machine("gt75"), lambda: 0.0)
+    reader = MachineReader(load_shipped_machine("gt75"), lambda: 0.0)
     values = []
     for number, shot in enumerate(shots()):
         path = tmp_path / f"{number}.json"
-        StatusFile(path, lambda: "2026-11-23T08:00:00Z").show(status_of("GT-75", reader.look(shot)))
+        StatusFileWriter(path, lambda: "2026-11-23T08:00:00Z").write_status(
+            make_status("GT-75", reader.read_snapshot(shot))
+        )
         values.append(json.loads(path.read_text("utf-8")))
-    declared_alone(values, FILE)
+    declared_alone(values, FILE_KEYS)

@@ -8,14 +8,14 @@ from typing import cast
 
 import pytest
 
-from app.compose.machine.machine_files import load_machine, shipped_machine
-from app.shopfloor.floor_reading import PLACES, FloorReader, Value, condition_keys
-from core.alarms import CATALOGUE, Code
-from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
-from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.shared.modal_state import Modal
+from app.compose.machine.machine_files import load_machine, load_shipped_machine
+from app.shopfloor.machine_reading import CONDITION_PLACES, MachineReader, ReadingValue, list_condition_keys
+from core.alarms import CATALOGUE, AlarmCode
+from core.executor.raised_alarm import AlarmError, make_alarm, make_alarm_and_reaction
+from core.executor.snapshot import Alarm, MachineState, Snapshot
+from core.interpreter.shared.modal_state import ModalState
 from core.machine.machine_model import InputModel, Machine
-from core.ports import ALL_UNKNOWN
+from core.ports import ALL_UNKNOWN_PARTS
 from tests.interrupted import broken_off
 from tests.texts import text
 
@@ -25,27 +25,27 @@ KEYS = frozenset(
 LATHE = load_machine(None)
 AT = Snapshot(
     t=1.0,
-    state=State.RUN,
+    state=MachineState.RUN,
     program="/home/op/programs/pin.nc",
     line=7,
     block=3,
     block_text="  G01X.5 ",
     actual=(12.7, -25.4, 90.0),
     homed=(True, True, True),
-    modal=Modal(tool=3),
+    modal=ModalState(tool=3),
     velocity=5.08,
     feed_override=0.805,
     spindle_override=1.2,
     rpm_actual=-2001.5,
-    spindle_asked=-2000.0,
+    requested_rpm=-2000.0,
     inputs=frozenset({"collet_closed"}),
     outputs=frozenset({"collet"}),
     parts=12,
 )
 
 
-def values_of(snapshot: Snapshot, machine: Machine = LATHE) -> Mapping[str, Value]:
-    return FloorReader(machine, lambda: 0.0).look(snapshot).values
+def values_of(snapshot: Snapshot, machine: Machine = LATHE) -> Mapping[str, ReadingValue]:
+    return MachineReader(machine, lambda: 0.0).read_snapshot(snapshot).values
 
 
 def test_a_machine_in_a_cycle() -> None:
@@ -80,16 +80,16 @@ def test_a_machine_in_a_cycle() -> None:
 @pytest.mark.parametrize(
     ("change", "key", "told"),
     [
-        ({"state": State.ESTOP}, "estop", "TRIGGERED"),
+        ({"state": MachineState.ESTOP}, "estop", "TRIGGERED"),
         ({"program": ""}, "program", None),
         ({"line": 0}, "line", None),
         ({"block_text": "  "}, "block", None),
-        ({"modal": Modal()}, "toolnum", "0"),
+        ({"modal": ModalState()}, "toolnum", "0"),
         ({"homed": (False, True, True)}, "Xabs", None),
         ({"velocity": 0.13}, "Fact", 0.0),  # an encoder that trembles
         ({"rpm_actual": 0.4}, "Srpm", 0.0),
         ({"spindle_load": 42.5}, "Sload", 42.5),
-        ({"modal": Modal(c_locked=True)}, "rotmode", "CONTOUR"),
+        ({"modal": ModalState(c_locked=True)}, "rotmode", "CONTOUR"),
         ({"inputs": frozenset()}, "chuck", "UNLATCHED"),  # told to close, and not there yet
         ({"inputs": frozenset(), "outputs": frozenset()}, "chuck", "OPEN"),
         ({"outputs": frozenset()}, "chuck", "CLOSED"),  # told to open, and still there
@@ -97,7 +97,7 @@ def test_a_machine_in_a_cycle() -> None:
         ({"inputs": frozenset({"guard", "end_of_bar"})}, "endbar", "YES"),
     ],
 )
-def test_one_thing_is_different(change: dict[str, object], key: str, told: Value) -> None:
+def test_one_thing_is_different(change: dict[str, object], key: str, told: ReadingValue) -> None:
     assert values_of(replace(AT, **change))[key] == told  # type: ignore[arg-type]
 
 
@@ -127,27 +127,27 @@ def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, t
 
 def test_of_a_silent_control_nothing_is_known() -> None:
     now = 100.0
-    reader = FloorReader(LATHE, lambda: now)
-    assert reader.look(AT).available
+    reader = MachineReader(LATHE, lambda: now)
+    assert reader.read_snapshot(AT).is_available
     now += 0.9
-    assert reader.look(AT).available
+    assert reader.read_snapshot(AT).is_available
     now += 0.2
-    reading = reader.look(AT)
+    reading = reader.read_snapshot(AT)
     assert (reading.values, reading.conditions) == ({"avail": "UNAVAILABLE"}, {})
-    assert reader.look(replace(AT, t=2.0)).available  # it speaks again
+    assert reader.read_snapshot(replace(AT, t=2.0)).is_available  # it speaks again
 
 
 # --- conditions ------------------------------------------------------------------------------------------
 
 
 def active(snapshot: Snapshot) -> dict[str, tuple[tuple[str, str, str], ...]]:
-    reading = FloorReader(LATHE, lambda: 0.0).look(snapshot)
+    reading = MachineReader(LATHE, lambda: 0.0).read_snapshot(snapshot)
     assert set(reading.conditions) == KEYS
     return {key: found for key, found in reading.conditions.items() if found}
 
 
-def alarm(code: Code, detail: str = "") -> Alarm:
-    return alarm_and_reaction(AlarmError(code, detail), 0, 0.0)[0]
+def alarm(code: AlarmCode, detail: str = "") -> Alarm:
+    return make_alarm_and_reaction(AlarmError(code, detail), 0, 0.0)[0]
 
 
 JOB = text("executor.interrupted-job", program="PIN.NC", line=8, tool="T3", part=5, why="E-STOP")
@@ -183,19 +183,19 @@ def test_without_alarms_all_is_normal() -> None:
         ("internal", "KeyError: 'X'", "system"),
     ],
 )
-def test_where_an_alarm_belongs(code: Code, detail: str, key: str) -> None:
+def test_where_an_alarm_belongs(code: AlarmCode, detail: str, key: str) -> None:
     raised = alarm(code, detail)
     fault = ("FAULT", str(raised.number), f"{raised.text}: {raised.cause}")
-    assert active(replace(AT, state=State.FAULT, alarms=(raised,))) == {key: (fault,)}
+    assert active(replace(AT, state=MachineState.FAULT, alarms=(raised,))) == {key: (fault,)}
 
 
-@pytest.mark.parametrize("code", PLACES)
-def test_every_place_is_that_of_an_alarm(code: Code) -> None:
+@pytest.mark.parametrize("code", CONDITION_PLACES)
+def test_every_place_is_that_of_an_alarm(code: AlarmCode) -> None:
     assert alarm(code).code == code
 
 
 def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
-    unknown = cast("Code", "new")  # no catalogue has it
+    unknown = cast("AlarmCode", "new")  # no catalogue has it
     new = Alarm(999, unknown, "SOMETHING NEW", "nobody knows", "")
     assert active(replace(AT, alarms=(new,))) == {
         "system": (("FAULT", "999", "SOMETHING NEW: nobody knows"),)
@@ -211,26 +211,26 @@ def test_two_faults_of_a_slide_stand_side_by_side() -> None:
 
 
 def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() -> None:
-    left = replace(Snapshot(state=State.IDLE), interrupted=broken_off())
+    left = replace(Snapshot(state=MachineState.IDLE), interrupted=broken_off())
     assert active(left) == {"system": (("WARNING", "interrupted", JOB),)}
 
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
-    held = replace(AT, state=State.HOLD, stop=make_alarm("low-queue", "", 4, 0.0))
+    held = replace(AT, state=MachineState.HOLD, stop=make_alarm("low-queue", "", 4, 0.0))
     assert active(held) == {"system": (("WARNING", "904", CATALOGUE["low-queue"].text.upper()),)}
     assert active(replace(held, stop=make_alarm("feed-hold", "H at the keyboard", 4, 0.0))) == {}
     assert active(replace(held, stop=None)) == {}
-    assert active(replace(AT, state=State.WAIT, waiting_for="DWELL")) == {}
+    assert active(replace(AT, state=MachineState.WAIT, waiting_for="DWELL")) == {}
 
 
 def test_waiting_for_any_input_of_the_machine_is_waiting_for_a_device() -> None:
     for waits in ("TB2-5", "end_of_bar", "16", "PLC-16"):
-        assert values_of(replace(AT, state=State.WAIT, waiting_for=waits))["execution"] == "WAIT"
-    assert values_of(replace(AT, state=State.WAIT, waiting_for="TB9-9"))["execution"] == "ACTIVE"
+        assert values_of(replace(AT, state=MachineState.WAIT, waiting_for=waits))["execution"] == "WAIT"
+    assert values_of(replace(AT, state=MachineState.WAIT, waiting_for="TB9-9"))["execution"] == "ACTIVE"
 
 
 def test_of_a_machine_that_is_not_heard_the_last_figures_are_not_told() -> None:
-    values = values_of(replace(AT, unknown=ALL_UNKNOWN))
+    values = values_of(replace(AT, unknown=ALL_UNKNOWN_PARTS))
     unheard = ("Xabs", "Zabs", "Cabs", "Srpm", "Sload", "Fact", "chuck", "door", "endbar", "part", "chuckil")
     assert [key for key in unheard if values[key] is not None] == []
     assert (values["avail"], values["program"], values["line"]) == ("AVAILABLE", "pin.nc", "7")
@@ -243,4 +243,4 @@ def test_of_a_machine_that_is_not_heard_the_last_figures_are_not_told() -> None:
 def test_each_axis_with_its_own_drive_has_its_own_conditions(name: str, axes: str) -> None:
     of_machine = KEYS - {"Xtravel", "Ztravel", "Xservo", "Zservo"}
     of_axes = {f"{axis}{kind}" for axis in axes for kind in ("travel", "servo")}
-    assert condition_keys(shipped_machine(name)) == of_machine | of_axes
+    assert list_condition_keys(load_shipped_machine(name)) == of_machine | of_axes

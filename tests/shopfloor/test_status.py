@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from app.shopfloor.floor_reading import Reading
-from app.shopfloor.status_file import Status, StatusFile, StatusKeeper, status_of
+from app.shopfloor.machine_reading import MachineReading
+from app.shopfloor.status_file import StatusDocument, StatusFileUpdater, StatusFileWriter, make_status
 from core.alarms import CATALOGUE
 from core.executor.raised_alarm import make_alarm
 from tests.interrupted import broken_off
 
-RUNNING = Reading(
+RUNNING = MachineReading(
     {
         "avail": "AVAILABLE",
         "execution": "ACTIVE",
@@ -46,13 +46,13 @@ def read(path: Path) -> dict[str, object]:
 
 
 def test_an_interrupted_job_is_told_with_line_tool_part_and_time() -> None:
-    status = status_of("GT-75", replace(RUNNING, interrupted=broken_off(line=8, tool=3, part=5)))
+    status = make_status("GT-75", replace(RUNNING, interrupted_job=broken_off(line=8, tool=3, part=5)))
     assert status["interrupted"] == {"line": 8, "tool": 3, "part": 5, "at": "2026-05-04T09:30:00Z"}
 
 
 def test_what_it_says(tmp_path: Path) -> None:
     path = tmp_path / "home" / "status.json"
-    StatusFile(path, Hours()).show(status_of("GT-75", RUNNING))
+    StatusFileWriter(path, Hours()).write_status(make_status("GT-75", RUNNING))
     assert read(path) == {
         "updated": "2026-01-01T00:00:01Z",
         "since": "2026-01-01T00:00:01Z",
@@ -80,29 +80,31 @@ def test_the_load_of_the_spindle_is_told_in_steps_that_do_not_wear_out_a_disk(
     load: float | None, told: int | None
 ) -> None:
     reading = replace(RUNNING, values={**RUNNING.values, "Sload": load})
-    assert status_of("GT-75", reading)["spindle_load"] == told
+    assert make_status("GT-75", reading)["spindle_load"] == told
 
 
 def test_of_a_silent_control_nothing_is_said() -> None:
-    status = status_of("GT-75", Reading({"avail": "UNAVAILABLE"}))
+    status = make_status("GT-75", MachineReading({"avail": "UNAVAILABLE"}))
     assert (status["available"], status["execution"], status["parts"]) == (False, None, None)
 
 
 def test_it_is_written_for_a_change_and_every_ten_looks(tmp_path: Path) -> None:
     path, hours = tmp_path / "status.json", Hours()
-    file = StatusFile(path, hours)
+    file = StatusFileWriter(path, hours)
     for _ in range(10):
-        file.show({"execution": "ACTIVE"})
+        file.write_status({"execution": "ACTIVE"})
     assert hours.seconds == 1
-    file.show({"execution": "ACTIVE"})
+    file.write_status({"execution": "ACTIVE"})
     assert read(path) == {
         "updated": "2026-01-01T00:00:02Z",
         "since": "2026-01-01T00:00:01Z",
         "execution": "ACTIVE",
     }
-    file.show({"execution": "ACTIVE", "parts": 1})  # another part: since then it has been active all the same
+    file.write_status(
+        {"execution": "ACTIVE", "parts": 1}
+    )  # another part: since then it has been active all the same
     assert read(path)["since"] == "2026-01-01T00:00:01Z"
-    file.show({"execution": "STOPPED"})
+    file.write_status({"execution": "STOPPED"})
     assert read(path)["since"] == read(path)["updated"] == "2026-01-01T00:00:04Z"
 
 
@@ -110,32 +112,32 @@ def test_a_disk_that_fails_is_told_once_and_tried_again(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "home").write_text("a file where the folder should be")
-    file = StatusFile(tmp_path / "home" / "status.json", Hours())
+    file = StatusFileWriter(tmp_path / "home" / "status.json", Hours())
     for _ in range(3):
-        file.show({"execution": "ACTIVE"})
+        file.write_status({"execution": "ACTIVE"})
     assert len(caplog.records) == 1
     assert "status.json" in caplog.text
     (tmp_path / "home").unlink()
-    file.show({"execution": "ACTIVE"})
+    file.write_status({"execution": "ACTIVE"})
     assert read(tmp_path / "home" / "status.json")["execution"] == "ACTIVE"
 
 
 def test_a_file_that_was_left_half_written_is_replaced(tmp_path: Path) -> None:
     (tmp_path / "status.json").write_text('{"upda')
     (tmp_path / "status.json.new").write_text("rubbish")
-    StatusFile(tmp_path / "status.json", Hours()).show({"execution": "READY"})
+    StatusFileWriter(tmp_path / "status.json", Hours()).write_status({"execution": "READY"})
     assert read(tmp_path / "status.json")["execution"] == "READY"
 
 
 def test_whoever_reads_while_it_is_written_sees_a_whole_one(tmp_path: Path) -> None:
     path = tmp_path / "status.json"
-    file = StatusFile(path, lambda: "now")
-    file.show({"parts": 0})
+    file = StatusFileWriter(path, lambda: "now")
+    file.write_status({"parts": 0})
     over = threading.Event()
 
     def write() -> None:
         for parts in range(1, 300):
-            file.show({"parts": parts})
+            file.write_status({"parts": parts})
         over.set()
 
     writer = threading.Thread(target=write)
@@ -150,12 +152,12 @@ def test_whoever_reads_while_it_is_written_sees_a_whole_one(tmp_path: Path) -> N
 def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
     looked = threading.Event()
 
-    def look() -> Status:
+    def look() -> StatusDocument:
         looked.set()
         return {"execution": "READY"}
 
     path = tmp_path / "status.json"
-    keeper = StatusKeeper(StatusFile(path, Hours()), look, {"available": False})
+    keeper = StatusFileUpdater(StatusFileWriter(path, Hours()), look, {"available": False})
     keeper.start()
     assert looked.wait(60.0)
     keeper.close()
@@ -166,10 +168,12 @@ def test_the_keeper_says_how_it_is_and_that_it_is_over(tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_a_mistake_in_it_leaves_a_file_that_says_so(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    def look() -> Status:
+    def look() -> StatusDocument:
         raise RuntimeError("a mistake of our own")
 
-    keeper = StatusKeeper(StatusFile(tmp_path / "status.json", Hours()), look, {"available": False})
+    keeper = StatusFileUpdater(
+        StatusFileWriter(tmp_path / "status.json", Hours()), look, {"available": False}
+    )
     keeper.start()
     for thread in threading.enumerate():
         if thread.name == "status":

@@ -6,18 +6,18 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.dialects import interpretation
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import Setup, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
-from core.proving.program_timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, iter_timed_blocks
 
-MODULO = shipped_machine("sinumerik-modulo")
-LINEAR = shipped_machine("sinumerik-linear")
+MODULO = load_shipped_machine("sinumerik-modulo")
+LINEAR = load_shipped_machine("sinumerik-linear")
 START = (10.0, 50.0, 0.0)  # X20 Z50 C0 under DIAMON
 
 
@@ -36,9 +36,9 @@ class Passed(NamedTuple):
         return [block for block in self.blocks if block.moves]
 
 
-def source(text: str, *subprograms: Source, name: str = "part.mpf") -> Source:
+def source(text: str, *subprograms: ProgramSource, name: str = "part.mpf") -> ProgramSource:
     """Program text with these files beside it."""
-    return Source(name, text, Dialect.SINUMERIK, subprograms)
+    return ProgramSource(name, text, Dialect.SINUMERIK, subprograms)
 
 
 def setup(
@@ -47,24 +47,24 @@ def setup(
     zero: Mapping[int, ZeroOffset] | None = None,
 ) -> Setup:
     """Circumstances on this machine."""
-    return replace(setup_for(machine, tools={}, secondary={}), start=start, zero=zero or {})
+    return replace(create_setup(machine, tool_offsets={}, secondary_offsets={}), start=start, zero=zero or {})
 
 
-def run(text: str | Source, around: Setup | None = None) -> Passed:
+def run(text: str | ProgramSource, around: Setup | None = None) -> Passed:
     """The blocks of a program and all findings."""
-    program = interpretation(text if isinstance(text, Source) else source(text), around or setup())
-    blocks = list(program.blocks())
+    program = interpret_program(text if isinstance(text, ProgramSource) else source(text), around or setup())
+    blocks = list(program.generate_blocks())
     return Passed(blocks, list(program.diagnostics))
 
 
-def good(text: str | Source, around: Setup | None = None) -> list[Block]:
+def good(text: str | ProgramSource, around: Setup | None = None) -> list[Block]:
     """The moving blocks of a program without findings."""
     passed = run(text, around)
     assert passed.found == []
     return passed.moves
 
 
-def refused(text: str | Source, around: Setup | None = None) -> Diagnostic:
+def refused(text: str | ProgramSource, around: Setup | None = None) -> Diagnostic:
     """The one error of a program."""
     (error,) = run(text, around).errors
     return error
@@ -72,7 +72,7 @@ def refused(text: str | Source, around: Setup | None = None) -> Diagnostic:
 
 def times(text: str, machine: Machine = MODULO, around: Setup | None = None) -> list[tuple[Block, float]]:
     """Every block with the seconds that it takes by feeds and limits alone."""
-    timeline = Timeline.of(source(text), around or setup(machine), machine, ideal=True)
-    found = [(block, t1 - t0) for block, t0, t1 in timed_blocks(timeline)]
-    assert not timeline.errors, timeline.diagnostics
+    timeline = Timeline.from_program(source(text), around or setup(machine), machine, ideal=True)
+    found = [(block, t1 - t0) for block, t0, t1 in iter_timed_blocks(timeline)]
+    assert not timeline.has_errors, timeline.diagnostics
     return found

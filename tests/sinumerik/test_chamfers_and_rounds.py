@@ -8,7 +8,7 @@ from math import asin, cos, dist, pi, sin, sqrt
 import pytest
 
 from core.geometry.lines_and_arcs import arc_length
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.sinumerik.lathe import good, refused, run, setup
 
 AT = setup(start=(10.0, 0.0, 0.0))
@@ -50,7 +50,7 @@ def test_a_speed_behind_the_corner_is_not_that_of_the_move_before_it() -> None:
 
 def test_a_rounding() -> None:
     first, arc, last = corner("RND=4")
-    assert arc.kind is Kind.ARC
+    assert arc.kind is BlockKind.ARC
     assert (first.z, last.x0) == pytest.approx((-16, 14))
     ends = (arc.x0, arc.z0), (arc.x, arc.z)
     assert arc_length(*ends, (arc.cx, arc.cz), clockwise=arc.clockwise) == pytest.approx(4 * pi / 2)
@@ -112,7 +112,7 @@ def test_a_rounding_beside_an_arc() -> None:
     """From the cylinder of radius 10 out into a quarter of 10: r 2, and C ends with the first block."""
     text = "G1 Z-20 C90 F100 RND=2\nG3 X40 Z-30 CR=10 C=IC(30)\nG1 Z-40"
     first, arc, quarter, last = good(text, AT)
-    assert (arc.kind, quarter.kind) == (Kind.ARC, Kind.ARC)
+    assert (arc.kind, quarter.kind) == (BlockKind.ARC, BlockKind.ARC)
     assert dist((arc.x0, arc.z0), (arc.cx, arc.cz)) == pytest.approx(2.0)
     assert dist((quarter.x0, quarter.z0), (quarter.cx, quarter.cz)) == pytest.approx(10.0)
     assert [b.c - b.c0 for b in (first, arc, quarter, last)] == pytest.approx([90, 0, 30, 0])
@@ -123,7 +123,7 @@ def test_a_rounding_beside_an_arc() -> None:
 def test_a_rounding_behind_an_arc_over_a_change_of_offsets() -> None:
     text = "F100 G3 X30 Z-5 CR=5 RND=1\nTRANS Z-3 X2\nG1 X50 Z-2"
     quarter, arc, last = good(text, AT)
-    assert quarter.kind is arc.kind is Kind.ARC
+    assert quarter.kind is arc.kind is BlockKind.ARC
     assert (arc.mx, arc.mz) == pytest.approx((last.x0 + 2, last.z0 - 3))
     assert (last.mx, last.mz) == pytest.approx((27, -5))
 
@@ -138,8 +138,8 @@ def test_a_chamfer_from_a_cylinder_into_a_ball_worked_out() -> None:
     assert (first.x, first.z) == pytest.approx((10, -17))
     assert (quarter.x0, quarter.z0) == pytest.approx((10 + 10 * sin(angle), -30 + 10 * cos(angle)))
     assert (cut.x, cut.z) == pytest.approx((quarter.x0, quarter.z0))
-    assert cut.kind is Kind.FEED
-    assert quarter.kind is Kind.ARC
+    assert cut.kind is BlockKind.FEED
+    assert quarter.kind is BlockKind.ARC
     assert (quarter.cx, quarter.cz) == pytest.approx((10, -30))
     assert [b.c - b.c0 for b in (first, cut, quarter)] == pytest.approx([90, 0, 30])
 
@@ -154,8 +154,8 @@ def test_a_chamfer_beside_an_arc_is_as_long_as_chf_says_and_its_legs_are_equal(l
 def test_a_chamfer_between_two_arcs_over_a_change_of_offsets() -> None:
     text = "F100 G3 X40 Z-10 CR=10 CHR=2\nTRANS Z-3 X2\nG3 X56 Z-17 CR=10"
     one, cut, other = good(text, AT)
-    assert one.kind is other.kind is Kind.ARC
-    assert cut.kind is Kind.FEED
+    assert one.kind is other.kind is BlockKind.ARC
+    assert cut.kind is BlockKind.FEED
     assert dist((one.mx, one.mz), (20, -10)) == pytest.approx(2)
     assert dist((other.mx - other.x + other.x0, other.mz - other.z + other.z0), (20, -10)) == pytest.approx(2)
 

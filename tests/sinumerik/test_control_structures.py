@@ -7,10 +7,10 @@ from collections import Counter
 
 import pytest
 
-from core.interpreter.shared.actions import Coolant
+from core.interpreter.shared.actions import CoolantSwitch
 from core.interpreter.sinumerik.flow import control_structures
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import Line
+from core.language.sinumerik.sinumerik_words import LexedBlock
 from tests.sinumerik.lathe import good, refused, run
 
 
@@ -128,7 +128,7 @@ def test_coolant_before_and_behind_the_motion() -> None:
     ran = run("G1 X10 F100 M8\nX20 M9\nM30")
     assert ran.errors == []
     told = [block.action if block.action is not None else "move" for block in ran.blocks[:4]]
-    assert told == [Coolant(True), "move", "move", Coolant(False)]
+    assert told == [CoolantSwitch(True), "move", "move", CoolantSwitch(False)]
 
 
 def test_a_message_is_shown_and_its_semicolon_begins_no_comment() -> None:
@@ -153,7 +153,7 @@ def test_a_loop_reads_no_line_at_each_pass(loop: str, monkeypatch: pytest.Monkey
     """Once for its structure, once for a label, and twice when it runs first."""
     read: Counter[int] = Counter()
 
-    def counted(number: int, text: str, third_axis: str) -> Line:
+    def counted(number: int, text: str, third_axis: str) -> LexedBlock:
         read[number] += 1
         return lex_line(number, text, third_axis)
 

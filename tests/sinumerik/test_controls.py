@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_files import parse_machine, shipped_machine
-from app.compose.machine.machine_setup import control_limits
-from core.interpreter.dialects import code_book
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
+from app.compose.machine.machine_setup import get_control_limits
+from core.interpreter.dialects import get_code_book
 from core.interpreter.shared.job_setup import Setup
-from core.language.sinumerik.control_differences import CONTROLS, LACKS
+from core.language.sinumerik.control_differences import CONTROL_NAMES, MISSING_FUNCTIONS
 from core.language.source import Dialect
 from core.table_schema import MachineFileError
 from tests.coded import raises_code
@@ -21,7 +21,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "sinumerik-controls.md"
 
 
 def of(control: str) -> Setup:
-    return replace(setup(), limits=replace(setup().limits, control=control))
+    return replace(setup(), limits=replace(setup().limits, control_model=control))
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_cycle99_is_one_of_the_808d_and_none_of_the_802d() -> None:
     assert run(text, of("808d")).errors == []
 
 
-@pytest.mark.parametrize("control", CONTROLS)
+@pytest.mark.parametrize("control", CONTROL_NAMES)
 def test_what_all_of_them_have(control: str) -> None:
     text = 'G18 G90 G71 DIAMON\nR1=1\nAGAIN: R1=R1+1\nIF R1<3 GOTOB AGAIN\nG0 X20 Z5\nMSG("A")\nM30'
     assert run(text, of(control)).errors == []
@@ -62,22 +62,25 @@ def test_the_large_ones_lack_nothing(control: str) -> None:
 
 
 def test_the_machine_file_says_it() -> None:
-    text = shipped_machine("sinumerik-modulo").text
+    text = load_shipped_machine("sinumerik-modulo").text
     machine = parse_machine(text.replace("[machine]", '[machine]\ncontrol = "802d"'), "t")
-    assert control_limits(machine).control == "802d"
-    assert shipped_machine("sinumerik-modulo").control == "840d"
+    assert get_control_limits(machine).control_model == "802d"
+    assert load_shipped_machine("sinumerik-modulo").control == "840d"
     with raises_code(MachineFileError, "wrong-value", "machine.control"):
         parse_machine(text.replace("[machine]", '[machine]\ncontrol = "810"'), "t")
 
 
 def test_the_page_names_everything_that_is_lacking() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    for control in CONTROLS:
+    for control in CONTROL_NAMES:
         assert f"`{control}`" in page
-        assert [name for name in LACKS[control] if f"`{name}`" not in page] == []
+        assert [name for name in MISSING_FUNCTIONS[control] if f"`{name}`" not in page] == []
 
 
 def test_only_what_there_is_can_be_lacking() -> None:
-    heads = {entry.head for entry in code_book(Dialect.SINUMERIK).entries}
-    spoken = {name for lacks in LACKS.values() for name in lacks} - {'T="NAME"', "IF without a jump"}
+    heads = {entry.head for entry in get_code_book(Dialect.SINUMERIK).entries}
+    spoken = {name for lacks in MISSING_FUNCTIONS.values() for name in lacks} - {
+        'T="NAME"',
+        "IF without a jump",
+    }
     assert spoken - heads == set()

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from app.compose.machine.machine_files import parse_machine, shipped_machine
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ZeroOffset
 from core.machine.machine_model import Machine
@@ -29,7 +29,7 @@ absolute = true
 @pytest.fixture(scope="module")
 def lathe() -> Machine:
     """The linear lathe that ships, with a slide Y in the place of C."""
-    text = shipped_machine("sinumerik-linear").text
+    text = load_shipped_machine("sinumerik-linear").text
     return parse_machine(re.sub(r"\[axis\.C\].*?(?=\[spindle\])", SLIDE, text, flags=re.DOTALL), "t")
 
 
@@ -38,7 +38,7 @@ def timed(text: str, lathe: Machine) -> list[tuple[Block, float]]:
 
 
 def test_the_machine_has_a_slide_more(lathe: Machine) -> None:
-    axis = lathe.axis("C")
+    axis = lathe.find_axis("C")
     assert (axis.rotary, axis.travel, lathe.third_axis) == (False, (-60.0, 60.0), "Y")
     assert axis.vmax == pytest.approx(5000 / 60)
     assert not lathe.spindle_is_c
@@ -112,5 +112,5 @@ def test_no_part_turns_by_a_slide(lathe: Machine) -> None:
 def test_the_whole_program_is_proved(lathe: Machine) -> None:
     report = prove(source("G94\nG0 X20 Z0 Y0\nG1 Y50 F100\nG0 Y60\nM30\n"), setup(lathe), lathe)
     assert report.errors == ()
-    assert report.reach.c == pytest.approx((0.0, 60.0))
-    assert report.machine_final[2] == pytest.approx(60.0)
+    assert report.ranges.c_range == pytest.approx((0.0, 60.0))
+    assert report.machine_final_position[2] == pytest.approx(60.0)

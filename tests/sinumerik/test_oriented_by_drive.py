@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.shared.actions import SpindleOrient
+from core.interpreter.shared.actions import SpindlePositioning
 from core.machine.machine_model import Machine
 from tests.sinumerik.lathe import LINEAR, MODULO, refused, run, setup
 
@@ -18,7 +18,7 @@ def angles(text: str, machine: Machine) -> list[tuple[float, int]]:
     passed = run(text, setup(machine))
     assert passed.errors == []
     done = [block.action for block in passed.blocks]
-    return [(action.angle, action.sense) for action in done if isinstance(action, SpindleOrient)]
+    return [(action.angle, action.sense) for action in done if isinstance(action, SpindlePositioning)]
 
 
 @pytest.mark.parametrize("machine", [MODULO, ORIENTED], ids=["modulo", "linear"])
@@ -46,7 +46,7 @@ def test_what_stops_or_turns_the_spindle_lets_its_angle_go(ends: str) -> None:
 def test_cycle86_holds_the_spindle_before_it_lifts_the_edge() -> None:
     assert angles(BORE.format(45), MODULO) == [(45.0, 0)]
     blocks = run(BORE.format(45), setup()).blocks
-    held = next(n for n, block in enumerate(blocks) if isinstance(block.action, SpindleOrient))
+    held = next(n for n, block in enumerate(blocks) if isinstance(block.action, SpindlePositioning))
     lift = [(block.x, block.z, block.rpm) for block in blocks[held + 1 :] if block.moves]
     assert lift == [(-1.0, -11.0, 0.0), (-1.0, 5.0, 0.0), (0.0, 5.0, 0.0)]
 

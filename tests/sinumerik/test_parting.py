@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from core.interpreter.shared.actions import SpindleRun
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from tests.sinumerik.lathe import refused, run, setup
 
@@ -20,7 +20,7 @@ def test_two_feeds_and_two_speeds() -> None:
     passed = run(START + "CYCLE92(40,-30,10,-1,,1,,,,0.1,0.05,500)", TOOLS)
     assert passed.found == []
     moves = [(b.kind, b.x, b.feed, b.rpm) for b in passed.moves if b.line == 4]
-    assert moves[1:3] == [(Kind.FEED, 5.0, 0.1, 900.0), (Kind.FEED, -0.5, 0.05, 500.0)]
+    assert moves[1:3] == [(BlockKind.FEED, 5.0, 0.1, 900.0), (BlockKind.FEED, -0.5, 0.05, 500.0)]
     assert (moves[0][1], moves[3][1]) == (21.0, 21.0)
 
 
@@ -30,9 +30,9 @@ def test_a_surface_speed_beside_its_limit() -> None:
     ran = [b.action for b in passed.blocks if isinstance(b.action, SpindleRun)]
     assert [each.surface_speed for each in ran] == [None, pytest.approx(2000.0), None, None]
     assert (ran[2].rpm, ran[3].rpm) == (500.0, 900.0)
-    begun = next(b for b in passed.moves if b.line == 4 and b.kind is Kind.FEED)
+    begun = next(b for b in passed.moves if b.line == 4 and b.kind is BlockKind.FEED)
     assert begun.css == pytest.approx(2000.0)
-    assert begun.modal.css_max == 2000.0
+    assert begun.modal.max_css_rpm == 2000.0
 
 
 def test_a_surface_speed_in_feet_where_g96_counts_them() -> None:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from core.language.called_files import with_called_files
-from core.language.source import Dialect, Source
+from core.language.called_files import load_called_files
+from core.language.source import Dialect, ProgramSource
 from tests.sinumerik.lathe import good, refused, source
 
 
-def spf(name: str, text: str) -> Source:
+def spf(name: str, text: str) -> ProgramSource:
     """A subprogram file."""
-    return Source(f"{name}.spf", text, Dialect.SINUMERIK)
+    return ProgramSource(f"{name}.spf", text, Dialect.SINUMERIK)
 
 
-def stops(text: str | Source) -> list[float]:
+def stops(text: str | ProgramSource) -> list[float]:
     """Z of the ends of all moves."""
     return [block.z for block in good(text)]
 
@@ -226,5 +226,5 @@ def test_refused_by_name(text: str, code: str, word: str) -> None:
 
 def test_a_contour_that_a_cycle_names_is_read_with_the_program(tmp_path) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "kontur.spf").write_text("G1 X10 Z0\nM17\n")
-    found = with_called_files(source('CYCLE95("KONTUR",1)'), [tmp_path])
+    found = load_called_files(source('CYCLE95("KONTUR",1)'), [tmp_path])
     assert [each.name.lower() for each in found.subprograms] == ["kontur.spf"]

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import offsets_of, setup_with, stored_offsets
-from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters
-from app.special.operator_settings import RParameters
-from app.special.special_functions import SpecialFunctions
+from app.compose.stored_offsets import create_setup_with, read_store_offsets, read_stored_offsets
+from app.offsets.active_offsets import R_PARAMETERS_SETTING, parse_r_parameters
+from app.special.operator_settings import RParametersFunction
+from app.special.special_functions import SpecialFunctionList
 from core.executor.job import make_job
 from core.language.diagnostics import Severity
 from core.store.store import Store
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.sinumerik.lathe import MODULO, good, run, setup, source
 
 WAY = "G0 X=R1 Z5"
@@ -53,69 +53,69 @@ def test_other_values_are_another_job() -> None:
 
 def test_the_store_keeps_them(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.settings.save_setting(R_PARAMETERS, {"1": 40.0, "299": -2.5}).result()
+        store.settings.save_setting(R_PARAMETERS_SETTING, {"1": 40.0, "299": -2.5}).result()
     with Store.open(tmp_path) as store:
-        assert offsets_of(store).r == {1: 40.0, 299: -2.5}
-        assert setup_with(MODULO, offsets_of(store)).r[1] == 40.0
+        assert read_store_offsets(store).r_parameters == {1: 40.0, 299: -2.5}
+        assert create_setup_with(MODULO, read_store_offsets(store)).r[1] == 40.0
 
 
 @pytest.mark.parametrize("kept", [None, 3, [1], {"R1": 3.0}, {"300": 1.0}, {"1": "x"}, {"-1": 2.0}])
 def test_what_is_no_parameter_is_left_out(kept: object) -> None:
-    assert r_parameters(kept) == {}
+    assert parse_r_parameters(kept) == {}
 
 
 # --- their page ------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
-def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RParameters]:
+def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RParametersFunction]:
     file = tmp_path / "own.toml"
     file.write_text(MODULO.text)
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(str(file), stored_offsets, clock, journal)
-    executor.tick()
-    functions = desk.pages.find(SpecialFunctions)
+    clock, journal = ManualClock(), Journal.open_default()
+    desk, executor = create_desk_and_executor(str(file), read_stored_offsets, clock, journal)
+    executor.run_tick()
+    functions = desk.page_registry.find(SpecialFunctionList)
     assert functions is not None
-    (found,) = [each for each in functions.functions if isinstance(each, RParameters)]
+    (found,) = [each for each in functions.functions if isinstance(each, RParametersFunction)]
     yield found
     desk.close()
     journal.close()
 
 
-def types(page: RParameters, keys: str) -> None:
+def types(page: RParametersFunction, keys: str) -> None:
     for key in (*keys, "Enter"):
-        page.typed(key)
+        page.handle_key(key)
 
 
-def row(page: RParameters, number: int) -> tuple[str, ...]:
-    return page.sheet(page.desk.snapshot()).rows[number].cells
+def row(page: RParametersFunction, number: int) -> tuple[str, ...]:
+    return page.make_table(page.desk.read_snapshot()).rows[number].cells
 
 
-def test_what_is_typed_is_kept_for_every_program(page: RParameters) -> None:
-    page.typed("Down")
+def test_what_is_typed_is_kept_for_every_program(page: RParametersFunction) -> None:
+    page.handle_key("Down")
     types(page, "2*20.5")
     assert row(page, 1) == ("R1", "41")
-    page._worker.settle(60.0)
-    assert stored_offsets().r == {1: 41.0}
+    page._worker.wait_for_results(60.0)
+    assert read_stored_offsets().r_parameters == {1: 41.0}
 
 
-def test_a_value_is_taken_away(page: RParameters) -> None:
+def test_a_value_is_taken_away(page: RParametersFunction) -> None:
     types(page, "5")
-    assert page.values == {0: 5.0}
-    page.keys()["F4"].action()
-    page._worker.settle(60.0)
-    assert stored_offsets().r == {}
-    assert (page.values, row(page, 0)) == ({}, ("R0", "–"))
+    assert page.parameter_values == {0: 5.0}
+    page.function_keys()["F4"].action()
+    page._worker.wait_for_results(60.0)
+    assert read_stored_offsets().r_parameters == {}
+    assert (page.parameter_values, row(page, 0)) == ({}, ("R0", "–"))
 
 
 @pytest.mark.parametrize("typed", ["1..2", "1/0", "99999999999", "--", "("])
-def test_what_is_no_figure_is_refused(page: RParameters, typed: str) -> None:
+def test_what_is_no_figure_is_refused(page: RParametersFunction, typed: str) -> None:
     types(page, typed)
-    assert page.values == {}
+    assert page.parameter_values == {}
 
 
-def test_the_mark_stays_on_the_300_parameters(page: RParameters) -> None:
+def test_the_mark_stays_on_the_300_parameters(page: RParametersFunction) -> None:
     for _ in range(40):
-        page.typed("Page down")
+        page.handle_key("Page down")
     assert page.marked == 299

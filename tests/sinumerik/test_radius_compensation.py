@@ -10,7 +10,7 @@ from math import cos, dist, hypot, pi, sin, sqrt
 
 import pytest
 
-from core.interpreter.shared.contour_stage import element_of
+from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from tests.sinumerik.lathe import good, refused, run, setup
@@ -135,9 +135,9 @@ def test_the_nose_touches_random_contours_everywhere(seed: int) -> None:
     moves = good(text, with_tool(quadrant))[2:-1]
     across, along = {1: (1, 1), 2: (1, -1), 3: (-1, -1), 4: (-1, 1), 9: (0, 0)}[quadrant]
     for block in moves:
-        element = element_of(block)
+        element = make_element(block)
         for share in range(11):
-            px, pz = element.point(element.length * share / 10)
+            px, pz = element.point_at(element.length * share / 10)
             centre = px - across * R, pz - along * R
             nearest = min(_distance(a, b, centre) for a, b in pairwise(points))
             assert nearest == pytest.approx(R, abs=1e-6)

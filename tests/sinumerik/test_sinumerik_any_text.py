@@ -7,7 +7,7 @@ import random
 import numpy as np
 import pytest
 
-from core.language.sinumerik.sinumerik_colours import spans
+from core.language.sinumerik.sinumerik_colors import color_line
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
 from tests.motion.paths import build_path
@@ -117,8 +117,8 @@ def test_any_text_gives_blocks_or_findings(machine: Machine) -> None:
             assert "block N" in found.message or "block in line" in found.message or "LABEL" in found.message
         if passed.moves:
             ran += 1
-            path = build_path(passed.moves, limits, rpm_max=machine.spindle.rpm_max)
-            end = path.point(path.s[-1:])[0]
+            path = build_path(passed.moves, limits, rpm_max=machine.spindle.max_rpm)
+            end = path.positions_at(path.joint_distances[-1:])[0]
             assert end == pytest.approx(passed.moves[-1].machine_end, abs=1e-4), program
             assert np.isfinite(end).all()
         assert [block.n for block in passed.blocks] == list(range(1, len(passed.blocks) + 1))
@@ -130,7 +130,7 @@ def test_any_signs_are_coloured_or_left() -> None:
     signs = "NGMXZCIKFSR0123456789.=+-(),;:/ \tßABLIMS%_?"
     for _ in range(3000):
         line = "".join(dice.choice(signs) for _ in range(dice.randrange(0, 40)))
-        for start, length, _ink in spans(line):
+        for start, length, _ink in color_line(line):
             assert 0 <= start < len(line)
             assert 0 < length <= len(line) - start
         run(line)

@@ -7,13 +7,13 @@ from math import dist, pi
 import pytest
 
 from core.geometry.lines_and_arcs import arc_length
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.sinumerik.lathe import good, refused, setup
 
 
 def arc(text: str, start: tuple[float, float] = (10.0, 0.0)) -> Block:
     (block,) = good(f"F100 {text}", setup(start=(*start, 0.0)))
-    assert block.kind is Kind.ARC
+    assert block.kind is BlockKind.ARC
     return block
 
 

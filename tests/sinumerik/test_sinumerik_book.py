@@ -6,54 +6,54 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.code_book_page import page
-from core.interpreter.dialects import code_book
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.code_book_page import render_code_book
+from core.interpreter.dialects import get_code_book
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.code_book import Entry
+from core.language.code_book import CodeBookEntry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.sinumerik import sinumerik_words
-from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
-from core.language.sinumerik.program_jumps import Steering
-from core.language.sinumerik.word_table import FUNCTIONS, IDLE, M_FUNCTIONS
-from core.language.source import Dialect, Source
+from core.language.sinumerik.control_statements import ControlKeyword
+from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, UNSUPPORTED_CYCLES
+from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WORDS, M_FUNCTIONS
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
-from core.tool_edges import edge_key
+from core.tool_edges import make_edge_key
 from tests.sinumerik.lathe import MODULO
 
-BOOK = code_book(Dialect.SINUMERIK)
+BOOK = get_code_book(Dialect.SINUMERIK)
 ENTRIES = {entry.head: entry for entry in BOOK.entries}
-LIVE = shipped_machine("sinumerik-live")
+LIVE = load_shipped_machine("sinumerik-live")
 """Its spindle is C."""
 
-TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), edge_key(1, 2): ToolOffset(z=-3.0)}
+TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), make_edge_key(1, 2): ToolOffset(z=-3.0)}
 
 
-def errors_of(entry: Entry, lines: str, machine: Machine = MODULO) -> list[Diagnostic]:
+def errors_of(entry: CodeBookEntry, lines: str, machine: Machine = MODULO) -> list[Diagnostic]:
     text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.tail}{entry.behind}"
-    files = tuple(Source(name, each) for name, each in entry.files)
-    setup = setup_for(machine, tools=TOOLS, secondary={})
-    report = prove(Source("EXAMPLE.MPF", text, subprograms=files), setup, machine)
+    files = tuple(ProgramSource(name, each) for name, each in entry.files)
+    setup = create_setup(machine, tool_offsets=TOOLS, secondary_offsets={})
+    report = prove(ProgramSource("EXAMPLE.MPF", text, subprograms=files), setup, machine)
     return [each for each in report.diagnostics if each.severity is Severity.ERROR]
 
 
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.example], ids=lambda entry: entry.head
 )
-def test_the_example_proves(entry: Entry) -> None:
+def test_the_example_proves(entry: CodeBookEntry) -> None:
     found = errors_of(entry, entry.example)
     if any(each.code == "spindle-position" for each in found):
         found = errors_of(entry, entry.example, LIVE)
-    assert [each.in_one_line("") for each in found] == []
+    assert [each.format_one_line("") for each in found] == []
     assert entry.what.endswith(".")
 
 
 @pytest.mark.parametrize(
     "entry", [each for each in BOOK.entries if each.refused], ids=lambda entry: entry.head
 )
-def test_what_is_no_program_is_refused(entry: Entry) -> None:
+def test_what_is_no_program_is_refused(entry: CodeBookEntry) -> None:
     said = [f"{each.message} {each.hint}" for each in errors_of(entry, entry.refused)]
     assert any(entry.why in each for each in said), said
 
@@ -62,38 +62,42 @@ def test_every_construct_has_its_entry() -> None:
     """What the reader knows, by its own tables."""
     codes = {f"G{n}" for n in sinumerik_words.G_GROUPS} | {f"M{n}" for n in M_FUNCTIONS}
     words = sinumerik_words.VOCABULARY - {"G", "M"}
-    assert (codes | words | {str(each) for each in Steering} | set(CYCLES)) - ENTRIES.keys() == set()
+    assert (
+        codes | words | {str(each) for each in ControlKeyword} | set(CYCLE_PARAMETERS)
+    ) - ENTRIES.keys() == set()
 
 
 def test_the_chapters_are_the_groups_of_the_table() -> None:
     groups: dict[str, set[str]] = {}
-    for name, group in FUNCTIONS.items():
+    for name, group in GROUP_BY_FUNCTION.items():
         groups.setdefault(group.capitalize(), set()).add(name)
     chapters = dict(BOOK.chapters)
     assert {title: {entry.head for entry in chapters.get(title, ())} for title in groups} == groups
 
 
-@pytest.mark.parametrize("name", IDLE)
+@pytest.mark.parametrize("name", INEFFECTIVE_WORDS)
 def test_the_entry_of_a_word_without_effect_has_the_reason_of_the_note(name: str) -> None:
-    assert f"because {IDLE[name]}." in ENTRIES[name].what
+    assert f"because {INEFFECTIVE_WORDS[name]}." in ENTRIES[name].what
 
 
-@pytest.mark.parametrize("name", CYCLES_OUTSIDE)
+@pytest.mark.parametrize("name", UNSUPPORTED_CYCLES)
 def test_the_entry_of_a_rejected_cycle_has_the_reason_of_the_error(name: str) -> None:
-    assert f": {CYCLES_OUTSIDE[name]}." in ENTRIES[name].what
+    assert f": {UNSUPPORTED_CYCLES[name]}." in ENTRIES[name].what
 
 
-@pytest.mark.parametrize("name", CYCLES)
+@pytest.mark.parametrize("name", CYCLE_PARAMETERS)
 def test_the_entry_of_a_cycle_has_its_parameters_in_their_order(name: str) -> None:
-    assert ENTRIES[name].words == f"({', '.join(CYCLES[name])})"
+    assert ENTRIES[name].words == f"({', '.join(CYCLE_PARAMETERS[name])})"
 
 
 def test_every_construct_is_shown_in_use_and_refused() -> None:
     """A cycle that is refused by its name has no example; everything else has both."""
-    assert [each.head for each in BOOK.entries if not each.example] == list(CYCLES_OUTSIDE)
+    assert [each.head for each in BOOK.entries if not each.example] == list(UNSUPPORTED_CYCLES)
     assert [each.head for each in BOOK.entries if not (each.refused and each.why)] == []
 
 
 def test_the_page_is_that_of_the_book() -> None:
     written = Path(__file__).parents[2] / "docs" / "sinumerik-codes.md"
-    assert written.read_text(encoding="utf-8") == page(Dialect.SINUMERIK), "print it anew: CONTRIBUTING.md"
+    assert written.read_text(encoding="utf-8") == render_code_book(Dialect.SINUMERIK), (
+        "print it anew: CONTRIBUTING.md"
+    )

@@ -8,19 +8,19 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import stored_offsets
+from app.compose.stored_offsets import read_stored_offsets
 from app.desk.desk import Desk
-from app.desk.programs.program_loading import Phase
-from app.desk.status.machine_status import status_of
-from app.desk.status.readouts import Readout
-from app.editor.editor import Editor
+from app.desk.programs.program_loading import LoadingPhase
+from app.desk.status.machine_status import make_status
+from app.desk.status.readouts import ReadoutKind
+from app.editor.editor_model import EditorModel
 from core.executor.executor import Executor
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.language.diagnostics import Severity
-from core.store.store_rows import Kind
-from drivers.waiting import StepClock
+from core.store.store_rows import OffsetKind
+from drivers.wakeups import ManualClock
 
 pytestmark = pytest.mark.long
 
@@ -43,43 +43,47 @@ class Bench:
         (home / "programs").mkdir(parents=True)
         (home / "programs" / "part.mpf").write_text(MAIN)
         (home / "programs" / "facet.spf").write_text(SUB)
-        self.clock: StepClock = StepClock()
+        self.clock: ManualClock = ManualClock()
         self.journal = Journal(home)
-        made = desk_and_executor("sinumerik-modulo", stored_offsets, self.clock, self.journal)
+        made = create_desk_and_executor("sinumerik-modulo", read_stored_offsets, self.clock, self.journal)
         self.desk: Desk = made[0]
         self._executor: Executor = made[1]
-        self.desk.hands.clock = self.clock.now
+        self.desk.station_controls.clock = self.clock.now
 
     def until(self, so: Callable[[Snapshot], bool]) -> Snapshot:
         for _ in range(20_000):
-            if so(self.desk.snapshot()):
-                return self.desk.snapshot()
-            self._executor.tick()
-            self.desk.look()
+            if so(self.desk.read_snapshot()):
+                return self.desk.read_snapshot()
+            self._executor.run_tick()
+            self.desk.update()
             self.clock.sleep_until(self.clock.now() + TICK)
-        raise AssertionError(f"not so: {self.desk.snapshot()}")
+        raise AssertionError(f"not so: {self.desk.read_snapshot()}")
 
     def wait(self, seconds: float) -> None:
-        end = self.desk.snapshot().t + seconds
+        end = self.desk.read_snapshot().t + seconds
         self.until(lambda s: s.t > end)
 
     def started(self) -> None:
-        assert self.desk.programs.choose("part")
-        loaded = self.desk.session.settled(60.0)
+        assert self.desk.program_choice.load_by_name("part")
+        loaded = self.desk.program_loader.wait_until_loaded(60.0)
         errors = [each for each in loaded.diagnostics if each.severity is Severity.ERROR]
-        assert (loaded.phase, errors) == (Phase.READY, [])
-        self.until(lambda s: s.state is State.DISABLED)
-        self.desk.enable()
-        self.until(lambda s: s.state is State.IDLE and not s.proof_wanted)
-        first_move = self.desk.first_move
+        assert (loaded.phase, errors) == (LoadingPhase.READY, [])
+        self.until(lambda s: s.state is MachineState.DISABLED)
+        self.desk.enable_drives()
+        self.until(lambda s: s.state is MachineState.IDLE and not s.needs_proof)
+        first_move = self.desk.start_watch
         assert first_move is not None
-        self.until(lambda _: first_move.seen is not None)
+        self.until(lambda _: first_move.first_move_result is not None)
         self.wait(0.5)  # what is announced was read
-        self.desk.station.press_start()
-        self.until(lambda s: s.state is State.RUN)
+        self.desk.station_keys.press_start()
+        self.until(lambda s: s.state is MachineState.RUN)
 
     def c(self) -> str:
-        return status_of(self.desk.snapshot(), Readout.POSITION, with_c=True).position.axes[2].value
+        return (
+            make_status(self.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True)
+            .position.axes[2]
+            .value
+        )
 
     def close(self) -> None:
         self.desk.close()
@@ -98,9 +102,9 @@ def test_it_runs_to_its_end_and_c_is_shown_from_0_to_under_360(bench: Bench) -> 
     bench.started()
     over = bench.until(lambda s: s.line == 4 and s.actual[2] > 500)
     assert 0.0 <= float(bench.c()) < 360.0
-    view = status_of(over, Readout.POSITION, with_c=True)
-    assert (view.feed.value, view.feed.unit) == ("3000.0", "°/min")
-    end = bench.until(lambda s: s.state is State.IDLE)
+    view = make_status(over, ReadoutKind.POSITION, has_c_axis=True)
+    assert (view.feed.programmed_value, view.feed.programmed_unit) == ("3000.0", "°/min")
+    end = bench.until(lambda s: s.state is MachineState.IDLE)
     assert (end.parts, end.alarms) == (1, ())
     assert bench.c() == "0.00"
     assert end.actual[2] == pytest.approx(1080.0, abs=0.01)
@@ -109,39 +113,39 @@ def test_it_runs_to_its_end_and_c_is_shown_from_0_to_under_360(bench: Bench) -> 
 def test_held_while_c_turns_alone_and_gone_on(bench: Bench) -> None:
     bench.started()
     bench.until(lambda s: s.line == 4 and s.actual[2] > 400)
-    bench.desk.feed_hold()
-    held = bench.until(lambda s: s.state is State.HOLD)
+    bench.desk.start_feed_hold()
+    held = bench.until(lambda s: s.state is MachineState.HOLD)
     assert 400 < held.actual[2] < 990
     still = bench.until(lambda s: s.t > held.t + 1.0)
     assert still.actual[2] == pytest.approx(held.actual[2], abs=0.05)
-    bench.desk.station.press_start()
-    end = bench.until(lambda s: s.state is State.IDLE)
+    bench.desk.station_keys.press_start()
+    end = bench.until(lambda s: s.state is MachineState.IDLE)
     assert (end.parts, end.alarms) == (1, ())
 
 
 def stands_behind(line: int, shot: Snapshot) -> bool:
-    return shot.state is State.BLOCK_END and shot.line == line
+    return shot.state is MachineState.BLOCK_END and shot.line == line
 
 
 def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None:
-    bench.desk.switch("single_block")
+    bench.desk.toggle_switch("single_block")
     bench.started()
     for line in (1, 2, 3, 4):
         bench.until(partial(stands_behind, line))
         bench.wait(2.0)  # into a cut only with the spindle at speed
-        bench.desk.station.press_start()
+        bench.desk.station_keys.press_start()
     bench.until(lambda s: s.line == 5)
 
 
 def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
-    bench.desk.book.change(Kind.ZERO, 54, {"c": 30.0, "z": -5.0}, "turned")
-    while not bench.desk.book.zero:
-        bench.desk.look()
+    bench.desk.offset_book.change_fields(OffsetKind.ZERO, 54, {"c": 30.0, "z": -5.0}, "turned")
+    while not bench.desk.offset_book.zero:
+        bench.desk.update()
     bench.started()
     turned = bench.until(lambda s: s.line == 5)
-    assert status_of(turned, Readout.POSITION, with_c=True).tool == "G54"
+    assert make_status(turned, ReadoutKind.POSITION, has_c_axis=True).tool_text == "G54"
     bench.until(lambda s: s.line == 5 and bench.c() == "0.00")
-    end = bench.until(lambda s: s.state is State.IDLE and s.parts == 1)
+    end = bench.until(lambda s: s.state is MachineState.IDLE and s.parts == 1)
     assert end.actual[1] == pytest.approx(-15.0, abs=0.01)
     assert end.actual[2] % 360 == pytest.approx(30.0, abs=0.01)
     assert bench.c() == "30.00"  # the end has taken the offsets away
@@ -150,23 +154,23 @@ def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
 
 def test_a_missing_subprogram_is_told_before_anything_moves(bench: Bench, tmp_path: Path) -> None:
     (tmp_path / "home" / "programs" / "facet.spf").unlink()
-    bench.desk.programs.choose("part")
-    loaded = bench.desk.session.settled(60.0)
-    assert loaded.phase is Phase.REFUSED
-    assert [each.code for each in loaded.errors] == ["subprogram-missing"]
+    bench.desk.program_choice.load_by_name("part")
+    loaded = bench.desk.program_loader.wait_until_loaded(60.0)
+    assert loaded.phase is LoadingPhase.REFUSED
+    assert [each.code for each in loaded.blocking_errors] == ["subprogram-missing"]
 
 
 def shown(bench: Bench) -> str:
-    return status_of(bench.desk.snapshot(), Readout.POSITION, with_c=True).position.unit
+    return make_status(bench.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True).position.unit
 
 
 def test_a_metric_lathe_counts_in_mm_before_in_and_after_a_program(bench: Bench) -> None:
     assert shown(bench) == "MM"
     bench.started()
     assert shown(bench) == "MM"
-    bench.until(lambda s: s.state is State.IDLE)
+    bench.until(lambda s: s.state is MachineState.IDLE)
     assert shown(bench) == "MM"
-    assert bench.desk.snapshot().modal.metric
+    assert bench.desk.read_snapshot().modal.metric
 
 
 def test_and_so_it_does_after_a_program_in_inches_and_after_one_that_was_given_up(
@@ -176,12 +180,12 @@ def test_and_so_it_does_after_a_program_in_inches_and_after_one_that_was_given_u
     bench.started()
     bench.until(lambda s: s.line == 2)
     assert shown(bench) == "INCH"
-    bench.desk.feed_hold()
-    bench.until(lambda s: s.state is State.HOLD)
-    bench.desk.reset()
-    bench.desk.answers._since = float("-inf")  # the question has been read
-    bench.desk.answer()
-    bench.until(lambda s: s.state is State.IDLE)
+    bench.desk.start_feed_hold()
+    bench.until(lambda s: s.state is MachineState.HOLD)
+    bench.desk.reset_control()
+    bench.desk.prompt_answers._since = float("-inf")  # the question has been read
+    bench.desk.confirm_if_unchanged()
+    bench.until(lambda s: s.state is MachineState.IDLE)
     assert shown(bench) == "MM"
 
 
@@ -189,14 +193,14 @@ def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
     bench: Bench, tmp_path: Path
 ) -> None:
     """What names no unit runs in the control's; the editor and the list prove it as it will run."""
-    bench.until(lambda s: s.state is State.DISABLED)
+    bench.until(lambda s: s.state is MachineState.DISABLED)
     path = tmp_path / "home" / "programs" / "plain.nc"
     path.write_text("G90G94F300\nX10Z-10\nM30\n")
-    assert bench.desk.programs.choose("plain")
-    loaded = bench.desk.session.settled(60.0)
+    assert bench.desk.program_choice.load_by_name("plain")
+    loaded = bench.desk.program_loader.wait_until_loaded(60.0)
     assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
     assert loaded.job is not None
-    editor = bench.desk.pages.find(Editor)
+    editor = bench.desk.page_registry.find(EditorModel)
     assert editor is not None
-    proved = editor.steps.make_job(loaded.job.source, False)
+    proved = editor.loading_steps.make_job(loaded.job.source, False)
     assert proved.digest == loaded.job.digest

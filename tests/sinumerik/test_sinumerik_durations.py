@@ -8,7 +8,7 @@ from math import hypot, pi
 import pytest
 
 from core.machine.machine_model import Machine
-from core.proving.program_timeline import Timeline, timed_blocks
+from core.proving.program_timeline import Timeline, iter_timed_blocks
 from tests.sinumerik.lathe import LINEAR, MODULO, refused, run, setup, source, times
 
 BEFORE = "N5 G94\nN10 G0 X10 Z30 C45\n"
@@ -149,7 +149,7 @@ def test_both_kinds_of_c_take_the_same_time() -> None:
 
 def test_a_real_machine_needs_longer() -> None:
     text = BEFORE + "N20 G1 X12 Z33 C60 F400"
-    real = list(timed_blocks(Timeline.of(source(text), setup(), MODULO)))
+    real = list(iter_timed_blocks(Timeline.from_program(source(text), setup(), MODULO)))
     for (_, t0, t1), (_, ideal) in zip(real, times(text), strict=True):
         assert t1 - t0 > ideal
 

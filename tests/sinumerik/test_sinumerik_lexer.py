@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from core.language.formulas import Parameter
-from core.language.sinumerik import Form, lex_line
-from core.language.sinumerik.sinumerik_colours import spans
-from core.language.syntax_colours import Ink
+from core.language.sinumerik import PositionForm, lex_line
+from core.language.sinumerik.sinumerik_colors import color_line
+from core.language.syntax_colors import SyntaxKind
 
 
 def words(text: str) -> list[tuple[str, float | None]]:
@@ -41,12 +41,12 @@ def test_words_without_a_value_do_not_take_equals(text: str) -> None:
 @pytest.mark.parametrize("form", ["AC", "IC", "DC", "ACP", "ACN"])
 def test_targets(form: str) -> None:
     (word,) = lex_line(1, f"C = {form}( -7.25 )").words
-    assert (word.form, word.value, word.text) == (Form(form), -7.25, f"C={form}(-7.25)")
+    assert (word.position_form, word.value, word.text) == (PositionForm(form), -7.25, f"C={form}(-7.25)")
 
 
 def test_r_parameters_are_values() -> None:
     (word,) = lex_line(1, "C=DC(R12)").words
-    assert (word.form, word.value, word.formula) == (Form.DC, None, Parameter("R", 12, 6))
+    assert (word.position_form, word.value, word.formula) == (PositionForm.DC, None, Parameter("R", 12, 6))
     assert lex_line(1, "X=R3").words[0].formula == Parameter("R", 3, 3)
     assert lex_line(1, "X=-2.5").words[0].value == -2.5
     assert words("R3=17.5 R4=-2") == [("R3", 17.5), ("R4", -2)]
@@ -67,22 +67,22 @@ def test_r_parameters_are_values() -> None:
 )
 def test_what_stands_before_the_words(text: str, block: str, label: str, skip: int | None) -> None:
     line = lex_line(1, text)
-    assert (line.block, line.label, line.skip, len(line.words)) == (block, label, skip, 1)
+    assert (line.block_name, line.label, line.skip_level, len(line.words)) == (block, label, skip, 1)
 
 
 def test_a_comment_is_no_word_and_brackets_are_no_comment() -> None:
     line = lex_line(1, "X1 ; Y5 (T1)")
     assert (len(line.words), line.comment_column, line.errors) == (1, 4, ())
     assert lex_line(1, "X1 (here)").errors
-    assert not lex_line(1, "   ; only this").executable
+    assert not lex_line(1, "   ; only this").is_executable
 
 
 def test_calls() -> None:
     line = lex_line(1, "N5 NUT_1 P3 ; three times")
-    assert (line.call, line.passes, line.errors) == ("NUT_1", 3, ())
-    assert lex_line(1, "L100").call == "L100"
-    assert lex_line(1, "POS1").call == "POS1"
-    assert lex_line(1, "CYCLE95").call == "CYCLE95"
+    assert (line.called_name, line.execution_count, line.errors) == ("NUT_1", 3, ())
+    assert lex_line(1, "L100").called_name == "L100"
+    assert lex_line(1, "POS1").called_name == "POS1"
+    assert lex_line(1, "CYCLE95").called_name == "CYCLE95"
     assert lex_line(1, "NUT_1 X5").errors
     assert lex_line(1, "X5 NUT_1").errors
     assert lex_line(1, "NUT_1(5").errors
@@ -115,26 +115,26 @@ def test_one_mistake_a_block_with_its_column() -> None:
 )
 def test_nothing_breaks_the_lexer(text: str) -> None:
     lex_line(1, text)
-    spans(text)
+    color_line(text)
 
 
 def test_the_parts_of_a_line() -> None:
     text = "N5 G1 C = DC(5) F100 DIAMON ; turn"
-    found = {text[start : start + length]: ink for start, length, ink in spans(text)}
+    found = {text[start : start + length]: ink for start, length, ink in color_line(text)}
     assert found == {
-        "N5": Ink.NUMBER,
-        "G1": Ink.CODE,
-        "C = DC(5)": Ink.POSITION,
-        "F100": Ink.RUN,
-        "DIAMON": Ink.KEY,
-        "; turn": Ink.COMMENT,
+        "N5": SyntaxKind.NUMBER,
+        "G1": SyntaxKind.CODE,
+        "C = DC(5)": SyntaxKind.POSITION,
+        "F100": SyntaxKind.FEED_AND_SPEED,
+        "DIAMON": SyntaxKind.KEYWORD,
+        "; turn": SyntaxKind.COMMENT,
     }
 
 
 def test_the_parts_of_other_lines() -> None:
-    assert spans("%_N_NUT_SPF")[0].ink is Ink.CALL
-    assert spans("NUT P2")[0] == (0, 3, Ink.CALL)
-    assert spans("X5 B1")[-1] == (3, 1, Ink.FAULT)
+    assert color_line("%_N_NUT_SPF")[0].kind is SyntaxKind.CALL
+    assert color_line("NUT P2")[0] == (0, 3, SyntaxKind.CALL)
+    assert color_line("X5 B1")[-1] == (3, 1, SyntaxKind.ERROR)
 
 
 def test_numbers_without_end_are_refused() -> None:

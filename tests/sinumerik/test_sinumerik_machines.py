@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
-from app.compose.machine.machine_setup import control_limits
+from app.compose.machine.machine_setup import get_control_limits
 from core.executor.job import check_block
 from core.executor.raised_alarm import AlarmError
 from core.machine.machine_model import Machine
@@ -37,15 +37,15 @@ def test_the_shipped_lathes_have_the_limits_of_the_specification() -> None:
     for machine in (MODULO, LINEAR):
         x, z, c = machine.axes
         assert [x.vmax * 60, z.vmax * 60, c.vmax * 60] == pytest.approx([8000, 10000, 7200])
-        assert control_limits(machine).speeds == (x.vmax, z.vmax, c.vmax)
-        assert machine.c_own_drive
+        assert get_control_limits(machine).max_axis_speeds == (x.vmax, z.vmax, c.vmax)
+        assert machine.has_c_own_drive
         assert not machine.spindle_is_c
-    assert (MODULO.c_modulo, MODULO.axes[2].travel) == (True, None)
-    assert (LINEAR.c_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
+    assert (MODULO.is_c_modulo, MODULO.axes[2].travel) == (True, None)
+    assert (LINEAR.is_c_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
 
 
 def test_the_shipped_gang_lathe_has_the_spindle_for_its_c() -> None:
-    assert GT75.c_modulo
+    assert GT75.is_c_modulo
     assert GT75.spindle_is_c
 
 

@@ -8,19 +8,19 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.compose.backends.simulated_backend import simulated
-from app.compose.workshop import proof_of
+from app.compose.backends.simulated_backend import create_simulation
+from app.compose.program_proving import create_proof
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import make_job
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.snapshot import LogEvent, MachineState, Snapshot
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ZeroOffset
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.program_timeline import MotionSpan, Timeline
 from core.proving.prove_program import prove
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.sinumerik.lathe import LINEAR, MODULO, setup, source
 
 HOME = (0.0, 0.0, 0.0)
@@ -55,11 +55,11 @@ N210 Z-16 C=IC(3)
 N220 M1
 N230 G0 X30 Z20 M30
 """
-NUT = Source("nut.spf", "G91 G1 Z-2 C20 F400\nG90 G0 Z=IC(2)\nM17\n", Dialect.SINUMERIK)
+NUT = ProgramSource("nut.spf", "G91 G1 Z-2 C20 F400\nG90 G0 Z=IC(2)\nM17\n", Dialect.SINUMERIK)
 MODULO_ONLY = "N22 C=DC(350)\nN24 C=ACP(10)\nN26 G1 X42 Z1 C=ACN(0) F500\nN28 G0 X=R1 Z2\n"
 
 
-def program(machine: Machine) -> Source:
+def program(machine: Machine) -> ProgramSource:
     """What this kind of C takes."""
     text = COMMON
     if machine is MODULO:
@@ -68,20 +68,20 @@ def program(machine: Machine) -> Source:
 
 
 def stretches(machine: Machine) -> tuple[Timeline, list[MotionSpan]]:
-    timeline = Timeline.of(program(machine), setup(machine, HOME, ZERO), machine)
-    return timeline, [each for each in timeline.spans() if isinstance(each, MotionSpan)]
+    timeline = Timeline.from_program(program(machine), setup(machine, HOME, ZERO), machine)
+    return timeline, [each for each in timeline.iter_spans() if isinstance(each, MotionSpan)]
 
 
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])
 def test_c_and_the_slides_begin_and_end_together_in_every_block(machine: Machine) -> None:
     """At any moment of a straight block C has done the share of its travel that the slides have of theirs."""
     timeline, found = stretches(machine)
-    assert timeline.errors is False, timeline.diagnostics
+    assert timeline.has_errors is False, timeline.diagnostics
     seen = 0
     for stretch in found:
-        for block, t0, t1 in stretch.times():
-            times = np.linspace(t0, t1, 23) - stretch.t0
-            at = stretch.chunk.profile.position(times)
+        for block, t0, t1 in stretch.iter_block_times():
+            times = np.linspace(t0, t1, 23) - stretch.start_time_s
+            at = stretch.chunk.profile.positions_at(times)
             shares = _shares(block, at)
             for share in shares:
                 assert share[0] == pytest.approx(0.0, abs=1e-6)
@@ -119,17 +119,19 @@ def test_setpoints_do_not_jump(machine: Machine) -> None:
     _, found = stretches(machine)
     last = np.array(HOME)
     for stretch in found:
-        at = stretch.chunk.profile.position(np.arange(0.0, stretch.chunk.profile.duration, 0.001))
+        at = stretch.chunk.profile.positions_at(np.arange(0.0, stretch.chunk.profile.duration_s, 0.001))
         speeds = np.abs(np.diff(np.vstack([last, at]), axis=0)) / 0.001
         assert (speeds <= np.array([axis.vmax for axis in machine.axes]) * 1.001).all()
-        last = stretch.chunk.profile.position(stretch.chunk.profile.duration)[0]
+        last = stretch.chunk.profile.positions_at(stretch.chunk.profile.duration_s)[0]
 
 
 def test_the_modulo_axis_counts_on_in_the_machine() -> None:
     """Past 360 and past 0 its setpoints go on; only what is shown wraps."""
     text = "G0 C=DC(350)\nC=DC(10)\nC=ACP(5)\nC=ACN(4)\nC=IC(-720)"
-    timeline = Timeline.of(source(text), setup(MODULO, HOME), MODULO)
-    reached = [block.mc for each in timeline.spans() if isinstance(each, MotionSpan) for block in each.blocks]
+    timeline = Timeline.from_program(source(text), setup(MODULO, HOME), MODULO)
+    reached = [
+        block.mc for each in timeline.iter_spans() if isinstance(each, MotionSpan) for block in each.blocks
+    ]
     assert reached == pytest.approx([-10, 10, 365, 364, -356])
 
 
@@ -140,26 +142,26 @@ def test_it_runs_on_the_simulated_lathe(machine: Machine) -> None:
     report = prove(program(machine), around, machine)
     assert report.errors == ()
     job = make_job(program(machine), around)
-    clock, events = StepClock(), list[Event]()
-    executor = Executor(machine, simulated(machine, clock).ports, events.append)
-    end = _run(executor, clock, [EnableDrives(), LoadJob(job, proof_of(job, report)), CycleStart()])
+    clock, events = ManualClock(), list[LogEvent]()
+    executor = Executor(machine, create_simulation(machine, clock).ports, events.append)
+    end = _run(executor, clock, [EnableDrives(), LoadJob(job, create_proof(job, report)), CycleStart()])
     assert end.alarms == ()
     assert end.parts == 1
-    assert end.actual == pytest.approx(report.machine_final, abs=0.01)
+    assert end.actual == pytest.approx(report.machine_final_position, abs=0.01)
     assert end.underruns == 0
 
 
-def _run(executor: Executor, clock: StepClock, commands: list[object]) -> Snapshot:
+def _run(executor: Executor, clock: ManualClock, commands: list[object]) -> Snapshot:
     """Each command when the one before has worked, then on to the end of the cycle."""
     for command in commands:
         executor.post(command)  # type: ignore[arg-type]  # commands of three kinds
         for _ in range(20):
             clock.advance(0.01)
-            executor.tick()
+            executor.run_tick()
     for _ in range(20_000):
         clock.advance(0.01)
-        executor.tick()
-        if executor.snapshot.state in {State.IDLE, State.FAULT, State.DISABLED}:
+        executor.run_tick()
+        if executor.snapshot.state in {MachineState.IDLE, MachineState.FAULT, MachineState.DISABLED}:
             break
     return executor.snapshot
 
@@ -167,7 +169,7 @@ def _run(executor: Executor, clock: StepClock, commands: list[object]) -> Snapsh
 def test_another_subprogram_or_offset_is_another_job() -> None:
     around = setup(MODULO, HOME, ZERO)
     job = make_job(program(MODULO), around)
-    other = Source(NUT.name, NUT.text + " ", NUT.said)
+    other = ProgramSource(NUT.name, NUT.text + " ", NUT.specified_dialect)
     assert make_job(source(COMMON, NUT), around).digest != make_job(source(COMMON, other), around).digest
     assert make_job(program(MODULO), setup(MODULO, HOME)).digest != job.digest
     assert make_job(program(MODULO), setup(MODULO, HOME, ZERO)).digest == job.digest

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.omniturn.setup.carry_over import after_end
+from core.interpreter.omniturn.setup.inherited_state import compute_modal_after_end
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ZeroOffset
 from tests.sinumerik.lathe import good, refused, run, setup
@@ -132,7 +132,7 @@ def test_the_end_takes_the_offsets_away(end: str) -> None:
 
 def test_so_does_a_program_that_is_given_up() -> None:
     modal = run("TRANS X4 Z3 C20\nG0 X1").blocks[-1].modal
-    left = after_end(modal, 0.0, reset=True)
+    left = compute_modal_after_end(modal, 0.0, reset=True)
     assert (modal.offset_c, left.offset_x, left.offset_z, left.offset_c) == (20, 0, 0, 0)
 
 
@@ -142,7 +142,7 @@ def test_the_picture_is_drawn_from_the_zero_of_the_program() -> None:
     here = setup(start=(0.0, 0.0, 0.0))
     there = setup(start=(0.0, 0.0, 0.0), zero={54: ZeroOffset(50.0, -200.0, 0.0)})
     ends = [
-        [(b.mx - b.modal.base_x, b.mz - b.modal.base_z) for b in good(text, around)]
+        [(b.mx - b.modal.drawing_zero_x, b.mz - b.modal.drawing_zero_z) for b in good(text, around)]
         for around in (here, there)
     ]
     assert ends[0][:3] == [(10.0, 5.0), (10.0, -10.0), (10.0, -30.0)]

@@ -162,7 +162,7 @@ def test_a_spindle_that_is_not_controlled(text: str) -> None:
 
 
 def test_a_spindle_of_one_speed_starts_without_s() -> None:
-    assert run("M3\nG0 X5", one_speed()).blocks[-1].rpm == pytest.approx(MODULO.spindle.rpm_max)
+    assert run("M3\nG0 X5", one_speed()).blocks[-1].rpm == pytest.approx(MODULO.spindle.max_rpm)
 
 
 def test_the_speed_is_at_zero() -> None:
@@ -214,7 +214,7 @@ def test_m_functions_of_another_builder_are_told_once_each_and_the_rest_goes_on(
 
 
 def test_m_functions_that_the_machine_file_ignores_do_nothing() -> None:
-    limits = replace(setup().limits, m_ignored=frozenset({80}))
+    limits = replace(setup().limits, ignored_m_codes=frozenset({80}))
     passed = run("M80\nG0 X30\nM80", replace(setup(), limits=limits))
     assert [(each.line, each.code, each.severity) for each in passed.found] == [
         (1, "no-effect", Severity.NOTE)

@@ -7,7 +7,7 @@ from math import radians, tan
 
 import pytest
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import good, run, setup
@@ -25,7 +25,7 @@ def grooving() -> Setup:
 
 def cuts(call: str) -> list[Block]:
     """The feeds of a groove."""
-    return [b for b in good(HEAD + call, grooving()) if b.line == 3 and b.kind is Kind.FEED]
+    return [b for b in good(HEAD + call, grooving()) if b.line == 3 and b.kind is BlockKind.FEED]
 
 
 def slants(blocks: list[Block]) -> list[tuple[float, float, float, float]]:

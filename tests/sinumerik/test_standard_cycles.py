@@ -9,12 +9,12 @@ from math import radians, sqrt, tan
 import numpy as np
 import pytest
 
-from core.geometry.lines_and_arcs import Arc, distance
+from core.geometry.lines_and_arcs import Arc, distance_to_point
 from core.interpreter.shared.actions import Dwell
-from core.interpreter.shared.contour_stage import element_of
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.contour_stage import make_element
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
 HOLE = "S1000 M3 G94 F120 G17\nG0 X0 Z5\n"
@@ -22,7 +22,7 @@ CUT = "S1000 M3 G95 F0.2\nG0 X60 Z5\n"
 THREAD = "S500 M3\nG0 X60 Z5\n"
 
 
-def places(text: str | Source, around: Setup | None = None) -> list[tuple[float, float]]:
+def places(text: str | ProgramSource, around: Setup | None = None) -> list[tuple[float, float]]:
     """Ø and Z of the ends of a cycle's moves, behind the two lines before it."""
     return [(round(b.x * 2, 4), round(b.z, 4)) for b in good(text, around) if b.line > 2]
 
@@ -31,7 +31,7 @@ def test_a_hole_in_one_go() -> None:
     assert places(HOLE + "CYCLE81(4,0,2,-12)") == [(0, 2), (0, -12), (0, 4)]
     assert places(HOLE + "CYCLE81(4,1,2,,12)") == [(0, 3), (0, -11), (0, 4)]  # DPR from the reference plane
     blocks = [b for b in good(HOLE + "CYCLE81(4,0,2,-12)") if b.line > 2]
-    assert [b.kind for b in blocks] == [Kind.RAPID, Kind.FEED, Kind.RAPID]
+    assert [b.kind for b in blocks] == [BlockKind.RAPID, BlockKind.FEED, BlockKind.RAPID]
     assert blocks[1].feed == pytest.approx(2.0)  # 120 mm/min
 
 
@@ -63,22 +63,24 @@ def test_mcall_drills_at_each_place() -> None:
     assert ends == [(10, 5), (10, 2), (10, -3), (10, 4), (20, 4), (20, 2), (20, -3), (20, 4), (30, 4)]
 
 
-KONTUR = Source("KONTUR.spf", "G1 X20 Z0\nZ-10\nX40 Z-20\nG2 X50 Z-25 CR=5\nG1 X54\nM17", Dialect.SINUMERIK)
+KONTUR = ProgramSource(
+    "KONTUR.spf", "G1 X20 Z0\nZ-10\nX40 Z-20\nG2 X50 Z-25 CR=5\nG1 X54\nM17", Dialect.SINUMERIK
+)
 
 
 def material_left(blocks: list[Block], x: float, z: float) -> float:
     """Least X (radius) that the cuts reach at this Z, of points on them: not by the cycle's geometry."""
     least = x
     for block in blocks:
-        if block.kind is Kind.RAPID:
+        if block.kind is BlockKind.RAPID:
             continue
-        element = element_of(block)
+        element = make_element(block)
         share = np.linspace(0.0, element.length, 400)
-        points = np.array([element.point(s) for s in share]) if element.length else np.empty((0, 2))
+        points = np.array([element.point_at(s) for s in share]) if element.length else np.empty((0, 2))
         if isinstance(element, Arc):
             assert (
                 abs(
-                    np.hypot(points[:, 0] - element.centre[0], points[:, 1] - element.centre[1])
+                    np.hypot(points[:, 0] - element.center[0], points[:, 1] - element.center[1])
                     - element.radius
                 ).max()
                 < 1e-9
@@ -99,7 +101,7 @@ def test_stock_removal_leaves_the_contour(z: float, radius: float) -> None:
     assert material_left(blocks, 30, z) == pytest.approx(radius, abs=0.13)  # the slope times .06
     roughed = good(source(CUT + 'CYCLE95("KONTUR",2,,,0.5,0.3,0.1,0.12,1)', KONTUR))
     assert material_left(roughed, 30, z) >= radius + 0.4
-    assert min(b.feed for b in blocks if b.kind is not Kind.RAPID) == pytest.approx(0.12)
+    assert min(b.feed for b in blocks if b.kind is not BlockKind.RAPID) == pytest.approx(0.12)
 
 
 def with_nose(radius: float, quadrant: int) -> Setup:
@@ -112,52 +114,63 @@ def test_tapers_and_arcs_have_their_size_whatever_the_nose(nose: float, vari: in
     """The centre lies the nose radius from the tip in X and Z; a taper of 45 degrees, and an arc."""
     call = f'CYCLE95("KONTUR",2,0.1,0.2,,0.3,0.1,0.12,{vari})'
     text = source(CUT.replace("G95", "T1 D1 G95") + call, KONTUR)
-    cuts = [element_of(b) for b in good(text, with_nose(nose, 3)) if b.line == 3 and b.kind is not Kind.RAPID]
+    cuts = [
+        make_element(b)
+        for b in good(text, with_nose(nose, 3))
+        if b.line == 3 and b.kind is not BlockKind.RAPID
+    ]
     share = sqrt(0.5)
     for x, z in ((10, -5), (15, -15), (25 - 5 * share, -20 - 5 * share)):
         tip = x - nose, z - nose  # where the tip is when the centre lies on the point
-        assert min(distance(each, tip) for each in cuts) == pytest.approx(nose, abs=2e-3)
+        assert min(distance_to_point(each, tip) for each in cuts) == pytest.approx(nose, abs=2e-3)
 
 
 def test_the_allowance_is_left_by_the_nose_too() -> None:
     """0.5 everywhere: the nose's edge stays so far from the taper when it roughs alone."""
     text = source(CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("KONTUR",2,,,0.5,0.3,0.1,0.12,1)', KONTUR)
-    cuts = [element_of(b) for b in good(text, with_nose(0.4, 3)) if b.line == 3 and b.kind is not Kind.RAPID]
-    assert min(distance(each, (15 - 0.4, -15.4)) for each in cuts) == pytest.approx(0.9, abs=2e-3)
+    cuts = [
+        make_element(b)
+        for b in good(text, with_nose(0.4, 3))
+        if b.line == 3 and b.kind is not BlockKind.RAPID
+    ]
+    assert min(distance_to_point(each, (15 - 0.4, -15.4)) for each in cuts) == pytest.approx(0.9, abs=2e-3)
 
 
 def test_inside_the_nose_lies_on_the_other_side() -> None:
-    inner = Source("BORE.spf", "G1 X40 Z0\nX30 Z-10\nZ-30\nM17", Dialect.SINUMERIK)
+    inner = ProgramSource("BORE.spf", "G1 X40 Z0\nX30 Z-10\nZ-30\nM17", Dialect.SINUMERIK)
     text = 'S1000 M3 T1 D1 G95 F0.2\nG0 X16 Z5\nCYCLE95("BORE",2,,,,0.3,0.1,0.12,7)'
     cuts = [
-        element_of(b)
+        make_element(b)
         for b in good(source(text, inner), with_nose(0.4, 2))
-        if b.line == 3 and b.kind is Kind.FEED
+        if b.line == 3 and b.kind is BlockKind.FEED
     ]
     tip = 17.5 + 0.4, -5 - 0.4
-    assert min(distance(each, tip) for each in cuts) == pytest.approx(0.4, abs=2e-3)
+    assert min(distance_to_point(each, tip) for each in cuts) == pytest.approx(0.4, abs=2e-3)
 
 
 def test_along_x_the_nose_counts_too() -> None:
     """A face with a taper of 45 degrees from Ø40 Z-12 to Ø20 Z-2."""
-    face = Source("FACE.spf", "G1 X50 Z-12\nX40\nX20 Z-2\nX0\nM17", Dialect.SINUMERIK)
+    face = ProgramSource("FACE.spf", "G1 X50 Z-12\nX40\nX20 Z-2\nX0\nM17", Dialect.SINUMERIK)
     text = CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("FACE",2,0.2,,,0.3,0.1,0.12,10)'
     moves = good(source(text, face), with_nose(0.4, 3))
-    cuts = [element_of(b) for b in moves if b.line == 3 and b.kind is Kind.FEED]
-    assert min(distance(each, (15 - 0.4, -7.4)) for each in cuts) == pytest.approx(0.4, abs=2e-3)
+    cuts = [make_element(b) for b in moves if b.line == 3 and b.kind is BlockKind.FEED]
+    assert min(distance_to_point(each, (15 - 0.4, -7.4)) for each in cuts) == pytest.approx(0.4, abs=2e-3)
 
 
 def test_without_a_tip_quadrant_the_tip_runs_along_and_that_is_told() -> None:
     text = source(CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("KONTUR",2,,,,0.3,0.1,0.12,5)', KONTUR)
     passed = run(text, with_nose(0.4, 0))
     assert [each.code for each in passed.found] == ["comp-no-quadrant"]
-    assert min(distance(element_of(b), (15, -15)) for b in passed.moves) == pytest.approx(0.0, abs=1e-6)
+    assert min(distance_to_point(make_element(b), (15, -15)) for b in passed.moves) == pytest.approx(
+        0.0, abs=1e-6
+    )
 
 
 def test_passes_are_equal_and_no_deeper_than_mid() -> None:
     blocks = good(source(CUT + 'CYCLE95("KONTUR",5,,,,0.3,0.1,0.12,1)', KONTUR))
     levels = sorted(
-        {round(b.x, 4) for b in blocks if b.kind is Kind.FEED and b.x == b.x0 and b.z < b.z0}, reverse=True
+        {round(b.x, 4) for b in blocks if b.kind is BlockKind.FEED and b.x == b.x0 and b.z < b.z0},
+        reverse=True,
     )
     # 54 to 20 are 17 mm of radius: four passes of 4.25
     assert levels == [22.75, 18.5, 14.25, 10.0]
@@ -165,9 +178,9 @@ def test_passes_are_equal_and_no_deeper_than_mid() -> None:
 
 def test_a_neck_before_the_shoulder_does_not_turn_the_cycle_round() -> None:
     """Deep is the end of the contour that is so, whatever falls between: the passes go from right to left."""
-    neck = Source("NECK.spf", "G1 X20 Z0\nZ-10\nX16 Z-14\nZ-20\nX40\nM17", Dialect.SINUMERIK)
+    neck = ProgramSource("NECK.spf", "G1 X20 Z0\nZ-10\nX16 Z-14\nZ-20\nX40\nM17", Dialect.SINUMERIK)
     blocks = good(source(CUT + 'CYCLE95("NECK",2,,,,0.3,0.1,0.12,1)', neck))
-    ways = {b.z < b.z0 for b in blocks if b.line == 3 and b.kind is Kind.FEED and b.x == b.x0}
+    ways = {b.z < b.z0 for b in blocks if b.line == 3 and b.kind is BlockKind.FEED and b.x == b.x0}
     assert ways == {True}
 
 
@@ -186,44 +199,50 @@ def test_the_contour_between_labels_and_inside() -> None:
 
 def test_facing_takes_passes_along_x() -> None:
     text = CUT + 'CYCLE95("AA:BB",1,,,,0.3,0.1,0.12,2)\nGOTOF CC\nAA: G1 X50 Z-4\nX20\nBB: Z0\nCC: Z5'
-    cuts = [b for b in good(text) if b.line == 3 and b.kind is Kind.FEED and b.z == b.z0 and b.x < b.x0]
+    cuts = [b for b in good(text) if b.line == 3 and b.kind is BlockKind.FEED and b.z == b.z0 and b.x < b.x0]
     assert sorted({round(b.z, 4) for b in cuts}) == [-4, -3, -2, -1]
 
 
 def test_a_taper_begins_in_its_line_wherever_the_thread_lies() -> None:
     """Ø20 at Z-5, Ø24 at Z-25: R .1 a mm; 5 before it R9.5, 3 behind it R12.3; a depth of 1."""
     (cut,) = [
-        b for b in good(THREAD + "CYCLE97(2,,-5,-25,20,24,5,3,1,0,0,,1,0,1,1)") if b.kind is Kind.THREAD
+        b for b in good(THREAD + "CYCLE97(2,,-5,-25,20,24,5,3,1,0,0,,1,0,1,1)") if b.kind is BlockKind.THREAD
     ]
     assert (cut.x0, cut.z0, cut.x, cut.z) == pytest.approx((8.5, 0.0, 11.3, -28.0))
 
 
 def test_a_thread_in_passes_of_equal_chip() -> None:
     text = THREAD + "CYCLE97(2,,0,-20,24,24,6,3,1.2,0.1,30,,3,1,3,1)"
-    cuts = [b for b in good(text) if b.kind is Kind.THREAD]
+    cuts = [b for b in good(text) if b.kind is BlockKind.THREAD]
     depths = [1.1 * sqrt(1 / 3), 1.1 * sqrt(2 / 3), 1.1, 1.2, 1.2]
     assert [b.x for b in cuts] == pytest.approx([12 - d for d in depths])
     assert [b.z0 for b in cuts] == pytest.approx([6 - d * tan(radians(30)) for d in depths])
     assert {b.z for b in cuts} == {-23}
     assert all(b.feed == 2 and b.per_rev for b in cuts)
-    clear = [b for b in good(text) if b.kind is Kind.RAPID and b.line == 3]
+    clear = [b for b in good(text) if b.kind is BlockKind.RAPID and b.line == 3]
     assert max(b.x for b in clear) == 13  # DM1 and 1 mm
 
 
 def test_starts_of_a_thread_are_parts_of_the_lead() -> None:
-    cuts = [b for b in good(THREAD + "CYCLE97(6,,0,-20,24,24,8,3,1.2,0,0,,1,0,1,3)") if b.kind is Kind.THREAD]
+    cuts = [
+        b for b in good(THREAD + "CYCLE97(6,,0,-20,24,24,8,3,1.2,0,0,,1,0,1,3)") if b.kind is BlockKind.THREAD
+    ]
     assert [b.z0 for b in cuts] == pytest.approx([8, 10, 12])
 
 
 def test_a_tapered_thread_keeps_its_cone_over_run_in_and_run_out() -> None:
-    (cut,) = [b for b in good(THREAD + "CYCLE97(2,,0,-20,20,24,5,5,1,0,0,,1,0,1,1)") if b.kind is Kind.THREAD]
+    (cut,) = [
+        b for b in good(THREAD + "CYCLE97(2,,0,-20,20,24,5,5,1,0,0,,1,0,1,1)") if b.kind is BlockKind.THREAD
+    ]
     # 2 mm of radius on 20 mm: .5 more before and behind; the depth of 1 below
     assert (cut.x0, cut.x) == pytest.approx((8.5, 11.5))
 
 
 def test_size_names_the_coarse_lead() -> None:
     (cut,) = [
-        b for b in good(THREAD + "CYCLE97(,24,0,-20,24,24,8,3,1.2,0,0,,1,0,1,1)") if b.kind is Kind.THREAD
+        b
+        for b in good(THREAD + "CYCLE97(,24,0,-20,24,24,8,3,1.2,0,0,,1,0,1,1)")
+        if b.kind is BlockKind.THREAD
     ]
     assert cut.feed == 3  # M24
 
@@ -235,7 +254,7 @@ def grooving() -> Setup:
 
 def test_a_groove_is_as_wide_as_it_says() -> None:
     text = "S900 M3 G95 F0.1 T3 D1\nG0 X44 Z0\nCYCLE93(40,-10,8,5,,,,,,,,,,2,0.5,5)"
-    cuts = [b for b in good(text, grooving()) if b.line == 3 and b.kind is Kind.FEED]
+    cuts = [b for b in good(text, grooving()) if b.line == 3 and b.kind is BlockKind.FEED]
     # D1 is the right corner: it stands from -10 to -15, where the left one stands at -18.
     assert (max(b.z for b in cuts), min(b.z for b in cuts)) == pytest.approx((-10, -15))
     assert min(b.x for b in cuts) == pytest.approx(15)
@@ -327,7 +346,7 @@ def test_what_is_in_force_before_a_cycle(before: str, call: str, code: str) -> N
     "line", ["CALL NUT", "G33 Z-5 K1", "GOTOF AA", "TRANS X5", "G41 X30", "C30", "G1 X=IC("]
 )
 def test_what_no_contour_holds(line: str) -> None:
-    bad = Source("KONTUR.spf", f"G1 X20 Z0\nZ-10\n{line}\nX40\nM17", Dialect.SINUMERIK)
+    bad = ProgramSource("KONTUR.spf", f"G1 X20 Z0\nZ-10\n{line}\nX40\nM17", Dialect.SINUMERIK)
     passed = run(source(CUT + 'CYCLE95("KONTUR",2,,,,0.3,0.1,0.1,9)', bad))
     (error,) = passed.errors
     assert error.line == 3

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from core.interpreter.shared.actions import ProgramEnd
-from core.language.called_files import with_called_files
-from core.language.diagnostics import AT_THE_STOP
-from core.language.source import Dialect, Source, load_source
+from core.language.called_files import load_called_files
+from core.language.diagnostics import PROGRAM_STOP_ASSUMPTION
+from core.language.source import Dialect, ProgramSource, load_source
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
-NUT = Source("NUT.spf", "N10 G0 Z=IC(1)\nN20 C=IC(90)\nN30 M17\nN40 G0 Z99\n", Dialect.SINUMERIK)
+NUT = ProgramSource("NUT.spf", "N10 G0 Z=IC(1)\nN20 C=IC(90)\nN30 M17\nN40 G0 Z99\n", Dialect.SINUMERIK)
 
 
 def test_a_subprogram_runs_where_it_is_called_as_often_as_it_says() -> None:
@@ -23,7 +23,7 @@ def test_a_subprogram_runs_where_it_is_called_as_often_as_it_says() -> None:
 
 
 def test_what_a_subprogram_sets_stays_in_force() -> None:
-    rough = Source("rough.spf", "G91 G1 F600 R1=5\nM17", Dialect.SINUMERIK)
+    rough = ProgramSource("rough.spf", "G91 G1 F600 R1=5\nM17", Dialect.SINUMERIK)
     (block,) = good(source("ROUGH\nZ=IC(R1)", rough))
     assert (block.feed, block.z - block.z0) == pytest.approx((10, 5))
 
@@ -47,7 +47,7 @@ def test_nothing_runs_behind_the_end(code: str) -> None:
 
 @pytest.mark.parametrize("code", ["M2", "M17", "M30"])
 def test_a_program_that_is_called_leads_back_at_its_end(code: str) -> None:
-    inner = Source("inner.mpf", f"G0 Z1\nN5 {code}\nZ400", Dialect.SINUMERIK)
+    inner = ProgramSource("inner.mpf", f"G0 Z1\nN5 {code}\nZ400", Dialect.SINUMERIK)
     assert [block.z for block in good(source("G0 Z0\nINNER\nZ7\nM30", inner))] == [0.0, 1.0, 7.0]
 
 
@@ -59,7 +59,7 @@ def test_a_missing_subprogram() -> None:
 
 
 def test_a_mistake_in_a_subprogram_is_told_with_its_file_and_line() -> None:
-    bad = Source("BAD.spf", "G0 Z1\nN7 G0 C400", Dialect.SINUMERIK)
+    bad = ProgramSource("BAD.spf", "G0 Z1\nN7 G0 C400", Dialect.SINUMERIK)
     error = refused(source("G0 Z0\n\nBAD", bad))
     assert (error.code, error.line) == ("16830", 3)
     assert "BAD.spf line 2" in error.message
@@ -67,13 +67,13 @@ def test_a_mistake_in_a_subprogram_is_told_with_its_file_and_line() -> None:
 
 
 def test_a_mistake_in_a_subprogram_that_rests_on_a_place_behind_a_stop_says_so() -> None:
-    sub = Source("PROBE.spf", "R1=1/($AA_IW[X]-20)\nM17\n", Dialect.SINUMERIK)
+    sub = ProgramSource("PROBE.spf", "R1=1/($AA_IW[X]-20)\nM17\n", Dialect.SINUMERIK)
     error = refused(source("G0 X20\nM0\nPROBE\nM30", sub))
-    assert (error.line, error.code, error.assumed) == (3, "arithmetic", (AT_THE_STOP,))
+    assert (error.line, error.code, error.assumptions) == (3, "arithmetic", (PROGRAM_STOP_ASSUMPTION,))
 
 
 def test_subprograms_that_call_themselves() -> None:
-    loop = Source("RING.spf", "G0 Z=IC(1)\nRING", Dialect.SINUMERIK)
+    loop = ProgramSource("RING.spf", "G0 Z=IC(1)\nRING", Dialect.SINUMERIK)
     passed = run(source("RING", loop))
     assert [each.code for each in passed.errors] == ["recursion"]
     assert len(passed.blocks) < 20
@@ -96,7 +96,7 @@ def test_files_beside_the_program_are_found_in_any_case(tmp_path: Path) -> None:
     (tmp_path / "loch.spf").write_text("G0 Z3\nM17\n")
     (tmp_path / "other.spf").write_text("G0 Z99\nM17\n")
     (tmp_path / "part.mpf").write_text("N5 NUT P2 ; twice\nM30\n")
-    found = with_called_files(load_source(tmp_path / "part.mpf"), [tmp_path])
+    found = load_called_files(load_source(tmp_path / "part.mpf"), [tmp_path])
     assert [each.name.lower() for each in found.subprograms] == ["loch.spf", "nut.spf"]
     assert len(good(found)) == 2
 
@@ -105,12 +105,12 @@ def test_a_main_program_beside_it_is_found_where_no_subprogram_has_its_name(tmp_
     (tmp_path / "NUT.MPF").write_text("G0 Z3\nM30\n")
     (tmp_path / "loch.spf").write_text("G0 Z4\nM17\n")
     (tmp_path / "LOCH.MPF").write_text("G0 Z99\nM30\n")
-    found = with_called_files(source("NUT\nLOCH\nNONE\nM30"), [tmp_path])
+    found = load_called_files(source("NUT\nLOCH\nNONE\nM30"), [tmp_path])
     assert [each.name for each in found.subprograms] == ["loch.spf", "NUT.MPF"]
     assert refused(found).code == "subprogram-missing"
 
 
 def test_a_file_that_is_no_text_is_missing(tmp_path: Path) -> None:
     (tmp_path / "nut.spf").write_bytes(b"\0\0")
-    found = with_called_files(source("NUT"), [tmp_path])
+    found = load_called_files(source("NUT"), [tmp_path])
     assert refused(found).code == "subprogram-missing"

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
+from app.compose.machine.machine_files import load_shipped_machine
 from core.interpreter.shared.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup
 from tests.sinumerik.lathe import run, setup
 
-LIVE = shipped_machine("sinumerik-live")
+LIVE = load_shipped_machine("sinumerik-live")
 HOLE = "S300 M3 G94 F100 G17\nG0 X0 Z5\n"
 
 
@@ -36,14 +36,14 @@ def test_a_rigid_tap_turns_with_its_way() -> None:
     # 15 mm by 1.5 are ten turns; 1.5 mm a turn at 200 and at 300 rpm.
     assert (into.z, into.c - into.c0, into.feed) == (-13, pytest.approx(3600.0), pytest.approx(5.0))
     assert (out.z, out.c - out.c0, out.feed) == (2, pytest.approx(-3600.0), pytest.approx(7.5))
-    assert (into.kind, into.per_rev, into.modal.c_locked) == (Kind.FEED, False, True)
+    assert (into.kind, into.per_rev, into.modal.c_locked) == (BlockKind.FEED, False, True)
     after = blocks("CYCLE84(5,0,2,-13,,,3,,1.5,0,200,300)")[-1]
     assert (after.action, after.modal.spindle) == (SpindleRun(300.0), 1)
 
 
 def test_left_hand_by_size_in_steps_and_at_an_angle() -> None:
     turned = [b for b in blocks("CYCLE84(5,0,2,-10,,,5,-6,,90,100,,,,,2,4)") if b.c != b.c0]
-    assert (turned[0].kind, turned[0].c) == (Kind.FEED, pytest.approx(90.0))  # POSS, before it goes in
+    assert (turned[0].kind, turned[0].c) == (BlockKind.FEED, pytest.approx(90.0))  # POSS, before it goes in
     # M6 has a lead of 1: 4 of 12 mm, out, 8, out, 12, out; the left-hand tap turns against C+.
     assert [(b.z, round(b.c - b.c0)) for b in turned[1:]] == [
         (-2, -1440), (2, 1440), (-6, -2880), (2, 2880), (-10, -4320), (2, 4320)
@@ -52,7 +52,7 @@ def test_left_hand_by_size_in_steps_and_at_an_angle() -> None:
 
 def test_with_a_compensating_chuck_the_spindle_turns_back() -> None:
     made = blocks("CYCLE840(5,0,2,-12,,0,0,3,0,,1.25)")
-    fed = [b for b in made if b.kind is Kind.FEED]
+    fed = [b for b in made if b.kind is BlockKind.FEED]
     assert [(b.z, b.feed) for b in fed] == [
         (-12, pytest.approx(6.25)),
         (2, pytest.approx(6.25)),
@@ -60,9 +60,9 @@ def test_with_a_compensating_chuck_the_spindle_turns_back() -> None:
     turned = [b.action for b in made if isinstance(b.action, SpindleRun)]
     assert turned == [SpindleRun(-300.0), SpindleRun(300.0)]
     assert [b.modal.spindle for b in fed] == [1, -1]
-    by_turn = [b for b in blocks("G95\nCYCLE840(5,0,2,-12,,0,0,5,0,,1.25)") if b.kind is Kind.FEED]
+    by_turn = [b for b in blocks("G95\nCYCLE840(5,0,2,-12,,0,0,5,0,,1.25)") if b.kind is BlockKind.FEED]
     assert [(b.feed, b.per_rev) for b in by_turn] == [(1.25, True)] * 2
-    by_feed = [b for b in blocks("G94 F300\nCYCLE840(5,0,2,-12,,0,0,3,1,,1.25)") if b.kind is Kind.FEED]
+    by_feed = [b for b in blocks("G94 F300\nCYCLE840(5,0,2,-12,,0,0,3,1,,1.25)") if b.kind is BlockKind.FEED]
     assert [b.feed for b in by_feed] == [pytest.approx(5.0)] * 2  # ENC 1: 300 mm/min, whatever PIT says
 
 
@@ -74,7 +74,7 @@ def test_g331_and_g332() -> None:
 
 def test_boring_with_the_edge_lifted() -> None:
     made = blocks("CYCLE86(5,0,2,-20,,0,3,-1,0,0.5,45)")
-    assert [(b.x, b.z) for b in made if b.kind in {Kind.RAPID, Kind.FEED}] == [
+    assert [(b.x, b.z) for b in made if b.kind in {BlockKind.RAPID, BlockKind.FEED}] == [
         (0, 2), (0, -20), (0, -20), (-1, -19.5), (-1, 5), (0, 5)
     ]  # fmt: skip
     assert any(isinstance(b.action, SpindleLock) for b in made)

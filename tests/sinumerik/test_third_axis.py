@@ -9,11 +9,11 @@ import pytest
 from core.interpreter.sinumerik.motion import third_axis
 from core.interpreter.sinumerik.motion.third_axis import (
     TargetError,
-    check_reach,
-    linear_travel,
-    modulo_travel,
+    check_axis_range,
+    compute_linear_travel,
+    compute_modulo_travel,
 )
-from core.language.sinumerik.sinumerik_words import Form
+from core.language.sinumerik.sinumerik_words import PositionForm
 from tests.coded import raises_code
 from tests.sinumerik.lathe import LINEAR, good, refused, setup
 
@@ -34,14 +34,14 @@ TABLE = [  # start, target, AC, DC, ACP, ACN
     (-30, 350, +20, +20, +20, -340),
     (725, 0, -5, -5, +355, -5),
 ]
-FORMS = (Form.AC, Form.DC, Form.ACP, Form.ACN)
+FORMS = (PositionForm.AC, PositionForm.DC, PositionForm.ACP, PositionForm.ACN)
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
 def test_the_table_of_the_modulo_axis(row: tuple[float, ...]) -> None:
     start, target, *travels = row
     for form, travel in zip(FORMS, travels, strict=True):
-        assert modulo_travel(form, target, start) == pytest.approx(travel, abs=1e-9)
+        assert compute_modulo_travel(form, target, start) == pytest.approx(travel, abs=1e-9)
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
@@ -79,16 +79,18 @@ def test_20_000_random_moves_end_where_they_should() -> None:
     dice, at = random.Random(7), 0.0
     for _ in range(20_000):
         target = round(dice.uniform(0, 359.4), dice.randrange(4))
-        ways = {form: modulo_travel(form, target, at) for form in FORMS}
+        ways = {form: compute_modulo_travel(form, target, at) for form in FORMS}
         for way in ways.values():
             off = (at + way - target) % 360
             assert min(off, 360 - off) < 1e-6
-        assert abs(ways[Form.DC]) <= min(abs(ways[Form.ACP]), abs(ways[Form.ACN])) + 1e-9
-        assert abs(ways[Form.DC]) <= 180 + 1e-9
-        assert 0 <= ways[Form.ACP] < 360
-        assert -360 < ways[Form.ACN] <= 0
-        form = dice.choice([*FORMS, Form.IC])
-        at += dice.uniform(-2000, 2000) if form is Form.IC else ways[form]
+        assert (
+            abs(ways[PositionForm.DC]) <= min(abs(ways[PositionForm.ACP]), abs(ways[PositionForm.ACN])) + 1e-9
+        )
+        assert abs(ways[PositionForm.DC]) <= 180 + 1e-9
+        assert 0 <= ways[PositionForm.ACP] < 360
+        assert -360 < ways[PositionForm.ACN] <= 0
+        form = dice.choice([*FORMS, PositionForm.IC])
+        at += dice.uniform(-2000, 2000) if form is PositionForm.IC else ways[form]
 
 
 def test_20_000_random_moves_of_a_program() -> None:
@@ -102,8 +104,8 @@ def test_20_000_random_moves_of_a_program() -> None:
         assert block.c0 == pytest.approx(at, abs=1e-9)
         off = (block.mc - value) % 360
         assert min(off, 360 - off) < 1e-6
-        assert form is not Form.ACP or block.c >= block.c0
-        assert form is not Form.ACN or block.c <= block.c0
+        assert form is not PositionForm.ACP or block.c >= block.c0
+        assert form is not PositionForm.ACN or block.c <= block.c0
         at = block.c
 
 
@@ -111,18 +113,18 @@ def test_20_000_random_moves_of_a_program() -> None:
 def test_noise_of_sums_turns_nothing_round(noise: float) -> None:
     """A position that is 0 but for binary noise is 0: no whole turn comes of it."""
     for form in FORMS:
-        assert modulo_travel(form, 0.0, noise) == pytest.approx(0, abs=1e-9)
-        assert modulo_travel(form, 0.0, 720 + noise) == pytest.approx(0, abs=1e-9)
-    assert modulo_travel(Form.DC, 180.0, noise) == pytest.approx(180, abs=1e-8)
-    assert modulo_travel(Form.AC, 10.0, 360 + noise) == pytest.approx(10, abs=1e-8)
+        assert compute_modulo_travel(form, 0.0, noise) == pytest.approx(0, abs=1e-9)
+        assert compute_modulo_travel(form, 0.0, 720 + noise) == pytest.approx(0, abs=1e-9)
+    assert compute_modulo_travel(PositionForm.DC, 180.0, noise) == pytest.approx(180, abs=1e-8)
+    assert compute_modulo_travel(PositionForm.AC, 10.0, 360 + noise) == pytest.approx(10, abs=1e-8)
 
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("value", [-1.0, 360.0, 400.0, -0.001])
-def test_a_modulo_axis_has_0_to_under_360(form: Form, value: float) -> None:
+def test_a_modulo_axis_has_0_to_under_360(form: PositionForm, value: float) -> None:
     with pytest.raises(TargetError) as told:
-        modulo_travel(form, value, 0.0)
-    assert told.value.number == 16830
+        compute_modulo_travel(form, value, 0.0)
+    assert told.value.alarm_number == 16830
 
 
 # --- the linear axis -----------------------------------------------------------------------------------
@@ -151,7 +153,7 @@ def test_the_linear_axis(start: float, word: str, travel: float) -> None:
 )
 def test_beyond_the_range_of_the_linear_axis(start: float, text: str) -> None:
     error = refused(text, setup(LINEAR, (0.0, 0.0, start)))
-    assert error.code == str(third_axis.WRONG_RANGE)
+    assert error.code == str(third_axis.WRONG_AXIS_RANGE)
     assert "axis C" in error.message
 
 
@@ -165,11 +167,11 @@ def test_an_offset_inside_the_range_of_the_linear_axis() -> None:
 def test_the_linear_axis_has_no_rotary_targets(form: str, alarm: str) -> None:
     assert refused(f"G0 C={form}(10)", setup(LINEAR)).code == alarm
     with pytest.raises(TargetError):
-        linear_travel(Form(form), 10.0, 0.0)
+        compute_linear_travel(PositionForm(form), 10.0, 0.0)
 
 
 def test_the_end_of_the_range_itself_is_inside() -> None:
-    check_reach(360.0)
-    check_reach(-360.0)
+    check_axis_range(360.0)
+    check_axis_range(-360.0)
     with raises_code(TargetError, "10720"):
-        check_reach(360.01)
+        check_axis_range(360.01)

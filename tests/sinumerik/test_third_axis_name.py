@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import parse_machine, shipped_machine
-from app.compose.machine.machine_setup import control_limits
-from app.desk.status.readouts import Readout, position_figures
-from app.jog.held_jog import directions_of
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
+from app.compose.machine.machine_setup import get_control_limits
+from app.desk.status.readouts import ReadoutKind, make_position_readout
+from app.jog.held_jog import make_jog_directions
 from core.executor.snapshot import Snapshot
-from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.job_setup import Setup, ZeroOffset
 from core.language.sinumerik import lex_line
 from core.machine.machine_model import Machine
@@ -19,7 +19,7 @@ from core.table_schema import MachineFileError
 from tests.coded import raises_code
 from tests.sinumerik.lathe import good, refused, run, setup
 
-TEXT = shipped_machine("sinumerik-modulo").text
+TEXT = load_shipped_machine("sinumerik-modulo").text
 
 
 def of(name: str) -> Machine:
@@ -79,14 +79,14 @@ def test_texts_and_variables_stay_what_they_are() -> None:
 
 
 def test_a_line_of_mdi_knows_it_too() -> None:
-    begin = Begin(Checkpoint(run("G0 X20", around("Q1")).blocks[-1].modal), single=True)
+    begin = PassStart(Checkpoint(run("G0 X20", around("Q1")).blocks[-1].modal), is_mdi_line=True)
     blocks = run("G0 Q1=45", replace(around("Q1"), begin=begin)).moves
     assert [block.c for block in blocks] == [45.0]
 
 
 def test_the_machine_file_says_it() -> None:
-    assert control_limits(of("Q1")).third_axis == "Q1"
-    assert shipped_machine("sinumerik-modulo").third_axis == "C"
+    assert get_control_limits(of("Q1")).third_axis_name == "Q1"
+    assert load_shipped_machine("sinumerik-modulo").third_axis == "C"
     for wrong in ("X", "Z", "Q", "SPINDLE", "Q10", ""):
         with raises_code(MachineFileError, "wrong-value", "axis.C.name"):
             of(wrong)
@@ -94,6 +94,6 @@ def test_the_machine_file_says_it() -> None:
 
 def test_positions_and_keys_call_it_so() -> None:
     machine = of("Q1")
-    assert [way.shown for way in directions_of(machine) if way.axis == "C"] == ["Q1", "Q1"]
-    shown = position_figures(Snapshot(), Readout.POSITION, True, True, machine.third_axis)
+    assert [way.displayed_axis for way in make_jog_directions(machine) if way.axis == "C"] == ["Q1", "Q1"]
+    shown = make_position_readout(Snapshot(), ReadoutKind.POSITION, True, True, machine.third_axis)
     assert [axis.name for axis in shown.axes] == ["X", "Z", "Q1"]

@@ -7,9 +7,9 @@ from math import radians, sqrt, tan
 import numpy as np
 import pytest
 
-from core.executor.program_motion.thread_curve import curve_of
+from core.executor.program_motion.thread_curve import build_thread_curve
 from core.executor.program_motion.thread_path import ThreadPath
-from core.interpreter.shared.elementary_blocks import Block, Kind, SectionEnds
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, SectionEndDetector
 from core.motion.axis_limits import MotionLimits
 from tests.sinumerik.lathe import good, refused, run
 
@@ -18,17 +18,17 @@ LIMITS = MotionLimits(vmax=(100.0, 100.0, 100.0), amax=(3000.0, 3000.0, 3000.0))
 
 
 def threads(text: str) -> list[Block]:
-    return [block for block in good(BEGIN + text) if block.kind is Kind.THREAD]
+    return [block for block in good(BEGIN + text) if block.kind is BlockKind.THREAD]
 
 
 def test_a_chain_is_one_pass() -> None:
     blocks = [b for b in good(BEGIN + "G33 Z-10 K1\nX26 Z-20 K2\nZ-30 K2\nX40 Z-31 K2\nG0 Z5") if b.line > 2]
     assert [b.continues for b in blocks] == [False, True, True, False, False]
-    ends, rests = SectionEnds(), []
+    ends, rests = SectionEndDetector(), []
     for block in blocks:
-        rests.append(ends.rests_before(block))
+        rests.append(ends.needs_standstill_before(block))
         if rests[-1]:
-            ends.rested(block)
+            ends.record_standstill(block)
     assert rests == [True, False, False, False, True]
 
 
@@ -42,18 +42,18 @@ def test_the_lead_grows_and_shrinks() -> None:
 
 def test_the_way_of_a_growing_lead() -> None:
     (grown,) = threads("G34 Z-15 K1 F0.2")
-    curve = curve_of([grown], LIMITS)
+    curve = build_thread_curve([grown], LIMITS)
     assert curve.length == pytest.approx(10.0)  # turns, the first lead being 1
     for turns in np.linspace(0.0, 10.0, 101):
-        assert curve.at(turns)[1] == pytest.approx(5.0 - turns - 0.1 * turns * turns, abs=2e-4)
+        assert curve.evaluate(turns)[1] == pytest.approx(5.0 - turns - 0.1 * turns * turns, abs=2e-4)
 
 
 def test_the_way_of_a_chain_is_followed_within_what_the_slides_can() -> None:
     chain = threads("G33 Z-10 K1\nX26 Z-20 K2")
-    path = ThreadPath.of(chain, LIMITS)
+    path = ThreadPath.from_blocks(chain, LIMITS)
     assert path.length == pytest.approx(15.0 + 5.0)  # turns times 1 mm: 15, and 10 mm by 2
     speed = 10.0  # 10 turns a second
-    segments, leaves = path.onwards(0.0, 0.0, speed, [])
+    segments, leaves = path.plan_remaining_pass(0.0, 0.0, speed, [])
     assert leaves == pytest.approx(2.0, abs=0.01)
     at = np.searchsorted(segments.t, 1.75, side="right") - 1
     u = 1.75 - segments.t[at]
@@ -68,7 +68,7 @@ def test_the_way_of_a_chain_is_followed_within_what_the_slides_can() -> None:
 
 def test_a_start_angle_begins_further_back() -> None:
     back, cut = [b for b in good(BEGIN + "G33 Z-20 K2 SF=90") if b.line == 3]
-    assert (back.kind, back.z, cut.z0, cut.z) == (Kind.RAPID, 5.5, 5.5, -20.0)
+    assert (back.kind, back.z, cut.z0, cut.z) == (BlockKind.RAPID, 5.5, 5.5, -20.0)
     back, cut = [b for b in good(BEGIN + "G34 Z-20 K2 F0.4 SF=180") if b.line == 3]
     # half a turn before the lead was 1.8: (2 + 1.8) / 2 · 0.5 = 0.95 mm further back.
     assert back.z == pytest.approx(5.95)
@@ -78,15 +78,15 @@ def test_a_start_angle_begins_further_back() -> None:
 
 
 def test_a_start_angle_of_a_whole_turn_is_none() -> None:
-    def ways(words: str) -> list[tuple[Kind, float, float]]:
+    def ways(words: str) -> list[tuple[BlockKind, float, float]]:
         return [(b.kind, b.z0, b.z) for b in good(BEGIN + f"G33 Z-20 K2 {words}") if b.line == 3]
 
-    assert ways("SF=360") == ways("SF=0") == ways("") == [(Kind.THREAD, 5.0, -20.0)]
+    assert ways("SF=360") == ways("SF=0") == ways("") == [(BlockKind.THREAD, 5.0, -20.0)]
 
 
 def test_cycle98_goes_along_the_crest_less_its_depth() -> None:
     made = good(BEGIN + "CYCLE98(0,30,-20,30,-40,36,-50,36,6,3,1,0,0,,1,0,1.5,2,3,1)")
-    cut = [b for b in made if b.kind is Kind.THREAD]
+    cut = [b for b in made if b.kind is BlockKind.THREAD]
     assert [(b.x0, b.z0, b.x, b.z, b.feed) for b in cut] == [
         (14.0, 6.0, 14.0, -20.0, 1.5), (14.0, -20.0, 17.0, -40.0, 2.0), (17.0, -40.0, 17.0, -53.0, 3.0)
     ]  # fmt: skip
@@ -105,7 +105,7 @@ def test_cycle99_is_cycle97_in_another_order() -> None:
 def test_cycle99_feeds_along_one_flank_or_both_in_turn(flank: int, kind: int, sides: str) -> None:
     """Each pass begins beside Z4 by its depth under X20 times tan 30."""
     made = good(BEGIN + f"CYCLE99(0,40,-20,40,4,2,0.92,0.05,{flank},0,4,1,1.5,{kind},1)")
-    cut = [b for b in made if b.kind is Kind.THREAD]
+    cut = [b for b in made if b.kind is BlockKind.THREAD]
     slope = tan(radians(30.0))
     begins = [
         4.0 - (20.0 - b.x0) * (slope if side == "+" else -slope) for b, side in zip(cut, sides, strict=True)

@@ -8,16 +8,16 @@ from math import atan2, cos, degrees, hypot, pi, radians, sin
 import numpy as np
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from core.interpreter.shared.actions import Output, SpindleLock
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from app.compose.machine.machine_files import load_shipped_machine
+from core.interpreter.shared.actions import OutputSwitch, SpindleLock
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
-from core.part.ray_cuts import plane_path
+from core.part.ray_cuts import make_plane_path
 from core.proving.prove_program import prove
 from tests.sinumerik.lathe import Passed, refused, run, setup, source
 
-LIVE = shipped_machine("sinumerik-live")
+LIVE = load_shipped_machine("sinumerik-live")
 FACE = "T1 D1\nG0 DIAMOF G17 X40 Z2\nSPOS=0\nTRANSMIT\nG94 F600\n"
 SIDE = "T1 D1\nG0 DIAMOF G19 X40 Z0\nSPOS=0\nTRACYL(80)\nG94 F600\n"
 
@@ -36,7 +36,7 @@ def ways(text: str, radius: float = 0.0) -> list[Block]:
 
 def slides(block: Block, count: int = 9) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     assert block.plane is not None
-    return block.plane.machine(np.linspace(0.0, 1.0, count))
+    return block.plane.machine_positions(np.linspace(0.0, 1.0, count))
 
 
 def error(text: str, radius: float = 0.0) -> tuple[str, str]:
@@ -59,13 +59,13 @@ def test_a_circle_beside_the_axis() -> None:
         px, py = 20.0 + 10.0 * cos(angle), 10.0 * sin(angle)
         assert x == pytest.approx(hypot(px, py))
         assert c == pytest.approx(-degrees(atan2(py, px)), abs=1e-6)
-    assert circle.kind is Kind.PLANE_ARC
+    assert circle.kind is BlockKind.PLANE_ARC
 
 
 def test_the_part_that_comes_of_it_is_the_one_of_the_same_places_by_c() -> None:
     """A hole by C-60 and a line that ends at 60 degrees of TRANSMIT meet on the part."""
     (line,) = ways(FACE + f"G1 X={20 * cos(radians(60))!r} Y={20 * sin(radians(60))!r}")
-    (x, y, _) = plane_path(line.plane)[-1] if line.plane else (0.0, 0.0, 0.0)
+    (x, y, _) = make_plane_path(line.plane)[-1] if line.plane else (0.0, 0.0, 0.0)
     # The part's X points to the negative side of the lathe: a tool on the positive side stands at 180.
     angle = radians(180.0 - -60.0)
     assert (x, y) == pytest.approx((20.0 * cos(angle), 20.0 * sin(angle)))
@@ -73,11 +73,11 @@ def test_the_part_that_comes_of_it_is_the_one_of_the_same_places_by_c() -> None:
 
 def test_compensation_round_a_square() -> None:
     blocks = ways(FACE + "G42 G1 X15 Y0\nY15\nX-15\nY-15\nX15\nY0\nG40 X40", radius=4.0)
-    ends = [block.plane.end[:2] for block in blocks if block.plane and block.kind is Kind.PLANE_LINE]
+    ends = [block.plane.end[:2] for block in blocks if block.plane and block.kind is BlockKind.PLANE_LINE]
     # 19 mm from the axis all round; the first and the last lead to it and off it.
     assert ends == [pytest.approx(each) for each in
                     [(19, 0), (19, 15), (-15, 19), (-19, -15), (15, -19), (19, 0), (40, 0)]]  # fmt: skip
-    arcs = [block.plane for block in blocks if block.plane and block.kind is Kind.PLANE_ARC]
+    arcs = [block.plane for block in blocks if block.plane and block.kind is BlockKind.PLANE_ARC]
     assert [each.radius for each in arcs] == pytest.approx([4.0] * 4)
     beside = ways(FACE + "OFFN=0.5\nG42 G1 X15 Y0\nY15\nG40 X40", radius=4.0)
     assert beside[0].plane
@@ -86,7 +86,7 @@ def test_compensation_round_a_square() -> None:
 
 def test_a_way_through_the_axis_turns_c_there() -> None:
     passed = run(FACE + "G1 X20 Y0\nX-20", around())
-    turned = [block for block in passed.blocks if block.kind is Kind.ROTATE]
+    turned = [block for block in passed.blocks if block.kind is BlockKind.ROTATE]
     assert [(b.x, abs(b.c - b.c0)) for b in turned] == [(0.0, pytest.approx(180.0))]
     assert [each.code for each in passed.found] == ["plane-centre"]
     assert min(float(slides(b)[:, 0].min()) for b in passed.blocks if b.plane) >= 0.0
@@ -102,7 +102,12 @@ def test_the_frame_of_the_plane() -> None:
 
 def test_chamfers_roundings_and_another_tool() -> None:
     blocks = ways(FACE + "G1 X20 Y0\nY20 RND=5\nX-20")
-    assert [b.kind for b in blocks] == [Kind.PLANE_LINE, Kind.PLANE_LINE, Kind.PLANE_ARC, Kind.PLANE_LINE]
+    assert [b.kind for b in blocks] == [
+        BlockKind.PLANE_LINE,
+        BlockKind.PLANE_LINE,
+        BlockKind.PLANE_ARC,
+        BlockKind.PLANE_LINE,
+    ]
     assert blocks[2].plane
     assert blocks[2].plane.radius == pytest.approx(5.0)
     other = ways(FACE + "G1 X20 Y0\nT2 D1\nX20 Y10")
@@ -139,8 +144,8 @@ def test_holes_in_a_circle_and_in_a_row() -> None:
 def test_the_live_tool_is_spindle_2() -> None:
     passed = run("SETMS(2)\nS500 M3\nG95 F0.1\nG17 DIAMOF\nTRANSMIT\nG1 X20\nM5\nSETMS(1)", around())
     assert passed.errors == []
-    switched = [b.action for b in passed.blocks if isinstance(b.action, Output)]
-    assert switched == [Output("live", True), Output("live", False)]
+    switched = [b.action for b in passed.blocks if isinstance(b.action, OutputSwitch)]
+    assert switched == [OutputSwitch("live", True), OutputSwitch("live", False)]
     (line,) = [b for b in passed.blocks if b.plane]
     assert (line.feed, line.per_rev) == (pytest.approx(0.1 * 500 / 60), False)
     assert any(isinstance(b.action, SpindleLock) for b in passed.blocks)  # TRANSMIT holds the spindle as C
@@ -183,7 +188,7 @@ def test_a_machine_without_c_or_live_tool() -> None:
     still = replace(around(), limits=replace(around().limits, c_enabled=False))
     assert refused("TRANSMIT", still).code == "14401"
     assert refused(
-        "S2=100 M2=3", replace(around(), limits=replace(around().limits, live_output=""))
+        "S2=100 M2=3", replace(around(), limits=replace(around().limits, live_tool_output=""))
     ).code == ("one-spindle")
     shifted = around(zero={54: ZeroOffset(x=2.0)})
     assert "X0" in run("G54\nTRANSMIT", shifted).errors[0].message

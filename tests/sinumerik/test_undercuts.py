@@ -7,9 +7,9 @@ from math import cos, radians, sin, tan
 
 import pytest
 
-from core.geometry.lines_and_arcs import Point, distance
-from core.interpreter.shared.contour_stage import element_of
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.geometry.lines_and_arcs import Point, distance_to_point
+from core.interpreter.shared.contour_stage import make_element
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.tool_edges import TIP_DIRECTIONS
 from tests.sinumerik.lathe import good, refused, run, setup
@@ -25,7 +25,7 @@ def with_tool(quadrant: int, nose: float = 0.0) -> Setup:
 
 def cuts(text: str, around: Setup) -> list[Block]:
     """What the cycle cuts, behind the three lines before it and its way to the first point."""
-    return [b for b in good(text, around) if b.line > 3 and b.kind is not Kind.RAPID][1:]
+    return [b for b in good(text, around) if b.line > 3 and b.kind is not BlockKind.RAPID][1:]
 
 
 @pytest.mark.parametrize(
@@ -37,7 +37,13 @@ def test_form_e_by_the_diameter(diameter: float, depth: float, width: float, rad
     blocks = cuts(OUTSIDE + f'CYCLE94({diameter},-30,"E")', with_tool(3))
     r = diameter / 2
     slope, first, bottom, second, shoulder = blocks
-    assert [b.kind for b in blocks] == [Kind.FEED, Kind.ARC, Kind.FEED, Kind.ARC, Kind.FEED]
+    assert [b.kind for b in blocks] == [
+        BlockKind.FEED,
+        BlockKind.ARC,
+        BlockKind.FEED,
+        BlockKind.ARC,
+        BlockKind.FEED,
+    ]
     assert (slope.x0, slope.z0) == pytest.approx((r + 1, -30 + width + 1 / SLOPE_15))
     share = (slope.x0 - r) / (slope.x0 - slope.x)
     assert slope.z0 + share * (slope.z - slope.z0) == pytest.approx(-30 + width)
@@ -78,7 +84,7 @@ def _nearest_nose(blocks: list[Block], around: Setup, point: Point) -> float:
     edge = around.tools[1]
     z, x = TIP_DIRECTIONS[edge.quadrant]
     tip = point[0] + x * edge.nose_radius, point[1] + z * edge.nose_radius
-    return min(distance(element_of(b), tip) for b in blocks) - edge.nose_radius
+    return min(distance_to_point(make_element(b), tip) for b in blocks) - edge.nose_radius
 
 
 @pytest.mark.parametrize(("form", "width"), [("A", 5.2), ("B", 3.8)])
@@ -115,7 +121,7 @@ def test_vari_says_it_in_its_place() -> None:
 def test_off_the_part_before_and_behind() -> None:
     """First out to 2 mm beside the surface, then along; never along the shoulder in rapid."""
     text = "S900 M3 G95 F0.1\nT1 D1\nG0 X42 Z-40\n" + 'CYCLE94(40,-30,"E")'
-    ways = [(b.x, b.z) for b in good(text, with_tool(3)) if b.line > 3 and b.kind is Kind.RAPID]
+    ways = [(b.x, b.z) for b in good(text, with_tool(3)) if b.line > 3 and b.kind is BlockKind.RAPID]
     begin = -30 + 2.5 + 1 / SLOPE_15
     assert ways == [pytest.approx(each) for each in [(22, -40), (22, begin), (22, -29), (22, begin)]]
 
@@ -162,7 +168,7 @@ def test_cycle940_says_where_it_lies(place: int, quadrant: int, out: int, side: 
 def test_cycle940_behind_a_thread_in_passes() -> None:
     """A lead of 2 (_PITI 15): 1.5 deep, 7 wide. 0.1 left of 1.5 in passes of 0.5: 0.467 each, then all."""
     call = 'CYCLE940(30,-20,"A",1,2,0.1,3,,,,,,,0.5,0.1,,,15)'
-    floors = [b.x for b in good(OUTSIDE + call, with_tool(3)) if b.kind is Kind.FEED and b.x == b.x0]
+    floors = [b.x for b in good(OUTSIDE + call, with_tool(3)) if b.kind is BlockKind.FEED and b.x == b.x0]
     assert [15 - x for x in floors] == pytest.approx([1.4 / 3, 2.8 / 3, 1.4, 1.5])
 
 

@@ -9,8 +9,8 @@ from math import cos, hypot, radians, sin, sqrt
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.interpreter.shared.actions import Dwell, Output, SpindleLock
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.actions import Dwell, OutputSwitch, SpindleLock
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import good, refused, run, setup
@@ -143,11 +143,20 @@ def test_g75_goes_to_the_fixed_point_of_the_named_axes() -> None:
     moves = good("TRANS X3 Z-20\nG0 X20 Z5\nG75 Z1=0\nG1 X30 F200\nG75 X0 Z0")
     ends_of_machine = [(block.mx, block.mz) for block in moves]
     assert ends_of_machine == [(13.0, -15.0), (13.0, 799.0), (18.0, 799.0), (299.0, 799.0)]
-    assert [block.kind for block in moves] == [Kind.RAPID, Kind.RAPID, Kind.FEED, Kind.RAPID]
+    assert [block.kind for block in moves] == [
+        BlockKind.RAPID,
+        BlockKind.RAPID,
+        BlockKind.FEED,
+        BlockKind.RAPID,
+    ]
 
 
 def test_g75_leaves_g1_in_force_and_takes_g0_beside_it() -> None:
-    assert [block.kind for block in good("G1 X20 Z5 F200\nG75 X0\nX20")] == [Kind.FEED, Kind.RAPID, Kind.FEED]
+    assert [block.kind for block in good("G1 X20 Z5 F200\nG75 X0\nX20")] == [
+        BlockKind.FEED,
+        BlockKind.RAPID,
+        BlockKind.FEED,
+    ]
     assert (good("G0 G75 X0 Z0")[-1].mx, good("R1=1\nG75 X1=0 FP=R1")[-1].mx) == (299.0, 299.0)
 
 
@@ -265,11 +274,11 @@ def test_g700_counts_f_in_inches() -> None:
 
 def test_rndm_rounds_every_corner_until_it_ends() -> None:
     kinds = [b.kind for b in good("G0 X20 Z5\nRNDM=2 G1 Z-10 F200\nX40\nZ-20\nRNDM=0 X60\nZ-30\nG0 X80")]
-    assert kinds.count(Kind.ARC) == 3
+    assert kinds.count(BlockKind.ARC) == 3
 
 
 def test_rndm_makes_no_corner_where_a_rapid_follows() -> None:
-    assert [b.kind for b in good("G1 RNDM=2 Z-10 F200\nG0 X90")] == [Kind.FEED, Kind.RAPID]
+    assert [b.kind for b in good("G1 RNDM=2 Z-10 F200\nG0 X90")] == [BlockKind.FEED, BlockKind.RAPID]
 
 
 def test_frc_is_the_feed_of_the_corner_alone() -> None:
@@ -351,13 +360,13 @@ def test_m70_makes_it_an_axis_and_m3_a_spindle_again() -> None:
 
 def with_outputs() -> Setup:
     limits = replace(setup().limits, m_outputs={25: ("steady", True), 26: ("steady", False)})
-    return replace(setup(), limits=replace(limits, m_disabled=frozenset({27})))
+    return replace(setup(), limits=replace(limits, disabled_m_codes=frozenset({27})))
 
 
 def test_m_functions_of_the_machine_file() -> None:
     blocks = run("M25 G0 X30\nG0 X40 M26", with_outputs()).blocks
     assert [each.action or each.kind for each in blocks] == [
-        Output("steady", True), Kind.RAPID, Kind.RAPID, Output("steady", False),
+        OutputSwitch("steady", True), BlockKind.RAPID, BlockKind.RAPID, OutputSwitch("steady", False),
     ]  # fmt: skip
 
 
@@ -375,7 +384,7 @@ def test_a_thread_and_what_leads_out_of_it() -> None:
     thread, out = [
         block
         for block in good("S400 M3\nG0 X18 Z8\nG33 Z-20 K2\nX24 Z-22\nG0 X30")
-        if block.kind is Kind.THREAD
+        if block.kind is BlockKind.THREAD
     ]
     assert (thread.feed, thread.per_rev, out.feed) == (2.0, True, 2.0)
 

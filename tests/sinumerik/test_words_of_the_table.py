@@ -6,23 +6,23 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from core.interpreter.dialects import code_book
-from core.interpreter.shared.elementary_blocks import Kind
+from app.compose.machine.machine_files import load_shipped_machine
+from core.interpreter.dialects import get_code_book
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
-from core.language.sinumerik.outside_words import OUTSIDE
-from core.language.sinumerik.word_table import FUNCTIONS, IDLE, M_FUNCTIONS, WORDS
+from core.language.sinumerik.unsupported_words import UNSUPPORTED_WORDS
+from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WORDS, M_FUNCTIONS, VALUE_WORDS
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from tests.sinumerik.lathe import MODULO, refused, run, setup
 
-NAMES = frozenset({*FUNCTIONS, *WORDS, *(f"M{code}" for code in M_FUNCTIONS)})
+NAMES = frozenset({*GROUP_BY_FUNCTION, *VALUE_WORDS, *(f"M{code}" for code in M_FUNCTIONS)})
 EXAMPLES = {
-    entry.head: entry.example for entry in code_book(Dialect.SINUMERIK).entries if entry.head in NAMES
+    entry.head: entry.example for entry in get_code_book(Dialect.SINUMERIK).entries if entry.head in NAMES
 }
 
-LIVE = shipped_machine("sinumerik-live")
+LIVE = load_shipped_machine("sinumerik-live")
 """Its spindle is C."""
 
 NEED_C = frozenset({"G331", "G332", "SPOS", "SPOSA", "M19", "M70"})
@@ -38,7 +38,9 @@ def test_an_example_runs(name: str) -> None:
     text = EXAMPLES[name]
     passed = run(text, around(LIVE if name in NEED_C else MODULO))
     assert [each for each in passed.found if each.severity is not Severity.NOTE] == []
-    assert (name in IDLE) is any(each.code == "no-effect" for each in passed.found) or "M6" in text
+    assert (name in INEFFECTIVE_WORDS) is any(
+        each.code == "no-effect" for each in passed.found
+    ) or "M6" in text
 
 
 PATH = "G1 X40 Z-5 F200\n{}X30 Z-20\nX50"
@@ -47,7 +49,7 @@ _TAKEN = """
     G40 NORM KONT G450 G451 G500 G290 TRAFOOF DISPLON DISPLOF SBLON SBLOF M7 M8 M9 M40 M41 M42 M43 M44 M45
 """
 SWITCHES_NOTHING = (
-    *(name for name in FUNCTIONS if name in IDLE),
+    *(name for name in GROUP_BY_FUNCTION if name in INEFFECTIVE_WORDS),
     *_TAKEN.split(),
     *("ADIS=0.5", "ADISPOS=0.5", "DITS=2", "DITE=2"),
     *("CYCLE832(0.01,1,1)", "CYCLE832()", "CYCLE800()"),
@@ -82,16 +84,20 @@ def test_a_frame_scaled_further() -> None:
 def test_to_the_first_block_and_on() -> None:
     text = "IF $P_TOOLNO==1 GOTOF DONE\nG0 Z1\nT1\nGOTOS\nG0 Z9\nDONE: G0 Z=2"
     ways = [(b.line, b.kind) for b in run(text, around()).moves]
-    assert ways == [(2, Kind.RAPID), (6, Kind.RAPID)]
+    assert ways == [(2, BlockKind.RAPID), (6, BlockKind.RAPID)]
 
 
 def test_boring_with_a_dwell_feeds_out() -> None:
     passed = run("S1000 M3 G94 F120 G17\nG0 X0 Z5\nCYCLE89(4,0,1,-9,,1)", around())
-    assert [(b.z, b.kind) for b in passed.moves[2:]] == [(-9, Kind.FEED), (1, Kind.FEED), (4, Kind.RAPID)]
+    assert [(b.z, b.kind) for b in passed.moves[2:]] == [
+        (-9, BlockKind.FEED),
+        (1, BlockKind.FEED),
+        (4, BlockKind.RAPID),
+    ]
 
 
-@pytest.mark.parametrize("name", OUTSIDE)
+@pytest.mark.parametrize("name", UNSUPPORTED_WORDS)
 def test_what_is_not_executed_is_refused_by_its_name(name: str) -> None:
     error = refused(f"N30 {name}", around())
     assert error.code == "not-in-subset"
-    assert f"{name}: {OUTSIDE[name]}" in error.message
+    assert f"{name}: {UNSUPPORTED_WORDS[name]}" in error.message

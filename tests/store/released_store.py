@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import Any
 
 from app import VERSION
-from core.store.people import PersonRow
 from core.store.production import measured_parts, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
+from core.store.user_records import UserRow
 
 RELEASED = Path(__file__).with_name("released")
 _PRAGMAS = ("application_id", "user_version")
@@ -36,9 +36,9 @@ def fill(store: Store) -> None:
     reading = ReadingRow(0, of, 1, 12.69, "in", AT, "gauge", "mic")
     waiting: list[Future[Any]] = [
         store.write(partial(measured_parts.add_reading, row=reading)),
-        store.write(partial(tool_lives.set_limits, row=tool_lives.LifeRow(1, 50))),
-        store.offsets.tools.change_row(1, "first", {"x": 1.25, "z": -0.5}),
-        store.offsets.tools.change_row(1, "wear", {"wear_x": -0.004}),
+        store.write(partial(tool_lives.save_limits, row=tool_lives.ToolLifeRow(1, 50))),
+        store.offsets.tool_offsets.change_row(1, "first", {"x": 1.25, "z": -0.5}),
+        store.offsets.tool_offsets.change_row(1, "wear", {"wear_x": -0.004}),
         store.programs.save_version("peg.nc", b"G90\nX1.25\nM30\n", "saved"),
         store.runs.record_start("peg.nc"),
         store.runs.add_parts("peg.nc"),
@@ -47,7 +47,7 @@ def fill(store: Store) -> None:
         store.jobs.add_job("peg.nc", 3),
         store.events.log_event("start", "peg.nc"),
         store.settings.save_setting("theme", "dark"),
-        store.people.save_person(PersonRow("ANNA", 3, b"salt", b"hash")),
+        store.people.save_user(UserRow("ANNA", 3, b"salt", b"hash")),
     ]
     for each in waiting:
         each.result(60)
@@ -65,7 +65,7 @@ def dump(path: Path) -> str:
 def restore(text: str, folder: Path) -> Path:
     """Create the store of a text in a new folder, and return its path."""
     folder.mkdir(mode=0o700)
-    path = folder / FILE_NAME
+    path = folder / STORE_FILE_NAME
     with closing(sqlite3.connect(path)) as connection:
         connection.executescript(text)
     path.chmod(0o600)
@@ -78,7 +78,7 @@ def main(argv: Sequence[str]) -> int:
     with tempfile.TemporaryDirectory() as work:
         with Store.open(Path(work)) as store:
             fill(store)
-        (folder / f"{VERSION}.sql").write_text(dump(Path(work) / FILE_NAME), encoding="utf-8")
+        (folder / f"{VERSION}.sql").write_text(dump(Path(work) / STORE_FILE_NAME), encoding="utf-8")
     return 0
 
 

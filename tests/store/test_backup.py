@@ -11,16 +11,16 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, store_export
-from core.store.offsets.offset_tables import Reason
+from core.store.offsets.offset_tables import ChangeReason
 from core.store.store import Store, StoreError
-from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind, SecondaryRow, ToolRow
+from core.store.store_file import STORE_FILE_NAME
+from core.store.store_rows import OffsetKind, SecondaryRow, ToolRow
 from tests.coded import raises_code
 
 
 def fill(store: Store) -> None:
-    store.offsets.tools.change_row(1, "x", {"x": 31.75, "z": -12.7, "nose_radius": 0.381})
-    store.offsets.secondary.change_row(4, "wear", {"x": -0.0127})
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 31.75, "z": -12.7, "nose_radius": 0.381})
+    store.offsets.secondary_offsets.change_row(4, "wear", {"x": -0.0127})
     store.programs.save_version("PIN.nc", b"G90\r\nM30\r\n", "new")
     store.events.log_event("start", 'PIN.nc, "first" part').result()
 
@@ -28,11 +28,11 @@ def fill(store: Store) -> None:
 def test_backup_of_a_store_in_use_restores_elsewhere(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     target = tmp_path / "b.db"
-    backup.backup(folder, target)
-    store.offsets.tools.change_row(1, "later", {"x": 1.0}).result()
-    assert backup.restore(tmp_path / "other", target) is None
+    backup.back_up_store(folder, target)
+    store.offsets.tool_offsets.change_row(1, "later", {"x": 1.0}).result()
+    assert backup.restore_store(tmp_path / "other", target) is None
     with Store.open(tmp_path / "other") as other:
-        assert other.offsets.tools.read_rows() == {1: ToolRow(31.75, -12.7, 0.381)}
+        assert other.offsets.tool_offsets.read_rows() == {1: ToolRow(31.75, -12.7, 0.381)}
         assert other.programs.load_version("PIN.nc") == b"G90\r\nM30\r\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["b.db", "home", "other"]
 
@@ -40,14 +40,14 @@ def test_backup_of_a_store_in_use_restores_elsewhere(store: Store, folder: Path,
 def test_restore_keeps_the_replaced_store(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
-    backup.backup(folder, tmp_path / "b.db")
+    backup.back_up_store(folder, tmp_path / "b.db")
     with Store.open(folder) as store:
-        store.offsets.tools.change_row(1, "later", {"x": 1.0}).result()
-    kept = backup.restore(folder, tmp_path / "b.db")
+        store.offsets.tool_offsets.change_row(1, "later", {"x": 1.0}).result()
+    kept = backup.restore_store(folder, tmp_path / "b.db")
     assert kept is not None
     assert kept.parent == folder
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows()[1].x == 31.75
+        assert store.offsets.tool_offsets.read_rows()[1].x == 31.75
     connection = sqlite3.connect(kept)
     assert connection.execute("SELECT x FROM tool_offsets").fetchall() == [(1.0,)]
     connection.close()
@@ -56,20 +56,20 @@ def test_restore_keeps_the_replaced_store(folder: Path, tmp_path: Path) -> None:
 def test_restore_replaces_a_damaged_store_and_keeps_its_bytes(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
-    backup.backup(folder, tmp_path / "b.db")
-    (folder / FILE_NAME).write_bytes(b"rubbish" * 1000)
-    kept = backup.restore(folder, tmp_path / "b.db")
+    backup.back_up_store(folder, tmp_path / "b.db")
+    (folder / STORE_FILE_NAME).write_bytes(b"rubbish" * 1000)
+    kept = backup.restore_store(folder, tmp_path / "b.db")
     assert kept is not None
     assert kept.read_bytes() == b"rubbish" * 1000
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows()[1].x == 31.75
+        assert store.offsets.tool_offsets.read_rows()[1].x == 31.75
 
 
 def test_restore_while_the_store_is_in_use_is_refused(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
-    backup.backup(folder, tmp_path / "b.db")
+    backup.back_up_store(folder, tmp_path / "b.db")
     with raises_code(StoreError, "in-use"):
-        backup.restore(folder, tmp_path / "b.db")
+        backup.restore_store(folder, tmp_path / "b.db")
 
 
 @pytest.mark.parametrize("content", [b"", b"G90\r\n" * 100, b"SQLite format 3\0" + b"\0" * 200])
@@ -78,21 +78,21 @@ def test_restore_of_what_is_no_backup_changes_nothing(
 ) -> None:
     fill(store)
     store.close()
-    before = (folder / FILE_NAME).read_bytes()
+    before = (folder / STORE_FILE_NAME).read_bytes()
     (tmp_path / "b.db").write_bytes(content)
     with pytest.raises(StoreError):
-        backup.restore(folder, tmp_path / "b.db")
-    assert (folder / FILE_NAME).read_bytes() == before
+        backup.restore_store(folder, tmp_path / "b.db")
+    assert (folder / STORE_FILE_NAME).read_bytes() == before
 
 
 def test_restore_of_a_spoilt_backup_is_refused(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     target = tmp_path / "b.db"
-    backup.backup(folder, target)
+    backup.back_up_store(folder, target)
     target.write_bytes(target.read_bytes().replace(b"G90\r\nM30", b"G91\r\nM30"))
     with raises_code(StoreError, "damaged-backup", "'PIN.nc' version 1"):
-        backup.restore(folder, target)
+        backup.restore_store(folder, target)
 
 
 def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, tmp_path: Path) -> None:
@@ -100,27 +100,27 @@ def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, t
     precious = tmp_path / "part.nc"
     precious.write_bytes(b"G90")
     with raises_code(StoreError, "not-a-database"):
-        backup.backup(folder, precious)
+        backup.back_up_store(folder, precious)
     assert precious.read_bytes() == b"G90"
     with raises_code(StoreError, "store-itself"):
-        backup.backup(folder, folder / FILE_NAME)
+        backup.back_up_store(folder, folder / STORE_FILE_NAME)
 
 
 def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path) -> None:
     with raises_code(StoreError, "no-store"):
-        backup.backup(folder, tmp_path / "b.db")
+        backup.back_up_store(folder, tmp_path / "b.db")
     with Store.open(folder) as store:
         fill(store)
     with raises_code(StoreError, "cannot-write"):
-        backup.backup(folder, tmp_path / "none" / "b.db")
+        backup.back_up_store(folder, tmp_path / "none" / "b.db")
 
 
 def test_neighbours_of_a_backup_or_export_are_left_alone(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     (tmp_path / "b.db.new").write_text("mine")
     (tmp_path / "out.new").mkdir()
-    backup.backup(folder, tmp_path / "b.db")
-    store_export.export(store, tmp_path / "out")
+    backup.back_up_store(folder, tmp_path / "b.db")
+    store_export.export_store(store, tmp_path / "out")
     assert (tmp_path / "b.db.new").read_text() == "mine"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["b.db", "b.db.new", "home", "out", "out.new"]
 
@@ -129,24 +129,24 @@ def test_export_of_a_spoilt_program_leaves_nothing(store: Store, tmp_path: Path)
     fill(store)
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
     with raises_code(StoreError, "damaged-version"):
-        store_export.export(store, tmp_path / "out")
+        store_export.export_store(store, tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["home"]
 
 
 def test_backup_over_an_older_backup(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     target = tmp_path / "b.db"
-    backup.backup(folder, target)
+    backup.back_up_store(folder, target)
     first = sha256(target.read_bytes()).digest()
-    store.offsets.tools.change_row(2, "x", {"x": 1.0}).result()
-    backup.backup(folder, target)
+    store.offsets.tool_offsets.change_row(2, "x", {"x": 1.0}).result()
+    backup.back_up_store(folder, target)
     assert sha256(target.read_bytes()).digest() != first
-    assert backup.problems(target) == ()
+    assert backup.find_problems(target) == ()
 
 
 def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
     fill(store)
-    assert store_export.export(store, tmp_path / "out") == 1
+    assert store_export.export_store(store, tmp_path / "out") == 1
     assert (tmp_path / "out/programs/PIN.nc").read_bytes() == b"G90\r\nM30\r\n"
     offsets = tomllib.loads((tmp_path / "out/offsets.toml").read_text())
     assert offsets["tool"]["1"] == {
@@ -162,16 +162,18 @@ def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
 
 def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
     fill(store)
-    store_export.export(store, tmp_path / "out")
+    store_export.export_store(store, tmp_path / "out")
     with Store.open(tmp_path / "other") as other:
         rows = {4: SecondaryRow(-0.0127, 0.0, 0.0)}
-        programs = store_export.program_files(tmp_path / "out")
-        values = {Kind.SECONDARY: {number: row._asdict() for number, row in rows.items()}}
+        programs = store_export.read_exported_programs(tmp_path / "out")
+        values = {OffsetKind.SECONDARY: {number: row._asdict() for number, row in rows.items()}}
         other.write(
-            lambda c: store_export.import_all(c, programs, values, Reason("import", "import"))
+            lambda c: store_export.import_programs_and_offsets(
+                c, programs, values, ChangeReason("import", "import")
+            )
         ).result()
         assert other.programs.load_version("PIN.nc") == b"G90\r\nM30\r\n"
-        assert other.offsets.secondary.read_rows() == rows
+        assert other.offsets.secondary_offsets.read_rows() == rows
         assert other.offsets.read_history()[0].who == "import"
 
 
@@ -179,21 +181,21 @@ def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_
     (tmp_path / "out").mkdir()
     (tmp_path / "out/precious").write_text("x")
     with raises_code(StoreError, "folder-not-empty"):
-        store_export.export(store, tmp_path / "out")
+        store_export.export_store(store, tmp_path / "out")
     with raises_code(StoreError, "not-an-export"):
-        store_export.program_files(tmp_path / "out")
+        store_export.read_exported_programs(tmp_path / "out")
     assert (tmp_path / "out/precious").read_text() == "x"
 
 
 def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
-    path = folder / FILE_NAME
-    assert backup.problems(path) == ()
+    path = folder / STORE_FILE_NAME
+    assert backup.find_problems(path) == ()
     with sqlite3.connect(path) as connection:
         connection.execute("UPDATE program_versions SET text = X'58'")
         connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '', '')")
     connection.close()
-    told = " ".join(backup.problems(path))
+    told = " ".join(backup.find_problems(path))
     assert "'PIN.nc' version 1 " in told
     assert " program_versions " in told

@@ -9,76 +9,76 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, store_connection
-from core.store.backup import Verdict, verdict
+from core.store.backup import BackupVerdict, check_backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from tests.coded import raises_code
 
 
-def judged(folder: Path, path: Path) -> Verdict:
-    with closing(store_connection.connect(folder / "turndesk.db", read_only=True)) as now:
-        return verdict(now, path)
+def judged(folder: Path, path: Path) -> BackupVerdict:
+    with closing(store_connection.connect_store(folder / "turndesk.db", read_only=True)) as now:
+        return check_backup(now, path)
 
 
 @pytest.fixture
 def kept(store: Store, folder: Path, tmp_path: Path) -> Path:
     """A backup of two tools, a correction, two programs and a setting."""
-    store.offsets.tools.change_row(1, "x", {"x": 1.0, "z": 0.0})
-    store.offsets.tools.change_row(2, "x", {"x": 2.0, "z": 0.0})
-    store.offsets.secondary.change_row(4, "x", {"x": -0.01})
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0, "z": 0.0})
+    store.offsets.tool_offsets.change_row(2, "x", {"x": 2.0, "z": 0.0})
+    store.offsets.secondary_offsets.change_row(4, "x", {"x": -0.01})
     store.programs.save_version("pin.nc", b"M30\n", "saved")
     store.programs.save_version("bush.nc", b"M30\n", "saved")
     store.runs.add_parts("pin.nc")
     store.settings.save_setting("preset", 1).result()
-    backup.backup(folder, tmp_path / "b.db")
+    backup.back_up_store(folder, tmp_path / "b.db")
     return tmp_path / "b.db"
 
 
 def test_the_same_is_whole_and_differs_in_nothing(folder: Path, kept: Path) -> None:
-    assert judged(folder, kept) == Verdict()
+    assert judged(folder, kept) == BackupVerdict()
 
 
 def test_what_is_other_missing_or_new_is_counted(store: Store, folder: Path, kept: Path) -> None:
-    store.offsets.tools.change_row(1, "x", {"x": 1.5})  # other
-    store.offsets.tools.remove_row(2, "x")  # missing now
-    store.offsets.tools.change_row(3, "x", {"x": 3.0, "z": 0.0})  # new since
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 1.5})  # other
+    store.offsets.tool_offsets.remove_row(2, "x")  # missing now
+    store.offsets.tool_offsets.change_row(3, "x", {"x": 3.0, "z": 0.0})  # new since
     store.programs.save_version("pin.nc", b"G90\nM30\n", "saved")
     store.programs.save_version("new.nc", b"M30\n", "saved")
     store.runs.add_parts("pin.nc")
     store.settings.save_setting("preset", 2).result()
     differs = (("programs", 2), ("tool offsets", 3), ("part counts", 1), ("settings", 1))
-    assert judged(folder, kept).differs == differs
+    assert judged(folder, kept).difference_counts == differs
 
 
 def test_what_was_put_back_by_hand_is_no_difference(store: Store, folder: Path, kept: Path) -> None:
-    store.offsets.tools.change_row(1, "x", {"x": 1.5})
-    store.offsets.tools.change_row(1, "back", {"x": 1.0}).result()
-    assert judged(folder, kept) == Verdict()
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 1.5})
+    store.offsets.tool_offsets.change_row(1, "back", {"x": 1.0}).result()
+    assert judged(folder, kept) == BackupVerdict()
 
 
 def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> None:
     kept.write_bytes(kept.read_bytes().replace(b"M30\n", b"M31\n"))
     found = judged(folder, kept)
-    assert found.problem == backup.problems(kept)[0]
-    assert found.differs == ()
+    assert found.first_problem == backup.find_problems(kept)[0]
+    assert found.difference_counts == ()
 
 
 @pytest.mark.parametrize("data", [b"", b"no database", bytes(5000)])
 def test_what_is_no_backup_is_told(data: bytes, store: Store, folder: Path, tmp_path: Path) -> None:
     store.settings.save_setting("a", 1).result()
     (tmp_path / "b.db").write_bytes(data)
-    assert str(tmp_path / "b.db") in judged(folder, tmp_path / "b.db").problem
-    assert str(tmp_path / "gone.db") in judged(folder, tmp_path / "gone.db").problem
+    assert str(tmp_path / "b.db") in judged(folder, tmp_path / "b.db").first_problem
+    assert str(tmp_path / "gone.db") in judged(folder, tmp_path / "gone.db").first_problem
     with raises_code(StoreError, "not-a-database"):
-        backup.problems(tmp_path / "b.db")
+        backup.find_problems(tmp_path / "b.db")
     with raises_code(StoreError, "not-found"):
-        backup.problems(tmp_path / "gone.db")
+        backup.find_problems(tmp_path / "gone.db")
 
 
 def test_one_of_an_older_version_has_its_programs_compared(folder: Path, kept: Path) -> None:
     with closing(sqlite3.connect(kept)) as connection:
         connection.execute("PRAGMA user_version = 10")
-    assert judged(folder, kept) == Verdict(older=True)
+    assert judged(folder, kept) == BackupVerdict(is_older=True)
 
 
 def test_looking_writes_nothing(folder: Path, kept: Path) -> None:

@@ -12,14 +12,14 @@ import pytest
 from core.store import backup, database
 from core.store.offsets import offset_tables
 from core.store.store import Store, StoreError
-from core.store.store_file import FILE_NAME
-from core.store.store_rows import Kind
+from core.store.store_file import STORE_FILE_NAME
+from core.store.store_rows import OffsetKind
 from tests.coded import raises_code
 
 
 def clock(monkeypatch: pytest.MonkeyPatch, *hours: int) -> None:
     times: Iterator[str] = iter(f"2026-11-29T{hour:02}:00:00.000000Z" for hour in hours)
-    monkeypatch.setattr(offset_tables, "utc_now", lambda: next(times))
+    monkeypatch.setattr(offset_tables, "get_utc_now_text", lambda: next(times))
 
 
 def test_the_newest_change_is_first_and_is_taken_back_first(
@@ -27,19 +27,23 @@ def test_the_newest_change_is_first_and_is_taken_back_first(
 ) -> None:
     """The clock is set back between a tool and a zero offset: the tool was taken for the newer one."""
     clock(monkeypatch, 9, 12, 11, 10, 8)
-    store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
-    store.offsets.tools.change_row(3, "worn", {"wear_x": 0.1}).result()
-    store.offsets.zero.change_row(54, "set", {"z": -1.0}).result()
-    assert [row.kind for row in store.offsets.read_history()] == [Kind.ZERO, Kind.TOOL, Kind.TOOL]
+    store.offsets.tool_offsets.change_row(3, "touched", {"x": 1.0}).result()
+    store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": 0.1}).result()
+    store.offsets.zero_offsets.change_row(54, "set", {"z": -1.0}).result()
+    assert [row.kind for row in store.offsets.read_history()] == [
+        OffsetKind.ZERO,
+        OffsetKind.TOOL,
+        OffsetKind.TOOL,
+    ]
     [undone] = store.offsets.undo_last_step().result()
-    assert (undone.kind, undone.new) == (Kind.ZERO, None)
+    assert (undone.kind, undone.new) == (OffsetKind.ZERO, None)
     assert [row.number for row in store.offsets.undo_last_step().result()] == [3]
     assert [row.number for row in store.offsets.read_history(2)] == [3, 54]
 
 
 def older(folder: Path) -> None:
     """As the version before numbered steps: each history by itself."""
-    with closing(sqlite3.connect(folder / FILE_NAME)) as connection:
+    with closing(sqlite3.connect(folder / STORE_FILE_NAME)) as connection:
         for table in ("zero_offset_changes", "tool_shape_changes"):
             connection.execute(f"UPDATE {table} SET step = step - (SELECT min(step) FROM {table}) + 1")
         connection.execute("DELETE FROM row_sums WHERE tbl IN ('zero_offset_changes', 'events')")
@@ -51,11 +55,11 @@ def older(folder: Path) -> None:
 def test_an_older_store_is_numbered_by_its_times(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock(monkeypatch, 8, 9, 10, 11, 12, 7, 7, 7, 7)
     with Store.open(folder) as store:
-        store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
-        store.offsets.zero.change_row(54, "set", {"z": -1.0}).result()
-        store.offsets.tools.change_row(3, "worn", {"wear_x": 0.1}).result()
-        store.offsets.tools.undo_last_step().result()
-        store.offsets.zero.change_row(55, "set", {"z": -2.0}).result()
+        store.offsets.tool_offsets.change_row(3, "touched", {"x": 1.0}).result()
+        store.offsets.zero_offsets.change_row(54, "set", {"z": -1.0}).result()
+        store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": 0.1}).result()
+        store.offsets.tool_offsets.undo_last_step().result()
+        store.offsets.zero_offsets.change_row(55, "set", {"z": -2.0}).result()
         before = [(row.kind, row.number, row.new) for row in store.offsets.read_history()]
     older(folder)
     with Store.open(folder) as store:
@@ -64,7 +68,7 @@ def test_an_older_store_is_numbered_by_its_times(folder: Path, monkeypatch: pyte
         assert [row.number for row in store.offsets.undo_last_step().result()] == [55]
         with raises_code(StoreError, "nothing-to-undo"):
             for _ in range(3):
-                store.offsets.tools.undo_last_step().result()
-        assert store.offsets.tools.read_rows() == {}
-    assert backup.all_problems(folder / FILE_NAME) == ()
-    assert database.check_file(folder / FILE_NAME, thorough=True) == len(database.migrations())
+                store.offsets.tool_offsets.undo_last_step().result()
+        assert store.offsets.tool_offsets.read_rows() == {}
+    assert backup.find_all_problems(folder / STORE_FILE_NAME) == ()
+    assert database.check_file(folder / STORE_FILE_NAME, thorough=True) == len(database.load_migrations())

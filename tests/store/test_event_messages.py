@@ -10,7 +10,7 @@ import pytest
 
 from core.message import Message, pack_message, unpack_message
 from core.store.store import Store
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 
 CAUSE = Message("{axis} is {distance} off its setpoint", axis="Z", distance=2.1)
 LINE = Message("{number} {alarm}: {cause}", number=102, alarm="FOLLOWING ERROR", cause=CAUSE)
@@ -50,7 +50,7 @@ def test_a_search_finds_the_english_text(tmp_path: Path) -> None:
 def test_a_message_that_does_not_fit_its_text_is_not_used(tmp_path: Path, packed: str) -> None:
     with Store.open(tmp_path) as store:
         store.events.log_event("alarm", LINE).result()
-    with closing(sqlite3.connect(tmp_path / FILE_NAME)) as connection:
+    with closing(sqlite3.connect(tmp_path / STORE_FILE_NAME)) as connection:
         connection.execute("UPDATE events SET message = ?", (packed,))
         connection.commit()
     with Store.open(tmp_path) as store:
@@ -59,7 +59,7 @@ def test_a_message_that_does_not_fit_its_text_is_not_used(tmp_path: Path, packed
 
 
 @pytest.mark.parametrize(
-    "text", [LINE, LINE.upper(), CAUSE.lower(), CAUSE.capitalize(), CAUSE.as_sentence(), "plain"]
+    "text", [LINE, LINE.upper(), CAUSE.lower(), CAUSE.capitalize(), CAUSE.capitalize_first_letter(), "plain"]
 )
 def test_what_is_packed_is_unpacked(text: str) -> None:
     made = unpack_message(pack_message(text), str.__str__(text))

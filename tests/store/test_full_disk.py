@@ -12,13 +12,13 @@ import pytest
 
 from app.cli.main import main
 from app.compose.runs.journal import Journal
-from core.executor.snapshot import Event
+from core.executor.snapshot import LogEvent
 from core.store import store_writer
 from core.store.store import Store, StoreError
-from core.store.store_errors import Cause, cause_of
-from core.store.store_file import FILE_NAME
+from core.store.store_errors import StoreErrorCause, find_cause
+from core.store.store_file import STORE_FILE_NAME
 from core.store.store_rows import EventRow
-from core.store.store_writer import Unwritten
+from core.store.store_writer import UnwrittenEntries
 from tests.coded import raises_code, recorded_refusals
 from tests.interrupted import broken_off
 from tests.store.disk import Disk, small_disk
@@ -30,8 +30,8 @@ def disk(tmp_path: Path) -> Iterator[Disk]:
         yield disk
 
 
-def part(number: int) -> Event:
-    return Event(0.0, "part", f"part {number}, 3.20 s")
+def part(number: int) -> LogEvent:
+    return LogEvent(0.0, "part", f"part {number}, 3.20 s")
 
 
 def fill_up(store: Store, disk: Disk) -> None:
@@ -41,7 +41,7 @@ def fill_up(store: Store, disk: Disk) -> None:
         store.events.log_event("filler", "x" * 3000)
     with pytest.raises(StoreError):
         store.events.log_event("filler", "last").result(60)
-    assert store.backlog is not None
+    assert store.pending_entries is not None
 
 
 # --- nothing is lost ----------------------------------------------------------------------------------------
@@ -59,15 +59,15 @@ def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Di
             store.runs.record_cycle("pin.nc", 3.0 + number)
         with raises_code(StoreError, "disk-full"):
             store.settings.save_setting("theme", "light").result(60)
-        assert store.trouble == str(Cause.FULL.error(disk.path / "home" / FILE_NAME, ""))
-        assert store.backlog is not None
-        assert store.backlog.parts == 33
-        assert store.runs.count_parts("pin.nc") == 36  # what is held counts on the screen
+        assert store.trouble == str(StoreErrorCause.FULL.make_error(disk.path / "home" / STORE_FILE_NAME, ""))
+        assert store.pending_entries is not None
+        assert store.pending_entries.part_count == 33
+        assert store.runs.read_part_count("pin.nc") == 36  # what is held counts on the screen
         disk.make_room()
         store.events.log_event("end", "after").result(60)
-        assert (store.trouble, store.backlog) == ("", None)
+        assert (store.trouble, store.pending_entries) == ("", None)
     with Store.open(disk.path / "home") as store:
-        assert store.runs.count_parts("pin.nc") == 36
+        assert store.runs.read_part_count("pin.nc") == 36
         told = [event.text for event in reversed(store.events.read_events(limit=1000))]
         assert told[0] == "before"
         assert told[-34:] == [*(f"part {number}" for number in range(33)), "after"]
@@ -77,32 +77,32 @@ def test_parts_and_events_of_a_full_disk_are_written_when_there_is_room(disk: Di
 
 
 def test_it_is_written_by_itself_without_another_word(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.store.store_writer.AGAIN", 0.02)
+    monkeypatch.setattr("core.store.store_writer.RETRY_INTERVAL_S", 0.02)
     with Store.open(disk.path / "home") as store:
         fill_up(store, disk)
         store.runs.add_parts("pin.nc")
         disk.make_room()
         tick = threading.Event()
-        while store.backlog is not None:
+        while store.pending_entries is not None:
             tick.wait(0.01)
-        assert store.runs.count_parts("pin.nc") == 1
+        assert store.runs.read_part_count("pin.nc") == 1
 
 
 def test_an_offset_is_refused_and_the_reason_is_the_disk(disk: Disk) -> None:
     with Store.open(disk.path / "home") as store:
-        store.offsets.tools.change_row(3, "x", {"x": 1.0}).result(60)
+        store.offsets.tool_offsets.change_row(3, "x", {"x": 1.0}).result(60)
         fill_up(store, disk)
         with raises_code(StoreError, "disk-full"):
-            store.offsets.tools.change_row(3, "x", {"x": 2.0, "remark": "y" * 40}).result(60)
-        assert store.offsets.tools.read_rows()[3].x == 1.0  # reading works
+            store.offsets.tool_offsets.change_row(3, "x", {"x": 2.0, "remark": "y" * 40}).result(60)
+        assert store.offsets.tool_offsets.read_rows()[3].x == 1.0  # reading works
         disk.make_room()
-        store.offsets.tools.change_row(3, "x", {"x": 2.0}).result(60)
-        assert store.offsets.tools.read_rows()[3].x == 2.0
+        store.offsets.tool_offsets.change_row(3, "x", {"x": 2.0}).result(60)
+        assert store.offsets.tool_offsets.read_rows()[3].x == 2.0
 
 
 def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None:
     journal = Journal(disk.path / "home")
-    store = journal.opened()
+    store = journal.require_store()
     fill_up(store, disk)
     journal.note(broken_off())
     disk.make_room()
@@ -114,8 +114,8 @@ def test_an_interrupted_job_is_kept_as_soon_as_there_is_room(disk: Disk) -> None
 
 def test_closing_says_what_is_lost(disk: Disk) -> None:
     journal = Journal(disk.path / "home")
-    journal.hear(Event(0.0, "load", "pin.nc"))
-    fill_up(journal.opened(), disk)
+    journal.hear(LogEvent(0.0, "load", "pin.nc"))
+    fill_up(journal.require_store(), disk)
     for number in range(20):
         journal.hear(part(number))
     lost = journal.close()
@@ -126,11 +126,11 @@ def test_closing_says_what_is_lost(disk: Disk) -> None:
 def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     disk: Disk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.compose.runs.journal.AGAIN", 0.02)
+    monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 0.02)
     disk.fill()
     journal = Journal(disk.path / "home")
-    assert str(Cause.FULL.error(disk.path / "home" / FILE_NAME, "")) in journal.trouble
-    journal.hear(Event(0.0, "load", "pin.nc"))
+    assert str(StoreErrorCause.FULL.make_error(disk.path / "home" / STORE_FILE_NAME, "")) in journal.trouble
+    journal.hear(LogEvent(0.0, "load", "pin.nc"))
     for number in range(20):
         journal.hear(part(number))
     assert journal.held == "20 parts, 21 events"
@@ -139,7 +139,7 @@ def test_a_control_that_comes_up_with_a_full_disk_keeps_its_parts_later(
     while journal.trouble:
         tick.wait(0.01)
     journal.save_version("pin.nc", b"M30", "so that all is written")
-    assert journal.runs.count_parts("pin.nc") == 20
+    assert journal.runs.read_part_count("pin.nc") == 20
     journal.close()
 
 
@@ -175,16 +175,16 @@ def test_a_store_that_another_program_writes_is_locked_and_not_damaged(tmp_path:
         with closing(sqlite3.connect(tmp_path / "turndesk.db", isolation_level=None)) as other:
             other.execute("BEGIN IMMEDIATE")
             with raises_code(StoreError, "locked"):
-                store.offsets.tools.change_row(1, "x", {"x": 1.0}).result(60)
+                store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0}).result(60)
             store.runs.add_parts("pin.nc")
             with raises_code(StoreError, "locked"):
                 store.events.log_event("part", "part 1").result(60)
-            assert store.trouble == str(Cause.LOCKED.error(tmp_path / FILE_NAME, ""))
-            assert store.runs.count_parts("pin.nc") == 1
+            assert store.trouble == str(StoreErrorCause.LOCKED.make_error(tmp_path / STORE_FILE_NAME, ""))
+            assert store.runs.read_part_count("pin.nc") == 1
             other.execute("ROLLBACK")
         store.events.log_event("end", "after").result(60)
         assert store.trouble == ""
-        assert store.runs.count_parts("pin.nc") == 1
+        assert store.runs.read_part_count("pin.nc") == 1
 
 
 def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
@@ -194,36 +194,42 @@ def test_a_store_that_nobody_may_write(tmp_path: Path) -> None:
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as connection:
         with pytest.raises(sqlite3.Error) as caught:
             connection.execute("DELETE FROM settings")
-        assert cause_of(path, caught.value) is Cause.FORBIDDEN
-    error = Cause.FORBIDDEN.error(path, caught.value)
+        assert find_cause(path, caught.value) is StoreErrorCause.FORBIDDEN
+    error = StoreErrorCause.FORBIDDEN.make_error(path, caught.value)
     assert error.code == "forbidden"
     assert str(path) in str(error)
 
 
 def test_what_the_system_says_is_what_is_told(tmp_path: Path) -> None:
-    causes = {28: Cause.FULL, 122: Cause.FULL, 27: Cause.FULL, 13: Cause.FORBIDDEN, 30: Cause.FORBIDDEN}
-    causes |= {5: Cause.FAILING, 2: Cause.GONE, 40: Cause.OTHER}
-    assert {number: cause_of(tmp_path, OSError(number, "x")) for number in causes} == causes
+    causes = {
+        28: StoreErrorCause.FULL,
+        122: StoreErrorCause.FULL,
+        27: StoreErrorCause.FULL,
+        13: StoreErrorCause.FORBIDDEN,
+        30: StoreErrorCause.FORBIDDEN,
+    }
+    causes |= {5: StoreErrorCause.FAILING, 2: StoreErrorCause.GONE, 40: StoreErrorCause.OTHER}
+    assert {number: find_cause(tmp_path, OSError(number, "x")) for number in causes} == causes
 
 
 # --- what is held does not grow, and one bad entry holds nothing up ----------------------------------------
 
 
 def test_counts_and_settings_do_not_grow_with_the_days() -> None:
-    held = Unwritten()
+    held = UnwrittenEntries()
     for number in range(100_000):
-        held.count_parts("pin.nc", 1)
-        held.latest(("setting", "theme"), lambda _c: number)  # noqa: B023
-    assert (held.backlog("").parts, held.backlog("").others) == (100_000, 1)
+        held.add_parts("pin.nc", 1)
+        held.replace_operation(("setting", "theme"), lambda _c: number)  # noqa: B023
+    assert (held.count_entries("").part_count, held.count_entries("").other_count) == (100_000, 1)
 
 
 def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(store_writer, "EVENTS", 10)
-    held = Unwritten()
+    monkeypatch.setattr(store_writer, "MAX_PENDING_EVENTS", 10)
+    held = UnwrittenEntries()
     for number in range(25):
-        held.event(EventRow("2026-01-01T00:00:00.000Z", "stop", f"{number}"))
+        held.add_event(EventRow("2026-01-01T00:00:00.000Z", "stop", f"{number}"))
     with Store.open(tmp_path) as store:
-        store.write(held.write).result(60)
+        store.write(held.write_all).result(60)
         texts = [event.text for event in reversed(store.events.read_events())]
     assert texts[:-1] == [str(n) for n in range(15, 25)]
     assert texts[-1].startswith("15 ")
@@ -231,11 +237,11 @@ def test_events_beyond_the_bound_are_told(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_name_that_can_never_be_kept_holds_nothing_up(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.programs.keep_loaded_version("bad/name", b"M30", "x")
+        store.programs.save_loaded_version("bad/name", b"M30", "x")
         store.runs.add_parts("pin.nc")
         store.events.log_event("end", "after").result(60)
-        assert store.backlog is None
-        assert store.runs.count_parts("pin.nc") == 1
+        assert store.pending_entries is None
+        assert store.runs.read_part_count("pin.nc") == 1
         assert any("bad/name" in event.text for event in store.events.read_events())
 
 
@@ -249,10 +255,10 @@ def test_a_count_put_to_nought_while_nothing_was_written(disk: Disk) -> None:
         store.runs.add_parts("pin.nc", 2)
         with pytest.raises(StoreError):
             store.events.log_event("x", "y").result(60)
-        assert store.runs.count_parts("pin.nc") == 3
+        assert store.runs.read_part_count("pin.nc") == 3
         disk.make_room()
         store.events.log_event("x", "z").result(60)
-        assert store.runs.count_parts("pin.nc") == 3
+        assert store.runs.read_part_count("pin.nc") == 3
 
 
 # --- reading goes on ----------------------------------------------------------------------------------------

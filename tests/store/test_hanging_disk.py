@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from app.compose.runs.journal import Journal
-from core.executor.snapshot import Event
+from core.executor.snapshot import LogEvent
 from core.store.store import Store
-from core.store.store_errors import Cause
-from core.store.store_file import FILE_NAME
-from core.store.store_writer import HANGS, StoreWriter
+from core.store.store_errors import StoreErrorCause
+from core.store.store_file import STORE_FILE_NAME
+from core.store.store_writer import SLOW_WRITE_S, StoreWriter
 
 LONG = 60.0  # s that a test waits for another thread
 
@@ -57,20 +57,20 @@ def disk(monkeypatch: pytest.MonkeyPatch) -> Iterator[Disk]:
 
 def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Path) -> None:
     journal = Journal(tmp_path)
-    journal.hear(Event(0.0, "load", "pin.nc"))
-    journal.opened().events.log_event("start", "before").result(LONG)
-    disk.hang(journal.opened())
+    journal.hear(LogEvent(0.0, "load", "pin.nc"))
+    journal.require_store().events.log_event("start", "before").result(LONG)
+    disk.hang(journal.require_store())
     for number in range(3):
-        journal.hear(Event(0.0, "part", f"part {number}, 3.20 s"))
-    disk.now += HANGS - 0.1
+        journal.hear(LogEvent(0.0, "part", f"part {number}, 3.20 s"))
+    disk.now += SLOW_WRITE_S - 0.1
     assert (journal.trouble, journal.held) == ("", "")
     disk.now += 0.2
-    assert journal.trouble == str(Cause.HANGS.error(tmp_path / FILE_NAME, ""))
+    assert journal.trouble == str(StoreErrorCause.HANGS.make_error(tmp_path / STORE_FILE_NAME, ""))
     assert journal.held
     disk.release()
-    journal.opened().events.log_event("start", "behind").result(LONG)
+    journal.require_store().events.log_event("start", "behind").result(LONG)
     assert (journal.trouble, journal.held) == ("", "")
-    assert journal.opened().runs.count_parts("pin.nc") == 3
+    assert journal.require_store().runs.read_part_count("pin.nc") == 3
     assert journal.close() == ""
 
 
@@ -79,8 +79,8 @@ def test_a_disk_that_is_only_slow_is_not_reported(disk: Disk, tmp_path: Path) ->
     with Store.open(tmp_path) as store:
         for _ in range(5):
             store.events.log_event("start", "stored").result(LONG)
-            disk.now += 10.0 * HANGS
-            assert (store.trouble, store.backlog) == ("", None)
+            disk.now += 10.0 * SLOW_WRITE_S
+            assert (store.trouble, store.pending_entries) == ("", None)
 
 
 def test_closing_leaves_a_disk_that_hangs_and_says_what_is_lost(
@@ -88,6 +88,6 @@ def test_closing_leaves_a_disk_that_hangs_and_says_what_is_lost(
 ) -> None:
     monkeypatch.setattr(StoreWriter.close, "__defaults__", (0.0,))
     journal = Journal(tmp_path)
-    disk.hang(journal.opened())
-    disk.now += 2.0 * HANGS
+    disk.hang(journal.require_store())
+    disk.now += 2.0 * SLOW_WRITE_S
     assert journal.close() != ""

@@ -11,24 +11,24 @@ from pathlib import Path
 import pytest
 
 from core.store import database
-from core.store.damaged_rows import named
+from core.store.damaged_rows import make_row_label
 from core.store.production import job_queue
 from core.store.production.job_queue import JobRow
 from core.store.store import Store, StoreError
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 from tests.coded import raises_code
 
 
 def added(store: Store, program: str, wanted: int, note: str = "") -> int:
-    return store.write(lambda c: job_queue.add(c, program, wanted, note)).result()
+    return store.write(lambda c: job_queue.add_job(c, program, wanted, note)).result()
 
 
 def begun(store: Store, job: int) -> None:
-    store.write(lambda c: job_queue.begin(c, job)).result()
+    store.write(lambda c: job_queue.activate_job(c, job)).result()
 
 
 def made(store: Store) -> list[tuple[str, int, int]]:
-    return [(row.program, row.made, row.wanted) for row in store.jobs.read_jobs()]
+    return [(row.program, row.parts_made, row.parts_to_make) for row in store.jobs.read_jobs()]
 
 
 def count(store: Store, program: str, parts: int) -> None:
@@ -44,12 +44,18 @@ def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> Non
     count(store, "pin.nc", 3)
     count(store, "cap.nc", 9)
     (row,) = store.jobs.read_jobs()
-    assert (row.made, row.left, row.done, row.target, row.note) == (3, 2, False, 47, "order 12")
+    assert (row.parts_made, row.parts_left, row.is_done, row.target_part_count, row.note) == (
+        3,
+        2,
+        False,
+        47,
+        "order 12",
+    )
     count(store, "pin.nc", -1)  # scrap
-    assert store.jobs.read_jobs()[0].made == 2
+    assert store.jobs.read_jobs()[0].parts_made == 2
     count(store, "pin.nc", 4)
     (row,) = store.jobs.read_jobs()
-    assert (row.made, row.left, row.done) == (6, 0, True)
+    assert (row.parts_made, row.parts_left, row.is_done) == (6, 0, True)
 
 
 def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
@@ -63,7 +69,7 @@ def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
     begun(store, pins)
     count(store, "pin.nc", 1)
     assert made(store) == [("pin.nc", 4, 5), ("cap.nc", 1, 2)]
-    assert [row.under_way for row in store.jobs.read_jobs()] == [True, False]
+    assert [row.is_active for row in store.jobs.read_jobs()] == [True, False]
     assert store.find_damaged_rows() == ()
 
 
@@ -73,9 +79,9 @@ def test_a_count_that_is_put_to_nought_takes_nothing_from_the_job(store: Store) 
     count(store, "pin.nc", 3)
     store.runs.reset_parts("pin.nc").result()
     (row,) = store.jobs.read_jobs()
-    assert (row.made, row.target) == (3, 2)
+    assert (row.parts_made, row.target_part_count) == (3, 2)
     count(store, "pin.nc", 2)
-    assert store.jobs.read_jobs()[0].done
+    assert store.jobs.read_jobs()[0].is_done
 
 
 def test_two_jobs_of_one_program_do_not_count_together(store: Store) -> None:
@@ -89,16 +95,18 @@ def test_two_jobs_of_one_program_do_not_count_together(store: Store) -> None:
 
 def test_moved_changed_removed_cleared(store: Store) -> None:
     a, b, c = (added(store, name, 1) for name in ("a.nc", "b.nc", "c.nc"))
-    store.write(lambda con: job_queue.move(con, c, 1)).result()
-    store.write(lambda con: job_queue.move(con, a, 99)).result()
+    store.write(lambda con: job_queue.move_job(con, c, 1)).result()
+    store.write(lambda con: job_queue.move_job(con, a, 99)).result()
     assert [row.program for row in store.jobs.read_jobs()] == ["c.nc", "b.nc", "a.nc"]
-    store.write(lambda con: job_queue.change(con, b, 7, "blue")).result()
-    store.write(lambda con: job_queue.remove(con, c)).result()
+    store.write(lambda con: job_queue.change_job(con, b, 7, "blue")).result()
+    store.write(lambda con: job_queue.remove_job(con, c)).result()
     begun(store, a)
     count(store, "a.nc", 1)
-    assert store.write(lambda con: job_queue.clear(con, everything=False)).result() == 1
-    assert [(row.program, row.wanted, row.note) for row in store.jobs.read_jobs()] == [("b.nc", 7, "blue")]
-    assert store.write(lambda con: job_queue.clear(con, everything=True)).result() == 1
+    assert store.write(lambda con: job_queue.clear(con, remove_all=False)).result() == 1
+    assert [(row.program, row.parts_to_make, row.note) for row in store.jobs.read_jobs()] == [
+        ("b.nc", 7, "blue")
+    ]
+    assert store.write(lambda con: job_queue.clear(con, remove_all=True)).result() == 1
 
 
 def test_a_renamed_program_keeps_its_job(store: Store) -> None:
@@ -128,18 +136,18 @@ def test_what_is_no_job_is_refused(
 
 def test_a_job_that_has_gone_is_told(store: Store) -> None:
     for operation in (
-        lambda c: job_queue.begin(c, 7),
-        lambda c: job_queue.move(c, 7, 1),
-        lambda c: job_queue.remove(c, 7),
-        lambda c: job_queue.change(c, 7, 1, ""),
+        lambda c: job_queue.activate_job(c, 7),
+        lambda c: job_queue.move_job(c, 7, 1),
+        lambda c: job_queue.remove_job(c, 7),
+        lambda c: job_queue.change_job(c, 7, 1, ""),
     ):
         with raises_code(StoreError, "job-gone"):
             store.write(operation).result()
 
 
 def test_a_full_queue_takes_no_more(store: Store) -> None:
-    for _ in range(job_queue.MOST_JOBS):
-        store.write(lambda c: job_queue.add(c, "a.nc", 1))
+    for _ in range(job_queue.MAX_JOBS):
+        store.write(lambda c: job_queue.add_job(c, "a.nc", 1))
     with raises_code(StoreError, "queue-full", 200):
         added(store, "a.nc", 1)
 
@@ -148,34 +156,36 @@ def test_counts_that_wait_in_memory_count(store: Store) -> None:
     begun(store, added(store, "pin.nc", 9))
     count(store, "pin.nc", 2)
     with store.read() as connection:
-        assert job_queue.jobs(connection, {"pin.nc": (False, 3)})[0].made == 5
-        assert job_queue.jobs(connection, {"pin.nc": (True, 3)})[0].made == 5  # put to nought, then three
+        assert job_queue.read_jobs(connection, {"pin.nc": (False, 3)})[0].parts_made == 5
+        assert (
+            job_queue.read_jobs(connection, {"pin.nc": (True, 3)})[0].parts_made == 5
+        )  # put to nought, then three
 
 
 def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
     with Store.open(folder) as store:
         added(store, "a.nc", 3)
         added(store, "b.nc", 4)
-    with closing(sqlite3.connect(folder / FILE_NAME)) as outside:
+    with closing(sqlite3.connect(folder / STORE_FILE_NAME)) as outside:
         outside.execute("UPDATE jobs SET wanted = 300 WHERE program = 'a.nc'")
         outside.commit()
     with Store.open(folder) as store:
         assert [row.program for row in store.jobs.read_jobs()] == ["b.nc"]
         (told,) = store.find_damaged_rows()
-        assert told.startswith(named("jobs", 1))
+        assert told.startswith(make_row_label("jobs", 1))
         assert "turndesk jobs clear" in told
-        assert store.write(lambda c: job_queue.clear(c, everything=False)).result() == 1
+        assert store.write(lambda c: job_queue.clear(c, remove_all=False)).result() == 1
         assert store.find_damaged_rows() == ()
 
 
 def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
-    with closing(sqlite3.connect(tmp_path / FILE_NAME, isolation_level=None)) as connection:
+    with closing(sqlite3.connect(tmp_path / STORE_FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
-        database.migrate(connection, database.migrations()[:11])
+        database.migrate(connection, database.load_migrations()[:11])
         connection.execute("INSERT INTO part_counts VALUES ('pin.nc', 4, '2026-11-20T10:00:00.000Z')")
     with Store.open(tmp_path) as store:
         assert store.jobs.read_jobs() == ()
-        assert store.runs.count_parts("pin.nc") == 4
+        assert store.runs.read_part_count("pin.nc") == 4
         assert store.find_damaged_rows() == ()
 
 
@@ -199,11 +209,11 @@ def test_a_killed_control_has_its_queue_with_its_counts(folder: Path) -> None:
     assert ended.returncode == -9
     with Store.open(folder) as store:
         (row,) = store.jobs.read_jobs()
-        assert (row.program, row.made, row.wanted, row.under_way) == ("pin.nc", 7, 50, True)
+        assert (row.program, row.parts_made, row.parts_to_make, row.is_active) == ("pin.nc", 7, 50, True)
 
 
 def test_a_row_reckons_by_the_count_from_which_it_began() -> None:
-    row = JobRow(1, "pin.nc", 50, before=10, base=100, counted=117)
-    assert (row.made, row.left, row.target) == (27, 23, 140)
-    assert row._replace(base=None).made == 10
-    assert row._replace(counted=80).made == 0
+    row = JobRow(1, "pin.nc", 50, parts_made_before=10, base_part_count=100, part_count=117)
+    assert (row.parts_made, row.parts_left, row.target_part_count) == (27, 23, 140)
+    assert row._replace(base_part_count=None).parts_made == 10
+    assert row._replace(part_count=80).parts_made == 0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.store import backup
 from core.store.store import Store
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 
 KILLS = 5
 ACKNOWLEDGED = 25  # of each process before it is killed; the next transactions are then in flight
@@ -52,12 +52,12 @@ def _write_and_kill(folder: Path) -> int:
 def test_killed_writers_lose_nothing_that_was_acknowledged(folder: Path) -> None:
     for _ in range(KILLS):
         last = _write_and_kill(folder)
-        assert backup.problems(folder / FILE_NAME) == ()
+        assert backup.find_problems(folder / STORE_FILE_NAME) == ()
         with Store.open(folder, read_only=True) as store:
             versions = store.programs.list_versions("part")
             assert [row.number for row in versions] == list(range(len(versions), 0, -1))
             newest = versions[0].number
             assert newest in (last, last + 1)  # one may have been stored and not yet told
             assert store.programs.load_version("part") == b"%d " % newest * 2000
-            assert store.offsets.tools.read_rows()[1].x == newest % 1000
+            assert store.offsets.tool_offsets.read_rows()[1].x == newest % 1000
             assert len(store.offsets.read_history(limit=10**6)) == newest

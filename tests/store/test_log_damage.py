@@ -11,11 +11,11 @@ import pytest
 from core.store import backup, store_connection
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 from tests.coded import raises_code
 from tests.texts import text
 
-LOG = f"{FILE_NAME}-wal"
+LOG = f"{STORE_FILE_NAME}-wal"
 FRAME = 24 + 4096
 
 
@@ -24,12 +24,12 @@ def killed(tmp_path: Path) -> Path:
     """As it is found behind a kill: a whole store, and four wears that stand in the log alone."""
     home, found = tmp_path / "home", tmp_path / "found"
     with Store.open(home) as store:
-        store.offsets.tools.change_row(3, "touched", {"x": -12.7, "z": -2.5}).result()
+        store.offsets.tool_offsets.change_row(3, "touched", {"x": -12.7, "z": -2.5}).result()
     with Store.open(home) as store:
         for number in range(1, 5):
-            store.offsets.tools.change_row(3, "worn", {"wear_x": -0.01 * number}).result()
+            store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.01 * number}).result()
         found.mkdir()
-        for name in (FILE_NAME, LOG):
+        for name in (STORE_FILE_NAME, LOG):
             shutil.copy(home / name, found)
     return found
 
@@ -53,9 +53,9 @@ def left_beside(found: Path) -> list[str]:
 
 def test_a_whole_log_is_read_to_its_end(killed: Path) -> None:
     assert len(commits(killed)) == 4
-    assert backup.problems(killed / FILE_NAME) == ()
+    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
     with Store.open(killed) as store:
-        assert (store.offsets.tools.read_rows()[3].wear_x, store.repaired) == (-0.04, ())
+        assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.04, ())
     assert left_beside(killed) == []
 
 
@@ -67,7 +67,7 @@ def test_a_change_that_was_not_finished_is_no_damage(killed: Path, tmp_path: Pat
         shutil.copytree(killed, there)
         (there / LOG).write_bytes(whole[:end])
         with Store.open(there) as store:
-            assert (store.offsets.tools.read_rows()[3].wear_x, store.repaired) == (-0.03, ())
+            assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.03, ())
 
 
 @pytest.mark.parametrize("at", [0, 5, 12, 17, 21, 25, 31, 32 + 9, 32 + 13, 32 + 17, 32 + 24, 32 + 3000])
@@ -76,12 +76,12 @@ def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> No
     flip(killed, at)
     content = (killed / LOG).read_bytes()
     with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=4)):
-        backup.problems(killed / FILE_NAME)
+        backup.find_problems(killed / STORE_FILE_NAME)
     with raises_code(StoreError, "damaged-log"):
         Store.open(killed, read_only=True)
     with Store.open(killed) as store:
-        [told] = store.repaired
-        assert store.offsets.tools.read_rows()[3].wear_x == 0.0
+        [told] = store.repair_messages
+        assert store.offsets.tool_offsets.read_rows()[3].wear_x == 0.0
         assert store.events.read_events()[0].text == told
     assert text("log.lost-changes", count=4) in told
     [kept] = left_beside(killed)
@@ -92,32 +92,32 @@ def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> No
 def test_the_last_change_alone_is_missed_too(killed: Path) -> None:
     flip(killed, commits(killed)[-1] + 24 + 100)
     with Store.open(killed) as store:
-        assert left_beside(killed)[0] in store.repaired[0]
-        assert store.offsets.tools.read_rows()[3].wear_x == -0.03
+        assert left_beside(killed)[0] in store.repair_messages[0]
+        assert store.offsets.tool_offsets.read_rows()[3].wear_x == -0.03
 
 
 def test_it_is_told_once(killed: Path) -> None:
     flip(killed, 32 + 3000)
     with Store.open(killed) as store:
-        store.offsets.tools.change_row(3, "worn", {"wear_x": -0.05}).result()
+        store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.05}).result()
     with Store.open(killed) as store:
-        assert (store.repaired, store.offsets.tools.read_rows()[3].wear_x) == ((), -0.05)
-    assert backup.problems(killed / FILE_NAME) == ()
+        assert (store.repair_messages, store.offsets.tool_offsets.read_rows()[3].wear_x) == ((), -0.05)
+    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
     assert len(left_beside(killed)) == 1
 
 
 def test_whoever_reads_beside_a_desk_that_runs_is_not_kept_from_it(killed: Path) -> None:
     """What its log holds is that desk's; a change that is just being written is no damage."""
     with Store.open(killed) as store:
-        store.offsets.tools.change_row(3, "worn", {"wear_x": -0.05}).result()
+        store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.05}).result()
         log = bytearray((killed / LOG).read_bytes())
         torn = struct.pack(">II", 2, 9) + bytes(log[16:24]) + bytes(FRAME - 16)
         with (killed / LOG).open("ab") as file:
             file.write(torn)
-        assert store_connection.in_use(killed)
+        assert store_connection.is_open_for_writing(killed)
         with Store.open(killed, read_only=True) as beside:
-            assert beside.offsets.tools.read_rows()[3].wear_x == -0.05
-    assert not store_connection.in_use(killed)
+            assert beside.offsets.tool_offsets.read_rows()[3].wear_x == -0.05
+    assert not store_connection.is_open_for_writing(killed)
 
 
 # --- a power cut within a write that was never acknowledged ---------------------------------------------
@@ -145,11 +145,11 @@ def test_sectors_of_the_last_change_that_never_came_are_no_damage(
     """It was reported as a damaged log with a lost change, and nobody was told that the change is kept."""
     places = range(last_change(killed).start, last_change(killed).stop, FRAME)
     torn(killed, places[frame] + FRAME - 1400, sectors, with_what)  # cells are at the end of a page
-    assert backup.problems(killed / FILE_NAME) == ()
+    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
     with Store.open(killed, read_only=True) as store:
-        assert store.offsets.tools.read_rows()[3].wear_x == -0.03
+        assert store.offsets.tool_offsets.read_rows()[3].wear_x == -0.03
     with Store.open(killed) as store:
-        assert (store.offsets.tools.read_rows()[3].wear_x, store.repaired) == (-0.03, ())
+        assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.03, ())
     assert left_beside(killed) == []
 
 
@@ -159,7 +159,7 @@ def test_an_entry_of_the_last_change_that_never_came_is_no_damage(killed: Path) 
     content[start : start + FRAME] = bytes(FRAME)
     (killed / LOG).write_bytes(content)
     with Store.open(killed) as store:
-        assert (store.offsets.tools.read_rows()[3].wear_x, store.repaired) == (-0.03, ())
+        assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.03, ())
 
 
 @pytest.mark.parametrize("into", [0, 5, 9, 13, 17, 21, 24, 27, 600, 2001, 24 + 4095])
@@ -178,13 +178,13 @@ def test_sectors_of_an_earlier_change_are_damage(killed: Path) -> None:
     """A change is acknowledged before the next one is written."""
     torn(killed, commits(killed)[1] + 600, 2, b"o")
     with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=3)):
-        backup.problems(killed / FILE_NAME)
+        backup.find_problems(killed / STORE_FILE_NAME)
 
 
 def test_a_head_alone_has_lost_nothing(killed: Path) -> None:
     (killed / LOG).write_bytes(bytes(32))
     with Store.open(killed) as store:
-        assert (store.offsets.tools.read_rows()[3].wear_x, store.repaired) == (0.0, ())
+        assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (0.0, ())
 
 
 def test_an_entry_of_an_earlier_round_is_not_missed(killed: Path) -> None:
@@ -194,4 +194,4 @@ def test_an_entry_of_an_earlier_round_is_not_missed(killed: Path) -> None:
     old[8:16] = bytes(8)
     (killed / LOG).write_bytes(content + old)
     with Store.open(killed) as store:
-        assert (store.offsets.tools.read_rows()[3].wear_x, store.repaired) == (-0.04, ())
+        assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.04, ())

@@ -15,12 +15,12 @@ from core.store import backup, database, store_connection
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_export import export
-from core.store.store_file import FILE_NAME
-from core.store.store_rows import utc
+from core.store.store_export import export_store
+from core.store.store_file import STORE_FILE_NAME
+from core.store.store_rows import format_utc
 from tests.coded import raises_code
 
 SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool", 3, 1, 10, 1)
@@ -37,7 +37,7 @@ def read(store: Store, of: int, part: int, value: float) -> int:
 
 def readings(store: Store, program: str = "pin.nc", limit: int = 100) -> list[ReadingRow]:
     with store.read() as connection:
-        return list(measured_parts.readings(connection, program, limit))
+        return list(measured_parts.read_readings(connection, program, limit))
 
 
 def cycle(store: Store, key: str, part: int, **more: object) -> None:
@@ -52,8 +52,8 @@ def test_a_feature_and_its_readings_in_the_order_of_taking(store: Store) -> None
     assert [(row.part, row.value) for row in readings(store)] == [(1, 12.71), (3, 12.72), (2, 12.69)]
     assert [row.part for row in readings(store, limit=2)] == [3, 2], "the newest"
     with store.read() as connection:
-        assert measured_parts.features(connection, "pin.nc") == (SPIGOT._replace(id=of),)
-        assert measured_parts.features(connection, "other.nc") == ()
+        assert measured_parts.read_features(connection, "pin.nc") == (SPIGOT._replace(id=of),)
+        assert measured_parts.read_features(connection, "other.nc") == ()
 
 
 def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store: Store) -> None:
@@ -100,32 +100,34 @@ def test_a_reading_that_is_no_number(store: Store) -> None:
 def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> None:
     """Part 1 before the wear, part 2 begun before it and ended after, part 3 after; part 9 is unknown."""
     of = feature(store)
-    store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
+    store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
     cycle(store, "1", 1)
     cycle(store, "2", 0)
-    store.offsets.tools.change_row(3, "wear", {"wear_x": -0.01}).result(60)
+    store.offsets.tool_offsets.change_row(3, "wear", {"wear_x": -0.01}).result(60)
     cycle(store, "2", 2, ended="2026-01-01T00:03:00Z")
     cycle(store, "3", 3)
     for part in (1, 2, 3, 9):
         read(store, of, part, 12.7)
     with store.read() as connection:
-        last = measured_parts.last_corrections(connection)[("tool", 3, "x")]
-        assert measured_parts.last_corrections(connection)[("tool", 3, "z")] < last, "Z was only touched off"
+        last = measured_parts.read_last_corrections(connection)[("tool", 3, "x")]
+        assert measured_parts.read_last_corrections(connection)[("tool", 3, "z")] < last, (
+            "Z was only touched off"
+        )
     known = [(row.part, row.offset_change) for row in readings(store)]
     assert [part for part, change in known if change >= last] == [3]
     assert known[-1] == (9, -1)
 
 
 def test_corrections_stand_between_the_parts(store: Store) -> None:
-    store.offsets.tools.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
+    store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": 2.0}).result(60)
     for part in (1, 2):
         cycle(store, str(part), part)
-    store.offsets.tools.change_row(3, "wear", {"wear_x": -0.01}).result(60)
+    store.offsets.tool_offsets.change_row(3, "wear", {"wear_x": -0.01}).result(60)
     cycle(store, "3", 3)
-    store.offsets.tools.change_row(3, "remark", {"remark": "new"}).result(60)
-    store.offsets.secondary.change_row(4, "D", {"x": 0.02}).result(60)
+    store.offsets.tool_offsets.change_row(3, "remark", {"remark": "new"}).result(60)
+    store.offsets.secondary_offsets.change_row(4, "D", {"x": 0.02}).result(60)
     with store.read() as connection:
-        rows = part_cycles.corrections(connection, "pin.nc", 100)
+        rows = part_cycles.read_corrections(connection, "pin.nc", 100)
     assert [(row.kind, row.number, row.was_x, row.x, row.part) for row in rows] == [
         ("tool", 3, 0.0, -0.01, 2),
         ("secondary", 4, 0.0, 0.02, 3),
@@ -138,35 +140,38 @@ def test_cycles_and_stops(store: Store) -> None:
     stop = StopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
     store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
     with store.read() as connection:
-        (row,) = part_cycles.cycles(connection, "pin.nc", 10)
+        (row,) = part_cycles.read_cycles(connection, "pin.nc", 10)
         assert (row.part, row.seconds, row.load) == (1, 58.5, None)
-        assert part_cycles.stops(connection, None, 10) == (stop,)
-        assert part_cycles.stops(connection, "other.nc", 10) == ()
+        assert part_cycles.read_stops(connection, None, 10) == (stop,)
+        assert part_cycles.read_stops(connection, "other.nc", 10) == ()
 
 
 def test_the_cycles_of_a_day_are_those_of_all_programs(store: Store) -> None:
     now = datetime.now(UTC)
-    at = {hours: utc(now - timedelta(hours=hours)) for hours in (1, 2, 47, 49)}
+    at = {hours: format_utc(now - timedelta(hours=hours)) for hours in (1, 2, 47, 49)}
     for hours, program in ((1, "other.nc"), (2, "pin.nc"), (47, "other.nc"), (49, "pin.nc")):
         started = at[hours]
         cycle(store, f"{hours}", 1, program=program, started=started, ended=started, seconds=8.0)
     with store.read() as connection:
-        day = part_cycles.times_since(connection, utc(now - timedelta(hours=48)))
+        day = part_cycles.read_cycle_times_since(connection, format_utc(now - timedelta(hours=48)))
         assert {row.started for row in day} == {at[1], at[2], at[47]}
-        assert {row.key for row in part_cycles.cycles(connection, "pin.nc", 10)} == {"2", "49"}
+        assert {row.key for row in part_cycles.read_cycles(connection, "pin.nc", 10)} == {"2", "49"}
 
 
 def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> None:
-    store.write(lambda c: tool_lives.set_limits(c, LifeRow(3, 50, 1800.0, 0.8, True))).result(60)
-    store.write(lambda c: tool_lives.set_use(c, 3, 50, 1200.5)).result(60)
+    store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(3, 50, 1800.0, 0.8, True))).result(60)
+    store.write(lambda c: tool_lives.save_use(c, 3, 50, 1200.5)).result(60)
     with store.read() as connection:
-        assert tool_lives.lives(connection) == {3: LifeRow(3, 50, 1800.0, 0.8, True, 50, 1200.5)}
-    store.write(lambda c: tool_lives.change_insert(c, 3, "spent")).result(60)
-    store.write(lambda c: tool_lives.change_insert(c, 7, "by eye")).result(60)
+        assert tool_lives.read_tool_lives(connection) == {
+            3: ToolLifeRow(3, 50, 1800.0, 0.8, True, 50, 1200.5)
+        }
+    store.write(lambda c: tool_lives.record_insert_change(c, 3, "spent")).result(60)
+    store.write(lambda c: tool_lives.record_insert_change(c, 7, "by eye")).result(60)
     with store.read() as connection:
-        assert tool_lives.lives(connection)[3] == LifeRow(3, 50, 1800.0, 0.8, True, 0, 0.0)
+        assert tool_lives.read_tool_lives(connection)[3] == ToolLifeRow(3, 50, 1800.0, 0.8, True, 0, 0.0)
         told = [
-            (row.number, row.parts, row.seconds, row.why) for row in tool_lives.insert_changes(connection, 9)
+            (row.number, row.parts, row.seconds, row.why)
+            for row in tool_lives.read_insert_changes(connection, 9)
         ]
     assert told == [(7, 0, 0.0, "by eye"), (3, 50, 1200.5, "spent")]
 
@@ -174,8 +179,8 @@ def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> No
 @pytest.mark.parametrize("number", [0, 33])
 def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
     for operation in (
-        lambda c: tool_lives.set_limits(c, LifeRow(number, 5)),
-        lambda c: tool_lives.change_insert(c, number, ""),
+        lambda c: tool_lives.save_limits(c, ToolLifeRow(number, 5)),
+        lambda c: tool_lives.record_insert_change(c, number, ""),
     ):
         with raises_code(StoreError, "unknown-tool", f"T{number}"):
             store.write(operation).result(60)
@@ -188,7 +193,7 @@ def test_all_of_it_goes_with_another_name(store: Store) -> None:
     assert [row.value for row in readings(store, "axle.nc")] == [12.7]
     assert readings(store) == []
     with store.read() as connection:
-        assert len(part_cycles.cycles(connection, "axle.nc", 9)) == 1
+        assert len(part_cycles.read_cycles(connection, "axle.nc", 9)) == 1
 
 
 def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
@@ -196,27 +201,27 @@ def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
     feature(store, SPIGOT._replace(program="axle.nc"))
     store.programs.rename_program("pin.nc", "axle.nc").result(60)
     with store.read() as connection:
-        assert [row.program for row in measured_parts.features(connection)] == ["axle.nc", "pin.nc"]
+        assert [row.program for row in measured_parts.read_features(connection)] == ["axle.nc", "pin.nc"]
 
 
 def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Path) -> None:
     read(store, feature(store), 7, 12.7)
-    export(store, tmp_path / "out")
+    export_store(store, tmp_path / "out")
     with (tmp_path / "out" / "readings.csv").open(newline="", encoding="utf-8") as file:
         (row,) = csv.DictReader(file)
     assert (row["part"], row["value"], row["source"]) == ("7", "12.7", "typed")
     assert (tmp_path / "out" / "tool_lives.csv").read_text(encoding="utf-8").startswith("number,limit_parts,")
-    backup.backup(folder, tmp_path / "copy.db")
-    assert backup.problems(tmp_path / "copy.db") == ()
+    backup.back_up_store(folder, tmp_path / "copy.db")
+    assert backup.find_problems(tmp_path / "copy.db") == ()
 
 
 def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
     read(store, feature(store), 1, 12.7)
     store.close()
-    with store_connection.connect(folder / FILE_NAME, read_only=False) as connection:
+    with store_connection.connect_store(folder / STORE_FILE_NAME, read_only=False) as connection:
         connection.execute("PRAGMA foreign_keys = OFF")
         connection.execute("DELETE FROM part_features")
-    assert any("part_readings" in problem for problem in backup.problems(folder / FILE_NAME))
+    assert any("part_readings" in problem for problem in backup.find_problems(folder / STORE_FILE_NAME))
 
 
 def test_a_migration_that_is_put_in_between_is_refused(
@@ -227,7 +232,7 @@ def test_a_migration_that_is_put_in_between_is_refused(
         (tmp_path / name).write_text("SELECT 1;")
     monkeypatch.setattr(database, "_MIGRATIONS", tmp_path)
     with pytest.raises(RuntimeError, match=r"\[1, 3\]"):
-        database.migrations()
+        database.load_migrations()
 
 
 WRITER = """
@@ -260,10 +265,10 @@ def test_a_kill_loses_no_reading_that_was_acknowledged(folder: Path) -> None:
         process.kill()
         told += process.stdout.read().splitlines(keepends=True)
     last = int([line for line in told if line.endswith(b"\n")][-1])
-    assert backup.problems(folder / FILE_NAME) == ()
+    assert backup.find_problems(folder / STORE_FILE_NAME) == ()
     with Store.open(folder, read_only=True) as store:
         kept = readings(store, limit=10**6)
         assert len(kept) in (last, last + 1)
         assert [row.value for row in kept] == [10.0 + number for number in range(1, len(kept) + 1)]
         with store.read() as connection:
-            assert len(part_cycles.cycles(connection, None, 10**6)) >= last
+            assert len(part_cycles.read_cycles(connection, None, 10**6)) >= last

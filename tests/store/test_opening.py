@@ -13,12 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from core import file_placing
+from core import file_replacement
 from core.store import backup, database, store_connection
 from core.store.store import Store, StoreError
-from core.store.store_connection import WriterLock, in_use
-from core.store.store_errors import Cause
-from core.store.store_file import FILE_NAME
+from core.store.store_connection import WriterLock, is_open_for_writing
+from core.store.store_errors import StoreErrorCause
+from core.store.store_file import STORE_FILE_NAME
 from core.store.store_rows import ToolRow
 from tests.coded import raises_code
 
@@ -31,14 +31,14 @@ def digest(path: Path) -> str:
 def closed(folder: Path) -> Path:
     """A closed store with something in it; the path of its file."""
     with Store.open(folder) as store:
-        store.offsets.tools.change_row(1, "x", {"x": 1.0})
+        store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0})
         store.programs.save_version("big", b"G90 X1.2345\n" * 20000, "x").result()
-    return folder / FILE_NAME
+    return folder / STORE_FILE_NAME
 
 
 def test_what_is_stored_is_there_next_time(closed: Path) -> None:
     with Store.open(closed.parent) as store:
-        assert store.offsets.tools.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
 
 
 def test_file_says_whose_it_is_and_commits_reach_the_disk(closed: Path) -> None:
@@ -55,15 +55,15 @@ def test_file_says_whose_it_is_and_commits_reach_the_disk(closed: Path) -> None:
 
 
 def test_second_writer_is_refused_and_a_reader_is_not(store: Store, folder: Path) -> None:
-    store.offsets.tools.change_row(2, "x", {"x": 3.0}).result()
+    store.offsets.tool_offsets.change_row(2, "x", {"x": 3.0}).result()
     with raises_code(StoreError, "in-use", f"process {os.getpid()}"):
         Store.open(folder)
     with Store.open(folder, read_only=True) as reader:
-        assert reader.offsets.tools.read_rows() == {2: ToolRow(3.0, 0.0, 0.0)}
+        assert reader.offsets.tool_offsets.read_rows() == {2: ToolRow(3.0, 0.0, 0.0)}
         with raises_code(StoreError, "read-only"):
-            reader.offsets.tools.change_row(2, "x", {"x": 4.0})
-    store.offsets.tools.change_row(2, "x", {"x": 5.0}).result()
-    assert store.offsets.tools.read_rows()[2].x == 5.0
+            reader.offsets.tool_offsets.change_row(2, "x", {"x": 4.0})
+    store.offsets.tool_offsets.change_row(2, "x", {"x": 5.0}).result()
+    assert store.offsets.tool_offsets.read_rows()[2].x == 5.0
 
 
 def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
@@ -80,7 +80,7 @@ def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
 
 def test_reader_of_nothing_sees_an_empty_store_and_makes_no_file(folder: Path) -> None:
     with Store.open(folder, read_only=True) as reader:
-        assert reader.offsets.tools.read_rows() == {}
+        assert reader.offsets.tool_offsets.read_rows() == {}
         assert reader.programs.list_programs() == ()
     assert not folder.exists()
 
@@ -92,7 +92,7 @@ def test_refused_opening_gives_the_lock_back(closed: Path) -> None:
         Store.open(closed.parent)
     closed.write_bytes(good)
     with Store.open(closed.parent) as store:
-        assert store.offsets.tools.read_rows()
+        assert store.offsets.tool_offsets.read_rows()
 
 
 def _not_a_database(path: Path) -> None:
@@ -154,7 +154,7 @@ def test_reader_refuses_a_bad_file_too(closed: Path, spoil: Callable[[Path], Non
 
 
 def test_log_without_its_database_is_not_poured_into_a_new_one(closed: Path) -> None:
-    log, _ = store_connection.companions(closed)
+    log, _ = store_connection.get_log_and_index_paths(closed)
     closed.unlink()
     log.write_bytes(b"something")
     with raises_code(StoreError, "database-gone"):
@@ -166,16 +166,16 @@ def test_creation_that_was_cut_off_is_begun_again(folder: Path) -> None:
     folder.mkdir()
     (folder / "turndesk.db.new").write_bytes(b"half of a store")
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows() == {}
+        assert store.offsets.tool_offsets.read_rows() == {}
     assert not (folder / "turndesk.db.new").exists()
 
 
 def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
-    store.offsets.tools.change_row(1, "x", {"x": 1.0}).result()
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0}).result()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1").close()).result()  # as large as it is now
     with raises_code(StoreError, "disk-full"):
         store.programs.save_version("big", b"G90\n" * 100000, "x").result()
-    assert store.trouble == str(Cause.FULL.error(store.path, ""))
+    assert store.trouble == str(StoreErrorCause.FULL.make_error(store.path, ""))
     assert store.programs.list_programs() == ()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1000000").close()).result()
     assert store.programs.save_version("big", b"G90\n" * 100000, "x").result() == 1
@@ -184,13 +184,13 @@ def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
 def test_closed_store_refuses_questions(store: Store) -> None:
     store.close()
     with raises_code(StoreError, "closed"):
-        store.offsets.tools.read_rows()
+        store.offsets.tool_offsets.read_rows()
 
 
 def test_a_new_folder_is_on_the_disk_under_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A power cut took the folder, and the store in it, that had been acknowledged."""
     brought = list[Path]()
-    monkeypatch.setattr(file_placing, "folder_to_disk", brought.append)
+    monkeypatch.setattr(file_replacement, "sync_folder", brought.append)
     Store.open(tmp_path / "shop" / "home").close()
     assert {tmp_path, tmp_path / "shop", tmp_path / "shop" / "home"} <= set(brought)
 
@@ -202,12 +202,12 @@ def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
 
 
 def test_migration_is_whole_or_not_at_all() -> None:
-    first, *_ = scripts = (*database.migrations(), "CREATE TABLE extra (a); SELECT nonsense;")
-    connection = store_connection.configured(sqlite3.connect(":memory:", isolation_level=None))
+    first, *_ = scripts = (*database.load_migrations(), "CREATE TABLE extra (a); SELECT nonsense;")
+    connection = store_connection.configure_connection(sqlite3.connect(":memory:", isolation_level=None))
     with raises_code(StoreError, "migration-failed", f"version {len(scripts)}"):
         database.migrate(connection, scripts)
     assert first
-    assert store_connection.version_of(connection) == len(scripts) - 1
+    assert store_connection.read_store_version(connection) == len(scripts) - 1
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     assert "programs" in tables
     assert "extra" not in tables
@@ -215,12 +215,12 @@ def test_migration_is_whole_or_not_at_all() -> None:
 
 
 def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    newer = (*database.migrations(), "CREATE TABLE extra (a);")
-    monkeypatch.setattr(database, "migrations", lambda: newer)
+    newer = (*database.load_migrations(), "CREATE TABLE extra (a);")
+    monkeypatch.setattr(database, "load_migrations", lambda: newer)
     with raises_code(StoreError, "older-version"):
         Store.open(closed.parent, read_only=True)
     with Store.open(closed.parent) as store:
-        assert store.offsets.tools.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
     assert database.check_file(closed, thorough=True) == len(newer)
     kept = closed.with_name(f"turndesk-version-{len(newer) - 1}.db")
     assert database.check_file(kept, thorough=True) == len(newer) - 1
@@ -242,13 +242,13 @@ def test_a_folder_that_this_user_may_not_look_into_is_told(closed: Path) -> None
     """Not a traceback, and not that there is no store."""
     folder = closed.parent
     folder.chmod(0o700)
-    backup.all_problems(closed)  # whatever is imported late is there
+    backup.find_all_problems(closed)  # whatever is imported late is there
     tried: list[tuple[Callable[[], object], str]] = [
         (lambda: Store.open(folder, read_only=True), "forbidden"),
         (lambda: Store.open(folder), "cannot-make-folder"),
-        (lambda: backup.all_problems(closed), "forbidden"),
-        (lambda: backup.backup(folder, folder / "b.db"), "cannot-write"),
-        (lambda: backup.restore(folder, folder / "b.db"), "forbidden"),
+        (lambda: backup.find_all_problems(closed), "forbidden"),
+        (lambda: backup.back_up_store(folder, folder / "b.db"), "cannot-write"),
+        (lambda: backup.restore_store(folder, folder / "b.db"), "forbidden"),
     ]
     with as_nobody():
         for attempt, code in tried:
@@ -281,18 +281,18 @@ def test_an_open_store_keeps_sqlites_locks_whatever_else_the_desk_does(
     folder: Path, tmp_path: Path, look: str
 ) -> None:
     """Without them the next other program that opens the store takes its log, and all that is saved later."""
-    path = folder / FILE_NAME
+    path = folder / STORE_FILE_NAME
     with Store.open(folder) as store:
         store.settings.save_setting("language", "es").result()
         assert locks_held(path) == 2
         if look == "backup":
-            backup.backup(folder, tmp_path / "b.db")
+            backup.back_up_store(folder, tmp_path / "b.db")
         elif look == "verify":
-            assert backup.problems(path) == ()
+            assert backup.find_problems(path) == ()
         elif look == "read":
             Store.open(folder, read_only=True).close()
         else:
-            assert in_use(folder)
+            assert is_open_for_writing(folder)
         assert locks_held(path) == 2
 
 
@@ -302,10 +302,10 @@ def test_another_program_that_reads_an_open_store_leaves_its_log(folder: Path, t
     look = "import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute('SELECT * FROM runs'); c.close()"
     with Store.open(folder) as store:
         store.settings.save_setting("language", "es").result()
-        backup.backup(folder, tmp_path / "b.db")
-        log = (folder / f"{FILE_NAME}-wal").stat().st_ino
-        subprocess.run([sys.executable, "-c", look, str(folder / FILE_NAME)], check=True)
-        assert (folder / f"{FILE_NAME}-wal").stat().st_ino == log
+        backup.back_up_store(folder, tmp_path / "b.db")
+        log = (folder / f"{STORE_FILE_NAME}-wal").stat().st_ino
+        subprocess.run([sys.executable, "-c", look, str(folder / STORE_FILE_NAME)], check=True)
+        assert (folder / f"{STORE_FILE_NAME}-wal").stat().st_ino == log
 
 
 def test_who_asks_for_the_owner_keeps_no_writer_from_its_lock(
@@ -324,16 +324,16 @@ def test_who_asks_for_the_owner_keeps_no_writer_from_its_lock(
         close(file)
 
     monkeypatch.setattr(os, "close", closing_)
-    assert not in_use(tmp_path)
+    assert not is_open_for_writing(tmp_path)
     assert took == [True]
 
 
 def test_a_store_with_a_writer_is_in_use_and_one_without_is_not(tmp_path: Path) -> None:
-    assert not in_use(tmp_path)
+    assert not is_open_for_writing(tmp_path)
     lock = WriterLock(tmp_path)
-    assert in_use(tmp_path)
+    assert is_open_for_writing(tmp_path)
     lock.close()
-    assert not in_use(tmp_path)
+    assert not is_open_for_writing(tmp_path)
 
 
 def test_a_writer_tries_again_for_a_lock_that_is_taken_for_an_instant(tmp_path: Path) -> None:

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.desk.background_work import Latest
-from app.editor.document import Document, Drafts
-from app.editor.versions import NoArchive
-from app.programs.whole_file import FileError, write_new, write_out, write_whole
-from app.shopfloor.status_file import StatusFile
-from core.file_placing import write_in_place
-from core.records.record import Channel, Record
+from app.desk.background_work import LatestRequestWorker
+from app.editor.edited_document import Document, DraftStore
+from app.editor.version_history import NullArchive
+from app.programs.atomic_files import FileOperationError, copy_to_medium, write_new_file, write_program_file
+from app.shopfloor.status_file import StatusFileWriter
+from core.file_replacement import write_atomically
+from core.records.record import Channel, ScopeRecord
 from core.records.record_file import open_record, save_csv, save_record
 from core.store import store_export
 from core.store.store import Store
@@ -26,30 +26,30 @@ OLD, NEW = b"G90\nG01 X.5 F6\n", b"G90\nG01 X.25 F6\nM30\n"
 Write = Callable[[Path, bytes], object]
 
 
-class _Busy(Latest):
+class _Busy(LatestRequestWorker):
     """A worker that never comes round: what is left is written at the end."""
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         return True
 
 
 def _draft(path: Path, data: bytes) -> None:
-    drafts = Drafts(path.parent, NoArchive(), worker=_Busy("editing-drafts"))
-    drafts.look(Document(path.parent / path.stem, ""), data.decode())
+    drafts = DraftStore(path.parent, NullArchive(), worker=_Busy("editing-drafts"))
+    drafts.set_text(Document(path.parent / path.stem, ""), data.decode())
     drafts.close()
 
 
 def _status(path: Path, data: bytes) -> None:
-    StatusFile(path, lambda: "12:00").show({"execution": data.decode()})
+    StatusFileWriter(path, lambda: "12:00").write_status({"execution": data.decode()})
 
 
 WRITERS: dict[str, Write] = {
-    "any": write_in_place,
+    "any": write_atomically,
     "draft": _draft,
     "status": _status,
-    "saved program": write_whole,
-    "setup sheet": write_out,
+    "saved program": write_program_file,
+    "setup sheet": copy_to_medium,
 }
 
 
@@ -87,7 +87,10 @@ def test_a_disk_that_ends_at_any_byte_leaves_the_old_one(tmp_path: Path, writer:
     write(path, OLD)
     before = path.read_bytes()
     for size in range(len(NEW)):
-        with no_longer_than(size), suppress(OSError, FileError):  # a draft, the status tell it elsewhere
+        with (
+            no_longer_than(size),
+            suppress(OSError, FileOperationError),
+        ):  # a draft, the status tell it elsewhere
             write(path, NEW)
         assert path.read_bytes() == before
         assert [each.name for each in tmp_path.iterdir()] == [path.name]
@@ -96,13 +99,13 @@ def test_a_disk_that_ends_at_any_byte_leaves_the_old_one(tmp_path: Path, writer:
 def test_what_an_earlier_cut_has_left_is_written_over(tmp_path: Path) -> None:
     path = tmp_path / "status.json"
     path.with_name(".status.json.new").write_bytes(b"{half")
-    write_in_place(path, NEW)
+    write_atomically(path, NEW)
     assert {each.name: each.read_bytes() for each in tmp_path.iterdir()} == {"status.json": NEW}
 
 
 def test_a_folder_that_is_made_for_a_file_is_on_the_disk_too(tmp_path: Path) -> None:
     with mains() as at:
-        write_in_place(tmp_path / "home" / "drafts" / "a.draft", NEW)
+        write_atomically(tmp_path / "home" / "drafts" / "a.draft", NEW)
     assert at.lost == []
     assert at.steps == ["fsync", "fsync", "fsync", "rename", "fsync"]  # two folders, the bytes, the name
 
@@ -112,7 +115,7 @@ def test_a_new_program_is_there_whole_or_not(tmp_path: Path) -> None:
 
     def again() -> None:
         path.unlink(missing_ok=True)
-        write_new(path, NEW)
+        write_new_file(path, NEW)
 
     told = cut_everywhere(again, lambda: path.read_bytes() if path.exists() else None)
     assert set(told) == {None, NEW}
@@ -120,8 +123,8 @@ def test_a_new_program_is_there_whole_or_not(tmp_path: Path) -> None:
 
 
 def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
-    def record(at: float) -> Record:
-        return Record((Channel("X", "mm"),), np.arange(3.0), {"X": np.full(3, at)}, at, 1000.0)
+    def record(at: float) -> ScopeRecord:
+        return ScopeRecord((Channel("X", "mm"),), np.arange(3.0), {"X": np.full(3, at)}, at, 1000.0)
 
     for path, save in ((tmp_path / "a.scope", save_record), (tmp_path / "a.csv", save_csv)):
         save(record(2.0), path)
@@ -134,7 +137,7 @@ def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
             save(record(2.0), path)
 
         assert set(cut_everywhere(again, path.read_bytes)) == {old, new}
-    assert open_record(tmp_path / "a.scope").started == 2.0
+    assert open_record(tmp_path / "a.scope").start_time_utc_s == 2.0
 
 
 def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> None:
@@ -143,7 +146,7 @@ def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> No
 
     def again() -> None:
         folder.exists() and folder.rename(tmp_path / f"before {next(number)}")
-        store_export.export(store, folder)
+        store_export.export_store(store, folder)
 
     def seen() -> object:
         return sorted(each.name for each in folder.rglob("*")) if folder.exists() else None

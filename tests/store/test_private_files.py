@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from core.file_placing import restrict, restrict_folder
+from core.file_replacement import restrict_access, restrict_folder_access
 from core.store import backup
 from core.store.store import Store
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps its own rights")
 
@@ -36,9 +36,9 @@ def modes(folder: Path) -> dict[str, int]:
 def test_a_new_folder_is_its_owners(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder) as store:
         store.settings.save_setting("a", 1).result()
-        assert {f"{FILE_NAME}-wal", f"{FILE_NAME}-shm", "turndesk.lock"} < set(modes(folder))
+        assert {f"{STORE_FILE_NAME}-wal", f"{STORE_FILE_NAME}-shm", "turndesk.lock"} < set(modes(folder))
         assert set(modes(folder).values()) == {0o600}
-        backup.backup(folder, tmp_path / "b.db")
+        backup.back_up_store(folder, tmp_path / "b.db")
     assert (mode(folder), mode(tmp_path / "b.db")) == (0o700, 0o600)
 
 
@@ -50,7 +50,7 @@ def test_a_folder_that_others_could_read_is_tightened_when_it_is_opened(folder: 
         (folder / name / "old").touch()
     (folder / "turndesk-version-3.db").touch()
     folder.chmod(0o755)
-    (folder / FILE_NAME).chmod(0o644)
+    (folder / STORE_FILE_NAME).chmod(0o644)
     with Store.open(folder):
         assert {mode(path) for path in (folder, folder / "logs", folder / "backups")} == {0o700}
         assert {mode(path) for path in folder.rglob("*") if path.is_file()} == {0o600}
@@ -59,21 +59,21 @@ def test_a_folder_that_others_could_read_is_tightened_when_it_is_opened(folder: 
 def test_what_a_restore_keeps_is_the_owners_too(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder):
         pass
-    backup.backup(folder, tmp_path / "b.db")
+    backup.back_up_store(folder, tmp_path / "b.db")
     folder.chmod(0o755)
-    (folder / FILE_NAME).chmod(0o644)
-    kept = backup.restore(folder, tmp_path / "b.db")
+    (folder / STORE_FILE_NAME).chmod(0o644)
+    kept = backup.restore_store(folder, tmp_path / "b.db")
     assert kept is not None
-    assert (mode(kept), mode(folder / FILE_NAME), mode(folder)) == (0o600, 0o600, 0o700)
+    assert (mode(kept), mode(folder / STORE_FILE_NAME), mode(folder)) == (0o600, 0o600, 0o700)
 
 
 def test_a_folder_of_all_users_and_what_is_not_there_stay(tmp_path: Path) -> None:
     shared = tmp_path / "shared"
     shared.mkdir()
     shared.chmod(0o1777)
-    restrict(shared)
-    restrict(tmp_path / "nowhere")
-    restrict_folder(tmp_path / "nowhere")
+    restrict_access(shared)
+    restrict_access(tmp_path / "nowhere")
+    restrict_folder_access(tmp_path / "nowhere")
     assert mode(shared) == 0o1777
 
 
@@ -82,5 +82,5 @@ def test_what_a_link_leads_to_stays_as_it_is(tmp_path: Path) -> None:
     folder = tmp_path / "home"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path / "elsewhere")
-    restrict_folder(folder)
+    restrict_folder_access(folder)
     assert mode(tmp_path / "elsewhere") == 0o644

@@ -9,7 +9,7 @@ import pytest
 
 from app.compose.runs.journal import Journal
 from app.desk.programs.program_folder import ProgramFolders
-from app.programs.program_rows import Program, list_programs
+from app.programs.program_rows import ListedFile, list_programs
 from core.language.source import load_source
 from core.store import program_records
 from core.store.production import job_queue, run_records
@@ -27,13 +27,13 @@ def made(journal: Journal, path: Path, parts: int, seconds: float) -> None:
     """Load, prove and run it."""
     load(journal, path)
     journal.runs.record_proof(path.name, "PROVED", seconds, load_source(path).text)
-    store = journal.opened()
+    store = journal.require_store()
     for _ in range(parts):
         store.runs.add_parts(path.name)
         store.runs.record_cycle(path.name, seconds).result(60)
 
 
-def listed(journal: Journal, folder: Path) -> dict[str, Program]:
+def listed(journal: Journal, folder: Path) -> dict[str, ListedFile]:
     found = list_programs(ProgramFolders((folder,)), folder, journal)
     return {program.name: program for program in found}
 
@@ -49,17 +49,17 @@ def test_another_text_under_the_same_name_has_no_proof_count_or_time(own: Path, 
     journal, path = Journal(tmp_path / "store"), own / "pin.nc"
     path.write_text(GOOD)
     made(journal, path, 3, 12.5)
-    run = listed(journal, own)["pin.nc"].run
+    run = listed(journal, own)["pin.nc"].run_row
     assert (run.proof, run.parts, run.best) == ("PROVED", 3, 12.5)
     path.write_text(BAD)
-    run = listed(journal, own)["pin.nc"].run
+    run = listed(journal, own)["pin.nc"].run_row
     assert (run.proof, run.parts, run.best, run.started) == ("", 0, None, None)
-    assert journal.runs.count_parts("pin.nc") == 3  # of the text that is still loaded
+    assert journal.runs.read_part_count("pin.nc") == 3  # of the text that is still loaded
     load(journal, path)
-    assert journal.runs.count_parts("pin.nc") == 0
+    assert journal.runs.read_part_count("pin.nc") == 0
     path.write_text(GOOD)  # the first text again
     load(journal, path)
-    assert journal.runs.count_parts("pin.nc") == 3
+    assert journal.runs.read_part_count("pin.nc") == 3
     journal.close()
 
 
@@ -69,12 +69,12 @@ def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> 
     made(journal, path, 2, 9.0)
     (own / "copy.nc").write_text(GOOD)
     path.rename(own / "bolt.nc")
-    journal.renamed("pin.nc", "bolt.nc")
+    journal.move_program_data("pin.nc", "bolt.nc")
     for program in listed(journal, own).values():
-        assert (program.run.proof, program.run.parts, program.run.best) == ("PROVED", 2, 9.0)
-    assert journal.runs.count_parts("bolt.nc") == 2
+        assert (program.run_row.proof, program.run_row.parts, program.run_row.best) == ("PROVED", 2, 9.0)
+    assert journal.runs.read_part_count("bolt.nc") == 2
     load(journal, own / "copy.nc")
-    assert journal.runs.count_parts("copy.nc") == 2
+    assert journal.runs.read_part_count("copy.nc") == 2
     journal.close()
 
 
@@ -83,24 +83,24 @@ def test_a_proof_of_another_text_is_not_that_of_the_loaded_one(own: Path, tmp_pa
     path.write_text(GOOD)
     made(journal, path, 1, 9.0)
     journal.runs.record_proof("pin.nc", "1 ERRORS: Q", None, BAD)
-    journal.opened().settings.save_setting("done", 1).result(60)
-    assert listed(journal, own)["pin.nc"].run.proof == "PROVED"
+    journal.require_store().settings.save_setting("done", 1).result(60)
+    assert listed(journal, own)["pin.nc"].run_row.proof == "PROVED"
     path.write_text(BAD)
-    assert listed(journal, own)["pin.nc"].run.proof == "1 ERRORS: Q"
+    assert listed(journal, own)["pin.nc"].run_row.proof == "1 ERRORS: Q"
     journal.close()
 
 
 def test_a_job_retains_its_parts_when_the_text_is_edited(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.programs.keep_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
-        job = store.write(lambda c: job_queue.add(c, "pin.nc", 10)).result(60)
-        store.write(lambda c: job_queue.begin(c, job)).result(60)
+        store.programs.save_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        job = store.write(lambda c: job_queue.add_job(c, "pin.nc", 10)).result(60)
+        store.write(lambda c: job_queue.activate_job(c, job)).result(60)
         store.runs.add_parts("pin.nc", 4).result(60)
-        store.programs.keep_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
-        assert store.runs.count_parts("pin.nc") == 0
+        store.programs.save_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
+        assert store.runs.read_part_count("pin.nc") == 0
         store.runs.add_parts("pin.nc").result(60)
         (row,) = store.jobs.read_jobs()
-        assert (row.made, row.target) == (5, 6)
+        assert (row.parts_made, row.target_part_count) == (5, 6)
 
 
 def test_records_stored_by_name_go_to_the_text_that_was_proved(
@@ -120,8 +120,8 @@ def test_records_stored_by_name_go_to_the_text_that_was_proved(
         store.runs.record_proof("pin.nc", "PROVED", 9.0).result(60)
         assert [row.program for row in store.runs.read_records()] == ["pin.nc"]
         store.programs.save_version("pin.nc", BAD.encode(), "saved in the editor").result(60)
-        store.programs.keep_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
-        assert store.runs.count_parts("pin.nc") == 0
-        store.programs.keep_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        store.programs.save_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
+        assert store.runs.read_part_count("pin.nc") == 0
+        store.programs.save_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
         (row,) = store.runs.read_records()
         assert (row.program, row.parts, row.proof) == ("pin.nc", 1, "PROVED")

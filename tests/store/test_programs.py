@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.store.offsets.offset_tables import Reason
+from core.store.offsets.offset_tables import ChangeReason
 from core.store.store import Store, StoreError
-from core.store.store_export import import_all
+from core.store.store_export import import_programs_and_offsets
 from core.store.store_rows import EventRow
 from tests.coded import raises_code
 
@@ -66,13 +66,17 @@ def test_parts_are_counted_by_program(store: Store) -> None:
     store.runs.add_parts("a")
     store.runs.add_parts("a")
     store.runs.add_parts("b").result()
-    assert (store.runs.count_parts("a"), store.runs.count_parts("b"), store.runs.count_parts("c")) == (
+    assert (
+        store.runs.read_part_count("a"),
+        store.runs.read_part_count("b"),
+        store.runs.read_part_count("c"),
+    ) == (
         2,
         1,
         0,
     )
     store.runs.reset_parts("a").result()
-    assert (store.runs.count_parts("a"), store.runs.count_parts("b")) == (0, 1)
+    assert (store.runs.read_part_count("a"), store.runs.read_part_count("b")) == (0, 1)
 
 
 def test_events_newest_first_and_searched(store: Store) -> None:
@@ -116,7 +120,9 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
 def test_half_of_an_import_is_none_of_it(store: Store) -> None:
     with raises_code(StoreError, "invalid-name"):
         store.write(
-            lambda c: import_all(c, {"good": b"1", "bad/name": b"2"}, {}, Reason("import", "import"))
+            lambda c: import_programs_and_offsets(
+                c, {"good": b"1", "bad/name": b"2"}, {}, ChangeReason("import", "import")
+            )
         ).result()
     assert store.programs.list_programs() == ()
 
@@ -129,10 +135,10 @@ def test_closed_store_refuses_writes(store: Store) -> None:
 
 def test_a_count_is_corrected_by_hand_and_never_below_nought(store: Store) -> None:
     store.runs.add_parts("a", 2).result()
-    assert store.runs.count_parts("a") == 2
+    assert store.runs.read_part_count("a") == 2
     store.runs.add_parts("a")
     store.runs.add_parts("a", -1).result()
-    assert store.runs.count_parts("a") == 2
+    assert store.runs.read_part_count("a") == 2
     store.runs.add_parts("a", -5).result()
-    assert store.runs.count_parts("a") == 0
-    assert store.runs.count_parts("b") == 0
+    assert store.runs.read_part_count("a") == 0
+    assert store.runs.read_part_count("b") == 0

@@ -24,21 +24,21 @@ each_release = pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem
 def test_a_released_store_upgrades_without_a_loss(file: Path, folder: Path) -> None:
     restore(file.read_text(encoding="utf-8"), folder)
     with Store.open(folder) as store:
-        row = store.offsets.tools.read_rows()[1]
+        row = store.offsets.tool_offsets.read_rows()[1]
         assert (row.x, row.z, row.wear_x) == (1.25, -0.5, -0.004)
         assert [change.why for change in store.offsets.read_history()] == ["wear", "first"]
         assert store.programs.load_version("peg.nc") == b"G90\nX1.25\nM30\n"
-        assert store.runs.count_parts("peg.nc") == 1
+        assert store.runs.read_part_count("peg.nc") == 1
         assert [event.text for event in store.events.read_events(kinds=("start",))] == ["peg.nc"]
         assert store.settings.read_setting("theme") == "dark"
-        assert [person.name for person in store.people.read_people().rows] == ["ANNA"]
+        assert [person.name for person in store.people.read_users().rows] == ["ANNA"]
         assert store.find_damaged_rows() == ()
-    assert database.check_file(folder / "turndesk.db", thorough=True) == len(database.migrations())
+    assert database.check_file(folder / "turndesk.db", thorough=True) == len(database.load_migrations())
 
 
 @each_release
 def test_a_released_store_that_a_newer_version_has_upgraded_is_refused(file: Path, folder: Path) -> None:
-    newer = len(database.migrations()) + 1
+    newer = len(database.load_migrations()) + 1
     text = re.sub(
         r"PRAGMA user_version = \d+;", f"PRAGMA user_version = {newer};", file.read_text(encoding="utf-8")
     )
@@ -56,8 +56,8 @@ def test_a_changed_value_in_a_released_store_is_repaired(file: Path, folder: Pat
     assert spoilt != text
     restore(spoilt, folder)
     with Store.open(folder) as store:
-        assert len(store.repaired) == 1
-        assert store.offsets.tools.read_rows()[1].x == 1.25  # from the history
+        assert len(store.repair_messages) == 1
+        assert store.offsets.tool_offsets.read_rows()[1].x == 1.25  # from the history
 
 
 @each_release

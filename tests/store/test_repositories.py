@@ -7,20 +7,20 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.persistence import NoRunRecords, Persistence
-from core.store.offsets.touch_off import Touch
-from core.store.people import PersonRow
+from app.desk.persistence import NullRunRecords, Persistence
+from core.store.offsets.touch_off import TouchPosition
 from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_rows import Kind, Value
+from core.store.store_rows import FieldValue, OffsetKind
+from core.store.user_records import UserRow
 from tests.coded import raises_code
 
 AT = "2026-01-01T00:00:00.000Z"
-ANNA = PersonRow("ANNA", 3, b"salt", b"hash")
+ANNA = UserRow("ANNA", 3, b"salt", b"hash")
 WRITES: dict[str, Callable[[Store], object]] = {
-    "offsets": lambda store: store.offsets.tools.change_row(1, "set", {"x": 1.0}),
-    "touch": lambda store: store.offsets.tools.touch_off(1, Touch(1.0, 1.0), "touch"),
+    "offsets": lambda store: store.offsets.tool_offsets.change_row(1, "set", {"x": 1.0}),
+    "touch": lambda store: store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(1.0, 1.0), "touch"),
     "undo": lambda store: store.offsets.undo_last_step(),
     "programs": lambda store: store.programs.save_version("a.nc", b"M30", "saved"),
     "runs": lambda store: store.runs.record_start("a.nc"),
@@ -30,7 +30,7 @@ WRITES: dict[str, Callable[[Store], object]] = {
     "jobs": lambda store: store.jobs.add_job("a.nc", 3),
     "events": lambda store: store.events.log_event("start", "a.nc"),
     "settings": lambda store: store.settings.save_setting("theme", "dark"),
-    "people": lambda store: store.people.save_person(ANNA),
+    "people": lambda store: store.people.save_user(ANNA),
 }
 
 
@@ -49,17 +49,20 @@ def test_no_repository_of_a_closed_store_writes(store: Store, write: Callable[[S
         write(store)
 
 
-@pytest.mark.parametrize("kind", Kind)
-def test_each_table_changes_only_its_own_rows(store: Store, kind: Kind) -> None:
-    number = 54 if kind is Kind.ZERO else 2
-    fields: dict[Kind, dict[str, Value]] = {Kind.SHAPE: {"kind": "drill"}, Kind.MILL_TOOL: {"length": 5.0}}
-    store.offsets.table(kind).change_row(number, "set", fields.get(kind, {"x": 5.0})).result()
-    rows = {each: store.offsets.table(each).read_rows() for each in Kind}
-    assert [each for each in Kind if rows[each]] == [kind]
+@pytest.mark.parametrize("kind", OffsetKind)
+def test_each_table_changes_only_its_own_rows(store: Store, kind: OffsetKind) -> None:
+    number = 54 if kind is OffsetKind.ZERO else 2
+    fields: dict[OffsetKind, dict[str, FieldValue]] = {
+        OffsetKind.SHAPE: {"kind": "drill"},
+        OffsetKind.MILL_TOOL: {"length": 5.0},
+    }
+    store.offsets.get_table(kind).change_row(number, "set", fields.get(kind, {"x": 5.0})).result()
+    rows = {each: store.offsets.get_table(each).read_rows() for each in OffsetKind}
+    assert [each for each in OffsetKind if rows[each]] == [kind]
     assert list(rows[kind]) == [number]
     assert [change.kind for change in store.offsets.read_history()] == [kind]
-    assert store.offsets.table(kind).remove_row(number, "sold").result() is True
-    assert store.offsets.table(kind).read_rows() == {}
+    assert store.offsets.get_table(kind).remove_row(number, "sold").result() is True
+    assert store.offsets.get_table(kind).read_rows() == {}
 
 
 def test_jobs_move_to_their_place_and_an_unknown_one_is_refused(store: Store) -> None:
@@ -71,34 +74,34 @@ def test_jobs_move_to_their_place_and_an_unknown_one_is_refused(store: Store) ->
         store.jobs.remove_job(second).result()
     with raises_code(StoreError, "part-count"):
         store.jobs.add_job("a.nc", 0).result()
-    assert store.jobs.clear_jobs(everything=True).result() == 1
+    assert store.jobs.clear_jobs(remove_all=True).result() == 1
 
 
 def test_the_last_user_of_service_level_is_not_removed(store: Store) -> None:
-    store.people.save_person(ANNA).result()
-    store.people.save_person(PersonRow("BEN", 1, b"salt", b"hash")).result()
+    store.people.save_user(ANNA).result()
+    store.people.save_user(UserRow("BEN", 1, b"salt", b"hash")).result()
     with raises_code(StoreError, "last-service-person"):
-        store.people.remove_person("ANNA").result()
+        store.people.remove_user("ANNA").result()
     with raises_code(StoreError, "unknown-person"):
-        store.people.remove_person("CARL").result()
-    assert [row.name for row in store.people.read_people().rows] == ["ANNA", "BEN"]
-    assert store.people.remove_all_people().result() == 2
+        store.people.remove_user("CARL").result()
+    assert [row.name for row in store.people.read_users().rows] == ["ANNA", "BEN"]
+    assert store.people.remove_all_users().result() == 2
 
 
 def test_a_rename_transfers_the_text_that_is_loaded(store: Store) -> None:
-    store.programs.keep_loaded_version("a.nc", b"M30", "loaded to run").result()
+    store.programs.save_loaded_version("a.nc", b"M30", "loaded to run").result()
     store.programs.rename_program("a.nc", "b.nc").result()
     store.runs.add_parts("b.nc", 2).result()
-    assert (store.runs.count_parts("a.nc"), store.runs.count_parts("b.nc")) == (0, 2)
+    assert (store.runs.read_part_count("a.nc"), store.runs.read_part_count("b.nc")) == (0, 2)
     assert len(store.runs.read_records_by_text()) == 1
 
 
 def test_without_a_store_records_are_dropped_and_changes_refused() -> None:
     nothing = Persistence()
     nothing.runs.add_parts("a.nc", 3)
-    assert (nothing.runs.count_parts("a.nc"), nothing.runs.read_records_by_text()) == (0, {})
+    assert (nothing.runs.read_part_count("a.nc"), nothing.runs.read_records_by_text()) == (0, {})
     with raises_code(StoreError, "nothing-stored"):
-        nothing.opened()
+        nothing.require_store()
     with pytest.raises(StoreError) as refused:
-        NoRunRecords("the disk is full").read_records_by_text()
+        NullRunRecords("the disk is full").read_records_by_text()
     assert str(refused.value) == "the disk is full"

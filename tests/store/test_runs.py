@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.kept_part import KeptPart, kept_part
+from app.desk.stored_part import StoredPart, load_stored_part
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_export import export
-from core.store.store_file import stock_key
+from core.store.store_export import export_store
+from core.store.store_file import make_stock_setting_key
 from tests.coded import raises_code
 
 
@@ -53,7 +53,7 @@ def test_everything_goes_with_another_name(store: Store) -> None:
     store.runs.record_cycle("old.nc", 10.0)
     store.programs.rename_program("old.nc", "new.nc").result(60)
     assert [row.program for row in store.runs.read_records()] == ["new.nc"]
-    assert store.runs.count_parts("new.nc") == 1
+    assert store.runs.read_part_count("new.nc") == 1
     assert store.programs.load_version("new.nc") == b"M30"
     assert store.programs.list_versions("old.nc") == ()
 
@@ -71,7 +71,7 @@ def test_a_name_that_is_none_is_refused_and_nothing_is_changed(store: Store, nam
     store.runs.add_parts("pin.nc").result(60)
     with raises_code(StoreError, "invalid-name"):
         store.programs.rename_program("pin.nc", name).result(60)
-    assert store.runs.count_parts("pin.nc") == 1
+    assert store.runs.read_part_count("pin.nc") == 1
 
 
 def test_events_of_some_kinds(store: Store) -> None:
@@ -89,7 +89,7 @@ def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> N
     store.runs.record_end("pin.nc", 'ALARM 102, "X"')
     store.runs.add_parts("pin.nc")
     store.runs.record_proof("ring.nc", "2 ERRORS: line 4", None).result(60)
-    export(store, tmp_path / "out")
+    export_store(store, tmp_path / "out")
     with (tmp_path / "out" / "runs.csv").open(newline="", encoding="utf-8") as file:
         pin, ring = csv.DictReader(file)
     assert (pin["program"], pin["parts"], pin["cycles"], pin["best_s"], pin["latest_s"]) == (
@@ -105,36 +105,36 @@ def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> N
 
 
 def test_an_export_without_runs_has_the_head_alone(store: Store, tmp_path: Path) -> None:
-    export(store, tmp_path / "out")
+    export_store(store, tmp_path / "out")
     told = (tmp_path / "out" / "runs.csv").read_text(encoding="utf-8").splitlines()
     assert told == ["program,parts,started,outcome,cycles,best_s,latest_s,proved,proof,planned_s"]
 
 
 def test_the_stock_of_a_program_is_kept_renamed_and_forgotten(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        assert store.settings.read_setting(stock_key("PIN")) is None
-        store.settings.save_setting(stock_key("PIN"), "bar:.5").result()
-        store.settings.save_setting(stock_key("KNOB"), "bar:30mm").result()
+        assert store.settings.read_setting(make_stock_setting_key("PIN")) is None
+        store.settings.save_setting(make_stock_setting_key("PIN"), "bar:.5").result()
+        store.settings.save_setting(make_stock_setting_key("KNOB"), "bar:30mm").result()
         store.programs.rename_program("PIN", "KNOB").result()
         assert (
-            store.settings.read_setting(stock_key("PIN")),
-            store.settings.read_setting(stock_key("KNOB")),
+            store.settings.read_setting(make_stock_setting_key("PIN")),
+            store.settings.read_setting(make_stock_setting_key("KNOB")),
         ) == (None, "bar:.5")
-        store.settings.save_setting(stock_key("KNOB"), None).result()
+        store.settings.save_setting(make_stock_setting_key("KNOB"), None).result()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.settings.read_setting(stock_key("KNOB")) is None
+        assert store.settings.read_setting(make_stock_setting_key("KNOB")) is None
         with raises_code(StoreError, "read-only"):
-            store.settings.save_setting(stock_key("KNOB"), "bar:1")
+            store.settings.save_setting(make_stock_setting_key("KNOB"), "bar:1")
 
 
 def test_what_is_kept_of_a_part_goes_with_its_program(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        said = KeptPart("bar:1", 20.0, {"cuts-air": "it waits there"})
-        for key, value in said.settings("PIN").items():
+        said = StoredPart("bar:1", 20.0, {"cuts-air": "it waits there"})
+        for key, value in said.make_settings("PIN").items():
             store.settings.save_setting(key, value).result()
         store.programs.rename_program("PIN", "KNOB").result()
-        assert kept_part(store.settings.read_setting, "PIN") == KeptPart()
-        assert kept_part(store.settings.read_setting, "KNOB") == said
+        assert load_stored_part(store.settings.read_setting, "PIN") == StoredPart()
+        assert load_stored_part(store.settings.read_setting, "KNOB") == said
 
 
 def test_what_nobody_could_have_kept_of_a_part_counts_as_not_there() -> None:
@@ -142,4 +142,4 @@ def test_what_nobody_could_have_kept_of_a_part_counts_as_not_there() -> None:
         "stock:PIN": 3,
         "part:PIN": {"stick_out": True, "silenced": "all"},
     }
-    assert kept_part(kept.get, "PIN") == KeptPart()
+    assert load_stored_part(kept.get, "PIN") == StoredPart()

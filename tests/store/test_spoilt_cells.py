@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from core.store import backup
-from core.store.damaged_rows import named
+from core.store.damaged_rows import make_row_label
 from core.store.store import Store, StoreError
-from core.store.store_export import export
-from core.store.store_file import FILE_NAME
+from core.store.store_export import export_store
+from core.store.store_file import STORE_FILE_NAME
 from core.store.store_rows import ToolRow
 from tests.coded import raises_code
 
@@ -21,15 +21,15 @@ from tests.coded import raises_code
 def kept(folder: Path) -> Path:
     """T1 with two changes, and a program."""
     with Store.open(folder) as store:
-        store.offsets.tools.change_row(1, "touched", {"x": 1.0}).result()
-        store.offsets.tools.change_row(1, "worn", {"x": 2.0}).result()
+        store.offsets.tool_offsets.change_row(1, "touched", {"x": 1.0}).result()
+        store.offsets.tool_offsets.change_row(1, "worn", {"x": 2.0}).result()
         store.programs.save_version("pin.nc", b"G90\nM30\n", "written").result()
         store.runs.add_parts("pin.nc").result()
     return folder
 
 
 def spoil(folder: Path, statement: str, *values: object) -> None:
-    with closing(sqlite3.connect(folder / FILE_NAME)) as connection:
+    with closing(sqlite3.connect(folder / STORE_FILE_NAME)) as connection:
         connection.execute(statement, values)
         connection.commit()
 
@@ -41,24 +41,24 @@ def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
     spoil(kept, "UPDATE offset_changes SET old_x = ? WHERE id = 2", value)
     with Store.open(kept) as store:
         with raises_code(StoreError, "damaged-history", "entry 2"):
-            store.offsets.tools.read_history()
+            store.offsets.tool_offsets.read_history()
         with raises_code(StoreError, "damaged-history", "entry 2"):
             store.offsets.undo_last_step().result()
-        assert store.offsets.tools.read_rows() == {1: ToolRow(x=2.0)}
-        store.offsets.tools.change_row(1, "worn", {"x": 3.0}).result()  # the table itself is whole
-        assert store.offsets.tools.read_rows() == {1: ToolRow(x=3.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=2.0)}
+        store.offsets.tool_offsets.change_row(1, "worn", {"x": 3.0}).result()  # the table itself is whole
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=3.0)}
 
 
 def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET text = ?", "G90\nM30\n")
-    [problem] = backup.problems(kept / FILE_NAME)
+    [problem] = backup.find_problems(kept / STORE_FILE_NAME)
     assert problem.startswith("'pin.nc' version 1 ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version 1"):
         store.programs.load_version("pin.nc")
 
 
 def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path) -> None:
-    path = kept / FILE_NAME
+    path = kept / STORE_FILE_NAME
     content = path.read_bytes()
     at = content.index(b"CREATE INDEX") if b"CREATE INDEX" in content else -1
     assert at > 0
@@ -74,9 +74,9 @@ def test_a_type_or_a_name_of_a_column_that_is_no_text_says_what_to_do(
     kept: Path, word: bytes, of: int
 ) -> None:
     """SQLite has no code for it, so it was some other trouble, without a remedy."""
-    content = bytearray((kept / FILE_NAME).read_bytes())
+    content = bytearray((kept / STORE_FILE_NAME).read_bytes())
     content[content.index(word, content.index(b"CREATE TABLE offset_changes")) + of] |= 0x80
-    (kept / FILE_NAME).write_bytes(content)
+    (kept / STORE_FILE_NAME).write_bytes(content)
     with raises_code(StoreError, "damaged", "turndesk store restore FILE"):
         Store.open(kept)
 
@@ -85,7 +85,7 @@ def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET program = ?", "a\nb")
     with Store.open(kept) as store:
         [first, *_] = store.find_damaged_rows()
-        assert first.startswith(named("part_counts", "a b"))
+        assert first.startswith(make_row_label("part_counts", "a b"))
 
 
 @pytest.mark.parametrize("name", ["../pin.nc", "/tmp/pin.nc", b"\xff\x00", "pin\0.nc", ""])
@@ -94,14 +94,14 @@ def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
 ) -> None:
     spoil(kept, "UPDATE programs SET name = ?", name)
     with Store.open(kept) as store, raises_code(StoreError, "invalid-name"):
-        export(store, tmp_path / "out")
+        export_store(store, tmp_path / "out")
     assert not (tmp_path / "out").exists()
     assert list(tmp_path.rglob("pin*")) == []
 
 
 def test_a_version_whose_number_has_a_line_end_stays_in_its_sentence(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET number = ?, text = ?", "a\nb", b"M30\n")
-    assert backup.problems(kept / FILE_NAME)[0].startswith("'pin.nc' version a b ")
+    assert backup.find_problems(kept / STORE_FILE_NAME)[0].startswith("'pin.nc' version a b ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version a b"):
         store.programs.load_version("pin.nc")
 
@@ -112,19 +112,19 @@ def test_an_offset_is_entered_behind_a_step_of_the_history_that_is_no_number(
 ) -> None:
     spoil(kept, "UPDATE offset_changes SET step = ? WHERE id = 2", step)
     with Store.open(kept) as store:
-        store.offsets.tools.change_row(1, "worn", {"x": 3.0}).result()
-        assert store.offsets.tools.read_rows() == {1: ToolRow(x=3.0)}
-    with closing(sqlite3.connect(kept / FILE_NAME)) as connection:
+        store.offsets.tool_offsets.change_row(1, "worn", {"x": 3.0}).result()
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=3.0)}
+    with closing(sqlite3.connect(kept / STORE_FILE_NAME)) as connection:
         assert connection.execute("SELECT step FROM offset_changes WHERE id = 3").fetchone() == (2,)
 
 
 def test_a_column_whose_name_is_no_text_is_a_damaged_file(kept: Path, tmp_path: Path) -> None:
-    path = kept / FILE_NAME
+    path = kept / STORE_FILE_NAME
     content = path.read_bytes()
     at = content.index(b"CREATE TABLE tool_lives")
     name = content.index(b"tool", at + 24)
     path.write_bytes(content[:name] + b"\x83" + content[name + 1 :])
     with raises_code(StoreError, "damaged") as told, Store.open(kept) as store:
-        export(store, tmp_path / "out")
+        export_store(store, tmp_path / "out")
     assert "\n" not in str(told.value)
     assert not (tmp_path / "out").exists()

@@ -12,7 +12,7 @@ import pytest
 
 from core.store import backup
 from core.store.store import Store, StoreError
-from core.store.store_file import FILE_NAME, has_store
+from core.store.store_file import STORE_FILE_NAME, has_store
 from tests.coded import raises_code
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="links and pipes of POSIX")
@@ -41,8 +41,8 @@ def look(path: Path) -> tuple[int, int]:
 @pytest.fixture
 def good(tmp_path: Path) -> Path:
     with Store.open(tmp_path / "other") as store:
-        store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
-    backup.backup(tmp_path / "other", tmp_path / "b.db")
+        store.offsets.tool_offsets.change_row(3, "touched", {"x": 1.0}).result()
+    backup.back_up_store(tmp_path / "other", tmp_path / "b.db")
     return tmp_path / "b.db"
 
 
@@ -52,17 +52,17 @@ def test_it_is_refused_by_name_and_stays(
 ) -> None:
     """A link whose disk was not mounted was read as a store with nothing in it, and replaced by one."""
     folder.mkdir()
-    path = folder / FILE_NAME
+    path = folder / STORE_FILE_NAME
     put(path)
     before = look(path)
     assert has_store(folder)
     for refused in (
         lambda: Store.open(folder),
         lambda: Store.open(folder, read_only=True),
-        lambda: backup.backup(folder, folder / "b.db"),
-        lambda: backup.restore(folder, good),
-        lambda: backup.problems(path),
-        lambda: backup.backup(good.parent / "other", path),
+        lambda: backup.back_up_store(folder, folder / "b.db"),
+        lambda: backup.restore_store(folder, good),
+        lambda: backup.find_problems(path),
+        lambda: backup.back_up_store(good.parent / "other", path),
     ):
         with raises_code(StoreError, code, path):
             refused()
@@ -83,17 +83,17 @@ def test_a_store_on_another_disk_stays_there(folder: Path, tmp_path: Path, good:
     disk.mkdir()
     folder.mkdir()
     with Store.open(tmp_path / "made") as store:
-        store.offsets.tools.change_row(3, "touched", {"x": 2.0}).result()
-    (tmp_path / "made" / FILE_NAME).rename(disk / "shop.db")
-    (folder / FILE_NAME).symlink_to(disk / "shop.db")
+        store.offsets.tool_offsets.change_row(3, "touched", {"x": 2.0}).result()
+    (tmp_path / "made" / STORE_FILE_NAME).rename(disk / "shop.db")
+    (folder / STORE_FILE_NAME).symlink_to(disk / "shop.db")
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows()[3].x == 2.0
-    backup.restore(folder, good)
-    assert (folder / FILE_NAME).is_symlink()
+        assert store.offsets.tool_offsets.read_rows()[3].x == 2.0
+    backup.restore_store(folder, good)
+    assert (folder / STORE_FILE_NAME).is_symlink()
     for each in (folder, disk):
         assert not [path for path in each.iterdir() if path.name.endswith(("-wal", ".unfinished"))]
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows()[3].x == 1.0
+        assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
 
 
 def test_what_is_a_store_or_nothing_is_as_before(folder: Path) -> None:

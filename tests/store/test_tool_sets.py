@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from core.store import database
 from core.store.offsets import offset_history, offset_tables, touch_off
-from core.store.offsets.offset_tables import Reason
-from core.store.offsets.touch_off import Touch
-from core.store.store_rows import Kind, ToolRow
+from core.store.offsets.offset_tables import ChangeReason
+from core.store.offsets.touch_off import TouchPosition
+from core.store.store_rows import OffsetKind, ToolRow
 
-WHY = Reason("try", "test")
+WHY = ChangeReason("try", "test")
 START = {
     1: ToolRow(-12.7, -76.2, wear_x=0.05),
     2: ToolRow(6.35, -63.5, wear_z=-0.1),
@@ -46,28 +46,28 @@ def distances(rows: dict[int, ToolRow]) -> dict[tuple[int, int], tuple[float, fl
 
 def step(connection: sqlite3.Connection, what: str, values: object) -> None:
     """One change, and what must hold of it."""
-    before = offset_tables.tools(connection)
+    before = offset_tables.read_tool_offsets(connection)
     if what == "master":
         assert isinstance(values, int)
-        touch_off.choose_master(connection, values, WHY)
-        after = offset_tables.tools(connection)
+        touch_off.set_master_tool(connection, values, WHY)
+        after = offset_tables.read_tool_offsets(connection)
         assert {n: row.offset for n, row in after.items()} == {n: row.offset for n, row in before.items()}
         assert [n for n, row in after.items() if row.master] == ([values] if values else [])
     elif what == "wear":
         assert isinstance(values, tuple)
-        offset_tables.change(connection, Kind.TOOL, values[0], WHY, {"wear_x": values[1]})
+        offset_tables.change_row(connection, OffsetKind.TOOL, values[0], WHY, {"wear_x": values[1]})
     else:
         assert isinstance(values, tuple)
         number, x, z, alone = values
-        touch_off.touch_off(connection, number, Touch(x, z, alone), WHY)
-        touched(before, offset_tables.tools(connection), number, Touch(x, z, alone))
+        touch_off.store_touch_off(connection, number, TouchPosition(x, z, alone), WHY)
+        touched(before, offset_tables.read_tool_offsets(connection), number, TouchPosition(x, z, alone))
 
 
-def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, touch: Touch) -> None:
+def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, touch: TouchPosition) -> None:
     """The tip stands where it was touched; who follows, and who stays."""
     for place_, value in zip((touch.x, touch.z), after[number].offset, strict=True):
         assert place_ is None or value == pytest.approx(place_)
-    if before[number].master and not touch.alone:
+    if before[number].master and not touch.moves_only_this_tool:
         for pair, apart in distances(before).items():
             assert distances(after)[pair] == pytest.approx(apart, abs=1e-9)
     else:
@@ -78,13 +78,13 @@ def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, 
 @given(STEPS)
 @settings(max_examples=60, deadline=None)
 def test_any_order_of_touches_and_masters(steps: list[tuple[str, object]]) -> None:
-    with closing(database.empty()) as connection:
+    with closing(database.create_empty_store()) as connection:
         for number, row in START.items():
-            offset_tables.change(connection, Kind.TOOL, number, WHY, row._asdict())
+            offset_tables.change_row(connection, OffsetKind.TOOL, number, WHY, row._asdict())
         for what, values in steps:
             step(connection, what, values)
-            assert sum(row.master for row in offset_tables.tools(connection).values()) <= 1
+            assert sum(row.master for row in offset_tables.read_tool_offsets(connection).values()) <= 1
         made = connection.execute("SELECT max(step) FROM offset_changes").fetchone()[0] - len(START)
         for _ in range(made):
-            offset_history.undo(connection, WHY, Kind.TOOL)
-        assert offset_tables.tools(connection) == START
+            offset_history.undo(connection, WHY, OffsetKind.TOOL)
+        assert offset_tables.read_tool_offsets(connection) == START

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from core.store import database
-from core.store.offsets.touch_off import Touch
+from core.store.offsets.touch_off import TouchPosition
 from core.store.store import Store, StoreError
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 from core.store.store_rows import SecondaryRow, ToolRow
 from tests.coded import raises_code
 
@@ -20,10 +20,10 @@ from tests.coded import raises_code
 def old_store(folder: Path) -> None:
     """What the first version wrote, by its own tables and statements."""
     folder.mkdir()
-    connection = sqlite3.connect(folder / FILE_NAME, isolation_level=None)
+    connection = sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
     connection.execute("PRAGMA journal_mode = WAL")
-    database.migrate(connection, database.migrations()[:1])
+    database.migrate(connection, database.load_migrations()[:1])
     connection.execute("INSERT INTO tool_offsets VALUES (3, 31.75, -12.7, 0.381)")
     connection.execute("INSERT INTO secondary_offsets VALUES (4, -0.0127, 0, 0)")
     changes = (
@@ -46,26 +46,28 @@ def old_store(folder: Path) -> None:
 def test_an_old_store_comes_up_with_everything_in_it(folder: Path) -> None:
     old_store(folder)
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows() == {3: ToolRow(31.75, -12.7, 0.381, 0.0, 0.0, 0, "", False)}
-        assert store.offsets.secondary.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
-        second, first = store.offsets.tools.read_history()
+        assert store.offsets.tool_offsets.read_rows() == {
+            3: ToolRow(31.75, -12.7, 0.381, 0.0, 0.0, 0, "", False)
+        }
+        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        second, first = store.offsets.tool_offsets.read_history()
         assert (first.old, first.new) == (None, ToolRow(30.0, -12.7, 0.381))
         assert second.old == ToolRow(30.0, -12.7, 0.381)
-        store.offsets.tools.change_row(3, "worn", {"wear_x": -0.0127, "remark": "rough"}).result()
-        store.offsets.tools.undo_last_step().result()
-        store.offsets.tools.undo_last_step().result()
-        assert store.offsets.tools.read_rows() == {3: ToolRow(30.0, -12.7, 0.381)}
+        store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.0127, "remark": "rough"}).result()
+        store.offsets.tool_offsets.undo_last_step().result()
+        store.offsets.tool_offsets.undo_last_step().result()
+        assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(30.0, -12.7, 0.381)}
     kept = folder / "turndesk-version-1.db"
     assert database.check_file(kept, thorough=True) == 1
 
 
 def test_every_field_is_kept_with_its_history(store: Store) -> None:
-    store.offsets.tools.change_row(
+    store.offsets.tool_offsets.change_row(
         2, "set", {"x": 1.0, "z": 2.0, "nose_radius": 0.4, "quadrant": 3, "remark": "DNMG finish"}
     ).result()
-    store.offsets.tools.change_row(2, "worn", {"wear_x": -0.01, "wear_z": 0.02}).result()
+    store.offsets.tool_offsets.change_row(2, "worn", {"wear_x": -0.01, "wear_z": 0.02}).result()
     row = ToolRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, "DNMG finish")
-    assert store.offsets.tools.read_rows() == {2: row}
+    assert store.offsets.tool_offsets.read_rows() == {2: row}
     assert row.offset == pytest.approx((0.99, 2.02))
     newest = store.offsets.read_history()[0]
     assert newest.new == row
@@ -89,86 +91,88 @@ def test_what_is_no_value_of_a_field_is_refused(
     store: Store, values: dict[str, Any], told: tuple[str, ...]
 ) -> None:
     with raises_code(StoreError, "out-of-range", *told):
-        store.offsets.tools.change_row(1, "no", values).result()
-    assert store.offsets.tools.read_rows() == {}
+        store.offsets.tool_offsets.change_row(1, "no", values).result()
+    assert store.offsets.tool_offsets.read_rows() == {}
     assert store.offsets.read_history() == ()
 
 
 def three_tools(store: Store) -> None:
-    store.offsets.tools.change_row(1, "a", {"x": 10.0, "z": -100.0, "wear_x": 0.5})
-    store.offsets.tools.change_row(2, "b", {"x": -20.0, "z": -90.0, "wear_z": 0.25})
-    store.offsets.tools.change_row(3, "c", {"x": 5.0, "z": -95.0}).result()
+    store.offsets.tool_offsets.change_row(1, "a", {"x": 10.0, "z": -100.0, "wear_x": 0.5})
+    store.offsets.tool_offsets.change_row(2, "b", {"x": -20.0, "z": -90.0, "wear_z": 0.25})
+    store.offsets.tool_offsets.change_row(3, "c", {"x": 5.0, "z": -95.0}).result()
 
 
 def test_a_touch_sets_geometry_and_ends_the_wear_of_that_axis(store: Store) -> None:
     three_tools(store)
-    store.offsets.tools.change_row(2, "worn", {"wear_x": 0.1}).result()
-    changes = store.offsets.tools.touch_off(2, Touch(x=-21.0), "touched").result()
+    store.offsets.tool_offsets.change_row(2, "worn", {"wear_x": 0.1}).result()
+    changes = store.offsets.tool_offsets.set_touched_offset(2, TouchPosition(x=-21.0), "touched").result()
     assert [change.number for change in changes] == [2]
-    assert store.offsets.tools.read_rows()[2] == ToolRow(-21.0, -90.0, wear_x=0.0, wear_z=0.25)
-    assert store.offsets.tools.touch_off(2, Touch(x=-21.0), "again").result() == ()
+    assert store.offsets.tool_offsets.read_rows()[2] == ToolRow(-21.0, -90.0, wear_x=0.0, wear_z=0.25)
+    assert store.offsets.tool_offsets.set_touched_offset(2, TouchPosition(x=-21.0), "again").result() == ()
 
 
 def test_a_tool_touched_for_the_first_time_is_set(store: Store) -> None:
     with raises_code(StoreError, "needs-both-axes"):
-        store.offsets.tools.touch_off(7, Touch(x=3.0), "half").result()
-    assert store.offsets.tools.read_rows() == {}
-    store.offsets.tools.touch_off(7, Touch(x=3.0, z=-50.0), "first").result()
-    assert store.offsets.tools.read_rows() == {7: ToolRow(3.0, -50.0)}
+        store.offsets.tool_offsets.set_touched_offset(7, TouchPosition(x=3.0), "half").result()
+    assert store.offsets.tool_offsets.read_rows() == {}
+    store.offsets.tool_offsets.set_touched_offset(7, TouchPosition(x=3.0, z=-50.0), "first").result()
+    assert store.offsets.tool_offsets.read_rows() == {7: ToolRow(3.0, -50.0)}
 
 
 def test_touching_the_master_takes_every_tool_along(store: Store) -> None:
     three_tools(store)
-    store.offsets.tools.choose_master(1, "reference").result()
-    store.offsets.tools.touch_off(1, Touch(x=12.0, z=-101.0), "new bar").result()
+    store.offsets.tool_offsets.set_master_tool(1, "reference").result()
+    store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(x=12.0, z=-101.0), "new bar").result()
     # T1 stood at 10.5 and -100 with its wear: part zero has moved by 1.5 and -1
-    tools = store.offsets.tools.read_rows()
+    tools = store.offsets.tool_offsets.read_rows()
     assert tools[1] == ToolRow(12.0, -101.0, master=True)
     assert tools[2] == ToolRow(-18.5, -91.0, wear_z=0.25)
     assert tools[3] == ToolRow(6.5, -96.0)
     assert len({change.step for change in store.offsets.read_history(limit=3)}) == 1
     store.offsets.undo_last_step().result()
-    assert store.offsets.tools.read_rows()[2] == ToolRow(-20.0, -90.0, wear_z=0.25)
-    assert store.offsets.tools.read_rows()[1] == ToolRow(10.0, -100.0, wear_x=0.5, master=True)
+    assert store.offsets.tool_offsets.read_rows()[2] == ToolRow(-20.0, -90.0, wear_z=0.25)
+    assert store.offsets.tool_offsets.read_rows()[1] == ToolRow(10.0, -100.0, wear_x=0.5, master=True)
 
 
 def test_the_master_alone_when_only_its_tip_has_changed(store: Store) -> None:
     three_tools(store)
-    store.offsets.tools.choose_master(1, "reference").result()
-    store.offsets.tools.touch_off(1, Touch(z=-99.0, alone=True), "new insert").result()
-    assert store.offsets.tools.read_rows()[1].z == -99.0
-    assert store.offsets.tools.read_rows()[3] == ToolRow(5.0, -95.0)
+    store.offsets.tool_offsets.set_master_tool(1, "reference").result()
+    store.offsets.tool_offsets.set_touched_offset(
+        1, TouchPosition(z=-99.0, moves_only_this_tool=True), "new insert"
+    ).result()
+    assert store.offsets.tool_offsets.read_rows()[1].z == -99.0
+    assert store.offsets.tool_offsets.read_rows()[3] == ToolRow(5.0, -95.0)
 
 
 def test_another_master_moves_no_tip_and_there_is_only_one(store: Store) -> None:
     three_tools(store)
-    before = {number: row.offset for number, row in store.offsets.tools.read_rows().items()}
+    before = {number: row.offset for number, row in store.offsets.tool_offsets.read_rows().items()}
     for master in (1, 3):
-        store.offsets.tools.choose_master(master, "reference").result()
-        tools = store.offsets.tools.read_rows()
+        store.offsets.tool_offsets.set_master_tool(master, "reference").result()
+        tools = store.offsets.tool_offsets.read_rows()
         assert [number for number, row in tools.items() if row.master] == [master]
         assert {number: row.offset for number, row in tools.items()} == before
-    store.offsets.tools.change_row(2, "by hand", {"master": True}).result()
-    assert [number for number, row in store.offsets.tools.read_rows().items() if row.master] == [2]
+    store.offsets.tool_offsets.change_row(2, "by hand", {"master": True}).result()
+    assert [number for number, row in store.offsets.tool_offsets.read_rows().items() if row.master] == [2]
     store.offsets.undo_last_step().result()
-    assert [number for number, row in store.offsets.tools.read_rows().items() if row.master] == [3]
-    store.offsets.tools.choose_master(0, "none").result()
-    assert not any(row.master for row in store.offsets.tools.read_rows().values())
+    assert [number for number, row in store.offsets.tool_offsets.read_rows().items() if row.master] == [3]
+    store.offsets.tool_offsets.set_master_tool(0, "none").result()
+    assert not any(row.master for row in store.offsets.tool_offsets.read_rows().values())
 
 
 def test_a_master_that_was_never_set_is_refused(store: Store) -> None:
     with raises_code(StoreError, "never-set", "T9"):
-        store.offsets.tools.choose_master(9, "no").result()
+        store.offsets.tool_offsets.set_master_tool(9, "no").result()
     with raises_code(StoreError, "never-set", "T9"):
-        store.offsets.tools.change_row(9, "no", {"master": True}).result()
-    assert store.offsets.tools.read_rows() == {}
+        store.offsets.tool_offsets.change_row(9, "no", {"master": True}).result()
+    assert store.offsets.tool_offsets.read_rows() == {}
 
 
 def test_a_follower_out_of_range_leaves_all_as_it_was(store: Store) -> None:
     three_tools(store)
-    store.offsets.tools.change_row(4, "far", {"x": 1269.5, "z": 0.0})
-    store.offsets.tools.choose_master(1, "reference").result()
-    before = store.offsets.tools.read_rows()
+    store.offsets.tool_offsets.change_row(4, "far", {"x": 1269.5, "z": 0.0})
+    store.offsets.tool_offsets.set_master_tool(1, "reference").result()
+    before = store.offsets.tool_offsets.read_rows()
     with raises_code(StoreError, "out-of-range", "T4 X"):
-        store.offsets.tools.touch_off(1, Touch(x=12.0), "no").result()
-    assert store.offsets.tools.read_rows() == before
+        store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(x=12.0), "no").result()
+    assert store.offsets.tool_offsets.read_rows() == before

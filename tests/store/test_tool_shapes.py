@@ -10,7 +10,7 @@ import pytest
 
 from core.store import database
 from core.store.store import Store, StoreError
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 from core.store.store_rows import ShapeRow, ToolRow
 from tests.coded import raises_code
 
@@ -18,45 +18,45 @@ DRILL = ShapeRow("drill", diameter=6.35, point=118.0, flutes=2)
 
 
 def set_shape(store: Store, number: int, **values: float | str) -> None:
-    store.offsets.shapes.change_row(number, "entered", values).result()
+    store.offsets.tool_shapes.change_row(number, "entered", values).result()
 
 
 def test_shape_is_kept_beside_the_offset_of_its_tool(store: Store) -> None:
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
-    assert store.offsets.shapes.read_rows() == {5: DRILL}
-    assert store.offsets.tools.read_rows() == {}, "the tool was never touched off"
+    assert store.offsets.tool_shapes.read_rows() == {5: DRILL}
+    assert store.offsets.tool_offsets.read_rows() == {}, "the tool was never touched off"
     set_shape(store, 5, rear=True)
-    assert store.offsets.shapes.read_rows() == {5: DRILL._replace(rear=True)}
+    assert store.offsets.tool_shapes.read_rows() == {5: DRILL._replace(rear=True)}
 
 
 def test_shapes_have_a_history_of_their_own(store: Store) -> None:
-    store.offsets.tools.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
+    store.offsets.tool_offsets.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
     set_shape(store, 5, diameter=6.4)
-    newest, first = store.offsets.shapes.read_history()
+    newest, first = store.offsets.tool_shapes.read_history()
     assert (newest.old, newest.new) == (DRILL, DRILL._replace(diameter=6.4))
     assert (first.old, first.new) == (None, DRILL)
-    assert len(store.offsets.tools.read_history()) == 1
-    store.offsets.shapes.undo_last_step().result()
-    assert store.offsets.shapes.read_rows() == {5: DRILL}
-    store.offsets.shapes.undo_last_step().result()
-    assert store.offsets.shapes.read_rows() == {}
-    assert store.offsets.tools.read_rows() == {5: ToolRow(1.0, 2.0)}
+    assert len(store.offsets.tool_offsets.read_history()) == 1
+    store.offsets.tool_shapes.undo_last_step().result()
+    assert store.offsets.tool_shapes.read_rows() == {5: DRILL}
+    store.offsets.tool_shapes.undo_last_step().result()
+    assert store.offsets.tool_shapes.read_rows() == {}
+    assert store.offsets.tool_offsets.read_rows() == {5: ToolRow(1.0, 2.0)}
 
 
 def test_shape_is_taken_away_and_comes_back(store: Store) -> None:
     set_shape(store, 5, kind="drill", diameter=6.35, point=118.0, flutes=2)
-    assert store.offsets.shapes.remove_row(5, "sold").result() is True
-    assert store.offsets.shapes.read_rows() == {}
-    assert store.offsets.shapes.remove_row(5, "again").result() is False
-    store.offsets.shapes.undo_last_step().result()
-    assert store.offsets.shapes.read_rows() == {5: DRILL}
+    assert store.offsets.tool_shapes.remove_row(5, "sold").result() is True
+    assert store.offsets.tool_shapes.read_rows() == {}
+    assert store.offsets.tool_shapes.remove_row(5, "again").result() is False
+    store.offsets.tool_shapes.undo_last_step().result()
+    assert store.offsets.tool_shapes.read_rows() == {5: DRILL}
 
 
 def test_what_is_entered_again_is_no_change(store: Store) -> None:
     set_shape(store, 5, kind="drill")
     set_shape(store, 5, kind="drill")
-    assert len(store.offsets.shapes.read_history()) == 1
+    assert len(store.offsets.tool_shapes.read_history()) == 1
 
 
 @pytest.mark.parametrize(
@@ -80,32 +80,32 @@ def test_value_that_cannot_be_is_refused(
 ) -> None:
     with raises_code(StoreError, code, told):
         set_shape(store, 5, **values)
-    assert store.offsets.shapes.read_rows() == {}
+    assert store.offsets.tool_shapes.read_rows() == {}
 
 
 def test_tool_that_does_not_exist(store: Store) -> None:
     with raises_code(StoreError, "unknown-number", "T33"):
         set_shape(store, 33, kind="drill")
     with raises_code(StoreError, "unknown-number", "T0"):
-        store.offsets.shapes.remove_row(0, "no").result()
+        store.offsets.tool_shapes.remove_row(0, "no").result()
 
 
 def test_nothing_to_take_back(store: Store) -> None:
-    store.offsets.tools.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
+    store.offsets.tool_offsets.change_row(5, "set", {"x": 1.0, "z": 2.0}).result()
     with raises_code(StoreError, "nothing-to-undo"):
-        store.offsets.shapes.undo_last_step().result()
+        store.offsets.tool_shapes.undo_last_step().result()
 
 
 def test_store_from_before_has_no_shapes_and_takes_them(folder: Path) -> None:
     folder.mkdir()
-    connection = sqlite3.connect(folder / FILE_NAME, isolation_level=None)
+    connection = sqlite3.connect(folder / STORE_FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
     connection.execute("PRAGMA journal_mode = WAL")
-    database.migrate(connection, database.migrations()[:4])
+    database.migrate(connection, database.load_migrations()[:4])
     connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, 2.0, 0.4)")
     connection.close()
     with Store.open(folder) as store:
-        assert store.offsets.shapes.read_rows() == {}
-        assert store.offsets.tools.read_rows() == {3: ToolRow(1.0, 2.0, 0.4)}
+        assert store.offsets.tool_shapes.read_rows() == {}
+        assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(1.0, 2.0, 0.4)}
         set_shape(store, 3, kind="turning", insert="CNMG432")
-        assert store.offsets.shapes.read_rows() == {3: ShapeRow("turning", insert="CNMG432")}
+        assert store.offsets.tool_shapes.read_rows() == {3: ShapeRow("turning", insert="CNMG432")}

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from app.programs.whole_file import write_new, write_whole
-from core.file_lock import forget_killed, unfinished_file, unfinished_folder
+from app.programs.atomic_files import write_new_file, write_program_file
+from core.file_lock import create_unfinished_file, create_unfinished_folder, remove_abandoned_files
 from core.store import backup, database
 from core.store.store import Store, StoreError
-from core.store.store_export import export
+from core.store.store_export import export_store
 from tests.coded import raises_code
 
 _KILLED = """
@@ -44,10 +44,10 @@ def names(folder: Path) -> list[str]:
 def test_a_killed_save_of_a_program_leaves_nothing_for_the_next_one(tmp_path: Path) -> None:
     killed("unfinished_folder", tmp_path / "pin.nc")
     killed("unfinished_folder", tmp_path / "bushing.nc")
-    write_whole(tmp_path / "other.nc", b"M30\n")
+    write_program_file(tmp_path / "other.nc", b"M30\n")
     assert names(tmp_path) == ["other.nc"]
     killed("unfinished_folder", tmp_path / "other.nc")
-    write_new(tmp_path / "new.nc", b"M30\n")
+    write_new_file(tmp_path / "new.nc", b"M30\n")
     assert names(tmp_path) == ["new.nc", "other.nc"]
 
 
@@ -57,7 +57,7 @@ def test_a_killed_backup_leaves_nothing_for_the_next_one(folder: Path, tmp_path:
     stick = tmp_path / "stick"
     stick.mkdir()
     killed("unfinished_file", stick / "monday.db")
-    backup.backup(folder, stick / "tuesday.db")
+    backup.back_up_store(folder, stick / "tuesday.db")
     assert names(stick) == ["tuesday.db"]
 
 
@@ -75,7 +75,7 @@ def test_a_killed_export_leaves_nothing_for_the_next_one(store: Store, tmp_path:
     there = tmp_path / "exports"
     there.mkdir()
     killed("unfinished_folder", there / "june")
-    export(store, there / "july")
+    export_store(store, there / "july")
     assert names(there) == ["july"]
 
 
@@ -83,32 +83,35 @@ def test_a_killed_copy_of_the_older_version_has_no_name(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Half a file would be taken for the way back."""
-    scripts = database.migrations()
-    monkeypatch.setattr(database, "migrations", lambda: scripts[:-1])
+    scripts = database.load_migrations()
+    monkeypatch.setattr(database, "load_migrations", lambda: scripts[:-1])
     with Store.open(folder) as store:
-        store.offsets.tools.change_row(3, "touched", {"x": 1.0}).result()
-    monkeypatch.setattr(database, "migrations", lambda: scripts)
+        store.offsets.tool_offsets.change_row(3, "touched", {"x": 1.0}).result()
+    monkeypatch.setattr(database, "load_migrations", lambda: scripts)
 
     def cut(_finished: Path, _target: Path) -> None:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(database, "put_in_place", cut)
+        patch.setattr(database, "replace_atomically", cut)
         with raises_code(StoreError, "disk-full"):
             Store.open(folder)
     assert not [name for name in names(folder) if "version" in name or "unfinished" in name]
     with Store.open(folder) as store:
-        assert store.offsets.tools.read_rows()[3].x == 1.0
-    assert backup.problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
+        assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
+    assert backup.find_problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
 
 
 def test_what_another_process_writes_stays(tmp_path: Path) -> None:
-    with unfinished_file(tmp_path / "a.db") as file, unfinished_folder(tmp_path / "b.nc") as folder:
+    with (
+        create_unfinished_file(tmp_path / "a.db") as file,
+        create_unfinished_folder(tmp_path / "b.nc") as folder,
+    ):
         file.write_bytes(b"half")
         for ending in ("-journal", "-wal", "-shm"):
             file.with_name(f"{file.name}{ending}").write_bytes(b"SQLite's")
         (folder / "b.nc").write_bytes(b"half")
-        forget_killed(tmp_path)
+        remove_abandoned_files(tmp_path)
         assert (file.read_bytes(), (folder / "b.nc").read_bytes()) == (b"half", b"half")
         assert len(names(tmp_path)) == 5
         for ending in ("-journal", "-wal", "-shm"):
@@ -119,8 +122,8 @@ def test_what_another_process_writes_stays(tmp_path: Path) -> None:
 def test_files_of_others_stay(tmp_path: Path) -> None:
     for name in ("x.unfinished", ".hidden", ".b.new", "pin.nc"):
         (tmp_path / name).write_bytes(b"theirs")
-    forget_killed(tmp_path)
-    forget_killed(tmp_path / "nowhere")
+    remove_abandoned_files(tmp_path)
+    remove_abandoned_files(tmp_path / "nowhere")
     assert names(tmp_path) == [".b.new", ".hidden", "pin.nc", "x.unfinished"]
 
 
@@ -129,7 +132,7 @@ def test_a_restore_that_finds_no_room_leaves_nothing(
 ) -> None:
     with Store.open(folder):
         pass
-    backup.backup(folder, tmp_path / "good.db")
+    backup.back_up_store(folder, tmp_path / "good.db")
 
     def full(_source: Path, target: Path) -> None:
         target.write_bytes(b"as far as it went")
@@ -137,5 +140,5 @@ def test_a_restore_that_finds_no_room_leaves_nothing(
 
     monkeypatch.setattr(shutil, "copy2", full)
     with raises_code(StoreError, "disk-full"):
-        backup.restore(folder, tmp_path / "good.db")
+        backup.restore_store(folder, tmp_path / "good.db")
     assert names(folder) == ["turndesk.db", "turndesk.lock"]

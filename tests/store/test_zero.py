@@ -13,36 +13,36 @@ from tests.coded import raises_code
 
 def test_what_is_set_is_there_again(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.offsets.zero.change_row(54, "touched", {"x": 1.5, "z": -20.0}).result()
-        store.offsets.zero.change_row(54, "turned", {"c": -15.0}).result()
-        store.offsets.zero.change_row(59, "other", {"z": 3.0}).result()
+        store.offsets.zero_offsets.change_row(54, "touched", {"x": 1.5, "z": -20.0}).result()
+        store.offsets.zero_offsets.change_row(54, "turned", {"c": -15.0}).result()
+        store.offsets.zero_offsets.change_row(59, "other", {"z": 3.0}).result()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.offsets.zero.read_rows() == {54: ZeroRow(1.5, -20.0, -15.0), 59: ZeroRow(z=3.0)}
+        assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(1.5, -20.0, -15.0), 59: ZeroRow(z=3.0)}
 
 
 def test_history_newest_first_and_the_same_again_is_no_change(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.offsets.zero.change_row(55, "one", {"z": 1.0}).result()
-        store.offsets.zero.change_row(55, "again", {"z": 1.0}).result()
-        store.offsets.zero.change_row(55, "two", {"z": 2.0}, who="somebody").result()
-        two, one = store.offsets.zero.read_history()
+        store.offsets.zero_offsets.change_row(55, "one", {"z": 1.0}).result()
+        store.offsets.zero_offsets.change_row(55, "again", {"z": 1.0}).result()
+        store.offsets.zero_offsets.change_row(55, "two", {"z": 2.0}, who="somebody").result()
+        two, one = store.offsets.zero_offsets.read_history()
         assert (two.old, two.new, two.why, two.who) == (ZeroRow(z=1.0), ZeroRow(z=2.0), "two", "somebody")
         assert (one.old, one.new) == (None, ZeroRow(z=1.0))
 
 
 def test_undo_goes_back_step_by_step(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.offsets.zero.change_row(54, "a", {"x": 1.0}).result()
-        store.offsets.zero.change_row(56, "b", {"c": 90.0}).result()
-        assert store.offsets.zero.remove_all_rows("all").result() == 2
-        assert store.offsets.zero.read_rows() == {}
-        assert {change.number for change in store.offsets.zero.undo_last_step().result()} == {54, 56}
-        assert store.offsets.zero.read_rows() == {54: ZeroRow(x=1.0), 56: ZeroRow(c=90.0)}
-        store.offsets.zero.undo_last_step().result()
-        store.offsets.zero.undo_last_step().result()
-        assert store.offsets.zero.read_rows() == {}
+        store.offsets.zero_offsets.change_row(54, "a", {"x": 1.0}).result()
+        store.offsets.zero_offsets.change_row(56, "b", {"c": 90.0}).result()
+        assert store.offsets.zero_offsets.remove_all_rows("all").result() == 2
+        assert store.offsets.zero_offsets.read_rows() == {}
+        assert {change.number for change in store.offsets.zero_offsets.undo_last_step().result()} == {54, 56}
+        assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=1.0), 56: ZeroRow(c=90.0)}
+        store.offsets.zero_offsets.undo_last_step().result()
+        store.offsets.zero_offsets.undo_last_step().result()
+        assert store.offsets.zero_offsets.read_rows() == {}
         with raises_code(StoreError, "nothing-to-undo"):
-            store.offsets.zero.undo_last_step().result()
+            store.offsets.zero_offsets.undo_last_step().result()
 
 
 @pytest.mark.parametrize(
@@ -59,14 +59,14 @@ def test_undo_goes_back_step_by_step(tmp_path: Path) -> None:
 def test_refused(tmp_path: Path, code: int, values: dict[str, float], fault: str) -> None:
     with Store.open(tmp_path) as store:
         with raises_code(StoreError, fault, f"G{code}"):
-            store.offsets.zero.change_row(code, "x", values).result()
-        assert store.offsets.zero.read_rows() == {}
-        assert store.offsets.zero.read_history() == ()
+            store.offsets.zero_offsets.change_row(code, "x", values).result()
+        assert store.offsets.zero_offsets.read_rows() == {}
+        assert store.offsets.zero_offsets.read_history() == ()
 
 
 def test_tools_and_settable_offsets_do_not_undo_each_other(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.offsets.tools.change_row(1, "t", {"x": 1.0}).result()
-        store.offsets.zero.change_row(54, "z", {"x": 1.0}).result()
-        store.offsets.tools.undo_last_step().result()
-        assert store.offsets.zero.read_rows() == {54: ZeroRow(x=1.0)}
+        store.offsets.tool_offsets.change_row(1, "t", {"x": 1.0}).result()
+        store.offsets.zero_offsets.change_row(54, "z", {"x": 1.0}).result()
+        store.offsets.tool_offsets.undo_last_step().result()
+        assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=1.0)}

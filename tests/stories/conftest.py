@@ -57,7 +57,7 @@ class Story:
             words += ["--program", str(path)]
         for number, (x, z) in (tools or {}).items():
             with Store.open(self.home) as store:
-                store.offsets.tools.change_row(
+                store.offsets.tool_offsets.change_row(
                     number, "before the story", {"x": x * INCH, "z": z * INCH}
                 ).result()
         self.home.mkdir(exist_ok=True)

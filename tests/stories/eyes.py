@@ -22,12 +22,12 @@ from PySide6.QtGui import QFontMetricsF, QKeyEvent, QPainter, QPaintEvent, QWind
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QWidget
 
-from app.cli.main import console
+from app.cli.main import run_console
 from app.desk.desk import Desk
-from app.screen.panel import FingerPanel, Panel
-from app.screen.window.keyboard import Keyboard
+from app.screen.panel import Panel, TouchPanel
+from app.screen.window.keyboard import KeyboardFilter
 from app.screen.window.main_window import MainWindow
-from drivers.simulators.plant_hands import PlantHands
+from drivers.simulators.plant_controls import PlantControls
 from tests.stories import patient_clock
 
 LOOK = 0.01  # s
@@ -147,13 +147,13 @@ class Eyes(QObject):
             return {}
         frame, focus = window.frame, QApplication.focusWidget()
         return {
-            "page": frame.page.NAME,
-            "state": frame.title.state,
-            "prompt": frame.prompt.text,
+            "page": frame.current_page.NAME,
+            "state": frame.title_line.state_text,
+            "prompt": frame.prompt_line.main_text,
             "forgotten": _FORGOTTEN[0],
             "keys": _RELEASED[0],
             "clicks": _CLICKED[0],
-            "theme": window.look.palette.name,
+            "theme": window.theme.palette.name,
             "active": window.isActiveWindow(),
             "minimised": window.isMinimized(),
             "field": _field(focus),
@@ -199,7 +199,7 @@ def _targets(panel: Panel) -> list[tuple[float, float, float, float]]:
         return []
     corner = panel.mapToGlobal(QPoint(0, 0))
     boxes = [box for box, *_ in panel._places]
-    boxes += [each.box for each in panel.controls] if isinstance(panel, FingerPanel) else []
+    boxes += [each.box for each in panel.controls] if isinstance(panel, TouchPanel) else []
     return [(corner.x() + box.x(), corner.y() + box.y(), box.width(), box.height()) for box in boxes]
 
 
@@ -211,7 +211,7 @@ def _hurry(told: Told) -> None:
 
 def _note_prompt() -> None:
     window = _WINDOW[0] if _WINDOW else None
-    prompt = window.frame.prompt.text if window is not None and window.frame is not None else ""
+    prompt = window.frame.prompt_line.main_text if window is not None and window.frame is not None else ""
     if prompt and (not _PROMPTS or _PROMPTS[-1] != prompt):
         _PROMPTS.append(prompt)
 
@@ -220,8 +220,8 @@ def _break(told: Told) -> None:
     """Something of the simulated lathe breaks, by the name of its method."""
     desk = _desk()
     assert desk is not None
-    assert isinstance(desk.control.panel, PlantHands)
-    getattr(desk.control.panel, told["name"])(*told["values"])
+    assert isinstance(desk.desk_control.station_panel, PlantControls)
+    getattr(desk.desk_control.station_panel, told["name"])(*told["values"])
 
 
 def _executor() -> Any:
@@ -275,12 +275,16 @@ _FORGOTTEN = [0]  # presses that the screen has said to have dropped
 
 def _machine(desk: Desk) -> Told:
     """The machine of now: as the control has it, and where the simulated slides really stand (mm)."""
-    shot = desk.snapshot()
-    hands = desk.control.panel if isinstance(desk.control.panel, PlantHands) else None
-    true = hands.true_position() if hands is not None else shot.actual
+    shot = desk.read_snapshot()
+    hands = (
+        desk.desk_control.station_panel
+        if isinstance(desk.desk_control.station_panel, PlantControls)
+        else None
+    )
+    true = hands.get_true_position() if hands is not None else shot.actual
     outputs = hands.outputs() if hands is not None else dict.fromkeys(shot.outputs, True)
     return {
-        "turning": round(hands.spindle_rpm() if hands is not None else shot.rpm_actual),
+        "turning": round(hands.get_spindle_rpm() if hands is not None else shot.rpm_actual),
         "lit": sorted(name for name, on in outputs.items() if on),
         "state": shot.state.value,
         "line": shot.line,
@@ -294,7 +298,7 @@ def _machine(desk: Desk) -> Told:
         "spindle_auto": shot.spindle_auto,
         "switches": [shot.optional_stop, shot.block_delete, shot.cycle_repeat, shot.no_count],
         "alarms": [[alarm.number, alarm.text] for alarm in shot.alarms],
-        "refused": shot.start_refused,
+        "refused": shot.start_refusal,
         "start_code": getattr(shot, "start_code", ""),
         "homed": list(shot.homed),
     }
@@ -318,13 +322,13 @@ def main() -> int:
         made(window, *what)
         _WINDOW.append(window)
 
-    dropped, releasing = MainWindow._show_dropped, Keyboard._released
+    dropped, releasing = MainWindow._show_dropped, KeyboardFilter._released
 
-    def released(keyboard: Keyboard, event: QKeyEvent, code: int) -> bool:
+    def released(keyboard: KeyboardFilter, event: QKeyEvent, code: int) -> bool:
         _RELEASED[0] += 1
         return releasing(keyboard, event, code)
 
-    setattr(Keyboard, "_released", released)  # noqa: B010
+    setattr(KeyboardFilter, "_released", released)  # noqa: B010
 
     def dropping(window: MainWindow, names: tuple[str, ...]) -> None:
         _FORGOTTEN[0] += 1
@@ -334,7 +338,7 @@ def main() -> int:
     setattr(MainWindow, "_show_dropped", dropping)  # noqa: B010
     for each in (eyes.watch, eyes.listen):
         threading.Thread(target=each, daemon=True).start()
-    status = console()
+    status = run_console()
     del beats, app
     return status
 

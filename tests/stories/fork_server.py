@@ -25,7 +25,7 @@ _PRELOADED = (
     "app.compose.backends.simulated_backend",
     "app.compose.stored_offsets",
     "app.screen.display",
-    "app.screen.run_screen",
+    "app.screen.screen_startup",
     "core.proving.part_history",
     "tests.stories.eyes",
 )

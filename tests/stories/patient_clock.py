@@ -10,9 +10,9 @@ from __future__ import annotations
 import threading
 import time
 
-from app.compose.control import control_begin
+from app.compose.control import control_attachment
 from app.screen.window import keyboard
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 GRACE = 0.12  # s; the control at rest ticks every 0.095 s
 _CONTROL, _SCREEN = "control", "screen"
@@ -71,17 +71,17 @@ class PatientClock:
 
 
 CLOCK = PatientClock()
-_STALL = keyboard.STALL
+_STALL = keyboard.STALL_TIME_S
 
 
 def install() -> None:
     """Replace the time of every ``RealClock`` of this process, and let no key count as late."""
 
     def begin(clock: RealClock, zero: float | None = None) -> None:
-        clock.zero = CLOCK.now() if zero is None else zero
+        clock.origin_s = CLOCK.now() if zero is None else zero
 
     def now(clock: RealClock) -> float:
-        return CLOCK.now() - clock.zero
+        return CLOCK.now() - clock.origin_s
 
     def sleep_until(clock: RealClock, t: float) -> None:
         time.sleep(max(t - clock.now(), 0.0) / CLOCK.rate)
@@ -90,11 +90,11 @@ def install() -> None:
     setattr(RealClock, "sleep_until", sleep_until)  # noqa: B010
     setattr(RealClock, "now", now)  # noqa: B010
     # One process has one machine time: the control runs on a thread here, as it does on Windows.
-    setattr(control_begin, "OWN_PROCESS", False)  # noqa: B010
-    keyboard.STALL = float("inf")
+    setattr(control_attachment, "USES_OWN_PROCESS", False)  # noqa: B010
+    keyboard.STALL_TIME_S = float("inf")
 
 
 def run_in_real_time() -> None:
     """Let delays of machine time and of keys count from now on."""
-    keyboard.STALL = _STALL
+    keyboard.STALL_TIME_S = _STALL
     CLOCK.run_in_real_time()

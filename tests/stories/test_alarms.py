@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.compose.extra import extras
-from core.alarms import CATALOGUE, Code
+from app.compose.optional_features import extras
+from core.alarms import CATALOGUE, AlarmCode
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator, Told
 from tests.texts import fragment
@@ -50,7 +50,7 @@ def in_status(operator: Operator, number: int) -> Told:
     return found()[0]
 
 
-def is_told_on_every_page(operator: Operator, code: Code, exactly: str = "") -> None:
+def is_told_on_every_page(operator: Operator, code: AlarmCode, exactly: str = "") -> None:
     entry = CATALOGUE[code]
     for keys, page in PAGES:
         if page == "MDI" and operator.state == "FEED HOLD":
@@ -62,7 +62,7 @@ def is_told_on_every_page(operator: Operator, code: Code, exactly: str = "") -> 
         operator.sees(entry.remedy)
 
 
-def is_in_f7(operator: Operator, *codes: Code) -> None:
+def is_in_f7(operator: Operator, *codes: AlarmCode) -> None:
     operator.key("F7")
     for code in codes:
         entry = CATALOGUE[code]

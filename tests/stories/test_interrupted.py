@@ -30,7 +30,7 @@ def in_the_cut(operator: Operator) -> None:
 def stored(operator: Operator) -> tuple[object, int]:
     """Return the interrupted job and the parts that the store has; it is written behind the screen."""
     with operator.store() as store:
-        return store.settings.read_setting("under_way"), store.runs.count_parts("part.nc")
+        return store.settings.read_setting("under_way"), store.runs.read_part_count("part.nc")
 
 
 def twists_the_estop_out(operator: Operator) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.stop_keys.stop_records import LONGEST, Focus, Stop, StopKind
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopKind, StopPress
 from tests.stories.x11 import Server, another_client, missing
 
 LIMIT = 20.0  # s
@@ -26,12 +26,12 @@ class Bench:
     screen: socket.socket
     control: socket.socket
 
-    def show(self, focus: Focus) -> None:
+    def show(self, focus: FocusRecord) -> None:
         """Tell the watcher which window is whose."""
-        self.screen.send(focus.packed())
+        self.screen.send(focus.to_bytes())
 
-    def stop(self) -> Stop:
-        return Stop.unpacked(self.control.recv(LONGEST))
+    def stop(self) -> StopPress:
+        return StopPress.from_bytes(self.control.recv(MAX_RECORD_BYTES))
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def _under(server: Server, at: tuple[int, int]) -> int:
     return child.value
 
 
-def press_until_sent(bench: Bench, key: str) -> Stop:
+def press_until_sent(bench: Bench, key: str) -> StopPress:
     """Press until the watcher has begun to watch."""
     bench.control.settimeout(0.5)
     for _ in range(40):
@@ -82,14 +82,14 @@ def press_until_sent(bench: Bench, key: str) -> Stop:
 
 
 def test_a_stop_key_is_sent_while_the_pointer_is_on_the_window(bench: Bench) -> None:
-    bench.show(Focus(frozenset({bench.window}), esc_holds=False))
+    bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))
     sent = press_until_sent(bench, "Pause")
     assert sent.kind is StopKind.HOLD
-    assert Stop.unpacked(bench.screen.recv(LONGEST)) == sent
+    assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)) == sent
 
 
 def test_nothing_is_sent_while_it_is_elsewhere_or_another_key_goes_down(bench: Bench) -> None:
-    bench.show(Focus(frozenset({bench.window}), esc_holds=False))
+    bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))
     press_until_sent(bench, "Pause")
     for key in ("Escape", "space", "h"):
         bench.server.down(key)
@@ -106,7 +106,7 @@ def test_nothing_is_sent_while_it_is_elsewhere_or_another_key_goes_down(bench: B
 
 def test_a_key_that_is_held_is_sent_once(bench: Bench) -> None:
     bench.server.repeats(100, 20)
-    bench.show(Focus(frozenset({bench.window}), esc_holds=True))
+    bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=True))
     press_until_sent(bench, "Escape")
     bench.control.settimeout(LIMIT)
     bench.server.down("Pause")

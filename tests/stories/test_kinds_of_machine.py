@@ -86,7 +86,7 @@ def new_edge_on_lathe(operator: Operator) -> None:
     operator.key("F6")
     operator.enters(f"{operator.slides[1] + 2.0:.3f}")
     means(operator)
-    kept(operator, lambda store: abs(store.offsets.tools.read_rows()[1].z + 2.0) < 0.01)
+    kept(operator, lambda store: abs(store.offsets.tool_offsets.read_rows()[1].z + 2.0) < 0.01)
     operator.key("F1")
     operator.key("F2")
     operator.opens("AUTOMATIC")
@@ -177,7 +177,7 @@ def test_on_a_sinumerik_lathe(story: Story) -> None:
         operator.enters("0")  # the tip touches a part that is nothing wide, and its face
         operator.sees("T1")
         assert wanted in "xz"
-    kept(operator, lambda store: 1 in store.offsets.tools.read_rows())
+    kept(operator, lambda store: 1 in store.offsets.tool_offsets.read_rows())
     operator.key("F9")
     operator.opens("ZERO OFFSETS")
     operator.key("Right")
@@ -185,7 +185,10 @@ def test_on_a_sinumerik_lathe(story: Story) -> None:
     operator.key("F2")
     kept(
         operator,
-        lambda store: 54 in store.offsets.zero.read_rows() and store.offsets.zero.read_rows()[54].z == -1.0,
+        lambda store: (
+            54 in store.offsets.zero_offsets.read_rows()
+            and store.offsets.zero_offsets.read_rows()[54].z == -1.0
+        ),
     )
     mdi(operator, "G54 T1 D1", lambda: operator.shows("T1 D1"))
     loads(operator, "again")

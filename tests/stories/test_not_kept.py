@@ -29,14 +29,14 @@ def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has
         operator.until(lambda: operator.state == "READY", "the end of the part")
         made = operator.machine["parts"]
         with operator.store() as store:
-            assert store.runs.count_parts("part.nc") < made
+            assert store.runs.read_part_count("part.nc") < made
         operator.key("F4", "alt")
         operator.sees(fragment("stories.lost-by-closing"))
         operator.key("Escape")
         disk.make_room()
         operator.until(lambda: not operator.shows("NOT SAVED"), "all is kept")
         with operator.store() as store:
-            assert store.runs.count_parts("part.nc") == made
+            assert store.runs.read_part_count("part.nc") == made
         assert len(operator.events("part")) == made
         operator.server.down("Alt_L", "F4")  # nobody is there any more to say that the key has come
         operator.server.up("F4", "Alt_L")

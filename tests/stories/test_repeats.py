@@ -170,7 +170,7 @@ def test_f10_held_leaves_no_text_unsaved(story: Story) -> None:
 
 def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
     with Store.open(story.home) as store:
-        store.offsets.secondary.change_row(5, "before the story", {"x": 1.0}).result()
+        store.offsets.secondary_offsets.change_row(5, "before the story", {"x": 1.0}).result()
     operator = ready(story)
     operator.key("F9")
     operator.opens("SECONDARY OFFSETS")
@@ -178,11 +178,11 @@ def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
     operator.keys("c", "c")
     operator.sees(fragment("screen.clear-secondary"))
     with operator.store() as store:
-        assert 5 in store.offsets.secondary.read_rows()
+        assert 5 in store.offsets.secondary_offsets.read_rows()
 
     def cleared() -> bool:
         with operator.store() as store:
-            return not store.offsets.secondary.read_rows()
+            return not store.offsets.secondary_offsets.read_rows()
 
     operator.answers("c", fragment("screen.clear-secondary"), cleared)
 

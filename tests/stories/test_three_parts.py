@@ -30,7 +30,7 @@ def made(operator: Operator, parts: int) -> None:
 def parts_in_the_store(operator: Operator) -> int:
     """Return how many parts the store has counted."""
     with operator.store() as store:
-        return store.runs.count_parts("again.nc")
+        return store.runs.read_part_count("again.nc")
 
 
 def at_the_end(operator: Operator) -> None:
@@ -42,7 +42,10 @@ def at_the_end(operator: Operator) -> None:
     operator.until(lambda: operator.machine["rpm"] == 0, "the spindle at rest")
     operator.until(lambda: parts_in_the_store(operator) == 3, "the store")
     with operator.store() as store:
-        assert store.offsets.tools.read_rows()[1].offset == (pytest.approx(0.0), pytest.approx(-1.0 * INCH))
+        assert store.offsets.tool_offsets.read_rows()[1].offset == (
+            pytest.approx(0.0),
+            pytest.approx(-1.0 * INCH),
+        )
     operator.sees(text("screen.to-start"))
 
 
@@ -72,7 +75,10 @@ def test_by_keyboard(story: Story) -> None:
 def tool_set(operator: Operator) -> bool:
     """Whether T1 is in the store."""
     with operator.store() as store:
-        return 1 in store.offsets.tools.read_rows() and store.offsets.tools.read_rows()[1].offset[1] != 0.0
+        return (
+            1 in store.offsets.tool_offsets.read_rows()
+            and store.offsets.tool_offsets.read_rows()[1].offset[1] != 0.0
+        )
 
 
 def mouse_and_key(operator: Operator) -> None:

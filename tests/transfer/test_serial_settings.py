@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from app.transfer.serial_transfer import ROWS, settings_of, stored_form
-from core.machine.desk_tables import DncModel
+from app.transfer.serial_transfer import SETTING_ROWS, make_stored_settings, read_settings
+from core.machine.serial_and_backup_tables import SerialLineModel
 from tests.texts import text
 
-DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
+DEFAULT = SerialLineModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 PORTS = ("/dev/ttyS0", "/dev/ttyUSB0")
 
 
-def around(name: str, model: DncModel) -> list[str]:
+def around(name: str, model: SerialLineModel) -> list[str]:
     """What a row shows as Return steps it on, until it is where it began."""
-    _, value, step = next(row for row in ROWS if row[0] == name)
+    _, value, step = next(row for row in SETTING_ROWS if row[0] == name)
     shown = [value(model)]
     while True:
         model = step(model, PORTS)
@@ -45,21 +45,21 @@ def test_every_setting_goes_round(row: str, count: int) -> None:
 
 
 def test_a_speed_that_is_none_of_the_list_is_left_for_the_first() -> None:
-    _, value, step = ROWS[1]
+    _, value, step = SETTING_ROWS[1]
     assert value(step(replace(DEFAULT, baud=12345), PORTS)) == "110"
 
 
 def test_without_a_port_there_is_nothing_to_step_to() -> None:
-    assert ROWS[0][2](DEFAULT, ()) == DEFAULT
+    assert SETTING_ROWS[0][2](DEFAULT, ()) == DEFAULT
 
 
 def test_what_is_kept_comes_back() -> None:
     changed = replace(DEFAULT, baud=4800, parity="O", eol="\n", wait=True)
-    assert settings_of(stored_form(changed), DEFAULT) == changed
+    assert read_settings(make_stored_settings(changed), DEFAULT) == changed
 
 
 @pytest.mark.parametrize(
     "kept", [None, 7, {"flow": "smoke"}, {"bits": 9}, {"parity": "X"}, {"baud": "fast"}, {"wait": 1}]
 )
 def test_what_cannot_be_is_forgotten(kept: object) -> None:
-    assert settings_of(kept, DEFAULT) == DEFAULT
+    assert read_settings(kept, DEFAULT) == DEFAULT

@@ -10,10 +10,10 @@ import sys
 from importlib.resources import files
 from pathlib import Path
 
-from app.desk.command_errors import CommandError, cannot_write
+from app.desk.command_errors import CommandError, make_write_error
 from core.message import Message
 
-NAME = "turndesk"
+ENTRY_NAME = "turndesk"
 _RESERVED = re.compile(r"""[\s"'\\><~|&;$*?#()`]""")
 _ENTRY = """[Desktop Entry]
 Type=Application
@@ -44,26 +44,26 @@ def _under(variable: str, otherwise: str) -> Path:
         ) from error
 
 
-def _places() -> tuple[Path, Path, Path, Path]:
+def _entry_paths() -> tuple[Path, Path, Path, Path]:
     """Return the paths of the menu entry, the icon, the file types and the autostart entry."""
     data, config = _under("XDG_DATA_HOME", ".local/share"), _under("XDG_CONFIG_HOME", ".config")
     return (
-        data / "applications" / f"{NAME}.desktop",
-        data / "icons" / "hicolor" / "scalable" / "apps" / f"{NAME}.svg",
-        data / "mime" / "packages" / f"{NAME}.xml",
-        config / "autostart" / f"{NAME}.desktop",
+        data / "applications" / f"{ENTRY_NAME}.desktop",
+        data / "icons" / "hicolor" / "scalable" / "apps" / f"{ENTRY_NAME}.svg",
+        data / "mime" / "packages" / f"{ENTRY_NAME}.xml",
+        config / "autostart" / f"{ENTRY_NAME}.desktop",
     )
 
 
 def _command() -> str:
     """Return the command that starts this installation."""
-    beside = Path(sys.executable).with_name(NAME)
+    beside = Path(sys.executable).with_name(ENTRY_NAME)
     if beside.exists():
-        return _quoted(str(beside))
-    return Message("{executable} -m app.cli.main", executable=_quoted(sys.executable))
+        return _quote_word(str(beside))
+    return Message("{executable} -m app.cli.main", executable=_quote_word(sys.executable))
 
 
-def _quoted(word: str) -> str:
+def _quote_word(word: str) -> str:
     """Return a word quoted for the Exec line of a desktop entry, where % must be doubled."""
     if not _RESERVED.search(word):
         return word.replace("%", "%%")
@@ -71,20 +71,20 @@ def _quoted(word: str) -> str:
     return '"' + inside.replace("\\", "\\\\") + '"'  # values of a desktop entry have another level of escapes
 
 
-def install(*, autostart: bool) -> list[Path]:
+def install_entries(*, autostart: bool) -> list[Path]:
     """Write the entries and return their paths. Raises CommandError if a file cannot be written."""
-    entry, icon, types, start = _places()
+    entry, icon, types, start = _entry_paths()
     shipped = files("resources") / "desktop"
     try:
         for path in (entry, icon, types, *((start,) if autostart else ())):
             path.parent.mkdir(parents=True, exist_ok=True)
         entry.write_text(entry_text(f"{_command()} %f"), encoding="utf-8")
-        shutil.copyfile(str(shipped / f"{NAME}.svg"), icon)
-        shutil.copyfile(str(shipped / f"{NAME}.xml"), types)
+        shutil.copyfile(str(shipped / f"{ENTRY_NAME}.svg"), icon)
+        shutil.copyfile(str(shipped / f"{ENTRY_NAME}.xml"), types)
         if autostart:
             start.write_text(entry_text(f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
-        raise cannot_write(error.filename, error) from error
+        raise make_write_error(error.filename, error) from error
     _update_databases(entry.parent, types.parent.parent)
     return [entry, icon, types, *([start] if autostart else [])]
 
@@ -101,9 +101,9 @@ def _update_databases(applications: Path, mime: Path) -> None:
             subprocess.run([tool, str(folder)], check=False, capture_output=True, timeout=60)
 
 
-def remove() -> list[Path]:
+def remove_entries() -> list[Path]:
     """Remove the existing entries and return their paths. Raises CommandError if a file cannot be removed."""
-    there = [path for path in _places() if path.exists()]
+    there = [path for path in _entry_paths() if path.exists()]
     for path in there:
         try:
             path.unlink()
@@ -112,5 +112,5 @@ def remove() -> list[Path]:
                 Message("{path} cannot be removed: {cause}", path=path, cause=error.strerror),
                 "cannot-remove",
             ) from error
-    _update_databases(_places()[0].parent, _places()[2].parent.parent)
+    _update_databases(_entry_paths()[0].parent, _entry_paths()[2].parent.parent)
     return there

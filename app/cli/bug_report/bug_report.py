@@ -26,7 +26,7 @@ from app.cli.bug_report.private_texts import (
 from app.cli.bug_report.replaced_names import Replacements
 from app.compose.machine.machine_setup import machine_file_in_use
 from app.desk.command_errors import CommandError
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import find_data_folder
 from core.message import CodedError, Message
 from core.store.store import Store
 
@@ -63,7 +63,7 @@ def bug_report(machine_file: str | None = None, program: Path | None = None) -> 
     program that was started last.
     """
     stored = _stored()
-    programs = {*stored.programs, *_names_in(data_folder() / "programs")} | (
+    programs = {*stored.programs, *_names_in(find_data_folder() / "programs")} | (
         {program.name} if program else set()
     )
     replacements = Replacements(
@@ -109,7 +109,7 @@ def _users() -> Iterator[str]:
 def _stored() -> _Stored:
     """Return what the store contains; a store that cannot be read is reported by its code."""
     try:
-        with Store.open(data_folder(), read_only=True) as store:
+        with Store.open(find_data_folder(), read_only=True) as store:
             with store.read() as connection:
                 people, programs = _stored_names(connection)
             runs = sorted(
@@ -157,7 +157,7 @@ def _names_in(folder: Path) -> Iterator[str]:
 
 def _names_of_runs() -> Iterator[str]:
     """Yield the names of programs in the names of the run logs, such as ``20260102T030405000000-PIN``."""
-    for path in (data_folder() / "logs").glob("*.jsonl"):
+    for path in (find_data_folder() / "logs").glob("*.jsonl"):
         yield path.stem.partition("-")[2]
 
 
@@ -209,7 +209,7 @@ def _program_part(path: Path | None, latest: tuple[str, str] | None) -> Iterator
 
 
 def _log_parts(events: tuple[str, ...]) -> Iterator[Part]:
-    folder = data_folder() / "logs"
+    folder = find_data_folder() / "logs"
     if crash := _newest(folder, "crash-*.txt"):
         yield Part("Newest crash file", _read(crash, must_exist=False))
     if (log := folder / "turndesk.log").is_file():

@@ -25,18 +25,18 @@ _NAMES = 100  # file names tried, the largest number of crashes in one second
 
 def report_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """Report an uncaught exception as an excepthook: one line, with the traceback in a crash file."""
-    where = keep_crash(kind, error, trace)
+    where = write_crash_file(kind, error, trace)
     what = str(error).splitlines()[0] if str(error) else kind.__name__
     sys.stderr.write(f"turndesk: a fault in TurnDesk itself ({what}); please report it with {where}\n")
 
 
-def report_thread(found: threading.ExceptHookArgs) -> None:
+def report_thread(thread_error: threading.ExceptHookArgs) -> None:
     """Report an exception that ended a thread. The other threads continue."""
-    if found.exc_value is not None and not isinstance(found.exc_value, SystemExit):
-        report_crash(found.exc_type, found.exc_value, found.exc_traceback)
+    if thread_error.exc_value is not None and not isinstance(thread_error.exc_value, SystemExit):
+        report_crash(thread_error.exc_type, thread_error.exc_value, thread_error.exc_traceback)
 
 
-def keep_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
+def write_crash_file(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
     """Write a crash file to the log folder, or to the system's temporary folder; return its path."""
     import tempfile
     import traceback
@@ -46,26 +46,26 @@ def keep_crash(kind: type[BaseException], error: BaseException, trace: Traceback
     head = (
         f"{time.strftime('%Y-%m-%d %H:%M:%S%z')}  {' '.join(sys.argv)}  {threading.current_thread().name}\n"
     )
-    for folder in (_logs(), Path(tempfile.gettempdir())):
-        path = _written(folder, head + text) if folder is not None else None
+    for folder in (_log_folder(), Path(tempfile.gettempdir())):
+        path = _try_write(folder, head + text) if folder is not None else None
         if path is not None:
             return str(path)
     return "a description of what you were doing"
 
 
-def _logs() -> Path | None:
+def _log_folder() -> Path | None:
     """Return the log folder; None if the data folder cannot be used."""
     try:
-        from app.desk.data_folder import DataFolderError, data_folder
+        from app.desk.data_folder import DataFolderError, find_data_folder
     except (OSError, ImportError):
         return None
     try:
-        return data_folder() / "logs"
+        return find_data_folder() / "logs"
     except (OSError, DataFolderError):
         return None
 
 
-def _written(folder: Path, text: str) -> Path | None:
+def _try_write(folder: Path, text: str) -> Path | None:
     """Write a new file and return its path; None if it cannot be written."""
     stem = f"crash-{time.strftime('%Y%m%d-%H%M%S')}"
     try:
@@ -85,7 +85,7 @@ def _written(folder: Path, text: str) -> Path | None:
 
 
 @contextmanager
-def keep_interrupts() -> Iterator[None]:
+def catch_interrupts() -> Iterator[None]:
     """Save interrupts that Python drops inside the block, for the next ``raise_interrupt``."""
     before = sys.unraisablehook
 

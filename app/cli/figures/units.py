@@ -20,7 +20,7 @@ _PER_MINUTE = 60.0
 Json = dict[str, object]
 
 
-def block_head(block: Block, source_line: str) -> Json:
+def make_block_head(block: Block, source_line: str) -> Json:
     """Return the first keys of the JSON object of every elementary block."""
     return {
         "n": block.n,
@@ -31,44 +31,44 @@ def block_head(block: Block, source_line: str) -> Json:
     }
 
 
-def inches(mm: float) -> float:
+def to_inches(mm: float) -> float:
     """Return a length in inches, rounded to nine decimals to hide the error of the conversion."""
     return round(mm / MM_PER_INCH, 9) + 0.0  # =
 
 
-def millimetres(mm: float) -> float:
+def round_millimeters(mm: float) -> float:
     """Return a length in mm, rounded to nine decimals."""
     return round(mm, 9) + 0.0
 
 
-def length_of(dialect: Dialect) -> Callable[[float], float]:
+def get_length_converter(dialect: Dialect) -> Callable[[float], float]:
     """Return the function that converts lengths in mm to output: inches for OmniTurn, otherwise mm."""
-    return inches if dialect is Dialect.OMNITURN else millimetres
+    return to_inches if dialect is Dialect.OMNITURN else round_millimeters
 
 
-def volume_of(dialect: Dialect) -> Callable[[float], float]:
-    """Return the function that converts volumes in mm³ to the cubic unit of ``length_of``."""
+def get_volume_converter(dialect: Dialect) -> Callable[[float], float]:
+    """Return the function that converts volumes in mm³ to the cubic unit of ``get_length_converter``."""
     scale = MM_PER_INCH**3 if dialect is Dialect.OMNITURN else 1.0
     return lambda mm3: round(mm3 / scale, 6)
 
 
-def path_feed(block: Block, unit: str) -> tuple[float, str]:
+def get_path_feed(block: Block, unit: str) -> tuple[float, str]:
     """Return the feed along a path in mm or degrees, and its unit."""
     if block.per_rev:
         return round(block.feed, 6), f"{unit}/rev"
     return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
 
 
-def per_minute(mm_s: float) -> float:
+def to_inches_per_minute(mm_s: float) -> float:
     """Return a speed in mm/s as in/min."""
     return round(mm_s * 60 / MM_PER_INCH, 6)
 
 
-def seconds(t: float) -> float:
+def round_seconds(t: float) -> float:
     """Return seconds rounded to the microsecond."""
     return round(t, 6)
 
 
-def degrees(angle: float) -> float:
+def round_degrees(angle: float) -> float:
     """Return degrees rounded to six decimals."""
     return round(angle, 6) + 0.0

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from app.compose.extra import extras, insert_after
-from core.json_key import Key, Output, below, keys, row_keys
+from app.compose.optional_features import extras, insert_after
+from core.json_keys import JsonKey, JsonOutput, declare_keys, declare_row_keys, prefix_keys
 from core.records.record import Channel
 from core.store import table_keys
 from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
 
-DIAGNOSTIC = keys(
+DIAGNOSTIC_KEYS = declare_keys(
     """
 line | integer | | Line of the program; 0 if the finding has no line.
 column | integer | | Column from 1; 0 if the finding has no line.
@@ -26,7 +26,7 @@ silenced | string or null | | Reason why the finding is only a note; null if it 
 """
 )
 _COMPARE = (
-    *keys(
+    *declare_keys(
         """
 offsets | string | | The offsets file of --compare.
 features | list | | Features of the two parts.
@@ -49,16 +49,16 @@ gone | list | | Findings that do not occur with the other offsets, with the keys
 added | list | | Findings that occur only with the other offsets, with the keys of `diagnostics`.
 """
     ),
-    *below("gone[].", DIAGNOSTIC),
-    *below("added[].", DIAGNOSTIC),
+    *prefix_keys("gone[].", DIAGNOSTIC_KEYS),
+    *prefix_keys("added[].", DIAGNOSTIC_KEYS),
 )
-PROVE = Output(
+PROVE_OUTPUT = JsonOutput(
     "prove FILE… --json",
     "One object for each program, one per line. For a folder, the output contains one "
     "object for each program, in the order of the names. `stock` is null on a mill, or "
     "if the stock is not known; `compare` exists only with --compare.",
     (
-        *keys(
+        *declare_keys(
             """
 file | string | | The file name as entered in the command; with a folder or --jobs, the name of the program.
 dialect | string | | omniturn, klartext or sinumerik.
@@ -68,8 +68,8 @@ elementary | integer | | Elementary blocks.
 diagnostics | list | | Findings.
 """
         ),
-        *below("diagnostics[].", DIAGNOSTIC),
-        *keys(
+        *prefix_keys("diagnostics[].", DIAGNOSTIC_KEYS),
+        *declare_keys(
             """
 silenced | integer | | Number of findings that are silenced.
 cycle_time_s | number | s | Cycle time, without stops for the operator.
@@ -123,10 +123,10 @@ final.c | number or null | deg | C; on a mill null if the machine does not have 
 compare | object | | The part with the offsets of --compare.
 """
         ),
-        *below("compare.", _COMPARE),
+        *prefix_keys("compare.", _COMPARE),
     ),
 )
-_BLOCK = keys(
+_BLOCK = declare_keys(
     """
 n | integer | | Elementary block, counted from 1 in the order of execution.
 line | integer | | Line of the program, from 1.
@@ -135,19 +135,19 @@ text | string | | The elementary block as the screen shows it.
 kind | string | | rapid, feed, arc, thread, rotate, dwell, plane-line, plane-arc, plane or action.
 """
 )
-_TIMES = keys(
+_TIME_KEYS = declare_keys(
     """
 t0 | number | s | Start of the block, counted from the start of the program.
 t1 | number | s | End of the block.
 """
 )
-EXPAND_OMNITURN = Output(
+EXPAND_OMNITURN_OUTPUT = JsonOutput(
     "expand FILE --json, OmniTurn",
     "One object for each elementary block, one per line, in the order of execution. Keys "
     "that do not apply are null. Lengths are in inches, even for metric programs.",
     (
         *_BLOCK,
-        *keys(
+        *declare_keys(
             """
 x | number | in | End point in the program frame, a radius.
 z | number | in | End point in the program frame.
@@ -170,15 +170,15 @@ rpm | number | rpm | Commanded spindle speed at the end of the block; negative w
 css | number or null | ft/min | Constant surface speed.
 """
         ),
-        *_TIMES,
+        *_TIME_KEYS,
     ),
 )
-EXPAND_SINUMERIK = Output(
+EXPAND_SINUMERIK_OUTPUT = JsonOutput(
     "expand FILE --json, SINUMERIK",
     "One object for each elementary block, as for the other languages, in millimeters.",
     (
         *_BLOCK,
-        *keys(
+        *declare_keys(
             """
 units | string | | mm.
 x | number | mm | End point in X as programmed: a diameter with DIAMON.
@@ -197,17 +197,17 @@ rpm | number | rpm | Commanded spindle speed at the end of the block; negative w
 css | number or null | m/min | Constant surface speed.
 """
         ),
-        *_TIMES,
+        *_TIME_KEYS,
     ),
 )
-EXPAND_KLARTEXT = Output(
+EXPAND_KLARTEXT_OUTPUT = JsonOutput(
     "expand FILE --json, Klartext",
     "One object for each elementary block, as for the other languages, in millimeters. "
     "Blocks without a position do not have the position keys; only PLANE blocks have the "
     "keys from `frame` to `q122`.",
     (
         *_BLOCK,
-        *keys(
+        *declare_keys(
             """
 units | string | | mm.
 x | number | mm | End point in the working plane.
@@ -225,8 +225,8 @@ feed_mode | string or null | | mm/min, mm/rev, deg/min or deg/rev.
 rpm | number | rpm | Commanded spindle speed at the end of the block.
 """
         ),
-        *_TIMES,
-        *keys(
+        *_TIME_KEYS,
+        *declare_keys(
             """
 frame | list | | Matrix of the working plane, 3 rows of 3 numbers.
 datum | list | mm | Origin of the working plane in machine positions.
@@ -237,13 +237,13 @@ q122 | number | deg | Target of C, as in Q122.
         ),
     ),
 )
-TRACE = Output(
+TRACE_OUTPUT = JsonOutput(
     "trace FILE --out CSV --json",
     "One object. The CSV file has the columns `t`, the axes of the machine, "
     "`spindle_deg` and `line`. Each row is one setpoint in machine positions, with X as "
     "a radius. The rows are `dt` apart in time.",
     (
-        *keys(
+        *declare_keys(
             """
 file | string | | The program.
 out | string or null | | The CSV file; null if the program has errors and no file was written.
@@ -252,13 +252,13 @@ cycle_time_s | number | s | Cycle time.
 diagnostics | list | | Findings, with the keys of `prove`.
 """
         ),
-        *below("diagnostics[].", DIAGNOSTIC),
+        *prefix_keys("diagnostics[].", DIAGNOSTIC_KEYS),
     ),
 )
-RUN = Output(
+RUN_OUTPUT = JsonOutput(
     "run FILE --headless --json",
     "One object, on the last line.",
-    keys(
+    declare_keys(
         """
 state | string | | complete, refused, alarm, hold or waiting.
 final | object | | Position after the run; on a mill empty if the run was refused before the start.
@@ -286,10 +286,10 @@ events | string | | Path of the log of this run; empty if the run was refused be
 """
     ),
 )
-MACHINE_CHECK = Output(
+MACHINE_CHECK_OUTPUT = JsonOutput(
     "machine check FILE --json",
     "One object. If the file has errors, only `file`, `errors` and `ports` exist.",
-    keys(
+    declare_keys(
         """
 file | string | | The machine file.
 machine | string | | Name of the machine.
@@ -317,10 +317,10 @@ trouble | list | | Failures, as sentences; if there are any, the exit status is 
 """
     ),
 )
-MACHINE_HAL = Output(
+MACHINE_HAL_OUTPUT = JsonOutput(
     "machine hal FILE --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 file | string | | The machine file.
 board | string | | `board.kind`.
@@ -337,10 +337,10 @@ measure | list | | Values that must be measured on the machine, as sentences.
 """
     ),
 )
-WHERE = Output(
+WHERE = JsonOutput(
     "where --json",
     "One object. A place may not exist yet.",
-    keys(
+    declare_keys(
         """
 data_folder | string | | Folder of all data of this user.
 store | string | | File of the store.
@@ -353,12 +353,12 @@ code | string | | Main file of the installed package.
 """
     ),
 )
-ALARMS = Output(
+ALARMS_OUTPUT = JsonOutput(
     "alarms [NUMBER…] --json",
     "A list with one object for each alarm.",
-    below(
+    prefix_keys(
         "[].",
-        keys(
+        declare_keys(
             """
 number | integer | | Number of the alarm.
 code | string | | Code of the alarm, as in logs.
@@ -372,20 +372,20 @@ remedy | string | | What to do.
 )
 
 
-def _in_inches(columns: tuple[Key, ...]) -> tuple[Key, ...]:
+def _inch_keys(columns: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
     """Return columns of the store as in ``offsets --json``, where lengths of lathe tools are in inches."""
     return tuple(key._replace(unit="in" if key.unit == "mm" else key.unit) for key in columns)
 
 
 _OFFSETS = {
-    "tool": _in_inches(row_keys("", ToolRow, table_keys.TOOL)),
-    "secondary": _in_inches(row_keys("", SecondaryRow, table_keys.SECONDARY)),
-    "zero": row_keys("", ZeroRow, table_keys.ZERO),
-    "shape": _in_inches(row_keys("", ShapeRow, table_keys.SHAPE)),
-    "mill tool": row_keys("", MillRow, table_keys.MILL),
-    "preset": row_keys("", PresetRow, table_keys.PRESET),
+    "tool": _inch_keys(declare_row_keys("", ToolRow, table_keys.TOOL_OFFSET_COLUMNS)),
+    "secondary": _inch_keys(declare_row_keys("", SecondaryRow, table_keys.SECONDARY_OFFSET_COLUMNS)),
+    "zero": declare_row_keys("", ZeroRow, table_keys.ZERO_OFFSET_COLUMNS),
+    "shape": _inch_keys(declare_row_keys("", ShapeRow, table_keys.TOOL_SHAPE_COLUMNS)),
+    "mill tool": declare_row_keys("", MillRow, table_keys.MILL_TOOL_COLUMNS),
+    "preset": declare_row_keys("", PresetRow, table_keys.PRESET_COLUMNS),
 }
-_NUMBERS = {
+_NUMBER_KEYS = {
     "tool": "Tool offsets by T; edge 2 of T3 has the key 200003",
     "secondary": "Secondary offsets by D",
     "zero": "Zero offsets by 54 to 59; the key exists only if one is set",
@@ -393,22 +393,25 @@ _NUMBERS = {
     "mill tool": "Tools of a mill by number; the key exists only if one is set",
     "preset": "Presets of a mill by number; the key exists only if one is set",
 }
-OFFSETS_SHOW = Output(
+OFFSETS_SHOW_OUTPUT = JsonOutput(
     "offsets show --json",
     "One object.",
     tuple(
         key
         for kind, columns in _OFFSETS.items()
-        for key in (Key(kind, "object", "", f"{_NUMBERS[kind]}."), *below(f"{kind}.*.", columns))
+        for key in (
+            JsonKey(kind, "object", "", f"{_NUMBER_KEYS[kind]}."),
+            *prefix_keys(f"{kind}.*.", columns),
+        )
     ),
 )
-OFFSETS_HISTORY = Output(
+OFFSETS_HISTORY_OUTPUT = JsonOutput(
     "offsets history --json",
     "A list of changes, the newest first. `old` and `new` have the keys of `offsets show`.",
-    below(
+    prefix_keys(
         "[].",
         (
-            *keys(
+            *declare_keys(
                 """
 id | integer | | Number of the change.
 step | integer | | Number of the step; changes of one step were made together.
@@ -427,21 +430,21 @@ who | string | | User or TurnDesk function that made the change.
         ),
     ),
 )
-STORE_VERIFY = Output(
+STORE_VERIFY_OUTPUT = JsonOutput(
     "store verify --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 store | string | | Path of the store.
 problems | list | | Damage to the store, as sentences; if there is any, the exit status is 1.
 """
     ),
 )
-SCOPE = Output(
+SCOPE_OUTPUT = JsonOutput(
     "scope FILE --json",
     "One object.",
     (
-        *keys(
+        *declare_keys(
             """
 file | string | | The record.
 csv | string or null | | File of --csv.
@@ -454,9 +457,9 @@ about.* | string | | One fact.
 channels | list | | Recorded channels.
 """
         ),
-        *below(
+        *prefix_keys(
             "channels[].",
-            row_keys(
+            declare_row_keys(
                 "",
                 Channel,
                 """
@@ -466,7 +469,7 @@ logic | | Whether the channel is a logic signal with the values 1 (on) and 0 (of
 """,
             ),
         ),
-        *keys(
+        *declare_keys(
             """
 channels[].min | number or null | unit | Smallest value; null if not available.
 channels[].max | number or null | unit | Largest value; null if not available.
@@ -475,17 +478,26 @@ channels[].max | number or null | unit | Largest value; null if not available.
     ),
 )
 _OWN_OUTPUTS = (
-    *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
-    *(ALARMS, WHERE, OFFSETS_SHOW, OFFSETS_HISTORY, STORE_VERIFY, SCOPE),
+    *(
+        PROVE_OUTPUT,
+        EXPAND_OMNITURN_OUTPUT,
+        EXPAND_SINUMERIK_OUTPUT,
+        EXPAND_KLARTEXT_OUTPUT,
+        TRACE_OUTPUT,
+        RUN_OUTPUT,
+        MACHINE_CHECK_OUTPUT,
+        MACHINE_HAL_OUTPUT,
+    ),
+    *(ALARMS_OUTPUT, WHERE, OFFSETS_SHOW_OUTPUT, OFFSETS_HISTORY_OUTPUT, STORE_VERIFY_OUTPUT, SCOPE_OUTPUT),
 )
-OUTPUTS = tuple(
+ALL_OUTPUTS = tuple(
     insert_after(
         _OWN_OUTPUTS,
         lambda output: output.command,
         [
             (each, after)
             for extra in extras().values()
-            for after, outputs in extra.json_outputs().items()
+            for after, outputs in extra.list_json_outputs().items()
             for each in outputs
         ],
     )

@@ -7,12 +7,12 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from app.cli.json_reference.json_keys import OUTPUTS
-from app.compose.extra import extras
-from app.shopfloor.json_keys import FILE
-from core.json_key import Key, Output
-from core.page_contents import anchor_of
-from core.store.table_keys import RUNS_FILE, TABLES, TableKeys
+from app.cli.json_reference.json_keys import ALL_OUTPUTS
+from app.compose.optional_features import extras
+from app.shopfloor.json_keys import FILE_KEYS
+from core.json_keys import JsonKey, JsonOutput
+from core.page_contents import make_anchor
+from core.store.table_keys import PUBLIC_TABLES, RUN_FILE_COLUMNS, TableColumns
 
 _TITLE = """\
 # Machine-readable output
@@ -64,7 +64,7 @@ undoes), `at`, the number, the row before and after the change as `old_…` and 
 """
 
 
-def document() -> str:
+def generate_page() -> str:
     """Return the complete page."""
     lines = [_HEAD.rstrip("\n"), *_commands(), *_shop_floor(), *_store()]
     return "\n".join([_TITLE, *_contents(), *lines]) + "\n"
@@ -72,13 +72,13 @@ def document() -> str:
 
 def _contents() -> Iterator[str]:
     for title in ("Conventions", "Exit status", "Commands", "Shop floor", "Store"):
-        yield f"- [{title}](#{anchor_of(title)})"
+        yield f"- [{title}](#{make_anchor(title)})"
         below = {
-            "Commands": [each.command for each in OUTPUTS],
+            "Commands": [each.command for each in ALL_OUTPUTS],
             "Shop floor": [each.command for each in _FLOOR],
-            "Store": [table.name for table in TABLES],
+            "Store": [table.name for table in PUBLIC_TABLES],
         }
-        yield from (f"  - [{_code(name, title)}](#{anchor_of(name)})" for name in below.get(title, ()))
+        yield from (f"  - [{_code(name, title)}](#{make_anchor(name)})" for name in below.get(title, ()))
     yield ""
 
 
@@ -88,13 +88,13 @@ def _code(name: str, title: str) -> str:
 
 def _commands() -> Iterator[str]:
     yield "## Commands"
-    for each in OUTPUTS:
+    for each in ALL_OUTPUTS:
         yield from ("", f"### `{each.command}`", "", *_wrapped(each.purpose), "", *_table(each.keys))
 
 
 _FLOOR = (
-    Output("The file status.json", _STATUS, FILE),
-    *(each for extra in extras().values() for each in extra.floor_outputs()),
+    JsonOutput("The file status.json", _STATUS, FILE_KEYS),
+    *(each for extra in extras().values() for each in extra.list_shop_outputs()),
 )
 
 
@@ -106,18 +106,18 @@ def _shop_floor() -> Iterator[str]:
 
 def _store() -> Iterator[str]:
     yield from ("", "## Store", _STORE.rstrip("\n"))
-    for table in TABLES:
+    for table in PUBLIC_TABLES:
         yield from ("", f"### `{table.name}`", "", *_wrapped(_purpose(table)), "", *_table(table.columns))
 
 
-def _purpose(table: TableKeys) -> str:
+def _purpose(table: TableColumns) -> str:
     if table.name == "runs":
-        columns = ", ".join(f"`{name}`" for name in RUNS_FILE)
+        columns = ", ".join(f"`{name}`" for name in RUN_FILE_COLUMNS)
         return f"{table.purpose} Export: `runs.csv` with the columns {columns}."
-    return f"{table.purpose} Export: `{table.file}`." if table.file else table.purpose
+    return f"{table.purpose} Export: `{table.export_file}`." if table.export_file else table.purpose
 
 
-def _table(declared: Sequence[Key]) -> Iterator[str]:
+def _table(declared: Sequence[JsonKey]) -> Iterator[str]:
     yield from ("| key | type | unit | meaning |", "|---|---|---|---|")
     yield from (f"| `{key.name}` | {key.type} | {key.unit or '–'} | {key.meaning} |" for key in declared)
 
@@ -128,7 +128,7 @@ def _wrapped(text: str) -> list[str]:
 
 def main(argv: list[str]) -> int:
     """Write the page to the file named in the arguments."""
-    Path(argv[0]).write_text(document(), encoding="utf-8")
+    Path(argv[0]).write_text(generate_page(), encoding="utf-8")
     return 0
 
 

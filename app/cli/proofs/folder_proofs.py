@@ -14,27 +14,33 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.part_options import with_kept
+from app.cli.part_options import apply_stored_part
 from app.cli.program_options import read_source
-from app.cli.proofs.progress_bar import Progress
+from app.cli.proofs.progress_bar import ProgressBar
 from app.cli.proofs.proof_cache import ProofCache
-from app.cli.proofs.proof_job import FittingJobs, ProofJob, on_machine
-from app.cli.proofs.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
-from app.cli.proofs.proof_work import (
-    OtherVersionError,
-    Proof,
-    code_version,
-    proof_of,
+from app.cli.proofs.proof_job import FittingJobs, ProofJob, describe_machine_choice
+from app.cli.proofs.proof_pool import (
+    WORKER_KILLED_TEXT,
+    LocalWorkers,
+    WorkDistributor,
+    WorkerSource,
+    count_cores,
 )
-from app.cli.proofs.report_file import ReportFile, report_file
-from app.compose.extra import proof_workers
-from app.compose.known_part import kept_with_all
+from app.cli.proofs.proof_work import (
+    Proof,
+    VersionMismatchError,
+    get_code_hash,
+    prove_packed,
+)
+from app.cli.proofs.report_file import ReportFile, open_report
+from app.compose.optional_features import find_worker_class
+from app.compose.part_data import read_stored_parts
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.message import Message
 
 if TYPE_CHECKING:
-    from core.proving.program_tools import PartSetting
+    from core.proving.program_tools import PartSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,21 +48,21 @@ class ProgramFiles:
     """Paths of programs in order of names, and the number of other files."""
 
     paths: tuple[Path, ...]
-    others: int
+    other_count: int
 
 
-def program_files(names: Iterable[str]) -> ProgramFiles:
+def find_programs(names: Iterable[str]) -> ProgramFiles:
     """Return the programs in these files and folders; a named file may have any suffix.
 
     Raises CommandError if a folder cannot be read or contains no program.
     """
     found: set[Path] = set()
     others = 0
-    for path in map(Path, _named(names)):
+    for path in map(Path, _expand_names(names)):
         if not path.is_dir():
             found.add(path)
             continue
-        there = list(_files(path))
+        there = list(_iterate_files(path))
         programs = {each for each in there if _is_program(each)}
         if not programs:
             raise CommandError(
@@ -72,7 +78,7 @@ def program_files(names: Iterable[str]) -> ProgramFiles:
     return ProgramFiles(tuple(sorted(found, key=_by_name)), others)
 
 
-def _named(names: Iterable[str]) -> Iterator[str]:
+def _expand_names(names: Iterable[str]) -> Iterator[str]:
     """Yield the names. Raises CommandError for an empty name, which would mean the current folder."""
     for name in names:
         if not name:
@@ -88,7 +94,7 @@ def _by_name(path: Path) -> tuple[list[str], str]:
     return [part.lower() for part in path.parts], str(path)
 
 
-def _files(folder: Path) -> Iterator[Path]:
+def _iterate_files(folder: Path) -> Iterator[Path]:
     """Yield all files in and below a folder, except hidden folders; links to folders are not followed."""
     for where, folders, names in os.walk(folder, onerror=_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
@@ -107,25 +113,25 @@ def _unreadable(error: OSError) -> None:
 
 
 def _is_program(path: Path) -> bool:
-    from app.desk.programs.program_folder import ENDINGS
+    from app.desk.programs.program_folder import PROGRAM_EXTENSIONS
 
-    return path.suffix.lower() in ENDINGS and not path.name.startswith(".") and path.is_file()
+    return path.suffix.lower() in PROGRAM_EXTENSIONS and not path.name.startswith(".") and path.is_file()
 
 
-def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:
+def prove_programs(args: argparse.Namespace, fitting_jobs: FittingJobs) -> int:
     """Prove all programs; return 1 if a program has errors, or 2 if one cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    files = program_files(args.files)
-    with report_file(args) as report:
-        run = _Run(args, jobs, files, _workers(args), report)
+    files = find_programs(args.files)
+    with open_report(args) as report:
+        run = _Run(args, fitting_jobs, files, _workers(args), report)
         run.prove()
-    return run.outcome()
+    return run.print_outcome()
 
 
 def _workers(args: argparse.Namespace) -> WorkerSource:
     if args.scheduler is None:
-        return Workers(args.jobs if args.jobs is not None else cores())
-    module, _, name = proof_workers().rpartition(".")
+        return LocalWorkers(args.jobs if args.jobs is not None else count_cores())
+    module, _, name = find_worker_class().rpartition(".")
     source: WorkerSource = getattr(import_module(module), name)(args.scheduler)
     return source
 
@@ -135,7 +141,7 @@ class _Unit:
     """A program to prove, with its index in the order of names and the place of its proof in the cache."""
 
     index: int
-    source: Source
+    source: ProgramSource
     job: ProofJob
     key: str
     cache: ProofCache | None
@@ -148,24 +154,24 @@ class _Run:
         self, args: argparse.Namespace, jobs: FittingJobs, files: ProgramFiles, workers: WorkerSource,
         report: ReportFile | None,
     ) -> None:  # fmt: skip
-        from app.desk.data_folder import data_folder
+        from app.desk.data_folder import find_data_folder
 
         self._args, self._jobs, self._files, self._workers = args, jobs, files, workers
         self._report = report
         names = (path.name for path in files.paths)
-        self._kept_parts = kept_with_all(names)
+        self._kept_parts = read_stored_parts(names)
         # worker processes of this computer have the same version
-        self._version = code_version() if args.scheduler is not None else ""
-        self._folder = data_folder() / "proofs"
+        self._version = get_code_hash() if args.scheduler is not None else ""
+        self._folder = find_data_folder() / "proofs"
         self._caches: dict[str, ProofCache] = {}  # =
         self._proofs: dict[int, Proof] = {}
         self._told = 0
-        self._progress = Progress("proving", len(files.paths))
+        self._progress = ProgressBar("proving", len(files.paths))
 
     def prove(self) -> None:
         """Prove all programs. Finished proofs are saved even if the command is interrupted."""
-        proving: Proving[_Unit, Proof] = Proving(self._workers, self._submit)
-        results = proving.results(self._units())
+        proving: WorkDistributor[_Unit, Proof] = WorkDistributor(self._workers, self._submit)
+        results = proving.iterate_results(self._iterate_units())
         try:
             with self._progress:
                 for unit, made in results:
@@ -182,67 +188,72 @@ class _Run:
         finally:
             results.close()
             for cache in self._caches.values():
-                cache.trim()
+                cache.delete_oldest()
 
-    def outcome(self) -> int:
+    def print_outcome(self) -> int:
         """Print the table or the number of other files; return the exit status."""
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
-        others = self._files.others
+        others = self._files.other_count
         if not self._args.json:
-            sys.stdout.write(table(rows, others))
+            sys.stdout.write(format_table(rows, others))
         elif others:
             sys.stderr.write(f"turndesk: {others} other file{'s' * (others > 1)} skipped\n")
         return max(_status(proof) for _, proof in rows)
 
     def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
-        return executor.submit(proof_of, unit.job.packed, self._version, unit.source)
+        return executor.submit(prove_packed, unit.job.pickled_job, self._version, unit.source)
 
-    def _units(self) -> Iterator[_Unit]:
+    def _iterate_units(self) -> Iterator[_Unit]:
         """Yield the programs without a saved proof, as workers become available."""
         for index, path in enumerate(self._files.paths):
             try:
                 source = read_source(path, self._args)
-                machine = self._jobs.machine_of(source)
-                common = self._jobs.of(machine)
-                job = self._job_of(source, common)
+                machine = self._jobs.select_machine_name(source)
+                common = self._jobs.get_job_for(machine)
+                job = self._create_job(source, common)
             except CommandError as error:
-                self._add(index, Proof({}, fault=str(error)))
+                self._add(index, Proof({}, failure_reason=str(error)))
                 continue
-            cache, own = self._cache_of(machine, common), _own(job.setting) if job is not common else None
-            key = cache.key(source, own) if cache is not None else ""
-            found = cache.find(key) if cache is not None else None
+            cache, own = (
+                self._get_cache(machine, common),
+                _program_data(job.part_setting) if job is not common else None,
+            )
+            key = cache.get_key(source, own) if cache is not None else ""
+            found = cache.find_proof(key) if cache is not None else None
             if found is not None:
                 self._add(index, found)
             else:
                 yield _Unit(index, source, job, key, cache)
 
-    def _cache_of(self, machine: str, job: ProofJob) -> ProofCache | None:
+    def _get_cache(self, machine: str, job: ProofJob) -> ProofCache | None:
         """Return the cache for this machine; print once which machine was chosen."""
         if machine not in self._caches:
             if machine:
-                sys.stderr.write(on_machine("each Klartext program", machine))
+                sys.stderr.write(describe_machine_choice("each Klartext program", machine))
             self._caches[machine] = ProofCache(self._folder, job)
         return None if self._args.no_cache else self._caches[machine]
 
-    def _job_of(self, source: Source, common: ProofJob) -> ProofJob:
+    def _create_job(self, source: ProgramSource, common: ProofJob) -> ProofJob:
         """Return the common job, or a job with the stored part data of this program."""
         kept = self._kept_parts.get(source.name)
         if kept is None:
             return common
-        return replace(common, setting=with_kept(common.setting, source.name, kept, self._args))
+        return replace(
+            common, part_setting=apply_stored_part(common.part_setting, source.name, kept, self._args)
+        )
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
-            return Proof({}, fault=f"{self._files.paths[unit.index]}: {self._why(made)}")
+            return Proof({}, failure_reason=f"{self._files.paths[unit.index]}: {self._describe_error(made)}")
         if unit.cache is not None:
-            unit.cache.keep(unit.key, made)
+            unit.cache.save_proof(unit.key, made)
         return made
 
-    def _why(self, error: BaseException) -> str:
+    def _describe_error(self, error: BaseException) -> str:
         """Return the reason why a program could not be proved."""
-        if isinstance(error, self._workers.killed):
-            return KILLED
-        if isinstance(error, OtherVersionError):
+        if isinstance(error, self._workers.killed_exception):
+            return WORKER_KILLED_TEXT
+        if isinstance(error, VersionMismatchError):
             return (
                 "the dask worker process runs a different version of TurnDesk than this "
                 "computer; install this computer's version on the worker"
@@ -252,9 +263,9 @@ class _Run:
                 "TurnDesk is not installed on the dask worker ({error}); install TurnDesk there",
                 error=error,
             )
-        from app.cli.bug_report.crash_report import keep_crash
+        from app.cli.bug_report.crash_report import write_crash_file
 
-        where = keep_crash(type(error), error, error.__traceback__)
+        where = write_crash_file(type(error), error, error.__traceback__)
         what = str(error).splitlines()[0] if str(error) else type(error).__name__
         return Message(
             "internal error in TurnDesk ({what}); please report it and include {place}",
@@ -267,66 +278,68 @@ class _Run:
             proof.report["file"] = str(self._files.paths[index])
         self._proofs[index] = proof
         while self._told in self._proofs:
-            self._tell(self._files.paths[self._told], self._proofs[self._told])
+            self._print_result(self._files.paths[self._told], self._proofs[self._told])
             # The section is already in the report. Thousands of sections would need much memory.
-            self._proofs[self._told] = replace(self._proofs[self._told], section="")
+            self._proofs[self._told] = replace(self._proofs[self._told], report_section="")
             self._told += 1
-        self._progress.reach(len(self._proofs))
+        self._progress.report_progress(len(self._proofs))
 
-    def _tell(self, path: Path, proof: Proof) -> None:
+    def _print_result(self, path: Path, proof: Proof) -> None:
         """Report the proof of a program, called in the order of names."""
-        if proof.fault:
-            sys.stderr.write(f"turndesk: {proof.fault}\n")
+        if proof.failure_reason:
+            sys.stderr.write(f"turndesk: {proof.failure_reason}\n")
         elif self._args.json:
             sys.stdout.write(json.dumps(proof.report) + "\n")
             sys.stdout.flush()
         if self._report is not None:
-            self._report.add(path, proof)
+            self._report.add_proof(path, proof)
 
 
 def _status(proof: Proof) -> int:
-    if proof.fault:
+    if proof.failure_reason:
         return EXIT_USAGE
-    return EXIT_ERRORS if proof.count("error") else EXIT_OK
+    return EXIT_ERRORS if proof.count_findings("error") else EXIT_OK
 
 
-def _own(setting: PartSetting) -> object:
+def _program_data(setting: PartSettings) -> object:
     """Return the part data that apply only to one program."""
     return setting.stock, setting.clamping, setting.silenced
 
 
-_SLOWEST = 3
+_MAX_SLOWEST = 3
 _HEAD = "verdict     errors  warnings      cycle s       removed  program\n"
 
-Row = tuple[Path, Proof]
+ProofRow = tuple[Path, Proof]
 
 
-def table(rows: Sequence[Row], others: int) -> str:
+def format_table(rows: Sequence[ProofRow], other_count: int) -> str:
     """Return the complete table; ``others`` is the number of files that are not programs."""
-    return _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, others) + _slowest(rows)
+    return (
+        _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, other_count) + _slowest(rows)
+    )
 
 
-def verdict(proof: Proof) -> str:
+def format_verdict(proof: Proof) -> str:
     """Return the result of a proof in one or two words."""
-    if proof.fault:
+    if proof.failure_reason:
         return "not proved"
-    return "errors" if proof.count("error") else "proved"
+    return "errors" if proof.count_findings("error") else "proved"
 
 
 def _line(path: Path, proof: Proof) -> str:
-    word = verdict(proof)
-    if proof.fault:
-        return f"{word:10s}{'':38s}  {path}\n            {proof.fault}\n"
-    first = next(proof.findings("error"), None)
+    word = format_verdict(proof)
+    if proof.failure_reason:
+        return f"{word:10s}{'':38s}  {path}\n            {proof.failure_reason}\n"
+    first = next(proof.iterate_findings("error"), None)
     return (
-        f"{word:10s}{proof.count('error'):8d}{proof.count('warning'):10d}"
+        f"{word:10s}{proof.count_findings('error'):8d}{proof.count_findings('warning'):10d}"
         f"{_number(proof.report['cycle_time_s']):13.2f}{_removed(proof):>14s}  {path}\n"
-        + _compared(proof)
+        + _format_comparison(proof)
         + (f"            line {first['line']}: {first['message']}\n" if first else "")
     )
 
 
-def _compared(proof: Proof) -> str:
+def _format_comparison(proof: Proof) -> str:
     """Return the effect of other offsets as one line."""
     found = proof.report.get("compare")
     if not isinstance(found, dict):
@@ -353,8 +366,8 @@ def _number(value: object) -> float:
     return float(value)
 
 
-def _sum(rows: Sequence[Row], others: int) -> str:
-    words = Counter(verdict(proof) for _, proof in rows)
+def _sum(rows: Sequence[ProofRow], others: int) -> str:
+    words = Counter(format_verdict(proof) for _, proof in rows)
     parts = [f"{words['proved']} proved"]
     parts += [Message("{words} with errors", words=words["errors"])] if words["errors"] else []
     parts += [Message("{words} not proved", words=words["not proved"])] if words["not proved"] else []
@@ -366,9 +379,9 @@ def _sum(rows: Sequence[Row], others: int) -> str:
     return f"{len(rows)} program{'s' * (len(rows) != 1)}: {', '.join(parts)}\n"
 
 
-def _slowest(rows: Iterable[Row]) -> str:
-    proved = sorted((row for row in rows if row[1].seconds), key=lambda row: -row[1].seconds)
+def _slowest(rows: Iterable[ProofRow]) -> str:
+    proved = sorted((row for row in rows if row[1].duration_s), key=lambda row: -row[1].duration_s)
     if not proved:
         return ""
-    named = ", ".join(f"{path} {proof.seconds:.2f} s" for path, proof in proved[:_SLOWEST])
+    named = ", ".join(f"{path} {proof.duration_s:.2f} s" for path, proof in proved[:_MAX_SLOWEST])
     return f"slowest to prove: {named}\n"

@@ -8,25 +8,25 @@ from types import TracebackType
 
 from core.message import Message
 
-SHOW_AFTER = 2.0  # s, shorter work has no progress bar
-REDRAW_EVERY = 0.2
-WIDTH = 30
+SHOW_DELAY_S = 2.0  # s, shorter work has no progress bar
+REDRAW_INTERVAL_S = 0.2
+BAR_WIDTH = 30
 
 
-class Progress:
+class ProgressBar:
     """A progress bar toward ``total``, or a counter if ``total`` is 0.
 
     A value beyond the total, such as blocks of a program with loops, is also shown as a counter.
     """
 
-    def __init__(self, what: str, total: float = 0.0) -> None:
-        self.what = what
+    def __init__(self, description: str, total: float = 0.0) -> None:
+        self.description = description
         self.total = total
         self._drawn = False
-        self._next = time.monotonic() + SHOW_AFTER
+        self._next = time.monotonic() + SHOW_DELAY_S
         self._terminal = sys.stderr.isatty()
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> ProgressBar:
         return self
 
     def __exit__(
@@ -36,25 +36,25 @@ class Progress:
             sys.stderr.write("\r\x1b[K")
             sys.stderr.flush()
 
-    def reach(self, done: float) -> None:
+    def report_progress(self, done: float) -> None:
         """Report the progress. The call is cheap unless the bar must be drawn."""
         if not self._terminal or time.monotonic() < self._next:
             return
-        self._next = time.monotonic() + REDRAW_EVERY
+        self._next = time.monotonic() + REDRAW_INTERVAL_S
         self._drawn = True
-        sys.stderr.write("\r\x1b[K" + self.text(done))
+        sys.stderr.write("\r\x1b[K" + self.format_bar(done))
         sys.stderr.flush()
 
-    def text(self, done: float) -> str:
+    def format_bar(self, done: float) -> str:
         """Return the text of the bar for this progress."""
         if not 0 < done <= self.total:
-            return f"{self.what}: {done:,.0f}"
+            return f"{self.description}: {done:,.0f}"
         share = done / self.total
-        filled = round(share * WIDTH)
-        bar = f"{'█' * filled}{'·' * (WIDTH - filled)}"
+        filled = round(share * BAR_WIDTH)
+        bar = f"{'█' * filled}{'·' * (BAR_WIDTH - filled)}"
         return Message(
             "{what} [{bar}] {share} of {total}",
-            what=self.what,
+            what=self.description,
             bar=bar,
             share=f"{share:4.0%}",
             total=f"{self.total:,.0f}",

@@ -18,33 +18,35 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.proofs.proof_work import Proof, code_version
+from app.cli.proofs.proof_work import Proof, get_code_hash
 
 if TYPE_CHECKING:
     from app.cli.proofs.proof_job import ProofJob
-    from core.language.source import Source
+    from core.language.source import ProgramSource
 
-LARGEST = 256 * 2**20  # bytes of all proofs
-_KEPT = 0.8  # fraction of LARGEST after the oldest proofs have been deleted
-_ASIDE = ".part"
-_STALE = 3600.0  # s; an older temporary file was left by a process that has ended
+MAX_CACHE_BYTES = 256 * 2**20  # bytes of all proofs
+_TRIM_FRACTION = 0.8  # fraction of LARGEST after the oldest proofs have been deleted
+_TEMPORARY_SUFFIX = ".part"
+_STALE_AGE_S = 3600.0  # s; an older temporary file was left by a process that has ended
 
 
 class ProofCache:
     """Proofs of one job in the folder ``proofs`` of the data folder, by their contents."""
 
-    def __init__(self, folder: Path, job: ProofJob, largest: int = LARGEST) -> None:
-        self._folder, self._largest = folder, largest
-        job_text = "\n".join((code_version(), plain(job)))
+    def __init__(self, folder: Path, job: ProofJob, max_bytes: int = MAX_CACHE_BYTES) -> None:
+        self._folder, self._largest = folder, max_bytes
+        job_text = "\n".join((get_code_hash(), format_for_hash(job)))
         self._job = sha256(job_text.encode()).digest()
         self._full = False
 
-    def key(self, source: Source, own: object = None) -> str:
-        """Return the key of a program's proof; ``own`` are data that apply only to this program."""
-        text = plain((source.name, str(source.dialect), source.text, source.subprograms, own))
+    def get_key(self, source: ProgramSource, program_data: object = None) -> str:
+        """Return the key of a program's proof; ``program_data`` are data that apply only to this program."""
+        text = format_for_hash(
+            (source.name, str(source.dialect), source.text, source.subprograms, program_data)
+        )
         return sha256(self._job + text.encode("utf-8", "surrogatepass")).hexdigest()
 
-    def find(self, key: str) -> Proof | None:
+    def find_proof(self, key: str) -> Proof | None:
         """Return the saved proof, or None."""
         path = self._path(key)
         try:
@@ -54,13 +56,13 @@ class ProofCache:
         except (OSError, zlib.error, ValueError, KeyError, TypeError):
             return None
 
-    def keep(self, key: str, proof: Proof) -> None:
+    def save_proof(self, key: str, proof: Proof) -> None:
         """Save a proof. The first disk error is reported, and no more proofs are then saved."""
         if self._full:
             return
         path = self._path(key)
-        kept = {"report": proof.report, "section": proof.section}
-        aside = path.with_name(f"{path.name}.{os.getpid()}{_ASIDE}")
+        kept = {"report": proof.report, "section": proof.report_section}
+        aside = path.with_name(f"{path.name}.{os.getpid()}{_TEMPORARY_SUFFIX}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             aside.write_bytes(zlib.compress(json.dumps(kept).encode()))
@@ -70,18 +72,22 @@ class ProofCache:
             aside.unlink(missing_ok=True)
             sys.stderr.write(f"turndesk: proofs cannot be stored in {self._folder} ({error.strerror})\n")
 
-    def trim(self) -> None:
+    def delete_oldest(self) -> None:
         """Delete the oldest proofs if the cache is too large, and temporary files of killed processes."""
         try:
             there = [_File(path, *_stamp(path)) for path in self._folder.glob("??/*")]
         except OSError:
             return
-        stale = [f for f in there if f.path.suffix == _ASIDE and f.used < time.time() - _STALE]
-        kept = sorted((f for f in there if f.path.suffix != _ASIDE), key=lambda f: f.used)
-        size = sum(each.size for each in kept)
+        stale = [
+            f
+            for f in there
+            if f.path.suffix == _TEMPORARY_SUFFIX and f.last_used_s < time.time() - _STALE_AGE_S
+        ]
+        kept = sorted((f for f in there if f.path.suffix != _TEMPORARY_SUFFIX), key=lambda f: f.last_used_s)
+        size = sum(each.size_bytes for each in kept)
         if size > self._largest:
-            while kept and size > _KEPT * self._largest:
-                size -= kept[0].size
+            while kept and size > _TRIM_FRACTION * self._largest:
+                size -= kept[0].size_bytes
                 stale.append(kept.pop(0))
         for each in stale:
             each.path.unlink(missing_ok=True)
@@ -93,8 +99,8 @@ class ProofCache:
 @dataclass(frozen=True, slots=True)
 class _File:
     path: Path
-    used: float  # =
-    size: int
+    last_used_s: float  # =
+    size_bytes: int
 
 
 def _stamp(path: Path) -> tuple[float, int]:
@@ -105,7 +111,7 @@ def _stamp(path: Path) -> tuple[float, int]:
     return found.st_mtime, found.st_size
 
 
-def plain(value: object) -> str:
+def format_for_hash(value: object) -> str:
     """Return a value as text that is identical in every process, for hashing.
 
     Raises TypeError for a value without such a text, such as a function.
@@ -116,12 +122,18 @@ def plain(value: object) -> str:
         case None | bool() | int() | float() | str():
             return repr(value)
         case Mapping():
-            return "{" + ",".join(sorted(f"{plain(k)}:{plain(v)}" for k, v in value.items())) + "}"
+            return (
+                "{"
+                + ",".join(sorted(f"{format_for_hash(k)}:{format_for_hash(v)}" for k, v in value.items()))
+                + "}"
+            )
         case tuple() | list():
-            return "[" + ",".join(map(plain, value)) + "]"
+            return "[" + ",".join(map(format_for_hash, value)) + "]"
         case Set():
-            return "<" + ",".join(sorted(map(plain, value))) + ">"
+            return "<" + ",".join(sorted(map(format_for_hash, value))) + ">"
     if is_dataclass(value) and not isinstance(value, type):
-        inner = ",".join(f"{each.name}={plain(getattr(value, each.name))}" for each in fields(value))
+        inner = ",".join(
+            f"{each.name}={format_for_hash(getattr(value, each.name))}" for each in fields(value)
+        )
         return f"{type(value).__name__}({inner})"
     raise TypeError(f"{type(value).__name__} has no text that stays the same")

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from core.interpreter.shared.job_setup import Setup
-    from core.language.source import Source
+    from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
-    from core.proving.program_tools import PartSetting
+    from core.proving.program_tools import PartSettings
 
 
 @dataclass(frozen=True)
@@ -32,14 +32,14 @@ class ProofJob:
 
     machine: Machine
     setup: Setup
-    setting: PartSetting
-    ideal: bool = False
+    part_setting: PartSettings
+    uses_ideal_times: bool = False
     optional_stop: bool = False
-    reported: bool = False  # whether a section for a report is required
-    other: OtherOffsets | None = None
+    needs_report_section: bool = False  # whether a section for a report is required
+    other_offsets: OtherOffsets | None = None
 
     @cached_property
-    def packed(self) -> bytes:
+    def pickled_job(self) -> bytes:
         """The job pickled for a worker."""
         import pickle
 
@@ -50,32 +50,32 @@ class ProofJob:
 class FittingJobs:
     """Jobs by machine: the job of the options, and one for each shipped machine that a program needs.
 
-    ``make`` creates a job.
+    ``create_job`` creates a job.
     """
 
     args: argparse.Namespace
-    make: Callable[[argparse.Namespace], ProofJob]
+    create_job: Callable[[argparse.Namespace], ProofJob]
     # by machine; the empty name means the machine of the options
     _made: dict[str, ProofJob] = field(default_factory=dict)
 
-    def machine_of(self, source: Source) -> str:
+    def select_machine_name(self, source: ProgramSource) -> str:
         """Return the shipped machine for this program; empty means the machine of the options."""
         if self.args.machine is not None:
             return ""
-        from app.compose.machine.fitting_machine import fitting_machine
+        from app.compose.machine.machine_selection import select_machine
 
-        return fitting_machine(source)
+        return select_machine(source)
 
-    def of(self, machine: str) -> ProofJob:
+    def get_job_for(self, machine: str) -> ProofJob:
         """Return the job on this machine. Raises CommandError."""
         if machine not in self._made:
             args = self.args
             if machine:
                 args = argparse.Namespace(**{**vars(args), "machine": machine})
-            self._made[machine] = self.make(args)
+            self._made[machine] = self.create_job(args)
         return self._made[machine]
 
 
-def on_machine(what: str, machine: str) -> str:
+def describe_machine_choice(program_name: str, machine: str) -> str:
     """Return the line that reports the machine chosen for a program."""
-    return f"turndesk: {what} is proved on the shipped {machine}; --machine chooses another one\n"
+    return f"turndesk: {program_name} is proved on the shipped {machine}; --machine chooses another one\n"

@@ -15,21 +15,21 @@ from typing import Generic, Protocol, TypeVar
 
 from app.cli.bug_report.crash_report import raise_interrupt
 
-Unit = TypeVar("Unit")
-Made = TypeVar("Made")
+WorkUnit = TypeVar("WorkUnit")
+UnitResult = TypeVar("UnitResult")
 
-KILLED = "the worker process was killed twice while proving this program (out of memory?)"
+WORKER_KILLED_TEXT = "the worker process was killed twice while proving this program (out of memory?)"
 # Modules imported once, in the process from which all workers are forked.
-_PRELOAD = (
-    "app.cli.figures.proof_json",
+_PRELOADED_MODULES = (
+    "app.cli.figures.proof_output",
     "app.cli.proofs.proof_work",
     "core.interpreter.omniturn.omniturn_interpreter",
     "core.proving.part_proof",
 )
-_AHEAD = 2  # units queued in addition to those that workers process
+_EXTRA_UNITS = 2  # units queued in addition to those that workers process
 
 
-def cores() -> int:
+def count_cores() -> int:
     """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
@@ -37,53 +37,55 @@ def cores() -> int:
 
 
 class WorkerSource(Protocol):
-    """Source of workers; ``killed`` is the exception of a unit that kills its worker."""
+    """Source of workers; ``killed_exception`` is the exception of a unit that kills its worker."""
 
-    killed: type[BaseException]
+    killed_exception: type[BaseException]
 
     @property
-    def ahead(self) -> int:
+    def max_units_in_progress(self) -> int:
         """Largest number of units in progress."""
 
-    def open(self, jobs: int | None = None, /) -> Executor:
+    def start_workers(self, worker_count: int | None = None, /) -> Executor:
         """Start workers, ``jobs`` or all, and return their executor."""
 
-    def stop(self, executor: Executor | None, /, *, done: bool) -> None:
+    def stop_workers(self, executor: Executor | None, /, *, is_done: bool) -> None:
         """Stop the workers; unless ``done`` is true, also abort the units in progress."""
 
 
-class Workers:
+class LocalWorkers:
     """Worker processes on this computer.
 
     Units must be functions of modules with arguments that can be pickled.
     """
 
     def __init__(self, jobs: int) -> None:
-        self.jobs = jobs
-        self.killed: type[BaseException] = BrokenExecutor
-        self.ahead = jobs + _AHEAD
+        self.worker_count = jobs
+        self.killed_exception: type[BaseException] = BrokenExecutor
+        self.max_units_in_progress = jobs + _EXTRA_UNITS
         self._before = set(multiprocessing.active_children())
         method = "forkserver" if sys.platform == "linux" else "spawn"
         self._context = multiprocessing.get_context(method)
         if method == "forkserver":
-            self._context.set_forkserver_preload(list(_PRELOAD))
+            self._context.set_forkserver_preload(list(_PRELOADED_MODULES))
 
-    def open(self, jobs: int | None = None) -> Executor:
+    def start_workers(self, worker_count: int | None = None) -> Executor:
         """Start ``jobs`` workers, or all, and return their executor."""
-        return ProcessPoolExecutor(jobs or self.jobs, mp_context=self._context, initializer=_begin)
+        return ProcessPoolExecutor(
+            worker_count or self.worker_count, mp_context=self._context, initializer=_initialize_worker
+        )
 
-    def stop(self, executor: Executor | None, *, done: bool) -> None:
+    def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
         """Stop the workers; unless ``done`` is true, also abort the units in progress.
 
         The method waits for the thread of the pool, because Python's shutdown would otherwise close pipes
         that this thread still uses.
         """
-        if not done:
-            self._terminate()
+        if not is_done:
+            self._terminate_workers()
         if executor is not None:
             executor.shutdown()
 
-    def _terminate(self) -> None:
+    def _terminate_workers(self) -> None:
         """Terminate the worker processes. Processes that the pool has already removed are ignored."""
         with contextlib.suppress(OSError, ValueError):
             for each in set(multiprocessing.active_children()) - self._before:
@@ -91,25 +93,29 @@ class Workers:
                     each.terminate()
 
 
-def _begin() -> None:
+def _initialize_worker() -> None:
     """Initialize a worker, which ignores Ctrl-C because the parent process ends it."""
     gc.set_threshold(50_000)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-class Proving(Generic[Unit, Made]):
+class WorkDistributor(Generic[WorkUnit, UnitResult]):
     """Distribution of units of work to workers; results are returned in the order in which they finish.
 
     If a worker is killed, all workers of its pool end. Their units are then repeated one at a time, each in
     its own worker. A unit that kills its worker again is the cause.
     """
 
-    def __init__(self, workers: WorkerSource, submit: Callable[[Executor, Unit], Future[Made]]) -> None:
-        self._workers, self._submit = workers, submit
-        self._running: dict[Future[Made], Unit] = {}
-        self._again: deque[Unit] = deque()
+    def __init__(
+        self, workers: WorkerSource, submit_unit: Callable[[Executor, WorkUnit], Future[UnitResult]]
+    ) -> None:
+        self._workers, self._submit = workers, submit_unit
+        self._running: dict[Future[UnitResult], WorkUnit] = {}
+        self._again: deque[WorkUnit] = deque()
 
-    def results(self, units: Iterator[Unit]) -> Generator[tuple[Unit, Made | BaseException], None, None]:
+    def iterate_results(
+        self, units: Iterator[WorkUnit]
+    ) -> Generator[tuple[WorkUnit, UnitResult | BaseException], None, None]:
         """Yield each unit with its result or its exception.
 
         A BrokenExecutor means that the unit kills its worker.
@@ -120,9 +126,9 @@ class Proving(Generic[Unit, Made]):
             while True:
                 raise_interrupt()
                 for unit in units:
-                    executor = executor or self._workers.open()
+                    executor = executor or self._workers.start_workers()
                     self._give(executor, unit)
-                    if len(self._running) >= self._workers.ahead or self._again:
+                    if len(self._running) >= self._workers.max_units_in_progress or self._again:
                         break
                 if not self._running and not self._again:
                     break
@@ -137,15 +143,17 @@ class Proving(Generic[Unit, Made]):
         finally:
             for future in self._running:
                 future.cancel()
-            self._workers.stop(executor, done=done)
+            self._workers.stop_workers(executor, is_done=done)
 
-    def _give(self, executor: Executor, unit: Unit) -> None:
+    def _give(self, executor: Executor, unit: WorkUnit) -> None:
         try:
             self._running[self._submit(executor, unit)] = unit
         except BrokenExecutor:
             self._again.append(unit)
 
-    def _settled(self, done: set[Future[Made]]) -> Iterator[tuple[Unit, Made | BaseException]]:
+    def _settled(
+        self, done: set[Future[UnitResult]]
+    ) -> Iterator[tuple[WorkUnit, UnitResult | BaseException]]:
         for future in done:
             unit = self._running.pop(future)
             error = future.exception()
@@ -154,9 +162,9 @@ class Proving(Generic[Unit, Made]):
             else:
                 yield unit, error or future.result()
 
-    def _one_by_one(self) -> Iterator[tuple[Unit, Made | BaseException]]:
+    def _one_by_one(self) -> Iterator[tuple[WorkUnit, UnitResult | BaseException]]:
         while self._again:
-            with self._workers.open(1) as alone:
+            with self._workers.start_workers(1) as alone:
                 while self._again:
                     unit = self._again.popleft()
                     future = self._submit(alone, unit)

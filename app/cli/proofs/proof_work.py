@@ -13,106 +13,112 @@ from app.cli.proofs.proof_job import ProofJob
 
 if TYPE_CHECKING:
     from app.cli.figures.units import Json
-    from app.report.run_record import RunRecord
-    from core.language.source import Source
-    from core.proving.proof_report import PartReport, Report
+    from app.report.run_record import RunRecorder
+    from core.language.source import ProgramSource
+    from core.proving.proof_report import PartReport, ProofReport
 
 
 _ROOT = Path(__file__).parents[3]
-_ROOMS = ("app/cli", "app/compose", "app/report", "core")  # folders with the code that affects a proof
+_CODE_FOLDERS = ("app/cli", "app/compose", "app/report", "core")  # folders with the code that affects a proof
 
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """Result of a proof: the JSON object, or the reason ``fault`` why the proof failed.
+    """Result of a proof: the JSON object, or the reason ``failure_reason`` why the proof failed.
 
-    ``section`` is the program's part of a report, if required. ``seconds`` is the duration of the proof, or 0
-    for a proof from the cache.
+    ``report_section`` is the program's part of a report, if required. ``duration_s`` is the duration of the
+    proof, or 0 for a proof from the cache.
     """
 
     report: Json
-    section: str = ""
-    fault: str = ""
-    seconds: float = 0.0
+    report_section: str = ""
+    failure_reason: str = ""
+    duration_s: float = 0.0
 
-    def count(self, severity: str) -> int:
+    def count_findings(self, severity: str) -> int:
         """Return the number of findings with this severity."""
-        return sum(1 for _ in self.findings(severity))
+        return sum(1 for _ in self.iterate_findings(severity))
 
-    def findings(self, severity: str) -> Iterator[Json]:
+    def iterate_findings(self, severity: str) -> Iterator[Json]:
         """Return an iterator over the findings with this severity."""
         found = self.report.get("diagnostics", [])
         assert isinstance(found, list)
         return (each for each in found if each["severity"] == severity)
 
 
-class OtherVersionError(Exception):
+class VersionMismatchError(Exception):
     """The worker has another version of TurnDesk, so its proofs would differ."""
 
 
-def proof_of(packed: bytes, version: str, source: Source) -> Proof:
+def prove_packed(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
     """Prove one program in a worker. Raises OtherVersionError unless the versions match.
 
     An empty ``version`` disables the check.
     """
-    if version and version != code_version():
-        raise OtherVersionError
+    if version and version != get_code_hash():
+        raise VersionMismatchError
     start = time.perf_counter()
-    proof = proved(_unpacked(packed), source)
-    return replace(proof, seconds=time.perf_counter() - start)
+    proof = prove_program(_unpacked(pickled_job), source)
+    return replace(proof, duration_s=time.perf_counter() - start)
 
 
-def proved(job: ProofJob, source: Source) -> Proof:
+def prove_program(job: ProofJob, source: ProgramSource) -> Proof:
     """Prove one program in this process."""
-    from app.cli.figures.proof_json import report_json
+    from app.cli.figures.proof_output import make_report_json
 
-    found = findings(job, source)
-    json = report_json(source.name, found.report, found.part, optional_stop=job.optional_stop)
-    return Proof(json if found.compare is None else {**json, "compare": found.compare}, found.section)
+    found = prove_with_findings(job, source)
+    json = make_report_json(source.name, found.report, found.part, optional_stop=job.optional_stop)
+    return Proof(
+        json if found.comparison is None else {**json, "compare": found.comparison}, found.report_section
+    )
 
 
-class Findings(NamedTuple):
+class ProofFindings(NamedTuple):
     """Results of one proof: report, part, section of a report (empty if not required) and comparison."""
 
-    report: Report
+    report: ProofReport
     part: PartReport | None
-    section: str = ""
-    compare: Json | None = None
+    report_section: str = ""
+    comparison: Json | None = None
 
 
-def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | None = None) -> Findings:
+def prove_with_findings(
+    job: ProofJob, source: ProgramSource, progress: Callable[[float], None] | None = None
+) -> ProofFindings:
     """Prove one program; make the comparison and the report section if the job requires them."""
-    from core.proving.part_proof import prove_with_part, refusing_missing_offsets
+    from core.proving.part_proof import prove_with_part, require_tool_offsets
 
-    record = _record(job)
-    see = record.see if record is not None else None
-    around = (job.setup, job.machine, job.setting)
-    report, part = prove_with_part(source, *around, progress, ideal=job.ideal, seen=see)
-    report = refusing_missing_offsets(report, job.setup)
+    record = _run_record(job)
+    see = record.add_span if record is not None else None
+    around = (job.setup, job.machine, job.part_setting)
+    report, part = prove_with_part(source, *around, progress, ideal=job.uses_ideal_times, on_span=see)
+    report = require_tool_offsets(report, job.setup)
     compare: Json | None = None
-    if job.other is not None:
-        from app.cli.figures.compare_figures import compared
+    if job.other_offsets is not None:
+        from app.cli.figures.comparison_output import make_comparison_json
 
-        compare = compared(job, source, report, part)
+        compare = make_comparison_json(job, source, report, part)
     if record is None:
-        return Findings(report, part, "", compare)
-    from app.report.report_page import ProgramReport, compared_part
+        return ProofFindings(report, part, "", compare)
+    from app.report.report_page import ProgramReport, make_comparison
 
-    section = ProgramReport(source, report, part, record, job.machine, job.setup).html()
+    section = ProgramReport(source, report, part, record, job.machine, job.setup).make_html()
     if compare is not None:
-        from app.cli.figures.compare_figures import compare_lines
+        from app.cli.figures.comparison_output import format_comparison
 
-        section += compared_part(compare_lines(compare, metric=report.metric, dialect=report.dialect))
-    return Findings(report, part, section, compare)
+        section += make_comparison(
+            format_comparison(compare, metric=report.is_metric, dialect=report.dialect)
+        )
+    return ProofFindings(report, part, section, compare)
 
 
-def _record(job: ProofJob) -> RunRecord | None:
+def _run_record(job: ProofJob) -> RunRecorder | None:
     """Return the recorder for a report, or None if no report is required."""
-    if not job.reported:
+    if not job.needs_report_section:
         return None
-    from app.report.run_record import RunRecord
+    from app.report.run_record import RunRecorder
 
-    return RunRecord(job.setting)
+    return RunRecorder(job.part_setting)
 
 
 @lru_cache(maxsize=4)
@@ -124,12 +130,12 @@ def _unpacked(packed: bytes) -> ProofJob:
 
 
 @lru_cache(maxsize=1)
-def code_version() -> str:
+def get_code_hash() -> str:
     """Return a hash of TurnDesk's code, because the version number does not change during development."""
     from hashlib import sha256
 
     total = sha256()
-    for room in _ROOMS:
+    for room in _CODE_FOLDERS:
         for path in sorted((_ROOT / room).rglob("*.py")):
             total.update(path.relative_to(_ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return total.hexdigest()

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from app.desk.command_errors import CommandError
-from core.file_placing import put_in_place
+from core.file_replacement import replace_atomically
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -23,10 +23,10 @@ _HTML, _PDF = {".html", ".htm"}, {".pdf"}
 class _Pages(Protocol):
     """Writer of a report, one program after the other. All methods may raise OSError."""
 
-    def add(self, name: str, part: str, /) -> None:
+    def add_page(self, name: str, html: str, /) -> None:
         """Add the HTML of the next program under its name."""
 
-    def end(self) -> None:
+    def finish(self) -> None:
         """Finish the file on the disk, so that a full disk is detected before the old report is replaced."""
 
     def close(self) -> None:
@@ -37,19 +37,19 @@ class _HtmlPages:
     """Writer of one page for a browser."""
 
     def __init__(self, path: Path) -> None:
-        from app.desk.translation import ENGLISH
-        from app.report.html_tables import page_head
+        from app.desk.translation import ENGLISH_CODE
+        from app.report.html_tables import make_page_head
 
         self._file = path.open("w", encoding="utf-8", errors="backslashreplace")
-        self._file.write(page_head(_TITLE, _now(), ENGLISH))
+        self._file.write(make_page_head(_TITLE, _now(), ENGLISH_CODE))
 
-    def add(self, _name: str, part: str) -> None:
-        self._file.write(part)
+    def add_page(self, _name: str, html: str) -> None:
+        self._file.write(html)
 
-    def end(self) -> None:
-        from app.report.html_tables import PAGE_END
+    def finish(self) -> None:
+        from app.report.html_tables import HTML_END
 
-        self._file.write(PAGE_END)
+        self._file.write(HTML_END)
         self._file.flush()
 
     def close(self) -> None:
@@ -60,22 +60,22 @@ class _PdfPages:
     """Writer of numbered pages for a printer; each program starts on a new page."""
 
     def __init__(self, path: Path, paper: str | None) -> None:
-        from app.report.html_tables import headline
-        from app.report.pdf_file import Paper
-        from app.screen.pdf_pages import PdfPages, usual_paper
+        from app.report.html_tables import make_headline
+        from app.report.pdf_file import PaperSize
+        from app.screen.pdf_pages import PdfWriter, find_default_paper
 
-        self._head = headline(_TITLE, _now())
-        self._pages = PdfPages(path, _TITLE, Paper(paper) if paper is not None else usual_paper())
+        self._head = make_headline(_TITLE, _now())
+        self._pages = PdfWriter(path, _TITLE, PaperSize(paper) if paper is not None else find_default_paper())
 
-    def add(self, name: str, part: str) -> None:
-        self._pages.add(self._head + part, name)
+    def add_page(self, name: str, html: str) -> None:
+        self._pages.add_pages(self._head + html, name)
         self._head = ""
 
-    def end(self) -> None:
+    def finish(self) -> None:
         self._pages.close()
 
     def close(self) -> None:
-        self._pages.give_up()
+        self._pages.discard()
 
 
 class ReportFile:
@@ -87,28 +87,30 @@ class ReportFile:
     def __init__(self, path: Path, pages: _Pages) -> None:
         self._path, self._pages = path, pages
 
-    def add(self, path: Path, proof: Proof) -> None:
+    def add_proof(self, path: Path, proof: Proof) -> None:
         """Add the section of the next program."""
-        from app.report.report_page import not_proved, program_part
+        from app.report.report_page import make_program_section, make_unproved_section
 
-        part = program_part(str(path), proof.section or not_proved(proof.fault))
+        part = make_program_section(
+            str(path), proof.report_section or make_unproved_section(proof.failure_reason)
+        )
         try:
-            self._pages.add(path.name, part)
+            self._pages.add_page(path.name, part)
         except OSError as error:
             raise _unwritable(self._path, error) from error
 
-    def end(self, aside: Path) -> None:
+    def finish(self, temporary_path: Path) -> None:
         """Finish the report and move it to its final place."""
         try:
-            self._pages.end()
+            self._pages.finish()
             self._pages.close()
-            put_in_place(aside, self._path)
+            replace_atomically(temporary_path, self._path)
         except OSError as error:
             raise _unwritable(self._path, error) from error
 
 
 @contextlib.contextmanager
-def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
+def open_report(args: argparse.Namespace) -> Iterator[ReportFile | None]:
     """Yield the report of --report, or None without the option.
 
     Invalid options raise CommandError before anything is proved.
@@ -118,7 +120,7 @@ def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
             raise CommandError("--paper is only for --report FILE.pdf", "paper-is-for-pdf")
         yield None
         return
-    path = _named(args)
+    path = _report_path(args)
     aside = path.with_name(f".{path.name}.part")
     try:
         pages = _pages(aside, path.suffix.lower(), args.paper)
@@ -127,14 +129,14 @@ def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
     try:
         report = ReportFile(path, pages)
         yield report
-        report.end(aside)
+        report.finish(aside)
     finally:
         with contextlib.suppress(OSError):  # data that could not be written cannot be flushed either
             pages.close()
         aside.unlink(missing_ok=True)
 
 
-def _named(args: argparse.Namespace) -> Path:
+def _report_path(args: argparse.Namespace) -> Path:
     """Return the path of the report. Raises CommandError if its suffix is not supported."""
     path = Path(args.report)
     ending = path.suffix.lower()

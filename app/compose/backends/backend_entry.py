@@ -14,9 +14,9 @@ from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 
 if TYPE_CHECKING:
-    from app.compose.control.rights import Right
-    from app.desk.station_hands import StationPanel
-    from drivers.driver_host.host_server import Driven
+    from app.compose.control.process_rights_check import ProcessRight
+    from app.desk.station_controls import StationPanel
+    from drivers.driver_host.host_server import DriverBundle
 
 BACKENDS = {
     "sim": "simulated_backend",
@@ -26,53 +26,55 @@ BACKENDS = {
 }
 """By the word in machine.backend the module of this room with its ``BACKEND``."""
 
-NO_PRIORITY = "without real-time priority"  # start of the warning for drives that need each setpoint on time
-STATION = ("start", "hold")  # a machine without these inputs has no operator station
-Play = Callable[
+NO_PRIORITY_TEXT = (
+    "without real-time priority"  # start of the warning for drives that need each setpoint on time
+)
+STATION_INPUTS = ("start", "hold")  # a machine without these inputs has no operator station
+PlayFunction = Callable[
     [Machine, Callable[[], bool], Callable[[str], None], Callable[[], Iterable[str]]], None
 ]  # machine, whether to continue, output of messages, typed lines
 
 
 @dataclass(frozen=True, slots=True)
-class Connected:
+class ConnectedMachine:
     """The ports of a connected machine.
 
-    ``panel`` is the operator station on the screen, or None if the machine has its own station. ``more_rows``
-    are rows of ``turndesk machine check`` that follow the station. ``measured`` lists those of these rows,
-    and the inputs outside the backend, whose values hardware reports.
+    ``on_screen_station`` is the operator station on the screen, or None if the machine has its own station.
+    ``list_more_rows`` are rows of ``turndesk machine check`` that follow the station. ``measured`` lists
+    those of these rows, and the inputs outside the backend, whose values hardware reports.
     """
 
     ports: MachinePorts
-    panel: StationPanel | None
+    on_screen_station: StationPanel | None
     set_input: Callable[[str, bool], None] | None  # only for a simulated machine
     close: Callable[[], None]
-    more_rows: Callable[[], Iterable[Row]] = tuple
-    measured: Callable[[], Iterable[str]] = tuple
+    list_more_rows: Callable[[], Iterable[CheckRow]] = tuple
+    list_measured_rows: Callable[[], Iterable[str]] = tuple
 
 
 @dataclass(frozen=True, slots=True)
 class Backend:
     """The functions of a backend.
 
-    ``word`` is the name of the device in the message about a missing response. ``driven`` creates the part
-    that the driver host runs, and ``connect`` the part in the control's process, including its inverter. A
-    backend with both uses the driver host if the machine file specifies one. ``played`` returns whether the
-    machine and its devices are simulated here. ``play`` simulates only the devices, to try a machine file
-    without hardware. ``survey`` asks every node or checks every pin; it yields name, address, fault and
-    details. ``measured`` lists the rows of ``turndesk machine check`` whose values hardware reports; without
-    it no row counts as checked.
+    ``word`` is the name of the device in the message about a missing response. ``create_drivers`` creates
+    the part that the driver host runs, and ``connect`` the part in the control's process, including its
+    inverter. A backend with both uses the driver host if the machine file specifies one. ``is_simulated``
+    returns whether the machine and its devices are simulated here. ``play_devices`` simulates only the
+    devices, to try a machine file without hardware. ``survey_nodes`` asks every node or checks every pin; it
+    yields name, address, fault and details. ``measured`` lists the rows of ``turndesk machine check`` whose
+    values hardware reports; without it no row counts as checked.
     """
 
-    word: str
-    driven: Callable[[Machine, Clock], Driven] | None = None
-    connect: Callable[[Machine, Clock], Connected] | None = None
-    played: Callable[[Machine], bool] = lambda _machine: False
-    play: Play | None = None
-    survey: Callable[[Machine, Clock], Iterable[tuple[str, str, str, str]]] | None = None
-    measured: Callable[[Machine], Iterable[str]] = lambda _machine: ()
+    device_name: str
+    create_drivers: Callable[[Machine, Clock], DriverBundle] | None = None
+    connect: Callable[[Machine, Clock], ConnectedMachine] | None = None
+    is_simulated: Callable[[Machine], bool] = lambda _machine: False
+    play_devices: PlayFunction | None = None
+    survey_nodes: Callable[[Machine, Clock], Iterable[tuple[str, str, str, str]]] | None = None
+    list_measured_rows: Callable[[Machine], Iterable[str]] = lambda _machine: ()
 
 
-def backend_of(machine: Machine) -> Backend:
+def find_backend(machine: Machine) -> Backend:
     """Return the backend of a machine; its libraries are loaded on connection.
 
     Raises DriverError if no driver exists for the backend.
@@ -92,13 +94,13 @@ def _backend(word: str) -> Backend:
     return found
 
 
-def playable() -> list[str]:
+def list_playable_backends() -> list[str]:
     """Return the names of the backends whose devices can be simulated alone."""
-    return [word for word in BACKENDS if _backend(word).play is not None]
+    return [word for word in BACKENDS if _backend(word).play_devices is not None]
 
 
 class AxisFields(TypedDict):
-    """Keyword arguments for ``drivers.setpoint_queue.AxisFigures``."""
+    """Keyword arguments for ``drivers.setpoint_queue.AxisProperties``."""
 
     name: str
     vmax: float
@@ -112,7 +114,7 @@ class AxisFields(TypedDict):
     corner: float
 
 
-def axis_figures(axis: Axis, machine: Machine) -> AxisFields:
+def get_axis_fields(axis: Axis, machine: Machine) -> AxisFields:
     """Return the data of an axis that every driver with a setpoint queue needs."""
     return {
         "name": axis.name,
@@ -130,7 +132,7 @@ def axis_figures(axis: Axis, machine: Machine) -> AxisFields:
 
 def has_station(machine: Machine) -> bool:
     """Return whether the machine has its own operator station, instead of the station on the screen."""
-    return any(name in machine.inputs for name in STATION)
+    return any(name in machine.inputs for name in STATION_INPUTS)
 
 
 def wired_inputs(machine: Machine) -> list[str]:
@@ -144,13 +146,13 @@ def has_inverter(machine: Machine) -> bool:
     return machine.hardware.spindle_driver == "vfd"
 
 
-def played(machine: Machine) -> bool:
+def is_simulated(machine: Machine) -> bool:
     """Return whether the machine is simulated, with or without a virtual bus."""
-    return backend_of(machine).played(machine)
+    return find_backend(machine).is_simulated(machine)
 
 
 MISSING, NOT_CHECKED = "missing", "not checked"
-FAILED = (
+FAILED_STATES = (
     "fault",
     "no answer",
     "wrong",
@@ -158,7 +160,7 @@ FAILED = (
 )  # states that are faults; a pressed E-stop is not a fault
 
 
-class Row(NamedTuple):
+class CheckRow(NamedTuple):
     """One row of the check: name, address, state and details."""
 
     name: str
@@ -170,31 +172,31 @@ class Row(NamedTuple):
     def verdict(self) -> str:
         """Result of the check.
 
-        The result is ``ok``, ``FAIL`` if the state contradicts the machine file, or ``not checked``.
+        The result is ``ok``, ``FAIL`` if the state contradicts the machine file, or ``not mark_unchecked``.
         """
-        if self.state in FAILED:
+        if self.state in FAILED_STATES:
             return "FAIL"
         return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
 
-    def checked(self, measured: Container[str]) -> Row:
-        """Return the row as ``not checked`` if hardware did not report it and it does not fail.
+    def mark_unchecked(self, measured_names: Container[str]) -> CheckRow:
+        """Return the row as ``not mark_unchecked`` if hardware did not report it and it does not fail.
 
         ``measured`` has the names of the rows that hardware reported.
         """
-        if self.name in measured or self.state in FAILED:
+        if self.name in measured_names or self.state in FAILED_STATES:
             return self
         return self._replace(state=NOT_CHECKED, detail=self.detail or self.state)
 
 
 @dataclass(slots=True)
-class Answers:
+class CheckResults:
     """Results of a machine check: rows, warnings, faults and process rights.
 
     ``warnings`` are notes about conditions that are not faults. ``rights`` are the rights that the system
     grants to the control process.
     """
 
-    rows: list[Row] = field(default_factory=list)
+    rows: list[CheckRow] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
-    trouble: list[str] = field(default_factory=list)
-    rights: tuple[Right, ...] = ()
+    faults: list[str] = field(default_factory=list)
+    rights: tuple[ProcessRight, ...] = ()

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.backends.backend_entry import Backend, axis_figures, has_station, wired_inputs
-from core.machine.hardware_model import HomeModel
+from app.compose.backends.backend_entry import Backend, get_axis_fields, has_station, wired_inputs
+from core.machine.hardware_model import HomingModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError
@@ -20,21 +20,23 @@ from drivers.canopen.canopen_config import (
     PotConfig,
     SpindleConfig,
 )
-from drivers.canopen.canopen_nodes import PLAIN_MODULE, CanNode, CanTerminal, Objects, can_terminal
+from drivers.canopen.canopen_nodes import FIRST_MODULE, CanNode, CanTerminal, ObjectValues, parse_terminal
 from drivers.canopen.canopen_table import CanopenTable, EncoderTable
-from drivers.canopen.drive_profiles import CIA402, PROFILES
-from drivers.driver_host.host_server import Driven
-from drivers.operator_station import PanelStation
+from drivers.canopen.drive_profiles import CIA402_PROFILE, PROFILES
+from drivers.driver_host.host_server import DriverBundle
+from drivers.operator_station import OnScreenStation
 
 if TYPE_CHECKING:
     from drivers.canopen.canopen_machine import CanopenMachine
-    from drivers.canopen.canopen_survey import Answer
+    from drivers.canopen.canopen_survey import SurveyResult
     from drivers.simulators.canopen_devices import CanopenDevices
 
-_LIBRARIES = frozenset(("can", "canopen", "msgpack"))
+_LIBRARY_NAMES = frozenset(("can", "canopen", "msgpack"))
 
 
-def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | None = None) -> CanopenMachine:
+def connect_canopen_machine(
+    machine: Machine, clock: Clock, idle: Callable[[], None] | None = None
+) -> CanopenMachine:
     """Connect to the bus of a machine file.
 
     Raises DriverError, which names a missing library.
@@ -42,42 +44,42 @@ def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | N
     try:
         from drivers.canopen.canopen_machine import CanopenMachine
     except ImportError as error:
-        raise DriverError(lacking(error)) from error
-    return CanopenMachine(canopen_config(machine), clock, idle)
+        raise DriverError(describe_missing_library(error)) from error
+    return CanopenMachine(create_canopen_config(machine), clock, idle)
 
 
-def canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
+def create_canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
     """Return simulated drives and terminals for the bus of a machine file. Raises DriverError."""
-    from app.compose.backends.simulated_backend import sim_config
+    from app.compose.backends.simulated_backend import create_sim_config
 
     try:
         from drivers.simulators.canopen_devices import CanopenDevices
     except ImportError as error:
-        raise DriverError(lacking(error)) from error
-    return CanopenDevices(canopen_config(machine), sim_config(machine), clock)
+        raise DriverError(describe_missing_library(error)) from error
+    return CanopenDevices(create_canopen_config(machine), create_sim_config(machine), clock)
 
 
-def canopen_survey(machine: Machine, clock: Clock) -> list[Answer]:
+def survey_canopen_bus(machine: Machine, clock: Clock) -> list[SurveyResult]:
     """Ask each node of the bus for its identity. Raises DriverError."""
     try:
-        from drivers.canopen.canopen_survey import survey
+        from drivers.canopen.canopen_survey import identify_nodes
     except ImportError as error:
-        raise DriverError(lacking(error)) from error
-    return survey(canopen_config(machine), clock)
+        raise DriverError(describe_missing_library(error)) from error
+    return identify_nodes(create_canopen_config(machine), clock)
 
 
-def lacking(error: ImportError) -> str:
+def describe_missing_library(error: ImportError) -> str:
     """Return the message for a missing library."""
     name = (error.name or "").partition(".")[0]
-    library = {"can": "python-can"}.get(name, name) if name in _LIBRARIES else str(error)
+    library = {"can": "python-can"}.get(name, name) if name in _LIBRARY_NAMES else str(error)
     return Message(
         "backend canopen needs {library}; install it with: pip install 'turndesk[canopen]'", library=library
     )
 
 
-def canopen_config(machine: Machine) -> CanopenConfig:
+def create_canopen_config(machine: Machine) -> CanopenConfig:
     """Return the configuration of the bus. Raises DriverError if the machine file has no bus."""
-    can = machine.hardware.table(CanopenTable)
+    can = machine.hardware.find_driver_table(CanopenTable)
     if can is None:
         raise DriverError("{source}: the [canopen] table is missing", source=machine.source)
     folder = Path(machine.source).parent  # folder of EDS files with relative paths
@@ -89,33 +91,33 @@ def canopen_config(machine: Machine) -> CanopenConfig:
         bus=can,
         axes=tuple(_axis(axis, machine, nodes.get(axis.name)) for axis in machine.axes),
         spindle=_spindle(machine, nodes),
-        encoder=_encoder(machine, nodes),
+        encoder=_encoder_config(machine, nodes),
         modules=modules,
         outputs={
-            name: OutputConfig(_terminal(output.terminal, first), output.safe)
+            name: OutputConfig(_terminal(output.terminal, first), output.safe_state)
             for name, output in machine.outputs.items()
         },
         inputs={
-            name: replace(_terminal(wired.terminal, first), active_low=wired.active_low)
+            name: replace(_terminal(wired.terminal, first), active_low=wired.is_active_low)
             for name, wired in machine.inputs.items()
         },
         pots={
-            name: PotConfig(_terminal(pot.terminal, first), pot.low, pot.high, pot.switch)
-            for name, pot in machine.hardware.analog.items()
+            name: PotConfig(_terminal(pot.terminal, first), pot.low_value, pot.high_value, pot.switch)
+            for name, pot in machine.hardware.analog_inputs.items()
         },
-        commit=machine.timing.commit,
+        commit_time_s=machine.timing.commit,
     )
 
 
 def _axis(axis: Axis, machine: Machine, node: CanNode | None) -> AxisConfig:
-    home = machine.hardware.homes.get(axis.name) or HomeModel()
+    home = machine.hardware.homing_models.get(axis.name) or HomingModel()
     return AxisConfig(
-        **axis_figures(axis, machine),
+        **get_axis_fields(axis, machine),
         node=node,
-        profile=PROFILES.get(node.drive, CIA402) if node is not None else CIA402,
+        profile=PROFILES.get(node.drive, CIA402_PROFILE) if node is not None else CIA402_PROFILE,
         counts_per_rev=node.counts_per_rev if node is not None else 0,
         home_method=home.method,
-        home_latch=home.latch,
+        home_latch_speed=home.latch,
         home_offset=home.offset,
     )
 
@@ -125,41 +127,41 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
     if node is None or machine.hardware.spindle_driver != "cia402":
         return None
     model, is_c = machine.spindle, machine.c_enabled and machine.spindle_is_c and "C" not in nodes
-    return SpindleConfig(node, model.rpm_max, model.accel, model.decel, is_c)
+    return SpindleConfig(node, model.max_rpm, model.accel, model.decel, is_c)
 
 
-def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
+def _encoder_config(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
     """Return the configuration of the encoder, or None.
 
     The encoder of a drive has no node entry, because the drive's node maps its second input.
     """
-    model = machine.hardware.table(EncoderTable)
+    model = machine.hardware.find_driver_table(EncoderTable)
     if model is None:
         return None
     own = nodes[model.node] if nodes[model.node].profile != 402 else None
-    counts, rpm_max = model.counts_per_rev, machine.spindle.rpm_max
-    return EncoderConfig(model.node, own, *model.address, counts, rpm_max)
+    counts, rpm_max = model.counts_per_rev, machine.spindle.max_rpm
+    return EncoderConfig(model.node, own, *model.object_address, counts, rpm_max)
 
 
 def _terminal(text: str, first: str) -> CanTerminal:
-    found = can_terminal(text)
+    found = parse_terminal(text)
     if found is None:
         raise DriverError(Message("terminal {text} is not a valid bus address", text=f"{text!r}"))
-    return replace(found, node=first) if found.node == PLAIN_MODULE else found
+    return replace(found, node=first) if found.node == FIRST_MODULE else found
 
 
-def _played(machine: Machine) -> bool:
+def _is_simulated(machine: Machine) -> bool:
     """Return whether the bus is virtual, so that its devices are simulated in this process."""
-    can = machine.hardware.table(CanopenTable)
-    return can is not None and not can.own_process
+    can = machine.hardware.find_driver_table(CanopenTable)
+    return can is not None and not can.supports_separate_process
 
 
-def can_driven(machine: Machine, clock: Clock) -> Driven:
+def create_canopen_drivers(machine: Machine, clock: Clock) -> DriverBundle:
     """Return the machine on its bus for the driver host. Raises DriverError."""
-    peers = canopen_peers(machine, clock) if _played(machine) else None
+    peers = create_canopen_peers(machine, clock) if _is_simulated(machine) else None
     try:
         # A stopped clock does not let the peers run, so they are served between the steps.
-        owned = canopen_machine(machine, clock, peers.pump if peers is not None else None)
+        owned = connect_canopen_machine(machine, clock, peers.process_frames if peers is not None else None)
     except DriverError:
         if peers is not None:
             peers.close()
@@ -167,31 +169,33 @@ def can_driven(machine: Machine, clock: Clock) -> Driven:
     ports = owned.ports
     hands: object | None = peers.machine if peers is not None else None
     if not has_station(machine):
-        wired = ports.station if {"handwheel", "spindle_load"} & machine.hardware.analog.keys() else None
-        panel = PanelStation(clock, ports.io.inputs, wired)
+        wired = (
+            ports.station if {"handwheel", "spindle_load"} & machine.hardware.analog_inputs.keys() else None
+        )
+        panel = OnScreenStation(clock, ports.io.inputs, wired)
         hands, ports = hands or panel, replace(ports, station=panel)
     if peers is None:
-        return Driven(
+        return DriverBundle(
             ports,
-            owned.tick,
+            owned.run_cycle,
             owned.close,
             hands,
-            wake=owned.wake,
-            notes=owned.notes,
-            idle=owned.idle,
-            asked=lambda: owned.asked,
+            get_next_tick_time=owned.get_next_cycle_time,
+            collect_notes=owned.collect_warnings,
+            get_idle_time=owned.get_idle_time,
+            has_sent_requests=lambda: owned.has_sent_sync,
         )
 
     def tick() -> None:
-        peers.pump()
-        owned.tick()
-        peers.pump()
+        peers.process_frames()
+        owned.run_cycle()
+        peers.process_frames()
 
     def close() -> None:
         owned.close()
         peers.close()
 
-    return Driven(ports, tick, close, hands, owned.wake, owned.notes)
+    return DriverBundle(ports, tick, close, hands, owned.get_next_cycle_time, owned.collect_warnings)
 
 
 def _play(
@@ -200,46 +204,59 @@ def _play(
     say: Callable[[str], None],
     typed: Callable[[], Iterable[str]],
 ) -> None:
-    from app.compose.backends.played_machine import play_peers
+    from app.compose.backends.simulated_devices import simulate_devices
 
-    play_peers(machine, going, say, typed, canopen_peers)
+    simulate_devices(machine, going, say, typed, create_canopen_peers)
 
 
 def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str]]:
-    for answer in canopen_survey(machine, clock):
-        yield Message("node {answer}", answer=answer.name), str(answer.node), answer.trouble, answer.detail
+    for answer in survey_canopen_bus(machine, clock):
+        yield Message("node {answer}", answer=answer.name), str(answer.node), answer.error_text, answer.detail
 
 
-def _measured(machine: Machine) -> Iterator[str]:
+def _measured_rows(machine: Machine) -> Iterator[str]:
     """Yield the axes and the spindle with a node, and all inputs of the modules."""
-    config = canopen_config(machine)
+    config = create_canopen_config(machine)
     yield from (axis.name for axis in config.axes if axis.node is not None)
     if config.spindle is not None or config.encoder is not None:
         yield "spindle"
-    if config.spindle is not None and config.spindle.is_c:
+    if config.spindle is not None and config.spindle.is_c_axis:
         yield "C"
     yield from wired_inputs(machine)
 
 
-BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_survey, measured=_measured)
+BACKEND = Backend(
+    "bus",
+    create_drivers=create_canopen_drivers,
+    is_simulated=_is_simulated,
+    play_devices=_play,
+    survey_nodes=_survey,
+    list_measured_rows=_measured_rows,
+)
 
 
 # --- Values that a control writes to the nodes at each start, to be compared with those of the last start.
 
 
-def written_at_start(machine: Machine) -> dict[str, Objects]:
+def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
     """Return every object written to each node at a start, by node name. Raises DriverError."""
     try:
-        from drivers.canopen.canopen_objects import drive_dictionary
-        from drivers.canopen.canopen_setup import axis_objects, stopping, watching
+        from drivers.canopen.canopen_objects import load_drive_dictionary
+        from drivers.canopen.canopen_setup import (
+            build_axis_objects,
+            build_monitoring_objects,
+            build_stop_objects,
+        )
     except ImportError as error:
-        raise DriverError(lacking(error)) from error
-    config = canopen_config(machine)
-    told: dict[str, Objects] = {}
+        raise DriverError(describe_missing_library(error)) from error
+    config = create_canopen_config(machine)
+    told: dict[str, ObjectValues] = {}
     for axis in config.axes:
         if axis.node is not None:
-            family = replace(axis, profile=drive_dictionary(axis.node)[1])
-            told[axis.name] = (*axis_objects(family, config.bus), *axis.node.sdo)
+            family = replace(axis, profile=load_drive_dictionary(axis.node)[1])
+            told[axis.name] = (*build_axis_objects(family, config.bus), *axis.node.sdo)
     if config.spindle is not None:
-        told["spindle"] = (*stopping(config.bus), *config.spindle.node.sdo)
-    return told | {module.name: (*watching(config.bus), *module.sdo) for module in config.modules}
+        told["spindle"] = (*build_stop_objects(config.bus), *config.spindle.node.sdo)
+    return told | {
+        module.name: (*build_monitoring_objects(config.bus), *module.sdo) for module in config.modules
+    }

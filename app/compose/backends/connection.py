@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import sys
 
-from app.compose.backends.backend_entry import Connected, backend_of, has_inverter, played
-from app.compose.extra import extras
+from app.compose.backends.backend_entry import ConnectedMachine, find_backend, has_inverter, is_simulated
+from app.compose.optional_features import extras
 from core.machine.machine_model import Machine
 from core.ports import Clock
 
@@ -16,27 +16,27 @@ from core.ports import Clock
 HAS_DRIVER_HOST = sys.platform != "win32"
 
 
-def connect(machine: Machine, clock: Clock, lock: int | None = None) -> Connected:
+def connect_machine(machine: Machine, clock: Clock, lock: int | None = None) -> ConnectedMachine:
     """Return everything that the executor needs. Raises DriverError if a device does not respond.
 
     ``lock`` is a file descriptor that a driver host process inherits and holds until it has ended.
     """
-    connected = _connected(wired(machine), clock, lock)
+    connected = _connected(remove_feature_inputs(machine), clock, lock)
     for extra in extras().values():
-        connected = extra.connect(machine, connected)
+        connected = extra.add_ports(machine, connected)
     return connected
 
 
-def wired(machine: Machine) -> Machine:
+def remove_feature_inputs(machine: Machine) -> Machine:
     """Return the machine without the inputs that optional features provide, as its backend is wired."""
     for extra in extras().values():
-        machine = extra.wired(machine)
+        machine = extra.remove_own_inputs(machine)
     return machine
 
 
-def _connected(machine: Machine, clock: Clock, lock: int | None) -> Connected:
-    backend = backend_of(machine)
-    apart = backend.driven is not None and machine.hardware.feeder and HAS_DRIVER_HOST
+def _connected(machine: Machine, clock: Clock, lock: int | None) -> ConnectedMachine:
+    backend = find_backend(machine)
+    apart = backend.create_drivers is not None and machine.hardware.uses_driver_host and HAS_DRIVER_HOST
     if backend.connect is not None and not apart:
         return backend.connect(machine, clock)
     from app.compose.backends.driver_host_backend import connect_driver_host
@@ -44,6 +44,6 @@ def _connected(machine: Machine, clock: Clock, lock: int | None) -> Connected:
     return connect_driver_host(machine, clock, lock)
 
 
-def real_time(machine: Machine) -> bool:
+def needs_real_time(machine: Machine) -> bool:
     """Return whether a part of the machine runs in real time, so that a step clock cannot be used."""
-    return has_inverter(machine) or not played(machine)
+    return has_inverter(machine) or not is_simulated(machine)

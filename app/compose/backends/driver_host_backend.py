@@ -4,44 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.compose.backends.backend_entry import Connected, backend_of, has_station, played
-from app.compose.backends.driver_host_process import DriverHostProcess, driven
+from app.compose.backends.backend_entry import ConnectedMachine, find_backend, has_station, is_simulated
+from app.compose.backends.driver_host_process import DriverHostProcess, create_host_drivers
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
-from drivers.driver_host.host_line import Line, LoopLink
-from drivers.driver_host.host_ports import HostHands, host_ports
+from drivers.driver_host.host_connection import HostConnection, InProcessLink
+from drivers.driver_host.host_ports import HostStationControls, create_host_ports
 from drivers.driver_host.host_server import DriverHost
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 
-def connect_driver_host(machine: Machine, clock: Clock, lock: int | None = None) -> Connected:
+def connect_driver_host(machine: Machine, clock: Clock, lock: int | None = None) -> ConnectedMachine:
     """Start the driver host and return the machine's ports. Raises DriverError if it does not respond.
 
     ``lock`` is a file descriptor that the driver host process holds until it has ended.
     """
-    line, close = _line(machine, clock, lock)
+    line, close = _open_connection(machine, clock, lock)
     try:
-        ports = host_ports(line)
+        ports = create_host_ports(line)
     except DriverError:
         close()
         raise
-    hands = HostHands(line)
-    panel = hands if played(machine) or not has_station(machine) else None
-    return Connected(ports, panel, hands.set_input if played(machine) else None, close)
+    hands = HostStationControls(line)
+    panel = hands if is_simulated(machine) or not has_station(machine) else None
+    return ConnectedMachine(ports, panel, hands.set_input if is_simulated(machine) else None, close)
 
 
-def _line(machine: Machine, clock: Clock, lock: int | None) -> tuple[Line, Callable[[], None]]:
+def _open_connection(
+    machine: Machine, clock: Clock, lock: int | None
+) -> tuple[HostConnection, Callable[[], None]]:
     """Return the connection to the driver host and its close function.
 
     With a real clock the driver host is a process; otherwise the same messages run in this thread.
     """
-    if isinstance(clock, RealClock) and not _virtual(machine):
+    if isinstance(clock, RealClock) and not _is_virtual(machine):
         process = DriverHostProcess(machine, clock, lock)
-        return process.line, process.close
-    owned = driven(machine, clock)
-    return Line(LoopLink(DriverHost(owned, refresh=machine.hardware.refresh)), clock), owned.close
+        return process.connection, process.close
+    owned = create_host_drivers(machine, clock)
+    return HostConnection(
+        InProcessLink(DriverHost(owned, refresh_periods=machine.hardware.refresh_timeouts_s)), clock
+    ), owned.close
 
 
-def _virtual(machine: Machine) -> bool:
+def _is_virtual(machine: Machine) -> bool:
     """Return whether the machine has a bus that another process cannot reach."""
-    return backend_of(machine).connect is None and played(machine)
+    return find_backend(machine).connect is None and is_simulated(machine)

@@ -12,37 +12,57 @@ import subprocess
 import sys
 from dataclasses import replace
 
-from app.compose.backends.backend_entry import NO_PRIORITY, backend_of, has_inverter
-from app.compose.backends.inverter_backend import with_inverter
+from app.compose.backends.backend_entry import NO_PRIORITY_TEXT, find_backend, has_inverter
+from app.compose.backends.inverter_backend import add_inverter
 from core.machine.machine_model import Machine
 from core.message import Message as Text
 from core.own_process import module_environment
 from core.ports import Clock, DriverError
-from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
+from drivers.canopen.canopen_nodes import CYCLIC_MODES, MAX_SYNC_DELAY_FRACTION
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.driver_host.host_line import Line, Link, SocketLink, cleared
-from drivers.driver_host.host_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
-from drivers.driver_host.host_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
-from drivers.driver_host.host_server import Driven
-from drivers.waiting import Bell, Opening, RealClock
+from drivers.driver_host.host_connection import HostConnection, HostLink, SocketLink, clear_host_faults
+from drivers.driver_host.host_loop import (
+    TRIAL_TIME_S,
+    lock_host_memory,
+    measure_wakeup_delay,
+    request_real_time,
+    run_driver_host,
+)
+from drivers.driver_host.host_messages import (
+    NO_NUMBERS,
+    Message,
+    MessageDecoder,
+    encode_message,
+    make_fault_entries,
+    read_fault,
+)
+from drivers.driver_host.host_server import DriverBundle
+from drivers.wakeups import ConnectionAttempt, ProcessBell, RealClock
 
 
-def driven(machine: Machine, clock: Clock) -> Driven:
+def create_host_drivers(machine: Machine, clock: Clock) -> DriverBundle:
     """Return the backend and spindle of a machine for the driver host. Raises DriverError."""
-    make = backend_of(machine).driven
+    make = find_backend(machine).create_drivers
     if make is None:
         raise DriverError(f"{machine.source}: the driver host does not support backend {machine.backend}")
     inner = make(machine, clock)
     if not has_inverter(machine):
         return inner
-    ports, close = with_inverter(machine, inner.ports, clock, inner.close)
+    ports, close = add_inverter(machine, inner.ports, clock, inner.close)
     # The inverter's thread does not wake the control, so its values are polled at this interval.
-    return replace(inner, ports=ports, close=close, idle=lambda asleep: min(inner.idle(asleep), _INVERTER))
+    return replace(
+        inner,
+        ports=ports,
+        close=close,
+        get_idle_time=lambda asleep: min(inner.get_idle_time(asleep), _INVERTER),
+    )
 
 
 _INVERTER = 0.05  # s between two polls of the inverter's values while the control is idle
-_START = 20.0  # s until the first response, because the process must start and configure every drive
-_END = 10.0
+_START_TIMEOUT_S = (
+    20.0  # s until the first response, because the process must start and configure every drive
+)
+_END_TIMEOUT_S = 10.0
 
 
 class DriverHostProcess:
@@ -55,26 +75,26 @@ class DriverHostProcess:
         self._machine, self._clock = machine, clock
         self._held = () if lock is None else (lock,)
         self._closed = False
-        self._bell = Bell()  # retained when the driver host is restarted
+        self._bell = ProcessBell()  # retained when the driver host is restarted
         try:
-            link = self._begin()
+            link = self._start_process()
         except DriverError:
             self._bell.close()
             raise
-        self.line = Line(link, clock, self._again, self._bell)
+        self.connection = HostConnection(link, clock, self._restart, self._bell)
 
-    def _again(self) -> Opening[Link]:
+    def _restart(self) -> ConnectionAttempt[HostLink]:
         """Start another process after the old one has ended, so that the bus never has two masters."""
 
-        def begun() -> Link:
+        def begun() -> HostLink:
             self._end()
             if self._closed:
                 raise DriverError("the control is shutting down", "feeder-gone")
-            return cleared(self._begin())
+            return clear_host_faults(self._start_process())
 
-        return Opening(begun)
+        return ConnectionAttempt(begun)
 
-    def _begin(self) -> Link:
+    def _start_process(self) -> HostLink:
         """Start the process and return its link. Raises DriverError with the error of its drivers."""
         machine, clock = self._machine, self._clock
         ours, theirs = socket.socketpair()
@@ -84,8 +104,8 @@ class DriverHostProcess:
                 "-m",
                 "app.compose.backends.driver_host_process",
                 str(theirs.fileno()),
-                repr(clock.zero),
-                str(self._bell.far.fileno()),
+                repr(clock.origin_s),
+                str(self._bell.far_socket.fileno()),
             ]
             # A separate session, so that Ctrl-C reaches only the control, which then ends the driver host
             # properly.
@@ -93,18 +113,18 @@ class DriverHostProcess:
                 command,
                 env=module_environment(),
                 stdin=subprocess.PIPE,
-                pass_fds=(theirs.fileno(), self._bell.far.fileno(), *self._held),
+                pass_fds=(theirs.fileno(), self._bell.far_socket.fileno(), *self._held),
                 start_new_session=True,
             )
         assert self.process.stdin is not None
         with self.process.stdin as pipe:
             pipe.write(pickle.dumps(machine))
         self._link = SocketLink(ours)
-        ready = self._first(ours)
+        ready = self._read_first_message(ours)
         if self._closed:  # closed during a restart
             self._end()
             raise DriverError("the control is shutting down", "feeder-gone")
-        if why := fault_of(ready.head, "error", "feeder-gone"):
+        if why := read_fault(ready.head, "error", "feeder-gone"):
             self._end()
             raise DriverError(why)
         return self._link
@@ -118,36 +138,36 @@ class DriverHostProcess:
     def _end(self) -> None:
         self._link.close()
         try:
-            self.process.wait(_END)
+            self.process.wait(_END_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
 
-    def _first(self, sock: socket.socket) -> Message:
+    def _read_first_message(self, sock: socket.socket) -> Message:
         """Return the first message of the driver host: ready, or the reason for a failure."""
-        inbox = Inbox()
-        sock.settimeout(_START)
+        inbox = MessageDecoder()
+        sock.settimeout(_START_TIMEOUT_S)
         try:
             while data := sock.recv(1 << 16):
-                for message in inbox.feed(data):
+                for message in inbox.decode(data):
                     return message
         except TimeoutError:
-            return Message({"error": "the driver host does not start"}, NOTHING)
+            return Message({"error": "the driver host does not start"}, NO_NUMBERS)
         except OSError as error:  # closed during the start
-            return Message({"error": f"no response from the driver host ({error.strerror})"}, NOTHING)
-        return Message({"error": "the driver host ended during start-up; see its message above"}, NOTHING)
+            return Message({"error": f"no response from the driver host ({error.strerror})"}, NO_NUMBERS)
+        return Message({"error": "the driver host ended during start-up; see its message above"}, NO_NUMBERS)
 
 
-def beat(machine: Machine) -> float:
+def get_setpoint_interval(machine: Machine) -> float:
     """Return the seconds between setpoints if the drives need each setpoint on time, otherwise 0."""
-    can = machine.hardware.table(CanopenTable)
-    return can.sync if can is not None and can.mode in CYCLIC else 0.0
+    can = machine.hardware.find_driver_table(CanopenTable)
+    return can.sync if can is not None and can.mode in CYCLIC_MODES else 0.0
 
 
-def without_priority(period: float, late: float) -> str:
+def make_priority_warning(period_s: float, delay_s: float) -> str:
     """Return the warning for the operator that the driver host has no real-time priority.
 
-    ``period`` is the time between setpoints, and ``late`` the largest delay in the test, in seconds.
+    ``period_s`` is the time between setpoints, and ``delay_s`` the largest delay in the test, in seconds.
     """
     template = (
         (
@@ -156,7 +176,7 @@ def without_priority(period: float, late: float) -> str:
             "path waits, and a delay of 10 ms causes an alarm. Give the driver host real-time "
             'priority (docs/integrator/computer.md), or use mode = "pvt"'
         )
-        if late <= EVENED_OUT * period
+        if delay_s <= MAX_SYNC_DELAY_FRACTION * period_s
         else (
             "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC "
             "did not arrive in time (up to {late} ms late). If setpoints are late, the path "
@@ -166,10 +186,10 @@ def without_priority(period: float, late: float) -> str:
     )
     return Text(
         template,
-        cause=NO_PRIORITY,
-        period=f"{1000 * period:g}",
-        seconds=f"{TRIAL:g}",
-        late=f"{1000 * late:.1f}",
+        cause=NO_PRIORITY_TEXT,
+        period=f"{1000 * period_s:g}",
+        seconds=f"{TRIAL_TIME_S:g}",
+        late=f"{1000 * delay_s:.1f}",
     )
 
 
@@ -178,23 +198,25 @@ def main(arguments: list[str]) -> int:
     sock = socket.socket(fileno=int(arguments[0]))
     clock: Clock = RealClock(float(arguments[1]))
     machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has
-    warnings = real_time()
-    locked = keep_memory()
-    if warnings and (period := beat(machine)):
-        warnings.append(without_priority(period, late_at_trial(period)))
+    warnings = request_real_time()
+    locked = lock_host_memory()
+    if warnings and (period := get_setpoint_interval(machine)):
+        warnings.append(make_priority_warning(period, measure_wakeup_delay(period)))
     try:
-        machine_driven = driven(machine, clock)
+        machine_driven = create_host_drivers(machine, clock)
     except DriverError as error:
-        sock.sendall(packed(Message(with_code("error", error.fault, "feeder-gone"), NOTHING)))
+        sock.sendall(
+            encode_message(Message(make_fault_entries("error", error.fault, "feeder-gone"), NO_NUMBERS))
+        )
         return 1
-    if machine_driven.wake() is None:
-        locked = keep_memory()
+    if machine_driven.get_next_tick_time() is None:
+        locked = lock_host_memory()
     else:  # a garbage collection could take 0.1 s, which is longer than drives wait for a setpoint
         gc.freeze()
     warnings += locked
-    sock.sendall(packed(Message({"ready": True}, NOTHING)))
+    sock.sendall(encode_message(Message({"ready": True}, NO_NUMBERS)))
     bell = socket.socket(fileno=int(arguments[2]))
-    serve(sock, machine_driven, warnings, machine.hardware.refresh, bell)
+    run_driver_host(sock, machine_driven, warnings, machine.hardware.refresh, bell)
     return 0
 
 

@@ -4,27 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from app.compose.backends.backend_entry import Backend, Connected, has_inverter
-from app.compose.backends.inverter_backend import with_inverter
+from app.compose.backends.backend_entry import Backend, ConnectedMachine, has_inverter
+from app.compose.backends.inverter_backend import add_inverter
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_table import GrblhalTable
-from drivers.grblhal.grblhal_wire import tcp_address
+from drivers.grblhal.grblhal_transport import parse_tcp_address
 from drivers.inverter.inverter_spindle import InverterSpindle
-from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import RealClock
+from drivers.simulators.grblhal_connections import PtyConnection, TcpConnection, run_simulator
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import RealClock
 
-_WIRED = frozenset(("X", "Z"))
-_HERE = frozenset((35, 37))  # homing methods of CiA 402 that use the present position
+_WIRED_AXES = frozenset(("X", "Z"))
+_HOME_HERE_METHODS = frozenset((35, 37))  # homing methods of CiA 402 that use the present position
 
 
-def grblhal_config(machine: Machine) -> GrblConfig:
+def create_grblhal_config(machine: Machine) -> GrblConfig:
     """Return the configuration of the controller. Raises DriverError if the machine file does not fit."""
-    model = machine.hardware.table(GrblhalTable)
+    model = machine.hardware.find_driver_table(GrblhalTable)
     if model is None:
         raise DriverError("{source}: the [grblhal] table is missing", source=machine.source)
     if model.x_mode != "G8":
@@ -41,54 +41,56 @@ def grblhal_config(machine: Machine) -> GrblConfig:
     return GrblConfig(
         table=model,
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
-        rpm_max=machine.spindle.rpm_max,
-        outputs={name: GrblOutput(out.terminal, out.safe) for name, out in machine.outputs.items()},
-        inputs={name: GrblInput(wired.terminal, wired.active_low) for name, wired in machine.inputs.items()},
-        own_spindle=not has_inverter(machine),
+        rpm_max=machine.spindle.max_rpm,
+        outputs={name: GrblOutput(out.terminal, out.safe_state) for name, out in machine.outputs.items()},
+        inputs={
+            name: GrblInput(wired.terminal, wired.is_active_low) for name, wired in machine.inputs.items()
+        },
+        has_own_spindle=not has_inverter(machine),
     )
 
 
-def _play(
+def _play_devices(
     machine: Machine,
-    going: Callable[[], bool],
-    say: Callable[[str], None],
+    should_continue: Callable[[], bool],
+    print_line: Callable[[str], None],
     _typed: Callable[[], Iterable[str]],
 ) -> None:
     """Run a simulator of the controller on the TCP port of the machine file, or on a new pseudo terminal."""
-    address = tcp_address(grblhal_config(machine).table.port)
-    end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
-    say(
+    address = parse_tcp_address(create_grblhal_config(machine).table.port)
+    end: TcpConnection | PtyConnection = PtyConnection() if address is None else TcpConnection(*address)
+    print_line(
         Message(
             "simulated grblHAL for {machine} on {end}; press Ctrl-C to stop",
             machine=machine.name,
-            end=end.name,
+            end=end.device_name,
         )
     )
-    serve(end, Firmware(RealClock()), going)
+    run_simulator(end, GrblFirmware(RealClock()), should_continue)
 
 
 def _axis(axis: Axis, machine: Machine) -> GrblAxis:
-    home = machine.hardware.homes.get(axis.name)
-    here = home.offset if home is not None and home.method in _HERE else None
-    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED, here)
+    home = machine.hardware.homing_models.get(axis.name)
+    here = home.offset if home is not None and home.method in _HOME_HERE_METHODS else None
+    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED_AXES, here)
 
 
-def _connect(machine: Machine, clock: Clock) -> Connected:
+def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
     """Connect a controller that plans motion itself; its operator station is on the screen.
 
     If an inverter drives the spindle, the controller's encoder, if any, measures its speed.
     """
-    controller = GrblMachine(grblhal_config(machine), clock)
+    controller = GrblMachine(create_grblhal_config(machine), clock)
     ports, close, encoder = controller.ports, controller.close, controller.encoder
     if has_inverter(machine):
-        ports, close = with_inverter(machine, ports, clock, close, encoder if encoder.measures else None)
+        ports, close = add_inverter(machine, ports, clock, close, encoder if encoder.is_measuring else None)
         spindle = ports.spindle
         assert isinstance(spindle, InverterSpindle)
-        encoder.way = lambda: spindle.reported_rpm
-    return Connected(ports, controller.panel, None, close)
+        encoder.get_reported_rpm = lambda: spindle.reported_rpm
+    return ConnectedMachine(ports, controller.on_screen_station, None, close)
 
 
-def _measured(machine: Machine) -> Iterator[str]:
+def _measured_rows(machine: Machine) -> Iterator[str]:
     """Yield the controller, a spindle with an encoder, and the inputs.
 
     Axis positions are only counted steps, and the overrides are those of the screen, so they are not
@@ -100,4 +102,6 @@ def _measured(machine: Machine) -> Iterator[str]:
     yield from (f"input {name}" for name in machine.inputs)
 
 
-BACKEND = Backend("controller", connect=_connect, play=_play, measured=_measured)
+BACKEND = Backend(
+    "controller", connect=_connect_controller, play_devices=_play_devices, list_measured_rows=_measured_rows
+)

@@ -7,26 +7,26 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from app.compose.backends.serial_ports import open_wire
+from app.compose.backends.serial_ports import open_serial_port
 from core.machine.machine_model import Machine
-from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
-from drivers.inverter.inverter_attendant import AttendantThread
-from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
+from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, UnknownPart
+from drivers.inverter.inverter_control import InverterThread
+from drivers.inverter.inverter_spindle import InverterSpindle, SpindleEncoder, create_inverter_control
 from drivers.inverter.inverter_table import InverterTable
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 
-BY_FREQUENCY = (
+NO_ENCODER_TEXT = (
     "no spindle encoder is connected, so the spindle speed is the inverter's output "
     "frequency; slip is not detected, and threads cannot be cut"
 )
 
 
-def with_inverter(
+def add_inverter(
     machine: Machine,
     ports: MachinePorts,
     clock: Clock,
     close: Callable[[], None],
-    measures: Encoder | None = None,
+    encoder: SpindleEncoder | None = None,
 ) -> tuple[MachinePorts, Callable[[], None]]:
     """Return the ports with the inverter as spindle, and a function that closes both, the spindle first.
 
@@ -34,7 +34,7 @@ def with_inverter(
     encoder in addition to the backend's spindle. Raises DriverError if the inverter does not respond.
     """
     try:
-        thread, joined = _attended(machine, ports, clock, measures)
+        thread, joined = _attended(machine, ports, clock, encoder)
     except DriverError:
         close()
         raise
@@ -47,92 +47,94 @@ def with_inverter(
 
 
 def _attended(
-    machine: Machine, ports: MachinePorts, clock: Clock, measures: Encoder | None
-) -> tuple[AttendantThread, MachinePorts]:
-    if isinstance(clock, StepClock):
+    machine: Machine, ports: MachinePorts, clock: Clock, measures: SpindleEncoder | None
+) -> tuple[InverterThread, MachinePorts]:
+    if isinstance(clock, ManualClock):
         raise DriverError(
             "an inverter on a serial line works only in real time, not with a clock that is advanced manually"
         )
-    config = machine.hardware.table(InverterTable)
+    config = machine.hardware.find_driver_table(InverterTable)
     assert config is not None  # checked by a rule of the machine file
-    line = config.line
-    attended = attendant(config, lambda: open_wire(line), clock, Path(machine.source).parent)
-    thread = AttendantThread(attended)
+    line = config.line_settings
+    attended = create_inverter_control(
+        config, lambda: open_serial_port(line), clock, Path(machine.source).parent
+    )
+    thread = InverterThread(attended)
     try:
-        attended.connect()
+        attended.open_and_check()
     except DriverError as error:
         attended.close()
         raise DriverError(
             "inverter {family} on {port}: {error}", family=config.family, port=line.port, error=error
         ) from error
     thread.start()
-    own = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None
+    own = ports.spindle if machine.backend != "sim" and ports.spindle.read_angle() is not None else None
     encoder = measures or own
     spindle = InverterSpindle(
         config,
         attended,
         clock,
         encoder=encoder,
-        alive=lambda: thread.alive,
-        revive=thread.revive,
-        estop=lambda: ports.station.snapshot().estop,
-        lost=ports.spindle.fault if machine.backend == "canopen" else str,
+        is_thread_alive=lambda: thread.is_alive,
+        restart_thread=thread.restart,
+        is_estop_pressed=lambda: ports.station.read_state().estop,
+        get_encoder_fault=ports.spindle.read_fault if machine.backend == "canopen" else str,
     )
-    said = (*attended.warnings, *(() if encoder else (BY_FREQUENCY,)))
+    said = (*attended.warnings, *(() if encoder else (NO_ENCODER_TEXT,)))
     joined = dataclasses.replace(
         ports,
-        axes=ClearingAxes(ports.axes, spindle.clear_fault),
+        axes=FaultClearingAxes(ports.axes, spindle.clear_fault),
         spindle=spindle,
         gear=ports.gear if encoder else None,
         orientation=None,
-        samples=SlidesAlone(ports.samples, len(ports.axes.axes), lambda: spindle.load)
+        samples=AxisOnlySamples(ports.samples, len(ports.axes.axes), lambda: spindle.load_percent)
         if ports.samples is not None
         else None,
         warnings=(*ports.warnings, *said),
         wakeup=None,  # the inverter does not notify changes
-        halt=partial(halt_with, ports, spindle),
-        unknown=partial(unknown_with, ports, spindle),
-        spindle_lag=spindle.lag,
+        halt_machine=partial(halt_with_inverter, ports, spindle),
+        unknown=partial(find_unknown_parts, ports, spindle),
+        spindle_lag=spindle.get_line_delay,
     )
     return thread, joined
 
 
-def unknown_with(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[Unknown]:
+def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[UnknownPart]:
     """Return the unknown parts of the backend, with the spindle judged by the inverter and its encoder."""
-    rest = ports.unknown() - {Unknown.SPINDLE}
-    return rest | {Unknown.SPINDLE} if spindle.unknown else rest
+    rest = ports.unknown() - {UnknownPart.SPINDLE}
+    return rest | {UnknownPart.SPINDLE} if spindle.is_state_unknown else rest
 
 
-def halt_with(ports: MachinePorts, spindle: InverterSpindle) -> None:
+def halt_with_inverter(ports: MachinePorts, spindle: InverterSpindle) -> None:
     """Stop the inverter from any thread, then the other devices."""
     spindle.coast()
-    if ports.halt is not None:
-        ports.halt()
+    if ports.halt_machine is not None:
+        ports.halt_machine()
 
 
-class SlidesAlone:
+class AxisOnlySamples:
     """A ``SampleSource`` without the spindle values of the backend, whose spindle is not used.
 
     The record has the values of the real spindle from each tick.
     """
 
     def __init__(self, inner: SampleSource, axes: int, load: Callable[[], float]) -> None:
-        self.rate, self._inner, self._load = inner.rate, inner, load
+        self.sample_rate_hz, self._inner, self._load = inner.sample_rate_hz, inner, load
         self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
 
-    def take(self, most: int = 8192) -> FloatArray:
+    def take(self, max_rows: int = 8192) -> FloatArray:
         """Return the samples with unknown spindle speed and revolutions, and the inverter's last load."""
-        rows = self._inner.take(most)
+        rows = self._inner.take(max_rows)
         rows[:, self._spindle] = float("nan")
         rows[:, self._spindle.stop - 1] = self._load()
         return rows
 
 
-class ClearingAxes:
+class FaultClearingAxes:
     """An ``AxisSink`` whose faults are cleared together with those of the spindle."""
 
-    def __init__(self, inner: AxisSink, beside: Callable[[], None]) -> None:
-        self._clear, self._beside = inner.clear_fault, beside
+    def __init__(self, inner: AxisSink, clear_spindle: Callable[[], None]) -> None:
+        self._clear, self._beside = inner.clear_fault, clear_spindle
         self.axes, self.commit = inner.axes, inner.commit
         self.now, self.horizon, self.demand_at = inner.now, inner.horizon, inner.demand_at
         self.splice, self.sample, self.enable = inner.splice, inner.sample, inner.enable

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from core.ports import DriverError
-from drivers.serial_line import FlowWire, LineSettings
+from drivers.serial_line import FlowControlTransport, LineSettings
 
-MISSING = "serial ports need pyserial; install it with: pip install pyserial"
+MISSING_LIBRARY_TEXT = "serial ports need pyserial; install it with: pip install pyserial"
 
 
-def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:
-    """Open a port exclusively; ``watch`` counts damaged characters.
+def open_serial_port(settings: LineSettings, *, count_damaged: bool = False) -> FlowControlTransport:
+    """Open a port exclusively; ``count_damaged`` counts damaged characters.
 
     Raises DriverError, which names a missing library.
     """
     try:
-        from drivers.serial_port import SerialWire
+        from drivers.serial_port import SerialPort
     except ImportError as error:
-        raise DriverError(MISSING) from error
-    return SerialWire(settings, watch=watch)
+        raise DriverError(MISSING_LIBRARY_TEXT) from error
+    return SerialPort(settings, count_damaged=count_damaged)
 
 
-def serial_ports() -> list[tuple[str, str]]:
+def list_serial_ports() -> list[tuple[str, str]]:
     """Return device and description of each port of this computer. Raises DriverError."""
     try:
         from drivers.serial_port import list_ports
     except ImportError as error:
-        raise DriverError(MISSING) from error
-    return [(found.device, found.what) for found in list_ports()]
+        raise DriverError(MISSING_LIBRARY_TEXT) from error
+    return [(found.device, found.description) for found in list_ports()]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.compose.backends.backend_entry import Backend, Connected, axis_figures, has_inverter
+from app.compose.backends.backend_entry import Backend, ConnectedMachine, get_axis_fields, has_inverter
 from core.machine.machine_model import Axis, Machine
 from core.machine.setter_table import SetterModel
 from core.ports import Clock
@@ -15,83 +15,85 @@ from drivers.simulators.plant_config import (
     SimCollet,
     SimConfig,
     SimOutput,
-    SimSetter,
     SimSpindle,
+    SimToolSetter,
 )
 
 if TYPE_CHECKING:
-    from drivers.driver_host.host_server import Driven
+    from drivers.driver_host.host_server import DriverBundle
 
 
-def simulated(machine: Machine, clock: Clock) -> Simulation:
+def create_simulation(machine: Machine, clock: Clock) -> Simulation:
     """Return the ports and the simulated operator station of a simulated lathe on this clock."""
-    return build_simulation(sim_config(machine), clock)
+    return build_simulation(create_sim_config(machine), clock)
 
 
-def sim_config(machine: Machine) -> SimConfig:
+def create_sim_config(machine: Machine) -> SimConfig:
     """Return the configuration of the simulation."""
-    spindle, sim = machine.spindle, machine.hardware.table(SimulatedTable) or SimulatedTable()
+    spindle, sim = machine.spindle, machine.hardware.find_driver_table(SimulatedTable) or SimulatedTable()
     return SimConfig(
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         spindle=SimSpindle(
-            rpm_max=spindle.rpm_max,
+            rpm_max=spindle.max_rpm,
             accel=spindle.accel,
             decel=spindle.decel,
-            ppr=spindle.encoder_ppr,
-            orients=spindle.oriented,
+            pulses_per_rev=spindle.encoder_ppr,
+            can_orient=spindle.oriented,
             orient_rpm=spindle.orient_rpm,
         ),
-        collet=SimCollet(open_time=machine.collet.open_time, close_time=machine.collet.close_time),
+        collet=SimCollet(open_time_s=machine.collet.open_time, close_time_s=machine.collet.close_time),
         outputs={
-            name: SimOutput(safe=output.safe, initial=name == "collet")
+            name: SimOutput(safe_state=output.safe_state, initial_state=name == "collet")
             for name, output in machine.outputs.items()
         },
         inputs=tuple(machine.inputs),
-        commit=machine.timing.commit,
+        commit_time_s=machine.timing.commit,
         faults=sim.faults,
         seed=sim.seed,
-        setter=_setter(machine, sim.tips),
-        measures_load="spindle_load" in machine.hardware.analog,
+        setter=_tool_setter(machine, sim.tips),
+        has_load_input="spindle_load" in machine.hardware.analog_inputs,
     )
 
 
-def _setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimSetter | None:
+def _tool_setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimToolSetter | None:
     """Return the simulated tool setter if the machine file has one with tool tips, or None."""
-    model = machine.hardware.table(SetterModel)
-    return SimSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
+    model = machine.hardware.find_driver_table(SetterModel)
+    return SimToolSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
 
 
 def _axis(axis: Axis, machine: Machine) -> SimAxis:
-    return SimAxis(**axis_figures(axis, machine), own_drive=not machine.spindle_is_c)
+    return SimAxis(**get_axis_fields(axis, machine), own_drive=not machine.spindle_is_c)
 
 
-def _driven(machine: Machine, clock: Clock) -> Driven:
+def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:
     """Return the simulated machine for the driver host; the simulation also runs while no client polls it."""
-    from drivers.driver_host.host_server import RESTS, Driven
+    from drivers.driver_host.host_server import MAX_SLEEP_CYCLE_S, DriverBundle
 
-    ports, hands = simulated(machine, clock)
+    ports, hands = create_simulation(machine, clock)
     wakeup = ports.wakeup
     assert wakeup is not None
 
     def idle(asleep: bool) -> float:
-        return RESTS if asleep and wakeup.settled() else 0.0
+        return MAX_SLEEP_CYCLE_S if asleep and wakeup.is_settled() else 0.0
 
-    return Driven(ports, ports.axes.sample, _nothing, hands, idle=idle)
+    return DriverBundle(ports, ports.axes.sample, _do_nothing, hands, get_idle_time=idle)
 
 
-def _in_process(machine: Machine, clock: Clock) -> Connected:
+def _connect_in_process(machine: Machine, clock: Clock) -> ConnectedMachine:
     """Connect the simulated machine in this process; its spindle may be a real inverter."""
-    ports, hands = simulated(machine, clock)
-    close = _nothing
+    ports, hands = create_simulation(machine, clock)
+    close = _do_nothing
     if has_inverter(machine):
-        from app.compose.backends.inverter_backend import with_inverter
+        from app.compose.backends.inverter_backend import add_inverter
 
-        ports, close = with_inverter(machine, ports, clock, close)
-    return Connected(ports, hands, hands.set_input, close)
+        ports, close = add_inverter(machine, ports, clock, close)
+    return ConnectedMachine(ports, hands, hands.set_input, close)
 
 
-def _nothing() -> None:
+def _do_nothing() -> None:
     """Close nothing, because the simulation has no resources."""
 
 
-BACKEND = Backend("feeder", driven=_driven, connect=_in_process, played=lambda _machine: True)
+BACKEND = Backend(
+    "feeder", create_drivers=_create_drivers, connect=_connect_in_process, is_simulated=lambda _machine: True
+)

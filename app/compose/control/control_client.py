@@ -17,48 +17,48 @@ from pathlib import Path
 from socket import AF_UNIX, socket
 
 from app.compose.control.control_messages import (
-    BUSY,
-    VERSION,
-    Alive,
-    Close,
-    Closed,
-    Failed,
-    Hand,
-    Happened,
-    Heard,
-    Hello,
-    Noted,
-    Post,
-    SetInput,
-    Shown,
-    StopLine,
+    PROTOCOL_VERSION,
+    SCREEN_CONNECTED,
+    CloseRequest,
+    CommandMessage,
+    ControlFailed,
+    EventMessage,
+    EventStored,
+    HelloMessage,
+    InputChange,
+    InterruptedJobNote,
+    MachineClosed,
+    ScreenAlive,
+    SnapshotMessage,
+    StationAction,
+    StopSocketMessage,
     ThreadEnded,
     is_own_user,
 )
 from app.compose.control.control_start import StartedControl
-from app.compose.control.passed_files import SharedMemory, receive_file, send_file
+from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor, send_descriptor
 from app.compose.control.process_handle import ProcessHandle
 from app.compose.runs.receipt import Receipt
-from app.desk.data_folder import RECORDS
-from core.executor.commands import Command, GiveProof, LoadJob
+from app.desk.data_folder import RECORDS_FOLDER
+from core.executor.commands import Command, LoadJob, SupplyProof
 from core.executor.raised_alarm import Attempt, ReportedAttempt, make_alarm
-from core.executor.snapshot import CYCLE, Event, InterruptedJob, Snapshot, State
+from core.executor.snapshot import CYCLE_STATES, InterruptedJob, LogEvent, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
-from core.records.record_ring import Ring
-from core.records.recordings import Recordings
+from core.records.record_ring import ScopeRing
+from core.records.recordings import ScopeRecordings
 from core.store.store_rows import EventOrigin
-from drivers.operator_station import PostedHands
-from drivers.waiting import RealClock
+from drivers.operator_station import PostedControls
+from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
-STARTS_IN = 20.0  # s until the first message, because drives may have to be configured
-ALIVE_EVERY = 0.25  # s
-ENDS = 1.0  # =
-ANSWERS_IN = 2.0  # s until the first message of a control that is already running
+START_TIMEOUT_S = 20.0  # s until the first message, because drives may have to be configured
+ALIVE_INTERVAL_S = 0.25  # s
+JOIN_TIMEOUT_S = 1.0  # =
+REPLY_TIMEOUT_S = 2.0  # s until the first message of a control that is already running
 # Exceptions that ``recv`` raises at the end of the connection, and for messages of another version.
-_NO_MESSAGE = (
+_CONNECTION_ERRORS = (
     OSError,
     EOFError,
     pickle.UnpicklingError,
@@ -68,40 +68,42 @@ _NO_MESSAGE = (
     TypeError,
     ValueError,
 )
-_ENDED = "ended"
-_SILENT = "the control that is running does not respond: restart the computer"
-_SAVED_IN = 5.0  # s to save the record of an alarm
-CLOSES_IN = 20.0  # s, for drives that are switching on; then the machine is halted
+_ENDED_REASON = "ended"
+_SILENT_TEXT = "the control that is running does not respond: restart the computer"
+_SAVE_TIMEOUT_S = 5.0  # s to save the record of an alarm
+CLOSE_TIMEOUT_S = 20.0  # s, for drives that are switching on; then the machine is halted
 
 
 @dataclass(slots=True)
-class ControlEvents:
+class ControlEventHandlers:
     """Functions called in the client's thread for messages of the control."""
 
-    event: Callable[[Event, Receipt | None], None]
-    note: Callable[[InterruptedJob | None], None]
-    thread_ended: Callable[[str], None]
-    stirs: Callable[[], None] = lambda: None
+    on_event: Callable[[LogEvent, Receipt | None], None]
+    on_interrupted_job: Callable[[InterruptedJob | None], None]
+    on_thread_end: Callable[[str], None]
+    on_change_at_rest: Callable[[], None] = lambda: None
 
 
 class ControlClient:
     """Connection to the control process. ``snapshot`` is the newest snapshot, and ``post`` never blocks."""
 
-    def __init__(self, started: StartedControl, folder: Path, records: ControlRecords | None = None) -> None:
+    def __init__(
+        self, started_control: StartedControl, folder: Path, records: ControlRecordings | None = None
+    ) -> None:
         """Wait for the first message. ``records`` of an earlier control continue with the data of this one.
 
         Raises DriverError if the control reports an error, does not respond or has another version.
         """
-        self._connection, self.process = connection, process = started
-        hello = _hello(connection, STARTS_IN if process is not None else ANSWERS_IN)
-        self.hello = hello
-        self.attached = process is None  # connected to a control that another screen has started
-        memory = SharedMemory(receive_file(connection))
-        ring = Ring.of(hello.recorded, memory.view)
-        self.records = records or ControlRecords(ring, folder / RECORDS, hello.trouble)
-        self.records.ring, self.records.trouble = ring, hello.trouble
+        self._connection, self.control_process = connection, process = started_control
+        hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
+        self.hello_message = hello
+        self.is_attached = process is None  # connected to a control that another screen has started
+        memory = SharedMemory(receive_descriptor(connection))
+        ring = ScopeRing.from_layout(hello.recorded, memory.memory_view)
+        self.control_records = records or ControlRecordings(ring, folder / RECORDS_FOLDER, hello.disk_error)
+        self.control_records.ring, self.control_records.storage_error = ring, hello.disk_error
         self.handle = ProcessHandle(hello.process)
-        self.clock = RealClock(hello.zero)
+        self.clock = RealClock(hello.clock_zero_s)
         self.snapshot: Snapshot = hello.snapshot
         self.heard_at = time.monotonic()  # s, time of the last message
         self.is_lost = False  # the connection has ended although the screen has not closed it
@@ -109,39 +111,41 @@ class ControlClient:
         self._closed = threading.Event()
         self._closing = False  # closed by this screen
         self._came = threading.Event()  # a snapshot has arrived
-        self._events: ControlEvents | None = None
+        self._events: ControlEventHandlers | None = None
         self._threads: list[threading.Thread] = []
         self._next_alive = 0.0  # s
         # commands to be sent when the running program has ended
         self._kept: dict[type[Command], Command] = {}
         self._keeping = threading.Lock()  # worker threads also send commands
 
-    def begin(self, events: ControlEvents) -> None:
+    def start_threads(self, events: ControlEventHandlers) -> None:
         """Start the threads that receive and send messages."""
         self._events = events
         for run, name in ((self._listen, "control-events"), (self._send, "control-posts")):
             self._threads.append(threading.Thread(target=run, name=name, daemon=True))
             self._threads[-1].start()
 
-    def post(self, command: Command) -> None:
+    def post_command(self, command: Command) -> None:
         """Send a command to the executor."""
-        if self.attached and isinstance(command, LoadJob | GiveProof):
+        if self.is_attached and isinstance(command, LoadJob | SupplyProof):
             with self._keeping:
-                if self._kept or self.snapshot.state in CYCLE:
+                if self._kept or self.snapshot.state in CYCLE_STATES:
                     self._kept[type(command)] = command  # the running program already has its job
                     return
-        self._outbox.put(Post(command, self.clock.now()))
+        self._outbox.put(CommandMessage(command, self.clock.now()))
 
-    def wait_for(self, shown: Callable[[Snapshot], bool]) -> None:
-        """Wait until ``shown`` returns True for a snapshot, or until the control does not respond in time."""
-        until = time.monotonic() + ANSWERS_IN
-        while not shown(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
-            self._came.wait(ALIVE_EVERY)
+    def wait_for_snapshot(self, is_expected: Callable[[Snapshot], bool]) -> None:
+        """Wait until ``is_expected`` returns True for a snapshot, or until the control does not respond in
+        time.
+        """
+        until = time.monotonic() + REPLY_TIMEOUT_S
+        while not is_expected(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
+            self._came.wait(ALIVE_INTERVAL_S)
             self._came.clear()
 
-    def hand(self, name: str, *values: object) -> None:
+    def operate_station(self, name: str, *values: object) -> None:
         """Operate the simulated operator station."""
-        self._outbox.put(Hand(name, values, self.clock.now()))
+        self._outbox.put(StationAction(name, values, self.clock.now()))
 
     def pass_line(self, line: socket) -> None:
         """Pass a socket to the control, which receives stop keys from it, and close it here."""
@@ -152,50 +156,50 @@ class ControlClient:
         """Seconds since the last message of the control."""
         return time.monotonic() - self.heard_at
 
-    def set_input(self, name: str, on: bool) -> None:
+    def set_input(self, name: str, state: bool) -> None:
         """Switch an input of a simulated machine."""
-        self._outbox.put(SetInput(name, on))
+        self._outbox.put(InputChange(name, state))
 
-    def see(self, snapshot: Snapshot) -> None:
+    def report_alive(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen handles its keys; called once per frame."""
         now = self.clock.now()
         if now >= self._next_alive and not self.is_lost:
-            self._next_alive = now + ALIVE_EVERY
-            self._outbox.put(Alive())
-        if self._kept and snapshot.state not in CYCLE:
+            self._next_alive = now + ALIVE_INTERVAL_S
+            self._outbox.put(ScreenAlive())
+        if self._kept and snapshot.state not in CYCLE_STATES:
             with self._keeping:
                 for command in self._kept.values():
-                    self._outbox.put(Post(command, now))
+                    self._outbox.put(CommandMessage(command, now))
                 self._kept.clear()
 
-    def leave(self, *, close: bool) -> None:
-        """Disconnect before ``begin`` was called. ``close`` also ends the control.
+    def disconnect(self, *, end_control: bool) -> None:
+        """Disconnect before ``start_threads`` was called. ``close`` also ends the control.
 
         The machine of a control that is ended must be at rest.
         """
         with self._connection, suppress(OSError, EOFError):
-            if close:
-                self._connection.send(Close())
-                until = time.monotonic() + CLOSES_IN
+            if end_control:
+                self._connection.send(CloseRequest())
+                until = time.monotonic() + CLOSE_TIMEOUT_S
                 while self._connection.poll(max(until - time.monotonic(), 0.0)):
                     self._connection.recv()  # until its process ends and closes the socket
 
     def ask_to_end(self) -> None:
         """Ask the control to stop the machine and to end, without waiting for it."""
-        self._outbox.put(Close())
+        self._outbox.put(CloseRequest())
 
-    def close(self) -> None:
+    def stop_and_close(self) -> None:
         """Stop the machine, close its drivers and wait for the end of the process."""
         self._closing = True
         self.ask_to_end()
-        self._closed.wait(CLOSES_IN)
-        if self.process is not None:
+        self._closed.wait(CLOSE_TIMEOUT_S)
+        if self.control_process is not None:
             try:
-                self.process.wait(ENDS)
+                self.control_process.wait(JOIN_TIMEOUT_S)
             except subprocess.TimeoutExpired:
                 _log.error("the process of the control does not end; it is killed")
-                self.process.kill()
-                self.process.wait(ENDS)
+                self.control_process.kill()
+                self.control_process.wait(JOIN_TIMEOUT_S)
         self.forget()
 
     def forget(self) -> None:
@@ -203,7 +207,7 @@ class ControlClient:
         self._closing = True
         self._outbox.put(None)
         for thread in self._threads:
-            thread.join(ENDS)
+            thread.join(JOIN_TIMEOUT_S)
         self._connection.close()
         self.handle.close()
 
@@ -220,8 +224,8 @@ class ControlClient:
     def _send_one(self, message: object) -> None:
         if isinstance(message, socket):
             with message:
-                self._connection.send(StopLine())
-                send_file(self._connection, message.fileno())
+                self._connection.send(StopSocketMessage())
+                send_descriptor(self._connection, message.fileno())
         else:
             self._connection.send(message)
 
@@ -233,45 +237,45 @@ class ControlClient:
                 self.heard_at = time.monotonic()
                 with ReportedAttempt(_not_taken):
                     self._take(message, self._events)
-        except _NO_MESSAGE:
+        except _CONNECTION_ERRORS:
             with ReportedAttempt(_not_taken):
                 if not self._closing:
-                    self._lose(self._events)
+                    self._handle_loss(self._events)
         self._closed.set()
 
-    def _take(self, message: object, events: ControlEvents) -> None:
+    def _take(self, message: object, events: ControlEventHandlers) -> None:
         match message:
-            case Shown(snapshot, stirred):
+            case SnapshotMessage(snapshot, stirred):
                 self.snapshot = snapshot
                 self._came.set()
                 if stirred:
                     with Attempt():  # the window may be closing
-                        events.stirs()
-            case Happened(number, event):
-                self.records.hear(event)
-                origin = EventOrigin(self.hello.identity, number)
-                events.event(event, Receipt(origin, partial(self._outbox.put, Heard(number))))
-            case Noted(job):
-                events.note(job)
+                        events.on_change_at_rest()
+            case EventMessage(number, event):
+                self.control_records.handle_event(event)
+                origin = EventOrigin(self.hello_message.identity, number)
+                events.on_event(event, Receipt(origin, partial(self._outbox.put, EventStored(number))))
+            case InterruptedJobNote(job):
+                events.on_interrupted_job(job)
             case ThreadEnded(name):
-                events.thread_ended(name)
-            case Closed():
+                events.on_thread_end(name)
+            case MachineClosed():
                 self._closed.set()
             case _:
                 _log.error("the screen does not know this message of the control: %r", message)
 
-    def _lose(self, events: ControlEvents) -> None:
+    def _handle_loss(self, events: ControlEventHandlers) -> None:
         """Show an alarm because the control process has ended; its drivers have stopped the machine."""
         why = Message("the process of the control has ended")
         last = self.snapshot
         alarm = make_alarm("control-silent", why, last.line, last.t)
-        self.snapshot = replace(last, state=State.FAULT, alarms=(*last.alarms, alarm))
+        self.snapshot = replace(last, state=MachineState.FAULT, alarms=(*last.alarms, alarm))
         self.is_lost = True
-        events.event(Event(last.t, "alarm", alarm.text, alarm.line, alarm), None)
-        events.stirs()
+        events.on_event(LogEvent(last.t, "alarm", alarm.text, alarm.line, alarm), None)
+        events.on_change_at_rest()
 
 
-class ControlHands(PostedHands):
+class ControlStationControls(PostedControls):
     """The simulated operator station of the control; methods can be called from any thread.
 
     ``hand`` sends the name of a method and its values to the station.
@@ -280,52 +284,54 @@ class ControlHands(PostedHands):
     def __init__(self, hand: Callable[..., None]) -> None:
         self._hand = hand
 
-    def post(self, name: str, *values: object) -> None:
+    def post_action(self, name: str, *values: object) -> None:
         """Call the method with this name at the station."""
         self._hand(name, *values)
 
 
-class ControlRecords(Recordings):
-    """Scope data of the control. ``hear`` receives the events that name alarm records."""
+class ControlRecordings(ScopeRecordings):
+    """Scope data of the control. ``handle_event`` receives the events that name alarm records."""
 
-    def __init__(self, ring: Ring, folder: Path, trouble: str) -> None:
-        super().__init__(ring, folder, trouble)
+    def __init__(self, ring: ScopeRing, folder: Path, storage_error: str) -> None:
+        super().__init__(ring, folder, storage_error)
         self._named: dict[str, float] = {}  # announced records by name, with the time in s
 
-    def hear(self, event: Event) -> None:
+    def handle_event(self, event: LogEvent) -> None:
         """Note the name of a record that is now being written."""
-        if event.record:
-            self._named.setdefault(event.record, time.monotonic())
+        if event.record_name:
+            self._named.setdefault(event.record_name, time.monotonic())
 
     def is_saving(self, name: str) -> bool:
         """Return whether the record was announced and its file does not exist yet."""
         there = self.folder is not None and (self.folder / name).exists()
-        return not there and time.monotonic() < self._named.get(name, -_SAVED_IN) + _SAVED_IN
+        return not there and time.monotonic() < self._named.get(name, -_SAVE_TIMEOUT_S) + _SAVE_TIMEOUT_S
 
 
 def _not_taken(error: BaseException) -> None:
     _log.error("a message of the control was not taken: %s", error)
 
 
-def _hello(connection: Connection, limit: float) -> Hello:
+def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
     """Return the first message of the control.
 
     Raises DriverError if the control reports an error, does not respond or has another version.
     """
     try:
-        message = connection.recv() if connection.poll(limit) else None
+        message = connection.recv() if connection.poll(timeout_s) else None
     except (OSError, EOFError):
         words = "the process of the control ended during start-up; see its message above"
-        raise DriverError(words, reason=_ENDED) from None
-    except _NO_MESSAGE:
+        raise DriverError(words, reason=_ENDED_REASON) from None
+    except _CONNECTION_ERRORS:
         message = b""  # a message of another version
     match message:
-        case Hello() if message.version == VERSION:
+        case HelloMessage() if message.version == PROTOCOL_VERSION:
             return message
-        case Failed(why):
-            raise DriverError(why, reason=why if why == BUSY else "")
+        case ControlFailed(why):
+            raise DriverError(why, reason=why if why == SCREEN_CONNECTED else "")
         case None:
-            raise DriverError(_SILENT if limit == ANSWERS_IN else "the process of the control does not start")
+            raise DriverError(
+                _SILENT_TEXT if timeout_s == REPLY_TIMEOUT_S else "the process of the control does not start"
+            )
         case _:
             raise DriverError(
                 "the control that runs belongs to another version of TurnDesk: wait until it has ended, then "
@@ -341,20 +347,20 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
     Raises DriverError if a control with another machine file is running a program, or if the control has
     another version or does not respond.
     """
-    connection = _connected(path)
+    connection = _connect(path)
     if connection is None:
         return None
     try:
         found = ControlClient(StartedControl(connection, None), folder)
     except DriverError as error:
         connection.close()
-        if error.reason in {BUSY, _ENDED}:
+        if error.reason in {SCREEN_CONNECTED, _ENDED_REASON}:
             return None
         raise
-    if found.hello.machine == machine:
+    if found.hello_message.machine == machine:
         return found
-    under_way = found.snapshot.state in CYCLE
-    found.leave(close=not under_way)
+    under_way = found.snapshot.state in CYCLE_STATES
+    found.disconnect(end_control=not under_way)
     if under_way:
         raise DriverError(
             "the control is running a program with another machine file: start TurnDesk with that "
@@ -363,7 +369,7 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
     return None
 
 
-def _connected(path: Path) -> Connection | None:
+def _connect(path: Path) -> Connection | None:
     """Return a connection to the control at a socket, or None.
 
     The control must belong to the same user, because its messages are unpickled.
@@ -373,7 +379,7 @@ def _connected(path: Path) -> Connection | None:
         try:
             sock.connect(str(path))
         except BlockingIOError:  # other connections are waiting
-            raise DriverError(_SILENT) from None
+            raise DriverError(_SILENT_TEXT) from None
         except OSError:
             return None
         sock.setblocking(True)

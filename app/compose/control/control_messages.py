@@ -12,103 +12,103 @@ from multiprocessing.connection import Connection
 from socket import AF_UNIX, SO_PEERCRED, SOCK_STREAM, SOL_SOCKET, fromfd
 from typing import NamedTuple
 
-from app.compose.control.rights import Right
+from app.compose.control.process_rights_check import ProcessRight
 from core.executor.commands import Command
-from core.executor.snapshot import Event, InterruptedJob, Snapshot
+from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
-from core.records.record_ring import Recorded
+from core.records.record_ring import RingLayout
 
-VERSION = 3  # of these messages
-BUSY = "busy"  # reason for rejecting a second screen, never shown to the user
-STALE = 0.5  # s after which a key press that starts motion expires
+PROTOCOL_VERSION = 3  # of these messages
+SCREEN_CONNECTED = "busy"  # reason for rejecting a second screen, never shown to the user
+KEY_EXPIRY_S = 0.5  # s after which a key press that starts motion expires
 _CREDENTIALS = struct.Struct("3i")  # process, user, group
 
 
 # --- Messages from the screen -----------------------------------------------------------------------------
 
 
-class Post(NamedTuple):
+class CommandMessage(NamedTuple):
     """Send a command to the executor. ``at`` is the time of the request in s."""
 
     command: Command
-    at: float
+    requested_at_s: float
 
 
-class Hand(NamedTuple):
+class StationAction(NamedTuple):
     """Call a method of the simulated operator station. ``at`` is the time of the action in s."""
 
     name: str
     values: tuple[object, ...]
-    at: float
+    acted_at_s: float
 
 
-class SetInput(NamedTuple):
+class InputChange(NamedTuple):
     """Switch an input of a simulated machine."""
 
     name: str
-    on: bool
+    is_on: bool
 
 
-class Alive(NamedTuple):
+class ScreenAlive(NamedTuple):
     """The screen has handled its keys and drawn the state of the machine."""
 
 
-class StopLine(NamedTuple):
+class StopSocketMessage(NamedTuple):
     """The file descriptor of a socket for stop keys follows this message."""
 
 
-class Heard(NamedTuple):
+class EventStored(NamedTuple):
     """The event with this number is stored and need not be sent again."""
 
     number: int
 
 
-class Close(NamedTuple):
+class CloseRequest(NamedTuple):
     """Stop the machine, close the drivers and end the process."""
 
 
 # --- Messages from the control ----------------------------------------------------------------------------
 
 
-class Hello(NamedTuple):
+class HelloMessage(NamedTuple):
     """First message of the control. The file descriptor of the scope's shared memory follows it."""
 
     version: int
     process: int  # number of its process
     identity: str  # differs from that of each other control; numbers of events belong to it
     machine: Machine  # machine of the control
-    zero: float  # zero of its clock, in s of the computer's monotonic clock
+    clock_zero_s: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]
-    rights: tuple[Right, ...]  # rights that the system has granted or refused
-    recorded: Recorded
-    trouble: str  # reason why the scope does not write its file; empty if it does
-    station: bool  # whether the operator station on the screen operates this machine
-    inputs: bool  # whether the screen can switch the inputs of this machine
+    rights: tuple[ProcessRight, ...]  # rights that the system has granted or refused
+    recorded: RingLayout
+    disk_error: str  # reason why the scope does not write its file; empty if it does
+    has_on_screen_station: bool  # whether the operator station on the screen operates this machine
+    can_switch_inputs: bool  # whether the screen can switch the inputs of this machine
     snapshot: Snapshot
-    noted: InterruptedJob | None  # job that a power failure would interrupt now
+    interrupted_job: InterruptedJob | None  # job that a power failure would interrupt now
 
 
-class Failed(NamedTuple):
+class ControlFailed(NamedTuple):
     """The control cannot be used, with the reason. No other message follows."""
 
-    why: str
+    reason: str
 
 
-class Shown(NamedTuple):
-    """The newest snapshot. ``stirred`` means that something has changed on a machine at rest."""
+class SnapshotMessage(NamedTuple):
+    """The newest snapshot. ``has_changed`` means that something has changed on a machine at rest."""
 
     snapshot: Snapshot
-    stirred: bool
+    has_changed: bool
 
 
-class Happened(NamedTuple):
+class EventMessage(NamedTuple):
     """A numbered event for the event log."""
 
     number: int
-    event: Event
+    event: LogEvent
 
 
-class Noted(NamedTuple):
+class InterruptedJobNote(NamedTuple):
     """The job that a power failure would interrupt now, or None."""
 
     job: InterruptedJob | None
@@ -120,7 +120,7 @@ class ThreadEnded(NamedTuple):
     name: str
 
 
-class Closed(NamedTuple):
+class MachineClosed(NamedTuple):
     """The machine is stopped and its drivers are closed."""
 
 

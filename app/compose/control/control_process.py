@@ -15,16 +15,16 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from app.compose.control.control_messages import Failed, is_own_user
+from app.compose.control.control_messages import ControlFailed, is_own_user
 from app.compose.control.control_place import ControlPlace, ScreenListener
-from app.compose.control.control_server import LOOK, ControlServer
-from app.compose.control.rights import acquire_rights
-from app.compose.runs.error_log import Log
+from app.compose.control.control_server import CHECK_INTERVAL_S, ControlServer
+from app.compose.control.process_rights_check import acquire_rights
+from app.compose.runs.error_log import ErrorLog
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
-_GIVE_WAY = 0.001  # s after which a thread that reads a program yields to the executor
+_SWITCH_INTERVAL_S = 0.001  # s after which a thread that reads a program yields to the executor
 LOG_FILE = "control.log"
 
 
@@ -33,28 +33,28 @@ def main(arguments: list[str]) -> int:
     first, clock, folder = Connection(int(arguments[0])), RealClock(float(arguments[1])), Path(arguments[2])
     machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has
     assert isinstance(machine, Machine)
-    sys.setswitchinterval(_GIVE_WAY)
-    log = Log(LOG_FILE)
+    sys.setswitchinterval(_SWITCH_INTERVAL_S)
+    log = ErrorLog(LOG_FILE)
     rights = acquire_rights()
     try:
         place = ControlPlace(folder)
         server = ControlServer(machine, clock, folder, rights, place.drivers)
     except DriverError as error:
         with suppress(OSError):
-            first.send(Failed(error.fault if isinstance(error.fault, str) else str(error)))
+            first.send(ControlFailed(error.fault if isinstance(error.fault, str) else str(error)))
         log.close()
         return 1
     gc.collect()
     gc.freeze()  # modules and other permanent objects need not be scanned again
     for number in (signal.SIGTERM, signal.SIGINT):  # sent when the computer shuts down
-        signal.signal(number, lambda *_: server.closing.set())
+        signal.signal(number, lambda *_: server.closing_event.set())
     server.start()
-    _serve(server, first)  # before another screen can find the control
+    _serve_connection(server, first)  # before another screen can find the control
     listener = place.listen()
     if listener is not None:
         threading.Thread(target=_serve_screens, args=(server, listener), name="screens", daemon=True).start()
-    while not server.closing.wait(LOOK):
-        server.look()
+    while not server.closing_event.wait(CHECK_INTERVAL_S):
+        server.check_screen()
     server.close()
     if listener is not None:
         listener.close()
@@ -65,18 +65,18 @@ def main(arguments: list[str]) -> int:
 
 def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
     """Accept screens that find the control, one after the other."""
-    while not server.closing.is_set():
+    while not server.closing_event.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept()
             if is_own_user(connection):
-                _serve(server, connection)
+                _serve_connection(server, connection)
             else:
                 connection.close()
 
 
-def _serve(server: ControlServer, connection: Connection) -> None:
+def _serve_connection(server: ControlServer, connection: Connection) -> None:
     """Serve a screen in a new thread, so that a second screen gets a response at the same time."""
-    threading.Thread(target=server.serve, args=(connection,), name="screen", daemon=True).start()
+    threading.Thread(target=server.serve_screen, args=(connection,), name="screen", daemon=True).start()
 
 
 if __name__ == "__main__":

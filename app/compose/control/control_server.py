@@ -22,76 +22,91 @@ from pathlib import Path
 from socket import AF_UNIX, SHUT_RDWR, SOCK_STREAM, fromfd
 from uuid import uuid4
 
-from app.compose.backends.connection import connect
+from app.compose.backends.connection import connect_machine
 from app.compose.control.control_messages import (
-    BUSY,
-    STALE,
-    VERSION,
-    Alive,
-    Close,
-    Closed,
-    Failed,
-    Hand,
-    Happened,
-    Heard,
-    Hello,
-    Noted,
-    Post,
-    SetInput,
-    Shown,
-    StopLine,
+    KEY_EXPIRY_S,
+    PROTOCOL_VERSION,
+    SCREEN_CONNECTED,
+    CloseRequest,
+    CommandMessage,
+    ControlFailed,
+    EventMessage,
+    EventStored,
+    HelloMessage,
+    InputChange,
+    InterruptedJobNote,
+    MachineClosed,
+    ScreenAlive,
+    SnapshotMessage,
+    StationAction,
+    StopSocketMessage,
     ThreadEnded,
 )
-from app.compose.control.left_note import LeftEvents, remove_note, save_events, save_note
-from app.compose.control.passed_files import SharedMemory, obey_line, receive_file, send_file
-from app.compose.control.rights import READING, Right
-from app.compose.extra import extras
-from app.desk.stop_keys.stop_records import Stop, StopKind
-from core.closing import ClosingStep, close_in_order
-from core.executor.commands import (
-    BarNextPart,
-    Command,
-    FeedHold,
-    JogStop,
-    LoadJob,
-    Prepare,
-    Renew,
-    Reset,
-    SpindleStop,
-    WheelOff,
+from app.compose.control.descriptor_passing import (
+    SharedMemory,
+    handle_stop_keys,
+    receive_descriptor,
+    send_descriptor,
 )
-from core.executor.executor import STARTS, Executor
+from app.compose.control.process_rights_check import READING, ProcessRight
+from app.compose.control.unattended_notes import LeftEvents, remove_note, save_events, save_note
+from app.compose.optional_features import extras
+from app.desk.stop_keys.stop_records import StopKind, StopPress
+from core.closing_steps import ClosingStep, close_in_order
+from core.executor.commands import (
+    BlockNextPart,
+    ChangeOffsets,
+    Command,
+    DeselectHandwheel,
+    FeedHold,
+    LoadJob,
+    PrepareStart,
+    Reset,
+    StopJog,
+    StopSpindle,
+)
+from core.executor.executor import MOTION_COMMANDS, Executor
 from core.executor.raised_alarm import Attempt, ReportedAttempt
-from core.executor.recorder import Recorder, recorded_of
-from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
-from core.executor.snapshot import ACTIVE, STOPPED, Event, InterruptedJob, Snapshot, State, Tick
-from core.interpreter.dialects import ReadProgram
+from core.executor.recorder import Recorder, list_recorded_signals
+from core.executor.safety.watchdog import WATCHDOG_THREAD_NAME, ExecutorThread, Watchdog
+from core.executor.snapshot import (
+    ACTIVE_STATES,
+    STOPPED_STATES,
+    InterruptedJob,
+    LogEvent,
+    MachineState,
+    Snapshot,
+    TickData,
+)
+from core.interpreter.dialects import SharedProgram
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
-from core.store.store_rows import EventOrigin, EventRow, utc
+from core.store.store_rows import EventOrigin, EventRow, format_utc
 from drivers.process_rights import lower_thread
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
-HELD = 10_000  # events that can wait while no screen is connected
-PACE = 0.015  # =
-SEND_AGAIN = 0.1  # s after which the snapshot is checked without notification
-LOOK = 0.1  # s between two checks of the screen
-SILENT_LOOKS = 30  # checks without a message after which the screen is treated as hung (3 s)
-REST_LOOKS = 150  # checks without a screen after which a machine at rest is closed (15 s)
-STOPPED_LOOKS = 600  # the same for a stopped program (60 s)
-_STARTING_HANDS = frozenset({"press_left", "press_right"})
-_GOES = frozenset({State.RUN, State.WAIT, State.JOG, State.HOME})
-_STOPPING_HANDS = frozenset({"press_hold", "press_estop"})
-ENDS = 1.0  # s that closing waits for the last messages to the screen
-EXECUTOR_CLOSES = 12.0  # s, for drives that are switching on; then the machine is halted
-_STOPS = FeedHold | JogStop | Reset | SpindleStop | WheelOff  # stop commands, which overtake other commands
-_UNSAVED = object()
-_ALONE = Message("TurnDesk, because the screen did not respond")
+MAX_WAITING_EVENTS = 10_000  # events that can wait while no screen is connected
+SNAPSHOT_INTERVAL_S = 0.015  # =
+RECHECK_INTERVAL_S = 0.1  # s after which the snapshot is checked without notification
+CHECK_INTERVAL_S = 0.1  # s between two checks of the screen
+SILENT_CHECKS = 30  # checks without a message after which the screen is treated as hung (3 s)
+REST_CHECKS = 150  # checks without a screen after which a machine at rest is closed (15 s)
+STOPPED_CHECKS = 600  # the same for a stopped program (60 s)
+_STARTING_ACTIONS = frozenset({"press_left", "press_right"})
+_MOVING_STATES = frozenset({MachineState.RUN, MachineState.WAIT, MachineState.JOG, MachineState.HOME})
+_STOPPING_ACTIONS = frozenset({"press_hold", "press_estop"})
+JOIN_TIMEOUT_S = 1.0  # s that closing waits for the last messages to the screen
+EXECUTOR_TIMEOUT_S = 12.0  # s, for drives that are switching on; then the machine is halted
+_STOP_COMMANDS = (
+    FeedHold | StopJog | Reset | StopSpindle | DeselectHandwheel
+)  # stop commands, which overtake other commands
+_NOT_SAVED = object()
+_NO_SCREEN_TEXT = Message("TurnDesk, because the screen did not respond")
 
 
-class Outbox:
+class ScreenOutbox:
     """Messages waiting for the screen. Any thread adds messages, and the screen's sender sends them.
 
     An event waits until the screen confirms that it is stored. Otherwise the next screen receives it again.
@@ -99,93 +114,93 @@ class Outbox:
 
     def __init__(self, snapshot: Callable[[], Snapshot]) -> None:
         self._snapshot = snapshot
-        self._events: deque[Happened] = deque(maxlen=HELD)
+        self._events: deque[EventMessage] = deque(maxlen=MAX_WAITING_EVENTS)
         self._ended: deque[ThreadEnded] = deque()
-        self._noted: Noted | None = None
+        self._noted: InterruptedJobNote | None = None
         self._ready = threading.Event()
         self._lock = threading.Lock()  # locked briefly while an event gets its number
         self._number = self._sent = 0  # numbers of the newest event and of the last event sent to this screen
         self._stirred = self._closed = False
         self._shown: Snapshot | None = None
 
-    def show(self) -> None:
+    def request_snapshot(self) -> None:
         """Request that the newest snapshot is sent."""
         self._ready.set()
 
-    def stir(self) -> None:
+    def request_changed_snapshot(self) -> None:
         """Request that the newest snapshot is sent immediately and marked as changed."""
         self._stirred = True
         self._ready.set()
 
-    def put(self, event: Event) -> None:
+    def add_event(self, event: LogEvent) -> None:
         """Queue an event."""
         with self._lock:
             self._number += 1
-            self._events.append(Happened(self._number, event))
+            self._events.append(EventMessage(self._number, event))
         self._ready.set()
 
-    def heard(self, number: int) -> None:
+    def confirm_events(self, number: int) -> None:
         """Discard the events up to this number, because the screen has stored them."""
         with self._lock:
             while self._events and self._events[0].number <= number:
                 self._events.popleft()
 
     @property
-    def unheard(self) -> list[Happened]:
+    def unconfirmed_events(self) -> list[EventMessage]:
         """Events that no screen has confirmed."""
         with self._lock:
             return list(self._events)
 
-    def note(self, job: InterruptedJob | None) -> None:
+    def set_interrupted_job(self, job: InterruptedJob | None) -> None:
         """Replace the note about the interrupted job."""
-        self._noted = Noted(job)
+        self._noted = InterruptedJobNote(job)
         self._ready.set()
 
-    def thread_ended(self, name: str) -> None:
+    def add_thread_end(self, name: str) -> None:
         """Queue the message that a thread has ended."""
         self._ended.append(ThreadEnded(name))
         self._ready.set()
 
-    def close(self) -> None:
+    def add_closed(self) -> None:
         """Request the message that the machine is closed."""
         self._closed = True
         self._ready.set()
 
-    def send(self, connection: Connection, gone: threading.Event) -> None:
+    def send_messages(self, connection: Connection, screen_gone: threading.Event) -> None:
         """Send waiting messages to a screen until ``gone`` is set. Raises OSError if its connection ends."""
         self._shown, self._sent = None, 0
-        while not gone.is_set():
-            self._ready.wait(SEND_AGAIN)
+        while not screen_gone.is_set():
+            self._ready.wait(RECHECK_INTERVAL_S)
             self._ready.clear()
             if self._send_all(connection):
                 return
             if not self._stirred:
-                gone.wait(PACE)
+                screen_gone.wait(SNAPSHOT_INTERVAL_S)
 
     def _send_all(self, connection: Connection) -> bool:
         """Send all waiting messages; return whether the machine is closed."""
         with self._lock:
             events = [each for each in self._events if each.number > self._sent]
         for event in events:
-            _send(connection, event)
+            _send_message(connection, event)
             self._sent = event.number
         while self._ended:
-            _send(connection, self._ended.popleft())
+            _send_message(connection, self._ended.popleft())
         noted, self._noted = self._noted, None
         if noted is not None:
-            _send(connection, noted)  # a later screen receives it in Hello
+            _send_message(connection, noted)  # a later screen receives it in Hello
         closed = self._closed  # read first, so that the snapshot sent afterwards is the last
         stirred, self._stirred = self._stirred, False
         snapshot = self._snapshot()
         if stirred or snapshot is not self._shown:
-            _send(connection, Shown(snapshot, stirred))
+            _send_message(connection, SnapshotMessage(snapshot, stirred))
             self._shown = snapshot
         if closed:
-            _send(connection, Closed())
+            _send_message(connection, MachineClosed())
         return closed
 
 
-def _send(connection: Connection, message: object) -> None:
+def _send_message(connection: Connection, message: object) -> None:
     """Send one message. A message that cannot be pickled is logged and omitted. Raises OSError."""
     with ReportedAttempt(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
         data = ForkingPickler.dumps(message)
@@ -205,29 +220,31 @@ class ControlServer:
         machine: Machine,
         clock: RealClock,
         folder: Path,
-        rights: tuple[Right, ...],
+        rights: tuple[ProcessRight, ...],
         lock: int | None = None,
     ) -> None:
         self._machine, self._clock, self._folder, self._rights = machine, clock, folder, rights
         self._identity = uuid4().hex  # of this control, for the numbers of its events
-        self._connected = connect(machine, clock, lock)
-        recorded = recorded_of(machine, self._connected.ports)
-        self._memory = SharedMemory.of_size(recorded.ring_bytes)
-        self.recorder = Recorder(recorded, folder / "records", memory=self._memory.view)
-        self.outbox = Outbox(lambda: self.executor.snapshot)
+        self._connected = connect_machine(machine, clock, lock)
+        recorded = list_recorded_signals(machine, self._connected.ports)
+        self._memory = SharedMemory.create(recorded.size_bytes)
+        self.recorder = Recorder(recorded, folder / "records", memory=self._memory.memory_view)
+        self.outbox = ScreenOutbox(lambda: self.executor.snapshot)
         self.executor = Executor(
             machine,
             self._connected.ports,
             self._hear,
-            note=self._note,
-            tell=self._tell,
+            store_interruption=self._note,
+            record_tick=self._tell,
             checks_starts=machine.kind == "lathe",
         )
-        self.executor.stirs = self.outbox.stir
+        self.executor.on_change_at_rest = self.outbox.request_changed_snapshot
         self._thread = ExecutorThread(self.executor, clock)
-        self._watchdog = Watchdog(self._thread, self.executor.halt, watched(), self.outbox.thread_ended)
+        self._watchdog = Watchdog(
+            self._thread, self.executor.halt_function, list_watched_threads(), self.outbox.add_thread_end
+        )
         self._noted: InterruptedJob | None = None
-        self._reading: ReadProgram | None = None
+        self._reading: SharedProgram | None = None
         self._screen: Connection | None = None
         self._served = threading.Lock()  # locked while a screen is connected
         self._sender: threading.Thread | None = None
@@ -236,15 +253,15 @@ class ControlServer:
         self._met = False  # whether this screen has sent Alive; before that it is opening its window
         self._alone = False  # the screen has disconnected or hangs
         self._barred = ""  # reason why the next part was locked before the screen was lost
-        self._saved: object = _UNSAVED  # the note stored in the data folder
-        self._posts: queue.SimpleQueue[Post] = queue.SimpleQueue()
+        self._saved: object = _NOT_SAVED  # the note stored in the data folder
+        self._posts: queue.SimpleQueue[CommandMessage] = queue.SimpleQueue()
         self._stopped_at = -1.0  # s, time of the last stop request
-        self.closing = threading.Event()
+        self.closing_event = threading.Event()
 
     def start(self) -> None:
         """Start the executor, the recorder and the watchdog."""
         self._thread.start()
-        threading.Thread(target=self._carry_out, name="commands", daemon=True).start()
+        threading.Thread(target=self._post_commands, name="commands", daemon=True).start()
         self.recorder.start()
         self._watchdog.start()
 
@@ -252,21 +269,21 @@ class ControlServer:
         """Stop the machine as an E-stop does, and close its drivers."""
         close_in_order(
             (
-                ClosingStep("watchdog", self._watchdog.end),
-                ClosingStep("executor", self._thread.close, EXECUTOR_CLOSES),
+                ClosingStep("watchdog", self._watchdog.stop_checks),
+                ClosingStep("executor", self._thread.close, EXECUTOR_TIMEOUT_S),
                 ClosingStep("drivers", self._connected.close),
                 ClosingStep("watchdog", self._watchdog.close),
                 ClosingStep("recorder", self.recorder.close),
             )
         )
-        self.outbox.close()
+        self.outbox.add_closed()
         if self._sender is not None:
-            self._sender.join(ENDS)
-        close_in_order([ClosingStep("events", self._leave_events)])
+            self._sender.join(JOIN_TIMEOUT_S)
+        close_in_order([ClosingStep("events", self._save_events)])
 
-    def _leave_events(self) -> None:
+    def _save_events(self) -> None:
         """Save the events that no screen has stored, for the next start."""
-        left = self.outbox.unheard if self._screen is None else []
+        left = self.outbox.unconfirmed_events if self._screen is None else []
         if left:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
             rows = tuple(_row(each.event, began) for each in left)
@@ -275,28 +292,30 @@ class ControlServer:
 
     # --- Executor thread ------------------------------------------------------------------------------
 
-    def _hear(self, event: Event) -> None:
-        self.outbox.put(self.recorder.note(event))
+    def _hear(self, event: LogEvent) -> None:
+        self.outbox.add_event(self.recorder.assign_record_name(event))
 
     def _note(self, job: InterruptedJob | None) -> None:
         self._noted = job
-        self.outbox.note(job)
+        self.outbox.set_interrupted_job(job)
 
-    def _tell(self, tick: Tick) -> None:
-        self.recorder.tell(tick)
-        self.outbox.show()
+    def _tell(self, tick: TickData) -> None:
+        self.recorder.queue_tick(tick)
+        self.outbox.request_snapshot()
 
     # --- Screen ---------------------------------------------------------------------------------------
 
-    def serve(self, connection: Connection) -> None:
+    def serve_screen(self, connection: Connection) -> None:
         """Serve one screen until its connection ends, then close it; a second screen is rejected."""
         with connection:
-            if not self._served.acquire(timeout=ENDS):  # a screen that was just killed may still be connected
+            if not self._served.acquire(
+                timeout=JOIN_TIMEOUT_S
+            ):  # a screen that was just killed may still be connected
                 with suppress(OSError):
-                    connection.send(Failed(BUSY))
+                    connection.send(ControlFailed(SCREEN_CONNECTED))
                 return
             try:
-                if not self.closing.is_set():
+                if not self.closing_event.is_set():
                     self._talk(connection)
             finally:
                 self._served.release()
@@ -308,17 +327,17 @@ class ControlServer:
         )
         with Attempt() as talk:
             connection.send(self._hello())
-            send_file(connection, self._memory.file)
+            send_descriptor(connection, self._memory.descriptor)
             self._quiet, self._met, self._screen = 0, False, connection
             remove_note(self._folder)
-            self._saved = _UNSAVED  # if the screen disconnects before it has stored the note
+            self._saved = _NOT_SAVED  # if the screen disconnects before it has stored the note
             sender.start()
             self._sender = sender
             while True:
                 message = connection.recv()
                 with ReportedAttempt(_not_obeyed):
                     self._obey(message)
-        # otherwise ``look`` reacts as the machine file specifies
+        # otherwise ``check_screen`` reacts as the machine file specifies
         if not isinstance(talk.error, OSError | EOFError):
             _log.error("the screen has sent what is no message; it is disconnected", exc_info=talk.error)
         self._screen = None
@@ -327,25 +346,25 @@ class ControlServer:
             with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock, suppress(OSError):
                 sock.shutdown(SHUT_RDWR)  # the sender may be blocked by a screen that does not read
             sender.join()
-        self._let_go()
+        self._release_station()
 
     def _send(self, connection: Connection, gone: threading.Event) -> None:
         with suppress(OSError):
-            self.outbox.send(connection, gone)
+            self.outbox.send_messages(connection, gone)
 
-    def _hello(self) -> Hello:
+    def _hello(self) -> HelloMessage:
         connected, recorder = self._connected, self.recorder
-        return Hello(
-            VERSION,
+        return HelloMessage(
+            PROTOCOL_VERSION,
             os.getpid(),
             self._identity,
             self._machine,
-            self._clock.zero,
+            self._clock.origin_s,
             tuple(connected.ports.warnings),
             self._rights,
-            recorder.ring.recorded,
-            recorder.trouble,
-            connected.panel is not None,
+            recorder.ring.layout,
+            recorder.storage_error,
+            connected.on_screen_station is not None,
             connected.set_input is not None,
             self.executor.snapshot,
             self._noted,
@@ -353,39 +372,39 @@ class ControlServer:
 
     def _obey(self, message: object) -> None:
         match message:
-            case Post(command, at) if isinstance(command, _STOPS):
+            case CommandMessage(command, at) if isinstance(command, _STOP_COMMANDS):
                 self._stopped_at = max(self._stopped_at, at)
                 self.executor.post(command, at)
-            case Post(command):
-                if isinstance(command, BarNextPart):
+            case CommandMessage(command):
+                if isinstance(command, BlockNextPart):
                     self._barred = command.why
                 self._posts.put(message)
-            case Hand():
+            case StationAction():
                 self._use_hand(message)
-            case SetInput(name, on):
+            case InputChange(name, on):
                 self._set_input(name, on)
-            case StopLine() if self._screen is not None:
-                obey_line(receive_file(self._screen), self._stop)
-            case Heard(number):
-                self.outbox.heard(number)
-            case Alive():
+            case StopSocketMessage() if self._screen is not None:
+                handle_stop_keys(receive_descriptor(self._screen), self._stop)
+            case EventStored(number):
+                self.outbox.confirm_events(number)
+            case ScreenAlive():
                 # only this message counts, because the screen's other threads run even while it hangs
                 self._quiet, self._met = 0, True
-            case Close():
-                self.closing.set()
+            case CloseRequest():
+                self.closing_event.set()
             case _:
                 _log.error("the control does not know this message of the screen: %r", message)
 
-    def _stop(self, stop: Stop) -> None:
+    def _stop(self, stop: StopPress) -> None:
         """Carry out a stop key. Called in the thread of its socket."""
         self._stopped_at = max(self._stopped_at, self._clock.now())
-        panel = self._connected.panel
+        panel = self._connected.on_screen_station
         if stop.kind is StopKind.ESTOP and panel is not None:
             panel.press_estop()
         else:
-            self.executor.post(FeedHold(stop.kind.by, stop.press))
+            self.executor.post(FeedHold(stop.kind.source_text, stop.press_number))
 
-    def _carry_out(self) -> None:
+    def _post_commands(self) -> None:
         """Send commands to the executor in order, in a separate thread, because reading a program takes time.
 
         A stop overtakes them. Commands that start something and were sent before the stop are dropped. With
@@ -393,80 +412,82 @@ class ControlServer:
         slice.
         """
         lower_thread(READING)
-        while not self.closing.is_set():
+        while not self.closing_event.is_set():
             command, at = self._posts.get()
-            if not (isinstance(command, STARTS) and at <= self._stopped_at):
-                with ReportedAttempt(self.executor.failed):
-                    self.executor.post(self._with_reading(command), at)
+            if not (isinstance(command, MOTION_COMMANDS) and at <= self._stopped_at):
+                with ReportedAttempt(self.executor.handle_failure):
+                    self.executor.post(self._attach_reading(command), at)
 
-    def _use_hand(self, hand: Hand) -> None:
-        if hand.name in _STOPPING_HANDS:
-            self._stopped_at = max(self._stopped_at, hand.at)
-        late = self._clock.now() - hand.at > STALE
-        if self._connected.panel is None or (late and hand.name in _STARTING_HANDS):
+    def _use_hand(self, hand: StationAction) -> None:
+        if hand.name in _STOPPING_ACTIONS:
+            self._stopped_at = max(self._stopped_at, hand.acted_at_s)
+        late = self._clock.now() - hand.acted_at_s > KEY_EXPIRY_S
+        if self._connected.on_screen_station is None or (late and hand.name in _STARTING_ACTIONS):
             return
-        getattr(self._connected.panel, hand.name)(*hand.values)
+        getattr(self._connected.on_screen_station, hand.name)(*hand.values)
 
-    def _let_go(self) -> None:
+    def _release_station(self) -> None:
         """Release the buttons that the screen has pressed; an E-stop remains pressed."""
-        if self._connected.panel is not None:
+        if self._connected.on_screen_station is not None:
             for release in ("release_left", "release_right", "release_hold"):
-                getattr(self._connected.panel, release)()
+                getattr(self._connected.on_screen_station, release)()
 
     def _set_input(self, name: str, on: bool) -> None:
         if self._connected.set_input is not None:
             with suppress(DriverError):
                 self._connected.set_input(name, on)
 
-    def _with_reading(self, command: Command) -> Command:
+    def _attach_reading(self, command: Command) -> Command:
         """Return the command with its program already read.
 
         The executor's thread has no time for reading a program.
         """
-        if not isinstance(command, LoadJob | Renew | Prepare) or command.job is None:
+        if not isinstance(command, LoadJob | ChangeOffsets | PrepareStart) or command.job is None:
             return command
         job = command.job
-        if job.setup.begin is not None and job.setup.begin.single:
+        if job.setup.begin is not None and job.setup.begin.is_mdi_line:
             return command
-        if self._reading is None or not self._reading.is_same(job.reading):
-            job.reading.read()
-            self._reading = job.reading
+        if self._reading is None or not self._reading.has_same_source(job.shared_program):
+            job.shared_program.read()
+            self._reading = job.shared_program
             gc.collect(1)
             gc.freeze()  # scanning a long program for reference cycles would delay the executor's thread
-        return replace(command, job=replace(job, reading=self._reading))
+        return replace(command, job=replace(job, shared_program=self._reading))
 
     # --- Screen that is silent or disconnected --------------------------------------------------------
 
-    def look(self) -> None:
-        """Check the screen, every ``LOOK`` seconds.
+    def check_screen(self) -> None:
+        """Check the screen, every ``CHECK_INTERVAL_S`` seconds.
 
         Without a screen, a cut continues or stops, as the machine file specifies.
         """
         self._quiet += 1
         self._away = 0 if self._screen is not None else self._away + 1
-        silent = self._quiet >= SILENT_LOOKS if self._met else self._alone
+        silent = self._quiet >= SILENT_CHECKS if self._met else self._alone
         alone = self._away > 0 or silent
         if alone is not self._alone:
             self._alone = alone
-            self._go_alone() if alone else self._go_together()
+            self._run_without_screen() if alone else self._go_together()
         if self._away and self._noted is not self._saved:
             self._save_note()
         state = self.executor.snapshot.state
-        if alone and state in _GOES and not self._machine.hardware.continues_alone:
-            self.executor.post(FeedHold(_ALONE))  # also if the machine's own buttons have started the motion
-        longest = STOPPED_LOOKS if state in STOPPED else REST_LOOKS
-        if self._away >= longest and state not in ACTIVE:
-            self.closing.set()
+        if alone and state in _MOVING_STATES and not self._machine.hardware.continues_without_screen:
+            self.executor.post(
+                FeedHold(_NO_SCREEN_TEXT)
+            )  # also if the machine's own buttons have started the motion
+        longest = STOPPED_CHECKS if state in STOPPED_STATES else REST_CHECKS
+        if self._away >= longest and state not in ACTIVE_STATES:
+            self.closing_event.set()
 
-    def _go_alone(self) -> None:
+    def _run_without_screen(self) -> None:
         """React to a lost screen, which can no longer stop the machine or count parts."""
-        self._saved = _UNSAVED
-        if self._machine.hardware.continues_alone:
-            self.executor.post(BarNextPart(_ALONE))
+        self._saved = _NOT_SAVED
+        if self._machine.hardware.continues_without_screen:
+            self.executor.post(BlockNextPart(_NO_SCREEN_TEXT))
 
     def _go_together(self) -> None:
-        if self._machine.hardware.continues_alone:
-            self.executor.post(BarNextPart(self._barred))
+        if self._machine.hardware.continues_without_screen:
+            self.executor.post(BlockNextPart(self._barred))
 
     def _save_note(self) -> None:
         self._saved = noted = self._noted
@@ -475,15 +496,21 @@ class ControlServer:
             remove_note(self._folder)
 
 
-def _row(event: Event, began: datetime) -> EventRow:
+def _row(event: LogEvent, began: datetime) -> EventRow:
     """Return the event as a row of the log; ``began`` is the zero of the control's clock."""
-    at = utc(began + timedelta(seconds=event.t))
-    return EventRow(at, event.kind, event.text, event.line, event.record)
+    at = format_utc(began + timedelta(seconds=event.time_s))
+    return EventRow(at, event.kind, event.text, event.line, event.record_name)
 
 
-def watched() -> tuple[str, ...]:
+def list_watched_threads() -> tuple[str, ...]:
     """Return the names of threads in this process whose end is reported to the operator."""
-    return "commands", "recorder", "inverter", WATCHDOG, *(n for e in extras().values() for n in e.threads)
+    return (
+        "commands",
+        "recorder",
+        "inverter",
+        WATCHDOG_THREAD_NAME,
+        *(n for e in extras().values() for n in e.supervised_threads),
+    )
 
 
 def _not_obeyed(error: BaseException) -> None:

@@ -30,7 +30,7 @@ class StartedControl(NamedTuple):
     connection: Connection
     process: subprocess.Popen[bytes] | None
 
-    def abandon(self) -> None:
+    def kill_process(self) -> None:
         """Kill the process before its machine has moved."""
         self.connection.close()
         if self.process is not None:

@@ -11,13 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 
-from app.compose.control.control_client import ControlClient, ControlEvents, ControlHands
+from app.compose.control.control_client import ControlClient, ControlEventHandlers, ControlStationControls
 from app.compose.control.control_start import start_control
 from app.compose.control.posted_state import PostedState
 from app.desk.translation import tr
 from core.executor.commands import Command, Reset
 from core.executor.raised_alarm import ReportedAttempt
-from core.executor.snapshot import Event, InterruptedJob, Snapshot
+from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
@@ -42,13 +42,13 @@ class LiveControl:
 
     def __init__(self, client: ControlClient, machine: Machine, folder: Path) -> None:
         self._client, self._machine, self._folder = client, machine, folder
-        self._state = PostedState(client.hello.noted)
-        self.hands = ControlHands(self.hand) if client.hello.station else None
+        self._state = PostedState(client.hello_message.interrupted_job)
+        self.hands = ControlStationControls(self.hand) if client.hello_message.has_on_screen_station else None
         self._line: socket | None = None  # end of the control of the stop keys' socket
         self._lock = threading.Lock()  # locked briefly while the client is replaced
         self._worker: threading.Thread | None = None
         self._closing = threading.Event()
-        self._events: ControlEvents | None = None
+        self._events: ControlEventHandlers | None = None
         self._say: Say = _log.info
 
     @property
@@ -61,11 +61,11 @@ class LiveControl:
         """The connection to the present control."""
         return self._client
 
-    def begin(self, events: ControlEvents, say: Say) -> None:
+    def begin(self, events: ControlEventHandlers, say: Say) -> None:
         """Start to receive and send messages. ``say`` shows the operator the course of a restart."""
-        self._events = replace(events, note=self._note)
-        self._noted, self._say = events.note, say
-        self._client.begin(self._events)
+        self._events = replace(events, on_interrupted_job=self._note)
+        self._noted, self._say = events.on_interrupted_job, say
+        self._client.start_threads(self._events)
 
     def post(self, command: Command) -> None:
         """Send a command to the control. Reset starts another control if the present one has ended."""
@@ -74,13 +74,13 @@ class LiveControl:
             return
         with self._lock:
             self._state.see(command)
-            self._client.post(command)
+            self._client.post_command(command)
 
     def hand(self, name: str, *values: object) -> None:
         """Operate the simulated operator station."""
         with self._lock:
             self._state.see_hand(name, values)
-            self._client.hand(name, *values)
+            self._client.operate_station(name, *values)
 
     def set_input(self, name: str, on: bool) -> None:
         """Switch an input of a simulated machine."""
@@ -88,7 +88,7 @@ class LiveControl:
 
     def see(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen handles its keys; called once per frame."""
-        self._client.see(snapshot)
+        self._client.report_alive(snapshot)
 
     def open_stop_line(self) -> socket | None:
         """Return a socket through which stop keys reach the present control, without this process."""
@@ -106,7 +106,7 @@ class LiveControl:
         worker = self._worker
         if worker is not None:
             worker.join(HANGS + ENDS_IN + DIES_IN)
-        self._client.close()
+        self._client.stop_and_close()
         if self._line is not None:
             self._line.close()
 
@@ -152,9 +152,9 @@ class LiveControl:
         """Ask the process to end, or kill it; return whether it has ended."""
         client.ask_to_end()
         ended = client.handle.wait(ENDS_IN) or client.handle.kill(DIES_IN)
-        if ended and client.process is not None:
+        if ended and client.control_process is not None:
             with suppress(subprocess.TimeoutExpired):
-                client.process.wait(DIES_IN)
+                client.control_process.wait(DIES_IN)
         if not ended:
             self._say(tr("THE CONTROL CANNOT BE ENDED. RESTART THE COMPUTER"))
         return ended
@@ -164,27 +164,29 @@ class LiveControl:
         if self._closing.is_set():
             return
         self._say(tr("THE CONTROL IS STARTING AGAIN"))
-        started = start_control(self._machine, self._folder, old.clock.zero)
+        started = start_control(self._machine, self._folder, old.clock.origin_s)
         try:
-            new = ControlClient(started, self._folder, old.records)
+            new = ControlClient(started, self._folder, old.control_records)
         except DriverError:
-            started.abandon()
+            started.kill_process()
             raise
         with self._lock:
             self._pass_state(new, old.snapshot)
             self._client = new
         old.forget()
-        new.begin(self._events)
-        self._events.event(Event(new.clock.now(), "warning", Message("the control was started again")), None)
+        new.start_threads(self._events)
+        self._events.on_event(
+            LogEvent(new.clock.now(), "warning", Message("the control was started again")), None
+        )
         self._say(tr("THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION"))
-        self._events.stirs()
+        self._events.on_change_at_rest()
 
     def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
         """Give another control the program and the values that the screen shows."""
         for name, values in self._state.hands():
-            new.hand(name, *values)
+            new.operate_station(name, *values)
         for command in self._state.commands(last):
-            new.post(command)
+            new.post_command(command)
         if self._line is not None:
             new.pass_line(self._line.dup())
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import Final
 
 from core.executor import commands
-from core.executor.commands import Command, GiveProof, LoadJob, Prepare, Renew, SetSwitch
+from core.executor.commands import ChangeOffsets, Command, LoadJob, PrepareStart, SetSwitch, SupplyProof
 from core.executor.job import Job, Proof
-from core.executor.snapshot import InterruptedJob, Snapshot, Starts
+from core.executor.snapshot import InterruptedJob, Snapshot, StartAction
 
 Hand = tuple[str, tuple[object, ...]]
 # Commands that set one value: the last of each kind is posted again.
 _VALUES: Final = (
     commands.UseOffsets,
-    commands.SpindleLimit,
-    commands.FeedOverride,
-    commands.BarNextPart,
+    commands.SetSpindleLimit,
+    commands.SetFeedOverride,
+    commands.BlockNextPart,
 )
 # Switches that only make a run stop earlier or not count. Cycle repeat starts parts, so it is off again.
 _SWITCHES = ("single_block", "optional_stop", "no_count")
@@ -36,21 +36,21 @@ class PostedState:
         self.interrupted = interrupted  # the job that the end of the control would interrupt
         self._job: Job | None = None
         self._proof: Proof | None = None
-        self._renewal: Renew | None = None  # a change of offsets that has no new job yet
-        self._starts = Starts.PROGRAM
+        self._renewal: ChangeOffsets | None = None  # a change of offsets that has no new job yet
+        self._starts = StartAction.PROGRAM
         self._values: dict[type[Command], Command] = {}
         self._station: dict[str, Hand] = {}
 
     def see(self, command: Command) -> None:
         """Note a command that was posted."""
         match command:
-            case LoadJob(job, proof) | Renew(Job() as job, proof):
+            case LoadJob(job, proof) | ChangeOffsets(Job() as job, proof):
                 self._job, self._proof, self._renewal = job, proof, None
-            case Renew():
+            case ChangeOffsets():
                 self._renewal = command
-            case GiveProof(proof):
+            case SupplyProof(proof):
                 self._proof = proof
-            case Prepare():
+            case PrepareStart():
                 self._starts = command.starts
             case _ if isinstance(command, _VALUES):
                 self._values[type(command)] = command
@@ -67,18 +67,18 @@ class PostedState:
         """
         found = list[Command]()
         if self.interrupted is not None:
-            found.append(commands.LeftInterrupted(self.interrupted, logged=True))
+            found.append(commands.ReportInterruptedJob(self.interrupted, logged=True))
         found += self._values.values()
         found += [SetSwitch(name, on=True) for name in _SWITCHES if getattr(last, name)]
         if self._job is not None:
             proof = self._proof
             known = proof is not None and proof.digest == self._job.digest
             found.append(LoadJob(self._job, proof if known else None))
-            found.append(commands.PartsMade(last.made))
+            found.append(commands.SetPartCount(last.made))
         if self._renewal is not None:
             found.append(self._renewal)
-        if self._starts is not Starts.PROGRAM:  # a line or a restart must be prepared again
-            found.append(Prepare(Starts.LINE))
+        if self._starts is not StartAction.PROGRAM:  # a line or a restart must be prepared again
+            found.append(PrepareStart(StartAction.MDI_LINE))
         return found
 
     def hands(self) -> list[Hand]:

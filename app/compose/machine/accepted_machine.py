@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Protocol
 
 from app.desk.persistence import Persistence
-from app.desk.status.machine_file_changes import FileChanges
+from app.desk.status.machine_file_changes import MachineFileChanges
 from core.executor.commands import Command, EnableDrives
-from core.machine.machine_file import ABSENT, Change, changes
+from core.machine.machine_file import MISSING_VALUE, KeyChange, compare_machine_files
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
@@ -18,20 +18,20 @@ from core.ports import DriverError
 _TEXT, _DRIVES = "text", "drives"
 
 
-class Settings(Protocol):
+class SettingsReader(Protocol):
     """Access to the settings of the store."""
 
     def read_setting(self, key: str) -> object: ...
 
 
-def key_of(machine: Machine) -> str:
+def get_settings_key(machine: Machine) -> str:
     """Return the settings key of a machine file, which depends on its resolved path."""
     path = Path(machine.source)
     place = path.resolve() if path.exists() else machine.source
     return " ".join(("machine file", str(place)))
 
 
-def record_of(machine: Machine) -> dict[str, object]:
+def create_record(machine: Machine) -> dict[str, object]:
     """Return the record to be stored for a machine file.
 
     The record has the text of the file and a hash of the values written to each node at a start.
@@ -39,19 +39,19 @@ def record_of(machine: Machine) -> dict[str, object]:
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
 
 
-def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
+def list_differences(machine: Machine, persistence: SettingsReader) -> tuple[KeyChange, ...] | None:
     """Return the differences from the accepted machine file; None if this file was never accepted."""
-    record = kept.read_setting(key_of(machine))
+    record = persistence.read_setting(get_settings_key(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
         return None
-    told = changes(record[_TEXT], machine.text)
+    told = compare_machine_files(record[_TEXT], machine.text)
     if told or not isinstance(old := record.get(_DRIVES), dict):
         return told
     new = _hashes(machine)  # the file is the same, but the values derived from it may differ
     return tuple(
-        Change(
+        KeyChange(
             Message("canopen.nodes.{name}, all values written to the node", name=name),
-            str(old.get(name, ABSENT)),
+            str(old.get(name, MISSING_VALUE)),
             now,
         )
         for name, now in new.items()
@@ -59,41 +59,45 @@ def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
     )
 
 
-def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None]) -> FileChanges:
+def review_changes(
+    machine: Machine, persistence: Persistence, report: Callable[[str], None]
+) -> MachineFileChanges:
     """Return the changes for the screen. A new machine file is accepted because it was chosen.
 
     The callback writes to the event log.
     """
-    told = differences(machine, kept)
+    told = list_differences(machine, persistence)
 
     def keep() -> None:
-        kept.save_setting(key_of(machine), record_of(machine))
-        what, name = "; ".join(str(change) for change in told or ()), kept.who()
+        persistence.save_setting(get_settings_key(machine), create_record(machine))
+        what, name = "; ".join(str(change) for change in told or ()), persistence.who()
         done = Message(
             "machine file {path} accepted by {name}" if name else "machine file {path} accepted",
             path=machine.source,
             name=name,
         )
-        tell(Message("{done}: {changes}", done=done, changes=what) if what else done)
+        report(Message("{done}: {changes}", done=done, changes=what) if what else done)
 
     if told is None:
         keep()
-    return FileChanges(machine.source, told or (), keep)
+    return MachineFileChanges(machine.source, told or (), keep)
 
 
-def guarded(
-    post: Callable[[Command], None], changed: FileChanges, refuse: Callable[[str], None]
+def guard_commands(
+    post_command: Callable[[Command], None],
+    reviewed_changes: MachineFileChanges,
+    reject: Callable[[str], None],
 ) -> Callable[[Command], None]:
-    """Return ``post`` with a check that rejects switching on the drives.
+    """Return ``post_command`` with a check that rejects switching on the drives.
 
     Drives cannot be switched on while changes of the machine file are not accepted.
     """
 
     def give(command: Command) -> None:
-        if changed.barred and isinstance(command, EnableDrives):
-            refuse(changed.barred)
+        if reviewed_changes.barred and isinstance(command, EnableDrives):
+            reject(reviewed_changes.barred)
         else:
-            post(command)
+            post_command(command)
 
     return give
 
@@ -101,10 +105,10 @@ def guarded(
 def _hashes(machine: Machine) -> dict[str, str]:
     if machine.backend != "canopen":
         return {}
-    from app.compose.backends.canopen_backend import written_at_start
+    from app.compose.backends.canopen_backend import list_startup_objects
 
     try:
-        objects = written_at_start(machine)
+        objects = list_startup_objects(machine)
     except DriverError:
         return {}
     return {name: hashlib.sha256(repr(each).encode()).hexdigest()[:12] for name, each in objects.items()}

@@ -7,14 +7,16 @@ from functools import cache
 from importlib import import_module
 from typing import NamedTuple
 
-from app.compose.extra import extras, insert_after
-from core.table_schema import Driver, raw_at
+from app.compose.optional_features import extras, insert_after
+from core.table_schema import DriverDeclaration, find_raw_value
 
 
 class DriverModule(NamedTuple):
-    """A module with a ``Driver``, the paths of its tables, and its names of a backend and a spindle driver.
+    """A module with a ``DriverDeclaration``, the paths of its tables, and its names of a backend and a
+    spindle driver.
 
-    ``attribute`` is the name of the ``Driver`` in the module. ``always`` loads the module for every file.
+    ``attribute`` is the name of the ``DriverDeclaration`` in the module. ``always`` loads the module for
+    every file.
     """
 
     module: str
@@ -24,9 +26,9 @@ class DriverModule(NamedTuple):
     attribute: str = "DRIVER"
     always: bool = False
 
-    def load(self) -> Driver:
-        """Return the ``Driver`` of the module."""
-        driver: Driver = getattr(import_module(self.module), self.attribute)
+    def load(self) -> DriverDeclaration:
+        """Return the ``DriverDeclaration`` of the module."""
+        driver: DriverDeclaration = getattr(import_module(self.module), self.attribute)
         return driver
 
 
@@ -38,9 +40,9 @@ _OWN_MODULES = (
     DriverModule("drivers.grblhal.grblhal_table", ("grblhal",), "grblhal", "grblhal"),
     DriverModule("drivers.hal.hal_table", ("hal",), "hal", "hal"),
     DriverModule("drivers.hal.boards.board_table", ("board",)),
-    DriverModule("core.machine.desk_tables", ("dnc",)),
+    DriverModule("core.machine.serial_and_backup_tables", ("dnc",)),
     DriverModule("core.machine.setter_table", ("setter",)),
-    DriverModule("core.machine.desk_tables", ("backup",), attribute="BACKUP_DRIVER"),
+    DriverModule("core.machine.serial_and_backup_tables", ("backup",), attribute="BACKUP_DRIVER"),
 )
 
 
@@ -48,19 +50,19 @@ _OWN_MODULES = (
 def driver_modules() -> tuple[DriverModule, ...]:
     """Return the modules of all drivers and optional features, in the order of the findings."""
     added = [
-        (DriverModule(module, tables), extra.tables_follow)
+        (DriverModule(module, tables), extra.preceding_table)
         for extra in extras().values()
-        for module, tables in extra.machine_tables.items()
+        for module, tables in extra.list_machine_tables.items()
     ]
     return tuple(insert_after(_OWN_MODULES, lambda each: each.tables[0], added))
 
 
-def all_drivers() -> tuple[Driver, ...]:
+def all_drivers() -> tuple[DriverDeclaration, ...]:
     """Return the drivers of all modules."""
     return _loaded(driver_modules())
 
 
-def drivers_of(data: Mapping[str, object]) -> tuple[Driver, ...]:
+def drivers_of(data: Mapping[str, object]) -> tuple[DriverDeclaration, ...]:
     """Return the drivers that a parsed machine file uses, by a table or by name.
 
     A file without errors gives the same machine with these drivers as with all drivers.
@@ -73,11 +75,11 @@ def _is_used(module: DriverModule, data: Mapping[str, object]) -> bool:
 
 
 def _marks(module: DriverModule, data: Mapping[str, object]) -> Iterator[bool]:
-    yield bool(module.backend) and raw_at(data, "machine.backend") == module.backend
-    yield bool(module.spindle) and raw_at(data, "spindle.driver") == module.spindle
+    yield bool(module.backend) and find_raw_value(data, "machine.backend") == module.backend
+    yield bool(module.spindle) and find_raw_value(data, "spindle.driver") == module.spindle
     for path in module.tables:
-        yield raw_at(data, path) is not None
+        yield find_raw_value(data, path) is not None
 
 
-def _loaded(modules: Iterable[DriverModule]) -> tuple[Driver, ...]:
+def _loaded(modules: Iterable[DriverModule]) -> tuple[DriverDeclaration, ...]:
     return tuple(each.load() for each in modules)

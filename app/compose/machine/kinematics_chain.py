@@ -4,42 +4,42 @@ from __future__ import annotations
 
 import math
 
-from core.geometry.rotary_axes import Kinematics, Rotary, Slide
+from core.geometry.rotary_axes import Kinematics, LinearAxis, RotaryAxis
 from core.machine.machine_model import Axis, Machine
 from core.machine.mill_kinematics import RotaryModel
 
-_SLIDES = ("X", "Y", "Z")
+_LINEAR_AXES = ("X", "Y", "Z")
 
 
-def kinematics_of(machine: Machine) -> Kinematics | None:
+def build_kinematics(machine: Machine) -> Kinematics | None:
     """Return the linear and rotary axes of a mill; None without Y or without [kinematics]."""
     names = tuple(axis.name for axis in machine.axes)
-    if machine.kinematics is None or not set(_SLIDES) <= set(names):
+    if machine.kinematics is None or not set(_LINEAR_AXES) <= set(names):
         return None
-    x, y, z = (_slide(machine.axis(name)) for name in _SLIDES)
+    x, y, z = (_slide(machine.find_axis(name)) for name in _LINEAR_AXES)
     return Kinematics(
-        slides=(x, y, z),
-        rotaries=tuple(_rotary(each, machine.axis(each.name)) for each in machine.kinematics.chain),
+        linear_axes=(x, y, z),
+        rotary_axes=tuple(_rotary(each, machine.find_axis(each.name)) for each in machine.kinematics.chain),
         origin=machine.kinematics.origin,
-        basic_rotation=machine.kinematics.basic_rotation,
-        order=names,
+        basic_rotation_deg=machine.kinematics.basic_rotation,
+        axis_order=names,
     )
 
 
-def _slide(axis: Axis) -> Slide:
+def _slide(axis: Axis) -> LinearAxis:
     low, high = axis.travel or (-math.inf, math.inf)
-    return Slide(axis.name, low, high, axis.vmax)
+    return LinearAxis(axis.name, low, high, axis.vmax)
 
 
-def _rotary(model: RotaryModel, axis: Axis) -> Rotary:
+def _rotary(model: RotaryModel, axis: Axis) -> RotaryAxis:
     low, high = axis.travel or (-math.inf, math.inf)
-    return Rotary(
+    return RotaryAxis(
         name=axis.name,
-        table=model.table,
+        is_table=model.is_table,
         direction=model.unit_vector,
         point=model.point,
-        low=low,
-        high=high,
-        modulo=model.modulo,
+        travel_min=low,
+        travel_max=high,
+        is_modulo=model.modulo,
         vmax=axis.vmax,
     )

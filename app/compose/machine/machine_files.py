@@ -11,9 +11,9 @@ from app.compose.machine.driver_modules import all_drivers, drivers_of
 from core.machine import machine_file
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.table_schema import Finding, MachineFileError, written
+from core.table_schema import FileFinding, MachineFileError, format_toml_value
 
-SHIPPED = "gt75.toml"
+DEFAULT_MACHINE_FILE = "gt75.toml"
 
 
 @lru_cache(maxsize=8)  # cached by text, because folder proofs and their workers read the same file
@@ -27,18 +27,18 @@ def parse_machine(text: str, source: str) -> Machine:
         machine = machine_file.machine_of(data, text, source, drivers_of(data))
     except MachineFileError:  # the findings name the possible values of all drivers
         machine = machine_file.machine_of(data, text, source, all_drivers())
-    if machine.silenced:
-        _known_checks(machine.silenced, source)
+    if machine.silenced_checks:
+        _known_checks(machine.silenced_checks, source)
     return machine
 
 
 def _known_checks(silenced: tuple[str, ...], source: str) -> None:
-    from core.proving.checks.part_checks import CHECKS
+    from core.proving.checks.part_checks import PART_CHECKS
 
-    wrong = [name for name in silenced if name not in CHECKS]
+    wrong = [name for name in silenced if name not in PART_CHECKS]
     if wrong:
-        expected = Message("the name must be one of the part checks: {checks}", checks=", ".join(CHECKS))
-        found = [Finding("checks.silenced", written(name), expected) for name in wrong]
+        expected = Message("the name must be one of the part checks: {checks}", checks=", ".join(PART_CHECKS))
+        found = [FileFinding("checks.silenced", format_toml_value(name), expected) for name in wrong]
         raise MachineFileError(found, source)
 
 
@@ -48,32 +48,32 @@ def load_machine(path: Path | None = None) -> Machine:
     Raises MachineFileError with every finding, also if the file cannot be read.
     """
     if path is None:
-        return _shipped(SHIPPED)
-    return parse_machine(machine_file.text_of(path), str(path))
+        return _shipped(DEFAULT_MACHINE_FILE)
+    return parse_machine(machine_file.read_machine_text(path), str(path))
 
 
-def named_machine(name: str | None) -> Machine:
+def load_named_machine(name: str | None) -> Machine:
     """Return the machine of a file or a shipped machine by name, or the shipped lathe for None.
 
     Raises MachineFileError with every finding.
     """
     if _is_shipped(name):
-        return shipped_machine(name)
+        return load_shipped_machine(name)
     return load_machine(Path(name) if name else None)
 
 
 def machine_path(name: str | None) -> Path:
-    """Return the path of the file that ``named_machine`` reads."""
+    """Return the path of the file that ``load_named_machine`` reads."""
     if name and not _is_shipped(name):
         return Path(name).absolute()
-    return resources.machine_path(f"{name}.toml" if name else SHIPPED)
+    return resources.machine_path(f"{name}.toml" if name else DEFAULT_MACHINE_FILE)
 
 
 def _is_shipped(name: str | None) -> TypeGuard[str]:
     return bool(name) and name in resources.machine_names() and not Path(name).exists()
 
 
-def shipped_machine(name: str) -> Machine:
+def load_shipped_machine(name: str) -> Machine:
     """Return a machine that is shipped with TurnDesk. Raises FileNotFoundError if the name is unknown."""
     return _shipped(f"{name}.toml")
 

@@ -11,17 +11,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import CommandError, as_command_error
+from app.desk.command_errors import CommandError, convert_to_command_error
 from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.message import Message
 
 if TYPE_CHECKING:
-    from app.compose.machine.accepted_machine import Settings
+    from app.compose.machine.accepted_machine import SettingsReader
     from app.desk.persistence import Persistence
     from core.geometry.rotary_axes import Kinematics
     from core.machine.machine_model import Machine
 
-_KEY = "machine in use"  # key of the setting with the path of the file or the name of a shipped machine
+_SETTINGS_KEY = (
+    "machine in use"  # key of the setting with the path of the file or the name of a shipped machine
+)
 
 
 def read_machine(path: str | None) -> Machine:
@@ -29,42 +31,42 @@ def read_machine(path: str | None) -> Machine:
 
     Raises CommandError with every finding.
     """
-    from app.compose.machine.machine_files import named_machine
+    from app.compose.machine.machine_files import load_named_machine
     from core.table_schema import MachineFileError
 
-    with as_command_error(MachineFileError):
-        return named_machine(path)
+    with convert_to_command_error(MachineFileError):
+        return load_named_machine(path)
 
 
-def control_limits(machine: Machine) -> ControlLimits:
+def get_control_limits(machine: Machine) -> ControlLimits:
     """Return the properties of a machine that the interpreter needs."""
     c_axis = machine.axes[2]
     return ControlLimits(
         max_feed=machine.limits.max_feed,
-        max_rpm=machine.spindle.rpm_max,
-        resolution=machine.limits.resolution,
-        slide_accel=machine.axes[1].amax,
-        unclamp_while_turning=machine.interlocks.unclamp_while_turning,
-        start_with_collet_open=machine.interlocks.spindle_with_collet_open,
+        max_rpm=machine.spindle.max_rpm,
+        resolution_mm=machine.limits.resolution,
+        z_acceleration=machine.axes[1].amax,
+        can_unclamp_while_turning=machine.interlocks.unclamp_while_turning,
+        can_start_with_collet_open=machine.interlocks.spindle_with_collet_open,
         m_outputs=machine.m_codes,
-        m_disabled=machine.m_disabled,
-        m_ignored=machine.m_ignored,
+        disabled_m_codes=machine.disabled_m_codes,
+        ignored_m_codes=machine.ignored_m_codes,
         c_enabled=machine.c_enabled,
-        c_feedback=machine.c_feedback,
+        has_c_feedback=machine.c_feedback,
         c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
-        c_accel=c_axis.amax,
-        c_step=c_axis.count,
-        c_modulo=machine.c_modulo,
-        c_linear=machine.c_linear,
-        c_travel=c_axis.travel if machine.c_linear else None,
-        spindle_is_c=machine.spindle_is_c,
-        live_output=machine.live_output,
-        control=machine.control,
-        third_axis=machine.third_axis,
-        spindle_controlled=machine.spindle.controlled,
-        spindle_oriented=machine.spindle.oriented,
+        c_acceleration=c_axis.amax,
+        c_resolution_deg=c_axis.count,
+        is_c_modulo=machine.is_c_modulo,
+        is_c_linear=machine.is_third_axis_linear,
+        c_travel_range=c_axis.travel if machine.is_third_axis_linear else None,
+        is_spindle_c_axis=machine.spindle_is_c,
+        live_tool_output=machine.live_tool_output,
+        control_model=machine.control,
+        third_axis_name=machine.third_axis,
+        is_spindle_controlled=machine.spindle.controlled,
+        can_orient_spindle=machine.spindle.oriented,
         fixed_points={axis.name: axis.fixed_points for axis in machine.axes if axis.fixed_points},
-        speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
+        max_axis_speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
     )
 
 
@@ -79,13 +81,13 @@ class InputStates:
         return self.states.get(terminal, False)
 
 
-def setup_for(
+def create_setup(
     machine: Machine,
     *,
-    tools: Mapping[int, ToolOffset],
-    secondary: Mapping[int, SecondaryOffset],
-    zero: Mapping[int, ZeroOffset] | None = None,
-    r: Mapping[int, float] | None = None,
+    tool_offsets: Mapping[int, ToolOffset],
+    secondary_offsets: Mapping[int, SecondaryOffset],
+    zero_offsets: Mapping[int, ZeroOffset] | None = None,
+    r_parameters: Mapping[int, float] | None = None,
     inputs: Mapping[str, bool] | None = None,
     block_delete: bool = False,
     strict: bool = False,
@@ -93,44 +95,44 @@ def setup_for(
     """Return the context of a program after power-up at machine home; unspecified inputs are open."""
     return Setup(
         start=(0.0,) * len(machine.axes),
-        kinematics=_kinematics(machine),
-        tools=tools,
-        secondary=secondary,
-        zero=zero or {},
-        r=r or {},
-        limits=control_limits(machine),
+        kinematics=_read_kinematics(machine),
+        tools=tool_offsets,
+        secondary=secondary_offsets,
+        zero=zero_offsets or {},
+        r=r_parameters or {},
+        limits=get_control_limits(machine),
         block_delete=block_delete,
         strict=strict,
-        metric=not machine.inch,
+        metric=not machine.is_inch,
         last_rapid=machine.limits.manual_rapid,
         inputs=InputStates(dict(inputs or {})),
     )
 
 
-def _kinematics(machine: Machine) -> Kinematics | None:
+def _read_kinematics(machine: Machine) -> Kinematics | None:
     """Return the kinematic chain of a mill, or None."""
     if machine.kinematics is None:
         return None
-    from app.compose.machine.kinematics_chain import kinematics_of
+    from app.compose.machine.kinematics_chain import build_kinematics
 
-    return kinematics_of(machine)
+    return build_kinematics(machine)
 
 
-def remember_machine(machine_file: str | None, persistence: Persistence) -> None:
+def store_machine(machine_file: str | None, persistence: Persistence) -> None:
     """Store which machine is in use; None means the shipped lathe."""
     path = Path(machine_file) if machine_file else None
     place = str(path.resolve()) if path is not None and path.exists() else machine_file
-    if persistence.read_setting(_KEY) != place:
-        persistence.save_setting(_KEY, place)
+    if persistence.read_setting(_SETTINGS_KEY) != place:
+        persistence.save_setting(_SETTINGS_KEY, place)
 
 
-def machine_file_in_use(settings: Settings) -> str | None:
+def machine_file_in_use(settings: SettingsReader) -> str | None:
     """Return the path of the machine file in use, or the name of a shipped one, or None."""
-    place = settings.read_setting(_KEY)
+    place = settings.read_setting(_SETTINGS_KEY)
     return place if isinstance(place, str) else None
 
 
-def machine_in_use(settings: Settings) -> Machine:
+def load_machine_in_use(settings: SettingsReader) -> Machine:
     """Return the machine in use. Raises CommandError if its file cannot be read."""
     try:
         return read_machine(machine_file_in_use(settings))

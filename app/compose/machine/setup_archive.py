@@ -14,47 +14,47 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 from xml.parsers import expat
 
-from app.compose.extra import drawing_endings
 from app.compose.machine.machine_setup import read_machine
+from app.compose.optional_features import list_drawing_suffixes
 from app.desk.command_errors import CommandError
-from core.input_file import TooLargeError, failures_as, input_bytes, open_input
-from core.language.source import SourceError, source_of
-from core.message import CodedError, Message, error_code
+from core.input_file import TooLargeError, convert_exceptions, open_input_file, read_input_bytes
+from core.language.source import SourceError, decode_source
+from core.message import CodedError, Message, get_error_code
 from core.store import backup
-from core.store.program_records import check_name
+from core.store.program_records import check_program_name
 from core.store.store_errors import StoreError
 
-_KIND = "turndesk setup "
-FORMAT = f"{_KIND}1"
+_FORMAT_PREFIX = "turndesk setup "
+ARCHIVE_FORMAT = f"{_FORMAT_PREFIX}1"
 MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
-BESIDE = (".hal", ".xml")  # suffixes of files that belong to a machine file and have its name
-MOST_MEMBERS = 10_000
-MOST_DEPTH = 8  # parts of a name: nested folders and the file
+COMPANION_SUFFIXES = (".hal", ".xml")  # suffixes of files that belong to a machine file and have its name
+MAX_MEMBERS = 10_000
+MAX_DEPTH = 8  # parts of a name: nested folders and the file
 _MIB = 1024 * 1024
-MOST_BYTES = {MANIFEST: 4 * _MIB, STORE: 512 * _MIB, PROGRAMS: 64 * _MIB, MACHINE: 16 * _MIB}
-MOST_BYTES_OF_ALL = 1024 * _MIB
-_MOST_BYTES_PACKED = 1024 * _MIB
-_MOST_BYTES_OF_DIRECTORY = 4 * _MIB  # size of ZIP's central directory
+MAX_BYTES_BY_KIND = {MANIFEST: 4 * _MIB, STORE: 512 * _MIB, PROGRAMS: 64 * _MIB, MACHINE: 16 * _MIB}
+MAX_TOTAL_BYTES = 1024 * _MIB
+_MAX_PACKED_BYTES = 1024 * _MIB
+_MAX_DIRECTORY_BYTES = 4 * _MIB  # size of ZIP's central directory
 _CHUNK = _MIB
 _END, _END_64 = 22, 20  # bytes of ZIP's end record without a comment, and of the ZIP64 locator in front of it
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+DISK_FULL_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-def unpack(source: Path, folder: Path) -> list[str]:
+def unpack_archive(source: Path, folder: Path) -> list[str]:
     """Extract the checked members of the archive to ``folder``; return their names. Raises CommandError."""
     with (
-        failures_as(lambda error: _not_unpacked(source, folder, error)),
-        open_input(source, _MOST_BYTES_PACKED) as raw,
+        convert_exceptions(lambda error: _not_unpacked(source, folder, error)),
+        open_input_file(source, _MAX_PACKED_BYTES) as raw,
     ):
         _check_directory(source, raw)
         with zipfile.ZipFile(raw) as file:
-            names = _Unpacking(source, file, folder).all()
+            names = _Extraction(source, file, folder).extract_all()
     _check_store(source, folder / STORE)
     for name in names:
-        if (why := problem(name, folder / name)) is not None:
+        if (why := describe_problem(name, folder / name)) is not None:
             raise CommandError(
                 Message("{source} contains {name}: {error}", source=source, name=name, error=why),
-                error_code(why),
+                get_error_code(why),
             )
     return names
 
@@ -69,7 +69,7 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
             ),
             "too-large",
         )
-    if isinstance(error, OSError) and error.errno in NO_ROOM:
+    if isinstance(error, OSError) and error.errno in DISK_FULL_ERRORS:
         return CommandError(
             Message(
                 "not enough disk space in {parent} to unpack {source}; free some space",
@@ -89,11 +89,11 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
     )
 
 
-def problem(name: str, path: Path) -> CodedError | None:
+def describe_problem(name: str, path: Path) -> CodedError | None:
     """Return the reason why a file cannot be a member called ``name``, or None. Raises OSError."""
     top = name.partition("/")[0]
     try:
-        _check_place(name)
+        _check_path(name)
         if top == PROGRAMS:
             _check_program(path)
         elif top == MACHINE:
@@ -107,23 +107,23 @@ def problem(name: str, path: Path) -> CodedError | None:
 
 def is_machine_file(path: Path) -> bool:
     """Return whether a file in a machine's folder is the machine file itself."""
-    return path.suffix not in BESIDE
+    return path.suffix not in COMPANION_SUFFIXES
 
 
-class _Unpacking:
+class _Extraction:
     """Extraction of one archive, with the number of bytes extracted so far."""
 
     def __init__(self, source: Path, file: zipfile.ZipFile, folder: Path) -> None:
         self._source, self._file, self._folder = source, file, folder
         self._bytes = 0
 
-    def all(self) -> list[str]:
+    def extract_all(self) -> list[str]:
         """Extract every member that the manifest lists; return their names."""
-        self._take(MANIFEST)
-        hashes = _hashes(self._source, json.loads((self._folder / MANIFEST).read_bytes()))
+        self._extract(MANIFEST)
+        hashes = _parse_hashes(self._source, json.loads((self._folder / MANIFEST).read_bytes()))
         self._check_names(list(hashes))
         for name, expected in hashes.items():
-            if self._take(name) != expected:
+            if self._extract(name) != expected:
                 raise CommandError(
                     Message(
                         "{source}: {name} differs from the file that was saved; copy the setup file again",
@@ -140,11 +140,11 @@ class _Unpacking:
             try:
                 if name in strange:
                     raise _no_place()
-                _check_place(name)
+                _check_path(name)
             except CodedError as error:
                 raise CommandError(
                     Message("{source} contains {name}: {error}", source=self._source, name=name, error=error),
-                    error_code(error),
+                    get_error_code(error),
                 ) from error
         machines = [Path(name) for name in names if name.startswith(f"{MACHINE}/")]
         if len({each.stem for each in machines}) > 1 or sum(map(is_machine_file, machines)) not in {0, 1}:
@@ -152,7 +152,7 @@ class _Unpacking:
                 Message("{source} contains more than one machine", source=self._source), "foreign-member"
             )
 
-    def _take(self, name: str) -> str:
+    def _extract(self, name: str) -> str:
         """Extract one member; return the SHA-256 of its bytes."""
         info = self._file.getinfo(name)
         if info.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
@@ -163,7 +163,7 @@ class _Unpacking:
             while data := packed.read(_CHUNK):
                 size += len(data)
                 self._bytes += len(data)
-                if size > MOST_BYTES[name.partition("/")[0]] or self._bytes > MOST_BYTES_OF_ALL:
+                if size > MAX_BYTES_BY_KIND[name.partition("/")[0]] or self._bytes > MAX_TOTAL_BYTES:
                     raise CommandError(
                         Message(
                             "{source} contains {name}, which is too large for a setup",
@@ -186,40 +186,40 @@ def _check_directory(source: Path, raw: BinaryIO) -> None:
     if not end.startswith(b"PK\5\6"):
         raise zipfile.BadZipFile("the end of the file is missing")
     (members, directory) = struct.unpack("<10xHL6x", end)
-    if members > MOST_MEMBERS or directory > _MOST_BYTES_OF_DIRECTORY or end_64.startswith(b"PK\6\7"):
+    if members > MAX_MEMBERS or directory > _MAX_DIRECTORY_BYTES or end_64.startswith(b"PK\6\7"):
         raise CommandError(
             Message(
-                "{source} contains more than {most_members} files", source=source, most_members=MOST_MEMBERS
+                "{source} contains more than {most_members} files", source=source, most_members=MAX_MEMBERS
             ),
             "too-many-members",
         )
 
 
-def _hashes(source: Path, told: object) -> dict[str, str]:
+def _parse_hashes(source: Path, manifest: object) -> dict[str, str]:
     """Return the SHA-256 of every member from the manifest.
 
     Raises CommandError if the manifest is invalid or from another version.
     """
-    form = told.get("format") if isinstance(told, dict) else None
-    if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
+    form = manifest.get("format") if isinstance(manifest, dict) else None
+    if isinstance(form, str) and form.startswith(_FORMAT_PREFIX) and form != ARCHIVE_FORMAT:
         raise CommandError(
             Message(
                 "{source} was saved by another version of TurnDesk (format {form}; this "
                 "version uses {format}); use that version",
                 source=source,
                 form=form,
-                format=FORMAT,
+                format=ARCHIVE_FORMAT,
             ),
             "other-version",
         )
-    hashes = told.get("sha256") if isinstance(told, dict) else None
-    if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
+    hashes = manifest.get("sha256") if isinstance(manifest, dict) else None
+    if form != ARCHIVE_FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
         raise CommandError(
             Message(
                 "{source} does not have the required setup format ({format}); save the setup again "
                 "with 'setup save'",
                 source=source,
-                format=FORMAT,
+                format=ARCHIVE_FORMAT,
             ),
             "not-a-setup",
         )
@@ -230,25 +230,25 @@ def _no_place() -> CommandError:
     return CommandError("this file does not belong in a setup", "foreign-member")
 
 
-def _check_place(name: str) -> None:
+def _check_path(name: str) -> None:
     """Raise CommandError or StoreError for a name that is not allowed in a setup."""
     parts = PurePosixPath(name).parts
     if name == STORE:
         return
     if "/".join(parts) != name or len(parts) < 2 or parts[0] not in {PROGRAMS, MACHINE} or ".." in parts:
         raise _no_place()
-    if len(parts) > (MOST_DEPTH if parts[0] == PROGRAMS else 2):
+    if len(parts) > (MAX_DEPTH if parts[0] == PROGRAMS else 2):
         raise CommandError("the file is nested in too many folders", "too-deep")
     for part in parts[1:]:
-        check_name(part)
+        check_program_name(part)
 
 
 def _check_store(source: Path, store: Path) -> None:
     try:
-        found = backup.problems(store)
+        found = backup.find_problems(store)
     except StoreError as error:
         raise CommandError(
-            Message("{source}: {error}", source=source, error=error), error_code(error)
+            Message("{source}: {error}", source=source, error=error), get_error_code(error)
         ) from error
     if found:
         raise CommandError(
@@ -263,10 +263,10 @@ def _check_store(source: Path, store: Path) -> None:
 
 def _check_program(path: Path) -> None:
     """Raise SourceError if a file is neither program text nor a drawing. Empty files are accepted."""
-    data = input_bytes(path, MOST_BYTES[PROGRAMS])
-    drawing = path.name.lower().endswith(drawing_endings())
+    data = read_input_bytes(path, MAX_BYTES_BY_KIND[PROGRAMS])
+    drawing = path.name.lower().endswith(list_drawing_suffixes())
     if data and not (drawing and b"\0" not in data):
-        source_of(path.name, data)
+        decode_source(path.name, data)
 
 
 def _check_machine(path: Path) -> None:
@@ -274,7 +274,7 @@ def _check_machine(path: Path) -> None:
     if is_machine_file(path):
         read_machine(str(path))
         return
-    data = input_bytes(path, MOST_BYTES[MACHINE])
+    data = read_input_bytes(path, MAX_BYTES_BY_KIND[MACHINE])
     try:
         if path.suffix == ".xml":
             expat.ParserCreate().Parse(data, True)

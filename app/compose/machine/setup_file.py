@@ -16,44 +16,44 @@ from typing import Self
 
 from app.compose.machine.machine_setup import read_machine
 from app.compose.machine.setup_archive import (
-    BESIDE,
-    FORMAT,
+    ARCHIVE_FORMAT,
+    COMPANION_SUFFIXES,
+    DISK_FULL_ERRORS,
     MACHINE,
     MANIFEST,
-    NO_ROOM,
     PROGRAMS,
     STORE,
+    describe_problem,
     is_machine_file,
-    problem,
-    unpack,
+    unpack_archive,
 )
-from app.compose.runs.journal import UNDER_WAY
-from app.desk.command_errors import CommandError, as_command_error, cannot_write
-from app.desk.data_folder import data_folder
-from core.file_placing import make_folder, put_in_place, restrict, write_in_place
-from core.message import Message, error_code
+from app.compose.runs.journal import INTERRUPTED_JOB_KEY
+from app.desk.command_errors import CommandError, convert_to_command_error, make_write_error
+from app.desk.data_folder import find_data_folder
+from core.file_replacement import create_synced_folder, replace_atomically, restrict_access, write_atomically
+from core.message import Message, get_error_code
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_file import FILE_NAME
+from core.store.store_file import STORE_FILE_NAME
 
 
 @dataclass(frozen=True, slots=True)
-class SetupTold:
+class SetupContents:
     """Contents of a setup file; ``placed`` is the path at which its machine file was saved.
 
-    ``left_out`` are files of the program folder that are neither programs nor drawings.
+    ``omitted_files`` are files of the program folder that are neither programs nor drawings.
     """
 
-    programs: int
-    machine: str
-    placed: Path | None = None
-    left_out: tuple[str, ...] = ()
+    program_count: int
+    machine_name: str
+    machine_path: Path | None = None
+    omitted_files: tuple[str, ...] = ()
 
 
-def save_setup(target: Path, machine_file: str | None) -> SetupTold:
+def save_setup(target: Path, machine_file: str | None) -> SetupContents:
     """Write the setup of this control. Raises CommandError; no file remains after an error."""
-    folder, machine = data_folder(), _machine_members(machine_file)
+    folder, machine = find_data_folder(), _list_machine_members(machine_file)
     if target.is_file() and not zipfile.is_zipfile(target):
         raise CommandError(
             Message("{target} already exists and is not a setup file; use a different name", target=target),
@@ -61,33 +61,33 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         )
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
         made, part = Path(name) / "setup", target.with_name(target.name + ".part")
-        members = {STORE: _copy_of_store(folder, Path(name))}
+        members = {STORE: _copy_store(folder, Path(name))}
         members |= {f"{PROGRAMS}/{path}": folder / PROGRAMS / path for path in _programs(folder)}
         members |= machine
-        left_out = _write(made, members)
+        left_out = _write_archive(made, members)
         _check_loadable(made, target)
         try:
             shutil.copyfile(made, part)
-            restrict(part)
-            put_in_place(part, target)
+            restrict_access(part)
+            replace_atomically(part, target)
         except OSError as error:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
-            raise cannot_write(target, error) from error
-    return replace(_told([each for each in members if each not in left_out]), left_out=left_out)
+            raise make_write_error(target, error) from error
+    return replace(_told([each for each in members if each not in left_out]), omitted_files=left_out)
 
 
-def _copy_of_store(folder: Path, beside: Path) -> Path:
+def _copy_store(folder: Path, staging: Path) -> Path:
     """Copy the store without the interrupted job and the users, which belong to one machine."""
-    home = beside / "home"
+    home = staging / "home"
     home.mkdir()
-    with as_command_error(StoreError):
-        backup.backup(folder, home / FILE_NAME)
+    with convert_to_command_error(StoreError):
+        backup.back_up_store(folder, home / STORE_FILE_NAME)
         with Store.open(home) as store:
-            store.settings.save_setting(UNDER_WAY, None).result()
-            store.people.remove_all_people().result()
-        backup.backup(home, beside / STORE)
-    return beside / STORE
+            store.settings.save_setting(INTERRUPTED_JOB_KEY, None).result()
+            store.people.remove_all_users().result()
+        backup.back_up_store(home, staging / STORE)
+    return staging / STORE
 
 
 def _programs(folder: Path) -> list[str]:
@@ -96,7 +96,7 @@ def _programs(folder: Path) -> list[str]:
     return sorted(path.relative_to(own).as_posix() for path in found)
 
 
-def _machine_members(named: str | None) -> dict[str, Path]:
+def _list_machine_members(named: str | None) -> dict[str, Path]:
     """Return the valid machine file and the files of the same name next to it."""
     if named is None:
         return {}
@@ -107,30 +107,36 @@ def _machine_members(named: str | None) -> dict[str, Path]:
             Message("{named} is included with TurnDesk; omit --machine, or specify a file", named=named),
             "shipped-machine",
         )
-    beside = [path.with_suffix(ending) for ending in BESIDE]
+    beside = [path.with_suffix(ending) for ending in COMPANION_SUFFIXES]
     return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
 
 
-def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
+def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, ...]:
     """Write the archive; return the omitted programs. Raises CommandError if a file cannot be read."""
     try:
         left_out = [
-            each for each in members if each.startswith(f"{PROGRAMS}/") and problem(each, members[each])
+            each
+            for each in members
+            if each.startswith(f"{PROGRAMS}/") and describe_problem(each, members[each])
         ]
         members = {name: path for name, path in members.items() if name not in left_out}
         hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
-        told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
+        told = {
+            "format": ARCHIVE_FORMAT,
+            "made": datetime.now(UTC).isoformat(timespec="seconds"),
+            "sha256": hashes,
+        }
         # A computer without a battery-backed clock may date files before 1980, which ZIP does not support.
-        with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
+        with zipfile.ZipFile(archive_path, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
             file.writestr(MANIFEST, json.dumps(told, indent=1))
             for name, path in members.items():
                 file.write(path, name)
     except OSError as error:
-        if error.errno in NO_ROOM:
+        if error.errno in DISK_FULL_ERRORS:
             raise CommandError(
                 Message(
                     "not enough disk space in {parent} for a setup; free some space",
-                    parent=made.parent.parent,
+                    parent=archive_path.parent.parent,
                 ),
                 "disk-full",
             ) from error
@@ -141,54 +147,54 @@ def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
     return tuple(left_out)
 
 
-def _check_loadable(made: Path, target: Path) -> None:
+def _check_loadable(path: Path, target: Path) -> None:
     """Raise CommandError if the archive exceeds the limits of ``load_setup``."""
     try:
         with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-            unpack(made, Path(name))
+            unpack_archive(path, Path(name))
     except CommandError as error:
-        raise CommandError(str(error).replace(str(made), str(target)), error_code(error)) from error
+        raise CommandError(str(error).replace(str(path), str(target)), get_error_code(error)) from error
 
 
-def _told(names: list[str], placed: Path | None = None) -> SetupTold:
+def _told(names: list[str], placed: Path | None = None) -> SetupContents:
     machines = [PurePosixPath(name).name for name in names if name.startswith(f"{MACHINE}/")]
     machine = Message("machine file {path}", path=machines[0]) if machines else "no machine file"
-    return SetupTold(sum(name.startswith(f"{PROGRAMS}/") for name in names), machine, placed)
+    return SetupContents(sum(name.startswith(f"{PROGRAMS}/") for name in names), machine, placed)
 
 
 # --- Loading on another control -----------------------------------------------------------------------
 
 
-def check_setup(source: Path) -> SetupTold:
+def check_setup(source: Path) -> SetupContents:
     """Check a setup file without changing anything. Raises CommandError with the first error."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-        return _told(unpack(source, Path(name)))
+        return _told(unpack_archive(source, Path(name)))
 
 
-def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
+def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
     """Load a setup completely or not at all; also return the path of the saved old store, or None.
 
     All files are written next to their final places before the store is changed, so a write error changes
     nothing. Raises CommandError if the file is damaged, and while TurnDesk is running here.
     """
-    folder, stamp = data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _Beside(stamp) as beside:
-        names = unpack(source, Path(name))
+    folder, stamp = find_data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
+    with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as beside:
+        names = unpack_archive(source, Path(name))
         try:
             for each in names:
                 if each != STORE:
-                    beside.put(Path(name) / each, folder / each.replace(f"{MACHINE}/", "machines/", 1))
-            kept = backup.restore(folder, Path(name) / STORE)
-            beside.take_places()
+                    beside.stage_file(Path(name) / each, folder / each.replace(f"{MACHINE}/", "machines/", 1))
+            kept = backup.restore_store(folder, Path(name) / STORE)
+            beside.move_to_targets()
         except StoreError as error:
-            raise CommandError(str(error), error_code(error)) from error
+            raise CommandError(str(error), get_error_code(error)) from error
         except OSError as error:
             where = error.filename or folder  # the error of a full disk does not name the file
-            raise cannot_write(where, error) from error
+            raise make_write_error(where, error) from error
     return _told(names, beside.machine), kept
 
 
-class _Beside:
+class _StagedFiles:
     """Files written next to their final places until all are complete; unfinished files are deleted."""
 
     def __init__(self, stamp: str) -> None:
@@ -211,13 +217,13 @@ class _Beside:
             (at for at in self._places.values() if at.parent.name == "machines" and is_machine_file(at)), None
         )
 
-    def put(self, source: Path, target: Path) -> None:
+    def stage_file(self, source: Path, target: Path) -> None:
         """Write a file next to its final place; save a different existing file under another name."""
         data = source.read_bytes()
-        make_folder(target.parent)
+        create_synced_folder(target.parent)
         if target.exists() and (old := target.read_bytes()) != data:
             self._kept.append(target.with_name(f"{target.name}.replaced-{self._stamp}"))
-            write_in_place(self._kept[-1], old)
+            write_atomically(self._kept[-1], old)
         draft = target.with_name(f".{target.name}.{self._stamp}")
         self._places[draft] = target
         with draft.open("wb") as file:
@@ -225,7 +231,7 @@ class _Beside:
             file.flush()
             os.fsync(file.fileno())
 
-    def take_places(self) -> None:
+    def move_to_targets(self) -> None:
         """Move all files to their final places."""
         for draft, target in self._places.items():
-            put_in_place(draft, target)
+            replace_atomically(draft, target)

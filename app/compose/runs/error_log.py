@@ -11,22 +11,22 @@ import sys
 import time
 from pathlib import Path
 
-from app.desk.data_folder import data_folder
-from core.file_placing import NEW_FILE
+from app.desk.data_folder import find_data_folder
+from core.file_replacement import NEW_FILE_MODE
 from core.message import Message
 
-_SIZE = 1_000_000  # bytes of each of three files
-_AGAIN = 2.0  # s between two attempts to write again
-_MISSING = {
+_MAX_BYTES = 1_000_000  # bytes of each of three files
+_RETRY_INTERVAL_S = 2.0  # s between two attempts to write again
+_MISSING_RECORD = {
     "levelno": logging.WARNING,
     "levelname": "WARNING",
     "name": __name__,
     "msg": "the log could not be written for a while; lines before this one are missing",
 }
-_FORM = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
+_FORMAT = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 
 
-class Log:
+class ErrorLog:
     """Log file in the folder ``logs`` to which all loggers write until it is closed.
 
     Nothing is written if the file cannot be created. Records go through a queue, because no thread of the
@@ -43,12 +43,12 @@ class Log:
         self._listener.start()
 
     @property
-    def trouble(self) -> str:
+    def error_text(self) -> str:
         """Reason why the log cannot be written, or empty. Reading it tries to write again after a delay."""
-        found = self._file.trouble if self._file else ""
+        found = self._file.error_text if self._file else ""
         if found and time.monotonic() >= self._next:
-            self._next = time.monotonic() + _AGAIN
-            self._handler.handle(logging.makeLogRecord(_MISSING))
+            self._next = time.monotonic() + _RETRY_INTERVAL_S
+            self._handler.handle(logging.makeLogRecord(_MISSING_RECORD))
         return self._unmade or found
 
     def close(self) -> None:
@@ -60,10 +60,10 @@ class Log:
                 handler.close()
 
     def _opened(self, name: str) -> _File | None:
-        folder = data_folder() / "logs"
+        folder = find_data_folder() / "logs"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            file = _File(folder / name, maxBytes=_SIZE, backupCount=2, encoding="utf-8")
+            file = _File(folder / name, maxBytes=_MAX_BYTES, backupCount=2, encoding="utf-8")
         except OSError as error:
             self._unmade = Message(
                 "the log cannot be written to {file}: {what}",
@@ -71,31 +71,31 @@ class Log:
                 what=error.strerror or error,
             )
             return None
-        file.setFormatter(logging.Formatter(_FORM))
+        file.setFormatter(logging.Formatter(_FORMAT))
         return file
 
 
 class _File(logging.handlers.RotatingFileHandler):
     """A log file that records write errors instead of printing a traceback."""
 
-    trouble = ""
+    error_text = ""
 
     def _open(self) -> io.TextIOWrapper:
-        Path(self.baseFilename).touch(NEW_FILE)
+        Path(self.baseFilename).touch(NEW_FILE_MODE)
         return super()._open()
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write a record; a success clears the recorded error."""
-        self.failed = False
+        self.has_failed = False
         super().emit(record)
-        if not self.failed:
-            self.trouble = ""
+        if not self.has_failed:
+            self.error_text = ""
 
     def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802  logging's own name
         """Record the reason of a write error."""
         error = sys.exc_info()[1]
         what = error.strerror if isinstance(error, OSError) else error
-        self.failed, self.trouble = (
+        self.has_failed, self.error_text = (
             True,
             Message(
                 "the log cannot be written to {file}: {what}",
@@ -104,4 +104,4 @@ class _File(logging.handlers.RotatingFileHandler):
             ),
         )
 
-    failed = False
+    has_failed = False

@@ -9,35 +9,35 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 
-from app.compose.backends.backend_entry import Connected, played
-from app.compose.backends.connection import connect, real_time
-from app.compose.extra import extras
+from app.compose.backends.backend_entry import ConnectedMachine, is_simulated
+from app.compose.backends.connection import connect_machine, needs_real_time
+from app.compose.optional_features import extras
 from app.compose.runs.journal import Journal
 from app.compose.runs.run_log import EventLog
-from app.desk.command_errors import CommandError, as_command_error
-from app.desk.data_folder import RECORDS, data_folder
-from app.desk.run_without_screen import HeadlessRun
-from app.production.parts_book import PartsBook, production, tools_of
+from app.desk.command_errors import CommandError, convert_to_command_error
+from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
+from app.desk.headless_run import HeadlessRun
+from app.production.parts_book import PartsBook, find_tool_table_kind, read_production
 from app.production.tool_life_watch import ToolLifeWatch
-from core.executor.commands import BarNextPart, Command
+from core.executor.commands import BlockNextPart, Command
 from core.executor.executor import Executor
-from core.executor.interruption_watch import Note
+from core.executor.interruption_watch import StoreInterruptedJob
 from core.executor.job import Proof
-from core.executor.recorder import Recorder, recorded_of
-from core.executor.snapshot import Event, InterruptedJob, Snapshot
+from core.executor.recorder import Recorder, list_recorded_signals
+from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
-from core.records.record_ring import LASTS
-from core.records.ring_file import RUN
+from core.records.record_ring import RING_DURATION_S
+from core.records.ring_file import RUN_RING_NAME
 from core.store.store_errors import StoreError
-from core.store.store_rows import Kind
-from core.tool_edges import edge_name
+from core.store.store_rows import OffsetKind
+from core.tool_edges import format_edge_name
 from drivers.simulated.simulated_table import SimulatedTable
-from drivers.waiting import RealClock, StepClock
+from drivers.wakeups import ManualClock, RealClock
 
 
-class HeadlessLives:
+class HeadlessToolLife:
     """Tool life during a run without a screen. ``see`` is called at every step of the run.
 
     Without a store nothing is counted, and a message is printed.
@@ -46,114 +46,123 @@ class HeadlessLives:
     def __init__(
         self,
         journal: Journal,
-        post: Callable[[Command], None],
-        say: Callable[[str], None],
-        tools: Kind = Kind.TOOL,
+        post_command: Callable[[Command], None],
+        print_line: Callable[[str], None],
+        tools: OffsetKind = OffsetKind.TOOL,
     ) -> None:
-        self._book = journal.parts_book(tools)
+        self._book = journal.create_parts_book(tools)
         self._watch = ToolLifeWatch(self._book)
-        self._post, self._say = post, say
+        self._post, self._say = post_command, print_line
         self._barred = ""
         try:
             self._read(self._book)
         except StoreError as error:
-            say(Message("tool life is not counted: {error}", error=error))
+            print_line(Message("tool life is not counted: {error}", error=error))
 
     def _read(self, book: PartsBook) -> None:
         if book.store is None:
-            raise StoreError(book.locked)
-        book.now = production(book.store, "", book.tools, {})
-        book.loads = 1
+            raise StoreError(book.lock_reason)
+        book.current = read_production(book.store, "", book.tool_kind, {})
+        book.load_count = 1
 
-    def see(self, snapshot: Snapshot, proof: Proof) -> None:
+    def update(self, snapshot: Snapshot, proof: Proof) -> None:
         """Count the use of tools, report tools that are due, and lock the next part."""
-        if not self._book.loads:
+        if not self._book.load_count:
             return
-        self._watch.see(snapshot, self._say)
-        wanted = self._watch.bar(snapshot, proof.tools)
+        self._watch.observe(snapshot, self._say)
+        wanted = self._watch.find_block_reason(snapshot, proof.tool_numbers)
         if wanted != self._barred:
-            self._post(BarNextPart(wanted))
+            self._post(BlockNextPart(wanted))
         self._barred = wanted
 
-    def close(self) -> None:
+    def save(self) -> None:
         """Save the use counted since the last save."""
-        self._watch.keep_all()
+        self._watch.save_all()
         self._book.close()
 
 
 @contextmanager
-def headless(
+def run_headless(
     machine: Machine,
     *,
     inputs: Mapping[str, bool],
-    realtime: bool,
-    anew: bool = False,
+    real_time: bool,
+    discard_interrupted: bool = False,
     log: EventLog,
-    say: Callable[[str], None],
+    print_line: Callable[[str], None],
     progress: Callable[[float], None],
-    lasts: float = LASTS,
+    duration_s: float = RING_DURATION_S,
 ) -> Iterator[HeadlessRun]:
     """Yield a run without a screen on the machine, with these inputs and with automatic button presses.
 
     A machine that is not simulated runs in real time. A start after an interrupted job must be permitted
-    explicitly. The scope's record is saved in the folder of records and has at least the last ``lasts`` s of
-    samples. A run in real time counts for tool life, parts and cycles as on the screen; a faster run counts
-    nothing. Raises CommandError if the machine does not respond, if inputs do not exist or are wired, or if a
-    job was interrupted.
+    explicitly. The scope's record is saved in the folder of records and has at least the last ``duration_s``
+    s of samples. A run in real time counts for tool life, parts and cycles as on the screen; a faster run
+    counts nothing. Raises CommandError if the machine does not respond, if inputs do not exist or are wired,
+    or if a job was interrupted.
     """
-    paced = _paced(machine, realtime)
+    paced = _is_real_time(machine, real_time)
     with (
-        _remembered(machine, anew=anew, paced=paced, say=say) as (journal, note),
-        _connected(machine, paced) as (clock, connected),
+        _open_journal(
+            machine, discard_interrupted=discard_interrupted, real_time=paced, print_line=print_line
+        ) as (journal, note),
+        _connect(machine, paced) as (clock, connected),
     ):
         _set_inputs(connected, inputs)
         recorder = Recorder(
-            replace(recorded_of(machine, connected.ports), lasts=min(lasts, LASTS)),
-            data_folder() / RECORDS,
-            RUN,
+            replace(
+                list_recorded_signals(machine, connected.ports), duration_s=min(duration_s, RING_DURATION_S)
+            ),
+            find_data_folder() / RECORDS_FOLDER,
+            RUN_RING_NAME,
         )
-        if recorder.trouble:
-            say(recorder.trouble)
+        if recorder.storage_error:
+            print_line(recorder.storage_error)
 
-        def hear(event: Event) -> None:
-            noted = recorder.note(event)
-            log.add(noted)
+        def hear(event: LogEvent) -> None:
+            noted = recorder.assign_record_name(event)
+            log.write_event(noted)
             if journal is not None:
                 journal.hear(noted)
 
-        executor = Executor(machine, connected.ports, hear, note=note, tell=recorder.tell)
-        tools = tools_of(machine.kind)
-        lives = HeadlessLives(journal, executor.post, say, tools) if journal is not None else None
+        executor = Executor(
+            machine, connected.ports, hear, store_interruption=note, record_tick=recorder.queue_tick
+        )
+        tools = find_tool_table_kind(machine.kind)
+        lives = HeadlessToolLife(journal, executor.post, print_line, tools) if journal is not None else None
         recorder.start()
         started = [
-            extra.start_headless(machine, lambda: executor.snapshot, say, paced=paced)
+            extra.start_headless(machine, lambda: executor.snapshot, print_line, real_time=paced)
             for extra in extras().values()
         ]
         try:
-            palms, see = _palms(machine, connected, say), lives.see if lives is not None else None
-            yield HeadlessRun(executor, clock, say, progress, palms, see)
+            palms, see = (
+                _start_function(machine, connected, print_line),
+                lives.update if lives is not None else None,
+            )
+            yield HeadlessRun(executor, clock, print_line, progress, palms, see)
         finally:
-            executor.shut()  # also on Ctrl-C, so that the axes brake immediately
+            executor.shut_down()  # also on Ctrl-C, so that the axes brake immediately
             if lives is not None:
-                lives.close()
+                lives.save()
             recorder.close()
             for close in started:
                 if close is not None:
                     close()
 
 
-def _paced(machine: Machine, realtime: bool) -> bool:
+def _is_real_time(machine: Machine, realtime: bool) -> bool:
     """Return whether the run takes as long as on the machine."""
-    sim = machine.hardware.table(SimulatedTable)
-    return realtime or (sim is not None and sim.realtime) or real_time(machine)
+    sim = machine.hardware.find_driver_table(SimulatedTable)
+    return realtime or (sim is not None and sim.realtime) or needs_real_time(machine)
 
 
 @contextmanager
-def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
+def _connect(machine: Machine, real_time: bool) -> Iterator[tuple[RealClock | ManualClock, ConnectedMachine]]:
     """Yield the connected machine and its clock."""
-    clock = RealClock() if paced else StepClock()
-    with as_command_error(DriverError):
-        connected = connect(machine, clock)
+    clock = RealClock() if real_time else ManualClock()
+    with convert_to_command_error(DriverError):
+        connected = connect_machine(machine, clock)
     try:
         yield clock, connected
     finally:
@@ -161,32 +170,32 @@ def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | Step
 
 
 @contextmanager
-def _remembered(
-    machine: Machine, *, anew: bool, paced: bool, say: Callable[[str], None]
-) -> Iterator[tuple[Journal | None, Note]]:
+def _open_journal(
+    machine: Machine, *, discard_interrupted: bool, real_time: bool, print_line: Callable[[str], None]
+) -> Iterator[tuple[Journal | None, StoreInterruptedJob]]:
     """Yield the journal of the run, or None, and the function that notes the interrupted job.
 
     A simulated machine leaves no interrupted job.
     """
-    if played(machine) and anew:
+    if is_simulated(machine) and discard_interrupted:
         raise CommandError(
             "--anew cannot be used here, because a simulated run does not save interrupted jobs",
             "nothing-interrupted",
         )
-    if played(machine) and not paced:
+    if is_simulated(machine) and not real_time:
         yield None, lambda _what: None
         return
-    journal = Journal.at_home()
+    journal = Journal.open_default()
     try:
         if journal.trouble:
-            say(Message("the data of this run cannot be saved: {problem}", problem=journal.trouble))
-        if played(machine):
+            print_line(Message("the data of this run cannot be saved: {problem}", problem=journal.trouble))
+        if is_simulated(machine):
             yield journal, lambda _what: None
             return
         if journal.left is not None:
-            _demand_anew(journal.left, anew=anew)
+            _demand_anew(journal.left, anew=discard_interrupted)
             journal.hear(
-                Event(
+                LogEvent(
                     0.0,
                     "cleared",
                     Message(
@@ -198,7 +207,9 @@ def _remembered(
     finally:
         lost = journal.close()
         if lost:
-            say(Message("this data was not saved and was lost when TurnDesk closed: {lost}", lost=lost))
+            print_line(
+                Message("this data was not saved and was lost when TurnDesk closed: {lost}", lost=lost)
+            )
 
 
 def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
@@ -208,22 +219,24 @@ def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
                 "a job was interrupted ({left}); {tool} may be in the part. Resume the job on the "
                 "screen (SEARCHTO), or move the tool clear and use --anew to start at the first line",
                 left=left.words,
-                tool=edge_name(left.tool),
+                tool=format_edge_name(left.tool),
             ),
             "job-interrupted",
         )
 
 
-def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -> Callable[[], None] | None:
+def _start_function(
+    machine: Machine, connected: ConnectedMachine, print_line: Callable[[str], None]
+) -> Callable[[], None] | None:
     """Return the function that starts a cycle if no command may start it, or None.
 
     It presses the palm buttons of the screen's station, or asks the user to press them.
     """
-    panel = connected.panel
+    panel = connected.on_screen_station
     if machine.backend == "sim" or not machine.interlocks.two_hand_start:
         return None
     if panel is None:
-        return lambda: say("press both palm buttons")
+        return lambda: print_line("press both palm buttons")
 
     def press() -> None:
         panel.press_left()
@@ -234,7 +247,7 @@ def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -
     return press
 
 
-def _set_inputs(connected: Connected, inputs: Mapping[str, bool]) -> None:
+def _set_inputs(connected: ConnectedMachine, inputs: Mapping[str, bool]) -> None:
     if inputs and connected.set_input is None:
         raise CommandError(
             "--inputs is only for simulated machines; this machine has wired inputs", "inputs-are-wires"

@@ -6,60 +6,62 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from core.language.code_book import CodeBook, Entry
+    from core.language.code_book import CodeBook, CodeBookEntry
 
 
 @dataclass(slots=True)
 class CodeHelp:
     """Help for the code at the cursor, and a list of choices to insert.
 
-    ``entry`` is the code at the cursor. ``choices`` are the listed codes, and ``marked`` is the index of the
-    selected choice. ``begin`` is the column where the typed part of the code begins, or 0 if a choice is
-    inserted at the cursor.
+    ``current_entry`` is the code at the cursor. ``choices`` are the listed codes, and ``marked`` is the
+    index of the selected choice. ``start_column`` is the column where the typed part of the code begins, or
+    0 if a choice is inserted at the cursor.
     """
 
-    entry: Entry | None = None
+    current_entry: CodeBookEntry | None = None
     title: str = ""
-    choices: tuple[Entry, ...] = ()
+    choices: tuple[CodeBookEntry, ...] = ()
     marked: int = 0
-    begin: int = 0
+    start_column: int = 0
     _book: CodeBook | None = None
     _asked: tuple[str, int] = field(default=("", 0))
 
-    def follow(self, book: CodeBook | None, line: str, column: int) -> None:
+    def update_for_cursor(self, code_book: CodeBook | None, line: str, column: int) -> None:
         """Update the help for the cursor position. Without a book, no code is known yet."""
-        if book is self._book and (line, column) == self._asked:
+        if code_book is self._book and (line, column) == self._asked:
             return
-        self._book, self._asked = book, (line, column)
-        self.entry = None if book is None else book.at(line, column)
+        self._book, self._asked = code_book, (line, column)
+        self.current_entry = None if code_book is None else code_book.at(line, column)
 
-    def ask(self) -> bool:
+    def open_choices(self) -> bool:
         """List the completions of the typed text, or else the chapter of the code at the cursor.
 
         Return False without a book, because the text is still being proved for the first time.
         """
         if self._book is None:
             return False
-        begin, self.choices = self._book.completions(*self._asked)
+        begin, self.choices = self._book.find_completions(*self._asked)
         self.title, self.marked = "MATCHING CODES", 0
-        written = self.entry is not None and any(each.head == self.entry.head for each in self.choices)
+        written = self.current_entry is not None and any(
+            each.head == self.current_entry.head for each in self.choices
+        )
         typed = bool(self.choices)
         if not typed or (written and len(self.choices) == 1):
-            self._chapter(self._book.chapter_of(self.entry))
-        self.begin = begin if typed else 0  # A complete code is replaced and not inserted twice.
+            self._show_chapter(self._book.find_chapter(self.current_entry))
+        self.start_column = begin if typed else 0  # A complete code is replaced and not inserted twice.
         return True
 
-    def _chapter(self, number: int) -> None:
+    def _show_chapter(self, number: int) -> None:
         """List a chapter of the book. Numbers past the end continue at the beginning."""
         assert self._book is not None  # The caller has checked that a book exists.
         self.title, self.choices = self._book.chapters[number % len(self._book.chapters)]
-        self.marked = self.choices.index(self.entry) if self.entry in self.choices else 0
-        self.begin = 0
+        self.marked = self.choices.index(self.current_entry) if self.current_entry in self.choices else 0
+        self.start_column = 0
 
-    def turn(self, chapters: int) -> None:
+    def move_chapters(self, chapters: int) -> None:
         """Move by ``chapters`` chapters, forward or backward."""
         if self._book is not None and self.choices:
-            self._chapter(self._book.chapter_of(self.chosen) + chapters)
+            self._show_chapter(self._book.find_chapter(self.selected_entry) + chapters)
 
     def mark(self, number: int) -> None:
         """Select another choice. Numbers outside the list select the first or the last choice."""
@@ -68,10 +70,10 @@ class CodeHelp:
     @property
     def words(self) -> tuple[tuple[str, str], ...]:
         """The words of the selected choice with their meanings."""
-        chosen = self.chosen
-        return self._book.words_of(chosen) if self._book is not None and chosen is not None else ()
+        chosen = self.selected_entry
+        return self._book.list_words(chosen) if self._book is not None and chosen is not None else ()
 
     @property
-    def chosen(self) -> Entry | None:
+    def selected_entry(self) -> CodeBookEntry | None:
         """The selected choice, or None if there are no choices."""
         return self.choices[self.marked] if self.choices else None

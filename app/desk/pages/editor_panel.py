@@ -4,53 +4,54 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.desk.pages.sheet import Key
+from app.desk.pages.table_content import FunctionKey
 
 
 class PanelModel:
     """A panel that does nothing, for an editor without such a feature. A feature overrides all members.
 
-    ``text`` is the program with the lines that the panel writes. ``number`` counts the texts to prove.
-    ``written`` counts the texts that replace the editor's text; the cursor then moves to line ``at``.
+    ``text`` is the program with the lines that the panel writes. ``text_number`` counts the texts to prove.
+    ``write_count`` counts the texts that replace the editor's text; the cursor then moves to line
+    ``cursor_line``.
     """
 
     text: str = ""
-    number: int = 0
-    written: int = 0
-    at: int = 0
+    text_number: int = 0
+    write_count: int = 0
+    cursor_line: int = 0
 
     @property
-    def line(self) -> int:
+    def path_line(self) -> int:
         """The line, counted from 1, up to which the path is drawn."""
         return 0
 
     @property
-    def listing(self) -> bool:
+    def is_list_shown(self) -> bool:
         """Whether the page can be left without losing input."""
         return True
 
     def open_file(self, file: Path) -> None:
         """Open the form that makes a program from this file."""
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Accept the results of the workers; called once a frame."""
 
-    def keys(self) -> dict[int, Key]:
+    def function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys."""
         return {}
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the text for the prompt line."""
         return ""
 
-    def typed(self, key: str) -> bool:  # noqa: ARG002
+    def handle_key(self, key: str) -> bool:  # noqa: ARG002
         """Handle a key. Return False if the key has no meaning here."""
         return False
 
-    def takes(self, key: str) -> bool:  # noqa: ARG002
+    def accepts_key(self, key: str) -> bool:  # noqa: ARG002
         """Return whether this character is text input for the panel."""
         return False
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Cancel the last step. Return False if there is nothing left to cancel."""
         return False

@@ -9,60 +9,60 @@ Pause, Scroll Lock and Esc stop the machine as on other pages.
 
 from __future__ import annotations
 
-from app.desk.programs.program_loading import Loaded, Phase
-from app.desk.status.prompt_line import UNDER_WAY
-from app.desk.status.readouts import TURNING
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
+from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.status.readouts import TURNING_RPM
 from app.desk.translation import tr
-from core.executor.snapshot import CYCLE, Snapshot, State
-from core.ports import Unknown
+from core.executor.snapshot import CYCLE_STATES, MachineState, Snapshot
+from core.ports import UnknownPart
 
-BY_HAND = frozenset({State.JOG, State.HOME})
-SLIDES = "AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING"
+MANUAL_STATES = frozenset({MachineState.JOG, MachineState.HOME})
+AXES_MOVING = "AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING"
 SPINDLE_ON = "SPINDLE IS ON. STOP IT (M05 OR R). EDIT WHEN IT IS AT REST"
 SPINDLE_UNKNOWN = "SPINDLE MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW"
-COASTING = "SPINDLE IS COASTING. WAIT UNTIL IT STOPS BEFORE EDITING"
+SPINDLE_COASTING = "SPINDLE IS COASTING. WAIT UNTIL IT STOPS BEFORE EDITING"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST (F2), OR TYPE A NEW NAME THERE"
-CHOOSING = "PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST"
-MOVED = "AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM"
+PROGRAM_RUNNING = "PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST"
+STOP_AXES_FIRST = "AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM"
 
 
-def program_barred(snapshot: Snapshot) -> str:
+def find_program_refusal(snapshot: Snapshot) -> str:
     """Return why another program cannot be chosen. Empty if a program can be chosen."""
-    if snapshot.state in BY_HAND:
-        return MOVED
-    return CHOOSING if snapshot.state in UNDER_WAY else ""
+    if snapshot.state in MANUAL_STATES:
+        return STOP_AXES_FIRST
+    return PROGRAM_RUNNING if snapshot.state in ACTIVE_STATES else ""
 
 
-def editor_barred(snapshot: Snapshot, *, named: bool = True) -> str:
+def find_editor_refusal(snapshot: Snapshot, *, has_name: bool = True) -> str:
     """Return why the editor cannot be opened. Empty if the editor can be opened.
 
-    ``named`` is False if no program is selected.
+    ``has_name`` is False if no program is selected.
     """
-    if snapshot.state in BY_HAND:
-        return SLIDES
-    if snapshot.state not in UNDER_WAY:
+    if snapshot.state in MANUAL_STATES:
+        return AXES_MOVING
+    if snapshot.state not in ACTIVE_STATES:
         if snapshot.rpm_command:
             return SPINDLE_ON
-        if Unknown.SPINDLE in snapshot.unknown:
+        if UnknownPart.SPINDLE in snapshot.unknown:
             return SPINDLE_UNKNOWN
-        if abs(snapshot.rpm_actual) > TURNING:
-            return COASTING
-    return "" if named else NO_PROGRAM
+        if abs(snapshot.rpm_actual) > TURNING_RPM:
+            return SPINDLE_COASTING
+    return "" if has_name else NO_PROGRAM
 
 
-def mdi_barred(snapshot: Snapshot) -> str:
+def find_mdi_refusal(snapshot: Snapshot) -> str:
     """Return why MDI cannot be opened. Empty if MDI can be opened."""
-    if snapshot.state in CYCLE:
+    if snapshot.state in CYCLE_STATES:
         return tr("TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     return ""
 
 
-def searchto_barred(snapshot: Snapshot, loaded: Loaded) -> str:
+def find_searchto_refusal(snapshot: Snapshot, loaded: LoadedProgram) -> str:
     """Return why SEARCHTO cannot be opened or cannot continue. Empty if SEARCHTO is possible."""
-    if snapshot.state in CYCLE:
+    if snapshot.state in CYCLE_STATES:
         return tr("TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     if loaded.source is None or loaded.job is None:
         return tr("CHOOSE A PROGRAM FIRST (F2)")
-    if loaded.phase is not Phase.READY:
+    if loaded.phase is not LoadingPhase.READY:
         return tr("FIX PROGRAM ERRORS FIRST")
     return ""

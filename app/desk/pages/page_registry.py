@@ -7,23 +7,23 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from app.desk.page_description import ProgramKey
-from app.desk.pages.desk_parts import Attached, OwnStart, Watcher
-from app.desk.programs.program_loading import Loaded
+from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, StartHandler
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.interrupted_notice import NoticeRow
-from core.closing import ClosingStep
+from core.closing_steps import ClosingStep
 from core.executor.snapshot import Snapshot
 
-A = TypeVar("A", bound=Attached)
+AttachedT = TypeVar("AttachedT", bound=AttachedModel)
 
 
 @dataclass(slots=True)
 class PageRegistry:
     """Models of pages by class, with their start handlers, watchers, notices and program keys."""
 
-    _attached: dict[type[Attached], Attached] = field(default_factory=dict)
-    _made_later: dict[str, Callable[[], Attached]] = field(default_factory=dict)  # By class name.
-    _starts: list[OwnStart] = field(default_factory=list)
-    _run_watchers: list[Watcher] = field(default_factory=list)
+    _attached: dict[type[AttachedModel], AttachedModel] = field(default_factory=dict)
+    _made_later: dict[str, Callable[[], AttachedModel]] = field(default_factory=dict)  # By class name.
+    _starts: list[StartHandler] = field(default_factory=list)
+    _run_watchers: list[FrameWatcher] = field(default_factory=list)
     _frame_watchers: list[Callable[[Snapshot], None]] = field(default_factory=list)
     _program_keys: dict[str, ProgramKey] = field(default_factory=dict)
     _notice: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None
@@ -31,42 +31,43 @@ class PageRegistry:
 
     # --- models --------------------------------------------------------------------------------------
 
-    def attach(self, part: Attached) -> None:
+    def attach_model(self, model: AttachedModel) -> None:
         """Register the model of a page by its class. The model is closed with TurnDesk."""
-        self._attached[type(part)] = part
+        self._attached[type(model)] = model
 
-    def attach_later(self, kind: str, make: Callable[[], Attached]) -> None:
+    def attach_lazily(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
         """Register a model that is created at the first ``find``.
 
-        ``kind`` is the class name with its module, for example ``app.editor.editor.Editor``.
+        ``model_class`` is the class name with its module, for example
+        ``app.editor.editor_model.EditorModel``.
         """
-        self._made_later[kind] = make
+        self._made_later[model_class] = make_model
 
-    def find(self, kind: type[A]) -> A | None:
+    def find(self, model_class: type[AttachedT]) -> AttachedT | None:
         """Return the model of this class, or None if no such model is attached."""
-        make = self._made_later.pop(f"{kind.__module__}.{kind.__qualname__}", None)
+        make = self._made_later.pop(f"{model_class.__module__}.{model_class.__qualname__}", None)
         if make is not None:
-            self.attach(make())
-        part = self._attached.get(kind)
-        return part if isinstance(part, kind) else None
+            self.attach_model(make())
+        part = self._attached.get(model_class)
+        return part if isinstance(part, model_class) else None
 
-    def closing_steps(self) -> list[ClosingStep]:
+    def make_closing_steps(self) -> list[ClosingStep]:
         """Return the steps that close all models."""
         return [ClosingStep(kind.__name__, part.close) for kind, part in self._attached.items()]
 
     # --- additions -----------------------------------------------------------------------------------
 
-    def add_start(self, page: OwnStart) -> None:
+    def add_start_handler(self, page: StartHandler) -> None:
         """Register a page that uses the start buttons while it is open."""
         self._starts.append(page)
 
-    def add_run_watcher(self, watcher: Watcher) -> None:
+    def add_run_watcher(self, watcher: FrameWatcher) -> None:
         """Register a watcher that sees each frame except the frames of an MDI line."""
         self._run_watchers.append(watcher)
 
-    def add_frame_watcher(self, see: Callable[[Snapshot], None]) -> None:
+    def add_frame_watcher(self, watcher: Callable[[Snapshot], None]) -> None:
         """Register a function that is called once a frame."""
-        self._frame_watchers.append(see)
+        self._frame_watchers.append(watcher)
 
     def add_program_key(self, name: str, key: ProgramKey) -> None:
         """Add a function key to the program list."""
@@ -76,16 +77,16 @@ class PageRegistry:
         """Set the function that returns a notice between cycles, for example for the next job."""
         self._notice = notice
 
-    def set_record_opener(self, open_record: Callable[[str], None]) -> None:
+    def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
         """Set the function that opens the recording of an alarm by its name."""
-        self._open_record = open_record
+        self._open_record = open_recording
 
     # --- uses ----------------------------------------------------------------------------------------
 
     @property
-    def open_start(self) -> OwnStart | None:
+    def active_start_handler(self) -> StartHandler | None:
         """The page that uses the start buttons now. None: they start the program."""
-        return next((page for page in self._starts if page.open), None)
+        return next((page for page in self._starts if page.is_open), None)
 
     @property
     def program_keys(self) -> Mapping[str, ProgramKey]:
@@ -93,24 +94,24 @@ class PageRegistry:
         return self._program_keys
 
     @property
-    def run_watchers(self) -> Sequence[Watcher]:
+    def run_watchers(self) -> Sequence[FrameWatcher]:
         """The watchers of runs, in the order of registration."""
         return self._run_watchers
 
-    def see_run(self, snapshot: Snapshot, loaded: Loaded) -> None:
+    def notify_run_watchers(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Pass a frame of a program run to the run watchers."""
         for watcher in self._run_watchers:
-            watcher.see(snapshot, loaded)
+            watcher.observe(snapshot, loaded)
 
-    def see_frame(self, snapshot: Snapshot) -> None:
+    def notify_frame_watchers(self, snapshot: Snapshot) -> None:
         """Pass a frame to the frame watchers."""
         for see in self._frame_watchers:
             see(snapshot)
 
-    def offered_notice(self, snapshot: Snapshot) -> NoticeRow | None:
+    def find_notice(self, snapshot: Snapshot) -> NoticeRow | None:
         """Return the notice that a feature offers between cycles, or None."""
         return self._notice(snapshot)
 
-    def open_record(self, name: str) -> None:
+    def open_recording(self, name: str) -> None:
         """Open the recording of an alarm in the scope."""
         self._open_record(name)

@@ -5,28 +5,28 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.programs.program_choice import LAST_PROGRAM
+from app.desk.programs.program_choice import LAST_PROGRAM_SETTING
 from app.desk.translation import tr
-from core.executor.snapshot import CYCLE
+from core.executor.snapshot import CYCLE_STATES
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk
 
 
-def begin_with(desk: Desk, named: str | None) -> None:
+def load_first_program(desk: Desk, name: str | None) -> None:
     """Load the first program: the running or interrupted program, or else the program ``named``."""
-    if desk.snapshot().state in CYCLE:
-        _show_program_under_way(desk, named)
+    if desk.read_snapshot().state in CYCLE_STATES:
+        _show_running_program(desk, name)
         return
-    found = desk.snapshot().interrupted
-    path = str(Path(named).absolute()) if named is not None else ""
+    found = desk.read_snapshot().interrupted
+    path = str(Path(name).absolute()) if name is not None else ""
     if found is None:
-        if named is not None and not desk.programs.choose(path):
-            desk.say(Message("FILE NOT FOUND: {named}", named=named))
-    elif named is not None and Path(named).name == found.program and desk.programs.choose(path):
+        if name is not None and not desk.program_choice.load_by_name(path):
+            desk.say(Message("FILE NOT FOUND: {named}", named=name))
+    elif name is not None and Path(name).name == found.program and desk.program_choice.load_by_name(path):
         return
-    elif not desk.programs.choose(found.program):
+    elif not desk.program_choice.load_by_name(found.program):
         desk.say(
             tr(
                 Message(
@@ -35,22 +35,22 @@ def begin_with(desk: Desk, named: str | None) -> None:
                 )
             )
         )
-    elif named is not None:
+    elif name is not None:
         desk.say(
-            tr(Message("{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD", name=Path(named).name))
+            tr(Message("{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD", name=Path(name).name))
         )
 
 
-def _show_program_under_way(desk: Desk, named: str | None) -> None:
+def _show_running_program(desk: Desk, named: str | None) -> None:
     """Load the program that the control is already running, because the screen was restarted."""
-    now = desk.snapshot()
-    last = desk.settings.persistence.read_setting(LAST_PROGRAM)
+    now = desk.read_snapshot()
+    last = desk.settings_store.persistence.read_setting(LAST_PROGRAM_SETTING)
     known = (Path(each) for each in (named, last) if isinstance(each, str))
     path = next((each for each in known if each.name == now.program), None)
-    path = path or desk.programs.folders.find(now.program)
+    path = path or desk.program_choice.program_folders.find_path(now.program)
     if path is None:
         words = "RUNNING PROGRAM {name} NOT FOUND. ITS TEXT IS NOT SHOWN"
     else:
         words = "SCREEN RESTARTED. PROGRAM {name} IS NOT FINISHED"
-        desk.session.load(path.absolute(), now.block_delete)
-    desk.warn(tr(Message(words, name=now.program)))
+        desk.program_loader.start_loading(path.absolute(), now.block_delete)
+    desk.show_warning(tr(Message(words, name=now.program)))

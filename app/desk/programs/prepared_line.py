@@ -6,19 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from app.desk.background_work import Latest, Watch
-from app.desk.programs.program_loading import FirstMoveSeen, Proved
-from core.executor.commands import Command, Prepare
+from app.desk.background_work import LatestRequestWorker, ProgressCallback
+from app.desk.programs.program_loading import FirstMoveResult, ProvedJob
+from core.executor.commands import Command, PrepareStart
 from core.executor.job import Job
-from core.executor.snapshot import CYCLE, Snapshot, Starts
+from core.executor.snapshot import CYCLE_STATES, Snapshot, StartAction
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
 
-ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
+ProveLine = Callable[[str, Snapshot, ProgressCallback], tuple[Job, ProvedJob]]
 """From a line and the machine as it stands to its job and its proof; called on the worker."""
 
 
-def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
+def find_unset_tools(job: Job, proved: ProvedJob) -> tuple[Diagnostic, ...]:
     """Return an error for each tool that the line calls and that has no measured offset."""
     missing = proved.proof.unset(job)
     text = "Tool {number} has not been set."
@@ -31,94 +31,100 @@ def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
 
 
 @dataclass(slots=True)
-class PreparedLine:
+class PreparedMdiLine:
     """One MDI line between the key that requests it and the start buttons that run it. A line runs once.
 
     Only Cycle Start starts the line. While no line is ready, Cycle Start has no effect.
     """
 
-    prove: ProveLine
-    post: Callable[[Command], None]
-    found: tuple[Diagnostic, ...] = ()  # Diagnostics of the proof.
-    ready: Job | None = None  # The job that is proved and prepared.
-    worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
+    prove_function: ProveLine
+    post_command: Callable[[Command], None]
+    diagnostics: tuple[Diagnostic, ...] = ()  # Diagnostics of the proof.
+    ready_job: Job | None = None  # The job that is proved and prepared.
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("loading-mdi"))
     # Called with the first error if the line cannot run.
-    refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)
-    _proof: Proved | None = None  # Proof of the ready line.
+    on_refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)
+    _proof: ProvedJob | None = None  # Proof of the ready line.
     _begun: int = 0  # Number of lines that the executor had started at the last update.
 
-    def ask(self, text: str, snapshot: Snapshot, failed: Callable[[str], None]) -> None:
+    def prove_line(self, text: str, snapshot: Snapshot, on_failed: Callable[[str], None]) -> None:
         """Prove this line from the present machine state. A line that was ready is canceled.
 
-        ``failed`` is called with an error text if the proof fails unexpectedly.
+        ``on_failed`` is called with an error text if the proof fails unexpectedly.
         """
-        self.take_back()
-        self.worker.ask(partial(self.prove, text, snapshot), self._proved, failed)
+        self.cancel_line()
+        self.worker.request(partial(self.prove_function, text, snapshot), self._proved, on_failed)
 
-    def take_back(self) -> None:
+    def cancel_line(self) -> None:
         """Cancel the line, so that Cycle Start has no effect."""
-        self.forget()
-        self.post(Prepare(Starts.LINE))
+        self.discard_line()
+        self.post_command(PrepareStart(StartAction.MDI_LINE))
 
-    def leave(self) -> None:
+    def stop_line_mode(self) -> None:
         """Cancel the line, so that Cycle Start starts programs again."""
-        self.forget()
-        self.post(Prepare(Starts.PROGRAM))
+        self.discard_line()
+        self.post_command(PrepareStart(StartAction.PROGRAM))
 
-    def forget(self) -> None:
+    def discard_line(self) -> None:
         """Cancel the proof in progress, and discard the ready line and its diagnostics."""
-        self.worker.give_up()
-        self.ready, self.found = None, ()
+        self.worker.cancel()
+        self.ready_job, self.diagnostics = None, ()
 
-    def keep(self, snapshot: Snapshot) -> None:
+    def renew_line_mode(self, snapshot: Snapshot) -> None:
         """Make Cycle Start run lines only; called once a frame while the MDI page is open.
 
         The command is repeated until the snapshot shows it. The executor rejects it during a program, which
         may have started after the snapshot was made.
         """
-        if snapshot.state in CYCLE or snapshot.starts is Starts.LINE:
+        if snapshot.state in CYCLE_STATES or snapshot.starts is StartAction.MDI_LINE:
             return
         self._prepare()
 
-    def look(self, snapshot: Snapshot) -> bool:
+    def update(self, snapshot: Snapshot) -> bool:
         """Accept the results of the worker; called once a frame. Return True if the line has just started."""
         begun, self._begun = snapshot.lines > self._begun, snapshot.lines
-        started = self.ready is not None and begun
+        started = self.ready_job is not None and begun
         if started:
-            self.ready, self.found = None, ()
+            self.ready_job, self.diagnostics = None, ()
         self.worker.poll()
         return started
 
     @property
-    def busy(self) -> bool:
+    def is_proving(self) -> bool:
         """Whether a line is being proved."""
-        return self.worker.busy
+        return self.worker.is_busy
 
     @property
-    def first_move(self) -> FirstMoveSeen | None:
+    def first_move_result(self) -> FirstMoveResult | None:
         """The first move of the ready line. None if no line is ready or the move was not checked."""
-        return self._proof.first_move if self.ready is not None and self._proof is not None else None
+        return (
+            self._proof.first_move_result if self.ready_job is not None and self._proof is not None else None
+        )
 
     @property
-    def errors(self) -> tuple[Diagnostic, ...]:
+    def blocking_errors(self) -> tuple[Diagnostic, ...]:
         """The diagnostics that prevent the line from running."""
-        return tuple(each for each in self.found if each.severity is Severity.ERROR)
+        return tuple(each for each in self.diagnostics if each.severity is Severity.ERROR)
 
     def close(self) -> None:
         """End the worker that proves lines."""
         self.worker.close()
 
-    def _proved(self, answer: tuple[Job, Proved]) -> None:
+    def _proved(self, answer: tuple[Job, ProvedJob]) -> None:
         job, proved = answer
-        self.found = (*proved.diagnostics, *never_set(job, proved))
-        if self.errors:
-            self.refused(self.errors[0])
+        self.diagnostics = (*proved.diagnostics, *find_unset_tools(job, proved))
+        if self.blocking_errors:
+            self.on_refused(self.blocking_errors[0])
         else:
-            self.ready, self._proof = job, proved
+            self.ready_job, self._proof = job, proved
             self._prepare()
 
     def _prepare(self) -> None:
-        if self.ready is None or self._proof is None:
-            self.post(Prepare(Starts.LINE))
+        if self.ready_job is None or self._proof is None:
+            self.post_command(PrepareStart(StartAction.MDI_LINE))
         else:
-            self.post(Prepare(Starts.LINE, self.ready, self._proof.proof, self._proof.clearance))
+            self.post_command(
+                PrepareStart(
+                    StartAction.MDI_LINE, self.ready_job, self._proof.proof, self._proof.first_move_clearance
+                )
+            )

@@ -7,64 +7,66 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from app.desk.pages.page_entry import program_barred
+from app.desk.pages.page_entry import find_program_refusal
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import ProgramLoader
 from app.desk.status import interrupted_notice
-from app.desk.status.prompt_line import UNDER_WAY, PromptAnswers
+from app.desk.status.prompt_line import ACTIVE_STATES, PromptAnswers
 from core.executor.snapshot import Snapshot
 
-LAST_PROGRAM = "last_program"  # Setting with the path of the program that was loaded last.
+LAST_PROGRAM_SETTING = "last_program"  # Setting with the path of the program that was loaded last.
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramChoice:
-    """Finds programs in ``folders`` and loads them with ``session``.
+    """Finds programs in ``program_folders`` and loads them with ``program_loader``.
 
     ``save_path`` stores the path for the next start of TurnDesk.
     """
 
-    folders: ProgramFolders
-    session: ProgramLoader
-    snapshot: Callable[[], Snapshot]
-    answers: PromptAnswers
+    program_folders: ProgramFolders
+    program_loader: ProgramLoader
+    read_snapshot: Callable[[], Snapshot]
+    prompt_answers: PromptAnswers
     save_path: Callable[[str], None]
 
     def can_choose(self) -> bool:
         """Return whether a program can be chosen now. The prompt line shows why not."""
-        if why := program_barred(self.snapshot()):
-            self.answers.say(why)
+        if why := find_program_refusal(self.read_snapshot()):
+            self.prompt_answers.say(why)
         return not why
 
-    def choose(self, typed: str) -> bool:
+    def load_by_name(self, name: str) -> bool:
         """Load the program that was typed or selected. Return False if no program has that name."""
-        path = self.folders.find(typed)
+        path = self.program_folders.find_path(name)
         if path is None:
             return False
-        self.load(path)
+        self.load_path(path)
         return True
 
-    def load(self, path: Path) -> None:
+    def load_path(self, path: Path) -> None:
         """Load a program. Ask first if the program would replace an interrupted job."""
-        found = self.snapshot().interrupted
-        self.answers.take_back()
+        found = self.read_snapshot().interrupted
+        self.prompt_answers.withdraw()
         if found is not None and found.program != path.name:
-            self.answers.ask(interrupted_notice.instead(found, path.name), partial(self._load, path))
+            self.prompt_answers.ask_question(
+                interrupted_notice.make_replace_question(found, path.name), partial(self._load, path)
+            )
         else:
             self._load(path)
 
     def _load(self, path: Path) -> None:
         if self.can_choose():
-            self.session.load(path, self.session.now.block_delete)
+            self.program_loader.start_loading(path, self.program_loader.loaded.block_delete)
             self.save_path(str(path))
 
-    def switch_block_delete(self) -> None:
+    def toggle_block_delete(self) -> None:
         """Toggle Block Delete, and load the program again because Block Delete is part of the proved job."""
-        loaded = self.session.now
+        loaded = self.program_loader.loaded
         if loaded.path is None:
-            self.answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
-        elif self.snapshot().state in UNDER_WAY:
-            self.answers.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
+            self.prompt_answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
+        elif self.read_snapshot().state in ACTIVE_STATES:
+            self.prompt_answers.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
         else:
-            self.answers.take_back()
-            self.session.load(loaded.path, not loaded.block_delete)
+            self.prompt_answers.withdraw()
+            self.program_loader.start_loading(loaded.path, not loaded.block_delete)

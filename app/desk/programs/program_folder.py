@@ -13,23 +13,23 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.translation import tr
 from core.executor.raised_alarm import Attempt
-from core.language.source import Source, SourceError, load_source
+from core.language.source import ProgramSource, SourceError, load_source
 from core.message import Message
 
-LISTED = 2000  # Maximum number of listed programs in a folder.
-ENDINGS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
+MAX_LISTED = 2000  # Maximum number of listed programs in a folder.
+PROGRAM_EXTENSIONS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
 
 
-Takes = Callable[[str], bool]
+AcceptsName = Callable[[str], bool]
 """Whether a file of this name is one of those that are wanted."""
 
 
-def is_program(name: str) -> bool:
+def is_program_name(name: str) -> bool:
     """Return whether a file name has the extension of a program."""
-    return Path(name).suffix.lower() in ENDINGS
+    return Path(name).suffix.lower() in PROGRAM_EXTENSIONS
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,68 +43,68 @@ class ListedProgram:
 class ProgramFolders:
     """Program folders in order of preference. A program in an earlier folder hides programs of the same name.
 
-    ``drawing_endings`` are the file extensions of drawings from which a program can be made.
+    ``drawing_extensions`` are the file extensions of drawings from which a program can be made.
     """
 
-    def __init__(self, folders: Sequence[Path], drawing_endings: tuple[str, ...] = ()) -> None:
+    def __init__(self, folders: Sequence[Path], drawing_extensions: tuple[str, ...] = ()) -> None:
         self.folders = tuple(folders)
-        self._drawing_endings = drawing_endings
+        self._drawing_endings = drawing_extensions
 
-    def is_drawing(self, name: str) -> bool:
+    def is_drawing_name(self, name: str) -> bool:
         """Return whether a file name has the extension of a drawing."""
         return name.lower().endswith(self._drawing_endings)
 
-    def takes(self, name: str) -> bool:
+    def accepts_name(self, name: str) -> bool:
         """Return whether a file name has the extension of a program or a drawing."""
-        return is_program(name) or self.is_drawing(name)
+        return is_program_name(name) or self.is_drawing_name(name)
 
-    def entries(self) -> tuple[ListedProgram, ...]:
+    def list_programs(self) -> tuple[ListedProgram, ...]:
         """Return the programs of all folders, sorted by name. A missing folder counts as empty."""
-        return self._listed(is_program)
+        return self._listed(is_program_name)
 
-    def matching(self, typed: str) -> tuple[ListedProgram, ...]:
+    def find_matching(self, typed_text: str) -> tuple[ListedProgram, ...]:
         """Return the programs whose names contain the typed text."""
-        part = typed.strip().lower()
-        return tuple(entry for entry in self.entries() if part in entry.name.lower())
+        part = typed_text.strip().lower()
+        return tuple(entry for entry in self.list_programs() if part in entry.name.lower())
 
-    def drawings(self) -> tuple[ListedProgram, ...]:
+    def list_drawings(self) -> tuple[ListedProgram, ...]:
         """Return the drawings in the program folders, sorted by name."""
-        return self._listed(self.is_drawing)
+        return self._listed(self.is_drawing_name)
 
-    def _listed(self, taken: Takes) -> tuple[ListedProgram, ...]:
+    def _listed(self, taken: AcceptsName) -> tuple[ListedProgram, ...]:
         seen: dict[str, ListedProgram] = {}
         for folder in self.folders:
             for path in _files(folder, taken):
                 seen.setdefault(path.name.lower(), ListedProgram(path.name, path))
         return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
 
-    def find(self, typed: str) -> Path | None:
+    def find_path(self, typed_name: str) -> Path | None:
         """Return the path of the program that a typed name refers to, or None if there is no such file.
 
         The name may be in upper or lower case, with or without its extension. It may also be a path.
         """
-        name = typed.strip()
+        name = typed_name.strip()
         if not name:
             return None
         path = Path(name).expanduser()
         if path.is_absolute() or len(path.parts) > 1:
             return path if path.is_file() else None
         wanted = name.lower()
-        entries = self.entries()
+        entries = self.list_programs()
         for entry in entries:
             if entry.name.lower() == wanted:
                 return entry.path
         return next((e.path for e in entries if e.path.stem.lower() == wanted), None)
 
 
-def _files(folder: Path, taken: Takes) -> Iterator[Path]:
+def _files(folder: Path, taken: AcceptsName) -> Iterator[Path]:
     try:
         paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())
     except OSError:
         return
     good = (p for p in paths if taken(p.name) and not p.name.startswith(".") and p.is_file())
     for count, path in enumerate(good):
-        if count >= LISTED:
+        if count >= MAX_LISTED:
             return
         yield path
 
@@ -113,31 +113,36 @@ def _files(folder: Path, taken: Takes) -> Iterator[Path]:
 
 
 _log = logging.getLogger(__name__)
-LOOK = 2.0  # Seconds between two checks of the file.
-HANGS = 5.0  # Seconds after which an unfinished check counts as an unreadable file.
-GONE = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
-CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
-UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
-_Said = tuple[str, str]  # Message text and file name.
-_SAME = ("", "")
-_Stamp = tuple[int, int]  # Modification time in ns and size in bytes, or an error number and -1.
+CHECK_INTERVAL_S = 2.0  # Seconds between two checks of the file.
+CHECK_TIMEOUT_S = 5.0  # Seconds after which an unfinished check counts as an unreadable file.
+FILE_MISSING = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
+FILE_CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
+FILE_UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
+_Message = tuple[str, str]  # Message text and file name.
+_NO_DIFFERENCE = ("", "")
+_FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an error number and -1.
 
 
-class ProgramFile:
+class ProgramFileMonitor:
     """Compares the file with the loaded program on its own thread, because a network drive may hang."""
 
-    def __init__(self, loaded: Callable[[], Loaded], clock: Callable[[], float] = time.monotonic) -> None:
-        self._loaded, self._clock = loaded, clock
+    def __init__(
+        self, read_loaded: Callable[[], LoadedProgram], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._loaded, self._clock = read_loaded, clock
         self._since: float | None = None  # Start time of the check in progress.
         self._wanted = threading.Event()
         # Source and files of the last comparison.
-        self._seen: tuple[Source, tuple[_Stamp, ...]] | None = None
+        self._seen: tuple[ProgramSource, tuple[_FileStamp, ...]] | None = None
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="program-file", daemon=True)
-        self._found: tuple[Source | None, _Said] = (None, _SAME)  # Compared source and message.
+        self._found: tuple[ProgramSource | None, _Message] = (
+            None,
+            _NO_DIFFERENCE,
+        )  # Compared source and message.
 
     @property
-    def differs(self) -> str:
+    def difference_text(self) -> str:
         """The message about the difference between the files and the loaded text. Empty if they are equal.
 
         A file that cannot be read also gives a message.
@@ -145,8 +150,8 @@ class ProgramFile:
         loaded, since = self._loaded(), self._since
         if loaded.source is None:
             return ""
-        if since is not None and self._clock() - since > HANGS:
-            return tr(Message(UNREADABLE, name=loaded.name))
+        if since is not None and self._clock() - since > CHECK_TIMEOUT_S:
+            return tr(Message(FILE_UNREADABLE, name=loaded.name))
         source, said = self._found
         return tr(Message(said[0], name=said[1])) if said[0] and source is loaded.source else ""
 
@@ -159,11 +164,11 @@ class ProgramFile:
         self._closing.set()
         self._wanted.set()
 
-    def hurry(self) -> None:
+    def check_soon(self) -> None:
         """Check the file immediately, because TurnDesk has just written it."""
         self._wanted.set()
 
-    def look(self) -> None:
+    def compare_files(self) -> None:
         """Compare the files with the loaded text if a file has been modified since the last check."""
         loaded = self._loaded()
         source, path = loaded.source, loaded.path
@@ -176,35 +181,35 @@ class ProgramFile:
         finally:
             self._since = None
 
-    def _compare(self, source: Source, path: Path) -> None:
+    def _compare(self, source: ProgramSource, path: Path) -> None:
         texts = {path: source} | {path.parent / each.name: each for each in source.subprograms}
         stamps = tuple(_stamp(file) for file in texts)
         if self._seen is None or self._seen[0] is not source or self._seen[1] != stamps:
-            found = ((_difference(file, text), file.name) for file, text in texts.items())
-            said = next((each for each in found if each[0]), _SAME)
+            found = ((_find_difference(file, text), file.name) for file, text in texts.items())
+            said = next((each for each in found if each[0]), _NO_DIFFERENCE)
             # The file's time and size may not change, so read the file at every check.
-            unread = said[0] == UNREADABLE
+            unread = said[0] == FILE_UNREADABLE
             self._seen = None if unread else (source, stamps)
             self._found = (source, said)
 
     def _watch(self) -> None:
         while not self._closing.is_set():
-            self._wanted.wait(LOOK)
+            self._wanted.wait(CHECK_INTERVAL_S)
             self._wanted.clear()
             if not self._closing.is_set():
-                self.watch_once()
+                self.check_safely()
 
-    def watch_once(self) -> None:
+    def check_safely(self) -> None:
         """Check the file once. If the check raises an exception, the file counts as unreadable."""
         with Attempt() as trial:
-            self.look()
+            self.compare_files()
         if trial.error is not None:
             _log.error("the program's file cannot be watched", exc_info=trial.error)
             loaded = self._loaded()
-            self._seen, self._found = None, (loaded.source, (UNREADABLE, loaded.name))
+            self._seen, self._found = None, (loaded.source, (FILE_UNREADABLE, loaded.name))
 
 
-def _stamp(file: Path) -> _Stamp:
+def _stamp(file: Path) -> _FileStamp:
     try:
         found = file.stat()
     except OSError as error:
@@ -212,18 +217,18 @@ def _stamp(file: Path) -> _Stamp:
     return found.st_mtime_ns, found.st_size
 
 
-def _difference(file: Path, read: Source) -> str:
+def _find_difference(file: Path, read: ProgramSource) -> str:
     """Return the message about this file. Empty if the file contains the loaded text."""
     try:
         now = load_source(file)
     except SourceError as error:
-        return _no_text(error)
-    return "" if now.text == read.text else CHANGED
+        return _describe_read_error(error)
+    return "" if now.text == read.text else FILE_CHANGED
 
 
-def _no_text(error: SourceError) -> str:
+def _describe_read_error(error: SourceError) -> str:
     """Return the message about a file from which no program text could be read."""
     cause = error.__cause__
     if not isinstance(cause, OSError):
-        return CHANGED  # The file could be read, but is not a program.
-    return GONE if isinstance(cause, (FileNotFoundError, NotADirectoryError)) else UNREADABLE
+        return FILE_CHANGED  # The file could be read, but is not a program.
+    return FILE_MISSING if isinstance(cause, (FileNotFoundError, NotADirectoryError)) else FILE_UNREADABLE

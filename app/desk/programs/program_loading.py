@@ -10,97 +10,97 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.desk.background_work import Latest, Request, Watch
-from core.executor.commands import Clearance, Command, GiveProof, LoadJob
+from app.desk.background_work import LatestRequestWorker, ProgressCallback, WorkRequest
+from core.executor.commands import Clearance, Command, LoadJob, SupplyProof
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 
 if TYPE_CHECKING:
-    from app.path.path_picture import Picture
+    from app.path.path_picture import ProgramPicture
     from core.proving.proof_report import PartReport
 
 
-Legs = tuple[tuple[float, float, bool], ...]
+ApproachLegs = tuple[tuple[float, float, bool], ...]
 """A path in machine X and Z, mm, with whether each leg is a rapid."""
 
 
-class FirstMoveSeen(NamedTuple):
+class FirstMoveResult(NamedTuple):
     """The result of checking the first move, with a verdict for the start here and one for Cycle Repeat.
 
-    ``legs`` is the path that is drawn. ``zero`` is the machine X and Z in mm at which the tip is on part
-    zero.
+    ``legs`` is the path that is drawn. ``zero_position`` is the machine X and Z in mm at which the tip is on
+    part zero.
     """
 
     verdicts: tuple[Clearance, ...]
-    legs: Legs = ()
-    zero: tuple[float, float] = (0.0, 0.0)
+    legs: ApproachLegs = ()
+    zero_position: tuple[float, float] = (0.0, 0.0)
 
     @property
-    def clearance(self) -> Clearance:
+    def start_clearance(self) -> Clearance:
         """The verdict on a start from the present position of the axes."""
         return self.verdicts[0]
 
 
-class Phase(StrEnum):
+class LoadingPhase(StrEnum):
     """The progress of loading a program."""
 
     EMPTY = "EMPTY"
     READING = "READING"
     PROVING = "PROVING"
     DRAWING = "DRAWING"
-    PART = "PROVING PART:"  # The program does not start before this proof is finished.
+    PROVING_PART = "PROVING PART:"  # The program does not start before this proof is finished.
     READY = "READY"
     REFUSED = "REJECTED"  # The proof found errors. The program is shown but cannot run.
     UNREADABLE = "UNREADABLE"
 
 
 @dataclass(frozen=True, slots=True)
-class Proved:
+class ProvedJob:
     """A proof with its diagnostics.
 
-    ``waits``: the start must wait for the proof of the part, because a part error may refuse the start.
-    ``first_move`` is the result of the first-move check of an MDI line or a restart.
+    ``waits_for_part``: the start must wait for the proof of the part, because a part error may refuse the
+    start. ``first_move_result`` is the result of the first-move check of an MDI line or a restart.
     """
 
     proof: Proof
     diagnostics: tuple[Diagnostic, ...] = ()
-    waits: bool = False
-    first_move: FirstMoveSeen | None = None
+    waits_for_part: bool = False
+    first_move_result: FirstMoveResult | None = None
 
     @property
-    def clearance(self) -> Clearance | None:
+    def first_move_clearance(self) -> Clearance | None:
         """The verdict on the first move. None if the move was not checked."""
-        return self.first_move.clearance if self.first_move is not None else None
+        return self.first_move_result.start_clearance if self.first_move_result is not None else None
 
 
 @dataclass(frozen=True, slots=True)
-class PartProved:
+class PartProof:
     """The result of proving the part.
 
     ``diagnostics`` are the findings with their severity for this machine. ``warned`` contains short warnings
     that are shown before a start because they rest on assumptions. ``report`` is None if the part could not
-    be calculated; ``trouble`` then gives the reason.
+    be calculated; ``error_text`` then gives the reason.
     """
 
     diagnostics: tuple[Diagnostic, ...] = ()
-    warned: tuple[str, ...] = ()
+    warning_texts: tuple[str, ...] = ()
     report: PartReport | None = None
-    trouble: str = ""
+    error_text: str = ""
 
-    def completes(self, proof: Proof, name: str) -> Proof:
+    def add_to_proof(self, proof: Proof, name: str) -> Proof:
         """Return the proof of the program with the errors and warnings of its part added."""
-        errors = tuple(d.in_one_line(name) for d in self.diagnostics if d.severity is Severity.ERROR)
-        return replace(proof, errors=(*proof.errors, *errors), warned=self.warned)
+        errors = tuple(d.format_one_line(name) for d in self.diagnostics if d.severity is Severity.ERROR)
+        return replace(proof, errors=(*proof.errors, *errors), warnings=self.warning_texts)
 
-    def among(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+    def merge_diagnostics(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
         """Return these and the given diagnostics without duplicates, sorted by line and column."""
         known = {(each.line, each.code) for each in diagnostics}
         own = (each for each in self.diagnostics if (each.line, each.code) not in known)
         return tuple(sorted((*diagnostics, *own), key=lambda each: (each.line, each.column)))
 
 
-def _no_part(_picture: Picture, _watch: Watch) -> PartProved | None:
+def _no_part(_picture: ProgramPicture, _watch: ProgressCallback) -> PartProof | None:
     return None
 
 
@@ -111,31 +111,31 @@ class LoadingSteps:
     ``watch`` gets the progress. It may raise AbandonedError, which the functions must not catch.
     """
 
-    read: Callable[[Path], Source]  # Raises OSError or ValueError with an error message.
-    make_job: Callable[[Source, bool], Job]  # Arguments: text, and state of Block Delete.
-    prove: Callable[[Job, Watch], Proved]
-    draw: Callable[[Job, Watch], Picture]
+    read_source: Callable[[Path], ProgramSource]  # Raises OSError or ValueError with an error message.
+    make_job: Callable[[ProgramSource, bool], Job]  # Arguments: text, and state of Block Delete.
+    prove_job: Callable[[Job, ProgressCallback], ProvedJob]
+    draw_path: Callable[[Job, ProgressCallback], ProgramPicture]
     # Returns the same job with the present offsets.
     renew_job: Callable[[Job], Job] = field(default=lambda job: job)
     # Returns None if the program has no part.
-    part: Callable[[Picture, Watch], PartProved | None] = field(default=_no_part)
+    prove_part: Callable[[ProgramPicture, ProgressCallback], PartProof | None] = field(default=_no_part)
 
 
 @dataclass(frozen=True, slots=True)
-class Loaded:
+class LoadedProgram:
     """The loaded program and the progress of loading. Objects are replaced and never changed."""
 
-    phase: Phase = Phase.EMPTY
+    phase: LoadingPhase = LoadingPhase.EMPTY
     path: Path | None = None
     block_delete: bool = False
-    source: Source | None = None
+    source: ProgramSource | None = None
     job: Job | None = None
     proof: Proof | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
-    picture: Picture | None = None
-    part: PartProved | None = None
-    reached: int = 0  # Number of blocks that are proved or drawn.
-    trouble: str = ""  # Reason why the program could not be read.
+    picture: ProgramPicture | None = None
+    part_proof: PartProof | None = None
+    progress: int = 0  # Number of blocks that are proved or drawn.
+    error_text: str = ""  # Reason why the program could not be read.
 
     @property
     def name(self) -> str:
@@ -143,105 +143,116 @@ class Loaded:
         return self.path.name if self.path else ""
 
     @property
-    def errors(self) -> tuple[Diagnostic, ...]:
+    def blocking_errors(self) -> tuple[Diagnostic, ...]:
         """The diagnostics that prevent the program from running."""
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
 
     @property
-    def busy(self) -> bool:
+    def is_busy(self) -> bool:
         """Whether the worker is still loading the program."""
-        return self.phase in {Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART}
+        return self.phase in {
+            LoadingPhase.READING,
+            LoadingPhase.PROVING,
+            LoadingPhase.DRAWING,
+            LoadingPhase.PROVING_PART,
+        }
 
 
 @dataclass(slots=True)
 class ProgramLoader:
-    """Loads one program at a time. ``post`` sends commands to the executor, also from the worker thread."""
+    """Loads one program at a time. ``post_command`` sends commands to the executor, also from the worker
+    thread.
+    """
 
-    workshop: LoadingSteps
-    post: Callable[[Command], None]
-    worker: Latest = field(default_factory=lambda: Latest("loading"))
-    loads: int = 0  # Number of times loading began or was stopped.
-    _now: Loaded = field(default_factory=Loaded)
+    steps: LoadingSteps
+    post_command: Callable[[Command], None]
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("loading"))
+    load_count: int = 0  # Number of times loading began or was stopped.
+    _now: LoadedProgram = field(default_factory=LoadedProgram)
 
     @property
-    def now(self) -> Loaded:
-        """The loaded program. If loading fails, the phase is UNREADABLE and ``trouble`` gives the reason."""
+    def loaded(self) -> LoadedProgram:
+        """The loaded program. If loading fails, the phase is UNREADABLE and ``error_text`` gives the
+        reason.
+        """
         self.worker.poll()
         return self._now
 
-    def load(self, path: Path, block_delete: bool = False) -> None:
+    def start_loading(self, path: Path, block_delete: bool = False) -> None:
         """Start loading a program. Loading in progress is canceled."""
         with self.worker.lock:
-            self.loads += 1
-            self._now = Loaded(Phase.READING, path, block_delete)
-            self.worker.ask(partial(self._load, path, block_delete), lambda _: None, self._failed)
+            self.load_count += 1
+            self._now = LoadedProgram(LoadingPhase.READING, path, block_delete)
+            self.worker.request(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
-    def adopt(self, loaded: Loaded) -> None:
+    def replace_loaded(self, loaded: LoadedProgram) -> None:
         """Replace the loaded program by the same program with another proof or progress."""
         self._now = loaded
 
-    def settled(self, timeout: float) -> Loaded:
+    def wait_until_loaded(self, timeout_s: float) -> LoadedProgram:
         """Wait until loading is finished, and return the program. For scripts and tests only."""
-        self.worker.settle(timeout)
-        return self.now
+        self.worker.wait_for_results(timeout_s)
+        return self.loaded
 
     def close(self) -> None:
         """Cancel loading and end the worker."""
-        self.loads += 1
+        self.load_count += 1
         self.worker.close()
 
-    def _load(self, path: Path, block_delete: bool, request: Request) -> None:
-        steps = self.workshop
-        source = steps.read(path)
+    def _load(self, path: Path, block_delete: bool, request: WorkRequest) -> None:
+        steps = self.steps
+        source = steps.read_source(path)
         job = steps.make_job(source, block_delete)
         _ = source.lines  # Split the text here, so that the screen does not have to.
-        self._publish(request, lambda now: replace(now, phase=Phase.PROVING, source=source, job=job))
-        self.post(LoadJob(job))
-        proved = steps.prove(job, partial(self._reached, request))
+        self._publish(request, lambda now: replace(now, phase=LoadingPhase.PROVING, source=source, job=job))
+        self.post_command(LoadJob(job))
+        proved = steps.prove_job(job, partial(self._reached, request))
         proof, found = proved.proof, proved.diagnostics
         self._publish(
             request,
-            lambda now: replace(now, phase=Phase.DRAWING, proof=proof, diagnostics=found, reached=0),
+            lambda now: replace(now, phase=LoadingPhase.DRAWING, proof=proof, diagnostics=found, progress=0),
         )
-        if not proved.waits:
-            self.post(GiveProof(proof))
-        picture = steps.draw(job, partial(self._reached, request))
-        phase = Phase.PART if proved.waits else settled(proof)
-        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, reached=0))
+        if not proved.waits_for_part:
+            self.post_command(SupplyProof(proof))
+        picture = steps.draw_path(job, partial(self._reached, request))
+        phase = LoadingPhase.PROVING_PART if proved.waits_for_part else find_final_phase(proof)
+        self._publish(request, lambda now: replace(now, phase=phase, picture=picture, progress=0))
         self._prove_part(job, proved, picture, request)
-        _keep_out_of_collections()
+        _freeze_garbage()
 
-    def _prove_part(self, job: Job, proved: Proved, picture: Picture, request: Request) -> None:
+    def _prove_part(self, job: Job, proved: ProvedJob, picture: ProgramPicture, request: WorkRequest) -> None:
         """Prove the part. A program that did not wait for this proof may already be running."""
-        watch = partial(self._reached, request) if proved.waits else request
-        part = self.workshop.part(picture, watch)
+        watch = partial(self._reached, request) if proved.waits_for_part else request
+        part = self.steps.prove_part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
         if part is not None:
-            found, whole = part.among(found), part.completes(whole, job.source.name)
-        phase = settled(whole)
+            found, whole = part.merge_diagnostics(found), part.add_to_proof(whole, job.source.name)
+        phase = find_final_phase(whole)
         self._publish(
             request,
-            lambda now: replace(now, phase=phase, proof=whole, diagnostics=found, part=part, reached=0),
+            lambda now: replace(
+                now, phase=phase, proof=whole, diagnostics=found, part_proof=part, progress=0
+            ),
         )
-        if proved.waits or whole != proved.proof:
-            self.post(GiveProof(whole))
+        if proved.waits_for_part or whole != proved.proof:
+            self.post_command(SupplyProof(whole))
 
-    def _reached(self, request: Request, count: float) -> None:
-        self._publish(request, lambda now: replace(now, reached=int(count)))
+    def _reached(self, request: WorkRequest, count: float) -> None:
+        self._publish(request, lambda now: replace(now, progress=int(count)))
 
-    def _publish(self, request: Request, change: Callable[[Loaded], Loaded]) -> None:
-        request.publish(lambda: self.adopt(change(self._now)))
+    def _publish(self, request: WorkRequest, change: Callable[[LoadedProgram], LoadedProgram]) -> None:
+        request.publish(lambda: self.replace_loaded(change(self._now)))
 
     def _failed(self, why: str) -> None:
-        self._now = replace(self._now, phase=Phase.UNREADABLE, trouble=why)
+        self._now = replace(self._now, phase=LoadingPhase.UNREADABLE, error_text=why)
 
 
-def settled(proof: Proof) -> Phase:
+def find_final_phase(proof: Proof) -> LoadingPhase:
     """Return the phase of a program whose proof is complete."""
-    return Phase.REFUSED if proof.errors else Phase.READY
+    return LoadingPhase.REFUSED if proof.errors else LoadingPhase.READY
 
 
-def _keep_out_of_collections() -> None:
+def _freeze_garbage() -> None:
     """Exclude the loaded program from garbage collection.
 
     A scan of 200,000 blocks would stop every thread for 40 ms, including the executor, again and again. The

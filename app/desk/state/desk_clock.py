@@ -12,5 +12,5 @@ from functools import partial
 class DeskClock:
     """Monotonic time in seconds, and the local time of day as text."""
 
-    seconds: Callable[[], float] = time.monotonic
-    time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
+    read_seconds: Callable[[], float] = time.monotonic
+    format_local_time: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))

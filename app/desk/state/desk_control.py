@@ -6,34 +6,34 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from app.desk.station_hands import StationPanel
+from app.desk.station_controls import StationPanel
 from app.desk.status.machine_status import SilenceWatch
 from core.executor.commands import Command
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
-    from app.desk.stop_keys.watched_keys import OpenLine
-    from core.records.recordings import Recordings
+    from app.desk.stop_keys.watched_keys import OpenStopChannel
+    from core.records.recordings import ScopeRecordings
 
 
 @dataclass(slots=True)
 class DeskControl:
     """Access to the control: its commands, its snapshots and its simulated station.
 
-    ``panel`` is None if the machine has its own operator station. ``set_input`` switches an input of a
-    simulated machine. ``recordings`` contains the last minutes of samples, or is None without a recorder.
-    ``open_stop_line`` opens a connection that sends stop keys to the control without the screen. ``restart``
-    starts another control in place of one that is silent, or is None if this is not possible. ``identity``
-    returns the identity of a control process, and an empty text for a control in this process.
+    ``station_panel`` is None if the machine has its own operator station. ``set_input`` switches an input of
+    a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a recorder.
+    ``open_stop_channel`` opens a connection that sends stop keys to the control without the screen.
+    ``restart`` starts another control in place of one that is silent, or is None if this is not possible.
+    ``identity`` returns the identity of a control process, and an empty text for a control in this process.
     """
 
     post: Callable[[Command], None]
-    snapshot: Callable[[], Snapshot]
-    panel: StationPanel | None = None
+    read_snapshot: Callable[[], Snapshot]
+    station_panel: StationPanel | None = None
     set_input: Callable[[str, bool], None] | None = None
     warnings: Sequence[str] = ()
-    recordings: Recordings | None = None
-    open_stop_line: OpenLine = lambda: None
+    recordings: ScopeRecordings | None = None
+    open_stop_channel: OpenStopChannel = lambda: None
     restart: Callable[[], object] | None = None
     identity: Callable[[], str] = str
-    silence: SilenceWatch = field(default_factory=SilenceWatch)
+    silence_watch: SilenceWatch = field(default_factory=SilenceWatch)

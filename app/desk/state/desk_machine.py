@@ -13,27 +13,27 @@ if TYPE_CHECKING:
 class DeskMachine:
     """Name, axes and start buttons of the machine.
 
-    ``model`` is the machine as its machine file describes it, or None without a file. ``one_hand`` is True if
-    no real axis or spindle moves, so that the palm buttons may be pressed one after the other.
+    ``machine`` is the machine as its machine file describes it, or None without a file. ``allows_one_hand``
+    is True if no real axis or spindle moves, so that the palm buttons may be pressed one after the other.
     """
 
     name: str = ""
-    model: Machine | None = None
-    two_hand: bool = True
-    with_c: bool = True
-    one_hand: bool = False
+    machine: Machine | None = None
+    is_two_hand: bool = True
+    has_c_axis: bool = True
+    allows_one_hand: bool = False
 
     @property
     def language(self) -> str:
         """The programming language of the machine, which MDI also uses."""
-        return self.model.language if self.model is not None else "omniturn"
+        return self.machine.language if self.machine is not None else "omniturn"
 
     @property
-    def third_axis(self) -> str:
+    def third_axis_name(self) -> str:
         """The name of the third axis."""
-        return self.model.third_axis if self.model is not None else "C"
+        return self.machine.third_axis if self.machine is not None else "C"
 
     @property
-    def table_turns(self) -> bool:
+    def is_table_rotary(self) -> bool:
         """Whether the rotary axes turn the table and not the head."""
-        return self.model is None or self.model.table_turns
+        return self.machine is None or self.machine.has_rotary_table

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 
-from app.desk.pages.first_job import FirstJob
+from app.desk.pages.first_job import FirstJobCard
 from app.desk.persistence import Persistence
-from app.desk.programs.program_loading import Loaded, PartProved
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.programs.program_loading import LoadedProgram, PartProof
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.programs.run_history import PartCounter, RunHistory
 from core.executor.commands import Command
 from core.executor.snapshot import Snapshot
@@ -19,47 +19,47 @@ class ProgramRuns:
     """The part counter, the run history and the card of the first job, stored by ``persistence``."""
 
     def __init__(self, persistence: Persistence) -> None:
-        self.counter = PartCounter(persistence)
-        self.history = RunHistory(persistence)
+        self.part_counter = PartCounter(persistence)
+        self.run_history = RunHistory(persistence)
         self._persistence = persistence
-        self._first_job = FirstJob()
+        self._first_job = FirstJobCard()
         with suppress(StoreError):  # A store that cannot be read is reported elsewhere.
-            self._first_job = FirstJob.stored(persistence)
-        self._part_seen: PartProved | None = None
+            self._first_job = FirstJobCard.from_store(persistence)
+        self._part_seen: PartProof | None = None
 
     @property
-    def first_job(self) -> FirstJob:
+    def first_job_card(self) -> FirstJobCard:
         """The card of the first job."""
         return self._first_job
 
     def restart_first_job(self) -> None:
         """Start the first job again at its first step."""
-        self._first_job = FirstJob()
+        self._first_job = FirstJobCard()
 
-    def see(
+    def record_frame(
         self,
         snapshot: Snapshot,
-        loaded: Loaded,
-        post: Callable[[Command], None],
-        say: Callable[[str], None],
+        loaded: LoadedProgram,
+        post_command: Callable[[Command], None],
+        show_message: Callable[[str], None],
     ) -> None:
         """Record one frame of a program. Do not call this for MDI lines, which are not program runs."""
-        text = loaded.job.text_digest if loaded.job is not None else self.counter.text
-        self.counter.see(snapshot, post, say, text)
-        self.history.see(snapshot, loaded)
+        text = loaded.job.text_digest if loaded.job is not None else self.part_counter.text_digest
+        self.part_counter.observe(snapshot, post_command, show_message, text)
+        self.run_history.observe(snapshot, loaded)
 
-    def follow_first_job(self, snapshot: Snapshot, loaded: Loaded) -> None:
+    def update_first_job(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Advance the card of the first job, and store its step. Raises StoreError."""
-        self._first_job.see(snapshot, loaded, self.counter.count)
-        self._first_job.save(self._persistence)
+        self._first_job.advance(snapshot, loaded, self.part_counter.count)
+        self._first_job.save_step(self._persistence)
 
-    def new_caution(self, snapshot: Snapshot, loaded: Loaded) -> str:
+    def pop_part_warning(self, snapshot: Snapshot, loaded: LoadedProgram) -> str:
         """Return the first warning about a part that was proved while its program runs.
 
         Each warning is returned once; otherwise the text is empty.
         """
-        part, seen = loaded.part, self._part_seen
+        part, seen = loaded.part_proof, self._part_seen
         self._part_seen = part
-        if part is None or part is seen or not part.warned or snapshot.state not in UNDER_WAY:
+        if part is None or part is seen or not part.warning_texts or snapshot.state not in ACTIVE_STATES:
             return ""
-        return part.warned[0]
+        return part.warning_texts[0]

@@ -16,23 +16,23 @@ class StorageState:
     _recheck_file: Callable[[], None] = lambda: None
     _restoring: bool = False
 
-    def follow_store(self, problem: Callable[[], str] = str, waiting: Callable[[], str] = str) -> None:
+    def set_store_readers(self, problem: Callable[[], str] = str, waiting: Callable[[], str] = str) -> None:
         """Set the functions that report the state of a store. See ``problem`` and ``waiting``."""
         self._problem, self._waiting = problem, waiting
 
-    def follow_program(self, difference: Callable[[], str], recheck: Callable[[], None]) -> None:
+    def set_file_readers(self, difference: Callable[[], str], recheck: Callable[[], None]) -> None:
         """Set the functions of the program file monitor. See ``difference`` and ``recheck_file``."""
         self._difference, self._recheck_file = difference, recheck
 
-    def problem(self) -> str:
+    def read_problem(self) -> str:
         """Return why events, parts and versions are not saved. Empty if they are saved."""
         return self._problem()
 
-    def waiting(self) -> str:
+    def read_unsaved(self) -> str:
         """Return a text that lists the data waiting in memory to be saved. Empty if no data waits."""
         return self._waiting()
 
-    def difference(self) -> str:
+    def read_file_difference(self) -> str:
         """Return how the program file differs from the loaded program. Empty if they are equal."""
         return self._difference()
 
@@ -41,7 +41,7 @@ class StorageState:
         self._recheck_file()
 
     @property
-    def restoring(self) -> bool:
+    def is_restoring(self) -> bool:
         """Whether a backup is replacing the data."""
         return self._restoring
 

@@ -12,10 +12,10 @@ from app.desk.late_presses import LatePresses
 class WindowState:
     """State of the main window. Without a window, cycles can be started from anywhere.
 
-    ``late`` drops key presses that would start something after a stall of the screen.
+    ``late_presses`` drops key presses that would start something after a stall of the screen.
     """
 
-    late: LatePresses
+    late_presses: LatePresses
     _starts_here: bool = True
     _keyboard_away: bool = False
     _has_field: Callable[[], bool] = bool
@@ -25,37 +25,37 @@ class WindowState:
 
     # --- set by the window ---------------------------------------------------------------------------
 
-    def connect(
+    def connect_window(
         self, wake: Callable[[], None], is_stop_held: Callable[[], bool], press_age: Callable[[], float]
     ) -> None:
         """Use the functions of this window. They replace those of an earlier window."""
         self._wake, self._is_stop_held, self._press_age = wake, is_stop_held, press_age
 
-    def show_page(self, *, starts: bool, has_field: Callable[[], bool] = bool) -> None:
+    def set_page(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
         """Set the properties of the current page.
 
-        ``starts`` is whether cycles can be started there. ``has_field`` returns whether a text field accepts
-        letters.
+        ``can_start`` is whether cycles can be started there. ``has_field`` returns whether a text field
+        accepts letters.
         """
-        self._starts_here, self._has_field = starts, has_field
+        self._starts_here, self._has_field = can_start, has_field
 
-    def set_keyboard_away(self, away: bool) -> None:
+    def set_keyboard_lost(self, is_lost: bool) -> None:
         """Set whether another window has the keyboard, so that no key reaches this one."""
-        self._keyboard_away = away
+        self._keyboard_away = is_lost
 
     # --- read by the model ---------------------------------------------------------------------------
 
     @property
-    def starts_here(self) -> bool:
+    def can_start_here(self) -> bool:
         """Whether cycles can be started from the current page."""
         return self._starts_here
 
     @property
-    def keyboard_away(self) -> bool:
+    def is_keyboard_lost(self) -> bool:
         """Whether another window has the keyboard."""
         return self._keyboard_away
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether a text field of the current page accepts letters."""
         return self._has_field()
 
@@ -63,10 +63,10 @@ class WindowState:
         """Return whether a key that stops the machine is held down."""
         return self._is_stop_held()
 
-    def press_age(self) -> float:
+    def find_press_age(self) -> float:
         """Return the time in seconds since the key press that is being handled."""
         return self._press_age()
 
-    def wake(self) -> None:
+    def wake_window(self) -> None:
         """Make the window poll the machine, which has changed while at rest. Any thread may call this."""
         self._wake()

@@ -10,26 +10,28 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from app.desk.status.formats import wall_time
-from core.alarms import CATALOGUE, Code
+from app.desk.status.formats import format_wall_time
+from core.alarms import CATALOGUE, AlarmCode
 from core.executor.raised_alarm import make_alarm
-from core.executor.snapshot import Alarm, Event
+from core.executor.snapshot import Alarm, LogEvent
 from core.message import Message
 from core.store.store_rows import EventRow
 
-KEPT = 500
-KINDS = frozenset({"alarm", "estop", "stop"})  # Kinds of events that the log shows.
-_WRITTEN = re.compile(r"(\d{3}) (.*?): (.*)", re.DOTALL)
-_BY_NUMBER: dict[int, Code] = {entry.number: code for code, entry in CATALOGUE.items()}
+MAX_ENTRIES = 500
+LOGGED_KINDS = frozenset({"alarm", "estop", "stop"})  # Kinds of events that the log shows.
+_LOG_TEXT = re.compile(r"(\d{3}) (.*?): (.*)", re.DOTALL)
+_CODES_BY_NUMBER: dict[int, AlarmCode] = {entry.number: code for code, entry in CATALOGUE.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class LoggedStop:
     """One alarm or stop, with its local time of day."""
 
-    at: str
+    local_time: str
     alarm: Alarm
-    record: str = ""  # Name of the recording for ``Recorder.alarm_record``, empty without a recording.
+    recording_name: str = (
+        ""  # Name of the recording for ``Recorder.open_alarm_record``, empty without a recording.
+    )
 
 
 class AlarmLog:
@@ -40,22 +42,22 @@ class AlarmLog:
 
     def __init__(self, clock: Callable[[], str]) -> None:
         self._clock = clock
-        self._heard: deque[LoggedStop] = deque(maxlen=KEPT)
+        self._heard: deque[LoggedStop] = deque(maxlen=MAX_ENTRIES)
         self._entries: tuple[LoggedStop, ...] = ()
 
-    def hear(self, event: Event) -> None:
+    def hear(self, event: LogEvent) -> None:
         """Add the alarm of an event. Events without an alarm are ignored."""
         if event.alarm is not None:
-            self._heard.append(LoggedStop(self._clock(), event.alarm, event.record))
+            self._heard.append(LoggedStop(self._clock(), event.alarm, event.record_name))
 
-    def recall(self, rows: Iterable[EventRow]) -> None:
+    def add_stored(self, log_rows: Iterable[EventRow]) -> None:
         """Add older entries from the store, newest first, after the entries of this session."""
         kept = tuple(
-            LoggedStop(wall_time(row.at, "%H:%M:%S"), alarm, row.record)
-            for row in rows
-            if (alarm := read_back(row)) is not None
+            LoggedStop(format_wall_time(row.at, "%H:%M:%S"), alarm, row.record)
+            for row in log_rows
+            if (alarm := parse_alarm(row)) is not None
         )
-        self._entries = (*self.entries, *kept)[:KEPT]
+        self._entries = (*self.entries, *kept)[:MAX_ENTRIES]
 
     @property
     def entries(self) -> tuple[LoggedStop, ...]:
@@ -64,14 +66,14 @@ class AlarmLog:
         while self._heard:
             new.append(self._heard.popleft())
         if new:
-            self._entries = (*reversed(new), *self._entries)[:KEPT]
+            self._entries = (*reversed(new), *self._entries)[:MAX_ENTRIES]
         return self._entries
 
 
-def read_back(row: EventRow) -> Alarm | None:
+def parse_alarm(row: EventRow) -> Alarm | None:
     """Return the alarm of a log row, or None if the row contains no alarm with a known number."""
-    found = _WRITTEN.fullmatch(row.text) if row.kind in KINDS else None
-    code = _BY_NUMBER.get(int(found[1])) if found is not None else None
+    found = _LOG_TEXT.fullmatch(row.text) if row.kind in LOGGED_KINDS else None
+    code = _CODES_BY_NUMBER.get(int(found[1])) if found is not None else None
     if found is None or code is None:
         return None
     cause = row.text.values.get("cause", found[3]) if isinstance(row.text, Message) else found[3]

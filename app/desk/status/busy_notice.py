@@ -10,18 +10,18 @@ from core.message import Message
 
 
 class BusyNotice:
-    """Shows a message when feed hold reacts late. ``say`` shows a text on the prompt line.
+    """Shows a message when feed hold reacts late. ``show_message`` shows a text on the prompt line.
 
     The message appears once in each busy period, and again if the delay has doubled.
     """
 
-    def __init__(self, say: Callable[[str], None]) -> None:
-        self._say = say
+    def __init__(self, show_message: Callable[[str], None]) -> None:
+        self._say = show_message
         self._told = 0.0  # s
 
-    def see(self, snapshot: Snapshot) -> None:
+    def check_snapshot(self, snapshot: Snapshot) -> None:
         """Check a snapshot and show the message if necessary; called once a frame."""
-        later = snapshot.hold_later
+        later = snapshot.hold_delay_s
         if later == 0.0:
             self._told = 0.0
         elif self._told == 0.0 or later >= 2.0 * self._told:

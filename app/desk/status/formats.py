@@ -9,99 +9,99 @@ from core.message import Message
 
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
-MINUS = "−"  # The minus sign. A hyphen is too short to be read from a distance of 2 m.
-NOTHING = "—"
-ANGLE_PLACES = 2
+MINUS_SIGN = "−"  # The minus sign. A hyphen is too short to be read from a distance of 2 m.
+NO_VALUE = "—"
+ANGLE_DECIMALS = 2
 
 
-def fixed(value: float, places: int) -> str:
+def format_fixed(value: float, decimals: int) -> str:
     """Return a value with a fixed number of decimals.
 
     A value that rounds to zero has no sign. A value that is not finite gives a dash.
     """
     if not math.isfinite(value):
-        return NOTHING
-    digits = f"{abs(value):.{places}f}"
+        return NO_VALUE
+    digits = f"{abs(value):.{decimals}f}"
     negative = value < 0 and digits.strip("0.") != ""
-    return MINUS + digits if negative else digits
+    return MINUS_SIGN + digits if negative else digits
 
 
-def length(mm: float, metric: bool) -> str:
+def format_length(mm: float, metric: bool) -> str:
     """Return a length or coordinate in mm as text, with 5 decimals in inches or 4 in mm."""
-    return fixed(mm, 4) if metric else fixed(mm / MM_PER_INCH, 5)
+    return format_fixed(mm, 4) if metric else format_fixed(mm / MM_PER_INCH, 5)
 
 
-def angle(degrees: float) -> str:
+def format_angle(degrees: float) -> str:
     """Return the spindle angle in degrees as text. The resolution is 0.02 degrees."""
-    return fixed(degrees, ANGLE_PLACES)
+    return format_fixed(degrees, ANGLE_DECIMALS)
 
 
-def turn_unit(per_rev: bool) -> str:
+def find_rotary_feed_unit(per_rev: bool) -> str:
     """Return the unit of a feed of the C axis alone."""
     return f"°/{'rev' if per_rev else 'min'}"
 
 
-def feed_unit(metric: bool, per_rev: bool) -> str:
+def find_feed_unit(metric: bool, per_rev: bool) -> str:
     """Return the unit of a feed."""
     return f"{'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
 
 
-def feed(value: float, metric: bool, per_rev: bool) -> str:
+def format_feed(value: float, metric: bool, per_rev: bool) -> str:
     """Return a feed as text without its unit. ``value`` is in mm/s, or in mm/rev if ``per_rev``."""
     if metric:
-        return fixed(value, 4) if per_rev else fixed(value * 60, 1)
-    return fixed(value / MM_PER_INCH, 5) if per_rev else fixed(value * 60 / MM_PER_INCH, 2)
+        return format_fixed(value, 4) if per_rev else format_fixed(value * 60, 1)
+    return format_fixed(value / MM_PER_INCH, 5) if per_rev else format_fixed(value * 60 / MM_PER_INCH, 2)
 
 
-def surface_speed(mm_s: float, metric: bool) -> str:
+def format_surface_speed(mm_s: float, metric: bool) -> str:
     """Return an unsigned surface speed as text, in m/min or ft/min."""
-    return fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
+    return format_fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
 
 
 def rpm(value: float) -> str:
     """Return a spindle speed as text without a sign."""
-    return fixed(abs(value), 0)
+    return format_fixed(abs(value), 0)
 
 
-def percent(fraction: float) -> str:
+def format_percent(fraction: float) -> str:
     """Return an override fraction as a percentage."""
-    return f"{fixed(fraction * 100, 0)} %"
+    return f"{format_fixed(fraction * 100, 0)} %"
 
 
-def duration(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """Return a time as ``m:ss``, or ``h:mm:ss`` from one hour on, rounded down.
 
     An unknown or negative time gives a dash.
     """
     if not math.isfinite(seconds) or seconds < 0:
-        return NOTHING
+        return NO_VALUE
     whole = int(seconds)
     minutes, rest = divmod(whole, 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
-def file_size(size: int) -> str:
+def format_file_size(size_bytes: int) -> str:
     """Return a size in bytes as text, in a unit that gives one to three digits before the point."""
     for unit, most in (("B", 1e3), ("KB", 1e6), ("MB", 1e9)):
-        if size < most:
-            return f"{size / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
-    return Message("{size} GB", size=f"{size / 1000000000.0:.1f}")
+        if size_bytes < most:
+            return f"{size_bytes / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
+    return Message("{size} GB", size=f"{size_bytes / 1000000000.0:.1f}")
 
 
-def wall_time(at: str, today: str = "%H:%M") -> str:
+def format_wall_time(utc_time: str, today: str = "%H:%M") -> str:
     """Return a UTC time of the store as local time. A time of another day includes the date.
 
     ``today`` is the format for times of today. An invalid time is returned unchanged.
     """
     try:
-        then = datetime.fromisoformat(at).astimezone()
+        then = datetime.fromisoformat(utc_time).astimezone()
     except ValueError:
-        return at
+        return utc_time
     same = datetime.now().astimezone().date() == then.date()
     return then.strftime(today if same else "%Y-%m-%d %H:%M")
 
 
-def local_time(at: str, *, seconds: bool = True) -> str:
+def format_local_time(utc_time: str, *, seconds: bool = True) -> str:
     """Return a UTC time of the store (ISO 8601) as local date and time."""
-    return datetime.fromisoformat(at).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")
+    return datetime.fromisoformat(utc_time).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")

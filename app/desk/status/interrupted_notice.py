@@ -9,32 +9,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.desk.programs.program_loading import Loaded
-from app.desk.screen_settings import Units
+from app.desk.programs.program_loading import LoadedProgram
+from app.desk.screen_settings import DisplayUnits
 from app.desk.status import formats
 from app.desk.translation import tr
-from core.executor.snapshot import CONTROL_LOST, InterruptedJob, Snapshot, Starts, State
+from core.executor.snapshot import POWER_LOST_REASON, InterruptedJob, MachineState, Snapshot, StartAction
 from core.language.source import Dialect
 from core.message import Message
-from core.ports import Unknown
+from core.ports import UnknownPart
 
-_SAME = 0.05  # Tolerance in mm or degrees within which the position counts as unchanged.
+_POSITION_TOLERANCE = 0.05  # Tolerance in mm or degrees within which the position counts as unchanged.
 
 
 @dataclass(frozen=True, slots=True)
 class NoticeRow:
     """A notice that remains until the operator acts: a text, values below it, and keys with labels.
 
-    ``tone`` is the name of its background color.
+    ``color_name`` is the name of its background color.
     """
 
     text: str
-    figures: str = ""
+    values_text: str = ""
     keys: tuple[tuple[str, str], ...] = ()
-    tone: str = "pause"
+    color_name: str = "pause"
 
 
-def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | None:
+def make_interrupted_notice(
+    snapshot: Snapshot, loaded: LoadedProgram, units: DisplayUnits
+) -> NoticeRow | None:
     """Return the notice about the interrupted job, or None if there is no interrupted job."""
     found = snapshot.interrupted
     if found is None:
@@ -44,128 +46,138 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | N
             "INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {position}: {why}{changed}",
             program=found.program,
             line=found.line,
-            passed=_pass(found, loaded),
+            passed=_describe_pass(found, loaded),
             tool=found.tool,
             part=found.part,
-            position=formats.wall_time(found.at),
+            position=formats.format_wall_time(found.at),
             why=tr(found.why),
             changed=tr(" (PROGRAM CHANGED SINCE THEN)") if _changed(found, loaded) else "",
         )
     )
-    return NoticeRow(words, _places(found, snapshot, units) + _uncertain(found))
+    return NoticeRow(words, _describe_positions(found, snapshot, units) + _describe_uncertainty(found))
 
 
-def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
+def make_interrupted_prompt(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
     """Return the prompt for an interrupted job on the Automatic page.
 
     The prompt is empty if the loaded program was not interrupted. ``start`` is the instruction for starting a
     cycle.
     """
     line = snapshot.interrupted_line
-    if not line or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
+    if not line or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
         return ""
     if snapshot.confirmed:
         words = tr("STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL")
         return tr(Message(words, text=_first(loaded), tool=snapshot.modal.tool, start=start))
-    if not may_go_on(loaded):
+    if not can_restart(loaded):
         return tr(Message("STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER", line=line))
     words = tr("STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER")
     return tr(Message(words, line=line))
 
 
-def may_go_on(loaded: Loaded) -> bool:
+def can_restart(loaded: LoadedProgram) -> bool:
     """Return whether SEARCHTO supports the language of this program."""
     return loaded.source is None or loaded.source.dialect is Dialect.OMNITURN
 
 
-def instead(found: InterruptedJob, name: str) -> str:
+def make_replace_question(interrupted_job: InterruptedJob, name: str) -> str:
     """Return the question that is asked before a program replaces an interrupted job."""
     words = tr(
         "T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE "
         "INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB"
     )
-    return tr(Message(words, tool=found.tool, program=found.program, line=found.line, name=name))
+    return tr(
+        Message(
+            words,
+            tool=interrupted_job.tool,
+            program=interrupted_job.program,
+            line=interrupted_job.line,
+            name=name,
+        )
+    )
 
 
-def _first(loaded: Loaded) -> str:
+def _first(loaded: LoadedProgram) -> str:
     lines: Sequence[str] = loaded.source.lines if loaded.source is not None else ()
     return next((line.strip() for line in lines if line.strip()), "")
 
 
-def _changed(found: InterruptedJob, loaded: Loaded) -> bool:
+def _changed(found: InterruptedJob, loaded: LoadedProgram) -> bool:
     job = loaded.job
     return job is not None and job.source.name == found.program and job.text_digest != found.text
 
 
-def _pass(found: InterruptedJob, loaded: Loaded) -> str:
+def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
     """Return which execution of the line was interrupted, for a line that runs more than once per part."""
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:
         return ""
-    passes = picture.blocks_of_line(found.line)
+    passes = picture.find_blocks_for_line(found.line)
     now = next((n for n, (a, b) in enumerate(passes, 1) if a <= found.block <= b), 0)
     return (
         tr(Message(" REPETITION {now} OF {all}", now=now, all=len(passes))) if now and len(passes) > 1 else ""
     )
 
 
-def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
+def _describe_positions(found: InterruptedJob, snapshot: Snapshot, units: DisplayUnits) -> str:
     """Return the tool's position at the stop and now, from home, as the readout FROM HOME shows it."""
-    stood = _figures(found.axes, found.where, snapshot, units)
+    stood = _format_positions(found.axes, found.where, snapshot, units)
     if not all(snapshot.homed):
         return tr(Message("POSITION WAS {position} FROM HOME, NOW UNKNOWN UNTIL HOMED", position=stood))
     if snapshot.axes != found.axes:
         return tr(Message("POSITION WAS {position} FROM HOME", position=stood))
-    if max(abs(a - b) for a, b in zip(found.where, snapshot.actual, strict=True)) <= _SAME:
+    if max(abs(a - b) for a, b in zip(found.where, snapshot.actual, strict=True)) <= _POSITION_TOLERANCE:
         return tr(Message("POSITION UNCHANGED: {position} FROM HOME", position=stood))
-    now = _figures(snapshot.axes, snapshot.actual, snapshot, units)
+    now = _format_positions(snapshot.axes, snapshot.actual, snapshot, units)
     return tr(Message("POSITION WAS {position}, IS NOW {now} FROM HOME", position=stood, now=now))
 
 
-def _uncertain(found: InterruptedJob) -> str:
+def _describe_uncertainty(found: InterruptedJob) -> str:
     """Return a warning about the last second before the control was lost. Empty for other causes.
 
     The job's state is written once a second.
     """
-    if found.why != CONTROL_LOST:
+    if found.why != POWER_LOST_REASON:
         return ""
     return tr(
         ". THE LAST SECOND BEFORE THE STOP WAS NOT RECORDED. CUT MAY BE INCOMPLETE. CHECK TOOL AND PART"
     )
 
 
-def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:
+def _format_positions(
+    axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: DisplayUnits
+) -> str:
     """Return the positions of the linear axes as text. The position of C is omitted."""
-    metric, twice = units.metric(snapshot.modal.metric), snapshot.reads_diameter
+    metric, twice = units.metric(snapshot.modal.metric), snapshot.shows_diameter
     found = [
         Message(
             "{name} {ending}{position}",
             name=name,
             ending="Ø" if twice else "R",
-            position=formats.length(2 * at if twice else at, metric),
+            position=formats.format_length(2 * at if twice else at, metric),
         )
         if name == "X" and "Y" not in axes
-        else Message("{name} {position}", name=name, position=formats.length(at, metric))
+        else Message("{name} {position}", name=name, position=formats.format_length(at, metric))
         for name, at in zip(axes, where, strict=False)
         if name in "XYZ"
     ]
     return " ".join(found)
 
 
-def unheard_notice(snapshot: Snapshot) -> NoticeRow | None:
+def make_unknown_notice(snapshot: Snapshot) -> NoticeRow | None:
     """Return the notice about unknown values of a snapshot, or None if all values are known."""
     unknown = snapshot.unknown
     if not unknown:
         return None
     named = {
-        Unknown.SLIDES: tr("POSITIONS"),
-        Unknown.SPINDLE: tr("SPINDLE"),
-        Unknown.OUTPUTS: tr("OUTPUTS"),
-        Unknown.INPUTS: tr("INPUTS"),
+        UnknownPart.AXES: tr("POSITIONS"),
+        UnknownPart.SPINDLE: tr("SPINDLE"),
+        UnknownPart.OUTPUTS: tr("OUTPUTS"),
+        UnknownPart.INPUTS: tr("INPUTS"),
     }
     what = ", ".join(words for which, words in named.items() if which in unknown)
     head = tr(Message("{what} UNKNOWN: NO RESPONSE FROM THE MACHINE", what=what))
-    if Unknown.SPINDLE in unknown:
+    if UnknownPart.SPINDLE in unknown:
         head = tr("SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP")
     below = tr(Message("UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN", what=what))
-    return NoticeRow(head, below, tone="alarm")
+    return NoticeRow(head, below, color_name="alarm")

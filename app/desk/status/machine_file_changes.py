@@ -6,20 +6,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from app.desk.translation import tr
-from core.machine.machine_file import Change
+from core.machine.machine_file import KeyChange
 from core.message import Message
 
 
 @dataclass(slots=True)
-class FileChanges:
+class MachineFileChanges:
     """The changes of the machine file, empty if the file is as accepted.
 
-    ``source`` is the file's path. ``keep`` stores the present file as accepted.
+    ``file_path`` is the file's path. ``save_acceptance`` stores the present file as accepted.
     """
 
-    source: str = ""
-    changes: Sequence[Change] = field(default_factory=tuple)
-    keep: Callable[[], None] = field(default=lambda: None)
+    file_path: str = ""
+    changes: Sequence[KeyChange] = field(default_factory=tuple)
+    save_acceptance: Callable[[], None] = field(default=lambda: None)
 
     @property
     def barred(self) -> str:
@@ -29,7 +29,7 @@ class FileChanges:
         text = tr("MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT")
         return tr(Message(text, count=len(self.changes)))
 
-    def accept(self) -> None:
+    def accept_changes(self) -> None:
         """Accept the changes after the operator has read them."""
-        self.keep()
+        self.save_acceptance()
         self.changes = ()

@@ -9,28 +9,28 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.desk.screen_settings import Units
+from app.desk.screen_settings import DisplayUnits
 from app.desk.status import formats
 from app.desk.status.readouts import (
-    FeedFigures,
+    FeedReadout,
     Lamp,
-    PositionFigures,
-    Readout,
-    SpindleFigures,
-    feed_figures,
-    lamps_of,
-    modes_of,
-    position_figures,
-    spindle_figures,
+    PositionReadout,
+    ReadoutKind,
+    SpindleReadout,
+    make_feed_readout,
+    make_lamps,
+    make_mode_lamps,
+    make_position_readout,
+    make_spindle_readout,
 )
 from app.desk.translation import tr
 from core.alarms import CATALOGUE, Reaction
-from core.executor.snapshot import Alarm, Snapshot, State
-from core.interpreter.shared.modal_state import Modal
+from core.executor.snapshot import Alarm, MachineState, Snapshot
+from core.interpreter.shared.modal_state import ModalState
 from core.message import Message, join_messages
-from core.tool_edges import edge_name, tool_of
+from core.tool_edges import format_edge_name, get_tool_number
 
-_ENDS = {
+_WAIT_PROMPTS = {
     "AT SPEED": "SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY",
     "DWELL": "PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY",
     "COLLET": "COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY",
@@ -42,13 +42,13 @@ _ENDS = {
     "FEED HOLD BEHIND THE TAP": "THE TAP BACKS OUT OF THE HOLE FIRST. E-STOP: STOP AT ONCE",
     "GUARD OPEN": "THE GUARD IS OPEN: CLOSE IT",
 }
-GIVES_UP = "PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM"
+CANCEL_HINT = "PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM"
 
 
-def waits_for(snapshot: Snapshot) -> str:
+def describe_wait(snapshot: Snapshot) -> str:
     """Return the text of the title for a wait: its cause, and for an input the expected state."""
     name = snapshot.waiting_for
-    if not name or name in _ENDS:
+    if not name or name in _WAIT_PROMPTS:
         return name
     if _is_input(snapshot):
         state = tr("OFF") if name in snapshot.inputs else tr("ON")
@@ -56,22 +56,22 @@ def waits_for(snapshot: Snapshot) -> str:
     return name
 
 
-def how_it_ends(snapshot: Snapshot, simulated: bool = False) -> str:
+def make_wait_prompt(snapshot: Snapshot, is_simulated: bool = False) -> str:
     """Return the prompt for a wait, or an empty text if the wait is unknown.
 
-    ``simulated`` is True if the inputs can be switched on the screen.
+    ``is_simulated`` is True if the inputs can be switched on the screen.
     """
     name = snapshot.waiting_for
     if not name:
         return ""
-    if name in _ENDS:
-        return join_messages("  ·  ", (tr(_ENDS[name]), tr(GIVES_UP)))
+    if name in _WAIT_PROMPTS:
+        return join_messages("  ·  ", (tr(_WAIT_PROMPTS[name]), tr(CANCEL_HINT)))
     if not _is_input(snapshot):
         return ""
-    words = tr(Message("PROGRAM WAITING FOR {what}", what=waits_for(snapshot)))
-    if simulated:
+    words = tr(Message("PROGRAM WAITING FOR {what}", what=describe_wait(snapshot)))
+    if is_simulated:
         words += "  ·  " + tr("F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS")
-    return join_messages("  ·  ", (words, tr(GIVES_UP)))
+    return join_messages("  ·  ", (words, tr(CANCEL_HINT)))
 
 
 def _is_input(snapshot: Snapshot) -> bool:
@@ -94,20 +94,20 @@ class Tone(StrEnum):
     ALARM = "alarm"
 
 
-NOT_HOMED = "NOT HOMED"
-TONES = {
-    State.ESTOP: Tone.ALARM,
-    State.DISABLED: Tone.OFF,
-    State.IDLE: Tone.READY,
-    State.RUN: Tone.RUN,
-    State.HOLDING: Tone.PAUSE,
-    State.HOLD: Tone.PAUSE,
-    State.BLOCK_END: Tone.PAUSE,
-    State.PROGRAM_STOP: Tone.PAUSE,
-    State.WAIT: Tone.WAIT,
-    State.JOG: Tone.RUN,
-    State.HOME: Tone.RUN,
-    State.FAULT: Tone.ALARM,
+NOT_HOMED_TITLE = "NOT HOMED"
+STATE_TONES = {
+    MachineState.ESTOP: Tone.ALARM,
+    MachineState.DISABLED: Tone.OFF,
+    MachineState.IDLE: Tone.READY,
+    MachineState.RUN: Tone.RUN,
+    MachineState.HOLDING: Tone.PAUSE,
+    MachineState.HOLD: Tone.PAUSE,
+    MachineState.BLOCK_END: Tone.PAUSE,
+    MachineState.PROGRAM_STOP: Tone.PAUSE,
+    MachineState.WAIT: Tone.WAIT,
+    MachineState.JOG: Tone.RUN,
+    MachineState.HOME: Tone.RUN,
+    MachineState.FAULT: Tone.ALARM,
 }
 
 
@@ -115,83 +115,85 @@ TONES = {
 class MachineStatus:
     """All values on the page that come from the machine, as text."""
 
-    program: str
-    state: str
+    program_name: str
+    state_text: str
     tone: Tone
-    position: PositionFigures
-    tool: str
-    secondary: str
-    feed: FeedFigures
-    spindle: SpindleFigures
+    position: PositionReadout
+    tool_text: str
+    secondary_text: str
+    feed: FeedReadout
+    spindle: SpindleReadout
     modes: tuple[Lamp, ...]
     lamps: tuple[Lamp, ...]
-    cycle: str
-    last_cycle: str
-    line: int
+    cycle_time: str
+    last_cycle_time: str
+    line_number: int
     block_text: str
-    next_text: str
+    next_block_text: str
     comment: str
     message: str
     alarms: tuple[Alarm, ...]  # Active alarms, oldest first, because later ones may follow from the first.
-    stop: Alarm | None  # Cause of a stop without an alarm, unless the operator requested the stop.
+    stop_cause: Alarm | None  # Cause of a stop without an alarm, unless the operator requested the stop.
 
 
-def _in_work(modal: Modal) -> str:
+def _find_tool_text(modal: ModalState) -> str:
     """Return the name of the tool in use, or the preset on a mill with presets."""
     preset = modal.settable and modal.edge is None
-    return f"G{modal.settable}" if preset else edge_name(tool_of(modal.tool))
+    return f"G{modal.settable}" if preset else format_edge_name(get_tool_number(modal.tool))
 
 
-def _second(modal: Modal) -> str:
+def _find_secondary_offset(modal: ModalState) -> str:
     """Return the text that follows T: the secondary offset, or the cutting edge and zero offset."""
     if modal.edge is not None:
         return f"D{modal.edge} G{modal.settable}" if modal.settable else f"D{modal.edge}"
     return "" if modal.settable else f"D{modal.secondary}"
 
 
-def status_of(
+def make_status(
     snapshot: Snapshot,
-    readout: Readout,
-    with_c: bool,
-    units: Units = Units.PROGRAM,
+    readout: ReadoutKind,
+    has_c_axis: bool,
+    units: DisplayUnits = DisplayUnits.PROGRAM,
     language: str = "omniturn",
     third_axis: str = "C",
-    table: bool = True,
+    is_table_rotary: bool = True,
 ) -> MachineStatus:
     """Return the texts and values of a snapshot for the operator.
 
-    ``with_c`` is True if the machine has a C axis. ``language`` is the machine's programming language.
-    ``third_axis`` is the name of the C axis. ``table`` is True if a rotary table, and not only the head,
-    turns on a mill. All values are in one unit, which follows from ``units`` and the snapshot.
+    ``has_c_axis`` is True if the machine has a C axis. ``language`` is the machine's programming language.
+    ``third_axis`` is the name of the C axis. ``is_table_rotary`` is True if a rotary table, and not only the
+    head, turns on a mill. All values are in one unit, which follows from ``units`` and the snapshot.
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
-    stop = unasked(snapshot)
-    state = _state(snapshot, stop)
+    stop = find_unrequested_stop(snapshot)
+    state = _find_state_text(snapshot, stop)
     return MachineStatus(
-        program=snapshot.program,
-        state=state,
-        tone=Tone.OFF if state == NOT_HOMED else TONES[snapshot.state],
-        position=position_figures(snapshot, readout, with_c, metric, third_axis),
-        tool=_in_work(modal),
-        secondary="" if "Y" in snapshot.axes else _second(modal),
-        feed=feed_figures(snapshot, metric),
-        spindle=spindle_figures(snapshot, metric, language),
-        modes=modes_of(snapshot),
-        lamps=lamps_of(snapshot, table=table),
-        cycle=formats.duration(snapshot.cycle_elapsed),
-        last_cycle=formats.duration(snapshot.last_cycle) if snapshot.last_cycle else formats.NOTHING,
-        line=snapshot.line,
+        program_name=snapshot.program,
+        state_text=state,
+        tone=Tone.OFF if state == NOT_HOMED_TITLE else STATE_TONES[snapshot.state],
+        position=make_position_readout(snapshot, readout, has_c_axis, metric, third_axis),
+        tool_text=_find_tool_text(modal),
+        secondary_text="" if "Y" in snapshot.axes else _find_secondary_offset(modal),
+        feed=make_feed_readout(snapshot, metric),
+        spindle=make_spindle_readout(snapshot, metric, language),
+        modes=make_mode_lamps(snapshot),
+        lamps=make_lamps(snapshot, is_table_rotary=is_table_rotary),
+        cycle_time=formats.format_duration(snapshot.cycle_elapsed),
+        last_cycle_time=formats.format_duration(snapshot.last_cycle)
+        if snapshot.last_cycle
+        else formats.NO_VALUE,
+        line_number=snapshot.line,
         block_text=snapshot.block_text,
-        next_text=snapshot.next_text,
+        next_block_text=snapshot.next_text,
         comment=snapshot.comment,
         message=_message(snapshot),
         alarms=snapshot.alarms,
-        stop=stop,
+        stop_cause=stop,
     )
 
 
-def unasked(snapshot: Snapshot) -> Alarm | None:
+def find_unrequested_stop(snapshot: Snapshot) -> Alarm | None:
     """Return the cause of an E-stop or of a feed hold that the operator did not request, or None."""
     stop = snapshot.stop
     if stop is None or (stop.code != "estop" and CATALOGUE[stop.code].reaction is not Reaction.HOLD):
@@ -199,30 +201,30 @@ def unasked(snapshot: Snapshot) -> Alarm | None:
     return stop
 
 
-def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
+def _find_state_text(snapshot: Snapshot, stop: Alarm | None) -> str:
     """Return the state as text. An alarm or a feed hold includes its number."""
-    if snapshot.state is State.WAIT and snapshot.waiting_for:
-        return tr(Message("WAITING: {what}", what=waits_for(snapshot)))
-    if snapshot.state is State.RUN and snapshot.waiting_for:
-        return waits_for(snapshot)
-    if snapshot.state is State.FAULT and snapshot.alarms:
+    if snapshot.state is MachineState.WAIT and snapshot.waiting_for:
+        return tr(Message("WAITING: {what}", what=describe_wait(snapshot)))
+    if snapshot.state is MachineState.RUN and snapshot.waiting_for:
+        return describe_wait(snapshot)
+    if snapshot.state is MachineState.FAULT and snapshot.alarms:
         return Message(
             "ALARM {number}: {alarms}", number=snapshot.alarms[0].number, alarms=snapshot.alarms[0].text
         )
-    if snapshot.state is State.HOLD and stop is not None:
+    if snapshot.state is MachineState.HOLD and stop is not None:
         return Message("FEED HOLD {number}: {stop}", number=stop.number, stop=stop.text)
-    if snapshot.state is State.IDLE and not_homed(snapshot):
-        return NOT_HOMED
+    if snapshot.state is MachineState.IDLE and needs_homing(snapshot):
+        return NOT_HOMED_TITLE
     return snapshot.state.value
 
 
-def not_homed(snapshot: Snapshot) -> bool:
+def needs_homing(snapshot: Snapshot) -> bool:
     """Return whether an axis is not homed, so that no cycle can start."""
     return not all(snapshot.homed)
 
 
 def _message(snapshot: Snapshot) -> str:
-    if snapshot.state is not State.PROGRAM_STOP:
+    if snapshot.state is not MachineState.PROGRAM_STOP:
         return ""
     return snapshot.message or "PROGRAM STOP"
 
@@ -230,7 +232,7 @@ def _message(snapshot: Snapshot) -> str:
 # --- whether the control is silent --------------------------------------------------------------------
 
 
-SILENT_AFTER = 1.0  # Seconds without a new snapshot. The executor makes a snapshot every 10 ms.
+SILENCE_TIMEOUT_S = 1.0  # Seconds without a new snapshot. The executor makes a snapshot every 10 ms.
 
 
 @dataclass(slots=True)
@@ -241,9 +243,9 @@ class SilenceWatch:
     _stamp: float | None = None
     _since: float = 0.0
 
-    def silent(self, stamp: float, now: float) -> bool:
-        """Return whether the time stamp ``stamp`` has not changed for more than 1 s."""
-        if stamp != self._stamp:
-            self._stamp, self._since = stamp, now
-        self.is_silent = now - self._since > SILENT_AFTER
+    def check_silence(self, time_stamp: float, time_s: float) -> bool:
+        """Return whether the time stamp ``time_stamp`` has not changed for more than 1 s."""
+        if time_stamp != self._stamp:
+            self._stamp, self._since = time_stamp, time_s
+        self.is_silent = time_s - self._since > SILENCE_TIMEOUT_S
         return self.is_silent

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.desk.status import formats
-from app.desk.translation import data, tr
+from app.desk.translation import mark_untranslated, tr
 from core.interpreter.shared.checkpoint import Checkpoint
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
-NONE = formats.NOTHING
+NO_CODE = formats.NO_VALUE
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,24 +23,26 @@ class ModalRow:
     value: str
 
 
-def rows_of(point: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
+def make_modal_rows(modal_state: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
     """Return the rows of the machine's language, always in the same order."""
-    modal = point.modal
+    modal = modal_state.modal
     if language != "omniturn":
-        return _rows_in(point, language)
+        return _make_rows(modal_state, language)
     return (
         *_geometry(modal),
-        *_feeds(point),
+        *_feeds(modal_state),
         *_spindle(modal),
         ModalRow(
-            "c", tr("C AXIS"), f"{tr('LOCKED')} {formats.angle(point.c)}" if modal.c_locked else tr("FREE")
+            "c",
+            tr("C AXIS"),
+            f"{tr('LOCKED')} {formats.format_angle(modal_state.c)}" if modal.c_locked else tr("FREE"),
         ),
         *_frame(modal),
         *_functions(modal),
     )
 
 
-_GROUPS = {
+_MODAL_GROUPS = {
     "klartext": (
         *("tool", "length", "speed", "spindle", "feed", "preset", "datum", "plane", "transform", "tcpm"),
         *("coolant", "outputs"),
@@ -52,19 +54,19 @@ _GROUPS = {
 }
 
 
-def _rows_in(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
+def _make_rows(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
     """Return the rows of Klartext or SINUMERIK from the modal state that the last pass saved.
 
     Without a saved state, the rows show the state at the end of a program.
     """
-    told = dict(point.kept.lines) if point.kept is not None else {}
-    begun = _AT_RESET | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}
+    told = dict(point.kept.state_lines) if point.kept is not None else {}
+    begun = _RESET_CODES | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}
     values = _left_by_program(point.modal) | begun | told
     labels = _labels()
-    return tuple(ModalRow(key, labels[key], values.get(key) or NONE) for key in _GROUPS[language])
+    return tuple(ModalRow(key, labels[key], values.get(key) or NO_CODE) for key in _MODAL_GROUPS[language])
 
 
-_AT_RESET = {
+_RESET_CODES = {
     "motion": "G1",
     "units": "G71 MM",
     "x words": "DIAMON Ø",
@@ -74,15 +76,15 @@ _AT_RESET = {
 """What SINUMERIK has in force before the first block, and behind the end of a program."""
 
 
-def _left_by_program(modal: Modal) -> dict[str, str]:
+def _left_by_program(modal: ModalState) -> dict[str, str]:
     return {
-        "tool": edge_name(modal.tool) if modal.tool else "",
+        "tool": format_edge_name(modal.tool) if modal.tool else "",
         "speed": f"S{modal.rpm:g}" if modal.rpm else "",
         "spindle": {1: "M3", 0: "M5", -1: "M4"}[modal.spindle],
         "coolant": "M8" if modal.coolant else "M9",
         "settable": "G500",
         "tcpm": "M129",
-        "outputs": data(" ".join(sorted(name.upper() for name in modal.outputs))),
+        "outputs": mark_untranslated(" ".join(sorted(name.upper() for name in modal.outputs))),
     }
 
 
@@ -110,26 +112,30 @@ def _labels() -> dict[str, str]:
     }
 
 
-def _geometry(modal: Modal) -> tuple[ModalRow, ...]:
-    distance = NONE if modal.absolute is None else "G90" if modal.absolute else "G91"
+def _geometry(modal: ModalState) -> tuple[ModalRow, ...]:
+    distance = NO_CODE if modal.absolute is None else "G90" if modal.absolute else "G91"
     coarse = {0: "G36", 1: "G35", 2: "G35F2"}[modal.coarse]
     return (
         ModalRow("units", tr("UNITS"), "G71 MM" if modal.metric else tr("G70 INCH")),
         ModalRow("x words", tr("X VALUES"), "G72 Ø" if modal.diameter else "G73 R"),
         ModalRow("distance", tr("DISTANCE"), distance),
-        ModalRow("nose", tr("NOSE COMP"), f"G{modal.nose_comp}"),
+        ModalRow("nose", tr("NOSE COMP"), f"G{modal.compensation_code}"),
         ModalRow("coarse", tr("COARSE FEED"), coarse),
     )
 
 
 def _feeds(point: Checkpoint) -> tuple[ModalRow, ...]:
     modal = point.modal
-    first = formats.feed(point.first_feed, modal.metric, False) if point.first_feed else NONE
+    first = formats.format_feed(point.first_feed, modal.metric, False) if point.first_feed else NO_CODE
     return (
         ModalRow("feed mode", tr("FEED MODE"), "G95" if modal.per_rev else "G94"),
         ModalRow("feed", tr("FEED"), _feed(modal.feed, modal.metric, modal.per_rev)),
         ModalRow("rapid", tr("RAPID"), "G00" if modal.rapid else tr("OFF")),
-        ModalRow("cut feed", tr("G01 FEED"), _feed(modal.cut_feed, modal.metric, modal.cut_per_rev)),
+        ModalRow(
+            "cut feed",
+            tr("G01 FEED"),
+            _feed(modal.last_cutting_feed, modal.metric, modal.is_cutting_feed_per_rev),
+        ),
         ModalRow("rapid rate", tr("RAPID RATE"), _feed(modal.rapid_rate, modal.metric, False)),
         ModalRow("first feed", tr("RAPID (FIRST F)"), first),
     )
@@ -137,36 +143,36 @@ def _feeds(point: Checkpoint) -> tuple[ModalRow, ...]:
 
 def _feed(value: float | None, metric: bool, per_rev: bool) -> str:
     if value is None:
-        return NONE
+        return NO_CODE
     return Message(
         "{metric} {metric2}",
-        metric=formats.feed(value, metric, per_rev),
-        metric2=formats.feed_unit(metric, per_rev),
+        metric=formats.format_feed(value, metric, per_rev),
+        metric2=formats.find_feed_unit(metric, per_rev),
     )
 
 
-def _spindle(modal: Modal) -> tuple[ModalRow, ...]:
+def _spindle(modal: ModalState) -> tuple[ModalRow, ...]:
     run = {1: "M03", -1: "M04", 0: "M05"}[modal.spindle]
-    surface = formats.surface_speed(modal.surface_speed, modal.metric)
+    surface = formats.format_surface_speed(modal.surface_speed, modal.metric)
     unit = "M/MIN" if modal.metric else "SFM"
     speed = (
         Message("G96 {surface} {unit}", surface=surface, unit=unit)
         if modal.css
         else Message("G97 {rpm} RPM", rpm=formats.rpm(modal.rpm))
     )
-    least, most = modal.css_min, modal.css_max
-    limits = f"{formats.rpm(least)} … {formats.rpm(most) if most is not None else NONE}"
+    least, most = modal.min_css_rpm, modal.max_css_rpm
+    limits = f"{formats.rpm(least)} … {formats.rpm(most) if most is not None else NO_CODE}"
     return (
         ModalRow("spindle", tr("SPINDLE"), run),
         ModalRow("speed", tr("SPEED"), speed),
-        ModalRow("clamps", tr("G76 … G77"), limits if least or most is not None else NONE),
+        ModalRow("clamps", tr("G76 … G77"), limits if least or most is not None else NO_CODE),
     )
 
 
-def _frame(modal: Modal) -> tuple[ModalRow, ...]:
-    pair = _pair
+def _frame(modal: ModalState) -> tuple[ModalRow, ...]:
+    pair = _format_pair
     return (
-        ModalRow("tool", tr("TOOL"), edge_name(modal.tool)),
+        ModalRow("tool", tr("TOOL"), format_edge_name(modal.tool)),
         ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
         ModalRow("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
         ModalRow("shift", tr("G10 ACTIVE"), pair(modal, modal.shift_x, modal.shift_z)),
@@ -175,22 +181,22 @@ def _frame(modal: Modal) -> tuple[ModalRow, ...]:
     )
 
 
-def _d(modal: Modal) -> str:
-    return _pair(modal, modal.secondary_x, modal.secondary_z) if modal.secondary else ""
+def _d(modal: ModalState) -> str:
+    return _format_pair(modal, modal.secondary_x, modal.secondary_z) if modal.secondary else ""
 
 
-def _pair(modal: Modal, x: float, z: float) -> str:
+def _format_pair(modal: ModalState, x: float, z: float) -> str:
     """Return X and Z as text. X has the mark R because offsets are stored as a radius."""
     if not x and not z:
         return "0"
-    return f"R{formats.length(x, modal.metric)} Z{formats.length(z, modal.metric)}"
+    return f"R{formats.format_length(x, modal.metric)} Z{formats.format_length(z, modal.metric)}"
 
 
-def _functions(modal: Modal) -> tuple[ModalRow, ...]:
-    outputs = data(" ".join(sorted(name.upper() for name in modal.outputs))) or NONE
+def _functions(modal: ModalState) -> tuple[ModalRow, ...]:
+    outputs = mark_untranslated(" ".join(sorted(name.upper() for name in modal.outputs))) or NO_CODE
     return (
         ModalRow("coolant", tr("COOLANT"), "M08" if modal.coolant else "M09"),
         ModalRow("collet", tr("COLLET"), "M12" if modal.collet_closed else "M13"),
         ModalRow("outputs", tr("M FUNCTIONS"), outputs),
-        ModalRow("comment", tr("COMMENT"), data(modal.comment.strip()) or NONE),
+        ModalRow("comment", tr("COMMENT"), mark_untranslated(modal.comment.strip()) or NO_CODE),
     )

@@ -11,80 +11,84 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from app.desk.status import interrupted_notice
 from app.desk.status.machine_status import MachineStatus
-from app.desk.translation import data, tr
-from core.alarms import CATALOGUE, Code
-from core.executor.job import WARNING
-from core.executor.snapshot import Alarm, Event, Snapshot, State
+from app.desk.translation import mark_untranslated, tr
+from core.alarms import CATALOGUE, AlarmCode
+from core.executor.job import WARNING_PREFIX
+from core.executor.snapshot import Alarm, LogEvent, MachineState, Snapshot
 from core.language.diagnostics import Severity
 from core.message import Message
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 # Stops with a message of the program.
-OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})
-NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
+PROGRAM_STOP_CODES: frozenset[AlarmCode] = frozenset({"program-stop", "optional-stop"})
+FILE_NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
 CHOOSE_FILE = "TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE"
-NONE_NAMED = "TO EDIT, FIRST TYPE A NAME OR SELECT ONE WITH THE ARROWS"
-ONE_PALM = "ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S"
-ONE_HAND = "PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE-HAND MODE: F10, 7"
+NO_NAME_TYPED = "TO EDIT, FIRST TYPE A NAME OR SELECT ONE WITH THE ARROWS"
+ONE_PALM_PRESSED = "ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S"
+ONE_HAND_HINT = "PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE-HAND MODE: F10, 7"
 STOP_HELD = "RELEASE THE STOP KEY FIRST"
-BOTH_UP = "RELEASE BOTH PALM BUTTONS, THEN PRESS BOTH WITHIN 0.5 S"
+RELEASE_BOTH_PALMS = "RELEASE BOTH PALM BUTTONS, THEN PRESS BOTH WITHIN 0.5 S"
 CONTROL_SILENT = "CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE"
 RESTART_CONTROL = "CONTROL NOT RESPONDING. PRESS E-STOP, THEN R TO RESTART IT"
-NOT_HERE = "START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
-RESTORING = "CANNOT START: A BACKUP IS BEING RESTORED"
-STALE = "CANNOT START: THE PROGRAM IS BEING RELOADED"
-NO_START = "WILL NOT START"  # Beginning of a prompt for a program that will not start.
-GIVE_UP = "PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT"
-TWIST_OUT = "PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED"
-NO_MUSHROOM = "PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
-HOW_TO_HOLD = "FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)"
-KEYBOARD_AWAY = "STOP KEYS DO NOT WORK. TAP THIS WINDOW OR USE THE BUTTONS"
-MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
-INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
-UNDER_WAY = MOVING | INTERRUPTED
+START_ON_AUTOMATIC = "START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
+RESTORE_IN_PROGRESS = "CANNOT START: A BACKUP IS BEING RESTORED"
+RELOAD_IN_PROGRESS = "CANNOT START: THE PROGRAM IS BEING RELOADED"
+WILL_NOT_START = "WILL NOT START"  # Beginning of a prompt for a program that will not start.
+CONFIRM_CANCEL = "PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT"
+CONFIRM_ESTOP_RELEASE = "PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED"
+NO_ESTOP_BUTTON = "PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
+HOLD_HINT = "FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)"
+STOP_KEYS_INACTIVE = "STOP KEYS DO NOT WORK. TAP THIS WINDOW OR USE THE BUTTONS"
+MOVING_STATES = frozenset(
+    {MachineState.RUN, MachineState.HOLDING, MachineState.WAIT, MachineState.JOG, MachineState.HOME}
+)
+INTERRUPTED_STATES = frozenset({MachineState.HOLD, MachineState.BLOCK_END, MachineState.PROGRAM_STOP})
+ACTIVE_STATES = MOVING_STATES | INTERRUPTED_STATES
 
 
-def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, field_open: bool = False) -> str:
+def make_prompt(
+    snapshot: Snapshot, loaded: LoadedProgram, start: str, release: str, *, is_field_open: bool = False
+) -> str:
     """Return the prompt for the present state.
 
     ``start`` and ``release`` are the instructions for starting a cycle and for releasing the E-stop.
-    ``field_open`` is True if letters are text input.
+    ``is_field_open`` is True if letters are text input.
     """
     go_on = Message("TO CONTINUE: {start}. R: CANCEL THE PROGRAM", start=start)
     standing = {
-        State.ESTOP: _estop(release),
-        State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
-        State.FAULT: alarm_of(snapshot, release, field_open=field_open),
-        State.RUN: HOW_TO_HOLD,
-        State.JOG: HOW_TO_HOLD,
-        State.WAIT: HOW_TO_HOLD,
-        State.HOLDING: "STOPPING",
-        State.HOLD: go_on,
-        State.BLOCK_END: go_on,
-        State.PROGRAM_STOP: go_on,
-        State.HOME: "HOMING THE AXES",
+        MachineState.ESTOP: _estop(release),
+        MachineState.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
+        MachineState.FAULT: make_alarm_prompt(snapshot, release, is_field_open=is_field_open),
+        MachineState.RUN: HOLD_HINT,
+        MachineState.JOG: HOLD_HINT,
+        MachineState.WAIT: HOLD_HINT,
+        MachineState.HOLDING: "STOPPING",
+        MachineState.HOLD: go_on,
+        MachineState.BLOCK_END: go_on,
+        MachineState.PROGRAM_STOP: go_on,
+        MachineState.HOME: "HOMING THE AXES",
     }
     return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
 
 
-def announced(snapshot: Snapshot, *, starts_here: bool = True) -> tuple[str, ...]:
+def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tuple[str, ...]:
     """Return the texts about the next start, which precede all other prompts.
 
     Warnings of the proof are included only where a cycle can be started.
     """
-    return tuple(text for text in snapshot.announced if starts_here or not text.startswith(WARNING))
+    return tuple(text for text in snapshot.announced if can_start_here or not text.startswith(WARNING_PREFIX))
 
 
-def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> str:
+def make_alarm_prompt(snapshot: Snapshot, release: str, *, is_field_open: bool = False) -> str:
     """Return the prompt for an alarm or an E-stop, which replaces a page's prompt. Empty without either."""
-    if snapshot.state is State.FAULT:
+    if snapshot.state is MachineState.FAULT:
         if not snapshot.alarms:
             return "ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE"
-        if field_open:
+        if is_field_open:
             return Message(
                 "WHAT TO DO: {remedy}  ·  F1: LEAVE THE PAGE, THEN R: ACKNOWLEDGE",
                 remedy=snapshot.alarms[0].remedy,
@@ -92,58 +96,58 @@ def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> s
         return Message(
             "WHAT TO DO: {remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST", remedy=snapshot.alarms[0].remedy
         )
-    return _estop(release) if snapshot.state is State.ESTOP else ""
+    return _estop(release) if snapshot.state is MachineState.ESTOP else ""
 
 
 def _estop(release: str) -> str:
     return Message("E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON", release=release)
 
 
-def reason(view: MachineStatus) -> str:
+def reason(status: MachineStatus) -> str:
     """Return the text below the prompt: the cause of a stop, and for a feed hold also the remedy."""
-    if view.alarms:
-        return Message("CAUSE: {stop}", stop=exactly(view.alarms[0]))
-    if view.stop is None:
+    if status.alarms:
+        return Message("CAUSE: {stop}", stop=describe_cause(status.alarms[0]))
+    if status.stop_cause is None:
         return ""
-    cause = Message("CAUSE: {stop}", stop=exactly(view.stop))
+    cause = Message("CAUSE: {stop}", stop=describe_cause(status.stop_cause))
     return (
         cause
-        if view.stop.code == "estop"
-        else Message("{cause}  ·  WHAT TO DO: {remedy}", cause=cause, remedy=view.stop.remedy)
+        if status.stop_cause.code == "estop"
+        else Message("{cause}  ·  WHAT TO DO: {remedy}", cause=cause, remedy=status.stop_cause.remedy)
     )
 
 
-def exactly(alarm: Alarm) -> str:
+def describe_cause(alarm: Alarm) -> str:
     """Return the cause of an alarm, followed by the most likely cause in the catalog if it differs."""
     likely = alarm.causes[0] if alarm.causes else ""
-    cause = cause_of(alarm)
+    cause = translate_cause(alarm)
     return (
         cause if likely in {"", alarm.cause} else Message("{cause}; {likely}", cause=cause, likely=tr(likely))
     )
 
 
-def cause_of(alarm: Alarm) -> str:
+def translate_cause(alarm: Alarm) -> str:
     """Return the translated cause of an alarm. A program's own message at M00 or M01 is not translated."""
-    of_program = alarm.code in OF_PROGRAM and alarm.cause not in CATALOGUE[alarm.code].causes
-    return data(alarm.cause) if of_program else tr(alarm.cause)
+    of_program = alarm.code in PROGRAM_STOP_CODES and alarm.cause not in CATALOGUE[alarm.code].causes
+    return mark_untranslated(alarm.cause) if of_program else tr(alarm.cause)
 
 
-def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
-    if loaded.busy:
+def _idle(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
+    if loaded.is_busy:
         return _progress(loaded)
-    asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
-    return lacking(snapshot, loaded) or asked or Message("TO START: {start}", start=start)
+    asked = interrupted_notice.make_interrupted_prompt(snapshot, loaded, start)
+    return find_start_obstacle(snapshot, loaded) or asked or Message("TO START: {start}", start=start)
 
 
-def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
+def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
     """Return why the loaded program cannot start now. Empty if nothing is missing."""
-    if loaded.phase in {Phase.UNREADABLE, Phase.REFUSED}:
-        return refusal(loaded)
+    if loaded.phase in {LoadingPhase.UNREADABLE, LoadingPhase.REFUSED}:
+        return make_refusal(loaded)
     if not snapshot.program:
         return "PRESS F2 TO CHOOSE A PROGRAM"
-    if snapshot.proof_wanted:
+    if snapshot.needs_proof:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
-    missing = missing_tools(loaded)
+    missing = find_missing_tools(loaded)
     if missing and "Y" in snapshot.axes:
         return Message("WILL NOT START: {missing} NOT IN THE TOOL TABLE (F8)", missing=", ".join(missing))
     if missing:
@@ -157,22 +161,22 @@ def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
     )
 
 
-def missing_tools(loaded: Loaded) -> list[str]:
+def find_missing_tools(loaded: LoadedProgram) -> list[str]:
     """Return the tools that the loaded program uses and that have no measured offset."""
     if loaded.proof is None or loaded.job is None:
         return []
-    return [edge_name(key) for key in loaded.proof.unset(loaded.job)]
+    return [format_edge_name(key) for key in loaded.proof.unset(loaded.job)]
 
 
-def refusal(loaded: Loaded) -> str:
+def make_refusal(loaded: LoadedProgram) -> str:
     """Return why the loaded program will not run: the first error and the number of further errors."""
-    if loaded.phase is Phase.UNREADABLE:
+    if loaded.phase is LoadingPhase.UNREADABLE:
         return Message(
             "{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM",
             loaded=loaded.name,
-            problem=loaded.trouble,
+            problem=loaded.error_text,
         )
-    errors = loaded.errors
+    errors = loaded.blocking_errors
     if not errors:
         first = (
             loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else ("ERRORS FOUND WHEN PROVING")
@@ -192,18 +196,18 @@ def refusal(loaded: Loaded) -> str:
     )
 
 
-def remedy(loaded: Loaded, prompt: str) -> str:
+def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
     """Return the remedy for a program that will not run, if ``prompt`` shows its error.
 
     For a program that can start, return the first warning of a check.
     """
-    errors = loaded.errors
+    errors = loaded.blocking_errors
     if errors:
-        return errors[0].hint if prompt == refusal(loaded) else ""
+        return errors[0].hint if prompt == make_refusal(loaded) else ""
     restart = tr("RESUME AT THIS LINE: {start}. ESC: CANCEL").partition("{start}")[0]
     if "TO START: " not in prompt and restart not in prompt:
         return ""
-    warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
+    warned = (each for each in loaded.diagnostics if each.check_name and each.severity is Severity.WARNING)
     first = next(warned, None)
     return (
         Message("LINE {line}: {first}  ·  {hint}", line=first.line, first=first.text, hint=first.hint)
@@ -212,147 +216,157 @@ def remedy(loaded: Loaded, prompt: str) -> str:
     )
 
 
-def _progress(loaded: Loaded) -> str:
-    count = Message(" {reached} BLOCKS", reached=loaded.reached) if loaded.reached else ""
+def _progress(loaded: LoadedProgram) -> str:
+    count = Message(" {reached} BLOCKS", reached=loaded.progress) if loaded.progress else ""
     return Message("{phase} {loaded}{count}", phase=loaded.phase.value, loaded=loaded.name, count=count)
 
 
 # --- answers and questions ----------------------------------------------------------------------------
 
 
-HEARD = 100  # Events that wait for the next frame. Older events are in the log.
+MAX_PENDING_EVENTS = 100  # Events that wait for the next frame. Older events are in the log.
 
 
-class Sort(StrEnum):
+class MessageKind(StrEnum):
     """The kind of message. Each kind has its own color and sign."""
 
-    ANSWER = "answer"  # A refusal, or an instruction for what to do first.
-    DONE = "done"
-    ASKED = "asked"
+    REFUSAL = "answer"  # A refusal, or an instruction for what to do first.
+    SUCCESS = "done"
+    QUESTION = "asked"
 
 
-YES = "Y"
-READ = 0.5  # Seconds for reading a question. An earlier key press is not an answer.
+YES_KEY = "Y"
+READING_TIME_S = 0.5  # Seconds for reading a question. An earlier key press is not an answer.
 
 
-SHOWN = 4.0  # Seconds for which a message remains without a key press.
+MESSAGE_TIME_S = 4.0  # Seconds for which a message remains without a key press.
 
 
 @dataclass(slots=True)
 class PromptAnswers:
     """One message and one question of the prompt line.
 
-    A message remains for ``SHOWN`` seconds or until the next key. A change of the machine's state does not
-    remove it. A question is valid in the machine state in which it was asked. Y executes the action, and N
-    and Esc only remove the question. An action that loses data has its own key, which differs from the key
-    that asked. ``clock`` returns monotonic time in seconds.
+    A message remains for ``MESSAGE_TIME_S`` seconds or until the next key. A change of the machine's state
+    does not remove it. A question is valid in the machine state in which it was asked. Y executes the
+    action, and N and Esc only remove the question. An action that loses data has its own key, which differs
+    from the key that asked. ``clock`` returns monotonic time in seconds.
     """
 
-    snapshot: Callable[[], Snapshot]
+    read_snapshot: Callable[[], Snapshot]
     # Returns why events, parts and versions are not being saved; empty if they are.
-    not_kept: Callable[[], str]
+    read_storage_problem: Callable[[], str]
     clock: Callable[[], float]
-    answer: str = ""
+    message: str = ""
     question: str = ""
-    asked: Callable[[], None] | None = None  # Action of the answer yes.
-    key: str = YES  # Key that means yes.
-    done: bool = False  # The message reports a success.
-    lasting: bool = False  # No key removes the message before its time is over.
+    on_confirmed: Callable[[], None] | None = None  # Action of the answer yes.
+    key: str = YES_KEY  # Key that means yes.
+    is_success: bool = False  # The message reports a success.
+    is_lasting: bool = False  # No key removes the message before its time is over.
     _said_at: float = 0.0
     _since: float = 0.0
-    _in: State | None = None
+    _in: MachineState | None = None
     _refused: str = ""
     _not_kept: str = ""
-    _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
+    _heard: deque[LogEvent] = field(default_factory=lambda: deque(maxlen=MAX_PENDING_EVENTS))
 
     @property
     def notice(self) -> str:
         """The message, or else the question."""
-        return self.answer or self.question
+        return self.message or self.question
 
     @property
-    def sort(self) -> Sort:
+    def notice_kind(self) -> MessageKind:
         """The kind of the notice."""
-        if not self.answer and self.asked is not None:
-            return Sort.ASKED
-        return Sort.DONE if self.done else Sort.ANSWER
+        if not self.message and self.on_confirmed is not None:
+            return MessageKind.QUESTION
+        return MessageKind.SUCCESS if self.is_success else MessageKind.REFUSAL
 
-    def say(self, text: str, *, done: bool = False, lasting: bool = False) -> None:
-        """Show a message. ``done`` marks a success. No key removes a ``lasting`` message.
+    def say(self, text: str, *, is_success: bool = False, is_lasting: bool = False) -> None:
+        """Show a message. ``is_success`` marks a success. No key removes a ``is_lasting`` message.
 
         Until the time of a lasting message is over, only another lasting message replaces it.
         """
-        if self.lasting and self.answer and not lasting and self.clock() - self._said_at < SHOWN:
+        if (
+            self.is_lasting
+            and self.message
+            and not is_lasting
+            and self.clock() - self._said_at < MESSAGE_TIME_S
+        ):
             return
-        self.answer, self.done, self.lasting, self._said_at = text, done, lasting, self.clock()
+        self.message, self.is_success, self.is_lasting, self._said_at = (
+            text,
+            is_success,
+            is_lasting,
+            self.clock(),
+        )
 
-    def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
+    def ask_question(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
         """Ask a question. Asking the same question again does not count as an answer."""
-        if self.asked is not None and self.question == question:
+        if self.on_confirmed is not None and self.question == question:
             return
-        self.take_back()
-        self.question, self.asked, self.key, self._since = question, yes, key, self.clock()
-        self._in = self.snapshot().state
+        self.withdraw()
+        self.question, self.on_confirmed, self.key, self._since = question, on_confirmed, key, self.clock()
+        self._in = self.read_snapshot().state
 
-    def read(self, at: float) -> bool:
-        """Return whether a question is open and was shown long enough before ``at`` to have been read."""
-        return self.asked is not None and at - self._since >= READ
+    def was_read(self, time_s: float) -> bool:
+        """Return whether a question is open and was shown long enough before ``time_s`` to have been read."""
+        return self.on_confirmed is not None and time_s - self._since >= READING_TIME_S
 
-    def yes(self, at: float) -> None:
+    def confirm(self, time_s: float) -> None:
         """Execute the action of the question if the question was shown long enough. Remove the question.
 
-        ``at`` is the time of the key press.
+        ``time_s`` is the time of the key press.
         """
-        asked, read = self.asked, self.read(at)
-        self.take_back()
+        asked, read = self.on_confirmed, self.was_read(time_s)
+        self.withdraw()
         if asked is not None and read:
             asked()
 
-    def take_back(self) -> None:
+    def withdraw(self) -> None:
         """Remove the question, and also the message unless it is lasting."""
-        self.question, self.asked = "", None
-        if not self.lasting:
-            self.answer = ""
+        self.question, self.on_confirmed = "", None
+        if not self.is_lasting:
+            self.message = ""
 
-    def next_key(self) -> None:
+    def clear_message(self) -> None:
         """Remove the message for the previous key. A question remains."""
-        if not self.lasting:
-            self.answer = ""
+        if not self.is_lasting:
+            self.message = ""
 
-    def expire(self, snapshot: Snapshot) -> None:
+    def remove_expired(self, snapshot: Snapshot) -> None:
         """Remove a message whose time is over, and a question if the machine's state has changed."""
-        if self.answer and self.clock() - self._said_at >= SHOWN:
-            self.answer, self.lasting = "", False
-        if self.asked is not None and snapshot.state is not self._in:
-            self.question, self.asked = "", None
+        if self.message and self.clock() - self._said_at >= MESSAGE_TIME_S:
+            self.message, self.is_lasting = "", False
+        if self.on_confirmed is not None and snapshot.state is not self._in:
+            self.question, self.on_confirmed = "", None
 
-    def hear(self, event: Event) -> None:
+    def hear(self, event: LogEvent) -> None:
         """Queue an event of the executor. This method may be called from the executor's thread."""
         self._heard.append(event)
 
-    def starting(self) -> None:
+    def note_start_attempt(self) -> None:
         """Note that a start is attempted, so that the same refusal is shown again."""
         self._refused = ""
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Show refusals and other events of the executor; called once a frame."""
         while self._heard:
             event = self._heard.popleft()
-            if event.kind == "refused" and event.text != snapshot.start_refused:
+            if event.kind == "refused" and event.text != snapshot.start_refusal:
                 self.say(Message("REJECTED: {why}", why=event.text))
             elif event.kind in {"disturbed", "shared"}:
                 self.say(event.text)
             elif event.kind == "uncounted":
                 self.say(Message("NOT COUNTED AS A PART: {event}", event=event.text))
-        if snapshot.start_refused != self._refused:
-            self._refused = snapshot.start_refused
+        if snapshot.start_refusal != self._refused:
+            self._refused = snapshot.start_refusal
             if self._refused:
                 self.say(Message("CANNOT START: {refused}", refused=self._refused))
-        self._tell_not_kept()
+        self._report_unsaved()
 
-    def _tell_not_kept(self) -> None:
+    def _report_unsaved(self) -> None:
         """Show a new storage error once, so that the operator does not find it a day later."""
-        trouble = self.not_kept()
+        trouble = self.read_storage_problem()
         if trouble != self._not_kept:
             self._not_kept = trouble
             if trouble:

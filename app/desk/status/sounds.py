@@ -18,35 +18,35 @@ from pathlib import Path
 
 import numpy as np
 
-from app.desk.background_work import sentence
+from app.desk.background_work import describe_error
 from core.message import Message
 
-PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
+AUDIO_PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
 """Programs that play a file: PipeWire's, PulseAudio's, ALSA's, that of macOS. The first that can does."""
-RATE = 22_050  # Samples per second.
+SAMPLE_RATE_HZ = 22_050  # Samples per second.
 TONE, RAMP = 0.2, 0.01  # Seconds of one tone, and of its ramp at the beginning and end.
-_PATIENCE = 10.0  # Seconds.
-Play = Callable[[bytes], None]
+_PLAY_TIMEOUT_S = 10.0  # Seconds.
+PlaySound = Callable[[bytes], None]
 """Plays a WAV file to its end. Raises OSError or ValueError with a sentence."""
 
 
-def tune(tones: Sequence[int], volume: int) -> bytes:
+def make_tone_wav(frequencies_hz: Sequence[int], volume: int) -> bytes:
     """Return a sequence of tones in Hz as a WAV file. ``volume`` is 0…100."""
-    t = np.arange(round(RATE * TONE)) / RATE
+    t = np.arange(round(SAMPLE_RATE_HZ * TONE)) / SAMPLE_RATE_HZ
     ramp = np.minimum(1.0, np.minimum(t, TONE - t) / RAMP).clip(0.0)
-    waves = [np.sin(2.0 * np.pi * tone * t) * ramp for tone in tones] or [np.zeros(0)]
+    waves = [np.sin(2.0 * np.pi * tone * t) * ramp for tone in frequencies_hz] or [np.zeros(0)]
     loud = (min(100, max(0, volume)) / 100.0) ** 2  # Loudness is perceived as the square root of power.
     samples = (np.concatenate(waves) * loud * 32_000).astype("<i2")
     made = io.BytesIO()
     with wave.open(made, "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
-        file.setframerate(RATE)
+        file.setframerate(SAMPLE_RATE_HZ)
         file.writeframes(samples.tobytes())
     return made.getvalue()
 
 
-def play_aloud(sound: bytes) -> None:
+def play_wav(sound: bytes) -> None:
     """Play a WAV file on the computer's loudspeaker.
 
     Raises OSError or ValueError with the reason if no player works.
@@ -56,24 +56,24 @@ def play_aloud(sound: bytes) -> None:
 
         winsound.PlaySound(sound, winsound.SND_MEMORY)
         return
-    players = [each for each in PLAYERS if shutil.which(each[0])]
+    players = [each for each in AUDIO_PLAYERS if shutil.which(each[0])]
     if not players:
         raise ValueError("this computer has none of pw-play, paplay and aplay (Debian: alsa-utils)")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sound.wav"
         path.write_bytes(sound)
-        told = [_played([*player, str(path)]) for player in players[:1]]
+        told = [_run_player([*player, str(path)]) for player in players[:1]]
         for player in players[1:]:
             if told[-1]:
-                told.append(_played([*player, str(path)]))
+                told.append(_run_player([*player, str(path)]))
     if all(told):
         raise ValueError(told[0])
 
 
-def _played(command: list[str]) -> str:
+def _run_player(command: list[str]) -> str:
     """Run a player. Return why it failed, or an empty text on success."""
     try:
-        done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+        done = subprocess.run(command, capture_output=True, timeout=_PLAY_TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired:
         return Message("{command} did not finish in time", command=command[0])
     said = done.stderr.decode(errors="replace").strip().splitlines()
@@ -84,23 +84,23 @@ def _played(command: list[str]) -> str:
     )
 
 
-class Sounds:
-    """Plays sounds without waiting. ``trouble`` is why the last sound failed, or empty."""
+class SoundPlayer:
+    """Plays sounds without waiting. ``error_text`` is why the last sound failed, or empty."""
 
-    def __init__(self, play: Play = play_aloud) -> None:
-        self._play = play
+    def __init__(self, play_sound: PlaySound = play_wav) -> None:
+        self._play = play_sound
         self._next: bytes | None = None
         self._there = threading.Condition()
         self._closing = False
         self._thread: threading.Thread | None = None
-        self.trouble = ""
+        self.error_text = ""
 
-    def play(self, tones: Sequence[int], volume: int) -> None:
+    def play_tones(self, frequencies_hz: Sequence[int], volume: int) -> None:
         """Play these tones now. A sound that waits is dropped."""
-        if volume <= 0 or not tones:
+        if volume <= 0 or not frequencies_hz:
             return
         with self._there:
-            self._next = tune(tones, volume)
+            self._next = make_tone_wav(frequencies_hz, volume)
             if self._thread is None:
                 self._thread = threading.Thread(target=self._work, name="sounds", daemon=True)
                 self._thread.start()
@@ -121,6 +121,6 @@ class Sounds:
                 return
             try:
                 self._play(sound)
-                self.trouble = ""
+                self.error_text = ""
             except (OSError, ValueError, RuntimeError) as error:
-                self.trouble = sentence(error)
+                self.error_text = describe_error(error)

@@ -13,19 +13,28 @@ import socket
 import sys
 from contextlib import suppress
 
-from app.desk.stop_keys.raw_keys import RawKey, RawKeys
-from app.desk.stop_keys.stop_records import LONGEST, NOWHERE, Focus, Stop, StopKind, press_number
+from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
+from app.desk.stop_keys.stop_records import (
+    MAX_RECORD_BYTES,
+    NO_FOCUS,
+    FocusRecord,
+    StopKind,
+    StopPress,
+    make_press_number,
+)
 
-PLACES = {127: StopKind.HOLD, 78: StopKind.ESTOP}
+STOP_KEY_CODES = {127: StopKind.HOLD, 78: StopKind.ESTOP}
 """X's codes of Pause and Scroll Lock on the keyboard of a PC, whatever a layout makes of them."""
 
 
 class KeyWatcher:
     """Decides which key presses stop the machine, and sends them."""
 
-    def __init__(self, keys: RawKeys, line: socket.socket, screen: socket.socket) -> None:
-        self._keys, self._line, self._screen = keys, line, screen
-        self._focus = NOWHERE
+    def __init__(
+        self, raw_keys: RawKeyReader, stop_channel: socket.socket, screen_channel: socket.socket
+    ) -> None:
+        self._keys, self._line, self._screen = raw_keys, stop_channel, screen_channel
+        self._focus = NO_FOCUS
 
     def run(self) -> None:
         """Watch the keys until the screen ends."""
@@ -36,44 +45,44 @@ class KeyWatcher:
             ready = dict(poll.poll())
             if self._screen.fileno() in ready and not self.read_focus():
                 return
-            for key in self._keys.pressed():
-                self.see(key)
+            for key in self._keys.read_presses():
+                self.handle_press(key)
 
     def read_focus(self) -> bool:
         """Read the windows that the screen has sent. Return False if the screen has ended."""
         try:
-            while record := self._screen.recv(LONGEST, socket.MSG_DONTWAIT):
-                self._focus = Focus.unpacked(record)
+            while record := self._screen.recv(MAX_RECORD_BYTES, socket.MSG_DONTWAIT):
+                self._focus = FocusRecord.from_bytes(record)
         except BlockingIOError:
             return True
         except OSError:  # The screen ended before it read all records.
             return False
         return False
 
-    def see(self, key: RawKey) -> None:
+    def handle_press(self, key: RawKey) -> None:
         """Send a stop for a pressed key. The X server sends no raw events for key repeats."""
-        kind = self._kind(key.code)
-        if kind is not None and self._keys.focus() in self._focus.windows:
-            self._send(Stop(kind, press_number(key.code, key.stamp)))
+        kind = self._kind(key.key_code)
+        if kind is not None and self._keys.find_focus_window() in self._focus.window_ids:
+            self._send(StopPress(kind, make_press_number(key.key_code, key.time_ms)))
 
     def _kind(self, code: int) -> StopKind | None:
-        if code in PLACES:
-            return PLACES[code]
-        if self._focus.esc_holds and code == self._keys.escape_code():
+        if code in STOP_KEY_CODES:
+            return STOP_KEY_CODES[code]
+        if self._focus.is_esc_stop_key and code == self._keys.find_escape_code():
             return StopKind.ESC
         return None
 
-    def _send(self, stop: Stop) -> None:
+    def _send(self, stop: StopPress) -> None:
         for end in (self._line, self._screen):
             with suppress(OSError):  # The control may have ended, or the screen may hang.
-                end.send(stop.packed(), socket.MSG_DONTWAIT)
+                end.send(stop.to_bytes(), socket.MSG_DONTWAIT)
 
 
 def main(arguments: list[str]) -> int:
     """Watch the keys. Return 1 if the X server sends no raw events."""
     line, screen = (socket.socket(fileno=int(each)) for each in arguments)
     try:
-        keys = RawKeys()
+        keys = RawKeyReader()
     except OSError:
         return 1
     KeyWatcher(keys, line, screen).run()

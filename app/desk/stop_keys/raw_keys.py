@@ -31,7 +31,7 @@ class _Cookie(ctypes.Structure):
     )
 
 
-class _Raw(ctypes.Structure):
+class _RawEvent(ctypes.Structure):
     """The first members of XIRawEvent."""
 
     _fields_ = (
@@ -57,13 +57,13 @@ class _Mask(ctypes.Structure):
 
 
 class RawKey(NamedTuple):
-    """A key that was pressed. ``code`` is its X key code, and ``stamp`` is the server's time in ms."""
+    """A key that was pressed. ``key_code`` is its X key code, and ``time_ms`` is the server's time in ms."""
 
-    code: int
-    stamp: int
+    key_code: int
+    time_ms: int
 
 
-class RawKeys:
+class RawKeyReader:
     """A connection to the X server of ``DISPLAY`` that gets raw key events. Use it on one thread only.
 
     Raises OSError without libX11, libXi, an X server or the extension.
@@ -106,7 +106,7 @@ class RawKeys:
             raise OSError
         self._x.XSync(self._display, 0)
 
-    def pressed(self) -> Iterator[RawKey]:
+    def read_presses(self) -> Iterator[RawKey]:
         """Yield the key presses that have arrived, without waiting."""
         event = _Event()
         while self._x.XPending(self._display):
@@ -121,16 +121,16 @@ class RawKeys:
             return None
         if cookie.extension != self._opcode or not self._x.XGetEventData(self._display, ctypes.byref(cookie)):
             return None
-        raw = ctypes.cast(cookie.data, ctypes.POINTER(_Raw)).contents
+        raw = ctypes.cast(cookie.data, ctypes.POINTER(_RawEvent)).contents
         key = RawKey(raw.detail, raw.time)
         self._x.XFreeEventData(self._display, ctypes.byref(cookie))
         return key
 
-    def escape_code(self) -> int:
+    def find_escape_code(self) -> int:
         """Return the key code of Esc in the present keyboard layout, or 0 if the layout has no Esc."""
         return int(self._x.XKeysymToKeycode(self._display, ctypes.c_ulong(_ESCAPE)))
 
-    def focus(self) -> int:
+    def find_focus_window(self) -> int:
         """Return the number of the window that has the keyboard.
 
         Without a window manager, keys may go to the window under the pointer.

@@ -10,10 +10,10 @@ import struct
 from enum import IntEnum
 from typing import NamedTuple
 
-BY_SCREEN = "a key or a touch on the screen"
-BY_ESC = "Esc key at the screen"
+SOURCE_SCREEN = "a key or a touch on the screen"
+SOURCE_ESC = "Esc key at the screen"
 _STOP = struct.Struct("=BQ")
-LONGEST = 4096  # Maximum size of a record in bytes.
+MAX_RECORD_BYTES = 4096  # Maximum size of a record in bytes.
 
 
 class StopKind(IntEnum):
@@ -24,31 +24,31 @@ class StopKind(IntEnum):
     ESC = 3  # A feed hold by Esc, if Esc has no other function on the page.
 
     @property
-    def by(self) -> str:
+    def source_text(self) -> str:
         """The origin of the feed hold, for the log."""
-        return BY_ESC if self is StopKind.ESC else BY_SCREEN
+        return SOURCE_ESC if self is StopKind.ESC else SOURCE_SCREEN
 
 
-def press_number(code: int, stamp: int) -> int:
+def make_press_number(key_code: int, time_ms: int) -> int:
     """Return the number of a key press, from its X key code and the server's time in ms.
 
     An event without a time stamp has the number 0, which never equals another press.
     """
-    return code << 32 | stamp & 0xFFFFFFFF if stamp else 0
+    return key_code << 32 | time_ms & 0xFFFFFFFF if time_ms else 0
 
 
-class Stop(NamedTuple):
-    """One press of a stop key; ``press`` is the number of the press."""
+class StopPress(NamedTuple):
+    """One press of a stop key; ``press_number`` is the number of the press."""
 
     kind: StopKind
-    press: int
+    press_number: int
 
-    def packed(self) -> bytes:
+    def to_bytes(self) -> bytes:
         """Return the stop as a binary record."""
-        return _STOP.pack(self.kind, self.press)
+        return _STOP.pack(self.kind, self.press_number)
 
     @classmethod
-    def unpacked(cls, record: bytes) -> Stop:
+    def from_bytes(cls, record: bytes) -> StopPress:
         """Return the stop in a record. Raises ValueError for an invalid record."""
         if len(record) != _STOP.size:
             raise ValueError(f"{len(record)} bytes are not a stop")
@@ -56,19 +56,19 @@ class Stop(NamedTuple):
         return cls(StopKind(kind), press)
 
 
-class Focus(NamedTuple):
+class FocusRecord(NamedTuple):
     """The X window numbers of TurnDesk, and whether Esc starts feed hold now."""
 
-    windows: frozenset[int]
-    esc_holds: bool
+    window_ids: frozenset[int]
+    is_esc_stop_key: bool
 
-    def packed(self) -> bytes:
+    def to_bytes(self) -> bytes:
         """Return the focus as a binary record with 1000 windows at most."""
-        windows = sorted(self.windows)[:1000]
-        return struct.pack(f"=?{len(windows)}I", self.esc_holds, *windows)
+        windows = sorted(self.window_ids)[:1000]
+        return struct.pack(f"=?{len(windows)}I", self.is_esc_stop_key, *windows)
 
     @classmethod
-    def unpacked(cls, record: bytes) -> Focus:
+    def from_bytes(cls, record: bytes) -> FocusRecord:
         """Return the focus in a record. Raises ValueError for an invalid record."""
         count, rest = divmod(len(record) - 1, 4)
         if rest or count < 0:
@@ -77,4 +77,4 @@ class Focus(NamedTuple):
         return cls(frozenset(windows), esc_holds)
 
 
-NOWHERE = Focus(frozenset(), esc_holds=False)
+NO_FOCUS = FocusRecord(frozenset(), is_esc_stop_key=False)

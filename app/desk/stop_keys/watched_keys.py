@@ -9,23 +9,23 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 
-from app.desk.stop_keys.stop_records import LONGEST, NOWHERE, Focus, Stop
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, NO_FOCUS, FocusRecord, StopPress
 from core.own_process import module_environment
 
-OpenLine = Callable[[], socket.socket | None]
+OpenStopChannel = Callable[[], socket.socket | None]
 """Open a line to the control for stops; None where the control has none."""
-_ENDS = 2.0  # Seconds.
-_KEPT = 64  # Number of presses.
+_END_TIMEOUT_S = 2.0  # Seconds.
+_MAX_SENT = 64  # Number of presses.
 
 
-class WatchedKeys:
+class KeyWatcherClient:
     """Connection of the screen to the key watcher. Only ``close`` waits."""
 
-    def __init__(self, line: socket.socket) -> None:
+    def __init__(self, stop_channel: socket.socket) -> None:
         self._screen, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._screen.setblocking(False)
-        with line, theirs:
-            files = (line.fileno(), theirs.fileno())
+        with stop_channel, theirs:
+            files = (stop_channel.fileno(), theirs.fileno())
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)],
                 env=module_environment(),
@@ -34,18 +34,18 @@ class WatchedKeys:
                 pass_fds=files,
                 start_new_session=True,  # Ctrl+C must reach the screen only.
             )
-        self._shown = NOWHERE
-        self._sent: deque[Stop] = deque(maxlen=_KEPT)
-        self._news: list[Stop] = []
+        self._shown = NO_FOCUS
+        self._sent: deque[StopPress] = deque(maxlen=_MAX_SENT)
+        self._news: list[StopPress] = []
 
-    def show(self, focus: Focus) -> None:
+    def send_focus(self, focus: FocusRecord) -> None:
         """Send the windows, and whether Esc starts feed hold, to the watcher if either has changed."""
         if focus != self._shown:
             with suppress(OSError):
-                self._screen.send(focus.packed())
+                self._screen.send(focus.to_bytes())
                 self._shown = focus
 
-    def news(self) -> list[Stop]:
+    def read_stops(self) -> list[StopPress]:
         """Return the stops that the watcher has sent to the control since the last call."""
         self._read()
         found, self._news = self._news, []
@@ -54,12 +54,12 @@ class WatchedKeys:
     def was_sent(self, press: int) -> bool:
         """Return whether the watcher has sent this key press to the control."""
         self._read()
-        return press != 0 and any(stop.press == press for stop in self._sent)
+        return press != 0 and any(stop.press_number == press for stop in self._sent)
 
     def _read(self) -> None:
         with suppress(OSError):
-            while record := self._screen.recv(LONGEST):
-                stop = Stop.unpacked(record)
+            while record := self._screen.recv(MAX_RECORD_BYTES):
+                stop = StopPress.from_bytes(record)
                 self._sent.append(stop)
                 self._news.append(stop)
 
@@ -67,7 +67,7 @@ class WatchedKeys:
         """End the watcher process, and wait for its end for 2 s at most before killing it."""
         self._screen.close()
         try:
-            self._process.wait(_ENDS)
+            self._process.wait(_END_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()

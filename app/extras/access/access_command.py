@@ -9,23 +9,23 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from app.cli.store_command import opened_store
-from app.cli.who_changes import RESET, add_as_option, demand_own_keyboard, who_changes
-from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
-from core.access.access_table import RULES, Act, Level
-from core.json_key import Output, keys
+from app.cli.change_author import RESET, add_as_option, get_change_author, require_terminal
+from app.cli.store_command import open_store
+from app.desk.command_errors import EXIT_OK, CommandError, convert_to_command_error
+from core.access.access_table import ACCESS_RULES, AccessLevel, ProtectedChange
+from core.json_keys import JsonOutput, declare_keys
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.store.people import PersonRow
     from core.store.store import Store
+    from core.store.user_records import UserRow
 
 
-ACCESS_LIST = Output(
+ACCESS_LIST_OUTPUT = JsonOutput(
     "access list --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 on | boolean | | Whether access levels are on.
 damaged | boolean | | Whether an entry of a user is damaged, so that this user cannot log in.
@@ -35,24 +35,24 @@ people[].level | string | | Level: OPERATOR, SETUP or SERVICE.
 """
     ),
 )
-ACCESS_TABLE = Output(
+ACCESS_TABLE_OUTPUT = JsonOutput(
     "access table --json",
     "One object with a key for each kind of change, such as ZERO OFFSETS.",
-    keys(
+    declare_keys(
         """
 *.level | string | | Level that the change needs.
 *.what | string | | Description of the change.
 """
     ),
 )
-OUTPUTS = {"scope FILE --json": (ACCESS_LIST, ACCESS_TABLE)}
+OUTPUTS = {"scope FILE --json": (ACCESS_LIST_OUTPUT, ACCESS_TABLE_OUTPUT)}
 
 
 _DAMAGED = (
     "levels are on, but an entry of the people is damaged and lets nobody in; enter it again, "
     "or reset the levels: turndesk access reset\n"
 )
-_LEVELS = {level.name.lower(): level for level in Level}
+_LEVELS = {level.name.lower(): level for level in AccessLevel}
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -93,50 +93,55 @@ def run(args: argparse.Namespace) -> int:
         sys.stdout.write(_table(json_wanted=args.json))
         return EXIT_OK
     if args.action == "reset":
-        demand_own_keyboard(
+        require_terminal(
             Message(
                 "All users and their PINs will be deleted, and this will be logged. Type {reset} to "
                 "continue: ",
                 reset=RESET,
             )
         )
-    with opened_store(read_only=args.action == "list") as store:
+    with open_store(read_only=args.action == "list") as store:
         sys.stdout.write(_ACTIONS[args.action](store, args))
     return EXIT_OK
 
 
 def _table(*, json_wanted: bool) -> str:
     if json_wanted:
-        rules = {act.value: {"level": rule.level.name, "what": rule.what} for act, rule in RULES.items()}
+        rules = {
+            act.value: {"level": rule.level.name, "what": rule.what} for act, rule in ACCESS_RULES.items()
+        }
         return json.dumps(rules) + "\n"
-    return "".join(f"{rule.level.name:<9} {rule.what}\n" for rule in RULES.values())
+    return "".join(f"{rule.level.name:<9} {rule.what}\n" for rule in ACCESS_RULES.values())
 
 
 def _list(store: Store, args: argparse.Namespace) -> str:
-    people = store.people.read_people()
+    people = store.people.read_users()
     if args.json:
-        rows = [{"name": row.name, "level": Level(row.level).name} for row in people.rows]
-        return json.dumps({"on": people.on, "damaged": people.damaged, "people": rows}) + "\n"
-    if not people.on:
+        rows = [{"name": row.name, "level": AccessLevel(row.level).name} for row in people.rows]
+        return (
+            json.dumps({"on": people.is_access_restricted, "damaged": people.has_damaged_row, "people": rows})
+            + "\n"
+        )
+    if not people.is_access_restricted:
         return "levels are off: everybody may change everything\n"
-    lines = "".join(f"{Level(row.level).name:<9} {row.name}\n" for row in people.rows)
-    return lines + (_DAMAGED if people.damaged else "")
+    lines = "".join(f"{AccessLevel(row.level).name:<9} {row.name}\n" for row in people.rows)
+    return lines + (_DAMAGED if people.has_damaged_row else "")
 
 
 def _add(store: Store, args: argparse.Namespace) -> str:
-    from core.store.people import check_person
+    from core.store.user_records import normalize_user_name
 
-    level, name = _LEVELS[args.level], check_person(args.name)
-    if store.people.read_people().named(name) is not None:
+    level, name = _LEVELS[args.level], normalize_user_name(args.name)
+    if store.people.read_users().find_user(name) is not None:
         raise CommandError(
             Message("user {name} already exists; to change the PIN, use 'turndesk access pin'", name=name),
             "name-in-use",
         )
-    return _kept(store, args, name, level, "entered")
+    return _save_user(store, args, name, level, "entered")
 
 
-def _person(store: Store, name: str) -> PersonRow:
-    row = store.people.read_people().named(name)
+def _person(store: Store, name: str) -> UserRow:
+    row = store.people.read_users().find_user(name)
     if row is None:
         raise CommandError(
             Message("user {name} does not exist; 'turndesk access list' shows all users", name=name),
@@ -147,32 +152,32 @@ def _person(store: Store, name: str) -> PersonRow:
 
 def _pin(store: Store, args: argparse.Namespace) -> str:
     row = _person(store, args.name)
-    return _kept(store, args, row.name, Level(row.level), "has a new PIN")
+    return _save_user(store, args, row.name, AccessLevel(row.level), "has a new PIN")
 
 
-def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
+def _save_user(store: Store, args: argparse.Namespace, name: str, level: AccessLevel, done: str) -> str:
     """Ask for the PIN twice and store the user."""
-    from app.extras.access.access_command import asked_pin
-    from core.extras.access.pins import PinError, check_pin, hashed
-    from core.store import people
+    from app.extras.access.access_command import read_pin
+    from core.extras.access.pins import PinError, check_pin, hash_pin
+    from core.store import user_records
 
-    who = who_changes(store, args, Act.PEOPLE)
-    pin = asked_pin(Message("new PIN for {name}: ", name=name))
-    with as_command_error(PinError):
+    who = get_change_author(store, args, ProtectedChange.PEOPLE)
+    pin = read_pin(Message("new PIN for {name}: ", name=name))
+    with convert_to_command_error(PinError):
         check_pin(pin)
-    if asked_pin("repeat the new PIN: ") != pin:
+    if read_pin("repeat the new PIN: ") != pin:
         raise CommandError("the two PINs do not match; nothing was saved", "pins-differ")
-    row = people.PersonRow(name, level, *hashed(pin))
-    store.people.save_person(row).result()
-    store.events.log_event("access", f"{name} {done}: {level.name}", who=who).result()
+    row = user_records.UserRow(name, level, *hash_pin(pin))
+    store.people.save_user(row).result()
+    store.events.log_event("access", f"{name} {done}: {level.name}", author=who).result()
     return f"{name} {done}: {level.name}\n"
 
 
 def _remove(store: Store, args: argparse.Namespace) -> str:
     row = _person(store, args.name)
-    who = who_changes(store, args, Act.PEOPLE)
-    store.people.remove_person(row.name).result()
-    store.events.log_event("access", Message("{row} removed", row=row.name), who=who).result()
+    who = get_change_author(store, args, ProtectedChange.PEOPLE)
+    store.people.remove_user(row.name).result()
+    store.events.log_event("access", Message("{row} removed", row=row.name), author=who).result()
     return f"{row.name} is taken away\n"
 
 
@@ -180,13 +185,13 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
 
 
 def _reset(store: Store, _args: argparse.Namespace) -> str:
-    count = store.people.remove_all_people().result()
+    count = store.people.remove_all_users().result()
     store.settings.save_setting("wrong PINs", None)
     told = Message(
         "service reset at the keyboard: {count} users and their PINs were deleted, and access levels are off",
         count=count,
     )
-    store.events.log_event("access", told, who=getpass.getuser()).result()
+    store.events.log_event("access", told, author=getpass.getuser()).result()
     return f"{told}\n"
 
 
@@ -196,12 +201,12 @@ _ACTIONS = {"list": _list, "add": _add, "pin": _pin, "remove": _remove, "reset":
 _WRONG = "wrong PINs"  # setting, shared with the operator screen
 
 
-def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
+def require_pin(store: Store, row: UserRow, remedy: str) -> None:
     """Ask for the PIN of a user, with a wait after wrong PINs. Raises CommandError for a wrong PIN.
 
     Wrong PINs are logged.
     """
-    from core.extras.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
+    from core.extras.access.pins import PinHash, calculate_delay, hash_pin, is_outdated, matches_hash
 
     if not row.has_pin:
         raise CommandError(
@@ -209,17 +214,17 @@ def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
         )
     kept = store.settings.read_setting(_WRONG)
     wrong = kept if isinstance(kept, int) else 0
-    if pause := wait_after(wrong):
+    if pause := calculate_delay(wrong):
         sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
         time.sleep(pause)
-    pin = asked_pin(Message("PIN for {row}: ", row=row.name))
+    pin = read_pin(Message("PIN for {row}: ", row=row.name))
     # counted before the check, so that ending TurnDesk does not avoid the wait
     store.settings.save_setting(_WRONG, wrong + 1).result()
-    stored = Hashed(row.salt, row.hash)
-    if is_pin(pin, stored):
+    stored = PinHash(row.salt, row.hash)
+    if matches_hash(pin, stored):
         if is_outdated(stored):
-            renewed = row._replace(**hashed(pin)._asdict())
-            store.people.save_person(renewed).result()
+            renewed = row._replace(**hash_pin(pin)._asdict())
+            store.people.save_user(renewed).result()
         store.settings.save_setting(_WRONG, None).result()
         return
     told = Message(
@@ -227,15 +232,15 @@ def demand_pin(store: Store, row: PersonRow, remedy: str) -> None:
         row=row.name,
         wrong=wrong + 1,
     )
-    store.events.log_event("access", told, who=getpass.getuser()).result()
+    store.events.log_event("access", told, author=getpass.getuser()).result()
     raise CommandError(
         Message("wrong PIN for user {row}; nothing was changed, and the attempt was logged", row=row.name),
         "wrong-pin",
     )
 
 
-def asked_pin(question: str) -> str:
+def read_pin(prompt: str) -> str:
     """Return a hidden entry from the terminal, or without a terminal a line from stdin."""
     if sys.stdin.isatty():
-        return getpass.getpass(question)
+        return getpass.getpass(prompt)
     return sys.stdin.readline().strip()

@@ -6,20 +6,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from app.desk.access import Access
+from app.desk.access import UserAccess
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Entry, Key, Row, Sheet, following
+from app.desk.pages.table_content import FunctionKey, InputField, TableContent, TableRow, following
 from app.desk.persistence import Persistence
 from app.desk.status.machine_status import Tone
-from app.desk.translation import data, tr
-from app.extras.access.sign_in import MINUTES, AccessReset, SignIn
+from app.desk.translation import mark_untranslated, tr
+from app.extras.access.sign_in import TIMEOUT_CHOICES_MIN, AccessReset, PinSignIn
 from app.special.special_functions import SpecialFunction
-from core.access.access_table import RULES, Act, Level
+from core.access.access_table import ACCESS_RULES, AccessLevel, ProtectedChange
 from core.executor.snapshot import Snapshot
-from core.extras.access.pins import LONGEST, PinError, check_pin, hashed
+from core.extras.access.pins import LONGEST, PinError, check_pin, hash_pin
 from core.message import Message
-from core.store.people import NAME_LONGEST, PersonRow, check_person
 from core.store.store_errors import StoreError
+from core.store.user_records import MAX_NAME_LENGTH, UserRow, normalize_user_name
 
 _DOT = "●"
 
@@ -30,11 +30,11 @@ class _Draft:
 
     step: str  # sign in, name, level, pin or again
     name: str = ""
-    level: Level = Level.SERVICE
+    level: AccessLevel = AccessLevel.SERVICE
     pin: str = ""
 
 
-class AccessLevels(SpecialFunction):
+class AccessLevelsFunction(SpecialFunction):
     """Special function for access levels: Enter on a name asks for the PIN.
 
     SERVICE level edits users.
@@ -43,37 +43,37 @@ class AccessLevels(SpecialFunction):
     name = "ACCESS LEVELS"
     use = "sign in, users, PINs"
 
-    def __init__(self, desk: Desk, persistence: Persistence, sign_in: SignIn) -> None:
+    def __init__(self, desk: Desk, persistence: Persistence, sign_in: PinSignIn) -> None:
         super().__init__(desk)
         self.persistence, self.session = persistence, sign_in
-        self.entry = Entry()
+        self.entry = InputField()
         self.draft: _Draft | None = None
-        self.table = False
-        self.service_reset = AccessReset(sign_in, desk.say, self._reset_now)
+        self.shows_levels = False
+        self.service_reset = AccessReset(sign_in, desk.say, self._remove_all_users)
 
     @property
-    def access(self) -> Access:
+    def access(self) -> UserAccess:
         """Present access of TurnDesk."""
-        return self.desk.access
+        return self.desk.user_access
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of rows that can be selected."""
-        return len(RULES) if self.table else len(self.access.people.rows)
+        return len(ACCESS_RULES) if self.shows_levels else len(self.access.users.rows)
 
     @property
-    def person(self) -> PersonRow | None:
+    def selected_user(self) -> UserRow | None:
         """Selected user, or None."""
-        rows = self.access.people.rows
-        return rows[min(self.marked, len(rows) - 1)] if rows and not self.table else None
+        rows = self.access.users.rows
+        return rows[min(self.marked, len(rows) - 1)] if rows and not self.shows_levels else None
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of users, or of the level that each change requires."""
-        if self.table:
-            rows = tuple(Row((act.value, rule.level.name)) for act, rule in RULES.items())
+        if self.shows_levels:
+            rows = tuple(TableRow((act.value, rule.level.name)) for act, rule in ACCESS_RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
         else:
-            rows = tuple(self._row(each) for each in self.access.people.rows)
+            rows = tuple(self._row(each) for each in self.access.users.rows)
             heads, shares, raw = ("WHO", "LEVEL"), (0.65, 0.35), frozenset({0})
         question = self._question()
         text = (
@@ -81,21 +81,23 @@ class AccessLevels(SpecialFunction):
             if self.draft and self.draft.step in {"name", "level"}
             else _DOT * len(self.entry.text)
         )
-        return Sheet("ACCESS LEVELS", heads, shares, rows, self.marked, question, text, self._notes(), raw)
+        return TableContent(
+            "ACCESS LEVELS", heads, shares, rows, self.marked, question, text, self._notes(), raw
+        )
 
-    def _row(self, row: PersonRow) -> Row:
-        here = row.name == self.access.name
-        return Row((row.name, Level(row.level).name), here, Tone.RUN)
+    def _row(self, row: UserRow) -> TableRow:
+        here = row.name == self.access.user_name
+        return TableRow((row.name, AccessLevel(row.level).name), here, Tone.RUN)
 
     def _notes(self) -> tuple[str, ...]:
-        if not self.access.people.on:
+        if not self.access.users.is_access_restricted:
             return (
                 "Access levels are off: anyone can change anything, and no PIN is required.",
                 "F3 adds the first user, with SERVICE level, and turns access levels on.",
             )
         minutes = tr("After {minutes} minutes without input, the level returns to OPERATOR.")
         return (
-            tr(Message(minutes, minutes=self.session.minutes)),
+            tr(Message(minutes, minutes=self.session.timeout_min)),
             "E-stop, feed hold, Reset and Drives Off work at every level.",
         )
 
@@ -104,84 +106,87 @@ class AccessLevels(SpecialFunction):
         if draft is None:
             return ""
         return {
-            "sign in": tr(Message("PIN FOR {name}?", name=data(draft.name))),
+            "sign in": tr(Message("PIN FOR {name}?", name=mark_untranslated(draft.name))),
             "name": tr("NAME?"),
             "level": tr("LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE"),
-            "pin": tr(Message("NEW PIN FOR {name}?", name=data(draft.name))),
+            "pin": tr(Message("NEW PIN FOR {name}?", name=mark_untranslated(draft.name))),
             "again": tr("CONFIRM PIN:"),
         }[draft.step]
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
-        if self.service_reset.under_way:
+        if self.service_reset.is_running:
             return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
             return tr("TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL")
-        if not self.access.people.on:
+        if not self.access.users.is_access_restricted:
             return tr("F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST")
         return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK")
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys. Most exist only while access levels are on."""
-        keys = {"F3": Key("NEW", self.add), "F5": Key("USERS" if self.table else "LEVELS", self._turn)}
-        if self.access.people.on:
+        keys = {
+            "F3": FunctionKey("NEW", self.add_user),
+            "F5": FunctionKey("USERS" if self.shows_levels else "LEVELS", self._turn),
+        }
+        if self.access.users.is_access_restricted:
             keys |= {
-                "F2": Key("SIGN OUT", self.sign_out),
-                "F4": Key("PIN", self.new_pin),
-                "F6": Key("REMOVE", self.remove),
-                "F8": Key("TIME", self.next_minutes),
-                "F9": Key("RESET", self.ask_reset),
+                "F2": FunctionKey("SIGN OUT", self.sign_out),
+                "F4": FunctionKey("PIN", self.change_pin),
+                "F6": FunctionKey("REMOVE", self.remove_user),
+                "F8": FunctionKey("TIME", self.select_next_timeout),
+                "F9": FunctionKey("RESET", self.ask_pin_reset),
             }
         return keys
 
     def _turn(self) -> None:
-        self.desk.clear()
-        self.draft, self.table, self.marked = None, not self.table, 0
+        self.desk.clear_prompt_line()
+        self.draft, self.shows_levels, self.marked = None, not self.shows_levels, 0
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of a name or a PIN."""
         if self.draft is None or len(key) != 1:
             return False
-        return self.entry.takes(key) if self.draft.step == "name" else key.isascii() and key.isdigit()
+        return self.entry.accepts_key(key) if self.draft.step == "name" else key.isascii() and key.isdigit()
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key of the entry, or of the list."""
         if self.draft is None:
-            return super().typed(key)
+            return super().handle_key(key)
         if key == "Enter":
             self._enter(self.draft)
             return True
-        if not (self.takes(key) or key in {"Back", "Delete"}):
+        if not (self.accepts_key(key) or key in {"Back", "Delete"}):
             return False
-        self.desk.clear()
-        longest = NAME_LONGEST if self.draft.step == "name" else LONGEST
+        self.desk.clear_prompt_line()
+        longest = MAX_NAME_LENGTH if self.draft.step == "name" else LONGEST
         if key in {"Back", "Delete"} or len(self.entry.text) < longest:
-            self.entry.type(key)
+            self.entry.handle_key(key)
         return True
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Ask for the PIN of the selected user."""
-        row = self.person
+        row = self.selected_user
         if row is not None:
             self._ask(_Draft("sign in", row.name))
         return row is not None
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Cancel the entry. Return False without an entry."""
-        open_before, self.draft, self.entry = self.draft is not None, None, Entry()
+        open_before, self.draft, self.entry = self.draft is not None, None, InputField()
         return open_before
 
-    def left(self) -> None:
+    def on_close(self) -> None:
         """Cancel the entry when the function closes."""
-        self.draft, self.entry, self.table = None, Entry(), False
+        self.draft, self.entry, self.shows_levels = None, InputField(), False
 
     # --- entry in steps ------------------------------------------------------------------------------
 
     def _ask(self, draft: _Draft) -> None:
-        self.desk.clear()
-        self.draft, self.entry, self.table = draft, Entry(words=draft.step == "name"), False
+        self.desk.clear_prompt_line()
+        self.draft, self.entry, self.shows_levels = draft, InputField(words=draft.step == "name"), False
 
     def _enter(self, draft: _Draft) -> None:
         text = self.entry.text
@@ -196,27 +201,27 @@ class AccessLevels(SpecialFunction):
             steps[draft.step](draft, text)
         except (StoreError, PinError) as error:
             self.entry.text = ""
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
 
     def _sign_in(self, draft: _Draft, pin: str) -> None:
-        row = self.access.people.named(draft.name)
-        self.escape()
+        row = self.access.users.find_user(draft.name)
+        self.handle_escape()
         if row is not None and pin:
             self.session.sign_in(row, pin)
 
     def _named(self, draft: _Draft, text: str) -> None:
-        draft.name = check_person(text)
-        if self.access.people.named(draft.name) is not None:
+        draft.name = normalize_user_name(text)
+        if self.access.users.find_user(draft.name) is not None:
             raise StoreError(
                 Message("{draft} already exists; press F4 to change the PIN", draft=draft.name), "name-in-use"
             )
-        draft.step = "level" if self.access.people.on else "pin"
+        draft.step = "level" if self.access.users.is_access_restricted else "pin"
         self._ask(draft)
 
     def _levelled(self, draft: _Draft, text: str) -> None:
-        if text not in {str(level.value) for level in Level}:
+        if text not in {str(level.value) for level in AccessLevel}:
             raise StoreError("the level must be 1, 2 or 3", "invalid-level")
-        draft.level, draft.step = Level(int(text)), "pin"
+        draft.level, draft.step = AccessLevel(int(text)), "pin"
         self._ask(draft)
 
     def _first(self, draft: _Draft, pin: str) -> None:
@@ -228,13 +233,17 @@ class AccessLevels(SpecialFunction):
         if pin != draft.pin:
             self.draft = None
             raise PinError("the two PINs do not match; nothing was saved. Enter the PIN again")
-        self.escape()
-        if draft.name != self.access.name and self.desk.refused(Act.PEOPLE):
+        self.handle_escape()
+        if draft.name != self.access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE):
             return  # the user who started the entry was signed out in the meantime
-        row = PersonRow(draft.name, draft.level, b"", b"")
-        said = tr(Message("{name}: {level}, PIN SAVED", name=data(draft.name), level=tr(draft.level.name)))
+        row = UserRow(draft.name, draft.level, b"", b"")
+        said = tr(
+            Message(
+                "{name}: {level}, PIN SAVED", name=mark_untranslated(draft.name), level=tr(draft.level.name)
+            )
+        )
         self._change(
-            lambda: self._keep(row, pin),
+            lambda: self._save_user(row, pin),
             said,
             Message(
                 "user {draft} saved with level {level} and a new PIN",
@@ -243,79 +252,85 @@ class AccessLevels(SpecialFunction):
             ),
         )
 
-    def _keep(self, row: PersonRow, pin: str) -> None:
+    def _save_user(self, row: UserRow, pin: str) -> None:
         """Store the user on the worker. Raises StoreError."""
-        renewed = PersonRow(row.name, row.level, *hashed(pin))
-        self.persistence.opened().people.save_person(renewed).result()
+        renewed = UserRow(row.name, row.level, *hash_pin(pin))
+        self.persistence.require_store().people.save_user(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
         """Change the users on the worker, reload them, report the change and log it with the user."""
 
         def done(_none: None) -> None:
-            self.access.note(noted)
+            self.access.log_access(noted)
             self.access.reload()
-            self.desk.done(said)
+            self.desk.show_success(said)
 
-        self.session.worker.queue(work, done, self.desk.refuse)
+        self.session.worker.enqueue(work, done, self.desk.show_refusal)
 
     # --- users ---------------------------------------------------------------------------------------
 
     def sign_out(self) -> None:
         """Sign out (F2)."""
         self.access.sign_out()
-        self.desk.done(tr("SIGNED OUT: OPERATOR LEVEL IS ACTIVE"))
+        self.desk.show_success(tr("SIGNED OUT: OPERATOR LEVEL IS ACTIVE"))
 
-    def add(self) -> None:
+    def add_user(self) -> None:
         """Add a user (F3). The first user has SERVICE level."""
-        if not self.desk.refused(Act.PEOPLE):
+        if not self.desk.is_refused(ProtectedChange.PEOPLE):
             self._ask(_Draft("name"))
 
-    def new_pin(self) -> None:
+    def change_pin(self) -> None:
         """Change the PIN of the selected user (F4). All users may change their own PIN."""
-        row = self.person
-        if row is None or (row.name != self.access.name and self.desk.refused(Act.PEOPLE)):
+        row = self.selected_user
+        if row is None or (
+            row.name != self.access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE)
+        ):
             return
-        self._ask(_Draft("pin", row.name, Level(row.level)))
+        self._ask(_Draft("pin", row.name, AccessLevel(row.level)))
 
-    def remove(self) -> None:
+    def remove_user(self) -> None:
         """Remove the selected user (F6). Removing the last user turns access levels off."""
-        row = self.person
-        if row is None or self.desk.refused(Act.PEOPLE):
+        row = self.selected_user
+        if row is None or self.desk.is_refused(ProtectedChange.PEOPLE):
             return
-        said = tr(Message("{name} REMOVED", name=data(row.name)))
+        said = tr(Message("{name} REMOVED", name=mark_untranslated(row.name)))
 
         def work() -> None:
-            self.persistence.opened().people.remove_person(row.name).result()
+            self.persistence.require_store().people.remove_user(row.name).result()
 
-        asked = tr(Message("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN", name=data(row.name)))
-        self.desk.ask(asked, partial(self._change, work, said, Message("{row} removed", row=row.name)))
+        asked = tr(
+            Message("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN", name=mark_untranslated(row.name))
+        )
+        self.desk.ask_operator(
+            asked, partial(self._change, work, said, Message("{row} removed", row=row.name))
+        )
 
-    def next_minutes(self) -> None:
+    def select_next_timeout(self) -> None:
         """Select the next time for the automatic sign-out (F8)."""
-        if not self.desk.refused(Act.PEOPLE):
-            self.desk.clear()
-            self.session.choose_minutes(following(MINUTES, self.session.minutes))
+        if not self.desk.is_refused(ProtectedChange.PEOPLE):
+            self.desk.clear_prompt_line()
+            self.session.set_timeout(following(TIMEOUT_CHOICES_MIN, self.session.timeout_min))
 
     # --- service reset -------------------------------------------------------------------------------
 
-    def ask_reset(self) -> None:
+    def ask_pin_reset(self) -> None:
         """Start the reset of all PINs after confirmation (F9). The E-stop must stay pressed."""
-        why = self.service_reset.why_not(self.desk.snapshot())
+        why = self.service_reset.find_start_refusal(self.desk.read_snapshot())
         if why:
             self.desk.say(why)
             return
         question = tr("Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM")
-        self.desk.ask(question, self.service_reset.begin)
+        self.desk.ask_operator(question, self.service_reset.start)
 
-    def _reset_now(self) -> None:
+    def _remove_all_users(self) -> None:
         """Remove all users. If the store is unreadable, levels are off until TurnDesk ends."""
 
         def remove() -> None:
-            if not self.access.is_unread:
-                self.persistence.opened().people.remove_all_people().result()
+            if not self.access.has_read_failed:
+                self.persistence.require_store().people.remove_all_users().result()
 
         def done(_none: None) -> None:
-            self.access.lift()
-            self.desk.done(tr("ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED"))
+            self.access.remove_levels()
+            self.desk.show_success(tr("ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED"))
 
-        self.session.worker.queue(remove, done, self.desk.refuse)
+        self.session.worker.enqueue(remove, done, self.desk.show_refusal)

@@ -5,51 +5,53 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
-    from app.desk.background_work import Latest
+    from app.desk.background_work import LatestRequestWorker
     from app.desk.desk import Desk
     from app.desk.persistence import Persistence
     from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
-    from core.store.people import PersonRow
     from core.store.store import Store
+    from core.store.user_records import UserRow
 
 
-class AccessByPin(Extra):
+class AccessExtra(OptionalFeature):
     """Optional feature with sign-in by PIN, ACCESS LEVELS in F10 and ``turndesk access``."""
 
-    commands = {
+    subcommands = {
         "access": Subcommand("store", "manage users, access levels and PINs"),
     }
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        from app.extras.access.sign_in import sign_in_of
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        from app.extras.access.sign_in import get_sign_in
 
-        sign_in_of(desk.access)
+        get_sign_in(desk.user_access)
 
-    def special_functions(
-        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    def list_special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        from app.extras.access.access_levels import AccessLevels
-        from app.extras.access.sign_in import sign_in_of
+        from app.extras.access.access_levels import AccessLevelsFunction
+        from app.extras.access.sign_in import get_sign_in
 
-        return ((AccessLevels(desk, persistence, sign_in_of(desk.access)), "LAMPS AND SOUND"),)
+        return ((AccessLevelsFunction(desk, persistence, get_sign_in(desk.user_access)), "LAMPS AND SOUND"),)
 
-    def demand_pin(self, store: Store, row: PersonRow, remedy: str) -> bool:
-        from app.extras.access.access_command import demand_pin
+    def require_pin(self, store: Store, row: UserRow, remedy: str) -> bool:
+        from app.extras.access.access_command import require_pin
 
-        demand_pin(store, row, remedy)
+        require_pin(store, row, remedy)
         return True
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.access.access_command import OUTPUTS
 
         return OUTPUTS
 
 
-EXTRA = AccessByPin()
+EXTRA = AccessExtra()

@@ -7,133 +7,147 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 
-from app.desk.access import Access
-from app.desk.background_work import Latest
-from app.desk.translation import data, tr
-from core.access.access_table import Level
-from core.executor.snapshot import Snapshot, State
-from core.extras.access.pins import Hashed, WrongPins, hashed, is_outdated, is_pin
+from app.desk.access import UserAccess
+from app.desk.background_work import LatestRequestWorker
+from app.desk.translation import mark_untranslated, tr
+from core.access.access_table import AccessLevel
+from core.executor.snapshot import MachineState, Snapshot
+from core.extras.access.pins import PinHash, WrongPinCounter, hash_pin, is_outdated, matches_hash
 from core.message import Message
-from core.store.people import PersonRow
 from core.store.store_errors import StoreError
+from core.store.user_records import UserRow
 
-MINUTES = (2, 5, 10, 30, 60)  # minutes without input before the automatic sign-out
-_USUAL = 10
-_WARNED = 30.0  # seconds of warning before the sign-out
+TIMEOUT_CHOICES_MIN = (2, 5, 10, 30, 60)  # minutes without input before the automatic sign-out
+_DEFAULT_TIMEOUT_MIN = 10
+_WARNING_TIME_S = 30.0  # seconds of warning before the sign-out
 _WRONG, _MINUTES = "wrong PINs", "access minutes"  # names of settings
 
 
 @dataclass(slots=True)
-class SignIn:
-    """Implementation of ``app.desk.access.Session`` with PINs.
+class PinSignIn:
+    """Implementation of ``app.desk.access.SignInSession`` with PINs.
 
-    ``used`` is called for every key and touch.
+    ``note_activity`` is called for every key and touch.
     """
 
-    access: Access
-    minutes: int = _USUAL
-    wrong: WrongPins = field(default_factory=WrongPins)
-    worker: Latest = field(default_factory=lambda: Latest("access"))
-    reset_look: Callable[[Snapshot], None] = lambda _snapshot: None  # of a service reset
+    access: UserAccess
+    timeout_min: int = _DEFAULT_TIMEOUT_MIN
+    wrong_pins: WrongPinCounter = field(default_factory=WrongPinCounter)
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("access"))
+    update_reset: Callable[[Snapshot], None] = lambda _snapshot: None  # of a service reset
     _used: float = 0.0
     _warned: bool = False
 
     def __post_init__(self) -> None:
-        self.access.session = self
+        self.access.sign_in_session = self
         self.access.reload()
 
     def reload(self) -> None:
         """Load the time of the automatic sign-out and the wrong PINs. Raises StoreError."""
         persistence = self.access.persistence
         minutes, wrong = persistence.read_setting(_MINUTES), persistence.read_setting(_WRONG)
-        self.minutes = minutes if isinstance(minutes, int) and minutes in MINUTES else _USUAL
-        if isinstance(wrong, int) and wrong > self.wrong.count:
-            self.wrong = WrongPins(wrong, self.access.clock())
+        self.timeout_min = (
+            minutes if isinstance(minutes, int) and minutes in TIMEOUT_CHOICES_MIN else _DEFAULT_TIMEOUT_MIN
+        )
+        if isinstance(wrong, int) and wrong > self.wrong_pins.count:
+            self.wrong_pins = WrongPinCounter(wrong, self.access.read_time_s())
 
     # --- sign-in and sign-out ------------------------------------------------------------------------
 
-    def sign_in(self, row: PersonRow, pin: str) -> None:
+    def sign_in(self, row: UserRow, pin: str) -> None:
         """Check a PIN. The result arrives in a later frame, and each wrong PIN increases the wait."""
-        left = self.wrong.left(self.access.clock())
+        left = self.wrong_pins.get_remaining_delay(self.access.read_time_s())
         if left > 0.0:
             self.access.say(
                 tr(Message("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S", seconds=f"{left:.0f}"))
             )
         elif not row.has_pin:
             self.access.say(
-                tr(Message("{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN", name=data(row.name)))
+                tr(
+                    Message(
+                        "{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN", name=mark_untranslated(row.name)
+                    )
+                )
             )
-        elif not self.worker.busy:
-            self.access.say(tr(Message("CHECKING THE PIN OF {name}", name=data(row.name))))
-            self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.access.say)
+        elif not self.worker.is_busy:
+            self.access.say(tr(Message("CHECKING THE PIN OF {name}", name=mark_untranslated(row.name))))
+            self.worker.enqueue(
+                partial(self._check_pin, row, pin), partial(self._tried, row), self.access.say
+            )
 
-    def _try(self, row: PersonRow, pin: str) -> bool:
+    def _check_pin(self, row: UserRow, pin: str) -> bool:
         """Return whether the PIN is correct. An outdated hash is replaced. Runs on the worker."""
-        kept = Hashed(row.salt, row.hash)
-        right = is_pin(pin, kept)
+        kept = PinHash(row.salt, row.hash)
+        right = matches_hash(pin, kept)
         if right and is_outdated(kept):
             with suppress(StoreError):  # retried at the next sign-in
-                renewed = PersonRow(row.name, row.level, *hashed(pin))
-                self.access.persistence.opened().people.save_person(renewed).result()
+                renewed = UserRow(row.name, row.level, *hash_pin(pin))
+                self.access.persistence.require_store().people.save_user(renewed).result()
         return right
 
-    def _tried(self, row: PersonRow, right: bool) -> None:
+    def _tried(self, row: UserRow, right: bool) -> None:
         if right:
             self.access.reload()  # the hash may be new
-            self.wrong.right()
-            self.access.name, self.access.level = row.name, Level(row.level)
-            self.used()
-            self.access.note(
-                Message("{row} has signed in: {level}", row=row.name, level=self.access.level.name)
+            self.wrong_pins.reset()
+            self.access.user_name, self.access.access_level = row.name, AccessLevel(row.level)
+            self.note_activity()
+            self.access.log_access(
+                Message("{row} has signed in: {level}", row=row.name, level=self.access.access_level.name)
             )
             self.access.say(
                 tr(
                     Message(
-                        "{name} HAS SIGNED IN: {level}", name=data(row.name), level=tr(self.access.level.name)
+                        "{name} HAS SIGNED IN: {level}",
+                        name=mark_untranslated(row.name),
+                        level=tr(self.access.access_level.name),
                     )
                 )
             )
         else:
-            self.wrong.wrong(self.access.clock())
-            self.access.note(
+            self.wrong_pins.count_wrong_pin(self.access.read_time_s())
+            self.access.log_access(
                 Message(
                     "wrong PIN for {row}; consecutive wrong PINs: {count}",
                     row=row.name,
-                    count=self.wrong.count,
+                    count=self.wrong_pins.count,
                 )
             )
-            left = self.wrong.left(self.access.clock())
+            left = self.wrong_pins.get_remaining_delay(self.access.read_time_s())
             text = tr("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S")
-            self.access.say(tr(Message(text, name=data(row.name), seconds=f"{left:.0f}")))
-        self._keep(_WRONG, self.wrong.count or None)
+            self.access.say(tr(Message(text, name=mark_untranslated(row.name), seconds=f"{left:.0f}")))
+        self._keep(_WRONG, self.wrong_pins.count or None)
 
     # --- time ----------------------------------------------------------------------------------------
 
-    def used(self) -> None:
+    def note_activity(self) -> None:
         """Restart the time of the automatic sign-out after a key or touch."""
-        self._used, self._warned = self.access.clock(), False
+        self._used, self._warned = self.access.read_time_s(), False
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Process results, warn, and sign out after the time without input; called once per frame."""
         self.worker.poll()
-        self.reset_look(snapshot)
-        if not self.access.name:
+        self.update_reset(snapshot)
+        if not self.access.user_name:
             return
-        left = self._used + 60.0 * self.minutes - self.access.clock()
+        left = self._used + 60.0 * self.timeout_min - self.access.read_time_s()
         if left <= 0.0:
             words = tr("{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN")
-            self.access.say(tr(Message(words, name=data(self.access.name))))
-            self.access.sign_out(Message(", after {minutes} min without input", minutes=self.minutes))
-        elif left <= _WARNED and not self._warned:
+            self.access.say(tr(Message(words, name=mark_untranslated(self.access.user_name))))
+            self.access.sign_out(Message(", after {minutes} min without input", minutes=self.timeout_min))
+        elif left <= _WARNING_TIME_S and not self._warned:
             self._warned = True
             words = tr("{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN")
-            self.access.say(tr(Message(words, name=data(self.access.name), seconds=f"{left:.0f}")))
+            self.access.say(
+                tr(Message(words, name=mark_untranslated(self.access.user_name), seconds=f"{left:.0f}"))
+            )
 
-    def choose_minutes(self, minutes: int) -> None:
+    def set_timeout(self, minutes: int) -> None:
         """Set the time of the automatic sign-out in minutes."""
-        self.minutes = minutes
+        self.timeout_min = minutes
         self._keep(_MINUTES, minutes)
-        self.access.note(Message("automatic sign-out after {minutes} min without input", minutes=minutes))
+        self.access.log_access(
+            Message("automatic sign-out after {minutes} min without input", minutes=minutes)
+        )
 
     def _keep(self, key: str, value: object) -> None:
         try:
@@ -146,64 +160,64 @@ class SignIn:
         self.worker.close()
 
 
-def sign_in_of(access: Access) -> SignIn:
+def get_sign_in(access: UserAccess) -> PinSignIn:
     """Return the sign-in of TurnDesk, created if necessary."""
-    return access.session if isinstance(access.session, SignIn) else SignIn(access)
+    return access.sign_in_session if isinstance(access.sign_in_session, PinSignIn) else PinSignIn(access)
 
 
-WAIT = 600.0  # seconds
+RESET_DELAY_S = 600.0  # seconds
 
 
 @dataclass(slots=True)
 class AccessReset:
-    """Service reset. ``reset`` removes all users when the waiting time is over."""
+    """Service reset. ``remove_all_users`` removes all users when the waiting time is over."""
 
-    sign_in: SignIn
-    say: Callable[[str], None]
-    reset: Callable[[], None]
+    sign_in: PinSignIn
+    show_message: Callable[[str], None]
+    remove_all_users: Callable[[], None]
     _since: float | None = None
 
     def __post_init__(self) -> None:
-        self.sign_in.reset_look = self.look
+        self.sign_in.update_reset = self.update
 
     @property
-    def access(self) -> Access:
+    def access(self) -> UserAccess:
         """Present access of TurnDesk."""
         return self.sign_in.access
 
     @property
-    def under_way(self) -> bool:
+    def is_running(self) -> bool:
         """Whether the waiting time is running."""
         return self._since is not None
 
-    def why_not(self, snapshot: Snapshot) -> str:
+    def find_start_refusal(self, snapshot: Snapshot) -> str:
         """Return the reason why the reset cannot start, or an empty string."""
-        if not self.access.people.on:
+        if not self.access.users.is_access_restricted:
             return tr("NO ACCESS LEVELS TO RESET")
-        if snapshot.state is not State.ESTOP:
+        if snapshot.state is not MachineState.ESTOP:
             return tr("PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS")
         return ""
 
-    def begin(self) -> None:
+    def start(self) -> None:
         """Start the waiting time."""
-        self._since = self.access.clock()
-        self.access.note("service reset started: the E-stop must stay pressed for 10 min")
+        self._since = self.access.read_time_s()
+        self.access.log_access("service reset started: the E-stop must stay pressed for 10 min")
 
-    def look(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Snapshot) -> None:
         """Execute the reset after the waiting time, once per frame.
 
         A release of the E-stop or a sign-in cancels the reset.
         """
         if self._since is None:
             return
-        left = self._since + WAIT - self.access.clock()
-        if snapshot.state is not State.ESTOP or self.access.name:
+        left = self._since + RESET_DELAY_S - self.access.read_time_s()
+        if snapshot.state is not MachineState.ESTOP or self.access.user_name:
             self._since = None
-            self.access.note("service reset canceled")
-            self.say(tr("SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED"))
+            self.access.log_access("service reset canceled")
+            self.show_message(tr("SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED"))
         elif left <= 0.0:
             self._since = None
-            self.access.note("service reset done: all users and PINs removed, access levels off")
-            self.reset()
+            self.access.log_access("service reset done: all users and PINs removed, access levels off")
+            self.remove_all_users()
         time = f"{int(left // 60)}:{int(left % 60):02d}"
-        self.access.pending = tr(Message("PIN RESET IN {time}", time=time)) if self.under_way else ""
+        self.access.pending_notice = tr(Message("PIN RESET IN {time}", time=time)) if self.is_running else ""

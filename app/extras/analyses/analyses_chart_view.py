@@ -8,9 +8,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.extras.analyses.drawing import Drawing
-from app.screen.chart import Chart, Plot, curve_colour, line_pen, set_curve
-from app.screen.look import Look
+from app.extras.analyses.drawing import AnalysisDrawing
+from app.screen.chart import Chart, ChartPlot, find_curve_color, make_line_pen, set_curve_points
+from app.screen.screen_theme import ScreenTheme
 
 FloatArray = npt.NDArray[np.float64]
 _LEFT = 9.0  # units
@@ -20,37 +20,37 @@ _ROOM = 0.06  # ratio: margin around the lines
 class AnalysisChart(Chart):
     """Chart of an analysis. ``show_drawing`` sets its lines and scales the chart to fit."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self.drawing = Drawing()
+    def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
+        super().__init__(theme, parent)
+        self.drawing = AnalysisDrawing()
 
-    def show_drawing(self, drawing: Drawing) -> bool:
+    def show_drawing(self, drawing: AnalysisDrawing) -> bool:
         """Draw a drawing.
 
         Return False while plots are still being created, so that the caller repeats.
         """
-        if not self.ready(bool(drawing.curves) + bool(drawing.below)):
+        if not self.prepare_plots(bool(drawing.curves) + bool(drawing.lower_curves)):
             return False
         self.drawing = drawing
-        self.empty()
+        self.remove_plots()
         if not drawing.curves:
             return True
-        upper = self.add()
-        upper.vb.invertY(drawing.downwards)
-        self._fill(upper, drawing.soft, drawing.curves)
-        if drawing.below:
-            self._fill(self.add(), np.empty((0, 2)), drawing.below)
-        self.share_left(_LEFT)
+        upper = self.add_plot()
+        upper.vb.invertY(drawing.is_inverted)
+        self._fill(upper, drawing.command_points, drawing.curves)
+        if drawing.lower_curves:
+            self._fill(self.add_plot(), np.empty((0, 2)), drawing.lower_curves)
+        self.set_left_width(_LEFT)
         self._fit()
         return True
 
-    def _fill(self, plot: Plot, soft: FloatArray, curves: tuple[FloatArray, ...]) -> None:
+    def _fill(self, plot: ChartPlot, soft: FloatArray, curves: tuple[FloatArray, ...]) -> None:
         if len(soft):
-            line = plot.curve(line_pen(self.look.colour("todo")))
-            set_curve(line, soft[:, 0], soft[:, 1])
+            line = plot.add_curve(make_line_pen(self.theme.color("todo")))
+            set_curve_points(line, soft[:, 0], soft[:, 1])
         for number, points in enumerate(curves):
-            line = plot.curve(line_pen(curve_colour(self.look, number)))
-            set_curve(line, points[:, 0], points[:, 1])
+            line = plot.add_curve(make_line_pen(find_curve_color(self.theme, number)))
+            set_curve_points(line, points[:, 0], points[:, 1])
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Scale equal axes again after a change of size."""
@@ -61,13 +61,13 @@ class AnalysisChart(Chart):
     def _fit(self) -> None:
         self.ci.layout.activate()
         drawing = self.drawing
-        _range(self.plots[0], [drawing.soft, *drawing.curves], equal=drawing.equal)
-        if drawing.below:
-            _range(self.plots[1], list(drawing.below), equal=False)
+        _range(self.plots[0], [drawing.command_points, *drawing.curves], equal=drawing.has_equal_axes)
+        if drawing.lower_curves:
+            _range(self.plots[1], list(drawing.lower_curves), equal=False)
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors and fonts."""
-        super().dress()
+        super().apply_theme()
         if self.plots:
             self.show_drawing(self.drawing)
 
@@ -76,30 +76,30 @@ class AnalysisChart(Chart):
         super().drawForeground(painter, rect)
         if not self.plots:
             return
-        u, plot, names = self.look.u, self.plots[0], self.drawing.names
+        u, plot, names = self.theme.u, self.plots[0], self.drawing.axis_labels
         for shown, text in zip(self.plots, names, strict=False):
-            self.name(painter, text, shown.room())
-        last = self.plots[-1].room()
+            self.name(painter, text, shown.find_curve_area())
+        last = self.plots[-1].find_curve_area()
         right = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom
         painter.drawText(last.adjusted(0, 0, -0.6 * u, -0.3 * u), right, names[2])
         (x0, x1), (y0, y1) = plot.vb.viewRange()
-        room = plot.room()
-        for x, y, word in self.drawing.marks:
-            down = (y - y0) / (y1 - y0) if self.drawing.equal else (y1 - y) / (y1 - y0)
+        room = plot.find_curve_area()
+        for x, y, word in self.drawing.labeled_points:
+            down = (y - y0) / (y1 - y0) if self.drawing.has_equal_axes else (y1 - y) / (y1 - y0)
             at = QPointF(room.x() + (x - x0) / (x1 - x0) * room.width(), room.y() + down * room.height())
-            painter.setPen(self.look.pen("pause", 0.2))
+            painter.setPen(self.theme.make_pen("pause", 0.2))
             painter.drawEllipse(at, 1.4 * u, 1.4 * u)
-            painter.setFont(self.look.font(1.7, bold=True))
+            painter.setFont(self.theme.make_font(1.7, is_bold=True))
             box = QRectF(at.x() - 8 * u, at.y() - 4.2 * u, 16 * u, 2.4 * u)
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, word)
 
 
-def _range(plot: Plot, parts: list[FloatArray], *, equal: bool) -> None:
+def _range(plot: ChartPlot, parts: list[FloatArray], *, equal: bool) -> None:
     """Set the range to all points. ``equal`` uses one scale for both axes."""
     points = np.concatenate([each for each in parts if len(each)])
     low, high = points.min(axis=0), points.max(axis=0)
     middle, wide = 0.5 * (low + high), np.maximum((1.0 + 2.0 * _ROOM) * (high - low), 1e-6)
-    room = plot.room()
+    room = plot.find_curve_area()
     if equal and room.width() > 1.0 and room.height() > 1.0:
         scale = max(wide[0] / room.width(), wide[1] / room.height())
         wide = scale * np.array([room.width(), room.height()])

@@ -10,19 +10,19 @@ from PySide6.QtCore import QRect, QRectF
 from PySide6.QtGui import QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.background_work import Latest
-from app.desk.pages.sheet import Key
-from app.desk.programs.program_loading import Loaded
+from app.desk.background_work import LatestRequestWorker
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.formats import MM_PER_INCH
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.extras.analyses.analyses import Analyses, Kind, scaled
-from app.extras.analyses.drawing import Drawing
+from app.extras.analyses.analyses import AnalysesModel, AnalysisKind, scale_drawing
+from app.extras.analyses.drawing import AnalysisDrawing
 from app.screen import page_table
-from app.screen.look import Look, Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
-from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
+from app.screen.table_panel import ListPage, TablePanel
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -39,61 +39,69 @@ def _chart_class() -> type[AnalysisChart]:
     return AnalysisChart
 
 
-class DrawingRoom(QWidget):
+class DrawingArea(QWidget):
     """Area of the drawing, empty until the chart class is loaded."""
 
-    part_name = "CHART"
+    accessible_name = "CHART"
 
-    def __init__(self, look: Look, worker: Latest, say: Callable[[str], None], parent: QWidget) -> None:
+    def __init__(
+        self,
+        theme: ScreenTheme,
+        worker: LatestRequestWorker,
+        show_message: Callable[[str], None],
+        parent: QWidget,
+    ) -> None:
         super().__init__(parent)
-        self._look = look
+        self._look = theme
         self.chart: AnalysisChart | None = None  # None until it is loaded
         self._shown: object = None
-        worker.queue(_chart_class, self._chart_there, say)
+        worker.enqueue(_chart_class, self._chart_there, show_message)
 
     def _chart_there(self, chart: type[AnalysisChart]) -> None:
         self.chart = chart(self._look, self)
         self.chart.setGeometry(self.rect())
         self.chart.show()
 
-    def ready(self) -> bool:
+    def is_ready(self) -> bool:
         """Return whether the chart and its plots exist."""
-        return self.chart is not None and self.chart.ready(_PLOTS)
+        return self.chart is not None and self.chart.prepare_plots(_PLOTS)
 
-    def show_drawing(self, drawn: object, drawing: Callable[[], Drawing], *, metric: bool) -> None:
-        """Show a drawing in mm or inches, unless ``drawn`` identifies the present drawing."""
-        if self.chart is None or drawn == self._shown:
+    def show_drawing(
+        self, drawing_id: object, drawing: Callable[[], AnalysisDrawing], *, metric: bool
+    ) -> None:
+        """Show a drawing in mm or inches, unless ``drawing_id`` identifies the present drawing."""
+        if self.chart is None or drawing_id == self._shown:
             return
-        if self.chart.show_drawing(scaled(drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)):
-            self._shown = drawn
+        if self.chart.show_drawing(scale_drawing(drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)):
+            self._shown = drawing_id
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Draw again with the present colors and language."""
         self._shown = None
         if self.chart is not None:
-            self.chart.dress()
+            self.chart.apply_theme()
 
     def lay_out(self, place: QRect) -> None:
         """Place the area and resize the chart, even while hidden."""
         self.setGeometry(place)
         if self.chart is not None:
             self.chart.setGeometry(self.rect())
-            self.chart.dress()
+            self.chart.apply_theme()
 
 
 _TABLE, _HEAD = 50.0, 3.4  # units
 
 
-class Above(Panel):
+class DescriptionLine(Panel):
     """Line with the description of the analysis, or the reason for a missing result."""
 
-    ground = "panel"
-    words = Shown("")
+    ground_color = "panel"
+    words = RedrawingAttribute("")
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
-        room = self.area().adjusted(0.8 * u, 0, -0.8 * u, 0)
-        painter.write(QRectF(room), self.words, 1.8, "text")
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
+        room = self.find_full_area().adjusted(0.8 * u, 0, -0.8 * u, 0)
+        painter.draw_text_line(QRectF(room), self.words, 1.8, "text")
 
 
 class AnalysesPage(ListPage):
@@ -102,46 +110,46 @@ class AnalysesPage(ListPage):
     NAME = page_table.ANALYSES
     model: _Keys
 
-    def __init__(self, host: Host, analyses: Analyses, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, analyses: AnalysesModel, parent: QWidget) -> None:
         super().__init__(host, _Keys(analyses), parent)
         self.analyses = analyses
-        self.above = Above(self.look, self)
-        self.drawing = DrawingRoom(self.look, analyses.worker, self.desk.say, self)
-        self.table = SheetPanel(self.look, analyses.mark, self)
+        self.description = DescriptionLine(self.theme, self)
+        self.drawing = DrawingArea(self.theme, analyses.worker, self.desk.say, self)
+        self.table = TablePanel(self.theme, analyses.select_row, self)
 
-    def ahead(self) -> bool:
+    def prepare_slice(self) -> bool:
         """Create the chart and its plots in steps, before the page is first shown."""
         self.analyses.worker.poll()
-        return not self.drawing.ready()
+        return not self.drawing.is_ready()
 
-    def _keys(self) -> Mapping[str, Key]:
-        choose = self.analyses.choose
+    def _keys(self) -> Mapping[str, FunctionKey]:
+        choose = self.analyses.choose_analysis
         mill = self.desk.machine.language == "klartext"  # no axis of a mill follows the spindle
-        thread = {} if mill else {"F3": Key("THREAD", partial(choose, Kind.THREAD))}
+        thread = {} if mill else {"F3": FunctionKey("THREAD", partial(choose, AnalysisKind.THREAD))}
         return {
-            "F2": Key("PATH", partial(choose, Kind.PATH)),
+            "F2": FunctionKey("PATH", partial(choose, AnalysisKind.PATH)),
             **thread,
-            "F4": Key("BALL BAR", partial(choose, Kind.BALL_BAR)),
-            "F5": Key("NEXT ARC", self.analyses.next_arc),
-            "F6": Key("RESPONSE", partial(choose, Kind.RESPONSE)),
-            "F8": Key("SCOPE", self._back),
-            "F9": Key("TEST", self._test),
-            "F10": Key("SPINDLE", partial(choose, Kind.SPINDLE)),
+            "F4": FunctionKey("BALL BAR", partial(choose, AnalysisKind.BALL_BAR)),
+            "F5": FunctionKey("NEXT ARC", self.analyses.select_next_arc),
+            "F6": FunctionKey("RESPONSE", partial(choose, AnalysisKind.AXIS_RESPONSE)),
+            "F8": FunctionKey("SCOPE", self._back),
+            "F9": FunctionKey("TEST", self._test),
+            "F10": FunctionKey("SPINDLE", partial(choose, AnalysisKind.SPINDLE_RESPONSE)),
         }
 
     def _test(self) -> None:
-        self.host.go("DRIVE TEST")
+        self.host.open_page("DRIVE TEST")
 
     def _back(self) -> None:
-        self.host.go(page_table.SCOPE)
+        self.host.open_page(page_table.SCOPE)
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of the analyses and of the key that returns to the scope."""
-        return self.labels_of({}, self._keys())
+        return self.make_labels({}, self._keys())
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the function keys and of the magnification."""
-        magnify = self.analyses.magnify
+        magnify = self.analyses.change_magnification
         return {
             **{name: key.action for name, key in self._keys().items()},
             "Zoom in": partial(magnify, 1),
@@ -150,39 +158,39 @@ class AnalysesPage(ListPage):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Change the magnification with the wheel."""
-        self.analyses.magnify(1 if event.angleDelta().y() > 0 else -1)
+        self.analyses.change_magnification(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Clear the message.
 
         Otherwise leave Esc to the window, which holds the feed during motion.
         """
-        if self.desk.notice:
-            self.desk.clear()
+        if self.desk.prompt_notice:
+            self.desk.clear_prompt_line()
             return True
         return False
 
-    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Show the present result."""
         analyses = self.analyses
-        analyses.look()
-        self.above.words = analyses.words
-        self.table.show_sheet(analyses.sheet())
+        analyses.update()
+        self.description.words = analyses.description
+        self.table.show_table(analyses.make_table())
         metric = analyses.scope.metric
-        shown = (analyses.found, analyses.magnified, analyses.marked, metric)
-        self.drawing.show_drawing(shown, analyses.drawing, metric=metric)
+        shown = (analyses.result, analyses.magnification, analyses.selected_row, metric)
+        self.drawing.show_drawing(shown, analyses.make_drawing, metric=metric)
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors and language."""
-        self.drawing.dress()
+        self.drawing.apply_theme()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange drawing and table."""
-        u = self.look.u
+        u = self.theme.u
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left = self.width() - side - gap
-        self.above.setGeometry(0, 0, left, high)
+        self.description.setGeometry(0, 0, left, high)
         self.drawing.lay_out(QRect(0, high, left, self.height() - high))
         self.table.setGeometry(left + gap, 0, side, self.height())
 
@@ -190,28 +198,28 @@ class AnalysesPage(ListPage):
 class _Keys:
     """Adapter between the page and its model."""
 
-    def __init__(self, analyses: Analyses) -> None:
+    def __init__(self, analyses: AnalysesModel) -> None:
         self._analyses = analyses
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Select a row by arrow keys."""
         return self._analyses.typed(key)
 
-    def takes(self, _key: str) -> bool:
+    def accepts_key(self, _key: str) -> bool:
         """Return False, because this page has no entry."""
         return False
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Analyze the present data."""
         self._analyses.opened()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Return False, because there is nothing to close."""
         return False
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
         return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE")
 
-    def leave(self) -> None:
+    def on_close(self) -> None:
         """Do nothing, because there is nothing to close."""

@@ -13,86 +13,90 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.desk.pages.sheet import Row, Sheet
+from app.desk.pages.table_content import TableContent, TableRow
 from app.desk.status import formats
 from app.desk.translation import tr
-from app.extras.analyses.drawing import Drawing
+from app.extras.analyses.drawing import AnalysisDrawing
 from core.extras.analyses.step_response import (
     StepResponse,
-    at_other_speed,
-    lag_of,
-    narrowest_window,
-    speed_of_window,
-    step_response,
-    would_trip,
+    analyze_step,
+    find_narrowest_limit,
+    find_speed_at_limit,
+    find_trip_time,
+    fit_lag,
+    scale_error_to_speed,
 )
 from core.machine.machine_model import Axis
 from core.message import Message
-from core.records.record import AnalysisError, Record, velocity
+from core.records.record import AnalysisError, ScopeRecord, calculate_velocity
 
 FloatArray = npt.NDArray[np.float64]
 _BEFORE, _BEHIND = 0.2, 1.0  # seconds of rest before and after a move
 _REST = 0.15  # seconds without a new setpoint that end a move
 _STILL = 1e-7  # mm: smaller differences of setpoints are ignored
-FACTORS = (1.5, 2.0)  # ratios to the speed
-WINDOWS = (0.5, 0.25)  # ratios to the following-error limit
+SPEED_RATIOS = (1.5, 2.0)  # ratios to the speed
+LIMIT_RATIOS = (0.5, 0.25)  # ratios to the following-error limit
 
 
-SHARES = (0.5, 0.2, 0.3)  # ratios of the columns: name, verdict, value
+COLUMN_SHARES = (0.5, 0.2, 0.3)  # ratios of the columns: name, verdict, value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Moved:
+class AxisMotion:
     """Motion of one axis.
 
     ``times`` (n,) are seconds from its start. ``speed`` is the highest commanded speed in mm/s.
     """
 
-    letter: str
-    times: FloatArray
-    demand: FloatArray
-    actual: FloatArray
-    speed: float
-    lag: float  # seconds, from the part of the error that is proportional to the speed
+    axis_letter: str
+    times_s: FloatArray
+    setpoints: FloatArray
+    positions: FloatArray
+    max_speed_mm_s: float
+    lag_s: float  # seconds, from the part of the error that is proportional to the speed
     axis: Axis
 
     @property
-    def error(self) -> FloatArray:
+    def following_error(self) -> FloatArray:
         """Following error (n,)."""
-        return self.demand - self.actual
+        return self.setpoints - self.positions
 
-    def faster(self, factor: float) -> FloatArray:
+    def predict_error(self, factor: float) -> FloatArray:
         """Return the expected following error at ``factor`` times the speed."""
-        return at_other_speed(np.nan_to_num(velocity(self.times, self.demand)), self.error, factor)
+        return scale_error_to_speed(
+            np.nan_to_num(calculate_velocity(self.times_s, self.setpoints)), self.following_error, factor
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class AxisResponse(Moved):
+class AxisResponse(AxisMotion):
     """Motion from rest to rest with its step response."""
 
-    step: StepResponse
+    step_response: StepResponse
 
 
-def moved(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> Moved:
+def make_motion(
+    letter: str, axis: Axis, record: ScopeRecord, sample_range: slice, start_time: float
+) -> AxisMotion:
     """Return the motion of an axis in a part of a record, with times relative to ``zero`` of its clock."""
-    times = record.times[cut] - zero
+    times = record.times_s[sample_range] - start_time
     demand, actual = (
-        record.columns[Message("{item} demand", item=letter)][cut],
-        record.columns[Message("{item} actual", item=letter)][cut],
+        record.values_by_channel[Message("{item} demand", item=letter)][sample_range],
+        record.values_by_channel[Message("{item} actual", item=letter)][sample_range],
     )
-    speeds = np.nan_to_num(velocity(times, demand))
+    speeds = np.nan_to_num(calculate_velocity(times, demand))
     speed = float(np.abs(speeds).max(initial=0.0))
-    return Moved(letter, times, demand, actual, speed, lag_of(speeds, demand - actual), axis)
+    return AxisMotion(letter, times, demand, actual, speed, fit_lag(speeds, demand - actual), axis)
 
 
-def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
+def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> AxisResponse:
     """Return the last move of one axis from rest to rest. Raises AnalysisError."""
     found: tuple[int, int, str] | None = None
-    for letter in drives:
-        demand = record.columns.get(Message("{item} demand", item=letter))
-        if drives[letter].rotary or demand is None or not np.isfinite(demand).all():
+    for letter in linear_axes:
+        demand = record.values_by_channel.get(Message("{item} demand", item=letter))
+        if linear_axes[letter].rotary or demand is None or not np.isfinite(demand).all():
             continue
-        spans = stretches(record.times, demand)
+        spans = find_moves(record.times_s, demand)
         if spans and (found is None or spans[-1][1] > found[1]):
             found = (*spans[-1], letter)
     if found is None:
@@ -104,15 +108,15 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
             "no-step",
         )
     first, last, letter = found
-    times = record.times
+    times = record.times_s
     begin = int(np.searchsorted(times, times[first] - _BEFORE))
     end = int(np.searchsorted(times, times[last] + _BEHIND))
-    return _response(letter, drives[letter], record, slice(begin, end), float(times[first]))
+    return _response(letter, linear_axes[letter], record, slice(begin, end), float(times[first]))
 
 
-def stretches(times: FloatArray, demand: FloatArray) -> list[tuple[int, int]]:
+def find_moves(times: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
     """Return the first and last sample of every completed move, oldest first."""
-    moving = np.flatnonzero(np.abs(np.diff(demand)) > _STILL)
+    moving = np.flatnonzero(np.abs(np.diff(setpoints)) > _STILL)
     if not len(moving):
         return []
     breaks = np.flatnonzero(np.diff(times[moving]) > _REST)
@@ -123,91 +127,106 @@ def stretches(times: FloatArray, demand: FloatArray) -> list[tuple[int, int]]:
     return [(int(moving[a]), int(moving[b]) + 1) for a, b in zip(starts, ends, strict=True)]
 
 
-def _response(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> AxisResponse:
-    found = moved(letter, axis, record, cut, zero)
-    step = step_response(found.times, found.demand, found.actual, axis.in_position)
+def _response(letter: str, axis: Axis, record: ScopeRecord, cut: slice, zero: float) -> AxisResponse:
+    found = make_motion(letter, axis, record, cut, zero)
+    step = analyze_step(found.times_s, found.setpoints, found.positions, axis.in_position)
     return AxisResponse(
-        letter, found.times, found.demand, found.actual, found.speed, found.lag, axis, step=step
+        letter,
+        found.times_s,
+        found.setpoints,
+        found.positions,
+        found.max_speed_mm_s,
+        found.lag_s,
+        axis,
+        step_response=step,
     )
 
 
-def response_drawing(found: Moved) -> Drawing:
+def draw_response(response: AxisMotion) -> AnalysisDrawing:
     """Return the drawing of command and actual position above, and following error below, over seconds."""
-    asked = np.column_stack([found.times, found.demand])
-    done = np.column_stack([found.times, found.actual])
-    error = np.column_stack([found.times, found.error])
-    names = f"{found.letter}  {{unit}}", tr("FOLLOWING ERROR") + "  {unit}", "s"
-    return Drawing(asked, (done,), (error,), equal=False, lengths_below=True, names=names)
+    asked = np.column_stack([response.times_s, response.setpoints])
+    done = np.column_stack([response.times_s, response.positions])
+    error = np.column_stack([response.times_s, response.following_error])
+    names = f"{response.axis_letter}  {{unit}}", tr("FOLLOWING ERROR") + "  {unit}", "s"
+    return AnalysisDrawing(
+        asked, (done,), (error,), has_equal_axes=False, is_lower_length=True, axis_labels=names
+    )
 
 
 @dataclass(frozen=True, slots=True)
-class Units:
+class UnitFormat:
     """Text format of lengths and speeds."""
 
     metric: bool
 
     @property
-    def name(self) -> str:
+    def length_unit(self) -> str:
         """Unit of a length."""
         return "mm" if self.metric else "in"
 
     def way(self, mm: float) -> str:
         """Return a length as text."""
-        return f"{formats.length(mm, self.metric)} {self.name}"
+        return f"{formats.format_length(mm, self.metric)} {self.length_unit}"
 
-    def speed(self, mm: float) -> str:
+    def format_speed(self, mm: float) -> str:
         """Return a speed per second as text."""
-        return f"{formats.fixed(mm if self.metric else mm / formats.MM_PER_INCH, 3)} {self.name}/s"
+        return (
+            f"{formats.format_fixed(mm if self.metric else mm / formats.MM_PER_INCH, 3)} {self.length_unit}/s"
+        )
 
-    def share(self, part: float) -> str:
+    def format_percentage(self, part: float) -> str:
         """Return a ratio as a percentage."""
-        return f"{formats.fixed(100.0 * part, 2)} %"
+        return f"{formats.format_fixed(100.0 * part, 2)} %"
 
-    def ms(self, seconds: float) -> str:
+    def format_milliseconds(self, seconds: float) -> str:
         """Return a short time in milliseconds as text."""
         return (
-            Message("{seconds} ms", seconds=formats.fixed(1000.0 * seconds, 1))
+            Message("{seconds} ms", seconds=formats.format_fixed(1000.0 * seconds, 1))
             if math.isfinite(seconds)
-            else formats.NOTHING
+            else formats.NO_VALUE
         )
 
 
-def step_rows(steps: Sequence[StepResponse], units: Units) -> list[tuple[str, ...]]:
+def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tuple[str, ...]]:
     """Return one row per value, with one cell per step."""
     return [
-        (tr("RISE, 10 TO 90 %"), *(units.ms(each.rise) for each in steps)),
-        (tr("OVERSHOOT"), *(units.share(each.overshoot) for each in steps)),
-        (tr("TIME UNTIL IN POSITION"), *(units.ms(each.settling) for each in steps)),
+        (tr("RISE, 10 TO 90 %"), *(units.format_milliseconds(each.rise_time_s) for each in steps)),
+        (tr("OVERSHOOT"), *(units.format_percentage(each.overshoot) for each in steps)),
+        (tr("TIME UNTIL IN POSITION"), *(units.format_milliseconds(each.settling_time_s) for each in steps)),
     ]
 
 
-def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
+def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, str, str]]:
     """Return rows of name, verdict and value for the following-error limit, other limits and other speeds."""
-    axis, times, error = found.axis, found.times, found.error
+    axis, times, error = response.axis, response.times_s, response.following_error
 
     def trips(error: FloatArray, window: float) -> str:
-        at = would_trip(times, error, window, axis.following_time)
-        return tr("no trip") if at is None else tr(Message("trips at {position}", position=units.ms(at)))
+        at = find_trip_time(times, error, window, axis.following_time)
+        return (
+            tr("no trip")
+            if at is None
+            else tr(Message("trips at {position}", position=units.format_milliseconds(at)))
+        )
 
-    limit, greatest = axis.following_limit(found.speed), float(np.abs(error).max())
-    least = narrowest_window(times, error, axis.following_time)
-    reached = speed_of_window(abs(found.lag), axis.still_window, axis.following_window, axis.vmax)
+    limit, greatest = axis.max_following_error(response.max_speed_mm_s), float(np.abs(error).max())
+    least = find_narrowest_limit(times, error, axis.following_time)
+    reached = find_speed_at_limit(abs(response.lag_s), axis.still_window, axis.following_window, axis.vmax)
     rows = [
-        (tr("FOLLOWING LAG"), "", units.ms(found.lag)),
+        (tr("FOLLOWING LAG"), "", units.format_milliseconds(response.lag_s)),
         (tr("LARGEST ERROR"), "", units.way(greatest)),
         (tr("ERROR LIMIT AT THIS SPEED"), trips(error, limit), units.way(limit)),
         (tr("SMALLEST LIMIT WITHOUT A TRIP"), "", units.way(least)),
     ]
-    for share in WINDOWS:
-        name = tr(Message("LIMIT REDUCED TO {share}", share=formats.percent(share)))
+    for share in LIMIT_RATIOS:
+        name = tr(Message("LIMIT REDUCED TO {share}", share=formats.format_percent(share)))
         rows.append((name, trips(error, share * limit), units.way(share * limit)))
-    for factor in FACTORS:
-        faster = found.faster(factor)
-        name = tr(Message("AT {share} SPEED", share=formats.percent(factor)))
-        verdict = trips(faster, axis.following_limit(factor * found.speed))
+    for factor in SPEED_RATIOS:
+        faster = response.predict_error(factor)
+        name = tr(Message("AT {share} SPEED", share=formats.format_percent(factor)))
+        verdict = trips(faster, axis.max_following_error(factor * response.max_speed_mm_s))
         rows.append((name, verdict, units.way(float(np.abs(faster).max()))))
     at = (
-        units.speed(reached)
+        units.format_speed(reached)
         if reached is not None
         else tr("the limit is not reached in the axis speed range")
     )
@@ -215,20 +234,20 @@ def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
     return rows
 
 
-def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
+def make_response_table(title: str, response: AxisResponse, metric: bool) -> TableContent:
     """Return the table of the response, and the effect of other limits and speeds."""
-    units = Units(metric)
+    units = UnitFormat(metric)
     rows = [
-        Row((tr("TRAVEL"), "", units.way(found.step.way))),
-        Row((tr("MAXIMUM SPEED"), "", units.speed(found.speed))),
-        *(Row((name, "", figure)) for name, figure in step_rows([found.step], units)),
-        *map(Row, window_rows(found, units)),
+        TableRow((tr("TRAVEL"), "", units.way(response.step_response.step_size))),
+        TableRow((tr("MAXIMUM SPEED"), "", units.format_speed(response.max_speed_mm_s))),
+        *(TableRow((name, "", figure)) for name, figure in make_step_rows([response.step_response], units)),
+        *map(TableRow, make_limit_rows(response, units)),
     ]
     notes = (
         tr(
             Message(
                 "Last move of {axis}. These values are for information only; no setting was changed.",
-                axis=found.letter,
+                axis=response.axis_letter,
             )
         ),
         tr(
@@ -236,4 +255,6 @@ def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
             "open the drive tests."
         ),
     )
-    return Sheet(title, ("", "", ""), SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))
+    return TableContent(
+        title, ("", "", ""), COLUMN_SHARES, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
+    )

@@ -8,17 +8,17 @@ from PySide6.QtCore import QRect, QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.extras.analyses.analyses_view import Above, DrawingRoom
-from app.extras.analyses.drive_test_model import DriveTests
+from app.extras.analyses.analyses_view import DescriptionLine, DrawingArea
+from app.extras.analyses.drive_test_model import DriveTestModel
 from app.jog.held_keys_view import HeldKeysPage, JogCross
 from app.screen import page_table
-from app.screen.look import CENTRE, Look, Painter
-from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Shown
-from app.screen.sheet_panel import SheetPanel
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.panel import RedrawingAttribute
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
+from app.screen.table_panel import TablePanel
 from core.executor.snapshot import Snapshot
 from core.message import Message
 
@@ -31,21 +31,21 @@ class DriveTestPad(JogCross):
     The first press requests a direction. The next press runs the test while the key is held down.
     """
 
-    shown: Shown[object] = Shown(None)
+    displayed_state: RedrawingAttribute[object] = RedrawingAttribute(None)
 
-    def __init__(self, look: Look, model: DriveTests, parent: QWidget) -> None:
-        super().__init__(look, model.hold, model.directions, model.finger, parent)
+    def __init__(self, theme: ScreenTheme, model: DriveTestModel, parent: QWidget) -> None:
+        super().__init__(theme, model.held_jog, model.directions, model.press_direction, parent)
         self._model = model
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.controls.clear()
         self.frame(painter, tr("DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT"))
-        asked = self._model.hold.asked
-        middle = self.cross(painter, QRectF(self.inside()))
+        asked = self._model.held_jog.requested_direction
+        middle = self.draw_cross(painter, QRectF(self.inside()))
         if asked is not None:
             axis, sign = asked
             words = tr(Message("HOLD {direction}", direction=f"{axis}{'+' if sign > 0 else '−'}"))
-            painter.write(middle, words, 3.0, "pause", at=CENTRE, margin=0.6)
+            painter.draw_text_line(middle, words, 3.0, "pause", at=ALIGN_CENTER, margin=0.6)
 
 
 class DriveTestPage(HeldKeysPage):
@@ -57,75 +57,81 @@ class DriveTestPage(HeldKeysPage):
     NAME = "DRIVE TEST"
     LABELS = ("MENU", "SHAPE", "SIZE", "SPEED", "VALUES", "", "ALARMS", "ANALYZE", "JOG", "")
 
-    model: DriveTests
+    model: DriveTestModel
 
-    def __init__(self, host: Host, model: DriveTests, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: DriveTestModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.above = Above(self.look, self)
-        self.drawing = DrawingRoom(self.look, model.scope.filing, self.desk.say, self)
-        self.pad: DriveTestPad = DriveTestPad(self.look, model, self)
-        self.table = SheetPanel(self.look, model.choose, self)
+        self.description = DescriptionLine(self.theme, self)
+        self.drawing = DrawingArea(self.theme, model.scope.file_worker, self.desk.say, self)
+        self.jog_cross: DriveTestPad = DriveTestPad(self.theme, model, self)
+        self.table = TablePanel(self.theme, model.change_setting, self)
 
-    def ahead(self) -> bool:
+    def prepare_slice(self) -> bool:
         """Create the chart and its plots in steps, before the page is first shown."""
-        self.model.scope.filing.poll()
-        return not self.drawing.ready()
+        self.model.scope.file_worker.poll()
+        return not self.drawing.is_ready()
 
     def key_actions(self) -> KeyActions:
         """Return the actions for the selection, the results and the related pages."""
         model = self.model
         return {
-            "F2": model.next_shape,
-            "F3": model.next_size,
-            "F4": model.next_speed,
-            "F5": model.toggle_figures,
-            "F8": partial(self.host.go, page_table.ANALYSES),
-            "F9": partial(self.host.go, page_table.JOG),
+            "F2": model.select_next_shape,
+            "F3": model.select_next_size,
+            "F4": model.select_next_speed,
+            "F5": model.show_next_results,
+            "F8": partial(self.host.open_page, page_table.ANALYSES),
+            "F9": partial(self.host.open_page, page_table.JOG),
         }
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the key of the results as barred until a test has run."""
-        return frozenset() if self.model.found is not None else frozenset({"F5"})
+        return frozenset() if self.model.results is not None else frozenset({"F5"})
 
-    def asks(self) -> str:
+    def pending_question(self) -> str:
         """Return the question about the travel of the next press."""
-        return self.model.asks()
+        return self.model.make_travel_question()
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present state."""
         return self.model.prompt()
 
-    def lively(self) -> bool:
+    def is_animating(self) -> bool:
         """Return whether a key is held down."""
-        return self.model.active
+        return self.model.is_active
 
-    def leave(self) -> bool:
+    def try_leave(self) -> bool:
         """Stop all motion, and return True."""
-        self.pad.let_go()
+        self.jog_cross.release_all()
         self.model.leave()
         return True
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Renew the motion while a key is held down, and update the page."""
         if not self._has_keyboard():
-            self.let_go_if_held()
+            self.release_if_active()
         model = self.model
-        model.look(snapshot)
-        self.above.words = model.words()
-        self.table.show_sheet(model.sheet())
-        self.pad.shown = (model.hold.asked, model.hold.held and model.hold.held.source, snapshot.state)
-        self.drawing.show_drawing((model.found, model.metric), model.drawing, metric=model.metric)
+        model.update(snapshot)
+        self.description.words = model.describe_drawing()
+        self.table.show_table(model.make_table())
+        self.jog_cross.displayed_state = (
+            model.held_jog.requested_direction,
+            model.held_jog.active_jog and model.held_jog.active_jog.key_source,
+            snapshot.state,
+        )
+        self.drawing.show_drawing(
+            (model.results, model.is_metric), model.make_drawing, metric=model.is_metric
+        )
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors and language."""
-        self.drawing.dress()
+        self.drawing.apply_theme()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange drawing and arrow pad on the left, and the table on the right."""
-        u = self.look.u
+        u = self.theme.u
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left, pad = self.width() - side - gap, round(_PAD * self.height())
-        self.above.setGeometry(0, 0, left, high)
+        self.description.setGeometry(0, 0, left, high)
         self.drawing.lay_out(QRect(0, high, left, self.height() - high - pad - gap))
-        self.pad.setGeometry(0, self.height() - pad, left, pad)
+        self.jog_cross.setGeometry(0, self.height() - pad, left, pad)
         self.table.setGeometry(left + gap, 0, side, self.height())

@@ -6,70 +6,72 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.optional_features import OptionalFeature
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from app.desk.page_description import PageEntry
+    from app.desk.page_description import PageDescription
     from app.desk.programs.program_loading import LoadingSteps
-    from app.extras.analyses.analyses import Analyses
-    from app.extras.analyses.drive_test_model import DriveTests
-    from app.scope.scope_model import Scope
+    from app.extras.analyses.analyses import AnalysesModel
+    from app.extras.analyses.drive_test_model import DriveTestModel
+    from app.scope.scope_model import ScopeModel
     from core.machine.machine_model import Machine
 
 _CHART = ("app.extras.analyses.analyses_chart_view.AnalysisChart",)
-_ANALYSES = "app.extras.analyses.analyses.Analyses"
-_DRIVE_TESTS = "app.extras.analyses.drive_test_model.DriveTests"
+_ANALYSES = "app.extras.analyses.analyses.AnalysesModel"
+_DRIVE_TESTS = "app.extras.analyses.drive_test_model.DriveTestModel"
 
 
-class ScopeAnalyses(Extra):
+class AnalysesExtra(OptionalFeature):
     """Optional feature with the pages ANALYSES, which the scope opens, and DRIVE TEST."""
 
     @property
-    def pages(self) -> Sequence[PageEntry]:
-        from app.desk.page_description import PageEntry
+    def pages(self) -> Sequence[PageDescription]:
+        from app.desk.page_description import PageDescription
 
         return (
-            PageEntry(
+            PageDescription(
                 "ANALYSES",
                 "app.extras.analyses.analyses_view.AnalysesPage",
                 _ANALYSES,
-                later=_CHART,
-                after="SHARED PROGRAMS",
+                deferred_modules=_CHART,
+                preceding_page="SHARED PROGRAMS",
             ),
-            PageEntry(
+            PageDescription(
                 "DRIVE TEST",
                 "app.extras.analyses.drive_test_view.DriveTestPage",
                 _DRIVE_TESTS,
-                later=_CHART,
-                after="ANALYSES",
+                deferred_modules=_CHART,
+                preceding_page="ANALYSES",
             ),
         )
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        desk.pages.attach_later(_ANALYSES, partial(_analyses, desk, machine))
-        desk.pages.attach_later(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        desk.page_registry.attach_lazily(_ANALYSES, partial(_analyses, desk, machine))
+        desk.page_registry.attach_lazily(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
 
 
-def _scope_of(desk: Desk) -> Scope:
-    from app.scope.scope_model import Scope
+def _scope_of(desk: Desk) -> ScopeModel:
+    from app.scope.scope_model import ScopeModel
 
-    scope = desk.pages.find(Scope)
+    scope = desk.page_registry.find(ScopeModel)
     assert scope is not None
     return scope
 
 
-def _analyses(desk: Desk, machine: Machine) -> Analyses:
-    from app.extras.analyses.analyses import Analyses
+def _analyses(desk: Desk, machine: Machine) -> AnalysesModel:
+    from app.extras.analyses.analyses import AnalysesModel
 
-    return Analyses(_scope_of(desk), {axis.name: axis for axis in machine.axes}, machine.spindle)
-
-
-def _drive_tests(desk: Desk, machine: Machine) -> DriveTests:
-    from app.extras.analyses.drive_test_model import DriveTests
-
-    return DriveTests(desk, _scope_of(desk), machine)
+    return AnalysesModel(_scope_of(desk), {axis.name: axis for axis in machine.axes}, machine.spindle)
 
 
-EXTRA = ScopeAnalyses()
+def _drive_tests(desk: Desk, machine: Machine) -> DriveTestModel:
+    from app.extras.analyses.drive_test_model import DriveTestModel
+
+    return DriveTestModel(desk, _scope_of(desk), machine)
+
+
+EXTRA = AnalysesExtra()

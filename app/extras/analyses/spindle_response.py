@@ -11,20 +11,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from app.desk.pages.sheet import Row, Sheet
+from app.desk.pages.table_content import TableContent, TableRow
 from app.desk.status import formats
 from app.desk.translation import tr
-from app.extras.analyses.drawing import Drawing
-from core.extras.analyses.step_response import StepResponse, step_response
+from app.extras.analyses.drawing import AnalysisDrawing
+from core.extras.analyses.step_response import StepResponse, analyze_step
 from core.machine.machine_model import SpindleModel
 from core.message import Message
-from core.records.record import AnalysisError, Record
+from core.records.record import AnalysisError, ScopeRecord
 
 FloatArray = npt.NDArray[np.float64]
 _CHANGE = 1.0  # rpm: minimum change of the command
 _ONE = 0.15  # seconds between two changes of one run-up, as by a pot or constant surface speed
 _BEFORE, _BEHIND, _MOST = 0.2, 2.0, 15.0  # seconds before the change, after reaching the speed, and at most
-WINDOWS = (0.02, 0.01)  # ratios to the speed
+TOLERANCE_RATIOS = (0.02, 0.01)  # ratios to the speed
 _SHARES = (0.62, 0.38)
 
 
@@ -32,39 +32,41 @@ _SHARES = (0.62, 0.38)
 class SpindleResponse:
     """Response to one change of speed. ``times`` (n,) are seconds from the change, speeds are (n,) in rpm.
 
-    ``steps`` are the responses for the at-speed tolerance of the machine file and for each of ``WINDOWS``.
-    ``swing`` is the peak-to-peak variation and ``off`` the mean error in rpm over the last second.
+    ``step_responses`` are the responses for the at-speed tolerance of the machine file and for each of
+    ``TOLERANCE_RATIOS``. ``variation_rpm`` is the peak-to-peak variation and ``mean_error_rpm`` the mean
+    error in rpm over the last second.
     """
 
-    times: FloatArray
-    asked: FloatArray
-    turned: FloatArray
-    steps: tuple[StepResponse, ...]
-    swing: float
-    off: float
+    times_s: FloatArray
+    commanded_rpm: FloatArray
+    measured_rpm: FloatArray
+    step_responses: tuple[StepResponse, ...]
+    variation_rpm: float
+    mean_error_rpm: float
     model: SpindleModel
 
     @property
-    def acceleration(self) -> float:
+    def acceleration_rpm_s(self) -> float:
         """Acceleration from 10 to 90 % of the change in rpm/s; inf if both are in one sample."""
-        step = self.steps[0]
-        return 0.8 * abs(step.way) / step.rise if step.rise > 0.0 else np.inf
+        step = self.step_responses[0]
+        return 0.8 * abs(step.step_size) / step.rise_time_s if step.rise_time_s > 0.0 else np.inf
 
 
-def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
+def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0. Raises AnalysisError."""
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
-    nothing = np.full(len(record.times), np.nan)
+    nothing = np.full(len(record.times_s), np.nan)
     asked, turned = (
-        record.columns.get(Message("spindle {name}", name=name), nothing) for name in ("command", "speed")
+        record.values_by_channel.get(Message("spindle {name}", name=name), nothing)
+        for name in ("command", "speed")
     )
     if not np.isfinite(turned).any():
         raise AnalysisError(
             tr("no device on this machine reports the measured spindle speed"), "no-measured-speed"
         )
     known = np.isfinite(asked) & np.isfinite(turned)
-    times, asked, turned = record.times[known], asked[known], turned[known]
+    times, asked, turned = record.times_s[known], asked[known], turned[known]
     changes = np.flatnonzero(np.abs(np.diff(asked)) > _CHANGE)
     groups = np.split(changes, np.flatnonzero(np.diff(times[changes]) > _ONE) + 1) if len(changes) else []
     for number in reversed(range(len(groups))):
@@ -97,65 +99,75 @@ def _response(
         int(np.searchsorted(times, times[first] - _BEFORE)), int(np.searchsorted(times, end, "right"))
     )
     t, a, b = times[cut] - times[last], asked[cut], turned[cut]
-    steps = tuple(_stayed(step_response(t, a, b, share * abs(target)), t, model) for share in _shares(model))
+    steps = tuple(_stayed(analyze_step(t, a, b, share * abs(target)), t, model) for share in _shares(model))
     steady = b[t >= t[-1] - 1.0]
     return SpindleResponse(t, a, b, steps, float(np.ptp(steady)), float(steady.mean() - target), model)
 
 
 def _shares(model: SpindleModel) -> tuple[float, ...]:
-    return model.at_speed, *WINDOWS
+    return model.at_speed, *TOLERANCE_RATIOS
 
 
 def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepResponse:
     """Return the response, with settling set to nan if the speed only passed through the tolerance band."""
-    if times[-1] - step.settling >= model.at_speed_time:
+    if times[-1] - step.settling_time_s >= model.at_speed_time:
         return step
-    return replace(step, settling=math.nan)
+    return replace(step, settling_time_s=math.nan)
 
 
-def spindle_drawing(found: SpindleResponse) -> Drawing:
+def draw_spindle_response(response: SpindleResponse) -> AnalysisDrawing:
     """Return the drawing of commanded and actual speed over seconds."""
-    asked, turned = (np.column_stack([found.times, each]) for each in (found.asked, found.turned))
+    asked, turned = (
+        np.column_stack([response.times_s, each]) for each in (response.commanded_rpm, response.measured_rpm)
+    )
     names = Message("{title}  rpm", title=tr("SPINDLE")), "", "s"
-    return Drawing(asked, (turned,), equal=False, lengths=False, names=names)
+    return AnalysisDrawing(asked, (turned,), has_equal_axes=False, is_length=False, axis_labels=names)
 
 
-def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
+def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
     """Return the table of the response and of the settling times for narrower tolerances."""
-    step, model = found.steps[0], found.model
-    target = float(found.asked[-1])
+    step, model = response.step_responses[0], response.model
+    target = float(response.commanded_rpm[-1])
     rows = (
         (
             tr("SPEED"),
             Message(
                 "{target} → {target2} rpm",
-                target=formats.fixed(target - step.way, 0),
-                target2=formats.fixed(target, 0),
+                target=formats.format_fixed(target - step.step_size, 0),
+                target2=formats.format_fixed(target, 0),
             ),
         ),
-        (tr("RISE, 10 TO 90 %"), _seconds(step.rise)),
+        (tr("RISE, 10 TO 90 %"), _seconds(step.rise_time_s)),
         (
             tr("ACCELERATION"),
-            Message("{acceleration} rpm/s", acceleration=formats.fixed(found.acceleration, 0)),
+            Message(
+                "{acceleration} rpm/s", acceleration=formats.format_fixed(response.acceleration_rpm_s, 0)
+            ),
         ),
-        (tr("OVERSHOOT"), f"{formats.fixed(100.0 * step.overshoot, 2)} %"),
+        (tr("OVERSHOOT"), f"{formats.format_fixed(100.0 * step.overshoot, 2)} %"),
         *(
             (
-                tr(Message("TIME TO SETTLE WITHIN {share}", share=formats.percent(share))),
-                _seconds(each.settling),
+                tr(Message("TIME TO SETTLE WITHIN {share}", share=formats.format_percent(share))),
+                _seconds(each.settling_time_s),
             )
-            for share, each in zip(_shares(model), found.steps, strict=True)
+            for share, each in zip(_shares(model), response.step_responses, strict=True)
         ),
-        (tr("MEAN SPEED ERROR"), Message("{speed} rpm", speed=formats.fixed(found.off, 1))),
-        (tr("SPEED VARIATION"), Message("{speed} rpm", speed=formats.fixed(found.swing, 1))),
+        (
+            tr("MEAN SPEED ERROR"),
+            Message("{speed} rpm", speed=formats.format_fixed(response.mean_error_rpm, 1)),
+        ),
+        (
+            tr("SPEED VARIATION"),
+            Message("{speed} rpm", speed=formats.format_fixed(response.variation_rpm, 1)),
+        ),
     )
     notes = (
         tr(
             Message(
                 "The acceleration in the machine file is {accel} rpm/s; a speed within {share} "
                 "of the target counts as reached.",
-                accel=formats.fixed(model.accel, 0),
-                share=formats.percent(model.at_speed),
+                accel=formats.format_fixed(model.accel, 0),
+                share=formats.format_percent(model.at_speed),
             )
         ),
         tr(
@@ -164,8 +176,10 @@ def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
         ),
         tr("Last change of spindle speed. These values are for information only; no setting was changed."),
     )
-    return Sheet(title, ("", ""), _SHARES, tuple(map(Row, rows)), notes=notes, figures=frozenset({1}))
+    return TableContent(
+        title, ("", ""), _SHARES, tuple(map(TableRow, rows)), notes=notes, number_columns=frozenset({1})
+    )
 
 
 def _seconds(value: float) -> str:
-    return f"{formats.fixed(value, 3)} s" if np.isfinite(value) else formats.NOTHING
+    return f"{formats.format_fixed(value, 3)} s" if np.isfinite(value) else formats.NO_VALUE

@@ -8,13 +8,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.program_options import out_file
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
-from core.access.access_table import Act
+from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.program_options import parse_output_path
+from app.cli.store_command import open_store
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
+from core.access.access_table import ProtectedChange
 from core.extras.convert.source_options import Control, Options
-from core.json_key import Output, keys
+from core.json_keys import JsonOutput, declare_keys
 from core.language.source import SourceError, load_source
 from core.message import Message
 
@@ -60,7 +60,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument("--no-comments", action="store_true", help="write no comments with source lines")
     parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
     parser.add_argument(
-        "--out", type=out_file, metavar="FILE", help="program file to write (default: stdout)"
+        "--out", type=parse_output_path, metavar="FILE", help="program file to write (default: stdout)"
     )
     add_as_option(parser)
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
@@ -78,13 +78,13 @@ def _m_codes(text: str) -> frozenset[int]:
 
 def run(args: argparse.Namespace) -> int:
     """Convert and prove the program; write it only if it has no errors. Return 1 if it has errors."""
-    from app.compose.machine.machine_setup import control_limits, read_machine
+    from app.compose.machine.machine_setup import get_control_limits, read_machine
     from core.extras.convert.conversion import convert
     from core.extras.convert.recognition import recognized
 
     machine = read_machine(args.machine)
     who = _may_write(args)
-    with as_command_error(SourceError):
+    with convert_to_command_error(SourceError):
         source = load_source(Path(args.file))
     control = Control(args.control) if args.control else recognized(source.lines)
     if control is None:
@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
             Message("{file} is not recognized; name its control with --from", file=args.file),
             "control-unknown",
         )
-    done = convert(source.lines, _options(args, control, machine), control_limits(machine))
+    done = convert(source.lines, _options(args, control, machine), get_control_limits(machine))
     if args.out is not None and not done.errors:
         _write(args, done.text, who)
     _print(args, control, done)
@@ -109,7 +109,7 @@ def _options(args: argparse.Namespace, control: Control, machine: Machine) -> Op
         skipped_m=args.skip_m,
         comments=not args.no_comments,
         rapid=machine.limits.max_feed * 60,
-        most_rpm=machine.spindle.rpm_max,
+        most_rpm=machine.spindle.max_rpm,
         most_feed=machine.limits.max_feed * 60,
         m_codes=frozenset(machine.m_codes),
     )
@@ -128,16 +128,16 @@ def _may_write(args: argparse.Namespace) -> str:
         raise CommandError(
             Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
         )
-    return who_may(opened_store, args, Act.PROGRAMS)
+    return get_permitted_user(open_store, args, ProtectedChange.PROGRAMS)
 
 
 def _write(args: argparse.Namespace, text: str, who: str) -> None:
-    from app.programs.whole_file import FileError, write_new
+    from app.programs.atomic_files import FileOperationError, write_new_file
 
-    with as_command_error(FileError):
-        write_new(Path(args.out), text.encode("ascii", "replace"))
-    note_change(
-        opened_store,
+    with convert_to_command_error(FileOperationError):
+        write_new_file(Path(args.out), text.encode("ascii", "replace"))
+    log_user_change(
+        open_store,
         who,
         Message("program {out} converted from {file}", out=Path(args.out).name, file=Path(args.file).name),
     )
@@ -150,7 +150,7 @@ def _print(args: argparse.Namespace, control: Control, done: Conversion) -> None
     if args.out is None and not done.errors:
         sys.stdout.write(done.text)
     for each in done.findings:
-        sys.stderr.write(f"{each.in_one_line(args.file)}\n")
+        sys.stderr.write(f"{each.format_one_line(args.file)}\n")
     sys.stderr.write(f"{_summary(args, control, done)}\n")
 
 
@@ -195,10 +195,10 @@ def _in_json(args: argparse.Namespace, control: Control, done: Conversion) -> di
     }
 
 
-CONVERT = Output(
+CONVERT = JsonOutput(
     "convert FILE --json",
     "One object. If a finding is an error, the exit status is 1, and the program must not be used.",
-    keys(
+    declare_keys(
         """
 file | string | | The source program.
 from | string | | Control of the source program.

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
 
 
-class Convert(Extra):
+class Convert(OptionalFeature):
     """Optional feature with ``turndesk convert``."""
 
-    commands = {
+    subcommands = {
         "convert": Subcommand("serial", "convert a turning program of another control to OmniTurn"),
     }
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.convert.convert_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}

@@ -11,38 +11,52 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
-from app.desk.background_work import Latest, Watch
-from app.desk.pages.sheet import Key
+from app.desk.background_work import LatestRequestWorker, ProgressCallback
+from app.desk.pages.table_content import FunctionKey
 from app.desk.translation import tr
-from app.extras.drawings.drawing_plan import ALL, OWN, Asked, Plan, Planner, pictured
-from app.extras.shapes.shape_form import AddedForm, ShapeForm, Show
-from core.extras.drawings.drawing_file import is_drawing
+from app.extras.drawings.drawing_plan import (
+    ALL_LAYERS,
+    OWN_AXIS,
+    DrawingPlan,
+    DrawingPlanner,
+    PlanRequest,
+    draw_plan,
+)
+from app.extras.shapes.shape_form import AddedForm, ShapeForm, ShowForm
+from core.extras.drawings.drawing_file import has_drawing_suffix
+from core.extras.drawings.drawing_placement import ContourSide, FaceEnd, ZeroPosition
 from core.extras.drawings.drawing_process import read_in_process
-from core.extras.drawings.drawing_view import Front, Side, Zero
-from core.extras.drawings.part_against_drawing import Comparison
-from core.extras.drawings.profile_job import in_words
-from core.extras.drawings.unit_check import UNITS
-from core.extras.shapes.cutting_data import MATERIALS
-from core.extras.shapes.lines.code_lines import Code
-from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Setting, Value, Values, text
+from core.extras.drawings.part_comparison import DrawingComparison
+from core.extras.drawings.profile_job import describe_program
+from core.extras.drawings.unit_check import UNIT_SIZES_MM
+from core.extras.shapes.cutting_data import CUTTING_DATA
+from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.lines.code_lines import CodeWriter
+from core.extras.shapes.shape_fields import (
+    FieldKind,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ShapeField,
+    text,
+)
 from core.message import Message
-from core.sketch import Dim, Sketch, cut, part, sketch
+from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, make_sketch
 
-NO_DRAWINGS = "No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8."
-CANCELED = "Reading was canceled. Press F6 to read the drawing again."
-_WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # translatable choices of a drawing
-
-
-def _inside(values: Values) -> bool:
-    return text(values, "SIDE") == Side.INSIDE
+NO_DRAWINGS_MESSAGE = "No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8."
+CANCELED_MESSAGE = "Reading was canceled. Press F6 to read the drawing again."
+_WORDS = {"DUNIT": (*UNIT_SIZES_MM, OWN_AXIS), "LAYER": (ALL_LAYERS,)}  # translatable choices of a drawing
 
 
-def _outside(values: Values) -> bool:
+def _inside(values: FieldValues) -> bool:
+    return text(values, "SIDE") == ContourSide.INSIDE
+
+
+def _outside(values: FieldValues) -> bool:
     return not _inside(values)
 
 
-def _picture(_filled: Filled) -> Sketch:
+def _picture(_filled: FilledShape) -> Sketch:
     shaft = (
         (0, 0),
         (0, 5),
@@ -56,35 +70,47 @@ def _picture(_filled: Filled) -> Sketch:
         (-26, 10),
         (-26, 0),
     )
-    return sketch(part(*shaft), cut(*shaft[1:-1]), dims=(Dim("CONTOUR", (-13, 6)),))
+    return make_sketch(
+        make_part_outline(*shaft),
+        make_cut_outline(*shaft[1:-1]),
+        dimensions=(Dimension("CONTOUR", (-13, 6)),),
+    )
 
 
-def _written(filled: Filled, _setting: Setting, code: Code) -> None:
-    assert isinstance(filled, FromDrawing)
-    code.write(*filled.text)
+def _written(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
+    assert isinstance(filled, FilledDrawing)
+    code.write(*filled.program_lines)
 
 
-PROFILE = Shape(
+DRAWING_SHAPE = Shape(
     "DRAWING",
     "facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing",
     (
-        Field("FILE", "DRAWING", Kind.CHOICE),
-        Field("DUNIT", "DRAWING UNIT", Kind.CHOICE),
-        Field("LAYER", "LAYER", Kind.CHOICE),
-        Field("CONTOUR", "CONTOUR", Kind.CHOICE),
-        Field("AXIS", "AXIS", Kind.CHOICE),
-        Field("SIDE", "SIDE", Kind.CHOICE, str(Side.OUTSIDE), (Side.OUTSIDE, Side.INSIDE)),
-        Field("FRONT", "FACE SIDE IN DRAWING", Kind.CHOICE, str(Front.RIGHT), tuple(Front)),
-        Field("ZERO", "Z REFERENCE POINT", Kind.CHOICE, str(Zero.FACE), tuple(Zero)),
-        Field("SHIFT", "Z OF REFERENCE POINT", Kind.COORDINATE, 0.0, zero=True),
-        Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
-        Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, zero=True),
-        Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER, only=_inside),
-        Field("STOCK", "STOCK ON THE FACE", Kind.LENGTH, zero=True, only=_outside),
-        Field("T", "TOOL", Kind.TOOL, most=32),
-        Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, zero=True),
-        Field("COMP", "NOSE COMPENSATION: D NUMBER", Kind.OFFSET, zero=True, most=32),
-        Field("BLADE", "GROOVING TOOL", Kind.TOOL, 0.0, zero=True, most=32),
+        ShapeField("FILE", "DRAWING", FieldKind.CHOICE),
+        ShapeField("DUNIT", "DRAWING UNIT", FieldKind.CHOICE),
+        ShapeField("LAYER", "LAYER", FieldKind.CHOICE),
+        ShapeField("CONTOUR", "CONTOUR", FieldKind.CHOICE),
+        ShapeField("AXIS", "AXIS", FieldKind.CHOICE),
+        ShapeField(
+            "SIDE",
+            "SIDE",
+            FieldKind.CHOICE,
+            str(ContourSide.OUTSIDE),
+            (ContourSide.OUTSIDE, ContourSide.INSIDE),
+        ),
+        ShapeField("FRONT", "FACE SIDE IN DRAWING", FieldKind.CHOICE, str(FaceEnd.RIGHT), tuple(FaceEnd)),
+        ShapeField(
+            "ZERO", "Z REFERENCE POINT", FieldKind.CHOICE, str(ZeroPosition.FACE), tuple(ZeroPosition)
+        ),
+        ShapeField("SHIFT", "Z OF REFERENCE POINT", FieldKind.COORDINATE, 0.0, allows_zero=True),
+        ShapeField("MATERIAL", "MATERIAL", FieldKind.CHOICE, "STEEL", tuple(CUTTING_DATA)),
+        ShapeField("FROM", "STOCK DIAMETER", FieldKind.DIAMETER, allows_zero=True),
+        ShapeField("HOLE", "HOLE DIAMETER", FieldKind.DIAMETER, applies_to=_inside),
+        ShapeField("STOCK", "STOCK ON THE FACE", FieldKind.LENGTH, allows_zero=True, applies_to=_outside),
+        ShapeField("T", "TOOL", FieldKind.TOOL, maximum=32),
+        ShapeField("ROUGH", "ROUGHING DEPTH OF CUT", FieldKind.LENGTH, allows_zero=True),
+        ShapeField("COMP", "NOSE COMPENSATION: D NUMBER", FieldKind.OFFSET, allows_zero=True, maximum=32),
+        ShapeField("BLADE", "GROOVING TOOL", FieldKind.TOOL, 0.0, allows_zero=True, maximum=32),
     ),
     _written,
     _picture,
@@ -92,163 +118,182 @@ PROFILE = Shape(
 
 
 @dataclass(frozen=True, slots=True)
-class FromDrawing(Filled):
+class FilledDrawing(FilledShape):
     """Filled form of a drawing. ``text`` contains the lines of several shapes."""
 
-    text: tuple[str, ...] = ()
+    program_lines: tuple[str, ...] = ()
 
-    def lines(self, setting: Setting) -> list[str]:
+    def make_lines(self, settings: ProgramSettings) -> list[str]:
         """Return the lines as the shapes have written them."""
-        code = Code(setting)
-        self.shape.cut(self, setting, code)
+        code = CodeWriter(settings)
+        self.shape.cut(self, settings, code)
         return code.lines
 
 
 @dataclass(slots=True)
 class DrawingForm(ShapeForm):
-    """Form of a drawing. ``files`` are the available drawings and ``before`` is the preceding program text.
+    """Form of a drawing. ``files`` are the available drawings and ``preceding_lines`` is the preceding
+    program text.
 
-    ``pending`` is the request that is being planned. ``words`` are the needs of the program and its uncut
-    parts, after the trial.
+    ``pending_request`` is the request that is being planned. ``remarks`` are the needs of the program and
+    its uncut parts, after the trial.
     """
 
-    files: Mapping[str, Path] = field(default_factory=dict)
-    before: tuple[str, ...] = ()
-    plan: Plan | None = None
-    pending: Asked | None = None
-    comparison: Comparison | None = None
-    canceled: bool = False
+    drawing_files: Mapping[str, Path] = field(default_factory=dict)
+    preceding_lines: tuple[str, ...] = ()
+    plan: DrawingPlan | None = None
+    pending_request: PlanRequest | None = None
+    comparison: DrawingComparison | None = None
+    is_canceled: bool = False
 
-    def work(self) -> None:
+    def calculate(self) -> None:
         """Request a plan for the entries. The previous plan remains until the new plan arrives."""
-        self.worked += 1
-        self.troubles, self.canceled = {}, False
-        values: dict[str, Value] = {}
-        for word in self.typed:
+        self.calculation_count += 1
+        self.errors, self.is_canceled = {}, False
+        values: dict[str, FieldValue] = {}
+        for word in self.entered_texts:
             value = self._value(word)
             if value is not None:
                 values[word] = value
         self._fill(values)
-        path = self.files.get(text(self.one.values, "FILE"))
+        path = self.drawing_files.get(text(self.filled_shape.values, "FILE"))
         if path is None:
-            self.troubles["FILE"] = NO_DRAWINGS
-        elif not self.troubles:
-            asked = Asked(path, {w: v for w, v in values.items() if w != "FILE"}, self.before, self.setting)
+            self.errors["FILE"] = NO_DRAWINGS_MESSAGE
+        elif not self.errors:
+            asked = PlanRequest(
+                path, {w: v for w, v in values.items() if w != "FILE"}, self.preceding_lines, self.settings
+            )
             self._ask(asked)
         self._show()
 
-    def use_setting(self, setting: Setting) -> None:
+    def use_settings(self, settings: ProgramSettings) -> None:
         """Calculate again with other tool data, unless the reading was canceled.
 
         After a cancellation, F6 starts the reading again.
         """
-        if self.canceled:
-            self.setting = setting
+        if self.is_canceled:
+            self.settings = settings
         else:
-            ShapeForm.use_setting(self, setting)  # super() fails in a dataclass with slots
+            ShapeForm.use_settings(self, settings)  # super() fails in a dataclass with slots
 
-    def _ask(self, asked: Asked) -> None:
-        if self.plan is None or self.plan.asked != asked:
-            self.pending = asked
-            self.words, self.comparison = (), None
+    def _ask(self, asked: PlanRequest) -> None:
+        if self.plan is None or self.plan.request != asked:
+            self.pending_request = asked
+            self.remarks, self.comparison = (), None
 
-    def _fill(self, values: Mapping[str, Value]) -> None:
-        proposed: dict[str, Value] = {"FILE": next(iter(self.files))} if self.files else {}
+    def _fill(self, values: Mapping[str, FieldValue]) -> None:
+        proposed: dict[str, FieldValue] = (
+            {"FILE": next(iter(self.drawing_files))} if self.drawing_files else {}
+        )
         if self.plan is not None:
             proposed |= self.plan.proposals
-        known = {each.word: each.start for each in self.shape.fields if isinstance(each.start, str | float)}
-        self.one = FromDrawing(self.shape, {**known, **proposed, **values})
+        known = {
+            each.word: each.default for each in self.shape.fields if isinstance(each.default, str | float)
+        }
+        self.filled_shape = FilledDrawing(self.shape, {**known, **proposed, **values})
 
     def cancel(self) -> None:
         """Cancel the reading. F6 requests a new plan."""
-        self.pending, self.canceled = None, True
-        self.worked += 1
+        self.pending_request, self.is_canceled = None, True
+        self.calculation_count += 1
         self.lines = []
-        self.troubles["FILE"] = CANCELED
+        self.errors["FILE"] = CANCELED_MESSAGE
 
-    def take(self, plan: Plan) -> None:
+    def show_plan(self, plan: DrawingPlan) -> None:
         """Show a finished plan."""
-        self.plan, self.pending = plan, None
-        self.worked += 1
-        values = {word: v for word in self.typed if (v := self._value(word)) is not None}
-        self.troubles = {}
+        self.plan, self.pending_request = plan, None
+        self.calculation_count += 1
+        values = {word: v for word in self.entered_texts if (v := self._value(word)) is not None}
+        self.errors = {}
         self._fill(values)
         self._show()
 
     def _show(self) -> None:
         plan = self.plan
-        if plan is None or self.pending is not None:
+        if plan is None or self.pending_request is not None:
             self.lines = []
             return
-        self.troubles = {**plan.troubles, **self.troubles}
-        made = plan.made
-        self.lines = list(made.lines) if made is not None and not self.troubles else []
-        self.one = FromDrawing(self.shape, self.one.values, text=tuple(self.lines))
+        self.errors = {**plan.errors, **self.errors}
+        made = plan.program
+        self.lines = list(made.lines) if made is not None and not self.errors else []
+        self.filled_shape = FilledDrawing(
+            self.shape, self.filled_shape.values, program_lines=tuple(self.lines)
+        )
 
-    def tried(self, comparison: Comparison | None, errors: tuple[str, ...]) -> None:
+    def show_trial(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
         """Show the result of the trial: the proof of the program and the comparison with the drawing."""
         plan = self.plan
-        if plan is None or plan.made is None or plan.chosen is None:
+        if plan is None or plan.program is None or plan.profile is None:
             return
-        self.worked += 1
+        self.calculation_count += 1
         self.comparison = comparison
-        metric = self.setting.metric
-        self.words = (*errors, *in_words(plan.made, comparison, plan.chosen, metric=metric))
-        self.plan = replace(plan, picture=pictured(plan, self._chosen_number, comparison))
+        metric = self.settings.metric
+        self.remarks = (*errors, *describe_program(plan.program, comparison, plan.profile, metric=metric))
+        self.plan = replace(plan, sketch=draw_plan(plan, self._chosen_number, comparison))
 
     @property
     def _chosen_number(self) -> int:
-        said = text(self.one.values, "CONTOUR")
+        said = text(self.filled_shape.values, "CONTOUR")
         return int(said) if said.isdigit() else 1
 
     @property
-    def sketch(self) -> Sketch:
+    def current_sketch(self) -> Sketch:
         """Drawing with the selected contour."""
-        return self.plan.picture if self.plan is not None and self.plan.placed else PROFILE.sketch(self.one)
-
-    @property
-    def waits(self) -> bool:
-        """Whether a plan is pending."""
-        return self.pending is not None
-
-    def choices(self, each: Field) -> tuple[str, ...]:
-        """Return the choices of a field, including those of the drawing."""
-        if each.word == "FILE":
-            return tuple(self.files)
-        if each.choices or self.plan is None:
-            return each.choices
-        return self.plan.choices.get(each.word, ())
-
-    def is_word(self, each: Field, choice: str) -> bool:
-        """Return whether a choice is a translatable word. Names of layers are not translated."""
-        return choice in each.choices or choice in _WORDS.get(each.word, ())
-
-    def dimension(self, word: str) -> str:
-        """Return the number of a contour, or the value of another dimension."""
         return (
-            word.removeprefix("CONTOUR ") if word.startswith("CONTOUR ") else ShapeForm.dimension(self, word)
+            self.plan.sketch
+            if self.plan is not None and self.plan.elements
+            else DRAWING_SHAPE.sketch(self.filled_shape)
         )
 
-    def go_to(self, word: str) -> None:
+    @property
+    def is_calculating(self) -> bool:
+        """Whether a plan is pending."""
+        return self.pending_request is not None
+
+    def list_choices(self, field: ShapeField) -> tuple[str, ...]:
+        """Return the choices of a field, including those of the drawing."""
+        if field.word == "FILE":
+            return tuple(self.drawing_files)
+        if field.choices or self.plan is None:
+            return field.choices
+        return self.plan.choices.get(field.word, ())
+
+    def is_translatable(self, field: ShapeField, choice: str) -> bool:
+        """Return whether a choice is a translatable word. Names of layers are not translated."""
+        return choice in field.choices or choice in _WORDS.get(field.word, ())
+
+    def get_dimension_text(self, word: str) -> str:
+        """Return the number of a contour, or the value of another dimension."""
+        return (
+            word.removeprefix("CONTOUR ")
+            if word.startswith("CONTOUR ")
+            else ShapeForm.get_dimension_text(self, word)
+        )
+
+    def select_word(self, word: str) -> None:
         """Select a field, or a contour by its number in the drawing."""
         if word.startswith("CONTOUR "):
             self._set("CONTOUR", word.removeprefix("CONTOUR "))
             word = "CONTOUR"
-        ShapeForm.go_to(self, word)
+        ShapeForm.select_word(self, word)
 
-    def touch_at(self, point: tuple[float, float]) -> None:
+    def handle_touch(self, point: tuple[float, float]) -> None:
         """Select the touched contour, or the touched line while AXIS is selected."""
         plan = self.plan
-        if plan is None or not plan.placed:
+        if plan is None or not plan.elements:
             return
-        by_line = self.word == "AXIS"
-        there = [p for p in plan.placed if (p.number and len(p.points) == 2 if by_line else p.net)]
+        by_line = self.selected_word == "AXIS"
+        there = [
+            p
+            for p in plan.elements
+            if (p.line_number and len(p.points) == 2 if by_line else p.contour_number)
+        ]
         nearest = min(there, key=lambda p: _distance(point, p.points), default=None)
         if nearest is not None:
             word, said = (
-                ("AXIS", Message("LINE {line}", line=nearest.number))
+                ("AXIS", Message("LINE {line}", line=nearest.line_number))
                 if by_line
-                else ("CONTOUR", str(nearest.net))
+                else ("CONTOUR", str(nearest.contour_number))
             )
             self._set(word, said)
 
@@ -264,100 +309,116 @@ def _from_segment(p: tuple[float, float], a: tuple[float, float], b: tuple[float
     return math.dist(p, (a[0] + share * dx, a[1] + share * dy))
 
 
-Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]]
+TrialFunction = Callable[
+    [str, DrawingPlan, ProgressCallback], tuple[DrawingComparison | None, tuple[str, ...]]
+]
 """A program that was made of a drawing is proved, and its part held against it."""
 
 
-def nothing_tried(_text: str, _plan: Plan, _watch: Watch) -> tuple[Comparison | None, tuple[str, ...]]:
+def skip_trial(
+    _text: str, _plan: DrawingPlan, _watch: ProgressCallback
+) -> tuple[DrawingComparison | None, tuple[str, ...]]:
     """Return no result; used without machine data."""
     return None, ()
 
 
-class AddedDrawing(AddedForm):
+class AddedDrawingForm(AddedForm):
     """Added form for drawings.
 
     ``files`` returns the available drawings, ``attempt`` tries a program.
     """
 
-    key, shape = "X", PROFILE
+    key, shape = "X", DRAWING_SHAPE
 
-    def __init__(self, files: Callable[[], Mapping[str, Path]], attempt: Attempt = nothing_tried) -> None:
-        self.files, self.attempt = files, attempt
-        self.planner = Planner(read_in_process)
-        self.planning, self.trying = Latest("planning-drawing"), Latest("trying-drawing")
+    def __init__(self, files: Callable[[], Mapping[str, Path]], attempt: TrialFunction = skip_trial) -> None:
+        self.find_drawing_files, self.run_trial = files, attempt
+        self.planner = DrawingPlanner(read_in_process)
+        self.plan_worker, self.trial_worker = (
+            LatestRequestWorker("planning-drawing"),
+            LatestRequestWorker("trying-drawing"),
+        )
 
-    def open_form(self, setting: Setting, before: tuple[str, ...], wanted: Path | None) -> DrawingForm:
+    def open_form(
+        self, settings: ProgramSettings, preceding_lines: tuple[str, ...], requested_file: Path | None
+    ) -> DrawingForm:
         """Return a form with the available drawings, the requested drawing first."""
-        files = dict(self.files())
-        if wanted is not None:
-            files = {wanted.name: wanted, **{name: path for name, path in files.items() if path != wanted}}
-        return DrawingForm(PROFILE, setting, files=files, before=before)
+        files = dict(self.find_drawing_files())
+        if requested_file is not None:
+            files = {
+                requested_file.name: requested_file,
+                **{name: path for name, path in files.items() if path != requested_file},
+            }
+        return DrawingForm(DRAWING_SHAPE, settings, drawing_files=files, preceding_lines=preceding_lines)
 
-    def makes_of(self, name: str) -> bool:
+    def accepts_file(self, name: str) -> bool:
         """Return whether the file is a drawing."""
-        return is_drawing(name)
+        return has_drawing_suffix(name)
 
-    def work(self, form: ShapeForm, show: Show, tell: Callable[[str], None]) -> None:
+    def calculate(self, form: ShapeForm, show: ShowForm, show_message: Callable[[str], None]) -> None:
         """Plan the entries on a worker, then try the program."""
-        if not isinstance(form, DrawingForm) or form.pending is None:
+        if not isinstance(form, DrawingForm) or form.pending_request is None:
             return
-        asked = form.pending
+        asked = form.pending_request
 
-        def planned(plan: Plan) -> None:
-            if form.pending == asked:
-                form.take(plan)
+        def planned(plan: DrawingPlan) -> None:
+            if form.pending_request == asked:
+                form.show_plan(plan)
                 self._try(form, plan, show(form), failed)
 
         def failed(why: str) -> None:
-            tell(tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why)))
+            show_message(tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why)))
 
-        self.trying.give_up()
-        self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, failed)
+        self.trial_worker.cancel()
+        self.plan_worker.request(lambda watch: self.planner.make_plan(asked, watch), planned, failed)
 
-    def _try(self, form: DrawingForm, plan: Plan, text: str | None, failed: Callable[[str], None]) -> None:
+    def _try(
+        self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
+    ) -> None:
         """Try the program ``text``, or do nothing if the form has been closed (None)."""
         if not form.lines or text is None:
             return
 
-        def tried(found: tuple[Comparison | None, tuple[str, ...]]) -> None:
+        def tried(found: tuple[DrawingComparison | None, tuple[str, ...]]) -> None:
             if form.plan is plan:
-                form.tried(*found)
+                form.show_trial(*found)
 
-        self.trying.ask(lambda watch: self.attempt(text, plan, watch), tried, failed)
+        self.trial_worker.request(lambda watch: self.run_trial(text, plan, watch), tried, failed)
 
     def cancel(self, form: ShapeForm) -> None:
         """Cancel the reading of a drawing (F6 or Esc) by ending its process."""
         if isinstance(form, DrawingForm):
-            self.planning.give_up()
+            self.plan_worker.cancel()
             form.cancel()
 
-    def keys(self, form: ShapeForm, show: Show) -> Mapping[int, Key]:
+    def function_keys(self, form: ShapeForm, show: ShowForm) -> Mapping[int, FunctionKey]:
         """Return F6, which cancels the reading or starts it again."""
 
         def read_again() -> None:
-            form.work()
+            form.calculate()
             show(form)
 
-        if form.waits:
-            return {6: Key("CANCEL", lambda: self.cancel(form))}
-        return {6: Key("READ", read_again)} if isinstance(form, DrawingForm) and form.canceled else {}
+        if form.is_calculating:
+            return {6: FunctionKey("CANCEL", lambda: self.cancel(form))}
+        return (
+            {6: FunctionKey("READ", read_again)} if isinstance(form, DrawingForm) and form.is_canceled else {}
+        )
 
-    def prompt(self, form: ShapeForm) -> str:
+    def prompt_text(self, form: ShapeForm) -> str:
         """Return the progress of the reading, the error, or the prompt for the keys."""
-        if not form.waits:
+        if not form.is_calculating:
             keys = tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
-            return tr(form.trouble or keys)
-        if not self.planner.reading:
+            return tr(form.current_error or keys)
+        if not self.planner.is_reading:
             return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
         words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
-        return tr(Message(words, seconds=self.planning.reached))
+        return tr(Message(words, seconds=self.plan_worker.progress))
 
     def poll(self) -> None:
         """Process the results of planning and trials."""
-        self.planning.poll()
-        self.trying.poll()
+        self.plan_worker.poll()
+        self.trial_worker.poll()
 
     def close(self) -> None:
         """Stop both workers."""
-        self.planning.close()
-        self.trying.close()
+        self.plan_worker.close()
+        self.trial_worker.close()

@@ -5,41 +5,41 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
 
 
-class Drawings(Extra):
+class DrawingsExtra(OptionalFeature):
     """Optional feature with the form DRAWING, ``turndesk profile``, and drawings in the program list."""
 
-    needs = ("shapes",)
-    commands = {
+    required_features = ("shapes",)
+    subcommands = {
         "profile": Subcommand("shapes", "make a turning program from a drawing (DXF, SVG)"),
     }
-    drawings = (".dxf", ".svg")
+    drawing_suffixes = (".dxf", ".svg")
 
-    def extend(self, part: object, desk: Desk, machine: Machine) -> None:
-        from app.extras.drawings.drawings_desk import add_drawing
-        from app.extras.shapes.shapes_model import Shapes
+    def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
+        from app.extras.drawings.drawings_setup import add_drawing_form
+        from app.extras.shapes.shapes_model import ShapesModel
 
-        if isinstance(part, Shapes):
-            add_drawing(part, desk, machine)
+        if isinstance(model, ShapesModel):
+            add_drawing_form(model, desk, machine)
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
-        from app.extras.drawings.drawing_form import PROFILE
-        from app.extras.shapes.shape_form import words_of
+        from app.extras.drawings.drawing_form import DRAWING_SHAPE
+        from app.extras.shapes.shape_form import list_translatable_texts
 
         of_drawings = ("DRAWING UNIT: INCH", "DRAWING UNIT: AS DRAWN", "LAYER: ALL")  # not in the table
-        return (*words_of([PROFILE]), *of_drawings)
+        return (*list_translatable_texts([DRAWING_SHAPE]), *of_drawings)
 
 
-EXTRA = Drawings()
+EXTRA = DrawingsExtra()

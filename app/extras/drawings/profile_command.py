@@ -1,4 +1,6 @@
-"""Command ``turndesk profile PART.dxf``: the contour of a drawing, its turning program, and the JSON keys."""
+"""Command ``turndesk extract_profile PART.dxf``: the contour of a drawing, its turning program, and the JSON
+keys.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +10,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.program_options import out_file
-from app.cli.who_changes import add_as_option
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
-from app.extras.shapes.shapes_command import may_write, write_made
-from core.extras.drawings.unit_check import UNITS
-from core.extras.shapes.cutting_data import MATERIALS
-from core.json_key import Output, keys
-from core.language.source import Dialect, dialect_of
+from app.cli.change_author import add_as_option
+from app.cli.program_options import parse_output_path
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
+from app.extras.shapes.shapes_command import authorize_writing, write_program_file
+from core.extras.drawings.unit_check import UNIT_SIZES_MM
+from core.extras.shapes.cutting_data import CUTTING_DATA
+from core.json_keys import JsonOutput, declare_keys
+from core.language.source import Dialect, guess_dialect
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -23,12 +25,12 @@ if TYPE_CHECKING:
 
     from app.cli.figures.units import Json
     from app.cli.program_options import SubParsers
-    from app.extras.drawings.profile_trial_desk import Trial
-    from core.extras.drawings.contour_walk import Net
+    from app.extras.drawings.profile_trial import TrialResult
+    from core.extras.drawings.contour_tracing import ElementGroup
     from core.extras.drawings.drawing import Drawing
-    from core.extras.drawings.drawing_view import Profile, View
+    from core.extras.drawings.drawing_placement import ContourProfile, DrawingPlacement
     from core.extras.drawings.profile_program import ProfileProgram
-    from core.extras.shapes.shape_fields import Value
+    from core.extras.shapes.shape_fields import FieldValue
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
 
@@ -45,7 +47,7 @@ def add_parser(subparsers: SubParsers) -> None:
     _add_tool_options(parser)
     parser.add_argument(
         "--out",
-        type=out_file,
+        type=parse_output_path,
         metavar="FILE",
         help="program file to write: .nc is OmniTurn, .mpf is SINUMERIK (default: stdout)",
     )
@@ -56,7 +58,7 @@ def add_parser(subparsers: SubParsers) -> None:
 def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--unit",
-        choices=tuple(map(str.lower, UNITS)),
+        choices=tuple(map(str.lower, UNIT_SIZES_MM)),
         help="unit of the drawing, used instead of the unit in the file",
     )
     parser.add_argument(
@@ -105,7 +107,7 @@ def _add_part_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="use mm instead of inches, both in the program and in the length options",
     )
-    parser.add_argument("--material", choices=tuple(MATERIALS), default="STEEL", help="default: STEEL")
+    parser.add_argument("--material", choices=tuple(CUTTING_DATA), default="STEEL", help="default: STEEL")
     parser.add_argument("--bar", type=float, metavar="D", help="bar diameter")
     parser.add_argument("--face", type=float, metavar="L", help="stock to remove from the face; 0: no facing")
     parser.add_argument("--hole", type=float, metavar="D", help="diameter of the starting hole before boring")
@@ -141,28 +143,28 @@ def run(args: argparse.Namespace) -> int:
 
     Return 1 if the program has errors.
     """
-    from core.extras.drawings.drawing import DrawingError, limited_work
+    from core.extras.drawings.drawing import DrawingError, limit_work
 
-    with as_command_error(DrawingError), limited_work(lambda _seconds: None):
+    with convert_to_command_error(DrawingError), limit_work(lambda _seconds: None):
         return _run(args)
 
 
 def _run(args: argparse.Namespace) -> int:
-    from app.cli.proofs.progress_bar import Progress
+    from app.cli.proofs.progress_bar import ProgressBar
     from app.compose.machine.machine_setup import read_machine
     from core.extras.drawings.drawing_process import read_in_process
 
     machine = read_machine(args.machine)
     if not args.list:
-        args.who = may_write(args)
+        args.who = authorize_writing(args)
     if args.side == "bore" and args.hole is None and not args.list:
         raise CommandError(
             "boring requires a starting hole; specify the diameter of the hole with --hole", "no-hole"
         )
-    args.metric = args.metric or not machine.inch
+    args.metric = args.metric or not machine.is_inch
     args.dialect = _language(args, machine)
-    with Progress(Message("time to read {file}, in seconds", file=args.file)) as progress:
-        drawing = read_in_process(Path(args.file), progress.reach)
+    with ProgressBar(Message("time to read {file}, in seconds", file=args.file)) as progress:
+        drawing = read_in_process(Path(args.file), progress.report_progress)
     if args.layer and args.layer not in drawing.layers:
         raise CommandError(
             Message(
@@ -194,12 +196,12 @@ def _run(args: argparse.Namespace) -> int:
     return _make(drawing, view, net, args, machine)
 
 
-def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
+def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, machine: Machine) -> None:
     """Raise CommandError if the contour is too large for the machine only because of the unit of its file."""
-    from app.extras.shapes.shapes_desk import shop_of
-    from core.extras.drawings.unit_check import wrong_unit
+    from app.extras.shapes.shapes_setup import make_shop_data
+    from core.extras.drawings.unit_check import detect_wrong_unit
 
-    if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
+    if (wrong := detect_wrong_unit(net, view.unit, make_shop_data(machine, {}).travel)) is not None:
         size, name = wrong[0], wrong[1].lower()
         words = Message(
             "{drawing} is {size}, which is too large for this machine; with {name} as the "
@@ -219,7 +221,7 @@ def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
     """
     if args.out is None:
         return Dialect.SINUMERIK if machine.language == Dialect.SINUMERIK else Dialect.OMNITURN
-    said = dialect_of(Path(args.out).name)
+    said = guess_dialect(Path(args.out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
             Message(
@@ -232,11 +234,11 @@ def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
     return said
 
 
-def _view(drawing: Drawing, args: argparse.Namespace) -> View:
-    from core.extras.drawings.contour_walk import GAP
-    from core.extras.drawings.drawing_view import Front, View, Zero, axis_named
+def _view(drawing: Drawing, args: argparse.Namespace) -> DrawingPlacement:
+    from core.extras.drawings.contour_tracing import DEFAULT_GAP_MM
+    from core.extras.drawings.drawing_placement import DrawingPlacement, FaceEnd, ZeroPosition, select_axis
 
-    unit = UNITS[args.unit.upper()] if args.unit else drawing.unit
+    unit = UNIT_SIZES_MM[args.unit.upper()] if args.unit else drawing.unit_mm
     if not unit:
         raise CommandError(
             Message(
@@ -244,7 +246,7 @@ def _view(drawing: Drawing, args: argparse.Namespace) -> View:
             ),
             "no-unit",
         )
-    gap = GAP if args.gap is None else args.gap
+    gap = DEFAULT_GAP_MM if args.gap is None else args.gap
     if not 0.0 < gap <= 1.0:
         raise CommandError(
             Message(
@@ -254,14 +256,14 @@ def _view(drawing: Drawing, args: argparse.Namespace) -> View:
             "gap",
         )
     shift = args.shift * (1.0 if args.metric else 25.4)
-    front, zero = Front(args.front.upper()), Zero(args.zero.upper())
-    return View(axis_named(drawing, args.axis, args.layer), unit, front, zero, shift, gap)
+    front, zero = FaceEnd(args.front.upper()), ZeroPosition(args.zero.upper())
+    return DrawingPlacement(select_axis(drawing, args.axis, args.layer), unit, front, zero, shift, gap)
 
 
-def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Net]:
-    from core.extras.drawings.drawing_view import contours
+def _contours(drawing: Drawing, view: DrawingPlacement, args: argparse.Namespace) -> list[ElementGroup]:
+    from core.extras.drawings.drawing_placement import find_contours
 
-    found = contours(drawing, view, args.layer)
+    found = find_contours(drawing, view, args.layer)
     if not found:
         where = (
             Message("on layer {layer}", layer=args.layer)
@@ -279,34 +281,34 @@ def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Ne
     return found
 
 
-def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> None:
-    from core.extras.drawings.drawing_view import axes
+def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *, as_json: bool) -> None:
+    from core.extras.drawings.drawing_placement import find_axes
 
-    names = [axis.name for axis in axes(drawing)]
+    names = [axis.name for axis in find_axes(drawing)]
     told: Json = {
         "file": drawing.name,
-        "unit_mm": drawing.unit or None,
+        "unit_mm": drawing.unit_mm or None,
         "layers": list(drawing.layers),
         "axes": names,
         "axis": view.axis.name,
         "contours": [
             {"elements": len(net.elements), "length_mm": round(high - low, 4), "diameter_mm": round(2 * r, 4)}
             for net in found
-            for low, high, r in (net.reach,)
+            for low, high, r in (net.extent,)
         ],
-        "left_out": dict(drawing.left_out),
+        "left_out": dict(drawing.omitted_counts),
     }
     if as_json:
         sys.stdout.write(json.dumps(told) + "\n")
         return
-    unit = Message("{unit} mm", unit=f"{drawing.unit:g}") if drawing.unit else "not specified"
+    unit = Message("{unit} mm", unit=f"{drawing.unit_mm:g}") if drawing.unit_mm else "not specified"
     lines = [
         Message("{drawing}: unit {unit}", drawing=drawing.name, unit=unit),
         f"  layers: {', '.join(each or '(none)' for each in drawing.layers)}",
     ]
     lines.append(f"  axes: {', '.join(names)}")
     for number, net in enumerate(found, 1):
-        low, high, r = net.reach
+        low, high, r = net.extent
         words = Message(
             "length {high} mm, diameter {radius} mm, made up of {elements_count} lines",
             elements_count=len(net.elements),
@@ -318,33 +320,35 @@ def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> N
                 "  contour {number}, axis {axis}: {words}", number=number, axis=view.axis.name, words=words
             )
         )
-    if drawing.left_out:
+    if drawing.omitted_counts:
         lines.append(
             Message(
                 "  ignored: {number}",
-                number=", ".join((f"{n} {kind}" for kind, n in drawing.left_out.items())),
+                number=", ".join((f"{n} {kind}" for kind, n in drawing.omitted_counts.items())),
             )
         )
     sys.stdout.write("\n".join(lines) + "\n")
 
 
-def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, machine: Machine) -> int:
-    from app.extras.drawings.profile_trial_desk import TrialStock, tried
-    from core.extras.drawings.drawing_view import Side, profile
+def _make(
+    drawing: Drawing, view: DrawingPlacement, net: ElementGroup, args: argparse.Namespace, machine: Machine
+) -> int:
+    from app.extras.drawings.profile_trial import TrialStock, run_profile_trial
+    from core.extras.drawings.drawing_placement import ContourSide, extract_profile
 
     shapes = _shapes(args)
-    chosen = profile(drawing, view, net, Side(args.side.upper()))
+    chosen = extract_profile(drawing, view, net, ContourSide(args.side.upper()))
     mm = 1.0 if args.metric else 25.4
     typed = _typed(chosen, args, shapes)
     made = _program(chosen, typed, args, machine, shapes)
-    if made.refusals:
-        raise CommandError(f"{drawing.name}: {made.refusals[0].text}", "refused-shape")
+    if made.errors:
+        raise CommandError(f"{drawing.name}: {made.errors[0].text}", "refused-shape")
     text = "\n".join([*made.lines, "M30"]) + "\n"
     bar = float(typed["BAR"]) * mm
     stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
-    trial = tried(text, chosen, stock, made.nose, machine, shapes, dialect=args.dialect)
+    trial = run_profile_trial(text, chosen, stock, made.nose_offset, machine, shapes, dialect=args.dialect)
     if args.out is not None:
-        write_made(args, text, args.who)
+        write_program_file(args, text, args.who)
     elif not args.json:
         sys.stdout.write(text)
     _tell(made, trial, chosen, text, args)
@@ -352,17 +356,19 @@ def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, mach
 
 
 def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
-    from app.compose.stored_offsets import stored_shapes
+    from app.compose.stored_offsets import read_stored_shapes
     from app.offsets.offsets_file import read_tool_shapes
 
-    return stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
+    return read_stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
 
 
-def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]) -> dict[str, Value]:
+def _typed(
+    chosen: ContourProfile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]
+) -> dict[str, FieldValue]:
     """Return the field values of the shapes, with lengths in the unit of the program."""
-    from core.extras.drawings.profile_job import proposed_fields
+    from core.extras.drawings.profile_job import propose_fields
 
-    said: dict[str, Value | None] = {
+    said: dict[str, FieldValue | None] = {
         "BAR": args.bar,
         "STOCK": args.face,
         "HOLE": args.hole,
@@ -373,44 +379,46 @@ def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolS
         "MATERIAL": args.material,
     }
     given = {word: value for word, value in said.items() if value is not None}
-    return proposed_fields(chosen, given, shapes, metric=args.metric, dialect=args.dialect)
+    return propose_fields(chosen, given, shapes, metric=args.metric, dialect=args.dialect)
 
 
 def _program(
-    chosen: Profile,
-    typed: dict[str, Value],
+    chosen: ContourProfile,
+    typed: dict[str, FieldValue],
     args: argparse.Namespace,
     machine: Machine,
     shapes: Mapping[int, ToolShape],
 ) -> ProfileProgram:
-    from app.extras.shapes.shapes_desk import shop_of
-    from core.extras.drawings.profile_program import profile_program
-    from core.extras.shapes.shape_fields import Setting
+    from app.extras.shapes.shapes_setup import make_shop_data
+    from core.extras.drawings.profile_program import make_profile_program
+    from core.extras.shapes.shape_fields import ProgramSettings
 
-    setting = Setting(metric=args.metric, shop=shop_of(machine, shapes), dialect=args.dialect)
-    return profile_program(chosen, typed, [], setting)
+    setting = ProgramSettings(metric=args.metric, shop=make_shop_data(machine, shapes), dialect=args.dialect)
+    return make_profile_program(chosen, typed, [], setting)
 
 
-def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:
-    from core.extras.drawings.profile_job import in_json, in_words
+def _tell(
+    made: ProfileProgram, trial: TrialResult, chosen: ContourProfile, text: str, args: argparse.Namespace
+) -> None:
+    from core.extras.drawings.profile_job import convert_to_json, describe_program
 
     if args.json:
         told = {
             "file": args.file,
             "out": args.out,
             "program": text,
-            **in_json(made, trial.comparison, chosen),
+            **convert_to_json(made, trial.comparison, chosen),
         }
         sys.stdout.write(json.dumps({**told, "errors": list(trial.errors)}) + "\n")
         return
-    for line in (*in_words(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
+    for line in (*describe_program(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
         sys.stderr.write(f"turndesk: {line}\n")
 
 
-PROFILE = Output(
+PROFILE_OUTPUT = JsonOutput(
     "profile DRAWING --json",
     "One object. Lengths are in millimeters.",
-    keys(
+    declare_keys(
         """
 file | string | | The drawing.
 out | string or null | | File of --out.
@@ -440,10 +448,10 @@ errors | list | | Errors of the program; the exit status is then 1.
 """
     ),
 )
-PROFILE_LIST = Output(
+PROFILE_LIST_OUTPUT = JsonOutput(
     "profile DRAWING --list --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 file | string | | The drawing.
 unit_mm | number or null | mm | Length of one unit of the drawing; null if the drawing does not specify it.
@@ -459,4 +467,4 @@ left_out.* | integer | | Number, by kind.
 """
     ),
 )
-OUTPUTS = (PROFILE, PROFILE_LIST)
+OUTPUTS = (PROFILE_OUTPUT, PROFILE_LIST_OUTPUT)

@@ -5,60 +5,62 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
-    from app.desk.background_work import Latest
+    from app.desk.background_work import LatestRequestWorker
     from app.desk.desk import Desk
-    from app.desk.page_description import PageEntry
+    from app.desk.page_description import PageDescription
     from app.desk.persistence import Persistence
     from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
 
 
-class Jobs(Extra):
+class JobsExtra(OptionalFeature):
     """Optional feature with the page JOBS, its special function and ``turndesk jobs``."""
 
-    commands = {
+    subcommands = {
         "jobs": Subcommand("parts", "manage the queue of programs to run next, with their part counts"),
     }
 
     @property
-    def pages(self) -> Sequence[PageEntry]:
-        from app.desk.page_description import PageEntry
+    def pages(self) -> Sequence[PageDescription]:
+        from app.desk.page_description import PageDescription
 
         return (
-            PageEntry(
+            PageDescription(
                 "JOBS",
                 "app.extras.jobs.jobs_view.JobsPage",
                 "app.extras.jobs.jobs_model.JobsModel",
                 "J",
                 "JOBS",
                 "next job, number of parts, setup requirements",
-                after="MEASURED PARTS",
+                preceding_page="MEASURED PARTS",
                 shortcut="Shift+F6",
             ),
         )
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        from app.extras.jobs.jobs_desk import attach_jobs
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        from app.extras.jobs.jobs_setup import attach_jobs
 
-        attach_jobs(desk, machine, journal, work)
+        attach_jobs(desk, machine, journal, loading_steps)
 
-    def special_functions(
-        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    def list_special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
         from app.extras.jobs.jobs_watch import JobsFunction
 
         return ((JobsFunction(desk), "MEASURED PARTS"),)
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.jobs.jobs_command import OUTPUTS
 
         return OUTPUTS
 
 
-EXTRA = Jobs()
+EXTRA = JobsExtra()

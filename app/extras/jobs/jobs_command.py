@@ -7,11 +7,11 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from app.cli.store_command import opened_store
-from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
+from app.cli.change_author import COMMAND_LINE_USER, add_as_option, get_change_author
+from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_OK, CommandError
-from core.access.access_table import Act
-from core.json_key import Output, keys
+from core.access.access_table import ProtectedChange
+from core.json_keys import JsonOutput, declare_keys
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -52,11 +52,15 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Execute the action. Raises CommandError."""
-    with opened_store(read_only=args.action == "list") as store:
-        who = who_changes(store, args, Act.JOBS) if args.action != "list" else COMMAND_LINE
+    with open_store(read_only=args.action == "list") as store:
+        who = (
+            get_change_author(store, args, ProtectedChange.JOBS)
+            if args.action != "list"
+            else COMMAND_LINE_USER
+        )
         told = _ACTIONS[args.action](store, args)
-        if who != COMMAND_LINE:
-            store.events.log_event("change", f"jobs: {told.strip()}", who=who).result()
+        if who != COMMAND_LINE_USER:
+            store.events.log_event("change", f"jobs: {told.strip()}", author=who).result()
     sys.stdout.write(told)
     return EXIT_OK
 
@@ -74,34 +78,34 @@ def _told(place: int, row: JobRow) -> dict[str, object]:
     return {
         "place": place,
         "program": row.program,
-        "parts": row.wanted,
-        "made": row.made,
-        "left": row.left,
+        "parts": row.parts_to_make,
+        "made": row.parts_made,
+        "left": row.parts_left,
         "state": _state(row),
         "note": row.note,
-        "added": row.added,
+        "added": row.added_at,
     }
 
 
 def _state(row: JobRow) -> str:
-    if row.done:
+    if row.is_done:
         return "done"
-    return "under way" if row.under_way else "waiting"
+    return "under way" if row.is_active else "waiting"
 
 
 def _line(place: int, row: JobRow) -> str:
     note = f"  {row.note}" if row.note else ""
-    return f"{place:3d}  {row.program}  {row.made} of {row.wanted} parts  {_state(row)}{note}\n"
+    return f"{place:3d}  {row.program}  {row.parts_made} of {row.parts_to_make} parts  {_state(row)}{note}\n"
 
 
 def _add(store: Store, args: argparse.Namespace) -> str:
-    from app.compose.workshop import samples
-    from app.desk.data_folder import data_folder
+    from app.compose.program_proving import get_samples_folder
+    from app.desk.data_folder import find_data_folder
     from app.desk.programs.program_folder import ProgramFolders
 
-    folder = data_folder() / "programs"
-    path = ProgramFolders((folder, samples())).find(args.name)
-    if path is None or path.parent not in {folder, samples()}:
+    folder = find_data_folder() / "programs"
+    path = ProgramFolders((folder, get_samples_folder())).find_path(args.name)
+    if path is None or path.parent not in {folder, get_samples_folder()}:
         raise CommandError(
             Message(
                 "program {name} is not in {folder}; copy it there first",
@@ -124,11 +128,11 @@ def _move(store: Store, args: argparse.Namespace) -> str:
 def _remove(store: Store, args: argparse.Namespace) -> str:
     row = _at(store, args.place)
     store.jobs.remove_job(row.id).result()
-    return f"{row.program} is taken out, {row.made} of {row.wanted} parts made\n"
+    return f"{row.program} is taken out, {row.parts_made} of {row.parts_to_make} parts made\n"
 
 
 def _clear(store: Store, args: argparse.Namespace) -> str:
-    count = store.jobs.clear_jobs(everything=args.all).result()
+    count = store.jobs.clear_jobs(remove_all=args.all).result()
     return f"{count} {'job' if count == 1 else 'jobs'} taken out\n"
 
 
@@ -152,10 +156,10 @@ def _at(store: Store, place: int) -> JobRow:
 _ACTIONS = {"list": _list, "add": _add, "move": _move, "remove": _remove, "clear": _clear}
 
 
-JOBS = Output(
+JOBS_OUTPUT = JsonOutput(
     "jobs list --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 jobs | list | | The job queue, in order.
 jobs[].place | integer | | Position, from 1.
@@ -169,4 +173,4 @@ jobs[].added | string | UTC | Time at which the job was added.
 """
     ),
 )
-OUTPUTS = {"shift --json": (JOBS,)}
+OUTPUTS = {"shift --json": (JOBS_OUTPUT,)}

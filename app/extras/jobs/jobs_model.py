@@ -10,25 +10,33 @@ from textwrap import wrap
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.pages.page_entry import program_barred
-from app.desk.pages.sheet import STEPS, Entry, Key, Row, Sheet, refused
-from app.desk.status.formats import NOTHING, duration
+from app.desk.pages.page_entry import find_program_refusal
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, refused
+from app.desk.status.formats import NO_VALUE, format_duration
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.extras.jobs.jobs_watch import JobsWatch, ProvedJob, Station, findings, missing, stations, tool_name
-from app.special.counters import whole_number
-from core.access.access_table import Act
+from app.extras.jobs.jobs_watch import (
+    JobTool,
+    JobWatch,
+    ProvedJob,
+    count_open_items,
+    list_job_tools,
+    make_tool_label,
+    select_findings,
+)
+from app.special.counter_functions import parse_part_count
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
 from core.message import Message
 from core.store.production import job_queue
-from core.store.production.job_queue import NOTE_LONGEST, JobRow
+from core.store.production.job_queue import MAX_NOTE_LENGTH, JobRow
 from core.store.store_errors import StoreError
-from core.store.store_file import notes_key
+from core.store.store_file import make_notes_setting_key
 
-NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB"
-NO_PROGRAM = "F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB"
+NO_JOBS_MESSAGE = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB"
+NO_PROGRAM_MESSAGE = "F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB"
 _WIDE = 46  # characters of a cell
 
 
@@ -36,257 +44,297 @@ _WIDE = 46  # characters of a cell
 class JobsModel:
     """Model of the page JOBS.
 
-    ``asking`` is the entry of a count or note for the selected or a new job.
+    ``entry_kind`` is the entry of a count or note for the selected or a new job.
     """
 
     desk: Desk
-    watch: JobsWatch
-    marked: int = 0
-    asking: str = ""  # "count", "note" or empty
-    program: str = ""  # program of the job that is being added
-    entry: Entry = field(default_factory=Entry)
+    job_watch: JobWatch
+    selected_row: int = 0
+    entry_kind: str = ""  # "count", "note" or empty
+    entry_program: str = ""  # program of the job that is being added
+    entry: InputField = field(default_factory=InputField)
     _notes: tuple[str, tuple[str, ...]] = ("", ())
-    _sheets: tuple[object, Sheet, Sheet] | None = None
+    _sheets: tuple[object, TableContent, TableContent] | None = None
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
     def jobs(self) -> tuple[JobRow, ...]:
         """Jobs of the queue."""
-        return self.watch.jobs
+        return self.job_watch.jobs
 
     @property
-    def job(self) -> JobRow | None:
+    def selected_job(self) -> JobRow | None:
         """Selected job, or None."""
-        return self.jobs[self.marked] if self.marked < len(self.jobs) else None
+        return self.jobs[self.selected_row] if self.selected_row < len(self.jobs) else None
 
     @property
-    def locked(self) -> str:
+    def lock_reason(self) -> str:
         """Reason why jobs are not stored, or an empty string."""
-        book = self.watch.parts.book
-        return "" if book.store is not None else book.away or tr("JOBS CANNOT BE SAVED: NO DATA STORE")
-
-    def look(self) -> None:
-        """Limit the selection and request the proof of the selected job; called once per frame."""
-        self.marked = max(0, min(self.marked, len(self.jobs) - 1))
-        job = self.job
-        self.watch.also = (
-            job.program if job is not None and not job.done and not self.watch.on_desk(job) else ""
+        book = self.job_watch.parts_watch.parts_book
+        return (
+            ""
+            if book.store is not None
+            else book.no_store_reason or tr("JOBS CANNOT BE SAVED: NO DATA STORE")
         )
 
-    def proof_of(self, job: JobRow) -> ProvedJob | str | None:
-        """Return the job's proof, the reason why proving failed, or None while it is pending."""
-        return self.watch.proofs.of(job.program, self.desk.book.changes)
+    def update(self) -> None:
+        """Limit the selection and request the proof of the selected job; called once per frame."""
+        self.selected_row = max(0, min(self.selected_row, len(self.jobs) - 1))
+        job = self.selected_job
+        self.job_watch.selected_program = (
+            job.program
+            if job is not None and not job.is_done and not self.job_watch.is_active_and_loaded(job)
+            else ""
+        )
 
-    def sheet(self, snapshot: Snapshot) -> Sheet:
+    def find_proof(self, job: JobRow) -> ProvedJob | str | None:
+        """Return the job's proof, the reason why proving failed, or None while it is pending."""
+        return self.job_watch.proofs.find_proof(job.program, self.desk.offset_book.changes)
+
+    def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table of the queue with the question below."""
         rows = tuple(self._row(number, job, snapshot) for number, job in enumerate(self.jobs, 1))
         question = ""
-        if self.asking == "count":
-            name = self.program or (self.job.program if self.job is not None else "")
+        if self.entry_kind == "count":
+            name = self.entry_program or (self.selected_job.program if self.selected_job is not None else "")
             question = tr(Message("HOW MANY PARTS OF {program}?", program=name))
-        elif self.asking == "note":
+        elif self.entry_kind == "note":
             question = tr("NOTE")
-        return Sheet(
+        return TableContent(
             "JOBS",
             ("", "PROGRAM", "MADE", "TIME", "STATE"),
             (0.05, 0.36, 0.15, 0.12, 0.32),
             rows,
-            self.marked if rows else -1,
+            self.selected_row if rows else -1,
             question=question,
             text=self.entry.text,
-            notes=(self.locked,) if self.locked else () if rows else (NONE_YET,),
-            raw=frozenset({0, 1, 2, 3}),
-            figures=frozenset({2, 3}),
-            tall=True,
+            notes=(self.lock_reason,) if self.lock_reason else () if rows else (NO_JOBS_MESSAGE,),
+            raw_columns=frozenset({0, 1, 2, 3}),
+            number_columns=frozenset({2, 3}),
+            has_tall_rows=True,
         )
 
-    def _row(self, number: int, job: JobRow, snapshot: Snapshot) -> Row:
-        made, state, tone = self.proof_of(job), self._state(job), Tone.READY
-        if job.done:
+    def _row(self, number: int, job: JobRow, snapshot: Snapshot) -> TableRow:
+        made, state, tone = self.find_proof(job), self._state(job), Tone.READY
+        if job.is_done:
             tone = Tone.RUN
         elif isinstance(made, str) or (
-            isinstance(made, ProvedJob) and missing(made, self.watch.lives, job.left)
+            isinstance(made, ProvedJob) and count_open_items(made, self.job_watch.tool_lives, job.parts_left)
         ):
             tone = Tone.PAUSE
-        cycle = made.sheet.cycle if isinstance(made, ProvedJob) else 0.0
-        if job.under_way and self.desk.runs.counter.program == job.program:
+        cycle = made.setup_sheet.cycle_time_s if isinstance(made, ProvedJob) else 0.0
+        if job.is_active and self.desk.program_runs.part_counter.program == job.program:
             cycle = snapshot.last_cycle or cycle
-        left = duration(job.left * cycle) if cycle and job.left else NOTHING
-        cells = (str(number), f"{job.program}\n{job.note}", f"{job.made}/{job.wanted}", left, state)
-        return Row(cells, job.under_way or job.done, tone, bar=min(1.0, job.made / job.wanted))
+        left = format_duration(job.parts_left * cycle) if cycle and job.parts_left else NO_VALUE
+        cells = (
+            str(number),
+            f"{job.program}\n{job.note}",
+            f"{job.parts_made}/{job.parts_to_make}",
+            left,
+            state,
+        )
+        return TableRow(
+            cells,
+            job.is_active or job.is_done,
+            tone,
+            bar_fraction=min(1.0, job.parts_made / job.parts_to_make),
+        )
 
     def _state(self, job: JobRow) -> str:
-        if job.done:
-            return tr("JOB DONE, PROGRAM STILL LOADED") if self.watch.on_desk(job) else tr("DONE")
-        return tr("IN PROGRESS") if self.watch.on_desk(job) else self.watch.state_words(job)
+        if job.is_done:
+            return (
+                tr("JOB DONE, PROGRAM STILL LOADED")
+                if self.job_watch.is_active_and_loaded(job)
+                else tr("DONE")
+            )
+        return (
+            tr("IN PROGRESS")
+            if self.job_watch.is_active_and_loaded(job)
+            else self.job_watch.describe_state(job)
+        )
 
-    def setup(self) -> Sheet:
+    def make_setup_table(self) -> TableContent:
         """Return the setup table of the selected job: tools, findings of the proof, and notes."""
-        job = self.job
+        job = self.selected_job
         title = tr("SETUP SHEET") + (f"  ·  {job.program}" if job is not None else "")
         rows = tuple(self._setup_rows(job)) if job is not None else ()
-        return Sheet(title, ("", "", ""), (0.13, 0.45, 0.42), rows, raw=frozenset({0, 1, 2}), tall=True)
+        return TableContent(
+            title,
+            ("", "", ""),
+            (0.13, 0.45, 0.42),
+            rows,
+            raw_columns=frozenset({0, 1, 2}),
+            has_tall_rows=True,
+        )
 
-    def _setup_rows(self, job: JobRow) -> Iterator[Row]:
-        made = self.proof_of(job)
+    def _setup_rows(self, job: JobRow) -> Iterator[TableRow]:
+        made = self.find_proof(job)
         if isinstance(made, str):
-            yield Row((tr("PROOF"), _folded(made), ""), True, Tone.ALARM)
+            yield TableRow((tr("PROOF"), _folded(made), ""), True, Tone.ALARM)
         elif made is None:
             words = tr("PROVING …")
-            if self.watch.on_desk(job) or job.done:
+            if self.job_watch.is_active_and_loaded(job) or job.is_done:
                 words = (
                     tr("PROGRAM LOADED. SEE ERRORS AND WARNINGS ON PART PAGE (B)")
-                    if not job.done
+                    if not job.is_done
                     else tr("DONE")
                 )
-            yield Row((tr("PROOF"), words, ""), False)
+            yield TableRow((tr("PROOF"), words, ""), False)
         else:
             yield from self._proved_rows(job, made)
-        for number, text in enumerate(self.notes_of(job.program), 1):
-            yield Row((f"{tr('NOTE')} {number}", text, ""))
+        for number, text in enumerate(self.read_setup_notes(job.program), 1):
+            yield TableRow((f"{tr('NOTE')} {number}", text, ""))
 
-    def _proved_rows(self, job: JobRow, made: ProvedJob) -> Iterator[Row]:
-        sheet = made.sheet
-        for station in stations(made, self.watch.lives, job.left):
+    def _proved_rows(self, job: JobRow, made: ProvedJob) -> Iterator[TableRow]:
+        sheet = made.setup_sheet
+        for station in list_job_tools(made, self.job_watch.tool_lives, job.parts_left):
             yield self._station(station, made)
-        for each in findings(sheet):
+        for each in select_findings(sheet):
             name = tr(Message("LINE {line}", line=each.line)) if each.line else tr("PROOF")
             tone = Tone.ALARM if each.severity is Severity.ERROR else Tone.PAUSE
-            yield Row((name, _folded(tr(each.message)), _folded(tr(each.hint))), True, tone)
-        yield Row((tr("STOCK"), sheet.stock_words, ""))
-        for name, words in sheet.held_words:
-            yield Row((name, words, ""))
+            yield TableRow((name, _folded(tr(each.message)), _folded(tr(each.hint))), True, tone)
+        yield TableRow((tr("STOCK"), sheet.stock_text, ""))
+        for name, words in sheet.clamping_texts:
+            yield TableRow((name, words, ""))
 
     @staticmethod
-    def _station(station: Station, made: ProvedJob) -> Row:
+    def _station(station: JobTool, made: ProvedJob) -> TableRow:
         tool = station.tool
-        lacks = _folded("; ".join(station.lacks)) or tr("ready")
-        words = f"{made.sheet.shape_words(tool)}\n{made.sheet.offset_words(tool)}"
-        return Row((tool_name(tool.number), words, lacks), bool(station.lacks),
-                   Tone.PAUSE if station.lacks else Tone.RUN)  # fmt: skip
+        lacks = _folded("; ".join(station.required_actions)) or tr("ready")
+        words = f"{made.setup_sheet.describe_shape(tool)}\n{made.setup_sheet.format_offset(tool)}"
+        return TableRow((make_tool_label(tool.tool_number), words, lacks), bool(station.required_actions),
+                   Tone.PAUSE if station.required_actions else Tone.RUN)  # fmt: skip
 
-    def notes_of(self, program: str) -> Sequence[str]:
+    def read_setup_notes(self, program: str) -> Sequence[str]:
         """Return the notes of the program's setup sheet (F10)."""
         if self._notes[0] != program:
             try:
-                kept = self.desk.runs.counter.persistence.read_setting(notes_key(program))
+                kept = self.desk.program_runs.part_counter.persistence.read_setting(
+                    make_notes_setting_key(program)
+                )
             except StoreError:
                 kept = None
             texts = kept if isinstance(kept, list) else []
             self._notes = program, tuple(each for each in texts if isinstance(each, str))
         return self._notes[1]
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
-        if self.asking:
+        if self.entry_kind:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
-        if self.job is None:
-            return NONE_YET if self.desk.session.now.name else NO_PROGRAM
-        if self.load_barred:
+        if self.selected_job is None:
+            return NO_JOBS_MESSAGE if self.desk.program_loader.loaded.name else NO_PROGRAM_MESSAGE
+        if self.load_obstacle:
             return "CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK"
         return "F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC"
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys; none during an entry, which Enter and Esc end."""
-        if self.asking:
+        if self.entry_kind:
             return {}
-        none = self.job is None
-        notes_barred = none or self.desk.snapshot().state in UNDER_WAY
+        none = self.selected_job is None
+        notes_barred = none or self.desk.read_snapshot().state in ACTIVE_STATES
         return {
-            "F3": Key("ADD", self.add, barred=not self.desk.session.now.name),
-            "F4": Key("QUANTITY", partial(self._ask, "count"), barred=none),
-            "F5": Key("UP", partial(self.move, -1), barred=none),
-            "F6": Key("DOWN", partial(self.move, 1), barred=none),
-            "F8": Key("NOTE", partial(self._ask, "note"), barred=notes_barred),
-            "F9": Key("REMOVE", self.remove, barred=none),
-            "F10": Key("CLEAR", self.clear),
+            "F3": FunctionKey("ADD", self.add_job, barred=not self.desk.program_loader.loaded.name),
+            "F4": FunctionKey("QUANTITY", partial(self._ask, "count"), barred=none),
+            "F5": FunctionKey("UP", partial(self.move_job, -1), barred=none),
+            "F6": FunctionKey("DOWN", partial(self.move_job, 1), barred=none),
+            "F8": FunctionKey("NOTE", partial(self._ask, "note"), barred=notes_barred),
+            "F9": FunctionKey("REMOVE", self.remove_job, barred=none),
+            "F10": FunctionKey("CLEAR", self.clear_finished_jobs),
         }
 
     @property
-    def load_barred(self) -> str:
+    def load_obstacle(self) -> str:
         """Reason why the selected job cannot be loaded, or an empty string."""
-        return NONE_YET if self.job is None else program_barred(self.desk.snapshot())
+        return (
+            NO_JOBS_MESSAGE if self.selected_job is None else find_program_refusal(self.desk.read_snapshot())
+        )
 
-    def may_load(self) -> bool:
+    def check_loadable(self) -> bool:
         """Return whether the selected job can be loaded, and show the reason if not."""
-        if why := self.load_barred:
+        if why := self.load_obstacle:
             self.desk.say(why)
         return not why
 
-    def load(self) -> None:
+    def load_job(self) -> None:
         """Load the selected job. Only the palm buttons start its cycle."""
-        job = self.job
+        job = self.selected_job
         if job is not None:
-            self.watch.load(job)
+            self.job_watch.load_job(job)
 
-    def add(self) -> None:
+    def add_job(self) -> None:
         """Add a job for the loaded program. The number of parts is asked."""
-        name = self.desk.session.now.name
+        name = self.desk.program_loader.loaded.name
         if not name:
-            self.desk.say(NO_PROGRAM)
+            self.desk.say(NO_PROGRAM_MESSAGE)
             return
         self.add_program(name)
 
     def add_program(self, name: str) -> None:
         """Add a job for a program. The number of parts is asked."""
-        self.desk.clear()
-        self.asking, self.program, self.entry = "count", name, Entry()
+        self.desk.clear_prompt_line()
+        self.entry_kind, self.entry_program, self.entry = "count", name, InputField()
 
     def _ask(self, what: str) -> None:
-        job = self.job
+        job = self.selected_job
         if job is None:
-            self.desk.say(NONE_YET)
-        elif what == "note" and self.desk.snapshot().state in UNDER_WAY:
+            self.desk.say(NO_JOBS_MESSAGE)
+        elif what == "note" and self.desk.read_snapshot().state in ACTIVE_STATES:
             self.desk.say("NO NOTES DURING A CYCLE: LETTER KEYS WOULD STOP THE MACHINE")
         else:
-            self.desk.clear()
+            self.desk.clear_prompt_line()
             text = job.note if what == "note" else ""
-            self.asking, self.program, self.entry = what, "", Entry(words=what == "note", text=text)
+            self.entry_kind, self.entry_program, self.entry = (
+                what,
+                "",
+                InputField(words=what == "note", text=text),
+            )
 
-    def move(self, by: int) -> None:
+    def move_job(self, steps: int) -> None:
         """Move the selected job up or down the queue."""
-        job, to = self.job, self.marked + 1 + by
+        job, to = self.selected_job, self.selected_row + 1 + steps
         if job is None:
-            self.desk.say(NONE_YET)
+            self.desk.say(NO_JOBS_MESSAGE)
         elif 1 <= to <= len(self.jobs):
-            self.desk.clear()
+            self.desk.clear_prompt_line()
             self._write(
-                lambda c: job_queue.move(c, job.id, to),
+                lambda c: job_queue.move_job(c, job.id, to),
                 partial(self._mark, to - 1),
                 Message("job {program}: moved to position {to}", program=job.program, to=to),
             )
 
     def _mark(self, row: int) -> None:
-        self.marked = row
+        self.selected_row = row
 
-    def remove(self) -> None:
+    def remove_job(self) -> None:
         """Remove the selected job after confirmation. The part count of its program remains."""
-        job = self.job
+        job = self.selected_job
         if job is None:
-            self.desk.say(NONE_YET)
+            self.desk.say(NO_JOBS_MESSAGE)
             return
         words = tr("{program}: {made} OF {wanted} MADE. Y: REMOVE FROM QUEUE   N: KEEP")
-        words = tr(Message(words, program=job.program, made=job.made, wanted=job.wanted))
-        self.desk.ask(
+        words = tr(Message(words, program=job.program, made=job.parts_made, wanted=job.parts_to_make))
+        self.desk.ask_operator(
             words,
             partial(
                 self._write,
-                lambda c: job_queue.remove(c, job.id),
+                lambda c: job_queue.remove_job(c, job.id),
                 change=Message("job {program} removed", program=job.program),
             ),
         )
 
-    def clear(self) -> None:
+    def clear_finished_jobs(self) -> None:
         """Remove finished jobs after confirmation."""
-        done = sum(job.done for job in self.jobs)
+        done = sum(job.is_done for job in self.jobs)
         if not done:
-            self.desk.done("NO FINISHED JOBS TO CLEAR")
+            self.desk.show_success("NO FINISHED JOBS TO CLEAR")
             return
         words = tr("Y: REMOVE {count} FINISHED JOBS FROM THE QUEUE   N: KEEP THEM")
-        self.desk.ask(tr(Message(words, count=done)), partial(self._write, _clear_done))
+        self.desk.ask_operator(tr(Message(words, count=done)), partial(self._write, _clear_done))
 
     def _write(
         self,
@@ -294,92 +342,94 @@ class JobsModel:
         done: Callable[[], None] = lambda: None,
         change: str = "finished jobs removed from the job queue",
     ) -> None:
-        self.desk.clear()
-        self.watch.parts.book.write(Act.JOBS, operation, done, self.watch.parts.refuse, change)
+        self.desk.clear_prompt_line()
+        self.job_watch.parts_watch.parts_book.write_change(
+            ProtectedChange.JOBS, operation, done, self.job_watch.parts_watch.report_refusal, change
+        )
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key: arrows select a job, and other keys edit the entry."""
-        if not self.asking:
-            if key in STEPS and self.jobs:
-                self.choose(self.marked + STEPS[key])
+        if not self.entry_kind:
+            if key in ROW_STEPS and self.jobs:
+                self.select_row(self.selected_row + ROW_STEPS[key])
                 return True
             return False
         if key == "Enter":
             self._answer()
-        elif self.asking == "note" and len(self.entry.text) >= NOTE_LONGEST and len(key) == 1:
-            self.desk.say(tr(Message("NOTE TOO LONG: {maximum} CHARACTERS AT MOST", maximum=NOTE_LONGEST)))
-        elif self.entry.type(key):
-            self.desk.clear()
+        elif self.entry_kind == "note" and len(self.entry.text) >= MAX_NOTE_LENGTH and len(key) == 1:
+            self.desk.say(tr(Message("NOTE TOO LONG: {maximum} CHARACTERS AT MOST", maximum=MAX_NOTE_LENGTH)))
+        elif self.entry.handle_key(key):
+            self.desk.clear_prompt_line()
         else:
             return False
         return True
 
     def _answer(self) -> None:
-        text, job = self.entry.text.strip(), self.job
-        if self.asking == "note":
+        text, job = self.entry.text.strip(), self.selected_job
+        if self.entry_kind == "note":
             if job is not None:
                 self._write(
-                    lambda c: job_queue.change(c, job.id, job.wanted, text),
+                    lambda c: job_queue.change_job(c, job.id, job.parts_to_make, text),
                     change=Message("job {program}: {text}", program=job.program, text=text),
                 )
-            self.asking = ""
+            self.entry_kind = ""
             return
         try:
-            wanted = whole_number(text)
+            wanted = parse_part_count(text)
         except EntryError as error:
             self.entry.text = refused(self.entry.text)
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
             return
-        program, last = self.program, len(self.jobs)
+        program, last = self.entry_program, len(self.jobs)
         if program:
             self._write(
-                lambda c: job_queue.add(c, program, wanted),
+                lambda c: job_queue.add_job(c, program, wanted),
                 partial(self._mark, last),
                 Message("job {program} added: {expected} parts", program=program, expected=wanted),
             )
         elif job is not None:
             self._write(
-                lambda c: job_queue.change(c, job.id, wanted, job.note),
+                lambda c: job_queue.change_job(c, job.id, wanted, job.note),
                 change=Message(
                     "job {program}: quantity changed: {expected} → {expected2} parts",
                     program=job.program,
-                    expected=job.wanted,
+                    expected=job.parts_to_make,
                     expected2=wanted,
                 ),
             )
-        self.asking = ""
+        self.entry_kind = ""
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of the entry."""
-        return bool(self.asking) and self.entry.takes(key)
+        return bool(self.entry_kind) and self.entry.accepts_key(key)
 
-    def choose(self, row: int) -> None:
+    def select_row(self, row: int) -> None:
         """Select a row."""
-        if not self.asking and self.jobs:
-            self.desk.clear()
-            self.marked = max(0, min(len(self.jobs) - 1, row))
+        if not self.entry_kind and self.jobs:
+            self.desk.clear_prompt_line()
+            self.selected_row = max(0, min(len(self.jobs) - 1, row))
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Discard cached notes and proofs when the page opens.
 
         Programs and shapes can have changed.
         """
         self._notes = "", ()
-        self.watch.proofs.anew()
+        self.job_watch.proofs.clear_proofs()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go back one step. Return False if the page can close."""
-        if self.desk.notice:
-            self.desk.clear()
-        elif self.asking:
-            self.asking = ""
+        if self.desk.prompt_notice:
+            self.desk.clear_prompt_line()
+        elif self.entry_kind:
+            self.entry_kind = ""
         else:
             return False
         return True
 
-    def leave(self) -> None:
+    def on_close(self) -> None:
         """Cancel the entry when the page closes. Then only the next job is proved."""
-        self.asking, self.watch.also = "", ""
+        self.entry_kind, self.job_watch.selected_program = "", ""
 
     def close(self) -> None:
         """Do nothing, because the watch is closed separately."""
@@ -392,4 +442,4 @@ def _folded(text: str) -> str:
 
 
 def _clear_done(connection: sqlite3.Connection) -> None:
-    job_queue.clear(connection, everything=False)
+    job_queue.clear(connection, remove_all=False)

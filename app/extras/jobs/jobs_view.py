@@ -8,14 +8,14 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.sheet import Key
-from app.desk.programs.program_loading import Loaded
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.extras.jobs.jobs_model import JobsModel
 from app.screen import page_table
-from app.screen.entry_panel import KeyPad, LetterPad
-from app.screen.page_base import Host, KeyActions
-from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.entry_panel import LetterPad, NumberPad
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.table_panel import ListPage, TablePanel
 from core.executor.snapshot import Snapshot
 
 PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; ratio of the height
@@ -27,33 +27,33 @@ class JobsPage(ListPage):
     NAME = "JOBS"
     model: JobsModel
 
-    def __init__(self, host: Host, model: JobsModel, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: JobsModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.table = SheetPanel(self.look, self._chosen, self)
-        self.setup = SheetPanel(self.look, lambda _row: None, self)
-        self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
-        self.letters = LetterPad(self.look, self.touched, self)
+        self.table = TablePanel(self.theme, self._chosen, self)
+        self.setup_table = TablePanel(self.theme, lambda _row: None, self)
+        self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
+        self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
         self._asked = ""
 
-    def barred(self) -> frozenset[str]:
+    def disabled_keys(self) -> frozenset[str]:
         """Return the barred keys of the model, and F2 while no job can be loaded."""
-        return super().barred() | ({"F2"} if self.model.load_barred else set())
+        return super().disabled_keys() | ({"F2"} if self.model.load_obstacle else set())
 
-    def page_keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.keys()
+        return self.model.function_keys()
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of F2 and of the model."""
-        return self.labels_of({"F2": "LOAD"}, self.page_keys())
+        return self.make_labels({"F2": "LOAD"}, self.function_keys())
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the function keys."""
-        keys = self.page_keys()
+        keys = self.function_keys()
         return {"F2": self._load, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.page_keys()[name].action()
+        self.function_keys()[name].action()
 
     def _load(self) -> None:
         """Open the Automatic page, then load the job.
@@ -61,24 +61,24 @@ class JobsPage(ListPage):
         A question about an interrupted job is then visible.
         """
         model = self.model
-        if model.may_load() and self.host.go(page_table.AUTOMATIC):
-            model.load()
+        if model.check_loadable() and self.host.open_page(page_table.AUTOMATIC):
+            model.load_job()
 
     def _chosen(self, row: int) -> None:
-        self.model.choose(row)
+        self.model.select_row(row)
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether a count or a note is being typed."""
-        return bool(self.model.asking)
+        return bool(self.model.entry_kind)
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Update queue and setup."""
         model = self.model
-        model.look()
-        self.table.show_sheet(model.sheet(snapshot))
-        self.setup.show_sheet(model.setup())
-        if model.asking != self._asked:
-            self._asked = model.asking
+        model.update()
+        self.table.show_table(model.make_table(snapshot))
+        self.setup_table.show_table(model.make_setup_table())
+        if model.entry_kind != self._asked:
+            self._asked = model.entry_kind
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -86,18 +86,18 @@ class JobsPage(ListPage):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        u = self.look.u
+        u = self.theme.u
         gap = max(4, round(0.7 * u))
-        self.pad.setVisible(self._asked == "count")
-        self.letters.setVisible(self._asked == "note")
-        low = max(round(LETTERS * u), self.letters.least)
+        self.number_pad.setVisible(self._asked == "count")
+        self.letter_pad.setVisible(self._asked == "note")
+        low = max(round(LETTERS * u), self.letter_pad.min_height_px)
         high = round(QUEUE * (self.height() - gap))
         if self._asked == "note":  # the keyboard covers the setup
             high = min(high, self.height() - low - gap)
         pad = round(PAD * u) + gap if self._asked == "count" else 0
         wide = self.width() - pad
         self.table.setGeometry(0, 0, wide, high)
-        self.setup.setGeometry(0, high + gap, wide, self.height() - high - gap)
-        self.pad.setGeometry(wide + gap, 0, max(0, pad - gap), self.height())
-        self.letters.setGeometry(0, self.height() - low, self.width(), low)
-        self.letters.raise_()
+        self.setup_table.setGeometry(0, high + gap, wide, self.height() - high - gap)
+        self.number_pad.setGeometry(wide + gap, 0, max(0, pad - gap), self.height())
+        self.letter_pad.setGeometry(0, self.height() - low, self.width(), low)
+        self.letter_pad.raise_()

@@ -11,28 +11,28 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.background_work import Latest, Watch
+from app.desk.background_work import LatestRequestWorker, ProgressCallback
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Row
-from app.desk.programs.program_loading import Loaded
-from app.desk.status.formats import NOTHING, local_time
+from app.desk.pages.table_content import TableRow
+from app.desk.programs.program_loading import LoadedProgram
+from app.desk.status.formats import NO_VALUE, format_local_time
 from app.desk.status.interrupted_notice import NoticeRow
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.production.parts_watch import PartsWatch
 from app.special.special_functions import PageFunction
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
-from core.production.tool_life import LifeState, ToolLife
+from core.production.tool_life import ToolLife, ToolLifeState
 from core.store.production import job_queue
 from core.store.production.job_queue import JobRow
 from core.store.store_rows import ToolRow
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 if TYPE_CHECKING:
-    from app.special.setup_sheet import SetupSheet, SheetTool
+    from app.special.setup_sheet import SetupSheet, SetupTool
 
 
 _SAME = 1e-4  # mm: smaller differences of nose radii are ignored
@@ -43,56 +43,60 @@ _TOLD = 3  # maximum number of displayed findings
 class ProvedJob:
     """Program of the queue, proved with the offsets of that moment.
 
-    ``before`` contains the tools at its last start, and ``ran`` is the time of that start (UTC), or empty if
-    it never ran.
+    ``tools_at_last_start`` contains the tools at its last start, and ``last_start_utc`` is the time of that
+    start (UTC), or empty if it never ran.
     """
 
-    sheet: SetupSheet
-    ran: str = ""
-    before: Mapping[int, ToolRow] = field(default_factory=dict)
+    setup_sheet: SetupSheet
+    last_start_utc: str = ""
+    tools_at_last_start: Mapping[int, ToolRow] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
-class Station:
-    """Tool that a job needs. ``lacks`` lists the required actions as text."""
+class JobTool:
+    """Tool that a job needs. ``required_actions`` lists the required actions as text."""
 
-    tool: SheetTool
-    lacks: tuple[str, ...] = ()
+    tool: SetupTool
+    required_actions: tuple[str, ...] = ()
 
 
-def stations(job: ProvedJob, lives: Mapping[int, ToolLife], parts: int) -> tuple[Station, ...]:
+def list_job_tools(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make: int) -> tuple[JobTool, ...]:
     """Return the tools of a job that has ``parts`` parts to make, in the order of the gang plate."""
     return tuple(
-        Station(tool, tuple(_lacks(tool, job, lives.get(tool.number), parts))) for tool in job.sheet.tools
+        JobTool(tool, tuple(_lacks(tool, job, lives.get(tool.tool_number), parts_to_make)))
+        for tool in job.setup_sheet.setup_tools
     )
 
 
-def missing(job: ProvedJob, lives: Mapping[int, ToolLife], parts: int) -> int:
+def count_open_items(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
     """Return the number of open items before the job can start: tool actions and errors of the proof."""
-    return sum(len(each.lacks) for each in stations(job, lives, parts)) + job.sheet.errors
+    return (
+        sum(len(each.required_actions) for each in list_job_tools(job, lives, parts_to_make))
+        + job.setup_sheet.error_count
+    )
 
 
-def findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
+def select_findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
     """Return the first errors of the proof, followed by its first warnings."""
-    worth = [each for each in sheet.found if each.severity is not Severity.NOTE]
+    worth = [each for each in sheet.diagnostics if each.severity is not Severity.NOTE]
     return tuple(sorted(worth, key=lambda each: (each.severity is not Severity.ERROR, each.line))[:_TOLD])
 
 
-def _lacks(tool: SheetTool, job: ProvedJob, life: ToolLife | None, parts: int) -> Iterator[str]:
-    if tool.offset is None:
+def _lacks(tool: SetupTool, job: ProvedJob, life: ToolLife | None, parts: int) -> Iterator[str]:
+    if tool.tool_offset is None:
         yield tr("no offset set: touch off the tool")
         return
     yield from _of_life(tool, life, parts)
-    yield from _of_tip(tool, job)
+    yield from _list_tip_actions(tool, job)
 
 
-def _of_life(tool: SheetTool, life: ToolLife | None, parts: int) -> Iterator[str]:
-    if life is None or life.state is LifeState.NO_LIMIT:
+def _of_life(tool: SetupTool, life: ToolLife | None, parts: int) -> Iterator[str]:
+    if life is None or life.state is ToolLifeState.NO_LIMIT:
         return
-    if life.state is LifeState.SPENT:
+    if life.state is ToolLifeState.USED_UP:
         yield tr(Message("tool life used up, {words}: change the insert", words=tr(life.words)))
         return
-    left = _parts_left(life, tool.time.cutting)
+    left = _parts_left(life, tool.tool_time.cutting_s)
     if left is not None and left < parts:
         yield tr(Message("remaining tool life covers {left} of {parts} parts", left=left, parts=parts))
 
@@ -105,9 +109,9 @@ def _parts_left(life: ToolLife, seconds: float) -> int | None:
     return max(0, min(left)) if left else None
 
 
-def _of_tip(tool: SheetTool, job: ProvedJob) -> Iterator[str]:
+def _list_tip_actions(tool: SetupTool, job: ProvedJob) -> Iterator[str]:
     """Yield a note if the tool tip differs from that at the last start of the program."""
-    then, now = job.before.get(tool.number), tool.offset
+    then, now = job.tools_at_last_start.get(tool.tool_number), tool.tool_offset
     if then is None or now is None:
         return
     if then.quadrant == now.quadrant and abs(then.nose_radius - now.nose_radius) < _SAME:
@@ -115,13 +119,13 @@ def _of_tip(tool: SheetTool, job: ProvedJob) -> Iterator[str]:
     words = tr(
         "since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}"
     )
-    length = job.sheet.length
+    length = job.setup_sheet.format_length
     yield tr(
         Message(
             words,
             radius=length(now.nose_radius),
             tip=_tip(now.quadrant),
-            when=local_time(job.ran, seconds=False),
+            when=format_local_time(job.last_start_utc, seconds=False),
             was=length(then.nose_radius),
             was_tip=_tip(then.quadrant),
         )
@@ -132,12 +136,12 @@ def _tip(quadrant: int) -> str:
     return tr(Message("tip quadrant {quadrant}", quadrant=quadrant))
 
 
-def tool_name(number: int) -> str:
+def make_tool_label(number: int) -> str:
     """Return the name of a tool or edge, such as ``T3`` or ``T1D2``."""
-    return edge_name(number)
+    return format_edge_name(number)
 
 
-PAGE = "JOBS"  # name of the page in app.screen.page_table
+JOBS_PAGE = "JOBS"  # name of the page in app.screen.page_table
 
 
 class JobsFunction(PageFunction):
@@ -145,61 +149,65 @@ class JobsFunction(PageFunction):
 
     name = "JOBS"
     use = "next job, number of parts, setup requirements"
-    page = PAGE
-    way = (
+    page = JOBS_PAGE
+    key_hint = (
         "Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it "
         "from the main menu."
     )
 
-    def facts(self) -> tuple[Row, ...]:
+    def make_fact_rows(self) -> tuple[TableRow, ...]:
         """Return the rows with the active, next and waiting jobs."""
-        watch = self.desk.pages.find(JobsWatch)
+        watch = self.desk.page_registry.find(JobWatch)
         if watch is None:
             return ()
-        job, coming = watch.under_way, watch.next
-        made = f"{job.program}  {job.made}/{job.wanted}" if job is not None else NOTHING
-        then = f"{coming.program}  {coming.left}" if coming is not None else NOTHING
-        waiting = sum(not each.done and not each.under_way for each in watch.jobs)
-        return (Row((tr("IN PROGRESS"), made)), Row((tr("NEXT"), then)), Row((tr("WAITING"), str(waiting))))
+        job, coming = watch.active_job, watch.next_job
+        made = f"{job.program}  {job.parts_made}/{job.parts_to_make}" if job is not None else NO_VALUE
+        then = f"{coming.program}  {coming.parts_left}" if coming is not None else NO_VALUE
+        waiting = sum(not each.is_done and not each.is_active for each in watch.jobs)
+        return (
+            TableRow((tr("IN PROGRESS"), made)),
+            TableRow((tr("NEXT"), then)),
+            TableRow((tr("WAITING"), str(waiting))),
+        )
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt that names the keys."""
         return "ENTER: OPEN JOBS   ESC: BACK TO THE LIST"
 
 
-Prove = Callable[[str, Watch], ProvedJob]
+ProveFunction = Callable[[str, ProgressCallback], ProvedJob]
 """A program by its name, with the offsets of now; on the worker. Raises ValueError with a sentence."""
-KEPT = 20
+MAX_PROOFS = 20
 
 
 @dataclass(slots=True)
 class JobProofs:
-    """Proofs of jobs by program and offsets. ``want`` and ``of`` never wait."""
+    """Proofs of jobs by program and offsets. ``request_proofs`` and ``find_proof`` never wait."""
 
-    prove: Prove
-    worker: Latest = field(default_factory=lambda: Latest("editing-jobs"))
+    prove_program: ProveFunction
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-jobs"))
     _made: dict[tuple[str, int], ProvedJob | str] = field(default_factory=dict)
     _asked: tuple[str, int] | None = None
 
-    def want(self, programs: Sequence[str], offsets: int) -> None:
+    def request_proofs(self, programs: Sequence[str], offsets: int) -> None:
         """Request proofs, the first program first, and cancel an obsolete proof; called once per frame.
 
         ``offsets`` identifies the state of the offset tables.
         """
         self.worker.poll()
-        keys = [(program, offsets) for program in programs[:KEPT]]
+        keys = [(program, offsets) for program in programs[:MAX_PROOFS]]
         wanted = next((key for key in keys if key not in self._made), None)
         if wanted is None or wanted == self._asked:
             return
         self._asked = wanted
         done = partial(self._keep, wanted)
-        self.worker.ask(partial(self.prove, wanted[0]), done, done)
+        self.worker.request(partial(self.prove_program, wanted[0]), done, done)
 
-    def of(self, program: str, offsets: int) -> ProvedJob | str | None:
+    def find_proof(self, program: str, offsets: int) -> ProvedJob | str | None:
         """Return the proof of a program, the reason why proving failed, or None while it is pending."""
         return self._made.get((program, offsets))
 
-    def anew(self) -> None:
+    def clear_proofs(self) -> None:
         """Discard all proofs, because files and shapes can have changed."""
         self._made.clear()
         self._asked = None
@@ -207,7 +215,7 @@ class JobProofs:
     def _keep(self, key: tuple[str, int], made: ProvedJob | str) -> None:
         self._made[key] = made
         self._asked = None
-        while len(self._made) > KEPT:
+        while len(self._made) > MAX_PROOFS:
             del self._made[next(iter(self._made))]
 
     def close(self) -> None:
@@ -215,21 +223,21 @@ class JobProofs:
         self.worker.close()
 
 
-FEATURE = "jobs"  # name of the queue in the parts book
-KEY = "Shift+F6"  # name of the key in app.screen.window.keys
+BOOK_KEY = "jobs"  # name of the queue in the parts book
+JOBS_KEY = "Shift+F6"  # name of the key in app.screen.window.key_table
 
 
 @dataclass(slots=True)
-class JobsWatch:
+class JobWatch:
     """Watch of the job queue.
 
-    ``see`` is called once per frame. Only the operator loads and starts jobs.
+    ``observe`` is called once per frame. Only the operator loads and starts jobs.
     """
 
     desk: Desk
-    parts: PartsWatch
+    parts_watch: PartsWatch
     proofs: JobProofs
-    also: str = ""  # program of the job that is selected on the page, which is proved too
+    selected_program: str = ""  # program of the job that is selected on the page, which is proved too
     _counted: tuple[str, int] = ("", 0)
     _told: int = 0  # job whose end was reported
     _known: bool = False
@@ -238,63 +246,67 @@ class JobsWatch:
     @property
     def jobs(self) -> tuple[JobRow, ...]:
         """Stored jobs of the queue."""
-        jobs: tuple[JobRow, ...] = self.parts.book.now.more.get(FEATURE, ())
+        jobs: tuple[JobRow, ...] = self.parts_watch.parts_book.current.feature_data.get(BOOK_KEY, ())
         return jobs
 
     @property
-    def under_way(self) -> JobRow | None:
+    def active_job(self) -> JobRow | None:
         """Active job, whose parts are counted, or None."""
-        return next((row for row in self.jobs if row.under_way), None)
+        return next((row for row in self.jobs if row.is_active), None)
 
-    def on_desk(self, job: JobRow) -> bool:
+    def is_active_and_loaded(self, job: JobRow) -> bool:
         """Return whether a job is active and its program is loaded, which may differ after a restart."""
-        return job.under_way and self.desk.session.now.name == job.program
+        return job.is_active and self.desk.program_loader.loaded.name == job.program
 
     @property
-    def next(self) -> JobRow | None:
+    def next_job(self) -> JobRow | None:
         """First unfinished job that is not active, or None."""
-        return next((row for row in self.jobs if not row.done and not row.under_way), None)
+        return next((row for row in self.jobs if not row.is_done and not row.is_active), None)
 
     @property
-    def lives(self) -> Mapping[int, ToolLife]:
+    def tool_lives(self) -> Mapping[int, ToolLife]:
         """Tool life of all tools."""
-        return self.parts.lives.lives()
+        return self.parts_watch.tool_life_watch.read_lives()
 
-    def see(self, snapshot: Snapshot, loaded: Loaded) -> None:
+    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update the active job, its target and the proofs. Called once per frame."""
-        counter = self.desk.runs.counter
+        counter = self.desk.program_runs.part_counter
         if (counter.program, counter.count) != self._counted:
             self._counted = counter.program, counter.count
-            self.parts.book.refresh()
+            self.parts_watch.parts_book.request_reload()
         self._begin(loaded)
-        job = self.under_way
-        counter.of_job = job.target if job is not None and job.program == counter.program else 0
-        self._tell(job)
+        job = self.active_job
+        counter.job_target = (
+            job.target_part_count if job is not None and job.program == counter.program else 0
+        )
+        self._report_finished(job)
         self._prove(snapshot)
 
     def _prove(self, snapshot: Snapshot) -> None:
         """Request the proofs of the selected and the next job, and of all jobs while no program runs."""
-        waiting = [row.program for row in self.jobs if not row.done and not row.under_way]
-        wanted = waiting if snapshot.state not in UNDER_WAY else waiting[:1]
-        self.proofs.want([each for each in (self.also, *wanted) if each], self.desk.book.changes)
+        waiting = [row.program for row in self.jobs if not row.is_done and not row.is_active]
+        wanted = waiting if snapshot.state not in ACTIVE_STATES else waiting[:1]
+        self.proofs.request_proofs(
+            [each for each in (self.selected_program, *wanted) if each], self.desk.offset_book.changes
+        )
 
     # --- loading a job -----------------------------------------------------------------------------------
 
-    def load(self, job: JobRow) -> None:
+    def load_job(self, job: JobRow) -> None:
         """Load the program of a job that the operator has selected. Its parts count after loading."""
-        if not self.desk.programs.can_choose():
+        if not self.desk.program_choice.can_choose():
             return
-        path = self.desk.programs.folders.find(job.program)
+        path = self.desk.program_choice.program_folders.find_path(job.program)
         if path is None:
             self.desk.say(
                 tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=job.program))
             )
             return
-        loads = self.desk.session.loads
-        self.desk.programs.load(path)
+        loads = self.desk.program_loader.load_count
+        self.desk.program_choice.load_path(path)
         self._loading = job, path, loads
 
-    def _begin(self, loaded: Loaded) -> None:
+    def _begin(self, loaded: LoadedProgram) -> None:
         """Start the job after loading.
 
         A question about an interrupted job can still cancel the loading.
@@ -302,31 +314,31 @@ class JobsWatch:
         if self._loading is None:
             return
         job, path, loads = self._loading
-        if self.desk.session.loads != loads:
+        if self.desk.program_loader.load_count != loads:
             self._loading = None
             if loaded.path == path:
-                self.parts.book.write(
-                    Act.JOBS,
-                    lambda connection: job_queue.begin(connection, job.id),
+                self.parts_watch.parts_book.write_change(
+                    ProtectedChange.JOBS,
+                    lambda connection: job_queue.activate_job(connection, job.id),
                     _nothing,
-                    self.parts.refuse,
+                    self.parts_watch.report_refusal,
                     Message("job {program} started", program=job.program),
                 )
-        elif not self.desk.asked:
+        elif not self.desk.confirm_key:
             self._loading = None
 
     # --- messages ------------------------------------------------------------------------------------
 
-    def _tell(self, job: JobRow | None) -> None:
+    def _report_finished(self, job: JobRow | None) -> None:
         """Report once when the count of a job is reached.
 
         The notice shows jobs finished before the start.
         """
-        if not self.parts.book.loads:
+        if not self.parts_watch.parts_book.load_count:
             return
-        done = job.id if job is not None and job.done else 0
+        done = job.id if job is not None and job.is_done else 0
         if done and done != self._told and self._known and job is not None:
-            self.desk.done(
+            self.desk.show_success(
                 Message("{job} {next_words}", job=self._done_words(job), next_words=self._next_words())
             )
         self._told, self._known = done, True
@@ -336,41 +348,46 @@ class JobsWatch:
         return tr(
             Message(
                 "JOB DONE: {count} OF {expected} PARTS OF {program}.",
-                count=job.made,
-                expected=job.wanted,
+                count=job.parts_made,
+                expected=job.parts_to_make,
                 program=job.program,
             )
         )
 
     def _next_words(self) -> str:
-        job = self.next
+        job = self.next_job
         if job is None:
             return tr("NO MORE JOBS WAITING.")
-        words = tr(Message("NEXT: {program}, {left} PARTS", program=job.program, left=job.left))
-        return Message("{words}, {job}", words=words, job=self.state_words(job))
+        words = tr(Message("NEXT: {program}, {left} PARTS", program=job.program, left=job.parts_left))
+        return Message("{words}, {job}", words=words, job=self.describe_state(job))
 
-    def state_words(self, job: JobRow) -> str:
+    def describe_state(self, job: JobRow) -> str:
         """Return the state of a waiting job as text: not proved, open items or ready."""
-        made = self.proofs.of(job.program, self.desk.book.changes)
+        made = self.proofs.find_proof(job.program, self.desk.offset_book.changes)
         if made is None:
             return tr("NOT PROVED YET")
         if not isinstance(made, ProvedJob):
             return made
-        if made.sheet.errors:
+        if made.setup_sheet.error_count:
             return tr("THE PROGRAM HAS ERRORS")
-        lacking = missing(made, self.lives, job.left)
+        lacking = count_open_items(made, self.tool_lives, job.parts_left)
         return (
             tr(Message("{count} SETUP ITEMS NOT READY", count=lacking)) if lacking else tr("ALL TOOLS READY")
         )
 
-    def notice(self, snapshot: Snapshot) -> NoticeRow | None:
+    def make_notice(self, snapshot: Snapshot) -> NoticeRow | None:
         """Return the notice of the Automatic page about a finished job and the next job, or None."""
-        job = self.under_way
-        if job is None or not job.done or snapshot.state in UNDER_WAY or snapshot.interrupted is not None:
+        job = self.active_job
+        if (
+            job is None
+            or not job.is_done
+            or snapshot.state in ACTIVE_STATES
+            or snapshot.interrupted is not None
+        ):
             return None
-        return NoticeRow(self._done_words(job), self._next_words(), ((KEY, "SHIFT+F6"),), "run")
+        return NoticeRow(self._done_words(job), self._next_words(), ((JOBS_KEY, "SHIFT+F6"),), "run")
 
-    def due(self) -> str:
+    def due_reminder(self) -> str:
         """Return an empty string, because the notice replaces the text on the prompt line."""
         return ""
 

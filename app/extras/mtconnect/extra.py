@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Close, Extra, Tell
+from app.compose.optional_features import CloseFunction, OptionalFeature, ReportFunction
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import Answers
+    from app.compose.backends.backend_entry import CheckResults
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from core.executor.snapshot import Snapshot
@@ -17,35 +17,35 @@ if TYPE_CHECKING:
 _TABLE = "mtconnect"  # table whose presence loads the adapter
 
 
-class Mtconnect(Extra):
+class MtconnectExtra(OptionalFeature):
     """Optional feature with the MTConnect adapter and ``turndesk machine mtconnect``."""
 
     machine_actions = ("mtconnect",)
-    threads = {"mtconnect": "MTCONNECT"}
-    machine_tables = {"app.extras.mtconnect.driver.mtconnect_table": ("mtconnect",)}
-    tables_follow = "setter"
+    supervised_threads = {"mtconnect": "MTCONNECT"}
+    list_machine_tables = {"app.extras.mtconnect.driver.mtconnect_table": ("mtconnect",)}
+    preceding_table = "setter"
 
-    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
-        if desk.machine.model is None or _TABLE not in desk.machine.model.hardware.tables:
+    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        if desk.machine.machine is None or _TABLE not in desk.machine.machine.hardware.tables:
             return None
-        from app.extras.mtconnect.shop_floor import open_shop_floor
+        from app.extras.mtconnect.adapter_setup import start_adapter
 
-        return open_shop_floor(desk.machine.model, desk.snapshot, tell)
+        return start_adapter(desk.machine.machine, desk.read_snapshot, report)
 
     def start_headless(
-        self, machine: Machine, snapshot: Callable[[], Snapshot], tell: Tell, *, paced: bool
-    ) -> Close | None:
+        self, machine: Machine, snapshot: Callable[[], Snapshot], report: ReportFunction, *, real_time: bool
+    ) -> CloseFunction | None:
         if _TABLE not in machine.hardware.tables:
             return None
-        from app.extras.mtconnect.shop_floor import open_headless
+        from app.extras.mtconnect.adapter_setup import start_headless_adapter
 
-        return open_headless(machine, snapshot, tell, paced=paced)
+        return start_headless_adapter(machine, snapshot, report, is_real_time=real_time)
 
-    def check(self, machine: Machine, answers: Answers) -> None:
+    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
         if _TABLE in machine.hardware.tables:
             from app.extras.mtconnect.mtconnect_command import check_mtconnect
 
-            check_mtconnect(machine, answers)
+            check_mtconnect(machine, results)
 
 
-EXTRA = Mtconnect()
+EXTRA = MtconnectExtra()

@@ -7,12 +7,12 @@ import sys
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import EXIT_OK, as_command_error
+from app.desk.command_errors import EXIT_OK, convert_to_command_error
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.compose.backends.backend_entry import Answers
+    from app.compose.backends.backend_entry import CheckResults
     from core.machine.machine_model import Machine
 
 
@@ -27,33 +27,33 @@ def add_parser(actions: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
     from app.compose.machine.machine_setup import read_machine
-    from app.extras.mtconnect.shop_floor import device_model, told_to_agents
+    from app.extras.mtconnect.adapter_setup import is_adapter_enabled, make_device_model
     from core.ports import DriverError
 
     file = args.file
     machine = read_machine(file)
-    with as_command_error(DriverError):
-        sys.stdout.write(device_model(machine, datetime.now(UTC)))
-    if not told_to_agents(machine):
+    with convert_to_command_error(DriverError):
+        sys.stdout.write(make_device_model(machine, datetime.now(UTC)))
+    if not is_adapter_enabled(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
     return EXIT_OK
 
 
-def check_mtconnect(machine: Machine, answers: Answers) -> None:
+def check_mtconnect(machine: Machine, report: CheckResults) -> None:
     """Add a row that shows whether agents can connect to the adapter and its device model is valid."""
-    from app.compose.backends.backend_entry import Row
+    from app.compose.backends.backend_entry import CheckRow
+    from app.extras.mtconnect.adapter_setup import check_adapter
     from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
-    from app.extras.mtconnect.shop_floor import try_shop_floor
     from core.ports import DriverError
 
-    model = machine.hardware.table(MtconnectTable)
+    model = machine.hardware.find_driver_table(MtconnectTable)
     if model is None or not model.enabled:
         return
     at = f"{model.bind}:{model.port}"
     try:
-        try_shop_floor(machine, model)
+        check_adapter(machine, model)
     except DriverError as error:
-        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
-        answers.trouble.append(str(error))
+        report.rows.append(CheckRow("mtconnect", at, "fault", str(error)))
+        report.faults.append(str(error))
     else:
-        answers.rows.append(Row("mtconnect", at, "ok", Message("device {device}", device=model.device)))
+        report.rows.append(CheckRow("mtconnect", at, "ok", Message("device {device}", device=model.device)))

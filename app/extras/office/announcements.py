@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from app.desk.background_work import RepeatingThread
-from app.shopfloor.status_file import Status
+from app.shopfloor.status_file import StatusDocument
 from core.message import Message
 
-LOOK = 0.5  # seconds
-HELD = 100  # announcements that wait for a receiver that does not respond; the oldest are discarded
+POLL_INTERVAL_S = 0.5  # seconds
+MAX_QUEUED = 100  # announcements that wait for a receiver that does not respond; the oldest are discarded
 _STANDS = frozenset({"FEED HOLD", "PROGRAM STOP", "WAITING", "SINGLE BLOCK"})
 _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
 
@@ -23,30 +23,32 @@ class Announcement:
 
     kind: str
     text: str
-    status: Status
+    status: StatusDocument
 
-    def json(self) -> bytes:
+    def make_json(self) -> bytes:
         """Return the JSON with kind and text in addition to the keys of the status."""
         return json.dumps({"event": self.kind, "text": self.text, **self.status}).encode()
 
 
-def happened(before: Mapping[str, Any], now: Status) -> Iterator[Announcement]:
+def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterator[Announcement]:
     """Yield the events between two statuses. No events without a previous status."""
-    state, was = str(now["state"]), before.get("state")
+    state, was = str(current["state"]), previous.get("state")
     if was is None:
         return
-    if _more(before.get("parts"), now.get("parts")):
+    if _more(previous.get("parts"), current.get("parts")):
         yield Announcement(
             "part",
             Message(
-                "part {number} of {program} is finished", number=now.get("made"), program=now.get("program")
+                "part {number} of {program} is finished",
+                number=current.get("made"),
+                program=current.get("program"),
             ),
-            now,
+            current,
         )
-    if now.get("next_barred") and not before.get("next_barred"):
-        yield Announcement("tool-life", str(now["next_barred"]), now)
+    if current.get("next_barred") and not previous.get("next_barred"):
+        yield Announcement("tool-life", str(current["next_barred"]), current)
     if state != was:
-        yield from _changed(str(was), state, now)
+        yield from _changed(str(was), state, current)
 
 
 def _more(before: object, now: object) -> bool:
@@ -57,7 +59,7 @@ def _more(before: object, now: object) -> bool:
     return isinstance(now, int) and isinstance(before, int) and now > before
 
 
-def _changed(was: str, state: str, now: Status) -> Iterator[Announcement]:
+def _changed(was: str, state: str, now: StatusDocument) -> Iterator[Announcement]:
     why = str(now.get("stop") or now.get("waiting_for") or "")
     text = Message("{state}: {why}", state=state, why=why) if why else state
     if state in _FAULTS:
@@ -68,13 +70,13 @@ def _changed(was: str, state: str, now: Status) -> Iterator[Announcement]:
         yield Announcement("runs", str(now.get("program") or state), now)
 
 
-class Told(Protocol):
+class AnnouncementReceiver(Protocol):
     """Receiver of announcements. Neither call waits for the other side."""
 
-    def state(self, status: Status) -> None:
+    def send_status(self, status: StatusDocument) -> None:
         """Send the status of the machine after a change."""
 
-    def tell(self, announcement: Announcement) -> None:
+    def send_announcement(self, announcement: Announcement) -> None:
         """Send an announcement."""
 
     def close(self) -> None:
@@ -84,10 +86,10 @@ class Told(Protocol):
 class Announcer:
     """Announcer that polls the status twice per second in a separate thread."""
 
-    def __init__(self, look: Callable[[], Status], told: Sequence[Told]) -> None:
-        self._look, self._told = look, told
-        self._before: Status = {}
-        self._thread = RepeatingThread("announcer", self.once, LOOK)
+    def __init__(self, look: Callable[[], StatusDocument], receivers: Sequence[AnnouncementReceiver]) -> None:
+        self._look, self._told = look, receivers
+        self._before: StatusDocument = {}
+        self._thread = RepeatingThread("announcer", self.poll, POLL_INTERVAL_S)
 
     def start(self) -> None:
         """Start the thread; to be called once."""
@@ -99,16 +101,16 @@ class Announcer:
         for each in self._told:
             each.close()
 
-    def once(self) -> None:
+    def poll(self) -> None:
         """Poll the status once, and send changes and events."""
         now = self._look()
         shown = {key: value for key, value in now.items() if key not in _ALWAYS_NEW}
         if shown != {key: value for key, value in self._before.items() if key not in _ALWAYS_NEW}:
             for told in self._told:
-                told.state(now)
-        for announcement in happened(self._before, now):
+                told.send_status(now)
+        for announcement in find_events(self._before, now):
             for told in self._told:
-                told.tell(announcement)
+                told.send_announcement(announcement)
         # unknown while the control is silent; parts made in the meantime are reported afterwards
         parts = now.get("parts")
         self._before = now if parts is not None else {**now, "parts": self._before.get("parts")}

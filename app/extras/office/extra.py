@@ -5,47 +5,47 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Close, Extra, Tell
+from app.compose.optional_features import CloseFunction, OptionalFeature, ReportFunction
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import Answers
+    from app.compose.backends.backend_entry import CheckResults
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
 
 _TABLES = frozenset({"status_page", "announce"})  # tables whose presence loads the office
 
 
-class Office(Extra):
+class OfficeExtra(OptionalFeature):
     """Optional feature with the office status page and announcements; tables [status_page] and [announce]."""
 
-    threads = {
+    supervised_threads = {
         "status-page": "STATUS PAGE",
         "announcer": "MQTT AND WEBHOOK",
         "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # thread name used by paho
         "web-hook": "WEBHOOK",
     }
-    machine_tables = {"core.extras.office.shop_network_tables": ("status_page", "announce")}
-    tables_follow = "setter"
+    list_machine_tables = {"core.extras.office.shop_network_tables": ("status_page", "announce")}
+    preceding_table = "setter"
 
-    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
-        if desk.machine.model is None or _TABLES.isdisjoint(desk.machine.model.hardware.tables):
+    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        if desk.machine.machine is None or _TABLES.isdisjoint(desk.machine.machine.hardware.tables):
             return None
-        from app.extras.office.office_desk import open_office
+        from app.extras.office.office_setup import start_office
 
-        return open_office(desk, desk.machine.model, journal, tell)
+        return start_office(desk, desk.machine.machine, journal, report)
 
-    def floor_outputs(self) -> Sequence[Output]:
+    def list_shop_outputs(self) -> Sequence[JsonOutput]:
         from app.extras.office.office_reference import OUTPUTS
 
         return OUTPUTS
 
-    def check(self, machine: Machine, answers: Answers) -> None:
+    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
         if not _TABLES.isdisjoint(machine.hardware.tables):
             from app.extras.office.office_check import check_office
 
-            check_office(machine, answers)
+            check_office(machine, results)
 
 
-EXTRA = Office()
+EXTRA = OfficeExtra()

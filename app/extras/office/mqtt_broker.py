@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
 
-from app.extras.office.announcements import HELD, Announcement
-from app.extras.office.timed_http import NO_ANSWER, Trouble, cause_of
-from app.shopfloor.status_file import Status
-from core.extras.office.shop_network_tables import AnnounceTable, broker_of
+from app.extras.office.announcements import MAX_QUEUED, Announcement
+from app.extras.office.timed_http import NO_RESPONSE_TEXT, DeliveryErrorLog, find_cause
+from app.shopfloor.status_file import StatusDocument
+from core.extras.office.shop_network_tables import AnnounceTable, parse_broker_address
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ONLINE, OFFLINE = "online", "offline"
 _SURE = 1  # quality of service: at least once
-KEEP_ALIVE = 15  # seconds; after 1.5 times this time without data, the broker publishes the last will
+KEEP_ALIVE_S = 15  # seconds; after 1.5 times this time without data, the broker publishes the last will
 _SILENT = "Keep alive timeout"  # name used by paho
 _NO_WORD = (
     "the server closed the connection without an MQTT response; check whether the server "
@@ -51,14 +51,14 @@ class _Client(mqtt.Client):
             raise OSError(str(error)) from error
 
 
-class MqttBroker:
+class MqttReceiver:
     """MQTT connection, which paho's thread opens again whenever the broker was away."""
 
     def __init__(self, table: AnnounceTable) -> None:
         self._topic = table.topic.rstrip("/")
         self._state = b""
         self._answered = self._refused = False  # for the present connection; used by paho's thread only
-        self._waiting: deque[Announcement] = deque(maxlen=HELD)
+        self._waiting: deque[Announcement] = deque(maxlen=MAX_QUEUED)
         # preserves the order, because both the announcer's and paho's thread publish
         self._handing = threading.Lock()
         self._client = client = _Client(CallbackAPIVersion.VERSION2)
@@ -68,13 +68,13 @@ class MqttBroker:
         client.reconnect_delay_set(1, max(1, round(table.again)))
         client.on_connect = self._connected
         client.on_disconnect = self._disconnected
-        host, port = broker_of(table.mqtt)
-        self._trouble = Trouble(_log, Message("the MQTT broker {host}:{port}", host=host, port=port))
-        client.failed = lambda error: self._trouble.say(cause_of(error))
-        client.connect_async(host, port, KEEP_ALIVE)
+        host, port = parse_broker_address(table.mqtt)
+        self._trouble = DeliveryErrorLog(_log, Message("the MQTT broker {host}:{port}", host=host, port=port))
+        client.failed = lambda error: self._trouble.log_cause(find_cause(error))
+        client.connect_async(host, port, KEEP_ALIVE_S)
         client.loop_start()
 
-    def state(self, status: Status) -> None:
+    def send_status(self, status: StatusDocument) -> None:
         """Publish the status as a retained message.
 
         The latest status waits while the broker is away.
@@ -83,13 +83,13 @@ class MqttBroker:
         if self._client.is_connected():
             self._client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)
 
-    def tell(self, announcement: Announcement) -> None:
+    def send_announcement(self, announcement: Announcement) -> None:
         """Publish an announcement that is not retained.
 
         The latest hundred wait for a broker that is away.
         """
         self._waiting.append(announcement)
-        self._hand_over()
+        self._publish_waiting()
 
     def close(self) -> None:
         """Publish offline, because a last will is sent only after a broken connection.
@@ -111,11 +111,11 @@ class MqttBroker:
         except RuntimeError:  # the connection was lost in the meantime
             return True
 
-    def _hand_over(self) -> None:
+    def _publish_waiting(self) -> None:
         """Publish waiting announcements while connected, because a full queue of paho rejects the latest."""
         with self._handing:
             while self._waiting and self._client.is_connected():
-                event = self._waiting.popleft().json()
+                event = self._waiting.popleft().make_json()
                 self._client.publish(f"{self._topic}/event", event, _SURE)
 
     def _connected(
@@ -129,13 +129,13 @@ class MqttBroker:
         self._answered = True
         if reason.is_failure:
             self._refused = True
-            self._trouble.say(_REFUSALS.get(reason.getName(), str(reason)))
+            self._trouble.log_cause(_REFUSALS.get(reason.getName(), str(reason)))
             return
-        self._trouble.over()
+        self._trouble.reset()
         client.publish(f"{self._topic}/available", ONLINE, _SURE, retain=True)
         if self._state:
             client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)
-        self._hand_over()
+        self._publish_waiting()
 
     def _disconnected(
         self,
@@ -151,6 +151,6 @@ class MqttBroker:
         if refused or not reason.is_failure:  # the rejection has already reported the cause
             return
         if str(reason) == _SILENT:
-            self._trouble.say(NO_ANSWER)
+            self._trouble.log_cause(NO_RESPONSE_TEXT)
         else:
-            self._trouble.say("the connection was lost" if answered else _NO_WORD)
+            self._trouble.log_cause("the connection was lost" if answered else _NO_WORD)

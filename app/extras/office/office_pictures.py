@@ -8,7 +8,7 @@ from html import escape
 
 import numpy as np
 
-from core.records.record import FloatArray, Record
+from core.records.record import FloatArray, ScopeRecord
 
 WIDE, HIGH = 640, 220  # pixels
 _LEFT, _TOP, _FOOT = 8, 24, 22
@@ -17,10 +17,10 @@ _POINTS = 600  # maximum number of columns of a curve
 _ERROR = " following error"
 
 
-def alarm_drawing(record: Record) -> bytes:
+def make_alarm_svg(record: ScopeRecord) -> bytes:
     """Return the following errors over time on one scale, with the text and time of the alarm, as SVG."""
     curves = _curves(record)
-    times = record.times - record.times[0] if len(record.times) else record.times
+    times = record.times_s - record.times_s[0] if len(record.times_s) else record.times_s
     lasts = float(times[-1]) if len(times) else 0.0
     most = max((float(np.nanmax(np.abs(error))) for error in curves.values()), default=0.0)
     if not curves or lasts <= 0.0 or most <= 0.0:
@@ -32,7 +32,7 @@ def alarm_drawing(record: Record) -> bytes:
         parts.append(_text(_LEFT + 40 * place, HIGH - 6, name, ink))
     alarm = record.about.get("alarm time")
     if alarm is not None:
-        x = _LEFT + (float(alarm) - float(record.times[0])) / lasts * (WIDE - 2 * _LEFT)
+        x = _LEFT + (float(alarm) - float(record.times_s[0])) / lasts * (WIDE - 2 * _LEFT)
         parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{_TOP}" y2="{HIGH - _FOOT}" stroke="#b3261e"/>')
     parts.append(
         _text(
@@ -48,12 +48,12 @@ def alarm_drawing(record: Record) -> bytes:
     ).encode()
 
 
-def _curves(record: Record) -> dict[str, FloatArray]:
+def _curves(record: ScopeRecord) -> dict[str, FloatArray]:
     """Return the following errors by letter, for linear axes with data."""
     found = {
-        each.name.removesuffix(_ERROR): record.columns[each.name]
+        each.name.removesuffix(_ERROR): record.values_by_channel[each.name]
         for each in record.channels
-        if each.name.endswith(_ERROR) and each.unit == "mm" and each.name in record.columns
+        if each.name.endswith(_ERROR) and each.unit == "mm" and each.name in record.values_by_channel
     }
     return {name: error for name, error in found.items() if np.isfinite(error).any()}
 
@@ -80,7 +80,7 @@ _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _BITS, _RGBA = 8, 6  # bits per sample; the color type
 
 
-def png_of(pixels: bytes, width: int, height: int) -> bytes:
+def encode_png(pixels: bytes, width: int, height: int) -> bytes:
     """Return a PNG. Pixels have 32 bits (alpha, red, green, blue from the highest), rows from the top."""
     argb = np.frombuffer(pixels, dtype=np.uint32).reshape(height, width)
     rgba = np.stack([argb >> 16, argb >> 8, argb, argb >> 24], axis=-1).astype(np.uint8)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from app.shopfloor.json_keys import STATUS
-from core.json_key import Output, keys
+from app.shopfloor.json_keys import STATUS_KEYS
+from core.json_keys import JsonOutput, declare_keys
 
-OFFICE = (
-    *keys("updated | string | UTC | Time of the status."),
-    *STATUS,
-    *keys(
+STATUS_PAGE_KEYS = (
+    *declare_keys("updated | string | UTC | Time of the status."),
+    *STATUS_KEYS,
+    *declare_keys(
         """
 state | string | | State as shown on the screen, such as RUNNING, FEED HOLD or ALARM; CONTROL SILENT
   if TurnDesk does not receive the state of the machine.
@@ -28,14 +28,14 @@ stops[].seconds | integer | s | Length of the stop.
 """
     ),
 )
-EVENT = (
-    *keys(
+EVENT_KEYS = (
+    *declare_keys(
         """
 event | string | | part, stop, alarm, tool-life or runs.
 text | string | | The event in one sentence.
 """
     ),
-    *OFFICE,
+    *STATUS_PAGE_KEYS,
 )
 
 
@@ -49,6 +49,6 @@ MQTT publishes each event at `TOPIC/event` as a message that is not retained. Th
 the same object by POST, with `Content-Type: application/json`.
 """
 OUTPUTS = (
-    Output("The office web page and the MQTT state message", _OFFICE, OFFICE),
-    Output("MQTT and webhook events", _EVENT, EVENT),
+    JsonOutput("The office web page and the MQTT state message", _OFFICE, STATUS_PAGE_KEYS),
+    JsonOutput("MQTT and webhook events", _EVENT, EVENT_KEYS),
 )

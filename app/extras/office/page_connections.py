@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from waitress.adjustments import Adjustments
     from waitress.server import BaseWSGIServer
 
-DEADLINE = 10.0  # seconds for a whole request, and for reading the whole response
-MOST = 100  # total connections
-MOST_OF_ONE = 20  # connections of one address; a browser opens six
+REQUEST_DEADLINE_S = 10.0  # seconds for a whole request, and for reading the whole response
+MAX_CONNECTIONS = 100  # total connections
+MAX_CONNECTIONS_PER_HOST = 20  # connections of one address; a browser opens six
 _NO_HTTP = b"?\r\n\r\n"  # data that waitress rejects as a bad request
 
 
-class Connection(HTTPChannel):
-    """Browser connection. ``since`` is the time of the connection or of the last response.
+class BrowserConnection(HTTPChannel):
+    """Browser connection. ``last_activity_s`` is the time of the connection or of the last response.
 
     A new connection beyond a limit closes the oldest connection that is not being answered. A complete
     request is therefore answered even while others withhold theirs.
@@ -38,7 +38,7 @@ class Connection(HTTPChannel):
         *,
         clock: Callable[[], float],
     ) -> None:
-        self._clock, self.since = clock, clock()
+        self._clock, self.last_activity_s = clock, clock()
         super().__init__(server, sock, addr, adj, map)
         self._make_room()
 
@@ -53,18 +53,18 @@ class Connection(HTTPChannel):
     def service(self) -> None:
         """Send the response and restart the time limit."""
         super().service()
-        self.since = self._clock()
+        self.last_activity_s = self._clock()
 
     def end_if_late(self) -> None:
         """Close the connection if its time is used up and no request is being answered."""
-        if not self.requests and self._clock() - self.since > DEADLINE:
+        if not self.requests and self._clock() - self.last_activity_s > REQUEST_DEADLINE_S:
             self.will_close = True
 
     def _make_room(self) -> None:
-        channels = cast("dict[int, Connection]", self.server.active_channels)
+        channels = cast("dict[int, BrowserConnection]", self.server.active_channels)
         others = [each for each in channels.values() if each is not self and not each.will_close]
         near = [each for each in others if each.addr[0] == self.addr[0]]
-        for crowd, most in ((near, MOST_OF_ONE), (others, MOST)):
+        for crowd, most in ((near, MAX_CONNECTIONS_PER_HOST), (others, MAX_CONNECTIONS)):
             if len(crowd) >= most:
                 waiting = (each for each in crowd if not each.requests)
-                min(waiting, key=lambda each: each.since, default=self).will_close = True
+                min(waiting, key=lambda each: each.last_activity_s, default=self).will_close = True

@@ -23,10 +23,10 @@ _THREADS = 3  # threads that answer browsers
 _WAITING = 100  # connections that the system queues until they are accepted
 _LONGEST = 16 * 1024  # bytes of a request
 _TURN = 0.5  # seconds
-ENDS = 2.0  # seconds that closing waits for its threads
+CLOSE_TIMEOUT_S = 2.0  # seconds that closing waits for its threads
 
 
-class PageServer:
+class StatusPageServer:
     """Server that answers browsers until it is closed."""
 
     def __init__(
@@ -41,7 +41,7 @@ class PageServer:
         from waitress.server import create_server
         from waitress.task import ThreadedTaskDispatcher
 
-        from app.extras.office.page_connections import MOST, Connection
+        from app.extras.office.page_connections import MAX_CONNECTIONS, BrowserConnection
 
         self._loop, self._close_all = wasyncore.loop, wasyncore.close_all
         self._between, self._clock = between, clock
@@ -56,12 +56,12 @@ class PageServer:
             _dispatcher=self._workers,
             sockets=[listening],
             ident="",
-            connection_limit=2 * MOST,  # never reached, because Connection has lower limits
+            connection_limit=2 * MAX_CONNECTIONS,  # never reached, because Connection has lower limits
             max_request_body_size=1,
             max_request_header_size=_LONGEST,
         )
         self._server = server
-        server.channel_class = partial(Connection, clock=clock)
+        server.channel_class = partial(BrowserConnection, clock=clock)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="status-page", daemon=True)
 
@@ -72,7 +72,7 @@ class PageServer:
     def close(self) -> None:
         """Stop answering browsers."""
         self._closing.set()
-        self._thread.join(ENDS)
+        self._thread.join(CLOSE_TIMEOUT_S)
 
     def _serve(self) -> None:
         looked = -math.inf
@@ -87,7 +87,7 @@ class PageServer:
         self._close_all(self._channels)
 
 
-def listening_at(bind: str, port: int) -> socket.socket:
+def open_listening_socket(bind: str, port: int) -> socket.socket:
     """Return the listening socket for browsers. Raises DriverError."""
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(bind, port, type=socket.SOCK_STREAM)[0]

@@ -1,8 +1,8 @@
 """Status page of TurnDesk and other machines for office and phone; display only.
 
-A WSGI application with the addresses ``/`` (the page), ``/now`` (its changing part), ``status.json``,
-``part.png`` and ``alarm.svg``. The page uses the language of the screen, and ``status.json`` is independent
-of the language.
+A WSGI application with the addresses ``/`` (the make_page), ``/now`` (its changing part), ``status.json``,
+``part.get_part_png`` and ``alarm.get_alarm_svg``. The page uses the language of the screen, and
+``status.make_status_json`` is independent of the language.
 """
 
 from __future__ import annotations
@@ -21,25 +21,27 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
 from zlib import crc32
 
-from app.desk.status.formats import duration
-from app.desk.translation import spoken, tr
-from app.shopfloor.status_file import Status
+from app.desk.status.formats import format_duration
+from app.desk.translation import get_language, tr
+from app.shopfloor.status_file import StatusDocument
 
 if TYPE_CHECKING:
     from _typeshed.wsgi import StartResponse, WSGIEnvironment
 
 _FILES = Path(__file__).with_name("page")
-COOKIE = "turndesk-"  # followed by the port, because browsers share cookies between all ports of a computer
+COOKIE_PREFIX = (
+    "turndesk-"  # followed by the port, because browsers share cookies between all ports of a computer
+)
 _NO_ORDERS = b"this page takes no orders\n"
 _NO_TOKEN = b"open this page with ?token= and the token of the machine file\n"
 _GOOD = frozenset({"RUNNING", "WAITING", "READY", "JOG", "HOMING"})
 _BAD = frozenset({"ALARM", "E-STOP", "CONTROL SILENT", "NO ANSWER"})
-NOT_YET = "…"  # not read yet
-Headers = list[tuple[str, str]]
+LOADING_TEXT = "…"  # not read yet
+HeaderList = list[tuple[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
-class OtherDesk:
+class OtherMachine:
     """Latest state of another machine.
 
     ``status`` is None if not known, and ``trouble`` is the reason.
@@ -47,7 +49,7 @@ class OtherDesk:
 
     address: str
     status: Mapping[str, Any] | None = None
-    trouble: str = ""
+    error_text: str = ""
     state: str = "NO ANSWER"  # state if the status is not known
 
 
@@ -57,10 +59,10 @@ class StatusPage:
 
     machine: str
     token: str
-    status: Callable[[], Status]
-    others: Callable[[], Sequence[OtherDesk]]
-    picture: Callable[[], bytes]
-    alarm: Callable[[], bytes]
+    read_status: Callable[[], StatusDocument]
+    read_other_machines: Callable[[], Sequence[OtherMachine]]
+    read_part_png: Callable[[], bytes]
+    read_alarm_svg: Callable[[], bytes]
 
     def __call__(self, environ: WSGIEnvironment, start: StartResponse) -> Iterable[bytes]:
         """Answer one WSGI request."""
@@ -69,10 +71,10 @@ class StatusPage:
         start(f"{status.value} {status.phrase}", [*headers, *_ALWAYS, size])
         return [] if environ["REQUEST_METHOD"] == "HEAD" else [body]
 
-    def _answer(self, environ: WSGIEnvironment) -> tuple[HTTPStatus, Headers, bytes]:
+    def _answer(self, environ: WSGIEnvironment) -> tuple[HTTPStatus, HeaderList, bytes]:
         if environ["REQUEST_METHOD"] not in {"GET", "HEAD"}:
             return HTTPStatus.METHOD_NOT_ALLOWED, [("Allow", "GET, HEAD"), _TEXT], _NO_ORDERS
-        given = _given(environ)
+        given = _find_token(environ)
         if not (given.isascii() and given.isprintable()):
             return HTTPStatus.BAD_REQUEST, [_TEXT], b"a token has letters, figures, - and _ only\n"
         if self.token and not hmac.compare_digest(given.encode(), self.token.encode()):
@@ -87,67 +89,75 @@ class StatusPage:
         kept = [("Set-Cookie", cookie)] if self.token else []
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
-    def page(self) -> tuple[str, bytes]:
+    def make_page(self) -> tuple[str, bytes]:
         """Return the type and content of the whole page."""
         frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
             title=escape(self.machine),
-            language=spoken(),
+            language=get_language(),
             lost=escape(tr("NO RESPONSE: the values below are out of date")),
             now=self._now(),
-            part=_picture("part", "part.png", self.picture(), tr("The part made by the loaded program")),
+            part=_picture(
+                "part", "part.png", self.read_part_png(), tr("The part made by the loaded program")
+            ),
             alarm=_picture(
-                "alarm", "alarm.svg", self.alarm(), tr("Following errors recorded before the last alarm")
+                "alarm",
+                "alarm.svg",
+                self.read_alarm_svg(),
+                tr("Following errors recorded before the last alarm"),
             ),
         )
         return "text/html; charset=utf-8", page.encode()
 
-    def now(self) -> tuple[str, bytes]:
+    def make_changing_part(self) -> tuple[str, bytes]:
         """Return the type and content of the changing part of the page."""
         return "text/html; charset=utf-8", self._now().encode()
 
-    def style(self) -> tuple[str, bytes]:
+    def get_style_sheet(self) -> tuple[str, bytes]:
         """Return the type and content of the style sheet."""
         return "text/css; charset=utf-8", (_FILES / "page.css").read_bytes()
 
-    def script(self) -> tuple[str, bytes]:
+    def get_script(self) -> tuple[str, bytes]:
         """Return the type and content of the script.
 
         The script refreshes the page and reports lost connections.
         """
         return "text/javascript; charset=utf-8", (_FILES / "page.js").read_bytes()
 
-    def json(self) -> tuple[str, bytes]:
+    def make_status_json(self) -> tuple[str, bytes]:
         """Return the type and content of the JSON for other machines and scripts."""
-        return "application/json", (json.dumps(self.status(), indent=1) + "\n").encode()
+        return "application/json", (json.dumps(self.read_status(), indent=1) + "\n").encode()
 
-    def png(self) -> tuple[str, bytes]:
+    def get_part_png(self) -> tuple[str, bytes]:
         """Return the type and content of the part's picture."""
-        return "image/png", self.picture()
+        return "image/png", self.read_part_png()
 
-    def svg(self) -> tuple[str, bytes]:
+    def get_alarm_svg(self) -> tuple[str, bytes]:
         """Return the type and content of the following errors before the last alarm."""
-        return "image/svg+xml", self.alarm()
+        return "image/svg+xml", self.read_alarm_svg()
 
     def _now(self) -> str:
-        others = "".join(_other(each) for each in self.others())
-        drawn = f'<i id="drawn" data-part="{_mark(self.picture())}" data-alarm="{_mark(self.alarm())}"></i>'
+        others = "".join(_other(each) for each in self.read_other_machines())
+        drawn = (
+            f'<i id="drawn" data-part="{_mark(self.read_part_png())}" '
+            f'data-alarm="{_mark(self.read_alarm_svg())}"></i>'
+        )
         beside = f'<section class="others">{others}</section>' if others else ""
-        return f"{_desk(self.status())}{drawn}{beside}"
+        return f"{_desk(self.read_status())}{drawn}{beside}"
 
 
 _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
-    "/": StatusPage.page,
-    "/now": StatusPage.now,
-    "/page.css": StatusPage.style,
-    "/page.js": StatusPage.script,
-    "/status.json": StatusPage.json,
-    "/part.png": StatusPage.png,
-    "/alarm.svg": StatusPage.svg,
+    "/": StatusPage.make_page,
+    "/now": StatusPage.make_changing_part,
+    "/page.css": StatusPage.get_style_sheet,
+    "/page.js": StatusPage.get_script,
+    "/status.json": StatusPage.make_status_json,
+    "/part.png": StatusPage.get_part_png,
+    "/alarm.svg": StatusPage.get_alarm_svg,
 }
 
 
-def _given(environ: WSGIEnvironment) -> str:
+def _find_token(environ: WSGIEnvironment) -> str:
     """Return the token of a request from the address, the bearer header or the cookie."""
     query = parse_qs(environ.get("QUERY_STRING", "")).get("token", [""])[0]
     bearer = environ.get("HTTP_AUTHORIZATION", "").removeprefix("Bearer ")
@@ -159,7 +169,7 @@ def _given(environ: WSGIEnvironment) -> str:
 
 
 def _cookie(environ: WSGIEnvironment) -> str:
-    return f"{COOKIE}{environ.get('SERVER_PORT', '')}"
+    return f"{COOKIE_PREFIX}{environ.get('SERVER_PORT', '')}"
 
 
 # --- HTML ---------------------------------------------------------------------------------------------
@@ -183,7 +193,7 @@ def _picture(name: str, address: str, picture: bytes, words: str) -> str:
     return f'<figure id="{name}"{hidden}>{image}<figcaption>{escape(words)}</figcaption></figure>'
 
 
-def _desk(status: Status) -> str:
+def _desk(status: StatusDocument) -> str:
     alarms = found if isinstance(found := status["alarms"], list) else []
     told = "".join(map(_alarm, alarms))
     if any(each["text"] == status["stop"] for each in alarms):
@@ -228,8 +238,8 @@ def _figures(status: Mapping[str, Any]) -> list[tuple[str, str]]:
         (tr("Program"), str(status.get("program") or "")),
         (tr("Line"), str(line) if line else ""),
         (tr("Parts"), str(made) if made is not None else ""),
-        (tr("Time remaining"), duration(left) if left is not None else ""),
-        (tr("Last cycle"), duration(last) if last else ""),
+        (tr("Time remaining"), format_duration(left) if left is not None else ""),
+        (tr("Last cycle"), format_duration(last) if last else ""),
         (tr("Spindle load"), f"{load} %" if load is not None else ""),
     ]
 
@@ -239,7 +249,7 @@ def _table(rows: list[tuple[str, str]]) -> str:
     return f"<table>{cells}</table>" if cells else ""
 
 
-def _stops(status: Status) -> str:
+def _stops(status: StatusDocument) -> str:
     stops = status["stops"]
     if not isinstance(stops, list) or not stops:
         return ""
@@ -248,19 +258,21 @@ def _stops(status: Status) -> str:
 
 
 def _stop(stop: Mapping[str, Any]) -> str:
-    at, reason, lasted = _local(stop["at"], short=True), stop["reason"], duration(stop["seconds"])
+    at, reason, lasted = _local(stop["at"], short=True), stop["reason"], format_duration(stop["seconds"])
     since, stood = (f'<td class="time">{escape(each)}</td>' for each in (at, lasted))
     return f"<tr>{since}<td>{escape(tr(reason))}</td>{stood}</tr>"
 
 
-def _other(desk: OtherDesk) -> str:
+def _other(desk: OtherMachine) -> str:
     found = desk.status if desk.status is not None else {"state": desk.state}
     name = str(found.get("machine") or desk.address)
-    return f"<article><h2>{escape(name)}</h2>{_head(found, desk.trouble)}{_table(_figures(found))}</article>"
+    return (
+        f"<article><h2>{escape(name)}</h2>{_head(found, desk.error_text)}{_table(_figures(found))}</article>"
+    )
 
 
 _TEXT = ("Content-Type", "text/plain; charset=utf-8")
-_ALWAYS: Headers = [
+_ALWAYS: HeaderList = [
     ("Cache-Control", "no-store"),
     ("X-Content-Type-Options", "nosniff"),
     ("X-Frame-Options", "DENY"),

@@ -80,24 +80,26 @@ class _TimedHandler(HTTPHandler, HTTPSHandler):
         return self.do_open(partial(_timed, HTTPSConnection, self._clock), req)
 
 
-def timed_opener(*handlers: BaseHandler | type[BaseHandler], clock: Clock = time.monotonic) -> OpenerDirector:
+def make_timed_opener(
+    *handlers: BaseHandler | type[BaseHandler], clock: Clock = time.monotonic
+) -> OpenerDirector:
     """Return a urllib opener whose ``timeout`` limits the whole exchange after connecting."""
     return build_opener(_TimedHandler(clock), *handlers)
 
 
-LONGEST = 200  # characters of the other side's text in a message
-NO_ANSWER = "no answer"
+MAX_CAUSE_LENGTH = 200  # characters of the other side's text in a message
+NO_RESPONSE_TEXT = "no answer"
 _NO_TLS = frozenset({"WRONG_VERSION_NUMBER", "RECORD_LAYER_FAILURE", "HTTP_REQUEST"})
 _TLS_ALERT = "\x15\x03"
 _CAUSES = 10  # reported causes of one problem, because a server can respond differently each time
 
 
-def cause_of(error: Exception) -> str:
+def find_cause(error: Exception) -> str:
     """Return the cause in the words of the system or the other side, without passwords and tokens."""
     cause = error.reason if isinstance(error, URLError) else error  # URLError wraps the error of the system.
     match cause:
         case TimeoutError() if cause.errno is None:
-            words = NO_ANSWER
+            words = NO_RESPONSE_TEXT
         case ssl.SSLCertVerificationError():
             words = Message(
                 "the server certificate cannot be verified: {verify_message}",
@@ -115,33 +117,33 @@ def cause_of(error: Exception) -> str:
             words = "the address contains characters that are not allowed in an address"
         case _:
             words = str(getattr(cause, "strerror", None) or cause)
-    return one_line(words)
+    return make_one_line(words)
 
 
-def host_of(address: str) -> str:
+def extract_host(address: str) -> str:
     """Return scheme, host and port of an address, without parts that can contain a password or token."""
     parts = urlsplit(address)
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
 
-def one_line(words: str) -> str:
+def make_one_line(words: str) -> str:
     """Return a text from the other side without control characters, on one line and limited in length."""
-    return "".join(sign for sign in words if sign.isprintable())[:LONGEST]
+    return "".join(sign for sign in words if sign.isprintable())[:MAX_CAUSE_LENGTH]
 
 
-class Trouble:
+class DeliveryErrorLog:
     """Logger of failed deliveries: each cause is logged once until a delivery succeeds."""
 
     def __init__(self, log: logging.Logger, who: str) -> None:
         self._log, self._who = log, who
         self._said = set[str]()
 
-    def say(self, why: str) -> None:
+    def log_cause(self, why: str) -> None:
         """Log a cause; callable from any thread."""
         if why not in self._said and len(self._said) < _CAUSES:
             self._said.add(why)
             self._log.warning("%s cannot be told: %s", self._who, why)
 
-    def over(self) -> None:
+    def reset(self) -> None:
         """Reset the logged causes after a successful delivery."""
         self._said.clear()

@@ -12,9 +12,16 @@ from http.client import HTTPException
 from urllib.error import HTTPError, URLError
 from urllib.request import HTTPRedirectHandler, Request
 
-from app.extras.office.announcements import HELD, Announcement
-from app.extras.office.timed_http import Clock, Trouble, cause_of, host_of, one_line, timed_opener
-from app.shopfloor.status_file import Status
+from app.extras.office.announcements import MAX_QUEUED, Announcement
+from app.extras.office.timed_http import (
+    Clock,
+    DeliveryErrorLog,
+    extract_host,
+    find_cause,
+    make_one_line,
+    make_timed_opener,
+)
+from app.shopfloor.status_file import StatusDocument
 from core.message import Message
 
 _PATIENCE = 5.0  # seconds
@@ -22,7 +29,7 @@ _LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
 _log = logging.getLogger(__name__)
 
 
-class WebHook:
+class WebhookReceiver:
     """Webhook that posts each announcement as JSON, in order, in a separate thread.
 
     After a failed connection or a server error, the post is repeated after ``again`` seconds. A rejected
@@ -30,17 +37,17 @@ class WebHook:
     """
 
     def __init__(self, address: str, again: float, post: Callable[[str, bytes], None] | None = None) -> None:
-        self._address, self._again, self._post = address, again, post or posted
-        self._waiting: deque[Announcement] = deque(maxlen=HELD)
+        self._address, self._again, self._post = address, again, post or post_json
+        self._waiting: deque[Announcement] = deque(maxlen=MAX_QUEUED)
         self._there, self._closing = threading.Event(), threading.Event()
-        self._trouble = Trouble(_log, host_of(address))
+        self._trouble = DeliveryErrorLog(_log, extract_host(address))
         self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
         self._thread.start()
 
-    def state(self, status: Status) -> None:
+    def send_status(self, status: StatusDocument) -> None:
         """Do nothing, because a webhook receives only announcements."""
 
-    def tell(self, announcement: Announcement) -> None:
+    def send_announcement(self, announcement: Announcement) -> None:
         """Queue an announcement."""
         self._waiting.append(announcement)
         self._there.set()
@@ -59,7 +66,7 @@ class WebHook:
 
     def _until_taken(self, announcement: Announcement) -> None:
         # otherwise newer announcements displace it
-        while not self._settled(announcement) and len(self._waiting) < HELD:
+        while not self._settled(announcement) and len(self._waiting) < MAX_QUEUED:
             if self._closing.wait(self._again):
                 self._waiting.clear()
                 return
@@ -67,11 +74,11 @@ class WebHook:
     def _settled(self, announcement: Announcement) -> bool:
         """Return whether an announcement was accepted or finally rejected."""
         try:
-            self._post(self._address, announcement.json())
+            self._post(self._address, announcement.make_json())
         except (URLError, HTTPException, OSError, ValueError) as error:
-            self._trouble.say(_why(error))
+            self._trouble.log_cause(_why(error))
             return isinstance(error, HTTPError) and error.code < 500 and error.code not in _LATER
-        self._trouble.over()
+        self._trouble.reset()
         return True
 
 
@@ -82,14 +89,14 @@ class _Stay(HTTPRedirectHandler):
         """Return None, so that the redirection counts as a rejection."""
 
 
-def posted(address: str, body: bytes, clock: Clock = time.monotonic) -> None:
+def post_json(address: str, data: bytes, clock: Clock = time.monotonic) -> None:
     """Post JSON to an address.
 
     Raises OSError, ValueError or HTTPException, also after ``_PATIENCE``.
     """
-    request = Request(address, body, {"Content-Type": "application/json"}, method="POST")
+    request = Request(address, data, {"Content-Type": "application/json"}, method="POST")
     try:
-        with timed_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):
+        with make_timed_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):
             return
     except HTTPError as error:
         error.close()
@@ -100,9 +107,11 @@ def _why(error: Exception) -> str:
     if isinstance(error, HTTPError):
         to = error.headers.get("Location", "") if error.code < 400 else ""
         where = (
-            Message(", redirected to {to}; set [announce] hook to that address", to=host_of(to)) if to else ""
+            Message(", redirected to {to}; set [announce] hook to that address", to=extract_host(to))
+            if to
+            else ""
         )
-        return one_line(
+        return make_one_line(
             Message("HTTP response {code} {reason}{place}", code=error.code, reason=error.reason, place=where)
         )
-    return cause_of(error)
+    return find_cause(error)

@@ -4,35 +4,35 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra
+from app.compose.optional_features import OptionalFeature
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import Connected
+    from app.compose.backends.backend_entry import ConnectedMachine
     from core.machine.machine_model import Machine
 
 _TABLE = "pendant"  # table whose presence loads the pendant
 
 
-class Pendant(Extra):
+class PendantExtra(OptionalFeature):
     """Optional feature with the buttons and handwheel of a USB pendant, and the table [pendant]."""
 
-    threads = {"pendant": "PENDANT CONNECTION"}
-    machine_tables = {"app.extras.pendant.driver.pendant_table": ("pendant",)}
-    tables_follow = "setter"
+    supervised_threads = {"pendant": "PENDANT CONNECTION"}
+    list_machine_tables = {"app.extras.pendant.driver.pendant_table": ("pendant",)}
+    preceding_table = "setter"
 
-    def wired(self, machine: Machine) -> Machine:
+    def remove_own_inputs(self, machine: Machine) -> Machine:
         if _TABLE not in machine.hardware.tables:
             return machine
-        from app.extras.pendant.pendant_wire import wired
+        from app.extras.pendant.pendant_setup import remove_pendant
 
-        return wired(machine)
+        return remove_pendant(machine)
 
-    def connect(self, machine: Machine, connected: Connected) -> Connected:
+    def add_ports(self, machine: Machine, connected: ConnectedMachine) -> ConnectedMachine:
         if _TABLE not in machine.hardware.tables:
             return connected
-        from app.extras.pendant.pendant_wire import with_pendant
+        from app.extras.pendant.pendant_setup import add_pendant
 
-        return with_pendant(machine, connected)
+        return add_pendant(machine, connected)
 
 
-EXTRA = Pendant()
+EXTRA = PendantExtra()

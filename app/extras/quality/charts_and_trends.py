@@ -10,33 +10,50 @@ import numpy as np
 
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Row, Sheet, edited
-from app.desk.status.formats import NOTHING, duration, fixed
+from app.desk.pages.table_content import TableContent, TableRow, edit_text
+from app.desk.status.formats import NO_VALUE, format_duration, format_fixed
 from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
-from app.extras.quality.parts_data import feature_of
+from app.extras.quality.parts_data import make_feature
 from app.extras.quality.section import (
     ChartDrawing,
-    Curve,
-    Level,
     Plot,
+    PlotCurve,
+    PlotLevel,
     QualitySection,
-    control_plots,
-    mark_of,
-    size,
+    format_size,
+    get_diameter_sign,
+    make_control_plots,
 )
-from app.extras.quality.shift_figures import SETTING, hours_of, shift_of, spans_of, stops_of
-from app.offsets.offset_values import signed
+from app.extras.quality.shift_results import (
+    SHIFT_HOURS_SETTING,
+    convert_stops,
+    find_shift,
+    get_shift_hours,
+    make_cycle_spans,
+)
+from app.offsets.offset_values import format_signed
 from app.production.parts_watch import PartsWatch
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
-from core.extras.quality.control_charts import QualityError, capability, charts_of, findings
-from core.extras.quality.stops import Availability, Span, availability, pareto, times_between
+from core.extras.quality.control_charts import (
+    QualityError,
+    calculate_capability,
+    find_rule_violations,
+    make_charts,
+)
+from core.extras.quality.production_stops import (
+    Availability,
+    TimeSpan,
+    analyze_stop_reasons,
+    calculate_availability,
+    calculate_times_between,
+)
 from core.message import Message
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store_errors import StoreError
 
-KINDS = ("CYCLE TIME", "WEAR", "STOPS", "SPINDLE LOAD", "AVAILABILITY")
+TREND_NAMES = ("CYCLE TIME", "WEAR", "STOPS", "SPINDLE LOAD", "AVAILABILITY")
 _MOST_BARS = 8
 
 
@@ -48,51 +65,65 @@ class TrendsSection(QualitySection):
     chart_share = 0.42
 
     def __init__(
-        self, desk: Desk, watch: PartsWatch, now: Callable[[], datetime] = lambda: datetime.now(UTC)
+        self, desk: Desk, parts_watch: PartsWatch, now: Callable[[], datetime] = lambda: datetime.now(UTC)
     ) -> None:
-        super().__init__(desk, watch)
+        super().__init__(desk, parts_watch)
         self._now = now
         self._shift: tuple[int, int] | None = None
         self._made: tuple[object, ChartDrawing] = (None, ChartDrawing())
-        self._rows: tuple[object, tuple[Row, ...]] = (None, ())
+        self._rows: tuple[object, tuple[TableRow, ...]] = (None, ())
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of trends."""
-        return len(self.kinds)
+        return len(self.trends)
 
     @property
-    def kind(self) -> str:
+    def selected_trend(self) -> str:
         """Selected trend."""
-        return self.kinds[self.marked]
+        return self.trends[self.marked]
 
     @property
-    def kinds(self) -> tuple[str, ...]:
+    def trends(self) -> tuple[str, ...]:
         """Trends of this machine. A mill has no wear trend, because DL and DR are not recorded."""
-        return tuple(each for each in KINDS if each != "WEAR" or not self.of_mill)
+        return tuple(each for each in TREND_NAMES if each != "WEAR" or not self.is_mill)
 
     @property
-    def shift(self) -> tuple[int, int]:
+    def shift_hours(self) -> tuple[int, int]:
         """First and last hour of the shift in local time, loaded once."""
         if self._shift is None:
             try:
-                kept = self.desk.runs.counter.persistence.read_setting(SETTING)
+                kept = self.desk.program_runs.part_counter.persistence.read_setting(SHIFT_HOURS_SETTING)
             except StoreError:
                 kept = None
-            self._shift = hours_of(kept)
+            self._shift = get_shift_hours(kept)
         return self._shift
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of the trends with their values."""
-        self.settle()
+        self.limit_selection()
         minute = int(self._now().timestamp() // 60)
-        of = (self.watch.book.loads, self.program, self.mode, minute, self.shift)
+        of = (
+            self.watch.parts_book.load_count,
+            self.program_name,
+            self.control_unit,
+            minute,
+            self.shift_hours,
+        )
         if self._rows[0] != of:
-            self._rows = of, tuple(Row((kind, self._figure(kind))) for kind in self.kinds)
-        question = tr("SHIFT HOURS, FOR EXAMPLE 6-14?") if self.kind == "AVAILABILITY" else ""
-        title = Message("TRENDS  ·  {program}", program=self.program) if self.program else "TRENDS"
-        return Sheet(title, ("", ""), (0.25, 0.75), self._rows[1], self.marked, question, self.entry.text,
-                     raw=frozenset({1}))  # fmt: skip
+            self._rows = of, tuple(TableRow((kind, self._figure(kind))) for kind in self.trends)
+        question = tr("SHIFT HOURS, FOR EXAMPLE 6-14?") if self.selected_trend == "AVAILABILITY" else ""
+        title = Message("TRENDS  ·  {program}", program=self.program_name) if self.program_name else "TRENDS"
+        return TableContent(
+            title,
+            ("", ""),
+            (0.25, 0.75),
+            self._rows[1],
+            self.marked,
+            question,
+            self.entry.text,
+            raw_columns=frozenset({1}),
+        )
 
     # --- values --------------------------------------------------------------------------------------
 
@@ -106,19 +137,19 @@ class TrendsSection(QualitySection):
         }[kind]()
 
     def _cycle_words(self) -> str:
-        times = [row.seconds for row in self.data.whole_cycles]
+        times = [row.seconds for row in self.parts_data.complete_cycles]
         if not times:
             return tr("no part made yet")
         text = tr("last cycle {last}, shortest {best}, mean {mean} of {count} parts")
-        figures = (fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
+        figures = (format_fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
         last, best, mean = figures
         return tr(Message(text, last=last, best=best, mean=mean, count=len(times)))
 
     def _wear_words(self) -> str:
-        rows = self.data.corrections
+        rows = self.parts_data.corrections
         if not rows:
             return tr("no wear correction yet")
-        last, metric = rows[-1], self.mode.metric
+        last, metric = rows[-1], self.control_unit.is_metric
         letter, factor = ("T", 2.0) if last.kind == "tool" else ("D", 1.0)
         text = tr("{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}")
         return tr(
@@ -126,41 +157,45 @@ class TrendsSection(QualitySection):
                 text,
                 count=len(rows),
                 offset=f"{letter}{last.number}",
-                x=signed(factor * last.x, metric),
-                z=signed(last.z, metric),
+                x=format_signed(factor * last.x, metric),
+                z=format_signed(last.z, metric),
                 part=last.part,
             )
         )
 
     def _stop_words(self) -> str:
-        stops = stops_of(self.watch.book.now.stops)
-        rows = pareto(stops)
+        stops = convert_stops(self.watch.parts_book.current.stops)
+        rows = analyze_stop_reasons(stops)
         if not rows:
             return tr("no stops yet")
-        between = times_between(stops)
-        mean = duration(sum(between) / len(between)) if between else NOTHING
+        between = calculate_times_between(stops)
+        mean = format_duration(sum(between) / len(between)) if between else NO_VALUE
         text = tr("{count} stops, on average {mean} apart; longest total: {reason}, {time}")
         return tr(
             Message(
-                text, count=len(stops), mean=mean, reason=tr(rows[0].reason), time=duration(rows[0].seconds)
+                text,
+                count=len(stops),
+                mean=mean,
+                reason=tr(rows[0].reason),
+                time=format_duration(rows[0].seconds),
             )
         )
 
     def _load_words(self) -> str:
-        loads = [row.load for row in self.data.cycles if row.load is not None]
+        loads = [row.load for row in self.parts_data.cycles if row.load is not None]
         if not loads:
             return tr("no drive on this machine reports its load")
         return tr(
             Message(
                 "last load {last} %, highest load {maximum} %",
-                last=fixed(loads[-1], 0),
-                maximum=fixed(max(loads), 0),
+                last=format_fixed(loads[-1], 0),
+                maximum=format_fixed(max(loads), 0),
             )
         )
 
     def _availability_words(self) -> str:
-        first, last = self.shift
-        found = self.of_shift()
+        first, last = self.shift_hours
+        found = self.find_shift_availability()
         if found is None:
             return tr(Message("{first}–{last}: the shift has not started", first=first, last=last))
         text = tr("{first}–{last}: {share} %, in cycle for {run} of {planned}")
@@ -169,26 +204,29 @@ class TrendsSection(QualitySection):
                 text,
                 first=first,
                 last=last,
-                share=fixed(100.0 * found.share, 0),
-                run=duration(found.producing),
-                planned=duration(found.planned),
+                share=format_fixed(100.0 * found.producing_share, 0),
+                run=format_duration(found.producing_s),
+                planned=format_duration(found.planned_s),
             )
         )
 
-    def of_shift(self) -> Availability | None:
+    def find_shift_availability(self) -> Availability | None:
         """Return the availability of the present or last shift for all programs, or None before the first."""
         now = self._now()
-        shift = shift_of(self.shift, now)
-        ends = min(shift.end, now.timestamp())
-        if ends <= shift.start:
+        shift = find_shift(self.shift_hours, now)
+        ends = min(shift.end_s, now.timestamp())
+        if ends <= shift.start_s:
             return None
-        return availability(Span(shift.start, ends), spans_of(self.data.day, now.timestamp()))
+        return calculate_availability(
+            TimeSpan(shift.start_s, ends),
+            make_cycle_spans(self.parts_data.recent_cycle_times, now.timestamp()),
+        )
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    def drawing(self) -> ChartDrawing:
+    def make_chart(self) -> ChartDrawing:
         """Return the chart of the selected trend."""
-        of = (self.watch.book.loads, self.program, self.kind, self.mode)
+        of = (self.watch.parts_book.load_count, self.program_name, self.selected_trend, self.control_unit)
         if self._made[0] != of:
             self._made = of, ChartDrawing(self._plots(), of)
         return self._made[1]
@@ -200,81 +238,88 @@ class TrendsSection(QualitySection):
             "STOPS": self._stop_plots,
             "SPINDLE LOAD": self._load_plots,
             "AVAILABILITY": self._availability_plots,
-        }[self.kind]()
+        }[self.selected_trend]()
 
     def _cycle_plots(self) -> tuple[Plot, ...]:
-        rows = self.data.whole_cycles
+        rows = self.parts_data.complete_cycles
         if not rows:
             return ()
         times = np.asarray([row.seconds for row in rows])
-        mean = Level(float(times.mean()), "", "centre")
-        return (Plot(tr("CYCLE TIME, s"), (Curve(_numbers(len(rows)), times),), (mean,), across=tr("parts")),)
+        mean = PlotLevel(float(times.mean()), "", "centre")
+        return (
+            Plot(tr("CYCLE TIME, s"), (PlotCurve(_numbers(len(rows)), times),), (mean,), x_label=tr("parts")),
+        )
 
     def _wear_plots(self) -> tuple[Plot, ...]:
         """Return the wear charts, with X of tools as a diameter.
 
         A correction applies until the next one.
         """
-        unit, made = self.mode.unit, float(max((row.part for row in self.data.cycles), default=0))
-        curves: list[list[Curve]] = [[], []]
-        for number, (kind, offset) in enumerate(sorted({(r.kind, r.number) for r in self.data.corrections})):
-            rows = [row for row in self.data.corrections if (row.kind, row.number) == (kind, offset)]
+        unit, made = (
+            self.control_unit.unit_mm,
+            float(max((row.part for row in self.parts_data.cycles), default=0)),
+        )
+        curves: list[list[PlotCurve]] = [[], []]
+        for number, (kind, offset) in enumerate(
+            sorted({(r.kind, r.number) for r in self.parts_data.corrections})
+        ):
+            rows = [row for row in self.parts_data.corrections if (row.kind, row.number) == (kind, offset)]
             first, last = rows[0], rows[-1]
             parts = np.asarray([0.0, *(float(row.part) for row in rows), max(made, float(last.part))])
             name = f"{'T' if kind == 'tool' else 'D'}{offset}"
             factor = 2.0 if kind == "tool" else 1.0
             x = np.asarray([first.was_x, *(row.x for row in rows), last.x]) * factor / unit
             z = np.asarray([first.was_z, *(row.z for row in rows), last.z]) / unit
-            curves[0].append(Curve(parts, x, number, name=name, dots=False, steps=True))
-            curves[1].append(Curve(parts, z, number, name=name, dots=False, steps=True))
+            curves[0].append(PlotCurve(parts, x, number, name=name, has_dots=False, has_steps=True))
+            curves[1].append(PlotCurve(parts, z, number, name=name, has_dots=False, has_steps=True))
         if not curves[0]:
             return ()
-        titles = (f"{tr('WEAR X')}, {self.mode.name}", f"{tr('WEAR Z')}, {self.mode.name}")
+        titles = (f"{tr('WEAR X')}, {self.control_unit.name}", f"{tr('WEAR Z')}, {self.control_unit.name}")
         return tuple(Plot(title, tuple(each)) for title, each in zip(titles, curves, strict=True))
 
     def _stop_plots(self) -> tuple[Plot, ...]:
-        rows = pareto(stops_of(self.watch.book.now.stops))[:_MOST_BARS]
+        rows = analyze_stop_reasons(convert_stops(self.watch.parts_book.current.stops))[:_MOST_BARS]
         if not rows:
             return ()
         bars = tuple(
-            (f"{tr(row.reason)}  {row.times} ×  {fixed(100 * row.together, 0)} %", row.seconds / 60.0)
+            (f"{tr(row.reason)}  {row.times} ×  {format_fixed(100 * row.together, 0)} %", row.seconds / 60.0)
             for row in rows
         )
         return (Plot(tr("MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE"), bars=bars),)
 
     def _load_plots(self) -> tuple[Plot, ...]:
-        rows = [row for row in self.data.cycles if row.load is not None]
+        rows = [row for row in self.parts_data.cycles if row.load is not None]
         if not rows:
             return ()
         loads = np.asarray([float(row.load or 0.0) for row in rows])
-        return (Plot(tr("SPINDLE LOAD, %"), (Curve(_numbers(len(rows)), loads),)),)
+        return (Plot(tr("SPINDLE LOAD, %"), (PlotCurve(_numbers(len(rows)), loads),)),)
 
     def _availability_plots(self) -> tuple[Plot, ...]:
-        found = self.of_shift()
+        found = self.find_shift_availability()
         if found is None:
             return ()
-        stood = found.planned - found.producing
-        bars = ((tr("IN CYCLE"), found.producing / 60.0), (tr("NOT IN CYCLE"), stood / 60.0))
+        stood = found.planned_s - found.producing_s
+        bars = ((tr("IN CYCLE"), found.producing_s / 60.0), (tr("NOT IN CYCLE"), stood / 60.0))
         return (Plot(tr("MINUTES OF THE SHIFT"), bars=bars),)
 
     # --- the shift -----------------------------------------------------------------------------------
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of the shift hours."""
-        return self.kind == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
+        return self.selected_trend == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key: arrows select a trend, and other keys edit the shift hours."""
-        if self.moves(key):
+        if self.move_selection(key):
             self.entry.text = ""
             return True
-        if self.kind != "AVAILABILITY":
+        if self.selected_trend != "AVAILABILITY":
             return False
         if key == "Enter":
-            self.enter()
-        elif self.takes(key) or key in {"Back", "Delete"}:
-            self.desk.clear()
-            self.entry.text = edited(self.entry.text, key, 5)
+            self.submit_entry()
+        elif self.accepts_key(key) or key in {"Back", "Delete"}:
+            self.desk.clear_prompt_line()
+            self.entry.text = edit_text(self.entry.text, key, 5)
         else:
             return False
         return True
@@ -284,26 +329,28 @@ class TrendsSection(QualitySection):
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
             raise EntryError(tr("enter the start and end hour of the shift, such as 6-14"))
-        if self.desk.refused(Act.FEATURES):
+        if self.desk.is_refused(ProtectedChange.FEATURES):
             return False
         self._shift = int(first), int(last)
         hours = list(self._shift)
-        self.desk.runs.counter.persistence.note_change(
+        self.desk.program_runs.part_counter.persistence.log_change(
             Message("shift hours: {first} to {last}", first=first, last=last)
         )
-        self.desk.keep(lambda: self.desk.runs.counter.persistence.save_setting(SETTING, hours))
+        self.desk.try_save(
+            lambda: self.desk.program_runs.part_counter.persistence.save_setting(SHIFT_HOURS_SETTING, hours)
+        )
         return True
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt, or the reason why nothing is stored."""
-        return self.watch.book.locked or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
+        return self.watch.parts_book.lock_reason or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
 def _numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     return np.arange(1, count + 1, dtype=np.float64)
 
 
-SHOWN = 100  # number of latest readings in a chart
+CHART_READING_COUNT = 100  # number of latest readings in a chart
 
 
 class ChartsSection(QualitySection):
@@ -313,17 +360,17 @@ class ChartsSection(QualitySection):
     use = "limits, Cpk, drift"
     chart_share = 0.62
 
-    def __init__(self, desk: Desk, watch: PartsWatch) -> None:
-        super().__init__(desk, watch)
+    def __init__(self, desk: Desk, parts_watch: PartsWatch) -> None:
+        super().__init__(desk, parts_watch)
         self._made: tuple[object, ChartDrawing] = (None, ChartDrawing())
-        self._rows: tuple[object, tuple[Row, ...]] = (None, ())
+        self._rows: tuple[object, tuple[TableRow, ...]] = (None, ())
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of features."""
-        return len(self.data.features)
+        return len(self.parts_data.features)
 
-    def takes(self, _key: str) -> bool:
+    def accepts_key(self, _key: str) -> bool:
         """Return False, because this section has no entry."""
         return False
 
@@ -331,68 +378,68 @@ class ChartsSection(QualitySection):
         """Return False, because this section has no entry."""
         return False
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Move the selection by arrow keys."""
-        return self.moves(key)
+        return self.move_selection(key)
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table with mean, capability and drift of each feature."""
-        self.settle()
-        mode = self.mode
-        of = (self.watch.book.loads, self.program, mode)
+        self.limit_selection()
+        mode = self.control_unit
+        of = (self.watch.parts_book.load_count, self.program_name, mode)
         if self._rows[0] != of:
-            self._rows = of, tuple(self._row(each) for each in self.data.features)
+            self._rows = of, tuple(self._row(each) for each in self.parts_data.features)
         heads = ("FEATURE", "READINGS", Message("MEAN {mode}", mode=mode.name), "Cp", "Cpk", "DRIFT")
         title = (
-            Message("CONTROL CHARTS  ·  {program}", program=self.program)
-            if self.program
+            Message("CONTROL CHARTS  ·  {program}", program=self.program_name)
+            if self.program_name
             else "CONTROL CHARTS"
         )
-        return Sheet(title, heads, (0.2, 0.08, 0.15, 0.09, 0.09, 0.39), self._rows[1], self.marked,
-                     raw=frozenset({0}), figures=frozenset({1}))  # fmt: skip
+        return TableContent(title, heads, (0.2, 0.08, 0.15, 0.09, 0.09, 0.39), self._rows[1], self.marked,
+                     raw_columns=frozenset({0}), number_columns=frozenset({1}))  # fmt: skip
 
-    def _row(self, row: FeatureRow) -> Row:
-        feature, taken = feature_of(row), self._newest(row)
+    def _row(self, row: FeatureRow) -> TableRow:
+        feature, taken = make_feature(row), self._newest(row)
         values = [each.value for each in taken]
         if not values:
-            return Row((row.name, "0", "", "", "", tr("FEATURE NOT MEASURED YET")), None)
-        mean = mark_of(row) + size(sum(values) / len(values), self.mode)
+            return TableRow((row.name, "0", "", "", "", tr("FEATURE NOT MEASURED YET")), None)
+        mean = get_diameter_sign(row) + format_size(sum(values) / len(values), self.control_unit)
         drift = self._drift(row, values)
         try:
-            found = capability(values, *feature.limits, row.sample)
+            found = calculate_capability(values, *feature.limits, row.sample)
         except QualityError as error:
-            return Row(
-                (row.name, str(len(values)), mean, NOTHING, NOTHING, drift or str(error)),
+            return TableRow(
+                (row.name, str(len(values)), mean, NO_VALUE, NO_VALUE, drift or str(error)),
                 not drift,
                 _tone(drift),
             )
-        cp, cpk = (NOTHING if each is None else fixed(each, 2) for each in (found.cp, found.cpk))
-        if not drift and found.at_least is not None:
+        cp, cpk = (NO_VALUE if each is None else format_fixed(each, 2) for each in (found.cp, found.cpk))
+        if not drift and found.cpk_lower_bound is not None:
             drift = tr(
                 Message(
                     "no drift; Cpk is at least {minimum} (95 % confidence)",
-                    minimum=fixed(found.at_least, 2),
+                    minimum=format_fixed(found.cpk_lower_bound, 2),
                 )
             )
-            return Row((row.name, str(len(values)), mean, cp, cpk, drift), True, Tone.RUN)
-        return Row((row.name, str(len(values)), mean, cp, cpk, drift), not drift, _tone(drift))
+            return TableRow((row.name, str(len(values)), mean, cp, cpk, drift), True, Tone.RUN)
+        return TableRow((row.name, str(len(values)), mean, cp, cpk, drift), not drift, _tone(drift))
 
     def _newest(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
-        return self.data.readings_of(row.id)[-SHOWN:]
+        return self.parts_data.select_readings(row.id)[-CHART_READING_COUNT:]
 
     def _drift(self, row: FeatureRow, values: list[float]) -> str:
         """Return the latest rule violation within the last ten points, or an empty string."""
         try:
-            chart = charts_of(values, row.sample).location
+            chart = make_charts(values, row.sample).location
         except QualityError:
             return ""
-        late = [each for each in findings(chart) if each.point >= len(chart.points) - 10]
-        return tr(late[-1].words) if late else ""
+        late = [each for each in find_rule_violations(chart) if each.point_index >= len(chart.points) - 10]
+        return tr(late[-1].text) if late else ""
 
-    def drawing(self) -> ChartDrawing:
+    def make_chart(self) -> ChartDrawing:
         """Return the charts of location and spread of the selected feature, rebuilt after a change."""
-        row, mode = self.feature, self.mode
-        of = (self.watch.book.loads, self.program, row.id if row is not None else 0, mode)
+        row, mode = self.selected_feature, self.control_unit
+        of = (self.watch.parts_book.load_count, self.program_name, row.id if row is not None else 0, mode)
         if self._made[0] != of:
             self._made = of, self._drawn(row, of)
         return self._made[1]
@@ -406,16 +453,18 @@ class ChartsSection(QualitySection):
             # The count was reset or a part was measured twice, so readings are numbered in sequence.
             parts = list(range(1, len(taken) + 1))
         try:
-            pair = charts_of([each.value for each in taken], row.sample)
+            pair = make_charts([each.value for each in taken], row.sample)
         except QualityError:
             return ChartDrawing((), of)
         names = (tr("INDIVIDUALS"), tr("MOVING RANGE")) if row.sample == 1 else (tr("AVERAGE"), tr("RANGE"))
         titled = (f"{row.name}  {names[0]}", names[1])
-        return ChartDrawing(control_plots(pair, parts, feature_of(row).limits, titled, self.mode.unit), of)
+        return ChartDrawing(
+            make_control_plots(pair, parts, make_feature(row).limits, titled, self.control_unit.unit_mm), of
+        )
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt, which explains the lines of the chart."""
-        return self.missing() or (
+        return self.find_missing_precondition() or (
             "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )
 

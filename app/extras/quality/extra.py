@@ -5,73 +5,75 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
-    from app.desk.background_work import Latest
+    from app.desk.background_work import LatestRequestWorker
     from app.desk.desk import Desk
-    from app.desk.page_description import PageEntry
+    from app.desk.page_description import PageDescription
     from app.desk.persistence import Persistence
     from app.desk.programs.program_loading import LoadingSteps
     from app.special.special_functions import SpecialFunction
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
 
 
-class Quality(Extra):
+class QualityExtra(OptionalFeature):
     """Optional feature with the page MEASURED PARTS, the shift report, commands and the table [gauge]."""
 
-    commands = {
+    subcommands = {
         "parts": Subcommand(
             "alarms", "show the stored part counts, cycle times, readings and offset changes"
         ),
         "shift": Subcommand("share", "print a shift report: parts, times, stops, alarms, offsets, readings"),
     }
-    own_functions = ("TOOL LIFE",)
-    machine_tables = {"app.extras.quality.gauge_table": ("gauge",)}
-    tables_follow = "dnc"
+    own_special_functions = ("TOOL LIFE",)
+    list_machine_tables = {"app.extras.quality.gauge_table": ("gauge",)}
+    preceding_table = "dnc"
 
     @property
-    def pages(self) -> Sequence[PageEntry]:
-        from app.desk.page_description import PageEntry
+    def pages(self) -> Sequence[PageDescription]:
+        from app.desk.page_description import PageDescription
 
         return (
-            PageEntry(
+            PageDescription(
                 "MEASURED PARTS",
                 "app.extras.quality.quality_view.MeasuredPartsPage",
-                "app.extras.quality.quality_desk.QualityFunctions",
+                "app.extras.quality.quality_setup.QualityFunctions",
                 "W",
                 "MEASURED",
                 "features, readings, charts, trends",
-                later=(
+                deferred_modules=(
                     "app.extras.quality.plots_view.PlotsPane",
-                    "app.extras.quality.sections_desk.sections",
+                    "app.extras.quality.sections_setup.make_sections",
                 ),
-                after="SCOPE",
+                preceding_page="SCOPE",
             ),
         )
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        from app.extras.quality.quality_desk import attach_quality
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        from app.extras.quality.quality_setup import attach_quality
 
         attach_quality(desk, machine)
 
-    def special_functions(
-        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    def list_special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        from app.desk.data_folder import data_folder
-        from app.extras.quality.quality_desk import MeasuredPartsFunction
-        from app.extras.quality.shift_function import ShiftReport
+        from app.desk.data_folder import find_data_folder
+        from app.extras.quality.quality_setup import MeasuredPartsFunction
+        from app.extras.quality.shift_function import ShiftReportFunction
 
-        report = ShiftReport(desk, machine.name, worker, data_folder() / "sheets")
+        report = ShiftReportFunction(desk, machine.name, worker, find_data_folder() / "sheets")
         parts = MeasuredPartsFunction(desk)
         return ((parts, "SCOPE"), (report, "JOBS"))
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.quality.quality_json_keys import OUTPUTS
 
         return OUTPUTS
 
 
-EXTRA = Quality()
+EXTRA = QualityExtra()

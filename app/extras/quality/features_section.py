@@ -6,30 +6,37 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
-from app.desk.arithmetic import CHARACTERS, EntryError, value_of
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Key, Row, Sheet, edited
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, edit_text
 from app.desk.translation import tr
-from app.extras.quality.parts_data import feature_of, row_of
+from app.extras.quality.parts_data import make_feature, make_feature_row
 from app.extras.quality.sample_plan import SamplePlan
-from app.extras.quality.section import NO_PROGRAM, QualitySection, mark_of, signed_size, size, typed_length
-from app.offsets.offset_values import Mode
+from app.extras.quality.section import (
+    NO_PROGRAM_MESSAGE,
+    QualitySection,
+    convert_entry_to_mm,
+    format_deviation,
+    format_size,
+    get_diameter_sign,
+)
+from app.offsets.offset_values import ValueMode
 from app.production.parts_watch import PartsWatch
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.quality.control_charts import QualityError
 from core.extras.quality.measured_feature import (
-    NAME_LONGEST,
-    CorrectedBy,
-    Feature,
+    MAX_NAME_LENGTH,
+    CorrectingOffset,
     FeatureKind,
+    MeasuredFeature,
     check_feature,
 )
 from core.message import Message
 from core.store.production import measured_parts
 
-NEW = Feature("", FeatureKind.DIAMETER, 0.0, 0.0, 0.0, CorrectedBy.TOOL, 1)
-FIELDS = (
+EMPTY_FEATURE = MeasuredFeature("", FeatureKind.DIAMETER, 0.0, 0.0, 0.0, CorrectingOffset.TOOL, 1)
+FIELD_NAMES = (
     "NAME",
     "MEASURED",
     "NOMINAL",
@@ -56,20 +63,20 @@ _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": 
 
 
 @dataclass(slots=True)
-class Draft:
+class FeatureDraft:
     """Feature that is being edited. ``id`` is 0 for a new feature."""
 
-    feature: Feature
-    id: int = 0
-    at: int = 0
-    fields: tuple[str, ...] = FIELDS
+    feature: MeasuredFeature
+    feature_id: int = 0
+    field_index: int = 0
+    field_names: tuple[str, ...] = FIELD_NAMES
 
     @property
-    def field(self) -> str:
+    def selected_field(self) -> str:
         """Selected field."""
-        return self.fields[self.at]
+        return self.field_names[self.field_index]
 
-    def cell(self, field: str, mode: Mode) -> str:
+    def get_field_text(self, field: str, mode: ValueMode) -> str:
         """Return the text of a field."""
         feature = self.feature
         if field == "NAME":
@@ -77,36 +84,36 @@ class Draft:
         if field == "MEASURED":
             return tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("LENGTH")
         if field == "CORRECTED BY":
-            return tr("TOOL WEAR") if feature.by is CorrectedBy.TOOL else tr("SECONDARY OFFSET")
+            return tr("TOOL WEAR") if feature.by is CorrectingOffset.TOOL else tr("SECONDARY OFFSET")
         if field == "EFFECT OF LARGER OFFSET ON SIZE":
             return tr("LARGER") if feature.grows > 0 else tr("SMALLER")
         if field in _WHOLE:
             return str(getattr(feature, _WHOLE[field]))
         value = getattr(feature, _LENGTHS[field])
-        return size(value, mode) if field == "NOMINAL" else signed_size(value, mode)
+        return format_size(value, mode) if field == "NOMINAL" else format_deviation(value, mode)
 
-    def turn(self) -> None:
+    def toggle_choice(self) -> None:
         """Switch a field with two choices to the other choice."""
         feature = self.feature
-        if self.field == "MEASURED":
+        if self.selected_field == "MEASURED":
             diameter = feature.kind is FeatureKind.DIAMETER
             self.feature = replace(feature, kind=FeatureKind.LENGTH if diameter else FeatureKind.DIAMETER)
-        elif self.field == "CORRECTED BY":
-            tool = feature.by is CorrectedBy.TOOL
-            self.feature = replace(feature, by=CorrectedBy.SECONDARY if tool else CorrectedBy.TOOL)
+        elif self.selected_field == "CORRECTED BY":
+            tool = feature.by is CorrectingOffset.TOOL
+            self.feature = replace(feature, by=CorrectingOffset.SECONDARY if tool else CorrectingOffset.TOOL)
         else:
             self.feature = replace(feature, grows=-feature.grows)
 
-    def take(self, text: str, mode: Mode) -> None:
+    def set_field(self, text: str, mode: ValueMode) -> None:
         """Set the selected field to the typed text. Raises EntryError."""
-        field = self.field
+        field = self.selected_field
         if field == "NAME":
             self.feature = replace(self.feature, name=text.strip().upper())
         elif field in _LENGTHS:
-            length = typed_length(value_of(text), mode)
+            length = convert_entry_to_mm(evaluate_expression(text), mode)
             self.feature = replace(self.feature, **{_LENGTHS[field]: length})  # type: ignore[arg-type]
         else:
-            value = value_of(text)
+            value = evaluate_expression(text)
             if value != int(value):
                 raise EntryError(Message("{value} is not a whole number", value=f"{value:g}"))
             self.feature = replace(self.feature, **{_WHOLE[field]: int(value)})  # type: ignore[arg-type]
@@ -121,35 +128,35 @@ class FeaturesSection(QualitySection):
     name = "FEATURES"
     use = "nominal dimension, tolerance, sampling plan"
 
-    def __init__(self, desk: Desk, watch: PartsWatch, plan: SamplePlan) -> None:
-        super().__init__(desk, watch)
+    def __init__(self, desk: Desk, parts_watch: PartsWatch, plan: SamplePlan) -> None:
+        super().__init__(desk, parts_watch)
         self.plan = plan
-        self.draft: Draft | None = None
+        self.draft: FeatureDraft | None = None
 
     @property
-    def fields(self) -> tuple[str, ...]:
+    def field_names(self) -> tuple[str, ...]:
         """Fields of a feature for the language of the machine."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
-        return tuple(each for each in FIELDS if each not in absent[self.desk.machine.language])
+        return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.language])
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of fields of the edited feature, or of features."""
-        return len(self.draft.fields) if self.draft is not None else len(self.data.features)
+        return len(self.draft.field_names) if self.draft is not None else len(self.parts_data.features)
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of features, or of the fields of the edited feature."""
         if self.draft is not None:
             return self._fields(self.draft)
-        self.settle()
-        mode, rows, lathe = self.mode, [], not self.of_mill
-        for each in self.data.features:
-            tolerance = f"{signed_size(each.high, mode)}  {signed_size(each.low, mode)}"
+        self.limit_selection()
+        mode, rows, lathe = self.control_unit, [], not self.is_mill
+        for each in self.parts_data.features:
+            tolerance = f"{format_deviation(each.high, mode)}  {format_deviation(each.low, mode)}"
             every = tr(Message("every {count} parts", count=each.every)) if each.every else ""
             sample = str(each.sample)
             rows.append(
-                Row((each.name, mark_of(each) + size(each.nominal, mode), tolerance,
-                     feature_of(each).corrected_by if lathe else "", every, sample))
+                TableRow((each.name, get_diameter_sign(each) + format_size(each.nominal, mode), tolerance,
+                     make_feature(each).corrected_by if lathe else "", every, sample))
             )  # fmt: skip
         heads = (
             "NAME",
@@ -161,7 +168,7 @@ class FeaturesSection(QualitySection):
         )
         waits = (
             tr("NEXT PART WAITS FOR REQUIRED MEASUREMENTS")
-            if self.plan.waits
+            if self.plan.waits_for_measurements
             else tr("NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS")
         )
         notes = (
@@ -171,61 +178,67 @@ class FeaturesSection(QualitySection):
             ),
             waits,
         )
-        title = Message("FEATURES  ·  {program}", program=self.program) if self.program else "FEATURES"
+        title = (
+            Message("FEATURES  ·  {program}", program=self.program_name) if self.program_name else "FEATURES"
+        )
         shares = (0.24, 0.19, 0.25, 0.1, 0.13, 0.09)
-        return Sheet(title, heads, shares, tuple(rows), self.marked, notes=notes, raw=frozenset({0}))
+        return TableContent(
+            title, heads, shares, tuple(rows), self.marked, notes=notes, raw_columns=frozenset({0})
+        )
 
-    def _fields(self, draft: Draft) -> Sheet:
-        mode = self.mode
-        rows = tuple(Row((field, draft.cell(field, mode))) for field in draft.fields)
-        turned = draft.field in _TURNED
-        question = "" if turned else f"{tr(draft.field)}?"
+    def _fields(self, draft: FeatureDraft) -> TableContent:
+        mode = self.control_unit
+        rows = tuple(TableRow((field, draft.get_field_text(field, mode))) for field in draft.field_names)
+        turned = draft.selected_field in _TURNED
+        question = "" if turned else f"{tr(draft.selected_field)}?"
         way = (
             "Enter accepts the entry and goes to the next field. F6 saves the feature, Esc "
             "discards the changes."
         )
-        return Sheet(
-            "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.at, question, self.entry.text,
+        return TableContent(
+            "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.field_index, question, self.entry.text,
             (tr("PRESS ENTER TO SWITCH TO THE OTHER VALUE"), way) if turned else (way,),
-            raw=frozenset({1}),
+            raw_columns=frozenset({1}),
         )  # fmt: skip
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the list or of the edited feature."""
         if self.draft is not None:
-            return {"F6": Key("SAVE", self.keep)}
+            return {"F6": FunctionKey("SAVE", self.save_feature)}
         return {
-            "F2": Key(tr("NEW"), self.new),
-            "F3": Key("CHANGE", self.change),
-            "F4": Key("REMOVE", self.remove),
-            "F5": Key("NO WAIT" if self.plan.waits else "WAIT", self._turn_waits),
+            "F2": FunctionKey(tr("NEW"), self.add_feature),
+            "F3": FunctionKey("CHANGE", self.edit_feature),
+            "F4": FunctionKey("REMOVE", self.remove_feature),
+            "F5": FunctionKey("NO WAIT" if self.plan.waits_for_measurements else "WAIT", self._turn_waits),
         }
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of the entry: letters for a name, digits for other fields."""
         draft = self.draft
-        if draft is None or draft.field in _TURNED:
+        if draft is None or draft.selected_field in _TURNED:
             return False
-        return len(key) == 1 and (draft.field == "NAME" or key in CHARACTERS)
+        return len(key) == 1 and (draft.selected_field == "NAME" or key in EXPRESSION_CHARACTERS)
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key of the edited feature or of the list."""
         draft = self.draft
         if draft is None:
-            return self.moves(key) or (key == "Enter" and self._opened())
+            return self.move_selection(key) or (key == "Enter" and self._opened())
         if key in {"Up", "Down"} and not self.entry.text:
-            draft.at = max(0, min(len(draft.fields) - 1, draft.at + (1 if key == "Down" else -1)))
+            draft.field_index = max(
+                0, min(len(draft.field_names) - 1, draft.field_index + (1 if key == "Down" else -1))
+            )
         elif key == "Enter":
-            self.enter()
-        elif self.takes(key) or key in {"Back", "Delete"}:
-            self.desk.clear()
-            self.entry.text = edited(self.entry.text, key, NAME_LONGEST)
+            self.submit_entry()
+        elif self.accepts_key(key) or key in {"Back", "Delete"}:
+            self.desk.clear_prompt_line()
+            self.entry.text = edit_text(self.entry.text, key, MAX_NAME_LENGTH)
         else:
             return False
         return True
 
     def _opened(self) -> bool:
-        self.change()
+        self.edit_feature()
         return True
 
     def take(self, text: str) -> bool:
@@ -233,45 +246,45 @@ class FeaturesSection(QualitySection):
         draft = self.draft
         if draft is None:
             return False
-        if draft.field in _TURNED:
-            draft.turn()
+        if draft.selected_field in _TURNED:
+            draft.toggle_choice()
             return True
         if text.strip():
-            draft.take(text, self.mode)
-        draft.at = min(len(draft.fields) - 1, draft.at + 1)
+            draft.set_field(text, self.control_unit)
+        draft.field_index = min(len(draft.field_names) - 1, draft.field_index + 1)
         return True
 
     def choose(self, row: int) -> None:
         """Select the touched field. A second touch acts like Enter."""
         if self.draft is None:
             super().choose(row)
-        elif row != self.draft.at:
-            self.entry.text, self.draft.at = "", row
+        elif row != self.draft.field_index:
+            self.entry.text, self.draft.field_index = "", row
         else:
-            self.enter()
+            self.submit_entry()
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Open the selected feature."""
         return self._opened()
 
-    def new(self) -> None:
+    def add_feature(self) -> None:
         """Start a new feature (F2)."""
-        if not self.program or self.watch.book.locked:
-            self.desk.say(self.watch.book.locked or NO_PROGRAM)
+        if not self.program_name or self.watch.parts_book.lock_reason:
+            self.desk.say(self.watch.parts_book.lock_reason or NO_PROGRAM_MESSAGE)
             return
-        self.desk.clear()
-        self.draft = Draft(NEW, fields=self.fields)
+        self.desk.clear_prompt_line()
+        self.draft = FeatureDraft(EMPTY_FEATURE, field_names=self.field_names)
 
-    def change(self) -> None:
+    def edit_feature(self) -> None:
         """Edit the selected feature. Its readings remain."""
-        row = self.feature
+        row = self.selected_feature
         if row is None:
-            self.desk.say(self.missing())
+            self.desk.say(self.find_missing_precondition())
             return
-        self.desk.clear()
-        self.draft = Draft(feature_of(row), row.id, fields=self.fields)
+        self.desk.clear_prompt_line()
+        self.draft = FeatureDraft(make_feature(row), row.id, field_names=self.field_names)
 
-    def keep(self) -> None:
+    def save_feature(self) -> None:
         """Save the edited feature (F6)."""
         draft = self.draft
         if draft is None:
@@ -282,9 +295,9 @@ class FeaturesSection(QualitySection):
             self.entry.text = ""
             check_feature(draft.feature)
         except (QualityError, EntryError) as error:
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
             return
-        row = row_of(draft.feature, self.program, draft.id)
+        row = make_feature_row(draft.feature, self.program_name, draft.feature_id)
         self._write(
             lambda c: measured_parts.save_feature(c, row),
             partial(self._kept, row.name),
@@ -293,17 +306,17 @@ class FeaturesSection(QualitySection):
 
     def _kept(self, name: str) -> None:
         self.draft = None
-        self.desk.done(tr(Message("{name} SAVED", name=name)))
+        self.desk.show_success(tr(Message("{name} SAVED", name=name)))
 
-    def remove(self) -> None:
+    def remove_feature(self) -> None:
         """Stop measuring the selected feature after confirmation (F4)."""
-        row = self.feature
+        row = self.selected_feature
         if row is None:
-            self.desk.say(self.missing())
+            self.desk.say(self.find_missing_precondition())
             return
         asked = tr("STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE")
         done = partial(self.desk.say, tr(Message("{name} REMOVED", name=row.name)))
-        self.desk.ask(
+        self.desk.ask_operator(
             tr(Message(asked, name=row.name)),
             lambda: self._write(
                 lambda c: measured_parts.retire_feature(c, row.id),
@@ -313,31 +326,35 @@ class FeaturesSection(QualitySection):
         )
 
     def _write(self, operation: Callable[..., object], done: Callable[[], None], change: str) -> None:
-        told = Message("measured features of {program}: {change}", program=self.program, change=change)
-        self.watch.book.write(Act.FEATURES, operation, done, self.watch.refuse, told)
+        told = Message("measured features of {program}: {change}", program=self.program_name, change=change)
+        self.watch.parts_book.write_change(
+            ProtectedChange.FEATURES, operation, done, self.watch.report_refusal, told
+        )
 
     def _turn_waits(self) -> None:
-        if not self.program:
-            self.desk.say(NO_PROGRAM)
+        if not self.program_name:
+            self.desk.say(NO_PROGRAM_MESSAGE)
             return
-        self.desk.clear()
-        if not self.desk.refused(Act.FEATURES):
-            self.desk.keep(self.plan.turn_waits)
+        self.desk.clear_prompt_line()
+        if not self.desk.is_refused(ProtectedChange.FEATURES):
+            self.desk.try_save(self.plan.toggle_waiting)
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
         if self.draft is not None:
             return "FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL"
-        return self.missing() or ("ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST")
+        return self.find_missing_precondition() or (
+            "ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST"
+        )
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Cancel the entry, or else the edited feature."""
-        if super().escape():
+        if super().handle_escape():
             return True
         open_one, self.draft = self.draft is not None, None
         return open_one
 
-    def left(self) -> None:
+    def on_close(self) -> None:
         """Cancel the edited feature when the section closes."""
-        super().left()
+        super().on_close()
         self.draft = None

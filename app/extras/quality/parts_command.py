@@ -31,12 +31,12 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the stored data. Raises CommandError for a program without data."""
-    from app.cli.store_command import opened_store
+    from app.cli.store_command import open_store
 
-    with opened_store(read_only=True) as store:
+    with open_store(read_only=True) as store:
         names = _names(store, args.name)
         if args.json:
-            sys.stdout.write(json.dumps(_told(store, names), indent=1) + "\n")
+            sys.stdout.write(json.dumps(_make_json(store, names), indent=1) + "\n")
         elif args.csv:
             _write_csv(store, names)
         else:
@@ -50,7 +50,7 @@ def _names(store: Store, wanted: str | None) -> list[str]:
 
     known = {row.program for row in store.runs.read_records()}
     with store.read() as connection:
-        known |= {row.program for row in measured_parts.features(connection)}
+        known |= {row.program for row in measured_parts.read_features(connection)}
         known |= part_cycles.programs(connection)
     if wanted is None:
         return sorted(known)
@@ -66,22 +66,22 @@ def _names(store: Store, wanted: str | None) -> list[str]:
 
 
 def _data(store: Store, name: str) -> PartsData:
-    from app.extras.quality.parts_data import parts_data
+    from app.extras.quality.parts_data import read_parts_data
 
-    return parts_data(store, name, limit=-1)
+    return read_parts_data(store, name, limit=-1)
 
 
 # --- JSON ------------------------------------------------------------------------------------------------
 
 
-def _told(store: Store, names: Sequence[str]) -> dict[str, object]:
+def _make_json(store: Store, names: Sequence[str]) -> dict[str, object]:
     """Return the JSON object: lengths in mm, times in s and UTC, X of corrections as a radius."""
     from core.store.production import part_cycles, tool_lives
 
     with store.read() as connection:
-        lives = [row._asdict() for row in tool_lives.lives(connection).values()]
-        changes = [row._asdict() for row in tool_lives.insert_changes(connection, -1)]
-        stops = part_cycles.stops(connection, None, -1)
+        lives = [row._asdict() for row in tool_lives.read_tool_lives(connection).values()]
+        changes = [row._asdict() for row in tool_lives.read_insert_changes(connection, -1)]
+        stops = part_cycles.read_stops(connection, None, -1)
     return {
         "programs": [_program(store, name) for name in names],
         "stops": [row._asdict() for row in stops if row.program in names],
@@ -94,12 +94,12 @@ def _program(store: Store, name: str) -> dict[str, object]:
     data = _data(store, name)
     return {
         "program": name,
-        "parts": store.runs.count_parts(name),
+        "parts": store.runs.read_part_count(name),
         "cycles": [row._asdict() for row in data.cycles],
         "features": [
             {
                 **row._asdict(),
-                "readings": [each._asdict() for each in data.readings_of(row.id)],
+                "readings": [each._asdict() for each in data.select_readings(row.id)],
                 "capability": _capability(data, row.id),
             }
             for row in data.features
@@ -112,13 +112,13 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
     """Return Cp, Cpk, Pp and Ppk of all readings, or None with too few readings."""
     from dataclasses import asdict
 
-    from app.extras.quality.parts_data import feature_of
-    from core.extras.quality.control_charts import QualityError, capability
+    from app.extras.quality.parts_data import make_feature
+    from core.extras.quality.control_charts import QualityError, calculate_capability
 
     row = next(each for each in data.features if each.id == number)
-    values = [each.value for each in data.readings_of(number)]
+    values = [each.value for each in data.select_readings(number)]
     try:
-        return asdict(capability(values, *feature_of(row).limits, row.sample))
+        return asdict(calculate_capability(values, *make_feature(row).limits, row.sample))
     except QualityError:
         return None
 
@@ -127,12 +127,12 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
 
 
 def _write_csv(store: Store, names: Sequence[str]) -> None:
-    from app.extras.quality.parts_data import HEAD, reading_lines
+    from app.extras.quality.parts_data import CSV_COLUMNS, make_csv_rows
 
     table = csv.writer(sys.stdout, lineterminator="\n")
-    table.writerow(("program", *HEAD))
+    table.writerow(("program", *CSV_COLUMNS))
     for name in names:
-        table.writerows((name, *line) for line in reading_lines(_data(store, name)))
+        table.writerows((name, *line) for line in make_csv_rows(_data(store, name)))
 
 
 def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
@@ -141,7 +141,7 @@ def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
         yield "no parts are known yet\n"
     for name in names:
         data = _data(store, name)
-        times = [row.seconds for row in data.whole_cycles]
+        times = [row.seconds for row in data.complete_cycles]
         mean = (
             Message(
                 ", mean cycle time {times} s (cycles: {times_count})",
@@ -151,9 +151,9 @@ def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
             if times
             else ""
         )
-        yield f"{name}: parts {store.runs.count_parts(name)}{mean}\n"
+        yield f"{name}: parts {store.runs.read_part_count(name)}{mean}\n"
         for row in data.features:
-            taken = data.readings_of(row.id)
+            taken = data.select_readings(row.id)
             found = _capability(data, row.id)
             cpk = (
                 Message(", Cpk {value}", value=f"{found['cpk']:.2f}")

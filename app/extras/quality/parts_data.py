@@ -12,62 +12,64 @@ from typing import TYPE_CHECKING
 
 from app.desk.status.formats import MM_PER_INCH
 from app.production.cycle_recorder import COMPLETE
-from app.production.parts_book import NEWEST, PartsBook
-from core.file_placing import write_in_place
+from app.production.parts_book import MAX_ROWS, PartsBook
+from core.file_replacement import write_atomically
 from core.store.production import measured_parts, part_cycles
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CorrectionRow, CycleRow, CycleTime
 from core.store.store import Store
-from core.store.store_rows import utc
+from core.store.store_rows import format_utc
 
 if TYPE_CHECKING:
-    from core.extras.quality.measured_feature import Feature
+    from core.extras.quality.measured_feature import MeasuredFeature
 
-FEATURE = "quality"  # name of this data in the parts book
+BOOK_KEY = "quality"  # name of this data in the parts book
 _DAYS = timedelta(days=2)
 
 
 @dataclass(frozen=True, slots=True)
 class PartsData:
-    """Data of one program, oldest first. ``corrected`` is the latest change per offset axis."""
+    """Data of one program, oldest first. ``last_corrections`` is the latest change per offset axis."""
 
     program: str = ""
     features: tuple[FeatureRow, ...] = ()
     readings: tuple[ReadingRow, ...] = ()
-    corrected: dict[tuple[str, int, str], int] = field(default_factory=dict)
+    last_corrections: dict[tuple[str, int, str], int] = field(default_factory=dict)
     cycles: tuple[CycleRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
-    day: tuple[CycleTime, ...] = ()  # cycles of all programs within the longest time of a shift
+    recent_cycle_times: tuple[
+        CycleTime, ...
+    ] = ()  # cycles of all programs within the longest time of a shift
 
     @property
-    def whole_cycles(self) -> tuple[CycleRow, ...]:
+    def complete_cycles(self) -> tuple[CycleRow, ...]:
         """Cycles with a representative time: complete, and not finished by a restart."""
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
-    def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
+    def select_readings(self, feature: int) -> tuple[ReadingRow, ...]:
         """Return the readings of a feature in the order of measurement."""
         return tuple(row for row in self.readings if row.feature == feature)
 
-    def since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
+    def select_readings_since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
         """Return the readings of parts that were started after the feature's offset was last changed.
 
         A part with an unknown start counts only if the offset was never changed.
         """
-        last = self.corrected.get((row.by_kind, row.number, feature_of(row).axis), 0)
-        return tuple(each for each in self.readings_of(row.id) if not last or each.offset_change >= last)
+        last = self.last_corrections.get((row.by_kind, row.number, make_feature(row).axis), 0)
+        return tuple(each for each in self.select_readings(row.id) if not last or each.offset_change >= last)
 
 
-def feature_of(row: FeatureRow) -> Feature:
+def make_feature(row: FeatureRow) -> MeasuredFeature:
     """Return the feature for a stored row."""
-    from core.extras.quality.measured_feature import CorrectedBy, Feature, FeatureKind
+    from core.extras.quality.measured_feature import CorrectingOffset, FeatureKind, MeasuredFeature
 
-    return Feature(
+    return MeasuredFeature(
         row.name,
         FeatureKind(row.kind),
         row.nominal,
         row.low,
         row.high,
-        CorrectedBy(row.by_kind),
+        CorrectingOffset(row.by_kind),
         row.number,
         row.grows,
         row.every,
@@ -75,10 +77,10 @@ def feature_of(row: FeatureRow) -> Feature:
     )
 
 
-def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
+def make_feature_row(feature: MeasuredFeature, program: str, feature_id: int) -> FeatureRow:
     """Return the stored row for a feature. ``number`` is its id, or 0 for a new feature."""
     return FeatureRow(
-        number,
+        feature_id,
         program,
         feature.name,
         feature.kind.value,
@@ -93,7 +95,7 @@ def row_of(feature: Feature, program: str, number: int) -> FeatureRow:
     )
 
 
-def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
+def read_parts_data(store: Store, program: str, limit: int = MAX_ROWS) -> PartsData:
     """Return the stored data of a program, the latest ``limit`` rows of each kind, or all for -1.
 
     The call can take a while. Raises StoreError.
@@ -101,44 +103,44 @@ def parts_data(store: Store, program: str, limit: int = NEWEST) -> PartsData:
     with store.read() as connection:
         return PartsData(
             program,
-            measured_parts.features(connection, program),
-            measured_parts.readings(connection, program, limit),
-            measured_parts.last_corrections(connection),
-            part_cycles.cycles(connection, program, limit),
-            part_cycles.corrections(connection, program, limit),
-            part_cycles.times_since(connection, utc(datetime.now(UTC) - _DAYS)),
+            measured_parts.read_features(connection, program),
+            measured_parts.read_readings(connection, program, limit),
+            measured_parts.read_last_corrections(connection),
+            part_cycles.read_cycles(connection, program, limit),
+            part_cycles.read_corrections(connection, program, limit),
+            part_cycles.read_cycle_times_since(connection, format_utc(datetime.now(UTC) - _DAYS)),
         )
 
 
-def parts_of(book: PartsBook) -> PartsData:
+def get_loaded_parts_data(book: PartsBook) -> PartsData:
     """Return the data of the loaded program from the book, empty until it is read."""
-    found = book.now.more.get(FEATURE)
-    if isinstance(found, PartsData) and found.program == book.now.program:
+    found = book.current.feature_data.get(BOOK_KEY)
+    if isinstance(found, PartsData) and found.program == book.current.program:
         return found
-    return PartsData(book.now.program)
+    return PartsData(book.current.program)
 
 
-HEAD = (
+CSV_COLUMNS = (
     "feature", "part", "value", "unit", "nominal", "lower", "upper", "good", "at", "source", "gauge",
     "corrected_by",
 )  # fmt: skip
 _PER = {"in": MM_PER_INCH, "mm": 1.0}
 
 
-def readings_text(data: PartsData) -> str:
+def make_readings_csv(data: PartsData) -> str:
     """Return the readings as CSV text, one line per reading in the order of measurement."""
     out = io.StringIO()
     table = csv.writer(out)
-    table.writerow(HEAD)
-    table.writerows(reading_lines(data))
+    table.writerow(CSV_COLUMNS)
+    table.writerows(make_csv_rows(data))
     return out.getvalue()
 
 
-def reading_lines(data: PartsData) -> Iterator[tuple[object, ...]]:
-    """Yield the cells of each reading in the order of ``HEAD``."""
+def make_csv_rows(data: PartsData) -> Iterator[tuple[object, ...]]:
+    """Yield the cells of each reading in the order of ``CSV_COLUMNS``."""
     features = {row.id: row for row in data.features}
     for each in data.readings:
-        feature, per = feature_of(features[each.feature]), _PER[each.unit]
+        feature, per = make_feature(features[each.feature]), _PER[each.unit]
         low, high = feature.limits
         figures = (round(value / per, 7) for value in (feature.nominal, low, high))
         good = "yes" if feature.good(each.value) else "no"
@@ -146,8 +148,8 @@ def reading_lines(data: PartsData) -> Iterator[tuple[object, ...]]:
         yield feature.name, each.part, *sizes, each.at, each.source, each.gauge, feature.corrected_by
 
 
-def write_readings(data: PartsData, folder: Path) -> Path:
+def write_readings_csv(data: PartsData, folder: Path) -> Path:
     """Write ``PROGRAM-readings.csv`` atomically and return its path. Raises OSError."""
     path = folder / f"{Path(data.program).stem}-readings.csv"
-    write_in_place(path, readings_text(data).encode())
+    write_atomically(path, make_readings_csv(data).encode())
     return path

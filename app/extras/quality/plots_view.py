@@ -9,10 +9,10 @@ from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.extras.quality.section import ChartDrawing, Curve, Level, Plot
+from app.extras.quality.section import ChartDrawing, Plot, PlotCurve, PlotLevel
 from app.screen import chart
-from app.screen.chart import Chart, curve_colour, line_pen, set_curve
-from app.screen.look import CENTRE, Look, Painter, put_raw
+from app.screen.chart import Chart, find_curve_color, make_line_pen, set_curve_points
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter, draw_raw_text
 
 _STYLES = {
     "centre": Qt.PenStyle.SolidLine,
@@ -28,49 +28,49 @@ _PLOTS = 2  # usual number of plots in a drawing
 class PlotsPane(QWidget):
     """Pane with the plots of one drawing, redrawn when the drawing, the size or the theme changes."""
 
-    part_name = "CHART"
+    accessible_name = "CHART"
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)
-        self.look = look
+        self.theme = theme
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._chart = Chart(look, self)
-        self._bars = BarsPane(look, self)
+        self._chart = Chart(theme, self)
+        self._bars = BarsPane(theme, self)
         self._shown: ChartDrawing | None = None
         self._theme = ""
         self._u = 0.0
 
-    def ahead(self) -> bool:
+    def prepare_next_plot(self) -> bool:
         """Create one more plot in advance, and return whether all are created."""
-        return self._chart.ready(_PLOTS)
+        return self._chart.prepare_plots(_PLOTS)
 
     def show_drawing(self, drawing: ChartDrawing) -> None:
         """Draw a drawing if it has changed."""
-        look = self.look
+        look = self.theme
         if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.u):
             return
-        plots = [plot for plot in drawing.plots if not plot.empty]
+        plots = [plot for plot in drawing.plots if not plot.is_empty]
         barred = bool(plots) and bool(plots[0].bars)
-        if not (barred or self._chart.ready(len(plots))):
+        if not (barred or self._chart.prepare_plots(len(plots))):
             return
         self._shown, self._theme, self._u = drawing, look.palette.name, look.u
         self._bars.plot = plots[0] if barred else None
         self._bars.setVisible(barred or not plots)
         self._bars.update()
         self._chart.setVisible(bool(plots) and not barred)
-        self._chart.empty()
+        self._chart.remove_plots()
         if not barred:
-            across = [float(each) for plot in plots for curve in plot.curves for each in curve.x]
+            across = [float(each) for plot in plots for curve in plot.curves for each in curve.part_numbers]
             for plot in plots:
                 self._draw(plot, (min(across), max(across)))
-        self._chart.dress()
-        self._chart.share_left(9.0)
+        self._chart.apply_theme()
+        self._chart.set_left_width(9.0)
         for drawn in self._chart.plots:
             drawn.layout.activate()  # Otherwise a hidden window retains the old layout.
         self._lay_out()
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Redraw the present drawing after a change of theme."""
         if self._shown is not None:
             self.show_drawing(self._shown)
@@ -82,7 +82,7 @@ class PlotsPane(QWidget):
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Fill the widget and redraw after a change of size."""
         self._lay_out()
-        self.dress()
+        self.apply_theme()
 
     def _lay_out(self) -> None:
         self._chart.setGeometry(0, 0, self.width(), self.height())
@@ -91,48 +91,53 @@ class PlotsPane(QWidget):
     # --- one plot ------------------------------------------------------------------------------------
 
     def _draw(self, plot: Plot, across: tuple[float, float]) -> None:
-        drawn = self._chart.add()
-        drawn.axis("bottom").setLabel(plot.across)
+        drawn = self._chart.add_plot()
+        drawn.find_axis("bottom").setLabel(plot.x_label)
         for curve in plot.curves:
             self._curve(drawn, curve)
         self._range(drawn, plot, across)
         self._title(drawn, plot.title)
         for level in plot.levels:
             self._level(drawn, level)
-        if plot.marks:
-            x, y = (np.asarray(each) for each in zip(*plot.marks, strict=True))
-            pen = line_pen(self.look.colour("alarm"))
+        if plot.violations:
+            x, y = (np.asarray(each) for each in zip(*plot.violations, strict=True))
+            pen = make_line_pen(self.theme.color("alarm"))
             pen.setWidthF(2.0)
-            ring = pg.ScatterPlotItem(x=x, y=y, symbol="o", size=2.2 * self.look.u, brush=None, pen=pen)
-            drawn.put(ring)
+            ring = pg.ScatterPlotItem(x=x, y=y, symbol="o", size=2.2 * self.theme.u, brush=None, pen=pen)
+            drawn.add_item(ring)
 
-    def _curve(self, drawn: chart.Plot, curve: Curve) -> None:
-        colour = curve_colour(self.look, curve.number)
-        x, y = curve.x, curve.y
-        if curve.steps and len(x) > 1:
+    def _curve(self, drawn: chart.ChartPlot, curve: PlotCurve) -> None:
+        colour = find_curve_color(self.theme, curve.color_number)
+        x, y = curve.part_numbers, curve.values
+        if curve.has_steps and len(x) > 1:
             x, y = np.repeat(x, 2)[1:], np.repeat(y, 2)[:-1]
-        set_curve(drawn.curve(line_pen(colour)), x, y)
-        if curve.dots:
+        set_curve_points(drawn.add_curve(make_line_pen(colour)), x, y)
+        if curve.has_dots:
             dots = pg.ScatterPlotItem(
-                x=curve.x, y=curve.y, symbol="o", size=1.0 * self.look.u, pen=None, brush=colour
+                x=curve.part_numbers,
+                y=curve.values,
+                symbol="o",
+                size=1.0 * self.theme.u,
+                pen=None,
+                brush=colour,
             )
-            drawn.put(dots)
-        if curve.name and len(curve.x):
+            drawn.add_item(dots)
+        if curve.name and len(curve.part_numbers):
             label = pg.TextItem(curve.name, color=colour, anchor=(1.1, 0.5))
-            label.setFont(self.look.font(1.7, bold=True))
-            label.setPos(float(curve.x[-1]), float(curve.y[-1]))
-            drawn.put(label)
+            label.setFont(self.theme.make_font(1.7, is_bold=True))
+            label.setPos(float(curve.part_numbers[-1]), float(curve.values[-1]))
+            drawn.add_item(label)
 
-    def _level(self, drawn: chart.Plot, level: Level) -> None:
-        pen = line_pen(self.look.colour(_INKS[level.kind]), _STYLES[level.kind])
-        drawn.put(pg.InfiniteLine(level.value, angle=0, pen=pen))
+    def _level(self, drawn: chart.ChartPlot, level: PlotLevel) -> None:
+        pen = make_line_pen(self.theme.color(_INKS[level.kind]), _STYLES[level.kind])
+        drawn.add_item(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
-    def _range(self, drawn: chart.Plot, plot: Plot, across: tuple[float, float]) -> None:
+    def _range(self, drawn: chart.ChartPlot, plot: Plot, across: tuple[float, float]) -> None:
         """Set the range to all points and levels with room for the title.
 
         All plots have the same x range.
         """
-        values = [float(each) for curve in plot.curves for each in curve.y]
+        values = [float(each) for curve in plot.curves for each in curve.values]
         values += [level.value for level in plot.levels]
         low, high = min(values), max(values)
         room = _ROOM * (high - low) or max(abs(high) * 0.01, 1e-4)
@@ -140,40 +145,40 @@ class PlotsPane(QWidget):
         side = max(0.5, 0.02 * (across[1] - across[0]))
         drawn.vb.setXRange(across[0] - side, across[1] + side, padding=0)
 
-    def _title(self, drawn: chart.Plot, words: str) -> None:
+    def _title(self, drawn: chart.ChartPlot, words: str) -> None:
         """Draw the title in the upper corner with a background, so that no limit line crosses it."""
         (left, _), (_, top) = drawn.vb.viewRange()
-        ground = self.look.colour("panel")
-        title = pg.TextItem(words, color=self.look.colour("text"), anchor=(0.0, 0.0), fill=ground)
+        ground = self.theme.color("panel")
+        title = pg.TextItem(words, color=self.theme.color("text"), anchor=(0.0, 0.0), fill=ground)
         title.setZValue(10.0)
-        title.setFont(self.look.font(1.8, bold=True))
+        title.setFont(self.theme.make_font(1.8, is_bold=True))
         title.setPos(left, top)
-        drawn.put(title)
+        drawn.add_item(title)
 
 
 class BarsPane(QWidget):
     """Horizontal bars with their names, longest first, or a text if there is nothing to draw."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)
-        self.look = look
+        self.theme = theme
         self.plot: Plot | None = None
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint the bars."""
-        with Painter(self, self.look) as painter:
+        with ThemedPainter(self, self.theme) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             room = QRectF(self.rect())
-            painter.fill(room, "panel")
+            painter.fill_rect(room, "panel")
             if self.plot is None:
-                painter.write(room, tr("NOTHING TO DRAW YET"), 2.2, "soft", at=CENTRE)
+                painter.draw_text_line(room, tr("NOTHING TO DRAW YET"), 2.2, "soft", at=ALIGN_CENTER)
                 return
             self._bars(painter, room, self.plot)
 
-    def _bars(self, painter: Painter, room: QRectF, plot: Plot) -> None:
-        u = self.look.u
-        painter.write(
-            QRectF(room.x(), room.y(), room.width(), _TITLE * u), plot.title, 1.9, "text", at=CENTRE
+    def _bars(self, painter: ThemedPainter, room: QRectF, plot: Plot) -> None:
+        u = self.theme.u
+        painter.draw_text_line(
+            QRectF(room.x(), room.y(), room.width(), _TITLE * u), plot.title, 1.9, "text", at=ALIGN_CENTER
         )
         room = room.adjusted(u, (_TITLE + 0.6) * u, -u, -0.6 * u)
         high = min(5.0 * u, room.height() / max(1, len(plot.bars)))
@@ -181,12 +186,12 @@ class BarsPane(QWidget):
         for number, (name, value) in enumerate(plot.bars):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
             bar = QRectF(row.x(), row.bottom() - 0.42 * high, 0.8 * row.width() * value / most, 0.3 * high)
-            painter.fillRect(bar, curve_colour(self.look, number))
-            painter.setPen(self.look.colour("text"))
-            painter.setFont(self.look.fit(name, 1.9, row.width()))
-            put_raw(
+            painter.fillRect(bar, find_curve_color(self.theme, number))
+            painter.setPen(self.theme.color("text"))
+            painter.setFont(self.theme.fit_font(name, 1.9, row.width()))
+            draw_raw_text(
                 painter, QRectF(row.x(), row.y(), row.width(), 0.55 * high), Qt.AlignmentFlag.AlignLeft, name
             )
-            painter.setFont(self.look.font(1.7))
+            painter.setFont(self.theme.make_font(1.7))
             side = QRectF(bar.right() + 0.5 * u, bar.y() - 0.3 * u, 12 * u, bar.height() + 0.6 * u)
-            put_raw(painter, side, Qt.AlignmentFlag.AlignLeft, f"{value:.1f}")
+            draw_raw_text(painter, side, Qt.AlignmentFlag.AlignLeft, f"{value:.1f}")

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from core.extras.quality.control_charts import Capability
-from core.extras.quality.stops import ReasonShare
-from core.json_key import Output, below, keys, row_keys
+from core.extras.quality.production_stops import StopReasonTotal
+from core.json_keys import JsonOutput, declare_keys, declare_row_keys, prefix_keys
 from core.store import table_keys
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
-from core.store.production.tool_lives import InsertChange, LifeRow
+from core.store.production.tool_lives import InsertChange, ToolLifeRow
 from core.store.store_rows import EventRow
 
-_READING = row_keys("", ReadingRow, table_keys.READING + table_keys.OFFSET_CHANGE)
-_STOP = row_keys("", StopRow, table_keys.STOP)
-_LIFE = row_keys("", LifeRow, table_keys.LIFE)
-_INSERT = row_keys("", InsertChange, table_keys.INSERT)
-PARTS = Output(
+_READING = declare_row_keys("", ReadingRow, table_keys.READING_COLUMNS + table_keys.OFFSET_CHANGE_COLUMNS)
+_STOP = declare_row_keys("", StopRow, table_keys.STOP_COLUMNS)
+_LIFE = declare_row_keys("", ToolLifeRow, table_keys.TOOL_LIFE_COLUMNS)
+_INSERT = declare_row_keys("", InsertChange, table_keys.INSERT_CHANGE_COLUMNS)
+PARTS_OUTPUT = JsonOutput(
     "parts [PROGRAM] --json",
     "One object. Lengths are in millimeters.",
     (
-        *keys(
+        *declare_keys(
             """
 programs | list | | Programs with data.
 programs[].program | string | | File name of the program.
@@ -27,18 +27,18 @@ programs[].parts | integer | | Part count.
 programs[].cycles | list | | Cycles.
 """
         ),
-        *below("programs[].cycles[].", row_keys("", CycleRow, table_keys.CYCLE)),
-        *keys("programs[].features | list | | Measured features."),
-        *below("programs[].features[].", row_keys("", FeatureRow, table_keys.FEATURE)),
-        *keys("programs[].features[].readings | list | | Readings."),
-        *below("programs[].features[].readings[].", _READING),
-        *keys(
+        *prefix_keys("programs[].cycles[].", declare_row_keys("", CycleRow, table_keys.CYCLE_COLUMNS)),
+        *declare_keys("programs[].features | list | | Measured features."),
+        *prefix_keys("programs[].features[].", declare_row_keys("", FeatureRow, table_keys.FEATURE_COLUMNS)),
+        *declare_keys("programs[].features[].readings | list | | Readings."),
+        *prefix_keys("programs[].features[].readings[].", _READING),
+        *declare_keys(
             "programs[].features[].capability | object or null | | Process capability; null if there are too "
             "few readings."
         ),
-        *below(
+        *prefix_keys(
             "programs[].features[].capability.",
-            row_keys(
+            declare_row_keys(
                 "",
                 Capability,
                 """
@@ -52,21 +52,21 @@ ppk | | Ppk; null if the readings do not scatter.
 """,
             ),
         ),
-        *keys("programs[].corrections | list | | Changes of wear offsets and secondary offsets."),
-        *below("programs[].corrections[].", table_keys.CORRECTIONS),
-        *keys("stops | list | | Stops of production."),
-        *below("stops[].", _STOP),
-        *keys("tool_lives | list | | Tool life of the tools of a lathe."),
-        *below("tool_lives[].", _LIFE),
-        *keys("insert_changes | list | | Changes of inserts."),
-        *below("insert_changes[].", _INSERT),
+        *declare_keys("programs[].corrections | list | | Changes of wear offsets and secondary offsets."),
+        *prefix_keys("programs[].corrections[].", table_keys.CORRECTION_FILE_COLUMNS),
+        *declare_keys("stops | list | | Stops of production."),
+        *prefix_keys("stops[].", _STOP),
+        *declare_keys("tool_lives | list | | Tool life of the tools of a lathe."),
+        *prefix_keys("tool_lives[].", _LIFE),
+        *declare_keys("insert_changes | list | | Changes of inserts."),
+        *prefix_keys("insert_changes[].", _INSERT),
     ),
 )
-SHIFT = Output(
+SHIFT_OUTPUT = JsonOutput(
     "shift --json",
     "One object. Lengths are in millimeters; X of offsets is a radius.",
     (
-        *keys(
+        *declare_keys(
             """
 from | string | UTC | Start of the shift.
 to | string | UTC | End of the shift.
@@ -85,13 +85,13 @@ not_recorded | number | s | Time for which no data is stored.
 stops | list | | Stops of production.
 """
         ),
-        *below("stops[].", _STOP),
-        *keys("reasons | list | | Stops by reason, the longest total time first."),
-        *below(
+        *prefix_keys("stops[].", _STOP),
+        *declare_keys("reasons | list | | Stops by reason, the longest total time first."),
+        *prefix_keys(
             "reasons[].",
-            row_keys(
+            declare_row_keys(
                 "",
-                ReasonShare,
+                StopReasonTotal,
                 """
 reason | | Reason for the stops.
 times | | Number of stops.
@@ -101,13 +101,13 @@ together | | Cumulative fraction of this reason and all reasons with a longer to
 """,
             ),
         ),
-        *keys("alarms | list | | Alarms from the event log."),
-        *below("alarms[].", row_keys("", EventRow, table_keys.EVENT)),
-        *keys("tool_lives | list | | Tool life of the tools."),
-        *below("tool_lives[].", _LIFE),
-        *keys("insert_changes | list | | Changes of inserts."),
-        *below("insert_changes[].", _INSERT),
-        *keys(
+        *declare_keys("alarms | list | | Alarms from the event log."),
+        *prefix_keys("alarms[].", declare_row_keys("", EventRow, table_keys.EVENT_COLUMNS)),
+        *declare_keys("tool_lives | list | | Tool life of the tools."),
+        *prefix_keys("tool_lives[].", _LIFE),
+        *declare_keys("insert_changes | list | | Changes of inserts."),
+        *prefix_keys("insert_changes[].", _INSERT),
+        *declare_keys(
             """
 offset_changes | list | | Changes of offsets.
 offset_changes[].at | string | UTC | Time of the change.
@@ -130,4 +130,4 @@ out_of_tolerance[].at | string | UTC | Time of the reading.
         ),
     ),
 )
-OUTPUTS = {"offsets history --json": (PARTS, SHIFT)}
+OUTPUTS = {"offsets history --json": (PARTS_OUTPUT, SHIFT_OUTPUT)}

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QWidget
 
-from app.desk.programs.program_loading import Loaded
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.extras.quality.quality_desk import QualityFunctions
+from app.extras.quality.quality_setup import QualityFunctions
 from app.extras.quality.section import QualitySection
-from app.screen.page_base import Host
-from app.special.special_view import LETTERS, LIST, PAD, SpecialPage
+from app.screen.page_base import PageHost
+from app.special.special_view import LETTER_PAD_HEIGHT, LIST, PAD, SpecialPage
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -31,17 +31,17 @@ class MeasuredPartsPage(SpecialPage):
     NAME = "MEASURED PARTS"
     model: QualityFunctions
 
-    def __init__(self, host: Host, model: QualityFunctions, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: QualityFunctions, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.items.title = self.NAME
+        self.function_list.title = self.NAME
         self.chart: PlotsPane | None = None
         self._share = 0.0
         self._asked = False  # whether the chart was requested
 
-    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update table and chart."""
-        super().refresh(snapshot, view, loaded)
-        shown = self.model.current
+        super().refresh(snapshot, status, loaded)
+        shown = self.model.shown_function
         share = shown.chart_share if isinstance(shown, QualitySection) else 0.0
         if share != self._share:
             self._share = share
@@ -49,40 +49,40 @@ class MeasuredPartsPage(SpecialPage):
         if share:
             self._ask_pane()
         if self.chart is not None and isinstance(shown, QualitySection) and share:
-            self.chart.show_drawing(shown.drawing())
+            self.chart.show_drawing(shown.make_chart())
 
-    def ahead(self) -> bool:
+    def prepare_slice(self) -> bool:
         """Create the sections, then the chart and its plots, before the page is first shown."""
         self._ask_pane()
         self.model.worker.poll()
-        return not self.model.functions or self.chart is None or not self.chart.ahead()
+        return not self.model.functions or self.chart is None or not self.chart.prepare_next_plot()
 
     def _ask_pane(self) -> None:
         if not self._asked:
             self._asked = True
-            self.model.worker.queue(_pane_class, self._pane_there, self.desk.say)
+            self.model.worker.enqueue(_pane_class, self._pane_there, self.desk.say)
 
     def _pane_there(self, pane: type[PlotsPane]) -> None:
-        self.chart = pane(self.look, self)
+        self.chart = pane(self.theme, self)
         self.chart.show()
         self._lay_out()
 
-    def dress(self) -> None:
+    def apply_theme(self) -> None:
         """Apply the present colors to the chart."""
         if self.chart is not None:
-            self.chart.dress()
+            self.chart.apply_theme()
 
     def _lay_out(self) -> None:
-        u = self.look.u
+        u = self.theme.u
         gap, left = max(4, round(0.7 * u)), round(LIST * u)
-        pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
-        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        pad = 0 if self.number_pad.isHidden() else round(PAD * u) + gap
+        low = 0 if self.letter_pad.isHidden() else round(LETTER_PAD_HEIGHT * u) + gap
         right, room = self.width() - left - gap, self.height() - low
         drawn = round(self._share * room)
-        self.items.setGeometry(0, 0, left, self.height())
-        self.table.setGeometry(left + gap, 0, right - pad, room - drawn)
-        self.letters.setGeometry(left + gap, room + gap, right, max(0, low - gap))
-        self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
+        self.function_list.setGeometry(0, 0, left, self.height())
+        self.table_panel.setGeometry(left + gap, 0, right - pad, room - drawn)
+        self.letter_pad.setGeometry(left + gap, room + gap, right, max(0, low - gap))
+        self.number_pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
         if self.chart is not None:
             self.chart.setVisible(drawn > 0)
             self.chart.setGeometry(left + gap, room - drawn + gap, right - pad, max(0, drawn - gap))

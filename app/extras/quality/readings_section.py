@@ -7,28 +7,35 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from app.desk.arithmetic import EntryError, value_of
+from app.desk.arithmetic import EntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Key, Row, Sheet
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.status.machine_status import Tone
 from app.desk.translation import tr
-from app.extras.quality.gauge_wire import Gauge, NoGauge, Reading
-from app.extras.quality.parts_data import feature_of, write_readings
-from app.extras.quality.section import ChartDrawing, QualitySection, mark_of, signed_size, size, typed_length
-from app.extras.quality.wear_correction import CorrectionEffect, correction, proposal
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, refusal
+from app.extras.quality.parts_data import make_feature, write_readings_csv
+from app.extras.quality.section import (
+    ChartDrawing,
+    QualitySection,
+    convert_entry_to_mm,
+    format_deviation,
+    format_size,
+    get_diameter_sign,
+)
+from app.extras.quality.serial_gauge import Gauge, GaugeReading, NoGauge
+from app.extras.quality.wear_correction import CorrectionPreview, make_correction, make_proposal
+from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal
 from app.production.parts_watch import PartsWatch
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.quality.control_charts import QualityError
 from core.message import Message
 from core.store.production import measured_parts
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 
-CHART = 0.45  # ratio of the height for the chart of a proposed correction
-FAR = 3.0  # tolerances of deviation above which a typing error or another part is likely
-MM = {"mm": 1.0, "in": 25.4}
+CHART_HEIGHT_SHARE = 0.45  # ratio of the height for the chart of a proposed correction
+OUTLIER_TOLERANCES = 3.0  # tolerances of deviation above which a typing error or another part is likely
+MM_PER_UNIT = {"mm": 1.0, "in": 25.4}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +43,7 @@ class NewReading:
     """Reading that is to be stored."""
 
     feature: FeatureRow
-    part: int
+    part_number: int
     value: float  # in mm
     unit: str
     source: str
@@ -52,172 +59,211 @@ class ReadingsSection(QualitySection):
     name = "READINGS"
     use = "measure a part and see the correction needed"
 
-    def __init__(self, desk: Desk, watch: PartsWatch, folder: Path, gauge: Gauge | None = None) -> None:
-        super().__init__(desk, watch)
+    def __init__(self, desk: Desk, parts_watch: PartsWatch, folder: Path, gauge: Gauge | None = None) -> None:
+        super().__init__(desk, parts_watch)
         self.folder = folder
         self.gauge = gauge or NoGauge()
         self._part = 0  # 0 means the last part that was made
-        self.effect = CorrectionEffect(desk)
+        self.correction_effect = CorrectionPreview(desk)
         # table, number and reason of the last accepted correction
-        self._last: tuple[Kind, int, str] | None = None
+        self._last: tuple[OffsetKind, int, str] | None = None
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of features."""
-        return len(self.data.features)
+        return len(self.parts_data.features)
 
     @property
-    def part(self) -> int:
+    def part_number(self) -> int:
         """Number of the measured part."""
-        return self._part or max(1, self.desk.runs.counter.count)
+        return self._part or max(1, self.desk.program_runs.part_counter.count)
 
     # --- display -------------------------------------------------------------------------------------
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table with nominal size, last reading, deviation and rating per feature."""
-        self.settle()
-        mode, feature = self.mode, self.feature
-        self.chart_share = CHART if self.effect.stands else 0.0
-        made = self.effect.sheet(mode) if self.effect.stands else None
+        self.limit_selection()
+        mode, feature = self.control_unit, self.selected_feature
+        self.chart_share = CHART_HEIGHT_SHARE if self.correction_effect.is_question_open else 0.0
+        made = self.correction_effect.make_table(mode) if self.correction_effect.is_question_open else None
         if made is not None:
             return made
-        rows = tuple(self._row(each) for each in self.data.features)
+        rows = tuple(self._row(each) for each in self.parts_data.features)
         question = ""
         if feature is not None:
-            question = tr(Message("MEASURED {name} OF PART {part}?", name=feature.name, part=self.part))
+            question = tr(
+                Message("MEASURED {name} OF PART {part}?", name=feature.name, part=self.part_number)
+            )
         heads = ("FEATURE", Message("NOMINAL {mode}", mode=mode.name), "PART", "MEASURED", "DEVIATION", "")
-        words = self.effect.words() if self.effect.stands else ""
+        words = self.correction_effect.describe_status() if self.correction_effect.is_question_open else ""
         way = (
             ("Enter the deviation in DL and DR of the tool table (F8 of the main menu).")
-            if self.of_mill
+            if self.is_mill
             else "F8 proposes a correction, F4 undoes the last correction."
         )
         notes = (words or self._gauge_words(), way)
-        title = Message("READINGS  ·  {program}", program=self.program) if self.program else "READINGS"
-        return Sheet(title, heads, (0.2, 0.19, 0.08, 0.19, 0.16, 0.18), rows, self.marked, question,
-                     self.entry.text, notes, raw=frozenset({0}), figures=frozenset({2}))  # fmt: skip
+        title = (
+            Message("READINGS  ·  {program}", program=self.program_name) if self.program_name else "READINGS"
+        )
+        return TableContent(
+            title,
+            heads,
+            (0.2, 0.19, 0.08, 0.19, 0.16, 0.18),
+            rows,
+            self.marked,
+            question,
+            self.entry.text,
+            notes,
+            raw_columns=frozenset({0}),
+            number_columns=frozenset({2}),
+        )
 
-    def _row(self, row: FeatureRow) -> Row:
-        mode, feature, taken = self.mode, feature_of(row), self.data.readings_of(row.id)
-        nominal = mark_of(row) + size(row.nominal, mode)
+    def _row(self, row: FeatureRow) -> TableRow:
+        mode, feature, taken = self.control_unit, make_feature(row), self.parts_data.select_readings(row.id)
+        nominal = get_diameter_sign(row) + format_size(row.nominal, mode)
         if not taken:
-            return Row((row.name, nominal, "", "", "", tr("NOT MEASURED YET")), False, Tone.OFF)
+            return TableRow((row.name, nominal, "", "", "", tr("NOT MEASURED YET")), False, Tone.OFF)
         last = taken[-1]
         good = feature.good(last.value)
-        off = signed_size(last.value - feature.middle, mode)
+        off = format_deviation(last.value - feature.middle, mode)
         words = tr("GOOD") if good else tr("TOO SMALL") if last.value < feature.middle else tr("TOO LARGE")
-        cells = (row.name, nominal, str(last.part), mark_of(row) + size(last.value, mode), off, words)
-        return Row(cells, good, Tone.RUN if good else Tone.ALARM)
+        cells = (
+            row.name,
+            nominal,
+            str(last.part),
+            get_diameter_sign(row) + format_size(last.value, mode),
+            off,
+            words,
+        )
+        return TableRow(cells, good, Tone.RUN if good else Tone.ALARM)
 
     def _gauge_words(self) -> str:
-        return self.gauge.words
+        return self.gauge.status_text
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for the part number, gauge, file and correction."""
-        correct = {"F8": Key("CORRECT", self.propose), "F4": Key("UNDO", self.undo)}
+        correct = {
+            "F8": FunctionKey("CORRECT", self.propose_correction),
+            "F4": FunctionKey("UNDO", self.undo_correction),
+        }
         return {
-            "F2": Key(tr("PART −"), partial(self._step, -1)),
-            "F3": Key(tr("PART +"), partial(self._step, 1)),
-            "F9": Key("REMOVE", self.take_out),
-            "F5": Key("GAUGE OFF" if self.gauge.open else "GAUGE ON", self.turn_gauge),
-            "F6": Key("CSV", self.write_file),
-            **({} if self.of_mill else correct),
+            "F2": FunctionKey(tr("PART −"), partial(self._step, -1)),
+            "F3": FunctionKey(tr("PART +"), partial(self._step, 1)),
+            "F9": FunctionKey("REMOVE", self.remove_last_reading),
+            "F5": FunctionKey("GAUGE OFF" if self.gauge.is_receiving else "GAUGE ON", self.toggle_gauge),
+            "F6": FunctionKey("CSV", self.write_csv_file),
+            **({} if self.is_mill else correct),
         }
 
     def _step(self, by: int) -> None:
-        self.desk.clear()
-        self._part = max(1, self.part + by)
-        if self._part == self.desk.runs.counter.count:
+        self.desk.clear_prompt_line()
+        self._part = max(1, self.part_number + by)
+        if self._part == self.desk.program_runs.part_counter.count:
             self._part = 0
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the entry of a reading."""
-        return self.missing() or ("TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST")
+        return self.find_missing_precondition() or (
+            "TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST"
+        )
 
-    def drawing(self) -> ChartDrawing:
+    def make_chart(self) -> ChartDrawing:
         """Return the chart of a proposed correction."""
-        return self.effect.drawing(self.mode) if self.effect.stands else ChartDrawing()
+        return (
+            self.correction_effect.make_chart(self.control_unit)
+            if self.correction_effect.is_question_open
+            else ChartDrawing()
+        )
 
     # --- readings ------------------------------------------------------------------------------------
 
     def take(self, text: str) -> bool:
         """Store a typed size of the selected feature. Raises EntryError."""
-        feature = self.feature
+        feature = self.selected_feature
         if feature is None:
-            self.desk.say(self.missing())
+            self.desk.say(self.find_missing_precondition())
             return False
-        mode = self.mode
-        value = typed_length(value_of(text), mode)
-        return self._offer(NewReading(feature, self.part, value, mode.name, "typed"))
+        mode = self.control_unit
+        value = convert_entry_to_mm(evaluate_expression(text), mode)
+        return self._offer(NewReading(feature, self.part_number, value, mode.name, "typed"))
 
-    def _offer(self, taken: NewReading) -> bool:
+    def _offer(self, reading: NewReading) -> bool:
         """Store a reading.
 
         An implausible size requires confirmation. Raises EntryError for a size of 0 or less.
         """
-        row, feature = taken.feature, feature_of(taken.feature)
-        if taken.value <= 0.0:
+        row, feature = reading.feature, make_feature(reading.feature)
+        if reading.value <= 0.0:
             raise EntryError(
                 Message("{row} must be more than 0; type the measured size, not the deviation", row=row.name)
             )
-        if abs(taken.value - feature.middle) > FAR * feature.width:
+        if abs(reading.value - feature.middle) > OUTLIER_TOLERANCES * feature.width:
             asked = tr("{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN")
-            shown = size(taken.value, self.mode)
-            self.desk.ask(tr(Message(asked, name=row.name, size=shown)), partial(self._keep, taken))
+            shown = format_size(reading.value, self.control_unit)
+            self.desk.ask_operator(
+                tr(Message(asked, name=row.name, size=shown)), partial(self._keep, reading)
+            )
             return True
-        self.desk.clear()
-        self._keep(taken)
+        self.desk.clear_prompt_line()
+        self._keep(reading)
         return True
 
     def _keep(self, taken: NewReading) -> None:
         row = ReadingRow(
-            0, taken.feature.id, taken.part, taken.value, taken.unit, "", taken.source, taken.gauge
+            0, taken.feature.id, taken.part_number, taken.value, taken.unit, "", taken.source, taken.gauge
         )
-        self.watch.book.write(
-            Act.READINGS,
+        self.watch.parts_book.write_change(
+            ProtectedChange.READINGS,
             lambda c: measured_parts.add_reading(c, row),
-            partial(self._kept, taken),
-            self.watch.refuse,
+            partial(self._on_reading_saved, taken),
+            self.watch.report_refusal,
             Message(
                 "program {program}, part {part}: {feature} measured as {taken} mm",
                 feature=taken.feature.name,
-                part=taken.part,
-                program=self.data.program,
+                part=taken.part_number,
+                program=self.parts_data.program,
                 taken=f"{taken.value:g}",
             ),
         )
 
-    def _kept(self, taken: NewReading) -> None:
+    def _on_reading_saved(self, reading: NewReading) -> None:
         """Report the stored reading and select the next feature."""
         text = tr("{name}, PART {part}: {size} SAVED")
         self.desk.say(
-            tr(Message(text, name=taken.feature.name, part=taken.part, size=size(taken.value, self.mode)))
+            tr(
+                Message(
+                    text,
+                    name=reading.feature.name,
+                    part=reading.part_number,
+                    size=format_size(reading.value, self.control_unit),
+                )
+            )
         )
-        if self.feature is not None and self.feature.id == taken.feature.id:
-            self.marked = (self.marked + 1) % max(1, self.count)
+        if self.selected_feature is not None and self.selected_feature.id == reading.feature.id:
+            self.marked = (self.marked + 1) % max(1, self.row_count)
 
-    def take_out(self) -> None:
+    def remove_last_reading(self) -> None:
         """Remove the latest reading of the selected feature after confirmation (F9)."""
-        feature = self.feature
-        taken = self.data.readings_of(feature.id) if feature is not None else ()
+        feature = self.selected_feature
+        taken = self.parts_data.select_readings(feature.id) if feature is not None else ()
         if feature is None or not taken:
-            self.desk.say(self.missing() or tr("FEATURE NOT MEASURED YET"))
+            self.desk.say(self.find_missing_precondition() or tr("FEATURE NOT MEASURED YET"))
             return
         last = taken[-1]
         asked = tr("PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT")
         done = partial(self.desk.say, tr("READING REMOVED"))
-        self.desk.ask(
-            tr(Message(asked, size=size(last.value, self.mode), part=last.part)),
-            lambda: self.watch.book.write(
-                Act.READINGS,
+        self.desk.ask_operator(
+            tr(Message(asked, size=format_size(last.value, self.control_unit), part=last.part)),
+            lambda: self.watch.parts_book.write_change(
+                ProtectedChange.READINGS,
                 lambda c: measured_parts.void_reading(c, last.id),
                 done,
-                self.watch.refuse,
+                self.watch.report_refusal,
                 Message(
                     "program {program}, part {part}: reading of {feature} ({last} mm) removed",
                     feature=feature.name,
                     part=last.part,
-                    program=self.data.program,
+                    program=self.parts_data.program,
                     last=f"{last.value:g}",
                 ),
             ),
@@ -225,38 +271,40 @@ class ReadingsSection(QualitySection):
 
     # --- gauge ---------------------------------------------------------------------------------------
 
-    def turn_gauge(self) -> None:
+    def toggle_gauge(self) -> None:
         """Start or stop receiving readings from the gauge (F5)."""
-        self.desk.clear()
-        why = self.gauge.turn()
+        self.desk.clear_prompt_line()
+        why = self.gauge.toggle_receiving()
         if why:
             self.desk.say(why)
 
-    def listen(self, *, seen: bool) -> None:
+    def process_wire_input(self, *, is_displayed: bool) -> None:
         """Assign received gauge readings to the selected feature while the section is visible.
 
         Called once per frame.
         """
-        for found in self.gauge.received():
-            if isinstance(found, Reading) and not seen:
+        for found in self.gauge.fetch_readings():
+            if isinstance(found, GaugeReading) and not is_displayed:
                 self.desk.say(tr("GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN"))
-            elif isinstance(found, Reading):
+            elif isinstance(found, GaugeReading):
                 self._measured(found)
             else:
                 self.desk.say(found)
 
-    def _measured(self, found: Reading) -> None:
-        feature = self.feature
+    def _measured(self, found: GaugeReading) -> None:
+        feature = self.selected_feature
         if feature is None:
-            self.desk.say(self.missing())
+            self.desk.say(self.find_missing_precondition())
             return
-        unit = found.unit or self.gauge.unit
+        unit = found.unit or self.gauge.default_unit
         try:
             self._offer(
-                NewReading(feature, self.part, found.value * MM[unit], unit, "gauge", self.gauge.name)
+                NewReading(
+                    feature, self.part_number, found.value * MM_PER_UNIT[unit], unit, "gauge", self.gauge.name
+                )
             )
         except EntryError as error:
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
 
     def close(self) -> None:
         """Close the gauge."""
@@ -264,38 +312,38 @@ class ReadingsSection(QualitySection):
 
     # --- correction ----------------------------------------------------------------------------------
 
-    def propose(self) -> None:
+    def propose_correction(self) -> None:
         """Propose a correction from the readings of the selected feature (F8).
 
         Y applies the correction.
         """
-        feature = self.feature
+        feature = self.selected_feature
         if feature is None:
-            self.desk.say(self.missing())
+            self.desk.say(self.find_missing_precondition())
             return
         if not self._settled():
             return
         try:
-            found = proposal(self.data, feature, self.mode)
-            if found.why:
-                mean = size(found.mean, self.mode)
-                self.desk.say(f"{feature.name} {mean}: {tr(found.why)}")
+            found = make_proposal(self.parts_data, feature, self.control_unit)
+            if found.reason:
+                mean = format_size(found.mean_deviation, self.control_unit)
+                self.desk.say(f"{feature.name} {mean}: {tr(found.reason)}")
                 return
-            change = correction(found, self.desk, self.mode)
+            change = make_correction(found, self.desk, self.control_unit)
         except (QualityError, EntryError) as error:
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
             return
-        asked = tr(Message("{words}. Y: APPLY   N: DO NOT APPLY", words=change.words))
-        self.desk.ask(asked, partial(self._correct, feature))
-        taken = tuple((each.part, each.value) for each in self.data.readings_of(feature.id))
-        self.effect.show(self.desk.notice, found, change, taken)
+        asked = tr(Message("{words}. Y: APPLY   N: DO NOT APPLY", words=change.text))
+        self.desk.ask_operator(asked, partial(self._correct, feature))
+        taken = tuple((each.part, each.value) for each in self.parts_data.select_readings(feature.id))
+        self.correction_effect.show_proposal(self.desk.prompt_notice, found, change, taken)
 
     def _settled(self) -> bool:
         """Return whether all data is stored and loaded.
 
         This prevents a second proposal of a pending correction.
         """
-        settled = self.watch.book.settled and not self.desk.book.busy
+        settled = self.watch.parts_book.is_settled and not self.desk.offset_book.is_saving
         if not settled:
             self.desk.say(tr("STILL READING STORED DATA. PRESS F8 AGAIN"))
         return settled
@@ -305,24 +353,28 @@ class ReadingsSection(QualitySection):
         if not self._settled():
             return
         try:
-            change = correction(proposal(self.data, feature, self.mode), self.desk, self.mode)
+            change = make_correction(
+                make_proposal(self.parts_data, feature, self.control_unit), self.desk, self.control_unit
+            )
         except (QualityError, EntryError) as error:
-            self.desk.refuse(str(error))
+            self.desk.show_refusal(str(error))
             return
-        why = self.desk.book.change(change.kind, change.number, change.values, change.why)
+        why = self.desk.offset_book.change_fields(
+            change.kind, change.number, change.new_values, change.reason
+        )
         if why:
             self.desk.say(why)
             return
-        self._last = change.kind, change.number, change.why
-        self.desk.done(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.words)))
+        self._last = change.kind, change.number, change.reason
+        self.desk.show_success(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.text)))
 
-    def undo(self) -> None:
+    def undo_correction(self) -> None:
         """Ask whether to undo the last correction (F4), if no later change exists."""
         why = self._undo_barred()
         if not why and self._last is not None:
             kind, number, _reason = self._last
-            questions = OffsetQuestions(OffsetHistory(self.desk, kind, self.mode))
-            why = questions.undo(kind, number, tr("CORRECTION UNDONE"))
+            questions = OffsetQuestions(OffsetHistory(self.desk, kind, self.control_unit))
+            why = questions.ask_undo(kind, number, tr("CORRECTION UNDONE"))
         if why:
             self.desk.say(why)
 
@@ -331,20 +383,22 @@ class ReadingsSection(QualitySection):
         if self._last is None:
             return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9")
         kind, _number, reason = self._last
-        last = self.desk.book.history(kind, 1)
+        last = self.desk.offset_book.read_history(kind, 1)
         if not last or last[0].why != reason:
             return tr("CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9")
-        return refusal(self.desk.snapshot(), correction=True)
+        return find_change_refusal(self.desk.read_snapshot(), is_correction=True)
 
     # --- file ----------------------------------------------------------------------------------------
 
-    def write_file(self) -> None:
+    def write_csv_file(self) -> None:
         """Write the readings of the program as a CSV file on a worker (F6)."""
-        if self.missing():
-            self.desk.say(self.missing())
+        if self.find_missing_precondition():
+            self.desk.say(self.find_missing_precondition())
             return
-        data, folder = self.data, self.folder
-        self.watch.book.worker.queue(lambda: write_readings(data, folder), self._written, self.watch.refuse)
+        data, folder = self.parts_data, self.folder
+        self.watch.parts_book.worker.enqueue(
+            lambda: write_readings_csv(data, folder), self._written, self.watch.report_refusal
+        )
 
     def _written(self, path: Path) -> None:
-        self.desk.done(tr(Message("SAVED: {path}", path=path)))
+        self.desk.show_success(tr(Message("SAVED: {path}", path=path)))

@@ -6,43 +6,43 @@ from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.extras.quality.parts_data import PartsData, parts_of
+from app.extras.quality.parts_data import PartsData, get_loaded_parts_data
 from app.production.parts_watch import PartsWatch
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store_errors import StoreError
 
 
-def due(data: PartsData, made: int) -> dict[str, int]:
+def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
     """Return the part to measure for each feature: the latest planned part without a reading."""
     found = {}
     for row in data.features:
-        planned = made // row.every * row.every if row.every else 0
-        if planned and not any(each.part >= planned for each in data.readings_of(row.id)):
+        planned = parts_made // row.every * row.every if row.every else 0
+        if planned and not any(each.part >= planned for each in data.select_readings(row.id)):
             found[row.name] = planned
     return found
 
 
-def notice(found: dict[str, int]) -> str:
+def make_due_notice(due_parts: dict[str, int]) -> str:
     """Return the prompt text with the features to measure, or an empty string."""
-    part, names = _newest(found)
-    return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if found else ""
+    part, names = _newest(due_parts)
+    return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if due_parts else ""
 
 
-def bar(found: dict[str, int]) -> str:
+def find_block_reason(due_parts: dict[str, int]) -> str:
     """Return the reason why the next part must wait for measurements, or an empty string."""
-    part, names = _newest(found)
+    part, names = _newest(due_parts)
     return (
         Message("part {part} must be measured before the next part starts: {names}", part=part, names=names)
-        if found
+        if due_parts
         else ""
     )
 
 
-def _newest(found: dict[str, int]) -> tuple[int, str]:
+def _newest(due_parts: dict[str, int]) -> tuple[int, str]:
     """Return the latest part to measure and the names of its features."""
-    part = max(found.values(), default=0)
-    return part, ", ".join(name for name, planned in found.items() if planned == part)
+    part = max(due_parts.values(), default=0)
+    return part, ", ".join(name for name, planned in due_parts.items() if planned == part)
 
 
 @dataclass(slots=True)
@@ -50,55 +50,55 @@ class SamplePlan:
     """Sample plan of the loaded program, and whether its parts wait for measurements."""
 
     desk: Desk
-    watch: PartsWatch
+    parts_watch: PartsWatch
     # measurements by number of parts made, valid for ``_planned_of``
     _plans: dict[int, dict[str, int]] = field(default_factory=dict)
     _planned_of: object = None
     _waits: tuple[str, bool] = ("", False)  # program, and whether its parts wait for measurements
 
-    def bar(self, snapshot: Snapshot) -> str:
+    def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return the reason why the next part must not start. The present part counts as made."""
-        if not self.waits:
+        if not self.waits_for_measurements:
             return ""
-        made = self.desk.runs.counter.count + (1 if snapshot.counts else 0)
-        return bar(self._planned(made))
+        made = self.desk.program_runs.part_counter.count + (1 if snapshot.counts else 0)
+        return find_block_reason(self._planned(made))
 
-    def due(self) -> str:
+    def due_reminder(self) -> str:
         """Return the features to measure, or an empty string."""
-        return notice(self._planned(self.desk.runs.counter.count))
+        return make_due_notice(self._planned(self.desk.program_runs.part_counter.count))
 
     def _planned(self, made: int) -> dict[str, int]:
         """Return the required measurements for a number of parts made, cached until data changes."""
-        data = parts_of(self.watch.book)
+        data = get_loaded_parts_data(self.parts_watch.parts_book)
         if made not in self._plans or self._planned_of is not data:
             kept = self._plans if self._planned_of is data else {}
-            self._plans, self._planned_of = {**kept, made: due(data, made)}, data
+            self._plans, self._planned_of = {**kept, made: find_due_parts(data, made)}, data
         return self._plans[made]
 
     @property
-    def waits(self) -> bool:
+    def waits_for_measurements(self) -> bool:
         """Whether parts of this program wait until the required measurements are done."""
-        program = self.watch.program
+        program = self.parts_watch.program_name
         if self._waits[0] != program:
             try:
-                kept = self.desk.runs.counter.persistence.read_setting(_key(program)) is True
+                kept = self.desk.program_runs.part_counter.persistence.read_setting(_key(program)) is True
             except StoreError:
                 kept = False
             self._waits = program, kept
         return self._waits[1]
 
-    def turn_waits(self) -> None:
+    def toggle_waiting(self) -> None:
         """Turn waiting for measurements on or off. Raises StoreError if the setting cannot be stored."""
-        on, program = not self.waits, self.watch.program
+        on, program = not self.waits_for_measurements, self.parts_watch.program_name
         self._waits = program, on
-        persistence = self.desk.runs.counter.persistence
+        persistence = self.desk.program_runs.part_counter.persistence
         persistence.save_setting(_key(program), on or None)
         template = (
             "program {program}: the next part cannot start before the required parts are measured"
             if on
             else "program {program}: the next part can start before the required parts are measured"
         )
-        persistence.note_change(Message(template, program=program))
+        persistence.log_change(Message(template, program=program))
 
 
 def _key(program: str) -> str:

@@ -9,36 +9,36 @@ import numpy as np
 import numpy.typing as npt
 
 from app.desk.desk import Desk
-from app.desk.status.formats import fixed
-from app.extras.quality.parts_data import PartsData, parts_of
-from app.offsets.offset_values import Mode, to_mm
+from app.desk.status.formats import format_fixed
+from app.extras.quality.parts_data import PartsData, get_loaded_parts_data
+from app.offsets.offset_values import ValueMode, convert_to_mm
 from app.production.parts_watch import PartsWatch
-from app.special.special_functions import FigureFunction
-from core.extras.quality.control_charts import Chart, ChartPair, findings
-from core.extras.quality.measured_feature import Proposal
+from app.special.special_functions import NumericFunction
+from core.extras.quality.control_charts import ControlChart, ControlChartPair, find_rule_violations
+from core.extras.quality.measured_feature import CorrectionProposal
 from core.store.production.measured_parts import FeatureRow
 
-AHEAD = 4.0  # number of parts after the last one for which a correction is drawn
+FORECAST_PARTS = 4.0  # number of parts after the last one for which a correction is drawn
 FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class PlotCurve:
     """Curve over parts.
 
-    ``number`` selects the color, ``dots`` draws points, ``steps`` draws steps.
+    ``color_number`` selects the color, ``has_dots`` draws points, ``has_steps`` draws steps.
     """
 
-    x: FloatArray
-    y: FloatArray
-    number: int = 0
-    dots: bool = True
+    part_numbers: FloatArray
+    values: FloatArray
+    color_number: int = 0
+    has_dots: bool = True
     name: str = ""
-    steps: bool = False
+    has_steps: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Level:
+class PlotLevel:
     """Horizontal line. ``kind`` is centre, limit (control limit) or tolerance."""
 
     value: float
@@ -48,54 +48,62 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """Plot with curves or bars. ``marks`` are points that violate a rule."""
+    """Plot with curves or bars. ``violations`` are points that violate a rule."""
 
     title: str = ""
-    curves: tuple[Curve, ...] = ()
-    levels: tuple[Level, ...] = ()
-    marks: tuple[tuple[float, float], ...] = ()
+    curves: tuple[PlotCurve, ...] = ()
+    levels: tuple[PlotLevel, ...] = ()
+    violations: tuple[tuple[float, float], ...] = ()
     bars: tuple[tuple[str, float], ...] = ()
-    across: str = ""  # label of the horizontal axis
+    x_label: str = ""  # label of the horizontal axis
 
     @property
-    def empty(self) -> bool:
+    def is_empty(self) -> bool:
         """Whether there is nothing to draw."""
-        return not (self.bars or any(len(curve.x) for curve in self.curves))
+        return not (self.bars or any(len(curve.part_numbers) for curve in self.curves))
 
 
 @dataclass(frozen=True, slots=True)
 class ChartDrawing:
-    """Plots one below the other. Drawings with equal ``of`` are equal and are not drawn again."""
+    """Plots one below the other. Drawings with equal ``identity`` are equal and are not drawn again."""
 
     plots: tuple[Plot, ...] = ()
-    of: object = field(default=None)
+    identity: object = field(default=None)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ChartDrawing) and self.of == other.of
+        return isinstance(other, ChartDrawing) and self.identity == other.identity
 
     def __hash__(self) -> int:
-        return hash(self.of)
+        return hash(self.identity)
 
 
-def control_plots(
-    pair: ChartPair, parts: Sequence[int], limits: tuple[float, float], names: tuple[str, str], unit: float
+def make_control_plots(
+    charts: ControlChartPair,
+    part_numbers: Sequence[int],
+    limits: tuple[float, float],
+    names: tuple[str, str],
+    unit: float,
 ) -> tuple[Plot, ...]:
     """Return the plots of location and spread over the part numbers, in units of ``unit`` mm.
 
     Each point is at the number of its last part. Size limits are shown in the upper plot only for single
     parts, because they do not apply to averages.
     """
-    location = _plot(names[0], pair.location, _last_parts(parts, pair.size), unit)
-    if pair.size == 1:
-        tolerance = tuple(Level(limit / unit, "", "tolerance") for limit in limits)
-        location = Plot(location.title, location.curves, (*location.levels, *tolerance), location.marks)
-    first = 1 if pair.size == 1 else 0  # A moving range belongs to the later of its two parts.
-    spread = _plot(names[1], pair.spread, _last_parts(parts, pair.size)[first:], unit)
+    location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit)
+    if charts.sample_size == 1:
+        tolerance = tuple(PlotLevel(limit / unit, "", "tolerance") for limit in limits)
+        location = Plot(location.title, location.curves, (*location.levels, *tolerance), location.violations)
+    first = 1 if charts.sample_size == 1 else 0  # A moving range belongs to the later of its two parts.
+    spread = _plot(names[1], charts.spread, _last_parts(part_numbers, charts.sample_size)[first:], unit)
     return location, spread
 
 
-def correction_plot(
-    readings: Sequence[tuple[int, float]], found: Proposal, title: str, names: tuple[str, str], unit: float
+def make_correction_plot(
+    readings: Sequence[tuple[int, float]],
+    proposal: CorrectionProposal,
+    title: str,
+    names: tuple[str, str],
+    unit: float,
 ) -> Plot:
     """Return the plot of sizes over parts, with the mean and the expected size after a correction.
 
@@ -106,18 +114,20 @@ def correction_plot(
         # A part was measured twice or the count was reset, so readings are numbered in sequence.
         parts = np.arange(1.0, len(parts) + 1.0)
     sizes = np.asarray([size for _, size in readings]) / unit
-    last, first = parts[-1], parts[-min(found.count, len(parts))]
-    now = Curve(np.array([first, last]), np.full(2, found.mean / unit), 1, dots=False, name=names[0])
-    then = Curve(
-        np.array([last + 1.0, last + 1.0 + AHEAD]),
-        np.full(2, found.expected / unit),
+    last, first = parts[-1], parts[-min(proposal.reading_count, len(parts))]
+    now = PlotCurve(
+        np.array([first, last]), np.full(2, proposal.mean_deviation / unit), 1, has_dots=False, name=names[0]
+    )
+    then = PlotCurve(
+        np.array([last + 1.0, last + 1.0 + FORECAST_PARTS]),
+        np.full(2, proposal.expected_size / unit),
         2,
-        dots=False,
+        has_dots=False,
         name=names[1],
     )
-    middle = Level(found.feature.middle / unit, "", "centre")
-    tolerance = tuple(Level(limit / unit, "", "tolerance") for limit in found.feature.limits)
-    return Plot(title, (Curve(parts, sizes), now, then), (middle, *tolerance))
+    middle = PlotLevel(proposal.feature.middle / unit, "", "centre")
+    tolerance = tuple(PlotLevel(limit / unit, "", "tolerance") for limit in proposal.feature.limits)
+    return Plot(title, (PlotCurve(parts, sizes), now, then), (middle, *tolerance))
 
 
 def _last_parts(parts: Sequence[int], size: int) -> FloatArray:
@@ -125,92 +135,92 @@ def _last_parts(parts: Sequence[int], size: int) -> FloatArray:
     return np.asarray(parts[size - 1 : whole : size], dtype=np.float64)
 
 
-def _plot(title: str, chart: Chart, x: FloatArray, unit: float) -> Plot:
+def _plot(title: str, chart: ControlChart, x: FloatArray, unit: float) -> Plot:
     y = chart.points / unit
     levels = (
-        Level(chart.centre / unit, "", "centre"),
-        Level(chart.upper / unit, "", "limit"),
-        Level(chart.lower / unit, "", "limit"),
+        PlotLevel(chart.center_line / unit, "", "centre"),
+        PlotLevel(chart.upper_limit / unit, "", "limit"),
+        PlotLevel(chart.lower_limit / unit, "", "limit"),
     )
-    points = sorted({finding.point for finding in findings(chart)})
+    points = sorted({finding.point_index for finding in find_rule_violations(chart)})
     marks = tuple((float(x[point]), float(y[point])) for point in points)
-    return Plot(title, (Curve(x, y),), levels, marks)
+    return Plot(title, (PlotCurve(x, y),), levels, marks)
 
 
-NO_PROGRAM = "SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES"
-NO_FEATURE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
+NO_PROGRAM_MESSAGE = "SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES"
+NO_FEATURE_MESSAGE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
-class QualitySection(FigureFunction):
+class QualitySection(NumericFunction):
     """Base class of the sections: parts book, loaded program, unit and selected feature."""
 
     chart_share: float = 0.0  # ratio of the height for the chart below the table
 
-    def __init__(self, desk: Desk, watch: PartsWatch) -> None:
+    def __init__(self, desk: Desk, parts_watch: PartsWatch) -> None:
         super().__init__(desk)
-        self.watch = watch
+        self.watch = parts_watch
 
     @property
-    def data(self) -> PartsData:
+    def parts_data(self) -> PartsData:
         """Stored data of the loaded program."""
-        return parts_of(self.watch.book)
+        return get_loaded_parts_data(self.watch.parts_book)
 
     @property
-    def program(self) -> str:
+    def program_name(self) -> str:
         """Name of the loaded program, or an empty string."""
-        return self.watch.program
+        return self.watch.program_name
 
     @property
-    def of_mill(self) -> bool:
+    def is_mill(self) -> bool:
         """Whether the machine is a mill, where DL and DR replace wear corrections."""
         return self.desk.machine.language == "klartext"
 
     @property
-    def mode(self) -> Mode:
+    def control_unit(self) -> ValueMode:
         """Unit of the control, which applies to all entries and displays."""
-        return Mode(self.desk.snapshot().modal.metric, diameter=True)
+        return ValueMode(self.desk.read_snapshot().modal.metric, is_diameter=True)
 
     @property
-    def feature(self) -> FeatureRow | None:
+    def selected_feature(self) -> FeatureRow | None:
         """Selected feature, or None."""
-        rows = self.data.features
+        rows = self.parts_data.features
         return rows[self.marked] if self.marked < len(rows) else None
 
-    def drawing(self) -> ChartDrawing:
+    def make_chart(self) -> ChartDrawing:
         """Return the chart below the table."""
         return ChartDrawing()
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key: arrows move the selection, and other keys edit the entry."""
-        return self.moves(key) or super().typed(key)
+        return self.move_selection(key) or super().handle_key(key)
 
-    def settle(self) -> None:
+    def limit_selection(self) -> None:
         """Limit the selection to the rows of the table."""
-        self.marked = max(0, min(self.marked, self.count - 1))
+        self.marked = max(0, min(self.marked, self.row_count - 1))
 
-    def missing(self) -> str:
+    def find_missing_precondition(self) -> str:
         """Return the missing precondition of this section, or an empty string."""
-        if not self.program:
-            return NO_PROGRAM
-        return self.watch.book.locked or ("" if self.data.features else NO_FEATURE)
+        if not self.program_name:
+            return NO_PROGRAM_MESSAGE
+        return self.watch.parts_book.lock_reason or ("" if self.parts_data.features else NO_FEATURE_MESSAGE)
 
 
-def size(mm: float, mode: Mode) -> str:
+def format_size(mm: float, mode: ValueMode) -> str:
     """Return a size with a resolution of 0.001 mm or .00001 in."""
-    return fixed(mm, 3) if mode.metric else fixed(mm / mode.unit, 5)
+    return format_fixed(mm, 3) if mode.is_metric else format_fixed(mm / mode.unit_mm, 5)
 
 
-def signed_size(mm: float, mode: Mode) -> str:
+def format_deviation(mm: float, mode: ValueMode) -> str:
     """Return a deviation with its sign."""
-    text = size(mm, mode)
+    text = format_size(mm, mode)
     return text if not text.strip("0.") or text[0] not in "0123456789." else f"+{text}"
 
 
-def typed_length(value: float, mode: Mode) -> float:
+def convert_entry_to_mm(value: float, mode: ValueMode) -> float:
     """Convert a typed length to mm."""
-    return to_mm(value, mode.metric)
+    return convert_to_mm(value, mode.is_metric)
 
 
-def mark_of(row: FeatureRow) -> str:
+def get_diameter_sign(row: FeatureRow) -> str:
     """Return the diameter sign for a diameter, or an empty string."""
     return "Ø " if row.kind == "diameter" else ""

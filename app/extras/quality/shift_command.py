@@ -9,13 +9,13 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.store_command import opened_store
-from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
+from app.cli.store_command import open_store
+from app.desk.command_errors import EXIT_OK, CommandError, convert_to_command_error
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.extras.quality.shift_figures import Shift, ShiftFigures
+    from app.extras.quality.shift_results import Shift, ShiftResults
     from core.store.store import Store
 
 
@@ -44,23 +44,23 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the report. Raises CommandError."""
-    from app.extras.quality.shift_figures import shift_figures
+    from app.extras.quality.shift_results import calculate_shift_results
 
     if args.metric and not args.report:
         raise CommandError("--metric is only for the HTML page; add --report FILE", "metric-needs-report")
-    with opened_store(read_only=True) as store:
-        found = shift_figures(store, _shift(store, args), datetime.now().timestamp())
+    with open_store(read_only=True) as store:
+        found = calculate_shift_results(store, _shift(store, args), datetime.now().timestamp())
     if args.report:
         _write(found, Path(args.report), metric=args.metric)
     elif args.json:
-        sys.stdout.write(json.dumps(_told(found), indent=1) + "\n")
+        sys.stdout.write(json.dumps(_make_json(found), indent=1) + "\n")
     else:
         sys.stdout.write(_text(found))
     return EXIT_OK
 
 
 def _shift(store: Store, args: argparse.Namespace) -> Shift:
-    from app.extras.quality.shift_figures import SETTING, between, hours_of, shift_of
+    from app.extras.quality.shift_results import SHIFT_HOURS_SETTING, find_shift, get_shift_hours, make_period
 
     if (args.since is None) != (args.until is None):
         raise CommandError("--from and --to must be used together; specify both", "from-and-to")
@@ -70,34 +70,47 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
                 "--back counts shifts, but --from and --to specify times; use one or the other",
                 "back-and-times",
             )
-        with as_command_error(ValueError):
-            return between(args.since, args.until)
+        with convert_to_command_error(ValueError):
+            return make_period(args.since, args.until)
     if not 0 <= args.back <= 10_000:
         raise CommandError(
             Message("--back {back} is out of range; use 0 to 10000 shifts", back=args.back), "back"
         )
-    return shift_of(hours_of(store.settings.read_setting(SETTING)), datetime.now().astimezone(), args.back)
+    return find_shift(
+        get_shift_hours(store.settings.read_setting(SHIFT_HOURS_SETTING)),
+        datetime.now().astimezone(),
+        args.back,
+    )
 
 
-def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
-    from app.extras.quality.shift_page import shift_html
-    from app.programs.whole_file import FileError, write_out
+def _write(found: ShiftResults, path: Path, *, metric: bool) -> None:
+    from app.extras.quality.shift_page import make_shift_html
+    from app.programs.atomic_files import FileOperationError, copy_to_medium
 
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
-    with as_command_error(FileError, OSError):
-        write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
-    sys.stdout.write(f"report saved to {path}: {found.parts} parts\n")
+    with convert_to_command_error(FileOperationError, OSError):
+        copy_to_medium(
+            path, make_shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace")
+        )
+    sys.stdout.write(f"report saved to {path}: {found.part_count} parts\n")
 
 
-def _text(found: ShiftFigures) -> str:
-    from app.desk.status.formats import duration
-    from app.extras.quality.shift_page import facts, title_of
+def _text(found: ShiftResults) -> str:
+    from app.desk.status.formats import format_duration
+    from app.extras.quality.shift_page import make_summary_rows, make_title
 
-    lines = [title_of(found, ""), *found.notes, *(f"{name}: {words}" for name, words in facts(found))]
+    lines = [
+        make_title(found, ""),
+        *found.notes,
+        *(f"{name}: {words}" for name, words in make_summary_rows(found)),
+    ]
     for each in found.programs:
         mean = (
-            Message(", mean cycle time {times} s", times=f"{sum(each.times) / len(each.times):.1f}")
-            if each.times
+            Message(
+                ", mean cycle time {times} s",
+                times=f"{sum(each.cycle_times_s) / len(each.cycle_times_s):.1f}",
+            )
+            if each.cycle_times_s
             else ""
         )
         lines.append(
@@ -108,44 +121,55 @@ def _text(found: ShiftFigures) -> str:
             "{reason}: stopped {times} times, {seconds} in total",
             reason=each.reason,
             times=each.times,
-            seconds=duration(each.seconds),
+            seconds=format_duration(each.seconds),
         )
-        for each in found.stood
+        for each in found.stop_reasons
     ]
     return "\n".join(lines) + "\n"
 
 
-def _told(found: ShiftFigures) -> dict[str, object]:
+def _make_json(results: ShiftResults) -> dict[str, object]:
     """Return the JSON object: lengths in mm, times in s and UTC, X of offsets as a radius."""
-    first, last = found.shift.utc
-    share = found.availability
+    first, last = results.shift.utc_texts
+    share = results.availability
     return {
         "from": first,
         "to": last,
-        "notes": list(found.notes),
-        "parts": found.parts,
+        "notes": list(results.notes),
+        "parts": results.part_count,
         "programs": [
-            {"program": p.program, "parts": p.parts, "no_part": dict(p.others), "cycle_times": list(p.times)}
-            for p in found.programs
+            {
+                "program": p.program,
+                "parts": p.parts,
+                "no_part": dict(p.incomplete_cycles),
+                "cycle_times": list(p.cycle_times_s),
+            }
+            for p in results.programs
         ],
-        "planned": share.planned if share is not None else 0.0,
-        "producing": share.producing if share is not None else 0.0,
-        "stopped": found.stopped,
-        "not_recorded": found.untold,
-        "stops": [row._asdict() for row in found.stops],
-        "reasons": [row._asdict() for row in found.stood],
-        "alarms": [row._asdict() for row in found.alarms],
-        "tool_lives": [row._asdict() for row in found.lives],
-        "insert_changes": [row._asdict() for row in found.inserts],
+        "planned": share.planned_s if share is not None else 0.0,
+        "producing": share.producing_s if share is not None else 0.0,
+        "stopped": results.stopped_s,
+        "not_recorded": results.unrecorded_s,
+        "stops": [row._asdict() for row in results.stops],
+        "reasons": [row._asdict() for row in results.stop_reasons],
+        "alarms": [row._asdict() for row in results.alarms],
+        "tool_lives": [row._asdict() for row in results.tool_lives],
+        "insert_changes": [row._asdict() for row in results.insert_changes],
         "offset_changes": [
-            {"at": c.at, "kind": c.kind.value, "number": c.number, "why": c.why, "who": c.who,
-             "old": c.old._asdict() if c.old is not None else None,
-             "new": c.new._asdict() if c.new is not None else None}
-            for c in found.offsets
+            {
+                "at": c.at,
+                "kind": c.kind.value,
+                "number": c.number,
+                "why": c.why,
+                "who": c.who,
+                "old": c.old._asdict() if c.old is not None else None,
+                "new": c.new._asdict() if c.new is not None else None,
+            }
+            for c in results.offset_changes
         ],
-        "readings": found.measured,
+        "readings": results.reading_count,
         "out_of_tolerance": [
             {"program": f.program, "feature": f.name, "part": r.part, "value": r.value, "at": r.at}
-            for f, r in found.bad
+            for f, r in results.bad_readings
         ],
-    }  # fmt: skip
+    }

@@ -7,17 +7,23 @@ from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from app.desk.background_work import Latest
+from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.sheet import Key, Row, Sheet
-from app.desk.status.formats import duration
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
+from app.desk.status.formats import format_duration
 from app.desk.translation import tr
-from app.extras.quality.shift_figures import SETTING, ShiftFigures, hours_of, shift_figures, shift_of
-from app.extras.quality.shift_page import facts, shift_html, title_of
+from app.extras.quality.shift_page import make_shift_html, make_summary_rows, make_title
+from app.extras.quality.shift_results import (
+    SHIFT_HOURS_SETTING,
+    ShiftResults,
+    calculate_shift_results,
+    find_shift,
+    get_shift_hours,
+)
 from app.production.parts_watch import PartsWatch
-from app.programs.removable_media import Stick, sticks
-from app.programs.whole_file import FileError, settle, write_out
-from app.special.backup_and_restore import Place
+from app.programs.atomic_files import FileOperationError, copy_to_medium, flush_folder
+from app.programs.removable_media import UsbStick, list_sticks
+from app.special.backup_and_restore import BackupPlace
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -26,163 +32,179 @@ from core.store.store import Store
 _OLDEST = 366  # maximum number of shifts back
 
 
-class ShiftReport(SpecialFunction):
+class ShiftReportFunction(SpecialFunction):
     """Special function for the shift report, updated on a worker when it opens and every minute."""
 
     name = "SHIFT REPORT"
     use = "parts, times, stops and alarms, for printing"
 
-    def __init__(self, desk: Desk, machine: str, worker: Latest, folder: Path) -> None:
+    def __init__(self, desk: Desk, machine: str, worker: LatestRequestWorker, folder: Path) -> None:
         super().__init__(desk)
-        self.machine, self.worker, self.folder = machine, worker, folder
-        self.back = 0
-        self.found: ShiftFigures | None = None
-        self.trouble = ""
-        self.places: tuple[Place, ...] = ()
+        self.machine_name, self.worker, self.folder = machine, worker, folder
+        self.shifts_back = 0
+        self.results: ShiftResults | None = None
+        self.error_text = ""
+        self.save_locations: tuple[BackupPlace, ...] = ()
         self._asked: tuple[int, int] | None = None  # shift and minute of the last request
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of places for saving, while they are listed."""
-        return len(self.places)
+        return len(self.save_locations)
 
     def _store(self) -> Store | None:
-        watch = self.desk.pages.find(PartsWatch)
-        return watch.book.store if watch is not None else None
+        watch = self.desk.page_registry.find(PartsWatch)
+        return watch.parts_book.store if watch is not None else None
 
-    def sheet(self, _snapshot: Snapshot) -> Sheet:
+    def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of the main results or of the places."""
         self._make()
-        if self.places:
+        if self.save_locations:
             return self._sheet_of_places()
-        found = self.found
+        found = self.results
         if found is None:
-            why = self.trouble or tr("Creating the report …")
-            return Sheet("SHIFT REPORT", ("", ""), (0.4, 0.6), (), notes=(why,))
-        rows = tuple(Row(each) for each in _rows(found))
-        notes = (title_of(found, ""), *found.notes[:2])
-        return Sheet("SHIFT REPORT", ("", ""), (0.36, 0.64), rows, notes=notes, raw=frozenset({0, 1}))
+            why = self.error_text or tr("Creating the report …")
+            return TableContent("SHIFT REPORT", ("", ""), (0.4, 0.6), (), notes=(why,))
+        rows = tuple(TableRow(each) for each in _rows(found))
+        notes = (make_title(found, ""), *found.notes[:2])
+        return TableContent(
+            "SHIFT REPORT", ("", ""), (0.36, 0.64), rows, notes=notes, raw_columns=frozenset({0, 1})
+        )
 
-    def _sheet_of_places(self) -> Sheet:
-        rows = tuple(Row((place.label, str(place.path))) for place in self.places)
+    def _sheet_of_places(self) -> TableContent:
+        rows = tuple(TableRow((place.label, str(place.path))) for place in self.save_locations)
         notes = ("Enter saves the report as HTML in the selected location.",)
         title, heads = "SHIFT REPORT  ·  SAVE TO:", ("PLACE", "FOLDER")
-        return Sheet(title, heads, (0.35, 0.65), rows, self.marked, notes=notes, raw=frozenset({0, 1}))
+        return TableContent(
+            title, heads, (0.35, 0.65), rows, self.marked, notes=notes, raw_columns=frozenset({0, 1})
+        )
 
     def _make(self) -> None:
-        wanted = (self.back, int(datetime.now().timestamp() // 60))
+        wanted = (self.shifts_back, int(datetime.now().timestamp() // 60))
         store = self._store()
         if store is None:
-            self.trouble = tr("JOBS CANNOT BE SAVED: NO DATA STORE")
+            self.error_text = tr("JOBS CANNOT BE SAVED: NO DATA STORE")
         elif wanted != self._asked:
             self._asked = wanted
-            self.worker.queue(partial(_made, store, self.desk, self.back), self._take, self._failed)
+            self.worker.enqueue(
+                partial(_calculate, store, self.desk, self.shifts_back), self._take, self._failed
+            )
 
-    def _take(self, found: ShiftFigures) -> None:
-        self.found, self.trouble = found, ""
+    def _take(self, found: ShiftResults) -> None:
+        self.results, self.error_text = found, ""
 
     def _failed(self, why: str) -> None:
-        self.found, self.trouble = None, why
+        self.results, self.error_text = None, why
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for the selection of a shift and for saving."""
-        if self.places:
-            return {"F4": Key("REFRESH", self.look)}
+        if self.save_locations:
+            return {"F4": FunctionKey("REFRESH", self.reload_locations)}
         return {
-            "F2": Key("EARLIER", partial(self._go, 1)),
-            "F3": Key("LATER", partial(self._go, -1)),
-            "F6": Key("WRITE", self.look),
+            "F2": FunctionKey("EARLIER", partial(self._go, 1)),
+            "F3": FunctionKey("LATER", partial(self._go, -1)),
+            "F6": FunctionKey("WRITE", self.reload_locations),
         }
 
     def _go(self, by: int) -> None:
-        back = max(0, min(_OLDEST, self.back + by))
-        if back == self.back:
-            self.desk.done("THIS IS THE LATEST SHIFT" if by < 0 else "NO EARLIER SHIFT IS AVAILABLE")
+        back = max(0, min(_OLDEST, self.shifts_back + by))
+        if back == self.shifts_back:
+            self.desk.show_success("THIS IS THE LATEST SHIFT" if by < 0 else "NO EARLIER SHIFT IS AVAILABLE")
         else:
-            self.desk.clear()
-            self.back, self.found = back, None
+            self.desk.clear_prompt_line()
+            self.shifts_back, self.results = back, None
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Show the present shift when the function opens."""
-        self.back, self._asked, self.places = 0, None, ()
+        self.shifts_back, self._asked, self.save_locations = 0, None, ()
 
-    def left(self) -> None:
+    def on_close(self) -> None:
         """Close the list of places when the function closes."""
-        self.places = ()
+        self.save_locations = ()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Close the list of places. Return False if it was not open."""
-        shut, self.places = bool(self.places), ()
+        shut, self.save_locations = bool(self.save_locations), ()
         return shut
 
-    def look(self) -> None:
+    def reload_locations(self) -> None:
         """List the places for saving. The result arrives in a later frame."""
-        self.desk.clear()
-        if self.found is None:
+        self.desk.clear_prompt_line()
+        if self.results is None:
             self.desk.say("REPORT IS NOT READY YET. WAIT A MOMENT")
         else:
-            self.worker.queue(lambda: _places(self.folder, sticks()), self._places_found, self.desk.refuse)
+            self.worker.enqueue(
+                lambda: _places(self.folder, list_sticks()), self._places_found, self.desk.show_refusal
+            )
 
-    def _places_found(self, places: tuple[Place, ...]) -> None:
-        self.places, self.marked = places, 0
+    def _places_found(self, places: tuple[BackupPlace, ...]) -> None:
+        self.save_locations, self.marked = places, 0
 
-    def act(self) -> bool:
+    def execute_row(self) -> bool:
         """Save the report to the selected place."""
-        if not self.places or self.found is None:
+        if not self.save_locations or self.results is None:
             return False
-        place = self.places[min(self.marked, len(self.places) - 1)]
-        metric = self.desk.snapshot().modal.metric
-        work = partial(_write, self.found, self.machine, place.path, metric=metric)
-        self.worker.queue(work, self._done, self.desk.refuse)
-        self.places = ()
+        place = self.save_locations[min(self.marked, len(self.save_locations) - 1)]
+        metric = self.desk.read_snapshot().modal.metric
+        work = partial(_write, self.results, self.machine_name, place.path, metric=metric)
+        self.worker.enqueue(work, self._done, self.desk.show_refusal)
+        self.save_locations = ()
         return True
 
     def _done(self, name: str) -> None:
-        self.desk.done(tr(Message("{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW", name=name)))
+        self.desk.show_success(
+            tr(Message("{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW", name=name))
+        )
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
-        if self.places:
+        if self.save_locations:
             return "ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS"
         return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK"
 
 
-def _rows(found: ShiftFigures) -> list[tuple[str, str]]:
+def _rows(results: ShiftResults) -> list[tuple[str, str]]:
     """Return the main results, then one row per program and per reason."""
-    rows = facts(found)
-    for each in found.programs:
-        mean = f", {sum(each.times) / len(each.times):.1f} s" if each.times else ""
+    rows = make_summary_rows(results)
+    for each in results.programs:
+        mean = f", {sum(each.cycle_times_s) / len(each.cycle_times_s):.1f} s" if each.cycle_times_s else ""
         rows.append((each.program, f"{each.parts} {tr('PARTS')}{mean}"))
-    rows += [(tr(each.reason), f"{each.times} ×, {duration(each.seconds)}") for each in found.stood]
+    rows += [
+        (tr(each.reason), f"{each.times} ×, {format_duration(each.seconds)}") for each in results.stop_reasons
+    ]
     return rows
 
 
-def _made(store: Store, desk: Desk, back: int) -> ShiftFigures:
+def _calculate(store: Store, desk: Desk, back: int) -> ShiftResults:
     """Calculate the results on the worker. Raises StoreError."""
     now = datetime.now().astimezone()
-    watch = desk.pages.find(PartsWatch)
+    watch = desk.page_registry.find(PartsWatch)
     assert watch is not None
     store.write(lambda _connection: None).exception()  # waits until all earlier changes are stored
-    shift = shift_of(hours_of(store.settings.read_setting(SETTING)), now, back)
-    return shift_figures(store, shift, now.timestamp(), watch.book.tools)
+    shift = find_shift(get_shift_hours(store.settings.read_setting(SHIFT_HOURS_SETTING)), now, back)
+    return calculate_shift_results(store, shift, now.timestamp(), watch.parts_book.tool_kind)
 
 
-def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
-    return (*(Place(stick.label, stick.path) for stick in plugged), Place(tr("THIS CONTROL"), folder))
+def _places(folder: Path, plugged: Sequence[UsbStick]) -> tuple[BackupPlace, ...]:
+    return (
+        *(BackupPlace(stick.label, stick.path) for stick in plugged),
+        BackupPlace(tr("THIS CONTROL"), folder),
+    )
 
 
-def _write(found: ShiftFigures, machine: str, folder: Path, *, metric: bool) -> str:
+def _write(results: ShiftResults, machine: str, folder: Path, *, metric: bool) -> str:
     """Write the report atomically on the worker and return its file name. Raises FileError."""
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
-    name = f"shift-{datetime.fromtimestamp(found.shift.start).strftime('%Y-%m-%d-%H%M')}.html"
+    name = f"shift-{datetime.fromtimestamp(results.shift.start_s).strftime('%Y-%m-%d-%H%M')}.html"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(
+        raise FileOperationError(
             Message("{target} CANNOT BE WRITTEN: {cause}", target=folder, cause=error.strerror)
         ) from error
-    write_out(
-        folder / name, shift_html(found, machine, made, metric=metric).encode("utf-8", "backslashreplace")
+    copy_to_medium(
+        folder / name,
+        make_shift_html(results, machine, made, metric=metric).encode("utf-8", "backslashreplace"),
     )
-    settle(folder)
+    flush_folder(folder)
     return name

@@ -6,68 +6,87 @@ from collections.abc import Iterator
 from datetime import datetime
 from html import escape
 
-from app.desk.status.formats import duration, fixed, local_time
-from app.desk.translation import spoken, tr
-from app.extras.quality.parts_data import feature_of
-from app.extras.quality.shift_figures import ProgramFigures, ShiftFigures, stamp
-from app.offsets.offset_values import signed
-from app.production.tool_life_watch import life_of
-from app.report.html_tables import PAGE_END, figure, page_head, pairs, table, verdict
+from app.desk.status.formats import format_duration, format_fixed, format_local_time
+from app.desk.translation import get_language, tr
+from app.extras.quality.parts_data import make_feature
+from app.extras.quality.shift_results import ProgramResults, ShiftResults, parse_store_time
+from app.offsets.offset_values import format_signed
+from app.production.tool_life_watch import make_tool_life
+from app.report.html_tables import (
+    HTML_END,
+    make_drawing_block,
+    make_page_head,
+    make_pair_table,
+    make_result_line,
+    make_table,
+)
 from core.message import Message
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
+from core.store.store_rows import OffsetChange, OffsetKind, SecondaryRow, ToolRow
 
 _WIDE, _HIGH = 900, 64  # size of the time line
 _MOST = 500  # maximum number of table rows
 _MM_PER_INCH = 25.4
-_LETTER = {Kind.TOOL: "T", Kind.SECONDARY: "D", Kind.ZERO: "G", Kind.SHAPE: "T", Kind.MILL_TOOL: "T"}
+_LETTER = {
+    OffsetKind.TOOL: "T",
+    OffsetKind.SECONDARY: "D",
+    OffsetKind.ZERO: "G",
+    OffsetKind.SHAPE: "T",
+    OffsetKind.MILL_TOOL: "T",
+}
 
 
-def title_of(found: ShiftFigures, machine: str) -> str:
+def make_title(results: ShiftResults, machine: str) -> str:
     """Return the title with start and end in local time."""
-    first, last = (datetime.fromtimestamp(each).strftime("%Y-%m-%d %H:%M") for each in found.shift)
+    first, last = (datetime.fromtimestamp(each).strftime("%Y-%m-%d %H:%M") for each in results.shift)
     of = f"{machine}: " if machine else ""
     return of + tr(Message("shift from {first} to {last}", first=first, last=last))
 
 
-def shift_html(found: ShiftFigures, machine: str, made: str, *, metric: bool) -> str:
+def make_shift_html(results: ShiftResults, machine: str, created_at: str, *, metric: bool) -> str:
     """Return the HTML page of the shift report.
 
     Lengths are in mm if ``metric`` is set and otherwise in inches, with X of tools as a diameter.
     """
     body = "".join(
-        f"<h2>{escape(head)}</h2>{text}" if head else text for head, text in _sections(found, metric=metric)
+        f"<h2>{escape(head)}</h2>{text}" if head else text for head, text in _sections(results, metric=metric)
     )
-    return page_head(title_of(found, machine), made, spoken()) + body + PAGE_END
+    return make_page_head(make_title(results, machine), created_at, get_language()) + body + HTML_END
 
 
-def facts(found: ShiftFigures) -> list[tuple[str, str]]:
+def make_summary_rows(results: ShiftResults) -> list[tuple[str, str]]:
     """Return the main results: parts, availability, stops, alarms and readings."""
-    rows = [(tr("Parts"), str(found.parts))]
-    share = found.availability
+    rows = [(tr("Parts"), str(results.part_count))]
+    share = results.availability
     if share is not None:
         words = tr(
             Message(
                 "{share} %: in cycle for {run} of {planned}",
-                share=fixed(100.0 * share.share, 1),
-                run=duration(share.producing),
-                planned=duration(share.planned),
+                share=format_fixed(100.0 * share.producing_share, 1),
+                run=format_duration(share.producing_s),
+                planned=format_duration(share.planned_s),
             )
         )
         rows += [
             (tr("Availability"), words),
-            (tr("Stops"), f"{len(found.stops)}, {duration(found.stopped)}"),
-            (tr("Not recorded"), duration(found.untold)),
+            (tr("Stops"), f"{len(results.stops)}, {format_duration(results.stopped_s)}"),
+            (tr("Not recorded"), format_duration(results.unrecorded_s)),
         ]
-    rows.append((tr("Alarms and E-stops"), str(len(found.alarms))))
-    words = tr(Message("{bad} of {count} readings", bad=len(found.bad), count=found.measured))
+    rows.append((tr("Alarms and E-stops"), str(len(results.alarms))))
+    words = tr(
+        Message("{bad} of {count} readings", bad=len(results.bad_readings), count=results.reading_count)
+    )
     rows.append((tr("Out of tolerance"), words))
     return rows
 
 
-def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]:
-    yield "", "".join(verdict("doubt", note) for note in found.notes)
-    yield "", pairs(facts(found)) + figure(_time_line(found), tr("green: cycles; amber: stops; red: alarms"))
+def _sections(found: ShiftResults, *, metric: bool) -> Iterator[tuple[str, str]]:
+    yield "", "".join(make_result_line("doubt", note) for note in found.notes)
+    yield (
+        "",
+        make_pair_table(make_summary_rows(found))
+        + make_drawing_block(_time_line(found), tr("green: cycles; amber: stops; red: alarms")),
+    )
     yield (
         tr("Parts by program"),
         _table(
@@ -87,8 +106,13 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
         _table(
             (tr("REASON"), tr("OCCURRENCES"), tr("TIME"), tr("SHARE")),
             [
-                (tr(r.reason), str(r.times), duration(r.seconds), f"{fixed(100 * r.share, 0)} %")
-                for r in found.stood
+                (
+                    tr(r.reason),
+                    str(r.times),
+                    format_duration(r.seconds),
+                    f"{format_fixed(100 * r.share, 0)} %",
+                )
+                for r in found.stop_reasons
             ],
         ),
     )
@@ -97,7 +121,13 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
         _table(
             (tr("START TIME"), tr("TIME"), tr("REASON"), tr("PROGRAM"), tr("LINE")),
             [
-                (local_time(r.at), duration(r.seconds), tr(r.reason), r.program, str(r.line or ""))
+                (
+                    format_local_time(r.at),
+                    format_duration(r.seconds),
+                    tr(r.reason),
+                    r.program,
+                    str(r.line or ""),
+                )
                 for r in found.stops
             ],
         ),
@@ -106,7 +136,7 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
         tr("Alarms and E-stops"),
         _table(
             (tr("TIME"), tr("DESCRIPTION"), tr("LINE")),
-            [(local_time(row.at), row.text, str(row.line or "")) for row in found.alarms],
+            [(format_local_time(row.at), row.text, str(row.line or "")) for row in found.alarms],
         ),
     )
     yield tr("Tool life used so far"), _lives(found)
@@ -114,14 +144,14 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
         tr("Offsets changed"),
         _table(
             (tr("TIME"), tr("OFFSET"), tr("BEFORE"), tr("AFTER"), tr("REASON"), tr("WHO")),
-            [_change(each, metric=metric) for each in found.offsets],
+            [_change(each, metric=metric) for each in found.offset_changes],
         ),
     )
     yield (
         tr("Out of tolerance"),
         _table(
             (tr("TIME"), tr("PROGRAM"), tr("PART"), tr("FEATURE"), tr("SIZE"), tr("LIMITS")),
-            [_reading(*each, metric=metric) for each in found.bad],
+            [_reading(*each, metric=metric) for each in found.bad_readings],
         ),
     )
 
@@ -130,45 +160,49 @@ def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     if not rows:
         return f"<p>{escape(tr('none'))}</p>"
     more = tr(Message("and {count} more", count=len(rows) - _MOST)) if len(rows) > _MOST else ""
-    return table(heads, [tuple(map(escape, row)) for row in rows[:_MOST]]) + (f"<p>{escape(more)}</p>")
+    return make_table(heads, [tuple(map(escape, row)) for row in rows[:_MOST]]) + (f"<p>{escape(more)}</p>")
 
 
-def _program(row: ProgramFigures) -> tuple[str, ...]:
-    none = ", ".join(f"{count} × {tr(how)}" for how, count in row.others)
-    if not row.times:
+def _program(row: ProgramResults) -> tuple[str, ...]:
+    none = ", ".join(f"{count} × {tr(how)}" for how, count in row.incomplete_cycles)
+    if not row.cycle_times_s:
         return row.program, str(row.parts), none, "", "", ""
-    times = (min(row.times), sum(row.times) / len(row.times), max(row.times))
-    return (row.program, str(row.parts), none, *(f"{fixed(each, 1)} s" for each in times))
+    times = (min(row.cycle_times_s), sum(row.cycle_times_s) / len(row.cycle_times_s), max(row.cycle_times_s))
+    return (row.program, str(row.parts), none, *(f"{format_fixed(each, 1)} s" for each in times))
 
 
-def _lives(found: ShiftFigures) -> str:
+def _lives(found: ShiftResults) -> str:
     now = _table(
         (tr("TOOL"), tr("USED"), tr("LIFE USED")),
         [
-            (f"T{row.number}", life_of(row).words, f"{fixed(100 * life_of(row).share, 0)} %")
-            for row in found.lives
+            (
+                f"T{row.number}",
+                make_tool_life(row).words,
+                f"{format_fixed(100 * make_tool_life(row).share, 0)} %",
+            )
+            for row in found.tool_lives
         ],
     )
     changed = _table(
         (tr("TIME"), tr("TOOL"), tr("USAGE"), tr("REASON")),
         [
             (
-                local_time(r.at),
+                format_local_time(r.at),
                 f"T{r.number}",
-                tr(Message("{parts} parts, {time}", parts=r.parts, time=duration(r.seconds))),
+                tr(Message("{parts} parts, {time}", parts=r.parts, time=format_duration(r.seconds))),
                 r.why,
             )
-            for r in found.inserts
+            for r in found.insert_changes
         ],
     )
     return f"{now}<h3>{escape(tr('Inserts changed in this shift'))}</h3>{changed}"
 
 
-def _change(row: Change, *, metric: bool) -> tuple[str, ...]:
+def _change(row: OffsetChange, *, metric: bool) -> tuple[str, ...]:
     name = f"{_LETTER.get(row.kind, row.kind.value)}{row.number}"
-    name = f"{name}, {tr('SHAPE')}" if row.kind is Kind.SHAPE else name
+    name = f"{name}, {tr('SHAPE')}" if row.kind is OffsetKind.SHAPE else name
     sides = tuple(_side(each, metric=metric) for each in (row.old, row.new))
-    return (local_time(row.at), name, *sides, row.why, row.who)
+    return (format_local_time(row.at), name, *sides, row.why, row.who)
 
 
 def _side(row: object, *, metric: bool) -> str:
@@ -177,18 +211,21 @@ def _side(row: object, *, metric: bool) -> str:
         return tr("not set")
     if isinstance(row, ToolRow):
         own = (2 * row.x, row.z, row.nose_radius, 2 * row.wear_x, row.wear_z)
-        x, z, radius, wear_x, wear_z = (signed(each, metric) for each in own)
+        x, z, radius, wear_x, wear_z = (format_signed(each, metric) for each in own)
         return f"X {x} Z {z} R {radius}, {tr('wear')} X {wear_x} Z {wear_z}"
     if isinstance(row, SecondaryRow):
-        return f"X {signed(row.x, metric)} Z {signed(row.z, metric)} R {signed(row.r, metric)}"
+        return (
+            f"X {format_signed(row.x, metric)} Z {format_signed(row.z, metric)} R "
+            f"{format_signed(row.r, metric)}"
+        )
     return ", ".join(f"{key} {value:g}" if isinstance(value, float) else f"{key} {value}"
                      for key, value in getattr(row, "_asdict", dict)().items() if value)  # fmt: skip
 
 
 def _reading(feature: FeatureRow, row: ReadingRow, *, metric: bool) -> tuple[str, ...]:
-    low, high = feature_of(feature).limits
+    low, high = make_feature(feature).limits
     return (
-        local_time(row.at),
+        format_local_time(row.at),
         feature.program,
         str(row.part),
         feature.name,
@@ -198,12 +235,16 @@ def _reading(feature: FeatureRow, row: ReadingRow, *, metric: bool) -> tuple[str
 
 
 def _size(mm: float, *, metric: bool) -> str:
-    return Message("{unit} mm", unit=fixed(mm, 3)) if metric else f"{fixed(mm / _MM_PER_INCH, 5)} {tr('in')}"
+    return (
+        Message("{unit} mm", unit=format_fixed(mm, 3))
+        if metric
+        else f"{format_fixed(mm / _MM_PER_INCH, 5)} {tr('in')}"
+    )
 
 
-def _time_line(found: ShiftFigures) -> str:
+def _time_line(results: ShiftResults) -> str:
     """Return the time line as SVG: cycles, stops and alarms, with the hours below."""
-    start, length = found.shift.start, found.shift.end - found.shift.start
+    start, length = results.shift.start_s, results.shift.end_s - results.shift.start_s
 
     def x(moment: float) -> float:
         return _WIDE * min(1.0, max(0.0, (moment - start) / length))
@@ -212,15 +253,18 @@ def _time_line(found: ShiftFigures) -> str:
         wide = max(least, x(last) - x(first))
         return f'<rect x="{x(first):.1f}" y="{y}" width="{wide:.1f}" height="{high}" fill="{colour}"/>'
 
-    parts = [bar(start, found.until, "#e3e7eb", 6, 34)]
-    for stop in found.stops:
-        at = stamp(stop.at)
+    parts = [bar(start, results.evaluated_until_s, "#e3e7eb", 6, 34)]
+    for stop in results.stops:
+        at = parse_store_time(stop.at)
         parts.append(bar(at, at + stop.seconds, "#f0b23c", 6, 34))
-    parts += [bar(span.start, span.end, "#2e7d32", 6, 34) for span in found.running]
-    parts += [bar(stamp(row.at), stamp(row.at), "#b3261e", 2, 42, 2.0) for row in found.alarms]
+    parts += [bar(span.start_s, span.end_s, "#2e7d32", 6, 34) for span in results.cycle_spans]
+    parts += [
+        bar(parse_store_time(row.at), parse_store_time(row.at), "#b3261e", 2, 42, 2.0)
+        for row in results.alarms
+    ]
     hours = max(1, round(length / 3600 / 12))
     moment = start
-    while moment <= found.shift.end:
+    while moment <= results.shift.end_s:
         text = datetime.fromtimestamp(moment).strftime("%H:%M")
         parts.append(f'<text x="{min(x(moment), _WIDE - 34):.0f}" y="58" font-size="12">{text}</text>')
         moment += hours * 3600

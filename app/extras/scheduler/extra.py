@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from app.compose.extra import Extra
+from app.compose.optional_features import OptionalFeature
 
 
-class ProofsElsewhere(Extra):
+class SchedulerExtra(OptionalFeature):
     """Optional feature with the option --scheduler of ``turndesk prove``."""
 
-    proof_workers = "app.extras.scheduler.proof_scheduler.Scheduler"
+    worker_class_name = "app.extras.scheduler.proof_scheduler.ProofScheduler"
 
 
-EXTRA = ProofsElsewhere()
+EXTRA = SchedulerExtra()

@@ -18,7 +18,7 @@ _ANSWER = 10.0  # seconds to wait for the scheduler
 _AHEAD = 256  # units that the scheduler has at once; workers can join during the proofs
 
 
-class Scheduler:
+class ProofScheduler:
     """Workers of a scheduler. Raises CommandError if the scheduler cannot be reached."""
 
     ahead = _AHEAD

@@ -6,45 +6,49 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.programs.program_loading import LoadingSteps
-    from app.extras.shapes.shapes_model import Shapes
-    from core.json_key import Output
+    from app.extras.shapes.shapes_model import ShapesModel
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
 
 
-class ShapesAndCalculators(Extra):
+class ShapesExtra(OptionalFeature):
     """Optional feature with the shapes and calculators of the editor and ``turndesk shapes``."""
 
-    commands = {
+    subcommands = {
         "shapes": Subcommand("setup", "make a program from the shapes that a file defines"),
     }
-    editor_panel = "app.extras.shapes.shapes_view.ShapesView"
+    editor_panel_class = "app.extras.shapes.shapes_view.ShapesView"
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        desk.pages.attach_later("app.extras.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        desk.page_registry.attach_lazily(
+            "app.extras.shapes.shapes_model.ShapesModel", partial(_shapes, desk, machine)
+        )
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.shapes.shapes_command import OUTPUTS
 
         return {"store verify --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
-        from app.extras.shapes.shape_form import words_of
-        from core.extras.shapes.shape_table import HELPERS_OF, SHAPES_OF
+        from app.extras.shapes.shape_form import list_translatable_texts
+        from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIALECT
 
-        tables = (*SHAPES_OF.values(), *HELPERS_OF.values())
-        return words_of(shape for table in tables for shape in table.values())
-
-
-def _shapes(desk: Desk, machine: Machine) -> Shapes:
-    from app.extras.shapes.shapes_desk import shapes_of
-
-    return shapes_of(desk, machine)
+        tables = (*SHAPES_BY_DIALECT.values(), *CALCULATORS_BY_DIALECT.values())
+        return list_translatable_texts(shape for table in tables for shape in table.values())
 
 
-EXTRA = ShapesAndCalculators()
+def _shapes(desk: Desk, machine: Machine) -> ShapesModel:
+    from app.extras.shapes.shapes_setup import make_shapes_model
+
+    return make_shapes_model(desk, machine)
+
+
+EXTRA = ShapesExtra()

@@ -8,308 +8,317 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from app.desk.arithmetic import CHARACTERS, EntryError, value_of
-from app.desk.pages.sheet import Key, edited
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
+from app.desk.pages.table_content import FunctionKey, edit_text
 from app.desk.translation import tr
-from core.extras.shapes.contour import Row, row_word
-from core.extras.shapes.lines.code_lines import plain
-from core.extras.shapes.pieces import Piece
-from core.extras.shapes.shape import Filled, Shape, filled
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, choice_text
-from core.extras.shapes.threads.thread_series import SIZES, Series
-from core.extras.shapes.threads.thread_values import class_choices, series_of
+from core.extras.shapes.contour import ContourPoint, make_point_label
+from core.extras.shapes.editor_shape import FilledShape, Shape, fill_shape
+from core.extras.shapes.lines.code_lines import format_short_number
+from core.extras.shapes.shape_fields import (
+    FieldError,
+    FieldKind,
+    FieldValue,
+    ProgramSettings,
+    ShapeField,
+    make_choice_text,
+)
+from core.extras.shapes.shape_pieces import ShapePiece
+from core.extras.shapes.threads.thread_series import THREAD_SIZES, ThreadSeries
+from core.extras.shapes.threads.thread_values import get_series, list_classes_for_side
 from core.sketch import Sketch
 
-COLUMNS = ("X", "Z", "C", "R", "A")
+POINT_COLUMNS = ("X", "Z", "C", "R", "A")
 """Of a point: diameter, Z, chamfer, radius, arc (+ by G02, − by G03)."""
 _PARTS = ("x", "z", "chamfer", "radius", "arc")
 _NAMES = frozenset("0123456789./#-MX")  # characters for the names of sizes
 _LONGEST = 24
 
 
-class Cell(NamedTuple):
+class FormCell(NamedTuple):
     """Field for display: label, value, whether it was typed, and its error."""
 
-    word: str
+    field_word: str
     label: str
-    figure: str
-    typed: bool
-    trouble: str
-    choice: bool
+    value_text: str
+    is_typed: bool
+    error_text: str
+    is_choice: bool
 
 
 @dataclass(slots=True)
 class ShapeForm:
     """Form of a shape. ``typed`` contains texts by field, and ``rows`` texts by column of each point.
 
-    ``marked`` is the index of the selected field or, after the fields, of the selected point. ``instead`` is
-    the piece of the text from which the form was opened.
+    ``selected_row`` is the index of the selected field or, after the fields, of the selected point.
+    ``replaced_piece`` is the piece of the text from which the form was opened.
     """
 
     shape: Shape
-    setting: Setting
-    instead: Piece | None = None
-    typed: dict[str, str] = field(default_factory=dict)
-    rows: list[dict[str, str]] = field(default_factory=list)
-    marked: int = 0
-    column: int = 0
-    afresh: bool = True  # the next character replaces the entry
-    one: Filled = field(init=False)
-    troubles: dict[str, str] = field(default_factory=dict)
+    settings: ProgramSettings
+    replaced_piece: ShapePiece | None = None
+    entered_texts: dict[str, str] = field(default_factory=dict)
+    point_texts: list[dict[str, str]] = field(default_factory=list)
+    selected_row: int = 0
+    selected_column: int = 0
+    replaces_text: bool = True  # the next character replaces the entry
+    filled_shape: FilledShape = field(init=False)
+    errors: dict[str, str] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
-    worked: int = 0  # number of calculations
-    words: tuple[str, ...] = ()  # remarks about the lines
+    calculation_count: int = 0  # number of calculations
+    remarks: tuple[str, ...] = ()  # remarks about the lines
 
     def __post_init__(self) -> None:
-        if self.instead is not None:
-            self._take(self.instead.filled)
+        if self.replaced_piece is not None:
+            self._enter_values(self.replaced_piece.filled_shape)
         elif self.shape.contour:
-            self.rows = [{"X": "0", "Z": "0"}]
-        self.work()
-        self.marked = self._first()
+            self.point_texts = [{"X": "0", "Z": "0"}]
+        self.calculate()
+        self.selected_row = self._first()
 
-    def use_setting(self, setting: Setting) -> None:
+    def use_settings(self, settings: ProgramSettings) -> None:
         """Calculate again with other tool data."""
-        self.setting = setting
-        self.work()
+        self.settings = settings
+        self.calculate()
 
-    def _take(self, one: Filled) -> None:
+    def _enter_values(self, filled_shape: FilledShape) -> None:
         """Enter all values of a piece of the text as typed entries."""
-        for word, value in one.values.items():
-            self.typed[word] = value if isinstance(value, str) else plain(value, 6)
-        for row in one.rows:
-            said = {c: getattr(row, p) for c, p in zip(COLUMNS, _PARTS, strict=True)}
+        for word, value in filled_shape.values.items():
+            self.entered_texts[word] = value if isinstance(value, str) else format_short_number(value, 6)
+        for row in filled_shape.contour_points:
+            said = {c: getattr(row, p) for c, p in zip(POINT_COLUMNS, _PARTS, strict=True)}
             keep = {c: v for c, v in said.items() if v is not None and (v or c in "XZ")}
-            self.rows.append({c: plain(v, 6) for c, v in keep.items()})
+            self.point_texts.append({c: format_short_number(v, 6) for c, v in keep.items()})
 
     def _first(self) -> int:
         """Return the first field without a proposed value, or else the second point of a contour."""
         for place, each in enumerate(self.fields):
-            if self.one.values.get(each.word) is None:
+            if self.filled_shape.values.get(each.word) is None:
                 return place
         return len(self.fields) + 1 if self.shape.contour else 0
 
     # --- calculation ---------------------------------------------------------------------------------
 
-    def work(self) -> None:
+    def calculate(self) -> None:
         """Calculate everything from the entries."""
-        self.worked += 1
-        self.troubles = {}
-        values = {word: value for word in self.typed if (value := self._value(word)) is not None}
-        rows = tuple(self._row(number) for number in range(len(self.rows)))
+        self.calculation_count += 1
+        self.errors = {}
+        values = {word: value for word in self.entered_texts if (value := self._value(word)) is not None}
+        rows = tuple(self._row(number) for number in range(len(self.point_texts)))
         while rows and rows[-1].empty:
             rows = rows[:-1]
-        self.one = filled(self.shape, values, self.setting, rows)
-        if not self.troubles:
+        self.filled_shape = fill_shape(self.shape, values, self.settings, rows)
+        if not self.errors:
             for refused in self._refusals():
-                self.troubles.setdefault(refused.word, refused.text)
-        self.lines = [] if self.troubles else self.one.lines(self.setting)
-        self.words = () if self.troubles else self.shape.says(self.one, self.setting)
+                self.errors.setdefault(refused.field_word, refused.text)
+        self.lines = [] if self.errors else self.filled_shape.make_lines(self.settings)
+        self.remarks = () if self.errors else self.shape.says(self.filled_shape, self.settings)
 
-    def _refusals(self) -> list[Refusal]:
+    def _refusals(self) -> list[FieldError]:
         try:
-            return self.one.refusals(self.setting)
+            return self.filled_shape.find_errors(self.settings)
         except ArithmeticError:
-            word = self.fields[min(self.marked, len(self.fields) - 1)].word
+            word = self.fields[min(self.selected_row, len(self.fields) - 1)].word
             return [
-                Refusal(
+                FieldError(
                     word, "These values do not make a valid shape: check the last value that you entered."
                 )
             ]
 
-    def _value(self, word: str) -> Value | None:
-        known, said = self.shape.field(word), self.typed[word]
+    def _value(self, word: str) -> FieldValue | None:
+        known, said = self.shape.find_field(word), self.entered_texts[word]
         if known is None or not said:
             return None
-        if known.kind in {Kind.CHOICE, Kind.NAME}:
+        if known.kind in {FieldKind.CHOICE, FieldKind.NAME}:
             return said
         return self._number(word, said)
 
     def _number(self, word: str, said: str) -> float | None:
         try:
-            return value_of(said)
+            return evaluate_expression(said)
         except EntryError as error:
-            self.troubles[word] = str(error)
+            self.errors[word] = str(error)
             return None
 
-    def _row(self, number: int) -> Row:
-        said = self.rows[number]
-        word = row_word(number + 1)
-        found = {c: self._number(word, said[c]) for c in COLUMNS if said.get(c)}
-        return Row(found.get("X"), found.get("Z"), *(found.get(c) or 0.0 for c in ("C", "R", "A")))
+    def _row(self, number: int) -> ContourPoint:
+        said = self.point_texts[number]
+        word = make_point_label(number + 1)
+        found = {c: self._number(word, said[c]) for c in POINT_COLUMNS if said.get(c)}
+        return ContourPoint(found.get("X"), found.get("Z"), *(found.get(c) or 0.0 for c in ("C", "R", "A")))
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def fields(self) -> tuple[Field, ...]:
+    def fields(self) -> tuple[ShapeField, ...]:
         """Fields that apply to the present choices."""
-        return self.one.fields if hasattr(self, "one") else self.shape.fields
+        return self.filled_shape.fields if hasattr(self, "filled_shape") else self.shape.fields
 
     @property
-    def count(self) -> int:
+    def row_count(self) -> int:
         """Number of fields and points, including an empty point at the end."""
-        return len(self.fields) + (len(self.rows) + 1 if self.shape.contour else 0)
+        return len(self.fields) + (len(self.point_texts) + 1 if self.shape.contour else 0)
 
     @property
-    def field(self) -> Field | None:
+    def selected_field(self) -> ShapeField | None:
         """Selected field, or None if a point is selected."""
-        return self.fields[self.marked] if self.marked < len(self.fields) else None
+        return self.fields[self.selected_row] if self.selected_row < len(self.fields) else None
 
     @property
-    def point(self) -> int:
+    def selected_point(self) -> int:
         """Index of the selected point from 0, or -1 if a field is selected."""
-        return self.marked - len(self.fields) if self.marked >= len(self.fields) else -1
+        return self.selected_row - len(self.fields) if self.selected_row >= len(self.fields) else -1
 
     @property
-    def word(self) -> str:
+    def selected_word(self) -> str:
         """Word of the selected field or point."""
-        here = self.field
-        return here.word if here is not None else row_word(self.point + 1)
+        here = self.selected_field
+        return here.word if here is not None else make_point_label(self.selected_point + 1)
 
-    def cells(self) -> list[Cell]:
+    def make_cells(self) -> list[FormCell]:
         """Return all fields for display."""
         return [
-            Cell(
+            FormCell(
                 each.word,
                 each.label,
-                self.shown(each),
-                each.word in self.typed,
-                self.troubles.get(each.word, ""),
-                bool(self.choices(each)),
+                self.get_display_text(each),
+                each.word in self.entered_texts,
+                self.errors.get(each.word, ""),
+                bool(self.list_choices(each)),
             )
             for each in self.fields
         ]
 
-    def figure(self, each: Field) -> str:
+    def get_value_text(self, field: ShapeField) -> str:
         """Return the text of a field: the entry, or else the proposed value."""
-        if each.word in self.typed:
-            return self.typed[each.word]
-        value = self.one.values.get(each.word)
+        if field.word in self.entered_texts:
+            return self.entered_texts[field.word]
+        value = self.filled_shape.values.get(field.word)
         if value is None:
             return ""
-        return value if isinstance(value, str) else plain(value, 6)
+        return value if isinstance(value, str) else format_short_number(value, 6)
 
-    def shown(self, each: Field) -> str:
+    def get_display_text(self, field: ShapeField) -> str:
         """Return the text of a field for the operator, with translated choices."""
-        said = self.figure(each)
-        return shown_choice(each, said) if self.is_word(each, said) else said
+        said = self.get_value_text(field)
+        return translate_choice(field, said) if self.is_translatable(field, said) else said
 
-    def is_word(self, each: Field, choice: str) -> bool:
+    def is_translatable(self, field: ShapeField, choice: str) -> bool:
         """Return whether a choice is a translatable word instead of a name or a size."""
-        return choice in each.choices
+        return choice in field.choices
 
-    def dimension(self, word: str) -> str:
+    def get_dimension_text(self, word: str) -> str:
         """Return the value of a dimension of the drawing, or an empty string."""
         if word.startswith("#"):
             number = int(word[1:]) - 1
-            return word if number < len(self.rows) else ""
-        known = self.shape.field(word)
-        return self.shown(known) if known is not None and known in self.fields else ""
+            return word if number < len(self.point_texts) else ""
+        known = self.shape.find_field(word)
+        return self.get_display_text(known) if known is not None and known in self.fields else ""
 
-    def choices(self, each: Field) -> tuple[str, ...]:
+    def list_choices(self, field: ShapeField) -> tuple[str, ...]:
         """Return the choices of a field, or an empty tuple if the field is typed."""
-        if each.word == "CLASS":
-            return class_choices(self.one.values)
-        if each.word == "SIZE":
-            return tuple(size.name for size in SIZES.get(series_of(self.one.values), ()))
-        return each.choices
+        if field.word == "CLASS":
+            return list_classes_for_side(self.filled_shape.values)
+        if field.word == "SIZE":
+            return tuple(size.name for size in THREAD_SIZES.get(get_series(self.filled_shape.values), ()))
+        return field.choices
 
     @property
-    def trouble(self) -> str:
+    def current_error(self) -> str:
         """Error of the selected field or point, or else the first error."""
-        return self.troubles.get(self.word) or next(iter(self.troubles.values()), "")
+        return self.errors.get(self.selected_word) or next(iter(self.errors.values()), "")
 
     @property
-    def sketch(self) -> Sketch:
+    def current_sketch(self) -> Sketch:
         """Drawing whose dimensions are the fields."""
-        return self.shape.sketch(self.one)
+        return self.shape.sketch(self.filled_shape)
 
     @property
-    def waits(self) -> bool:
+    def is_calculating(self) -> bool:
         """Whether the lines are still being calculated."""
         return False
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def touch_at(self, point: tuple[float, float]) -> None:
+    def handle_touch(self, point: tuple[float, float]) -> None:
         """Handle a touch on the drawing outside its dimensions."""
 
-    def go(self, place: int, column: int = 0) -> None:
+    def select_row(self, row: int, column: int = 0) -> None:
         """Select a field or point by index."""
-        self.marked = max(0, min(place, self.count - 1))
-        self.column, self.afresh = column, True
+        self.selected_row = max(0, min(row, self.row_count - 1))
+        self.selected_column, self.replaces_text = column, True
 
-    def go_to(self, word: str) -> None:
+    def select_word(self, word: str) -> None:
         """Select the field or point of a word."""
         if word.startswith("#"):
-            self.go(len(self.fields) + int(word[1:]) - 1)
+            self.select_row(len(self.fields) + int(word[1:]) - 1)
             return
         for place, each in enumerate(self.fields):
             if each.word == word:
-                self.go(place)
+                self.select_row(place)
 
-    def takes(self, key: str) -> bool:
+    def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of an entry at the selection."""
         if len(key) != 1:
             return False
-        here = self.field
+        here = self.selected_field
         if here is None:
-            return key in CHARACTERS or key.upper() in COLUMNS
-        if here.kind is Kind.NAME:
+            return key in EXPRESSION_CHARACTERS or key.upper() in POINT_COLUMNS
+        if here.kind is FieldKind.NAME:
             return key.upper() in _NAMES
-        if here.kind is Kind.CHOICE:
-            return any(self._begins(here, each, key) for each in self.choices(here))
-        return key in CHARACTERS
+        if here.kind is FieldKind.CHOICE:
+            return any(self._begins(here, each, key) for each in self.list_choices(here))
+        return key in EXPRESSION_CHARACTERS
 
-    def typed_key(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key. Return False if it has no function here."""
         moves = {"Up": -1, "Down": 1, "Enter": 1, "Page up": -8, "Page down": 8}
         if key in moves:
-            self.go(self.marked + moves[key])
+            self.select_row(self.selected_row + moves[key])
         elif key in {"Left", "Right", "Tab"}:
             self._sideways(-1 if key == "Left" else 1)
-        elif self.takes(key) or key in {"Back", "Delete"}:
+        elif self.accepts_key(key) or key in {"Back", "Delete"}:
             self._write(key)
         else:
             return False
         return True
 
     def _sideways(self, by: int) -> None:
-        here = self.field
+        here = self.selected_field
         if here is None:
-            self.column, self.afresh = (self.column + by) % len(COLUMNS), True
-        elif choices := self.choices(here):
-            now = self.figure(here)
+            self.selected_column, self.replaces_text = (self.selected_column + by) % len(POINT_COLUMNS), True
+        elif choices := self.list_choices(here):
+            now = self.get_value_text(here)
             place = choices.index(now) + by if now in choices else 0
             self._set(here.word, choices[place % len(choices)])
         else:
-            self.go(self.marked + by)
+            self.select_row(self.selected_row + by)
 
     def _write(self, key: str) -> None:
-        here = self.field
+        here = self.selected_field
         if here is None:
             self._write_point(key)
-        elif here.kind is Kind.CHOICE:
+        elif here.kind is FieldKind.CHOICE:
             self._pick(here, key)
         else:
-            before = "" if self.afresh and key != "Back" else self.figure(here)
-            self._set(here.word, edited(before, key.upper() if here.kind is Kind.NAME else key, _LONGEST))
-            self.afresh = False
+            before = "" if self.replaces_text and key != "Back" else self.get_value_text(here)
+            self._set(
+                here.word, edit_text(before, key.upper() if here.kind is FieldKind.NAME else key, _LONGEST)
+            )
+            self.replaces_text = False
 
-    def _pick(self, here: Field, key: str) -> None:
+    def _pick(self, here: ShapeField, key: str) -> None:
         """Select the next choice that begins with a letter. Delete restores the proposed choice."""
-        choices, now = self.choices(here), self.figure(here)
+        choices, now = self.list_choices(here), self.get_value_text(here)
         if key in {"Back", "Delete"}:
-            self.typed.pop(here.word, None)
-            self.work()
+            self.entered_texts.pop(here.word, None)
+            self.calculate()
             return
         start = choices.index(now) + 1 if now in choices else 0
         order = (*choices[start:], *choices[:start])
         self._set(here.word, next(each for each in order if self._begins(here, each, key)))
 
-    def _begins(self, here: Field, choice: str, key: str) -> bool:
+    def _begins(self, here: ShapeField, choice: str, key: str) -> bool:
         """Return whether the displayed text of a choice begins with a letter."""
-        said = shown_choice(here, choice) if self.is_word(here, choice) else choice
+        said = translate_choice(here, choice) if self.is_translatable(here, choice) else choice
         return said.upper().startswith(key.upper())
 
     def _write_point(self, key: str) -> None:
@@ -318,53 +327,55 @@ class ShapeForm:
         A letter selects its column, and digits edit the value. The empty point at the end becomes a new
         point.
         """
-        if key.upper() in COLUMNS:
-            self.column, self.afresh = COLUMNS.index(key.upper()), True
+        if key.upper() in POINT_COLUMNS:
+            self.selected_column, self.replaces_text = POINT_COLUMNS.index(key.upper()), True
             return
-        while len(self.rows) <= self.point:
-            self.rows.append({})
-        row, column = self.rows[self.point], COLUMNS[self.column]
-        before = "" if self.afresh and key != "Back" else row.get(column, "")
-        row[column] = edited(before, key, _LONGEST)
+        while len(self.point_texts) <= self.selected_point:
+            self.point_texts.append({})
+        row, column = self.point_texts[self.selected_point], POINT_COLUMNS[self.selected_column]
+        before = "" if self.replaces_text and key != "Back" else row.get(column, "")
+        row[column] = edit_text(before, key, _LONGEST)
         if not row[column]:
             del row[column]
-        self.afresh = False
-        self._work_at(self.point)
+        self.replaces_text = False
+        self._calculate_at_point(self.selected_point)
 
-    def _work_at(self, point: int) -> None:
+    def _calculate_at_point(self, point: int) -> None:
         """Calculate again and keep the selection on a point, because the fields depend on the points."""
-        self.work()
-        self.marked = len(self.fields) + point
+        self.calculate()
+        self.selected_row = len(self.fields) + point
 
     def _set(self, word: str, said: str) -> None:
         if said:
-            self.typed[word] = said
+            self.entered_texts[word] = said
         else:
-            self.typed.pop(word, None)
-        self.work()
-        self.marked = next((n for n, each in enumerate(self.fields) if each.word == word), self.marked)
+            self.entered_texts.pop(word, None)
+        self.calculate()
+        self.selected_row = next(
+            (n for n, each in enumerate(self.fields) if each.word == word), self.selected_row
+        )
 
     def insert_point(self) -> None:
         """Insert an empty point before the selected point."""
-        if self.point >= 0:
-            self.rows.insert(self.point, {})
-            self._work_at(self.point)
+        if self.selected_point >= 0:
+            self.point_texts.insert(self.selected_point, {})
+            self._calculate_at_point(self.selected_point)
 
-    def drop_point(self) -> None:
+    def delete_point(self) -> None:
         """Delete the selected point."""
-        if 0 <= self.point < len(self.rows):
-            del self.rows[self.point]
-            self._work_at(self.point)
+        if 0 <= self.selected_point < len(self.point_texts):
+            del self.point_texts[self.selected_point]
+            self._calculate_at_point(self.selected_point)
 
 
-def shown_choice(each: Field, choice: str) -> str:
+def translate_choice(field: ShapeField, choice: str) -> str:
     """Return the translated text of a choice, or the choice itself without a translation."""
-    known = choice_text(each, choice)
+    known = make_choice_text(field, choice)
     said = tr(known)
     return choice if said == known else said
 
 
-Show = Callable[[ShapeForm], str | None]
+ShowForm = Callable[[ShapeForm], str | None]
 """Shows what a form has worked out, and returns the whole text; None when the form is no longer open."""
 
 
@@ -375,21 +386,23 @@ class AddedForm(ABC):
     shape: Shape
 
     @abstractmethod
-    def open_form(self, setting: Setting, before: tuple[str, ...], wanted: Path | None) -> ShapeForm:
+    def open_form(
+        self, settings: ProgramSettings, preceding_lines: tuple[str, ...], requested_file: Path | None
+    ) -> ShapeForm:
         """Return a new form.
 
-        ``before`` contains the preceding lines, ``wanted`` is the file to open.
+        ``preceding_lines`` contains the preceding lines, ``requested_file`` is the file to open.
         """
 
     @abstractmethod
-    def makes_of(self, name: str) -> bool:
+    def accepts_file(self, name: str) -> bool:
         """Return whether this form makes a program from a file with this name."""
 
     @abstractmethod
-    def work(self, form: ShapeForm, show: Show, tell: Callable[[str], None]) -> None:
+    def calculate(self, form: ShapeForm, show: ShowForm, show_message: Callable[[str], None]) -> None:
         """Calculate the form on a worker.
 
-        ``tell`` is called with a reason if that is not possible.
+        ``show_message`` is called with a reason if that is not possible.
         """
 
     @abstractmethod
@@ -397,11 +410,11 @@ class AddedForm(ABC):
         """Cancel the calculation."""
 
     @abstractmethod
-    def keys(self, form: ShapeForm, show: Show) -> Mapping[int, Key]:
+    def function_keys(self, form: ShapeForm, show: ShowForm) -> Mapping[int, FunctionKey]:
         """Return the function keys that only this form has."""
 
     @abstractmethod
-    def prompt(self, form: ShapeForm) -> str:
+    def prompt_text(self, form: ShapeForm) -> str:
         """Return the text of the prompt line."""
 
     @abstractmethod
@@ -413,20 +426,20 @@ class AddedForm(ABC):
         """Stop the workers."""
 
 
-def words_of(shapes: Iterable[Shape]) -> list[str]:
+def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
     """Return the names of shapes, fields and choices for the check of translations."""
     shapes = tuple(shapes)
     fields = [field for shape in shapes for field in shape.fields]
     labels = {field.label for field in fields if len(field.label) > 1}
-    choices = {choice_text(field, choice) for field in fields for choice in _in_words(field)}
+    choices = {make_choice_text(field, choice) for field in fields for choice in _list_translatable(field)}
     return sorted({shape.name for shape in shapes} | labels | choices)
 
 
-def _in_words(field: Field) -> tuple[str, ...]:
+def _list_translatable(field: ShapeField) -> tuple[str, ...]:
     """Return the choices that are translatable words.
 
     Thread series and classes have international names.
     """
     if field.word == "SERIES":
-        return (Series.OWN.value,)
+        return (ThreadSeries.CUSTOM.value,)
     return () if field.word in {"CLASS", "SIZE"} else field.choices

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from app.extras.shapes.shape_form import COLUMNS, ShapeForm
-from core.extras.shapes.lines.code_lines import plain
-from core.extras.shapes.pieces import begun, setting_at, with_shape
-from core.extras.shapes.shape import Shape
-from core.extras.shapes.shape_fields import WORDS, Kind, Setting
-from core.extras.shapes.shape_table import SHAPES_OF
-from core.extras.shapes.templates import HEAD
+from app.extras.shapes.shape_form import POINT_COLUMNS, ShapeForm
+from core.extras.shapes.editor_shape import Shape
+from core.extras.shapes.lines.code_lines import format_short_number
+from core.extras.shapes.shape_fields import TEXT_KINDS, FieldKind, ProgramSettings
+from core.extras.shapes.shape_pieces import find_settings, has_units, insert_shape
+from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
+from core.extras.shapes.templates import HEAD_SHAPE
 from core.language.source import Dialect
-from core.message import Message, nearest
+from core.message import Message, find_nearest
 
 KIND, POINTS = "kind", "points"
 _KEYS = {"KIND": "edge_kind"}  # The field KIND of EDGE TURN would conflict with the key of the step.
 
-Step = Mapping[str, object]
+ShapeStep = Mapping[str, object]
 
 
 class StepError(Exception):
@@ -29,30 +29,30 @@ class StepError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class GeneratedProgram:
     """Generated program.
 
-    ``kinds`` are the kinds of the steps, and ``words`` are remarks about the lines.
+    ``step_kinds`` are the kinds of the steps, and ``remarks`` are remarks about the lines.
     """
 
     lines: tuple[str, ...]
-    kinds: tuple[str, ...]
-    words: tuple[str, ...]
+    step_kinds: tuple[str, ...]
+    remarks: tuple[str, ...]
 
 
-def kinds_of(dialect: Dialect) -> dict[str, Shape]:
+def get_shapes_by_kind(dialect: Dialect) -> dict[str, Shape]:
     """Return the shapes of a language by the kind of their step."""
-    return {shape.name.lower(): shape for shape in SHAPES_OF[dialect].values()}
+    return {shape.name.lower(): shape for shape in SHAPES_BY_DIALECT[dialect].values()}
 
 
-def keys_of(shape: Shape) -> dict[str, str]:
+def get_words_by_key(shape: Shape) -> dict[str, str]:
     """Return the words of a shape's fields by the key of the step."""
     return {_KEYS.get(each.word, each.word.lower()): each.word for each in shape.fields}
 
 
-def written(steps: Sequence[Step], new: Setting) -> Written:
+def generate_program(steps: Sequence[ShapeStep], settings: ProgramSettings) -> GeneratedProgram:
     """Return the program of the steps, as the forms write it. Raises StepError."""
-    shapes = [_shape(number, step, new.dialect) for number, step in enumerate(steps, 1)]
+    shapes = [_shape(number, step, settings.dialect) for number, step in enumerate(steps, 1)]
     mistakes = [text for number, step in enumerate(steps, 1) for text in _strange(number, step, shapes)]
     if mistakes := [*(each for each in shapes if isinstance(each, str)), *mistakes]:
         raise StepError(mistakes)
@@ -60,7 +60,7 @@ def written(steps: Sequence[Step], new: Setting) -> Written:
     at, said = 0, list[str]()
     for number, (step, shape) in enumerate(zip(steps, shapes, strict=True), 1):
         assert isinstance(shape, Shape)
-        if shape.name != HEAD.name and not begun(lines, new.dialect):
+        if shape.name != HEAD_SHAPE.name and not has_units(lines, settings.dialect):
             raise StepError(
                 [
                     Message(
@@ -70,27 +70,27 @@ def written(steps: Sequence[Step], new: Setting) -> Written:
                     )
                 ]
             )
-        form = _form(number, step, shape, setting_at(lines, at, new.shop, new))
-        lines, at = with_shape(lines, at, form.one, form.setting)
+        form = _form(number, step, shape, find_settings(lines, at, settings.shop, settings))
+        lines, at = insert_shape(lines, at, form.filled_shape, form.settings)
         said += [
             Message("step {number}, {shape}: {word}", number=number, shape=shape.name.lower(), word=word)
-            for word in form.words
+            for word in form.remarks
         ]
-    return Written(
+    return GeneratedProgram(
         tuple(lines), tuple(each.name.lower() for each in shapes if isinstance(each, Shape)), tuple(said)
     )
 
 
-def _shape(number: int, step: Step, dialect: Dialect) -> Shape | str:
+def _shape(number: int, step: ShapeStep, dialect: Dialect) -> Shape | str:
     """Return the shape of a step, or an error message about its kind."""
-    kinds = kinds_of(dialect)
+    kinds = get_shapes_by_kind(dialect)
     kind = step.get(KIND)
     if not isinstance(kind, str):
         return Message("step {number} has no kind; use one of {kinds}", number=number, kinds=", ".join(kinds))
     name = " ".join(kind.lower().replace("-", " ").replace("_", " ").split())
     if name in kinds:
         return kinds[name]
-    near = nearest(name, kinds)
+    near = find_nearest(name, kinds)
     return Message(
         "step {number}: kind {kind} does not exist; {nearest}",
         number=number,
@@ -99,17 +99,17 @@ def _shape(number: int, step: Step, dialect: Dialect) -> Shape | str:
     )
 
 
-def _strange(number: int, step: Step, shapes: Sequence[Shape | str]) -> list[str]:
+def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> list[str]:
     """Return error messages about unknown keys and invalid values of a step."""
     shape = shapes[number - 1]
     if isinstance(shape, str):
         return []
-    keys = {KIND, *keys_of(shape), *((POINTS,) if shape.contour else ())}
+    keys = {KIND, *get_words_by_key(shape), *((POINTS,) if shape.contour else ())}
     found: list[str] = []
     for key, value in step.items():
         where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
         if key not in keys:
-            near = nearest(key, keys)
+            near = find_nearest(key, keys)
             found.append(
                 Message(
                     "{place}: {key} is unknown; {nearest}",
@@ -123,17 +123,21 @@ def _strange(number: int, step: Step, shapes: Sequence[Shape | str]) -> list[str
     return found
 
 
-def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
+def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings) -> ShapeForm:
     """Return the form with the values of a step. Raises StepError if the form rejects them."""
-    form = ShapeForm(shape, setting)
+    form = ShapeForm(shape, settings)
     where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
-    for key, word in keys_of(shape).items():
+    for key, word in get_words_by_key(shape).items():
         if key in step:
-            known = shape.field(word)
+            known = shape.find_field(word)
             assert known is not None
             said = _text(step[key])
-            form.typed[word] = said.upper() if known.kind in WORDS else said
-            if known.kind is Kind.CHOICE and known.choices and form.typed[word] not in known.choices:
+            form.entered_texts[word] = said.upper() if known.kind in TEXT_KINDS else said
+            if (
+                known.kind is FieldKind.CHOICE
+                and known.choices
+                and form.entered_texts[word] not in known.choices
+            ):
                 raise StepError(
                     [
                         Message(
@@ -146,10 +150,10 @@ def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
                     ]
                 )
     if POINTS in step:
-        form.rows = _rows(where, step[POINTS])
-    form.work()
-    if form.troubles:
-        raise StepError([f"{where}: {_key(shape, word)}: {text}" for word, text in form.troubles.items()])
+        form.point_texts = _rows(where, step[POINTS])
+    form.calculate()
+    if form.errors:
+        raise StepError([f"{where}: {_key(shape, word)}: {text}" for word, text in form.errors.items()])
     return form
 
 
@@ -166,7 +170,7 @@ def _rows(where: str, points: object) -> list[dict[str, str]]:
         )
     for count, point in enumerate(points, 1):
         for key in point:
-            if key.upper() not in COLUMNS:
+            if key.upper() not in POINT_COLUMNS:
                 raise StepError(
                     [
                         Message(
@@ -174,7 +178,7 @@ def _rows(where: str, points: object) -> list[dict[str, str]]:
                             place=where,
                             count=count,
                             key=key,
-                            columns=", ".join(COLUMNS).lower(),
+                            columns=", ".join(POINT_COLUMNS).lower(),
                         )
                     ]
                 )
@@ -182,9 +186,11 @@ def _rows(where: str, points: object) -> list[dict[str, str]]:
 
 
 def _text(value: object) -> str:
-    return plain(float(value), 6) if isinstance(value, int | float) else str(value)
+    return format_short_number(float(value), 6) if isinstance(value, int | float) else str(value)
 
 
 def _key(shape: Shape, word: str) -> str:
     """Return the key of a field in a step, or ``point`` with a number."""
-    return next((key for key, own in keys_of(shape).items() if own == word), f"point {word.lstrip('#')}")
+    return next(
+        (key for key, own in get_words_by_key(shape).items() if own == word), f"point {word.lstrip('#')}"
+    )

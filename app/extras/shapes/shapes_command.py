@@ -8,18 +8,18 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.program_options import out_file
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
-from core.access.access_table import Act
-from core.json_key import Output, keys
-from core.language.source import Dialect, Source, dialect_of
+from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.program_options import parse_output_path
+from app.cli.store_command import open_store
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
+from core.access.access_table import ProtectedChange
+from core.json_keys import JsonOutput, declare_keys
+from core.language.source import Dialect, ProgramSource, guess_dialect
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.extras.shapes.shape_steps import Step, Written
+    from app.extras.shapes.shape_steps import GeneratedProgram, ShapeStep
     from core.machine.machine_model import Machine
 
 
@@ -59,7 +59,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument("--list", action="store_true", help="list the kinds of steps and their keys")
     parser.add_argument(
         "--out",
-        type=out_file,
+        type=parse_output_path,
         metavar="FILE",
         help="program file to write: .nc is OmniTurn, .mpf is SINUMERIK (default: stdout)",
     )
@@ -83,12 +83,12 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(
             "specify the file with the steps; --list shows what the file can contain", "no-file"
         )
-    who = may_write(args)
+    who = authorize_writing(args)
     made = _written(args, machine, dialect)
     text = "\n".join(made.lines) + "\n"
-    errors, cycle = _proved(args, machine, Source(_name(args, dialect), text, dialect))
+    errors, cycle = _proved(args, machine, ProgramSource(_name(args, dialect), text, dialect))
     if args.out is not None:
-        write_made(args, text, who)
+        write_program_file(args, text, who)
     _tell(args, made, text, errors, cycle)
     return EXIT_ERRORS if errors else EXIT_OK
 
@@ -98,7 +98,7 @@ def _language(out: str | None, machine: Machine) -> Dialect:
 
     Raises CommandError for Klartext.
     """
-    said = Dialect(machine.language) if out is None else dialect_of(Path(out).name)
+    said = Dialect(machine.language) if out is None else guess_dialect(Path(out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
             Message(
@@ -112,32 +112,32 @@ def _language(out: str | None, machine: Machine) -> Dialect:
 
 
 def _name(args: argparse.Namespace, dialect: Dialect) -> str:
-    from core.language.source import usual_ending
+    from core.language.source import default_extension
 
-    return Path(args.out).name if args.out is not None else f"shapes{usual_ending(dialect)}"
+    return Path(args.out).name if args.out is not None else f"shapes{default_extension(dialect)}"
 
 
-def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> Written:
-    from app.compose.stored_offsets import stored_shapes
-    from app.extras.shapes.shape_steps import StepError, written
-    from app.extras.shapes.shapes_desk import shop_of
+def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> GeneratedProgram:
+    from app.compose.stored_offsets import read_stored_shapes
+    from app.extras.shapes.shape_steps import StepError, generate_program
+    from app.extras.shapes.shapes_setup import make_shop_data
     from app.offsets.offsets_file import read_tool_shapes
-    from core.extras.shapes.shape_fields import Setting
+    from core.extras.shapes.shape_fields import ProgramSettings
 
     steps = _steps(Path(args.file))
-    shapes = stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
-    new = Setting(metric=not machine.inch, shop=shop_of(machine, shapes), dialect=dialect)
+    shapes = read_stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
+    new = ProgramSettings(metric=not machine.is_inch, shop=make_shop_data(machine, shapes), dialect=dialect)
     try:
-        return written(steps, new)
+        return generate_program(steps, new)
     except StepError as error:
         raise CommandError(f"{args.file}: {error}", "invalid-step") from error
 
 
-def _steps(path: Path) -> list[Step]:
-    from app.desk.toml_file import read_toml, refuse, unknown_key
+def _steps(path: Path) -> list[ShapeStep]:
+    from app.desk.toml_file import make_unknown_key_error, raise_mistakes, read_toml
 
     data = read_toml(path)
-    refuse(path, [unknown_key(key, ["step"]) for key in data if key != "step"])
+    raise_mistakes(path, [make_unknown_key_error(key, ["step"]) for key in data if key != "step"])
     steps = data.get("step")
     if not isinstance(steps, list) or not steps or not all(isinstance(each, dict) for each in steps):
         raise CommandError(
@@ -150,44 +150,50 @@ def _steps(path: Path) -> list[Step]:
     return steps
 
 
-def _proved(args: argparse.Namespace, machine: Machine, source: Source) -> tuple[tuple[str, ...], float]:
-    from app.compose.program_transfer import proving
-    from app.compose.stored_offsets import chosen_offsets
-    from app.compose.workshop import workshop
+def _proved(
+    args: argparse.Namespace, machine: Machine, source: ProgramSource
+) -> tuple[tuple[str, ...], float]:
+    from app.compose.program_proving import create_loading_steps
+    from app.compose.program_transfer import create_proof_check
+    from app.compose.stored_offsets import make_offsets_reader
 
-    return proving(workshop(machine, chosen_offsets(args.tools), pictures=False))(source)
+    return create_proof_check(
+        create_loading_steps(machine, make_offsets_reader(args.tools), draw_pictures=False)
+    )(source)
 
 
-def _tell(args: argparse.Namespace, made: Written, text: str, errors: tuple[str, ...], cycle: float) -> None:
+def _tell(
+    args: argparse.Namespace, made: GeneratedProgram, text: str, errors: tuple[str, ...], cycle: float
+) -> None:
     if args.json:
-        told = {"file": args.file, "out": args.out, "program": text, "steps": list(made.kinds)}
-        more = {"words": list(made.words), "errors": list(errors), "cycle_time_s": round(cycle, 3)}
+        told = {"file": args.file, "out": args.out, "program": text, "steps": list(made.step_kinds)}
+        more = {"words": list(made.remarks), "errors": list(errors), "cycle_time_s": round(cycle, 3)}
         sys.stdout.write(json.dumps({**told, **more}) + "\n")
         return
     if args.out is None:
         sys.stdout.write(text)
     else:
         sys.stdout.write(
-            f"{args.out}: {len(made.lines)} lines, steps: {len(made.kinds)}, cycle {cycle:.1f} s\n"
+            f"{args.out}: {len(made.lines)} lines, steps: {len(made.step_kinds)}, cycle {cycle:.1f} s\n"
         )
-    for line in (*made.words, *errors):
+    for line in (*made.remarks, *errors):
         sys.stderr.write(f"turndesk: {line}\n")
 
 
 def _list(dialect: Dialect, *, as_json: bool) -> int:
-    from app.extras.shapes.shape_steps import POINTS, keys_of, kinds_of
+    from app.extras.shapes.shape_steps import POINTS, get_shapes_by_kind, get_words_by_key
 
     found = {
-        kind: [*keys_of(shape), *((POINTS,) if shape.contour else ())]
-        for kind, shape in kinds_of(dialect).items()
+        kind: [*get_words_by_key(shape), *((POINTS,) if shape.contour else ())]
+        for kind, shape in get_shapes_by_kind(dialect).items()
     }
     if as_json:
         sys.stdout.write(json.dumps(found) + "\n")
         return EXIT_OK
-    for kind, shape in kinds_of(dialect).items():
+    for kind, shape in get_shapes_by_kind(dialect).items():
         sys.stdout.write(f"{kind}: {shape.use}\n")
-        for key, word in keys_of(shape).items():
-            known = shape.field(word)
+        for key, word in get_words_by_key(shape).items():
+            known = shape.find_field(word)
             choices = f": {', '.join(known.choices).lower()}" if known is not None and known.choices else ""
             label = known.label.lower() if known is not None else ""
             sys.stdout.write(f"  {key:<10} {label}{choices}\n")
@@ -199,7 +205,7 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
 # --- output ----------------
 
 
-def may_write(args: argparse.Namespace) -> str:
+def authorize_writing(args: argparse.Namespace) -> str:
     """Return the user who may write ``--out``, or an empty string without it. Raises CommandError."""
     if args.out is None:
         return ""
@@ -212,26 +218,26 @@ def may_write(args: argparse.Namespace) -> str:
         raise CommandError(
             Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
         )
-    return who_may(opened_store, args, Act.PROGRAMS)
+    return get_permitted_user(open_store, args, ProtectedChange.PROGRAMS)
 
 
-def write_made(args: argparse.Namespace, text: str, who: str) -> None:
+def write_program_file(args: argparse.Namespace, text: str, author: str) -> None:
     """Write ``--out``, which must not exist. Raises CommandError."""
-    from app.programs.whole_file import FileError, write_new
+    from app.programs.atomic_files import FileOperationError, write_new_file
 
-    with as_command_error(FileError):
-        write_new(Path(args.out), text.encode("ascii"))
-    note_change(
-        opened_store,
-        who,
+    with convert_to_command_error(FileOperationError):
+        write_new_file(Path(args.out), text.encode("ascii"))
+    log_user_change(
+        open_store,
+        author,
         Message("program {out} made from {file}", out=Path(args.out).name, file=Path(args.file).name),
     )
 
 
-SHAPES = Output(
+SHAPES_OUTPUT = JsonOutput(
     "shapes FORM.toml --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 file | string | | The file with the steps.
 out | string or null | | File of --out.
@@ -243,7 +249,9 @@ cycle_time_s | number | s | Cycle time.
 """
     ),
 )
-SHAPES_LIST = Output(
-    "shapes --list --json", "One object.", keys("* | list | | Keys that a step of this kind can have.")
+SHAPES_LIST_OUTPUT = JsonOutput(
+    "shapes --list --json",
+    "One object.",
+    declare_keys("* | list | | Keys that a step of this kind can have."),
 )
-OUTPUTS = (SHAPES, SHAPES_LIST)
+OUTPUTS = (SHAPES_OUTPUT, SHAPES_LIST_OUTPUT)

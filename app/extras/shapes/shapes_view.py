@@ -12,18 +12,25 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
-from app.desk.translation import spoken, tr
-from app.extras.shapes.shape_form import COLUMNS, Cell, ShapeForm
-from app.extras.shapes.shapes_model import Shapes, written_in
+from app.desk.translation import get_language, tr
+from app.extras.shapes.shape_form import POINT_COLUMNS, FormCell, ShapeForm
+from app.extras.shapes.shapes_model import ShapesModel, supports_shapes
 from app.screen.drawings import SketchPanel
-from app.screen.entry_panel import KeyPad, draw_entry
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, width_of
-from app.screen.page_base import EditorPanel, HeadKey, Host, Page
-from app.screen.panel import Panel, Shown
-from app.screen.sheet_panel import RowPanel
-from core.extras.shapes.contour import row_word
+from app.screen.entry_panel import NumberPad, draw_entry_text
+from app.screen.page_base import EditorPanel, HeadKey, Page, PageHost
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import (
+    ALIGN_CENTER,
+    ALIGN_LEFT,
+    ALIGN_RIGHT,
+    ScreenTheme,
+    ThemedPainter,
+    measure_text,
+)
+from app.screen.table_panel import RowPanel
+from core.extras.shapes.contour import make_point_label
 
-ROW = 5.2  # units: height of a row, at least a fingertip
+ROW_HEIGHT = 5.2  # units: height of a row, at least a fingertip
 _LABEL = 0.56  # ratio of the width
 _SHARE = 0.56  # ratio of the width for the fields
 _PAD = 26.0  # units: height of the number pad, unless touch needs more
@@ -41,122 +48,136 @@ class _Line:
     """
 
     label: str
-    figure: str = ""
+    value_text: str = ""
     tone: str = "text"
     word: str = ""
     cells: tuple[str, ...] = ()
 
 
-class RowsPanel(RowPanel):
+class ShapeRowsPanel(RowPanel):
     """List with a selected row that remains visible. A touch selects a row or a cell."""
 
-    margin = 1
-    shown: Shown[tuple[_Line, ...]] = Shown(())
-    marked = Shown(0)
-    column = Shown(0)
-    heading = Shown("")
-    typing = Shown(False)
+    row_margin = 1
+    displayed_rows: RedrawingAttribute[tuple[_Line, ...]] = RedrawingAttribute(())
+    selected_row = RedrawingAttribute(0)
+    selected_column = RedrawingAttribute(0)
+    heading = RedrawingAttribute("")
+    is_entry_open = RedrawingAttribute(False)
 
-    def __init__(self, look: Look, choose: Callable[[int, int], None], parent: QWidget) -> None:
-        super().__init__(look, parent)
-        self._choose = choose
+    def __init__(self, theme: ScreenTheme, on_select: Callable[[int, int], None], parent: QWidget) -> None:
+        super().__init__(theme, parent)
+        self._choose = on_select
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         self.frame(painter, self.heading)
-        high, room, count = self.look.row(ROW, 9.0, touch=True), self.inside(), len(self.shown)
-        room = self.scrolled(painter, room, self.fitting(room, high, count), count, self.marked)
-        for number, box in self.boxes(room, high):
-            self._row(painter, box, self.shown[number], number)
+        high, room, count = (
+            self.theme.find_row_height(ROW_HEIGHT, 9.0, is_touchable=True),
+            self.inside(),
+            len(self.displayed_rows),
+        )
+        room = self.draw_scroll_keys(
+            painter, room, self.count_fitting_rows(room, high, count), count, self.selected_row
+        )
+        for number, box in self.find_row_boxes(room, high):
+            self._row(painter, box, self.displayed_rows[number], number)
 
-    def _row(self, painter: Painter, box: QRectF, line: _Line, number: int) -> None:
-        u, marked = self.look.u, number == self.marked
+    def _row(self, painter: ThemedPainter, box: QRectF, line: _Line, number: int) -> None:
+        u, marked = self.theme.u, number == self.selected_row
         if marked:
-            painter.fill(box, "here")
-            painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
+            painter.fill_rect(box, "here")
+            painter.fill_rect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
         room = box.adjusted(1.0 * u, 0, -0.4 * u, 0)
         if line.cells:
             self._cells(painter, room, line, number, marked=marked)
         else:
             self._words(painter, room, line, marked=marked)
         # The first matching touch target is used, so the row follows its cells.
-        self.place(box, partial(self._choose, number, -1), kind="row", on=marked)
+        self.add_target(box, partial(self._choose, number, -1), kind="row", is_on=marked)
 
-    def _words(self, painter: Painter, room: QRectF, line: _Line, *, marked: bool) -> None:
+    def _words(self, painter: ThemedPainter, room: QRectF, line: _Line, *, marked: bool) -> None:
         label = QRectF(room.x(), room.y(), _LABEL * room.width(), room.height())
         self._label(painter, label, line, marked=marked)
         figure = QRectF(label.right(), room.y(), room.right() - label.right(), room.height())
-        self._figure(painter, figure, line.figure, line.tone, marked=marked and self.typing)
+        self._figure(painter, figure, line.value_text, line.tone, marked=marked and self.is_entry_open)
 
-    def _label(self, painter: Painter, box: QRectF, line: _Line, *, marked: bool) -> None:
+    def _label(self, painter: ThemedPainter, box: QRectF, line: _Line, *, marked: bool) -> None:
         """Draw the label in two lines if one line would be too small or cut off."""
         label = tr(line.label)
-        room = box.adjusted(0, 0, -0.6 * self.look.u, 0)
+        room = box.adjusted(0, 0, -0.6 * self.theme.u, 0)
         cut = label.rfind(" ", 0, 2 + len(label) // 2 + 1)
-        wide = width_of(label, self.look.font(_SMALL, bold=marked))
+        wide = measure_text(label, self.theme.make_font(_SMALL, is_bold=marked))
         parts = [label[:cut], label[cut + 1 :]] if wide > room.width() and cut > 0 else [label]
-        high = min(room.height() / len(parts), 2.6 * self.look.u) if len(parts) > 1 else room.height()
+        high = min(room.height() / len(parts), 2.6 * self.theme.u) if len(parts) > 1 else room.height()
         top = room.center().y() - high * len(parts) / 2
         for place, part in enumerate(parts):
             at = QRectF(room.x(), top + place * high, room.width(), high)
-            painter.write(at, part, 1.9, "text", at=LEFT, bold=marked, raw=True)
+            painter.draw_text_line(at, part, 1.9, "text", at=ALIGN_LEFT, bold=marked, raw=True)
 
-    def _figure(self, painter: Painter, box: QRectF, figure: str, tone: str, *, marked: bool) -> None:
-        u = self.look.u
+    def _figure(self, painter: ThemedPainter, box: QRectF, figure: str, tone: str, *, marked: bool) -> None:
+        u = self.theme.u
         if marked:
             frame = box.adjusted(0, 0.5 * u, 0, -0.5 * u)
-            painter.box(frame, "accent", 0.2, "ground")
+            painter.draw_box(frame, "accent", 0.2, "ground")
             inside = frame.adjusted(0.6 * u, 0, -0.4 * u, 0)
             shown = "" if figure == _UNSAID else figure
-            draw_entry(painter, inside, shown, size=2.2, cursor=not figure.startswith(_TURN))
+            draw_entry_text(painter, inside, shown, size=2.2, has_cursor=not figure.startswith(_TURN))
         else:
-            painter.write(box, figure, 2.1, tone, at=RIGHT, raw=True, bold=tone != "soft")
+            painter.draw_text_line(box, figure, 2.1, tone, at=ALIGN_RIGHT, raw=True, bold=tone != "soft")
 
-    def _cells(self, painter: Painter, room: QRectF, line: _Line, number: int, *, marked: bool) -> None:
+    def _cells(self, painter: ThemedPainter, area: QRectF, line: _Line, number: int, *, marked: bool) -> None:
         """Draw the number and the values of a point."""
-        u = self.look.u
-        first = QRectF(room.x(), room.y(), 2.4 * u, room.height())
-        painter.write(first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True)
-        wide = (room.width() - first.width()) / len(line.cells)
+        u = self.theme.u
+        first = QRectF(area.x(), area.y(), 2.4 * u, area.height())
+        painter.draw_text_line(
+            first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True
+        )
+        wide = (area.width() - first.width()) / len(line.cells)
         for column, figure in enumerate(line.cells):
-            box = QRectF(first.right() + column * wide, room.y(), wide, room.height())
-            here = marked and column == self.column
-            self.place(box, partial(self._choose, number, column), COLUMNS[column], kind="row", on=here)
+            box = QRectF(first.right() + column * wide, area.y(), wide, area.height())
+            here = marked and column == self.selected_column
+            self.add_target(
+                box, partial(self._choose, number, column), POINT_COLUMNS[column], kind="row", is_on=here
+            )
             inner = box.adjusted(0.2 * u, 0, -0.2 * u, 0)
             if figure or here:
-                self._figure(painter, inner, figure, line.tone, marked=here and self.typing)
+                self._figure(painter, inner, figure, line.tone, marked=here and self.is_entry_open)
             elif marked:  # the columns that can be typed
-                painter.write(inner, COLUMNS[column], 1.7, "soft", at=CENTRE, raw=True, bold=False)
+                painter.draw_text_line(
+                    inner, POINT_COLUMNS[column], 1.7, "soft", at=ALIGN_CENTER, raw=True, bold=False
+                )
 
 
-class LinesPanel(Panel):
+class ShapeLinesPanel(Panel):
     """Lines that the form writes, or its error."""
 
     title = "LINES"
-    lines: Shown[tuple[str, ...]] = Shown(())
-    trouble = Shown("")
-    words: Shown[tuple[str, ...]] = Shown(())
+    displayed_lines: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
+    error_text = RedrawingAttribute("")
+    remarks: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
 
-    _page: Shown[int] = Shown(0)  # displayed page of remarks that are longer than the panel
+    _page: RedrawingAttribute[int] = RedrawingAttribute(
+        0
+    )  # displayed page of remarks that are longer than the panel
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Show the next page of long remarks. The first page follows the last."""
         self._page += 1
         event.accept()
 
-    def draw(self, painter: Painter) -> None:
-        room, u = self.inside(), self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        room, u = self.inside(), self.theme.u
         high = 2.5 * u
-        if self.trouble:
+        if self.error_text:
             self._trouble(painter, room)
             return
-        room = self._say(painter, room)
+        room = self._draw_remarks(painter, room)
         many = int(room.height() / high)  # 0 if the remarks fill the panel
-        for place, line in enumerate(self.lines[:many]):
-            more = place == many - 1 and len(self.lines) > many
+        for place, line in enumerate(self.displayed_lines[:many]):
+            more = place == many - 1 and len(self.displayed_lines) > many
             box = QRectF(room.x(), room.y() + place * high, room.width(), high)
-            painter.write(
+            painter.draw_text_line(
                 box,
-                f"… +{len(self.lines) - place}" if more else line,
+                f"… +{len(self.displayed_lines) - place}" if more else line,
                 1.8,
                 "text",
                 raw=True,
@@ -164,39 +185,39 @@ class LinesPanel(Panel):
                 fit=False,
             )
 
-    def _say(self, painter: Painter, room: QRectF) -> QRectF:
+    def _draw_remarks(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the remarks above the lines and return the remaining area."""
-        if not self.words:
-            return room
-        painter.setFont(self.look.font(1.8, bold=True))
-        painter.setPen(self.look.colour("text"))
-        text = "\n".join(tr(each) for each in self.words)
+        if not self.remarks:
+            return area
+        painter.setFont(self.theme.make_font(1.8, is_bold=True))
+        painter.setPen(self.theme.color("text"))
+        text = "\n".join(tr(each) for each in self.remarks)
         flags = Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignTop
-        used = painter.boundingRect(room, flags, text)
-        if used.height() <= room.height():
-            painter.wrap(room, flags, text)
-            return room.adjusted(0, used.height() + self.look.u, 0, 0)
-        self._say_page(painter, room, flags, text)
-        return room.adjusted(0, room.height(), 0, 0)
+        used = painter.boundingRect(area, flags, text)
+        if used.height() <= area.height():
+            painter.draw_wrapped_text(area, flags, text)
+            return area.adjusted(0, used.height() + self.theme.u, 0, 0)
+        self._draw_remark_page(painter, area, flags, text)
+        return area.adjusted(0, area.height(), 0, 0)
 
-    def _say_page(self, painter: Painter, room: QRectF, flags: Qt.TextFlag, text: str) -> None:
+    def _draw_remark_page(self, painter: ThemedPainter, area: QRectF, flags: Qt.TextFlag, text: str) -> None:
         """Draw one page of the remarks with whole lines, and the page number below."""
         line = painter.fontMetrics().lineSpacing()
-        lines = max(1, int((room.height() - 2.0 * self.look.u) / line))
-        whole = painter.boundingRect(QRectF(0, 0, room.width(), 0), flags, text).height()
+        lines = max(1, int((area.height() - 2.0 * self.theme.u) / line))
+        whole = painter.boundingRect(QRectF(0, 0, area.width(), 0), flags, text).height()
         pages = math.ceil(whole / (lines * line))
         page = self._page % pages
         painter.save()
-        painter.setClipRect(QRectF(room.x(), room.y(), room.width(), lines * line))
-        painter.wrap(room.adjusted(0, -page * lines * line, 0, whole), flags, text)
+        painter.setClipRect(QRectF(area.x(), area.y(), area.width(), lines * line))
+        painter.draw_wrapped_text(area.adjusted(0, -page * lines * line, 0, whole), flags, text)
         painter.restore()
-        foot = QRectF(room.x(), room.bottom() - 2.0 * self.look.u, room.width(), 2.0 * self.look.u)
-        painter.write(foot, f"{page + 1}/{pages} ▸", 1.7, "accent", at=RIGHT, raw=True)
+        foot = QRectF(area.x(), area.bottom() - 2.0 * self.theme.u, area.width(), 2.0 * self.theme.u)
+        painter.draw_text_line(foot, f"{page + 1}/{pages} ▸", 1.7, "accent", at=ALIGN_RIGHT, raw=True)
 
-    def _trouble(self, painter: Painter, room: QRectF) -> None:
-        painter.setFont(self.look.font(2.0, bold=True))
-        painter.setPen(self.look.colour("alarm"))
-        painter.wrap(room, Qt.TextFlag.TextWordWrap, tr(self.trouble))
+    def _trouble(self, painter: ThemedPainter, room: QRectF) -> None:
+        painter.setFont(self.theme.make_font(2.0, is_bold=True))
+        painter.setPen(self.theme.color("alarm"))
+        painter.draw_wrapped_text(room, Qt.TextFlag.TextWordWrap, tr(self.error_text))
 
 
 class ShapesView(EditorPanel):
@@ -205,26 +226,26 @@ class ShapesView(EditorPanel):
     The number pad replaces the lines.
     """
 
-    part_name = "SHAPES"
+    accessible_name = "SHAPES"
     KEYS = ("Shapes", "Calculators")
-    model: Shapes
+    model: ShapesModel
 
-    def __init__(self, host: Host, page: Page) -> None:
-        super().__init__(host, page)
-        look, model = host.look, _shapes_of(host.desk)
-        self.look, self.model = look, model
-        self.rows = RowsPanel(look, self._choose, self)
-        self.sketch = SketchPanel(look, model.touch, model.touch_at, self)
-        self.lines = LinesPanel(look, self)
-        self.pad = KeyPad(look, page.touched, own=None, parent=self)
+    def __init__(self, host: PageHost, editor_page: Page) -> None:
+        super().__init__(host, editor_page)
+        look, model = host.theme, _find_shapes_model(host.desk)
+        self.theme, self.model = look, model
+        self.rows_panel = ShapeRowsPanel(look, self._choose, self)
+        self.sketch_panel = SketchPanel(look, model.select_touched, model.handle_touch, self)
+        self.lines_panel = ShapeLinesPanel(look, self)
+        self.number_pad = NumberPad(look, editor_page.handle_touched_key, page_key=None, parent=self)
         self._seen: tuple[object, ...] = ()
 
-    def head_keys(self, name: str) -> Sequence[HeadKey]:
+    def make_head_keys(self, name: str) -> Sequence[HeadKey]:
         """Return the keys for shapes, if the program supports them, and for calculators."""
         calculators = HeadKey(tr("CALCULATOR ⇧F4"), "Calculators")
-        return (HeadKey(tr("SHAPES ⇧F3"), "Shapes"), calculators) if written_in(name) else (calculators,)
+        return (HeadKey(tr("SHAPES ⇧F3"), "Shapes"), calculators) if supports_shapes(name) else (calculators,)
 
-    def open_at(self, key: str, name: str, text: str, line: int) -> str:
+    def open_for_text(self, key: str, name: str, text: str, line: int) -> str:
         """Open the shapes or the calculators."""
         return self.model.open(name, text, line, helpers=key == "Calculators")
 
@@ -234,73 +255,93 @@ class ShapesView(EditorPanel):
         form = model.form
         now: tuple[object, ...] = (
             form is None,
-            model.of_shapes,
-            tuple(model.listed),
-            model.marked,
-            model.number,
-            model.written,
-            model.padded,
-            spoken(),
+            model.lists_shapes,
+            tuple(model.listed_pieces),
+            model.selected_row,
+            model.text_number,
+            model.write_count,
+            model.is_pad_visible,
+            get_language(),
         )
         if form is not None:
-            now = (*now, id(form), form.marked, form.column, form.worked)
+            now = (*now, id(form), form.selected_row, form.selected_column, form.calculation_count)
         if now == self._seen:
             return
         self._seen = now
-        self.rows.typing = form is not None
+        self.rows_panel.is_entry_open = form is not None
         if form is None:
             self._show_list()
         else:
             self._show_form(form)
-        self.lines.setVisible(not model.padded)
-        self.pad.setVisible(model.padded)
-        self.sketch.setVisible(True)  # hidden later if the pad needs the space
+        self.lines_panel.setVisible(not model.is_pad_visible)
+        self.number_pad.setVisible(model.is_pad_visible)
+        self.sketch_panel.setVisible(True)  # hidden later if the pad needs the space
         self.lay_out()
 
     def _show_list(self) -> None:
         model = self.model
-        table, keys = model.table, model.keys_of_list
+        table, keys = model.shape_table, model.form_keys
         shapes = [_Line(f"{key}   {tr(table[key].name)}", "", word=key) for key in keys]
         there = [
-            _Line(each.filled.shape.name, f"{each.first + 1}", "alarm" if each.foreign >= 0 else "text")
-            for each in model.listed
+            _Line(
+                each.filled_shape.shape.name,
+                f"{each.first_line + 1}",
+                "alarm" if each.edited_line >= 0 else "text",
+            )
+            for each in model.listed_pieces
         ]
-        self.rows.heading = tr(
-            "SHAPES  ·  IN THIS PROGRAM, BY LINE" if model.of_shapes else "CALCULATORS AND TEMPLATES"
+        self.rows_panel.heading = tr(
+            "SHAPES  ·  IN THIS PROGRAM, BY LINE" if model.lists_shapes else "CALCULATORS AND TEMPLATES"
         )
-        self.rows.shown, self.rows.marked, self.rows.column = (*shapes, *there), model.marked, 0
-        place = model.marked
-        shape = table[keys[place]] if place < len(keys) else model.listed[place - len(keys)].filled.shape
-        form = ShapeForm(shape, model.new)
-        self.sketch.shown = shape.sketch(form.one), (), "", frozenset()
-        self.lines.trouble, self.lines.lines, self.lines.words = "", (), (shape.use,)
+        self.rows_panel.displayed_rows, self.rows_panel.selected_row, self.rows_panel.selected_column = (
+            (*shapes, *there),
+            model.selected_row,
+            0,
+        )
+        place = model.selected_row
+        shape = (
+            table[keys[place]]
+            if place < len(keys)
+            else model.listed_pieces[place - len(keys)].filled_shape.shape
+        )
+        form = ShapeForm(shape, model.initial_settings)
+        self.sketch_panel.displayed = shape.sketch(form.filled_shape), (), "", frozenset()
+        self.lines_panel.error_text, self.lines_panel.displayed_lines, self.lines_panel.remarks = (
+            "",
+            (),
+            (shape.use,),
+        )
 
     def _show_form(self, form: ShapeForm) -> None:
-        lines = [_line_of(cell) for cell in form.cells()]
+        lines = [_line_of(cell) for cell in form.make_cells()]
         if form.shape.contour:
-            lines += [_point(form, number) for number in range(len(form.rows) + 1)]
-        self.rows.heading = tr(form.shape.name) + (
-            "" if form.instead is None else f"  ·  {form.instead.first + 1}"
+            lines += [_point(form, number) for number in range(len(form.point_texts) + 1)]
+        self.rows_panel.heading = tr(form.shape.name) + (
+            "" if form.replaced_piece is None else f"  ·  {form.replaced_piece.first_line + 1}"
         )
-        self.rows.shown, self.rows.marked, self.rows.column = tuple(lines), form.marked, form.column
-        drawn = form.sketch
-        figures = tuple((dim.word, form.dimension(dim.word)) for dim in drawn.dims)
-        self.sketch.shown = drawn, figures, form.word, frozenset(form.troubles)
-        self.lines.trouble, self.lines.lines = form.trouble, tuple(form.lines)
-        self.lines.words = form.words
+        self.rows_panel.displayed_rows, self.rows_panel.selected_row, self.rows_panel.selected_column = (
+            tuple(lines),
+            form.selected_row,
+            form.selected_column,
+        )
+        drawn = form.current_sketch
+        figures = tuple((dim.field_word, form.get_dimension_text(dim.field_word)) for dim in drawn.dimensions)
+        self.sketch_panel.displayed = drawn, figures, form.selected_word, frozenset(form.errors)
+        self.lines_panel.error_text, self.lines_panel.displayed_lines = form.current_error, tuple(form.lines)
+        self.lines_panel.remarks = form.remarks
 
     def _choose(self, row: int, column: int) -> None:
         model = self.model
         form = model.form
         if form is None:
-            if row == model.marked:
-                model.open_marked()
+            if row == model.selected_row:
+                model.open_selected()
             else:
                 model.choose(row)
         elif row < len(form.fields):
-            model.touch(form.fields[row].word)
+            model.select_touched(form.fields[row].word)
         else:
-            model.touch_cell(row - len(form.fields), max(0, column))
+            model.select_touched_cell(row - len(form.fields), max(0, column))
 
     def sizeHint(self) -> QSize:
         """Return an empty size, because the page determines the size."""
@@ -308,13 +349,13 @@ class ShapesView(EditorPanel):
 
     def lay_out(self) -> None:
         """Arrange all parts."""
-        u = self.look.u
+        u = self.theme.u
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
-        low = self._pad_height() if self.model.padded else round(0.4 * self.height())
-        self.rows.setGeometry(0, 0, left, self.height())
-        self.sketch.setGeometry(x, 0, right, self.height() - low - gap)
-        for part in (self.lines, self.pad):
+        low = self._pad_height() if self.model.is_pad_visible else round(0.4 * self.height())
+        self.rows_panel.setGeometry(0, 0, left, self.height())
+        self.sketch_panel.setGeometry(x, 0, right, self.height() - low - gap)
+        for part in (self.lines_panel, self.number_pad):
             part.setGeometry(x, self.height() - low, right, low)
 
     def _pad_height(self) -> int:
@@ -322,9 +363,9 @@ class ShapesView(EditorPanel):
 
         The drawing is hidden if its remaining height is too small.
         """
-        high = max(self.pad.least, round(min(_PAD * self.look.u, 0.6 * self.height())))
-        drawn = self.height() - high >= _DRAWN * self.look.u
-        self.sketch.setVisible(drawn)
+        high = max(self.number_pad.min_height_px, round(min(_PAD * self.theme.u, 0.6 * self.height())))
+        drawn = self.height() - high >= _DRAWN * self.theme.u
+        self.sketch_panel.setVisible(drawn)
         return high if drawn else self.height()
 
     def resizeEvent(self, _event: object) -> None:
@@ -332,25 +373,28 @@ class ShapesView(EditorPanel):
         self.lay_out()
 
 
-def _shapes_of(desk: Desk) -> Shapes:
+def _find_shapes_model(desk: Desk) -> ShapesModel:
     """Return the shapes model of TurnDesk, or a new one without machine data."""
-    found = desk.pages.find(Shapes)
+    found = desk.page_registry.find(ShapesModel)
     if found is None:
-        found = Shapes()
-        desk.pages.attach(found)
+        found = ShapesModel()
+        desk.page_registry.attach_model(found)
     return found
 
 
-def _line_of(cell: Cell) -> _Line:
-    tone = "alarm" if cell.trouble else "text" if cell.typed else "soft"
-    figure = cell.figure or (_UNSAID if cell.trouble else "")
+def _line_of(cell: FormCell) -> _Line:
+    tone = "alarm" if cell.error_text else "text" if cell.is_typed else "soft"
+    figure = cell.value_text or (_UNSAID if cell.error_text else "")
     return _Line(
-        cell.label, f"{_TURN} {figure} ▸" if cell.choice and figure != _UNSAID else figure, tone, cell.word
+        cell.label,
+        f"{_TURN} {figure} ▸" if cell.is_choice and figure != _UNSAID else figure,
+        tone,
+        cell.field_word,
     )
 
 
 def _point(form: ShapeForm, number: int) -> _Line:
-    said = form.rows[number] if number < len(form.rows) else {}
-    word = row_word(number + 1)
-    cells = tuple(said.get(column, "") for column in COLUMNS)
-    return _Line(f"{number + 1}", "", "alarm" if word in form.troubles else "text", word, cells)
+    said = form.point_texts[number] if number < len(form.point_texts) else {}
+    word = make_point_label(number + 1)
+    cells = tuple(said.get(column, "") for column in POINT_COLUMNS)
+    return _Line(f"{number + 1}", "", "alarm" if word in form.errors else "text", word, cells)

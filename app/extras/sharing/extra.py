@@ -5,63 +5,65 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Close, Extra, Subcommand, Tell
+from app.compose.optional_features import CloseFunction, OptionalFeature, ReportFunction, Subcommand
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import Answers
+    from app.compose.backends.backend_entry import CheckResults
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from app.desk.page_description import PageEntry
+    from app.desk.page_description import PageDescription
     from app.desk.programs.program_loading import LoadingSteps
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
     from core.machine.machine_model import Machine
 
 
-class Sharing(Extra):
+class SharingExtra(OptionalFeature):
     """Optional feature with the page SHARED PROGRAMS, ``turndesk share`` and the table [sharing]."""
 
-    commands = {
+    subcommands = {
         "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),
     }
-    threads = {"sharing": "PROGRAM SHARING"}
+    supervised_threads = {"sharing": "PROGRAM SHARING"}
 
-    machine_tables = {"core.extras.sharing.sharing_table": ("sharing",)}
+    list_machine_tables = {"core.extras.sharing.sharing_table": ("sharing",)}
 
     @property
-    def pages(self) -> Sequence[PageEntry]:
-        from app.desk.page_description import PageEntry
+    def pages(self) -> Sequence[PageDescription]:
+        from app.desk.page_description import PageDescription
 
         return (
-            PageEntry(
+            PageDescription(
                 "SHARED PROGRAMS",
                 "app.extras.sharing.sharing_view.SharedProgramsPage",
                 "app.extras.sharing.sharing_model.SharingModel",
                 "X",
                 "SHARED",
                 "programs from other TurnDesk controls; newer versions are copied on request",
-                after="JOBS",
+                preceding_page="JOBS",
             ),
         )
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-        from app.extras.sharing.sharing_desk import attach_sharing
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        from app.extras.sharing.sharing_setup import attach_sharing
 
         attach_sharing(desk, machine, journal)
 
-    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
-        from app.extras.sharing.sharing_desk import start_sharing
+    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        from app.extras.sharing.sharing_setup import start_sharing
 
         return start_sharing(desk, journal)
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.sharing.share_command import FOLLOWS, OUTPUTS
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        from app.extras.sharing.share_command import OUTPUTS, PRECEDING_COMMAND
 
-        return {FOLLOWS: OUTPUTS}
+        return {PRECEDING_COMMAND: OUTPUTS}
 
-    def check(self, machine: Machine, answers: Answers) -> None:
+    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
         from app.extras.sharing.sharing_check import check_sharing
 
-        check_sharing(machine, answers)
+        check_sharing(machine, results)
 
 
-EXTRA = Sharing()
+EXTRA = SharingExtra()

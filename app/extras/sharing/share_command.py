@@ -7,17 +7,17 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
-from core.access.access_table import Act
-from core.json_key import Output, below, keys
+from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.store_command import open_store
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
+from core.access.access_table import ProtectedChange
+from core.json_keys import JsonOutput, declare_keys, prefix_keys
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.extras.sharing.sharing import Shared, Sharing
-    from core.extras.sharing.shared_versions import Family, SharedVersion
+    from app.extras.sharing.sharing import ProgramSharing, SharingResult
+    from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -63,96 +63,104 @@ def add_parser(subparsers: SubParsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Execute the action. Raises CommandError."""
     from app.compose.machine.machine_setup import read_machine
-    from app.extras.sharing.place_answer import answered
-    from app.extras.sharing.sharing import TakeError
-    from app.extras.sharing.sharing_desk import sharing_of
-    from core.extras.sharing.shared_place import SharingError
+    from app.extras.sharing.location_wait import wait_for_location
+    from app.extras.sharing.sharing import VersionCopyError
+    from app.extras.sharing.sharing_setup import make_sharing
+    from core.extras.sharing.shared_location import SharingError
 
     machine, acts = read_machine(args.machine), _acts(args)
-    who = who_may(opened_store, args, *acts) if acts else ""
+    who = get_permitted_user(open_store, args, *acts) if acts else ""
     with (
-        as_command_error(SharingError, TakeError),
-        opened_store(read_only=args.action in _READING) as store,
+        convert_to_command_error(SharingError, VersionCopyError),
+        open_store(read_only=args.action in _READING) as store,
     ):
-        sharing = sharing_of(machine, lambda: store)
+        sharing = make_sharing(machine, lambda: store)
         if sharing is None:
             raise CommandError(
                 "the machine file has no [sharing] table; add it with a folder or a database",
                 "no-sharing",
             )
-        status = answered(sharing.place, lambda: _ACTIONS[args.action](sharing, args))
+        status = wait_for_location(sharing.location, lambda: _ACTIONS[args.action](sharing, args))
     if acts:
         program = f"program {args.name}: " if args.action in {"take", "keep"} else ""
-        note_change(opened_store, who, f"{program}share {args.action}")
+        log_user_change(open_store, who, f"{program}share {args.action}")
     return status
 
 
-def _acts(args: argparse.Namespace) -> tuple[Act, ...]:
+def _acts(args: argparse.Namespace) -> tuple[ProtectedChange, ...]:
     """Return the permissions that the action needs, or an empty tuple if it only reads."""
     if args.action in _LOOKING:
         return ()
     alone = args.action == "begin" or getattr(args, "claim", False)
-    return (Act.SHARED_PLACE,) if alone else (Act.PROGRAMS,)
+    return (ProtectedChange.SHARED_PLACE,) if alone else (ProtectedChange.PROGRAMS,)
 
 
 # --- actions ---------------------------------------------------------------------------------------------
 
 
-def _begin(sharing: Sharing, args: argparse.Namespace) -> int:
-    sharing.place.begin()
+def _begin(sharing: ProgramSharing, args: argparse.Namespace) -> int:
+    sharing.location.set_up()
     _say(
         args,
-        Message("{place} is set up for shared programs", place=sharing.place.name),
-        {"place": sharing.place.name},
+        Message("{place} is set up for shared programs", place=sharing.location.name),
+        {"place": sharing.location.name},
     )
     return EXIT_OK
 
 
-def _status(sharing: Sharing, args: argparse.Namespace) -> int:
-    shared = sharing.peek()
-    sys.stdout.write(json.dumps(told(sharing, shared)) + "\n" if args.json else _table(sharing, shared))
-    if shared.trouble:
-        sys.stderr.write(f"turndesk: {shared.trouble}\n")
-    return EXIT_ERRORS if shared.trouble else EXIT_OK
+def _status(sharing: ProgramSharing, args: argparse.Namespace) -> int:
+    shared = sharing.preview()
+    sys.stdout.write(
+        json.dumps(make_status_json(sharing, shared)) + "\n" if args.json else _table(sharing, shared)
+    )
+    if shared.error_text:
+        sys.stderr.write(f"turndesk: {shared.error_text}\n")
+    return EXIT_ERRORS if shared.error_text else EXIT_OK
 
 
-def _publish(sharing: Sharing, args: argparse.Namespace) -> int:
+def _publish(sharing: ProgramSharing, args: argparse.Namespace) -> int:
     if args.claim:
         _claim(sharing)
     shared = _looked(sharing)
-    if shared.trouble:
-        raise CommandError(shared.trouble, "not-shared")
-    count = sum(bool(family.here) for family in shared.families.values())
+    if shared.error_text:
+        raise CommandError(shared.error_text, "not-shared")
+    count = sum(bool(family.local_version_id) for family in shared.programs.values())
     programs = "the only program" if count == 1 else Message("all {count} programs", count=count)
     _say(
         args,
         Message(
             "{place} contains {programs} from {machine}",
-            place=sharing.place.name,
+            place=sharing.location.name,
             programs=programs,
-            machine=sharing.desk,
+            machine=sharing.machine_name,
         ),
-        told(sharing, shared),
+        make_status_json(sharing, shared),
     )
     return EXIT_OK
 
 
-def _claim(sharing: Sharing) -> None:
-    from app.desk.data_folder import data_folder
-    from app.extras.sharing.sharing_desk import claim
-    from core.extras.sharing.shared_versions import key_of
+def _claim(sharing: ProgramSharing) -> None:
+    from app.desk.data_folder import find_data_folder
+    from app.extras.sharing.sharing_setup import store_machine_id
+    from core.extras.sharing.shared_versions import make_program_key
 
-    found = sharing.place.look({}).desks
-    homes = [each.home for each in found if key_of(each.desk) == key_of(sharing.desk)]
+    found = sharing.location.read_contents({}).machine_states
+    homes = [
+        each.machine_id
+        for each in found
+        if make_program_key(each.desk) == make_program_key(sharing.machine_name)
+    ]
     if homes:
-        sharing.home = claim(data_folder(), homes[0])
+        sharing.machine_id = store_machine_id(find_data_folder(), homes[0])
 
 
-def _compare(sharing: Sharing, args: argparse.Namespace) -> int:
-    from app.editor.versions import differences, lines_of
+def _compare(sharing: ProgramSharing, args: argparse.Namespace) -> int:
+    from app.editor.version_history import compare_texts, decode_text
 
-    version = _chosen(sharing.peek(), args)
-    rows = differences(lines_of(sharing.text_here(version.key)), lines_of(sharing.text(version)))
+    version = _chosen(sharing.preview(), args)
+    rows = compare_texts(
+        decode_text(sharing.read_local_text(version.program_key)), decode_text(sharing.read_text(version))
+    )
     if args.json:
         changes = [{"sign": row.sign, "here": row.old, "there": row.new, "text": row.text} for row in rows]
         sys.stdout.write(json.dumps({"version": _of(version), "changes": changes}) + "\n")
@@ -163,10 +171,10 @@ def _compare(sharing: Sharing, args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _take(sharing: Sharing, args: argparse.Namespace) -> int:
+def _take(sharing: ProgramSharing, args: argparse.Namespace) -> int:
     version = _chosen(_looked(sharing), args)
-    before = sharing.now.families[version.key].here
-    name = sharing.take(version)
+    before = sharing.last_result.programs[version.program_key].local_version_id
+    name = sharing.copy_version(version)
     _looked(sharing)
     template = (
         "{name} is now the version from control {machine}; the previous program text was saved as a version"
@@ -178,21 +186,21 @@ def _take(sharing: Sharing, args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _keep(sharing: Sharing, args: argparse.Namespace) -> int:
-    from core.extras.sharing.shared_versions import key_of
+def _keep(sharing: ProgramSharing, args: argparse.Namespace) -> int:
+    from core.extras.sharing.shared_versions import make_program_key
 
     _looked(sharing)
-    sharing.keep(key_of(args.name))
+    sharing.resolve_with_local(make_program_key(args.name))
     shared = _looked(sharing)
     wait = (
-        Message("; the local version is not published yet: {problem}", problem=shared.trouble)
-        if shared.trouble
+        Message("; the local version is not published yet: {problem}", problem=shared.error_text)
+        if shared.error_text
         else ""
     )
     _say(
         args,
         Message("the local version of {name} is used{wait}", name=args.name, wait=wait),
-        {"kept": args.name, "trouble": shared.trouble},
+        {"kept": args.name, "trouble": shared.error_text},
     )
     return EXIT_OK
 
@@ -209,23 +217,23 @@ _LOOKING = frozenset({"status", "compare"})
 _READING = _LOOKING | {"begin"}  # the store is opened read-only while TurnDesk runs
 
 
-def _looked(sharing: Sharing) -> Shared:
-    shared = sharing.look()
-    for name, why in shared.refused.items():
+def _looked(sharing: ProgramSharing) -> SharingResult:
+    shared = sharing.synchronize()
+    for name, why in shared.rejected_files.items():
         sys.stderr.write(f"turndesk: {name} is not shared: {why}\n")
     return shared
 
 
-def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
-    from core.extras.sharing.shared_versions import key_of
+def _chosen(shared: SharingResult, args: argparse.Namespace) -> SharedVersion:
+    from core.extras.sharing.shared_versions import make_program_key
 
-    family = shared.families.get(key_of(args.name))
+    family = shared.programs.get(make_program_key(args.name))
     if family is None:
         raise CommandError(
             Message(
                 "no control shares a program named {name}; {problem}",
                 name=args.name,
-                problem=shared.trouble or "for details, run: turndesk share status",
+                problem=shared.error_text or "for details, run: turndesk share status",
             ),
             "not-shared-program",
         )
@@ -242,30 +250,31 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
                 Message(template, count=len(found), name=args.name, id=args.id), "no-one-version"
             )
         return found[0]
-    if not family.elsewhere:
+    if not family.newest_remote_versions:
         raise CommandError(
             Message(
                 "no other control has a newer version of {name}; {problem}",
                 name=args.name,
-                problem=shared.trouble or "there is nothing to copy",
+                problem=shared.error_text or "there is nothing to copy",
             ),
             "nothing-newer",
         )
-    if len(family.elsewhere) > 1:
+    if len(family.newest_remote_versions) > 1:
         which = ", ".join(
-            Message("{item} from {machine}", item=each.id[:8], machine=each.desk) for each in family.elsewhere
+            Message("{item} from {machine}", item=each.id[:8], machine=each.desk)
+            for each in family.newest_remote_versions
         )
         raise CommandError(
             Message(
                 "other controls have {elsewhere_count} newer versions of {name}: {which}; "
                 "choose one with --id ID",
                 name=args.name,
-                elsewhere_count=len(family.elsewhere),
+                elsewhere_count=len(family.newest_remote_versions),
                 which=which,
             ),
             "many-versions",
         )
-    return family.elsewhere[0]
+    return family.newest_remote_versions[0]
 
 
 # --- output ----------------------------------------------------------------------------------------------
@@ -275,28 +284,33 @@ def _say(args: argparse.Namespace, words: str, values: dict[str, object]) -> Non
     sys.stdout.write((json.dumps(values) if args.json else words) + "\n")
 
 
-def told(sharing: Sharing, shared: Shared) -> dict[str, object]:
+def make_status_json(sharing: ProgramSharing, result: SharingResult) -> dict[str, object]:
     """Return all known data for scripts."""
     return {
-        "place": sharing.place.name,
-        "desk": sharing.desk,
-        "trouble": shared.trouble or None,
-        "waiting": shared.waiting,
-        "programs": [_program(shared, family) for _, family in sorted(shared.families.items())],
-        "desks": [{"desk": each.desk, "told": each.at, "has": dict(each.has)} for each in shared.desks],
-        "strays": list(shared.strays),
-        "not_shared": dict(shared.refused),
+        "place": sharing.location.name,
+        "desk": sharing.machine_name,
+        "trouble": result.error_text or None,
+        "waiting": result.unpublished_count,
+        "programs": [_program(result, family) for _, family in sorted(result.programs.items())],
+        "desks": [
+            {"desk": each.desk, "told": each.at, "has": dict(each.has)} for each in result.machine_states
+        ],
+        "strays": list(result.foreign_items),
+        "not_shared": dict(result.rejected_files),
     }
 
 
-def _program(shared: Shared, family: Family) -> dict[str, object]:
-    here = family.versions.get(family.here)
-    newest = family.newest
+def _program(shared: SharingResult, family: ProgramVersions) -> dict[str, object]:
+    here = family.versions.get(family.local_version_id)
+    newest = family.newest_versions
     return {
         "program": (here or newest[0]).program,
         "state": family.state,
         "here": _of(here) if here is not None else None,
-        "elsewhere": [_of(each) | {"on": list(shared.who_has(each.id))} for each in family.elsewhere],
+        "elsewhere": [
+            _of(each) | {"on": list(shared.find_machines_with(each.id))}
+            for each in family.newest_remote_versions
+        ],
         "versions": len(family.versions),
     }
 
@@ -320,21 +334,24 @@ _STATES = {
 }
 
 
-def _table(sharing: Sharing, shared: Shared) -> str:
-    lines = [f"{sharing.desk} shares in {sharing.place.name}; versions that wait: {shared.waiting}\n"]
-    for _, family in sorted(shared.families.items()):
-        name = (family.versions.get(family.here) or family.newest[0]).program
+def _table(sharing: ProgramSharing, shared: SharingResult) -> str:
+    lines = [
+        f"{sharing.machine_name} shares in {sharing.location.name}; versions that wait: "
+        f"{shared.unpublished_count}\n"
+    ]
+    for _, family in sorted(shared.programs.items()):
+        name = (family.versions.get(family.local_version_id) or family.newest_versions[0]).program
         lines.append(f"{name:24}  {_STATES[family.state]}\n")
-        for each in family.elsewhere:
-            on = ", ".join(shared.who_has(each.id)) or ("-" if shared.trouble else "no desk")
+        for each in family.newest_remote_versions:
+            on = ", ".join(shared.find_machines_with(each.id)) or ("-" if shared.error_text else "no desk")
             lines.append(f"    {each.id[:8]}  {each.desk}  {each.saved}  {each.size} bytes  on {on}\n")
-    lines += [f"{name} is not shared: {why}\n" for name, why in shared.refused.items()]
-    if shared.strays:
-        lines.append(f"no versions, left as they are: {', '.join(shared.strays[:5])}\n")
+    lines += [f"{name} is not shared: {why}\n" for name, why in shared.rejected_files.items()]
+    if shared.foreign_items:
+        lines.append(f"no versions, left as they are: {', '.join(shared.foreign_items[:5])}\n")
     return "".join(lines)
 
 
-_VERSION = keys(
+_VERSION = declare_keys(
     """
 id | string | | ID of the version.
 desk | string | | Machine that saved the version.
@@ -345,7 +362,7 @@ follows | list | | IDs of the versions on which it is based.
 """
 )
 _SHARED = (
-    *keys(
+    *declare_keys(
         """
 place | string | | The shared location.
 desk | string | | Name of this machine in the list of machines.
@@ -358,12 +375,12 @@ programs[].state | string | | same, newer (a newer version exists on another mac
 programs[].here | object or null | | Version on this machine; null if not available.
 """
     ),
-    *below("programs[].here.", _VERSION),
-    *keys(
+    *prefix_keys("programs[].here.", _VERSION),
+    *declare_keys(
         "programs[].elsewhere | list | | Newest versions of other machines that this machine does not have."
     ),
-    *below("programs[].elsewhere[].", _VERSION),
-    *keys(
+    *prefix_keys("programs[].elsewhere[].", _VERSION),
+    *declare_keys(
         """
 programs[].elsewhere[].on | list | | Machines that have this version.
 programs[].versions | integer | | Number of known versions.
@@ -378,15 +395,17 @@ not_shared.* | string | | Reason, by program.
 """
     ),
 )
-SHARE_STATUS = Output("share status --json, share publish --json", "One object.", _SHARED)
-SHARE_BEGIN = Output("share begin --json", "One object.", keys("place | string | | The shared location."))
-SHARE_COMPARE = Output(
+SHARE_STATUS_OUTPUT = JsonOutput("share status --json, share publish --json", "One object.", _SHARED)
+SHARE_BEGIN_OUTPUT = JsonOutput(
+    "share begin --json", "One object.", declare_keys("place | string | | The shared location.")
+)
+SHARE_COMPARE_OUTPUT = JsonOutput(
     "share compare PROGRAM --json",
     "One object.",
     (
-        *keys("version | object | | The version that is compared."),
-        *below("version.", _VERSION),
-        *keys(
+        *declare_keys("version | object | | The version that is compared."),
+        *prefix_keys("version.", _VERSION),
+        *declare_keys(
             """
 changes | list | | Lines of the comparison.
 changes[].sign | string | | + (added), − as a hyphen (removed) or a space (unchanged).
@@ -397,25 +416,31 @@ changes[].text | string | | Text of the line.
         ),
     ),
 )
-SHARE_TAKE = Output(
+SHARE_COPY_OUTPUT = JsonOutput(
     "share take PROGRAM --json",
     "One object.",
     (
-        *keys("taken | object | | The version that was copied."),
-        *below("taken.", _VERSION),
-        *keys("file | string | | File name in the program folder."),
+        *declare_keys("taken | object | | The version that was copied."),
+        *prefix_keys("taken.", _VERSION),
+        *declare_keys("file | string | | File name in the program folder."),
     ),
 )
-SHARE_KEEP = Output(
+SHARE_KEEP_OUTPUT = JsonOutput(
     "share keep PROGRAM --json",
     "One object.",
-    keys(
+    declare_keys(
         """
 kept | string | | File name of the program.
 trouble | string | | Why the version is not published yet; empty if it is published.
 """
     ),
 )
-OUTPUTS = (SHARE_BEGIN, SHARE_STATUS, SHARE_COMPARE, SHARE_TAKE, SHARE_KEEP)
-FOLLOWS = "store verify --json"
+OUTPUTS = (
+    SHARE_BEGIN_OUTPUT,
+    SHARE_STATUS_OUTPUT,
+    SHARE_COMPARE_OUTPUT,
+    SHARE_COPY_OUTPUT,
+    SHARE_KEEP_OUTPUT,
+)
+PRECEDING_COMMAND = "store verify --json"
 """The command that the commands of this feature follow in the reference."""

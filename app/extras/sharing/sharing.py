@@ -16,19 +16,25 @@ from functools import partial
 from hashlib import sha256
 from pathlib import Path
 
-from app.desk.programs.program_folder import ENDINGS
-from app.programs.whole_file import FileError, write_new, write_whole
+from app.desk.programs.program_folder import PROGRAM_EXTENSIONS
+from app.programs.atomic_files import FileOperationError, write_new_file, write_program_file
 from core.extras.sharing import shared_versions
-from core.extras.sharing.shared_place import Cause, Found, Published, SharedPlace, SharingError
-from core.extras.sharing.shared_versions import Family, SharedVersion, key_of
-from core.extras.sharing.version_record import MOST_BYTES, DeskState, new_version
-from core.input_file import input_bytes
-from core.message import CodedError, Message, error_code
+from core.extras.sharing.shared_location import (
+    Found,
+    PublishedVersion,
+    SharedLocation,
+    SharingError,
+    SharingErrorCause,
+)
+from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion, make_program_key
+from core.extras.sharing.version_record import MAX_PROGRAM_BYTES, MachineState, make_version
+from core.input_file import read_input_bytes
+from core.message import CodedError, Message, get_error_code
 from core.store import program_records
-from core.store.program_records import check_name
+from core.store.program_records import check_program_name
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_rows import utc_now
+from core.store.store_rows import get_utc_now_text
 
 _PATIENCE = 2.0  # seconds that closing waits; a thread that hangs in a dead network drive is abandoned
 
@@ -41,9 +47,9 @@ class SharingThread:
 
     def __init__(
         self,
-        sharing: Sharing,
+        sharing: ProgramSharing,
         every: float,
-        heard: Callable[[Shared], None],
+        heard: Callable[[SharingResult], None],
         now: Callable[[], float] = time.monotonic,
     ) -> None:
         self._sharing, self._every, self._heard = sharing, every, heard
@@ -55,11 +61,11 @@ class SharingThread:
         """Start the thread; to be called once."""
         self._thread.start()
 
-    def look_now(self) -> None:
+    def synchronize_now(self) -> None:
         """Start a synchronization now; callable from any thread, without waiting."""
         self._wake.set()
 
-    def silent_for(self) -> float:
+    def get_waiting_time(self) -> float:
         """Return how long the present synchronization has waited for the location, in seconds."""
         since = self._since
         return self._now() - since if since >= 0.0 else 0.0
@@ -74,7 +80,7 @@ class SharingThread:
     def _repeat(self) -> None:
         while not self._closing.is_set():
             self._since = self._now()
-            shared = self._sharing.look(settled=True)
+            shared = self._sharing.synchronize(is_settled=True)
             self._since = -1.0
             if not self._closing.is_set():
                 self._heard(shared)
@@ -85,7 +91,7 @@ class SharingThread:
 _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published together
 
 
-class TakeError(CodedError):
+class VersionCopyError(CodedError):
     """Error for a version that was not copied.
 
     The program is unchanged, and the message states the reason.
@@ -93,44 +99,48 @@ class TakeError(CodedError):
 
 
 @dataclass(frozen=True, slots=True)
-class Shared:
+class SharingResult:
     """Immutable result of a synchronization.
 
     ``trouble`` is the reason why the location was not usable.
     """
 
-    families: Mapping[str, Family] = field(default_factory=dict)
-    states: Mapping[str, str] = field(default_factory=dict)  # state of each family, see ``Family.state``
+    programs: Mapping[str, ProgramVersions] = field(default_factory=dict)
+    states_by_program: Mapping[str, str] = field(
+        default_factory=dict
+    )  # state of each family, see ``ProgramVersions.state``
     # machines that have a version, by id
-    holders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    desks: tuple[DeskState, ...] = ()
-    strays: tuple[str, ...] = ()
-    refused: Mapping[str, str] = field(default_factory=dict)  # files of this machine that are not shared
-    waiting: int = 0  # versions that are not published yet
-    trouble: str = ""
+    machines_by_version: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    machine_states: tuple[MachineState, ...] = ()
+    foreign_items: tuple[str, ...] = ()
+    rejected_files: Mapping[str, str] = field(
+        default_factory=dict
+    )  # files of this machine that are not shared
+    unpublished_count: int = 0  # versions that are not published yet
+    error_text: str = ""
 
-    def who_has(self, version: str) -> tuple[str, ...]:
+    def find_machines_with(self, version: str) -> tuple[str, ...]:
         """Return the names of the machines that have this version in their program folder."""
-        return self.holders.get(version, ())
+        return self.machines_by_version.get(version, ())
 
 
-class Sharing:
+class ProgramSharing:
     """Sharing of programs.
 
     Methods can wait for disk and network, and are called on workers only.
     """
 
     def __init__(
-        self, place: SharedPlace, desk: str, home: str, folder: Path, store: Callable[[], Store]
+        self, location: SharedLocation, desk: str, machine_id: str, folder: Path, store: Callable[[], Store]
     ) -> None:
-        self.place, self.desk, self.home = place, desk, home
-        self.now = Shared()
-        self._files, self._store = FilesOfMachine(folder), store
+        self.location, self.machine_name, self.machine_id = location, desk, machine_id
+        self.last_result = SharingResult()
+        self._files, self._store = LocalProgramFiles(folder), store
         self._lock = threading.Lock()  # for one synchronization or change at a time
 
     # --- synchronization -------------------------------------------------------------------------------
 
-    def look(self, *, settled: bool = False) -> Shared:
+    def synchronize(self, *, is_settled: bool = False) -> SharingResult:
         """Read other versions, store local changes and publish them.
 
         An error is set in ``trouble``.
@@ -143,101 +153,101 @@ class Sharing:
                     found = self._learn(store)
                 except SharingError as error:
                     trouble = str(error)
-                self._note(store, settled=settled)
+                self._note(store, is_settled=is_settled)
                 if found is not None:
                     trouble = self._publish(store, found)
                 self._tell(store, found, trouble)
             except StoreError as error:  # a restore can close the store at any time
-                self.now = replace(self.now, trouble=str(error))
-            return self.now
+                self.last_result = replace(self.last_result, error_text=str(error))
+            return self.last_result
 
-    def peek(self) -> Shared:
+    def preview(self) -> SharingResult:
         """Return what a synchronization would find, without storing anything. Raises StoreError."""
         with self._lock:
             store, found, trouble = self._store(), None, ""
             fresh: Sequence[SharedVersion] = ()
             try:
                 with store.read() as connection:
-                    known = {each.id: each for each in shared_versions.all_versions(connection)}
-                found = self.place.look(known)
-                fresh = found.fresh
+                    known = {each.id: each for each in shared_versions.read_all_versions(connection)}
+                found = self.location.read_contents(known)
+                fresh = found.unknown_versions
             except SharingError as error:
                 trouble = str(error)
             self._tell(store, found, trouble, fresh)
-            return self.now
+            return self.last_result
 
     def _learn(self, store: Store) -> Found:
         with store.read() as connection:
-            known = {each.id: each for each in shared_versions.all_versions(connection)}
-        found = self.place.look(known)
+            known = {each.id: each for each in shared_versions.read_all_versions(connection)}
+        found = self.location.read_contents(known)
 
         def learn(connection: sqlite3.Connection) -> None:
-            shared_versions.add(connection, found.fresh)
-            shared_versions.set_there(connection, found.there)
+            shared_versions.add_versions(connection, found.unknown_versions)
+            shared_versions.set_published_versions(connection, found.stored_ids)
 
         store.write(learn).result()
         return found
 
-    def _note(self, store: Store, *, settled: bool) -> None:
+    def _note(self, store: Store, *, is_settled: bool) -> None:
         """Store the present files as versions, and mark programs whose file is gone."""
-        files = self._files.look(settled=settled)
+        files = self._files.read_files(is_settled=is_settled)
         store.write(partial(self._noted, files)).result()
 
-    def _noted(self, files: Mapping[str, SharedFile], connection: sqlite3.Connection) -> None:
-        families = shared_versions.families(connection)
+    def _noted(self, files: Mapping[str, ProgramFile], connection: sqlite3.Connection) -> None:
+        families = shared_versions.read_shared_programs(connection)
         for key, file in files.items():
-            self._note_file(connection, file, families.get(key, Family()))
+            self._note_file(connection, file, families.get(key, ProgramVersions()))
         for key, family in families.items():
-            if family.here and key not in self._files.present:
-                shared_versions.set_here(connection, key, "")
+            if family.local_version_id and key not in self._files.program_keys:
+                shared_versions.set_local_version(connection, key, "")
 
-    def _note_file(self, connection: sqlite3.Connection, file: SharedFile, family: Family) -> None:
-        here = family.versions.get(family.here)
+    def _note_file(self, connection: sqlite3.Connection, file: ProgramFile, family: ProgramVersions) -> None:
+        here = family.versions.get(family.local_version_id)
         if here is not None and here.text == file.digest:
             return
-        version = family.of_text(file.digest)
+        version = family.find_newer_by_text(file.digest)
         if version is None:
             try:
-                text = input_bytes(file.path, MOST_BYTES)
+                text = read_input_bytes(file.path, MAX_PROGRAM_BYTES)
             except OSError:
                 return  # the file was deleted in the meantime
-            follows = (family.here,) if here is not None else ()
-            version = new_version(file.name, text, follows, self.desk, utc_now(), "saved")
-            program_records.save(connection, file.name, text, "shared")
-            shared_versions.add(connection, [version])
-        shared_versions.set_here(connection, key_of(file.name), version.id)
+            follows = (family.local_version_id,) if here is not None else ()
+            version = make_version(file.name, text, follows, self.machine_name, get_utc_now_text(), "saved")
+            program_records.save_program_version(connection, file.name, text, "shared")
+            shared_versions.add_versions(connection, [version])
+        shared_versions.set_local_version(connection, make_program_key(file.name), version.id)
 
     def _publish(self, store: Store, found: Found) -> str:
         """Publish local versions, and return an error or an empty string."""
-        others = [each for each in found.desks if each.home != self.home]
-        if any(key_of(each.desk) == key_of(self.desk) for each in others):
-            return str(Cause.NAME_TAKEN.error(self.place.name, self.desk))
+        others = [each for each in found.machine_states if each.machine_id != self.machine_id]
+        if any(make_program_key(each.desk) == make_program_key(self.machine_name) for each in others):
+            return str(SharingErrorCause.NAME_TAKEN.make_error(self.location.name, self.machine_name))
         state = self._state(store)
-        mine = next((each for each in found.desks if each.home == self.home), None)
+        mine = next((each for each in found.machine_states if each.machine_id == self.machine_id), None)
         told = mine is not None and (mine.desk, dict(mine.has)) == (state.desk, dict(state.has))
         try:
             for batch in self._batches(store):
-                self.place.put(batch, state)
+                self.location.publish(batch, state)
                 versions = [each.version for each in batch]
                 store.write(partial(_published, versions)).result()
                 told = True
             if not told:
-                self.place.put([], state)
+                self.location.publish([], state)
         except SharingError as error:
             return str(error)
         return ""
 
     @staticmethod
-    def _batches(store: Store) -> Iterator[Sequence[Published]]:
+    def _batches(store: Store) -> Iterator[Sequence[PublishedVersion]]:
         with store.read() as connection:
-            waiting = shared_versions.unpublished(connection)
-        batch, size = list[Published](), 0
+            waiting = shared_versions.read_unpublished_versions(connection)
+        batch, size = list[PublishedVersion](), 0
         for version in waiting:
             with store.read() as connection:
-                text = shared_versions.text_of(connection, version.text)
+                text = shared_versions.read_version_text(connection, version.text)
             if text is None:
                 continue
-            batch.append(Published(version, text))
+            batch.append(PublishedVersion(version, text))
             size += len(text)
             if len(batch) >= _AT_ONCE or size >= _BYTES_AT_ONCE:
                 yield batch
@@ -245,128 +255,138 @@ class Sharing:
         if batch:
             yield batch
 
-    def _state(self, store: Store) -> DeskState:
+    def _state(self, store: Store) -> MachineState:
         with store.read() as connection:
-            families = shared_versions.families(connection)
+            families = shared_versions.read_shared_programs(connection)
         has = {
-            each.versions[each.here].program: each.here
+            each.versions[each.local_version_id].program: each.local_version_id
             for each in families.values()
-            if each.here in each.versions
+            if each.local_version_id in each.versions
         }
-        return DeskState(self.home, self.desk, utc_now(), has)
+        return MachineState(self.machine_id, self.machine_name, get_utc_now_text(), has)
 
     def _tell(
         self, store: Store, found: Found | None, trouble: str, fresh: Sequence[SharedVersion] = ()
     ) -> None:
         with store.read() as connection:
-            families = shared_versions.families(connection, fresh)
-            waiting = len(shared_versions.unpublished(connection))
-        desks = self.now.desks
+            families = shared_versions.read_shared_programs(connection, fresh)
+            waiting = len(shared_versions.read_unpublished_versions(connection))
+        desks = self.last_result.machine_states
         if found is not None:
-            desks = (*(each for each in found.desks if each.home != self.home), self._state(store))
-        strays = found.strays if found is not None else self.now.strays
+            desks = (
+                *(each for each in found.machine_states if each.machine_id != self.machine_id),
+                self._state(store),
+            )
+        strays = found.foreign_items if found is not None else self.last_result.foreign_items
         states = {key: family.state for key, family in families.items()}
-        refused = dict(self._files.refused)
-        self.now = Shared(families, states, _holders(desks), desks, strays, refused, waiting, trouble)
+        refused = dict(self._files.rejected_files)
+        self.last_result = SharingResult(
+            families, states, _holders(desks), desks, strays, refused, waiting, trouble
+        )
 
     # --- requests of the operator ----------------------------------------------------------------------
 
-    def text(self, version: SharedVersion) -> bytes:
+    def read_text(self, version: SharedVersion) -> bytes:
         """Return the text of a version from the store, or else from the location.
 
         Raises SharingError and StoreError.
         """
         with self._store().read() as connection:
-            text = shared_versions.text_of(connection, version.text)
-        return self.place.text(version) if text is None else text
+            text = shared_versions.read_version_text(connection, version.text)
+        return self.location.read_text(version) if text is None else text
 
-    def text_here(self, key: str) -> bytes:
+    def read_local_text(self, key: str) -> bytes:
         """Return the local text of a program, or empty bytes. Raises StoreError."""
-        family = self.now.families.get(key, Family())
-        here = family.versions.get(family.here)
+        family = self.last_result.programs.get(key, ProgramVersions())
+        here = family.versions.get(family.local_version_id)
         if here is None:
             return b""
         with self._store().read() as connection:
-            return shared_versions.text_of(connection, here.text) or b""
+            return shared_versions.read_version_text(connection, here.text) or b""
 
-    def take(self, version: SharedVersion) -> str:
+    def copy_version(self, version: SharedVersion) -> str:
         """Copy a version into the program folder and return the file name.
 
         The previous text remains a version. If both sides have changed the program, the new version follows
         both, so that other machines see the conflict as resolved. Raises TakeError, SharingError and
         StoreError. The program is then unchanged.
         """
-        text = self.text(version)
+        text = self.read_text(version)
         with self._lock:
             store = self._store()
-            self._note(store, settled=False)
-            family = _family(store, version.key)
-            if version.id == family.here:
-                raise TakeError(
+            self._note(store, is_settled=False)
+            family = _family(store, version.program_key)
+            if version.id == family.local_version_id:
+                raise VersionCopyError(
                     Message("{program} is already the selected version", program=version.program),
                     "already-current",
                 )
             name = self._free_name(version)
             taken = version
-            if not family.newer(version):
-                follows = (family.here, version.id)
+            if not family.is_newer(version):
+                follows = (family.local_version_id, version.id)
                 why = Message("copied from {machine}", machine=version.desk)
-                taken = new_version(name, text, follows, self.desk, utc_now(), why)
+                taken = make_version(name, text, follows, self.machine_name, get_utc_now_text(), why)
             store.write(partial(_keep, name, taken, text)).result()
             try:
                 target = self._files.folder / name
-                (write_whole if family.here else write_new)(target, text)
-            except FileError as error:
-                store.write(lambda c: shared_versions.withdraw(c, taken)).result()
-                raise TakeError(str(error), error_code(error)) from error
+                (write_program_file if family.local_version_id else write_new_file)(target, text)
+            except FileOperationError as error:
+                store.write(lambda c: shared_versions.delete_unpublished(c, taken)).result()
+                raise VersionCopyError(str(error), get_error_code(error)) from error
             # After the file, because the next synchronization recognizes its text after a power failure.
-            store.write(lambda c: shared_versions.set_here(c, version.key, taken.id)).result()
-            self._tell(store, None, self.now.trouble)
+            store.write(
+                lambda c: shared_versions.set_local_version(c, version.program_key, taken.id)
+            ).result()
+            self._tell(store, None, self.last_result.error_text)
             return name
 
-    def keep(self, key: str) -> None:
+    def resolve_with_local(self, key: str) -> None:
         """Resolve a conflict in favor of the local version. Raises TakeError and StoreError."""
         with self._lock:
             store = self._store()
-            self._note(store, settled=False)
+            self._note(store, is_settled=False)
             family = _family(store, key)
-            here, others = family.versions.get(family.here), [each.id for each in family.elsewhere]
+            here, others = (
+                family.versions.get(family.local_version_id),
+                [each.id for each in family.newest_remote_versions],
+            )
             if here is None or not others:
-                raise TakeError(
+                raise VersionCopyError(
                     "no decision is necessary, because no other control has changed this program",
                     "nothing-to-settle",
                 )
             follows = (here.id, *others)
             with store.read() as connection:
-                text = shared_versions.text_of(connection, here.text)
+                text = shared_versions.read_version_text(connection, here.text)
             if text is None:
-                raise TakeError(
+                raise VersionCopyError(
                     Message(
                         "the text of {program} differs from the saved version; save the program again",
                         program=here.program,
                     ),
                     "damaged-text",
                 )
-            kept = new_version(here.program, text, follows, self.desk, utc_now(), "kept")
+            kept = make_version(here.program, text, follows, self.machine_name, get_utc_now_text(), "kept")
             store.write(partial(_kept, kept)).result()
-            self._tell(store, None, self.now.trouble)
+            self._tell(store, None, self.last_result.error_text)
 
     def _free_name(self, version: SharedVersion) -> str:
         """Return the name of the local file that differs only in case, or else the version's name.
 
         Raises TakeError.
         """
-        names = [each for each in self._files.refused if key_of(each) == version.key]
+        names = [each for each in self._files.rejected_files if make_program_key(each) == version.program_key]
         if names:
-            raise TakeError(
-                Message("{names}: {refused}", names=names[0], refused=self._files.refused[names[0]]),
+            raise VersionCopyError(
+                Message("{names}: {refused}", names=names[0], refused=self._files.rejected_files[names[0]]),
                 "refused-name",
             )
-        file = self._files.look(settled=False).get(version.key)
+        file = self._files.read_files(is_settled=False).get(version.program_key)
         return file.name if file is not None else version.program
 
 
-def _holders(desks: Sequence[DeskState]) -> dict[str, tuple[str, ...]]:
+def _holders(desks: Sequence[MachineState]) -> dict[str, tuple[str, ...]]:
     found: dict[str, set[str]] = {}
     for desk in desks:
         for version in desk.has.values():
@@ -374,23 +394,25 @@ def _holders(desks: Sequence[DeskState]) -> dict[str, tuple[str, ...]]:
     return {version: tuple(sorted(names)) for version, names in found.items()}
 
 
-def _family(store: Store, key: str) -> Family:
+def _family(store: Store, key: str) -> ProgramVersions:
     with store.read() as connection:
-        return shared_versions.families(connection).get(key, Family())
+        return shared_versions.read_shared_programs(connection).get(key, ProgramVersions())
 
 
 def _keep(name: str, version: SharedVersion, text: bytes, connection: sqlite3.Connection) -> None:
-    program_records.save(connection, name, text, Message("shared by {machine}", machine=version.desk))
-    shared_versions.add(connection, [version])
+    program_records.save_program_version(
+        connection, name, text, Message("shared by {machine}", machine=version.desk)
+    )
+    shared_versions.add_versions(connection, [version])
 
 
 def _published(versions: Sequence[SharedVersion], connection: sqlite3.Connection) -> None:
-    shared_versions.published(connection, versions)
+    shared_versions.mark_published(connection, versions)
 
 
 def _kept(version: SharedVersion, connection: sqlite3.Connection) -> None:
-    shared_versions.add(connection, [version])
-    shared_versions.set_here(connection, version.key, version.id)
+    shared_versions.add_versions(connection, [version])
+    shared_versions.set_local_version(connection, version.program_key, version.id)
 
 
 _Stamp = tuple[int, int]  # time of the last change in nanoseconds, size in bytes
@@ -398,7 +420,7 @@ _GRAIN = 2_000_000_000  # ns: a file that was just written can change again with
 
 
 @dataclass(frozen=True, slots=True)
-class SharedFile:
+class ProgramFile:
     """Program file with the SHA-256 of its content."""
 
     name: str
@@ -407,46 +429,48 @@ class SharedFile:
 
 
 @dataclass(slots=True)
-class FilesOfMachine:
+class LocalProgramFiles:
     """Files of the operator's folder.
 
     A file is read again only after a change of time or size.
     """
 
     folder: Path
-    refused: Mapping[str, str] = field(default_factory=dict)  # reason why a file is not shared, by file name
-    present: frozenset[str] = frozenset()  # keys of all files of the last scan, shared or not
+    rejected_files: Mapping[str, str] = field(
+        default_factory=dict
+    )  # reason why a file is not shared, by file name
+    program_keys: frozenset[str] = frozenset()  # keys of all files of the last scan, shared or not
     _read: dict[str, tuple[_Stamp, str]] = field(default_factory=dict)
     _seen: dict[str, _Stamp] = field(default_factory=dict)
 
-    def look(self, *, settled: bool) -> dict[str, SharedFile]:
+    def read_files(self, *, is_settled: bool) -> dict[str, ProgramFile]:
         """Return the files by the key of their program.
 
-        With ``settled``, a file that is still being written is left for the next scan.
+        With ``is_settled``, a file that is still being written is left for the next scan.
         """
-        found, refused, stamps = dict[str, SharedFile](), dict[str, str](), dict[str, _Stamp]()
+        found, refused, stamps = dict[str, ProgramFile](), dict[str, str](), dict[str, _Stamp]()
         names = [path.name for path in _program_files(self.folder)]
-        keys = [key_of(name) for name in names]
+        keys = [make_program_key(name) for name in names]
         for name, key in zip(names, keys, strict=True):
             path = self.folder / name
             try:
                 status = path.stat()
                 stamps[name] = stamp = status.st_mtime_ns, status.st_size
                 why = _why_not(name, status.st_size, twice=keys.count(key) > 1)
-                if not why and (not settled or stamp == self._seen.get(name, stamp)):
-                    found[key] = SharedFile(name, path, self._digest(path, stamp))
+                if not why and (not is_settled or stamp == self._seen.get(name, stamp)):
+                    found[key] = ProgramFile(name, path, self._digest(path, stamp))
             except OSError as error:
                 why = error.strerror or str(error)
             if why:
                 refused[name] = why
-        self.refused, self._seen, self.present = refused, stamps, frozenset(keys)
+        self.rejected_files, self._seen, self.program_keys = refused, stamps, frozenset(keys)
         return found
 
     def _digest(self, path: Path, stamp: _Stamp) -> str:
         before = self._read.get(path.name)
         if before is not None and before[0] == stamp:
             return before[1]
-        digest = sha256(input_bytes(path, MOST_BYTES)).hexdigest()
+        digest = sha256(read_input_bytes(path, MAX_PROGRAM_BYTES)).hexdigest()
         if time.time_ns() - stamp[0] > _GRAIN:
             self._read[path.name] = stamp, digest
         return digest
@@ -460,7 +484,7 @@ def _program_files(folder: Path) -> list[Path]:
     return [
         path
         for path in paths
-        if path.suffix.lower() in ENDINGS and not path.name.startswith(".") and path.is_file()
+        if path.suffix.lower() in PROGRAM_EXTENSIONS and not path.name.startswith(".") and path.is_file()
     ]
 
 
@@ -470,10 +494,10 @@ def _why_not(name: str, size: int, *, twice: bool) -> str:
             "the name of another program on this control differs from the name of this "
             "program only in upper and lower case: rename one of the programs"
         )
-    if size > MOST_BYTES:
-        return Message("the file is larger than {most_bytes} MB", most_bytes=MOST_BYTES // 2**20)
+    if size > MAX_PROGRAM_BYTES:
+        return Message("the file is larger than {most_bytes} MB", most_bytes=MAX_PROGRAM_BYTES // 2**20)
     try:
-        check_name(name)
+        check_program_name(name)
     except StoreError as error:
         return str(error)
     return ""

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from app.compose.backends.backend_entry import Answers, Row
-from app.extras.sharing.sharing_desk import place_of
-from core.extras.sharing.shared_place import SharingError
+from app.compose.backends.backend_entry import CheckResults, CheckRow
+from app.extras.sharing.sharing_setup import make_location
+from core.extras.sharing.shared_location import SharingError
 from core.extras.sharing.sharing_table import SharingTable
 from core.machine.machine_model import Machine
 
 
-def check_sharing(machine: Machine, answers: Answers) -> None:
+def check_sharing(machine: Machine, report: CheckResults) -> None:
     """Add a row that shows whether the shared location responds and is set up."""
-    table = machine.hardware.table(SharingTable)
+    table = machine.hardware.find_driver_table(SharingTable)
     if table is None:
         return
-    place = place_of(table)
+    place = make_location(table)
     try:
-        found = place.look({})
+        found = place.read_contents({})
     except SharingError as error:
-        answers.rows.append(Row("sharing", place.name, "no answer", str(error)))
-        answers.trouble.append(str(error))
+        report.rows.append(CheckRow("sharing", place.name, "no answer", str(error)))
+        report.faults.append(str(error))
     else:
-        desks = ", ".join(sorted(each.desk for each in found.desks)) or ("no control shares programs yet")
-        answers.rows.append(Row("sharing", place.name, "ok", desks))
+        desks = ", ".join(sorted(each.desk for each in found.machine_states)) or (
+            "no control shares programs yet"
+        )
+        report.rows.append(CheckRow("sharing", place.name, "ok", desks))

@@ -7,27 +7,27 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import wrap
 
-from app.desk.background_work import Latest
+from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.sheet import STEPS, Key, Row, Sheet
-from app.desk.status.formats import NOTHING, local_time
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, TableContent, TableRow
+from app.desk.status.formats import NO_VALUE, format_local_time
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.editor.versions import NoArchive, VersionHistory, lines_of
-from app.extras.sharing.sharing import Shared, Sharing
-from core.access.access_table import Act
-from core.extras.sharing.shared_versions import Family, SharedVersion, key_of
+from app.editor.version_history import NullArchive, VersionHistory, decode_text
+from app.extras.sharing.sharing import ProgramSharing, SharingResult
+from core.access.access_table import ProtectedChange
+from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion, make_program_key
 from core.message import Message, join_messages
 from core.store.store_rows import VersionRow
 
-NO_PLACE = (
+NO_LOCATION_MESSAGE = (
     "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A "
     "DATABASE UNDER [sharing] IN THE MACHINE FILE"
 )
-NOTHING_YET = "NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER"
-MARK_ONE = "SELECT A PROGRAM FIRST"
-BUSY = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
+NOTHING_SHARED_MESSAGE = "NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER"
+SELECT_PROGRAM_MESSAGE = "SELECT A PROGRAM FIRST"
+BUSY_MESSAGE = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 _STATES = {
     "new": ("NOT ON THIS CONTROL", Tone.READY),
     "newer": ("NEWER VERSION ON ANOTHER CONTROL", Tone.PAUSE),
@@ -40,7 +40,7 @@ _PATIENCE = 30.0  # seconds after which a slow location is reported
 
 
 @dataclass(slots=True)
-class VersionsElsewhere(VersionHistory):
+class RemoteVersions(VersionHistory):
     """Newest versions on other machines. ``changes`` are the differences from the local text."""
 
     def heading(self) -> str:
@@ -49,43 +49,43 @@ class VersionsElsewhere(VersionHistory):
 
     def words(self) -> str:
         """Return the status of the selected version as text."""
-        if self.trouble:
-            return self.trouble
+        if self.error_text:
+            return self.error_text
         if not self.rows:
-            return "READING" if self.worker.busy else "NO OTHER CONTROL HAS A NEWER VERSION"
+            return "READING" if self.worker.is_busy else "NO OTHER CONTROL HAS A NEWER VERSION"
         if self.text is None:
             return "COMPARING"
         return "" if self.changes else "SAME TEXT AS ON THIS CONTROL"
 
-    def between(self, marked: str, now: str) -> tuple[str, str]:
+    def order_texts(self, selected: str, current: str) -> tuple[str, str]:
         """Return the local text and the text of the selected version."""
-        return now, marked
+        return current, selected
 
 
 @dataclass(slots=True)
-class NewestElsewhere:
-    """Archive for ``VersionsElsewhere``: the versions of the last synchronization, numbered from 1."""
+class RemoteVersionArchive:
+    """Archive for ``RemoteVersions``: the versions of the last synchronization, numbered from 1."""
 
-    sharing: Sharing
+    sharing: ProgramSharing
 
-    def of(self, key: str) -> Sequence[SharedVersion]:
+    def find_remote_versions(self, key: str) -> Sequence[SharedVersion]:
         """Return the versions that this machine does not have."""
-        return self.sharing.now.families.get(key, Family()).elsewhere
+        return self.sharing.last_result.programs.get(key, ProgramVersions()).newest_remote_versions
 
     def versions(self, name: str) -> Sequence[VersionRow]:
         """Return the versions with their author and the machines that have them."""
-        return [self._row(number, each) for number, each in enumerate(self.of(name), 1)]
+        return [self._row(number, each) for number, each in enumerate(self.find_remote_versions(name), 1)]
 
-    def text_of(self, name: str, version: int) -> bytes:
+    def read_version_text(self, name: str, version: int) -> bytes:
         """Return the text of a version. Raises SharingError and StoreError."""
-        return self.sharing.text(self.of(name)[version - 1])
+        return self.sharing.read_text(self.find_remote_versions(name)[version - 1])
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Store nothing and return 0."""
         return 0
 
     def _row(self, number: int, version: SharedVersion) -> VersionRow:
-        on = ", ".join(self.sharing.now.who_has(version.id))
+        on = ", ".join(self.sharing.last_result.find_machines_with(version.id))
         who = (
             join_messages("  ·  ", (version.desk, tr(Message("AVAILABLE ON {desks}", desks=on))))
             if on
@@ -96,124 +96,133 @@ class NewestElsewhere:
 
 @dataclass(slots=True)
 class SharingModel:
-    """Model of the page. ``sharing`` is None without a location, ``look_now`` wakes the sharing thread.
+    """Model of the page. ``sharing`` is None without a location, ``synchronize_now`` wakes the sharing
+    thread.
 
-    ``silent_for`` returns how long the thread has waited for the location, in seconds.
+    ``get_waiting_time`` returns how long the thread has waited for the location, in seconds.
     """
 
     desk: Desk
-    sharing: Sharing | None = None
-    look_now: Callable[[], None] = lambda: None
-    silent_for: Callable[[], float] = lambda: 0.0
-    marked: int = 0
-    worker: Latest = field(default_factory=lambda: Latest("sharing-page"))
-    elsewhere: VersionsElsewhere = field(init=False)
+    sharing: ProgramSharing | None = None
+    synchronize_now: Callable[[], None] = lambda: None
+    get_waiting_time: Callable[[], float] = lambda: 0.0
+    selected_row: int = 0
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("sharing-page"))
+    remote_versions: RemoteVersions = field(init=False)
     _seen: tuple[object, str] = (None, "")  # program and state of the comparison
     # sorted state
-    _of: tuple[Shared | None, tuple[tuple[str, Family], ...], tuple[Row, ...]] = (None, (), ())
+    _of: tuple[SharingResult | None, tuple[tuple[str, ProgramVersions], ...], tuple[TableRow, ...]] = (
+        None,
+        (),
+        (),
+    )
 
     def __post_init__(self) -> None:
-        archive = NewestElsewhere(self.sharing) if self.sharing is not None else NoArchive()
-        self.elsewhere = VersionsElsewhere(archive, self.worker)
+        archive = RemoteVersionArchive(self.sharing) if self.sharing is not None else NullArchive()
+        self.remote_versions = RemoteVersions(archive, self.worker)
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def shared(self) -> Shared:
+    def last_result(self) -> SharingResult:
         """Result of the last synchronization."""
-        return self.sharing.now if self.sharing is not None else Shared()
+        return self.sharing.last_result if self.sharing is not None else SharingResult()
 
     @property
-    def programs(self) -> tuple[tuple[str, Family], ...]:
+    def programs(self) -> tuple[tuple[str, ProgramVersions], ...]:
         """Shared programs, with those that need a decision first, then by name."""
-        shared = self.shared
+        shared = self.last_result
         if shared is not self._of[0]:
-            states = shared.states
-            order = sorted(shared.families.items(), key=lambda each: (_ORDER.index(states[each[0]]), each[0]))
+            states = shared.states_by_program
+            order = sorted(shared.programs.items(), key=lambda each: (_ORDER.index(states[each[0]]), each[0]))
             rows = tuple(self._row(key, family) for key, family in order)
             self._of = shared, tuple(order), rows
         return self._of[1]
 
     @property
-    def program(self) -> tuple[str, Family] | None:
+    def selected_program(self) -> tuple[str, ProgramVersions] | None:
         """Selected program with its key, or None."""
         programs = self.programs
-        return programs[self.marked] if self.marked < len(programs) else None
+        return programs[self.selected_row] if self.selected_row < len(programs) else None
 
     @property
-    def version(self) -> SharedVersion | None:
+    def selected_version(self) -> SharedVersion | None:
         """Selected version of another machine, or None."""
-        here, number = self.program, self.elsewhere.number
-        if here is None or self.elsewhere.name != here[0] or not 0 < number <= len(here[1].elsewhere):
+        here, number = self.selected_program, self.remote_versions.number
+        if (
+            here is None
+            or self.remote_versions.program_name != here[0]
+            or not 0 < number <= len(here[1].newest_remote_versions)
+        ):
             return None
-        return here[1].elsewhere[number - 1]
+        return here[1].newest_remote_versions[number - 1]
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Process results of the worker, and compare again after a change; called once per frame."""
         self.worker.poll()
-        self.marked = max(0, min(self.marked, len(self.shared.families) - 1))
-        key = self.program[0] if self.program is not None else ""
-        now = self.program[1] if self.program is not None else None
+        self.selected_row = max(0, min(self.selected_row, len(self.last_result.programs) - 1))
+        key = self.selected_program[0] if self.selected_program is not None else ""
+        now = self.selected_program[1] if self.selected_program is not None else None
         if (now, key) == self._seen or self.sharing is None:
             return
         self._seen = now, key
         sharing = self.sharing
-        self.worker.queue(
-            lambda: lines_of(sharing.text_here(key)),
-            lambda text: self.elsewhere.look(key, text),
-            self.desk.refuse,
+        self.worker.enqueue(
+            lambda: decode_text(sharing.read_local_text(key)),
+            lambda text: self.remote_versions.open_history(key, text),
+            self.desk.show_refusal,
         )
 
-    def sheet(self) -> Sheet:
+    def make_table(self) -> TableContent:
         """Return the table of programs with state, author, time and machines of the newest version."""
         rows = self._of[2] if self.programs else ()
-        notes = wrap(self._silence() or tr(self.shared.trouble), _WIDE)
-        notes += [f"{name}: {why}" for name, why in list(self.shared.refused.items())[:2]]
+        notes = wrap(self._silence() or tr(self.last_result.error_text), _WIDE)
+        notes += [f"{name}: {why}" for name, why in list(self.last_result.rejected_files.items())[:2]]
         if self.sharing is None:
-            notes = [NO_PLACE]
+            notes = [NO_LOCATION_MESSAGE]
         elif not rows and not notes:
-            notes = [NOTHING_YET]
+            notes = [NOTHING_SHARED_MESSAGE]
         waiting = (
-            tr(Message("{count} WAITING TO BE SHARED", count=self.shared.waiting))
-            if self.shared.waiting
+            tr(Message("{count} WAITING TO BE SHARED", count=self.last_result.unpublished_count))
+            if self.last_result.unpublished_count
             else ""
         )
-        where = self.sharing.place.name if self.sharing is not None else ""
+        where = self.sharing.location.name if self.sharing is not None else ""
         title = join_messages("  ·  ", filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
-        return Sheet(
+        return TableContent(
             title,
             ("PROGRAM", "STATE", "BY", "SAVED", "AVAILABLE ON"),
             (0.24, 0.26, 0.14, 0.16, 0.2),
             rows,
-            self.marked if rows else -1,
+            self.selected_row if rows else -1,
             notes=tuple(notes),
-            raw=frozenset({0, 2, 3, 4}),
+            raw_columns=frozenset({0, 2, 3, 4}),
         )
 
     def _silence(self) -> str:
         """Return a message if the location has not responded for a long time, or an empty string."""
-        seconds = self.silent_for()
+        seconds = self.get_waiting_time()
         if self.sharing is None or seconds < _PATIENCE:
             return ""
         words = tr("{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW")
-        return tr(Message(words, name=self.sharing.place.name, seconds=f"{seconds:.0f}"))
+        return tr(Message(words, name=self.sharing.location.name, seconds=f"{seconds:.0f}"))
 
-    def _row(self, key: str, family: Family) -> Row:
-        state = self.shared.states[key]
+    def _row(self, key: str, family: ProgramVersions) -> TableRow:
+        state = self.last_result.states_by_program[key]
         words, tone = _STATES[state]
-        here = family.versions.get(family.here)
-        shown = family.elsewhere[0] if family.elsewhere else here
+        here = family.versions.get(family.local_version_id)
+        shown = family.newest_remote_versions[0] if family.newest_remote_versions else here
         if shown is None:
-            return Row((NOTHING,) * 5)
-        on = ", ".join(self.shared.who_has(shown.id)) or NOTHING
-        saved = local_time(shown.saved, seconds=False)
-        return Row(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
+            return TableRow((NO_VALUE,) * 5)
+        on = ", ".join(self.last_result.find_machines_with(shown.id)) or NO_VALUE
+        saved = format_local_time(shown.saved, seconds=False)
+        return TableRow(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt for the present keys."""
         if self.sharing is None:
-            return NO_PLACE
-        if self.version is None:
+            return NO_LOCATION_MESSAGE
+        if self.selected_version is None:
             return "UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC"
         if not self._both:
             return "F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC"
@@ -221,30 +230,34 @@ class SharingModel:
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the present function keys."""
         return {
-            "F2": Key("USE", self.take, barred=self.version is None or self.program is None),
-            "F3": Key("KEEP", self.keep, barred=not self._both),
-            "F4": Key("VERSION", self.next_version),
-            "F5": Key("REFRESH", self.ask_for_a_look, barred=self.sharing is None),
+            "F2": FunctionKey(
+                "USE",
+                self.copy_version,
+                barred=self.selected_version is None or self.selected_program is None,
+            ),
+            "F3": FunctionKey("KEEP", self.keep_local_version, barred=not self._both),
+            "F4": FunctionKey("VERSION", self.select_next_version),
+            "F5": FunctionKey("REFRESH", self.start_synchronization, barred=self.sharing is None),
         }
 
-    def take(self) -> None:
+    def copy_version(self) -> None:
         """Copy the selected version into the program folder.
 
         Replacing a program requires confirmation.
         """
-        version, here = self.version, self.program
+        version, here = self.selected_version, self.selected_program
         if version is None or here is None:
-            self.desk.say(MARK_ONE if here is None else "NO OTHER CONTROL HAS A NEWER VERSION")
-        elif self.desk.refused(Act.PROGRAMS):
+            self.desk.say(SELECT_PROGRAM_MESSAGE if here is None else "NO OTHER CONTROL HAS A NEWER VERSION")
+        elif self.desk.is_refused(ProtectedChange.PROGRAMS):
             return
-        elif why := self._silence() or self._in_use(version.key):
+        elif why := self._silence() or self._find_use_refusal(version.program_key):
             self.desk.say(why)
-        elif here[1].here:
+        elif here[1].local_version_id:
             words = tr("Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL")
-            self.desk.ask(
+            self.desk.ask_operator(
                 tr(Message(words, name=version.program, desk=version.desk)), lambda: self._take(version)
             )
         else:
@@ -252,7 +265,9 @@ class SharingModel:
 
     def _take(self, version: SharedVersion) -> None:
         # The program was started or the access level has expired in the meantime.
-        why = self._in_use(version.key) or self.desk.access.refusal(Act.PROGRAMS)
+        why = self._find_use_refusal(version.program_key) or self.desk.user_access.find_refusal(
+            ProtectedChange.PROGRAMS
+        )
         if why or self.sharing is None:
             self.desk.say(why)
             return
@@ -265,110 +280,112 @@ class SharingModel:
             program=version.program,
             machine=version.desk,
         )
-        self._work(lambda: sharing.take(version), done, change)
+        self._work(lambda: sharing.copy_version(version), done, change)
 
     @property
     def _both(self) -> bool:
         """Whether the selected program was changed both here and on another machine."""
-        here = self.program
-        return here is not None and self.shared.states.get(here[0]) == "both"
+        here = self.selected_program
+        return here is not None and self.last_result.states_by_program.get(here[0]) == "both"
 
-    def keep(self) -> None:
+    def keep_local_version(self) -> None:
         """Keep the local version instead of changes on other machines, after confirmation."""
-        here = self.program
+        here = self.selected_program
         if here is None or not self._both:
             self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
             return
-        if self.desk.refused(Act.PROGRAMS):
+        if self.desk.is_refused(ProtectedChange.PROGRAMS):
             return
-        key, name = here[0], here[1].versions[here[1].here].program
+        key, name = here[0], here[1].versions[here[1].local_version_id].program
         words = tr("Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL")
-        self.desk.ask(tr(Message(words, name=name)), lambda: self._keep(key, name))
+        self.desk.ask_operator(tr(Message(words, name=name)), lambda: self._keep(key, name))
 
     def _keep(self, key: str, name: str) -> None:
-        if self.sharing is not None and not self.desk.refused(Act.PROGRAMS):
+        if self.sharing is not None and not self.desk.is_refused(ProtectedChange.PROGRAMS):
             sharing = self.sharing
             said = tr(Message("{name}: LOCAL VERSION RETAINED", name=name))
             self._work(
-                lambda: sharing.keep(key), said, Message("program {name}: local version retained", name=name)
+                lambda: sharing.resolve_with_local(key),
+                said,
+                Message("program {name}: local version retained", name=name),
             )
 
     def _work(self, work: Callable[[], object], words: str, change: str) -> None:
-        if self.worker.busy or self._silence():
-            self.desk.say(self._silence() or BUSY)
+        if self.worker.is_busy or self._silence():
+            self.desk.say(self._silence() or BUSY_MESSAGE)
             return
 
-        who = self.desk.access.who  # the user of the request, even if another user signs in
+        who = self.desk.user_access.recorded_user  # the user of the request, even if another user signs in
 
         def done(_answer: object) -> None:
-            self.desk.done(words)
-            self.desk.access.persistence.note_change(change, who)
-            self.look_now()
+            self.desk.show_success(words)
+            self.desk.user_access.persistence.log_change(change, who)
+            self.synchronize_now()
 
-        self.worker.queue(work, done, self.desk.refuse)
+        self.worker.enqueue(work, done, self.desk.show_refusal)
 
-    def _in_use(self, key: str) -> str:
+    def _find_use_refusal(self, key: str) -> str:
         """Return the reason why a program must not be replaced now, or an empty string."""
-        snapshot, loaded = self.desk.snapshot(), self.desk.session.now
-        if snapshot.interrupted is not None and key_of(snapshot.interrupted.program) == key:
+        snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded
+        if snapshot.interrupted is not None and make_program_key(snapshot.interrupted.program) == key:
             words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
             return tr(Message(words, name=snapshot.interrupted.program))
         names = [Path(snapshot.program).name, loaded.name]
         if loaded.source is not None:
             names += [each.name for each in loaded.source.subprograms]
-        used = next((name for name in names if key_of(name) == key), "")
-        if used and snapshot.state in UNDER_WAY:
+        used = next((name for name in names if make_program_key(name) == key), "")
+        if used and snapshot.state in ACTIVE_STATES:
             return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=used))
         return ""
 
-    def next_version(self) -> None:
+    def select_next_version(self) -> None:
         """Select the next version if several machines have changed the program."""
-        count = len(self.elsewhere.rows)
+        count = len(self.remote_versions.rows)
         if count:
-            self.desk.clear()
-            self.elsewhere.mark((self.elsewhere.marked + 1) % count)
+            self.desk.clear_prompt_line()
+            self.remote_versions.mark((self.remote_versions.marked + 1) % count)
 
-    def ask_for_a_look(self) -> None:
+    def start_synchronization(self) -> None:
         """Start a synchronization now."""
         if self.sharing is None:
-            self.desk.say(NO_PLACE)
+            self.desk.say(NO_LOCATION_MESSAGE)
         elif self._silence():
             self.desk.say(self._silence())
         else:
-            self.desk.done("CHECKING …")
-            self.look_now()
+            self.desk.show_success("CHECKING …")
+            self.synchronize_now()
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Handle a key: arrows select a program, and Enter takes the selected version."""
-        if key in STEPS and self.programs:
-            self.choose(self.marked + STEPS[key])
+        if key in ROW_STEPS and self.programs:
+            self.select_row(self.selected_row + ROW_STEPS[key])
         elif key == "Enter":
-            self.take()
+            self.copy_version()
         else:
             return False
         return True
 
-    def takes(self, _key: str) -> bool:
+    def accepts_key(self, _key: str) -> bool:
         """Return False, because this page has no entry."""
         return False
 
-    def choose(self, row: int) -> None:
+    def select_row(self, row: int) -> None:
         """Select a program."""
-        self.desk.clear()
-        self.marked = max(0, min(len(self.programs) - 1, row))
+        self.desk.clear_prompt_line()
+        self.selected_row = max(0, min(len(self.programs) - 1, row))
 
-    def opened(self) -> None:
+    def on_open(self) -> None:
         """Start a synchronization when the page opens."""
-        self.look_now()
+        self.synchronize_now()
 
-    def escape(self) -> bool:
+    def handle_escape(self) -> bool:
         """Go back one step. Return False if the page can close."""
-        if not self.desk.notice:
+        if not self.desk.prompt_notice:
             return False
-        self.desk.clear()
+        self.desk.clear_prompt_line()
         return True
 
-    def leave(self) -> None:
+    def on_close(self) -> None:
         """Do nothing, because there is nothing to cancel."""
 
     def close(self) -> None:

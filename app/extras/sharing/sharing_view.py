@@ -8,16 +8,16 @@ from functools import partial
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.sheet import Key
-from app.desk.programs.program_loading import Loaded
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.editor.versions_view import VersionList
 from app.extras.sharing.sharing_model import SharingModel
-from app.screen.page_base import Host, KeyActions
-from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.table_panel import ListPage, TablePanel
 from core.executor.snapshot import Snapshot
 
-LIST = 0.5  # ratio of the height
+LIST_HEIGHT_SHARE = 0.5  # ratio of the height
 
 
 class SharedProgramsPage(ListPage):
@@ -26,45 +26,45 @@ class SharedProgramsPage(ListPage):
     NAME = "SHARED PROGRAMS"
     model: SharingModel
 
-    def __init__(self, host: Host, model: SharingModel, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: SharingModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.table = SheetPanel(self.look, self._chosen, self)
-        self.versions = VersionList(self.look, model.elsewhere, self)
+        self.table = TablePanel(self.theme, self._chosen, self)
+        self.versions = VersionList(self.theme, model.remote_versions, self)
         self.versions.title = "VERSIONS ON OTHER CONTROLS"
         self.versions.show()
 
-    def page_keys(self) -> Mapping[str, Key]:
+    def function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.keys()
+        return self.model.function_keys()
 
-    def labels(self) -> tuple[str, ...]:
+    def key_labels(self) -> tuple[str, ...]:
         """Return the labels of the model and of scrolling."""
-        return self.labels_of({"F6": "UP", "F8": "DOWN"}, self.page_keys())
+        return self.make_labels({"F6": "UP", "F8": "DOWN"}, self.function_keys())
 
     def key_actions(self) -> KeyActions:
         """Return the actions of the function keys."""
-        keys = self.page_keys()
+        keys = self.function_keys()
         scroll = {"F6": partial(self._scroll, -1), "F8": partial(self._scroll, 1)}
         return {**scroll, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.page_keys()[name].action()
+        self.function_keys()[name].action()
 
     def _scroll(self, pages: int) -> None:
         self.versions.scroll_by(pages * self.versions.rows)
 
     def _chosen(self, row: int) -> None:
-        self.model.choose(row)
+        self.model.select_row(row)
 
-    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Update list and comparison."""
-        self.model.look()
-        self.table.show_sheet(self.model.sheet())
+        self.model.update()
+        self.table.show_table(self.model.make_table())
         self.versions.refresh()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the list above the comparison."""
-        gap = max(4, round(0.7 * self.look.u))
-        high = round(LIST * (self.height() - gap))
+        gap = max(4, round(0.7 * self.theme.u))
+        high = round(LIST_HEIGHT_SHARE * (self.height() - gap))
         self.table.setGeometry(0, 0, self.width(), high)
         self.versions.setGeometry(0, high + gap, self.width(), self.height() - high - gap)

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from app.compose.extra import Extra, Subcommand
+from app.compose.optional_features import OptionalFeature, Subcommand
 
 if TYPE_CHECKING:
-    from core.json_key import Output
+    from core.json_keys import JsonOutput
 
 
-class ToolTables(Extra):
+class ToolTables(OptionalFeature):
     """Optional feature with the command ``turndesk tools``."""
 
-    commands = {
+    subcommands = {
         "tools": Subcommand("offsets", "import and export the tool tables of other programs"),
     }
 
-    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         from app.extras.tool_tables.import_command import IMPORT
 
         return {"offsets history --json": (IMPORT,)}

@@ -10,12 +10,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.actions.meant_changes import demand_meant
-from app.cli.store_command import opened_store
-from app.cli.who_changes import who_changes
+from app.cli.actions.change_confirmation import confirm_changes
+from app.cli.change_author import get_change_author
+from app.cli.store_command import open_store
 from app.compose.machine.machine_setup import read_machine
 from app.desk.command_errors import EXIT_OK, CommandError
-from app.desk.toml_file import refuse, unknown
+from app.desk.toml_file import describe_unknown_key, raise_mistakes
 from app.extras.tool_tables.import_plan import (
     FieldChange,
     Status,
@@ -23,15 +23,15 @@ from app.extras.tool_tables.import_plan import (
     ToolPlan,
     changes_of,
 )
-from core.access.access_table import Act
+from core.access.access_table import ProtectedChange
 from core.extras.tool_tables.csv_columns import FIELD_NAMES
 from core.extras.tool_tables.table_file import format_of, read_table
 from core.extras.tool_tables.tool_entry import Reading, ToolTable, ToolTableError
-from core.json_key import Output, keys
+from core.json_keys import JsonOutput, declare_keys
 from core.message import Message
 from core.store.offsets import offset_tables
-from core.store.offsets.offset_tables import Reason
-from core.store.store_rows import FIELDS, OFFSETS, Sort, Value, inches
+from core.store.offsets.offset_tables import ChangeReason
+from core.store.store_rows import FIELDS_BY_KIND, OFFSET_NUMBERS, FieldType, FieldValue, convert_to_inches
 
 if TYPE_CHECKING:
     from core.store.store import Store
@@ -44,12 +44,14 @@ def import_table(args: argparse.Namespace) -> int:
     if args.machine:
         read_machine(args.machine)  # reports a mistake in the option before anything is asked
     may_save = args.yes or not args.json
-    with opened_store(read_only=not may_save) as store:
-        who = who_changes(store, args, Act.TOOLS, Act.SHAPES) if may_save else ""
+    with open_store(read_only=not may_save) as store:
+        who = (
+            get_change_author(store, args, ProtectedChange.TOOLS, ProtectedChange.SHAPES) if may_save else ""
+        )
         word, table = _read(Path(args.file), args)
-        stored = StoredTools(store.offsets.tools.read_rows(), store.offsets.shapes.read_rows())
+        stored = StoredTools(store.offsets.tool_offsets.read_rows(), store.offsets.tool_shapes.read_rows())
         plans = stored.plans(table, positions=not args.no_positions)
-        refuse(Path(args.file), list(stored.mistakes(plans)))
+        raise_mistakes(Path(args.file), list(stored.mistakes(plans)))
         if not args.json:
             sys.stdout.writelines(f"{line}\n" for line in _preview(table, plans))
         wanted = _confirmed(plans, args) if may_save else ()
@@ -93,7 +95,7 @@ def _columns(entries: Iterable[str]) -> dict[str, str]:
             raise CommandError(text, "no-value")
         if field not in FIELD_NAMES:
             raise CommandError(
-                Message("--map: {text}", text=unknown(key.strip(), FIELD_NAMES)), "unknown-key"
+                Message("--map: {text}", text=describe_unknown_key(key.strip(), FIELD_NAMES)), "unknown-key"
             )
         if field in found:
             raise CommandError(Message("--map specifies {key} twice; remove one", key=field), "key-twice")
@@ -107,7 +109,7 @@ def _only(text: str) -> frozenset[int]:
     for part in filter(None, (each.strip() for each in text.split(","))):
         match = re.fullmatch(r"[Tt]?(\d{1,2})(?:\s*-\s*[Tt]?(\d{1,2}))?", part)
         first, last = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
-        if first not in OFFSETS or last not in OFFSETS or first > last:
+        if first not in OFFSET_NUMBERS or last not in OFFSET_NUMBERS or first > last:
             message = Message(
                 "--only {part} is not valid; use tool numbers 1 to 32, such as 1,3-6", part=part
             )
@@ -164,8 +166,8 @@ def _answer(question: str) -> bool:
 def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], who: str) -> None:
     """Save the plans as one step. Raises CommandError if a suspicious change is not confirmed."""
     changes = changes_of(plans)
-    demand_meant(store, args, changes)
-    reason = Reason(args.why or Message("import {file}", file=Path(args.file).name), who)
+    confirm_changes(store, args, changes)
+    reason = ChangeReason(args.why or Message("import {file}", file=Path(args.file).name), who)
     store.write(lambda connection: offset_tables.change_rows(connection, changes, reason)).result()
 
 
@@ -190,19 +192,19 @@ def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
 
 
 def _change(change: FieldChange) -> str:
-    field = FIELDS[change.kind][change.name]
-    old = "not set" if change.old in {None, ""} else _shown(field.sort, change.old)
-    return f"{field.word}: {old} → {_shown(field.sort, change.new)}"
+    field = FIELDS_BY_KIND[change.kind][change.name]
+    old = "not set" if change.old in {None, ""} else _shown(field.field_type, change.old)
+    return f"{field.label}: {old} → {_shown(field.field_type, change.new)}"
 
 
-def _shown(sort: Sort, value: Value | None) -> str:
+def _shown(sort: FieldType, value: FieldValue | None) -> str:
     if isinstance(value, str) or value is None:
         return str(value)
-    if sort is Sort.LENGTH:
-        return f"{inches(value):.5f} in"
-    if sort is Sort.FLAG:
+    if sort is FieldType.LENGTH:
+        return f"{convert_to_inches(value):.5f} in"
+    if sort is FieldType.BOOLEAN:
         return "yes" if value else "no"
-    return f"{value:g}°" if sort is Sort.ANGLE else f"{value:g}"
+    return f"{value:g}°" if sort is FieldType.ANGLE else f"{value:g}"
 
 
 def _write_json(
@@ -224,18 +226,18 @@ def _write_json(
 
 
 def _change_json(change: FieldChange) -> dict[str, object]:
-    is_length = FIELDS[change.kind][change.name].sort is Sort.LENGTH
+    is_length = FIELDS_BY_KIND[change.kind][change.name].field_type is FieldType.LENGTH
     values = [
-        inches(value) if is_length and value is not None and not isinstance(value, str) else value
+        convert_to_inches(value) if is_length and value is not None and not isinstance(value, str) else value
         for value in (change.old, change.new)
     ]
     return {"table": change.kind.value, "field": change.name, "old": values[0], "new": values[1]}
 
 
-IMPORT = Output(
+IMPORT = JsonOutput(
     "tools import FILE --json",
     "One object. Lengths are in inches, X is a radius. Without `--yes`, nothing is imported.",
-    keys(
+    declare_keys(
         """
 file | string | | The file.
 format | string | | Its format, as in --from.

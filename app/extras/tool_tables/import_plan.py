@@ -11,7 +11,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from core.message import CodedError, Message
-from core.store.store_rows import Kind, ShapeRow, ToolRow, Value, with_fields
+from core.store.store_rows import FieldValue, OffsetKind, ShapeRow, ToolRow, replace_fields
 
 if TYPE_CHECKING:
     from core.extras.tool_tables.tool_entry import ToolEntry, ToolTable
@@ -31,10 +31,10 @@ class Status(StrEnum):
 class FieldChange(NamedTuple):
     """A changed field, with its old value (None: not set) and new value in mm and degrees."""
 
-    kind: Kind
+    kind: OffsetKind
     name: str
-    old: Value | None
-    new: Value
+    old: FieldValue | None
+    new: FieldValue
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +47,20 @@ class ToolPlan:
     changes: tuple[FieldChange, ...]
     notes: tuple[str, ...]
 
-    def values(self, kind: Kind) -> dict[str, Value]:
+    def values(self, kind: OffsetKind) -> dict[str, FieldValue]:
         """Return the new values of one table by field."""
         return {each.name: each.new for each in self.changes if each.kind is kind}
 
 
-Changes = Mapping[Kind, Mapping[int, Mapping[str, Value]]]
+Changes = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
 def changes_of(plans: tuple[ToolPlan, ...]) -> Changes:
     """Return the new values of all plans by table and tool."""
-    kinds = {kind: {p.number: v for p in plans if (v := p.values(kind))} for kind in (Kind.TOOL, Kind.SHAPE)}
+    kinds = {
+        kind: {p.number: v for p in plans if (v := p.values(kind))}
+        for kind in (OffsetKind.TOOL, OffsetKind.SHAPE)
+    }
     return {kind: rows for kind, rows in kinds.items() if rows}
 
 
@@ -77,8 +80,8 @@ class StoredTools:
         old_tool, old_shape = self.tools.get(entry.number), self.shapes.get(entry.number)
         shape = dict(entry.shape)
         changes = (
-            *_differences(Kind.TOOL, old_tool, offset),
-            *_differences(Kind.SHAPE, old_shape, shape),
+            *_differences(OffsetKind.TOOL, old_tool, offset),
+            *_differences(OffsetKind.SHAPE, old_shape, shape),
         )
         known = old_tool is not None or old_shape is not None
         if changes:
@@ -87,7 +90,7 @@ class StoredTools:
             status = Status.UNCHANGED if known else Status.LEFT_OUT
         return ToolPlan(entry.number, entry.place, status, changes, (*entry.notes, *notes))
 
-    def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, Value], list[str]]:
+    def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
         """Return the values of the offset that can be stored, and notes about the others."""
         offset, notes = dict(entry.offset), []
         if not positions and {"x", "z"} & offset.keys():
@@ -108,32 +111,32 @@ class StoredTools:
 
     def mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
         """Yield the contradictions in the tool shapes that would result from the plans."""
-        from app.desk.stored_shapes import row_mistakes
+        from app.desk.stored_shapes import find_mistakes
 
         for plan in plans:
-            shape = with_fields(self.shapes.get(plan.number, ShapeRow()), plan.values(Kind.SHAPE))
-            tool = with_fields(self.tools.get(plan.number, ToolRow()), plan.values(Kind.TOOL))
-            for wrong in row_mistakes(shape, tool) if shape.kind and plan.changes else ():
+            shape = replace_fields(self.shapes.get(plan.number, ShapeRow()), plan.values(OffsetKind.SHAPE))
+            tool = replace_fields(self.tools.get(plan.number, ToolRow()), plan.values(OffsetKind.TOOL))
+            for wrong in find_mistakes(shape, tool) if shape.kind and plan.changes else ():
                 text = Message(
                     "{place} (T{number}): {field}: {text}",
                     place=plan.place,
                     number=plan.number,
-                    field=wrong.field,
-                    text=wrong.text,
+                    field=wrong.field_name,
+                    text=wrong.message,
                 )
                 yield CodedError(text, wrong.code)
 
 
 def _differences(
-    kind: Kind, old: ToolRow | ShapeRow | None, values: Mapping[str, Value]
+    kind: OffsetKind, old: ToolRow | ShapeRow | None, values: Mapping[str, FieldValue]
 ) -> Iterator[FieldChange]:
     for name, new in values.items():
-        before: Value | None = None if old is None else getattr(old, name)
+        before: FieldValue | None = None if old is None else getattr(old, name)
         if before is None or not _is_same(before, new):
             yield FieldChange(kind, name, before, new)
 
 
-def _is_same(old: Value, new: Value) -> bool:
+def _is_same(old: FieldValue, new: FieldValue) -> bool:
     if isinstance(old, str) or isinstance(new, str):
         return old == new
     return abs(old - new) <= _NEAR

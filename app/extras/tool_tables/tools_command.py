@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from app.cli.who_changes import add_as_option, add_consent_options
+from app.cli.change_author import add_as_option, add_consent_options
 from core.extras.tool_tables.table_file import FORMATS
 
 if TYPE_CHECKING:

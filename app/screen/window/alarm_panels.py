@@ -10,62 +10,62 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.status.alarm_log import LoggedStop
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import exactly
+from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
-from app.screen.look import Look, Painter, draw_sign
-from app.screen.panel import Panel, Shown
-from app.screen.sheet_panel import RowPanel
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ScreenTheme, ThemedPainter, draw_state_symbol
+from app.screen.table_panel import RowPanel
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
 
-WRAP = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-WORDS = int(Qt.TextFlag.TextWordWrap.value)
-_RECORD = 12.0  # Units: width of the key that opens a recording.
+WRAP_ALIGNMENT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+WORD_WRAP = int(Qt.TextFlag.TextWordWrap.value)
+_RECORDING_KEY_WIDTH = 12.0  # Units: width of the key that opens a recording.
 # Units: height of an entry, width of the time column, height of the key row.
 _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
 
 
-class Notice(Panel):
+class AlarmNotice(Panel):
     """A notice with the active alarms, the first one large, or with the message of M00 or M01."""
 
-    message, _go_on = Shown(""), Shown("")
-    _alarms: Shown[tuple[Alarm, ...]] = Shown(())
+    message, _go_on = RedrawingAttribute(""), RedrawingAttribute("")
+    _alarms: RedrawingAttribute[tuple[Alarm, ...]] = RedrawingAttribute(())
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, parent: QWidget | None = None) -> None:
+        super().__init__(theme, parent)
         self.hide()
 
-    def show_notice(self, message: str, go_on: str, alarms: tuple[Alarm, ...] = ()) -> None:
+    def show_notice(self, message: str, continue_hint: str, alarms: tuple[Alarm, ...] = ()) -> None:
         """Show the alarms, or else the message. Hide the notice if there is neither."""
-        self.message, self._go_on, self._alarms = message, go_on, alarms
+        self.message, self._go_on, self._alarms = message, continue_hint, alarms
         self.setVisible(bool(message or alarms))
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         if self._alarms:
             self._draw_alarm(painter, *self._alarms)
         else:
             self._draw_message(painter)
 
-    def _head(self, painter: Painter, tone: Tone, text: str) -> QRectF:
-        look, u = self.look, self.look.u
-        painter.fill(self.area(), tone.value)
-        painter.fill(self.area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), "panel")
+    def _head(self, painter: ThemedPainter, tone: Tone, text: str) -> QRectF:
+        look, u = self.theme, self.theme.u
+        painter.fill_rect(self.find_full_area(), tone.value)
+        painter.fill_rect(self.find_full_area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), "panel")
         head = QRectF(0, 0, self.width(), 5.6 * u)
-        painter.fill(head, tone.value)
-        draw_sign(painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, look.colour("on_state"))
-        painter.write(head.adjusted(5.6 * u, 0, -u, 0), text, 2.6, "on_state", margin=1.4)
-        return self.area().adjusted(2 * u, 6.8 * u, -2 * u, -1.4 * u)
+        painter.fill_rect(head, tone.value)
+        draw_state_symbol(painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, look.color("on_state"))
+        painter.draw_text_line(head.adjusted(5.6 * u, 0, -u, 0), text, 2.6, "on_state", margin=1.4)
+        return self.find_full_area().adjusted(2 * u, 6.8 * u, -2 * u, -1.4 * u)
 
-    def _draw_message(self, painter: Painter) -> None:
+    def _draw_message(self, painter: ThemedPainter) -> None:
         room = self._head(painter, Tone.PAUSE, "PROGRAM STOP")
-        u = self.look.u
+        u = self.theme.u
         foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
         room.setBottom(foot.top() - 0.6 * u)
-        self._wrapped(painter, room, self.message, 6.0)
-        painter.write(foot, self._go_on, 2.2, "accent")
+        self._draw_wrapped(painter, room, self.message, 6.0)
+        painter.draw_text_line(foot, self._go_on, 2.2, "accent")
 
-    def _draw_alarm(self, painter: Painter, alarm: Alarm, *more: Alarm) -> None:
+    def _draw_alarm(self, painter: ThemedPainter, alarm: Alarm, *more: Alarm) -> None:
         """Draw the first alarm large and the others in one line. The first often caused the others."""
         parts = [
             Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text),
@@ -83,32 +83,32 @@ class Notice(Panel):
             box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)
             self._labelled(painter, box, label, text)
 
-    def _draw_more(self, painter: Painter, room: QRectF, more: tuple[Alarm, ...]) -> QRectF:
+    def _draw_more(self, painter: ThemedPainter, area: QRectF, more: tuple[Alarm, ...]) -> QRectF:
         """Draw the other alarms in one line at the bottom, and return the rectangle that remains."""
-        u = self.look.u
-        foot = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.6 * u)
+        u = self.theme.u
+        foot = QRectF(area.x(), area.bottom() - 2.6 * u, area.width(), 2.6 * u)
         text = Message(
             "OTHER ALARMS: {number}", number="  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
         )
-        painter.write(foot, text, 1.9, "alarm")
-        return room.adjusted(0, 0, 0, -3.0 * u)
+        painter.draw_text_line(foot, text, 1.9, "alarm")
+        return area.adjusted(0, 0, 0, -3.0 * u)
 
-    def _labelled(self, painter: Painter, room: QRectF, label: str, text: str) -> None:
-        u = self.look.u
-        painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), label, 1.6, "soft")
-        self._wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
+    def _labelled(self, painter: ThemedPainter, room: QRectF, label: str, text: str) -> None:
+        u = self.theme.u
+        painter.draw_text_line(QRectF(room.x(), room.y(), room.width(), 2.0 * u), label, 1.6, "soft")
+        self._draw_wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
 
-    def _wrapped(self, painter: Painter, room: QRectF, text: str, size: float) -> None:
+    def _draw_wrapped(self, painter: ThemedPainter, area: QRectF, text: str, size: float) -> None:
         """Draw a wrapped text, not larger than ``size``, and small enough to fit."""
-        painter.setPen(self.look.colour("text"))
+        painter.setPen(self.theme.color("text"))
         while True:
-            painter.setFont(self.look.font(size, bold=True))
-            flags = int(WRAP.value) | WORDS
-            needed = painter.boundingRect(room, flags, text)
-            if size <= 1.4 or (needed.height() <= room.height() and needed.width() <= room.width()):
+            painter.setFont(self.theme.make_font(size, is_bold=True))
+            flags = int(WRAP_ALIGNMENT.value) | WORD_WRAP
+            needed = painter.boundingRect(area, flags, text)
+            if size <= 1.4 or (needed.height() <= area.height() and needed.width() <= area.width()):
                 break
             size *= 0.9
-        painter.wrap(room, flags, text)
+        painter.draw_wrapped_text(area, flags, text)
 
 
 class AlarmList(RowPanel):
@@ -118,83 +118,88 @@ class AlarmList(RowPanel):
     """
 
     title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD"
-    notch, keyed = 1, False
-    marked = Shown(0)
+    scroll_step, has_scroll_keys = 1, False
+    marked = RedrawingAttribute(0)
 
-    def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget) -> None:
-        """Create the list. ``open_record`` opens the recording of an entry by its file name."""
-        super().__init__(look, parent)
-        self._open = open_record
-        self.entries: tuple[LoggedStop, ...] = ()
+    def __init__(self, theme: ScreenTheme, open_recording: Callable[[str], None], parent: QWidget) -> None:
+        """Create the list. ``open_recording`` opens the recording of an entry by its file name."""
+        super().__init__(theme, parent)
+        self._open = open_recording
+        self.logged_stops: tuple[LoggedStop, ...] = ()
         self.hide()
 
-    def show_entries(self, entries: Sequence[LoggedStop]) -> None:
+    def show_entries(self, logged_stops: Sequence[LoggedStop]) -> None:
         """Show these entries, and select the newest if the list has changed."""
-        if entries is not self.entries:
-            self.entries = tuple(entries)
-            self.top = self.marked = 0
+        if logged_stops is not self.logged_stops:
+            self.logged_stops = tuple(logged_stops)
+            self.first_row = self.marked = 0
             self.update()
 
     def scroll_by(self, rows: int) -> None:
         """Scroll to older entries, or to newer ones with a negative number."""
         super().scroll_by(rows)
-        self.mark(max(self.top, min(self.marked, self.top + self.rows - 1)))
+        self.mark(max(self.first_row, min(self.marked, self.first_row + self.rows - 1)))
 
-    def mark(self, number: int) -> None:
+    def mark(self, index: int) -> None:
         """Select an entry, counted from 0 for the newest. The number is limited to the list."""
-        self.marked = max(0, min(number, len(self.entries) - 1))
+        self.marked = max(0, min(index, len(self.logged_stops) - 1))
 
     @property
-    def record(self) -> str:
+    def recording_name(self) -> str:
         """The name of the selected entry's recording. Empty without a recording."""
-        return self.entries[self.marked].record if self.marked < len(self.entries) else ""
+        return self.logged_stops[self.marked].recording_name if self.marked < len(self.logged_stops) else ""
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
         room = self.inside()
-        if not self.entries:
+        if not self.logged_stops:
             room.setHeight(3 * u)
-            painter.write(room, "No alarms or stops yet.", 2.0, "soft", bold=False)
+            painter.draw_text_line(room, "No alarms or stops yet.", 2.0, "soft", bold=False)
             return
         foot = QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u)
         room.setBottom(foot.top())
-        fits = self.fitting(room, _HIGH * u, len(self.entries))
-        self.scrolled(painter, room, fits, len(self.entries), self.marked)
-        for number, row in self.boxes(room, _HIGH * u):
+        fits = self.count_fitting_rows(room, _HIGH * u, len(self.logged_stops))
+        self.draw_scroll_keys(painter, room, fits, len(self.logged_stops), self.marked)
+        for number, row in self.find_row_boxes(room, _HIGH * u):
             marked = number == self.marked
             if marked:
-                painter.fill(QRectF(row.x(), row.y(), 0.4 * u, (_HIGH - 0.5) * u), "lit")
-            self._entry(painter, QRectF(row), self.entries[number])
-            self.place(row, partial(self.mark, number), kind="row", on=marked)
-        self._pages(painter, foot)
+                painter.fill_rect(QRectF(row.x(), row.y(), 0.4 * u, (_HIGH - 0.5) * u), "lit")
+            self._entry(painter, QRectF(row), self.logged_stops[number])
+            self.add_target(row, partial(self.mark, number), kind="row", is_on=marked)
+        self._draw_pages(painter, foot)
 
-    def _entry(self, painter: Painter, row: QRectF, entry: LoggedStop) -> None:
-        u, alarm = self.look.u, entry.alarm
-        grave = CATALOGUE[alarm.code].reaction in {Reaction.OFF, Reaction.STOP} or alarm.code == "estop"
+    def _entry(self, painter: ThemedPainter, row: QRectF, entry: LoggedStop) -> None:
+        u, alarm = self.theme.u, entry.alarm
+        grave = (
+            CATALOGUE[alarm.code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP} or alarm.code == "estop"
+        )
         left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u
         row.setLeft(row.left() + 0.8 * u)
-        if entry.record:
-            wide -= _RECORD * u
+        if entry.recording_name:
+            wide -= _RECORDING_KEY_WIDTH * u
             box = QRectF(
-                row.right() - (_RECORD - 0.8) * u, row.y() + 0.2 * u, (_RECORD - 0.8) * u, (_HIGH - 0.8) * u
+                row.right() - (_RECORDING_KEY_WIDTH - 0.8) * u,
+                row.y() + 0.2 * u,
+                (_RECORDING_KEY_WIDTH - 0.8) * u,
+                (_HIGH - 0.8) * u,
             )
-            self.key(painter, box, "SCOPE", 1.9, partial(self._open, entry.record), ink="accent")
-        painter.fill(QRectF(row.x(), row.bottom() - 0.3 * u, row.width(), 0.1 * u), "frame")
+            self.key(painter, box, "SCOPE", 1.9, partial(self._open, entry.recording_name), color="accent")
+        painter.fill_rect(QRectF(row.x(), row.bottom() - 0.3 * u, row.width(), 0.1 * u), "frame")
         when, ink = QRectF(row.x(), row.y(), _WHEN * u, 2.4 * u), "alarm" if grave else "text"
-        painter.write(when, entry.at, 1.8, "soft", bold=False, raw=True, margin=1.0)
+        painter.draw_text_line(when, entry.local_time, 1.8, "soft", bold=False, raw=True, margin=1.0)
         if alarm.line:
             place = QRectF(row.x(), row.y() + 2.3 * u, _WHEN * u, 2.1 * u)
-            painter.write(place, Message("line {line}", line=alarm.line), 1.8, "soft", bold=False)
+            painter.draw_text_line(place, Message("line {line}", line=alarm.line), 1.8, "soft", bold=False)
         what = Message("{number}  ·  {alarm}", number=alarm.number, alarm=alarm.text)
-        painter.write(QRectF(left, row.y(), wide, 2.4 * u), what, 2.0, ink, fit=False)
-        for y, ink, text in ((2.3, "text", exactly(alarm)), (4.3, "soft", alarm.remedy)):
-            painter.write(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
+        painter.draw_text_line(QRectF(left, row.y(), wide, 2.4 * u), what, 2.0, ink, fit=False)
+        for y, ink, text in ((2.3, "text", describe_cause(alarm)), (4.3, "soft", alarm.remedy)):
+            painter.draw_text_line(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
-    def _pages(self, painter: Painter, foot: QRectF) -> None:
+    def _draw_pages(self, painter: ThemedPainter, foot: QRectF) -> None:
         """Draw two touch keys that scroll to newer and older entries, if there are any."""
-        u = self.look.u
+        u = self.theme.u
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
-            possible = self.top > 0 if by < 0 else self.top + self.rows < len(self.entries)
+            possible = self.first_row > 0 if by < 0 else self.first_row + self.rows < len(self.logged_stops)
             if not possible:
                 continue
             box = QRectF(foot.right() - (2 - number) * 17 * u, foot.y(), 16 * u, foot.height())

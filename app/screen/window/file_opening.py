@@ -54,8 +54,8 @@ class FileOpening(QObject):
             frame.desk.say(tr("DROP ONE PROGRAM AT A TIME"))
         elif not files[0].is_file():
             frame.desk.say(tr(Message("{name} IS A FOLDER. DROP A PROGRAM", name=files[0].name)))
-        elif frame.desk.programs.can_choose() and frame.go(AUTOMATIC):
-            frame.desk.programs.load(files[0])
+        elif frame.desk.program_choice.can_choose() and frame.open_page(AUTOMATIC):
+            frame.desk.program_choice.load_path(files[0])
         self._window.refresh()
 
     def open_file(self, path: Path) -> None:

@@ -22,41 +22,41 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import Desk
-from app.desk.late_presses import Starting
-from app.desk.status.prompt_line import MOVING, UNDER_WAY
-from app.desk.stop_keys.stop_records import BY_SCREEN
-from app.desk.translation import spoken, tr
-from app.screen.look import PALETTES, Look, dress, speak_in
-from app.screen.page_table import AUTOMATIC, PagesAhead
-from app.screen.panel import FingerPanel
+from app.desk.late_presses import StartingAction
+from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
+from app.desk.stop_keys.stop_records import SOURCE_SCREEN
+from app.desk.translation import get_language, tr
+from app.screen.page_table import AUTOMATIC, PagePreloader
+from app.screen.panel import TouchPanel
+from app.screen.screen_theme import PALETTES, ScreenTheme, style_application, use_language
 from app.screen.text_sizes import panel_size
-from app.screen.window.keyboard import EventTimes, Keyboard, key_of, letter_of
-from app.screen.window.keys import (
-    ANSWER,
-    NO,
-    OF_AUTOMATIC,
-    PALMS,
-    REPEATING,
+from app.screen.window.key_table import (
+    AUTOMATIC_KEYS,
+    NO_KEY,
+    PALM_KEYS,
+    REPEATED_WHEN_TYPED,
+    REPEATING_KEYS,
     STOP_LETTERS,
-    TYPED_AGAIN,
-    name_of,
-    typed_of,
+    YES_KEY,
+    find_typed_text,
+    name_key,
 )
-from app.screen.window.window_frame import Face, Frame
-from app.screen.window_layout import LEAST
+from app.screen.window.keyboard import InputTimes, KeyboardFilter, find_key_code, find_letter
+from app.screen.window.window_frame import ScreenContext, WindowFrame
+from app.screen.window_layout import MIN_WINDOW_PX
 from core.message import Message
 
 FRAME_MS = 16  # Maximum 60 frames per second.
-SOON_MS = 48  # Interval at rest without recent input, if something new was shown.
-REST_MS = 96  # Interval if nothing new was shown. A change at rest wakes the window.
-UNTOUCHED = 2.0  # Seconds.
+IDLE_FRAME_MS = 48  # Interval at rest without recent input, if something new was shown.
+REST_FRAME_MS = 96  # Interval if nothing new was shown. A change at rest wakes the window.
+IDLE_AFTER_S = 2.0  # Seconds.
 START_SIZE = (1280, 720)
-TITLE_BAR = 60  # Pixels that the title bar of a window manager uses.
+TITLE_BAR_PX = 60  # Pixels that the title bar of a window manager uses.
 
 
-def fill_screen(window: QWidget, *, frameless: bool = False) -> None:
+def show_full_screen(window: QWidget, *, is_frameless: bool = False) -> None:
     """Show a window on the whole screen. The geometry is set too, in case there is no window manager."""
-    if frameless:
+    if is_frameless:
         window.setWindowFlag(Qt.WindowType.FramelessWindowHint)
     screen = window.screen()
     if screen is not None:
@@ -67,86 +67,99 @@ def fill_screen(window: QWidget, *, frameless: bool = False) -> None:
 class MainWindow(QWidget):
     """The main window, with one page at a time. Without a model, it shows that TurnDesk is starting."""
 
-    stirred = Signal()  # The machine has changed. Any thread may emit this signal.
+    machine_changed = Signal()  # The machine has changed. Any thread may emit this signal.
 
-    def __init__(self, look: Look, closed: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, theme: ScreenTheme, on_closed: Callable[[], None] = lambda: None) -> None:
         super().__init__()
-        self._closed = closed
+        self._closed = on_closed
         self._meant = False  # The operator confirmed closing although data will be lost.
         self._untaken = ""  # Message about the last character that an input field rejected.
-        self.look = look
-        self.frame: Frame | None = None
-        self.ahead: PagesAhead | None = None
+        self.theme = theme
+        self.frame: WindowFrame | None = None
+        self.page_preloader: PagePreloader | None = None
         self._keys: dict[str, Callable[[], None]] = {}
-        self.times = EventTimes()
-        self.times.woken = self._wake
-        self.stirred.connect(self._wake, Qt.ConnectionType.QueuedConnection)
-        self.keyboard = Keyboard(self, self.times)
+        self.input_times = InputTimes()
+        self.input_times.on_wake = self._resume_polling
+        self.machine_changed.connect(self._resume_polling, Qt.ConnectionType.QueuedConnection)
+        self.keyboard_filter = KeyboardFilter(self, self.input_times)
         self._page = ""  # The page that has the keyboard.
         # Screen states that were shown, with their start times.
-        self._faces: deque[tuple[float, Face]] = deque(maxlen=32)
+        self._faces: deque[tuple[float, ScreenContext]] = deque(maxlen=32)
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
-        self._timer.timeout.connect(self._tick)
+        self._timer.timeout.connect(self._handle_tick)
         self.setWindowTitle("TurnDesk")
-        self.setMinimumSize(*LEAST)
+        self.setMinimumSize(*MIN_WINDOW_PX)
         self.setWindowIcon(QIcon(str(files("resources") / "desktop" / "turndesk.svg")))
-        self.kiosk = False  # Only TurnDesk is visible, and the operator cannot close it.
+        self.is_kiosk = False  # Only TurnDesk is visible, and the operator cannot close it.
         self._full: bool | None = None  # Whether the window is full screen now; None: as it was opened.
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
-    def open_desk(self, desk: Desk) -> None:
+    def show_model(self, desk: Desk) -> None:
         """Show the model on the screen and begin to poll it."""
-        self.frame = Frame(self.look, desk, self.press, self)
+        self.frame = WindowFrame(self.theme, desk, self.press_key, self)
         # It belongs to another window of this model.
-        if (earlier := desk.pages.find(PagesAhead)) is not None:
+        if (earlier := desk.page_registry.find(PagePreloader)) is not None:
             earlier.close()
-        self.ahead = PagesAhead(desk, self.frame.page_named)
-        desk.pages.attach(self.ahead)
+        self.page_preloader = PagePreloader(desk, self.frame.find_page)
+        desk.page_registry.attach_model(self.page_preloader)
         self._keys = self._table(desk)
-        desk.window.connect(
-            self._stir, self.keyboard.stop_held, lambda: self.times.clock() - self.keyboard.now
+        desk.window_state.connect_window(
+            self._wake_from_thread,
+            self.keyboard_filter.is_stop_held,
+            lambda: self.input_times.clock() - self.keyboard_filter.event_time_s,
         )
-        watched = self.keyboard.watch_stops(desk.control.open_stop_line)
+        watched = self.keyboard_filter.start_key_watcher(desk.desk_control.open_stop_channel)
         if watched is not None:
-            desk.pages.attach(watched)
-        late = desk.window.late
-        late.report, late.on_answer = self._show_dropped, self.keyboard.answer_dropped
+            desk.page_registry.attach_model(watched)
+        late = desk.window_state.late_presses
+        late.report_names, late.on_answer_dropped = (
+            self._show_dropped,
+            self.keyboard_filter.note_answer_dropped,
+        )
         self.frame.setGeometry(self.rect())
         self.refresh()
         self.frame.show()
         self.setFocus()
         self._timer.start(FRAME_MS)
 
-    def _tick(self) -> None:
+    def _handle_tick(self) -> None:
         """Refresh the screen at the full rate, or at rest only if something has changed."""
-        known, frame = self.times.known, self.frame
-        self.times.frame()
-        known = known and self.times.known  # A stall was just detected, or its changes are not shown yet.
+        known, frame = self.input_times.is_screen_seen, self.frame
+        self.input_times.frame()
+        known = (
+            known and self.input_times.is_screen_seen
+        )  # A stall was just detected, or its changes are not shown yet.
         if frame is None:
             return
-        self.judge(late=False)
-        changed = not known or self._lively(frame) or frame.changed()
-        if changed or frame.aged():
+        self.set_late(is_late=False)
+        changed = not known or self._is_animating(frame) or frame.has_changed()
+        if changed or frame.is_outdated():
             self.refresh()
-        if not self._faces or self._faces[-1][1] != frame.face:
-            self._faces.append((self.times.clock(), frame.face))
-        makes = self.ahead is not None and not self.ahead.done
-        if self.ahead is not None:
-            self.ahead.step()
-        self._pace(FRAME_MS if self._lively(frame) else SOON_MS if changed or makes else REST_MS)
+        if not self._faces or self._faces[-1][1] != frame.screen_context:
+            self._faces.append((self.input_times.clock(), frame.screen_context))
+        makes = self.page_preloader is not None and not self.page_preloader.is_done
+        if self.page_preloader is not None:
+            self.page_preloader.run_slice()
+        self._pace(
+            FRAME_MS if self._is_animating(frame) else IDLE_FRAME_MS if changed or makes else REST_FRAME_MS
+        )
 
-    def _lively(self, frame: Frame) -> bool:
+    def _is_animating(self, frame: WindowFrame) -> bool:
         """Return whether the full frame rate is needed, because of motion, animation or recent input."""
-        played = frame.page.lively() and not self.isMinimized()
-        return not frame.at_rest or played or self.times.clock() - self.times.touched < UNTOUCHED
+        played = frame.current_page.is_animating() and not self.isMinimized()
+        return (
+            not frame.is_at_rest
+            or played
+            or self.input_times.clock() - self.input_times.touch_time < IDLE_AFTER_S
+        )
 
-    def _stir(self) -> None:
+    def _wake_from_thread(self) -> None:
         """Wake the window from any thread. A closed window ignores the call."""
         with suppress(RuntimeError):
-            self.stirred.emit()
+            self.machine_changed.emit()
 
-    def _wake(self) -> None:
+    def _resume_polling(self) -> None:
         """Return to the full frame rate at the first event or change of the machine."""
         self._pace(FRAME_MS)
 
@@ -157,97 +170,104 @@ class MainWindow(QWidget):
     def refresh(self) -> None:
         """Poll one snapshot and show it in all parts."""
         if self.frame is not None:
-            with self.frame.desk.window.late.suspended():
-                self._look_at_hands(self.frame)
+            with self.frame.desk.window_state.late_presses.suspend_check():
+                self._check_held_inputs(self.frame)
                 self.frame.refresh()
-                self._wear(self.frame)
+                self._apply_settings(self.frame)
 
-    def _look_at_hands(self, frame: Frame) -> None:
+    def _check_held_inputs(self, frame: WindowFrame) -> None:
         """Check which keys and buttons are really down for this page, and handle lost releases."""
-        if self._page != frame.page.NAME:
-            self._page = frame.page.NAME
-            self.keyboard.away()
-        self.keyboard.look()
-        if QApplication.mouseButtons() is not Qt.MouseButton.NoButton and not self.keyboard.button_held():
-            for panel in frame.findChildren(FingerPanel):
-                panel.mouse_is_up()
+        if self._page != frame.current_page.NAME:
+            self._page = frame.current_page.NAME
+            self.keyboard_filter.forget_pressed()
+        self.keyboard_filter.update()
+        if (
+            QApplication.mouseButtons() is not Qt.MouseButton.NoButton
+            and not self.keyboard_filter.is_button_held()
+        ):
+            for panel in frame.findChildren(TouchPanel):
+                panel.release_mouse()
 
-    def press(self, key: str) -> None:
+    def press_key(self, key_name: str) -> None:
         """Execute the action of a key. Touch targets call this, too."""
         frame = self.frame
-        action = (frame.key_actions().get(key) if frame else None) or self._keys.get(key)
+        action = (frame.key_actions().get(key_name) if frame else None) or self._keys.get(key_name)
         if action is not None:
             if frame is not None:
-                frame.page.pressed()
-                if key != "Esc":  # Esc removes the message itself.
-                    frame.desk.answers.next_key()
+                frame.current_page.end_held_actions()
+                if key_name != "Esc":  # Esc removes the message itself.
+                    frame.desk.prompt_answers.clear_message()
             action()
             self.refresh()
-        elif frame is not None and key.startswith("F") and key[1:].isdecimal():
-            frame.desk.say(tr(Message("{key} HAS NO FUNCTION ON THIS PAGE", key=key)))
+        elif frame is not None and key_name.startswith("F") and key_name[1:].isdecimal():
+            frame.desk.say(tr(Message("{key} HAS NO FUNCTION ON THIS PAGE", key=key_name)))
             self.refresh()
 
     def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
         return {
-            "S": partial(desk.switch, "single_block"),
-            "O": partial(desk.switch, "optional_stop"),
-            "C": partial(desk.switch, "cycle_repeat"),
-            "P": partial(desk.switch, "no_count"),
-            "/": desk.programs.switch_block_delete,
-            "H": desk.feed_hold,
-            "R": desk.reset,
-            "D": desk.enable,
-            "E": desk.station.press_estop,
-            "U": desk.station.release_estop,
-            ANSWER: desk.answer,
-            NO: desk.no,
-            "A": desk.station.turn_spindle_switch,
-            ",": partial(desk.hands.turn_spindle_pot, -1),
-            ".": partial(desk.hands.turn_spindle_pot, 1),
-            "+": partial(desk.station.step_override, 1),
-            "-": partial(desk.station.step_override, -1),
-            "T": self.other_theme,
-            "Y": desk.yes,
-            "Esc": self._escape,
+            "S": partial(desk.toggle_switch, "single_block"),
+            "O": partial(desk.toggle_switch, "optional_stop"),
+            "C": partial(desk.toggle_switch, "cycle_repeat"),
+            "P": partial(desk.toggle_switch, "no_count"),
+            "/": desk.program_choice.toggle_block_delete,
+            "H": desk.start_feed_hold,
+            "R": desk.reset_control,
+            "D": desk.enable_drives,
+            "E": desk.station_keys.press_estop,
+            "U": desk.station_keys.release_estop,
+            YES_KEY: desk.confirm_if_unchanged,
+            NO_KEY: desk.reject_question,
+            "A": desk.station_keys.toggle_spindle_switch,
+            ",": partial(desk.station_controls.turn_spindle_pot, -1),
+            ".": partial(desk.station_controls.turn_spindle_pot, 1),
+            "+": partial(desk.station_keys.step_override, 1),
+            "-": partial(desk.station_keys.step_override, -1),
+            "T": self.toggle_theme,
+            "Y": desk.confirm_question,
+            "Esc": self._handle_escape,
         }
 
-    def other_theme(self) -> None:
+    def toggle_theme(self) -> None:
         """Switch between the dark and the light theme."""
         if self.frame is not None:
-            self.frame.desk.choose_setting("theme", self.frame.desk.settings.following("theme"))
+            self.frame.desk.apply_setting("theme", self.frame.desk.settings_store.find_next_choice("theme"))
 
-    def _wear(self, frame: Frame) -> None:
+    def _apply_settings(self, frame: WindowFrame) -> None:
         """Apply the selected colors, language and window size."""
-        settings = frame.desk.settings.now
-        if settings.language != spoken():
-            speak_in(settings.language)
-            frame.dress()
-        if settings.theme != self.look.palette.name:
-            self.look.repaint(PALETTES[settings.theme])
-            dress(self.look.palette)
-            frame.dress()
+        settings = frame.desk.settings_store.current
+        if settings.language != get_language():
+            use_language(settings.language)
+            frame.apply_theme()
+        if settings.theme != self.theme.palette.name:
+            self.theme.set_palette(PALETTES[settings.theme])
+            style_application(self.theme.palette)
+            frame.apply_theme()
 
-        if not self.kiosk and settings.full_screen is not (self._full or False):
-            self._fill(settings.full_screen)
+        if not self.is_kiosk and settings.full_screen is not (self._full or False):
+            self._set_full_screen(settings.full_screen)
 
-    def _fill(self, full: bool) -> None:
+    def _set_full_screen(self, full: bool) -> None:
         """Show the window on the full screen, or maximized."""
         self._full = full
         if full:
-            fill_screen(self)
+            show_full_screen(self)
         else:
             self.showMaximized()
 
-    def open_on(self, screen: QScreen) -> None:
+    def show_on(self, screen: QScreen) -> None:
         """Show the window in a size that suits the screen.
 
         A small screen is filled completely. The title bar of a window manager could otherwise push the
         function keys off a screen with 600 lines.
         """
         room = screen.availableGeometry()
-        self.setMinimumSize(min(LEAST[0], room.width()), min(LEAST[1], room.height()))
-        if self.kiosk or room.height() < LEAST[1] + TITLE_BAR or room.width() <= LEAST[0]:
-            fill_screen(self, frameless=self.kiosk)
+        self.setMinimumSize(min(MIN_WINDOW_PX[0], room.width()), min(MIN_WINDOW_PX[1], room.height()))
+        if (
+            self.is_kiosk
+            or room.height() < MIN_WINDOW_PX[1] + TITLE_BAR_PX
+            or room.width() <= MIN_WINDOW_PX[0]
+        ):
+            show_full_screen(self, is_frameless=self.is_kiosk)
         elif room.width() < 2 * START_SIZE[0]:
             self.setGeometry(room)  # Without a window manager, nothing else sets the geometry.
             self.showMaximized()
@@ -255,13 +275,13 @@ class MainWindow(QWidget):
             self.resize(max(START_SIZE[0], room.width() // 2), max(START_SIZE[1], room.height() // 2))
             self.show()
 
-    def _escape(self) -> None:
+    def _handle_escape(self) -> None:
         """Go one step back: on the page, then a question or feed hold, and finally to the Automatic page."""
         frame = self.frame
-        if frame is not None and not (frame.escape() or frame.desk.escape()):
-            frame.go(AUTOMATIC)
+        if frame is not None and not (frame.handle_escape() or frame.desk.handle_escape()):
+            frame.open_page(AUTOMATIC)
 
-    def put_away(self) -> None:
+    def close_silently(self) -> None:
         """Stop polling and delete the window without asking. For scripts that only read the screen."""
         self._timer.stop()
         self.hide()
@@ -269,71 +289,75 @@ class MainWindow(QWidget):
 
     # --- functions for the keyboard ------------------------------------------------------------------
 
-    def hold(self, by: str = "", press: int = 0) -> None:
-        """Start feed hold on any page, field or question. ``by`` names the key in the log."""
+    def start_feed_hold(self, source: str = "", press: int = 0) -> None:
+        """Start feed hold on any page, field or question. ``source`` names the key in the log."""
         if self.frame is not None:
-            self.frame.page.pressed()
-            self.frame.desk.feed_hold(by or BY_SCREEN, press)
+            self.frame.current_page.end_held_actions()
+            self.frame.desk.start_feed_hold(source or SOURCE_SCREEN, press)
             self.refresh()
 
-    def estop(self, press: int = 0) -> None:
+    def press_estop(self, press: int = 0) -> None:
         """Press the E-stop on any page, field or question."""
         if self.frame is not None:
-            self.frame.page.pressed()
-            self.frame.desk.station.press_estop(press)
+            self.frame.current_page.end_held_actions()
+            self.frame.desk.station_keys.press_estop(press)
             self.refresh()
 
-    def estop_sent(self) -> None:
+    def show_estop_pressed(self) -> None:
         """Show the simulated E-stop as pressed, after the key watcher has pressed it."""
-        if self.frame is not None and self.frame.desk.control.panel is not None:
-            self.frame.desk.station.press_estop()
+        if self.frame is not None and self.frame.desk.desk_control.station_panel is not None:
+            self.frame.desk.station_keys.press_estop()
 
-    def esc_holds(self) -> bool:
+    def is_esc_stop_key(self) -> bool:
         """Return whether Esc starts feed hold now: the machine moves, and Esc has no other function."""
         frame = self.frame
-        return frame is not None and frame.desk.snapshot().state in MOVING and frame.esc_holds()
+        return (
+            frame is not None
+            and frame.desk.read_snapshot().state in MOVING_STATES
+            and frame.is_esc_stop_key()
+        )
 
-    def has_field(self) -> bool:
+    def has_text_field(self) -> bool:
         """Return whether an input field has the keyboard and thus gets all characters."""
-        return self.frame is not None and self.frame.has_field()
+        return self.frame is not None and self.frame.has_text_field()
 
-    def used(self) -> None:
+    def note_activity(self) -> None:
         """Note that the signed-in user pressed a key or touched the screen."""
         if self.frame is not None:
-            self.frame.desk.access.used()
+            self.frame.desk.user_access.note_activity()
 
-    def is_text(self, key: str) -> bool:
+    def accepts_text(self, key: str) -> bool:
         """Return whether this character goes to an input field now."""
-        return self.frame is not None and self.frame.is_text(key)
+        return self.frame is not None and self.frame.accepts_text(key)
 
-    def judge(self, *, late: bool) -> None:
+    def set_late(self, *, is_late: bool) -> None:
         """Set whether the present event waited during a stall and therefore must not start anything."""
         if self.frame is not None:
-            self.frame.desk.window.late.late = late
+            self.frame.desk.window_state.late_presses.is_late = is_late
 
-    def looks_different(self, at: float) -> bool:
+    def has_screen_changed(self, time_s: float) -> bool:
         """Return whether the screen showed something else at this time, which the touch was meant for."""
-        seen = [face for since, face in self._faces if since <= at]
-        return bool(seen) and self.frame is not None and seen[-1] != self.frame.face
+        seen = [face for since, face in self._faces if since <= time_s]
+        return bool(seen) and self.frame is not None and seen[-1] != self.frame.screen_context
 
-    def drop(self, starting: Starting) -> None:
+    def report_dropped(self, action: StartingAction) -> None:
         """Report a press that waited during a stall and is not executed."""
         if self.frame is not None:
-            self.frame.desk.window.late.report_dropped(starting)
+            self.frame.desk.window_state.late_presses.report_dropped(action)
 
     def _show_dropped(self, names: tuple[str, ...]) -> None:
         if self.frame is not None:
             text = tr("SCREEN FROZE {seconds} S. NOT DONE: {what}. PRESS AGAIN")
-            seconds = f"{self.keyboard.delay:.1f}"
-            self.frame.desk.warn(tr(Message(text, seconds=seconds, what=", ".join(names))))
+            seconds = f"{self.keyboard_filter.delay_s:.1f}"
+            self.frame.desk.show_warning(tr(Message(text, seconds=seconds, what=", ".join(names))))
 
-    def stops_at(self, event: QInputEvent) -> bool:
+    def is_stop_control_at(self, event: QInputEvent) -> bool:
         """Return whether a press is on a control that stops the machine."""
-        dock = self.frame.dock if self.frame is not None else None
+        dock = self.frame.station_dock if self.frame is not None else None
         if dock is None or not dock.isVisible() or not isinstance(event, QPointerEvent):
             return False
         places = (dock.mapFromGlobal(point.globalPosition()) for point in event.points())
-        return any(dock.stops_at(place) for place in places)
+        return any(dock.has_stop_control_at(place) for place in places)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
@@ -341,91 +365,109 @@ class MainWindow(QWidget):
         """Start filtering the keys of the new window, and read the screen's resolution."""
         window = self.windowHandle()
         if window is not None:
-            self.keyboard.watch(window)
-            self._measure()
-            window.screenChanged.connect(self._measure)
+            self.keyboard_filter.filter_window(window)
+            self._update_resolution()
+            window.screenChanged.connect(self._update_resolution)
 
-    def _measure(self) -> None:
+    def _update_resolution(self) -> None:
         """Read the real size of the screen, on which the heights of texts and list rows depend."""
         screen = self.screen()
         if screen is not None:
             size, real = screen.size(), screen.physicalSize()
-            self.look.screen = panel_size(size.width(), size.height(), real.width(), real.height())
+            self.theme.screen = panel_size(size.width(), size.height(), real.width(), real.height())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Handle a key press. A repeat counts only for keys that may repeat."""
         frame = self.frame
-        if frame is None or self._answered(frame, event):
+        if frame is None or self._handle_answer(frame, event):
             return
-        if frame.page.key_down(event):
+        if frame.current_page.handle_key_press(event):
             self.refresh()
             return
-        if not event.isAutoRepeat() and event.key() in PALMS and not frame.automatic.files.isVisible():
-            self._palm(PALMS[Qt.Key(event.key())], down=True)
+        if (
+            not event.isAutoRepeat()
+            and event.key() in PALM_KEYS
+            and not frame.automatic_page.file_prompt.isVisible()
+        ):
+            self._palm(PALM_KEYS[Qt.Key(event.key())], down=True)
             return
-        if self._typed(frame, event) or self._kept_from(frame, event):
+        if self._handle_typed(frame, event) or self._is_withheld(frame, event):
             return
-        name = name_of(key_of(event), event.modifiers())
-        if name and (name in REPEATING or not event.isAutoRepeat()) and not self._elsewhere(frame, name):
-            self.press(name)
+        name = name_key(find_key_code(event), event.modifiers())
+        if (
+            name
+            and (name in REPEATING_KEYS or not event.isAutoRepeat())
+            and not self._is_used_elsewhere(frame, name)
+        ):
+            self.press_key(name)
 
-    def _elsewhere(self, frame: Frame, name: str) -> bool:
+    def _is_used_elsewhere(self, frame: WindowFrame, name: str) -> bool:
         """Return whether the key belongs to the Automatic page but another page is open, and show this."""
-        if name not in OF_AUTOMATIC or frame.page is frame.automatic or name in frame.page.key_actions():
+        if (
+            name not in AUTOMATIC_KEYS
+            or frame.current_page is frame.automatic_page
+            or name in frame.current_page.key_actions()
+        ):
             return False
         frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
         self.refresh()
         return True
 
-    def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
+    def _handle_answer(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key answered a question. Yes needs a single key with all others released."""
-        typed = {letter_of(event), typed_of(event)} - {""}
-        if not frame.desk.asked or not typed & {frame.desk.asked, "N"}:
+        typed = {find_letter(event), find_typed_text(event)} - {""}
+        if not frame.desk.confirm_key or not typed & {frame.desk.confirm_key, "N"}:
             return False
-        if "N" in typed and frame.desk.asked != "N":
-            self.press(NO)
-        elif not event.isAutoRepeat() and self.keyboard.alone(event):
-            self.press(ANSWER)
+        if "N" in typed and frame.desk.confirm_key != "N":
+            self.press_key(NO_KEY)
+        elif not event.isAutoRepeat() and self.keyboard_filter.is_only_key(event):
+            self.press_key(YES_KEY)
         return True
 
-    def _kept_from(self, frame: Frame, event: QKeyEvent) -> bool:
+    def _is_withheld(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether an input field rejects the character, so that the key has no other function.
 
         Ctrl+H, Ctrl+Space and Ctrl+E do not stop the machine there either.
         """
         text = event.text()
-        if not text.isprintable() or not text or not frame.has_field():
-            return frame.has_field() and name_of(key_of(event), event.modifiers()) in STOP_LETTERS
+        if not text.isprintable() or not text or not frame.has_text_field():
+            return (
+                frame.has_text_field() and name_key(find_key_code(event), event.modifiers()) in STOP_LETTERS
+            )
         if not event.isAutoRepeat():
             self._untaken = tr(Message("{key} CANNOT BE ENTERED IN THIS FIELD", key=text))
             frame.desk.say(self._untaken)
             self.refresh()
         return True
 
-    def _typed(self, frame: Frame, event: QKeyEvent) -> bool:
+    def _handle_typed(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the page has handled the key as text input."""
-        key = typed_of(event)
-        if not key or (event.isAutoRepeat() and key not in TYPED_AGAIN) or not frame.page.typed(key):
+        key = find_typed_text(event)
+        if (
+            not key
+            or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)
+            or not frame.current_page.handle_key(key)
+        ):
             return False
-        if frame.desk.notice == self._untaken:
-            frame.desk.clear()  # The next key was accepted.
+        if frame.desk.prompt_notice == self._untaken:
+            frame.desk.clear_prompt_line()  # The next key was accepted.
         self.refresh()
         return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Release a palm button, or a key of the page."""
         if self.frame is not None:
-            self.frame.page.key_up(event)
-        if not event.isAutoRepeat() and event.key() in PALMS:
-            self._palm(PALMS[Qt.Key(event.key())], down=False)
+            self.frame.current_page.handle_key_release(event)
+        if not event.isAutoRepeat() and event.key() in PALM_KEYS:
+            self._palm(PALM_KEYS[Qt.Key(event.key())], down=False)
 
     def _palm(self, side: str, *, down: bool) -> None:
         if self.frame is not None:
             desk = self.frame.desk
-            if desk.machine.two_hand:
-                desk.hands.palm(side, down)
+            if desk.machine.is_two_hand:
+                desk.station_controls.palm(side, down)
             elif down and side == "right":
-                desk.station.press_start()
+                desk.station_keys.press_start()
             self.refresh()
 
     def changeEvent(self, event: QEvent) -> None:
@@ -433,33 +475,33 @@ class MainWindow(QWidget):
         if event.type() == QEvent.Type.ActivationChange:
             self._tell_keyboard()
             if self.isActiveWindow():
-                self.keyboard.back()
+                self.keyboard_filter.read_pressed()
             else:
-                self.let_go()
+                self.release_all()
         super().changeEvent(event)
 
     def _tell_keyboard(self) -> None:
         if self.frame is not None:
-            self.frame.desk.window.set_keyboard_away(not self.isActiveWindow())
+            self.frame.desk.window_state.set_keyboard_lost(not self.isActiveWindow())
 
-    def let_go(self) -> None:
+    def release_all(self) -> None:
         """Release all keys, buttons and controls that are pressed."""
-        self.keyboard.away()
+        self.keyboard_filter.forget_pressed()
         if self.frame is not None:
-            if self.frame.dock is not None:
-                self.frame.dock.let_go()
-            self.frame.desk.hands.let_go()
-            self.frame.page.let_go()
+            if self.frame.station_dock is not None:
+                self.frame.station_dock.release_all()
+            self.frame.desk.station_controls.release_all()
+            self.frame.current_page.release_all()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Let the frame fill the window."""
         if self.frame is not None:
             self.frame.setGeometry(self.rect())
 
-    def _may_close(self, frame: Frame) -> bool:
-        return self._meant or frame.desk.may_close(self._close)
+    def _may_close(self, frame: WindowFrame) -> bool:
+        return self._meant or frame.desk.can_close(self._close_window)
 
-    def _close(self) -> None:
+    def _close_window(self) -> None:
         """Close the window although data will be lost."""
         self._meant = True
         self.close()
@@ -467,21 +509,21 @@ class MainWindow(QWidget):
     def closeEvent(self, event: QCloseEvent) -> None:
         """Refuse to close while a program is running, in kiosk mode, or if the page prevents it."""
         frame = self.frame
-        if self.kiosk and frame is not None and not self._meant:
+        if self.is_kiosk and frame is not None and not self._meant:
             frame.desk.say(tr("KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK"))
             self.refresh()
             event.ignore()
             return
-        if frame is not None and frame.desk.snapshot().state in UNDER_WAY:
+        if frame is not None and frame.desk.read_snapshot().state in ACTIVE_STATES:
             frame.desk.say("PROGRAM RUNNING. STOP IT AND PRESS R FIRST")
             self.refresh()
             event.ignore()
             return
-        if frame is not None and not (frame.page.leave() and self._may_close(frame)):
+        if frame is not None and not (frame.current_page.try_leave() and self._may_close(frame)):
             self.refresh()
             event.ignore()
             return
         self._timer.stop()
-        self.let_go()
+        self.release_all()
         event.accept()
         self._closed()

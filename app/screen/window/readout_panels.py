@@ -11,36 +11,46 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status import formats
-from app.desk.status.formats import percent
+from app.desk.status.formats import format_percent
 from app.desk.status.machine_status import MachineStatus, Tone
-from app.desk.status.readouts import UNKNOWN, AxisFigures, FeedFigures, PositionFigures, SpindleFigures
+from app.desk.status.readouts import UNKNOWN_VALUE, AxisReadout, FeedReadout, PositionReadout, SpindleReadout
 from app.desk.translation import tr
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import (
+    ALIGN_CENTER,
+    ALIGN_LEFT,
+    ALIGN_RIGHT,
+    ScreenTheme,
+    ThemedPainter,
+    draw_state_symbol,
+    draw_text,
+)
 from app.screen.text_sizes import Role
 from core.message import Message, join_messages
 
-LATHE_ROWS = 3
-ROOMY = 6.3  # Units of row height that numbers of full size need.
+LATHE_ROW_COUNT = 3
+FULL_SIZE_ROW_HEIGHT = 6.3  # Units of row height that numbers of full size need.
 
 
 class PositionPanel(Panel):
     """The position display. X has a filled Ø or a hollow R, so that the operator cannot confuse them."""
 
-    view: Shown[PositionFigures | None] = Shown(None)  # All values of one instant, in one unit.
+    position_readout: RedrawingAttribute[PositionReadout | None] = RedrawingAttribute(
+        None
+    )  # All values of one instant, in one unit.
 
     @property
-    def readout(self) -> str:
+    def readout_kind(self) -> str:
         """The kind of value that the large numbers show."""
-        return self.view.readout.value if self.view else ""
+        return self.position_readout.main_kind.value if self.position_readout else ""
 
-    def draw(self, painter: Painter) -> None:
-        view = self.view
+    def draw(self, painter: ThemedPainter) -> None:
+        view = self.position_readout
         if view is None:
             self.frame(painter, "POSITION")
             return
-        u = self.look.u
-        self.frame(painter, join_messages("  ·  ", (view.readout.value, view.unit, view.x_words)))
+        u = self.theme.u
+        self.frame(painter, join_messages("  ·  ", (view.main_kind.value, view.unit, view.x_label)))
         self._heading(painter, view)
         room = QRectF(0, 3.0 * u, self.width(), self.height() - 3.6 * u)
         high = min(room.height() / len(view.axes), 10.5 * u)
@@ -49,164 +59,187 @@ class PositionPanel(Panel):
             self._row(painter, QRectF(0, top + row * high, room.width(), high), axis)
             if row:
                 line = QRectF(1.2 * u, top + row * high, room.width() - 2.4 * u, max(1.0, 0.08 * u))
-                painter.fill(line, "key")
+                painter.fill_rect(line, "key")
 
-    def _heading(self, painter: Painter, view: PositionFigures) -> None:
-        u = self.look.u
+    def _heading(self, painter: ThemedPainter, view: PositionReadout) -> None:
+        u = self.theme.u
         place = QRectF(0, 1.8 * u, self.width() - 1.6 * u, 2.0 * u)
-        painter.write(place, view.beside.value, 1.5, "soft", at=RIGHT)
+        painter.draw_text_line(place, view.second_kind.value, 1.5, "soft", at=ALIGN_RIGHT)
 
-    def _row(self, painter: Painter, row: QRectF, axis: AxisFigures) -> None:
-        u = self.look.u
-        share = self._share(row)
-        painter.write(QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), axis.name, 5.6 * share, "accent")
-        if axis.mark:
+    def _row(self, painter: ThemedPainter, row: QRectF, axis: AxisReadout) -> None:
+        u = self.theme.u
+        share = self._find_row_share(row)
+        painter.draw_text_line(
+            QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), axis.name, 5.6 * share, "accent"
+        )
+        if axis.diameter_mark:
             box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
-            draw_mark(painter, box, axis.mark, 4.6, 0.4)
+            draw_x_mark(painter, box, axis.diameter_mark, 4.6, 0.4)
         large = QRectF(13.2 * u, row.y(), 38.4 * u, row.height())
-        plain = axis.homed and axis.known
-        painter.write(
-            large, axis.value, 7.0 * share, "text" if plain else "soft", at=RIGHT, role=Role.POSITION
+        plain = axis.is_homed and axis.is_known
+        painter.draw_text_line(
+            large, axis.value, 7.0 * share, "text" if plain else "soft", at=ALIGN_RIGHT, role=Role.POSITION
         )
         beside = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
-        painter.write(beside, axis.beside, 2.7 * max(share, 0.8), "soft", at=RIGHT, bold=False)
+        painter.draw_text_line(
+            beside, axis.second_value, 2.7 * max(share, 0.8), "soft", at=ALIGN_RIGHT, bold=False
+        )
         if not plain:
             above = QRectF(beside.x(), row.y() + 0.6 * u, beside.width(), 2.0 * u)
-            painter.write(above, "NOT HOMED" if axis.known else "LAST KNOWN", 1.5, "alarm", at=RIGHT)
+            painter.draw_text_line(
+                above, "NOT HOMED" if axis.is_known else "LAST KNOWN", 1.5, "alarm", at=ALIGN_RIGHT
+            )
 
-    def _share(self, row: QRectF) -> float:
+    def _find_row_share(self, row: QRectF) -> float:
         """Return the scale of the numbers. A mill with five axes has less room per row than a lathe."""
-        few = self.view is None or len(self.view.axes) <= LATHE_ROWS
-        return 1.0 if few else min(1.0, row.height() / (ROOMY * self.look.u))
+        few = self.position_readout is None or len(self.position_readout.axes) <= LATHE_ROW_COUNT
+        return 1.0 if few else min(1.0, row.height() / (FULL_SIZE_ROW_HEIGHT * self.theme.u))
 
 
-def draw_mark(painter: Painter, box: QRectF, mark: str, size: float, line: float) -> None:
+def draw_x_mark(painter: ThemedPainter, box: QRectF, mark: str, size: float, line: float) -> None:
     """Draw the mark of X: a filled Ø for a diameter, a hollow R for a radius. Sizes are in units."""
     filled = mark == "Ø"
-    painter.box(box, "mark", line, "mark" if filled else "")
-    painter.write(box, mark, size, "on_mark" if filled else "mark", at=CENTRE)
+    painter.draw_box(box, "mark", line, "mark" if filled else "")
+    painter.draw_text_line(box, mark, size, "on_mark" if filled else "mark", at=ALIGN_CENTER)
 
 
 # --- feed, spindle, tool and times --------------------------------------------------------------------
 
 
-class Gauge(Panel):
+class ReadoutPanel(Panel):
     """A panel that draws one immutable value. Setting an equal value does not redraw the panel."""
 
-    value: Shown[object] = Shown(None)
+    value: RedrawingAttribute[object] = RedrawingAttribute(None)
 
-    def __init__(self, look: Look, title: str, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(self, theme: ScreenTheme, title: str, parent: QWidget | None = None) -> None:
+        super().__init__(theme, parent)
         self.title = title
 
-    def row(self, y: float, high: float) -> QRectF:
-        """Return a row inside the frame. ``y`` and ``high`` are in units."""
-        u = self.look.u
-        return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, high * u)
+    def make_row(self, y: float, height: float) -> QRectF:
+        """Return a row inside the frame. ``y`` and ``height`` are in units."""
+        u = self.theme.u
+        return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, height * u)
 
-    def label(self, painter: Painter, at: QRectF, text: str, flags: Qt.AlignmentFlag = LEFT) -> None:
+    def draw_label(
+        self, painter: ThemedPainter, rect: QRectF, text: str, flags: Qt.AlignmentFlag = ALIGN_LEFT
+    ) -> None:
         """Draw a small label for a value."""
-        painter.write(at, text, 1.6, "soft", at=flags)
+        painter.draw_text_line(rect, text, 1.6, "soft", at=flags)
 
-    def figure(
+    def draw_value(
         self,
-        painter: Painter,
-        at: QRectF,
+        painter: ThemedPainter,
+        rect: QRectF,
         text: str,
         size: float,
-        flags: Qt.AlignmentFlag = RIGHT,
+        flags: Qt.AlignmentFlag = ALIGN_RIGHT,
         role: Role = Role.TABLE,
     ) -> None:
         """Draw a value in bold, smaller if its place is narrow."""
-        painter.write(at, text, size, "text", at=flags, role=role)
+        painter.draw_text_line(rect, text, size, "text", at=flags, role=role)
 
-    def bar(self, painter: Painter, at: QRectF, fraction: float, most: float) -> None:
+    def draw_override(self, painter: ThemedPainter, rect: QRectF, fraction: float, maximum: float) -> None:
         """Draw an override as a bar with its percentage. A value other than 100 % is highlighted."""
-        u = self.look.u
+        u = self.theme.u
         plain = abs(fraction - 1.0) < 0.005
-        figure = QRectF(at.right() - 9 * u, at.y(), 9 * u, at.height())
-        track = QRectF(at.x(), at.center().y() - 0.6 * u, at.width() - 9.6 * u, 1.2 * u)
-        painter.fill(track, "key")
-        share = max(0.0, min(1.0, fraction / most))
+        figure = QRectF(rect.right() - 9 * u, rect.y(), 9 * u, rect.height())
+        track = QRectF(rect.x(), rect.center().y() - 0.6 * u, rect.width() - 9.6 * u, 1.2 * u)
+        painter.fill_rect(track, "key")
+        share = max(0.0, min(1.0, fraction / maximum))
         filled = QRectF(track.x(), track.y(), track.width() * share, track.height())
-        painter.fill(filled, "accent" if plain else "pause")
-        full = track.x() + track.width() / most
-        painter.fill(QRectF(full - 0.1 * u, track.y() - 0.4 * u, 0.2 * u, 2.0 * u), "text")
-        painter.write(figure, formats.percent(fraction), 2.1, "text" if plain else "pause", at=RIGHT)
+        painter.fill_rect(filled, "accent" if plain else "pause")
+        full = track.x() + track.width() / maximum
+        painter.fill_rect(QRectF(full - 0.1 * u, track.y() - 0.4 * u, 0.2 * u, 2.0 * u), "text")
+        painter.draw_text_line(
+            figure, formats.format_percent(fraction), 2.1, "text" if plain else "pause", at=ALIGN_RIGHT
+        )
 
 
-class FeedGauge(Gauge):
+class FeedPanel(ReadoutPanel):
     """Programmed feed in large digits, with the measured feed and the override below."""
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         view = self.value
-        if not isinstance(view, FeedFigures):
+        if not isinstance(view, FeedReadout):
             return
-        top = self.row(2.3, 4.8)
-        unit = QRectF(top.right() - 7.6 * self.look.u, top.y(), 7.6 * self.look.u, top.height())
-        self.figure(painter, top.adjusted(0, 0, -8.2 * self.look.u, 0), view.value, 4.2, role=Role.FEED)
-        self.label(painter, unit.adjusted(0, 1.0 * self.look.u, 0, 1.0 * self.look.u), view.unit)
-        self.label(painter, top, view.prefix)
-        actual = self.row(7.4, 2.8)
-        self.label(painter, actual, "ACTUAL")
-        self.figure(painter, actual.adjusted(7 * self.look.u, 0, -8.2 * self.look.u, 0), view.actual, 2.5)
-        self.label(painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.actual_unit)
-        self.bar(painter, self.row(11.2, 2.8), view.override, 1.5)
+        top = self.make_row(2.3, 4.8)
+        unit = QRectF(top.right() - 7.6 * self.theme.u, top.y(), 7.6 * self.theme.u, top.height())
+        self.draw_value(
+            painter, top.adjusted(0, 0, -8.2 * self.theme.u, 0), view.programmed_value, 4.2, role=Role.FEED
+        )
+        self.draw_label(
+            painter, unit.adjusted(0, 1.0 * self.theme.u, 0, 1.0 * self.theme.u), view.programmed_unit
+        )
+        self.draw_label(painter, top, view.prefix)
+        actual = self.make_row(7.4, 2.8)
+        self.draw_label(painter, actual, "ACTUAL")
+        self.draw_value(
+            painter, actual.adjusted(7 * self.theme.u, 0, -8.2 * self.theme.u, 0), view.measured_value, 2.5
+        )
+        self.draw_label(
+            painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.measured_unit
+        )
+        self.draw_override(painter, self.make_row(11.2, 2.8), view.override, 1.5)
 
 
-class SpindleGauge(Gauge):
+class SpindlePanel(ReadoutPanel):
     """Commanded and measured speed in rpm, surface speed, override and the spindle switch."""
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         view = self.value
-        if not isinstance(view, SpindleFigures):
+        if not isinstance(view, SpindleReadout):
             return
-        u = self.look.u
-        top = self.row(2.3, 4.8)
-        if not view.known:
-            self._unheard(painter)
+        u = self.theme.u
+        top = self.make_row(2.3, 4.8)
+        if not view.is_known:
+            self._draw_unknown(painter)
             return
-        self.label(painter, QRectF(top.x(), top.y() - u, 11.6 * u, top.height()), view.direction)
+        self.draw_label(painter, QRectF(top.x(), top.y() - u, 11.6 * u, top.height()), view.direction)
         self._switch(painter, QRectF(top.x(), top.y() + 2.8 * u, 9.2 * u, 2.0 * u), view)
         unit = QRectF(top.right() - 5.0 * u, top.y() + u, 5.0 * u, top.height())
-        self.figure(painter, top.adjusted(12 * u, 0, -5.6 * u, 0), view.rpm, 4.2)
-        self.label(painter, unit, "rpm")
-        actual = self.row(7.4, 2.8)
+        self.draw_value(painter, top.adjusted(12 * u, 0, -5.6 * u, 0), view.commanded_rpm, 4.2)
+        self.draw_label(painter, unit, "rpm")
+        actual = self.make_row(7.4, 2.8)
         half = actual.width() * 0.50
-        self.label(painter, actual, "ACTUAL")
-        self.figure(
-            painter, QRectF(actual.x() + 7 * u, actual.y(), half - 7 * u, actual.height()), view.actual, 2.5
+        self.draw_label(painter, actual, "ACTUAL")
+        self.draw_value(
+            painter,
+            QRectF(actual.x() + 7 * u, actual.y(), half - 7 * u, actual.height()),
+            view.measured_rpm,
+            2.5,
         )
         surface = QRectF(actual.x() + half + 1.6 * u, actual.y(), half - 1.6 * u, actual.height())
-        self.label(painter, surface, view.surface_label)
-        self.figure(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface, 2.5)
-        self.bar(painter, self.row(11.2, 2.8), view.override, 1.0)
+        self.draw_label(painter, surface, view.surface_label)
+        self.draw_value(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface_speed, 2.5)
+        self.draw_override(painter, self.make_row(11.2, 2.8), view.override, 1.0)
         if view.load:
             # In the top line, next to the title.
             patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)
-            painter.fill(patch, "panel")
-            painter.write(patch, f"{tr('LOAD')} {view.load}", 1.6, "soft", at=CENTRE)
+            painter.fill_rect(patch, "panel")
+            painter.draw_text_line(patch, f"{tr('LOAD')} {view.load}", 1.6, "soft", at=ALIGN_CENTER)
 
-    def _unheard(self, painter: Painter) -> None:
+    def _draw_unknown(self, painter: ThemedPainter) -> None:
         """Draw a warning in place of all values, because the spindle's state is unknown."""
         for row, size, text in (
-            (self.row(2.6, 4.0), 3.6, "UNKNOWN"),
-            (self.row(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
-            (self.row(10.6, 3.0), 2.4, "PRESS E-STOP"),
+            (self.make_row(2.6, 4.0), 3.6, "UNKNOWN"),
+            (self.make_row(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
+            (self.make_row(10.6, 3.0), 2.4, "PRESS E-STOP"),
         ):
-            painter.fill(row, "alarm")
-            painter.write(row, text, size, "on_state", at=CENTRE)
+            painter.fill_rect(row, "alarm")
+            painter.draw_text_line(row, text, size, "on_state", at=ALIGN_CENTER)
 
-    def _switch(self, painter: Painter, box: QRectF, view: SpindleFigures) -> None:
-        painter.fill(box, "key" if view.auto else "alarm")
-        text = "AUTO" if view.auto else "SWITCH: OFF"
-        painter.write(box, text, 1.5, "text" if view.auto else "on_state", at=CENTRE, margin=0.4)
+    def _switch(self, painter: ThemedPainter, box: QRectF, view: SpindleReadout) -> None:
+        painter.fill_rect(box, "key" if view.is_auto else "alarm")
+        text = "AUTO" if view.is_auto else "SWITCH: OFF"
+        painter.draw_text_line(
+            box, text, 1.5, "text" if view.is_auto else "on_state", at=ALIGN_CENTER, margin=0.4
+        )
 
 
-class ToolGauge(Gauge):
+class ToolPanel(ReadoutPanel):
     """Active tool and secondary offset."""
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         if not isinstance(self.value, tuple):
             return
         tool, secondary = self.value
@@ -214,57 +247,59 @@ class ToolGauge(Gauge):
         half = room.width() / 2
         left = QRectF(room.x(), room.y(), half, room.height())
         for at, text in ((left, tool), (left.translated(half, 0), secondary)):
-            self.figure(painter, at, text, 4.6, CENTRE)
+            self.draw_value(painter, at, text, 4.6, ALIGN_CENTER)
 
 
-class TimesGauge(Gauge):
+class TimesPanel(ReadoutPanel):
     """Part count, present cycle time, remaining time and last cycle time."""
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         if not isinstance(self.value, tuple):
             return
         room = self.inside()
         column = room.width() / len(self.value)
         longest = max((text for _name, text in self.value), key=len)
-        font = self.look.fit(longest, 2.6, column - 0.6 * self.look.u, bold=True)
+        font = self.theme.fit_font(longest, 2.6, column - 0.6 * self.theme.u, is_bold=True)
         for number, (name, text) in enumerate(self.value):
-            at = QRectF(room.x() + number * column, room.y(), column - 0.6 * self.look.u, room.height())
-            self.label(painter, at.adjusted(0, 0, 0, -room.height() * 0.62), name, CENTRE)
+            at = QRectF(room.x() + number * column, room.y(), column - 0.6 * self.theme.u, room.height())
+            self.draw_label(painter, at.adjusted(0, 0, 0, -room.height() * 0.62), name, ALIGN_CENTER)
             painter.setFont(font)
-            painter.setPen(self.look.colour("text"))
-            put(painter, at.adjusted(0, room.height() * 0.36, 0, 0), CENTRE, text)
+            painter.setPen(self.theme.color("text"))
+            draw_text(painter, at.adjusted(0, room.height() * 0.36, 0, 0), ALIGN_CENTER, text)
 
 
 # --- readouts in one row ------------------------------------------------------------------------------
 
 
-LATHE_COLUMNS = 3  # X, Z and C. A mill has more axes.
+LATHE_COLUMN_COUNT = 3  # X, Z and C. A mill has more axes.
 HIGH = 9.0  # Units: a higher panel has room for large positions.
 
 
-class HeadLine(Panel):
+class ReadoutLine(Panel):
     """All readouts of one snapshot. X has a filled Ø or a hollow R.
 
     A low panel shows them in one row. A high panel shows large positions above the other readouts.
     """
 
-    view: MachineStatus | None = None
-    _shown: Shown[object] = Shown(None)
+    status: MachineStatus | None = None
+    _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
 
-    def show_view(self, view: MachineStatus) -> None:
+    def show_status(self, status: MachineStatus) -> None:
         """Show a status, and redraw if a value has changed."""
-        self.view = view
-        self._shown = (view.position, view.feed, view.spindle, view.tool, view.secondary)
+        self.status = status
+        self._shown = (status.position, status.feed, status.spindle, status.tool_text, status.secondary_text)
 
-    def draw(self, painter: Painter) -> None:
-        view = self.view
+    def draw(self, painter: ThemedPainter) -> None:
+        view = self.status
         if view is None:
             return
         position = view.position
-        self.frame(painter, join_messages("  ·  ", (position.readout.value, position.unit, position.x_words)))
-        u = self.look.u
-        room = self.area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
-        columns = max(LATHE_COLUMNS, len(position.axes))
+        self.frame(
+            painter, join_messages("  ·  ", (position.main_kind.value, position.unit, position.x_label))
+        )
+        u = self.theme.u
+        room = self.find_full_area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
+        columns = max(LATHE_COLUMN_COUNT, len(position.axes))
         if self.height() > HIGH * u:
             row = QRectF(room.x(), room.y() - 0.4 * u, room.width(), room.height() - 2.2 * u)
             self._axes(painter, row, position, room.width() / columns, 1.7)
@@ -272,154 +307,162 @@ class HeadLine(Panel):
                 painter, QRectF(room.x(), row.bottom(), room.width(), room.bottom() - row.bottom())
             )
             return
-        share = (0.58 if columns == LATHE_COLUMNS else 0.7) * room.width() / columns
+        share = (0.58 if columns == LATHE_COLUMN_COUNT else 0.7) * room.width() / columns
         self._axes(painter, room, position, share, 1.0)
         taken = columns * share
         rest = QRectF(room.x() + taken, room.y(), room.width() - taken, room.height())
         self._figures(painter, rest, view)
 
     def _axes(
-        self, painter: Painter, room: QRectF, position: PositionFigures, share: float, scale: float
+        self, painter: ThemedPainter, room: QRectF, position: PositionReadout, share: float, scale: float
     ) -> None:
-        look, gap = self.look, 1.8 * self.look.u
-        texts = [axis.value if axis.known else f"{axis.value} {UNKNOWN}" for axis in position.axes]
+        look, gap = self.theme, 1.8 * self.theme.u
+        texts = [axis.value if axis.is_known else f"{axis.value} {UNKNOWN_VALUE}" for axis in position.axes]
         size = look.em(3.4 * scale, Role.POSITION, room.height())
         rooms = [share - gap - _before(axis) * scale * look.u for axis in position.axes]
-        fonts = [look.fit(text, size, each, bold=True) for text, each in zip(texts, rooms, strict=True)]
+        fonts = [
+            look.fit_font(text, size, each, is_bold=True) for text, each in zip(texts, rooms, strict=True)
+        ]
         size = min(font.pixelSize() for font in fonts) / look.u  # All axes have the same size.
         for number, (axis, text) in enumerate(zip(position.axes, texts, strict=True)):
             at = QRectF(room.x() + number * share, room.y(), share - gap, room.height())
             self._name(painter, at, axis, scale)
-            ink = "text" if axis.homed and axis.known else "alarm"
-            painter.write(at, text, size, ink, at=RIGHT, fit=False, role=Role.POSITION)
+            ink = "text" if axis.is_homed and axis.is_known else "alarm"
+            painter.draw_text_line(at, text, size, ink, at=ALIGN_RIGHT, fit=False, role=Role.POSITION)
 
-    def _name(self, painter: Painter, at: QRectF, axis: AxisFigures, scale: float) -> None:
-        u = scale * self.look.u
-        painter.write(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8 * scale, "accent")
-        if axis.mark:
+    def _name(self, painter: ThemedPainter, at: QRectF, axis: AxisReadout, scale: float) -> None:
+        u = scale * self.theme.u
+        painter.draw_text_line(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8 * scale, "accent")
+        if axis.diameter_mark:
             box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
-            draw_mark(painter, box, axis.mark, 2.4 * scale, 0.25)
+            draw_x_mark(painter, box, axis.diameter_mark, 2.4 * scale, 0.25)
 
     def _cells(self, view: MachineStatus) -> tuple[tuple[str, str, float], ...]:
         """Return label, value and share of the width of feed, spindle and tool."""
         feed, spindle = view.feed, view.spindle
         return (
             (
-                Message("FEED {override}", override=percent(feed.override)),
-                f"{feed.prefix} {feed.actual} {tr(feed.actual_unit)}".strip(),
+                Message("FEED {override}", override=format_percent(feed.override)),
+                f"{feed.prefix} {feed.measured_value} {tr(feed.measured_unit)}".strip(),
                 0.36,
             ),
             (
-                Message("SPINDLE {override}", override=percent(spindle.override)),
-                f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",
+                Message("SPINDLE {override}", override=format_percent(spindle.override)),
+                f"{tr(spindle.direction)} {spindle.commanded_rpm}/{spindle.measured_rpm}",
                 0.44,
             ),
-            ("TOOL", f"{view.tool} {view.secondary}", 0.2),
+            ("TOOL", f"{view.tool_text} {view.secondary_text}", 0.2),
         )
 
-    def _figures(self, painter: Painter, room: QRectF, view: MachineStatus) -> None:
+    def _figures(self, painter: ThemedPainter, room: QRectF, view: MachineStatus) -> None:
         """Draw feed, spindle and tool, each with its label above."""
-        u, x = self.look.u, room.x() + 1.6 * self.look.u
+        u, x = self.theme.u, room.x() + 1.6 * self.theme.u
         for label, figure, share in self._cells(view):
             wide = share * (room.width() - 1.6 * u)
-            painter.write(QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), label, 1.5, "soft")
+            painter.draw_text_line(QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), label, 1.5, "soft")
             below = QRectF(x, room.y() + 1.5 * u, wide - 1.6 * u, room.height() - 1.7 * u)
-            painter.write(below, figure, 2.3, "text", role=Role.FEED)
+            painter.draw_text_line(below, figure, 2.3, "text", role=Role.FEED)
             x += wide
 
-    def _readings(self, painter: Painter, room: QRectF) -> None:
+    def _readings(self, painter: ThemedPainter, room: QRectF) -> None:
         """Draw feed, spindle and tool in one row, each with its label at the left."""
-        if self.view is None:
+        if self.status is None:
             return
-        u, x = self.look.u, room.x()
-        for label, figure, share in self._cells(self.view):
+        u, x = self.theme.u, room.x()
+        for label, figure, share in self._cells(self.status):
             wide = share * room.width() - u
             named = QRectF(x, room.y(), 0.38 * wide, room.height())
-            painter.write(named, label, 1.6, "soft")
+            painter.draw_text_line(named, label, 1.6, "soft")
             value = named.adjusted(named.width() + 0.6 * u, 0, wide - named.width(), 0)
-            painter.write(value, figure, 2.5, "text", role=Role.FEED)
+            painter.draw_text_line(value, figure, 2.5, "text", role=Role.FEED)
             x += wide + u
 
 
-def _before(axis: AxisFigures) -> float:
+def _before(axis: AxisReadout) -> float:
     """Return the width of the name and the mark of an axis in units."""
-    return 6.8 if axis.mark else 3.2
+    return 6.8 if axis.diameter_mark else 3.2
 
 
 # --- run in one row -----------------------------------------------------------------------------------
 
 
-Times = Sequence[tuple[str, str]]
+TimeTexts = Sequence[tuple[str, str]]
 COMMENT, BLOCK = 0.38, 0.24  # Fractions of the width. Parts and times use the rest.
 
 
 class RunLine(Panel):
     """One row with comment, block, parts and times, at the place of the Automatic page's comment."""
 
-    ground = "panel"
-    comment, block, message = Shown(""), Shown(""), Shown("")
-    times: Shown[Times] = Shown(())
-    stop = Shown("")  # Number and text of the alarm or stop.
-    _tone = Shown("")
+    ground_color = "panel"
+    comment_text, block_text, message_text = (
+        RedrawingAttribute(""),
+        RedrawingAttribute(""),
+        RedrawingAttribute(""),
+    )
+    time_texts: RedrawingAttribute[TimeTexts] = RedrawingAttribute(())
+    stop_text = RedrawingAttribute("")  # Number and text of the alarm or stop.
+    _tone = RedrawingAttribute("")
 
-    def show_run(self, view: MachineStatus, times: Times) -> None:
+    def show_status(self, status: MachineStatus, time_texts: TimeTexts) -> None:
         """Show a status and times, and redraw if they have changed."""
-        self.comment, self.message, self.times = view.comment, view.message, times
-        self.block = f"L{view.line}  {view.block_text}" if view.line else ""
-        self.stop, self._tone = stop_words(view), view.tone.value
+        self.comment_text, self.message_text, self.time_texts = status.comment, status.message, time_texts
+        self.block_text = f"L{status.line_number}  {status.block_text}" if status.line_number else ""
+        self.stop_text, self._tone = describe_stop(status), status.tone.value
 
-    def draw(self, painter: Painter) -> None:
-        u, wide, high = self.look.u, float(self.width()), float(self.height())
-        if self.stop:
-            self._alarm(painter)
+    def draw(self, painter: ThemedPainter) -> None:
+        u, wide, high = self.theme.u, float(self.width()), float(self.height())
+        if self.stop_text:
+            self._draw_alarm(painter)
             return
         comment = QRectF(1.4 * u, 0, COMMENT * wide - 2 * u, high)
         block = QRectF(COMMENT * wide, 0, BLOCK * wide - u, high)
-        if self.message:
-            self._stop(painter, comment.united(block))
+        if self.message_text:
+            self._draw_stop(painter, comment.united(block))
         else:
-            self._text(painter, comment, "accent", self.comment)
-            self._text(painter, block, "text", self.block)
-        self._times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
+            self._text(painter, comment, "accent", self.comment_text)
+            self._text(painter, block, "text", self.block_text)
+        self._draw_times(painter, QRectF((COMMENT + BLOCK) * wide, 0, (1 - COMMENT - BLOCK) * wide - u, high))
 
-    def _alarm(self, painter: Painter) -> None:
+    def _draw_alarm(self, painter: ThemedPainter) -> None:
         """Draw the alarm over the whole row, large enough to read from the machine."""
-        look, u = self.look, self.look.u
-        painter.fill(self.area(), self._tone)
+        look, u = self.theme, self.theme.u
+        painter.fill_rect(self.find_full_area(), self._tone)
         sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
-        draw_sign(painter, sign, Tone(self._tone), look.colour("on_state"))
-        painter.write(self.area().adjusted(4.4 * u, 0, -u, 0), self.stop, 2.5, "on_state")
+        draw_state_symbol(painter, sign, Tone(self._tone), look.color("on_state"))
+        painter.draw_text_line(
+            self.find_full_area().adjusted(4.4 * u, 0, -u, 0), self.stop_text, 2.5, "on_state"
+        )
 
-    def _text(self, painter: Painter, box: QRectF, ink: str, text: str) -> None:
-        painter.write(box, text, 2.0, ink, bold=ink == "text", raw=True)
+    def _text(self, painter: ThemedPainter, box: QRectF, ink: str, text: str) -> None:
+        painter.draw_text_line(box, text, 2.0, ink, bold=ink == "text", raw=True)
 
-    def _stop(self, painter: Painter, box: QRectF) -> None:
+    def _draw_stop(self, painter: ThemedPainter, box: QRectF) -> None:
         """Draw the message of M00 or M01 over comment and block, as long as the stop lasts."""
-        painter.fill(box.adjusted(-1.4 * self.look.u, 0, 0, 0), "pause")
-        painter.write(box, self.message, 2.4, "on_state", raw=True)
+        painter.fill_rect(box.adjusted(-1.4 * self.theme.u, 0, 0, 0), "pause")
+        painter.draw_text_line(box, self.message_text, 2.4, "on_state", raw=True)
 
-    def _times(self, painter: Painter, room: QRectF) -> None:
+    def _draw_times(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the times in columns, each with its name and value side by side."""
-        u, share = self.look.u, room.width() / max(1, len(self.times))
-        for number, (name, figure) in enumerate(self.times):
-            box = QRectF(room.x() + number * share, 0, share - 0.8 * u, room.height())
+        u, share = self.theme.u, area.width() / max(1, len(self.time_texts))
+        for number, (name, figure) in enumerate(self.time_texts):
+            box = QRectF(area.x() + number * share, 0, share - 0.8 * u, area.height())
             half = 0.46 * box.width()
-            painter.write(QRectF(box.x(), 0, half, box.height()), name, 1.5, "soft", at=RIGHT)
-            painter.write(box.adjusted(half + u, 0, 0, 0), figure, 2.0, "text", raw=True)
+            painter.draw_text_line(QRectF(box.x(), 0, half, box.height()), name, 1.5, "soft", at=ALIGN_RIGHT)
+            painter.draw_text_line(box.adjusted(half + u, 0, 0, 0), figure, 2.0, "text", raw=True)
 
 
-def stop_words(view: MachineStatus) -> str:
+def describe_stop(status: MachineStatus) -> str:
     """Return the number and text of the first alarm, the E-stop, or an unrequested feed hold."""
-    first = view.alarms[0] if view.alarms else view.stop
+    first = status.alarms[0] if status.alarms else status.stop_cause
     if first is None:
         return ""
     parts = [
         Message("ALARM {number}: {alarms}", number=first.number, alarms=first.text)
-        if view.alarms
+        if status.alarms
         else Message("STOP {number}: {first}", number=first.number, first=first.text)
     ]
     if first.line:
         parts.append(Message("LINE {line}", line=first.line))
-    if len(view.alarms) > 1:
-        parts.append(Message("AND {alarms_count} MORE", alarms_count=len(view.alarms) - 1))
+    if len(status.alarms) > 1:
+        parts.append(Message("AND {alarms_count} MORE", alarms_count=len(status.alarms) - 1))
     return join_messages("  ·  ", parts)

@@ -14,7 +14,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 from PySide6.QtNetwork import QLocalServer, QLocalSocket
 
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import find_data_folder
 
 ACCEPTED = b"accepted\n"
 WAITS = 2000  # ms for each step of a request; a screen that does not reply by then is not used
@@ -24,7 +24,7 @@ _MOST_PATH = 100  # bytes of a socket's path that every system accepts
 
 def socket_name() -> str:
     """Return the name of the data folder's socket: its path, or a short name if the path is too long."""
-    path = os.fsencode(data_folder() / "screen.sock")
+    path = os.fsencode(find_data_folder() / "screen.sock")
     if os.name == "posix" and len(path) <= _MOST_PATH:
         return os.fsdecode(path)
     return f"turndesk-{hashlib.sha256(path).hexdigest()[:16]}"

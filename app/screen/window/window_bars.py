@@ -11,76 +11,92 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.status.interrupted_notice import NoticeRow
 from app.desk.status.machine_status import Tone
-from app.desk.status.prompt_line import Sort
+from app.desk.status.prompt_line import MessageKind
 from app.desk.status.readouts import Lamp
 from app.desk.translation import tr
-from app.screen.accessible import announce
-from app.screen.look import CENTRE, LEAST, LEFT, RIGHT, Look, Painter, draw_sign, put, width_of
-from app.screen.panel import Panel, Shown
+from app.screen.accessible import speak_text
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import (
+    ALIGN_CENTER,
+    ALIGN_LEFT,
+    ALIGN_RIGHT,
+    MIN_TEXT_SIZE,
+    ScreenTheme,
+    ThemedPainter,
+    draw_state_symbol,
+    draw_text,
+    measure_text,
+)
 from app.screen.text_sizes import Role
-from app.screen.window.keys import ANSWER, NO
-from app.screen.window_layout import FINGER
+from app.screen.window.key_table import NO_KEY, YES_KEY
+from app.screen.window_layout import FINGERTIP_PX
 
-TARGET = 13.0  # Units: width of the touch target of an answer.
+ANSWER_KEY_WIDTH = 13.0  # Units: width of the touch target of an answer.
 # Background color and sign.
-ANSWERS = {Sort.ANSWER: ("pause", "!"), Sort.DONE: ("run", "✓"), Sort.ASKED: ("wait", "?")}
+MESSAGE_STYLES = {
+    MessageKind.REFUSAL: ("pause", "!"),
+    MessageKind.SUCCESS: ("run", "✓"),
+    MessageKind.QUESTION: ("wait", "?"),
+}
 PROMPT_SHARE = 0.47  # Fraction of the prompt line's height for message and question.
 LEAST_TWO = 5.0  # Units: smallest height of the state for two lines.
-SIGN = 5.0  # Units: width of the sign.
+SIGN_WIDTH = 5.0  # Units: width of the sign.
 
 
 class TitleLine(Panel):
     """The title line: page, program, machine state, signed-in user, machine name and clock."""
 
-    ground = "panel"
+    ground_color = "panel"
 
-    page = Shown("")
-    access = Shown("")  # The signed-in user and level; empty if access levels are off.
-    _shown = Shown(("", "STARTING", Tone.OFF, "", ""))
+    page_title = RedrawingAttribute("")
+    access_text = RedrawingAttribute("")  # The signed-in user and level; empty if access levels are off.
+    _shown = RedrawingAttribute(("", "STARTING", Tone.OFF, "", ""))
 
     @property
-    def program(self) -> str:
+    def program_text(self) -> str:
         """The program name in the title line."""
         return self._shown[0]
 
     @property
-    def state(self) -> str:
+    def state_text(self) -> str:
         """The displayed state of the machine."""
         return self._shown[1]
 
-    def show_state(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
+    def show_texts(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
         """Show these texts in the title line."""
         self._shown = (program, state, tone, machine, clock)
 
-    def draw(self, painter: Painter) -> None:
+    def draw(self, painter: ThemedPainter) -> None:
         program, state, tone, machine, clock = self._shown
-        u, high = self.look.u, self.height()
-        painter.fill(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), "frame")
-        painter.write(QRectF(1.4 * u, 0, 24 * u, high), self.page, 2.2, "accent")
-        painter.write(QRectF(27 * u, 0, 31 * u, high), program or tr("NO PROGRAM"), 2.4, "text", raw=True)
+        u, high = self.theme.u, self.height()
+        painter.fill_rect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), "frame")
+        painter.draw_text_line(QRectF(1.4 * u, 0, 24 * u, high), self.page_title, 2.2, "accent")
+        painter.draw_text_line(
+            QRectF(27 * u, 0, 31 * u, high), program or tr("NO PROGRAM"), 2.4, "text", raw=True
+        )
         self._draw_state(painter, state, tone)
         right = QRectF(self.width() - 47 * u, 0, 30 * u, high)
-        if self.access:
+        if self.access_text:
             half = 0.5 * high
             below = QRectF(right.x(), half, right.width(), half - 0.2 * u)
-            painter.write(below, self.access, 1.7, "accent", at=RIGHT)
+            painter.draw_text_line(below, self.access_text, 1.7, "accent", at=ALIGN_RIGHT)
             right.setHeight(half)
-        painter.write(right, machine, 1.8, "soft", at=RIGHT, bold=False)
+        painter.draw_text_line(right, machine, 1.8, "soft", at=ALIGN_RIGHT, bold=False)
         right = QRectF(self.width() - 16 * u, 0, 14.6 * u, high)
-        painter.write(right, clock, 2.2, "text", at=RIGHT, bold=False)
+        painter.draw_text_line(right, clock, 2.2, "text", at=ALIGN_RIGHT, bold=False)
 
-    def _draw_state(self, painter: Painter, state: str, tone: Tone) -> None:
-        look, u, high, state = self.look, self.look.u, self.height(), tr(state)
+    def _draw_state(self, painter: ThemedPainter, state: str, tone: Tone) -> None:
+        look, u, high, state = self.theme, self.theme.u, self.height(), tr(state)
         box = QRectF(60 * u, 0.2 * u, 50 * u, high - 0.5 * u)
-        painter.fill(box, tone.value)
-        ink = look.colour("on_state")
+        painter.fill_rect(box, tone.value)
+        ink = look.color("on_state")
         size = look.em(2.5, Role.STATE, box.height())
-        painter.setFont(look.fit(state, size, box.width() - 8 * u, bold=True))
+        painter.setFont(look.fit_font(state, size, box.width() - 8 * u, is_bold=True))
         wide = QFontMetricsF(painter.font()).horizontalAdvance(state)
         left = box.center().x() - (wide + 3.6 * u) / 2
-        draw_sign(painter, QRectF(left, box.center().y() - 1.2 * u, 2.4 * u, 2.4 * u), tone, ink)
+        draw_state_symbol(painter, QRectF(left, box.center().y() - 1.2 * u, 2.4 * u, 2.4 * u), tone, ink)
         painter.setPen(ink)
-        put(painter, QRectF(left + 3.6 * u, box.y(), wide + u, box.height()), LEFT, state)
+        draw_text(painter, QRectF(left + 3.6 * u, box.y(), wide + u, box.height()), ALIGN_LEFT, state)
 
 
 class PromptLine(Panel):
@@ -90,71 +106,77 @@ class PromptLine(Panel):
     half of the row. The question has two targets, always at the right end.
     """
 
-    state, reason, question, answer, asked = (Shown("") for _ in range(5))
-    sort: Shown[Sort | None] = Shown(None)  # Kind of the message.
+    state_text, reason_text, question_text, message_text, confirm_key = (
+        RedrawingAttribute("") for _ in range(5)
+    )
+    message_kind: RedrawingAttribute[MessageKind | None] = RedrawingAttribute(None)  # Kind of the message.
 
-    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(
+        self, theme: ScreenTheme, press: Callable[[str], None], parent: QWidget | None = None
+    ) -> None:
+        super().__init__(theme, parent)
         self._press = press
         self._announced = ""
 
     @property
-    def text(self) -> str:
+    def main_text(self) -> str:
         """The most important text: the message, else the question, else the state."""
-        return self.answer or self.question or self.state
+        return self.message_text or self.question_text or self.state_text
 
     def show_state(self, text: str, reason: str = "") -> None:
         """Show what the operator can do now, and the reason why the machine is stopped."""
-        self.state, self.reason = text, reason
+        self.state_text, self.reason_text = text, reason
 
-    def show_question(self, text: str, asked: str = "") -> None:
-        """Show a question. ``asked`` is the key that means yes."""
-        self.question, self.asked = text, asked
+    def show_question(self, text: str, confirm_key: str = "") -> None:
+        """Show a question. ``confirm_key`` is the key that means yes."""
+        self.question_text, self.confirm_key = text, confirm_key
 
-    def show_answer(self, text: str, *, sort: Sort | None) -> None:
+    def show_message(self, text: str, *, kind: MessageKind | None) -> None:
         """Show a message. ``sort`` determines its color and sign."""
-        self.answer, self.sort = text, sort
+        self.message_text, self.message_kind = text, kind
 
-    def draw(self, painter: Painter) -> None:
-        area = self.area()
-        painter.fill(area, "panel")
-        if self.text != self._announced:
-            self._announced = self.text
-            announce(self, tr(self.text))
-        if self.question and self.asked:
-            area.setRight(self._targets(painter, area))  # The targets use the full height, for touch.
+    def draw(self, painter: ThemedPainter) -> None:
+        area = self.find_full_area()
+        painter.fill_rect(area, "panel")
+        if self.main_text != self._announced:
+            self._announced = self.main_text
+            speak_text(self, tr(self.main_text))
+        if self.question_text and self.confirm_key:
+            area.setRight(
+                self._draw_answer_keys(painter, area)
+            )  # The targets use the full height, for touch.
         upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
-        noticed = bool(self.answer or self.question)
+        noticed = bool(self.message_text or self.question_text)
         self._state(painter, area.adjusted(0, upper.height() if noticed else 0, 0, 0))
-        both = bool(self.answer and self.question)
+        both = bool(self.message_text and self.question_text)
         half = upper.width() / 2
-        if self.answer:
+        if self.message_text:
             place = upper.adjusted(0, 0, -half - 2 if both else 0, 0)
-            self._notice(painter, place, self.answer, self.sort or Sort.ANSWER)
-        if self.question:
+            self._notice(painter, place, self.message_text, self.message_kind or MessageKind.REFUSAL)
+        if self.question_text:
             place = upper.adjusted(half + 2 if both else 0, 0, 0, 0)
-            self._notice(painter, place, self.question, Sort.ASKED)
+            self._notice(painter, place, self.question_text, MessageKind.QUESTION)
 
-    def _state(self, painter: Painter, area: QRectF) -> None:
-        u = self.look.u
+    def _state(self, painter: ThemedPainter, area: QRectF) -> None:
+        u = self.theme.u
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
-        if self.reason:
+        if self.reason_text:
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
-            painter.write(low, self.reason, 1.9, "text", bold=False, role=Role.PROMPT)
+            painter.draw_text_line(low, self.reason_text, 1.9, "text", bold=False, role=Role.PROMPT)
             room.setBottom(low.top())
-        lines = self._lines(tr(self.state), room)
+        lines = self._lines(tr(self.state_text), room)
         high = room.height() / len(lines)
         for number, line in enumerate(lines):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
-            size = 2.1 if self.reason else 2.3
-            painter.write(row, line, size, "text", raw=True, role=Role.PROMPT)
+            size = 2.1 if self.reason_text else 2.3
+            painter.draw_text_line(row, line, size, "text", raw=True, role=Role.PROMPT)
 
     def _lines(self, text: str, room: QRectF) -> list[str]:
         """Return the text as one line, or as two lines if it can be larger then."""
-        look, words = self.look, text.split(" ")
+        look, words = self.theme, text.split(" ")
         one = look.em(2.3, Role.PROMPT, room.height())
         two = look.em(2.3, Role.PROMPT, room.height() / 2)
-        wide = width_of(text, look.font(one, bold=True))
+        wide = measure_text(text, look.make_font(one, is_bold=True))
         if (
             len(words) < 2
             or room.height() < LEAST_TWO * look.u
@@ -166,21 +188,30 @@ class PromptLine(Panel):
         first = min(cuts, key=lambda part: abs(2 * len(part) - len(text)))
         return [first, text[len(first) + 1 :].strip()]
 
-    def _notice(self, painter: Painter, area: QRectF, text: str, sort: Sort) -> None:
-        u = self.look.u
-        ground, sign = ANSWERS[sort]
-        painter.fill(area, ground)
-        painter.write(
-            QRectF(area.x(), area.y(), SIGN * u, area.height()), sign, 3.0, "on_state", at=CENTRE, raw=True
+    def _notice(self, painter: ThemedPainter, area: QRectF, text: str, sort: MessageKind) -> None:
+        u = self.theme.u
+        ground, sign = MESSAGE_STYLES[sort]
+        painter.fill_rect(area, ground)
+        painter.draw_text_line(
+            QRectF(area.x(), area.y(), SIGN_WIDTH * u, area.height()),
+            sign,
+            3.0,
+            "on_state",
+            at=ALIGN_CENTER,
+            raw=True,
         )
-        painter.write(area.adjusted(SIGN * u, 0, -1.4 * u, 0), text, 2.3, "on_state", role=Role.PROMPT)
+        painter.draw_text_line(
+            area.adjusted(SIGN_WIDTH * u, 0, -1.4 * u, 0), text, 2.3, "on_state", role=Role.PROMPT
+        )
 
-    def _targets(self, painter: Painter, area: QRectF) -> float:
+    def _draw_answer_keys(self, painter: ThemedPainter, area: QRectF) -> float:
         """Draw the targets for yes and no at the right end, and return where the text must end."""
-        u = self.look.u
-        left = area.right() - 2 * TARGET * u
-        for number, (word, key) in enumerate((("YES", ANSWER), ("NO", NO))):
-            box = QRectF(left + number * TARGET * u, area.y(), (TARGET - 0.6) * u, area.height())
+        u = self.theme.u
+        left = area.right() - 2 * ANSWER_KEY_WIDTH * u
+        for number, (word, key) in enumerate((("YES", YES_KEY), ("NO", NO_KEY))):
+            box = QRectF(
+                left + number * ANSWER_KEY_WIDTH * u, area.y(), (ANSWER_KEY_WIDTH - 0.6) * u, area.height()
+            )
             self.key(painter, box, word, 2.1, partial(self._press, key))
         return left - 0.6 * u
 
@@ -189,40 +220,48 @@ class CommentLine(Panel):
     """The last comment of the program, at the lower left."""
 
     title = "COMMENT"
-    text = Shown("")
+    text = RedrawingAttribute("")
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
-        room = self.area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
-        painter.write(room, self.text, 2.0, "accent", bold=False, raw=True)
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
+        room = self.find_full_area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
+        painter.draw_text_line(room, self.text, 2.0, "accent", bold=False, raw=True)
 
 
-class FunctionKeys(Panel):
+class FunctionKeyBar(Panel):
     """The function keys F1 to F10, each with a label of up to eight characters. Each is a touch target."""
 
-    part_name = "FUNCTION KEYS"
-    labels: Shown[tuple[str, ...]] = Shown(("",) * 10)  # An empty label means no key.
-    barred: Shown[frozenset[str]] = Shown(frozenset())  # Disabled keys, which are drawn dim.
+    accessible_name = "FUNCTION KEYS"
+    key_labels: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(
+        ("",) * 10
+    )  # An empty label means no key.
+    disabled_keys: RedrawingAttribute[frozenset[str]] = RedrawingAttribute(
+        frozenset()
+    )  # Disabled keys, which are drawn dim.
 
-    def __init__(self, look: Look, press: Callable[[int], None], parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(
+        self, theme: ScreenTheme, press: Callable[[int], None], parent: QWidget | None = None
+    ) -> None:
+        super().__init__(theme, parent)
         self._press = press
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
         gap = 0.6 * u
-        wide = (self.width() + gap) / len(self.labels)
-        for number, label in enumerate(self.labels, 1):
+        wide = (self.width() + gap) / len(self.key_labels)
+        for number, label in enumerate(self.key_labels, 1):
             if not label:
                 continue
             box = QRectF((number - 1) * wide, 0, wide - gap, self.height())
-            barred = f"F{number}" in self.barred
-            painter.fill(box, "panel" if barred else "key")
+            barred = f"F{number}" in self.disabled_keys
+            painter.fill_rect(box, "panel" if barred else "key")
             upper = QRectF(box.x(), box.y() + 0.5 * u, box.width(), 2.4 * u)
-            painter.write(upper, f"F{number}", 1.8, "soft" if barred else "accent", at=CENTRE)
+            painter.draw_text_line(upper, f"F{number}", 1.8, "soft" if barred else "accent", at=ALIGN_CENTER)
             lower = QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u)
-            painter.write(lower, label, 2.1, "soft" if barred else "text", at=CENTRE, margin=1.0)
-            self.place(box, partial(self._press, number), barred=barred)
+            painter.draw_text_line(
+                lower, label, 2.1, "soft" if barred else "text", at=ALIGN_CENTER, margin=1.0
+            )
+            self.add_target(box, partial(self._press, number), is_disabled=barred)
 
 
 # --- lamps --------------------------------------------------------------------------------------------
@@ -231,133 +270,148 @@ class FunctionKeys(Panel):
 class LampStrip(Panel):
     """A row of lamps. A lit lamp is filled and a dark lamp is hollow, so that color is not needed."""
 
-    part_name = "LAMPS"
-    lamps: Shown[tuple[Lamp, ...]] = Shown(())
-    mute: Shown[frozenset[str]] = Shown(
+    accessible_name = "LAMPS"
+    lamps: RedrawingAttribute[tuple[Lamp, ...]] = RedrawingAttribute(())
+    hidden_keys: RedrawingAttribute[frozenset[str]] = RedrawingAttribute(
         frozenset()
     )  # Keys that are text input now. The lamps react to touch only.
 
-    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(
+        self, theme: ScreenTheme, press: Callable[[str], None], parent: QWidget | None = None
+    ) -> None:
+        super().__init__(theme, parent)
         self._press = press
 
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
+    def draw(self, painter: ThemedPainter) -> None:
+        u = self.theme.u
         gap = 0.6 * u
         wide = (self.width() + gap) / max(1, len(self.lamps))
         for number, lamp in enumerate(self.lamps):
             box = QRectF(number * wide, 0, wide - gap, self.height())
             self._lamp(painter, box, lamp)
             if lamp.key:
-                self.place(box, partial(self._press, lamp.key), kind="lamp", on=lamp.lit)
+                self.add_target(box, partial(self._press, lamp.key), kind="lamp", is_on=lamp.is_lit)
 
-    def _lamp(self, painter: Painter, box: QRectF, lamp: Lamp) -> None:
-        look, u = self.look, self.look.u
-        lit = "pause" if lamp.warn else "lit"
-        line = lit if lamp.lit else "frame"
-        inset = look.pen(line, 0.14).widthF() / 2
-        painter.box(box.adjusted(inset, inset, -inset, -inset), line, 0.14, lit if lamp.lit else "panel")
-        ink = ("on_state" if lamp.warn else "on_lit") if lamp.lit else "soft"
+    def _lamp(self, painter: ThemedPainter, box: QRectF, lamp: Lamp) -> None:
+        look, u = self.theme, self.theme.u
+        lit = "pause" if lamp.is_warning else "lit"
+        line = lit if lamp.is_lit else "frame"
+        inset = look.make_pen(line, 0.14).widthF() / 2
+        painter.draw_box(
+            box.adjusted(inset, inset, -inset, -inset), line, 0.14, lit if lamp.is_lit else "panel"
+        )
+        ink = ("on_state" if lamp.is_warning else "on_lit") if lamp.is_lit else "soft"
         room = box.adjusted(0.5 * u, 0.5 * u, -0.5 * u, -0.5 * u)
-        if lamp.key and lamp.key not in self.mute:
+        if lamp.key and lamp.key not in self.hidden_keys:
             cap = QRectF(room.x() + 0.1 * u, room.center().y() - 1.5 * u, 2.6 * u, 3.0 * u)
-            painter.setPen(look.colour(ink))
+            painter.setPen(look.color(ink))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(cap)
-            painter.write(cap, lamp.key, 2.2, ink, at=CENTRE)
+            painter.draw_text_line(cap, lamp.key, 2.2, ink, at=ALIGN_CENTER)
             room.setLeft(cap.right() + 0.4 * u)
-        words = tr(lamp.word).split(" ", 1)
+        words = tr(lamp.label).split(" ", 1)
         room.setHeight(room.height() / len(words))
         for number, word in enumerate(words):
-            painter.write(room.translated(0, number * room.height()), word, 1.75, ink, at=CENTRE)
+            painter.draw_text_line(
+                room.translated(0, number * room.height()), word, 1.75, ink, at=ALIGN_CENTER
+            )
 
 
 # --- notices ------------------------------------------------------------------------------------------
 
 
 NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # Units: height of a row, width of a key.
-NOTICE_LOW = 4.5  # Units: height of a row without keys.
-_THREE_LINES = 6.0  # Units: height of a row with room for three lines.
+LOW_NOTICE_HEIGHT = 4.5  # Units: height of a row without keys.
+_THREE_LINE_HEIGHT = 6.0  # Units: height of a row with room for three lines.
 
 
 class NoticeRows(Panel):
     """Rows with notices, each filled with the color of its tone and with keys for touch."""
 
-    rows: Shown[tuple[NoticeRow, ...]] = Shown(())
+    notice_rows: RedrawingAttribute[tuple[NoticeRow, ...]] = RedrawingAttribute(())
 
-    def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(
+        self, theme: ScreenTheme, press: Callable[[str], None], parent: QWidget | None = None
+    ) -> None:
+        super().__init__(theme, parent)
         self._press = press
         self._stand_for = 0
 
     @property
-    def high(self) -> int:
+    def needed_height_px(self) -> int:
         """The height in pixels that the rows need."""
-        return sum(self._high_of(row) for row in self.rows)
+        return sum(self._find_row_height(row) for row in self.notice_rows)
 
-    def _high_of(self, row: NoticeRow) -> int:
+    def _find_row_height(self, row: NoticeRow) -> int:
         """Return the height of a row in pixels.
 
         A row with keys is at least as high as a fingertip. A row without keys has two lines of text.
         """
-        u = self.look.u
+        u = self.theme.u
         if not row.keys:
-            return round(NOTICE_LOW * u)
-        wide = self._room(row, self.width())
-        fits = width_of(row.figures, self.look.fit(row.figures, 1.7, wide)) <= wide
-        return max(FINGER + 2, round(NOTICE_ROW * u) if fits else round(_THREE_LINES * u) + 3)
+            return round(LOW_NOTICE_HEIGHT * u)
+        wide = self._find_text_width(row, self.width())
+        fits = measure_text(row.values_text, self.theme.fit_font(row.values_text, 1.7, wide)) <= wide
+        return max(FINGERTIP_PX + 2, round(NOTICE_ROW * u) if fits else round(_THREE_LINE_HEIGHT * u) + 3)
 
-    def _room(self, row: NoticeRow, wide: float) -> float:
+    def _find_text_width(self, row: NoticeRow, wide: float) -> float:
         """Return the width for the texts of a row, next to its keys."""
-        return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.look.u
+        return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.theme.u
 
     @property
-    def other_room(self) -> bool:
+    def needs_new_height(self) -> bool:
         """Whether the rows need another height than they have."""
-        return self.high != self._stand_for
+        return self.needed_height_px != self._stand_for
 
-    def take_room(self) -> int:
+    def apply_height(self) -> int:
         """Note that the rows get the height that they need, and return it in pixels."""
-        self._stand_for = self.high
-        return self.high
+        self._stand_for = self.needed_height_px
+        return self.needed_height_px
 
-    def draw(self, painter: Painter) -> None:
-        share, top = self.height() / max(1, self.high), 0.0  # The rows may get less height than they need.
-        for row in self.rows:
-            high = share * self._high_of(row)
+    def draw(self, painter: ThemedPainter) -> None:
+        share, top = (
+            self.height() / max(1, self.needed_height_px),
+            0.0,
+        )  # The rows may get less height than they need.
+        for row in self.notice_rows:
+            high = share * self._find_row_height(row)
             self._row(painter, QRectF(0, top, self.width(), high - 2), row)
             top += high
 
-    def _row(self, painter: Painter, box: QRectF, row: NoticeRow) -> None:
-        u = self.look.u
-        painter.fill(box, row.tone)
-        wide = self._room(row, box.width())
-        lines = [row.figures] if row.figures else []
-        if box.height() > _THREE_LINES * u:
-            lines = _in_lines(row.figures, self.look.fit(row.figures, 1.7, wide), wide)
+    def _row(self, painter: ThemedPainter, box: QRectF, row: NoticeRow) -> None:
+        u = self.theme.u
+        painter.fill_rect(box, row.color_name)
+        wide = self._find_text_width(row, box.width())
+        lines = [row.values_text] if row.values_text else []
+        if box.height() > _THREE_LINE_HEIGHT * u:
+            lines = _wrap_lines(row.values_text, self.theme.fit_font(row.values_text, 1.7, wide), wide)
         upper = QRectF(box.x() + 1.2 * u, box.y(), wide, box.height() * (1.0, 0.52, 0.4)[len(lines)])
-        painter.write(upper, row.text, 2.0, "on_state", raw=True)
+        painter.draw_text_line(upper, row.text, 2.0, "on_state", raw=True)
         high = (box.height() - upper.height()) / max(1, len(lines))
         for number, line in enumerate(lines):
             below = QRectF(upper.x(), upper.bottom() + number * high, wide, high)
-            painter.write(below, line, 1.7 if len(lines) == 1 else LEAST, "on_state", bold=False, raw=True)
+            painter.draw_text_line(
+                below, line, 1.7 if len(lines) == 1 else MIN_TEXT_SIZE, "on_state", bold=False, raw=True
+            )
         for number, (name, label) in enumerate(row.keys):
             x = box.right() - (len(row.keys) - number) * NOTICE_KEY * u
             self._key(painter, QRectF(x, box.y(), NOTICE_KEY * u - 0.6 * u, box.height()), name, label)
 
-    def _key(self, painter: Painter, box: QRectF, name: str, label: str) -> None:
-        u = self.look.u
-        painter.fill(box, "key")
-        painter.write(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), name, 1.8, "accent")
-        painter.write(box.adjusted(3.8 * u, 0, -0.4 * u, 0), label, 1.8, "text", at=CENTRE, margin=0.2)
-        self.place(box, partial(self._press, name))
+    def _key(self, painter: ThemedPainter, box: QRectF, name: str, label: str) -> None:
+        u = self.theme.u
+        painter.fill_rect(box, "key")
+        painter.draw_text_line(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), name, 1.8, "accent")
+        painter.draw_text_line(
+            box.adjusted(3.8 * u, 0, -0.4 * u, 0), label, 1.8, "text", at=ALIGN_CENTER, margin=0.2
+        )
+        self.add_target(box, partial(self._press, name))
 
 
-def _in_lines(text: str, font: QFont, wide: float) -> list[str]:
+def _wrap_lines(text: str, font: QFont, wide: float) -> list[str]:
     """Return the text in one line, or in two lines if it is too wide. The second line may still be elided."""
-    if not text or width_of(text, font) <= wide:
+    if not text or measure_text(text, font) <= wide:
         return [text] if text else []
     words, first = text.split(" "), ""
-    while words and width_of(f"{first} {words[0]}".strip(), font) <= wide:
+    while words and measure_text(f"{first} {words[0]}".strip(), font) <= wide:
         first = f"{first} {words.pop(0)}".strip()
     return [first, " ".join(words)] if first else [text]

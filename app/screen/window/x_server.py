@@ -13,22 +13,22 @@ _KEYS_HELD_KEYS = 32  # Bytes, with one bit per key.
 class XServer:
     """The X server on whose display Qt shows the windows. Use it from Qt's thread only."""
 
-    def __init__(self, display: int) -> None:
+    def __init__(self, display_address: int) -> None:
         self._x = ctypes.CDLL("libX11.so.6")
-        self._display = ctypes.c_void_p(display)
+        self._display = ctypes.c_void_p(display_address)
         self._x.XDefaultRootWindow.restype = ctypes.c_ulong
         self._root = ctypes.c_ulong(self._x.XDefaultRootWindow(self._display))
         supported = ctypes.c_int(0)
         self._x.XkbSetDetectableAutoRepeat(self._display, 1, ctypes.byref(supported))
-        self.tells_repeats = bool(supported.value)
+        self.reports_repeats = bool(supported.value)
 
-    def keys(self) -> frozenset[int]:
+    def read_keys(self) -> frozenset[int]:
         """Return the codes of the keys that are down now."""
         bits = (ctypes.c_ubyte * _KEYS_HELD_KEYS)()
         self._x.XQueryKeymap(self._display, bits)
         return frozenset(8 * n + bit for n, byte in enumerate(bits) for bit in range(8) if byte >> bit & 1)
 
-    def buttons(self) -> bool:
+    def has_button_down(self) -> bool:
         """Return whether a mouse button is down now."""
         windows = [ctypes.c_ulong(), ctypes.c_ulong()]
         places = [ctypes.c_int() for _ in range(4)]
@@ -38,7 +38,7 @@ class XServer:
         return bool(mask.value & _BUTTONS)
 
 
-def x_server() -> XServer | None:
+def open_x_server() -> XServer | None:
     """Return the X server of the windows, or None on another platform."""
     if QGuiApplication.platformName() != "xcb":
         return None

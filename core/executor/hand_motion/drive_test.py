@@ -17,27 +17,27 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.executor.hand_motion.jog_line import Ramp, room_to_limit
-from core.executor.hand_motion.jogging import LONGEST_LEASE, Jogger, step_ramps
+from core.executor.hand_motion.jog_line import Ramp, distance_to_limit
+from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, plan_step_ramps
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import DriveTestState
 from core.machine.machine_model import Axis
 from core.message import Message
 from core.ports import MachinePorts
 
-LARGEST = 2.54  # mm, largest travel of a step or a sine
-LONGEST = 25.4  # mm, largest travel of a ramp, which needs distance to reach a constant speed
-PAUSE = 0.5  # s of rest after each move, for settling
-_BETWEEN = 0.2  # s of rest after each sine
+MAX_TRAVEL_MM = 2.54  # mm, largest travel of a step or a sine
+MAX_RAMP_TRAVEL_MM = 25.4  # mm, largest travel of a ramp, which needs distance to reach a constant speed
+PAUSE_S = 0.5  # s of rest after each move, for settling
+_PAUSE_BETWEEN_SINES_S = 0.2  # s of rest after each sine
 _WAVES, _LASTS = 5, 0.8  # least number of periods and least s of a sine; the first period is for settling
-_PIECES = 40  # most ramps per period
-_SHORTEST = 0.002  # s, shortest ramp
-_LEAST = 12  # least ramps per period
-_ROUND = 1e-9
-PLANS = (
+_MAX_SINE_PIECES = 40  # most ramps per period
+_MIN_RAMP_S = 0.002  # s, shortest ramp
+_MIN_SINE_PIECES = 12  # least ramps per period
+_ROUNDING_TOLERANCE = 1e-9
+NO_SETPOINTS_REASON = (
     "drive tests are not available because the controller plans its own motion and does not accept setpoints"
 )
-TICKS = 100.0  # samples per second if the driver has no samples
+TICK_SAMPLE_RATE_HZ = 100.0  # samples per second if the driver has no samples
 
 
 class Shape(StrEnum):
@@ -52,34 +52,34 @@ class Shape(StrEnum):
 class Limits:
     """The limits of the axis in a test: speed in mm/s, acceleration in mm/s², and samples per second."""
 
-    top: float
-    amax: float
-    rate: float
+    max_speed: float
+    max_acceleration: float
+    sample_rate_hz: float
 
     @property
-    def fastest_sine(self) -> float:
+    def max_sine_frequency_hz(self) -> float:
         """The highest sine frequency in Hz, which gives ten samples per period."""
-        return self.rate / 10.0
+        return self.sample_rate_hz / 10.0
 
 
 @dataclass(frozen=True, slots=True)
 class DriveTestPath:
     """The motion of a drive test.
 
-    ``size`` is the signed travel in mm, peak to peak for a sine. ``speed`` is the speed of a ramp in mm/s.
-    ``frequencies`` are those of the sines in Hz.
+    ``travel_mm`` is the signed travel in mm, peak to peak for a sine. ``speed`` is the speed of a ramp in
+    mm/s. ``frequencies`` are those of the sines in Hz.
     """
 
     axis: str
     shape: Shape
-    size: float
+    travel_mm: float
     speed: float = 0.0
     frequencies: tuple[float, ...] = ()
 
-    def refusal(self, limits: Limits) -> str:
+    def find_refusal(self, limits: Limits) -> str:
         """Return why the values are not valid for a test, or an empty string."""
-        longest = LONGEST if self.shape is Shape.RAMP else LARGEST
-        if not 0.0 < abs(self.size) <= longest + _ROUND:
+        longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_TRAVEL_MM
+        if not 0.0 < abs(self.travel_mm) <= longest + _ROUNDING_TOLERANCE:
             return Message(
                 "the travel of this test must be greater than 0 and at most {longest} mm",
                 longest=f"{longest:g}",
@@ -89,15 +89,15 @@ class DriveTestPath:
         return self._sine_refusal(limits) if self.shape is Shape.SINE else ""
 
     def _ramp_refusal(self, limits: Limits) -> str:
-        if not 0.0 < self.speed <= limits.top + _ROUND:
+        if not 0.0 < self.speed <= limits.max_speed + _ROUNDING_TOLERANCE:
             return Message(
                 "the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves",
-                top=f"{limits.top:.0f}",
+                top=f"{limits.max_speed:.0f}",
             )
-        if self.speed**2 / limits.amax > 0.5 * abs(self.size):
+        if self.speed**2 / limits.max_acceleration > 0.5 * abs(self.travel_mm):
             return Message(
                 "a travel of {size} mm is too short to reach a constant speed of {speed} mm/s",
-                size=f"{abs(self.size):g}",
+                size=f"{abs(self.travel_mm):g}",
                 speed=f"{self.speed:g}",
             )
         return ""
@@ -106,53 +106,53 @@ class DriveTestPath:
         if not self.frequencies or not all(0.5 <= each <= 200.0 for each in self.frequencies):
             return "the sine frequency must be from 0.5 to 200 Hz"
         fastest = max(self.frequencies)
-        if fastest > limits.fastest_sine + _ROUND:
+        if fastest > limits.max_sine_frequency_hz + _ROUNDING_TOLERANCE:
             return Message(
                 "this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine",
-                rate=f"{limits.rate:g}",
+                rate=f"{limits.sample_rate_hz:g}",
                 fastest=f"{fastest:g}",
             )
         return ""
 
-    def size_at(self, frequency: float, limits: Limits) -> float:
+    def sine_travel_mm(self, frequency: float, limits: Limits) -> float:
         """Return the signed peak-to-peak travel in mm of the sine, reduced to what the axis can follow."""
         omega = 2.0 * math.pi * frequency
-        able = min(2.0 * limits.top / omega, 2.0 * limits.amax / omega**2)
-        return math.copysign(min(abs(self.size), able), self.size)
+        able = min(2.0 * limits.max_speed / omega, 2.0 * limits.max_acceleration / omega**2)
+        return math.copysign(min(abs(self.travel_mm), able), self.travel_mm)
 
-    def ramps(self, limits: Limits) -> list[Ramp]:
+    def make_ramps(self, limits: Limits) -> list[Ramp]:
         """Return the ramps of the test from rest to rest: (seconds, start speed, acceleration)."""
         if self.shape is Shape.SINE:
-            return [piece for each in self.frequencies for piece in self._sine(each, limits)]
-        top = self.speed if self.shape is Shape.RAMP else limits.top
+            return [piece for each in self.frequencies for piece in self._make_sine(each, limits)]
+        top = self.speed if self.shape is Shape.RAMP else limits.max_speed
         return [
             piece
-            for way in (self.size, -self.size)
-            for piece in (*step_ramps(way, top, limits.amax), (PAUSE, 0.0, 0.0))
+            for way in (self.travel_mm, -self.travel_mm)
+            for piece in (*plan_step_ramps(way, top, limits.max_acceleration), (PAUSE_S, 0.0, 0.0))
         ]
 
-    def _sine(self, frequency: float, limits: Limits) -> list[Ramp]:
+    def _make_sine(self, frequency: float, limits: Limits) -> list[Ramp]:
         """Return the ramps of one sine, whose velocity is exact at the ends and linear between them.
 
         The amplitude is smaller than requested by (ω dt)²/12: 2 % for the fastest sine and 0.2 % for the
         others. The axis returns exactly to its start.
         """
-        count = max(_LEAST, min(_PIECES, int(1.0 / (frequency * _SHORTEST))))
+        count = max(_MIN_SINE_PIECES, min(_MAX_SINE_PIECES, int(1.0 / (frequency * _MIN_RAMP_S))))
         waves = max(_WAVES, math.ceil(_LASTS * frequency))
         dt = 1.0 / (frequency * count)
-        peak = math.pi * frequency * self.size_at(frequency, limits)
+        peak = math.pi * frequency * self.sine_travel_mm(frequency, limits)
         speeds = peak * np.sin(2.0 * math.pi * np.arange(count + 1) / count)
         speeds[[0, -1]] = 0.0
         wave = [(dt, float(v), float(w - v) / dt) for v, w in pairwise(speeds)]
-        return [*(wave * waves), (_BETWEEN, 0.0, 0.0)]
+        return [*(wave * waves), (_PAUSE_BETWEEN_SINES_S, 0.0, 0.0)]
 
 
-def seconds(ramps: list[Ramp]) -> float:
+def total_duration_s(ramps: list[Ramp]) -> float:
     """Return the duration of the ramps in seconds."""
     return math.fsum(piece[0] for piece in ramps)
 
 
-def reach(ramps: list[Ramp]) -> tuple[float, float]:
+def travel_range(ramps: list[Ramp]) -> tuple[float, float]:
     """Return the lowest and the highest position relative to the start, in mm.
 
     If the ramps are interrupted, the axis stops within this range, because it can always brake as hard as the
@@ -167,29 +167,29 @@ def reach(ramps: list[Ramp]) -> tuple[float, float]:
     return low, high
 
 
-def cut(ramps: list[Ramp], begin: float, end: float) -> list[Ramp]:
+def slice_ramps(ramps: list[Ramp], start_s: float, end_s: float) -> list[Ramp]:
     """Return the part of the ramps between two times in seconds from their start."""
     found, at = [], 0.0
     for dt, v, a in ramps:
-        first, last = max(begin - at, 0.0), min(end - at, dt)
-        if last - first > _ROUND:
+        first, last = max(start_s - at, 0.0), min(end_s - at, dt)
+        if last - first > _ROUNDING_TOLERANCE:
             found.append((last - first, v + a * first, a))
         at += dt
     return found
 
 
-def braking(ramps: list[Ramp], amax: float) -> list[Ramp]:
+def make_braking_ramp(ramps: list[Ramp], amax: float) -> list[Ramp]:
     """Return the ramp from the final speed to rest, or an empty list if the ramps end at rest."""
     if not ramps:
         return []
     dt, v, a = ramps[-1]
     last = v + a * dt
-    return [(abs(last) / amax, last, -math.copysign(amax, last))] if abs(last) > _ROUND else []
+    return [(abs(last) / amax, last, -math.copysign(amax, last))] if abs(last) > _ROUNDING_TOLERANCE else []
 
 
-def barred(ports: MachinePorts) -> str:
+def find_unsupported_reason(ports: MachinePorts) -> str:
     """Return why this machine cannot run drive tests, or an empty string."""
-    return PLANS if ports.blocks is not None else ports.untraced
+    return NO_SETPOINTS_REASON if ports.blocks is not None else ports.untraced
 
 
 class DriveTester:
@@ -208,36 +208,38 @@ class DriveTester:
         """The state of the drive tests for the snapshot."""
         jogger = self._jogger
         return DriveTestState(
-            barred(self._context.ports),
-            jogger.axis if jogger.testing else "",
+            find_unsupported_reason(self._context.ports),
+            jogger.axis_name if jogger.is_testing else "",
             self._number,
             self._began,
-            jogger.tested,
+            jogger.completed_test_count,
             self._rate,
         )
 
     @property
     def _rate(self) -> float:
         samples = self._context.ports.samples
-        return samples.rate if samples is not None else TICKS
+        return samples.sample_rate_hz if samples is not None else TICK_SAMPLE_RATE_HZ
 
-    def refusal(self, path: DriveTestPath, lease: float) -> str:
+    def find_refusal(self, path: DriveTestPath, lease_s: float) -> str:
         """Return why this test is refused, or an empty string if it may start."""
-        if why := barred(self._context.ports) or self._jogger.missing(path.axis):
+        if why := find_unsupported_reason(self._context.ports) or self._jogger.find_missing_axis_reason(
+            path.axis
+        ):
             return why
-        if not math.isfinite(lease) or lease <= 0.0:
+        if not math.isfinite(lease_s) or lease_s <= 0.0:
             return "a drive test needs a watchdog time greater than 0"
         return self._not_now(path.axis) or self._no_test(path)
 
     def _not_now(self, name: str) -> str:
         context = self._context
-        if self._jogger.axis:
-            return Message("{axis} is still moving", axis=self._jogger.axis)
-        if context.signals.hold:
+        if self._jogger.axis_name:
+            return Message("{axis} is still moving", axis=self._jogger.axis_name)
+        if context.signals.hold_requested:
             return "feed hold is pressed"
-        if context.spindle.guard_open:
+        if context.spindle.is_guard_open:
             return "the guard is open"
-        if context.spindle.asked or not context.spindle.stopped:
+        if context.spindle.is_requested or not context.spindle.is_stopped:
             return "the spindle is turning; stop it first"
         if not context.sample.homed[context.ports.axes.axes.index(name)]:
             return Message(
@@ -247,17 +249,17 @@ class DriveTester:
         return ""
 
     def _no_test(self, path: DriveTestPath) -> str:
-        axis = self._context.machine.axis(path.axis)
+        axis = self._context.machine.find_axis(path.axis)
         if axis.rotary:
             return Message("{axis} is a rotary axis; drive tests are only for linear axes", axis=axis.name)
         limits = self._limits(axis)
-        return path.refusal(limits) or self._no_room(axis, path, limits)
+        return path.find_refusal(limits) or self._no_room(axis, path, limits)
 
     def _no_room(self, axis: Axis, path: DriveTestPath, limits: Limits) -> str:
         here = self._context.sample.demand[self._context.ports.axes.axes.index(axis.name)]
-        low, high = reach(path.ramps(limits))
+        low, high = travel_range(path.make_ramps(limits))
         for way in (low, high):
-            if abs(way) > _ROUND and abs(way) > room_to_limit(axis, here, way):
+            if abs(way) > _ROUNDING_TOLERANCE and abs(way) > distance_to_limit(axis, here, way):
                 end = "+" if way > 0.0 else "−"
                 return Message(
                     "{axis} must move {distance} mm in the {end} direction for the test, but its travel ends "
@@ -269,47 +271,47 @@ class DriveTester:
         return ""
 
     def _limits(self, axis: Axis) -> Limits:
-        return Limits(self._jogger.top(axis, homed=True), axis.amax, self._rate)
+        return Limits(self._jogger.max_jog_speed(axis, homed=True), axis.amax, self._rate)
 
-    def begin(self, path: DriveTestPath, lease: float) -> bool:
+    def start_test(self, path: DriveTestPath, lease_s: float) -> bool:
         """Start a test from rest; return False if its lease expires before anything moves.
 
         Raises DriverError if the setpoints are rejected.
         """
-        self._ramps = path.ramps(self._limits(self._context.machine.axis(path.axis)))
-        self._lasts, self._until = seconds(self._ramps), 0.0
-        begins = self._queue(path.axis, lease)
+        self._ramps = path.make_ramps(self._limits(self._context.machine.find_axis(path.axis)))
+        self._lasts, self._until = total_duration_s(self._ramps), 0.0
+        begins = self._queue(path.axis, lease_s)
         self._number += begins
         return begins
 
-    def renew(self, lease: float) -> None:
+    def renew_lease(self, lease_s: float) -> None:
         """Renew the lease of the test. A test that is braking or finished is not extended.
 
         Raises DriverError if the setpoints are rejected.
         """
         jogger = self._jogger
-        if jogger.testing and not jogger.ending and self._until < self._lasts and lease > 0.0:
-            self._queue(jogger.axis, lease)
+        if jogger.is_testing and not jogger.is_stopping and self._until < self._lasts and lease_s > 0.0:
+            self._queue(jogger.axis_name, lease_s)
 
-    def look(self) -> None:
+    def check_guard(self) -> None:
         """Stop the test if the guard is open. Called once per tick. Raises DriverError."""
-        if self._jogger.testing and not self._jogger.ending and self._context.spindle.guard_open:
+        if self._jogger.is_testing and not self._jogger.is_stopping and self._context.spindle.is_guard_open:
             self._jogger.stop()
 
     def _queue(self, name: str, lease: float) -> bool:
         """Queue the setpoints for the lease and the braking after it; return False if nothing remains."""
-        amax, until = self._context.machine.axis(name).amax, self._context.now + min(lease, LONGEST_LEASE)
+        amax, until = self._context.machine.find_axis(name).amax, self._context.now + min(lease, MAX_LEASE_S)
 
         def go(start: float, _p: float, _v: float) -> list[Ramp]:
             if not self._until:
                 self._began = start
             if start - self._began > self._until:
                 return []  # the lease has expired and the axis is braking
-            kept = cut(self._ramps, start - self._began, until - self._began)
-            return [*kept, *braking(kept, amax)]
+            kept = slice_ramps(self._ramps, start - self._began, until - self._began)
+            return [*kept, *make_braking_ramp(kept, amax)]
 
-        plays = self._jogger.play(name, go)
+        plays = self._jogger.run_drive_test(name, go)
         if plays:
             self._until = min(until - self._began, self._lasts)
-            self._jogger.whole(self._until >= self._lasts)
+            self._jogger.set_test_queued(self._until >= self._lasts)
         return plays

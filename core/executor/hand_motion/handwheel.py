@@ -9,31 +9,31 @@ from __future__ import annotations
 
 import math
 
-from core.executor.commands import Wheel
+from core.executor.commands import SelectHandwheel
 from core.executor.hand_motion import jogging
-from core.executor.hand_motion.jog_line import LIMIT_MARGIN, Ramp
-from core.executor.hand_motion.jogging import LONGEST_LEASE, Jogger, at_the_end
+from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, Ramp
+from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, travel_end_message
 from core.executor.machine_context import MachineContext
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Axis
-from core.machine.station_rules import ENABLE, WHEEL, selector
+from core.machine.station_rules import HANDWHEEL, HANDWHEEL_ENABLE_INPUT, axis_selector_input
 from core.message import Message
 
 # --- encoder counts and clicks --------------------------------------------------------------------------
 
 
-_FASTEST = 1000.0  # clicks per second and
-_AT_ONCE = 10  # additional clicks are the most that a hand can do; 300 per second is a fast spin
+_MAX_CLICKS_PER_S = 1000.0  # clicks per second and
+_EXTRA_CLICKS = 10  # additional clicks are the most that a hand can do; 300 per second is a fast spin
 _AWAY = 0.1  # s between two readings; counts of a longer gap are too old
-LONGEST_CLICK = 0.254  # mm (.01 in)
-LONGEST_TURN = 0.5  # degrees
-_BEHIND = 0.1  # s, delay of the axis after the wheel
-_STILL = 0.1  # s for which the wheel must be still after it is selected
-_APART = 0.5  # s between a simultaneous use of key and wheel and the next jog
+MAX_CLICK_MM = 0.254  # mm (.01 in)
+MAX_CLICK_DEG = 0.5  # degrees
+_FOLLOW_DELAY_S = 0.1  # s, delay of the axis after the wheel
+_STILL_TIME_S = 0.1  # s for which the wheel must be still after it is selected
+_RELEASE_PAUSE_S = 0.5  # s between a simultaneous use of key and wheel and the next jog
 _ROUNDING = 1e-9
 
 
-class WheelClicks:
+class ClickCounter:
     """Converts encoder counts to clicks.
 
     ``per`` is the number of counts per click; a negative number reverses.
@@ -43,10 +43,10 @@ class WheelClicks:
         self._per = per
         self._last: tuple[float, int] | None = None  # time and counts of the last reading
         self._base = 0  # counts that were converted to clicks
-        self.still = 0.0  # s since the last motion of the wheel
-        self.leapt = False  # the count has jumped in this tick, faster than a hand can turn
+        self.still_time_s = 0.0  # s since the last motion of the wheel
+        self.has_jumped = False  # the count has jumped in this tick, faster than a hand can turn
 
-    def take(self, counts: int, now: float) -> int:
+    def read_clicks(self, counts: int, now: float) -> int:
         """Return the signed clicks since the last call.
 
         Half a click is ignored, so that a resting wheel is still.
@@ -56,103 +56,103 @@ class WheelClicks:
             self._base = counts
             return 0
         passed, moved = now - before[0], abs(counts - before[1])
-        self.leapt = moved > abs(self._per) * (_FASTEST * passed + _AT_ONCE)
-        if self.leapt or passed > _AWAY:
-            self._base, self.still = counts, 0.0
+        self.has_jumped = moved > abs(self._per) * (_MAX_CLICKS_PER_S * passed + _EXTRA_CLICKS)
+        if self.has_jumped or passed > _AWAY:
+            self._base, self.still_time_s = counts, 0.0
             return 0
         clicks = int((counts - self._base) / self._per)  # rounded towards zero
         self._base += clicks * self._per
-        self.still = 0.0 if clicks else self.still + passed
+        self.still_time_s = 0.0 if clicks else self.still_time_s + passed
         return clicks
 
 
 class Handwheel:
     """Moves ``axis``, which is empty while no axis is selected.
 
-    ``ended`` is why the control disabled the wheel.
+    ``end_reason`` is why the control disabled the wheel.
     """
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
-        model = context.machine.hardware.analog.get(WHEEL)
+        model = context.machine.hardware.analog_inputs.get(HANDWHEEL)
         self._context = context
         self._jogger = jogger
         self._there = model is not None and context.ports.blocks is None
-        self._clicks = WheelClicks(model.counts_per_click if model else 1)
+        self._clicks = ClickCounter(model.counts_per_click if model else 1)
         self.axis = ""
-        self.ended = ""
+        self.end_reason = ""
         self._step = 0.0
         self._until = 0.0
         self._ready = False  # the wheel was still after it was selected
         self._reported = ""  # the message already logged for this motion
         self._apart = -math.inf  # time until which jog keys are refused after simultaneous use
 
-    def select(self, command: Wheel, state: State) -> None:
+    def select(self, command: SelectHandwheel, state: MachineState) -> None:
         """Select axis and step, or renew the lease. Raises DriverError if a driver fails."""
-        if self.ended:
+        if self.end_reason:
             return
-        if why := self._refusal(command) or self._lost(state, command.axis):
-            self.end(why, state)
+        if why := self._refusal(command) or self._find_end_reason(state, command.axis):
+            self.disable(why, state)
         elif (command.axis, command.step) != (self.axis, self._step):
             self._stop(state)
             self.axis, self._step, self._ready = command.axis, command.step, False
-        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
+        self._until = self._context.now + min(command.lease, MAX_LEASE_S)
 
-    def off(self, state: State) -> None:
+    def deselect(self, state: MachineState) -> None:
         """Deselect the handwheel and stop its axis. Raises DriverError if a driver fails."""
         self._stop(state)
-        self.axis = self.ended = ""
+        self.axis = self.end_reason = ""
 
-    def end(self, why: str, state: State) -> None:
+    def disable(self, reason: str, state: MachineState) -> None:
         """Disable the handwheel and log the reason ``why``. Raises DriverError if a driver fails."""
         self._stop(state)
-        self.axis, self.ended = "", why
-        self._context.log("refused", Message("handwheel: {what}", what=why))
+        self.axis, self.end_reason = "", reason
+        self._context.log("refused", Message("handwheel: {what}", what=reason))
 
-    def turn(self, state: State) -> bool:
+    def follow_clicks(self, state: MachineState) -> bool:
         """Follow the clicks, once per tick; return whether the axis moves. Raises DriverError."""
         context, jogger = self._context, self._jogger
-        clicks = self._clicks.take(context.signals.wheel, context.now)
+        clicks = self._clicks.read_clicks(context.signals.handwheel_counts, context.now)
         if not self.axis:
             return False
-        if why := self._lost(state, self.axis):
-            self.end(why, state)
+        if why := self._find_end_reason(state, self.axis):
+            self.disable(why, state)
             return False
-        if state is State.IDLE:
-            jogger.forget()
+        if state is MachineState.IDLE:
+            jogger.clear_jog()
             self._reported = ""
-        self._ready = self._ready or self._clicks.still >= _STILL
-        if not clicks or not self._ready or jogger.ending:
+        self._ready = self._ready or self._clicks.still_time_s >= _STILL_TIME_S
+        if not clicks or not self._ready or jogger.is_stopping:
             return False
-        if jogger.axis and jogger.goal is None:
+        if jogger.axis_name and jogger.target_position is None:
             self._together("the handwheel was turned while a key or the screen was pressed", state)
             return False
         return self._follow(clicks)
 
-    def bars(self, state: State) -> str:
+    def find_jog_refusal(self, state: MachineState) -> str:
         """Return why the handwheel prevents a jog by key, or an empty string."""
-        if self._jogger.goal is not None:
+        if self._jogger.target_position is not None:
             self._together("a key or the screen was pressed while the handwheel was turning", state)
         if self._context.now >= self._apart:
             return ""
-        self._apart = self._context.now + _APART
+        self._apart = self._context.now + _RELEASE_PAUSE_S
         return "a key and the handwheel cannot be used at the same time"
 
-    def _together(self, why: str, state: State) -> None:
+    def _together(self, why: str, state: MachineState) -> None:
         self._jogger.stop()
-        self._apart = self._context.now + _APART
-        self.end(why, state)
+        self._apart = self._context.now + _RELEASE_PAUSE_S
+        self.disable(why, state)
 
-    def _stop(self, state: State) -> None:
-        if state is State.JOG and self._jogger.goal is not None:
+    def _stop(self, state: MachineState) -> None:
+        if state is MachineState.JOG and self._jogger.target_position is not None:
             self._jogger.stop()
 
-    def _refusal(self, command: Wheel) -> str:
+    def _refusal(self, command: SelectHandwheel) -> str:
         context = self._context
         if not self._there:
             return "this machine has no handwheel"
-        if why := self._jogger.missing(command.axis):
+        if why := self._jogger.find_missing_axis_reason(command.axis):
             return why
-        longest = LONGEST_TURN if context.machine.axis(command.axis).rotary else LONGEST_CLICK
+        longest = MAX_CLICK_DEG if context.machine.find_axis(command.axis).rotary else MAX_CLICK_MM
         if not 0.0 < command.step <= longest + _ROUNDING:
             return Message(
                 "a handwheel step must be above 0 and at most {longest}, not {step}",
@@ -163,61 +163,63 @@ class Handwheel:
             return "the handwheel needs a watchdog time greater than 0"
         return ""
 
-    def _lost(self, state: State, axis: str) -> str:
+    def _find_end_reason(self, state: MachineState, axis: str) -> str:
         """Return the reason to disable the handwheel in this tick, or an empty string."""
         context, signals, inputs = self._context, self._context.signals, self._context.inputs
         reasons = (
             (
-                state not in {State.IDLE, State.JOG},
+                state not in {MachineState.IDLE, MachineState.JOG},
                 Message("not available in state {state}", state=state.value),
             ),
-            (signals.trouble != "", signals.trouble.lower()),
-            (signals.wheel_trouble != "", signals.wheel_trouble),
-            (signals.hold, "feed hold"),
-            (self._clicks.leapt, "the handwheel count jumps; check the handwheel cable"),
+            (signals.station_fault != "", signals.station_fault.lower()),
+            (signals.handwheel_fault != "", signals.handwheel_fault),
+            (signals.hold_requested, "feed hold"),
+            (self._clicks.has_jumped, "the handwheel count jumps; check the handwheel cable"),
             (
                 self.axis != "" and context.now > self._until,
                 ("the page that uses the handwheel stopped responding"),
             ),
-            (not inputs.get(ENABLE, True), "the handwheel's enabling switch is not pressed"),
+            (not inputs.get(HANDWHEEL_ENABLE_INPUT, True), "the handwheel's enabling switch is not pressed"),
             (
-                not inputs.get(selector(axis), True),
+                not inputs.get(axis_selector_input(axis), True),
                 Message("the axis selector switch is not set to {axis}", axis=axis),
             ),
         )
         found = next((why for so, why in reasons if so), "")
-        return found or self._jogger.spinning(axis) or self._jogger.uncoupled(axis)
+        return found or self._jogger.find_spinning_reason(axis) or self._jogger.request_c_axis(axis)
 
     def _follow(self, clicks: int) -> bool:
         context, jogger = self._context, self._jogger
         index = context.ports.axes.axes.index(self.axis)
-        start = context.sample.demand[index] if jogger.goal is None else jogger.goal
-        wanted = self._within(index, start + clicks * self._step)
-        found = _Chase(context.machine.axes[index], self._top(index), self._step, wanted)
-        jogger.chase(self.axis, found.pieces, wanted)
-        if jogger.goal is not None and found.goal != wanted:
-            jogger.goal = found.goal
+        start = context.sample.demand[index] if jogger.target_position is None else jogger.target_position
+        wanted = self._limit_target(index, start + clicks * self._step)
+        found = _TargetMove(context.machine.axes[index], self._top(index), self._step, wanted)
+        jogger.follow_target(self.axis, found.pieces, wanted)
+        if jogger.target_position is not None and found.goal != wanted:
+            jogger.target_position = found.goal
             self._refuse_once(
                 Message(
                     "the handwheel is being turned faster than {axis} can move, so clicks are lost",
                     axis=self.axis,
                 )
             )
-        return jogger.goal is not None
+        return jogger.target_position is not None
 
     def _top(self, index: int) -> float:
-        return self._jogger.top(self._context.machine.axes[index], self._context.sample.homed[index])
+        return self._jogger.max_jog_speed(
+            self._context.machine.axes[index], self._context.sample.homed[index]
+        )
 
-    def _within(self, index: int, wanted: float) -> float:
+    def _limit_target(self, index: int, wanted: float) -> float:
         """Limit a target to the travel. Clicks beyond the limit are dropped."""
         axis = self._context.machine.axes[index]
         if axis.travel is None or not self._context.sample.homed[index]:
             return wanted
         here = self._context.sample.demand[index]
-        low, high = axis.travel[0] + LIMIT_MARGIN, axis.travel[1] - LIMIT_MARGIN
+        low, high = axis.travel[0] + SOFT_LIMIT_MARGIN, axis.travel[1] - SOFT_LIMIT_MARGIN
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
-            self._refuse_once(at_the_end(axis.name, wanted - allowed))
+            self._refuse_once(travel_end_message(axis.name, wanted - allowed))
         return allowed
 
     def _refuse_once(self, what: str) -> None:
@@ -226,7 +228,7 @@ class Handwheel:
             self._context.log("refused", Message("handwheel: {what}", what=what))
 
 
-class _Chase:
+class _TargetMove:
     """The move to ``wanted``, or as much of it as the axis can cover in time; ``goal`` is its end."""
 
     def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:
@@ -234,11 +236,11 @@ class _Chase:
         self.goal = wanted
 
     def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
-        """Return the ramps for ``Jogger.chase``, with the speed that gives a delay of 0.1 s."""
+        """Return the ramps for ``Jogger.follow_target``, with the speed that gives a delay of 0.1 s."""
         way = self._wanted - p
-        longest = max(self._top * _BEHIND + v * v / (2.0 * self._amax), self._step)
+        longest = max(self._top * _FOLLOW_DELAY_S + v * v / (2.0 * self._amax), self._step)
         if abs(way) > longest:
             way = math.copysign(longest, way)
             self.goal = p + way
         least = max(abs(way), v * v / (2.0 * self._amax))
-        return jogging.reach_ramps(v, way, min(self._top, least / _BEHIND), self._amax)
+        return jogging.plan_stop_at_distance(v, way, min(self._top, least / _FOLLOW_DELAY_S), self._amax)

@@ -16,17 +16,17 @@ FloatArray = npt.NDArray[np.float64]
 Ramp = tuple[float, float, float]  # seconds, speed at its start, acceleration
 Direction = tuple[float, float, float]  # unit vector in the machine's X, Y and Z
 
-LIMIT_MARGIN = 0.01  # mm or degrees of clearance to the soft limit
-_UNIT = 1e-6  # tolerance of the length of a direction
-_ASIDE = 1e-9  # share below which an axis does not move
+SOFT_LIMIT_MARGIN = 0.01  # mm or degrees of clearance to the soft limit
+_UNIT_TOLERANCE = 1e-6  # tolerance of the length of a direction
+_MIN_SHARE = 1e-9  # share below which an axis does not move
 
 
-def room_to_limit(axis: Axis, at: float, direction: float) -> float:
+def distance_to_limit(axis: Axis, position: float, direction: float) -> float:
     """Return the distance to the soft limit in this direction; 0 if it is less than one encoder count."""
     if axis.travel is None:
         return math.inf
     low, high = axis.travel
-    left = (high - at if direction > 0.0 else at - low) - LIMIT_MARGIN
+    left = (high - position if direction > 0.0 else position - low) - SOFT_LIMIT_MARGIN
     return left if left > axis.count else 0.0
 
 
@@ -38,26 +38,26 @@ class JogLine:
     shares: FloatArray
 
     @classmethod
-    def of_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
+    def from_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
         """Return the line of one axis alone."""
         shares = np.zeros(len(axes))
         shares[index] = 1.0
         return cls(axes, shares)
 
     @classmethod
-    def along(cls, axes: Sequence[Axis], direction: Direction) -> JogLine:
+    def from_direction(cls, axes: Sequence[Axis], direction: Direction) -> JogLine:
         """Return the line of X, Y and Z in a direction. An axis with a share near zero does not move."""
         shares = np.zeros(len(axes))
         for name, share in zip("XYZ", direction, strict=True):
             index = next(place for place, axis in enumerate(axes) if axis.name == name)
-            shares[index] = share if abs(share) > _ASIDE else 0.0
+            shares[index] = share if abs(share) > _MIN_SHARE else 0.0
         return cls(axes, shares)
 
-    def same(self, other: JogLine | None) -> bool:
+    def has_same_direction(self, other: JogLine | None) -> bool:
         """Return whether both lines have the same direction."""
-        return other is not None and bool(np.allclose(self.shares, other.shares, rtol=0.0, atol=_ASIDE))
+        return other is not None and bool(np.allclose(self.shares, other.shares, rtol=0.0, atol=_MIN_SHARE))
 
-    def moving(self) -> Iterator[tuple[int, Axis, float]]:
+    def iter_moving_axes(self) -> Iterator[tuple[int, Axis, float]]:
         """Yield index, axis and share of each axis that moves."""
         yield from (
             (place, axis, share)
@@ -66,34 +66,36 @@ class JogLine:
         )
 
     @property
-    def amax(self) -> float:
+    def max_acceleration(self) -> float:
         """The acceleration along the line at which every axis stays within its own limit."""
-        return min(axis.amax / abs(share) for _, axis, share in self.moving())
+        return min(axis.amax / abs(share) for _, axis, share in self.iter_moving_axes())
 
-    def on(self, values: FloatArray) -> float:
+    def project(self, values: FloatArray) -> float:
         """Return the component of a position or a velocity along the line."""
-        return float(sum(values[place] * share for place, _, share in self.moving()))
+        return float(sum(values[place] * share for place, _, share in self.iter_moving_axes()))
 
-    def room(self, at: FloatArray | Sequence[float], sign: float) -> float:
+    def distance_to_limit(self, position: FloatArray | Sequence[float], sign: float) -> float:
         """Return the distance along the line, in the direction ``sign``, to the first end of travel."""
         return min(
-            room_to_limit(axis, at[place], math.copysign(share, share * sign)) / abs(share)
-            for place, axis, share in self.moving()
+            distance_to_limit(axis, position[place], math.copysign(share, share * sign)) / abs(share)
+            for place, axis, share in self.iter_moving_axes()
         )
 
-    def setpoints(self, start: float, p: FloatArray, pieces: Sequence[Ramp]) -> Segments:
-        """Return the ramps from ``start`` on as setpoints of all axes. Other axes stay at ``p``."""
-        n = len(pieces)
-        dt = np.array([piece[0] for piece in pieces])
+    def make_setpoints(self, start: float, start_position: FloatArray, ramps: Sequence[Ramp]) -> Segments:
+        """Return the ramps from ``start`` on as setpoints of all axes. Other axes stay at
+        ``start_position``.
+        """
+        n = len(ramps)
+        dt = np.array([piece[0] for piece in ramps])
         t = start + np.concatenate([[0.0], np.cumsum(dt)[:-1]])
-        v = np.outer([piece[1] for piece in pieces], self.shares)
-        a = np.outer([piece[2] for piece in pieces], self.shares)
-        position = np.tile(p, (n, 1))
+        v = np.outer([piece[1] for piece in ramps], self.shares)
+        a = np.outer([piece[2] for piece in ramps], self.shares)
+        position = np.tile(start_position, (n, 1))
         ways = (v + 0.5 * a * dt[:, np.newaxis]) * dt[:, np.newaxis]
         position[1:] += np.cumsum(ways, axis=0)[:-1]
         return Segments(t, dt, position, v, a)
 
 
-def wrong_direction(direction: Direction) -> bool:
+def is_invalid_direction(direction: Direction) -> bool:
     """Return whether the direction is not a unit vector."""
-    return not abs(math.hypot(*direction) - 1.0) <= _UNIT
+    return not abs(math.hypot(*direction) - 1.0) <= _UNIT_TOLERANCE

@@ -10,149 +10,160 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from core.alarms import CATALOGUE, Code
+from core.alarms import CATALOGUE, AlarmCode
 from core.executor.job import ProgramPass, ReadAhead
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.controller_motion import ControllerMotion
-from core.executor.program_motion.path_section import Progress
+from core.executor.program_motion.path_section import SectionProgress
 from core.executor.program_motion.setpoint_motion import SetpointMotion
-from core.executor.program_motion.standstill import Next, Standstill, Wait, at_speed
-from core.executor.raised_alarm import AlarmError, code_of_hold
-from core.executor.snapshot import State
-from core.interpreter.shared.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleOrient, SpindleStop
-from core.interpreter.shared.elementary_blocks import Block, Kind, needs_speed
-from core.interpreter.shared.modal_state import Modal
+from core.executor.program_motion.standstill import (
+    NextAction,
+    Standstill,
+    StandstillWait,
+    make_spindle_speed_wait,
+)
+from core.executor.raised_alarm import AlarmError, find_hold_code
+from core.executor.snapshot import MachineState
+from core.interpreter.shared.actions import (
+    ProgramEnd,
+    ProgramStop,
+    SpindleLock,
+    SpindlePositioning,
+    SpindleStop,
+)
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, needs_spindle_at_speed
+from core.interpreter.shared.modal_state import ModalState
 
 PathMotion = SetpointMotion | ControllerMotion
 """What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
 
-_BLOCKS = 400  # blocks read in one tick at most, so that a long program does not delay key presses
-_ACTIONS = 50  # actions executed in one tick at most
-_BUFFER = 1.0  # fraction of the look-ahead that is read beyond the planned motion
-_BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
-_GOING = frozenset({State.RUN, State.WAIT})
+_READ_AHEAD_BLOCKS = 400  # blocks read in one tick at most, so that a long program does not delay key presses
+_MAX_ACTIONS_PER_TICK = 50  # actions executed in one tick at most
+_READ_AHEAD_FRACTION = 1.0  # fraction of the look-ahead that is read beyond the planned motion
+_TAP_EXIT_LABEL = "FEED HOLD BEHIND THE TAP"
+_MOVING_STATES = frozenset({MachineState.RUN, MachineState.WAIT})
 # executed whether the spindle turns or not
-_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)
+_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindlePositioning, ProgramEnd)
 
 
-class FeedHold:
+class HoldController:
     """Stops and resumes the motion of a cycle. Used on the executor's thread only."""
 
-    def __init__(self, context: MachineContext, motion: PathMotion, still: Standstill) -> None:
+    def __init__(self, context: MachineContext, motion: PathMotion, standstill: Standstill) -> None:
         self._context = context
         self._motion = motion
-        self._still = still
-        self.reason = ""  # text of the alarm catalog; empty if a button was pressed
+        self._still = standstill
+        self.hold_reason = ""  # text of the alarm catalog; empty if a button was pressed
         self._since = 0.0
-        self._spin_up: Wait | None = None  # wait for the spindle before the motion resumes
+        self._spin_up: StandstillWait | None = None  # wait for the spindle before the motion resumes
         self._behind: Block | None = None  # single block resumes after this block
         self._retracting = False  # the tool retracts from a thread that has lost its spindle
 
     @property
-    def within_section(self) -> bool:
+    def resumes_in_section(self) -> bool:
         """True if motion resumes within the present path section instead of the next one."""
-        return self._motion.active and not self._motion.complete
+        return self._motion.has_section and not self._motion.is_complete
 
     @property
-    def retracting(self) -> bool:
+    def is_retracting(self) -> bool:
         """True while the tool retracts from a thread that has lost its spindle."""
         return self._retracting
 
     @property
-    def spins_up(self) -> bool:
+    def is_waiting_for_spindle(self) -> bool:
         """True while the resume waits for the spindle."""
         return self._spin_up is not None
 
     @property
-    def label(self) -> str:
+    def wait_label(self) -> str:
         """The condition for which the resume waits, as a text, or an empty string."""
-        return self._spin_up.label() if self._spin_up is not None else ""
+        return self._spin_up.make_label() if self._spin_up is not None else ""
 
-    def begin(self, reason: str = "", by: str = "", code: Code | None = None) -> State:
+    def stop_motion(self, reason: str = "", source: str = "", code: AlarmCode | None = None) -> MachineState:
         """Stop the motion and return the new state of the machine.
 
         ``reason`` is a text of the alarm catalog, or a detail for ``code``. It is empty if a button was
-        pressed; ``by`` then names the button.
+        pressed; ``source`` then names the button.
         """
-        self.reason, self._since = reason, self._context.now
-        self._context.show_stop(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
-        if self._motion.moving:
-            self._motion.hold()
-            return State.HOLDING
-        self._motion.let_stop()  # a plan whose queue has run out must not be continued
-        return State.HOLD
+        self.hold_reason, self._since = reason, self._context.now
+        self._context.show_stop(*(find_hold_code(reason, source) if code is None else (code, reason.lower())))
+        if self._motion.is_moving:
+            self._motion.hold_on_path()
+            return MachineState.HOLDING
+        self._motion.run_to_stop()  # a plan whose queue has run out must not be continued
+        return MachineState.HOLD
 
-    def starve(self, code: Code, detail: str) -> None:
+    def hold_for_underrun(self, code: AlarmCode, detail: str) -> None:
         """Store and show that the queue was not refilled in time, so that the axes stop."""
-        self.reason, self._since = CATALOGUE[code].text.upper(), self._context.now
+        self.hold_reason, self._since = CATALOGUE[code].text.upper(), self._context.now
         self._context.show_stop(code, detail)
 
-    def retract(self, block: Block) -> None:
+    def start_retract(self, block: Block) -> None:
         """Stop along a thread that has lost its spindle, to retract X afterwards."""
         self._context.log("thread", "spindle speed lost during threading")
-        self._motion.retract(block)
+        self._motion.start_retract(block)
         self._retracting = True
 
-    def stopped(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Return whether the axes are at rest. Called every tick while they stop.
 
         Raises AlarmError("thread-lost") when the tool has left a lost thread.
         """
-        self._motion.keep_up()
-        if self._motion.moving:
+        self._motion.extend_queue()
+        if self._motion.is_moving:
             return False
         if self._retracting:
-            self._motion.retracted()
+            self._motion.continue_retract()
         return not self._retracting
 
-    def go_on(self, behind: Block | None, *, starts_spindle: bool) -> None:
+    def resume(self, last_executed_block: Block | None, *, starts_spindle: bool) -> None:
         """Resume after Cycle Start, as soon as a requested spindle is at speed.
 
-        ``behind`` is the last block that single block executed, or None.
+        ``last_executed_block`` is the last block that single block executed, or None.
         """
-        self.reason = ""
-        within = self.within_section
-        self._still.done = within
-        self._still.shift_for_hold(self._context.now - self._since)
-        self._behind = behind
-        self._spin_up = self._slow_spindle() if within or starts_spindle else None
+        self.hold_reason = ""
+        within = self.resumes_in_section
+        self._still.has_executed_block = within
+        self._still.extend_wait_for_hold(self._context.now - self._since)
+        self._behind = last_executed_block
+        self._spin_up = self._make_spindle_wait() if within or starts_spindle else None
         self._since = self._context.now
         if within and self._spin_up is None:
-            self._motion.go_on(behind)
+            self._motion.resume(last_executed_block)
 
-    def spin_up(self) -> State:
+    def wait_for_spindle(self) -> MachineState:
         """Wait for the spindle, once per tick; return the new state of the machine.
 
         If the spindle does not reach its speed, the result is another hold, so that the program is not lost.
         """
         if self._spin_up is None:
-            return State.RUN
+            return MachineState.RUN
         try:
-            over = self._spin_up.over(self._context.now)
+            over = self._spin_up.is_over(self._context.now)
         except AlarmError:
             self._spin_up = None
-            return self.begin("SPINDLE DID NOT RETURN TO SPEED")
+            return self.stop_motion("SPINDLE DID NOT RETURN TO SPEED")
         if not over:
-            return State.WAIT
+            return MachineState.WAIT
         self._spin_up = None
-        self._still.shift_for_hold(self._context.now - self._since)
-        if self.within_section:
-            self._motion.go_on(self._behind)
-        return State.RUN
+        self._still.extend_wait_for_hold(self._context.now - self._since)
+        if self.resumes_in_section:
+            self._motion.resume(self._behind)
+        return MachineState.RUN
 
-    def _slow_spindle(self) -> Wait | None:
+    def _make_spindle_wait(self) -> StandstillWait | None:
         """Return the wait for a requested spindle that is not at speed, or None."""
         spindle = self._context.spindle
-        if not spindle.asked or spindle.at_speed(self._context.now):
+        if not spindle.is_requested or spindle.is_at_speed(self._context.now):
             return None
-        return at_speed(self._context)
+        return make_spindle_speed_wait(self._context)
 
 
 class Cycle:
-    """One cycle, advanced by ``step`` in every tick.
+    """One cycle, advanced by ``advance`` in every tick.
 
-    ``enter`` is called at each change of state, and ``ended`` at the end of the program. ``begins`` is the
-    modal state before the first block.
+    ``change_state`` is called at each change of state, and ``handle_end`` at the end of the program.
+    ``initial_modal`` is the modal state before the first block.
     """
 
     def __init__(
@@ -160,245 +171,257 @@ class Cycle:
         context: MachineContext,
         motion: PathMotion,
         source: ProgramPass,
-        begins: Modal,
-        enter: Callable[[State], None],
-        ended: Callable[[ProgramEnd | None], None],
+        initial_modal: ModalState,
+        change_state: Callable[[MachineState], None],
+        handle_end: Callable[[ProgramEnd | None], None],
     ) -> None:
         self._context = context
         self._motion = motion
-        self._enter = enter
-        self._ended = ended
-        self._needs_end = source.left is None
+        self._enter = change_state
+        self._ended = handle_end
+        self._needs_end = source.make_checkpoint is None
         self._feed = ReadAhead(source, context.machine)
-        self._state = State.RUN
-        self._still = Standstill(context, self._feed, lambda: self._tapping)
-        self._hold = FeedHold(context, motion, self._still)
+        self._state = MachineState.RUN
+        self._still = Standstill(context, self._feed, lambda: self._is_tapping)
+        self._hold = HoldController(context, motion, self._still)
         # a pending hold that starts when the tap has left its hole
-        self._later: Callable[[], State] | None = None
+        self._later: Callable[[], MachineState] | None = None
         self.message = ""  # message of M00 or M01 during the stop
-        self.current: Block | None = None
-        self.modal = begins
+        self.current_block: Block | None = None
+        self.modal = initial_modal
 
     @property
-    def waiting_for(self) -> str:
+    def wait_label(self) -> str:
         """The condition for which the cycle waits, as a text, or an empty string."""
-        if self._state is State.HOLD:
-            return self._hold.reason
+        if self._state is MachineState.HOLD:
+            return self._hold.hold_reason
         if self._later is not None:
-            return _BEHIND_TAP
-        if self._hold.spins_up:
-            return self._hold.label
-        if self._still.label is not None:
-            return self._still.label
-        return "FEED OVERRIDE AT 0" if self._state is State.WAIT else ""
+            return _TAP_EXIT_LABEL
+        if self._hold.is_waiting_for_spindle:
+            return self._hold.wait_label
+        if self._still.wait_label is not None:
+            return self._still.wait_label
+        return "FEED OVERRIDE AT 0" if self._state is MachineState.WAIT else ""
 
     @property
     def next_block(self) -> Block | None:
         """The block after the one being executed, or None while a standstill is pending."""
-        following = self._motion.following or self._feed.next_block
-        return None if following is self.current else following
+        following = self._motion.following_block or self._feed.next_block
+        return None if following is self.current_block else following
 
     @property
-    def at_rest(self) -> bool:
+    def is_at_rest(self) -> bool:
         """True if no axis moves."""
-        return not self._motion.moving
+        return not self._motion.is_moving
 
     # --- requests of the operator -------------------------------------------------------------------------
 
-    def hold(
-        self, reason: str = "", by: str = "", code: Code | None = None, *, at_once: bool = False
+    def start_feed_hold(
+        self, reason: str = "", source: str = "", code: AlarmCode | None = None, *, at_once: bool = False
     ) -> None:
-        """Hold the cycle. The parameters ``reason``, ``by`` and ``code`` are those of ``FeedHold.begin``.
+        """Hold the cycle. The parameters ``reason``, ``source`` and ``code`` are those of
+        ``HoldController.begin``.
 
         A tap first leaves its hole, because the spindle turns on. The axes stop at once if the spindle is
         stopped or ``at_once`` is True.
         """
-        if self._state in {State.HOLD, State.HOLDING}:
-            self._hold.reason = self._hold.reason or reason
-        if self._state not in _GOING:
+        if self._state in {MachineState.HOLD, MachineState.HOLDING}:
+            self._hold.hold_reason = self._hold.hold_reason or reason
+        if self._state not in _MOVING_STATES:
             return
-        begin = partial(self._hold.begin, reason, by, code)
-        turns = not (self._context.spindle.lost or self._context.spindle.waits)
-        if self._tapping and turns and not at_once:
+        begin = partial(self._hold.stop_motion, reason, source, code)
+        turns = not (self._context.spindle.is_speed_lost or self._context.spindle.waiting_reason)
+        if self._is_tapping and turns and not at_once:
             self._later = self._later or begin
         else:
             self._later = None
             self._change(begin())
 
     @property
-    def _tapping(self) -> bool:
+    def _is_tapping(self) -> bool:
         """True if a tap is in its hole, which it must leave while the spindle turns."""
-        block = self.current
-        return block is not None and (block.in_hole or (block.coupled and self._motion.moving))
+        block = self.current_block
+        return block is not None and (block.in_hole or (block.follows_spindle and self._motion.is_moving))
 
-    def _held_behind_tap(self) -> bool:
+    def _start_pending_hold(self) -> bool:
         """Start a pending hold when the tap has left its hole; return whether it started."""
-        if self._later is None or self._tapping:
+        if self._later is None or self._is_tapping:
             return False
         begin, self._later = self._later, None
         self._change(begin())
         return True
 
-    def starve(self, code: Code = "low-queue", detail: str = "") -> None:
+    def hold_for_underrun(self, code: AlarmCode = "low-queue", detail: str = "") -> None:
         """Enter feed hold because the queue was not refilled in time. Cycle Start resumes the program."""
-        self._motion.let_stop()
-        if self._state in _GOING:
-            self._hold.starve(code, detail)
-            self._change(State.HOLDING)
+        self._motion.run_to_stop()
+        if self._state in _MOVING_STATES:
+            self._hold.hold_for_underrun(code, detail)
+            self._change(MachineState.HOLDING)
 
-    def wait_for(self, label: str) -> None:
+    def wait_for_next_cycle(self, label: str) -> None:
         """Wait after the end of the program until another cycle replaces this one."""
-        self._still.wait_for(label)
+        self._still.wait_for_next_cycle(label)
 
-    def abandon(self) -> None:
-        """Stop the motion of a canceled cycle. The caller waits for ``at_rest``."""
-        if self._motion.moving:
+    def stop_canceled_cycle(self) -> None:
+        """Stop the motion of a canceled cycle. The caller waits for ``is_at_rest``."""
+        if self._motion.is_moving:
             self._motion.brake()
-        if self._state in _GOING:
-            self._change(State.HOLDING)
+        if self._state in _MOVING_STATES:
+            self._change(MachineState.HOLDING)
 
-    def why_not_on(self) -> str:
+    def find_resume_refusal(self) -> str:
         """Return why a stopped cycle cannot resume now, or an empty string."""
         spindle = self._context.spindle
-        return spindle.start_barred.lower() if spindle.waits and self._turns_next() else ""
+        return (
+            spindle.start_inhibit_reason.lower() if spindle.waiting_reason and self._needs_spindle() else ""
+        )
 
-    def go_on(self, *, starts_spindle: bool = False) -> None:
+    def resume(self, *, starts_spindle: bool = False) -> None:
         """Resume after a hold, single block, M00 or M01. If the start turns on the spindle, wait for it."""
         stopped, self._later = self._state, None
         self.message = ""
-        if stopped is State.PROGRAM_STOP:
-            self._feed.pass_stop()
-        self._change(State.RUN)
-        behind = self.current if stopped is State.BLOCK_END else None
-        self._hold.go_on(behind, starts_spindle=starts_spindle)
+        if stopped is MachineState.PROGRAM_STOP:
+            self._feed.release_stop()
+        self._change(MachineState.RUN)
+        behind = self.current_block if stopped is MachineState.BLOCK_END else None
+        self._hold.resume(behind, starts_spindle=starts_spindle)
 
     # --- actions in every tick ----------------------------------------------------------------------------
 
-    def catch_up(self) -> None:
+    def update_current_block(self) -> None:
         """Show the block at which the axes are, even if no tick has seen it while they moved."""
-        self._show_later(self._motion.block)
+        self._show_block_at_rest(self._motion.current_block)
 
-    def step(self) -> None:
+    def advance(self) -> None:
         """Refill the queue, then do the next action. Raises AlarmError, MotionError or DriverError."""
-        playing = self._motion.block if self._motion.moving else None
+        playing = self._motion.current_block if self._motion.is_moving else None
         if playing is not None:
             self._show(playing)
-            self._watch_spindle(playing)
-        if self._state in _GOING and self._held_behind_tap():
+            self._check_spindle(playing)
+        if self._state in _MOVING_STATES and self._start_pending_hold():
             return
-        if self._state is State.HOLDING:
-            if self._hold.stopped():
-                self.catch_up()
-                self._change(State.HOLD)
-        elif self._state in _GOING:
+        if self._state is MachineState.HOLDING:
+            if self._hold.is_at_rest():
+                self.update_current_block()
+                self._change(MachineState.HOLD)
+        elif self._state in _MOVING_STATES:
             self._read()
             self._advance()
 
     def _read(self) -> None:
-        self._feed.pull(_BLOCKS, _BUFFER * self._context.lateness.lookahead)
+        self._feed.read_blocks(_READ_AHEAD_BLOCKS, _READ_AHEAD_FRACTION * self._context.lateness.lookahead_s)
 
     def _advance(self) -> None:
-        if self._context.spindle.waits and self._turns_next():
-            self.hold(self._context.spindle.waits)
-        elif self._hold.spins_up:
-            self._change(self._hold.spin_up())
+        if self._context.spindle.waiting_reason and self._needs_spindle():
+            self.start_feed_hold(self._context.spindle.waiting_reason)
+        elif self._hold.is_waiting_for_spindle:
+            self._change(self._hold.wait_for_spindle())
         else:
             self._progress()
 
-    def _turns_next(self) -> bool:
+    def _needs_spindle(self) -> bool:
         """Return whether the present or the next block needs a turning spindle."""
-        if self._hold.within_section or self._still.label is not None or self._feed.pending:
+        if self._hold.resumes_in_section or self._still.wait_label is not None or self._feed.pending_blocks:
             return True
         stop = self._feed.stop
         return stop is not None and not isinstance(stop.action, _SPINDLE_WORDS)
 
     def _progress(self) -> None:
-        match self._motion.progress(self._feed):
-            case Progress.MOVING:
-                self._change(State.RUN)
-            case Progress.STILL:
-                self._change(State.WAIT)
-            case Progress.BLOCK_END:
-                self._show_later(self._motion.block)
-                self._change(State.BLOCK_END)
-            case Progress.HELD:
-                self.hold("CONTROLLER IN FEED HOLD", at_once=True)
-            case Progress.DONE:
-                self._show_later(self._motion.ended_with)
-                self._stand()
+        match self._motion.update_progress(self._feed):
+            case SectionProgress.MOVING:
+                self._change(MachineState.RUN)
+            case SectionProgress.AT_REST:
+                self._change(MachineState.WAIT)
+            case SectionProgress.BLOCK_END:
+                self._show_block_at_rest(self._motion.current_block)
+                self._change(MachineState.BLOCK_END)
+            case SectionProgress.IN_FEED_HOLD:
+                self.start_feed_hold("CONTROLLER IN FEED HOLD", at_once=True)
+            case SectionProgress.DONE:
+                self._show_block_at_rest(self._motion.last_block)
+                self._advance_at_rest()
 
-    def _stand(self) -> None:
+    def _advance_at_rest(self) -> None:
         """Wait, act or start the next path section at rest, within the limits of one tick."""
-        for _ in range(_ACTIONS):
-            match self._still.next():
-                case Next.GO_ON:
-                    self._change(State.RUN)
-                case Next.ACTION if self._feed.stop is not None:
-                    if not self._act(self._feed.stop):
+        for _ in range(_MAX_ACTIONS_PER_TICK):
+            match self._still.determine_next_action():
+                case NextAction.ASK_AGAIN:
+                    self._change(MachineState.RUN)
+                case NextAction.ACTION if self._feed.stop is not None:
+                    if not self._execute_block(self._feed.stop):
                         return
                 case done:
-                    self._rest(done)
+                    self._finish_tick(done)
                     return
 
-    def _rest(self, what: Next) -> None:
+    def _finish_tick(self, next_action: NextAction) -> None:
         """Finish the tick with a wait, a stop, the start of motion or the end of the program."""
-        match what:
-            case Next.WAIT:
-                self._change(State.WAIT if self._still.label else State.RUN)
-            case Next.BLOCK_END:
-                self._change(State.BLOCK_END)
-            case Next.MOTION:
-                self._change(State.RUN)
+        match next_action:
+            case NextAction.WAIT:
+                self._change(MachineState.WAIT if self._still.wait_label else MachineState.RUN)
+            case NextAction.BLOCK_END:
+                self._change(MachineState.BLOCK_END)
+            case NextAction.MOTION:
+                self._change(MachineState.RUN)
                 self._read()
-                self._motion.begin(self._feed.take())
-            case Next.END if self._needs_end:
+                self._motion.start_section(self._feed.take())
+            case NextAction.END if self._needs_end:
                 raise AlarmError("no-end")
-            case Next.END:
+            case NextAction.END:
                 self._ended(None)
             case _:
                 pass
 
-    def _act(self, block: Block) -> bool:
+    def _execute_block(self, block: Block) -> bool:
         """Execute the block that needs the standstill; return False if the cycle stops or ends with it."""
         context, action = self._context, block.action
         if action is not None:
             self._show(block)
         if isinstance(action, ProgramEnd):
-            self._feed.pass_stop()
+            self._feed.release_stop()
             self._ended(action)
             return False
         if isinstance(action, ProgramStop) and (context.switches.optional_stop or not action.optional):
             self.message = action.message
             context.show_stop("optional-stop" if action.optional else "program-stop", action.message)
-            self._change(State.PROGRAM_STOP)
+            self._change(MachineState.PROGRAM_STOP)
             return False
-        self._still.carry_out(block)
+        self._still.execute_action(block)
         return True
 
-    def _watch_spindle(self, block: Block) -> None:
+    def _check_spindle(self, block: Block) -> None:
         """Hold a feed per revolution that has lost its spindle; retract from a thread at once."""
         spindle = self._context.spindle
-        if not needs_speed(block) or self._hold.retracting or not spindle.lost or not self._motion.moving:
+        if (
+            not needs_spindle_at_speed(block)
+            or self._hold.is_retracting
+            or not spindle.is_speed_lost
+            or not self._motion.is_moving
+        ):
             return
-        if block.kind is Kind.THREAD and not self._motion.release():
-            self._hold.retract(block)
-            self._change(State.HOLDING)
-        elif block.kind is Kind.THREAD or (block.per_rev and not block.modal.c_locked) or spindle.fails:
-            self.hold(spindle.why_slow or "SPINDLE BELOW HALF COMMANDED SPEED")
+        if block.kind is BlockKind.THREAD and not self._motion.cancel_waiting_pass():
+            self._hold.start_retract(block)
+            self._change(MachineState.HOLDING)
+        elif (
+            block.kind is BlockKind.THREAD
+            or (block.per_rev and not block.modal.c_locked)
+            or spindle.is_too_slow
+        ):
+            self.start_feed_hold(spindle.slow_reason or "SPINDLE BELOW HALF COMMANDED SPEED")
 
-    def _show_later(self, block: Block | None) -> None:
+    def _show_block_at_rest(self, block: Block | None) -> None:
         """Show a block at rest, because blocks without motion have been executed too."""
-        if block is not None and (self.current is None or block.n > self.current.n):
+        if block is not None and (self.current_block is None or block.n > self.current_block.n):
             self._show(block)
 
     def _show(self, block: Block) -> None:
-        self.current = block
+        self.current_block = block
         self.modal = block.modal
         self._context.line = block.line
         if block.moves:
-            self._context.spindle.follow(block)
+            self._context.spindle.follow_block(block)
 
-    def _change(self, state: State) -> None:
+    def _change(self, state: MachineState) -> None:
         if state is not self._state:
             self._state = state
             self._enter(state)

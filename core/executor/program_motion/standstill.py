@@ -9,91 +9,93 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from core.alarms import Code
+from core.alarms import AlarmCode
 from core.executor import start_conditions
 from core.executor.job import ReadAhead
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
-from core.executor.spindle_control import SpindleDemand
+from core.executor.spindle_control import SpindleRequest
 from core.interpreter.shared.actions import (
-    Collet,
-    Coolant,
+    ColletSwitch,
+    CoolantSwitch,
+    CycleRepeatCancel,
     Dwell,
-    Output,
-    RepeatOff,
+    InputWait,
+    OutputSwitch,
     SpindleLock,
-    SpindleOrient,
+    SpindlePositioning,
     SpindleRun,
     SpindleStop,
-    WaitInput,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind, needs_speed
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, needs_spindle_at_speed
 from core.message import Message
 
 # --- waits and actions ----------------------------------------------------------------------------------
 
 
-_IN_POSITION = 1.0  # s that an axis may take to get in position
-_COLLET_LATE = 2.0  # s beyond the closing or opening time
-_CHANGE_OVER = 25.0  # s for the change to C-axis mode, including the search for the index
-_TURNS = 3.0  # revolutions at orienting speed: to the index, to the angle, and one in reserve
+_IN_POSITION_TIMEOUT_S = 1.0  # s that an axis may take to get in position
+_COLLET_TIMEOUT_S = 2.0  # s beyond the closing or opening time
+_CHANGEOVER_TIMEOUT_S = 25.0  # s for the change to C-axis mode, including the search for the index
+_ORIENTATION_TURNS = 3.0  # revolutions at orienting speed: to the index, to the angle, and one in reserve
 
 
 @dataclass(slots=True)
-class Wait:
+class StandstillWait:
     """A wait for a condition. ``label`` is empty for short waits. Time in feed hold does not count."""
 
-    label: Callable[[], str]
-    done: Callable[[float], bool]
-    since: float
-    timeout: float = float("inf")
-    alarm: Code = "internal"
+    make_label: Callable[[], str]
+    is_condition_met: Callable[[float], bool]
+    start_time_s: float
+    timeout_s: float = float("inf")
+    timeout_alarm: AlarmCode = "internal"
 
-    def over(self, now: float) -> bool:
+    def is_over(self, now: float) -> bool:
         """Return whether the wait is over. Raises AlarmError if its time limit has passed."""
-        if self.done(now - self.since):
+        if self.is_condition_met(now - self.start_time_s):
             return True
-        if now - self.since > self.timeout:
-            raise AlarmError(self.alarm)
+        if now - self.start_time_s > self.timeout_s:
+            raise AlarmError(self.timeout_alarm)
         return False
 
-    def shift(self, held: float) -> None:
+    def extend_for_hold(self, hold_duration_s: float) -> None:
         """Exclude the duration of a feed hold, in seconds, from the wait."""
-        self.since += held
+        self.start_time_s += hold_duration_s
 
 
-def in_position(context: MachineContext) -> Wait:
+def make_position_wait(context: MachineContext) -> StandstillWait:
     """Return a wait until all axes are in position."""
-    return Wait(lambda: "", lambda _: context.in_position(), context.now, _IN_POSITION, "in-position")
+    return StandstillWait(
+        lambda: "", lambda _: context.is_in_position(), context.now, _IN_POSITION_TIMEOUT_S, "in-position"
+    )
 
 
-def at_speed(context: MachineContext, *, thread: bool = False) -> Wait:
+def make_spindle_speed_wait(context: MachineContext, *, thread: bool = False) -> StandstillWait:
     """Return a wait until the spindle is at speed, and for a thread until its encoder can be read.
 
     The wait has no time limit while the operator prevents the spindle from turning.
     """
     spindle = context.spindle
-    wait = Wait(
-        lambda: spindle.why_slow or "AT SPEED",
-        lambda _: spindle.at_speed(context.now),
+    wait = StandstillWait(
+        lambda: spindle.slow_reason or "AT SPEED",
+        lambda _: spindle.is_at_speed(context.now),
         context.now,
         context.machine.spindle.timeout,
         "at-speed",
     )
 
     def done(_: float) -> bool:
-        if spindle.why_slow:
-            wait.since = context.now
-        read = spindle.angle.known or context.ports.spindle.angle() is None
-        turns = spindle.at_speed(context.now)
-        wait.alarm = "late" if turns else "at-speed"  # the encoder is not read often enough
+        if spindle.slow_reason:
+            wait.start_time_s = context.now
+        read = spindle.angle.is_predictable or context.ports.spindle.read_angle() is None
+        turns = spindle.is_at_speed(context.now)
+        wait.timeout_alarm = "late" if turns else "at-speed"  # the encoder is not read often enough
         return turns and (read or not thread)
 
-    wait.done = done
+    wait.is_condition_met = done
     return wait
 
 
-def carry_out(block: Block, context: MachineContext) -> Wait | None:
+def execute_block_action(block: Block, context: MachineContext) -> StandstillWait | None:
     """Execute the action of a block and return its wait, or None. Raises AlarmError or DriverError.
 
     The cycle handles stops and ends of the program. Offsets, shifts and presets are already in the blocks.
@@ -101,73 +103,79 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
     match block.action:
         case SpindleRun():
             _start_spindle(block, context)
-        case SpindleStop() | SpindleLock() | SpindleOrient() as stopping:
+        case SpindleStop() | SpindleLock() | SpindlePositioning() as stopping:
             return _stop_spindle(stopping, context)
-        case Coolant(on=on):
+        case CoolantSwitch(on=on):
             context.ports.io.write("coolant", on)
-        case Output(name=name, on=on):
+        case OutputSwitch(name=name, on=on):
             context.ports.io.write(name, on)
-        case Collet(closed=closed):
+        case ColletSwitch(closed=closed):
             return _move_collet(closed, context)
-        case RepeatOff():
+        case CycleRepeatCancel():
             context.switches.cycle_repeat = False
             context.log("switch", "Cycle Repeat switched off by M31")
         case Dwell(seconds=seconds):
-            return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, context.now)
-        case WaitInput(terminal=terminal, closed=closed):
-            return Wait(lambda: terminal, lambda _: context.terminal(terminal) == closed, context.now)
+            return StandstillWait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, context.now)
+        case InputWait(terminal=terminal, closed=closed):
+            return StandstillWait(
+                lambda: terminal, lambda _: context.is_input_on(terminal) == closed, context.now
+            )
         case _:
             pass
     return None
 
 
-def _stop_spindle(action: SpindleStop | SpindleLock | SpindleOrient, context: MachineContext) -> Wait | None:
+def _stop_spindle(
+    action: SpindleStop | SpindleLock | SpindlePositioning, context: MachineContext
+) -> StandstillWait | None:
     """Stop the spindle, switch it to C-axis mode, or orient it."""
     match action:
         case SpindleLock(orient=orient):
             return _lock_spindle(context, orient=orient)
-        case SpindleOrient(angle=angle, sense=sense):
+        case SpindlePositioning(angle=angle, sense=sense):
             return _orient_spindle(context, angle, sense)
         case SpindleStop(stands=stands):
             context.spindle.stop()
-            return _until_it_stands(context) if stands else None
+            return _make_spindle_stop_wait(context) if stands else None
 
 
 def _start_spindle(block: Block, context: MachineContext) -> None:
-    if start_conditions.unclamped(context):
+    if start_conditions.find_collet_refusal(context):
         raise AlarmError("collet-open", line=block.line)
-    context.spindle.ask(SpindleDemand.of(block))
+    context.spindle.request_speed(SpindleRequest.from_block(block))
 
 
-def _until_it_stands(context: MachineContext) -> Wait:
+def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
     """Return a wait until the spindle is stopped, before the tool or the operator approaches."""
     spindle, limit = context.spindle, context.machine.spindle.timeout
-    return Wait(lambda: "SPINDLE STOP", lambda _: spindle.stopped, context.now, limit, "ignores-stop")
+    return StandstillWait(
+        lambda: "SPINDLE STOP", lambda _: spindle.is_stopped, context.now, limit, "ignores-stop"
+    )
 
 
-def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:
+def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
     """Return a wait until the spindle is stopped and engaged as the C axis.
 
     A spindle that is already engaged is not stopped again.
     """
     spindle, change = context.spindle, 0.0
-    if context.ports.lock is None or not spindle.held:
+    if context.ports.lock is None or not spindle.is_c_axis_ready:
         spindle.stop()
-        change = 0.0 if context.ports.lock is None else _CHANGE_OVER
+        change = 0.0 if context.ports.lock is None else _CHANGEOVER_TIMEOUT_S
     limit = context.machine.spindle.timeout + change
-    return Wait(
-        lambda: "C AXIS" if spindle.stopped else "SPINDLE STOP",
-        lambda _: spindle.stopped and spindle.hold(orient=orient),
+    return StandstillWait(
+        lambda: "C AXIS" if spindle.is_stopped else "SPINDLE STOP",
+        lambda _: spindle.is_stopped and spindle.engage_c_axis(orient=orient),
         context.now,
         limit,
         "ignores-stop",
     )
 
 
-def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
+def _orient_spindle(context: MachineContext, angle: float, direction: int) -> StandstillWait:
     """Return a wait until the spindle is stopped and its drive holds it at the angle."""
     spindle, model = context.spindle, context.machine.spindle
-    if spindle.orientation.at != angle and start_conditions.unclamped(context):
+    if spindle.orientation.angle_deg != angle and start_conditions.find_collet_refusal(context):
         raise AlarmError(
             "collet-open",
             Message(
@@ -175,38 +183,40 @@ def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
                 angle=f"{angle:g}",
             ),
         )
-    if spindle.asked or not spindle.stopped:
+    if spindle.is_requested or not spindle.is_stopped:
         spindle.stop()
 
     def label() -> str:
-        return spindle.start_barred or ("SPINDLE ORIENT" if spindle.stands_or_orients else "SPINDLE STOP")
+        return spindle.start_inhibit_reason or (
+            "SPINDLE ORIENT" if spindle.is_stopped_or_orienting else "SPINDLE STOP"
+        )
 
     def done(_: float) -> bool:
-        if spindle.start_barred:
-            wait.since = context.now
-        wait.alarm = "spindle-orient" if spindle.stands_or_orients else "ignores-stop"
-        return spindle.stands_or_orients and spindle.orient(angle, sense)
+        if spindle.start_inhibit_reason:
+            wait.start_time_s = context.now
+        wait.timeout_alarm = "spindle-orient" if spindle.is_stopped_or_orienting else "ignores-stop"
+        return spindle.is_stopped_or_orienting and spindle.orient_spindle(angle, direction)
 
-    wait = Wait(
+    wait = StandstillWait(
         label,
         done,
         context.now,
-        model.timeout + _TURNS * 60.0 / model.orient_rpm,
+        model.timeout + _ORIENTATION_TURNS * 60.0 / model.orient_rpm,
         "spindle-orient",
     )
     return wait
 
 
-def _move_collet(closed: bool, context: MachineContext) -> Wait:
+def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
     """Switch the collet and return its wait.
 
     If the machine file forbids unclamping at speed, opening waits until the spindle has stopped.
     """
     waits = not closed and not context.machine.interlocks.unclamp_while_turning
-    if waits and context.spindle.asked:
+    if waits and context.spindle.is_requested:
         raise AlarmError(
             "unclamp",
-            Message("the spindle turns at {measured} rpm", measured=f"{context.spindle.measured:.0f}"),
+            Message("the spindle turns at {measured} rpm", measured=f"{context.spindle.measured_rpm:.0f}"),
         )
     collet = context.machine.collet
     time = collet.close_time if closed else collet.open_time
@@ -214,7 +224,7 @@ def _move_collet(closed: bool, context: MachineContext) -> Wait:
 
     def done(passed: float) -> bool:
         if not moved_at:
-            if waits and not context.spindle.stopped:
+            if waits and not context.spindle.is_stopped:
                 return False
             context.ports.io.write("collet", closed)
             moved_at.append(passed)
@@ -222,15 +232,17 @@ def _move_collet(closed: bool, context: MachineContext) -> Wait:
         switch = context.inputs.get("collet_closed")
         return passed - moved_at[0] >= time if switch is None else switch == closed
 
-    limit = time + _COLLET_LATE + (context.machine.spindle.timeout if waits else 0.0)
-    return Wait(lambda: "COLLET" if moved_at else "SPINDLE STOP", done, context.now, limit, "collet")
+    limit = time + _COLLET_TIMEOUT_S + (context.machine.spindle.timeout if waits else 0.0)
+    return StandstillWait(
+        lambda: "COLLET" if moved_at else "SPINDLE STOP", done, context.now, limit, "collet"
+    )
 
 
-class Next(Enum):
+class NextAction(Enum):
     """The next action of the cycle at rest."""
 
     WAIT = auto()  # nothing, because a wait is active
-    GO_ON = auto()  # ask again, because a wait has started or ended
+    ASK_AGAIN = auto()  # ask again, because a wait has started or ended
     BLOCK_END = auto()  # =
     MOTION = auto()  # start the pending blocks
     ACTION = auto()  # execute the block that needs the standstill
@@ -246,16 +258,16 @@ class Standstill:
 
     def __init__(self, context: MachineContext, feed: ReadAhead, in_hole: Callable[[], bool]) -> None:
         self._context, self._feed, self._in_hole = context, feed, in_hole
-        self._wait: Wait | None = None
+        self._wait: StandstillWait | None = None
         self._settled = True  # the axes are in position after the last motion
-        self.done = False
+        self.has_executed_block = False
 
     @property
-    def label(self) -> str | None:
+    def wait_label(self) -> str | None:
         """The text of the present wait, empty for a short wait, or None without a wait."""
-        return self._wait.label() if self._wait is not None else None
+        return self._wait.make_label() if self._wait is not None else None
 
-    def next(self) -> Next:
+    def determine_next_action(self) -> NextAction:
         """Return the next single action of the cycle.
 
         Raises AlarmError if a wait takes too long or a block is invalid.
@@ -264,48 +276,48 @@ class Standstill:
         if self._wait is not None:
             return self._look(self._wait)
         if not self._settled:
-            self._wait = in_position(self._context)
-            return Next.GO_ON
-        if self.done and self._context.switches.single_block and not self._in_hole():
-            return Next.BLOCK_END
-        if feed.pending:
-            self._settled, self.done = False, True
-            return Next.MOTION
+            self._wait = make_position_wait(self._context)
+            return NextAction.ASK_AGAIN
+        if self.has_executed_block and self._context.switches.single_block and not self._in_hole():
+            return NextAction.BLOCK_END
+        if feed.pending_blocks:
+            self._settled, self.has_executed_block = False, True
+            return NextAction.MOTION
         if feed.stop is not None:
-            return Next.ACTION
-        if feed.trouble is not None:
-            raise feed.trouble
-        return Next.END if feed.ended else Next.NOTHING
+            return NextAction.ACTION
+        if feed.read_error is not None:
+            raise feed.read_error
+        return NextAction.END if feed.is_at_end else NextAction.NOTHING
 
-    def carry_out(self, block: Block) -> None:
+    def execute_action(self, block: Block) -> None:
         """Execute an action, or wait for the speed that a block needs. Raises AlarmError or DriverError."""
         if block.action is not None:
-            self._wait = carry_out(block, self._context)
-        elif needs_speed(block):
-            self._wait = at_speed(self._context, thread=block.kind is Kind.THREAD)
+            self._wait = execute_block_action(block, self._context)
+        elif needs_spindle_at_speed(block):
+            self._wait = make_spindle_speed_wait(self._context, thread=block.kind is BlockKind.THREAD)
         if self._wait is None:
             self._waited()
 
-    def wait_for(self, label: str) -> None:
+    def wait_for_next_cycle(self, label: str) -> None:
         """Wait until another cycle replaces this one."""
         if self._wait is None:
-            self._wait = Wait(lambda: label, lambda _: False, self._context.now)
+            self._wait = StandstillWait(lambda: label, lambda _: False, self._context.now)
 
-    def shift_for_hold(self, seconds: float) -> None:
+    def extend_wait_for_hold(self, seconds: float) -> None:
         """Exclude the duration of a feed hold, in seconds, from the present wait."""
         if self._wait is not None:
-            self._wait.shift(seconds)
+            self._wait.extend_for_hold(seconds)
 
-    def _look(self, wait: Wait) -> Next:
-        if not wait.over(self._context.now):
-            return Next.WAIT
+    def _look(self, wait: StandstillWait) -> NextAction:
+        if not wait.is_over(self._context.now):
+            return NextAction.WAIT
         self._wait = None
         self._waited()
-        return Next.GO_ON
+        return NextAction.ASK_AGAIN
 
     def _waited(self) -> None:
         if not self._settled:
             self._settled = True
         elif self._feed.stop is not None:
-            self.done = self._feed.stop.action is not None
-            self._feed.pass_stop()
+            self.has_executed_block = self._feed.stop.action is not None
+            self._feed.release_stop()

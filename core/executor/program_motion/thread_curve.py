@@ -20,10 +20,12 @@ from core.motion.axis_limits import MotionLimits
 
 Floats = npt.NDArray[np.float64]
 
-_CHORDS = 16  # chords per revolution; a lead that grows by 0.1 mm per revolution deviates by 5e-5 mm
+_CHORDS_PER_REVOLUTION = (
+    16  # chords per revolution; a lead that grows by 0.1 mm per revolution deviates by 5e-5 mm
+)
 _BLEND = 8  # chords per change of lead
 _SHARE = 0.5  # fraction of the acceleration used for a change of lead
-_SAME = 1e-9
+_SAME_POINT_TOLERANCE = 1e-9
 
 
 class ThreadCurve(NamedTuple):
@@ -41,7 +43,7 @@ class ThreadCurve(NamedTuple):
         """The value of s at the end."""
         return float(self.s[-1])
 
-    def at(self, s: float) -> tuple[float, float, float, float]:
+    def evaluate(self, s: float) -> tuple[float, float, float, float]:
         """Return X and Z at ``s``, and their derivatives by s."""
         i = int(np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2))
         step = float(self.s[i + 1] - self.s[i])
@@ -49,63 +51,65 @@ class ThreadCurve(NamedTuple):
         ahead = s - float(self.s[i])
         return float(self.x[i]) + dx * ahead, float(self.z[i]) + dz * ahead, dx, dz
 
-    def place(self, z: float) -> float:
+    def find_s(self, z: float) -> float:
         """Return s at which Z is ``z``, extrapolated before the start and after the end."""
         sign = math.copysign(1.0, float(self.z[-1] - self.z[0]))
         i = int(np.clip(np.searchsorted(sign * self.z, sign * z, side="right") - 1, 0, len(self.s) - 2))
         return float(self.s[i] + (z - self.z[i]) * (self.s[i + 1] - self.s[i]) / (self.z[i + 1] - self.z[i]))
 
-    def acceleration(self, ax: float, az: float) -> float:
+    def max_acceleration(self, ax: float, az: float) -> float:
         """Return the acceleration along s in mm/s² that the axis limits ``ax`` and ``az`` permit."""
         dx, dz = np.abs(np.diff(self.x) / np.diff(self.s)), np.abs(np.diff(self.z) / np.diff(self.s))
         return float(min(az / dz.max(), ax / dx.max() if dx.max() else math.inf))
 
 
-def turns_of(block: Block) -> float:
+def spindle_revolutions(block: Block) -> float:
     """Return the spindle revolutions of a thread block, whose feed is its mean lead."""
     return abs(block.z - block.z0) / block.feed
 
 
-def curve_of(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
+def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
     """Return the curve of a chain of threads. Its s is measured with the first lead."""
     first = blocks[0]
-    unit = first.feed - 0.5 * first.growth * turns_of(first)
+    unit = first.feed - 0.5 * first.growth * spindle_revolutions(first)
     s, x, z = [0.0], [first.x0 + first.offset_x], [first.z0 + first.offset_z]
     joints: list[float] = []
     for block in blocks:
         if block is not first:
             joints.append(s[-1])
-        for share, turns in _chords(block):
+        for share, turns in _chord_points(block):
             x.append(block.x0 + block.offset_x + (block.x - block.x0) * share)
             z.append(block.z0 + block.offset_z + (block.z - block.z0) * share)
             s.append(s[-1] + turns * unit)
     raw = ThreadCurve(np.array(s), np.array(x), np.array(z))
-    return _blended(raw, joints, abs(first.rpm) / 60.0 * unit, limits)
+    return _round_joints(raw, joints, abs(first.rpm) / 60.0 * unit, limits)
 
 
-def _chords(block: Block) -> list[tuple[float, float]]:
+def _chord_points(block: Block) -> list[tuple[float, float]]:
     """Return points along a block: the share of its length, and the revolutions since the previous point."""
-    whole = turns_of(block)
+    whole = spindle_revolutions(block)
     if not block.growth:
         return [(1.0, whole)]
-    count = max(math.ceil(whole * _CHORDS), 2)
+    count = max(math.ceil(whole * _CHORDS_PER_REVOLUTION), 2)
     lead = block.feed - 0.5 * block.growth * whole
     q = np.linspace(0.0, whole, count + 1)[1:]
     way = (lead + 0.5 * block.growth * q) * q
     return [(float(each) / float(way[-1]), whole / count) for each in way]
 
 
-def _blended(raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits) -> ThreadCurve:
+def _round_joints(
+    raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits
+) -> ThreadCurve:
     """Return the curve with rounded joints where the axes cannot follow. ``speed`` is along s, in mm/s."""
     s, points = list(raw.s), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
     for joint in joints:
-        x0, z0, dx1, dz1 = raw.at(joint)
-        _, _, dx0, dz0 = raw.at(joint - 1e-6)
+        x0, z0, dx1, dz1 = raw.evaluate(joint)
+        _, _, dx0, dz0 = raw.evaluate(joint - 1e-6)
         ax, az = limits.amax[:2]
         half = 0.5 * speed * speed * max(abs(dx1 - dx0) / ax, abs(dz1 - dz0) / az) / _SHARE
         at = s.index(joint)
         half = min(half, 0.45 * (s[at] - s[at - 1]), 0.45 * (s[at + 1] - s[at]))
-        if half <= _SAME:
+        if half <= _SAME_POINT_TOLERANCE:
             continue
         del points[joint]
         for u in np.linspace(-half, half, _BLEND + 1).tolist():

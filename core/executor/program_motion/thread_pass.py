@@ -14,67 +14,71 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.executor.program_motion.thread_curve import turns_of
+from core.executor.program_motion.thread_curve import spindle_revolutions
 from core.executor.program_motion.thread_path import Phases, ThreadPath
-from core.executor.spindle_control import SpindleAngle
+from core.executor.spindle_control import SpindleAnglePredictor
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
-from core.ports import AxisSink, Cam, DriverError, Gear, Geared, Segments, Stop
+from core.ports import AxisSink, Cam, DriverError, GearState, Segments, SpindleGear, StopMode
 
 _BLEND = 0.01  # s for the correction of a deviation
-_LONGEST = 0.16  # s, the longest correction
-_EARLY = 0.01  # s between the first plan and the start, for corrections of the start
+_MAX_CORRECTION_S = 0.16  # s, the longest correction
+_EARLY_START_S = 0.01  # s between the first plan and the start, for corrections of the start
 _SHARE = 0.7  # fraction of the acceleration for the run-up; the rest is for corrections
-_PATIENCE = 0.002  # additional s for braking, which has only one attempt
-_TRIES = 3
-_OVER = 1.0005  # fraction of the maximum speed that corrections may use
+_BRAKING_DELAY_S = 0.002  # additional s for braking, which has only one attempt
+_MAX_ATTEMPTS = 3
+_CORRECTION_SPEED_FACTOR = 1.0005  # fraction of the maximum speed that corrections may use
 _AT_START = 1e-6  # mm
-_ALLOWED = 0.01  # revolutions, permitted deviation between axis and spindle
+_ALLOWED_DEVIATION = 0.01  # revolutions, permitted deviation between axis and spindle
 _log = logging.getLogger(__name__)
 # fraction of the acceleration; the rest is for a spindle that turns faster than predicted
 _GEARED_SHARE = 0.9
-_AHEAD = 0.01  # s between a plan and its first change, doubled if too short
-_FURTHER_AHEAD = tuple(_AHEAD * 2**attempt for attempt in range(4))
+_CHANGE_LEAD_S = 0.01  # s between a plan and its first change, doubled if too short
+_CHANGE_LEADS_S = tuple(_CHANGE_LEAD_S * 2**attempt for attempt in range(4))
 # up to 0.64 s, because a later index costs nothing at rest
-_FROM_REST = tuple(_AHEAD * 2**attempt for attempt in range(7))
-_CHANGED = 0.005  # relative speed change after which the rest is planned again
-_SLOWEST = 0.1  # rev/s; a slower spindle needs no other plan
+_FROM_REST = tuple(_CHANGE_LEAD_S * 2**attempt for attempt in range(7))
+_SPEED_CHANGE_FRACTION = 0.005  # relative speed change after which the rest is planned again
+_MIN_SPINDLE_SPEED = 0.1  # rev/s; a slower spindle needs no other plan
 _ROUNDING = 1e-9  # turns
-_BEGINS = {"late", "broken-path"}  # error codes of a driver if the pass is about to start
+_START_ERROR_CODES = {"late", "broken-path"}  # error codes of a driver if the pass is about to start
 
 
 class SpindlePass:
     """A thread pass that follows the spindle, with its largest deviation from it."""
 
     def __init__(
-        self, axes: AxisSink, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
+        self,
+        axes: AxisSink,
+        limits: MotionLimits,
+        spindle_angle: SpindleAnglePredictor,
+        blocks: Sequence[Block],
     ) -> None:
         self._axes = axes
-        self._turns = turns
-        self._path = ThreadPath.of(blocks, limits)
+        self._turns = spindle_angle
+        self._path = ThreadPath.from_blocks(blocks, limits)
         self.blocks = tuple(blocks)
         self._sign = 1.0  # direction of the spindle
         self._stopped = False
         self._reported = False
-        self.worst = 0.0  # largest deviation in revolutions between axis and spindle while in step
+        self.max_deviation = 0.0  # largest deviation in revolutions between axis and spindle while in step
 
-    def cut_at(self, turns: float) -> Block:
+    def block_at_revolution(self, revolutions: float) -> Block:
         """Return the thread block that is cut ``turns`` revolutions after the start of the pass."""
         cut = [self.blocks[0], *(block for block in self.blocks[1:] if block.continues)]
         for block in cut:
-            turns -= turns_of(block)
-            if turns < 0.0:
+            revolutions -= spindle_revolutions(block)
+            if revolutions < 0.0:
                 return block
         return cut[-1]
 
     @property
-    def complete(self) -> bool:
+    def is_fully_queued(self) -> bool:
         """True if the queue contains the complete pass."""
         return not self._stopped
 
-    def lost_step(self) -> bool:
+    def detect_lost_step(self) -> bool:
         """Return True once per pass if axis and spindle deviate too much for a good thread."""
-        before, self._reported = self._reported, self.worst > _ALLOWED
+        before, self._reported = self._reported, self.max_deviation > _ALLOWED_DEVIATION
         return self._reported and not before
 
 
@@ -85,11 +89,15 @@ class ThreadPass(SpindlePass):
     """
 
     def __init__(
-        self, axes: AxisSink, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
+        self,
+        axes: AxisSink,
+        limits: MotionLimits,
+        spindle_angle: SpindleAnglePredictor,
+        blocks: Sequence[Block],
     ) -> None:
-        super().__init__(axes, limits, turns, blocks)
+        super().__init__(axes, limits, spindle_angle, blocks)
         self._top = limits.vmax[1]
-        self._lead, self._ramp = self._path.lead, _SHARE * self._path.a
+        self._lead, self._ramp = self._path.lead, _SHARE * self._path.acceleration
         self._index = 0.0  # unsigned revolutions at which s = 0 is in step
         self._begins = 0.0, 0.0  # start time of the run-up, and its final speed
         self._leaves = math.inf  # time at which the thread itself ends
@@ -98,35 +106,39 @@ class ThreadPass(SpindlePass):
         self._free = False  # too close to the end for another plan
 
     @property
-    def end(self) -> float:
+    def end_time_s(self) -> float:
         """The planned time at which the pass comes to rest, in seconds."""
         return self._ends
 
-    def block(self, now: float) -> Block:
+    def block_at(self, now: float) -> Block:
         """Return the block that is executed at time ``now``."""
         if now >= self._leaves:
             return self.blocks[-1]
-        return self.cut_at(self._demand(now)[0] / self._lead) if len(self.blocks) > 1 else self.blocks[0]
+        return (
+            self.block_at_revolution(self._demand(now)[0] / self._lead)
+            if len(self.blocks) > 1
+            else self.blocks[0]
+        )
 
-    def begin(self) -> None:
+    def start_pass(self) -> None:
         """Select the index and queue the pass from rest."""
         now = self._axes.now()
         # Nothing has started yet, so a pass that cannot be queued starts on resume.
         self._stopped, self._ends, self._leaves, self._index = True, now, math.inf, 0.0
-        turns, speed = self._state(now)
+        turns, speed = self._spindle_state(now)
         v = min(self._lead * speed, self._top)
-        earliest = now + self._axes.commit + _EARLY + 0.5 * v / self._ramp
+        earliest = now + self._axes.commit + _EARLY_START_S + 0.5 * v / self._ramp
         self._index = math.ceil(turns + speed * (earliest - now) - 1e-9)
-        for _ in range(_TRIES):
+        for _ in range(_MAX_ATTEMPTS):
             if self._replan():
                 self._stopped = False
                 return
         raise DriverError("the thread moves could not be queued in time", "late")
 
-    def track(self) -> None:
+    def correct_motion(self) -> None:
         """Correct the motion from one commit time ahead, and measure the deviation. Called once per tick."""
         now = self._axes.now()
-        if self._stopped or now >= self._leaves or self._turns.at(now) is None:
+        if self._stopped or now >= self._leaves or self._turns.predict(now) is None:
             return  # without encoder data the queued pass is the best choice
         self._measure(now)
         if self._free:
@@ -148,63 +160,67 @@ class ThreadPass(SpindlePass):
         self._cost = max(min(self._axes.now() - now, 0.2), 0.8 * self._cost)
         return True
 
-    def hold(self) -> None:
+    def hold_pass(self) -> None:
         """Cancel a pass that has not started to move; any other pass is finished."""
-        t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
+        t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _BRAKING_DELAY_S)
         if self._stopped or t >= self._begins[0]:
             return
         place, _ = self._axes.demand_at(t)
-        self._axes.splice(Segments.resting(t, place))
+        self._axes.splice(Segments.make_rest(t, place))
         self._stopped, self._ends, self._leaves = True, t, math.inf
 
-    def go_on(self) -> None:
+    def restart_pass(self) -> None:
         """Start a pass again, at another index, after a hold before its first motion."""
         s, v = self._demand(self._axes.now())
         if self._stopped and abs(s) <= _AT_START and v == 0.0:
-            self.begin()
+            self.start_pass()
 
-    def brake(self) -> None:
+    def stop_in_thread(self) -> None:
         """Stop along the thread, unless the pass already pulls out."""
-        t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _PATIENCE)
+        t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _BRAKING_DELAY_S)
         s, v = self._demand(t)
-        if self._stopped or t >= self._leaves or s + 0.5 * v * v / self._path.a >= self._path.length:
+        if (
+            self._stopped
+            or t >= self._leaves
+            or s + 0.5 * v * v / self._path.acceleration >= self._path.length
+        ):
             return
-        self._axes.splice(self._path.stopping(t, s, v))
-        self._stopped, self._ends, self._leaves = True, t + v / self._path.a, math.inf
+        self._axes.splice(self._path.make_stop(t, s, v))
+        self._stopped, self._ends, self._leaves = True, t + v / self._path.acceleration, math.inf
 
     def _queue(self, t: float) -> None:
         s, v = self._demand(t)
-        lead_in = self._run_up(t) if s <= _AT_START and v <= 0.0 else None
+        lead_in = self._plan_run_up(t) if s <= _AT_START and v <= 0.0 else None
         if lead_in is None:
-            lead_in = self._blend(t, s, v)
+            lead_in = self._plan_blend(t, s, v)
         if lead_in is None:
             return
-        segments, leaves = self._path.onwards(t, s, v, lead_in)
-        if np.abs(segments.v[:, 1]).max() > self._top * _OVER:
+        segments, leaves = self._path.plan_remaining_pass(t, s, v, lead_in)
+        if np.abs(segments.v[:, 1]).max() > self._top * _CORRECTION_SPEED_FACTOR:
             return  # The pass is faster than the axis, so the axis lags and the deviation is reported.
         self._axes.splice(segments)
         self._leaves, self._ends = leaves, _end(segments)
 
-    def _run_up(self, t: float) -> Phases | None:
+    def _plan_run_up(self, t: float) -> Phases | None:
         """Return a wait and an acceleration from rest to the line, or None if the start has passed."""
-        starts, v = self._begins = self._start()
+        starts, v = self._begins = self._find_start()
         if starts < t:
             return None
         return [(starts - t, 0.0), (v / self._ramp, self._ramp)]
 
-    def _blend(self, t: float, s: float, v: float) -> Phases | None:
+    def _plan_blend(self, t: float, s: float, v: float) -> Phases | None:
         """Return two phases that lead to the line without reversing, or None without room for them."""
         path, time = self._path, _BLEND
-        while time <= _LONGEST:
+        while time <= _MAX_CORRECTION_S:
             goal, speed, rest = self._target(t + time)
-            if goal >= path.full_depth(speed):
+            if goal >= path.full_depth_end(speed):
                 self._free = True
                 return None
             half = 0.5 * time
             gain, ahead = (speed - v) / half, (goal - s - v * time) / (half * half)
             first, second = ahead - 0.5 * gain, 1.5 * gain - ahead
             onwards = min(v + first * half, speed) >= 0.0 or v < 0.0
-            if onwards and max(abs(first), abs(second)) <= path.a:
+            if onwards and max(abs(first), abs(second)) <= path.acceleration:
                 return [(half, first), (half, second), *rest]
             time *= 2.0
         return None
@@ -217,10 +233,10 @@ class ThreadPass(SpindlePass):
             into = max(into, 0.0)
             left = (v / self._ramp) - into
             return 0.5 * self._ramp * into * into, self._ramp * into, [(left, self._ramp)]
-        turns, speed = self._state(t)
+        turns, speed = self._spindle_state(t)
         return self._lead * (turns - self._index), self._lead * speed, []
 
-    def _start(self) -> tuple[float, float]:
+    def _find_start(self) -> tuple[float, float]:
         """Return the start time of the run-up and its final speed.
 
         The run-up starts half its duration before the index. An axis that accelerates from rest lags a moving
@@ -228,14 +244,14 @@ class ThreadPass(SpindlePass):
         """
         at = self._axes.now()
         for _ in range(3):
-            turns, speed = self._state(at)
+            turns, speed = self._spindle_state(at)
             at += (self._index - turns) / speed
         v = min(self._lead * speed, self._top)
         return at - 0.5 * v / self._ramp, v
 
-    def _state(self, t: float) -> tuple[float, float]:
+    def _spindle_state(self, t: float) -> tuple[float, float]:
         """Return revolutions and revolutions per second at ``t``, positive in the direction of rotation."""
-        state = self._turns.turning_at(t)
+        state = self._turns.predict_turning(t)
         if self._index == 0.0:
             self._sign = math.copysign(1.0, state[1])
         return self._sign * state[0], self._sign * state[1]
@@ -243,14 +259,14 @@ class ThreadPass(SpindlePass):
     def _measure(self, now: float) -> None:
         """Record the deviation between setpoints and spindle, in leads, when the axis is at speed."""
         s, v = self._demand(now)
-        turns, speed = self._state(now)
+        turns, speed = self._spindle_state(now)
         if v < 0.9 * self._lead * speed:
             return
-        self.worst = max(self.worst, abs(s / self._lead - (turns - self._index)))
+        self.max_deviation = max(self.max_deviation, abs(s / self._lead - (turns - self._index)))
 
     def _demand(self, t: float) -> tuple[float, float]:
         (_, z, _), (_, v, _) = self._axes.demand_at(t)
-        return self._path.place(z, v)
+        return self._path.find_s_and_speed(z, v)
 
 
 def _end(segments: Segments) -> float:
@@ -268,9 +284,14 @@ class GearedThreadPass(SpindlePass):
     """
 
     def __init__(
-        self, axes: AxisSink, gear: Gear, limits: MotionLimits, turns: SpindleAngle, blocks: Sequence[Block]
+        self,
+        axes: AxisSink,
+        gear: SpindleGear,
+        limits: MotionLimits,
+        spindle_angle: SpindleAnglePredictor,
+        blocks: Sequence[Block],
     ) -> None:
-        super().__init__(axes, limits, turns, blocks)
+        super().__init__(axes, limits, spindle_angle, blocks)
         self._gear = gear
         self._zero = 0.0
         self._speed = 0.0  # rev/s for which the cam is planned
@@ -278,132 +299,143 @@ class GearedThreadPass(SpindlePass):
         self._leaves = math.inf  # revolutions at which the thread itself ends
 
     @property
-    def end(self) -> float:
+    def end_time_s(self) -> float:
         """The time at which the pass will come to rest at the present speed, in seconds."""
         return self._axes.horizon()
 
-    def block(self, _now: float) -> Block:
+    def block_at(self, _now: float) -> Block:
         """Return the block being executed."""
         geared = self._gear.geared()
         if geared is None:
             return self.blocks[0] if self._stopped else self.blocks[-1]
-        return self.blocks[-1] if geared.turns >= self._leaves else self.cut_at(geared.turns)
+        return (
+            self.blocks[-1]
+            if geared.revolutions >= self._leaves
+            else self.block_at_revolution(geared.revolutions)
+        )
 
-    def begin(self) -> None:
+    def start_pass(self) -> None:
         """Select the index and send the pass to the driver, from rest."""
         self._stopped = True  # Nothing has started yet, so a pass that cannot be queued starts on resume.
         for early in _FROM_REST:
-            if self._mesh_from_rest(early):
+            if self._engage_from_rest(early):
                 self._stopped = False
                 return
         raise DriverError("the thread moves could not be queued in time", "late")
 
-    def track(self) -> None:
+    def correct_motion(self) -> None:
         """Measure the deviation, and plan the rest again if the speed has changed. Called once per tick."""
         geared = self._gear.geared()
-        state = self._turns.at(self._axes.now())
+        state = self._turns.predict(self._axes.now())
         if self._stopped or geared is None or state is None:
             return
-        if self._ramp < geared.turns < self._leaves:
-            self.worst = max(self.worst, abs(geared.lag))
+        if self._ramp < geared.revolutions < self._leaves:
+            self.max_deviation = max(self.max_deviation, abs(geared.lag_revolutions))
         speed = self._sign * state[1]
-        if abs(speed - self._speed) > _CHANGED * self._speed and speed > _SLOWEST:
-            self._go_on_at(speed, geared)
+        if abs(speed - self._speed) > _SPEED_CHANGE_FRACTION * self._speed and speed > _MIN_SPINDLE_SPEED:
+            self._replan_for_speed(speed, geared)
 
-    def hold(self) -> None:
+    def hold_pass(self) -> None:
         """Cancel a pass that has not started to move; any other pass is finished."""
-        t = self._axes.now() + self._axes.commit + _AHEAD
+        t = self._axes.now() + self._axes.commit + _CHANGE_LEAD_S
         geared = self._gear.geared()
-        if self._stopped or geared is None or self._reached(geared, t) >= -self._ramp:
+        if self._stopped or geared is None or self._reachable_position(geared, t) >= -self._ramp:
             return
         place, _ = self._axes.demand_at(t)
         try:
-            self._axes.splice(Segments.resting(t, place))
+            self._axes.splice(Segments.make_rest(t, place))
         except DriverError as error:
-            if error.code not in _BEGINS:
+            if error.code not in _START_ERROR_CODES:
                 raise
             return  # the pass ends after its pull-out
         self._stopped = True
 
-    def go_on(self) -> None:
+    def restart_pass(self) -> None:
         """Start a pass again, at another index, after a hold before its first motion."""
         (_, z, *_), _ = self._axes.demand_at(self._axes.now())
         if self._stopped and self._gear.geared() is None and abs(z - self._path.z) <= _AT_START:
-            self.begin()
+            self.start_pass()
 
-    def brake(self) -> None:
+    def stop_in_thread(self) -> None:
         """Stop along the thread, unless the pass only retracts X."""
         if self._stopped or self._gear.geared() is None:
             return
-        self._axes.stop(Stop.RAMP_HOLD)
+        self._axes.stop(StopMode.RAMP_HOLD)
         self._stopped = True
 
-    def _mesh_from_rest(self, early: float) -> bool:
+    def _engage_from_rest(self, early: float) -> bool:
         """Plan the complete pass; return False if it was too late."""
-        state = self._turns.turning_at(self._axes.now())
+        state = self._turns.predict_turning(self._axes.now())
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
-        self._ramp = self._running_up(self._speed)
+        self._ramp = self._run_up_revolutions(self._speed)
         first = self._sign * state[0] + self._speed * (self._axes.commit + early)
         self._zero = self._sign * math.ceil(first + self._ramp - _ROUNDING)
         try:
-            self._mesh_up(self._speed, self._ramp)
+            self._send_from_rest(self._speed, self._ramp)
         except DriverError as error:
             if error.code != "late":
                 raise
             return False
         return True
 
-    def _running_up(self, speed: float) -> float:
+    def _run_up_revolutions(self, speed: float) -> float:
         """Return the revolutions from rest to the index.
 
         An axis that accelerates from rest lags a moving one by v²/2a, so it must start v/2a earlier, which is
         half of its run-up.
         """
-        return 0.5 * self._path.lead * speed**2 / (_GEARED_SHARE * self._path.a)
+        return 0.5 * self._path.lead * speed**2 / (_GEARED_SHARE * self._path.acceleration)
 
-    def _go_on_at(self, speed: float, geared: Geared) -> None:
+    def _replan_for_speed(self, speed: float, geared: GearState) -> None:
         """Plan the run-up, or the part after the thread, for another spindle speed.
 
         If the driver rejects the change, the complete pass that it already has continues. An axis that cannot
         follow it then lags.
         """
-        path, ramp = self._path, self._running_up(speed)
-        for early in _FURTHER_AHEAD:
-            turns = self._reached(geared, self._axes.now() + self._axes.commit + early)
+        path, ramp = self._path, self._run_up_revolutions(speed)
+        for early in _CHANGE_LEADS_S:
+            turns = self._reachable_position(geared, self._axes.now() + self._axes.commit + early)
             try:
                 if turns < -max(ramp, self._ramp):
-                    self._mesh_up(speed, ramp)
-                elif turns > self._ramp and path.lead * turns < self._paced(speed).full_depth(path.lead):
-                    self._mesh(turns, path.lead * turns, path.lead, speed, [])
+                    self._send_from_rest(speed, ramp)
+                elif turns > self._ramp and path.lead * turns < self._path_per_revolution(
+                    speed
+                ).full_depth_end(path.lead):
+                    self._send_path(turns, path.lead * turns, path.lead, speed, [])
             except DriverError as error:
                 if error.code == "late":
                     continue
                 _log.info("a thread pass goes on as planned for another speed: %s", error)
             return
 
-    def _mesh_up(self, speed: float, ramp: float) -> None:
+    def _send_from_rest(self, speed: float, ramp: float) -> None:
         """Send the complete path, which starts from rest ``ramp`` revolutions before the index.
 
         Raises DriverError if the driver rejects it.
         """
-        self._mesh(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead / ramp)])
+        self._send_path(-ramp, 0.0, 0.0, speed, [(2.0 * ramp, 0.5 * self._path.lead / ramp)])
         self._ramp = ramp
 
-    def _mesh(self, turns: float, s: float, v: float, speed: float, up: Phases) -> None:
+    def _send_path(self, revolutions: float, s: float, v: float, speed: float, run_up: Phases) -> None:
         """Send the path from ``turns`` on, where the axis is at ``s`` with ``v`` mm per revolution.
 
         Raises DriverError if the driver rejects it. The path sent before then remains in force.
         """
-        path, leaves = self._paced(speed).onwards(turns, s, v, up)
-        self._gear.mesh(Cam(self._zero, self._sign, path, self._path.drawn_back()))
+        path, leaves = self._path_per_revolution(speed).plan_remaining_pass(revolutions, s, v, run_up)
+        self._gear.mesh(Cam(self._zero, self._sign, path, self._path.make_retract()))
         self._leaves, self._speed = leaves, speed
 
-    def _paced(self, speed: float) -> ThreadPath:
+    def _path_per_revolution(self, speed: float) -> ThreadPath:
         """Return the path with limits per revolution, up to where it no longer follows the spindle."""
         path, share = self._path, _GEARED_SHARE / speed**2
-        out = path.out if path.beyond else path.x_end
-        return path._replace(a=path.a * share, ax=path.ax * share, az=path.az * share, out=out)
+        out = path.retract_x_mm if path.exit_length_mm else path.x_end
+        return path._replace(
+            acceleration=path.acceleration * share,
+            x_acceleration=path.x_acceleration * share,
+            z_acceleration=path.z_acceleration * share,
+            retract_x_mm=out,
+        )
 
-    def _reached(self, geared: Geared, t: float) -> float:
+    def _reachable_position(self, geared: GearState, t: float) -> float:
         """Return the furthest cam position in revolutions at time ``t`` if the speed does not rise."""
-        return geared.turns + max(self._speed, geared.speed) * (t - self._axes.now())
+        return geared.revolutions + max(self._speed, geared.speed) * (t - self._axes.now())

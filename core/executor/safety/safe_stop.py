@@ -13,70 +13,73 @@ from core.alarms import Reaction
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import Attempt
 from core.message import Message
-from core.ports import DriverError, Stop
+from core.ports import DriverError, StopMode
 
 _log = logging.getLogger(__name__)
-_SLIDES = "the axes"
-_AGAIN = 0.1  # s until a failed step is repeated
+_AXES_STEP_NAME = "the axes"
+_RETRY_INTERVAL_S = 0.1  # s until a failed step is repeated
 
-Step = tuple[str, Callable[[], None]]
+StopStep = tuple[str, Callable[[], None]]
 
 
 class SafeStop:
-    """Runs all steps of a safe stop with ``react`` and repeats failed steps with ``again``.
+    """Runs all steps of a safe stop with ``run_steps`` and repeats failed steps with ``retry_failed_steps``.
 
     Only KeyboardInterrupt passes through.
     """
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
-        self._failed: list[Step] = []
+        self._failed: list[StopStep] = []
         self._tried_at = 0.0
         self._tries = 0
 
     @property
-    def undone(self) -> str:
+    def failed_steps_text(self) -> str:
         """The steps that failed more than once, as a text; empty if all steps succeeded."""
         return ", ".join(name for name, _ in self._failed) if self._tries > 1 else ""
 
-    def react(self, reaction: Reaction) -> None:
+    def run_steps(self, reaction: Reaction) -> None:
         """Brake all axes, stop the spindle and switch the outputs to their safe states."""
-        off = reaction is Reaction.OFF
-        brake = partial(self._brake, Stop.RAMP_OFF if off else Stop.RAMP_HOLD)
-        self._begin([(_SLIDES, brake), *self._functions(coast=off)])
+        off = reaction is Reaction.DRIVES_OFF
+        brake = partial(self._brake, StopMode.RAMP_OFF if off else StopMode.RAMP_HOLD)
+        self._begin([(_AXES_STEP_NAME, brake), *self._functions(coast=off)])
 
-    def functions_off(self) -> None:
+    def switch_functions_off(self) -> None:
         """Stop the spindle and switch the outputs to their safe states, without stopping the axes."""
         self._begin(self._functions(coast=False))
 
-    def _functions(self, *, coast: bool) -> list[Step]:
-        return [*self._context.spindle.safe_steps(coast=coast), ("the outputs", self._outputs_safe)]
+    def _functions(self, *, coast: bool) -> list[StopStep]:
+        return [
+            *self._context.spindle.prepare_safe_stop(coast=coast),
+            ("the outputs", self._switch_outputs_safe),
+        ]
 
-    def _begin(self, steps: list[Step]) -> None:
+    def _begin(self, steps: list[StopStep]) -> None:
         self._tries = 0
         self._carry_out(steps)
 
-    def again(self) -> None:
+    def retry_failed_steps(self) -> None:
         """Repeat failed steps, ten times per second. Called once per tick."""
-        if self._failed and self._context.now - self._tried_at >= _AGAIN:
+        if self._failed and self._context.now - self._tried_at >= _RETRY_INTERVAL_S:
             self._carry_out(self._failed)
 
-    def finish(self) -> None:
+    def retry_last_time(self) -> None:
         """Repeat failed steps a last time, and switch off drives that cannot be braked."""
         if self._failed:
             self._carry_out(self._failed)
-        if any(name == _SLIDES for name, _ in self._failed):
-            self._done("the drives", partial(self._context.ports.axes.enable, False))
+        if any(name == _AXES_STEP_NAME for name, _ in self._failed):
+            self._run_step("the drives", partial(self._context.ports.axes.enable, False))
 
-    def forget(self) -> None:
+    def discard_failed_steps(self) -> None:
         """Discard failed steps because the operator has acknowledged the alarm."""
         self._failed = []
 
-    def _carry_out(self, steps: list[Step]) -> None:
+    def _carry_out(self, steps: list[StopStep]) -> None:
         self._tried_at, self._tries = self._context.now, self._tries + 1
-        self._failed = [step for step in steps if not self._done(*step)]
+        self._failed = [step for step in steps if not self._run_step(*step)]
 
-    def _done(self, name: str, step: Callable[[], None]) -> bool:
+    def _run_step(self, name: str, step: Callable[[], None]) -> bool:
         """Run one step and return whether it succeeded. An error does not prevent the next step."""
         with Attempt() as trial:
             step()
@@ -94,23 +97,23 @@ class SafeStop:
             )
         return error is None
 
-    def _brake(self, how: Stop) -> None:
+    def _brake(self, mode: StopMode) -> None:
         """Brake the axes, or switch the drives off if braking fails unexpectedly."""
         axes = self._context.ports.axes
         with Attempt() as trial:
-            axes.stop(how)
+            axes.stop(mode)
         if trial.error is not None:
             if not isinstance(trial.error, DriverError):
                 axes.enable(False)
             raise trial.error
 
-    def _outputs_safe(self) -> None:
+    def _switch_outputs_safe(self) -> None:
         """Switch all outputs to their safe states together, or one by one if that fails."""
         io = self._context.ports.io
         with Attempt() as trial:
-            io.safe()
+            io.switch_to_safe_state()
         if trial.error is not None:
             for output in self._context.machine.outputs.values():
-                if output.safe is not None:
-                    self._done(output.name, partial(io.write, output.name, output.safe))
+                if output.safe_state is not None:
+                    self._run_step(output.name, partial(io.write, output.name, output.safe_state))
             raise trial.error

@@ -15,44 +15,46 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from core.alarms import Code
+from core.alarms import AlarmCode
 from core.executor.machine_context import MachineContext
 from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError
-from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
-from core.executor.start_conditions import Starting
-from core.faults import Trip, code_of
+from core.executor.snapshot import ACTIVE_STATES, CYCLE_STATES, STOPPED_STATES, MachineState
+from core.executor.start_conditions import AnnouncedStart
+from core.faults import DriverHostTrip, get_fault_code
 from core.machine.machine_model import Axis
 from core.message import Message, join_messages
-from core.ports import AxisSample, Unknown
+from core.ports import AxisSample, UnknownPart
 
-_HOST = 0.03  # s in addition to the drive's own time, so that the fault of the drive is reported first
-_RECENT = 0.1  # s for which an axis may still lag after its speed has dropped
-_UNMOVED = 0.05  # s within which the encoder must count while its axis is commanded to move
-_ARRIVES = 1.0  # s that an axis may take to get in position, as in the wait of the cycle
+_HOST_DELAY_S = (
+    0.03  # s in addition to the drive's own time, so that the fault of the drive is reported first
+)
+_RECENT_TIME_S = 0.1  # s for which an axis may still lag after its speed has dropped
+_ENCODER_TIMEOUT_S = 0.05  # s within which the encoder must count while its axis is commanded to move
+_ARRIVAL_TIMEOUT_S = 1.0  # s that an axis may take to get in position, as in the wait of the cycle
 _FROZEN, _CLOSE = 3.0, 2.5  # s and counts; a drive that pushes moves its encoder by one or two counts
-_PART = 0.125  # fraction of the standstill window; a free axis moves at this error
-_COUNTS = 20.0  # counts that the axis must be commanded to move if the encoder is coarse
+_WINDOW_FRACTION = 0.125  # fraction of the standstill window; a free axis moves at this error
+_MIN_COUNTS = 20.0  # counts that the axis must be commanded to move if the encoder is coarse
 _NOTHING = 1e-9
-_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
-_UNHEARD = 0.25  # s without axis data before a driver must report a fault
+_POWERED = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOME}
+_NO_DATA_TIMEOUT_S = 0.25  # s without axis data before a driver must report a fault
 
 
 class FollowingErrorWatch:
     """Supervises all axes at rest and in motion, with and without power. ``look`` is called once per tick."""
 
     def __init__(self, axes: Sequence[Axis]) -> None:
-        self._axes = [_OneAxis(axis) for axis in axes]
+        self._axes = [_AxisWatch(axis) for axis in axes]
         self._enabled = False
 
-    def look(self, sample: AxisSample, *, unpowered: bool) -> None:
+    def check_sample(self, sample: AxisSample, *, is_unpowered: bool) -> None:
         """Check a sample and raise AlarmError for the first axis that is out of position.
 
-        ``unpowered`` means that the drives are off without a fault, so that no axis should move.
+        ``is_unpowered`` means that the drives are off without a fault, so that no axis should move.
         """
         if sample.enabled is not self._enabled:
             self._enabled = sample.enabled
-            self.forget()
+            self.reset()
         each = zip(self._axes, sample.demand, sample.actual, sample.homed, strict=True)
         for one, demand, actual, homed in each:
             if sample.moving:
@@ -63,15 +65,15 @@ class FollowingErrorWatch:
                 one.powered(demand, actual)
                 one.unasked(actual, at_rest=not sample.moving and demand == actual)
             else:
-                one.unasked(actual, at_rest=not sample.moving and unpowered and homed)
+                one.unasked(actual, at_rest=not sample.moving and is_unpowered and homed)
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Reset the supervision because the power has changed or an alarm was acknowledged."""
         for one in self._axes:
             one.forget()
 
 
-class _OneAxis:
+class _AxisWatch:
     """Supervision of one axis. It uses the times of the samples, so that a late tick does not count."""
 
     def __init__(self, axis: Axis) -> None:
@@ -104,9 +106,9 @@ class _OneAxis:
         self._demand = demand
         self._encoder(demand, actual)
         rest = self._t - self._sent_at
-        limit = axis.following_limit(self._speed)
-        if self._lasts("off", error > limit) > axis.following_time + _HOST:
-            code: Code = "standstill" if rest > axis.still_time else "following"
+        limit = axis.max_following_error(self._speed)
+        if self._lasts("off", error > limit) > axis.following_time + _HOST_DELAY_S:
+            code: AlarmCode = "standstill" if rest > axis.still_time else "following"
             raise AlarmError(
                 code, Message("{axis} is {error} off its setpoint", axis=axis.name, error=self._words(error))
             )
@@ -119,13 +121,15 @@ class _OneAxis:
         A smaller error is permitted for a longer time.
         """
         axis, unmoved = self._axis, self._t - self._counted_at
-        pushed = max(_PART * axis.still_window, 4.0 * axis.in_position)
+        pushed = max(_WINDOW_FRACTION * axis.still_window, 4.0 * axis.in_position)
         if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
             raise AlarmError(
                 "standstill",
                 Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
             )
-        beside = self._lasts("beside", error > axis.in_position) > _ARRIVES and rest > _ARRIVES
+        beside = (
+            self._lasts("beside", error > axis.in_position) > _ARRIVAL_TIMEOUT_S and rest > _ARRIVAL_TIMEOUT_S
+        )
         frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
         if beside or frozen:
             raise AlarmError(
@@ -157,7 +161,7 @@ class _OneAxis:
     def _note_speed(self, speed: float) -> None:
         if speed * self._dt > _NOTHING:
             self._sent_at = self._t
-        if speed >= self._speed or self._t - self._speed_at > _RECENT:
+        if speed >= self._speed or self._t - self._speed_at > _RECENT_TIME_S:
             self._speed, self._speed_at = speed, self._t
 
     def _encoder(self, demand: float, actual: float) -> None:
@@ -169,11 +173,11 @@ class _OneAxis:
         if abs(actual - read) > 1.5 * axis.count:
             self._counted, self._counted_at = (self._t, demand, actual), self._t
             return
-        least = max(0.25 * axis.still_window, _COUNTS * axis.count)
+        least = max(0.25 * axis.still_window, _MIN_COUNTS * axis.count)
         sent = abs(demand - sent_from)
         if sent <= axis.count:
             self._counted = (self._t, sent_from, read)
-        elif self._t - since > _UNMOVED and sent > least and abs(demand - actual) > least:
+        elif self._t - since > _ENCODER_TIMEOUT_S and sent > least and abs(demand - actual) > least:
             raise AlarmError(
                 "encoder-still",
                 Message(
@@ -206,40 +210,40 @@ class Supervisor:
         self._axes = FollowingErrorWatch(context.machine.axes)
         self.max_following_error = 0.0
 
-    def acknowledged(self) -> None:
+    def accept_positions(self) -> None:
         """Accept the present positions of the axes after the operator has acknowledged an alarm."""
-        self._axes.forget()
+        self._axes.reset()
 
-    def look(self, state: State) -> None:
+    def check(self, state: MachineState) -> None:
         """Raise AlarmError for the first condition that must stop the machine."""
         sample, context = self._context.sample, self._context
         if sample.fault:
-            raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
-        if Unknown.SLIDES in context.unknown:
-            self._axes.forget()  # the axes may be at other positions when data arrives again
-            self._unheard(powered=state in _POWERED)
+            raise AlarmError(get_fault_code(sample.fault, "axis"), sample.fault)
+        if UnknownPart.AXES in context.unknown_items:
+            self._axes.reset()  # the axes may be at other positions when data arrives again
+            self._check_data(is_powered=state in _POWERED)
             return
         self._unheard_since = None
-        self._numbers(sample)
+        self._check_numbers(sample)
         self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
-        self._axes.look(sample, unpowered=state is State.DISABLED)
-        turning = not context.spindle.stopped and context.spindle.asked
+        self._axes.check_sample(sample, is_unpowered=state is MachineState.DISABLED)
+        turning = not context.spindle.is_stopped and context.spindle.is_requested
         gripped = context.inputs.get("collet_closed", True) or not context.ports.io.outputs().get(
             "collet", True
         )
         if turning and not gripped and not context.machine.interlocks.spindle_with_collet_open:
-            self._collet_lost()
+            self._check_collet()
         else:
             self._open_since = None
 
-    def _unheard(self, *, powered: bool) -> None:
+    def _check_data(self, *, is_powered: bool) -> None:
         """Raise AlarmError if the axes send no data and the driver reports no fault."""
         now = self._context.now
         since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
-        if powered and now - since > _UNHEARD:
+        if is_powered and now - since > _NO_DATA_TIMEOUT_S:
             raise AlarmError("drive-silent", "no data from the axes")
 
-    def _numbers(self, sample: AxisSample) -> None:
+    def _check_numbers(self, sample: AxisSample) -> None:
         """Raise AlarmError if a position is not a number, because no comparison would detect that."""
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
@@ -251,7 +255,7 @@ class Supervisor:
                     Message("{axis}: the drive reports a position that is not a number", axis=axis.name),
                 )
 
-    def _collet_lost(self) -> None:
+    def _check_collet(self) -> None:
         """Raise AlarmError if the collet switch is off longer than contact bounce can last."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
@@ -273,71 +277,73 @@ class OutputsWatch:
         self._program_run = program_run
         self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Hold the cycle if an output changed without a command. Raises DriverError or AlarmError."""
-        trips = self._context.ports.trips
-        trip = trips.tripped() if trips is not None else None
+        trips = self._context.ports.trip_monitor
+        trip = trips.get_active_trip() if trips is not None else None
         if trips is not None and trip is not None:
             trips.acknowledge(trip)  # acknowledged first, because the hold also needs setpoints
-            self._tripped(trip)
-        if Unknown.OUTPUTS in self._context.unknown or self._context.sample.fault:
+            self._handle_trip(trip)
+        if UnknownPart.OUTPUTS in self._context.unknown_items or self._context.sample.fault:
             return  # The fault that switched outputs off is reported in this tick.
-        if self._program_run.status.state not in CYCLE:
+        if self._program_run.status.state not in CYCLE_STATES:
             told, self._known_off = self._known_off, frozenset()
-            for each in self._context.outputs.accept():
+            for each in self._context.outputs.accept_actual_states():
                 if each.name not in told:  # already reported by the device that switched the output off
-                    self._context.log("disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.words))
+                    self._context.log(
+                        "disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.description)
+                    )
             return
-        differing = self._context.outputs.differing()
+        differing = self._context.outputs.find_mismatches()
         new = [each for each in differing if each.name not in self._known_off]
         self._known_off = frozenset(each.name for each in differing)
         if new:
-            self._disturbed("switched-off", " AND ".join(each.words for each in new))
+            self._disturbed("switched-off", " AND ".join(each.description for each in new))
 
-    def starts(self) -> Iterator[Starting]:
+    def list_restart_outputs(self) -> Iterator[AnnouncedStart]:
         """Yield the outputs that a resume switches back to their commanded states, for the announcement."""
-        if self._program_run.status.state in STOPPED:
-            for name, wanted in self._context.outputs.differing():
+        if self._program_run.status.state in STOPPED_STATES:
+            for name, wanted in self._context.outputs.find_mismatches():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
                 begin = partial(self._context.outputs.write, name, wanted)
-                yield Starting(Message("output {name}", name=name), words, begin)
+                yield AnnouncedStart(Message("output {name}", name=name), words, begin)
 
-    def _tripped(self, trip: Trip) -> None:
+    def _handle_trip(self, trip: DriverHostTrip) -> None:
         """Handle outputs that the driver host has switched off.
 
         Lamps are ignored, because they are not outputs of the program and are turned on again.
         """
         context = self._context
-        outputs = tuple(name for name in trip.outputs if name not in context.machine.lamps)
+        outputs = tuple(name for name in trip.active_outputs if name not in context.machine.lamp_outputs)
         off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in outputs)]
         if not off:
             return
         if trip.spindle:
-            context.spindle.dropped("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
-        context.outputs.fell(outputs)
+            context.spindle.record_external_stop("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
+        context.outputs.mark_switched_off(outputs)
         self._known_off |= set(outputs)
         template = (
             "NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}"
-            if trip.found
+            if trip.was_connection_lost
             else "NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}"
         )
         self._disturbed(
             "feeder-tripped",
             Message(
                 template,
-                away=f"{trip.away:.1f}",
+                away=f"{trip.silence_s:.1f}",
                 off=join_messages(", ", off),
             ),
         )
 
-    def _disturbed(self, code: Code, words: str) -> None:
+    def _disturbed(self, code: AlarmCode, words: str) -> None:
         program_run, state = self._program_run, self._program_run.status.state
         self._context.log("disturbed", words)
-        if program_run.cycle is None or state not in CYCLE:
+        if program_run.cycle is None or state not in CYCLE_STATES:
             return
-        program_run.disturb(words.lower())
-        if state in ACTIVE:
-            self._context.spindle.break_off()
+        program_run.mark_part_disturbed(words.lower())
+        if state in ACTIVE_STATES:
+            self._context.spindle.cancel_orientation()
         else:
             self._context.show_stop(code, words.lower())
-        program_run.cycle.hold(words, code=code)
+        program_run.cycle.start_feed_hold(words, code=code)

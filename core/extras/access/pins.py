@@ -19,7 +19,7 @@ _SALT, _LENGTH = 16, 32  # bytes
 _MOST_MEMORY = 2**28  # bytes
 
 
-class Cost(NamedTuple):
+class ScryptCost(NamedTuple):
     """Parameters of scrypt: log2 of N, r and p, each stored as one byte in front of the hash."""
 
     log2_n: int
@@ -27,15 +27,15 @@ class Cost(NamedTuple):
     p: int
 
 
-COST = Cost(16, 8, 8)  # parameters of new hashes
-_FIRST_COST = Cost(14, 8, 1)  # parameters of hashes from older versions, which do not store them
+DEFAULT_COST = ScryptCost(16, 8, 8)  # parameters of new hashes
+_FIRST_COST = ScryptCost(14, 8, 1)  # parameters of hashes from older versions, which do not store them
 
 
 class PinError(CodedError):
     """A PIN that is not acceptable; the text has the reason."""
 
 
-class Hashed(NamedTuple):
+class PinHash(NamedTuple):
     """The stored hash of a PIN and its salt."""
 
     salt: bytes
@@ -53,67 +53,72 @@ def check_pin(pin: str) -> None:
         raise PinError("a PIN of one repeated digit is too easy to guess; choose another", "pin-too-simple")
 
 
-def hashed(pin: str, salt: bytes | None = None) -> Hashed:
+def hash_pin(pin: str, salt: bytes | None = None) -> PinHash:
     """Hash a PIN with ``salt`` or a new salt. Call it in a worker thread, because it is slow."""
     salt = salt if salt is not None else secrets.token_bytes(_SALT)
-    return Hashed(salt, bytes(COST) + _scrypt(pin, salt, COST))
+    return PinHash(salt, bytes(DEFAULT_COST) + _scrypt(pin, salt, DEFAULT_COST))
 
 
-def is_pin(pin: str, kept: Hashed) -> bool:
+def matches_hash(pin: str, stored_hash: PinHash) -> bool:
     """Return whether the PIN matches the hash; False for an empty hash.
 
     The calculation is slow, so call it in a worker thread.
     """
-    cost = _cost_of(kept)
-    digest = kept.hash[-_LENGTH:]
-    return cost is not None and hmac.compare_digest(_scrypt(pin, kept.salt, cost), digest)
+    cost = _cost_of(stored_hash)
+    digest = stored_hash.hash[-_LENGTH:]
+    return cost is not None and hmac.compare_digest(_scrypt(pin, stored_hash.salt, cost), digest)
 
 
-def is_outdated(kept: Hashed) -> bool:
+def is_outdated(stored_hash: PinHash) -> bool:
     """Return whether the hash has other parameters than new hashes."""
-    return _cost_of(kept) != COST
+    return _cost_of(stored_hash) != DEFAULT_COST
 
 
-def _cost_of(kept: Hashed) -> Cost | None:
+def _cost_of(kept: PinHash) -> ScryptCost | None:
     head = kept.hash[:-_LENGTH]
     if len(kept.hash) == _LENGTH:
         return _FIRST_COST
-    return Cost(*head) if len(head) == len(COST) else None
+    return ScryptCost(*head) if len(head) == len(DEFAULT_COST) else None
 
 
-def _scrypt(pin: str, salt: bytes, cost: Cost) -> bytes:
+def _scrypt(pin: str, salt: bytes, cost: ScryptCost) -> bytes:
     return hashlib.scrypt(
         pin.encode(), salt=salt, n=1 << cost.log2_n, r=cost.r, p=cost.p, dklen=_LENGTH, maxmem=_MOST_MEMORY
     )
 
 
-FREE = 2  # wrong PINs that cause no delay
+FREE_ATTEMPTS = 2  # wrong PINs that cause no delay
 _FIRST, _MOST = 5.0, 300.0  # s
 
 
-def wait_after(wrong: int) -> float:
+def calculate_delay(wrong_attempts: int) -> float:
     """Return the delay in seconds after this many wrong PINs in a row: 0, 0, 5, 10, 20 … 300."""
-    return min(_MOST, _FIRST * 2.0 ** (wrong - FREE - 1)) if wrong > FREE else 0.0
+    return (
+        min(_MOST, _FIRST * 2.0 ** (wrong_attempts - FREE_ATTEMPTS - 1))
+        if wrong_attempts > FREE_ATTEMPTS
+        else 0.0
+    )
 
 
 @dataclass(slots=True)
-class WrongPins:
-    """The number of wrong PINs in a row by all users; ``since`` is the monotonic time of the last in seconds.
+class WrongPinCounter:
+    """The number of wrong PINs in a row by all users; ``last_attempt_s`` is the monotonic time of the last
+    in seconds.
 
     After a restart the delay starts again, because ``count`` is stored and the time is not.
     """
 
     count: int = 0
-    since: float = 0.0
+    last_attempt_s: float = 0.0
 
-    def left(self, now: float) -> float:
+    def get_remaining_delay(self, now: float) -> float:
         """Return the seconds until a PIN is accepted again, or 0."""
-        return max(0.0, self.since + wait_after(self.count) - now)
+        return max(0.0, self.last_attempt_s + calculate_delay(self.count) - now)
 
-    def wrong(self, now: float) -> None:
+    def count_wrong_pin(self, now: float) -> None:
         """Count a wrong PIN."""
-        self.count, self.since = self.count + 1, now
+        self.count, self.last_attempt_s = self.count + 1, now
 
-    def right(self) -> None:
+    def reset(self) -> None:
         """Reset the count after a correct PIN."""
         self.count = 0

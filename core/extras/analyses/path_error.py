@@ -17,45 +17,46 @@ from core.message import Message
 from core.records.record import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
-LEAST = 60  # samples
-LEAST_ANGLE = 60.0  # degrees of arc
+MIN_ARC_SAMPLES = 60  # samples
+MIN_ARC_ANGLE_DEG = 60.0  # degrees of arc
 _ROUND = 0.002  # mm, largest deviation of an arc's setpoints from a circle
 _SPIKE = 3.0  # degrees after a reversal that are searched for a spike
 _TELL = 30.0  # largest condition number at which the values can be separated
 
 
 @dataclass(frozen=True, slots=True)
-class BallBar:
+class BallBarResult:
     """Result of a ball-bar analysis of one arc.
 
-    ``angles`` are in degrees, and ``deviation`` (m,) is the distance of each sample outside the programmed
-    arc, in mm. ``backlash`` and ``spike`` are (u, v) in mm. ``squareness`` is the tilt of v toward u in mm
-    per meter, ``scale`` the excess length of u over v in mm per meter, and ``size`` the excess radius in mm.
-    Values are NaN if the arc is too short to determine them.
+    ``angles_deg`` are in degrees, and ``deviation`` (m,) is the distance of each sample outside the
+    programmed arc, in mm. ``backlash_mm`` and ``reversal_spike_mm`` are (u, v) in mm.
+    ``squareness_error_mm_m`` is the tilt of v toward u in mm per meter, ``scale_error_mm_m`` the excess
+    length of u over v in mm per meter, and ``size_error_mm`` the excess radius in mm. Values are NaN if the
+    arc is too short to determine them.
     """
 
-    centre: tuple[float, float]
-    radius: float
-    angles: FloatArray
-    deviation: FloatArray
-    backlash: tuple[float, float]
-    spike: tuple[float, float]
-    squareness: float
-    scale: float
-    size: float
+    center: tuple[float, float]
+    radius_mm: float
+    angles_deg: FloatArray
+    deviations_mm: FloatArray
+    backlash_mm: tuple[float, float]
+    reversal_spike_mm: tuple[float, float]
+    squareness_error_mm_m: float
+    scale_error_mm_m: float
+    size_error_mm: float
 
     @property
-    def roundness(self) -> float:
+    def circularity_mm(self) -> float:
         """Difference between the largest and the smallest deviation, in mm."""
-        return float(np.ptp(self.deviation))
+        return float(np.ptp(self.deviations_mm))
 
     @property
-    def covered(self) -> float:
+    def arc_angle_deg(self) -> float:
         """Angle of the arc in degrees, at most 360."""
-        return float(min(360.0, np.ptp(np.unwrap(np.radians(self.angles))) * 180.0 / math.pi))
+        return float(min(360.0, np.ptp(np.unwrap(np.radians(self.angles_deg))) * 180.0 / math.pi))
 
 
-def circle_of(points: FloatArray) -> tuple[float, float, float]:
+def fit_circle(points: FloatArray) -> tuple[float, float, float]:
     """Return center and radius of the circle nearest to points (n, 2).
 
     The least-squares equation is u² + v² = 2au + 2bv + c.
@@ -67,32 +68,32 @@ def circle_of(points: FloatArray) -> tuple[float, float, float]:
     return float(a + middle[0]), float(b + middle[1]), math.sqrt(max(c + a * a + b * b, 0.0))
 
 
-def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
+def analyze_ball_bar(setpoints: FloatArray, actual: FloatArray) -> BallBarResult:
     """Analyze setpoints (m, 2) and measured positions (m, 2) of one arc. Raises AnalysisError."""
-    if len(demand) < LEAST or len(actual) != len(demand):
+    if len(setpoints) < MIN_ARC_SAMPLES or len(actual) != len(setpoints):
         raise AnalysisError(
             Message(
                 "a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc",
-                minimum=LEAST,
+                minimum=MIN_ARC_SAMPLES,
             ),
             "too-few-samples",
         )
-    if not (np.isfinite(demand).all() and np.isfinite(actual).all()):
+    if not (np.isfinite(setpoints).all() and np.isfinite(actual).all()):
         raise AnalysisError(
             "the driver does not report the axis positions, so no arc can be shown", "no-positions"
         )
-    u0, v0, radius = circle_of(demand)
-    away = demand - (u0, v0)
+    u0, v0, radius = fit_circle(setpoints)
+    away = setpoints - (u0, v0)
     if np.abs(np.hypot(*away.T) - radius).max() > _ROUND or not np.isfinite(radius):
         raise AnalysisError(
             "this time range does not contain an arc; choose a line that programs an arc", "no-arc"
         )
     turned = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
-    if abs(np.ptp(turned)) < math.radians(LEAST_ANGLE):
+    if abs(np.ptp(turned)) < math.radians(MIN_ARC_ANGLE_DEG):
         raise AnalysisError(
             Message(
                 "the arc is shorter than {least_angle} degrees, too short for a ball-bar plot",
-                least_angle=f"{LEAST_ANGLE:g}",
+                least_angle=f"{MIN_ARC_ANGLE_DEG:g}",
             ),
             "arc-too-short",
         )
@@ -100,8 +101,8 @@ def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
     theta = np.arctan2(seen[:, 1], seen[:, 0])
     deviation = np.hypot(*seen.T) - radius
     told, rest = _fitted(theta, turned, deviation)
-    spike = (_spike(demand[:, 0], turned, rest), _spike(demand[:, 1], turned, rest))
-    return BallBar(
+    spike = (_spike(setpoints[:, 0], turned, rest), _spike(setpoints[:, 1], turned, rest))
+    return BallBarResult(
         (u0, v0),
         radius,
         np.degrees(np.unwrap(theta)),
@@ -157,7 +158,7 @@ def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
     return max(peaks) if peaks else math.nan
 
 
-def arcs_in(demand: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], ...]:
+def find_arcs(setpoints: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], ...]:
     """Return the lines whose setpoints (m, 2) form a sufficiently long arc, each with its samples."""
     if not len(lines):
         return ()
@@ -165,25 +166,25 @@ def arcs_in(demand: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], .
     bounds = [0, *edges.tolist(), len(lines)]
     found = []
     for first, last in pairwise(bounds):
-        if last - first < LEAST or not lines[first] > 0:
+        if last - first < MIN_ARC_SAMPLES or not lines[first] > 0:
             continue
-        part = demand[first:last]
+        part = setpoints[first:last]
         moved = np.append(True, (np.abs(np.diff(part, axis=0)) > 1e-9).any(axis=1))
-        if moved.sum() < LEAST or np.linalg.matrix_rank(part - part.mean(axis=0), tol=1e-3) < 2:
+        if moved.sum() < MIN_ARC_SAMPLES or np.linalg.matrix_rank(part - part.mean(axis=0), tol=1e-3) < 2:
             continue
-        u, v, radius = circle_of(part[moved])
+        u, v, radius = fit_circle(part[moved])
         away = part - (u, v)
         turned = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
         on_it = np.abs(np.hypot(*away.T) - radius).max() <= _ROUND
-        if on_it and np.ptp(turned) >= math.radians(LEAST_ANGLE):
+        if on_it and np.ptp(turned) >= math.radians(MIN_ARC_ANGLE_DEG):
             found.append((int(lines[first]), slice(first, last)))
     return tuple(found)
 
 
 IntArray = npt.NDArray[np.int64]
-LEAST_SAMPLES = 10  # samples that an analysis of a path needs
-UNTOLD = "the driver does not report the axis positions, so no path can be compared"
-STOOD = "no axis moved in this time range; record while a program runs"
+MIN_SAMPLES = 10  # samples that an analysis of a path needs
+NO_POSITIONS_MESSAGE = "the driver does not report the axis positions, so no path can be compared"
+NO_MOTION_MESSAGE = "no axis moved in this time range; record while a program runs"
 _SAME = 1e-9  # mm, distance below which points are treated as equal
 
 
@@ -192,44 +193,45 @@ class PathError:
     """Deviation of each measured sample (m,) from the path.
 
     ``distance`` is in mm; with two axes it is positive to the left of the path direction, and with three axes
-    it has no sign. ``foot`` (m, 2 or 3) is the nearest point of the path, ``along`` the path length up to
-    that point in mm, and ``lines`` the source line there.
+    it has no sign. ``nearest_path_points`` (m, 2 or 3) is the nearest point of the path,
+    ``path_positions_mm`` the path length up to that point in mm, and ``lines`` the source line there.
     """
 
-    distance: FloatArray
-    foot: FloatArray
-    along: FloatArray
-    lines: IntArray
-    measured: FloatArray
+    distances_mm: FloatArray
+    nearest_path_points: FloatArray
+    path_positions_mm: FloatArray
+    line_numbers: IntArray
+    measured_points: FloatArray
 
     @property
-    def greatest(self) -> float:
+    def max_distance_mm(self) -> float:
         """Largest distance on either side, in mm."""
-        return float(np.abs(self.distance).max())
+        return float(np.abs(self.distances_mm).max())
 
-    def magnified(self, factor: float) -> FloatArray:
+    def magnify_deviation(self, factor: float) -> FloatArray:
         """Return the measured path (m, 2 or 3) with its deviation from the path multiplied by ``factor``."""
-        return self.foot + factor * (self.measured - self.foot)
+        return self.nearest_path_points + factor * (self.measured_points - self.nearest_path_points)
 
 
 @dataclass(frozen=True, slots=True)
-class WorstPlace:
+class WorstDeviation:
     """Location of the largest deviation of a program line, with the distance in mm."""
 
     line: int
-    distance: float
-    place: tuple[float, ...]
-    sample: int
+    distance_mm: float
+    position: tuple[float, ...]
+    sample_index: int
 
 
-def path_error(
-    programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray, reach: int
+def calculate_path_error(
+    programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray, search_point_count: int
 ) -> PathError:
     """Return the deviations of measured positions (m, k) from a polyline (n, k) of 2 or 3 axes.
 
     ``lines`` (n,) are the source lines of the points of ``programmed``. ``due`` (m,) is the index of the
-    point that each sample should have reached. The nearest point is searched within ``reach`` points of it,
-    so that a path that crosses itself is not assigned to the wrong branch. Raises AnalysisError.
+    point that each sample should have reached. The nearest point is searched within ``search_point_count``
+    points of it, so that a path that crosses itself is not assigned to the wrong branch. Raises
+    AnalysisError.
     """
     _check(programmed, lines, measured, due)
     n = len(programmed)
@@ -237,7 +239,7 @@ def path_error(
     come = np.concatenate([[0.0], np.cumsum(lengths)])
     best = np.full(len(measured), np.inf)
     segment, share = np.zeros(len(measured), dtype=np.int64), np.zeros(len(measured))
-    for step in range(-reach, reach):
+    for step in range(-search_point_count, search_point_count):
         at = np.clip(due + step, 0, n - 2)
         start, way = programmed[at], programmed[at + 1] - programmed[at]
         square = (way**2).sum(axis=1)
@@ -257,11 +259,11 @@ def path_error(
 
 
 def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray) -> None:
-    if len(measured) < LEAST_SAMPLES or len(programmed) < 2:
+    if len(measured) < MIN_SAMPLES or len(programmed) < 2:
         raise AnalysisError(
             Message(
                 "a path error plot needs at least {minimum} samples of a path; record while a program runs",
-                minimum=LEAST_SAMPLES,
+                minimum=MIN_SAMPLES,
             ),
             "too-few-samples",
         )
@@ -270,45 +272,45 @@ def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: I
             "the number of path points and the number of line numbers differ", "lengths-differ"
         )
     if not (np.isfinite(programmed).all() and np.isfinite(measured).all()):
-        raise AnalysisError(UNTOLD, "no-positions")
+        raise AnalysisError(NO_POSITIONS_MESSAGE, "no-positions")
     if not (np.ptp(programmed, axis=0) > _SAME).any():
-        raise AnalysisError(STOOD, "at-rest")
+        raise AnalysisError(NO_MOTION_MESSAGE, "at-rest")
 
 
-def of_samples(
-    demand: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, late: float = 0.1
+def calculate_from_samples(
+    setpoints: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, delay_s: float = 0.1
 ) -> PathError:
-    """Return the deviations in a record, with the setpoints ``demand`` (m, 2 or 3) as the programmed path.
+    """Return the deviations in a record, with the setpoints ``setpoints`` (m, 2 or 3) as the programmed path.
 
-    ``actual`` are the measured positions. The nearest point is searched within ``late`` s of each sample.
+    ``actual`` are the measured positions. The nearest point is searched within ``delay_s`` s of each sample.
     Raises AnalysisError.
     """
-    if len(demand) < LEAST_SAMPLES:
+    if len(setpoints) < MIN_SAMPLES:
         raise AnalysisError(
             Message(
                 "a path error plot needs at least {minimum} samples of a path; record while a program runs",
-                minimum=LEAST_SAMPLES,
+                minimum=MIN_SAMPLES,
             ),
             "too-few-samples",
         )
-    if not (np.isfinite(demand).all() and np.isfinite(actual).all()):
-        raise AnalysisError(UNTOLD, "no-positions")
-    moved = np.append(True, (np.abs(np.diff(demand, axis=0)) > _SAME).any(axis=1))
+    if not (np.isfinite(setpoints).all() and np.isfinite(actual).all()):
+        raise AnalysisError(NO_POSITIONS_MESSAGE, "no-positions")
+    moved = np.append(True, (np.abs(np.diff(setpoints, axis=0)) > _SAME).any(axis=1))
     if moved.sum() < 2:
-        raise AnalysisError(STOOD, "at-rest")
+        raise AnalysisError(NO_MOTION_MESSAGE, "at-rest")
     due = np.cumsum(moved) - 1
     known = np.where(np.isfinite(lines), lines, 0.0).astype(np.int64)
-    path = demand[moved]
-    reach = max(2, round(late * rate))
-    return path_error(path, known[moved], actual, due.astype(np.int64), reach)
+    path = setpoints[moved]
+    reach = max(2, round(delay_s * rate))
+    return calculate_path_error(path, known[moved], actual, due.astype(np.int64), reach)
 
 
-def worst_places(error: PathError, most: int = 10) -> tuple[WorstPlace, ...]:
+def find_worst_deviations(error: PathError, max_count: int = 10) -> tuple[WorstDeviation, ...]:
     """Return the places of the lines with the largest deviations, worst first, without samples of line 0."""
     found = []
-    for line in np.unique(error.lines[error.lines > 0]):
-        of_line = np.flatnonzero(error.lines == line)
-        sample = int(of_line[np.argmax(np.abs(error.distance[of_line]))])
-        place = tuple(float(each) for each in error.foot[sample])
-        found.append(WorstPlace(int(line), float(error.distance[sample]), place, sample))
-    return tuple(sorted(found, key=lambda each: -abs(each.distance))[:most])
+    for line in np.unique(error.line_numbers[error.line_numbers > 0]):
+        of_line = np.flatnonzero(error.line_numbers == line)
+        sample = int(of_line[np.argmax(np.abs(error.distances_mm[of_line]))])
+        place = tuple(float(each) for each in error.nearest_path_points[sample])
+        found.append(WorstDeviation(int(line), float(error.distances_mm[sample]), place, sample))
+    return tuple(sorted(found, key=lambda each: -abs(each.distance_mm))[:max_count])

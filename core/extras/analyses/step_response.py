@@ -1,6 +1,6 @@
 """Response of an axis to a step, ramp or sine, and the effect of another window or speed.
 
-All values are measured from the samples. Only ``at_other_speed`` assumes that the lag of the drive is
+All values are measured from the samples. Only ``scale_error_to_speed`` assumes that the lag of the drive is
 proportional to its speed.
 """
 
@@ -17,28 +17,29 @@ from core.message import Message
 from core.records.record import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
-LEAST = 20  # samples
+MIN_SAMPLES = 20  # samples
 
 
 @dataclass(frozen=True, slots=True)
 class StepResponse:
     """Response to a step, with times in seconds and lengths in mm.
 
-    ``rise`` is the time from 10 to 90 %. ``overshoot`` is the fraction of the step beyond its end, or 0.
-    ``settling`` is the time from the end of the request until the axis remains within ``band``; NaN if it
-    does not settle in the record. ``delay`` is the delay at half of the step. ``rest`` is the final error.
+    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot`` is the fraction of the step beyond its end, or
+    0. ``settling_time_s`` is the time from the end of the request until the axis remains within ``band``; NaN
+    if it does not settle in the record. ``delay_s`` is the delay at half of the step. ``final_error`` is the
+    final error.
     """
 
-    way: float
-    rise: float
+    step_size: float
+    rise_time_s: float
     overshoot: float
-    settling: float
-    delay: float
-    rest: float
-    band: float
+    settling_time_s: float
+    delay_s: float
+    final_error: float
+    settling_band: float
 
 
-def step_response(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
+def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
     """Analyze the samples (n,) from before a step until after it. Raises AnalysisError.
 
     ``band`` is the in-position window in mm.
@@ -76,18 +77,18 @@ def step_response(times: FloatArray, request: FloatArray, response: FloatArray, 
 class SineResponse:
     """Response to a sine: ``gain`` is the ratio of the amplitudes, and ``lag`` the phase lag in degrees."""
 
-    frequency: float
+    frequency_hz: float
     gain: float
-    lag: float
-    error: float  # amplitude of the difference between request and response
+    phase_lag_deg: float
+    max_error_mm: float  # amplitude of the difference between request and response
 
     @property
-    def late(self) -> float:
+    def lag_s(self) -> float:
         """Phase lag as a time in seconds."""
-        return self.lag / 360.0 / self.frequency
+        return self.phase_lag_deg / 360.0 / self.frequency_hz
 
 
-def sine_response(
+def analyze_sine(
     times: FloatArray, request: FloatArray, response: FloatArray, frequency: float
 ) -> SineResponse:
     """Analyze the response to a sine of ``frequency`` Hz over whole periods. Raises AnalysisError.
@@ -122,19 +123,19 @@ def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
 
 @dataclass(frozen=True, slots=True)
 class RampResponse:
-    """Response to a ramp: ``speed`` in mm/s, and ``error`` is the lag in mm at constant speed."""
+    """Response to a ramp: ``speed_mm_s`` in mm/s, and ``error`` is the lag in mm at constant speed."""
 
-    speed: float
-    error: float
+    speed_mm_s: float
+    lag_mm: float
     overshoot: float  # mm beyond the end
 
     @property
-    def lag(self) -> float:
+    def lag_s(self) -> float:
         """Lag as a time in seconds."""
-        return self.error / self.speed
+        return self.lag_mm / self.speed_mm_s
 
 
-def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
+def analyze_ramp(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
     """Analyze the response to a ramp in the second half of its constant speed. Raises AnalysisError.
 
     The lag has settled in the second half.
@@ -143,7 +144,7 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
     speeds = np.gradient(request, times)
     top = float(speeds[np.argmax(np.abs(speeds))])
     even = np.flatnonzero(np.abs(speeds - top) <= 0.01 * abs(top))
-    if abs(top) < 1e-9 or len(even) < LEAST:
+    if abs(top) < 1e-9 or len(even) < MIN_SAMPLES:
         raise AnalysisError(
             "the commanded motion never reaches a constant speed; use a longer move", "no-ramp"
         )
@@ -154,11 +155,11 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
 
 
 def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None:
-    if len(times) < LEAST:
+    if len(times) < MIN_SAMPLES:
         raise AnalysisError(
             Message(
                 "a response measurement needs at least {minimum} samples, but this driver supplies fewer",
-                minimum=LEAST,
+                minimum=MIN_SAMPLES,
             ),
             "too-few-samples",
         )
@@ -182,74 +183,81 @@ def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
 class Bandwidth:
     """Frequencies in Hz at which the response is down by 3 dB and lags by 90 degrees; None if not reached."""
 
-    down: float | None
-    quarter: float | None
+    gain_bandwidth_hz: float | None
+    phase_bandwidth_hz: float | None
 
 
-def bandwidth(sines: Sequence[SineResponse]) -> Bandwidth:
+def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
     """Return the bandwidth from sine responses, interpolated over the logarithm of the frequency."""
 
     def reached(values: list[float]) -> float | None:
         for i in range(1, len(values)):
             if values[i - 1] < 0.0 <= values[i]:
                 part = -values[i - 1] / (values[i] - values[i - 1])
-                return float(sines[i - 1].frequency * (sines[i].frequency / sines[i - 1].frequency) ** part)
+                return float(
+                    responses[i - 1].frequency_hz
+                    * (responses[i].frequency_hz / responses[i - 1].frequency_hz) ** part
+                )
         return None
 
     return Bandwidth(
-        reached([-20.0 * math.log10(each.gain) + 20.0 * math.log10(math.sqrt(0.5)) for each in sines]),
-        reached([each.lag - 90.0 for each in sines]),
+        reached([-20.0 * math.log10(each.gain) + 20.0 * math.log10(math.sqrt(0.5)) for each in responses]),
+        reached([each.phase_lag_deg - 90.0 for each in responses]),
     )
 
 
 # --- Effect of another window or another speed ----------------------------------------------------------
 
 
-def would_trip(times: FloatArray, error: FloatArray, window: float, lasts: float) -> float | None:
-    """Return the time at which an error above ``window`` for ``lasts`` s would trip; None if it would not."""
-    off = np.abs(error) > window
+def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, duration_s: float) -> float | None:
+    """Return the time at which an error above ``window`` for ``duration_s`` s would trip; None if it would
+    not.
+    """
+    off = np.abs(error) > limit_mm
     edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
     for first, last in zip(edges[0::2], edges[1::2], strict=True):
-        if times[last - 1] - times[first] > lasts:
-            return float(times[first]) + lasts
+        if times[last - 1] - times[first] > duration_s:
+            return float(times[first]) + duration_s
     return None
 
 
-def narrowest_window(times: FloatArray, error: FloatArray, lasts: float) -> float:
-    """Return the narrowest window in mm that this error would not trip within ``lasts`` s.
+def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float) -> float:
+    """Return the narrowest window in mm that this error would not trip within ``duration_s`` s.
 
     The window is found by bisection to a thousandth of the largest error.
     """
     low, high = 0.0, float(np.abs(error).max(initial=0.0))
     for _ in range(10):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if would_trip(times, error, middle, lasts) is not None else (low, middle)
+        low, high = (
+            (middle, high) if find_trip_time(times, error, middle, duration_s) is not None else (low, middle)
+        )
     return high
 
 
-def speed_of_window(lag: float, still: float, window: float, vmax: float) -> float | None:
+def find_speed_at_limit(lag_s: float, still: float, window: float, vmax: float) -> float | None:
     """Return the speed at which an axis with a lag of ``lag`` s reaches a window that grows with speed.
 
     The window is ``still`` mm at rest and ``window`` mm at ``vmax``: lag · v = still + (window - still) · v /
     vmax. The result is None if the axis does not reach the window at any speed.
     """
-    steeper = lag - (window - still) / vmax
+    steeper = lag_s - (window - still) / vmax
     speed = still / steeper if steeper > 0.0 else math.inf
     return speed if speed <= vmax else None
 
 
-def lag_of(velocity: FloatArray, error: FloatArray) -> float:
+def fit_lag(velocity: FloatArray, error: FloatArray) -> float:
     """Return the lag in seconds from the best line error = lag · velocity; NaN if the axis does not move."""
     known = np.isfinite(velocity) & np.isfinite(error)
     square = float((velocity[known] ** 2).sum())
     return float((velocity[known] * error[known]).sum()) / square if square > 0.0 else math.nan
 
 
-def at_other_speed(velocity: FloatArray, error: FloatArray, factor: float) -> FloatArray:
-    """Return the following error (n,) in mm that is expected at ``factor`` times the speed.
+def scale_error_to_speed(velocity: FloatArray, error: FloatArray, speed_factor: float) -> FloatArray:
+    """Return the following error (n,) in mm that is expected at ``speed_factor`` times the speed.
 
     The part on the best line error = k · velocity grows with speed. The rest, such as friction, weight and
     cutting force, remains unchanged.
     """
-    lag = np.nan_to_num(lag_of(velocity, error))
-    return np.asarray(error + (factor - 1.0) * lag * np.where(np.isfinite(velocity), velocity, 0.0))
+    lag = np.nan_to_num(fit_lag(velocity, error))
+    return np.asarray(error + (speed_factor - 1.0) * lag * np.where(np.isfinite(velocity), velocity, 0.0))

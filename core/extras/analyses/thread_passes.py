@@ -15,7 +15,7 @@ import numpy.typing as npt
 from core.records.record import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
-LEAST_TURNS = 2.0
+MIN_REVOLUTIONS = 2.0
 _EVEN = 0.04  # largest relative difference in travel per revolution within a pass
 _ALIKE = 0.02  # largest relative difference between the leads of the passes of one thread
 _ON_LINE = 0.1  # largest distance between two pieces of a pass, as a fraction of the lead
@@ -28,49 +28,49 @@ _POINTS = 24  # points per revolution at which the travel is compared
 class ThreadPass:
     """One pass of a thread.
 
-    ``first`` and ``last`` are sample numbers. ``turns`` (k,) are revolutions from the start of the thread,
-    and ``off`` (k,) the deviations in mm. ``entry`` is the spindle angle at the start of the thread in
-    degrees, relative to the first pass. ``lead`` is in mm per revolution. Speeds are in rpm. ``depth`` is the
-    position of the other axis in mm.
+    ``first_sample`` and ``last_sample`` are sample numbers. ``turns`` (k,) are revolutions from the start of
+    the thread, and ``deviations_mm`` (k,) the deviations in mm. ``entry_angle_deg`` is the spindle angle at
+    the start of the thread in degrees, relative to the first pass. ``lead`` is in mm per revolution. Speeds
+    are in rpm. ``depth`` is the position of the other axis in mm.
     """
 
-    first: int
-    last: int
-    turns: FloatArray
-    off: FloatArray
-    entry: float
-    lead: float
-    depth: float
-    speed_before: float
-    speed_least: float
-    ripple: float
+    first_sample: int
+    last_sample: int
+    spindle_revolutions: FloatArray
+    deviations_mm: FloatArray
+    entry_angle_deg: float
+    lead_mm: float
+    depth_mm: float
+    speed_before_rpm: float
+    min_speed_rpm: float
+    speed_ripple_rpm: float
 
     @property
-    def drop(self) -> float:
+    def speed_drop_rpm(self) -> float:
         """Drop of the spindle speed in the cut, from the highest speed just before it, in rpm."""
-        return self.speed_before - self.speed_least
+        return self.speed_before_rpm - self.min_speed_rpm
 
 
 @dataclass(frozen=True, slots=True)
-class Thread:
+class ThreadAnalysis:
     """The passes of one thread, and the signed reference lead in mm per revolution."""
 
-    lead: float
+    reference_lead_mm: float
     passes: tuple[ThreadPass, ...]
 
     @property
-    def entry_spread(self) -> float:
+    def entry_spread_deg(self) -> float:
         """Difference between the largest and the smallest entry angle, in degrees."""
-        entries = [each.entry for each in self.passes]
+        entries = [each.entry_angle_deg for each in self.passes]
         return max(entries) - min(entries)
 
     @property
-    def lead_error(self) -> float:
+    def max_lead_error_mm(self) -> float:
         """Largest deviation of a lead from the reference lead, in mm per revolution."""
-        return max((each.lead - self.lead for each in self.passes), key=abs)
+        return max((each.lead_mm - self.reference_lead_mm for each in self.passes), key=abs)
 
 
-def fastest(lead: float, vmax: float) -> float:
+def calculate_max_rpm(lead: float, vmax: float) -> float:
     """Return the highest spindle speed in rpm at which an axis can follow the lead.
 
     ``lead`` is in mm per revolution, and ``vmax`` is the limit of the axis in mm/s.
@@ -78,29 +78,33 @@ def fastest(lead: float, vmax: float) -> float:
     return 60.0 * vmax / abs(lead) if lead else math.inf
 
 
-def find_thread(
-    turns: FloatArray, along: FloatArray, depth: FloatArray, speed: FloatArray, lead: float | None = None
-) -> Thread:
+def analyze_thread(
+    spindle_revolutions: FloatArray,
+    axis_positions: FloatArray,
+    depth: FloatArray,
+    speed: FloatArray,
+    lead: float | None = None,
+) -> ThreadAnalysis:
     """Find the passes of a thread in samples (n,). Raises AnalysisError.
 
     ``turns`` are spindle revolutions, ``along`` and ``depth`` the positions of the axis along the thread and
     of the other axis in mm, and ``speed`` is in rpm. ``lead`` is in mm per revolution; None takes it from the
     similar passes.
     """
-    if len(turns) < 100:
+    if len(spindle_revolutions) < 100:
         raise AnalysisError(
             "an analysis of thread passes needs at least 100 samples; record while a thread is cut",
             "too-few-samples",
         )
-    if not np.isfinite(turns).all():
+    if not np.isfinite(spindle_revolutions).all():
         raise AnalysisError(
             "no spindle encoder count is available, so the spindle angle is not in the record", "no-encoder"
         )
-    if abs(turns[-1] - turns[0]) < LEAST_TURNS:
+    if abs(spindle_revolutions[-1] - spindle_revolutions[0]) < MIN_REVOLUTIONS:
         raise AnalysisError(
             "the spindle does not turn in this time range; record while a thread is cut", "spindle-stopped"
         )
-    runs = _runs(turns, along)
+    runs = _runs(spindle_revolutions, axis_positions)
     if lead is not None:
         runs = [each for each in runs if abs(each[2] - lead) <= _EVEN * abs(lead)]
     else:
@@ -112,16 +116,21 @@ def find_thread(
             "no-pass",
         )
     if lead is None:
-        slopes = [np.polyfit(turns[a : b + 1] - turns[a], along[a : b + 1], 1)[0] for a, b, *_ in runs]
+        slopes = [
+            np.polyfit(spindle_revolutions[a : b + 1] - spindle_revolutions[a], axis_positions[a : b + 1], 1)[
+                0
+            ]
+            for a, b, *_ in runs
+        ]
         lead = float(np.median(slopes))
-    return Thread(lead, _passes(runs, lead, turns, along, depth, speed))
+    return ThreadAnalysis(lead, _passes(runs, lead, spindle_revolutions, axis_positions, depth, speed))
 
 
 # first sample, last sample, travel per revolution, sample at which the axis started
-Run = tuple[int, int, float, int]
+SampleRange = tuple[int, int, float, int]
 
 
-def _runs(turns: FloatArray, along: FloatArray) -> list[Run]:
+def _runs(turns: FloatArray, along: FloatArray) -> list[SampleRange]:
     """Return the periods with a constant travel per revolution."""
     direction = 1.0 if turns[-1] >= turns[0] else -1.0
     t = np.maximum.accumulate(direction * turns)
@@ -134,21 +143,23 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[Run]:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], even, [False]]).astype(int)))
     found = []
     for begin, end in zip(edges[0::2], edges[1::2], strict=True):
-        if end - begin < LEAST_TURNS * _POINTS:
+        if end - begin < MIN_REVOLUTIONS * _POINTS:
             continue
         middle = float(np.median(slope[begin:end]))
         good = np.flatnonzero(np.abs(slope[begin:end] - middle) <= _EVEN * abs(middle))
         a, b = begin + good[0], begin + good[-1]
-        if grid[b] - grid[a] >= LEAST_TURNS:
+        if grid[b] - grid[a] >= MIN_REVOLUTIONS:
             edge = min(_EDGE, 0.1 * (grid[b] - grid[a]))
             first, last = np.searchsorted(t, (grid[a] + edge, grid[b] - edge))
             found.append((int(first), int(last), middle, int(np.searchsorted(t, grid[a]))))
     return _joined(found, direction * turns, along, direction)
 
 
-def _joined(runs: list[Run], turns: FloatArray, along: FloatArray, direction: float) -> list[Run]:
+def _joined(
+    runs: list[SampleRange], turns: FloatArray, along: FloatArray, direction: float
+) -> list[SampleRange]:
     """Join pieces of one pass: a piece that starts on the line on which the previous piece ended."""
-    found: list[Run] = []
+    found: list[SampleRange] = []
     for run in runs:
         if found:
             first, last, slope, out = found[-1]
@@ -161,7 +172,7 @@ def _joined(runs: list[Run], turns: FloatArray, along: FloatArray, direction: fl
     return found
 
 
-def _alike(runs: list[Run]) -> list[Run]:
+def _alike(runs: list[SampleRange]) -> list[SampleRange]:
     """Return the passes with the coarsest lead that occurs more than once, or else with the coarsest lead."""
     if not runs:
         return []
@@ -171,7 +182,7 @@ def _alike(runs: list[Run]) -> list[Run]:
 
 
 def _passes(
-    runs: list[Run],
+    runs: list[SampleRange],
     lead: float,
     turns: FloatArray,
     along: FloatArray,

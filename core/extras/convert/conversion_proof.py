@@ -7,14 +7,13 @@ from dataclasses import dataclass, replace
 
 from core.extras.convert.path_steps import MOVES, Kind, Spindle, Step, is_same_run
 from core.extras.convert.reasons import refuse
-from core.interpreter.dialects import interpretation
+from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
-from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.elementary_blocks import Kind as BlockKind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
-from core.interpreter.shared.units import FEET_PER_MINUTE, METRES_PER_MINUTE
+from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 
 EQUAL = 1e-6 * 25.4  # mm
 _HALF_STEP = 0.000025 * 25.4  # mm; half of the resolution of OmniTurn in inches, of the radius and of Z
@@ -56,10 +55,10 @@ def prove(
     """
     tools = dict.fromkeys(range(1, 33), _OFFSET)
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
-    done = interpretation(
-        Source("converted", text, Dialect.OMNITURN), Setup(tools=tools, secondary=nose, limits=limits)
+    done = interpret_program(
+        ProgramSource("converted", text, Dialect.OMNITURN), Setup(tools=tools, secondary=nose, limits=limits)
     )
-    blocks = list(done.blocks())
+    blocks = list(done.generate_blocks())
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
         return Proof(tuple(_of_target(each, text, sources) for each in errors))
@@ -206,7 +205,7 @@ class _Comparison:
         if isinstance(action, actions.ProgramStop):
             action = actions.ProgramStop(action.optional)
         # The machine file defines the outputs of other M codes, and the interpreter applies it.
-        if action != wanted and not (isinstance(action, actions.Output) and step.kind is Kind.M):
+        if action != wanted and not (isinstance(action, actions.OutputSwitch) and step.kind is Kind.M):
             self._differs(step.line, "proof-differs", action, wanted, "the step")
 
     def _spindle(self, step: Step, made: actions.SpindleRun, wanted: actions.SpindleRun) -> None:
@@ -300,7 +299,7 @@ def _spindle_of(step: Step, *, metric: bool) -> actions.Action:
     if not spindle.direction:
         return actions.SpindleStop()
     if spindle.css:
-        unit = METRES_PER_MINUTE if metric else FEET_PER_MINUTE
+        unit = MM_S_PER_M_MIN if metric else MM_S_PER_FT_MIN
         return actions.SpindleRun(float(spindle.direction), spindle.speed * unit)
     return actions.SpindleRun(spindle.direction * spindle.speed)
 
@@ -308,8 +307,8 @@ def _spindle_of(step: Step, *, metric: bool) -> actions.Action:
 _M_ACTIONS: Mapping[int, actions.Action] = {
     0: actions.ProgramStop(optional=False),
     1: actions.ProgramStop(optional=True),
-    8: actions.Coolant(on=True),
-    9: actions.Coolant(on=False),
-    12: actions.Collet(closed=True),
-    13: actions.Collet(closed=False),
+    8: actions.CoolantSwitch(on=True),
+    9: actions.CoolantSwitch(on=False),
+    12: actions.ColletSwitch(closed=True),
+    13: actions.ColletSwitch(closed=False),
 }

@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from core.message import CodedError, Message
 
-MOST_BYTES = 16 * 1024 * 1024
-MOST_ELEMENTS = 50_000
+MAX_DRAWING_BYTES = 16 * 1024 * 1024
+MAX_ELEMENTS = 50_000
 _NEAREST = 0.002  # mm, largest distance between a curve and the arcs that replace it
 # the same in drawing units if the unit is not specified; 0.005 mm if the unit is the inch
 _OF_UNKNOWN = 0.0002
@@ -29,7 +29,7 @@ class DrawingError(CodedError, ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class DrawnElement:
     """An element of a drawing with its layer; points are (y, x), with x along Z.
 
     ``centre`` means that the element is a center line.
@@ -37,50 +37,50 @@ class Drawn:
 
     element: Element
     layer: str = ""
-    centre: bool = False
+    is_center_line: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
     """A drawing as lines and arcs.
 
-    ``unit`` is the size of one drawing unit in mm, or 0 if the file does not specify it. ``left_out`` counts
-    the omitted objects by kind, such as texts and dimensions.
+    ``unit`` is the size of one drawing unit in mm, or 0 if the file does not specify it. ``omitted_counts``
+    counts the omitted objects by kind, such as texts and dimensions.
     """
 
     name: str
-    drawn: tuple[Drawn, ...]
-    unit: float = 0.0
-    left_out: Mapping[str, int] = field(default_factory=dict)
+    elements: tuple[DrawnElement, ...]
+    unit_mm: float = 0.0
+    omitted_counts: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def layers(self) -> tuple[str, ...]:
         """Layers with elements, those with the most elements first."""
         count: dict[str, int] = {}
-        for each in self.drawn:
+        for each in self.elements:
             count[each.layer] = count.get(each.layer, 0) + 1
         return tuple(sorted(count, key=lambda layer: (-count[layer], layer)))
 
-    def on(self, layer: str) -> tuple[Drawn, ...]:
+    def select_layer(self, layer: str) -> tuple[DrawnElement, ...]:
         """Return the elements on a layer; an empty name selects all layers."""
-        return tuple(each for each in self.drawn if not layer or each.layer == layer)
+        return tuple(each for each in self.elements if not layer or each.layer == layer)
 
 
-def nearest(unit: float) -> float:
+def calculate_arc_tolerance(unit: float) -> float:
     """Return the largest distance between a curve and its arcs, in drawing units."""
     return _NEAREST / unit if unit else _OF_UNKNOWN
 
 
-def line(a: Point, b: Point) -> Iterator[Element]:
+def make_line(start: Point, end: Point) -> Iterator[Element]:
     """Yield the line from (x, y) to (x, y) of the drawing, unless its length is zero.
 
-    A line with a coordinate that is not a number is also yielded; ``within_limits`` rejects it.
+    A line with a coordinate that is not a number is also yielded; ``check_elements`` rejects it.
     """
-    if not math.dist(a, b) <= _NONE:
-        yield Line((a[1], a[0]), (b[1], b[0]))
+    if not math.dist(start, end) <= _NONE:
+        yield Line((start[1], start[0]), (end[1], end[0]))
 
 
-def arc(centre: Point, radius: float, start: float, sweep: float) -> Iterator[Element]:
+def make_arc(center: Point, radius: float, start: float, sweep: float) -> Iterator[Element]:
     """Yield an arc around (x, y) in pieces of less than half a revolution.
 
     Angles are in radians, counterclockwise from x.
@@ -88,37 +88,40 @@ def arc(centre: Point, radius: float, start: float, sweep: float) -> Iterator[El
     if radius <= _NONE or abs(sweep) < 1e-9:
         return
     count = math.ceil(abs(sweep) / (0.95 * math.pi))
-    x, y = centre
+    x, y = center
     ends = [start + sweep * k / count for k in range(count + 1)]
     points = [(y + radius * math.sin(a), x + radius * math.cos(a)) for a in ends]
     for a, b in itertools.pairwise(points):
         yield Arc(a, b, (y, x), sweep > 0.0)
 
 
-def bulged(a: Point, b: Point, bulge: float) -> Iterator[Element]:
+def make_bulged_segment(start: Point, end: Point, bulge: float) -> Iterator[Element]:
     """Yield a line or arc of a polyline; ``bulge`` is the tangent of a quarter of the arc's angle."""
     if abs(bulge) < 1e-9:
-        yield from line(a, b)
+        yield from make_line(start, end)
         return
-    chord = math.dist(a, b)
+    chord = math.dist(start, end)
     if chord <= _NONE:
         return
     sweep = 4.0 * math.atan(bulge)
     radius = chord / 2.0 / abs(math.sin(sweep / 2.0))
     off = (1.0 - bulge * bulge) / (4.0 * bulge)
-    centre = (a[0] + b[0]) / 2.0 - (b[1] - a[1]) * off, (a[1] + b[1]) / 2.0 + (b[0] - a[0]) * off
-    yield from arc(centre, radius, math.atan2(a[1] - centre[1], a[0] - centre[0]), sweep)
+    centre = (
+        (start[0] + end[0]) / 2.0 - (end[1] - start[1]) * off,
+        (start[1] + end[1]) / 2.0 + (end[0] - start[0]) * off,
+    )
+    yield from make_arc(centre, radius, math.atan2(start[1] - centre[1], start[0] - centre[0]), sweep)
 
 
-def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
+def check_elements(elements: Iterable[DrawnElement], name: str) -> Iterator[DrawnElement]:
     """Yield the elements. Raises DrawingError if there are too many, or if a coordinate is invalid."""
-    for count, each in enumerate(found):
-        if count >= MOST_ELEMENTS:
+    for count, each in enumerate(elements):
+        if count >= MAX_ELEMENTS:
             raise DrawingError(
                 Message(
                     "{name} has more than {most_elements} lines: save only the layer with the contour.",
                     name=name,
-                    most_elements=MOST_ELEMENTS,
+                    most_elements=MAX_ELEMENTS,
                 ),
                 "too-many-lines",
             )
@@ -148,16 +151,21 @@ _LINE, _CLOCKWISE, _COUNTER = range(3)
 _CENTER_LINE = 4  # added to the kind
 
 
-def drawing_data(drawing: Drawing) -> bytes:
+def encode_drawing(drawing: Drawing) -> bytes:
     """Return a drawing encoded as bytes."""
-    layers = list(dict.fromkeys(each.layer for each in drawing.drawn))
+    layers = list(dict.fromkeys(each.layer for each in drawing.elements))
     number = {layer: at for at, layer in enumerate(layers)}
-    rows = b"".join(_row(each, number[each.layer]) for each in drawing.drawn)
-    head = {"name": drawing.name, "unit": drawing.unit, "left_out": dict(drawing.left_out), "layers": layers}
+    rows = b"".join(_row(each, number[each.layer]) for each in drawing.elements)
+    head = {
+        "name": drawing.name,
+        "unit": drawing.unit_mm,
+        "left_out": dict(drawing.omitted_counts),
+        "layers": layers,
+    }
     return _with_head(head) + rows
 
 
-def error_data(error: DrawingError) -> bytes:
+def encode_error(error: DrawingError) -> bytes:
     """Return an error encoded as bytes, in place of a drawing."""
     return _with_head({"error": str(error), "code": error.code})
 
@@ -167,15 +175,15 @@ def _with_head(head: dict[str, object]) -> bytes:
     return _HEAD.pack(len(text)) + text
 
 
-def _row(each: Drawn, layer: int) -> bytes:
-    element, center_line = each.element, _CENTER_LINE if each.centre else 0
+def _row(each: DrawnElement, layer: int) -> bytes:
+    element, center_line = each.element, _CENTER_LINE if each.is_center_line else 0
     if isinstance(element, Line):
         return _ROW.pack(layer, _LINE + center_line, *element.start, *element.end, 0.0, 0.0)
     kind = _CLOCKWISE if element.clockwise else _COUNTER
-    return _ROW.pack(layer, kind + center_line, *element.start, *element.end, *element.centre)
+    return _ROW.pack(layer, kind + center_line, *element.start, *element.end, *element.center)
 
 
-def drawing_of(data: bytes) -> Drawing:
+def decode_drawing(data: bytes) -> Drawing:
     """Return the drawing that is encoded in these bytes.
 
     Raises DrawingError if they contain an error, and ValueError, LookupError, TypeError or struct.error if
@@ -189,21 +197,21 @@ def drawing_of(data: bytes) -> Drawing:
     return Drawing(head["name"], tuple(_drawn(rows, head["layers"])), head["unit"], head["left_out"])
 
 
-def _drawn(rows: memoryview, layers: list[str]) -> Iterator[Drawn]:
+def _drawn(rows: memoryview, layers: list[str]) -> Iterator[DrawnElement]:
     for layer, kind, x0, y0, x1, y1, cx, cy in _ROW.iter_unpack(rows):
         shape = kind & ~_CENTER_LINE
         element: Element = Line((x0, y0), (x1, y1))
         if shape != _LINE:
             element = Arc((x0, y0), (x1, y1), (cx, cy), clockwise=shape == _CLOCKWISE)
-        yield Drawn(element, layers[layer], bool(kind & _CENTER_LINE))
+        yield DrawnElement(element, layers[layer], bool(kind & _CENTER_LINE))
 
 
-MOST_SECONDS = 30.0  # s of processor time for one program from a drawing
+MAX_READING_TIME_S = 30.0  # s of processor time for one program from a drawing
 
 
 @dataclass(frozen=True, slots=True)
 class _Limit:
-    begun: float
+    start_time_s: float
     seconds: float
     watch: Callable[[float], None]
 
@@ -212,16 +220,16 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 
 
 @contextmanager
-def limited_work(watch: Callable[[float], None], seconds: float = MOST_SECONDS) -> Iterator[None]:
+def limit_work(watch: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
     """Limit the processor time of this thread in the block; ``watch`` is called with the seconds spent."""
-    token = _limit.set(_Limit(time.thread_time(), seconds, watch))
+    token = _limit.set(_Limit(time.thread_time(), limit_s, watch))
     try:
         yield
     finally:
         _limit.reset(token)
 
 
-def check_work() -> None:
+def check_work_limit() -> None:
     """Check the work limit inside a loop over elements.
 
     Raises DrawingError at the limit, or the exception that ``watch`` raises.
@@ -229,7 +237,7 @@ def check_work() -> None:
     limit = _limit.get()
     if limit is None:
         return
-    spent = time.thread_time() - limit.begun
+    spent = time.thread_time() - limit.start_time_s
     limit.watch(spent)
     if spent > limit.seconds:
         words = "the drawing has too many parallel lines. Save only the contour of the part."

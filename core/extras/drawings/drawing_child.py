@@ -1,7 +1,7 @@
 """Child process that reads one drawing.
 
 The command is ``python -m core.extras.drawings.drawing_child FILE MEMORY SECONDS``. ``drawing_process``
-starts it. The process writes the drawing to stdout in the format of ``drawing_data``, or the error. Output,
+starts it. The process writes the drawing to stdout in the format of ``encode_drawing``, or the error. Output,
 logs and warnings of the drawing libraries are discarded.
 """
 
@@ -14,7 +14,7 @@ import sys
 import warnings
 from pathlib import Path
 
-from core.extras.drawings.drawing import DrawingError, drawing_data, error_data
+from core.extras.drawings.drawing import DrawingError, encode_drawing, encode_error
 from core.extras.drawings.drawing_file import read_drawing
 
 
@@ -32,15 +32,15 @@ def limit_process(memory: int, seconds: int) -> None:
         resource.setrlimit(kind, (soft, hard))
 
 
-def answer(path: Path) -> bytes:
+def read_and_encode(path: Path) -> bytes:
     """Return the encoded drawing, or the encoded error."""
     try:
-        return drawing_data(read_drawing(path))
+        return encode_drawing(read_drawing(path))
     except DrawingError as error:
-        return error_data(error)
+        return encode_error(error)
 
 
-def main() -> None:
+def run() -> None:
     """Read the drawing that the command-line arguments specify."""
     path, memory, seconds = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     out = os.fdopen(os.dup(1), "wb")
@@ -51,10 +51,10 @@ def main() -> None:
     warnings.simplefilter("ignore")
     gc.disable()  # the process ends before there is much to collect
     limit_process(memory, seconds)
-    out.write(answer(path))
+    out.write(read_and_encode(path))
     out.flush()
     os._exit(0)
 
 
 if __name__ == "__main__":
-    main()
+    run()

@@ -5,27 +5,27 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from core.extras.drawings.drawing import MOST_BYTES, Drawing, DrawingError
-from core.input_file import MB, TooLargeError, failures_as, input_bytes
+from core.extras.drawings.drawing import MAX_DRAWING_BYTES, Drawing, DrawingError
+from core.input_file import BYTES_PER_MB, TooLargeError, convert_exceptions, read_input_bytes
 from core.message import Message
 
-ENDINGS = (".dxf", ".svg")
+DRAWING_SUFFIXES = (".dxf", ".svg")
 
 
-def is_drawing(name: str) -> bool:
+def has_drawing_suffix(name: str) -> bool:
     """Return whether a file name has the suffix of a drawing."""
-    return name.lower().endswith(ENDINGS)
+    return name.lower().endswith(DRAWING_SUFFIXES)
 
 
 def read_drawing(path: Path) -> Drawing:
     """Return the lines and arcs of a drawing. Raises only DrawingError, never with a library's message."""
-    if not is_drawing(path.name):
+    if not has_drawing_suffix(path.name):
         raise DrawingError(
             Message("{path} is not a supported drawing: use a DXF or SVG file.", path=path.name),
             "not-a-drawing",
         )
-    with failures_as(partial(_unreadable, path)):
-        data = input_bytes(path, MOST_BYTES)
+    with convert_exceptions(partial(_unreadable, path)):
+        data = read_input_bytes(path, MAX_DRAWING_BYTES)
         if not data:
             raise DrawingError(Message("{path} is empty: save the drawing again.", path=path.name), "empty")
         if path.suffix.lower() == ".svg":
@@ -42,7 +42,7 @@ def _unreadable(path: Path, error: Exception) -> DrawingError:
         words = Message(
             "{path} is larger than {most_bytes} MB. Save only the contour of the part.",
             path=path.name,
-            most_bytes=MOST_BYTES // MB,
+            most_bytes=MAX_DRAWING_BYTES // BYTES_PER_MB,
         )
         return DrawingError(words, "too-large")
     if isinstance(error, OSError) and error.errno is not None:

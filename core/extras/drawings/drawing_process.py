@@ -10,38 +10,42 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.extras.drawings.drawing import Drawing, DrawingError, drawing_of
-from core.input_file import failures_as
+from core.extras.drawings.drawing import Drawing, DrawingError, decode_drawing
+from core.input_file import convert_exceptions
 from core.message import Message
 from core.own_process import module_environment
 
 _CHILD = "core.extras.drawings.drawing_child"
 _LOOK = 0.1  # s between two checks whether the drawing is still needed
 
-GoOn = Callable[[float], None]
+CancelCheck = Callable[[float], None]
 """Called with the seconds that reading has taken; what it raises ends the process."""
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ReadingLimits:
     """Limits for reading one drawing.
 
-    ``memory`` is in bytes of address space; ``processor`` and ``clock`` are in seconds. Only Linux limits
-    memory and processor time. The largest DXF of 16 MB takes 4 s and 240 MB.
+    ``memory_bytes`` is in bytes of address space; ``processor_time_s`` and ``timeout_s`` are in seconds.
+    Only Linux limits memory and processor time. The largest DXF of 16 MB takes 4 s and 240 MB.
     """
 
-    memory: int = 1024**3
-    processor: int = 60
-    clock: float = 120.0
+    memory_bytes: int = 1024**3
+    processor_time_s: int = 60
+    timeout_s: float = 120.0
 
 
-LIMITS = Limits()
+DEFAULT_LIMITS = ReadingLimits()
 
 
-def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Limits = LIMITS) -> Drawing:
-    """Return the lines and arcs of a drawing. Raises DrawingError, or the exception that ``go_on`` raises."""
+def read_in_process(
+    path: Path, check_canceled: CancelCheck = lambda _seconds: None, limits: ReadingLimits = DEFAULT_LIMITS
+) -> Drawing:
+    """Return the lines and arcs of a drawing. Raises DrawingError, or the exception that ``check_canceled``
+    raises.
+    """
     begun = time.monotonic()
-    words = [str(path.absolute()), str(limits.memory), str(limits.processor)]
+    words = [str(path.absolute()), str(limits.memory_bytes), str(limits.processor_time_s)]
     try:
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", _CHILD, *words],  # -P: the current folder is not trusted
@@ -60,21 +64,21 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
         ) from error
     with process:
         try:
-            while (data := _all_of(process)) is None:
+            while (data := _read_output(process)) is None:
                 seconds = time.monotonic() - begun
-                go_on(seconds)
-                if seconds > limits.clock:
-                    raise _too_long(path, limits.clock)
+                check_canceled(seconds)
+                if seconds > limits.timeout_s:
+                    raise _too_long(path, limits.timeout_s)
         finally:
             process.kill()
             process.wait()
     if process.returncode:
         raise _ended(path, process.returncode, limits)
-    with failures_as(lambda _error: _ended(path, 1, limits)):
-        return drawing_of(data)
+    with convert_exceptions(lambda _error: _ended(path, 1, limits)):
+        return decode_drawing(data)
 
 
-def _all_of(process: subprocess.Popen[bytes]) -> bytes | None:
+def _read_output(process: subprocess.Popen[bytes]) -> bytes | None:
     """Return the output of the process when it has ended; None while it is running."""
     try:
         return process.communicate(timeout=_LOOK)[0]
@@ -82,11 +86,11 @@ def _all_of(process: subprocess.Popen[bytes]) -> bytes | None:
         return None
 
 
-def _ended(path: Path, status: int, limits: Limits) -> DrawingError:
+def _ended(path: Path, status: int, limits: ReadingLimits) -> DrawingError:
     """Return the error for a process that ended without a result."""
     if -status == getattr(signal, "SIGXCPU", 0):
-        return _too_long(path, limits.processor)
-    most = limits.memory // 1024**2
+        return _too_long(path, limits.processor_time_s)
+    most = limits.memory_bytes // 1024**2
     words = Message(
         "{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.",
         path=path.name,

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 from core.extras.drawings.drawing import (
     Drawing,
     DrawingError,
-    Drawn,
-    arc,
-    bulged,
-    line,
-    nearest,
-    within_limits,
+    DrawnElement,
+    calculate_arc_tolerance,
+    check_elements,
+    make_arc,
+    make_bulged_segment,
+    make_line,
 )
-from core.extras.drawings.reader_parts import Content, Place, arcs_of, check_expansion
+from core.extras.drawings.reader_tools import BlockContent, CurvePoint, check_expansion, fit_arcs
 from core.geometry.lines_and_arcs import Element
 from core.message import Message
 
@@ -34,7 +34,7 @@ _SOLID = {"3DFACE", "3DSOLID", "MESH", "BODY", "SURFACE", "REVOLVEDSURFACE", "EX
 _FLAT = 1e-6  # units; largest distance from the drawing plane
 _DEEPEST = 16  # largest nesting depth of blocks
 
-Reader = Callable[[Any, float], Iterator[Element]]
+ElementReader = Callable[[Any, float], Iterator[Element]]
 """Of an entity, and how near arcs shall come to a curve."""
 
 
@@ -44,7 +44,9 @@ def read_dxf(path: Path, data: bytes) -> Drawing:
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()
     check_expansion(path.name, "", partial(_content, document))
-    drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
+    drawn = tuple(
+        check_elements(_drawn(document, calculate_arc_tolerance(unit), left_out, path.name), path.name)
+    )
     if not drawn:
         raise _nothing(path.name, left_out)
     return Drawing(path.name, drawn, unit, dict(left_out))
@@ -82,20 +84,20 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
     return DrawingError(text, "nothing-drawn")
 
 
-def _content(document: Document, block: str) -> Content:
+def _content(document: Document, block: str) -> BlockContent:
     """Return the content of a block, or of model space for ""; own entities count only for blocks."""
     entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
     own = 1 + len(entities) if block else 0
     inserts = [each for each in entities if each.dxftype() == "INSERT"]
-    return Content(own, [(max(1, each.mcount), each.dxf.get("name", "?").lower()) for each in inserts])
+    return BlockContent(own, [(max(1, each.mcount), each.dxf.get("name", "?").lower()) for each in inserts])
 
 
-def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:
+def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -> Iterator[DrawnElement]:
     hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
     centre_layers = {
         layer.dxf.name for layer in document.layers if _centre(layer.dxf.name, layer.dxf.linetype)
     }
-    for entity in _taken_apart(document.modelspace(), name, 0):
+    for entity in _expand_blocks(document.modelspace(), name, 0):
         read = _READERS.get(entity.dxftype())
         if read is None and not entity.dxf.is_supported("layer"):  # an unknown kind of entity
             left_out[entity.dxftype()] += 1
@@ -109,10 +111,10 @@ def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -
         kind = entity.dxf.get("linetype", "BYLAYER")
         centre = _centre("", kind) or (kind.upper() == "BYLAYER" and layer in centre_layers)
         for element in _read(read, entity, near, name):
-            yield Drawn(element, layer, centre)
+            yield DrawnElement(element, layer, centre)
 
 
-def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element]:
+def _read(read: ElementReader, entity: Any, near: float, name: str) -> Iterator[Element]:
     try:
         yield from read(entity, near)
     except (ValueError, ArithmeticError, AttributeError, IndexError) as error:
@@ -132,7 +134,7 @@ def _centre(layer: str, linetype: str) -> bool:
     return any(word in linetype.upper() or word in layer.upper() for word in _CENTRE)
 
 
-def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
+def _expand_blocks(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
     """Yield the entities, with block references replaced by their entities.
 
     Dimensions and texts remain whole. Raises DrawingError if blocks are nested too deeply.
@@ -150,9 +152,9 @@ def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any
         if entity.dxftype() != "INSERT":
             yield entity
         elif entity.mcount > 1:
-            yield from _taken_apart(entity.multi_insert(), name, depth + 1)
+            yield from _expand_blocks(entity.multi_insert(), name, depth + 1)
         else:
-            yield from _taken_apart(entity.virtual_entities(), name, depth + 1)
+            yield from _expand_blocks(entity.virtual_entities(), name, depth + 1)
 
 
 # --- Readers for the kinds of entities; points are (x, y)
@@ -173,7 +175,7 @@ def _line(entity: Any, _near: float) -> Iterator[Element]:
     a, b = entity.dxf.start, entity.dxf.end
     if abs(a.z - b.z) > _FLAT:
         raise _NotFlatError
-    yield from line((a.x, a.y), (b.x, b.y))
+    yield from make_line((a.x, a.y), (b.x, b.y))
 
 
 def _arc(entity: Any, _near: float) -> Iterator[Element]:
@@ -181,18 +183,18 @@ def _arc(entity: Any, _near: float) -> Iterator[Element]:
     begin = math.radians(entity.dxf.start_angle)
     sweep = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0) or 2.0 * math.pi
     start = begin if side > 0 else math.pi - begin
-    yield from arc((side * at.x, at.y), entity.dxf.radius, start, side * sweep)
+    yield from make_arc((side * at.x, at.y), entity.dxf.radius, start, side * sweep)
 
 
 def _circle(entity: Any, _near: float) -> Iterator[Element]:
     at = entity.dxf.center
-    yield from arc((_facing(entity) * at.x, at.y), entity.dxf.radius, 0.0, 2.0 * math.pi)
+    yield from make_arc((_facing(entity) * at.x, at.y), entity.dxf.radius, 0.0, 2.0 * math.pi)
 
 
 def _chain(points: list[tuple[float, float, float]], *, closed: bool, side: float) -> Iterator[Element]:
     pairs = list(zip(points, points[1:] + points[:1], strict=True))
     for (x, y, bulge), (x1, y1, _) in pairs if closed else pairs[:-1]:
-        yield from bulged((side * x, y), (side * x1, y1), side * bulge)
+        yield from make_bulged_segment((side * x, y), (side * x1, y1), side * bulge)
 
 
 def _lwpolyline(entity: Any, _near: float) -> Iterator[Element]:
@@ -218,30 +220,30 @@ def _ellipse(entity: Any, near: float) -> Iterator[Element]:
     minor = -major.y * ratio * side, major.x * ratio * side
     sweep = (entity.dxf.end_param - begin) % (2.0 * math.pi) or 2.0 * math.pi
 
-    def place(u: float) -> Place:
+    def place(u: float) -> CurvePoint:
         c, s = math.cos(begin + sweep * u), math.sin(begin + sweep * u)
         point = at.x + c * major.x + s * minor[0], at.y + c * major.y + s * minor[1]
-        return Place(point, (c * minor[0] - s * major.x, c * minor[1] - s * major.y))
+        return CurvePoint(point, (c * minor[0] - s * major.x, c * minor[1] - s * major.y))
 
-    yield from arcs_of(place, near, max(1, math.ceil(sweep / (math.pi / 2.0) - 1e-9)))
+    yield from fit_arcs(place, near, max(1, math.ceil(sweep / (math.pi / 2.0) - 1e-9)))
 
 
 def _spline(entity: Any, near: float) -> Iterator[Element]:
-    from core.extras.drawings.spline_spans import biarcs, curve_of, spans_of
+    from core.extras.drawings.spline_spans import fit_biarcs, make_span_curve, make_spans
 
     curve = entity.construction_tool()
     if max(p.z for p in curve.control_points) - min(p.z for p in curve.control_points) > _FLAT:
         raise _NotFlatError
-    spans = spans_of(curve.control_points, curve.weights(), curve.knots(), curve.order - 1)
-    for number, fit in enumerate(biarcs(spans, near)):
+    spans = make_spans(curve.control_points, curve.weights(), curve.knots(), curve.order - 1)
+    for number, fit in enumerate(fit_biarcs(spans, near)):
         if fit is None:
-            yield from arcs_of(curve_of(spans, number), near)
+            yield from fit_arcs(make_span_curve(spans, number), near)
         else:
-            yield from bulged(fit.start, fit.joint, fit.bulges[0])
-            yield from bulged(fit.joint, fit.end, fit.bulges[1])
+            yield from make_bulged_segment(fit.start, fit.joint, fit.bulges[0])
+            yield from make_bulged_segment(fit.joint, fit.end, fit.bulges[1])
 
 
-_READERS: dict[str, Reader] = {
+_READERS: dict[str, ElementReader] = {
     "LINE": _line,
     "ARC": _arc,
     "CIRCLE": _circle,

@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from core.extras.drawings.drawing_view import Profile, Side
-from core.extras.drawings.part_against_drawing import Comparison, Deviation
-from core.extras.drawings.profile_program import ProfileProgram, greatest_diameter, nose_of
-from core.extras.shapes.lines.code_lines import plain
-from core.extras.shapes.shape_fields import Value, Values
+from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
+from core.extras.drawings.part_comparison import Deviation, DrawingComparison
+from core.extras.drawings.profile_program import ProfileProgram, find_max_diameter, find_nose_radius
+from core.extras.shapes.lines.code_lines import format_short_number
+from core.extras.shapes.shape_fields import FieldValue, FieldValues
 from core.language.source import Dialect
 from core.message import Message
 from core.part.tool_shape import ToolKind, ToolShape
@@ -18,8 +18,8 @@ from core.part.tool_shape import ToolKind, ToolShape
 _CLOSED = 1e-4  # mm; narrower gaps are not reported
 
 
-def in_words(
-    made: ProfileProgram, comparison: Comparison | None, profile: Profile, *, metric: bool
+def describe_program(
+    program: ProfileProgram, comparison: DrawingComparison | None, profile: ContourProfile, *, metric: bool
 ) -> Iterator[str]:
     """Yield sentences that describe the program and its differences from the drawing.
 
@@ -27,11 +27,11 @@ def in_words(
     """
     mm, unit = (1.0, "mm") if metric else (25.4, "in")
     places = 3 if metric else 4
-    if made.nose is not None:
-        n = made.nose
-        x, z, r = (plain(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
+    if program.nose_offset is not None:
+        n = program.nose_offset
+        x, z, r = (format_short_number(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
         if n.quadrant:
-            edge = f"T{made.tool:.0f} D{n.number}"
+            edge = f"T{program.tool_number:.0f} D{n.number}"
             yield Message(
                 "{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}",
                 edge=edge,
@@ -48,42 +48,44 @@ def in_words(
                 radius=r,
                 unit=unit,
             )
-    elif not made.nose_radius:
+    elif not program.nose_radius:
         yield (
             Message(
                 "the tool data of T{tool} has no nose radius, so the contour is not compensated",
-                tool=f"{made.tool:.0f}",
+                tool=f"{program.tool_number:.0f}",
             )
         )
-    if profile.closed > _CLOSED:
+    if profile.widest_closed_gap_mm > _CLOSED:
         yield Message(
-            "gaps up to {closed} {unit} were closed", closed=plain(profile.closed / mm, places), unit=unit
+            "gaps up to {closed} {unit} were closed",
+            closed=format_short_number(profile.widest_closed_gap_mm / mm, places),
+            unit=unit,
         )
-    for each in made.left:
+    for each in program.uncut_ranges:
         yield Message(
             "Z {front} to {back} is not cut: {why}",
-            front=plain(each.front / mm, places),
-            back=plain(each.back / mm, places),
-            why=each.why,
+            front=format_short_number(each.front_z_mm / mm, places),
+            back=format_short_number(each.back_z_mm / mm, places),
+            why=each.reason,
         )
     if comparison is None:
         yield ("proving did not produce a simulated part, so a comparison with the drawing was not possible")
         return
-    for found in comparison.found:
-        yield _deviation(found, made.nose_radius, mm, unit, places)
-    within = plain(max(comparison.worst, 0.001) / mm, places)
+    for found in comparison.deviations:
+        yield _deviation(found, program.nose_radius, mm, unit, places)
+    within = format_short_number(max(comparison.worst_deviation_mm, 0.001) / mm, places)
     template = (
         ("except at the listed deviations, the simulated part matches the drawing to within {within} {unit}")
-        if comparison.found
+        if comparison.deviations
         else "the simulated part matches the drawing to within {within} {unit}"
     )
     yield Message(template, within=within, unit=unit)
 
 
 def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
-    deep = plain(abs(found.most) / mm, places)
-    if is_corner(found, nose):
-        at = plain(found.back / mm, places)
+    deep = format_short_number(abs(found.max_deviation_mm) / mm, places)
+    if is_nose_fillet(found, nose):
+        at = format_short_number(found.back_z_mm / mm, places)
         return Message(
             "{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius",
             depth=deep,
@@ -92,40 +94,52 @@ def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int)
         )
     template = (
         "{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}"
-        if found.most > 0.0
+        if found.max_deviation_mm > 0.0
         else "{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}"
     )
-    front, back = (plain(z / mm, places) for z in (found.front, found.back))
+    front, back = (format_short_number(z / mm, places) for z in (found.front_z_mm, found.back_z_mm))
     return Message(template, depth=deep, unit=unit, front=front, back=back)
 
 
-def is_corner(found: Deviation, nose: float) -> bool:
+def is_nose_fillet(deviation: Deviation, nose_radius: float) -> bool:
     """Return whether a deviation is only the material that the tool nose leaves in a square corner."""
-    return 0.0 < found.most <= nose and found.front - found.back <= nose
+    return (
+        0.0 < deviation.max_deviation_mm <= nose_radius
+        and deviation.front_z_mm - deviation.back_z_mm <= nose_radius
+    )
 
 
-def in_json(made: ProfileProgram, comparison: Comparison | None, profile: Profile) -> dict[str, Any]:
+def convert_to_json(
+    program: ProfileProgram, comparison: DrawingComparison | None, profile: ContourProfile
+) -> dict[str, Any]:
     """Return the description of the program and its deviations for JSON, in mm."""
     return {
         "side": str(profile.side),
-        "closed_gap_mm": round(profile.closed, 5),
-        **_nose_in_json(made),
-        "left": [{"back_mm": each.back, "front_mm": each.front, "why": each.why} for each in made.left],
-        "worst_mm": None if comparison is None else round(comparison.worst, 5),
+        "closed_gap_mm": round(profile.widest_closed_gap_mm, 5),
+        **_convert_nose_to_json(program),
+        "left": [
+            {"back_mm": each.back_z_mm, "front_mm": each.front_z_mm, "why": each.reason}
+            for each in program.uncut_ranges
+        ],
+        "worst_mm": None if comparison is None else round(comparison.worst_deviation_mm, 5),
         "deviations": []
         if comparison is None
         else [
-            {"back_mm": round(d.back, 4), "front_mm": round(d.front, 4), "most_mm": round(d.most, 4)}
-            for d in comparison.found
+            {
+                "back_mm": round(d.back_z_mm, 4),
+                "front_mm": round(d.front_z_mm, 4),
+                "most_mm": round(d.max_deviation_mm, 4),
+            }
+            for d in comparison.deviations
         ],
     }
 
 
-def _nose_in_json(made: ProfileProgram) -> dict[str, Any]:
+def _convert_nose_to_json(program: ProfileProgram) -> dict[str, Any]:
     """Return the offset that G41 requires, as a secondary offset or a cutting edge."""
-    nose = made.nose
+    nose = program.nose_offset
     if nose is not None and nose.quadrant:
-        edge = {"tool": int(made.tool), "edge": nose.number, "r": nose.r, "quadrant": nose.quadrant}
+        edge = {"tool": int(program.tool_number), "edge": nose.number, "r": nose.r, "quadrant": nose.quadrant}
         return {"secondary_offset": None, "cutting_edge": edge}
     if nose is None:
         return {"secondary_offset": None}
@@ -138,41 +152,41 @@ _SKIN = 0.2  # mm of diameter, smallest amount to be cut from a bar
 _EDGE = 1.0  # first cutting edge of a tool in SINUMERIK
 
 
-def proposed_fields(
-    profile: Profile,
-    given: Values,
+def propose_fields(
+    profile: ContourProfile,
+    given_values: FieldValues,
     shapes: Mapping[int, ToolShape],
     *,
     metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
-) -> dict[str, Value]:
+) -> dict[str, FieldValue]:
     """Return the fields for ``profile_program``: the given values, with proposals for the others."""
-    inside = profile.side is Side.INSIDE
-    fields: dict[str, Value] = {"UNIT": "METRIC" if metric else "INCH", **given}
-    bar = fields.setdefault("BAR", proposed_bar(profile, metric=metric))
+    inside = profile.side is ContourSide.INSIDE
+    fields: dict[str, FieldValue] = {"UNIT": "METRIC" if metric else "INCH", **given_values}
+    bar = fields.setdefault("BAR", propose_bar_diameter(profile, metric=metric))
     if not inside:
         fields["FROM"] = bar
         fields.setdefault("STOCK", _FACE[metric])
     kind = ToolKind.BORING if inside else ToolKind.TURNING
     free = next(n for n in range(1, len(shapes) + 2) if n not in shapes)
-    fields.setdefault("T", float(first_tool(shapes, kind, inside=inside) or free))
-    blade = first_tool(shapes, ToolKind.GROOVING, inside=inside)
+    fields.setdefault("T", float(find_first_tool(shapes, kind, is_inside=inside) or free))
+    blade = find_first_tool(shapes, ToolKind.GROOVING, is_inside=inside)
     if blade:
         fields.setdefault("BLADE", float(blade))
     tool = shapes.get(int(float(fields["T"])))
     number = float(fields["T"]) if dialect is Dialect.OMNITURN else _EDGE
-    fields.setdefault("COMP", number if nose_of(tool) else 0.0)
+    fields.setdefault("COMP", number if find_nose_radius(tool) else 0.0)
     return {word: float(value) if not isinstance(value, str) else value for word, value in fields.items()}
 
 
-def proposed_bar(profile: Profile, *, metric: bool) -> float:
+def propose_bar_diameter(profile: ContourProfile, *, metric: bool) -> float:
     """Return the smallest standard bar diameter that contains the contour, in the program's unit."""
-    across = greatest_diameter(profile) * (1.5 if profile.side is Side.INSIDE else 1.0) + _SKIN
+    across = find_max_diameter(profile) * (1.5 if profile.side is ContourSide.INSIDE else 1.0) + _SKIN
     step = _BAR[metric]
     return round(step * math.ceil(across / (1.0 if metric else 25.4) / step - 1e-6), 4)
 
 
-def first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, inside: bool) -> int:
+def find_first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:
     """Return the first tool of a kind according to the tool data, or 0."""
-    fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is inside)
+    fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is is_inside)
     return next((n for n in fits if not shapes[n].behind), 0)

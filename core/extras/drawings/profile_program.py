@@ -8,24 +8,24 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from core.extras.drawings.drawing import DrawingError
-from core.extras.drawings.drawing_view import Profile, Side
+from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
 from core.extras.drawings.turning_contour import (
-    Groove,
+    OmittedGroove,
     TurningContour,
-    joined,
-    reach_of,
-    reached_by_nose,
-    turning_contour,
+    add_nose_fillets,
+    calculate_tool_reach,
+    join_elements,
+    make_turning_contour,
 )
-from core.extras.shapes.contour import Row
-from core.extras.shapes.pieces import setting_at
-from core.extras.shapes.shape import Filled, Shape, filled
-from core.extras.shapes.shape_fields import Refusal, Setting, Value, Values
-from core.extras.shapes.shape_table import SHAPES_OF
+from core.extras.shapes.contour import ContourPoint
+from core.extras.shapes.editor_shape import FilledShape, Shape, fill_shape
+from core.extras.shapes.shape_fields import FieldError, FieldValue, FieldValues, ProgramSettings
+from core.extras.shapes.shape_pieces import find_settings
+from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
 from core.geometry.lines_and_arcs import Arc, Element, Line, intersections
 from core.language.source import Dialect
 from core.message import Message
-from core.part.insert_codes import decoded
+from core.part.insert_codes import decode_insert_code
 from core.part.tool_shape import ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 
@@ -34,12 +34,12 @@ _ROOM = 0.05  # mm, least finishing allowance at the deepest point of a falling 
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class UncutRange:
     """A range that no tool of the program cuts: from Z to Z in mm, and the reason."""
 
-    back: float
-    front: float
-    why: str
+    back_z_mm: float
+    front_z_mm: float
+    reason: str
 
 
 class NoseOffset(NamedTuple):
@@ -59,18 +59,18 @@ class NoseOffset(NamedTuple):
 class ProfileProgram:
     """The shapes of a program with the settings in force before each, its lines, and the uncut ranges."""
 
-    shapes: tuple[tuple[Filled, Setting], ...]
+    shapes: tuple[tuple[FilledShape, ProgramSettings], ...]
     lines: tuple[str, ...]
-    left: tuple[Left, ...]
+    uncut_ranges: tuple[UncutRange, ...]
     contour: TurningContour
-    refusals: tuple[Refusal, ...] = ()
-    nose: NoseOffset | None = None
+    errors: tuple[FieldError, ...] = ()
+    nose_offset: NoseOffset | None = None
     nose_radius: float = 0.0  # mm, nose radius of the turning tool
-    tool: float = 0.0
+    tool_number: float = 0.0
 
 
-def profile_program(
-    profile: Profile, typed: Values, lines: Sequence[str], setting: Setting
+def make_profile_program(
+    profile: ContourProfile, entered_values: FieldValues, lines: Sequence[str], settings: ProgramSettings
 ) -> ProfileProgram:
     """Make the shapes for a profile, to follow ``lines``; without lines the program begins with a head.
 
@@ -78,150 +78,164 @@ def profile_program(
     ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. ``setting`` specifies the program language.
     Raises DrawingError.
     """
-    writer = _Writer(list(lines), setting)
+    writer = _Writer(list(lines), settings)
     if not lines:
-        words = {key: typed[key] for key in ("UNIT", "MATERIAL", "BAR") if key in typed}
+        words = {key: entered_values[key] for key in ("UNIT", "MATERIAL", "BAR") if key in entered_values}
         writer.add("N", words)
-    tool = setting.tool(float(typed.get("T", 0) or 0))
-    _check_tip(tool, _number(typed, "T"), writer.now)
-    outside = profile.side is Side.OUTSIDE
-    mm = writer.now.mm
-    contour = turning_contour(profile, reach_of(tool, profile.side))
+    tool = settings.tool(float(entered_values.get("T", 0) or 0))
+    _check_tip(tool, _number(entered_values, "T"), writer.current_settings)
+    outside = profile.side is ContourSide.OUTSIDE
+    mm = writer.current_settings.mm
+    contour = make_turning_contour(profile, calculate_tool_reach(tool, profile.side))
     if not outside:
         contour = replace(
-            contour, elements=tuple(_down_to(contour.elements, _number(typed, "HOLE") * mm / 2))
+            contour,
+            elements=tuple(_cut_at_radius(contour.elements, _number(entered_values, "HOLE") * mm / 2)),
         )
-    if _number(typed, "COMP"):
-        reached = reached_by_nose(contour.elements, nose_of(tool), inside=not outside)
+    if _number(entered_values, "COMP"):
+        reached = add_nose_fillets(contour.elements, find_nose_radius(tool), is_inside=not outside)
         contour = replace(contour, elements=reached)
-    past = _number(typed, "PAST") * mm if "PAST" in typed else past_end(tool)
-    beyond = [*_before_fall(contour.elements, outside=outside)]
-    contour = replace(contour, elements=tuple(joined(_past(beyond, past, nose_of(tool)))))
-    if outside and _number(typed, "STOCK"):
-        writer.add("F", _face(profile, typed, writer.now))
-    rows = tuple(rows_of(contour.elements, mm))
-    writer.add("T", _turn(profile, contour, typed, writer.now), rows)
-    left = [Left(*each) for each in contour.left]
+    past = _number(entered_values, "PAST") * mm if "PAST" in entered_values else calculate_end_extension(tool)
+    beyond = [*_add_face_approach(contour.elements, outside=outside)]
+    contour = replace(contour, elements=tuple(join_elements(_past(beyond, past, find_nose_radius(tool)))))
+    if outside and _number(entered_values, "STOCK"):
+        writer.add("F", _face(profile, entered_values, writer.current_settings))
+    rows = tuple(make_contour_rows(contour.elements, mm))
+    writer.add("T", _turn(profile, contour, entered_values, writer.current_settings), rows)
+    left = [UncutRange(*each) for each in contour.unreachable_ranges]
     for groove in contour.grooves:
-        over = _way_in(contour.elements, groove, 1.0 if outside else -1.0)
-        left += writer.groove(_groove(groove, typed, writer.now, over, outside=outside), groove)
+        over = _find_blade_clearance(contour.elements, groove, 1.0 if outside else -1.0)
+        left += writer.groove(
+            _groove(groove, entered_values, writer.current_settings, over, outside=outside), groove
+        )
     shapes, made = tuple(writer.shapes), tuple(writer.lines[len(lines) :])
-    nose = nose_offset(tool, int(_number(typed, "COMP")), setting.dialect)
+    nose = make_nose_offset(tool, int(_number(entered_values, "COMP")), settings.dialect)
     return ProfileProgram(
-        shapes, made, tuple(left), contour, tuple(writer.refusals), nose, nose_of(tool), _number(typed, "T")
+        shapes,
+        made,
+        tuple(left),
+        contour,
+        tuple(writer.refusals),
+        nose,
+        find_nose_radius(tool),
+        _number(entered_values, "T"),
     )
 
 
 class _Writer:
     """Writer of consecutive shapes, each with the settings in force after the previous lines."""
 
-    def __init__(self, lines: list[str], setting: Setting) -> None:
-        self.lines, self.shapes = lines, list[tuple[Filled, Setting]]()
-        self.refusals: list[Refusal] = []
-        self._new = setting
+    def __init__(self, lines: list[str], settings: ProgramSettings) -> None:
+        self.lines, self.shapes = lines, list[tuple[FilledShape, ProgramSettings]]()
+        self.refusals: list[FieldError] = []
+        self._new = settings
 
     @property
-    def now(self) -> Setting:
+    def current_settings(self) -> ProgramSettings:
         """Settings in force after the lines written so far."""
-        return setting_at(self.lines, len(self.lines), self._new.shop, self._new)
+        return find_settings(self.lines, len(self.lines), self._new.shop, self._new)
 
     def _shape(self, key: str) -> Shape:
-        return SHAPES_OF[self._new.dialect][key]
+        return SHAPES_BY_DIALECT[self._new.dialect][key]
 
-    def add(self, key: str, typed: Values, rows: tuple[Row, ...] = ()) -> None:
+    def add(self, key: str, typed: FieldValues, rows: tuple[ContourPoint, ...] = ()) -> None:
         """Add a shape by the key of its form. A shape with errors is not written."""
-        now = self.now
-        one = filled(self._shape(key), typed, now, rows)
-        refused = one.refusals(now)
+        now = self.current_settings
+        one = fill_shape(self._shape(key), typed, now, rows)
+        refused = one.find_errors(now)
         self.refusals += refused
         if not refused:
             self._take(one, now)
 
-    def _take(self, one: Filled, now: Setting) -> None:
+    def _take(self, one: FilledShape, now: ProgramSettings) -> None:
         self.shapes.append((one, now))
-        self.lines += one.lines(now)
+        self.lines += one.make_lines(now)
 
-    def groove(self, typed: Values | str, groove: Groove) -> Iterator[Left]:
+    def groove(self, typed: FieldValues | str, groove: OmittedGroove) -> Iterator[UncutRange]:
         """Add a groove, or yield the range with the reason why it cannot be cut."""
-        span = groove.back[1], groove.front[1]
+        span = groove.back_edge[1], groove.front_edge[1]
         if isinstance(typed, str):
-            yield Left(*span, typed)
+            yield UncutRange(*span, typed)
             return
-        now = self.now
-        one = filled(self._shape("G"), typed, now)
-        refused = one.refusals(now)
+        now = self.current_settings
+        one = fill_shape(self._shape("G"), typed, now)
+        refused = one.find_errors(now)
         if refused:
-            yield Left(*span, refused[0].text)
+            yield UncutRange(*span, refused[0].text)
         else:
             self._take(one, now)
 
 
-def _number(typed: Values, word: str) -> float:
+def _number(typed: FieldValues, word: str) -> float:
     value = typed.get(word, 0.0)
     return 0.0 if isinstance(value, str) else float(value)
 
 
-def _given(typed: Values, *words: str) -> dict[str, Value]:
+def _given(typed: FieldValues, *words: str) -> dict[str, FieldValue]:
     return {word: typed[word] for word in words if word in typed}
 
 
-def _face(profile: Profile, typed: Values, setting: Setting) -> dict[str, Value]:
+def _face(profile: ContourProfile, typed: FieldValues, setting: ProgramSettings) -> dict[str, FieldValue]:
     return {
         **_given(typed, "T", "FROM", "STOCK", "FEED", "RPM", "SURF"),
-        "AT": round(profile.front / setting.mm, 5),
+        "AT": round(profile.front_z_mm / setting.mm, 5),
     }
 
 
-def _turn(profile: Profile, contour: TurningContour, typed: Values, setting: Setting) -> dict[str, Value]:
+def _turn(
+    profile: ContourProfile, contour: TurningContour, typed: FieldValues, setting: ProgramSettings
+) -> dict[str, FieldValue]:
     words = _given(typed, "T", "FROM", "HOLE", "ROUGH", "LEAVE", "FEED", "RFEED", "RPM", "SURF", "COMP")
     if "LEAVE" not in words:
-        words |= _left_for_finish(contour, typed, setting)
+        words |= _calculate_allowance(contour, typed, setting)
     return {**words, "SIDE": str(profile.side)}
 
 
-def _left_for_finish(contour: TurningContour, typed: Values, setting: Setting) -> dict[str, Value]:
+def _calculate_allowance(
+    contour: TurningContour, typed: FieldValues, settings: ProgramSettings
+) -> dict[str, FieldValue]:
     """Return the finishing allowance that the nose radius requires, if it is more than the usual one.
 
     G75 has no nose compensation. In a fall of angle a, the nose R cuts R (1 + sin a - cos a) too deep.
     """
-    if setting.dialect is Dialect.SINUMERIK:
+    if settings.dialect is Dialect.SINUMERIK:
         return {}  # CYCLE95 compensates the nose radius
-    tool, a = setting.tool(_number(typed, "T")), contour.steepest
-    deep = nose_of(tool) * (1.0 + math.sin(a) - math.cos(a)) if a > 0.0 else 0.0
-    usual = 0.25 if setting.metric else 0.01
-    need = (deep + _ROOM) / setting.mm
+    tool, a = settings.tool(_number(typed, "T")), contour.steepest_angle
+    deep = find_nose_radius(tool) * (1.0 + math.sin(a) - math.cos(a)) if a > 0.0 else 0.0
+    usual = 0.25 if settings.metric else 0.01
+    need = (deep + _ROOM) / settings.mm
     if need <= usual:
         return {}
-    step = 100.0 if setting.metric else 1000.0
+    step = 100.0 if settings.metric else 1000.0
     return {"LEAVE": math.ceil(need * step) / step}
 
 
-def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
+def _check_tip(tool: ToolShape | None, number: float, settings: ProgramSettings) -> None:
     """Raise DrawingError if the tool has a nose radius but no tip quadrant.
 
     The nose would be assumed to be centered on the control point, and the part would be too small by its
     radius.
     """
-    if tool is not None and not tool.tip and (nose := nose_of(tool)):
+    if tool is not None and not tool.tip and (nose := find_nose_radius(tool)):
         raise DrawingError(
             Message(
                 "T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: "
                 "enter the tip quadrant on the SHAPE page of the tool (F8, F8).",
                 number=f"{number:.0f}",
-                nose=f"{nose / setting.mm:.4g}",
+                nose=f"{nose / settings.mm:.4g}",
             ),
             "no-tip-quadrant",
         )
 
 
-def nose_of(tool: ToolShape | None) -> float:
+def find_nose_radius(tool: ToolShape | None) -> float:
     """Return the nose radius in mm from the tool data, stated directly or by the insert code."""
     if tool is None or tool.nose_radius or not tool.insert:
         return tool.nose_radius if tool is not None else 0.0
-    return decoded(tool.insert).nose_radius
+    return decode_insert_code(tool.insert).nose_radius
 
 
-def nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
+def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
     """Return the offset with which a touched-off tip cuts to size; None if no compensation is used.
 
     In SINUMERIK the cutting edge also contains the nose radius and the tip quadrant.
@@ -229,18 +243,18 @@ def nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOf
     if not number or tool is None:
         return None
     if dialect is Dialect.SINUMERIK:
-        return NoseOffset(number, 0.0, 0.0, nose_of(tool), tool.tip)
+        return NoseOffset(number, 0.0, 0.0, find_nose_radius(tool), tool.tip)
     along, across = TIP_DIRECTIONS[tool.tip]
-    r = nose_of(tool)
+    r = find_nose_radius(tool)
     return NoseOffset(number, across * r, along * r, r)
 
 
-def past_end(tool: ToolShape | None) -> float:
+def calculate_end_extension(tool: ToolShape | None) -> float:
     """Return how far the contour must extend past the part in mm, because the nose leaves a fillet there."""
-    return math.ceil(10.0 * (nose_of(tool) + _ROOM)) / 10.0
+    return math.ceil(10.0 * (find_nose_radius(tool) + _ROOM)) / 10.0
 
 
-def _before_fall(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
+def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
     """Yield the contour, starting with a move up the face if the contour falls from the face.
 
     Roughing rejects a contour that falls at once, because its return path would cross the contour.
@@ -253,8 +267,8 @@ def _before_fall(elements: Sequence[Element], *, outside: bool) -> Iterator[Elem
     yield from elements
 
 
-def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Element]:
-    """Yield the contour, extended along Z by ``far`` unless it ends in a wall.
+def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> Iterator[Element]:
+    """Yield the contour, extended along Z by ``distance`` unless it ends in a wall.
 
     After a fall of angle a, the nose R leaves it later by R tan (a / 2), and the compensation needs this
     travel.
@@ -262,12 +276,14 @@ def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Elem
     yield from elements
     (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
     fall = abs(math.atan2(dr, -dz))
-    far += math.ceil(10.0 * nose * math.tan(min(fall, 1.5) / 2.0)) / 10.0 if far > _SAME else 0.0
-    if far > _SAME and not _upright(elements[-1]):
-        yield Line((r, z), (r, z - far))
+    distance += (
+        math.ceil(10.0 * nose_radius * math.tan(min(fall, 1.5) / 2.0)) / 10.0 if distance > _SAME else 0.0
+    )
+    if distance > _SAME and not _upright(elements[-1]):
+        yield Line((r, z), (r, z - distance))
 
 
-def _down_to(elements: Iterable[Element], r: float) -> Iterator[Element]:
+def _cut_at_radius(elements: Iterable[Element], r: float) -> Iterator[Element]:
     """Yield the wall of a bore as far as it is wider than the drilled hole."""
     for each in elements:
         if each.end[0] >= r - _SAME:
@@ -276,48 +292,50 @@ def _down_to(elements: Iterable[Element], r: float) -> Iterator[Element]:
         hole = Line((r, each.start[1] + 1e4), (r, each.end[1] - 1e4))
         meet = intersections(hole, each)
         if meet:
-            yield each.part(each.start, meet[0])
+            yield each.section_between(each.start, meet[0])
         return
 
 
 # --- Rows of a contour
 
 
-def rows_of(elements: Iterable[Element], mm: float) -> Iterator[Row]:
+def make_contour_rows(elements: Iterable[Element], mm_per_unit: float) -> Iterator[ContourPoint]:
     """Yield the rows of a contour's point table; ``mm`` is the size of the program's unit."""
     first = True
     for each in elements:
         if first:
-            yield _row(each.start, mm, 0.0)
+            yield _row(each.start, mm_per_unit, 0.0)
             first = False
         arc = 0.0
         if isinstance(each, Arc):
-            arc = each.radius / mm if each.clockwise else -each.radius / mm
-        yield _row(each.end, mm, arc)
+            arc = each.radius / mm_per_unit if each.clockwise else -each.radius / mm_per_unit
+        yield _row(each.end, mm_per_unit, arc)
 
 
-def _row(point: tuple[float, float], mm: float, arc: float) -> Row:
-    return Row(round(2.0 * point[0] / mm, 5) + 0.0, round(point[1] / mm, 5) + 0.0, arc=round(arc, 5))
+def _row(point: tuple[float, float], mm: float, arc: float) -> ContourPoint:
+    return ContourPoint(round(2.0 * point[0] / mm, 5) + 0.0, round(point[1] / mm, 5) + 0.0, arc=round(arc, 5))
 
 
 # --- Grooves
 
 
-def _way_in(elements: Iterable[Element], groove: Groove, side: float) -> float:
+def _find_blade_clearance(elements: Iterable[Element], groove: OmittedGroove, side: float) -> float:
     """Return the radius that the blade must clear on its path from the face, in mm, or 0."""
-    before = [p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front[1] - _SAME]
+    before = [
+        p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front_edge[1] - _SAME
+    ]
     widest = side * max((side * r for r in before), default=0.0)
-    return widest if before and side * (widest - groove.front[0]) > _SAME else 0.0
+    return widest if before and side * (widest - groove.front_edge[0]) > _SAME else 0.0
 
 
 def _groove(
-    groove: Groove, typed: Values, setting: Setting, over: float, *, outside: bool
-) -> dict[str, Value] | str:
+    groove: OmittedGroove, typed: FieldValues, settings: ProgramSettings, over: float, *, outside: bool
+) -> dict[str, FieldValue] | str:
     """Return the fields of a groove shape, or the reason why the groove cannot be cut.
 
     For curved walls, the groove is the widest square groove inside them.
     """
-    mm, blade = setting.mm, _blade(typed, setting)
+    mm, blade = settings.mm, _blade(typed, settings)
     if blade is None:
         number = _number(typed, "BLADE")
         return (
@@ -334,10 +352,10 @@ def _groove(
     if box is None:
         return Message("the groove is narrower than the {wide} mm blade", wide=f"{wide:.3g}")
     front, back, bottom, edge = box
-    found: dict[str, Value] = {
+    found: dict[str, FieldValue] = {
         "T": _number(typed, "BLADE"),
         "SIDE": "FRONT" if outside else "BORE",
-        "TOP": round(2.0 * groove.front[0] / mm, 5),
+        "TOP": round(2.0 * groove.front_edge[0] / mm, 5),
         "BOTTOM": round(2.0 * bottom / mm, 5),
         "AT": round(-front / mm, 5) + 0.0,
         "WIDE": blade,
@@ -346,11 +364,11 @@ def _groove(
         "OVER": round(2.0 * over / mm, 5),
     }
     if leaning:
-        found |= {"FANGLE": round(leaning.at_face, 3), "CANGLE": round(leaning.at_chuck, 3)}
+        found |= {"FANGLE": round(leaning.face_z, 3), "CANGLE": round(leaning.chuck_z, 3)}
     return found
 
 
-class _Leaning(NamedTuple):
+class _SlopedGroove(NamedTuple):
     """A groove with two straight sloped walls.
 
     Z of both edges and r of the bottom are in mm, and the slopes in degrees.
@@ -360,11 +378,11 @@ class _Leaning(NamedTuple):
     back: float
     bottom: float
     edge: float
-    at_face: float
-    at_chuck: float
+    face_z: float
+    chuck_z: float
 
 
-def _leaning(groove: Groove, wide: float) -> _Leaning | None:
+def _leaning(groove: OmittedGroove, width: float) -> _SlopedGroove | None:
     """Return a groove with sloped walls, or None.
 
     The result is None if the walls are square or curved, or if the bottom is narrower than the blade.
@@ -372,25 +390,25 @@ def _leaning(groove: Groove, wide: float) -> _Leaning | None:
     if len(groove.elements) != 3 or not all(isinstance(each, Line) for each in groove.elements):
         return None
     down, bottom, up = groove.elements
-    if not _flat(bottom) or bottom.length < wide - _SAME or (_upright(down) and _upright(up)):
+    if not _flat(bottom) or bottom.length < width - _SAME or (_upright(down) and _upright(up)):
         return None
     angles = (
         math.degrees(math.atan2(abs(each.end[1] - each.start[1]), abs(each.end[0] - each.start[0])))
         for each in (down, up)
     )
-    return _Leaning(groove.front[1], groove.back[1], bottom.start[0], 0.0, *angles)
+    return _SlopedGroove(groove.front_edge[1], groove.back_edge[1], bottom.start[0], 0.0, *angles)
 
 
-def _blade(typed: Values, setting: Setting) -> float | None:
+def _blade(typed: FieldValues, settings: ProgramSettings) -> float | None:
     """Return the width of the blade in the program's unit, or None."""
     if not _number(typed, "BLADE"):
         return None
-    shape = setting.tool(_number(typed, "BLADE"))
-    sheet = round(shape.width / setting.mm, 5) if shape is not None and shape.width else 0.0
+    shape = settings.tool(_number(typed, "BLADE"))
+    sheet = round(shape.width / settings.mm, 5) if shape is not None and shape.width else 0.0
     return _number(typed, "WIDE") or sheet or None
 
 
-def _square(groove: Groove, wide: float, side: float) -> tuple[float, float, float, float] | None:
+def _square(groove: OmittedGroove, width: float, side: float) -> tuple[float, float, float, float] | None:
     """Return Z of both walls, r of the bottom and the edge chamfer; None if the blade does not fit."""
     inner = list(groove.elements)
     edge = _chamfer(inner, side)
@@ -398,12 +416,12 @@ def _square(groove: Groove, wide: float, side: float) -> tuple[float, float, flo
         inner = inner[1:-1]
     if _upright(inner[0]) and _upright(inner[-1]) and len(inner) == 3 and _flat(inner[1]):
         front, back = inner[1].start[1], inner[1].end[1]
-        return (front, back, inner[1].start[0], edge) if front - back >= wide - _SAME else None
-    flats = [each for each in inner if _flat(each) and each.length >= wide - _SAME]
+        return (front, back, inner[1].start[0], edge) if front - back >= width - _SAME else None
+    flats = [each for each in inner if _flat(each) and each.length >= width - _SAME]
     if flats:
         deepest = min(flats, key=lambda each: side * each.start[0])
         return deepest.start[1], deepest.end[1], deepest.start[0], 0.0
-    return _one_plunge(groove, wide, side)
+    return _one_plunge(groove, width, side)
 
 
 def _chamfer(inner: Sequence[Element], side: float) -> float:
@@ -424,18 +442,18 @@ def _flat(each: Element) -> bool:
     return isinstance(each, Line) and abs(each.end[0] - each.start[0]) < _SAME
 
 
-def _one_plunge(groove: Groove, wide: float, side: float) -> tuple[float, float, float, float] | None:
+def _one_plunge(groove: OmittedGroove, width: float, side: float) -> tuple[float, float, float, float] | None:
     """Return one plunge at the deepest point, as deep as the corners of the blade allow; or None."""
-    front, back = groove.front[1], groove.back[1]
-    if front - back < wide - _SAME:
+    front, back = groove.front_edge[1], groove.back_edge[1]
+    if front - back < width - _SAME:
         return None
     ends = [p for each in groove.elements for p in (each.start, each.end)]
     middle = min(ends, key=lambda p: side * p[0])[1]
-    low = min(max(middle - wide / 2.0, back), front - wide)
-    bottom = side * max(side * r for r in _radii(groove.elements, low, low + wide))
-    if side * (groove.front[0] - bottom) < 0.05:
+    low = min(max(middle - width / 2.0, back), front - width)
+    bottom = side * max(side * r for r in _radii(groove.elements, low, low + width))
+    if side * (groove.front_edge[0] - bottom) < 0.05:
         return None
-    return low + wide, low, bottom, 0.0
+    return low + width, low, bottom, 0.0
 
 
 def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[float]:
@@ -449,6 +467,6 @@ def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[flo
                 yield point[0]
 
 
-def greatest_diameter(profile: Profile) -> float:
+def find_max_diameter(profile: ContourProfile) -> float:
     """Return the largest diameter of a profile in mm."""
-    return 2.0 * max(each.box[1] for each in profile.elements)
+    return 2.0 * max(each.bounding_box[1] for each in profile.elements)

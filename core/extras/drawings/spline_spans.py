@@ -1,7 +1,7 @@
 """Spans of a spline between its knots, and the fit of two arcs to all spans at once.
 
 A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all are so short that two arcs fit them.
-The fit is that of ``reader_parts.arcs_of``, which halves the other spans.
+The fit is that of ``reader_tools.fit_arcs``, which halves the other spans.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.extras.drawings.reader_parts import SAMPLES, STRAIGHT, Curve, Place
+from core.extras.drawings.reader_tools import CURVE_SAMPLES, STRAIGHT_TOLERANCE, CurveFunction, CurvePoint
 from core.geometry.lines_and_arcs import Point
 
 Floats = npt.NDArray[np.float64]
@@ -25,14 +25,14 @@ _TINY = 1e-12
 _AT_ONCE = 4096  # spans calculated together, which limits the memory
 
 
-class Spans(NamedTuple):
+class SplineSpans(NamedTuple):
     """The spans of a spline as homogeneous Bézier points and parameter lengths.
 
-    ``control`` (n, degree+1, 3) contains x·w, y·w and w. ``length`` has the shape (n,).
+    ``control`` (n, degree+1, 3) contains x·w, y·w and w. ``parameter_lengths`` has the shape (n,).
     """
 
-    control: Floats
-    length: Floats
+    control_points: Floats
+    parameter_lengths: Floats
 
 
 class Biarc(NamedTuple):
@@ -47,9 +47,9 @@ class Biarc(NamedTuple):
     bulges: tuple[float, float]
 
 
-def spans_of(
+def make_spans(
     points: Iterable[Sequence[float]], weights: Iterable[float], knots: Iterable[float], degree: int
-) -> Spans:
+) -> SplineSpans:
     """Return the spans of a spline with these control points; empty ``weights`` means that all are 1.
 
     Each Bézier point is the polar form of the spline at the knots at both ends of its span. Raises ValueError
@@ -71,7 +71,7 @@ def spans_of(
             share = ((argument - low) / (high - low))[:, :, None]
             polar = (1.0 - share) * polar[:, :-1] + share * polar[:, 1:]
         made[:, number] = polar[:, 0]
-    return Spans(made, knot[at + 1] - knot[at])
+    return SplineSpans(made, knot[at + 1] - knot[at])
 
 
 def _homogeneous(points: Iterable[Sequence[float]], weights: Iterable[float]) -> Floats:
@@ -80,10 +80,10 @@ def _homogeneous(points: Iterable[Sequence[float]], weights: Iterable[float]) ->
     return places * factors[:, None] if len(factors) else places
 
 
-def curve_of(spans: Spans, number: int) -> Curve:
+def make_span_curve(spans: SplineSpans, number: int) -> CurveFunction:
     """Return one span as a curve with a parameter from 0 to 1."""
-    points: list[list[float]] = spans.control[number].tolist()
-    length = float(spans.length[number])
+    points: list[list[float]] = spans.control_points[number].tolist()
+    length = float(spans.parameter_lengths[number])
     scale = (len(points) - 1) / length
 
     def pair(u: float) -> list[list[float]]:
@@ -93,7 +93,7 @@ def curve_of(spans: Spans, number: int) -> Curve:
             found = [[a + (b - a) * u for a, b in zip(p, q, strict=True)] for p, q in pairwise(found)]
         return found
 
-    def place(u: float) -> Place:
+    def place(u: float) -> CurvePoint:
         (ax, ay, aw), (bx, by, bw) = pair(u)
         w = aw + (bw - aw) * u
         at = (ax + (bx - ax) * u) / w, (ay + (by - ay) * u) / w
@@ -102,7 +102,7 @@ def curve_of(spans: Spans, number: int) -> Curve:
             (ax, ay, aw), (bx, by, bw) = pair(held)
             w = aw + (bw - aw) * held
         size = scale / (w * w)
-        return Place(at, (size * (bx * aw - ax * bw), size * (by * aw - ay * bw)))
+        return CurvePoint(at, (size * (bx * aw - ax * bw), size * (by * aw - ay * bw)))
 
     return place
 
@@ -110,22 +110,24 @@ def curve_of(spans: Spans, number: int) -> Curve:
 # --- Two arcs for each span. Points and directions are (n, 2).
 
 
-def biarcs(spans: Spans, tolerance: float) -> Iterator[Biarc | None]:
+def fit_biarcs(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
     """Yield for each span the two arcs that deviate from it by at most ``tolerance``, or None."""
-    for first in range(0, len(spans.length), _AT_ONCE):
+    for first in range(0, len(spans.parameter_lengths), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         with np.errstate(all="ignore"):
-            yield from _fitted(Spans(spans.control[part], spans.length[part]), tolerance)
+            yield from _fitted(
+                SplineSpans(spans.control_points[part], spans.parameter_lengths[part]), tolerance
+            )
 
 
-def _fitted(spans: Spans, tolerance: float) -> Iterator[Biarc | None]:
+def _fitted(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
     (a, way), (b, end_way) = _ends(spans, 0.0), _ends(spans, 1.0)
     joint, good = _joints(a, way, b, end_way)
     bulges = np.array([_bulges(a, way, joint), -_bulges(b, -end_way, joint)])
     good &= np.abs(bulges).max(axis=0) <= 1.0
     off = np.zeros(len(a))
-    for k in range(1, SAMPLES + 1):
-        p = _points(spans.control, k / (SAMPLES + 1))
+    for k in range(1, CURVE_SAMPLES + 1):
+        p = _points(spans.control_points, k / (CURVE_SAMPLES + 1))
         np.maximum(off, np.minimum(_apart(p, a, joint, bulges[0]), _apart(p, joint, b, bulges[1])), out=off)
     good &= off <= tolerance
     for fits, *row in zip(
@@ -145,18 +147,18 @@ def _points(control: Floats, u: float) -> Floats:
     return last[:, :2] / last[:, 2:]
 
 
-def _ends(spans: Spans, u: float) -> tuple[Floats, Floats]:
+def _ends(spans: SplineSpans, u: float) -> tuple[Floats, Floats]:
     """Return the points at ``u`` and the directions just inside the span."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
-    pair = _levels(spans.control, held, 2)
+    pair = _levels(spans.control_points, held, 2)
     p, q = pair[:, 0], pair[:, 1]
     w = p[:, 2] + (q[:, 2] - p[:, 2]) * held
-    size = (spans.control.shape[1] - 1) / (spans.length * w * w)
-    return _points(spans.control, u), size[:, None] * (q[:, :2] * p[:, 2:] - p[:, :2] * q[:, 2:])
+    size = (spans.control_points.shape[1] - 1) / (spans.parameter_lengths * w * w)
+    return _points(spans.control_points, u), size[:, None] * (q[:, :2] * p[:, 2:] - p[:, :2] * q[:, 2:])
 
 
 def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats, Bools]:
-    """Return the points at which both arcs meet, and whether such a point exists (see ``reader_parts``)."""
+    """Return the points at which both arcs meet, and whether such a point exists (see ``reader_tools``)."""
     sizes = np.array([np.hypot(*way.T), np.hypot(*end_way.T)])
     one, other, v = way / sizes[0][:, None], end_way / sizes[1][:, None], b - a
     vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)
@@ -173,7 +175,7 @@ def _bulges(at: Floats, way: Floats, to: Floats) -> Floats:
     """Return the bulges of arcs from their starts, their directions there and their ends."""
     d = to - at
     half = np.arctan2(way[:, 0] * d[:, 1] - way[:, 1] * d[:, 0], (way * d).sum(axis=1))
-    return np.where(np.abs(half) < STRAIGHT, 0.0, np.tan(0.5 * half))
+    return np.where(np.abs(half) < STRAIGHT_TOLERANCE, 0.0, np.tan(0.5 * half))
 
 
 def _apart(p: Floats, a: Floats, b: Floats, bulge: Floats) -> Floats:

@@ -12,8 +12,16 @@ from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element as Element_
 
-from core.extras.drawings.drawing import Drawing, DrawingError, Drawn, arc, line, nearest, within_limits
-from core.extras.drawings.reader_parts import Content, Place, arcs_of, check_expansion
+from core.extras.drawings.drawing import (
+    Drawing,
+    DrawingError,
+    DrawnElement,
+    calculate_arc_tolerance,
+    check_elements,
+    make_arc,
+    make_line,
+)
+from core.extras.drawings.reader_tools import BlockContent, CurvePoint, check_expansion, fit_arcs
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 
@@ -53,7 +61,7 @@ def read_svg(name: str, data: bytes) -> Drawing:
     left_out: Counter[str] = Counter()
     shapes = _shapes(name, data)
     unit = 25.4 / _PIXELS if _has_unit(data) else 0.0
-    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, name), name))
+    drawn = tuple(check_elements(_drawn(shapes, calculate_arc_tolerance(unit), left_out, name), name))
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
         raise DrawingError(
@@ -105,12 +113,12 @@ def _check_elements(name: str, text: bytes) -> None:
         _check_numbers(name, each)
         by_id.setdefault(f"#{each.get('id')}", []).append(each)
 
-    def content(element: Element_) -> Content:
+    def content(element: Element_) -> BlockContent:
         used = element.get("href") or element.get(_HREF) or ""
         targets = by_id.get(used, []) if str(element.tag).endswith("use") else []
-        return Content(1, [(1, each) for each in (*element, *targets)])
+        return BlockContent(1, [(1, each) for each in (*element, *targets)])
 
-    check_expansion(name, root, content, spare=count)
+    check_expansion(name, root, content, remaining_count=count)
 
 
 def _check_numbers(name: str, element: Element_) -> None:
@@ -127,7 +135,7 @@ def _check_numbers(name: str, element: Element_) -> None:
             raise DrawingError(words, "no-number")
 
 
-def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:
+def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterator[DrawnElement]:
     from svgelements import Close, Group, Move, Shape, SVGElement
     from svgelements import Path as Outline
 
@@ -150,7 +158,7 @@ def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterato
                     "path-without-start",
                 )
             for element in _segment(segment, near):
-                yield Drawn(element, layer, centre)
+                yield DrawnElement(element, layer, centre)
 
 
 def _segment(each: Any, near: float) -> Iterator[Element]:
@@ -158,34 +166,34 @@ def _segment(each: Any, near: float) -> Iterator[Element]:
 
     if isinstance(each, Line | Close):
         if each.start is not None and each.end is not None:
-            yield from line(_up(each.start), _up(each.end))
+            yield from make_line(_up(each.start), _up(each.end))
     elif isinstance(each, Arc) and each.is_circular():
         centre, a = _up(each.center), _up(each.start)
         start = math.atan2(a[1] - centre[1], a[0] - centre[0])
-        yield from arc(centre, float(each.rx), start, -float(each.sweep))
+        yield from make_arc(centre, float(each.rx), start, -float(each.sweep))
     elif isinstance(each, Arc):
-        yield from arcs_of(_of_ellipse(each), near, max(1, math.ceil(abs(each.sweep) / 1.6)))
+        yield from fit_arcs(_make_ellipse_curve(each), near, max(1, math.ceil(abs(each.sweep) / 1.6)))
     elif isinstance(each, CubicBezier | QuadraticBezier):
-        yield from arcs_of(_of_bezier(each), near, 2)
+        yield from fit_arcs(_of_bezier(each), near, 2)
 
 
 def _up(point: Any) -> Point:
     return float(point.x), -float(point.y)
 
 
-def _of_ellipse(each: Any) -> Any:
+def _make_ellipse_curve(element: Any) -> Any:
     """Return an elliptic arc as a curve, with directions from differences.
 
     The differences are exact enough for the joint of two arcs.
     """
-    begin, step = each.get_start_t(), 1e-6
+    begin, step = element.get_start_t(), 1e-6
 
     def at(u: float) -> Point:
-        return _up(each.point_at_t(begin + each.sweep * u))
+        return _up(element.point_at_t(begin + element.sweep * u))
 
-    def place(u: float) -> Place:
+    def place(u: float) -> CurvePoint:
         a, b = at(u - step), at(u + step)
-        return Place(at(u), (b[0] - a[0], b[1] - a[1]))
+        return CurvePoint(at(u), (b[0] - a[0], b[1] - a[1]))
 
     return place
 
@@ -193,9 +201,9 @@ def _of_ellipse(each: Any) -> Any:
 def _of_bezier(each: Any) -> Any:
     points = [_up(p) for p in each]
 
-    def place(u: float) -> Place:
+    def place(u: float) -> CurvePoint:
         held = min(max(u, 1e-6), 1.0 - 1e-6)
-        return Place(_bezier(points, u), _slope(points, held))
+        return CurvePoint(_bezier(points, u), _slope(points, held))
 
     return place
 

@@ -10,14 +10,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from core.extras.drawings.contour_walk import split, turned_about
+from core.extras.drawings.contour_tracing import mirror_elements, split_element
 from core.extras.drawings.drawing import DrawingError
-from core.extras.drawings.drawing_view import Profile, Side
-from core.geometry.contour_offset import GougeError, TrimError, pieces_beside, trimmed_offset
+from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
+from core.geometry.contour_offset import GougeError, TrimError, offset_known_contour, trim_offset
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, intersections
 from core.message import Message
-from core.part.swept_edge import towards_axis
-from core.part.tool_outline import outline
+from core.part.swept_edge import axis_facing_edge
+from core.part.tool_outline import make_outline
 from core.part.tool_shape import ToolShape
 
 _SAME = 1e-4  # mm
@@ -29,18 +29,18 @@ _MOST = math.radians(179.0)  # largest angle of an arc that R can specify
 
 
 @dataclass(frozen=True, slots=True)
-class Groove:
+class OmittedGroove:
     """A range that a turning tool omits: its elements from the edge at the face to the edge at the chuck."""
 
     elements: tuple[Element, ...]
 
     @property
-    def front(self) -> Point:
+    def front_edge(self) -> Point:
         """The edge at the face, as (r, z)."""
         return self.elements[0].start
 
     @property
-    def back(self) -> Point:
+    def back_edge(self) -> Point:
         """The edge at the chuck, as (r, z)."""
         return self.elements[-1].end
 
@@ -53,35 +53,35 @@ class TurningContour:
     """
 
     elements: tuple[Element, ...]
-    grooves: tuple[Groove, ...] = ()
-    left: tuple[tuple[float, float, str], ...] = ()
-    steepest: float = 0.0  # rad, steepest fall of the turned contour toward the chuck
+    grooves: tuple[OmittedGroove, ...] = ()
+    unreachable_ranges: tuple[tuple[float, float, str], ...] = ()
+    steepest_angle: float = 0.0  # rad, steepest fall of the turned contour toward the chuck
 
 
 @dataclass(frozen=True, slots=True)
-class Reach:
+class ToolReach:
     """Contour angles that the edges of a tool allow, in radians.
 
-    ``fall`` is the steepest fall toward the chuck, and ``rise`` the steepest rise.
+    ``fall`` is the steepest fall toward the chuck, and ``max_rising_angle_rad`` the steepest rise.
     """
 
-    fall: float = 0.0
-    rise: float = math.pi / 2.0
+    max_falling_angle_rad: float = 0.0
+    max_rising_angle_rad: float = math.pi / 2.0
 
 
-def reach_of(shape: ToolShape | None, side: Side) -> Reach:
+def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReach:
     """Return the reach of a tool from its outline.
 
     A tool without tool data can turn only cylinders, faces and shoulders.
     """
-    cutting = outline(shape).cutting if shape is not None else ()
+    cutting = make_outline(shape).cutting_outlines if shape is not None else ()
     if not cutting:
-        return Reach()
-    edge = towards_axis(cutting[0] * [1.0, -1.0 if side is Side.INSIDE else 1.0])
+        return ToolReach()
+    edge = axis_facing_edge(cutting[0] * [1.0, -1.0 if side is ContourSide.INSIDE else 1.0])
     points = [(float(z), float(r)) for z, r in zip(edge.z, edge.r, strict=True)]
     tip = int(edge.r.argmin())
     behind, before = _straight(points[tip:]), _straight(points[tip::-1])
-    return Reach(behind or 0.0, before or math.pi / 2.0)
+    return ToolReach(behind or 0.0, before or math.pi / 2.0)
 
 
 def _straight(points: Sequence[Point]) -> float | None:
@@ -92,31 +92,31 @@ def _straight(points: Sequence[Point]) -> float | None:
     return None
 
 
-def turning_contour(profile: Profile, reach: Reach) -> TurningContour:
+def make_turning_contour(profile: ContourProfile, reach: ToolReach) -> TurningContour:
     """Return the part of a profile that a tool with this reach turns.
 
     Raises DrawingError if nothing remains to be turned.
     """
-    inside = profile.side is Side.INSIDE
-    elements = list(turned_about(profile.elements)) if inside else list(profile.elements)
+    inside = profile.side is ContourSide.INSIDE
+    elements = list(mirror_elements(profile.elements)) if inside else list(profile.elements)
     left: list[tuple[float, float, str]] = []
-    lit = _seen_from_outside(_monotone(elements), left)
+    lit = _remove_undercuts(_monotone(elements), left)
     lit = _without_face(lit)
     if not lit:
         raise DrawingError(
             "This contour consists only of a face, so there is nothing to turn. Choose another contour.",
             "nothing-to-turn",
         )
-    kept, grooves = _bridged(lit, reach.fall, left)
+    kept, grooves = _bridged(lit, reach.max_falling_angle_rad, left)
     _not_too_steep(kept, reach)
     steepest = max((_fall(each) for each in kept), default=0.0)
-    made = TurningContour(tuple(joined(kept)), tuple(grooves), tuple(left), max(0.0, steepest))
+    made = TurningContour(tuple(join_elements(kept)), tuple(grooves), tuple(left), max(0.0, steepest))
     return _turned_back(made) if inside else made
 
 
 def _turned_back(made: TurningContour) -> TurningContour:
-    grooves = tuple(Groove(tuple(turned_about(each.elements))) for each in made.grooves)
-    return replace(made, elements=tuple(turned_about(made.elements)), grooves=grooves)
+    grooves = tuple(OmittedGroove(tuple(mirror_elements(each.elements))) for each in made.grooves)
+    return replace(made, elements=tuple(mirror_elements(made.elements)), grooves=grooves)
 
 
 # --- Pieces that are monotone in Z and in r
@@ -127,15 +127,17 @@ def _monotone(elements: Iterable[Element]) -> list[Element]:
     found: list[Element] = []
     for each in elements:
         if isinstance(each, Arc):
-            (r, z), radius = each.centre, each.radius
+            (r, z), radius = each.center, each.radius
             quarters = [(r + radius, z), (r - radius, z), (r, z + radius), (r, z - radius)]
-            found += split(each, [p for p in quarters if 0.0 < each.along(p) < each.length])
+            found += split_element(
+                each, [p for p in quarters if 0.0 < each.distance_from_start(p) < each.length]
+            )
         else:
             found.append(each)
     return found
 
 
-def _seen_from_outside(elements: list[Element], left: list[tuple[float, float, str]]) -> list[Element]:
+def _remove_undercuts(elements: list[Element], left: list[tuple[float, float, str]]) -> list[Element]:
     """Return the contour with each undercut, which no tool can reach from outside, replaced by a wall."""
     found: list[Element] = []
     at = 0
@@ -151,34 +153,34 @@ def _seen_from_outside(elements: list[Element], left: list[tuple[float, float, s
         front = elements[last].end
         left.append((turn[1], front[1], "the contour is undercut"))
         if front[0] > turn[0]:
-            _cut_behind(found, front)
+            _replace_under_lip(found, front)
             at = last + 1
         else:
-            at = _go_on_behind(found, elements, last + 1, turn)
+            at = _add_wall_under_edge(found, elements, last + 1, turn)
     return found
 
 
-def _cut_behind(found: list[Element], lip: Point) -> None:
+def _replace_under_lip(contour: list[Element], lip: Point) -> None:
     """Replace the elements under a lip by a wall."""
-    while found and found[-1].start[1] < lip[1]:
-        found.pop()
-    if found and found[-1].end[1] < lip[1]:
-        each = found.pop()
-        foot = _at_z(each, lip[1])
-        found += split(each, [foot])[:1]
-        found += _wall(foot, lip)
-    elif found:
-        found += _wall(found[-1].end, lip)
+    while contour and contour[-1].start[1] < lip[1]:
+        contour.pop()
+    if contour and contour[-1].end[1] < lip[1]:
+        each = contour.pop()
+        foot = _find_point_at_z(each, lip[1])
+        contour += split_element(each, [foot])[:1]
+        contour += _wall(foot, lip)
+    elif contour:
+        contour += _wall(contour[-1].end, lip)
 
 
-def _go_on_behind(found: list[Element], elements: Sequence[Element], at: int, edge: Point) -> int:
+def _add_wall_under_edge(contour: list[Element], elements: Sequence[Element], at: int, edge: Point) -> int:
     """Add a wall from an edge to the point where the contour reappears; return the next element's number."""
     while at < len(elements) and elements[at].end[1] >= edge[1] - _SAME:
         at += 1
     if at < len(elements):
-        foot = _at_z(elements[at], edge[1])
-        found += _wall(edge, foot)
-        found += split(elements[at], [foot])[-1:]
+        foot = _find_point_at_z(elements[at], edge[1])
+        contour += _wall(edge, foot)
+        contour += split_element(elements[at], [foot])[-1:]
         at += 1
     return at
 
@@ -187,14 +189,14 @@ def _wall(a: Point, b: Point) -> list[Element]:
     return [Line(a, (b[0], a[1]))] if abs(a[0] - b[0]) > _SAME else []
 
 
-def _at_z(each: Element, z: float) -> Point:
+def _find_point_at_z(element: Element, z: float) -> Point:
     """Return the point of an element at this Z."""
-    return _crossing(each, Line((-1e5, z), (1e5, z))) or each.start
+    return _crossing(element, Line((-1e5, z), (1e5, z))) or element.start
 
 
-def _crossing(each: Element, line: Line) -> Point | None:
+def _crossing(element: Element, line: Line) -> Point | None:
     """Return the first point along an element at which it meets a line, or None."""
-    return min(intersections(line, each), key=each.along, default=None)
+    return min(intersections(line, element), key=element.distance_from_start, default=None)
 
 
 def _without_face(elements: list[Element]) -> list[Element]:
@@ -211,11 +213,11 @@ def _without_face(elements: list[Element]) -> list[Element]:
 # --- Grooves and falls
 
 
-def _fall(each: Element) -> float:
+def _fall(element: Element) -> float:
     """Return how steeply an element falls toward the chuck, in radians; negative if it rises."""
-    ways = (each.start_direction, each.end_direction)
+    ways = (element.start_direction, element.end_direction)
     found = (math.atan2(-way[0], max(-way[1], 0.0)) for way in ways)
-    return max(found) if each.end[0] < each.start[0] - _SAME else -max(-f for f in found)
+    return max(found) if element.end[0] < element.start[0] - _SAME else -max(-f for f in found)
 
 
 def _rise(each: Element) -> float:
@@ -223,17 +225,17 @@ def _rise(each: Element) -> float:
     return max(math.atan2(way[0], max(-way[1], 0.0)) for way in ways)
 
 
-def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
+def _not_too_steep(kept: Iterable[Element], reach: ToolReach) -> None:
     """Raise DrawingError if the tool's leading edge would cut into a shoulder."""
-    if reach.rise >= math.pi / 2.0 - 1e-3:
+    if reach.max_rising_angle_rad >= math.pi / 2.0 - 1e-3:
         return
     for each in kept:
-        if each.end[0] > each.start[0] + _SAME and _rise(each) > reach.rise + 1e-3:
+        if each.end[0] > each.start[0] + _SAME and _rise(each) > reach.max_rising_angle_rad + 1e-3:
             raise DrawingError(
                 Message(
                     "The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} "
                     "degrees: use a tool that can turn shoulders.",
-                    rise=f"{math.degrees(reach.rise):.0f}",
+                    rise=f"{math.degrees(reach.max_rising_angle_rad):.0f}",
                     start=f"{each.start[1]:.3f}",
                     item=f"{math.degrees(_rise(each)):.0f}",
                 ),
@@ -243,11 +245,11 @@ def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
 
 def _bridged(
     elements: list[Element], fall: float, left: list[tuple[float, float, str]]
-) -> tuple[list[Element], list[Groove]]:
+) -> tuple[list[Element], list[OmittedGroove]]:
     """Return the contour without ranges that fall more steeply than the tool's edge, and the grooves."""
     most = fall - _SPARE if fall > _LEVEL else 0.0
     kept: list[Element] = []
-    grooves: list[Groove] = []
+    grooves: list[OmittedGroove] = []
     at = 0
     while at < len(elements):
         each = elements[at]
@@ -262,8 +264,8 @@ def _bridged(
             kept += inside
             at = end
         elif rest is not None:
-            cut = split(elements[end], [rest]) if math.dist(rest, elements[end].end) > _SAME else []
-            grooves.append(Groove((*inside, cut[0] if cut else elements[end])))
+            cut = split_element(elements[end], [rest]) if math.dist(rest, elements[end].end) > _SAME else []
+            grooves.append(OmittedGroove((*inside, cut[0] if cut else elements[end])))
             kept += _level(each.start, rest)
             at = end + 1
             if cut:
@@ -306,11 +308,11 @@ def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) 
         kept.append(elements[at])
         at += 1
     each = elements[at]
-    if isinstance(each, Arc) and each.start[1] > each.centre[1] - _SAME and each.start[0] > each.centre[0]:
-        r, z = each.centre
+    if isinstance(each, Arc) and each.start[1] > each.center[1] - _SAME and each.start[0] > each.center[0]:
+        r, z = each.center
         turn = (r + each.radius * math.cos(most), z - each.radius * math.sin(most))
-        if _SAME < each.along(turn) < each.length:
-            before, elements[at] = split(each, [turn])
+        if _SAME < each.distance_from_start(turn) < each.length:
+            before, elements[at] = split_element(each, [turn])
             kept.append(before)
     return at
 
@@ -326,9 +328,9 @@ def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) 
     for number in range(at, len(elements)):
         meet = [p for p in intersections(slope, elements[number]) if math.dist(p, edge) > 10 * _SAME]
         if meet:
-            point = min(meet, key=elements[number].along)
+            point = min(meet, key=elements[number].distance_from_start)
             kept.append(Line(edge, point))
-            elements[number] = split(elements[number], [point])[-1]
+            elements[number] = split_element(elements[number], [point])[-1]
             return number if math.dist(point, elements[number].end) > _SAME else number + 1
     kept.append(slope)
     return len(elements)
@@ -337,7 +339,7 @@ def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) 
 # --- Clean-up
 
 
-def joined(elements: Iterable[Element]) -> list[Element]:
+def join_elements(elements: Iterable[Element]) -> list[Element]:
     """Return the elements with collinear lines and concentric arcs joined and very short elements omitted."""
     found: list[Element] = []
     for each in elements:
@@ -356,9 +358,9 @@ def _one(a: Element, b: Element) -> Element | None:
         (ar, az), (br, bz) = a.start_direction, b.start_direction
         return Line(a.start, b.end) if abs(ar * bz - az * br) < 1e-7 and ar * br + az * bz > 0 else None
     if isinstance(a, Arc) and isinstance(b, Arc) and a.clockwise == b.clockwise:
-        same = math.dist(a.centre, b.centre) < _SAME and abs(a.radius - b.radius) < _SAME
+        same = math.dist(a.center, b.center) < _SAME and abs(a.radius - b.radius) < _SAME
         whole = abs(a.sweep) + abs(b.sweep)
-        return Arc(a.start, b.end, a.centre, a.clockwise) if same and whole < _MOST else None
+        return Arc(a.start, b.end, a.center, a.clockwise) if same and whole < _MOST else None
     return None
 
 
@@ -368,22 +370,24 @@ _SLIVER = 0.03  # mm
 _STRAIGHT = 0.1  # rad; the error of omitting such an arc is at most 0.0015 mm
 
 
-def reached_by_nose(elements: Sequence[Element], nose: float, *, inside: bool) -> tuple[Element, ...]:
+def add_nose_fillets(
+    elements: Sequence[Element], nose_radius: float, *, is_inside: bool
+) -> tuple[Element, ...]:
     """Return the contour, with fillets where a nose of this radius in mm would not fit.
 
     If no continuous path remains, the contour is returned unchanged, and the proof of the program reports the
     location.
     """
-    contour = tuple(turned_about(elements)) if inside else tuple(elements)
-    if not nose or _follows(contour, nose):
+    contour = tuple(mirror_elements(elements)) if is_inside else tuple(elements)
+    if not nose_radius or _follows(contour, nose_radius):
         return tuple(elements)
     try:
-        off = trimmed_offset(contour, nose + _NOSE_SPARE)
-        back = trimmed_offset(_reversed(off), nose + _NOSE_SPARE - _BACK)
+        off = trim_offset(contour, nose_radius + _NOSE_SPARE)
+        back = trim_offset(_reversed(off), nose_radius + _NOSE_SPARE - _BACK)
     except TrimError:
         return tuple(elements)
     reached = list(_without_slivers(_reversed(back)))
-    return tuple(turned_about(reached)) if inside else tuple(reached)
+    return tuple(mirror_elements(reached)) if is_inside else tuple(reached)
 
 
 def _without_slivers(contour: Sequence[Element]) -> Iterator[Element]:
@@ -398,10 +402,10 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
     return [each.reversed() for each in reversed(elements)]
 
 
-def _follows(contour: Sequence[Element], nose: float) -> bool:
+def _follows(contour: Sequence[Element], nose_radius: float) -> bool:
     """Return whether nose compensation can follow the contour, with the control's own offset calculation."""
     try:
-        pieces_beside(contour, nose)
+        offset_known_contour(contour, nose_radius)
     except GougeError:
         return False
     return True

@@ -7,22 +7,24 @@ from typing import TYPE_CHECKING
 from core.message import Message
 
 if TYPE_CHECKING:
-    from core.extras.drawings.contour_walk import Net
+    from core.extras.drawings.contour_tracing import ElementGroup
 
-UNITS = {"MM": 1.0, "INCH": 25.4}
+UNIT_SIZES_MM = {"MM": 1.0, "INCH": 25.4}
 """The units that a user can choose, mm."""
 
 
-def wrong_unit(net: Net, unit: float, travel: tuple[float, float]) -> tuple[str, str] | None:
+def detect_wrong_unit(
+    group: ElementGroup, unit: float, travel: tuple[float, float]
+) -> tuple[str, str] | None:
     """Return the size that is too large, and the name of the unit in which the contour would fit.
 
     ``unit`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in mm,
     or 0 if unknown. The result is None if the contour fits, or does not fit in a smaller unit either.
     """
-    low, high, radius = net.reach
+    low, high, radius = group.extent
     if not all(travel) or _fits(high - low, radius, travel):
         return None
-    smaller = sorted(((mm, name) for name, mm in UNITS.items() if mm < unit), reverse=True)
+    smaller = sorted(((mm, name) for name, mm in UNIT_SIZES_MM.items() if mm < unit), reverse=True)
     for mm, name in smaller:
         if _fits((high - low) * mm / unit, radius * mm / unit, travel):
             return _too_large(high - low, radius, unit, travel[1]), name
@@ -35,5 +37,5 @@ def _fits(long: float, radius: float, travel: tuple[float, float]) -> bool:
 
 def _too_large(long: float, radius: float, unit: float, most: float) -> str:
     size, template = (long, "{size} {unit} long") if long > most else (2.0 * radius, "{size} {unit} across")
-    mm, name = (25.4, "in") if unit == UNITS["INCH"] else (1.0, "mm")
+    mm, name = (25.4, "in") if unit == UNIT_SIZES_MM["INCH"] else (1.0, "mm")
     return Message(template, size=f"{size / mm:.4g}", unit=name)

@@ -6,15 +6,22 @@ from collections.abc import Iterator
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
-from core.key_declaration import Range, Unit, Words, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, Words, declare_key, make_key_table
 from core.message import Message
-from core.table_schema import HIDDEN, Driver, DriverTable, FileReading, Finding, written
+from core.table_schema import (
+    SECRET_MASK,
+    DriverDeclaration,
+    DriverTable,
+    FileFinding,
+    MachineFileReading,
+    format_toml_value,
+)
 
-LEAST_TOKEN = 12  # characters
+MIN_TOKEN_LENGTH = 12  # characters
 _WEB = ("http://", "https://")
 
 
-@key_table
+@make_key_table
 class StatusPageTable:
     """Settings of the office page, including other machines that it shows.
 
@@ -22,26 +29,26 @@ class StatusPageTable:
     password for browsers. It may be empty only if no other computer can connect.
     """
 
-    enabled: bool = file_key(default=False, meaning="true: TurnDesk serves the office page.")
-    bind: str = file_key(
+    enabled: bool = declare_key(default=False, meaning="true: TurnDesk serves the office page.")
+    bind: str = declare_key(
         default="127.0.0.1",
         meaning='Address at which the page is served. "127.0.0.1": only to this computer; "0.0.0.0": to '
         "all computers, which needs a token.",
     )
-    port: int = file_key(Range(1, 65535), default=8317, meaning="TCP port of the page.")
-    token: str = file_key(
+    port: int = declare_key(KeyRange(1, 65535), default=8317, meaning="TCP port of the page.")
+    token: str = declare_key(
         secret=True,
         default="",
         meaning="Password in the address of the page: letters, digits, - and _. At least 12 characters if "
         "other computers can connect.",
     )
-    desks: Words = file_key(
+    desks: Words = declare_key(
         secret=True,
         default="",
         meaning="Addresses of the office pages of other machines, with their tokens, to be shown on the "
         "same page.",
     )
-    agents: Words = file_key(
+    agents: Words = declare_key(
         secret=True,
         default="",
         meaning="Addresses of MTConnect agents with the device, such as `http://shop-pc:5000/MILL4`, whose "
@@ -49,39 +56,41 @@ class StatusPageTable:
     )
 
     @property
-    def others(self) -> tuple[str, ...]:
+    def other_page_addresses(self) -> tuple[str, ...]:
         """Addresses of the office pages of other machines."""
         return tuple(self.desks.split())
 
     @property
-    def told_by_agents(self) -> tuple[str, ...]:
+    def agent_addresses(self) -> tuple[str, ...]:
         """Addresses of devices at their MTConnect agents."""
         return tuple(self.agents.split())
 
 
-@key_table
+@make_key_table
 class AnnounceTable:
     """Settings of the MQTT broker (``host:port``) and the web hook; an empty address disables one.
 
     ``again`` is the time in seconds after which a broker or host that did not respond is tried again.
     """
 
-    mqtt: str = file_key(
+    mqtt: str = declare_key(
         default="",
         meaning="MQTT broker as `host` or `host:port`; the default port is 1883. Default: no broker.",
     )
-    topic: str = file_key(default="turndesk", meaning="Topic before `/available`, `/state` and `/event`.")
-    user: str = file_key(default="", meaning="User name for the broker.")
-    password: str = file_key(secret=True, default="", meaning="Password for the broker.")
-    hook: str = file_key(default="", meaning="Web address that receives each event by POST. Default: none.")
-    again: float = file_key(
-        Range(1.0, 3600.0, Unit.SECONDS),
+    topic: str = declare_key(default="turndesk", meaning="Topic before `/available`, `/state` and `/event`.")
+    user: str = declare_key(default="", meaning="User name for the broker.")
+    password: str = declare_key(secret=True, default="", meaning="Password for the broker.")
+    hook: str = declare_key(
+        default="", meaning="Web address that receives each event by POST. Default: none."
+    )
+    again: float = declare_key(
+        KeyRange(1.0, 3600.0, FileUnit.SECONDS),
         default=10.0,
         meaning="Time after which TurnDesk retries a broker or web address that did not respond.",
     )
 
 
-def loopback(address: str) -> bool:
+def is_loopback(address: str) -> bool:
     """Return whether only this computer can connect to the address."""
     try:
         return ip_address(address).is_loopback
@@ -98,7 +107,7 @@ def is_web_address(text: str) -> bool:
         return False
 
 
-def broker_of(text: str) -> tuple[str, int]:
+def parse_broker_address(text: str) -> tuple[str, int]:
     """Return host and port of ``host`` or ``host:port``. Raises ValueError if the text is invalid."""
     host, colon, port = text.rpartition(":")
     if not colon:
@@ -109,79 +118,81 @@ def broker_of(text: str) -> tuple[str, int]:
     return host, number
 
 
-def _page_rules(file: FileReading) -> Iterator[Finding]:
+def _page_rules(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
-    if not values.has("status_page.bind", "status_page.token", "status_page.desks", "status_page.agents"):
+    if not values.has_values(
+        "status_page.bind", "status_page.token", "status_page.desks", "status_page.agents"
+    ):
         return
     bind, token = values.text("status_page.bind"), values.text("status_page.token")
     if token and not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
-        yield Finding("status_page.token", "", "use only letters, digits, - and _", "broken-rule")
-    elif not loopback(bind) and len(token) < LEAST_TOKEN:
+        yield FileFinding("status_page.token", "", "use only letters, digits, - and _", "broken-rule")
+    elif not is_loopback(bind) and len(token) < MIN_TOKEN_LENGTH:
         why: str = Message(
             "other computers can connect to {bind}, so a token of at least {least_token} "
             "characters is needed",
             bind=bind,
-            least_token=LEAST_TOKEN,
+            least_token=MIN_TOKEN_LENGTH,
         )
-        yield Finding("status_page.token", "", why, "broken-rule")
+        yield FileFinding("status_page.token", "", why, "broken-rule")
     for address in values.text("status_page.desks").split():
         if not is_web_address(address):
-            yield Finding(
+            yield FileFinding(
                 "status_page.desks",
-                HIDDEN,
+                SECRET_MASK,
                 "each entry must be an address that begins with http://",
                 "broken-rule",
             )
     for address in values.text("status_page.agents").split():
         if not is_web_address(address) or not urlsplit(address).path.strip("/"):
             why = "each entry must be an agent's address and a device, such as http://shop-pc:5000/LATHE2"
-            yield Finding("status_page.agents", HIDDEN, why, "broken-rule")
+            yield FileFinding("status_page.agents", SECRET_MASK, why, "broken-rule")
 
 
-def _announce_rules(file: FileReading) -> Iterator[Finding]:
+def _announce_rules(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
-    if not values.has("announce.mqtt", "announce.hook", "announce.topic"):
+    if not values.has_values("announce.mqtt", "announce.hook", "announce.topic"):
         return
     broker, hook = values.text("announce.mqtt"), values.text("announce.hook")
     try:
         if broker:
-            broker_of(broker)
+            parse_broker_address(broker)
     except ValueError:
-        yield Finding(
+        yield FileFinding(
             "announce.mqtt",
-            written(broker.rpartition("@")[2]),
+            format_toml_value(broker.rpartition("@")[2]),
             'this value must be the address of the MQTT broker, such as "shop-pc:1883"',
             "broken-rule",
         )
     if hook and not is_web_address(hook):
-        yield Finding(
+        yield FileFinding(
             "announce.hook",
-            HIDDEN,
+            SECRET_MASK,
             "this value must be an address that begins with http:// or https://",
             "broken-rule",
         )
     topic = values.text("announce.topic")
     if topic.startswith("/") or any(sign in topic for sign in "+# "):
-        yield Finding(
+        yield FileFinding(
             "announce.topic",
-            written(topic),
+            format_toml_value(topic),
             "this value must be a topic without +, # or spaces, such as shop/lathe3",
             "broken-rule",
         )
 
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "status_page",
             StatusPageTable,
-            rules=_page_rules,
+            check_rules=_page_rules,
             purpose="The office page: a web page that shows the state of the machine to other computers.",
         ),
         DriverTable(
             "announce",
             AnnounceTable,
-            rules=_announce_rules,
+            check_rules=_announce_rules,
             purpose="Where TurnDesk reports the state of the machine: an MQTT broker, a web hook, or both.",
         ),
     )

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from core.message import CodedError, Message
 
-LEAST = 10  # least number of readings for a capability; fewer would make it random
+MIN_READINGS = 10  # least number of readings for a capability; fewer would make it random
 _ONE_SIDED_95 = 1.645  # quantile of the normal distribution
 
 
@@ -37,7 +37,7 @@ class Capability:
     ppk: float | None
 
     @property
-    def at_least(self) -> float | None:
+    def cpk_lower_bound(self) -> float | None:
         """Lower 95 % confidence limit of Cpk (Bissell 1990), which is low for few readings."""
         if self.cpk is None:
             return None
@@ -45,7 +45,7 @@ class Capability:
         return self.cpk - _ONE_SIDED_95 * math.sqrt(1.0 / (9.0 * n) + self.cpk**2 / (2.0 * (n - 1)))
 
 
-def capability(
+def calculate_capability(
     values: Sequence[float], lower: float | None, upper: float | None, size: int = 1
 ) -> Capability:
     """Calculate the capability of values in the order of the parts, in samples of ``size``.
@@ -60,16 +60,16 @@ def capability(
         raise QualityError(
             "the lower limit must be below the upper limit; correct the tolerance", "limits-reversed"
         )
-    if len(values) < LEAST:
+    if len(values) < MIN_READINGS:
         raise QualityError(
             Message(
                 "{values_count} readings are not enough; a Cpk needs at least {minimum} readings",
                 values_count=len(values),
-                minimum=LEAST,
+                minimum=MIN_READINGS,
             ),
             "too-few-readings",
         )
-    within = charts_of(values, size).within
+    within = make_charts(values, size).within_sigma
     # standard deviation of all values with n − 1
     mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))
     cp, cpk = _indices(mean, within, lower, upper)
@@ -97,10 +97,10 @@ def _indices(
 
 FloatArray = npt.NDArray[np.float64]
 # number of samples from which the limits are settled; before, each sample changes them noticeably
-SETTLED = 20
+MIN_STABLE_POINTS = 20
 
 
-class Constants(NamedTuple):
+class ChartFactors(NamedTuple):
     """Factors for a sample of n values: limits of averages and ranges, and ratio of range to deviation."""
 
     a2: float
@@ -110,58 +110,58 @@ class Constants(NamedTuple):
 
 
 # =
-CONSTANTS: dict[int, Constants] = {
-    2: Constants(1.880, 0.0, 3.267, 1.128),
-    3: Constants(1.023, 0.0, 2.575, 1.693),
-    4: Constants(0.729, 0.0, 2.282, 2.059),
-    5: Constants(0.577, 0.0, 2.114, 2.326),
-    6: Constants(0.483, 0.0, 2.004, 2.534),
-    7: Constants(0.419, 0.076, 1.924, 2.704),
-    8: Constants(0.373, 0.136, 1.864, 2.847),
-    9: Constants(0.337, 0.184, 1.816, 2.970),
-    10: Constants(0.308, 0.223, 1.777, 3.078),
+CHART_FACTORS: dict[int, ChartFactors] = {
+    2: ChartFactors(1.880, 0.0, 3.267, 1.128),
+    3: ChartFactors(1.023, 0.0, 2.575, 1.693),
+    4: ChartFactors(0.729, 0.0, 2.282, 2.059),
+    5: ChartFactors(0.577, 0.0, 2.114, 2.326),
+    6: ChartFactors(0.483, 0.0, 2.004, 2.534),
+    7: ChartFactors(0.419, 0.076, 1.924, 2.704),
+    8: ChartFactors(0.373, 0.136, 1.864, 2.847),
+    9: ChartFactors(0.337, 0.184, 1.816, 2.970),
+    10: ChartFactors(0.308, 0.223, 1.777, 3.078),
 }
 SAMPLE_SIZES = range(2, 11)
 
 
 @dataclass(frozen=True, slots=True)
-class Chart:
+class ControlChart:
     """One chart: its points in order, the center line and the two limits."""
 
     points: FloatArray
-    centre: float
-    lower: float
-    upper: float
+    center_line: float
+    lower_limit: float
+    upper_limit: float
 
     @property
     def sigma(self) -> float:
         """Standard deviation of the points that corresponds to the limits; 0 if the points do not vary."""
-        return (self.upper - self.centre) / 3.0
+        return (self.upper_limit - self.center_line) / 3.0
 
     @property
-    def settled(self) -> bool:
+    def has_stable_limits(self) -> bool:
         """Whether there are enough points for stable limits."""
-        return len(self.points) >= SETTLED
+        return len(self.points) >= MIN_STABLE_POINTS
 
 
 @dataclass(frozen=True, slots=True)
-class ChartPair:
+class ControlChartPair:
     """Charts of location and spread; ``within`` is the standard deviation within samples."""
 
-    location: Chart
-    spread: Chart
-    within: float
-    size: int  # values in a sample; 1 means individuals
+    location: ControlChart
+    spread: ControlChart
+    within_sigma: float
+    sample_size: int  # values in a sample; 1 means individuals
 
 
-def charts_of(values: Sequence[float], size: int) -> ChartPair:
+def make_charts(values: Sequence[float], size: int) -> ControlChartPair:
     """Return the charts of values in the order of the parts.
 
     The chart is for individuals if ``size`` is 1, otherwise X-bar/R. An incomplete last sample is omitted.
     Raises QualityError.
     """
     if size == 1:
-        return individuals(values)
+        return make_individuals_charts(values)
     if size not in SAMPLE_SIZES:
         raise QualityError(
             Message(
@@ -173,10 +173,10 @@ def charts_of(values: Sequence[float], size: int) -> ChartPair:
             "sample-size",
         )
     whole = len(values) // size * size
-    return average_and_range(np.asarray(values[:whole], dtype=np.float64).reshape(-1, size))
+    return make_xbar_r_charts(np.asarray(values[:whole], dtype=np.float64).reshape(-1, size))
 
 
-def average_and_range(samples: npt.ArrayLike) -> ChartPair:
+def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
     """Return X-bar/R charts of samples, one in each row. Raises QualityError."""
     table = np.asarray(samples, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
@@ -192,18 +192,18 @@ def average_and_range(samples: npt.ArrayLike) -> ChartPair:
             ),
             "too-few-readings",
         )
-    factors = CONSTANTS[table.shape[1]]
+    factors = CHART_FACTORS[table.shape[1]]
     means, ranges = table.mean(axis=1), np.ptp(table, axis=1)
     mean, spread = float(means.mean()), float(ranges.mean())
-    return ChartPair(
-        Chart(means, mean, mean - factors.a2 * spread, mean + factors.a2 * spread),
-        Chart(ranges, spread, factors.d3 * spread, factors.d4 * spread),
+    return ControlChartPair(
+        ControlChart(means, mean, mean - factors.a2 * spread, mean + factors.a2 * spread),
+        ControlChart(ranges, spread, factors.d3 * spread, factors.d4 * spread),
         spread / factors.d2,
         table.shape[1],
     )
 
 
-def individuals(values: Sequence[float]) -> ChartPair:
+def make_individuals_charts(values: Sequence[float]) -> ControlChartPair:
     """Return charts of individuals and moving ranges of two. Raises QualityError.
 
     The limits are at 3/d2 = 2.660 mean ranges.
@@ -214,13 +214,13 @@ def individuals(values: Sequence[float]) -> ChartPair:
         raise QualityError(
             "an individuals chart needs at least 2 values; measure more parts", "too-few-readings"
         )
-    factors = CONSTANTS[2]
+    factors = CHART_FACTORS[2]
     moving = np.abs(np.diff(points))
     mean, spread = float(points.mean()), float(moving.mean())
     reach = 3.0 / factors.d2 * spread
-    return ChartPair(
-        Chart(points, mean, mean - reach, mean + reach),
-        Chart(moving, spread, factors.d3 * spread, factors.d4 * spread),
+    return ControlChartPair(
+        ControlChart(points, mean, mean - reach, mean + reach),
+        ControlChart(moving, spread, factors.d3 * spread, factors.d4 * spread),
         spread / factors.d2,
         1,
     )
@@ -231,54 +231,56 @@ def _demand_finite(values: FloatArray) -> None:
         raise QualityError("a value is not a number; delete that reading", "not-a-number")
 
 
-Zones = npt.NDArray[np.float64]
+ZoneArray = npt.NDArray[np.float64]
 
 
-class Finding(NamedTuple):
+class RuleViolation(NamedTuple):
     """A violated rule: the last point of the run, counted from 0, the rule's number, and its text."""
 
-    point: int
-    rule: int
-    words: str
+    point_index: int
+    rule_number: int
+    text: str
 
 
-def findings(chart: Chart) -> tuple[Finding, ...]:
+def find_rule_violations(chart: ControlChart) -> tuple[RuleViolation, ...]:
     """Return the violations of all rules, sorted by point; () if the points do not vary."""
     if chart.sigma <= 0.0 or not len(chart.points):
         return ()
-    zones = (chart.points - chart.centre) / chart.sigma
+    zones = (chart.points - chart.center_line) / chart.sigma
     found = [
-        Finding(point, number, words) for number, (words, rule) in RULES.items() for point in rule(zones)
+        RuleViolation(point, number, words)
+        for number, (words, rule) in CONTROL_RULES.items()
+        for point in rule(zones)
     ]
     return tuple(sorted(found))
 
 
-def _beyond(zones: Zones) -> Iterator[int]:
+def _beyond(zones: ZoneArray) -> Iterator[int]:
     yield from (int(at) for at in np.nonzero(np.abs(zones) > 3.0)[0])
 
 
-def _runs(zones: Zones, length: int, whole: Callable[[Zones], bool]) -> Iterator[int]:
+def _runs(zones: ZoneArray, length: int, whole: Callable[[ZoneArray], bool]) -> Iterator[int]:
     """Yield the last point of each run of ``length`` points for which ``whole`` is true."""
     for end in range(length, len(zones) + 1):
         if whole(zones[end - length : end]):
             yield end - 1
 
 
-def _one_side(zones: Zones) -> bool:
+def _one_side(zones: ZoneArray) -> bool:
     return bool((zones > 0.0).all() or (zones < 0.0).all())
 
 
-def _steady(zones: Zones) -> bool:
+def _steady(zones: ZoneArray) -> bool:
     steps = np.diff(zones)
     return bool((steps > 0.0).all() or (steps < 0.0).all())
 
 
-def _alternating(zones: Zones) -> bool:
+def _alternating(zones: ZoneArray) -> bool:
     steps = np.diff(zones)
     return bool((steps[1:] * steps[:-1] < 0.0).all())
 
 
-def _so_many(zones: Zones, count: int, beyond: float) -> bool:
+def _so_many(zones: ZoneArray, count: int, beyond: float) -> bool:
     """Return whether the last point and others are beyond a limit on the same side.
 
     ``count`` is the least number of such points, and ``beyond`` the limit in sigma.
@@ -288,7 +290,7 @@ def _so_many(zones: Zones, count: int, beyond: float) -> bool:
     return bool(far[-1] and far.sum() >= count)
 
 
-RULES: dict[int, tuple[str, Callable[[Zones], Iterator[int]]]] = {
+CONTROL_RULES: dict[int, tuple[str, Callable[[ZoneArray], Iterator[int]]]] = {
     1: ("one point beyond a control limit", _beyond),
     2: ("nine points in a row on one side of the center line", lambda z: _runs(z, 9, _one_side)),
     3: ("six points in a row rising or falling", lambda z: _runs(z, 6, _steady)),

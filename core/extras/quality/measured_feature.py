@@ -18,10 +18,10 @@ import numpy as np
 from core.extras.quality.control_charts import SAMPLE_SIZES, QualityError
 from core.message import Message
 
-NUMBERS = range(1, 33)
-NAME_LONGEST = 24
-SIZE_MOST = 2540.0  # mm, 100 in
-EVERY_MOST = 10_000
+OFFSET_NUMBERS = range(1, 33)
+MAX_NAME_LENGTH = 24
+MAX_SIZE_MM = 2540.0  # mm, 100 in
+MAX_SAMPLE_INTERVAL = 10_000
 
 
 class FeatureKind(StrEnum):
@@ -31,7 +31,7 @@ class FeatureKind(StrEnum):
     LENGTH = "length"
 
 
-class CorrectedBy(StrEnum):
+class CorrectingOffset(StrEnum):
     """Kind of offset that corrects the feature: wear of a tool, or a secondary offset."""
 
     TOOL = "tool"
@@ -39,7 +39,7 @@ class CorrectedBy(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Feature:
+class MeasuredFeature:
     """A measured feature; ``low`` and ``high`` are deviations from the nominal size.
 
     ``every`` is the number of parts between two measurements, or 0 without a sampling plan.
@@ -50,7 +50,7 @@ class Feature:
     nominal: float
     low: float
     high: float
-    by: CorrectedBy
+    by: CorrectingOffset
     number: int
     grows: int = 1
     every: int = 0
@@ -79,7 +79,7 @@ class Feature:
     @property
     def corrected_by(self) -> str:
         """Name of the correcting offset and axis, such as ``T3 X`` or ``D4 Z``."""
-        return f"{'T' if self.by is CorrectedBy.TOOL else 'D'}{self.number} {self.axis.upper()}"
+        return f"{'T' if self.by is CorrectingOffset.TOOL else 'D'}{self.number} {self.axis.upper()}"
 
     def good(self, size: float) -> bool:
         """Return whether a size is within the tolerance, including its limits."""
@@ -87,11 +87,11 @@ class Feature:
         return low - 1e-9 <= size <= high + 1e-9
 
 
-def check_feature(feature: Feature) -> None:
+def check_feature(feature: MeasuredFeature) -> None:
     """Raise QualityError with a remedy if the feature cannot be measured or corrected."""
-    if not feature.name.strip() or len(feature.name) > NAME_LONGEST or not feature.name.isprintable():
+    if not feature.name.strip() or len(feature.name) > MAX_NAME_LENGTH or not feature.name.isprintable():
         raise QualityError(
-            Message("a feature name must have 1 to {name_longest} characters", name_longest=NAME_LONGEST),
+            Message("a feature name must have 1 to {name_longest} characters", name_longest=MAX_NAME_LENGTH),
             "invalid-name",
         )
     if not all(map(math.isfinite, (feature.nominal, feature.low, feature.high))):
@@ -99,12 +99,12 @@ def check_feature(feature: Feature) -> None:
             Message("{feature}: the nominal dimension and the limits must be numbers", feature=feature.name),
             "not-a-number",
         )
-    if not 0.0 < feature.nominal <= SIZE_MOST:
+    if not 0.0 < feature.nominal <= MAX_SIZE_MM:
         raise QualityError(
             Message(
                 "{feature}: the nominal dimension must be more than 0 and at most {size_most} mm",
                 feature=feature.name,
-                size_most=f"{SIZE_MOST:g}",
+                size_most=f"{MAX_SIZE_MM:g}",
             ),
             "nominal",
         )
@@ -121,12 +121,12 @@ def check_feature(feature: Feature) -> None:
             Message("{feature}: the lower limit is 0 or less; correct the deviation", feature=feature.name),
             "lower-limit",
         )
-    if feature.number not in NUMBERS:
+    if feature.number not in OFFSET_NUMBERS:
         raise QualityError(
             Message(
                 "{feature}: the offset number must be 1 to {numbers}, not {number}",
                 feature=feature.name,
-                numbers=NUMBERS[-1],
+                numbers=OFFSET_NUMBERS[-1],
                 number=feature.number,
             ),
             "offset-number",
@@ -140,13 +140,13 @@ def check_feature(feature: Feature) -> None:
             ),
             "direction",
         )
-    if not 0 <= feature.every <= EVERY_MOST:
+    if not 0 <= feature.every <= MAX_SAMPLE_INTERVAL:
         raise QualityError(
             Message(
                 "{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for "
                 "no sampling plan",
                 feature=feature.name,
-                every_most=EVERY_MOST,
+                every_most=MAX_SAMPLE_INTERVAL,
             ),
             "interval",
         )
@@ -162,7 +162,7 @@ def check_feature(feature: Feature) -> None:
 
 
 # mm at the offset (X as a radius), the limit of the offset tables; a larger change requires a touch-off
-WEAR_MOST = 2.54
+MAX_CORRECTION_MM = 2.54
 _FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 
 
@@ -170,32 +170,34 @@ _FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 class CorrectionRule:
     """Rule for corrections: dead band and step as fractions of the tolerance and of the deviation.
 
-    ``dead`` is the fraction of the tolerance within which nothing is corrected. ``step`` is the fraction of
-    the deviation that is corrected. ``last`` is the number of newest readings that are averaged. A step of
-    one half follows the variation of single parts only half as much.
+    ``dead_band_share`` is the fraction of the tolerance within which nothing is corrected. ``step_share`` is
+    the fraction of the deviation that is corrected. ``reading_count`` is the number of newest readings that
+    are averaged. A step of one half follows the variation of single parts only half as much.
     """
 
-    dead: float = 0.1
-    step: float = 0.5
-    last: int = 5
+    dead_band_share: float = 0.1
+    step_share: float = 0.5
+    reading_count: int = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Proposal:
-    """A proposed correction; ``change`` is in mm, as a diameter for a diameter, and 0 for no correction."""
+class CorrectionProposal:
+    """A proposed correction; ``change_mm`` is in mm, as a diameter for a diameter, and 0 for no
+    correction.
+    """
 
-    feature: Feature
-    count: int  # number of readings used
-    mean: float
-    change: float
-    offset_change: float  # the change of the offset, X as a radius
-    expected: float  # expected size of parts with the correction
-    why: str  # reason why no correction is needed
+    feature: MeasuredFeature
+    reading_count: int  # number of readings used
+    mean_deviation: float
+    change_mm: float
+    offset_change_mm: float  # the change of the offset, X as a radius
+    expected_size: float  # expected size of parts with the correction
+    reason: str  # reason why no correction is needed
 
 
-def propose(
-    feature: Feature, readings: Sequence[float], resolution: float, rule: CorrectionRule | None = None
-) -> Proposal:
+def propose_correction(
+    feature: MeasuredFeature, readings: Sequence[float], resolution: float, rule: CorrectionRule | None = None
+) -> CorrectionProposal:
     """Propose a correction from the newest readings since the last correction.
 
     The change is a multiple of ``resolution`` in mm. Raises QualityError if there are no readings, or if wear
@@ -207,7 +209,7 @@ def propose(
             Message("{feature}: no part has been measured since the last correction", feature=feature.name),
             "no-readings",
         )
-    newest = np.asarray(readings[-rule.last :], dtype=np.float64)
+    newest = np.asarray(readings[-rule.reading_count :], dtype=np.float64)
     if not np.isfinite(newest).all():
         raise QualityError(
             Message("{feature}: a reading is not a number; delete that reading", feature=feature.name),
@@ -225,11 +227,11 @@ def propose(
         )
     mean = float(newest.mean())
     deviation = mean - feature.middle
-    if abs(deviation) <= rule.dead * feature.width + 1e-12:
+    if abs(deviation) <= rule.dead_band_share * feature.width + 1e-12:
         return _nothing(
             feature, len(newest), mean, "the deviation is within the dead band, so no correction is needed"
         )
-    change = -feature.grows * _whole_steps(rule.step * deviation, resolution)
+    change = -feature.grows * _round_to_resolution(rule.step_share * deviation, resolution)
     if change == 0.0:
         return _nothing(
             feature,
@@ -238,7 +240,7 @@ def propose(
             "the correction would be less than the smallest offset step, so no correction is needed",
         )
     at_offset = change / 2.0 if feature.axis == "x" else change
-    if abs(at_offset) > WEAR_MOST:
+    if abs(at_offset) > MAX_CORRECTION_MM:
         raise QualityError(
             Message(
                 "{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off",
@@ -247,14 +249,16 @@ def propose(
             ),
             "correction-too-large",
         )
-    return Proposal(feature, len(newest), mean, change, at_offset, mean + feature.grows * change, "")
+    return CorrectionProposal(
+        feature, len(newest), mean, change, at_offset, mean + feature.grows * change, ""
+    )
 
 
-def _nothing(feature: Feature, count: int, mean: float, why: str) -> Proposal:
-    return Proposal(feature, count, mean, 0.0, 0.0, mean, why)
+def _nothing(feature: MeasuredFeature, count: int, mean: float, why: str) -> CorrectionProposal:
+    return CorrectionProposal(feature, count, mean, 0.0, 0.0, mean, why)
 
 
-def _whole_steps(length: float, resolution: float) -> float:
+def _round_to_resolution(length: float, resolution: float) -> float:
     """Return a length rounded to the resolution, with halves toward zero so that it is never too large."""
     steps = math.ceil(abs(length) / resolution - 0.5 - 1e-9)
     return math.copysign(max(0, steps) * resolution, length) if steps > 0 else 0.0

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from core.extras.shapes.shape_fields import Refusal, Setting
+from core.extras.shapes.shape_fields import FieldError, ProgramSettings
 from core.language.source import Dialect
 from core.message import Message
 
@@ -16,13 +16,13 @@ _LINE = re.compile(r"(?:G02|G03)?(?:[XZCR]-?(?:\d+\.?\d*|\.\d+))+")
 _S_LINE = re.compile(r"(?:G[123](?!\d))?(?:(?:[XZF]|CHR=|RND=|CR=)-?(?:\d+\.?\d*|\.\d+))+")
 _S_WORD = re.compile(r"(X|Z|CHR=|RND=|CR=)(-?\d+\.?\d*|-?\.\d+)")
 _OFF = 0.0005  # in; difference between a chord and two radii that the control accepts
-SAME = 1e-9
+POINT_TOLERANCE = 1e-9
 
 Point = tuple[float, float]  # (Z, radius)
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ContourPoint:
     """A point of a contour; ``x`` is a diameter, or None if it is unchanged.
 
     ``arc`` is the radius of the arc to the point, positive for G02 and negative for G03. ``chamfer`` or
@@ -38,15 +38,15 @@ class Row:
     @property
     def empty(self) -> bool:
         """Whether the row has no values."""
-        return self == Row()
+        return self == ContourPoint()
 
 
-def row_word(number: int) -> str:
+def make_point_label(number: int) -> str:
     """Return the name of a row in error messages; rows are counted from 1."""
     return f"#{number}"
 
 
-def points(rows: Iterable[Row]) -> list[Point]:
+def resolve_points(rows: Iterable[ContourPoint]) -> list[Point]:
     """Return the points of the rows, with missing values replaced by those of the previous row."""
     x = z = 0.0
     found = []
@@ -57,12 +57,12 @@ def points(rows: Iterable[Row]) -> list[Point]:
     return found
 
 
-def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
+def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
     """Return the rows from which these lines were made; None if a line has other contents."""
-    if setting.dialect is Dialect.SINUMERIK:
-        return _read_sinumerik(lines, setting)
+    if settings.dialect is Dialect.SINUMERIK:
+        return _read_sinumerik(lines, settings)
     rows = []
-    scale = 1.0 if setting.diameter else 2.0
+    scale = 1.0 if settings.diameter else 2.0
     for line in lines:
         if not _LINE.fullmatch(line):
             return None
@@ -70,14 +70,14 @@ def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | No
         x, z, r = words.get("X"), words.get("Z"), words.get("R", 0.0)
         x = None if x is None else x * scale
         arc = r if "G02" in words else -r if "G03" in words else 0.0
-        rows.append(Row(x, z, words.get("C", 0.0), 0.0 if arc else r, arc))
+        rows.append(ContourPoint(x, z, words.get("C", 0.0), 0.0 if arc else r, arc))
     return tuple(rows)
 
 
-def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
+def _read_sinumerik(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
     """Return the rows from SINUMERIK lines, in which G3 is a convex arc with X drawn upward."""
     rows = []
-    scale = 1.0 if setting.diameter else 2.0
+    scale = 1.0 if settings.diameter else 2.0
     for line in lines:
         if not _S_LINE.fullmatch(line):
             return None
@@ -85,30 +85,32 @@ def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] |
         x, r = words.get("X"), words.get("CR=", 0.0)
         arc = r if line.startswith("G3") else -r if line.startswith("G2") else 0.0
         x = None if x is None else x * scale
-        rows.append(Row(x, words.get("Z"), words.get("CHR=", 0.0), words.get("RND=", 0.0), arc))
+        rows.append(ContourPoint(x, words.get("Z"), words.get("CHR=", 0.0), words.get("RND=", 0.0), arc))
     return tuple(rows)
 
 
 # --- Errors of a contour
 
 
-def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
+def find_contour_errors(rows: Sequence[ContourPoint]) -> Iterator[FieldError]:
     """Yield the errors in a table of points, row by row."""
     if len(rows) < 2:
-        yield Refusal(row_word(len(rows) + 1), "A contour needs at least two points: enter the next point.")
+        yield FieldError(
+            make_point_label(len(rows) + 1), "A contour needs at least two points: enter the next point."
+        )
         return
     if rows[0].x is None or rows[0].z is None:
-        yield Refusal(row_word(1), "The first point is the start of the contour: enter X and Z.")
+        yield FieldError(make_point_label(1), "The first point is the start of the contour: enter X and Z.")
         return
-    there = points(rows)
+    there = resolve_points(rows)
     for number, (row, begin, end) in enumerate(zip(rows[1:], there, there[1:], strict=False), 2):
         yield from _row(row, number, begin, end)
     for number, row in enumerate(rows[1:], 2):
         yield from _corner(rows, there, number, row)
-    if any(r < -SAME for _, r in there):
-        number = next(n for n, (_, r) in enumerate(there, 1) if r < -SAME)
-        yield Refusal(
-            row_word(number),
+    if any(r < -POINT_TOLERANCE for _, r in there):
+        number = next(n for n, (_, r) in enumerate(there, 1) if r < -POINT_TOLERANCE)
+        yield FieldError(
+            make_point_label(number),
             Message(
                 "Point {number} is past the spindle centerline: X is a diameter and must be 0 or more.",
                 number=number,
@@ -116,16 +118,16 @@ def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
         )
 
 
-def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
+def _row(row: ContourPoint, number: int, begin: Point, end: Point) -> Iterator[FieldError]:
     chord = math.dist(begin, end)
-    if chord < SAME:
-        yield Refusal(
-            row_word(number),
+    if chord < POINT_TOLERANCE:
+        yield FieldError(
+            make_point_label(number),
             Message("Point {number} is the same as the previous point: enter another X or Z.", number=number),
         )
     elif row.arc and chord > 2.0 * abs(row.arc) + _OFF:
-        yield Refusal(
-            row_word(number),
+        yield FieldError(
+            make_point_label(number),
             Message(
                 "The arc to point {number} spans {chord}, but with radius {arc} it can span only "
                 "{arc2}: enter a larger radius.",
@@ -137,10 +139,12 @@ def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
         )
 
 
-def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) -> Iterator[Refusal]:
+def _corner(
+    rows: Sequence[ContourPoint], there: Sequence[Point], number: int, row: ContourPoint
+) -> Iterator[FieldError]:
     if row.chamfer < 0 or row.radius < 0:
-        yield Refusal(
-            row_word(number),
+        yield FieldError(
+            make_point_label(number),
             Message(
                 "The corner at point {number} has a size below 0: enter the correct size.", number=number
             ),
@@ -149,13 +153,13 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
     if size <= 0:
         return
     if number == len(rows):
-        yield Refusal(
-            row_word(number),
+        yield FieldError(
+            make_point_label(number),
             Message("The corner at point {number} needs a line after it: add a point.", number=number),
         )
     elif row.arc or rows[number].arc:
-        yield Refusal(
-            row_word(number),
+        yield FieldError(
+            make_point_label(number),
             Message(
                 "Point {number} has a chamfer or radius next to an arc. The control can cut a "
                 "chamfer or radius only between two straight lines.",
@@ -167,9 +171,9 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
         room = min(
             math.dist(there[number - 2], there[number - 1]), math.dist(*there[number - 1 : number + 1])
         )
-        if back > room + SAME:
-            yield Refusal(
-                row_word(number),
+        if back > room + POINT_TOLERANCE:
+            yield FieldError(
+                make_point_label(number),
                 Message(
                     "The corner at point {number} needs {back} of line length, but the line is "
                     "only {room} long: make the corner smaller.",
@@ -180,7 +184,7 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
             )
 
 
-def _set_back(row: Row, before: Point, here: Point, behind: Point) -> float:
+def _set_back(row: ContourPoint, before: Point, here: Point, behind: Point) -> float:
     """Return the length that a corner removes from each of its lines."""
     if row.chamfer:
         return row.chamfer
@@ -196,9 +200,9 @@ def _direction(a: Point, b: Point) -> float:
 # --- Contour as a drawing
 
 
-def outline(rows: Sequence[Row]) -> list[Point]:
+def make_outline(rows: Sequence[ContourPoint]) -> list[Point]:
     """Return the contour as a polyline, with corners cut and arcs divided into chords."""
-    there = points(rows)
+    there = resolve_points(rows)
     if not there:
         return []
     drawn = [there[0]]
@@ -207,7 +211,7 @@ def outline(rows: Sequence[Row]) -> list[Point]:
         size = row.chamfer or row.radius
         if row.arc:
             drawn += _arc(there[number - 1], here, row.arc)
-        elif size > 0 and number + 1 < len(rows) and math.dist(there[number - 1], here) > SAME:
+        elif size > 0 and number + 1 < len(rows) and math.dist(there[number - 1], here) > POINT_TOLERANCE:
             drawn += _cut_corner(row, there[number - 1], here, there[number + 1])
         else:
             drawn.append(here)
@@ -219,7 +223,7 @@ def _along(a: Point, b: Point, far: float) -> Point:
     return a[0] + (b[0] - a[0]) * far / whole, a[1] + (b[1] - a[1]) * far / whole
 
 
-def _cut_corner(row: Row, before: Point, here: Point, behind: Point) -> list[Point]:
+def _cut_corner(row: ContourPoint, before: Point, here: Point, behind: Point) -> list[Point]:
     back = min(_set_back(row, before, here, behind), math.dist(before, here), math.dist(here, behind))
     a, b = _along(here, before, back), _along(here, behind, back)
     if row.chamfer:
@@ -240,7 +244,7 @@ def _arc(a: Point, b: Point, radius: float) -> list[Point]:
     """Return the chords of an arc from ``a`` to ``b``; G02 is counterclockwise when X is drawn upward."""
     chord = math.dist(a, b)
     r = max(abs(radius), chord / 2.0)
-    if chord < SAME:
+    if chord < POINT_TOLERANCE:
         return [b]
     high = math.sqrt(max(r * r - chord * chord / 4.0, 0.0))
     middle = (a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0

@@ -12,13 +12,13 @@ from core.language.source import Dialect
 from core.message import Message
 from core.part.tool_shape import ToolShape
 
-Value = float | str
-Values = Mapping[str, Value]
+FieldValue = float | str
+FieldValues = Mapping[str, FieldValue]
 """By the word of the field; lengths in the unit of the program, diameters as diameters."""
-Proposal = Callable[[Values, "Setting"], Value | None]
+ValueProposal = Callable[[FieldValues, "ProgramSettings"], FieldValue | None]
 
 
-class Kind(StrEnum):
+class FieldKind(StrEnum):
     """Kind of a field's value."""
 
     LENGTH = "length"
@@ -30,7 +30,7 @@ class Kind(StrEnum):
     FEED = "feed"  # per revolution
     RATE = "rate"  # per minute
     RPM = "rpm"
-    SURFACE = "surface"  # ft/min, or m/min in a metric program
+    SURFACE_SPEED = "surface"  # ft/min, or m/min in a metric program
     SECONDS = "seconds"
     TOOL = "tool"
     OFFSET = "offset"  # =
@@ -38,54 +38,54 @@ class Kind(StrEnum):
     NAME = "name"
 
 
-LENGTHS = frozenset({Kind.LENGTH, Kind.DIAMETER, Kind.COORDINATE})
-WHOLE = frozenset({Kind.COUNT, Kind.TOOL, Kind.OFFSET})
-WORDS = frozenset({Kind.CHOICE, Kind.NAME})
+LENGTH_KINDS = frozenset({FieldKind.LENGTH, FieldKind.DIAMETER, FieldKind.COORDINATE})
+INTEGER_KINDS = frozenset({FieldKind.COUNT, FieldKind.TOOL, FieldKind.OFFSET})
+TEXT_KINDS = frozenset({FieldKind.CHOICE, FieldKind.NAME})
 
 
-class Refusal(NamedTuple):
+class FieldError(NamedTuple):
     """An error of a field: its word, and a sentence with the error and a remedy."""
 
-    word: str
+    field_word: str
     text: str
 
 
-def _always(_values: Values) -> bool:
+def _always(_values: FieldValues) -> bool:
     return True
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class ShapeField:
     """A field of a shape; ``word`` is its name in the comment and ``label`` its name on the form.
 
-    ``start`` is the proposed value. ``zero`` means that 0 is allowed, as "none". ``only`` returns whether the
-    field exists for the other values. ``marked`` adds MM to metric values in the comment, for readers that
-    use the value as a tool size without knowing the program's unit.
+    ``default`` is the proposed value. ``allows_zero`` means that 0 is allowed, as "none". ``applies_to``
+    returns whether the field exists for the other values. ``is_in_comment`` adds MM to metric values in the
+    comment, for readers that use the value as a tool size without knowing the program's unit.
     """
 
     word: str
     label: str
-    kind: Kind = Kind.LENGTH
-    start: Proposal | Value | None = None
+    kind: FieldKind = FieldKind.LENGTH
+    default: ValueProposal | FieldValue | None = None
     choices: tuple[str, ...] = ()
-    most: float = inf
-    zero: bool = False
-    only: Callable[[Values], bool] = field(default=_always)
-    marked: bool = False
-    tools: tuple[str, ...] = ()  # for T, the permitted kinds of tool
+    maximum: float = inf
+    allows_zero: bool = False
+    applies_to: Callable[[FieldValues], bool] = field(default=_always)
+    is_in_comment: bool = False
+    tool_kinds: tuple[str, ...] = ()  # for T, the permitted kinds of tool
 
-    def proposed(self, values: Values, setting: Setting) -> Value | None:
+    def propose_value(self, values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
         """Return the proposed value; None if a value must be entered."""
-        return self.start(values, setting) if callable(self.start) else self.start
+        return self.default(values, settings) if callable(self.default) else self.default
 
-    def refusal(self, value: Value | None) -> Refusal | None:
+    def find_error(self, value: FieldValue | None) -> FieldError | None:
         """Return the error of a single value, or None."""
         said = self._wrong_word(value) if isinstance(value, str | None) else self._wrong_number(value)
-        return Refusal(self.word, said) if said else None
+        return FieldError(self.word, said) if said else None
 
     def _wrong_word(self, value: str | None) -> str:
         if value is None:
-            if self.kind is Kind.NAME:
+            if self.kind is FieldKind.NAME:
                 return Message(
                     "{label} is missing: enter a value, or choose one with the arrows.",
                     label=Message(self.label),
@@ -101,89 +101,90 @@ class Field:
         return ""
 
     def _wrong_number(self, value: float) -> str:
-        if self.kind in WHOLE and value != int(value):
+        if self.kind in INTEGER_KINDS and value != int(value):
             return Message(
                 "{label} {value} is not a whole number: enter a number such as 1, 2 or 3.",
                 label=Message(self.label),
                 value=f"{value:g}",
             )
-        if value > self.most:
+        if value > self.maximum:
             return Message(
                 "{label} {value} is more than {maximum}: enter a smaller value.",
                 label=Message(self.label),
                 value=f"{value:g}",
-                maximum=f"{self.most:g}",
+                maximum=f"{self.maximum:g}",
             )
-        if self.kind in {Kind.COORDINATE, Kind.ANGLE}:
+        if self.kind in {FieldKind.COORDINATE, FieldKind.ANGLE}:
             return ""
-        if value < 0.0 or (value == 0.0 and not self.zero):
+        if value < 0.0 or (value == 0.0 and not self.allows_zero):
             return Message(
                 "{label} is {value}, but must be more than 0.", label=Message(self.label), value=f"{value:g}"
             )
         return ""
 
 
-def choice_text(each: Field, choice: str) -> str:
+def make_choice_text(field: ShapeField, choice: str) -> str:
     """Return the text by which translation catalogs identify a choice: the field's label and the choice."""
-    return f"{each.label}: {choice}"
+    return f"{field.label}: {choice}"
 
 
-def size(inch: float, metric: float) -> Proposal:
+def propose_length(inch_value: float, metric: float) -> ValueProposal:
     """Return a proposal for a length in the unit of the program."""
-    return lambda _values, setting: metric if setting.metric else inch
+    return lambda _values, setting: metric if setting.metric else inch_value
 
 
-def number(values: Values, word: str) -> float:
+def number(values: FieldValues, word: str) -> float:
     """Return the value of a number field; 0 if it is missing."""
     value = values.get(word, 0.0)
     return float(value) if not isinstance(value, str) else 0.0
 
 
-def text(values: Values, word: str) -> str:
+def text(values: FieldValues, word: str) -> str:
     """Return the value of a text field; empty if it is missing."""
     value = values.get(word, "")
     return value if isinstance(value, str) else ""
 
 
 _NEAR = {False: 0.1, True: 2.5}  # by metric; distance from the part at which a rapid ends
-CLEAR = {False: 1.0, True: 25.0}  # by metric; default Z of the tool change position
+DEFAULT_CHANGE_Z = {False: 1.0, True: 25.0}  # by metric; default Z of the tool change position
 
 
 @dataclass(frozen=True, slots=True)
-class Shop:
+class ShopData:
     """Data of the machine and its tools: rpm, live tool, and tools by T in mm."""
 
     max_rpm: float = 3500.0
-    power: float = 1500.0  # W at the highest speed; the default is a small drive
-    slide_accel: float = 0.0  # mm/s², or 0 if it is unknown
-    c_rpm: float = 200.0
-    live: tuple[int, int] = (15, 16)  # =
-    live_output: bool = True  # SINUMERIK: an output drives the live tool as spindle 2
+    spindle_power: float = 1500.0  # W at the highest speed; the default is a small drive
+    max_acceleration: float = 0.0  # mm/s², or 0 if it is unknown
+    max_c_rpm: float = 200.0
+    live_tool_codes: tuple[int, int] = (15, 16)  # =
+    has_live_output: bool = True  # SINUMERIK: an output drives the live tool as spindle 2
     third_axis: str = "C"  # name of the C axis in SINUMERIK programs; empty without a C axis
-    spindle_is_c: bool = True  # the C axis is the spindle, so rigid tapping is possible
-    chuck: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close the chuck
+    has_spindle_as_c: bool = True  # the C axis is the spindle, so rigid tapping is possible
+    chuck_codes: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close the chuck
     travel: tuple[float, float] = (0.0, 0.0)  # mm, travel of X (as a radius) and of Z, or 0 if unknown
     tools: Mapping[int, ToolShape] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
-class Setting:
+class ProgramSettings:
     """State of the program in which a shape is written, with lengths in the unit of the program.
 
-    ``change_z`` is Z of the tool change position, or 0 if it is not specified, and ``bar`` the bar diameter.
-    ``called`` means that the shape is in a subroutine. ``used`` are the tools used before it. ``free_sub`` is
-    the first number that no subroutine of the program uses, and in SINUMERIK no labeled contour.
+    ``tool_change_z`` is Z of the tool change position, or 0 if it is not specified, and ``bar`` the bar
+    diameter. ``is_subroutine`` means that the shape is in a subroutine. ``used`` are the tools used before
+    it. ``free_subroutine`` is the first number that no subroutine of the program uses, and in SINUMERIK no
+    labeled contour.
     """
 
     metric: bool = False
     diameter: bool = True
-    change_z: float = 0.0
+    tool_change_z: float = 0.0
     bar: float = 0.0
     material: str = ""
-    called: bool = False
+    is_subroutine: bool = False
     used: frozenset[int] = frozenset()
-    free_sub: int = 1
-    shop: Shop = field(default_factory=Shop)
+    free_subroutine: int = 1
+    shop: ShopData = field(default_factory=ShopData)
     dialect: Dialect = Dialect.OMNITURN
 
     @property
@@ -194,7 +195,7 @@ class Setting:
     @property
     def clear(self) -> float:
         """Z of the tool change position."""
-        return self.change_z or CLEAR[self.metric]
+        return self.tool_change_z or DEFAULT_CHANGE_Z[self.metric]
 
     @property
     def mm(self) -> float:

@@ -4,116 +4,118 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.extras.shapes.calculators import SPEED, THREADS, TRIANGLE
-from core.extras.shapes.forms.bar_work import LOOP, PART_OFF, SINUMERIK_LOOP
-from core.extras.shapes.forms.drilling import DRILL
-from core.extras.shapes.forms.grooving import GROOVE, SINUMERIK_GROOVE
+from core.extras.shapes.calculators import SPEED_CALCULATOR, TAPER_CALCULATOR, THREAD_CALCULATOR
+from core.extras.shapes.editor_shape import Shape
+from core.extras.shapes.forms.bar_work import BAR_LOOP_SHAPE, PARTING_SHAPE, SINUMERIK_BAR_LOOP_SHAPE
+from core.extras.shapes.forms.drilling import DRILLING_SHAPE
+from core.extras.shapes.forms.grooving import GROOVE_SHAPE, SINUMERIK_GROOVE_SHAPE
 from core.extras.shapes.forms.live_tools import (
-    CROSS,
-    FLATS,
+    CROSS_HOLES_SHAPE,
+    FLATS_SHAPE,
     SINUMERIK_CROSS,
     SINUMERIK_FLATS,
     SINUMERIK_SLOT,
-    SLOT,
+    SLOT_SHAPE,
 )
-from core.extras.shapes.forms.tapers_and_bores import BORE, EDGE, TAPER
-from core.extras.shapes.forms.turning import FACE, LABEL, TURN
-from core.extras.shapes.shape import Shape
+from core.extras.shapes.forms.tapers_and_bores import BORE_SHAPE, EDGE_SHAPE, TAPER_SHAPE
+from core.extras.shapes.forms.turning import FACE, LABEL_FIELD, TURNING_SHAPE
 from core.extras.shapes.templates import (
-    BAR_FEED,
-    HEAD,
-    ROUGH,
-    SINUMERIK_BAR_FEED,
-    SINUMERIK_HEAD,
-    SINUMERIK_ROUGH,
-    SINUMERIK_SPEED,
-    SINUMERIK_START,
-    SINUMERIK_THREADING,
-    SINUMERIK_THREADS,
-    START,
-    THREADING,
-    TOOL_CHANGE,
+    BAR_FEED_TEMPLATE,
+    HEAD_SHAPE,
+    ROUGHING_TEMPLATE,
+    SINUMERIK_BAR_FEED_TEMPLATE,
+    SINUMERIK_HEAD_SHAPE,
+    SINUMERIK_ROUGHING_TEMPLATE,
+    SINUMERIK_SPEED_CALCULATOR,
+    SINUMERIK_START_TEMPLATE,
+    SINUMERIK_THREAD_CALCULATOR,
+    SINUMERIK_THREADING_TEMPLATE,
+    START_TEMPLATE,
+    THREADING_TEMPLATE,
+    TOOL_CHANGE_TEMPLATE,
 )
-from core.extras.shapes.threads.tapping import SINUMERIK_TAP, TAP
-from core.extras.shapes.threads.threading import SINUMERIK_THREAD, THREAD
+from core.extras.shapes.threads.tapping import SINUMERIK_TAPPING_SHAPE, TAPPING_SHAPE
+from core.extras.shapes.threads.threading import SINUMERIK_THREAD_SHAPE, THREAD_SHAPE
 from core.language.source import Dialect
 
 # H, E and Space stop the machine on every page, so they cannot open a shape.
-SHAPES: dict[str, Shape] = {
-    "N": HEAD,
+SHAPES_BY_KEY: dict[str, Shape] = {
+    "N": HEAD_SHAPE,
     "F": FACE,
-    "T": TURN,
-    "A": TAPER,
-    "K": EDGE,
-    "G": GROOVE,
-    "R": THREAD,
-    "D": DRILL,
-    "B": BORE,
-    "O": TAP,
-    "P": PART_OFF,
-    "L": LOOP,
-    "C": CROSS,
-    "M": FLATS,
-    "S": SLOT,
+    "T": TURNING_SHAPE,
+    "A": TAPER_SHAPE,
+    "K": EDGE_SHAPE,
+    "G": GROOVE_SHAPE,
+    "R": THREAD_SHAPE,
+    "D": DRILLING_SHAPE,
+    "B": BORE_SHAPE,
+    "O": TAPPING_SHAPE,
+    "P": PARTING_SHAPE,
+    "L": BAR_LOOP_SHAPE,
+    "C": CROSS_HOLES_SHAPE,
+    "M": FLATS_SHAPE,
+    "S": SLOT_SHAPE,
 }
 
-HELPERS: dict[str, Shape] = {
-    "T": TRIANGLE,
-    "R": THREADS,
-    "F": SPEED,
-    "N": START,
-    "C": TOOL_CHANGE,
-    "G": ROUGH,
-    "D": THREADING,
-    "B": BAR_FEED,
+CALCULATORS_BY_KEY: dict[str, Shape] = {
+    "T": TAPER_CALCULATOR,
+    "R": THREAD_CALCULATOR,
+    "F": SPEED_CALCULATOR,
+    "N": START_TEMPLATE,
+    "C": TOOL_CHANGE_TEMPLATE,
+    "G": ROUGHING_TEMPLATE,
+    "D": THREADING_TEMPLATE,
+    "B": BAR_FEED_TEMPLATE,
 }
 """Calculators and templates: forms that write lines without a comment."""
 
-SINUMERIK_HELPERS: dict[str, Shape] = {
-    "T": TRIANGLE,
-    "R": SINUMERIK_THREADS,
-    "F": SINUMERIK_SPEED,
-    "N": SINUMERIK_START,
-    "C": TOOL_CHANGE,
-    "G": SINUMERIK_ROUGH,
-    "D": SINUMERIK_THREADING,
-    "B": SINUMERIK_BAR_FEED,
+SINUMERIK_CALCULATORS: dict[str, Shape] = {
+    "T": TAPER_CALCULATOR,
+    "R": SINUMERIK_THREAD_CALCULATOR,
+    "F": SINUMERIK_SPEED_CALCULATOR,
+    "N": SINUMERIK_START_TEMPLATE,
+    "C": TOOL_CHANGE_TEMPLATE,
+    "G": SINUMERIK_ROUGHING_TEMPLATE,
+    "D": SINUMERIK_THREADING_TEMPLATE,
+    "B": SINUMERIK_BAR_FEED_TEMPLATE,
 }
 
-HELPERS_OF = {Dialect.OMNITURN: HELPERS, Dialect.SINUMERIK: SINUMERIK_HELPERS}
+CALCULATORS_BY_DIALECT = {Dialect.OMNITURN: CALCULATORS_BY_KEY, Dialect.SINUMERIK: SINUMERIK_CALCULATORS}
 """By the language of the program."""
 
 
 def _labelled(shape: Shape) -> Shape:
     """Return the shape with a label field, for a contour that CYCLE95 finds by its labels."""
-    return replace(shape, fields=(*shape.fields, LABEL))
+    return replace(shape, fields=(*shape.fields, LABEL_FIELD))
 
 
 SINUMERIK_SHAPES: dict[str, Shape] = {
-    "N": SINUMERIK_HEAD,
+    "N": SINUMERIK_HEAD_SHAPE,
     "F": FACE,
-    "T": _labelled(TURN),
-    "A": _labelled(TAPER),
-    "K": EDGE,
-    "G": SINUMERIK_GROOVE,
-    "R": SINUMERIK_THREAD,
-    "D": DRILL,
-    "B": _labelled(BORE),
-    "O": SINUMERIK_TAP,
-    "P": PART_OFF,
-    "L": SINUMERIK_LOOP,
+    "T": _labelled(TURNING_SHAPE),
+    "A": _labelled(TAPER_SHAPE),
+    "K": EDGE_SHAPE,
+    "G": SINUMERIK_GROOVE_SHAPE,
+    "R": SINUMERIK_THREAD_SHAPE,
+    "D": DRILLING_SHAPE,
+    "B": _labelled(BORE_SHAPE),
+    "O": SINUMERIK_TAPPING_SHAPE,
+    "P": PARTING_SHAPE,
+    "L": SINUMERIK_BAR_LOOP_SHAPE,
     "C": SINUMERIK_CROSS,
     "M": SINUMERIK_FLATS,
     "S": SINUMERIK_SLOT,
 }
 
-SHAPES_OF = {Dialect.OMNITURN: SHAPES, Dialect.SINUMERIK: SINUMERIK_SHAPES}
+SHAPES_BY_DIALECT = {Dialect.OMNITURN: SHAPES_BY_KEY, Dialect.SINUMERIK: SINUMERIK_SHAPES}
 """By the language of the program."""
 
-_BY_NAME = {dialect: {shape.name: shape for shape in table.values()} for dialect, table in SHAPES_OF.items()}
+_BY_NAME = {
+    dialect: {shape.name: shape for shape in table.values()} for dialect, table in SHAPES_BY_DIALECT.items()
+}
 
 
-def named(words: list[str], dialect: Dialect = Dialect.OMNITURN) -> tuple[Shape, list[str]] | None:
+def find_shape(words: list[str], dialect: Dialect = Dialect.OMNITURN) -> tuple[Shape, list[str]] | None:
     """Return the shape whose name begins these words, and the remaining words; or None."""
     for count in (2, 1):
         found = _BY_NAME[dialect].get(" ".join(words[:count]))

@@ -14,19 +14,25 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from core.extras.sharing.shared_place import Cause, Found, Published, SharingError, database_at
+from core.extras.sharing.shared_location import (
+    Found,
+    PublishedVersion,
+    SharingError,
+    SharingErrorCause,
+    make_database_label,
+)
 from core.extras.sharing.shared_versions import SharedVersion
 from core.extras.sharing.version_record import (
-    FORMAT,
-    LONGEST_RECORD,
-    LONGEST_STATE,
-    MOST_BYTES,
-    DeskState,
+    FORMAT_VERSION,
+    MAX_PROGRAM_BYTES,
+    MAX_RECORD_BYTES,
+    MAX_STATE_BYTES,
+    MachineState,
     RecordError,
-    checked_text,
-    read_state,
-    read_version,
-    written,
+    decode_state,
+    decode_version,
+    encode_version,
+    verify_text,
 )
 from core.message import Message
 
@@ -38,41 +44,41 @@ _SHOWN = ("service", "user", "host", "hostaddr", "port", "dbname")
 _VERIFIED = {"verify-ca", "verify-full"}
 
 
-def parsed(conninfo: str) -> dict[str, str]:
+def parse_conninfo(connection_string: str) -> dict[str, str]:
     """Return the parameters of a connection string. Raises SharingError, which does not quote them."""
     if importlib.util.find_spec("psycopg") is None:
-        raise Cause.NO_PSYCOPG.error("")
+        raise SharingErrorCause.NO_PSYCOPG.make_error("")
     import psycopg  # noqa: PLC0415  optional, and only for those who share so
     from psycopg.conninfo import conninfo_to_dict  # noqa: PLC0415
 
     try:
-        found = {key: str(value) for key, value in conninfo_to_dict(conninfo).items() if value}
+        found = {key: str(value) for key, value in conninfo_to_dict(connection_string).items() if value}
     except psycopg.Error:  # its message quotes the text that libpq could not read
         found = {"port": "?"}
     # In an address, a password character that is not percent-encoded ends up in another parameter.
-    misread = "://" in conninfo and "@" in found.get("host", "") + found.get("dbname", "")
+    misread = "://" in connection_string and "@" in found.get("host", "") + found.get("dbname", "")
     if misread or not found.get("port", "0").replace(",", "").isdigit():
-        raise Cause.UNREADABLE.error("")
+        raise SharingErrorCause.UNREADABLE.make_error("")
     return found
 
 
-def shown(values: Mapping[str, str]) -> str:
+def get_display_parameters(values: Mapping[str, str]) -> str:
     """Return the parameters that messages may show, and whether the server's certificate is not verified."""
     named = " ".join(f"{key}={values[key]}" for key in _SHOWN if key in values)
     return (
         named
-        if is_local(values) or values.get("sslmode") in _VERIFIED
+        if is_server_local(values) or values.get("sslmode") in _VERIFIED
         else Message("{named} (TLS certificate not verified)", named=named)
     )
 
 
-def with_tls(values: Mapping[str, str]) -> dict[str, str]:
+def require_tls(values: Mapping[str, str]) -> dict[str, str]:
     """Return the parameters with TLS verification for a server on another computer.
 
     Parameters or environment variables that specify TLS have priority.
     """
     found = dict(values)
-    if is_local(values):
+    if is_server_local(values):
         return found
     found.setdefault("sslmode", os.environ.get("PGSSLMODE") or "verify-full")
     own = Path("~/.postgresql/root.crt").expanduser()
@@ -81,7 +87,7 @@ def with_tls(values: Mapping[str, str]) -> dict[str, str]:
     return found
 
 
-def is_local(values: Mapping[str, str]) -> bool:
+def is_server_local(values: Mapping[str, str]) -> bool:
     """Return whether the server is on this computer according to the parameters."""
     if "service" in values:
         return False
@@ -120,22 +126,22 @@ _LIMITS = {
 _AT_ONCE = 500  # records per query
 # Messages of a server that rejects a connection. libpq returns them without a code. libpq may try twice, with
 # and without TLS. The first matching cause in this table is the one to correct.
-_AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
-    (Cause.WRONG_PASSWORD, ("authentication failed", "no password supplied")),
-    (Cause.NOT_TRUSTED, ("certificate", "ssl error")),
-    (Cause.NO_TLS, ("does not support ssl",)),
-    (Cause.TLS_ONLY, ("no encryption",)),
-    (Cause.NO_RIGHT, ("no pg_hba.conf entry", "permission denied")),
-    (Cause.NOT_THERE, ("does not exist",)),
-    (Cause.FULL, ("no space left",)),
+_AT_THE_DOOR: tuple[tuple[SharingErrorCause, tuple[str, ...]], ...] = (
+    (SharingErrorCause.WRONG_PASSWORD, ("authentication failed", "no password supplied")),
+    (SharingErrorCause.NOT_TRUSTED, ("certificate", "ssl error")),
+    (SharingErrorCause.NO_TLS, ("does not support ssl",)),
+    (SharingErrorCause.TLS_ONLY, ("no encryption",)),
+    (SharingErrorCause.NO_RIGHT, ("no pg_hba.conf entry", "permission denied")),
+    (SharingErrorCause.NOT_THERE, ("does not exist",)),
+    (SharingErrorCause.FULL, ("no space left",)),
 )
 # Causes by the first characters of the server's error codes.
-_CODES: tuple[tuple[Cause, tuple[str, ...]], ...] = (
-    (Cause.NO_RIGHT, ("42501", "28", "25006")),
-    (Cause.NOT_BEGUN, ("42P01", "3F000")),
-    (Cause.OTHER, ("42", "22")),
-    (Cause.FULL, ("53100",)),
-    (Cause.NOT_THERE, ("3D000",)),
+_CODES: tuple[tuple[SharingErrorCause, tuple[str, ...]], ...] = (
+    (SharingErrorCause.NO_RIGHT, ("42501", "28", "25006")),
+    (SharingErrorCause.NOT_BEGUN, ("42P01", "3F000")),
+    (SharingErrorCause.OTHER, ("42", "22")),
+    (SharingErrorCause.FULL, ("53100",)),
+    (SharingErrorCause.NOT_THERE, ("3D000",)),
 )
 
 
@@ -147,63 +153,66 @@ class SharedDatabase:
     """
 
     def __init__(self, conninfo: str) -> None:
-        self.name, self._conninfo = database_at("([sharing] postgresql in the machine file)"), conninfo
+        self.name, self._conninfo = (
+            make_database_label("([sharing] postgresql in the machine file)"),
+            conninfo,
+        )
         with suppress(SharingError):  # reported when the database is used
-            self.name = database_at(shown(with_tls(parsed(conninfo))))
+            self.name = make_database_label(get_display_parameters(require_tls(parse_conninfo(conninfo))))
 
-    def begin(self) -> None:
+    def set_up(self) -> None:
         """Create the schema and the tables in one transaction."""
-        with self._asked(demand=False) as connection:
+        with self._open_transaction(is_setup_required=False) as connection:
             connection.execute(_LAYOUT)
             connection.execute(
                 "INSERT INTO turndesk.layout SELECT %s WHERE NOT EXISTS (SELECT 1 FROM turndesk.layout)",
-                (FORMAT,),
+                (FORMAT_VERSION,),
             )
             self._demand(connection)
 
-    def look(self, known: Mapping[str, SharedVersion]) -> Found:
+    def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
         """Return the ids of all versions, and the records of unknown versions."""
-        with self._asked() as connection:
+        with self._open_transaction() as connection:
             there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
-            wanted, fresh, strays = sorted(there - known.keys()), list[SharedVersion](), list[str]()
+            wanted, fresh, strays = sorted(there - known_versions.keys()), list[SharedVersion](), list[str]()
             for first in range(0, len(wanted), _AT_ONCE):
                 query = "SELECT id, substr(record, 1, %s) FROM turndesk.versions WHERE id = ANY(%s)"
                 some = wanted[first : first + _AT_ONCE]
-                for name, record in connection.execute(query, (LONGEST_RECORD, some)):
+                for name, record in connection.execute(query, (MAX_RECORD_BYTES, some)):
                     try:
-                        fresh.append(read_version(name, bytes(record)))
+                        fresh.append(decode_version(name, bytes(record)))
                     except RecordError:
                         strays.append(name)
             desks = self._desks(connection, strays)
         return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
 
-    def put(self, versions: Sequence[Published], state: DeskState) -> None:
+    def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
         """Add versions and this machine's state in one transaction.
 
         The method returns when the data is on the server's disk.
         """
-        with self._asked() as connection:
-            rows = [(each.version.id, written(each.version), each.text) for each in versions]
+        with self._open_transaction() as connection:
+            rows = [(each.version.id, encode_version(each.version), each.text) for each in versions]
             if rows:
                 connection.cursor().executemany(_ADD, rows)
-            connection.execute(_TELL, (state.home, state.written()))
+            connection.execute(_TELL, (state.machine_id, state.encode()))
 
-    def text(self, version: SharedVersion) -> bytes:
+    def read_text(self, version: SharedVersion) -> bytes:
         """Return the text of a version from its row, checked against its checksum."""
         query = "SELECT substr(program_text, 1, %s) FROM turndesk.versions WHERE id = %s"
-        with self._asked() as connection:
-            row = connection.execute(query, (MOST_BYTES + 1, version.id)).fetchone()
+        with self._open_transaction() as connection:
+            row = connection.execute(query, (MAX_PROGRAM_BYTES + 1, version.id)).fetchone()
         try:
-            return checked_text(version, bytes(row[0]) if row is not None else b"")
+            return verify_text(version, bytes(row[0]) if row is not None else b"")
         except RecordError as error:
-            raise Cause.DAMAGED.error(self.name, error) from error
+            raise SharingErrorCause.DAMAGED.make_error(self.name, error) from error
 
     @staticmethod
-    def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[DeskState, ...]:
+    def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[MachineState, ...]:
         found = []
-        for home, state in connection.execute(_DESKS, (LONGEST_STATE,)):
+        for home, state in connection.execute(_DESKS, (MAX_STATE_BYTES,)):
             try:
-                found.append(read_state(home, bytes(state)))
+                found.append(decode_state(home, bytes(state)))
             except RecordError:
                 strays.append(home)
         return tuple(found)
@@ -212,19 +221,19 @@ class SharedDatabase:
         row = connection.execute("SELECT max(format) FROM turndesk.layout").fetchone()
         number = row[0] if row is not None else None
         if number is None:
-            raise Cause.NOT_BEGUN.error(self.name)
-        if number != FORMAT:
-            raise Cause.NEWER.error(self.name, number)
+            raise SharingErrorCause.NOT_BEGUN.make_error(self.name)
+        if number != FORMAT_VERSION:
+            raise SharingErrorCause.NEWER.make_error(self.name, number)
 
     @contextmanager
-    def _asked(self, *, demand: bool = True) -> Iterator[psycopg.Connection]:
+    def _open_transaction(self, *, is_setup_required: bool = True) -> Iterator[psycopg.Connection]:
         """Open a connection with one transaction; raise errors of the server as SharingError."""
-        values: dict[str, Any] = with_tls(parsed(self._conninfo))
+        values: dict[str, Any] = require_tls(parse_conninfo(self._conninfo))
         import psycopg  # noqa: PLC0415  optional, and only for those who share so
 
         try:
             with psycopg.connect(**{**values, **_LIMITS}) as connection:
-                if demand:
+                if is_setup_required:
                     self._demand(connection)
                 yield connection
         except psycopg.Error as error:
@@ -234,12 +243,12 @@ class SharedDatabase:
         lines = [line for line in told.splitlines() if line.strip()] or ["it failed"]
         for cause, begins in _CODES if code else ():
             if code.startswith(begins):
-                return cause.error(self.name, _bare(lines[0]))
+                return cause.make_error(self.name, _bare(lines[0]))
         for cause, signs in _AT_THE_DOOR if not code else ():
             said = next((line for line in lines if any(sign in line.lower() for sign in signs)), "")
             if said:
-                return cause.error(self.name, _bare(said))
-        return Cause.AWAY.error(self.name, _bare(lines[0]))
+                return cause.make_error(self.name, _bare(said))
+        return SharingErrorCause.AWAY.make_error(self.name, _bare(lines[0]))
 
 
 def _bare(line: str) -> str:

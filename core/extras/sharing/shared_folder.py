@@ -13,27 +13,35 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from core.extras.sharing.shared_place import Cause, Found, Published, folder_at, of_system
+from core.extras.sharing.shared_location import (
+    Found,
+    PublishedVersion,
+    SharingErrorCause,
+    make_folder_label,
+    make_system_error,
+)
 from core.extras.sharing.shared_versions import SharedVersion
 from core.extras.sharing.version_record import (
-    FORMAT,
-    LONGEST_RECORD,
-    LONGEST_STATE,
-    MOST_BYTES,
-    DeskState,
+    FORMAT_VERSION,
+    MAX_PROGRAM_BYTES,
+    MAX_RECORD_BYTES,
+    MAX_STATE_BYTES,
+    MachineState,
     RecordError,
-    checked_text,
-    is_id,
-    read_state,
-    read_version,
-    written,
+    decode_state,
+    decode_version,
+    encode_version,
+    is_version_id,
+    verify_text,
 )
-from core.input_file import NotAFileError, TooLargeError, input_bytes
+from core.input_file import NotAFileError, TooLargeError, read_input_bytes
 from core.message import Message
 
-MARK = "turndesk-share.json"  # identifies a shared folder; an empty mount point does not have this file
+MARKER_FILE_NAME = (
+    "turndesk-share.json"  # identifies a shared folder; an empty mount point does not have this file
+)
 VERSIONS, DESKS = "versions", "desks"
-LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes, largest file of a version
+MAX_VERSION_FILE_BYTES = MAX_RECORD_BYTES + 1 + MAX_PROGRAM_BYTES  # bytes, largest file of a version
 _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
 
 
@@ -41,81 +49,85 @@ class SharedFolder:
     """A folder that all machines can access. A version file has the record, a line end and the text."""
 
     def __init__(self, folder: Path) -> None:
-        self.name = folder_at(folder)
+        self.name = make_folder_label(folder)
         self._folder = folder
         self._sizes: dict[str, int] = {}  # file sizes by id of the version
 
     @property
-    def mark(self) -> Path:
+    def marker_path(self) -> Path:
         """Path of the file that identifies a folder with shared programs."""
-        return self._folder / MARK
+        return self._folder / MARKER_FILE_NAME
 
-    def begin(self) -> None:
+    def set_up(self) -> None:
         """Set up the folder, which must exist, so that a folder that is not mounted is never created."""
         with self._system():
-            if not self.mark.exists():
+            if not self.marker_path.exists():
                 os.stat(self._folder)
                 for each in (VERSIONS, DESKS):
                     (self._folder / each).mkdir(exist_ok=True)
-                self._write(self.mark, json.dumps({"format": FORMAT}).encode())
+                self._write(self.marker_path, json.dumps({"format": FORMAT_VERSION}).encode())
             self._demand()
 
-    def look(self, known: Mapping[str, SharedVersion]) -> Found:
+    def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
         """Return the versions in the folder; only files of unknown versions are opened."""
         with self._system():
             self._demand()
             there, fresh, strays = set[str](), list[SharedVersion](), list[str]()
             for path in _files(self._folder / VERSIONS):
                 name = path.name.removesuffix(_ENDING)
-                if not path.name.endswith(_ENDING) or not is_id(name):
+                if not path.name.endswith(_ENDING) or not is_version_id(name):
                     strays.append(path.name)
                     continue
-                version = _version_in(path) if name not in known else None
+                version = _read_version_file(path) if name not in known_versions else None
                 if version is not None:
                     fresh.append(version)
-                if version is not None or (name in known and self._is_whole(path, known[name])):
+                if version is not None or (
+                    name in known_versions and self._has_expected_size(path, known_versions[name])
+                ):
                     there.add(name)
                 else:
                     strays.append(path.name)
             desks, bad = self._desks()
             return Found(frozenset(there), tuple(fresh), desks, (*strays, *bad))
 
-    def put(self, versions: Sequence[Published], state: DeskState) -> None:
+    def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
         """Add version files and this machine's state; each file is synced before it gets its name."""
         with self._system():
             self._demand()
-            self._clear(state.home)
+            self._clear(state.machine_id)
             for version, text in versions:
-                self._add(version, text, state.home)
+                self._add(version, text, state.machine_id)
             _to_disk(self._folder / VERSIONS)
-            self._write(self._folder / DESKS / f"{state.home}{_STATE}", state.written(), state.home)
+            self._write(
+                self._folder / DESKS / f"{state.machine_id}{_STATE}", state.encode(), state.machine_id
+            )
             _to_disk(self._folder / DESKS)
 
-    def text(self, version: SharedVersion) -> bytes:
+    def read_text(self, version: SharedVersion) -> bytes:
         """Return the text of a version from its file, checked against its checksum."""
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
-            _, _, text = input_bytes(path, LONGEST).partition(b"\n")
+            _, _, text = read_input_bytes(path, MAX_VERSION_FILE_BYTES).partition(b"\n")
             try:
-                return checked_text(version, text)
+                return verify_text(version, text)
             except RecordError as error:
-                raise Cause.DAMAGED.error(self.name, error) from error
+                raise SharingErrorCause.DAMAGED.make_error(self.name, error) from error
 
-    def _is_whole(self, path: Path, version: SharedVersion) -> bool:
+    def _has_expected_size(self, path: Path, version: SharedVersion) -> bool:
         """Return whether a version file has the expected size.
 
         A truncated file is published again by a machine that has the text.
         """
-        size = self._sizes.setdefault(version.id, len(written(version)) + 1 + version.size)
+        size = self._sizes.setdefault(version.id, len(encode_version(version)) + 1 + version.size)
         return path.stat().st_size == size
 
     def _add(self, version: SharedVersion, text: bytes, home: str) -> None:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
-        whole = written(version) + b"\n" + text
+        whole = encode_version(version) + b"\n" + text
         if path.exists():
             with suppress(OSError):
-                if input_bytes(path, len(whole)) == whole:
+                if read_input_bytes(path, len(whole)) == whole:
                     return
             path.replace(path.with_name(f"{path.name}.damaged"))  # saved for analysis
         self._write(path, whole, home)
@@ -128,18 +140,18 @@ class SharedFolder:
             os.fsync(file.fileno())
         draft.replace(path)
 
-    def _clear(self, home: str) -> None:
+    def _clear(self, machine_id: str) -> None:
         """Remove unfinished files of this machine that a power failure left."""
         for folder in (VERSIONS, DESKS):
-            for path in (self._folder / folder).glob(f"{_WRITING}{home}-*"):
+            for path in (self._folder / folder).glob(f"{_WRITING}{machine_id}-*"):
                 path.unlink(missing_ok=True)
 
-    def _desks(self) -> tuple[tuple[DeskState, ...], list[str]]:
+    def _desks(self) -> tuple[tuple[MachineState, ...], list[str]]:
         found, strays = [], list[str]()
         for path in _files(self._folder / DESKS):
             home = path.name.removesuffix(_STATE)
             try:
-                found.append(read_state(home, input_bytes(path, LONGEST_STATE)))
+                found.append(decode_state(home, read_input_bytes(path, MAX_STATE_BYTES)))
             except (RecordError, OSError):
                 strays.append(path.name)
         return tuple(found), strays
@@ -148,27 +160,29 @@ class SharedFolder:
         """Raise SharingError if the folder is not set up for shared programs or has a newer format."""
         os.stat(self._folder)
         try:
-            data = input_bytes(self.mark, LONGEST_RECORD)
+            data = read_input_bytes(self.marker_path, MAX_RECORD_BYTES)
         except FileNotFoundError:
-            raise Cause.NOT_BEGUN.error(self.name) from None
+            raise SharingErrorCause.NOT_BEGUN.make_error(self.name) from None
         except (NotAFileError, TooLargeError) as error:
-            raise Cause.OTHER.error(
-                self.name, Message("{mark}: {cause}", mark=MARK, cause=error.strerror)
+            raise SharingErrorCause.OTHER.make_error(
+                self.name, Message("{mark}: {cause}", mark=MARKER_FILE_NAME, cause=error.strerror)
             ) from error
         number: object = None
         with suppress(ValueError, RecursionError, AttributeError):
             number = json.loads(data).get("format")
         if not isinstance(number, int):
-            raise Cause.OTHER.error(self.name, Message("{mark} is damaged", mark=MARK))
-        if number != FORMAT:
-            raise Cause.NEWER.error(self.name, number)
+            raise SharingErrorCause.OTHER.make_error(
+                self.name, Message("{mark} is damaged", mark=MARKER_FILE_NAME)
+            )
+        if number != FORMAT_VERSION:
+            raise SharingErrorCause.NEWER.make_error(self.name, number)
 
     @contextmanager
     def _system(self) -> Iterator[None]:
         try:
             yield
         except OSError as error:
-            raise of_system(self.name, error) from error
+            raise make_system_error(self.name, error) from error
 
 
 def _files(folder: Path) -> list[Path]:
@@ -177,12 +191,12 @@ def _files(folder: Path) -> list[Path]:
     return sorted(path for path in paths if not path.name.startswith(_WRITING))
 
 
-def _version_in(path: Path) -> SharedVersion | None:
+def _read_version_file(path: Path) -> SharedVersion | None:
     """Return the version in a file; None if the file is incomplete or invalid."""
     try:
-        record, _, text = input_bytes(path, LONGEST).partition(b"\n")
-        version = read_version(path.name.removesuffix(_ENDING), record)
-        checked_text(version, text)
+        record, _, text = read_input_bytes(path, MAX_VERSION_FILE_BYTES).partition(b"\n")
+        version = decode_version(path.name.removesuffix(_ENDING), record)
+        verify_text(version, text)
     except (RecordError, OSError):
         return None
     return version

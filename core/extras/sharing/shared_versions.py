@@ -26,28 +26,30 @@ class SharedVersion(NamedTuple):
     why: str
 
     @property
-    def key(self) -> str:
+    def program_key(self) -> str:
         """Key of its program. Names that differ only in case belong to the same program."""
-        return key_of(self.program)
+        return make_program_key(self.program)
 
 
 _COLUMNS = ", ".join(SharedVersion._fields)
 
 
-def key_of(name: str) -> str:
+def make_program_key(name: str) -> str:
     """Return the key of a program name, which ignores case."""
     return name.casefold()
 
 
 @dataclass(frozen=True, slots=True)
-class Family:
-    """All known versions of one program. ``here`` is the id of the version on this machine, or empty."""
+class ProgramVersions:
+    """All known versions of one program. ``local_version_id`` is the id of the version on this machine, or
+    empty.
+    """
 
     versions: Mapping[str, SharedVersion] = field(default_factory=dict)
-    here: str = ""
+    local_version_id: str = ""
 
     @property
-    def newest(self) -> tuple[SharedVersion, ...]:
+    def newest_versions(self) -> tuple[SharedVersion, ...]:
         """Versions that no other version follows.
 
         There is one, unless two machines have changed the same version.
@@ -56,25 +58,25 @@ class Family:
         return tuple(version for name, version in sorted(self.versions.items()) if name not in followed)
 
     @property
-    def elsewhere(self) -> tuple[SharedVersion, ...]:
+    def newest_remote_versions(self) -> tuple[SharedVersion, ...]:
         """Newest versions that this machine does not have."""
-        return tuple(version for version in self.newest if version.id != self.here)
+        return tuple(version for version in self.newest_versions if version.id != self.local_version_id)
 
     @property
     def state(self) -> str:
         """Relation to other machines.
 
-        The value is ``same`` if this machine has the newest version, ``newer`` if another machine has a newer
-        version, ``both`` if both have changed the program, or ``new`` if this machine does not have the
+        The value is ``same`` if this machine has the newest version, ``is_newer`` if another machine has a
+        newer version, ``both`` if both have changed the program, or ``new`` if this machine does not have the
         program.
         """
-        if not self.elsewhere:
+        if not self.newest_remote_versions:
             return "same"
-        if not self.here:
+        if not self.local_version_id:
             return "new"
-        return "newer" if all(map(self.newer, self.elsewhere)) else "both"
+        return "newer" if all(map(self.is_newer, self.newest_remote_versions)) else "both"
 
-    def made_from(self, version: str, older: str) -> bool:
+    def is_derived_from(self, version: str, older: str) -> bool:
         """Return whether ``version`` is ``older`` or was made from it directly or indirectly."""
         waiting, seen = [version], set[str]()
         while waiting:
@@ -86,43 +88,45 @@ class Family:
                 waiting += self.versions[at].follows
         return False
 
-    def newer(self, version: SharedVersion) -> bool:
+    def is_newer(self, version: SharedVersion) -> bool:
         """Return whether a version was made from the version on this machine.
 
         Otherwise both machines changed the program, or the programs only have the same name. Without a
         version on this machine the result is True.
         """
-        return not self.here or self.made_from(version.id, self.here)
+        return not self.local_version_id or self.is_derived_from(version.id, self.local_version_id)
 
-    def of_text(self, text: str) -> SharedVersion | None:
+    def find_newer_by_text(self, text: str) -> SharedVersion | None:
         """Return a version with this text (SHA-256) that is newer than the one on this machine, or None.
 
         A version that no other version follows is preferred.
         """
-        found = [each for each in self.versions.values() if each.text == text and self.newer(each)]
-        newest = {each.id for each in self.newest}
+        found = [each for each in self.versions.values() if each.text == text and self.is_newer(each)]
+        newest = {each.id for each in self.newest_versions}
         return max(found, key=lambda each: (each.id in newest, each.id), default=None)
 
 
 # --- Tables ---------------------------------------------------------------------------------------------
 
 
-def families(connection: sqlite3.Connection, more: Iterable[SharedVersion] = ()) -> dict[str, Family]:
-    """Return the versions of every shared program by key; ``more`` versions are treated as known."""
+def read_shared_programs(
+    connection: sqlite3.Connection, more_versions: Iterable[SharedVersion] = ()
+) -> dict[str, ProgramVersions]:
+    """Return the versions of every shared program by key; ``more_versions`` versions are treated as known."""
     here = dict(connection.execute("SELECT program, version FROM shared_here").fetchall())
     found: dict[str, dict[str, SharedVersion]] = {}
-    for version in (*all_versions(connection), *more):
-        found.setdefault(version.key, {})[version.id] = version
-    return {key: Family(versions, here.get(key, "")) for key, versions in found.items()}
+    for version in (*read_all_versions(connection), *more_versions):
+        found.setdefault(version.program_key, {})[version.id] = version
+    return {key: ProgramVersions(versions, here.get(key, "")) for key, versions in found.items()}
 
 
-def all_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
+def read_all_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
     """Return the versions of all programs in the order in which they became known."""
     rows = connection.execute(f"SELECT {_COLUMNS} FROM shared_versions ORDER BY rowid")
     return tuple(_version(row) for row in rows)
 
 
-def unpublished(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
+def read_unpublished_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
     """Return the versions that the shared place does not have and whose text is stored here."""
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM shared_versions WHERE published = 0 AND EXISTS"
@@ -131,7 +135,7 @@ def unpublished(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
     return tuple(_version(row) for row in rows)
 
 
-def text_of(connection: sqlite3.Connection, digest: str) -> bytes | None:
+def read_version_text(connection: sqlite3.Connection, digest: str) -> bytes | None:
     """Return the stored text with this SHA-256; None if it is missing or damaged."""
     for (text,) in connection.execute("SELECT text FROM program_versions WHERE sha256 = ?", (digest,)):
         if sha256(text).hexdigest() == digest:
@@ -139,7 +143,7 @@ def text_of(connection: sqlite3.Connection, digest: str) -> bytes | None:
     return None
 
 
-def add(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
+def add_versions(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
     """Store versions as known. Versions that are already known remain unchanged."""
     connection.executemany(
         f"INSERT INTO shared_versions ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
@@ -147,26 +151,28 @@ def add(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> No
     )
 
 
-def published(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
+def mark_published(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
     """Mark versions as stored in the shared place."""
     connection.executemany(
         "UPDATE shared_versions SET published = 1 WHERE id = ?", [(each.id,) for each in versions]
     )
 
 
-def withdraw(connection: sqlite3.Connection, version: SharedVersion) -> None:
+def delete_unpublished(connection: sqlite3.Connection, version: SharedVersion) -> None:
     """Delete a version that has not been published."""
     connection.execute("DELETE FROM shared_versions WHERE id = ? AND published = 0", (version.id,))
 
 
-def set_there(connection: sqlite3.Connection, there: Collection[str]) -> None:
+def set_published_versions(connection: sqlite3.Connection, version_ids: Collection[str]) -> None:
     """Mark exactly these versions as published, so that versions missing there are published again."""
     rows = connection.execute("SELECT id, published FROM shared_versions").fetchall()
-    changed = [(int(name in there), name) for name, before in rows if (name in there) != bool(before)]
+    changed = [
+        (int(name in version_ids), name) for name, before in rows if (name in version_ids) != bool(before)
+    ]
     connection.executemany("UPDATE shared_versions SET published = ? WHERE id = ?", changed)
 
 
-def set_here(connection: sqlite3.Connection, key: str, version: str) -> None:
+def set_local_version(connection: sqlite3.Connection, key: str, version: str) -> None:
     """Store which version of a program this machine has in its folder; empty means that it has none."""
     if not version:
         connection.execute("DELETE FROM shared_here WHERE program = ?", (key,))

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.key_declaration import Range, Unit, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, declare_key, make_key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, FileReading, Finding, raw_at, written
+from core.table_schema import (
+    DriverDeclaration,
+    DriverTable,
+    FileFinding,
+    MachineFileReading,
+    find_raw_value,
+    format_toml_value,
+)
 
 _LONGEST = 40  # characters of a machine's name
 
 
-@key_table
+@make_key_table
 class SharingTable:
     """Settings for sharing programs.
 
@@ -20,45 +27,49 @@ class SharingTable:
     for new versions, in seconds.
     """
 
-    folder: str = file_key(default="", meaning="Shared folder, mounted on every computer.")
-    postgresql: str = file_key(
+    folder: str = declare_key(default="", meaning="Shared folder, mounted on every computer.")
+    postgresql: str = declare_key(
         secret=True, default="", meaning="Connection string of a PostgreSQL database, as libpq reads it."
     )
-    desk: str = file_key(
+    desk: str = declare_key(
         default="",
         meaning="Name of this machine in the list of machines, at most 40 characters. Default: "
         "`machine.name`.",
     )
-    look: float = file_key(
-        Range(2.0, 3600.0, Unit.SECONDS), default=30.0, meaning="Time between two checks for new versions."
+    look: float = declare_key(
+        KeyRange(2.0, 3600.0, FileUnit.SECONDS),
+        default=30.0,
+        meaning="Time between two checks for new versions.",
     )
 
 
-def _rules(file: FileReading) -> Iterator[Finding]:
+def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
-    if not values.has("sharing.folder", "sharing.postgresql", "sharing.desk"):
+    if not values.has_values("sharing.folder", "sharing.postgresql", "sharing.desk"):
         return
     named = [kind for kind in ("folder", "postgresql") if values.text(f"sharing.{kind}")]
-    removed = raw_at(file.data, "sharing.git") is not None  # it has its own finding
+    removed = find_raw_value(file.parsed_data, "sharing.git") is not None  # it has its own finding
     if len(named) != 1 and not removed:
         said = " and ".join(named) or "none"
-        yield Finding("sharing", said, "specify exactly one of the keys folder and postgresql", "many-places")
+        yield FileFinding(
+            "sharing", said, "specify exactly one of the keys folder and postgresql", "many-places"
+        )
     desk = values.text("sharing.desk")
     if desk.strip() != desk or len(desk) > _LONGEST or not desk.isprintable():
-        yield Finding(
+        yield FileFinding(
             "sharing.desk",
-            written(desk),
+            format_toml_value(desk),
             Message("this value must be a name of at most {longest} characters", longest=_LONGEST),
             "name-too-long",
         )
 
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "sharing",
             SharingTable,
-            rules=_rules,
+            check_rules=_rules,
             purpose="The location through which machines share their programs. Specify exactly one of "
             "`folder` and `postgresql`.",
         ),

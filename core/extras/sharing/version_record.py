@@ -9,13 +9,13 @@ from hashlib import sha256
 
 from core.extras.sharing.shared_versions import SharedVersion
 from core.message import CodedError, Message
-from core.store.program_records import check_name
+from core.store.program_records import check_program_name
 from core.store.store_errors import StoreError
 
-FORMAT = 1
-MOST_BYTES = 32 * 1024 * 1024  # bytes; larger programs are not shared
-LONGEST_STATE = 4 * 1024 * 1024  # bytes, largest state of a machine
-LONGEST_RECORD = 64 * 1024
+FORMAT_VERSION = 1
+MAX_PROGRAM_BYTES = 32 * 1024 * 1024  # bytes; larger programs are not shared
+MAX_STATE_BYTES = 4 * 1024 * 1024  # bytes, largest state of a machine
+MAX_RECORD_BYTES = 64 * 1024
 _TEXTS = ("program", "text", "desk", "saved", "why")
 _HEX = frozenset("0123456789abcdef")
 
@@ -24,47 +24,47 @@ class RecordError(CodedError):
     """A record is invalid: not written by TurnDesk, incomplete or damaged."""
 
 
-def new_version(
-    program: str, text: bytes, follows: tuple[str, ...], desk: str, saved: str, why: str
+def make_version(
+    program: str, text: bytes, parent_ids: tuple[str, ...], machine: str, saved: str, why: str
 ) -> SharedVersion:
     """Return the version for a text. Its id is the SHA-256 of the other values."""
-    bare = SharedVersion("", program, sha256(text).hexdigest(), len(text), follows, desk, saved, why)
-    return bare._replace(id=sha256(written(bare)).hexdigest())
+    bare = SharedVersion("", program, sha256(text).hexdigest(), len(text), parent_ids, machine, saved, why)
+    return bare._replace(id=sha256(encode_version(bare)).hexdigest())
 
 
-def written(version: SharedVersion) -> bytes:
+def encode_version(version: SharedVersion) -> bytes:
     """Return the record of a version as bytes, always identical for the same version."""
     values = version._asdict()
     del values["id"]
-    return _plain({"format": FORMAT, **values})
+    return _plain({"format": FORMAT_VERSION, **values})
 
 
-def read_version(name: str, record: bytes) -> SharedVersion:
+def decode_version(name: str, record: bytes) -> SharedVersion:
     """Return the version stored under this id. Raises RecordError if the record is invalid."""
     if sha256(record).hexdigest() != name:
         raise RecordError("the record does not match the checksum in the record name", "not-as-published")
     values = _object(record)
     texts = [values.get(key) for key in _TEXTS]
     size, follows = values.get("size"), values.get("follows")
-    if values.get("format") != FORMAT or not isinstance(size, int) or not isinstance(follows, list):
+    if values.get("format") != FORMAT_VERSION or not isinstance(size, int) or not isinstance(follows, list):
         raise RecordError(
             "the record is in a format that this TurnDesk version does not support", "not-this-format"
         )
     if not all(isinstance(each, str) and each.isprintable() for each in texts) or not all(
-        map(is_id, follows)
+        map(is_version_id, follows)
     ):
         raise RecordError("the record is not a valid version record", "not-a-version")
     program, text, desk, saved, why = map(str, texts)
     try:
-        check_name(program)
+        check_program_name(program)
     except StoreError as error:
         raise RecordError(str(error), "invalid-name") from error
-    if not is_id(text) or not 0 <= size <= MOST_BYTES:
+    if not is_version_id(text) or not 0 <= size <= MAX_PROGRAM_BYTES:
         raise RecordError("the version record has an invalid text ID or size", "not-a-text")
     return SharedVersion(name, program, text, size, tuple(follows), desk, saved, why)
 
 
-def checked_text(version: SharedVersion, text: bytes) -> bytes:
+def verify_text(version: SharedVersion, text: bytes) -> bytes:
     """Return the text if it matches the version. Raises RecordError if it does not."""
     if sha256(text).hexdigest() != version.text:
         raise RecordError(
@@ -82,39 +82,46 @@ def checked_text(version: SharedVersion, text: bytes) -> bytes:
 
 
 @dataclass(frozen=True, slots=True)
-class DeskState:
+class MachineState:
     """The versions that a machine has, as ids by program name.
 
-    ``home`` identifies the machine, because two machines may have the same name.
+    ``machine_id`` identifies the machine, because two machines may have the same name.
     """
 
-    home: str
+    machine_id: str
     desk: str
     at: str  # UTC, by the machine's clock
     has: Mapping[str, str] = field(default_factory=dict)
 
-    def written(self) -> bytes:
+    def encode(self) -> bytes:
         """Return the state encoded as JSON bytes."""
-        return _plain({"format": FORMAT, "desk": self.desk, "at": self.at, "has": dict(self.has)})
+        return _plain({"format": FORMAT_VERSION, "desk": self.desk, "at": self.at, "has": dict(self.has)})
 
 
-def read_state(home: str, data: bytes) -> DeskState:
+def decode_state(machine_id: str, data: bytes) -> MachineState:
     """Return the state that a machine has published. Raises RecordError if it is invalid."""
     values = _object(data)
     desk, at, has = values.get("desk"), values.get("at"), values.get("has")
-    if not is_home(home) or not isinstance(desk, str) or not isinstance(at, str) or not isinstance(has, dict):
+    if (
+        not is_machine_id(machine_id)
+        or not isinstance(desk, str)
+        or not isinstance(at, str)
+        or not isinstance(has, dict)
+    ):
         raise RecordError("the record is not a valid status record of a control", "not-a-desk")
     if not desk.isprintable() or not at.isprintable():
         raise RecordError("the record is not a valid status record of a control", "not-a-desk")
-    return DeskState(home, desk, at, {name: each for name, each in has.items() if is_id(each)})
+    return MachineState(
+        machine_id, desk, at, {name: each for name, each in has.items() if is_version_id(each)}
+    )
 
 
-def is_home(text: str) -> bool:
+def is_machine_id(text: str) -> bool:
     """Return whether a text is a valid identifier of a machine."""
     return len(text) == 32 and set(text) <= _HEX
 
 
-def is_id(value: object) -> bool:
+def is_version_id(value: object) -> bool:
     """Return whether a value is a valid id of a version."""
     return isinstance(value, str) and len(value) == 64 and set(value) <= _HEX
 

@@ -24,8 +24,8 @@ from core.extras.tool_tables.tool_entry import (
     TableReader,
     ToolEntry,
 )
-from core.message import Message, nearest
-from core.store.store_rows import Field, Sort, Value
+from core.message import Message, find_nearest
+from core.store.store_rows import FieldType, FieldValue, RowField
 
 MOST_LINES = 10_000
 _SEPARATORS = ";\t,"  # The first of them that the heading contains.
@@ -93,7 +93,7 @@ def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[i
         if column.strip().lower() in names:
             found[names.index(column.strip().lower())] = field
             continue
-        near = nearest(column, [heading.strip() for heading in headings])
+        near = find_nearest(column, [heading.strip() for heading in headings])
         text = Message(
             "the file has no column {column}; {remedy}",
             column=column,
@@ -138,7 +138,7 @@ def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Itera
         table.add(number, place, values, str(values.get("remark", "")))
 
 
-def _convert_diameters(table: TableReader, values: dict[str, Value]) -> None:
+def _convert_diameters(table: TableReader, values: dict[str, FieldValue]) -> None:
     """Replace diameters of X and of the nose with radii."""
     if table.options.x == "diameter" and X_DIAMETER not in values and "x" in values:
         values[X_DIAMETER] = values.pop("x")
@@ -147,31 +147,35 @@ def _convert_diameters(table: TableReader, values: dict[str, Value]) -> None:
             values[radius] = float(values.pop(diameter)) / 2.0
 
 
-def _value(table: TableReader, place: str, column: Column, cell: str) -> Value | None:
+def _value(table: TableReader, place: str, column: Column, cell: str) -> FieldValue | None:
     """Return the value of a cell, lengths in mm. None, with a mistake added, if it is invalid."""
     where = Message("{place}, column {column}", place=place, column=column.heading)
     field = _field(column.field)
-    if field.sort is Sort.TEXT:
+    if field.field_type is FieldType.TEXT:
         return _text(table, where, field, cell)
-    if field.sort is Sort.FLAG:
+    if field.field_type is FieldType.BOOLEAN:
         if cell.lower() in _FLAGS:
             return _FLAGS[cell.lower()]
         table.reject(where, "not-a-flag", Message("{text} is not valid; use 1 or 0", text=repr(cell[:40])))
         return None
     value = table.number(where, cell.replace(",", ".") if cell.count(",") == 1 else cell)
-    if value is None or field.sort is not Sort.LENGTH:
-        return int(value) if value is not None and field.sort is Sort.WHOLE and value.is_integer() else value
+    if value is None or field.field_type is not FieldType.LENGTH:
+        return (
+            int(value)
+            if value is not None and field.field_type is FieldType.INTEGER and value.is_integer()
+            else value
+        )
     if not value:
         return value
     return value * (MM_PER_UNIT[column.unit] if column.unit else table.unit(where))
 
 
-def _field(name: str) -> Field:
+def _field(name: str) -> RowField:
     same = {X_DIAMETER: "x", NOSE_DIAMETER: "nose_radius", DIAMETER: "diameter"}
     return TABLE_FIELDS[same.get(name, name)]
 
 
-def _text(table: TableReader, where: str, field: Field, cell: str) -> str | None:
+def _text(table: TableReader, where: str, field: RowField, cell: str) -> str | None:
     """Return a text, or one of the field's choices."""
     if not field.choices:
         return cell
@@ -179,7 +183,7 @@ def _text(table: TableReader, where: str, field: Field, cell: str) -> str | None
     word = {"r": "right", "l": "left", "n": "neutral", "center-drill": "centre-drill"}.get(word, word)
     if word in field.choices:
         return word
-    text = Message("{text} is unknown; use {range}", text=repr(cell[:40]), range=field.range)
+    text = Message("{text} is unknown; use {range}", text=repr(cell[:40]), range=field.range_text)
     table.reject(where, "unknown-word", text)
     return None
 
@@ -200,23 +204,23 @@ def written(tools: Iterable[ToolEntry], unit: str) -> str:
 
 def _heading(name: str, unit: str) -> str:
     text = _HEADINGS.get(name, name.replace("_", " ").capitalize())
-    return f"{text} ({unit})" if TABLE_FIELDS[name].sort is Sort.LENGTH else text
+    return f"{text} ({unit})" if TABLE_FIELDS[name].field_type is FieldType.LENGTH else text
 
 
 def _cells(tool: ToolEntry, names: Iterable[str], factor: float) -> Iterator[str]:
-    values: Mapping[str, Value] = {**tool.offset, **tool.shape}
+    values: Mapping[str, FieldValue] = {**tool.offset, **tool.shape}
     yield str(tool.number)
     for name in names:
         value = values.get(name, "")
         if isinstance(value, bool):
             yield "1" if value else "0"
-        elif isinstance(value, float) and TABLE_FIELDS[name].sort is Sort.LENGTH:
+        elif isinstance(value, float) and TABLE_FIELDS[name].field_type is FieldType.LENGTH:
             yield f"{value / factor:.6f}"
         else:
             yield f"{value:g}" if isinstance(value, float) else _harmless(value)
 
 
-def _harmless(value: Value) -> str:
+def _harmless(value: FieldValue) -> str:
     """Return a text that a spreadsheet does not calculate as a formula."""
     text = str(value)
     return f" {text}" if text[:1] in {"=", "+", "-", "@"} else text

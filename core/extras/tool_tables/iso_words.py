@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
-from core.part.insert_codes import InsertCodeError, decoded, holder_of
+from core.part.insert_codes import InsertCodeError, decode_insert_code, parse_holder
 from core.part.tool_shape import ROUND_TOOLS
 
 ROUND_KINDS = frozenset(kind.value for kind in ROUND_TOOLS)
@@ -49,7 +49,7 @@ def kind_word(text: str) -> str:
 def is_insert(code: str) -> bool:
     """Return whether a text is a valid code of an insert."""
     try:
-        decoded(code)
+        decode_insert_code(code)
     except InsertCodeError:
         return False
     return True
@@ -62,7 +62,7 @@ def _inserts(words: list[str]) -> Iterator[str]:
 def _holders(words: list[str]) -> Iterator[tuple[str, str]]:
     for word in words:
         match = _HOLDER.fullmatch(word)
-        if match and holder_of(word) is not None:
+        if match and parse_holder(word) is not None:
             yield word, _HANDS[match[1]]
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 
 from core.extras.tool_tables.tool_entry import DIAMETER, MM_PER_UNIT, TableReader, ToolEntry
 from core.message import Message
-from core.store.store_rows import Value
+from core.store.store_rows import FieldValue
 
 QUADRANTS = {1: 4, 2: 3, 3: 2, 4: 1, 5: 5, 6: 8, 7: 7, 8: 6, 9: 9}
 """Tip quadrant by orientation Q."""
@@ -44,7 +44,7 @@ def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
     if number is None or len(table.mistakes) > mistakes:
         return
     factor = table.unit(place) if any(found.get(letter) for letter in _LENGTHS) else 1.0
-    values: dict[str, Value] = {
+    values: dict[str, FieldValue] = {
         name: found[letter] * factor for letter, name in _LENGTHS.items() if letter in found
     }
     values[DIAMETER] = abs(float(values.get(DIAMETER, 0.0)))

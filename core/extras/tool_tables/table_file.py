@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from core.extras.tool_tables import csv_table, linuxcnc_table
 from core.extras.tool_tables.tool_entry import Reading, TableReader, ToolTable, ToolTableError
-from core.input_file import MB, TooLargeError, input_bytes
+from core.input_file import BYTES_PER_MB, TooLargeError, read_input_bytes
 from core.message import Message
 
-MOST_BYTES = 16 * MB
+MOST_BYTES = 16 * BYTES_PER_MB
 _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
 
 
@@ -56,7 +56,7 @@ def read_table(path: Path, word: str, options: Reading) -> ToolTable:
 def _bytes(path: Path) -> bytes:
     """Return the contents of a file. Raises ToolTableError."""
     try:
-        return input_bytes(path, MOST_BYTES)
+        return read_input_bytes(path, MOST_BYTES)
     except TooLargeError as error:
         text = Message("{path} is larger than 16 MB, so it is not a tool table; check the name", path=path)
         raise ToolTableError(text, "too-large") from error

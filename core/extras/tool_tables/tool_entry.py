@@ -14,13 +14,22 @@ from typing import NamedTuple
 
 from core.extras.tool_tables.iso_words import ROUND_KINDS, shape_words
 from core.message import CodedError, Message
-from core.part.insert_codes import InsertCodeError, decoded
-from core.store.store_rows import FIELDS, MM_PER_INCH, OFFSETS, REMARK_LONGEST, Field, Kind, Sort, Value
+from core.part.insert_codes import InsertCodeError, decode_insert_code
+from core.store.store_rows import (
+    FIELDS_BY_KIND,
+    MAX_REMARK_LENGTH,
+    MM_PER_INCH,
+    OFFSET_NUMBERS,
+    FieldType,
+    FieldValue,
+    OffsetKind,
+    RowField,
+)
 
 OFFSET_FIELDS = ("x", "z", "nose_radius", "quadrant", "remark")
-TABLE_FIELDS: Mapping[str, Field] = {
-    **{name: FIELDS[Kind.TOOL][name] for name in OFFSET_FIELDS},
-    **FIELDS[Kind.SHAPE],
+TABLE_FIELDS: Mapping[str, RowField] = {
+    **{name: FIELDS_BY_KIND[OffsetKind.TOOL][name] for name in OFFSET_FIELDS},
+    **FIELDS_BY_KIND[OffsetKind.SHAPE],
 }
 """The fields that a table can set. Wear and the master mark are never imported."""
 DIAMETER = "d"
@@ -58,8 +67,8 @@ class ToolEntry:
 
     number: int
     place: str
-    offset: Mapping[str, Value]
-    shape: Mapping[str, Value]
+    offset: Mapping[str, FieldValue]
+    shape: Mapping[str, FieldValue]
     notes: tuple[str, ...] = ()
 
 
@@ -103,7 +112,7 @@ class TableReader:
             return None
         whole = int(value) if value.is_integer() else None
         if whole in self.options.only or not self.options.only:
-            if whole not in OFFSETS:
+            if whole not in OFFSET_NUMBERS:
                 text = Message(
                     "T{number} does not exist here; tool numbers are 1 to 32. Change the number, or use "
                     "--only to import only some tools",
@@ -134,13 +143,18 @@ class TableReader:
         return 1.0
 
     def add(
-        self, number: int, place: str, values: Mapping[str, Value], words: str = "", notes: Sequence[str] = ()
+        self,
+        number: int,
+        place: str,
+        values: Mapping[str, FieldValue],
+        words: str = "",
+        notes: Sequence[str] = (),
     ) -> None:
         """Add a tool. ``words`` is a text in which ISO codes and kinds of tools are recognized.
 
         The values 0 and "" mean not specified. X and Z that are both 0 mean that the tool is not measured.
         """
-        found: dict[str, Value] = {**shape_words(words), **_stated(values)}
+        found: dict[str, FieldValue] = {**shape_words(words), **_stated(values)}
         told = [*notes, *_cleaned(found), *_unmeasured(values, found), *_diameter(found)]
         for name, value in found.items():
             self._check(place, name, value)
@@ -152,18 +166,18 @@ class TableReader:
             shape = {}
         self.tools[number] = ToolEntry(number, place, offset, shape, tuple(told))
 
-    def _check(self, place: str, name: str, value: Value) -> None:
+    def _check(self, place: str, name: str, value: FieldValue) -> None:
         known = TABLE_FIELDS[name]
-        if known.takes(value):
+        if known.accepts(value):
             return
-        shown: Value = value
-        if known.sort is Sort.LENGTH and not isinstance(value, str):
+        shown: FieldValue = value
+        if known.field_type is FieldType.LENGTH and not isinstance(value, str):
             shown = Message("{inches} in", inches=f"{value / MM_PER_INCH:g}")
         text = Message(
             "{word} {value} is out of range; use {range}, and check the unit of the file",
-            word=known.word,
+            word=known.label,
             value=shown,
-            range=known.range,
+            range=known.range_text,
         )
         self.reject(place, "out-of-range", text)
 
@@ -184,24 +198,24 @@ class TableReader:
         return ToolTableError(Message("{name}: {text}", name=self.name, text=shown), " ".join(codes))
 
 
-def _stated(values: Mapping[str, Value]) -> dict[str, Value]:
+def _stated(values: Mapping[str, FieldValue]) -> dict[str, FieldValue]:
     """Return the values that are specified; X or Z may be 0."""
     return {name: value for name, value in values.items() if value or name in {"x", "z"}}
 
 
-def _cleaned(found: dict[str, Value]) -> list[str]:
+def _cleaned(found: dict[str, FieldValue]) -> list[str]:
     """Make the remark printable and short. Return a note if it is shortened."""
     text = found.get("remark")
     if not isinstance(text, str):
         return []
     plain = " ".join("".join(each if each.isprintable() else " " for each in text).split())
-    found["remark"] = plain[:REMARK_LONGEST]
+    found["remark"] = plain[:MAX_REMARK_LENGTH]
     if not plain:
         del found["remark"]
-    return ["the remark is shortened to 40 characters"] if len(plain) > REMARK_LONGEST else []
+    return ["the remark is shortened to 40 characters"] if len(plain) > MAX_REMARK_LENGTH else []
 
 
-def _unmeasured(values: Mapping[str, Value], found: dict[str, Value]) -> list[str]:
+def _unmeasured(values: Mapping[str, FieldValue], found: dict[str, FieldValue]) -> list[str]:
     """Remove X and Z that are 0, with which other programs fill tools that are not measured."""
     if found.get("x", 0.0) or found.get("z", 0.0):
         return []
@@ -210,7 +224,7 @@ def _unmeasured(values: Mapping[str, Value], found: dict[str, Value]) -> list[st
     return ["X and Z are 0, so the tool is not measured"] if {"x", "z"} <= values.keys() else []
 
 
-def _diameter(found: dict[str, Value]) -> list[str]:
+def _diameter(found: dict[str, FieldValue]) -> list[str]:
     """Replace the pseudo field D with the field that it means for this kind of tool."""
     if (value := found.pop(DIAMETER, None)) is None or isinstance(value, str):
         return []
@@ -221,16 +235,16 @@ def _diameter(found: dict[str, Value]) -> list[str]:
     return []
 
 
-def _radius_notes(found: Mapping[str, Value]) -> list[str]:
+def _radius_notes(found: Mapping[str, FieldValue]) -> list[str]:
     """Return a note if the nose radius is not the radius of the insert."""
     radius, code = found.get("nose_radius"), found.get("insert")
     if not isinstance(radius, float) or not isinstance(code, str):
         return []
     try:
-        insert = decoded(code)
+        insert = decode_insert_code(code)
     except InsertCodeError:
         return []
-    if not insert.corners or abs(insert.nose_radius - radius) <= _SAME_RADIUS:
+    if not insert.corner_angles or abs(insert.nose_radius - radius) <= _SAME_RADIUS:
         return []
     return [
         Message(

@@ -13,25 +13,25 @@ import re
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.klartext_faults import (
-    ARC_END,
-    ARITHMETIC,
-    COMPENSATION,
+    ARC_END_INCORRECT,
+    ARITHMETIC_ERROR,
+    COMPENSATION_NOT_PERMITTED,
     CYCLE_MISSING,
     CYCLE_UNKNOWN,
-    DIRECTION,
+    DIRECTION_UNDEFINED,
     FEED_MISSING,
     FILE_MISSING,
-    INPUT_VALUE,
-    M128_ON,
+    INPUT_VALUE_INCORRECT,
+    M128_ACTIVE,
     M_UNDEFINED,
-    NO_POLE,
-    NO_PROBE,
+    NOT_ALLOWED_WITH_M128,
     NOT_SUPPORTED,
-    NOT_WITH_M128,
-    PREVIOUS,
+    PATH_FUNCTION_NOT_POSSIBLE,
+    POLE_MISSING,
+    PROBE_MISSING,
     Q_UNDEFINED,
     RADIUS_TOO_LARGE,
-    ROUNDING,
+    ROUNDING_NOT_POSSIBLE,
     TOOL_AXIS_MISSING,
     TOOL_UNKNOWN,
     WRONG_RPM,
@@ -39,36 +39,47 @@ from core.language.klartext.klartext_faults import (
 )
 from core.language.klartext.klartext_nodes import KlartextLine
 
-_OF_TOOLS = frozenset({TOOL_AXIS_MISSING, WRONG_RPM, FEED_MISSING, RADIUS_TOO_LARGE, ROUNDING})
-_OF_PATHS = frozenset(
-    {ARC_END, DIRECTION, NO_POLE, PREVIOUS, ROUNDING, COMPENSATION, RADIUS_TOO_LARGE, FEED_MISSING}
+_TOOL_CODES = frozenset({TOOL_AXIS_MISSING, WRONG_RPM, FEED_MISSING, RADIUS_TOO_LARGE, ROUNDING_NOT_POSSIBLE})
+_PATH_CODES = frozenset(
+    {
+        ARC_END_INCORRECT,
+        DIRECTION_UNDEFINED,
+        POLE_MISSING,
+        PATH_FUNCTION_NOT_POSSIBLE,
+        ROUNDING_NOT_POSSIBLE,
+        COMPENSATION_NOT_PERMITTED,
+        RADIUS_TOO_LARGE,
+        FEED_MISSING,
+    }
 )
-_OF_CYCLES = frozenset({CYCLE_MISSING})
-_OF_PLANES = frozenset({M128_ON, NOT_WITH_M128})
-_OF_VALUES = frozenset({Q_UNDEFINED, ARITHMETIC, INPUT_VALUE})
-_ALL = _OF_TOOLS | _OF_PATHS | _OF_CYCLES | _OF_PLANES | _OF_VALUES
-_LACKING = frozenset({NOT_SUPPORTED, M_UNDEFINED, TOOL_UNKNOWN, CYCLE_UNKNOWN, NO_PROBE, FILE_MISSING})
+_CYCLE_CODES = frozenset({CYCLE_MISSING})
+_PLANE_CODES = frozenset({M128_ACTIVE, NOT_ALLOWED_WITH_M128})
+_VALUE_CODES = frozenset({Q_UNDEFINED, ARITHMETIC_ERROR, INPUT_VALUE_INCORRECT})
+_ALL_CODES = _TOOL_CODES | _PATH_CODES | _CYCLE_CODES | _PLANE_CODES | _VALUE_CODES
+_MISSING_CODES = frozenset(
+    {NOT_SUPPORTED, M_UNDEFINED, TOOL_UNKNOWN, CYCLE_UNKNOWN, PROBE_MISSING, FILE_MISSING}
+)
 """What control, machine or shop lacks: the same wherever it stands, so it is told at its first place."""
 
 _SPINDLE = frozenset({3, 4, 13, 14})
 _CALLS = frozenset({89, 99})  # M functions that call a cycle
 
 _BEGINS = (  # start of a block that cannot be read, and the possible consequences
-    (re.compile(r"TOOL"), _OF_TOOLS),
+    (re.compile(r"TOOL"), _TOOL_CODES),
     (
         re.compile(r"L\b|LP|LN|C[CPRT]?\b|CTP|APPR|DEP|RND|CHF|F[LCS]|FPOL|I?[XYZ]|SPL"),
-        _OF_PATHS | {WRONG_RPM},
+        _PATH_CODES | {WRONG_RPM},
     ),
     (re.compile(r"SEL\s+PGM"), frozenset({FILE_MISSING})),
-    (re.compile(r"CYCL|CONTOUR|PATTERN|GLOBAL|SEL|DECLARE|QC"), _OF_CYCLES | _OF_VALUES),
-    (re.compile(r"PLANE|FUNCTION|TRANS"), _OF_PLANES | {Q_UNDEFINED}),
-    (re.compile(r"M\s*[0-9]"), frozenset({WRONG_RPM}) | _OF_PLANES),
-    (re.compile(r"Q|FN"), _OF_VALUES),
+    (re.compile(r"CYCL|CONTOUR|PATTERN|GLOBAL|SEL|DECLARE|QC"), _CYCLE_CODES | _VALUE_CODES),
+    (re.compile(r"PLANE|FUNCTION|TRANS"), _PLANE_CODES | {Q_UNDEFINED}),
+    (re.compile(r"M\s*[0-9]"), frozenset({WRONG_RPM}) | _PLANE_CODES),
+    (re.compile(r"Q|FN"), _VALUE_CODES),
     (re.compile(r"LBL|STOP|BLK|TCH|\*|END|BEGIN"), frozenset[str]()),
 )
 
 
-class Consequences:
+class ConsequentFaultFilter:
     """The uncertain state after the errors of a pass."""
 
     def __init__(self) -> None:
@@ -77,7 +88,7 @@ class Consequences:
         self._cycles = False  # the tool, the cycle or a cycle parameter is uncertain
         self._unknown: set[tuple[str, int]] = set()  # parameters without a value because of an error
 
-    def follows(self, problem: ProgramError, node: nodes.Node | None) -> bool:
+    def is_consequence(self, problem: ProgramError, node: nodes.Node | None) -> bool:
         """Return whether an error may be a consequence of an earlier error.
 
         The consequences of the error itself are recorded.
@@ -85,66 +96,73 @@ class Consequences:
         found = problem.diagnostic
         parameter = problem.parameter if isinstance(problem, MissingValueError) else None
         silent = found.code in self._silent or parameter in self._unknown
-        silent = silent or (self._cycles and _runs_a_cycle(node) and found.code in _ALL)
+        silent = silent or (self._cycles and _runs_a_cycle(node) and found.code in _ALL_CODES)
         if parameter is not None:
             self._unknown.add(parameter)
-        silent = silent or (found.code in _LACKING and found.message in self._said)
+        silent = silent or (found.code in _MISSING_CODES and found.message in self._said)
         self._said.add(found.message)
         self._keep(node)
         return silent
 
-    def unreadable(self, text: str) -> None:
+    def record_unreadable_block(self, text: str) -> None:
         """Record a block that cannot be read, given as it is written."""
-        follows = next((codes for begins, codes in _BEGINS if begins.match(text.upper())), _ALL)
+        follows = next((codes for begins, codes in _BEGINS if begins.match(text.upper())), _ALL_CODES)
         self._silent |= follows
-        self._cycles = self._cycles or bool(follows & (_OF_CYCLES | {TOOL_AXIS_MISSING}))
+        self._cycles = self._cycles or bool(follows & (_CYCLE_CODES | {TOOL_AXIS_MISSING}))
 
     def _keep(self, node: nodes.Node | None) -> None:
-        self._unknown |= _parameters_of(node)
+        self._unknown |= _assigned_parameters(node)
         match node:
-            case nodes.ToolCall() | nodes.ToolDef():
-                self._silent |= _OF_TOOLS
+            case nodes.ToolCall() | nodes.ToolDefinition():
+                self._silent |= _TOOL_CODES
                 self._cycles = True
-            case nodes.Move() | nodes.Codes() | nodes.Stop():
-                self._silent |= _OF_PATHS if isinstance(node, nodes.Move) else _OF_PLANES
-                if any(code.number in _SPINDLE for code in node.codes):
+            case nodes.PathFunction() | nodes.MFunctionBlock() | nodes.StopBlock():
+                self._silent |= _PATH_CODES if isinstance(node, nodes.PathFunction) else _PLANE_CODES
+                if any(code.number in _SPINDLE for code in node.m_functions):
                     self._silent.add(WRONG_RPM)
-            case nodes.Pole() | nodes.Corner() | nodes.Datum() | nodes.Transform():
-                self._silent |= _OF_PATHS
-            case nodes.Cycle() | nodes.CycleLine() | nodes.PatternDef() | nodes.ContourDef():
-                self._silent |= _OF_CYCLES
+            case nodes.Pole() | nodes.CornerBlock() | nodes.DatumShift() | nodes.CoordinateTransform():
+                self._silent |= _PATH_CODES
+            case (
+                nodes.CycleDefinition()
+                | nodes.CycleLine()
+                | nodes.PatternDefinition()
+                | nodes.ContourDefinition()
+            ):
+                self._silent |= _CYCLE_CODES
                 self._cycles = True
-            case nodes.Plane() | nodes.TipControl():
-                self._silent |= _OF_PLANES
+            case nodes.PlaneBlock() | nodes.TcpmSwitch():
+                self._silent |= _PLANE_CODES
             case nodes.ProgramCall() | nodes.Selection():
-                self._silent |= _ALL
+                self._silent |= _ALL_CODES
             case _:
                 pass
 
 
-def _parameters_of(node: nodes.Node | None) -> set[tuple[str, int]]:
+def _assigned_parameters(node: nodes.Node | None) -> set[tuple[str, int]]:
     """Return the parameters that a block would have set."""
     match node:
-        case nodes.Assign() | nodes.SystemRead():
-            return {(node.kind, node.q)}
-        case nodes.Plane() | nodes.TipControl():
+        case nodes.Assignment() | nodes.SystemRead():
+            return {(node.parameter_kind, node.parameter_number)}
+        case nodes.PlaneBlock() | nodes.TcpmSwitch():
             return {("Q", 120), ("Q", 121), ("Q", 122)}
         case _:
             return set()
 
 
-def ends_the_pass(node: nodes.Node | None) -> bool:
+def makes_flow_unknown(node: nodes.Node | None) -> bool:
     """Return whether the program flow is unknown after an error in this block."""
-    return isinstance(node, (nodes.Jump, nodes.Call, nodes.ErrorMessage))
+    return isinstance(node, (nodes.ConditionalJump, nodes.LabelCall, nodes.ErrorMessage))
 
 
 def _runs_a_cycle(node: nodes.Node | None) -> bool:
     if isinstance(node, nodes.CycleCall):
         return True
-    return isinstance(node, (nodes.Move, nodes.Codes)) and any(c.number in _CALLS for c in node.codes)
+    return isinstance(node, (nodes.PathFunction, nodes.MFunctionBlock)) and any(
+        c.number in _CALLS for c in node.m_functions
+    )
 
 
-def told_once(lines: list[KlartextLine]) -> None:
+def remove_repeated_errors(lines: list[KlartextLine]) -> None:
     """Remove syntax errors that only repeat: the same missing function, or further lines of one cycle."""
     said: set[str] = set()
     cycle = ""
@@ -152,12 +170,12 @@ def told_once(lines: list[KlartextLine]) -> None:
         if line.error is None:
             cycle = "" if line.node is not None else cycle
             continue
-        part = _OF_A_CYCLE.match(line.code.upper())
+        part = _CYCLE_LINE_PATTERN.match(line.code.upper())
         goes_on = part is not None and part.group(1) == cycle and part.group(2) != "0"
         cycle = part.group(1) if part is not None else ""
-        if goes_on or (line.error.code in _LACKING and line.error.message in said):
+        if goes_on or (line.error.code in _MISSING_CODES and line.error.message in said):
             lines[index] = line._replace(error=None)
         said.add(line.error.message)
 
 
-_OF_A_CYCLE = re.compile(r"((?:CYCL DEF|TCH PROBE) ?[0-9]+) ?\. ?([0-9]+)")
+_CYCLE_LINE_PATTERN = re.compile(r"((?:CYCL DEF|TCH PROBE) ?[0-9]+) ?\. ?([0-9]+)")

@@ -5,33 +5,41 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.geometry.rotary_axes import Kinematics
-from core.interpreter.klartext.consequent_faults import Consequences, ends_the_pass
-from core.interpreter.klartext.cycles.contour_figures import ContourFigure, FigureRunner, copy_of
-from core.interpreter.klartext.cycles.cycle_calls import Cycles
+from core.interpreter.klartext.consequent_faults import ConsequentFaultFilter, makes_flow_unknown
+from core.interpreter.klartext.cycles.cycle_calls import ActiveCycle
+from core.interpreter.klartext.cycles.sl_contours import ContourCollector, SlContour, copy_state
 from core.interpreter.klartext.flow import mid_program_startup
-from core.interpreter.klartext.flow.blocks_without_motion import Reckoned, go_on, reckon, refuse_endless
-from core.interpreter.klartext.flow.mid_program_startup import Parts
+from core.interpreter.klartext.flow.blocks_without_motion import (
+    CalculationNode,
+    check_endless_loop,
+    execute_calculation,
+    execute_flow_block,
+)
+from core.interpreter.klartext.flow.mid_program_startup import InterpreterParts
 from core.interpreter.klartext.klartext_program import Flow, Program
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.motion import feed_rates, plane_functions
 from core.interpreter.klartext.motion.path_functions import PathRunner
 from core.interpreter.klartext.motion.plane_functions import plane
 from core.interpreter.klartext.setup import m_functions
-from core.interpreter.klartext.setup.coordinate_transformations import datum, transform
-from core.interpreter.klartext.setup.tool_call import define_tool, tool_call
+from core.interpreter.klartext.setup.coordinate_transformations import (
+    execute_datum_shift,
+    execute_transformation,
+)
+from core.interpreter.klartext.setup.tool_call import define_tool, execute_tool_call
 from core.interpreter.shared.actions import ProgramEnd, ProgramStop
-from core.interpreter.shared.checkpoint import Begin, Checkpoint
-from core.interpreter.shared.control_flow import LoopWatch
-from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.checkpoint import Checkpoint, PassStart
+from core.interpreter.shared.control_flow import EndlessLoopDetector
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import MOST_LINES_WITHOUT_BLOCK, LinePass
+from core.interpreter.shared.interpretation import MAX_LINES_WITHOUT_BLOCK, LinePass
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
-from core.language.klartext.canonical_text import name_text
-from core.language.klartext.klartext_faults import FILE_MISSING, LABEL, unsupported
-from core.language.klartext.named_files import Row
+from core.language.klartext.canonical_text import format_name
+from core.language.klartext.klartext_faults import FILE_MISSING, LABEL_NOT_FOUND, make_unsupported_error
+from core.language.klartext.named_files import TableRow
 from core.message import Message
 
 
@@ -39,23 +47,23 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     """One pass through a Klartext program."""
 
     def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
-        super().__init__(Log(program.problems))
+        super().__init__(DiagnosticLog(program.diagnostics))
         self._program = program
-        self._state = State(setup, kinematics, self._log, inch=program.inch)
-        self._state.blank = program.corners
+        self._state = State(setup, kinematics, self._log, is_inch=program.is_inch)
+        self._state.blank_corners = program.blank_corners
         self._flow = Flow(program)
-        self._watch = None if self._flow.reads_the_control else LoopWatch()
+        self._watch = None if self._flow.reads_control_values else EndlessLoopDetector()
         self._path = PathRunner(self._state)
-        self._cycles = Cycles(self._state)
+        self._cycles = ActiveCycle(self._state)
         self._setup = setup
-        self._consequences = Consequences()
+        self._consequences = ConsequentFaultFilter()
         if setup.begin is not None:
-            self._go_on_from(setup.begin)
+            self._restore_from(setup.begin)
 
     @property
-    def source_blocks(self) -> int:
+    def source_block_count(self) -> int:
         """Number of lines that contain more than a comment."""
-        return self._program.blocks
+        return self._program.block_count
 
     @property
     def state(self) -> State:
@@ -63,116 +71,124 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return self._state
 
     @property
-    def modal(self) -> Modal:
+    def modal(self) -> ModalState:
         """Modal state after the last generated block."""
         return self._state.modal
 
     @property
     def checkpoint(self) -> Checkpoint:
         """State that the next line inherits."""
-        return mid_program_startup.checkpoint_of(self._parts, self._shared)
+        return mid_program_startup.make_checkpoint(self._parts, self._shared)
 
     @property
-    def waits_for(self) -> str:
+    def blocking_reason(self) -> str:
         """Reason why no other pass can continue from here; empty if one can."""
-        return self._path.waits_for
+        return self._path.blocking_reason
 
     @property
-    def _parts(self) -> Parts:
-        return Parts(self._state, self._path, self._cycles, self._flow, self._taken)
+    def _parts(self) -> InterpreterParts:
+        return InterpreterParts(self._state, self._path, self._cycles, self._flow, self._taken)
 
     @property
     def _shared(self) -> tuple[object, ...]:
         program = self._program
-        return self._setup, self._log, program, self._setup.kinematics, *program.called.values()
+        return self._setup, self._log, program, self._setup.kinematics, *program.called_programs.values()
 
-    def _go_on_from(self, begin: Begin) -> None:
+    def _restore_from(self, start: PassStart) -> None:
         """Restore the state that the line of ``begin`` inherits, for MDI or for a restart."""
-        kept = begin.checkpoint.kept
+        kept = start.checkpoint.kept
         if kept is not None:
-            parts: Parts = kept.parts(self._setup, self._log)
-            self._state, self._path, self._cycles = parts.state, parts.path, parts.cycles
-            if not begin.single:
-                self._flow, self._taken = parts.flow, parts.taken
-        mid_program_startup.take_up(self._state, begin, inch=self._program.inch)
-        self._approach = mid_program_startup.approach_blocks(self._state, begin)
+            parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
+            self._state, self._path, self._cycles = parts.state, parts.path_runner, parts.cycles
+            if not start.is_mdi_line:
+                self._flow, self._taken = parts.flow, parts.pending_line
+        mid_program_startup.restore_state(self._state, start, inch=self._program.is_inch)
+        self._approach = mid_program_startup.generate_mill_approach(self._state, start)
 
     def _can_stop(self, line: nodes.KlartextLine) -> bool:
-        return line.node is not None and not self._flow.outside
+        return line.node is not None and not self._flow.is_in_other_file
 
-    def _never_ends(self, line: nodes.KlartextLine) -> None:
+    def _report_limit(self, line: nodes.KlartextLine) -> None:
         self._stop_endless(line.number, "Reduce the repeat counts.")
 
-    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """Return an iterator that generates the elementary blocks. Call this method once."""
         yield from self._approach
-        self._made = self._state.blocks
-        for line in self._lines(self._flow.next):
-            for block in self._guarded(line):
+        self._made = self._state.block_count
+        for line in self._lines(self._flow.read_next_line):
+            for block in self._execute_line_safely(line):
                 if not self._stopped:
                     yield block
-            self._made = self._state.blocks
-            if self._stopped and (to_first_error or self._log.full):
+            self._made = self._state.block_count
+            if self._stopped and (to_first_error or self._log.is_full):
                 return
-        if not (self._stopped or self.stopped_before or self._flow.ended_by_code):
+        if not (self._stopped or self.has_stopped_before_line or self._flow.is_ended_by_code):
             yield from self._end_of_program()
 
     def _end_of_program(self) -> Iterator[Block]:
         """Yield the end of the program at END PGM, which acts like M30."""
-        state, end = self._state, self._program.end
+        state, end = self._state, self._program.end_index
         if end >= len(self._program.lines):
             return
-        state.line, state.text = end + 1, self._program.text(self._program.lines[end])
+        state.line_number, state.text = end + 1, self._program.text(self._program.lines[end])
         try:
-            yield from self._path.end()
+            yield from self._path.finish_program()
         except ProgramError as problem:
             self._log.add(problem.diagnostic)
             self._stopped = True
             return
-        yield m_functions.end(state)
+        yield m_functions.execute_program_end(state)
 
-    def _guarded(self, line: nodes.KlartextLine) -> Iterator[Block]:
+    def _execute_line_safely(self, line: nodes.KlartextLine) -> Iterator[Block]:
         """Yield the blocks of a line; an error is logged and ends them."""
-        if line.skip and self._state.setup.block_delete:
+        if line.is_skippable and self._state.setup.block_delete:
             return
         if line.error is not None:
-            self._log.add(self._flow.located(line.error))
+            self._log.add(self._flow.relocate_finding(line.error))
             self._stopped = True
-            self._consequences.unreadable(line.code)
+            self._consequences.record_unreadable_block(line.code)
             return
         try:
             yield from self._line(line)
         except ProgramError as problem:
-            if not self._consequences.follows(problem, line.node):
+            if not self._consequences.is_consequence(problem, line.node):
                 self._log.add(problem.diagnostic)
             self._stopped = True
-            if ends_the_pass(line.node):
-                self._flow.end_all()
+            if makes_flow_unknown(line.node):
+                self._flow.end_program()
 
     def _line(self, line: nodes.KlartextLine) -> Iterator[Block]:
         state, node = self._state, line.node
-        state.line, state.text = self._flow.shown_line(line.number), self._flow.program.text(line)
+        state.line_number, state.text = (
+            self._flow.get_displayed_line(line.number),
+            self._flow.program.text(line),
+        )
         match node:
-            case nodes.Move():
+            case nodes.PathFunction():
                 yield from self._move(node, line.comment or "")
-            case nodes.Codes() | nodes.Stop() | nodes.CycleCall():
-                yield from self._called(node, line.comment or "")
-            case nodes.Corner():
-                self._path.corner(node)
+            case nodes.MFunctionBlock() | nodes.StopBlock() | nodes.CycleCall():
+                yield from self._execute_codes_or_cycle(node, line.comment or "")
+            case nodes.CornerBlock():
+                self._path.add_corner(node)
             case nodes.Pole():
-                self._path.pole(node)
-            case nodes.Label() | nodes.Call() | nodes.Jump():
-                go_on(state, self._flow, line.number, node)
-                if isinstance(node, nodes.Jump) and self._watch is not None:
-                    refuse_endless(state, self._flow, self._watch, line.number, node)
-            case _ if isinstance(node, Reckoned):
-                reckon(state, node)
+                self._path.set_pole(node)
+            case nodes.Label() | nodes.LabelCall() | nodes.ConditionalJump():
+                execute_flow_block(state, self._flow, line.number, node)
+                if isinstance(node, nodes.ConditionalJump) and self._watch is not None:
+                    check_endless_loop(state, self._flow, self._watch, line.number, node)
+            case _ if isinstance(node, CalculationNode):
+                execute_calculation(state, node)
             case (
-                None | nodes.Begin() | nodes.End() | nodes.BlankForm() | nodes.RoundBlank() | nodes.Heading()
+                None
+                | nodes.BeginBlock()
+                | nodes.EndBlock()
+                | nodes.BlankCorner()
+                | nodes.CylinderBlank()
+                | nodes.HeadingLine()
             ):
                 pass
             case _:
-                yield from self._path.finish(1, state.text.split(" ")[0])
+                yield from self._path.flush_before(1, state.text.split(" ")[0])
                 yield from self._coordinates(node)
 
     def _coordinates(self, node: nodes.Node) -> Iterator[Block]:
@@ -182,187 +198,220 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         """
         state = self._state
         match node:
-            case nodes.Plane():
+            case nodes.PlaneBlock():
                 yield from plane(state, node)
             case nodes.ToolCall():
-                yield from tool_call(state, node, self._tools)
-            case nodes.ToolDef():
+                yield from execute_tool_call(state, node, self._tools)
+            case nodes.ToolDefinition():
                 define_tool(state, node)
-            case nodes.Datum():
+            case nodes.DatumShift():
                 self._shift(node)
-            case nodes.Transform():
-                transform(state, node)
-            case nodes.TipControl():
-                plane_functions.switch(state, on=node.on)
-            case nodes.Cycle() | nodes.CycleLine() | nodes.PatternDef() | nodes.ContourDef():
-                yield from self._cycles.told(node)
+            case nodes.CoordinateTransform():
+                execute_transformation(state, node)
+            case nodes.TcpmSwitch():
+                plane_functions.set_tcpm_active(state, active=node.is_on)
+            case (
+                nodes.CycleDefinition()
+                | nodes.CycleLine()
+                | nodes.PatternDefinition()
+                | nodes.ContourDefinition()
+            ):
+                yield from self._cycles.execute_definition(node)
             case nodes.Selection():
                 self._select(node)
             case nodes.ProgramCall():
-                self._call_program(node.name or self._selected(node.column), node.column)
+                self._call_program(node.name or self._selected_program(node.column), node.column)
 
-    def _shift(self, node: nodes.Datum) -> None:
+    def _shift(self, node: nodes.DatumShift) -> None:
         """Execute a datum shift, with a table if the block names one. Raises ProgramError."""
-        if node.table:
-            self._select(nodes.Selection("TABLE", node.table, node.column))
-        datum(self._state, node)
+        if node.table_name:
+            self._select(nodes.Selection("TABLE", node.table_name, node.column))
+        execute_datum_shift(self._state, node)
 
     def _select(self, node: nodes.Selection) -> None:
         """Execute SEL TABLE, SEL PATTERN or SEL PGM. Raises ProgramError for a missing table."""
-        if node.kind == "PGM":
+        if node.selected_kind == "PGM":
             self._state.selected_program = node.name
             return
         rows = self._table(node.name, node.column)
-        if node.kind == "TABLE":
-            self._state.datum_table = rows
+        if node.selected_kind == "TABLE":
+            self._state.datum_table_rows = rows
         else:
             self._cycles.select_points(rows)
 
     def _missing_program(self, name: str, column: int) -> ProgramError:
         text = Message("Program {name} is not in the same folder as this program.", name=name)
-        return self._state.refuse(
+        return self._state.make_error(
             column, FILE_MISSING, text, "Put the file in the same folder as this program."
         )
 
-    def _table(self, name: str, column: int) -> dict[int, Row]:
-        rows = self._flow.table(name)
+    def _table(self, name: str, column: int) -> dict[int, TableRow]:
+        rows = self._flow.read_table(name)
         if rows is None:
             text = Message("Table {name} is not in the same folder as this program.", name=name)
-            raise self._state.refuse(
+            raise self._state.make_error(
                 column, FILE_MISSING, text, "Put the file in the same folder as this program."
             )
         return rows
 
-    def _selected(self, column: int) -> str:
+    def _selected_program(self, column: int) -> str:
         """Return the program of SEL PGM. Raises ProgramError without one."""
         if not self._state.selected_program:
             text = "No program is selected."
-            raise self._state.refuse(column, FILE_MISSING, text, "Write SEL PGM before this block.")
+            raise self._state.make_error(column, FILE_MISSING, text, "Write SEL PGM before this block.")
         return self._state.selected_program
 
     def _call_program(self, name: str, column: int) -> None:
-        called = self._flow.call_program(name, self._state.line)
+        called = self._flow.call_program(name, self._state.line_number)
         if called is None:
             raise self._missing_program(name, column)
 
     # --- moves, M functions, cycles -----------------------------------------------------------------------
 
-    def _move(self, node: nodes.Move, comment: str) -> Iterator[Block]:
+    def _move(self, node: nodes.PathFunction, comment: str) -> Iterator[Block]:
         """Yield the blocks of a path function with its M functions.
 
         A cycle that M99 or M89 calls follows.
         """
         state, path = self._state, self._path
-        m_functions.check(state, node.codes)
-        feed_rates.switch(state, node.codes)
-        if any(code.number in m_functions.BEFORE for code in node.codes):
-            yield from path.between(lambda: m_functions.before(state, node.codes))
-        datum = m_functions.datum(state, node.codes)
-        yield from path.move(node, datum=datum, corner_behind=self._corner_is_next())
-        yield from self._behind(node.codes, comment)
+        m_functions.check(state, node.m_functions)
+        feed_rates.execute_feed_codes(state, node.m_functions)
+        if any(code.number in m_functions.CODES_BEFORE_MOTION for code in node.m_functions):
+            yield from path.execute_between_elements(
+                lambda: m_functions.execute_before_motion(state, node.m_functions)
+            )
+        datum = m_functions.read_machine_datum(state, node.m_functions)
+        yield from path.execute_move(node, datum=datum, has_corner_after=self._corner_is_next())
+        yield from self._behind(node.m_functions, comment)
         moved = any(word.axis in "XY" for word in node.axes) or bool(node.words)
-        yield from self._with_cycle(node.codes, node.column, moved=moved)
+        yield from self._with_cycle(node.m_functions, node.column, has_moved=moved)
 
-    def _called(self, node: nodes.Codes | nodes.Stop | nodes.CycleCall, comment: str) -> Iterator[Block]:
+    def _execute_codes_or_cycle(
+        self, node: nodes.MFunctionBlock | nodes.StopBlock | nodes.CycleCall, comment: str
+    ) -> Iterator[Block]:
         """Yield the blocks of M functions alone, STOP or CYCL CALL."""
         state, path = self._state, self._path
-        m_functions.check(state, node.codes)
-        feed_rates.switch(state, node.codes)
-        yield from path.between(lambda: m_functions.before(state, node.codes))
+        m_functions.check(state, node.m_functions)
+        feed_rates.execute_feed_codes(state, node.m_functions)
+        yield from path.execute_between_elements(
+            lambda: m_functions.execute_before_motion(state, node.m_functions)
+        )
         if isinstance(node, nodes.CycleCall):
-            yield from path.finish(node.column, "CYCL CALL")
-            if node.pattern:
+            yield from path.flush_before(node.column, "CYCL CALL")
+            if node.is_pattern_call:
                 yield from self._cycles.call_pattern(node)
             else:
                 yield from self._cycles.call_at(node) if node.axes else self._run_cycle(node.column)
-        if isinstance(node, nodes.Stop):
+        if isinstance(node, nodes.StopBlock):
             stop = ProgramStop(optional=False, message=comment)
-            yield from path.between(lambda: iter((state.action(stop),)))
-        yield from self._behind(node.codes, comment)
+            yield from path.execute_between_elements(lambda: iter((state.make_action_block(stop),)))
+        yield from self._behind(node.m_functions, comment)
         if not isinstance(node, nodes.CycleCall):
-            yield from self._with_cycle(node.codes, 1, moved=False)
+            yield from self._with_cycle(node.m_functions, 1, has_moved=False)
 
-    def _behind(self, codes: Sequence[nodes.MCode], comment: str) -> Iterator[Block]:
+    def _behind(self, codes: Sequence[nodes.MFunction], comment: str) -> Iterator[Block]:
         state = self._state
-        if any(code.number in m_functions.ENDS for code in codes):
-            yield from self._path.end()
-        elif not any(code.number not in m_functions.BEFORE for code in codes):
+        if any(code.number in m_functions.PROGRAM_END_CODES for code in codes):
+            yield from self._path.finish_program()
+        elif not any(code.number not in m_functions.CODES_BEFORE_MOTION for code in codes):
             return
-        for block in self._path.between(lambda: m_functions.behind(state, codes, comment)):
+        for block in self._path.execute_between_elements(
+            lambda: m_functions.execute_after_motion(state, codes, comment)
+        ):
             yield block
             if isinstance(block.action, ProgramEnd):
                 # the position is then after END PGM, so that the program does not end twice
-                self._flow.end_all()
+                self._flow.end_program()
 
-    def _with_cycle(self, codes: Sequence[nodes.MCode], column: int, *, moved: bool) -> Iterator[Block]:
+    def _with_cycle(
+        self, codes: Sequence[nodes.MFunction], column: int, *, has_moved: bool
+    ) -> Iterator[Block]:
         """Yield the cycle of M99, or of M89, which calls it after every move in the plane until M99."""
         numbers = {code.number for code in codes}
-        wanted = self._cycles.modal and moved
+        wanted = self._cycles.is_modal and has_moved
         if m_functions.M89 in numbers:
-            self._cycles.modal = wanted = True
+            self._cycles.is_modal = wanted = True
         if m_functions.M99 in numbers:
-            self._cycles.modal, wanted = False, True
+            self._cycles.is_modal, wanted = False, True
         if not wanted:
             return
-        yield from self._path.finish(column, "A cycle")
+        yield from self._path.flush_before(column, "A cycle")
         yield from self._run_cycle(column)
 
     def _run_cycle(self, column: int) -> Iterator[Block]:
         """Yield the machining cycle at the tool position, or call the program of cycle 12."""
-        if self._cycles.program:
-            self._call_program(self._cycles.program, column)
+        if self._cycles.called_program:
+            self._call_program(self._cycles.called_program, column)
             return
-        figures = [self._figure(part, column) for part in self._cycles.contours]
-        yield from self._cycles.call(column, figures)
+        figures = [self._read_contour(part, column) for part in self._cycles.contours]
+        yield from self._cycles.call_cycle(column, figures)
 
-    def _figure(self, part: nodes.ContourPart, column: int) -> ContourFigure:
+    def _read_contour(self, part: nodes.ContourPart, column: int) -> SlContour:
         """Return the contour of a subprogram, which is executed with a copy of the state."""
-        state = copy_of(self._state)
-        if part.file:
-            flow, name = self._flow.through_program(part.file), part.file
+        state = copy_state(self._state)
+        if part.file_name:
+            flow, name = self._flow.make_program_flow(part.file_name), part.file_name
             if flow is None:
-                raise self._missing_program(part.file, column)
+                raise self._missing_program(part.file_name, column)
         else:
             flow, name = (
-                self._flow.through_subprogram(part.label),
-                Message("LBL {part}", part=name_text(part.label)),
+                self._flow.make_subprogram_flow(part.label_name),
+                Message("LBL {part}", part=format_name(part.label_name)),
             )
         if flow is None:
             text = Message("{name} of the contour is not in the program or has no LBL 0.", name=name)
-            raise self._state.refuse(column, LABEL, text, "Correct the label number, or add the label.")
-        runner, lines = FigureRunner(state), MOST_LINES_WITHOUT_BLOCK
-        while (line := flow.next()) is not None:
+            raise self._state.make_error(
+                column, LABEL_NOT_FOUND, text, "Correct the label number, or add the label."
+            )
+        runner, lines = ContourCollector(state), MAX_LINES_WITHOUT_BLOCK
+        while (line := flow.read_next_line()) is not None:
             lines -= 1
             if line.error is not None:
-                raise ProgramError(self._flow.located(line.error))
+                raise ProgramError(self._flow.relocate_finding(line.error))
             if lines < 0:
-                raise self._state.refuse(
-                    column, LABEL, Message("{name} never reaches its end.", name=name), "Correct the value."
+                raise self._state.make_error(
+                    column,
+                    LABEL_NOT_FOUND,
+                    Message("{name} never reaches its end.", name=name),
+                    "Correct the value.",
                 )
-            if not (line.skip and state.setup.block_delete):
-                state.line, state.text = self._flow.shown_line(line.number), flow.program.text(line)
-                _draw(state, runner, flow, line)
-        runner.close()
-        return ContourFigure(name, runner.elements, runner.side, part.pocket)
+            if not (line.is_skippable and state.setup.block_delete):
+                state.line_number, state.text = (
+                    self._flow.get_displayed_line(line.number),
+                    flow.program.text(line),
+                )
+                _collect_contour_line(state, runner, flow, line)
+        runner.finish()
+        return SlContour(name, runner.elements, runner.side, part.is_pocket)
 
     def _corner_is_next(self) -> bool:
         """Return whether the next block is RND or CHF, for which an element must be buffered."""
-        return isinstance(self._flow.next_node(), nodes.Corner)
+        return isinstance(self._flow.peek_next_node(), nodes.CornerBlock)
 
 
-def _draw(state: State, runner: FigureRunner, flow: Flow, line: nodes.KlartextLine) -> None:
+def _collect_contour_line(
+    state: State, runner: ContourCollector, flow: Flow, line: nodes.KlartextLine
+) -> None:
     """Execute a line of a contour's subprogram; feeds, M functions and tools have no effect."""
     match line.node:
-        case nodes.Move():
-            runner.draw(line.node)
-        case nodes.Corner():
-            runner.corner(line.node)
+        case nodes.PathFunction():
+            runner.add_path_function(line.node)
+        case nodes.CornerBlock():
+            runner.add_corner(line.node)
         case nodes.Pole():
-            runner.pole(line.node)
-        case nodes.Label() | nodes.Call() | nodes.Jump():
-            go_on(state, flow, line.number, line.node)
-        case node if isinstance(node, Reckoned):
-            reckon(state, node)
-        case nodes.Datum() | nodes.Transform() | nodes.Plane() | nodes.Cycle() | nodes.CycleLine():
+            runner.set_pole(line.node)
+        case nodes.Label() | nodes.LabelCall() | nodes.ConditionalJump():
+            execute_flow_block(state, flow, line.number, line.node)
+        case node if isinstance(node, CalculationNode):
+            execute_calculation(state, node)
+        case (
+            nodes.DatumShift()
+            | nodes.CoordinateTransform()
+            | nodes.PlaneBlock()
+            | nodes.CycleDefinition()
+            | nodes.CycleLine()
+        ):
             what = state.text.split("~")[0].strip()
-            raise unsupported(state.line, 1, Message("{form} inside an SL cycle contour", form=what))
+            raise make_unsupported_error(
+                state.line_number, 1, Message("{form} inside an SL cycle contour", form=what)
+            )

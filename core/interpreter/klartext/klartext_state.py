@@ -6,47 +6,61 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from core.geometry.rotary_axes import Kinematics, Place, Rotary
-from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
-from core.geometry.working_plane import XY, CurvedMove, Figure, Order, Travel
+from core.geometry.rotary_axes import FrameTransform, Kinematics, RotaryAxis
+from core.geometry.rotation_frames import (
+    IDENTITY,
+    Matrix,
+    Vector,
+    add_vectors,
+    apply_matrix,
+    multiply_matrices,
+    transpose_matrix,
+)
+from core.geometry.working_plane import XY, AxisMove, AxisOrder, CurvedMove, ProgramTransform
 from core.interpreter.shared.actions import Action, Dwell, ProgramStop
-from core.interpreter.shared.diagnostic_log import Log
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.shared.units import MM_PER_INCH
-from core.interpreter.shared.working_plane import Angles, Corners, PlaneSystem, Swivel
-from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
-from core.language.klartext.klartext_faults import fault
-from core.language.klartext.named_files import Row
-from core.message import Message, worded
+from core.interpreter.shared.working_plane import BlankCorners, PlanePosition, PlaneSystem, RotaryAngles
+from core.language.diagnostics import (
+    PROGRAM_STOP_ASSUMPTION,
+    Diagnostic,
+    ProgramError,
+    Severity,
+    add_assumptions,
+)
+from core.language.klartext.klartext_faults import make_klartext_error
+from core.language.klartext.named_files import TableRow
+from core.message import Message, fill_template
 
-ORIGIN: Vector = (0.0, 0.0, 0.0)
+ORIGIN_POINT: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
-class WorkingPlane:
+class ActivePlane:
     """The active plane. ``frame`` is its orientation with the tables at 0.
 
-    ``targets`` are machine angles by axis, from 0 to 360 on a modulo axis. ``line`` is the line of the PLANE
-    block.
+    ``target_angles`` are machine angles by axis, from 0 to 360 on a modulo axis. ``line`` is the line of the
+    PLANE block.
     """
 
     frame: Matrix
-    targets: Mapping[str, float]
+    target_angles: Mapping[str, float]
     line: int
 
 
-SLIDES = "XYZ"
-ROTARY = "ABC"
-Q_TARGETS = (120, 121, 122)
-SAME_POINT = 1e-7  # mm or degrees; closer points count as equal
+LINEAR_AXES = "XYZ"
+ROTARY_AXES = "ABC"
+TARGET_ANGLE_PARAMETERS = (120, 121, 122)
+POINT_TOLERANCE = 1e-7  # mm or degrees; closer points count as equal
 
 
 class State:
     """State of a pass.
 
-    ``at`` has all axis positions by name, ``there`` in the machine's order; mm and degrees.
+    ``at`` has all axis positions by name, ``axis_positions`` in the machine's order; mm and degrees.
 
     Rotary axes are continuous. ``datum`` is the workpiece datum in the workpiece system, and ``shift`` is the
     TRANS DATUM within the active plane. ``frame`` and ``origin`` are the axes and origin of the working plane
@@ -55,255 +69,285 @@ class State:
     displayed.
     """
 
-    def __init__(self, setup: Setup, kinematics: Kinematics, log: Log, *, inch: bool) -> None:
-        self.line, self.text = 0, ""
+    def __init__(self, setup: Setup, kinematics: Kinematics, log: DiagnosticLog, *, is_inch: bool) -> None:
+        self.line_number, self.text = 0, ""
         self.kinematics = kinematics
-        self.names = kinematics.names
-        self.rotary_names = tuple(axis.name for axis in kinematics.rotaries)
-        self.at = dict(zip(self.names, setup.start, strict=True))
-        self.there = tuple(setup.start)
-        self.plane: WorkingPlane | None = None
-        self.datum = self.shift = self.origin = ORIGIN
+        self.axis_names = kinematics.axis_names
+        self.rotary_axis_names = tuple(axis.name for axis in kinematics.rotary_axes)
+        self.position_by_axis = dict(zip(self.axis_names, setup.start, strict=True))
+        self.axis_positions = tuple(setup.start)
+        self.active_plane: ActivePlane | None = None
+        self.datum = self.shift = self.origin = ORIGIN_POINT
         self.frame = IDENTITY
-        self.tool_length = 0.0
-        self.m128 = False
+        self.tool_length_mm = 0.0
+        self.is_tcpm_active = False
         # M126: modulo rotary axes move the shorter distance; M127: by the difference of the displayed angles
-        self.short_way = True
-        self._shown: Angles | None = None  # recalculated after a move of a rotary axis
-        self.place = self._place()
-        self.point = self.place.point(self.slides)
+        self.uses_shorter_rotation = True
+        self._shown: RotaryAngles | None = None  # recalculated after a move of a rotary axis
+        self.plane_transform = self._place()
+        self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
         self.setup = setup
         self.log = log
-        self.scale = MM_PER_INCH if inch else 1.0
-        self.blocks = 0
+        self.mm_per_unit = MM_PER_INCH if is_inch else 1.0
+        self.block_count = 0
         self.tool_axis = ""
         self.feed: float | None = None  # active F, as programmed
-        self.feed_per = ""  # base of the feed: U per revolution, Z per tooth, otherwise per minute
+        self.feed_base = ""  # base of the feed: U per revolution, Z per tooth, otherwise per minute
         self.tool_feed: float | None = None  # F of the last TOOL CALL
-        self.tool_feed_per = ""
-        self.per_revolution = False  # M136: F is per revolution
+        self.tool_feed_base = ""
+        self.is_feed_per_revolution = False  # M136: F is per revolution
         # M116: F of moves of only rotary axes is in mm of the tip on the workpiece
-        self.rotary_by_way = False
-        self.plunging: float | None = None  # M103: fraction of F that applies to downward Z motion
-        self.spindle_angle = 0.0  # angle of cycle 13 for M19
-        self.q: dict[int, float] = {}
-        self.q_beside: dict[tuple[str, int], float] = {}  # QL and QR
-        self.q_global: dict[int, float] = {}  # values of GLOBAL DEF for PREDEF
-        self.figure = Figure()
+        self.is_rotary_feed_at_tip = False
+        self.plunging_feed_factor: float | None = (
+            None  # M103: fraction of F that applies to downward Z motion
+        )
+        self.spindle_angle_deg = 0.0  # angle of cycle 13 for M19
+        self.q_values: dict[int, float] = {}
+        self.ql_and_qr_values: dict[tuple[str, int], float] = {}  # QL and QR
+        self.global_def_values: dict[int, float] = {}  # values of GLOBAL DEF for PREDEF
+        self.transformation = ProgramTransform()
         self.pole: tuple[float, float] | None = None  # pole of CC, in the axes of its plane
-        self.pole_plane: Order = XY
-        self.turn = ""  # active DR, + or -
-        self.tool_radius = 0.0
-        self.oversize = (0.0, 0.0)  # DL and DR of the last TOOL CALL, mm
-        self.tool_defs: dict[int | str, tuple[float, float]] = {}  # length and radius of TOOL DEF, mm
+        self.pole_plane: AxisOrder = XY
+        self.rotation_direction = ""  # active DR, + or -
+        self.tool_radius_mm = 0.0
+        self.tool_deltas_mm = (0.0, 0.0)  # DL and DR of the last TOOL CALL, mm
+        self.tool_definitions: dict[int | str, tuple[float, float]] = {}  # length and radius of TOOL DEF, mm
         # values of FN 17 by tool and column, which FN 18 returns
-        self.tool_cells: dict[tuple[int, int], float] = {}
-        self.datum_table: dict[int, Row] | None = None  # table of SEL TABLE
+        self.system_written_values: dict[tuple[int, int], float] = {}
+        self.datum_table_rows: dict[int, TableRow] | None = None  # table of SEL TABLE
         self.selected_program = ""  # program of SEL PGM
-        self.table_known = False  # the program has positioned the table, so its start position has no effect
-        self.blank: Corners | None = None
+        self.is_table_positioned = (
+            False  # the program has positioned the table, so its start position has no effect
+        )
+        self.blank_corners: BlankCorners | None = None
         # a position was read after a program stop, at which the operator may move the axes
-        self.behind_stop = self.place_assumed = False
-        self.reported: set[object] = set()  # warnings that would otherwise be repeated
-        self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
-        self._c = self.names.index("C") if "C" in self.at else -1
+        self.is_after_program_stop = self.is_position_assumed = False
+        self.reported_findings: set[object] = set()  # warnings that would otherwise be repeated
+        self.modal = ModalState(absolute=True, metric=not is_inch, rapid_rate=setup.last_rapid)
+        self._c = self.axis_names.index("C") if "C" in self.position_by_axis else -1
         self._shared: PlaneSystem | None = None
 
     # --- position -----------------------------------------------------------------------------------------
 
     @property
-    def programmed(self) -> Vector:
+    def programmed_position(self) -> Vector:
         """Tip position in program coordinates, in mm."""
-        return self.figure.program(self.point)
+        return self.transformation.to_program(self.tip_in_plane)
 
-    def machine(self, programmed: Vector) -> Vector:
+    def to_machine_position(self, program_point: Vector) -> Vector:
         """Return machine X Y Z at which the tip is at a point of the program, in mm."""
-        return self.place.machine(self.figure.plane(programmed))
+        return self.plane_transform.to_machine_position(self.transformation.to_plane(program_point))
 
-    def go(self, goal: dict[str, float]) -> None:
+    def set_axis_positions(self, goal: dict[str, float]) -> None:
         """Set the axis positions; ``goal`` has all axes."""
-        if any(goal[name] != self.at[name] for name in self.rotary_names):
+        if any(goal[name] != self.position_by_axis[name] for name in self.rotary_axis_names):
             self._shown = None
         turned = self._shown is None
-        self.at, self.there = goal, tuple([goal[name] for name in self.names])
-        if turned and self.m128:
-            self.derive()
-        self.point = self.place.point(self.slides)
+        self.position_by_axis, self.axis_positions = goal, tuple([goal[name] for name in self.axis_names])
+        if turned and self.is_tcpm_active:
+            self.update_derived_values()
+        self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
 
-    def stand(self, at: Sequence[float]) -> None:
+    def set_machine_positions(self, positions: Sequence[float]) -> None:
         """Set the axes to these machine positions, in the machine's order."""
-        self.at, self.there = dict(zip(self.names, at, strict=True)), tuple(at)
+        self.position_by_axis, self.axis_positions = (
+            dict(zip(self.axis_names, positions, strict=True)),
+            tuple(positions),
+        )
         self._shown = None
-        self.derive()
+        self.update_derived_values()
 
     @property
-    def displayed(self) -> Angles:
+    def displayed_angles(self) -> RotaryAngles:
         """Displayed angles of A B C, with None for axes that the machine does not have."""
         if self._shown is None:
-            axes = {axis.name: self.shown(axis) for axis in self.kinematics.rotaries}
+            axes = {axis.name: self.get_displayed_angle(axis) for axis in self.kinematics.rotary_axes}
             self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
         return self._shown
 
-    def shown(self, axis: Rotary) -> float:
+    def get_displayed_angle(self, axis: RotaryAxis) -> float:
         """Return the displayed angle of a rotary axis."""
-        return self.kinematics.shown(axis, self.at[axis.name])
+        return self.kinematics.displayed_angle(axis, self.position_by_axis[axis.name])
 
     @property
-    def slides(self) -> Vector:
+    def linear_position(self) -> Vector:
         """Machine X Y Z, in mm."""
-        return self.at["X"], self.at["Y"], self.at["Z"]
+        return self.position_by_axis["X"], self.position_by_axis["Y"], self.position_by_axis["Z"]
 
     @property
-    def rotary(self) -> dict[str, float]:
+    def rotary_angles(self) -> dict[str, float]:
         """Continuous angles of the rotary axes by name, in degrees."""
-        return {axis.name: self.at[axis.name] for axis in self.kinematics.rotaries}
+        return {axis.name: self.position_by_axis[axis.name] for axis in self.kinematics.rotary_axes}
 
     @property
-    def targets(self) -> dict[str, float]:
+    def target_angles(self) -> dict[str, float]:
         """Effective angle of each rotary axis: from the active plane, otherwise its present angle."""
-        if self.plane is not None:
-            return dict(self.plane.targets)
-        return {axis.name: axis.displayed(self.at[axis.name]) for axis in self.kinematics.rotaries}
+        if self.active_plane is not None:
+            return dict(self.active_plane.target_angles)
+        return {
+            axis.name: axis.displayed_angle(self.position_by_axis[axis.name])
+            for axis in self.kinematics.rotary_axes
+        }
 
-    def derive(self) -> None:
+    def update_derived_values(self) -> None:
         """Recalculate the values that depend on plane, datum and tool."""
         self.frame = IDENTITY
-        if self.plane is not None:
-            self.frame = product(transposed(self.kinematics.basic), self.plane.frame)
-        self.origin = plus(self.datum, applied(self.frame, self.shift))
-        self.place = self._place()
-        self.point = self.place.point(self.slides)
+        if self.active_plane is not None:
+            self.frame = multiply_matrices(
+                transpose_matrix(self.kinematics.workpiece_rotation), self.active_plane.frame
+            )
+        self.origin = add_vectors(self.datum, apply_matrix(self.frame, self.shift))
+        self.plane_transform = self._place()
+        self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
         self._shared = None
 
-    def preset(self) -> None:
+    def reset_transformations(self) -> None:
         """Reset datum shift, mirroring, rotation and scaling for another preset."""
-        self.datum = self.shift = ORIGIN
-        self.figure = Figure()
-        self.derive()
+        self.datum = self.shift = ORIGIN_POINT
+        self.transformation = ProgramTransform()
+        self.update_derived_values()
 
-    def set_plane(self, plane: WorkingPlane | None) -> None:
+    def set_plane(self, plane: ActivePlane | None) -> None:
         """Set another plane or None. The datum point on the workpiece does not change."""
-        self.datum, self.shift = self.origin, ORIGIN
-        self.plane = plane
-        self.derive()
+        self.datum, self.shift = self.origin, ORIGIN_POINT
+        self.active_plane = plane
+        self.update_derived_values()
 
-    def _place(self) -> Place:
-        angles = self.plane.targets if self.plane is not None else self.kinematics.zero
-        if self.m128:
-            angles = self.rotary
-        frame = self.plane.frame if self.plane is not None else self.kinematics.basic
-        datum = applied(self.kinematics.basic, self.origin)
-        return self.kinematics.place(angles, frame, datum, self.tool_length)
+    def _place(self) -> FrameTransform:
+        angles = (
+            self.active_plane.target_angles if self.active_plane is not None else self.kinematics.zero_angles
+        )
+        if self.is_tcpm_active:
+            angles = self.rotary_angles
+        frame = (
+            self.active_plane.frame if self.active_plane is not None else self.kinematics.workpiece_rotation
+        )
+        datum = apply_matrix(self.kinematics.workpiece_rotation, self.origin)
+        return self.kinematics.make_transform(angles, frame, datum, self.tool_length_mm)
 
     # --- numbers ------------------------------------------------------------------------------------------
 
-    def path_feed(self, word: float) -> float:
+    def convert_feed_to_mm_s(self, word: float) -> float:
         """Return F in mm/s, from mm/min, or from tenths of an inch per minute in an INCH program."""
-        return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
+        return word / 60.0 if self.mm_per_unit == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
-    def refuse(
+    def make_error(
         self, column: int, code: str, text: str, hint: str, line: int = 0, /, **values: object
     ) -> ProgramError:
         """Return an error at this column of the active line, or of ``line``.
 
         ``values`` are the values for the placeholders of ``text`` and ``hint``.
         """
-        return fault(line or self.line, column, code, worded(text, values), worded(hint, values))
+        return make_klartext_error(
+            line or self.line_number, column, code, fill_template(text, values), fill_template(hint, values)
+        )
 
-    def check(self, ok: object, column: int, code: str, text: str, hint: str, /, **values: object) -> None:
-        """Raise the error of ``refuse`` unless the condition ``ok`` is true."""
-        if not ok:
-            raise self.refuse(column, code, text, hint, **values)
+    def check(
+        self, condition: object, column: int, code: str, text: str, hint: str, /, **values: object
+    ) -> None:
+        """Raise the error of ``make_error`` unless the condition ``condition`` is true."""
+        if not condition:
+            raise self.make_error(column, code, text, hint, **values)
 
-    def place_is_read(self) -> None:
+    def record_position_read(self) -> None:
         """Record that the program reads a position, which the proof can only assume after a program stop."""
-        self.place_assumed = self.place_assumed or self.behind_stop
+        self.is_position_assumed = self.is_position_assumed or self.is_after_program_stop
 
-    def of_the_place(self, error: ProgramError) -> ProgramError:
+    def mark_position_error(self, error: ProgramError) -> ProgramError:
         """Return an error of a formula, marked if it depends on an assumed position."""
-        return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
+        return (
+            ProgramError(add_assumptions(error.diagnostic, PROGRAM_STOP_ASSUMPTION))
+            if self.is_position_assumed
+            else error
+        )
 
-    def tell_once(
+    def log_once(
         self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
         """Log a finding only at its first location."""
-        text = worded(text, values)
-        if text not in self.reported:
-            self.reported.add(text)
-            self.log.add(Diagnostic(self.line, column, severity, code, text, worded(hint, values)))
+        text = fill_template(text, values)
+        if text not in self.reported_findings:
+            self.reported_findings.add(text)
+            self.log.add(
+                Diagnostic(self.line_number, column, severity, code, text, fill_template(hint, values))
+            )
 
-    def unheeded(self, what: str, column: int) -> None:
+    def log_ignored_function(self, function: str, column: int) -> None:
         """Note once that a function has no effect."""
-        self.tell_once(
-            column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=what)
+        self.log_once(
+            column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=function)
         )
 
     # --- blocks -------------------------------------------------------------------------------------------
 
-    def move(
-        self, kind: Kind, end: Mapping[str, float], feed: float | None, way: CurvedMove | None = None
+    def make_move_block(
+        self,
+        kind: BlockKind,
+        end: Mapping[str, float],
+        feed: float | None,
+        curved_move: CurvedMove | None = None,
     ) -> Block:
         """Move to ``end`` and return the block; missing axes do not move, and a ``feed`` of None is a rapid.
 
         The feed is in mm of the linear axes, or in degrees if only rotary axes move or determine the move
-        (``way``).
+        (``curved_move``).
         """
-        before, start, goal = self.point, self.at, {**self.at, **end}
+        before, start, goal = self.tip_in_plane, self.position_by_axis, {**self.position_by_axis, **end}
         away = math.dist((start["X"], start["Y"], start["Z"]), (goal["X"], goal["Y"], goal["Z"]))
-        if way is not None and not way.in_degrees:
-            away = way.length
-        linear = away > SAME_POINT and (way is None or not way.in_degrees)
+        if curved_move is not None and not curved_move.is_feed_in_degrees:
+            away = curved_move.length
+        linear = away > POINT_TOLERANCE and (curved_move is None or not curved_move.is_feed_in_degrees)
         length = away
         if not linear:
-            turn = math.hypot(*(goal[name] - start[name] for name in self.rotary_names))
-            length = turn if turn > SAME_POINT else 0.0
+            turn = math.hypot(*(goal[name] - start[name] for name in self.rotary_axis_names))
+            length = turn if turn > POINT_TOLERANCE else 0.0
         rate = (
             feed
             if feed is not None
-            else self._rapid(start, goal, length, slides=linear, curved=way is not None)
+            else self._rapid(start, goal, length, slides=linear, curved=curved_move is not None)
         )
-        from_here = self.there
-        self.go(goal)
+        from_here = self.axis_positions
+        self.set_axis_positions(goal)
         if self.modal.rapid != (feed is None):
             self.modal = self.modal._replace(rapid=feed is None)
-        travel = Travel(from_here, self.there, length, way, away > SAME_POINT)
+        travel = AxisMove(from_here, self.axis_positions, length, curved_move, away > POINT_TOLERANCE)
         return self._block(kind, before, travel, rate)
 
-    def action(self, action: Action) -> Block:
+    def make_action_block(self, action: Action) -> Block:
         """Return a block without motion."""
-        self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
-        here = Travel(self.there, self.there, 0.0, slides=False)
-        kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
-        return self._block(kind, self.point, here, 0.0, action)
+        self.is_after_program_stop = self.is_after_program_stop or isinstance(action, ProgramStop)
+        here = AxisMove(self.axis_positions, self.axis_positions, 0.0, slides=False)
+        kind = BlockKind.DWELL if isinstance(action, Dwell) else BlockKind.ACTION
+        return self._block(kind, self.tip_in_plane, here, 0.0, action)
 
     def _block(
-        self, kind: Kind, before: Vector, travel: Travel, feed: float, action: Action | None = None
+        self, kind: BlockKind, before: Vector, travel: AxisMove, feed: float, action: Action | None = None
     ) -> Block:
-        self.blocks += 1
-        end, slides, c = self.point, self.slides, self._c
+        self.block_count += 1
+        end, slides, c = self.tip_in_plane, self.linear_position, self._c
         return Block(
-            n=self.blocks, line=self.line, kind=kind, text=self.text,
+            n=self.block_count, line=self.line_number, kind=kind, text=self.text,
             x0=before[0], z0=before[2], c0=travel.start[c] if c >= 0 else 0.0,
             x=end[0], z=end[2], c=travel.end[c] if c >= 0 else 0.0,
             offset_x=slides[0] - end[0], offset_z=slides[2] - end[2],
             modal=self.modal, feed=feed, rpm=self.modal.rpm * self.modal.spindle,
             action=action, travel=travel,
-            swivel=Swivel(before, end, slides, self.displayed, self._system()),
+            swivel=PlanePosition(before, end, slides, self.displayed_angles, self._system()),
         )  # fmt: skip
 
     def _system(self) -> PlaneSystem:
         if self._shared is None:
-            q120, q121, q122 = (self.q.get(q, 0.0) for q in Q_TARGETS)
+            q120, q121, q122 = (self.q_values.get(q, 0.0) for q in TARGET_ANGLE_PARAMETERS)
             self._shared = PlaneSystem(
-                place=self.place,
+                transform=self.plane_transform,
                 kinematics=self.kinematics,
                 frame=self.frame,
                 datum=self.origin,
-                tilted=self.plane is not None,
-                targets=(q120, q121, q122),
-                line=self.plane.line if self.plane is not None else 0,
-                tool_length=self.tool_length,
-                blank=self.blank,
+                is_tilted=self.active_plane is not None,
+                target_angles=(q120, q121, q122),
+                plane_block_line=self.active_plane.line if self.active_plane is not None else 0,
+                tool_length_mm=self.tool_length_mm,
+                blank_corners=self.blank_corners,
             )
         return self._shared
 
@@ -318,7 +362,7 @@ class State:
     ) -> float:
         """Return the path speed at which the slowest axis moves at its limit, in mm/s or degrees/s."""
         if curved and slides:
-            return min(slide.vmax for slide in self.kinematics.slides)
-        axes = (*(self.kinematics.slides if slides else ()), *self.kinematics.rotaries)
+            return min(slide.vmax for slide in self.kinematics.linear_axes)
+        axes = (*(self.kinematics.linear_axes if slides else ()), *self.kinematics.rotary_axes)
         seconds = max((abs(goal[axis.name] - start[axis.name]) / axis.vmax for axis in axes), default=0.0)
         return length / seconds if seconds > 0.0 and length > 0.0 else self.setup.last_rapid

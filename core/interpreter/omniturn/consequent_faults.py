@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from core.language.diagnostics import Diagnostic, refusal
+from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.message import Message
 
 _SPINDLE = frozenset({"spindle-stopped", "speed-missing", "c-unlocked"})
@@ -31,20 +31,20 @@ _SETS = (
 """Words of a refused line, and the errors of later lines that may follow from it."""
 
 
-class Consequences:
+class ConsequentFaultFilter:
     """The errors that may be consequences of the lines rejected so far."""
 
     def __init__(self) -> None:
         self._uncertain: set[str] = set()
 
-    def note(self, text: str, *, place_known: bool) -> None:
-        """Record a rejected line; ``place_known`` means that the position after the line is known."""
+    def record_rejected_line(self, text: str, *, is_position_known: bool) -> None:
+        """Record a rejected line; ``is_position_known`` means that the position after the line is known."""
         code = text.upper()
         for words, codes in _SETS:
-            if re.search(words, code) and not (place_known and codes is _PLACE):
+            if re.search(words, code) and not (is_position_known and codes is _PLACE):
                 self._uncertain |= codes
 
-    def includes(self, code: str) -> bool:
+    def is_consequence(self, code: str) -> bool:
         """Return whether an error may only be a consequence of a refused line."""
         return code in self._uncertain
 
@@ -55,23 +55,23 @@ _BARE_ARC = r"[^(IKR]*(?P<arc>G0[23])[^(IKR]*(?:\(.*)?$"
 _SHORT_END = r"M2\b"
 
 
-def without_follow_ups(problems: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
+def remove_consequent_findings(findings: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
     """Return the findings without those that another finding explains.
 
     An arc whose center is on the next line is one mistake. After a rejected M2, no line is after the end.
     """
-    ends = any(each.code == "m-digits" and re.match(_SHORT_END, each.message) for each in problems)
-    rest = [each for each in problems if not (ends and each.code == "after-end")]
+    ends = any(each.code == "m-digits" and re.match(_SHORT_END, each.message) for each in findings)
+    rest = [each for each in findings if not (ends and each.code == "after-end")]
     return [_divided_arc(each, lines) or each for each in rest]
 
 
-def _divided_arc(found: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
+def _divided_arc(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
     """Return the finding for an arc whose center words are on the next line, or None."""
-    if found.code != "word-unused" or found.line < 2:
+    if finding.code != "word-unused" or finding.line < 2:
         return None
-    arc, center = re.match(_BARE_ARC, lines[found.line - 2]), re.match(_CENTER, lines[found.line - 1])
+    arc, center = re.match(_BARE_ARC, lines[finding.line - 2]), re.match(_CENTER, lines[finding.line - 1])
     if arc is None or center is None:
         return None
     text = "The arc center is programmed on the next line."
     hint = Message("Write {word} on the same line as the arc.", word=center.group(1).strip())
-    return refusal(found.line - 1, arc.start("arc") + 1, "arc-centre-missing", text, hint)
+    return make_error_diagnostic(finding.line - 1, arc.start("arc") + 1, "arc-centre-missing", text, hint)

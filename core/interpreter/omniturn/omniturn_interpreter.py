@@ -7,174 +7,189 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from core.interpreter.omniturn.block_execution import execute
-from core.interpreter.omniturn.consequent_faults import Consequences
-from core.interpreter.omniturn.flow.loops_and_subroutines import Flow, takes_call, terminal
-from core.interpreter.omniturn.flow.program_size import refuse_too_large
-from core.interpreter.omniturn.motion.corners import ContourModifier
-from core.interpreter.omniturn.motion.feeds import looks_ahead
-from core.interpreter.omniturn.motion.nose_compensation import nose_code, switch
-from core.interpreter.omniturn.motion.straight_moves import go, on_step, plain_move
+from core.interpreter.omniturn.consequent_faults import ConsequentFaultFilter
+from core.interpreter.omniturn.flow.loops_and_subroutines import Flow, get_input_terminal, is_call_made
+from core.interpreter.omniturn.flow.program_size import check_program_size
+from core.interpreter.omniturn.motion.corners import ContourBuffer
+from core.interpreter.omniturn.motion.feeds import needs_following_lines
+from core.interpreter.omniturn.motion.nose_compensation import execute_compensation_code, get_nose_code
+from core.interpreter.omniturn.motion.straight_moves import (
+    make_plain_move_block,
+    round_to_resolution,
+    set_position,
+)
 from core.interpreter.omniturn.omniturn_program import Program
-from core.interpreter.omniturn.omniturn_state import State, checkpoint_of, restore
-from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, ReadyLine, Statement, statement_of
+from core.interpreter.omniturn.omniturn_state import State, make_checkpoint, restore_state
+from core.interpreter.omniturn.omniturn_statement import (
+    PLANE_FLOW,
+    UNREADABLE_FLOW,
+    ExecutableLine,
+    Statement,
+    make_statement,
+)
 from core.interpreter.omniturn.setup.m_codes import check_m_codes
-from core.interpreter.omniturn.setup.tools_and_offsets import warn_of_idle_shifts
-from core.interpreter.shared.actions import AskInput, ProgramEnd
+from core.interpreter.omniturn.setup.tools_and_offsets import warn_about_idle_shifts
+from core.interpreter.shared.actions import InputRead, ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
-from core.interpreter.shared.diagnostic_log import Log
-from core.interpreter.shared.elementary_blocks import Block, Series
-from core.interpreter.shared.interpretation import MOST_BLOCKS, MOST_LINES, Interpretation, approach_blocks
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries
+from core.interpreter.shared.interpretation import (
+    MAX_BLOCKS,
+    MAX_LINES,
+    InterpreterPass,
+    generate_lathe_approach,
+)
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.modal_state import Modal
-from core.language.diagnostics import ProgramError, refusal
+from core.interpreter.shared.modal_state import ModalState
+from core.language.diagnostics import ProgramError, make_error_diagnostic
 from core.language.omniturn import lex_line
 
 if TYPE_CHECKING:
-    from core.interpreter.omniturn.motion.move_series import SeriesLookAhead
+    from core.interpreter.omniturn.motion.move_series import SeriesReader
 
 # --- checks before the first block
 
 
-def check_opening(state: State, program: Program) -> tuple[int, bool]:
+def check_program_start(state: State, program: Program) -> tuple[int, bool]:
     """Return the number of the first line to execute (0 for none), and whether the program is too large."""
     log = state.log
-    check_m_codes(state, program.m_codes)
+    check_m_codes(state, program.machine_m_code_lines)
     begin = state.setup.begin
-    alone = begin is not None and begin.single
+    alone = begin is not None and begin.is_mdi_line
     first = 0 if alone else _first_line(program, log, block_delete=state.setup.block_delete)
     if begin is not None and alone and begin.checkpoint.modal.absolute is None:
-        _refuse_move(program, log)
-    large = refuse_too_large(program, state.setup.inputs)
+        _log_mode_error(program, log)
+    large = check_program_size(program, state.setup.inputs)
     if large is not None:
         log.add(large)
-    if state.setup.metric and not program.names_units and first:
+    if state.setup.metric and not program.specifies_units and first:
         text = "The program has neither G70 nor G71, so it runs in the control's unit, millimeters."
         log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
     return first, large is not None
 
 
-def _refuse_move(program: Program, log: Log) -> None:
+def _log_mode_error(program: Program, log: DiagnosticLog) -> None:
     """Log an error for a move in MDI after power-up or M30, because neither G90 nor G91 is active."""
-    step = program.ready[0]
-    named = isinstance(step, Statement) and {90, 91}.intersection(step.modal)
+    step = program.executable_lines[0]
+    named = isinstance(step, Statement) and {90, 91}.intersection(step.modal_codes)
     moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
     if moves and not named:
         text = "Neither G90 (absolute) nor G91 (incremental) is active."
-        log.add(refusal(1, 1, "first-line", text, "Program G90 or G91 first."))
+        log.add(make_error_diagnostic(1, 1, "first-line", text, "Program G90 or G91 first."))
 
 
-def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
+def _first_line(program: Program, log: DiagnosticLog, *, block_delete: bool) -> int:
     """Return the number of the first line to execute, or 0; log an error if it lacks G90 and G91."""
-    for number, step in enumerate(program.ready, start=1):
+    for number, step in enumerate(program.executable_lines, start=1):
         if step is None:
             continue
         if isinstance(step, Statement):
-            if not step.executable or (block_delete and step.block_delete):
+            if not step.is_executable or (block_delete and step.block_delete):
                 continue
-            if step.flow == UNREADABLE or {90, 91}.intersection(step.modal):
+            if step.flow_code == UNREADABLE_FLOW or {90, 91}.intersection(step.modal_codes):
                 return number
         text = "The first line must contain G90 (absolute) or G91 (incremental)."
-        log.add(refusal(number, 1, "first-line", text, "Start the program with G90G94F300."))
+        log.add(make_error_diagnostic(number, 1, "first-line", text, "Start the program with G90G94F300."))
         return number
     return 0
 
 
-_AHEAD = 8
-LONG = 200
+_LOOKAHEAD_LINES = 8
+LONG_PROGRAM_LINES = 200
 """Lines from which on moves are made in series where there is no loop either; fewer gain nothing."""
 
 
-class Interpreter(Interpretation):
+class Interpreter(InterpreterPass):
     """One pass through an OmniTurn program or through one line of MDI."""
 
     def __init__(self, program: Program, setup: Setup) -> None:
-        super().__init__(Log(program.diagnostics))
+        super().__init__(DiagnosticLog(program.diagnostics))
         self._program = program
         self._state = State(setup, self._log)
-        self._modifier = ContourModifier(self._state)
+        self._modifier = ContourBuffer(self._state)
         self._flow = Flow(program.structure)
-        self._ahead: SeriesLookAhead | None = None
-        self._consequences = Consequences()
-        self._first, self._refused = check_opening(self._state, program)
+        self._ahead: SeriesReader | None = None
+        self._consequences = ConsequentFaultFilter()
+        self._first, self._refused = check_program_start(self._state, program)
         if setup.begin is not None:
-            restore(self._state, setup.begin)
-            self._flow.resume(setup.begin.line, setup.begin.checkpoint.flow)
+            restore_state(self._state, setup.begin)
+            self._flow.resume(setup.begin.line_number, setup.begin.checkpoint.flow)
 
     @property
-    def source_blocks(self) -> int:
+    def source_block_count(self) -> int:
         """Number of lines that contain more than a comment."""
-        return self._program.blocks
+        return self._program.block_count
 
     @property
-    def modal(self) -> Modal:
+    def modal(self) -> ModalState:
         """Modal state after the last generated block."""
         return self._state.modal
 
-    def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """Return an iterator that generates the elementary blocks. Call this method once."""
         for each in chain(self._approach(), self._pass()):
             if self._stopped:
                 if to_first_error:
                     return
-            elif isinstance(each, Series):
+            elif isinstance(each, StraightMoveSeries):
                 yield from each
             else:
                 yield each
 
-    def series(self) -> Iterator[Block | Series]:
+    def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
         """Return the same blocks, with straight moves combined in series where possible."""
-        if self._program.structure.loop_ends or len(self._program.ready) >= LONG:
-            from core.interpreter.omniturn.motion.move_series import SeriesLookAhead
+        if self._program.structure.loop_ends or len(self._program.executable_lines) >= LONG_PROGRAM_LINES:
+            from core.interpreter.omniturn.motion.move_series import SeriesReader
 
-            self._ahead = SeriesLookAhead(self._state, self._program, self._flow)
+            self._ahead = SeriesReader(self._state, self._program, self._flow)
         return (each for each in chain(self._approach(), self._pass()) if not self._stopped)
 
     @property
     def checkpoint(self) -> Checkpoint:
         """State that the next line inherits."""
-        return checkpoint_of(self._state)._replace(flow=self._flow.place)
+        return make_checkpoint(self._state)._replace(flow=self._flow.position)
 
     def _approach(self) -> Iterator[Block]:
         state, begin = self._state, self._state.setup.begin
         if begin is None or self._refused:
             return iter(())
-        return approach_blocks(begin, state.modal, state.setup.start, state.rpm_at)
+        return generate_lathe_approach(begin, state.modal, state.setup.start, state.compute_rpm_at)
 
-    def _pass(self) -> Iterator[Block | Series]:
+    def _pass(self) -> Iterator[Block | StraightMoveSeries]:
         if self._refused:
             return
         yield from self._lines()
         yield from self._end()
 
     def _end(self) -> Iterator[Block]:
-        yield from self._released(self._modifier.end())
-        warn_of_idle_shifts(self._state)
+        yield from self._released(self._modifier.finish())
+        warn_about_idle_shifts(self._state)
 
-    def _lines(self) -> Iterator[Block | Series]:
-        ready, flow, state, ahead = self._program.ready, self._flow, self._state, self._ahead
+    def _lines(self) -> Iterator[Block | StraightMoveSeries]:
+        ready, flow, state, ahead = self._program.executable_lines, self._flow, self._state, self._ahead
         texts = self._program.source.lines
-        left = MOST_LINES
-        while flow.at < flow.end:
+        left = MAX_LINES
+        while flow.next_index < flow.end_index:
             if ahead is not None and state.fast:
-                taken = ahead.take(left, MOST_BLOCKS - state.blocks)
+                taken = ahead.read_next_series(left, MAX_BLOCKS - state.blocks)
                 if taken is not None:
                     left -= taken[1]
                     yield taken[0]
                     continue
-            at = flow.at
-            flow.at = at + 1
+            at = flow.next_index
+            flow.next_index = at + 1
             line = ready[at]
             left -= 1
-            if left < 0 or state.blocks >= MOST_BLOCKS:
+            if left < 0 or state.blocks >= MAX_BLOCKS:
                 self._stop_endless(at + 1, "Reduce the loop counts.")
                 break
             try:
                 if isinstance(line, tuple):
-                    block = plain_move(state, at + 1, texts[at], line)
+                    block = make_plain_move_block(state, at + 1, texts[at], line)
                     if block is None:
-                        line = ready[at] = statement_of(lex_line(at + 1, texts[at]))
-                    elif state.contour.active:
-                        yield from self._modified(block)
+                        line = ready[at] = make_statement(lex_line(at + 1, texts[at]))
+                    elif state.contour.is_buffering:
+                        yield from self._apply_stages(block)
                     else:
                         yield block
                 if isinstance(line, Statement):
@@ -183,37 +198,39 @@ class Interpreter(Interpretation):
                 self._recover(problem, line)
 
     def _statement(self, statement: Statement) -> Iterator[Block]:
-        contour = self._contour(statement) if statement.contour_cycle else ()
+        contour = self._contour(statement) if statement.is_contour_cycle else ()
         if contour is None or (statement.block_delete and self._state.setup.block_delete):
             return
-        if statement.flow == UNREADABLE:
+        if statement.flow_code == UNREADABLE_FLOW:
             self._stopped = True
-            self._modifier.drop()  # The buffered blocks are invalid without this line.
+            self._modifier.discard()  # The buffered blocks are invalid without this line.
             self._skip(statement)
-        elif statement.calls:
-            self._modifier.check(statement)
+        elif statement.calls_subroutine:
+            self._modifier.check_line(statement)
             yield from self._call(statement)
-        elif statement.flow == PLANE:
-            self._modifier.check(statement)
+        elif statement.flow_code == PLANE_FLOW:
+            self._modifier.check_line(statement)
             # This module is large and rarely needed.
-            from core.interpreter.omniturn.motion.plane_switching import plane_line
+            from core.interpreter.omniturn.motion.plane_switching import execute_plane_line
 
-            for block in plane_line(self._state, statement):
-                yield from self._modified(block)
-        elif statement.flow:
-            self._flow.steer(statement)
+            for block in execute_plane_line(self._state, statement):
+                yield from self._apply_stages(block)
+        elif statement.flow_code:
+            self._flow.execute_flow_line(statement)
         else:
-            self._modifier.check(statement)
-            if nose_code(statement):
+            self._modifier.check_line(statement)
+            if get_nose_code(statement):
                 yield from self._nose(statement)
             first = statement.line == self._first
             ahead = (
-                self._program.ready[statement.line : statement.line + _AHEAD]
-                if looks_ahead(statement)
+                self._program.executable_lines[statement.line : statement.line + _LOOKAHEAD_LINES]
+                if needs_following_lines(statement)
                 else ()
             )
-            for block in execute(self._state, statement, self._tools, ahead, first=first, contour=contour):
-                yield from self._modified(block)
+            for block in execute(
+                self._state, statement, self._tools, ahead, is_first_line=first, contour=contour
+            ):
+                yield from self._apply_stages(block)
                 if isinstance(block.action, ProgramEnd):
                     self._flow.stop()
 
@@ -222,23 +239,25 @@ class Interpreter(Interpretation):
 
         These lines are skipped even if the cycle does not run.
         """
-        lines = self._flow.contour(statement)
+        lines = self._flow.skip_contour(statement)
         if lines is None:
             self._stopped = True
             return [] if "P" in statement.words else None
-        found = [self._program.statement(index + 1) for index in lines]
+        found = [self._program.get_statement(index + 1) for index in lines]
         return [each for each in found if each is not None]
 
     def _nose(self, statement: Statement) -> Iterator[Block]:
         """Yield the blocks that G41, G42 or G40 releases."""
-        found = switch(self._state, statement, nose_code(statement), called=self._flow.called)
+        found = execute_compensation_code(
+            self._state, statement, get_nose_code(statement), is_in_subroutine=self._flow.is_in_subprogram
+        )
         if found is not None:
-            yield from self._released(self._modifier.switch(found))
+            yield from self._released(self._modifier.switch_compensation(found))
 
-    def _modified(self, block: Block) -> Iterator[Block]:
+    def _apply_stages(self, block: Block) -> Iterator[Block]:
         """Yield the block, or with a corner or nose compensation the blocks that no later line can change."""
-        if self._state.contour.active:
-            yield from self._released(self._modifier.take(block))
+        if self._state.contour.is_buffering:
+            yield from self._released(self._modifier.accept(block))
         else:
             yield block
 
@@ -246,85 +265,89 @@ class Interpreter(Interpretation):
         try:
             yield from blocks
         except ProgramError as problem:
-            self._refuse(problem)
+            self._log_error(problem)
 
-    def _refuse(self, problem: ProgramError) -> None:
+    def _log_error(self, problem: ProgramError) -> None:
         """Log the error unless it is a consequence of another error, and discard buffered blocks."""
-        if not self._consequences.includes(problem.diagnostic.code):
+        if not self._consequences.is_consequence(problem.diagnostic.code):
             self._log.add(problem.diagnostic)
         self._stopped = True
-        self._modifier.drop()
+        self._modifier.discard()
         self._state.fast = False
 
     def _call(self, statement: Statement) -> Iterator[Block]:
         state = self._state
-        if statement.asks:
-            asked = AskInput(terminal(statement))
-            yield from self._modified(state.action(statement.line, statement.text, asked))
-            if not self._takes(statement):
+        if statement.depends_on_input:
+            asked = InputRead(get_input_terminal(statement))
+            yield from self._apply_stages(state.action(statement.line, statement.text, asked))
+            if not self._is_call_made(statement):
                 return
-        self._flow.call(statement)
+        self._flow.call_subroutine(statement)
 
-    def _takes(self, statement: Statement) -> bool:
+    def _is_call_made(self, statement: Statement) -> bool:
         """Return whether a conditional call is made, which depends on the present state of its input."""
-        return takes_call(statement, self._state.setup.inputs)
+        return is_call_made(statement, self._state.setup.inputs)
 
-    def _recover(self, problem: ProgramError, line: ReadyLine) -> None:
+    def _recover(self, problem: ProgramError, line: ExecutableLine) -> None:
         """Log the error and set the position at the end of its line.
 
         Later lines are then checked from the correct position.
         """
-        self._refuse(problem)
-        if problem.diagnostic.code == "recursion" or self._log.full:
+        self._log_error(problem)
+        if problem.diagnostic.code == "recursion" or self._log.is_full:
             self._flow.stop()
         if isinstance(line, Statement):
             self._skip(line)
 
     def _skip(self, statement: Statement) -> None:
         """Continue after a rejected line."""
-        self._arrive(statement)
-        self._consequences.note(statement.text, place_known=statement.moves and self._state.absolute)
+        self._set_end_position(statement)
+        self._consequences.record_rejected_line(
+            statement.text, is_position_known=statement.moves_x_or_z and self._state.absolute
+        )
 
-    def _arrive(self, statement: Statement) -> None:
+    def _set_end_position(self, statement: Statement) -> None:
         """Set the position at the end of the line."""
         state = self._state
-        if statement.moves and state.absolute:
-            go(state, on_step(state, statement, "X"), on_step(state, statement, "Z"))
+        if statement.moves_x_or_z and state.absolute:
+            set_position(
+                state, round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
+            )
             state.tool_line = 0
 
 
 # --- A pass up to a line, with which SEARCHTO rebuilds the state
 
 
-class PassToLine(Interpreter):
+class StoppablePass(Interpreter):
     """A pass that can stop before any line, in each loop pass and call, and continue from there."""
 
-    def before(self, line: int) -> Iterator[Block]:
-        """Yield the blocks before the next execution of this line (from 1); ``at_line`` is then True.
+    def run_to_line(self, line: int) -> Iterator[Block]:
+        """Yield the blocks before the next execution of this line (from 1); ``is_at_line`` is then True.
 
         The method may be called again with a later line. At the first error, the blocks end and ``failed`` is
         True.
         """
-        self._flow.until(line)
+        self._flow.stop_before(line)
         return self._until_stop()
 
-    def once_more(self, line: int) -> Iterator[Block]:
+    def run_to_next_visit(self, line: int) -> Iterator[Block]:
         """Yield the blocks from this line until the same line is next again."""
-        self._flow.until(line)
-        self._flow.pass_stop()
+        self._flow.stop_before(line)
+        self._flow.skip_stop_once()
         return self._until_stop()
 
     def _until_stop(self) -> Iterator[Block]:
         for each in self._lines():
             if self._stopped:
                 return
-            assert isinstance(each, Block)  # only ``series`` generates series
+            assert isinstance(each, Block)  # only ``generate_series`` generates series
             yield each
 
     @property
-    def at_line(self) -> bool:
+    def is_at_line(self) -> bool:
         """Whether the requested line is next."""
-        return self._flow.stopped and not self._stopped
+        return self._flow.is_at_stop_line and not self._stopped
 
     @property
     def setup(self) -> Setup:
@@ -334,14 +357,14 @@ class PassToLine(Interpreter):
     @property
     def next_line(self) -> int:
         """Number of the next line, from 1."""
-        return self._flow.at + 1
+        return self._flow.next_index + 1
 
     @property
-    def called(self) -> bool:
+    def is_in_subroutine(self) -> bool:
         """Whether a subroutine is active."""
-        return self._flow.called
+        return self._flow.is_in_subprogram
 
     @property
-    def holds_moves(self) -> bool:
+    def has_buffered_moves(self) -> bool:
         """Whether moves are buffered because a corner or nose compensation needs later lines."""
-        return self._state.contour.active or self._state.modal.nose_comp != 40
+        return self._state.contour.is_buffering or self._state.modal.compensation_code != 40

@@ -10,35 +10,44 @@ from dataclasses import dataclass, replace
 from itertools import islice
 
 from core.interpreter.omniturn.codes.code_table import FLOW_CODES, G_CODES
-from core.interpreter.omniturn.consequent_faults import without_follow_ups
-from core.interpreter.omniturn.flow.loops_and_subroutines import Structure, call_target, find_structure
-from core.interpreter.omniturn.motion.plain_moves import Columns, ReadyLines, read_lines, read_move
-from core.interpreter.omniturn.omniturn_statement import (
-    PLANE,
-    UNREADABLE,
-    ReadyLine,
-    Statement,
-    statement_of,
-    unreadable,
+from core.interpreter.omniturn.consequent_faults import remove_consequent_findings
+from core.interpreter.omniturn.flow.loops_and_subroutines import (
+    ProgramStructure,
+    find_structure,
+    get_subroutine_number,
 )
-from core.interpreter.shared.diagnostic_log import without_repeats
-from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
-from core.language.omniturn import Line, lex_line
-from core.language.omniturn.other_controls import recognize
+from core.interpreter.omniturn.motion.plain_moves import (
+    ExecutableLines,
+    LineColumns,
+    parse_lines,
+    parse_plain_move,
+)
+from core.interpreter.omniturn.omniturn_statement import (
+    PLANE_FLOW,
+    UNREADABLE_FLOW,
+    ExecutableLine,
+    Statement,
+    make_statement,
+    make_unreadable_statement,
+)
+from core.interpreter.shared.diagnostic_log import merge_repeated_findings
+from core.language.diagnostics import Diagnostic, ProgramError, Severity, make_error_diagnostic
+from core.language.omniturn import LexedLine, lex_line
+from core.language.omniturn.other_controls import recognize_control
 from core.language.omniturn.plane_switching_lines import (
     PlaneLine,
-    ends_program,
-    lacks_sign,
-    lex_plane,
-    plane_entry,
+    is_missing_tilde,
+    is_program_end,
+    lex_plane_line,
+    parse_plane_entry,
 )
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.message import Message
 
 # --- common deviations: one note for each kind in a file, or an error for each in strict mode
 
 
-_ODD_IN_COMMENT = frozenset("!@#$%^&*\"'?><,/\\|=-.")
+_UNUSUAL_COMMENT_CHARACTERS = frozenset("!@#$%^&*\"'?><,/\\|=-.")
 
 _KINDS = {
     "blank-line": (
@@ -63,48 +72,50 @@ _KINDS = {
 }
 
 
-class Style:
+class StyleChecker:
     """Collector of style deviations in one program."""
 
     def __init__(self, *, strict: bool) -> None:
-        self.found: list[Diagnostic] = []
+        self.findings: list[Diagnostic] = []
         self._strict = strict
-        self._places: dict[str, int] = {}  # kind → index in ``found``
+        self._places: dict[str, int] = {}  # kind → index in ``findings``
 
-    def tell(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
+    def record_deviation(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
         """Record ``count`` occurrences of ``kind``, the first of them at this location."""
         at = self._places.get(kind)
         if at is not None and not self._strict:
-            self.found[at] = replace(self.found[at], count=self.found[at].count + count)
+            self.findings[at] = replace(
+                self.findings[at], occurrence_count=self.findings[at].occurrence_count + count
+            )
             return
-        self._places[kind] = len(self.found)
+        self._places[kind] = len(self.findings)
         message, hint = _KINDS[kind]
         severity = Severity.ERROR if self._strict else Severity.NOTE
-        self.found.append(Diagnostic(line, column, severity, kind, message, hint, count=count))
+        self.findings.append(Diagnostic(line, column, severity, kind, message, hint, occurrence_count=count))
 
-    def look_at_file(self, source: Source) -> None:
+    def check_file(self, source: ProgramSource) -> None:
         """Record deviations in the line ends of the file."""
         if "\r" in source.text:
-            self.tell("line-ends", 1, count=source.text.count("\r"))
+            self.record_deviation("line-ends", 1, count=source.text.count("\r"))
         if source.text and source.text[-1] not in "\r\n":
-            self.tell("last-newline", len(source.lines))
+            self.record_deviation("last-newline", len(source.lines))
 
-    def look_at(self, line: Line, statement: Statement) -> None:
+    def check_line(self, line: LexedLine, statement: Statement) -> None:
         """Record deviations in the comments and tool numbers of one line."""
         tool = statement.words.get("T")
         if tool is not None and tool.text[1:].startswith("0") and len(tool.text) > 2:
-            self.tell("tool-zero", line.number, tool.column)
+            self.record_deviation("tool-zero", line.number, tool.column)
         if line.comment is None:
             return
-        if not statement.executable:
-            self.tell("title-line", line.number, line.comment_column)
-        if statement.flow == "}":
-            self.tell("subroutine-comment", line.number, line.comment_column)
-        if not _ODD_IN_COMMENT.isdisjoint(line.comment):
-            self.tell("comment-character", line.number, line.comment_column)
+        if not statement.is_executable:
+            self.record_deviation("title-line", line.number, line.comment_column)
+        if statement.flow_code == "}":
+            self.record_deviation("subroutine-comment", line.number, line.comment_column)
+        if not _UNUSUAL_COMMENT_CHARACTERS.isdisjoint(line.comment):
+            self.record_deviation("comment-character", line.number, line.comment_column)
 
 
-_MOST_PROBLEMS = 100
+_MAX_FINDINGS = 100
 _NEAR = 5  # lines
 
 
@@ -112,79 +123,79 @@ _NEAR = 5  # lines
 class Program:
     """A program ready for execution.
 
-    ``ready`` has one entry per line; ``m_codes`` are M codes of the machine file.
+    ``ready`` has one entry per line; ``machine_m_code_lines`` are M codes of the machine file.
     """
 
-    source: Source
-    ready: ReadyLines
-    structure: Structure
+    source: ProgramSource
+    executable_lines: ExecutableLines
+    structure: ProgramStructure
     diagnostics: tuple[Diagnostic, ...]
-    blocks: int  # lines with more than a comment
-    names_units: bool  # whether the program contains G70 or G71
-    m_codes: tuple[Statement, ...]  # lines whose M code must be in the machine file
-    asks: tuple[Statement, ...] = ()  # lines whose subroutine call depends on an input
+    block_count: int  # lines with more than a comment
+    specifies_units: bool  # whether the program contains G70 or G71
+    machine_m_code_lines: tuple[Statement, ...]  # lines whose M code must be in the machine file
+    input_dependent_calls: tuple[Statement, ...] = ()  # lines whose subroutine call depends on an input
     # line and subroutine number of each call, and of each contour in a subroutine
-    calls: tuple[tuple[int, int], ...] = ()
+    subroutine_calls: tuple[tuple[int, int], ...] = ()
 
-    def for_one_pass(self) -> Program:
+    def copy_for_pass(self) -> Program:
         """Return a copy for one pass, which changes its lines independently."""
-        return replace(self, ready=self.ready.copy())
+        return replace(self, executable_lines=self.executable_lines.copy())
 
-    def line(self, number: int) -> Line:
+    def get_line(self, number: int) -> LexedLine:
         """Return the words of a line, which is counted from 1."""
         return lex_line(number, self.source.lines[number - 1])
 
-    def statement(self, number: int) -> Statement | None:
+    def get_statement(self, number: int) -> Statement | None:
         """Return the statement of a line, which is counted from 1; None for an empty line."""
-        ready = self.ready[number - 1]
-        return statement_of(self.line(number)) if isinstance(ready, tuple) else ready
+        ready = self.executable_lines[number - 1]
+        return make_statement(self.get_line(number)) if isinstance(ready, tuple) else ready
 
 
 class _Reader:
-    def __init__(self, source: Source, *, strict: bool) -> None:
+    def __init__(self, source: ProgramSource, *, strict: bool) -> None:
         self.source = source
-        self.style = Style(strict=strict)
-        self.blank = 0  # number of blank lines
+        self.style = StyleChecker(strict=strict)
+        self.blank_line_count = 0  # number of blank lines
         self.statements: list[Statement] = []
         self.problems: list[Diagnostic] = []
         self._plane = 0  # line of a (~PL..) without its (END) so far
 
-    def read(self) -> ReadyLines:
-        lines = read_lines(self.source.lines, self._line, in_order="~" in self.source.text)
+    def read(self) -> ExecutableLines:
+        lines = parse_lines(self.source.lines, self._line, in_order="~" in self.source.text)
         if self._plane:
             self._plane_open(self._plane)
         return lines
 
-    def _line(self, number: int, text: str) -> ReadyLine:
-        move = read_move(text)
+    def _line(self, number: int, text: str) -> ExecutableLine:
+        move = parse_plain_move(text)
         return self.statement(number, text) if move is None or self._plane else move
 
     def statement(self, number: int, text: str) -> Statement | None:
         if not text or text.isspace():
-            self.style.tell("blank-line", number)
-            self.blank += 1
+            self.style.record_deviation("blank-line", number)
+            self.blank_line_count += 1
             return None
-        if self._plane and ends_program(text):
+        if self._plane and is_program_end(text):
             self._plane_open(number)
-        entry = plane_entry(text)
+        entry = parse_plane_entry(text)
         if entry is not None or self._plane:
             return self._in_plane(number, text, entry)
         line = lex_line(number, text)
         self.problems.extend(line.errors)
         try:
-            statement = statement_of(line)
+            statement = make_statement(line)
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
-            statement = unreadable(line)
+            statement = make_unreadable_statement(line)
         self._suspect_plane(number, text)
-        self.style.look_at(line, statement)
+        self.style.check_line(line, statement)
         self.statements.append(statement)
         return statement
 
     def _suspect_plane(self, number: int, text: str) -> None:
         """Report a (PLXC) without its ~, because it and its moves are then only comments."""
         following = islice(self.source.lines, number, number + _NEAR)
-        lacks = lacks_sign(text, following) if "(" in text else None
+        lacks = is_missing_tilde(text, following) if "(" in text else None
         if lacks is not None:
             name = text.strip().upper()
             message = Message(
@@ -200,14 +211,16 @@ class _Reader:
 
     def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
         """Read a line from the entry of plane switching to (END), both included."""
-        statement = Statement(number, text.strip(), flow=PLANE)
+        statement = Statement(number, text.strip(), flow_code=PLANE_FLOW)
         try:
-            statement.plane = entry if entry is not None and not self._plane else lex_plane(number, text)
+            statement.plane_line = (
+                entry if entry is not None and not self._plane else lex_plane_line(number, text)
+            )
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
-            statement.flow = UNREADABLE
-        if statement.plane is not None and statement.plane.name:
-            self._plane = 0 if statement.plane.name == "END" else number
+            statement.flow_code = UNREADABLE_FLOW
+        if statement.plane_line is not None and statement.plane_line.name:
+            self._plane = 0 if statement.plane_line.name == "END" else number
         self.statements.append(statement)
         return statement
 
@@ -215,11 +228,13 @@ class _Reader:
         text = Message(
             "The plane command (~PLXC) or (~PLZC) on line {plane} has no matching (END).", plane=self._plane
         )
-        self.problems.append(refusal(number, 1, "plane-open", text, "Write (END) alone on a line."))
+        self.problems.append(
+            make_error_diagnostic(number, 1, "plane-open", text, "Write (END) alone on a line.")
+        )
         self._plane = 0
 
 
-def read_program(source: Source, strict: bool = False) -> Program:
+def read_program(source: ProgramSource, strict: bool = False) -> Program:
     """Read all lines, find loops, subroutines and the end, and collect the errors. Never raises.
 
     With ``strict``, style deviations that the manual of the original control forbids are errors.
@@ -229,54 +244,62 @@ def read_program(source: Source, strict: bool = False) -> Program:
     length = len(ready)
     structure, faults = find_structure(reader.statements, length)
     if not length:
-        faults = [refusal(0, 0, "file-empty", "The program is empty.", "Write G90 and M30.")]
-    reader.style.look_at_file(source)
+        faults = [make_error_diagnostic(0, 0, "file-empty", "The program is empty.", "Write G90 and M30.")]
+    reader.style.check_file(source)
     problems = [*reader.problems, *faults, *_comments_in_loops(reader.statements, structure)]
     if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
-        problems += _beyond_the_end(ready, structure)
+        problems += _check_after_end(ready, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
-    problems = without_repeats(without_follow_ups(problems, source.lines))
+    problems = merge_repeated_findings(remove_consequent_findings(problems, source.lines))
     if any(problem.severity is Severity.ERROR for problem in problems):
-        problems = [*filter(None, (recognize(source.lines),)), *problems]
+        problems = [*filter(None, (recognize_control(source.lines),)), *problems]
     return Program(
         source=source,
-        ready=ready,
+        executable_lines=ready,
         structure=structure,
-        diagnostics=(*_capped(problems), *_capped(reader.style.found)),
-        blocks=_executable(reader, length),
-        names_units=any({70, 71}.intersection(statement.modal) for statement in reader.statements),
-        m_codes=tuple(statement for statement in reader.statements if of_machine_file(statement)),
-        asks=tuple(statement for statement in reader.statements if statement.asks),
-        calls=tuple(_calls(reader.statements)),
+        diagnostics=(*_limit_findings(problems), *_limit_findings(reader.style.findings)),
+        block_count=_executable(reader, length),
+        specifies_units=any({70, 71}.intersection(statement.modal_codes) for statement in reader.statements),
+        machine_m_code_lines=tuple(
+            statement for statement in reader.statements if is_machine_m_code(statement)
+        ),
+        input_dependent_calls=tuple(
+            statement for statement in reader.statements if statement.depends_on_input
+        ),
+        subroutine_calls=tuple(_calls(reader.statements)),
     )
 
 
-def of_machine_file(statement: Statement) -> bool:
+def is_machine_m_code(statement: Statement) -> bool:
     """Return whether the line has an M code that is not built into the control."""
-    return statement.m is not None and statement.m_code is None and f"M{statement.m}" not in FLOW_CODES
+    return (
+        statement.m_number is not None
+        and statement.m_code_entry is None
+        and f"M{statement.m_number}" not in FLOW_CODES
+    )
 
 
 def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
     for statement in statements:
-        if statement.calls:
-            yield statement.line, call_target(statement)
-        elif statement.contour_cycle and "P" in statement.words:
-            yield statement.line, int(statement.value("P") or 0)
+        if statement.calls_subroutine:
+            yield statement.line, get_subroutine_number(statement)
+        elif statement.is_contour_cycle and "P" in statement.words:
+            yield statement.line, int(statement.get_value("P") or 0)
 
 
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
     """Return one line as a statement, with its errors; None for an empty line."""
-    reader = _Reader(Source("", text), strict=False)
+    reader = _Reader(ProgramSource("", text), strict=False)
     statement = reader.statement(number, text)
     return statement, reader.problems
 
 
 def _executable(reader: _Reader, length: int) -> int:
-    comments = sum(1 for statement in reader.statements if not statement.executable)
-    return length - reader.blank - comments
+    comments = sum(1 for statement in reader.statements if not statement.is_executable)
+    return length - reader.blank_line_count - comments
 
 
-def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
+def _comments_in_loops(statements: list[Statement], structure: ProgramStructure) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     depth = 0
     text, hint = "A comment is inside a loop.", "Move the comment before LS."
@@ -287,31 +310,31 @@ def _comments_in_loops(statements: list[Statement], structure: Structure) -> lis
     return found
 
 
-def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]:
+def _check_after_end(ready: ExecutableLines, structure: ProgramStructure) -> list[Diagnostic]:
     """Return an error for the first move after M30 that is not in a subroutine; an empty list without one."""
     inside = False
     starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
-    for at in range(structure.main_end, len(ready)):
+    for at in range(structure.main_end_index, len(ready)):
         inside = (inside or at in starts) and at not in ends
         if not inside and isinstance(ready[at], tuple):
             text = "This line is after the end of the program but not in a subroutine."
             hint = "Move this line before M30, or start a subroutine with }n."
-            return [refusal(at + 1, 1, "after-end", text, hint)]
+            return [make_error_diagnostic(at + 1, 1, "after-end", text, hint)]
     return []
 
 
-def _capped(problems: list[Diagnostic]) -> list[Diagnostic]:
+def _limit_findings(problems: list[Diagnostic]) -> list[Diagnostic]:
     """Return at most 100 findings. Errors have priority, so that warnings cannot displace an error."""
-    if len(problems) <= _MOST_PROBLEMS:
+    if len(problems) <= _MAX_FINDINGS:
         return problems
     by_weight = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
-    return sorted(by_weight[:_MOST_PROBLEMS], key=lambda problem: (problem.line, problem.column))
+    return sorted(by_weight[:_MAX_FINDINGS], key=lambda problem: (problem.line, problem.column))
 
 
 _HINT = "Use this command in a program."
 
 
-def read_single(source: Source) -> Program:
+def read_mdi_line(source: ProgramSource) -> Program:
     """Return a line of MDI as a program of one line. Never raises.
 
     Words that need other lines are reported as errors.
@@ -322,38 +345,38 @@ def read_single(source: Source) -> Program:
     except ProgramError as problem:
         statement, problems = None, [problem.diagnostic]
     if statement is not None and not problems:
-        refused = _alone(statement)
+        refused = _check_context(statement)
         problems = [refused] if refused is not None else []
-    executable = statement is not None and statement.executable
-    unknown = (statement,) if statement is not None and of_machine_file(statement) else ()
+    executable = statement is not None and statement.is_executable
+    unknown = (statement,) if statement is not None and is_machine_m_code(statement) else ()
     return Program(
         source=source,
-        ready=ReadyLines(Columns.empty(1), {0: statement}),
-        structure=Structure({}, {}, {}, {}, 1, {}),
+        executable_lines=ExecutableLines(LineColumns.empty(1), {0: statement}),
+        structure=ProgramStructure({}, {}, {}, {}, 1, {}),
         diagnostics=tuple(problems),
-        blocks=int(executable),
-        names_units=True,
-        m_codes=unknown,
+        block_count=int(executable),
+        specifies_units=True,
+        machine_m_code_lines=unknown,
     )
 
 
-def _alone(statement: Statement) -> Diagnostic | None:
+def _check_context(statement: Statement) -> Diagnostic | None:
     """Return the error for a line that needs other lines, or None."""
-    if statement.flow and statement.flow != UNREADABLE:
+    if statement.flow_code and statement.flow_code != UNREADABLE_FLOW:
         return _refuse(statement, 1, _steers(statement))
     if statement.block_delete:
         return _refuse(statement, 1, "/ skips a program line and has no meaning in MDI.")
-    for code in statement.modal:
-        if G_CODES[code].not_in_mdi:
-            return _refuse(statement, 1, Message(G_CODES[code].not_in_mdi, code=f"G{code}"))
-    if statement.code is not None and statement.entry.not_in_mdi:
+    for code in statement.modal_codes:
+        if G_CODES[code].mdi_error_text:
+            return _refuse(statement, 1, Message(G_CODES[code].mdi_error_text, code=f"G{code}"))
+    if statement.code_word is not None and statement.code_entry.mdi_error_text:
         return _refuse(
             statement,
-            statement.code.column,
-            Message(statement.entry.not_in_mdi, code=statement.code.text),
+            statement.code_word.column,
+            Message(statement.code_entry.mdi_error_text, code=statement.code_word.text),
         )
     radius = statement.words.get("R")
-    if radius is not None and statement.moves and statement.one_shot is None:
+    if radius is not None and statement.moves_x_or_z and statement.one_shot_code is None:
         return _refuse(
             statement,
             radius.column,
@@ -366,12 +389,12 @@ def _alone(statement: Statement) -> Diagnostic | None:
 
 
 def _steers(statement: Statement) -> str:
-    if statement.flow == PLANE:
+    if statement.flow_code == PLANE_FLOW:
         plane = FLOW_CODES["~PLXC"]
-        return Message(plane.not_in_mdi, code=statement.text)
-    word = statement.m_word.text if statement.m_word else statement.flow
-    return Message(FLOW_CODES[statement.flow].not_in_mdi, code=word)
+        return Message(plane.mdi_error_text, code=statement.text)
+    word = statement.m_word.text if statement.m_word else statement.flow_code
+    return Message(FLOW_CODES[statement.flow_code].mdi_error_text, code=word)
 
 
 def _refuse(statement: Statement, column: int, text: str) -> Diagnostic:
-    return refusal(statement.line, column, "not-alone-mdi", text, _HINT)
+    return make_error_diagnostic(statement.line, column, "not-alone-mdi", text, _HINT)

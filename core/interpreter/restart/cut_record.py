@@ -15,86 +15,90 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import arc_sweep
-from core.geometry.virtual_mill import Side
-from core.interpreter.shared.actions import Collet
-from core.interpreter.shared.elementary_blocks import Block, Kind, Series
+from core.geometry.virtual_mill import SidePlane
+from core.interpreter.shared.actions import ColletSwitch
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Bools = npt.NDArray[np.bool_]
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
 
 FEED, THREAD, STILL, FACE, SIDE, PER_REV, REVERSE = 1, 2, 4, 8, 16, 32, 64
-"""Bits of ``how``: it feeds; it is a thread; C is held while it moves; it mills the face or the side; it
-feeds by the revolution; the spindle turns as M04. None of them: a rapid."""
+"""Bits of ``move_kind``: it feeds; it is a thread; C is held while it moves; it mills the face or the side;
+it feeds by the revolution; the spindle turns as M04. None of them: a rapid."""
 
-SAME = 1e-5  # mm
-_ASIDE = 0.05  # mm
-_ON_CENTRE = 0.05  # mm of radius
+SAME_POINT_MM = 1e-5  # mm
+_TOLERANCE_MM = 0.05  # mm
+_CENTERLINE_TOLERANCE_MM = 0.05  # mm of radius
 _CHORD = 0.004  # mm; permitted distance of a chord from its arc
-_WATCHED = 2000  # number of blocks between two calls of ``watch``
+_PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_progress``
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutRecord:
     """All moves of a program as rows (m,), and the known limits of the material.
 
-    ``n`` is the number of the elementary block. ``bar`` counts the times that the collet was opened, because
-    earlier cuts are then on another part of the bar. ``radius`` is the largest radius of a feed move, or 0.
-    ``over`` is a radius at which tools retract in rapid, or inf if unknown, because the largest cut may be a
-    bore. ``face`` is a Z beyond all cuts at which tools move inside that radius in rapid, or inf if unknown.
-    ``reach`` has the minimum and maximum machine X of each tool. ``clear_z`` is the maximum machine Z of all
-    moves.
+    ``n`` is the number of the elementary block. ``bar_section`` counts the times that the collet was opened,
+    because earlier cuts are then on another part of the bar. ``radius`` is the largest radius of a feed
+    move, or 0. ``retract_radius`` is a radius at which tools retract in rapid, or inf if unknown, because
+    the largest cut may be a bore. ``face_z`` is a Z beyond all cuts at which tools move inside that radius
+    in rapid, or inf if unknown. ``machine_x_range_by_tool`` has the minimum and maximum machine X of each
+    tool. ``max_machine_z`` is the maximum machine Z of all moves.
     """
 
-    n: Ints
-    line: Ints
-    x0: Floats
-    z0: Floats
-    x: Floats
-    z: Floats
-    how: Ints
-    tool: Ints
-    bar: Ints
-    offsets: dict[int, tuple[float, float]]  # by tool: machine position minus tip position, mm
-    radius: float
-    begins: float  # the maximum Z at which a cut begins
-    over: float
-    face: float
-    faces: dict[int, float]  # by tool, if its moves show a face
-    reach: dict[int, tuple[float, float]]
-    clear_z: float
-    blocks: int
+    block_number: IntArray
+    line_number: IntArray
+    x0: FloatArray
+    z0: FloatArray
+    x: FloatArray
+    z: FloatArray
+    move_kind: IntArray
+    tool_number: IntArray
+    bar_section: IntArray
+    tool_offsets: dict[int, tuple[float, float]]  # by tool: machine position minus tip position, mm
+    max_feed_radius: float
+    max_cut_start_z: float  # the maximum Z at which a cut begins
+    retract_radius: float
+    face_z: float
+    face_z_by_tool: dict[int, float]  # by tool, if its moves show a face
+    machine_x_range_by_tool: dict[int, tuple[float, float]]
+    max_machine_z: float
+    block_count: int
 
     def __len__(self) -> int:
-        return len(self.n)
+        return len(self.block_number)
 
-    def row_behind(self, block: int) -> int:
+    def find_last_row(self, block: int) -> int:
         """Return the last row of this block or of an earlier block; -1 if no axis has moved."""
-        return int(np.searchsorted(self.n, block, side="right")) - 1
+        return int(np.searchsorted(self.block_number, block, side="right")) - 1
 
-    def first_row(self, row: int) -> int:
+    def find_first_row(self, row: int) -> int:
         """Return the first row of the block of this row."""
-        return int(np.searchsorted(self.n, self.n[row], side="left"))
+        return int(np.searchsorted(self.block_number, self.block_number[row], side="left"))
 
-    def ends(self, row: int) -> tuple[float, float, float, float]:
+    def get_end_points(self, row: int) -> tuple[float, float, float, float]:
         """Return (x0, z0, x, z) of a row."""
         return float(self.x0[row]), float(self.z0[row]), float(self.x[row]), float(self.z[row])
 
-    def front(self, tool: int) -> float:
+    def compute_front_z(self, tool: int) -> float:
         """Return the tip Z from which on the tool is in front of all material."""
-        return self.faces.get(tool, self.face)
+        return self.face_z_by_tool.get(tool, self.face_z)
 
-    def beyond(self, x: float, z: float) -> bool:
+    def is_clear_after_rapid(self, x: float, z: float) -> bool:
         """Return whether the end of a rapid is clear of the part, radially or axially."""
-        return abs(x) >= self.radius - SAME or z >= self.begins - SAME
+        return abs(x) >= self.max_feed_radius - SAME_POINT_MM or z >= self.max_cut_start_z - SAME_POINT_MM
 
-    def outside(self, x: float, z: float, tool: int) -> bool:
+    def is_outside_material(self, x: float, z: float, tool: int) -> bool:
         """Return whether the tip of this tool is outside the material, radially or in front of the face."""
-        return not self.radius or abs(x) >= self.over - SAME or z >= self.front(tool) - SAME
+        return (
+            not self.max_feed_radius
+            or abs(x) >= self.retract_radius - SAME_POINT_MM
+            or z >= self.compute_front_z(tool) - SAME_POINT_MM
+        )
 
 
 class _Rows:
-    """Collector of tables (9, m) with the rows ``n line x0 z0 x z how tool bar``."""
+    """Collector of tables (9, m) with the rows ``n line x0 z0 x z move_kind tool bar_section``."""
 
     def __init__(self) -> None:
         self.offsets: dict[int, tuple[float, float]] = {}
@@ -103,12 +107,12 @@ class _Rows:
         self._pieces: list[tuple[float, ...]] = []  # rows of blocks that are not in a table yet
         self._opened = 0
 
-    def take(self, block: Block) -> None:
+    def add_block(self, block: Block) -> None:
         """Add the rows of one block, with arcs as chords."""
         if not block.moves:
-            self._opened += isinstance(block.action, Collet)
+            self._opened += isinstance(block.action, ColletSwitch)
             return
-        if block.kind in {Kind.ROTATE, Kind.DWELL}:
+        if block.kind in {BlockKind.ROTATE, BlockKind.DWELL}:
             return
         dx, dz = self._frame(block)
         x, z = block.x0 + dx, block.z0 + dz
@@ -116,10 +120,10 @@ class _Rows:
         for to_x, to_z in _points(block):
             self._pieces.append((block.n, block.line, x, z, to_x + dx, to_z + dz, *same))
             x, z = to_x + dx, to_z + dz
-        if len(self._pieces) >= _WATCHED:
+        if len(self._pieces) >= _PROGRESS_INTERVAL:
             self._finish_pieces()
 
-    def take_series(self, series: Series) -> None:
+    def add_series(self, series: StraightMoveSeries) -> None:
         """Add the rows of a series of straight moves."""
         self._finish_pieces()
         like, ends = series.pattern, (series.x0, series.z0, series.x, series.z)
@@ -128,7 +132,7 @@ class _Rows:
         same = (np.full(len(series), each) for each in (_how(like), like.modal.tool, self._opened))
         self._tables.append(np.array([series.n, series.line, *places, *same], dtype=np.float64))
 
-    def table(self) -> Floats:
+    def table(self) -> FloatArray:
         """Return all rows."""
         self._finish_pieces()
         return np.concatenate(self._tables, axis=1)
@@ -136,8 +140,8 @@ class _Rows:
     def _frame(self, block: Block) -> tuple[float, float]:
         """Return the shift from the program frame to the tip position relative to part zero, in mm."""
         modal = block.modal
-        base = modal.base_x, modal.base_z
-        if block.kind is Kind.RAPID:
+        base = modal.drawing_zero_x, modal.drawing_zero_z
+        if block.kind is BlockKind.RAPID:
             self.offsets.setdefault(modal.tool, base)
         elif self._fed.setdefault(modal.tool, base) == base:
             self.offsets[modal.tool] = base
@@ -151,19 +155,23 @@ class _Rows:
             self._pieces = []
 
 
-def record_cuts(blocks: Iterable[Block | Series], watch: Callable[[float], None]) -> CutRecord:
-    """Return the record of all blocks; ``watch`` receives the number of blocks and may raise an exception."""
+def record_all_cuts(
+    blocks: Iterable[Block | StraightMoveSeries], report_progress: Callable[[float], None]
+) -> CutRecord:
+    """Return the record of all blocks; ``report_progress`` receives the number of blocks and may raise an
+    exception.
+    """
     rows, count = _Rows(), 0
     for each in blocks:
-        if isinstance(each, Series):
-            rows.take_series(each)
+        if isinstance(each, StraightMoveSeries):
+            rows.add_series(each)
             count = int(each.n[-1])
-            watch(count)
+            report_progress(count)
             continue
-        rows.take(each)
+        rows.add_block(each)
         count = each.n
-        if count % _WATCHED == 0:
-            watch(count)
+        if count % _PROGRESS_INTERVAL == 0:
+            report_progress(count)
     return _record(rows, count)
 
 
@@ -174,7 +182,7 @@ def _record(rows: _Rows, blocks: int) -> CutRecord:
     _forget_start(x0, z0, x, z)
     feeds = (how & FEED) != 0
     radius = _greatest(np.abs(np.concatenate((x0[feeds], x[feeds]))), 0.0)
-    radius = max(radius, _ON_CENTRE) if feeds.any() else 0.0
+    radius = max(radius, _CENTERLINE_TOLERANCE_MM) if feeds.any() else 0.0
     faces = _faces(feeds, x0, x, z, tool, radius)
     farthest = _farthest(feeds, z0, z, tool)
     clear, reach = -inf, {}
@@ -183,71 +191,90 @@ def _record(rows: _Rows, blocks: int) -> CutRecord:
         reach[each] = -_greatest(-x[own], inf) + off_x, _greatest(x[own], -inf) + off_x
         clear = max(clear, _greatest(z[own], -inf) + off_z)
     return CutRecord(
-        n, line, x0, z0, x, z, how, tool, bar, rows.offsets,
-        radius, _greatest(np.concatenate((z0[feeds], z[feeds])), -inf), _over(feeds, x0, z0, x, z, radius),
-        min(faces.values(), default=inf), {**farthest, **faces}, reach, clear, blocks,
-    )  # fmt: skip
+        n,
+        line,
+        x0,
+        z0,
+        x,
+        z,
+        how,
+        tool,
+        bar,
+        rows.offsets,
+        radius,
+        _greatest(np.concatenate((z0[feeds], z[feeds])), -inf),
+        _retract_radius(feeds, x0, z0, x, z, radius),
+        min(faces.values(), default=inf),
+        {**farthest, **faces},
+        reach,
+        clear,
+        blocks,
+    )
 
 
-def _faces(feeds: Bools, x0: Floats, x: Floats, z: Floats, tool: Ints, radius: float) -> dict[int, float]:
+def _faces(
+    feeds: BoolArray, x0: FloatArray, x: FloatArray, z: FloatArray, tool: IntArray, radius: float
+) -> dict[int, float]:
     """Return for each tool the minimum Z beyond all cuts at which a rapid moves inside the cut radius.
 
     The start of a cut may be in air, but the end of a cut was in material.
     """
     cut = _greatest(z[feeds], inf)
-    within = max(radius - SAME, _ON_CENTRE)
-    across = ~(np.abs(x - x0) <= SAME)  # the start of the first move is unknown
+    within = max(radius - SAME_POINT_MM, _CENTERLINE_TOLERANCE_MM)
+    across = ~(np.abs(x - x0) <= SAME_POINT_MM)  # the start of the first move is unknown
     called = np.concatenate(([True], tool[1:] != tool[:-1])) if len(tool) else across
-    before = (z > cut + SAME) | (called & (z >= cut - SAME))
+    before = (z > cut + SAME_POINT_MM) | (called & (z >= cut - SAME_POINT_MM))
     known = ~feeds & across & before & (np.abs(x) < within)
     return {int(each): float(z[known & (tool == each)].min()) for each in np.unique(tool[known])}
 
 
-def _farthest(feeds: Bools, z0: Floats, z: Floats, tool: Ints) -> dict[int, float]:
+def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -> dict[int, float]:
     """Return for each tool the maximum Z of its rapids, if it is beyond the start of all cuts."""
     cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
     told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
-    return {each: far for each, far in told.items() if far > cut + SAME}
+    return {each: far for each, far in told.items() if far > cut + SAME_POINT_MM}
 
 
-def _over(feeds: Bools, x0: Floats, z0: Floats, x: Floats, z: Floats, radius: float) -> float:
+def _retract_radius(
+    feeds: BoolArray, x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray, radius: float
+) -> float:
     """Return the minimum radius to which rapids retract between cuts and that no cut reaches.
 
     A boring bar retracts toward the center, and its rapids end at a smaller radius than its cuts.
     """
-    reached = feeds & ((np.abs(z - z0) > SAME) | (np.abs(x) >= np.abs(x0)))
+    reached = feeds & ((np.abs(z - z0) > SAME_POINT_MM) | (np.abs(x) >= np.abs(x0)))
     cut = _greatest(np.abs(np.concatenate((x[feeds], x0[reached], x[reached]))), 0.0)
     deep = z <= _greatest(z[feeds], -inf)
-    out = ~feeds & deep & (np.abs(z - z0) <= SAME) & (np.abs(x) > np.abs(x0) + SAME)
+    out = ~feeds & deep & (np.abs(z - z0) <= SAME_POINT_MM) & (np.abs(x) > np.abs(x0) + SAME_POINT_MM)
     levels = np.abs(x[out])
-    levels = levels[(levels > cut + _ASIDE) & (levels >= radius - SAME)]
+    levels = levels[(levels > cut + _TOLERANCE_MM) & (levels >= radius - SAME_POINT_MM)]
     return float(levels.min()) if len(levels) else inf
 
 
-def _forget_start(x0: Floats, z0: Floats, x: Floats, z: Floats) -> None:
+def _forget_start(x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray) -> None:
     """Set the unknown start positions to nan until each axis has moved."""
     for start, end in ((x0, x), (z0, z)):
         if len(start):
-            moved = np.flatnonzero(np.abs(end - start) > SAME)
+            moved = np.flatnonzero(np.abs(end - start) > SAME_POINT_MM)
             first = int(moved[0]) if len(moved) else len(start)
             start[: first + 1], end[:first] = np.nan, np.nan
 
 
-def _greatest(values: Floats, none: float) -> float:
+def _greatest(values: FloatArray, none: float) -> float:
     known = values[~np.isnan(values)]
     return float(known.max()) if len(known) else none
 
 
 def _how(block: Block) -> int:
-    if block.kind is Kind.RAPID:
+    if block.kind is BlockKind.RAPID:
         return 0
     how = FEED
-    if block.kind is Kind.THREAD:
+    if block.kind is BlockKind.THREAD:
         how |= THREAD
     if block.modal.c_locked:
         how |= STILL
     if block.plane is not None:
-        how |= SIDE if isinstance(block.plane.frame, Side) else FACE
+        how |= SIDE if isinstance(block.plane.frame, SidePlane) else FACE
     if block.per_rev:
         how |= PER_REV
     if block.rpm < 0.0:
@@ -257,7 +284,7 @@ def _how(block: Block) -> int:
 
 def _points(block: Block) -> list[tuple[float, float]]:
     """Return the end points of the straight pieces of a block."""
-    if block.kind is not Kind.ARC:
+    if block.kind is not BlockKind.ARC:
         return [(block.x, block.z)]
     cx, cz = block.cx, block.cz
     radius = hypot(block.x0 - cx, block.z0 - cz)

@@ -6,103 +6,113 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from core.interpreter.omniturn.flow.loops_and_subroutines import call_target
-from core.interpreter.omniturn.omniturn_interpreter import PassToLine
+from core.interpreter.omniturn.flow.loops_and_subroutines import get_subroutine_number
+from core.interpreter.omniturn.omniturn_interpreter import StoppablePass
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.restart.restart_point import Called, LineVisit, LoopPass
+from core.interpreter.restart.restart_point import ActiveCall, LineVisit, LoopPass
 from core.interpreter.shared.actions import ProgramEnd
-from core.interpreter.shared.checkpoint import FlowPlace
+from core.interpreter.shared.checkpoint import FlowPosition
 from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 
-MOST = 20_000
+MAX_VISITS = 20_000
 """Visits that are told apart; more are made by nobody who wants to go on in one of them."""
 
-_WATCHED = 2000
+_PROGRESS_INTERVAL = 2000
 
 
 @dataclass(frozen=True, slots=True)
-class Visits:
+class LineVisits:
     """Visits of a line in order: the number of earlier elementary blocks, and the flow position, of each."""
 
     program: Program
-    blocks: list[int]
-    places: list[FlowPlace]
+    earlier_block_counts: list[int]
+    flow_positions: list[FlowPosition]
 
-    def at(self, block: int) -> int:
+    def find_visit_number(self, block: int) -> int:
         """Return the number of the visit in which this block was executed, from 1; 1 if it was earlier."""
-        return max(1, bisect_left(self.blocks, block))
+        return max(1, bisect_left(self.earlier_block_counts, block))
 
-    def why_not(self, line: int, number: int) -> str:
+    def explain_missing_visit(self, line: int, number: int) -> str:
         """Return why a visit does not exist; empty if it exists."""
-        if not self.blocks:
+        if not self.earlier_block_counts:
             return Message("The program never reaches line {line}.", line=line)
-        if len(self.blocks) > MOST:
+        if len(self.earlier_block_counts) > MAX_VISITS:
             return Message(
                 "Line {line} is executed more than {maximum} times; choose the line that begins the loop.",
                 line=line,
-                maximum=f"{MOST:,}",
+                maximum=f"{MAX_VISITS:,}",
             )
-        if 1 <= number <= len(self.blocks):
+        if 1 <= number <= len(self.earlier_block_counts):
             return ""
         return Message(
             "Line {line} is executed only {blocks_count} times, so repetition {number} does not exist.",
             line=line,
-            blocks_count=len(self.blocks),
+            blocks_count=len(self.earlier_block_counts),
             number=number,
         )
 
-    def anchor(self, number: int) -> tuple[int, int]:
+    def find_anchor(self, number: int) -> tuple[int, int]:
         """Return the main program line that contains the visit, and the number of the visit there.
 
         The line is outside of all loops.
         """
-        anchor, nth = _anchor(self.places[number - 1]), number
-        while nth > 1 and _anchor(self.places[nth - 2]) == anchor:
+        anchor, nth = _anchor(self.flow_positions[number - 1]), number
+        while nth > 1 and _anchor(self.flow_positions[nth - 2]) == anchor:
             nth -= 1
         return anchor, number - nth + 1
 
-    def line_visit(self, number: int) -> LineVisit:
+    def make_line_visit(self, number: int) -> LineVisit:
         """Return the visit with its loop passes and calls for the operator, the outermost first."""
-        return LineVisit(number, len(self.blocks), tuple(_within(self.program, self.places[number - 1])))
+        return LineVisit(
+            number,
+            len(self.earlier_block_counts),
+            tuple(_within(self.program, self.flow_positions[number - 1])),
+        )
 
 
-def visits_of(program: Program, setup: Setup, line: int, watch: Callable[[float], None]) -> Visits:
+def find_line_visits(
+    program: Program, setup: Setup, line: int, report_progress: Callable[[float], None]
+) -> LineVisits:
     """Return the visits of a line in a whole run, with the inputs of ``setup``."""
-    found = Visits(program, [], [])
-    walk, count, ended = PassToLine(program, setup), 0, False
-    blocks = walk.before(line)
+    found = LineVisits(program, [], [])
+    walk, count, ended = StoppablePass(program, setup), 0, False
+    blocks = walk.run_to_line(line)
     while True:
         for block in blocks:
             count += 1
-            if count % _WATCHED == 0:
-                watch(count)
+            if count % _PROGRESS_INTERVAL == 0:
+                report_progress(count)
             ended = ended or isinstance(block.action, ProgramEnd)
-        if ended or not walk.at_line or len(found.blocks) > MOST:
+        if ended or not walk.is_at_line or len(found.earlier_block_counts) > MAX_VISITS:
             return found
         point = walk.checkpoint
-        found.blocks.append(point.blocks)
-        found.places.append(point.flow)
-        blocks = walk.once_more(line)
+        found.earlier_block_counts.append(point.blocks)
+        found.flow_positions.append(point.flow)
+        blocks = walk.run_to_next_visit(line)
 
 
-def _anchor(place: FlowPlace) -> int:
+def _anchor(place: FlowPosition) -> int:
     main = place[0]
-    if main.loops:
-        return main.loops[0][0] + 1
-    return main.back if len(place) > 1 else main.back + 1
+    if main.remaining_repeats:
+        return main.remaining_repeats[0][0] + 1
+    return main.return_index if len(place) > 1 else main.return_index + 1
 
 
-def _within(program: Program, place: FlowPlace) -> list[LoopPass | Called]:
-    found: list[LoopPass | Called] = []
+def _within(program: Program, place: FlowPosition) -> list[LoopPass | ActiveCall]:
+    found: list[LoopPass | ActiveCall] = []
     ends = program.structure.loop_ends
     for number, run in enumerate(place):
-        for start, left in run.loops:
-            made = program.statement(start + 1)
-            count = int((made.value("LS") if made is not None else None) or 1)
+        for start, left in run.remaining_repeats:
+            made = program.get_statement(start + 1)
+            count = int((made.get_value("LS") if made is not None else None) or 1)
             found.append(LoopPass(start + 1, ends[start] + 1, count - left, count))
         if number < len(place) - 1:
-            made = program.statement(run.back)
-            found.append(Called(run.back, call_target(made) if isinstance(made, Statement) else 0))
+            made = program.get_statement(run.return_index)
+            found.append(
+                ActiveCall(
+                    run.return_index, get_subroutine_number(made) if isinstance(made, Statement) else 0
+                )
+            )
     return found

@@ -13,109 +13,119 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isclose
 
-from core.interpreter.dialects import ReadProgram
-from core.interpreter.restart.cut_record import CutRecord, record_cuts
-from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
-from core.interpreter.restart.restart_retract import NEAR, Retract, ToolPlace
-from core.interpreter.restart.state_rebuild import found_on_lathe, in_uncut_material
+from core.interpreter.dialects import SharedProgram
+from core.interpreter.restart.cut_record import CutRecord, record_all_cuts
+from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_retract import ON_PATH_MM, Retract, ToolSituation
+from core.interpreter.restart.state_rebuild import make_lathe_restart, make_skipped_cuts_message
 from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import Interpretation
+from core.interpreter.shared.interpretation import InterpreterPass
 from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 
-Watch = Callable[[float], None]
+ProgressCallback = Callable[[float], None]
 
-_ASIDE = 7.3  # mm or degrees; shift of the second start position, which no program positions by chance
+_SECOND_START_SHIFT = (
+    7.3  # mm or degrees; shift of the second start position, which no program positions by chance
+)
 _SAME = 1e-6
-_TRIED = 5  # number of lines that are tried on each side of an unsuitable line
-_SLIDES = 3  # number of linear axes of a mill, which precede its rotary axes
-_WATCHED = 2000  # number of blocks between two calls of ``watch``
+_MAX_CANDIDATES = 5  # number of lines that are tried on each side of an unsuitable line
+_LINEAR_AXIS_COUNT = 3  # number of linear axes of a mill, which precede its rotary axes
+_PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_progress``
 
 
 @dataclass(slots=True)
-class _LinesOfRun:
+class _RunVisits:
     """Visits of all lines in a whole run: by line, the number of blocks before each visit."""
 
     visits: dict[int, list[int]] = field(default_factory=dict)
-    waits: dict[int, str] = field(default_factory=dict)  # reason why a line is unsuitable at its first visit
-    ended: int = 0  # line of the program end
+    blocking_reasons: dict[int, str] = field(
+        default_factory=dict
+    )  # reason why a line is unsuitable at its first visit
+    end_line: int = 0  # line of the program end
 
 
-class ProgramSearch:
+class BlockSearch:
     """Search in one program with a fixed setup.
 
-    ``watch`` receives the number of blocks and may raise an exception to cancel the search.
+    ``report_progress`` receives the number of blocks and may raise an exception to cancel the search.
     """
 
-    def __init__(self, reading: ReadProgram, setup: Setup, watch: Watch) -> None:
-        self._reading = reading
+    def __init__(self, program: SharedProgram, setup: Setup, report_progress: ProgressCallback) -> None:
+        self._reading = program
         self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
-        self.watch = watch
+        self.report_progress = report_progress
         self._count = 0
 
     @cached_property
-    def cut(self) -> CutRecord:
+    def cut_record(self) -> CutRecord:
         """Record of all cuts of the program on a lathe, calculated on first use."""
-        return record_cuts(self._pass().series(), self.watch)
+        return record_all_cuts(self._pass().generate_series(), self.report_progress)
 
-    def find(self, line: int, visit: int = 0, broken: Interruption | None = None) -> RestartPoint | NoRestart:
+    def find_restart(
+        self, line: int, visit: int = 0, interruption: Interruption | None = None
+    ) -> RestartPoint | RestartRefusal:
         """Return the restart point of a line at its ``visit``-th execution, or why a restart is not possible.
 
         A ``visit`` of 0 is the interrupted pass, or the first one. ``broken`` is the interruption of the
         program.
         """
-        found = self._search(line, visit, broken)
+        found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
             return found
-        return NoRestart(line, found, self._nearest(line, -1, broken), self._nearest(line, 1, broken))
+        return RestartRefusal(
+            line, found, self._nearest(line, -1, interruption), self._nearest(line, 1, interruption)
+        )
 
     # --- going through the program ------------------------------------------------------------------------
 
-    def _pass(self, aside: float = 0.0) -> Interpretation:
+    def _pass(self, aside: float = 0.0) -> InterpreterPass:
         start = tuple(at + aside for at in self._setup.start)
-        return self._reading.begin(replace(self._setup, start=start))
+        return self._reading.start_pass(replace(self._setup, start=start))
 
     def _watched(self, blocks: Iterator[Block]) -> Iterator[Block]:
         for block in blocks:
             self._count += 1
-            if self._count % _WATCHED == 0:
-                self.watch(self._count)
+            if self._count % _PROGRESS_INTERVAL == 0:
+                self.report_progress(self._count)
             yield block
 
     @cached_property
-    def _run(self) -> _LinesOfRun:
-        told, run, made = _LinesOfRun(), self._pass(), 0
+    def _run(self) -> _RunVisits:
+        told, run, made = _RunVisits(), self._pass(), 0
 
         def see(line: int) -> bool:
             told.visits.setdefault(line, []).append(made)
-            told.waits.setdefault(line, run.waits_for)
+            told.blocking_reasons.setdefault(line, run.blocking_reason)
             return False
 
-        run.stop_before = see
-        for block in self._watched(run.blocks(to_first_error=True)):
+        run.stop_condition = see
+        for block in self._watched(run.generate_blocks(to_first_error=True)):
             made = block.n
             if isinstance(block.action, ProgramEnd):
-                told.ended = block.line
+                told.end_line = block.line
         return told
 
-    def _to(self, line: int, number: int, aside: float, broken: Interruption | None) -> _Stand:
+    def _run_to_line(
+        self, line: int, number: int, offset: float, interruption: Interruption | None
+    ) -> _PassState:
         """Return the state of a pass at the ``number``-th execution of a line."""
-        run, stand, left = self._pass(aside), _Stand(), number
+        run, stand, left = self._pass(offset), _PassState(), number
 
         def stop(at: int) -> bool:
             nonlocal left
             left -= at == line
             return not left
 
-        run.stop_before = stop
-        for block in self._watched(run.blocks(to_first_error=True)):
-            stand.see(block, uncut=broken is not None and _is_uncut(block, broken))
-        stand.failed = run.failed or not run.stopped_before
-        stand.waits = run.waits_for
-        if not stand.failed and not stand.waits:
-            stand.point = run.checkpoint
+        run.stop_condition = stop
+        for block in self._watched(run.generate_blocks(to_first_error=True)):
+            stand.process_block(block, uncut=interruption is not None and _is_uncut(block, interruption))
+        stand.has_failed = run.has_errors or not run.has_stopped_before_line
+        stand.blocking_reason = run.blocking_reason
+        if not stand.has_failed and not stand.blocking_reason:
+            stand.checkpoint = run.checkpoint
         return stand
 
     # --- the result ---------------------------------------------------------------------------------------
@@ -131,28 +141,30 @@ class ProgramSearch:
         visits = self._run.visits.get(line, [])
         if not visits:
             return self._why_never(line)
-        number = visit or max(1, sum(made < broken.block for made in visits) if broken is not None else 1)
+        number = visit or max(
+            1, sum(made < broken.block_number for made in visits) if broken is not None else 1
+        )
         if number > len(visits):
             return Message(
                 "The program reaches line {line} only {visits_count} times.",
                 line=line,
                 visits_count=len(visits),
             )
-        here = self._to(line, number, 0.0, broken)
-        other = self._to(line, number, _ASIDE, None)
-        if here.failed or here.point is None:
+        here = self._run_to_line(line, number, 0.0, broken)
+        other = self._run_to_line(line, number, _SECOND_START_SHIFT, None)
+        if here.has_failed or here.checkpoint is None:
             return Message(
                 "The program cannot resume at line {line}: {waits}.",
                 line=line,
-                waits=here.waits or "the program has errors before this line",
+                waits=here.blocking_reason or "the program has errors before this line",
             )
-        at = self._places(here.point, other.point)
+        at = self._machine_positions(here.checkpoint, other.checkpoint)
         if isinstance(at, str):
             return Message("The program cannot resume at line {line}: {position}", line=line, position=at)
         return self._good(line, here, at, LineVisit(number, len(visits)), broken)
 
     def _why_never(self, line: int) -> str:
-        ended = self._run.ended
+        ended = self._run.end_line
         if ended and line > ended:
             return Message("The program ends on line {ended}, before line {line}.", ended=ended, line=line)
         return Message(
@@ -161,16 +173,18 @@ class ProgramSearch:
             line=line,
         )
 
-    def _places(self, here: Checkpoint, other: Checkpoint | None) -> tuple[float | None, ...] | str:
+    def _machine_positions(
+        self, here: Checkpoint, other: Checkpoint | None
+    ) -> tuple[float | None, ...] | str:
         """Return machine positions, with None for an axis that has not moved; or why they are unknown."""
         if other is None:
             return "the program before this line depends on the axis positions at Cycle Start."
         found: list[float | None] = []
         for place, start in enumerate(self._setup.start):
-            a, b = _at(here)[place], _at(other)[place]
+            a, b = _axis_positions(here)[place], _axis_positions(other)[place]
             if isclose(a, b, abs_tol=_SAME):
                 found.append(a)
-            elif isclose(a, start, abs_tol=_SAME) and isclose(b, start + _ASIDE, abs_tol=_SAME):
+            elif isclose(a, start, abs_tol=_SAME) and isclose(b, start + _SECOND_START_SHIFT, abs_tol=_SAME):
                 found.append(None)
             else:
                 axis = self._axes[place]
@@ -184,18 +198,18 @@ class ProgramSearch:
     @property
     def _axes(self) -> tuple[str, ...]:
         kinematics = self._setup.kinematics
-        return ("X", "Z", "C") if kinematics is None else kinematics.names
+        return ("X", "Z", "C") if kinematics is None else kinematics.axis_names
 
     def _good(
         self,
         line: int,
-        here: _Stand,
+        here: _PassState,
         at: tuple[float | None, ...],
         visit: LineVisit,
         broken: Interruption | None,
     ) -> RestartPoint | str:
-        assert here.point is not None
-        point = here.point
+        assert here.checkpoint is not None
+        point = here.checkpoint
         if self._setup.kinematics is None:
             free = (place for place, each in zip("xzc", at, strict=True) if each is None and place != "c")
             if lost := next(free, ""):
@@ -205,84 +219,99 @@ class ProgramSearch:
                     line=line,
                     lost=lost.upper(),
                 )
-            own_c = at[2] is not None and not self._setup.limits.spindle_is_c
-            turned = point._replace(at=_at(point)) if own_c else point
-            return found_on_lathe(line, turned, self.cut, visit, broken)
-        skipped = here.left_out or (0, 0)
+            own_c = at[2] is not None and not self._setup.limits.is_spindle_c_axis
+            turned = point._replace(at=_axis_positions(point)) if own_c else point
+            return make_lathe_restart(line, turned, self.cut_record, visit, broken)
+        skipped = here.skipped_lines or (0, 0)
         first, last = min(skipped), max(skipped)  # a loop can end on an earlier line
-        if here.left_out and not here.above(point):
-            return in_uncut_material(line, first, last)
-        clear = Retract(ToolPlace.CLEAR)
-        return RestartPoint(line, point, clear, None, visit, left_out=(first, last), axes=at)
+        if here.skipped_lines and not here.is_above_skipped_cuts(point):
+            return make_skipped_cuts_message(line, first, last)
+        clear = Retract(ToolSituation.CLEAR)
+        return RestartPoint(line, point, clear, None, visit, skipped_lines=(first, last), axis_positions=at)
 
-    def _nearest(self, line: int, way: int, broken: Interruption | None) -> int:
+    def _nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
         """Return the nearest suitable line in one direction, or 0 if none of the first few lines is suitable.
 
         Each line is checked like a requested line.
         """
-        near = [each for each, why in self._run.waits.items() if not why and (each - line) * way > 0]
+        near = [
+            each
+            for each, why in self._run.blocking_reasons.items()
+            if not why and (each - line) * direction > 0
+        ]
         near.sort(key=lambda each: abs(each - line))
-        good = (each for each in near[:_TRIED] if isinstance(self._search(each, 0, broken), RestartPoint))
+        good = (
+            each
+            for each in near[:_MAX_CANDIDATES]
+            if isinstance(self._search(each, 0, interruption), RestartPoint)
+        )
         return next(good, 0)
 
 
 @dataclass(slots=True)
-class _Stand:
+class _PassState:
     """State of a pass.
 
-    ``cutting`` means that the last move was a feed, and ``left_out`` are the first and last line of skipped
-    cuts.
+    ``is_cutting`` means that the last move was a feed, and ``skipped_lines`` are the first and last line of
+    skipped cuts.
     """
 
-    point: Checkpoint | None = None
-    waits: str = ""
-    failed: bool = False
-    cutting: bool = False
-    length: float = 0.0  # tool length, mm
-    top: float = -inf  # machine Z of the tip at the start of the highest skipped cut, mm
-    turned: bool = False  # a skipped cut moves rotary axes, so that heights cannot be compared
-    left_out: tuple[int, int] | None = None
+    checkpoint: Checkpoint | None = None
+    blocking_reason: str = ""
+    has_failed: bool = False
+    is_cutting: bool = False
+    tool_length_mm: float = 0.0  # tool length, mm
+    max_skipped_z: float = -inf  # machine Z of the tip at the start of the highest skipped cut, mm
+    moves_rotary_axes: bool = False  # a skipped cut moves rotary axes, so that heights cannot be compared
+    skipped_lines: tuple[int, int] | None = None
 
-    def see(self, block: Block, *, uncut: bool) -> None:
+    def process_block(self, block: Block, *, uncut: bool) -> None:
         """Process the next block of the pass; ``uncut`` means that its cut is missing or incomplete."""
         if block.swivel is not None:
-            self.length = block.swivel.system.tool_length
+            self.tool_length_mm = block.swivel.system.tool_length_mm
         if not block.moves:
             return
-        self.cutting = not block.rapid
-        if self.cutting and uncut:
-            first = self.left_out[0] if self.left_out is not None else block.line
-            self.left_out = first, block.line
+        self.is_cutting = not block.rapid
+        if self.is_cutting and uncut:
+            first = self.skipped_lines[0] if self.skipped_lines is not None else block.line
+            self.skipped_lines = first, block.line
             if block.travel is not None:
-                self.turned = self.turned or block.swivels or block.travel.way is not None
-                tip = block.travel.start[2] - self.length
-                self.top = max(self.top, tip)
+                self.moves_rotary_axes = (
+                    self.moves_rotary_axes or block.has_angular_feed or block.travel.way is not None
+                )
+                tip = block.travel.start[2] - self.tool_length_mm
+                self.max_skipped_z = max(self.max_skipped_z, tip)
 
-    def above(self, point: Checkpoint) -> bool:
+    def is_above_skipped_cuts(self, point: Checkpoint) -> bool:
         """Return whether the position was reached in rapid and is not below the start of a skipped cut."""
-        return not (self.cutting or self.turned) and point.at[2] - self.length >= self.top - _SAME
+        return (
+            not (self.is_cutting or self.moves_rotary_axes)
+            and point.at[2] - self.tool_length_mm >= self.max_skipped_z - _SAME
+        )
 
 
-def _is_uncut(block: Block, broken: Interruption) -> bool:
+def _is_uncut(block: Block, interruption: Interruption) -> bool:
     """Return whether the cut of a block was not begun, or was interrupted before its end.
 
     A closed block, such as a full circle, counts as uncut, because its end does not show how far it was cut.
     """
-    if block.n != broken.block or block.travel is None:
-        return block.n > broken.done
+    if block.n != interruption.block_number or block.travel is None:
+        return block.n > interruption.last_complete_block
     travel = block.travel
-    if travel.length > NEAR and _is_same_place(travel.start, travel.end):
+    if travel.length > ON_PATH_MM and _is_same_position(travel.start, travel.end):
         return True
-    return block.n > broken.done or not _is_same_place(broken.at, travel.end)
+    return block.n > interruption.last_complete_block or not _is_same_position(
+        interruption.machine_position, travel.end
+    )
 
 
-def _is_same_place(one: Sequence[float], other: Sequence[float]) -> bool:
+def _is_same_position(one: Sequence[float], other: Sequence[float]) -> bool:
     """Return whether two machine positions agree; whole revolutions of the rotary axes are ignored."""
     offs = [b - a for a, b in zip(one, other, strict=False)]
-    turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_SLIDES:]]
-    return all(abs(each) <= NEAR for each in (*offs[:_SLIDES], *turned))
+    turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_LINEAR_AXIS_COUNT:]]
+    return all(abs(each) <= ON_PATH_MM for each in (*offs[:_LINEAR_AXIS_COUNT], *turned))
 
 
-def _at(point: Checkpoint) -> tuple[float, ...]:
+def _axis_positions(point: Checkpoint) -> tuple[float, ...]:
     """Return the machine positions of all axes."""
     return point.at or (*point.machine, point.c + point.modal.offset_c)

@@ -14,32 +14,39 @@ from dataclasses import dataclass, replace
 from math import hypot, inf
 from typing import TYPE_CHECKING
 
-from core.geometry.rotation_frames import Vector, plus, scaled
+from core.geometry.rotation_frames import Vector, add_vectors, scale_vector
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
 from core.interpreter.restart.restart_retract import (
-    NEAR,
-    Place,
+    ON_PATH_MM,
     Retract,
     RetractLeg,
-    ToolPlace,
-    nearest,
-    off_line,
-    off_row,
-    retract,
+    ToolPosition,
+    ToolSituation,
+    distance_from_row,
+    distance_from_segment,
+    find_nearest_point,
+    plan_retract,
 )
 from core.interpreter.shared.actions import (
-    Coolant,
-    Output,
+    CoolantSwitch,
+    OutputSwitch,
     ProgramStop,
     SpindleLock,
-    SpindleOrient,
+    SpindlePositioning,
     SpindleRun,
     SpindleStop,
     ToolChange,
 )
-from core.interpreter.shared.checkpoint import ApproachStep, AxesLeg, Begin, CTurn, FunctionStep, Leg
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.checkpoint import (
+    ApproachStep,
+    AxesLeg,
+    CAxisMove,
+    FunctionStep,
+    PassStart,
+    StraightLeg,
+)
+from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -47,338 +54,427 @@ if TYPE_CHECKING:
 
 _SAME = 1e-6  # mm
 _TURN = 360.0
-_HELD = 0.5  # degrees; permitted turn of C while a tool is in a hole
+_MAX_C_TURN_DEG = 0.5  # degrees; permitted turn of C while a tool is in a hole
 _INCH = 25.4
-_OWN_C = 60.0  # degrees/s: 10 rpm
-_LATER = 400  # number of rows after the saved block in which the tool may be after a power failure
+_C_SPEED_DEG_S = 60.0  # degrees/s: 10 rpm
+_MAX_LATER_ROWS = 400  # number of rows after the saved block in which the tool may be after a power failure
 
 
 @dataclass(frozen=True, slots=True)
-class MachineNow:
+class PresentState:
     """Present machine state: position (x, z, c) in mm and degrees, modal state, and the interruption."""
 
-    at: tuple[float, ...]
-    modal: Modal
-    broken: Interruption | None = None
+    axis_positions: tuple[float, ...]
+    modal: ModalState
+    interruption: Interruption | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Choices:
-    """Decisions of the operator. ``rapid`` and ``modest`` are speeds outside and inside the part, in mm/s."""
+class OperatorChoices:
+    """Decisions of the operator. ``rapid`` and ``inside_speed_mm_s`` are speeds outside and inside the part,
+    in mm/s.
+    """
 
     coolant: bool = True
-    rapid: float = 100 * _INCH / 60
-    modest: float = 20 * _INCH / 60
+    outside_speed_mm_s: float = 100 * _INCH / 60
+    inside_speed_mm_s: float = 20 * _INCH / 60
 
 
-def retract_from_work(cut: CutRecord, now: MachineNow) -> tuple[Retract, int]:
+def plan_retract_from_part(cut_record: CutRecord, present: PresentState) -> tuple[Retract, int]:
     """Return the retract of the tool from the part, and the number of that tool."""
-    broken = now.broken
-    if broken is None or broken.tool not in cut.offsets:
-        return _unknown(cut, now), now.modal.tool
-    tool = broken.tool
-    x, z = _tip(cut, now.at, tool)
-    place = _stale(cut, broken, x, z) if broken.stale else None
+    broken = present.interruption
+    if broken is None or broken.tool_number not in cut_record.tool_offsets:
+        return _unknown(cut_record, present), present.modal.tool
+    tool = broken.tool_number
+    x, z = _tip(cut_record, present.axis_positions, tool)
+    place = _find_stale_position(cut_record, broken, x, z) if broken.is_stale else None
     if place is not None:
-        return _held(retract(cut, place, max(broken.done, place.block)), now), tool
-    if hypot(now.at[0] - broken.at[0], now.at[1] - broken.at[1]) <= NEAR:
-        found = _held(retract(cut, Place(broken.block, tool, x, z), broken.done), now)
-        return (found if found.tool_place is not ToolPlace.UNKNOWN else _off_the_row(cut, broken, x, z)), tool
-    if cut.outside(x, z, tool):
-        return Retract(ToolPlace.CLEAR), tool
-    was = retract(cut, Place(broken.block, tool, *_tip(cut, broken.at, tool)), broken.done)
-    return _on_the_way(was, _tip(cut, broken.at, tool), x, z), tool
+        return _block_turned_mill(
+            plan_retract(cut_record, place, max(broken.last_complete_block, place.block_number)), present
+        ), tool
+    if (
+        hypot(
+            present.axis_positions[0] - broken.machine_position[0],
+            present.axis_positions[1] - broken.machine_position[1],
+        )
+        <= ON_PATH_MM
+    ):
+        found = _block_turned_mill(
+            plan_retract(
+                cut_record, ToolPosition(broken.block_number, tool, x, z), broken.last_complete_block
+            ),
+            present,
+        )
+        return (
+            found
+            if found.situation is not ToolSituation.UNKNOWN
+            else _remaining_retract(cut_record, broken, x, z)
+        ), tool
+    if cut_record.is_outside_material(x, z, tool):
+        return Retract(ToolSituation.CLEAR), tool
+    was = plan_retract(
+        cut_record,
+        ToolPosition(broken.block_number, tool, *_tip(cut_record, broken.machine_position, tool)),
+        broken.last_complete_block,
+    )
+    return _shorten_retract(was, _tip(cut_record, broken.machine_position, tool), x, z), tool
 
 
 def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float]:
-    off_x, off_z = cut.offsets[tool]
+    off_x, off_z = cut.tool_offsets[tool]
     return at[0] - off_x, at[1] - off_z
 
 
-def _unknown(cut: CutRecord, now: MachineNow) -> Retract:
+def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
     """Return the retract without a known interruption.
 
     The tool is clear only if all tools of the program are outside the material.
     """
-    clear = now.at[1] >= cut.clear_z - _SAME or all(
-        cut.outside(*_tip(cut, now.at, tool), tool) for tool in cut.offsets
+    clear = present.axis_positions[1] >= cut_record.max_machine_z - _SAME or all(
+        cut_record.is_outside_material(*_tip(cut_record, present.axis_positions, tool), tool)
+        for tool in cut_record.tool_offsets
     )
-    return Retract(ToolPlace.CLEAR if clear else ToolPlace.UNKNOWN)
+    return Retract(ToolSituation.CLEAR if clear else ToolSituation.UNKNOWN)
 
 
-def _stale(cut: CutRecord, broken: Interruption, x: float, z: float) -> Place | None:
+def _find_stale_position(
+    cut_record: CutRecord, interruption: Interruption, x: float, z: float
+) -> ToolPosition | None:
     """Return the first row, from the saved one on, at which the tool is now; otherwise None."""
-    row = max(0, cut.row_behind(broken.block))
-    for each in range(row, min(row + _LATER, len(cut))):
-        if int(cut.tool[each]) != broken.tool:
+    row = max(0, cut_record.find_last_row(interruption.block_number))
+    for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
+        if int(cut_record.tool_number[each]) != interruption.tool_number:
             break
-        if off_row(cut, each, x, z) <= NEAR:
-            return Place(int(cut.n[each]), broken.tool, x, z)
+        if distance_from_row(cut_record, each, x, z) <= ON_PATH_MM:
+            return ToolPosition(int(cut_record.block_number[each]), interruption.tool_number, x, z)
     return None
 
 
-def _off_the_row(cut: CutRecord, broken: Interruption, x: float, z: float) -> Retract:
+def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: float, z: float) -> Retract:
     """Return the remaining retract after a stop on the approach or retract of an earlier restart."""
-    row = cut.row_behind(broken.block)
-    place = None if row < 0 else nearest(cut, row, x, z)
-    if place is None or int(cut.tool[row]) != broken.tool:
-        return Retract(ToolPlace.UNKNOWN)
-    was = retract(cut, Place(broken.block, broken.tool, *place), broken.done)
-    return _on_the_way(was, place, x, z)
+    row = cut_record.find_last_row(interruption.block_number)
+    place = None if row < 0 else find_nearest_point(cut_record, row, x, z)
+    if place is None or int(cut_record.tool_number[row]) != interruption.tool_number:
+        return Retract(ToolSituation.UNKNOWN)
+    was = plan_retract(
+        cut_record,
+        ToolPosition(interruption.block_number, interruption.tool_number, *place),
+        interruption.last_complete_block,
+    )
+    return _shorten_retract(was, place, x, z)
 
 
-def _held(way: Retract, now: MachineNow) -> Retract:
+def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
     """Return the retract; a mill in its hole can leave only if C has not turned."""
-    broken = now.broken
-    if way.tool_place is not ToolPlace.MILL or broken is None or len(now.at) < 3 or len(broken.at) < 3:
-        return way
-    turned = abs(now.at[2] - broken.at[2]) % _TURN
-    return way if min(turned, _TURN - turned) <= _HELD else replace(way, tool_place=ToolPlace.TURNED, legs=())
+    broken = present.interruption
+    if (
+        retract.situation is not ToolSituation.MILLING
+        or broken is None
+        or len(present.axis_positions) < 3
+        or len(broken.machine_position) < 3
+    ):
+        return retract
+    turned = abs(present.axis_positions[2] - broken.machine_position[2]) % _TURN
+    return (
+        retract
+        if min(turned, _TURN - turned) <= _MAX_C_TURN_DEG
+        else replace(retract, situation=ToolSituation.PART_TURNED, legs=())
+    )
 
 
-def _on_the_way(was: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
+def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
     """Return the rest of a retract along which the tool has already moved."""
     at = RetractLeg(*start)
-    for number, hop in enumerate(was.legs):
-        if off_line(at.x, at.z, hop.x, hop.z, x, z) <= NEAR:
-            return replace(was, legs=was.legs[number:])
+    for number, hop in enumerate(retract.legs):
+        if distance_from_segment(at.x, at.z, hop.x, hop.z, x, z) <= ON_PATH_MM:
+            return replace(retract, legs=retract.legs[number:])
         at = hop
-    return Retract(ToolPlace.UNKNOWN, away=was.away)
+    return Retract(ToolSituation.UNKNOWN, direction=retract.direction)
 
 
-def begin_at(found: RestartPoint, now: MachineNow, choices: Choices) -> Begin:
+def make_lathe_start(
+    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
+) -> PassStart:
     """Return the start of a pass at the line, with the real number of revolutions of C."""
-    point, modal = found.checkpoint, found.checkpoint.modal
+    point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
     if modal.c_locked:
-        modal = modal._replace(offset_c=_near(point.c + modal.offset_c, now.at[2]) - point.c)
+        modal = modal._replace(
+            offset_c=_nearest_angle(point.c + modal.offset_c, present.axis_positions[2]) - point.c
+        )
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
-    steps, skips = approach_steps(found, now, choices), any(found.left_out)
-    return Begin(point._replace(modal=modal), found.line, approach=steps, skips_cuts=skips)
+    steps, skips = plan_lathe_approach(restart_point, present, choices), any(restart_point.skipped_lines)
+    return PassStart(point._replace(modal=modal), restart_point.line, approach=steps, skips_cuts=skips)
 
 
-def approach_steps(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
+def plan_lathe_approach(
+    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
+) -> tuple[ApproachStep, ...]:
     """Return all steps between the present standstill and the first block of the line."""
-    out = way_out(found.cut, now, choices) if found.cut is not None else ()
-    at = _end(out, now.at)
-    return (*stopping(found.checkpoint.modal, now.modal), *out, *_over(found, at, choices),
-            *_starts(found, now, choices), *_in(found, at, choices))  # fmt: skip
+    out = (
+        plan_exit_moves(restart_point.cut_record, present, choices)
+        if restart_point.cut_record is not None
+        else ()
+    )
+    at = _end(out, present.axis_positions)
+    return (
+        *list_stopping_functions(restart_point.checkpoint.modal, present.modal),
+        *out,
+        *_moves_above_part(restart_point, at, choices),
+        *_starts(restart_point, present, choices),
+        *_entry_moves(restart_point, at, choices),
+    )
 
 
-def way_out(cut: CutRecord, now: MachineNow, choices: Choices) -> tuple[Leg, ...]:
+def plan_exit_moves(
+    cut_record: CutRecord, present: PresentState, choices: OperatorChoices
+) -> tuple[StraightLeg, ...]:
     """Return the moves out of the part, with Z clear of it; empty if no safe path is known."""
-    found, tool = retract_from_work(cut, now)
-    if not found.known:
+    found, tool = plan_retract_from_part(cut_record, present)
+    if not found.is_known:
         return ()
-    x, z = now.at[0], now.at[1]
-    legs: list[Leg] = []
+    x, z = present.axis_positions[0], present.axis_positions[1]
+    legs: list[StraightLeg] = []
     if found.legs:
-        off_x, off_z = cut.offsets[tool]
+        off_x, off_z = cut_record.tool_offsets[tool]
         for hop in found.legs:
             to_x, to_z = hop.x + off_x, hop.z + off_z
-            legs += _leg(x, z, to_x, to_z, choices, rapid=_free(cut, tool, (x, z), (to_x, to_z)))
+            legs += _leg(x, z, to_x, to_z, choices, rapid=_free(cut_record, tool, (x, z), (to_x, to_z)))
             x, z = to_x, to_z
-    return (*legs, *_leg(x, z, x, max(z, cut.clear_z), choices, rapid=True))
+    return (*legs, *_leg(x, z, x, max(z, cut_record.max_machine_z), choices, rapid=True))
 
 
-def _free(cut: CutRecord, tool: int, start: tuple[float, float], end: tuple[float, float]) -> bool:
+def _free(cut_record: CutRecord, tool: int, start: tuple[float, float], end: tuple[float, float]) -> bool:
     """Return whether a straight move between two machine points remains outside the material.
 
     The move must not cross the corner of the bar.
     """
-    (x0, z0), (x1, z1) = _tip(cut, start, tool), _tip(cut, end, tool)
-    over = min(abs(x0), abs(x1)) >= cut.over - _SAME and x0 * x1 > 0.0
-    before = min(z0, z1) >= cut.front(tool) - _SAME
-    return cut.outside(x0, z0, tool) and cut.outside(x1, z1, tool) and (over or before)
+    (x0, z0), (x1, z1) = _tip(cut_record, start, tool), _tip(cut_record, end, tool)
+    over = min(abs(x0), abs(x1)) >= cut_record.retract_radius - _SAME and x0 * x1 > 0.0
+    before = min(z0, z1) >= cut_record.compute_front_z(tool) - _SAME
+    return (
+        cut_record.is_outside_material(x0, z0, tool)
+        and cut_record.is_outside_material(x1, z1, tool)
+        and (over or before)
+    )
 
 
-def starting(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:
+def list_starting_functions(
+    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
+) -> tuple[ApproachStep, ...]:
     """Return the functions that will start or turn on, which the operator must confirm."""
-    return tuple(step for step in _starts(found, now, choices) if isinstance(step, FunctionStep))
+    return tuple(step for step in _starts(restart_point, present, choices) if isinstance(step, FunctionStep))
 
 
-def stopping(wanted: Modal, now: Modal) -> Iterator[ApproachStep]:
+def list_stopping_functions(target: ModalState, present: ModalState) -> Iterator[ApproachStep]:
     """Yield the functions that must stop before any motion."""
-    if now.spindle and now.spindle != wanted.spindle:
+    if present.spindle and present.spindle != target.spindle:
         yield FunctionStep(SpindleStop(), "M05")
-    if now.coolant and not wanted.coolant:
-        yield FunctionStep(Coolant(False), "M09")
-    for name in sorted(now.outputs - wanted.outputs):
-        yield FunctionStep(Output(name, False), Message("{name} OFF", name=name.upper()))
+    if present.coolant and not target.coolant:
+        yield FunctionStep(CoolantSwitch(False), "M09")
+    for name in sorted(present.outputs - target.outputs):
+        yield FunctionStep(OutputSwitch(name, False), Message("{name} OFF", name=name.upper()))
 
 
-def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[ApproachStep]:
+def _starts(found: RestartPoint, now: PresentState, choices: OperatorChoices) -> Iterator[ApproachStep]:
     point, wanted = found.checkpoint, found.checkpoint.modal
     if wanted.c_locked:
         yield FunctionStep(SpindleLock(orient=False), "M89")
-        yield CTurn(_near(point.c + wanted.offset_c, now.at[2]), (wanted.c_rpm or 10.0) * 6.0, "C")
+        yield CAxisMove(
+            _nearest_angle(point.c + wanted.offset_c, now.axis_positions[2]),
+            (wanted.c_rpm or 10.0) * 6.0,
+            "C",
+        )
     elif point.at:  # C has a separate drive, and the program has positioned it.
-        yield CTurn(_own_c(point.at[2], now.at[2]), _OWN_C, "C")
+        yield CAxisMove(_target_c_angle(point.at[2], now.axis_positions[2]), _C_SPEED_DEG_S, "C")
     if wanted.oriented is not None:
-        yield FunctionStep(SpindleOrient(wanted.oriented), f"M19 {wanted.oriented:g}")
+        yield FunctionStep(SpindlePositioning(wanted.oriented), f"M19 {wanted.oriented:g}")
     if wanted.spindle and not wanted.c_locked:
         surface = wanted.surface_speed if wanted.css else None
         text = f"{'M03' if wanted.spindle > 0 else 'M04'}"
         yield FunctionStep(SpindleRun(wanted.spindle * wanted.rpm, surface), text)
     for name in sorted(wanted.outputs - now.modal.outputs):
-        yield FunctionStep(Output(name, True), Message("{name} ON", name=name.upper()))
+        yield FunctionStep(OutputSwitch(name, True), Message("{name} ON", name=name.upper()))
     if wanted.coolant and choices.coolant:
-        yield FunctionStep(Coolant(True), "M08")
+        yield FunctionStep(CoolantSwitch(True), "M08")
 
 
-def _own_c(angle: float, now: float) -> float:
+def _target_c_angle(angle: float, present: float) -> float:
     """Return the target angle of C, unless the program has counted many revolutions."""
-    return angle if abs(angle) <= _TURN else _near(angle, now)
+    return angle if abs(angle) <= _TURN else _nearest_angle(angle, present)
 
 
-def _over(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
+def _moves_above_part(
+    restart_point: RestartPoint, at: tuple[float, float], choices: OperatorChoices
+) -> Iterator[StraightLeg]:
     """Yield the moves of Z clear of the part and of X over the first point outside the part."""
-    x, z = _before(found)[0]
+    x, z = _entry_points(restart_point)[0]
     clear = max(at[1], z)
     yield from _leg(at[0], at[1], at[0], clear, choices, rapid=True)
     yield from _leg(at[0], clear, x, clear, choices, rapid=True)
 
 
-def _in(found: RestartPoint, at: tuple[float, float], choices: Choices) -> Iterator[Leg]:
+def _entry_moves(
+    restart_point: RestartPoint, at: tuple[float, float], choices: OperatorChoices
+) -> Iterator[StraightLeg]:
     """Yield the rapid to the start of the part, and the entry along the reversed retract path."""
-    places = _before(found)
+    places = _entry_points(restart_point)
     x, z = places[0][0], max(at[1], places[0][1])
-    cut, tool = found.cut, found.checkpoint.modal.tool
-    known = cut is not None and tool in cut.offsets
+    cut, tool = restart_point.cut_record, restart_point.checkpoint.modal.tool
+    known = cut is not None and tool in cut.tool_offsets
     for number, (to_x, to_z) in enumerate(places):
         free = number == 0 or (cut is not None and known and _free(cut, tool, (x, z), (to_x, to_z)))
         yield from _leg(x, z, to_x, to_z, choices, rapid=free)
         x, z = to_x, to_z
 
 
-def _before(found: RestartPoint) -> list[tuple[float, float]]:
+def _entry_points(restart_point: RestartPoint) -> list[tuple[float, float]]:
     """Return the machine points from the one outside the part to that of the line."""
-    goal = found.checkpoint.machine
-    modal = found.checkpoint.modal
-    hops = [(hop.x + modal.base_x, hop.z + modal.base_z) for hop in found.back.legs]
+    goal = restart_point.checkpoint.machine
+    modal = restart_point.checkpoint.modal
+    hops = [
+        (hop.x + modal.drawing_zero_x, hop.z + modal.drawing_zero_z) for hop in restart_point.retract.legs
+    ]
     return [*reversed(hops), goal]
 
 
-def _end(legs: tuple[Leg, ...], at: tuple[float, ...]) -> tuple[float, float]:
+def _end(legs: tuple[StraightLeg, ...], at: tuple[float, ...]) -> tuple[float, float]:
     x, z = at[0], at[1]
     for leg in legs:
         x, z = x if leg.x is None else leg.x, z if leg.z is None else leg.z
     return x, z
 
 
-def _leg(x: float, z: float, to_x: float, to_z: float, choices: Choices, *, rapid: bool) -> list[Leg]:
+def _leg(
+    x: float, z: float, to_x: float, to_z: float, choices: OperatorChoices, *, rapid: bool
+) -> list[StraightLeg]:
     along_x, along_z = abs(to_x - x) > _SAME, abs(to_z - z) > _SAME
     if not (along_x or along_z):
         return []
     text = ("X" if along_x else "") + ("Z" if along_z else "")
-    feed = choices.rapid if rapid else choices.modest
-    return [Leg(to_x if along_x else None, to_z if along_z else None, feed, rapid, text)]
+    feed = choices.outside_speed_mm_s if rapid else choices.inside_speed_mm_s
+    return [StraightLeg(to_x if along_x else None, to_z if along_z else None, feed, rapid, text)]
 
 
-def _near(angle: float, now: float) -> float:
+def _nearest_angle(angle: float, present: float) -> float:
     """Return the machine angle equivalent to ``angle`` that is nearest to the present angle."""
-    return angle + round((now - angle) / _TURN) * _TURN
+    return angle + round((present - angle) / _TURN) * _TURN
 
 
 # --- on a mill -----------------------------------------------------------------------------------------
 
 
-SHORT_OF_LIMIT = 0.01  # mm; distance of the path from the software limits
-_SLOWLY_OUT = 50.0  # mm along the tool axis; maximum depth of a tool in the part
-_SLOWLY_IN = 5.0  # mm before the target
-_SLIDES = "XYZ"
+LIMIT_CLEARANCE_MM = 0.01  # mm; distance of the path from the software limits
+_SLOW_RETRACT_MM = 50.0  # mm along the tool axis; maximum depth of a tool in the part
+_SLOW_ENTRY_MM = 5.0  # mm before the target
+_LINEAR_AXES = "XYZ"
 
 
 @dataclass(slots=True)
-class _Way:
+class _MovePlan:
     """The moves so far, and their end in machine positions by axis."""
 
     machine: Kinematics
-    at: dict[str, float]
+    axis_positions: dict[str, float]
 
-    def to(self, goal: dict[str, float], feed: float | None) -> Iterator[AxesLeg]:
+    def move_to(self, target: dict[str, float], feed: float | None) -> Iterator[AxesLeg]:
         """Yield a move of the axes that are not yet at the target."""
-        moving = {name: value for name, value in goal.items() if abs(value - self.at[name]) > _SAME}
-        self.at |= moving
+        moving = {
+            name: value for name, value in target.items() if abs(value - self.axis_positions[name]) > _SAME
+        }
+        self.axis_positions |= moving
         if moving:
             yield AxesLeg(tuple(moving.items()), feed, " ".join(moving))
 
     @property
-    def slides(self) -> Vector:
-        return self.at["X"], self.at["Y"], self.at["Z"]
+    def linear_position(self) -> Vector:
+        return self.axis_positions["X"], self.axis_positions["Y"], self.axis_positions["Z"]
 
     @property
     def tool_axis(self) -> Vector:
-        return self.machine.tool_axis(self.at)
+        return self.machine.tool_direction(self.axis_positions)
 
-    def room(self, start: Vector) -> float:
+    def available_travel(self, start: Vector) -> float:
         """Return the possible travel from ``start`` along the tool axis away from the part, in mm.
 
         It is inf without limits.
         """
         ways = [inf]
-        for slide, at, share in zip(self.machine.slides, start, self.tool_axis, strict=True):
+        for slide, at, share in zip(self.machine.linear_axes, start, self.tool_axis, strict=True):
             if abs(share) > _SAME:
-                ways.append(((slide.high if share > 0.0 else slide.low) - at) / share)
-        return min(ways) - SHORT_OF_LIMIT
+                ways.append(((slide.travel_max if share > 0.0 else slide.travel_min) - at) / share)
+        return min(ways) - LIMIT_CLEARANCE_MM
 
-    def along(self, start: Vector, length: float) -> dict[str, float]:
+    def offset_position(self, start: Vector, length: float) -> dict[str, float]:
         """Return the position at this distance from ``start`` along the tool."""
-        return dict(zip(_SLIDES, plus(start, scaled(self.tool_axis, length)), strict=True))
+        return dict(zip(_LINEAR_AXES, add_vectors(start, scale_vector(self.tool_axis, length)), strict=True))
 
 
-def begin_on_mill(found: RestartPoint, now: MachineNow, choices: Choices, machine: Kinematics) -> Begin:
+def make_mill_start(
+    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices, kinematics: Kinematics
+) -> PassStart:
     """Return the start of a pass at the line on a mill."""
-    point, modal = found.checkpoint, found.checkpoint.modal
+    point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
-    steps = tuple(_steps(found, now, choices, machine))
-    return Begin(point._replace(modal=modal), found.line, approach=steps, skips_cuts=any(found.left_out))
+    steps = tuple(_steps(restart_point, present, choices, kinematics))
+    return PassStart(
+        point._replace(modal=modal),
+        restart_point.line,
+        approach=steps,
+        skips_cuts=any(restart_point.skipped_lines),
+    )
 
 
-def why_no_way(machine: Kinematics) -> str:
+def explain_missing_path(kinematics: Kinematics) -> str:
     """Return why no path can be planned on this machine; empty if it is possible."""
-    return "" if all(slide.high < inf for slide in machine.slides) else ("the axes have no software limits")
+    return (
+        ""
+        if all(slide.travel_max < inf for slide in kinematics.linear_axes)
+        else ("the axes have no software limits")
+    )
 
 
-def goal_of(found: RestartPoint, now: MachineNow, machine: Kinematics) -> dict[str, float]:
+def find_start_position(
+    restart_point: RestartPoint, present: PresentState, kinematics: Kinematics
+) -> dict[str, float]:
     """Return the start position of the line; an axis that the program has not moved remains."""
-    places = zip(machine.names, found.axes, now.at, strict=True)
+    places = zip(kinematics.axis_names, restart_point.axis_positions, present.axis_positions, strict=True)
     return {name: at if wanted is None else wanted for name, wanted, at in places}
 
 
 def _steps(
-    found: RestartPoint, now: MachineNow, choices: Choices, machine: Kinematics
+    found: RestartPoint, now: PresentState, choices: OperatorChoices, machine: Kinematics
 ) -> Iterator[ApproachStep]:
-    wanted, goal = found.checkpoint.modal, goal_of(found, now, machine)
-    way = _Way(machine, dict(zip(machine.names, now.at, strict=True)))
+    wanted, goal = found.checkpoint.modal, find_start_position(found, now, machine)
+    way = _MovePlan(machine, dict(zip(machine.axis_names, now.axis_positions, strict=True)))
     change = wanted.tool not in {0, now.modal.tool}
     if change and now.modal.spindle:
         yield FunctionStep(SpindleStop(), "M5")
         now = replace(now, modal=now.modal._replace(spindle=0))
-    yield from stopping(wanted, now.modal)
-    yield from _out(way, choices)
-    yield from way.to({name: at for name, at in goal.items() if name not in _SLIDES}, None)
+    yield from list_stopping_functions(wanted, now.modal)
+    yield from _retract_moves(way, choices)
+    yield from way.move_to({name: at for name, at in goal.items() if name not in _LINEAR_AXES}, None)
     if change:
         yield FunctionStep(ToolChange(wanted.tool), Message("TOOL CALL {tool}", tool=wanted.tool))
         yield FunctionStep(
             ProgramStop(optional=False, message=Message("TOOL {tool}", tool=wanted.tool)), "STOP"
         )
     place: Vector = goal["X"], goal["Y"], goal["Z"]
-    room = max(way.room(place), 0.0)
-    over = way.along(place, room)
-    yield from way.to({"X": over["X"], "Y": over["Y"]}, None)
-    yield from starting(found, now, choices)
-    yield from way.to(over, None)
-    yield from way.to(way.along(place, min(_SLOWLY_IN, room)), None)
-    yield from way.to(way.along(place, 0.0), choices.modest)
+    room = max(way.available_travel(place), 0.0)
+    over = way.offset_position(place, room)
+    yield from way.move_to({"X": over["X"], "Y": over["Y"]}, None)
+    yield from list_starting_functions(found, now, choices)
+    yield from way.move_to(over, None)
+    yield from way.move_to(way.offset_position(place, min(_SLOW_ENTRY_MM, room)), None)
+    yield from way.move_to(way.offset_position(place, 0.0), choices.inside_speed_mm_s)
 
 
-def _out(way: _Way, choices: Choices) -> Iterator[AxesLeg]:
+def _retract_moves(plan: _MovePlan, choices: OperatorChoices) -> Iterator[AxesLeg]:
     """Yield the retract along the tool, slow at first, and then Z to its upper limit."""
-    start = way.slides
-    room = max(way.room(start), 0.0)
-    slowly = min(_SLOWLY_OUT, room)
-    yield from way.to(way.along(start, slowly), choices.modest)
-    yield from way.to(way.along(start, room), None)
-    top = way.machine.slides[2].high - SHORT_OF_LIMIT
-    if top > way.at["Z"]:
-        yield from way.to({"Z": top}, None)
+    start = plan.linear_position
+    room = max(plan.available_travel(start), 0.0)
+    slowly = min(_SLOW_RETRACT_MM, room)
+    yield from plan.move_to(plan.offset_position(start, slowly), choices.inside_speed_mm_s)
+    yield from plan.move_to(plan.offset_position(start, room), None)
+    top = plan.machine.linear_axes[2].travel_max - LIMIT_CLEARANCE_MM
+    if top > plan.axis_positions["Z"]:
+        yield from plan.move_to({"Z": top}, None)

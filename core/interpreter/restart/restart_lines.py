@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from operator import attrgetter
 from typing import NamedTuple
 
-from core.interpreter.omniturn.flow.loops_and_subroutines import call_target
-from core.interpreter.omniturn.motion.plain_moves import ReadyLines
+from core.interpreter.omniturn.flow.loops_and_subroutines import get_subroutine_number
+from core.interpreter.omniturn.motion.plain_moves import ExecutableLines
 from core.interpreter.omniturn.omniturn_program import Program
-from core.interpreter.omniturn.omniturn_statement import PLANE, Statement
+from core.interpreter.omniturn.omniturn_statement import PLANE_FLOW, Statement
 from core.message import Message
 
 _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
@@ -19,72 +19,72 @@ class LineRange(NamedTuple):
     """Lines ``first`` to ``last``, counted from 1.
 
     If a program cannot be restarted from these lines, ``reason`` is the template of the message. Its
-    placeholders are ``line``, the line of the restart, and ``begin``, the line on which the contour, corner
-    or other section begins.
+    placeholders are ``line``, the line of the restart, and ``start_line``, the line on which the contour,
+    corner or other section begins.
     """
 
     first: int
     last: int
     reason: str = ""
-    begin: int = 0
+    start_line: int = 0
 
-    def why(self, line: int) -> Message:
+    def make_message(self, line: int) -> Message:
         """Return why a program cannot be restarted from this line, which must be within the range."""
-        return Message(self.reason, line=line, begin=self.begin)
+        return Message(self.reason, line=line, begin=self.start_line)
 
 
-class RestartLines:
+class RestartSuitability:
     """Suitability of each line of a program for a restart, determined from its text."""
 
     def __init__(self, program: Program) -> None:
-        self._steps = program.ready
-        self.count = len(program.ready)
+        self._steps = program.executable_lines
+        self.line_count = len(program.executable_lines)
         order = attrgetter("first")
-        self.ranges = sorted((*_structured(program), *_open(program.ready)), key=order)
-        self.repeated = sorted(_repeated(program), key=order)
-        self._apart = sorted((*self.ranges, *self.repeated), key=order)
+        self.unsuitable_ranges = sorted((*_structured(program), *_open(program.executable_lines)), key=order)
+        self.repeated_ranges = sorted(_repeated(program), key=order)
+        self._apart = sorted((*self.unsuitable_ranges, *self.repeated_ranges), key=order)
         self._calls = _calls(program)
 
-    def why_not(self, line: int) -> str:
+    def explain_unsuitable(self, line: int) -> str:
         """Return why a restart from this line is not possible; empty if the text allows it."""
-        if not 1 <= line <= self.count:
+        if not 1 <= line <= self.line_count:
             return Message(
                 "Line {line} does not exist; the last line of the program is {lines_count}.",
                 line=line,
-                lines_count=self.count,
+                lines_count=self.line_count,
             )
-        for lines in self.ranges:
+        for lines in self.unsuitable_ranges:
             if lines.first <= line <= lines.last:
-                return lines.why(line)
+                return lines.make_message(line)
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
-    def repeats(self, line: int) -> bool:
+    def is_repeated(self, line: int) -> bool:
         """Return whether a line is in a loop or subroutine.
 
         Such a line may be executed repeatedly or never.
         """
-        return any(each.first <= line <= each.last for each in self.repeated)
+        return any(each.first <= line <= each.last for each in self.repeated_ranges)
 
-    def nearest(self, line: int, way: int) -> int:
-        """Return the nearest suitable line below (``way`` 1) or above (-1), or 0 without one.
+    def find_nearest(self, line: int, direction: int) -> int:
+        """Return the nearest suitable line below (``direction`` 1) or above (-1), or 0 without one.
 
         Loops and subroutines are skipped. From inside a subroutine, the search upward continues at its first
         call.
         """
-        if way < 0:
-            line = self._called_from(line)
-        at = min(line + way, self.count) if way < 0 else line + way
-        while 1 <= at <= self.count:
+        if direction < 0:
+            line = self._line_after_call(line)
+        at = min(line + direction, self.line_count) if direction < 0 else line + direction
+        while 1 <= at <= self.line_count:
             lines = next((each for each in self._apart if each.first <= at <= each.last), None)
             if lines is not None:
-                at = lines.last + 1 if way > 0 else lines.first - 1
+                at = lines.last + 1 if direction > 0 else lines.first - 1
             elif self._steps[at - 1] is None:
-                at += way
+                at += direction
             else:
                 return at
         return 0
 
-    def _called_from(self, line: int) -> int:
+    def _line_after_call(self, line: int) -> int:
         """Return the line after the call of the subroutine with this line; otherwise the line itself."""
         at = line
         for _ in self._calls:  # a call may be in another subroutine
@@ -95,9 +95,9 @@ class RestartLines:
 def _calls(program: Program) -> list[tuple[int, int, int]]:
     """Return first line, last line and first external call of each called subroutine."""
     calls = [
-        (number, call_target(step))
-        for number, step in enumerate(program.ready, start=1)
-        if isinstance(step, Statement) and step.calls
+        (number, get_subroutine_number(step))
+        for number, step in enumerate(program.executable_lines, start=1)
+        if isinstance(step, Statement) and step.calls_subroutine
     ]
     found = []
     for first, last, number in _subroutines(program):
@@ -113,12 +113,12 @@ def _structured(program: Program) -> Iterator[LineRange]:
     The first line of a contour is suitable for a restart; its other lines are not.
     """
     structure = program.structure
-    for start, end in structure.contours.items():
+    for start, end in structure.contour_ends.items():
         reason = "Line {line} is part of the contour that begins on line {begin}."
         yield LineRange(start + 2, end + 1, reason, start + 1)
     spans = sorted(_subroutines(program))
-    at = structure.main_end + 1
-    for start, end, _number in (*spans, (len(program.ready) + 1, 0, 0)):
+    at = structure.main_end_index + 1
+    for start, end, _number in (*spans, (len(program.executable_lines) + 1, 0, 0)):
         if at < start:
             yield LineRange(at, start - 1, "Line {line} is after the end of the program.")
         at = max(at, end + 1)
@@ -136,31 +136,31 @@ def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
     """Yield first line, last line and number of each subroutine."""
     structure = program.structure
     for number, start in structure.subroutines.items():
-        yield start + 1, structure.subroutine_ends.get(number, len(program.ready) - 1) + 1, number
+        yield start + 1, structure.subroutine_ends.get(number, len(program.executable_lines) - 1) + 1, number
 
 
-def _open(steps: ReadyLines) -> Iterator[LineRange]:
+def _open(lines: ExecutableLines) -> Iterator[LineRange]:
     """Yield sections of plane switching, nose compensation and corners, from the line after their start."""
     plane = nose = corner = 0
-    for number, step in enumerate(steps, start=1):
+    for number, step in enumerate(lines, start=1):
         if not isinstance(step, Statement):
             if corner and step is not None:
                 yield _corner(corner, number)
                 corner = 0
             continue
-        if corner and step.moves:
+        if corner and step.moves_x_or_z:
             yield _corner(corner, number)
             corner = 0
-        if step.moves and step.one_shot is None and ("R" in step.words or "C" in step.words):
+        if step.moves_x_or_z and step.one_shot_code is None and ("R" in step.words or "C" in step.words):
             corner = number
-        if step.flow == PLANE:
+        if step.flow_code == PLANE_FLOW:
             plane, done = _plane(step, number, plane)
             if done:
                 reason = "Line {line} is in the section of (~PLXC) or (~PLZC) that begins on line {begin}."
                 yield LineRange(done + 1, number, reason, done)
-        if not nose and _NOSE_ON.intersection(step.modal):
+        if not nose and _NOSE_ON.intersection(step.modal_codes):
             nose = number
-        elif nose and (_NOSE_OFF in step.modal or "T" in step.words):
+        elif nose and (_NOSE_OFF in step.modal_codes or "T" in step.words):
             reason = "Line {line} uses the nose compensation that begins on line {begin}."
             yield LineRange(nose + 1, number, reason, nose)
             nose = 0
@@ -168,7 +168,7 @@ def _open(steps: ReadyLines) -> Iterator[LineRange]:
 
 def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
     """Return the start line of active plane switching or 0, and the start line of one that ends here or 0."""
-    name = step.plane.name if step.plane is not None else ""
+    name = step.plane_line.name if step.plane_line is not None else ""
     if name == "END":
         return 0, begun
     return (number if name and not begun else begun), 0

@@ -6,75 +6,81 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_retract import Retract, ToolPlace
+from core.interpreter.restart.restart_retract import Retract, ToolSituation
 from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):
-    """One pass of a loop; ``first`` and ``last`` are the lines of LS and LF."""
+    """One pass of a loop; ``first_line`` and ``last_line`` are the lines of LS and LF."""
 
-    first: int
-    last: int
-    number: int
-    of: int
+    first_line: int
+    last_line: int
+    pass_number: int
+    pass_count: int
 
 
-class Called(NamedTuple):
+class ActiveCall(NamedTuple):
     """An active call: the line of the call, and the number of the subroutine."""
 
-    line: int
-    subroutine: int
+    call_line: int
+    subroutine_number: int
 
 
 class LineVisit(NamedTuple):
     """The ``number``-th of ``of`` executions of a line in the whole run, with its loop passes and calls."""
 
-    number: int = 1
-    of: int = 1
-    within: tuple[LoopPass | Called, ...] = ()
+    visit_number: int = 1
+    visit_count: int = 1
+    enclosing_levels: tuple[LoopPass | ActiveCall, ...] = ()
 
 
 class Interruption(NamedTuple):
     """Point of interruption of a program: elementary block, tool, and machine point in mm.
 
-    All blocks up to ``begun`` were begun. ``stale`` means that the control lost power, so that the tool may
-    have moved for up to a second after this point.
+    All blocks up to ``last_started_block`` were begun. ``is_stale`` means that the control lost power, so
+    that the tool may have moved for up to a second after this point.
     """
 
-    block: int
-    tool: int
-    at: tuple[float, ...]
-    begun: int
-    stale: bool = False
+    block_number: int
+    tool_number: int
+    machine_position: tuple[float, ...]
+    last_started_block: int
+    is_stale: bool = False
 
     @property
-    def done(self) -> int:
+    def last_complete_block(self) -> int:
         """Last block whose cut is known to be complete."""
-        return max(self.begun, self.block) if self.block <= self.begun + 1 else self.begun
+        return (
+            max(self.last_started_block, self.block_number)
+            if self.block_number <= self.last_started_block + 1
+            else self.last_started_block
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class RestartPoint:
     """A suitable line in one of its passes, with its inherited state and the retract from its start.
 
-    ``left_out`` are the first and last line of cuts that would be skipped, or (0, 0).
+    ``skipped_lines`` are the first and last line of cuts that would be skipped, or (0, 0).
     """
 
     line: int
     checkpoint: Checkpoint
-    back: Retract = field(default_factory=lambda: Retract(ToolPlace.CLEAR))
-    cut: CutRecord | None = None
+    retract: Retract = field(default_factory=lambda: Retract(ToolSituation.CLEAR))
+    cut_record: CutRecord | None = None
     visit: LineVisit = field(default_factory=LineVisit)
-    was: LineVisit | None = None  # the interrupted pass if the line is executed more than once
-    left_out: tuple[int, int] = (0, 0)
-    axes: tuple[float | None, ...] = ()  # axis positions of a mill, with None for an axis that never moved
+    interrupted_visit: LineVisit | None = None  # the interrupted pass if the line is executed more than once
+    skipped_lines: tuple[int, int] = (0, 0)
+    axis_positions: tuple[
+        float | None, ...
+    ] = ()  # axis positions of a mill, with None for an axis that never moved
 
 
 @dataclass(frozen=True, slots=True)
-class NoRestart:
+class RestartRefusal:
     """Reason why a restart at a line is not possible, and the nearest suitable lines (0 for none)."""
 
     line: int
     why: str
-    before: int = 0
-    after: int = 0
+    nearest_line_before: int = 0
+    nearest_line_after: int = 0

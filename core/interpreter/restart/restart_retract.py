@@ -20,36 +20,36 @@ from core.interpreter.restart.cut_record import (
     FEED,
     PER_REV,
     REVERSE,
-    SAME,
+    SAME_POINT_MM,
     SIDE,
     STILL,
     THREAD,
     CutRecord,
-    Floats,
+    FloatArray,
 )
 
-NEAR = 0.1  # mm; a tool within this distance of a path is on the path
+ON_PATH_MM = 0.1  # mm; a tool within this distance of a path is on the path
 _END = 0.005  # mm; a row is complete within this distance of its end
-_ASIDE = 0.01  # mm; a cut within this distance of a radius or Z counts as parallel to it
-_BETWEEN = 1.1  # mm; minimum tool width, so that closer passes leave no material between them
-_BACK_A_LITTLE = 0.25  # mm
-_FROM_A_SHOULDER = 0.1  # mm; minimum distance from a face that is not cut yet
-_ON_CENTRE = 0.05  # mm of radius; a tool within it drills or taps
+_PARALLEL_TOLERANCE_MM = 0.01  # mm; a cut within this distance of a radius or Z counts as parallel to it
+_MIN_TOOL_WIDTH_MM = 1.1  # mm; minimum tool width, so that closer passes leave no material between them
+_BACKOFF_MM = 0.25  # mm
+_SHOULDER_CLEARANCE_MM = 0.1  # mm; minimum distance from a face that is not cut yet
+_CENTERLINE_TOLERANCE_MM = 0.05  # mm of radius; a tool within it drills or taps
 # maximum rows to examine ahead and back, and maximum moves that an operator can follow
 _AHEAD, _BACK, _LEGS = 400, 400, 60
-_FAR = 100_000  # maximum rows in which the next retract is searched
-_TRIED = 24  # maximum rows back from which the retract of the program is tried
+_MAX_SEARCH_ROWS = 100_000  # maximum rows in which the next retract is searched
+_MAX_ROWS_BACK = 24  # maximum rows back from which the retract of the program is tried
 
 
-class ToolPlace(Enum):
+class ToolSituation(Enum):
     """Situation of a tool: clear of the part, or in the part, and how it can leave."""
 
     CLEAR = "clear"
-    WORK = "work"
-    THREAD = "thread"
-    TAP = "tap"
-    MILL = "mill"  # C is locked
-    TURNED = "turned"  # a mill in a part that has turned since
+    IN_PART = "work"
+    IN_THREAD = "thread"
+    IN_TAPPED_HOLE = "tap"
+    MILLING = "mill"  # C is locked
+    PART_TURNED = "turned"  # a mill in a part that has turned since
     UNKNOWN = "unknown"
 
 
@@ -64,25 +64,25 @@ class RetractLeg(NamedTuple):
 class Retract:
     """Retract of a tool. ``legs`` lead from its position out of the material; empty if clear or not known.
 
-    ``away`` is the direction in which the tool leaves in any case, as the signs of (x, z) of the first move;
-    (0, 0) if unknown.
+    ``direction`` is the direction in which the tool leaves in any case, as the signs of (x, z) of the first
+    move; (0, 0) if unknown.
     """
 
-    tool_place: ToolPlace
+    situation: ToolSituation
     legs: tuple[RetractLeg, ...] = ()
-    away: tuple[int, int] = (0, 0)
+    direction: tuple[int, int] = (0, 0)
 
     @property
-    def known(self) -> bool:
+    def is_known(self) -> bool:
         """Whether the tool is clear, or its path out of the part is known."""
-        return self.tool_place is ToolPlace.CLEAR or bool(self.legs)
+        return self.situation is ToolSituation.CLEAR or bool(self.legs)
 
 
-class Place(NamedTuple):
-    """Position in a program: at or within ``block``, with the tip of ``tool`` at (x, z)."""
+class ToolPosition(NamedTuple):
+    """Position in a program: at or within ``block_number``, with the tip of ``tool_number`` at (x, z)."""
 
-    block: int
-    tool: int
+    block_number: int
+    tool_number: int
     x: float
     z: float
 
@@ -92,7 +92,7 @@ class _Segment(NamedTuple):
     z0: float
     x: float
     z: float
-    how: int
+    move_kind: int
     row: int
 
     @property
@@ -100,43 +100,45 @@ class _Segment(NamedTuple):
         return hypot(self.x - self.x0, self.z - self.z0)
 
 
-def retract(cut: CutRecord, place: Place, done: int) -> Retract:
-    """Return the retract from this position; the blocks up to ``done`` have been cut."""
-    row = cut.row_behind(place.block)
-    if row >= 0 and int(cut.tool[row]) == place.tool:
-        row, on = _on_row(cut, row, place)
+def plan_retract(cut_record: CutRecord, position: ToolPosition, last_complete_block: int) -> Retract:
+    """Return the retract from this position; the blocks up to ``last_complete_block`` have been cut."""
+    row = cut_record.find_last_row(position.block_number)
+    if row >= 0 and int(cut_record.tool_number[row]) == position.tool_number:
+        row, on = _nearest_row(cut_record, row, position)
         if on:
-            return _Search(cut, place, row, done).retract_there()
-    return Retract(ToolPlace.CLEAR if _clear(cut, place) else ToolPlace.UNKNOWN)
+            return _Search(cut_record, position, row, last_complete_block).find_retract()
+    return Retract(ToolSituation.CLEAR if _clear(cut_record, position) else ToolSituation.UNKNOWN)
 
 
-def _clear(cut: CutRecord, place: Place) -> bool:
-    return cut.outside(place.x, place.z, place.tool)
+def _clear(cut: CutRecord, place: ToolPosition) -> bool:
+    return cut.is_outside_material(place.x, place.z, place.tool_number)
 
 
-def _on_row(cut: CutRecord, row: int, place: Place) -> tuple[int, bool]:
+def _nearest_row(cut_record: CutRecord, row: int, position: ToolPosition) -> tuple[int, bool]:
     """Return the row of the block that is nearest to the tool, and whether the tool is on it."""
-    rows = range(cut.first_row(row), row + 1)
-    best = min(rows, key=lambda each: (round(off_row(cut, each, place.x, place.z), 4), -each))
-    return best, off_row(cut, best, place.x, place.z) <= NEAR
+    rows = range(cut_record.find_first_row(row), row + 1)
+    best = min(
+        rows, key=lambda each: (round(distance_from_row(cut_record, each, position.x, position.z), 4), -each)
+    )
+    return best, distance_from_row(cut_record, best, position.x, position.z) <= ON_PATH_MM
 
 
-def off_row(cut: CutRecord, row: int, x: float, z: float) -> float:
+def distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> float:
     """Return the distance of a point from a row, in mm."""
-    x0, z0, x1, z1 = cut.ends(row)
+    x0, z0, x1, z1 = cut_record.get_end_points(row)
     if isnan(x0) or isnan(z0):
         return hypot(x - x1, z - z1)
-    return off_line(x0, z0, x1, z1, x, z)
+    return distance_from_segment(x0, z0, x1, z1, x, z)
 
 
-def nearest(cut: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
+def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
     """Return the point of a row that is nearest to (x, z), in mm; None if the start of the row is unknown."""
-    x0, z0, x1, z1 = cut.ends(row)
+    x0, z0, x1, z1 = cut_record.get_end_points(row)
     length = hypot(x1 - x0, z1 - z0)
     return None if isnan(length) or not length else _foot(x0, z0, x1, z1, x, z)
 
 
-def off_line(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
+def distance_from_segment(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
     """Return the distance of a point from the straight piece (x0, z0) to (x1, z1), in mm."""
     foot_x, foot_z = _foot(x0, z0, x1, z1, x, z)
     return hypot(foot_x - x, foot_z - z)
@@ -153,124 +155,140 @@ def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tup
 class _Search:
     """Search for a retract from one position on one row."""
 
-    def __init__(self, cut: CutRecord, place: Place, row: int, done: int) -> None:
-        self.cut, self.place, self.row, self.done = cut, place, row, done
-        self.x, self.z = place.x, place.z
-        self.how = int(cut.how[row])
-        left = hypot(float(cut.x[row]) - self.x, float(cut.z[row]) - self.z)
+    def __init__(
+        self, cut_record: CutRecord, position: ToolPosition, row: int, last_complete_block: int
+    ) -> None:
+        self.cut_record, self.position, self.row, self.last_complete_block = (
+            cut_record,
+            position,
+            row,
+            last_complete_block,
+        )
+        self.x, self.z = position.x, position.z
+        self.move_kind = int(cut_record.move_kind[row])
+        left = hypot(float(cut_record.x[row]) - self.x, float(cut_record.z[row]) - self.z)
         # the tool is within the row and not at its end
-        self.within = left > _END and place.block <= int(cut.n[row])
+        self.is_inside_row = left > _END and position.block_number <= int(cut_record.block_number[row])
 
-    def retract_there(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
-        how = self.how
+    def find_retract(self) -> Retract:  # noqa: PLR0911 - one answer for each way of standing in the work
+        how = self.move_kind
         if how & (FACE | SIDE):
-            return self._off_the_mill(how & (FACE | SIDE))
-        if self._tap():
-            return Retract(ToolPlace.TAP)
-        clear = _clear(self.cut, self.place) or (self._brings_it(self.row) and not self.within)
-        clear = clear or (not how & FEED and self.z >= self.cut.begins)
-        if clear and not (self.within and how & FEED):
-            return Retract(ToolPlace.CLEAR)
-        on = self._going_on()
+            return self._mill_retract(how & (FACE | SIDE))
+        if self._is_tapping():
+            return Retract(ToolSituation.IN_TAPPED_HOLE)
+        clear = _clear(self.cut_record, self.position) or (
+            self._is_approach_rapid(self.row) and not self.is_inside_row
+        )
+        clear = clear or (not how & FEED and self.z >= self.cut_record.max_cut_start_z)
+        if clear and not (self.is_inside_row and how & FEED):
+            return Retract(ToolSituation.CLEAR)
+        on = self._next_rapids()
         if on is not None:
             return on
         if how & STILL:
-            return self._off_the_mill(self._axis_of_the_mill())
-        ahead = self._as_the_program_does()
+            return self._mill_retract(self._mill_axis())
+        ahead = self._crosswise_retract()
         if ahead is not None:
             return ahead
-        if how & THREAD and self.within:
-            return Retract(ToolPlace.THREAD, away=self._thread_away())
-        return self._as_it_came()
+        if how & THREAD and self.is_inside_row:
+            return Retract(ToolSituation.IN_THREAD, direction=self._thread_exit_direction())
+        return self._entry_retract()
 
     # --- retract as in the program ------------------------------------------------------------------------
 
-    def _ahead(self) -> Iterator[_Segment]:
+    def _following_segments(self) -> Iterator[_Segment]:
         """Yield the next segments with this tool and this bar, beginning with the rest of the row."""
-        cut, row = self.cut, self.row
-        if self.within:
-            yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.how, row)
-        tool, bar = int(cut.tool[row]), int(cut.bar[row])
+        cut, row = self.cut_record, self.row
+        if self.is_inside_row:
+            yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.move_kind, row)
+        tool, bar = int(cut.tool_number[row]), int(cut.bar_section[row])
         for each in range(row + 1, min(row + 1 + _AHEAD, len(cut))):
-            if int(cut.tool[each]) != tool or int(cut.bar[each]) != bar:
+            if int(cut.tool_number[each]) != tool or int(cut.bar_section[each]) != bar:
                 return
             yield self._segment(each)
 
     def _segment(self, row: int) -> _Segment:
-        return _Segment(*self.cut.ends(row), int(self.cut.how[row]), row)
+        return _Segment(*self.cut_record.get_end_points(row), int(self.cut_record.move_kind[row]), row)
 
-    def _going_on(self) -> Retract | None:
+    def _next_rapids(self) -> Retract | None:
         """Return the next rapids of the program as a retract if they lead out of the part; otherwise None."""
         legs: list[RetractLeg] = []
-        for segment in self._ahead():
-            if segment.how & FEED or len(legs) >= _LEGS:
+        for segment in self._following_segments():
+            if segment.move_kind & FEED or len(legs) >= _LEGS:
                 return None
             legs.append(RetractLeg(segment.x, segment.z))
-            if self._out(legs[-1]) or self._brings_it(segment.row):
+            if self._has_left_part(legs[-1]) or self._is_approach_rapid(segment.row):
                 return self._made(legs)
         return None
 
-    def _as_the_program_does(self) -> Retract | None:
+    def _crosswise_retract(self) -> Retract | None:
         """Return a move along X to the program's next rapid toward Z+, and that rapid; or None.
 
         The result is None if earlier cuts may still have to make room for this rapid.
         """
-        level, first = self.z + _ASIDE, self.row + 1
+        level, first = self.z + _PARALLEL_TOLERANCE_MM, self.row + 1
         grew = shrank = False
-        if self.within and self.how & FEED:
-            sideways = self._rest_of_the_cut(level)
+        if self.is_inside_row and self.move_kind & FEED:
+            sideways = self._remaining_travel(level)
             if sideways is None:
                 return None
-            grew, shrank = sideways > _ASIDE, sideways < -_ASIDE
-        elif self.within:
+            grew, shrank = sideways > _PARALLEL_TOLERANCE_MM, sideways < -_PARALLEL_TOLERANCE_MM
+        elif self.is_inside_row:
             first = self.row
-        rows = self._with_this_tool(first)
-        cut = self.cut
+        rows = self._same_tool_rows(first)
+        cut = self.cut_record
         past = (cut.z[rows] > level) & (cut.z0[rows] <= level)
-        passes = np.flatnonzero(((cut.how[rows] & FEED) == 0) & past)
+        passes = np.flatnonzero(((cut.move_kind[rows] & FEED) == 0) & past)
         if not len(passes):
             return None
         crossing = first + int(passes[0])
         cuts = slice(first, crossing)
-        if self._in_the_way(cuts, level):
+        if self._is_obstructed(cuts, level):
             return None
-        out = self._sideways(cuts)
-        grew, shrank = grew or bool((out > _ASIDE).any()), shrank or bool((out < -_ASIDE).any())
+        out = self._outward_travels(cuts)
+        grew, shrank = (
+            grew or bool((out > _PARALLEL_TOLERANCE_MM).any()),
+            shrank or bool((out < -_PARALLEL_TOLERANCE_MM).any()),
+        )
         steps = (self._segment(row) for row in range(crossing + 1, min(crossing + _AHEAD, rows.stop)))
         return self._out_with(self._segment(crossing), steps, grew=grew, shrank=shrank)
 
-    def _rest_of_the_cut(self, level: float) -> float | None:
+    def _remaining_travel(self, level: float) -> float | None:
         """Return the outward travel of the rest of this row in mm, 0 in a thread.
 
         The result is None if the rest of the row is itself an obstacle.
         """
-        x, z = float(self.cut.x[self.row]), float(self.cut.z[self.row])
-        sideways = 0.0 if self.how & THREAD else abs(x) - abs(self.x)
-        here = z > self.z - _FROM_A_SHOULDER and abs(sideways) > _ASIDE
+        x, z = float(self.cut_record.x[self.row]), float(self.cut_record.z[self.row])
+        sideways = 0.0 if self.move_kind & THREAD else abs(x) - abs(self.x)
+        here = z > self.z - _SHOULDER_CLEARANCE_MM and abs(sideways) > _PARALLEL_TOLERANCE_MM
         return None if here or z > level else sideways
 
-    def _with_this_tool(self, first: int) -> slice:
+    def _same_tool_rows(self, first: int) -> slice:
         """Return the rows from here on with this tool and this bar, up to a limit."""
-        cut = self.cut
-        far = slice(first, first + _FAR)
-        other = (cut.tool[far] != cut.tool[self.row]) | (cut.bar[far] != cut.bar[self.row])
+        cut = self.cut_record
+        far = slice(first, first + _MAX_SEARCH_ROWS)
+        other = (cut.tool_number[far] != cut.tool_number[self.row]) | (
+            cut.bar_section[far] != cut.bar_section[self.row]
+        )
         ends = np.flatnonzero(other)
         return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
 
-    def _in_the_way(self, rows: slice, level: float) -> bool:
+    def _is_obstructed(self, rows: slice, level: float) -> bool:
         """Return whether a cut among these rows reaches this Z or moves along X at it."""
-        cut = self.cut
-        feeds = (cut.how[rows] & FEED) != 0
+        cut = self.cut_record
+        feeds = (cut.move_kind[rows] & FEED) != 0
         upper = np.maximum(cut.z[rows], cut.z0[rows])
-        here = (upper > self.z - _FROM_A_SHOULDER) & (np.abs(self._sideways(rows)) > _ASIDE)
-        held = (cut.how[rows] & (STILL | FACE | SIDE)) != 0
+        here = (upper > self.z - _SHOULDER_CLEARANCE_MM) & (
+            np.abs(self._outward_travels(rows)) > _PARALLEL_TOLERANCE_MM
+        )
+        held = (cut.move_kind[rows] & (STILL | FACE | SIDE)) != 0
         return bool((feeds & ((upper > level) | here | held)).any())
 
-    def _sideways(self, rows: slice) -> Floats:
+    def _outward_travels(self, rows: slice) -> FloatArray:
         """Return the outward travel of each cut among these rows in mm; 0 for threads and rapids."""
-        cut = self.cut
+        cut = self.cut_record
         out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
-        return np.where((cut.how[rows] & (FEED | THREAD)) == FEED, out, 0.0)
+        return np.where((cut.move_kind[rows] & (FEED | THREAD)) == FEED, out, 0.0)
 
     def _out_with(
         self, segment: _Segment, steps: Iterator[_Segment], *, grew: bool, shrank: bool
@@ -278,173 +296,235 @@ class _Search:
         share = (max(self.z, segment.z0) - segment.z0) / (segment.z - segment.z0)
         to_x = segment.x0 + share * (segment.x - segment.x0)
         out = abs(to_x) - abs(self.x)
-        if (to_x < -SAME) != (self.x < -SAME) and max(abs(to_x), abs(self.x)) > _ON_CENTRE:
+        if (to_x < -SAME_POINT_MM) != (self.x < -SAME_POINT_MM) and max(
+            abs(to_x), abs(self.x)
+        ) > _CENTERLINE_TOLERANCE_MM:
             return None
-        if out < -_ASIDE and shrank:
+        if out < -_PARALLEL_TOLERANCE_MM and shrank:
             return None
-        if out > _ASIDE and grew and abs(to_x) < self.cut.over - SAME and not self._swept(abs(to_x)):
+        if (
+            out > _PARALLEL_TOLERANCE_MM
+            and grew
+            and abs(to_x) < self.cut_record.retract_radius - SAME_POINT_MM
+            and not self._is_cleared(abs(to_x))
+        ):
             return None
         legs = [RetractLeg(to_x, self.z), RetractLeg(segment.x, segment.z)]
-        while not self._out(legs[-1]):
+        while not self._has_left_part(legs[-1]):
             after = next(steps, None)
-            if after is None or after.how & FEED or len(legs) >= _LEGS:
+            if after is None or after.move_kind & FEED or len(legs) >= _LEGS:
                 return None
             legs.append(RetractLeg(after.x, after.z))
         return self._made(legs)
 
-    def _out(self, leg: RetractLeg) -> bool:
+    def _has_left_part(self, leg: RetractLeg) -> bool:
         """Return whether a rapid that ends here has left the part."""
-        return leg.z >= self.cut.begins - SAME or self.cut.outside(leg.x, leg.z, self.place.tool)
+        return (
+            leg.z >= self.cut_record.max_cut_start_z - SAME_POINT_MM
+            or self.cut_record.is_outside_material(leg.x, leg.z, self.position.tool_number)
+        )
 
-    def _swept(self, end: float) -> bool:
+    def _is_cleared(self, end: float) -> bool:
         """Return whether completed passes of this tool have cleared the material up to this radius.
 
         Adjacent passes must be closer than the tool width, or a pass must have retracted through the gap.
         """
-        cut, z, side = self.cut, self.z, -1.0 if self.x < 0.0 else 1.0
+        cut, z, side = self.cut_record, self.z, -1.0 if self.x < 0.0 else 1.0
         low, high = np.minimum(cut.z0, cut.z), np.maximum(cut.z0, cut.z)
-        past = (cut.tool == self.place.tool) & (cut.bar == cut.bar[self.row]) & (cut.n <= self.done)
-        past &= (np.arange(len(cut)) < self.row) & (low <= z + SAME) & (high >= z - SAME)
-        rows = np.flatnonzero(past & (high - low > _ASIDE) & ((cut.how & (STILL | THREAD)) == 0))
+        past = (
+            (cut.tool_number == self.position.tool_number)
+            & (cut.bar_section == cut.bar_section[self.row])
+            & (cut.block_number <= self.last_complete_block)
+        )
+        past &= (np.arange(len(cut)) < self.row) & (low <= z + SAME_POINT_MM) & (high >= z - SAME_POINT_MM)
+        rows = np.flatnonzero(
+            past & (high - low > _PARALLEL_TOLERANCE_MM) & ((cut.move_kind & (STILL | THREAD)) == 0)
+        )
         share = (z - cut.z0[rows]) / (cut.z[rows] - cut.z0[rows])
         radii = side * (cut.x0[rows] + share * (cut.x[rows] - cut.x0[rows]))
         reached = abs(self.x)
         for radius, row in sorted(zip(radii.tolist(), rows.tolist(), strict=True)):
-            if radius <= reached + SAME:
+            if radius <= reached + SAME_POINT_MM:
                 continue
-            if radius - reached > _BETWEEN and self._drawn_off_from(row, side) > reached + _ASIDE:
+            if (
+                radius - reached > _MIN_TOOL_WIDTH_MM
+                and self._drawoff_radius(row, side) > reached + _PARALLEL_TOLERANCE_MM
+            ):
                 return False
             reached = radius
-            if reached >= end - _ASIDE:
+            if reached >= end - _PARALLEL_TOLERANCE_MM:
                 return True
         return False
 
-    def _drawn_off_from(self, row: int, side: float) -> float:
+    def _drawoff_radius(self, row: int, side: float) -> float:
         """Return the radius from which the cut before this rapid moved out to its level.
 
         The result is inf if no such cut exists.
         """
-        cut = self.cut
+        cut = self.cut_record
         before = row - 1
-        if before < 0 or cut.how[row] & FEED or not cut.how[before] & FEED or cut.z[row] < cut.z0[row]:
+        if (
+            before < 0
+            or cut.move_kind[row] & FEED
+            or not cut.move_kind[before] & FEED
+            or cut.z[row] < cut.z0[row]
+        ):
             return inf
-        return side * float(cut.x0[before]) if abs(cut.z[before] - cut.z0[before]) <= _ASIDE else inf
+        return (
+            side * float(cut.x0[before])
+            if abs(cut.z[before] - cut.z0[before]) <= _PARALLEL_TOLERANCE_MM
+            else inf
+        )
 
     # --- retract along the entry path ---------------------------------------------------------------------
 
-    def _as_it_came(self) -> Retract:
+    def _entry_retract(self) -> Retract:
         """Return the retract along the entry path, until the program's retract is safe or the tool is clear.
 
         It does not pass through a thread, an opened collet or another tool.
         """
         points = [RetractLeg(self.x, self.z)]
-        for segment in self._back():
-            if not self.within and len(points) == 1:
+        for segment in self._earlier_segments():
+            if not self.is_inside_row and len(points) == 1:
                 points[0] = RetractLeg(segment.x, segment.z)
-            ahead = self._from(segment, points[-1]) if len(points) <= _TRIED else None
+            ahead = self._step_back(segment, points[-1]) if len(points) <= _MAX_ROWS_BACK else None
             if ahead is not None:
-                return self._made([*_shortest([*points, ahead[0]])[1:], *ahead[1]])
+                return self._made([*_remove_detours([*points, ahead[0]])[1:], *ahead[1]])
             points.append(RetractLeg(segment.x0, segment.z0))
-            if self.cut.outside(segment.x0, segment.z0, self.place.tool) or self._brings_it(segment.row - 1):
-                legs = _shortest(points)[1:]
-                return self._made(legs) if len(legs) <= _LEGS else self._lost()
-        return self._lost()
+            if self.cut_record.is_outside_material(
+                segment.x0, segment.z0, self.position.tool_number
+            ) or self._is_approach_rapid(segment.row - 1):
+                legs = _remove_detours(points)[1:]
+                return self._made(legs) if len(legs) <= _LEGS else self._direction_only()
+        return self._direction_only()
 
-    def _back(self) -> Iterator[_Segment]:
+    def _earlier_segments(self) -> Iterator[_Segment]:
         """Yield the earlier segments with this tool and this bar, the last one first."""
-        cut, row = self.cut, self.row
-        tool, bar = int(cut.tool[row]), int(cut.bar[row])
+        cut, row = self.cut_record, self.row
+        tool, bar = int(cut.tool_number[row]), int(cut.bar_section[row])
         before: _Segment | None = None
         for each in range(row, max(-1, row - _BACK), -1):
             segment = self._segment(each)
-            other = int(cut.tool[each]) != tool or int(cut.bar[each]) != bar or int(cut.n[each]) > self.done
+            other = (
+                int(cut.tool_number[each]) != tool
+                or int(cut.bar_section[each]) != bar
+                or int(cut.block_number[each]) > self.last_complete_block
+            )
             unknown = isnan(segment.x0) or isnan(segment.z0)
-            if other or unknown or segment.how & (THREAD | STILL | FACE | SIDE):
+            if other or unknown or segment.move_kind & (THREAD | STILL | FACE | SIDE):
                 return
-            if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > NEAR:
+            if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > ON_PATH_MM:
                 return
             yield segment
             before = segment
 
-    def _from(self, segment: _Segment, at: RetractLeg) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
+    def _step_back(
+        self, segment: _Segment, at: RetractLeg
+    ) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
         """Return a short move back along a cut toward Z-, and the program's retract from there.
 
         The result is None if this is not safe.
         """
         length = hypot(segment.x0 - at.x, segment.z0 - at.z)
-        if not segment.how & FEED or at.z >= segment.z0 - _ASIDE or length <= _ASIDE:
+        if (
+            not segment.move_kind & FEED
+            or at.z >= segment.z0 - _PARALLEL_TOLERANCE_MM
+            or length <= _PARALLEL_TOLERANCE_MM
+        ):
             return None
-        share = min(_BACK_A_LITTLE, length / 2) / length
+        share = min(_BACKOFF_MM, length / 2) / length
         leg = RetractLeg(at.x + share * (segment.x0 - at.x), at.z + share * (segment.z0 - at.z))
-        place = Place(int(self.cut.n[segment.row]), self.place.tool, leg.x, leg.z)
-        found = _Search(self.cut, place, segment.row, self.done)._as_the_program_does()
+        place = ToolPosition(
+            int(self.cut_record.block_number[segment.row]), self.position.tool_number, leg.x, leg.z
+        )
+        found = _Search(self.cut_record, place, segment.row, self.last_complete_block)._crosswise_retract()
         return None if found is None or not found.legs else (leg, found.legs)
 
-    def _brings_it(self, row: int) -> bool:
+    def _is_approach_rapid(self, row: int) -> bool:
         """Return whether the row is the rapid that brings the tool to the part after its T, from outside."""
-        cut = self.cut
-        if row < 0 or cut.how[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
+        cut = self.cut_record
+        if row < 0 or cut.move_kind[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
             return False
         before = row - 1
-        first = before < 0 or bool(cut.tool[before] != cut.tool[row])
+        first = before < 0 or bool(cut.tool_number[before] != cut.tool_number[row])
         unknown = not first and (isnan(cut.x[before]) or isnan(cut.z[before]))
-        first = first or (unknown and not cut.how[before] & FEED)
-        return first and cut.beyond(float(cut.x[row]), float(cut.z[row]))
+        first = first or (unknown and not cut.move_kind[before] & FEED)
+        return first and cut.is_clear_after_rapid(float(cut.x[row]), float(cut.z[row]))
 
-    def _lost(self) -> Retract:
+    def _direction_only(self) -> Retract:
         """Return a retract with only the direction, from the next rapid or from the entry path."""
-        cut, row = self.cut, self.row
-        rapids = (segment for segment in self._ahead() if not segment.how & FEED)
+        cut, row = self.cut_record, self.row
+        rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
         ways = [(segment.x - segment.x0, segment.z - segment.z0) for segment in rapids]
         ways.append((float(cut.x0[row]) - self.x, float(cut.z0[row]) - self.z))
         away = next(((_sign(dx), _sign(dz)) for dx, dz in ways if _sign(dx) or _sign(dz)), (0, 0))
-        return Retract(ToolPlace.UNKNOWN, away=away if away[1] >= 0 else (0, 0))
+        return Retract(ToolSituation.UNKNOWN, direction=away if away[1] >= 0 else (0, 0))
 
     # --- threads, taps, mills -----------------------------------------------------------------------------
 
-    def _tap(self) -> bool:
+    def _is_tapping(self) -> bool:
         """Return whether the tool is in a hole from which the program feeds with the spindle reversed."""
-        if abs(self.x) > _ON_CENTRE or not self.how & PER_REV or _clear(self.cut, self.place):
+        if (
+            abs(self.x) > _CENTERLINE_TOLERANCE_MM
+            or not self.move_kind & PER_REV
+            or _clear(self.cut_record, self.position)
+        ):
             return False
-        turns = self.how & REVERSE
-        cut, row = self.cut, self.row
-        near = [self._segment(each) for each in range(max(0, row - 3), row + 1)] + list(self._ahead())[:4]
+        turns = self.move_kind & REVERSE
+        cut, row = self.cut_record, self.row
+        near = [self._segment(each) for each in range(max(0, row - 3), row + 1)] + list(
+            self._following_segments()
+        )[:4]
         return any(
-            segment.how & FEED and segment.how & PER_REV and abs(segment.x) <= _ON_CENTRE
-            and segment.how & REVERSE != turns and int(cut.tool[segment.row]) == self.place.tool
+            segment.move_kind & FEED
+            and segment.move_kind & PER_REV
+            and abs(segment.x) <= _CENTERLINE_TOLERANCE_MM
+            and segment.move_kind & REVERSE != turns
+            and int(cut.tool_number[segment.row]) == self.position.tool_number
             for segment in near
-        )  # fmt: skip
+        )
 
-    def _thread_away(self) -> tuple[int, int]:
+    def _thread_exit_direction(self) -> tuple[int, int]:
         """Return the direction away from the thread, from the next rapid along X."""
-        for segment in self._ahead():
-            if abs(segment.x - self.x) > _ASIDE and not segment.how & FEED:
+        for segment in self._following_segments():
+            if abs(segment.x - self.x) > _PARALLEL_TOLERANCE_MM and not segment.move_kind & FEED:
                 return _sign(segment.x - self.x), 0
         return 0, 0
 
-    def _off_the_mill(self, axis: int) -> Retract:
+    def _mill_retract(self, axis: int) -> Retract:
         """Return the retract of a mill along its axis: along Z on the face, along X on the side."""
-        low, high = self.cut.reach[self.place.tool]
-        offset = self.cut.offsets[self.place.tool][0]
+        low, high = self.cut_record.machine_x_range_by_tool[self.position.tool_number]
+        offset = self.cut_record.tool_offsets[self.position.tool_number][0]
         far = low - offset if self.x < 0.0 else high - offset
         to = RetractLeg(self.x, self._before_the_face()) if axis == FACE else RetractLeg(far, self.z)
         away = (0, 1) if axis == FACE else (-1 if self.x < 0.0 else 1, 0)
         out = to.z - self.z if axis == FACE else abs(far) - abs(self.x)
-        return Retract(ToolPlace.MILL, (to,), away) if out > SAME else Retract(ToolPlace.CLEAR)
+        return (
+            Retract(ToolSituation.MILLING, (to,), away)
+            if out > SAME_POINT_MM
+            else Retract(ToolSituation.CLEAR)
+        )
 
     def _before_the_face(self) -> float:
-        face, own = self.cut.front(self.place.tool), self.cut.tool == self.place.tool
-        return face if face < inf else float(np.nanmax(self.cut.z[own]))
+        face, own = (
+            self.cut_record.compute_front_z(self.position.tool_number),
+            self.cut_record.tool_number == self.position.tool_number,
+        )
+        return face if face < inf else float(np.nanmax(self.cut_record.z[own]))
 
-    def _axis_of_the_mill(self) -> int:
+    def _mill_axis(self) -> int:
         """Return FACE or SIDE, from the plane switching, from the next rapid or from the entry."""
-        cut, row = self.cut, self.row
+        cut, row = self.cut_record, self.row
         near = slice(max(0, row - _BACK), row + _AHEAD)
-        own = cut.how[near][cut.tool[near] == self.place.tool]
+        own = cut.move_kind[near][cut.tool_number[near] == self.position.tool_number]
         for axis in (FACE, SIDE):
             if (own & axis).any():
                 return axis
-        off = (each for each in self._ahead() if not each.how & FEED and each.length > _ASIDE)
+        off = (
+            each
+            for each in self._following_segments()
+            if not each.move_kind & FEED and each.length > _PARALLEL_TOLERANCE_MM
+        )
         segment = next(off, self._segment(row))
         return SIDE if abs(segment.x - segment.x0) > abs(segment.z - segment.z0) else FACE
 
@@ -452,29 +532,33 @@ class _Search:
         kept: list[RetractLeg] = []
         at = RetractLeg(self.x, self.z)
         for leg in legs:
-            if hypot(leg.x - at.x, leg.z - at.z) > SAME:
+            if hypot(leg.x - at.x, leg.z - at.z) > SAME_POINT_MM:
                 kept.append(leg)
                 at = leg
         if not kept:
-            return Retract(ToolPlace.CLEAR)
-        tool_place = ToolPlace.THREAD if self.how & THREAD and self.within else ToolPlace.WORK
+            return Retract(ToolSituation.CLEAR)
+        tool_place = (
+            ToolSituation.IN_THREAD
+            if self.move_kind & THREAD and self.is_inside_row
+            else ToolSituation.IN_PART
+        )
         away = _sign(kept[0].x - self.x), _sign(kept[0].z - self.z)
         return Retract(tool_place, tuple(kept), away)
 
 
 def _sign(value: float) -> int:
-    return (value > _ASIDE) - (value < -_ASIDE)
+    return (value > _PARALLEL_TOLERANCE_MM) - (value < -_PARALLEL_TOLERANCE_MM)
 
 
-def _shortest(points: list[RetractLeg]) -> list[RetractLeg]:
+def _remove_detours(points: list[RetractLeg]) -> list[RetractLeg]:
     """Return a path without detours, in which sections that return to the path are removed."""
     kept, at = [points[0]], 0
     while at < len(points) - 1:
         start, end = points[at], points[at + 1]
         reached = at + 1
         for k in range(len(points) - 1, at + 1, -1):
-            ends_here = off_line(*start, *end, *points[k]) <= SAME
-            passes = off_line(*points[k - 1], *points[k], *start) <= SAME
+            ends_here = distance_from_segment(*start, *end, *points[k]) <= SAME_POINT_MM
+            passes = distance_from_segment(*points[k - 1], *points[k], *start) <= SAME_POINT_MM
             if ends_here or passes:
                 reached = k
                 break

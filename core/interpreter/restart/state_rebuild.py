@@ -11,94 +11,109 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import hypot
 
-from core.interpreter.omniturn.omniturn_interpreter import Interpreter, PassToLine
+from core.interpreter.omniturn.omniturn_interpreter import Interpreter, StoppablePass
 from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.restart.cut_record import FACE, SIDE, CutRecord, record_cuts
-from core.interpreter.restart.loop_passes import Visits, visits_of
-from core.interpreter.restart.restart_lines import RestartLines
-from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
-from core.interpreter.restart.restart_retract import NEAR, Place, Retract, ToolPlace, retract
-from core.interpreter.shared.actions import AskInput, ProgramEnd
-from core.interpreter.shared.checkpoint import Begin, Checkpoint
+from core.interpreter.restart.cut_record import FACE, SIDE, CutRecord, record_all_cuts
+from core.interpreter.restart.loop_passes import LineVisits, find_line_visits
+from core.interpreter.restart.restart_lines import RestartSuitability
+from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_retract import (
+    ON_PATH_MM,
+    Retract,
+    ToolPosition,
+    ToolSituation,
+    plan_retract,
+)
+from core.interpreter.shared.actions import InputRead, ProgramEnd
+from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.job_setup import Setup
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.message import Message
 
-Watch = Callable[[float], None]
+ProgressCallback = Callable[[float], None]
 
-_ELSEWHERE = (7.3, -11.9, 0.0)  # mm; shift of the second start position, which no program positions by chance
+_SECOND_START_SHIFT = (
+    7.3,
+    -11.9,
+    0.0,
+)  # mm; shift of the second start position, which no program positions by chance
 _SAME = 1e-7  # mm
-_WATCHED = 2000  # number of blocks between two calls of ``watch``
+_PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_progress``
 _NEAR = 64  # number of lines after each of which the passes are compared
 _UP, _DOWN = 3, 100  # number of lines that are tried upward and downward
 
 
-class StateRebuild:
+class OmniturnSearch:
     """Search in one OmniTurn program with a fixed setup; a later line continues from an earlier one.
 
-    ``watch`` receives the number of blocks and may raise an exception to cancel the search.
+    ``report_progress`` receives the number of blocks and may raise an exception to cancel the search.
     """
 
-    def __init__(self, source: Source, setup: Setup, watch: Watch) -> None:
+    def __init__(self, source: ProgramSource, setup: Setup, report_progress: ProgressCallback) -> None:
         self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
-        self.watch = watch
+        self.report_progress = report_progress
         self._program: Program = read_program(source, setup.strict)
-        self.lines = RestartLines(self._program)
-        self._asks = _asks(self._program, self.lines)
+        self.line_suitability = RestartSuitability(self._program)
+        self._asks = _input_lines(self._program, self.line_suitability)
         self._cut: CutRecord | None = None
-        self._visits: tuple[int, Visits] | None = None
+        self._visits: tuple[int, LineVisits] | None = None
         self._begin_anew()
 
     @property
-    def cut(self) -> CutRecord:
+    def cut_record(self) -> CutRecord:
         """Record of all cuts of the program, calculated on first use."""
         if self._cut is None:
-            self._cut = record_cuts(
-                Interpreter(self._program, replace(self._setup, start=_ELSEWHERE)).series(), self.watch
+            self._cut = record_all_cuts(
+                Interpreter(self._program, replace(self._setup, start=_SECOND_START_SHIFT)).generate_series(),
+                self.report_progress,
             )
         return self._cut
 
-    def find(self, line: int, visit: int = 0, broken: Interruption | None = None) -> RestartPoint | NoRestart:
+    def find_restart(
+        self, line: int, visit: int = 0, interruption: Interruption | None = None
+    ) -> RestartPoint | RestartRefusal:
         """Return the restart point of a line at its ``visit``-th execution, or why a restart is not possible.
 
         A ``visit`` of 0 is the interrupted pass, or the first one. ``broken`` is the interruption of the
         program.
         """
-        found = self._search(line, visit, broken)
+        found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
             return found
-        return NoRestart(
-            line, found, self._nearest_good(line, -1, broken), self._nearest_good(line, 1, broken)
+        return RestartRefusal(
+            line, found, self._find_nearest(line, -1, interruption), self._find_nearest(line, 1, interruption)
         )
 
     def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
-        why = self.lines.why_not(line)
+        why = self.line_suitability.explain_unsuitable(line)
         if why:
             return why
-        if not self.lines.repeats(line):
+        if not self.line_suitability.is_repeated(line):
             return self._pass_to_line(line) or self._found(line, self._walk, LineVisit(), broken)
         visits = self._visits_of(line)
-        number = visit or visits.at(broken.block if broken is not None else 0)
-        why = visits.why_not(line, number)
-        anchor, nth = visits.anchor(number) if not why else (0, 0)
+        number = visit or visits.find_visit_number(broken.block_number if broken is not None else 0)
+        why = visits.explain_missing_visit(line, number)
+        anchor, nth = visits.find_anchor(number) if not why else (0, 0)
         why = why or self._pass_to_line(anchor, position_known=False)
         if why:
             return why.replace(
                 Message("line {line}", line=anchor), Message("line {line}", line=line)
             ).replace(Message("Line {line}", line=anchor), Message("Line {line}", line=line))
-        found = self._within(line, anchor, nth, visits.line_visit(number), broken)
+        found = self._search_in_loop(line, anchor, nth, visits.make_line_visit(number), broken)
         if isinstance(found, RestartPoint) and broken is not None:
-            return replace(found, was=visits.line_visit(visits.at(broken.block)))
+            return replace(
+                found, interrupted_visit=visits.make_line_visit(visits.find_visit_number(broken.block_number))
+            )
         return found
 
-    def _visits_of(self, line: int) -> Visits:
+    def _visits_of(self, line: int) -> LineVisits:
         if self._visits is None or self._visits[0] != line:
-            self._visits = line, visits_of(self._program, self._setup, line, self.watch)
+            self._visits = line, find_line_visits(self._program, self._setup, line, self.report_progress)
         return self._visits[1]
 
-    def _within(
-        self, line: int, anchor: int, nth: int, visit: LineVisit, broken: Interruption | None
+    def _search_in_loop(
+        self, line: int, anchor: int, nth: int, visit: LineVisit, interruption: Interruption | None
     ) -> RestartPoint | str:
         """Return the restart point of a line in a loop or subroutine, or why it is not possible.
 
@@ -109,7 +124,7 @@ class StateRebuild:
             walks.append(self._walk_from(self._other, anchor))
         moved = self._moved
         for walk in walks:
-            lost, has_moved = self._to_visit(walk, line, nth)
+            lost, has_moved = self._run_to_visit(walk, line, nth)
             if lost:
                 return Message(
                     "The program cannot resume at line {line}: {position}", line=line, position=lost
@@ -117,23 +132,23 @@ class StateRebuild:
             moved = moved or has_moved
         walk, known = walks[0], self._other is None or _same_state(*walks)
         why = self._why_not(line, walk, known=known, moved=moved)
-        return why or self._found(line, walk, visit, broken)
+        return why or self._found(line, walk, visit, interruption)
 
-    def _walk_from(self, walk: PassToLine, anchor: int) -> PassToLine:
-        setup = replace(walk.setup, begin=Begin(walk.checkpoint, anchor))
-        return PassToLine(self._program, setup)
+    def _walk_from(self, walk: StoppablePass, anchor: int) -> StoppablePass:
+        setup = replace(walk.setup, begin=PassStart(walk.checkpoint, anchor))
+        return StoppablePass(self._program, setup)
 
-    def _to_visit(self, walk: PassToLine, line: int, nth: int) -> tuple[str, bool]:
+    def _run_to_visit(self, line_pass: StoppablePass, line: int, nth: int) -> tuple[str, bool]:
         """Run to the ``nth`` visit of a line.
 
         Return why its state is unknown (empty if known), and whether an axis has moved.
         """
         moved = False
         for number in range(nth):
-            for block in walk.once_more(line) if number else walk.before(line):
+            for block in line_pass.run_to_next_visit(line) if number else line_pass.run_to_line(line):
                 self._count_block()
                 moved = moved or block.action is None
-                if isinstance(block.action, AskInput):
+                if isinstance(block.action, InputRead):
                     asks = block.action.terminal
                     return Message(
                         "line {line} depends on input {terminal}, and the state of this input is unknown.",
@@ -144,22 +159,22 @@ class StateRebuild:
 
     def _count_block(self) -> None:
         self._count += 1
-        if self._count % _WATCHED == 0:
-            self.watch(self._count)
+        if self._count % _PROGRESS_INTERVAL == 0:
+            self.report_progress(self._count)
 
     def _found(
-        self, line: int, walk: PassToLine, visit: LineVisit, broken: Interruption | None
+        self, line: int, walk: StoppablePass, visit: LineVisit, broken: Interruption | None
     ) -> RestartPoint | str:
-        return found_on_lathe(line, walk.checkpoint, self.cut, visit, broken)
+        return make_lathe_restart(line, walk.checkpoint, self.cut_record, visit, broken)
 
-    def _nearest_good(self, line: int, way: int, broken: Interruption | None) -> int:
+    def _find_nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
         """Return the nearest line that a pass confirms, or 0.
 
         Only a few lines are tried upward, because each needs another pass.
         """
-        for _ in range(_DOWN if way > 0 else _UP):
-            line = self.lines.nearest(line, way)
-            if not line or isinstance(self._search(line, 0, broken), RestartPoint):
+        for _ in range(_DOWN if direction > 0 else _UP):
+            line = self.line_suitability.find_nearest(line, direction)
+            if not line or isinstance(self._search(line, 0, interruption), RestartPoint):
                 return line
         return 0
 
@@ -169,8 +184,10 @@ class StateRebuild:
         self._ended = 0
         self._asked = 0  # line whose input has another state in the second pass
         self._lost = ""  # reason why the state is unknown
-        self._walk = PassToLine(self._program, self._setup)
-        self._other: PassToLine | None = PassToLine(self._program, replace(self._setup, start=_ELSEWHERE))
+        self._walk = StoppablePass(self._program, self._setup)
+        self._other: StoppablePass | None = StoppablePass(
+            self._program, replace(self._setup, start=_SECOND_START_SHIFT)
+        )
 
     def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
         """Run to the line, and return why it is unsuitable; empty if it is suitable.
@@ -180,12 +197,12 @@ class StateRebuild:
         """
         if line < self._at:
             self._begin_anew()
-        while self._at < line and not (self._ended or self._lost or self._walk.failed):
+        while self._at < line and not (self._ended or self._lost or self._walk.has_errors):
             if self._at in self._asks:
-                self._ask()
-            self._pass_to(self._stop(line))
+                self._start_second_pass()
+            self._run_passes_to(self._stop(line))
             other = self._other
-            if other is not None and not other.failed and _same_state(self._walk, other):
+            if other is not None and not other.has_errors and _same_state(self._walk, other):
                 self._other = None
         known = self._other is None or not position_known
         return self._why_not(line, self._walk, known=known, moved=self._moved)
@@ -199,26 +216,26 @@ class StateRebuild:
         ask = self._asks[place] if place < len(self._asks) else line
         return min(line, near, ask)
 
-    def _pass_to(self, line: int) -> None:
+    def _run_passes_to(self, line: int) -> None:
         """Run both passes to the line, and record motion, program end and inputs of the first one."""
         asked, self._at = self._at, line
-        for block in self._walk.before(line):
+        for block in self._walk.run_to_line(line):
             self._count_block()
             if block.action is None:
                 self._moved = True
             elif isinstance(block.action, ProgramEnd):
                 self._ended = block.line
-            elif isinstance(block.action, AskInput) and (self._walk.called or block.line != asked):
+            elif isinstance(block.action, InputRead) and (self._walk.is_in_subroutine or block.line != asked):
                 self._lost = Message(
                     "line {line} depends on input {terminal}, and the state of this input is unknown.",
                     terminal=block.action.terminal,
                     line=block.line,
                 )
         if self._other is not None:
-            for _ in self._other.before(line):
+            for _ in self._other.run_to_line(line):
                 pass
 
-    def _ask(self) -> None:
+    def _start_second_pass(self) -> None:
         """Start a second pass in which the input of this line has the other state."""
         if self._other is not None:
             self._lost = Message(
@@ -226,15 +243,15 @@ class StateRebuild:
                 position=self._at,
             )
             return
-        begin = Begin(self._walk.checkpoint, self._at)
+        begin = PassStart(self._walk.checkpoint, self._at)
         self._asked = self._at
-        self._other = PassToLine(
+        self._other = StoppablePass(
             self._program, replace(self._setup, begin=begin, inputs=lambda _terminal: True)
         )
 
-    def _why_not(self, line: int, walk: PassToLine, *, known: bool, moved: bool) -> str:
+    def _why_not(self, line: int, walk: StoppablePass, *, known: bool, moved: bool) -> str:
         reasons = (
-            (walk.failed, Message("The program has errors before line {line}.", line=line)),
+            (walk.has_errors, Message("The program has errors before line {line}.", line=line)),
             (
                 self._ended,
                 Message(
@@ -248,7 +265,7 @@ class StateRebuild:
                 ),
             ),
             (
-                walk.holds_moves,
+                walk.has_buffered_moves,
                 Message(
                     "The program cannot resume at line {line}, because that line uses nose compensation "
                     "or is part of a corner.",
@@ -294,17 +311,19 @@ class StateRebuild:
         return next((why for wrong, why in reasons if wrong), "")
 
 
-def found_on_lathe(
-    line: int, point: Checkpoint, cut: CutRecord, visit: LineVisit, broken: Interruption | None
+def make_lathe_restart(
+    line: int, point: Checkpoint, cut_record: CutRecord, visit: LineVisit, interruption: Interruption | None
 ) -> RestartPoint | str:
     """Return the restart point with the retract from its start; a message if no safe path exists."""
-    done = _complete_blocks(cut, broken) if broken is not None else point.blocks
-    back = _retract_from(cut, point)
-    if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
-        return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
+    done = _complete_blocks(cut_record, interruption) if interruption is not None else point.blocks
+    back = _plan_retract(cut_record, point)
+    if back.situation is ToolSituation.CLEAR or (back.is_known and point.blocks <= done):
+        return RestartPoint(
+            line, point, back, cut_record, visit, skipped_lines=_skipped_lines(cut_record, done, point.blocks)
+        )
     if point.blocks > done:
-        return in_uncut_material(line, *_left_out(cut, done, point.blocks))
-    how = _HOW.get(back.tool_place, "")
+        return make_skipped_cuts_message(line, *_skipped_lines(cut_record, done, point.blocks))
+    how = _RETRACT_TEXTS.get(back.situation, "")
     return Message(
         "At the start of line {line}, the tool is inside the part, and a safe path to that "
         "point does not exist. {method}",
@@ -313,7 +332,7 @@ def found_on_lathe(
     ).strip()
 
 
-def in_uncut_material(line: int, first: int, last: int) -> Message:
+def make_skipped_cuts_message(line: int, first: int, last: int) -> Message:
     """Return the message that a line follows cuts that were skipped, from line ``first`` to ``last``."""
     which = (
         Message("line {line}", line=first)
@@ -327,69 +346,87 @@ def in_uncut_material(line: int, first: int, last: int) -> Message:
     )
 
 
-def _complete_blocks(cut: CutRecord, broken: Interruption) -> int:
+def _complete_blocks(cut_record: CutRecord, interruption: Interruption) -> int:
     """Return the last block whose cut is complete.
 
     The interrupted block is complete only if the tool is at its end. Otherwise, a restart after that block
     would leave the rest of its cut in the part. A closed milled block, such as a full circle, never counts as
     complete, because its end does not show how far it was cut.
     """
-    row = cut.row_behind(broken.block)
-    off = cut.offsets.get(broken.tool)
-    if broken.done != broken.block or row < 0 or off is None or int(cut.n[row]) != broken.block:
-        return broken.done
-    x, z = broken.at[0] - off[0], broken.at[1] - off[1]
-    feeds = bool(int(cut.how[row]) & 1)
-    at_end = hypot(x - float(cut.x[row]), z - float(cut.z[row])) <= NEAR
-    begin = cut.ends(cut.first_row(row))
-    closed = hypot(begin[0] - float(cut.x[row]), begin[1] - float(cut.z[row])) <= NEAR
-    milled = bool(int(cut.how[row]) & (SIDE | FACE))
-    return broken.block - 1 if feeds and ((closed and milled) or not at_end) else broken.done
+    row = cut_record.find_last_row(interruption.block_number)
+    off = cut_record.tool_offsets.get(interruption.tool_number)
+    if (
+        interruption.last_complete_block != interruption.block_number
+        or row < 0
+        or off is None
+        or int(cut_record.block_number[row]) != interruption.block_number
+    ):
+        return interruption.last_complete_block
+    x, z = interruption.machine_position[0] - off[0], interruption.machine_position[1] - off[1]
+    feeds = bool(int(cut_record.move_kind[row]) & 1)
+    at_end = hypot(x - float(cut_record.x[row]), z - float(cut_record.z[row])) <= ON_PATH_MM
+    begin = cut_record.get_end_points(cut_record.find_first_row(row))
+    closed = hypot(begin[0] - float(cut_record.x[row]), begin[1] - float(cut_record.z[row])) <= ON_PATH_MM
+    milled = bool(int(cut_record.move_kind[row]) & (SIDE | FACE))
+    return (
+        interruption.block_number - 1
+        if feeds and ((closed and milled) or not at_end)
+        else interruption.last_complete_block
+    )
 
 
-_HOW = {
-    ToolPlace.TAP: "The tap is in the thread at the start of the requested line.",
-    ToolPlace.THREAD: "The threading tool is in the thread at the start of the requested line.",
+_RETRACT_TEXTS = {
+    ToolSituation.IN_TAPPED_HOLE: "The tap is in the thread at the start of the requested line.",
+    ToolSituation.IN_THREAD: "The threading tool is in the thread at the start of the requested line.",
 }
 
 
-def _retract_from(cut: CutRecord, point: Checkpoint) -> Retract:
+def _plan_retract(cut_record: CutRecord, point: Checkpoint) -> Retract:
     """Return the retract from the start of the line; a new tool starts where the previous tool stopped."""
-    row = cut.row_behind(point.blocks)
+    row = cut_record.find_last_row(point.blocks)
     if row < 0:
-        return Retract(ToolPlace.CLEAR)
-    tool = int(cut.tool[row])
-    off_x, off_z = cut.offsets[tool]
+        return Retract(ToolSituation.CLEAR)
+    tool = int(cut_record.tool_number[row])
+    off_x, off_z = cut_record.tool_offsets[tool]
     x, z = point.machine
-    return retract(cut, Place(point.blocks, tool, x - off_x, z - off_z), point.blocks)
+    return plan_retract(cut_record, ToolPosition(point.blocks, tool, x - off_x, z - off_z), point.blocks)
 
 
-def _left_out(cut: CutRecord, done: int, blocks: int) -> tuple[int, int]:
+def _skipped_lines(cut_record: CutRecord, last_complete_block: int, blocks: int) -> tuple[int, int]:
     """Return the lines of the first and last cut between the executed blocks and the line, lower first."""
-    rows = (cut.n > done) & (cut.n <= blocks) & ((cut.how & 1) != 0)
+    rows = (
+        (cut_record.block_number > last_complete_block)
+        & (cut_record.block_number <= blocks)
+        & ((cut_record.move_kind & 1) != 0)
+    )
     if not rows.any():
         return 0, 0
-    ends = int(cut.line[rows][0]), int(cut.line[rows][-1])
+    ends = int(cut_record.line_number[rows][0]), int(cut_record.line_number[rows][-1])
     return min(ends), max(ends)  # a loop can end on an earlier line
 
 
-def _asks(program: Program, lines: RestartLines) -> list[int]:
+def _input_lines(program: Program, lines: RestartSuitability) -> list[int]:
     """Return the lines of the main program, outside of loops, that read an input, in order."""
-    steps = enumerate(program.ready, start=1)
-    asking = [n for n, step in steps if isinstance(step, Statement) and step.flow in {"M95", "M97"}]
-    return [number for number in asking if not lines.why_not(number)]
+    steps = enumerate(program.executable_lines, start=1)
+    asking = [n for n, step in steps if isinstance(step, Statement) and step.flow_code in {"M95", "M97"}]
+    return [number for number in asking if not lines.explain_unsuitable(number)]
 
 
-def _same_state(one: PassToLine, other: PassToLine) -> bool:
+def _same_state(one: StoppablePass, other: StoppablePass) -> bool:
     """Return whether both passes are at the same point with the same state, so that they continue equally."""
     a, b = one.checkpoint, other.checkpoint
-    if one.next_line != other.next_line or one.holds_moves or other.holds_moves or a.modal != b.modal:
+    if (
+        one.next_line != other.next_line
+        or one.has_buffered_moves
+        or other.has_buffered_moves
+        or a.modal != b.modal
+    ):
         return False
     near = all(abs(p - q) < _SAME for p, q in zip(a.machine, b.machine, strict=True))
     near = near and abs(a.px - b.px) < _SAME and abs(a.pz - b.pz) < _SAME
-    return near and _rest(a) == _rest(b)
+    return near and _without_position(a) == _without_position(b)
 
 
-def _rest(point: Checkpoint) -> Checkpoint:
+def _without_position(point: Checkpoint) -> Checkpoint:
     """Return the checkpoint without position and block count."""
     return point._replace(x=0.0, z=0.0, c=0.0, px=0.0, pz=0.0, blocks=0)

@@ -41,7 +41,7 @@ class SpindleLock(PlainValue):
         self.orient: Final = orient
 
 
-class SpindleOrient(PlainValue):
+class SpindlePositioning(PlainValue):
     """Stop the spindle (M19 of Klartext, SPOS) and hold it at ``angle``, in degrees from its index.
 
     ``sense`` is the direction of rotation: 1 as for M3, -1 as for M4, 0 by the shorter distance.
@@ -54,7 +54,7 @@ class SpindleOrient(PlainValue):
         self.sense: Final = sense
 
 
-class Coolant(PlainValue):
+class CoolantSwitch(PlainValue):
     """Turn the coolant on (M08) or off (M09)."""
 
     __slots__ = __match_args__ = ("on",)
@@ -63,7 +63,7 @@ class Coolant(PlainValue):
         self.on: Final = on
 
 
-class Collet(PlainValue):
+class ColletSwitch(PlainValue):
     """Clamp (M12) or unclamp (M13) the collet."""
 
     __slots__ = __match_args__ = ("closed",)
@@ -72,7 +72,7 @@ class Collet(PlainValue):
         self.closed: Final = closed
 
 
-class Output(PlainValue):
+class OutputSwitch(PlainValue):
     """Switch the output that the machine file assigns to an M function, such as M25 or M26."""
 
     __slots__ = __match_args__ = ("name", "on")
@@ -130,13 +130,13 @@ class ProgramEnd(PlainValue):
         self.reset: Final = reset
 
 
-class RepeatOff(PlainValue):
+class CycleRepeatCancel(PlainValue):
     """Cancel Cycle Repeat (M31)."""
 
     __slots__ = ()
 
 
-class WaitInput(PlainValue):
+class InputWait(PlainValue):
     """Wait until the terminal is closed (``closed`` is True) or open (M91 to M94)."""
 
     __slots__ = __match_args__ = ("terminal", "closed")
@@ -146,7 +146,7 @@ class WaitInput(PlainValue):
         self.closed: Final = closed
 
 
-class AskInput(PlainValue):
+class InputRead(PlainValue):
     """Stop all motion, because the interpreter reads this input next (M95, M97)."""
 
     __slots__ = __match_args__ = ("terminal",)
@@ -168,17 +168,17 @@ Action = (
     SpindleRun
     | SpindleStop
     | SpindleLock
-    | SpindleOrient
-    | Coolant
-    | Collet
-    | Output
+    | SpindlePositioning
+    | CoolantSwitch
+    | ColletSwitch
+    | OutputSwitch
     | ToolChange
     | WorkShift
     | Preset
     | ProgramStop
     | ProgramEnd
-    | RepeatOff
-    | WaitInput
-    | AskInput
+    | CycleRepeatCancel
+    | InputWait
+    | InputRead
     | Dwell
 )

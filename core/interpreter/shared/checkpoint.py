@@ -12,9 +12,9 @@ from itertools import count
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from core.interpreter.shared.actions import Action
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 
-Parts = TypeVar("Parts")
+PartsType = TypeVar("PartsType")
 # The name of a checkpoint must be unique in all processes, because checkpoints are sent between them.
 _process = os.urandom(8).hex()
 _numbers = count(1)
@@ -27,7 +27,7 @@ class StateLine(NamedTuple):
     value: str
 
 
-class KeptPass(Generic[Parts]):
+class SavedPass(Generic[PartsType]):
     """The state of an interpreter between two blocks.
 
     Each saved pass has a name that is unique in all processes.
@@ -36,22 +36,24 @@ class KeptPass(Generic[Parts]):
     copied, such as the setup, the log and program texts.
     """
 
-    def __init__(self, parts: Parts, shared: tuple[object, ...], lines: tuple[StateLine, ...] = ()) -> None:
+    def __init__(
+        self, parts: PartsType, shared: tuple[object, ...], state_lines: tuple[StateLine, ...] = ()
+    ) -> None:
         self._shared = shared
         self._parts = deepcopy(parts, {id(each): each for each in self._shared})
         self._name = f"{_process}-{next(_numbers)}"
-        self.lines = lines
+        self.state_lines = state_lines
 
     def __repr__(self) -> str:
         return f"KeptPass {self._name}"
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, KeptPass) and self._name == other._name
+        return isinstance(other, SavedPass) and self._name == other._name
 
     def __hash__(self) -> int:
         return hash(self._name)
 
-    def parts(self, *instead: object) -> Parts:
+    def copy_parts(self, *instead: object) -> PartsType:
         """Return a copy of the saved parts, in which ``instead`` replaces the first shared objects."""
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
@@ -60,16 +62,17 @@ class KeptPass(Generic[Parts]):
 class FlowLevel(NamedTuple):
     """The main program or one active subroutine. Positions are line indices from 0.
 
-    ``back`` is the line at which execution continues after a call, or the next line. ``loops`` has a pair for
-    each active loop, the outermost first: the line of its LS and the number of repeats that remain.
+    ``return_index`` is the line at which execution continues after a call, or the next line.
+    ``remaining_repeats`` has a pair for each active loop, the outermost first: the line of its LS and the
+    number of repeats that remain.
     """
 
-    back: int
-    end: int
-    loops: tuple[tuple[int, int], ...] = ()
+    return_index: int
+    end_index: int
+    remaining_repeats: tuple[tuple[int, int], ...] = ()
 
 
-FlowPlace = tuple[FlowLevel, ...]
+FlowPosition = tuple[FlowLevel, ...]
 """The main program, then each call in it that is under way; empty: the main program, and no loop."""
 
 
@@ -80,7 +83,7 @@ class Checkpoint(NamedTuple):
     offset.
     """
 
-    modal: Modal
+    modal: ModalState
     x: float = 0.0
     z: float = 0.0
     c: float = 0.0
@@ -92,8 +95,8 @@ class Checkpoint(NamedTuple):
     title_rapid: int = 0  # line of a G00 (TITLE) that no F has followed yet
     coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
     blocks: int = 0  # number of elementary blocks before this point
-    flow: FlowPlace = ()  # active loops and calls
-    kept: KeptPass[Any] | None = None  # complete state of a Klartext or SINUMERIK interpreter
+    flow: FlowPosition = ()  # active loops and calls
+    kept: SavedPass[Any] | None = None  # complete state of a Klartext or SINUMERIK interpreter
     at: tuple[float, ...] = ()  # machine positions of all axes of a mill
 
     @property
@@ -102,7 +105,7 @@ class Checkpoint(NamedTuple):
         return self.x + self.modal.offset_x, self.z + self.modal.offset_z
 
 
-class Leg(NamedTuple):
+class StraightLeg(NamedTuple):
     """A straight move to a machine position in mm; an axis whose value is None does not move.
 
     ``feed`` is in mm/s.
@@ -110,8 +113,8 @@ class Leg(NamedTuple):
 
     x: float | None
     z: float | None
-    feed: float
-    rapid: bool
+    feed_mm_s: float
+    is_rapid: bool
     text: str
 
 
@@ -121,15 +124,15 @@ class AxesLeg(NamedTuple):
     ``feed`` is in mm/s or degrees/s, and None for a rapid.
     """
 
-    goal: tuple[tuple[str, float], ...]
+    target_positions: tuple[tuple[str, float], ...]
     feed: float | None
     text: str
 
 
-class CTurn(NamedTuple):
+class CAxisMove(NamedTuple):
     """A move of the C axis alone to a machine angle in degrees, at ``speed`` degrees/s."""
 
-    c: float
+    angle_deg: float
     speed: float
     text: str
 
@@ -141,20 +144,20 @@ class FunctionStep(NamedTuple):
     text: str
 
 
-ApproachStep = Leg | AxesLeg | CTurn | FunctionStep
+ApproachStep = StraightLeg | AxesLeg | CAxisMove | FunctionStep
 """What leads from where the slides stand to where a program goes on."""
 
 
-class Begin(NamedTuple):
-    """The start of a pass. ``single`` means that the text is one line of MDI instead of a program.
+class PassStart(NamedTuple):
+    """The start of a pass. ``is_mdi_line`` means that the text is one line of MDI instead of a program.
 
     The moves of ``approach`` come before the line and must end at the position of the checkpoint. With
     ``skips_cuts``, the part is not counted, because earlier cuts are incomplete.
     """
 
     checkpoint: Checkpoint
-    line: int = 1
-    single: bool = False
+    line_number: int = 1
+    is_mdi_line: bool = False
     approach: tuple[ApproachStep, ...] = ()
     skips_cuts: bool = False
 

@@ -7,23 +7,25 @@ from collections.abc import Sequence
 from math import ceil, dist
 from typing import NamedTuple
 
-from core.geometry.contour_offset import Area, Span
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, clearance, intersections
+from core.geometry.contour_offset import RoughingArea, ZSpan
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, intersections, min_distance
 
-_WHOLE = 1e-6  # of a pass; tolerance for the rounding of decimal fractions
-
-
-def pass_count(whole: float, most: float) -> int:
-    """Return the number of passes, each at most ``most`` mm deep, for a total depth of ``whole`` mm."""
-    return ceil(whole / most - _WHOLE)
+_ROUNDING_TOLERANCE = 1e-6  # of a pass; tolerance for the rounding of decimal fractions
 
 
-def equal_depths(whole: float, count: int) -> list[float]:
-    """Return the depths of ``count`` equal passes in mm; the last depth is ``whole``."""
-    return [whole * k / count for k in range(1, count + 1)]
+def count_passes(total_depth_mm: float, max_depth_mm: float) -> int:
+    """Return the number of passes, each at most ``max_depth_mm`` mm deep, for a total depth of
+    ``total_depth_mm`` mm.
+    """
+    return ceil(total_depth_mm / max_depth_mm - _ROUNDING_TOLERANCE)
 
 
-class Move(NamedTuple):
+def compute_equal_depths(total_depth_mm: float, count: int) -> list[float]:
+    """Return the depths of ``count`` equal passes in mm; the last depth is ``total_depth_mm``."""
+    return [total_depth_mm * k / count for k in range(1, count + 1)]
+
+
+class CycleMove(NamedTuple):
     """One motion of a cycle to a point in the program frame, in mm.
 
     ``rapid`` is the rapid rate in mm/s, or None for a move at the feed.
@@ -31,77 +33,78 @@ class Move(NamedTuple):
 
     x: float
     z: float
-    rapid: float | None = None
-    centre: Point | None = None
-    clockwise: bool = False
+    rapid_rate_mm_s: float | None = None
+    center: Point | None = None
+    is_clockwise: bool = False
 
 
 # --- passes and the finishing cut along the contour, in depth and length from the start point
 
 
 _SAME = 1e-6  # mm
-_NEARER = 0.002  # mm; tolerance of the clearance between a move and the contour
+_CLEARANCE_TOLERANCE_MM = 0.002  # mm; tolerance of the clearance between a move and the contour
 _TOUCHING = 0.02  # mm; tolerance at the ends of moves, which end on the contour if U is 0
 
 
-MOST_ELEMENTS = 2_000
-MOST_LOOKS = 200_000  # elements times passes; takes a few seconds
+MAX_ELEMENTS = 2_000
+MAX_COMPARISONS = 200_000  # elements times passes; takes a few seconds
 
 
-class StartNearError(Exception):
+class StartTooCloseError(Exception):
     """The approach to the contour or the retract would come closer to the contour than permitted."""
 
 
-class Rougher:
+class RoughingPlanner:
     """Planner of roughing passes.
 
-    ``cut`` adds passes of growing depth to ``moves``, and ``finish`` adds a cut along the contour.
+    ``add_pass`` adds passes of growing depth to ``moves``, and ``add_finishing_pass`` adds a cut along the
+    contour.
 
     The tool feeds into a span from the end of the previous pass. Between spans, it moves at ``rapid`` mm/s,
     ``lift`` mm above the remaining material.
     """
 
-    def __init__(self, area: Area, rapid: float, lift: float) -> None:
-        self.moves: list[Move] = []
-        self.plunged = False
+    def __init__(self, area: RoughingArea, rapid: float, lift: float) -> None:
+        self.moves: list[CycleMove] = []
+        self.has_plunged = False
         self._area = area
         self._rapid, self._lift = rapid, lift
         self._at = 0.0, 0.0
-        self._done: list[tuple[float, list[Span]]] = []
-        self._free = area.spans(0.0)
+        self._done: list[tuple[float, list[ZSpan]]] = []
+        self._free = area.find_spans(0.0)
 
-    def cut(self, depth: float) -> None:
+    def add_pass(self, depth: float) -> None:
         """Add one pass through all spans at a depth in mm that exceeds the depth of all earlier passes."""
-        spans = self._area.spans(depth)
+        spans = self._area.find_spans(depth)
         before = self._done[-1][0] if self._done else 0.0
         for start, end in spans:
-            self._over(start)
+            self._move_above(start)
             self._sink(before)
-            self.plunged = self.plunged or start > 0
+            self.has_plunged = self.has_plunged or start > 0
             self._feed(depth, self._at[1])
             self._feed(depth, end)
         self._done.append((depth, spans))
 
-    def rough(self, count: int) -> None:
+    def add_roughing_passes(self, count: int) -> None:
         """Add ``count`` passes of equal depth, down to the deepest point of the area."""
-        for depth in equal_depths(self._area.deepest, count):
-            self.cut(depth)
+        for depth in compute_equal_depths(self._area.max_depth, count):
+            self.add_pass(depth)
 
-    def finish(self, *, backwards: bool) -> None:
+    def add_finishing_pass(self, *, is_reversed: bool) -> None:
         """Add a cut along the contour and the return to the start.
 
         Raises StartNearError if the approach or the retract would come too close to the contour.
         """
         path = self._area.path
-        if backwards:
+        if is_reversed:
             path = [element.reversed() for element in reversed(path)]
         begun = len(self.moves)
         here = self._at
-        self._approach(path[0].start, front=not backwards)
+        self._approach(path[0].start, front=not is_reversed)
         self._check(here, self.moves[begun:])
         self._along(path)
         begun, here = len(self.moves), self._at
-        self._leave(front=backwards)
+        self._leave(front=is_reversed)
         self._check(here, self.moves[begun:])
 
     def _approach(self, to: Point, *, front: bool) -> None:
@@ -110,7 +113,7 @@ class Rougher:
         The front end is reached from in front of the area, the back end from above.
         """
         way = min(to[1], 0.0) if front else to[1]
-        self._over(way)
+        self._move_above(way)
         done = [depth for depth, spans in self._done if _covering(spans, way, to[1])]
         if self._done:
             self._sink(min(max(done, default=0.0), to[0]))
@@ -122,7 +125,7 @@ class Rougher:
     def _along(self, path: list[Element]) -> None:
         for element in path:
             if isinstance(element, Arc):
-                self.moves.append(Move(*element.end, None, element.centre, element.clockwise))
+                self.moves.append(CycleMove(*element.end, None, element.center, element.clockwise))
                 self._at = element.end
             else:
                 self._feed(*element.end)
@@ -131,24 +134,24 @@ class Rougher:
         if front:
             self._feed(self._at[0], min(self._at[1], 0.0))  # No pass may have reached this depth here.
         else:
-            self._over(0.0)
+            self._move_above(0.0)
         self._go(0.0, self._at[1])
         self._go(0.0, 0.0)
 
-    def _over(self, way: float) -> None:
+    def _move_above(self, target: float) -> None:
         """Add a move to another position above all remaining material."""
-        if abs(way - self._at[1]) < _SAME:
+        if abs(target - self._at[1]) < _SAME:
             return
-        level = min(self._clear(self._at[1], way), self._at[0])
+        level = min(self._clear_depth(self._at[1], target), self._at[0])
         self._go(level, self._at[1])
-        self._go(level, way)
+        self._go(level, target)
 
     def _sink(self, depth: float) -> None:
         """Add a move down to ``lift`` above a depth that has already been cut here."""
         if depth - self._lift > self._at[0]:
             self._go(depth - self._lift, self._at[1])
 
-    def _clear(self, a: float, b: float) -> float:
+    def _clear_depth(self, a: float, b: float) -> float:
         """Return the depth at which the tool can move between two positions.
 
         It is ``lift`` above the deepest pass that covers the whole distance.
@@ -157,38 +160,40 @@ class Rougher:
         for depth, spans in reversed(self._done):
             if _covering(spans, low, high):
                 return depth - self._lift
-        return 0.0 if _covering(self._free, low, high) else min(0.0, self._area.top - self._lift)
+        return 0.0 if _covering(self._free, low, high) else min(0.0, self._area.top_depth - self._lift)
 
     def _go(self, depth: float, way: float) -> None:
-        self.moves.append(Move(depth, way, self._rapid))
+        self.moves.append(CycleMove(depth, way, self._rapid))
         self._at = depth, way
 
     def _feed(self, depth: float, way: float) -> None:
-        self.moves.append(Move(depth, way))
+        self.moves.append(CycleMove(depth, way))
         self._at = depth, way
 
-    def _check(self, here: Point, moves: list[Move]) -> None:
+    def _check(self, here: Point, moves: list[CycleMove]) -> None:
         for move in moves:
             there = move.x, move.z
-            if dist(here, there) > _SAME and self._near(here, there):
-                raise StartNearError
+            if dist(here, there) > _SAME and self._is_too_close(here, there):
+                raise StartTooCloseError
             here = there
 
-    def _near(self, here: Point, there: Point) -> bool:
+    def _is_too_close(self, start: Point, end: Point) -> bool:
         """Return whether a move along one axis comes too close to the contour, or crosses it if U is 0."""
-        left, way = self._area.left, Line(here, there)
-        if left > _NEARER:
-            return any(clearance(way, element) < left - _NEARER for element in self._area.contour)
-        depth, ways = max(here[0], there[0]) - _TOUCHING, (here[1], there[1])
+        left, way = self._area.allowance_mm, Line(start, end)
+        if left > _CLEARANCE_TOLERANCE_MM:
+            return any(
+                min_distance(way, element) < left - _CLEARANCE_TOLERANCE_MM for element in self._area.contour
+            )
+        depth, ways = max(start[0], end[0]) - _TOUCHING, (start[1], end[1])
         if way.length <= 2 * _TOUCHING:
             return False
-        if _covering(self._area.spans(depth), max(min(ways), 0.0), max(ways)):
+        if _covering(self._area.find_spans(depth), max(min(ways), 0.0), max(ways)):
             return False
-        inner = Line(way.point(_TOUCHING), way.point(way.length - _TOUCHING))
+        inner = Line(way.point_at(_TOUCHING), way.point_at(way.length - _TOUCHING))
         return any(intersections(inner, element) for element in self._area.contour)
 
 
-def _covering(spans: list[Span], low: float, high: float) -> bool:
+def _covering(spans: list[ZSpan], low: float, high: float) -> bool:
     """Return whether one span covers the whole range from ``low`` to ``high``."""
     at = bisect_left(spans, low + _SAME, key=lambda span: span[0]) - 1
     return at >= 0 and spans[at][1] >= high - _SAME
@@ -197,49 +202,55 @@ def _covering(spans: list[Span], low: float, high: float) -> bool:
 # --- the contour in the frame of the start point
 
 
-class ContourView(NamedTuple):
+class ContourFrame(NamedTuple):
     """The frame of a contour, relative to the start point of the cycle.
 
-    ``x`` and ``z`` are +1 or -1. With ``backwards``, the tool is on the left of the reversed contour.
+    ``x`` and ``z`` are +1 or -1. With ``is_reversed``, the tool is on the left of the reversed contour.
     """
 
     start: Point
-    x: float
-    z: float
-    backwards: bool
+    x_sign: float
+    z_sign: float
+    is_reversed: bool
 
-    def from_start(self, contour: Sequence[Element]) -> list[Element]:
+    def transform_contour(self, contour: Sequence[Element]) -> list[Element]:
         """Return the contour in depth and length from the start point, with the tool on its left."""
         elements = [self._element(element) for element in contour]
-        return [element.reversed() for element in reversed(elements)] if self.backwards else elements
+        return [element.reversed() for element in reversed(elements)] if self.is_reversed else elements
 
-    def placed(self, move: Move) -> Move:
+    def transform_move(self, move: CycleMove) -> CycleMove:
         """Return a motion, given in depth and length, in the program frame."""
-        centre = None if move.centre is None else self._out(move.centre)
+        centre = None if move.center is None else self._out(move.center)
         x, z = self._out((move.x, move.z))
-        return Move(x, z, move.rapid, centre, move.clockwise == (self.x * self.z > 0) and centre is not None)
+        return CycleMove(
+            x,
+            z,
+            move.rapid_rate_mm_s,
+            centre,
+            move.is_clockwise == (self.x_sign * self.z_sign > 0) and centre is not None,
+        )
 
     def _element(self, element: Element) -> Element:
         start, end = self._in(element.start), self._in(element.end)
         if isinstance(element, Line):
             return Line(start, end)
-        return Arc(start, end, self._in(element.centre), element.clockwise == (self.x * self.z > 0))
+        return Arc(start, end, self._in(element.center), element.clockwise == (self.x_sign * self.z_sign > 0))
 
     def _in(self, point: Point) -> Point:
-        return (point[0] - self.start[0]) * self.x, (point[1] - self.start[1]) * self.z
+        return (point[0] - self.start[0]) * self.x_sign, (point[1] - self.start[1]) * self.z_sign
 
     def _out(self, point: Point) -> Point:
-        return self.start[0] + point[0] * self.x, self.start[1] + point[1] * self.z
+        return self.start[0] + point[0] * self.x_sign, self.start[1] + point[1] * self.z_sign
 
 
-def view_from(start: Point, first: Point, last: Point) -> ContourView:
+def make_contour_frame(start: Point, first: Point, last: Point) -> ContourFrame:
     """Return the view of a contour from ``first`` to ``last``, both in one quadrant of ``start``."""
     a, b = _off(start, first), _off(start, last)
     x = 1.0 if a[0] + b[0] > 0 else -1.0
     z = 1.0 if a[1] + b[1] > 0 else -1.0
     # The tool is on the left of the contour if its first end is closer to the line along X through the start.
     cross = (a[0] * b[1] - a[1] * b[0]) * x * z
-    return ContourView(start, x, z, backwards=cross < 0)
+    return ContourFrame(start, x, z, is_reversed=cross < 0)
 
 
 def _off(start: Point, point: Point) -> Point:

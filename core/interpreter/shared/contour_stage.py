@@ -12,47 +12,47 @@ from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
 from core.geometry.chamfer_and_rounding import CornerError, CornerTooLargeError, NoCornerError
-from core.geometry.contour_offset import NEARER, GougeError, Offset, Piece
+from core.geometry.contour_offset import OFFSET_TOLERANCE_MM, GougeError, OffsetBuilder, OffsetPiece
 from core.geometry.lines_and_arcs import (
-    SAME_POINT,
+    SAME_POINT_TOLERANCE_MM,
     Arc,
     Element,
     Line,
     Point,
-    arc_between,
-    clearance,
-    shifted,
+    make_arc,
+    min_distance,
+    shift_element,
 )
 from core.interpreter.shared.actions import SpindleRun
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.diagnostics import ProgramError
 
 
-def element_of(block: Block) -> Element:
+def make_element(block: Block) -> Element:
     """Return the line or arc of a move in the program frame, including the secondary offset."""
     start, end = (block.x0, block.z0), (block.x, block.z)
-    if block.kind is Kind.ARC:
-        return arc_between(start, end, (block.cx, block.cz), clockwise=block.clockwise)
+    if block.kind is BlockKind.ARC:
+        return make_arc(start, end, (block.cx, block.cz), clockwise=block.clockwise)
     return Line(start, end)
 
 
-class AdjustedMoves(ABC):
+class AdjustedMoveFactory(ABC):
     """Factory of the blocks for adjusted moves, implemented by each language."""
 
     @property
     @abstractmethod
-    def highest_rpm(self) -> float:
+    def max_rpm(self) -> float:
         """The speed limit of the spindle in rpm."""
 
     @abstractmethod
-    def along(self, block: Block, element: Element) -> Block:
+    def replace_element(self, block: Block, element: Element) -> Block:
         """Return the block with its move along another element of the same kind."""
 
     @abstractmethod
-    def inserted(self, block: Block, element: Element) -> Block:
+    def insert_move(self, block: Block, element: Element) -> Block:
         """Return a new move along an element, to follow ``block`` with the same line, feed and state."""
 
-    def standing(self, block: Block, point: Point) -> Block:
+    def make_motionless_block(self, block: Block, point: Point) -> Block:
         """Return a block without motion at another point."""
         x, z = point
         rpm = self._rpm(block, x)
@@ -66,58 +66,58 @@ class AdjustedMoves(ABC):
         rpm = self._rpm(block, x)
         if isinstance(element, Arc):
             return replace(
-                block, kind=Kind.ARC, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm,
-                cx=element.centre[0], cz=element.centre[1], clockwise=element.clockwise,
+                block, kind=BlockKind.ARC, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm,
+                cx=element.center[0], cz=element.center[1], clockwise=element.clockwise,
             )  # fmt: skip
-        kind = Kind.FEED if block.kind is Kind.ARC else block.kind
+        kind = BlockKind.FEED if block.kind is BlockKind.ARC else block.kind
         return replace(block, kind=kind, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm)
 
     def _rpm(self, block: Block, x: float) -> float:
         if block.css is None or not block.modal.spindle:
             return block.rpm
-        return block.modal.surface_rpm_at(x, self.highest_rpm)
+        return block.modal.compute_surface_rpm(x, self.max_rpm)
 
 
-STRAIGHT = frozenset({Kind.RAPID, Kind.FEED})
-FOLLOWED = STRAIGHT | {Kind.ARC}
+STRAIGHT_KINDS = frozenset({BlockKind.RAPID, BlockKind.FEED})
+CONTOUR_KINDS = STRAIGHT_KINDS | {BlockKind.ARC}
 """What may meet in a corner, and what a nose can be beside."""
 
 # --- corners
 
 
-C = TypeVar("C")
-M = TypeVar("M")
+CornerType = TypeVar("CornerType")
+MarkType = TypeVar("MarkType")
 
 
 @dataclass(slots=True)
-class HeldMove(Generic[C, M]):
+class BufferedMove(Generic[CornerType, MarkType]):
     """A buffered move with a corner, and the blocks between it and the next move."""
 
     block: Block
-    corner: C
-    between: list[Block | M] = field(default_factory=list)
+    corner: CornerType
+    blocks_between: list[Block | MarkType] = field(default_factory=list)
 
 
-class CornerStage(ABC, Generic[C, M]):
+class CornerStage(ABC, Generic[CornerType, MarkType]):
     """Stage that buffers a move with a corner C until the next move is known, and then trims both moves.
 
     Marks M may be among the blocks. They pass through unchanged.
     """
 
-    def __init__(self, moves: AdjustedMoves) -> None:
+    def __init__(self, moves: AdjustedMoveFactory) -> None:
         self._moves = moves
-        self._held: HeldMove[C, M] | None = None
+        self._held: BufferedMove[CornerType, MarkType] | None = None
 
     @property
-    def holds(self) -> bool:
+    def has_buffered_move(self) -> bool:
         """Whether a move is buffered until the next move is known."""
         return self._held is not None
 
-    def drop(self) -> None:
+    def discard(self) -> None:
         """Discard the buffered move after an error."""
         self._held = None
 
-    def take(self, item: Block | M, corner: C | None) -> Iterator[Block | M]:
+    def accept(self, item: Block | MarkType, corner: CornerType | None) -> Iterator[Block | MarkType]:
         """Accept a block or mark, and yield all items that no later item can change.
 
         Raises ProgramError if the corner is not possible.
@@ -127,91 +127,107 @@ class CornerStage(ABC, Generic[C, M]):
             if corner is None or not isinstance(item, Block):
                 yield item
             else:
-                self._held = HeldMove(item, corner)
-        elif self._waits(held, item) or not isinstance(item, Block):
-            held.between.append(item)
+                self._held = BufferedMove(item, corner)
+        elif self._keeps_waiting(held, item) or not isinstance(item, Block):
+            held.blocks_between.append(item)
         else:
             self._held = None
             yield from self._cut(held, item, corner)
 
-    def _cut(self, held: HeldMove[C, M], after: Block, corner: C | None) -> Iterator[Block | M]:
+    def _cut(
+        self, held: BufferedMove[CornerType, MarkType], after: Block, corner: CornerType | None
+    ) -> Iterator[Block | MarkType]:
         # Convert the second move to the frame of the first move, because an offset may have changed between
         # them.
         dx, dz = after.offset_x - held.block.offset_x, after.offset_z - held.block.offset_z
-        made = self._made(held, after, shifted(element_of(after), dx, dz))
+        made = self._made(held, after, shift_element(make_element(after), dx, dz))
         if made is None:
-            yield from (held.block, *held.between)
+            yield from (held.block, *held.blocks_between)
         else:
             cut, between, rest = made
-            yield self._moves.along(held.block, cut)
+            yield self._moves.replace_element(held.block, cut)
             yield self._inserted(held, between)
-            for each in held.between:
-                yield self._moves.standing(each, between.end) if isinstance(each, Block) else each
-            after = self._moves.along(after, shifted(rest, -dx, -dz))
-        yield from self.take(after, corner)
+            for each in held.blocks_between:
+                yield (
+                    self._moves.make_motionless_block(each, between.end) if isinstance(each, Block) else each
+                )
+            after = self._moves.replace_element(after, shift_element(rest, -dx, -dz))
+        yield from self.accept(after, corner)
 
-    def _made(self, held: HeldMove[C, M], after: Block, last: Element) -> Sequence[Element] | None:
-        if not self._meets(held, after):
+    def _made(
+        self, held: BufferedMove[CornerType, MarkType], after: Block, last: Element
+    ) -> Sequence[Element] | None:
+        if not self._forms_corner(held, after):
             return None
         try:
-            return self._elements(held.corner, element_of(held.block), last)
+            return self._elements(held.corner, make_element(held.block), last)
         except NoCornerError:
-            self._tell_straight(held, after)
+            self._report_straight(held, after)
             return None
         except CornerTooLargeError as problem:
-            raise self._too_large(held, held.block if problem.first else after, problem.needed) from None
+            raise self._make_size_error(
+                held, held.block if problem.is_first_move else after, problem.needed_length
+            ) from None
         except CornerError as problem:
-            raise self._impossible(held, after, problem) from None
+            raise self._make_corner_error(held, after, problem) from None
 
-    def _inserted(self, held: HeldMove[C, M], between: Element) -> Block:
-        return self._moves.inserted(held.block, between)
+    def _inserted(self, held: BufferedMove[CornerType, MarkType], between: Element) -> Block:
+        return self._moves.insert_move(held.block, between)
 
     @abstractmethod
-    def _waits(self, held: HeldMove[C, M], item: Block | M) -> bool:
+    def _keeps_waiting(self, buffered: BufferedMove[CornerType, MarkType], item: Block | MarkType) -> bool:
         """Return whether the item is not a move, so that the corner remains open. Raises ProgramError."""
 
     @abstractmethod
-    def _meets(self, held: HeldMove[C, M], after: Block) -> bool:
+    def _forms_corner(self, buffered: BufferedMove[CornerType, MarkType], after: Block) -> bool:
         """Return whether the next block forms the corner, or no corner is programmed. Raises ProgramError."""
 
     @abstractmethod
-    def _elements(self, corner: C, first: Element, last: Element) -> Sequence[Element]:
+    def _elements(self, corner: CornerType, first: Element, last: Element) -> Sequence[Element]:
         """Return the first element trimmed, the corner, and the last element trimmed. Raises CornerError."""
 
     @abstractmethod
-    def _tell_straight(self, held: HeldMove[C, M], after: Block) -> None:
+    def _report_straight(self, buffered: BufferedMove[CornerType, MarkType], after: Block) -> None:
         """Report that both moves have the same direction."""
 
     @abstractmethod
-    def _too_large(self, held: HeldMove[C, M], of: Block, needed: float) -> ProgramError:
-        """Return the error for a corner that needs ``needed`` mm of the move ``of``."""
+    def _make_size_error(
+        self, buffered: BufferedMove[CornerType, MarkType], block: Block, needed_mm: float
+    ) -> ProgramError:
+        """Return the error for a corner that needs ``needed`` mm of the move ``block``."""
 
     @abstractmethod
-    def _impossible(self, held: HeldMove[C, M], after: Block, problem: CornerError) -> ProgramError:
+    def _make_corner_error(
+        self, buffered: BufferedMove[CornerType, MarkType], after: Block, problem: CornerError
+    ) -> ProgramError:
         """Return the error for a corner that is not possible."""
 
 
 # --- compensation
 
 # An approach of one nose radius along the first move passes its start at 0.71 of the radius.
-_BESIDE = 0.5
+_END_CLEARANCE_RATIO = 0.5
 
 
-def cuts_in(way: Element, contour: Iterable[Element], radius: float) -> bool:
-    """Return whether the center of a nose of ``radius`` mm comes too close to the contour.
+def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
+    """Return whether the center of a nose of ``nose_radius_mm`` mm comes too close to the contour.
 
     The elements of the contour begin with the nearest one.
 
     Near the end of the contour, an approach that is not perpendicular always comes closer than the radius.
-    There, only ``_BESIDE`` times the radius is required.
+    There, only ``_END_CLEARANCE_RATIO`` times the radius is required.
     """
-    if way.length < SAME_POINT:
+    if path.length < SAME_POINT_TOLERANCE_MM:
         return False
     far = 0.0
     for element in contour:
-        least = radius * _BESIDE if far < 2 * radius else radius - NEARER
+        least = (
+            nose_radius_mm * _END_CLEARANCE_RATIO
+            if far < 2 * nose_radius_mm
+            else nose_radius_mm - OFFSET_TOLERANCE_MM
+        )
         far += element.length
-        if clearance(way, element) < least - SAME_POINT:
+        if min_distance(path, element) < least - SAME_POINT_TOLERANCE_MM:
             return True
     return False
 
@@ -221,74 +237,87 @@ class ContourMove:
     """A programmed move and the blocks without motion that follow the move."""
 
     block: Block
-    after: list[Block] = field(default_factory=list)
+    following_blocks: list[Block] = field(default_factory=list)
 
 
 class ContourStage(ABC):
     """Stage that offsets one contour for the nose radius.
 
-    The nose center is ``left`` mm to the left of the contour.
+    The nose center is ``left_offset_mm`` mm to the left of the contour.
 
-    ``tip`` is the position in mm of the programmed tip relative to the center.
+    ``tip_offset`` is the position in mm of the programmed tip relative to the center.
     """
 
-    def __init__(self, moves: AdjustedMoves, approach: Block, left: float, tip: Point = (0.0, 0.0)) -> None:
-        self.approach = self.last = ContourMove(approach)
-        self.count = 0
-        self.left, self.tip = left, tip
-        self.radius = abs(left)
+    def __init__(
+        self,
+        moves: AdjustedMoveFactory,
+        approach: Block,
+        left_offset_mm: float,
+        tip_offset: Point = (0.0, 0.0),
+    ) -> None:
+        self.approach_move = self.last_move = ContourMove(approach)
+        self.move_count = 0
+        self.left_offset_mm, self.tip_offset = left_offset_mm, tip_offset
+        self.nose_radius_mm = abs(left_offset_mm)
         self._moves = moves
-        self._offset = Offset(left)
+        self._offset = OffsetBuilder(left_offset_mm)
         # moves of the contour by index, until their blocks are yielded
         self._held: dict[int, ContourMove] = {}
         self._index = 0  # index of the move whose pieces are being yielded
         self._at: Point | None = None  # position of the tip at the end of the yielded blocks
 
-    def _follow(self, move: ContourMove, element: Element) -> list[Piece]:
+    def _add_move(self, move: ContourMove, element: Element) -> list[OffsetPiece]:
         """Add a move of the contour, and return the pieces that are final. Raises ProgramError."""
-        self._held[self.count] = move
-        self.count += 1
+        self._held[self.move_count] = move
+        self.move_count += 1
         return self._sure(self._offset.add(element))
 
-    def _rest(self) -> list[Piece]:
+    def _remaining_pieces(self) -> list[OffsetPiece]:
         """Return the remaining pieces after the last move. Raises ProgramError."""
-        return self._sure(self._offset.close())
+        return self._sure(self._offset.finish())
 
-    def _sure(self, pieces: Iterator[Piece]) -> list[Piece]:
+    def _sure(self, pieces: Iterator[OffsetPiece]) -> list[OffsetPiece]:
         try:
             return list(pieces)
         except GougeError as problem:
-            raise self._gouges(self._held[min(problem.index, self.count - 1)].block, problem.why) from None
+            raise self._make_gouge_error(
+                self._held[min(problem.element_index, self.move_count - 1)].block, problem.reason
+            ) from None
 
-    def _hand_out(self, pieces: Iterable[Piece]) -> Iterator[Block]:
+    def _yield_pieces(self, pieces: Iterable[OffsetPiece]) -> Iterator[Block]:
         """Yield the blocks of these pieces, preceded by the approach at the start. Raises ProgramError."""
         for piece in pieces:
             if self._at is None:
-                way = self._way_in(piece.element.start)
-                self._at = piece.element.start[0] + self.tip[0], piece.element.start[1] + self.tip[1]
-                yield from self._lead(self.approach, way)
-            while self._index < piece.source:
+                way = self._approach_path(piece.element.start)
+                self._at = (
+                    piece.element.start[0] + self.tip_offset[0],
+                    piece.element.start[1] + self.tip_offset[1],
+                )
+                yield from self._lead(self.approach_move, way)
+            while self._index < piece.source_index:
                 yield from self._standing(self._held.pop(self._index))
                 self._index += 1
-            block = self._held[piece.source].block
-            make = self._moves.inserted if piece.corner else self._moves.along
-            for element in self._corner(block, piece.element) if piece.corner else [piece.element]:
-                yield self._arrived(make(block, shifted(element, *self.tip)))
+            block = self._held[piece.source_index].block
+            make = self._moves.insert_move if piece.is_corner else self._moves.replace_element
+            for element in self._corner(block, piece.element) if piece.is_corner else [piece.element]:
+                yield self._arrived(make(block, shift_element(element, *self.tip_offset)))
 
-    def _leave(self, move: ContourMove, way: Sequence[Element]) -> Iterator[Block]:
+    def _depart(self, move: ContourMove, path: Sequence[Element]) -> Iterator[Block]:
         """Yield the departure after the remaining blocks of the contour."""
         yield from self._standing(self._held.pop(self._index))
-        yield from self._lead(move, way)
+        yield from self._lead(move, path)
 
     def _lead(self, move: ContourMove, way: Sequence[Element]) -> Iterator[Block]:
         for element in way:
-            yield self._arrived(self._moves.along(move.block, shifted(element, *self.tip)))
+            yield self._arrived(
+                self._moves.replace_element(move.block, shift_element(element, *self.tip_offset))
+            )
         yield from self._standing(move)
 
     def _standing(self, move: ContourMove) -> Iterator[Block]:
         assert self._at is not None
-        for block in move.after:
-            yield self._moves.standing(block, self._at)
+        for block in move.following_blocks:
+            yield self._moves.make_motionless_block(block, self._at)
 
     def _arrived(self, block: Block) -> Block:
         self._at = block.x, block.z
@@ -300,9 +329,9 @@ class ContourStage(ABC):
         return [element]
 
     @abstractmethod
-    def _way_in(self, to: Point) -> Sequence[Element]:
+    def _approach_path(self, to: Point) -> Sequence[Element]:
         """Return the path of the nose center from the approach to the contour. Raises ProgramError."""
 
     @abstractmethod
-    def _gouges(self, block: Block, why: str) -> ProgramError:
+    def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
         """Return the error for a move that the nose would gouge."""

@@ -9,100 +9,102 @@ from typing import Any, Generic, TypeVar
 from core.language.diagnostics import Diagnostic
 from core.message import Message
 
-ENDLESS = "endless-loop"
+ENDLESS_LOOP_CODE = "endless-loop"
 """The code of a loop that never ends, in every language."""
 
-Routine = TypeVar("Routine")
+RoutineType = TypeVar("RoutineType")
 
 
 @dataclass(slots=True)
-class Frame(Generic[Routine]):
+class FlowFrame(Generic[RoutineType]):
     """The main program or an active subprogram. Positions are line indices from 0.
 
-    ``at`` is the line at which execution continues after a call, and ``end`` is one past the last line.
-    ``left`` maps the line of each active repeat to the number of repeats that remain, the outermost first. A
-    program from another file has the name ``file``. Its lines are shown at ``place``, the line of the main
-    file with the call.
+    ``next_index`` is the line at which execution continues after a call, and ``end_index`` is one past the
+    last line. ``remaining_repeats`` maps the line of each active repeat to the number of repeats that
+    remain, the outermost first. A program from another file has the name ``file_name``. Its lines are shown
+    at ``call_line``, the line of the main file with the call.
     """
 
-    routine: Routine
-    at: int
-    end: int
-    left: dict[int, int] = field(default_factory=dict)
-    file: str = ""
-    place: int = 0
+    routine: RoutineType
+    next_index: int
+    end_index: int
+    remaining_repeats: dict[int, int] = field(default_factory=dict)
+    file_name: str = ""
+    call_line: int = 0
 
     @property
-    def standing(self) -> tuple[object, ...]:
+    def comparison_key(self) -> tuple[object, ...]:
         """The file, the next line and the remaining repeats, for comparison."""
-        return self.file, self.at, tuple(sorted(self.left.items()))
+        return self.file_name, self.next_index, tuple(sorted(self.remaining_repeats.items()))
 
 
-AnyFrame = TypeVar("AnyFrame", bound=Frame[Any])
+FrameType = TypeVar("FrameType", bound=FlowFrame[Any])
 
 
-class ControlFlow(Generic[AnyFrame]):
+class ControlFlow(Generic[FrameType]):
     """Position in a program.
 
-    ``at`` is the index of the next line, and ``end`` is the index at which execution ends.
+    ``next_index`` is the index of the next line, and ``end_index`` is the index at which execution ends.
     """
 
-    def __init__(self, main: AnyFrame) -> None:
-        self.at, self.end = main.at, main.end
-        self.here = main  # the active frame; its ``at`` is updated when it calls another frame
-        self.frames = [main]
+    def __init__(self, main_frame: FrameType) -> None:
+        self.next_index, self.end_index = main_frame.next_index, main_frame.end_index
+        self.active_frame = (
+            main_frame  # the active frame; its ``next_index`` is updated when it calls another frame
+        )
+        self.frames = [main_frame]
 
     @property
-    def called(self) -> bool:
+    def is_in_subprogram(self) -> bool:
         """Whether a subprogram is active."""
         return len(self.frames) > 1
 
     @property
-    def outside(self) -> bool:
+    def is_in_other_file(self) -> bool:
         """Whether a program from another file is active."""
-        return bool(self.here.place)
+        return bool(self.active_frame.call_line)
 
-    def enter(self, frame: AnyFrame) -> None:
+    def enter(self, frame: FrameType) -> None:
         """Continue in a subprogram."""
-        self.here.at = self.at
+        self.active_frame.next_index = self.next_index
         self.frames.append(frame)
-        self.here, self.at, self.end = frame, frame.at, frame.end
+        self.active_frame, self.next_index, self.end_index = frame, frame.next_index, frame.end_index
 
-    def leave(self) -> None:
+    def return_to_caller(self) -> None:
         """Return from a subprogram to the line after its call."""
         self.frames.pop()
-        self._go_on()
+        self._resume_frame()
 
-    def _go_on(self) -> None:
+    def _resume_frame(self) -> None:
         """Continue at the saved position of the last frame."""
-        self.here = here = self.frames[-1]
-        self.at, self.end = here.at, here.end
+        self.active_frame = here = self.frames[-1]
+        self.next_index, self.end_index = here.next_index, here.end_index
 
-    def end_all(self) -> None:
+    def end_program(self) -> None:
         """End the program, including all active calls."""
         del self.frames[1:]
-        self._go_on()
-        self.at = self.end
+        self._resume_frame()
+        self.next_index = self.end_index
 
-    def shown_line(self, number: int) -> int:
+    def get_displayed_line(self, number: int) -> int:
         """Return the line of the main file at which line ``number`` of the active program is shown."""
-        return self.here.place or number
+        return self.active_frame.call_line or number
 
-    def located(self, found: Diagnostic) -> Diagnostic:
+    def relocate_finding(self, finding: Diagnostic) -> Diagnostic:
         """Return a finding for the main file.
 
         A finding in another file is moved to the line of the call, and its text states the file and the line.
         """
-        here = self.here
-        if not here.place:
-            return found
+        here = self.active_frame
+        if not here.call_line:
+            return finding
         message = Message(
-            "{source} line {line}: {value}", source=here.file, line=found.line, value=found.message
+            "{source} line {line}: {value}", source=here.file_name, line=finding.line, value=finding.message
         )
-        return replace(found, line=here.place, column=0, message=message)
+        return replace(finding, line=here.call_line, column=0, message=message)
 
 
-class LoopWatch:
+class EndlessLoopDetector:
     """Detector of endless loops, which compares the program state at each jump back.
 
     A program always does the same from the same state. If a jump back occurs in the same state as an earlier
@@ -116,13 +118,13 @@ class LoopWatch:
         self._renew = 1
         self._kept: object = None
 
-    def comes_round(self, flow: ControlFlow[AnyFrame], *held: object) -> bool:
+    def is_repeated_state(self, flow: ControlFlow[FrameType], *held: object) -> bool:
         """Return whether a jump back occurs in the same state as an earlier jump.
 
         ``held`` are all values, other than the position, on which later jumps can depend.
         """
-        flow.here.at = flow.at
-        now = [each.standing for each in flow.frames], held
+        flow.active_frame.next_index = flow.next_index
+        now = [each.comparison_key for each in flow.frames], held
         if now == self._kept:
             return True
         self._jumps += 1

@@ -8,15 +8,15 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from core.language.diagnostics import Diagnostic, Severity
-from core.message import worded
+from core.message import fill_template
 
-MOST_OF_A_KIND = 100
-MOST_COUNTED = 10_000
+MAX_PER_KIND = 100
+MAX_COUNTED = 10_000
 
-REPEATS = frozenset({"finer-than-step", "dwell-too-short", "comment-in-loop", "n-word"})
+REPEATABLE_CODES = frozenset({"finer-than-step", "dwell-too-short", "comment-in-loop", "n-word"})
 """What is wrong in the same way in line after line: told once, where it is first, with its count."""
 
-_HABITS = frozenset({"g-digits", "m-digits", "tool-number", "g-unknown", "m-unknown", "unknown-letter",
+_STYLE_CODES = frozenset({"g-digits", "m-digits", "tool-number", "g-unknown", "m-unknown", "unknown-letter",
     "other-control", "character", "comma", "letter-o", "letter-l"})  # fmt: skip
 """Habits of an author: from ``_FEW`` on of one form, they are one finding with its count."""
 
@@ -24,98 +24,108 @@ _FEW = 5
 _DIGITS = re.compile(r"[0-9.]+")
 
 
-def without_repeats(found: Iterable[Diagnostic]) -> list[Diagnostic]:
+def merge_repeated_findings(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the findings with each repeated finding only at its first location, with its count."""
     each_once = list(
-        {(each.code, each.severity, each.line, each.column, each.message): each for each in found}.values()
+        {(each.code, each.severity, each.line, each.column, each.message): each for each in findings}.values()
     )
     often = Counter(_form(each) for each in each_once)
     kept: dict[object, Diagnostic] = {}
     for place, each in enumerate(each_once):
-        repeats = each.code in REPEATS or (each.code in _HABITS and often[_form(each)] >= _FEW)
+        repeats = each.code in REPEATABLE_CODES or (each.code in _STYLE_CODES and often[_form(each)] >= _FEW)
         key: object = _form(each) if repeats else place
         known = kept.get(key)
-        kept[key] = each if known is None else replace(known, count=known.count + each.count)
+        kept[key] = (
+            each
+            if known is None
+            else replace(known, occurrence_count=known.occurrence_count + each.occurrence_count)
+        )
     return list(kept.values())
 
 
-def _form(found: Diagnostic) -> object:
+def _form(finding: Diagnostic) -> object:
     """Return a key that is equal for findings that differ only in location and numbers."""
-    text = "" if found.code in REPEATS else _DIGITS.sub("", found.message)
-    return found.code, found.severity, text
+    text = "" if finding.code in REPEATABLE_CODES else _DIGITS.sub("", finding.message)
+    return finding.code, finding.severity, text
 
 
-class Log:
+class DiagnosticLog:
     """Log of findings.
 
     Each combination of line, code and column is stored once, up to 100 errors and 100 others.
     """
 
-    def __init__(self, first: Iterable[Diagnostic] = ()) -> None:
-        self.found: list[Diagnostic] = list(first)
+    def __init__(self, initial_findings: Iterable[Diagnostic] = ()) -> None:
+        self.findings: list[Diagnostic] = list(initial_findings)
         self._repeated: dict[str, int] = {}  # code → index in ``found``
         self._counted = 0
-        self.errors = [each for each in self.found if each.severity is Severity.ERROR]
-        self._known = {(each.line, each.code, each.column) for each in self.found}
-        self._others = len(self.found) - len(self.errors)
+        self.error_findings = [each for each in self.findings if each.severity is Severity.ERROR]
+        self._known = {(each.line, each.code, each.column) for each in self.findings}
+        self._others = len(self.findings) - len(self.error_findings)
 
     @property
-    def full(self) -> bool:
+    def is_full(self) -> bool:
         """Whether the log has so many errors that the pass can end."""
-        return len(self.errors) >= MOST_OF_A_KIND
+        return len(self.error_findings) >= MAX_PER_KIND
 
     @property
-    def silent(self) -> bool:
+    def is_muted(self) -> bool:
         """Whether the log has reached its limit of warnings and notes."""
-        return self._others >= MOST_OF_A_KIND or self._counted >= MOST_COUNTED
+        return self._others >= MAX_PER_KIND or self._counted >= MAX_COUNTED
 
-    def add(self, found: Diagnostic) -> None:
+    def add(self, finding: Diagnostic) -> None:
         """Store a finding, unless it is already in the log or the limit of its kind is reached."""
-        key = (found.line, found.code, found.column)
+        key = (finding.line, finding.code, finding.column)
         if key in self._known:
             return
-        if found.severity is Severity.ERROR:
-            if self.full:
+        if finding.severity is Severity.ERROR:
+            if self.is_full:
                 return
-            self.errors.append(found)
-        elif self.silent:
+            self.error_findings.append(finding)
+        elif self.is_muted:
             return
-        elif found.code in REPEATS:
+        elif finding.code in REPEATABLE_CODES:
             self._known.add(key)
-            self._once(found)
+            self._once(finding)
             return
         else:
             self._others += 1
         self._known.add(key)
-        self.found.append(found)
+        self.findings.append(finding)
 
     def _once(self, found: Diagnostic) -> None:
         at = self._repeated.get(found.code)
         if at is None:
-            self._repeated[found.code] = len(self.found)
+            self._repeated[found.code] = len(self.findings)
             self._others += 1
-            self.found.append(found)
+            self.findings.append(found)
         else:
             self._counted += 1
-            self.found[at] = replace(self.found[at], count=self.found[at].count + 1)
+            self.findings[at] = replace(
+                self.findings[at], occurrence_count=self.findings[at].occurrence_count + 1
+            )
 
-    def again(self, found: Diagnostic) -> None:
+    def count_repeat(self, finding: Diagnostic) -> None:
         """Replace the text and increase the count of the earlier finding with the same code.
 
         The finding remains at its first location.
         """
-        key = (found.line, found.code, found.column)
+        key = (finding.line, finding.code, finding.column)
         if key in self._known:
             return
         self._known.add(key)
-        for at, each in enumerate(self.found):
-            if each.code == found.code:
-                self.found[at] = replace(found, line=each.line, column=each.column, count=each.count + 1)
+        for at, each in enumerate(self.findings):
+            if each.code == finding.code:
+                self.findings[at] = replace(
+                    finding, line=each.line, column=each.column, occurrence_count=each.occurrence_count + 1
+                )
                 return
         self._others += 1
-        self.found.append(found)
+        self.findings.append(finding)
 
     def warn(self, line: int, column: int, code: str, text: str, hint: str = "", /, **values: object) -> None:
         """Store a warning; ``values`` are the values for the placeholders of ``text`` and ``hint``."""
-        found = Diagnostic(line, column, Severity.WARNING, code, worded(text, values), worded(hint, values))
+        found = Diagnostic(
+            line, column, Severity.WARNING, code, fill_template(text, values), fill_template(hint, values)
+        )
         self.add(found)

@@ -1,8 +1,8 @@
 """Elementary blocks, which the executor runs, the proof checks and the screen draws.
 
-Most blocks of a long program are straight moves with the same state. A ``Series`` stores them as arrays,
-because single objects would cost more than their processing. ``SectionEnds`` finds the blocks that start from
-a standstill, both in a run and in its forecast.
+Most blocks of a long program are straight moves with the same state. A ``StraightMoveSeries`` stores them as
+arrays, because single objects would cost more than their processing. ``SectionEndDetector`` finds the blocks
+that start from a standstill, both in a run and in its forecast.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import arc_extent, arc_length
 from core.interpreter.shared.actions import Action, SpindleRun
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove
-    from core.geometry.working_plane import Travel
-    from core.interpreter.shared.working_plane import Swivel
+    from core.geometry.working_plane import AxisMove
+    from core.interpreter.shared.working_plane import PlanePosition
 
 
-class Kind(StrEnum):
+class BlockKind(StrEnum):
     """Kind of an elementary block. The values are part of the public JSON."""
 
     RAPID = "rapid"
@@ -42,7 +42,7 @@ class Kind(StrEnum):
     ACTION = "action"
 
 
-_MAY_BE_RAPID = frozenset({Kind.PLANE, Kind.PLANE_LINE})
+_POSSIBLE_RAPID_KINDS = frozenset({BlockKind.PLANE, BlockKind.PLANE_LINE})
 
 
 @dataclass(slots=True, eq=False)
@@ -62,7 +62,7 @@ class Block:
 
     n: int  # count from 1, in the order of execution
     line: int  # source line, from 1
-    kind: Kind
+    kind: BlockKind
     text: str  # as the screen shows it
     x0: float
     z0: float
@@ -72,7 +72,7 @@ class Block:
     c: float
     offset_x: float
     offset_z: float
-    modal: Modal
+    modal: ModalState
     feed: float = 0.0
     per_rev: bool = False
     rpm: float = 0.0
@@ -82,10 +82,12 @@ class Block:
     clockwise: bool = False  # in the view from above, with X+ down and Z+ to the right
     action: Action | None = None
     plane: PlaneMove | None = None  # the same move in the frame of the virtual mill
-    travel: Travel | None = None  # all axes, on machines that have more than X, Z and C
-    swivel: Swivel | None = None  # position of a mill's block in its working plane
+    travel: AxisMove | None = None  # all axes, on machines that have more than X, Z and C
+    swivel: PlanePosition | None = None  # position of a mill's block in its working plane
     growth: float = 0.0  # change of a thread's lead per revolution, mm/rev; ``feed`` is then the mean lead
-    coupled: bool = False  # tapping: the feed follows the spindle, and the feed override has no effect
+    follows_spindle: bool = (
+        False  # tapping: the feed follows the spindle, and the feed override has no effect
+    )
     # the tap remains in the hole at the end, so neither feed hold nor single block stops there
     in_hole: bool = False
     continues: bool = False  # a thread that continues the thread of the previous block in the same pass
@@ -116,14 +118,16 @@ class Block:
         The start belongs to the previous block. Arcs and moves of a mill include all points of their path.
         """
         if self.plane is not None:
-            (low_x, low_z, _), (high_x, high_z, _) = (side.tolist() for side in self.plane.reach())
+            (low_x, low_z, _), (high_x, high_z, _) = (
+                side.tolist() for side in self.plane.find_travel_range()
+            )
             x, z = self.modal.secondary_x, self.modal.secondary_z
             return low_x + x, high_x + x, low_z + z, high_z + z
-        if self.kind is Kind.ARC:
+        if self.kind is BlockKind.ARC:
             return arc_extent(self.x0, self.z0, self.x, self.z, self.cx, self.cz, self.clockwise)
         return self.x, self.x, self.z, self.z
 
-    def machine_reach(self) -> tuple[tuple[float, float], ...]:
+    def compute_machine_bounds(self) -> tuple[tuple[float, float], ...]:
         """Return the (min, max) machine positions of each axis in the machine's order, without the start."""
         if self.travel is not None:
             low, high = (side.tolist() for side in self.travel.reach())
@@ -137,7 +141,7 @@ class Block:
         """Path length to which the feed applies, in mm; in degrees if only C or rotary axes move."""
         if self.travel is not None:
             return self.travel.length
-        if self.kind is Kind.ARC:
+        if self.kind is BlockKind.ARC:
             ends = (self.x0, self.z0), (self.x, self.z)
             return arc_length(*ends, (self.cx, self.cz), clockwise=self.clockwise)
         way = hypot(self.x - self.x0, self.z - self.z0) if self.plane is None else self.plane.length
@@ -146,10 +150,10 @@ class Block:
     @property
     def rapid(self) -> bool:
         """Whether the block is a rapid: the rapid override applies, and the spindle need not be at speed."""
-        return self.kind is Kind.RAPID or (self.kind in _MAY_BE_RAPID and self.modal.rapid)
+        return self.kind is BlockKind.RAPID or (self.kind in _POSSIBLE_RAPID_KINDS and self.modal.rapid)
 
     @property
-    def swivels(self) -> bool:
+    def has_angular_feed(self) -> bool:
         """Whether the feed of a mill's block is in degrees.
 
         This is so if only rotary axes move, or if they determine the time of the linear axes.
@@ -157,7 +161,7 @@ class Block:
         travel = self.travel
         if travel is None or not self.moves:
             return False
-        return not travel.slides if travel.way is None else travel.way.in_degrees
+        return not travel.slides if travel.way is None else travel.way.is_feed_in_degrees
 
     @property
     def moves(self) -> bool:
@@ -165,11 +169,11 @@ class Block:
         return self.action is None
 
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
-class Series(Sequence[Block]):
+class StraightMoveSeries(Sequence[Block]):
     """A sequence of m straight moves of X and Z, each of which starts at the end of the previous move.
 
     The arrays ``n line x0 z0 x z`` of shape (m,) have one value per block. All other values are common to the
@@ -180,11 +184,11 @@ class Series(Sequence[Block]):
     __slots__ = ("feed", "line", "n", "pattern", "texts", "x", "x0", "z", "z0")
 
     def __init__(
-        self, pattern: Block, texts: Sequence[str], n: Ints, line: Ints,
-        *, x0: Floats, z0: Floats, x: Floats, z: Floats, feed: Floats | None = None,
+        self, template_block: Block, texts: Sequence[str], n: IntArray, line: IntArray,
+        *, x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray, feed: FloatArray | None = None,
     ) -> None:  # fmt: skip
         self.feed = feed
-        self.pattern, self.texts = pattern, texts
+        self.pattern, self.texts = template_block, texts
         self.n, self.line = n, line
         self.x0, self.z0, self.x, self.z = x0, z0, x, z
 
@@ -194,8 +198,8 @@ class Series(Sequence[Block]):
     @overload
     def __getitem__(self, at: int) -> Block: ...
     @overload
-    def __getitem__(self, at: slice) -> Series: ...
-    def __getitem__(self, at: int | slice) -> Block | Series:
+    def __getitem__(self, at: slice) -> StraightMoveSeries: ...
+    def __getitem__(self, at: int | slice) -> Block | StraightMoveSeries:
         if isinstance(at, slice):
             return self._part(at)
         at = range(len(self))[at]
@@ -223,41 +227,41 @@ class Series(Sequence[Block]):
             return self.texts[first - 1 : last]
         return [self.texts[line - 1] for line in self.line.tolist()]
 
-    def feeds(self) -> Iterator[tuple[Modal, float]]:
+    def feeds(self) -> Iterator[tuple[ModalState, float]]:
         """Return an iterator of the state and feed of each block, which is endless if F does not vary."""
         modal, feed = self.pattern.modal, self.pattern.feed
         if self.feed is None:
             return repeat((modal, feed))
-        known = {each: (with_feed(modal, each), each) for each in set(self.feed.tolist())}
+        known = {each: (replace_feed(modal, each), each) for each in set(self.feed.tolist())}
         return map(known.__getitem__, self.feed.tolist())
 
-    def _part(self, at: slice) -> Series:
-        return Series(
+    def _part(self, at: slice) -> StraightMoveSeries:
+        return StraightMoveSeries(
             self.pattern, self.texts, self.n[at], self.line[at],
             x0=self.x0[at], z0=self.z0[at], x=self.x[at], z=self.z[at],
             feed=None if self.feed is None else self.feed[at],
         )  # fmt: skip
 
 
-def with_feed(modal: Modal, feed: float) -> Modal:
+def replace_feed(modal: ModalState, feed: float) -> ModalState:
     """Return the modal state with another cutting feed, in mm/s or mm/rev."""
-    return modal._replace(feed=feed, cut_feed=feed)
+    return modal._replace(feed=feed, last_cutting_feed=feed)
 
 
 class TimedSeries(NamedTuple):
     """A series of moves with the start and end times (m,) of the moves in program time, in seconds."""
 
-    series: Series
-    t0: Floats
-    t1: Floats
+    series: StraightMoveSeries
+    start_times_s: FloatArray
+    end_times_s: FloatArray
 
 
-def needs_speed(block: Block) -> bool:
+def needs_spindle_at_speed(block: Block) -> bool:
     """Return whether the spindle must be at speed before this block begins; rapids do not wait."""
     return block.moves and not block.rapid
 
 
-class SectionEnds:
+class SectionEndDetector:
     """Detector of the ends of path sections in the elementary blocks of one pass, in their order.
 
     A standstill is required before every action, before the first block that needs a new spindle speed, and
@@ -270,30 +274,34 @@ class SectionEnds:
         self._pass = 0  # phase of the active thread pass: 1 in its threads, 2 in its pull-out
 
     @property
-    def in_thread(self) -> bool:
+    def is_in_thread(self) -> bool:
         """Whether the previous block belongs to a thread pass, which the next block may end."""
         return self._pass > 0
 
-    def rests_before(self, block: Block) -> bool:
+    def needs_standstill_before(self, block: Block) -> bool:
         """Return whether all axes must be at rest before the next block.
 
-        The result does not change until ``rested`` is called.
+        The result does not change until ``record_standstill`` is called.
         """
         if block.action is not None:
             self._new_speed = self._new_speed or isinstance(block.action, SpindleRun)
             return True
-        if self._pass == 1 and _pulls_out(block):
+        if self._pass == 1 and _is_thread_exit(block):
             self._pass = 1 if block.continues else 2
             return False
-        return self._pass > 0 or block.kind is Kind.THREAD or (self._new_speed and needs_speed(block))
+        return (
+            self._pass > 0
+            or block.kind is BlockKind.THREAD
+            or (self._new_speed and needs_spindle_at_speed(block))
+        )
 
-    def rested(self, block: Block) -> None:
+    def record_standstill(self, block: Block) -> None:
         """Record that all axes are at rest and that ``block``, which required the standstill, begins."""
         if block.action is None:
-            self._new_speed = self._new_speed and not needs_speed(block)
-            self._pass = int(block.kind is Kind.THREAD)
+            self._new_speed = self._new_speed and not needs_spindle_at_speed(block)
+            self._pass = int(block.kind is BlockKind.THREAD)
 
 
-def _pulls_out(block: Block) -> bool:
+def _is_thread_exit(block: Block) -> bool:
     """Return whether a block after a thread is its pull-out or a rapid straight out in X."""
-    return block.kind is Kind.THREAD or (block.kind is Kind.RAPID and block.z == block.z0)
+    return block.kind is BlockKind.THREAD or (block.kind is BlockKind.RAPID and block.z == block.z0)

@@ -5,35 +5,37 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.geometry.rotation_frames import cos_sin
+from core.geometry.rotation_frames import exact_cos_sin
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Number, Operation, Parameter
 from core.message import Message
 
-NoValue = Callable[[int, str], ProgramError]
+MissingValueFactory = Callable[[int, str], ProgramError]
 """Makes the error to raise of the column at which an operation stands and of why it has no value."""
 
 
-def worth(formula: Formula, parameter: Callable[[Parameter], float], no_value: NoValue) -> float:
-    """Return the value of a formula; ``parameter`` returns the value of a parameter.
+def compute_formula(
+    formula: Formula, get_parameter: Callable[[Parameter], float], make_missing_error: MissingValueFactory
+) -> float:
+    """Return the value of a formula; ``get_parameter`` returns the value of a parameter.
 
-    Raises the error that ``no_value`` creates if an operation has no value.
+    Raises the error that ``make_missing_error`` creates if an operation has no value.
     """
     if isinstance(formula, Number):
         return formula.value
     if isinstance(formula, Parameter):
-        return parameter(formula)
-    operands = [worth(each, parameter, no_value) for each in formula.operands]
+        return get_parameter(formula)
+    operands = [compute_formula(each, get_parameter, make_missing_error) for each in formula.operands]
     try:
         found = OPERATIONS[formula.name](*operands)
     except ZeroDivisionError:
-        raise no_value(formula.column, "The formula divides by zero") from None
+        raise make_missing_error(formula.column, "The formula divides by zero") from None
     except (ValueError, OverflowError):
-        raise no_value(formula.column, _undefined(formula, operands)) from None
+        raise make_missing_error(formula.column, _undefined(formula, operands)) from None
     except TypeError:
-        raise no_value(formula.column, "A function has too few or too many arguments") from None
+        raise make_missing_error(formula.column, "A function has too few or too many arguments") from None
     if not math.isfinite(found):
-        raise no_value(formula.column, "The result is too large")
+        raise make_missing_error(formula.column, "The result is too large")
     return found
 
 
@@ -46,11 +48,11 @@ def _undefined(formula: Operation, operands: list[float]) -> str:
 
 
 def _tangent(degrees: float) -> float:
-    cosine, sine = cos_sin(degrees)
+    cosine, sine = exact_cos_sin(degrees)
     return sine / cosine
 
 
-def _angle_of(opposite: float, adjacent: float) -> float:
+def _vector_angle(opposite: float, adjacent: float) -> float:
     """Return the angle of a vector, from 0 to less than 360 degrees."""
     return math.degrees(math.atan2(opposite, adjacent)) % 360.0
 
@@ -72,13 +74,13 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "negative": lambda a: -a + 0.0,
     "square": lambda a: a * a,
     "square root": math.sqrt,
-    "sine": lambda a: cos_sin(a)[1],
-    "cosine": lambda a: cos_sin(a)[0],
+    "sine": lambda a: exact_cos_sin(a)[1],
+    "cosine": lambda a: exact_cos_sin(a)[0],
     "tangent": _tangent,
     "arc sine": lambda a: math.degrees(math.asin(a)),
     "arc cosine": lambda a: math.degrees(math.acos(a)),
     "arc tangent": lambda a: math.degrees(math.atan(a)),
-    "angle": _angle_of,
+    "angle": _vector_angle,
     "natural logarithm": math.log,
     "common logarithm": math.log10,
     "exponential": math.exp,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from core.geometry.rotary_axes import DatumPreset, Kinematics
-    from core.interpreter.shared.checkpoint import Begin
+    from core.interpreter.shared.checkpoint import PassStart
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +33,13 @@ class MillTool:
 
     length: float = 0.0
     radius: float = 0.0
-    corner: float = 0.0
-    dl: float = 0.0
-    dr: float = 0.0
-    dr2: float = 0.0
-    teeth: int = 0
-    point: float = 0.0  # T-ANGLE
-    life: float = 0.0  # TIME2
+    corner_radius: float = 0.0
+    delta_length: float = 0.0
+    delta_radius: float = 0.0
+    delta_corner_radius: float = 0.0
+    tooth_count: int = 0
+    point_angle_deg: float = 0.0  # T-ANGLE
+    tool_life_minutes: float = 0.0  # TIME2
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class SecondaryOffset:
 
     x: float = 0.0
     z: float = 0.0
-    r: float = 0.0
+    nose_radius: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,31 +69,33 @@ class ControlLimits:
 
     max_feed: float = 300 * 25.4 / 60  # mm/s
     max_rpm: float = 3500.0
-    resolution: float = 0.00005 * 25.4  # mm, radius
-    slide_accel: float = 120 * 25.4  # mm/s² of Z; determines the run-up of a thread
-    unclamp_while_turning: bool = True
-    start_with_collet_open: bool = False
+    resolution_mm: float = 0.00005 * 25.4  # mm, radius
+    z_acceleration: float = 120 * 25.4  # mm/s² of Z; determines the run-up of a thread
+    can_unclamp_while_turning: bool = True
+    can_start_with_collet_open: bool = False
     m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
-    m_disabled: frozenset[int] = frozenset()  # M codes that the machine file defines but does not enable
-    m_ignored: frozenset[int] = frozenset()  # M codes that the machine file ignores
+    disabled_m_codes: frozenset[int] = (
+        frozenset()
+    )  # M codes that the machine file defines but does not enable
+    ignored_m_codes: frozenset[int] = frozenset()  # M codes that the machine file ignores
     c_enabled: bool = True  # the spindle can be used as the C axis
-    c_feedback: bool = False  # the drive reports that C is in position
+    has_c_feedback: bool = False  # the drive reports that C is in position
     c_max_rpm: float = 200.0
-    c_accel: float = 3600.0  # degrees/s²
-    c_step: float = 0.02  # degrees
-    c_modulo: bool = True  # SINUMERIK shows C from 0 to below 360, otherwise from -360 to +360
-    c_linear: bool = False  # the third axis is linear: mm instead of degrees
-    c_travel: tuple[float, float] | None = None  # travel of the linear third axis, machine mm
-    spindle_is_c: bool = True  # the spindle is also the C axis
-    live_output: str = ""  # the output that runs the live tool, which is spindle 2 in SINUMERIK
-    third_axis: str = "C"  # name of the third axis in SINUMERIK programs
-    control: str = "840d"  # SINUMERIK control whose words are accepted: 802d, 808d, 828d or 840d
-    spindle_controlled: bool = True  # the control commands the spindle speed
-    spindle_oriented: bool = False  # the spindle drive can stop at an angle
+    c_acceleration: float = 3600.0  # degrees/s²
+    c_resolution_deg: float = 0.02  # degrees
+    is_c_modulo: bool = True  # SINUMERIK shows C from 0 to below 360, otherwise from -360 to +360
+    is_c_linear: bool = False  # the third axis is linear: mm instead of degrees
+    c_travel_range: tuple[float, float] | None = None  # travel of the linear third axis, machine mm
+    is_spindle_c_axis: bool = True  # the spindle is also the C axis
+    live_tool_output: str = ""  # the output that runs the live tool, which is spindle 2 in SINUMERIK
+    third_axis_name: str = "C"  # name of the third axis in SINUMERIK programs
+    control_model: str = "840d"  # SINUMERIK control whose words are accepted: 802d, 808d, 828d or 840d
+    is_spindle_controlled: bool = True  # the control commands the spindle speed
+    can_orient_spindle: bool = False  # the spindle drive can stop at an angle
     # machine positions in mm, X as a radius
     fixed_points: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     # maximum speeds of X, Z and C in mm/s and degrees/s
-    speeds: tuple[float, float, float] = (127.0, 127.0, 1200.0)
+    max_axis_speeds: tuple[float, float, float] = (127.0, 127.0, 1200.0)
 
 
 def _no_inputs(_terminal: str) -> bool:
@@ -110,7 +112,9 @@ class Setup:
     first line.
     """
 
-    tools: Mapping[int, ToolOffset] = field(default_factory=dict)  # by T; edges by ``tool_edges.edge_key``
+    tools: Mapping[int, ToolOffset] = field(
+        default_factory=dict
+    )  # by T; edges by ``tool_edges.make_edge_key``
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
     zero: Mapping[int, ZeroOffset] = field(default_factory=dict)  # 54 to 59; missing offsets are 0
     r: Mapping[int, float] = field(default_factory=dict)  # R parameters of SINUMERIK, as set by the operator
@@ -127,4 +131,4 @@ class Setup:
     mill_tools: Mapping[int, MillTool] = field(default_factory=dict)  # rows of the tool table
     presets: Mapping[int, DatumPreset] = field(default_factory=dict)  # by number; 0 is from the machine file
     preset: int = 0  # number of the active preset
-    begin: Begin | None = None
+    begin: PassStart | None = None

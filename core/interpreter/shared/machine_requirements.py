@@ -7,68 +7,72 @@ from typing import NamedTuple
 
 from core.interpreter.shared.actions import (
     Action,
-    AskInput,
-    Collet,
-    Coolant,
-    Output,
+    ColletSwitch,
+    CoolantSwitch,
+    InputRead,
+    InputWait,
+    OutputSwitch,
     SpindleLock,
-    SpindleOrient,
-    WaitInput,
+    SpindlePositioning,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
 
-ARC = "arc"
-THREAD = "thread"
-PULL_OUT = "pull-out"  # pull-out of a thread, synchronized with the spindle
+ARC_MOTION = "arc"
+THREADING = "thread"
+THREAD_PULLOUT = "pull-out"  # pull-out of a thread, synchronized with the spindle
 THREAD_CHAIN = "thread-chain"
-SURFACE = "surface-speed"
-SURFACE_THREAD = "surface-thread"
+SURFACE_SPEED = "surface-speed"
+SURFACE_SPEED_THREAD = "surface-thread"
 C_AXIS = "c-axis"
-ORIENT = "orient"
-PLANE = "plane"
-AXES = "axes"
-BUILDERS_M = "M"
+SPINDLE_ORIENTATION = "orient"
+PLANE_SWITCHING = "plane"
+ADDITIONAL_AXES = "axes"
+BUILDER_M_PREFIX = "M"
 """Before the number of an M function that nothing on this machine answers."""
 
 _WORDS = {
-    ARC: "arcs",
-    THREAD: "threads",
-    PULL_OUT: "a thread pull-out synchronized with the spindle; end the thread in a groove instead",
+    ARC_MOTION: "arcs",
+    THREADING: "threads",
+    THREAD_PULLOUT: "a thread pull-out synchronized with the spindle; end the thread in a groove instead",
     THREAD_CHAIN: (
         "chained threads or threads with a variable lead; cut each thread separately "
         "with its own lead instead"
     ),
-    SURFACE: "constant surface speed; program the spindle speed in rpm with G97 instead",
-    SURFACE_THREAD: "threading with constant surface speed; program G97 before the thread",
+    SURFACE_SPEED: "constant surface speed; program the spindle speed in rpm with G97 instead",
+    SURFACE_SPEED_THREAD: "threading with constant surface speed; program G97 before the thread",
     C_AXIS: "the C axis",
-    ORIENT: "spindle orientation to an angle",
-    PLANE: "milling with the plane commands (~PLXC) and (~PLZC)",
-    AXES: "axes other than X and Z",
+    SPINDLE_ORIENTATION: "spindle orientation to an angle",
+    PLANE_SWITCHING: "milling with the plane commands (~PLXC) and (~PLZC)",
+    ADDITIONAL_AXES: "axes other than X and Z",
 }
 
 
-class Need(NamedTuple):
+class MachineRequirement(NamedTuple):
     """A machine function that a program needs, and the first line that needs it."""
 
-    what: str
+    function: str
     line: int
 
     @property
-    def builders_m(self) -> int:
+    def builder_m_code(self) -> int:
         """Number of the M function that this machine does not have; 0 for other needs."""
-        number = self.what.removeprefix(BUILDERS_M)
-        return int(number) if self.what != number and number.isdigit() else 0
+        number = self.function.removeprefix(BUILDER_M_PREFIX)
+        return int(number) if self.function != number and number.isdigit() else 0
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Description of the need for the operator."""
-        if self.builders_m:
-            return Message("{what}; {builders_m}", what=self.what, builders_m=how_bound(self.builders_m))
-        return _WORDS.get(self.what, self.what)
+        if self.builder_m_code:
+            return Message(
+                "{what}; {builders_m}",
+                what=self.function,
+                builders_m=format_binding_lines(self.builder_m_code),
+            )
+        return _WORDS.get(self.function, self.function)
 
 
-def how_bound(code: int) -> Message:
+def format_binding_lines(code: int) -> Message:
     """Return the lines of a machine file that assign a function to a builder's M code."""
     return Message(
         'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine '
@@ -79,58 +83,62 @@ def how_bound(code: int) -> Message:
     )
 
 
-def needs_of(blocks: Iterable[Block], before: Block | None = None) -> Iterator[Need]:
+def find_requirements(
+    blocks: Iterable[Block], previous_block: Block | None = None
+) -> Iterator[MachineRequirement]:
     """Yield the needs of these blocks; ``before`` is the block that precedes the first one."""
     for block in blocks:
-        yield from (Need(what, block.line) for what in _needs(block, before))
-        before = block
+        yield from (MachineRequirement(what, block.line) for what in _needs(block, previous_block))
+        previous_block = block
 
 
-def first_needs(needs: Iterable[Need]) -> tuple[Need, ...]:
+def remove_repeated_requirements(
+    requirements: Iterable[MachineRequirement],
+) -> tuple[MachineRequirement, ...]:
     """Return each need once, with the first line that needs it."""
-    first: dict[str, Need] = {}
-    for need in needs:
-        first.setdefault(need.what, need)
+    first: dict[str, MachineRequirement] = {}
+    for need in requirements:
+        first.setdefault(need.function, need)
     return tuple(first.values())
 
 
 def _needs(block: Block, before: Block | None) -> Iterator[str]:
     if block.action is not None:
-        yield from _of_action(block.action)
+        yield from _action_requirements(block.action)
         return
     if block.c != block.c0:
         yield C_AXIS
-    if block.travel is not None or block.kind is Kind.PLANE:
-        yield AXES
+    if block.travel is not None or block.kind is BlockKind.PLANE:
+        yield ADDITIONAL_AXES
     elif block.plane is not None:
-        yield PLANE
-    if block.kind is Kind.ARC:
-        yield ARC
-    if block.kind is Kind.THREAD:
+        yield PLANE_SWITCHING
+    if block.kind is BlockKind.ARC:
+        yield ARC_MOTION
+    if block.kind is BlockKind.THREAD:
         if block.continues or block.growth:
             yield THREAD_CHAIN
         else:
-            yield PULL_OUT if before is not None and before.kind is Kind.THREAD else THREAD
+            yield THREAD_PULLOUT if before is not None and before.kind is BlockKind.THREAD else THREADING
     if block.css is not None and block.rpm != 0.0:
-        yield SURFACE
-        if block.kind is Kind.THREAD:
-            yield SURFACE_THREAD
+        yield SURFACE_SPEED
+        if block.kind is BlockKind.THREAD:
+            yield SURFACE_SPEED_THREAD
 
 
-def _of_action(action: Action) -> Iterator[str]:
+def _action_requirements(action: Action) -> Iterator[str]:
     """Yield the inputs, outputs and spindle functions that an action needs."""
     match action:
         case SpindleLock():
             yield C_AXIS
-        case SpindleOrient():
-            yield ORIENT
-        case Output(name=name):
+        case SpindlePositioning():
+            yield SPINDLE_ORIENTATION
+        case OutputSwitch(name=name):
             yield Message("output {name}", name=name)
-        case Collet():
+        case ColletSwitch():
             yield "output collet"
-        case Coolant():
+        case CoolantSwitch():
             yield "output coolant"
-        case WaitInput(terminal=terminal) | AskInput(terminal=terminal):
+        case InputWait(terminal=terminal) | InputRead(terminal=terminal):
             yield Message("input {name}", name=terminal)
         case _:
             return

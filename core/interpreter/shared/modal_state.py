@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from core.geometry.surface_speed import surface_rpm
+from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared import units
 
 if TYPE_CHECKING:
-    from core.geometry.virtual_mill import Face, Side
+    from core.geometry.virtual_mill import FacePlane, SidePlane
 
 
-class Mill(NamedTuple):
+class VirtualMill(NamedTuple):
     """Frame of the virtual mill and the point reached in it, in mm.
 
-    Z is a radius on the side of the part. ``theta`` is the continuous polar angle of the point in radians.
-    ``fresh`` is True until the first move or F; H is allowed only until then.
+    Z is a radius on the side of the part. ``polar_angle_rad`` is the continuous polar angle of the point in
+    radians. ``is_newly_active`` is True until the first move or F; H is allowed only until then.
     """
 
-    frame: Face | Side
+    frame: FacePlane | SidePlane
     x: float
     y: float
     z: float
-    theta: float = 0.0
-    fresh: bool = True
+    polar_angle_rad: float = 0.0
+    is_newly_active: bool = True
 
 
-class Modal(NamedTuple):
+class ModalState(NamedTuple):
     """State between two blocks. Lengths are in mm with X as a radius, speeds in mm/s or rpm.
 
     ``_replace`` creates a new state. Blocks share one state until a word changes it, so that each block
@@ -39,19 +39,19 @@ class Modal(NamedTuple):
     metric: bool = False  # G71
     diameter: bool = False  # G72
     css: bool = False  # G96
-    nose_comp: int = 40  # 40, 41 or 42
+    compensation_code: int = 40  # 40, 41 or 42
     coarse: int = 0  # 0 G36, 1 G35, 2 G35F2
     feed: float | None = None  # F in force: mm/s under G94, mm/rev under G95
-    cut_feed: float | None = None  # feed that G01 restores
-    cut_per_rev: bool = False
+    last_cutting_feed: float | None = None  # feed that G01 restores
+    is_cutting_feed_per_rev: bool = False
     rapid_rate: float = 100 * 25.4 / 60  # mm/s
     tool: int = 0  # T, 0 none
     secondary: int = 0  # D, 0 none
     spindle: int = 0  # +1 M03, 0 stopped, -1 M04
     rpm: float = 0.0  # S under G97, unsigned
     surface_speed: float = 0.0  # S under G96, mm/s
-    css_min: float = 0.0  # G76, rpm
-    css_max: float | None = None  # G77, rpm
+    min_css_rpm: float = 0.0  # G76, rpm
+    max_css_rpm: float | None = None  # G77, rpm
     coolant: bool = False
     collet_closed: bool = True
     outputs: frozenset[str] = frozenset()  # M functions of the machine file that are on
@@ -78,48 +78,48 @@ class Modal(NamedTuple):
     settable_z: float = 0.0
     zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
     zero_z: float = 0.0
-    linear_c: bool = False  # the third axis is in mm
-    wraps_c: bool = False  # C is shown from 0 to below 360 in this program
-    mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
+    is_c_linear: bool = False  # the third axis is in mm
+    is_c_modulo: bool = False  # C is shown from 0 to below 360 in this program
+    mill: VirtualMill | None = None  # between (~PLXC) or (~PLZC) and (END)
 
-    def length_text(self, mm: float) -> str:
+    def format_length(self, mm: float) -> str:
         """Return a length (mm) as text in the active unit of the program."""
-        return units.length(mm, metric=self.metric)
+        return units.format_length(mm, metric=self.metric)
 
-    def feed_text(self, value: float, *, per_rev: bool) -> str:
+    def format_feed(self, value: float, *, per_rev: bool) -> str:
         """Return a feed (mm/s or mm/rev) as text in the active unit of the program."""
-        return units.feed(value, per_rev=per_rev, metric=self.metric)
+        return units.format_feed(value, per_rev=per_rev, metric=self.metric)
 
     @property
-    def css_speed(self) -> float | None:
+    def active_surface_speed(self) -> float | None:
         """The active constant surface speed in mm/s; None under G97."""
         return self.surface_speed if self.css else None
 
-    def surface_rpm_at(self, x: float, highest: float) -> float:
+    def compute_surface_rpm(self, x: float, max_rpm: float) -> float:
         """Return the signed speed in rpm at radius ``x`` (mm) under constant surface speed.
 
-        The result is within the programmed limits and ``highest``, the speed limit of the spindle in rpm.
+        The result is within the programmed limits and ``max_rpm``, the speed limit of the spindle in rpm.
         """
-        if self.css_max is not None:
-            highest = min(highest, self.css_max)
-        return self.spindle * surface_rpm(self.surface_speed, x, self.css_min, highest)
+        if self.max_css_rpm is not None:
+            max_rpm = min(max_rpm, self.max_css_rpm)
+        return self.spindle * find_surface_rpm(self.surface_speed, x, self.min_css_rpm, max_rpm)
 
     @property
     def offset_x(self) -> float:
         """Machine X minus program X, in mm as a radius."""
-        return self.base_x + self.shift_x + self.preset_x + self.zero_x
+        return self.drawing_zero_x + self.shift_x + self.preset_x + self.zero_x
 
     @property
     def offset_z(self) -> float:
         """Machine Z minus program Z, in mm."""
-        return self.base_z + self.shift_z + self.preset_z + self.zero_z
+        return self.drawing_zero_z + self.shift_z + self.preset_z + self.zero_z
 
     @property
-    def base_x(self) -> float:
+    def drawing_zero_x(self) -> float:
         """Machine X of the drawing's zero, in mm: the sum of tool offset and settable offset."""
         return self.settable_x if self.edge == 0 else self.tool_x + self.settable_x
 
     @property
-    def base_z(self) -> float:
+    def drawing_zero_z(self) -> float:
         """Machine Z of the drawing's zero, in mm: the sum of tool offset and settable offset."""
         return self.settable_z if self.edge == 0 else self.tool_z + self.settable_z

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector
 
 if TYPE_CHECKING:
-    from core.geometry.rotary_axes import Kinematics, Place
+    from core.geometry.rotary_axes import FrameTransform, Kinematics
 
-Corners = tuple[Vector, Vector]
-Angles = tuple[float | None, float | None, float | None]
+BlankCorners = tuple[Vector, Vector]
+RotaryAngles = tuple[float | None, float | None, float | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,51 +21,53 @@ class PlaneSystem:
     Blocks share it until either changes.
 
     ``place`` converts points of the system to machine X Y Z. ``frame`` (rows) and ``datum`` are its axes and
-    origin in the workpiece system. ``tilted`` is True if a PLANE block defined it, and ``line`` is the line
-    of that block or 0. ``targets`` are Q120, Q121 and Q122. ``blank`` are corners of BLK FORM in the
-    workpiece system.
+    origin in the workpiece system. ``is_tilted`` is True if a PLANE block defined it, and
+    ``plane_block_line`` is the line of that block or 0. ``target_angles`` are Q120, Q121 and Q122.
+    ``blank_corners`` are corners of BLK FORM in the workpiece system.
     """
 
-    place: Place
+    transform: FrameTransform
     kinematics: Kinematics
     frame: Matrix = IDENTITY
     datum: Vector = (0.0, 0.0, 0.0)
-    tilted: bool = False
-    targets: Vector = (0.0, 0.0, 0.0)
-    line: int = 0
-    tool_length: float = 0.0
-    blank: Corners | None = None
+    is_tilted: bool = False
+    target_angles: Vector = (0.0, 0.0, 0.0)
+    plane_block_line: int = 0
+    tool_length_mm: float = 0.0
+    blank_corners: BlankCorners | None = None
 
     @property
-    def level(self) -> bool:
+    def is_workpiece_system(self) -> bool:
         """Whether this is the workpiece system, without a tilted plane or a datum shift."""
-        return not self.tilted and self.datum == (0.0, 0.0, 0.0)
+        return not self.is_tilted and self.datum == (0.0, 0.0, 0.0)
 
-    def levelled(self) -> PlaneSystem:
+    def make_workpiece_system(self) -> PlaneSystem:
         """Return the workpiece system with the same tool, which applies after a program is canceled."""
-        place = self.kinematics.place(
-            self.kinematics.zero, self.kinematics.basic, tool_length=self.tool_length
+        place = self.kinematics.make_transform(
+            self.kinematics.zero_angles, self.kinematics.workpiece_rotation, tool_length=self.tool_length_mm
         )
-        return PlaneSystem(place, self.kinematics, tool_length=self.tool_length, blank=self.blank)
+        return PlaneSystem(
+            place, self.kinematics, tool_length_mm=self.tool_length_mm, blank_corners=self.blank_corners
+        )
 
 
 @dataclass(frozen=True, slots=True)
-class Swivel:
+class PlanePosition:
     """Position of one block in the system that is active at the end of the block.
 
-    ``start end`` are points of that system, and ``slides`` is machine X Y Z of the end, in mm. ``rotary`` are
-    the displayed A B C (0 to 360 degrees on a modulo axis), with None for an axis that the machine does not
-    have.
+    ``start end`` are points of that system, and ``machine_position`` is machine X Y Z of the end, in mm.
+    ``rotary_angles`` are the displayed A B C (0 to 360 degrees on a modulo axis), with None for an axis that
+    the machine does not have.
     """
 
     start: Vector
     end: Vector
-    slides: Vector
-    rotary: Angles
+    machine_position: Vector
+    rotary_angles: RotaryAngles
     system: PlaneSystem
 
-    def levelled(self) -> Swivel:
+    def convert_to_workpiece_system(self) -> PlanePosition:
         """Return the same position in the workpiece system."""
-        system = self.system.levelled()
-        end = system.place.point(self.slides)
+        system = self.system.make_workpiece_system()
+        end = system.transform.to_frame_point(self.machine_position)
         return replace(self, start=end, end=end, system=system)

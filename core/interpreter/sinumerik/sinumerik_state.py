@@ -7,23 +7,35 @@ from enum import IntEnum
 from typing import Protocol
 
 from core.interpreter.shared.actions import Action, Dwell, ProgramStop
-from core.interpreter.shared.diagnostic_log import Log
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.formula_values import worth
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.formula_values import compute_formula
 from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.shared.units import MM_PER_INCH
-from core.interpreter.sinumerik.flow.variables import UNSET, Refuse, Variables, position_asked, system_value
-from core.interpreter.sinumerik.motion.third_axis import wrapped
+from core.interpreter.sinumerik.flow.variables import (
+    UNSET_PARAMETER_CODE,
+    ErrorFactory,
+    Variables,
+    get_position_axis,
+    read_system_value,
+)
+from core.interpreter.sinumerik.motion.third_axis import wrap_angle
 from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
+from core.language.diagnostics import (
+    PROGRAM_STOP_ASSUMPTION,
+    Diagnostic,
+    ProgramError,
+    Severity,
+    add_assumptions,
+)
 from core.language.formulas import Formula, Parameter
-from core.language.sinumerik.sinumerik_words import Line, Word
+from core.language.sinumerik.sinumerik_words import LexedBlock, Word
 from core.message import Message
 
 
-class PlaneInForce(Protocol):
+class ActivePlane(Protocol):
     """Plane of an active transformation; see ``transformed_plane``."""
 
     @property
@@ -32,12 +44,12 @@ class PlaneInForce(Protocol):
         ...
 
     @property
-    def along_z(self) -> bool:
+    def has_z_depth(self) -> bool:
         """Whether the depth is along Z, so that drilling cycles are allowed."""
         ...
 
     @property
-    def plane(self) -> int:
+    def plane_code(self) -> int:
         """Plane of its arcs and compensation: 17 or 19, for G17 or G19."""
         ...
 
@@ -46,61 +58,68 @@ class PlaneInForce(Protocol):
         """Position of the tool perpendicular to the plane in the program frame, in mm."""
         ...
 
-    def down_to(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
+    def move_to_depth(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
         """Return a move to a depth in the program frame, in mm; without a feed, it is a rapid."""
         ...
 
-    def over(self, statement: Statement, x: float, y: float, text: str) -> Block:
+    def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
         """Return a rapid to a point of the plane, in mm."""
         ...
 
 
-NO_OFFSET = ZeroOffset()
-NO_FRAME = ProgrammedFrame()
+ZERO_SETTABLE_OFFSET = ZeroOffset()
+IDENTITY_FRAME = ProgrammedFrame()
 
 
-class Motion(IntEnum):
+class MotionKind(IntEnum):
     """Kind of motion of the axis words: the number of the G code, or a value for CIP and CT."""
 
     RAPID = 0
     LINE = 1
     CLOCKWISE = 2
-    COUNTER = 3
+    COUNTERCLOCKWISE = 3
     THREAD = 33
-    GROWING = 34
-    SHRINKING = 35
+    THREAD_GROWING_LEAD = 34
+    THREAD_SHRINKING_LEAD = 35
     TAP = 331
-    TAP_OUT = 332
-    THROUGH = 1000  # CIP
-    TANGENT = 1001  # CT
+    TAP_RETRACT = 332
+    ARC_BY_POINT = 1000  # CIP
+    TANGENTIAL_ARC = 1001  # CT
 
 
-def motion_name(motion: int) -> str:
+def format_motion(motion: int) -> str:
     """Return the word of a motion in a program, such as G1 or CIP."""
-    return {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(Motion(motion), f"G{int(motion)}")
+    return {MotionKind.ARC_BY_POINT: "CIP", MotionKind.TANGENTIAL_ARC: "CT"}.get(
+        MotionKind(motion), f"G{int(motion)}"
+    )
 
 
-ARCS = frozenset({Motion.CLOCKWISE, Motion.COUNTER, Motion.THROUGH, Motion.TANGENT})
+ARC_MOTIONS = frozenset(
+    {MotionKind.CLOCKWISE, MotionKind.COUNTERCLOCKWISE, MotionKind.ARC_BY_POINT, MotionKind.TANGENTIAL_ARC}
+)
 
-THREADS = frozenset({Motion.THREAD, Motion.GROWING, Motion.SHRINKING})
-TAPS = frozenset({Motion.TAP, Motion.TAP_OUT})
+THREAD_MOTIONS = frozenset(
+    {MotionKind.THREAD, MotionKind.THREAD_GROWING_LEAD, MotionKind.THREAD_SHRINKING_LEAD}
+)
+TAP_MOTIONS = frozenset({MotionKind.TAP, MotionKind.TAP_RETRACT})
 
 
 class State:
     """Machine position in mm and degrees, with X as a radius and continuous C, and modal functions.
 
     ``modal`` is stored in the blocks. ``motion`` is the function of group 1, ``plane`` is the G code of the
-    plane, ``programmed`` is the frame of TRANS, ROT, SCALE and MIRROR, and ``edge`` is the row of T and D.
+    plane, ``programmed_frame`` is the frame of TRANS, ROT, SCALE and MIRROR, and ``edge`` is the row of T
+    and D.
     """
 
-    def __init__(self, setup: Setup, log: Log) -> None:
+    def __init__(self, setup: Setup, log: DiagnosticLog) -> None:
         self.setup = setup
         self.log = log
         self.x, self.z, self.c = setup.start
-        self.motion = Motion.LINE
+        self.motion = MotionKind.LINE
         self.plane = 18
-        self.settable = NO_OFFSET
-        self.programmed = NO_FRAME
+        self.settable = ZERO_SETTABLE_OFFSET
+        self.programmed_frame = IDENTITY_FRAME
         self.edge = ToolOffset()
         self.moved_by_tool: set[str] = set()  # axes whose position changed with T or D since their last move
         self.distance_is_radius = False  # DIAM90
@@ -110,46 +129,46 @@ class State:
         self.rounding = 0.0  # RNDM, mm
         self.corner_feed: float | None = None  # FRCM, as modal.feed
         self.pole = (0.0, 0.0)  # X, Z of G110 to G112, in the program's frame
-        self.polar: tuple[float, float] | None = None  # last programmed RP in mm and AP in degrees
+        self.last_polar_point: tuple[float, float] | None = None  # last programmed RP in mm and AP in degrees
         self.direction: tuple[float, float] | None = None  # direction of the path at its end, X and Z
         # limits of G25 and G26, within the limit of the spindle
         self.lowest, self.highest = 0.0, setup.limits.max_rpm
         self.area: dict[tuple[str, bool], float] = {}  # G25 (False) and G26 (True), by axis: mm
-        self.area_on = True  # WALIMON
+        self.is_working_area_active = True  # WALIMON
         self.rounded = True  # G450; G451 uses the intersection
         self.round_ends = False  # KONT; NORM approaches in a straight line
         self.threads: tuple[Block, ...] = ()  # blocks of the active thread chain
-        self.tap_lead = 0.0  # K of G331, mm
-        self.lead_change, self.end_lead, self.start_turns = 0.0, 0.0, 0.0  # of G34, G35 and SF
+        self.tap_lead_mm = 0.0  # K of G331, mm
+        self.lead_change, self.end_lead, self.start_revolutions = 0.0, 0.0, 0.0  # of G34, G35 and SF
         self.names: list[str] = []  # names of tools that are not in the table, in order of use
         # a position was read after a program stop, at which the operator may move the axes
-        self.behind_stop = self.place_assumed = False
+        self.is_after_program_stop = self.is_position_assumed = False
         self.told: set[str] = set()  # functions whose notes and warnings were already logged
         self.variables = Variables()
-        self.variables.r.update((f"R{number}", value) for number, value in setup.r.items())
-        self.modal_call: Line | None = None  # of MCALL
-        self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
+        self.variables.r_parameters.update((f"R{number}", value) for number, value in setup.r.items())
+        self.modal_call_line: LexedBlock | None = None  # of MCALL
+        self.transformation: ActivePlane | None = None  # TRANSMIT or TRACYL
         self.master = 1  # SETMS: with 2, S, M3 and G95 apply to the live tool
-        self.live_speed = 0.0  # S of the live tool, rpm
+        self.live_speed_rpm = 0.0  # S of the live tool, rpm
         self.live_rpm = 0.0  # signed speed of the live tool
-        wraps = setup.limits.c_enabled and setup.limits.c_modulo
-        slide = setup.limits.c_enabled and setup.limits.c_linear
-        self.modal = Modal(
-            absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps, linear_c=slide
+        wraps = setup.limits.c_enabled and setup.limits.is_c_modulo
+        slide = setup.limits.c_enabled and setup.limits.is_c_linear
+        self.modal = ModalState(
+            absolute=True, metric=True, diameter=True, rapid_rate=0.0, is_c_modulo=wraps, is_c_linear=slide
         )
 
-    def adopt(self, modal: Modal) -> None:
+    def set_modal(self, modal: ModalState) -> None:
         """Set the modal state; if it is equal to the present one, blocks continue to share that object."""
         if modal != self.modal:
             self.modal = modal
 
     def derive_offsets(self) -> None:
         """Set the offsets in the modal state from the edge, the settable offset and the frame."""
-        one, other, edge = self.settable, self.programmed, self.edge
-        self.adopt(
+        one, other, edge = self.settable, self.programmed_frame, self.edge
+        self.set_modal(
             self.modal._replace(
                 tool_x=edge.x, tool_z=edge.z, settable_x=one.x, settable_z=one.z,
-                zero_x=other.x, zero_z=other.z, offset_c=one.c + other.c,
+                zero_x=other.shift_x, zero_z=other.shift_z, offset_c=one.c + other.shift_c,
             )
         )  # fmt: skip
 
@@ -159,46 +178,58 @@ class State:
 
     def third(self, statement: Statement, word: Word) -> float:
         """Return the value of a word of the third axis: degrees, or mm for a linear axis."""
-        return self.length(statement, word) if self.modal.linear_c else self.number(statement, word)
+        return self.length(statement, word) if self.modal.is_c_linear else self.number(statement, word)
 
     def number(self, statement: Statement, word: Word) -> float:
         """Return the number or the formula value of a word. Raises ProgramError without a value."""
         if word.value is not None:
             return word.value
         assert word.formula is not None
-        return self.worth(word.formula, lambda code, text, hint: statement.refuse(word, code, text, hint))
+        return self.evaluate_formula(
+            word.formula, lambda code, text, hint: statement.make_error(word, code, text, hint)
+        )
 
-    def worth(self, formula: Formula, refuse: Refuse) -> float:
-        """Return the value of a formula. ``refuse`` creates the error from a code, a text and a hint."""
+    def evaluate_formula(self, formula: Formula, make_error: ErrorFactory) -> float:
+        """Return the value of a formula. ``make_error`` creates the error from a code, a text and a hint."""
 
         def parameter(asked: Parameter) -> float:
             if asked.letters.startswith("$"):
-                axis = position_asked(asked.letters)
-                read = self.position(axis) if axis else system_value(asked.letters, self.modal, self.edge)
+                axis = get_position_axis(asked.letters)
+                read = (
+                    self.position(axis) if axis else read_system_value(asked.letters, self.modal, self.edge)
+                )
                 if read is not None:
-                    self.place_assumed = self.place_assumed or bool(axis and self.behind_stop)
+                    self.is_position_assumed = self.is_position_assumed or bool(
+                        axis and self.is_after_program_stop
+                    )
                     return read
             try:
-                return self.variables.value(asked, lambda index: worth(index, parameter, no_value), refuse)
+                return self.variables.get_value(
+                    asked, lambda index: compute_formula(index, parameter, no_value), make_error
+                )
             except ProgramError as problem:
-                if problem.diagnostic.code != UNSET:
+                if problem.diagnostic.code != UNSET_PARAMETER_CODE:
                     raise
-                self._tell_unset(problem.diagnostic)
+                self._warn_unset(problem.diagnostic)
                 return 0.0
 
         def no_value(_column: int, why: str) -> ProgramError:
-            error = refuse("arithmetic", Message("{what}.", what=why), "Correct the formula.")
-            return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
+            error = make_error("arithmetic", Message("{what}.", what=why), "Correct the formula.")
+            return (
+                ProgramError(add_assumptions(error.diagnostic, PROGRAM_STOP_ASSUMPTION))
+                if self.is_position_assumed
+                else error
+            )
 
-        return worth(formula, parameter, no_value)
+        return compute_formula(formula, parameter, no_value)
 
-    def _tell_unset(self, found: Diagnostic) -> None:
+    def _warn_unset(self, finding: Diagnostic) -> None:
         """Warn once for each R parameter without a value, which is treated as 0."""
-        if found.hint not in self.told:  # the hint identifies the parameter, independent of the line
-            self.told.add(found.hint)
-            self.log.add(replace(found, severity=Severity.WARNING))
+        if finding.hint not in self.told:  # the hint identifies the parameter, independent of the line
+            self.told.add(finding.hint)
+            self.log.add(replace(finding, severity=Severity.WARNING))
 
-    def rpm_at(self, x: float) -> float:
+    def compute_rpm_at(self, x: float) -> float:
         """Return the commanded signed speed in rpm with the tip at radius ``x`` of the program.
 
         The speed is 0 if the spindle is stopped.
@@ -208,8 +239,8 @@ class State:
             return 0.0
         highest = self.highest
         if modal.css:
-            return modal.surface_rpm_at(x, highest)
-        most = highest if modal.css_max is None else min(highest, modal.css_max)
+            return modal.compute_surface_rpm(x, highest)
+        most = highest if modal.max_css_rpm is None else min(highest, modal.max_css_rpm)
         return modal.spindle * max(min(modal.rpm, most), self.lowest if modal.rpm else 0.0)
 
     def position(self, axis: str) -> float | None:
@@ -220,16 +251,16 @@ class State:
         modal = self.modal
         if self.transformation is not None or not modal.metric:
             return None
-        if axis == self.setup.limits.third_axis and self.setup.limits.c_enabled:
+        if axis == self.setup.limits.third_axis_name and self.setup.limits.c_enabled:
             c = self.c - modal.offset_c
-            return wrapped(c) if self.setup.limits.c_modulo else c
-        x, z = self.programmed.unturned(self.x - modal.offset_x, self.z - modal.offset_z)
+            return wrap_angle(c) if self.setup.limits.is_c_modulo else c
+        x, z = self.programmed_frame.invert_distance(self.x - modal.offset_x, self.z - modal.offset_z)
         return {"X": x * (2.0 if modal.diameter else 1.0), "Z": z}.get(axis)
 
     @property
     def rpm(self) -> float:
         """Commanded signed spindle speed at the present position, in rpm."""
-        return self.rpm_at(self.x - self.modal.offset_x)
+        return self.compute_rpm_at(self.x - self.modal.offset_x)
 
     @property
     def css(self) -> float | None:
@@ -239,23 +270,36 @@ class State:
 
     def action(self, line: int, text: str, action: Action) -> Block:
         """Return a block without motion."""
-        self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
+        self.is_after_program_stop = self.is_after_program_stop or isinstance(action, ProgramStop)
         modal = self.modal
         x, z, c = self.x - modal.offset_x, self.z - modal.offset_z, self.c - modal.offset_c
         return Block(
-            n=0, line=line, kind=Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION, text=text,
-            x0=x, z0=z, c0=c, x=x, z=z, c=c, offset_x=modal.offset_x, offset_z=modal.offset_z,
-            modal=modal, rpm=self.rpm, css=self.css, action=action,
-        )  # fmt: skip
+            n=0,
+            line=line,
+            kind=BlockKind.DWELL if isinstance(action, Dwell) else BlockKind.ACTION,
+            text=text,
+            x0=x,
+            z0=z,
+            c0=c,
+            x=x,
+            z=z,
+            c=c,
+            offset_x=modal.offset_x,
+            offset_z=modal.offset_z,
+            modal=modal,
+            rpm=self.rpm,
+            css=self.css,
+            action=action,
+        )
 
 
-def positive(statement: Statement, word: Word, value: float, what: str) -> float:
+def check_positive(statement: Statement, word: Word, value: float, description: str) -> float:
     """Return a number that must be above 0. Raises ProgramError otherwise."""
     if value > 0.0:
         return value
-    raise statement.refuse(
+    raise statement.make_error(
         word,
         "not-positive",
-        Message("{word}: {what} must be greater than 0.", word=word.text, what=what),
+        Message("{word}: {what} must be greater than 0.", word=word.text, what=description),
         "Correct the value.",
     )

@@ -1,5 +1,5 @@
 """Reader of the Klartext dialect: lines, words and syntax errors."""
 
-from core.language.klartext.klartext_line import read_line
+from core.language.klartext.klartext_line import parse_line
 
-__all__ = ["read_line"]
+__all__ = ["parse_line"]

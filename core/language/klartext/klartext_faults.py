@@ -8,47 +8,47 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from core.language.diagnostics import ProgramError, program_error
+from core.language.diagnostics import ProgramError, make_program_error
 from core.message import Message
 
-SYNTAX = "Syntax error"
+SYNTAX_ERROR = "Syntax error"
 NOT_SUPPORTED = "Not supported"
 TOOL_AXIS_MISSING = "Tool axis is missing"  # 1001
 FEED_MISSING = "Feed rate is missing"  # 1010
-INPUT_VALUE = "Input value incorrect"  # 1011
-ANGLE = "Entered angle not permitted"  # 1013
+INPUT_VALUE_INCORRECT = "Input value incorrect"  # 1011
+ANGLE_NOT_PERMITTED = "Entered angle not permitted"  # 1013
 CONTRADICTION = "Contradictory entry"  # 1016
-PLANE_WRONG = "Plane wrongly defined"  # 1018
+PLANE_INCORRECT = "Plane wrongly defined"  # 1018
 WRONG_AXIS = "Wrong axis programmed"  # 1019
 WRONG_RPM = "Wrong rpm"  # 1020
-NESTING = "Excessive nesting"  # 1025
-M128_ON = "PLANE not permitted with M128"
-NOT_WITH_M128 = "Not permitted with M128"
-LABEL = "Label not found"
+EXCESSIVE_NESTING = "Excessive nesting"  # 1025
+M128_ACTIVE = "PLANE not permitted with M128"
+NOT_ALLOWED_WITH_M128 = "Not permitted with M128"
+LABEL_NOT_FOUND = "Label not found"
 LABEL_TWICE = "Label defined twice"
 Q_UNDEFINED = "Q parameter not defined"
-ARC_END = "Circle end point incorrect"
-DIRECTION = "Direction of rotation not defined"
-NO_POLE = "CC missing"
-PREVIOUS = "Path function not possible here"
+ARC_END_INCORRECT = "Circle end point incorrect"
+DIRECTION_UNDEFINED = "Direction of rotation not defined"
+POLE_MISSING = "CC missing"
+PATH_FUNCTION_NOT_POSSIBLE = "Path function not possible here"
 RADIUS_TOO_LARGE = "Tool radius too large"
-COMPENSATION = "Radius compensation not permitted here"
-ROUNDING = "Rounding not possible"
-ARITHMETIC = "Arithmetical error"
+COMPENSATION_NOT_PERMITTED = "Radius compensation not permitted here"
+ROUNDING_NOT_POSSIBLE = "Rounding not possible"
+ARITHMETIC_ERROR = "Arithmetical error"
 CYCLE_MISSING = "Cycle incomplete"
-OWN_ERROR = "Error raised by the program"
+PROGRAM_RAISED_ERROR = "Error raised by the program"
 TOOL_UNKNOWN = "Tool not defined"
 FILE_MISSING = "Program not found"
 M_UNDEFINED = "M function not defined"
-NO_PROBE = "No touch probe"
+PROBE_MISSING = "No touch probe"
 CYCLE_UNKNOWN = "Cycle not defined"
-NO_TABLE = "Datum table missing"
+DATUM_TABLE_MISSING = "Datum table missing"
 
 
-def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
+def make_klartext_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
     """Return the error to raise. Its message starts with the code, which is the message of the control."""
     text = message if message.startswith(code) else Message("{code}: {message}", code=code, message=message)
-    return program_error(line, column, code, text, hint)
+    return make_program_error(line, column, code, text, hint)
 
 
 class MissingValueError(ProgramError):
@@ -56,7 +56,7 @@ class MissingValueError(ProgramError):
 
     def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
         name = f"{parameter[0]}{parameter[1]}"
-        made = fault(
+        made = make_klartext_error(
             line,
             column,
             Q_UNDEFINED,
@@ -67,44 +67,44 @@ class MissingValueError(ProgramError):
         self.parameter = parameter
 
 
-def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError:
+def make_syntax_error(line: int, column: int, message: str, hint: str = "") -> ProgramError:
     """Return the error for text that is missing or cannot be read."""
-    return fault(line, column, SYNTAX, message, hint)
+    return make_klartext_error(line, column, SYNTAX_ERROR, message, hint)
 
 
-def unsupported(line: int, column: int, what: str, instead: str = "") -> ProgramError:
+def make_unsupported_error(line: int, column: int, function: str, alternative: str = "") -> ProgramError:
     """Return the error for a function of the original control that TurnDesk does not support."""
     hint = "Use L moves and PLANE instead, or run the program on a control that supports this function."
-    text = Message("{what} is not supported on this control.", what=what)
-    return fault(line, column, NOT_SUPPORTED, text, instead or hint)
+    text = Message("{what} is not supported on this control.", what=function)
+    return make_klartext_error(line, column, NOT_SUPPORTED, text, alternative or hint)
 
 
-class Refused(NamedTuple):
+class UnsupportedCodes(NamedTuple):
     """Unsupported codes that are reported together, once per program, with their name and an alternative."""
 
     name: str
-    instead: str
+    alternative: str
 
-    def error(self, line: int, column: int) -> ProgramError:
+    def make_error(self, line: int, column: int) -> ProgramError:
         """Return the error to raise for one of these codes."""
-        return unsupported(line, column, self.name, self.instead)
+        return make_unsupported_error(line, column, self.name, self.alternative)
 
 
-CONTOUR_FORMULA = Refused(
+CONTOUR_FORMULAS = UnsupportedCodes(
     "A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)",
     "List the pockets and islands with CONTOUR DEF or cycle 14.",
 )
-STRING = Refused(
+STRING_FUNCTIONS = UnsupportedCodes(
     "A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)",
     "Write names in quotes, and use Q parameters for numbers.",
 )
-FREE_TABLE = Refused(
+FREE_TABLES = UnsupportedCodes(
     "A freely definable table (FN 26, FN 27, FN 28)", "Assign the values to Q parameters in the program."
 )
 
 _FACE = "Mill the face with L moves, and repeat them with CALL LBL and REP."
 _THREAD = "Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle."
-INSTEAD_OF_CYCLE: Mapping[int, str] = {
+CYCLE_ALTERNATIVES: Mapping[int, str] = {
     6: "Use cycle 22 with the data of cycle 20.",
     15: "Use cycle 21 with the data of cycle 20.",
     16: "Use cycle 24 with the data of cycle 20.",

@@ -7,19 +7,24 @@ from collections.abc import Callable, Iterable
 
 from core.language.diagnostics import ProgramError
 from core.language.klartext import cycle_blocks, path_block, plane_block, q_parameters, structure_blocks
-from core.language.klartext.klartext_faults import CONTOUR_FORMULA, STRING, Refused, syntax
+from core.language.klartext.klartext_faults import (
+    CONTOUR_FORMULAS,
+    STRING_FUNCTIONS,
+    UnsupportedCodes,
+    make_syntax_error,
+)
 from core.language.klartext.klartext_nodes import (
     AxisWord,
-    Feed,
-    Heading,
+    FeedWord,
+    HeadingLine,
     KlartextLine,
-    Move,
     Node,
-    Stop,
+    PathFunction,
+    StopBlock,
     Value,
 )
-from core.language.klartext.line_cursor import Cursor
-from core.language.line_reading import comment_start
+from core.language.klartext.line_cursor import LineCursor
+from core.language.line_reading import find_comment_start
 from core.message import Message
 
 # --- L moves with plain numbers: nearly all lines of a long program, read by two patterns
@@ -33,7 +38,7 @@ _MOVE = re.compile(
 _WORD = re.compile(rf"(I?)([XYZABC])({_NUMBER})")
 
 
-def read_plain(number: int, text: str) -> KlartextLine | None:
+def parse_plain_move(number: int, text: str) -> KlartextLine | None:
     """Return the line if it contains only an L move with plain numbers; None for any other line."""
     match = _MOVE.fullmatch(text)
     if match is None:
@@ -49,17 +54,17 @@ def read_plain(number: int, text: str) -> KlartextLine | None:
     if len(seen) < len(axes):
         return None
     feed = None if speed is None else _feed(speed, match.start(4))
-    move = Move(tuple(axes), radius or "", feed, column=match.start(2))
+    move = PathFunction(tuple(axes), radius or "", feed, column=match.start(2))
     return KlartextLine(number, move, None if block is None else int(block))
 
 
-def _feed(speed: str, at: int) -> Feed:
+def _feed(speed: str, at: int) -> FeedWord:
     if speed == "MAX":
-        return Feed("max", None, at)
-    return Feed("value", Value(float(speed), column=at + 1), at)
+        return FeedWord("max", None, at)
+    return FeedWord("value", Value(float(speed), column=at + 1), at)
 
 
-LONGEST_LINE = 8192
+MAX_LINE_LENGTH = 8192
 _HEAD = re.compile(r"\s*(/?)\s*([0-9]+)?\s*(/?)\s*")
 _M = re.compile(r"M(?=\s*[0-9])")
 _Q = re.compile(r"Q[LR]?(?=\s*[0-9])")
@@ -72,110 +77,110 @@ def _any_of(names: Iterable[str], end: str) -> re.Pattern[str]:
     return re.compile("|".join(r"\s+".join(name.split()) + end for name in names))
 
 
-_PATHS = _any_of(sorted(path_block.FORMS, key=len, reverse=True), r"(?![A-Z0-9])")
+_PATHS = _any_of(sorted(path_block.PATH_FORMS, key=len, reverse=True), r"(?![A-Z0-9])")
 
 # Blocks of the original control that are not supported. A longer name precedes a shorter name with the same
 # start.
-_OUTSIDE = (
+_UNSUPPORTED_FUNCTIONS = (
     *("TCH PROBE", "POLARKIN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"),
     *("SPL", "WHILE", "IF", "STRAIGHT", "SQL", "TABDATA", "CALL SELECTED CYCLE"),
     *("SEL CYCLE", "SEL CORR-TABLE", "PRESET COPY", "PRESET CORR", "OPEN FILE"),
     *("SEL CONTOUR", "DECLARE CONTOUR", "QC", "DECLARE STRING", "QS"),
 )
-_FREE = Refused("Free contour programming (FK: FPOL, FL, FC, FLT, FCT, FSELECT)", "")
-_TOGETHER = {
+_FREE = UnsupportedCodes("Free contour programming (FK: FPOL, FL, FC, FLT, FCT, FSELECT)", "")
+_COMBINED_GROUPS = {
     **dict.fromkeys(("FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"), _FREE),
-    **dict.fromkeys(("SEL CONTOUR", "DECLARE CONTOUR", "QC"), CONTOUR_FORMULA),
-    **dict.fromkeys(("DECLARE STRING", "QS"), STRING),
+    **dict.fromkeys(("SEL CONTOUR", "DECLARE CONTOUR", "QC"), CONTOUR_FORMULAS),
+    **dict.fromkeys(("DECLARE STRING", "QS"), STRING_FUNCTIONS),
 }  # reported together
-_OUTSIDE_STARTS = _any_of(_OUTSIDE, r"(?![A-Z])")
+_UNSUPPORTED_STARTS = _any_of(_UNSUPPORTED_FUNCTIONS, r"(?![A-Z])")
 
 
-def read_line(number: int, text: str) -> KlartextLine:
+def parse_line(number: int, text: str) -> KlartextLine:
     """Read line ``number``. This function never raises an exception; the returned line contains any error."""
-    if (plain := read_plain(number, text)) is not None:
+    if (plain := parse_plain_move(number, text)) is not None:
         return plain
-    if len(text) > LONGEST_LINE:
-        problem = syntax(
+    if len(text) > MAX_LINE_LENGTH:
+        problem = make_syntax_error(
             number,
             1,
             Message("The line is too long ({text_count} characters).", text_count=len(text)),
             "Split the line into shorter lines.",
         )
         return KlartextLine(number, error=problem.diagnostic)
-    end = comment_start(text)
+    end = find_comment_start(text)
     code, comment = text[:end], text[end + 1 :].strip() if end < len(text) else None
     head = _HEAD.match(code)
     assert head is not None  # The pattern always matches, because all its parts are optional.
     block, skip = head.group(2), bool(head.group(1) or head.group(3))
     number_of_block = int(block) if block is not None and len(block) <= 9 else None
-    code = code.rstrip().removesuffix(CONTINUED).rstrip()
+    code = code.rstrip().removesuffix(CONTINUATION_SIGN).rstrip()
     shown = " ".join(code[head.end() :].split())
     try:
-        node = _node(Cursor(number, code, head.end()))
+        node = _node(LineCursor(number, code, head.end()))
     except ProgramError as problem:
         return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic, shown)
     # A path function is formatted again from its words. Any other block is shown as it was written.
     return KlartextLine(
-        number, node, number_of_block, skip, comment, code="" if isinstance(node, Move) else shown
+        number, node, number_of_block, skip, comment, code="" if isinstance(node, PathFunction) else shown
     )
 
 
-CONTINUED = "~"
+CONTINUATION_SIGN = "~"
 """Ends a line whose block goes on in the next one; it stands behind the comment where there is one."""
 
 
-def _node(cursor: Cursor) -> Node | None:
-    if cursor.done:
+def _node(cursor: LineCursor) -> Node | None:
+    if cursor.is_at_end:
         return None
     column = cursor.column
-    if form := cursor.take(_PATHS):
-        return path_block.move(cursor, " ".join(form.group().split()), column)
-    if cursor.text[cursor.at] == "*":
-        return Heading(cursor.rest()[1:].strip().removeprefix("-").strip())
+    if form := cursor.match(_PATHS):
+        return path_block.read_path_function(cursor, " ".join(form.group().split()), column)
+    if cursor.text[cursor.index] == "*":
+        return HeadingLine(cursor.read_rest()[1:].strip().removeprefix("-").strip())
     return _by_keyword(cursor) or _by_letter(cursor)
 
 
-def _by_keyword(cursor: Cursor) -> Node | None:
-    column, match = cursor.column, cursor.take(_STARTS)
+def _by_keyword(cursor: LineCursor) -> Node | None:
+    column, match = cursor.column, cursor.match(_STARTS)
     if match is None:
         return None
     words = " ".join(match.group().split())
     return _KEYWORDS[_SYNONYMS.get(words, words)](cursor, column)
 
 
-def _stop(cursor: Cursor, _column: int) -> Node:
-    codes = path_block.codes_to_the_end(cursor)
-    return Stop(codes)
+def _stop(cursor: LineCursor, _column: int) -> Node:
+    codes = path_block.read_remaining_m_functions(cursor)
+    return StopBlock(codes)
 
 
-_KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
-    "CC": path_block.pole,
-    "RND": lambda cursor, column: path_block.corner(cursor, "RND", column),
-    "CHF": lambda cursor, column: path_block.corner(cursor, "CHF", column),
-    "BEGIN PGM": lambda cursor, _: structure_blocks.begin(cursor),
-    "END PGM": lambda cursor, _: structure_blocks.end(cursor),
-    "BLK FORM": lambda cursor, _: structure_blocks.blank_form(cursor),
-    "TOOL CALL": lambda cursor, _: structure_blocks.tool_call(cursor),
-    "TOOL DEF": structure_blocks.tool_def,
+_KEYWORDS: dict[str, Callable[[LineCursor, int], Node]] = {
+    "CC": path_block.read_pole,
+    "RND": lambda cursor, column: path_block.read_corner(cursor, "RND", column),
+    "CHF": lambda cursor, column: path_block.read_corner(cursor, "CHF", column),
+    "BEGIN PGM": lambda cursor, _: structure_blocks.read_begin(cursor),
+    "END PGM": lambda cursor, _: structure_blocks.read_end(cursor),
+    "BLK FORM": lambda cursor, _: structure_blocks.read_blank_form(cursor),
+    "TOOL CALL": lambda cursor, _: structure_blocks.read_tool_call(cursor),
+    "TOOL DEF": structure_blocks.read_tool_definition,
     "PLANE": plane_block.plane,
-    "TRANS": structure_blocks.transformation,
-    "CYCL DEF": cycle_blocks.cycle,
+    "TRANS": structure_blocks.read_transformation,
+    "CYCL DEF": cycle_blocks.read_cycle_definition,
     "CYCL CALL": cycle_blocks.call,
-    "PATTERN DEF": cycle_blocks.pattern,
-    "CONTOUR DEF": cycle_blocks.contour_definition,
-    "GLOBAL DEF": cycle_blocks.global_definition,
-    "PRESET SELECT": cycle_blocks.preset,
-    "WMAT": structure_blocks.material,
+    "PATTERN DEF": cycle_blocks.read_pattern_definition,
+    "CONTOUR DEF": cycle_blocks.read_contour_definition,
+    "GLOBAL DEF": cycle_blocks.read_global_definition,
+    "PRESET SELECT": cycle_blocks.read_preset_selection,
+    "WMAT": structure_blocks.read_material,
     "CALL LBL": lambda cursor, _: structure_blocks.call(cursor),
-    "CALL PGM": structure_blocks.call_program,
-    "CALL SELECTED": structure_blocks.call_selected,
+    "CALL PGM": structure_blocks.read_program_call,
+    "CALL SELECTED": structure_blocks.read_selected_call,
     **{
-        Message("SEL {kind}", kind=kind): structure_blocks.selection(kind)
+        Message("SEL {kind}", kind=kind): structure_blocks.make_selection_reader(kind)
         for kind in ("PGM", "TABLE", "PATTERN")
     },
-    "LBL": lambda cursor, _: structure_blocks.label(cursor),
-    "FUNCTION": structure_blocks.function,
+    "LBL": lambda cursor, _: structure_blocks.read_label(cursor),
+    "FUNCTION": structure_blocks.read_function_block,
     "STOP": _stop,
 }
 
@@ -184,27 +189,27 @@ _SYNONYMS = {"CYCLE DEF": "CYCL DEF", "CYCLE CALL": "CYCL CALL"}  # variants tha
 _STARTS = _any_of((*_SYNONYMS, *_KEYWORDS), r"(?![A-Z])")
 
 
-def _by_letter(cursor: Cursor) -> Node:
+def _by_letter(cursor: LineCursor) -> Node:
     column = cursor.column
-    if _M.match(cursor.upper, cursor.at):
-        return path_block.codes_alone(cursor)
-    if _ONE_AXIS.match(cursor.upper, cursor.at):
-        return path_block.paraxial(cursor, column)
-    if match := cursor.take(_FN):
-        return q_parameters.function(cursor, int(match.group(1)[:4]), column)
-    if _Q.match(cursor.upper, cursor.at):
-        return q_parameters.assign(cursor)
-    raise _no_block(cursor)
+    if _M.match(cursor.uppercase_text, cursor.index):
+        return path_block.read_m_function_block(cursor)
+    if _ONE_AXIS.match(cursor.uppercase_text, cursor.index):
+        return path_block.read_paraxial_move(cursor, column)
+    if match := cursor.match(_FN):
+        return q_parameters.read_fn_block(cursor, int(match.group(1)[:4]), column)
+    if _Q.match(cursor.uppercase_text, cursor.index):
+        return q_parameters.read_assignment(cursor)
+    raise _make_start_error(cursor)
 
 
-def _no_block(cursor: Cursor) -> ProgramError:
+def _make_start_error(cursor: LineCursor) -> ProgramError:
     """Return the error for a text that cannot begin a block, with the function's name if it is known."""
     column = cursor.column
-    if match := _OUTSIDE_STARTS.match(cursor.upper, cursor.at):
+    if match := _UNSUPPORTED_STARTS.match(cursor.uppercase_text, cursor.index):
         name = " ".join(match.group().split())
         if name == "TCH PROBE":
-            return structure_blocks.touch_probe(cursor, column)
-        return _TOGETHER.get(name, Refused(name, "")).error(cursor.line, column)
+            return structure_blocks.make_touch_probe_error(cursor, column)
+        return _COMBINED_GROUPS.get(name, UnsupportedCodes(name, "")).make_error(cursor.line_number, column)
     text = Message("'{next_word}' cannot begin a block.", next_word=cursor.next_word)
-    hint = cursor.advice("Begin the block with a word such as L, PLANE, TOOL CALL or LBL.")
-    return syntax(cursor.line, column, text, hint)
+    hint = cursor.choose_hint("Begin the block with a word such as L, PLANE, TOOL CALL or LBL.")
+    return make_syntax_error(cursor.line_number, column, text, hint)

@@ -13,18 +13,18 @@ class Value(NamedTuple):
     """A number, or a reference to a parameter Q, QL or QR. ``column`` is its position, from 1."""
 
     number: float
-    q: int | None = None
-    negative: bool = False  # the sign before Q
+    parameter_number: int | None = None
+    is_negative: bool = False  # the sign before Q
     column: int = 0
-    kind: str = "Q"
+    parameter_kind: str = "Q"
 
     @property
     def formula(self) -> Formula:
         """The value as a formula."""
-        if self.q is None:
+        if self.parameter_number is None:
             return Number(self.number)
-        made = Parameter(self.kind, self.q, self.column)
-        return Operation("negative", (made,), self.column) if self.negative else made
+        made = Parameter(self.parameter_kind, self.parameter_number, self.column)
+        return Operation("negative", (made,), self.column) if self.is_negative else made
 
 
 class AxisWord(NamedTuple):
@@ -32,11 +32,11 @@ class AxisWord(NamedTuple):
 
     axis: str
     value: Value
-    incremental: bool = False
+    is_incremental: bool = False
     column: int = 0
 
 
-class Feed(NamedTuple):
+class FeedWord(NamedTuple):
     """A feed such as ``F200``, ``FQ5``, ``FMAX`` or ``F AUTO``.
 
     ``FU0.1`` is a feed per revolution, and ``FZ0.05`` is a feed per tooth.
@@ -45,61 +45,63 @@ class Feed(NamedTuple):
     kind: str  # "value", "max" or "auto"
     value: Value | None = None
     column: int = 0
-    per: str = ""  # U or Z; empty: a minute, under M136 a revolution
+    base: str = ""  # U or Z; empty: a minute, under M136 a revolution
 
 
-class Retract(NamedTuple):
+class RetractWord(NamedTuple):
     """A retract distance ``MB50``, or ``MB MAX`` with the distance None."""
 
     distance: Value | None = None
     column: int = 0
 
 
-class MCode(NamedTuple):
+class MFunction(NamedTuple):
     """An M function such as ``M3``. M128 can have a feed, M103 a factor, and M140 a retract and a feed."""
 
     number: int
     column: int = 0
-    retract: Retract | None = None
-    feed: Feed | None = None
+    retract: RetractWord | None = None
+    feed: FeedWord | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Begin:
+class BeginBlock:
     """The block ``BEGIN PGM name MM``."""
 
     name: str
-    inch: bool
+    is_inch: bool
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class EndBlock:
     """The block ``END PGM name MM``."""
 
     name: str
-    inch: bool
+    is_inch: bool
 
 
 @dataclass(frozen=True, slots=True)
-class BlankForm:
+class BlankCorner:
     """One corner of a rectangular blank.
 
     ``BLK FORM 0.1 Z X Y Z`` is the minimum corner with the tool axis. ``BLK FORM 0.2`` is the maximum corner.
     """
 
-    part: int
+    part_number: int
     corner: tuple[AxisWord, ...]
     tool_axis: str = ""
 
 
 @dataclass(frozen=True, slots=True)
-class RoundBlank:
-    """The block ``BLK FORM CYLINDER Z R50 L100 DIST+5``; ``above`` is its height above the datum."""
+class CylinderBlank:
+    """The block ``BLK FORM CYLINDER Z R50 L100 DIST+5``; ``height_above_datum`` is its height above the
+    datum.
+    """
 
     tool_axis: str
     radius: Value
     length: Value
-    above: Value
+    height_above_datum: Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +115,12 @@ class ToolCall:
     length: Value | None = None  # DL
     radius: Value | None = None  # DR
     column: int = 0  # of the tool
-    feed_per: str = ""  # U or Z of FU and FZ
+    feed_base: str = ""  # U or Z of FU and FZ
     cutting_speed: Value | None = None  # S(VC = 120), m/min
 
 
 @dataclass(frozen=True, slots=True)
-class Move:
+class PathFunction:
     """A path function such as ``L X+10 IY-5 R0 F200 M3`` or ``APPR CT X+0 Y+0 CCA90 R+5 RL``.
 
     ``words`` are the other words by name: PR and PA (polar radius and angle), R, CCA and LEN.
@@ -126,14 +128,14 @@ class Move:
 
     axes: tuple[AxisWord, ...] = ()
     compensation: str = ""  # 0, L or R of R0, RL, RR; empty: as before
-    feed: Feed | None = None
-    codes: tuple[MCode, ...] = ()
-    form: str = "L"
+    feed: FeedWord | None = None
+    m_functions: tuple[MFunction, ...] = ()
+    function_name: str = "L"
     words: tuple[AxisWord, ...] = ()
-    turn: str = ""  # + or - of DR
+    rotation_direction: str = ""  # + or - of DR
     column: int = 1
 
-    def word(self, name: str) -> AxisWord | None:
+    def find_word(self, name: str) -> AxisWord | None:
         """Return the axis word or other word with this name, or None."""
         return next((word for word in (*self.axes, *self.words) if word.axis == name), None)
 
@@ -147,33 +149,33 @@ class Pole:
 
 
 @dataclass(frozen=True, slots=True)
-class Corner:
+class CornerBlock:
     """The block ``RND R5 F100`` or ``CHF 2``: a corner between the previous and the next path element."""
 
-    form: str  # RND or CHF
+    kind: str  # RND or CHF
     size: Value
-    feed: Feed | None = None
+    feed: FeedWord | None = None
     column: int = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Codes:
+class MFunctionBlock:
     """A block with only M functions."""
 
-    codes: tuple[MCode, ...]
+    m_functions: tuple[MFunction, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Datum:
+class DatumShift:
     """The block ``TRANS DATUM AXIS …``, ``TRANS DATUM RESET`` (no axes), or a block of cycle 7."""
 
     axes: tuple[AxisWord, ...] = ()
-    reset: bool = False
-    cycle: int | None = None  # n of CYCL DEF 7.n
+    is_reset: bool = False
+    cycle_number: int | None = None  # n of CYCL DEF 7.n
     text: str = ""  # of CYCL DEF 7.0
-    row: Value | None = None  # of the datum table
+    table_row: Value | None = None  # of the datum table
     column: int = 0
-    table: str = ""  # file of the datum table, if specified in the block
+    table_name: str = ""  # file of the datum table, if specified in the block
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,26 +187,26 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class LabelCall:
     """The block ``CALL LBL 1``; with ``REP n``, it repeats the section that follows the label."""
 
     name: int | str
-    repeat: Value | None = None
+    repeat_count: Value | None = None
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Assign:
+class Assignment:
     """An assignment such as ``Q5 = +10``, ``Q5 = Q1 * SIN 30`` or ``FN 3: Q5 = +Q1 * +2``."""
 
-    q: int
+    parameter_number: int
     formula: Formula
     column: int = 0
-    kind: str = "Q"  # Q, QL or QR
+    parameter_kind: str = "Q"  # Q, QL or QR
 
 
 @dataclass(frozen=True, slots=True)
-class Jump:
+class ConditionalJump:
     """A jump such as ``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the complete comparison."""
 
     condition: Formula
@@ -219,12 +221,12 @@ class SystemRead:
     ``group``, ``number`` and ``index`` identify the value.
     """
 
-    q: int
+    parameter_number: int
     group: Formula
     number: Formula
     index: Formula | None = None
     column: int = 0
-    kind: str = "Q"
+    parameter_kind: str = "Q"
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +236,7 @@ class SystemWrite:
     group: Formula
     number: Formula
     index: Formula | None
-    content: Formula
+    new_value: Formula
     column: int = 0
 
 
@@ -242,43 +244,43 @@ class SystemWrite:
 class ErrorMessage:
     """The block ``FN 14: ERROR = 1000``, in which the program itself raises an error and stops."""
 
-    number: int
+    error_number: int
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Unheeded:
-    """A block that has no effect here, such as ``FN 16: F-PRINT``; ``what`` is its name."""
+class IgnoredBlock:
+    """A block that has no effect here, such as ``FN 16: F-PRINT``; ``function_name`` is its name."""
 
-    what: str
+    function_name: str
     column: int = 0
 
 
-class CycleValue(NamedTuple):
-    """A cycle parameter such as ``Q200=+2``. In a cycle below 200, ``q`` is 0."""
+class CycleParameter(NamedTuple):
+    """A cycle parameter such as ``Q200=+2``. In a cycle_number below 200, ``q`` is 0."""
 
-    q: int
+    parameter_number: int
     formula: Formula
     column: int
 
 
 @dataclass(frozen=True, slots=True)
-class Cycle:
+class CycleDefinition:
     """The definition of a cycle from 200 on with its parameters: ``CYCL DEF 200 DRILLING Q200=+2 …``."""
 
-    number: int
-    values: tuple[CycleValue, ...] = ()
+    cycle_number: int
+    values: tuple[CycleParameter, ...] = ()
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class GlobalDef:
+class GlobalDefinition:
     """The block ``GLOBAL DEF 100 GENERAL Q200=+2 …``.
 
     It sets the values for ``Q200=PREDEF`` in later cycles.
     """
 
-    values: tuple[CycleValue, ...]
+    values: tuple[CycleParameter, ...]
     column: int = 0
 
 
@@ -289,11 +291,11 @@ class CycleLine:
     ``part`` is the number after the point. The words and numbers are in their order.
     """
 
-    number: int
-    part: int
+    cycle_number: int
+    line_number: int
     words: tuple[AxisWord, ...] = ()
-    feed: Feed | None = None
-    turn: str = ""  # + or - of DR
+    feed: FeedWord | None = None
+    rotation_direction: str = ""  # + or - of DR
     text: str = ""  # text that is not a number
     column: int = 0
 
@@ -303,22 +305,22 @@ class CycleCall:
     """A cycle call such as ``CYCL CALL M3`` or ``CYCL CALL POS X+10 Y+10 Z+0 F500``."""
 
     axes: tuple[AxisWord, ...] = ()
-    feed: Feed | None = None
-    codes: tuple[MCode, ...] = ()
+    feed: FeedWord | None = None
+    m_functions: tuple[MFunction, ...] = ()
     column: int = 0
-    pattern: bool = False  # CYCL CALL PAT
+    is_pattern_call: bool = False  # CYCL CALL PAT
 
 
 class PatternPart(NamedTuple):
     """One part of a pattern, such as ``ROW1 (X+10 Y+0 D+8 NUM5 ROT+0 Z+0)``."""
 
-    form: str  # POS ROW PAT FRAME CIRC PITCHCIRC
+    kind: str  # POS ROW PAT FRAME CIRC PITCHCIRC
     words: tuple[AxisWord, ...]
     column: int
 
 
 @dataclass(frozen=True, slots=True)
-class PatternDef:
+class PatternDefinition:
     """The block ``PATTERN DEF`` with its parts, which are the points of CYCL CALL PAT."""
 
     parts: tuple[PatternPart, ...]
@@ -326,18 +328,18 @@ class PatternDef:
 
 
 class ContourPart(NamedTuple):
-    """The subprogram of one contour. ``pocket`` is False for an island.
+    """The subprogram of one contour. ``is_pocket`` is False for an island.
 
-    With cycle 14, ``pocket`` is None, because RL or RR determines whether the contour is a pocket.
+    With cycle 14, ``is_pocket`` is None, because RL or RR determines whether the contour is a pocket.
     """
 
-    label: int | str
-    pocket: bool | None
-    file: str = ""  # separate program instead of a subprogram
+    label_name: int | str
+    is_pocket: bool | None
+    file_name: str = ""  # separate program instead of a subprogram
 
 
 @dataclass(frozen=True, slots=True)
-class ContourDef:
+class ContourDefinition:
     """The block ``CONTOUR DEF P1 = LBL 1 I2 = LBL 2``.
 
     It is like cycle 14, but specifies which contours are pockets and which are islands.
@@ -351,7 +353,7 @@ class ContourDef:
 class Selection:
     """A block such as ``SEL TABLE "N.D"`` or ``SEL PGM "A.H"``; ``kind`` is the word that follows SEL."""
 
-    kind: str
+    selected_kind: str
     name: str
     column: int = 0
 
@@ -365,7 +367,7 @@ class ProgramCall:
 
 
 @dataclass(frozen=True, slots=True)
-class ToolDef:
+class ToolDefinition:
     """The block ``TOOL DEF 5 L+10 R+5`` in the program's unit; without L and R, it only prepares the tool."""
 
     tool: int | str
@@ -375,99 +377,99 @@ class ToolDef:
 
 
 @dataclass(frozen=True, slots=True)
-class Transform:
+class CoordinateTransform:
     """A transformation with TRANS MIRROR, TRANS ROTATION, TRANS SCALE or one of the cycles 8, 10 and 11.
 
     ``value`` is the angle or the factor. Without a value and without ``axes``, the transformation is reset.
     """
 
-    form: str  # MIRROR, ROTATION or SCALE
+    kind: str  # MIRROR, ROTATION or SCALE
     value: Value | None = None
     axes: str = ""  # of MIRROR
-    incremental: bool = False
+    is_incremental: bool = False
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class TipControl:
+class TcpmSwitch:
     """The block ``FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`` or ``FUNCTION RESET TCPM``."""
 
-    on: bool
+    is_on: bool
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class StopBlock:
     """The block ``STOP``, with optional M functions."""
 
-    codes: tuple[MCode, ...] = ()
+    m_functions: tuple[MFunction, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Heading:
+class HeadingLine:
     """A comment line ``* text`` that structures the program and has no effect."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Positioning:
+class RotaryPositioning:
     """How a PLANE block positions the rotary axes, and which of the two solutions it selects."""
 
-    way: str = ""  # MOVE, TURN or STAY
+    mode: str = ""  # MOVE, TURN or STAY
     distance: Value | None = None  # DIST
-    retract: Retract | None = None  # MB
-    feed: Feed | None = None
-    side: str = ""  # SYM+ SYM- SEQ+ SEQ-
-    rotation: str = ""  # COORD ROT or TABLE ROT
+    retract: RetractWord | None = None  # MB
+    feed: FeedWord | None = None
+    solution: str = ""  # SYM+ SYM- SEQ+ SEQ-
+    rotation_mode: str = ""  # COORD ROT or TABLE ROT
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
+class PlaneBlock:
     """A PLANE block with its words by name.
 
     The words are axis words (AXIAL), P1X… (POINTS) or SPA… (SPATIAL and RELATIV). RESET has no words.
     """
 
-    form: str  # AXIAL POINTS SPATIAL RELATIV RESET
+    kind: str  # AXIAL POINTS SPATIAL RELATIV RESET
     words: tuple[AxisWord, ...] = ()
-    positioning: Positioning = Positioning()
+    positioning: RotaryPositioning = RotaryPositioning()
     column: int = 0
 
 
 Node = (
-    Begin
-    | End
-    | BlankForm
-    | RoundBlank
-    | ToolDef
+    BeginBlock
+    | EndBlock
+    | BlankCorner
+    | CylinderBlank
+    | ToolDefinition
     | ToolCall
-    | Move
+    | PathFunction
     | Pole
-    | Corner
-    | Codes
-    | Datum
-    | Transform
+    | CornerBlock
+    | MFunctionBlock
+    | DatumShift
+    | CoordinateTransform
     | Label
-    | Call
+    | LabelCall
     | ProgramCall
     | Selection
-    | Assign
-    | Jump
+    | Assignment
+    | ConditionalJump
     | SystemRead
     | SystemWrite
     | ErrorMessage
-    | Unheeded
-    | Cycle
-    | GlobalDef
+    | IgnoredBlock
+    | CycleDefinition
+    | GlobalDefinition
     | CycleLine
     | CycleCall
-    | PatternDef
-    | ContourDef
-    | TipControl
-    | Stop
-    | Heading
-    | Plane
+    | PatternDefinition
+    | ContourDefinition
+    | TcpmSwitch
+    | StopBlock
+    | HeadingLine
+    | PlaneBlock
 )
 
 
@@ -479,8 +481,8 @@ class KlartextLine(NamedTuple):
 
     number: int
     node: Node | None = None
-    block: int | None = None  # block number, as written
-    skip: bool = False
+    block_number: int | None = None  # block number, as written
+    is_skippable: bool = False
     comment: str | None = None
     error: Diagnostic | None = None
     code: str = ""  # the block as written, without number, skip sign and comment

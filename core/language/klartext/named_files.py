@@ -9,21 +9,21 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from core.language.source import Source
+from core.language.source import ProgramSource
 
-ENDINGS = (".D", ".PNT")
+TABLE_EXTENSIONS = (".D", ".PNT")
 _NAME = re.compile(r"[A-Z0-9_]+")
 _INCH = re.compile(r"BEGIN\s.*\bINCH\b", re.IGNORECASE)
 
-Row = dict[str, float]
+TableRow = dict[str, float]
 
 
 def is_table(name: str) -> bool:
     """Return whether the file name is that of a table."""
-    return name.upper().endswith(ENDINGS)
+    return name.upper().endswith(TABLE_EXTENSIONS)
 
 
-def table_rows(source: Source) -> dict[int, Row]:
+def read_table_rows(source: ProgramSource) -> dict[int, TableRow]:
     """Return the rows by number in file order, with values by column name and lengths in mm.
 
     Rows that FADE hides are left out. The result is empty if the file has no column names.
@@ -34,7 +34,7 @@ def table_rows(source: Source) -> dict[int, Row]:
         return {}
     scale = 25.4 if any(_INCH.match(text) for text in lines[:head]) else 1.0
     columns = [(match.group(), match.start()) for match in _NAME.finditer(lines[head].upper())]
-    found: dict[int, Row] = {}
+    found: dict[int, TableRow] = {}
     for text in lines[head + 1 :]:
         cells = _cells(text, columns)
         if not cells.get("NR", "").isdigit() or cells.get("FADE", "N").upper()[:1] in {"Y", "1"}:
@@ -67,33 +67,41 @@ def _number(cell: str) -> float | None:
         return None
 
 
-ENDING = ".H"
+PROGRAM_EXTENSION = ".H"
 _CALL = re.compile(
     r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)",
     re.IGNORECASE,
 )
 _IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT))"', re.IGNORECASE)  # string that may contain a file name
-_OF_CONTOURS = re.compile(r"CONTOUR\s+DEF\s", re.IGNORECASE)
+_CONTOUR_DEF_PATTERN = re.compile(r"CONTOUR\s+DEF\s", re.IGNORECASE)
 _QUOTED = re.compile(r'"([^"]+)"')
 _HINTS = ("PGM", "TABLE", "PATTERN", "12.1", "CONTOUR")
 
 
-def called_programs(source: Source) -> Iterator[str]:
+def find_called_programs(source: ProgramSource) -> Iterator[str]:
     """Yield the names, in capitals, of the files that the program calls or selects."""
     for text in source.lines:
         if not any(hint in text.upper() for hint in _HINTS):
             continue
         code = text.split(";", 1)[0]
         if match := _CALL.search(code):
-            yield file_name(next(filter(None, match.groups())))
-        if _OF_CONTOURS.search(code):
-            yield from (file_name(quoted) for quoted in _QUOTED.findall(code))
+            yield normalize_file_name(next(filter(None, match.groups())))
+        if _CONTOUR_DEF_PATTERN.search(code):
+            yield from (normalize_file_name(quoted) for quoted in _QUOTED.findall(code))
             continue
         for quoted in _IN_TEXT.findall(code):
-            yield file_name(quoted)
+            yield normalize_file_name(quoted)
 
 
-def file_name(named: str) -> str:
+def normalize_file_name(written_name: str) -> str:
     r"""Return the file name in capitals: ``TNC:\PARTS\HOLE`` is HOLE.H."""
-    name = named.strip().strip('"').replace("\\", "/").rsplit("/", 1)[-1].rsplit(":", 1)[-1].strip().upper()
-    return name if "." in name else name + ENDING
+    name = (
+        written_name.strip()
+        .strip('"')
+        .replace("\\", "/")
+        .rsplit("/", 1)[-1]
+        .rsplit(":", 1)[-1]
+        .strip()
+        .upper()
+    )
+    return name if "." in name else name + PROGRAM_EXTENSION

@@ -6,43 +6,58 @@ import re
 from typing import NamedTuple
 
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_faults import syntax
-from core.language.klartext.klartext_nodes import AxisWord, Codes, Corner, Feed, MCode, Move, Pole
-from core.language.klartext.line_cursor import Cursor, axis_words, demand_once, doubled, feed, retract
+from core.language.klartext.klartext_faults import make_syntax_error
+from core.language.klartext.klartext_nodes import (
+    AxisWord,
+    CornerBlock,
+    FeedWord,
+    MFunction,
+    MFunctionBlock,
+    PathFunction,
+    Pole,
+)
+from core.language.klartext.line_cursor import (
+    LineCursor,
+    check_not_repeated,
+    make_repeated_error,
+    read_axis_words,
+    read_feed,
+    read_retract,
+)
 from core.message import Message
 
-MOST_CODES = 4
-AXES = "XYZABCUVW"
+MAX_M_FUNCTIONS = 4
+AXIS_LETTERS = "XYZABCUVW"
 # older controls write R, F and M without values
 _NOT_PROGRAMMED = re.compile(r"F(?=\s+M\s*(?:[0-9]|$))|M(?=\s*$)")
 _COMPENSATION = re.compile(
     r"R(?:([0LR]?)(?![A-Z0-9]|\s*[+\-.,0-9])|([+-])(?!\s*[0-9.,Q]))"
 )  # R without a letter leaves the compensation unchanged
 _M = re.compile(r"M(?=\s*[0-9])")
-_AXIS_ALONE = re.compile(r"I?[XYZABCUVW](?=\s*$)")
-TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
+_SINGLE_AXIS = re.compile(r"I?[XYZABCUVW](?=\s*$)")
+ROTATION_PATTERN = re.compile(r"DR\s*([+-])(?![0-9Q])")
 
 
 class _Form(NamedTuple):
     """Words of a path function other than axes, compensation, feed and M functions.
 
-    The words ``needs`` are required.
+    The words ``required_words`` are required.
     """
 
-    takes: tuple[str, ...] = ()
-    needs: tuple[str, ...] = ()
-    turn: bool = False  # DR is required
+    allowed_words: tuple[str, ...] = ()
+    required_words: tuple[str, ...] = ()
+    needs_direction: bool = False  # DR is required
 
 
 _POLAR = ("PR", "PA")
 _FORMS = {
     "L": _Form(),
     "LP": _Form(_POLAR),
-    "C": _Form(turn=True),
-    "CR": _Form(("R",), ("R",), turn=True),
+    "C": _Form(needs_direction=True),
+    "CR": _Form(("R",), ("R",), needs_direction=True),
     "CT": _Form(),
     "LN": _Form(("NX", "NY", "NZ", "TX", "TY", "TZ")),
-    "CP": _Form(("PA",), turn=True),
+    "CP": _Form(("PA",), needs_direction=True),
     "CTP": _Form(_POLAR),
     "APPR LT": _Form(("LEN",), ("LEN",)),
     "APPR LN": _Form(("LEN",), ("LEN",)),
@@ -58,125 +73,127 @@ _FORMS = {
     "DEP LCT": _Form(("R",), ("R",)),
     "DEP PLCT": _Form((*_POLAR, "R"), ("R",)),
 }
-FORMS = tuple(_FORMS)
+PATH_FORMS = tuple(_FORMS)
 """Every path function by the words that it begins with."""
 
 _KNOWN_WORDS = re.compile(r"(I?P[RA]|LEN|CCA|[NT][XYZ]|R)(?=\s*[+\-0-9.,Q])")
 
 
-def move(cursor: Cursor, form: str, column: int) -> Move:
+def read_path_function(cursor: LineCursor, form: str, column: int) -> PathFunction:
     """Read the words of a path function. Raises ProgramError for an unexpected or missing word."""
     axes: tuple[AxisWord, ...] = ()
     words: dict[str, AxisWord] = {}
     compensation, turn, speed = "", "", None
-    codes: list[MCode] = []
-    while not cursor.done:
+    codes: list[MFunction] = []
+    while not cursor.is_at_end:
         at = cursor.column
-        found = axis_words(cursor, AXES)
+        found = read_axis_words(cursor, AXIS_LETTERS)
         if found:
             axes = _joined(cursor, axes, found)
-        elif radius := cursor.take(_COMPENSATION):
+        elif radius := cursor.match(_COMPENSATION):
             kind = radius.group(1) or radius.group(2) or ""
-            _demand_paraxial(cursor, at, kind, axes)
+            _check_paraxial(cursor, at, kind, axes)
             if compensation:
-                raise doubled(cursor, at, f"R{kind}")
+                raise make_repeated_error(cursor, at, f"R{kind}")
             compensation = kind
-        elif direction := cursor.take(TURN):
-            demand_once(cursor, at, turn, "DR")
+        elif direction := cursor.match(ROTATION_PATTERN):
+            check_not_repeated(cursor, at, turn, "DR")
             turn = direction.group(1)
         elif word := _word(cursor, form):
-            demand_once(cursor, word.column, word.axis in words, word.axis)
+            check_not_repeated(cursor, word.column, word.axis in words, word.axis)
             words[word.axis] = word
-        elif cursor.take(_NOT_PROGRAMMED):
+        elif cursor.match(_NOT_PROGRAMMED):
             continue
-        elif read := feed(cursor):
-            demand_once(cursor, read.column, speed, "F")
+        elif read := read_feed(cursor):
+            check_not_repeated(cursor, read.column, speed, "F")
             speed = read
-        elif code := m_code(cursor):
+        elif code := read_m_function(cursor):
             codes.append(code)
             _demand_few(cursor, codes)
         else:
             raise _strange(cursor, form)
-    made = Move(axes, compensation, speed, tuple(codes), form, tuple(words.values()), turn, column)
+    made = PathFunction(axes, compensation, speed, tuple(codes), form, tuple(words.values()), turn, column)
     _demand_whole(cursor, made)
     return made
 
 
-def paraxial(cursor: Cursor, column: int) -> Move:
+def read_paraxial_move(cursor: LineCursor, column: int) -> PathFunction:
     """Read a block with one axis and without L, such as ``Z+100 R0 FMAX M3``. Raises ProgramError."""
-    made = move(cursor, "L", column)
+    made = read_path_function(cursor, "L", column)
     if len(made.axes) > 1:
         text = "A block without L can move only one axis."
-        raise syntax(cursor.line, made.axes[1].column, text, "Write L at the start of the block.")
+        raise make_syntax_error(
+            cursor.line_number, made.axes[1].column, text, "Write L at the start of the block."
+        )
     return made
 
 
-def _demand_paraxial(cursor: Cursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
+def _check_paraxial(cursor: LineCursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
     """Raise ProgramError if a block with R+ or R- does not have exactly one axis.
 
     R+ and R- change the length of a move along one axis by the tool radius.
     """
     if kind in {"+", "-"} and len(axes) != 1:
         text = Message("R{kind} is allowed only in a block that moves one axis.", kind=kind)
-        raise syntax(cursor.line, column, text, "For a contour, write RL or RR.")
+        raise make_syntax_error(cursor.line_number, column, text, "For a contour, write RL or RR.")
 
 
-def _word(cursor: Cursor, form: str) -> AxisWord | None:
-    at, match = cursor.at, _KNOWN_WORDS.match(cursor.upper, cursor.at)
-    if match is None or match.group(1).removeprefix("I") not in _FORMS[form].takes:
+def _word(cursor: LineCursor, form: str) -> AxisWord | None:
+    at, match = cursor.index, _KNOWN_WORDS.match(cursor.uppercase_text, cursor.index)
+    if match is None or match.group(1).removeprefix("I") not in _FORMS[form].allowed_words:
         return None
-    cursor.take(_KNOWN_WORDS)
+    cursor.match(_KNOWN_WORDS)
     name = match.group(1).removeprefix("I")
-    return AxisWord(name, cursor.value(match.group(1)), match.group(1)[0] == "I", at + 1)
+    return AxisWord(name, cursor.read_value(match.group(1)), match.group(1)[0] == "I", at + 1)
 
 
-def _demand_whole(cursor: Cursor, made: Move) -> None:
-    form = _FORMS[made.form]
-    missing = [name for name in form.needs if made.word(name) is None]
+def _demand_whole(cursor: LineCursor, made: PathFunction) -> None:
+    form = _FORMS[made.function_name]
+    missing = [name for name in form.required_words if made.find_word(name) is None]
     if missing:
-        raise cursor.expected(
-            Message("{form} needs {missing}", form=made.form, missing=" and ".join(missing))
+        raise cursor.make_expected_error(
+            Message("{form} needs {missing}", form=made.function_name, missing=" and ".join(missing))
         )
-    if made.turn and not form.turn and made.form not in {"CT", "CTP"}:
-        raise syntax(
-            cursor.line,
+    if made.rotation_direction and not form.needs_direction and made.function_name not in {"CT", "CTP"}:
+        raise make_syntax_error(
+            cursor.line_number,
             made.column,
-            Message("{form} does not accept DR.", form=made.form),
+            Message("{form} does not accept DR.", form=made.function_name),
             "Remove this text from the program.",
         )
 
 
-def pole(cursor: Cursor, column: int) -> Pole:
+def read_pole(cursor: LineCursor, column: int) -> Pole:
     """Read the axes after ``CC``."""
-    made = Pole(axis_words(cursor, "XYZ"), column)
-    cursor.demand_end("CC accepts only two axes")
+    made = Pole(read_axis_words(cursor, "XYZ"), column)
+    cursor.check_at_end("CC accepts only two axes")
     return made
 
 
 _SIZE = re.compile(r"R(?=\s*[+\-0-9.,Q])")
 
 
-def corner(cursor: Cursor, form: str, column: int) -> Corner:
+def read_corner(cursor: LineCursor, form: str, column: int) -> CornerBlock:
     """Read the size and optional feed after ``RND`` or ``CHF``."""
-    cursor.take(_SIZE)
-    size = cursor.value(form)
-    speed = feed(cursor)
-    cursor.demand_end(Message("{form} accepts only a radius or length, and a feed rate", form=form))
-    return Corner(form, size, speed, column)
+    cursor.match(_SIZE)
+    size = cursor.read_value(form)
+    speed = read_feed(cursor)
+    cursor.check_at_end(Message("{form} accepts only a radius or length, and a feed rate", form=form))
+    return CornerBlock(form, size, speed, column)
 
 
-def codes_alone(cursor: Cursor) -> Codes:
+def read_m_function_block(cursor: LineCursor) -> MFunctionBlock:
     """Read a block of M functions."""
-    return Codes(codes_to_the_end(cursor))
+    return MFunctionBlock(read_remaining_m_functions(cursor))
 
 
-def codes_to_the_end(cursor: Cursor) -> tuple[MCode, ...]:
+def read_remaining_m_functions(cursor: LineCursor) -> tuple[MFunction, ...]:
     """Read M functions to the end of the line. Raises ProgramError for any other word."""
-    codes: list[MCode] = []
-    while not cursor.done:
-        code = m_code(cursor)
+    codes: list[MFunction] = []
+    while not cursor.is_at_end:
+        code = read_m_function(cursor)
         if code is None:
-            raise cursor.expected("Expected an M function")
+            raise cursor.make_expected_error("Expected an M function")
         codes.append(code)
         _demand_few(cursor, codes)
     return tuple(codes)
@@ -189,62 +206,77 @@ _WITH_WORDS = {
 }
 
 
-def m_code(cursor: Cursor) -> MCode | None:
+def read_m_function(cursor: LineCursor) -> MFunction | None:
     """Read one M function; return None if the cursor is not at an M function."""
     column = cursor.column
-    if cursor.take(_M) is None:
+    if cursor.match(_M) is None:
         return None
-    number = cursor.whole("M", 999)
+    number = cursor.read_whole_number("M", 999)
     if number == 128:
-        return MCode(number, column, feed=_plain_feed(cursor))
+        return MFunction(number, column, feed=_plain_feed(cursor))
     if number == 103:
-        return MCode(number, column, feed=_factor(cursor))
+        return MFunction(number, column, feed=_factor(cursor))
     if number == 140:
-        way = retract(cursor)
+        way = read_retract(cursor)
         if way is None:
-            raise cursor.expected("M140 needs MB", "Write MB and a length, or MB MAX.")
-        return MCode(number, column, way, feed(cursor))
+            raise cursor.make_expected_error("M140 needs MB", "Write MB and a length, or MB MAX.")
+        return MFunction(number, column, way, read_feed(cursor))
     if number in _WITH_WORDS:
-        cursor.take(_WITH_WORDS[number])
-    return MCode(number, column)
+        cursor.match(_WITH_WORDS[number])
+    return MFunction(number, column)
 
 
-def _factor(cursor: Cursor) -> Feed | None:
+def _factor(cursor: LineCursor) -> FeedWord | None:
     """Read the factor of M103, in percent and written as F; without it, M103 is canceled."""
-    found = feed(cursor)
-    if found is not None and (found.kind != "value" or found.per):
+    found = read_feed(cursor)
+    if found is not None and (found.kind != "value" or found.base):
         text = "M103 accepts its factor only as F with a number."
-        raise syntax(cursor.line, found.column, text, "Write M103 F20 for a fifth of the feed.")
-    return found
-
-
-def _plain_feed(cursor: Cursor) -> Feed | None:
-    found = feed(cursor)
-    if found is not None and (found.kind == "auto" or found.per):
-        raise syntax(
-            cursor.line, found.column, "M128 accepts only a numeric feed or FMAX.", "Write F and a number."
+        raise make_syntax_error(
+            cursor.line_number, found.column, text, "Write M103 F20 for a fifth of the feed."
         )
     return found
 
 
-def _joined(cursor: Cursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, ...]) -> tuple[AxisWord, ...]:
+def _plain_feed(cursor: LineCursor) -> FeedWord | None:
+    found = read_feed(cursor)
+    if found is not None and (found.kind == "auto" or found.base):
+        raise make_syntax_error(
+            cursor.line_number,
+            found.column,
+            "M128 accepts only a numeric feed or FMAX.",
+            "Write F and a number.",
+        )
+    return found
+
+
+def _joined(
+    cursor: LineCursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, ...]
+) -> tuple[AxisWord, ...]:
     for word in words:
         if any(word.axis == known.axis for known in axes):
-            raise doubled(cursor, word.column, word.axis)
+            raise make_repeated_error(cursor, word.column, word.axis)
     return axes + words
 
 
-def _demand_few(cursor: Cursor, codes: list[MCode]) -> None:
-    if len(codes) > MOST_CODES:
-        text = Message("There are more than {most_codes} M functions in the block.", most_codes=MOST_CODES)
-        raise syntax(cursor.line, codes[-1].column, text, "Split the block into two or more blocks.")
+def _demand_few(cursor: LineCursor, codes: list[MFunction]) -> None:
+    if len(codes) > MAX_M_FUNCTIONS:
+        text = Message(
+            "There are more than {most_codes} M functions in the block.", most_codes=MAX_M_FUNCTIONS
+        )
+        raise make_syntax_error(
+            cursor.line_number, codes[-1].column, text, "Split the block into two or more blocks."
+        )
 
 
-def _strange(cursor: Cursor, form: str) -> ProgramError:
-    if cursor.take(_AXIS_ALONE):
-        return cursor.expected("No value is programmed for the axis", "Write a number such as +10.")
-    takes = ", ".join(("axes", *_FORMS[form].takes, *(("DR",) if _FORMS[form].turn else ())))
-    return cursor.expected(
+def _strange(cursor: LineCursor, form: str) -> ProgramError:
+    if cursor.match(_SINGLE_AXIS):
+        return cursor.make_expected_error(
+            "No value is programmed for the axis", "Write a number such as +10."
+        )
+    takes = ", ".join(
+        ("axes", *_FORMS[form].allowed_words, *(("DR",) if _FORMS[form].needs_direction else ()))
+    )
+    return cursor.make_expected_error(
         Message("Unexpected word in this {form} block", form=form),
         Message("Use only {takes}, R0, RL or RR, a feed and M functions.", takes=takes),
     )

@@ -1,6 +1,6 @@
 """Reader of the OmniTurn dialect: words, lines and syntax errors."""
 
 from core.language.omniturn.omniturn_lexer import lex_line
-from core.language.omniturn.omniturn_words import Line, Word
+from core.language.omniturn.omniturn_words import LexedLine, Word
 
-__all__ = ["Line", "Word", "lex_line"]
+__all__ = ["LexedLine", "Word", "lex_line"]

@@ -11,12 +11,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
-from core.language.line_reading import SIGNED
+from core.language.line_reading import SIGNED_NUMBER
 from core.language.omniturn import other_controls
 from core.message import Message
 
 
-class Intent(NamedTuple):
+class IntendedCode(NamedTuple):
     """A mistake in a line: index of its first character, diagnostic code, message and remedy."""
 
     at: int
@@ -75,7 +75,7 @@ _PATTERNS = (
         lambda match: Message("Write {name}.", name="G72" if match.string[match.end() + 1] == "7" else "G73"),
     ),
     _Pattern(
-        rf"(?<=G04)([PXU])({SIGNED})",
+        rf"(?<=G04)([PXU])({SIGNED_NUMBER})",
         "G04 takes seconds as F.",
         _dwell,
     ),
@@ -115,7 +115,7 @@ _PATTERNS = (
         _always(_THREAD),
     ),
     _Pattern(
-        rf"(?<=G8[13])[^Q]*Q({SIGNED})",
+        rf"(?<=G8[13])[^Q]*Q({SIGNED_NUMBER})",
         "The peck depth is K here.",
         lambda match: Message("Write K{word} in G83.", word=match[1]),
     ),
@@ -144,35 +144,35 @@ def _compiled() -> tuple[tuple[re.Pattern[str], str, Callable[[re.Match[str]], s
     return tuple((re.compile(form), message, hint) for form, message, hint in _PATTERNS)
 
 
-def intent_of(code: str) -> Intent | None:
+def find_intended_code(code: str) -> IntendedCode | None:
     """Return the intended code of a line for another control; None for any other line."""
     for form, message, hint in _compiled():
         match = form.search(code)
         if match is not None:
-            return Intent(_start(code, match), "other-control", message, hint(match))
+            return IntendedCode(_start(code, match), "other-control", message, hint(match))
     for found in re.finditer(_CODE, code):
-        habit = other_controls.meaning_here(found[0])
+        habit = other_controls.explain_foreign_word(found[0])
         if habit is not None:
             message = Message(
                 "{word} is not a valid code on this control. {habit}", word=found[0], habit=habit[0]
             )
-            return Intent(found.start(), "g-unknown", message, habit[1])
+            return IntendedCode(found.start(), "g-unknown", message, habit[1])
     return None
 
 
 def _start(code: str, match: re.Match[str]) -> int:
     """Return the index of the code or letter that precedes the match of a pattern."""
-    if match.start() == 0 or code[match.start()] in _WORDS_OF_THEIR_OWN:
+    if match.start() == 0 or code[match.start()] in _SEPARATE_WORD_LETTERS:
         return match.start()
     return match.start() - (3 if re.search(_AFTER_CODE, code[: match.start()]) else 1)
 
 
 _CODE = r"G[0-9]{2}(?![0-9.])"
-_WORDS_OF_THEIR_OWN = "GO#"
+_SEPARATE_WORD_LETTERS = "GO#"
 _AFTER_CODE = r"[GM][0-9]{2}$"
 _LETTER_L = r"(?<=[A-Za-z0-9.+-])l(?=[0-9.A-Za-z]|\s|$)"
 
 
-def with_digit_one(code: str) -> str:
+def replace_letter_l(code: str) -> str:
     """Return the line with 1 in place of each letter l that is part of a number."""
     return re.sub(_LETTER_L, "1", code)

@@ -6,22 +6,22 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from core.language.diagnostics import Diagnostic, refusal
-from core.language.line_reading import SIGNED, ascii_upper
+from core.language.diagnostics import Diagnostic, make_error_diagnostic
+from core.language.line_reading import SIGNED_NUMBER, to_ascii_upper
 from core.language.omniturn import other_controls, word_faults
-from core.language.omniturn.intended_code import intent_of, with_digit_one
-from core.language.omniturn.omniturn_words import BARE, Line, Word
+from core.language.omniturn.intended_code import find_intended_code, replace_letter_l
+from core.language.omniturn.omniturn_words import LETTERS_WITHOUT_NUMBER, LexedLine, Word
 from core.message import Message
 
-LONGEST_LINE = 8192
+MAX_LINE_LENGTH = 8192
 
 # Most lines of a long program consist only of these words, which need no check of each character.
 _NUMBER = r"[+-]?(?:[0-9]{1,4}(?:\.[0-9]{0,8})?|\.[0-9]{1,8})"
-_USUAL = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
+_USUAL_LINE = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
 # lines of usual words that may belong to another control
 _MAY_BE_FOREIGN = re.compile("G(?:04X|74|75|76|92S)")
 _USUAL_WORD = re.compile(r"(([A-Z])([-+0-9.]+))")
-_WORD = re.compile(rf"(LS|LF|RF|CA|CI|[A-Z}}])({SIGNED})?")
+_WORD = re.compile(rf"(LS|LF|RF|CA|CI|[A-Z}}])({SIGNED_NUMBER})?")
 _THREAD = re.compile(r"G3[34](?![0-9.])")
 _TO_NEXT_LETTER = re.compile(r"[^A-Z}]+")
 _ZERO_LETTER = re.compile(r"O[0-9.]*")
@@ -50,34 +50,36 @@ class _Code(NamedTuple):
     columns: range | list[int]
 
 
-def lex_line(number: int, text: str) -> Line:
+def lex_line(number: int, text: str) -> LexedLine:
     """Read the words of line ``number``.
 
     This function never raises; the line contains its errors with columns.
     """
-    if len(text) > LONGEST_LINE:
-        return Line(number, errors=(word_faults.too_long(number, len(text)),))
-    if _USUAL.fullmatch(text) and not _MAY_BE_FOREIGN.search(text):
+    if len(text) > MAX_LINE_LENGTH:
+        return LexedLine(number, errors=(word_faults.make_length_error(number, len(text)),))
+    if _USUAL_LINE.fullmatch(text) and not _MAY_BE_FOREIGN.search(text):
         words = _usual_words(text)
         if words is not None:
-            return Line(number, words, text=text)
+            return LexedLine(number, words, text=text)
     if "l" in text and (misread := _letter_l(number, text)) is not None:
-        return Line(number, errors=(misread,), text=text)
+        return LexedLine(number, errors=(misread,), text=text)
     if text.count("(") > 1 and (inner := _nested_comment(text)) is not None:
-        return Line(number, errors=(word_faults.slip(number, inner + 1, "comment-nested"),), text=text)
+        return LexedLine(
+            number, errors=(word_faults.make_standard_error(number, inner + 1, "comment-nested"),), text=text
+        )
     errors: list[Diagnostic] = []
     if _THREE_LETTERS.search(text) or text[:1] in "%oO: ":
-        text, told = _without_prose(number, text)
+        text, told = _blank_prose(number, text)
         errors += told
     written, columns, comment, comment_column = _without_comment(number, text, errors)
-    code = _Code(ascii_upper(written), written, columns)
+    code = _Code(to_ascii_upper(written), written, columns)
     block_delete = code.text.startswith("/")
-    intent = intent_of(code.text)
+    intent = find_intended_code(code.text)
     if intent is not None:
-        error = refusal(number, columns[intent.at], intent.code, intent.message, intent.hint)
-        return Line(number, (), comment, comment_column, block_delete, written, (error,))
-    words = _Scanner(number, code, errors).words(1 if block_delete else 0)
-    return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
+        error = make_error_diagnostic(number, columns[intent.at], intent.code, intent.message, intent.hint)
+        return LexedLine(number, (), comment, comment_column, block_delete, written, (error,))
+    words = _Scanner(number, code, errors).scan_words(1 if block_delete else 0)
+    return LexedLine(number, words, comment, comment_column, block_delete, written, tuple(errors))
 
 
 def _nested_comment(text: str) -> int | None:
@@ -99,31 +101,31 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
     The result is also None if the line has other errors.
     """
     code = _with_blank_comments(text)
-    fixed = with_digit_one(code)
+    fixed = replace_letter_l(code)
     if fixed == code or lex_line(number, fixed).errors:
         return None
     at = next(i for i, (was, now) in enumerate(zip(code, fixed, strict=True)) if was != now)
-    word = next(found for found in _WORD.finditer(ascii_upper(fixed)) if found.start() <= at < found.end())
+    word = next(found for found in _WORD.finditer(to_ascii_upper(fixed)) if found.start() <= at < found.end())
     message = Message("{code}: letter l in a number.", code=code[word.start() : word.end()])
-    return refusal(number, at + 1, "letter-l", message, Message("Write {name}.", name=word[0]))
+    return make_error_diagnostic(number, at + 1, "letter-l", message, Message("Write {name}.", name=word[0]))
 
 
-def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
+def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
     """Return the line with blanks in place of text that is not code, and one error for each such text."""
     bare = _with_blank_comments(text)
-    habit = other_controls.whole_line(bare)
+    habit = other_controls.explain_foreign_line(bare)
     if habit is not None:
         column = len(bare) - len(bare.lstrip()) + 1
         kept = "".join(" " if sign == bare[at] else sign for at, sign in enumerate(text))
-        return kept, [refusal(number, column, *habit)]
+        return kept, [make_error_diagnostic(number, column, *habit)]
     told: list[Diagnostic] = []
     for found in _prose_in(bare):
         start, end = found.span()
         if bare[start - 1 : start] == ";":  # a comment in the style of other controls
             start -= 1
-            told.append(word_faults.of_sign(number, start + 1, ";", after_number=False))
+            told.append(word_faults.make_character_error(number, start + 1, ";", after_number=False))
         else:
-            told.append(word_faults.text_outside(number, start + 1, found[0].strip()))
+            told.append(word_faults.make_text_error(number, start + 1, found[0].strip()))
         text = text[:start] + " " * (end - start) + text[end:]
     return text, told
 
@@ -170,7 +172,7 @@ def _without_comment(
         first = first or start + 1
         end = text.find(")", start)
         if end < 0:
-            errors.append(word_faults.slip(number, start + 1, "comment-open"))
+            errors.append(word_faults.make_standard_error(number, start + 1, "comment-open"))
             end = len(text)
         comments.append(text[start + 1 : end])
         at = end + 1
@@ -194,28 +196,28 @@ class _Scanner:
         self._errors = errors
         self._thread = _THREAD.search(code.text) is not None
 
-    def words(self, at: int) -> tuple[Word, ...]:
+    def scan_words(self, index: int) -> tuple[Word, ...]:
         found: list[Word] = []
         text = self._code.text
-        while at < len(text):
-            match = _WORD.match(text, at)
+        while index < len(text):
+            match = _WORD.match(text, index)
             if match is None:
-                at = self._skip(at, after_number=bool(found) and text[at - 1].isdigit())
+                index = self._skip(index, after_number=bool(found) and text[index - 1].isdigit())
                 continue
             if self._thread and match[1] in {"CA", "CI"}:
-                found.append(Word("C", None, self._column(at), self._code.written[at : at + 1]))
-                at += 1
+                found.append(Word("C", None, self._column(index), self._code.written[index : index + 1]))
+                index += 1
                 continue
-            at = self._read(match, found)
+            index = self._read(match, found)
         return tuple(found)
 
-    def _read(self, match: re.Match[str], found: list[Word]) -> int:
+    def _read(self, match: re.Match[str], words: list[Word]) -> int:
         """Read one word and check for errors after it; return the index of the next word."""
         letter, digits, end = match[1], match[2], match.end()
         text = self._code.text
         if letter == "O" and not self._thread:
             return self._letter_o(match.start(), match.start())
-        if digits is None and letter not in BARE:
+        if digits is None and letter not in LETTERS_WITHOUT_NUMBER:
             return self._without_number(letter, match)
         if digits is None and text[end : end + 1] in {"+", "-", "."}:
             return self._without_number(letter, match)
@@ -224,10 +226,10 @@ class _Scanner:
         value = None if digits is None else float(digits) if len(digits) < 32 else float("inf")
         written = self._code.written[match.start() : end]
         word = Word(letter, value, self._column(match.start()), written)
-        fault = word_faults.of_word(self._number, word, digits)
+        fault = word_faults.find_word_error(self._number, word, digits)
         if fault is not None:
             self._errors.append(fault)
-        found.append(word)
+        words.append(word)
         return self._after_number(end) if digits is not None else end
 
     def _without_number(self, letter: str, match: re.Match[str]) -> int:
@@ -235,10 +237,10 @@ class _Scanner:
         follower = text[end : end + 1]
         if follower == "O":
             return self._letter_o(match.start(), end)
-        if follower == "," or other_controls.sign(follower) is not None:
+        if follower == "," or other_controls.explain_character(follower) is not None:
             return self._skip(end, after_number=False)
         column = self._column(match.start())
-        self._errors.append(word_faults.no_number(self._number, column, letter, follower))
+        self._errors.append(word_faults.make_missing_number_error(self._number, column, letter, follower))
         skipped = _TO_NEXT_LETTER.match(text, end)
         return skipped.end() if skipped else end
 
@@ -246,28 +248,30 @@ class _Scanner:
         text = self._code.text
         exponent = _EXPONENT.match(text, at)
         if exponent is not None:
-            self._errors.append(word_faults.slip(self._number, self._column(at), "exponent"))
+            self._errors.append(word_faults.make_standard_error(self._number, self._column(at), "exponent"))
             return exponent.end()
         return at
 
-    def _is_letter_o(self, at: int) -> bool:
+    def _is_letter_o(self, index: int) -> bool:
         """Return whether a letter O at this index is part of a number; in a thread, O can be a word."""
         text = self._code.text
-        return text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS)
+        return text[index : index + 1] == "O" and (
+            not self._thread or text[index + 1 : index + 2] in _NUMBER_SIGNS
+        )
 
-    def _letter_o(self, start: int, at: int) -> int:
+    def _letter_o(self, start: int, index: int) -> int:
         """Report the letter O at ``at`` in the word that begins at ``start``; return the end of the word."""
-        match = _ZERO_LETTER.match(self._code.text, at)
-        end = match.end() if match else at + 1
+        match = _ZERO_LETTER.match(self._code.text, index)
+        end = match.end() if match else index + 1
         word = self._code.written[start:end]
-        self._errors.append(word_faults.letter_o(self._number, self._column(at), word))
+        self._errors.append(word_faults.make_letter_o_error(self._number, self._column(index), word))
         return end
 
     def _skip(self, at: int, *, after_number: bool) -> int:
         sign = self._code.written[at]
         after_number = after_number or (at > 0 and self._code.text[at - 1] == ".")
         self._errors.append(
-            word_faults.of_sign(self._number, self._column(at), sign, after_number=after_number)
+            word_faults.make_character_error(self._number, self._column(at), sign, after_number=after_number)
         )
         match = _TO_NEXT_LETTER.match(self._code.text, at)
         return match.end() if match else at + 1

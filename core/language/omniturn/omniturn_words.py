@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
 
-COUNTING = frozenset({"T", "D", "P", "LS", "}"})
+WHOLE_NUMBER_LETTERS = frozenset({"T", "D", "P", "LS", "}"})
 """Words whose number counts something: whole and unsigned."""
 
-BARE = frozenset({"LF", "RF", "P", "C", "O"})
+LETTERS_WITHOUT_NUMBER = frozenset({"LF", "RF", "P", "C", "O"})
 """Words that may stand without a number."""
 
-RANGES: dict[str, tuple[float, float]] = {
+VALUE_RANGES: dict[str, tuple[float, float]] = {
     **dict.fromkeys(("X", "Z", "I", "K", "U", "A", "R", "C"), (-10_000.0, 10_000.0)),
     **dict.fromkeys(("CA", "CI"), (-1_000_000.0, 1_000_000.0)),
     "F": (0.000001, 100_000.0),
@@ -42,7 +42,7 @@ class Word(NamedTuple):
     text: str
 
 
-class Line(NamedTuple):
+class LexedLine(NamedTuple):
     """One line of a program.
 
     ``text`` is its code as written, without blanks and comment; ``number`` counts from 1.
@@ -55,6 +55,6 @@ class Line(NamedTuple):
     words: tuple[Word, ...] = ()
     comment: str | None = None
     comment_column: int = 0
-    block_delete: bool = False
+    has_block_delete: bool = False
     text: str = ""
     errors: tuple[Diagnostic, ...] = ()

@@ -9,13 +9,13 @@ import re
 from collections.abc import Sequence
 
 from core.language.diagnostics import Diagnostic, Severity
-from core.language.line_reading import typed
+from core.language.line_reading import describe_typographic_character
 from core.message import Message
 
-LOOK_UP = "For the list of codes, press Shift+F1 in the editor."
+CODE_LIST_HINT = "For the list of codes, press Shift+F1 in the editor."
 """The remedy where no other one can be named; in the editor, Shift+F1 opens the list."""
 
-_HERE: dict[str, tuple[str, str]] = {
+_EQUIVALENTS: dict[str, tuple[str, str]] = {
     "G05": ("This control has no code for high-speed modes.", "Remove this text from the program."),
     "G07": (
         "On this control, (~PLZC) starts milling around the part.",
@@ -84,7 +84,7 @@ _HERE: dict[str, tuple[str, str]] = {
     "H": ("On this control, T selects the tool offset, and D selects a secondary offset.", "Write T or D."),
     "Q": (
         ("Q belongs to cycles of other controls; the cycles of this control are G33, G74, G75, G81 and G83."),
-        LOOK_UP,
+        CODE_LIST_HINT,
     ),
     "U": ("On this control, incremental moves are X and Z with G91.", "Write G91 and X."),
     "W": ("On this control, incremental moves are X and Z with G91.", "Write G91 and Z."),
@@ -118,23 +118,23 @@ _NUMBERED = re.compile(r"\s*[Oo:]\s*[0-9]{1,8}\s*")
 _TOOL = re.compile(r"T0*([0-9]{1,2})([0-9]{2})")
 
 
-def meaning_here(word: str) -> tuple[str, str] | None:
+def explain_foreign_word(word: str) -> tuple[str, str] | None:
     """Return the explanation and the remedy for a code or letter of other controls.
 
     Returns None for any other word.
     """
-    return _HERE.get(word)
+    return _EQUIVALENTS.get(word)
 
 
-def sign(character: str) -> tuple[str, str] | None:
+def explain_character(character: str) -> tuple[str, str] | None:
     """Return the description and the remedy for a character that is not valid in a program.
 
     Returns None for an unknown character.
     """
-    return _SIGNS.get(character) or typed(character)
+    return _SIGNS.get(character) or describe_typographic_character(character)
 
 
-def whole_line(code: str) -> tuple[str, str, str] | None:
+def explain_foreign_line(code: str) -> tuple[str, str, str] | None:
     """Return code, message and hint for a line that only other controls need; otherwise None."""
     if _TRANSFER.fullmatch(code):
         return (
@@ -156,7 +156,7 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
     return None
 
 
-def tool(text: str) -> tuple[str, str] | None:
+def explain_foreign_tool(text: str) -> tuple[str, str] | None:
     """Return message and hint for ``T0101``, which selects tool and wear offset on other controls.
 
     Returns None for any other word.
@@ -181,9 +181,9 @@ def tool(text: str) -> tuple[str, str] | None:
 
 
 _COMMENT = re.compile(r"\([^)]*\)?")
-_MOST_LINES = 400  # The first lines of a program show its control.
+_MAX_LINES = 400  # The first lines of a program show its control.
 
-_ONLY = (
+_CONTROL_MARKERS = (
     ("LinuxCNC", re.compile(r"O<|O\d+(?:SUB|CALL|IF|WHILE|REPEAT)|#<|G64P|G[78](?![0-9])")),
     ("Mach", re.compile(r"G9[01]\.1|M1030")),
     ("Haas", re.compile(r"G154|G187|G103|M97P[0-9]{2,}|G53G0*X0")),
@@ -204,10 +204,10 @@ _FANUC = (
 """Forms of the Fanuc language; one alone may be a slip."""
 
 
-def recognize(lines: Sequence[str]) -> Diagnostic | None:
+def recognize_control(lines: Sequence[str]) -> Diagnostic | None:
     """Return one warning that names the control a program was written for; None for an OmniTurn program."""
-    codes = [_COMMENT.sub("", line).replace(" ", "").upper() for line in lines[:_MOST_LINES]]
-    control = next((name for name, form in _ONLY if any(map(form.search, codes))), "")
+    codes = [_COMMENT.sub("", line).replace(" ", "").upper() for line in lines[:_MAX_LINES]]
+    control = next((name for name, form in _CONTROL_MARKERS if any(map(form.search, codes))), "")
     if not control and sum(any(map(form.search, codes)) for form in _FANUC) > 1:
         control = "Fanuc"
     if not control:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from core.language.diagnostics import program_error
+from core.language.diagnostics import make_program_error
 from core.language.omniturn.omniturn_words import Word
 from core.message import Message
 
@@ -20,52 +20,54 @@ _STATEMENT = re.compile(r"\s*\(([^()]*)\)\s*")
 _WORD = re.compile(r"([A-Z])\s*([+-]?\s*(?:[0-9][0-9\s]*(?:\.[0-9\s]*)?|\.\s*[0-9][0-9\s]*))\s*")
 _END = re.compile(r"\s*M(?:30|02)\s*(?:\([^()]*\)\s*)?", re.IGNORECASE)
 _LETTERS = frozenset("XYZFGIJHD")
-_MOST = 10_000.0
-_MOST_FEED = 100_000.0
+_MAX_VALUE = 10_000.0
+_MAX_FEED = 100_000.0
 _HINT = "Between (~PLXC) or (~PLZC) and (END), write only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
 
 
 class PlaneLine(NamedTuple):
     """One line of plane switching. ``name`` is PLXC, PLZC or END; it is empty for a statement with ``words``.
 
-    ``arc`` is 2 for G02, 3 for G03 and otherwise 0. The numbers of the words are in program units.
+    ``arc_code`` is 2 for G02, 3 for G03 and otherwise 0. The numbers of the words are in program units.
     """
 
     name: str
     words: dict[str, Word]
-    arc: int = 0
+    arc_code: int = 0
 
 
-def plane_entry(text: str) -> PlaneLine | None:
+def parse_plane_entry(text: str) -> PlaneLine | None:
     """Return the line if it starts plane switching; None for any other line."""
     match = _ENTRY.fullmatch(text) if "~" in text else None
     return PlaneLine(match[1].upper(), {}) if match else None
 
 
-def lacks_sign(text: str, following: Iterable[str]) -> bool | None:
+def is_missing_tilde(text: str, following_lines: Iterable[str]) -> bool | None:
     """Return whether an entry to plane switching lacks its ~, so that it is read as a comment.
 
-    True means that the next line in ``following`` is a plane statement. With False, the line may be a
+    True means that the next line in ``following_lines`` is a plane statement. With False, the line may be a
     comment. The result is None if the line is not an entry.
     """
     if _BARE_ENTRY.fullmatch(text) is None:
         return None
-    for line in following:
+    for line in following_lines:
         if line.strip():
             return _FIRST_WORD.match(line) is not None
     return False
 
 
-def ends_program(text: str) -> bool:
+def is_program_end(text: str) -> bool:
     """Return whether a line is M30 or M02, so that (END) is missing."""
     return _END.fullmatch(text) is not None
 
 
-def lex_plane(number: int, text: str) -> PlaneLine:
+def lex_plane_line(number: int, text: str) -> PlaneLine:
     """Read a line between the entry and (END). Raises ProgramError for a statement that is not allowed."""
     match = _STATEMENT.fullmatch(text) if text.isascii() else None
     if match is None:
-        raise program_error(number, 1, "plane-line", "This line is not a statement in parentheses.", _HINT)
+        raise make_program_error(
+            number, 1, "plane-line", "This line is not a statement in parentheses.", _HINT
+        )
     inside = match[1].upper()
     if inside.strip() == "END":
         return PlaneLine("END", {})
@@ -78,11 +80,11 @@ def lex_plane(number: int, text: str) -> PlaneLine:
             message = Message(
                 "'{value}' is not allowed in a statement between (~PLXC) or (~PLZC) and (END).", value=shown
             )
-            raise program_error(number, base + at, "plane-word", message, _HINT)
+            raise make_program_error(number, base + at, "plane-word", message, _HINT)
         word = _word(number, base + at, word_match)
         if word.letter in words:
             message = Message("The line contains {letter} twice.", letter=word.letter)
-            raise program_error(number, word.column, "word-twice", message, "Remove one of the two.")
+            raise make_program_error(number, word.column, "word-twice", message, "Remove one of the two.")
         words[word.letter] = word
         at = word_match.end()
     return _sorted(number, words)
@@ -92,7 +94,7 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
     letter, digits = match[1], re.sub(r"\s", "", match[2])
     word = Word(letter, float(digits[:32]), column, letter + digits)
     if letter not in _LETTERS:
-        raise program_error(
+        raise make_program_error(
             number,
             column,
             "plane-word",
@@ -105,9 +107,9 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
             "{word}: between (~PLXC) or (~PLZC) and (END), the only G codes allowed are G02 and G03.",
             word=word.text,
         )
-        raise program_error(number, column, "plane-word", message, _HINT)
-    if len(digits) > 16 or abs(value) > (_MOST_FEED if letter == "F" else _MOST):
-        raise program_error(
+        raise make_program_error(number, column, "plane-word", message, _HINT)
+    if len(digits) > 16 or abs(value) > (_MAX_FEED if letter == "F" else _MAX_VALUE):
+        raise make_program_error(
             number,
             column,
             "out-of-range",
@@ -119,11 +121,11 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
 
 def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
     if not words:
-        raise program_error(number, 1, "plane-word", "The statement is empty.", _HINT)
+        raise make_program_error(number, 1, "plane-word", "The statement is empty.", _HINT)
     for letter in ("H", "D"):
         if letter in words and len(words) > 1:
             message: str = Message("{letter} cannot be combined with other words.", letter=letter)
-            raise program_error(
+            raise make_program_error(
                 number,
                 words[letter].column,
                 "not-alone",
@@ -136,7 +138,7 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
             message = Message(
                 "{words} is an arc center word, but the line has no G02 or G03.", words=words[letter].text
             )
-            raise program_error(
+            raise make_program_error(
                 number,
                 words[letter].column,
                 "word-unused",
@@ -147,7 +149,7 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
             message = Message(
                 "{letter} is missing: I and J are the coordinates of the arc center.", letter=letter
             )
-            raise program_error(
+            raise make_program_error(
                 number,
                 code.column,
                 "arc-coordinate-missing",
@@ -156,7 +158,7 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
             )
     if code is not None and "Z" in words:
         message = "Between (~PLXC) or (~PLZC) and (END), an arc can move only X and Y."
-        raise program_error(
+        raise make_program_error(
             number, words["Z"].column, "word-unused", message, "Write the Z move on another line."
         )
     return PlaneLine("", words, int(code.value or 0) if code else 0)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.language.diagnostics import Diagnostic, refusal
+from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.language.omniturn import other_controls
-from core.language.omniturn.omniturn_words import COUNTING, RANGES, Word
+from core.language.omniturn.omniturn_words import VALUE_RANGES, WHOLE_NUMBER_LETTERS, Word
 from core.message import Message
 
-_MOST_DIGITS = 15
-_MOST_SHOWN = 40  # characters of a text
+_MAX_DIGITS = 15
+_MAX_DISPLAYED = 40  # characters of a text
 _SIGNS = {
     ",": ("comma", "Commas are not allowed in a program.", "Write a decimal point."),
     ")": ("comment-close", "')' has no opening parenthesis.", "Add '(' or remove ')'."),
@@ -34,7 +34,7 @@ _AFTER_NUMBER = {
     ),
 }
 
-_SLIPS = {
+_ERROR_TEXTS = {
     "comment-open": ("The comment has no closing parenthesis.", "Add ')'."),
     "comment-nested": ("A comment is inside another comment.", "Remove the inner parentheses."),
     # This covers X1E5, and also E005 from a misread print of F.005.
@@ -45,9 +45,9 @@ _SLIPS = {
 }
 
 
-def too_long(line: int, length: int) -> Diagnostic:
+def make_length_error(line: int, length: int) -> Diagnostic:
     """Return the error for a line that is too long."""
-    return refusal(
+    return make_error_diagnostic(
         line,
         0,
         "line-too-long",
@@ -56,47 +56,49 @@ def too_long(line: int, length: int) -> Diagnostic:
     )
 
 
-def text_outside(line: int, column: int, text: str) -> Diagnostic:
+def make_text_error(line: int, column: int, text: str) -> Diagnostic:
     """Return the error for text outside parentheses."""
-    shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
+    shown = text if len(text) <= _MAX_DISPLAYED else f"{text[:_MAX_DISPLAYED]}…"
     message = Message("'{value}' is text outside parentheses.", value=shown)
-    return refusal(line, column, "text-outside", message, Message("Write ({value}).", value=shown))
+    return make_error_diagnostic(
+        line, column, "text-outside", message, Message("Write ({value}).", value=shown)
+    )
 
 
-def slip(line: int, column: int, code: str) -> Diagnostic:
+def make_standard_error(line: int, column: int, code: str) -> Diagnostic:
     """Return the error for a code that always has the same message."""
-    return refusal(line, column, code, *_SLIPS[code])
+    return make_error_diagnostic(line, column, code, *_ERROR_TEXTS[code])
 
 
-def letter_o(line: int, column: int, word: str) -> Diagnostic:
+def make_letter_o_error(line: int, column: int, word: str) -> Diagnostic:
     """Return the error for a letter O in place of a zero, such as GO2, MO5 or XO."""
     message = Message("{word}: letter O in a number.", word=word)
-    return refusal(
+    return make_error_diagnostic(
         line, column, "letter-o", message, Message("Write {name}.", name=word.upper().replace("O", "0"))
     )
 
 
-def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
+def make_missing_number_error(line: int, column: int, letter: str, next_character: str) -> Diagnostic:
     """Return the error for a letter that no valid number follows."""
-    if follower in {"+", "-"}:
-        return refusal(
+    if next_character in {"+", "-"}:
+        return make_error_diagnostic(
             line,
             column,
             "lone-sign",
             Message("{letter} has a sign but no number.", letter=letter),
             "Write a number after the sign.",
         )
-    if follower == ".":
-        return refusal(
+    if next_character == ".":
+        return make_error_diagnostic(
             line,
             column,
             "lone-point",
             Message("{letter} has a decimal point but no digits.", letter=letter),
             "Write the digits of the number.",
         )
-    if letter not in RANGES and letter not in {"LF", "RF", "O"}:
+    if letter not in VALUE_RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)
-    return refusal(
+    return make_error_diagnostic(
         line,
         column,
         "number-missing",
@@ -105,27 +107,27 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
     )
 
 
-def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnostic:
+def make_character_error(line: int, column: int, character: str, *, after_number: bool) -> Diagnostic:
     """Return the error for a character that cannot start a word."""
-    fixed = _SIGNS.get(sign) or (_AFTER_NUMBER.get(sign) if after_number else None)
+    fixed = _SIGNS.get(character) or (_AFTER_NUMBER.get(character) if after_number else None)
     if fixed is not None:
-        return refusal(line, column, *fixed)
-    if sign in "0123456789+-.":
-        return refusal(
+        return make_error_diagnostic(line, column, *fixed)
+    if character in "0123456789+-.":
+        return make_error_diagnostic(
             line,
             column,
             "letter-missing",
             "A number has no letter in front of it.",
             "Write a letter before the number.",
         )
-    shown = sign if sign.isprintable() else f"U+{ord(sign):04X}"
-    habit = other_controls.sign(sign)
+    shown = character if character.isprintable() else f"U+{ord(character):04X}"
+    habit = other_controls.explain_character(character)
     if habit is not None:
         what, hint = habit
-        return refusal(
+        return make_error_diagnostic(
             line, column, "character", Message("'{value}' is {what}.", value=shown, what=what), hint
         )
-    return refusal(
+    return make_error_diagnostic(
         line,
         column,
         "character",
@@ -134,36 +136,36 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
     )
 
 
-def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
+def find_word_error(line: int, word: Word, digits: str | None) -> Diagnostic | None:
     """Return the error in the letter or the value of a word, or None."""
     letter, value, column, _ = word
-    if letter not in RANGES and letter not in {"LF", "RF", "O"}:
+    if letter not in VALUE_RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)
     if digits is None or value is None:
         return None
     if letter in {"G", "M"}:
         return _two_digits(line, word, digits)
-    if letter not in RANGES:
-        return refusal(
+    if letter not in VALUE_RANGES:
+        return make_error_diagnostic(
             line,
             column,
             "number-unwanted",
             Message("{letter} does not accept a number.", letter=letter),
             "Remove this text from the program.",
         )
-    if sum(sign.isdigit() for sign in digits) > _MOST_DIGITS:
-        return refusal(
+    if sum(sign.isdigit() for sign in digits) > _MAX_DIGITS:
+        return make_error_diagnostic(
             line,
             column,
             "number-too-long",
-            Message("{letter} has more than {most_digits} digits.", letter=letter, most_digits=_MOST_DIGITS),
+            Message("{letter} has more than {most_digits} digits.", letter=letter, most_digits=_MAX_DIGITS),
             "Round the number.",
         )
     return _size(line, word, digits)
 
 
 def _tool(text: str, _value: float) -> tuple[str, str, str]:
-    habit = other_controls.tool(text)
+    habit = other_controls.explain_foreign_tool(text)
     return (
         "tool-number",
         *(
@@ -209,9 +211,9 @@ _SIZES: dict[str, Callable[[str, float], tuple[str, str, str] | None]] = {
 
 def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     letter, value, column, text = word
-    least, most = RANGES[letter]
-    if letter in COUNTING and not digits.isdigit():
-        return refusal(
+    least, most = VALUE_RANGES[letter]
+    if letter in WHOLE_NUMBER_LETTERS and not digits.isdigit():
+        return make_error_diagnostic(
             line,
             column,
             "whole-number",
@@ -222,7 +224,7 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
         return None
     special = _SIZES.get(letter)
     if special is not None and (fault := special(text, value)) is not None:
-        return refusal(line, column, *fault)
+        return make_error_diagnostic(line, column, *fault)
     if letter == "LS":
         message = Message(
             "{text} is out of range: the loop count must be from {minimum} to {maximum}.",
@@ -230,8 +232,8 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
             minimum=f"{least:g}",
             maximum=f"{most:,.0f}",
         )
-        return refusal(line, column, "loop-count", message, "Correct the loop count.")
-    return refusal(
+        return make_error_diagnostic(line, column, "loop-count", message, "Correct the loop count.")
+    return make_error_diagnostic(
         line,
         column,
         "out-of-range",
@@ -256,7 +258,7 @@ def _two_digits(line: int, word: Word, digits: str) -> Diagnostic | None:
         if value is not None and digits.isdigit()
         else "Write two digits."
     )
-    return refusal(
+    return make_error_diagnostic(
         line,
         word.column,
         code,
@@ -267,16 +269,16 @@ def _two_digits(line: int, word: Word, digits: str) -> Diagnostic | None:
 
 def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
     if letter == "N":
-        return refusal(
+        return make_error_diagnostic(
             line,
             column,
             "n-word",
             "This control does not use line numbers: N is not allowed.",
             "Remove the N word.",
         )
-    habit = other_controls.meaning_here(letter)
+    habit = other_controls.explain_foreign_word(letter)
     if habit is not None:
-        return refusal(
+        return make_error_diagnostic(
             line,
             column,
             "unknown-letter",
@@ -284,4 +286,4 @@ def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
             habit[1],
         )
     said = Message("{letter} is not a valid word on this control.", letter=letter)
-    return refusal(line, column, "unknown-letter", said, other_controls.LOOK_UP)
+    return make_error_diagnostic(line, column, "unknown-letter", said, other_controls.CODE_LIST_HINT)

@@ -1,6 +1,6 @@
 """Reader of the SINUMERIK turning dialect: words, lines and syntax errors."""
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import Form, Line, Word
+from core.language.sinumerik.sinumerik_words import LexedBlock, PositionForm, Word
 
-__all__ = ["Form", "Line", "Word", "lex_line"]
+__all__ = ["LexedBlock", "PositionForm", "Word", "lex_line"]

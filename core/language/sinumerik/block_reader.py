@@ -6,13 +6,15 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
-from core.language.formulas import FUNCTIONS, Formula, FormulaError, FormulaReader, Grammar
-from core.language.line_reading import UNSIGNED
+from core.language.formulas import FUNCTION_OPERATIONS, Formula, FormulaError, FormulaGrammar, FormulaReader
+from core.language.line_reading import UNSIGNED_NUMBER
 
-GRAMMAR = Grammar(
-    number=re.compile(rf"{UNSIGNED}(?:EX[+-]?[0-9]{{1,3}})?"),
+SINUMERIK_GRAMMAR = FormulaGrammar(
+    number_pattern=re.compile(rf"{UNSIGNED_NUMBER}(?:EX[+-]?[0-9]{{1,3}})?"),
     # Names such as $P_… are system variables, and their indices are part of the name.
-    parameter=re.compile(r"(R(?=[0-9\[])|\$[A-Z][A-Z0-9_]*(?:\[[^\]]*\])?|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
+    parameter_pattern=re.compile(
+        r"(R(?=[0-9\[])|\$[A-Z][A-Z0-9_]*(?:\[[^\]]*\])?|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"
+    ),
     operators={
         "*": (80, "times"),
         "/": (80, "over"),
@@ -31,7 +33,7 @@ GRAMMAR = Grammar(
         "<": (10, "less"),
     },
     functions={
-        **FUNCTIONS,
+        **FUNCTION_OPERATIONS,
         "ATAN2": "direction",
         "POT": "square",
         "TRUNC": "integer part",
@@ -41,102 +43,103 @@ GRAMMAR = Grammar(
         "NOT": "not",
     },
     constants={"TRUE": 1.0, "FALSE": 0.0, "$PI": 3.141592653589793},
-    separator=",",
-    negation=90,
-    indexed=True,
+    operand_separator=",",
+    negation_precedence=90,
+    allows_index=True,
 )
 """Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""
 
 
-def formula_at(text: str, at: int) -> tuple[Formula, int]:
-    """Return the formula that starts at ``at`` and the index after it. Raises FormulaError."""
-    reader = FormulaReader(GRAMMAR, text, at)
-    return reader.formula(), reader.at
+def parse_formula(text: str, index: int) -> tuple[Formula, int]:
+    """Return the formula that starts at ``index`` and the index after it. Raises FormulaError."""
+    reader = FormulaReader(SINUMERIK_GRAMMAR, text, index)
+    return reader.read_formula(), reader.index
 
 
-NEXT = re.compile(r"\s*([,)])")
+LIST_SEPARATOR = re.compile(r"\s*([,)])")
 """A comma or the closing parenthesis behind an item."""
 
 _Item = TypeVar("_Item")
 
 
 class BlockReader(FormulaReader):
-    """Reader of a block from index ``at`` on.
+    """Reader of a block from index ``index`` on.
 
-    ``upper`` is the block in capitals, and ``written`` is the original text.
+    ``uppercase_text`` is the block in capitals, and ``written`` is the original text.
     """
 
-    def __init__(self, upper: str, written: str, at: int) -> None:
-        super().__init__(GRAMMAR, upper, at)
-        self.written = written
+    def __init__(self, uppercase_text: str, original_text: str, index: int) -> None:
+        super().__init__(SINUMERIK_GRAMMAR, uppercase_text, index)
+        self.original_text = original_text
 
     @property
-    def rest(self) -> str:
+    def remaining_text(self) -> str:
         """The remaining text without leading blanks."""
-        return self.upper[self.at :].lstrip()
+        return self.uppercase_text[self.index :].lstrip()
 
-    def take(self, pattern: re.Pattern[str], *, written: bool = False) -> re.Match[str] | None:
+    def match(self, pattern: re.Pattern[str], *, in_original: bool = False) -> re.Match[str] | None:
         """Return the match of the pattern at this position and move past it; None without a match."""
-        match = pattern.match(self.written if written else self.upper, self.at)
+        match = pattern.match(self.original_text if in_original else self.uppercase_text, self.index)
         if match is not None:
-            self.at = match.end()
+            self.index = match.end()
         return match
 
-    def demand(self, pattern: re.Pattern[str], why: str, hint: str) -> re.Match[str]:
+    def match_required(self, pattern: re.Pattern[str], message: str, hint: str) -> re.Match[str]:
         """Return the match of the pattern at this position and move past it.
 
         Raises FormulaError without a match.
         """
-        match = self.take(pattern)
+        match = self.match(pattern)
         if match is None:
-            raise FormulaError(self.at, why, hint)
+            raise FormulaError(self.index, message, hint)
         return match
 
-    def items(self, read: Callable[[], _Item], why: str, hint: str) -> list[_Item]:
-        """Return the items that ``read`` returns up to the closing parenthesis.
+    def read_items(self, read_item: Callable[[], _Item], message: str, hint: str) -> list[_Item]:
+        """Return the items that ``read_item`` returns up to the closing parenthesis.
 
         Raises FormulaError without one.
         """
         found: list[_Item] = []
         while True:
-            found.append(read())
-            if self.demand(NEXT, why, hint)[1] == ")":
+            found.append(read_item())
+            if self.match_required(LIST_SEPARATOR, message, hint)[1] == ")":
                 return found
 
 
 _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
 
 
-class Values(NamedTuple):
+class ValueList(NamedTuple):
     """Values for consecutive elements of an array; None leaves an element unchanged.
 
-    REP has one formula for ``times`` elements, or for all remaining elements if ``times`` is None.
+    REP has one formula for ``repeat_count`` elements, or for all remaining elements if ``repeat_count`` is
+    None.
     """
 
     formulas: tuple[Formula | None, ...]
-    repeated: bool = False
-    times: Formula | None = None
+    is_repeated: bool = False
+    repeat_count: Formula | None = None
 
 
-def read_values(reader: BlockReader, *, bare: bool) -> Values | None:
+def read_value_list(reader: BlockReader, *, allows_bare_list: bool) -> ValueList | None:
     """Read a list of values; return None if no list starts here.
 
-    With ``bare``, a parenthesis without SET also starts a list. Otherwise, such a parenthesis starts a
-    formula. Raises FormulaError for an incomplete list.
+    With ``allows_bare_list``, a parenthesis without SET also starts a list. Otherwise, such a parenthesis
+    starts a formula. Raises FormulaError for an incomplete list.
     """
-    match = _LIST.match(reader.upper, reader.at)
-    if match is None or not (match[1] or bare):
+    match = _LIST.match(reader.uppercase_text, reader.index)
+    if match is None or not (match[1] or allows_bare_list):
         return None
-    reader.at = match.end()
-    found = reader.items(
-        lambda: None if NEXT.match(reader.upper, reader.at) else reader.formula(),
+    reader.index = match.end()
+    found = reader.read_items(
+        lambda: None if LIST_SEPARATOR.match(reader.uppercase_text, reader.index) else reader.read_formula(),
         "The closing parenthesis of the list of values is missing",
         "Write ) after the last value.",
     )
     if match[1] != "REP":
-        return Values(tuple(found))
+        return ValueList(tuple(found))
     if found[0] is None or len(found) > 2:
         raise FormulaError(
             match.end(), "REP accepts only a value and a number of elements", "Write, for example, REP(0)."
         )
-    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None)
+    return ValueList((found[0],), is_repeated=True, repeat_count=found[1] if found[1:] else None)

@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError
-from core.language.sinumerik.block_reader import NEXT, BlockReader
+from core.language.sinumerik.block_reader import LIST_SEPARATOR, BlockReader
 
 _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
@@ -17,7 +17,7 @@ _PARAMETER = re.compile(
 _DIMENSION = re.compile(r"\s*([0-9]*)\s*")
 
 
-class Argument(NamedTuple):
+class CallArgument(NamedTuple):
     """One argument: a formula, or a text (in quotation marks or an axis letter), or neither if it is omitted.
 
     ``column`` counts from 1.
@@ -28,63 +28,63 @@ class Argument(NamedTuple):
     column: int
 
     @property
-    def given(self) -> bool:
+    def is_specified(self) -> bool:
         """Whether the argument is specified."""
         return self.formula is not None or self.text is not None
 
 
-class Parameter(NamedTuple):
-    """A parameter of PROC. ``kind`` is its type such as REAL, and ``by_reference`` is True with VAR.
+class ProcParameter(NamedTuple):
+    """A parameter of PROC. ``type_name`` is its type such as REAL, and ``is_by_reference`` is True with VAR.
 
-    ``default`` is the default value, or None. ``sizes`` are the dimensions of an array, with None for a
+    ``default`` is the default value, or None. ``dimensions`` are the dimensions of an array, with None for a
     dimension that the caller's array determines; it is empty for a scalar.
     """
 
     name: str
-    kind: str
-    by_reference: bool
-    default: Argument | None
-    sizes: tuple[int | None, ...] = ()
+    type_name: str
+    is_by_reference: bool
+    default: CallArgument | None
+    dimensions: tuple[int | None, ...] = ()
 
 
-def read_arguments(reader: BlockReader) -> tuple[Argument, ...]:
+def read_arguments(reader: BlockReader) -> tuple[CallArgument, ...]:
     """Read the arguments in parentheses. Raises FormulaError for invalid text."""
-    found: list[Argument] = []
-    start = reader.at
-    reader.at += 1
+    found: list[CallArgument] = []
+    start = reader.index
+    reader.index += 1
     while True:
-        reader.blanks()
+        reader.skip_blanks()
         found.append(_argument(reader))
-        match = reader.take(NEXT)
+        match = reader.match(LIST_SEPARATOR)
         if match is None:
             hint = "Write ( , , )."
-            if not reader.upper[reader.at :]:
+            if not reader.uppercase_text[reader.index :]:
                 raise FormulaError(start, "The argument list has no closing parenthesis", hint)
-            raise FormulaError(reader.at, "The argument list contains text that is not an argument", hint)
+            raise FormulaError(reader.index, "The argument list contains text that is not an argument", hint)
         if match[1] == ")":
-            return () if len(found) == 1 and not found[0].given else tuple(found)
+            return () if len(found) == 1 and not found[0].is_specified else tuple(found)
 
 
-def _argument(reader: BlockReader) -> Argument:
-    column = reader.at + 1
-    if reader.upper[reader.at : reader.at + 1] in {",", ")"}:
-        return Argument(None, None, column)
-    if quoted := reader.take(_QUOTED, written=True):
-        return Argument(None, quoted[1].strip(), column)
-    if axis := reader.take(_AXIS):
-        return Argument(None, axis[1], column)
-    return Argument(reader.formula(), None, column)
+def _argument(reader: BlockReader) -> CallArgument:
+    column = reader.index + 1
+    if reader.uppercase_text[reader.index : reader.index + 1] in {",", ")"}:
+        return CallArgument(None, None, column)
+    if quoted := reader.match(_QUOTED, in_original=True):
+        return CallArgument(None, quoted[1].strip(), column)
+    if axis := reader.match(_AXIS):
+        return CallArgument(None, axis[1], column)
+    return CallArgument(reader.read_formula(), None, column)
 
 
-def read_parameters(reader: BlockReader) -> tuple[Parameter, ...]:
+def read_parameters(reader: BlockReader) -> tuple[ProcParameter, ...]:
     """Read the parameters in parentheses. Raises FormulaError for invalid text."""
-    reader.at += 1
-    reader.blanks()
-    if reader.upper[reader.at : reader.at + 1] == ")":
-        reader.at += 1
+    reader.index += 1
+    reader.skip_blanks()
+    if reader.uppercase_text[reader.index : reader.index + 1] == ")":
+        reader.index += 1
         return ()
     return tuple(
-        reader.items(
+        reader.read_items(
             lambda: _parameter(reader),
             "The closing parenthesis of the parameter list is missing",
             "Write ) after the last parameter.",
@@ -92,12 +92,12 @@ def read_parameters(reader: BlockReader) -> tuple[Parameter, ...]:
     )
 
 
-def _parameter(reader: BlockReader) -> Parameter:
-    match = reader.demand(
+def _parameter(reader: BlockReader) -> ProcParameter:
+    match = reader.match_required(
         _PARAMETER, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
     )
     default = _argument(reader) if match[5] else None
-    return Parameter(match[3] or "", match[2], match[1] is not None, default, _sizes(match))
+    return ProcParameter(match[3] or "", match[2], match[1] is not None, default, _sizes(match))
 
 
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:

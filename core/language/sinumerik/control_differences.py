@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from core.language.sinumerik.sinumerik_words import Line, Word
+from core.language.sinumerik.sinumerik_words import LexedBlock, Word
 
-WHOLE = "840d"
-CONTROLS = ("802d", "808d", "828d", WHOLE)
+FULL_CONTROL = "840d"
+CONTROL_NAMES = ("802d", "808d", "828d", FULL_CONTROL)
 """Names in the machine file."""
 
 _STRUCTURES = """
@@ -24,36 +24,39 @@ _MODES = """
     DYNNORM DYNPOS DYNROUGH DYNSEMIFIN DYNFINISH FNORM STOPFIFO STARTFIFO FIFOCTRL DIAM90 WORKPIECE
     CYCLE800 CYCLE832 SPOSA
 """
-NAMED_TOOL = 'T="NAME"'
-IF_BLOCK = "IF without a jump"
+NAMED_TOOL_FUNCTION = 'T="NAME"'
+IF_BLOCK_FUNCTION = "IF without a jump"
 
-_SMALL = frozenset(f"{_STRUCTURES} {_MODES}".split()) | {NAMED_TOOL, IF_BLOCK}
-LACKS: Mapping[str, frozenset[str]] = {
+_SMALL = frozenset(f"{_STRUCTURES} {_MODES}".split()) | {NAMED_TOOL_FUNCTION, IF_BLOCK_FUNCTION}
+MISSING_FUNCTIONS: Mapping[str, frozenset[str]] = {
     "802d": _SMALL | {"CYCLE99", "CYCLE86"},
     "808d": _SMALL - {"CUT2D", "CUT2DF"},
     "828d": frozenset(),
-    WHOLE: frozenset(),
+    FULL_CONTROL: frozenset(),
 }
 """By control, what it has not and this one has."""
 
 
-def lacking(control: str, line: Line) -> tuple[str, int] | None:
+def find_missing_function(control: str, line: LexedBlock) -> tuple[str, int] | None:
     """Return the first function of a line that a control lacks, with its column.
 
     Returns None if the control has all functions of the line.
     """
-    lacks = LACKS[control]
+    lacks = MISSING_FUNCTIONS[control]
     if not lacks:
         return None
     return next(((name, column) for name, column in _names(line) if name in lacks), None)
 
 
-def _names(line: Line) -> Iterator[tuple[str, int]]:
-    if line.call:
-        yield line.call, line.call_column
-    if line.jump is not None:
-        jumps = line.jump.target or line.jump.steering != "IF"
-        yield (str(line.jump.steering) if jumps else IF_BLOCK), line.jump.column
+def _names(line: LexedBlock) -> Iterator[tuple[str, int]]:
+    if line.called_name:
+        yield line.called_name, line.call_column
+    if line.control_statement is not None:
+        jumps = line.control_statement.target or line.control_statement.keyword != "IF"
+        yield (
+            (str(line.control_statement.keyword) if jumps else IF_BLOCK_FUNCTION),
+            line.control_statement.column,
+        )
     for word in line.words:
         yield _head(word), word.column
 
@@ -61,4 +64,4 @@ def _names(line: Line) -> Iterator[tuple[str, int]]:
 def _head(word: Word) -> str:
     if word.name == "G" and word.value is not None:
         return f"G{int(word.value)}"
-    return NAMED_TOOL if word.name == "T" and word.string else word.name
+    return NAMED_TOOL_FUNCTION if word.name == "T" and word.quoted_name else word.name

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 _DRILL = "RTP RFP SDIS DP DPR"
 _MODES = "_GMODE _DMODE _AMODE"
 
-CYCLES: Mapping[str, tuple[str, ...]] = {
+CYCLE_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     name: tuple(parameters.split())
     for name, parameters in {
         "CYCLE81": f"{_DRILL} DTB {_MODES}",
@@ -48,7 +48,7 @@ _MILL = "pockets and slots are not supported; write their path as moves of X, Z 
 _PROBE = "this lathe has no probe for measuring cycles"
 _SWIVEL = "this lathe has no swivel head; remove this cycle"
 
-CYCLES_OUTSIDE: Mapping[str, str] = {
+UNSUPPORTED_CYCLES: Mapping[str, str] = {
     "CYCLE62": f"{_MASK}; specify the contour in CYCLE95",
     "CYCLE930": f"{_MASK}; write the groove with CYCLE93",
     **dict.fromkeys(("CYCLE950", "CYCLE951", "CYCLE952"), f"{_MASK}; write the contour with CYCLE95"),
@@ -61,9 +61,9 @@ CYCLES_OUTSIDE: Mapping[str, str] = {
 }
 """Standard cycles that this control refuses, with what to do instead."""
 
-SWIVELS = "CYCLE800"
-CYCLES_TAKEN: Mapping[str, str] = {
-    SWIVELS: "this lathe has no swivel position to reset",
+SWIVEL_CYCLE = "CYCLE800"
+IGNORED_CYCLES: Mapping[str, str] = {
+    SWIVEL_CYCLE: "this lathe has no swivel position to reset",
     "CYCLE832": "the path is followed exactly, regardless of the tolerance",
 }
 """Standard cycles that change nothing here, and why; CYCLE800 with its brackets empty alone."""

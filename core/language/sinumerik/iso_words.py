@@ -6,15 +6,15 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-from core.language.line_reading import SIGNED
+from core.language.line_reading import SIGNED_NUMBER
 from core.message import Message
 
 
-class Habit(NamedTuple):
+class IsoWord(NamedTuple):
     """A word of another control: the index where it starts, its explanation and the remedy."""
 
     at: int
-    text: str
+    explanation: str
     hint: str
 
 
@@ -161,25 +161,28 @@ _RULES: tuple[_Rule, ...] = (
     (re.compile(r"^\s*\("), _comment),
     (re.compile(r"^\s*(?P<word>O[0-9]+)"), _program),
     (re.compile(r"(?P<word>#(?P<number>[0-9]+))"), _variable),
-    (re.compile(rf"{_g('4')}(?!.*[FS][0-9=.]).*?(?<![A-Z])(?P<letter>[XUP])(?P<number>{SIGNED})"), _dwell),
+    (
+        re.compile(rf"{_g('4')}(?!.*[FS][0-9=.]).*?(?<![A-Z])(?P<letter>[XUP])(?P<number>{SIGNED_NUMBER})"),
+        _dwell,
+    ),
     (re.compile(rf"(?P<word>{_g('28|30')})"), _home),
-    (re.compile(rf"(?P<word>{_g('50|92')})\s*S(?P<number>{SIGNED})"), _speed_limit),
-    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>7[0-6])(?=.*(?<![A-Z])[PQRUW]{SIGNED})"), _cycle),
-    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>32|92)(?=.*F{SIGNED})"), _cycle),
+    (re.compile(rf"(?P<word>{_g('50|92')})\s*S(?P<number>{SIGNED_NUMBER})"), _speed_limit),
+    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>7[0-6])(?=.*(?<![A-Z])[PQRUW]{SIGNED_NUMBER})"), _cycle),
+    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>32|92)(?=.*F{SIGNED_NUMBER})"), _cycle),
     (re.compile(rf"(?P<word>{_g('50|92')})"), _preset),
     (re.compile(r"(?<![A-Z0-9_])G(?P<code>20|21)(?![0-9.])"), _inches),
     (re.compile(r"(?<![A-Z0-9_])G(?P<code>98|99)(?![0-9.])"), _feed),
     (re.compile(r"(?P<word>M98)\s*P0*(?P<number>[0-9]+)"), _call),
     (re.compile(r"GOTO\s*(?P<number>[0-9]+)"), _jump),
-    (re.compile(rf"(?P<word>,\s*(?P<letter>[CR])(?P<number>{SIGNED}))"), _corner),
-    (re.compile(rf"{_g('2|3')}.*?(?<![A-Z])R(?P<number>{SIGNED})"), _radius),
-    (re.compile(rf"{_g('1')}.*?(?<![A-Z])(?P<word>(?P<letter>R)(?P<number>{SIGNED}))"), _corner),
-    (re.compile(rf"(?<![A-Z0-9_])(?P<word>(?P<letter>[UW])(?P<number>{SIGNED}))"), _distance),
+    (re.compile(rf"(?P<word>,\s*(?P<letter>[CR])(?P<number>{SIGNED_NUMBER}))"), _corner),
+    (re.compile(rf"{_g('2|3')}.*?(?<![A-Z])R(?P<number>{SIGNED_NUMBER})"), _radius),
+    (re.compile(rf"{_g('1')}.*?(?<![A-Z])(?P<word>(?P<letter>R)(?P<number>{SIGNED_NUMBER}))"), _corner),
+    (re.compile(rf"(?<![A-Z0-9_])(?P<word>(?P<letter>[UW])(?P<number>{SIGNED_NUMBER}))"), _distance),
 )
 """The first that fits a line is told. They are asked of lines alone that cannot be read as they stand."""
 
 
-def iso_habit(code: str) -> Habit | None:
+def find_iso_word(code: str) -> IsoWord | None:
     """Return the first ISO word of a block, or None.
 
     ``code`` is the block in capitals, without its comment.
@@ -189,5 +192,5 @@ def iso_habit(code: str) -> Habit | None:
             groups = match.groupdict()
             part = next((name for name in ("word", "letter", "code", "number") if groups.get(name)), 0)
             at = match.start(part)
-            return Habit(at - (part == "code"), *told(match))
+            return IsoWord(at - (part == "code"), *told(match))
     return None

@@ -6,80 +6,108 @@ import re
 
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import FormulaError
-from core.language.line_reading import SIGNED, after_blanks, ascii_upper, comment_start, typed
+from core.language.line_reading import (
+    SIGNED_NUMBER,
+    describe_typographic_character,
+    find_comment_start,
+    find_non_blank,
+    to_ascii_upper,
+)
 from core.language.sinumerik import sinumerik_words as known
-from core.language.sinumerik.block_reader import BlockReader, read_values
-from core.language.sinumerik.call_arguments import Argument, read_arguments
-from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
-from core.language.sinumerik.iso_words import iso_habit
-from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
-from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
-from core.language.sinumerik.sinumerik_words import LONGEST_LINE, OWN, Form, Line, Word, words_as_c
-from core.language.sinumerik.word_values import PARAMETER, Value, beyond, demand_parameters, value_at
+from core.language.sinumerik.block_reader import BlockReader, read_value_list
+from core.language.sinumerik.call_arguments import CallArgument, read_arguments
+from core.language.sinumerik.control_statements import (
+    ControlKeyword,
+    ControlStatement,
+    find_control_keyword,
+    read_control_statement,
+)
+from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, IGNORED_CYCLES, UNSUPPORTED_CYCLES
+from core.language.sinumerik.iso_words import find_iso_word
+from core.language.sinumerik.sinumerik_alarms import SYNTAX_ERROR, make_alarm
+from core.language.sinumerik.sinumerik_words import (
+    INTERNAL_AXIS_NAME,
+    MAX_LINE_LENGTH,
+    LexedBlock,
+    PositionForm,
+    Word,
+    rename_axis_words,
+)
+from core.language.sinumerik.word_values import (
+    R_PARAMETER_PATTERN,
+    ParsedValue,
+    check_parameter_numbers,
+    find_range_error,
+    parse_value,
+)
 from core.message import Message
 
-_NUMBER = re.compile(SIGNED)
+_NUMBER = re.compile(SIGNED_NUMBER)
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
 # Nearly all words match this pattern and need no check of each character.
-_PLAIN = re.compile(rf"\s*([GMXYZCIJKFSTD])({SIGNED})(?=[\sA-Z]|$)")
+_PLAIN = re.compile(rf"\s*([GMXYZCIJKFSTD])({SIGNED_NUMBER})(?=[\sA-Z]|$)")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
 _ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=(?!=)\s*")
-_OF_SPINDLE = re.compile(r"([MSTD])([0-9]+)")
+_SPINDLE_WORD = re.compile(r"([MSTD])([0-9]+)")
 _INDEXED = re.compile(r"(SPOSA?|LIMS)\s*\[\s*([A-Z0-9]+)\s*\]\s*=(?!=)\s*")
 _QUOTED = re.compile(r'"([^"]*)"')
 _BLANK = re.compile(r"\s*\([^()]*\)")
 _NUMBERED = re.compile(r"\s*\(\s*([0-9]*)\s*\)")
 _ELEMENT = re.compile(r"(R|[A-Z_][A-Z_][A-Z0-9_]*)\s*\[\s*")
-_OF_AN_AXIS = re.compile(r"(?:[ABCUVWXYZ][0-9]?|AX[0-9]+)\s*\]")
+_AXIS_WORD = re.compile(r"(?:[ABCUVWXYZ][0-9]?|AX[0-9]+)\s*\]")
 _SET = re.compile(r"\s*=(?!=)\s*")
 _SYSTEM = re.compile(r"\$[A-Z0-9_]+")
 _BRACKET = re.compile(r"\s*\(")
 _PROGRAM = re.compile(r'\s*"?([A-Z_][A-Z0-9_]*|L[0-9]+)"?(?![A-Z0-9_])')
 _FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
-_FORMS = frozenset(str(form) for form in Form if form)
+_FORMS = frozenset(str(form) for form in PositionForm if form)
 _REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
 _PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
-_MOST_PASSES = 9999
+_MAX_PASSES = 9999
 _CALLS = frozenset({"MCALL", "CALL"})
 _TRANSFORMATIONS = frozenset({"TRANSMIT", "TRACYL", "TRAFOOF"})
 
 
-def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
+def lex_line(number: int, text: str, third_axis: str = INTERNAL_AXIS_NAME) -> LexedBlock:
     """Read the words of line ``number``.
 
     This function never raises; the line contains its errors with columns.
 
     ``third_axis`` is the name of the machine's third axis. Its words are returned as words of C.
     """
-    end = comment_start(text)
+    end = find_comment_start(text)
     code, comment = text[:end], end + 1 if end < len(text) else 0
-    upper = ascii_upper(code)
+    upper = to_ascii_upper(code)
     head = _HEAD.match(upper)
     assert head is not None  # The pattern always matches, because all its parts are optional.
     level, kind, count, label = head.groups()
     block = f"{kind}{count}" if kind else label or Message("in line {line}", line=number)
     wrong = -1
-    if third_axis != OWN:
-        upper, wrong = words_as_c(upper, third_axis)
+    if third_axis != INTERNAL_AXIS_NAME:
+        upper, wrong = rename_axis_words(upper, third_axis)
     scanner = _Scanner(number, block, upper, code)
     if wrong >= 0:
-        scanner.no_axis(wrong, third_axis)
-    if len(text) > LONGEST_LINE:
-        scanner.refuse(
+        scanner.report_missing_axis(wrong, third_axis)
+    if len(text) > MAX_LINE_LENGTH:
+        scanner.report_error(
             1,
             Message("the block is too long ({text_count} characters)", text_count=len(text)),
-            Message("Split the block; the maximum is {longest_line} characters.", longest_line=LONGEST_LINE),
+            Message(
+                "Split the block; the maximum is {longest_line} characters.", longest_line=MAX_LINE_LENGTH
+            ),
         )
-    elif steering := steering_word(upper, head.end()):
-        scanner.steer(head.end(), steering)
+    elif steering := find_control_keyword(upper, head.end()):
+        scanner.read_control_line(head.end(), steering)
     else:
-        scanner.scan(head.end())
-    if scanner.errors and len(text) <= LONGEST_LINE:
-        scanner.tell_habit()
+        scanner.scan_words(head.end())
+    if scanner.errors and len(text) <= MAX_LINE_LENGTH:
+        scanner.report_iso_word()
     words = scanner.words
-    if third_axis != OWN:
-        words = [w._replace(text=f"{third_axis}{w.text[1:]}") if w.name == OWN else w for w in words]
-    return Line(
+    if third_axis != INTERNAL_AXIS_NAME:
+        words = [
+            w._replace(text=f"{third_axis}{w.text[1:]}") if w.name == INTERNAL_AXIS_NAME else w for w in words
+        ]
+    return LexedBlock(
         number,
         block,
         tuple(words),
@@ -100,138 +128,148 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
 class _Scanner:
     """Scanner of the code of one block, which reports unreadable text and skips it."""
 
-    def __init__(self, number: int, block: str, text: str, written: str) -> None:
+    def __init__(self, number: int, block: str, text: str, original_text: str) -> None:
         self.words: list[Word] = []
-        self.jump: Jump | None = None
-        self._written = written
+        self.jump: ControlStatement | None = None
+        self._written = original_text
         self.errors: list[Diagnostic] = []
         self.call, self.call_column, self.passes = "", 0, 1
-        self.arguments: tuple[Argument, ...] | None = None
+        self.arguments: tuple[CallArgument, ...] | None = None
         self.modal_call = False
         self._number, self._block, self._text = number, block, text
 
-    def steer(self, at: int, steering: Steering) -> None:
+    def read_control_line(self, index: int, keyword: ControlKeyword) -> None:
         """Read a program control line."""
         try:
-            self.jump = read_jump(self._text, self._written, at, steering)
+            self.jump = read_control_statement(self._text, self._written, index, keyword)
         except FormulaError as problem:
-            self.refuse(problem.at + 1, f"{problem}", problem.hint)
+            self.report_error(problem.index + 1, f"{problem}", problem.hint)
 
-    def scan(self, at: int) -> None:
+    def scan_words(self, index: int) -> None:
         """Read all words from index ``at`` on."""
         text = self._text
-        while at < len(text):
-            if match := _PLAIN.match(text, at):
-                at = self._plain(match)
-            elif text[at].isspace():
-                at += 1
-            elif match := _ASSIGNED.match(text, at) or _INDEXED.match(text, at):
-                at = self._assigned(match)
-            elif match := _ELEMENT.match(text, at):
-                at = self._element(match)
-            elif match := _SYSTEM.match(text, at):
-                at = self._outside(
-                    at, match.end(), match[0], "system variables cannot be assigned on this control"
+        while index < len(text):
+            if match := _PLAIN.match(text, index):
+                index = self._plain(match)
+            elif text[index].isspace():
+                index += 1
+            elif match := _ASSIGNED.match(text, index) or _INDEXED.match(text, index):
+                index = self._read_assignment(match)
+            elif match := _ELEMENT.match(text, index):
+                index = self._element(match)
+            elif match := _SYSTEM.match(text, index):
+                index = self._report_unsupported(
+                    index, match.end(), match[0], "system variables cannot be assigned on this control"
                 )
-            elif match := _NAME.match(text, at):
-                at = self._named(match)
-            elif text[at].isalpha() and text[at].isascii():
-                at = self._letter(at)
+            elif match := _NAME.match(text, index):
+                index = self._named(match)
+            elif text[index].isalpha() and text[index].isascii():
+                index = self._letter(index)
             else:
-                _, hint = typed(text[at]) or ("", "Remove the character; comments start with ;")
-                at = self._skip(at, Message("{name} is not a valid word", name=text[at]), hint)
+                _, hint = describe_typographic_character(text[index]) or (
+                    "",
+                    "Remove the character; comments start with ;",
+                )
+                index = self._skip(index, Message("{name} is not a valid word", name=text[index]), hint)
 
     def _plain(self, match: re.Match[str]) -> int:
         """Add a letter with a plain number."""
         letter, number = match.groups()
         word = Word(letter, float(number), match.start(1) + 1, letter + number)
-        if wrong := beyond(word):
-            self.refuse(word.column, *wrong)
+        if wrong := find_range_error(word):
+            self.report_error(word.column, *wrong)
         self.words.append(word)
         return match.end()
 
-    def no_axis(self, at: int, third_axis: str) -> None:
+    def report_missing_axis(self, index: int, third_axis: str) -> None:
         """Report a C word on a machine whose third axis has another name."""
-        self._outside(
-            at,
-            at + 1,
-            OWN,
+        self._report_unsupported(
+            index,
+            index + 1,
+            INTERNAL_AXIS_NAME,
             Message("this lathe has no C axis; its third axis is {third_axis}", third_axis=third_axis),
         )
 
-    def tell_habit(self) -> None:
+    def report_iso_word(self) -> None:
         """Replace the first error with the advice for an ISO word if the block contains one."""
-        if habit := iso_habit(self._text):
+        if habit := find_iso_word(self._text):
             number, block = self._number, self._block
-            self.errors[:] = [fault(number, habit.at + 1, "other-control", block, habit.text, habit.hint)]
+            self.errors[:] = [
+                make_alarm(number, habit.at + 1, "other-control", block, habit.explanation, habit.hint)
+            ]
 
-    def refuse(self, column: int, text: str, hint: str) -> None:
+    def report_error(self, column: int, text: str, hint: str) -> None:
         """Report a syntax alarm at this column."""
-        self._tell(
-            fault(
-                self._number, column, SYNTAX, self._block, Message("syntax error: {what}.", what=text), hint
+        self._add_finding(
+            make_alarm(
+                self._number,
+                column,
+                SYNTAX_ERROR,
+                self._block,
+                Message("syntax error: {what}.", what=text),
+                hint,
             )
         )
 
-    def _tell(self, found: Diagnostic) -> None:
+    def _add_finding(self, finding: Diagnostic) -> None:
         """Add the finding if it is the first error of the block.
 
         Later errors may be consequences of the first error.
         """
         if not self.errors:
-            self.errors.append(found)
+            self.errors.append(finding)
 
     def _skip(self, at: int, text: str, hint: str) -> int:
-        self.refuse(at + 1, text, hint)
+        self.report_error(at + 1, text, hint)
         rest = _REST_OF_WORD.match(self._text, at)
         return rest.end() if rest else at + 1
 
-    def _outside(self, at: int, end: int, name: str, why: str) -> int:
+    def _report_unsupported(self, index: int, end: int, name: str, reason: str) -> int:
         """Report a word of the language that TurnDesk does not execute."""
         text, hint = (
-            Message("{word}: {problem}.", word=name, problem=why),
+            Message("{word}: {problem}.", word=name, problem=reason),
             ("Remove this text from the program."),
         )
-        self._tell(fault(self._number, at + 1, "not-in-subset", self._block, text, hint))
+        self._add_finding(make_alarm(self._number, index + 1, "not-in-subset", self._block, text, hint))
         rest = _REST_OF_WORD.match(self._text, end)
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
 
-    def _letter(self, at: int) -> int:
+    def _letter(self, index: int) -> int:
         """Read a letter and its number."""
-        text, letter = self._text, self._text[at]
-        if letter == "N" and text[at + 1 : at + 2].isdigit():
+        text, letter = self._text, self._text[index]
+        if letter == "N" and text[index + 1 : index + 2].isdigit():
             return self._skip(
-                at,
+                index,
                 "the block number is not at the start of the block",
                 "Write the block number at the start.",
             )
-        if letter not in known.LETTERS:
-            why = known.LETTERS_OUTSIDE.get(letter, "this word does not exist on this control")
-            return self._outside(at, at + 1, letter, why)
-        match = _NUMBER.match(text, at + 1)
+        if letter not in known.ADDRESS_LETTERS:
+            why = known.UNSUPPORTED_LETTERS.get(letter, "this word does not exist on this control")
+            return self._report_unsupported(index, index + 1, letter, why)
+        match = _NUMBER.match(text, index + 1)
         if match is None:
-            instead = typed(self._text[at + 1 : at + 2])
+            instead = describe_typographic_character(self._text[index + 1 : index + 2])
             hint = (
                 instead[1]
                 if instead
                 else Message("Write {letter} with a number, or {letter2}=…", letter=letter, letter2=letter)
             )
-            return self._skip(at, Message("{what} has no number", what=letter), hint)
-        return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
+            return self._skip(index, Message("{what} has no number", what=letter), hint)
+        return self._keep(Word(letter, float(match[0]), index + 1, text[index : match.end()]), match.end())
 
     def _named(self, match: re.Match[str]) -> int:
         """Read a keyword or a subprogram name; a subprogram name must be alone in its block."""
         name, at, end = match[0], match.start(), match.end()
-        if name in known.KEYS:
+        if name in known.NAMED_FUNCTIONS:
             return self._key(name, at, end)
-        if name in known.OF_A_SPINDLE:
-            return self._of_a_spindle(name, at, end)
+        if name in known.SPINDLE_WORDS:
+            return self._read_spindle_word(name, at, end)
         if name in _CALLS and not self.words:
-            return self._behind_call(name, at, end)
-        if name in known.NAMES_OUTSIDE:
-            return self._outside(at, end, name, known.WHY_OUTSIDE[name])
+            return self._read_called_name(name, at, end)
+        if name in known.UNSUPPORTED_NAMES:
+            return self._report_unsupported(at, end, name, known.UNSUPPORTED_REASONS[name])
         base = name.rstrip("0123456789")
-        if name in known.ASSIGNED or base in known.ASSIGNED - known.LETTERS:
+        if name in known.WORDS_WITH_VALUE or base in known.WORDS_WITH_VALUE - known.ADDRESS_LETTERS:
             return self._skip(
                 at, Message("{base} needs = and a value", base=base), Message("Write {base}=…", base=base)
             )
@@ -240,7 +278,7 @@ class _Scanner:
     def _program(self, name: str, at: int, end: int) -> int:
         if not self.words and not self.call:
             return self._called(name, at, end)
-        if name in CYCLES or name in CYCLES_OUTSIDE or name in CYCLES_TAKEN:
+        if name in CYCLE_PARAMETERS or name in UNSUPPORTED_CYCLES or name in IGNORED_CYCLES:
             return self._skip(
                 at,
                 Message("{name} is not allowed after other words", name=name),
@@ -249,49 +287,49 @@ class _Scanner:
         hint = "Begin a comment with a semicolon (;). Put a subprogram name alone in its block."
         return self._skip(at, Message("{name} is not a valid word", name=name), hint)
 
-    def _key(self, name: str, at: int, end: int) -> int:
+    def _key(self, name: str, index: int, end: int) -> int:
         """Read a word without a value, or with arguments in parentheses."""
         if name in _TRANSFORMATIONS:
-            return self._transformation(name, at, end)
-        self.words.append(Word(name, None, at + 1, name))
+            return self._transformation(name, index, end)
+        self.words.append(Word(name, None, index + 1, name))
         blank = _BLANK.match(self._text, end) if name == "WORKPIECE" else None
         return end if blank is None else blank.end()
 
-    def _transformation(self, name: str, at: int, end: int) -> int:
+    def _transformation(self, name: str, index: int, end: int) -> int:
         """Read TRANSMIT, TRACYL or TRAFOOF with its arguments."""
-        arguments: tuple[Argument, ...] | None = ()
+        arguments: tuple[CallArgument, ...] | None = ()
         if bracket := _BRACKET.match(self._text, end):
             arguments, end = self._arguments(name, bracket)
         if arguments is not None:
-            self.words.append(Word(name, None, at + 1, name, arguments=arguments))
+            self.words.append(Word(name, None, index + 1, name, arguments=arguments))
         return end
 
-    def _arguments(self, name: str, bracket: re.Match[str]) -> tuple[tuple[Argument, ...] | None, int]:
+    def _arguments(self, name: str, bracket: re.Match[str]) -> tuple[tuple[CallArgument, ...] | None, int]:
         """Return the arguments in parentheses, or None if they are invalid, and the index after them."""
         try:
             reader = BlockReader(self._text, self._written, bracket.end() - 1)
-            return read_arguments(reader), reader.at
+            return read_arguments(reader), reader.index
         except FormulaError as problem:
             what = Message("{name}: {problem}", name=name, problem=problem)
-            self.refuse(problem.at + 1, what, problem.hint)
+            self.report_error(problem.index + 1, what, problem.hint)
             return None, len(self._text)
 
-    def _of_a_spindle(self, name: str, at: int, end: int) -> int:
+    def _read_spindle_word(self, name: str, index: int, end: int) -> int:
         """Read SETMS, WAITS or SETMS(1); without a number, the word applies to spindle 1."""
         match = _NUMBERED.match(self._text, end)
         number = int(match[1] or 1) if match is not None else 1
-        word = Word(name, float(number), at + 1, f"{name}({number})", spindle=number)
+        word = Word(name, float(number), index + 1, f"{name}({number})", spindle_number=number)
         self.words.append(word)
         return match.end() if match is not None else end
 
-    def _behind_call(self, word: str, at: int, end: int) -> int:
+    def _read_called_name(self, word: str, index: int, end: int) -> int:
         """Read the program name after MCALL or CALL; MCALL without a name is also valid."""
         match = _PROGRAM.match(self._text, end)
-        self.modal_call, self.call_column = word == "MCALL", at + 1
+        self.modal_call, self.call_column = word == "MCALL", index + 1
         if match is not None:
             return self._called(match[1], match.start(1), match.end())
         if word == "CALL" or self._text[end:].strip():
-            self.refuse(
+            self.report_error(
                 end + 1,
                 Message("{word} needs a program name", word=word),
                 Message("Write {word} NAME.", word=word),
@@ -306,14 +344,14 @@ class _Scanner:
         if passes is not None:
             end = passes.end()
             self.passes = int(passes[1][:9])
-            if not 1 <= self.passes <= _MOST_PASSES:
-                self.refuse(
+            if not 1 <= self.passes <= _MAX_PASSES:
+                self.report_error(
                     end,
                     Message("P{passes} is not a valid repeat count", passes=passes[1]),
-                    Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MOST_PASSES),
+                    Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MAX_PASSES),
                 )
         if rest := self._text[end:].strip():
-            self.refuse(
+            self.report_error(
                 end + 1,
                 Message("{rest} is not allowed after {name}", rest=rest, name=name),
                 "Put the call alone in its block.",
@@ -323,37 +361,43 @@ class _Scanner:
     def _element(self, match: re.Match[str]) -> int:
         """Read an assignment to R[ ] or to an element of an array."""
         name, at = match[1], match.start()
-        if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
-            why = known.WHY_OUTSIDE.get(name, "this control does not support axis-specific words")
-            return self._outside(at, match.end(), name, why)
-        if name in known.WITHOUT_EQUALS:
+        if name in known.UNSUPPORTED_NAMES or _AXIS_WORD.match(self._text, match.end()):
+            why = known.UNSUPPORTED_REASONS.get(name, "this control does not support axis-specific words")
+            return self._report_unsupported(at, match.end(), name, why)
+        if name in known.WORDS_WITHOUT_EQUALS:
             return self._without_equals(name, at)
         try:
             reader = BlockReader(self._text, self._written, self._text.index("[", at))
-            place = reader.index()
-            demand_parameters(place, at)
-            if reader.take(_SET) is None:
+            place = reader.read_index()
+            check_parameter_numbers(place, at)
+            if reader.match(_SET) is None:
                 return self._skip(
                     at,
                     Message("{name}[ ] needs = and a value", name=name),
                     Message("Write {name}[1]=…", name=name),
                 )
-            listed = read_values(reader, bare=False)
-            value = value_at(self._text, reader.at) if listed is None else Value(0.0, None, reader.at)
+            listed = read_value_list(reader, allows_bare_list=False)
+            value = (
+                parse_value(self._text, reader.index)
+                if listed is None
+                else ParsedValue(0.0, None, reader.index)
+            )
         except FormulaError as problem:
             return self._skip(
                 at, Message("{name}[ ]= has no value: {problem}", name=name, problem=problem), problem.hint
             )
-        written = "".join(self._text[at : value.end].split())
+        written = "".join(self._text[at : value.end_index].split())
         named = "R0" if name == "R" else name
-        word = Word(named, value.number, at + 1, written, Form.PLAIN, value.formula, element=place)
-        return self._keep(word._replace(values=listed), value.end)
+        word = Word(
+            named, value.number, at + 1, written, PositionForm.PLAIN, value.formula, element_index=place
+        )
+        return self._keep(word._replace(values=listed), value.end_index)
 
-    def _assigned(self, match: re.Match[str]) -> int:
+    def _read_assignment(self, match: re.Match[str]) -> int:
         """Read a word with an equals sign."""
         name, at, end = match[1], match.start(), match.end()
         index = match[2] if match.re is _INDEXED else None
-        if of := _OF_SPINDLE.fullmatch(name):
+        if of := _SPINDLE_WORD.fullmatch(name):
             name, index = of[1], of[2]
         if index is not None and not index.isdigit():
             return self._skip(
@@ -364,68 +408,70 @@ class _Scanner:
         before = len(self.words)
         end = self._with_value(name, at, end)
         if index is not None and len(self.words) > before:
-            self.words[-1] = self.words[-1]._replace(spindle=int(index[:9]))
+            self.words[-1] = self.words[-1]._replace(spindle_number=int(index[:9]))
         return end
 
     def _with_value(self, name: str, at: int, end: int) -> int:
-        is_r = PARAMETER.fullmatch(name)
+        is_r = R_PARAMETER_PATTERN.fullmatch(name)
         if name == "T" and (quoted := _QUOTED.match(self._written, end)):
-            word = Word("T", None, at + 1, f'T="{quoted[1]}"', string=quoted[1].strip())
+            word = Word("T", None, at + 1, f'T="{quoted[1]}"', quoted_name=quoted[1].strip())
             self.words.append(word)
             return quoted.end()
-        if name in known.WITHOUT_EQUALS:
+        if name in known.WORDS_WITHOUT_EQUALS:
             return self._without_equals(name, at)
-        assigned = name in known.ASSIGNED or name == "M"
-        if is_r is None and not assigned and (len(name) == 1 or name in known.NAMES_OUTSIDE):
-            why = known.LETTERS_OUTSIDE.get(name) or known.WHY_OUTSIDE.get(name)
-            return self._outside(at, end, name, why or "this control does not support this word")
-        if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
-            return self._outside(
-                at, end, name, Message("R parameters are R0 to R{most_r}", most_r=known.MOST_R)
+        assigned = name in known.WORDS_WITH_VALUE or name == "M"
+        if is_r is None and not assigned and (len(name) == 1 or name in known.UNSUPPORTED_NAMES):
+            why = known.UNSUPPORTED_LETTERS.get(name) or known.UNSUPPORTED_REASONS.get(name)
+            return self._report_unsupported(at, end, name, why or "this control does not support this word")
+        if is_r is not None and int(is_r[1][:9]) > known.MAX_R_NUMBER:
+            return self._report_unsupported(
+                at, end, name, Message("R parameters are R0 to R{most_r}", most_r=known.MAX_R_NUMBER)
             )
         found = _FORM.match(self._text, end)
         if found is not None and found[1] in _FORMS:
             return self._target(name, at, found)
         return self._value(name, at, end)
 
-    def _without_equals(self, name: str, at: int) -> int:
+    def _without_equals(self, name: str, index: int) -> int:
         """Report a value that is assigned to a word without one."""
         text = Message("{name} does not accept a value", name=name)
-        return self._skip(at, text, Message("Write {name} without an equals sign.", name=name))
+        return self._skip(index, text, Message("Write {name} without an equals sign.", name=name))
 
     def _value(self, name: str, at: int, end: int) -> int:
         try:
-            value = value_at(self._text, end)
+            value = parse_value(self._text, end)
         except FormulaError as problem:
             return self._skip(
                 at, Message("{name}= has no value: {problem}", name=name, problem=problem), problem.hint
             )
-        written = "".join(self._text[at : value.end].split())
-        return self._keep(Word(name, value.number, at + 1, written, Form.PLAIN, value.formula), value.end)
+        written = "".join(self._text[at : value.end_index].split())
+        return self._keep(
+            Word(name, value.number, at + 1, written, PositionForm.PLAIN, value.formula), value.end_index
+        )
 
-    def _target(self, name: str, at: int, found: re.Match[str]) -> int:
+    def _target(self, name: str, index: int, found: re.Match[str]) -> int:
         """Read a target such as AC( ), IC( ), DC( ), ACP( ) or ACN( )."""
         form, bracket = found[1], found[2]
-        if form not in known.FORMS.get(name, frozenset()):
-            allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or a formula"
+        if form not in known.FORMS_BY_WORD.get(name, frozenset()):
+            allowed = ", ".join(sorted(known.FORMS_BY_WORD.get(name, ()))) or "a number or a formula"
             return self._skip(
-                at,
+                index,
                 Message("{name}= does not accept {form}", name=name, form=form),
                 Message("Use {allowed}.", allowed=allowed),
             )
         hint = Message("Write {name}={form}(…).", name=name, form=form)
         if bracket is None:
-            return self._skip(at, Message("{form} needs parentheses", form=form), hint)
+            return self._skip(index, Message("{form} needs parentheses", form=form), hint)
         try:
-            value = value_at(self._text, found.end())
+            value = parse_value(self._text, found.end())
         except FormulaError as problem:
             what = Message("{form} has no value in its parentheses: {problem}", form=form, problem=problem)
-            return self._skip(at, what, hint)
-        close = after_blanks(self._text, value.end)
+            return self._skip(index, what, hint)
+        close = find_non_blank(self._text, value.end_index)
         if self._text[close : close + 1] != ")":
-            return self._skip(at, Message("the closing parenthesis of {form} is missing", form=form), hint)
-        written = "".join(self._text[at : close + 1].split())
-        word = Word(name, value.number, at + 1, written, Form(form), value.formula)
+            return self._skip(index, Message("the closing parenthesis of {form} is missing", form=form), hint)
+        written = "".join(self._text[index : close + 1].split())
+        word = Word(name, value.number, index + 1, written, PositionForm(form), value.formula)
         return self._keep(word, close + 1)
 
     def _keep(self, word: Word, end: int) -> int:
@@ -436,7 +482,7 @@ class _Scanner:
                 Message("{word}{after} is not a valid number", word=word.text, after=after),
                 "Correct the number.",
             )
-        if wrong := beyond(word):
-            self.refuse(word.column, *wrong)
+        if wrong := find_range_error(word):
+            self.report_error(word.column, *wrong)
         self.words.append(word)
         return end

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import Line
-from core.language.source import Source
+from core.language.sinumerik.sinumerik_words import LexedBlock
+from core.language.source import ProgramSource
 
-HEADER = re.compile(r"\s*%_N_([A-Z0-9_]+)_(MPF|SPF)\s*(?:;.*)?", re.IGNORECASE)
-ENDING = ".SPF"
-PROGRAM_NAME = re.compile(r"[A-Z_][A-Z0-9_]{1,30}")
+HEADER_PATTERN = re.compile(r"\s*%_N_([A-Z0-9_]+)_(MPF|SPF)\s*(?:;.*)?", re.IGNORECASE)
+SUBPROGRAM_EXTENSION = ".SPF"
+PROGRAM_NAME_PATTERN = re.compile(r"[A-Z_][A-Z0-9_]{1,30}")
 # Nearly all lines begin with a number or with a letter and a number. Only other lines can be calls.
 _MAY_CALL = re.compile(
     r"\s*(?:/[0-9]?)?\s*(?:[N:][0-9]+)?\s*(?:\w+\s*:)?\s*(?:L[0-9]|[A-Z_]{2})", re.IGNORECASE
@@ -27,10 +27,12 @@ class Section(NamedTuple):
     lines: range
 
 
-def sections(source: Source) -> list[Section]:
+def split_sections(source: ProgramSource) -> list[Section]:
     """Return the programs of a file; the first one is the main program."""
     heads = [
-        (i, match[1].upper()) for i, line in enumerate(source.lines) if (match := HEADER.fullmatch(line))
+        (i, match[1].upper())
+        for i, line in enumerate(source.lines)
+        if (match := HEADER_PATTERN.fullmatch(line))
     ]
     if not heads:
         return [Section("", range(len(source.lines)))]
@@ -41,27 +43,27 @@ def sections(source: Source) -> list[Section]:
     return [Section("", before), *found] if holds_code else found
 
 
-def called_files(source: Source) -> Iterator[str]:
+def find_called_files(source: ProgramSource) -> Iterator[str]:
     """Yield the file names, in capitals, of the subprograms that are called but not in the file itself."""
-    inside = {section.name for section in sections(source)}
+    inside = {section.name for section in split_sections(source)}
     for number, text in enumerate(source.lines, start=1):
         if not _MAY_CALL.match(text):
             continue
         line = lex_line(number, text)
         for name in _names(line):
             if name not in inside:
-                yield f"{name}{ENDING}"
+                yield f"{name}{SUBPROGRAM_EXTENSION}"
 
 
-def _names(line: Line) -> Iterator[str]:
+def _names(line: LexedBlock) -> Iterator[str]:
     """Yield the programs that a line calls by name or passes to a cycle as a contour."""
-    if line.call:
-        yield line.call
+    if line.called_name:
+        yield line.called_name
         for argument in line.arguments or ():
-            if argument.text and PROGRAM_NAME.fullmatch(argument.text.upper()):
+            if argument.text and PROGRAM_NAME_PATTERN.fullmatch(argument.text.upper()):
                 yield argument.text.upper()
 
 
-def program_name(source: Source) -> str:
+def derive_program_name(source: ProgramSource) -> str:
     """Return the name with which a program calls this file."""
     return Path(source.name).stem.upper()

@@ -7,56 +7,72 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.message import Message
-from core.part.cutter import Cutter, Side
-from core.part.insert_codes import Insert, InsertCodeError, decoded, insert_of
+from core.part.cutter import CutSide, Cutter
+from core.part.insert_codes import Insert, InsertCodeError, decode_insert_code, make_insert
 from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
-from core.proving.assumed_tools import GROOVERS
+from core.proving.assumed_tools import GROOVING_TOOLS
 from core.proving.checks.thread_checks import Found
 from core.proving.tip_moves import TipMove
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
-NEAR = 2.0
+NEAR_MATERIAL_MM = 2.0
 """mm; further from all metal than that is in the air."""
 
 _AIR_TIME, _AIR_WAY = 5.0, 5.0  # s, mm
 _LONG_AIR = 20.0  # s of consecutive moves
-_AWAY = 2.54  # mm, least length of a move away from the part or alongside it
-_OUT = 5.2  # mm before the face; a feed back along the turned surface ends closer to it
-_LEAST = 1.0  # mm of feeds between two rapids
-_BESIDE = 5.0  # mm outside the bar
-_BEHIND_FACE = 0.5  # mm
-_PLACES = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
+_AWAY_DISTANCE_MM = 2.54  # mm, least length of a move away from the part or alongside it
+_EXIT_DISTANCE_MM = 5.2  # mm before the face; a feed back along the turned surface ends closer to it
+_MIN_FEED_LENGTH_MM = 1.0  # mm of feeds between two rapids
+_SIDE_DISTANCE_MM = 5.0  # mm outside the bar
+_FACE_DEPTH_MM = 0.5  # mm
+_SAMPLE_FRACTIONS = (0.05, 0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.95)
 # =
 # geometries: Widia, "Selection of insert", the column -LM of its table of effective lengths.
-USUAL: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
+USUAL_DEPTH_FRACTIONS: Mapping[str, float] = {
+    "S": 0.5,
+    "C": 0.5,
+    "W": 0.4,
+    "T": 0.3,
+    "D": 0.3,
+    "V": 0.2,
+    "R": 0.3,
+}
 _OTHER_SHAPE = 0.5
 # =
-LARGEST: Mapping[str, float] = {"S": 2 / 3, "C": 2 / 3, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.25, "R": 0.4}
-_OF_BAR = 0.5  # fraction of the diameter of a boring bar
-_USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest usual insert of a small lathe
-_COARSE = 0.8  # fraction of the nose radius, the usual limit of a turned surface
-_OF_WIDTH = 0.12  # fraction of the width of a grooving edge; Ingersoll's catalog of 2011 has .075
-_OF_DRILL = 0.04  # fraction of the diameter of a drill, twice the usual .02
-_OF_REAMER = 0.1
-_BREAKS = 5.0  # multiple of these limits; suitable feeds of drills and blades vary by this factor
-_BREAKS_INSERT = 2.5
-_NEVER_BREAKS = 0.15  # mm of feed that never breaks an insert, even with a sharp nose
-_TURNS_WIDE = 0.8  # fraction of the width for a grooving edge along Z, from the same catalog
+MAX_DEPTH_FRACTIONS: Mapping[str, float] = {
+    "S": 2 / 3,
+    "C": 2 / 3,
+    "W": 0.5,
+    "T": 0.5,
+    "D": 0.5,
+    "V": 0.25,
+    "R": 0.4,
+}
+_BAR_DEPTH_FRACTION = 0.5  # fraction of the diameter of a boring bar
+_USUAL = make_insert("C", 12.7, 0.8)  # CNMG432, the largest usual insert of a small lathe
+_COARSE_FEED_FRACTION = 0.8  # fraction of the nose radius, the usual limit of a turned surface
+_WIDTH_FEED_FRACTION = 0.12  # fraction of the width of a grooving edge; Ingersoll's catalog of 2011 has .075
+_DRILL_FEED_FRACTION = 0.04  # fraction of the diameter of a drill, twice the usual .02
+_REAMER_FEED_FRACTION = 0.1
+_BREAKING_FACTOR = 5.0  # multiple of these limits; suitable feeds of drills and blades vary by this factor
+_INSERT_BREAKING_FACTOR = 2.5
+_SAFE_FEED_MM = 0.15  # mm of feed that never breaks an insert, even with a sharp nose
+_TURNING_WIDTH_FRACTION = 0.8  # fraction of the width for a grooving edge along Z, from the same catalog
 _BLADE_FINISH = 0.25  # mm of depth that a parting blade may turn along Z
-_DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER})
-INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
+_DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER})
+INSERT_TOOLS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 
 @dataclass(slots=True)
-class AirChecks:
+class AirCutChecks:
     """Checks for missing cuts, called with the moves in their order.
 
-    ``feed`` or ``rapid`` is called after each move has been cut, and ``pause`` between moves.
+    ``feed`` or ``check_rapid`` is called after each move has been cut, and ``record_pause`` between moves.
     """
 
     stock: Stock | None = None
@@ -74,11 +90,11 @@ class AirChecks:
     _cut_line: int = 0  # line of the last feed near material, which the rapids of a canned cycle share
     _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
-    def pause(self) -> None:
+    def record_pause(self) -> None:
         """Record a wait or a switched output, which may be the purpose of the present tool position."""
         self._went_in = None
 
-    def rapid(self, move: TipMove, met: Cut, tool: int) -> Iterator[Found]:
+    def check_rapid(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
         """Yield faults of the feeds before a rapid and of earlier rapids, which have cut nothing."""
         if tool != self._tool:
             self._tool, self._went_in = tool, None
@@ -87,60 +103,65 @@ class AirChecks:
         if self.stock is None:
             return
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-        if self._went_in is not None and z1 > self.stock.front:
+        if self._went_in is not None and z1 > self.stock.front_z_mm:
             text = "After this rapid alongside the part, the tool retracts without cutting."
             yield Found("unmade-cut", text, self._went_in)
             self._went_in = None
-        beside = min(abs(r0), abs(r1)) < self.stock.radius + _BESIDE
-        if not met and beside and move.line != self._cut_line and z1 < min(z0, self.stock.front) - _AWAY:
+        beside = min(abs(r0), abs(r1)) < self.stock.max_radius_mm + _SIDE_DISTANCE_MM
+        if (
+            not cut
+            and beside
+            and move.line != self._cut_line
+            and z1 < min(z0, self.stock.front_z_mm) - _AWAY_DISTANCE_MM
+        ):
             self._went_in = self._went_in or move
 
-    def feed(
-        self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int, forward: int,
-        *, drill: bool = False,
+    def check_feed(
+        self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int, cutting_direction: int,
+        *, is_drill: bool = False,
     ) -> Iterator[Found]:  # fmt: skip
         """Yield faults of a feed that meets no material.
 
-        ``forward`` is the sign of Z of the cutting direction. ``drill`` is True for a drill with a known
-        diameter.
+        ``cutting_direction`` is the sign of Z of the cutting direction. ``is_drill`` is True for a drill
+        with a known diameter.
         """
         if tool != self._tool:
             yield from self._end_of_feeds()
             self._tool, self._went_in = tool, None
         fresh, self._fresh = self._fresh, False
-        if met and forward < 0 and self._out_of_part(move, cutter, fresh=fresh):
+        if cut and cutting_direction < 0 and self._is_exit_feed(move, cutter, is_after_rapid=fresh):
             yield Found("unmade-cut", "This move feeds backward out of the part, through material.")
-        close = bool(met) or self._comes_near(move, cutter, part)
-        if drill and fresh and not met and self._is_inside(move):
+        close = bool(cut) or self._comes_near(move, cutter, part)
+        if is_drill and fresh and not cut and self._is_inside(move):
             self._in_hole = move
-        elif met:
+        elif cut:
             self._in_hole = None
         if close:
             self._has_cut, self._went_in, self._cut_line = True, None, move.line
         else:
             self._fed = self._fed or move
-            self._fed_length += move.length
+            self._fed_length += move.length_mm
         gone, self._left_part = self._left_part, None
-        if met or move.kind is Kind.THREAD:
-            self._air, self._cut_before = 0.0, bool(met)
+        if cut or move.kind is BlockKind.THREAD:
+            self._air, self._cut_before = 0.0, bool(cut)
             return
-        if self._outside_stock(move):
+        if self._is_outside_stock(move):
             yield Found("larger-than-stock", "This move turns a diameter larger than the stock.")
         yield from self._leads_away(move, gone, cutter, part, fresh=fresh)
         yield from self._in_air(move, cutter, part)
         self._cut_before = close
 
-    def mill(self, line: int, n: int, tool: int, cut: Callable[[], bool]) -> None:
-        """Record a feed of a live tool. ``cut`` is called only if the tool has not cut anything yet."""
-        if self._milled.get(tool, (line, n)) is None:
+    def record_milling(self, line: int, block_number: int, tool: int, has_cut: Callable[[], bool]) -> None:
+        """Record a feed of a live tool. ``has_cut`` is called only if the tool has not cut anything yet."""
+        if self._milled.get(tool, (line, block_number)) is None:
             return
-        if cut():
+        if has_cut():
             self._milled[tool] = None
         else:
-            self._milled.setdefault(tool, (line, n))
+            self._milled.setdefault(tool, (line, block_number))
 
     @property
-    def never_milled(self) -> list[tuple[int, int, int]]:
+    def uncut_live_feeds(self) -> list[tuple[int, int, int]]:
         """Line and block of the first feed of each live tool that has cut nothing, with its T."""
         return [(*at, tool) for tool, at in self._milled.items() if at is not None]
 
@@ -150,10 +171,10 @@ class AirChecks:
         self._fed, self._fed_length, self._has_cut = None, 0.0, False
         if in_hole is not None and has_cut:
             yield Found("unmade-cut", "A drill feeds into an existing hole.", in_hole)
-        if fed is not None and not has_cut and length >= _LEAST:
+        if fed is not None and not has_cut and length >= _MIN_FEED_LENGTH_MM:
             text = (
                 "Threading moves between two rapids cut only air."
-                if fed.kind is Kind.THREAD
+                if fed.kind is BlockKind.THREAD
                 else "Feed moves between two rapids cut only air."
             )
             yield Found("unmade-cut", text, fed)
@@ -163,48 +184,48 @@ class AirChecks:
         if len(move.points) == 2:
             (z0, r0), (z1, r1) = move.points
             middle = (z0 + z1) / 2.0, (r0 + r1) / 2.0
-        return near(cutter, part, middle, move.points[-1])
+        return is_near_material(cutter, part, middle, move.points[-1])
 
     def _leads_away(
         self, move: TipMove, gone: TipMove | None, cutter: Cutter, part: TurnedPart, *, fresh: bool
     ) -> Iterator[Found]:
-        if gone is not None and not near(cutter, part, *move.points):
+        if gone is not None and not is_near_material(cutter, part, *move.points):
             text = "This move and the next move feed away from the part and cut nothing."
             yield Found("unmade-cut", text, gone)
-        elif move.length >= _AWAY and not near(cutter, part, move.points[-1]):
-            if self._out_of_part(move, cutter, fresh=fresh):
+        elif move.length_mm >= _AWAY_DISTANCE_MM and not is_near_material(cutter, part, move.points[-1]):
+            if self._is_exit_feed(move, cutter, is_after_rapid=fresh):
                 text = "This move feeds along Z out of the part and past its face, inside the stock diameter."
                 yield Found("unmade-cut", text)
             # after a cut the move is a retract
-            elif near(cutter, part, move.points[0]) and not self._cut_before:
+            elif is_near_material(cutter, part, move.points[0]) and not self._cut_before:
                 self._left_part = move
 
     def _is_inside(self, move: TipMove) -> bool:
-        return self.stock is not None and move.points[-1][0] < self.stock.front - NEAR
+        return self.stock is not None and move.points[-1][0] < self.stock.front_z_mm - NEAR_MATERIAL_MM
 
-    def _out_of_part(self, move: TipMove, cutter: Cutter, *, fresh: bool) -> bool:
+    def _is_exit_feed(self, move: TipMove, cutter: Cutter, *, is_after_rapid: bool) -> bool:
         """Return whether a tool feeds forward out of the part on a turned surface, as after a missing minus.
 
         A boring tool is checked only if it starts at the face, because it feeds out of its bore.
         """
-        if self.stock is None or cutter.drills:
+        if self.stock is None or cutter.is_drill:
             return False
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-        front = self.stock.front
-        inside = max(abs(r0), abs(r1)) < self.stock.radius - NEAR / 10.0
-        begins = fresh or z0 < front + NEAR
-        if cutter.side is Side.BORE:
-            begins = begins and z0 > front - _BEHIND_FACE
-        return inside and begins and z1 > max(front + _OUT, z0 + _AWAY)
+        front = self.stock.front_z_mm
+        inside = max(abs(r0), abs(r1)) < self.stock.max_radius_mm - NEAR_MATERIAL_MM / 10.0
+        begins = is_after_rapid or z0 < front + NEAR_MATERIAL_MM
+        if cutter.side is CutSide.BORE:
+            begins = begins and z0 > front - _FACE_DEPTH_MM
+        return inside and begins and z1 > max(front + _EXIT_DISTANCE_MM, z0 + _AWAY_DISTANCE_MM)
 
     def _in_air(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> Iterator[Found]:
-        if move.length < _AWAY or near(cutter, part, move.points[-1]):
+        if move.length_mm < _AWAY_DISTANCE_MM or is_near_material(cutter, part, move.points[-1]):
             return
-        share = _share_in_air(cutter, part, move)
-        before, self._air = self._air, self._air + move.seconds * share
-        if move.seconds * share >= _AIR_TIME and move.length * share >= _AIR_WAY:
+        share = _air_fraction(cutter, part, move)
+        before, self._air = self._air, self._air + move.duration_s * share
+        if move.duration_s * share >= _AIR_TIME and move.length_mm * share >= _AIR_WAY:
             text = Message(
-                "This move feeds through air for {seconds} s.", seconds=f"{move.seconds * share:.0f}"
+                "This move feeds through air for {seconds} s.", seconds=f"{move.duration_s * share:.0f}"
             )
             yield Found("cuts-air", text)
         elif before < _LONG_AIR <= self._air:
@@ -216,76 +237,85 @@ class AirChecks:
                 ),
             )
 
-    def _outside_stock(self, move: TipMove) -> bool:
+    def _is_outside_stock(self, move: TipMove) -> bool:
         """Return whether a move cuts along Z next to the stock but outside it."""
         stock, zs = self.stock, [z for z, _ in move.points]
-        if stock is None or max(zs) - min(zs) < _AWAY or min(zs) > stock.front - _AWAY:
+        if (
+            stock is None
+            or max(zs) - min(zs) < _AWAY_DISTANCE_MM
+            or min(zs) > stock.front_z_mm - _AWAY_DISTANCE_MM
+        ):
             return False
-        if zs[-1] > max(zs[0], stock.front):
+        if zs[-1] > max(zs[0], stock.front_z_mm):
             return False  # a retract
-        return min(abs(r) for _, r in move.points) > stock.radius + NEAR
+        return min(abs(r) for _, r in move.points) > stock.max_radius_mm + NEAR_MATERIAL_MM
 
 
-def near(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
+def is_near_material(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
     """Return whether the edge is near material at one of these positions."""
-    around = ((0.0, -NEAR), (0.0, NEAR), (-NEAR, 0.0), (NEAR, 0.0))
-    return any(cutter.meets(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
+    around = (
+        (0.0, -NEAR_MATERIAL_MM),
+        (0.0, NEAR_MATERIAL_MM),
+        (-NEAR_MATERIAL_MM, 0.0),
+        (NEAR_MATERIAL_MM, 0.0),
+    )
+    return any(cutter.find_cut(part, p, (p[0] + dz, p[1] + dr)) for p in places for dz, dr in around)
 
 
-def _share_in_air(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
+def _air_fraction(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
     """Return the share of a move that is far from all material, sampled along the move."""
     places = [
         (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
         for a, b in pairwise(move.points)
-        for share in (_PLACES if len(move.points) == 2 else (0.5,))
+        for share in (_SAMPLE_FRACTIONS if len(move.points) == 2 else (0.5,))
     ]
-    return sum(not near(cutter, part, place) for place in places) / len(places)
+    return sum(not is_near_material(cutter, part, place) for place in places) / len(places)
 
 
-def size_faults(
-    move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, stock_given: bool
+def check_cut_size(
+    move: TipMove, cut: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, is_stock_specified: bool
 ) -> Iterator[Found]:
-    """Yield faults of a feed whose cut ``met`` is too large for the tool."""
-    yield from _feed(move, shape, tool, held=cutter.held)
-    if move.kind is Kind.THREAD:
+    """Yield faults of a feed whose cut ``cut`` is too large for the tool."""
+    yield from _check_feed_rate(move, shape, tool, has_holder=cutter.has_holder)
+    if move.kind is BlockKind.THREAD:
         return
-    if shape.kind in GROOVERS:
-        yield from _blade_turns(move, met, shape, tool)
-    elif shape.kind in INSERTS:
-        yield from _depth(move, met, shape, cutter, tool, stock_given=stock_given)
+    if shape.kind in GROOVING_TOOLS:
+        yield from _check_blade_turning(move, cut, shape, tool)
+    elif shape.kind in INSERT_TOOLS:
+        yield from _check_depth(move, cut, shape, cutter, tool, is_stock_specified=is_stock_specified)
 
 
-def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator[Found]:
+def _check_feed_rate(move: TipMove, shape: ToolShape, tool: int, *, has_holder: bool) -> Iterator[Found]:
     """Check the feed per revolution against the nose radius, the groove width or the drill diameter."""
-    feed = move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)
-    if not feed or move.kind is Kind.THREAD or shape.kind is ToolKind.TAP:
+    feed = move.feed_per_rev_mm or (move.speed_mm_s * 60.0 / abs(move.rpm) if move.rpm else 0.0)
+    if not feed or move.kind is BlockKind.THREAD or shape.kind is ToolKind.TAP:
         return
-    limit, breaks, least = _feed_limit(shape, held=held)
+    limit, breaks, least = _feed_limit(shape, has_holder=has_holder)
     if not feed > limit > 0.0:
         return
-    words = _too_fast(move, shape, tool, feed)
+    words = _feed_message(move, shape, tool, feed)
     if feed > max(breaks * limit, least):
         yield Found("feed-breaks-tool", words)
     else:
         yield Found("chip-load", words)
 
 
-def _feed_limit(shape: ToolShape, *, held: bool) -> tuple[float, float, float]:
+def _feed_limit(shape: ToolShape, *, has_holder: bool) -> tuple[float, float, float]:
     """Return the usual maximum feed in mm (0: none), the factor that breaks the tool, and a safe feed."""
-    if shape.kind in _DRILLS and held:
-        share = _OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL
-        return share * shape.diameter, _BREAKS, 0.0
-    if shape.kind in GROOVERS and held:
-        return _OF_WIDTH * shape.width, _BREAKS, 0.0
-    if shape.kind in INSERTS:
-        return _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
-    return 0.0, _BREAKS, 0.0
+    if shape.kind in _DRILLS and has_holder:
+        share = _REAMER_FEED_FRACTION if shape.kind is ToolKind.REAMER else _DRILL_FEED_FRACTION
+        return share * shape.diameter, _BREAKING_FACTOR, 0.0
+    if shape.kind in GROOVING_TOOLS and has_holder:
+        return _WIDTH_FEED_FRACTION * shape.width, _BREAKING_FACTOR, 0.0
+    if shape.kind in INSERT_TOOLS:
+        return _COARSE_FEED_FRACTION * shape.nose_radius, _INSERT_BREAKING_FACTOR, _SAFE_FEED_MM
+    return 0.0, _BREAKING_FACTOR, 0.0
 
 
-def _too_fast(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Message:
+def _feed_message(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Message:
     """Return the message for a feed above the limit of ``_feed_limit``."""
-    name, text = edge_name(tool), move.modal.length_text
-    shown = move.modal.feed_text(feed, per_rev=True)
+    name, text = format_edge_name(tool), move.modal.format_length
+    shown = move.modal.format_feed(feed, per_rev=True)
     if shape.kind in _DRILLS:
         return Message(
             "{name} feeds at {value}, which is too high for a diameter of {diameter}.",
@@ -293,7 +323,7 @@ def _too_fast(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Messag
             value=shown,
             diameter=text(shape.diameter),
         )
-    if shape.kind in GROOVERS:
+    if shape.kind in GROOVING_TOOLS:
         return Message(
             "{name} feeds at {value}, which is too high for a cutting edge {width} wide.",
             name=name,
@@ -308,13 +338,13 @@ def _too_fast(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Messag
     )
 
 
-def _is_along(move: TipMove) -> bool:
+def _is_z_move(move: TipMove) -> bool:
     """Return whether a move is more along Z than across it."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) > abs(r1 - r0)
 
 
-def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
+def _check_blade_turning(move: TipMove, cut: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
     """Check that a blade does not turn further along Z than its width and deeper than it can bend.
 
     A chamfer at 45° and the finishing cut on the wall of a groove are permitted.
@@ -322,20 +352,20 @@ def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterat
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     if abs(z1 - z0) <= 2.0 * abs(r1 - r0):
         return
-    limit = _BLADE_FINISH if shape.kind is ToolKind.PARTING else _TURNS_WIDE * shape.width
-    if met.depth > limit > 0.0 and met.width > shape.width:
-        text = move.modal.length_text
+    limit = _BLADE_FINISH if shape.kind is ToolKind.PARTING else _TURNING_WIDTH_FRACTION * shape.width
+    if cut.depth_mm > limit > 0.0 and cut.width_mm > shape.width:
+        text = move.modal.format_length
         words = Message(
             "{tool} turns {depth} deep along Z; this type of blade allows at most {limit}.",
-            tool=edge_name(tool),
-            depth=text(met.depth),
+            tool=format_edge_name(tool),
+            depth=text(cut.depth_mm),
             limit=text(limit),
         )
         yield Found("blade-turns", words)
 
 
-def _depth(
-    move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, stock_given: bool
+def _check_depth(
+    move: TipMove, cut: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, is_stock_specified: bool
 ) -> Iterator[Found]:
     """Check the depth of a cut against the edge length, and against the bar of a boring tool.
 
@@ -343,26 +373,26 @@ def _depth(
     For a cut across Z, the mean is taken along Z. A pass that is deeper anywhere than the edge length is an
     error. A mean depth that no insert of this shape, or no such bar, can cut is also an error.
     """
-    along, text = _is_along(move), move.modal.length_text
-    deep = _mean(met, along=along)
-    if along and cutter.held and met.depth > cutter.height:
+    along, text = _is_z_move(move), move.modal.format_length
+    deep = _mean_depth(cut, is_z_move=along)
+    if along and cutter.has_holder and cut.depth_mm > cutter.edge_height_mm:
         words = Message(
             "{tool} cuts {depth} deep, but its cutting edge is only {height} long.",
-            tool=edge_name(tool),
-            depth=text(met.depth),
-            height=text(cutter.height),
+            tool=format_edge_name(tool),
+            depth=text(cut.depth_mm),
+            height=text(cutter.edge_height_mm),
         )
         yield Found("feed-into-holder", words)
         return
-    if not stock_given:
+    if not is_stock_specified:
         return
-    if not cutter.held:  # =
+    if not cutter.has_holder:  # =
         shape = replace(shape, insert="", diameter=0.0)
-    largest, usual = _largest(shape), depth_limit(shape)
+    largest, usual = _breaking_depth(shape), find_max_depth(shape)
     if deep > largest and move.rpm:  # a manually switched spindle may be stopped
         words = Message(
             "{tool} cuts {depth} deep in one pass, but its maximum depth of cut is {largest}.",
-            tool=edge_name(tool),
+            tool=format_edge_name(tool),
             depth=text(deep),
             largest=text(largest),
         )
@@ -370,41 +400,43 @@ def _depth(
     elif deep > usual:
         words = Message(
             "{tool} cuts {depth} deep in one pass; the usual maximum is {usual}.",
-            tool=edge_name(tool),
+            tool=format_edge_name(tool),
             depth=text(deep),
             usual=text(usual),
         )
         yield Found("depth-of-cut", words)
 
 
-def _mean(met: Cut, *, along: bool) -> float:
+def _mean_depth(cut: Cut, *, is_z_move: bool) -> float:
     """Return the mean depth along r, or along Z for a cut across; pieces of an arc follow each other."""
-    if along:
-        return met.area / max(met.width, met.front - met.back)
-    return min(met.width, met.area / met.depth)
+    if is_z_move:
+        return cut.area / max(cut.width_mm, cut.front_z_mm - cut.back_z_mm)
+    return min(cut.width_mm, cut.area / cut.depth_mm)
 
 
-def _largest(shape: ToolShape) -> float:
+def _breaking_depth(shape: ToolShape) -> float:
     """Return the depth of cut in mm at which the tool breaks; unspecified dimensions set no limit."""
-    bar = _OF_BAR * shape.diameter if shape.kind is ToolKind.BORING and shape.diameter else math.inf
-    return min(bar, depth_limit(shape, LARGEST) if shape.insert.strip() else math.inf)
+    bar = (
+        _BAR_DEPTH_FRACTION * shape.diameter if shape.kind is ToolKind.BORING and shape.diameter else math.inf
+    )
+    return min(bar, find_max_depth(shape, MAX_DEPTH_FRACTIONS) if shape.insert.strip() else math.inf)
 
 
-def depth_limit(shape: ToolShape, shares: Mapping[str, float] = USUAL) -> float:
+def find_max_depth(shape: ToolShape, depth_fractions: Mapping[str, float] = USUAL_DEPTH_FRACTIONS) -> float:
     """Return the usual maximum depth of cut in mm, a share of the edge or of a round insert."""
     insert = _insert(shape)
-    share = shares.get(insert.shape, _OTHER_SHAPE)
-    edge = insert.edges[0] - insert.nose_radius if insert.edges else insert.inscribed_circle
+    share = depth_fractions.get(insert.shape, _OTHER_SHAPE)
+    edge = insert.edge_lengths[0] - insert.nose_radius if insert.edge_lengths else insert.inscribed_circle
     return share * edge
 
 
-def is_round(shape: ToolShape) -> bool:
+def has_round_insert(shape: ToolShape) -> bool:
     """Return whether a tool has a round insert."""
-    return not _insert(shape).edges
+    return not _insert(shape).edge_lengths
 
 
 def _insert(shape: ToolShape) -> Insert:
     try:
-        return decoded(shape.insert) if shape.insert.strip() else _USUAL
+        return decode_insert_code(shape.insert) if shape.insert.strip() else _USUAL
     except InsertCodeError:
         return _USUAL

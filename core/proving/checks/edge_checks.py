@@ -9,26 +9,26 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.interpreter.shared.elementary_blocks import Kind
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.message import Message
-from core.part.cutter import Cutter, Side
+from core.part.cutter import CutSide, Cutter
 from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.part.turned_part import NOTHING, Cut, TurnedPart
-from core.proving.checks.cut_checks import INSERTS, is_round, size_faults
+from core.part.turned_part import NO_CUT, Cut, TurnedPart
+from core.proving.checks.cut_checks import INSERT_TOOLS, check_cut_size, has_round_insert
 from core.proving.checks.thread_checks import Found
 from core.proving.tip_moves import TipMove
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 _WRONG_SIDE = 0.5  # mm that the back of an insert may cut
-_BEHIND = 0.05  # mm of material cut after the nose
+_TRAILING_CUT_MM = 0.05  # mm of material cut after the nose
 _FACED = 2.54  # mm that is usually faced in one cut toward the axis
 _STEEPER = 2.0  # degrees
 _OVER_AXIS = 1.5  # mm beyond the axis that a face or a part-off needs at most
 _TURNED_AWAY = 0.1  # mm beyond the axis for a cut along Z that leaves nothing
-_BEHIND_FACE = 0.5  # mm
-_PAST = 12.7  # mm
+_FACE_DEPTH_MM = 0.5  # mm
+_PASSED_DISTANCE_MM = 12.7  # mm
 _BEYOND_CUT = 0.2  # mm
 _ENTERS = 1.0  # mm; a shorter cut is a chamfer or a face
 _BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
@@ -37,8 +37,8 @@ _LOOP = 200.0  # degrees; an insert with a corner can cut an arc of less than 18
 _QUARTER = (80.0, 100.0)  # degrees
 _EDGE = 3.0  # mm, largest radius of a rounded edge
 _AT_FACE = 0.05  # mm
-_NEAR = 1e-6
-_DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
+_NEAR_TOLERANCE = 1e-6
+_DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.TAP})
 
 
 @dataclass(slots=True)
@@ -46,68 +46,77 @@ class EdgeChecks:
     """Checks of cutting edges, called with the moves in their order after each has been cut."""
 
     stock: Stock | None = None
-    stock_given: bool = False  # the stock is specified instead of assumed
-    parted_at: float | None = None  # Z of the deepest part-off on the side of the chuck
+    is_stock_specified: bool = False  # the stock is specified instead of assumed
+    part_off_z: float | None = None  # Z of the deepest part-off on the side of the chuck
     _turned: dict[int, float] = field(default_factory=dict)  # T → direction in which its edge has cut
     _told: set[int] = field(default_factory=set)
     _solid: float = 0.0  # mm of solid material along Z that the present move enters
 
-    def before_cut(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
+    def record_material(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
         """Record the length of solid material that a boring tool is about to enter."""
         self._solid = 0.0
-        if shape is None or not shape.internal or move.quick:
+        if shape is None or not shape.internal or move.is_fast:
             return
         z = [z for z, _ in move.points]
-        there = slice(part.columns.at(min(z)), part.columns.at(max(z)))
-        solid = np.all(part.low[:, there] <= 0.0, axis=0) & np.any(part.high[:, there] > 0.0, axis=0)
-        self._solid = part.columns.step * float(np.count_nonzero(solid))
+        there = slice(part.columns.find_column(min(z)), part.columns.find_column(max(z)))
+        solid = np.all(part.inner_radii[:, there] <= 0.0, axis=0) & np.any(
+            part.outer_radii[:, there] > 0.0, axis=0
+        )
+        self._solid = part.columns.step_mm * float(np.count_nonzero(solid))
 
-    def look(
+    def check_feed(
         self,
         move: TipMove,
         cuts: Sequence[Cut],
-        met: Cut,
+        cut: Cut,
         shape: ToolShape | None,
         cutter: Cutter,
         part: TurnedPart,
         tool: int,
     ) -> Iterator[Found]:
         """Yield the faults of a feed that has just cut; ``cuts`` are the cuts of its straight pieces."""
-        if shape is None or not met:
+        if shape is None or not cut:
             return
-        if cutter.held and shape.kind in INSERTS and _turning(move) > _LOOP and not is_round(shape):
-            around = f"{_turning(move):.0f}°"
+        if (
+            cutter.has_holder
+            and shape.kind in INSERT_TOOLS
+            and _arc_turn_angle(move) > _LOOP
+            and not has_round_insert(shape)
+        ):
+            around = f"{_arc_turn_angle(move):.0f}°"
             yield Found(
                 "arc-loop",
                 Message(
                     "{tool} feeds through the part along an arc of {around}.",
-                    tool=edge_name(tool),
+                    tool=format_edge_name(tool),
                     around=around,
                 ),
             )
             return
-        yield from _hollow_at_edge(move, shape, cutter, part, tool)
-        yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
-        yield from self._spindle(move, shape, cutter, tool)
-        yield from _off_axis(move, shape, tool)
-        yield from _without_limit(move, shape, tool)
-        if self._solid > _ENTERS and met.width > _ENTERS:
+        yield from _check_edge_hollow(move, shape, cutter, part, tool)
+        yield from check_cut_size(move, cut, shape, cutter, tool, is_stock_specified=self.is_stock_specified)
+        yield from self._check_spindle_direction(move, shape, cutter, tool)
+        yield from _check_axis_position(move, shape, tool)
+        yield from _check_speed_limit(move, shape, tool)
+        if self._solid > _ENTERS and cut.width_mm > _ENTERS:
             words = Message(
                 "{tool} feeds {solid} along Z into solid material.",
-                tool=edge_name(tool),
-                solid=move.modal.length_text(self._solid),
+                tool=format_edge_name(tool),
+                solid=move.modal.format_length(self._solid),
             )
             yield Found("no-bore", words)
-        yield from self._past_stock(move, shape, tool)
-        yield from self._over_axis(move, met, cutter, tool)
+        yield from self._check_past_stock(move, shape, tool)
+        yield from self._check_axis_crossing(move, cut, cutter, tool)
         yield from self._past_part_off(move, shape, cutter, tool)
-        yield from self._contour_past_part_off(move, shape, tool)
+        yield from self._check_contour_past_part_off(move, shape, tool)
         yield from self._drilled(move, shape, tool)
         # otherwise the insert is assumed
-        if cutter.held and shape.kind in INSERTS and move.kind is not Kind.THREAD:
-            yield from _wrong_side(move, cuts, shape, cutter, part, tool)
+        if cutter.has_holder and shape.kind in INSERT_TOOLS and move.kind is not BlockKind.THREAD:
+            yield from _check_cutting_side(move, cuts, shape, cutter, part, tool)
 
-    def _spindle(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
+    def _check_spindle_direction(
+        self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int
+    ) -> Iterator[Found]:
         """Check M03 and M04 against the hand of a drill. Each edge must cut in one direction only."""
         if not move.rpm:
             return
@@ -116,99 +125,99 @@ class EdgeChecks:
             if move.rpm * needed < 0.0:
                 yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
-        if shape.turns_itself:
+        if shape.is_rotating:
             return
-        if cutter.held and _turns_backwards(shape, move.rpm) and tool not in self._told:
+        if cutter.has_holder and _is_against_rake(shape, move.rpm) and tool not in self._told:
             self._told.add(tool)
             yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
         radii = [r for _, r in move.points]
-        if min(radii) < _NEAR and max(radii) > -_NEAR:
+        if min(radii) < _NEAR_TOLERANCE and max(radii) > -_NEAR_TOLERANCE:
             return  # the move crosses the axis
         way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
         if self._turned.setdefault(tool, way) != way and tool not in self._told:
             self._told.add(tool)
             words = Message(
                 "{tool} cuts with the spindle turning in the opposite direction to its earlier cuts.",
-                tool=edge_name(tool),
+                tool=format_edge_name(tool),
             )
             yield Found("wrong-spindle-direction", words)
 
-    def _over_axis(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
+    def _check_axis_crossing(self, move: TipMove, cut: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
         """Check that an outside tool does not feed through the axis or cut on the other side of it."""
-        face = (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
-        beyond = max((-r * cutter.across for z, r in move.points[1:] if z < face), default=0.0)
-        turns = max(r * cutter.across for _, r in move.points) < 0.0 and met.width > _ENTERS
-        if cutter.side is Side.OUTSIDE and beyond > (_TURNED_AWAY if turns else _OVER_AXIS):
-            deep = move.modal.length_text(beyond)
+        face = (self.stock.front_z_mm if self.stock is not None else 0.0) - _FACE_DEPTH_MM
+        beyond = max((-r * cutter.x_sign for z, r in move.points[1:] if z < face), default=0.0)
+        turns = max(r * cutter.x_sign for _, r in move.points) < 0.0 and cut.width_mm > _ENTERS
+        if cutter.side is CutSide.OUTSIDE and beyond > (_TURNED_AWAY if turns else _OVER_AXIS):
+            deep = move.modal.format_length(beyond)
             yield Found(
                 "over-axis",
                 Message(
                     "{tool} cuts {depth} past the spindle centerline, on the side opposite to "
                     "where the tool is mounted.",
-                    tool=edge_name(tool),
+                    tool=format_edge_name(tool),
                     depth=deep,
                 ),
             )
 
     def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
-        if self.parted_at is None or cutter.drills or shape.kind is ToolKind.PARTING:
+        if self.part_off_z is None or cutter.is_drill or shape.kind is ToolKind.PARTING:
             return
         z = min(z for z, _ in move.points)
-        long = (self.stock.front if self.stock is not None else 0.0) - self.parted_at
-        if z < self.parted_at - max(_PAST, long):
-            text = move.modal.length_text
+        long = (self.stock.front_z_mm if self.stock is not None else 0.0) - self.part_off_z
+        if z < self.part_off_z - max(_PASSED_DISTANCE_MM, long):
+            text = move.modal.format_length
             yield Found(
                 "past-part-off",
                 Message(
                     "{tool} cuts at Z {z}, but the part ends at Z {parted_at}.",
-                    tool=edge_name(tool),
+                    tool=format_edge_name(tool),
                     z=text(z),
-                    parted_at=text(self.parted_at),
+                    parted_at=text(self.part_off_z),
                 ),
             )
 
-    def _contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         """Check for an arc on the bar side of the deepest part-off, which no part contains."""
-        if self.parted_at is None or move.kind is not Kind.ARC or shape.kind not in INSERTS:
+        if self.part_off_z is None or move.kind is not BlockKind.ARC or shape.kind not in INSERT_TOOLS:
             return
         front = max(z for z, _ in move.points)
-        if front < self.parted_at - _BEYOND_CUT:
-            text = move.modal.length_text
+        if front < self.part_off_z - _BEYOND_CUT:
+            text = move.modal.format_length
             words = Message(
                 "{tool} cuts an arc at Z {front}, but the part ends at Z {parted_at}.",
-                tool=edge_name(tool),
+                tool=format_edge_name(tool),
                 front=text(front),
-                parted_at=text(self.parted_at),
+                parted_at=text(self.part_off_z),
             )
             yield Found("contour-past-part-off", words)
 
-    def _past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    def _check_past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         """Check that a feed does not pass the far end of the stock; the point of a drill may."""
-        if self.stock is None or not self.stock_given:
+        if self.stock is None or not self.is_stock_specified:
             return
         z, allowed = min(z for z, _ in move.points), _BREAKS_THROUGH
-        if shape.turns_itself:
+        if shape.is_rotating:
             allowed += shape.diameter
-        if z < self.stock.back - allowed:
-            text = move.modal.length_text
+        if z < self.stock.back_z_mm - allowed:
+            text = move.modal.format_length
             words = Message(
                 "{tool} feeds to Z {z}, but the stock ends at Z {back}.",
-                tool=edge_name(tool),
+                tool=format_edge_name(tool),
                 z=text(z),
-                back=text(self.stock.back),
+                back=text(self.stock.back_z_mm),
             )
             yield Found("past-stock", words)
 
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        deep = part_depth(move, self.stock)
-        if shape.turns_itself and shape.length and deep > shape.length:
-            text = move.modal.length_text
+        deep = depth_from_face(move, self.stock)
+        if shape.is_rotating and shape.length and deep > shape.length:
+            text = move.modal.format_length
             yield Found(
                 "drill-too-deep",
                 Message(
                     "{tool} goes {depth} deep, but its cutting length is only {length}.",
-                    tool=edge_name(tool),
+                    tool=format_edge_name(tool),
                     depth=text(deep),
                     length=text(shape.length),
                 ),
@@ -219,86 +228,86 @@ def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
     if move.rpm < 0.0:
         return Message(
             "{tool}, a {hand}-hand tool, cuts while the spindle turns in reverse.",
-            tool=edge_name(tool),
+            tool=format_edge_name(tool),
             hand=shape.hand,
         )
     return Message(
         "{tool}, a {hand}-hand tool, cuts while the spindle turns forward.",
-        tool=edge_name(tool),
+        tool=format_edge_name(tool),
         hand=shape.hand,
     )
 
 
-def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
+def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
     """Return whether the spindle turns against the rake of a front tool that is mounted face up.
 
     A tool mounted upside down cuts along Z opposite to its hand and is not checked.
     """
     upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
-    return shape.kind in INSERTS and upright and not shape.behind and rpm < 0.0
+    return shape.kind in INSERT_TOOLS and upright and not shape.behind and rpm < 0.0
 
 
-def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
     """Check that a stationary round tool is on the axis when it cuts."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = Message(
             "{tool} is {off} off the spindle centerline when it cuts.",
-            tool=edge_name(tool),
-            off=move.modal.length_text(off),
+            tool=format_edge_name(tool),
+            off=move.modal.format_length(off),
         )
         yield Found("drill-off-axis", words)
 
 
-def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+def _check_speed_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
     """Check that a round tool does not cut on the axis under constant surface speed without an rpm limit."""
     off = min(abs(r) for _, r in move.points)
-    if shape.kind in _DRILLS and move.modal.css and move.modal.css_max is None and off < _OFF_AXIS:
+    if shape.kind in _DRILLS and move.modal.css and move.modal.max_css_rpm is None and off < _OFF_AXIS:
         words = Message(
             "{tool} cuts on the spindle centerline under G96, so the spindle runs at its maximum speed.",
-            tool=edge_name(tool),
+            tool=format_edge_name(tool),
         )
         yield Found("drill-without-limit", words)
 
 
-def _turning(move: TipMove) -> float:
+def _arc_turn_angle(move: TipMove) -> float:
     """Return the angle in degrees by which the path of an arc turns; 0 for any other move."""
-    if move.kind is not Kind.ARC or len(move.points) < 3:
+    if move.kind is not BlockKind.ARC or len(move.points) < 3:
         return 0.0
     headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
     chords = len(headings)
     return math.degrees(abs(float(headings[-1] - headings[0]))) * chords / (chords - 1)
 
 
-def _hollow_at_edge(
+def _check_edge_hollow(
     move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
     """Check for a small quarter circle that starts along Z at the face and is therefore concave."""
-    if not (cutter.held and shape.kind is ToolKind.TURNING and cutter.side is Side.OUTSIDE):
+    if not (cutter.has_holder and shape.kind is ToolKind.TURNING and cutter.side is CutSide.OUTSIDE):
         return
-    if not _QUARTER[0] < _turning(move) < _QUARTER[1] or shape.direction[0] >= 0:
+    if not _QUARTER[0] < _arc_turn_angle(move) < _QUARTER[1] or shape.direction[0] >= 0:
         return
-    points = np.array(move.points) * [1.0, cutter.across]
+    points = np.array(move.points) * [1.0, cutter.x_sign]
     (z_in, r_in), (z_out, r_out) = np.diff(points, axis=0)[[0, -1]]
     radius = math.dist(points[0], points[-1]) / math.sqrt(2.0)
-    faces = np.flatnonzero(part.outermost > 0.0)
-    front = part.columns.first + part.columns.step * float(faces[-1]) if len(faces) else -math.inf
+    faces = np.flatnonzero(part.max_radii > 0.0)
+    front = part.columns.first_z_mm + part.columns.step_mm * float(faces[-1]) if len(faces) else -math.inf
     along, away = -z_in > 5.0 * abs(r_in), r_out > 5.0 * abs(z_out)
     if along and away and radius < _EDGE and abs(points[0][0] - front) < _AT_FACE:
         words = Message(
             "{tool} cuts a concave arc of radius {radius} into the edge of the face.",
-            tool=edge_name(tool),
-            radius=move.modal.length_text(radius),
+            tool=format_edge_name(tool),
+            radius=move.modal.format_length(radius),
         )
         yield Found("hollow-at-edge", words)
 
 
-def part_depth(move: TipMove, stock: Stock | None) -> float:
+def depth_from_face(move: TipMove, stock: Stock | None) -> float:
     """Return the depth in mm of the end of a move, measured from the face of the stock."""
-    return (stock.front if stock is not None else 0.0) - min(z for z, _ in move.points)
+    return (stock.front_z_mm if stock is not None else 0.0) - min(z for z, _ in move.points)
 
 
-def _wrong_side(
+def _check_cutting_side(
     move: TipMove, cuts: Sequence[Cut], shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
     """Check for cuts with the back of an insert: deep backward feeds, or walls that are too steep for it.
@@ -308,9 +317,9 @@ def _wrong_side(
     forward, across = shape.direction
     if not forward or not across:
         return
-    text = move.modal.length_text
+    text = move.modal.format_length
     deep = max(
-        (met.depth for (start, end), met in zip(pairwise(move.points), cuts, strict=True)
+        (met.depth_mm for (start, end), met in zip(pairwise(move.points), cuts, strict=True)
          if _goes_back(start, end, forward)),
         default=0.0,
     )  # fmt: skip
@@ -319,20 +328,24 @@ def _wrong_side(
             "wrong-side",
             Message(
                 "{tool} cuts {depth} deep with the trailing edge of its insert.",
-                tool=edge_name(tool),
+                tool=format_edge_name(tool),
                 depth=text(deep),
             ),
         )
         return
-    clears = cutter.clears(forward)
-    for start, end, met, steep in _steep_runs(move.points, cuts, shape, clears + _STEEPER):
-        behind = met.front - start[0] if forward < 0 else start[0] - met.back
-        faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
-        if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
+    clears = cutter.trailing_edge_angle(forward)
+    for start, end, met, steep in _iter_steep_runs(move.points, cuts, shape, clears + _STEEPER):
+        behind = met.front_z_mm - start[0] if forward < 0 else start[0] - met.back_z_mm
+        faces = behind <= _FACED and not _leaves_wall(part, met, forward, abs(end[1]), cutter.side)
+        if (
+            behind > 2.0 * shape.nose_radius + _TRAILING_CUT_MM
+            and met.depth_mm > _TRAILING_CUT_MM
+            and not faces
+        ):
             words = Message(
                 "{tool} cuts into the part at {steep}°, but the trailing edge of its insert clears "
                 "only {clears}°.",
-                tool=edge_name(tool),
+                tool=format_edge_name(tool),
                 steep=f"{steep:.0f}",
                 clears=f"{clears:.0f}",
             )
@@ -340,24 +353,24 @@ def _wrong_side(
             return
 
 
-def _stands_behind(part: TurnedPart, met: Cut, forward: int, r: float, side: Side) -> bool:
+def _leaves_wall(part: TurnedPart, cut: Cut, forward: int, r: float, side: CutSide) -> bool:
     """Return whether material above the tip remains right after the cut, as a wall that the back has hit."""
-    step = part.columns.step
-    edge = met.front + step if forward < 0 else met.back - step
-    at = part.columns.at(edge)
+    step = part.columns.step_mm
+    edge = cut.front_z_mm + step if forward < 0 else cut.back_z_mm - step
+    at = part.columns.find_column(edge)
     if not 0 <= at < part.columns.number:
         return False
-    low, high = part.low[:, at], part.high[:, at]
-    above = low < r if side is Side.BORE else high > r
-    return bool(np.any((high > low + _NEAR) & above))
+    low, high = part.inner_radii[:, at], part.outer_radii[:, at]
+    above = low < r if side is CutSide.BORE else high > r
+    return bool(np.any((high > low + _NEAR_TOLERANCE) & above))
 
 
 def _goes_back(start: Point, end: Point, forward: int) -> bool:
     along = (end[0] - start[0]) * forward
-    return along < -_NEAR and abs(end[1] - start[1]) < -along * 0.05
+    return along < -_NEAR_TOLERANCE and abs(end[1] - start[1]) < -along * 0.05
 
 
-def _steep_runs(
+def _iter_steep_runs(
     points: Sequence[Point], cuts: Sequence[Cut], shape: ToolShape, steepest: float
 ) -> Iterator[tuple[Point, Point, Cut, float]]:
     """Yield the parts of a move that enter more steeply than ``steepest`` degrees.
@@ -365,15 +378,17 @@ def _steep_runs(
     Each item is the start, the end, the cut, and the greatest angle.
     """
     forward, across = shape.direction
-    start, end, met, angle = points[0], points[0], NOTHING, 0.0
+    start, end, met, angle = points[0], points[0], NO_CUT, 0.0
     for (a, b), cut in zip(pairwise(points), cuts, strict=True):
         along, inwards = (b[0] - a[0]) * forward, (b[1] - a[1]) * across
-        steep = math.degrees(math.atan2(inwards, along)) if inwards > _NEAR and along >= 0.0 else 0.0
+        steep = (
+            math.degrees(math.atan2(inwards, along)) if inwards > _NEAR_TOLERANCE and along >= 0.0 else 0.0
+        )
         if steep > steepest:
             start, end = start if angle else a, b
-            met, angle = met.followed(cut), max(angle, steep)
+            met, angle = met.combine_sequence(cut), max(angle, steep)
         elif angle:
             yield start, end, met, angle
-            met, angle = NOTHING, 0.0
+            met, angle = NO_CUT, 0.0
     if angle:
         yield start, end, met, angle

@@ -6,41 +6,43 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from core.geometry.surface_speed import surface_rpm
+from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared.actions import (
-    AskInput,
-    Collet,
+    ColletSwitch,
+    InputRead,
+    InputWait,
     Preset,
     ProgramEnd,
     SpindleRun,
     ToolChange,
-    WaitInput,
 )
-from core.interpreter.shared.elementary_blocks import Block, Kind, Series
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries
+from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
-from core.proving.tip_moves import taps
-from core.tool_edges import edge_name
+from core.proving.tip_moves import is_rigid_tap
+from core.tool_edges import format_edge_name
 
-LIVE = "live"
+LIVE_TOOL = "live"
 """The names of outputs that turn a live tool begin with it in the machine file."""
 
 _QUICK = 100 * 25.4 / 60  # mm/s; a feed per minute at this speed or more is a positioning move
 # mm/s of surface speed; higher speeds need tools that small lathes do not have
 _FASTEST = 1000.0 * 1000.0 / 60.0
-_MILLING = frozenset({Kind.PLANE_LINE, Kind.PLANE_ARC})
-_METAL = _MILLING | {Kind.ARC, Kind.THREAD}
-_WAYS = _METAL | {Kind.FEED}
-_MOST = 100  # findings
+_MILLING = frozenset({BlockKind.PLANE_LINE, BlockKind.PLANE_ARC})
+_METAL = _MILLING | {BlockKind.ARC, BlockKind.THREAD}
+_PATH_KINDS = _METAL | {BlockKind.FEED}
+_MAX_FINDINGS = 100  # findings
 MM_PER_INCH = 25.4
 
 
-def cuts(block: Block) -> bool:
+def is_cutting_move(block: Block) -> bool:
     """Return whether a move would cut material, so that it is not a rapid or a fast feed."""
-    return block.kind in _WAYS and (block.per_rev or block.feed < _QUICK or block.kind is Kind.THREAD)
+    return block.kind in _PATH_KINDS and (
+        block.per_rev or block.feed < _QUICK or block.kind is BlockKind.THREAD
+    )
 
 
 @dataclass(slots=True)
@@ -53,8 +55,10 @@ class CuttingChecks:
 
     machine: Machine
     dialect: Dialect
-    single: bool = False  # an MDI line, for which the operator sees the active tool
-    placed: bool = False  # the axis positions are known from a move, or this is not the start of a program
+    is_mdi_line: bool = False  # an MDI line, for which the operator sees the active tool
+    is_position_known: bool = (
+        False  # the axis positions are known from a move, or this is not the start of a program
+    )
     _found: list[Diagnostic] = field(default_factory=list)
     _without_tool: list[Diagnostic] = field(default_factory=list)  # their severity is decided at the end
     _names_tool: bool = False
@@ -65,9 +69,11 @@ class CuttingChecks:
     _cut_before_collet: int = 0  # line of the first cut before any M12 or M13
     _collet: bool = False  # M12 or M13 has been executed
     _asked: frozenset[str] = frozenset()
-    _like: tuple[Modal, Kind] | None = None  # state of the previous move; a similar move needs no check
+    _like: tuple[ModalState, BlockKind] | None = (
+        None  # state of the previous move; a similar move needs no check
+    )
 
-    def twin(self) -> CuttingChecks:
+    def copy_for_branch(self) -> CuttingChecks:
         """Return a copy in the same state for another path through the program, without the findings."""
         return replace(self, _found=[], _without_tool=[])
 
@@ -77,29 +83,31 @@ class CuttingChecks:
         weight = Severity.ERROR if self._names_tool else Severity.WARNING
         return [*self._found, *(replace(each, severity=weight) for each in self._without_tool)]
 
-    def look(self, blocks: Sequence[Block]) -> None:
+    def check_blocks(self, blocks: Sequence[Block]) -> None:
         """Check the next blocks of the program."""
         if not blocks:
             return
         own = self.dialect is Dialect.OMNITURN
-        alike: Iterable[Block] = _unlike(blocks) if isinstance(blocks, Series) else blocks
+        alike: Iterable[Block] = (
+            _iter_distinct_moves(blocks) if isinstance(blocks, StraightMoveSeries) else blocks
+        )
         for block in alike:
             if block.action is not None:
                 self._like = None
                 self._act(block)
                 continue
-            if block.css is not None and cuts(block):
-                self._surface_speed(block)
+            if block.css is not None and is_cutting_move(block):
+                self._check_surface_speed(block)
             if (block.modal, block.kind) != self._like:
-                if own and not self.placed:
-                    self._place(block)
+                if own and not self.is_position_known:
+                    self._check_first_move(block)
                 self._like = (block.modal, block.kind) if block.modal.collet_closed else None
-                if cuts(block):
-                    (self._cut if own else self._cut_elsewhere)(block)
+                if is_cutting_move(block):
+                    (self._cut if own else self._check_other_dialect_cut)(block)
 
-    def _place(self, block: Block) -> None:
+    def _check_first_move(self, block: Block) -> None:
         """Warn about an incremental first move, whose start was not known in the proof."""
-        self.placed = True
+        self.is_position_known = True
         if block.modal.absolute is False:
             text = (
                 "The first move is incremental: it starts from the current axis position, but was "
@@ -120,11 +128,11 @@ class CuttingChecks:
             case SpindleRun():
                 self._has_run = True
                 self._clear("spindle-off")
-            case Collet(closed=closed):
+            case ColletSwitch(closed=closed):
                 self._collet = True
                 if closed:
                     self._clear("collet-open")
-            case AskInput(terminal=terminal) | WaitInput(terminal=terminal):
+            case InputRead(terminal=terminal) | InputWait(terminal=terminal):
                 self._input(block, terminal)
             case ProgramEnd():
                 self._end(block)
@@ -135,25 +143,25 @@ class CuttingChecks:
         modal = block.modal
         if not self._collet:
             self._cut_before_collet = self._cut_before_collet or block.line
-        if not (modal.tool or self.single or self._preset or modal.preset_x or modal.preset_z):
+        if not (modal.tool or self.is_mdi_line or self._preset or modal.preset_x or modal.preset_z):
             self._no_tool(block)
         if not modal.collet_closed:
-            self._collet_open(block)
-        if any(name.startswith(LIVE) for name in modal.outputs):
+            self._check_collet(block)
+        if any(name.startswith(LIVE_TOOL) for name in modal.outputs):
             self._clear("live-tool-off", "spindle-off")
-        elif taps(block):
+        elif is_rigid_tap(block):
             return
         elif modal.c_locked or block.kind in _MILLING:
             self._live_tool_off(block)
         elif not modal.spindle and not block.per_rev and (self._has_run or modal.rpm):
             self._spindle_off(block)
 
-    def _surface_speed(self, block: Block) -> None:
+    def _check_surface_speed(self, block: Block) -> None:
         """Check the speeds that G96 requires at both ends of a cut against the limits in force."""
-        modal, most = block.modal, self.machine.spindle.rpm_max
+        modal, most = block.modal, self.machine.spindle.max_rpm
         speed = block.css or 0.0
         radii = sorted((abs(block.x0), abs(block.x)))
-        slowest, fastest = (surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
+        slowest, fastest = (find_surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
         if speed > _FASTEST and slowest > 2.0 * most:
             text = Message(
                 "The surface speed requires {slowest} rpm in this move, but the spindle maximum is "
@@ -161,11 +169,11 @@ class CuttingChecks:
                 slowest=f"{slowest:.0f}",
                 maximum=f"{most:.0f}",
             )
-            self._report(
+            self._report_once(
                 block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 if S is in rpm."
             )
         limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 limits it
-        if modal.css_max is None and fastest > most and not limited:
+        if modal.max_css_rpm is None and fastest > most and not limited:
             text = Message(
                 "G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.",
                 maximum=f"{most:.0f}",
@@ -173,19 +181,19 @@ class CuttingChecks:
             hint = "Write G77Sn, where n is the maximum rpm for this chuck and bar."
             if self.dialect is Dialect.SINUMERIK:
                 hint = "Write LIMS= with the maximum speed for this chuck and bar."
-            self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
+            self._report_once(block, Severity.WARNING, "no-speed-limit", text, hint)
 
-    def _cut_elsewhere(self, block: Block) -> None:
+    def _check_other_dialect_cut(self, block: Block) -> None:
         """Check a cut in Klartext or SINUMERIK. The Klartext interpreter checks the spindle itself."""
         modal = block.modal
-        if not (modal.tool or self.single):
+        if not (modal.tool or self.is_mdi_line):
             self._no_tool(block)
         if self.dialect is Dialect.KLARTEXT:
             return
-        if any(name.startswith(LIVE) for name in modal.outputs):
+        if any(name.startswith(LIVE_TOOL) for name in modal.outputs):
             self._clear("spindle-off")
             return
-        driven = taps(block) or modal.c_locked or modal.spindle or block.per_rev
+        driven = is_rigid_tap(block) or modal.c_locked or modal.spindle or block.per_rev
         if not driven and (self._has_run or modal.rpm):
             self._spindle_off(block)
 
@@ -205,11 +213,11 @@ class CuttingChecks:
             self._without_tool.append(_finding(block, Severity.ERROR, "no-tool", text, hint))
         self._reported |= {"no-tool"}
 
-    def _collet_open(self, block: Block) -> None:
+    def _check_collet(self, block: Block) -> None:
         """Check a cut with an open collet. Bar work may move a stop or gripper, but must not cut."""
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
             text = "This move cuts with the collet open, so the part is not clamped."
-            self._report(
+            self._report_once(
                 block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before this move."
             )
         elif block.x != block.x0 or block.z < block.z0:
@@ -217,13 +225,13 @@ class CuttingChecks:
                 "This move feeds with the collet open, but not in a straight line away from the "
                 "spindle, as a bar pull does."
             )
-            self._report(
+            self._report_once(
                 block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before this move."
             )
 
     def _live_tool_off(self, block: Block) -> None:
         codes = sorted(
-            code for code, (name, on) in self.machine.m_codes.items() if on and name.startswith(LIVE)
+            code for code, (name, on) in self.machine.m_codes.items() if on and name.startswith(LIVE_TOOL)
         )
         if not codes:
             return  # this control does not switch the live tool
@@ -233,10 +241,10 @@ class CuttingChecks:
         )
         if block.kind in _MILLING:
             text = "This move mills with no live tool running."
-            self._report(block, Severity.ERROR, "live-tool-off", text, hint)
+            self._report_once(block, Severity.ERROR, "live-tool-off", text, hint)
         else:
             text = "This move cuts with the spindle locked as the C axis and no live tool running."
-            self._report(block, Severity.WARNING, "live-tool-off", text, hint)
+            self._report_once(block, Severity.WARNING, "live-tool-off", text, hint)
 
     def _spindle_off(self, block: Block) -> None:
         text = "This move cuts with the spindle stopped and no live tool running."
@@ -245,7 +253,7 @@ class CuttingChecks:
         hint = "Start the spindle with M03 or M04 before this cut."
         if self.dialect is not Dialect.OMNITURN:
             hint = "Start the spindle with M3 or M4 before this cut."
-        self._report(block, Severity.WARNING, "spindle-off", text, hint)
+        self._report_once(block, Severity.WARNING, "spindle-off", text, hint)
 
     def _input(self, block: Block, terminal: str) -> None:
         if terminal in self.machine.inputs or terminal in self._asked:
@@ -253,7 +261,7 @@ class CuttingChecks:
         self._asked |= {terminal}
         text = Message("This machine has no input {terminal}.", terminal=terminal)
         hint = "Correct the number, or define the input under [io.in] in the machine file."
-        if isinstance(block.action, WaitInput):
+        if isinstance(block.action, InputWait):
             text = Message(
                 "This machine has no input {terminal}, so the wait would never end.", terminal=terminal
             )
@@ -277,7 +285,7 @@ class CuttingChecks:
             )
         )
 
-    def _report(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
+    def _report_once(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
         """Add a finding once until the fault is corrected. An error is added even after a warning."""
         key = f"{check} {severity}"
         if key not in self._reported:
@@ -288,43 +296,45 @@ class CuttingChecks:
         self._reported = frozenset(each for each in self._reported if each.split()[0] not in checks)
 
     def _add(self, found: Diagnostic) -> None:
-        if len(self._found) < _MOST:
+        if len(self._found) < _MAX_FINDINGS:
             self._found.append(found)
 
 
-def _unlike(series: Series) -> Iterator[Block]:
+def _iter_distinct_moves(series: StraightMoveSeries) -> Iterator[Block]:
     """Yield the first move of a series, and its first cut if the first move is too fast to cut."""
     yield series[0]
-    if series.feed is not None and not cuts(series[0]):
+    if series.feed is not None and not is_cutting_move(series[0]):
         yield from (series[at] for at in (series.feed < _QUICK).nonzero()[0][:1].tolist())
 
 
 def _finding(block: Block, severity: Severity, check: str, text: str, hint: str) -> Diagnostic:
-    return Diagnostic(block.line, 0, severity, check, text, hint, check=check, n=block.n)
+    return Diagnostic(block.line, 0, severity, check, text, hint, check_name=check, block_number=block.n)
 
 
-def travel_findings(
+def check_travel(
     blocks: Sequence[Block], machine: Machine, dialect: Dialect = Dialect.OMNITURN
 ) -> Iterator[Diagnostic]:
     """Yield an error for each block whose machine positions leave the travel, along the whole move."""
-    limits = [(axis, *axis.reach) for axis in machine.axes]
-    for block in _outside(blocks, limits):
-        for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True):
+    limits = [(axis, *axis.travel_with_margin) for axis in machine.axes]
+    for block in _iter_outside_blocks(blocks, limits):
+        for (axis, least, most), (low, high) in zip(limits, block.compute_machine_bounds(), strict=True):
             if low < least or high > most:
                 yield _beyond(machine, dialect, block, axis, low, high)
 
 
-def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:
+def _iter_outside_blocks(
+    blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]
+) -> Iterator[Block]:
     """Yield blocks that may leave the travel. Straight moves of a lathe are checked at their ends."""
     (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
     endless = all(least == -math.inf for _, least, _ in limits[2:])
-    if endless and isinstance(blocks, Series):
+    if endless and isinstance(blocks, StraightMoveSeries):
         x, z = blocks.x + blocks.pattern.offset_x, blocks.z + blocks.pattern.offset_z
         inside = (x_least <= x) & (x <= x_most) & (z_least <= z) & (z <= z_most)
         yield from (blocks[at] for at in (~inside).nonzero()[0].tolist())
         return
     for block in blocks:
-        straight = block.kind is Kind.FEED or block.kind is Kind.RAPID
+        straight = block.kind is BlockKind.FEED or block.kind is BlockKind.RAPID
         if not (straight and endless and block.travel is None):
             yield block
             continue
@@ -336,7 +346,7 @@ def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]
 def _beyond(
     machine: Machine, dialect: Dialect, block: Block, axis: Axis, low: float, high: float
 ) -> Diagnostic:
-    least, greatest = axis.reach
+    least, greatest = axis.travel_with_margin
     at = low if low < least else high
     limit = least if low < least else greatest
     scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)
@@ -371,7 +381,9 @@ def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
     if machine.kind != "lathe" or axis.rotary:
         return Message("check the {axis} word and all active shifts", axis=axis.name)
     where = Message(
-        "check the {axis} word and the offset of {tool}", axis=axis.name, tool=edge_name(block.modal.tool)
+        "check the {axis} word and the offset of {tool}",
+        axis=axis.name,
+        tool=format_edge_name(block.modal.tool),
     )
     if dialect is Dialect.OMNITURN:
         return Message("{place}; also check every G10 and G92", place=where)
@@ -381,9 +393,9 @@ def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
 # --- C as the spindle -----------------------------------------------------------------------------------
 
 
-def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
+def check_c_motion(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
     """Yield an error for each block that moves C while the spindle turns, if the spindle is C."""
-    if not machine.spindle_is_c or isinstance(blocks, Series):  # a series moves only X and Z
+    if not machine.spindle_is_c or isinstance(blocks, StraightMoveSeries):  # a series moves only X and Z
         return
     for block in blocks:
         if block.c != block.c0 and block.modal.spindle:

@@ -6,20 +6,20 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Generic
 
 from core.store.offsets import offset_history, offset_tables, touch_off
-from core.store.offsets.offset_tables import Reason
-from core.store.offsets.touch_off import Touch
+from core.store.offsets.offset_tables import ChangeReason
+from core.store.offsets.touch_off import TouchPosition
 from core.store.store_access import StoreAccess
 from core.store.store_rows import (
-    Change,
-    Kind,
+    FieldValue,
     MillRow,
+    OffsetChange,
+    OffsetKind,
+    OffsetRow,
     PresetRow,
-    Row,
     RowT,
     SecondaryRow,
     ShapeRow,
     ToolRow,
-    Value,
     ZeroRow,
 )
 
@@ -34,84 +34,92 @@ class OffsetTable(Generic[RowT]):
     ``StoreAccess``. The future of a change also raises StoreError if a number or value is out of range.
     """
 
-    def __init__(self, store: StoreAccess, kind: Kind, row: type[RowT]) -> None:
+    def __init__(self, store: StoreAccess, kind: OffsetKind, row: type[RowT]) -> None:
         self._store, self._kind, self._row = store, kind, row
 
     def read_rows(self) -> dict[int, RowT]:
         """Return the rows that have been set, by number. Damaged rows are omitted."""
-        return self._store.query(offset_tables.rows_of, self._kind, self._row)
+        return self._store.run_query(offset_tables.read_typed_rows, self._kind, self._row)
 
     def read_rows_at(self, moment: str) -> dict[int, RowT]:
         """Return the rows as they were at ``moment``, a UTC time as in the history, by number."""
-        rows = self._store.query(offset_history.as_of, self._kind, moment)
+        rows = self._store.run_query(offset_history.read_rows_at, self._kind, moment)
         return {number: row for number, row in rows.items() if isinstance(row, self._row)}
 
     def change_row(
-        self, number: int, why: str, values: Mapping[str, Value], *, who: str = "operator"
-    ) -> Future[Row]:
+        self, number: int, why: str, values: Mapping[str, FieldValue], *, who: str = "operator"
+    ) -> Future[OffsetRow]:
         """Set the fields in ``values``, by name, and leave the other fields. The result is the new row."""
-        reason, wanted = Reason(why, who), dict(values)
-        return self._store.write(lambda c: offset_tables.change(c, self._kind, number, reason, wanted))
+        reason, wanted = ChangeReason(why, who), dict(values)
+        return self._store.write(lambda c: offset_tables.change_row(c, self._kind, number, reason, wanted))
 
-    def remove_row(self, number: int, why: str, *, who: str = "operator") -> Future[bool]:
+    def remove_row(self, number: int, reason: str, *, author: str = "operator") -> Future[bool]:
         """Remove a row. The result is whether the row was set."""
-        return self._store.write(lambda c: offset_tables.remove(c, self._kind, number, Reason(why, who)))
+        return self._store.write(
+            lambda c: offset_tables.remove_row(c, self._kind, number, ChangeReason(reason, author))
+        )
 
-    def remove_all_rows(self, why: str, *, who: str = "operator") -> Future[int]:
+    def remove_all_rows(self, reason: str, *, author: str = "operator") -> Future[int]:
         """Remove all rows as one step of the history. The result is the number of rows removed."""
-        return self._store.write(lambda c: offset_tables.clear(c, self._kind, Reason(why, who)))
+        return self._store.write(lambda c: offset_tables.clear(c, self._kind, ChangeReason(reason, author)))
 
-    def read_history(self, limit: int = 100) -> tuple[Change, ...]:
+    def read_history(self, limit: int = 100) -> tuple[OffsetChange, ...]:
         """Return the latest changes of this table, newest first."""
-        return self._store.query(offset_history.history, self._kind, limit)
+        return self._store.run_query(offset_history.history, self._kind, limit)
 
-    def find_undoable(self, number: int | None = None) -> tuple[Change, ...]:
+    def find_undoable_changes(self, number: int | None = None) -> tuple[OffsetChange, ...]:
         """Return the changes that ``undo_step`` would undo; () if no step is left.
 
         The changes are those of the latest step that changed the row ``number``. None selects the latest step
         of the table.
         """
-        return self._store.query(offset_history.undoable, self._kind, number)
+        return self._store.run_query(offset_history.find_undoable_changes, self._kind, number)
 
-    def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
+    def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[OffsetChange, ...]]:
         """Undo the latest step of this table. Another call undoes the step before it.
 
         The result is the changes made. The future raises StoreError if no step is left.
         """
-        return self._store.write(lambda c: offset_history.undo(c, Reason(why, who), self._kind))
+        return self._store.write(lambda c: offset_history.undo(c, ChangeReason(why, who), self._kind))
 
     def undo_step(
-        self, number: int | None, step: int, why: str = "undo", *, who: str = "operator"
-    ) -> Future[tuple[Change, ...]]:
-        """Undo exactly this step of ``find_undoable``. The result is the changes made.
+        self, number: int | None, step: int, why: str = "undo", *, author: str = "operator"
+    ) -> Future[tuple[OffsetChange, ...]]:
+        """Undo exactly this step of ``find_undoable_changes``. The result is the changes made.
 
         The future raises StoreError if the rows of the step have changed since.
         """
-        reason = Reason(why, who)
-        return self._store.write(lambda c: offset_history.undo_step(c, reason, self._kind, number, step))
+        reason = ChangeReason(why, author)
+        return self._store.write(
+            lambda c: offset_history.undo_given_step(c, reason, self._kind, number, step)
+        )
 
 
-class ToolTable(OffsetTable[ToolRow]):
+class ToolOffsetTable(OffsetTable[ToolRow]):
     """The tool offsets of a lathe, one of which may be the master."""
 
     def __init__(self, store: StoreAccess) -> None:
-        super().__init__(store, Kind.TOOL, ToolRow)
+        super().__init__(store, OffsetKind.TOOL, ToolRow)
 
-    def touch_off(
-        self, number: int, touch: Touch, why: str, *, who: str = "operator"
-    ) -> Future[tuple[Change, ...]]:
+    def set_touched_offset(
+        self, number: int, touch: TouchPosition, reason: str, *, author: str = "operator"
+    ) -> Future[tuple[OffsetChange, ...]]:
         """Set the offset of a tool to the position at which it touched part zero.
 
         If the tool is the master tool, all other tools move with it. The result is the changes made.
         """
-        return self._store.write(lambda c: touch_off.touch_off(c, number, touch, Reason(why, who)))
+        return self._store.write(
+            lambda c: touch_off.store_touch_off(c, number, touch, ChangeReason(reason, author))
+        )
 
-    def choose_master(self, number: int, why: str, *, who: str = "operator") -> Future[tuple[Change, ...]]:
+    def set_master_tool(
+        self, number: int, reason: str, *, author: str = "operator"
+    ) -> Future[tuple[OffsetChange, ...]]:
         """Make a tool the master tool, to which other tools are relative; 0 clears the master tool.
 
         The positions of the tool tips do not change. The result is the changes made.
         """
-        return self._store.write(lambda c: touch_off.choose_master(c, number, Reason(why, who)))
+        return self._store.write(lambda c: touch_off.set_master_tool(c, number, ChangeReason(reason, author)))
 
 
 class OffsetTables:
@@ -119,24 +127,28 @@ class OffsetTables:
 
     def __init__(self, store: StoreAccess) -> None:
         self._store = store
-        self.tools = ToolTable(store)
-        self.secondary = OffsetTable(store, Kind.SECONDARY, SecondaryRow)
-        self.zero = OffsetTable(store, Kind.ZERO, ZeroRow)
-        self.shapes = OffsetTable(store, Kind.SHAPE, ShapeRow)
-        self.mill_tools = OffsetTable(store, Kind.MILL_TOOL, MillRow)
-        self.presets = OffsetTable(store, Kind.PRESET, PresetRow)
+        self.tool_offsets = ToolOffsetTable(store)
+        self.secondary_offsets = OffsetTable(store, OffsetKind.SECONDARY, SecondaryRow)
+        self.zero_offsets = OffsetTable(store, OffsetKind.ZERO, ZeroRow)
+        self.tool_shapes = OffsetTable(store, OffsetKind.SHAPE, ShapeRow)
+        self.mill_tools = OffsetTable(store, OffsetKind.MILL_TOOL, MillRow)
+        self.presets = OffsetTable(store, OffsetKind.PRESET, PresetRow)
 
-    def table(self, kind: Kind) -> OffsetTable[Row]:
+    def get_table(self, kind: OffsetKind) -> OffsetTable[OffsetRow]:
         """Return the table of this kind, for callers that do not need the type of its rows."""
-        return OffsetTable(self._store, kind, offset_tables.TABLES[kind].row)
+        return OffsetTable(self._store, kind, offset_tables.OFFSET_TABLES[kind].row)
 
-    def read_history(self, limit: int = 100) -> tuple[Change, ...]:
+    def read_history(self, limit: int = 100) -> tuple[OffsetChange, ...]:
         """Return the latest changes of all tables, newest first."""
-        return self._store.query(offset_history.history_any, limit)
+        return self._store.run_query(offset_history.read_history_in_store, limit)
 
-    def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
+    def undo_last_step(
+        self, reason: str = "undo", *, author: str = "operator"
+    ) -> Future[tuple[OffsetChange, ...]]:
         """Undo the latest step of all tables. Another call undoes the step before it.
 
         The result is the changes made. The future raises StoreError if no step is left.
         """
-        return self._store.write(lambda c: offset_history.undo_any(c, Reason(why, who)))
+        return self._store.write(
+            lambda c: offset_history.undo_last_step_in_store(c, ChangeReason(reason, author))
+        )

@@ -13,83 +13,87 @@ from typing import NamedTuple
 
 from core.message import Message
 from core.store.offsets import offset_tables
-from core.store.offsets.offset_tables import Reason
+from core.store.offsets.offset_tables import ChangeReason
 from core.store.store_errors import StoreError
-from core.store.store_rows import Change, Kind, Row, ToolRow
-from core.tool_edges import edge_name
+from core.store.store_rows import OffsetChange, OffsetKind, OffsetRow, ToolRow
+from core.tool_edges import format_edge_name
 
 
-class Touch(NamedTuple):
+class TouchPosition(NamedTuple):
     """Machine position in mm, X as a radius, at which a tip is at part zero.
 
-    An axis is None if it was not touched off. ``alone`` changes only this tool, even if it is the master
-    tool, because its tip has changed and part zero has not.
+    An axis is None if it was not touched off. ``moves_only_this_tool`` changes only this tool, even if it is
+    the master tool, because its tip has changed and part zero has not.
     """
 
     x: float | None = None
     z: float | None = None
-    alone: bool = False
+    moves_only_this_tool: bool = False
 
 
-def touch_off(
-    connection: sqlite3.Connection, number: int, touch: Touch, reason: Reason
-) -> tuple[Change, ...]:
+def store_touch_off(
+    connection: sqlite3.Connection, number: int, touch: TouchPosition, reason: ChangeReason
+) -> tuple[OffsetChange, ...]:
     """Store a touched-off position and set the wear of that axis to zero.
 
     The new geometry already contains the wear. Touching off the master tool moves all other tools by the same
     distance, as one step of the history. Raises StoreError if a value is out of range, or if only one axis of
     a new tool was touched off. The store is then unchanged.
     """
-    offset_tables.check_number(Kind.TOOL, number)
-    rows = offset_tables.tools(connection)
+    offset_tables.check_row_number(OffsetKind.TOOL, number)
+    rows = offset_tables.read_tool_offsets(connection)
     old = rows.get(number)
     if old is None and (touch.x is None or touch.z is None):
         raise StoreError(
             Message(
                 "the offset of {number} has never been set; touch off both X and Z",
-                number=edge_name(number),
+                number=format_edge_name(number),
             ),
             "needs-both-axes",
         )
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
-    changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}
-    if old is not None and old.master and not touch.alone:
-        changes |= _followers(rows, number, new.offset[0] - old.offset[0], new.offset[1] - old.offset[1])
+    changes: dict[int, tuple[OffsetRow | None, OffsetRow | None]] = {number: (old, new)}
+    if old is not None and old.master and not touch.moves_only_this_tool:
+        changes |= _make_follower_changes(
+            rows, number, new.offset[0] - old.offset[0], new.offset[1] - old.offset[1]
+        )
     changes = {n: pair for n, pair in changes.items() if pair[0] != pair[1]}
     if not changes:
         return ()
-    return offset_tables.apply(connection, Kind.TOOL, changes, reason)
+    return offset_tables.apply_changes(connection, OffsetKind.TOOL, changes, reason)
 
 
 def _tool(number: int, old: ToolRow | None, wanted: dict[str, float]) -> ToolRow:
-    row = offset_tables.changed(Kind.TOOL, number, old, wanted)
+    row = offset_tables.apply_field_changes(OffsetKind.TOOL, number, old, wanted)
     assert isinstance(row, ToolRow)  # always true for the table of tools
     return row
 
 
-def _followers(
+def _make_follower_changes(
     rows: dict[int, ToolRow], master: int, x: float, z: float
-) -> dict[int, tuple[Row | None, Row | None]]:
+) -> dict[int, tuple[OffsetRow | None, OffsetRow | None]]:
     """Return the changes that move all other tools together with part zero, by ``x`` and ``z`` in mm."""
     return {
         n: (row, _tool(n, row, {"x": row.x + x, "z": row.z + z})) for n, row in rows.items() if n != master
     }
 
 
-def choose_master(connection: sqlite3.Connection, number: int, reason: Reason) -> tuple[Change, ...]:
+def set_master_tool(
+    connection: sqlite3.Connection, number: int, reason: ChangeReason
+) -> tuple[OffsetChange, ...]:
     """Make a tool the master tool, or clear the master tool with 0; no position changes.
 
     Raises StoreError if the tool has never been set.
     """
-    rows = offset_tables.tools(connection)
+    rows = offset_tables.read_tool_offsets(connection)
     if number and number not in rows:
-        raise StoreError(offset_tables.never_set(number), "never-set")
-    changes: dict[int, tuple[Row | None, Row | None]] = {
+        raise StoreError(offset_tables.make_no_offset_message(number), "never-set")
+    changes: dict[int, tuple[OffsetRow | None, OffsetRow | None]] = {
         n: (row, row._replace(master=n == number))
         for n, row in rows.items()
         if row.master is not (n == number)
     }
     if not changes:
         return ()
-    return offset_tables.apply(connection, Kind.TOOL, changes, reason)
+    return offset_tables.apply_changes(connection, OffsetKind.TOOL, changes, reason)

@@ -11,206 +11,223 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from core.message import Message
-from core.store import program_records, row_sums, settings
+from core.store import program_records, row_checksums, settings
 from core.store.store_access import StoreAccess
 from core.store.store_errors import StoreError
-from core.store.store_file import text_key
-from core.store.store_rows import utc_now
+from core.store.store_file import make_loaded_text_key
+from core.store.store_rows import get_utc_now_text
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
-MOST_PARTS = 9_999_999
-MOST_JOBS = 200
-NOTE_LONGEST = 80
+MAX_PARTS = 9_999_999
+MAX_JOBS = 200
+MAX_NOTE_LENGTH = 80
 
 
 class JobRow(NamedTuple):
     """One job of the queue.
 
-    ``base`` is the part count of the program from which the job counts; None if the job is not active.
-    ``counted`` is the present part count of the program.
+    ``base_part_count`` is the part count of the program from which the job counts; None if the job is not
+    active. ``part_count`` is the present part count of the program.
     """
 
     id: int
     program: str
-    wanted: int
-    before: int = 0  # parts of the job that were made before ``base`` was set
-    base: int | None = None
+    parts_to_make: int
+    parts_made_before: int = 0  # parts of the job that were made before ``base_part_count`` was set
+    base_part_count: int | None = None
     note: str = ""
-    added: str = ""
-    counted: int = 0
+    added_at: str = ""
+    part_count: int = 0
 
     @property
-    def under_way(self) -> bool:
+    def is_active(self) -> bool:
         """Whether the job is active, so that parts of its program count for it."""
-        return self.base is not None
+        return self.base_part_count is not None
 
     @property
-    def made(self) -> int:
+    def parts_made(self) -> int:
         """Number of parts that the job has made."""
-        return max(0, self.before + (self.counted - self.base if self.base is not None else 0))
+        return max(
+            0,
+            self.parts_made_before
+            + (self.part_count - self.base_part_count if self.base_part_count is not None else 0),
+        )
 
     @property
-    def left(self) -> int:
+    def parts_left(self) -> int:
         """Number of parts that the job has still to make."""
-        return max(0, self.wanted - self.made)
+        return max(0, self.parts_to_make - self.parts_made)
 
     @property
-    def done(self) -> bool:
+    def is_done(self) -> bool:
         """Whether all parts of the job are made."""
-        return self.made >= self.wanted
+        return self.parts_made >= self.parts_to_make
 
     @property
-    def target(self) -> int:
+    def target_part_count(self) -> int:
         """Part count of the program at which the job is done; 0 if the job is not active."""
-        return max(1, self.base + self.wanted - self.before) if self.base is not None else 0
+        return (
+            max(1, self.base_part_count + self.parts_to_make - self.parts_made_before)
+            if self.base_part_count is not None
+            else 0
+        )
 
 
-Held = Mapping[str, tuple[bool, int]]
+PendingCounts = Mapping[str, tuple[bool, int]]
 """Counts that wait in memory, by program: put to nought first, and so many more."""
 
 
-def jobs(connection: sqlite3.Connection, held: Held | None = None) -> tuple[JobRow, ...]:
+def read_jobs(
+    connection: sqlite3.Connection, pending_counts: PendingCounts | None = None
+) -> tuple[JobRow, ...]:
     """Return the jobs of the queue in order. Damaged rows are omitted.
 
     The second argument has the part counts that wait in memory for the disk.
     """
-    rows = (row_sums.readable(row) for row in row_sums.whole_rows(connection, "jobs").values())
+    rows = (
+        row_checksums.decode_values(row)
+        for row in row_checksums.read_intact_rows(connection, "jobs").values()
+    )
     placed = sorted((place, number, rest) for number, place, *rest in rows)
-    return tuple(_job(connection, JobRow._make((number, *rest, 0)), held or {}) for _, number, rest in placed)
+    return tuple(
+        _job(connection, JobRow._make((number, *rest, 0)), pending_counts or {}) for _, number, rest in placed
+    )
 
 
-def _job(connection: sqlite3.Connection, row: JobRow, held: Held) -> JobRow:
+def _job(connection: sqlite3.Connection, row: JobRow, held: PendingCounts) -> JobRow:
     """Return a job with its present part count.
 
     If a reset of the count waits in memory, the parts made before the reset still count for the job.
     """
-    counted = program_records.parts(connection, row.program)
-    reset, more = held.get(program_records.key_of(connection, row.program), (False, 0))
-    if reset and row.base is not None:
-        before = row.before + counted - row.base
-        return row._replace(counted=max(0, more), before=before, base=0)
-    return row._replace(counted=max(0, counted + more))
+    counted = program_records.read_part_count(connection, row.program)
+    reset, more = held.get(program_records.find_loaded_key(connection, row.program), (False, 0))
+    if reset and row.base_part_count is not None:
+        before = row.parts_made_before + counted - row.base_part_count
+        return row._replace(part_count=max(0, more), parts_made_before=before, base_part_count=0)
+    return row._replace(part_count=max(0, counted + more))
 
 
-def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "") -> int:
+def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, note: str = "") -> int:
     """Add a job at the end of the queue; return its id.
 
     Raises StoreError if the name, the number of parts or the note is invalid, or if the queue is full.
     """
-    program_records.check_name(program)
-    _check(wanted, note)
+    program_records.check_program_name(program)
+    _check(parts_to_make, note)
     count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
-    if count >= MOST_JOBS:
+    if count >= MAX_JOBS:
         raise StoreError(
-            Message("the queue is full ({most_jobs} jobs); remove finished jobs", most_jobs=MOST_JOBS),
+            Message("the queue is full ({most_jobs} jobs); remove finished jobs", most_jobs=MAX_JOBS),
             "queue-full",
         )
     done = connection.execute(
         "INSERT INTO jobs (place, program, wanted, note, added) VALUES (?, ?, ?, ?, ?)",
-        (last + 1, program, wanted, note, utc_now()),
+        (last + 1, program, parts_to_make, note, get_utc_now_text()),
     )
     return int(done.lastrowid or 0)
 
 
-def change(connection: sqlite3.Connection, job: int, wanted: int, note: str) -> None:
+def change_job(connection: sqlite3.Connection, job: int, parts_to_make: int, note: str) -> None:
     """Change the number of parts and the note of a job. Raises StoreError if one is invalid."""
-    _check(wanted, note)
+    _check(parts_to_make, note)
     _demand(connection, job)
-    connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (wanted, note, job))
+    connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (parts_to_make, note, job))
 
 
-def move(connection: sqlite3.Connection, job: int, to: int) -> None:
-    """Move a job to place ``to`` of the queue, counted from 1. Raises StoreError if the job is unknown."""
+def move_job(connection: sqlite3.Connection, job: int, place: int) -> None:
+    """Move a job to place ``place`` of the queue, counted from 1. Raises StoreError if the job is unknown."""
     _demand(connection, job)
     order = [number for (number,) in connection.execute("SELECT id FROM jobs ORDER BY place, id")]
     order.remove(job)
-    order.insert(max(0, to - 1), job)
+    order.insert(max(0, place - 1), job)
     connection.executemany(
         "UPDATE jobs SET place = ? WHERE id = ?", [(place, each) for place, each in enumerate(order, 1)]
     )
 
 
-def remove(connection: sqlite3.Connection, job: int) -> None:
+def remove_job(connection: sqlite3.Connection, job: int) -> None:
     """Remove a job from the queue; part counts remain. Raises StoreError if the job is unknown."""
     _demand(connection, job)
     connection.execute("DELETE FROM jobs WHERE id = ?", (job,))
 
 
-def clear(connection: sqlite3.Connection, *, everything: bool) -> int:
+def clear(connection: sqlite3.Connection, *, remove_all: bool) -> int:
     """Remove the finished and damaged jobs, or all jobs; return the number of jobs removed."""
-    whole = {row.id: row for row in jobs(connection)}
+    whole = {row.id: row for row in read_jobs(connection)}
     numbers = [number for (number,) in connection.execute("SELECT id FROM jobs")]
-    gone = [each for each in numbers if everything or each not in whole or whole[each].done]
+    gone = [each for each in numbers if remove_all or each not in whole or whole[each].is_done]
     connection.executemany("DELETE FROM jobs WHERE id = ?", [(each,) for each in gone])
     return len(gone)
 
 
-def begin(connection: sqlite3.Connection, job: int) -> None:
+def activate_job(connection: sqlite3.Connection, job: int) -> None:
     """Activate a job: from now on parts of its program count for this job only.
 
     Raises StoreError if the job is unknown or damaged.
     """
     _demand(connection, job)
-    put_away(connection)
-    row = next((row for row in jobs(connection) if row.id == job), None)
+    deactivate_job(connection)
+    row = next((row for row in read_jobs(connection) if row.id == job), None)
     if row is None:
         raise StoreError(
             "the data of this job does not match its checksum; clear the job from the "
             "queue and enter the job again",
             "damaged-job",
         )
-    connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))
+    connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.part_count, job))
 
 
-def put_away(connection: sqlite3.Connection) -> None:
+def deactivate_job(connection: sqlite3.Connection) -> None:
     """Deactivate the active job. The parts that it made remain counted."""
-    for row in jobs(connection):
-        if row.under_way:
-            connection.execute("UPDATE jobs SET made = ?, base = NULL WHERE id = ?", (row.made, row.id))
+    for row in read_jobs(connection):
+        if row.is_active:
+            connection.execute("UPDATE jobs SET made = ?, base = NULL WHERE id = ?", (row.parts_made, row.id))
 
 
-def count_reset(connection: sqlite3.Connection, program: str) -> None:
+def save_count_before_reset(connection: sqlite3.Connection, program: str) -> None:
     """Save the parts made by the active job before the part count of its program is reset."""
-    key = program_records.key_of(connection, program)
-    for row in jobs(connection):
-        if row.under_way and program_records.key_of(connection, row.program) == key:
-            connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.made, row.id))
+    key = program_records.find_loaded_key(connection, program)
+    for row in read_jobs(connection):
+        if row.is_active and program_records.find_loaded_key(connection, row.program) == key:
+            connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.parts_made, row.id))
 
 
-def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
+def record_loaded_text(connection: sqlite3.Connection, program: str, text: str) -> None:
     """Record that ``text``, a record key, is loaded under the name ``program``.
 
     The active job of the program retains the parts that it has made.
     """
-    before = program_records.key_of(connection, program)
+    before = program_records.find_loaded_key(connection, program)
     if before == text:
         return
     if before == program:
-        program_records.adopt(connection, program)
-    made = {row.id: row.made for row in jobs(connection) if row.under_way and row.program == program}
-    settings.save_setting(connection, text_key(program), text)
-    base = program_records.parts(connection, program)
+        program_records.assign_rows_to_text(connection, program)
+    made = {
+        row.id: row.parts_made for row in read_jobs(connection) if row.is_active and row.program == program
+    }
+    settings.save_setting(connection, make_loaded_text_key(program), text)
+    base = program_records.read_part_count(connection, program)
     for number, count in made.items():
         connection.execute("UPDATE jobs SET made = ?, base = ? WHERE id = ?", (count, base, number))
 
 
 def _check(wanted: int, note: str) -> None:
-    if not 1 <= wanted <= MOST_PARTS:
+    if not 1 <= wanted <= MAX_PARTS:
         raise StoreError(
             Message(
                 "a job must have 1 to {most_parts} parts, not {expected}",
-                most_parts=MOST_PARTS,
+                most_parts=MAX_PARTS,
                 expected=wanted,
             ),
             "part-count",
         )
-    if len(note) > NOTE_LONGEST or not note.isprintable():
+    if len(note) > MAX_NOTE_LENGTH or not note.isprintable():
         raise StoreError(
             Message(
                 "a job note can have at most {note_longest} characters, on one line",
-                note_longest=NOTE_LONGEST,
+                note_longest=MAX_NOTE_LENGTH,
             ),
             "invalid-note",
         )
@@ -230,25 +247,25 @@ class JobQueue:
     def read_jobs(self) -> tuple[JobRow, ...]:
         """Return the jobs in order, including part counts that wait in memory for the disk."""
         with self._store.read() as connection:
-            held = self._store.backlog
-            return jobs(connection, held.counts if held is not None else None)
+            held = self._store.pending_entries
+            return read_jobs(connection, held.part_counts_by_program if held is not None else None)
 
-    def add_job(self, program: str, wanted: int, note: str = "") -> Future[int]:
+    def add_job(self, program: str, parts_to_make: int, note: str = "") -> Future[int]:
         """Add a job for ``wanted`` parts at the end of the queue. The result is its id.
 
         The future raises StoreError if the program name, the number of parts or the note is invalid, or if
         the queue is full.
         """
-        return self._store.write(lambda c: add(c, program, wanted, note))
+        return self._store.write(lambda c: add_job(c, program, parts_to_make, note))
 
     def move_job(self, job: int, place: int) -> Future[None]:
         """Move a job to a place, counted from 1. The future raises StoreError for an unknown job."""
-        return self._store.write(lambda c: move(c, job, place))
+        return self._store.write(lambda c: move_job(c, job, place))
 
     def remove_job(self, job: int) -> Future[None]:
         """Remove a job; part counts remain. The future raises StoreError for an unknown job."""
-        return self._store.write(lambda c: remove(c, job))
+        return self._store.write(lambda c: remove_job(c, job))
 
-    def clear_jobs(self, *, everything: bool) -> Future[int]:
+    def clear_jobs(self, *, remove_all: bool) -> Future[int]:
         """Remove the finished and damaged jobs, or all jobs. The result is the number of jobs removed."""
-        return self._store.write(lambda c: clear(c, everything=everything))
+        return self._store.write(lambda c: clear(c, remove_all=remove_all))

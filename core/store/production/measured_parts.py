@@ -10,9 +10,9 @@ import sqlite3
 from typing import Any, NamedTuple
 
 from core.message import Message
-from core.store import row_sums
+from core.store import row_checksums
 from core.store.store_errors import StoreError
-from core.store.store_rows import utc_now
+from core.store.store_rows import get_utc_now_text
 
 
 class FeatureRow(NamedTuple):
@@ -55,7 +55,7 @@ class ReadingRow(NamedTuple):
 _COLUMNS = ", ".join(FeatureRow._fields)
 
 
-def features(connection: sqlite3.Connection, program: str | None = None) -> tuple[FeatureRow, ...]:
+def read_features(connection: sqlite3.Connection, program: str | None = None) -> tuple[FeatureRow, ...]:
     """Return the features that are measured, in the order of entry; None as ``program`` selects all programs.
 
     Damaged rows are omitted, because wear corrections are calculated from these values.
@@ -65,7 +65,7 @@ def features(connection: sqlite3.Connection, program: str | None = None) -> tupl
         " ORDER BY program, id",
         (program,),
     ).fetchall()
-    broken = row_sums.broken(connection, "part_features") if rows else frozenset()
+    broken = row_checksums.find_broken_rows(connection, "part_features") if rows else frozenset()
     return tuple(FeatureRow(*row) for row in rows if row[0] not in broken)
 
 
@@ -132,7 +132,7 @@ def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
     done = connection.execute(
         "INSERT INTO part_readings (feature, part, value, unit, at, source, gauge)"
         " VALUES (?, ?, ?, ?, ?, ?, ?)",
-        (row.feature, row.part, row.value, row.unit, row.at or utc_now(), row.source, row.gauge),
+        (row.feature, row.part, row.value, row.unit, row.at or get_utc_now_text(), row.source, row.gauge),
     )
     return int(done.lastrowid or 0)
 
@@ -147,7 +147,7 @@ def void_reading(connection: sqlite3.Connection, reading: int) -> None:
         raise StoreError("that reading has already been deleted", "already-removed")
 
 
-def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[ReadingRow, ...]:
+def read_readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[ReadingRow, ...]:
     """Return the latest readings of a program's features, oldest first. Damaged rows are omitted."""
     rows = connection.execute(
         "SELECT r.id, r.feature, r.part, r.value, r.unit, r.at, r.source, r.gauge,"
@@ -157,15 +157,17 @@ def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[
         " WHERE f.program = ? AND r.void = 0 AND f.retired = 0 ORDER BY r.id DESC LIMIT ?",
         (program, limit),
     )
-    return tuple(ReadingRow(*row) for row in _whole(connection, rows.fetchall()))[::-1]
+    return tuple(ReadingRow(*row) for row in _select_intact_rows(connection, rows.fetchall()))[::-1]
 
 
-def _whole(connection: sqlite3.Connection, rows: list[Any]) -> list[Any]:
+def _select_intact_rows(connection: sqlite3.Connection, rows: list[Any]) -> list[Any]:
     """Return the rows whose reading, identified by the first column, matches its checksum."""
-    return [row for row in rows if row_sums.whole_row(connection, "part_readings", row[0]) is not None]
+    return [
+        row for row in rows if row_checksums.read_intact_row(connection, "part_readings", row[0]) is not None
+    ]
 
 
-def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
+def read_last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
     """Return the id of the newest change of each offset, by kind, number and axis; wear is included."""
     rows = connection.execute(
         "SELECT kind, number, 'x', max(id) FROM offset_changes"
@@ -178,7 +180,7 @@ def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str
     return {(kind, number, axis): newest for kind, number, axis, newest in rows}
 
 
-def readings_between(
+def read_readings_between(
     connection: sqlite3.Connection, since: str, until: str
 ) -> tuple[tuple[FeatureRow, ReadingRow], ...]:
     """Return the readings from ``since`` to before ``until`` (UTC), each with its feature.
@@ -192,5 +194,5 @@ def readings_between(
         " WHERE r.void = 0 AND r.at >= ? AND r.at < ? ORDER BY r.id",
         (since, until),
     )
-    whole = _whole(connection, rows.fetchall())
+    whole = _select_intact_rows(connection, rows.fetchall())
     return tuple((FeatureRow(*row[8:]), ReadingRow(*row[:8])) for row in whole)

@@ -97,7 +97,7 @@ def programs(connection: sqlite3.Connection) -> set[str]:
     return {name for (name,) in connection.execute("SELECT DISTINCT program FROM part_cycles")}
 
 
-def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[CycleRow, ...]:
+def read_cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[CycleRow, ...]:
     """Return the latest cycles, oldest first; None as ``program`` selects all programs."""
     rows = connection.execute(
         f"SELECT {_CYCLE} FROM part_cycles WHERE ?1 IS NULL OR program = ?1 ORDER BY id DESC LIMIT ?2",
@@ -106,7 +106,7 @@ def cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> t
     return tuple(CycleRow(*row) for row in rows)[::-1]
 
 
-def times_since(connection: sqlite3.Connection, since: str) -> tuple[CycleTime, ...]:
+def read_cycle_times_since(connection: sqlite3.Connection, since: str) -> tuple[CycleTime, ...]:
     """Return the times of the cycles of all programs that started at ``since`` (UTC) or later.
 
     Only the latest 20 000 cycles are searched.
@@ -119,7 +119,7 @@ def times_since(connection: sqlite3.Connection, since: str) -> tuple[CycleTime, 
     return tuple(map(CycleTime._make, rows))
 
 
-def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
+def read_stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
     """Return the latest stops, oldest first; None as ``program`` selects all programs."""
     rows = connection.execute(
         f"SELECT {', '.join(StopRow._fields)} FROM production_stops WHERE ?1 IS NULL OR program = ?1"
@@ -129,7 +129,7 @@ def stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tu
     return tuple(StopRow(*row) for row in rows)[::-1]
 
 
-def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
+def read_corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
     """Return the latest changes of wear and secondary offsets, oldest first.
 
     ``part`` counts the parts of ``program`` started before the change. The values before and after the change
@@ -153,7 +153,7 @@ def corrections(connection: sqlite3.Connection, program: str, limit: int) -> tup
     return tuple(CorrectionRow(*row) for row in rows)[::-1]
 
 
-def cycles_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[CycleRow, ...]:
+def read_cycles_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[CycleRow, ...]:
     """Return the cycles of all programs that overlap the time from ``since`` to ``until`` (UTC)."""
     rows = connection.execute(
         f"SELECT {_CYCLE} FROM part_cycles"
@@ -163,7 +163,7 @@ def cycles_between(connection: sqlite3.Connection, since: str, until: str) -> tu
     return tuple(CycleRow(*row) for row in rows)
 
 
-def stops_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[StopRow, ...]:
+def read_stops_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[StopRow, ...]:
     """Return the ended stops that overlap the time from ``since`` to ``until`` (UTC)."""
     rows = connection.execute(
         f"SELECT {', '.join(StopRow._fields)} FROM production_stops"
@@ -184,8 +184,8 @@ class CycleRecords:
 
     def record_cycle(self, row: CycleRow) -> Future[None]:
         """Record the start of a cycle, or the end of a recorded cycle."""
-        return self._store.keep_latest(("cycle", row.key), lambda c: save_cycle(c, row))
+        return self._store.store_latest_durably(("cycle", row.key), lambda c: save_cycle(c, row))
 
     def record_stop(self, row: StopRow) -> Future[None]:
         """Record a stop that has ended."""
-        return self._store.keep_latest(("stop", row.key), lambda c: save_stop(c, row))
+        return self._store.store_latest_durably(("stop", row.key), lambda c: save_stop(c, row))

@@ -6,12 +6,12 @@ import sqlite3
 from typing import NamedTuple
 
 from core.message import Message
-from core.store import row_sums
+from core.store import row_checksums
 from core.store.store_errors import StoreError
-from core.store.store_rows import MILL_TOOLS, OFFSETS, Kind, utc_now
+from core.store.store_rows import MILL_TOOL_NUMBERS, OFFSET_NUMBERS, OffsetKind, get_utc_now_text
 
 
-class LifeRow(NamedTuple):
+class ToolLifeRow(NamedTuple):
     """Tool life of one tool, with times at feed in seconds. A limit of 0 means unlimited."""
 
     number: int
@@ -32,38 +32,40 @@ class InsertChange(NamedTuple):
     parts: int
     seconds: float
     why: str
-    kind: str = Kind.TOOL.value
+    kind: str = OffsetKind.TOOL.value
     who: str = ""
 
 
-_USE = {Kind.TOOL: "tool_lives", Kind.MILL_TOOL: "mill_tool_lives"}
-_NUMBERS = {Kind.TOOL: OFFSETS, Kind.MILL_TOOL: MILL_TOOLS}
+_USE = {OffsetKind.TOOL: "tool_lives", OffsetKind.MILL_TOOL: "mill_tool_lives"}
+_NUMBERS = {OffsetKind.TOOL: OFFSET_NUMBERS, OffsetKind.MILL_TOOL: MILL_TOOL_NUMBERS}
 _OF_MILL = (
     "SELECT number, 0, 60 * life, 0.9, stops, coalesce(parts, 0), coalesce(seconds, 0)"
     " FROM mill_tools LEFT JOIN mill_tool_lives USING (number) ORDER BY number"
 )
 
 
-def lives(connection: sqlite3.Connection, kind: Kind = Kind.TOOL) -> dict[int, LifeRow]:
+def read_tool_lives(
+    connection: sqlite3.Connection, kind: OffsetKind = OffsetKind.TOOL
+) -> dict[int, ToolLifeRow]:
     """Return the tool life of all tools with a limit or with recorded use, by number.
 
     For a mill, the result has all tools of the tool table. Damaged rows are omitted.
     """
-    of_lathe = f"SELECT {', '.join(LifeRow._fields)} FROM tool_lives ORDER BY number"
-    rows = connection.execute(_OF_MILL if kind is Kind.MILL_TOOL else of_lathe).fetchall()
-    broken = row_sums.broken(connection, _USE[kind])
-    if kind is Kind.MILL_TOOL:
-        broken |= row_sums.broken(connection, "mill_tools")
+    of_lathe = f"SELECT {', '.join(ToolLifeRow._fields)} FROM tool_lives ORDER BY number"
+    rows = connection.execute(_OF_MILL if kind is OffsetKind.MILL_TOOL else of_lathe).fetchall()
+    broken = row_checksums.find_broken_rows(connection, _USE[kind])
+    if kind is OffsetKind.MILL_TOOL:
+        broken |= row_checksums.find_broken_rows(connection, "mill_tools")
     whole = (row for row in rows if isinstance(row[0], int) and row[0] not in broken)
-    return {row[0]: LifeRow(*row)._replace(stops=bool(row[4])) for row in whole}
+    return {row[0]: ToolLifeRow(*row)._replace(stops=bool(row[4])) for row in whole}
 
 
-def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:
+def save_limits(connection: sqlite3.Connection, row: ToolLifeRow) -> None:
     """Save the limits of a lathe tool; its recorded use remains.
 
     Raises StoreError if the tool does not exist.
     """
-    _demand_tool(row.number, Kind.TOOL)
+    _demand_tool(row.number, OffsetKind.TOOL)
     connection.execute(
         "INSERT INTO tool_lives (number, limit_parts, limit_seconds, warn, stops) VALUES (?1, ?2, ?3, ?4, ?5)"
         " ON CONFLICT (number) DO UPDATE SET limit_parts = ?2, limit_seconds = ?3, warn = ?4, stops = ?5",
@@ -71,8 +73,12 @@ def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:
     )
 
 
-def set_use(
-    connection: sqlite3.Connection, number: int, parts: int, seconds: float, kind: Kind = Kind.TOOL
+def save_use(
+    connection: sqlite3.Connection,
+    number: int,
+    parts: int,
+    seconds: float,
+    kind: OffsetKind = OffsetKind.TOOL,
 ) -> None:
     """Save the use of an insert since its last change, in parts and seconds at feed."""
     connection.execute(
@@ -82,8 +88,12 @@ def set_use(
     )
 
 
-def change_insert(
-    connection: sqlite3.Connection, number: int, why: str, kind: Kind = Kind.TOOL, who: str = ""
+def record_insert_change(
+    connection: sqlite3.Connection,
+    number: int,
+    reason: str,
+    kind: OffsetKind = OffsetKind.TOOL,
+    author: str = "",
 ) -> None:
     """Record the change of an insert: save the use of the old insert and reset the count to zero.
 
@@ -94,18 +104,18 @@ def change_insert(
         "INSERT INTO insert_changes (at, number, parts, seconds, why, kind, who)"
         " SELECT ?2, ?1, coalesce(max(parts), 0), coalesce(max(seconds), 0), ?3, ?4, ?5"
         f" FROM {_USE[kind]} WHERE number = ?1",
-        (number, utc_now(), why, kind.value, who),
+        (number, get_utc_now_text(), reason, kind.value, author),
     )
     connection.execute(f"UPDATE {_USE[kind]} SET parts = 0, seconds = 0 WHERE number = ?", (number,))
 
 
-def insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertChange, ...]:
+def read_insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertChange, ...]:
     """Return the latest changes of inserts, newest first."""
     rows = connection.execute("SELECT * FROM insert_changes ORDER BY id DESC LIMIT ?", (limit,))
     return tuple(InsertChange(*row) for row in rows)
 
 
-def _demand_tool(number: int, kind: Kind) -> None:
+def _demand_tool(number: int, kind: OffsetKind) -> None:
     numbers = _NUMBERS[kind]
     if number not in numbers:
         raise StoreError(

@@ -8,113 +8,117 @@ and the pid then controls its steps. Mesa's cards have hm2_eth, its watchdog, en
 from __future__ import annotations
 
 from core.message import Message
-from core.table_schema import Finding
-from drivers.hal.boards.hal_lines import HalFile, LatheAxis
+from core.table_schema import FileFinding
+from drivers.hal.boards.hal_file_builder import HalFile, LatheAxis
 
-TURNS = "c-degrees.in"  # Additional pin for the spindle revolutions.
-STAYS_BELOW = 1.5  # Factor of C's speed, so that a loop with the wrong sign cannot run away at spindle speed.
+C_TURN_PIN = "c-degrees.in"  # Additional pin for the spindle revolutions.
+C_SPEED_FACTOR = (
+    1.5  # Factor of C's speed, so that a loop with the wrong sign cannot run away at spindle speed.
+)
 _CHOICE, _POWER, _PID = "c-or-speed", "spindle-power", "pid.c"
 _PATH = "hal.spindle.position_mode"
 _SIMULATED = 100.0  # 1/s, for a simulated spindle.
 
 
-def c_turn_pins(file: HalFile) -> tuple[str, ...]:
+def get_c_turn_pins(file: HalFile) -> tuple[str, ...]:
     """Return the additional pins for the signal of the spindle revolutions."""
-    return (TURNS,) if file.lathe.c is not None else ()
+    return (C_TURN_PIN,) if file.lathe.c_axis is not None else ()
 
 
-def load_c(file: HalFile, *, chosen: bool) -> None:
+def load_c_components(file: HalFile, *, shares_input: bool) -> None:
     """Load the components for C and call them after the encoder and before the spindle drive.
 
-    With ``chosen``, the spindle speed and C use the same drive input.
+    With ``shares_input``, the spindle speed and C use the same drive input.
     """
-    file.instance("scale", "c-degrees")
-    file.instance("pid", _PID)
-    file.first.append("c-degrees")
-    file.last.append(f"{_PID}.do-pid-calcs")
-    if chosen:
-        file.instance("scale", "c-rpm")
-        file.instance("mux2", _CHOICE)
-        file.instance("or2", _POWER)
-        file.last += ["c-rpm", _CHOICE, _POWER]
+    file.add_instance("scale", "c-degrees")
+    file.add_instance("pid", _PID)
+    file.first_calls.append("c-degrees")
+    file.last_calls.append(f"{_PID}.do-pid-calcs")
+    if shares_input:
+        file.add_instance("scale", "c-rpm")
+        file.add_instance("mux2", _CHOICE)
+        file.add_instance("or2", _POWER)
+        file.last_calls += ["c-rpm", _CHOICE, _POWER]
 
 
-def close_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
+def configure_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     """Configure the pid with its feedback, and connect its output in degrees/s to ``drives``."""
-    board = file.lathe.board.axes.get(axis.name)
-    file.setp("c-degrees.gain", 360, "degrees per revolution of the spindle encoder")
+    board = file.lathe.board_table.axes.get(axis.name)
+    file.set_pin("c-degrees.gain", 360, "degrees per revolution of the spindle encoder")
     gains = {"Pgain": _SIMULATED} if board is None else {
         "Pgain": board.p, "Igain": board.i, "Dgain": board.d, "FF0": 0.0, "FF2": board.ff2
     }  # fmt: skip
     for key, gain in gains.items():
-        file.setp(f"{_PID}.{key}", gain)
-    file.setp(f"{_PID}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
-    file.setp(
+        file.set_pin(f"{_PID}.{key}", gain)
+    file.set_pin(f"{_PID}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
+    file.set_pin(
         f"{_PID}.maxoutput",
-        STAYS_BELOW * axis.vmax,
+        C_SPEED_FACTOR * axis.vmax,
         "speed limit in degrees/s; also applies if a fault occurs",
     )
-    file.setp(f"{_PID}.error-previous-target", 1)
-    file.positions(axis.name, [f"{_PID}.command"], ["c-degrees.out", f"{_PID}.feedback"])
-    file.net("c-speed", f"{_PID}.output", *drives)
+    file.set_pin(f"{_PID}.error-previous-target", 1)
+    file.connect_positions(axis.name, [f"{_PID}.command"], ["c-degrees.out", f"{_PID}.feedback"])
+    file.connect("c-speed", f"{_PID}.output", *drives)
 
 
-def c_speed_pins(file: HalFile, speed: str, on: str) -> tuple[str, str]:
+def get_c_speed_pins(file: HalFile, speed: str, enable_pin: str) -> tuple[str, str]:
     """Return the pins for spindle speed in rpm and enable.
 
     They are the pins of the drive, or those of the selector if the drive is also C.
     """
-    axis = file.lathe.c
+    axis = file.lathe.c_axis
     if axis is None:
-        return speed, on
-    close_c_loop(file, axis, "c-rpm.in")
-    file.setp("c-rpm.gain", 1.0 / 6.0, "converts degrees/s to rpm")
-    file.net("c-rpm", "c-rpm.out", f"{_CHOICE}.in1")
-    file.net("spindle-drive-rpm", f"{_CHOICE}.out", speed)
-    file.net("spindle-drive-on", f"{_POWER}.out", on)
-    file.role(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_POWER}.in1", f"{_PID}.enable", needed=True)
+        return speed, enable_pin
+    configure_c_loop(file, axis, "c-rpm.in")
+    file.set_pin("c-rpm.gain", 1.0 / 6.0, "converts degrees/s to rpm")
+    file.connect("c-rpm", "c-rpm.out", f"{_CHOICE}.in1")
+    file.connect("spindle-drive-rpm", f"{_CHOICE}.out", speed)
+    file.connect("spindle-drive-on", f"{_POWER}.out", enable_pin)
+    file.connect_key(
+        _PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_POWER}.in1", f"{_PID}.enable", required=True
+    )
     return f"{_CHOICE}.in0", f"{_POWER}.in0"
 
 
-def simulated_c_speed(file: HalFile) -> str:
+def get_simulated_c_speed_pin(file: HalFile) -> str:
     """Return the pin of the simulated spindle's speed in rev/s, which is that of the spindle or of C."""
-    axis = file.lathe.c
+    axis = file.lathe.c_axis
     if axis is None:
         return "spindle-rps.out"
-    file.setp("c-rps.gain", 1.0 / 360.0)
-    close_c_loop(file, axis, "c-rps.in")
-    file.net("c-rps", "c-rps.out", f"{_CHOICE}.in1")
-    file.net("spindle-rps-cmd", "spindle-rps.out", f"{_CHOICE}.in0")
-    file.role(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_PID}.enable", needed=True)
+    file.set_pin("c-rps.gain", 1.0 / 360.0)
+    configure_c_loop(file, axis, "c-rps.in")
+    file.connect("c-rps", "c-rps.out", f"{_CHOICE}.in1")
+    file.connect("spindle-rps-cmd", "spindle-rps.out", f"{_CHOICE}.in0")
+    file.connect_key(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_PID}.enable", required=True)
     return f"{_CHOICE}.out"
 
 
 def load_simulated_c(file: HalFile) -> None:
     """Load the components for C on the simulated spindle."""
-    load_c(file, chosen=False)
-    file.instance("scale", "c-rps")
-    file.instance("mux2", _CHOICE)
-    file.last += ["c-rps", _CHOICE]
+    load_c_components(file, shares_input=False)
+    file.add_instance("scale", "c-rps")
+    file.add_instance("mux2", _CHOICE)
+    file.last_calls += ["c-rps", _CHOICE]
 
 
-def change_over_to_c(file: HalFile) -> None:
+def connect_mode_terminal(file: HalFile) -> None:
     """Connect the terminal that switches the drive from its speed input to steps."""
-    name = file.lathe.names.get(_PATH, "")
+    name = file.lathe.terminal_names.get(_PATH, "")
     if "." not in name:
         why = Message(
             "expected {terminals}; connect this terminal to the drive input that switches the drive from "
             "speed mode to step mode",
-            terminals=file.hint,
+            terminals=file.terminal_hint,
         )
-        file.findings.append(Finding(_PATH, name, why))
-    file.role(_PATH, "spindle-is-c", f"{_PID}.enable", needed=True)
+        file.findings.append(FileFinding(_PATH, name, why))
+    file.connect_key(_PATH, "spindle-is-c", f"{_PID}.enable", required=True)
 
 
 # --- Mesa's Ethernet cards.
 
 
 _WATCHDOG = 5_000_000  # Ns without a packet after which the card switches everything off.
-NOTES = (
+CARD_NOTES = (
     (
         "use a real-time kernel and a separate network port for the card; test halrun on its "
         "own: it must maintain a 1 ms period for an hour"
@@ -133,69 +137,75 @@ def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
     ``further`` pins report that inputs of the card are not current.
     """
     lathe = file.lathe
-    file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
-    file.load("loadrt hostmot2")
-    address = f'board_ip="{lathe.board.address}" ' if lathe.board.address else ""
-    file.load(f'loadrt hm2_eth {address}config="{config}"')
-    file.first.append(f"{card}.read")
-    file.section("Watchdog: the card turns all outputs off when it receives nothing from the computer")
-    file.setp(f"{card}.watchdog.timeout_ns", _WATCHDOG)
-    _link(file, card, further)
+    file.add_load(f"loadrt threads name1={lathe.servo_thread} period1={lathe.period_s * 1e9:.0f}")
+    file.add_load("loadrt hostmot2")
+    address = f'board_ip="{lathe.board_table.address}" ' if lathe.board_table.address else ""
+    file.add_load(f'loadrt hm2_eth {address}config="{config}"')
+    file.first_calls.append(f"{card}.read")
+    file.start_section("Watchdog: the card turns all outputs off when it receives nothing from the computer")
+    file.set_pin(f"{card}.watchdog.timeout_ns", _WATCHDOG)
+    _connect_link(file, card, further)
 
 
-def _link(file: HalFile, card: str, further: tuple[str, ...]) -> None:
+def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> None:
     """Report a lost card, because hm2_eth then retains every input and no longer reads the watchdog.
 
     hm2_eth sets the parameter ``io_error`` together with the pin ``packet-error-exceeded``, which stays on
     until the driver is loaded again.
     """
-    gates = _drive_faults(file)
+    gates = _list_drive_faults(file)
     silent = f"{card}.packet-error-exceeded", f"{card}.watchdog.has_bit"
-    file.link("or", *silent, *further, further=tuple(f"{gate}.in0" for gate in gates))
-    file.first += gates
+    file.connect_link_fault("or", *silent, *other_faults, extra_pins=tuple(f"{gate}.in0" for gate in gates))
+    file.first_calls += gates
 
 
-def _drive_faults(file: HalFile) -> list[str]:
+def _list_drive_faults(file: HalFile) -> list[str]:
     """Wire hal.axes.X.fault if it is a signal, to a drive fault or the lost card, and return its gates."""
     gates = []
     for axis in file.lathe.axes:
         path = f"hal.axes.{axis.name}.fault"
-        if "." in file.lathe.names.get(path, "."):
+        if "." in file.lathe.terminal_names.get(path, "."):
             continue  # Not configured, or a terminal.
-        gate, wired = f"{axis.name.lower()}-fault-or", file.lathe.board.axes[axis.name].fault_input
+        gate, wired = f"{axis.name.lower()}-fault-or", file.lathe.board_table.axes[axis.name].fault_input
         gates.append(gate)
         if wired:
             key = f"board.axis.{axis.name}.fault_input"
-            file.at_terminal(key, f"{axis.name.lower()}-drive-fault", wired, f"{gate}.in1", drives=False)
-        file.role(path, f"{axis.name.lower()}-fault", f"{gate}.out")
+            file.connect_terminal(
+                key, f"{axis.name.lower()}-drive-fault", wired, f"{gate}.in1", is_output=False
+            )
+        file.connect_key(path, f"{axis.name.lower()}-fault", f"{gate}.out")
     if gates:
-        file.load(f"loadrt or2 names={','.join(gates)}", "drive fault or lost connection to the card")
+        file.add_load(f"loadrt or2 names={','.join(gates)}", "drive fault or lost connection to the card")
     return gates
 
 
-def load_pid(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
+def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
     """Load one ``pid`` per axis, called after the setpoints."""
     names = [f"pid.{axis.name.lower()}" for axis in axes]
     if names:
-        file.load(f"loadrt pid names={','.join(names)}")
-        file.last += [f"{name}.do-pid-calcs" for name in names]
+        file.add_load(f"loadrt pid names={','.join(names)}")
+        file.last_calls += [f"{name}.do-pid-calcs" for name in names]
 
 
-def encoder(file: HalFile, pin: str, counts: float, what: str) -> None:
+def configure_encoder(file: HalFile, pin: str, counts: float, description: str) -> None:
     """Configure a quadrature encoder with its filter on."""
-    file.setp(f"{pin}.scale", counts, what)
+    file.set_pin(f"{pin}.scale", counts, description)
     for key in ("counter-mode", "index-invert", "index-mask"):
-        file.setp(f"{pin}.{key}", 0)
-    file.setp(f"{pin}.filter", 1)
+        file.set_pin(f"{pin}.{key}", 0)
+    file.set_pin(f"{pin}.filter", 1)
 
 
-def spindle_encoder(file: HalFile, card: str, place: str) -> None:
+def connect_spindle_encoder(file: HalFile, card: str, terminal: str) -> None:
     """Connect revolutions, speed and index of the spindle encoder."""
-    board = file.lathe.board.spindle
+    board = file.lathe.board_table.spindle
     pin = f"{card}.encoder.{board.encoder:02d}"
-    file.section(f"Spindle: encoder {board.encoder}")
+    file.start_section(f"Spindle: encoder {board.encoder}")
     counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
-    encoder(file, pin, counts, "counts per revolution: 4 x encoder lines; the position increases with M03")
-    file.role("hal.spindle.position", "spindle-turns", f"{pin}.position", *c_turn_pins(file), place=place)
-    file.role("hal.spindle.velocity", "spindle-rps", f"{pin}.velocity", place=place)
-    file.role("hal.spindle.index_enable", "spindle-index", f"{pin}.index-enable", place=place)
+    configure_encoder(
+        file, pin, counts, "counts per revolution: 4 x encoder lines; the position increases with M03"
+    )
+    file.connect_key(
+        "hal.spindle.position", "spindle-turns", f"{pin}.position", *get_c_turn_pins(file), label=terminal
+    )
+    file.connect_key("hal.spindle.velocity", "spindle-rps", f"{pin}.velocity", label=terminal)
+    file.connect_key("hal.spindle.index_enable", "spindle-index", f"{pin}.index-enable", label=terminal)

@@ -11,43 +11,50 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Any
 
-from core.key_declaration import Range, Unit, file_key, key_table
+from core.key_declaration import FileUnit, KeyRange, declare_key, make_key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, FileReading, Finding, TableReference, read_axes_and_spindle
+from core.table_schema import (
+    DriverDeclaration,
+    DriverTable,
+    FileFinding,
+    MachineFileReading,
+    TableReference,
+    read_axes_and_spindle,
+)
 
 SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT = "sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"
-KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
+BOARD_KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
 _AXES, _SPINDLE = "board.axis", "board.spindle"
-C = "C"
+C_AXIS = "C"
 
 
-def _channel(*, meaning: str) -> Any:
+def _channel_key(*, meaning: str) -> Any:
     """Declare a channel of the board; -1 where the file does not specify it."""
-    return file_key(Range(0, 63), default=-1, meaning=meaning)
+    return declare_key(KeyRange(0, 63), default=-1, meaning=meaning)
 
 
-def _pulse(default: int, *, meaning: str) -> Any:
+def _pulse_key(default: int, *, meaning: str) -> Any:
     """Declare a time of a step pulse in nanoseconds."""
-    return file_key(Range(100, 1_000_000), default=default, meaning=meaning)
+    return declare_key(KeyRange(100, 1_000_000), default=default, meaning=meaning)
 
 
-def _gain(*, meaning: str) -> Any:
+def _gain_key(*, meaning: str) -> Any:
     """Declare a gain of LinuxCNC's ``pid``."""
-    return file_key(Range(0.0, 100_000.0), default=0.0, meaning=meaning)
+    return declare_key(KeyRange(0.0, 100_000.0), default=0.0, meaning=meaning)
 
 
-def _pin(*, meaning: str) -> Any:
+def _pin_key(*, meaning: str) -> Any:
     """Declare a pin of a parallel port."""
-    return file_key(default="", meaning=f"Parallel port: pin of {meaning}.")
+    return declare_key(default="", meaning=f"Parallel port: pin of {meaning}.")
 
 
-_VENDOR: Any = file_key(
+_VENDOR: Any = declare_key(
     default="", meaning="EtherCAT: vendor ID of the drive, 0x…, as `ethercat slaves -v` shows it."
 )
-_PRODUCT: Any = file_key(default="", meaning="EtherCAT: product code of the drive, 0x….")
+_PRODUCT: Any = declare_key(default="", meaning="EtherCAT: product code of the drive, 0x….")
 
 
-@key_table
+@make_key_table
 class BoardAxis:
     """Connection of one axis to a board.
 
@@ -57,48 +64,50 @@ class BoardAxis:
     ``direction`` are pins of a parallel port.
     """
 
-    channel: int = _channel(
+    channel: int = _channel_key(
         meaning="7I76E: step generator, 0 to 4. 7I97: analog output and encoder, 0 to 3. EtherCAT: "
         "position of the drive on the bus."
     )
-    reversed: bool = file_key(
+    reversed: bool = declare_key(
         default=False,
         meaning="true: the sign of the scale of the axis is reversed; on a 7I97 that of its encoder only.",
     )
-    mode: str = file_key(
+    mode: str = declare_key(
         default="velocity",
         choices=("velocity", "position"),
         meaning='7I76E: "velocity" closes a position loop around the step generator; "position" sends '
         "positions to it.",
     )
-    step_ns: int = _pulse(5000, meaning="Length of a step pulse, in ns.")
-    space_ns: int = _pulse(5000, meaning="7I76E: shortest time between two step pulses, in ns.")
-    setup_ns: int = _pulse(10_000, meaning="Time from a change of direction to the next step, in ns.")
-    hold_ns: int = _pulse(10_000, meaning="Time from a step to the next change of direction, in ns.")
-    step: str = _pin(meaning="the step signal")
-    direction: str = _pin(meaning="the direction signal")
-    fault_input: str = file_key(
+    step_ns: int = _pulse_key(5000, meaning="Length of a step pulse, in ns.")
+    space_ns: int = _pulse_key(5000, meaning="7I76E: shortest time between two step pulses, in ns.")
+    setup_ns: int = _pulse_key(10_000, meaning="Time from a change of direction to the next step, in ns.")
+    hold_ns: int = _pulse_key(10_000, meaning="Time from a step to the next change of direction, in ns.")
+    step: str = _pin_key(meaning="the step signal")
+    direction: str = _pin_key(meaning="the direction signal")
+    fault_input: str = declare_key(
         default="", meaning="7I97: input at which the drive reports a fault. Default: none."
     )
-    full_speed: float = file_key(
-        Range(0.1, 10_000.0, Unit.FEED),
+    full_speed: float = declare_key(
+        KeyRange(0.1, 10_000.0, FileUnit.FEED),
         default=0.0,
         meaning="7I97: speed of the axis at 10 V, not below `vmax`.",
     )
-    full_rpm: float = file_key(
-        Range(0.1, 100_000.0, Unit.RPM), default=0.0, meaning="7I97: speed of the separate C drive at 10 V."
+    full_rpm: float = declare_key(
+        KeyRange(0.1, 100_000.0, FileUnit.RPM),
+        default=0.0,
+        meaning="7I97: speed of the separate C drive at 10 V.",
     )
-    p: float = _gain(
+    p: float = _gain_key(
         meaning="P gain of the position loop, in 1/s. On a 7I76E, 0 means 1 ÷ `period_ms` of [hal]."
     )
-    i: float = _gain(meaning="I gain of the position loop.")
-    d: float = _gain(meaning="D gain of the position loop.")
-    ff2: float = _gain(meaning="Acceleration feedforward (FF2 of the position loop).")
+    i: float = _gain_key(meaning="I gain of the position loop.")
+    d: float = _gain_key(meaning="D gain of the position loop.")
+    ff2: float = _gain_key(meaning="Acceleration feedforward (FF2 of the position loop).")
     vendor: str = _VENDOR
     product: str = _PRODUCT
 
 
-@key_table
+@make_key_table
 class BoardSpindle:
     """Connection of the spindle to a board; ``full_speed`` is its speed in rpm at 10 V.
 
@@ -106,46 +115,48 @@ class BoardSpindle:
     are pins of a parallel port.
     """
 
-    channel: int = _channel(
+    channel: int = _channel_key(
         meaning="7I97: analog output with its own enable, 4 or 5. EtherCAT: position of the drive on the bus."
     )
-    encoder: int = _channel(meaning="Encoder input of the board: 0 on a 7I76E, 0 to 5 on a 7I97.")
-    reversed: bool = file_key(
+    encoder: int = _channel_key(meaning="Encoder input of the board: 0 on a 7I76E, 0 to 5 on a 7I97.")
+    reversed: bool = declare_key(
         default=False,
         meaning="true: the sign of the scale of the spindle encoder is reversed; on EtherCAT also that of "
         "the speed.",
     )
-    full_speed: float = file_key(
-        Range(1.0, 100_000.0, Unit.RPM),
+    full_speed: float = declare_key(
+        KeyRange(1.0, 100_000.0, FileUnit.RPM),
         default=0.0,
         meaning="Spindle speed at 10 V, or at the full PWM signal. Default: the board outputs no speed.",
     )
-    pwm: str = _pin(meaning="the PWM speed signal")
-    pwm_hz: int = file_key(
-        Range(10, 50_000), default=1000, meaning="Parallel port: frequency of the PWM signal in Hz."
+    pwm: str = _pin_key(meaning="the PWM speed signal")
+    pwm_hz: int = declare_key(
+        KeyRange(10, 50_000), default=1000, meaning="Parallel port: frequency of the PWM signal in Hz."
     )
-    phase_a: str = _pin(meaning="encoder signal A")
-    phase_b: str = _pin(meaning="encoder signal B")
-    phase_z: str = _pin(meaning="encoder signal Z")
-    velocity_per_rpm: float = file_key(
-        Range(1e-6, 1e7), default=0.0, meaning="EtherCAT: value of object 60FF at 1 rpm."
+    phase_a: str = _pin_key(meaning="encoder signal A")
+    phase_b: str = _pin_key(meaning="encoder signal B")
+    phase_z: str = _pin_key(meaning="encoder signal Z")
+    velocity_per_rpm: float = declare_key(
+        KeyRange(1e-6, 1e7), default=0.0, meaning="EtherCAT: value of object 60FF at 1 rpm."
     )
     vendor: str = _VENDOR
     product: str = _PRODUCT
 
 
-@key_table
+@make_key_table
 class BoardTable:
     """Settings of the board; ``address`` is that of an Ethernet card or a parallel port."""
 
-    kind: str = file_key(choices=KINDS, meaning="Board for which `turndesk machine hal` writes the HAL file.")
-    address: str = file_key(
+    kind: str = declare_key(
+        choices=BOARD_KINDS, meaning="Board for which `turndesk machine hal` writes the HAL file."
+    )
+    address: str = declare_key(
         default="",
         meaning='Address of the board: an IP address for a Mesa card, a port address such as "0x378" for a '
         "parallel port.",
     )
-    base_us: int = file_key(
-        Range(10, 500),
+    base_us: int = declare_key(
+        KeyRange(10, 500),
         default=50,
         meaning="Period of the base thread of a parallel port, in µs; longer than the worst latency.",
     )
@@ -153,14 +164,16 @@ class BoardTable:
     spindle: BoardSpindle = field(default_factory=BoardSpindle)
 
 
-def _read(file: FileReading) -> Iterator[Finding]:
+def _read(file: MachineFileReading) -> Iterator[FileFinding]:
     yield from read_axes_and_spindle(file, (_AXES, BoardAxis), (_SPINDLE, BoardSpindle))
 
 
-def _parts(file: FileReading) -> dict[str, object]:
+def _read_parts(file: MachineFileReading) -> dict[str, object]:
     """Return the nested tables of the axes and the spindle."""
-    axes = {name: file.values.model(BoardAxis, f"{_AXES}.{name}") for name in file.names(_AXES)}
-    return {"axes": axes, "spindle": file.values.model(BoardSpindle, _SPINDLE)}
+    axes = {
+        name: file.values.make_model(BoardAxis, f"{_AXES}.{name}") for name in file.list_table_keys(_AXES)
+    }
+    return {"axes": axes, "spindle": file.values.make_model(BoardSpindle, _SPINDLE)}
 
 
 # --- Required settings of each kind of board.
@@ -178,7 +191,7 @@ _ADDRESS = {
     MESA_SERVO: (re.compile(r"\d{1,3}(\.\d{1,3}){3}"), 'expected the card\'s address, such as "10.10.10.10"'),
 }
 _CHANNELS = {MESA_STEP: range(5), MESA_SERVO: range(4), ETHERCAT: range(64)}
-_WHAT = {
+_CHANNEL_MEANINGS = {
     MESA_STEP: "the number of a 7I76E step generator, from 0 to 4",
     MESA_SERVO: (
         "the number of a 7I97 channel (analog output and encoder) with the common enable, from 0 to 3"
@@ -188,127 +201,135 @@ _WHAT = {
 _NUMBER = re.compile(r"0x[0-9a-fA-F]{1,8}")
 
 
-def _rules(file: FileReading) -> Iterator[Finding]:
+def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
-    if "board" not in file.tables or not values.has("board.kind"):
+    if "board" not in file.tables or not values.has_values("board.kind"):
         return
     kind = values.text("board.kind")
     if "hal" not in file.tables:
-        yield Finding(
+        yield FileFinding(
             "hal",
             "",
             "missing; [board] requires the table [hal], because [board] describes the hardware "
             "connected to the pins that [hal] specifies",
         )
-    if kind in _ADDRESS and values.has("board.address"):
+    if kind in _ADDRESS and values.has_values("board.address"):
         form, expected = _ADDRESS[kind]
         if not form.fullmatch(values.text("board.address")):
-            yield Finding("board.address", values.text("board.address"), expected)
-    for axis in file.names("hal.axes"):
+            yield FileFinding("board.address", values.text("board.address"), expected)
+    for axis in file.list_table_keys("hal.axes"):
         if kind != SIM and axis in file.axes:
             yield from _axis_rules(file, kind, axis)
-    yield from _channels_apart(file, kind)
-    if kind != SIM and values.says("spindle.driver", "hal"):
-        yield from _spindle_rules(file, kind)
+    yield from _check_unique_channels(file, kind)
+    if kind != SIM and values.has_text("spindle.driver", "hal"):
+        yield from _check_spindle(file, kind)
     if kind != SIM:
-        yield from _encoder_rules(file, kind)
+        yield from _check_encoder(file, kind)
 
 
-def _axis_rules(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
+def _axis_rules(file: MachineFileReading, kind: str, axis: str) -> Iterator[FileFinding]:
     values, path = file.values, f"{_AXES}.{axis}"
-    if axis not in file.names(_AXES):
-        if path not in values.wrong:
-            yield Finding(
+    if axis not in file.list_table_keys(_AXES):
+        if path not in values.invalid_paths:
+            yield FileFinding(
                 path, "", Message("missing; specify the board outputs that move axis {axis}", axis=axis)
             )
         return
-    if axis == C and _spindle_is_c(file):
-        yield from _spindle_as_c(file, kind, path)
+    if axis == C_AXIS and _spindle_is_c(file):
+        yield from _check_spindle_as_c(file, kind, path)
         return
     yield from _channel_rules(file, kind, path)
-    yield from _stated(file, kind, path, _OWN_C if axis == C else _STATED)
+    yield from _check_required(file, kind, path, _SEPARATE_C_KEYS if axis == C_AXIS else _REQUIRED_KEYS)
     if kind in (PARPORT, MESA_STEP):
-        yield from _step_rate(file, kind, axis)
-    if kind == MESA_SERVO and axis != C:
+        yield from _check_step_rate(file, kind, axis)
+    if kind == MESA_SERVO and axis != C_AXIS:
         yield from _fast_enough(file, axis)
 
 
-def _channel_rules(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
+def _channel_rules(file: MachineFileReading, kind: str, path: str) -> Iterator[FileFinding]:
     values = file.values
-    if kind in _CHANNELS and values.has(f"{path}.channel"):
-        channel = values.whole(f"{path}.channel")
+    if kind in _CHANNELS and values.has_values(f"{path}.channel"):
+        channel = values.read_integer(f"{path}.channel")
         if channel not in _CHANNELS[kind]:
-            yield _number_expected(f"{path}.channel", channel, _WHAT[kind])
+            yield _number_finding(f"{path}.channel", channel, _CHANNEL_MEANINGS[kind])
 
 
-def _spindle_is_c(file: FileReading) -> bool:
+def _spindle_is_c(file: MachineFileReading) -> bool:
     """Return whether C is the spindle drive, driven by HAL."""
     values = file.values
-    own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
-    return not own and values.says("spindle.driver", "hal")
+    own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
+    return not own and values.has_text("spindle.driver", "hal")
 
 
-def _spindle_as_c(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
+def _check_spindle_as_c(file: MachineFileReading, kind: str, path: str) -> Iterator[FileFinding]:
     """Yield findings about C on the spindle drive: its gain, its own steps, and keys that must be removed."""
     values = file.values
-    yield from _stated(file, kind, path, _AS_C)
+    yield from _check_required(file, kind, path, _SPINDLE_C_KEYS)
     if kind in (PARPORT, MESA_STEP):
         yield from _channel_rules(file, kind, path)
-        yield from _step_rate(file, kind, C)
+        yield from _check_step_rate(file, kind, C_AXIS)
         return
-    if values.has("hal.spindle.speed") and not values.text("hal.spindle.speed"):
+    if values.has_values("hal.spindle.speed") and not values.text("hal.spindle.speed"):
         why = "this entry is missing; C turns in both directions, so its drive needs a signed speed command"
-        yield Finding("hal.spindle.speed", "", why)
+        yield FileFinding("hal.spindle.speed", "", why)
     for key in ("channel", "full_speed", "full_rpm", "vendor", "product"):
         place = f"{path}.{key}"
-        if values.has(place) and values.found[place] not in ("", 0.0, -1):
+        if values.has_values(place) and values.values_by_path[place] not in ("", 0.0, -1):
             why = Message(
                 "remove this key: C uses the spindle drive, which is configured in {table}", table=_SPINDLE
             )
-            yield Finding(place, str(values.found[place]), why)
+            yield FileFinding(place, str(values.values_by_path[place]), why)
 
 
-def _missing(place: str, expected: str) -> Finding:
-    return Finding(place, "", Message("missing; expected {expected}", expected=expected))
+def _missing(place: str, expected: str) -> FileFinding:
+    return FileFinding(place, "", Message("missing; expected {expected}", expected=expected))
 
 
-def _number_expected(place: str, number: int, expected: str) -> Finding:
+def _number_finding(path: str, number: int, expected: str) -> FileFinding:
     """Return the finding for a number that is missing (negative) or out of range."""
     if number < 0:
-        return _missing(place, expected)
-    return Finding(place, str(number), Message("expected {expected}", expected=expected))
+        return _missing(path, expected)
+    return FileFinding(path, str(number), Message("expected {expected}", expected=expected))
 
 
-_Stated = Mapping[str, tuple[tuple[str, str], ...]]
+_KeyStatement = Mapping[str, tuple[tuple[str, str], ...]]
 _GAIN = ("p", "the P gain of the axis's pid component in 1/s, as determined on the machine")
 _STEPS = (("step", "the pin for the step signal"), ("direction", "the pin for the direction signal"))
-_STATED: _Stated = {
+_REQUIRED_KEYS: _KeyStatement = {
     PARPORT: _STEPS,
     MESA_SERVO: (("full_speed", "the axis speed at 10 V"), _GAIN),
     ETHERCAT: (("vendor", "the drive's vendor ID, 0x…"), ("product", "the drive's product code, 0x…")),
 }
-_OWN_C: _Stated = {**_STATED, MESA_SERVO: (("full_rpm", "the speed of the C drive at 10 V, in rpm"), _GAIN)}
-_AS_C: _Stated = {PARPORT: (*_STEPS, _GAIN), **dict.fromkeys((MESA_STEP, MESA_SERVO, ETHERCAT), (_GAIN,))}
+_SEPARATE_C_KEYS: _KeyStatement = {
+    **_REQUIRED_KEYS,
+    MESA_SERVO: (("full_rpm", "the speed of the C drive at 10 V, in rpm"), _GAIN),
+}
+_SPINDLE_C_KEYS: _KeyStatement = {
+    PARPORT: (*_STEPS, _GAIN),
+    **dict.fromkeys((MESA_STEP, MESA_SERVO, ETHERCAT), (_GAIN,)),
+}
 
 
-def _stated(file: FileReading, kind: str, path: str, stated: _Stated = _STATED) -> Iterator[Finding]:
+def _check_required(
+    file: MachineFileReading, kind: str, path: str, stated: _KeyStatement = _REQUIRED_KEYS
+) -> Iterator[FileFinding]:
     """Yield findings about missing keys that this kind of board requires."""
     for key, what in stated.get(kind, ()):
         place = f"{path}.{key}"
-        if not file.values.has(place):
+        if not file.values.has_values(place):
             continue
-        said = file.values.found[place]
+        said = file.values.values_by_path[place]
         if not said:
             yield _missing(place, what)
         elif key in ("vendor", "product") and not _NUMBER.fullmatch(str(said)):
-            yield Finding(
+            yield FileFinding(
                 place,
                 str(said),
                 'expected a hexadecimal number as shown by `ethercat slaves -v`, for example "0x0000026c"',
             )
 
 
-def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
+def _check_step_rate(file: MachineFileReading, kind: str, axis: str) -> Iterator[FileFinding]:
     """Yield a finding if an axis needs more steps per second than the board can generate."""
     values, path = file.values, f"{_AXES}.{axis}"
     needed = (
@@ -318,40 +339,40 @@ def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
         f"{path}.step_ns",
         f"{path}.space_ns",
     )
-    if not values.has(*needed):
+    if not values.has_values(*needed):
         return
-    rate = values.number(needed[0]) / values.number(needed[1])
+    rate = values.read_number(needed[0]) / values.read_number(needed[1])
     if kind == PARPORT:
-        most = 1e6 / values.number("board.base_us")
+        most = 1e6 / values.read_number("board.base_us")
         template = (
             "this speed requires {rate} steps/s, but the maximum for a parallel port with "
             "base_us = {base_us} is {maximum} steps/s"
         )
     else:
-        most = 1e9 / (values.number(needed[3]) + values.number(needed[4]))
+        most = 1e9 / (values.read_number(needed[3]) + values.read_number(needed[4]))
         template = (
             "this speed requires {rate} steps/s, but the maximum for the specified step_ns and space_ns "
             "is {maximum} steps/s"
         )
     if rate * 1.2 > most:  # The limit of the drive is 20 % above vmax.
-        yield Finding(
+        yield FileFinding(
             f"axis.{axis}.vmax",
             "",
             Message(
                 template,
                 rate=f"{rate:.0f}",
-                base_us=values.whole("board.base_us"),
+                base_us=values.read_integer("board.base_us"),
                 maximum=f"{most / 1.2:.0f}",
             ),
         )
 
 
-def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
+def _fast_enough(file: MachineFileReading, axis: str) -> Iterator[FileFinding]:
     values, path = file.values, f"{_AXES}.{axis}.full_speed"
-    if values.has(path, f"axis.{axis}.vmax") and 0.0 < values.number(path) < values.number(
+    if values.has_values(path, f"axis.{axis}.vmax") and 0.0 < values.read_number(path) < values.read_number(
         f"axis.{axis}.vmax"
     ):
-        yield Finding(
+        yield FileFinding(
             path,
             "",
             Message(
@@ -361,41 +382,41 @@ def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
         )
 
 
-def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
+def _check_unique_channels(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
     """Yield findings about channels that are used twice."""
     values = file.values
-    paths = [f"{_AXES}.{axis}.channel" for axis in file.names(_AXES)]
+    paths = [f"{_AXES}.{axis}.channel" for axis in file.list_table_keys(_AXES)]
     if kind in (MESA_SERVO, ETHERCAT):
         paths.append(f"{_SPINDLE}.channel")
     taken: dict[int, str] = {}
     for path in paths:
-        channel = values.whole(path) if values.has(path) else -1
+        channel = values.read_integer(path) if values.has_values(path) else -1
         if channel >= 0 and (first := taken.setdefault(channel, path)) != path:
-            yield Finding(
+            yield FileFinding(
                 path,
                 str(channel),
                 Message("expected an unused channel; {first} already uses this channel", first=first),
             )
 
 
-def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
+def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
     """Yield findings about a spindle speed without a scale, or a scale without a speed."""
     values = file.values
     speeds = ("hal.spindle.speed", "hal.spindle.speed_abs")
-    if not values.has(
+    if not values.has_values(
         *speeds, f"{_SPINDLE}.full_speed", f"{_SPINDLE}.velocity_per_rpm", f"{_SPINDLE}.channel"
     ):
         return
     told = any(values.text(path) for path in speeds)
     scale = "velocity_per_rpm" if kind == ETHERCAT else "full_speed"
-    scaled = values.number(f"{_SPINDLE}.{scale}")
+    scaled = values.read_number(f"{_SPINDLE}.{scale}")
     if told and not scaled:
         what = (
             "the value of object 60FF at 1 rpm" if kind == ETHERCAT else ("the spindle speed at 10 V, in rpm")
         )
         yield _missing(f"{_SPINDLE}.{scale}", what)
     if scaled and not told:
-        yield Finding(
+        yield FileFinding(
             speeds[0],
             "",
             Message(
@@ -403,62 +424,62 @@ def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
                 key=f"{_SPINDLE}.{scale}",
             ),
         )
-    channel = values.whole(f"{_SPINDLE}.channel")
+    channel = values.read_integer(f"{_SPINDLE}.channel")
     if told and kind == MESA_SERVO and channel not in (4, 5):
         what = "the number of an analog output with a separate enable: 4 or 5"
-        yield _number_expected(f"{_SPINDLE}.channel", channel, what)
+        yield _number_finding(f"{_SPINDLE}.channel", channel, what)
     if told and kind == ETHERCAT:
         if channel < 0:
-            yield _missing(f"{_SPINDLE}.channel", _WHAT[kind])
-        yield from _stated(file, kind, _SPINDLE)
+            yield _missing(f"{_SPINDLE}.channel", _CHANNEL_MEANINGS[kind])
+        yield from _check_required(file, kind, _SPINDLE)
 
 
-def _encoder_rules(file: FileReading, kind: str) -> Iterator[Finding]:
+def _check_encoder(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
     """Yield findings about the lines and the channel of the spindle encoder."""
     values = file.values
-    if not values.has("spindle.encoder_ppr", "hal.spindle.position", f"{_SPINDLE}.encoder"):
+    if not values.has_values("spindle.encoder_ppr", "hal.spindle.position", f"{_SPINDLE}.encoder"):
         return
-    has, read = values.number("spindle.encoder_ppr"), values.text("hal.spindle.position")
+    has, read = values.read_number("spindle.encoder_ppr"), values.text("hal.spindle.position")
     if read and not has:
-        yield Finding(
+        yield FileFinding(
             "spindle.encoder_ppr",
             "0",
             "expected the line count of the encoder that hal.spindle.position reads",
         )
     most = {MESA_STEP: 0, MESA_SERVO: 5}.get(kind)
-    channel = values.whole(f"{_SPINDLE}.encoder")
-    for axis in file.names(_AXES) if kind == MESA_SERVO else ():
+    channel = values.read_integer(f"{_SPINDLE}.encoder")
+    for axis in file.list_table_keys(_AXES) if kind == MESA_SERVO else ():
         path = f"{_AXES}.{axis}.channel"
-        if values.has(path) and values.whole(path) == channel >= 0:
+        if values.has_values(path) and values.read_integer(path) == channel >= 0:
             why = Message("expected an unused encoder; {path} already uses this encoder", path=path)
-            yield Finding(f"{_SPINDLE}.encoder", str(channel), why)
+            yield FileFinding(f"{_SPINDLE}.encoder", str(channel), why)
     if read and has and most is not None and not 0 <= channel <= most:
         what = (
             ("0, the number of the only encoder on the 7I76E")
             if most == 0
             else ("the number of a 7I97 encoder, from 0 to 5")
         )
-        yield _number_expected(f"{_SPINDLE}.encoder", channel, what)
+        yield _number_finding(f"{_SPINDLE}.encoder", channel, what)
     if read and has and kind == PARPORT:
         for key in ("phase_a", "phase_b"):
-            if values.has(f"{_SPINDLE}.{key}") and not values.text(f"{_SPINDLE}.{key}"):
-                yield Finding(
+            if values.has_values(f"{_SPINDLE}.{key}") and not values.text(f"{_SPINDLE}.{key}"):
+                yield FileFinding(
                     f"{_SPINDLE}.{key}", "", "missing; expected the parallel port pin of this encoder signal"
                 )
 
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "board",
             BoardTable,
-            _parts,
+            _read_parts,
             ("axis", "spindle"),
             _read,
             _rules,
             purpose="The hardware for which `turndesk machine hal` writes the HAL file. Scales follow from "
             "`count` of the axes and `encoder_ppr` of the spindle.",
-            parts=(
+            sub_tables=(
                 TableReference(
                     "board.axis.…",
                     "Connection of one axis to the board; the last word of the heading is the axis name.",

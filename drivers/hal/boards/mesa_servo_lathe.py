@@ -5,19 +5,19 @@ from __future__ import annotations
 import re
 
 from drivers.hal.boards.board_parts import (
-    NOTES,
-    c_speed_pins,
-    encoder,
-    load_c,
+    CARD_NOTES,
+    configure_encoder,
+    connect_spindle_encoder,
+    get_c_speed_pins,
+    load_c_components,
     load_card,
-    load_pid,
-    spindle_encoder,
+    load_pid_loops,
 )
-from drivers.hal.boards.hal_lines import C, HalFile, Lathe, LatheAxis, Terminal
+from drivers.hal.boards.hal_file_builder import C_AXIS, BoardTerminal, HalFile, LatheAxis, LatheData
 
 _CARD = "hm2_7i97.0"
-_IN = re.compile(re.escape(_CARD) + r"\.inmux\.00\.input-(\d\d)(-not)?")
-_OUT = re.compile(re.escape(_CARD) + r"\.ssr\.00\.out-(\d\d)")
+_INPUT_PATTERN = re.compile(re.escape(_CARD) + r"\.inmux\.00\.input-(\d\d)(-not)?")
+_OUTPUT_PATTERN = re.compile(re.escape(_CARD) + r"\.ssr\.00\.out-(\d\d)")
 # Terminals by their hm2_eth names: analog outputs, A inputs of the encoders, and solid-state relays.
 _ANALOG = ("TB3-04", "TB3-08", "TB3-12", "TB3-16", "TB3-20", "TB3-24")
 _ENCODERS = ("TB1-01", "TB1-09", "TB1-17", "TB2-01", "TB2-09", "TB2-17")
@@ -26,12 +26,12 @@ _DEGREES_RPM = 6.0  # Degrees/s per rpm.
 _PWM_HZ = 48_000  # Frequency of the analog outputs, as in Mesa's samples.
 
 
-def mesa_servo_lathe(lathe: Lathe) -> HalFile:
+def build_mesa_servo_file(lathe: LatheData) -> HalFile:
     """Build the HAL file for velocity drives at ±10 V, with position loops by encoder and pid."""
     hint = f"an input or relay of the card: {_CARD}.inmux.00.input-00 … -15, {_CARD}.ssr.00.out-00 … -05"
     file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
-    file.notes += [
-        *NOTES,
+    file.check_notes += [
+        *CARD_NOTES,
         (
             "check the direction with drive power off: turn the screw by hand; the position must "
             "increase when the axis moves in the plus direction. Switch drive power on for the "
@@ -46,81 +46,83 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
             "the axis stays at rest"
         ),
     ]
-    turns = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
-    spindle = lathe.board.spindle
-    channels = [board.channel for board in lathe.board.axes.values()] + [spindle.channel]
+    turns = bool(lathe.encoder_lines and lathe.terminal_names.get("hal.spindle.position"))
+    spindle = lathe.board_table.spindle
+    channels = [board.channel for board in lathe.board_table.axes.values()] + [spindle.channel]
     encoders = 1 + max((*channels[:-1], spindle.encoder if turns else -1))
     load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
-    load_pid(file, lathe.driven)
-    if lathe.c is not None:
-        load_c(file, chosen=True)
-    file.section("Analog outputs")
-    file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
-    for axis in lathe.driven:
+    load_pid_loops(file, lathe.driven_axes)
+    if lathe.c_axis is not None:
+        load_c_components(file, shares_input=True)
+    file.start_section("Analog outputs")
+    file.set_pin(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
+    for axis in lathe.driven_axes:
         _axis(file, axis)
-    file.section("Drive power: analog outputs 0 to 3 share one enable signal")
-    file.enable(*_enables(lathe))
+    file.start_section("Drive power: analog outputs 0 to 3 share one enable signal")
+    file.connect_enable(*_enables(lathe))
     if spindle.full_speed:
         _speed(file)
     if turns:
-        spindle_encoder(file, _CARD, f"encoder {spindle.encoder} (signal A at {_ENCODERS[spindle.encoder]})")
-    file.rest()
-    file.last.append(f"{_CARD}.write")
+        connect_spindle_encoder(
+            file, _CARD, f"encoder {spindle.encoder} (signal A at {_ENCODERS[spindle.encoder]})"
+        )
+    file.connect_remaining()
+    file.last_calls.append(f"{_CARD}.write")
     return file
 
 
-def _terminal(name: str) -> Terminal | None:
-    if (found := _IN.fullmatch(name)) and int(found[1]) < 16:
-        return Terminal(drives=False, place=f"INPUT{int(found[1])}")
-    if (found := _OUT.fullmatch(name)) and int(found[1]) < len(_RELAYS):
-        return Terminal(drives=True, place=_RELAYS[int(found[1])])
+def _terminal(name: str) -> BoardTerminal | None:
+    if (found := _INPUT_PATTERN.fullmatch(name)) and int(found[1]) < 16:
+        return BoardTerminal(is_output=False, label=f"INPUT{int(found[1])}")
+    if (found := _OUTPUT_PATTERN.fullmatch(name)) and int(found[1]) < len(_RELAYS):
+        return BoardTerminal(is_output=True, label=_RELAYS[int(found[1])])
     return None
 
 
-def _enables(lathe: Lathe) -> list[str]:
-    pids = [f"pid.{axis.name.lower()}.enable" for axis in lathe.driven]
+def _enables(lathe: LatheData) -> list[str]:
+    pids = [f"pid.{axis.name.lower()}.enable" for axis in lathe.driven_axes]
     # Channel 0 enables channels 0…3.
-    channels = sorted({0, *(lathe.board.axes[axis.name].channel for axis in lathe.driven)})
+    channels = sorted({0, *(lathe.board_table.axes[axis.name].channel for axis in lathe.driven_axes)})
     return pids + [f"{_CARD}.pwmgen.{channel:02d}.enable" for channel in channels]
 
 
 def _analog(file: HalFile, pin: str, full: float, what: str) -> None:
-    file.setp(f"{pin}.output-type", 1, "pulse-width modulation on one pin")
-    file.setp(f"{pin}.offset-mode", 1, "a duty cycle of 50 % is 0 V")
-    file.setp(f"{pin}.scale", full, what)
+    file.set_pin(f"{pin}.output-type", 1, "pulse-width modulation on one pin")
+    file.set_pin(f"{pin}.offset-mode", 1, "a duty cycle of 50 % is 0 V")
+    file.set_pin(f"{pin}.scale", full, what)
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
+    board, name = file.lathe.board_table.axes[axis.name], axis.name.lower()
     out, counter, pid = (
         f"{_CARD}.pwmgen.{board.channel:02d}",
         f"{_CARD}.encoder.{board.channel:02d}",
         f"pid.{name}",
     )
     place = f"{_ANALOG[board.channel]}, encoder {board.channel} (signal A at {_ENCODERS[board.channel]})"
-    file.section(f"Axis {axis.name}: analog output and encoder {board.channel}")
-    full = _DEGREES_RPM * board.full_rpm if axis.name == C else board.full_speed
+    file.start_section(f"Axis {axis.name}: analog output and encoder {board.channel}")
+    full = _DEGREES_RPM * board.full_rpm if axis.name == C_AXIS else board.full_speed
     _analog(file, out, full, f"{axis.unit}/s at 10 V")
     sign = -1.0 if board.reversed else 1.0
-    encoder(file, counter, sign / axis.count, f"counts per {axis.unit}: 1 / count")
+    configure_encoder(file, counter, sign / axis.count, f"counts per {axis.unit}: 1 / count")
     for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
-        file.setp(f"{pid}.{key}", value)
-    file.setp(f"{pid}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
-    file.setp(f"{pid}.FF2", board.ff2)
-    file.setp(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
-    file.setp(f"{pid}.error-previous-target", 1)
-    file.positions(axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place)
+        file.set_pin(f"{pid}.{key}", value)
+    file.set_pin(f"{pid}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
+    file.set_pin(f"{pid}.FF2", board.ff2)
+    file.set_pin(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
+    file.set_pin(f"{pid}.error-previous-target", 1)
+    file.connect_positions(axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place)
     index = f"hal.axes.{axis.name}.index_enable"
-    file.role(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", place=place)
-    file.net(f"{name}-output", f"{pid}.output", f"{out}.value")
+    file.connect_key(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", label=place)
+    file.connect(f"{name}-output", f"{pid}.output", f"{out}.value")
 
 
 def _speed(file: HalFile) -> None:
-    board = file.lathe.board.spindle
+    board = file.lathe.board_table.spindle
     pin, place = f"{_CARD}.pwmgen.{board.channel:02d}", _ANALOG[board.channel]
-    file.section(f"Spindle: analog output {board.channel}")
+    file.start_section(f"Spindle: analog output {board.channel}")
     _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
-    speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
-    value, enable = c_speed_pins(file, f"{pin}.value", f"{pin}.enable")
-    file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, place=place, needed=True)
-    file.role("hal.spindle.on", "spindle-on", enable, place=f"enable of {place}", needed=True)
+    speed = "speed" if file.lathe.terminal_names.get("hal.spindle.speed") else "speed_abs"
+    value, enable = get_c_speed_pins(file, f"{pin}.value", f"{pin}.enable")
+    file.connect_key(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, label=place, required=True)
+    file.connect_key("hal.spindle.on", "spindle-on", enable, label=f"enable of {place}", required=True)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 
 from drivers.hal.boards.board_parts import (
-    NOTES,
-    change_over_to_c,
-    close_c_loop,
-    load_c,
+    CARD_NOTES,
+    configure_c_loop,
+    connect_mode_terminal,
+    connect_spindle_encoder,
+    load_c_components,
     load_card,
-    load_pid,
-    spindle_encoder,
+    load_pid_loops,
 )
-from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
+from drivers.hal.boards.hal_file_builder import BoardTerminal, HalFile, LatheAxis, LatheData
 
 _CARD = "hm2_7i76e.0"
 _FIELD = f"{_CARD}.7i76.0.0"  # Field I/O of the card, at the first smart serial port.
@@ -23,15 +23,15 @@ _LATCHED_US = -50  # As in files of LinuxCNC's pncconf.
 _FF1, _MOST_ERROR = 1.0, 0.0127  # Maximum error per period in mm (.0005 in).
 
 
-def mesa_step_lathe(lathe: Lathe) -> HalFile:
+def build_mesa_step_file(lathe: LatheData) -> HalFile:
     """Build the HAL file for step generators of the card.
 
     ``mode = "velocity"`` closes the position loop by a pid, as Mesa's samples do.
     """
     hint = f"an input or output of the card: {_FIELD}.input-00 … -31, {_FIELD}.output-00 … -15"
     file = HalFile(lathe, "step drives on a Mesa 7I76E", _terminal, hint)
-    file.notes += [
-        *NOTES,
+    file.check_notes += [
+        *CARD_NOTES,
         (
             "step_ns, space_ns, setup_ns, hold_ns: use the values in the drive manual; a "
             "drive that misses step pulses does not report a fault"
@@ -42,61 +42,64 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
             "--addr ADDRESS --readhmid"
         ),
     ]
-    encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
-    steps = 1 + max((board.channel for board in lathe.board.axes.values()), default=0)
+    encoder = bool(lathe.encoder_lines and lathe.terminal_names.get("hal.spindle.position"))
+    steps = 1 + max((board.channel for board in lathe.board_table.axes.values()), default=0)
     load_card(
         file,
         _CARD,
         f"num_encoders={int(encoder)} num_pwmgens=0 num_stepgens={steps} sserial_port_0=0xxxxxxx",
         "field-lost.over",
     )
-    _field(file)
-    _timing(file)
-    load_pid(file, tuple(axis for axis in lathe.driven if lathe.board.axes[axis.name].mode == "velocity"))
-    for axis in lathe.driven:
+    _configure_field_io(file)
+    _configure_timing(file)
+    load_pid_loops(
+        file,
+        tuple(axis for axis in lathe.driven_axes if lathe.board_table.axes[axis.name].mode == "velocity"),
+    )
+    for axis in lathe.driven_axes:
         _axis(file, axis)
-    if lathe.c is not None:
-        _spindle_c(file, lathe.c)
-    file.section("Drive power")
-    file.enable(*_enables(lathe))
-    _speed(file)
+    if lathe.c_axis is not None:
+        _connect_spindle_c(file, lathe.c_axis)
+    file.start_section("Drive power")
+    file.connect_enable(*_enables(lathe))
+    _connect_spindle(file)
     if encoder:
-        spindle_encoder(file, _CARD, "TB3 encoder")
-    file.rest()
-    file.last.append(f"{_CARD}.write")
+        connect_spindle_encoder(file, _CARD, "TB3 encoder")
+    file.connect_remaining()
+    file.last_calls.append(f"{_CARD}.write")
     return file
 
 
-def _field(file: HalFile) -> None:
+def _configure_field_io(file: HalFile) -> None:
     """Monitor the serial link to the field I/O, whose inputs also freeze if transfers fail."""
-    file.load("loadrt conv_u32_float names=field-errors")
-    file.load("loadrt wcomp names=field-lost")
-    file.first[1:1] = ["field-errors", "field-lost"]
-    file.section("Field I/O: the serial link to the card can fail while the card itself still works")
-    file.net("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
-    file.net("field-error-level", "field-errors.out", "field-lost.in")
-    file.setp("field-lost.min", -1)
-    file.setp(
+    file.add_load("loadrt conv_u32_float names=field-errors")
+    file.add_load("loadrt wcomp names=field-lost")
+    file.first_calls[1:1] = ["field-errors", "field-lost"]
+    file.start_section("Field I/O: the serial link to the card can fail while the card itself still works")
+    file.connect("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
+    file.connect("field-error-level", "field-errors.out", "field-lost.in")
+    file.set_pin("field-lost.min", -1)
+    file.set_pin(
         "field-lost.max",
         _FIELD_ERRORS,
         "error counter: each failed transfer adds 10, each good transfer subtracts 1",
     )
 
 
-def _timing(file: HalFile) -> None:
+def _configure_timing(file: HalFile) -> None:
     """Latch the step counts at a fixed time before the read, independent of the Ethernet delay."""
-    file.section(
+    file.start_section(
         "Step counts: latched by the card's timer, so that Ethernet jitter does not appear as axis movement"
     )
-    file.setp(
+    file.set_pin(
         f"{_CARD}.dpll.01.timer-us",
         _LATCHED_US,
         "time between latching and reading the step counts; must be longer than the worst-case delay",
     )
-    file.setp(f"{_CARD}.stepgen.timer-number", 1)
+    file.set_pin(f"{_CARD}.stepgen.timer-number", 1)
 
 
-def _terminal(name: str) -> Terminal | None:
+def _terminal(name: str) -> BoardTerminal | None:
     found = _PIN.fullmatch(name)
     if (
         found is None
@@ -105,73 +108,75 @@ def _terminal(name: str) -> Terminal | None:
     ):
         return None
     kind, number = found[1], int(found[2])
-    return Terminal(drives=kind == "output", place=f"{_block(kind, number)} {kind.upper()}{number}")
+    return BoardTerminal(
+        is_output=kind == "output", label=f"{_terminal_block(kind, number)} {kind.upper()}{number}"
+    )
 
 
-def _block(kind: str, number: int) -> str:
+def _terminal_block(kind: str, number: int) -> str:
     """Return the terminal block of a field input or output, according to Mesa's manual of the 7I76."""
     return "TB6" if number < (16 if kind == "input" else 8) else "TB5"
 
 
-def _enables(lathe: Lathe) -> list[str]:
+def _enables(lathe: LatheData) -> list[str]:
     pins = []
     for axis in lathe.axes:
-        board = lathe.board.axes[axis.name]
-        own = axis is not lathe.c and board.mode == "velocity"
+        board = lathe.board_table.axes[axis.name]
+        own = axis is not lathe.c_axis and board.mode == "velocity"
         pins += [f"pid.{axis.name.lower()}.enable"] if own else []
         pins.append(f"{_CARD}.stepgen.{board.channel:02d}.enable")
     return pins
 
 
-def _steps(file: HalFile, axis: LatheAxis) -> str:
+def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
     """Configure the step generator of an axis and return its pin."""
-    board = file.lathe.board.axes[axis.name]
+    board = file.lathe.board_table.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
     sign = -1.0 if board.reversed else 1.0
-    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps per {axis.unit}: 1 / count")
+    file.set_pin(f"{pin}.position-scale", sign / axis.count, f"steps per {axis.unit}: 1 / count")
     for key, value in (
         ("steplen", "step"),
         ("stepspace", "space"),
         ("dirsetup", "setup"),
         ("dirhold", "hold"),
     ):
-        file.setp(f"{pin}.{key}", getattr(board, f"{value}_ns"), "ns")
-    file.setp(f"{pin}.step_type", 0, "step and direction")
-    file.setp(
+        file.set_pin(f"{pin}.{key}", getattr(board, f"{value}_ns"), "ns")
+    file.set_pin(f"{pin}.step_type", 0, "step and direction")
+    file.set_pin(
         f"{pin}.maxvel",
         1.5 * axis.vmax,
         "set this limit above the highest commanded velocity; if the limit takes effect, position is lost",
     )
-    file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
+    file.set_pin(f"{pin}.maxaccel", 2.5 * axis.amax)
     return pin
 
 
-def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
+def _connect_spindle_c(file: HalFile, axis: LatheAxis) -> None:
     """Configure C on the spindle drive: step commands, with the spindle encoder as feedback."""
-    load_c(file, chosen=False)
-    file.section(
-        f"C: step generator {file.lathe.board.axes[axis.name].channel} for the spindle drive, "
+    load_c_components(file, shares_input=False)
+    file.start_section(
+        f"C: step generator {file.lathe.board_table.axes[axis.name].channel} for the spindle drive, "
         "with feedback from the spindle encoder"
     )
-    pin = _steps(file, axis)
-    file.setp(f"{pin}.control-type", 1)
-    close_c_loop(file, axis, f"{pin}.velocity-cmd")
-    change_over_to_c(file)
+    pin = _configure_steps(file, axis)
+    file.set_pin(f"{pin}.control-type", 1)
+    configure_c_loop(file, axis, f"{pin}.velocity-cmd")
+    connect_mode_terminal(file)
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
+    board, name = file.lathe.board_table.axes[axis.name], axis.name.lower()
     place = f"TB{2 if board.channel < 4 else 3} STEP{board.channel} DIR{board.channel}"
-    file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
-    pin = _steps(file, axis)
+    file.start_section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
+    pin = _configure_steps(file, axis)
     if board.mode == "position":
-        file.setp(f"{pin}.control-type", 0)
-        file.positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"], place)
+        file.set_pin(f"{pin}.control-type", 0)
+        file.connect_positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"], place)
         return
-    file.setp(f"{pin}.control-type", 1)
-    file.setp(
+    file.set_pin(f"{pin}.control-type", 1)
+    file.set_pin(
         f"pid.{name}.Pgain",
-        board.p or 1.0 / file.lathe.period,
+        board.p or 1.0 / file.lathe.period_s,
         "P gain in 1/s; corrects a position error within one period",
     )
     for key, gain in (
@@ -181,26 +186,26 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         ("FF1", _FF1),
         ("FF2", board.ff2),
     ):
-        file.setp(f"pid.{name}.{key}", gain)
-    file.setp(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.count), axis.unit)
-    file.setp(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
-    file.setp(f"pid.{name}.error-previous-target", 1)
+        file.set_pin(f"pid.{name}.{key}", gain)
+    file.set_pin(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.count), axis.unit)
+    file.set_pin(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
+    file.set_pin(f"pid.{name}.error-previous-target", 1)
     measured = f"{pin}.position-fb", f"pid.{name}.feedback"
-    file.positions(axis.name, [f"pid.{name}.command"], measured, place)
-    file.net(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
+    file.connect_positions(axis.name, [f"pid.{name}.command"], measured, place)
+    file.connect(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
 
 
-def _speed(file: HalFile) -> None:
+def _connect_spindle(file: HalFile) -> None:
     """Connect the isolated analog output with its enable and direction."""
-    full = file.lathe.board.spindle.full_speed
+    full = file.lathe.board_table.spindle.full_speed
     if not full:
         return
-    file.section("Spindle: analog output 0…10 V, enable and direction of the 7I76E")
-    file.setp(f"{_FIELD}.spinout-scalemax", full, "spindle speed at 10 V, in rpm")
-    file.setp(f"{_FIELD}.spinout-minlim", 0)
-    file.setp(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.rpm_max), "rpm")
-    file.role(
-        "hal.spindle.speed_abs", "spindle-rpm-abs", f"{_FIELD}.spinout", place="TB4 SPINOUT", needed=True
+    file.start_section("Spindle: analog output 0…10 V, enable and direction of the 7I76E")
+    file.set_pin(f"{_FIELD}.spinout-scalemax", full, "spindle speed at 10 V, in rpm")
+    file.set_pin(f"{_FIELD}.spinout-minlim", 0)
+    file.set_pin(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.rpm_max), "rpm")
+    file.connect_key(
+        "hal.spindle.speed_abs", "spindle-rpm-abs", f"{_FIELD}.spinout", label="TB4 SPINOUT", required=True
     )
-    file.role("hal.spindle.on", "spindle-on", f"{_FIELD}.spinena", place="TB4 SPINENA", needed=True)
-    file.role("hal.spindle.reverse", "spindle-reverse", f"{_FIELD}.spindir", place="TB4 SPINDIR")
+    file.connect_key("hal.spindle.on", "spindle-on", f"{_FIELD}.spinena", label="TB4 SPINENA", required=True)
+    file.connect_key("hal.spindle.reverse", "spindle-reverse", f"{_FIELD}.spindir", label="TB4 SPINDIR")

@@ -22,15 +22,15 @@ from typing import Any
 sys.path.append(str(Path(__file__).resolve().parents[3]))
 
 from drivers.hal.bridge import hal_pins
-from drivers.hal.bridge.hal_bridge import Bridge
-from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, pack, unpack
+from drivers.hal.bridge.hal_bridge import HalBridge
+from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, PacketHead, pack_packet, unpack_packet
 
 _PERIOD = 0.002  # Seconds between two cycles.
-_REPORTS = 2  # Cycles between two reports.
+_CYCLES_PER_REPORT = 2  # Cycles between two reports.
 _PRIORITY = 45  # Below the priority of the driver host.
 _LARGEST = 1 << 17
-_KINDS = {"float": "HAL_FLOAT", "bit": "HAL_BIT", "s32": "HAL_S32"}
-_WAYS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
+_PIN_KINDS = {"float": "HAL_FLOAT", "bit": "HAL_BIT", "s32": "HAL_S32"}
+_PIN_DIRECTIONS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
 
 
 def main(arguments: list[str]) -> int:
@@ -45,7 +45,7 @@ def main(arguments: list[str]) -> int:
         hal = importlib.import_module("hal")  # Only the system's Python has this module.
     except ImportError as error:
         sock.send(
-            pack(
+            pack_packet(
                 {
                     "error": (
                         f"{sys.executable} does not have the hal module ({error}); check that it is "
@@ -56,14 +56,14 @@ def main(arguments: list[str]) -> int:
         )
         return 1
     try:
-        component = _component(hal, said)
+        component = _create_component(hal, said)
     except (RuntimeError, OSError, hal.error) as error:
-        sock.send(pack({"error": str(error)}))
+        sock.send(pack_packet({"error": str(error)}))
         return 1
     if component is None:
         return 1
     bridge = _bridge(hal, component, said)
-    sock.send(pack({"ready": True, "pid": os.getpid(), "warnings": _real_time()}))
+    sock.send(pack_packet({"ready": True, "pid": os.getpid(), "warnings": _request_real_time()}))
     with Path(said["alive"]).open("wb") as alive:
         fcntl.flock(alive, fcntl.LOCK_EX)
         component.ready()
@@ -72,44 +72,46 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _component(hal: Any, said: Mapping[str, Any]) -> Any | None:
+def _create_component(hal: Any, settings: Mapping[str, Any]) -> Any | None:
     """Create the HAL component and connect its pins.
 
     Return None if pins do not match or only a check was requested.
     """
-    sock = socket.socket(fileno=os.dup(said["fd"]))
-    wanted = [hal_pins.Wanted(*each) for each in said["wanted"]]
-    pins = hal_pins.pins_of(hal_pins.halcmd("-s", "show", "pin"))
-    signals = hal_pins.signals_of(pins, hal_pins.halcmd("-s", "show", "sig"))
-    verdicts = [(each.path, each.pin, hal_pins.trouble(each, pins, signals)) for each in wanted]
-    sock.send(pack({"verdicts": verdicts}))
-    if said["only_check"] or any(wrong for _, _, wrong in verdicts):
+    sock = socket.socket(fileno=os.dup(settings["fd"]))
+    wanted = [hal_pins.ExpectedPin(*each) for each in settings["wanted"]]
+    pins = hal_pins.parse_pins(hal_pins.run_halcmd("-s", "show", "pin"))
+    signals = hal_pins.parse_signals(pins, hal_pins.run_halcmd("-s", "show", "sig"))
+    verdicts = [(each.path, each.pin, hal_pins.describe_pin_error(each, pins, signals)) for each in wanted]
+    sock.send(pack_packet({"verdicts": verdicts}))
+    if settings["only_check"] or any(wrong for _, _, wrong in verdicts):
         return None
-    component = hal.component(said["name"])
-    for name, kind, way in said["pins"]:
-        component.newpin(name, getattr(hal, _KINDS[kind]), getattr(hal, _WAYS[way]))
-    script = Path(said["nets"])
-    script.write_text("\n".join(hal_pins.nets(wanted, said["own"], pins, signals)) + "\n", encoding="utf-8")
-    hal_pins.halcmd("-f", str(script))
+    component = hal.component(settings["name"])
+    for name, kind, way in settings["pins"]:
+        component.newpin(name, getattr(hal, _PIN_KINDS[kind]), getattr(hal, _PIN_DIRECTIONS[way]))
+    script = Path(settings["nets"])
+    script.write_text(
+        "\n".join(hal_pins.build_net_lines(wanted, settings["own"], pins, signals)) + "\n", encoding="utf-8"
+    )
+    hal_pins.run_halcmd("-f", str(script))
     for each in wanted:  # The start of a session, like an E-stop, does not change these outputs.
         output = each.path.removeprefix("io.out.")
-        if output in said["bridge"]["outputs"] and said["bridge"]["outputs"][output] is None:
+        if output in settings["bridge"]["outputs"] and settings["bridge"]["outputs"][output] is None:
             component[f"out.{output}"] = hal_pins.is_on(each.pin, pins, signals)
     return component
 
 
-def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> Bridge:
+def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> HalBridge:
     told = dict(said["bridge"])
     told["axes"] = tuple(BridgeAxis(**axis) for axis in told["axes"])
     config = BridgeConfig(**told)
     streams = [hal.stream(component, hal.streamer_base + n, said["columns"]) for n in range(2)]
     sampler = hal.stream(component, hal.sampler_base, said["sampled"])
-    return Bridge(
+    return HalBridge(
         config, component, (streams[0], streams[1]), sampler, lambda: time.monotonic() - said["zero"]
     )
 
 
-def _real_time() -> list[str]:
+def _request_real_time() -> list[str]:
     """Request SCHED_FIFO and return a message for the operator if it was refused."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
@@ -121,37 +123,37 @@ def _real_time() -> list[str]:
     return []
 
 
-def _serve(sock: socket.socket, bridge: Bridge, now: Callable[[], float]) -> None:
+def _serve(sock: socket.socket, bridge: HalBridge, now: Callable[[], float]) -> None:
     sock.setblocking(False)
     due, count = now(), 0
-    while not bridge.done:
+    while not bridge.is_done:
         late = now() - due
-        bridge.round(max(late, 0.0))
+        bridge.run_cycle(max(late, 0.0))
         if late >= 0.0:
             due = max(due + _PERIOD, now())
             count += 1
-            if count % _REPORTS == 0 and not bridge.gone:
+            if count % _CYCLES_PER_REPORT == 0 and not bridge.has_driver_ended:
                 _tell(sock, bridge)
         left = max(due - now(), 0.0)
-        if bridge.gone:
+        if bridge.has_driver_ended:
             time.sleep(left)
         elif select.select([sock], [], [], left)[0]:  # Received packets are executed at once.
             for head, numbers in _heard(sock, bridge):
-                bridge.handle(head, numbers)
+                bridge.queue_packet(head, numbers)
 
 
-def _tell(sock: socket.socket, bridge: Bridge) -> None:
+def _tell(sock: socket.socket, bridge: HalBridge) -> None:
     """Send a report; if the driver does not read, skip it until the next report."""
     try:
-        sock.send(bridge.report())
+        sock.send(bridge.encode_report())
     except BlockingIOError:
         return
     except OSError:
-        bridge.gone = True
+        bridge.has_driver_ended = True
 
 
-def _heard(sock: socket.socket, bridge: Bridge) -> Iterator[tuple[Head, Any]]:
-    while not bridge.gone:
+def _heard(sock: socket.socket, bridge: HalBridge) -> Iterator[tuple[PacketHead, Any]]:
+    while not bridge.has_driver_ended:
         try:
             data = sock.recv(_LARGEST)
         except BlockingIOError:
@@ -159,9 +161,9 @@ def _heard(sock: socket.socket, bridge: Bridge) -> Iterator[tuple[Head, Any]]:
         except OSError:
             data = b""
         if not data:
-            bridge.gone = True
+            bridge.has_driver_ended = True
             return
-        yield unpack(data)
+        yield unpack_packet(data)
 
 
 if __name__ == "__main__":

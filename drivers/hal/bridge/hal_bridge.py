@@ -1,8 +1,8 @@
 """Bridge that writes setpoints into HAL and reports samples, and stops motion without a control.
 
-``handle`` queues a packet of the driver, ``round`` must be called every few milliseconds, and ``report``
-returns the state. If the driver is silent, its queue is played to the end, which is at rest; then spindle and
-outputs are switched off. If the driver has ended, the drives are also switched off.
+``queue_packet`` queues a packet of the driver, ``run_cycle`` must be called every few milliseconds, and
+``encode_report`` returns the state. If the driver is silent, its queue is played to the end, which is at
+rest; then spindle and outputs are switched off. If the driver has ended, the drives are also switched off.
 """
 
 from __future__ import annotations
@@ -10,48 +10,58 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
-from drivers.hal.bridge.packets import BridgeConfig, Head, flat, number, pack, pieces_of, text
-from drivers.hal.bridge.row_streams import Pins, RowStreams, Sampler, Stream
-from drivers.hal.bridge.setpoint_player import Player, rows_of
-from drivers.setpoint_pieces import INF, Piece
+from drivers.hal.bridge.packets import (
+    BridgeConfig,
+    PacketHead,
+    flatten_pieces,
+    number,
+    pack_packet,
+    parse_pieces,
+    text,
+)
+from drivers.hal.bridge.row_streams import HalPins, RowStream, RowStreams, SampleStream
+from drivers.hal.bridge.setpoint_player import SetpointPlayer, make_row_function
+from drivers.setpoint_pieces import INFINITY, MotionPiece
 
-AWAY = 0.25  # Seconds without a packet of the driver.
-_QUIET = 0.25  # Seconds without a sample after which the servo thread counts as stopped.
-_AT_ONCE = 0.05  # Maximum in s that one cycle counts, so that a delay of this process is not counted.
-_GRANT = 0.1  # Seconds in which the chain must close.
-_REARM = 0.006  # Seconds for which the watchdog is off to restart it.
-_PULSE = 0.05  # Duration of the reset pulse in s.
-_FALLS = 0.005  # Seconds for which the orient pin is off before a new angle.
-_SLEW = 1e-3  # Maximum rate difference between rows and this computer's clock in motion.
-_SLEW_AT_REST = 0.05
-_SETTLES = 0.5  # Seconds in which a difference is corrected.
-_PAST = 0.5  # Age in s of setpoints that are still available.
-_RUNS_DOWN = 8.0  # Seconds for a spindle to brake.
-_STANDS = 0.1  # turns/s
-_SURE = 0.9  # Fraction of the time until the spindle reaches a position at its present speed.
-_ROWS = 300  # Samples in one report.
-_STILL = 1e-3  # mm/s
+DRIVER_TIMEOUT_S = 0.25  # Seconds without a packet of the driver.
+_SAMPLE_TIMEOUT_S = 0.25  # Seconds without a sample after which the servo thread counts as stopped.
+_MAX_CYCLE_SLICE_S = (
+    0.05  # Maximum in s that one cycle counts, so that a delay of this process is not counted.
+)
+_CHAIN_CLOSE_S = 0.1  # Seconds in which the chain must close.
+_WATCHDOG_RESTART_S = 0.006  # Seconds for which the watchdog is off to restart it.
+_RESET_PULSE_S = 0.05  # Duration of the reset pulse in s.
+_ORIENT_OFF_S = 0.005  # Seconds for which the orient pin is off before a new angle.
+_MAX_SLEW_IN_MOTION = 1e-3  # Maximum rate difference between rows and this computer's clock in motion.
+_MAX_SLEW_AT_REST = 0.05
+_CORRECTION_TIME_S = 0.5  # Seconds in which a difference is corrected.
+_HISTORY_S = 0.5  # Age in s of setpoints that are still available.
+_SPINDLE_STOP_S = 8.0  # Seconds for a spindle to brake.
+_STANDSTILL_REV_PER_S = 0.1  # turns/s
+_SAFE_TIME_FRACTION = 0.9  # Fraction of the time until the spindle reaches a position at its present speed.
+_MAX_REPORT_SAMPLES = 300  # Samples in one report.
+_STANDSTILL_MM_PER_S = 1e-3  # mm/s
 
 
-class Bridge:
+class HalBridge:
     """Bridge between one driver and one HAL, used by one thread."""
 
     def __init__(
         self,
         config: BridgeConfig,
-        pins: Pins,
-        streams: tuple[Stream, Stream],
-        sampler: Sampler,
+        pins: HalPins,
+        streams: tuple[RowStream, RowStream],
+        sampler: SampleStream,
         now: Callable[[], float],
     ) -> None:
         self.config = config
         self.pins = pins
-        self.player = Player(len(config.axes))
-        self.rows = RowStreams(streams, pins)
+        self.setpoint_player = SetpointPlayer(len(config.axes))
+        self.row_streams = RowStreams(streams, pins)
         self._sampler = sampler
         self._now = now
-        self._orders: deque[tuple[Head, Sequence[float]]] = deque()
-        self._parts: list[Piece] = []
+        self._orders: deque[tuple[PacketHead, Sequence[float]]] = deque()
+        self._parts: list[MotionPiece] = []
         self._samples: list[float] = []
         self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # Measured positions.
         self._over = [0.0] * len(config.axes)  # Seconds outside the window.
@@ -60,27 +70,27 @@ class Bridge:
         self._quiet = 0.0  # Seconds without a sample.
         self._heard = self._round_at = now()
         self._parted, self._left_at = False, 0.0
-        self.gone = False  # The driver has ended.
-        self.done = False
-        self.fault, self.code = "", ""
+        self.has_driver_ended = False  # The driver has ended.
+        self.is_done = False
+        self.fault, self.fault_code = "", ""
         self._on = False  # Power is requested.
-        self._grant_at = INF  # Time when power is switched on.
-        self._granted = -INF
-        self._off_at = INF
-        self._reset_until = self._watch_from = -INF
+        self._grant_at = INFINITY  # Time when power is switched on.
+        self._granted = -INFINITY
+        self._off_at = INFINITY
+        self._reset_until = self._watch_from = -INFINITY
         self._handled = 0.0
         self._braked: list[float] = []  # Pieces of a deceleration by the bridge.
         self._brakings = 0
         self._missed: list[float] = []  # Rows that were too late.
-        self._least = INF  # Fewest rows in HAL since the last report.
+        self._least = INFINITY  # Fewest rows in HAL since the last report.
         self._latest = 0.0  # s
         self._dry = 0
         self._homing: set[str] = set()
         self._c_at: float | None = None  # Position of C in HAL's count when it was engaged.
-        self._c_from = INF  # Time when the drive changes to position mode.
-        self._orient_from = INF  # Time when the orientation starts.
+        self._c_from = INFINITY  # Time when the drive changes to position mode.
+        self._orient_from = INFINITY  # Time when the orientation starts.
         self._close_chain()  # The chain is closed in advance for later commands of the control.
-        self._acts: Mapping[str, Callable[[Head, Sequence[float]], None]] = {
+        self._acts: Mapping[str, Callable[[PacketHead, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
             "splice": self._splice,
             "mesh": self._mesh,
@@ -92,78 +102,81 @@ class Bridge:
             "spindle": self._spindle,
             "out": self._output,
             "safe": lambda _head, _numbers: self._safe(),
-            "homing": self._home,
-            "index": self._index,
-            "c": self._hold_c,
-            "orient": self._orient,
+            "homing": self._handle_home,
+            "index": self._handle_index,
+            "c": self._handle_hold_c,
+            "orient": self._handle_orient,
             "end": self._end,
         }
 
     # --- cycles -------------------------------------------------------------------------------------------
 
-    def handle(self, head: Head, numbers: Sequence[float]) -> None:
+    def queue_packet(self, head: PacketHead, numbers: Sequence[float]) -> None:
         """Queue one packet, which the next cycle executes."""
         self._heard = self._now()
         self._orders.append((head, numbers))
 
-    def round(self, late: float = 0.0) -> None:
+    def run_cycle(self, delay_s: float = 0.0) -> None:
         """Run one cycle: read samples, supervise, execute commands, and write rows for HAL.
 
-        ``late`` is the delay of the cycle in seconds.
+        ``delay_s`` is the delay of the cycle in seconds.
         """
         now = self._now()
-        self._latest = max(self._latest, late)
+        self._latest = max(self._latest, delay_s)
         self.pins["heartbeat"] = not self.pins["heartbeat"]
-        self._quiet += min(now - self._round_at, _AT_ONCE)
+        self._quiet += min(now - self._round_at, _MAX_CYCLE_SLICE_S)
         self._round_at = now
         self._take_samples(now)
         self._supervise(now)
-        while self._orders and not self.rows.busy:
+        while self._orders and not self.row_streams.is_changing:
             head, numbers = self._orders.popleft()
             act = self._acts.get(text(head, "do"))
             if act is not None:
                 act(head, numbers)
             self._handled = number(head, "n", self._handled)
-        self._power(now)
+        self._update_power(now)
         self._without_driver(now)
         self._fill(now)
-        self.player.queue.trim(now - _PAST)
+        self.setpoint_player.queue.discard_before(now - _HISTORY_S)
 
-    def report(self) -> bytes:
+    def encode_report(self) -> bytes:
         """Return a packet with the complete state and the samples since the last report."""
-        rows, self._samples = self._samples[: _ROWS * self._width], self._samples[_ROWS * self._width :]
+        rows, self._samples = (
+            self._samples[: _MAX_REPORT_SAMPLES * self._width],
+            self._samples[_MAX_REPORT_SAMPLES * self._width :],
+        )
         pins = self.pins
         head = {
             "n": self._handled,
-            "t": self.rows.played_t,
+            "t": self.row_streams.played_row_due_s,
             "at": self._place,
             "powered": bool(pins["powered"]),
             "ok": bool(pins["chain-ok"]),
             "fault": self.fault,
-            "code": self.code,
+            "code": self.fault_code,
             "in": [bool(pins[f"in.{name}"]) for name in self.config.inputs],
             "is": [bool(pins[f"is.{name}"]) for name in self.config.outputs],
             "analog": [pins[f"analog.{name}"] for name in self.config.analog],
             "bits": [bool(pins[name]) for name in self.config.bits],
             "figures": [pins[name] for name in self.config.figures],
-            "geared": not self.player.rests,
-            "left": self.player.left,
+            "geared": not self.setpoint_player.is_cam_inactive,
+            "left": self.setpoint_player.cam_end_time_s,
             "brakings": self._brakings,
             "braked": self._braked,
             "on": self._on,
             "late": self._latest,
-            "least": None if self._least == INF else self._least,
+            "least": None if self._least == INFINITY else self._least,
             "off_by": self._off_by,
             "dry": self._dry,
             "parted": self._parted,
-            "stands": self._stands,
+            "stands": self._is_thread_stopped,
             "stale": self._is_stale,
             "orients": "orient" in self.config.spindle and bool(self.pins["spindle.orient"]),
             # After the drive has changed to position mode.
-            "c_at": self._c_at if self._c_from == INF else None,
+            "c_at": self._c_at if self._c_from == INFINITY else None,
         }
-        self._latest, self._least = 0.0, INF
-        return pack(head, rows)
+        self._latest, self._least = 0.0, INFINITY
+        return pack_packet(head, rows)
 
     # --- feedback -----------------------------------------------------------------------------------------
 
@@ -173,27 +186,27 @@ class Bridge:
         return 1 + 2 * len(config.axes) + config.turns + config.speed + config.marks
 
     def _take_samples(self, now: float) -> None:
-        count, before = len(self.config.axes), self.rows.played
+        count, before = len(self.config.axes), self.row_streams.played_row_number
         axes = 1 + 2 * count
         while self._sampler.readable:
             sample = self._sampler.read()
             row = int(sample[0])
-            if row == self.rows.played and row and self._on:
+            if row == self.row_streams.played_row_number and row and self._on:
                 self._dry += 1
-            t = self.rows.seen(row)
+            t = self.row_streams.record_played(row)
             command, actual = sample[1:axes:2], sample[2:axes:2]
             self._place = tuple(actual)
             if self.config.turns:
-                self.player.turns.note(t, sample[axes])
-            self._follow(command, actual)
+                self.setpoint_player.spindle_predictor.add_reading(t, sample[axes])
+            self._check_following(command, actual)
             self._samples += (t, *command, *actual, *sample[axes : self._width])
             self._sampled, self._quiet = True, 0.0
-        if self.rows.played != before:
-            self._off_by += 0.05 * (self.rows.played_t - now - self._off_by)
-        if len(self._samples) > 40 * _ROWS * self._width:  # The samples are not read.
-            del self._samples[: -_ROWS * self._width]
+        if self.row_streams.played_row_number != before:
+            self._off_by += 0.05 * (self.row_streams.played_row_due_s - now - self._off_by)
+        if len(self._samples) > 40 * _MAX_REPORT_SAMPLES * self._width:  # The samples are not read.
+            del self._samples[: -_MAX_REPORT_SAMPLES * self._width]
 
-    def _follow(self, command: Sequence[float], actual: Sequence[float]) -> None:
+    def _check_following(self, command: Sequence[float], actual: Sequence[float]) -> None:
         """Check the following error of one sample."""
         if not self._powered:
             return
@@ -208,15 +221,15 @@ class Bridge:
 
     @property
     def _powered(self) -> bool:
-        return self._granted > -INF
+        return self._granted > -INFINITY
 
     def _supervise(self, now: float) -> None:
         pins = self.pins
-        if not self.rows.settle(bool(pins["plays-b"])):
+        if not self.row_streams.finish_change(bool(pins["plays-b"])):
             self._trip(
                 "setpoints reached HAL too late; HAL executed the setpoints that were already queued", "late"
             )
-        if self._stands:
+        if self._is_thread_stopped:
             self._trip(
                 "the HAL servo thread has stopped; check that rtapi_app is still running", "hal-thread"
             )
@@ -230,24 +243,27 @@ class Bridge:
             elif what.startswith("limit") and pins[name] and self._on and axis not in self._homing:
                 self._trip(f"{axis}: the axis is on its limit switch", "limit-switch")
         if self._dry and self._powered:
-            self._ran_dry()
+            self._handle_empty_queue()
         self._dry = 0
-        if self._powered and not pins["powered"] and now > self._granted + _GRANT:
+        if self._powered and not pins["powered"] and now > self._granted + _CHAIN_CLOSE_S:
             self._lost_power()
         if not pins["chain-ok"]:
             self._open_chain()
 
-    def _ran_dry(self) -> None:
+    def _handle_empty_queue(self) -> None:
         """Handle missing rows: ignore them at rest; in motion, trip, because HAL's limit has braked."""
-        if any(abs(v) > _STILL for v in self.player.state(self.rows.played_t)[1]):
-            self.player.rest_at(self._target())
+        if any(
+            abs(v) > _STANDSTILL_MM_PER_S
+            for v in self.setpoint_player.get_motion_at(self.row_streams.played_row_due_s)[1]
+        ):
+            self.setpoint_player.reset_to(self._target())
             self._trip(
                 f"HAL had no setpoints for {self._dry} periods because this computer was late", "queue-dry"
             )
 
     def _target(self) -> tuple[float, ...]:
         """Return the position of the last written row."""
-        return self.player.state(self.rows.last_t)[0]
+        return self.setpoint_player.get_motion_at(self.row_streams.last_row_due_s)[0]
 
     def _lost_power(self) -> None:
         if not self.pins["alive"]:
@@ -255,9 +271,9 @@ class Bridge:
         self._power_off()
 
     @property
-    def _stands(self) -> bool:
+    def _is_thread_stopped(self) -> bool:
         """Whether HAL's servo thread has stopped, so that its pins are old."""
-        return self._sampled and self._quiet > _QUIET
+        return self._sampled and self._quiet > _SAMPLE_TIMEOUT_S
 
     @property
     def _is_stale(self) -> bool:
@@ -274,115 +290,127 @@ class Bridge:
     def _trip(self, fault: str, code: str) -> None:
         """Set the fault, and brake all axes on their path before the power is switched off."""
         if not self.fault:
-            self.fault, self.code = fault, code
-        if self._on and self._off_at == INF:
+            self.fault, self.fault_code = fault, code
+        if self._on and self._off_at == INFINITY:
             self._ramp_off()
 
     # --- rows ---------------------------------------------------------------------------------------------
 
     def _fill(self, now: float) -> None:
-        rows, config = self.rows, self.config
+        rows, config = self.row_streams, self.config
         if not self._sampled:
             return
         if not self._on:
-            self.player.rest_at(self._place)
+            self.setpoint_player.reset_to(self._place)
         elif self._powered:
-            self._least = min(self._least, rows.ahead)
-        rest = self.player.horizon(now) <= rows.last_t
-        slew = _SLEW_AT_REST if rest else _SLEW
-        step = config.period * (1.0 - min(max(self._off_by / _SETTLES, -slew), slew))
-        rows.last_t = max(rows.last_t, now)
+            self._least = min(self._least, rows.pending_row_count)
+        rest = self.setpoint_player.get_end_time(now) <= rows.last_row_due_s
+        slew = _MAX_SLEW_AT_REST if rest else _MAX_SLEW_IN_MOTION
+        step = config.period * (1.0 - min(max(self._off_by / _CORRECTION_TIME_S, -slew), slew))
+        rows.last_row_due_s = max(rows.last_row_due_s, now)
         most = round(2.0 * config.ahead / config.period)
-        while (t := rows.last_t + step) <= now + config.ahead and rows.ahead < most:
-            if not rows.write(t, self.player.row(t)):
+        while (t := rows.last_row_due_s + step) <= now + config.ahead and rows.pending_row_count < most:
+            if not rows.write_row(t, self.setpoint_player.get_row_at(t)):
                 return
 
-    def _recall(self, t: float, same_until: float = -INF) -> bool:
-        return self.rows.recall(t, self.player.row, same_until)
+    def _recall(self, t: float, same_until: float = -INFINITY) -> bool:
+        return self.row_streams.recall_rows(t, self.setpoint_player.get_row_at, same_until)
 
     # --- commands -----------------------------------------------------------------------------------------
 
-    def _splice(self, head: Head, numbers: Sequence[float]) -> None:
-        self._parts += pieces_of(numbers, len(self.config.axes))
+    def _splice(self, head: PacketHead, numbers: Sequence[float]) -> None:
+        self._parts += parse_pieces(numbers, len(self.config.axes))
         if head.get("more"):
             return
         pieces, self._parts = self._parts, []
-        if not self._on or not pieces or self._off_at < INF:
+        if not self._on or not pieces or self._off_at < INFINITY:
             return
-        t = pieces[0].t
-        if self.rows.first_from(t) is None:
-            if not self.rows.plays_anyway(t, rows_of(pieces)):
+        t = pieces[0].start_time_s
+        if self.row_streams.first_recallable_row(t) is None:
+            if not self.row_streams.matches_locked_rows(t, make_row_function(pieces)):
                 self._trip("setpoints arrived too late to be executed", "late")
                 return
-            t = self.rows.soonest()
-        self.player.splice(pieces)
+            t = self.row_streams.earliest_recall_time()
+        self.setpoint_player.splice(pieces)
         self._recall(t)
 
-    def _mesh(self, head: Head, numbers: Sequence[float]) -> None:
-        self._parts += pieces_of(numbers, len(self.config.axes))
+    def _mesh(self, head: PacketHead, numbers: Sequence[float]) -> None:
+        self._parts += parse_pieces(numbers, len(self.config.axes))
         if head.get("more"):
             return
         pieces, self._parts = self._parts, []
-        if not self._on or self._off_at < INF:
+        if not self._on or self._off_at < INFINITY:
             return
-        zero, sign, t = number(head, "zero"), number(head, "sign", 1.0), self.rows.soonest()
-        left = pieces[0].t - sign * (self.player.turns.at(t) - zero)  # turns
+        zero, sign, t = (
+            number(head, "zero"),
+            number(head, "sign", 1.0),
+            self.row_streams.earliest_recall_time(),
+        )
+        left = pieces[0].start_time_s - sign * (
+            self.setpoint_player.spindle_predictor.predict(t) - zero
+        )  # turns
         if left < 0.0:
-            if self.player.rests:
+            if self.setpoint_player.is_cam_inactive:
                 self._trip("the threading setpoints arrived too late to be executed", "late")
             return  # The earlier setpoints are a complete pass too.
         count = int(number(head, "way"))
-        self.player.mesh(zero, sign, pieces[:count], pieces[count:])
+        self.setpoint_player.engage_cam(zero, sign, pieces[:count], pieces[count:])
         # The path is unchanged until the spindle is there, so the change need not be immediate.
-        until = t + _SURE * left / max(sign * self.player.turns.speed, _STANDS)
+        until = t + _SAFE_TIME_FRACTION * left / max(
+            sign * self.setpoint_player.spindle_predictor.speed_rev_per_s, _STANDSTILL_REV_PER_S
+        )
         self._recall(0.5 * (t + until), until)
 
-    def _brake(self) -> float:
+    def _brake_axes(self) -> float:
         """Brake on the path to rest as soon as rows can be recalled, and return the end time."""
-        t = self.rows.soonest()
-        pieces = self.player.brake(t, [axis.amax for axis in self.config.axes])
-        self._braked = list(flat(pieces or [Piece(t, 0.0, *self.player.state(t), self._still)]))
+        t = self.row_streams.earliest_recall_time()
+        pieces = self.setpoint_player.brake_to_rest(t, [axis.amax for axis in self.config.axes])
+        self._braked = list(
+            flatten_pieces(
+                pieces or [MotionPiece(t, 0.0, *self.setpoint_player.get_motion_at(t), self._still)]
+            )
+        )
         self._brakings += 1
         self._recall(t)
-        return pieces[-1].t + pieces[-1].dt if pieces else t
+        return pieces[-1].start_time_s + pieces[-1].duration_s if pieces else t
 
     def _halt(self) -> None:
-        if self._on and self._off_at == INF:
-            self._brake()
+        if self._on and self._off_at == INFINITY:
+            self._brake_axes()
 
     @property
     def _still(self) -> tuple[float, ...]:
         return (0.0,) * len(self.config.axes)
 
-    def _enable(self, _head: Head, _numbers: Sequence[float]) -> None:
+    def _enable(self, _head: PacketHead, _numbers: Sequence[float]) -> None:
         if self.fault or self._on:
             return
-        self.player.rest_at(self._place)
-        self._recall(self.rows.soonest())
-        self._on, self._off_at = True, INF
+        self.setpoint_player.reset_to(self._place)
+        self._recall(self.row_streams.earliest_recall_time())
+        self._on, self._off_at = True, INFINITY
         self._over = [0.0] * len(self.config.axes)
-        self._grant_at = self.rows.last_t
+        self._grant_at = self.row_streams.last_row_due_s
         self._close_chain()
 
     def _close_chain(self) -> None:
         now = self._now()
         if not self.pins["alive"]:
-            self._watch_from = now + _REARM
+            self._watch_from = now + _WATCHDOG_RESTART_S
         if not self.pins["chain-ok"]:
-            self._reset_until = now + _PULSE
+            self._reset_until = now + _RESET_PULSE_S
 
-    def _power(self, now: float) -> None:
+    def _update_power(self, now: float) -> None:
         """End the reset pulse of the chain, and switch power on when HAL plays the present axis positions."""
         self.pins["watch"] = now >= self._watch_from
         self.pins["reset"] = now < self._reset_until and bool(self.pins["alive"])
         if self._grant_at <= now:
-            self._grant_at, self._granted = INF, now
+            self._grant_at, self._granted = INFINITY, now
             self.pins["enable"] = 1
         if self._c_from <= now:
-            self._c_from = INF
+            self._c_from = INFINITY
             self.pins["spindle.position_mode"] = 1
         if self._orient_from <= now:
-            self._orient_from = INF
+            self._orient_from = INFINITY
             self.pins["spindle.orient"] = 1
         if self._off_at <= now:
             self._power_off()
@@ -390,23 +418,23 @@ class Bridge:
     def _power_off(self) -> None:
         self.pins["enable"] = 0
         self._on = False
-        self._grant_at = self._off_at = INF
-        self._granted = -INF
+        self._grant_at = self._off_at = INFINITY
+        self._granted = -INFINITY
         self._homing.clear()
         self._release_c()
-        self.player.rest_at(self._place)
+        self.setpoint_player.reset_to(self._place)
 
     def _ramp_off(self) -> None:
         if not self._on:
             return
-        self._off_at = self._brake() + self.config.period
+        self._off_at = self._brake_axes() + self.config.period
 
     def _clear(self) -> None:
         self._power_off()
-        self.fault = self.code = ""
+        self.fault = self.fault_code = ""
         self._close_chain()
 
-    def _spindle(self, head: Head, _numbers: Sequence[float]) -> None:
+    def _spindle(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         rpm, on = number(head, "rpm"), head.get("on") is True
         if on and not self.pins["chain-ok"]:
             return
@@ -418,7 +446,7 @@ class Bridge:
             if name in self.config.spindle:
                 self.pins[f"spindle.{name}"] = value
 
-    def _hold_c(self, head: Head, _numbers: Sequence[float]) -> None:
+    def _handle_hold_c(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Set C's setpoint to the position of the spindle, and change the drive when HAL plays it."""
         if head.get("on") is not True:
             self._release_c()
@@ -427,26 +455,26 @@ class Bridge:
             for index, axis in enumerate(self.config.axes):
                 if axis.is_spindle:
                     place[index] = self._c_at = self._place[index]
-            self.player.rest_at(place)
-            self._recall(self.rows.soonest())
-            self._c_from = self.rows.last_t
+            self.setpoint_player.reset_to(place)
+            self._recall(self.row_streams.earliest_recall_time())
+            self._c_from = self.row_streams.last_row_due_s
 
     def _release_c(self) -> None:
-        self._c_at, self._c_from = None, INF
+        self._c_at, self._c_from = None, INFINITY
         if "position_mode" in self.config.spindle:
             self.pins["spindle.position_mode"] = 0
 
-    def _orient(self, head: Head, _numbers: Sequence[float]) -> None:
+    def _handle_orient(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Orient the spindle; ``orient`` falls first, because its rising edge latches the angle."""
         self._release_angle()
         if head.get("on") is not True or not self.pins["chain-ok"]:
             return
         self.pins["spindle.orient_angle"] = number(head, "angle")
         self.pins["spindle.orient_mode"] = int(number(head, "mode"))
-        self._orient_from = self._now() + _FALLS
+        self._orient_from = self._now() + _ORIENT_OFF_S
 
     def _release_angle(self) -> None:
-        self._orient_from = INF
+        self._orient_from = INFINITY
         if "orient" in self.config.spindle:
             self.pins["spindle.orient"] = 0
 
@@ -456,7 +484,7 @@ class Bridge:
         for name in self.config.spindle:
             self.pins[f"spindle.{name}"] = 0
 
-    def _output(self, head: Head, _numbers: Sequence[float]) -> None:
+    def _output(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         name, on = text(head, "name"), head.get("on") is True
         if name in self.config.outputs:
             self.pins[f"out.{name}"] = on
@@ -466,35 +494,40 @@ class Bridge:
             if safe is not None:
                 self.pins[f"out.{name}"] = safe
 
-    def _home(self, head: Head, _numbers: Sequence[float]) -> None:
+    def _handle_home(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Ignore the limit switch of an axis during its homing."""
         name = text(head, "axis")
         (self._homing.add if head.get("on") is True else self._homing.discard)(name)
 
-    def _index(self, head: Head, _numbers: Sequence[float]) -> None:
+    def _handle_index(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Request the index of an encoder, whose pin falls when the index passes."""
         self.pins[text(head, "pin")] = head.get("on") is True
 
-    def _end(self, _head: Head, _numbers: Sequence[float]) -> None:
-        self.gone = True
+    def _end(self, _head: PacketHead, _numbers: Sequence[float]) -> None:
+        self.has_driver_ended = True
 
     # --- without a driver ---------------------------------------------------------------------------------
 
     def _without_driver(self, now: float) -> None:
-        if not self.gone and now - self._heard <= AWAY:
+        if not self.has_driver_ended and now - self._heard <= DRIVER_TIMEOUT_S:
             self._parted = False
             return
-        if not self.player.rests and abs(self.player.turns.speed) < _STANDS:
-            self._brake()
-        if self.player.horizon(now) > now:
+        if (
+            not self.setpoint_player.is_cam_inactive
+            and abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
+        ):
+            self._brake_axes()
+        if self.setpoint_player.get_end_time(now) > now:
             return
         if not self._parted:
-            self._parted, self._heard = True, min(self._heard, now - AWAY)
+            self._parted, self._heard = True, min(self._heard, now - DRIVER_TIMEOUT_S)
             self._left_at = now
             self._spindle_off()
             self._safe()
-        if self.gone:
+        if self.has_driver_ended:
             self._power_off()
-            blind = not self.config.turns or self._stands
-            stands = blind or abs(self.player.turns.speed) < _STANDS
-            self.done = stands or now - self._left_at > _RUNS_DOWN
+            blind = not self.config.turns or self._is_thread_stopped
+            stands = (
+                blind or abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
+            )
+            self.is_done = stands or now - self._left_at > _SPINDLE_STOP_S

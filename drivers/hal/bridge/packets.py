@@ -11,59 +11,65 @@ from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from drivers.setpoint_pieces import Piece
+from drivers.setpoint_pieces import MotionPiece
 
 _LENGTH = struct.Struct("<I")
-MOST = 8000  # Maximum number of doubles in a packet, limited by the packet socket.
+MAX_PACKET_NUMBERS = 8000  # Maximum number of doubles in a packet, limited by the packet socket.
 
-Head = dict[str, object]
+PacketHead = dict[str, object]
 
 
-def pack(head: Mapping[str, object], numbers: Iterable[float] = ()) -> bytes:
+def pack_packet(head: Mapping[str, object], numbers: Iterable[float] = ()) -> bytes:
     """Return the bytes of one packet."""
     text = json.dumps(head, separators=(",", ":")).encode()
     return _LENGTH.pack(len(text)) + text + array("d", numbers).tobytes()
 
 
-def unpack(data: bytes) -> tuple[Head, Sequence[float]]:
+def unpack_packet(data: bytes) -> tuple[PacketHead, Sequence[float]]:
     """Return head and numbers of a packet. Raises ValueError or struct.error for invalid data."""
     (length,) = _LENGTH.unpack_from(data)
-    head: Head = json.loads(data[_LENGTH.size : _LENGTH.size + length])
+    head: PacketHead = json.loads(data[_LENGTH.size : _LENGTH.size + length])
     numbers = array("d")
     numbers.frombytes(data[_LENGTH.size + length :])
     return head, numbers
 
 
-def flat(pieces: Iterable[Piece]) -> Iterable[float]:
+def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
     """Yield the numbers of all pieces in sequence."""
     for piece in pieces:
-        yield from (piece.t, piece.dt, *piece.p, *piece.v, *piece.a)
+        yield from (
+            piece.start_time_s,
+            piece.duration_s,
+            *piece.positions,
+            *piece.velocities,
+            *piece.accelerations,
+        )
 
 
-def pieces_of(numbers: Sequence[float], axes: int) -> list[Piece]:
+def parse_pieces(numbers: Sequence[float], axes: int) -> list[MotionPiece]:
     """Return the pieces from a sequence of numbers."""
     width = 2 + 3 * axes
     made = []
     for at in range(0, len(numbers), width):
         row = tuple(numbers[at : at + width])
         p, v, a = row[2 : 2 + axes], row[2 + axes : 2 + 2 * axes], row[2 + 2 * axes :]
-        made.append(Piece(row[0], row[1], p, v, a))
+        made.append(MotionPiece(row[0], row[1], p, v, a))
     return made
 
 
-def packets_of(head: Mapping[str, object], pieces: Sequence[Piece], axes: int) -> Iterable[bytes]:
+def build_packets(head: Mapping[str, object], pieces: Sequence[MotionPiece], axes: int) -> Iterable[bytes]:
     """Yield packets for any number of pieces; all but the last have ``more`` in their head."""
-    most = MOST // (2 + 3 * axes)
+    most = MAX_PACKET_NUMBERS // (2 + 3 * axes)
     for first in range(0, len(pieces), most):
         part = pieces[first : first + most]
         more = {"more": True} if first + most < len(pieces) else {}
-        yield pack({**head, **more}, flat(part))
+        yield pack_packet({**head, **more}, flatten_pieces(part))
 
 
-def number(head: Mapping[str, object], key: str, otherwise: float = 0.0) -> float:
-    """Return a number of a head, or ``otherwise`` if it is missing."""
+def number(head: Mapping[str, object], key: str, default: float = 0.0) -> float:
+    """Return a number of a head, or ``default`` if it is missing."""
     value = head.get(key)
-    return float(value) if isinstance(value, int | float) else otherwise
+    return float(value) if isinstance(value, int | float) else default
 
 
 def text(head: Mapping[str, object], key: str) -> str:

@@ -12,13 +12,13 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
-_NEVER = -1.0  # Row number that never occurs.
-_PAST = 400  # Number of played rows that are stored.
-_SAME = 1e-6  # Mm, and mm per revolution.
+_NO_ROW = -1.0  # Row number that never occurs.
+_MAX_PLAYED_ROWS = 400  # Number of played rows that are stored.
+_SAME_TOLERANCE = 1e-6  # Mm, and mm per revolution.
 _MARGIN = 4  # Minimum rows between the request of a change and its row.
 
 
-class Stream(Protocol):
+class RowStream(Protocol):
     """Methods of ``hal.stream`` that the bridge uses."""
 
     @property
@@ -31,115 +31,117 @@ class Stream(Protocol):
     def read(self) -> object: ...
 
 
-class Pins(Protocol):
+class HalPins(Protocol):
     """Pins of a HAL component by name; bits are 0 and 1."""
 
     def __getitem__(self, name: str, /) -> float: ...
     def __setitem__(self, name: str, value: float, /) -> None: ...
 
 
-Row = tuple[float, ...]
-MakeRow = Callable[[float], Row]
+SetpointRow = tuple[float, ...]
+RowFunction = Callable[[float], SetpointRow]
 
 
-class _Due(NamedTuple):
+class _PendingRow(NamedTuple):
     """Written row with its due time and its values."""
 
     row: int
     t: float
-    values: Row
+    values: SetpointRow
 
 
 class RowStreams:
     """Pair of streams that numbers the rows and recalls those that are not yet played."""
 
-    def __init__(self, streams: tuple[Stream, Stream], pins: Pins) -> None:
+    def __init__(self, streams: tuple[RowStream, RowStream], pins: HalPins) -> None:
         self._streams = streams
         self._pins = pins
         self._active = 0
         self._change: int | None = None  # Row at which the other stream takes over.
-        self.last = 0  # Number of the last written row.
-        self.last_t = 0.0  # Due time of the last written row in s.
-        self.played = 0  # Number of the row that is played now.
-        self.played_t = 0.0
-        self._due: deque[_Due] = deque()
-        self._past: deque[_Due] = deque(maxlen=_PAST)
-        self._old: dict[int, Row] = {}  # Rows of the playing stream, from the change on.
+        self.last_row_number = 0  # Number of the last written row.
+        self.last_row_due_s = 0.0  # Due time of the last written row in s.
+        self.played_row_number = 0  # Number of the row that is played now.
+        self.played_row_due_s = 0.0
+        self._due: deque[_PendingRow] = deque()
+        self._past: deque[_PendingRow] = deque(maxlen=_MAX_PLAYED_ROWS)
+        self._old: dict[int, SetpointRow] = {}  # Rows of the playing stream, from the change on.
         self._parts = 0  # First row from the change on that differs in the other stream.
         self._same_until = 0.0  # Seconds; until then both are the same path.
-        pins["switch-at"] = _NEVER
+        pins["switch-at"] = _NO_ROW
         pins["play-b"] = 0
 
     @property
-    def ahead(self) -> int:
+    def pending_row_count(self) -> int:
         """The number of rows that are written but not yet played."""
-        return self.last - self.played
+        return self.last_row_number - self.played_row_number
 
-    def write(self, t: float, values: tuple[float, ...]) -> bool:
+    def write_row(self, t: float, values: tuple[float, ...]) -> bool:
         """Write one row that is due at ``t``; return False if the stream is full."""
         stream = self._streams[self._active if self._change is None else 1 - self._active]
         if not stream.writable:
             return False
-        self.last += 1
-        self.last_t = t
-        stream.write((float(self.last), *values))
-        self._due.append(_Due(self.last, t, values))
+        self.last_row_number += 1
+        self.last_row_due_s = t
+        stream.write((float(self.last_row_number), *values))
+        self._due.append(_PendingRow(self.last_row_number, t, values))
         return True
 
-    def seen(self, row: int) -> float:
+    def record_played(self, row: int) -> float:
         """Record that the servo thread plays this row, and return its due time in seconds."""
         while self._due and self._due[0].row <= row:
             self._past.append(self._due.popleft())
-            self.played, self.played_t = self._past[-1].row, self._past[-1].t
-        return self.played_t
+            self.played_row_number, self.played_row_due_s = self._past[-1].row, self._past[-1].t
+        return self.played_row_due_s
 
-    def first_from(self, t: float) -> int | None:
+    def first_recallable_row(self, t: float) -> int | None:
         """Return the first row due at ``t`` or later that can be recalled, or None if it is too late."""
-        soonest = self.played + _MARGIN
+        soonest = self.played_row_number + _MARGIN
         for each in self._due:
             if each.t >= t - 1e-9:
                 return each.row if each.row >= soonest else None
-        return self.last + 1
+        return self.last_row_number + 1
 
-    def plays_anyway(self, t: float, make: MakeRow) -> bool:
+    def matches_locked_rows(self, t: float, make_row: RowFunction) -> bool:
         """Return whether the rows that can no longer be recalled equal those of ``make`` from ``t`` on."""
-        until = self.played + _MARGIN
+        until = self.played_row_number + _MARGIN
         rows = [each for each in (*self._past, *self._due) if each.row <= until]
         return (
-            bool(rows) and rows[0].t <= t and all(_same(e.values, make(e.t)) for e in rows if e.t >= t - 1e-9)
+            bool(rows)
+            and rows[0].t <= t
+            and all(_same(e.values, make_row(e.t)) for e in rows if e.t >= t - 1e-9)
         )
 
-    def soonest(self) -> float:
+    def earliest_recall_time(self) -> float:
         """Return the due time in seconds from which rows can be recalled."""
         for each in self._due:
-            if each.row >= self.played + _MARGIN + 1:
+            if each.row >= self.played_row_number + _MARGIN + 1:
                 return each.t
-        return self.last_t
+        return self.last_row_due_s
 
     @property
-    def busy(self) -> bool:
+    def is_changing(self) -> bool:
         """Whether a pending change is too close to be modified."""
-        return self._change is not None and self.played + _MARGIN >= self._change
+        return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
-    def recall(self, t: float, make: MakeRow, same_until: float = -math.inf) -> bool:
+    def recall_rows(self, t: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
         """Replace all rows from ``t`` on; return False without a change if it is too late.
 
         Until ``same_until`` seconds, the replacement is the same path.
         """
-        first = self.first_from(t)
-        if first is None or self.busy:
+        first = self.first_recallable_row(t)
+        if first is None or self.is_changing:
             return False
         if self._change is not None:  # The pending change is included in this one.
-            first, same_until = min(first, self._change), min(same_until, self._same_until)
-            self._pins["switch-at"] = _NEVER
+            first, unchanged_until = min(first, self._change), min(unchanged_until, self._same_until)
+            self._pins["switch-at"] = _NO_ROW
             self._drain(1 - self._active)
-        if first <= self.last:
-            self._begin(first, make, same_until)
+        if first <= self.last_row_number:
+            self._begin(first, make_row, unchanged_until)
         else:
             self._change = None
         return True
 
-    def _begin(self, first: int, make: MakeRow, same_until: float) -> None:
+    def _begin(self, first: int, make: RowFunction, same_until: float) -> None:
         kept = self._old if self._change is not None else {each.row: each.values for each in self._due}
         between = {each.row: each.values for each in self._due if first <= each.row < (self._change or first)}
         self._old = {row: values for row, values in {**kept, **between}.items() if row >= first}
@@ -153,11 +155,11 @@ class RowStreams:
                 or (each.t >= same_until and not _same(each.values, self._old[each.row]))
             )
         )
-        self._parts = next(others, self.last + 1)
+        self._parts = next(others, self.last_row_number + 1)
         self._same_until = same_until
-        self._ask(first)
+        self._request_change(first)
 
-    def _ask(self, first: int) -> None:
+    def _request_change(self, first: int) -> None:
         """Request that the other stream takes over at this row."""
         idle = self._streams[1 - self._active]
         for each in self._due:
@@ -167,20 +169,20 @@ class RowStreams:
         self._pins["play-b"] = 1 - self._active
         self._pins["switch-at"] = float(first - 1)
 
-    def settle(self, plays_b: bool) -> bool:
+    def finish_change(self, second_plays: bool) -> bool:
         """Complete a change by the stream that plays; return False if this is not the requested stream."""
-        plays = int(plays_b)
-        if self._change is None or self.played < self._change:
+        plays = int(second_plays)
+        if self._change is None or self.played_row_number < self._change:
             unasked = self._change is None and plays != self._active
             self._active = plays if unasked else self._active
             return not unasked
         changed = plays != self._active
-        if not changed and self.played + _MARGIN < self._parts:
-            self._pins["switch-at"] = _NEVER
+        if not changed and self.played_row_number + _MARGIN < self._parts:
+            self._pins["switch-at"] = _NO_ROW
             self._drain(1 - plays)
-            self._ask(self.played + _MARGIN + 1)
+            self._request_change(self.played_row_number + _MARGIN + 1)
             return True
-        self._pins["switch-at"] = _NEVER
+        self._pins["switch-at"] = _NO_ROW
         self._change = None
         self._drain(1 - plays)
         self._active = plays
@@ -192,11 +194,11 @@ class RowStreams:
             stream.read()
 
 
-def _same(one: Row, other: Row) -> bool:
-    return all(abs(a - b) <= _SAME for a, b in zip(one, other, strict=True))
+def _same(one: SetpointRow, other: SetpointRow) -> bool:
+    return all(abs(a - b) <= _SAME_TOLERANCE for a, b in zip(one, other, strict=True))
 
 
-class Sampler(Protocol):
+class SampleStream(Protocol):
     """Stream of samples from HAL, as ``hal.stream`` provides it."""
 
     @property

@@ -6,61 +6,63 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from drivers.setpoint_pieces import INF, Piece, PieceQueue
+from drivers.setpoint_pieces import INFINITY, MotionPiece, PieceQueue
 
-_WINDOW = 0.06  # Seconds of readings from which the speed is calculated.
-Row = tuple[float, ...]
-State = tuple[tuple[float, ...], tuple[float, ...]]
+_SPEED_WINDOW_S = 0.06  # Seconds of readings from which the speed is calculated.
+SetpointRow = tuple[float, ...]
+MotionState = tuple[tuple[float, ...], tuple[float, ...]]
 
 
-def rows_of(pieces: list[Piece]) -> Callable[[float], Row]:
+def make_row_function(pieces: list[MotionPiece]) -> Callable[[float], SetpointRow]:
     """Return a function that returns the row of setpoints at a time, without the spindle."""
-    queue = PieceQueue(pieces[0].p)
-    queue.replace(pieces[0].t, pieces)
-    return lambda t: _still_row(queue, t)
+    queue = PieceQueue(pieces[0].positions)
+    queue.replace_from(pieces[0].start_time_s, pieces)
+    return lambda t: _rest_row(queue, t)
 
 
-def _still_row(queue: PieceQueue, t: float) -> Row:
+def _rest_row(queue: PieceQueue, t: float) -> SetpointRow:
     """Return the row with the position of each axis and zero travel per revolution."""
-    return tuple([each for p in queue.demand_at(t)[0] for each in (p, 0.0)])
+    return tuple([each for p in queue.commanded_state_at(t)[0] for each in (p, 0.0)])
 
 
-class TurnsAhead:
+class SpindlePredictor:
     """Prediction of the spindle position from its recent readings."""
 
     def __init__(self) -> None:
         self._seen: deque[tuple[float, float]] = deque()
-        self.speed = 0.0  # turns/s
+        self.speed_rev_per_s = 0.0  # turns/s
 
-    def note(self, t: float, turns: float) -> None:
+    def add_reading(self, t: float, turns: float) -> None:
         """Add a reading."""
         seen = self._seen
         if seen and t <= seen[-1][0]:
             return
         seen.append((t, turns))
-        while len(seen) > 2 and seen[1][0] <= t - _WINDOW:
+        while len(seen) > 2 and seen[1][0] <= t - _SPEED_WINDOW_S:
             seen.popleft()
         since = t - seen[0][0]
-        self.speed = (turns - seen[0][1]) / since if since > 0.0 else 0.0
+        self.speed_rev_per_s = (turns - seen[0][1]) / since if since > 0.0 else 0.0
 
-    def at(self, t: float) -> float:
+    def predict(self, t: float) -> float:
         """Return the predicted revolutions at ``t``."""
         if not self._seen:
             return 0.0
         then, turns = self._seen[-1]
-        return turns + self.speed * (t - then)
+        return turns + self.speed_rev_per_s * (t - then)
 
 
-class Cam(NamedTuple):
-    """Motion over revolutions from ``zero`` on, as ``core.ports.Cam``; ``then`` continues by time."""
+class PlayerCam(NamedTuple):
+    """Motion over revolutions from ``start_revolutions`` on, as ``core.ports.PlayerCam``;
+    ``following_pieces`` continues by time.
+    """
 
-    zero: float
-    sign: float
-    way: PieceQueue
-    then: Sequence[Piece]
+    start_revolutions: float
+    direction_sign: float
+    path_queue: PieceQueue
+    following_pieces: Sequence[MotionPiece]
 
 
-class Player:
+class SetpointPlayer:
     """Player that returns a row of setpoints for any time.
 
     A row has the position without the spindle and the travel per revolution of each axis.
@@ -68,96 +70,107 @@ class Player:
 
     def __init__(self, axes: int) -> None:
         self.queue = PieceQueue((0.0,) * axes)
-        self.turns = TurnsAhead()
-        self.cam: Cam | None = None
-        self.left: float | None = None  # End time of the cam in s.
+        self.spindle_predictor = SpindlePredictor()
+        self.cam: PlayerCam | None = None
+        self.cam_end_time_s: float | None = None  # End time of the cam in s.
 
-    def rest_at(self, place: Sequence[float]) -> None:
+    def reset_to(self, position: Sequence[float]) -> None:
         """Discard all setpoints and rest at this position."""
-        self.cam = self.left = None
-        self.queue.rest_at(place)
+        self.cam = self.cam_end_time_s = None
+        self.queue.reset_to(position)
 
-    def splice(self, pieces: list[Piece]) -> None:
+    def splice(self, pieces: list[MotionPiece]) -> None:
         """Play these pieces by time from their start on, and end the cam."""
         if self.cam is not None:
-            self.queue.rest_at(pieces[0].p)
-        self.cam = self.left = None
-        self.queue.replace(pieces[0].t, pieces)
+            self.queue.reset_to(pieces[0].positions)
+        self.cam = self.cam_end_time_s = None
+        self.queue.replace_from(pieces[0].start_time_s, pieces)
 
-    def mesh(self, zero: float, sign: float, pieces: list[Piece], then: Sequence[Piece]) -> None:
+    def engage_cam(
+        self,
+        start_revolutions: float,
+        sign: float,
+        pieces: list[MotionPiece],
+        following_pieces: Sequence[MotionPiece],
+    ) -> None:
         """Follow the spindle with these pieces; earlier pieces of the same cam remain."""
-        way = PieceQueue(pieces[0].p)
-        if self.cam is not None and (self.cam.zero, self.cam.sign) == (zero, sign):
-            way = self.cam.way
-        way.replace(pieces[0].t, pieces)
-        self.cam, self.left = Cam(zero, sign, way, then), None
+        way = PieceQueue(pieces[0].positions)
+        if self.cam is not None and (self.cam.start_revolutions, self.cam.direction_sign) == (
+            start_revolutions,
+            sign,
+        ):
+            way = self.cam.path_queue
+        way.replace_from(pieces[0].start_time_s, pieces)
+        self.cam, self.cam_end_time_s = PlayerCam(start_revolutions, sign, way, following_pieces), None
 
-    def brake(self, t: float, decel: Sequence[float]) -> list[Piece]:
+    def brake_to_rest(self, t: float, deceleration: Sequence[float]) -> list[MotionPiece]:
         """Brake straight to rest from ``t`` on and return the pieces, which are empty at rest."""
-        state = self.state(t)
+        state = self.get_motion_at(t)
         if self.cam is not None:
-            self.rest_at(state[0])
-        took = max((abs(v) / a for v, a in zip(state[1], decel, strict=True)), default=0.0)
+            self.reset_to(state[0])
+        took = max((abs(v) / a for v, a in zip(state[1], deceleration, strict=True)), default=0.0)
         if took <= 0.0:
-            self.queue.rest_at(state[0])
+            self.queue.reset_to(state[0])
             return []
-        piece = Piece(t, took, *state, tuple(-v / took for v in state[1]))
-        self.queue.replace(t, [piece])
+        piece = MotionPiece(t, took, *state, tuple(-v / took for v in state[1]))
+        self.queue.replace_from(t, [piece])
         return [piece]
 
     @property
-    def rests(self) -> bool:
+    def is_cam_inactive(self) -> bool:
         """Whether no axis follows the spindle."""
-        return self.cam is None or self.left is not None
+        return self.cam is None or self.cam_end_time_s is not None
 
-    def horizon(self, t: float) -> float:
+    def get_end_time(self, t: float) -> float:
         """Return the end time of the motion, or inf while an axis follows the spindle."""
-        return self.queue.horizon(t) if self.rests else INF
+        return self.queue.queue_end(t) if self.is_cam_inactive else INFINITY
 
-    def state(self, t: float) -> State:
+    def get_motion_at(self, t: float) -> MotionState:
         """Return position and velocity at ``t``, predicted for a cam."""
-        if self.cam is None or (self.left is not None and t >= self.left):
-            return self.queue.demand_at(t)
-        p, per_turn = self.cam.way.demand_at(self._cam_turns(self.cam, t))
-        speed = max(self.cam.sign * self.turns.speed, 0.0)
+        if self.cam is None or (self.cam_end_time_s is not None and t >= self.cam_end_time_s):
+            return self.queue.commanded_state_at(t)
+        p, per_turn = self.cam.path_queue.commanded_state_at(self._cam_turns(self.cam, t))
+        speed = max(self.cam.direction_sign * self.spindle_predictor.speed_rev_per_s, 0.0)
         return p, tuple([v * speed for v in per_turn])
 
-    def row(self, t: float) -> Row:
+    def get_row_at(self, t: float) -> SetpointRow:
         """Return the row for HAL at ``t``: position and travel per revolution of each axis in sequence."""
         cam = self.cam
-        if cam is not None and (self.left is None or t < self.left):
+        if cam is not None and (self.cam_end_time_s is None or t < self.cam_end_time_s):
             u = self._cam_turns(cam, t)
-            if u < cam.way.horizon(-INF):
-                return self._geared(cam, u)
-            if self.left is None:
-                self._leave(cam, t)
-        return _still_row(self.queue, t)
+            if u < cam.path_queue.queue_end(-INFINITY):
+                return self._geared_row(cam, u)
+            if self.cam_end_time_s is None:
+                self._leave_cam(cam, t)
+        return _rest_row(self.queue, t)
 
-    def geared(self) -> tuple[float, float] | None:
+    def read_gear_state(self) -> tuple[float, float] | None:
         """Return the direction and speed of the spindle on the cam, or None without an active cam."""
-        if self.cam is None or self.left is not None:
+        if self.cam is None or self.cam_end_time_s is not None:
             return None
-        return self.cam.sign, self.cam.sign * self.turns.speed
+        return self.cam.direction_sign, self.cam.direction_sign * self.spindle_predictor.speed_rev_per_s
 
-    def _cam_turns(self, cam: Cam, t: float) -> float:
-        return cam.sign * (self.turns.at(t) - cam.zero)
+    def _cam_turns(self, cam: PlayerCam, t: float) -> float:
+        return cam.direction_sign * (self.spindle_predictor.predict(t) - cam.start_revolutions)
 
-    def _geared(self, cam: Cam, u: float) -> Row:
+    def _geared_row(self, cam: PlayerCam, u: float) -> SetpointRow:
         """Return the tangent of the cam at the predicted revolutions, as HAL needs it for the position."""
-        place, per_turn = cam.way.demand_at(u)
-        start = cam.zero + cam.sign * u
+        place, per_turn = cam.path_queue.commanded_state_at(u)
+        start = cam.start_revolutions + cam.direction_sign * u
         return tuple(
             [
                 x
                 for p, v in zip(place, per_turn, strict=True)
-                for x in (p - cam.sign * v * start, cam.sign * v)
+                for x in (p - cam.direction_sign * v * start, cam.direction_sign * v)
             ]
         )
 
-    def _leave(self, cam: Cam, t: float) -> None:
+    def _leave_cam(self, cam: PlayerCam, t: float) -> None:
         """End the cam: rest, or continue by time if the cam has a tail."""
-        rest, _ = cam.way.demand_at(INF)
-        self.left = t
-        self.queue.rest_at(rest)
-        if cam.then:
-            self.queue.replace(t, [piece._replace(t=piece.t + t) for piece in cam.then])
+        rest, _ = cam.path_queue.commanded_state_at(INFINITY)
+        self.cam_end_time_s = t
+        self.queue.reset_to(rest)
+        if cam.following_pieces:
+            self.queue.replace_from(
+                t, [piece._replace(start_time_s=piece.start_time_s + t) for piece in cam.following_pieces]
+            )

@@ -12,13 +12,13 @@ import can.interfaces.virtual
 from can.interfaces.virtual import VirtualBus
 
 import resources
-from app.compose.backends.canopen_backend import canopen_machine, canopen_peers
+from app.compose.backends.canopen_backend import connect_canopen_machine, create_canopen_peers
 from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.simulators.canopen_devices import CanopenDevices
-from drivers.simulators.canopen_node import Device
-from drivers.waiting import StepClock
+from drivers.simulators.canopen_node import NodeDevice
+from drivers.wakeups import ManualClock
 
 TICK = 0.005
 _channels = itertools.count()
@@ -72,21 +72,21 @@ def cyclic(mode: str = "csp", *changes: tuple[str, str], drive: str = "cia402", 
 class SaysOtherwise:
     """A device some of whose objects, by index and sub-index, have other values than its own."""
 
-    def __init__(self, device: Device, values: Mapping[tuple[int, int], int]) -> None:
+    def __init__(self, device: NodeDevice, values: Mapping[tuple[int, int], int]) -> None:
         self._device, self._values = device, values
 
-    def read(self, index: int, sub: int) -> int | None:
+    def read(self, index: int, subindex: int) -> int | None:
         """What is said instead, or its own."""
-        own = self._device.read(index, sub)
-        return self._values.get((index, sub), own)
+        own = self._device.read(index, subindex)
+        return self._values.get((index, subindex), own)
 
-    def write(self, index: int, sub: int, value: int) -> None:
+    def write(self, index: int, subindex: int, value: int) -> None:
         """As its own."""
-        self._device.write(index, sub, value)
+        self._device.write(index, subindex, value)
 
-    def host_lost(self) -> None:
+    def handle_host_loss(self) -> None:
         """As its own."""
-        self._device.host_lost()
+        self._device.handle_host_loss()
 
     def reset(self) -> None:
         """As its own."""
@@ -104,18 +104,20 @@ class CanBench:
 
     def __init__(self, machine: Machine | None = None) -> None:
         self.model = machine or can_machine()
-        self.clock = StepClock()
-        self.peers: CanopenDevices = canopen_peers(self.model, self.clock)
+        self.clock = ManualClock()
+        self.peers: CanopenDevices = create_canopen_peers(self.model, self.clock)
         try:
-            self.machine: CanopenMachine = canopen_machine(self.model, self.clock, self.peers.pump)
+            self.machine: CanopenMachine = connect_canopen_machine(
+                self.model, self.clock, self.peers.process_frames
+            )
         except Exception:
             self.peers.close()
             raise
 
     def tick(self, dt: float = TICK) -> None:
         self.clock.advance(dt)
-        self.machine.tick()
-        self.peers.pump()
+        self.machine.run_cycle()
+        self.peers.process_frames()
 
     def run(self, seconds: float) -> None:
         end = self.clock.now() + seconds

@@ -23,11 +23,11 @@ def test_the_drives_are_never_asked_for_more_than_the_slides_can(
     step = AxisDrive.step
 
     def watched(drive: AxisDrive, dt: float) -> None:
-        before, playing = drive.v, drive.playing
+        before, playing = drive.setpoint_velocity, drive.is_playing
         step(drive, dt)
-        if playing and drive.playing:
-            seen[0] = max(seen[0], abs(drive.v))
-            seen[1] = max(seen[1], abs(drive.v - before))
+        if playing and drive.is_playing:
+            seen[0] = max(seen[0], abs(drive.setpoint_velocity))
+            seen[1] = max(seen[1], abs(drive.setpoint_velocity - before))
 
     monkeypatch.setattr(AxisDrive, "step", watched)
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false")))

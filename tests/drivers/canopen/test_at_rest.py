@@ -19,25 +19,25 @@ class Sleeping:
         self.bench = bench
         self.syncs: list[float] = []
         bus = bench.machine.bus
-        sent = bus.synchronise
+        sent = bus.send_sync
 
         def noted() -> None:
             self.syncs.append(bench.clock.now())
             sent()
 
-        monkeypatch.setattr(bus, "synchronise", noted)
+        monkeypatch.setattr(bus, "send_sync", noted)
 
     def go_on(self, seconds: float, *, asleep: bool = True) -> None:
         machine, clock = self.bench.machine, self.bench.clock
         end = clock.now() + seconds
         while clock.now() < end:
-            pause = machine.idle(asleep)
+            pause = machine.get_idle_time(asleep)
             due = clock.now() + (pause or STEP)
             while clock.now() < due - 1e-9:
                 clock.advance(min(STEP, due - clock.now()))
-                self.bench.peers.pump()
-            machine.tick()
-            self.bench.peers.pump()
+                self.bench.peers.process_frames()
+            machine.run_cycle()
+            self.bench.peers.process_frames()
 
 
 @pytest.fixture
@@ -55,8 +55,8 @@ def test_a_bus_at_rest_has_ten_syncs_a_second_and_nobody_misses_anything(sleepin
     machine = sleeping.bench.machine
     assert machine.axes.sample().fault == ""
     assert machine.axes.sample().enabled
-    assert machine.unknown() == frozenset()
-    assert machine.io.snapshot().age < 0.2  # a station that is silent for longer would hold
+    assert machine.find_unknown_items() == frozenset()
+    assert machine.io.read_state().age < 0.2  # a station that is silent for longer would hold
 
 
 def test_a_sync_may_go_out_early_with_something_else(sleeping: Sleeping) -> None:
@@ -65,9 +65,9 @@ def test_a_sync_may_go_out_early_with_something_else(sleeping: Sleeping) -> None
     before = len(sleeping.syncs)
     for _ in range(40):  # a round each 5 ms, as if something else were to do in each
         clock.advance(STEP)
-        sleeping.bench.peers.pump()
-        machine.tick()
-        machine.idle(True)
+        sleeping.bench.peers.process_frames()
+        machine.run_cycle()
+        machine.get_idle_time(True)
     gaps = [b - a for a, b in itertools.pairwise(sleeping.syncs[before:])]
     assert gaps == pytest.approx([0.07] * len(gaps), abs=0.006)
     assert gaps
@@ -94,13 +94,13 @@ def test_an_input_is_seen_with_the_next_sync_at_the_latest(sleeping: Sleeping) -
     sleeping.go_on(1.0)
     sleeping.bench.peers.machine.press_estop()
     sleeping.go_on(0.12)
-    assert sleeping.bench.machine.io.snapshot().estop
+    assert sleeping.bench.machine.io.read_state().estop
 
 
 def test_who_answers_every_second_sync_is_seen_as_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     made = CanBench(can_machine(("sync_ms = 10 ", "sync_ms = 5 ")))
     try:
-        assert made.machine.config.bus.seldom == 2
+        assert made.machine.config.bus.slow_reply_divisor == 2
         made.run(0.5)
         sleeping = Sleeping(made, monkeypatch)
         for pressed in (True, False) * 4:  # at any time between two SYNCs
@@ -129,19 +129,19 @@ def test_a_bus_that_moves_or_that_is_not_heard_needs_every_round(sleeping: Sleep
     axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))
     sleeping.bench.run(0.4)
     assert axes.sample().moving
-    assert machine.idle(True) == 0.0
+    assert machine.get_idle_time(True) == 0.0
     sleeping.bench.run(2.0)
-    assert machine.idle(True) > 0.0
-    machine.bus.lost("the interface has failed")
-    assert machine.idle(True) == 0.0
+    assert machine.get_idle_time(True) > 0.0
+    machine.bus.mark_failed("the interface has failed")
+    assert machine.get_idle_time(True) == 0.0
 
 
 def test_a_slide_without_power_rolls_out_and_rests_where_it_is_pushed_to(bench: CanBench) -> None:
     plant = bench.peers.plant
     bench.run(0.1)
-    assert plant.drives["X"].rests
-    plant.drives["X"].servo.v = 20.0  # it rolls
-    assert not plant.drives["X"].rests
+    assert plant.axis_drives["X"].is_idle
+    plant.axis_drives["X"].servo_axis.v = 20.0  # it rolls
+    assert not plant.axis_drives["X"].is_idle
     bench.run(0.1)
     at = bench.machine.axes.sample().actual[0]
     assert at > 0.0
@@ -152,7 +152,7 @@ def test_a_slide_without_power_rolls_out_and_rests_where_it_is_pushed_to(bench: 
 
 @pytest.mark.parametrize("act", ["moves", "jammed", "pushed"])
 def test_a_drive_that_something_acts_on_does_not_rest(bench: CanBench, act: str) -> None:
-    drive = bench.peers.plant.drives["X"]
+    drive = bench.peers.plant.axis_drives["X"]
     bench.machine.axes.enable(True)
     bench.run(0.3)
     if act == "moves":
@@ -162,4 +162,4 @@ def test_a_drive_that_something_acts_on_does_not_rest(bench: CanBench, act: str)
         bench.peers.machine.jam("X")
     else:
         bench.peers.machine.push("X", 0.5)
-    assert not drive.rests
+    assert not drive.is_idle

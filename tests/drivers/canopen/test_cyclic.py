@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from core.faults import code_of
-from core.ports import Segments, Stop
+from core.faults import get_fault_code
+from core.ports import Segments, StopMode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.position_modes import SyncSchedule
 from tests.drivers.canopen.bench import CanBench, cyclic
@@ -34,7 +34,7 @@ def run(bench: CanBench, seconds: float) -> None:
 
 def test_a_path_is_followed_to_a_count_and_arrives(bench: CanBench) -> None:
     """The drive's own demand against the path, one SYNC of 4 ms and one of the wire behind."""
-    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
     start = bench.clock.now() + 0.05
     axes.splice(ramp(start, ZERO, 60.0, 0.3))  # up in .02 s at 3000 mm/s²
@@ -43,7 +43,7 @@ def test_a_path_is_followed_to_a_count_and_arrives(bench: CanBench) -> None:
         bench.tick(TICK)
         t = bench.clock.now() - start
         if 0.05 < t < 0.25:
-            worst = max(worst, abs(drive.p - (0.6 + 60.0 * (t - 0.02))))
+            worst = max(worst, abs(drive.setpoint_position - (0.6 + 60.0 * (t - 0.02))))
     assert worst < 60.0 * TICK + 0.00127
     run(bench, 0.3)
     sample = axes.sample()
@@ -59,7 +59,7 @@ def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch
     axes.enable(True)
     run(bench, 0.2)
     syncs: list[float] = []
-    sent, go_on = bus.synchronise, axes.queue.give_way
+    sent, go_on = bus.send_sync, axes.queue.yield_cpu
 
     def noted() -> None:
         syncs.append(bench.clock.now())
@@ -68,11 +68,11 @@ def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch
     def slowly() -> None:
         for _ in range(5):
             bench.clock.advance(0.001)
-            bench.peers.pump()
+            bench.peers.process_frames()
             go_on()
 
-    monkeypatch.setattr(bus, "synchronise", noted)
-    axes.queue.give_way = slowly
+    monkeypatch.setattr(bus, "send_sync", noted)
+    axes.queue.yield_cpu = slowly
     count, rest = 2000, np.array([axes.demand_at(axes.horizon())[0]])
     zero = np.zeros((count, rest.shape[1]))
     start = bench.clock.now() + 0.2
@@ -100,7 +100,7 @@ def test_hold_brakes_on_the_path(bench: CanBench) -> None:
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 120.0, 0.5))
     run(bench, 0.3)
     asked = bench.clock.now()
-    axes.stop(Stop.RAMP_HOLD)
+    axes.stop(StopMode.RAMP_HOLD)
     while axes.sample().moving:
         bench.tick(TICK)
     # 30 ms of commit, 120/3048 s of braking, two SYNCs, the slide's own lag, 10 ms to see that it stands
@@ -110,19 +110,19 @@ def test_hold_brakes_on_the_path(bench: CanBench) -> None:
 
 
 def test_a_late_sync_is_made_good_without_a_leap(bench: CanBench) -> None:
-    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
     run(bench, 0.3)
     for _ in range(4):  # nobody feeds for 8 ms, two SYNCs
         bench.clock.advance(TICK)
-        bench.peers.pump()
+        bench.peers.process_frames()
     fastest = 0.0
     for _ in range(200):
         bench.tick(TICK)
-        fastest = max(fastest, abs(drive.v))
+        fastest = max(fastest, abs(drive.setpoint_velocity))
     assert fastest < 60.0 * 1.03  # a leap over what was missed would be 180
-    assert bench.machine.notes() or bench.machine.axes.follower.lag == 0.0  # type: ignore[attr-defined]
+    assert bench.machine.collect_warnings() or bench.machine.axes.follower.lag == 0.0  # type: ignore[attr-defined]
     run(bench, 0.5)
     sample = axes.sample()
     assert sample.fault == ""
@@ -136,10 +136,10 @@ def test_setpoints_away_for_longer_are_a_fault_that_stops_all(bench: CanBench) -
     run(bench, 0.3)
     for _ in range(8):  # 16 ms; the drives themselves would wait for 20
         bench.clock.advance(TICK)
-        bench.peers.pump()
+        bench.peers.process_frames()
     run(bench, 0.3)
-    assert code_of(axes.sample().fault, "driver") == "queue-dry"
-    assert not any(drive.power.powered for drive in plant.drives.values())
+    assert get_fault_code(axes.sample().fault, "driver") == "queue-dry"
+    assert not any(drive.power_states.is_powered for drive in plant.axis_drives.values())
     assert plant.servos[0].v == 0.0
 
 
@@ -149,7 +149,7 @@ def test_away_at_rest_is_nothing(bench: CanBench) -> None:
     run(bench, 0.2)
     for _ in range(8):
         bench.clock.advance(TICK)
-        bench.peers.pump()
+        bench.peers.process_frames()
     run(bench, 0.3)
     assert axes.sample().fault == ""
     assert axes.sample().enabled
@@ -162,9 +162,9 @@ def test_a_silent_computer_stops_the_drives_by_their_own_time_out() -> None:
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
     run(bench, 0.3)
     silent = bench.clock.now()
-    while any(drive.power.powered for drive in plant.drives.values()):
+    while any(drive.power_states.is_powered for drive in plant.axis_drives.values()):
         bench.clock.advance(TICK)
-        bench.peers.pump()
+        bench.peers.process_frames()
     assert bench.clock.now() - silent < 0.2  # 20 ms of time-out and the ramp: our third heartbeat is at 300
     bench.close()
 
@@ -175,26 +175,26 @@ def test_without_a_time_out_they_stay_at_the_last_setpoint_until_the_heartbeat_i
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
     run(bench, 0.3)
-    before = bench.peers.machine.true_position()[0]
+    before = bench.peers.machine.get_true_position()[0]
     for _ in range(300):
         bench.clock.advance(TICK)
-        bench.peers.pump()
-    assert bench.peers.machine.true_position()[0] - before < 60.0 * 0.02  # two setpoints and the braking
-    assert not any(drive.power.powered for drive in plant.drives.values())
+        bench.peers.process_frames()
+    assert bench.peers.machine.get_true_position()[0] - before < 60.0 * 0.02  # two setpoints and the braking
+    assert not any(drive.power_states.is_powered for drive in plant.axis_drives.values())
     bench.close()
 
 
 def test_homing_leaves_no_old_target_behind() -> None:
     """Its count leaps at home; a setpoint of before would send it back over the whole way."""
     bench = CanBench(cyclic("csp", drive="epos4", absolute=False))
-    axes, drive = bench.machine.axes, bench.peers.plant.drives["Z"]
+    axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["Z"]
     axes.enable(True)
     run(bench, 0.1)
     axes.home("Z")
     fastest, fault = 0.0, ""
     for _ in range(20000):
         bench.tick(TICK)
-        fastest = max(fastest, abs(drive.v))
+        fastest = max(fastest, abs(drive.setpoint_velocity))
         fault = axes.sample().fault
         if axes.sample().homed[1] or fault:
             break
@@ -216,18 +216,18 @@ def test_a_slide_that_was_moved_without_power_stays_where_it_is(bench: CanBench)
     run(bench, 0.1)
     axes.enable(True)
     run(bench, 0.2)
-    assert bench.peers.machine.true_position()[0] == pytest.approx(3.0, abs=0.002)
+    assert bench.peers.machine.get_true_position()[0] == pytest.approx(3.0, abs=0.002)
     assert axes.sample().fault == ""
 
 
 def test_a_drive_that_does_not_interpolate_is_told() -> None:
     bench = CanBench(cyclic("ip"))
-    drive = bench.peers.plant.drives["X"]
-    drive._cyclic = lambda: False  # type: ignore[method-assign]
+    drive = bench.peers.plant.axis_drives["X"]
+    drive._is_cyclic = lambda: False  # type: ignore[method-assign]
     bench.machine.axes.enable(True)
     run(bench, 0.5)
     fault = bench.machine.axes.sample().fault
-    assert code_of(fault, "driver") == "queue-dry"
+    assert get_fault_code(fault, "driver") == "queue-dry"
     assert fault.startswith("X: ")
     bench.close()
 
@@ -258,22 +258,22 @@ def test_a_setpoint_goes_out_before_its_sync_and_none_twice(bench: CanBench) -> 
 
 def test_the_beat_is_kept_whatever_came_late() -> None:
     schedule = SyncSchedule(0.002, 10.0)
-    assert schedule.sent(10.0) == 0.0
-    assert schedule.sent(10.0024) == 0.0  # a fifth of a period late
-    assert schedule.due == pytest.approx(10.004)
-    assert schedule.sent(10.0101) == pytest.approx(0.0057)
-    assert schedule.due == pytest.approx(10.012)
-    assert schedule.worst == pytest.approx(0.0061)
-    assert schedule.sent(10.0121) == 0.0  # as late as the last: an interval of a period
+    assert schedule.record_sync(10.0) == 0.0
+    assert schedule.record_sync(10.0024) == 0.0  # a fifth of a period late
+    assert schedule.due_time_s == pytest.approx(10.004)
+    assert schedule.record_sync(10.0101) == pytest.approx(0.0057)
+    assert schedule.due_time_s == pytest.approx(10.012)
+    assert schedule.max_delay_s == pytest.approx(0.0061)
+    assert schedule.record_sync(10.0121) == 0.0  # as late as the last: an interval of a period
 
 
 def test_a_beat_that_is_always_late_by_the_same_keeps_nobody_waiting() -> None:
     schedule = SyncSchedule(0.002, 0.0)
-    assert schedule.sent(0.001) == pytest.approx(0.001)
-    assert all(schedule.sent(0.001 + 0.002 * n) == pytest.approx(0.0, abs=1e-12) for n in range(1, 50))
+    assert schedule.record_sync(0.001) == pytest.approx(0.001)
+    assert all(schedule.record_sync(0.001 + 0.002 * n) == pytest.approx(0.0, abs=1e-12) for n in range(1, 50))
 
 
 def test_drive_time_outs_are_written_where_they_are() -> None:
     bench = CanBench(cyclic())
-    assert bench.peers.plant.drives["Z"].values[od.SYNC_PERIOD, 0] == 4000
+    assert bench.peers.plant.axis_drives["Z"].values[od.SYNC_PERIOD, 0] == 4000
     bench.close()

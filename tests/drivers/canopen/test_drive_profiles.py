@@ -7,12 +7,12 @@ import pytest
 import resources
 from app.compose.machine.machine_files import parse_machine
 from core.ports import Segments
-from core.table_schema import Finding, MachineFileError
+from core.table_schema import FileFinding, MachineFileError
 from drivers.canopen.canopen_config import AxisConfig
-from drivers.canopen.canopen_objects import drive_objects
-from drivers.canopen.canopen_rules import cyclic_load, frame_bits
-from drivers.canopen.drive_profiles import CIA402, PROFILES, profile_of
-from drivers.canopen.driven_axes import segment, unpacked_segment
+from drivers.canopen.canopen_objects import build_drive_dictionary
+from drivers.canopen.canopen_rules import calculate_cyclic_load, get_max_frame_bits
+from drivers.canopen.drive_profiles import CIA402_PROFILE, PROFILES, find_profile
+from drivers.canopen.drive_set import pack_copley_segment, unpack_copley_segment
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.machines import ramp
 
@@ -29,7 +29,7 @@ from tests.drivers.machines import ramp
     ],
 )
 def test_family_by_name_or_by_eds(name: str, vendor: int | None, product: str | None, family: str) -> None:
-    assert profile_of(name, vendor, product).name == family
+    assert find_profile(name, vendor, product).name == family
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,7 @@ def test_family_by_name_or_by_eds(name: str, vendor: int | None, product: str | 
     ],
 )
 def test_what_a_family_has(family: str, has: set[int], has_not: set[int]) -> None:
-    objects = drive_objects(PROFILES[family])
+    objects = build_drive_dictionary(PROFILES[family])
     assert has <= set(objects)
     assert not has_not & set(objects)
 
@@ -64,14 +64,14 @@ def test_speeds_go_out_in_the_drives_units() -> None:
 
 
 def test_a_segment_of_copley_by_its_bytes() -> None:
-    data = segment(11, 20, -1234.5, -5)
+    data = pack_copley_segment(11, 20, -1234.5, -5)
     # count 11 goes round at 8; 20 ms; -5 and -12345 tenths in 24 bits, low byte first
     assert data == bytes([3, 20, 0xFB, 0xFF, 0xFF, 0xC7, 0xCF, 0xFF])
-    assert unpacked_segment(data) == (3, 20, -1234.5, -5)
+    assert unpack_copley_segment(data) == (3, 20, -1234.5, -5)
     with pytest.raises(ValueError, match="8388608"):
-        segment(0, 20, 0.0, 2**23)
+        pack_copley_segment(0, 20, 0.0, 2**23)
     with pytest.raises(ValueError, match="838861"):
-        segment(0, 20, 838_861.0, 0)
+        pack_copley_segment(0, 20, 838_861.0, 0)
 
 
 def test_copleys_queue_goes_the_same_path() -> None:
@@ -94,24 +94,24 @@ def test_copleys_queue_goes_the_same_path() -> None:
 
 def test_load_of_the_bus_by_hand() -> None:
     # 47 + 8n + floor((34 + 8n - 1)/4): 55, 125 and 135 bits
-    assert [frame_bits(n) for n in (0, 7, 8)] == [55, 125, 135]
-    load = cyclic_load(2, 2, 1_000_000, 0.001, 10)
-    assert load.each == 55 + 2 * 250
-    assert load.seldom == (2 * 135 + 4 * 135) / 10
-    assert load.share == pytest.approx(0.636)
-    assert load.fits
-    assert not cyclic_load(3, 0, 1_000_000, 0.001, 10).fits  # 80 % and the seldom ones
-    assert cyclic_load(3, 0, 1_000_000, 0.002, 5).fits
+    assert [get_max_frame_bits(n) for n in (0, 7, 8)] == [55, 125, 135]
+    load = calculate_cyclic_load(2, 2, 1_000_000, 0.001, 10)
+    assert load.bits_per_sync == 55 + 2 * 250
+    assert load.slow_bits_per_sync == (2 * 135 + 4 * 135) / 10
+    assert load.used_fraction == pytest.approx(0.636)
+    assert load.has_reserve
+    assert not calculate_cyclic_load(3, 0, 1_000_000, 0.001, 10).has_reserve  # 80 % and the seldom ones
+    assert calculate_cyclic_load(3, 0, 1_000_000, 0.002, 5).has_reserve
 
 
-def refused(*changes: tuple[str, str]) -> Finding:
+def refused(*changes: tuple[str, str]) -> FileFinding:
     text = resources.machine_file("gt75-canopen.toml")
     for old, new in (('mode = "pvt"', 'mode = "csp"'), ('drive = "epos2"', 'drive = "epos4"'), *changes):
         assert old in text
         text = text.replace(old, new)
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "m.toml")
-    (finding,) = caught.value.errors
+    (finding,) = caught.value.findings
     return finding
 
 
@@ -141,6 +141,6 @@ def test_a_family_is_that_of_the_node_before_that_of_all() -> None:
     )
     drives = bench.machine.axes.drives.axes
     assert [axis.drive.profile.name for axis in drives] == ["cia402", "epos4"]
-    assert bench.peers.plant.drives["Z"].values[0x60A9, 0] == 0x00B44700
-    assert CIA402.units == ()
+    assert bench.peers.plant.axis_drives["Z"].values[0x60A9, 0] == 0x00B44700
+    assert CIA402_PROFILE.unit_objects == ()
     bench.close()

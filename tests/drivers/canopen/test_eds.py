@@ -8,10 +8,10 @@ from pathlib import Path
 import canopen
 import pytest
 
-from app.compose.backends.canopen_backend import canopen_config
+from app.compose.backends.canopen_backend import create_canopen_config
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.canopen_objects import drive_objects
+from drivers.canopen.canopen_objects import build_drive_dictionary
 from drivers.canopen.drive_profiles import PROFILES
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
@@ -24,8 +24,8 @@ def beside(folder: Path) -> Machine:
 
 
 def test_an_eds_lies_beside_the_machine_file(tmp_path: Path) -> None:
-    canopen.export_od(drive_objects(PROFILES["epos2"]), str(tmp_path / "x.eds"), "eds")
-    node = canopen_config(beside(tmp_path)).axes[0].node
+    canopen.export_od(build_drive_dictionary(PROFILES["epos2"]), str(tmp_path / "x.eds"), "eds")
+    node = create_canopen_config(beside(tmp_path)).axes[0].node
     assert node is not None
     assert node.eds == str(tmp_path / "x.eds")
     bench = CanBench(beside(tmp_path))

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.backends.canopen_backend import canopen_config, canopen_peers
-from core.faults import code_of
+from app.compose.backends.canopen_backend import create_canopen_config, create_canopen_peers
+from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_encoder import CanEncoder
-from drivers.canopen.canopen_survey import survey
-from drivers.waiting import StepClock
+from drivers.canopen.canopen_survey import identify_nodes
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 
@@ -43,11 +43,11 @@ class EncoderBench(CanBench):
         return self.machine.encoder
 
     def turn(self, rpm: float) -> None:
-        self.peers.plant.spindle.order(self.clock.now(), rpm)
+        self.peers.plant.spindle.command_speed(self.clock.now(), rpm)
 
     @property
     def turns(self) -> float:
-        return self.peers.plant.spindle.turns
+        return self.peers.plant.spindle.revolutions
 
 
 @pytest.fixture(params=["own node", "at a drive"])
@@ -73,11 +73,11 @@ def test_speed_and_angle_are_those_of_the_spindle(stand: EncoderBench, rpm: floa
     stand.run(3.0)
     spindle = stand.machine.ports.spindle
     assert spindle.speed() == pytest.approx(rpm, abs=2.0)
-    read = spindle.angle()
+    read = spindle.read_angle()
     assert read is not None
     t, turns = read
     assert turns == pytest.approx(stand.turns - rpm / 60.0 * (stand.clock.now() - t), abs=0.01)
-    assert spindle.fault() == ""
+    assert spindle.read_fault() == ""
 
 
 def test_a_spindle_that_stands_has_no_speed(stand: EncoderBench) -> None:
@@ -85,7 +85,7 @@ def test_a_spindle_that_stands_has_no_speed(stand: EncoderBench) -> None:
     stand.run(1.0)
     stand.turn(0.0)
     stand.run(1.0)
-    assert stand.encoder.speed() == 0.0
+    assert stand.encoder.measured_rpm() == 0.0
 
 
 def test_it_counts_on_when_its_range_is_over() -> None:
@@ -93,21 +93,21 @@ def test_it_counts_on_when_its_range_is_over() -> None:
     assert stand.peers.encoder is not None
     stand.peers.encoder.turns = 16
     stand.encoder.connect()
-    stand.encoder.operational()
+    stand.encoder.start_node()
     stand.turn(3000.0)
     stand.run(4.0)
-    read = stand.encoder.angle()
+    read = stand.encoder.read_angle()
     assert read is not None
     assert read[1] == pytest.approx(stand.turns, abs=0.8)
     assert stand.turns > 100.0
-    assert stand.encoder.fault() == ""
+    assert stand.encoder.read_fault() == ""
     stand.close()
 
 
 def test_it_turns_nothing(own: EncoderBench) -> None:
-    own.machine.ports.spindle.run(0.0)
+    own.machine.ports.spindle.run_at(0.0)
     with raises_code(DriverError, "spindle-off") as told:
-        own.machine.ports.spindle.run(100.0)
+        own.machine.ports.spindle.run_at(100.0)
     assert told.value.reason == "no-drive"
 
 
@@ -150,33 +150,33 @@ def test_a_node_that_is_no_encoder_is_refused() -> None:
 
 def test_silence_is_told_of_and_moves_no_axis(own: EncoderBench) -> None:
     own.machine.axes.enable(True)
-    own.peers.nodes["turns"].silent = True
+    own.peers.nodes["turns"].is_silent = True
     own.run(0.5)
-    fault = own.machine.ports.spindle.fault()
-    assert code_of(fault, "driver") == "spindle-encoder"
+    fault = own.machine.ports.spindle.read_fault()
+    assert get_fault_code(fault, "driver") == "spindle-encoder"
     assert "turns: " in fault
     assert "SYNC" in fault
     assert own.machine.axes.sample().fault == ""
-    own.peers.nodes["turns"].silent = False
+    own.peers.nodes["turns"].is_silent = False
     own.run(0.2)
-    assert own.machine.ports.spindle.fault() != ""  # only a reset clears it
+    assert own.machine.ports.spindle.read_fault() != ""  # only a reset clears it
     own.machine.axes.clear_fault()
     own.run(0.3)
-    assert own.machine.ports.spindle.fault() == ""
+    assert own.machine.ports.spindle.read_fault() == ""
 
 
 def test_a_restart_is_told_of(own: EncoderBench) -> None:
     own.run(0.1)
-    own.peers.nodes["turns"].boot()
+    own.peers.nodes["turns"].boot_up()
     own.run(0.05)
-    fault = own.machine.ports.spindle.fault()
-    assert code_of(fault, "driver") == "spindle-encoder"
+    fault = own.machine.ports.spindle.read_fault()
+    assert get_fault_code(fault, "driver") == "spindle-encoder"
     assert "turns: " in fault
     assert "SYNC" not in fault
     own.machine.axes.clear_fault()
     own.turn(600.0)
     own.run(1.5)
-    assert own.encoder.speed() == pytest.approx(600.0, abs=2.0)
+    assert own.encoder.measured_rpm() == pytest.approx(600.0, abs=2.0)
 
 
 def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
@@ -184,21 +184,23 @@ def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
     own.run(0.1)
     own.peers.encoder.stuck = 40960
     own.run(0.05)
-    fault = own.machine.ports.spindle.fault()
-    assert code_of(fault, "driver") == "spindle-encoder"
+    fault = own.machine.ports.spindle.read_fault()
+    assert get_fault_code(fault, "driver") == "spindle-encoder"
     assert "turns: " in fault
 
 
 def test_an_emergency_of_the_node_is_told_of(own: EncoderBench) -> None:
-    own.peers.nodes["turns"].emergency(0x5000)
+    own.peers.nodes["turns"].send_emergency(0x5000)
     own.run(0.05)
-    assert "EMCY 5000" in own.machine.ports.spindle.fault()
+    assert "EMCY 5000" in own.machine.ports.spindle.read_fault()
 
 
 def test_the_survey_of_a_bus_asks_the_encoder_too() -> None:
-    clock, machine = StepClock(), can_machine(*OWN)
-    peers = canopen_peers(machine, clock)
-    found = {one.name: one for one in survey(canopen_config(machine), clock, peers.pump)}
+    clock, machine = ManualClock(), can_machine(*OWN)
+    peers = create_canopen_peers(machine, clock)
+    found = {
+        one.name: one for one in identify_nodes(create_canopen_config(machine), clock, peers.process_frames)
+    }
     peers.close()
-    assert (found["turns"].node, found["turns"].trouble) == (20, "")
+    assert (found["turns"].node, found["turns"].error_text) == (20, "")
     assert "CiA 406" in found["turns"].detail

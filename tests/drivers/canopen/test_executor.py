@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import CycleStart, FeedHold, Home, Jog
+from core.executor.commands import CycleStart, FeedHold, HomeAxes, Jog
 from core.executor.executor import Executor
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.executor.rig import Rig
 from tests.texts import text
@@ -24,16 +24,16 @@ class BusRig(Rig):
         self.bench = CanBench(self.machine)
         self.clock = self.bench.clock
         self.executor = Executor(self.machine, self.bench.machine.ports, self.events.append, self._passes)
-        self.executor.tick()
+        self.executor.run_tick()
 
     def tick(self, dt: float | None = None) -> None:
         """Two rounds of the bus for each of the executor's."""
         step = BUS_TICK if dt is None else dt
         for _ in range(2):
             self.clock.advance(step / 2)
-            self.bench.machine.tick()
-            self.bench.peers.pump()
-        self.executor.tick()
+            self.bench.machine.run_cycle()
+            self.bench.peers.process_frames()
+        self.executor.run_tick()
         for look in self.watch:
             look(self.executor.snapshot)
 
@@ -41,7 +41,7 @@ class BusRig(Rig):
 def under_way(rig: BusRig, seconds: float = 0.5) -> None:
     """On the way at 300 in/min."""
     rig.start(OVER)
-    rig.until(State.RUN)
+    rig.until(MachineState.RUN)
     rig.until_true(lambda s: s.velocity > 126.0)
     rig.run(seconds)
 
@@ -50,10 +50,10 @@ def test_a_drive_that_restarts_has_lost_its_home() -> None:
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
     rig.ready()
     for axis in rig.bench.machine.axes.drives.axes:
-        axis.homed = True
+        axis.is_homed = True
     rig.run(0.1)
-    rig.bench.peers.nodes["X"].boot()
-    rig.until(State.FAULT)
+    rig.bench.peers.nodes["X"].boot_up()
+    rig.until(MachineState.FAULT)
     assert rig.shot.alarms[-1].code == "drive-restarted"
     assert rig.shot.alarms[-1].cause.startswith("X: ")
     assert rig.bench.machine.axes.sample().homed == (False, True, True)
@@ -64,10 +64,10 @@ def test_palms_start_where_the_machine_file_wants_two_hands() -> None:
     rig = BusRig(can_machine())
     rig.start(OVER)
     rig.run(0.1)
-    assert rig.state is State.IDLE
-    assert rig.shot.start_refused == text("executor.press-palms")
+    assert rig.state is MachineState.IDLE
+    assert rig.shot.start_refusal == text("executor.press-palms")
     rig.bench.peers.machine.press_start()
-    rig.until(State.RUN, limit=0.3)
+    rig.until(MachineState.RUN, limit=0.3)
     rig.bench.close()
 
 
@@ -77,25 +77,25 @@ def test_homing_in_the_order_of_the_machine_file_and_a_cycle_only_afterwards() -
         rig.bench.peers.plant.servos[index].switch = way
     rig.start(OVER)
     rig.run(0.2)
-    assert rig.state is State.IDLE
-    assert rig.shot.start_refused == text("executor.not-homed", axes="X, Z")
+    assert rig.state is MachineState.IDLE
+    assert rig.shot.start_refusal == text("executor.not-homed", axes="X, Z")
     order: list[str] = []
 
     def note(shot: object) -> None:
-        homing = rig.bench.machine.axes.homing
+        homing = rig.bench.machine.axes.active_homing
         if homing is not None and homing.config.name not in order:
             order.append(homing.config.name)
 
     rig.watch.append(note)
-    rig.post(Home(""))
-    rig.until(State.HOME)
-    rig.until(State.IDLE, limit=20.0)
+    rig.post(HomeAxes(""))
+    rig.until(MachineState.HOME)
+    rig.until(MachineState.IDLE, limit=20.0)
     assert order == ["Z", "X"]
     assert rig.shot.homed[:2] == (True, True)
     assert rig.shot.actual[:2] == pytest.approx((0.0, 0.0), abs=0.00127)
     rig.run(0.4)
     rig.post(CycleStart())
-    rig.until(State.IDLE, limit=30.0)
+    rig.until(MachineState.IDLE, limit=30.0)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 1
     rig.bench.close()
@@ -105,17 +105,17 @@ def test_feed_hold_ends_a_homing_and_jogs_go_on_from_there() -> None:
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false"), absolute=False))
     rig.bench.peers.plant.servos[1].switch = 60.0
     rig.ready()
-    rig.post(Home("Z"))
-    rig.until(State.HOME)
+    rig.post(HomeAxes("Z"))
+    rig.until(MachineState.HOME)
     rig.run(0.8)
     rig.post(FeedHold())
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(0.6)
     stood = rig.shot.actual[1]
     assert stood > 10.0
     rig.post(Jog("Z", 5.0, 0.2))
-    rig.until(State.JOG)
-    rig.until(State.IDLE)
+    rig.until(MachineState.JOG)
+    rig.until(MachineState.IDLE)
     assert 0.0 < rig.shot.actual[1] - stood < 2.0
     assert rig.shot.alarms == ()
     rig.bench.close()

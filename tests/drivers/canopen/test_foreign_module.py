@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import DriverError
-from drivers.canopen.canopen_bus import Bus
+from drivers.canopen.canopen_bus import CanBus
 from drivers.canopen.canopen_config import CanopenConfig, OutputConfig, PotConfig
 from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.canopen_nodes import CanTerminal as Terminal
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.canopen_terminals import CanopenIO
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.canopen.foreign import NODE, ForeignModule
 
@@ -31,8 +31,8 @@ class Bench:
     def __init__(self, inputs: int, outputs: int, words: int, *, pot: int = 0) -> None:
         bus = CanopenTable(interface="virtual", channel=f"foreign-{next(_channels)}", mode="pvt")
         self.module = ForeignModule(bus.channel, inputs, outputs, words)
-        self.clock = StepClock()
-        self.bus = Bus(bus, self.clock, self.module.pump)
+        self.clock = ManualClock()
+        self.bus = CanBus(bus, self.clock, self.module.pump)
         self.io = CanopenIO(
             CanopenConfig(
                 bus=bus,
@@ -50,7 +50,7 @@ class Bench:
 
     def start(self) -> None:
         self.io.connect()
-        self.io.operational()
+        self.io.start_nodes()
         self.run(0.05)
 
     def run(self, seconds: float) -> str:
@@ -59,11 +59,11 @@ class Bench:
         for _ in range(round(seconds / TICK)):
             self.clock.advance(TICK)
             for module in self.io.modules.values():
-                module.sync_sent()
-            self.bus.synchronise()
+                module.record_sync()
+            self.bus.send_sync()
             self.module.pump(TICK)
-            self.bus.pump()
-            trouble = self.io.tick(self.clock.now())
+            self.bus.process_frames()
+            trouble = self.io.run_cycle(self.clock.now())
             self.module.pump()
         return trouble
 
@@ -95,7 +95,7 @@ def test_outputs_go_out_and_come_back_off(make: MakeBench) -> None:
     assert bench.run(0.05) == ""
     assert bench.module.objects.read(0x6200, 1) == 0b01
     bench.io.write("collet", on=True)
-    bench.io.safe()
+    bench.io.switch_to_safe_state()
     bench.run(0.05)
     assert bench.module.objects.read(0x6200, 1) == 0b10  # coolant is off, the collet keeps its state
 
@@ -124,7 +124,7 @@ def test_a_pot_is_read(make: MakeBench) -> None:
     bench.module.objects.write(0x6401, 2, 32767)
     bench.start()
     assert bench.module.objects.read(0x6423, 0) == 1
-    assert bench.io.snapshot().feed_pot == pytest.approx(1.5)
+    assert bench.io.read_state().feed_pot == pytest.approx(1.5)
 
 
 @pytest.mark.parametrize(("word", "fraction"), [(32767, 1.5), (0, 0.0), (-200, 0.0), (16384, 0.75)])
@@ -134,7 +134,7 @@ def test_a_pot_stands_where_it_stands_before_its_first_pdo(
     bench = make(words=2, pot=2)
     bench.module.objects.write(0x6401, 2, word)
     bench.io.connect()
-    assert bench.io.snapshot().feed_pot == pytest.approx(fraction, abs=1e-4)
+    assert bench.io.read_state().feed_pot == pytest.approx(fraction, abs=1e-4)
 
 
 @pytest.mark.parametrize(("inputs", "outputs", "words"), [(1, 0, 0), (0, 1, 0), (0, 1, 1), (8, 8, 4)])
@@ -142,7 +142,7 @@ def test_modules_of_every_kind_stay_well(make: MakeBench, inputs: int, outputs: 
     bench = make(inputs, outputs, words)
     bench.start()
     assert bench.run(1.0) == ""
-    assert bench.io.snapshot().age < 0.2
+    assert bench.io.read_state().age < 0.2
 
 
 def test_a_terminal_that_the_module_has_not(make: MakeBench) -> None:
@@ -156,7 +156,7 @@ def test_a_module_that_restarts_is_told(make: MakeBench) -> None:
     bench.start()
     bench.module.node.nmt.reset()
     fault = bench.run(0.05)
-    assert code_of(fault, "driver") == "io-silent"
+    assert get_fault_code(fault, "driver") == "io-silent"
     assert fault.startswith("io: ")
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from tests.drivers.canopen.bench import CanBench
 from tests.drivers.machines import ramp
 
@@ -44,7 +44,7 @@ def test_one_frame_of_a_wrong_shape_is_dropped_and_three_are_an_alarm(
     stray(bench, cob, data)
     bench.run(0.5)
     fault = axes.sample().fault
-    assert code_of(fault, "driver") == "bus"
+    assert get_fault_code(fault, "driver") == "bus"
     assert f"{cob:03X}" in fault
     assert bench.peers.plant.servos[0].v == 0.0
     axes.clear_fault()  # opens the bus anew
@@ -57,7 +57,7 @@ def test_frames_of_other_protocols_are_none_of_our_business(bench: CanBench) -> 
     stray(bench, 0x7E5, b"\x04\x00")  # LSS
     bench.run(0.1)
     assert bench.machine.axes.sample().fault == ""
-    assert bench.machine.bus.garbled == 0
+    assert bench.machine.bus.garbled_frame_count == 0
 
 
 @settings(max_examples=5, deadline=None)
@@ -77,9 +77,9 @@ def test_whatever_comes_nothing_is_raised_and_a_fault_stops_all(
     sample = axes.sample()
     if sample.fault:
         assert not sample.enabled
-    before = bench.peers.machine.true_position()
+    before = bench.peers.machine.get_true_position()
     bench.run(0.1)
-    assert bench.peers.machine.true_position() == before
+    assert bench.peers.machine.get_true_position() == before
     bench.close()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.ports import DriverError, Stop
+from core.ports import DriverError, StopMode
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
@@ -38,7 +38,7 @@ def test_homing_ends_at_the_switch_and_not_by_stale_bits(lost: CanBench) -> None
     assert axes.sample().actual[1] == pytest.approx(0.0, abs=0.00127)
     assert not axes.sample().moving
     # now that it knows where home is, the drive has its limits: 6 in
-    assert lost.peers.plant.drives["Z"].values[0x607D, 1] == round(-152.4 / 0.00127)
+    assert lost.peers.plant.axis_drives["Z"].values[0x607D, 1] == round(-152.4 / 0.00127)
     axes.splice(ramp(lost.clock.now() + 0.15, (axes.sample().demand[0], 0.0, 0.0), 60.0, 0.1))
     lost.run(1.0)
     assert axes.sample().fault == ""
@@ -65,7 +65,7 @@ def test_a_homing_that_is_stopped_leaves_the_axis_unhomed(lost: CanBench) -> Non
     axes.enable(True)
     axes.home("Z")
     lost.run(0.5)
-    axes.stop(Stop.RAMP_HOLD)
+    axes.stop(StopMode.RAMP_HOLD)
     assert axes.sample().moving
     with raises_code(DriverError, "driver", "Z") as told:
         axes.splice(ramp(lost.clock.now() + 0.2, ZERO, 60.0, 0.1))

@@ -9,11 +9,11 @@ import canopen
 import pytest
 from canopen.profiles.p402 import BaseNode402
 
-from app.compose.backends.canopen_backend import canopen_peers
-from drivers.canopen.canopen_objects import drive_objects
+from app.compose.backends.canopen_backend import create_canopen_peers
+from drivers.canopen.canopen_objects import build_drive_dictionary
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.simulators.canopen_devices import CanopenDevices
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.drivers.canopen.bench import can_machine
 
 PATIENT = (
@@ -39,19 +39,19 @@ for name in PATIENT:
 def shop() -> Iterator[tuple[CanopenDevices, BaseNode402]]:
     """X of the shipped machine under the library's master, each end with threads of its own."""
     machine = can_machine()
-    bus = machine.hardware.table(CanopenTable)
+    bus = machine.hardware.find_driver_table(CanopenTable)
     assert bus is not None
-    peers, ended = canopen_peers(machine, RealClock()), threading.Event()
+    peers, ended = create_canopen_peers(machine, RealClock()), threading.Event()
 
     def play() -> None:
         while not ended.is_set():
-            peers.pump(0.001)
+            peers.process_frames(0.001)
 
     thread = threading.Thread(target=play)
     thread.start()
     network = canopen.Network()
     network.connect(interface="virtual", channel=bus.channel)
-    node = Patient(1, drive_objects())
+    node = Patient(1, build_drive_dictionary())
     network.add_node(node)
     node.sdo.RESPONSE_TIMEOUT = 20.0
     yield peers, node
@@ -86,8 +86,8 @@ def test_the_librarys_profile_walks_it_up_and_changes_its_mode(
     node.setup_402_state_machine(read_pdos=False)
     node.state = "OPERATION ENABLED"
     assert node.state == "OPERATION ENABLED"
-    assert peers.plant.drives["X"].power.powered
+    assert peers.plant.axis_drives["X"].power_states.is_powered
     node.op_mode = "PROFILED POSITION"
     assert node.op_mode == "PROFILED POSITION"
     node.state = "SWITCH ON DISABLED"
-    assert not peers.plant.drives["X"].power.powered
+    assert not peers.plant.axis_drives["X"].power_states.is_powered

@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.backends.inverter_backend import ClearingAxes
+from app.compose.backends.inverter_backend import FaultClearingAxes
 from core.executor.commands import Reset
 from core.executor.executor import Executor
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.ports import MachinePorts
 from drivers.canopen.canopen_encoder import MeasuredSpindle
-from drivers.inverter.inverter_attendant import Agreement
-from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from drivers.inverter.inverter_control import SpeedComparison
+from drivers.inverter.inverter_spindle import InverterSpindle, create_inverter_control
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN
 from tests.drivers.canopen.test_executor import BUS_TICK, BusRig
@@ -40,7 +40,7 @@ class MeasuredRig(BusRig):
         self.inverter = Inverter(self.clock, motor=self.bench.peers.plant.spindle)
         memory, slave = far_end("delta-vfdb", self.inverter)
         wire = BenchWire(slave, clock)
-        one = attendant(config("delta-vfdb"), wire.opened, clock)
+        one = create_inverter_control(config("delta-vfdb"), wire.opened, clock)
         ports = self.bench.machine.ports
         assert isinstance(ports.spindle, MeasuredSpindle)
         spindle = InverterSpindle(
@@ -48,21 +48,21 @@ class MeasuredRig(BusRig):
             one,
             self.clock,
             encoder=ports.spindle,
-            estop=lambda: ports.station.snapshot().estop,
-            lost=ports.spindle.fault,
+            is_estop_pressed=lambda: ports.station.read_state().estop,
+            get_encoder_fault=ports.spindle.read_fault,
         )
         self.line = Bench(clock, self.inverter, memory, wire, one, spindle)
-        one.connect()
+        one.open_and_check()
         self.bench.run(clock.now() - self.clock.now())
         joined = MachinePorts(
             clock=self.clock,
-            axes=ClearingAxes(ports.axes, spindle.clear_fault),
+            axes=FaultClearingAxes(ports.axes, spindle.clear_fault),
             spindle=spindle,
             io=ports.io,
             station=ports.station,
         )
         self.executor = Executor(self.machine, joined, self.events.append, self._passes)
-        self.executor.tick()
+        self.executor.run_tick()
 
     def tick(self, dt: float | None = None) -> None:
         while self.line.clock.now() < self.clock.now() + (BUS_TICK if dt is None else dt):
@@ -88,16 +88,18 @@ def turning(rig: MeasuredRig, text: str = TURNS) -> None:
 
 def test_a_program_waits_for_the_measured_speed_and_runs_to_its_end(rig: MeasuredRig) -> None:
     rig.start(CUTS)
-    rig.until(State.IDLE, State.FAULT, limit=120.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=120.0)
     assert rig.cause == ""
     rig.run(3.0)
     assert rig.inverter.rpm == 0.0
 
 
 def test_a_motor_that_slips_is_not_at_speed(rig: MeasuredRig) -> None:
-    rig.bench.peers.plant.spindle.faults.bog = 0.9  # within what both may disagree, outside of the band
+    rig.bench.peers.plant.spindle.faults.speed_fraction = (
+        0.9  # within what both may disagree, outside of the band
+    )
     rig.start(CUTS)
-    rig.until(State.FAULT, limit=20.0)
+    rig.until(MachineState.FAULT, limit=20.0)
     assert rig.shot.alarms[0].code == "at-speed"
     assert rig.shot.demand[0] > 0.4 * INCH  # no cut has begun
 
@@ -106,12 +108,12 @@ def test_a_thread_keeps_its_pitch(rig: MeasuredRig) -> None:
     reads: list[tuple[float, float]] = []
 
     def note(_shot: object) -> None:
-        z, turns = rig.bench.peers.machine.true_position()[1], rig.bench.peers.plant.spindle.turns
+        z, turns = rig.bench.peers.machine.get_true_position()[1], rig.bench.peers.plant.spindle.revolutions
         reads.append((z, turns))
 
     rig.watch.append(note)
     rig.start(THREAD)
-    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert rig.cause == ""
     inside = [(z, turns) for z, turns in reads if -0.15 * INCH < z < 0.05 * INCH]
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(inside)]
@@ -123,8 +125,8 @@ def test_a_thread_keeps_its_pitch(rig: MeasuredRig) -> None:
 
 def test_an_encoder_that_falls_silent_in_a_cut_is_an_alarm(rig: MeasuredRig) -> None:
     turning(rig)
-    rig.bench.peers.nodes["turns"].silent = True
-    rig.until(State.FAULT, limit=0.5)
+    rig.bench.peers.nodes["turns"].is_silent = True
+    rig.until(MachineState.FAULT, limit=0.5)
     assert rig.shot.alarms[0].code == "spindle-encoder"
     assert "turns: " in rig.cause
     rig.run(4.0)
@@ -136,18 +138,18 @@ def test_an_encoder_that_falls_silent_in_a_cut_is_an_alarm(rig: MeasuredRig) -> 
 
 def test_after_reset_nothing_turns_by_itself_and_m03_needs_the_encoder(rig: MeasuredRig) -> None:
     turning(rig)
-    rig.bench.peers.nodes["turns"].silent = True
-    rig.until(State.FAULT, limit=0.5)
+    rig.bench.peers.nodes["turns"].is_silent = True
+    rig.until(MachineState.FAULT, limit=0.5)
     rig.run(4.0)
     rig.post(Reset())
     rig.run(1.0)
-    assert rig.state in {State.DISABLED, State.IDLE}  # the slides may be moved without it
+    assert rig.state in {MachineState.DISABLED, MachineState.IDLE}  # the slides may be moved without it
     assert rig.inverter.rpm == 0.0
     rig.start(TURNS)
-    rig.until(State.FAULT, limit=2.0)
+    rig.until(MachineState.FAULT, limit=2.0)
     assert rig.shot.alarms[0].code == "spindle-off"
     assert "turns: " in rig.cause
-    rig.bench.peers.nodes["turns"].silent = False
+    rig.bench.peers.nodes["turns"].is_silent = False
     rig.post(Reset())
     rig.run(1.0)
     turning(rig)
@@ -155,11 +157,11 @@ def test_after_reset_nothing_turns_by_itself_and_m03_needs_the_encoder(rig: Meas
 
 def test_an_encoder_that_is_lost_while_nothing_turns_is_no_alarm_until_m03(rig: MeasuredRig) -> None:
     rig.ready()
-    rig.bench.peers.nodes["turns"].silent = True
+    rig.bench.peers.nodes["turns"].is_silent = True
     rig.run(1.0)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     rig.start(TURNS)
-    rig.until(State.FAULT, limit=2.0)
+    rig.until(MachineState.FAULT, limit=2.0)
     assert rig.shot.alarms[0].code == "spindle-off"
     assert "turns: " in rig.cause
     assert rig.inverter.rpm == 0.0
@@ -168,8 +170,8 @@ def test_an_encoder_that_is_lost_while_nothing_turns_is_no_alarm_until_m03(rig: 
 def test_a_coupling_that_has_come_off_never_counts_as_standing(rig: MeasuredRig) -> None:
     turning(rig)
     assert rig.bench.peers.encoder is not None
-    rig.bench.peers.encoder.come_off()
-    rig.until(State.FAULT, limit=2.5)
+    rig.bench.peers.encoder.detach_coupling()
+    rig.until(MachineState.FAULT, limit=2.5)
     assert rig.shot.alarms[0].code == "spindle-disagrees"
     assert text("executor.press-estop") in rig.cause
     rig.tick()
@@ -181,7 +183,7 @@ def test_a_coupling_that_has_come_off_never_counts_as_standing(rig: MeasuredRig)
 def test_a_motor_cable_on_wrongly_is_seen(rig: MeasuredRig) -> None:
     rig.inverter.backwards = True
     rig.start(TURNS)
-    rig.until(State.FAULT, limit=5.0)
+    rig.until(MachineState.FAULT, limit=5.0)
     assert rig.shot.alarms[0].code == "ignores-stop"
     assert text("executor.press-estop") in rig.cause
 
@@ -191,8 +193,8 @@ def test_a_motor_cable_on_wrongly_is_seen(rig: MeasuredRig) -> None:
 
 def feed(pairs: list[tuple[float, float]], fraction: float = 0.15) -> list[str]:
     """What is said of (measured, given) every tenth of a second."""
-    agreement = Agreement(fraction)
-    return [agreement.look(measured, given, 0.1 * i) for i, (measured, given) in enumerate(pairs)]
+    agreement = SpeedComparison(fraction)
+    return [agreement.compare_speeds(measured, given, 0.1 * i) for i, (measured, given) in enumerate(pairs)]
 
 
 def test_slip_is_none_of_it() -> None:

@@ -67,7 +67,7 @@ def test_five_axes_arrive_together_on_one_line() -> None:
     worst = 0.0
     for _ in range(200):
         bench.tick()
-        way = np.array([bench.peers.plant.drives[name].p for name in axes.axes]) / speed
+        way = np.array([bench.peers.plant.axis_drives[name].setpoint_position for name in axes.axes]) / speed
         worst = max(worst, float(np.ptp(way)))
     assert worst < 0.001 / 10.0  # a count of the slowest axis, in seconds of its way
     assert axes.sample().fault == ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.ports import DriverError, Segments, Stop
+from core.ports import DriverError, Segments, StopMode
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
@@ -36,7 +36,7 @@ def test_a_path_is_followed_and_arrives(moving: CanBench) -> None:
 
 def test_the_drive_passes_where_the_path_is_to_a_count(bench: CanBench) -> None:
     """The peer's cubic against the setpoints' own parabola, at every millisecond."""
-    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
     segments = ramp(bench.clock.now() + 0.14, ZERO, 120.0, 0.2)
     axes.splice(segments)
@@ -49,15 +49,15 @@ def test_the_drive_passes_where_the_path_is_to_a_count(bench: CanBench) -> None:
         even = min(max(t - 0.04, 0.0), 0.2)
         down = min(max(t - 0.24, 0.0), 0.04)
         path = 1500.0 * up * up + 120.0 * even + (120.0 - 1500.0 * down) * down
-        worst = max(worst, abs(drive.p - path))
+        worst = max(worst, abs(drive.setpoint_position - path))
     assert worst < 0.00127 + 1e-6 + 0.5 * 0.00127  # half a count of rounding in the records
-    assert axes.follower.off_path < 1.0
+    assert axes.follower.max_deviation_counts < 1.0
 
 
 def test_hold_from_full_speed_within_a_quarter_second(moving: CanBench) -> None:
     axes = moving.machine.axes
     asked = moving.clock.now()
-    axes.stop(Stop.RAMP_HOLD)
+    axes.stop(StopMode.RAMP_HOLD)
     moving.until(lambda: not axes.sample().moving)
     # 140 ms in the drives and 120/3048 s of braking are 0.18 s
     assert moving.clock.now() - asked < 0.25
@@ -68,15 +68,15 @@ def test_hold_from_full_speed_within_a_quarter_second(moving: CanBench) -> None:
 @pytest.mark.parametrize("before", [0.02, 0.06, 0.1, 0.139, 0.16, 0.18])
 def test_hold_at_the_end_of_a_move_changes_nothing_in_the_drives(bench: CanBench, before: float) -> None:
     """What is left is in the drives already, or as good as: no jump, wherever it comes."""
-    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 120.0, 0.3))
     bench.run(0.14 + 0.38 - before)
-    axes.stop(Stop.RAMP_HOLD)
+    axes.stop(StopMode.RAMP_HOLD)
     fastest = 0.0
     for _ in range(400):
         bench.tick(0.001)
-        fastest = max(fastest, abs(drive.v))
+        fastest = max(fastest, abs(drive.setpoint_velocity))
     assert fastest < 120.5
     assert axes.sample().fault == ""
     assert axes.sample().actual[0] == pytest.approx(axes.sample().demand[0], abs=0.002)
@@ -92,7 +92,7 @@ def test_hold_at_a_turning_point_does_not_go_on(bench: CanBench) -> None:
     both = type(there)(*(np.concatenate(pair) for pair in zip(there, back, strict=True)))
     axes.splice(both)
     bench.run(end - 0.14 - bench.clock.now())
-    axes.stop(Stop.RAMP_HOLD)
+    axes.stop(StopMode.RAMP_HOLD)
     bench.run(1.0)
     assert axes.sample().actual[0] == pytest.approx(60.0 * 0.22, abs=0.35)  # not back at 0
     assert not axes.sample().moving
@@ -101,12 +101,12 @@ def test_hold_at_a_turning_point_does_not_go_on(bench: CanBench) -> None:
 
 def test_a_stop_with_power_off_does_not_wait_for_the_queue(moving: CanBench) -> None:
     axes = moving.machine.axes
-    before = moving.peers.machine.true_position()[0]
-    axes.stop(Stop.RAMP_OFF)
+    before = moving.peers.machine.get_true_position()[0]
+    axes.stop(StopMode.RAMP_OFF)
     moving.run(0.2)
     assert not axes.sample().enabled
     # v²/2a is 2.4 mm, and a SYNC of way
-    assert moving.peers.machine.true_position()[0] - before < 2.4 + 1.3
+    assert moving.peers.machine.get_true_position()[0] - before < 2.4 + 1.3
     assert axes.sample().fault == ""
 
 
@@ -116,7 +116,7 @@ def test_a_second_move_after_the_queues_have_ended(bench: CanBench) -> None:
     axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.1))
     bench.run(2.0)  # at rest for longer than the queues are kept alive
     there = axes.sample().actual[0]
-    assert not bench.peers.plant.drives["X"].playing
+    assert not bench.peers.plant.axis_drives["X"].is_playing
     axes.splice(ramp(bench.clock.now() + 0.14, (axes.demand_at(1e9)[0][0], 0.0, 0.0), -60.0, 0.1))
     bench.run(1.0)
     assert axes.sample().fault == ""
@@ -152,7 +152,7 @@ def test_drives_refuse_when_off_too_fast_or_outside(bench: CanBench) -> None:
         axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.1))
     assert told.value.reason == "too-early"
     bench.run(0.5)
-    assert bench.peers.machine.true_position() == ZERO
+    assert bench.peers.machine.get_true_position() == ZERO
 
 
 def test_a_path_of_the_shortest_records_never_overfills_the_drives() -> None:
@@ -160,7 +160,7 @@ def test_a_path_of_the_shortest_records_never_overfills_the_drives() -> None:
     bench = CanBench(
         can_machine(("commit_ms = 140", "commit_ms = 200"), ("lease_ms = 200", "lease_ms = 205"))
     )
-    axes, drive = bench.machine.axes, bench.peers.plant.drives["X"]
+    axes, drive = bench.machine.axes, bench.peers.plant.axis_drives["X"]
     axes.enable(True)
     n, most = 400, 0
     a = np.zeros((n, 3))

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from core.executor.commands import CycleStart, EnableDrives, Wheel, WheelOff
-from core.executor.snapshot import State
+from core.executor.commands import CycleStart, DeselectHandwheel, EnableDrives, SelectHandwheel
+from core.executor.snapshot import MachineState
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_executor import OVER, BusRig, under_way
 from tests.executor.rig import INCH
@@ -44,12 +44,12 @@ def test_a_start_that_is_on_at_power_up_is_no_press(make: Callable[..., BusRig])
     rig.ready()
     rig.load(OVER)
     rig.run(0.5)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     rig.bench.peers.machine.release_left()
     rig.bench.peers.machine.release_right()
     rig.run(0.4)
     rig.bench.peers.machine.press_start()
-    rig.until(State.RUN, limit=0.5)
+    rig.until(MachineState.RUN, limit=0.5)
 
 
 def test_a_tied_down_palm_starts_one_cycle(make: Callable[..., BusRig]) -> None:
@@ -58,13 +58,13 @@ def test_a_tied_down_palm_starts_one_cycle(make: Callable[..., BusRig]) -> None:
     rig.load("G90G94F300\nX.05\nM30")
     rig.bench.peers.machine.press_left()
     rig.bench.peers.machine.press_right()
-    rig.until(State.RUN, limit=0.5)
-    rig.until(State.IDLE, limit=5.0)
+    rig.until(MachineState.RUN, limit=0.5)
+    rig.until(MachineState.IDLE, limit=5.0)
     rig.bench.peers.machine.release_right()
     rig.run(0.4)
     rig.bench.peers.machine.press_right()
     rig.run(0.5)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
     assert rig.shot.parts == 1
 
 
@@ -76,22 +76,22 @@ def test_palms_more_than_half_a_second_apart_start_nothing(make: Callable[..., B
     rig.run(0.55)
     rig.bench.peers.machine.press_right()
     rig.run(0.5)
-    assert rig.state is State.IDLE
+    assert rig.state is MachineState.IDLE
 
 
 def test_hold_stops_on_the_path_and_bars_the_start_while_it_is_down(make: Callable[..., BusRig]) -> None:
     rig = make(ONE_HAND)
     under_way(rig)
     rig.bench.peers.machine.press_hold()
-    assert rig.until(State.HOLD) < 0.3
+    assert rig.until(MachineState.HOLD) < 0.3
     rig.bench.peers.machine.press_start()
     rig.run(0.5)
-    assert rig.state is State.HOLD
-    assert rig.shot.start_refused == text("executor.hold-pressed")
+    assert rig.state is MachineState.HOLD
+    assert rig.shot.start_refusal == text("executor.hold-pressed")
     rig.bench.peers.machine.release_hold()
     rig.run(0.5)
     rig.bench.peers.machine.press_start()
-    rig.until(State.RUN, limit=0.5)
+    rig.until(MachineState.RUN, limit=0.5)
 
 
 def test_a_broken_estop_wire_is_an_estop(
@@ -107,12 +107,12 @@ def test_a_broken_estop_wire_is_an_estop(
         return value & ~1 if value is not None and (index, sub) == (0x6000, 1) else value
 
     monkeypatch.setattr(board, "read", broken)
-    rig.until(State.ESTOP, limit=0.1)
+    rig.until(MachineState.ESTOP, limit=0.1)
     rig.run(1.0)
-    assert not any(drive.power.powered for drive in rig.bench.peers.plant.drives.values())
+    assert not any(drive.power_states.is_powered for drive in rig.bench.peers.plant.axis_drives.values())
     monkeypatch.undo()
     rig.run(0.5)
-    assert rig.state is State.DISABLED
+    assert rig.state is MachineState.DISABLED
 
 
 # --- pots and switch --------------------------------------------------------------------------------------
@@ -131,14 +131,14 @@ def test_the_feed_pot_slows_the_slides_at_once_and_a_risen_one_after_it_has_stoo
     assert rig.shot.feed_override == pytest.approx(0.5, abs=0.01)
     rig.run(0.2)
     assert rig.shot.feed_override == pytest.approx(1.0, abs=0.01)
-    assert rig.state is State.RUN
+    assert rig.state is MachineState.RUN
 
 
 def test_a_worn_wiper_is_a_feed_hold(make: Callable[..., BusRig]) -> None:
     rig = make(ONE_HAND)
     under_way(rig, 0.2)
     rig.bench.peers.machine.pot_noise(0.6)
-    rig.until(State.HOLD, limit=2.0)
+    rig.until(MachineState.HOLD, limit=2.0)
     assert text("executor.pot-jumps") in " ".join(event.text for event in rig.events)
     assert rig.shot.alarms == ()
 
@@ -146,8 +146,8 @@ def test_a_worn_wiper_is_a_feed_hold(make: Callable[..., BusRig]) -> None:
 def test_a_module_that_is_silent_stops_everything(make: Callable[..., BusRig]) -> None:
     rig = make(ONE_HAND)
     under_way(rig, 0.2)
-    rig.bench.peers.nodes["io"].silent = True
-    rig.until(State.FAULT, limit=0.6)
+    rig.bench.peers.nodes["io"].is_silent = True
+    rig.until(MachineState.FAULT, limit=0.6)
     assert "io: " in rig.shot.alarms[-1].cause
     rig.run(1.0)
     assert not rig.bench.peers.plant.terminals.outputs["coolant"]
@@ -188,7 +188,7 @@ WHEEL = ("spindle_pot = {", 'handwheel = { at = "401.6401.3", counts_per_click =
 class Turned(BusRig):
     """Its page holds the wheel on Z."""
 
-    page: Wheel | None = None
+    page: SelectHandwheel | None = None
 
     def tick(self, dt: float | None = None) -> None:
         if self.page is not None:
@@ -205,7 +205,7 @@ class Turned(BusRig):
 def turned() -> Iterator[Turned]:
     rig = Turned(can_machine(WHEEL, ONE_HAND))
     rig.ready()
-    rig.page = Wheel("Z", THOU, LEASE)
+    rig.page = SelectHandwheel("Z", THOU, LEASE)
     rig.run(0.3)
     assert rig.shot.wheel == "Z"
     yield rig
@@ -214,12 +214,12 @@ def turned() -> Iterator[Turned]:
 
 def test_clicks_on_the_bus_are_thousandths(turned: Turned) -> None:
     turned.spin(25)
-    turned.until(State.IDLE, limit=2.0)
+    turned.until(MachineState.IDLE, limit=2.0)
     turned.run(0.3)
     assert turned.shot.demand[1] == pytest.approx(25 * THOU, abs=1e-6)
-    assert turned.bench.peers.machine.true_position()[1] == pytest.approx(25 * THOU, abs=0.00254)
+    assert turned.bench.peers.machine.get_true_position()[1] == pytest.approx(25 * THOU, abs=0.00254)
     turned.spin(-25)
-    turned.until(State.IDLE, limit=2.0)
+    turned.until(MachineState.IDLE, limit=2.0)
     turned.run(0.3)
     assert turned.shot.demand[1] == pytest.approx(0.0, abs=1e-6)
 
@@ -230,8 +230,8 @@ def test_a_counter_that_goes_round_goes_on(turned: Turned) -> None:
     turned.bench.peers.machine.turn_handwheel(32766)
     turned.run(0.2)
     turned.post(EnableDrives())
-    turned.post(WheelOff())
-    turned.page = Wheel("Z", THOU, LEASE)
+    turned.post(DeselectHandwheel())
+    turned.page = SelectHandwheel("Z", THOU, LEASE)
     turned.run(0.3)
     turned.spin(10)
     turned.run(1.0)
@@ -240,20 +240,20 @@ def test_a_counter_that_goes_round_goes_on(turned: Turned) -> None:
 
 def test_a_cable_that_comes_off_stops_the_slide(turned: Turned) -> None:
     turned.spin(50)
-    turned.bench.peers.cable(out=True)
+    turned.bench.peers.cable(disconnected=True)
     turned.spin(100)
-    turned.until(State.FAULT, limit=1.0)
+    turned.until(MachineState.FAULT, limit=1.0)
     assert turned.shot.wheel == ""
     turned.run(0.5)
-    assert turned.bench.peers.machine.true_position()[1] < 100 * THOU
+    assert turned.bench.peers.machine.get_true_position()[1] < 100 * THOU
 
 
 def test_a_module_that_restarts_counts_from_nought_and_moves_nothing(turned: Turned) -> None:
     turned.spin(50)
-    turned.until(State.IDLE, limit=2.0)
-    at = turned.bench.peers.machine.true_position()[1]
-    turned.bench.peers.nodes["io"].boot()
+    turned.until(MachineState.IDLE, limit=2.0)
+    at = turned.bench.peers.machine.get_true_position()[1]
+    turned.bench.peers.nodes["io"].boot_up()
     turned.bench.peers.machine.turn_handwheel(-200)  # back to 0
     turned.run(1.0)
-    assert turned.state is State.FAULT
-    assert turned.bench.peers.machine.true_position()[1] == pytest.approx(at, abs=1e-3)
+    assert turned.state is MachineState.FAULT
+    assert turned.bench.peers.machine.get_true_position()[1] == pytest.approx(at, abs=1e-3)

@@ -6,21 +6,21 @@ import os
 
 import pytest
 
-from app.compose.backends.played_machine import HELP, Typed, obey
+from app.compose.backends.simulated_devices import HELP_TEXT, LineReader, execute_command
 from tests.drivers.canopen.bench import CanBench
 from tests.texts import opening, text
 
 
 def test_hands_at_the_station_reach_the_control(bench: CanBench) -> None:
-    assert obey("estop", bench.peers) == "estop: done"
+    assert execute_command("estop", bench.peers) == "estop: done"
     bench.run(0.1)
-    assert bench.machine.io.snapshot().estop
-    assert obey("release", bench.peers) == "release: done"
-    assert obey("feed 50", bench.peers) == "feed 50: done"
-    assert obey("auto off", bench.peers) == "auto off: done"
-    assert obey("input TB2-5 on", bench.peers) == "input TB2-5 on: done"
+    assert bench.machine.io.read_state().estop
+    assert execute_command("release", bench.peers) == "release: done"
+    assert execute_command("feed 50", bench.peers) == "feed 50: done"
+    assert execute_command("auto off", bench.peers) == "auto off: done"
+    assert execute_command("input TB2-5 on", bench.peers) == "input TB2-5 on: done"
     bench.run(0.2)
-    state = bench.machine.io.snapshot()
+    state = bench.machine.io.read_state()
     assert not state.estop
     assert not state.spindle_auto
     assert state.feed_pot == pytest.approx(0.5, abs=0.01)
@@ -29,16 +29,16 @@ def test_hands_at_the_station_reach_the_control(bench: CanBench) -> None:
 
 def test_both_palms_are_one_start(bench: CanBench) -> None:
     seen = []
-    assert obey("start", bench.peers) == "start: done"
+    assert execute_command("start", bench.peers) == "start: done"
     for _ in range(60):
         bench.tick()
-        seen.append(bench.machine.io.snapshot().start)
+        seen.append(bench.machine.io.read_state().start)
     assert True in seen
     assert not seen[-1]
 
 
 def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
-    assert obey("cable off", bench.peers) == "cable off: done"
+    assert execute_command("cable off", bench.peers) == "cable off: done"
     bench.run(0.5)
     assert bench.machine.axes.sample().fault
 
@@ -46,7 +46,7 @@ def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("dance", text("drivers.unknown-command", line="dance", help=HELP)),
+        ("dance", text("drivers.unknown-command", line="dance", help=HELP_TEXT)),
         ("feed", opening("drivers.unknown-command", line="feed")),
         ("feed fast", opening("drivers.unknown-command", line="feed fast")),
         ("auto maybe", opening("drivers.unknown-command", line="auto maybe")),
@@ -56,20 +56,20 @@ def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
     ],
 )
 def test_what_is_not_understood_is_told_and_changes_nothing(bench: CanBench, line: str, told: str) -> None:
-    assert told in obey(line, bench.peers)
+    assert told in execute_command(line, bench.peers)
     bench.run(0.1)
     assert not bench.machine.axes.sample().fault
 
 
 def test_lines_come_whole_and_an_end_is_no_trouble() -> None:
     theirs, ours = os.pipe()
-    typed = Typed(theirs)
-    assert list(typed.lines()) == []
+    typed = LineReader(theirs)
+    assert list(typed.read_lines()) == []
     os.write(ours, b"sta")
-    assert list(typed.lines()) == []
+    assert list(typed.read_lines()) == []
     os.write(ours, b"rt\n\n hold \n")
-    assert list(typed.lines()) == ["start", "hold"]
+    assert list(typed.read_lines()) == ["start", "hold"]
     os.close(ours)
-    assert list(typed.lines()) == []
-    assert list(typed.lines()) == []
+    assert list(typed.read_lines()) == []
+    assert list(typed.read_lines()) == []
     os.close(theirs)

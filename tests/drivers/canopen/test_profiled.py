@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.ports import DriverError, Stop
+from core.ports import DriverError, StopMode
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
@@ -33,7 +33,7 @@ def test_profile_position_brakes_where_the_queue_does() -> None:
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.8))
     bench.run(0.5)
-    axes.stop(Stop.RAMP_HOLD)
+    axes.stop(StopMode.RAMP_HOLD)
     bench.run(0.6)
     sample = axes.sample()
     assert not sample.moving

@@ -15,13 +15,13 @@ import pytest
 from canopen import ObjectDictionary
 from canopen.objectdictionary import ODVariable
 
-from app.compose.backends.canopen_backend import canopen_machine, canopen_peers
+from app.compose.backends.canopen_backend import connect_canopen_machine, create_canopen_peers
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.canopen.drive_profiles import profile_of
-from drivers.waiting import StepClock
+from drivers.canopen.drive_profiles import find_profile
+from drivers.wakeups import ManualClock
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
 
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(not FILES, reason="TURNDESK_EDS names no folder 
 def dictionary(path: Path) -> ObjectDictionary:
     """Of the file; the test is skipped where it is none of a drive."""
     try:
-        found = od.dictionary(path.name, str(path), od.drive_objects)
+        found = od.load_dictionary(path.name, str(path), od.build_drive_dictionary)
     except DriverError as error:
         pytest.skip(str(error))
     if od.CONTROL not in found or od.TARGET not in found:
@@ -46,14 +46,14 @@ def machine_of(path: Path) -> Machine:
     """The shipped lathe with this drive on its slides, in the best mode that it has."""
     found = dictionary(path)
     told = found.device_information
-    family = profile_of("", told.vendor_number, told.product_name)
+    family = find_profile("", told.vendor_number, told.product_name)
     if family.queue is not None:
         machine = can_machine(('drive = "epos2"', f'drive = "{family.name}"'))
     elif od.IP_RECORD in found:
         machine = cyclic("ip")
     else:
         machine = cyclic("csp", drive=family.name)
-    table = machine.hardware.table(CanopenTable)
+    table = machine.hardware.find_driver_table(CanopenTable)
     assert table is not None
     nodes = tuple(
         dataclasses.replace(node, eds=str(path), sdo=()) if node.name in {"X", "Z"} else node
@@ -69,12 +69,12 @@ def bench(request: pytest.FixtureRequest) -> Iterator[CanBench]:
     machine = machine_of(path)
     modes = dictionary(path).get_variable(od.SUPPORTED, 0)
     found = CanBench.__new__(CanBench)
-    found.model, found.clock = machine, StepClock()
-    found.peers = canopen_peers(machine, found.clock)
+    found.model, found.clock = machine, ManualClock()
+    found.peers = create_canopen_peers(machine, found.clock)
     if isinstance(modes, ODVariable) and modes.default:
         for name in ("X", "Z"):
             says(found.peers, name, {(od.SUPPORTED, 0): modes.default})
-    found.machine = canopen_machine(machine, found.clock, found.peers.pump)
+    found.machine = connect_canopen_machine(machine, found.clock, found.peers.process_frames)
     yield found
     found.close()
 
@@ -100,9 +100,9 @@ def test_its_silence_stops_the_other_slide(bench: CanBench) -> None:
     axes.splice(ramp(bench.clock.now() + 0.2, (0.0, 0.0, 0.0), 60.0, 1.0))
     for _ in range(200):
         bench.tick(TICK)
-    bench.peers.nodes["Z"].silent = True
+    bench.peers.nodes["Z"].is_silent = True
     for _ in range(250):
         bench.tick(TICK)
     assert axes.sample().fault.startswith("Z: ")
     assert bench.peers.plant.servos[0].v == 0.0
-    assert not bench.peers.plant.drives["X"].power.powered
+    assert not bench.peers.plant.axis_drives["X"].power_states.is_powered

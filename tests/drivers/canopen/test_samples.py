@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError
-from drivers.canopen.canopen_objects import TORQUE
-from drivers.canopen.canopen_setup import Setup
+from drivers.canopen.canopen_objects import ACTUAL_TORQUE
+from drivers.canopen.canopen_setup import NodeSetup
 from drivers.simulators.canopen_axis_drive import AxisDrive
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
@@ -19,7 +19,7 @@ from tests.drivers.machines import ramp
 def test_each_sync_is_a_row_with_the_drives_positions(bench: CanBench) -> None:
     source = bench.machine.ports.samples
     assert source is not None
-    assert source.rate == pytest.approx(1.0 / bench.machine.config.bus.sync)
+    assert source.sample_rate_hz == pytest.approx(1.0 / bench.machine.config.bus.sync)
     axes = bench.machine.axes
     axes.enable(True)
     source.take()
@@ -49,7 +49,7 @@ def test_the_torque_of_a_drive_is_its_load_in_per_cent(
     """6077h counts per mille of the rated torque, signed."""
     read = AxisDrive.read
     monkeypatch.setattr(
-        AxisDrive, "read", lambda self, index, sub: -345 if index == TORQUE else read(self, index, sub)
+        AxisDrive, "read", lambda self, index, sub: -345 if index == ACTUAL_TORQUE else read(self, index, sub)
     )
     source, axes = bench.machine.ports.samples, bench.machine.axes
     assert source is not None
@@ -60,27 +60,27 @@ def test_the_torque_of_a_drive_is_its_load_in_per_cent(
 def test_a_drive_that_maps_no_torque_tells_none_and_starts_all_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    transmit = Setup.transmit
+    transmit = NodeSetup.map_sent_objects
 
     def no_fourth(
-        self: Setup, number: int, heard: Callable[..., None], *entries: tuple[int, int], every: int = 1
+        self: NodeSetup, number: int, heard: Callable[..., None], *entries: tuple[int, int], every: int = 1
     ) -> None:
         if number == 4:
             raise DriverError("X: node 1, object 1A03:1: refused by the node", "drive-setup")
         transmit(self, number, heard, *entries, every=every)
 
-    monkeypatch.setattr(Setup, "transmit", no_fourth)
+    monkeypatch.setattr(NodeSetup, "map_sent_objects", no_fourth)
     bench = CanBench(can_machine())
     bench.machine.axes.enable(True)
     bench.run(0.2)
     assert bench.machine.axes.sample().fault == ""
-    assert all(math.isnan(axis.drive.load) for axis in bench.machine.axes.drives.axes)
+    assert all(math.isnan(axis.drive.torque_percent) for axis in bench.machine.axes.drives.axes)
     bench.close()
 
 
 def test_what_a_silent_drive_told_last_is_no_load(bench: CanBench) -> None:
     bench.run(0.2)
     drive = bench.machine.axes.drives.axes[0].drive
-    assert drive.load == 0.0
-    drive.missing = 10
-    assert math.isnan(drive.load)
+    assert drive.torque_percent == 0.0
+    drive.missing_reply_count = 10
+    assert math.isnan(drive.torque_percent)

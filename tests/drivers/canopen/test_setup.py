@@ -8,14 +8,14 @@ from collections.abc import Callable
 import pytest
 from canopen.sdo.exceptions import SdoAbortedError
 
-from app.compose.backends.canopen_backend import canopen_machine, canopen_peers
-from core.faults import code_of
+from app.compose.backends.canopen_backend import connect_canopen_machine, create_canopen_peers
+from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.simulators.canopen_axis_drive import AxisDrive
 from drivers.simulators.canopen_devices import CanopenDevices
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
@@ -23,7 +23,7 @@ from tests.drivers.machines import ramp
 
 def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> None:
     for name in ("X", "Z"):
-        values = bench.peers.plant.drives[name].values
+        values = bench.peers.plant.axis_drives[name].values
         assert values[od.ABORT_OPTION, 0] == 3
         assert values[od.FAULT_OPTION, 0] == 2
         assert values[od.WINDOW, 0] == round(2.032 / 0.00127)  # .08 in
@@ -37,7 +37,7 @@ def test_every_drive_is_told_how_to_stop_and_what_to_watch(bench: CanBench) -> N
 
 def test_in_a_cyclic_mode_they_watch_setpoints_and_know_their_interval() -> None:
     bench = CanBench(cyclic())
-    values = bench.peers.plant.drives["X"].values
+    values = bench.peers.plant.axis_drives["X"].values
     assert values[od.QUICK_OPTION, 0] == 2
     assert values[od.WINDOW_TIME, 0] == 20
     assert (values[od.IP_TIME, 1], values[od.IP_TIME, 2]) == (4, -3)
@@ -50,7 +50,7 @@ def test_in_a_cyclic_mode_they_watch_setpoints_and_know_their_interval() -> None
 
 def test_a_value_of_the_machine_file_wins() -> None:
     bench = CanBench(can_machine(('"6007:0" = 3', '"6007:0" = 2')))
-    assert bench.peers.plant.drives["X"].values[od.ABORT_OPTION, 0] == 2
+    assert bench.peers.plant.axis_drives["X"].values[od.ABORT_OPTION, 0] == 2
     bench.close()
 
 
@@ -72,7 +72,7 @@ class Recorded:
     def __init__(self, peers: CanopenDevices, name: str, locked: frozenset[int]) -> None:
         self.written: list[int] = []
         self._locked = locked
-        local = peers.nodes[name].local
+        local = peers.nodes[name].local_node
         local.add_write_callback(self.on_write)
         local._write_callbacks.insert(0, local._write_callbacks.pop())  # before it is stored
 
@@ -84,13 +84,13 @@ class Recorded:
 
 def test_a_read_only_object_with_the_wanted_value_is_not_written() -> None:
     """Interpolation time and following window are fixed in many drives."""
-    machine, clock = cyclic(), StepClock()
-    peers = canopen_peers(machine, clock)
+    machine, clock = cyclic(), ManualClock()
+    peers = create_canopen_peers(machine, clock)
     window, period = round(2.032 / 0.00127), 4
     values = {(od.WINDOW, 0): window, (od.IP_TIME, 1): period, (od.IP_TIME, 2): -3}
     says(peers, "X", values)
     record = Recorded(peers, "X", frozenset((od.WINDOW, od.IP_TIME)))
-    connected = canopen_machine(machine, clock, peers.pump)
+    connected = connect_canopen_machine(machine, clock, peers.process_frames)
     connected.bus.close()
     peers.close()
     assert not {od.WINDOW, od.IP_TIME} & set(record.written)
@@ -107,22 +107,22 @@ def test_a_read_only_object_with_another_value_is_named_with_both_values() -> No
 
 def test_a_pdo_that_is_mapped_as_wanted_is_left_alone() -> None:
     """Mapping and communication of many modules are fixed; the second connection finds all as it wants it."""
-    machine, clock = cyclic(), StepClock()
-    peers = canopen_peers(machine, clock)
-    canopen_machine(machine, clock, peers.pump).bus.close()
+    machine, clock = cyclic(), ManualClock()
+    peers = create_canopen_peers(machine, clock)
+    connect_canopen_machine(machine, clock, peers.process_frames).bus.close()
     record = Recorded(peers, "X", frozenset())
-    canopen_machine(machine, clock, peers.pump).bus.close()
+    connect_canopen_machine(machine, clock, peers.process_frames).bus.close()
     peers.close()
     assert not [f"{index:04X}" for index in record.written if 0x1400 <= index < 0x1C00 and index != 0x1400]
 
 
 def connected_without(machine: Machine, *lacking: int) -> tuple[str, ...]:
     """What is told of X, whose firmware has not these objects."""
-    clock = StepClock()
-    peers = canopen_peers(machine, clock)
+    clock = ManualClock()
+    peers = create_canopen_peers(machine, clock)
     for index in lacking:
-        del peers.nodes["X"].local.object_dictionary[index]
-    connected = canopen_machine(machine, clock, peers.pump)
+        del peers.nodes["X"].local_node.object_dictionary[index]
+    connected = connect_canopen_machine(machine, clock, peers.process_frames)
     connected.bus.close()
     peers.close()
     return tuple(connected.ports.warnings)
@@ -142,7 +142,7 @@ def test_a_family_without_a_time_out_for_setpoints_says_so_of_each_drive() -> No
 
 def test_a_spindle_that_would_turn_on_without_us_is_refused() -> None:
     def spoil(peers: CanopenDevices) -> None:
-        del peers.nodes["spindle"].local.object_dictionary[od.ABORT_OPTION]
+        del peers.nodes["spindle"].local_node.object_dictionary[od.ABORT_OPTION]
 
     refused(spoil, "drive-setup", "spindle: node 3 ", "6007h")
 
@@ -151,23 +151,23 @@ def refused(
     spoil: Callable[[CanopenDevices], None], code: str, *values: str, machine: Machine | None = None
 ) -> None:
     """Expect that a machine with a spoilt node is not connected to, by code and named values."""
-    model, clock = machine or can_machine(), StepClock()
-    peers = canopen_peers(model, clock)
+    model, clock = machine or can_machine(), ManualClock()
+    peers = create_canopen_peers(model, clock)
     spoil(peers)
     try:
         with raises_code(DriverError, code, *values):
-            canopen_machine(model, clock, peers.pump)
+            connect_canopen_machine(model, clock, peers.process_frames)
     finally:
         peers.close()
 
 
 def drive(peers: CanopenDevices, name: str = "Z") -> AxisDrive:
-    return peers.plant.drives[name]
+    return peers.plant.axis_drives[name]
 
 
 def test_a_node_that_is_not_there() -> None:
     def spoil(peers: CanopenDevices) -> None:
-        peers.nodes["Z"].silent = True
+        peers.nodes["Z"].is_silent = True
 
     refused(spoil, "drive-silent", "Z: node 2, object 1000:0: ")
 
@@ -199,11 +199,11 @@ def test_an_object_that_the_drive_does_not_have() -> None:
 
 
 def test_a_drive_that_does_not_come_on_is_named(bench: CanBench) -> None:
-    bench.peers.plant.drives["Z"].power.refuses = True
+    bench.peers.plant.axis_drives["Z"].power_states.refuses_power = True
     with raises_code(DriverError, "no-power", "Z", "switch on disabled"):
         bench.machine.axes.enable(True)
     bench.run(0.1)
-    assert not bench.peers.plant.drives["X"].power.powered  # none without the others
+    assert not bench.peers.plant.axis_drives["X"].power_states.is_powered  # none without the others
 
 
 def test_a_mode_that_is_not_taken_keeps_the_drives_off(bench: CanBench) -> None:
@@ -217,7 +217,7 @@ def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> 
     axes, plant = bench.machine.axes, bench.peers.plant
 
     def state(name: str) -> str:
-        return plant.drives[name].power.state.value
+        return plant.axis_drives[name].power_states.state.value
 
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 60.0, 0.5))
@@ -225,28 +225,28 @@ def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> 
     bench.peers.machine.jam("X")
     bench.until(lambda: axes.sample().fault != "", 0.5)
     fault = axes.sample().fault
-    assert code_of(fault, "driver") == "following"
+    assert get_fault_code(fault, "driver") == "following"
     assert fault.startswith("X: ")
     assert "EMCY 8611" in fault
     bench.run(0.5)
     assert state("X") == "fault"
-    bench.peers.machine.jam("X", on=False)
+    bench.peers.machine.jam("X", jammed=False)
     axes.clear_fault()
     assert state("X") == "switch on disabled"
     bench.run(0.5)
-    assert not plant.drives["X"].power.powered
+    assert not plant.axis_drives["X"].power_states.is_powered
     axes.enable(True)
     assert axes.sample().enabled
 
 
 def test_a_fault_that_stays_is_told_again(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
-    axes, power = bench.machine.axes, bench.peers.plant.drives["Z"].power
+    axes, power = bench.machine.axes, bench.peers.plant.axis_drives["Z"].power_states
     bench.peers.machine.drive_fault("Z")
     bench.run(0.1)
-    assert code_of(axes.sample().fault, "driver") == "axis"
+    assert get_fault_code(axes.sample().fault, "driver") == "axis"
     assert axes.sample().fault.startswith("Z: ")
-    control = power.control
-    monkeypatch.setattr(power, "control", lambda word: control(word & ~0x80))
+    control = power.apply_control_word
+    monkeypatch.setattr(power, "apply_control_word", lambda word: control(word & ~0x80))
     with raises_code(DriverError, "drive-keeps-fault", "Z: "):
         axes.clear_fault()
 
@@ -258,10 +258,10 @@ def test_a_driver_host_that_is_late_runs_the_drives_dry_and_all_stop(bench: CanB
     bench.run(0.4)
     for _ in range(30):  # nobody feeds for 150 ms
         bench.clock.advance(0.005)
-        bench.peers.pump()
+        bench.peers.process_frames()
     bench.run(0.5)
     assert "EMCY FF0C" in axes.sample().fault
-    assert not any(drive.power.powered for drive in bench.peers.plant.drives.values())
+    assert not any(drive.power_states.is_powered for drive in bench.peers.plant.axis_drives.values())
 
 
 def test_a_fault_of_one_drive_stops_the_other_within_a_round_of_the_bus(bench: CanBench) -> None:
@@ -272,11 +272,11 @@ def test_a_fault_of_one_drive_stops_the_other_within_a_round_of_the_bus(bench: C
         part[:, 1] = part[:, 0]
     axes.splice(both)
     bench.run(0.4)
-    plant.drives["X"].power.trip()  # silently: the status word alone tells
-    took = bench.until(lambda: plant.drives["Z"].power.braking, 0.1)
+    plant.axis_drives["X"].power_states.trip()  # silently: the status word alone tells
+    took = bench.until(lambda: plant.axis_drives["Z"].power_states.is_braking, 0.1)
     assert took <= 0.01 + 0.005 + 1e-9  # until the next answer, and a tick
     bench.run(0.3)
-    assert code_of(axes.sample().fault, "driver") == "axis"
+    assert get_fault_code(axes.sample().fault, "driver") == "axis"
     assert axes.sample().fault.startswith("X: ")
     assert plant.servos[1].v == 0.0
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.compose.backends.connection import connect
+from app.compose.backends.connection import connect_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.canopen_spindle import SpindleC, Step
-from drivers.waiting import StepClock
+from drivers.canopen.canopen_spindle import CanopenCStep, CanopenSpindleC
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.canopen.test_executor import BusRig
@@ -34,17 +34,17 @@ class CBench(CanBench):
     """Drives on."""
 
     @property
-    def c(self) -> SpindleC:
-        assert self.machine.c is not None
-        return self.machine.c
+    def c(self) -> CanopenSpindleC:
+        assert self.machine.spindle_c is not None
+        return self.machine.spindle_c
 
     def degrees(self) -> float:
         """Where the spindle really is from its index, 0…360."""
-        return self.peers.plant.spindle.turns * 360.0 % 360.0
+        return self.peers.plant.spindle.revolutions * 360.0 % 360.0
 
     def hold(self, *, orient: bool) -> None:
-        self.c.hold(True, orient)
-        self.until(self.c.held, 20.0)
+        self.c.set_c_mode(True, orient)
+        self.until(self.c.is_c_ready, 20.0)
 
 
 @pytest.fixture
@@ -57,9 +57,9 @@ def stand() -> Iterator[CBench]:
 
 def stopped_somewhere(stand: CBench, rpm: float = 700.0) -> float:
     """It has turned as the spindle; where it stands."""
-    stand.machine.ports.spindle.run(rpm)
+    stand.machine.ports.spindle.run_at(rpm)
     stand.run(1.13)
-    stand.machine.ports.spindle.run(0.0)
+    stand.machine.ports.spindle.run_at(0.0)
     stand.run(2.0)
     return stand.degrees()
 
@@ -70,7 +70,7 @@ def test_held_where_it_stands_it_does_not_turn(stand: CBench) -> None:
     assert stand.degrees() == pytest.approx(at, abs=0.1)
     assert stand.machine.axes.sample().actual[2] == pytest.approx(0.0, abs=0.1)
     assert stand.peers.plant.spindle_drive is not None
-    assert stand.peers.plant.spindle_drive.power.powered  # it holds
+    assert stand.peers.plant.spindle_drive.power_states.is_powered  # it holds
 
 
 def test_oriented_it_turns_to_its_index(stand: CBench) -> None:
@@ -82,13 +82,13 @@ def test_oriented_it_turns_to_its_index(stand: CBench) -> None:
 
 
 def test_on_a_clock_that_goes_on_with_every_look(stand: CBench, monkeypatch: pytest.MonkeyPatch) -> None:
-    plain = StepClock.now
+    plain = ManualClock.now
 
-    def creeping(clock: StepClock) -> float:
+    def creeping(clock: ManualClock) -> float:
         clock.advance(2e-6)
         return plain(clock)
 
-    monkeypatch.setattr(StepClock, "now", creeping)
+    monkeypatch.setattr(ManualClock, "now", creeping)
     stopped_somewhere(stand)
     stand.hold(orient=True)
     assert (stand.degrees() + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.1)
@@ -96,17 +96,17 @@ def test_on_a_clock_that_goes_on_with_every_look(stand: CBench, monkeypatch: pyt
 
 def test_the_index_is_looked_for_once(stand: CBench) -> None:
     stand.hold(orient=True)
-    stand.c.hold(False)
-    stand.until(lambda: stand.c.step is Step.FREE, 5.0)
-    seen: list[Step] = []
+    stand.c.set_c_mode(False)
+    stand.until(lambda: stand.c.step is CanopenCStep.SPINDLE_MODE, 5.0)
+    seen: list[CanopenCStep] = []
     stopped_somewhere(stand, -1234.0)
-    stand.c.hold(True, True)
+    stand.c.set_c_mode(True, True)
     for _ in range(1000):
         stand.tick()
         if stand.c.step not in seen:
             seen.append(stand.c.step)
-    assert Step.INDEX not in seen
-    assert stand.c.held()
+    assert CanopenCStep.FIND_INDEX not in seen
+    assert stand.c.is_c_ready()
     off = (stand.degrees() + 180.0) % 360.0 - 180.0
     assert off == pytest.approx(0.0, abs=0.15)
 
@@ -114,34 +114,34 @@ def test_the_index_is_looked_for_once(stand: CBench) -> None:
 def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
     stand.hold(orient=False)
     with raises_code(DriverError, "spindle-off") as told:
-        stand.machine.ports.spindle.run(500.0)
+        stand.machine.ports.spindle.run_at(500.0)
     assert told.value.reason == "held-as-c"
-    stand.c.hold(False)
-    stand.machine.ports.spindle.run(500.0)
+    stand.c.set_c_mode(False)
+    stand.machine.ports.spindle.run_at(500.0)
     stand.run(0.02)
-    assert stand.peers.machine.spindle_rpm() == 0.0
-    stand.until(lambda: stand.c.step is Step.FREE, 5.0)
+    assert stand.peers.machine.get_spindle_rpm() == 0.0
+    stand.until(lambda: stand.c.step is CanopenCStep.SPINDLE_MODE, 5.0)
     stand.run(1.5)
-    assert stand.peers.machine.spindle_rpm() == pytest.approx(500.0, abs=2.0)
+    assert stand.peers.machine.get_spindle_rpm() == pytest.approx(500.0, abs=2.0)
 
 
 def test_it_is_refused_while_it_turns(stand: CBench) -> None:
-    stand.machine.ports.spindle.run(300.0)
+    stand.machine.ports.spindle.run_at(300.0)
     stand.run(1.0)
     with raises_code(DriverError, "c-coupling") as told:
-        stand.c.hold(True)
+        stand.c.set_c_mode(True)
     assert told.value.reason == "spindle-turns"
-    stand.machine.ports.spindle.run(0.0)
+    stand.machine.ports.spindle.run_at(0.0)
     stand.run(0.05)
     with raises_code(DriverError, "c-coupling") as told:
-        stand.c.hold(True)
+        stand.c.set_c_mode(True)
     assert told.value.reason == "spindle-turns"
 
 
 def test_it_is_refused_without_power() -> None:
     stand = CBench(c_machine())
     with raises_code(DriverError, "c-coupling") as told:
-        stand.c.hold(True)
+        stand.c.set_c_mode(True)
     assert told.value.reason == "drives-off"
     stand.close()
 
@@ -151,31 +151,31 @@ def test_estop_ends_it_and_nothing_turns_on_release(stand: CBench) -> None:
     stand.peers.machine.press_estop()
     stand.machine.ports.spindle.coast()
     stand.run(2.0)
-    assert not stand.c.held()
+    assert not stand.c.is_c_ready()
     stand.peers.machine.release_estop()
     stand.run(2.0)
-    assert stand.c.step is Step.FREE
+    assert stand.c.step is CanopenCStep.SPINDLE_MODE
     assert stand.peers.plant.spindle_drive is not None
-    assert not stand.peers.plant.spindle_drive.power.powered
+    assert not stand.peers.plant.spindle_drive.power_states.is_powered
 
 
-@pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.HELD])
-def test_closing_leaves_it_without_power_wherever_it_is(stand: CBench, step: Step) -> None:
+@pytest.mark.parametrize("step", [CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION, CanopenCStep.ENGAGED])
+def test_closing_leaves_it_without_power_wherever_it_is(stand: CBench, step: CanopenCStep) -> None:
     drive = stand.peers.plant.spindle_drive
     assert drive is not None
-    stand.c.hold(True, True)
+    stand.c.set_c_mode(True, True)
     stand.until(lambda: stand.c.step is step, 20.0)
     stand.machine.close()
     for _ in range(200):
         stand.clock.advance(0.005)
-        stand.peers.pump()
-    assert not drive.power.powered
+        stand.peers.process_frames()
+    assert not drive.power_states.is_powered
 
 
 def test_a_drive_without_those_modes_is_refused_at_the_start() -> None:
     stand = CBench(c_machine())
     assert stand.peers.plant.spindle_drive is not None
-    stand.peers.plant.spindle_drive.positions = False
+    stand.peers.plant.spindle_drive.can_position = False
     assert stand.machine.spindle is not None
     with raises_code(DriverError, "drive-setup", "spindle: ", "homing", "interpolated position"):
         stand.machine.spindle.connect()
@@ -193,7 +193,7 @@ def rig() -> Iterator[BusRig]:
 
 
 def degrees(rig: BusRig) -> float:
-    return rig.bench.peers.plant.spindle.turns * 360.0 % 360.0
+    return rig.bench.peers.plant.spindle.revolutions * 360.0 % 360.0
 
 
 def test_a_program_turns_then_positions_then_turns_again(rig: BusRig) -> None:
@@ -208,7 +208,7 @@ def test_a_program_turns_then_positions_then_turns_again(rig: BusRig) -> None:
             at[rig.shot.block_text + str(rig.shot.line)] = degrees(rig)
 
     rig.watch.append(note)
-    rig.until(State.IDLE, State.FAULT, limit=90.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=90.0)
     assert rig.shot.alarms == ()
     angles = list(at.values())
     assert any(abs(angle - 90.0) < 0.2 for angle in angles), at
@@ -219,7 +219,7 @@ def test_a_slide_moves_while_c_is_held_still(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG01X.2Z-.5F60\nX0Z0\nM05\nM30")
     turned: list[float] = []
     rig.watch.append(lambda shot: turned.append(degrees(rig)) if shot.velocity > 5.0 else None)
-    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert rig.shot.alarms == ()
     assert len(turned) > 20
     assert max((t + 180.0) % 360.0 for t in turned) - min((t + 180.0) % 360.0 for t in turned) < 0.1
@@ -230,12 +230,12 @@ def test_x_and_c_together_keep_to_their_path(rig: BusRig) -> None:
     off: list[float] = []
 
     def note(_shot: object) -> None:
-        x = rig.bench.peers.machine.true_position()[0]
-        if rig.state is State.RUN and 0.5 < x < 12.0:
+        x = rig.bench.peers.machine.get_true_position()[0]
+        if rig.state is MachineState.RUN and 0.5 < x < 12.0:
             off.append(((degrees(rig) - x / 12.7 * 360.0) + 180.0) % 360.0 - 180.0)
 
     rig.watch.append(note)
-    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert rig.shot.alarms == ()
     assert len(off) > 50
     # X trails its setpoint by the servo's lag, C does not: 12.7 mm/s times 8 ms is .1 mm, 3 degrees
@@ -246,25 +246,25 @@ def test_hold_and_reset_in_a_turn(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nC3600S100\nM05\nM30")
     rig.until_true(lambda shot: shot.demand[2] > 200.0, limit=40.0)
     rig.post(FeedHold())
-    rig.until(State.HOLD, limit=1.0)
+    rig.until(MachineState.HOLD, limit=1.0)
     rig.run(0.3)
     at = degrees(rig)
     rig.run(1.0)
     assert degrees(rig) == pytest.approx(at, abs=0.01)
     rig.post(Reset())
-    rig.until(State.IDLE, limit=3.0)
+    rig.until(MachineState.IDLE, limit=3.0)
     rig.run(3.0)
-    assert rig.bench.machine.c is not None
-    assert rig.bench.machine.c.step is Step.FREE
+    assert rig.bench.machine.spindle_c is not None
+    assert rig.bench.machine.spindle_c.step is CanopenCStep.SPINDLE_MODE
     assert rig.shot.alarms == ()
 
 
-def once_in(rig: BusRig, c: SpindleC, step: Step, do: Callable[[], None]) -> None:
+def once_in(rig: BusRig, c: CanopenSpindleC, step: CanopenCStep, do: Callable[[], None]) -> None:
     """Do this as the step begins: between two ticks it may have begun and ended."""
-    begun: list[Step] = []
+    begun: list[CanopenCStep] = []
     enter = c._enter
 
-    def entered(new: Step, now: float) -> None:
+    def entered(new: CanopenCStep, now: float) -> None:
         enter(new, now)
         if new is step and not begun:
             begun.append(new)
@@ -275,13 +275,17 @@ def once_in(rig: BusRig, c: SpindleC, step: Step, do: Callable[[], None]) -> Non
         rig.until_true(lambda _: bool(begun), limit=60.0)
 
 
-@pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.TURN])
-def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(rig: BusRig, step: Step) -> None:
-    c = rig.bench.machine.c
+@pytest.mark.parametrize(
+    "step", [CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION, CanopenCStep.TURN_TO_POSITION]
+)
+def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(
+    rig: BusRig, step: CanopenCStep
+) -> None:
+    c = rig.bench.machine.spindle_c
     assert c is not None
     rig.start("G90G94F300\nM03S777\nG04F1\nM05\nM19\nC90S60\nG04F2\nM05\nM30")
     once_in(rig, c, step, lambda: rig.post(FeedHold()))
-    rig.until(State.HOLD, limit=1.0)
+    rig.until(MachineState.HOLD, limit=1.0)
     rig.run(0.3)
     at = degrees(rig)
     rig.run(2.0)
@@ -290,30 +294,34 @@ def test_a_hold_in_the_change_over_stops_it_and_cycle_start_does_it_anew(rig: Bu
     rig.until_true(lambda shot: shot.waiting_for == "DWELL", limit=60.0)
     rig.run(0.2)
     assert degrees(rig) == pytest.approx(90.0, abs=0.2)
-    rig.until(State.IDLE, limit=30.0)
+    rig.until(MachineState.IDLE, limit=30.0)
     assert rig.shot.alarms == ()
 
 
 def test_an_index_that_is_missing_is_an_alarm(rig: BusRig, monkeypatch: pytest.MonkeyPatch) -> None:
     drive = rig.bench.peers.plant.spindle_drive
     assert drive is not None
-    monkeypatch.setattr(drive.slide, "seek", lambda _method: setattr(drive.slide, "switch", 1e9))
+    monkeypatch.setattr(
+        drive.spindle_servo,
+        "set_switch_position",
+        lambda _method: setattr(drive.spindle_servo, "switch", 1e9),
+    )
     rig.start("G90G94F300\nM19\nC90S60\nM05\nM30")
-    rig.until(State.FAULT, limit=30.0)
+    rig.until(MachineState.FAULT, limit=30.0)
     assert rig.shot.alarms[-1].code == "c-coupling"
     assert "index" in rig.shot.alarms[-1].cause
     rig.run(3.0)
-    assert not drive.power.powered
+    assert not drive.power_states.is_powered
 
 
 def test_the_turns_of_the_spindle_do_not_leap_with_its_counter(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nM05\nM03S777\nG04F1\nM05\nM89\nG04F1\nM05\nM30")
-    rig.until(State.IDLE, State.FAULT, limit=60.0)
-    angle = rig.bench.machine.ports.spindle.angle()
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
+    angle = rig.bench.machine.ports.spindle.read_angle()
     assert angle is not None
     assert rig.shot.alarms == ()
     assert angle[1] == pytest.approx(
-        rig.bench.peers.plant.spindle.turns, abs=1.01
+        rig.bench.peers.plant.spindle.revolutions, abs=1.01
     )  # the search is not counted
 
 
@@ -321,15 +329,15 @@ def test_m89_locks_where_it_stands(rig: BusRig) -> None:
     rig.start("G90G94F300\nM03S777\nG04F1\nM05\nG04F1\nM89\nG04F1\nG91C90S60\nG04F2\nM05\nM30")
     seen: list[float] = []
     rig.watch.append(lambda shot: seen.append(degrees(rig)) if shot.waiting_for == "DWELL" else None)
-    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert rig.shot.alarms == ()
     assert (seen[-1] - seen[-250]) % 360.0 == pytest.approx(90.0, abs=0.2)
 
 
 def test_through_the_driver_host_too() -> None:
-    clock = StepClock()
+    clock = ManualClock()
     machine = c_machine()
-    connected = connect(machine, clock)
+    connected = connect_machine(machine, clock)
     lock, axes = connected.ports.lock, connected.ports.axes
     assert lock is not None
     link = connected.ports.spindle
@@ -341,16 +349,16 @@ def test_through_the_driver_host_too() -> None:
             clock.advance(0.005)
             axes.sample()
 
-    lock.hold(True, orient=True)
+    lock.set_c_mode(True, orient=True)
     run(8.0)
-    assert lock.held()
+    assert lock.is_c_ready()
     with raises_code(DriverError, "spindle-off") as told:
-        link.run(100.0)
+        link.run_at(100.0)
     assert told.value.reason == "held-as-c"
-    lock.hold(False)
+    lock.set_c_mode(False)
     run(3.0)
-    assert not lock.held()
-    link.run(100.0)
+    assert not lock.is_c_ready()
+    link.run_at(100.0)
     run(1.5)
     assert link.speed() == pytest.approx(100.0, abs=2.0)
     connected.close()
@@ -360,14 +368,14 @@ def test_a_fault_of_that_drive_stops_the_slides_too(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG01X.5C3600F10\nM05\nM30")
     rig.until_true(lambda shot: shot.demand[2] > 200.0, limit=40.0)
     rig.bench.peers.machine.spindle_fault("blocked")
-    rig.until(State.FAULT, limit=0.3)
+    rig.until(MachineState.FAULT, limit=0.3)
     rig.run(2.0)
-    assert not any(drive.power.powered for drive in rig.bench.peers.plant.drives.values())
+    assert not any(drive.power_states.is_powered for drive in rig.bench.peers.plant.axis_drives.values())
     rig.bench.peers.machine.spindle_fault("")
     rig.post(Reset())
-    rig.until(State.DISABLED, limit=2.0)
+    rig.until(MachineState.DISABLED, limit=2.0)
     rig.post(EnableDrives())
-    rig.until(State.IDLE, limit=2.0)
+    rig.until(MachineState.IDLE, limit=2.0)
     rig.run(1.0)
     assert rig.shot.alarms == ()
 
@@ -378,8 +386,8 @@ def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
     assert text("executor.becomes-c") in rig.said("refused")[-1]
     rig.run(2.0)
     rig.post(Jog("C", 60.0, 0.2))
-    rig.until(State.JOG)
-    rig.until(State.IDLE, limit=2.0)
+    rig.until(MachineState.JOG)
+    rig.until(MachineState.IDLE, limit=2.0)
     assert 2.0 < rig.shot.demand[2] < 20.0
     rig.run(0.3)
     assert degrees(rig) == pytest.approx(rig.shot.demand[2], abs=0.1)
@@ -387,46 +395,55 @@ def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
 
 def test_a_drive_that_restarts_as_c_is_a_spindle_again_and_has_lost_its_index(rig: BusRig) -> None:
     rig.start("G90G94F300\nM19\nG04F60\nM05\nM30")
-    c = rig.bench.machine.c
+    c = rig.bench.machine.spindle_c
     assert c is not None
-    rig.until_true(lambda _: c.held(), limit=30.0)
-    rig.bench.peers.nodes["spindle"].boot()
-    rig.until(State.FAULT, limit=0.5)
+    rig.until_true(lambda _: c.is_c_ready(), limit=30.0)
+    rig.bench.peers.nodes["spindle"].boot_up()
+    rig.until(MachineState.FAULT, limit=0.5)
     assert rig.shot.alarms[-1].code == "spindle"
     assert rig.shot.alarms[-1].cause.startswith("spindle: ")
     rig.run(3.0)
     rig.post(Reset())
-    rig.until(State.DISABLED, limit=5.0)
+    rig.until(MachineState.DISABLED, limit=5.0)
     rig.run(1.0)
-    assert c.step is Step.FREE
-    seen: list[Step] = []
+    assert c.step is CanopenCStep.SPINDLE_MODE
+    seen: list[CanopenCStep] = []
     rig.watch.append(lambda _shot: seen.append(c.step))
     rig.start("G90G94F300\nM03S600\nG04F1\nM05\nM19\nG04F1\nM05\nM30")
-    rig.until(State.IDLE, State.FAULT, limit=60.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert rig.shot.alarms == ()
-    assert Step.INDEX in seen
+    assert CanopenCStep.FIND_INDEX in seen
 
 
-@pytest.mark.parametrize("step", [Step.INDEX, Step.HERE, Step.POWER, Step.TURN, Step.HELD])
-def test_estop_in_every_step_of_the_change_over(rig: BusRig, step: Step) -> None:
-    c, drive = rig.bench.machine.c, rig.bench.peers.plant.spindle_drive
+@pytest.mark.parametrize(
+    "step",
+    [
+        CanopenCStep.FIND_INDEX,
+        CanopenCStep.SET_POSITION,
+        CanopenCStep.POWER_ON,
+        CanopenCStep.TURN_TO_POSITION,
+        CanopenCStep.ENGAGED,
+    ],
+)
+def test_estop_in_every_step_of_the_change_over(rig: BusRig, step: CanopenCStep) -> None:
+    c, drive = rig.bench.machine.spindle_c, rig.bench.peers.plant.spindle_drive
     assert c is not None
     assert drive is not None
     rig.start("G90G94F300\nM03S777\nG04F1\nM05\nM19\nG04F60\nM05\nM30")
     rig.watch.append(lambda _shot: None)
     once_in(rig, c, step, rig.bench.peers.machine.press_estop)
-    rig.until(State.ESTOP, limit=0.2)
+    rig.until(MachineState.ESTOP, limit=0.2)
     rig.run(3.0)
-    assert not drive.power.powered
-    assert c.step is Step.FREE
+    assert not drive.power_states.is_powered
+    assert c.step is CanopenCStep.SPINDLE_MODE
     rig.bench.peers.machine.release_estop()
     rig.run(1.0)
     rig.post(EnableDrives())
-    rig.until(State.IDLE, limit=2.0)
+    rig.until(MachineState.IDLE, limit=2.0)
     at = degrees(rig)
     rig.run(2.0)
     assert degrees(rig) == at
-    assert not drive.power.powered
+    assert not drive.power_states.is_powered
     rig.start("G90G94F300\nM03S600\nG04F1\nM05\nM30")
-    rig.until(State.IDLE, State.FAULT, limit=30.0)
+    rig.until(MachineState.IDLE, MachineState.FAULT, limit=30.0)
     assert rig.shot.alarms == ()

@@ -4,63 +4,70 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.canopen.canopen_objects import DriveState, reset_step, state_of, towards_enabled
-from drivers.simulators.canopen_axis_drive import PowerStates
+from drivers.canopen.canopen_objects import DriveState, decode_state, get_enabling_word, get_fault_reset_word
+from drivers.simulators.canopen_axis_drive import PowerStateMachine
 
 
 @pytest.mark.parametrize(
     ("word", "state"),
     [
-        (0x0000, DriveState.NOT_READY),
-        (0x0250, DriveState.OFF),
-        (0x0231, DriveState.READY),
-        (0x0233, DriveState.ON),
-        (0x0237, DriveState.ENABLED),
-        (0x1637, DriveState.ENABLED),  # homing attained, target reached
-        (0x0217, DriveState.QUICK_STOP),
-        (0x021F, DriveState.REACTING),
+        (0x0000, DriveState.NOT_READY_TO_SWITCH_ON),
+        (0x0250, DriveState.SWITCH_ON_DISABLED),
+        (0x0231, DriveState.READY_TO_SWITCH_ON),
+        (0x0233, DriveState.SWITCHED_ON),
+        (0x0237, DriveState.OPERATION_ENABLED),
+        (0x1637, DriveState.OPERATION_ENABLED),  # homing attained, target reached
+        (0x0217, DriveState.QUICK_STOP_ACTIVE),
+        (0x021F, DriveState.FAULT_REACTION_ACTIVE),
         (0x0218, DriveState.FAULT),
         (0x0238, DriveState.FAULT),  # bit 5 does not matter there
     ],
 )
 def test_status_words(word: int, state: DriveState) -> None:
-    assert state_of(word) is state
+    assert decode_state(word) is state
 
 
 def test_the_walk_up_takes_one_step_a_word() -> None:
-    power, seen = PowerStates(lambda: None), []
+    power, seen = PowerStateMachine(lambda: None), []
     for _ in range(4):
-        power.control(towards_enabled(state_of(power.word)))
+        power.apply_control_word(get_enabling_word(decode_state(power.status_word)))
         seen.append(power.state)
-    assert seen == [DriveState.READY, DriveState.ON, DriveState.ENABLED, DriveState.ENABLED]
+    assert seen == [
+        DriveState.READY_TO_SWITCH_ON,
+        DriveState.SWITCHED_ON,
+        DriveState.OPERATION_ENABLED,
+        DriveState.OPERATION_ENABLED,
+    ]
 
 
-@pytest.mark.parametrize("state", [DriveState.FAULT, DriveState.REACTING, DriveState.NOT_READY])
+@pytest.mark.parametrize(
+    "state", [DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE, DriveState.NOT_READY_TO_SWITCH_ON]
+)
 def test_the_walk_up_never_leaves_a_fault(state: DriveState) -> None:
-    assert towards_enabled(state) == 0
+    assert get_enabling_word(state) == 0
 
 
 def test_an_emergency_is_left_downwards_only() -> None:
-    power = PowerStates(lambda: None)
-    power.state = DriveState.QUICK_STOP
-    power.control(towards_enabled(power.state))
-    assert power.state is DriveState.OFF
+    power = PowerStateMachine(lambda: None)
+    power.state = DriveState.QUICK_STOP_ACTIVE
+    power.apply_control_word(get_enabling_word(power.state))
+    assert power.state is DriveState.SWITCH_ON_DISABLED
 
 
 def test_a_reset_ends_without_power() -> None:
-    power = PowerStates(lambda: None)
+    power = PowerStateMachine(lambda: None)
     power.state, word = DriveState.FAULT, 0x0F
-    power.control(word)
+    power.apply_control_word(word)
     for _ in range(6):
-        word = reset_step(state_of(power.word), word)
-        power.control(word)
-    assert power.state is DriveState.OFF
-    assert not power.powered
+        word = get_fault_reset_word(decode_state(power.status_word), word)
+        power.apply_control_word(word)
+    assert power.state is DriveState.SWITCH_ON_DISABLED
+    assert not power.is_powered
 
 
 def test_a_drive_without_voltage_does_not_come_on() -> None:
-    power = PowerStates(lambda: None)
-    power.sto = True
+    power = PowerStateMachine(lambda: None)
+    power.is_sto_active = True
     for _ in range(5):
-        power.control(towards_enabled(state_of(power.word)))
-    assert power.state is DriveState.OFF
+        power.apply_control_word(get_enabling_word(decode_state(power.status_word)))
+    assert power.state is DriveState.SWITCH_ON_DISABLED

@@ -7,19 +7,19 @@ import re
 
 import pytest
 
-from app.compose.backends.canopen_backend import canopen_config, canopen_peers
+from app.compose.backends.canopen_backend import create_canopen_config, create_canopen_peers
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.canopen_survey import Answer, survey
+from drivers.canopen.canopen_survey import SurveyResult, identify_nodes
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import can_machine
 
 
 def on_one_bus(there: Machine, asked: Machine) -> Machine:
     """The machine that asks, on the channel of the one that is there."""
-    bus, own = there.hardware.table(CanopenTable), asked.hardware.table(CanopenTable)
+    bus, own = there.hardware.find_driver_table(CanopenTable), asked.hardware.find_driver_table(CanopenTable)
     assert bus is not None
     assert own is not None
     moved = dataclasses.replace(own, channel=bus.channel)
@@ -27,15 +27,18 @@ def on_one_bus(there: Machine, asked: Machine) -> Machine:
     return dataclasses.replace(asked, hardware=dataclasses.replace(asked.hardware, tables=tables))
 
 
-def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, Answer]:
+def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, SurveyResult]:
     """What the shipped machine's peers say to a machine file with ``changes``."""
-    clock, machine = StepClock(), can_machine()
-    peers = canopen_peers(machine, clock)
+    clock, machine = ManualClock(), can_machine()
+    peers = create_canopen_peers(machine, clock)
     try:
         if silent:
-            peers.nodes[silent].silent = True
+            peers.nodes[silent].is_silent = True
         asking = on_one_bus(machine, can_machine(*changes))
-        return {found.name: found for found in survey(canopen_config(asking), clock, peers.pump)}
+        return {
+            found.name: found
+            for found in identify_nodes(create_canopen_config(asking), clock, peers.process_frames)
+        }
     finally:
         peers.close()
 
@@ -43,7 +46,7 @@ def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, Answer]:
 def test_every_node_says_what_it_is() -> None:
     found = surveyed()
     assert {name: answer.node for name, answer in found.items()} == {"X": 1, "Z": 2, "spindle": 3, "io": 10}
-    assert not any(answer.trouble for answer in found.values())
+    assert not any(answer.error_text for answer in found.values())
     # EPOS2 has no option of its quick stop, and no time for its window
     assert "PP homing IP CSP" in found["X"].detail
     for value in ("EPOS2", "pvt"):
@@ -61,37 +64,37 @@ def test_a_family_that_has_not_the_mode_is_wrong_before_anything_is_written() ->
     found = surveyed(*csp)
     assert "runs csp" in found["X"].detail
     interpolated = (('mode = "pvt"', 'mode = "ip"'), *csp[1:])
-    trouble = surveyed(*interpolated)["X"].trouble
+    trouble = surveyed(*interpolated)["X"].error_text
     assert trouble.startswith("X: ")
     assert "60C1:1" in trouble
 
 
 def test_one_that_is_silent_hides_no_other() -> None:
     found = surveyed(silent="Z")
-    assert found["Z"].trouble.startswith("Z: node 2, object 1000:0: ")
-    assert [name for name, answer in found.items() if answer.trouble] == ["Z"]
+    assert found["Z"].error_text.startswith("Z: node 2, object 1000:0: ")
+    assert [name for name, answer in found.items() if answer.error_text] == ["Z"]
 
 
 def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
     found = surveyed(("Z = { id = 2,", "Z = { id = 10,"), ("io = { id = 10,", "io = { id = 2,"))
     for name, values in (("Z", ["10", "401", "402"]), ("io", ["2", "402", "401"])):
-        assert re.findall("[0-9]+", found[name].trouble) == values
-    assert not found["X"].trouble
+        assert re.findall("[0-9]+", found[name].error_text) == values
+    assert not found["X"].error_text
 
 
 def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock, machine = StepClock(), can_machine()
-    peers = canopen_peers(machine, clock)
+    clock, machine = ManualClock(), can_machine()
+    peers = create_canopen_peers(machine, clock)
     heard: list[int] = []
-    take = peers.nodes["X"].take
+    take = peers.nodes["X"].handle_frame
 
     def noted(cob: int, data: bytes) -> None:
         heard.append(cob)
         take(cob, data)
 
-    monkeypatch.setattr(peers.nodes["X"], "take", noted)
+    monkeypatch.setattr(peers.nodes["X"], "handle_frame", noted)
     try:
-        survey(canopen_config(machine), clock, peers.pump)
+        identify_nodes(create_canopen_config(machine), clock, peers.process_frames)
     finally:
         peers.close()
     assert 0x601 in heard  # SDO requests to node 1
@@ -101,4 +104,4 @@ def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest
 def test_a_bus_that_is_not_there_is_one_sentence() -> None:
     machine = can_machine(('interface = "virtual"', 'interface = "nobody"'))
     with raises_code(DriverError, "driver", "interface nobody", "channel bench-"):
-        survey(canopen_config(machine), StepClock())
+        identify_nodes(create_canopen_config(machine), ManualClock())

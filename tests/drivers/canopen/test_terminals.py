@@ -23,7 +23,7 @@ def wheeled() -> Iterator[CanBench]:
 def turn(bench: CanBench, to: int) -> int:
     """The counter of the module stands at ``to``; what the station has counted."""
     bench.machine.io.modules["io"].analog[2] = to
-    return bench.machine.io.snapshot().handwheel
+    return bench.machine.io.read_state().handwheel
 
 
 def test_a_handwheel_counts_on_when_its_counter_goes_round(wheeled: CanBench) -> None:
@@ -34,40 +34,40 @@ def test_a_handwheel_counts_on_when_its_counter_goes_round(wheeled: CanBench) ->
 
 
 def test_without_a_handwheel_nothing_turns(bench: CanBench) -> None:
-    assert bench.machine.io.snapshot().handwheel == 0
+    assert bench.machine.io.read_state().handwheel == 0
 
 
 def test_a_broken_estop_wire_is_a_pressed_estop(bench: CanBench) -> None:
     bench.run(0.05)
-    assert not bench.machine.io.snapshot().estop
+    assert not bench.machine.io.read_state().estop
     bench.machine.io.modules["io"].inputs[0] &= 0xFE  # low: no voltage on the wire
-    assert bench.machine.io.snapshot().estop
+    assert bench.machine.io.read_state().estop
 
 
 def test_pots_at_both_ends_and_beyond(bench: CanBench) -> None:
     analog = bench.machine.io.modules["io"].analog
     for raw, feed, spindle in ((0, 0.0, 0.0), (32767, 1.5, 1.0), (-5, 0.0, 0.0)):
         analog[0] = analog[1] = raw
-        station = bench.machine.io.snapshot()
+        station = bench.machine.io.read_state()
         assert (station.feed_pot, station.spindle_pot) == (feed, spindle)
 
 
 def test_a_module_that_falls_silent_ages_the_station(bench: CanBench) -> None:
     bench.run(0.05)
-    bench.peers.nodes["io"].silent = True
+    bench.peers.nodes["io"].is_silent = True
     bench.run(0.3)
-    assert bench.machine.io.snapshot().age > 0.25
+    assert bench.machine.io.read_state().age > 0.25
 
 
 def test_outputs_of_a_silent_module_are_refused_and_its_safe_states_kept(bench: CanBench) -> None:
     io = bench.machine.io
     io.write("coolant", True)
     bench.run(0.1)
-    bench.peers.nodes["io"].silent = True
+    bench.peers.nodes["io"].is_silent = True
     bench.run(0.5)
     with raises_code(DriverError, "output", "catcher", "io: "):
         io.write("catcher", True)
-    io.safe()
+    io.switch_to_safe_state()
     assert not io.outputs()["coolant"]
     assert io.outputs()["collet"]
 
@@ -77,13 +77,13 @@ def test_a_spindle_load_is_told_in_per_cent() -> None:
     text = ("spindle_pot = {", 'spindle_load = { at = "401.6401.3", range = [0, 150] }\nspindle_pot = {')
     bench = CanBench(can_machine(text))
     try:
-        assert bench.machine.io.snapshot().spindle_load == 0.0
-        bench.peers.plant.spindle.order(bench.clock.now(), 1750.0)
+        assert bench.machine.io.read_state().spindle_load == 0.0
+        bench.peers.plant.spindle.command_speed(bench.clock.now(), 1750.0)
         for _ in range(300):
             bench.tick()
-        load = bench.machine.io.snapshot().spindle_load
+        load = bench.machine.io.read_state().spindle_load
         assert load is not None
-        assert load == pytest.approx(bench.peers.plant.spindle.load, abs=1.6)  # 1 % of the word
+        assert load == pytest.approx(bench.peers.plant.spindle.load_percent, abs=1.6)  # 1 % of the word
         assert load > 1.6
     finally:
         bench.close()
@@ -92,6 +92,6 @@ def test_a_spindle_load_is_told_in_per_cent() -> None:
 def test_without_that_input_no_load_is_told() -> None:
     bench = CanBench(can_machine())
     try:
-        assert bench.machine.io.snapshot().spindle_load is None
+        assert bench.machine.io.read_state().spindle_load is None
     finally:
         bench.close()

@@ -9,15 +9,15 @@ from typing import ClassVar
 
 import can
 
-from app.compose.backends.canopen_backend import canopen_machine
+from app.compose.backends.canopen_backend import connect_canopen_machine
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN, DriverError, Unknown
+from core.ports import ALL_UNKNOWN_PARTS, DriverError, UnknownPart
 from drivers.canopen.canopen_machine import CanopenMachine
-from drivers.driver_host.host_line import Line, Link, cleared
-from drivers.driver_host.host_ports import host_ports
-from drivers.driver_host.host_server import Driven, DriverHost
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import Opening
+from drivers.driver_host.host_connection import HostConnection, HostLink, clear_host_faults
+from drivers.driver_host.host_ports import create_host_ports
+from drivers.driver_host.host_server import DriverBundle, DriverHost
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ConnectionAttempt
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import HOST_FAULTS, HOST_WORDS, BrokenLink
@@ -26,8 +26,8 @@ from tests.drivers.contract.world import SimWorld
 # Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
 _SILENT = Fault(told=0.35, rests=0.45, code="drive-silent", names="SYNC")
 # The drives miss our heartbeat.
-_DEAF = Fault(told=0.05, rests=0.45, code="bus", unknown=ALL_UNKNOWN)
-_SLIDES, _TERMINALS = frozenset({Unknown.SLIDES}), frozenset({Unknown.OUTPUTS, Unknown.INPUTS})
+_DEAF = Fault(told=0.05, rests=0.45, code="bus", unknown=ALL_UNKNOWN_PARTS)
+_SLIDES, _TERMINALS = frozenset({UnknownPart.AXES}), frozenset({UnknownPart.OUTPUTS, UnknownPart.INPUTS})
 
 
 class Canopen(Rig):
@@ -36,7 +36,7 @@ class Canopen(Rig):
     faults: ClassVar[Mapping[str, Fault]] = {
         "drive fault": Fault(told=0.03, rests=0.1, code="axis", names="X: "),
         "following error": Fault(told=0.08, rests=0.2, code="following", names="EMCY 8611"),
-        "cable out": replace(_SILENT, unknown=ALL_UNKNOWN),
+        "cable out": replace(_SILENT, unknown=ALL_UNKNOWN_PARTS),
         "silence": replace(_SILENT, names="Z: ", unknown=_SLIDES),
         "silent terminals": replace(_SILENT, code="io-silent", names="io: ", unknown=_TERMINALS),
         "garbage": replace(_DEAF, names="181"),
@@ -81,16 +81,16 @@ class Canopen(Rig):
             self.round()
             self._count += 1
             if self._count % self._answered == 0:
-                self.peers.pump()
+                self.peers.process_frames()
 
     @property
-    def slides(self) -> PlantHands:
+    def slides(self) -> PlantControls:
         """Behind their drives."""
         return self.peers.machine
 
     def round(self) -> None:
         """One of the loop that owns the bus."""
-        self.bench.machine.tick()
+        self.bench.machine.run_cycle()
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What nodes and bus can do."""
@@ -98,12 +98,12 @@ class Canopen(Rig):
         return {
             "drive fault": lambda: machine.drive_fault("X"),
             "following error": lambda: machine.jam("X"),
-            "cable out": lambda: self.peers.cable(out=True),
-            "silence": lambda: setattr(nodes["Z"], "silent", True),
-            "silent terminals": lambda: setattr(nodes["io"], "silent", True),
+            "cable out": lambda: self.peers.cable(disconnected=True),
+            "silence": lambda: setattr(nodes["Z"], "is_silent", True),
+            "silent terminals": lambda: setattr(nodes["io"], "is_silent", True),
             "garbage": lambda: self._send(*[(0x181, b"\x27\x02")] * 3),
-            "node reboot": nodes["X"].boot,
-            "terminals reboot": nodes["io"].boot,
+            "node reboot": nodes["X"].boot_up,
+            "terminals reboot": nodes["io"].boot_up,
             "NMT stop": lambda: setattr(nodes["Z"], "state", 4),
             "bus-off": self._bus_off,
             "two masters": lambda: self._send((0x77F, b"\x05")),
@@ -113,7 +113,7 @@ class Canopen(Rig):
 
     def mend(self) -> None:
         """Cable in, slide free."""
-        self.peers.cable(out=False)
+        self.peers.cable(disconnected=False)
         self.peers.machine.jam("X", False)
 
     def close(self) -> None:
@@ -159,9 +159,15 @@ class Interpolated(Csp):
         return cyclic("ip", *changes, absolute=absolute)
 
 
-def bus_driven(machine: CanopenMachine) -> Driven:
+def bus_driven(machine: CanopenMachine) -> DriverBundle:
     """The bus as the driver host owns it; the bench closes it."""
-    return Driven(machine.ports, machine.tick, close=lambda: None, wake=machine.wake, notes=machine.notes)
+    return DriverBundle(
+        machine.ports,
+        machine.run_cycle,
+        close=lambda: None,
+        get_next_tick_time=machine.get_next_cycle_time,
+        collect_notes=machine.collect_warnings,
+    )
 
 
 class FedCanopen(Canopen):
@@ -186,7 +192,7 @@ class FedCanopen(Canopen):
         self._mended = False
         self.host = DriverHost(bus_driven(self.bench.machine))
         self.link = BrokenLink(self.host)
-        self.ports = host_ports(Line(self.link, self.clock, self._again))
+        self.ports = create_host_ports(HostConnection(self.link, self.clock, self._again))
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What becomes of the driver host itself, and some of its bus."""
@@ -196,19 +202,19 @@ class FedCanopen(Canopen):
         below = super().acts()
         return {fault: own.get(fault, below[fault]) for fault in self.faults}
 
-    def _again(self) -> Opening[Link]:
+    def _again(self) -> ConnectionAttempt[HostLink]:
         """Another process opens the bus and configures the drives as at a start."""
 
-        def begun() -> Link:
+        def begun() -> HostLink:
             if not self._mended:
                 raise DriverError("the driver host does not start", "feeder-gone")
             self.bench.machine.bus.close()
-            self.bench.machine = canopen_machine(self.machine, self.clock, self.peers.pump)
+            self.bench.machine = connect_canopen_machine(self.machine, self.clock, self.peers.process_frames)
             self.host = DriverHost(bus_driven(self.bench.machine))
             self.link = BrokenLink(self.host)
-            return cleared(self.link)
+            return clear_host_faults(self.link)
 
-        return Opening(begun, at_once=True)
+        return ConnectionAttempt(begun, synchronous=True)
 
     def mend(self) -> None:
         """Another driver host can be started."""
@@ -219,17 +225,17 @@ class FedCanopen(Canopen):
         """Its process is stopped for so long; drives and modules go on."""
         for _ in range(round(seconds / 0.002)):
             self.clock.advance(0.002)
-            self.peers.pump()
-        self.host.late(seconds)
+            self.peers.process_frames()
+        self.host.record_wakeup_delay(seconds)
 
     def round(self) -> None:
         """By the driver host; one that has ended does none."""
         if self.link.why != HOST_WORDS["dead reader"]:
-            self.host.tick()
+            self.host.run_cycle()
 
     def _gone(self, why: str) -> None:
         self.link.why = why
-        self.host.orphaned = True
+        self.host.is_orphaned = True
 
 
 class FedCsp(FedCanopen):

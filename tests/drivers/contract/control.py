@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from app.compose.machine.machine_setup import setup_for
-from app.compose.workshop import proof_of
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import create_proof
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, Proof, make_job
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.snapshot import LogEvent, MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from tests.drivers.contract.rig import STILL, TICK, Rig
@@ -27,7 +27,7 @@ class Control:
     def __init__(self, rig: Rig, machine: Machine | None = None) -> None:
         """``machine``: the same with other rules."""
         self.rig, self.clock, self.world = rig, rig.clock, rig.world
-        self.events: list[Event] = []
+        self.events: list[LogEvent] = []
         self.watch: list[Callable[[Snapshot], None]] = []
         self.executor = Executor(machine or rig.machine, rig.ports, self.events.append)
         self.run(0.1)
@@ -37,12 +37,12 @@ class Control:
         return self.executor.snapshot
 
     @property
-    def state(self) -> State:
+    def state(self) -> MachineState:
         return self.executor.snapshot.state
 
     def tick(self) -> None:
         self.rig.alone(TICK)
-        self.executor.tick()
+        self.executor.run_tick()
         for look in self.watch:
             look(self.shot)
 
@@ -57,7 +57,7 @@ class Control:
         while self.clock.now() < end - 1e-9:
             self.tick()
 
-    def until(self, *states: State, limit: float = 30.0) -> float:
+    def until(self, *states: MachineState, limit: float = 30.0) -> float:
         """Run until one of these states; how long it took."""
         return self.until_true(lambda shot: shot.state in states, limit)
 
@@ -89,15 +89,15 @@ class Control:
 
     def ready(self) -> None:
         self.post(EnableDrives())
-        self.until(State.IDLE, limit=0.5)
+        self.until(MachineState.IDLE, limit=0.5)
 
     def load(self, text: str, *, proved: bool = True) -> Job:
         """With the proof that proving gives; or with one that has nothing against it."""
-        setup = setup_for(self.rig.machine, tools={1: ToolOffset(0.0, 0.0)}, secondary={})
-        job = make_job(Source("PART", text), setup)
+        setup = create_setup(self.rig.machine, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        job = make_job(ProgramSource("PART", text), setup)
         proof = Proof(job.digest, ())
         if proved:
-            proof = proof_of(job, prove(job.source, job.setup, self.rig.machine))
+            proof = create_proof(job, prove(job.source, job.setup, self.rig.machine))
             assert not proof.errors, proof.errors
         self.post(LoadJob(job, proof))
         return job
@@ -110,7 +110,7 @@ class Control:
 
     def start(self, text: str) -> None:
         """Drives on, program loaded, both palms."""
-        if self.state is State.DISABLED:
+        if self.state is MachineState.DISABLED:
             self.ready()
         self.load(text)
         if self.shot.interrupted is not None:  # read, and meant all the same

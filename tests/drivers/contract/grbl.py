@@ -6,14 +6,14 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.backends.grblhal_backend import grblhal_config
+from app.compose.backends.grblhal_backend import create_grblhal_config
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN
+from core.ports import ALL_UNKNOWN_PARTS
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.operator_station import PanelStation
-from drivers.simulators.grblhal_firmware import Firmware
+from drivers.operator_station import OnScreenStation
+from drivers.simulators.grblhal_firmware import GrblFirmware
 from drivers.simulators.spindle_motor import SpindleMotor
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import Readings
 from tests.drivers.grblhal.bench import LoopWire, grbl_machine, quirky
@@ -34,7 +34,7 @@ class LateWire(LoopWire):
 
     late = 0.0
 
-    def __init__(self, firmware: Firmware) -> None:
+    def __init__(self, firmware: GrblFirmware) -> None:
         super().__init__(firmware)
         self._coming: deque[tuple[float, bytes]] = deque()
 
@@ -50,7 +50,7 @@ class LateWire(LoopWire):
 class GrblWorld:
     """What hangs on the controller; the buttons are those of the screen."""
 
-    def __init__(self, machine: Machine, peer: Firmware, panel: PanelStation) -> None:
+    def __init__(self, machine: Machine, peer: GrblFirmware, panel: OnScreenStation) -> None:
         self._machine, self._peer, self._panel = machine, peer, panel
         self._by_hand = False  # somebody has opened the collet
         self.press_hold, self.release_hold = panel.press_hold, panel.release_hold
@@ -59,7 +59,7 @@ class GrblWorld:
     def place(self) -> tuple[float, float]:
         """X and Z."""
         self._peer.advance()
-        return self._peer.slides.place
+        return self._peer.motion.position
 
     def rpm(self) -> float:
         """By the motor."""
@@ -69,7 +69,7 @@ class GrblWorld:
     def outputs(self) -> Readings:
         """By the names of the machine file."""
         return {
-            name: self._peer.outputs.get(out.terminal, name == "collet")
+            name: self._peer.output_states.get(out.terminal, name == "collet")
             for name, out in self._machine.outputs.items()
         }
 
@@ -78,12 +78,14 @@ class GrblWorld:
         wired = self._machine.inputs[name]
         if wired.terminal.startswith("pn."):
             letter = wired.terminal.removeprefix("pn.")
-            active = on is not wired.active_low
-            self._peer.pins = self._peer.pins.replace(letter, "") + (letter if active else "")
+            active = on is not wired.is_active_low
+            self._peer.active_pins = self._peer.active_pins.replace(letter, "") + (letter if active else "")
             if letter == "D":  # the firmware stops by itself
-                self._peer.door = active
+                self._peer.is_door_open = active
         else:
-            self._peer.inputs[int(wired.terminal.removeprefix("in."))] = on is not wired.active_low
+            self._peer.auxiliary_inputs[int(wired.terminal.removeprefix("in."))] = (
+                on is not wired.is_active_low
+            )
 
     def press_start(self) -> None:
         """Both palms on the screen."""
@@ -100,10 +102,10 @@ class GrblWorld:
     def press_estop(self) -> None:
         """Its pin, its alarm, and the relay of the spindle."""
         self.set_input("estop", True)
-        self._peer.turn(0.0)
-        self._peer.outputs.update(flood=False, mist=False)
+        self._peer.command_spindle(0.0)
+        self._peer.output_states.update(flood=False, mist=False)
         self._peer.raise_alarm(10)
-        self._motor.cut(self._peer.clock.now())
+        self._motor.cut_power(self._peer.clock.now())
 
     def release_estop(self) -> None:
         """Free."""
@@ -115,7 +117,7 @@ class GrblWorld:
 
     def follow(self) -> None:
         """The collet's switch follows its valve, which is closed until it is told otherwise."""
-        closed = self._peer.outputs.get(self._machine.outputs["collet"].terminal, True)
+        closed = self._peer.output_states.get(self._machine.outputs["collet"].terminal, True)
         self.set_input("collet_closed", closed and not self._by_hand)
 
     def silence_station(self) -> None:
@@ -128,7 +130,7 @@ class GrblWorld:
 
     def spindle_dies(self) -> None:
         """The belt slips."""
-        self._motor.faults.bog = 0.3
+        self._motor.faults.speed_fraction = 0.3
 
 
 class Grblhal(Rig):
@@ -143,9 +145,9 @@ class Grblhal(Rig):
             "controller-lost",
             spins=_ALONE,
             flows=_ALONE,
-            unknown=ALL_UNKNOWN,
+            unknown=ALL_UNKNOWN_PARTS,
         ),
-        "silence": Fault(told=1.4, rests=2.2, code="controller-silent", unknown=ALL_UNKNOWN),
+        "silence": Fault(told=1.4, rests=2.2, code="controller-silent", unknown=ALL_UNKNOWN_PARTS),
         "garbage": Fault(told=0.15, rests=0.3, code="controller-silent", names="k' "),
         "node reboot": Fault(told=0.15, rests=0.1, code="position-lost", names="ALARM:3", homeless=True),
         "two masters": Fault(told=0.15, rests=0.3, code="controller-silent", names="'ok'"),
@@ -170,12 +172,12 @@ class Grblhal(Rig):
         estop = 'estop = { at = "pn.E" }'
         probe = (estop, 'probe = { at = "pn.P" }\n' + estop)
         self.machine = grbl_machine(probe, *(HOMING if homing else ()))
-        self.clock = StepClock()
-        self.peer = Firmware(self.clock, quirky(homing=homing))
+        self.clock = ManualClock()
+        self.peer = GrblFirmware(self.clock, quirky(homing=homing))
         self.wire = LateWire(self.peer)
-        self.driver = GrblMachine(grblhal_config(self.machine), self.clock, self.wire)
+        self.driver = GrblMachine(create_grblhal_config(self.machine), self.clock, self.wire)
         self.ports = self.driver.ports
-        self.world = GrblWorld(self.machine, self.peer, self.driver.panel)
+        self.world = GrblWorld(self.machine, self.peer, self.driver.on_screen_station)
 
     def alone(self, dt: float) -> None:
         """The controller is brought up to its clock by whoever looks."""
@@ -189,26 +191,26 @@ class Grblhal(Rig):
             "drive fault": self._motor_fault,
             "alarm": lambda: self.peer.raise_alarm(14),
             "cable out": lambda: setattr(self.wire, "cut", True),
-            "silence": lambda: setattr(self.peer.quirks, "deaf", True),
-            "garbage": lambda: self.peer.say("o*\\xffk\r\n"),
+            "silence": lambda: setattr(self.peer.behavior, "sends_nothing", True),
+            "garbage": lambda: self.peer.send_text("o*\\xffk\r\n"),
             "node reboot": self.peer.reset,
-            "two masters": lambda: self.peer.feed(b"G8\n"),
+            "two masters": lambda: self.peer.receive_bytes(b"G8\n"),
             "late answers": lambda: setattr(self.wire, "late", 0.15),
         }
 
     def switch_output(self, name: str, on: bool) -> None:
         """By a pendant's button, or by the firmware."""
-        self.peer.outputs[self.machine.outputs[name].terminal] = on
+        self.peer.output_states[self.machine.outputs[name].terminal] = on
 
     def _motor_fault(self) -> None:
         """As its firmware does on this input: all off, then the alarm."""
-        self.peer.turn(0.0)
-        self.peer.outputs.update(flood=False, mist=False)
+        self.peer.command_spindle(0.0)
+        self.peer.output_states.update(flood=False, mist=False)
         self.peer.raise_alarm(17)
 
     def mend(self) -> None:
         """It speaks again, its cable is in."""
-        self.peer.quirks.deaf = self.wire.cut = False
+        self.peer.behavior.sends_nothing = self.wire.cut = False
 
     def close(self) -> None:
         """Nothing to let go."""

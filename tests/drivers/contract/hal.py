@@ -10,15 +10,15 @@ from dataclasses import replace
 from typing import ClassVar
 
 import resources
-from app.compose.backends.hal_backend import hal_config
-from app.compose.backends.simulated_backend import sim_config
+from app.compose.backends.hal_backend import create_hal_config
+from app.compose.backends.simulated_backend import create_sim_config
 from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN
+from core.ports import ALL_UNKNOWN_PARTS
 from drivers.hal.hal_machine import HalMachine
-from drivers.simulators.hal_far_end import HalFarEnd
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import StepClock
+from drivers.simulators.hal_simulator import HalSimulator
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ManualClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
@@ -69,7 +69,7 @@ def hal_machine(*, homing: bool = False, lamps: str = "", orients: bool = False)
     return parse_machine(hal_text(homing=homing, lamps=lamps, orients=orients), "gt75-hal.toml")
 
 
-_GONE = Fault(told=0.05, rests=0.5, code="hal-bridge", unknown=ALL_UNKNOWN)
+_GONE = Fault(told=0.05, rests=0.5, code="hal-bridge", unknown=ALL_UNKNOWN_PARTS)
 
 
 class Hal(Rig):
@@ -79,9 +79,9 @@ class Hal(Rig):
         "drive fault": Fault(told=0.03, rests=0.1, code="axis", names="the X axis"),
         "following error": Fault(told=0.08, rests=0.2, code="following", names="X: "),
         "dead reader": _GONE,
-        "silence": Fault(0.2, 0.6, "hal-silent", "0.1", unknown=ALL_UNKNOWN),
-        "node reboot": Fault(told=0.35, rests=0.2, code="hal-thread", unknown=ALL_UNKNOWN),
-        "cable out": Fault(told=0.05, rests=0.2, code="hal-board", unknown=ALL_UNKNOWN),
+        "silence": Fault(0.2, 0.6, "hal-silent", "0.1", unknown=ALL_UNKNOWN_PARTS),
+        "node reboot": Fault(told=0.35, rests=0.2, code="hal-thread", unknown=ALL_UNKNOWN_PARTS),
+        "cable out": Fault(told=0.05, rests=0.2, code="hal-board", unknown=ALL_UNKNOWN_PARTS),
         "garbage": replace(_GONE, code="hal-silent", names="packet"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
@@ -96,44 +96,46 @@ class Hal(Rig):
 
     def __init__(self, *, homing: bool = False, lamps: str = "", orients: bool = False) -> None:
         self.machine = hal_machine(homing=homing, lamps=lamps, orients=orients)
-        self.clock = StepClock()
-        config = hal_config(self.machine)
-        self.far = HalFarEnd(config, sim_config(self.machine), self.clock)
-        self.driver = HalMachine(config, self.clock, self.far.open, self.far.plant.advance)
+        self.clock = ManualClock()
+        config = create_hal_config(self.machine)
+        self.far = HalSimulator(config, create_sim_config(self.machine), self.clock)
+        self.driver = HalMachine(config, self.clock, self.far.restart_bridge, self.far.plant.advance)
         self.ports = self.driver.ports
-        self.world = SimWorld(self.far.machine, lambda: self.far.plant.terminals.outputs)
+        self.world = SimWorld(self.far.plant_controls, lambda: self.far.plant.terminals.outputs)
 
     def alone(self, dt: float) -> None:
         """Two rounds of the loop that owns the bridge."""
         for _ in range(2):
             self.clock.advance(dt / 2)
             self.far.plant.advance()
-            self.driver.tick()
+            self.driver.run_cycle()
 
     @property
-    def slides(self) -> PlantHands:
+    def slides(self) -> PlantControls:
         """Behind HAL."""
-        return self.far.machine
+        return self.far.plant_controls
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What becomes of its processes."""
         far = self.far
         return {
-            "drive fault": lambda: far.machine.drive_fault("X"),
-            "following error": lambda: far.machine.jam("X"),
-            "dead reader": lambda: setattr(far, "killed", True),
-            "silence": lambda: setattr(far, "stopped", True),
-            "node reboot": lambda: setattr(far, "stands", True),
-            "cable out": lambda: setattr(far, "cable_out", True),
-            "garbage": lambda: setattr(far, "garbled", True),
-            "late answers": lambda: setattr(far, "late", 4),
+            "drive fault": lambda: far.plant_controls.drive_fault("X"),
+            "following error": lambda: far.plant_controls.jam("X"),
+            "dead reader": lambda: setattr(far, "is_bridge_killed", True),
+            "silence": lambda: setattr(far, "is_bridge_suspended", True),
+            "node reboot": lambda: setattr(far, "is_thread_stopped", True),
+            "cable out": lambda: setattr(far, "is_cable_disconnected", True),
+            "garbage": lambda: setattr(far, "has_invalid_packets", True),
+            "late answers": lambda: setattr(far, "delayed_report_count", 4),
         }
 
     def mend(self) -> None:
         """The slide is free, the processes go on."""
-        self.far.machine.jam("X", False)
-        self.far.plant.faulty.clear()
-        self.far.stopped = self.far.stands = self.far.garbled = self.far.cable_out = False
+        self.far.plant_controls.jam("X", False)
+        self.far.plant.faulty_axes.clear()
+        self.far.is_bridge_suspended = self.far.is_thread_stopped = self.far.has_invalid_packets = (
+            self.far.is_cable_disconnected
+        ) = False
 
     def close(self) -> None:
         """Both ends."""

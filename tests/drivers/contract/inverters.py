@@ -9,11 +9,11 @@ from functools import partial
 from typing import ClassVar
 
 import resources
-from app.compose.backends.inverter_backend import ClearingAxes, halt_with, unknown_with
+from app.compose.backends.inverter_backend import FaultClearingAxes, find_unknown_parts, halt_with_inverter
 from app.compose.machine.machine_files import parse_machine
-from core.ports import Unknown
-from drivers.inverter.inverter_attendant import PRESS, AttendantThread
-from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from core.ports import UnknownPart
+from drivers.inverter.inverter_control import PRESS_ESTOP_TEXT, InverterThread
+from drivers.inverter.inverter_spindle import InverterSpindle, create_inverter_control
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault
 from tests.drivers.contract.simulated import Simulated
@@ -23,9 +23,9 @@ from tests.drivers.inverter.inverter_simulators import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"
-_SPINDLE = frozenset({Unknown.SPINDLE})
+_SPINDLE = frozenset({UnknownPart.SPINDLE})
 # A second of silence, and the tries under way.
-_LOST = Fault(told=_RTU, rests=_RTU + 0.2, code="inverter-silent", names=PRESS, unknown=_SPINDLE)
+_LOST = Fault(told=_RTU, rests=_RTU + 0.2, code="inverter-silent", names=PRESS_ESTOP_TEXT, unknown=_SPINDLE)
 _DISOBEYS = Fault(
     told=1.6, rests=1.8, code="ignores-stop", names="0.00 Hz"
 )  # a second, and the looks under way
@@ -56,7 +56,7 @@ class InverterWorld(SimWorld):
 
     def spindle_dies(self) -> None:
         """The motor is overloaded."""
-        self.inverter.motor.faults.bog = 0.3
+        self.inverter.motor.faults.speed_fraction = 0.3
 
 
 class OnALine(Simulated):
@@ -70,8 +70,8 @@ class OnALine(Simulated):
         "garbage": _LOST,
         "answers too late": dataclasses.replace(_LOST, told=2 * _RTU, rests=2 * _RTU + 0.2),
         "node reboot": _DISOBEYS,
-        "dead reader": Fault(0.1, 0.2, "inverter-silent", PRESS, unknown=_SPINDLE),
-        "two masters": dataclasses.replace(_DISOBEYS, names=PRESS),
+        "dead reader": Fault(0.1, 0.2, "inverter-silent", PRESS_ESTOP_TEXT, unknown=_SPINDLE),
+        "two masters": dataclasses.replace(_DISOBEYS, names=PRESS_ESTOP_TEXT),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers", "noise")
     heals = 2.0  # a port that has gone is tried again each second
@@ -87,26 +87,26 @@ class OnALine(Simulated):
         assert isinstance(self.clock, LockstepClock)
         self.inverter = Inverter(self.clock)
         self.wire = BenchWire(far_end(self.family, self.inverter)[1], self.clock)
-        self.attendant = attendant(config(self.family), self.wire.opened, self.clock, FOLDER)
-        self.keeper = AttendantThread(self.attendant)
-        self.attendant.connect()
+        self.attendant = create_inverter_control(config(self.family), self.wire.opened, self.clock, FOLDER)
+        self.keeper = InverterThread(self.attendant)
+        self.attendant.open_and_check()
         ports = self.ports
         spindle = InverterSpindle(
             config(self.family),
             self.attendant,
             self.clock,
-            alive=lambda: self.keeper.alive,
-            revive=self._revive,
-            estop=lambda: ports.station.snapshot().estop,
+            is_thread_alive=lambda: self.keeper.is_alive,
+            restart_thread=self._revive,
+            is_estop_pressed=lambda: ports.station.read_state().estop,
         )
         self.ports = dataclasses.replace(
             ports,
-            axes=ClearingAxes(ports.axes, spindle.clear_fault),
+            axes=FaultClearingAxes(ports.axes, spindle.clear_fault),
             spindle=spindle,
             gear=None,
-            halt=partial(halt_with, ports, spindle),
-            unknown=partial(unknown_with, ports, spindle),
-            spindle_lag=spindle.lag,
+            halt_machine=partial(halt_with_inverter, ports, spindle),
+            unknown=partial(find_unknown_parts, ports, spindle),
+            spindle_lag=spindle.get_line_delay,
         )
         self.world = InverterWorld(self.hands, ports.io.outputs)
         self.world.inverter = self.inverter
@@ -155,7 +155,7 @@ class OnALine(Simulated):
 
     def _revive(self) -> None:
         assert isinstance(self.clock, LockstepClock)
-        self.keeper.revive()
+        self.keeper.restart()
         self.clock.attend(self.keeper.thread)
 
     def _another_commands(self) -> None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import threading
 
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 
 _LOOK = 0.02  # s of real time between two looks whether the other thread still lives
 
 
-class LockstepClock(StepClock):
+class LockstepClock(ManualClock):
     """Moved by the thread that has made it. ``attend`` the other one; ``release`` it for good at the end."""
 
     def __init__(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.ports import AxisSink, BlockSink, LineOp, Segments
+from core.ports import AxisSink, BlockController, LineOperation, Segments
 
 ACCEL = 3000.0  # mm/s²
 _PIECE = 0.1  # s of one block
@@ -25,12 +25,12 @@ def start(axes: AxisSink, speed: float, cruise: float) -> Segments:
     return Segments(at + np.array([0.0, up, up + cruise]), dt, p, v, acc)
 
 
-def hand_over(blocks: BlockSink, axes: AxisSink, speed: float, cruise: float) -> float:
+def hand_over(blocks: BlockController, axes: AxisSink, speed: float, cruise: float) -> float:
     """The same way in blocks of a tenth of a second; where it ends."""
     x, z = axes.demand_at(1e9)[0][:2]
     way = speed * (cruise + abs(speed) / ACCEL)
     n = max(1, round(cruise / _PIECE))
     for i in range(1, n + 1):
-        ticket = blocks.submit(LineOp(x + way * i / n, z, abs(speed)))
+        ticket = blocks.submit_block(LineOperation(x + way * i / n, z, abs(speed)))
         assert ticket is not None, "no room for a second of motion"
     return x + way

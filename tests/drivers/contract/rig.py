@@ -10,9 +10,9 @@ from typing import ClassVar
 
 from core.faults import FaultCode
 from core.machine.machine_model import Machine
-from core.ports import BlockSink, MachinePorts, Unknown
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import StepClock
+from core.ports import BlockController, MachinePorts, UnknownPart
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ManualClock
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World
 
@@ -50,7 +50,7 @@ class Fault:
     spins: str = ""
     flows: str = ""
     homeless: bool = False
-    unknown: frozenset[Unknown] = frozenset()
+    unknown: frozenset[UnknownPart] = frozenset()
 
 
 class Rig(ABC):
@@ -67,7 +67,7 @@ class Rig(ABC):
     watched: ClassVar[bool] = False  # something switches off when the control is silent for 0.2 s at rest
 
     machine: Machine
-    clock: StepClock
+    clock: ManualClock
     ports: MachinePorts
     world: World
 
@@ -88,7 +88,7 @@ class Rig(ABC):
         """Let everything go."""
 
     @property
-    def slides(self) -> PlantHands:
+    def slides(self) -> PlantControls:
         """What jams, pushes and drives away: ``missing["slides"]`` where the controller counts by itself."""
         raise NotImplementedError
 
@@ -97,22 +97,22 @@ class Rig(ABC):
         raise NotImplementedError(name, on)
 
     @property
-    def blocks(self) -> BlockSink | None:
+    def blocks(self) -> BlockController | None:
         """The controller's planner, where it has one."""
         return self.ports.blocks
 
     @property
     def told(self) -> str:
         """What the driver says is wrong."""
-        return self.ports.axes.sample().fault or self.ports.spindle.fault()
+        return self.ports.axes.sample().fault or self.ports.spindle.read_fault()
 
     def tick(self) -> None:
         """Let a tick pass, and look as the executor does."""
         self.alone(TICK)
         ports = self.ports
-        for look in (ports.axes.sample, ports.io.inputs, ports.spindle.speed, ports.spindle.fault):
+        for look in (ports.axes.sample, ports.io.inputs, ports.spindle.speed, ports.spindle.read_fault):
             look()
-        ports.station.snapshot()
+        ports.station.read_state()
 
     def run(self, seconds: float) -> None:
         """Let time pass."""

@@ -6,16 +6,16 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.backends.simulated_backend import simulated
+from app.compose.backends.simulated_backend import create_simulation
 from app.compose.machine.machine_files import load_machine
 from core.machine.machine_model import InputModel, Machine
-from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
-from drivers.driver_host.host_line import Line, Link, LoopLink, cleared
+from core.ports import ALL_UNKNOWN_PARTS, DriverError, MachinePorts
+from drivers.driver_host.host_connection import HostConnection, HostLink, InProcessLink, clear_host_faults
 from drivers.driver_host.host_messages import Message
-from drivers.driver_host.host_ports import host_ports
-from drivers.driver_host.host_server import Driven, DriverHost
-from drivers.simulators.plant_hands import PlantHands
-from drivers.waiting import Opening, StepClock
+from drivers.driver_host.host_ports import create_host_ports
+from drivers.driver_host.host_server import DriverBundle, DriverHost
+from drivers.simulators.plant_controls import PlantControls
+from drivers.wakeups import ConnectionAttempt, ManualClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
@@ -61,13 +61,13 @@ class Simulated(Rig):
         if homing:
             self.machine = unhomed(self.machine)
         self.clock = self.make_clock()
-        sim = simulated(self.machine, self.clock)
+        sim = create_simulation(self.machine, self.clock)
         self.ports, self.hands = sim.ports, sim.machine
         self.world = SimWorld(sim.machine, sim.ports.io.outputs)
 
-    def make_clock(self) -> StepClock:
+    def make_clock(self) -> ManualClock:
         """Moved by the test."""
-        return StepClock()
+        return ManualClock()
 
     def alone(self, dt: float) -> None:
         """The plant is brought up to its clock by whoever looks."""
@@ -85,7 +85,7 @@ class Simulated(Rig):
         self.hands.jam("X", False)
 
     @property
-    def slides(self) -> PlantHands:
+    def slides(self) -> PlantControls:
         """The simulated ones."""
         return self.hands
 
@@ -97,25 +97,25 @@ class Simulated(Rig):
         """Nothing to let go."""
 
 
-class BrokenLink(LoopLink):
+class BrokenLink(InProcessLink):
     """A link whose other end can go away, or take its time."""
 
     why = ""
     late: Callable[[], None] | None = None
 
-    def ask(self, message: Message) -> Message:
+    def send_request(self, message: Message) -> Message:
         if self.why:
             gone = self.why == HOST_WORDS["dead reader"]
             raise DriverError(self.why, "feeder-gone" if gone else "feeder-silent")
-        answer = super().ask(message)
+        answer = super().send_request(message)
         if self.late is not None:
             self.late()
         return answer
 
 
-def simulation_driven(ports: MachinePorts, hands: object | None) -> Driven:
+def simulation_driven(ports: MachinePorts, hands: object | None) -> DriverBundle:
     """The simulation as the driver host owns it."""
-    return Driven(ports, tick=ports.axes.sample, close=lambda: None, hands=hands)
+    return DriverBundle(ports, run_cycle=ports.axes.sample, close=lambda: None, station_controls=hands)
 
 
 # A driver host that no longer hears its control ends the queue (1.0 s here), then takes the power.
@@ -130,7 +130,7 @@ HOST_FAULTS = {
         rests=1.5,
         code="feeder-gone" if fault == "dead reader" else "feeder-silent",
         names=words,
-        unknown=ALL_UNKNOWN,
+        unknown=ALL_UNKNOWN_PARTS,
     )
     for fault, words in HOST_WORDS.items()
 }
@@ -158,24 +158,24 @@ class Fed(Simulated):
         self.inner, self._mended = self.ports, False
         self.host = DriverHost(simulation_driven(self.ports, self.hands))
         self.link = BrokenLink(self.host)
-        self.ports = host_ports(Line(self.link, self.clock, self._again))
+        self.ports = create_host_ports(HostConnection(self.link, self.clock, self._again))
 
     def alone(self, dt: float) -> None:
         """The driver host's loop goes on."""
         self.clock.advance(dt)
-        self.host.tick()
+        self.host.run_cycle()
 
-    def _again(self) -> Opening[Link]:
+    def _again(self) -> ConnectionAttempt[HostLink]:
         """Another one on the same machine; as long as nothing is mended it does not come up."""
 
-        def begun() -> Link:
+        def begun() -> HostLink:
             if not self._mended:
                 raise DriverError("the driver host does not start", "feeder-gone")
             self.host = DriverHost(simulation_driven(self.inner, self.hands))
             self.link = BrokenLink(self.host)
-            return cleared(self.link)
+            return clear_host_faults(self.link)
 
-        return Opening(begun, at_once=True)
+        return ConnectionAttempt(begun, synchronous=True)
 
     def mend(self) -> None:
         """Another driver host can be started."""
@@ -185,7 +185,7 @@ class Fed(Simulated):
     def host_stands(self, seconds: float) -> None:
         """Its process is stopped for so long, and the control waits for its answer."""
         self.clock.advance(seconds)
-        self.host.late(seconds)
+        self.host.record_wakeup_delay(seconds)
 
     def acts(self) -> Mapping[str, Callable[[], None]]:
         """What the socket can do."""
@@ -198,7 +198,7 @@ class Fed(Simulated):
     def _gone(self, why: str) -> Callable[[], None]:
         def break_it() -> None:
             self.link.why = why
-            self.host.orphaned = True
+            self.host.is_orphaned = True
 
         return break_it
 

@@ -10,26 +10,26 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.compose.backends.simulated_backend import sim_config
+from app.compose.backends.simulated_backend import create_sim_config
 from app.compose.machine.machine_files import load_machine
 from core.message import Message
 from core.ports import (
-    ALL_UNKNOWN,
+    ALL_UNKNOWN_PARTS,
     AxisSample,
     Clock,
     DriverError,
     Fault,
     MachinePorts,
     Segments,
-    Stop,
-    Unknown,
+    StopMode,
+    UnknownPart,
 )
-from drivers.operator_station import PanelStation
-from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
+from drivers.operator_station import OnScreenStation
+from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_limits
 from drivers.simulators.plant_config import SimConfig
-from drivers.simulators.plant_terminals import Terminals
+from drivers.simulators.plant_terminals import SimulatedTerminals
 from drivers.simulators.spindle_motor import SpindleMotor
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.drivers.contract import rig
 from tests.drivers.contract.simulated import unhomed, with_probe
 from tests.drivers.contract.world import Readings
@@ -45,12 +45,12 @@ class Board:
         self.place = (0.0,) * len(config.axes)  # mm or degrees, counted in steps
         self.powered = self.estop = self.cut = False
         self.motor = SpindleMotor(config.spindle)
-        self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
+        self.terminals = SimulatedTerminals(config.outputs, config.inputs, config.collet, config.seed)
 
     def switch_off(self, now: float) -> None:
         """Remove the power of the axes and the spindle."""
         self.powered = False
-        self.motor.cut(now)
+        self.motor.cut_power(now)
 
 
 class BoardAxes:
@@ -58,11 +58,13 @@ class BoardAxes:
 
     def __init__(self, config: SimConfig, clock: Clock, board: Board) -> None:
         self.axes = tuple(axis.name for axis in config.axes)
-        self.commit = config.commit
+        self.commit = config.commit_time_s
         self.now = clock.now
         self.fault = ""
         self._config, self._board = config, board
-        self._queue = SetpointQueue(self.axes, board.place, config.commit, Tolerance.of(config.axes))
+        self._queue = SetpointQueue(
+            self.axes, board.place, config.commit_time_s, JunctionTolerance.from_axes(config.axes)
+        )
         self._homed = [axis.absolute for axis in config.axes]
         self._homing: tuple[int, float] | None = None  # axis, and when the board has homed it
         self._off_at = NEVER
@@ -73,7 +75,7 @@ class BoardAxes:
         if board.cut and not self.fault:
             self.fault = Fault("the board does not respond; check its cable", "controller-lost")
         if board.powered:
-            board.place = self._queue.demand_at(min(now, self._off_at))[0]
+            board.place = self._queue.commanded_state_at(min(now, self._off_at))[0]
             if now >= self._off_at:
                 board.powered = False
         if not board.powered:
@@ -84,7 +86,7 @@ class BoardAxes:
 
     def horizon(self) -> float:
         """Return the end of the last motion in the queue."""
-        return self._queue.horizon(self.poll())
+        return self._queue.queue_end(self.poll())
 
     def splice(self, segments: Segments) -> None:
         """Queue setpoints. Raises DriverError."""
@@ -93,10 +95,10 @@ class BoardAxes:
         check_limits(segments, self._config.axes, self._homed)
         self._queue.splice(segments, now)
 
-    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued position and velocity at ``t``."""
         self.poll()
-        return self._queue.demand_at(t)
+        return self._queue.commanded_state_at(time_s)
 
     def sample(self) -> AxisSample:
         """Return the counted position; a step drive does not report a following error."""
@@ -108,7 +110,7 @@ class BoardAxes:
             following_error=(0.0,) * len(place),
             enabled=self._board.powered,
             homed=tuple(self._homed),
-            moving=any(self._queue.demand_at(now)[1]) or self._homing is not None,
+            moving=any(self._queue.commanded_state_at(now)[1]) or self._homing is not None,
             fault=self.fault,
         )
 
@@ -122,15 +124,15 @@ class BoardAxes:
         self._board.powered = on
         self.poll()
 
-    def stop(self, how: Stop) -> None:
+    def stop(self, mode: StopMode) -> None:
         """Brake, or remove the power at once."""
         now = self.poll()
         self._homing = None
-        if how is Stop.OFF:
+        if mode is StopMode.OFF:
             self.enable(False)
         elif self._board.powered:
-            ends = self._queue.brake(now, [axis.amax for axis in self._config.axes])
-            if how is Stop.RAMP_OFF:
+            ends = self._queue.brake_to_rest(now, [axis.amax for axis in self._config.axes])
+            if mode is StopMode.RAMP_OFF:
                 self._off_at = ends
 
     def home(self, axis: str) -> None:
@@ -157,13 +159,13 @@ class BoardAxes:
 
     def _power_lost(self) -> None:
         """Forget the setpoints, and the home of each axis that only counts."""
-        self._queue.rest_at(self._board.place)
+        self._queue.reset_to(self._board.place)
         self._homed = [axis.absolute for axis in self._config.axes]
         self._homing, self._off_at = None, NEVER
 
     def _reference(self, homed: int) -> None:
         self._board.place = tuple(0.0 if n == homed else p for n, p in enumerate(self._board.place))
-        self._queue.rest_at(self._board.place)
+        self._queue.reset_to(self._board.place)
         self._homed[homed], self._homing = True, None
 
 
@@ -173,26 +175,26 @@ class BoardSpindle:
     def __init__(self, axes: BoardAxes, board: Board, rpm_max: float) -> None:
         self._axes, self._board, self._rpm_max = axes, board, rpm_max
 
-    def run(self, rpm: float) -> None:
+    def run_at(self, rpm: float) -> None:
         """Turn, M03 is positive. Raises DriverError in E-stop and after a fault, except for 0."""
         now = self._axes.poll()
         if rpm and (self._board.estop or self._axes.fault):
             raise DriverError("the spindle stays off: E-stop or fault", "spindle-off")
-        self._board.motor.order(now, min(max(rpm, -self._rpm_max), self._rpm_max))
+        self._board.motor.command_speed(now, min(max(rpm, -self._rpm_max), self._rpm_max))
 
     def coast(self) -> None:
         """Remove the torque."""
-        self._board.motor.order(self._axes.poll(), 0.0, coast=True)
+        self._board.motor.command_speed(self._axes.poll(), 0.0, coast=True)
 
     def speed(self) -> float:
         """Return the speed, rpm."""
-        self._board.motor.advance(self._axes.poll())
+        self._board.motor.advance_to(self._axes.poll())
         return self._board.motor.speed
 
-    def angle(self) -> None:
+    def read_angle(self) -> None:
         """Return no angle."""
 
-    def fault(self) -> str:
+    def read_fault(self) -> str:
         """Return the fault of the inverter, of which this board knows nothing."""
         return ""
 
@@ -205,7 +207,7 @@ class BoardIO:
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs."""
-        return self._terminals.read(self._axes.poll())
+        return self._terminals.read_inputs(self._axes.poll())
 
     def outputs(self) -> Mapping[str, bool]:
         """Return all outputs."""
@@ -215,9 +217,9 @@ class BoardIO:
         """Switch an output. Raises DriverError for a name that the machine file does not have."""
         self._terminals.write(name, on, self._axes.poll())
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Switch every output to its safe state."""
-        self._terminals.safe(self._axes.poll())
+        self._terminals.switch_to_safe_state(self._axes.poll())
 
 
 def board_ports(config: SimConfig, clock: Clock, board: Board) -> MachinePorts:
@@ -229,8 +231,8 @@ def board_ports(config: SimConfig, clock: Clock, board: Board) -> MachinePorts:
         axes=axes,
         spindle=BoardSpindle(axes, board, config.spindle.rpm_max),
         io=io,
-        station=PanelStation(clock, io.inputs),
-        unknown=lambda: ALL_UNKNOWN if board.cut else frozenset[Unknown](),
+        station=OnScreenStation(clock, io.inputs),
+        unknown=lambda: ALL_UNKNOWN_PARTS if board.cut else frozenset[UnknownPart](),
     )
 
 
@@ -242,7 +244,7 @@ class BoardWorld:
 
     def __init__(self, ports: MachinePorts, board: Board) -> None:
         self._ports, self._board = ports, board
-        assert isinstance(ports.station, PanelStation)
+        assert isinstance(ports.station, OnScreenStation)
         self.press_start, self.press_hold = ports.station.press_start, ports.station.press_hold
         self.release_hold, self.set_feed_pot = ports.station.release_hold, ports.station.set_feed_pot
         self.set_spindle_auto = ports.station.set_spindle_auto
@@ -275,7 +277,7 @@ class BoardWorld:
 
     def open_collet(self) -> None:
         """Open it by hand."""
-        self._board.terminals.sensor_stuck = True
+        self._board.terminals.is_collet_sensor_stuck = True
         self.set_input("collet_closed", False)
 
     def silence_station(self) -> None:
@@ -288,7 +290,7 @@ class BoardWorld:
 
     def spindle_dies(self) -> None:
         """Make the belt slip."""
-        self._board.motor.faults.bog = 0.3
+        self._board.motor.faults.speed_fraction = 0.3
 
 
 _SIMULATED = "the simulated board is in this process: its cable can only be cut"
@@ -298,7 +300,7 @@ class Skeleton(rig.Rig):
     """The board on a clock that the test moves."""
 
     faults: ClassVar[Mapping[str, rig.Fault]] = {
-        "cable out": rig.Fault(0.02, 0.02, "controller-lost", "cable", unknown=ALL_UNKNOWN)
+        "cable out": rig.Fault(0.02, 0.02, "controller-lost", "cable", unknown=ALL_UNKNOWN_PARTS)
     }
     missing: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys(("silence", "garbage", "late answers", "node reboot", "bus-off"), _SIMULATED),
@@ -312,7 +314,7 @@ class Skeleton(rig.Rig):
     def __init__(self, *, homing: bool = False) -> None:
         machine = with_probe(load_machine(None))
         self.machine = unhomed(machine) if homing else machine
-        config, self.clock = sim_config(self.machine), StepClock()
+        config, self.clock = create_sim_config(self.machine), ManualClock()
         self.board = Board(config)
         self.ports = board_ports(config, self.clock, self.board)
         self.world = BoardWorld(self.ports, self.board)
@@ -329,7 +331,7 @@ class Skeleton(rig.Rig):
         self.ports.axes.sample()
         self.board.cut = True
         self.board.switch_off(self.clock.now())
-        self.board.terminals.safe(self.clock.now())
+        self.board.terminals.switch_to_safe_state(self.clock.now())
 
     def switch_output(self, name: str, on: bool) -> None:
         """Switch an output by hand."""

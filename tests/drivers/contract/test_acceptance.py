@@ -9,8 +9,8 @@ import pytest
 
 from core.executor.commands import CycleStart, EnableDrives, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import State
-from core.language.source import Source
+from core.executor.snapshot import MachineState
+from core.language.source import ProgramSource
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, TICK
@@ -40,10 +40,10 @@ def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, s
     assert any(re.search(r"[0-9.]+ s$", said) for said in control.said("starved"))
     assert control.shot.alarms == ()
     control.run(1.0)
-    assert (control.state is State.HOLD) is (stall > 1.0)  # setpoints or blocks for a second are ahead
-    if control.state is State.HOLD:
+    assert (control.state is MachineState.HOLD) is (stall > 1.0)  # setpoints or blocks for a second are ahead
+    if control.state is MachineState.HOLD:
         control.press()
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert control.shot.alarms == ()
     # Where a driver host has made the machine safe meanwhile, somebody has to look at the part.
     disturbed = any(re.match(pattern("executor.cycle-disturbed"), said) for said in control.said("uncounted"))
@@ -60,12 +60,12 @@ def test_a_jog_that_nobody_renews_ends_with_its_lease(control: Control) -> None:
         control.post(Jog("X", speed, lease))
         control.run(0.03)
     last, at = control.clock.now() - 0.03, control.world.place()[0]
-    assert control.state is State.JOG
+    assert control.state is MachineState.JOG
     control.rest(lease + 0.1)
     late = control.rig.runs_on
     assert control.clock.now() - last <= lease + 0.1 + late
     assert control.world.place()[0] - at <= (lease + late) * speed + speed * speed / (2 * AMAX) + STILL
-    control.until(State.IDLE, limit=0.5)
+    control.until(MachineState.IDLE, limit=0.5)
     assert control.shot.alarms == ()
 
 
@@ -76,7 +76,7 @@ def test_a_slide_that_does_not_follow_brakes_all_axes(control: Control) -> None:
     struck, speed = control.clock.now(), 127.0
     control.rig.acts()["following error"]()
     window, patience = 2.032, 0.02
-    control.until(State.FAULT, limit=0.2)
+    control.until(MachineState.FAULT, limit=0.2)
     control.rest(0.2)
     # a tick in which it happens and one in which it is seen; the other axis brakes by its ramp
     assert control.clock.now() - struck <= window / speed + patience + 0.03 + speed / AMAX + 2 * TICK
@@ -90,7 +90,7 @@ def test_estop_at_any_moment_leaves_all_off_and_its_release_starts_nothing(contr
         control.start(PART)
         control.run(after)
         control.world.press_estop()
-        control.until(State.ESTOP, limit=0.3)
+        control.until(MachineState.ESTOP, limit=0.3)
         control.rest(0.2)
         control.until_true(lambda _: control.world.rpm() == 0.0, 5.0)
         assert on(control) <= {"collet", *control.rig.kept_in_estop}
@@ -100,11 +100,11 @@ def test_estop_at_any_moment_leaves_all_off_and_its_release_starts_nothing(contr
         control.run(1.0)
         control.post(CycleStart())
         control.press()
-        assert control.state in {State.DISABLED, State.FAULT}
+        assert control.state in {MachineState.DISABLED, MachineState.FAULT}
         control.post(Reset())
-        control.until(State.DISABLED, limit=3.0)
+        control.until(MachineState.DISABLED, limit=3.0)
         control.post(EnableDrives())
-        control.until(State.IDLE, limit=0.5)
+        control.until(MachineState.IDLE, limit=0.5)
         control.run(0.5)
         assert on(control) <= {"collet"}
         assert control.world.place() == pytest.approx(stood, abs=0.01)
@@ -120,8 +120,8 @@ def test_a_silent_station_keeps_its_pots_and_holds(control: Control) -> None:
     control.run(0.5)
     control.world.silence_station()
     control.run(0.27)
-    assert control.state is State.RUN
-    control.until(State.HOLD, limit=0.3)
+    assert control.state is MachineState.RUN
+    control.until(MachineState.HOLD, limit=0.3)
     assert control.shot.feed_override == pytest.approx(0.8)
     assert control.shot.waiting_for == text("executor.station-silent")
 
@@ -141,9 +141,9 @@ def test_two_starts_within_a_bounce_are_one_cycle(control: Control) -> None:
 def test_a_program_that_has_changed_since_its_proof_is_refused(control: Control) -> None:
     control.ready()
     job = control.load("G90G94F300\nX1\nM30\n")
-    other = make_job(Source("PART", "G90G94F300\nX2\nM30\n"), job.setup)
+    other = make_job(ProgramSource("PART", "G90G94F300\nX2\nM30\n"), job.setup)
     control.post(LoadJob(other, Proof(job.digest, ())))
     control.press()
-    assert control.state is State.IDLE
-    assert text("executor.other-proof") in control.shot.start_refused
+    assert control.state is MachineState.IDLE
+    assert text("executor.other-proof") in control.shot.start_refusal
     assert control.nothing_moves()

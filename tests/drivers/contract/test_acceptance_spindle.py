@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.ports import DriverError
 from tests.drivers.contract.can import Canopen
 from tests.drivers.contract.control import INCH, Control
@@ -37,7 +37,7 @@ def test_a_feed_per_turn_with_a_still_spindle_moves_nothing(control: Control) ->
     control.load(STILL_G95, proved=False)
     control.press()
     assert control.nothing_moves()
-    assert control.state is State.FAULT
+    assert control.state is MachineState.FAULT
     assert control.shot.parts == 0
 
 
@@ -52,7 +52,7 @@ def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(name: str) ->
     control.until_true(lambda _: control.world.place()[1] < groove)  # the second
     assert control.world.place()[0] < 0.245 * INCH
     control.world.spindle_dies()
-    control.until(State.FAULT, limit=5.0)
+    control.until(MachineState.FAULT, limit=5.0)
     control.rest(1.0)
     assert control.shot.alarms[0].code == "thread-lost"
     x, z = control.world.place()
@@ -65,11 +65,11 @@ def test_a_spindle_lost_in_a_thread_draws_back_and_no_pass_goes_on(name: str) ->
 
 
 def test_without_an_encoder_a_thread_is_refused_before_it_cuts(control: Control) -> None:
-    if control.rig.ports.spindle.angle() is not None or control.rig.blocks is not None:
+    if control.rig.ports.spindle.read_angle() is not None or control.rig.blocks is not None:
         pytest.skip("it has an encoder: its threads are cut, and tried above")
     control.start(THREAD)
-    control.until(State.FAULT, State.IDLE, limit=5.0)
-    assert "encoder" in control.shot.start_refused + "".join(a.cause for a in control.shot.alarms)
+    control.until(MachineState.FAULT, MachineState.IDLE, limit=5.0)
+    assert "encoder" in control.shot.start_refusal + "".join(a.cause for a in control.shot.alarms)
     assert control.world.place()[1] > 0.2 * INCH - 0.01
 
 
@@ -83,14 +83,14 @@ def test_the_collet_stays_closed_until_the_spindle_stands(shipped: Rig) -> None:
     assert control.world.outputs()["collet"]
     control.until_true(lambda _: not control.world.outputs()["collet"])
     assert abs(control.world.rpm()) < 5.0
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
 
 
 def test_no_spindle_start_with_the_collet_open(control: Control) -> None:
     control.world.open_collet()
     control.run(0.5)
     control.start("G90G94F300\nM03S1000\nG04F1\nM30\n")
-    control.until(State.FAULT, limit=3.0)
+    control.until(MachineState.FAULT, limit=3.0)
     assert control.shot.alarms[0].code == "collet-open"
     assert control.nothing_moves()
 
@@ -102,7 +102,7 @@ def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_th
     control.until_true(lambda _: control.world.rpm() > 1700.0)
     control.world.spindle_ignores_stop()
     control.until_true(lambda shot: shot.rpm_command == 0.0)
-    assert control.until(State.FAULT, limit=3.0) <= 1.7
+    assert control.until(MachineState.FAULT, limit=3.0) <= 1.7
     alarm = control.shot.alarms[0]
     assert alarm.code in {"spindle", "ignores-stop"}
     assert text("executor.press-estop") in alarm.cause + alarm.remedy
@@ -125,7 +125,7 @@ def test_a_pass_that_came_too_late_to_be_queued_is_cut_when_it_goes_on(
     control.until_true(lambda shot: shot.waiting_for == text("executor.at-speed"))
     with monkeypatch.context() as patch:
         patch.setattr(sink, way, too_late)
-        control.until(State.HOLD, limit=10.0)
+        control.until(MachineState.HOLD, limit=10.0)
     assert control.shot.stop is not None
     assert control.shot.stop.code == "late"
     control.press()
@@ -162,10 +162,10 @@ def test_an_encoder_that_is_read_too_seldom_is_no_fault_of_the_spindle(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     rig = Simulated()
-    monkeypatch.setattr(rig.ports.spindle, "angle", lambda: (0.0, 0.0))  # never a new reading
+    monkeypatch.setattr(rig.ports.spindle, "read_angle", lambda: (0.0, 0.0))  # never a new reading
     control = Control(rig)
     control.start(THREAD)
-    control.until(State.HOLD)
+    control.until(MachineState.HOLD)
     assert control.shot.stop is not None
     assert control.shot.stop.code == "late"
     assert control.shot.alarms == ()

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from core.executor.commands import EnableDrives, FeedHold, Reset
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL
@@ -34,7 +34,7 @@ def test_a_slide_that_is_forced_away_at_rest_loses_its_power(control: Control, h
     if held:
         control.until_true(lambda _: control.world.place()[1] < -5.0)
         control.post(FeedHold())
-        control.until(State.HOLD, limit=1.0)
+        control.until(MachineState.HOLD, limit=1.0)
     control.run(0.5)
     control.rig.slides.jam("Z")
     control.rig.slides.push("Z", 0.5)
@@ -45,9 +45,9 @@ def test_a_slide_that_is_forced_away_at_rest_loses_its_power(control: Control, h
     control.run(0.5)
     assert math.dist(control.world.place(), place) < STILL  # and does not leap back when it comes free
     control.post(Reset())
-    control.until(State.DISABLED, limit=1.0)
+    control.until(MachineState.DISABLED, limit=1.0)
     control.post(EnableDrives())
-    control.until(State.IDLE, limit=1.0)
+    control.until(MachineState.IDLE, limit=1.0)
     control.run(0.5)
     assert math.dist(control.world.place(), place) < 0.005
 

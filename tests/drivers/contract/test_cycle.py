@@ -7,8 +7,8 @@ import math
 
 import pytest
 
-from core.executor.commands import CycleStart, FeedHold, FeedOverride, Home, Reset, SetSwitch
-from core.executor.snapshot import State
+from core.executor.commands import CycleStart, FeedHold, HomeAxes, Reset, SetFeedOverride, SetSwitch
+from core.executor.snapshot import MachineState
 from tests.drivers.contract.control import INCH, Control
 from tests.drivers.contract.rig import STILL, TICK, Rig
 from tests.drivers.contract.test_stopped import cutting
@@ -27,7 +27,7 @@ def test_a_part_with_everything_in_it_comes_out(control: Control) -> None:
     control.watch.append(lambda _: seen.update(name for name, on in control.world.outputs().items() if on))
     control.watch.append(lambda _: places.append(control.world.place()))
     control.start(PART)
-    control.until(State.IDLE, State.FAULT)
+    control.until(MachineState.IDLE, MachineState.FAULT)
     assert control.shot.alarms == ()
     assert control.shot.parts == 1
     assert seen == {"coolant", "catcher", "collet"}
@@ -51,7 +51,7 @@ def test_full_queue_of_short_blocks_loses_none_and_plays_none_twice(control: Con
     control.watch.append(lambda _: places.append(control.world.place()[1]))
     control.watch.append(lambda shot: blocks.append(shot.block))
     control.start(f"G90G94F300\nX0Z0\nG01F9\n{steps}M30\n")
-    control.until(State.IDLE, State.FAULT)
+    control.until(MachineState.IDLE, MachineState.FAULT)
     assert control.shot.alarms == ()
     assert control.shot.underruns == 0
     assert control.shot.parts == 1
@@ -70,14 +70,14 @@ def test_feed_hold_from_full_speed_within_its_bound_and_on_the_path(control: Con
     control.post(FeedHold())
     control.rest(control.rig.hold)
     assert control.clock.now() - TICK - pressed <= control.rig.hold + 1e-9
-    control.until(State.HOLD, limit=0.2)
+    control.until(MachineState.HOLD, limit=0.2)
     assert max(off) < 0.005
     stood = control.world.place()
     control.run(1.0)
     assert control.world.place() == pytest.approx(stood, abs=STILL)
-    assert control.state is State.HOLD
+    assert control.state is MachineState.HOLD
     control.press()
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert control.shot.parts == 1
     assert control.world.place() == pytest.approx((0.0, 0.0), abs=0.003)
     assert max(off) < 0.005
@@ -91,29 +91,29 @@ def off_line(place: tuple[float, float]) -> float:
 def test_the_hold_button_holds_and_keeps_holding(control: Control) -> None:
     cutting(control)
     control.world.press_hold()
-    control.until(State.HOLD, limit=0.4)
+    control.until(MachineState.HOLD, limit=0.4)
     control.press()
-    assert control.state is State.HOLD
-    assert control.shot.start_refused == text("executor.hold-pressed")
+    assert control.state is MachineState.HOLD
+    assert control.shot.start_refusal == text("executor.hold-pressed")
     control.world.release_hold()
     control.press()
-    control.until(State.RUN, limit=0.1)
+    control.until(MachineState.RUN, limit=0.1)
 
 
 def test_an_override_of_nothing_stands_and_a_half_is_half(control: Control) -> None:
     control.start("G90G94F300\nG01F60Z-3\nM30\n")
     control.until_true(lambda shot: shot.velocity > 25.0)
-    control.post(FeedOverride(0.5))
+    control.post(SetFeedOverride(0.5))
     control.run(1.0)
     assert control.shot.velocity == pytest.approx(0.5 * INCH, rel=0.03)
-    control.post(FeedOverride(0.0))
-    control.until(State.WAIT, limit=0.5)
+    control.post(SetFeedOverride(0.0))
+    control.until(MachineState.WAIT, limit=0.5)
     control.rest(0.3)
     stood = control.world.place()
     control.run(1.0)
     assert control.world.place() == pytest.approx(stood, abs=STILL)
-    control.post(FeedOverride(1.0))
-    control.until(State.IDLE)
+    control.post(SetFeedOverride(1.0))
+    control.until(MachineState.IDLE)
     assert control.world.place()[1] == pytest.approx(-3.0 * INCH, abs=0.003)
 
 
@@ -122,11 +122,11 @@ def test_single_block_stops_behind_each_block(control: Control) -> None:
     control.start("G90G94F300\nX.5\nG01F100Z-.5\nX.7\nM30\n")
     places = []
     for _ in range(3):
-        control.until(State.BLOCK_END, limit=5.0)
+        control.until(MachineState.BLOCK_END, limit=5.0)
         control.run(0.1)
         places.append(control.world.place())
         control.press()
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     expected = [(0.5, 0.0), (0.5, -0.5), (0.7, -0.5)]
     for place, (x, z) in zip(places, expected, strict=True):
         assert place == pytest.approx((x * INCH, z * INCH), abs=0.003)
@@ -136,9 +136,9 @@ def test_single_block_gets_past_blocks_that_go_nowhere(control: Control) -> None
     control.post(SetSwitch("single_block", True))
     control.start("G90G94F300\nX.3Z.1\nX.3\nG01X.3F100\nX.35\nX.35\nM30\n")
     lines = []
-    while control.state is not State.IDLE:
-        control.until(State.BLOCK_END, State.IDLE, State.FAULT, limit=5.0)
-        if control.state is State.BLOCK_END:
+    while control.state is not MachineState.IDLE:
+        control.until(MachineState.BLOCK_END, MachineState.IDLE, MachineState.FAULT, limit=5.0)
+        if control.state is MachineState.BLOCK_END:
             lines.append(control.shot.line)
             assert len(lines) < 12, lines
             control.press()
@@ -151,7 +151,7 @@ def test_reset_in_motion_stops_and_starts_nothing(control: Control) -> None:
     cutting(control)
     control.post(Reset())
     control.rest(0.4)
-    control.until(State.IDLE, limit=3.0)
+    control.until(MachineState.IDLE, limit=3.0)
     stood = control.world.place()
     control.until_true(lambda _: control.world.rpm() == 0.0, 3.0)
     control.run(1.0)
@@ -164,13 +164,13 @@ def test_reset_in_motion_stops_and_starts_nothing(control: Control) -> None:
 def test_a_cycle_comes_after_homing(lost: Rig) -> None:
     control = Control(lost)
     control.start("G90G94F300\nX.1Z.1\nM30\n")
-    assert control.state is State.IDLE
-    assert "homed" in control.shot.start_refused
-    control.post(Home())
-    control.until(State.HOME, limit=0.1)
-    control.until(State.IDLE)
+    assert control.state is MachineState.IDLE
+    assert "homed" in control.shot.start_refusal
+    control.post(HomeAxes())
+    control.until(MachineState.HOME, limit=0.1)
+    control.until(MachineState.IDLE)
     assert all(control.shot.homed)
     control.press()
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert control.shot.parts == 1
     assert control.world.place() == pytest.approx((0.1 * INCH, 0.1 * INCH), abs=0.003)

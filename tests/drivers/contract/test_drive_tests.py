@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import DriveTest, DriveTestOn
-from core.executor.hand_motion.drive_test import PLANS, DriveTestPath, Shape
-from core.executor.snapshot import State
+from core.executor.commands import RenewDriveTest, RunDriveTest
+from core.executor.hand_motion.drive_test import NO_SETPOINTS_REASON, DriveTestPath, Shape
+from core.executor.snapshot import MachineState
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL
 from tests.texts import text
@@ -21,10 +21,10 @@ PATHS = (
 
 def hold(control: Control, path: DriveTestPath) -> list[float]:
     """Renewed until it is over: where the slide really was."""
-    control.post(DriveTest(path, LEASE))
+    control.post(RunDriveTest(path, LEASE))
     index, seen = "XZ".index(path.axis), []
-    while control.state is State.JOG:
-        control.post(DriveTestOn(LEASE))
+    while control.state is MachineState.JOG:
+        control.post(RenewDriveTest(LEASE))
         seen.append(control.world.place()[index])
     return seen
 
@@ -38,18 +38,18 @@ def test_a_test_is_played_and_comes_back_or_is_refused_with_the_reason(
     began = control.world.place()
     seen = hold(control, path)
     barred = control.shot.drive_test.barred
-    assert barred == (PLANS if control.rig.blocks is not None else "")
+    assert barred == (NO_SETPOINTS_REASON if control.rig.blocks is not None else "")
     if barred:
-        assert control.said("refused") == [text("executor.drive-test", why=PLANS)]
+        assert control.said("refused") == [text("executor.drive-test", why=NO_SETPOINTS_REASON)]
         assert seen == []
         assert control.world.place() == began
         return
     assert control.said("refused") == []
-    assert control.shot.drive_test.whole == 1
+    assert control.shot.drive_test.completed_test_count == 1
     assert control.shot.alarms == ()
     far = max(seen, key=lambda place: abs(place - seen[0])) - seen[0]
-    assert far * path.size > 0.0
-    assert abs(far) == pytest.approx(abs(path.size), rel=0.15)
+    assert far * path.travel_mm > 0.0
+    assert abs(far) == pytest.approx(abs(path.travel_mm), rel=0.15)
     control.run(0.5)
     assert control.world.place() == pytest.approx(began, abs=2.0 * STILL)
 
@@ -59,11 +59,11 @@ def test_a_test_that_nobody_renews_ends_with_its_lease(control: Control) -> None
     control.run(0.5)
     if control.shot.drive_test.barred:
         pytest.skip(control.shot.drive_test.barred)
-    control.post(DriveTest(DriveTestPath("Z", Shape.RAMP, 20.0, speed=10.0), LEASE))
+    control.post(RunDriveTest(DriveTestPath("Z", Shape.RAMP, 20.0, speed=10.0), LEASE))
     at = control.world.place()[1]
     control.run(LEASE + 0.2)
     control.rest(0.2)
     assert 0.5 < control.world.place()[1] - at <= 10.0 * (LEASE + 0.1)
-    control.until(State.IDLE, limit=0.5)
+    control.until(MachineState.IDLE, limit=0.5)
     assert control.said("refused") == [text("executor.test-cut-short", axis="Z")]
-    assert control.shot.drive_test.whole == 0
+    assert control.shot.drive_test.completed_test_count == 0

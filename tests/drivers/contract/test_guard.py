@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rigs import make
 
@@ -19,12 +19,12 @@ def test_an_opened_guard_stops_slides_and_spindle_and_closing_it_starts_nothing(
     control.start(CUT)
     control.until_true(lambda shot: shot.line == 4 and shot.velocity > 0.0 and control.world.rpm() > 900.0)
     control.world.set_input("guard", False)
-    control.until(State.HOLD, State.FAULT, limit=0.5)
+    control.until(MachineState.HOLD, MachineState.FAULT, limit=0.5)
     control.rest(1.0)
     control.until_true(lambda _: control.world.rpm() == 0.0, limit=4.0)
     control.world.set_input("guard", True)
     assert control.nothing_moves()
-    assert control.state in {State.HOLD, State.FAULT}
+    assert control.state in {MachineState.HOLD, MachineState.FAULT}
     rig.close()
 
 
@@ -36,4 +36,4 @@ def test_no_cycle_starts_at_a_controller_whose_guard_is_open() -> None:
     control.world.set_input("guard", False)
     control.press()
     assert control.nothing_moves()
-    assert control.state is not State.RUN
+    assert control.state is not MachineState.RUN

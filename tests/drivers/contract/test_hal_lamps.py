@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.ports import DriverError
 from tests.coded import raises_code
 from tests.drivers.contract.control import Control
@@ -48,7 +48,7 @@ def test_red_is_lit_while_the_chain_is_open(control: Control) -> None:
     control.run(0.5)
     assert tower(control) == {"green"}
     control.rig.slides.press_estop()
-    control.until(State.ESTOP)
+    control.until(MachineState.ESTOP)
     control.run(0.1)
     lit_steadily(control, 2.5, {"red"})
     assert "coolant" not in {name for name, on in control.world.outputs().items() if on}
@@ -69,7 +69,7 @@ def test_an_alarm_of_a_drive_that_opens_the_chain_blinks_red(control: Control) -
     control.start(CUT)
     control.run(0.5)
     control.rig.slides.drive_fault("X")
-    control.until(State.FAULT)
+    control.until(MachineState.FAULT)
     control.run(1.5)
     seen = []
     for _ in range(100):
@@ -92,6 +92,6 @@ def test_a_silent_bridge_leaves_no_green_lamp(control: Control, safe_red: str) -
     control.run(0.5)
     assert tower(control) == {"green"}
     assert isinstance(control.rig, Hal)
-    control.rig.far.stopped = True
+    control.rig.far.is_bridge_suspended = True
     control.rig.alone(0.4)
     assert tower(control) == ({"red"} if safe_red == "true" else set())

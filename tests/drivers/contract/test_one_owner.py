@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.compose.backends.serial_ports import open_wire as open_line
+from app.compose.backends.serial_ports import open_serial_port as open_line
 from core.ports import DriverError
-from drivers.grblhal.grblhal_wire import open_wire as open_controller
+from drivers.grblhal.grblhal_transport import open_transport as open_controller
 from drivers.serial_line import LineSettings
 from tests.coded import raises_code
 from tests.drivers.ptys import open_pty
@@ -19,7 +19,7 @@ Opened = Callable[[], None]  # lets it go again
 OWNERS: dict[str, Callable[[str], Opened]] = {
     "inverter": lambda port: open_line(LineSettings(port)).close,
     "programs": lambda port: (
-        open_line(LineSettings(port, bits=7, parity="E", flow="xonxoff"), watch=True).close
+        open_line(LineSettings(port, bits=7, parity="E", flow="xonxoff"), count_damaged=True).close
     ),
     "grblhal": lambda port: open_controller(port, 115_200).close,
 }

@@ -7,14 +7,14 @@ from collections.abc import Callable, Iterator
 import pytest
 
 import resources
-from app.compose.machine.machine_files import parse_machine, shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.workshop import proof_of
+from app.compose.machine.machine_files import load_shipped_machine, parse_machine
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import create_proof
 from core.executor.commands import LoadJob
 from core.executor.job import make_job
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.ports import DriverError
 from core.proving.prove_program import prove
 from core.table_schema import MachineFileError
@@ -26,7 +26,7 @@ from tests.drivers.contract.rigs import RIGS
 from tests.drivers.contract.simulated import Fed, Simulated
 from tests.texts import text
 
-LATHE = shipped_machine("sinumerik-modulo")
+LATHE = load_shipped_machine("sinumerik-modulo")
 ABLE: dict[str, Callable[[], Simulated | Fed | Hal]] = {
     "simulated": lambda: Simulated(LATHE),
     "fed": lambda: Fed(LATHE),
@@ -48,9 +48,10 @@ def start(control: Control) -> None:
     control.ready()
     machine = control.rig.machine
     job = make_job(
-        Source("PART.MPF", PROGRAM), setup_for(machine, tools={1: ToolOffset(quadrant=3)}, secondary={})
+        ProgramSource("PART.MPF", PROGRAM),
+        create_setup(machine, tool_offsets={1: ToolOffset(quadrant=3)}, secondary_offsets={}),
     )
-    proof = proof_of(job, prove(job.source, job.setup, machine))
+    proof = create_proof(job, prove(job.source, job.setup, machine))
     assert not proof.errors, proof.errors
     control.post(LoadJob(job, proof))
     control.press()
@@ -71,7 +72,7 @@ def test_the_tool_goes_on_once_the_spindle_is_held_at_its_angle(control: Control
             feeding.append((at(control.rig), control.world.rpm()))
 
     control.watch.append(watch)
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert control.world.place()[1] == pytest.approx(-30.0, abs=0.01)
     assert len(feeding) > 50
     assert all(abs(angle - 90.0) < 0.1 and rpm == 0.0 for angle, rpm in feeding[:50])
@@ -81,7 +82,7 @@ def test_a_drive_that_never_arrives_is_told_once_and_nothing_moves(control: Cont
     control.rig.slides.spindle_never_oriented()
     start(control)
     place = control.world.place()
-    control.until(State.FAULT)
+    control.until(MachineState.FAULT)
     assert [alarm.code for alarm in control.shot.alarms] == ["spindle-orient"]
     control.run(0.5)
     assert control.world.place() == pytest.approx(place, abs=STILL)
@@ -91,7 +92,7 @@ def test_a_drive_that_lets_its_angle_go_stops_the_slides(control: Control) -> No
     start(control)
     control.until_true(lambda _: control.world.place()[1] < -12.0)
     control.rig.slides.spindle_never_oriented()
-    control.until(State.FAULT, limit=0.5)
+    control.until(MachineState.FAULT, limit=0.5)
     assert [alarm.code for alarm in control.shot.alarms] == ["spindle-orient"]
     control.run(0.5)
     assert control.world.place()[1] > -25.0
@@ -99,9 +100,9 @@ def test_a_drive_that_lets_its_angle_go_stops_the_slides(control: Control) -> No
 
 def test_estop_on_the_way_lets_the_spindle_stand_where_it_is(control: Control) -> None:
     start(control)
-    control.until_true(lambda _: control.rig.slides.spindle_rpm() != 0.0)
+    control.until_true(lambda _: control.rig.slides.get_spindle_rpm() != 0.0)
     control.world.press_estop()
-    control.until(State.ESTOP, limit=0.5)
+    control.until(MachineState.ESTOP, limit=0.5)
     control.run(0.3)
     assert control.nothing_moves()
 
@@ -113,7 +114,7 @@ def test_a_wire_that_is_lost_on_the_way_is_one_alarm_of_the_wire(control: Contro
     start(control)
     place = control.world.place()
     control.rig.acts()[fault]()
-    control.until(State.FAULT, limit=1.0)
+    control.until(MachineState.FAULT, limit=1.0)
     codes = [alarm.code for alarm in control.shot.alarms]
     assert len(codes) == 1
     assert codes != ["spindle-orient"]
@@ -132,11 +133,11 @@ def test_a_control_that_was_silent_for_a_moment_goes_on(control: Control, held: 
         control.rig.alone(0.01)
     if held:
         assert at(control.rig) == pytest.approx(90.0, abs=0.1)
-    control.until(State.HOLD, State.IDLE)
-    if control.state is State.HOLD:
+    control.until(MachineState.HOLD, MachineState.IDLE)
+    if control.state is MachineState.HOLD:
         control.run(0.5)
         control.press()
-        control.until(State.IDLE)
+        control.until(MachineState.IDLE)
     assert control.shot.alarms == ()
     assert control.world.place()[1] == pytest.approx(-30.0, abs=0.01)
 
@@ -146,7 +147,7 @@ def test_answers_that_come_late_cost_nothing_but_time(control: Control) -> None:
         pytest.skip("the simulated machine is in this process: there is no wire")
     control.rig.acts()["late answers"]()
     start(control)
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert at(control.rig) == pytest.approx(90.0, abs=0.1)
 
 
@@ -155,26 +156,26 @@ def test_an_angle_in_a_sense_another_one_and_none(control: Control) -> None:
     rig, port = control.rig, control.rig.ports.orientation
     control.ready()
     assert port is not None
-    rig.until(lambda: not rig.ports.spindle.fault())
-    port.orient(90.0, -1)
-    rig.until(port.oriented)
+    rig.until(lambda: not rig.ports.spindle.read_fault())
+    port.orient_spindle(90.0, -1)
+    rig.until(port.is_oriented)
     assert rig.slides.spindle_turns() == pytest.approx(-0.75, abs=1e-3)
-    port.orient(0.0, 1)
-    assert not port.oriented()
-    rig.until(port.oriented)
+    port.orient_spindle(0.0, 1)
+    assert not port.is_oriented()
+    rig.until(port.is_oriented)
     assert rig.slides.spindle_turns() == pytest.approx(0.0, abs=1e-3)
-    rig.ports.spindle.run(300.0)
+    rig.ports.spindle.run_at(300.0)
     rig.run(0.3)
-    assert not port.oriented()
+    assert not port.is_oriented()
 
 
 def test_none_in_estop(control: Control) -> None:
     control.ready()
     control.world.press_estop()
-    control.until(State.ESTOP, limit=0.5)
+    control.until(MachineState.ESTOP, limit=0.5)
     assert control.rig.ports.orientation is not None
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        control.rig.ports.orientation.orient(90.0)
+        control.rig.ports.orientation.orient_spindle(90.0)
 
 
 @pytest.mark.parametrize("name", sorted(RIGS.keys() - ABLE.keys()))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.ports import DriverError, Stop
+from core.ports import DriverError, StopMode
 from tests.coded import raises_code
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.rig import Rig
@@ -18,7 +18,7 @@ def test_connecting_switches_nothing_on(rig: Rig) -> None:
     sample = rig.ports.axes.sample()
     assert (sample.enabled, sample.moving, sample.fault) == (False, False, "")
     assert rig.ports.spindle.speed() == rig.world.rpm() == 0.0
-    assert rig.ports.spindle.fault() == ""
+    assert rig.ports.spindle.read_fault() == ""
     assert not any(on for name, on in rig.world.outputs().items() if name != "collet")
     assert rig.world.place() == before
     assert sample.actual[:2] == pytest.approx(before, abs=0.002)
@@ -57,7 +57,7 @@ def test_a_stalled_host_leaves_slides_that_stop_at_the_end_of_what_they_have(rig
 
 def test_hold_within_its_bound(moving: Rig) -> None:
     asked = moving.clock.now()
-    moving.ports.axes.stop(Stop.RAMP_HOLD)
+    moving.ports.axes.stop(StopMode.RAMP_HOLD)
     before = (0.0, 0.0)
     while moving.world.place() != before:
         assert moving.clock.now() - asked < moving.hold + 0.01
@@ -67,14 +67,14 @@ def test_hold_within_its_bound(moving: Rig) -> None:
     assert moving.ports.axes.sample().enabled
 
 
-@pytest.mark.parametrize("how", [Stop.RAMP_OFF, Stop.OFF])
-def test_stops_that_take_the_power(moving: Rig, how: Stop) -> None:
+@pytest.mark.parametrize("how", [StopMode.RAMP_OFF, StopMode.OFF])
+def test_stops_that_take_the_power(moving: Rig, how: StopMode) -> None:
     before = moving.world.place()[0]
     moving.ports.axes.stop(how)
     moving.until(lambda: not moving.ports.axes.sample().moving, 1.0)
     assert not moving.ports.axes.sample().enabled
     # friction alone brakes half as hard; a round of the bus is 1.2 mm
-    assert moving.world.place()[0] - before < (2.0 if how is Stop.OFF else 1.0) * BRAKING + 1.5
+    assert moving.world.place()[0] - before < (2.0 if how is StopMode.OFF else 1.0) * BRAKING + 1.5
     assert moving.stands()
     with raises_code(DriverError, "power-lost"):
         moving.go(-60.0, 0.1)
@@ -82,7 +82,7 @@ def test_stops_that_take_the_power(moving: Rig, how: Stop) -> None:
 
 def test_what_was_stopped_is_forgotten(moving: Rig) -> None:
     """Power that comes back finds no rest of the old way."""
-    moving.ports.axes.stop(Stop.RAMP_OFF)
+    moving.ports.axes.stop(StopMode.RAMP_OFF)
     moving.run(1.0)
     stood = moving.world.place()
     moving.ports.axes.enable(True)
@@ -120,11 +120,11 @@ def test_homing_finds_home_for_one_axis_and_only_where_power_is(lost: Rig) -> No
 
 def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
     axes, spindle = moving.ports.axes, moving.ports.spindle
-    spindle.run(500.0)
+    spindle.run_at(500.0)
     moving.run(0.2)
     moving.world.press_estop()
     moving.run(0.5)
-    assert moving.ports.station.snapshot().estop
+    assert moving.ports.station.read_state().estop
     assert not axes.sample().enabled
     assert not axes.sample().moving
     with raises_code(DriverError, "no-power", "E-stop"):
@@ -149,8 +149,8 @@ def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
 
 def test_letting_go_leaves_nothing_under_way(moving: Rig) -> None:
     """What a control that ends in good order does: it stops, then it closes."""
-    moving.ports.spindle.run(0.0)
-    moving.ports.axes.stop(Stop.RAMP_OFF)
+    moving.ports.spindle.run_at(0.0)
+    moving.ports.axes.stop(StopMode.RAMP_OFF)
     moving.run(1.0)
     assert moving.stands()
 

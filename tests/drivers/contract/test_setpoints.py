@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.ports import DriverError, LineOp, Segments
+from core.ports import DriverError, LineOperation, Segments
 from tests.coded import raises_code
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.moves import start
@@ -102,7 +102,7 @@ def test_a_full_planner_says_so_and_no_ticket_is_lost_or_twice(powered: Rig) -> 
     taken: list[int] = []
     full = 0
     while len(taken) < 200:
-        ticket = sink.submit(LineOp(0.1 * (len(taken) + 1), 0.0, 50.0))
+        ticket = sink.submit_block(LineOperation(0.1 * (len(taken) + 1), 0.0, 50.0))
         if ticket is None:
             full += 1
             powered.tick()
@@ -111,9 +111,9 @@ def test_a_full_planner_says_so_and_no_ticket_is_lost_or_twice(powered: Rig) -> 
     assert full
     assert taken == list(range(taken[0], taken[0] + 200))
     done, places = [], []
-    while sink.state().done < taken[-1]:
+    while sink.state().last_done_ticket < taken[-1]:
         powered.tick()
-        done.append(sink.state().done)
+        done.append(sink.state().last_done_ticket)
         places.append(powered.world.place()[0])
     assert done == sorted(done)
     assert places == sorted(places)

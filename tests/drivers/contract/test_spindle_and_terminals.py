@@ -18,40 +18,40 @@ def _turns_at(spindle: Spindle, rpm: float) -> bool:
 def test_the_spindle_turns_both_ways_and_stops(rig: Rig) -> None:
     spindle = rig.ports.spindle
     for rpm in (-1200.0, 600.0, 1500.0, 0.0):
-        spindle.run(rpm)
+        spindle.run_at(rpm)
         rig.until(partial(_turns_at, spindle, rpm), 6.0)
         rig.run(0.3)
         assert rig.world.rpm() == pytest.approx(rpm, abs=1.0)
-    spindle.run(600.0)
+    spindle.run_at(600.0)
     rig.until(lambda: abs(spindle.speed() - 600.0) < 2.0)
     spindle.coast()
     rig.until(lambda: abs(spindle.speed()) < 1.0)
     assert rig.stands()
     assert rig.world.rpm() == 0.0
-    assert spindle.fault() == ""
+    assert spindle.read_fault() == ""
 
 
 def test_no_more_rpm_than_the_machine_allows(rig: Rig) -> None:
-    rig.ports.spindle.run(-99999.0)
+    rig.ports.spindle.run_at(-99999.0)
     rig.run(4.0)
-    assert rig.world.rpm() == pytest.approx(-rig.machine.spindle.rpm_max, abs=1.0)
-    assert rig.ports.spindle.fault() == ""
+    assert rig.world.rpm() == pytest.approx(-rig.machine.spindle.max_rpm, abs=1.0)
+    assert rig.ports.spindle.read_fault() == ""
 
 
 def test_of_many_speeds_the_last_one_counts(rig: Rig) -> None:
     """More of them than any line takes, as a surface speed makes them; and a stop behind them all."""
     for step in range(200):
-        rig.ports.spindle.run(500.0 + 5.0 * step)
-        rig.ports.spindle.run(400.0 + 5.0 * step)
+        rig.ports.spindle.run_at(500.0 + 5.0 * step)
+        rig.ports.spindle.run_at(400.0 + 5.0 * step)
         if step % 4 == 0:
             rig.tick()
     rig.run(2.0)
     assert rig.world.rpm() == pytest.approx(400.0 + 5.0 * 199, abs=1.0)
-    rig.ports.spindle.run(1500.0)
-    rig.ports.spindle.run(0.0)
+    rig.ports.spindle.run_at(1500.0)
+    rig.ports.spindle.run_at(0.0)
     rig.run(2.0)
     assert rig.world.rpm() == 0.0
-    assert rig.ports.spindle.fault() == ""
+    assert rig.ports.spindle.read_fault() == ""
 
 
 def test_outputs_go_out_and_fall_safe(rig: Rig) -> None:
@@ -61,7 +61,7 @@ def test_outputs_go_out_and_fall_safe(rig: Rig) -> None:
     rig.run(0.1)
     assert io.outputs()["coolant"]
     assert rig.world.outputs()["coolant"]
-    io.safe()
+    io.switch_to_safe_state()
     rig.run(0.1)
     assert not io.outputs()["coolant"]
     assert not rig.world.outputs()["coolant"]
@@ -78,7 +78,7 @@ def test_inputs_and_station_are_seen(rig: Rig) -> None:
     rig.world.set_spindle_auto(False)
     rig.run(0.5)  # auxiliary inputs of a controller are asked for one after the other
     assert rig.ports.io.inputs()["guard"]
-    station = rig.ports.station.snapshot()
+    station = rig.ports.station.read_state()
     assert station.hold
     assert not station.start
     assert station.feed_pot == pytest.approx(0.5, abs=0.001)
@@ -86,4 +86,4 @@ def test_inputs_and_station_are_seen(rig: Rig) -> None:
     assert station.age < 0.1
     rig.world.press_start()
     rig.run(0.05)
-    assert rig.ports.station.snapshot().start
+    assert rig.ports.station.read_state().start

@@ -7,10 +7,10 @@ import re
 
 import pytest
 
-from core.alarms.bus_alarms import CUT_OFF
+from core.alarms.bus_alarms import CONNECTION_LOSS_CODES
 from core.executor.commands import EnableDrives, Reset
-from core.executor.snapshot import State
-from core.ports import Unknown
+from core.executor.snapshot import MachineState
+from core.ports import UnknownPart
 from tests.drivers.contract.conftest import Broken
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, Fault
@@ -25,7 +25,7 @@ def cutting(control: Control) -> None:
     control.start(OVER)
     control.until_true(lambda shot: shot.velocity > 125.0)
     control.run(0.3)
-    assert control.state is State.RUN
+    assert control.state is MachineState.RUN
     assert control.world.outputs()["coolant"]
 
 
@@ -43,7 +43,7 @@ def all_off(control: Control, outcome: Fault) -> None:
     codes = [alarm.code for alarm in control.shot.alarms]
     assert len(codes) == len(set(codes))  # each told once
     assert "internal" not in codes
-    if codes[0] in CUT_OFF:  # one cause, one alarm, which asks for the E-stop
+    if codes[0] in CONNECTION_LOSS_CODES:  # one cause, one alarm, which asks for the E-stop
         assert len(codes) == 1
         assert control.shot.alarms[0].remedy.startswith(text("executor.press-estop"))
 
@@ -55,7 +55,7 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     cutting(control)
     struck = control.clock.now()
     rig.acts()[fault]()
-    control.until(State.FAULT, limit=outcome.told + 0.01)
+    control.until(MachineState.FAULT, limit=outcome.told + 0.01)
     control.rest(max(outcome.rests + struck - control.clock.now(), 0.0))
     control.run(0.1)
     assert control.shot.unknown == outcome.unknown
@@ -67,10 +67,10 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     control.press()
     rig.mend()
     control.run(rig.heals)
-    assert control.state is State.FAULT
+    assert control.state is MachineState.FAULT
     control.post(Reset())
     # an inverter's fault leaves the drives their power: they hold the slides
-    on = State.IDLE if powered else State.DISABLED
+    on = MachineState.IDLE if powered else MachineState.DISABLED
     control.until(on, limit=2.0)
     control.until_true(lambda shot: control.world.rpm() == 0.0 and not shot.unknown, limit=2.0)
     control.run(0.5)
@@ -79,9 +79,9 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     parts = control.shot.parts
     control.start(SHORT)
     if outcome.homeless:
-        assert re.fullmatch(pattern("executor.not-homed"), control.shot.start_refused)
+        assert re.fullmatch(pattern("executor.not-homed"), control.shot.start_refusal)
         return
-    control.until(State.IDLE, limit=20.0)
+    control.until(MachineState.IDLE, limit=20.0)
     assert control.shot.parts == parts + 1
 
 
@@ -94,7 +94,7 @@ def test_reset_before_the_wire_is_mended_gives_nothing_free(broken: Broken) -> N
     control = Control(rig)
     cutting(control)
     rig.acts()[fault]()
-    control.until(State.FAULT, limit=outcome.told + 0.01)
+    control.until(MachineState.FAULT, limit=outcome.told + 0.01)
     control.run(outcome.rests + 1.0)
     stood = control.world.place()
     control.post(Reset())
@@ -103,7 +103,7 @@ def test_reset_before_the_wire_is_mended_gives_nothing_free(broken: Broken) -> N
         assert control.shot.rpm_command == 0.0
         if control.shot.unknown:
             control.post(EnableDrives())
-            assert control.state in {State.FAULT, State.DISABLED, State.IDLE}
-            assert not (control.state is State.IDLE and Unknown.SLIDES in control.shot.unknown)
+            assert control.state in {MachineState.FAULT, MachineState.DISABLED, MachineState.IDLE}
+            assert not (control.state is MachineState.IDLE and UnknownPart.AXES in control.shot.unknown)
     assert math.dist(control.world.place(), stood) < STILL
-    assert bool(control.shot.unknown) is (control.state is State.FAULT)
+    assert bool(control.shot.unknown) is (control.state is MachineState.FAULT)

@@ -8,7 +8,7 @@ import re
 import pytest
 
 from core.executor.commands import CycleStart
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.drivers.contract.can import FedCanopen
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import INCH, Control
@@ -43,7 +43,7 @@ def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Contro
     in_the_cut(control)
     control.rig.switch_output("coolant", False)
     struck = control.clock.now()
-    control.until(State.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
+    control.until(MachineState.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
     assert control.clock.now() - struck < control.rig.sees_output + control.rig.hold + 0.1
     assert text("executor.gone-off", output="COOLANT") in control.shot.waiting_for
     control.run(0.5)
@@ -53,10 +53,10 @@ def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Contro
     assert "coolant" not in on(control)  # and nobody has switched it on again
     assert control.shot.announced == (text("executor.comes-on", output="COOLANT"),)
     control.press()
-    control.until(State.RUN, limit=0.5)
+    control.until(MachineState.RUN, limit=0.5)
     control.run(0.1 if control.rig.blocks is None else 1.0)  # a controller does it behind the blocks it has
     assert "coolant" in on(control)
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert control.shot.alarms == ()
     assert control.shot.parts == 0
     (why,) = control.said("uncounted")
@@ -71,7 +71,7 @@ def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
     if control.rig.blocks is not None:
         pytest.skip("what was never switched is not looked for in a controller's reports")
     control.rig.switch_output("coolant", True)
-    control.until(State.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
+    control.until(MachineState.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
     assert control.shot.announced == (text("executor.goes-off", output="COOLANT"),)
     control.press()
     control.run(0.3)
@@ -81,7 +81,7 @@ def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
 def test_a_spindle_that_dies_in_a_cut_by_the_minute_holds(control: Control) -> None:
     in_the_cut(control)
     control.world.spindle_dies()
-    control.until(State.HOLD, State.FAULT, limit=6.0)
+    control.until(MachineState.HOLD, MachineState.FAULT, limit=6.0)
     control.run(1.0)
     stood = control.world.place()
     control.press()
@@ -93,7 +93,7 @@ def test_a_spindle_that_dies_in_a_cut_by_the_minute_holds(control: Control) -> N
 def test_a_control_that_was_silent_at_a_standstill(control: Control, program: str) -> None:
     """Where something switches off meanwhile it is declared and announced; else all is as it was."""
     control.start(program)
-    control.until_true(lambda shot: shot.waiting_for == "DWELL" or shot.state is State.PROGRAM_STOP)
+    control.until_true(lambda shot: shot.waiting_for == "DWELL" or shot.state is MachineState.PROGRAM_STOP)
     control.until_true(lambda _: control.world.rpm() > 590.0)
     state, place = control.state, control.world.place()
     away(control, SILENT)
@@ -106,7 +106,7 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, program: st
         return
     (said,) = control.said("disturbed")
     assert said == text("executor.control-trip", seconds=0.5, names="SPINDLE, COOLANT")
-    assert control.state is (State.HOLD if state is State.WAIT else state)
+    assert control.state is (MachineState.HOLD if state is MachineState.WAIT else state)
     assert on(control) == {"collet"}
     assert set(control.shot.announced) == {
         text("executor.spindle-starts", rpm=600, direction="FORWARD"),
@@ -115,19 +115,22 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, program: st
     control.post(CycleStart())
     control.world.press_start()
     control.run(0.1)
-    assert control.state in {State.HOLD, State.PROGRAM_STOP}  # nobody has had the time to read it
-    assert re.fullmatch(pattern("executor.look-first"), control.shot.start_refused)
+    assert control.state in {
+        MachineState.HOLD,
+        MachineState.PROGRAM_STOP,
+    }  # nobody has had the time to read it
+    assert re.fullmatch(pattern("executor.look-first"), control.shot.start_refusal)
     control.run(2.0)
     assert on(control) == {"collet"}
     assert control.world.rpm() == 0.0
     control.press()
     least = math.inf
-    while control.state not in {State.IDLE, State.FAULT}:
+    while control.state not in {MachineState.IDLE, MachineState.FAULT}:
         before = control.world.place()
         control.tick()
         if math.dist(control.world.place(), before) > STILL and control.world.place()[0] > place[0] + 0.1:
             least = min(least, abs(control.world.rpm()))
-            if control.state is State.RUN and control.world.place()[0] < 11.0:
+            if control.state is MachineState.RUN and control.world.place()[0] < 11.0:
                 assert "coolant" in on(control)
     assert least > 500.0  # not fed before the spindle was at its speed again
     assert control.shot.alarms == ()
@@ -139,14 +142,14 @@ def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: 
     in_the_cut(control)
     away(control, 5.0)
     control.run(1.0)
-    assert control.state is State.HOLD
+    assert control.state is MachineState.HOLD
     assert ("coolant" in on(control)) is not control.rig.watched
     control.run(1.5)
     control.press()
-    control.until(State.RUN, limit=6.0)
+    control.until(MachineState.RUN, limit=6.0)
     assert control.world.rpm() == pytest.approx(600.0, rel=0.1)
     assert "coolant" in on(control)
-    control.until(State.IDLE)
+    control.until(MachineState.IDLE)
     assert control.shot.alarms == ()
     assert control.world.place()[1] == pytest.approx(-2.0 * INCH, abs=0.01)
     assert control.shot.parts == (0 if control.rig.watched else 1)
@@ -167,12 +170,14 @@ def test_outputs_that_fell_with_a_driver_host_that_stood_still_do_not_come_back(
     for _ in range(200):
         control.tick()
         assert on(control) == {"collet"}  # not even for a moment
-    assert control.state in {State.HOLD, State.FAULT}
-    assert control.state is (State.FAULT if kind is FedCanopen else State.HOLD)  # drives on a bus run dry
+    assert control.state in {MachineState.HOLD, MachineState.FAULT}
+    assert control.state is (
+        MachineState.FAULT if kind is FedCanopen else MachineState.HOLD
+    )  # drives on a bus run dry
     stood = control.world.place()
     control.run(0.5)
     assert control.world.place() == pytest.approx(stood, abs=STILL)
-    if control.state is State.HOLD:
+    if control.state is MachineState.HOLD:
         assert text("executor.comes-on", output="COOLANT") in control.shot.announced
         control.press()
         control.run(1.5)
@@ -201,5 +206,5 @@ def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(
         control.run(0.2)
     control.run(1.0)
     assert control.world.place() == pytest.approx(place, abs=STILL)
-    assert control.state is State.HOLD
+    assert control.state is MachineState.HOLD
     assert control.shot.alarms == ()

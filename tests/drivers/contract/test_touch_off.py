@@ -7,10 +7,10 @@ import re
 
 import pytest
 
-from core.executor.commands import JogStop, Touch
-from core.executor.snapshot import State, Touched, TouchPhase
+from core.executor.commands import StopJog, TouchOffTool
+from core.executor.snapshot import MachineState, TouchPhase, TouchResult
 from core.machine.setter_table import SetterModel
-from core.ports import PROBE
+from core.ports import PROBE_INPUT
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import TICK, Rig
@@ -28,7 +28,7 @@ COUNT = 0.003  # mm
 class Bench(Control):
     """The executor on a rig with a setter; ``held`` is what the key asks for, ``there``: it stands there."""
 
-    held: Touch | None = None
+    held: TouchOffTool | None = None
     there = True
 
     def __init__(self, rig: Rig) -> None:
@@ -39,26 +39,26 @@ class Bench(Control):
     def tick(self) -> None:
         if self.held is not None:
             self.executor.post(self.held)
-        self.rig.world.set_input(PROBE, self.there and self.rig.world.place()[0] < FACE)
+        self.rig.world.set_input(PROBE_INPUT, self.there and self.rig.world.place()[0] < FACE)
         super().tick()
 
     def touch(self, number: int = 1) -> None:
-        self.held = Touch("X", -1, LEASE, number)
+        self.held = TouchOffTool("X", -1, LEASE, number)
         self.tick()
 
     def let_go(self) -> None:
         self.held = None
-        self.post(JogStop())
+        self.post(StopJog())
 
     @property
-    def touched(self) -> Touched:
+    def touched(self) -> TouchResult:
         assert self.shot.touched is not None, self.events[-3:]
         return self.shot.touched
 
 
 @pytest.fixture
 def bench(shipped: Rig) -> Bench:
-    if PROBE not in shipped.machine.inputs:
+    if PROBE_INPUT not in shipped.machine.inputs:
         pytest.skip("its machine file has no input for a tool setter")
     made = Bench(shipped)
     made.ready()
@@ -67,31 +67,33 @@ def bench(shipped: Rig) -> Bench:
 
 def test_the_place_of_the_touch_is_found_as_near_as_is_said(bench: Bench) -> None:
     bench.touch()
-    bench.until(State.JOG)
-    bench.until(State.IDLE, limit=60.0)
+    bench.until(MachineState.JOG)
+    bench.until(MachineState.IDLE, limit=60.0)
     touched = bench.touched
     assert touched.why == ""
-    assert touched.place is not None
+    assert touched.touch_position is not None
     # The bench itself makes the input up to a tick late.
-    assert touched.place == pytest.approx(FACE, abs=touched.error + SLOW * TICK + COUNT)
-    assert touched.error <= SLOW * 0.06 / 2 + COUNT / 2
+    assert touched.touch_position == pytest.approx(FACE, abs=touched.uncertainty_mm + SLOW * TICK + COUNT)
+    assert touched.uncertainty_mm <= SLOW * 0.06 / 2 + COUNT / 2
     assert bench.rig.world.place()[0] == pytest.approx(FACE + SETTER.back_off, abs=0.02)
     if bench.rig.ports.touch is not None:
-        kept = bench.rig.ports.touch.latched()
+        kept = bench.rig.ports.touch.read_latch()
         assert kept is not None
-        assert touched.error == pytest.approx(SLOW * kept.late / 2 + bench.rig.machine.axis("X").count / 2)
+        assert touched.uncertainty_mm == pytest.approx(
+            SLOW * kept.max_delay_s / 2 + bench.rig.machine.find_axis("X").count / 2
+        )
     assert bench.shot.alarms == ()
 
 
 @pytest.mark.parametrize("phase", [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW])
 def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
     bench.touch()
-    bench.until_true(lambda shot: shot.touching is phase)
+    bench.until_true(lambda shot: shot.touch_phase is phase)
     bench.run(0.1)
     bench.let_go()
     bench.rest(0.6)
-    bench.until(State.IDLE)
-    assert bench.touched.place is None
+    bench.until(MachineState.IDLE)
+    assert bench.touched.touch_position is None
     assert text("executor.let-go") in bench.touched.why
 
 
@@ -100,31 +102,31 @@ def test_a_screen_that_is_gone_stops_it(bench: Bench) -> None:
     bench.run(0.3)
     bench.held = None
     before = bench.rig.world.place()[0]
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert before - bench.rig.world.place()[0] < 10.0 * (LEASE + 0.5)
-    assert bench.touched.place is None
+    assert bench.touched.touch_position is None
 
 
 def test_nothing_there_leads_back(bench: Bench) -> None:
     bench.there = False
     begin = bench.shot.actual[0]
     bench.touch()
-    bench.until(State.JOG)
-    bench.until(State.IDLE, limit=30.0)
+    bench.until(MachineState.JOG)
+    bench.until(MachineState.IDLE, limit=30.0)
     assert re.fullmatch(pattern("executor.not-touched"), bench.touched.why)
     assert bench.shot.actual[0] == pytest.approx(begin, abs=0.01)
     assert bench.shot.alarms == ()
 
 
 def test_an_input_that_is_on_begins_nothing(bench: Bench) -> None:
-    bench.rig.world.set_input(PROBE, True)
+    bench.rig.world.set_input(PROBE_INPUT, True)
     bench.there = False
     for _ in range(30):
-        bench.rig.world.set_input(PROBE, True)
+        bench.rig.world.set_input(PROBE_INPUT, True)
         Control.tick(bench)
-    bench.executor.post(Touch("X", -1, LEASE, 1))
+    bench.executor.post(TouchOffTool("X", -1, LEASE, 1))
     Control.tick(bench)
-    assert bench.state is State.IDLE
+    assert bench.state is MachineState.IDLE
     assert any(text("executor.setter-on") in event.text for event in bench.events if event.kind == "refused")
 
 
@@ -136,8 +138,8 @@ def test_what_breaks_ends_it(bench: Bench, fault: str) -> None:
     bench.touch()
     bench.run(0.3)
     bench.rig.acts()[fault]()
-    bench.until(State.FAULT)
+    bench.until(MachineState.FAULT)
     bench.run(bench.rig.faults[fault].rests)
-    assert bench.shot.touching is None
-    assert bench.touched.place is None
+    assert bench.shot.touch_phase is None
+    assert bench.touched.touch_position is None
     assert bench.stands()

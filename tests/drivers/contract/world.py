@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from drivers.simulators.plant_hands import PlantHands
+from drivers.simulators.plant_controls import PlantControls
 
 Readings = Mapping[str, bool]
 
@@ -59,7 +59,7 @@ class World(Protocol):
 class SimWorld:
     """The simulated lathe, as the machine itself or behind drives on a bus."""
 
-    def __init__(self, hands: PlantHands, outputs: Callable[[], Readings]) -> None:
+    def __init__(self, hands: PlantControls, outputs: Callable[[], Readings]) -> None:
         self.hands = hands
         self.outputs = outputs
         self.set_input = hands.set_input
@@ -69,12 +69,12 @@ class SimWorld:
 
     def place(self) -> tuple[float, float]:
         """X and Z."""
-        x, z, *_ = self.hands.true_position()
+        x, z, *_ = self.hands.get_true_position()
         return x, z
 
     def rpm(self) -> float:
         """By the motor."""
-        return self.hands.spindle_rpm()
+        return self.hands.get_spindle_rpm()
 
     def press_estop(self) -> None:
         """Slides brake and lose power, the spindle too."""

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.backends.canopen_backend import canopen_peers
+from app.compose.backends.canopen_backend import create_canopen_peers
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError
 from drivers.simulators.canopen_devices import CanopenDevices
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.late_computer import tell
 
 # A bus whose times a loaded computer can keep: nothing here is about how fast Python is.
@@ -32,7 +32,7 @@ PATIENCE = 60.0  # s of a loaded computer
 STALL = 0.08  # s; the drives hold not much more of setpoints
 
 
-class SteadyClock(StepClock):
+class SteadyClock(ManualClock):
     """Goes with the day, but never more than 5 ms at once: after a stall it catches up step by step.
 
     A stall in which drives may run dry is told: a test that fails then is played again.
@@ -78,8 +78,8 @@ def bus_file(folder: Path, *changes: tuple[str, str]) -> Path:
 def peers_on(path: Path, clock: SteadyClock) -> CanopenDevices:
     """Drives and terminals of the file; the test is skipped, and says so, where no bus is to be had."""
     try:
-        peers = canopen_peers(load_machine(path), clock)
+        peers = create_canopen_peers(load_machine(path), clock)
     except DriverError as error:
         pytest.skip(f"no bus between processes on this computer: {error}")
-    peers.arrival = clock.arrival
+    peers.convert_arrival_time = clock.arrival
     return peers

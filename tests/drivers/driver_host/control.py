@@ -10,10 +10,10 @@ import numpy as np
 
 from app.compose.backends.driver_host_process import DriverHostProcess
 from app.compose.machine.machine_files import load_machine
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import Segments
-from drivers.driver_host.host_ports import host_ports
-from drivers.waiting import RealClock
+from drivers.driver_host.host_ports import create_host_ports
+from drivers.wakeups import RealClock
 
 SPEED, CRUISE, UP = 20.0, 1.4, 0.02  # mm/s, s, s: 28.4 mm of X and as much of Z
 TICK = 0.02
@@ -22,9 +22,9 @@ TICK = 0.02
 def main(path: str) -> None:
     clock = RealClock()
     host = DriverHostProcess(load_machine(Path(path)), clock)
-    ports = host_ports(host.line)
+    ports = create_host_ports(host.connection)
     ports.axes.enable(True)
-    ports.spindle.run(600.0)
+    ports.spindle.run_at(600.0)
     ports.io.write("coolant", True)
     ports.io.write("collet", True)
     at = clock.now() + ports.axes.commit + 0.1
@@ -40,7 +40,7 @@ def main(path: str) -> None:
         sample = ports.axes.sample()
         if sample.fault:
             sys.stdout.write(
-                json.dumps({"fault": sample.fault, "code": code_of(sample.fault, "axis")}) + "\n"
+                json.dumps({"fault": sample.fault, "code": get_fault_code(sample.fault, "axis")}) + "\n"
             )
             sys.stdout.flush()
             return

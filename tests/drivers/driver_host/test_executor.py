@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from core.executor.commands import CycleStart, FeedHold
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import ToolOffset
-from drivers.driver_host.host_line import Line
-from drivers.driver_host.host_ports import host_ports
+from drivers.driver_host.host_connection import HostConnection
+from drivers.driver_host.host_ports import create_host_ports
 from drivers.driver_host.host_server import DriverHost
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.contract.simulated import BrokenLink, simulation_driven
@@ -29,18 +29,18 @@ class FedRig(Rig):
         plain = self.sim
         self.host = DriverHost(simulation_driven(plain.ports, plain.machine))
         self.link = BrokenLink(self.host)
-        ports = host_ports(Line(self.link, self.clock))
+        ports = create_host_ports(HostConnection(self.link, self.clock))
         self.sim = Simulation(ports, plain.machine)
         self.events.clear()
         self.executor = type(self.executor)(self.machine, ports, self.events.append, self._passes)
-        self.executor.tick()
+        self.executor.run_tick()
 
 
 def story(rig: Rig, text: str) -> list[tuple[float, str, str, int]]:
     rig.events.clear()
     rig.start(text, TOOLS)
-    rig.until(State.IDLE)
-    return [(round(event.t, 6), event.kind, event.text, event.line) for event in rig.events]
+    rig.until(MachineState.IDLE)
+    return [(round(event.time_s, 6), event.kind, event.text, event.line) for event in rig.events]
 
 
 @pytest.mark.parametrize("text", [TURN, EXTERNAL], ids=["turning", "thread"])
@@ -56,7 +56,7 @@ def test_a_hold_comes_to_rest_at_the_same_place() -> None:
         rig.start("G90G94F300\nG01F300\nX3Z-4\nX0Z0\nM30\n")
         rig.run(0.5)
         rig.post(FeedHold())
-        rig.until(State.HOLD)
+        rig.until(MachineState.HOLD)
         places.append(rig.shot.demand)
     assert places[0] == pytest.approx(places[1], abs=1e-12)
 
@@ -67,8 +67,8 @@ def test_without_its_driver_host_the_control_shows_no_station_and_no_motion() ->
     rig.link.why = "the driver host has ended"
     rig.run(0.1)
     assert not rig.sim.ports.axes.sample().enabled
-    assert rig.sim.ports.station.snapshot().age == float("inf")
-    assert rig.sim.ports.spindle.fault() == "the driver host has ended"
+    assert rig.sim.ports.station.read_state().age == float("inf")
+    assert rig.sim.ports.spindle.read_fault() == "the driver host has ended"
 
 
 def tripped(seconds: float, names: str) -> str:
@@ -83,19 +83,19 @@ def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start(
     rig.until_true(lambda shot: shot.actual[1] < -3.0)
     for _ in range(50):
         rig.clock.advance(0.01)
-        rig.host.tick()
+        rig.host.run_cycle()
     assert not rig.sim.machine.outputs()["coolant"]
     assert rig.sim.ports.axes.sample().moving
     rig.tick()
-    rig.until(State.HOLD, limit=0.3)
+    rig.until(MachineState.HOLD, limit=0.3)
     assert rig.shot.waiting_for == tripped(0.5, "COOLANT")
-    assert rig.sim.machine.spindle_rpm() == pytest.approx(600.0)  # the tool was in the cut
+    assert rig.sim.machine.get_spindle_rpm() == pytest.approx(600.0)  # the tool was in the cut
     rig.run(1.0)
     assert rig.shot.announced == (text("executor.comes-on", output="COOLANT"),)
     rig.post(CycleStart())
     rig.run(0.05)
     assert rig.sim.machine.outputs()["coolant"]
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.alarms == ()
     assert rig.shot.parts == 0
 
@@ -107,7 +107,7 @@ def silent(rig: FedRig, seconds: float) -> None:
     """The control is away; the driver host goes on."""
     for _ in range(round(seconds / 0.01)):
         rig.clock.advance(0.01)
-        rig.host.tick()
+        rig.host.run_cycle()
 
 
 def in_dwell_away(on: str) -> FedRig:
@@ -126,7 +126,7 @@ def test_a_lamp_that_the_driver_host_switched_off_costs_no_part() -> None:
     rig = in_dwell_away("")
     rig.run(1.2)
     assert tower(rig) == {"green"}
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
     assert rig.said("disturbed") == []
 
@@ -137,14 +137,14 @@ def test_a_lamp_that_the_driver_host_switched_off_costs_no_part() -> None:
 def test_what_else_it_switched_off_holds_and_is_named_without_the_lamp(on: str, names: str) -> None:
     rig = in_dwell_away(on)
     rig.tick()
-    rig.until(State.HOLD, limit=0.5)
+    rig.until(MachineState.HOLD, limit=0.5)
     assert rig.shot.waiting_for == tripped(0.3, names)
 
 
 def test_at_rest_nothing_is_told_of_a_lamp() -> None:
     rig = FedRig(with_lamps())
     rig.start("G90G94F300\nX1Z.1\nG00Z.2\nM30\n")
-    rig.until(State.IDLE)
+    rig.until(MachineState.IDLE)
     rig.run(1.0)
     assert tower(rig) == {"amber"}
     silent(rig, 0.8)

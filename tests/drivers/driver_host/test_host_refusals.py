@@ -11,21 +11,21 @@ from collections.abc import Callable
 import pytest
 
 from core.ports import DriverError
-from drivers.driver_host import host_line, host_loop
-from drivers.driver_host.host_line import Line, LoopLink, SocketLink, cleared
-from drivers.driver_host.host_messages import NOTHING, Message, floats, packed
-from drivers.driver_host.host_ports import host_ports
-from drivers.driver_host.host_server import Driven, DriverHost
+from drivers.driver_host import host_connection, host_loop
+from drivers.driver_host.host_connection import HostConnection, InProcessLink, SocketLink, clear_host_faults
+from drivers.driver_host.host_messages import NO_NUMBERS, Message, encode_message, parse_floats
+from drivers.driver_host.host_ports import create_host_ports
+from drivers.driver_host.host_server import DriverBundle, DriverHost
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG
 from tests.drivers.test_gear import cam
 
 
-def simulation() -> tuple[Simulation, StepClock]:
-    clock = StepClock()
+def simulation() -> tuple[Simulation, ManualClock]:
+    clock = ManualClock()
     return build_simulation(CONFIG, clock), clock
 
 
@@ -39,16 +39,18 @@ def refuse(why: str) -> Callable[..., object]:
 @pytest.mark.parametrize("told", ["1, 2", [1.0, "2"], None, {"x": 1.0}])
 def test_what_are_no_numbers_is_no_place(told: object) -> None:
     with raises_code(DriverError, "feeder-silent") as refused:
-        floats(told)
+        parse_floats(told)
     assert refused.value.reason == "no-numbers"
 
 
 def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_driver_host() -> None:
     sim, clock = simulation()
     plain = dataclasses.replace(sim.ports, gear=None)
-    line = Line(LoopLink(DriverHost(Driven(plain, plain.axes.sample, lambda: None))), clock)
-    asked = Line(LoopLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
-    ports = host_ports(asked)
+    line = HostConnection(
+        InProcessLink(DriverHost(DriverBundle(plain, plain.axes.sample, lambda: None))), clock
+    )
+    asked = HostConnection(InProcessLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
+    ports = create_host_ports(asked)
     assert ports.gear is not None
     asked._link = line._link  # behind the other driver host there is none
     with raises_code(DriverError, "driver") as told:
@@ -60,13 +62,13 @@ def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.
     """A control that has ended: all is tried, and what did not work is told to the next one."""
     sim, clock = simulation()
     host = DriverHost(simulation_driven(sim.ports, sim.machine))
-    ports = host_ports(Line(LoopLink(host), clock))
+    ports = create_host_ports(HostConnection(InProcessLink(host), clock))
     ports.axes.enable(True)
     ports.io.write("coolant", True)
-    monkeypatch.setattr(sim.ports.spindle, "run", refuse("the inverter does not answer"))
+    monkeypatch.setattr(sim.ports.spindle, "run_at", refuse("the inverter does not answer"))
     for _ in range(300):
         clock.advance(0.01)
-        host.tick()
+        host.run_cycle()
     assert not sim.ports.io.outputs()["coolant"]
     assert [note for note in host._notes if "was stopping the machine: the inverter does not answer" in note]
 
@@ -74,18 +76,18 @@ def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.
 def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyPatch) -> None:
     sim, clock = simulation()
     host = DriverHost(simulation_driven(sim.ports, sim.machine))
-    ports = host_ports(Line(LoopLink(host), clock))
-    ports.spindle.run(600.0)
+    ports = create_host_ports(HostConnection(InProcessLink(host), clock))
+    ports.spindle.run_at(600.0)
     for _ in range(10):
         clock.advance(0.1)
         ports.axes.sample()
-        host.tick()
-    assert sim.machine.spindle_rpm() > 500.0
-    monkeypatch.setattr(sim.ports.io, "safe", refuse("terminal 2 does not answer"))
+        host.run_cycle()
+    assert sim.machine.get_spindle_rpm() > 500.0
+    monkeypatch.setattr(sim.ports.io, "switch_to_safe_state", refuse("terminal 2 does not answer"))
     for _ in range(500):
         clock.advance(0.01)
-        host.tick()
-    assert sim.machine.spindle_rpm() == 0.0
+        host.run_cycle()
+    assert sim.machine.get_spindle_rpm() == 0.0
     assert [note for note in host._notes if "was stopping the machine: terminal 2 does not answer" in note]
 
 
@@ -93,14 +95,14 @@ def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: 
     """Asleep on a machine of which nothing is known it would sleep on."""
     sim, clock = simulation()
     rung: list[bool] = []
-    driven = Driven(sim.ports, sim.ports.axes.sample, lambda: None, sim.machine)
-    host = DriverHost(driven, ring=lambda: rung.append(True))
-    LoopLink(host).ask(Message({"do": "look", "rests": True}, NOTHING))
-    host.tick()
-    assert (host.asleep, rung) == (True, [])
+    driven = DriverBundle(sim.ports, sim.ports.axes.sample, lambda: None, sim.machine)
+    host = DriverHost(driven, ring_bell=lambda: rung.append(True))
+    InProcessLink(host).send_request(Message({"do": "look", "rests": True}, NO_NUMBERS))
+    host.run_cycle()
+    assert (host.is_asleep, rung) == (True, [])
     monkeypatch.setattr(sim.ports.axes, "sample", refuse("X does not answer"))
     clock.advance(0.005)
-    host.tick()
+    host.run_cycle()
     assert rung == [True]
 
 
@@ -109,30 +111,30 @@ def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: 
 
 def test_a_driver_host_that_nobody_can_start_again_asks_for_another_control() -> None:
     sim, clock = simulation()
-    line = Line(LoopLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
+    line = HostConnection(InProcessLink(DriverHost(simulation_driven(sim.ports, sim.machine))), clock)
     line.fault = "the driver host has ended"
     with raises_code(DriverError, "feeder-gone"):
-        line.restart()
+        line.restart_host()
     with raises_code(DriverError, "driver", line.fault):
-        line.ask(Message({"do": "hello"}, NOTHING))
+        line.send_request(Message({"do": "hello"}, NO_NUMBERS))
 
 
 def test_a_reset_that_the_drives_refuse_starts_no_driver_host(monkeypatch: pytest.MonkeyPatch) -> None:
     sim, _ = simulation()
-    link = LoopLink(DriverHost(simulation_driven(sim.ports, sim.machine)))
-    assert cleared(link) is link
+    link = InProcessLink(DriverHost(simulation_driven(sim.ports, sim.machine)))
+    assert clear_host_faults(link) is link
     monkeypatch.setattr(sim.ports.axes, "clear_fault", refuse("Z: overcurrent"))
     with raises_code(DriverError, "driver", "Z: overcurrent"):
-        cleared(link)
+        clear_host_faults(link)
 
 
 def test_an_answer_in_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """A socket gives what has come: half a message is none yet, and no end of the driver host."""
-    monkeypatch.setattr(host_line, "_CHUNK", 5)  # bytes
+    monkeypatch.setattr(host_connection, "_RECEIVE_SIZE", 5)  # bytes
     ours, theirs = socket.socketpair()
-    theirs.sendall(packed(Message({"value": 7.0}, NOTHING)))
+    theirs.sendall(encode_message(Message({"value": 7.0}, NO_NUMBERS)))
     link = SocketLink(ours)
-    assert link.ask(Message({"do": "hello"}, NOTHING)).head == {"value": 7.0}
+    assert link.send_request(Message({"do": "hello"}, NO_NUMBERS)).head == {"value": 7.0}
     link.close()
     theirs.close()
 
@@ -146,7 +148,7 @@ def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(gc, "freeze", lambda: None)
     monkeypatch.setattr(ctypes, "CDLL", missing)
-    assert host_loop.keep_memory() == ["the driver host's memory is not locked (no C library)"]
+    assert host_loop.lock_host_memory() == ["the driver host's memory is not locked (no C library)"]
 
     class Refusing:
         def mlockall(self, _how: int) -> int:
@@ -154,4 +156,4 @@ def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPat
             return -1
 
     monkeypatch.setattr(ctypes, "CDLL", lambda *_a, **_k: Refusing())
-    assert host_loop.keep_memory() == ["the driver host's memory is not locked (Cannot allocate memory)"]
+    assert host_loop.lock_host_memory() == ["the driver host's memory is not locked (Cannot allocate memory)"]

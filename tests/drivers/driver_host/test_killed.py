@@ -39,12 +39,12 @@ class Shop:
         while not ready():
             assert time.monotonic() < began + self.clock.patience, (
                 self.x,
-                self.peers.plant.drives["X"].power.state,
+                self.peers.plant.axis_drives["X"].power_states.state,
                 self.lines,
             )
             while self.clock.step():
-                self.peers.pump()
-            self.peers.pump(0.001)
+                self.peers.process_frames()
+            self.peers.process_frames(0.001)
             self._listen()
 
     def play(self, seconds: float) -> None:
@@ -54,7 +54,7 @@ class Shop:
 
     @property
     def x(self) -> float:
-        return self.peers.plant.drives["X"].p
+        return self.peers.plant.axis_drives["X"].setpoint_position
 
     def _listen(self) -> None:
         out = self.control.stdout
@@ -97,41 +97,41 @@ def _alive(pid: int) -> bool:
 
 
 def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> None:
-    drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
+    drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     off: list[float] = []
     os.kill(shop.control.pid, signal.SIGKILL)
     while _alive(shop.host):
         shop.play(0.02)
-        off.append(abs(drives["X"].p - drives["Z"].p))
+        off.append(abs(drives["X"].setpoint_position - drives["Z"].setpoint_position))
     assert max(off) < 0.01  # on the diagonal all the way: both drives together
     assert shop.x == pytest.approx(END, abs=0.01)  # to the end of what was queued
-    shop.until(lambda: not drives["X"].power.powered)  # an orphan takes the power too
+    shop.until(lambda: not drives["X"].power_states.is_powered)  # an orphan takes the power too
     shop.play(2.0)
     assert not board.outputs["coolant"]
     assert board.outputs["collet"]
-    shop.until(lambda: abs(shop.peers.machine.spindle_rpm()) < 1.0)
+    shop.until(lambda: abs(shop.peers.machine.get_spindle_rpm()) < 1.0)
 
 
 def test_a_killed_driver_host_leaves_it_to_the_drives(shop: Shop) -> None:
-    drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
+    drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     before = shop.x
     os.kill(shop.host, signal.SIGKILL)
-    shop.until(lambda: not drives["X"].power.powered and not drives["Z"].power.powered)
+    shop.until(lambda: not drives["X"].power_states.is_powered and not drives["Z"].power_states.is_powered)
     # 160 ms in the drives' queues, then v²/2a: less than 5 mm
     assert shop.x - before < 6.0
     assert shop.x < END - 5.0
     shop.until(lambda: not board.outputs["coolant"])  # three heartbeats
     assert board.outputs["collet"]
-    shop.until(lambda: abs(shop.peers.machine.spindle_rpm()) < 1.0)
+    shop.until(lambda: abs(shop.peers.machine.get_spindle_rpm()) < 1.0)
     shop.until(lambda: len(shop.lines) > 1)
     assert shop.lines[1]["code"] == "feeder-gone"
 
 
 def test_a_stopped_driver_host_is_no_life_sign(shop: Shop) -> None:
     """SIGSTOP: the process is there and does nothing. Its heartbeat must not go on."""
-    drives, board = shop.peers.plant.drives, shop.peers.plant.terminals
+    drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     os.kill(shop.host, signal.SIGSTOP)
-    shop.until(lambda: not drives["X"].power.powered and not drives["Z"].power.powered)
+    shop.until(lambda: not drives["X"].power_states.is_powered and not drives["Z"].power_states.is_powered)
     shop.until(lambda: not board.outputs["coolant"])
     shop.until(lambda: len(shop.lines) > 1)
     assert shop.lines[1]["code"] == "feeder-silent"

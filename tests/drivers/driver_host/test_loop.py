@@ -15,19 +15,23 @@ from collections.abc import Iterator
 import pytest
 
 import resources
-from app.compose.backends.backend_entry import NO_PRIORITY
-from app.compose.backends.driver_host_process import DriverHostProcess, beat, without_priority
+from app.compose.backends.backend_entry import NO_PRIORITY_TEXT
+from app.compose.backends.driver_host_process import (
+    DriverHostProcess,
+    get_setpoint_interval,
+    make_priority_warning,
+)
 from app.compose.machine.machine_files import parse_machine
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import DriverError, MachinePorts
-from drivers.driver_host import host_line, host_loop
-from drivers.driver_host.host_line import Line, SocketLink
-from drivers.driver_host.host_loop import Ear, serve
-from drivers.driver_host.host_messages import NOTHING, Message, packed
-from drivers.driver_host.host_ports import host_ports
-from drivers.driver_host.host_server import Driven, DriverHost
+from drivers.driver_host import host_connection, host_loop
+from drivers.driver_host.host_connection import HostConnection, SocketLink
+from drivers.driver_host.host_loop import MessageListener, run_driver_host
+from drivers.driver_host.host_messages import NO_NUMBERS, Message, encode_message
+from drivers.driver_host.host_ports import create_host_ports
+from drivers.driver_host.host_server import DriverBundle, DriverHost
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.waiting import RealClock, StepClock
+from drivers.wakeups import ManualClock, RealClock
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG
@@ -36,7 +40,7 @@ from tests.drivers.machines import CONFIG
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """A control that waits for an answer as long as a loaded computer may take: no test of lateness."""
-    monkeypatch.setattr(host_line, "_QUICK", 60.0)
+    monkeypatch.setattr(host_connection, "_REPLY_TIMEOUT_S", 60.0)
     return monkeypatch
 
 
@@ -46,7 +50,9 @@ def served(patient: pytest.MonkeyPatch) -> Iterator[tuple[socket.socket, Simulat
     ours, theirs = socket.socketpair()
     clock = RealClock()
     sim = build_simulation(CONFIG, clock)
-    thread = threading.Thread(target=serve, args=(theirs, simulation_driven(sim.ports, sim.machine), []))
+    thread = threading.Thread(
+        target=run_driver_host, args=(theirs, simulation_driven(sim.ports, sim.machine), [])
+    )
     thread.start()
     yield ours, sim, thread
     ours.close()
@@ -67,7 +73,7 @@ def test_the_loop_answers_and_ends_with_its_control(
     served: tuple[socket.socket, Simulation, threading.Thread],
 ) -> None:
     ours, sim, thread = served
-    ports = host_ports(Line(SocketLink(ours), RealClock()))
+    ports = create_host_ports(HostConnection(SocketLink(ours), RealClock()))
     ports.axes.enable(True)
     assert ports.axes.sample().enabled
     ours.close()
@@ -80,13 +86,13 @@ def test_garbage_from_the_control_counts_as_its_end(
     served: tuple[socket.socket, Simulation, threading.Thread],
 ) -> None:
     ours, sim, thread = served
-    ports = host_ports(Line(SocketLink(ours), RealClock()))
+    ports = create_host_ports(HostConnection(SocketLink(ours), RealClock()))
     ports.axes.enable(True)
     ours.sendall(b"\xff" * 64)
     thread.join(60.0)
     assert not thread.is_alive()
     assert_off(sim)
-    assert code_of(ports.axes.sample().fault, "driver") == "feeder-gone"
+    assert get_fault_code(ports.axes.sample().fault, "driver") == "feeder-gone"
 
 
 def test_a_mistake_in_the_loop_leaves_the_drives_without_power() -> None:
@@ -98,9 +104,11 @@ def test_a_mistake_in_the_loop_leaves_the_drives_without_power() -> None:
     def broken() -> None:
         raise RuntimeError("a mistake")
 
-    driven = Driven(sim.ports, tick=broken, close=lambda: closed.append(True), hands=sim.machine)
+    driven = DriverBundle(
+        sim.ports, run_cycle=broken, close=lambda: closed.append(True), station_controls=sim.machine
+    )
     with ours, theirs, pytest.raises(RuntimeError, match="a mistake"):
-        serve(theirs, driven, [])
+        run_driver_host(theirs, driven, [])
     assert closed == [True]
 
 
@@ -134,7 +142,7 @@ def test_memory_is_locked_as_far_as_it_cannot_run_out(
     monkeypatch.setattr(os, "geteuid", lambda: user)
     monkeypatch.setattr(resource, "getrlimit", lambda _which: (limit, limit))
     monkeypatch.setattr(gc, "freeze", lambda: None)
-    assert host_loop.keep_memory() == told
+    assert host_loop.lock_host_memory() == told
     assert asked == [flags]
 
 
@@ -143,24 +151,24 @@ def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "sched_setscheduler", refused)
-    (told,) = host_loop.real_time()
+    (told,) = host_loop.request_real_time()
     assert "(Operation not permitted)" in told
 
 
 def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
     ours, theirs = socket.socketpair()
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
-    host = DriverHost(Driven(sim.ports, sim.ports.axes.sample, lambda: None))
-    ear = Ear(theirs, host, clock)
-    ours.sendall(packed(Message({"do": "horizon"}, NOTHING)))
+    host = DriverHost(DriverBundle(sim.ports, sim.ports.axes.sample, lambda: None))
+    ear = MessageListener(theirs, host, clock)
+    ours.sendall(encode_message(Message({"do": "horizon"}, NO_NUMBERS)))
     ours.setblocking(False)
     due = clock.now() + 0.0002
-    assert ear.listen(due, punctual=True) == due
+    assert ear.listen_until_due(due, is_punctual=True) == due
     with pytest.raises(BlockingIOError):
         ours.recv(1000)
     clock.advance(0.005)  # a control is not left alone for longer
-    assert ear.listen(clock.now(), punctual=True) == clock.now()
+    assert ear.listen_until_due(clock.now(), is_punctual=True) == clock.now()
     assert ours.recv(1000)
     ours.close()
     theirs.close()
@@ -171,7 +179,7 @@ def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
     [("gt75-epos4.toml", 0.002), ("gt75-canopen.toml", 0.0), ("gt75.toml", 0.0)],
 )
 def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -> None:
-    assert beat(parse_machine(resources.machine_file(shipped), shipped)) == expected
+    assert get_setpoint_interval(parse_machine(resources.machine_file(shipped), shipped)) == expected
 
 
 @pytest.mark.parametrize(
@@ -184,26 +192,26 @@ def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -
 def test_what_is_lost_without_priority_is_said_with_what_a_trial_has_found(
     late: float, expected: str
 ) -> None:
-    told = without_priority(0.002, late)
-    assert told.startswith(NO_PRIORITY)  # the desk looks for that
+    told = make_priority_warning(0.002, late)
+    assert told.startswith(NO_PRIORITY_TEXT)  # the desk looks for that
     assert "2 ms" in told
     assert expected in told
 
 
 def test_a_trial_finds_a_process_that_wakes_up_late(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Stalled(StepClock):
+    class Stalled(ManualClock):
         def sleep_until(self, t: float) -> None:
             super().sleep_until(t + (0.02 if 0.1 < t < 0.103 else 0.0001))
 
     monkeypatch.setattr(host_loop, "RealClock", Stalled)
-    assert host_loop.late_at_trial(0.002) == pytest.approx(0.02)
+    assert host_loop.measure_wakeup_delay(0.002) == pytest.approx(0.02)
 
 
 def test_a_driver_host_that_does_not_answer_is_a_fault_and_no_hang() -> None:
     ours, theirs = socket.socketpair()
-    line = Line(SocketLink(ours), RealClock())
+    line = HostConnection(SocketLink(ours), RealClock())
     with ours, theirs, raises_code(DriverError, "feeder-silent"):
-        host_ports(line)
+        create_host_ports(line)
 
 
 # --- a control that sleeps, and the process of its driver host
@@ -214,10 +222,10 @@ def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[DriverHostProcess, Mac
     """The simulated lathe in a driver host of its own, whose control is about to sleep."""
     text = resources.machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
     process = DriverHostProcess(parse_machine(text, "gt75.toml"), RealClock())
-    ports = host_ports(process.line)
+    ports = create_host_ports(process.connection)
     ports.axes.sample()
     assert ports.wakeup is not None
-    assert ports.wakeup.settled()
+    assert ports.wakeup.is_settled()
     yield process, ports
     if process.process.poll() is None:
         process.process.send_signal(signal.SIGCONT)
@@ -231,19 +239,19 @@ def test_a_driver_host_that_is_killed_wakes_its_control_and_the_next_one_rings_t
     assert ports.wakeup is not None
     process.process.kill()
     assert ports.wakeup.wait(60.0)
-    assert code_of(ports.axes.sample().fault, "driver") == "feeder-gone"
-    assert not ports.wakeup.settled()
+    assert get_fault_code(ports.axes.sample().fault, "driver") == "feeder-gone"
+    assert not ports.wakeup.is_settled()
     ports.axes.clear_fault()
-    while process.line.lost and not process.line.fault:
+    while process.connection.is_lost and not process.connection.fault:
         ports.axes.sample()
         ports.clock.sleep_until(ports.clock.now() + 0.01)
     assert ports.axes.sample().fault == ""
     while ports.wakeup.wait(0.0):
         ports.axes.sample()
-    process.line.ask(Message({"do": "hand", "name": "press_estop", "values": []}, NOTHING))
+    process.connection.send_request(Message({"do": "hand", "name": "press_estop", "values": []}, NO_NUMBERS))
     at_once = ports.wakeup.wait(0.0)  # tells it that nobody looks
     assert at_once or ports.wakeup.wait(60.0)
-    assert ports.station.snapshot().estop
+    assert ports.station.read_state().estop
 
 
 def test_a_driver_host_that_stands_while_its_control_sleeps_is_told_with_the_next_look(
@@ -254,11 +262,11 @@ def test_a_driver_host_that_stands_while_its_control_sleeps_is_told_with_the_nex
     ports.wakeup.wait(0.0)
     process.process.send_signal(signal.SIGSTOP)
     assert not ports.wakeup.wait(0.1)
-    patient.setattr(host_line, "_QUICK", 0.5)
+    patient.setattr(host_connection, "_REPLY_TIMEOUT_S", 0.5)
     sample = ports.axes.sample()
-    assert code_of(sample.fault, "driver") == "feeder-silent"
+    assert get_fault_code(sample.fault, "driver") == "feeder-silent"
     assert not sample.enabled
-    assert not ports.wakeup.settled()
+    assert not ports.wakeup.is_settled()
 
 
 class Asleep:
@@ -269,7 +277,7 @@ class Asleep:
 
     def handle(self, _message: Message) -> Message:
         """As a look is answered."""
-        return Message({}, NOTHING)
+        return Message({}, NO_NUMBERS)
 
 
 @pytest.mark.parametrize(
@@ -286,8 +294,8 @@ def test_a_round_that_is_soon_due_comes_with_the_look_of_a_control_that_sleeps(
 ) -> None:
     ours, theirs = socket.socketpair()
     with ours, theirs:
-        clock = StepClock()
-        ear = Ear(theirs, Asleep(asleep), clock)  # type: ignore[arg-type]  # all that it asks of it
+        clock = ManualClock()
+        ear = MessageListener(theirs, Asleep(asleep), clock)  # type: ignore[arg-type]  # all that it asks of it
 
         def waited(_files: list[socket.socket], _w: object, _x: object, seconds: float) -> tuple[object, ...]:
             """What has been sent is there at once; else the time goes by."""
@@ -299,6 +307,6 @@ def test_a_round_that_is_soon_due_comes_with_the_look_of_a_control_that_sleeps(
 
         said = [True]
         monkeypatch.setattr(select, "select", waited)
-        ours.sendall(packed(Message({"do": "look"}, NOTHING)))
-        due = ear.listen(left, punctual=punctual)
+        ours.sendall(encode_message(Message({"do": "look"}, NO_NUMBERS)))
+        due = ear.listen_until_due(left, is_punctual=punctual)
         assert due == pytest.approx(0.0 if early else left, abs=1e-5)

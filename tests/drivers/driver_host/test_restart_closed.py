@@ -9,7 +9,7 @@ import pytest
 import resources
 from app.compose.backends.driver_host_process import DriverHostProcess
 from app.compose.machine.machine_files import parse_machine
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 
 
 def test_closing_in_a_restart_leaves_no_broken_thread_and_no_driver_host(
@@ -20,9 +20,9 @@ def test_closing_in_a_restart_leaves_no_broken_thread_and_no_driver_host(
     monkeypatch.setattr(threading, "excepthook", died.append)
     host = DriverHostProcess(parse_machine(text, "gt75.toml"), RealClock())
     first = host.process
-    host.line.fault = "gone"  # as after a driver host that has ended
+    host.connection.fault = "gone"  # as after a driver host that has ended
     first.kill()
-    host.line.restart()
+    host.connection.restart_host()
     opening = [each for each in threading.enumerate() if each.name == "reopening"]
     while host.process is first and any(each.is_alive() for each in opening):
         opening[0].join(0.01)

@@ -10,12 +10,25 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, MachinePorts
-from drivers.driver_host.host_line import Line, LoopLink
-from drivers.driver_host.host_messages import LARGEST, NOTHING, Inbox, Message, packed
-from drivers.driver_host.host_ports import HostHands, host_ports
-from drivers.driver_host.host_server import PERIOD, RESTS, Driven, DriverHost, TripGuard, act
+from drivers.driver_host.host_connection import HostConnection, InProcessLink
+from drivers.driver_host.host_messages import (
+    MAX_MESSAGE_BYTES,
+    NO_NUMBERS,
+    Message,
+    MessageDecoder,
+    encode_message,
+)
+from drivers.driver_host.host_ports import HostStationControls, create_host_ports
+from drivers.driver_host.host_server import (
+    CYCLE_PERIOD_S,
+    MAX_SLEEP_CYCLE_S,
+    DriverBundle,
+    DriverHost,
+    TripGuard,
+    execute_command,
+)
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.waiting import Bell, StepClock
+from drivers.wakeups import ManualClock, ProcessBell
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG, ramp
@@ -27,38 +40,38 @@ ZERO = (0.0, 0.0, 0.0)
 @dataclasses.dataclass
 class Bench:
     sim: Simulation
-    clock: StepClock
+    clock: ManualClock
     host: DriverHost
-    line: Line
+    line: HostConnection
     ports: MachinePorts
 
     def alone(self, seconds: float) -> None:
         """Time passes for the driver host; the control says nothing."""
         for _ in range(round(seconds / 0.01)):
             self.clock.advance(0.01)
-            self.host.tick()
+            self.host.run_cycle()
 
 
 @pytest.fixture
 def bench() -> Bench:
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     host = DriverHost(simulation_driven(sim.ports, sim.machine), ["without real-time priority"])
-    line = Line(LoopLink(host), clock)
-    return Bench(sim, clock, host, line, host_ports(line))
+    line = HostConnection(InProcessLink(host), clock)
+    return Bench(sim, clock, host, line, create_host_ports(line))
 
 
 def test_a_slow_wire_of_the_spindle_is_reported_to_the_control() -> None:
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     slow = dataclasses.replace(sim.ports, spindle_lag=lambda: 0.75)
-    line = Line(LoopLink(DriverHost(simulation_driven(slow, sim.machine))), clock)
-    assert host_ports(line).spindle_lag() == 0.75
+    line = HostConnection(InProcessLink(DriverHost(simulation_driven(slow, sim.machine))), clock)
+    assert create_host_ports(line).spindle_lag() == 0.75
 
 
 def working(bench: Bench) -> None:
     bench.ports.axes.enable(True)
-    bench.ports.spindle.run(600.0)
+    bench.ports.spindle.run_at(600.0)
     bench.ports.io.write("coolant", True)
     bench.ports.axes.splice(ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0))
 
@@ -66,7 +79,7 @@ def working(bench: Bench) -> None:
 def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(bench: Bench) -> None:
     working(bench)
     bench.alone(0.9)
-    assert bench.sim.machine.spindle_rpm() > 500.0  # the tool is still in the cut
+    assert bench.sim.machine.get_spindle_rpm() > 500.0  # the tool is still in the cut
     assert bench.sim.ports.io.outputs()["coolant"]
     bench.alone(2.0)
     sample = bench.sim.ports.axes.sample()
@@ -76,13 +89,13 @@ def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(b
     assert not bench.sim.ports.io.outputs()["coolant"]
     assert bench.sim.ports.io.outputs()["collet"]
     bench.alone(2.0)
-    assert bench.sim.machine.spindle_rpm() == 0.0
+    assert bench.sim.machine.get_spindle_rpm() == 0.0
 
 
 def test_what_happened_while_the_control_was_late_comes_with_its_next_looks(bench: Bench) -> None:
     source = bench.ports.samples
     assert source is not None
-    assert source.rate == 1000.0
+    assert source.sample_rate_hz == 1000.0
     working(bench)
     bench.ports.axes.sample()
     bench.alone(0.95)  # the driver host alone: the spindle was ordered to 600, and the slides go on
@@ -103,16 +116,18 @@ def test_what_happened_while_the_control_was_late_comes_with_its_next_looks(benc
 
 def test_samples_that_were_damaged_on_their_way_are_none(bench: Bench) -> None:
     assert bench.ports.samples is not None
-    bench.line.sampled.append(np.zeros(15))
-    bench.line.sampled.append(np.zeros(28))
+    bench.line.sample_batches.append(np.zeros(15))
+    bench.line.sample_batches.append(np.zeros(28))
     assert bench.ports.samples.take().shape == (2, 14)
 
 
 def test_a_driver_without_samples_has_none_through_the_driver_host_either() -> None:
-    clock = StepClock()
+    clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     plain = dataclasses.replace(sim.ports, samples=None)
-    ports = host_ports(Line(LoopLink(DriverHost(simulation_driven(plain, sim.machine))), clock))
+    ports = create_host_ports(
+        HostConnection(InProcessLink(DriverHost(simulation_driven(plain, sim.machine))), clock)
+    )
     ports.axes.sample()
     assert ports.samples is None
 
@@ -123,7 +138,7 @@ def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
     assert bench.ports.axes.sample().moving
     bench.alone(0.1)
     assert bench.ports.io.outputs()["coolant"]
-    assert bench.sim.machine.spindle_rpm() > 500.0
+    assert bench.sim.machine.get_spindle_rpm() > 500.0
 
 
 def test_what_the_driver_host_did_alone_is_told(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
@@ -139,39 +154,39 @@ def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
     bench.line.close()
     bench.alone(0.5)
     assert bench.sim.ports.axes.sample().enabled
-    assert [bench.host.done] == [False]
+    assert [bench.host.is_done] == [False]
     bench.alone(1.0)
-    assert bench.host.done
+    assert bench.host.is_done
     bench.alone(0.1)
     assert not bench.sim.ports.axes.sample().enabled
 
 
 def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
-    bench.ports.spindle.run(3000.0)
+    bench.ports.spindle.run_at(3000.0)
     bench.alone(0.19)
     for _ in range(20):
         bench.ports.axes.sample()
         bench.alone(0.19)
-    assert bench.sim.machine.spindle_rpm() == pytest.approx(3000.0, abs=30.0)
+    assert bench.sim.machine.get_spindle_rpm() == pytest.approx(3000.0, abs=30.0)
     bench.line.close()
     bench.alone(1.0)  # 3000 rpm at 2500 rpm/s take 1.2 s
-    assert not bench.host.done
-    assert bench.sim.machine.spindle_rpm() > 5.0
+    assert not bench.host.is_done
+    assert bench.sim.machine.get_spindle_rpm() > 5.0
     bench.alone(0.5)
-    assert bench.host.done
-    assert abs(bench.sim.machine.spindle_rpm()) < 5.0
+    assert bench.host.is_done
+    assert abs(bench.sim.machine.get_spindle_rpm()) < 5.0
 
 
 def test_an_orphan_does_not_wait_for_ever_for_a_spindle(bench: Bench) -> None:
-    bench.ports.spindle.run(600.0)
+    bench.ports.spindle.run_at(600.0)
     bench.alone(0.1)
     bench.sim.machine.spindle_ignores_stop()
     bench.ports.axes.sample()
     bench.line.close()
     bench.alone(7.9)
-    assert not bench.host.done
+    assert not bench.host.is_done
     bench.alone(0.3)
-    assert bench.host.done
+    assert bench.host.is_done
 
 
 def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
@@ -179,11 +194,11 @@ def test_warnings_of_the_start_reach_the_control(bench: Bench) -> None:
 
 
 def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
-    hands = HostHands(bench.line)
+    hands = HostStationControls(bench.line)
     hands.press_estop()
-    assert not bench.sim.ports.station.snapshot().estop
+    assert not bench.sim.ports.station.read_state().estop
     bench.ports.axes.sample()
-    assert bench.sim.ports.station.snapshot().estop
+    assert bench.sim.ports.station.read_state().estop
     hands.set_input("TB2-5", True)
     assert bench.sim.ports.io.inputs()["TB2-5"]
     with raises_code(DriverError, "driver", "'77'"):
@@ -211,11 +226,11 @@ def test_hands_act_with_the_next_look_and_never_wait(bench: Bench) -> None:
     ],
 )
 def test_nonsense_is_refused_and_changes_nothing(bench: Bench, head: dict[str, object], reason: str) -> None:
-    answer = bench.host.handle(Message(head, NOTHING))
+    answer = bench.host.handle_message(Message(head, NO_NUMBERS))
     assert answer.head["error"]
     assert answer.head["reason"] == reason
     assert not bench.sim.ports.axes.sample().enabled
-    assert not bench.sim.ports.station.snapshot().estop
+    assert not bench.sim.ports.station.read_state().estop
 
 
 @pytest.mark.parametrize("damage", [float("nan"), float("inf")])
@@ -231,24 +246,24 @@ def test_setpoints_that_are_no_numbers_never_reach_a_drive(bench: Bench, damage:
 
 
 def test_a_driver_host_of_another_version_is_not_driven(bench: Bench) -> None:
-    class Older(LoopLink):
-        def ask(self, message: Message) -> Message:
-            answer = super().ask(message)
+    class Older(InProcessLink):
+        def send_request(self, message: Message) -> Message:
+            answer = super().send_request(message)
             return Message({k: v for k, v in answer.head.items() if k != "version"}, answer.numbers)
 
     with raises_code(DriverError, "driver", "None", "5"):
-        host_ports(Line(Older(bench.host), bench.clock))
+        create_host_ports(HostConnection(Older(bench.host), bench.clock))
 
 
 def test_messages_in_pieces_and_in_heaps() -> None:
     one = Message({"do": "look", "t": 0.1}, np.array([1.5, -2.0]))
-    two = Message({"do": "hello"}, NOTHING)
-    data = packed(one) + packed(two)
-    inbox = Inbox()
-    found = [message for byte in data for message in inbox.feed(bytes([byte]))]
+    two = Message({"do": "hello"}, NO_NUMBERS)
+    data = encode_message(one) + encode_message(two)
+    inbox = MessageDecoder()
+    found = [message for byte in data for message in inbox.decode(bytes([byte]))]
     assert [message.head for message in found] == [one.head, two.head]
     assert found[0].numbers.tolist() == [1.5, -2.0]
-    assert [message.head for message in Inbox().feed(data)] == [one.head, two.head]
+    assert [message.head for message in MessageDecoder().decode(data)] == [one.head, two.head]
 
 
 @pytest.mark.parametrize(
@@ -259,12 +274,12 @@ def test_messages_in_pieces_and_in_heaps() -> None:
         (100_000).to_bytes(4, "little") + bytes(4) + b"[" * 100_000,
         b"\x02\x00\x00\x00\x00\x00\x00\x00\xff\xfe",
         b"\x02\x00\x00\x00\x07\x00\x00\x00{}1234567",
-        (LARGEST + 1).to_bytes(4, "little") + b"\x00\x00\x00\x00",
+        (MAX_MESSAGE_BYTES + 1).to_bytes(4, "little") + b"\x00\x00\x00\x00",
     ],
 )
 def test_garbage_on_the_socket_is_an_error(data: bytes) -> None:
     with raises_code(DriverError, "feeder-silent") as told:
-        list(Inbox().feed(data))
+        list(MessageDecoder().decode(data))
     assert told.value.reason == "no-message"
 
 
@@ -278,15 +293,15 @@ def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytes
     bench.ports.io.write("coolant", True)
     monkeypatch.setattr(bench.sim.ports.axes, "enable", slowly)
     bench.ports.axes.enable(True)
-    bench.host.tick()
+    bench.host.run_cycle()
     assert bench.ports.io.outputs()["coolant"]
 
 
 def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench: Bench) -> None:
-    host = DriverHost(simulation_driven(bench.sim.ports, bench.sim.machine), refresh={"coolant": 0.3})
+    host = DriverHost(simulation_driven(bench.sim.ports, bench.sim.machine), refresh_periods={"coolant": 0.3})
     bench.host = host
     working(bench)
-    host.handle(Message({"do": "look"}, NOTHING))
+    host.handle_message(Message({"do": "look"}, NO_NUMBERS))
     bench.alone(0.29)
     assert bench.sim.ports.io.outputs()["coolant"]
     bench.alone(0.05)
@@ -298,7 +313,7 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
     for seconds in (0.01, 0.06, 0.055, 0.08):
-        bench.host.late(seconds)
+        bench.host.record_wakeup_delay(seconds)
     bench.ports.axes.sample()
     assert [re.findall(r"\d+ ms", line)[0] for line in caplog.messages] == ["60 ms", "80 ms"]
 
@@ -306,7 +321,7 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
 def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: Bench) -> None:
     """The slides follow the spindle: one that stands in the pass never lets their queue end."""
     bench.ports.axes.enable(True)
-    bench.ports.spindle.run(600.0)
+    bench.ports.spindle.run_at(600.0)
     bench.ports.io.write("coolant", True)
     for _ in range(20):
         bench.alone(0.1)
@@ -320,7 +335,7 @@ def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: B
     assert not bench.sim.ports.io.outputs()["coolant"]
     assert not bench.sim.ports.axes.sample().moving
     bench.alone(9.0)
-    assert bench.host.done
+    assert bench.host.is_done
 
 
 # --- a control that sleeps ----------------------------------------------------------------------------------
@@ -330,16 +345,18 @@ class Sleeper:
     """A control whose machine rests, and what rings it."""
 
     def __init__(self) -> None:
-        self.clock = StepClock()
+        self.clock = ManualClock()
         self.sim = build_simulation(CONFIG, self.clock)
         self.rung = 0
         axes = self.sim.ports.axes
         self.asked = False
-        driven = Driven(self.sim.ports, axes.sample, lambda: None, self.sim.machine, asked=lambda: self.asked)
-        self.host = DriverHost(driven, ring=self._ring)
-        self.bell = Bell()
-        self.line = Line(LoopLink(self.host), self.clock, bell=self.bell)
-        self.ports = host_ports(self.line)
+        driven = DriverBundle(
+            self.sim.ports, axes.sample, lambda: None, self.sim.machine, has_sent_requests=lambda: self.asked
+        )
+        self.host = DriverHost(driven, ring_bell=self._ring)
+        self.bell = ProcessBell()
+        self.line = HostConnection(InProcessLink(self.host), self.clock, wakeup_bell=self.bell)
+        self.ports = create_host_ports(self.line)
         self.ports.axes.enable(True)
         self.look()
 
@@ -355,15 +372,15 @@ class Sleeper:
     def pause(self) -> float:
         """Seconds to the driver host's next round."""
         now = self.clock.now()
-        return self.host.next_round(now) - now
+        return self.host.get_next_cycle_time(now) - now
 
     def sleeps(self) -> bool:
         """Whether something has rung by the time the driver host has gone round once more."""
         assert self.ports.wakeup is not None
-        assert self.ports.wakeup.settled()
+        assert self.ports.wakeup.is_settled()
         self.ports.wakeup.wait(0.0)
         self.clock.advance(0.005)
-        self.host.tick()
+        self.host.run_cycle()
         return self.rung > 0
 
 
@@ -387,18 +404,18 @@ def test_one_look_serves_a_tick_of_a_control_that_sleeps(sleeper: Sleeper) -> No
     sleeper.look()
     sleeper.sim.machine.press_estop()
     sleeper.clock.advance(0.01)
-    assert not sleeper.ports.station.snapshot().estop, "of this tick; what is new rings"
+    assert not sleeper.ports.station.read_state().estop, "of this tick; what is new rings"
     assert sleeper.sleeps()
     assert sleeper.ports.wakeup is not None
     assert sleeper.ports.wakeup.wait(0.0)
-    assert sleeper.ports.station.snapshot().estop
+    assert sleeper.ports.station.read_state().estop
 
 
 def test_nothing_rings_where_nothing_happens(sleeper: Sleeper) -> None:
     for _ in range(5):
         assert not sleeper.sleeps()
         sleeper.look()
-        assert sleeper.host.asleep
+        assert sleeper.host.is_asleep
     assert not sleeper.bell.wait(0.0)
 
 
@@ -424,10 +441,10 @@ def test_whatever_happens_rings_once_and_again_after_the_next_look(
     happens(sleeper.sim)
     for _ in range(50):  # a silent station is one after .2 s
         sleeper.clock.advance(0.005)
-        sleeper.host.tick()
+        sleeper.host.run_cycle()
     assert sleeper.rung == 1
     assert sleeper.bell.wait(0.0)
-    sleeper.host.tick()
+    sleeper.host.run_cycle()
     assert sleeper.rung == 1
 
 
@@ -442,22 +459,22 @@ def test_a_control_that_looks_as_ever_is_not_rung(sleeper: Sleeper) -> None:
     sleeper.bell.ring()
     assert sleeper.ports.wakeup.wait(0.0)  # something was asked for: it is awake
     sleeper.look()
-    assert not sleeper.host.asleep
+    assert not sleeper.host.is_asleep
     sleeper.sim.machine.set_input("TB2-5", True)
-    sleeper.host.tick()
+    sleeper.host.run_cycle()
     assert sleeper.rung == 0
 
 
 def test_an_order_ends_its_sleep(sleeper: Sleeper) -> None:
     sleeper.sleeps()
-    assert sleeper.host.asleep
+    assert sleeper.host.is_asleep
     sleeper.ports.io.write("coolant", True)
-    assert not sleeper.host.asleep
-    assert sleeper.pause() == pytest.approx(PERIOD)
+    assert not sleeper.host.is_asleep
+    assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
 
 
 def test_a_hand_at_the_screen_wakes_its_own_control(sleeper: Sleeper) -> None:
-    HostHands(sleeper.line).press_hold()
+    HostStationControls(sleeper.line).press_hold()
     assert sleeper.bell.wait(0.0)
 
 
@@ -465,18 +482,18 @@ def test_one_that_sleeps_is_missed_after_half_a_second(sleeper: Sleeper) -> None
     sleeper.sleeps()
     for _ in range(9):
         sleeper.clock.advance(0.05)
-        sleeper.host.tick()
+        sleeper.host.run_cycle()
     assert sleeper.host._notes == []
     for _ in range(3):
         sleeper.clock.advance(0.05)
-        sleeper.host.tick()
+        sleeper.host.run_cycle()
     (note,) = sleeper.host._notes
     assert re.search("spindle .*outputs ", note)
 
 
 def test_drivers_that_cannot_tell_how_long_they_need_nothing_go_round_as_ever(sleeper: Sleeper) -> None:
     sleeper.sleeps()
-    assert sleeper.pause() == pytest.approx(PERIOD)
+    assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
 
 
 def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleeper: Sleeper) -> None:
@@ -486,26 +503,26 @@ def test_drivers_are_told_that_the_control_sleeps_and_that_it_has_woken_up(sleep
         told.append(asleep)
         return 9.0
 
-    sleeper.host._driven = dataclasses.replace(sleeper.host._driven, idle=idle)
-    assert sleeper.pause() == pytest.approx(PERIOD)
+    sleeper.host._driven = dataclasses.replace(sleeper.host._driven, get_idle_time=idle)
+    assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
     sleeper.sleeps()
-    assert sleeper.pause() == pytest.approx(RESTS)
+    assert sleeper.pause() == pytest.approx(MAX_SLEEP_CYCLE_S)
     sleeper.ports.io.write("coolant", True)
-    assert sleeper.pause() == pytest.approx(PERIOD)
-    assert sleeper.pause() == pytest.approx(PERIOD)
+    assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
+    assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
     assert told == [True, False]
 
 
 def test_an_orphan_does_not_go_on_sleeping(sleeper: Sleeper) -> None:
-    sleeper.host._driven = dataclasses.replace(sleeper.host._driven, idle=lambda _: 9.0)
+    sleeper.host._driven = dataclasses.replace(sleeper.host._driven, get_idle_time=lambda _: 9.0)
     sleeper.sleeps()
-    assert sleeper.pause() == pytest.approx(RESTS)
-    sleeper.host.orphaned = True
-    assert sleeper.pause() == pytest.approx(PERIOD)
+    assert sleeper.pause() == pytest.approx(MAX_SLEEP_CYCLE_S)
+    sleeper.host.is_orphaned = True
+    assert sleeper.pause() == pytest.approx(CYCLE_PERIOD_S)
 
 
 def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
-    bell = Bell()
+    bell = ProcessBell()
     for _ in range(3000):
         bell.ring()
     assert bell.wait(0.0)
@@ -525,26 +542,26 @@ def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
     ],
 )
 def test_an_order_for_what_the_machine_has_not_is_refused_with_the_reason(what: str, reason: str) -> None:
-    sim = build_simulation(CONFIG, StepClock())
+    sim = build_simulation(CONFIG, ManualClock())
     with raises_code(DriverError, "driver") as told:
-        act(sim.ports, {"what": what, "angle": 90.0, "sense": 0})
+        execute_command(sim.ports, {"what": what, "angle": 90.0, "sense": 0})
     assert told.value.reason == reason
 
 
 def test_a_trip_is_acknowledged_by_its_number_alone_and_a_stop_is_always_let_through() -> None:
     guard = TripGuard()
-    guard.trip(0.4, [], spindle=True)
-    assert guard.tripped is None  # nothing was on
-    guard.trip(0.4, ["coolant"], spindle=True)
-    assert guard.tripped is not None
+    guard.record_trip(0.4, [], spindle=True)
+    assert guard.active_trip is None  # nothing was on
+    guard.record_trip(0.4, ["coolant"], spindle=True)
+    assert guard.active_trip is not None
     for head in ({"what": "run", "rpm": 100.0}, {"what": "home"}, {"do": "splice"}, {"what": "orient"}):
         with raises_code(DriverError, "late", "0.40 s"):
-            guard.demand_allowed(Message(head, ()))
+            guard.require_allowed(Message(head, ()))
     for head in ({"what": "run", "rpm": 0.0}, {"what": "stop"}, {"what": "write", "on": False}):
-        guard.demand_allowed(Message(head, ()))
-    guard.acknowledge(guard.tripped.number + 1)
-    assert guard.tripped is not None
-    guard.acknowledge(guard.tripped.number)
-    assert guard.tripped is None
+        guard.require_allowed(Message(head, ()))
+    guard.acknowledge(guard.active_trip.number + 1)
+    assert guard.active_trip is not None
+    guard.acknowledge(guard.active_trip.number)
+    assert guard.active_trip is None
     guard.acknowledge(1)
-    guard.demand_allowed(Message({"what": "home"}, ()))
+    guard.require_allowed(Message({"what": "home"}, ()))

@@ -7,23 +7,23 @@ from collections.abc import Callable
 from typing import Any
 
 import resources
-from app.compose.backends.grblhal_backend import grblhal_config
+from app.compose.backends.grblhal_backend import create_grblhal_config
 from app.compose.machine.machine_files import parse_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.workshop import proof_of
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import create_proof
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Job, make_job
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.snapshot import LogEvent, MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.grblhal.grblhal_wire import WireLostError
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.simulators.grblhal_settings import Quirks
-from drivers.waiting import StepClock
+from drivers.grblhal.grblhal_transport import TransportLostError
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.simulators.grblhal_settings import SimulatorBehavior
+from drivers.wakeups import ManualClock
 
 TICK = 0.01
 SHIPPED = resources.machine_file("gt75-grblhal.toml")
@@ -41,21 +41,21 @@ def grbl_machine(*changes: tuple[str, str]) -> Machine:
 class LoopWire:
     """The firmware in the same process; ``sent`` is every byte of the host."""
 
-    def __init__(self, firmware: Firmware) -> None:
+    def __init__(self, firmware: GrblFirmware) -> None:
         self.firmware = firmware
         self.sent = bytearray()
         self.cut = False
 
     def read(self) -> bytes:
         if self.cut:
-            raise WireLostError("the cable is out")
-        return self.firmware.take()
+            raise TransportLostError("the cable is out")
+        return self.firmware.pop_output()
 
     def write(self, data: bytes) -> None:
         if self.cut:
-            raise WireLostError("the cable is out")
+            raise TransportLostError("the cable is out")
         self.sent += data
-        self.firmware.feed(data)
+        self.firmware.receive_bytes(data)
 
     def close(self) -> None:
         """Nothing to let go."""
@@ -67,15 +67,15 @@ class LoopWire:
 
 
 class GrblBench:
-    """Drive it with ``post``, ``run`` and the hands of ``panel``."""
+    """Drive it with ``post``, ``run`` and the hands of ``on_screen_station``."""
 
-    def __init__(self, machine: Machine | None = None, quirks: Quirks | None = None) -> None:
+    def __init__(self, machine: Machine | None = None, quirks: SimulatorBehavior | None = None) -> None:
         self.model = machine or grbl_machine()
-        self.clock = StepClock()
-        self.peer = Firmware(self.clock, quirks)
+        self.clock = ManualClock()
+        self.peer = GrblFirmware(self.clock, quirks)
         self.wire = LoopWire(self.peer)
-        self.machine = GrblMachine(grblhal_config(self.model), self.clock, self.wire)
-        self.events: list[Event] = []
+        self.machine = GrblMachine(create_grblhal_config(self.model), self.clock, self.wire)
+        self.events: list[LogEvent] = []
         self.executor = Executor(self.model, self.machine.ports, self.events.append)
         self.wire.sent.clear()
 
@@ -84,7 +84,7 @@ class GrblBench:
         return self.executor.snapshot
 
     @property
-    def state(self) -> State:
+    def state(self) -> MachineState:
         return self.executor.snapshot.state
 
     def post(self, *commands: Command) -> None:
@@ -94,7 +94,7 @@ class GrblBench:
 
     def tick(self, dt: float = TICK) -> None:
         self.clock.advance(dt)
-        self.executor.tick()
+        self.executor.run_tick()
 
     def run(self, seconds: float) -> None:
         end = self.clock.now() + seconds
@@ -106,9 +106,9 @@ class GrblBench:
         end = self.clock.now() + seconds
         while self.clock.now() < end - 1e-9:
             self.clock.advance(TICK)
-            self.machine.pump()
+            self.machine.run_cycle()
 
-    def until(self, *states: State, limit: float = 60.0) -> float:
+    def until(self, *states: MachineState, limit: float = 60.0) -> float:
         return self.until_true(lambda shot: shot.state in states, limit)
 
     def until_true(self, condition: Callable[[Snapshot], bool], limit: float = 60.0) -> float:
@@ -120,20 +120,20 @@ class GrblBench:
 
     def ready(self) -> None:
         self.post(EnableDrives())
-        assert self.state is State.IDLE, self.shot
+        assert self.state is MachineState.IDLE, self.shot
 
     def load(self, text: str) -> Job:
         """With the proof that proving gives, which tells what the program needs."""
-        setup = setup_for(self.model, tools={1: ToolOffset(0.0, 0.0)}, secondary={})
-        job = make_job(Source("PART", text), setup)
-        proof = proof_of(job, prove(job.source, job.setup, self.model))
+        setup = create_setup(self.model, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        job = make_job(ProgramSource("PART", text), setup)
+        proof = create_proof(job, prove(job.source, job.setup, self.model))
         assert not proof.errors, proof.errors
         self.post(LoadJob(job, proof))
         return job
 
     def press(self) -> None:
         """Both palms."""
-        panel = self.machine.panel
+        panel = self.machine.on_screen_station
         panel.press_left()
         panel.press_right()
         self.tick()
@@ -143,7 +143,7 @@ class GrblBench:
 
     def start(self, text: str) -> None:
         """Drives on, program loaded, both palms."""
-        if self.state is State.DISABLED:
+        if self.state is MachineState.DISABLED:
             self.ready()
         self.run(0.4)
         self.load(text)
@@ -159,5 +159,5 @@ class GrblBench:
         return "; ".join(f"{alarm.code}: {alarm.detail or alarm.cause}" for alarm in self.shot.alarms)
 
 
-def quirky(**changes: Any) -> Quirks:
-    return dataclasses.replace(Quirks(), **changes)
+def quirky(**changes: Any) -> SimulatorBehavior:
+    return dataclasses.replace(SimulatorBehavior(), **changes)

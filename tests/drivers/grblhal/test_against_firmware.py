@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from core.ports import Clock
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import RealClock, StepClock
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import ManualClock, RealClock
 from tests.drivers.grblhal.bench import quirky
 from tests.drivers.grblhal.test_like_the_simulator import AS_IT_COMES
 from tests.free_port import free_port
@@ -95,16 +95,18 @@ class Ours:
     """The simulator as the simulator comes."""
 
     def __init__(self) -> None:
-        self.clock = StepClock()
-        self.firmware = Firmware(self.clock, quirky(**AS_IT_COMES, signals="D", lathe=False))
+        self.clock = ManualClock()
+        self.firmware = GrblFirmware(self.clock, quirky(**AS_IT_COMES, signals="D", lathe=False))
 
     def say(self, data: bytes) -> list[str]:
         """The same."""
-        self.firmware.feed(data)
+        self.firmware.receive_bytes(data)
         told: list[str] = []
         for _ in range(3000):
             told += [
-                line.strip() for line in self.firmware.take().decode("ascii").split("\n") if line.strip()
+                line.strip()
+                for line in self.firmware.pop_output().decode("ascii").split("\n")
+                if line.strip()
             ]
             if told and _answers(told[-1], data):
                 break

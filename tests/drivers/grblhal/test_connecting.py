@@ -7,30 +7,30 @@ import threading
 
 import pytest
 
-from app.compose.backends.grblhal_backend import grblhal_config
+from app.compose.backends.grblhal_backend import create_grblhal_config
 from core.executor.commands import EnableDrives, Reset
-from core.executor.snapshot import State
-from core.ports import DriverError, LineOp
+from core.executor.snapshot import MachineState
+from core.ports import DriverError, LineOperation
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.grblhal.grblhal_wire import TcpWire
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import StepClock
+from drivers.grblhal.grblhal_transport import GrblTcpTransport
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, LoopWire, grbl_machine, quirky
 
 
-def connect(firmware: Firmware, clock: StepClock, *changes: tuple[str, str]) -> GrblMachine:
-    return GrblMachine(grblhal_config(grbl_machine(*changes)), clock, LoopWire(firmware))
+def connect(firmware: GrblFirmware, clock: ManualClock, *changes: tuple[str, str]) -> GrblMachine:
+    return GrblMachine(create_grblhal_config(grbl_machine(*changes)), clock, LoopWire(firmware))
 
 
-def left_behind(data: bytes, **quirks: object) -> tuple[Firmware, StepClock]:
+def left_behind(data: bytes, **quirks: object) -> tuple[GrblFirmware, ManualClock]:
     """A controller that another host has spoken to."""
-    clock = StepClock()
-    firmware = Firmware(clock, quirky(**quirks))
-    firmware.feed(data)
+    clock = ManualClock()
+    firmware = GrblFirmware(clock, quirky(**quirks))
+    firmware.receive_bytes(data)
     clock.advance(0.2)
     firmware.advance()
-    firmware.take()
+    firmware.pop_output()
     return firmware, clock
 
 
@@ -40,43 +40,48 @@ def test_modes_of_another_host_are_ended() -> None:
     connect(firmware, clock)
     modes = firmware.program.modes
     assert (modes.radius, modes.plane, modes.units, modes.distance) == ("G8", "G18", "G21", "G90")
-    assert (modes.feed_mode, modes.speed, modes.scaling, modes.hold_disabled) == ("G94", "G97", "G50", False)
+    assert (modes.feed_mode, modes.speed, modes.scaling, modes.is_hold_disabled) == (
+        "G94",
+        "G97",
+        "G50",
+        False,
+    )
 
 
 def test_offsets_of_another_host_are_taken_out() -> None:
     firmware, clock = left_behind(b"G8G18G21G90\nG10L2P1X5Y0Z-3\n")
     made = connect(firmware, clock)
-    assert firmware.program.offset == [0.0, 0.0, 0.0]
+    assert firmware.program.work_offset == [0.0, 0.0, 0.0]
     made.axes.enable(True)
-    made.blocks.submit(LineOp(1.0, 2.0, 40.0))
+    made.block_controller.submit_block(LineOperation(1.0, 2.0, 40.0))
     for _ in range(100):
         clock.advance(0.01)
-        made.pump()
-    assert firmware.slides.place == (1.0, 2.0)
+        made.run_cycle()
+    assert firmware.motion.position == (1.0, 2.0)
 
 
 def test_what_a_killed_control_has_left_on_is_switched_off() -> None:
     firmware, clock = left_behind(b"G8G18G21G90G97\nM3S800\nM8\n")
-    assert firmware.rpm == 800.0
+    assert firmware.programmed_rpm == 800.0
     connect(firmware, clock)
-    assert firmware.rpm == 0.0
-    assert not firmware.outputs["flood"]
+    assert firmware.programmed_rpm == 0.0
+    assert not firmware.output_states["flood"]
 
 
 def test_half_a_line_of_another_host_is_no_part_of_ours() -> None:
     firmware, clock = left_behind(b"G1X5")
     made = connect(firmware, clock)
     assert made.controller.fault == ""
-    assert firmware.slides.place == (0.0, 0.0)
+    assert firmware.motion.position == (0.0, 0.0)
 
 
 def test_a_program_of_another_host_is_braked_and_given_up() -> None:
     firmware, clock = left_behind(b"G8G18G21G90G94\nG1X80F600\n")
-    assert firmware.slides.moving
+    assert firmware.motion.is_moving
     connect(firmware, clock)
-    assert firmware.torn == 0
-    assert not firmware.slides.queue
-    assert firmware.slides.place[0] < 10.0
+    assert firmware.abrupt_stop_count == 0
+    assert not firmware.motion.block_queue
+    assert firmware.motion.position[0] < 10.0
 
 
 def test_firmware_that_is_built_for_lathes_has_no_lathe_setting() -> None:
@@ -85,8 +90,8 @@ def test_firmware_that_is_built_for_lathes_has_no_lathe_setting() -> None:
 
 
 def test_in_a_critical_alarm_settings_wait_for_the_reset() -> None:
-    clock = StepClock()
-    firmware = Firmware(clock, quirky(settings={13: 1.0}))
+    clock = ManualClock()
+    firmware = GrblFirmware(clock, quirky(settings={13: 1.0}))
     firmware.raise_alarm(17)
     made = connect(firmware, clock)
     assert "ALARM:17" in made.controller.fault
@@ -94,11 +99,11 @@ def test_in_a_critical_alarm_settings_wait_for_the_reset() -> None:
     made.axes.clear_fault()
     for _ in range(200):
         clock.advance(0.01)
-        made.pump()
+        made.run_cycle()
     assert made.controller.fault == ""
-    assert firmware.alarm == 0
+    assert firmware.alarm_number == 0
     assert firmware.registers[13] == 0.0
-    assert made.blocks.state().hindrance == ""
+    assert made.block_controller.state().start_refusal == ""
 
 
 @pytest.mark.parametrize("at", [0.41, 0.42, 0.43, 0.44, 0.5])
@@ -107,50 +112,50 @@ def test_an_alarm_without_a_number_is_one(at: float) -> None:
     bench = GrblBench()
     bench.ready()
     bench.run(at)
-    bench.peer.alarm = 14
-    bench.until(State.FAULT, limit=1.0)
+    bench.peer.alarm_number = 14
+    bench.until(MachineState.FAULT, limit=1.0)
     assert "ALARM" in bench.alarms()
 
 
 def test_an_open_door_is_told_and_left_by_reset() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX1\nM30\n")
-    bench.until_true(lambda _: bench.peer.slides.moving)
-    bench.peer.door = True
-    bench.until(State.FAULT, limit=2.0)
+    bench.until_true(lambda _: bench.peer.motion.is_moving)
+    bench.peer.is_door_open = True
+    bench.until(MachineState.FAULT, limit=2.0)
     assert "safety door" in bench.alarms()
     bench.run(1.5)
     bench.post(Reset())
     bench.run(1.0)
-    assert bench.state is State.FAULT  # it still stands open
-    bench.peer.door = False
+    assert bench.state is MachineState.FAULT  # it still stands open
+    bench.peer.is_door_open = False
     bench.run(0.5)
     bench.post(Reset())
     bench.run(1.5)
     bench.post(EnableDrives())
-    bench.until(State.IDLE, limit=2.0)
-    assert bench.peer.torn == 0
-    assert not bench.peer.slides.queue
+    bench.until(MachineState.IDLE, limit=2.0)
+    assert bench.peer.abrupt_stop_count == 0
+    assert not bench.peer.motion.block_queue
 
 
 def test_what_nobody_knows_in_a_report_or_a_message_is_no_trouble() -> None:
     bench = GrblBench()
     bench.ready()
     bench.run(0.5)
-    bench.peer.say("[MSG:Info: something new]\r\n\r\n[NEW:1,2]\r\n$N0=\r\n>G8:ok\r\n")
-    bench.peer.say("<Idle|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0,0|New:x,y|SD:1|MPG:0|TCP>\r\n")
+    bench.peer.send_text("[MSG:Info: something new]\r\n\r\n[NEW:1,2]\r\n$N0=\r\n>G8:ok\r\n")
+    bench.peer.send_text("<Idle|MPos:0.000,0.000,0.000|Bf:100,1023|FS:0,0,0|New:x,y|SD:1|MPG:0|TCP>\r\n")
     bench.run(0.5)
-    assert bench.state is State.IDLE
+    assert bench.state is MachineState.IDLE
     assert not bench.shot.alarms
 
 
 def test_three_axes_and_more_are_read_by_their_letters() -> None:
     firmware, clock = left_behind(b"")
     made = connect(firmware, clock)
-    firmware.slides.place = (1.25, -2.5)
+    firmware.motion.position = (1.25, -2.5)
     for _ in range(50):
         clock.advance(0.01)
-        made.pump()
+        made.run_cycle()
     assert made.controller.position == {"X": 1.25, "Y": 0.0, "Z": -2.5}
 
 
@@ -172,7 +177,7 @@ def test_hanging_up_waits_until_the_other_end_has_said_all(rests: bytes) -> None
 
     end = threading.Thread(target=answer)
     end.start()
-    wire = TcpWire(*listener.getsockname()[:2])
+    wire = GrblTcpTransport(*listener.getsockname()[:2])
     wire.write(b"\x80")
     wire.close()
     end.join(60.0)
@@ -184,7 +189,7 @@ def test_hanging_up_waits_until_the_other_end_has_said_all(rests: bytes) -> None
 def test_a_controller_that_comes_up_in_diameter_is_made_to_count_radii() -> None:
     bench = GrblBench(quirks=quirky(diameter=True))
     assert bench.peer.program.modes.radius == "G8"
-    assert bench.machine.controller.diameter is False
+    assert bench.machine.controller.is_diameter_mode is False
 
 
 def test_a_controller_that_is_no_lathe_is_refused() -> None:
@@ -201,7 +206,7 @@ def test_an_estop_that_the_board_has_not_is_refused() -> None:
 def test_an_estop_that_the_board_has_not_is_refused_in_an_alarm_too() -> None:
     """Else the Reset of the alarm would go by."""
     firmware, clock = left_behind(b"")
-    firmware.quirks.signals = "D"
+    firmware.behavior.signals = "D"
     firmware.raise_alarm(17)
     with raises_code(DriverError, "driver", "pn.E", "[SIGNALS:D]"):
         connect(firmware, clock)
@@ -215,7 +220,7 @@ def test_an_estop_by_hardware_alone_is_said_and_runs() -> None:
     assert "E-stop" in told
     assert "start (pn.S), hold (pn.H)" in told
     bench.start("G90G94F100\nX.1\nM30\n")
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert bench.shot.parts == 1
 
 
@@ -232,7 +237,7 @@ def test_settings_are_written_once_and_read_back() -> None:
 class TellsWire(LoopWire):
     """A controller that tells one thing otherwise."""
 
-    def __init__(self, firmware: Firmware, old: bytes, new: bytes) -> None:
+    def __init__(self, firmware: GrblFirmware, old: bytes, new: bytes) -> None:
         super().__init__(firmware)
         self._old, self._new = old, new
 
@@ -255,9 +260,9 @@ class TellsWire(LoopWire):
 def test_a_controller_that_cannot_be_brought_into_its_state_is_refused_with_the_cause(
     old: bytes, new: bytes, values: tuple[str, ...]
 ) -> None:
-    clock = StepClock()
-    firmware = Firmware(clock, quirky())
+    clock = ManualClock()
+    firmware = GrblFirmware(clock, quirky())
     with raises_code(DriverError, "driver", *values):
-        GrblMachine(grblhal_config(grbl_machine()), clock, TellsWire(firmware, old, new))
-    assert firmware.slides.place == (0.0, 0.0)
-    assert firmware.rpm == 0.0
+        GrblMachine(create_grblhal_config(grbl_machine()), clock, TellsWire(firmware, old, new))
+    assert firmware.motion.position == (0.0, 0.0)
+    assert firmware.programmed_rpm == 0.0

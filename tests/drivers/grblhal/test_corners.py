@@ -6,31 +6,31 @@ import math
 
 import pytest
 
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.simulators.grblhal_settings import Quirks, Registers
-from drivers.simulators.grblhal_slides import Place, PlannedBlock, Slides, straight
-from drivers.waiting import StepClock
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.simulators.grblhal_motion import GrblMotion, PlannedBlock, Position, make_line_path
+from drivers.simulators.grblhal_settings import SettingRegisters, SimulatorBehavior
+from drivers.wakeups import ManualClock
 
 STEP = 0.001
 ACCEL = 3000.0  # $120 and $122 of the simulator, mm/s²
 SPEED = 100.0  # mm/s
 
 
-def way(*places: Place, speed: float = SPEED, registers: Registers | None = None) -> Slides:
+def way(*places: Position, speed: float = SPEED, registers: SettingRegisters | None = None) -> GrblMotion:
     """Slides that are to go through these places from (0, 0)."""
-    slides = Slides(registers or Registers(Quirks()), 100)
+    slides = GrblMotion(registers or SettingRegisters(SimulatorBehavior()), 100)
     for start, end in zip(((0.0, 0.0), *places), places, strict=False):
-        length, shape = straight(start, end)
-        slides.queue.append(PlannedBlock(0, length, speed, shape))
+        length, shape = make_line_path(start, end)
+        slides.block_queue.append(PlannedBlock(0, length, speed, shape))
     return slides
 
 
-def run(slides: Slides) -> list[tuple[Place, float]]:
+def run(slides: GrblMotion) -> list[tuple[Position, float]]:
     """Place and speed after each step, to the end."""
     seen = []
-    while slides.queue:
-        slides.step(STEP, 0.0)
-        seen.append((slides.place, slides.v))
+    while slides.block_queue:
+        slides.advance(STEP, 0.0)
+        seen.append((slides.position, slides.speed))
     return seen
 
 
@@ -60,9 +60,9 @@ def test_a_right_angle_is_taken_by_the_deviation() -> None:
 
 def test_each_slide_has_its_own_limits() -> None:
     """Along Z as Z may, along X as X may, at 45 degrees √2 of the slower."""
-    registers = Registers(Quirks(settings={112: 9000.0}))  # Z 150 mm/s, X 127
+    registers = SettingRegisters(SimulatorBehavior(settings={112: 9000.0}))  # Z 150 mm/s, X 127
 
-    def top(corner: Place) -> float:
+    def top(corner: Position) -> float:
         return max(v for _, v in run(way(corner, speed=1e9, registers=registers)))
 
     assert top((0.0, 40.0)) == pytest.approx(150.0, abs=0.1)
@@ -72,8 +72,8 @@ def test_each_slide_has_its_own_limits() -> None:
 
 def test_a_slower_block_begins_at_its_own_speed() -> None:
     slides = way((0.0, 20.0))
-    length, shape = straight((0.0, 20.0), (0.0, 30.0))
-    slides.queue.append(PlannedBlock(0, length, 5.0, shape))
+    length, shape = make_line_path((0.0, 20.0), (0.0, 30.0))
+    slides.block_queue.append(PlannedBlock(0, length, 5.0, shape))
     seen = run(slides)
     assert max(v for (_, z), v in seen if z > 20.0) <= 5.0 + 2.0 * ACCEL * STEP
     assert max(v for (_, z), v in seen if z > 20.5) <= 5.0 + 1e-6
@@ -95,15 +95,15 @@ TURNS = 1000.0 / 60.0 * (0.5 * 1000.0 / 1500.0 + 2.0 - 0.08 - 1000.0 / 1500.0)
     ids=["spindle", "arc", "jog", "dwell"],
 )
 def test_a_controller_that_was_idle_carries_out_its_lines_whoever_looks_when(
-    lines: bytes, place: Place, turns: float, tick: float
+    lines: bytes, place: Position, turns: float, tick: float
 ) -> None:
-    clock = StepClock()
-    firmware = Firmware(clock, Quirks())
+    clock = ManualClock()
+    firmware = GrblFirmware(clock, SimulatorBehavior())
     clock.sleep_until(2.0)
-    firmware.feed(lines)
+    firmware.receive_bytes(lines)
     while clock.now() < 4.0 - 1e-9:
         clock.advance(tick)
         firmware.advance()
-    assert firmware.slides.place == pytest.approx(place, abs=1e-9)
-    assert firmware.spindle.turns == pytest.approx(turns, abs=1e-3)
-    assert firmware.take() == b"ok\r\n" * lines.count(b"\n")
+    assert firmware.motion.position == pytest.approx(place, abs=1e-9)
+    assert firmware.spindle.revolutions == pytest.approx(turns, abs=1e-3)
+    assert firmware.pop_output() == b"ok\r\n" * lines.count(b"\n")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import EnableDrives, FeedOverride, Home, Reset
-from core.executor.snapshot import State
+from core.executor.commands import EnableDrives, HomeAxes, Reset, SetFeedOverride
+from core.executor.snapshot import MachineState
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_run import LONG
 from tests.texts import shows
@@ -40,55 +40,55 @@ def clear(bench: GrblBench) -> None:
 def test_a_reset_of_the_controller_ends_the_cycle_and_keeps_what_x_means() -> None:
     bench = cutting(GrblBench())
     bench.peer.reset()
-    bench.until(State.FAULT, limit=1.0)
+    bench.until(MachineState.FAULT, limit=1.0)
     assert "reset" in bench.alarms()
-    at = bench.peer.slides.place
-    done = list(bench.peer.program.executed)
+    at = bench.peer.motion.position
+    done = list(bench.peer.program.executed_lines)
     bench.run(2.0)
-    assert bench.peer.slides.place == at
-    assert bench.peer.program.executed == done
+    assert bench.peer.motion.position == at
+    assert bench.peer.program.executed_lines == done
     bench.post(Reset())
     bench.run(1.5)
-    assert bench.peer.alarm == 0
+    assert bench.peer.alarm_number == 0
     assert bench.peer.program.modes.plane == "G18"
     assert bench.shot.demand[0] == pytest.approx(at[0], abs=0.001)  # radius, not diameter
-    assert bench.state is State.DISABLED
+    assert bench.state is MachineState.DISABLED
     assert not all(bench.shot.homed)  # it was reset while it moved: ALARM:3
 
 
 def test_a_sticky_error_is_told_once_and_nothing_behind_it_runs() -> None:
     bench = cutting(GrblBench())
-    done = len(bench.peer.program.executed)
-    bench.peer.program.error = 33  # as a line that it refuses leaves it
-    bench.until(State.FAULT, limit=1.0)
+    done = len(bench.peer.program.executed_lines)
+    bench.peer.program.last_error = 33  # as a line that it refuses leaves it
+    bench.until(MachineState.FAULT, limit=1.0)
     assert len(bench.shot.alarms) == 1
     assert "error:33" in bench.alarms()
     bench.run(1.0)
-    assert len(bench.peer.program.executed) <= done + 1
+    assert len(bench.peer.program.executed_lines) <= done + 1
     assert len([text for text in bench.said("alarm") if "error:33" in text]) == 1
-    assert not bench.peer.slides.queue
+    assert not bench.peer.motion.block_queue
 
 
 @pytest.mark.parametrize("damage", [b"o", b"k", b"o*", b"okok", b"\xffk"])
 def test_a_damaged_answer_stops_and_moves_no_position(damage: bytes) -> None:
     bench = cutting(GrblBench())
-    bench.peer.quirks.garble.append(damage)
-    bench.until(State.FAULT, limit=1.0)
+    bench.peer.behavior.garbled_replies.append(damage)
+    bench.until(MachineState.FAULT, limit=1.0)
     assert shows(bench.alarms(), "drivers.grblhal-interference")
-    bench.until_true(lambda _: not bench.peer.slides.moving, 1.0)
+    bench.until_true(lambda _: not bench.peer.motion.is_moving, 1.0)
     bench.run(1.0)
-    assert bench.shot.actual[:2] == pytest.approx(bench.peer.slides.place, abs=0.001)
-    assert not bench.peer.slides.queue
+    assert bench.shot.actual[:2] == pytest.approx(bench.peer.motion.position, abs=0.001)
+    assert not bench.peer.motion.block_queue
 
 
 def test_an_answer_that_never_comes_is_missed() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX.5Z.2\nM30\n")
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     bench.run(0.4)
-    bench.peer.quirks.garble.append(b"")
+    bench.peer.behavior.garbled_replies.append(b"")
     bench.start("G90G94F300\nX.3Z.2\nM30\n")
-    bench.until(State.FAULT, limit=5.0)
+    bench.until(MachineState.FAULT, limit=5.0)
     (alarm,) = bench.shot.alarms
     assert alarm.code == "controller-silent"
     assert "'N2G0X7.62Z5.08'" in alarm.detail
@@ -97,8 +97,8 @@ def test_an_answer_that_never_comes_is_missed() -> None:
 def test_a_leaping_position_is_not_believed() -> None:
     bench = cutting(GrblBench())
     before = bench.shot.actual[0]
-    bench.peer.say("<Run|MPos:-18542.000,0.000,0.000|FS:0,0,0>\r\n")
-    bench.until(State.FAULT, limit=1.0)
+    bench.peer.send_text("<Run|MPos:-18542.000,0.000,0.000|FS:0,0,0>\r\n")
+    bench.until(MachineState.FAULT, limit=1.0)
     assert bench.shot.actual[0] == pytest.approx(before, abs=1.0)
 
 
@@ -112,43 +112,43 @@ def test_a_controller_that_was_late_itself_makes_up_for_it(monkeypatch: pytest.M
             held_up.setattr(bench.peer, "advance", lambda: None)
             bench.run(0.25)
         bench.run(0.2)
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert bench.shot.alarms == ()
 
 
 def test_a_silent_controller_is_told() -> None:
     bench = cutting(GrblBench())
-    bench.peer.quirks.deaf = True
-    took = bench.until(State.FAULT, limit=3.0)
+    bench.peer.behavior.sends_nothing = True
+    took = bench.until(MachineState.FAULT, limit=3.0)
     assert took < 1.4
     assert [alarm.code for alarm in bench.shot.alarms] == ["controller-silent"]
 
 
 def test_without_its_host_it_runs_on_for_no_more_than_it_was_given() -> None:
     bench = cutting(GrblBench())
-    z = bench.peer.slides.place[1]
+    z = bench.peer.motion.position[1]
     bench.wire.cut = True
     bench.clock.advance(10.0)  # nobody ticks any more
     bench.peer.advance()
-    assert not bench.peer.slides.queue
-    assert abs(bench.peer.slides.place[1] - z) < 12.7 * 0.9  # of 50 mm that the block still had
+    assert not bench.peer.motion.block_queue
+    assert abs(bench.peer.motion.position[1] - z) < 12.7 * 0.9  # of 50 mm that the block still had
 
 
 def test_estop_at_the_controller() -> None:
     bench = cutting(GrblBench())
-    bench.peer.pins = "E"
+    bench.peer.active_pins = "E"
     bench.peer.raise_alarm(10)
-    bench.until(State.ESTOP, limit=1.0)
+    bench.until(MachineState.ESTOP, limit=1.0)
     bench.run(1.0)
     assert bench.shot.rpm_command == 0.0
-    bench.peer.pins = ""
+    bench.peer.active_pins = ""
     bench.run(1.0)
-    assert bench.state is not State.RUN
+    assert bench.state is not MachineState.RUN
     bench.post(Reset())
     bench.run(2.0)
-    assert bench.state is State.DISABLED
-    assert bench.peer.alarm == 0
-    assert bench.peer.rpm == 0.0
+    assert bench.state is MachineState.DISABLED
+    assert bench.peer.alarm_number == 0
+    assert bench.peer.programmed_rpm == 0.0
 
 
 @pytest.mark.parametrize("alarm", [10, 17])
@@ -156,15 +156,15 @@ def test_an_alarm_that_ends_the_steps_of_a_moving_slide_has_lost_its_place(alarm
     """The firmware says ALARM:3 for a reset in motion, and of E-stop and motor fault nothing of the place."""
     bench = cutting(GrblBench())
     bench.peer.raise_alarm(alarm)
-    bench.until(State.FAULT, limit=1.0)
+    bench.until(MachineState.FAULT, limit=1.0)
     clear(bench)
     assert not any(bench.shot.homed[:2])
     bench.load(LONG)
     bench.press()
-    assert "homed" in bench.shot.start_refused
+    assert "homed" in bench.shot.start_refusal
     for axis in "XZ":
-        bench.post(Home(axis))
-        bench.until(State.IDLE)
+        bench.post(HomeAxes(axis))
+        bench.until(MachineState.IDLE)
     assert all(bench.shot.homed[:2])
 
 
@@ -172,9 +172,9 @@ def test_an_alarm_that_ends_the_steps_of_a_moving_slide_has_lost_its_place(alarm
 def test_the_same_at_rest_has_lost_nothing(alarm: int) -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nX.5\nM30\n")
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     bench.peer.raise_alarm(alarm)
-    bench.until(State.FAULT, limit=1.0)
+    bench.until(MachineState.FAULT, limit=1.0)
     clear(bench)
     assert all(bench.shot.homed[:2])
 
@@ -184,10 +184,10 @@ def test_what_an_estop_switches_off_is_no_output_that_has_gone_off_by_itself() -
     bench.start("G90G94F300\nM08\nG01X1F30\nM30\n")
     bench.until_true(lambda shot: shot.line == 3)
     bench.run(1.5)
-    bench.peer.pins = "E"
-    bench.peer.outputs["flood"] = False
+    bench.peer.active_pins = "E"
+    bench.peer.output_states["flood"] = False
     bench.peer.raise_alarm(10)
-    bench.until(State.ESTOP, limit=1.0)
+    bench.until(MachineState.ESTOP, limit=1.0)
     assert not bench.said("disturbed")
     assert not bench.said("stop")
 
@@ -196,15 +196,15 @@ def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_re
     """The simulator's own habit, and that the recovery gets rid of it."""
     bench = GrblBench()
     bench.ready()
-    bench.peer.feed(b"G95\nG1X5F.1\n")
+    bench.peer.receive_bytes(b"G95\nG1X5F.1\n")
     bench.clock.advance(0.3)  # before anybody looks
     bench.peer.advance()
-    assert bench.peer.alarm == 14
-    assert bench.peer.slides.queue
-    bench.until(State.FAULT, limit=1.0)
+    assert bench.peer.alarm_number == 14
+    assert bench.peer.motion.block_queue
+    bench.until(MachineState.FAULT, limit=1.0)
     clear(bench)
-    assert bench.peer.alarm == 0
-    assert not bench.peer.slides.queue
+    assert bench.peer.alarm_number == 0
+    assert not bench.peer.motion.block_queue
     assert bench.peer.program.modes.feed_mode == "G94"
 
 
@@ -214,16 +214,16 @@ def test_a_controller_that_wants_to_be_homed_is_homed_axis_by_axis() -> None:
     bench.run(0.5)
     bench.load("G90G94F300\nX.3\nM30\n")
     bench.press()
-    assert "homed" in bench.shot.start_refused
-    bench.post(Home())
-    bench.until(State.IDLE, limit=10.0)
+    assert "homed" in bench.shot.start_refusal
+    bench.post(HomeAxes())
+    bench.until(MachineState.IDLE, limit=10.0)
     assert all(bench.shot.homed)
     assert [line for line in bench.wire.lines() if line.startswith("$H")] == ["$HZ", "$HX"]
     assert bench.peer.program.modes.plane == "G18"
     bench.run(0.4)
     bench.press()
-    bench.until(State.RUN, limit=1.0)
-    bench.until(State.IDLE)
+    bench.until(MachineState.RUN, limit=1.0)
+    bench.until(MachineState.IDLE)
     assert bench.shot.parts == 1
 
 
@@ -232,7 +232,7 @@ def test_homing_that_the_controller_does_not_know_is_told() -> None:
     bench.ready()
     bench.run(0.5)
     bench.machine.axes.home("X")
-    bench.until(State.FAULT, limit=2.0)
+    bench.until(MachineState.FAULT, limit=2.0)
     assert "$22" in bench.alarms()
     assert "method 37" in bench.alarms()
     assert not bench.shot.homed[0]
@@ -242,13 +242,13 @@ def test_an_override_that_is_not_taken_is_an_alarm() -> None:
     bench = GrblBench(quirks=quirky(stubborn=True))
     bench.start("G90G94F300\nX.5Z.2\nG01Z-2F10\nM30\n")
     bench.until_true(lambda shot: shot.line == 3)
-    bench.post(FeedOverride(0.5))
-    bench.until(State.FAULT, limit=13.0)
+    bench.post(SetFeedOverride(0.5))
+    bench.until(MachineState.FAULT, limit=13.0)
     assert "override" in bench.alarms()
 
 
 def test_a_line_that_never_ends_is_a_disturbed_line() -> None:
     bench = cutting(GrblBench())
-    bench.peer.say("x" * 1500)
-    bench.until(State.FAULT, limit=1.0)
+    bench.peer.send_text("x" * 1500)
+    bench.until(MachineState.FAULT, limit=1.0)
     assert shows(bench.alarms(), "drivers.grblhal-interference")

@@ -9,8 +9,8 @@ import math
 
 import pytest
 
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import StepClock
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import ManualClock
 from tests.drivers.grblhal.bench import quirky
 
 LATHE = b"G8G18G21G90G94G97\n"
@@ -23,11 +23,11 @@ class Desk:
     """A hand at the other end of the wire."""
 
     def __init__(self, **quirks: object) -> None:
-        self.clock = StepClock()
-        self.firmware = Firmware(self.clock, quirky(**quirks))
+        self.clock = ManualClock()
+        self.firmware = GrblFirmware(self.clock, quirky(**quirks))
 
     def say(self, data: bytes) -> list[str]:
-        self.firmware.feed(data)
+        self.firmware.receive_bytes(data)
         return self.hear()
 
     def hear(self, seconds: float = 0.0) -> list[str]:
@@ -35,7 +35,7 @@ class Desk:
         while self.clock.now() < end - 1e-9:
             self.clock.advance(0.01)
             self.firmware.advance()
-        return [line for line in self.firmware.take().decode().split("\r\n") if line]
+        return [line for line in self.firmware.pop_output().decode().split("\r\n") if line]
 
 
 def test_behind_a_reset_in_motion_comes_the_alarm_then_the_banner_then_how_to_unlock() -> None:
@@ -61,11 +61,11 @@ def test_a_stop_does_not_brake_and_tells_nobody_that_the_position_is_lost() -> N
     desk = Desk()
     desk.say(LATHE + b"M3S1000\nG1X50F600\n")
     desk.hear(1.0)
-    assert desk.firmware.slides.v == pytest.approx(10.0)
+    assert desk.firmware.motion.speed == pytest.approx(10.0)
     assert desk.say(STOP) == ["[MSG:Stop]"]
-    assert desk.firmware.torn == 1
-    assert desk.firmware.slides.v == 0.0
-    assert desk.firmware.rpm == 0.0
+    assert desk.firmware.abrupt_stop_count == 1
+    assert desk.firmware.motion.speed == 0.0
+    assert desk.firmware.programmed_rpm == 0.0
     assert desk.say(STATUS)[0].startswith("<Idle|")
 
 
@@ -75,7 +75,7 @@ def test_a_jog_knows_no_feed_hold_and_refuses_lines_until_it_ends() -> None:
     desk.hear(0.5)
     desk.say(HOLD)
     desk.hear(0.5)
-    assert desk.firmware.slides.v == pytest.approx(10.0)
+    assert desk.firmware.motion.speed == pytest.approx(10.0)
     assert desk.say(b"M5\n") == ["error:9"]
     desk.say(CANCEL)
     desk.hear(0.1)
@@ -103,9 +103,9 @@ def test_behind_a_hold_the_spindle_comes_back_by_a_setting(restore: int, runs: b
     desk.say(HOLD)
     desk.hear(0.2)
     desk.say(b"\x9e")
-    assert desk.firmware.commanded == 0.0
+    assert desk.firmware.commanded_rpm == 0.0
     desk.say(START)
-    assert (desk.firmware.commanded != 0.0) is runs
+    assert (desk.firmware.commanded_rpm != 0.0) is runs
 
 
 def test_a_critical_alarm_takes_a_reset_and_no_unlocking() -> None:
@@ -120,7 +120,7 @@ def test_a_critical_alarm_takes_a_reset_and_no_unlocking() -> None:
 
 def test_with_e_stop_pressed_it_does_not_come_back() -> None:
     desk = Desk()
-    desk.firmware.pins = "E"
+    desk.firmware.active_pins = "E"
     desk.firmware.raise_alarm(10)
     desk.hear()
     assert desk.say(RESET) == []
@@ -188,10 +188,10 @@ def test_with_a_hundred_free_bytes_it_takes_nothing_more_from_its_wire() -> None
     desk.hear(0.2)
     lines = b"G1X40F600\n" * 100
     desk.say(lines)
-    assert desk.firmware.rx_free == 100
+    assert desk.firmware.receive_buffer_free == 100
     desk.say(START)
     assert desk.firmware.state == "Hold:0"
-    assert desk.firmware.overflowed == 0
+    assert desk.firmware.lost_byte_count == 0
 
 
 @pytest.mark.parametrize("words", ["G3X1Z1", "G2X1Z-1"])
@@ -202,15 +202,15 @@ def test_an_arc_counts_from_z_to_x(words: str) -> None:
     """
     desk = Desk()
     assert desk.say(LATHE + f"{words}I1K0F600\n".encode()) == ["ok", "ok"]
-    (block,) = desk.firmware.slides.queue
-    assert block.length == pytest.approx(math.pi / 2)
+    (block,) = desk.firmware.motion.block_queue
+    assert block.length_mm == pytest.approx(math.pi / 2)
 
 
 def test_an_arc_that_rounds_to_nothing_is_a_whole_circle() -> None:
     desk = Desk()
     desk.say(LATHE + b"G3X0Z0.00000I10K0F600\n")
-    (block,) = desk.firmware.slides.queue
-    assert block.length == pytest.approx(20.0 * math.pi)
+    (block,) = desk.firmware.motion.block_queue
+    assert block.length_mm == pytest.approx(20.0 * math.pi)
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ def test_a_line_that_cannot_be_is_refused_and_moves_nothing(line: str, error: in
     desk.say(LATHE)
     assert desk.say(f"{line}\n".encode()) == [f"error:{error}"]
     desk.hear(0.2)
-    assert desk.firmware.slides.place == (0.0, 0.0)
+    assert desk.firmware.motion.position == (0.0, 0.0)
     assert desk.say(STATUS)[0].startswith("<Idle|")
     assert desk.say(b"M8\n") == [f"error:{error}"]
     assert desk.say(b"\n") == ["ok"]  # an empty line ends a standing error
@@ -79,7 +79,7 @@ def test_while_a_line_moves_no_jog_and_no_setting_is_taken() -> None:
     assert desk.say(b"$J=G53X5F600\n") == [f"error:{NOT_IDLE}"]
     assert desk.say(b"$110=5000\n") == [f"error:{NOT_IDLE}"]
     desk.hear(10.0)
-    assert desk.firmware.slides.place == pytest.approx((50.0, 0.0))
+    assert desk.firmware.motion.position == pytest.approx((50.0, 0.0))
 
 
 def test_unlocking_what_is_not_locked_is_well_and_says_nothing() -> None:

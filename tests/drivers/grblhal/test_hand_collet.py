@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
@@ -32,11 +32,11 @@ def test_an_output_that_is_said_to_be_absent_is_no_trouble() -> None:
 def test_a_program_runs_and_one_that_asks_for_it_is_refused_before_the_start() -> None:
     bench = GrblBench(by_hand(), quirky())
     bench.start(PART.format(""))
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert not bench.alarms()
     bench.start(PART.format("M13\nM12\n"))
-    assert bench.state is State.IDLE
-    assert text("executor.no-such-for-line", line=3, what="output collet") in bench.shot.start_refused
+    assert bench.state is MachineState.IDLE
+    assert text("executor.no-such-for-line", line=3, what="output collet") in bench.shot.start_refusal
 
 
 def test_one_that_is_only_left_out_is_still_a_mistake_of_the_file() -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import FeedHold, FeedOverride, Reset
-from core.executor.snapshot import State
+from core.executor.commands import FeedHold, Reset, SetFeedOverride
+from core.executor.snapshot import MachineState
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.drivers.grblhal.test_run import LONG
 from tests.texts import text
@@ -17,15 +17,15 @@ def test_hold_and_on() -> None:
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
     bench.post(FeedHold())
-    assert bench.until(State.HOLD) < 0.3
-    at = bench.peer.slides.place
+    assert bench.until(MachineState.HOLD) < 0.3
+    at = bench.peer.motion.position
     bench.run(3.0)
-    assert bench.peer.slides.place == at
-    assert bench.state is State.HOLD
+    assert bench.peer.motion.position == at
+    assert bench.state is MachineState.HOLD
     bench.press()
-    assert bench.state is State.RUN
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
+    assert bench.state is MachineState.RUN
+    bench.until(MachineState.IDLE)
+    assert bench.peer.motion.position == pytest.approx((25.4, -50.8))
 
 
 def test_reset_out_of_a_hold_keeps_the_position_and_the_modes() -> None:
@@ -34,17 +34,17 @@ def test_reset_out_of_a_hold_keeps_the_position_and_the_modes() -> None:
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
     bench.post(FeedHold())
-    bench.until(State.HOLD)
-    at = bench.peer.slides.place
+    bench.until(MachineState.HOLD)
+    at = bench.peer.motion.position
     bench.post(Reset())
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     bench.run(0.5)
-    assert bench.peer.slides.place == at
+    assert bench.peer.motion.position == at
     assert bench.peer.program.modes.plane == "G18"
-    assert bench.peer.rpm == 0.0
+    assert bench.peer.programmed_rpm == 0.0
     bench.start("G90G94F300\nX.3Z.3\nM30\n")
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((7.62, 7.62))
+    bench.until(MachineState.IDLE)
+    assert bench.peer.motion.position == pytest.approx((7.62, 7.62))
 
 
 def test_reset_in_motion_brakes_and_starts_nothing() -> None:
@@ -53,13 +53,13 @@ def test_reset_in_motion_brakes_and_starts_nothing() -> None:
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
     bench.post(Reset())
-    bench.until(State.IDLE, limit=3.0)
+    bench.until(MachineState.IDLE, limit=3.0)
     assert not bench.shot.alarms
     bench.run(0.5)
     bench.wire.sent.clear()
     bench.run(2.0)
     assert bench.wire.lines() == []
-    assert not bench.peer.slides.queue
+    assert not bench.peer.motion.block_queue
 
 
 def test_a_hold_that_does_not_end_is_a_reset_and_a_lost_position() -> None:
@@ -67,11 +67,11 @@ def test_a_hold_that_does_not_end_is_a_reset_and_a_lost_position() -> None:
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
-    bench.post(FeedOverride(0.1))
+    bench.post(SetFeedOverride(0.1))
     bench.run(0.5)
     bench.wire.sent.clear()
     bench.post(Reset())
-    bench.until(State.FAULT, limit=8.0)
+    bench.until(MachineState.FAULT, limit=8.0)
     sent = bytes(bench.wire.sent)
     assert sent.index(0x82) < sent.index(0x18)
     assert "ALARM:3" in bench.alarms()
@@ -83,32 +83,32 @@ def test_an_override_of_nothing_holds_and_goes_on_by_itself() -> None:
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
-    bench.post(FeedOverride(0.0))
-    bench.until(State.WAIT, limit=1.0)
+    bench.post(SetFeedOverride(0.0))
+    bench.until(MachineState.WAIT, limit=1.0)
     assert bench.shot.waiting_for == text("executor.feed-override-0")
-    at = bench.peer.slides.place
+    at = bench.peer.motion.position
     bench.run(1.0)
-    assert bench.peer.slides.place == at
-    bench.post(FeedOverride(0.5))
-    bench.until(State.RUN, limit=1.0)
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
+    assert bench.peer.motion.position == at
+    bench.post(SetFeedOverride(0.5))
+    bench.until(MachineState.RUN, limit=1.0)
+    bench.until(MachineState.IDLE)
+    assert bench.peer.motion.position == pytest.approx((25.4, -50.8))
 
 
 def test_pins_of_the_controller_hold_and_start() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
-    bench.peer.pins = "H"
-    bench.until(State.HOLD, limit=0.5)
+    bench.peer.active_pins = "H"
+    bench.until(MachineState.HOLD, limit=0.5)
     bench.press()
-    assert bench.state is State.HOLD
-    bench.peer.pins = ""
+    assert bench.state is MachineState.HOLD
+    bench.peer.active_pins = ""
     bench.run(0.5)
-    bench.peer.pins = "S"
-    bench.until(State.RUN, limit=0.5)
-    bench.peer.pins = ""
-    bench.until(State.IDLE)
+    bench.peer.active_pins = "S"
+    bench.until(MachineState.RUN, limit=0.5)
+    bench.peer.active_pins = ""
+    bench.until(MachineState.IDLE)
     assert bench.shot.parts == 1
 
 
@@ -116,13 +116,13 @@ def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
     bench = GrblBench()
     bench.start(LONG)
     bench.until_true(lambda shot: shot.line == 4)
-    bench.peer.feed(b"\x82")  # a button at the controller, pressed between two reports
-    bench.until(State.HOLD, limit=0.5)
+    bench.peer.receive_bytes(b"\x82")  # a button at the controller, pressed between two reports
+    bench.until(MachineState.HOLD, limit=0.5)
     assert bench.shot.waiting_for == text("executor.controller-holds")
     bench.run(1.0)
-    assert bench.state is State.HOLD
+    assert bench.state is MachineState.HOLD
     bench.press()
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert bench.shot.parts == 1
 
 
@@ -133,11 +133,11 @@ def test_a_button_at_the_controller_ends_no_hold_of_ours() -> None:
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(0.5)
     bench.post(FeedHold())
-    bench.until(State.HOLD)
-    bench.peer.feed(b"\x81")
+    bench.until(MachineState.HOLD)
+    bench.peer.receive_bytes(b"\x81")
     bench.run(1.0)
-    assert bench.state is State.HOLD
+    assert bench.state is MachineState.HOLD
     assert bench.peer.state == "Hold:0"
     bench.press()
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((25.4, -50.8))
+    bench.until(MachineState.IDLE)
+    assert bench.peer.motion.position == pytest.approx((25.4, -50.8))

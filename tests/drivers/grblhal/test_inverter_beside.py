@@ -11,15 +11,15 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.backends.connection import connect
-from app.compose.backends.grblhal_backend import grblhal_config
+from app.compose.backends.connection import connect_machine
+from app.compose.backends.grblhal_backend import create_grblhal_config
 from app.compose.machine.machine_files import load_machine, parse_machine
 from core.ports import DriverError
 from core.table_schema import MachineFileError
-from drivers.simulators.grblhal_far_end import TcpEnd, serve
-from drivers.simulators.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_connections import TcpConnection, run_simulator
+from drivers.simulators.grblhal_firmware import GrblFirmware
 from drivers.simulators.spindle_motor import SpindleFaults
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED, quirky
 from tests.drivers.inverter.inverter_simulators import HuanyangSlave, Inverter
@@ -45,14 +45,14 @@ class Belt:
         return self._turned.motor.speed
 
     @property
-    def turns(self) -> float:
-        return self._turned.motor.turns
+    def revolutions(self) -> float:
+        return self._turned.motor.revolutions
 
-    def advance(self, now: float) -> None:  # noqa: ARG002  a motor's
+    def advance_to(self, now: float) -> None:  # noqa: ARG002  a motor's
         """The inverter's peer does."""
         self.most = max(self.most, self._turned.hz)
 
-    def order(self, now: float, rpm: float) -> None:  # noqa: ARG002  a motor's
+    def command_speed(self, time_s: float, rpm: float) -> None:  # noqa: ARG002  a motor's
         self.ordered = max(self.ordered, abs(rpm))
 
 
@@ -62,25 +62,25 @@ class Both:
 
     path: Path
     inverter: Inverter
-    firmware: Firmware
+    firmware: GrblFirmware
     belt: Belt
 
 
 @pytest.fixture(params=["encoder", "none"])
 def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
     one = inverter()
-    firmware = Firmware(RealClock(), quirky(encoder=request.param == "encoder"))
+    firmware = GrblFirmware(RealClock(), quirky(encoder=request.param == "encoder"))
     belt = Belt(one)
     firmware.spindle = belt
-    end, over = TcpEnd("127.0.0.1", 0), threading.Event()
-    peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
+    end, over = TcpConnection("127.0.0.1", 0), threading.Event()
+    peer = threading.Thread(target=run_simulator, args=(end, firmware, lambda: not over.is_set()))
     with ExitStack() as stack:
         stack.enter_context(stalls_told())
         cable = stack.enter_context(Pair())
         stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
         peer.start()
         path = tmp_path / "both.toml"
-        text = SHIPPED.replace("/dev/ttyACM0", end.name)
+        text = SHIPPED.replace("/dev/ttyACM0", end.device_name)
         path.write_text(text.replace('driver = "grblhal"', _VFD.format(cable.near)), encoding="utf-8")
         yield Both(path, one, firmware, belt)
         over.set()
@@ -88,7 +88,7 @@ def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
 
 
 def test_it_turns_both_ways_and_says_so_only_when_it_does(both: Both) -> None:
-    made = connect(load_machine(both.path), RealClock())
+    made = connect_machine(load_machine(both.path), RealClock())
     try:
         spindle = made.ports.spindle
 
@@ -96,30 +96,30 @@ def test_it_turns_both_ways_and_says_so_only_when_it_does(both: Both) -> None:
             made.ports.axes.sample()  # the driver's round
             return spindle.speed()
 
-        spindle.run(600.0)
+        spindle.run_at(600.0)
         until(lambda: abs(speed() - 600.0) < 3.0, "600 rpm")
-        spindle.run(-600.0)
+        spindle.run_at(-600.0)
         early = []
         while not both.inverter.back:
             early.append(speed())
         assert all(speed > -60.0 for speed in early)
         until(lambda: abs(speed() + 600.0) < 3.0, "600 rpm back")
         assert both.inverter.motor.speed == pytest.approx(-600.0, abs=5.0)
-        spindle.run(0.0)
+        spindle.run_at(0.0)
         until(lambda: speed() == 0.0, "standstill")
-        assert spindle.fault() == ""
+        assert spindle.read_fault() == ""
         assert both.belt.ordered == 0.0
-        assert not [line for line in both.firmware.program.executed if line.startswith(("M3", "M4"))]
+        assert not [line for line in both.firmware.program.executed_lines if line.startswith(("M3", "M4"))]
     finally:
         made.close()
 
 
 def test_threads_need_the_controllers_encoder(both: Both) -> None:
-    made = connect(load_machine(both.path), RealClock())
+    made = connect_machine(load_machine(both.path), RealClock())
     try:
         assert made.ports.blocks is not None
-        able = both.firmware.quirks.encoder
-        assert ("thread" in made.ports.blocks.caps) is able
+        able = both.firmware.behavior.encoder
+        assert ("thread" in made.ports.blocks.capabilities) is able
         by_frequency = [told for told in made.ports.warnings if "frequency" in told]
         assert bool(by_frequency) is not able
         assert not [told for told in made.ports.warnings if "$30" in told]
@@ -157,11 +157,11 @@ def test_an_inverter_that_does_not_answer_is_one_sentence_and_the_controller_is_
     port = text.partition('family = "huanyang", port = "')[2].partition('"')[0]
     missing = parse_machine(text.replace(port, "/dev/ttyNONE7"), "missing.toml")
     with raises_code(DriverError, "driver", "huanyang", "/dev/ttyNONE7"):
-        connect(missing, RealClock())
-    connect(load_machine(both.path), RealClock()).close()
+        connect_machine(missing, RealClock())
+    connect_machine(load_machine(both.path), RealClock()).close()
 
 
 def test_another_driver_beside_the_controller_is_refused() -> None:
     text = SHIPPED.replace('driver = "grblhal"', 'driver = "cia402"')
     with pytest.raises((DriverError, MachineFileError), match=r"spindle\.driver"):
-        grblhal_config(parse_machine(text, "bad.toml"))
+        create_grblhal_config(parse_machine(text, "bad.toml"))

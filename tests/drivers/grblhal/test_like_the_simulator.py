@@ -10,10 +10,10 @@ import pytest
 
 from app.cli.main import main
 from core.executor.commands import Reset
-from core.executor.snapshot import State
-from drivers.simulators.grblhal_far_end import TcpEnd, serve
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import RealClock
+from core.executor.snapshot import MachineState
+from drivers.simulators.grblhal_connections import TcpConnection, run_simulator
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import RealClock
 from tests.drivers.grblhal.bench import SHIPPED, GrblBench, quirky
 from tests.drivers.grblhal.test_faults import THREAD
 from tests.texts import text as text_of
@@ -28,13 +28,13 @@ AS_IT_COMES = {"encoder": False, "outputs": 0, "inputs": 0, "settings": DEFAULTS
 @pytest.fixture
 def machine_file(tmp_path: Path) -> Iterator[Path]:
     """On a socket, named as pyserial names one."""
-    end = TcpEnd("127.0.0.1", 0)
+    end = TcpConnection("127.0.0.1", 0)
     over = threading.Event()
-    firmware = Firmware(RealClock(), quirky(**AS_IT_COMES))
-    peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
+    firmware = GrblFirmware(RealClock(), quirky(**AS_IT_COMES))
+    peer = threading.Thread(target=run_simulator, args=(end, firmware, lambda: not over.is_set()))
     peer.start()
     file = tmp_path / "simulator.toml"
-    text = SHIPPED.replace("/dev/ttyACM0", end.name.replace("tcp", "socket"))
+    text = SHIPPED.replace("/dev/ttyACM0", end.device_name.replace("tcp", "socket"))
     file.write_text(text, encoding="utf-8")
     yield file
     over.set()
@@ -59,8 +59,8 @@ def test_what_it_lacks_is_told() -> None:
 def test_a_program_runs_at_its_own_pace_and_no_rapid_is_faster_than_it() -> None:
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start("G90G94F300\nX.1Z.1\nG01X.05F60\nM08\nM09\nM30\n")
-    bench.until(State.IDLE)
-    assert bench.peer.slides.place == pytest.approx((1.27, 2.54))
+    bench.until(MachineState.IDLE)
+    assert bench.peer.motion.position == pytest.approx((1.27, 2.54))
     assert bench.shot.parts == 1
     assert not bench.said("alarm")
 
@@ -68,7 +68,7 @@ def test_a_program_runs_at_its_own_pace_and_no_rapid_is_faster_than_it() -> None
 def test_more_speed_than_it_allows_is_an_alarm_and_no_slow_cut() -> None:
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start("G90G94F300\nM03S1500\nX.1Z.1\nM30\n")
-    bench.until(State.FAULT, limit=5.0)
+    bench.until(MachineState.FAULT, limit=5.0)
     (alarm,) = bench.shot.alarms
     assert alarm.code == "spindle-off"
     for value in ("1000 rpm ($30)", "1500"):
@@ -78,8 +78,8 @@ def test_more_speed_than_it_allows_is_an_alarm_and_no_slow_cut() -> None:
 def test_a_thread_is_refused_before_the_start() -> None:
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start(THREAD.replace("S600", "S900"))
-    assert bench.state is State.IDLE
-    assert "threads" in bench.shot.start_refused
+    assert bench.state is MachineState.IDLE
+    assert "threads" in bench.shot.start_refusal
     assert bench.wire.lines() == []
 
 
@@ -87,10 +87,10 @@ def test_reset_at_its_slow_ramp_waits_for_it_and_loses_nothing() -> None:
     """500 mm/min is 8.3 mm/s: 0.83 s to brake with 10 mm/s²."""
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start("G90G94F300\nX1\nM30\n")
-    bench.until_true(lambda _: bench.peer.slides.v > 8.0, 5.0)
+    bench.until_true(lambda _: bench.peer.motion.speed > 8.0, 5.0)
     bench.post(Reset())
-    bench.until(State.IDLE, limit=5.0)
-    assert bench.peer.torn == 0
+    bench.until(MachineState.IDLE, limit=5.0)
+    assert bench.peer.abrupt_stop_count == 0
     assert not bench.shot.alarms
 
 

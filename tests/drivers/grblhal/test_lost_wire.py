@@ -7,8 +7,8 @@ import re
 import pytest
 
 from core.executor.commands import EnableDrives, Reset
-from core.executor.snapshot import State
-from core.ports import ALL_UNKNOWN
+from core.executor.snapshot import MachineState
+from core.ports import ALL_UNKNOWN_PARTS
 from tests.drivers.contract.grbl import HOMING
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.texts import pattern
@@ -21,7 +21,7 @@ def pulled(bench: GrblBench) -> GrblBench:
     bench.start(CUT)
     bench.until_true(lambda shot: shot.actual[1] < -8.0)
     bench.wire.cut = True
-    bench.until(State.FAULT, limit=0.1)
+    bench.until(MachineState.FAULT, limit=0.1)
     bench.run(3.0)
     bench.peer.advance()
     return bench
@@ -29,19 +29,19 @@ def pulled(bench: GrblBench) -> GrblBench:
 
 def test_nothing_is_known_of_a_controller_whose_wire_is_lost() -> None:
     bench = pulled(GrblBench())
-    assert bench.shot.unknown == ALL_UNKNOWN
+    assert bench.shot.unknown == ALL_UNKNOWN_PARTS
     assert bench.peer.spindle.speed == pytest.approx(600.0)  # whatever the screen says
-    assert bench.peer.outputs["flood"]
-    assert not bench.executor._context.spindle.stopped
+    assert bench.peer.output_states["flood"]
+    assert not bench.executor._context.spindle.is_stopped
 
 
 def test_reset_without_the_cable_says_so_again() -> None:
     bench = pulled(GrblBench())
     bench.post(Reset())
     bench.run(0.5)
-    assert bench.state is State.FAULT
+    assert bench.state is MachineState.FAULT
     assert bench.shot.alarms[0].code == "controller-lost"
-    assert bench.shot.unknown == ALL_UNKNOWN
+    assert bench.shot.unknown == ALL_UNKNOWN_PARTS
 
 
 def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
@@ -49,15 +49,15 @@ def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
     bench.wire.cut = False
     bench.post(Reset())
     bench.run(2.0)
-    assert bench.state is State.DISABLED
+    assert bench.state is MachineState.DISABLED
     assert bench.peer.spindle.speed == 0.0
-    assert not bench.peer.outputs["flood"]
+    assert not bench.peer.output_states["flood"]
     (said,) = [event.text for event in bench.events if event.kind == "disturbed"]
     assert re.fullmatch(pattern("executor.machine-trip", names="SPINDLE, COOLANT"), said)
     assert "3." in said
     assert bench.shot.unknown == frozenset()
     assert all(bench.shot.homed)
-    assert bench.shot.actual[:2] == pytest.approx(bench.peer.slides.place, abs=0.001)
+    assert bench.shot.actual[:2] == pytest.approx(bench.peer.motion.position, abs=0.001)
 
 
 def test_a_part_is_made_behind_it() -> None:
@@ -66,7 +66,7 @@ def test_a_part_is_made_behind_it() -> None:
     bench.post(Reset())
     bench.run(2.0)
     bench.start("G90G94F300\nM03S600\nX.1\nG01F100X0\nM30\n")
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert bench.shot.parts == 1
 
 
@@ -75,7 +75,7 @@ def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) 
     """It counts from 0 where it stands, under G17: nobody may believe that place."""
     bench = GrblBench(grbl_machine(*HOMING), quirky(homing=True)) if homes else GrblBench()
     if homes:
-        bench.peer.homed = 5
+        bench.peer.homed_axes = 5
     bench.ready()
     bench.run(0.5)
     bench.wire.cut = True
@@ -88,7 +88,7 @@ def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) 
     bench.post(EnableDrives())
     bench.run(0.5)
     bench.press()
-    assert re.fullmatch(pattern("executor.not-homed"), bench.shot.start_refused)
+    assert re.fullmatch(pattern("executor.not-homed"), bench.shot.start_refusal)
 
 
 def test_a_reset_by_its_button_keeps_the_place_where_it_does_not_stand_at_0() -> None:
@@ -106,8 +106,10 @@ def test_firmware_that_knows_no_question_for_its_modes_is_taken_by_its_place(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     bench = pulled(GrblBench())
-    told = bench.peer.program.told
-    monkeypatch.setattr(bench.peer.program, "told", lambda: "" if bench.wire.sent[-1:] == b"\x83" else told())
+    told = bench.peer.program.format_modes
+    monkeypatch.setattr(
+        bench.peer.program, "format_modes", lambda: "" if bench.wire.sent[-1:] == b"\x83" else told()
+    )
     bench.wire.cut = False
     bench.post(Reset())
     bench.run(3.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.ports import DriverError, LineOp, Segments, Stop
+from core.ports import DriverError, LineOperation, Segments, StopMode
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.texts import text
@@ -28,11 +28,11 @@ def test_setpoints_are_refused() -> None:
 
 def test_a_block_arrives_where_it_was_told_to_the_last_decimal() -> None:
     bench = powered()
-    ticket = bench.machine.blocks.submit(LineOp(3.14159, -2.71828, 20.0))
+    ticket = bench.machine.block_controller.submit_block(LineOperation(3.14159, -2.71828, 20.0))
     assert ticket == 1
-    assert not bench.machine.blocks.state().resting
+    assert not bench.machine.block_controller.state().is_at_rest
     bench.alone(1.0)
-    assert bench.machine.blocks.state().done == 1
+    assert bench.machine.block_controller.state().last_done_ticket == 1
     assert bench.machine.axes.sample().actual[:2] == (3.14159, -2.71828)
 
 
@@ -41,45 +41,45 @@ def test_a_controller_of_coarse_steps_rests_where_the_block_has_ended() -> None:
     bench = GrblBench(quirks=quirky(settings={100: 100.0, 102: 100.0}))
     bench.machine.axes.enable(True)
     bench.alone(0.3)
-    bench.machine.blocks.submit(LineOp(3.1451, -2.7151, 20.0))
+    bench.machine.block_controller.submit_block(LineOperation(3.1451, -2.7151, 20.0))
     bench.alone(1.0)
     assert bench.machine.controller.position["X"] == pytest.approx(3.15)
     assert bench.machine.axes.sample().actual[:2] == (3.1451, -2.7151)
 
 
-@pytest.mark.parametrize("how", [Stop.OFF, Stop.RAMP_OFF, Stop.RAMP_HOLD])
-def test_stops_brake_and_void_what_was_handed_over(how: Stop) -> None:
+@pytest.mark.parametrize("how", [StopMode.OFF, StopMode.RAMP_OFF, StopMode.RAMP_HOLD])
+def test_stops_brake_and_void_what_was_handed_over(how: StopMode) -> None:
     bench = powered()
-    bench.machine.blocks.submit(LineOp(50.0, 0.0, 40.0))
+    bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)
-    x = bench.peer.slides.place[0]
+    x = bench.peer.motion.position[0]
     bench.machine.axes.stop(how)
     bench.alone(1.5)
-    assert bench.peer.slides.place[0] - x < 1.0
-    assert not bench.peer.slides.queue
-    assert bench.machine.axes.sample().enabled is (how is Stop.RAMP_HOLD)
+    assert bench.peer.motion.position[0] - x < 1.0
+    assert not bench.peer.motion.block_queue
+    assert bench.machine.axes.sample().enabled is (how is StopMode.RAMP_HOLD)
     assert not bench.machine.axes.sample().moving
-    assert bench.machine.blocks.state().hindrance == ""
+    assert bench.machine.block_controller.state().start_refusal == ""
 
 
 def test_the_spindle_turns_and_stops() -> None:
     bench = powered()
-    bench.machine.spindle.run(-600.0)
+    bench.machine.spindle.run_at(-600.0)
     bench.alone(1.5)
     assert bench.machine.spindle.speed() == pytest.approx(-600.0, abs=1.0)
-    assert "M4S600" in bench.peer.program.executed
-    bench.machine.spindle.run(0.0)
+    assert "M4S600" in bench.peer.program.executed_lines
+    bench.machine.spindle.run_at(0.0)
     bench.alone(1.5)
     assert bench.machine.spindle.speed() == 0.0
-    assert bench.machine.spindle.fault() == ""
+    assert bench.machine.spindle.read_fault() == ""
 
 
 def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_down() -> None:
     """Its encoder tells no direction: 600 rpm of before are none the other way, at which one may cut."""
     bench = powered()
-    bench.machine.spindle.run(600.0)
+    bench.machine.spindle.run_at(600.0)
     bench.alone(1.5)
-    bench.machine.spindle.run(-600.0)
+    bench.machine.spindle.run_at(-600.0)
     for _ in range(300):
         bench.alone(0.01)
         real, told = bench.peer.spindle.speed, bench.machine.spindle.speed()
@@ -89,17 +89,17 @@ def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_dow
 
 def test_in_motion_the_spindle_follows_by_its_override() -> None:
     bench = powered()
-    bench.machine.spindle.run(1000.0)
+    bench.machine.spindle.run_at(1000.0)
     bench.alone(1.5)
-    bench.machine.blocks.submit(LineOp(20.0, 0.0, 10.0))
+    bench.machine.block_controller.submit_block(LineOperation(20.0, 0.0, 10.0))
     bench.alone(0.3)
     bench.wire.sent.clear()
-    bench.machine.spindle.run(870.0)
+    bench.machine.spindle.run_at(870.0)
     bench.alone(0.8)
     assert bench.peer.spindle_percent == 87
     assert bench.wire.lines() == []
     bench.alone(2.0)  # at rest it is said as a speed, and the override goes back
-    assert (bench.peer.rpm, bench.peer.spindle_percent) == (870.0, 100)
+    assert (bench.peer.programmed_rpm, bench.peer.spindle_percent) == (870.0, 100)
 
 
 def test_outputs_go_out_and_fall_safe() -> None:
@@ -108,11 +108,11 @@ def test_outputs_go_out_and_fall_safe() -> None:
     io.write("coolant", True)
     io.write("collet", True)
     bench.alone(0.1)
-    assert bench.peer.outputs["flood"]
-    io.safe()
+    assert bench.peer.output_states["flood"]
+    io.switch_to_safe_state()
     bench.alone(0.1)
-    assert not bench.peer.outputs["flood"]
-    assert bench.peer.outputs["out.0"]  # "keep"
+    assert not bench.peer.output_states["flood"]
+    assert bench.peer.output_states["out.0"]  # "keep"
     with raises_code(DriverError, "output", "'laser'"):
         io.write("laser", True)
 
@@ -123,16 +123,16 @@ def test_an_output_that_could_not_be_said_is_said_later() -> None:
     bench.alone(0.1)
     bench.peer.raise_alarm(1)
     bench.alone(0.3)
-    bench.machine.io.safe()
-    assert bench.peer.outputs["out.1"]
+    bench.machine.io.switch_to_safe_state()
+    assert bench.peer.output_states["out.1"]
     bench.machine.axes.clear_fault()
     bench.alone(1.5)
-    assert not bench.peer.outputs["out.1"]
+    assert not bench.peer.output_states["out.1"]
     assert not all(bench.machine.axes.sample().homed)  # a hard limit: nobody knows where it stands
 
 
 def test_a_block_is_refused_while_the_modes_are_verified() -> None:
     bench = powered()
-    bench.machine.blocks.abort()
+    bench.machine.block_controller.abort_blocks()
     with raises_code(DriverError, "controller-refuses", text("drivers.grblhal-verifies")):
-        bench.machine.blocks.submit(LineOp(1.0, 0.0, 1.0))
+        bench.machine.block_controller.submit_block(LineOperation(1.0, 0.0, 1.0))

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.backends.grblhal_backend import grblhal_config
-from core.ports import ArcOp, DriverError, LineOp, RapidOp, ThreadOp
-from drivers.grblhal.grblhal_codes import jog_line, line_of, number
+from app.compose.backends.grblhal_backend import create_grblhal_config
+from core.ports import ArcOperation, DriverError, LineOperation, RapidOperation, ThreadOperation
+from drivers.grblhal.grblhal_codes import format_block, format_jog, number
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.grblhal.grblhal_operator import steps_to
-from drivers.grblhal.grblhal_report import read_identity, read_report
-from drivers.grblhal.grblhal_scripts import MISSED
-from drivers.grblhal.grblhal_wire import Stream
-from drivers.waiting import StepClock
+from drivers.grblhal.grblhal_operator import encode_override_steps
+from drivers.grblhal.grblhal_report import parse_identity, parse_report
+from drivers.grblhal.grblhal_scripts import NO_REPORTS_TEXT
+from drivers.grblhal.grblhal_transport import LineSender
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import grbl_machine
 
@@ -68,11 +68,11 @@ def test_the_handshake_byte_for_byte() -> None:
         (b"$G\n", MODES),
         (b"\x87", FULL),
     )
-    machine = GrblMachine(grblhal_config(grbl_machine()), StepClock(), wire)
+    machine = GrblMachine(create_grblhal_config(grbl_machine()), ManualClock(), wire)
     assert not wire.left
-    assert machine.controller.ready
+    assert machine.controller.is_ready
     assert machine.axes.sample().actual == (1.0, -2.5, 0.0)
-    assert machine.controller.stream.room == 896  # of 1024 bytes, 128 are never used
+    assert machine.controller.line_sender.free_bytes == 896  # of 1024 bytes, 128 are never used
 
 
 def test_a_setting_that_does_not_stay_is_refused() -> None:
@@ -86,13 +86,13 @@ def test_a_setting_that_does_not_stay_is_refused() -> None:
         (b"$$\n", b"$10=1535\r\n$13=0\r\n$32=0\r\nok\r\n"),
     )
     with raises_code(DriverError, "driver", "$32=2"):
-        GrblMachine(grblhal_config(grbl_machine()), StepClock(), wire)
+        GrblMachine(create_grblhal_config(grbl_machine()), ManualClock(), wire)
 
 
 @pytest.mark.parametrize("answer", [b"", b"hello\r\n", b"<Idle>\r\n"])
 def test_what_is_no_controller_is_refused(answer: bytes) -> None:
-    with raises_code(DriverError, "driver", "/dev/ttyACM0: ", MISSED):
-        GrblMachine(grblhal_config(grbl_machine()), StepClock(), ScriptedWire((b"\x87", answer)))
+    with raises_code(DriverError, "driver", "/dev/ttyACM0: ", NO_REPORTS_TEXT):
+        GrblMachine(create_grblhal_config(grbl_machine()), ManualClock(), ScriptedWire((b"\x87", answer)))
 
 
 @pytest.mark.parametrize(
@@ -111,18 +111,18 @@ def test_what_is_no_controller_is_refused(answer: bytes) -> None:
     ],
 )
 def test_a_damaged_report_is_none(line: str) -> None:
-    assert read_report(line) is None
+    assert parse_report(line) is None
 
 
 @pytest.mark.parametrize("line", ["<Idle|MPos:1.0,2.0|WPos:3.0,4.0>", "<Idle|WPos:3.0,4.0|MPos:1.0,2.0>"])
 def test_two_lines_run_into_one_tell_the_machines_place(line: str) -> None:
-    report = read_report(line)
+    report = parse_report(line)
     assert report is not None
     assert report.position == (1.0, 2.0)
 
 
 def test_a_whole_report() -> None:
-    report = read_report(
+    report = parse_report(
         "<Hold:1|MPos:-1.234,0.000,5.600|Bf:98,1000|Ln:33|FS:500,1000,998|Pn:EH|Ov:83,50,100|D:1>"
     )
     assert report is not None
@@ -148,7 +148,7 @@ def test_a_whole_report() -> None:
     ],
 )
 def test_steps_to_a_pot(told: int, percent: int, expected: str) -> None:
-    assert steps_to(percent, told) == bytes.fromhex(expected)
+    assert encode_override_steps(percent, told) == bytes.fromhex(expected)
 
 
 def test_every_override_fits_into_the_controllers_queue_and_leaps_nowhere() -> None:
@@ -156,7 +156,7 @@ def test_every_override_fits_into_the_controllers_queue_and_leaps_nowhere() -> N
     for told in range(10, 201):
         for percent in range(10, 201):
             at, way = told, []
-            for step in steps_to(percent, told):
+            for step in encode_override_steps(percent, told):
                 at = 100 if step == 0x90 else min(max(at + worth[step], 10), 200)
                 way.append(at)
             assert at == percent
@@ -173,39 +173,45 @@ def test_numbers_keep_a_hundredth_of_a_micrometre(value: float, text: str) -> No
 
 
 def test_lines_of_blocks() -> None:
-    assert line_of(RapidOp(1.0, 2.0, 127.0), 7, 127.0, 1.0) == "N7G0X1Z2"
-    assert line_of(RapidOp(1.0, 2.0, 50.0), 7, 127.0, 1.0) == "N7G1X1Z2F3000"
+    assert format_block(RapidOperation(1.0, 2.0, 127.0), 7, 127.0, 1.0) == "N7G0X1Z2"
+    assert format_block(RapidOperation(1.0, 2.0, 50.0), 7, 127.0, 1.0) == "N7G1X1Z2F3000"
     assert (
-        line_of(RapidOp(1.0, 2.0, 50.0), 7, 127.0, 1.25) == "N7G1X1Z2F2400"
+        format_block(RapidOperation(1.0, 2.0, 50.0), 7, 127.0, 1.25) == "N7G1X1Z2F2400"
     )  # no override speeds up a rapid
-    assert line_of(LineOp(1.0, -2.0, 0.5), 8, 127.0, 1.5) == "N8G1X1Z-2F30"
-    assert line_of(ThreadOp(1.0, 0.0, 1.0, -2.0, 1.27), 9, 127.0, 1.0) == "N9G33X1Z-2K1.27"
+    assert format_block(LineOperation(1.0, -2.0, 0.5), 8, 127.0, 1.5) == "N8G1X1Z-2F30"
+    assert format_block(ThreadOperation(1.0, 0.0, 1.0, -2.0, 1.27), 9, 127.0, 1.0) == "N9G33X1Z-2K1.27"
     # X by 3 and Z by 4 are 5 along the way: five quarters of the lead, which counts along Z.
-    assert line_of(ThreadOp(4.0, 0.0, 1.0, -4.0, 1.6), 9, 127.0, 1.0) == "N9G33X1Z-4K2"
+    assert format_block(ThreadOperation(4.0, 0.0, 1.0, -4.0, 1.6), 9, 127.0, 1.0) == "N9G33X1Z-4K2"
     # From Z+ towards X+ is counter-clockwise in the plane of Z and X: G3.
-    assert line_of(ArcOp(0.0, 1.0, 1.0, 0.0, 0.0, 0.0, True, 1.0), 1, 127.0, 1.0) == "N1G3X1Z0I0K-1F60"
-    assert line_of(ArcOp(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, False, 1.0), 1, 127.0, 1.0) == "N1G2X0Z1I-1K0F60"
-    assert line_of(LineOp(0.0, 0.0, 1.0), 9_000_001, 127.0, 1.0).startswith("N1G1")
-    assert jog_line("X", -1.5, 10.0) == "$J=G53G21G90X-1.5F600"
+    assert (
+        format_block(ArcOperation(0.0, 1.0, 1.0, 0.0, 0.0, 0.0, True, 1.0), 1, 127.0, 1.0)
+        == "N1G3X1Z0I0K-1F60"
+    )
+    assert (
+        format_block(ArcOperation(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, False, 1.0), 1, 127.0, 1.0)
+        == "N1G2X0Z1I-1K0F60"
+    )
+    assert format_block(LineOperation(0.0, 0.0, 1.0), 9_000_001, 127.0, 1.0).startswith("N1G1")
+    assert format_jog("X", -1.5, 10.0) == "$J=G53G21G90X-1.5F600"
 
 
 def test_no_more_bytes_are_unanswered_than_fit() -> None:
     sent: list[bytes] = []
-    stream = Stream(sent.append)
-    stream.use(328)  # of which 200 may be used
+    stream = LineSender(sent.append)
+    stream.set_buffer_size(328)  # of which 200 may be used
     line = "N1G1X1.00000Z1.00000F100"  # 25 bytes with its end
     for _ in range(20):
-        stream.send(line, 0.0)
+        stream.send_line(line, 0.0)
     assert len(sent) == 8
-    assert not stream.fits("x")
-    stream.answered(0)
-    stream.pump(0.0)
+    assert not stream.can_send("x")
+    stream.handle_reply(0)
+    stream.send_waiting(0.0)
     assert len(sent) == 9
 
 
 def test_an_answer_to_nothing_is_told() -> None:
-    stream = Stream(lambda _: None)
-    assert stream.answered(0) is None
+    stream = LineSender(lambda _: None)
+    assert stream.handle_reply(0) is None
 
 
 @pytest.mark.parametrize(
@@ -218,5 +224,5 @@ def test_an_answer_to_nothing_is_told() -> None:
 )
 def test_an_identity_is_demanded(lines: list[str], reason: str) -> None:
     with raises_code(DriverError, "driver") as told:
-        read_identity(lines)
+        parse_identity(lines)
     assert told.value.reason == reason

@@ -8,13 +8,13 @@ from __future__ import annotations
 import pytest
 
 from core.executor.commands import Reset
-from core.executor.snapshot import State
-from core.faults import code_of
-from drivers.grblhal.grblhal_reported import AT_MOST, longest_wait
-from drivers.simulators.grblhal_firmware import Firmware
+from core.executor.snapshot import MachineState
+from core.faults import get_fault_code
+from drivers.grblhal.grblhal_state import MAX_FIRMWARE_WAIT_S, get_max_firmware_wait
+from drivers.simulators.grblhal_firmware import GrblFirmware
 from drivers.simulators.plant_config import SimSpindle
 from drivers.simulators.spindle_motor import SpindleMotor
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 
 TOLERANCE, ON, OFF, COOLANT = 340, 394, 539, 673
@@ -32,9 +32,9 @@ def slow_bench(settings: dict[int, float], *, encoder: bool = True) -> GrblBench
 def waiting(bench: GrblBench) -> GrblBench:
     """In M3, whose answer is awaited, for 3 s."""
     bench.start(PART)
-    bench.until_true(lambda _: bench.peer.program.wait is not None, 10.0)
+    bench.until_true(lambda _: bench.peer.program.active_wait is not None, 10.0)
     bench.run(3.0)
-    assert bench.peer.program.wait is not None, bench.alarms()
+    assert bench.peer.program.active_wait is not None, bench.alarms()
     return bench
 
 
@@ -45,24 +45,24 @@ def test_a_slow_spindle_and_coolant_behind_it_raise_no_alarm(
 ) -> None:
     bench = slow_bench(settings, encoder=encoder)
     waiting(bench)
-    bench.until(State.IDLE, State.FAULT, limit=60.0)
-    assert (bench.state, bench.alarms()) == (State.IDLE, "")
-    assert bench.peer.program.executed.count("M8") == 1
+    bench.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
+    assert (bench.state, bench.alarms()) == (MachineState.IDLE, "")
+    assert bench.peer.program.executed_lines.count("M8") == 1
     assert not bench.said("alarm")
 
 
 def test_coolant_that_takes_its_delay_has_not_gone_off() -> None:
     bench = slow_bench({COOLANT: 5.0})
     bench.start(PART)
-    bench.until(State.IDLE, State.FAULT, limit=60.0)
-    assert (bench.state, bench.alarms()) == (State.IDLE, "")
+    bench.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
+    assert (bench.state, bench.alarms()) == (MachineState.IDLE, "")
 
 
 def test_coolant_that_goes_off_behind_the_wait_is_still_an_alarm() -> None:
     bench = slow_bench({TOLERANCE: 5.0})
     waiting(bench)
-    bench.until_true(lambda _: bench.peer.outputs.get("flood", False), 20.0)
-    bench.peer.outputs["flood"] = False
+    bench.until_true(lambda _: bench.peer.output_states.get("flood", False), 20.0)
+    bench.peer.output_states["flood"] = False
     bench.until_true(lambda shot: shot.stop is not None, 5.0)
     assert bench.shot.stop is not None
     assert bench.shot.stop.code == "switched-off"
@@ -71,21 +71,21 @@ def test_coolant_that_goes_off_behind_the_wait_is_still_an_alarm() -> None:
 def test_a_spindle_that_stays_too_slow_is_the_firmwares_alarm() -> None:
     bench = slow_bench({TOLERANCE: 5.0, ON: 4.0})
     bench.start(PART)
-    bench.until(State.FAULT, limit=10.0)
-    assert bench.peer.alarm == 14
+    bench.until(MachineState.FAULT, limit=10.0)
+    assert bench.peer.alarm_number == 14
     (alarm,) = bench.shot.alarms
     assert alarm.code == "controller-alarm"
     bench.run(0.5)
-    assert bench.peer.commanded == 0.0
+    assert bench.peer.commanded_rpm == 0.0
 
 
 def test_a_reset_in_the_wait_stops_the_spindle_at_once() -> None:
     bench = waiting(slow_bench({TOLERANCE: 5.0}))
     bench.post(Reset())
     bench.run(1.0)
-    assert bench.peer.commanded == 0.0
-    assert bench.peer.program.wait is None
-    assert not bench.peer.outputs.get("flood", False)
+    assert bench.peer.commanded_rpm == 0.0
+    assert bench.peer.program.active_wait is None
+    assert not bench.peer.output_states.get("flood", False)
 
 
 @pytest.mark.parametrize("held", [False, True])
@@ -93,34 +93,34 @@ def test_a_spindle_stop_does_not_wait_for_the_speed(held: bool) -> None:
     """Neither M5 nor the toggle of a hold reaches firmware that waits."""
     bench = slow_bench({TOLERANCE: 5.0})
     bench.ready()
-    bench.machine.spindle.run(3000.0)
+    bench.machine.spindle.run_at(3000.0)
     bench.alone(2.0)
-    assert bench.peer.program.wait is not None
+    assert bench.peer.program.active_wait is not None
     if held:
-        bench.machine.blocks.hold()
+        bench.machine.block_controller.hold_on_path()
         bench.alone(0.3)
-    bench.machine.spindle.run(0.0)
+    bench.machine.spindle.run_at(0.0)
     bench.alone(1.0)
-    assert bench.peer.commanded == 0.0
+    assert bench.peer.commanded_rpm == 0.0
     assert bench.machine.controller.fault == ""
 
 
 def test_an_answer_to_m3_that_is_lost_is_missed_behind_the_longest_wait() -> None:
     bench = slow_bench({ON: 4.0})
     bench.ready()
-    bench.peer.quirks.garble.append(b"")
-    bench.machine.spindle.run(3000.0)
+    bench.peer.behavior.garbled_replies.append(b"")
+    bench.machine.spindle.run_at(3000.0)
     bench.alone(5.5)
     assert bench.machine.controller.fault == ""
     bench.alone(2.0)
-    assert code_of(bench.machine.controller.fault, "driver") == "controller-silent"
+    assert get_fault_code(bench.machine.controller.fault, "driver") == "controller-silent"
 
 
 @pytest.mark.parametrize(
     ("line", "settings", "seconds"),
     [
         ("M3S500", {}, 0.0),
-        ("M3S500", {TOLERANCE: "5.0", ON: "0.0"}, AT_MOST),
+        ("M3S500", {TOLERANCE: "5.0", ON: "0.0"}, MAX_FIRMWARE_WAIT_S),
         ("M03S500", {TOLERANCE: "5.0", ON: "4.0"}, 4.0),
         ("M4S500", {TOLERANCE: "0.0", ON: "4.0"}, 4.0),
         ("M4S500", {392: "3.0"}, 3.0),  # firmware without $394
@@ -131,21 +131,21 @@ def test_an_answer_to_m3_that_is_lost_is_missed_behind_the_longest_wait() -> Non
     ],
 )
 def test_the_longest_wait_follows_the_settings(line: str, settings: dict[int, str], seconds: float) -> None:
-    assert longest_wait(line, settings) == seconds
+    assert get_max_firmware_wait(line, settings) == seconds
 
 
 def test_in_the_wait_reports_are_answered_and_no_line_is_read() -> None:
     """As the firmware's simulator did with $394=3: Idle, the programmed speed, M8 unread."""
-    clock = StepClock()
-    firmware = Firmware(clock, quirky(settings={ON: 3.0}))
-    firmware.feed(b"M3S500\nM8\n")
+    clock = ManualClock()
+    firmware = GrblFirmware(clock, quirky(settings={ON: 3.0}))
+    firmware.receive_bytes(b"M3S500\nM8\n")
     clock.advance(1.0)
-    firmware.feed(b"\x87")
-    told = firmware.take().decode()
+    firmware.receive_bytes(b"\x87")
+    told = firmware.pop_output().decode()
     assert "ok" not in told
     assert told.startswith("<Idle|")
     assert ",500," in told
     assert "|A:S|" in told
     clock.advance(2.5)
-    assert firmware.take().decode().split() == ["ok", "ok"]
-    assert firmware.outputs["flood"]
+    assert firmware.pop_output().decode().split() == ["ok", "ok"]
+    assert firmware.output_states["flood"]

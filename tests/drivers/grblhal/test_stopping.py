@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.faults import code_of
-from core.ports import LineOp, Stop, ThreadOp
+from core.faults import get_fault_code
+from core.ports import LineOperation, StopMode, ThreadOperation
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
 HOLD, CANCEL, RESET, STOP, PAUSE = 0x82, 0x85, 0x18, 0x19, 0x9E
@@ -21,19 +21,19 @@ def powered(**quirks: object) -> GrblBench:
 def ends_well(bench: GrblBench) -> None:
     """At rest, nothing queued, the position kept, modes verified."""
     bench.alone(2.5)
-    assert bench.peer.torn == 0
-    assert bench.peer.alarm == 0
-    assert not bench.peer.slides.queue
-    assert bench.machine.controller.trusted
-    assert bench.machine.blocks.state().hindrance == ""
+    assert bench.peer.abrupt_stop_count == 0
+    assert bench.peer.alarm_number == 0
+    assert not bench.peer.motion.block_queue
+    assert bench.machine.controller.is_position_reliable
+    assert bench.machine.block_controller.state().start_refusal == ""
     assert bench.peer.program.modes.plane == "G18"
 
 
 def thread(bench: GrblBench, z: float) -> None:
     """A pass of 1 mm a turn, as soon as the overrides are known to be at 100 %."""
-    op = ThreadOp(0.0, 0.0, 0.0, z, 1.0)
+    op = ThreadOperation(0.0, 0.0, 0.0, z, 1.0)
     for _ in range(50):
-        if bench.machine.blocks.submit(op) is not None:
+        if bench.machine.block_controller.submit_block(op) is not None:
             return
         bench.alone(0.1)
     raise AssertionError("never taken")
@@ -42,10 +42,10 @@ def thread(bench: GrblBench, z: float) -> None:
 def test_a_block_is_braked_before_the_reset_that_voids_the_rest() -> None:
     bench = powered()
     for i in range(1, 4):
-        bench.machine.blocks.submit(LineOp(50.0 * i, 0.0, 40.0))
+        bench.machine.block_controller.submit_block(LineOperation(50.0 * i, 0.0, 40.0))
     bench.alone(0.5)
     bench.wire.sent.clear()
-    bench.machine.axes.stop(Stop.RAMP_OFF)
+    bench.machine.axes.stop(StopMode.RAMP_OFF)
     ends_well(bench)
     sent = bytes(bench.wire.sent)
     assert sent.index(HOLD) < sent.index(RESET)
@@ -54,11 +54,11 @@ def test_a_block_is_braked_before_the_reset_that_voids_the_rest() -> None:
 
 def test_a_jog_is_cancelled_before_the_reset() -> None:
     bench = powered()
-    bench.machine.blocks.jog("X", 40.0, 0.3, None)
+    bench.machine.block_controller.start_jog("X", 40.0, 0.3, None)
     bench.alone(0.2)
-    assert bench.peer.slides.moving
+    assert bench.peer.motion.is_moving
     bench.wire.sent.clear()
-    bench.machine.axes.stop(Stop.RAMP_OFF)
+    bench.machine.axes.stop(StopMode.RAMP_OFF)
     ends_well(bench)
     sent = bytes(bench.wire.sent)
     assert sent.index(CANCEL) < sent.index(RESET)
@@ -66,14 +66,14 @@ def test_a_jog_is_cancelled_before_the_reset() -> None:
 
 def test_out_of_a_hold_nothing_moves_again() -> None:
     bench = powered()
-    bench.machine.blocks.submit(LineOp(50.0, 0.0, 40.0))
+    bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)
-    bench.machine.blocks.hold()
+    bench.machine.block_controller.hold_on_path()
     bench.alone(0.5)
-    at = bench.peer.slides.place
-    bench.machine.axes.stop(Stop.RAMP_OFF)
+    at = bench.peer.motion.position
+    bench.machine.axes.stop(StopMode.RAMP_OFF)
     ends_well(bench)
-    assert bench.peer.slides.place == at
+    assert bench.peer.motion.position == at
 
 
 @pytest.mark.parametrize("mute", [True, False])
@@ -84,76 +84,76 @@ def test_a_thread_that_waits_for_its_index_is_given_up_without_a_lost_position(m
     come when the pass has just begun to move: within its first hundredth of a millimetre.
     """
     bench = powered(mute=mute)
-    bench.machine.spindle.run(30.0)
+    bench.machine.spindle.run_at(30.0)
     bench.alone(1.0)
     thread(bench, -20.0)
     bench.alone(1.0)
-    assert bench.peer.waits
+    assert bench.peer.is_waiting_for_index
     assert not bench.machine.controller.fault
-    bench.machine.axes.stop(Stop.RAMP_OFF)
+    bench.machine.axes.stop(StopMode.RAMP_OFF)
     bench.alone(7.0)
-    assert bench.peer.slides.place[1] == pytest.approx(0.0, abs=0.01)
-    bench.peer.torn = 0
+    assert bench.peer.motion.position[1] == pytest.approx(0.0, abs=0.01)
+    bench.peer.abrupt_stop_count = 0
     ends_well(bench)
 
 
 def test_an_index_that_is_slow_to_come_is_no_silence() -> None:
     bench = powered()
-    bench.machine.spindle.run(25.0)
+    bench.machine.spindle.run_at(25.0)
     bench.alone(1.0)
     thread(bench, -2.0)
     bench.alone(12.0)
     assert bench.machine.controller.fault == ""
-    assert bench.peer.slides.place[1] == -2.0
+    assert bench.peer.motion.position[1] == -2.0
 
 
 def test_in_a_hold_the_spindle_stops_by_its_toggle_and_stays_off() -> None:
     bench = powered()
-    bench.machine.spindle.run(600.0)
+    bench.machine.spindle.run_at(600.0)
     bench.alone(1.0)
-    bench.machine.blocks.submit(LineOp(50.0, 0.0, 10.0))
+    bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 10.0))
     bench.alone(0.5)
-    bench.machine.blocks.hold()
+    bench.machine.block_controller.hold_on_path()
     bench.alone(0.5)
-    bench.machine.spindle.run(0.0)
+    bench.machine.spindle.run_at(0.0)
     bench.alone(1.5)
     assert bytes(bench.wire.sent).count(PAUSE) == 1
     assert bench.machine.spindle.speed() == 0.0
-    bench.machine.blocks.resume()
+    bench.machine.block_controller.resume()
     bench.alone(0.5)
-    assert bench.peer.slides.moving
-    assert bench.peer.commanded == 0.0
+    assert bench.peer.motion.is_moving
+    assert bench.peer.commanded_rpm == 0.0
     bench.alone(6.0)
-    assert "M5" in bench.peer.program.executed
+    assert "M5" in bench.peer.program.executed_lines
 
 
 def test_a_spindle_that_does_not_stop_in_a_hold_is_told() -> None:
     bench = powered(toggle_broken=True)
-    bench.machine.spindle.run(600.0)
+    bench.machine.spindle.run_at(600.0)
     bench.alone(1.0)
-    bench.machine.blocks.submit(LineOp(50.0, 0.0, 10.0))
+    bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 10.0))
     bench.alone(0.5)
-    bench.machine.blocks.hold()
+    bench.machine.block_controller.hold_on_path()
     bench.alone(0.5)
-    bench.machine.spindle.run(0.0)
+    bench.machine.spindle.run_at(0.0)
     bench.alone(1.5)
-    assert code_of(bench.machine.controller.fault, "driver") == "ignores-stop"
+    assert get_fault_code(bench.machine.controller.fault, "driver") == "ignores-stop"
 
 
 def test_in_a_jog_functions_wait_for_its_end() -> None:
     """Sent at once they would be refused, and the refusal would stick."""
     bench = powered()
-    bench.machine.spindle.run(600.0)
+    bench.machine.spindle.run_at(600.0)
     bench.machine.io.write("coolant", True)
     bench.alone(1.0)
-    bench.machine.blocks.jog("X", 40.0, 0.3, None)
+    bench.machine.block_controller.start_jog("X", 40.0, 0.3, None)
     bench.alone(0.1)
     bench.machine.io.write("coolant", False)
-    bench.machine.spindle.run(0.0)
+    bench.machine.spindle.run_at(0.0)
     bench.alone(1.5)
     assert bench.machine.controller.fault == ""
-    assert bench.peer.rpm == 0.0
-    assert bench.peer.outputs["flood"] is False
+    assert bench.peer.programmed_rpm == 0.0
+    assert bench.peer.output_states["flood"] is False
 
 
 def test_a_full_buffer_never_shuts_out_the_word_to_go_on() -> None:
@@ -161,16 +161,23 @@ def test_a_full_buffer_never_shuts_out_the_word_to_go_on() -> None:
     bench = powered()
     sent = 0
     for _ in range(400):
-        ticket = bench.machine.blocks.submit(LineOp(0.05 * (sent + 1), 0.00001 * (sent + 1), 5.0))
+        ticket = bench.machine.block_controller.submit_block(
+            LineOperation(0.05 * (sent + 1), 0.00001 * (sent + 1), 5.0)
+        )
         sent += ticket is not None
         bench.alone(0.0)
     assert sent >= 40
     bench.alone(0.2)
-    bench.machine.blocks.hold()
+    bench.machine.block_controller.hold_on_path()
     bench.alone(0.3)
-    while bench.machine.blocks.submit(LineOp(0.05 * (sent + 1), 0.00001 * (sent + 1), 5.0)) is not None:
+    while (
+        bench.machine.block_controller.submit_block(
+            LineOperation(0.05 * (sent + 1), 0.00001 * (sent + 1), 5.0)
+        )
+        is not None
+    ):
         sent += 1
-    bench.machine.blocks.resume()
+    bench.machine.block_controller.resume()
     bench.alone(0.5)
     assert bench.peer.state == "Run"
     assert bench.machine.controller.fault == ""
@@ -178,13 +185,13 @@ def test_a_full_buffer_never_shuts_out_the_word_to_go_on() -> None:
 
 def test_a_reset_that_is_never_told_is_a_fault_and_no_waiting_for_ever() -> None:
     bench = powered()
-    bench.machine.blocks.submit(LineOp(50.0, 0.0, 40.0))
+    bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)
-    bench.peer.quirks.deaf = True
-    bench.machine.axes.stop(Stop.RAMP_OFF)
+    bench.peer.behavior.sends_nothing = True
+    bench.machine.axes.stop(StopMode.RAMP_OFF)
     bench.alone(2.0)
-    bench.peer.quirks.deaf = False
+    bench.peer.behavior.sends_nothing = False
     bench.alone(0.5)
-    assert code_of(bench.machine.controller.fault, "driver") == "controller-silent"
+    assert get_fault_code(bench.machine.controller.fault, "driver") == "controller-silent"
     assert "reset" in bench.machine.controller.fault
-    assert bench.machine.blocks.state().resting
+    assert bench.machine.block_controller.state().is_at_rest

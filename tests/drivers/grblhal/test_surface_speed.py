@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.texts import pattern
 
@@ -27,22 +27,22 @@ def test_the_spindle_follows_the_radius_without_a_standstill() -> None:
     begun = [line for line in bench.wire.lines() if line.startswith("M3")]
     assert begun == ["M3S500", "M3S1000"]  # half of G77
     stood, off = 0, []
-    while bench.peer.slides.place[0] > 5.1:
+    while bench.peer.motion.position[0] > 5.1:
         bench.tick()
-        stood += bench.peer.slides.v == 0.0
-        off.append(abs(bench.peer.spindle.speed) / wanted(bench.peer.slides.place[0]) - 1.0)
+        stood += bench.peer.motion.speed == 0.0
+        off.append(abs(bench.peer.spindle.speed) / wanted(bench.peer.motion.position[0]) - 1.0)
     assert len(off) > 300
     assert max(off[100:]) < 0.03
     assert min(off[100:]) > -0.15  # override steps are read back, and the motor has a ramp
     assert [line for line in bench.wire.lines() if line.startswith("M3")] == begun
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert not bench.alarms()
 
 
 def test_nothing_is_cut_before_it_turns_as_fast_as_it_ought_to() -> None:
     bench = GrblBench()
     bench.start(FACE)
-    bench.until_true(lambda _: bench.peer.slides.place[0] < 25.39 and bench.shot.line >= 7)
+    bench.until_true(lambda _: bench.peer.motion.position[0] < 25.39 and bench.shot.line >= 7)
     assert abs(bench.peer.spindle.speed) == pytest.approx(wanted(25.4), rel=0.05)
 
 
@@ -52,7 +52,7 @@ def test_it_never_turns_faster_than_the_program_allows_at_100_percent_neither() 
     bench.start(FACE)
     bench.until_true(lambda shot: shot.line == 7)
     bench.run(1.0)
-    bench.peer.feed(bytes([0x99]))
+    bench.peer.receive_bytes(bytes([0x99]))
     fastest = 0.0
     for _ in range(200):
         bench.tick()
@@ -65,7 +65,7 @@ def test_a_feed_a_turn_is_that_of_the_speed_which_it_can_have() -> None:
     """.004 in a turn: at X .2 in 2000 rpm, 203.2 mm/min, and never more."""
     bench = GrblBench()
     bench.start(FACE)
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     feeds = [float(line.partition("F")[2]) for line in bench.wire.lines() if "G1" in line]
     assert max(feeds) == pytest.approx(2000 * 0.004 * 25.4)
     assert min(feeds) == pytest.approx(wanted(25.0) * 0.004 * 25.4, rel=0.03)
@@ -74,7 +74,7 @@ def test_a_feed_a_turn_is_that_of_the_speed_which_it_can_have() -> None:
 def test_behind_it_a_constant_speed_is_an_s_again() -> None:
     bench = GrblBench()
     bench.start(FACE.replace("M30", "G01X1F.01\nM30"))
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert bench.wire.lines()[-1] == "M5"
     assert not bench.alarms()
 
@@ -82,9 +82,9 @@ def test_behind_it_a_constant_speed_is_an_s_again() -> None:
 def test_a_spindle_of_one_speed_is_refused_before_the_start() -> None:
     bench = GrblBench(quirks=quirky(build="NML+"))
     bench.start(FACE)
-    assert bench.state is State.IDLE
+    assert bench.state is MachineState.IDLE
     assert re.match(
-        pattern("executor.controller-cannot", what="constant surface speed"), bench.shot.start_refused
+        pattern("executor.controller-cannot", what="constant surface speed"), bench.shot.start_refusal
     )
 
 
@@ -92,9 +92,9 @@ def test_a_speed_that_the_controller_limits_in_silence_is_told() -> None:
     """The firmware's simulator turns 1000 rpm whatever $30 was set to, until it is started anew."""
     bench = GrblBench()
     bench.ready()
-    bench.peer.registers.store(30, "1000")  # behind the driver's back: it has read 3500
+    bench.peer.registers.store_setting(30, "1000")  # behind the driver's back: it has read 3500
     bench.start("G90G94F300\nM03S2000\nX.5\nG01F10X.45\nM30\n")
-    bench.until(State.FAULT, limit=10.0)
+    bench.until(MachineState.FAULT, limit=10.0)
     (alarm,) = bench.shot.alarms
     assert alarm.code == "controller-refuses"
     for value in ("1000 rpm", "2000"):
@@ -105,5 +105,5 @@ def test_a_limit_is_reached_and_no_more() -> None:
     """A program that stays below it is nobody's business."""
     bench = GrblBench(quirks=quirky(settings={30: 3500.0}))
     bench.start("G90G94F300\nM03S2000\nX.5\nG01F10X.45\nM30\n")
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert not bench.alarms()

@@ -12,10 +12,10 @@ import pytest
 
 from app.cli.main import main
 from core.ports import DriverError
-from drivers.grblhal.grblhal_wire import open_wire
-from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
-from drivers.simulators.grblhal_firmware import Firmware
-from drivers.waiting import RealClock
+from drivers.grblhal.grblhal_transport import open_transport
+from drivers.simulators.grblhal_connections import PtyConnection, TcpConnection, run_simulator
+from drivers.simulators.grblhal_firmware import GrblFirmware
+from drivers.wakeups import RealClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED
 from tests.drivers.ptys import open_pty
@@ -29,12 +29,16 @@ def machine_file(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Pat
     if request.param == "pty":
         for handle in open_pty():
             os.close(handle)
-    end: PtyEnd | TcpEnd = PtyEnd() if request.param == "pty" else TcpEnd("127.0.0.1", 0)
+    end: PtyConnection | TcpConnection = (
+        PtyConnection() if request.param == "pty" else TcpConnection("127.0.0.1", 0)
+    )
     over = threading.Event()
-    peer = threading.Thread(target=serve, args=(end, Firmware(RealClock()), lambda: not over.is_set()))
+    peer = threading.Thread(
+        target=run_simulator, args=(end, GrblFirmware(RealClock()), lambda: not over.is_set())
+    )
     peer.start()
     file = tmp_path / "grblhal.toml"
-    file.write_text(SHIPPED.replace("/dev/ttyACM0", end.name), encoding="utf-8")
+    file.write_text(SHIPPED.replace("/dev/ttyACM0", end.device_name), encoding="utf-8")
     yield file
     over.set()
     peer.join(60.0)
@@ -68,4 +72,4 @@ def test_nobody_there_is_one_sentence(tmp_path: Path, capsys: Captured) -> None:
 @pytest.mark.parametrize("port", ["tcp://127.0.0.1", "tcp://:23", "tcp://host:a"])
 def test_a_bad_address_is_refused(port: str) -> None:
     with raises_code(DriverError, "driver", port, "tcp://host:port"):
-        open_wire(port, 115_200)
+        open_transport(port, 115_200)

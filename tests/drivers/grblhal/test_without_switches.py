@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from core.executor.commands import Home
-from core.executor.snapshot import State
-from core.ports import DriverError, LineOp
+from core.executor.commands import HomeAxes
+from core.executor.snapshot import MachineState
+from core.ports import DriverError, LineOperation
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_faults import UNHOMED
@@ -22,20 +22,20 @@ def test_home_here_needs_no_switch_and_moves_nothing() -> None:
     assert not [told for told in bench.machine.ports.warnings if "$22" in told]
     bench.machine.axes.enable(True)
     bench.alone(0.3)
-    bench.machine.blocks.submit(LineOp(3.0, -7.0, 40.0))
+    bench.machine.block_controller.submit_block(LineOperation(3.0, -7.0, 40.0))
     bench.alone(1.0)
     assert not any(bench.machine.axes.sample().homed[:2])
     bench.ready()
-    bench.post(Home())
-    bench.until(State.IDLE, limit=5.0)
+    bench.post(HomeAxes())
+    bench.until(MachineState.IDLE, limit=5.0)
     assert all(bench.shot.homed)
-    assert bench.peer.slides.place == pytest.approx((3.0, -7.0))
+    assert bench.peer.motion.position == pytest.approx((3.0, -7.0))
     assert bench.shot.actual[:2] == pytest.approx((0.0, 0.0))
     assert not [line for line in bench.wire.lines() if line.startswith("$H")]
     bench.start("G90G94F300\nX.1Z.2\nM30\n")
-    bench.until(State.IDLE)
+    bench.until(MachineState.IDLE)
     assert bench.shot.actual[:2] == pytest.approx((2.54, 5.08))
-    assert bench.peer.slides.place == pytest.approx((5.54, -1.92))
+    assert bench.peer.motion.position == pytest.approx((5.54, -1.92))
 
 
 def test_a_controller_that_homes_nothing_is_told_of_with_what_to_do() -> None:
@@ -48,8 +48,8 @@ def test_a_controller_that_homes_nothing_is_told_of_with_what_to_do() -> None:
 def test_without_homing_an_absolute_axis_is_taken_at_its_word() -> None:
     bench = GrblBench()
     bench.ready()
-    bench.post(Home())
-    bench.until(State.IDLE, limit=5.0)
+    bench.post(HomeAxes())
+    bench.until(MachineState.IDLE, limit=5.0)
     assert not bench.shot.alarms
     assert not [line for line in bench.wire.lines() if line.startswith("$H")]
 
@@ -57,9 +57,9 @@ def test_without_homing_an_absolute_axis_is_taken_at_its_word() -> None:
 def test_what_the_controller_has_homed_is_homed_for_the_next_host() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=3))
     bench.ready()
-    bench.post(Home())
-    bench.until(State.IDLE, limit=10.0)
-    bench.peer.slides.place = (5.0, -5.0)
+    bench.post(HomeAxes())
+    bench.until(MachineState.IDLE, limit=10.0)
+    bench.peer.motion.position = (5.0, -5.0)
     again = GrblBench.__new__(GrblBench)
     again.__dict__.update(bench.__dict__)
     machine = type(bench.machine)(bench.machine.controller.config, bench.clock, bench.wire)
@@ -69,8 +69,8 @@ def test_what_the_controller_has_homed_is_homed_for_the_next_host() -> None:
 def test_an_axis_cannot_home_alone_where_the_controller_homes_all_together() -> None:
     bench = GrblBench(grbl_machine(*UNHOMED), quirky(homing=1))
     bench.ready()
-    bench.post(Home())
-    bench.until(State.IDLE, limit=10.0)
+    bench.post(HomeAxes())
+    bench.until(MachineState.IDLE, limit=10.0)
     assert all(bench.shot.homed)
     assert [line for line in bench.wire.lines() if line.startswith("$H")] == ["$H"]
 
@@ -83,8 +83,8 @@ def test_one_that_insists_stays_locked_until_its_last_axis_is_homed() -> None:
     bench.alone(1.5)
     assert bench.machine.axes.sample().homed[:2] == (False, True)
     with raises_code(DriverError, "controller-refuses", text("drivers.grblhal-home-first")):
-        bench.machine.blocks.submit(LineOp(1.0, 0.0, 10.0))
+        bench.machine.block_controller.submit_block(LineOperation(1.0, 0.0, 10.0))
     bench.machine.axes.home("X")
     bench.alone(1.5)
     assert bench.machine.axes.sample().homed[:2] == (True, True)
-    assert bench.machine.blocks.submit(LineOp(1.0, 0.0, 10.0)) is not None
+    assert bench.machine.block_controller.submit_block(LineOperation(1.0, 0.0, 10.0)) is not None

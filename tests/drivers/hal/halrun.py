@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.hal.hal_session import CLEAR_STREAMS
+from drivers.hal.hal_session import CLEAR_STREAMS_SCRIPT
 
 _NOBODY = 65534
 _LOCK = Path(tempfile.gettempdir()) / "turndesk-halrun.lock"
@@ -72,7 +72,7 @@ def why_not() -> str:
         script = folder / "tried" / "tried.hal"
         script.parent.mkdir()
         clear = script.with_name("clear.sh")
-        clear.write_text(CLEAR_STREAMS, encoding="utf-8")
+        clear.write_text(CLEAR_STREAMS_SCRIPT, encoding="utf-8")
         script.write_text(_TRIED.format(clear), encoding="utf-8")
         path = f"{folder_with_halrun(folder / 'bin')}:{os.environ['PATH']}"
         environment = {**os.environ, "PATH": path}

@@ -11,18 +11,18 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.backends.connection import connect
+from app.compose.backends.connection import connect_machine
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import setup_for
-from app.compose.workshop import proof_of
+from app.compose.machine.machine_setup import create_setup
+from app.compose.program_proving import create_proof
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob, Reset
-from core.executor.executor import TICK, Executor
+from core.executor.executor import TICK_PAUSE_S, Executor
 from core.executor.job import make_job
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.snapshot import LogEvent, MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from core.proving.prove_program import prove
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.drivers.hal.halrun import as_halrun
 from tests.late_computer import LATE, OF_SILENCE, tell, told_late
 
@@ -58,13 +58,13 @@ class LiveLathe:
         self.home = file.parent / "home"
         self.machine = load_machine(file)
         self.clock = RealClock()
-        self.events: list[Event] = []
+        self.events: list[LogEvent] = []
         self.stalled_at = -AFTER_STALL  # s, when a tick has last taken too long
-        self.connected = connect(self.machine, self.clock)
+        self.connected = connect_machine(self.machine, self.clock)
         self.executor = Executor(self.machine, self.connected.ports, self._note)
         self.tick()
 
-    def _note(self, event: Event) -> None:
+    def _note(self, event: LogEvent) -> None:
         """What stops the machine by itself is told to the test, in the order in which it came."""
         self.events.append(event)
         code = event.alarm.code if event.alarm is not None else ""
@@ -83,8 +83,8 @@ class LiveLathe:
     def tick(self) -> None:
         """One tick of the executor, in its time."""
         began = self.clock.now()
-        self.executor.tick()
-        self.clock.sleep_until(began + TICK)
+        self.executor.run_tick()
+        self.clock.sleep_until(began + TICK_PAUSE_S)
         if self.clock.now() - began > STALL:
             self.stalled_at = self.clock.now()
 
@@ -102,25 +102,25 @@ class LiveLathe:
             self.tick()
         return self.clock.now() - began
 
-    def state(self, *states: State) -> float:
+    def state(self, *states: MachineState) -> float:
         return self.until(lambda shot: shot.state in states)
 
     def ready(self) -> None:
         """Alarms acknowledged, drives on, whatever was before."""
         began = self.clock.now()
-        while self.shot.state is not State.IDLE:
+        while self.shot.state is not MachineState.IDLE:
             assert self.clock.now() < began + PATIENCE, (self.shot, self.events[-6:])
-            if self.shot.state is State.FAULT:
+            if self.shot.state is MachineState.FAULT:
                 self.post(Reset())
-            elif self.shot.state is State.DISABLED and not self.shot.unknown:
+            elif self.shot.state is MachineState.DISABLED and not self.shot.unknown:
                 self.post(EnableDrives())
             self.tick()
 
     def start(self, text: str) -> None:
         """A program, proved, and Cycle Start."""
-        setup = setup_for(self.machine, tools={1: ToolOffset(0.0, 0.0)}, secondary={})
-        job = make_job(Source("PART", text), setup)
-        proof = proof_of(job, prove(job.source, job.setup, self.machine))
+        setup = create_setup(self.machine, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        job = make_job(ProgramSource("PART", text), setup)
+        proof = create_proof(job, prove(job.source, job.setup, self.machine))
         assert not proof.errors, proof.errors
         self.post(LoadJob(job, proof))
         if self.shot.interrupted is not None:  # read, and meant all the same
@@ -128,7 +128,7 @@ class LiveLathe:
             looked = self.clock.now() + 0.9
             self.until(lambda _: self.clock.now() > looked)
         self.post(CycleStart())
-        assert not self.shot.start_refused, self.shot.start_refused
+        assert not self.shot.start_refusal, self.shot.start_refusal
 
     def run(self, text: str) -> None:
         """A program to its end."""
@@ -152,7 +152,7 @@ class LiveLathe:
         return halcmd("gets", name) == "TRUE"
 
     def close(self) -> None:
-        self.executor.shut()
+        self.executor.shut_down()
         self.connected.close()
 
     # --- processes ----------------------------------------------------------------------------------------

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import pytest
 
 from core.ports import DriverError
-from drivers.hal.bridge.packets import flat
-from drivers.hal.bridge.setpoint_player import Player
-from drivers.setpoint_pieces import Piece
+from drivers.hal.bridge.packets import flatten_pieces
+from drivers.hal.bridge.setpoint_player import SetpointPlayer
+from drivers.setpoint_pieces import MotionPiece
 from tests.coded import raises_code
 from tests.drivers.hal.played import STILL, TICK, Bench, powered
 
@@ -56,8 +56,8 @@ def test_a_limit_switch_without_power_is_no_fault(bench: Bench) -> None:
 
 
 def test_setpoints_for_a_time_that_was_played_stop_it(bench: Bench) -> None:
-    late = Piece(bench.clock.now() - 0.02, 1.0, (bench.x + 1.0, bench.z), STILL, STILL)
-    bench.told("splice", tuple(flat([late])))
+    late = MotionPiece(bench.clock.now() - 0.02, 1.0, (bench.x + 1.0, bench.z), STILL, STILL)
+    bench.told("splice", tuple(flatten_pieces([late])))
     assert bench.bridge[1] == "late"
     bench.run(0.5)
     assert not bench.axes.sample().enabled
@@ -68,24 +68,27 @@ def test_the_same_setpoints_once_more_are_not_too_late(bench: Bench) -> None:
     """A path that goes on as it was played is played anyway."""
     bench.x_goes(5.0)
     bench.run(0.5)
-    begun, x = bench.clock.now() - 0.03, bench.far.bridge.player.state(bench.clock.now() - 0.03)[0][0]
-    same = Piece(begun, 1.0, (x, bench.z), (5.0, 0.0), STILL)
-    bench.told("splice", tuple(flat([same])))
+    begun, x = (
+        bench.clock.now() - 0.03,
+        bench.far.bridge.setpoint_player.get_motion_at(bench.clock.now() - 0.03)[0][0],
+    )
+    same = MotionPiece(begun, 1.0, (x, bench.z), (5.0, 0.0), STILL)
+    bench.told("splice", tuple(flatten_pieces([same])))
     assert bench.bridge == ("", "")
     bench.run(0.5)
     assert bench.x == pytest.approx(x + 5.0 * (bench.clock.now() - begun), abs=0.05)
 
 
 def test_a_thread_for_turns_that_have_gone_by_stops_it(bench: Bench) -> None:
-    gone = Piece(-3.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)  # three turns ago
-    bench.told("mesh", tuple(flat([gone])), zero=0.0, sign=1.0, way=1)
+    gone = MotionPiece(-3.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)  # three turns ago
+    bench.told("mesh", tuple(flatten_pieces([gone])), zero=0.0, sign=1.0, way=1)
     assert bench.bridge[1] == "late"
 
 
 def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bench.far.bridge.rows, "settle", lambda _plays_b: False)
+    monkeypatch.setattr(bench.far.bridge.row_streams, "finish_change", lambda _plays_b: False)
     bench.run(2 * TICK)
     assert bench.bridge[1] == "late"
     assert "HAL" in bench.bridge[0]
@@ -95,10 +98,10 @@ def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
 
 
 def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> None:
-    bench.far.machine.drive_fault("X")
+    bench.far.plant_controls.drive_fault("X")
     bench.run(0.5)
     assert bench.bridge == ("the X axis drive reports a fault", "axis")
-    bench.far.plant.faulty.clear()  # the drive is whole again, and nobody has acknowledged it
+    bench.far.plant.faulty_axes.clear()  # the drive is whole again, and nobody has acknowledged it
     bench.told("enable")
     bench.run(0.5)
     assert bench.pin("enable") == 0.0
@@ -112,44 +115,44 @@ def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> Non
 
 
 def test_with_an_open_chain_the_spindle_is_not_ordered_to_turn(bench: Bench) -> None:
-    bench.far.machine.press_estop()
+    bench.far.plant_controls.press_estop()
     bench.run(0.3)
-    bench.far.bridge.handle({"do": "spindle", "rpm": 500.0, "on": True}, ())
-    bench.far.bridge.round()
+    bench.far.bridge.queue_packet({"do": "spindle", "rpm": 500.0, "on": True}, ())
+    bench.far.bridge.run_cycle()
     assert bench.pin("spindle.speed") == 0.0  # not for a single period
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        bench.driver.ports.spindle.run(500.0)
+        bench.driver.ports.spindle.run_at(500.0)
     bench.run(1.0)
-    assert bench.far.machine.spindle_rpm() == 0.0
+    assert bench.far.plant_controls.get_spindle_rpm() == 0.0
 
 
 def test_neither_way_nor_thread_nor_power_for_slides_that_are_off(bench: Bench) -> None:
     bench.axes.enable(False)
     bench.run(0.3)
     bench.x_goes(5.0)
-    turn = Piece(9.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)
-    bench.told("mesh", tuple(flat([turn])), zero=0.0, sign=1.0, way=1)
+    turn = MotionPiece(9.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)
+    bench.told("mesh", tuple(flatten_pieces([turn])), zero=0.0, sign=1.0, way=1)
     bench.told("brake")
     bench.run(0.5)
     assert (bench.x, bench.bridge) == (pytest.approx(0.0, abs=1e-6), ("", ""))
-    assert bench.far.bridge.player.geared() is None
+    assert bench.far.bridge.setpoint_player.read_gear_state() is None
 
 
 def test_the_first_packet_of_a_way_in_two_moves_nothing(bench: Bench) -> None:
     """Its end, where it comes to rest, is in the other one."""
     t, x, z = bench.clock.now() + 0.3, bench.x, bench.z
-    out = Piece(t, 0.2, (x, z), (5.0, 0.0), STILL)
-    bench.told("splice", tuple(flat([out])), more=True)
+    out = MotionPiece(t, 0.2, (x, z), (5.0, 0.0), STILL)
+    bench.told("splice", tuple(flatten_pieces([out])), more=True)
     bench.run(0.4)
     assert bench.x == pytest.approx(x, abs=1e-6)
 
 
 def test_a_way_in_two_packets_is_one(bench: Bench) -> None:
     t, x, z = bench.clock.now() + 0.1, bench.x, bench.z
-    out = Piece(t, 0.2, (x, z), (5.0, 0.0), STILL)
-    back = Piece(t + 0.2, 0.2, (x + 1.0, z), (-5.0, 0.0), STILL)
-    bench.told("splice", tuple(flat([out])), more=True)
-    bench.told("splice", tuple(flat([back])))
+    out = MotionPiece(t, 0.2, (x, z), (5.0, 0.0), STILL)
+    back = MotionPiece(t + 0.2, 0.2, (x + 1.0, z), (-5.0, 0.0), STILL)
+    bench.told("splice", tuple(flatten_pieces([out])), more=True)
+    bench.told("splice", tuple(flatten_pieces([back])))
     bench.run(0.26)
     assert bench.x > x + 0.5
     bench.run(0.5)
@@ -159,18 +162,18 @@ def test_a_way_in_two_packets_is_one(bench: Bench) -> None:
 
 def test_an_order_or_an_output_that_nobody_knows_does_nothing(bench: Bench) -> None:
     """Of another version's driver: no pin comes to be by a name that was sent."""
-    cells = set(bench.far.thread.cells)
+    cells = set(bench.far.servo_thread.cells)
     bench.told("dance", n=77)
     bench.told("out", name="laser", on=True)
-    assert not [each for each in set(bench.far.thread.cells) - cells if "laser" in each]
+    assert not [each for each in set(bench.far.servo_thread.cells) - cells if "laser" in each]
     assert bench.bridge == ("", "")
 
 
 def test_a_bridge_that_is_late_at_rest_is_no_fault(bench: Bench) -> None:
     """HAL has run out of rows while nothing moved: it has stood where it stood."""
-    bench.far.stopped = True
+    bench.far.is_bridge_suspended = True
     bench.run(0.13)  # longer than HAL has rows, shorter than its watchdog
-    bench.far.stopped = False
+    bench.far.is_bridge_suspended = False
     bench.run(0.3)
     assert bench.bridge == ("", "")
     assert bench.axes.sample().enabled
@@ -188,4 +191,4 @@ def test_what_nobody_takes_does_not_grow(bench: Bench) -> None:
 
 def test_turns_that_were_never_seen_are_none() -> None:
     """Before the first reading of the spindle: a thread asked for then is reckoned from 0."""
-    assert Player(2).turns.at(5.0) == 0.0
+    assert SetpointPlayer(2).spindle_predictor.predict(5.0) == 0.0

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from drivers.hal.bridge.row_streams import Row, RowStreams
+from drivers.hal.bridge.row_streams import RowStreams, SetpointRow
 
 PERIOD = 0.001  # s
 SPEED = 20.0  # mm/s
@@ -18,7 +18,7 @@ class Rows:
     """``hal.stream`` without HAL."""
 
     def __init__(self) -> None:
-        self.rows: deque[Row] = deque()
+        self.rows: deque[SetpointRow] = deque()
 
     @property
     def depth(self) -> int:
@@ -32,10 +32,10 @@ class Rows:
     def readable(self) -> bool:
         return bool(self.rows)
 
-    def write(self, row: Row) -> None:
+    def write(self, row: SetpointRow) -> None:
         self.rows.append(row)
 
-    def read(self) -> Row:
+    def read(self) -> SetpointRow:
         return self.rows.popleft()
 
 
@@ -47,9 +47,9 @@ class Thread:
         self.pins: dict[str, float] = {}
         self.rows = RowStreams(self.streams, self.pins)
         self.plays = 0
-        self.played: list[Row] = []
+        self.played: list[SetpointRow] = []
         for n in range(1, AHEAD + 1):
-            self.rows.write(n * PERIOD, goes_on(n * PERIOD))
+            self.rows.write_row(n * PERIOD, goes_on(n * PERIOD))
 
     def run(self, periods: int) -> None:
         for _ in range(periods):
@@ -60,22 +60,22 @@ class Thread:
 
     def seen(self) -> bool:
         """The bridge looks again."""
-        self.rows.seen(int(self.played[-1][0]))
-        return self.rows.settle(bool(self.plays))
+        self.rows.record_played(int(self.played[-1][0]))
+        return self.rows.finish_change(bool(self.plays))
 
-    def late(self, what: Callable[[float], Row], at: float, past: int) -> None:
+    def late(self, what: Callable[[float], SetpointRow], at: float, past: int) -> None:
         """Asked for, but the thread was past it by so many rows before it has heard of it."""
-        assert self.rows.recall(at, what)
+        assert self.rows.recall_rows(at, what)
         asked, self.pins["switch-at"] = self.pins["switch-at"], -1.0
         self.run(int(asked) - int(self.played[-1][0]) + past)
         self.pins["switch-at"] = asked
 
 
-def goes_on(t: float) -> Row:
+def goes_on(t: float) -> SetpointRow:
     return SPEED * t, 0.0
 
 
-def stops_at(stop: float) -> Callable[[float], Row]:
+def stops_at(stop: float) -> Callable[[float], SetpointRow]:
     return lambda t: goes_on(min(t, stop))
 
 
@@ -117,15 +117,15 @@ def test_a_hold_that_is_heard_of_behind_its_first_row_is_not(thread: Thread) -> 
 def test_rows_that_the_old_stream_has_not_are_not_waited_for(thread: Thread) -> None:
     new = stops_at(1.0)
     thread.late(new, 0.034, past=4)  # five rows are left, and the other stream would be met behind them
-    thread.rows.write(0.041, new(0.041))
+    thread.rows.write_row(0.041, new(0.041))
     assert not thread.seen()
 
 
 def test_the_way_of_a_cam_is_the_same_until_it_is_said_to_part_whatever_its_rows_are(thread: Thread) -> None:
-    def tangent(t: float) -> Row:
+    def tangent(t: float) -> SetpointRow:
         return 0.0, SPEED * t
 
-    assert thread.rows.recall(0.010, tangent, 0.025)
+    assert thread.rows.recall_rows(0.010, tangent, 0.025)
     asked, thread.pins["switch-at"] = thread.pins["switch-at"], -1.0
     thread.run(int(asked) - 5 + 4)
     thread.pins["switch-at"] = asked
@@ -138,7 +138,7 @@ def test_the_way_of_a_cam_is_the_same_until_it_is_said_to_part_whatever_its_rows
 def test_setpoints_that_hal_plays_already_are_not_too_late(thread: Thread) -> None:
     thread.run(10)
     thread.seen()
-    assert thread.rows.first_from(0.012) is None
-    assert thread.rows.plays_anyway(0.012, stops_at(0.030))
-    assert not thread.rows.plays_anyway(0.012, stops_at(0.014))
-    assert not thread.rows.plays_anyway(-1.0, stops_at(0.030))  # of that nobody knows any more
+    assert thread.rows.first_recallable_row(0.012) is None
+    assert thread.rows.matches_locked_rows(0.012, stops_at(0.030))
+    assert not thread.rows.matches_locked_rows(0.012, stops_at(0.014))
+    assert not thread.rows.matches_locked_rows(-1.0, stops_at(0.030))  # of that nobody knows any more

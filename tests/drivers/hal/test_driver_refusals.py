@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.faults import code_of
-from core.ports import DriverError, Stop
+from core.faults import get_fault_code
+from core.ports import DriverError, StopMode
 from drivers.hal.bridge.packets import BridgeConfig
 from drivers.hal.hal_link import HalLink
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.hal.played import Bench, powered
 from tests.drivers.hal.test_whom_it_blames import Bridge
@@ -36,7 +36,7 @@ def test_no_axis_homes_while_another_moves(bench: Bench) -> None:
     with raises_code(DriverError, "homing", "Z") as told:
         bench.axes.home("Z")
     assert told.value.reason == "axis-moves"
-    bench.axes.stop(Stop.RAMP_HOLD)
+    bench.axes.stop(StopMode.RAMP_HOLD)
     bench.run(0.5)
     with raises_code(DriverError, "driver", "'Q'") as told:
         bench.axes.home("Q")
@@ -68,17 +68,17 @@ def test_power_that_is_there_is_not_asked_for_again(bench: Bench) -> None:
 
 
 def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench) -> None:
-    bench.far.machine.drive_fault("X")
+    bench.far.plant_controls.drive_fault("X")
     bench.run(0.5)
     with raises_code(DriverError, "spindle-off", "the X axis drive"):
-        bench.driver.ports.spindle.run(500.0)
-    bench.driver.ports.spindle.run(0.0)  # to stop is never refused
+        bench.driver.ports.spindle.run_at(500.0)
+    bench.driver.ports.spindle.run_at(0.0)  # to stop is never refused
     bench.run(1.0)
-    assert bench.far.machine.spindle_rpm() == 0.0
+    assert bench.far.plant_controls.get_spindle_rpm() == 0.0
 
 
 def test_no_output_goes_on_behind_a_bridge_that_is_silent(bench: Bench) -> None:
-    bench.far.stopped = True
+    bench.far.is_bridge_suspended = True
     bench.run(0.3)
     with raises_code(DriverError, "output", "coolant", "HAL", "0.30 s"):
         bench.driver.ports.io.write("coolant", True)
@@ -90,9 +90,9 @@ def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> 
     at_speed = ("[hal.spindle]\n", '[hal.spindle]\nat_speed = "spindle-at-speed"\n')
     with powered(NO_TURNS, NO_INDEX, NO_SPEED, NO_PPR, at_speed) as bench:
         spindle = bench.driver.ports.spindle
-        spindle.run(500.0)
+        spindle.run_at(500.0)
         bench.run(0.2)
-        assert (spindle.speed(), spindle.angle()) == (0.0, None)
+        assert (spindle.speed(), spindle.read_angle()) == (0.0, None)
         bench.wire("spindle-at-speed", True)
         bench.run(0.1)
         assert spindle.speed() == 500.0
@@ -100,9 +100,9 @@ def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> 
 
 def test_without_a_speed_the_turns_make_it() -> None:
     with powered(NO_SPEED) as bench:
-        bench.driver.ports.spindle.run(600.0)
+        bench.driver.ports.spindle.run_at(600.0)
         bench.run(3.0)
-        turning = bench.far.machine.spindle_rpm()
+        turning = bench.far.plant_controls.get_spindle_rpm()
         assert turning > 500.0
         assert bench.driver.ports.spindle.speed() == pytest.approx(turning, rel=0.01)
 
@@ -113,23 +113,23 @@ def test_without_a_speed_the_turns_make_it() -> None:
 class Leaving(Bridge):
     """Its HAL takes its time to go down."""
 
-    down = False
+    has_shut_down = False
     hung_up = 0
 
-    def hang_up(self) -> None:
+    def stop_bridge(self) -> None:
         self.hung_up += 1
 
 
-def linked(bridge: Bridge) -> tuple[HalLink, StepClock, list[int]]:
-    clock, idle = StepClock(), list[int]()
+def linked(bridge: Bridge) -> tuple[HalLink, ManualClock, list[int]]:
+    clock, idle = ManualClock(), list[int]()
     return HalLink(lambda: bridge, clock, BridgeConfig((), 0.001, 0.1), lambda: idle.append(1)), clock, idle
 
 
 def test_before_there_is_a_bridge_nothing_is_said_to_it() -> None:
     link, _, _ = linked(Bridge())
-    link.pump()
+    link.process_packets()
     with raises_code(DriverError, "driver") as told:
-        link.say("enable")
+        link.send_command("enable")
     assert told.value.reason == "no-bridge"
 
 
@@ -137,20 +137,20 @@ def test_a_hal_that_still_goes_down_is_waited_for_and_then_told_of() -> None:
     bridge = Leaving()
     link, clock, idle = linked(bridge)
     link.connect()
-    link.give_up()
-    assert (bridge.hung_up, code_of(link.lost, "driver")) == (1, "hal-thread")
-    link.give_up()
+    link.end_session()
+    assert (bridge.hung_up, get_fault_code(link.failure, "driver")) == (1, "hal-thread")
+    link.end_session()
     assert bridge.hung_up == 1  # once
     with raises_code(DriverError, "hal-thread"):
-        link.say("enable")
+        link.send_command("enable")
     before, idle[:] = clock.now(), []
     with raises_code(DriverError, "hal-bridge"):
         link.connect()
     assert clock.now() > before + 0.5
     assert idle  # whoever waits beside it is not kept waiting
-    bridge.down = True
+    bridge.has_shut_down = True
     link.connect()
-    link.say("enable")
+    link.send_command("enable")
 
 
 def test_a_bridge_that_tells_nothing_when_it_begins_is_no_bridge() -> None:
@@ -173,9 +173,9 @@ def test_a_broken_pipe_is_the_end_and_a_full_one_is_not() -> None:
     link, _, _ = linked(bridge)
     link.connect()
     with raises_code(DriverError, "hal-silent", bridge.why):
-        link.say("enable")
-    assert link.lost == ""
+        link.send_command("enable")
+    assert link.failure == ""
     bridge.why = DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
     with raises_code(DriverError, "hal-bridge", bridge.why):
-        link.say("enable")
-    assert "broken pipe" in str(link.lost)
+        link.send_command("enable")
+    assert "broken pipe" in str(link.failure)

@@ -10,9 +10,16 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.executor.commands import EnableDrives, Home, Reset, Touch, Wheel, WheelOff
-from core.executor.snapshot import Snapshot, State
-from drivers.hal.boards.hal_lines import text_of
+from core.executor.commands import (
+    DeselectHandwheel,
+    EnableDrives,
+    HomeAxes,
+    Reset,
+    SelectHandwheel,
+    TouchOffTool,
+)
+from core.executor.snapshot import MachineState, Snapshot
+from drivers.hal.boards.hal_file_builder import render_file
 from tests.drivers.hal.halrun import folder_for_all, halrun_on_path
 from tests.drivers.hal.lathes import PATIENT, Changes, lathe
 from tests.drivers.hal.live import LiveLathe, live
@@ -94,7 +101,7 @@ MACHINE: Changes = (
 
 @pytest.fixture(scope="module")
 def behind_hal() -> Iterator[LiveLathe]:
-    text = text_of(written("gt75-hal", *AS_C["gt75-hal"]))  # the spindle's drive is C
+    text = render_file(written("gt75-hal", *AS_C["gt75-hal"]))  # the spindle's drive is C
     with folder_for_all() as folder, halrun_on_path(), live(lathe(folder, MACHINE, HAL, text)) as made:
         yield made
 
@@ -105,8 +112,10 @@ def homed(behind_hal: LiveLathe) -> LiveLathe:
     made = behind_hal
     made.ready()
     if not all(made.shot.homed):
-        made.post(Home())
-        made.until(lambda shot: (shot.state is not State.HOME and all(shot.homed)) or bool(shot.alarms))
+        made.post(HomeAxes())
+        made.until(
+            lambda shot: (shot.state is not MachineState.HOME and all(shot.homed)) or bool(shot.alarms)
+        )
         assert not made.shot.alarms, made.shot.alarms
     return made
 
@@ -159,23 +168,23 @@ def test_estop_is_latched_in_hal_and_its_release_gives_nothing_back(homed: LiveL
     homed.start("G90G94F100\nM03S500\nM08\nG04F30\nM30\n")
     homed.until(lambda _: homed.is_on("out-coolant"))
     homed.set("in-estop-ok", 0)
-    homed.state(State.ESTOP)
+    homed.state(MachineState.ESTOP)
     dead = "x-motor.sel", "z-motor.sel", "spindle-ramp.in"
     # In the servo thread's next period: on a busy computer the control hears of it before.
     homed.until(lambda _: [homed.pin(each) for each in dead] == [0.0, 0.0, 0.0])
     assert not homed.is_on("out-coolant")
     homed.set("in-estop-ok", 1)
-    homed.until(lambda shot: shot.state is not State.ESTOP)
+    homed.until(lambda shot: shot.state is not MachineState.ESTOP)
     assert [homed.pin(each) for each in dead] == [0.0, 0.0, 0.0]
     homed.post(Reset(), EnableDrives())
-    homed.state(State.IDLE)
+    homed.state(MachineState.IDLE)
     assert not homed.is_on("out-coolant")
     assert homed.pin("spindle-ramp.in") == 0.0
 
 
 def test_the_handwheel_moves_its_axis_click_by_click(homed: LiveLathe) -> None:
     before = feedback(homed, "z-mm.out")
-    wheel = Wheel("Z", 0.254, 0.25)
+    wheel = SelectHandwheel("Z", 0.254, 0.25)
     for _ in range(10):
         homed.post(wheel)
     began = homed.clock.now()
@@ -191,8 +200,8 @@ def test_the_handwheel_moves_its_axis_click_by_click(homed: LiveLathe) -> None:
     for _ in range(30):
         homed.post(wheel)
     assert feedback(homed, "z-mm.out") - before == pytest.approx(5 * 0.254, abs=0.002)
-    homed.post(WheelOff())
-    homed.state(State.IDLE)
+    homed.post(DeselectHandwheel())
+    homed.state(MachineState.IDLE)
 
 
 def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None:
@@ -200,7 +209,7 @@ def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None
     home = feedback(homed, "x-motor.out") - homed.shot.actual[0]
 
     def touched_under_a_lease(shot: Snapshot) -> bool:
-        homed.executor.post(Touch("X", -1, 0.5, 1))
+        homed.executor.post(TouchOffTool("X", -1, 0.5, 1))
         return shot.touched is not None
 
     began = homed.clock.now()
@@ -209,10 +218,10 @@ def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None
     assert touched is not None
     if homed.stalled_at > began:  # the first touch may have been seen further away than the slide backs off
         tell("late")
-    assert touched.place is not None, touched.why
-    assert touched.place == pytest.approx(TIP - home, abs=touched.error + 0.001)
-    assert touched.error < 0.005
-    homed.state(State.IDLE)
+    assert touched.touch_position is not None, touched.why
+    assert touched.touch_position == pytest.approx(TIP - home, abs=touched.uncertainty_mm + 0.001)
+    assert touched.uncertainty_mm < 0.005
+    homed.state(MachineState.IDLE)
 
 
 def test_constant_surface_speed_follows_x(homed: LiveLathe) -> None:

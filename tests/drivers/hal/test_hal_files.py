@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.backends.hal_file import hal_file
-from app.compose.machine.machine_files import shipped_machine
-from drivers.hal.boards.hal_lines import HalFile, text_of
+from app.compose.backends.hal_file_writer import build_hal_file
+from app.compose.machine.machine_files import load_shipped_machine
+from drivers.hal.boards.hal_file_builder import HalFile, render_file
 from tests.drivers.hal.board_pins import PINS, without_board
 
 FILES = ("gt75-hal", "gt75-parport", "gt75-mesa-7i76e", "gt75-mesa-7i97", "gt75-ethercat")
@@ -25,15 +25,15 @@ STAND_IN = Path(__file__).parent / "board_stand_in.py"
 
 
 def written(name: str) -> HalFile:
-    return hal_file(shipped_machine(name))
+    return build_hal_file(load_shipped_machine(name))
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_the_shipped_file_is_what_the_command_writes(name: str) -> None:
     file = written(name)
-    assert text_of(file) == text_of(written(name))
-    assert resources.hal_file(f"{name}.hal").read_text(encoding="utf-8") == text_of(file)
-    for other, text in file.beside.items():
+    assert render_file(file) == render_file(written(name))
+    assert resources.hal_file(f"{name}.hal").read_text(encoding="utf-8") == render_file(file)
+    for other, text in file.extra_files.items():
         assert resources.hal_file(other).read_text(encoding="utf-8") == text
 
 
@@ -41,20 +41,20 @@ def test_the_shipped_file_is_what_the_command_writes(name: str) -> None:
 def test_every_name_of_the_machine_file_is_on_a_net(name: str) -> None:
     file = written(name)
     wired = set()
-    for line in text_of(file).splitlines():
+    for line in render_file(file).splitlines():
         words = line.split("#")[0].split()
         if words[:1] in (["net"], ["newsig"]):
             wired |= set(words[1:])
-    missing = [path for path, pin in file.lathe.names.items() if pin not in wired]
+    missing = [path for path, pin in file.lathe.terminal_names.items() if pin not in wired]
     assert not missing
-    told = {path for wire in file.wires for path in wire.names}
-    assert set(file.lathe.names) <= told
+    told = {path for wire in file.wiring_rows for path in wire.names}
+    assert set(file.lathe.terminal_names) <= told
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_no_pin_is_on_two_signals_and_setpoints_come_in_once(name: str) -> None:
     on: dict[str, str] = {}
-    text = text_of(written(name))
+    text = render_file(written(name))
     for line in text.splitlines():
         words = line.split("#")[0].split()
         if words[:1] == ["net"]:
@@ -81,7 +81,7 @@ def test_no_pin_is_on_two_signals_and_setpoints_come_in_once(name: str) -> None:
     ],
 )
 def test_scales_in_millimetres_and_turns(name: str, pin: str, value: float) -> None:
-    found = re.search(rf"^setp {re.escape(pin)} (\S+)", text_of(written(name)), re.MULTILINE)
+    found = re.search(rf"^setp {re.escape(pin)} (\S+)", render_file(written(name)), re.MULTILINE)
     assert found
     assert float(found[1]) == pytest.approx(value, rel=1e-8)
 
@@ -90,16 +90,16 @@ def test_scales_in_millimetres_and_turns(name: str, pin: str, value: float) -> N
 @pytest.mark.parametrize("name", FILES)
 def test_halrun_loads_it(name: str, tmp_path: Path) -> None:
     """Every component, parameter, pin, direction and order of the file, by HAL itself; then it is started."""
-    done = load(tmp_path, name, text_of(written(name)))
+    done = load(tmp_path, name, render_file(written(name)))
     assert done.returncode == 0, done.stderr + done.stdout
     signals = re.findall(r"^(?:bit|float|s32|u32)\s+\S+\s+(\S+)", done.stdout, re.MULTILINE)
-    assert {wire.signal for wire in written(name).wires} <= set(signals)
+    assert {wire.signal for wire in written(name).wiring_rows} <= set(signals)
 
 
 @pytest.mark.usefixtures("halrun")
 def test_halrun_refuses_a_pin_that_the_board_has_not(tmp_path: Path) -> None:
     """The trial can fail: one letter of one pin."""
-    text = text_of(written("gt75-mesa-7i97")).replace("encoder.01.position ", "encoder.01.positron ")
+    text = render_file(written("gt75-mesa-7i97")).replace("encoder.01.position ", "encoder.01.positron ")
     done = load(tmp_path, "gt75-mesa-7i97", text)
     assert done.returncode != 0
     assert "positron" in done.stderr + done.stdout

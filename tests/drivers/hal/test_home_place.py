@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from core.ports import DriverError
-from drivers.setpoint_queue import straight
+from drivers.setpoint_queue import plan_straight_move
 from tests.coded import raises_code
 from tests.drivers.contract.hal import Hal
 
@@ -27,10 +27,10 @@ def sticks_before_home(rig: Hal) -> None:
     """Z looks for home, and sticks on its last hundredths of a millimetre there."""
     axes = rig.driver.axes
     axes.home("Z")
-    rig.until(lambda: axes.zero[Z] != 0.0, limit=30.0)
-    rig.until(lambda: abs(axes.raw(Z) - axes.zero[Z]) < NEAR, limit=10.0)
-    rig.far.machine.jam("Z")
-    rig.until(lambda: axes.homing is None, limit=2.0)
+    rig.until(lambda: axes.home_positions[Z] != 0.0, limit=30.0)
+    rig.until(lambda: abs(axes.read_hal_position(Z) - axes.home_positions[Z]) < NEAR, limit=10.0)
+    rig.far.plant_controls.jam("Z")
+    rig.until(lambda: axes.active_homing is None, limit=2.0)
 
 
 def test_behind_home_the_setpoints_are_those_that_hal_plays(rig: Hal) -> None:
@@ -48,5 +48,7 @@ def test_setpoints_from_where_the_slide_lags_are_refused(rig: Hal) -> None:
     axes = rig.ports.axes
     lags = axes.sample().actual
     with raises_code(DriverError, "driver", "Z: ", "position") as told:
-        axes.splice(straight(rig.clock.now() + 0.3, lags, X, to=lags[X] - 1.0, speed=10.0, accel=100.0))
+        axes.splice(
+            plan_straight_move(rig.clock.now() + 0.3, lags, X, target=lags[X] - 1.0, speed=10.0, accel=100.0)
+        )
     assert told.value.reason == "jump"

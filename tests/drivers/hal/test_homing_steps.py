@@ -8,7 +8,7 @@ import pytest
 
 from core.ports import DriverError, Segments
 from drivers.hal.hal_config import HalAxis
-from drivers.hal.hal_homing import Homing
+from drivers.hal.hal_homing import HalHoming
 from drivers.hal.hal_table import HalAxisPins
 from tests.coded import raises_code
 
@@ -39,13 +39,13 @@ class Slides:
     def demand_at(self, _t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         return (self.place - (self.zero or 0.0),), (0.0,)
 
-    def bit(self, _name: str) -> bool:
+    def read_bit(self, _name: str) -> bool:
         return self.index
 
-    def figure(self, _name: str) -> float:
+    def read_number(self, _name: str) -> float:
         return self.index_at
 
-    def move(self, segments: Segments) -> None:
+    def splice_homing(self, segments: Segments) -> None:
         dt, p, v, a = (
             each[-1] for each in (segments.dt, segments.p[:, 0], segments.v[:, 0], segments.a[:, 0])
         )
@@ -53,42 +53,42 @@ class Slides:
         self.ways.append((float(ends), float(abs(segments.v).max())))
         self.until = float(segments.t[-1] + segments.dt[-1])
 
-    def halt(self) -> None:
+    def brake(self) -> None:
         self.halts += 1
         self.until = self.t
 
-    def ask_index(self, _pin: str, on: bool) -> None:
-        self.asked.append(on)
-        self.index = on
+    def request_index(self, _pin: str, enabled: bool) -> None:
+        self.asked.append(enabled)
+        self.index = enabled
 
-    def let_limit(self, _axis: str, on: bool) -> None:
-        self.limits.append(on)
+    def ignore_limit_switch(self, _axis: str, ignored: bool) -> None:
+        self.limits.append(ignored)
 
-    def raw(self, _index: int) -> float:
+    def read_hal_position(self, _index: int) -> float:
         return self.place
 
-    def found(self, _index: int, zero: float) -> None:
-        self.zero = zero
+    def set_home(self, _index: int, hal_position: float) -> None:
+        self.zero = hal_position
 
 
-def homing(method: int, latch: float = 0.0) -> tuple[Homing, Slides]:
+def homing(method: int, latch: float = 0.0) -> tuple[HalHoming, Slides]:
     """An axis of 100 mm that searches with 20 mm/s."""
     axis = HalAxis(
         "X", 100.0, 1000.0, 0.001, 1.0, 0.02, (-50.0, 50.0), False, 20.0,
-        pins=PINS, home_method=method, home_latch=latch, home_offset=OFFSET,
+        pins=PINS, home_method=method, home_latch_speed=latch, home_offset=OFFSET,
     )  # fmt: skip
     slides = Slides()
-    return Homing(axis, 0, slides), slides
+    return HalHoming(axis, 0, slides), slides
 
 
-def steps(order: Homing, slides: Slides, seconds: float) -> None:
+def steps(order: HalHoming, slides: Slides, seconds: float) -> None:
     """Rounds of 10 ms."""
     for _ in range(round(seconds / 0.01)):
         slides.t += 0.01
-        order.step(slides.t)
+        order.advance(slides.t)
 
 
-def rests(order: Homing, slides: Slides) -> None:
+def rests(order: HalHoming, slides: Slides) -> None:
     """Until all that was queued is over, and what comes behind it."""
     slides.t = max(slides.t, slides.until)
     steps(order, slides, 0.25)
@@ -98,34 +98,34 @@ def rests(order: Homing, slides: Slides) -> None:
 def test_onto_its_switch_and_slowly_off_it_again(method: int, way: float) -> None:
     """1.2 times its travel at the search's speed, back with a tenth; zero lies OFFSET beside the mark."""
     order, slides = homing(method)
-    order.see(0.0, False)
-    order.step(0.0)
+    order.add_sample(0.0, False)
+    order.advance(0.0)
     assert slides.ways[-1] == pytest.approx((way * 120.0, 20.0))
     slides.place = way * 30.0
-    order.see(slides.place, True)
+    order.add_sample(slides.place, True)
     steps(order, slides, 0.01)
     assert slides.halts == 1
     rests(order, slides)
     assert slides.ways[-1] == pytest.approx((slides.place - way * 120.0, 2.0))
     slides.place = way * 29.0
-    order.see(slides.place, False)
+    order.add_sample(slides.place, False)
     slides.place = way * 28.5  # it brakes behind its mark
-    order.see(slides.place, False)
+    order.add_sample(slides.place, False)
     steps(order, slides, 0.01)
     assert slides.halts == 2
     rests(order, slides)
     assert slides.zero == pytest.approx(way * 29.0 + OFFSET)
     assert slides.ways[-1][1] == pytest.approx(20.0)  # to its home
-    assert not order.done
+    assert not order.is_done
     rests(order, slides)
-    assert order.done
+    assert order.is_done
     assert slides.limits == [True, False]
 
 
 def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() -> None:
     order, slides = homing(19, latch=3.0)
-    order.see(0.0, True)
-    order.step(0.0)
+    order.add_sample(0.0, True)
+    order.advance(0.0)
     assert slides.ways == [pytest.approx((-120.0, 3.0))]
 
 
@@ -133,17 +133,17 @@ def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() 
 def test_the_present_place_is_home_at_once(method: int) -> None:
     order, slides = homing(method)
     slides.place = 7.0
-    order.step(0.0)
+    order.advance(0.0)
     rests(order, slides)
-    assert order.done
+    assert order.is_done
     assert (slides.zero, slides.ways) == (7.0 + OFFSET, [])
 
 
 def test_behind_its_switch_the_index_is_the_mark() -> None:
     order, slides = homing(3)
-    order.see(0.0, True)
-    order.step(0.0)
-    order.see(-1.0, False)
+    order.add_sample(0.0, True)
+    order.advance(0.0)
+    order.add_sample(-1.0, False)
     steps(order, slides, 0.05)
     assert slides.asked == [True]
     slides.index, slides.index_at = False, -3.25
@@ -158,7 +158,7 @@ def test_behind_its_switch_the_index_is_the_mark() -> None:
 @pytest.mark.parametrize(("method", "way"), [(33, -1.0), (34, 1.0)])
 def test_the_index_alone_is_looked_for_within_thirty_millimetres(method: int, way: float) -> None:
     order, slides = homing(method)
-    order.step(0.0)
+    order.advance(0.0)
     assert slides.ways == [pytest.approx((way * 30.0, 2.0))]
     steps(order, slides, 0.2)
     slides.t = slides.until
@@ -179,8 +179,8 @@ def test_a_switch_that_nobody_samples_is_told_after_a_second() -> None:
 
 def test_no_switch_in_the_whole_travel() -> None:
     order, slides = homing(19)
-    order.see(0.0, False)
-    order.step(0.0)
+    order.add_sample(0.0, False)
+    order.advance(0.0)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
@@ -190,11 +190,11 @@ def test_no_switch_in_the_whole_travel() -> None:
 
 def test_a_slide_that_ran_over_its_switch() -> None:
     order, slides = homing(19)
-    order.see(0.0, False)
-    order.step(0.0)
-    order.see(30.0, True)
+    order.add_sample(0.0, False)
+    order.advance(0.0)
+    order.add_sample(30.0, True)
     steps(order, slides, 0.01)
-    order.see(31.0, False)
+    order.add_sample(31.0, False)
     with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
     assert told.value.reason == "ran-over"
@@ -202,8 +202,8 @@ def test_a_slide_that_ran_over_its_switch() -> None:
 
 def test_a_switch_that_does_not_go_off() -> None:
     order, slides = homing(19)
-    order.see(0.0, True)
-    order.step(0.0)
+    order.add_sample(0.0, True)
+    order.advance(0.0)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)

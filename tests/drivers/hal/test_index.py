@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from tests.drivers.contract.hal import Hal
 
 INDEX = 0.3  # turns of the simulated spindle at its index
@@ -22,35 +22,35 @@ def rig() -> Iterator[Hal]:
 
 
 def angle(rig: Hal) -> tuple[float, float]:
-    found = rig.ports.spindle.angle()
+    found = rig.ports.spindle.read_angle()
     assert found is not None
     return found
 
 
 def test_the_angle_is_an_old_one_until_the_index_has_come_by_and_whole_there(rig: Hal) -> None:
     first = angle(rig)
-    rig.ports.spindle.run(300.0)
-    rig.until(lambda: rig.far.plant.spindle.counted > 0.25)
+    rig.ports.spindle.run_at(300.0)
+    rig.until(lambda: rig.far.plant.spindle.counted_revolutions > 0.25)
     assert angle(rig) == first
     rig.until(lambda: angle(rig) != first, limit=2.0)
     rig.run(0.5)
     t, turns = angle(rig)
     behind = 5.0 * (rig.clock.now() - t)  # turns since that sample
-    true = rig.far.plant.spindle.counted - behind - INDEX
+    true = rig.far.plant.spindle.counted_revolutions - behind - INDEX
     assert math.remainder(turns - true, 1.0) == pytest.approx(0.0, abs=0.01)
 
 
 def test_a_spindle_whose_index_does_not_come_by_is_told_and_reset_asks_again(rig: Hal) -> None:
     rig.far.has_index = False
-    rig.ports.spindle.run(300.0)
+    rig.ports.spindle.run_at(300.0)
     rig.run(0.5)
-    assert rig.ports.spindle.fault() == ""
-    rig.until(lambda: bool(rig.ports.spindle.fault()), limit=2.0)
-    assert code_of(rig.ports.spindle.fault(), "driver") == "spindle-encoder"
-    assert "hal.spindle.index_enable" in rig.ports.spindle.fault()
+    assert rig.ports.spindle.read_fault() == ""
+    rig.until(lambda: bool(rig.ports.spindle.read_fault()), limit=2.0)
+    assert get_fault_code(rig.ports.spindle.read_fault(), "driver") == "spindle-encoder"
+    assert "hal.spindle.index_enable" in rig.ports.spindle.read_fault()
     rig.far.has_index = True
     rig.ports.axes.clear_fault()
-    assert rig.ports.spindle.fault() == ""
-    rig.ports.spindle.run(300.0)
+    assert rig.ports.spindle.read_fault() == ""
+    rig.ports.spindle.run_at(300.0)
     old = angle(rig)
     rig.until(lambda: angle(rig) != old, limit=2.0)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.hal.hal_session import PYTHON
+from drivers.hal.hal_session import SYSTEM_PYTHON
 from tests.drivers.hal import halrun as halrun_here
 from tests.drivers.hal.halrun import as_halrun
 from tests.drivers.hal.lathes import PATIENT, lathe
@@ -26,7 +26,7 @@ for key in 0x48535430, 0x48535431:
 @pytest.mark.real_time
 @pytest.mark.usefixtures("halrun")
 def test_streams_that_a_killed_session_has_left_do_not_bar_the_next(tmp_path: Path) -> None:
-    subprocess.run([*as_halrun(), PYTHON, "-c", LEAVE], check=True)
+    subprocess.run([*as_halrun(), SYSTEM_PYTHON, "-c", LEAVE], check=True)
     with live(lathe(tmp_path, PATIENT)) as made:
         made.ready()
         assert made.pin("streamer.1.curr-depth") is not None

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.hal.hal_session import clear_away, new_folder
+from drivers.hal.hal_session import create_session_folder, remove_old_folders
 
 
 @pytest.fixture(autouse=True)
@@ -22,32 +22,32 @@ def nobody_waits() -> bool:
 
 
 def test_a_folder_in_use_stays_and_a_deserted_one_goes() -> None:
-    used, lock = new_folder()
-    deserted, its_lock = new_folder()
+    used, lock = create_session_folder()
+    deserted, its_lock = create_session_folder()
     (deserted / "session.hal").write_text("")
     os.close(its_lock)
-    clear_away(nobody_waits)
+    remove_old_folders(nobody_waits)
     assert used.exists()
     assert not deserted.exists()
     os.close(lock)
 
 
 def test_what_still_runs_is_waited_for_and_never_removed_under_it() -> None:
-    folder, lock = new_folder()
+    folder, lock = create_session_folder()
     os.close(lock)
     still_runs = ["sh", "-c", "echo runs; read x; exit", str(folder)]
     with subprocess.Popen(still_runs, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as left:
         assert left.stdout
         # A process that is just being begun has no command line yet.
         assert left.stdout.readline() == b"runs\n"
-        clear_away(lambda: False)
+        remove_old_folders(lambda: False)
         assert folder.exists()
 
         def ends() -> bool:
             left.communicate(b"\n")
             return True
 
-        clear_away(ends)
+        remove_old_folders(ends)
     assert not folder.exists()
 
 
@@ -55,6 +55,6 @@ def test_what_is_none_of_ours_stays(tmp_path: Path) -> None:
     other, link = tmp_path / "turndesk-hal-other", tmp_path / "turndesk-hal-link"
     other.mkdir()  # without a lock: somebody else's, or just being made
     link.symlink_to(other)
-    clear_away(nobody_waits)
+    remove_old_folders(nobody_waits)
     assert other.exists()
     assert link.is_symlink()

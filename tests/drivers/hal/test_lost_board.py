@@ -8,10 +8,10 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from core.faults import code_of
-from core.ports import ALL_UNKNOWN, DriverError
+from core.faults import get_fault_code
+from core.ports import ALL_UNKNOWN_PARTS, DriverError
 from core.table_schema import MachineFileError
-from drivers.hal.boards.hal_lines import text_of
+from drivers.hal.boards.hal_file_builder import render_file
 from tests.coded import raises_code
 from tests.drivers.hal.played import powered
 from tests.drivers.hal.test_hal_files import written
@@ -21,14 +21,14 @@ ERRORS = 0.02  # s, more than hm2_eth's packet errors and one report take
 
 def test_the_chain_opens_at_rest_though_the_frozen_estop_says_released() -> None:
     with powered() as bench:
-        bench.far.cable_out = True
-        bench.far.machine.press_estop()  # what the board sees reaches nobody
+        bench.far.is_cable_disconnected = True
+        bench.far.plant_controls.press_estop()  # what the board sees reaches nobody
         bench.run(ERRORS)
         assert not bench.driver.io.inputs()["estop"]
         assert bench.pin("chain-ok") == 0.0
         assert bench.pin("powered") == 0.0
         assert bench.bridge[1] == "hal-board"
-        assert code_of(bench.driver.axes.fault, "driver") == "hal-board"
+        assert get_fault_code(bench.driver.axes.fault, "driver") == "hal-board"
 
 
 def test_with_the_drives_off_it_is_a_fault_as_well() -> None:
@@ -36,55 +36,55 @@ def test_with_the_drives_off_it_is_a_fault_as_well() -> None:
         bench.axes.enable(False)
         bench.run(0.3)
         assert not bench.driver.axes.fault
-        bench.far.cable_out = True
+        bench.far.is_cable_disconnected = True
         bench.run(ERRORS)
-        assert code_of(bench.driver.axes.fault, "driver") == "hal-board"
+        assert get_fault_code(bench.driver.axes.fault, "driver") == "hal-board"
 
 
 def test_frozen_inputs_have_no_age_that_anything_accepts() -> None:
     with powered() as bench:
-        assert bench.driver.io.snapshot().age < 0.1
-        assert not bench.driver.unknown()
-        bench.far.cable_out = True
+        assert bench.driver.io.read_state().age < 0.1
+        assert not bench.driver.find_unknown_items()
+        bench.far.is_cable_disconnected = True
         bench.run(ERRORS)
-        assert bench.driver.io.snapshot().age == math.inf
-        assert bench.driver.unknown() == ALL_UNKNOWN
+        assert bench.driver.io.read_state().age == math.inf
+        assert bench.driver.find_unknown_items() == ALL_UNKNOWN_PARTS
 
 
 def test_a_moving_slide_loses_power_and_the_spindle_its_speed() -> None:
     with powered() as bench:
-        bench.driver.spindle.run(500.0)
+        bench.driver.spindle.run_at(500.0)
         bench.x_goes(5.0)
         bench.run(0.3)
-        bench.far.cable_out = True
+        bench.far.is_cable_disconnected = True
         bench.run(0.5)
         place = bench.x
         bench.run(0.5)
         assert bench.x == place
-        assert bench.driver.spindle.ordered == 0.0
+        assert bench.driver.spindle.commanded_rpm == 0.0
         with raises_code(DriverError, "spindle-off"):
-            bench.driver.spindle.run(500.0)
+            bench.driver.spindle.run_at(500.0)
 
 
 def test_reset_with_the_cable_out_clears_nothing_and_with_the_cable_in_loads_hal_again() -> None:
     with powered() as bench:
-        bench.far.cable_out = True
+        bench.far.is_cable_disconnected = True
         bench.run(0.1)
         for _ in range(2):  # hm2_eth does not load without its card
             with raises_code(DriverError, "hal-setup"):
                 bench.axes.clear_fault()
             bench.run(0.1)
-            assert code_of(bench.driver.axes.fault, "driver") == "hal-board"
-            assert bench.driver.unknown() == ALL_UNKNOWN
-        thread = bench.far.thread
-        bench.far.cable_out = False
+            assert get_fault_code(bench.driver.axes.fault, "driver") == "hal-board"
+            assert bench.driver.find_unknown_items() == ALL_UNKNOWN_PARTS
+        thread = bench.far.servo_thread
+        bench.far.is_cable_disconnected = False
         bench.run(0.5)
         assert bench.driver.axes.fault  # hm2_eth does not read again before HAL is loaded again
         bench.axes.clear_fault()
         bench.run(0.1)
         assert not bench.driver.axes.fault
-        assert bench.far.thread is not thread
-        assert not bench.driver.unknown()
+        assert bench.far.servo_thread is not thread
+        assert not bench.driver.find_unknown_items()
         assert not bench.axes.sample().enabled
 
 
@@ -94,7 +94,7 @@ def test_a_machine_file_without_the_link_of_its_board_is_refused(name: str) -> N
     line = next(each for each in text.splitlines() if each.startswith("link_fault"))
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text.replace(f"{line}\n", ""), f"{name}.toml")
-    assert [each.path for each in caught.value.errors] == ["hal.link_fault"]
+    assert [each.path for each in caught.value.findings] == ["hal.link_fault"]
 
 
 def test_an_input_of_a_card_needs_the_link_without_a_board_table_too() -> None:
@@ -104,7 +104,7 @@ def test_an_input_of_a_card_needs_the_link_without_a_board_table_too() -> None:
     parse_machine(text, "gt75-hal.toml")
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text.replace('"in-estop-ok"', '"hm2_5i25.0.gpio.003.in"'), "gt75-hal.toml")
-    assert [each.path for each in caught.value.errors] == ["hal.link_fault"]
+    assert [each.path for each in caught.value.findings] == ["hal.link_fault"]
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_an_input_of_a_card_needs_the_link_without_a_board_table_too() -> None:
 )
 def test_every_board_has_its_communication_pins_in_the_link(name: str, pins: set[str]) -> None:
     nets = [
-        line.split() for line in text_of(written(name)).splitlines() if line.startswith("net board-link-")
+        line.split() for line in render_file(written(name)).splitlines() if line.startswith("net board-link-")
     ]
     assert pins <= {words[2] for words in nets}
     assert all(words[3].startswith("board-link.in-") for words in nets)

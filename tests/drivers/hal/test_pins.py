@@ -6,7 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from drivers.hal.bridge.hal_pins import Pin, Signal, Wanted, halcmd, is_on, nets, pins_of, signals_of, trouble
+from drivers.hal.bridge.hal_pins import (
+    ExpectedPin,
+    HalPin,
+    HalSignal,
+    build_net_lines,
+    describe_pin_error,
+    is_on,
+    parse_pins,
+    parse_signals,
+    run_halcmd,
+)
 from tests.texts import text
 
 # ``halcmd -s show pin`` and ``show sig``: owner, type, way, value, name, arrow and signal.
@@ -25,23 +35,23 @@ bit   TRUE      guard
                          <== guard.out
 bit   FALSE     by-hand
 """
-PINS = pins_of(SHOWN_PINS)
-SIGNALS = signals_of(PINS, SHOWN_SIGNALS)
+PINS = parse_pins(SHOWN_PINS)
+SIGNALS = parse_signals(PINS, SHOWN_SIGNALS)
 
 
-def wanted(pin: str, kind: str = "bit", *, drives: bool = False, ours: str = "ours") -> Wanted:
-    return Wanted("io.some", pin, kind, drives, ours)
+def wanted(pin: str, kind: str = "bit", *, drives: bool = False, ours: str = "ours") -> ExpectedPin:
+    return ExpectedPin("io.some", pin, kind, drives, ours)
 
 
 def test_what_halcmd_shows_is_read() -> None:
-    assert PINS["x-motor.in"] == Pin("float", "IN", "x-cmd", "0")
-    assert PINS["x-motor.out"] == Pin("float", "OUT", "", "1.25")
-    assert PINS["index"] == Pin("bit", "I/O", "", "FALSE")
-    assert SIGNALS["x-cmd"] == Signal("float", False, "0")
-    assert SIGNALS["guard"] == Signal("bit", True, "TRUE")
-    assert SIGNALS["by-hand"] == Signal("bit", False, "FALSE")
+    assert PINS["x-motor.in"] == HalPin("float", "IN", "x-cmd", "0")
+    assert PINS["x-motor.out"] == HalPin("float", "OUT", "", "1.25")
+    assert PINS["index"] == HalPin("bit", "I/O", "", "FALSE")
+    assert SIGNALS["x-cmd"] == HalSignal("float", False, "0")
+    assert SIGNALS["guard"] == HalSignal("bit", True, "TRUE")
+    assert SIGNALS["by-hand"] == HalSignal("bit", False, "FALSE")
     assert len(SIGNALS) == 3
-    assert (pins_of("\nnothing here\n"), signals_of({}, "\nfloat 1\n")) == ({}, {})
+    assert (parse_pins("\nnothing here\n"), parse_signals({}, "\nfloat 1\n")) == ({}, {})
 
 
 @pytest.mark.parametrize(
@@ -72,8 +82,8 @@ def test_what_halcmd_shows_is_read() -> None:
         ),
     ],
 )
-def test_a_pin_that_is_not_as_the_machine_file_says_is_told(asked: Wanted, why: str) -> None:
-    told = trouble(asked, PINS, SIGNALS)
+def test_a_pin_that_is_not_as_the_machine_file_says_is_told(asked: ExpectedPin, why: str) -> None:
+    told = describe_pin_error(asked, PINS, SIGNALS)
     assert told.startswith(why)
     assert bool(told) is bool(why)
 
@@ -92,8 +102,8 @@ def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:
         wanted("guard.out", ours="door"),
         wanted("by-hand", ours="start"),
     ]
-    ours = {**PINS, "old.in": Pin("bit", "IN", "door")}  # of ours, and to go where the machine's signal is
-    lines = nets(asked, {"door": ["bridge.in.door"], "lamp": ["bridge.out.lamp"]}, ours, SIGNALS)
+    ours = {**PINS, "old.in": HalPin("bit", "IN", "door")}  # of ours, and to go where the machine's signal is
+    lines = build_net_lines(asked, {"door": ["bridge.in.door"], "lamp": ["bridge.out.lamp"]}, ours, SIGNALS)
     assert lines == [
         "unlinkp old.in",
         "net guard old.in",
@@ -107,7 +117,7 @@ def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:
 def test_one_of_ours_on_two_of_theirs_is_refused() -> None:
     asked = [wanted("guard", ours="door"), wanted("by-hand", ours="door")]
     with pytest.raises(RuntimeError, match=r"io\.some: by-hand .*guard"):
-        nets(asked, {}, PINS, SIGNALS)
+        build_net_lines(asked, {}, PINS, SIGNALS)
 
 
 @pytest.mark.parametrize(
@@ -126,6 +136,6 @@ def test_what_halcmd_refuses_is_told_in_its_words(
     command.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
     with pytest.raises(RuntimeError, match=told):
-        halcmd("show", "pin")
+        run_halcmd("show", "pin")
     command.write_text('#!/bin/sh\necho "asked $*"\n')
-    assert halcmd("-s", "show", "pin") == "asked -s show pin\n"
+    assert run_halcmd("-s", "show", "pin") == "asked -s show pin\n"

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 import pytest
 
 from core.executor.commands import Reset
-from core.executor.snapshot import State
-from core.ports import ALL_UNKNOWN
+from core.executor.snapshot import MachineState
+from core.ports import ALL_UNKNOWN_PARTS
 from tests.drivers.hal.halrun import folder_for_all, halrun_on_path
 from tests.drivers.hal.lathes import lathe
 from tests.drivers.hal.live import LiveLathe, live
@@ -75,7 +75,7 @@ def test_a_killed_bridge_and_reset_starts_hal_anew(running: LiveLathe) -> None:
     before = place(running)
     assert abs(rests(running) - before) < SPEED * AHEAD + RAMP
     told(running, "hal-bridge")
-    assert running.shot.unknown == ALL_UNKNOWN
+    assert running.shot.unknown == ALL_UNKNOWN_PARTS
     assert running.shot.alarms[0].cause == text("drivers.bridge-ended")
 
 
@@ -102,7 +102,7 @@ def test_a_bridge_that_stands_and_goes_on_keeps_the_place(running: LiveLathe) ->
 def test_a_real_time_thread_that_is_gone_and_one_reset_leads_back(running: LiveLathe) -> None:
     running.kill(THREAD)
     told(running, "hal-thread")
-    assert running.shot.unknown == ALL_UNKNOWN
+    assert running.shot.unknown == ALL_UNKNOWN_PARTS
     running.ready()
 
 
@@ -110,9 +110,9 @@ def test_a_control_that_is_silent_ends_on_its_path_with_spindle_and_outputs_off(
     while not off(running):
         pass
     stands, powered = rests(running), running.pin("x-motor.sel")
-    running.until(lambda shot: shot.state in {State.HOLD, State.FAULT})
+    running.until(lambda shot: shot.state in {MachineState.HOLD, MachineState.FAULT})
     assert powered == 1.0
-    assert running.shot.state is State.HOLD
+    assert running.shot.state is MachineState.HOLD
     assert running.shot.actual[0] == pytest.approx(stands, abs=0.01)
     assert running.shot.stop is not None
     assert running.shot.stop.code == "feeder-tripped"

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.backends.machine_answers import check_ports
-from app.compose.machine.machine_files import load_machine, shipped_machine
+from app.compose.backends.machine_check import check_machine
+from app.compose.machine.machine_files import load_machine, load_shipped_machine
 from tests.drivers.hal.lathes import PATIENT, lathe, run
 from tests.texts import text
 
@@ -37,8 +37,8 @@ def test_a_program_runs_to_its_end_where_it_was_proved_to(tmp_path: Path) -> Non
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
 def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
-    answers = check_ports(shipped_machine("gt75-hal"))
-    assert not answers.trouble
+    answers = check_machine(load_shipped_machine("gt75-hal"))
+    assert not answers.faults
     pins = {row.name: row for row in answers.rows}
     assert pins["hal.axes.X.command"].at == "x-servo.in"
     assert {row.state for row in answers.rows} == {"ok", "not checked"}  # the board is simulated
@@ -59,8 +59,8 @@ def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
 def test_a_pin_that_is_not_as_it_is_said_is_named(
     old: str, new: str, row: str, why: str, tmp_path: Path
 ) -> None:
-    answers = check_ports(load_machine(lathe(tmp_path, ((old, new),))))
+    answers = check_machine(load_machine(lathe(tmp_path, ((old, new),))))
     wrong = [each for each in answers.rows if each.verdict == "FAIL"]
     assert [each.name for each in wrong] == [row]
     assert why in wrong[0].detail
-    assert answers.trouble
+    assert answers.faults

@@ -8,13 +8,13 @@ from typing import cast
 import pytest
 
 import resources
-from app.compose.backends.hal_backend import hal_config
+from app.compose.backends.hal_backend import create_hal_config
 from app.compose.machine.machine_files import parse_machine
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
-from drivers.hal.hal_spindle import HalSpindle, HalSpindleC, Step
+from drivers.hal.hal_spindle import HalSpindle, HalSpindleCAxis, HalSpindleCStep
 from tests.coded import raises_code
 from tests.drivers.hal.lathes import PATIENT, changed
 
@@ -35,33 +35,35 @@ OF_C = (
 
 
 class Link:
-    """A bridge that has done what it was told; ``rows`` are samples of time, X, Z, C, turns and speed."""
+    """A bridge that has done what it was told; ``sample_rows`` are samples of time, X, Z, C, turns and
+    speed.
+    """
 
     def __init__(self) -> None:
-        self.told = {"powered": True, "on": True, "c_at": STANDS}
-        self.lost = self.trouble = ""
-        self.blind = self.is_c = False
+        self.last_report = {"powered": True, "on": True, "c_at": STANDS}
+        self.failure = self.failure_reason = ""
+        self.is_state_unknown = self.is_c = False
         self.said: list[tuple[str, object]] = []
-        self.rows: list[Sequence[float]] = []
+        self.sample_rows: list[Sequence[float]] = []
 
-    def say(self, what: str, **values: object) -> int:
-        self.said.append((what, values.get("on")))
+    def send_command(self, command: str, **values: object) -> int:
+        self.said.append((command, values.get("on")))
         return 0
 
-    def bit(self, _name: str) -> bool:
+    def read_bit(self, _name: str) -> bool:
         return self.is_c
 
-    def say_pieces(self, *_what: object, **_values: object) -> None:
+    def send_pieces(self, *_what: object, **_values: object) -> None:
         """Taken."""
 
-    def done(self, _order: int) -> bool:
+    def is_executed(self, _order: int) -> bool:
         return True
 
-    def wait(self, *_what: object) -> bool:
+    def wait_until(self, *_what: object) -> bool:
         return True
 
-    def take_rows(self) -> Iterator[Sequence[float]]:
-        rows, self.rows = self.rows, []
+    def pop_sample_rows(self) -> Iterator[Sequence[float]]:
+        rows, self.sample_rows = self.sample_rows, []
         yield from rows
 
 
@@ -69,21 +71,21 @@ class Spindle:
     """It stands, and its index is known."""
 
     def __init__(self) -> None:
-        self.ordered = self.rpm = 0.0
-        self.lent = False
+        self.commanded_rpm = self.rpm = 0.0
+        self.is_used_as_c = False
         self.known = True
 
-    def run(self, rpm: float) -> None:
-        self.ordered = rpm
+    def run_at(self, rpm: float) -> None:
+        self.commanded_rpm = rpm
 
     @property
-    def index(self) -> Spindle:
+    def spindle_index(self) -> Spindle:
         return self
 
-    def measured(self) -> float:
+    def encoder_rpm(self) -> float:
         return self.rpm
 
-    def angle(self) -> tuple[float, float]:
+    def read_angle(self) -> tuple[float, float]:
         return 0.0, STANDS / 360.0
 
 
@@ -94,11 +96,11 @@ class Stand:
         text = changed(resources.machine_file("gt75-hal.toml"), (*PATIENT, *OF_C))
         self.t, self.link, self.z = 0.0, Link(), 0.0
         self.axes = HalAxes(
-            hal_config(parse_machine(text, "gt75-hal.toml")), cast(HalLink, self.link), lambda: self.t
+            create_hal_config(parse_machine(text, "gt75-hal.toml")), cast(HalLink, self.link), lambda: self.t
         )
         self.turning = Spindle()
         told = "spindle.in_position_mode" if tells else ""
-        self.c = HalSpindleC(self.axes, cast(HalSpindle, self.turning), cast(HalLink, self.link), C, told)
+        self.c = HalSpindleCAxis(self.axes, cast(HalSpindle, self.turning), cast(HalLink, self.link), C, told)
         pins = self.axes.config.spindle.pins
         self.spindle = (STANDS / 360.0,) * bool(pins.position) + (0.0,) * bool(pins.velocity)
         self.axes.enable(True)
@@ -108,24 +110,24 @@ class Stand:
         for _ in range(round(seconds / 0.01)):
             self.t += 0.01
             place = self.axes.demand_at(self.t)[0]
-            x, z, c = (p + zero for p, zero in zip(place, self.axes.zero, strict=True))
-            self.link.rows.append((self.t, x, z, c, x, z - self.z, c, *self.spindle))
-            self.axes.tick()
-            self.c.tick()
+            x, z, c = (p + zero for p, zero in zip(place, self.axes.home_positions, strict=True))
+            self.link.sample_rows.append((self.t, x, z, c, x, z - self.z, c, *self.spindle))
+            self.axes.run_cycle()
+            self.c.update()
 
 
 def test_its_way_to_its_place_is_a_motion_before_its_first_setpoint_is_played() -> None:
     stand = Stand()
     stand.run(0.5)
     assert not stand.axes.sample().moving
-    stand.c.hold(True, orient=True)
+    stand.c.set_c_mode(True, orient=True)
     stand.run(0.02)
-    assert stand.c.step is Step.TURN
-    while stand.c.step is Step.TURN:
+    assert stand.c.step is HalSpindleCStep.TURN_TO_POSITION
+    while stand.c.step is HalSpindleCStep.TURN_TO_POSITION:
         assert stand.axes.sample().moving, stand.axes.sample()
         stand.run(0.01)
     stand.run(0.5)
-    assert stand.c.held()
+    assert stand.c.is_c_ready()
     assert not stand.axes.sample().moving
     assert stand.axes.sample().actual[C] == pytest.approx(0.0, abs=0.02)
 
@@ -136,11 +138,11 @@ def test_a_slide_that_lags_keeps_its_setpoint_while_c_is_taken_and_let_go(orient
     stand.run(0.5)
     stand.z = LAGS
     stand.run(0.5)
-    stand.c.hold(True, orient=orient)
+    stand.c.set_c_mode(True, orient=orient)
     stand.run(2.0)
-    assert stand.c.held()
+    assert stand.c.is_c_ready()
     assert stand.axes.demand_at(stand.t)[0][Z] == 0.0
-    stand.c.hold(False)
+    stand.c.set_c_mode(False)
     stand.run(0.1)
     assert stand.axes.demand_at(stand.t)[0][Z] == 0.0
 
@@ -152,17 +154,17 @@ def test_with_the_drives_off_or_the_spindle_turning_it_is_not_taken() -> None:
     stand = Stand()
     stand.run(0.2)
     for ordered, rpm in ((100.0, 0.0), (0.0, 2.0), (0.0, -2.5)):
-        stand.turning.ordered, stand.turning.rpm = ordered, rpm
+        stand.turning.commanded_rpm, stand.turning.rpm = ordered, rpm
         with raises_code(DriverError, "c-coupling") as told:
-            stand.c.hold(True)
+            stand.c.set_c_mode(True)
         assert told.value.reason == "spindle-turns"
     stand.turning.rpm = 1.9
-    stand.link.told["powered"] = False
+    stand.link.last_report["powered"] = False
     stand.run(0.05)
     with raises_code(DriverError, "c-coupling") as told:
-        stand.c.hold(True)
+        stand.c.set_c_mode(True)
     assert told.value.reason == "drives-off"
-    assert stand.c.step is Step.FREE
+    assert stand.c.step is HalSpindleCStep.SPINDLE_MODE
     assert not [each for each in stand.link.said if each[0] == "c"]
 
 
@@ -170,18 +172,22 @@ def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() 
     stand = Stand()
     stand.run(0.2)
     stand.turning.known = False
-    stand.c.hold(True, orient=True)
-    assert (stand.c.step, stand.turning.ordered, stand.turning.lent) == (Step.INDEX, 60.0, True)
-    stand.c.hold(True, orient=True)  # asked again, it goes on
+    stand.c.set_c_mode(True, orient=True)
+    assert (stand.c.step, stand.turning.commanded_rpm, stand.turning.is_used_as_c) == (
+        HalSpindleCStep.FIND_INDEX,
+        60.0,
+        True,
+    )
+    stand.c.set_c_mode(True, orient=True)  # asked again, it goes on
     stand.turning.rpm = 60.0
     stand.run(1.0)
-    assert stand.c.step is Step.INDEX
+    assert stand.c.step is HalSpindleCStep.FIND_INDEX
     stand.turning.known = True
     stand.run(0.1)
-    assert (stand.c.step, stand.turning.ordered) == (Step.STOP, 0.0)
+    assert (stand.c.step, stand.turning.commanded_rpm) == (HalSpindleCStep.STOP, 0.0)
     stand.turning.rpm = 1.0
     stand.run(0.01)
-    assert stand.c.step is Step.CHANGE
+    assert stand.c.step is HalSpindleCStep.CHANGE_MODE
     assert stand.link.said[-1] == ("c", True)
 
 
@@ -199,16 +205,20 @@ def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
     stand = Stand(tells=True)
     stand.run(0.2)
     stand.turning.known = False
-    stand.c.hold(True, orient=True)
+    stand.c.set_c_mode(True, orient=True)
     stand.turning.known, stand.turning.rpm = known, rpm
     stand.run(0.02)  # and what it waits for begins
     stand.run(seconds - 0.05)
     assert stand.axes.fault == ""
     stand.run(0.1)
-    assert code_of(stand.axes.fault, "driver") == "c-coupling"
+    assert get_fault_code(stand.axes.fault, "driver") == "c-coupling"
     assert stand.axes.fault.startswith("C: ")
     assert named in stand.axes.fault
-    assert (stand.c.step, stand.turning.ordered, stand.turning.lent) == (Step.FREE, 0.0, False)
+    assert (stand.c.step, stand.turning.commanded_rpm, stand.turning.is_used_as_c) == (
+        HalSpindleCStep.SPINDLE_MODE,
+        0.0,
+        False,
+    )
     assert stand.link.said[-1] == ("c", False)
 
 
@@ -217,21 +227,21 @@ def test_behind_a_blind_link_it_is_let_go_and_a_lost_one_is_told_nothing(lost: s
     stand = Stand()
     stand.run(0.2)
     stand.turning.known = False
-    stand.c.hold(True, orient=True)
-    stand.link.blind, stand.link.lost = True, lost
-    stand.c.tick()
-    assert stand.c.step is Step.FREE
-    assert stand.turning.ordered == (60.0 if lost else 0.0)
+    stand.c.set_c_mode(True, orient=True)
+    stand.link.is_state_unknown, stand.link.failure = True, lost
+    stand.c.update()
+    assert stand.c.step is HalSpindleCStep.SPINDLE_MODE
+    assert stand.turning.commanded_rpm == (60.0 if lost else 0.0)
     assert (("c", False) in stand.link.said) is not bool(lost)
 
 
 def test_a_drive_that_tells_that_it_is_c_is_waited_for() -> None:
     stand = Stand(tells=True)
     stand.run(0.2)
-    stand.c.hold(True)
+    stand.c.set_c_mode(True)
     stand.run(1.0)
-    assert not stand.c.held()
+    assert not stand.c.is_c_ready()
     stand.link.is_c = True
     stand.run(0.1)
-    assert stand.c.held()
+    assert stand.c.is_c_ready()
     assert stand.axes.fault == ""

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.backends.hal_backend import hal_config
+from app.compose.backends.hal_backend import create_hal_config
 from app.compose.machine.machine_files import parse_machine
 from core.ports import DriverError
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_session import PREFIX, HalSession
+from drivers.hal.hal_session import FOLDER_PREFIX, HalSession
 from tests.coded import raises_code
 from tests.texts import text
 
@@ -34,7 +34,7 @@ if sys.argv[1] == "-f":
 
 def config() -> HalConfig:
     """Of the shipped lathe."""
-    return hal_config(parse_machine(resources.machine_file("gt75-hal.toml"), "gt75-hal.toml"))
+    return create_hal_config(parse_machine(resources.machine_file("gt75-hal.toml"), "gt75-hal.toml"))
 
 
 @pytest.fixture
@@ -55,7 +55,7 @@ def refused(path: Path) -> DriverError:
     """How the start of a session ends; its folder is gone behind it."""
     with pytest.raises(DriverError) as told:
         HalSession(config(), 0.0)
-    assert list(path.glob(f"{PREFIX}*")) == []
+    assert list(path.glob(f"{FOLDER_PREFIX}*")) == []
     return told.value
 
 
@@ -109,10 +109,10 @@ def test_only_looked_at_every_pin_is_told(path: Path) -> None:
     """Then it is no fault of the session: who asked shows them all."""
     wrong = [["a", "b", "is written by another"], ["c", "d", ""]]
     halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=[{"verdicts": wrong}]))
-    session = HalSession(config(), 0.0, only_check=True)
-    assert [tuple(each) for each in session.verdicts] == [tuple(each) for each in wrong]
+    session = HalSession(config(), 0.0, check_only=True)
+    assert [tuple(each) for each in session.pin_verdicts] == [tuple(each) for each in wrong]
     session.close()
-    assert list(path.glob(f"{PREFIX}*")) == []
+    assert list(path.glob(f"{FOLDER_PREFIX}*")) == []
 
 
 def test_a_bridge_that_ends_behind_its_start_is_gone(path: Path) -> None:
@@ -122,10 +122,10 @@ def test_a_bridge_that_ends_behind_its_start_is_gone(path: Path) -> None:
     assert session.warnings == ("slow",)
     assert session._halrun is not None
     session._halrun.wait()
-    assert session.down
+    assert session.has_shut_down
     with raises_code(DriverError, "hal-bridge"):
         list(session.receive())
     with raises_code(DriverError, "hal-bridge"):
         session.send(b"")
     session.close()
-    assert list(path.glob(f"{PREFIX}*")) == []
+    assert list(path.glob(f"{FOLDER_PREFIX}*")) == []

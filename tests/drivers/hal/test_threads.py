@@ -34,9 +34,9 @@ def test_every_pass_has_the_lead_of_the_measured_spindle_and_the_same_start(tmp_
     done = run(tmp_path, THREAD, lathe(tmp_path, (*PATIENT, *WANDER), WANDER_HAL))
     assert "complete" in done.stdout, done.stdout + done.stderr
     record = open_record(tmp_path / "home" / "records" / "run.ring")
-    speed = record.columns["spindle speed"]
+    speed = record.values_by_channel["spindle speed"]
     assert np.nanmax(speed) == pytest.approx(816.0, abs=2.0)  # it did wander
-    passes = passes_of(record.columns["Z demand"], record.columns["spindle turns"])
+    passes = passes_of(record.values_by_channel["Z demand"], record.values_by_channel["spindle turns"])
     assert len(passes) >= 2
     for off in passes:
         assert np.ptp(off) < 1e-6  # mm: reckoned from the reading of the same period

@@ -8,14 +8,14 @@ from types import SimpleNamespace
 
 import pytest
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import DriverError
-from drivers.driver_host import host_line
-from drivers.driver_host.host_line import SocketLink
-from drivers.driver_host.host_messages import NOTHING, Message
-from drivers.hal.bridge.packets import BridgeConfig, Head
+from drivers.driver_host import host_connection
+from drivers.driver_host.host_connection import SocketLink
+from drivers.driver_host.host_messages import NO_NUMBERS, Message
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead
 from drivers.hal.hal_link import HalLink
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 
 ROUND = 0.005  # s
@@ -25,17 +25,17 @@ class Bridge:
     """Tells what it is asked to, and takes everything."""
 
     warnings: tuple[str, ...] = ()
-    down = True
+    has_shut_down = True
     silent = False
 
-    def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
+    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         if not self.silent:
             yield {"n": 0}, ()
 
     def send(self, data: bytes) -> None:
         pass
 
-    def hang_up(self) -> None:
+    def stop_bridge(self) -> None:
         pass
 
     def close(self) -> None:
@@ -48,42 +48,42 @@ def bridge() -> Bridge:
 
 
 @pytest.fixture
-def clock() -> StepClock:
-    return StepClock()
+def clock() -> ManualClock:
+    return ManualClock()
 
 
 @pytest.fixture
-def link(bridge: Bridge, clock: StepClock) -> HalLink:
+def link(bridge: Bridge, clock: ManualClock) -> HalLink:
     made = HalLink(lambda: bridge, clock, BridgeConfig((), 0.001, 0.1))
     made.connect()
     return made
 
 
-def rounds(link: HalLink, clock: StepClock, seconds: float) -> None:
+def rounds(link: HalLink, clock: ManualClock, seconds: float) -> None:
     for _ in range(round(seconds / ROUND)):
         clock.advance(ROUND)
-        link.pump()
+        link.process_packets()
 
 
-def test_a_bridge_that_is_silent_alone_is_told_of(link: HalLink, bridge: Bridge, clock: StepClock) -> None:
+def test_a_bridge_that_is_silent_alone_is_told_of(link: HalLink, bridge: Bridge, clock: ManualClock) -> None:
     bridge.silent = True
     rounds(link, clock, 0.14)
-    assert not link.trouble
+    assert not link.failure_reason
     rounds(link, clock, 0.03)
-    assert code_of(link.trouble, "driver") == "hal-silent"
-    assert " 0.1" in link.trouble
+    assert get_fault_code(link.failure_reason, "driver") == "hal-silent"
+    assert " 0.1" in link.failure_reason
 
 
 def test_one_that_stood_still_with_everybody_else_is_not(
-    link: HalLink, bridge: Bridge, clock: StepClock
+    link: HalLink, bridge: Bridge, clock: ManualClock
 ) -> None:
     bridge.silent = True
     for _ in range(2):
         clock.advance(0.4)
-        link.pump()
-    assert not link.trouble
+        link.process_packets()
+    assert not link.failure_reason
     rounds(link, clock, 0.1)
-    assert link.trouble  # it has had its time
+    assert link.failure_reason  # it has had its time
 
 
 @pytest.fixture
@@ -95,8 +95,8 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[float]:
         now[0] += took.pop(0) if len(took) > 1 else took[0]
         return [], [], []
 
-    monkeypatch.setattr(host_line, "select", SimpleNamespace(select=nothing))
-    monkeypatch.setattr(host_line, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(host_connection, "select", SimpleNamespace(select=nothing))
+    monkeypatch.setattr(host_connection, "time", SimpleNamespace(monotonic=lambda: now[0]))
     return took
 
 
@@ -105,5 +105,5 @@ def test_a_driver_host_is_silent_after_so_many_looks_not_after_one_long_one(look
     with ours, theirs:
         looks[:] = [0.6, 0.6, 0.6, *[0.05] * 7, 1e9]
         with raises_code(DriverError, "feeder-silent"):
-            SocketLink(ours).ask(Message({"do": "look"}, NOTHING))
+            SocketLink(ours).send_request(Message({"do": "look"}, NO_NUMBERS))
         assert looks == [1e9]  # three pauses and seven looks are half a second of listening

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from drivers.inverter.inverter_attendant import Attendant
-from drivers.inverter.inverter_spindle import InverterSpindle, attendant
+from drivers.inverter.inverter_control import InverterControl
+from drivers.inverter.inverter_spindle import InverterSpindle, create_inverter_control
 from drivers.inverter.inverter_table import InverterTable
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.drivers.inverter.inverter_simulators import (
     HZ_PER_RPM,
     DeltaMemory,
@@ -31,11 +31,11 @@ FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang", OWN)
 class Bench:
     """``memory`` of a Modbus inverter, or the Huanyang itself."""
 
-    clock: StepClock
+    clock: ManualClock
     inverter: Inverter
     memory: Memory | HuanyangSlave
     wire: BenchWire
-    attendant: Attendant
+    attendant: InverterControl
     spindle: InverterSpindle
 
     def run(self, seconds: float) -> None:
@@ -43,14 +43,14 @@ class Bench:
         end = self.clock.now() + seconds
         while self.clock.now() < end:
             before = self.clock.now()
-            self.attendant.exchange()
+            self.attendant.run_exchange()
             if self.clock.now() == before:
                 self.clock.advance(0.01)
 
     def until_fault(self, limit: float) -> float:
         """Run until a fault is told; after how long."""
         began = self.clock.now()
-        while not self.spindle.fault():
+        while not self.spindle.read_fault():
             assert self.clock.now() - began < limit, f"no fault within {limit} s"
             self.run(0.01)
         return self.clock.now() - began
@@ -68,14 +68,14 @@ def config(family: str) -> InverterTable:
 
 def bench(family: str, *, connect: bool = True) -> Bench:
     """Connected, standing."""
-    clock = StepClock()
+    clock = ManualClock()
     inverter = Inverter(clock)
     memory, slave = far_end(family, inverter)
     wire = BenchWire(slave, clock)
-    one = attendant(config(family), wire.opened, clock, FOLDER)
+    one = create_inverter_control(config(family), wire.opened, clock, FOLDER)
     made = Bench(clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
     if connect:
-        one.connect()
+        one.open_and_check()
     return made
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from core.ports import Clock
-from drivers.inverter.modbus_rtu import sealed, whole
+from drivers.inverter.modbus_rtu import append_crc, has_valid_crc
 from drivers.simulators.plant_config import SimSpindle
 from drivers.simulators.spindle_motor import SpindleMotor
 
@@ -48,24 +48,24 @@ class Inverter:
         """Safe torque off; let go, it does again whatever it is commanded to."""
         self.torque_off = on
         if on:
-            self.motor.cut(self.clock.now())
+            self.motor.cut_power(self.clock.now())
         else:
             self._turn()
 
     def _turn(self) -> None:
         rpm = self.hz / HZ_PER_RPM * (-1 if self.back else 1) if self.running else 0.0
         if not self.torque_off:
-            self.motor.order(self.clock.now(), -rpm if self.backwards else rpm)
+            self.motor.command_speed(self.clock.now(), -rpm if self.backwards else rpm)
 
     def trip_with(self, code: int) -> None:
         """It trips: the motor runs down."""
         self.trip, self.running = code, False
-        self.motor.cut(self.clock.now())
+        self.motor.cut_power(self.clock.now())
 
     def restart(self) -> None:
         """Its supply has failed for a moment: it stands and waits for a command."""
         self.hz, self.running, self.back = 0.0, False, False
-        self.motor.cut(self.clock.now())
+        self.motor.cut_power(self.clock.now())
 
     def listen(self) -> None:
         """A frame has come."""
@@ -76,19 +76,19 @@ class Inverter:
         """Its own watch over the line."""
         if self.patience and self.heard and self.running and self.clock.now() > self.heard + self.patience:
             self.running = False
-            self.motor.order(self.heard + self.patience, 0.0)
+            self.motor.command_speed(self.heard + self.patience, 0.0)
 
     @property
     def rpm(self) -> float:
         """What the motor really does."""
         self.watch()
-        self.motor.advance(self.clock.now())
+        self.motor.advance_to(self.clock.now())
         return self.motor.speed
 
     @property
     def output(self) -> int:
         """Hundredths of a hertz."""
-        self.motor.advance(self.clock.now())
+        self.motor.advance_to(self.clock.now())
         return round(abs(self.motor.speed) * HZ_PER_RPM * 100)
 
     @property
@@ -280,14 +280,14 @@ class RtuSlave:
 
     def answer(self, frame: bytes) -> bytes:
         """The frame that comes back; nothing for noise and for others."""
-        if not whole(frame) or frame[0] != self.unit:
+        if not has_valid_crc(frame) or frame[0] != self.unit:
             return b""
         self.memory.inverter.listen()
         try:
             body = self._body(frame[1], frame[2:-2])
         except RefusedByDeviceError as refused:
             body = bytes((frame[1] | 0x80, int(str(refused))))
-        return sealed(bytes((self.unit,)) + body)
+        return append_crc(bytes((self.unit,)) + body)
 
     def _body(self, function: int, data: bytes) -> bytes:
         if function not in self.functions:
@@ -333,10 +333,10 @@ class HuanyangSlave:
 
     def answer(self, frame: bytes) -> bytes:
         """The frame that comes back."""
-        if not whole(frame) or frame[0] != self.unit or frame[2] != len(frame) - 5:
+        if not has_valid_crc(frame) or frame[0] != self.unit or frame[2] != len(frame) - 5:
             return b""
         data = self._data(frame[1], frame[3:-2])
-        return sealed(bytes((self.unit, frame[1], len(data))) + data) if data else b""
+        return append_crc(bytes((self.unit, frame[1], len(data))) + data) if data else b""
 
     def _data(self, function: int, data: bytes) -> bytes:
         inverter = self.inverter

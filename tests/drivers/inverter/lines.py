@@ -14,7 +14,7 @@ from pymodbus.constants import ExcCodes
 from pymodbus.server import ModbusSerialServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.drivers.inverter.inverter_simulators import (
     HitachiMemory,
     HuanyangSlave,

@@ -8,9 +8,9 @@ from __future__ import annotations
 import pytest
 from pymodbus.framer.rtu import FramerRTU
 
-from drivers.inverter.inverter_attendant import Attendant
-from drivers.inverter.inverter_spindle import attendant
-from drivers.waiting import StepClock
+from drivers.inverter.inverter_control import InverterControl
+from drivers.inverter.inverter_spindle import create_inverter_control
+from drivers.wakeups import ManualClock
 from tests.drivers.inverter.benches import FOLDER, OWN, config
 
 ECHO = ""  # the answer is the request
@@ -114,7 +114,7 @@ def sealed(body: str) -> bytes:
 class ScriptedLine:
     """Answers what it expects, in order; anything else is a failure."""
 
-    def __init__(self, clock: StepClock) -> None:
+    def __init__(self, clock: ManualClock) -> None:
         self.clock = clock
         self.left: list[tuple[bytes, bytes]] = []
         self._come = b""
@@ -135,39 +135,39 @@ class ScriptedLine:
         assert data == expected, f"said {data.hex(' ')}, expected {expected.hex(' ')}"
         self._come = answer
 
-    def receive(self, limit: float) -> bytes:
-        self.clock.advance(min(limit, 0.02))
+    def receive(self, timeout_s: float) -> bytes:
+        self.clock.advance(min(timeout_s, 0.02))
         come, self._come = self._come, b""
         return come
 
-    def discard(self) -> None:
+    def discard_input(self) -> None:
         self._come = b""
 
     def close(self) -> None:
         """Nothing to let go."""
 
 
-def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) -> Attendant:
+def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) -> InverterControl:
     """Open it, make it turn by each of ``turns`` (Hz, script, word for stop), and stop it."""
-    clock = StepClock()
+    clock = ManualClock()
     line = ScriptedLine(clock)
-    one = attendant(config(family), line.opened, clock, FOLDER)
+    one = create_inverter_control(config(family), line.opened, clock, FOLDER)
     line.expect(opened)
     for _ in range(2 if family == "huanyang" else 1):  # ten good answers, or one
         line.expect(stands.format(set="0000"))
-    one.connect()
+    one.open_and_check()
     for hz, script, stop in turns:
         line.expect(script)
-        one.want = hz
-        one.exchange()
+        one.commanded_hz = hz
+        one.run_exchange()
         assert not line.left
-        assert one.seen is not None
-        assert (one.seen.look.signed, one.seen.look.current) == (hz, 2.5)
+        assert one.last_poll is not None
+        assert (one.last_poll.state.signed_output_hz, one.last_poll.state.current_a) == (hz, 2.5)
         line.expect(stop + stands.format(set="07D0"))
-        one.want = 0.0
-        one.exchange()
+        one.commanded_hz = 0.0
+        one.run_exchange()
         assert not line.left
-    assert one.trouble == ""
+    assert one.failure == ""
     return one
 
 
@@ -204,7 +204,7 @@ def test_own_file() -> None:
 
 
 def test_the_script_itself_notices_another_byte() -> None:
-    line = ScriptedLine(StepClock())
+    line = ScriptedLine(ManualClock())
     line.expect("06 2000 0001 >")
     with pytest.raises(AssertionError, match="expected 01 06 20 00 00 01 43 ca"):
         line.send(sealed("06 2000 0002"))

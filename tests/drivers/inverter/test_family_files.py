@@ -10,15 +10,15 @@ from pathlib import Path
 import pytest
 
 from core.ports import DriverError
-from drivers.inverter.family_files import family_table, read_family
+from drivers.inverter.family_files import load_family, read_family_file
 from drivers.inverter.family_table import FrequencyKeys, StateKeys
-from drivers.inverter.inverter_table import FAMILIES, FOLDER
+from drivers.inverter.inverter_table import FAMILY_FOLDER, FAMILY_NAMES
 from tests.coded import raises_code
 from tests.drivers.inverter import benches
 
 SETUP = Path(__file__).parents[3] / "setup.cfg"
 MY_DRIVE = (benches.FOLDER / benches.OWN).read_text(encoding="utf-8")
-HUANYANG = (FOLDER / "huanyang.toml").read_text(encoding="utf-8")
+HUANYANG = (FAMILY_FOLDER / "huanyang.toml").read_text(encoding="utf-8")
 
 
 def refused(folder: Path, text: str) -> str:
@@ -26,7 +26,7 @@ def refused(folder: Path, text: str) -> str:
     path = folder / "my.toml"
     path.write_text(text, encoding="utf-8")
     with raises_code(DriverError, "driver") as told:
-        read_family(path)
+        read_family_file(path)
     assert told.value.reason == "bad-family"
     return str(told.value).replace(f"{folder}/", "")
 
@@ -40,9 +40,9 @@ def line_of(text: str, part: str) -> int:
     return text[: text.index(part)].count("\n") + 1 + part.startswith("\n")
 
 
-@pytest.mark.parametrize("name", FAMILIES)
+@pytest.mark.parametrize("name", FAMILY_NAMES)
 def test_every_shipped_family_can_be_read(name: str) -> None:
-    table = family_table(name, Path("/nowhere"))
+    table = load_family(name, Path("/nowhere"))
     assert table.name
     assert (table.registers is None) is (name == "huanyang")
 
@@ -57,14 +57,14 @@ def test_families_are_installed_with_the_product() -> None:
     setup = configparser.ConfigParser()
     setup.read(SETUP, encoding="utf-8")
     patterns = setup["options.package_data"]["drivers.inverter"].split()
-    for path in FOLDER.iterdir():
+    for path in FAMILY_FOLDER.iterdir():
         assert any(fnmatch(f"families/{path.name}", pattern) for pattern in patterns), path.name
 
 
 def test_a_table_says_what_its_file_says() -> None:
-    table = family_table(benches.OWN, benches.FOLDER)
+    table = load_family(benches.OWN, benches.FOLDER)
     assert (table.line.baud, table.line.write_multiple) == ((1200.0, 38400.0), True)
-    assert (table.max_hz, table.step) == (400.0, 0.01)
+    assert (table.max_hz, table.setpoint_step_hz) == (400.0, 0.01)
     assert table.registers is not None
     assert (table.registers.faults[0x0021], len(table.parameters)) == ("communication error", 4)
     assert [each.value for each in table.registers.commands["reset"]] == [8, 0]
@@ -83,8 +83,8 @@ def test_a_table_says_what_its_file_says() -> None:
 def test_a_frequency_goes_into_its_registers_and_back(
     keys: FrequencyKeys, hz: float, words: tuple[int, ...]
 ) -> None:
-    assert keys.words_of(hz) == words
-    assert keys.hertz(dict(enumerate(words, 4))) == abs(hz)
+    assert keys.encode_hz(hz) == words
+    assert keys.decode_hz(dict(enumerate(words, 4))) == abs(hz)
 
 
 @pytest.mark.parametrize(
@@ -92,14 +92,14 @@ def test_a_frequency_goes_into_its_registers_and_back(
 )
 def test_a_register_has_a_highest_frequency(words: int, signed: bool, highest: float) -> None:
     keys = FrequencyKeys(register=0, counts_per_hz=100.0, words=words, signed=signed)
-    assert keys.highest == pytest.approx(highest)
+    assert keys.max_hz == pytest.approx(highest)
 
 
 def test_a_state_is_on_for_each_of_its_values_and_for_no_other() -> None:
     state = StateKeys(register=7, mask=0x18, values=(8.0, 24.0))
-    assert [state.applies({7: word}, {}) for word in (0x08, 0x1F, 0x10, 0x00)] == [True, True, False, False]
-    assert StateKeys(coil=3).applies({}, {3: True})
-    assert not StateKeys(coil=3).applies({}, {3: False})
+    assert [state.is_active({7: word}, {}) for word in (0x08, 0x1F, 0x10, 0x00)] == [True, True, False, False]
+    assert StateKeys(coil=3).is_active({}, {3: True})
+    assert not StateKeys(coil=3).is_active({}, {3: False})
 
 
 @pytest.mark.parametrize(
@@ -207,7 +207,7 @@ def test_a_fault_code_outside_the_reads_needs_a_fault_state(tmp_path: Path) -> N
     )
     text = changed(text, "fault_code = { register = 0x0080", "fault_code = { register = 0x0021")
     (tmp_path / "my.toml").write_text(text)
-    assert read_family(tmp_path / "my.toml").registers is not None
+    assert read_family_file(tmp_path / "my.toml").registers is not None
 
 
 def test_registers_are_refused_where_the_frames_are_those_of_code(tmp_path: Path) -> None:
@@ -225,5 +225,5 @@ def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     for name in ("none.toml", "latin.toml", "huge.toml", "folder.toml"):
         with raises_code(DriverError, "driver", name) as told:
-            family_table(name, tmp_path)
+            load_family(name, tmp_path)
         assert told.value.reason == "bad-family"

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from drivers.inverter import modbus_rtu
-from drivers.inverter.family_files import family_table
-from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
-from drivers.inverter.register_family import RegisterFamily
-from drivers.waiting import StepClock
+from drivers.inverter.family_files import load_family
+from drivers.inverter.modbus_rtu import ModbusMaster, NoResponseError, RequestRejectedError
+from drivers.inverter.register_family import RegisterInverter
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FOLDER, OWN, far_end
 from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, Inverter, RtuSlave
@@ -37,19 +37,19 @@ from tests.drivers.inverter.wires import BenchWire
     ],
 )
 def test_crc_of_frames_in_manuals(body: str, crc: str) -> None:
-    assert modbus_rtu.sealed(bytes.fromhex(body)) == bytes.fromhex(body + crc)
-    assert modbus_rtu.whole(bytes.fromhex(body + crc))
+    assert modbus_rtu.append_crc(bytes.fromhex(body)) == bytes.fromhex(body + crc)
+    assert modbus_rtu.has_valid_crc(bytes.fromhex(body + crc))
 
 
 @pytest.mark.parametrize(
     ("pdu", "expected"),
     [
-        (modbus_rtu.read(3, 0x2103, 1), "03 21 03 00 01"),
-        (modbus_rtu.write_coil(0, True), "05 00 00 FF 00"),
-        (modbus_rtu.write_coil(1, False), "05 00 01 00 00"),
-        (modbus_rtu.write_register(0x2001, 6000), "06 20 01 17 70"),
-        (modbus_rtu.write_registers(0, (0, 5000)), "10 00 00 00 02 04 00 00 13 88"),
-        (modbus_rtu.loopback(0xA537), "08 00 00 A5 37"),
+        (modbus_rtu.encode_read(3, 0x2103, 1), "03 21 03 00 01"),
+        (modbus_rtu.encode_write_coil(0, True), "05 00 00 FF 00"),
+        (modbus_rtu.encode_write_coil(1, False), "05 00 01 00 00"),
+        (modbus_rtu.encode_write_register(0x2001, 6000), "06 20 01 17 70"),
+        (modbus_rtu.encode_write_registers(0, (0, 5000)), "10 00 00 00 02 04 00 00 13 88"),
+        (modbus_rtu.encode_loopback(0xA537), "08 00 00 A5 37"),
     ],
 )  # fmt: skip
 def test_requests(pdu: bytes, expected: str) -> None:
@@ -57,41 +57,41 @@ def test_requests(pdu: bytes, expected: str) -> None:
 
 
 def test_an_answer_is_found_between_noise() -> None:
-    frame = modbus_rtu.sealed(bytes.fromhex("01 03 02 00 10"))
-    assert modbus_rtu.answer_in(b"\x01\x03" + frame + b"\xff", 1, 3) == frame
-    assert modbus_rtu.answer_in(frame[:-1], 1, 3) is None
-    assert modbus_rtu.answer_in(frame, 2, 3) is None  # another unit's
-    assert modbus_rtu.answer_in(frame, 1, 4) is None  # to another question
+    frame = modbus_rtu.append_crc(bytes.fromhex("01 03 02 00 10"))
+    assert modbus_rtu.find_response(b"\x01\x03" + frame + b"\xff", 1, 3) == frame
+    assert modbus_rtu.find_response(frame[:-1], 1, 3) is None
+    assert modbus_rtu.find_response(frame, 2, 3) is None  # another unit's
+    assert modbus_rtu.find_response(frame, 1, 4) is None  # to another question
 
 
-def line_to(slave: RtuSlave) -> tuple[Modbus, BenchWire, StepClock]:
-    clock = StepClock()
+def line_to(slave: RtuSlave) -> tuple[ModbusMaster, BenchWire, ManualClock]:
+    clock = ManualClock()
     wire = BenchWire(slave, clock)
-    return Modbus(wire, clock, 1, 10 / 9600), wire, clock
+    return ModbusMaster(wire, clock, 1, 10 / 9600), wire, clock
 
 
 def delta() -> RtuSlave:
-    return RtuSlave(DeltaMemory(Inverter(StepClock())))
+    return RtuSlave(DeltaMemory(Inverter(ManualClock())))
 
 
 def test_every_function_reads_and_writes() -> None:
-    inverter = Inverter(StepClock())
+    inverter = Inverter(ManualClock())
     modbus, _, _ = line_to(RtuSlave(HitachiMemory(inverter)))
     modbus.write_registers(0, (0, 4250))
-    assert modbus.registers(0, 2) == [0, 4250]
+    assert modbus.read_registers(0, 2) == [0, 4250]
     modbus.write_register(1, 1234)
-    assert modbus.registers(1) == [1234]
+    assert modbus.read_registers(1) == [1234]
     modbus.write_coil(1, True)
-    assert modbus.coils(0, 2) == [False, True]
+    assert modbus.read_coils(0, 2) == [False, True]
 
 
 def test_a_refusal_is_told_by_its_name_and_not_repeated() -> None:
     modbus, wire, _ = line_to(delta())
-    with raises_code(RefusedError, "driver", "03") as told:
-        modbus.registers(0x7777)
+    with raises_code(RequestRejectedError, "driver", "03") as told:
+        modbus.read_registers(0x7777)
     assert told.value.reason == "exception-2"
-    with raises_code(RefusedError, "driver", "01") as told:
-        modbus.coils(0)
+    with raises_code(RequestRejectedError, "driver", "01") as told:
+        modbus.read_coils(0)
     assert told.value.reason == "exception-1"
     assert len(wire.sent) == 2
 
@@ -99,8 +99,8 @@ def test_a_refusal_is_told_by_its_name_and_not_repeated() -> None:
 def test_silence_takes_three_tries() -> None:
     modbus, wire, clock = line_to(delta())
     wire.silent = True
-    with raises_code(NoAnswerError, "driver") as told:
-        modbus.registers(0x2103)
+    with raises_code(NoResponseError, "driver") as told:
+        modbus.read_registers(0x2103)
     assert told.value.reason == "silent"
     assert len(wire.sent) == 3
     assert clock.now() == pytest.approx(0.6, abs=0.05)  # three answers of .2 s at most
@@ -109,16 +109,16 @@ def test_silence_takes_three_tries() -> None:
 def test_noise_alone_is_told_apart_from_silence() -> None:
     modbus, wire, _ = line_to(delta())
     wire.noise, wire.spoils = b"\x55\x55", True
-    with raises_code(NoAnswerError, "driver", "10 bytes") as told:
-        modbus.registers(0x2103)
+    with raises_code(NoResponseError, "driver", "10 bytes") as told:
+        modbus.read_registers(0x2103)
     assert told.value.reason == "garbled"
 
 
 def test_a_stop_that_waits_ends_the_tries() -> None:
     modbus, wire, _ = line_to(delta())
-    wire.silent, modbus.hurry = True, lambda: True
-    with pytest.raises(NoAnswerError):
-        modbus.registers(0x2103)
+    wire.silent, modbus.is_stop_pending = True, lambda: True
+    with pytest.raises(NoResponseError):
+        modbus.read_registers(0x2103)
     assert len(wire.sent) == 1
 
 
@@ -128,36 +128,36 @@ def test_an_old_answer_is_never_taken_for_a_new_one() -> None:
     modbus, wire, _ = line_to(slave)
     slave.memory.inverter.hz = 33.33
     wire.delay = 0.25
-    with pytest.raises(NoAnswerError):
-        modbus.registers(0x0100)  # 6000, asked for in vain
+    with pytest.raises(NoResponseError):
+        modbus.read_registers(0x0100)  # 6000, asked for in vain
     wire.delay = 0.02
-    assert modbus.registers(0x2102) == [3333]
+    assert modbus.read_registers(0x2102) == [3333]
 
 
 def test_requests_keep_their_pace() -> None:
     modbus, _, clock = line_to(delta())
     for _ in range(10):
-        modbus.registers(0x2103)
+        modbus.read_registers(0x2103)
     assert clock.now() >= 9 * 0.03
 
 
 def test_a_reset_is_said_once_even_when_nobody_answers() -> None:
     modbus, wire, _ = line_to(delta())
     wire.silent = True
-    with pytest.raises(NoAnswerError):
-        modbus.write_register(0x2000, 0x2000, tries=1)
+    with pytest.raises(NoResponseError):
+        modbus.write_register(0x2000, 0x2000, max_tries=1)
     assert len(wire.sent) == 1
 
 
-def on_bench(name: str) -> tuple[RegisterFamily, BenchWire, StepClock]:
+def on_bench(name: str) -> tuple[RegisterInverter, BenchWire, ManualClock]:
     """A family on its line, without anybody who attends it."""
-    clock = StepClock()
+    clock = ManualClock()
     _, slave = far_end(name, Inverter(clock))
     wire = BenchWire(slave, clock)
-    table = family_table(name, FOLDER)
+    table = load_family(name, FOLDER)
     assert table.registers is not None
-    line = Modbus(wire, clock, 1, 10 / 9600)
-    return RegisterFamily(table, table.registers, line, clock), wire, clock
+    line = ModbusMaster(wire, clock, 1, 10 / 9600)
+    return RegisterInverter(table, table.registers, line, clock), wire, clock
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_a_run_command_is_repeated_where_the_family_wants_it(
     counts = []
     for hz in (20.0, 30.0, -30.0):
         wire.sent.clear()
-        family.command(hz)
+        family.command_hz(hz)
         counts.append(len(wire.sent))
     assert counts == [first, next_speed, other_way]
 
@@ -180,8 +180,8 @@ def test_a_run_command_is_repeated_where_the_family_wants_it(
 def test_a_reset_is_tried_as_often_as_the_family_says(name: str, tries: int) -> None:
     family, wire, _ = on_bench(name)
     wire.silent = True
-    with pytest.raises(NoAnswerError):
-        family.reset()
+    with pytest.raises(NoResponseError):
+        family.reset_trip()
     assert len(wire.sent) == tries
 
 
@@ -189,6 +189,6 @@ def test_after_a_reset_the_family_says_how_long_to_wait() -> None:
     waits = {}
     for name in ("delta-vfdb", "hitachi-wj200"):
         family, _, clock = on_bench(name)
-        family.reset()
+        family.reset_trip()
         waits[name] = clock.now() >= 1.0
     assert waits == {"delta-vfdb": False, "hitachi-wj200": True}

@@ -13,15 +13,15 @@ import pytest
 
 import resources
 from app.cli.main import main
-from app.compose.backends.backend_entry import Connected
-from app.compose.backends.connection import connect
-from app.compose.backends.machine_answers import check_ports
+from app.compose.backends.backend_entry import ConnectedMachine
+from app.compose.backends.connection import connect_machine
+from app.compose.backends.machine_check import check_machine
 from app.compose.machine.machine_files import load_machine
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.inverter.inverter_attendant import PRESS
-from drivers.waiting import RealClock, StepClock
+from drivers.inverter.inverter_control import PRESS_ESTOP_TEXT
+from drivers.wakeups import ManualClock, RealClock
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES, FOLDER, OWN, memory_of
 from tests.drivers.inverter.inverter_simulators import HuanyangSlave, Inverter
@@ -70,56 +70,56 @@ def wired(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Wired]:
 
 
 @pytest.fixture
-def connected(wired: Wired) -> Iterator[Connected]:
+def connected(wired: Wired) -> Iterator[ConnectedMachine]:
     """Its ports."""
-    made = connect(wired.machine, RealClock())
+    made = connect_machine(wired.machine, RealClock())
     yield made
     made.close()
 
 
-def test_turns_back_and_stops_over_the_line(connected: Connected, wired: Wired) -> None:
+def test_turns_back_and_stops_over_the_line(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
-    spindle.run(-600.0)
+    spindle.run_at(-600.0)
     until(lambda: abs(spindle.speed() + 600.0) < 2.0, "600 rpm back")
     assert wired.inverter.motor.speed == pytest.approx(-600.0, abs=2.0)
-    spindle.run(0.0)
+    spindle.run_at(0.0)
     until(lambda: spindle.speed() == 0.0, "standstill")
-    assert spindle.fault() == ""
+    assert spindle.read_fault() == ""
 
 
-def test_ignoring_a_stop_asks_for_the_estop(connected: Connected, wired: Wired) -> None:
+def test_ignoring_a_stop_asks_for_the_estop(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
-    spindle.run(900.0)
+    spindle.run_at(900.0)
     until(lambda: spindle.speed() > 800.0, "900 rpm")
     wired.inverter.deaf = True
-    spindle.run(0.0)
-    until(lambda: spindle.fault() != "", "a fault")
-    assert code_of(spindle.fault(), "driver") == "ignores-stop"
-    assert PRESS in spindle.fault()
+    spindle.run_at(0.0)
+    until(lambda: spindle.read_fault() != "", "a fault")
+    assert get_fault_code(spindle.read_fault(), "driver") == "ignores-stop"
+    assert PRESS_ESTOP_TEXT in spindle.read_fault()
 
 
-def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: Connected, wired: Wired) -> None:
+def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
-    spindle.run(900.0)
+    spindle.run_at(900.0)
     until(lambda: spindle.speed() > 800.0, "900 rpm")
     wired.cable.cut()
-    until(lambda: spindle.fault() != "", "a fault")
-    assert code_of(spindle.fault(), "driver") == "inverter-silent"
-    assert PRESS in spindle.fault()
+    until(lambda: spindle.read_fault() != "", "a fault")
+    assert get_fault_code(spindle.read_fault(), "driver") == "inverter-silent"
+    assert PRESS_ESTOP_TEXT in spindle.read_fault()
     connected.ports.axes.clear_fault()
-    until(lambda: spindle.fault() != "", "the fault again")
+    until(lambda: spindle.read_fault() != "", "the fault again")
 
 
-def test_silence_then_life_and_a_clear_word(connected: Connected, wired: Wired) -> None:
+def test_silence_then_life_and_a_clear_word(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
     wired.cable.silent = True
-    until(lambda: spindle.fault() != "", "a fault")
+    until(lambda: spindle.read_fault() != "", "a fault")
     wired.cable.silent = False
 
     def turns() -> bool:
         connected.ports.axes.clear_fault()
         try:
-            spindle.run(300.0)
+            spindle.run_at(300.0)
         except DriverError:
             return False
         return True
@@ -128,12 +128,12 @@ def test_silence_then_life_and_a_clear_word(connected: Connected, wired: Wired) 
     until(lambda: abs(spindle.speed() - 300.0) < 2.0, "300 rpm")
 
 
-def test_estop_keeps_it_off(connected: Connected) -> None:
-    assert connected.panel is not None
-    connected.panel.press_estop()
+def test_estop_keeps_it_off(connected: ConnectedMachine) -> None:
+    assert connected.on_screen_station is not None
+    connected.on_screen_station.press_estop()
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        connected.ports.spindle.run(100.0)
-    connected.ports.spindle.run(0.0)
+        connected.ports.spindle.run_at(100.0)
+    connected.ports.spindle.run_at(0.0)
 
 
 def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]) -> None:
@@ -154,10 +154,10 @@ def test_through_the_driver_host(wired: Wired) -> None:
     """The process that owns the drivers owns the inverter too: it stops it when the control is gone."""
     path = wired.path
     path.write_text(path.read_text().replace('backend = "sim"', 'backend = "sim"\nfeeder = true'))
-    made = connect(load_machine(path), RealClock())
+    made = connect_machine(load_machine(path), RealClock())
     try:
         spindle = made.ports.spindle
-        spindle.run(500.0)
+        spindle.run_at(500.0)
         until(lambda: abs(spindle.speed() - 500.0) < 2.0, "500 rpm")
     finally:
         made.close()
@@ -166,9 +166,9 @@ def test_through_the_driver_host(wired: Wired) -> None:
 
 def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
     path = machine_file(tmp_path, "huanyang", "/dev/ttyNONE7")
-    answers = check_ports(load_machine(path))
+    answers = check_machine(load_machine(path))
     assert [(row.name, row.state) for row in answers.rows] == [("spindle", text("shopfloor.no-answer"))]
-    (told,) = answers.trouble
+    (told,) = answers.faults
     assert "huanyang" in told
     assert "/dev/ttyNONE7" in told
 
@@ -176,4 +176,4 @@ def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
 def test_a_clock_moved_by_hand_is_refused(tmp_path: Path) -> None:
     machine = load_machine(machine_file(tmp_path, "huanyang", "/dev/ttyNONE7"))
     with raises_code(DriverError, "driver", "real time"):
-        connect(machine, StepClock())
+        connect_machine(machine, ManualClock())

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from app.compose.backends.inverter_backend import SlidesAlone
+from app.compose.backends.inverter_backend import AxisOnlySamples
 from core.ports import FloatArray
-from drivers.inverter.inverter_family import Look
+from drivers.inverter.inverter_family import InverterState
 from drivers.inverter.inverter_spindle import InverterSpindle
 from tests.drivers.inverter.benches import FAMILIES, Bench, bench, config
 
@@ -23,45 +23,45 @@ def rated(family: str, amps: float) -> tuple[Bench, InverterSpindle]:
 
 def draws(made: Bench, amps: float) -> None:
     """What the inverter says that it gives."""
-    seen = made.attendant.seen
+    seen = made.attendant.last_poll
     assert seen is not None
-    look: Look = dataclasses.replace(seen.look, current=amps)
-    made.attendant.seen = dataclasses.replace(seen, look=look)
+    look: InverterState = dataclasses.replace(seen.state, current_a=amps)
+    made.attendant.last_poll = dataclasses.replace(seen, state=look)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_current_is_told_as_a_share_of_the_plate(family: str) -> None:
     made, spindle = rated(family, 8.0)
     draws(made, 2.0)
-    assert spindle.load == 25.0
+    assert spindle.load_percent == 25.0
     draws(made, 10.0)
-    assert spindle.load == 125.0  # an overload is told as one
+    assert spindle.load_percent == 125.0  # an overload is told as one
 
 
 def test_without_the_plate_no_load_is_told() -> None:
     made, spindle = rated("delta-vfdb", 0.0)
     draws(made, 2.0)
-    assert math.isnan(spindle.load)
+    assert math.isnan(spindle.load_percent)
 
 
 def test_of_an_inverter_that_is_not_heard_no_load_is_told() -> None:
     made, spindle = rated("delta-vfdb", 8.0)
     draws(made, 2.0)
     made.clock.advance(5.0)
-    assert math.isnan(spindle.load)
+    assert math.isnan(spindle.load_percent)
 
 
 class Rows:
     """Slides of two axes that sample."""
 
-    rate = 100.0
+    sample_rate_hz = 100.0
 
-    def take(self, most: int = 8192) -> FloatArray:
-        return np.arange(22.0).reshape(2, 11)[:most]
+    def take(self, max_rows: int = 8192) -> FloatArray:
+        return np.arange(22.0).reshape(2, 11)[:max_rows]
 
 
 def test_the_samples_of_the_slides_get_the_load_of_the_inverter() -> None:
-    rows = SlidesAlone(Rows(), 2, lambda: 40.0).take()
+    rows = AxisOnlySamples(Rows(), 2, lambda: 40.0).take()
     assert np.isnan(rows[:, 7:9]).all()  # speed and turns
     assert list(rows[:, 9]) == [40.0, 40.0]
     assert list(rows[:, 10]) == [10.0, 21.0]  # the queue is the slides'

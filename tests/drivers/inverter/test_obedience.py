@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.inverter.inverter_attendant import OBEYS_WITHIN, PRESS, Obedience
-from drivers.inverter.inverter_family import Look
+from drivers.inverter.inverter_control import PRESS_ESTOP_TEXT, RESPONSE_TIME_S, CommandMonitor
+from drivers.inverter.inverter_family import InverterState
 from tests.texts import text
 
 
@@ -16,21 +16,25 @@ def look(
     run: bool = True,
     reverse: bool = False,
     asked_reverse: bool = False,
-) -> Look:
-    return Look(output, setpoint, run, reverse, asked_reverse)
+) -> InverterState:
+    return InverterState(output, setpoint, run, reverse, asked_reverse)
 
 
 STOOD = look(0.0, 0.0, run=False)
 
 
-def judged(asked: float, seen: Look, *, before: Look = STOOD, first: float = 0.0) -> tuple[str, str]:
+def judged(
+    asked: float, seen: InverterState, *, before: InverterState = STOOD, first: float = 0.0
+) -> tuple[str, str]:
     """Just within the second that it has, and just behind it."""
-    obedience = Obedience()
+    obedience = CommandMonitor()
     if first:
-        obedience.command(-9.0, first, STOOD)
-        obedience.judge(-5.0, before)
-    obedience.command(0.0, asked, before)
-    return obedience.judge(OBEYS_WITHIN - 0.01, seen), obedience.judge(OBEYS_WITHIN + 0.01, seen)
+        obedience.note_command(-9.0, first, STOOD)
+        obedience.check_poll(-5.0, before)
+    obedience.note_command(0.0, asked, before)
+    return obedience.check_poll(RESPONSE_TIME_S - 0.01, seen), obedience.check_poll(
+        RESPONSE_TIME_S + 0.01, seen
+    )
 
 
 @pytest.mark.parametrize(
@@ -44,8 +48,10 @@ def judged(asked: float, seen: Look, *, before: Look = STOOD, first: float = 0.0
         (20.0, look(35.0), text("drivers.inverter-other-output", asked="20.0", output="35.0")),
     ],
 )
-def test_what_is_not_as_it_was_told_is_told_behind_a_second(asked: float, seen: Look, why: str) -> None:
-    assert judged(asked, seen) == ("", f"{why}: {PRESS}")
+def test_what_is_not_as_it_was_told_is_told_behind_a_second(
+    asked: float, seen: InverterState, why: str
+) -> None:
+    assert judged(asked, seen) == ("", f"{why}: {PRESS_ESTOP_TEXT}")
 
 
 @pytest.mark.parametrize("output", [0.0, 3.0, 20.0])
@@ -56,44 +62,44 @@ def test_on_its_way_up_nothing_is_wrong(output: float) -> None:
 def test_told_to_stop_it_has_to_fall_and_to_stop() -> None:
     turning = look(20.0)
     assert judged(0.0, turning, before=turning, first=20.0)[1] == (
-        f"{text('drivers.inverter-still-outputs', output='20.0')}: {PRESS}"
+        f"{text('drivers.inverter-still-outputs', output='20.0')}: {PRESS_ESTOP_TEXT}"
     )
     means_to = look(0.0)
     assert judged(0.0, means_to, before=turning, first=20.0)[1] == (
-        f"{text('drivers.inverter-still-runs')}: {PRESS}"
+        f"{text('drivers.inverter-still-runs')}: {PRESS_ESTOP_TEXT}"
     )
-    falling = Obedience()
-    falling.command(0.0, 20.0, STOOD)
-    falling.judge(1.0, turning)
-    falling.command(2.0, 0.0, turning)
+    falling = CommandMonitor()
+    falling.note_command(0.0, 20.0, STOOD)
+    falling.check_poll(1.0, turning)
+    falling.note_command(2.0, 0.0, turning)
     for n in range(30):
-        assert falling.judge(2.0 + 0.1 * n, look(20.0 - 0.6 * n, 0.0, run=False)) == ""
+        assert falling.check_poll(2.0 + 0.1 * n, look(20.0 - 0.6 * n, 0.0, run=False)) == ""
 
 
 def test_the_same_command_again_does_not_begin_the_second_anew() -> None:
-    obedience = Obedience()
-    obedience.command(0.0, 20.0, STOOD)
-    obedience.command(0.9, 20.0, STOOD)
+    obedience = CommandMonitor()
+    obedience.note_command(0.0, 20.0, STOOD)
+    obedience.note_command(0.9, 20.0, STOOD)
     why = text("drivers.inverter-does-not-run", asked="20.0")
-    assert obedience.judge(1.1, look(0.0, run=False)).startswith(why)
+    assert obedience.check_poll(1.1, look(0.0, run=False)).startswith(why)
 
 
 def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
-    obedience = Obedience()
-    obedience.command(0.0, 20.0, STOOD)
-    assert obedience.judge(0.9, look(0.0, run=False)) == ""
-    assert obedience.judge(0.95, look(1.0)) == ""
-    assert obedience.judge(1.5, look(0.0, run=False)) == ""  # its second begins here
-    assert obedience.judge(2.6, look(0.0, run=False)) != ""
+    obedience = CommandMonitor()
+    obedience.note_command(0.0, 20.0, STOOD)
+    assert obedience.check_poll(0.9, look(0.0, run=False)) == ""
+    assert obedience.check_poll(0.95, look(1.0)) == ""
+    assert obedience.check_poll(1.5, look(0.0, run=False)) == ""  # its second begins here
+    assert obedience.check_poll(2.6, look(0.0, run=False)) != ""
 
 
 def test_a_stop_while_it_gets_faster_is_compared_with_the_next_look() -> None:
     """On a slow line the look before the stop is old: 10 Hz there, 30 Hz when the stop came."""
-    obedience = Obedience()
-    obedience.command(-1.0, 50.0, STOOD)
-    assert obedience.judge(-0.5, look(5.0, 50.0)) == ""
-    obedience.command(0.0, 0.0, look(10.0, 50.0))
+    obedience = CommandMonitor()
+    obedience.note_command(-1.0, 50.0, STOOD)
+    assert obedience.check_poll(-0.5, look(5.0, 50.0)) == ""
+    obedience.note_command(0.0, 0.0, look(10.0, 50.0))
     for t, output in ((0.95, 30.0), (1.70, 25.0), (2.45, 15.0)):
-        assert obedience.judge(t, look(output, run=False)) == "", t
-    assert obedience.judge(3.2, look(15.0, run=False)) == ""
-    assert obedience.judge(4.3, look(15.0, run=False)) != ""
+        assert obedience.check_poll(t, look(output, run=False)) == "", t
+    assert obedience.check_poll(3.2, look(15.0, run=False)) == ""
+    assert obedience.check_poll(4.3, look(15.0, run=False)) != ""

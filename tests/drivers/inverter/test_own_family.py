@@ -11,14 +11,14 @@ import pytest
 
 from app.cli.main import main
 from app.compose.machine.machine_files import parse_machine
-from core.faults import code_of
+from core.faults import get_fault_code
 from core.ports import DriverError
 from core.table_schema import MachineFileError
-from drivers.inverter.inverter_attendant import Attendant
-from drivers.inverter.inverter_spindle import attendant
+from drivers.inverter.inverter_control import InverterControl
+from drivers.inverter.inverter_spindle import create_inverter_control
 from drivers.inverter.inverter_table import InverterTable
-from drivers.inverter.modbus_rtu import TRIES
-from drivers.waiting import StepClock
+from drivers.inverter.modbus_rtu import MAX_TRIES
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import OWN, bench, config
 from tests.drivers.inverter.inverter_simulators import (
@@ -99,19 +99,19 @@ class DecihertzMemory(NoCoils):
             inverter.obey(run=value == 1)
 
 
-def tenths(folder: Path) -> tuple[Attendant, DecihertzMemory, Callable[[float], None]]:
+def tenths(folder: Path) -> tuple[InverterControl, DecihertzMemory, Callable[[float], None]]:
     """Attended on a bench, connected; and what lets the line be attended for some seconds."""
     (folder / "tenths.toml").write_text(DECIHERTZ)
-    clock = StepClock()
+    clock = ManualClock()
     memory = DecihertzMemory(Inverter(clock))
     wire = BenchWire(RtuSlave(memory), clock)
-    one = attendant(own(parity="E"), wire.opened, clock, folder)
-    one.connect()
+    one = create_inverter_control(own(parity="E"), wire.opened, clock, folder)
+    one.open_and_check()
 
     def run(seconds: float) -> None:
         end = clock.now() + seconds
         while clock.now() < end:
-            one.exchange()
+            one.run_exchange()
 
     return one, memory, run
 
@@ -124,32 +124,32 @@ def test_the_file_alone_makes_it_turn_both_ways(tmp_path: Path) -> None:
     one, memory, run = tenths(tmp_path)
     assert (one.warnings, memory.timeout) == ((), 1500)
     for hz in (20.04, -33.36, 0.0):  # tenths that no register can hold
-        one.want = hz
+        one.commanded_hz = hz
         run(4.0)
-        assert one.trouble == ""
+        assert one.failure == ""
         assert memory.inverter.rpm / 60 == pytest.approx(hz, abs=0.06)
-        assert one.seen is not None
-        assert one.seen.look.signed == pytest.approx(hz, abs=0.06)
+        assert one.last_poll is not None
+        assert one.last_poll.state.signed_output_hz == pytest.approx(hz, abs=0.06)
 
 
 def test_a_setpoint_that_is_off_by_two_steps_is_still_a_fault(tmp_path: Path) -> None:
     one, memory, run = tenths(tmp_path)
-    one.want = 20.0
+    one.commanded_hz = 20.0
     run(2.0)
     memory.inverter.hz = 20.2
     run(3.0)
-    assert code_of(one.trouble, "driver") == "ignores-stop"
+    assert get_fault_code(one.failure, "driver") == "ignores-stop"
 
 
 def test_a_code_without_a_text_is_told_by_its_number(tmp_path: Path) -> None:
     one, memory, run = tenths(tmp_path)
     memory.inverter.trip_with(0x12)
     run(1.0)
-    assert code_of(one.trouble, "driver") == "spindle"
-    assert str(0x1200) in one.trouble
-    one.clear()
+    assert get_fault_code(one.failure, "driver") == "spindle"
+    assert str(0x1200) in one.failure
+    one.clear_fault()
     run(1.0)
-    assert (memory.inverter.resets, one.trouble) == (1, "")
+    assert (memory.inverter.resets, one.failure) == (1, "")
 
 
 @pytest.mark.parametrize(
@@ -165,10 +165,10 @@ def test_what_the_inverter_does_not_support_is_refused(
     tmp_path: Path, wrong: dict[str, object], reason: str
 ) -> None:
     (tmp_path / "tenths.toml").write_text(DECIHERTZ)
-    clock = StepClock()
+    clock = ManualClock()
     wire = BenchWire(RtuSlave(DecihertzMemory(Inverter(clock))), clock)
     with raises_code(DriverError, "driver", "Tenths and signs") as told:
-        attendant(own(**{"parity": "E", **wrong}), wire.opened, clock, tmp_path)
+        create_inverter_control(own(**{"parity": "E", **wrong}), wire.opened, clock, tmp_path)
     assert told.value.reason == reason
     assert wire.sent == []
 
@@ -178,7 +178,7 @@ def test_a_family_that_is_neither_shipped_nor_a_file_is_refused(tmp_path: Path, 
     text = machine_file(tmp_path, family, "/dev/ttyUSB1").read_text()
     with pytest.raises(MachineFileError) as told:
         parse_machine(text, "own.toml")
-    assert [(each.path, each.code) for each in told.value.errors] == [("spindle.vfd.family", "wrong-value")]
+    assert [(each.path, each.code) for each in told.value.findings] == [("spindle.vfd.family", "wrong-value")]
 
 
 # --- Replies that must not be believed.
@@ -202,7 +202,7 @@ def test_reads_that_the_inverter_rejects_are_no_look() -> None:
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Rejects(one.memory, 0x0020)
     assert one.until_fault(4.0) <= 2.5
-    assert code_of(one.spindle.fault(), "driver") == "inverter-silent"
+    assert get_fault_code(one.spindle.read_fault(), "driver") == "inverter-silent"
 
 
 @pytest.mark.parametrize("count", [0, 6, 8])
@@ -211,7 +211,7 @@ def test_an_answer_with_another_number_of_registers_makes_no_look(count: int) ->
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Shortened(one.memory, count)
     assert one.until_fault(4.0) <= 2.5
-    assert code_of(one.spindle.fault(), "driver") == "inverter-silent"
+    assert get_fault_code(one.spindle.read_fault(), "driver") == "inverter-silent"
 
 
 class Shortened(RtuSlave):
@@ -232,11 +232,11 @@ def test_a_write_that_is_answered_for_another_register_is_sent_again() -> None:
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Elsewhere(one.memory)
     one.wire.sent.clear()
-    one.spindle.run(600.0)
-    one.attendant.exchange()
-    assert [frame[1:4] for frame in one.wire.sent] == [b"\x10\x00\x02"] * TRIES
+    one.spindle.run_at(600.0)
+    one.attendant.run_exchange()
+    assert [frame[1:4] for frame in one.wire.sent] == [b"\x10\x00\x02"] * MAX_TRIES
     assert one.until_fault(6.0) <= 5.0
-    assert one.attendant.want == 0.0
+    assert one.attendant.commanded_hz == 0.0
 
 
 class Elsewhere(RtuSlave):
@@ -249,14 +249,14 @@ class Elsewhere(RtuSlave):
 
 def test_a_trip_whose_code_cannot_be_read_is_still_a_fault() -> None:
     one = bench(OWN)
-    one.spindle.run(600.0)
+    one.spindle.run_at(600.0)
     one.run(1.5)
     one.inverter.trip_with(7)
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Rejects(one.memory, 0x0080)
     assert one.until_fault(4.0) <= 2.5
     one.run(3.0)
-    assert one.attendant.want == 0.0
+    assert one.attendant.commanded_hz == 0.0
 
 
 # --- The whole way, against a Modbus server of others.

@@ -7,8 +7,8 @@ import re
 import pytest
 
 from core.ports import DriverError
-from drivers.inverter.modbus_rtu import NoAnswerError
-from drivers.serial_line import WireError
+from drivers.inverter.modbus_rtu import NoResponseError
+from drivers.serial_line import SerialLineError
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES, OWN, bench
 from tests.drivers.inverter.inverter_simulators import (
@@ -27,7 +27,7 @@ def test_delta_gets_its_time_out_and_is_written_once() -> None:
     assert one.attendant.warnings == ()
     one.memory.written.clear()
     one.attendant.close()
-    one.attendant.connect()
+    one.attendant.open_and_check()
     assert [address for address, _ in one.memory.written if address < 0x2000] == []
 
 
@@ -62,7 +62,7 @@ def test_settings_of_others_are_told_and_left(
     one = bench(family, connect=False)
     assert not isinstance(one.memory, HuanyangSlave)
     one.memory.settings[register] = value
-    one.attendant.connect()
+    one.attendant.open_and_check()
     (warning,) = one.attendant.warnings
     assert all(each in warning for each in named)
     assert one.memory.settings[register] == value
@@ -72,7 +72,7 @@ def test_settings_that_an_inverter_does_not_know_are_told() -> None:
     one = bench("delta-vfdb", connect=False)
     assert isinstance(one.memory, DeltaMemory)
     del one.memory.settings[0x0903]
-    one.attendant.connect()
+    one.attendant.open_and_check()
     assert len(one.attendant.warnings) == 1
     assert "Pr.09-03" in one.attendant.warnings[0]
 
@@ -81,7 +81,7 @@ def test_a_highest_frequency_that_cannot_be_read_is_told() -> None:
     one = bench(OWN, connect=False)
     assert isinstance(one.memory, MyDriveMemory)
     del one.memory.settings[0x0303]
-    one.attendant.connect()
+    one.attendant.open_and_check()
     (warning,) = one.attendant.warnings
     assert warning.startswith("P2-04 ")
 
@@ -90,30 +90,30 @@ def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
     one = bench("huanyang", connect=False)
     assert isinstance(one.memory, HuanyangSlave)
     one.memory.parameters[1] = 0
-    one.attendant.connect()
+    one.attendant.open_and_check()
     assert any(re.search(r"PD001 .*\b0\b.*\b2\b", warning) for warning in one.attendant.warnings)
 
 
 def test_huanyang_is_trusted_after_ten_good_answers() -> None:
     one = bench("huanyang")
-    assert one.attendant.warm
+    assert one.attendant.is_trusted
     one.wire.loses = 1
-    one.attendant.exchange()
-    assert not one.attendant.warm
+    one.attendant.run_exchange()
+    assert not one.attendant.is_trusted
     with raises_code(DriverError, "spindle-off") as told:
-        one.spindle.run(100.0)
+        one.spindle.run_at(100.0)
     assert told.value.reason == "not-ready"
     one.run(1.0)
-    one.spindle.run(100.0)
+    one.spindle.run_at(100.0)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize(("fault", "kind"), [("silent", NoAnswerError), ("out", WireError)])
+@pytest.mark.parametrize(("fault", "kind"), [("silent", NoResponseError), ("out", SerialLineError)])
 def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[DriverError]) -> None:
     one = bench(family, connect=False)
     setattr(one.wire, fault, True)
     with pytest.raises(kind):
-        one.attendant.connect()
+        one.attendant.open_and_check()
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -123,7 +123,7 @@ def test_a_spindle_that_turns_when_the_control_comes_is_stopped(family: str) -> 
     one.inverter.obey(run=True)
     one.clock.advance(2.0)
     assert one.rpm == pytest.approx(1800.0)
-    one.attendant.connect()
+    one.attendant.open_and_check()
     one.run(2.0)
     assert one.rpm == 0.0
-    assert one.spindle.fault() == ""
+    assert one.spindle.read_fault() == ""

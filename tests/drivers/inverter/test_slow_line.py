@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.inverters import DeltaVfdB
 
@@ -32,7 +32,7 @@ def slow() -> Iterator[Control]:
 def test_speeds_that_change_on_a_slow_line_are_no_fault(slow: Control, late: float) -> None:
     slow.run(late)  # the commands come at any moment of an exchange
     slow.start(CHANGES + "M05\nG04F2\nM04S2000\nG04F2\nM05\nG04F4\nM30\n")
-    slow.until(State.IDLE, State.FAULT, limit=90.0)
+    slow.until(MachineState.IDLE, MachineState.FAULT, limit=90.0)
     assert [alarm.code for alarm in slow.shot.alarms] == []
     assert slow.world.rpm() == 0.0
 
@@ -40,10 +40,10 @@ def test_speeds_that_change_on_a_slow_line_are_no_fault(slow: Control, late: flo
 def test_a_slow_line_is_neither_silent_nor_unknown(slow: Control) -> None:
     spindle, unknown = slow.rig.ports.spindle, slow.rig.ports.unknown
     for n in range(40):  # each stop breaks a look off
-        spindle.run(0.0 if n % 2 else 1500.0)
+        spindle.run_at(0.0 if n % 2 else 1500.0)
         for _ in range(45):
             slow.rig.tick()
-            assert (spindle.fault(), unknown()) == ("", frozenset())
+            assert (spindle.read_fault(), unknown()) == ("", frozenset())
 
 
 def test_one_that_ignores_its_stop_on_a_slow_line_is_reported(slow: Control) -> None:
@@ -51,7 +51,7 @@ def test_one_that_ignores_its_stop_on_a_slow_line_is_reported(slow: Control) -> 
     slow.run(4.0)
     slow.world.spindle_ignores_stop()
     slow.until_true(lambda shot: shot.rpm_command == 0.0)
-    took = slow.until(State.FAULT, limit=6.0)
+    took = slow.until(MachineState.FAULT, limit=6.0)
     assert slow.shot.alarms[0].code == "ignores-stop"
     assert took < 1.0 + 3 * LOOK
 
@@ -60,5 +60,5 @@ def test_a_slow_line_that_falls_silent_is_reported_in_two_seconds(slow: Control)
     slow.start("G90G94F300\nM03S2000\nG04F9\nM30\n")
     slow.run(4.0)
     slow.rig.acts()["silence"]()
-    assert slow.until(State.FAULT, limit=3.0) <= 2.2
+    assert slow.until(MachineState.FAULT, limit=3.0) <= 2.2
     assert slow.shot.alarms[0].code == "inverter-silent"

@@ -4,30 +4,30 @@ from __future__ import annotations
 
 import pytest
 
-from core.faults import code_of
+from core.faults import get_fault_code
 from tests.drivers.inverter.benches import FAMILIES, OWN, Bench, bench
 
 
 def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
     for step in range(60):
-        turning.spindle.run(1200.0 + 30.0 * step if step < 40 else 2400.0 - 20.0 * (step - 40))
+        turning.spindle.run_at(1200.0 + 30.0 * step if step < 40 else 2400.0 - 20.0 * (step - 40))
         turning.run(0.05)
-        assert turning.spindle.fault() == ""
+        assert turning.spindle.read_fault() == ""
     turning.run(1.0)
     assert turning.rpm == pytest.approx(2400.0 - 20.0 * 19, abs=1.0)
 
 
 def test_without_an_encoder_there_is_no_angle(turning: Bench) -> None:
-    assert turning.spindle.angle() is None
+    assert turning.spindle.read_angle() is None
 
 
 def test_a_stop_goes_before_everything(turning: Bench) -> None:
     """At most the request under way comes before it, however many setpoints are waiting."""
-    turning.spindle.run(2000.0)
-    turning.spindle.run(0.0)
+    turning.spindle.run_at(2000.0)
+    turning.spindle.run_at(0.0)
     before, stops = turning.clock.now(), turning.inverter.stops
     while turning.inverter.stops == stops:
-        turning.attendant.exchange()
+        turning.attendant.run_exchange()
     assert turning.clock.now() - before < 0.2
     turning.run(1.5)
     assert turning.rpm == 0.0
@@ -36,10 +36,10 @@ def test_a_stop_goes_before_everything(turning: Bench) -> None:
 def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
     """A line that has gone silent: the stop is sent although nothing comes back."""
     turning.wire.silent = True
-    turning.attendant.exchange()
-    turning.spindle.run(0.0)
+    turning.attendant.run_exchange()
+    turning.spindle.run_at(0.0)
     sent = len(turning.wire.sent)
-    turning.attendant.exchange()
+    turning.attendant.run_exchange()
     first = turning.wire.sent[sent]
     assert first[1] in (3, 5, 6, 16)
     assert first[-3] in (0x08, 0x01, 0x00)  # stop of each family
@@ -49,11 +49,11 @@ def test_a_stop_that_comes_after_the_frequency_keeps_the_run_command_back(turnin
     send, back = turning.wire.send, set[bool]()
 
     def overtaken(data: bytes) -> None:
-        turning.spindle.run(0.0)
+        turning.spindle.run_at(0.0)
         send(data)
         back.add(turning.inverter.back)
 
-    turning.spindle.run(-900.0)
+    turning.spindle.run_at(-900.0)
     turning.wire.send = overtaken  # type: ignore[method-assign]
     turning.run(2.0)
     assert turning.inverter.hz == pytest.approx(15.0)
@@ -65,56 +65,56 @@ def test_an_answer_lost_now_and_then_does_no_harm(turning: Bench) -> None:
     for _ in range(5):
         turning.wire.loses = 1
         turning.run(1.0)
-        assert turning.spindle.fault() == ""
+        assert turning.spindle.read_fault() == ""
 
 
 def test_nor_while_a_surface_speed_changes_at_every_tick(turning: Bench) -> None:
     """Who has answered too seldom is given no start; a cut that turns already is not broken off for it."""
     for step in range(1, 41):
         turning.wire.loses = int(step % 10 == 0)
-        turning.attendant.exchange()
-        turning.spindle.run(1200.0 + 10.0 * step)
+        turning.attendant.run_exchange()
+        turning.spindle.run_at(1200.0 + 10.0 * step)
     turning.run(1.5)
-    assert turning.spindle.fault() == ""
+    assert turning.spindle.read_fault() == ""
     assert turning.rpm == pytest.approx(1600.0, abs=1.0)
 
 
 def test_the_wrong_direction_is_told(stand: Bench) -> None:
     """The inverter's own "at speed" would be true."""
     stand.inverter.backwards = True
-    stand.spindle.run(1200.0)
+    stand.spindle.run_at(1200.0)
     assert stand.until_fault(4.0) <= 2.5
-    assert code_of(stand.spindle.fault(), "driver") == "ignores-stop"
+    assert get_fault_code(stand.spindle.read_fault(), "driver") == "ignores-stop"
 
 
 def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
     turning.inverter.deaf = True
-    turning.spindle.run(600.0)
+    turning.spindle.run_at(600.0)
     turning.run(1.0)
-    turning.spindle.run(0.0)
+    turning.spindle.run_at(0.0)
     turning.until_fault(3.0)
     turning.inverter.deaf = False
     turning.run(3.0)
     assert turning.rpm == 0.0
-    assert turning.attendant.want == 0.0
+    assert turning.attendant.commanded_hz == 0.0
 
 
 @pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", OWN])
 def test_a_trip_is_told_and_reset_once(family: str) -> None:
     one = bench(family)
-    one.spindle.run(1000.0)
+    one.spindle.run_at(1000.0)
     one.run(1.5)
     one.inverter.trip_with(1)
     assert one.until_fault(2.0) <= 0.6
-    assert code_of(one.spindle.fault(), "driver") == "spindle"
+    assert get_fault_code(one.spindle.read_fault(), "driver") == "spindle"
     one.run(5.0)
     assert one.inverter.resets == 0
     one.spindle.clear_fault()
     one.run(4.0)
     assert one.inverter.resets == 1
-    assert one.spindle.fault() == ""
+    assert one.spindle.read_fault() == ""
     assert one.rpm == 0.0
-    one.spindle.run(400.0)
+    one.spindle.run_at(400.0)
     one.run(1.5)
     assert one.rpm == pytest.approx(400.0, abs=1.0)
 
@@ -122,7 +122,7 @@ def test_a_trip_is_told_and_reset_once(family: str) -> None:
 def test_the_end_of_whoever_attends_is_a_fault(turning: Bench) -> None:
     """Nobody calls the rounds: what is not looked at is not well."""
     turning.clock.advance(1.6)
-    assert code_of(turning.spindle.fault(), "driver") == "inverter-silent"
+    assert get_fault_code(turning.spindle.read_fault(), "driver") == "inverter-silent"
 
 
 def test_closing_says_stop(turning: Bench) -> None:
@@ -139,25 +139,25 @@ def test_a_slow_line_is_no_disobedience(family: str) -> None:
     one.wire.delay = 0.15
     one.run(3.0)
     for rpm in (3000.0, 800.0, 2500.0, -1500.0, 0.0, 3400.0, 0.0):
-        one.spindle.run(rpm)
+        one.spindle.run_at(rpm)
         one.run(0.7)
-        assert one.spindle.fault() == "", rpm
+        assert one.spindle.read_fault() == "", rpm
     for step in range(40):
-        one.spindle.run(3000.0 - 60.0 * step)
+        one.spindle.run_at(3000.0 - 60.0 * step)
         one.run(0.1)
-        assert one.spindle.fault() == "", step
-    one.spindle.run(0.0)
+        assert one.spindle.read_fault() == "", step
+    one.spindle.run_at(0.0)
     one.run(4.0)
-    assert one.spindle.fault() == ""
+    assert one.spindle.read_fault() == ""
     assert one.rpm == 0.0
 
 
 def test_on_a_slow_line_disobedience_is_still_told() -> None:
     one = bench("delta-vfdb")
     one.wire.delay = 0.15
-    one.spindle.run(2000.0)
+    one.spindle.run_at(2000.0)
     one.run(5.0)
     one.inverter.deaf = True
-    one.spindle.run(0.0)
+    one.spindle.run_at(0.0)
     assert one.until_fault(6.0) <= 4.0
-    assert code_of(one.spindle.fault(), "driver") == "ignores-stop"
+    assert get_fault_code(one.spindle.read_fault(), "driver") == "ignores-stop"

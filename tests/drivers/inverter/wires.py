@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Protocol
 
-from drivers.serial_line import WireError
-from drivers.waiting import StepClock
+from drivers.serial_line import SerialLineError
+from drivers.wakeups import ManualClock
 
 
 class UnexpectedError(Exception):
@@ -22,7 +22,7 @@ class Slave(Protocol):
 class BenchWire:
     """Each answer comes ``delay`` s after its request. ``loses`` so many answers, then it is well again."""
 
-    def __init__(self, slave: Slave, clock: StepClock) -> None:
+    def __init__(self, slave: Slave, clock: ManualClock) -> None:
         self.slave, self.clock = slave, clock
         self.delay = 0.02
         self.out = False
@@ -38,7 +38,7 @@ class BenchWire:
     def opened(self) -> BenchWire:
         """As a port is opened. Raises WireError with the cable out."""
         if self.out:
-            raise WireError("/dev/bench cannot be opened: No such file or directory")
+            raise SerialLineError("/dev/bench cannot be opened: No such file or directory")
         return self
 
     def send(self, data: bytes) -> None:
@@ -55,9 +55,9 @@ class BenchWire:
         if answer or self.noise:
             self._coming.append((self.clock.now() + self.delay, self.noise + answer))
 
-    def receive(self, limit: float) -> bytes:
+    def receive(self, timeout_s: float) -> bytes:
         self._look()
-        until = self.clock.now() + limit
+        until = self.clock.now() + timeout_s
         if self._coming and self._coming[0][0] <= until:
             at, data = self._coming.popleft()
             self.clock.sleep_until(at)
@@ -70,7 +70,7 @@ class BenchWire:
         """Whether an answer is on its way."""
         return bool(self._coming)
 
-    def discard(self) -> None:
+    def discard_input(self) -> None:
         self._look()
         while self._coming and self._coming[0][0] <= self.clock.now():
             self._coming.popleft()
@@ -88,4 +88,4 @@ class BenchWire:
         if self.kills:
             raise UnexpectedError
         if self.out:
-            raise WireError("/dev/bench has failed: Input/output error")
+            raise SerialLineError("/dev/bench has failed: Input/output error")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from drivers.serial_line import WireError
-from drivers.waiting import StepClock
+from drivers.serial_line import SerialLineError
+from drivers.wakeups import ManualClock
 
 
 class OtherSide:
@@ -13,20 +13,20 @@ class OtherSide:
 
     def __init__(
         self,
-        clock: StepClock,
+        clock: ManualClock,
         script: list[tuple[float, bytes]] | None = None,
         holds: tuple[float, float] = (-1.0, -1.0),
         cut_at: float = float("inf"),
     ) -> None:
         self.clock, self.script, self.holds, self.cut_at = clock, list(script or ()), holds, cut_at
         self.taken = bytearray()
-        self.damaged = 0
+        self.damaged_count = 0
         self.closed = self.obeys = False
         self.largest = 0  # chunk
         self.before_listening: Callable[[], object] = lambda: None
         self._out = 0.0  # when the last byte will have gone out
 
-    def offer(self, data: bytes) -> int:
+    def send_available(self, data: bytes) -> int:
         self._look()
         if self._held:
             return 0
@@ -36,12 +36,12 @@ class OtherSide:
         return len(data)
 
     def send(self, data: bytes) -> None:
-        self.offer(data)
+        self.send_available(data)
 
-    def receive(self, limit: float) -> bytes:
+    def receive(self, timeout_s: float) -> bytes:
         self.before_listening()
         self._look()
-        until = self.clock.now() + limit
+        until = self.clock.now() + timeout_s
         if self.script and self.script[0][0] <= until:
             at, data = self.script.pop(0)
             self.clock.sleep_until(at)
@@ -49,18 +49,18 @@ class OtherSide:
         self.clock.sleep_until(until)
         return b""
 
-    def waiting(self) -> int:
+    def count_unsent(self) -> int:
         self._look()
         return max(0, round((self._out - self.clock.now()) * 960.0))
 
-    def drop_output(self) -> None:
-        self.taken = self.taken[: len(self.taken) - self.waiting()]
+    def discard_output(self) -> None:
+        self.taken = self.taken[: len(self.taken) - self.count_unsent()]
         self._out = self.clock.now()
 
-    def obey_codes(self) -> None:
+    def enable_xon_xoff(self) -> None:
         self.obeys = True
 
-    def discard(self) -> None:
+    def discard_input(self) -> None:
         """Nothing is kept here."""
 
     def close(self) -> None:
@@ -72,4 +72,4 @@ class OtherSide:
 
     def _look(self) -> None:
         if self.clock.now() >= self.cut_at:
-            raise WireError("/dev/bench has failed: Input/output error")
+            raise SerialLineError("/dev/bench has failed: Input/output error")

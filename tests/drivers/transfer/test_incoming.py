@@ -7,7 +7,13 @@ from hashlib import sha256
 import pytest
 
 from drivers.serial_line import LineSettings
-from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program, TransferSettings
+from drivers.transfer.program_framing import (
+    IncompleteError,
+    ProgramParser,
+    ReceivedText,
+    ReceptionPhase,
+    TransferSettings,
+)
 from tests.coded import raises_code
 
 EIGHT = TransferSettings(LineSettings("bench"))
@@ -30,24 +36,24 @@ def framed(eol: bytes) -> bytes:
     return eol.join((b"%", *LINES, b"%")) + eol
 
 
-def taken(stream: bytes, settings: TransferSettings = EIGHT, *, chunk: int = 1) -> Program:
+def taken(stream: bytes, settings: TransferSettings = EIGHT, *, chunk: int = 1) -> ReceivedText:
     """Feed it in pieces; then silence."""
-    incoming = Incoming(settings)
+    incoming = ProgramParser(settings)
     for at in range(0, len(stream), chunk):
-        incoming.feed(stream[at : at + chunk])
-    incoming.silence()
-    assert incoming.phase is Phase.WHOLE
-    return incoming.program()
+        incoming.add_characters(stream[at : at + chunk])
+    incoming.handle_silence()
+    assert incoming.phase is ReceptionPhase.COMPLETE
+    return incoming.build_program()
 
 
 @pytest.mark.parametrize("eol", [b"\r\n", b"\n", b"\r", b"\n\r\r"], ids=["CRLF", "LF", "CR", "LFCRCR"])
 @pytest.mark.parametrize("chunk", [1, 3, 64])
 def test_every_line_end_gives_the_same_program(eol: bytes, chunk: int) -> None:
     program = taken(framed(eol), chunk=chunk)
-    assert program.text == BODY
-    assert program.lines == 4
-    assert program.digest == sha256(BODY).hexdigest()
-    assert not program.seven
+    assert program.program_bytes == BODY
+    assert program.line_count == 4
+    assert program.sha256 == sha256(BODY).hexdigest()
+    assert not program.is_seven_bit
 
 
 @pytest.mark.parametrize(
@@ -64,32 +70,32 @@ def test_every_line_end_gives_the_same_program(eol: bytes, chunk: int) -> None:
     ids=["NULs", "garbage", "DC2 DC4", "XON XOFF", "no last end", "behind", "rubout"],
 )
 def test_what_is_around_a_program_does_not_matter(stream: bytes) -> None:
-    assert taken(stream).text == BODY
+    assert taken(stream).program_bytes == BODY
 
 
 def test_seven_bits_with_even_parity_through_a_port_of_eight_are_found() -> None:
     program = taken(even(framed(b"\r\n")))
-    assert program.text == BODY
-    assert program.seven
+    assert program.program_bytes == BODY
+    assert program.is_seven_bit
 
 
 @pytest.mark.parametrize(("settings", "code"), [(SEVEN, even), (ODD, odd)])
 def test_seven_bits_by_the_settings(settings: TransferSettings, code: object) -> None:
     assert callable(code)
     program = taken(bytes(20) + code(framed(b"\n")) + bytes(20), settings)
-    assert program.text == BODY
-    assert not program.seven  # that is no discovery
+    assert program.program_bytes == BODY
+    assert not program.is_seven_bit  # that is no discovery
 
 
 def test_letters_of_eight_bits_stay() -> None:
     """cp437: 94 is an ö, 84 an ä, 9A an Ü; with the top bit off they would be DC4, EOT and ^Z."""
     stream = b"%\n(\x94l, h\x84ngt \x9abel)\nM30\n%\n"
-    assert taken(stream).text == b"(\x94l, h\x84ngt \x9abel)\nM30\n"
+    assert taken(stream).program_bytes == b"(\x94l, h\x84ngt \x9abel)\nM30\n"
 
 
 def test_a_false_percent_in_the_noise_before_it() -> None:
     """A5 is a % with even parity; here it is noise before an eight-bit program."""
-    assert taken(b"\xa5" + framed(b"\n")).text == BODY
+    assert taken(b"\xa5" + framed(b"\n")).program_bytes == BODY
 
 
 @pytest.mark.parametrize(
@@ -154,7 +160,7 @@ def test_every_spoilt_bit_is_noticed_with_parity() -> None:
 
 
 def test_without_percents_silence_is_the_end() -> None:
-    bare = TransferSettings(LineSettings("bench"), wrap="")
-    assert taken(bytes(9) + BODY, bare).text == BODY
-    assert taken(even(BODY), bare).text == BODY
-    assert taken(BODY + b"\x14", bare).text == BODY
+    bare = TransferSettings(LineSettings("bench"), delimiter="")
+    assert taken(bytes(9) + BODY, bare).program_bytes == BODY
+    assert taken(even(BODY), bare).program_bytes == BODY
+    assert taken(BODY + b"\x14", bare).program_bytes == BODY

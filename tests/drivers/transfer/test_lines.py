@@ -6,11 +6,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
-from drivers.serial_line import LineSettings, WireError
-from drivers.serial_port import SerialWire
-from drivers.transfer.program_framing import Program, TransferSettings, outgoing
-from drivers.transfer.transfer_session import CancelledError, Receiving, Sending
-from drivers.waiting import RealClock
+from drivers.serial_line import LineSettings, SerialLineError
+from drivers.serial_port import SerialPort
+from drivers.transfer.program_framing import ReceivedText, TransferSettings, encode_program
+from drivers.transfer.transfer_session import CancelledError, ReceiveTransfer, SendTransfer
+from drivers.wakeups import RealClock
 from tests.coded import raises_code
 from tests.drivers.inverter.lines import WAIT, Pair, until
 from tests.drivers.transfer.far_end import FarEnd, feed
@@ -20,10 +20,12 @@ TEXT = b"".join(b"N%d X1.2345 Z-.5\n" % n for n in range(400))
 LONG = TEXT * (400_000 // len(TEXT))  # more than a pseudo terminal holds: nobody reads, nobody is done
 
 
-def sent(port: str, pool: ThreadPoolExecutor, flow: str = "xonxoff") -> tuple[Sending, bytes, Future[int]]:
-    settings = TransferSettings(LineSettings(port, flow=flow), eol="\n")
-    data = outgoing(LONG, settings)
-    job = Sending(SerialWire(settings.sending), RealClock(), settings, data)
+def sent(
+    port: str, pool: ThreadPoolExecutor, flow: str = "xonxoff"
+) -> tuple[SendTransfer, bytes, Future[int]]:
+    settings = TransferSettings(LineSettings(port, flow=flow), line_end="\n")
+    data = encode_program(LONG, settings)
+    job = SendTransfer(SerialPort(settings.sending_settings), RealClock(), settings, data)
     return job, data, pool.submit(job.run)
 
 
@@ -46,8 +48,10 @@ def test_a_port_without_seven_bits_is_given_parity_and_obeys_codes_that_have_it(
     far: FarEnd, pool: ThreadPoolExecutor
 ) -> None:
     """DC3 has three ones: with even parity it is 93 on the line, DC1 stays 11."""
-    settings = TransferSettings(LineSettings(far.port, bits=7, parity="E", flow="xonxoff"), eol="\n")
-    job = Sending(SerialWire(settings.sending), RealClock(), settings, outgoing(LONG[:40_000], settings))
+    settings = TransferSettings(LineSettings(far.port, bits=7, parity="E", flow="xonxoff"), line_end="\n")
+    job = SendTransfer(
+        SerialPort(settings.sending_settings), RealClock(), settings, encode_program(LONG[:40_000], settings)
+    )
     future = pool.submit(job.run)
     until(lambda: far.hear() != b"" and len(far.heard) > 200, "the beginning")
     far.say(b"\x93")
@@ -58,7 +62,7 @@ def test_a_port_without_seven_bits_is_given_parity_and_obeys_codes_that_have_it(
     while far.hear():
         pass
     assert all(c.bit_count() % 2 == 0 for c in far.heard)
-    assert bytes(c & 0x7F for c in far.heard) == outgoing(LONG[:40_000], settings)
+    assert bytes(c & 0x7F for c in far.heard) == encode_program(LONG[:40_000], settings)
 
 
 def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPoolExecutor) -> None:
@@ -69,13 +73,13 @@ def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPo
     job.cancel()
     with pytest.raises(CancelledError):
         future.result(WAIT)
-    SerialWire(LineSettings(far.port)).close()
+    SerialPort(LineSettings(far.port)).close()
 
 
 def test_a_port_has_one_owner(far: FarEnd) -> None:
-    first = SerialWire(LineSettings(far.port))
-    with raises_code(WireError, "driver", far.port) as told:
-        SerialWire(LineSettings(far.port))
+    first = SerialPort(LineSettings(far.port))
+    with raises_code(SerialLineError, "driver", far.port) as told:
+        SerialPort(LineSettings(far.port))
     assert told.value.reason == "not-opened"
     first.close()
 
@@ -83,10 +87,12 @@ def test_a_port_has_one_owner(far: FarEnd) -> None:
 def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
     with Pair() as cable:
         settings = TransferSettings(LineSettings(cable.near))
-        job = Receiving(SerialWire(settings.receiving, watch=True), RealClock(), settings)
+        job = ReceiveTransfer(
+            SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings
+        )
         future = pool.submit(job.run)
         cable.cut()
-        with raises_code(WireError, "driver", cable.near) as told:
+        with raises_code(SerialLineError, "driver", cable.near) as told:
             future.result(WAIT)
         assert told.value.reason == "failed"
 
@@ -95,28 +101,28 @@ def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
 def test_seven_bits_and_even_parity_arrive(far: FarEnd, pool: ThreadPoolExecutor, bits: int) -> None:
     """Set to 7E1, and found out by a port that is set to 8N1."""
     settings = TransferSettings(LineSettings(far.port, bits=bits, parity="E" if bits == 7 else "N"))
-    job = Receiving(SerialWire(settings.receiving, watch=True), RealClock(), settings)
-    future: Future[Program] = pool.submit(job.run)
+    job = ReceiveTransfer(SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings)
+    future: Future[ReceivedText] = pool.submit(job.run)
     stream = bytes(10) + b"%\r\n" + TEXT.replace(b"\n", b"\r\n") + b"%\r\n" + bytes(10)
     feed(far, bytes(c | (c.bit_count() % 2 << 7) for c in stream))
     program = future.result(WAIT)
-    assert program.text == TEXT
-    assert program.seven == (bits == 8)
+    assert program.program_bytes == TEXT
+    assert program.is_seven_bit == (bits == 8)
 
 
 def test_letters_of_eight_bits_and_the_byte_that_marks_damage(far: FarEnd, pool: ThreadPoolExecutor) -> None:
     settings = TransferSettings(LineSettings(far.port))
-    job = Receiving(SerialWire(settings.receiving, watch=True), RealClock(), settings)
-    future: Future[Program] = pool.submit(job.run)
+    job = ReceiveTransfer(SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings)
+    future: Future[ReceivedText] = pool.submit(job.run)
     feed(far, b"%\n(\xff\xfe\x94)\nM30\n%\n")
-    assert future.result(WAIT).text == b"(\xff\xfe\x94)\nM30\n"
+    assert future.result(WAIT).program_bytes == b"(\xff\xfe\x94)\nM30\n"
 
 
 def test_the_end_of_what_was_sent_is_not_dropped_with_the_port(far: FarEnd) -> None:
     """Closing at once after the last byte, a hundred times: the far end has all of it each time."""
     for _ in range(100):
-        wire = SerialWire(LineSettings(far.port))
-        assert wire.offer(b"%\n") == 2
+        wire = SerialPort(LineSettings(far.port))
+        assert wire.send_available(b"%\n") == 2
         wire.close()
         far.heard.clear()
         until(lambda: far.hear() != b"" and len(far.heard) >= 2, "the last %")

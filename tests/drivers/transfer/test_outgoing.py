@@ -6,8 +6,8 @@ import pytest
 
 from core.ports import DriverError
 from drivers.serial_line import LineSettings
-from drivers.serial_port import Unmarker
-from drivers.transfer.program_framing import TransferSettings, outgoing
+from drivers.serial_port import ParityMarkDecoder
+from drivers.transfer.program_framing import TransferSettings, encode_program
 from tests.coded import raises_code
 
 LINE = LineSettings("bench")
@@ -17,15 +17,15 @@ LINE = LineSettings("bench")
     ("settings", "expected"),
     [
         (TransferSettings(LINE), b"%\r\nG90\r\nM30\r\n%\r\n"),
-        (TransferSettings(LINE, eol="\n"), b"%\nG90\nM30\n%\n"),
-        (TransferSettings(LINE, eol="\r"), b"%\rG90\rM30\r%\r"),
-        (TransferSettings(LINE, eol="\n", dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
-        (TransferSettings(LINE, eol="\n", leader=3), b"\0\0\0%\nG90\nM30\n%\n\0\0\0"),
+        (TransferSettings(LINE, line_end="\n"), b"%\nG90\nM30\n%\n"),
+        (TransferSettings(LINE, line_end="\r"), b"%\rG90\rM30\r%\r"),
+        (TransferSettings(LINE, line_end="\n", dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
+        (TransferSettings(LINE, line_end="\n", leader_length=3), b"\0\0\0%\nG90\nM30\n%\n\0\0\0"),
     ],
 )
 @pytest.mark.parametrize("text", [b"G90\nM30\n", b"G90\r\nM30", b"%\nG90\nM30\n%\n", b"G90\rM30\r\x1a"])
 def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: bytes, text: bytes) -> None:
-    assert outgoing(text, settings) == expected
+    assert encode_program(text, settings) == expected
 
 
 @pytest.mark.parametrize(
@@ -40,23 +40,23 @@ def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: by
 )
 def test_what_would_not_arrive_is_not_sent(text: bytes, bits: int, reason: str, values: list[str]) -> None:
     with raises_code(DriverError, "driver", *values) as told:
-        outgoing(text, TransferSettings(LineSettings("bench", bits=bits)))
+        encode_program(text, TransferSettings(LineSettings("bench", bits=bits)))
     assert told.value.reason == reason
 
 
 def test_without_a_frame_the_text_goes_out_alone() -> None:
-    assert outgoing(b"G90\nM30\n", TransferSettings(LINE, eol="\r", wrap="")) == b"G90\rM30\r"
+    assert encode_program(b"G90\nM30\n", TransferSettings(LINE, line_end="\r", delimiter="")) == b"G90\rM30\r"
 
 
 def test_letters_go_out_by_eight_bits() -> None:
     text = "(öl)\n".encode()
-    assert outgoing(text, TransferSettings(LINE, eol="\n")) == b"%\n" + text + b"%\n"
+    assert encode_program(text, TransferSettings(LINE, line_end="\n")) == b"%\n" + text + b"%\n"
 
 
 def test_marks_are_taken_out_and_counted() -> None:
-    one = Unmarker()
-    assert one.feed(b"AB") == b"AB"
-    assert one.feed(b"\xff\xffC") == b"\xffC"
-    assert one.damaged == 0
-    assert one.feed(b"\xff") + one.feed(b"\x00") + one.feed(b"XY") == b"XY"
-    assert one.damaged == 1
+    one = ParityMarkDecoder()
+    assert one.decode(b"AB") == b"AB"
+    assert one.decode(b"\xff\xffC") == b"\xffC"
+    assert one.damaged_count == 0
+    assert one.decode(b"\xff") + one.decode(b"\x00") + one.decode(b"XY") == b"XY"
+    assert one.damaged_count == 1

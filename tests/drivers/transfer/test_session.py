@@ -7,44 +7,44 @@ import dataclasses
 import pytest
 
 from core.ports import DriverError
-from drivers.serial_line import LineSettings, WireError
-from drivers.transfer.program_framing import IncompleteError, TransferSettings, outgoing
-from drivers.transfer.transfer_session import CancelledError, Reach, Receiving, Sending
-from drivers.waiting import StepClock
+from drivers.serial_line import LineSettings, SerialLineError
+from drivers.transfer.program_framing import IncompleteError, TransferSettings, encode_program
+from drivers.transfer.transfer_session import CancelledError, ReceiveTransfer, SendTransfer, TransferState
+from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.transfer.bench import OtherSide
 
-SETTINGS = TransferSettings(LineSettings("bench", flow="xonxoff"), eol="\n")
+SETTINGS = TransferSettings(LineSettings("bench", flow="xonxoff"), line_end="\n")
 TEXT = b"".join(b"N%d X1.2345\n" % n for n in range(200))
-DATA = outgoing(TEXT, SETTINGS)
+DATA = encode_program(TEXT, SETTINGS)
 
 
-def sending(side: OtherSide, settings: TransferSettings = SETTINGS) -> Sending:
-    return Sending(side, side.clock, settings, DATA)
+def sending(side: OtherSide, settings: TransferSettings = SETTINGS) -> SendTransfer:
+    return SendTransfer(side, side.clock, settings, DATA)
 
 
-def receiving(side: OtherSide, settings: TransferSettings = SETTINGS) -> Receiving:
-    return Receiving(side, side.clock, settings)
+def receiving(side: OtherSide, settings: TransferSettings = SETTINGS) -> ReceiveTransfer:
+    return ReceiveTransfer(side, side.clock, settings)
 
 
 def test_it_goes_out_whole_in_small_pieces() -> None:
-    side = OtherSide(StepClock())
+    side = OtherSide(ManualClock())
     job = sending(side)
     assert job.run() == len(DATA)
     assert bytes(side.taken) == DATA
     assert side.largest <= 64
     assert side.closed
-    assert job.reach == Reach(len(DATA), len(DATA), 202, "")
+    assert job.progress == TransferState(len(DATA), len(DATA), 202, "")
     assert side.clock.now() == pytest.approx(len(DATA) / 960.0, rel=0.3)
 
 
 def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
-    side = OtherSide(StepClock(), holds=(0.5, 30.0))
+    side = OtherSide(ManualClock(), holds=(0.5, 30.0))
     job = sending(side)
     told: set[str] = set()
 
     def look() -> None:
-        told.add(job.reach.what)
+        told.add(job.progress.wait_reason)
 
     side.before_listening = look
     job.run()
@@ -54,7 +54,7 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
 
 
 def test_a_hold_that_does_not_end_is_a_sentence() -> None:
-    side = OtherSide(StepClock(), holds=(0.5, 1e9))
+    side = OtherSide(ManualClock(), holds=(0.5, 1e9))
     with raises_code(DriverError, "driver", "512 bytes") as told:
         sending(side).run()
     assert told.value.reason == "held"
@@ -66,8 +66,8 @@ class Satisfied(OtherSide):
 
     obeyed = True
 
-    def offer(self, data: bytes) -> int:
-        taken = super().offer(data)
+    def send_available(self, data: bytes) -> int:
+        taken = super().send_available(data)
         if b"\n%\n" in self.taken and self.holds[0] < 0.0:
             now = self.clock.now()
             self.holds = (now, 1e9) if self.obeyed else (1e8, 1e9)
@@ -77,11 +77,11 @@ class Satisfied(OtherSide):
 
 @pytest.mark.parametrize("obeyed", [True, False])
 def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
-    settings = dataclasses.replace(SETTINGS, dc_codes=True, leader=200)
-    data = outgoing(TEXT, settings)
-    side = Satisfied(StepClock())
+    settings = dataclasses.replace(SETTINGS, dc_codes=True, leader_length=200)
+    data = encode_program(TEXT, settings)
+    side = Satisfied(ManualClock())
     side.obeyed = obeyed
-    assert Sending(side, side.clock, settings, data).run() == len(data)
+    assert SendTransfer(side, side.clock, settings, data).run() == len(data)
     assert data.startswith(bytes(side.taken))
     assert bytes(side.taken).rstrip(b"\0\x14\n").endswith(b"\n%")
     assert len(side.taken) < len(data)
@@ -89,9 +89,9 @@ def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
 
 
 def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
-    side = OtherSide(StepClock(), [(3.0, b"\x91")])  # DC1 with its parity bit
-    settings = dataclasses.replace(SETTINGS, wait=True)
-    assert settings.sending.flow == "none"
+    side = OtherSide(ManualClock(), [(3.0, b"\x91")])  # DC1 with its parity bit
+    settings = dataclasses.replace(SETTINGS, waits_for_dc1=True)
+    assert settings.sending_settings.flow == "none"
     sending(side, settings).run()
     assert bytes(side.taken) == DATA
     assert side.obeys
@@ -99,23 +99,23 @@ def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
 
 
 def test_nobody_asks_for_it() -> None:
-    side = OtherSide(StepClock())
+    side = OtherSide(ManualClock())
     with raises_code(DriverError, "driver", "DC1") as told:
-        sending(side, dataclasses.replace(SETTINGS, wait=True)).run()
+        sending(side, dataclasses.replace(SETTINGS, waits_for_dc1=True)).run()
     assert told.value.reason == "not-asked"
     assert side.taken == b""
 
 
 @pytest.mark.parametrize("at", [0.0, 0.3, 1.0, 2.0])
 def test_cable_out_while_sending(at: float) -> None:
-    side = OtherSide(StepClock(), cut_at=at)
-    with pytest.raises(WireError):
+    side = OtherSide(ManualClock(), cut_at=at)
+    with pytest.raises(SerialLineError):
         sending(side).run()
     assert side.closed
 
 
 def test_giving_up_while_it_is_held() -> None:
-    side = OtherSide(StepClock(), [(20.0, b"")], holds=(0.2, 1e9))
+    side = OtherSide(ManualClock(), [(20.0, b"")], holds=(0.2, 1e9))
     job = sending(side)
 
     def cancel_late() -> None:
@@ -130,24 +130,24 @@ def test_giving_up_while_it_is_held() -> None:
 
 
 def test_a_program_comes_in() -> None:
-    side = OtherSide(StepClock(), [(1.0, DATA[:100]), (1.5, DATA[100:150]), (9.0, DATA[150:])])
+    side = OtherSide(ManualClock(), [(1.0, DATA[:100]), (1.5, DATA[100:150]), (9.0, DATA[150:])])
     program = receiving(side).run()
-    assert program.text == TEXT
-    assert program.lines == 200
+    assert program.program_bytes == TEXT
+    assert program.line_count == 200
     assert side.closed
     assert bytes(side.taken) == b"\x11\x13"  # come on; enough
 
 
 def test_dc1_is_said_again_while_nothing_comes() -> None:
-    side = OtherSide(StepClock(), [(11.0, DATA)])
+    side = OtherSide(ManualClock(), [(11.0, DATA)])
     receiving(side).run()
     assert bytes(side.taken) == b"\x11\x11\x11\x13"  # at 0, 5 and 10 s
 
 
 def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
     """One stray character at 1 s: DC1 is said at 0, and 5 s after each last word, at 6 and 11."""
-    side = OtherSide(StepClock(), [(1.0, b"?"), (12.0, DATA)])
-    assert receiving(side).run().text == TEXT
+    side = OtherSide(ManualClock(), [(1.0, b"?"), (12.0, DATA)])
+    assert receiving(side).run().program_bytes == TEXT
     assert bytes(side.taken) == b"\x11\x11\x11\x13"
 
 
@@ -161,39 +161,39 @@ def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
     ],
 )
 def test_what_is_heard_before_a_program_is_told(come: bytes, heard: str, what: str) -> None:
-    side = OtherSide(StepClock(), [(1.0, come), (4.0, DATA)])
+    side = OtherSide(ManualClock(), [(1.0, come), (4.0, DATA)])
     told: list[tuple[str, str]] = []
     job = receiving(side)
 
     def look() -> None:
         if side.clock.now() > 2.0 and not told:
-            told.append((job.reach.heard, job.reach.what))
+            told.append((job.progress.received_text, job.progress.wait_reason))
 
     side.before_listening = look
-    assert job.run().text == TEXT
+    assert job.run().program_bytes == TEXT
     assert told == [(heard, what)]
 
 
 def test_nothing_is_said_where_no_codes_are_used() -> None:
-    side = OtherSide(StepClock(), [(1.0, DATA)])
-    receiving(side, dataclasses.replace(SETTINGS, line=LineSettings("bench"))).run()
+    side = OtherSide(ManualClock(), [(1.0, DATA)])
+    receiving(side, dataclasses.replace(SETTINGS, line_settings=LineSettings("bench"))).run()
     assert side.taken == b""
 
 
 def test_a_last_percent_without_a_line_end_ends_it_soon() -> None:
-    side = OtherSide(StepClock(), [(1.0, DATA[:-1])])
-    assert receiving(side).run().text == TEXT
+    side = OtherSide(ManualClock(), [(1.0, DATA[:-1])])
+    assert receiving(side).run().program_bytes == TEXT
     assert side.clock.now() < 2.0
 
 
 def test_a_pause_behind_a_line_is_no_end() -> None:
     """The sender reads from a slow disk: five seconds in the middle."""
-    side = OtherSide(StepClock(), [(1.0, DATA[:500]), (6.0, DATA[500:])])
-    assert receiving(side).run().text == TEXT
+    side = OtherSide(ManualClock(), [(1.0, DATA[:500]), (6.0, DATA[500:])])
+    assert receiving(side).run().program_bytes == TEXT
 
 
 def test_a_lost_last_percent_is_refused() -> None:
-    side = OtherSide(StepClock(), [(1.0, DATA[:-2])])
+    side = OtherSide(ManualClock(), [(1.0, DATA[:-2])])
     with raises_code(IncompleteError, "driver", "%", "201 lines") as told:
         receiving(side).run()
     assert told.value.reason == "no-end"
@@ -202,11 +202,11 @@ def test_a_lost_last_percent_is_refused() -> None:
 
 
 def test_a_damaged_character_ends_it_at_once() -> None:
-    side = OtherSide(StepClock(), [(1.0, DATA[:100]), (1.2, DATA[100:])])
+    side = OtherSide(ManualClock(), [(1.0, DATA[:100]), (1.2, DATA[100:])])
     job = receiving(side)
 
     def spoil() -> None:
-        side.damaged = int(side.clock.now() >= 1.1)
+        side.damaged_count = int(side.clock.now() >= 1.1)
 
     side.before_listening = spoil
     with raises_code(IncompleteError, "driver", "line 201") as told:
@@ -217,17 +217,17 @@ def test_a_damaged_character_ends_it_at_once() -> None:
 @pytest.mark.parametrize("at", [0.0, 1.02, 1.1, 9.0])
 def test_cable_out_while_receiving(at: float) -> None:
     script = [(1.0 + n / 100, DATA[10 * n : 10 * n + 10]) for n in range(len(DATA) // 10 + 1)]
-    side = OtherSide(StepClock(), script, cut_at=at)
+    side = OtherSide(ManualClock(), script, cut_at=at)
     if at > 8.0:
-        assert receiving(side).run().text == TEXT  # it had come
+        assert receiving(side).run().program_bytes == TEXT  # it had come
         return
-    with pytest.raises(WireError):
+    with pytest.raises(SerialLineError):
         receiving(side).run()
     assert side.closed
 
 
 def test_giving_up_while_receiving() -> None:
-    side = OtherSide(StepClock(), [(1.0, DATA[:100])])
+    side = OtherSide(ManualClock(), [(1.0, DATA[:100])])
     job = receiving(side)
 
     def cancel_late() -> None:

@@ -19,7 +19,7 @@ __all__ = ["filled", "home", "refusals", "say", "turndesk"]
 @pytest.fixture(autouse=True)
 def _cheap_pins(monkeypatch: pytest.MonkeyPatch) -> None:
     """Hash PINs at a cost that takes no time."""
-    monkeypatch.setattr(pins, "COST", pins.Cost(4, 8, 1))
+    monkeypatch.setattr(pins, "DEFAULT_COST", pins.ScryptCost(4, 8, 1))
 
 
 @pytest.fixture

@@ -75,7 +75,7 @@ def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("core.extras.access.pins.is_pin", ended)
+        patch.setattr("core.extras.access.pins.matches_hash", ended)
         for _ in range(3):
             assert say("offsets", "clear", "T", "--as", "ben", typed="0815")[0] != 0
             monkeypatch.setattr(time, "sleep", lambda _seconds: None)
@@ -191,7 +191,7 @@ def test_a_new_machine_has_the_names_of_a_backup_and_no_pin(
 def test_an_old_hash_is_made_anew_on_the_command_line(
     say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pins, "COST", pins.Cost(5, 8, 1))
+    monkeypatch.setattr(pins, "DEFAULT_COST", pins.ScryptCost(5, 8, 1))
     assert say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="2580")[0] == 0
     assert [each[0] for each in hashes(home / "turndesk.db")] == [4, 5]
 
@@ -260,5 +260,5 @@ def test_the_reset_is_typed_at_the_machine(
 
 
 def test_access(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("access", "list", "--json"))], access_command.ACCESS_LIST.keys)
-    declared_alone([whole(turndesk("access", "table", "--json"))], access_command.ACCESS_TABLE.keys)
+    declared_alone([whole(turndesk("access", "list", "--json"))], access_command.ACCESS_LIST_OUTPUT.keys)
+    declared_alone([whole(turndesk("access", "table", "--json"))], access_command.ACCESS_TABLE_OUTPUT.keys)

@@ -17,12 +17,12 @@ from typing import Any
 from PySide6.QtWidgets import QApplication
 
 from app.compose.runs.journal import Journal
-from app.extras.analyses.analyses import Analyses
-from app.scope.scope_model import Scope
-from app.screen.look import DARK, Look, dress, load_fonts
+from app.extras.analyses.analyses import AnalysesModel
+from app.scope.scope_model import ScopeModel
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.executor.recorder import Recorder
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.pictures import Stage, _grab, _settle, press
 
 CIRCLE = "G90G94F12G72\nT1(TURNING TOOL)\nX1.4Z.5\nG02X1.4Z.5I0K.3\nX1.5\nM30\n"
@@ -67,7 +67,7 @@ def main(argv: list[str] | None = None) -> int:
     args.out.mkdir(parents=True, exist_ok=True)
     _app = QApplication.instance() or QApplication(sys.argv[:1])
     load_fonts()
-    dress(DARK)
+    style_application(DARK_PALETTE)
     for name, program, wear, curves, keys in PICTURES:
         with TemporaryDirectory() as folder:
             os.environ["TURNDESK_HOME"] = folder
@@ -82,45 +82,45 @@ def _picture(
     """One machine, worn, that runs one program to its end."""
     file = home / "worn.nc"
     file.write_text(program)
-    journal = Journal.at_home()
+    journal = Journal.open_default()
     stage = Stage(journal)
     desk = stage.desk
-    recorder, scope = desk.control.recordings, desk.pages.find(Scope)
+    recorder, scope = desk.desk_control.recordings, desk.page_registry.find(ScopeModel)
     assert recorder is not None
     assert scope is not None
     stage.make_ready(str(file))
-    wear(desk.control.panel)
+    wear(desk.desk_control.station_panel)
     stage.press_start()
 
     assert isinstance(recorder, Recorder)
 
     def over() -> bool:
-        recorder.drain()
-        snapshot = desk.snapshot()
+        recorder.store_queued_ticks()
+        snapshot = desk.read_snapshot()
         if snapshot.alarms:
             raise RuntimeError(f"{path.stem}: {snapshot.alarms[0].text}: {snapshot.alarms[0].cause}")
-        return desk.snapshot().state is State.IDLE
+        return desk.read_snapshot().state is MachineState.IDLE
 
     stage.tick(over, 200.0)
-    scope.chosen = curves or scope.chosen
-    desk.settings.choose("language", language)
-    window = MainWindow(Look(DARK))
+    scope.selected_keys = curves or scope.selected_keys
+    desk.settings_store.choose("language", language)
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
-    window.open_desk(desk)
+    window.show_model(desk)
     for key in keys.split():
         press(window, key)
         for _ in range(_PATIENCE):
-            if key != "F2" or scope.frozen is not None:
+            if key != "F2" or scope.frozen_curves is not None:
                 break
             _settle(window, 0.1)
-    analyses = desk.pages.find(Analyses)
+    analyses = desk.page_registry.find(AnalysesModel)
     assert analyses is not None
     for _ in range(_PATIENCE):
-        if "F8" not in keys or analyses.found is not None:
+        if "F8" not in keys or analyses.result is not None:
             break
         _settle(window, 0.1)
     _grab(window, path)
-    window.put_away()
+    window.close_silently()
     stage.close()
     journal.close()
 

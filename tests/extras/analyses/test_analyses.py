@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.extras.analyses.analyses import Analyses, Kind, analysed, last_run, scaled
+from app.extras.analyses.analyses import AnalysesModel, AnalysisKind, analyze, find_last_run, scale_drawing
 from tests.scope.played_record import record_of, seconds
 from tests.texts import text
 
@@ -24,24 +24,26 @@ def turned_arc() -> object:
 
 
 def test_a_ball_bar_of_the_arc_of_a_record() -> None:
-    found = analysed(Kind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
-    assert found.ball is not None
-    assert found.arc == (0, 1, 4)
-    assert found.ball.radius == pytest.approx(10.0, abs=1e-3)
-    assert found.ball.backlash == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
+    found = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
+    assert found.ball_bar is not None
+    assert found.arc_selection == (0, 1, 4)
+    assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
+    assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
 
 
 def test_the_path_error_of_its_line() -> None:
-    found = analysed(Kind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
-    assert [each.line for each in found.worst] == [4]
-    assert abs(found.worst[0].distance) == pytest.approx(0.01, abs=1e-4)  # the play where X goes radially
+    found = analyze(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
+    assert [each.line for each in found.worst_deviations] == [4]
+    assert abs(found.worst_deviations[0].distance_mm) == pytest.approx(
+        0.01, abs=1e-4
+    )  # the play where X goes radially
 
 
 def test_the_table_of_the_path_error_says_where_the_slides_stood() -> None:
-    page = Analyses(SimpleNamespace(metric=True))  # type: ignore[arg-type]
-    page.found = analysed(Kind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
-    sheet = page.sheet()
-    (line, _off, z, x), heads = sheet.rows[0].cells, sheet.heads
+    page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
+    page.result = analyze(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
+    sheet = page.make_table()
+    (line, _off, z, x), heads = sheet.rows[0].cells, sheet.column_heads
     assert (line, heads[2:]) == ("4", ("Z", "X"))
     assert float(z.replace("\u2212", "-")) == pytest.approx(
         -50.0, abs=0.3
@@ -70,51 +72,51 @@ def milled_arc() -> object:
 
 
 def test_a_mill_finds_its_arc_in_the_plane_of_x_and_y() -> None:
-    found = analysed(Kind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
-    assert found.ball is not None
-    assert (found.axes, found.arc) == (("X", "Y"), (0, 1, 4))
-    assert found.ball.radius == pytest.approx(10.0, abs=1e-3)
-    assert found.ball.backlash == pytest.approx((0.0, 0.02), abs=3e-4)
+    found = analyze(AnalysisKind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
+    assert found.ball_bar is not None
+    assert (found.axis_names, found.arc_selection) == (("X", "Y"), (0, 1, 4))
+    assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
+    assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)
 
 
 def test_the_path_error_of_a_mill_is_one_in_space() -> None:
     """Where Y goes radially its play of .01 and the .004 of Z are at right angles: √(.01² + .004²)."""
-    page = Analyses(SimpleNamespace(metric=True))  # type: ignore[arg-type]
-    page.found = found = analysed(Kind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
-    assert [each.line for each in found.worst] == [4]
-    assert found.worst[0].distance == pytest.approx(np.hypot(0.01, 0.004), abs=1e-4)
-    sheet = page.sheet()
-    assert sheet.heads[2:] == ("X", "Y", "Z")
+    page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
+    page.result = found = analyze(AnalysisKind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
+    assert [each.line for each in found.worst_deviations] == [4]
+    assert found.worst_deviations[0].distance_mm == pytest.approx(np.hypot(0.01, 0.004), abs=1e-4)
+    sheet = page.make_table()
+    assert sheet.column_heads[2:] == ("X", "Y", "Z")
     assert not any("radius" in note or "left" in note for note in sheet.notes)
-    drawing = page.drawing()
-    assert drawing.names == ("Y  {unit}", "", "X  {unit}")  # seen along Z, which stands
-    assert not drawing.downwards
-    assert drawing.soft.shape[1] == 2
+    drawing = page.make_drawing()
+    assert drawing.axis_labels == ("Y  {unit}", "", "X  {unit}")  # seen along Z, which stands
+    assert not drawing.is_inverted
+    assert drawing.command_points.shape[1] == 2
     page.close()
 
 
 def test_a_drawing_names_its_axes_with_the_unit_that_is_shown() -> None:
-    page = Analyses(SimpleNamespace(metric=True))  # type: ignore[arg-type]
-    page.found = analysed(Kind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
-    drawing = page.drawing()
-    assert scaled(drawing, 1.0).names == ("X  mm", "", "Z  mm")
-    assert scaled(drawing, 1.0).downwards
-    assert scaled(drawing, 1.0 / 25.4).names == ("X  in", "", "Z  in")
+    page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
+    page.result = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
+    drawing = page.make_drawing()
+    assert scale_drawing(drawing, 1.0).axis_labels == ("X  mm", "", "Z  mm")
+    assert scale_drawing(drawing, 1.0).is_inverted
+    assert scale_drawing(drawing, 1.0 / 25.4).axis_labels == ("X  in", "", "Z  in")
     page.close()
 
 
 def test_what_is_not_there_is_told() -> None:
     record = record_of(seconds(0.0, 3.0))
-    assert analysed(Kind.BALL_BAR, record, 0, {}).why == text("scope.no-arc")
+    assert analyze(AnalysisKind.BALL_BAR, record, 0, {}).missing_reason == text("scope.no-arc")
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
-    assert "does not turn" in analysed(Kind.THREAD, still, 0, {}).why
+    assert "does not turn" in analyze(AnalysisKind.THREAD, still, 0, {}).missing_reason
     assert (
         "a path needs two linear axes"
-        in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).why
+        in analyze(AnalysisKind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).missing_reason
     )
     nothing = np.full(3001, np.nan)
     deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)
-    assert "no spindle encoder count" in analysed(Kind.THREAD, deaf, 0, {}).why
+    assert "no spindle encoder count" in analyze(AnalysisKind.THREAD, deaf, 0, {}).missing_reason
 
 
 def test_of_live_samples_the_last_run_is_taken() -> None:
@@ -122,12 +124,12 @@ def test_of_live_samples_the_last_run_is_taken() -> None:
     line = np.where((times > 2.0) & (times < 5.0), 3.0, 0.0) + np.where(
         (times > 9.0) & (times < 15.0), 4.0, 0.0
     )
-    found = last_run(record_of(times, line=line))
-    assert (found.times[0], found.times[-1]) == pytest.approx((9.001, 14.999))
+    found = find_last_run(record_of(times, line=line))
+    assert (found.times_s[0], found.times_s[-1]) == pytest.approx((9.001, 14.999))
 
 
 def test_without_a_run_all_of_it_is() -> None:
     record = record_of(seconds(0.0, 2.0), line=np.zeros(2001))
-    assert len(last_run(record).times) == 2001
-    without = replace(record, columns={})
-    assert last_run(without) is without
+    assert len(find_last_run(record).times_s) == 2001
+    without = replace(record, values_by_channel={})
+    assert find_last_run(without) is without

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import Kind, analysed
-from app.extras.analyses.axis_response import last_move, response_sheet
+from app.extras.analyses.analyses import AnalysisKind, analyze
+from app.extras.analyses.axis_response import find_last_move, make_response_table
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
@@ -34,26 +34,28 @@ def moved(speed: float = 20.0, way: float = 2.0, tau: float = TAU) -> object:
 
 
 def figures_of(record: object) -> dict[str, str]:
-    sheet = response_sheet("", last_move(record, DRIVES), True)  # type: ignore[arg-type]
+    sheet = make_response_table("", find_last_move(record, DRIVES), True)  # type: ignore[arg-type]
     return {row.cells[0]: row.cells[1] for row in sheet.rows}
 
 
 def test_the_last_move_is_found_with_its_lag() -> None:
-    found = last_move(moved(), DRIVES)  # type: ignore[arg-type]
-    assert found.letter == "Z"
-    assert found.step.way == pytest.approx(2.0)
-    assert found.speed == pytest.approx(20.0, rel=1e-3)
-    assert found.lag == pytest.approx(TAU, rel=0.05)  # less the two ends, where it builds up and goes
-    assert np.abs(found.error).max() == pytest.approx(20.0 * TAU, rel=1e-3)
-    assert found.step.overshoot == pytest.approx(0.0, abs=1e-6)
+    found = find_last_move(moved(), DRIVES)  # type: ignore[arg-type]
+    assert found.axis_letter == "Z"
+    assert found.step_response.step_size == pytest.approx(2.0)
+    assert found.max_speed_mm_s == pytest.approx(20.0, rel=1e-3)
+    assert found.lag_s == pytest.approx(TAU, rel=0.05)  # less the two ends, where it builds up and goes
+    assert np.abs(found.following_error).max() == pytest.approx(20.0 * TAU, rel=1e-3)
+    assert found.step_response.overshoot == pytest.approx(0.0, abs=1e-6)
     # it is within the window of in position after τ·ln(error / window)
     band = DRIVES["Z"].in_position
-    assert found.step.settling == pytest.approx(TAU * np.log(20.0 * TAU / band), abs=0.002)
+    assert found.step_response.settling_time_s == pytest.approx(TAU * np.log(20.0 * TAU / band), abs=0.002)
 
 
 def test_at_twice_the_speed_it_is_twice_as_far_behind() -> None:
-    found = last_move(moved(), DRIVES)  # type: ignore[arg-type]
-    assert np.abs(found.faster(2.0)).max() == pytest.approx(2.0 * np.abs(found.error).max(), rel=0.05)
+    found = find_last_move(moved(), DRIVES)  # type: ignore[arg-type]
+    assert np.abs(found.predict_error(2.0)).max() == pytest.approx(
+        2.0 * np.abs(found.following_error).max(), rel=0.05
+    )
 
 
 def test_what_would_trip_is_said() -> None:
@@ -68,12 +70,12 @@ def test_without_a_move_there_is_nothing() -> None:
     still = np.full(len(times), 3.0)
     record = record_of(times, X_demand=still, Z_demand=still)
     with raises_code(AnalysisError, "no-step"):
-        last_move(record, DRIVES)
-    assert "Jog page" in analysed(Kind.RESPONSE, record, 0, DRIVES).why
+        find_last_move(record, DRIVES)
+    assert "Jog page" in analyze(AnalysisKind.AXIS_RESPONSE, record, 0, DRIVES).missing_reason
 
 
 def test_a_move_that_still_goes_on_is_no_response() -> None:
     times = seconds(0.0, 3.0)
     record = record_of(times, X_demand=np.full(len(times), 3.0), Z_demand=5.0 * times)
     with raises_code(AnalysisError, "no-step"):
-        last_move(record, DRIVES)
+        find_last_move(record, DRIVES)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.extras.analyses.path_error import arcs_in, ball_bar, circle_of
+from core.extras.analyses.path_error import analyze_ball_bar, find_arcs, fit_circle
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 
@@ -27,23 +27,23 @@ def with_play(demand: np.ndarray, bu: float, bv: float) -> np.ndarray:
 
 
 def test_a_circle_through_points() -> None:
-    u, v, r = circle_of(arc(np.array([0.1, 0.9, 2.0, 2.1])))
+    u, v, r = fit_circle(arc(np.array([0.1, 0.9, 2.0, 2.1])))
     assert (u, v, r) == pytest.approx((40.0, -60.0, R))
 
 
 def test_a_perfect_arc() -> None:
-    found = ball_bar(arc(T), arc(T))
-    assert found.radius == pytest.approx(R)
-    assert found.roundness == pytest.approx(0.0, abs=1e-9)
-    assert found.covered == pytest.approx(360.0)
+    found = analyze_ball_bar(arc(T), arc(T))
+    assert found.radius_mm == pytest.approx(R)
+    assert found.circularity_mm == pytest.approx(0.0, abs=1e-9)
+    assert found.arc_angle_deg == pytest.approx(360.0)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_backlash_of_each_axis_is_told_apart(way: float) -> None:
-    found = ball_bar(arc(way * T), with_play(arc(way * T), 0.012, 0.005))
-    assert found.backlash == pytest.approx((0.012, 0.005), abs=1e-4)
-    assert found.squareness == pytest.approx(0.0, abs=0.02)
-    assert found.scale == pytest.approx(0.0, abs=0.02)
+    found = analyze_ball_bar(arc(way * T), with_play(arc(way * T), 0.012, 0.005))
+    assert found.backlash_mm == pytest.approx((0.012, 0.005), abs=1e-4)
+    assert found.squareness_error_mm_m == pytest.approx(0.0, abs=0.02)
+    assert found.scale_error_mm_m == pytest.approx(0.0, abs=0.02)
 
 
 def test_squareness_and_scale() -> None:
@@ -51,34 +51,34 @@ def test_squareness_and_scale() -> None:
     at = arc(T) - (40.0, -60.0)
     lean = np.array([[1.0 + 60e-6, 80e-6], [0.0, 1.0]])
     seen = at @ lean.T + np.array([40.0, -60.0])
-    found = ball_bar(arc(T), seen)
-    assert found.squareness == pytest.approx(0.080, abs=1e-4)
-    assert found.scale == pytest.approx(0.060, abs=1e-4)
-    assert found.size == pytest.approx(0.5 * 60e-6 * R, abs=1e-6)
-    assert found.backlash == pytest.approx((0.0, 0.0), abs=1e-5)
+    found = analyze_ball_bar(arc(T), seen)
+    assert found.squareness_error_mm_m == pytest.approx(0.080, abs=1e-4)
+    assert found.scale_error_mm_m == pytest.approx(0.060, abs=1e-4)
+    assert found.size_error_mm == pytest.approx(0.5 * 60e-6 * R, abs=1e-6)
+    assert found.backlash_mm == pytest.approx((0.0, 0.0), abs=1e-5)
 
 
 def test_a_lag_makes_it_smaller_and_not_out_of_round() -> None:
-    found = ball_bar(arc(T), arc(T - 0.01, R * 0.999))
-    assert found.size == pytest.approx(-0.001 * R, abs=1e-6)
-    assert found.roundness == pytest.approx(0.0, abs=1e-6)
+    found = analyze_ball_bar(arc(T), arc(T - 0.01, R * 0.999))
+    assert found.size_error_mm == pytest.approx(-0.001 * R, abs=1e-6)
+    assert found.circularity_mm == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_spike_behind_the_reversal_of_one_axis() -> None:
     """v reverses at 90° and 270°, u at 0° and 180°: a bump of 8 µm half a degree behind 90°."""
     bump = 0.008 * np.exp(-(((np.degrees(T) - 90.5) / 0.4) ** 2))
     seen = arc(T) + bump[:, None] * np.column_stack([np.cos(T), np.sin(T)])
-    found = ball_bar(arc(T), seen)
-    assert found.spike[1] == pytest.approx(0.008, abs=4e-4)
-    assert found.spike[0] < 0.001
+    found = analyze_ball_bar(arc(T), seen)
+    assert found.reversal_spike_mm[1] == pytest.approx(0.008, abs=4e-4)
+    assert found.reversal_spike_mm[0] < 0.001
 
 
 def test_a_short_arc_tells_only_its_size() -> None:
     part = np.radians(np.linspace(10.0, 80.0, 2000))
-    found = ball_bar(arc(part), with_play(arc(part), 0.01, 0.01))
-    assert math.isnan(found.backlash[0])
-    assert math.isnan(found.squareness)
-    assert found.covered == pytest.approx(70.0, abs=0.1)
+    found = analyze_ball_bar(arc(part), with_play(arc(part), 0.01, 0.01))
+    assert math.isnan(found.backlash_mm[0])
+    assert math.isnan(found.squareness_error_mm_m)
+    assert found.arc_angle_deg == pytest.approx(70.0, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -93,15 +93,15 @@ def test_a_short_arc_tells_only_its_size() -> None:
 )
 def test_what_is_no_arc_is_refused(demand: np.ndarray, code: str) -> None:
     with raises_code(AnalysisError, code):
-        ball_bar(demand, demand)
+        analyze_ball_bar(demand, demand)
 
 
 def test_arcs_are_found_by_their_lines() -> None:
     straight = np.column_stack([np.linspace(0, 65, 300), np.full(300, -60.0)])
     demand = np.concatenate([straight, arc(T[::20]), straight[::-1]])
     lines = np.repeat([3.0, 4.0, 5.0], [300, len(T[::20]), 300])
-    ((line, part),) = arcs_in(demand, lines)
+    ((line, part),) = find_arcs(demand, lines)
     assert line == 4
     assert (part.start, part.stop) == (300, 300 + len(T[::20]))
-    assert arcs_in(straight, np.full(300, 3.0)) == ()
-    assert arcs_in(np.empty((0, 2)), np.empty(0)) == ()
+    assert find_arcs(straight, np.full(300, 3.0)) == ()
+    assert find_arcs(np.empty((0, 2)), np.empty(0)) == ()

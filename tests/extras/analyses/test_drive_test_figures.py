@@ -9,25 +9,30 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import Kind, analysed
-from app.extras.analyses.drive_test_figures import (
-    TESTED,
-    Part,
-    drive_test_figures,
-    figures_sheet,
-    path_in,
-    shown_words,
-    words_of,
+from app.extras.analyses.analyses import AnalysisKind, analyze
+from app.extras.analyses.drive_test_results import (
+    TEST_PATH_KEY,
+    ResultsPart,
+    calculate_results,
+    describe_test_path,
+    encode_test_path,
+    find_test_path,
+    make_results_table,
 )
 from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
-from core.extras.analyses.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
-from core.records.record import AnalysisError, Record
+from core.extras.analyses.step_response import (
+    analyze_sine,
+    calculate_bandwidth,
+    find_narrowest_limit,
+    find_speed_at_limit,
+)
+from core.records.record import AnalysisError, ScopeRecord
 from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds
 from tests.texts import text
 
 DRIVES = {axis.name: axis for axis in load_machine(None).axes if not axis.rotary}
-LIMITS = Limits(top=42.0, amax=3000.0, rate=RATE)
+LIMITS = Limits(max_speed=42.0, max_acceleration=3000.0, sample_rate_hz=RATE)
 TAU = 0.004
 _FINE = 10  # steps of the drive in one sample
 STEP = DriveTestPath("Z", Shape.STEP, 0.5)
@@ -35,9 +40,9 @@ RAMP = DriveTestPath("Z", Shape.RAMP, -5.0, speed=20.0)
 SINE = DriveTestPath("Z", Shape.SINE, 0.5, frequencies=(2.0, 10.0, 40.0, 80.0))
 
 
-def played(path: DriveTestPath, tau: float = TAU, lasts: float = 1.0) -> Record:
+def played(path: DriveTestPath, tau: float = TAU, lasts: float = 1.0) -> ScopeRecord:
     """A drive that is late by one time constant plays the path from 2 s on, ``lasts`` of it."""
-    ramps = path.ramps(LIMITS)
+    ramps = path.make_ramps(LIMITS)
     ends = np.cumsum([0.0] + [piece[0] for piece in ramps])
     count = len(seconds(0.0, 2.0 + lasts * ends[-1] + 0.5))
     times = np.arange(_FINE * count) / (_FINE * RATE)
@@ -55,12 +60,12 @@ def played(path: DriveTestPath, tau: float = TAU, lasts: float = 1.0) -> Record:
     for i in range(1, len(times)):  # exact for a demand that is straight between two samples
         actual[i] = decay * actual[i - 1] + (slope - decay) * demand[i - 1] + (1.0 - slope) * demand[i]
     record = record_of(times[::_FINE], Z_demand=demand[::_FINE], Z_actual=actual[::_FINE])
-    return dataclasses.replace(record, about={**record.about, TESTED: words_of(path)})
+    return dataclasses.replace(record, about={**record.about, TEST_PATH_KEY: encode_test_path(path)})
 
 
 def test_what_was_played_is_read_back_from_a_record() -> None:
     for path in (STEP, RAMP, SINE):
-        assert path_in(played(path)) == path
+        assert find_test_path(played(path)) == path
 
 
 @pytest.mark.parametrize(
@@ -68,61 +73,65 @@ def test_what_was_played_is_read_back_from_a_record() -> None:
 )
 def test_other_records_are_none_of_a_test(told: str) -> None:
     record = record_of(seconds(0.0, 1.0))
-    assert path_in(dataclasses.replace(record, about={TESTED: told})) is None
+    assert find_test_path(dataclasses.replace(record, about={TEST_PATH_KEY: told})) is None
 
 
 def test_the_step_out_and_back_of_a_first_order_drive() -> None:
     """Braking by a until T leaves an error e, which goes with exp(−t/τ): in position after τ·ln(e/band)."""
-    found = drive_test_figures(played(STEP), STEP, DRIVES)
-    assert [each.way for each in found.steps] == pytest.approx([0.5, -0.5])
+    found = calculate_results(played(STEP), STEP, DRIVES)
+    assert [each.step_size for each in found.step_responses] == pytest.approx([0.5, -0.5])
     # speeding up and braking: e' = v − e/τ; solved from rest over the two halves of h = √(s/a)
-    h, a = math.sqrt(0.5 / LIMITS.amax), LIMITS.amax
-    assert a * h < LIMITS.top
+    h, a = math.sqrt(0.5 / LIMITS.max_acceleration), LIMITS.max_acceleration
+    assert a * h < LIMITS.max_speed
     half = a * TAU * (h - TAU * (1.0 - math.exp(-h / TAU)))
     t = np.linspace(0.0, h, 2001)
     gone = 1.0 - np.exp(-t / TAU)
     braked = half * (1.0 - gone) + a * h * TAU * gone - a * TAU * (t - TAU * gone)
     end = float(braked[-1])
     expected = TAU * math.log(end / DRIVES["Z"].in_position)
-    for each in found.steps:
-        assert each.settling == pytest.approx(expected, abs=1.5 / RATE)
+    for each in found.step_responses:
+        assert each.settling_time_s == pytest.approx(expected, abs=1.5 / RATE)
         assert each.overshoot == pytest.approx(0.0, abs=1e-6)
-    assert np.abs(found.move.error).max() == pytest.approx(float(braked.max()), rel=0.01)
+    assert np.abs(found.motion.following_error).max() == pytest.approx(float(braked.max()), rel=0.01)
 
 
 def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
-    found = drive_test_figures(played(RAMP), RAMP, DRIVES)
-    assert [each.error for each in found.ramps] == pytest.approx([-20.0 * TAU, 20.0 * TAU], rel=1e-3)
-    cells = [row.cells for row in figures_sheet("", found, True).rows]
+    found = calculate_results(played(RAMP), RAMP, DRIVES)
+    assert [each.lag_mm for each in found.ramp_responses] == pytest.approx(
+        [-20.0 * TAU, 20.0 * TAU], rel=1e-3
+    )
+    cells = [row.cells for row in make_results_table("", found, True).rows]
     assert ("LAG AT CONSTANT SPEED", "0.0800 mm", "0.0800 mm") in cells
     assert ("SPEED / LAG (GAIN)", "250 /s", "250 /s") in cells  # Kv = 1/τ
 
 
 def test_sines_have_gain_and_lag_of_the_formula_and_so_the_bandwidth() -> None:
     """1/√(1+ω²τ²), arctan ωτ; 3 dB down at 1/2πτ = 39.8 Hz; never 90° late."""
-    found = drive_test_figures(played(SINE), SINE, DRIVES)
-    for each in found.sines:
-        omega = 2.0 * math.pi * each.frequency * TAU
+    found = calculate_results(played(SINE), SINE, DRIVES)
+    for each in found.sine_responses:
+        omega = 2.0 * math.pi * each.frequency_hz * TAU
         assert each.gain == pytest.approx(1.0 / math.hypot(1.0, omega), rel=0.005)
-        assert each.lag == pytest.approx(math.degrees(math.atan(omega)), abs=0.5)
-    seen = bandwidth(found.sines)
-    assert seen.down == pytest.approx(1.0 / (2.0 * math.pi * TAU), rel=0.02)
-    assert seen.quarter is None
-    words = {row.cells[0]: row.cells[2] for row in figures_sheet("", found, True).rows}
+        assert each.phase_lag_deg == pytest.approx(math.degrees(math.atan(omega)), abs=0.5)
+    seen = calculate_bandwidth(found.sine_responses)
+    assert seen.gain_bandwidth_hz == pytest.approx(1.0 / (2.0 * math.pi * TAU), rel=0.02)
+    assert seen.phase_bandwidth_hz is None
+    words = {row.cells[0]: row.cells[2] for row in make_results_table("", found, True).rows}
     assert words["90° PHASE LAG"] == text("scope.not-reached", most=80)
 
 
 def test_the_analyses_page_knows_a_record_of_a_test() -> None:
-    found = analysed(Kind.RESPONSE, played(RAMP), 0, DRIVES)
-    assert found.test is not None
-    assert found.test.path == RAMP
-    assert shown_words(RAMP, True) == "Z−  RAMP  5.0000 mm, 20.000 mm/s"
-    assert shown_words(SINE, True) == "Z+  SINE  0.5000 mm, 2, 10, 40, 80 Hz"
+    found = analyze(AnalysisKind.AXIS_RESPONSE, played(RAMP), 0, DRIVES)
+    assert found.drive_test is not None
+    assert found.drive_test.test_path == RAMP
+    assert describe_test_path(RAMP, True) == "Z−  RAMP  5.0000 mm, 20.000 mm/s"
+    assert describe_test_path(SINE, True) == "Z+  SINE  0.5000 mm, 2, 10, 40, 80 Hz"
 
 
 def test_response_and_window_are_parts_of_the_whole() -> None:
-    found = drive_test_figures(played(STEP), STEP, DRIVES)
-    whole, *parts = (figures_sheet("", found, True, part).rows for part in (Part.ALL, *Part) if part)
+    found = calculate_results(played(STEP), STEP, DRIVES)
+    whole, *parts = (
+        make_results_table("", found, True, part).rows for part in (ResultsPart.ALL, *ResultsPart) if part
+    )
     assert list(whole) == [*parts[0], *parts[1]]
 
 
@@ -132,27 +141,27 @@ def test_response_and_window_are_parts_of_the_whole() -> None:
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
 def test_a_test_that_was_let_go_has_no_figures(path: DriveTestPath) -> None:
     with raises_code(AnalysisError, "test-broken-off"):
-        drive_test_figures(played(path, lasts=0.3), path, DRIVES)
+        calculate_results(played(path, lasts=0.3), path, DRIVES)
 
 
 def test_a_record_of_another_machine() -> None:
     path = dataclasses.replace(STEP, axis="Y")
     with raises_code(AnalysisError, "no-axis", "Y"):
-        drive_test_figures(played(STEP), path, DRIVES)
+        calculate_results(played(STEP), path, DRIVES)
 
 
 def test_a_step_within_its_own_window_is_told() -> None:
-    path = dataclasses.replace(STEP, size=DRIVES["Z"].in_position)
+    path = dataclasses.replace(STEP, travel_mm=DRIVES["Z"].in_position)
     with raises_code(AnalysisError, "step-too-small"):
-        drive_test_figures(played(path), path, DRIVES)
+        calculate_results(played(path), path, DRIVES)
 
 
 def test_a_drive_that_tells_no_place() -> None:
     record = played(STEP)
-    none = np.full(len(record.times), np.nan)
-    record = dataclasses.replace(record, columns={**record.columns, "Z actual": none})
+    none = np.full(len(record.times_s), np.nan)
+    record = dataclasses.replace(record, values_by_channel={**record.values_by_channel, "Z actual": none})
     with raises_code(AnalysisError, "no-positions"):
-        drive_test_figures(record, STEP, DRIVES)
+        calculate_results(record, STEP, DRIVES)
 
 
 # --- windows and speeds -------------------------------------------------------------------------------------
@@ -162,20 +171,20 @@ def test_the_narrowest_window_is_what_lasts_too_long_within() -> None:
     """A triangle of 1 mm that rises and falls 10 ms each is above w for 20·(1−w) ms: 5 ms at w = .75."""
     times = seconds(0.0, 1.0)
     error = np.maximum(0.0, 1.0 - np.abs(times - 0.5) / 0.010)
-    assert narrowest_window(times, error, 0.005) == pytest.approx(0.75, abs=0.06)
-    assert narrowest_window(times, -error, 0.0) == pytest.approx(1.0, abs=0.11)
-    assert narrowest_window(times, 0.0 * error, 0.005) == 0.0
+    assert find_narrowest_limit(times, error, 0.005) == pytest.approx(0.75, abs=0.06)
+    assert find_narrowest_limit(times, -error, 0.0) == pytest.approx(1.0, abs=0.11)
+    assert find_narrowest_limit(times, 0.0 * error, 0.005) == 0.0
 
 
 def test_the_speed_at_which_a_lag_meets_a_growing_window() -> None:
     """.2 + .01 v = .02 v gives 20 mm/s; a window that grows as fast as the lag is never met."""
-    assert speed_of_window(0.02, 0.2, 1.2, 100.0) == pytest.approx(20.0)
-    assert speed_of_window(0.01, 0.2, 1.2, 100.0) is None
-    assert speed_of_window(0.011, 0.2, 1.2, 100.0) is None  # at 200 mm/s, faster than the axis is
+    assert find_speed_at_limit(0.02, 0.2, 1.2, 100.0) == pytest.approx(20.0)
+    assert find_speed_at_limit(0.01, 0.2, 1.2, 100.0) is None
+    assert find_speed_at_limit(0.011, 0.2, 1.2, 100.0) is None  # at 200 mm/s, faster than the axis is
 
 
 def test_no_bandwidth_is_told_that_was_not_seen() -> None:
     t = seconds(0.0, 2.0)
     wave = np.sin(2.0 * math.pi * 5.0 * t)
-    seen = bandwidth([sine_response(t, wave, wave, 5.0)])
-    assert (seen.down, seen.quarter) == (None, None)
+    seen = calculate_bandwidth([analyze_sine(t, wave, wave, 5.0)])
+    assert (seen.gain_bandwidth_hz, seen.phase_bandwidth_hz) == (None, None)

@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.extras.analyses.path_error import of_samples, path_error, worst_places
+from core.extras.analyses.path_error import (
+    calculate_from_samples,
+    calculate_path_error,
+    find_worst_deviations,
+)
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 
@@ -14,9 +18,9 @@ def test_a_slide_that_is_late_is_still_on_its_path() -> None:
     t = np.arange(1000) / 1000.0
     demand = np.column_stack([20.0 * t, 30.0 * t])
     actual = np.column_stack([20.0 * (t - 0.01), 30.0 * (t - 0.01)])
-    error = of_samples(demand, actual, np.ones(1000), 1000.0)
-    assert error.distance[20:] == pytest.approx(0.0, abs=1e-12)
-    assert error.along[20:] == pytest.approx(np.hypot(20.0, 30.0) * (t[20:] - 0.01))
+    error = calculate_from_samples(demand, actual, np.ones(1000), 1000.0)
+    assert error.distances_mm[20:] == pytest.approx(0.0, abs=1e-12)
+    assert error.path_positions_mm[20:] == pytest.approx(np.hypot(20.0, 30.0) * (t[20:] - 0.01))
 
 
 def test_one_axis_late_beside_the_other() -> None:
@@ -24,8 +28,8 @@ def test_one_axis_late_beside_the_other() -> None:
     t = np.arange(1000) / 1000.0
     demand = np.column_stack([10.0 * t, 10.0 * t])
     actual = np.column_stack([10.0 * t - 0.02, 10.0 * t])
-    error = of_samples(demand, actual, np.ones(1000), 1000.0)
-    assert error.distance[10:-10] == pytest.approx(0.02 / np.sqrt(2.0), abs=1e-9)
+    error = calculate_from_samples(demand, actual, np.ones(1000), 1000.0)
+    assert error.distances_mm[10:-10] == pytest.approx(0.02 / np.sqrt(2.0), abs=1e-9)
 
 
 def test_a_circle_that_lags_shrinks() -> None:
@@ -35,8 +39,8 @@ def test_a_circle_that_lags_shrinks() -> None:
     demand = r * np.column_stack([np.cos(omega * t), np.sin(omega * t)])
     gain, phase = 1.0 / np.hypot(1.0, omega * tau), np.arctan(omega * tau)
     actual = gain * r * np.column_stack([np.cos(omega * t - phase), np.sin(omega * t - phase)])
-    error = of_samples(demand, actual, np.ones(4000), 1000.0)
-    assert error.distance[100:-100] == pytest.approx(r * (1.0 - gain), abs=2e-5)  # chords of .0000125 mm
+    error = calculate_from_samples(demand, actual, np.ones(4000), 1000.0)
+    assert error.distances_mm[100:-100] == pytest.approx(r * (1.0 - gain), abs=2e-5)  # chords of .0000125 mm
 
 
 def test_the_worst_lines_come_first() -> None:
@@ -47,20 +51,20 @@ def test_the_worst_lines_come_first() -> None:
     )
     measured[14, 0] = 10.05
     due = np.repeat([0, 1], 10)
-    worst = worst_places(path_error(path, np.array([7, 8, 8]), measured, due, 1))
+    worst = find_worst_deviations(calculate_path_error(path, np.array([7, 8, 8]), measured, due, 1))
     assert [each.line for each in worst] == [8, 7]
-    assert worst[0].distance == pytest.approx(-0.05)  # to the right of the way up
-    assert worst[0].sample == 14
-    assert worst[0].place == pytest.approx((10.0, x[4]))
-    assert worst[1].distance == pytest.approx(0.01)
+    assert worst[0].distance_mm == pytest.approx(-0.05)  # to the right of the way up
+    assert worst[0].sample_index == 14
+    assert worst[0].position == pytest.approx((10.0, x[4]))
+    assert worst[1].distance_mm == pytest.approx(0.01)
 
 
 def test_magnified_it_lies_so_much_farther_off() -> None:
     path = np.array([[0.0, 0.0], [10.0, 0.0]])
     measured = np.column_stack([np.linspace(1, 9, 10), np.full(10, 0.01)])
-    error = path_error(path, np.array([1, 1]), measured, np.zeros(10, dtype=np.int64), 1)
-    assert error.magnified(100.0)[:, 1] == pytest.approx(1.0)
-    assert error.magnified(100.0)[:, 0] == pytest.approx(measured[:, 0])
+    error = calculate_path_error(path, np.array([1, 1]), measured, np.zeros(10, dtype=np.int64), 1)
+    assert error.magnify_deviation(100.0)[:, 1] == pytest.approx(1.0)
+    assert error.magnify_deviation(100.0)[:, 0] == pytest.approx(measured[:, 0])
 
 
 def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
@@ -69,9 +73,11 @@ def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
     up, back = np.column_stack([10 * t, 0 * t]), np.column_stack([10 * t[::-1], 0 * t + 0.01])
     demand = np.concatenate([up, back])
     lines = np.repeat([1.0, 2.0], 500)
-    error = of_samples(demand, demand - (0.0, 0.006) * (lines == 2.0)[:, None], lines, 1000.0, late=0.02)
-    assert error.distance[700:950] == pytest.approx(0.006)
-    assert (error.lines[700:950] == 2).all()
+    error = calculate_from_samples(
+        demand, demand - (0.0, 0.006) * (lines == 2.0)[:, None], lines, 1000.0, delay_s=0.02
+    )
+    assert error.distances_mm[700:950] == pytest.approx(0.006)
+    assert (error.line_numbers[700:950] == 2).all()
 
 
 @pytest.mark.parametrize(
@@ -84,12 +90,12 @@ def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
 )
 def test_what_is_no_path_is_refused(demand: np.ndarray, code: str) -> None:
     with raises_code(AnalysisError, code):
-        of_samples(demand, demand, np.ones(len(demand)), 1000.0)
+        calculate_from_samples(demand, demand, np.ones(len(demand)), 1000.0)
 
 
 def test_what_does_not_belong_together_is_refused() -> None:
     path, measured = np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros((10, 2))
     with raises_code(AnalysisError, "lengths-differ"):
-        path_error(path, np.array([1]), measured, np.zeros(10, dtype=np.int64), 1)
+        calculate_path_error(path, np.array([1]), measured, np.zeros(10, dtype=np.int64), 1)
     with raises_code(AnalysisError, "lengths-differ"):
-        path_error(path, np.array([1, 1]), measured, np.zeros(9, dtype=np.int64), 1)
+        calculate_path_error(path, np.array([1, 1]), measured, np.zeros(9, dtype=np.int64), 1)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import Analyses, Kind, analysed, scaled
-from app.extras.analyses.spindle_response import SpindleResponse, last_run_up
-from core.records.record import AnalysisError, FloatArray, Record
+from app.extras.analyses.analyses import AnalysesModel, AnalysisKind, analyze, scale_drawing
+from app.extras.analyses.spindle_response import SpindleResponse, find_last_run_up
+from core.records.record import AnalysisError, FloatArray, ScopeRecord
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
 from tests.texts import text
@@ -20,7 +20,7 @@ MODEL = load_machine(None).spindle  # at speed within 5 %
 TAU = 0.2  # s
 
 
-def turned(*changes: tuple[float, float], swing: float = 0.0) -> Record:
+def turned(*changes: tuple[float, float], swing: float = 0.0) -> ScopeRecord:
     """Speeds asked for at instants; the spindle follows by a lag of first order, and swings at 10 Hz."""
     times = seconds(0.0, 12.0)
     asked, speed = np.zeros_like(times), np.zeros_like(times)
@@ -33,44 +33,44 @@ def turned(*changes: tuple[float, float], swing: float = 0.0) -> Record:
     return record_of(times, spindle_command=asked, spindle_speed=speed)
 
 
-def found(record: Record) -> SpindleResponse:
-    return last_run_up(record, MODEL)
+def found(record: ScopeRecord) -> SpindleResponse:
+    return find_last_run_up(record, MODEL)
 
 
 def test_a_lag_of_first_order_by_its_formula() -> None:
     response = found(turned((1.0, 1000.0)))
     assert MODEL.at_speed == pytest.approx(0.05)
-    step = response.steps[0]
-    assert step.way == 1000.0
-    assert step.rise == pytest.approx(TAU * math.log(9.0), abs=0.002)
-    assert response.acceleration == pytest.approx(0.8 * 1000.0 / (TAU * math.log(9.0)), rel=0.01)
+    step = response.step_responses[0]
+    assert step.step_size == 1000.0
+    assert step.rise_time_s == pytest.approx(TAU * math.log(9.0), abs=0.002)
+    assert response.acceleration_rpm_s == pytest.approx(0.8 * 1000.0 / (TAU * math.log(9.0)), rel=0.01)
     assert step.overshoot == 0.0
     within = [TAU * math.log(1.0 / share) for share in (0.05, 0.02, 0.01)]
-    assert [each.settling for each in response.steps] == pytest.approx(within, abs=0.002)
+    assert [each.settling_time_s for each in response.step_responses] == pytest.approx(within, abs=0.002)
 
 
 def test_how_evenly_it_turns() -> None:
     response = found(turned((1.0, 1000.0), swing=4.0))
-    assert response.swing == pytest.approx(8.0, abs=0.4)
-    assert response.off == pytest.approx(0.0, abs=0.2)
+    assert response.variation_rpm == pytest.approx(8.0, abs=0.4)
+    assert response.mean_error_rpm == pytest.approx(0.0, abs=0.2)
 
 
 def test_a_swing_wider_than_a_window_never_settles_in_it() -> None:
-    settling = [each.settling for each in found(turned((1.0, 1000.0), swing=15.0)).steps]
+    settling = [each.settling_time_s for each in found(turned((1.0, 1000.0), swing=15.0)).step_responses]
     assert math.isfinite(settling[1])  # 20 rpm
     assert math.isnan(settling[2])  # 10 rpm
 
 
 def test_of_several_the_last_run_up_and_no_stop() -> None:
     response = found(turned((1.0, 1000.0), (4.0, 2000.0), (8.0, 0.0)))
-    assert (response.asked[0], response.asked[-1]) == (1000.0, 2000.0)
-    assert response.steps[0].way == 1000.0
+    assert (response.commanded_rpm[0], response.commanded_rpm[-1]) == (1000.0, 2000.0)
+    assert response.step_responses[0].step_size == 1000.0
 
 
 def test_backward_is_a_speed_too() -> None:
     response = found(turned((1.0, -500.0)))
-    assert response.steps[0].way == -500.0
-    assert response.steps[0].rise == pytest.approx(TAU * math.log(9.0), abs=0.002)
+    assert response.step_responses[0].step_size == -500.0
+    assert response.step_responses[0].rise_time_s == pytest.approx(TAU * math.log(9.0), abs=0.002)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_backward_is_a_speed_too() -> None:
     [turned(), turned((0.0, 800.0)), turned((0.0, 800.0), (5.0, 0.0)), turned((0.0, 800.0), (5.0, 830.0))],
     ids=["stood", "even", "stopped", "within the window"],
 )
-def test_without_a_run_up_it_says_what_to_do(record: Record) -> None:
+def test_without_a_run_up_it_says_what_to_do(record: ScopeRecord) -> None:
     with raises_code(AnalysisError, "no-step"):
         found(record)
 
@@ -87,15 +87,15 @@ def test_a_speed_that_nobody_tells_is_none() -> None:
     nothing: FloatArray = np.full(12001, np.nan)
     with raises_code(AnalysisError, "no-measured-speed"):
         found(record_of(seconds(0.0, 12.0), spindle_speed=nothing))
-    assert "no spindle" in analysed(Kind.SPINDLE, turned((1.0, 500.0)), 0, {}).why
+    assert "no spindle" in analyze(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 500.0)), 0, {}).missing_reason
 
 
 def test_its_sheet_and_drawing() -> None:
-    page = Analyses(SimpleNamespace(metric=False), spindle=MODEL, kind=Kind.SPINDLE)  # type: ignore[arg-type]
-    page.found = analysed(Kind.SPINDLE, turned((1.0, 1000.0)), 0, {}, MODEL)
-    rows = {row.cells[0]: row.cells[1] for row in page.sheet().rows}
+    page = AnalysesModel(SimpleNamespace(metric=False), spindle=MODEL, kind=AnalysisKind.SPINDLE_RESPONSE)  # type: ignore[arg-type]
+    page.result = analyze(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 1000.0)), 0, {}, MODEL)
+    rows = {row.cells[0]: row.cells[1] for row in page.make_table().rows}
     assert rows["SPEED"] == "0 → 1000 rpm"
     assert rows[text("scope.settled-after", share="5 %")] == "0.600 s"
-    drawing = scaled(page.drawing(), 1.0 / 25.4)
+    drawing = scale_drawing(page.make_drawing(), 1.0 / 25.4)
     assert drawing.curves[0][:, 1].max() == pytest.approx(1000.0, abs=0.2)  # rpm in inch too
     page.close()

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from core.extras.analyses.step_response import (
-    at_other_speed,
-    ramp_response,
-    sine_response,
-    step_response,
-    would_trip,
+    analyze_ramp,
+    analyze_sine,
+    analyze_step,
+    find_trip_time,
+    scale_error_to_speed,
 )
 from core.records.record import AnalysisError
 from tests.coded import raises_code
@@ -25,12 +25,12 @@ def test_a_first_order_lag() -> None:
     """τ: 10 to 90 % take τ·ln 9, half is done after τ·ln 2, it is within .1 % after τ·ln 1000."""
     tau = 0.05
     response = np.where(T >= 0.0, 0.1 * (1.0 - np.exp(-np.maximum(T, 0.0) / tau)), 0.0)
-    found = step_response(T, STEP, response, 0.0001)
-    assert found.rise == pytest.approx(tau * math.log(9.0), abs=5e-4)
-    assert found.delay == pytest.approx(tau * math.log(2.0), abs=1e-3)
-    assert found.settling == pytest.approx(tau * math.log(1000.0), abs=2e-3)
+    found = analyze_step(T, STEP, response, 0.0001)
+    assert found.rise_time_s == pytest.approx(tau * math.log(9.0), abs=5e-4)
+    assert found.delay_s == pytest.approx(tau * math.log(2.0), abs=1e-3)
+    assert found.settling_time_s == pytest.approx(tau * math.log(1000.0), abs=2e-3)
     assert found.overshoot == pytest.approx(0.0, abs=1e-9)
-    assert found.rest == pytest.approx(0.0, abs=1e-9)
+    assert found.final_error == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -40,14 +40,14 @@ def test_the_overshoot_of_a_second_order(sign: float) -> None:
     wd = w * math.sqrt(1.0 - d * d)
     t = np.maximum(T, 0.0)
     response = 1.0 - np.exp(-d * w * t) * (np.cos(wd * t) + d * w / wd * np.sin(wd * t))
-    found = step_response(T, sign * STEP, sign * 0.1 * np.where(T >= 0.0, response, 0.0), 0.001)
+    found = analyze_step(T, sign * STEP, sign * 0.1 * np.where(T >= 0.0, response, 0.0), 0.001)
     assert found.overshoot == pytest.approx(math.exp(-math.pi * d / math.sqrt(1.0 - d * d)), abs=1e-3)
-    assert found.way == pytest.approx(sign * 0.1)
+    assert found.step_size == pytest.approx(sign * 0.1)
 
 
 def test_what_does_not_settle_is_not_said_to() -> None:
-    assert math.isnan(step_response(T, STEP, 0.9 * STEP, 0.001).settling)
-    assert step_response(T, STEP, 0.9 * STEP, 0.001).rest == pytest.approx(-0.01)
+    assert math.isnan(analyze_step(T, STEP, 0.9 * STEP, 0.001).settling_time_s)
+    assert analyze_step(T, STEP, 0.9 * STEP, 0.001).final_error == pytest.approx(-0.01)
 
 
 @pytest.mark.parametrize("frequency", [1.0, 5.0, 20.0])
@@ -55,11 +55,11 @@ def test_a_sine_of_known_following_error(frequency: float) -> None:
     """First order: gain 1/√(1+ω²τ²), lag arctan ωτ, error ωτ/√(1+ω²τ²) of the amplitude."""
     tau, omega, a = 0.01, 2.0 * math.pi * frequency, 0.2
     gain, phase = 1.0 / math.hypot(1.0, omega * tau), math.atan(omega * tau)
-    found = sine_response(T, a * np.sin(omega * T), a * gain * np.sin(omega * T - phase), frequency)
+    found = analyze_sine(T, a * np.sin(omega * T), a * gain * np.sin(omega * T - phase), frequency)
     assert found.gain == pytest.approx(gain)
-    assert found.lag == pytest.approx(math.degrees(phase))
-    assert found.error == pytest.approx(a * omega * tau * gain)
-    assert found.late == pytest.approx(phase / omega)
+    assert found.phase_lag_deg == pytest.approx(math.degrees(phase))
+    assert found.max_error_mm == pytest.approx(a * omega * tau * gain)
+    assert found.lag_s == pytest.approx(phase / omega)
 
 
 def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
@@ -67,21 +67,21 @@ def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
     t = np.maximum(T, 0.0)
     request = speed * np.minimum(t, 2.0)
     response = speed * (t - tau * (1.0 - np.exp(-t / tau)))
-    found = ramp_response(T[:2400], request[:2400], response[:2400])
-    assert found.speed == pytest.approx(speed)
-    assert found.error == pytest.approx(speed * tau, rel=1e-3)
-    assert found.lag == pytest.approx(tau, rel=1e-3)
+    found = analyze_ramp(T[:2400], request[:2400], response[:2400])
+    assert found.speed_mm_s == pytest.approx(speed)
+    assert found.lag_mm == pytest.approx(speed * tau, rel=1e-3)
+    assert found.lag_s == pytest.approx(tau, rel=1e-3)
 
 
 @pytest.mark.parametrize(
     ("call", "code"),
     [
-        (lambda: step_response(T[:5], STEP[:5], STEP[:5], 0.001), "too-few-samples"),
-        (lambda: step_response(T, STEP, STEP, 0.1), "step-too-small"),
-        (lambda: step_response(T, STEP, np.full(len(T), np.nan), 0.001), "no-positions"),
-        (lambda: sine_response(T, STEP, STEP, 0.1), "too-short"),
-        (lambda: sine_response(T, 0 * T, STEP, 5.0), "no-sine"),
-        (lambda: ramp_response(T, 0 * T, 0 * T), "no-ramp"),
+        (lambda: analyze_step(T[:5], STEP[:5], STEP[:5], 0.001), "too-few-samples"),
+        (lambda: analyze_step(T, STEP, STEP, 0.1), "step-too-small"),
+        (lambda: analyze_step(T, STEP, np.full(len(T), np.nan), 0.001), "no-positions"),
+        (lambda: analyze_sine(T, STEP, STEP, 0.1), "too-short"),
+        (lambda: analyze_sine(T, 0 * T, STEP, 5.0), "no-sine"),
+        (lambda: analyze_ramp(T, 0 * T, 0 * T), "no-ramp"),
     ],
 )
 def test_what_is_no_response_is_refused(call: object, code: str) -> None:
@@ -91,16 +91,18 @@ def test_what_is_no_response_is_refused(call: object, code: str) -> None:
 
 def test_a_window_trips_only_when_it_lasts() -> None:
     error = np.where((T > 0.1) & (T < 0.2), 0.05, 0.0)
-    assert would_trip(T, error, 0.04, 0.05) == pytest.approx(0.101 + 0.05)
-    assert would_trip(T, -error, 0.04, 0.05) == pytest.approx(0.101 + 0.05)
-    assert would_trip(T, error, 0.04, 0.15) is None
-    assert would_trip(T, error, 0.06, 0.0) is None
+    assert find_trip_time(T, error, 0.04, 0.05) == pytest.approx(0.101 + 0.05)
+    assert find_trip_time(T, -error, 0.04, 0.05) == pytest.approx(0.101 + 0.05)
+    assert find_trip_time(T, error, 0.04, 0.15) is None
+    assert find_trip_time(T, error, 0.06, 0.0) is None
 
 
 def test_what_goes_with_the_speed_grows_with_it() -> None:
     velocity = np.sin(T)
-    found = at_other_speed(velocity, 0.002 * velocity, 3.0)
+    found = scale_error_to_speed(velocity, 0.002 * velocity, 3.0)
     assert found == pytest.approx(0.006 * velocity)
     cosine = np.cos(np.linspace(0, 2 * np.pi, 1001))[:-1]
     sine = np.sin(np.linspace(0, 2 * np.pi, 1001))[:-1]
-    assert at_other_speed(sine, 0.01 * cosine, 5.0) == pytest.approx(0.01 * cosine)  # none of it goes with it
+    assert scale_error_to_speed(sine, 0.01 * cosine, 5.0) == pytest.approx(
+        0.01 * cosine
+    )  # none of it goes with it

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.extras.analyses.thread_passes import Thread, fastest, find_thread
+from core.extras.analyses.thread_passes import ThreadAnalysis, analyze_thread, calculate_max_rpm
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 
@@ -37,67 +37,67 @@ def cut(
     return turns, along, depth, speed
 
 
-def found(**how: object) -> Thread:
-    return find_thread(*cut(**how))  # type: ignore[arg-type]
+def found(**how: object) -> ThreadAnalysis:
+    return analyze_thread(*cut(**how))  # type: ignore[arg-type]
 
 
 def test_passes_that_lie_in_one_groove() -> None:
     thread = found()
     assert len(thread.passes) == 3
-    assert thread.lead == pytest.approx(-LEAD, rel=1e-6)
-    assert thread.entry_spread == pytest.approx(0.0, abs=0.01)
-    assert [each.depth for each in thread.passes] == pytest.approx([10.0, 9.8, 9.6])
-    assert all(np.abs(each.off).max() < 1e-6 for each in thread.passes)
+    assert thread.reference_lead_mm == pytest.approx(-LEAD, rel=1e-6)
+    assert thread.entry_spread_deg == pytest.approx(0.0, abs=0.01)
+    assert [each.depth_mm for each in thread.passes] == pytest.approx([10.0, 9.8, 9.6])
+    assert all(np.abs(each.deviations_mm).max() < 1e-6 for each in thread.passes)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_a_pass_that_enters_at_another_angle(way: float) -> None:
     thread = found(entries=(0.0, 0.0, 12.0), way=way)
-    assert [each.entry for each in thread.passes] == pytest.approx([0.0, 0.0, 12.0], abs=0.05)
-    assert np.mean(thread.passes[2].off) == pytest.approx(-way * LEAD * 12.0 / 360.0, abs=1e-4)
+    assert [each.entry_angle_deg for each in thread.passes] == pytest.approx([0.0, 0.0, 12.0], abs=0.05)
+    assert np.mean(thread.passes[2].deviations_mm) == pytest.approx(-way * LEAD * 12.0 / 360.0, abs=1e-4)
 
 
 def test_an_entry_angle_before_the_first() -> None:
-    assert found(entries=(0.0, -5.0)).passes[1].entry == pytest.approx(-5.0, abs=0.05)
+    assert found(entries=(0.0, -5.0)).passes[1].entry_angle_deg == pytest.approx(-5.0, abs=0.05)
 
 
 def test_a_lead_that_is_wrong() -> None:
-    thread = find_thread(*cut(leads=(LEAD, LEAD, 1.503)), lead=-LEAD)
-    assert thread.passes[2].lead == pytest.approx(-1.503, abs=1e-5)
-    assert thread.lead_error == pytest.approx(-0.003, abs=1e-5)
-    assert abs(thread.passes[2].off[-1]) == pytest.approx(
+    thread = analyze_thread(*cut(leads=(LEAD, LEAD, 1.503)), lead=-LEAD)
+    assert thread.passes[2].lead_mm == pytest.approx(-1.503, abs=1e-5)
+    assert thread.max_lead_error_mm == pytest.approx(-0.003, abs=1e-5)
+    assert abs(thread.passes[2].deviations_mm[-1]) == pytest.approx(
         0.003 * 15.0, rel=0.05
     )  # half a turn at both ends is left out
 
 
 def test_the_spindle_gives_way_in_the_cut() -> None:
     thread = found(drop=30.0)
-    assert [each.speed_least for each in thread.passes] == pytest.approx([RPM - 30.0] * 3)
-    assert [each.drop for each in thread.passes] == pytest.approx([30.0] * 3, abs=5.0)
+    assert [each.min_speed_rpm for each in thread.passes] == pytest.approx([RPM - 30.0] * 3)
+    assert [each.speed_drop_rpm for each in thread.passes] == pytest.approx([30.0] * 3, abs=5.0)
 
 
 def test_a_known_ripple() -> None:
-    assert [each.ripple for each in found(ripple=4.0).passes] == pytest.approx([8.0] * 3, abs=0.1)
+    assert [each.speed_ripple_rpm for each in found(ripple=4.0).passes] == pytest.approx([8.0] * 3, abs=0.1)
 
 
 def test_a_pass_with_a_jolt_in_it_is_one_pass() -> None:
     turns, along, depth, speed = cut()
     jolt = (turns > 12.0) & (turns < 12.2)
     along[jolt] += 0.05 * LEAD * np.sin(2.0 * np.pi * (turns[jolt] - 12.0) / 0.2)
-    thread = find_thread(turns, along, depth, speed)
+    thread = analyze_thread(turns, along, depth, speed)
     assert len(thread.passes) == 3
-    assert [np.ptp(each.turns) for each in thread.passes] == pytest.approx([14.0] * 3, abs=0.3)
+    assert [np.ptp(each.spindle_revolutions) for each in thread.passes] == pytest.approx([14.0] * 3, abs=0.3)
 
 
 def test_the_speed_at_which_a_slide_can_just_follow() -> None:
-    assert fastest(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
+    assert calculate_max_rpm(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
 
 
 def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
     turns = np.arange(4000.0, dtype=np.float64) * 0.02
-    thread = find_thread(turns, -0.2 * turns, np.zeros(4000), np.full(4000, RPM))
+    thread = analyze_thread(turns, -0.2 * turns, np.zeros(4000), np.full(4000, RPM))
     assert len(thread.passes) == 1
-    assert thread.lead == pytest.approx(-0.2)
+    assert thread.reference_lead_mm == pytest.approx(-0.2)
 
 
 @pytest.mark.parametrize(
@@ -112,9 +112,9 @@ def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
 def test_what_is_no_thread_is_refused(turns: np.ndarray, code: str) -> None:
     n = len(turns)
     with raises_code(AnalysisError, code):
-        find_thread(turns, np.zeros(n), np.zeros(n), np.zeros(n))
+        analyze_thread(turns, np.zeros(n), np.zeros(n), np.zeros(n))
 
 
 def test_another_lead_is_not_taken_for_this_one() -> None:
     with raises_code(AnalysisError, "no-pass"):
-        find_thread(*cut(), lead=2.0)
+        analyze_thread(*cut(), lead=2.0)

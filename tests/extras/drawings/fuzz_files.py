@@ -9,8 +9,14 @@ from itertools import islice
 
 from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_view import Side, View, axis_named, contours, profile
-from core.extras.drawings.turning_contour import Reach, turning_contour
+from core.extras.drawings.drawing_placement import (
+    ContourSide,
+    DrawingPlacement,
+    extract_profile,
+    find_contours,
+    select_axis,
+)
+from core.extras.drawings.turning_contour import ToolReach, make_turning_contour
 from tests.extras.drawings.hand import chain, dxf
 from tests.fuzz.fuzz_target import Target, scratch
 
@@ -26,9 +32,9 @@ def _drawing(ending: str) -> Target:
         path = scratch() / f"fuzz{ending}"
         path.write_bytes(data)
         drawing = read_drawing(path)
-        view = View(axis_named(drawing, ""), drawing.unit or 1.0)
-        for net in islice(contours(drawing, view), 4):
-            turning_contour(profile(drawing, view, net, Side.OUTSIDE), Reach())
+        view = DrawingPlacement(select_axis(drawing, ""), drawing.unit_mm or 1.0)
+        for net in islice(find_contours(drawing, view), 4):
+            make_turning_contour(extract_profile(drawing, view, net, ContourSide.OUTSIDE), ToolReach())
         return ()
 
     def pairs(data: bytes, chance: random.Random) -> bytes:

@@ -9,12 +9,19 @@ from typing import Any
 import ezdxf
 import numpy as np
 
-from app.extras.drawings.drawing_plan import Asked, Plan, Planner
+from app.extras.drawings.drawing_plan import DrawingPlan, DrawingPlanner, PlanRequest
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_view import Profile, Side, View, axis_named, contours, profile
-from core.extras.drawings.profile_job import proposed_fields
-from core.extras.drawings.profile_program import ProfileProgram, profile_program
-from core.extras.shapes.shape_fields import Setting, Shop
+from core.extras.drawings.drawing_placement import (
+    ContourProfile,
+    ContourSide,
+    DrawingPlacement,
+    extract_profile,
+    find_contours,
+    select_axis,
+)
+from core.extras.drawings.profile_job import propose_fields
+from core.extras.drawings.profile_program import ProfileProgram, make_profile_program
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.interpreter.shared.job_setup import SecondaryOffset
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
@@ -43,15 +50,17 @@ def chain(*points: tuple[float, ...]) -> Draw:
     return lambda space: space.add_lwpolyline([(*p, 0.0)[:3] for p in points], format="xyb")
 
 
-def profile_of(path: Path, *, side: Side = Side.OUTSIDE, axis: str = "", **view: Any) -> Profile:
+def profile_of(
+    path: Path, *, side: ContourSide = ContourSide.OUTSIDE, axis: str = "", **view: Any
+) -> ContourProfile:
     """The first contour of a drawing."""
     drawing = read_drawing(path)
-    how = View(axis_named(drawing, axis), drawing.unit or 1.0, **view)
-    return profile(drawing, how, contours(drawing, how)[0], side)
+    how = DrawingPlacement(select_axis(drawing, axis), drawing.unit_mm or 1.0, **view)
+    return extract_profile(drawing, how, find_contours(drawing, how)[0], side)
 
 
 def program(
-    chosen: Profile,
+    chosen: ContourProfile,
     tools: dict[int, ToolShape] | None = None,
     *,
     metric: bool = True,
@@ -60,14 +69,14 @@ def program(
 ) -> ProfileProgram:
     """The program of a profile; what is not typed is as it is proposed."""
     shapes = TOOLS if tools is None else tools
-    fields = proposed_fields(chosen, typed, shapes, metric=metric, dialect=dialect)
-    setting = Setting(metric=metric, shop=Shop(tools=shapes), dialect=dialect)
-    return profile_program(chosen, fields, [], setting)
+    fields = propose_fields(chosen, typed, shapes, metric=metric, dialect=dialect)
+    setting = ProgramSettings(metric=metric, shop=ShopData(tools=shapes), dialect=dialect)
+    return make_profile_program(chosen, fields, [], setting)
 
 
 def text_of(made: ProfileProgram) -> str:
     """The whole program."""
-    assert not made.refusals, made.refusals
+    assert not made.errors, made.errors
     return "\n".join([*made.lines, "M30"]) + "\n"
 
 
@@ -76,16 +85,16 @@ def radii(
     *, inside: bool = False,
 ) -> np.ndarray:  # fmt: skip
     """Radii of the proved part at these Z, mm; the proof has nothing to say against the program."""
-    n = made.nose
+    n = made.nose_offset
     offsets = {n.number: SecondaryOffset(n.x, n.z, n.r)} if n else {}
     report, part = proved(text_of(made), TOOLS if tools is None else tools, offsets, stock)
     assert not report.errors, [d.text for d in report.diagnostics]
-    assert part.last is not None
-    points = np.array(part.last.bore if inside else part.last.outside)[::-1]
+    assert part.last_piece is not None
+    points = np.array(part.last_piece.bore_profile if inside else part.last_piece.outside_profile)[::-1]
     found: np.ndarray = np.interp(np.array(list(at)), points[:, 0], points[:, 1])
     return found
 
 
-def planned(asked: Asked) -> Plan:
+def planned(asked: PlanRequest) -> DrawingPlan:
     """Return the plan of a form, of a drawing that is read here."""
-    return Planner(lambda path, _watch: read_drawing(path)).plan(asked, lambda _seconds: None)
+    return DrawingPlanner(lambda path, _watch: read_drawing(path)).make_plan(asked, lambda _seconds: None)

@@ -8,10 +8,10 @@ from pathlib import Path
 import ezdxf
 
 from app.compose.runs.journal import Journal
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
-from app.extras.drawings.drawing_form import AddedDrawing
+from app.extras.drawings.drawing_form import AddedDrawingForm
 from app.extras.shapes.shapes_view import ShapesView
 from app.screen.page_base import Page
 
@@ -26,7 +26,7 @@ LOADING = 60.0  # s
 
 def prepare(_desk: Desk, _journal: Journal, _folder: Path) -> None:
     """A DXF of one closed outline into the program folder."""
-    folder = data_folder() / "programs"
+    folder = find_data_folder() / "programs"
     folder.mkdir(parents=True, exist_ok=True)
     drawing = ezdxf.filemanagement.new()
     drawing.header["$INSUNITS"] = INCH
@@ -36,10 +36,10 @@ def prepare(_desk: Desk, _journal: Journal, _folder: Path) -> None:
 
 def settle(page: Page | None, wait: Callable[[], None]) -> None:
     """Wait until a drawing has been read, and what was made of it proved."""
-    if isinstance(page, EditorPage) and isinstance(page.panel, ShapesView):
-        for each in page.panel.model.added if page.panel.model.form is not None else ():
-            if isinstance(each, AddedDrawing):
+    if isinstance(page, EditorPage) and isinstance(page.editor_panel, ShapesView):
+        for each in page.editor_panel.model.added_forms if page.editor_panel.model.form is not None else ():
+            if isinstance(each, AddedDrawingForm):
                 wait()
-                each.planning.settle(LOADING)
+                each.plan_worker.wait_for_results(LOADING)
                 wait()
-                each.trying.settle(LOADING)
+                each.trial_worker.wait_for_results(LOADING)

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from core.extras.drawings.drawing import MOST_BYTES, DrawingError
+from core.extras.drawings.drawing import MAX_DRAWING_BYTES, DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_view import Side
-from core.extras.drawings.turning_contour import Reach, turning_contour
+from core.extras.drawings.drawing_placement import ContourSide
+from core.extras.drawings.turning_contour import ToolReach, make_turning_contour
 from tests.coded import raises_code
 from tests.extras.drawings.hand import Draw, chain, dxf, profile_of
 
@@ -78,7 +78,7 @@ def test_a_contour_that_crosses_the_axis(tmp_path: Path) -> None:
 
 def test_no_bore_where_there_is_none(tmp_path: Path) -> None:
     path = dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 0)))
-    assert refused(path, side=Side.INSIDE).code == "no-bore"
+    assert refused(path, side=ContourSide.INSIDE).code == "no-bore"
 
 
 def test_no_such_axis(tmp_path: Path) -> None:
@@ -91,13 +91,13 @@ def test_no_such_axis(tmp_path: Path) -> None:
 def test_a_face_alone_is_nothing_to_turn(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4))), axis="Y 0")
     with raises_code(DrawingError, "nothing-to-turn"):
-        turning_contour(chosen, Reach())
+        make_turning_contour(chosen, ToolReach())
 
 
 def test_a_tool_that_leans_into_a_shoulder(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 6), (-12, 6), (-12, 0))))
     with raises_code(DrawingError, "too-steep", "72", "90"):
-        turning_contour(chosen, Reach(math.radians(70), math.radians(72.5)))
+        make_turning_contour(chosen, ToolReach(math.radians(70), math.radians(72.5)))
 
 
 # --- files
@@ -111,7 +111,7 @@ def test_empty_huge_missing_and_foreign_files(tmp_path: Path) -> None:
     assert refused(empty).code == "empty"
     error = refused(huge)
     assert error.code == "too-large"
-    assert f"{MOST_BYTES >> 20} MB" in str(error)
+    assert f"{MAX_DRAWING_BYTES >> 20} MB" in str(error)
     assert refused(tmp_path / "none.dxf").code == "unreadable"
     other, dwg = tmp_path / "part.step", tmp_path / "part.dxf"
     other.write_text("ISO-10303-21;")
@@ -150,7 +150,7 @@ def test_blocks_are_taken_apart(tmp_path: Path) -> None:
         space.add_blockref("PART", (10, 0), dxfattribs={"xscale": 2, "yscale": 2})
 
     chosen = profile_of(dxf(tmp_path / "b.dxf", draw))
-    assert (chosen.front, chosen.back) == (0.0, -16.0)
+    assert (chosen.front_z_mm, chosen.back_z_mm) == (0.0, -16.0)
     assert chosen.elements[0].end[0] == 8.0
 
 
@@ -220,8 +220,8 @@ def test_an_entity_of_an_unknown_kind_is_left_out_and_told(tmp_path: Path) -> No
     lines = "0 SECTION 2 ENTITIES 0 OWNKIND 8 PART 0 LINE 8 PART 10 0 20 0 11 0 21 5 0 ENDSEC 0 EOF"
     path.write_text("\n".join(lines.split()) + "\n")
     drawing = read_drawing(path)
-    assert len(drawing.drawn) == 1
-    assert drawing.left_out == {"OWNKIND": 1}
+    assert len(drawing.elements) == 1
+    assert drawing.omitted_counts == {"OWNKIND": 1}
 
 
 @pytest.mark.parametrize(
@@ -248,4 +248,4 @@ def test_names_in_svg_may_contain_nan(tmp_path: Path) -> None:
     path.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg"><path id="nan" class="inf" d="M0 0L5 5L9 0"/></svg>'
     )
-    assert len(read_drawing(path).drawn) == 2
+    assert len(read_drawing(path).elements) == 2

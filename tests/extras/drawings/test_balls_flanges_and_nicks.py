@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_view import Side, axes
-from core.extras.drawings.turning_contour import reach_of
+from core.extras.drawings.drawing_placement import ContourSide, find_axes
+from core.extras.drawings.turning_contour import calculate_tool_reach
 from tests.extras.drawings.hand import BLADE, RIGHT, SLIM, chain, dxf, profile_of, program, radii
 
 NEAR = 0.01  # mm of a radius
@@ -25,7 +25,7 @@ def test_a_ball_is_followed_to_where_it_falls_more_steeply_than_the_tool(tmp_pat
         space.add_arc((-15, 6), 5, 90, 180)
         space.add_line((-20, 6), (-30, 6))
 
-    a = reach_of(SLIM, Side.OUTSIDE).fall - math.radians(2.0)
+    a = calculate_tool_reach(SLIM, ContourSide.OUTSIDE).max_falling_angle_rad - math.radians(2.0)
     made = program(profile_of(dxf(tmp_path / "ball.dxf", draw)), {1: SLIM})
     turn = -15.0 - 5.0 * math.sin(a)
 
@@ -38,7 +38,7 @@ def test_a_ball_is_followed_to_where_it_falls_more_steeply_than_the_tool(tmp_pat
 
     at = [-5.0, -11.0, -14.0, -16.0, turn + 0.1, turn - 0.5, turn - 1.5, -24.0, -29.0]
     assert radii(made, "bar:23mm:80mm", at, {1: SLIM}) == pytest.approx([r(z) for z in at], abs=NEAR)
-    assert [round(left.front, 2) for left in made.left] == [round(turn, 2)]
+    assert [round(left.front_z_mm, 2) for left in made.uncut_ranges] == [round(turn, 2)]
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_the_lowest_line_is_the_axis_only_where_it_closes_the_contour(
     tmp_path: Path, points: tuple[tuple[float, float], ...], first: str
 ) -> None:
     """A cylinder at the end of a side view is its lowest line, too, and no axis."""
-    assert axes(read_drawing(dxf(tmp_path / "side.dxf", chain(*points))))[0].name == first
+    assert find_axes(read_drawing(dxf(tmp_path / "side.dxf", chain(*points))))[0].name == first
 
 
 def test_a_groove_with_slanted_walls_behind_a_flange(tmp_path: Path) -> None:
@@ -70,7 +70,7 @@ def test_a_groove_with_slanted_walls_behind_a_flange(tmp_path: Path) -> None:
         [12.0, 10.0, 8.0, 6.5, 5.0, 6.5, 8.0], abs=0.02
     )
     (groove,) = [one for one, _ in made.shapes if one.shape.name == "GROOVE"]
-    assert (groove.n("OVER"), groove.n("FANGLE"), groove.n("CANGLE")) == (
+    assert (groove.get_number("OVER"), groove.get_number("FANGLE"), groove.get_number("CANGLE")) == (
         24.0,
         pytest.approx(18.435, abs=1e-3),
         pytest.approx(33.69, abs=1e-3),
@@ -103,4 +103,4 @@ def test_what_an_editor_notes_of_its_window_is_nothing_left_out(tmp_path: Path) 
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:e="urn:e" width="9mm" height="9mm" viewBox="0 0 9 9">'
     )
     path.write_text(f'{head}<e:view zoom="3"/><metadata/><path d="M0 0H5"/><text>A</text></svg>')
-    assert read_drawing(path).left_out == {"text": 1}
+    assert read_drawing(path).omitted_counts == {"text": 1}

@@ -10,7 +10,7 @@ import pytest
 
 from core.extras.drawings import spline_spans
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.reader_parts import Place, arcs_of
+from core.extras.drawings.reader_tools import CurvePoint, fit_arcs
 from core.geometry.lines_and_arcs import Point
 from tests.extras.drawings.hand import dxf, profile_of
 
@@ -24,10 +24,10 @@ class Counted:
     def __init__(self, at: Any, way: Any) -> None:
         self.at, self.way, self.count = at, way, 0
 
-    def __call__(self, u: float) -> Place:
+    def __call__(self, u: float) -> CurvePoint:
         self.count += 1
         assert self.count < 2000, "evaluated too often"
-        return Place(self.at(u), self.way(u))
+        return CurvePoint(self.at(u), self.way(u))
 
 
 def still(_u: float) -> Point:
@@ -51,7 +51,7 @@ def spin(u: float) -> Point:
 def test_a_curve_that_goes_nowhere_ends_at_once(at: Any, way: Any) -> None:
     """Halving to the deepest level would evaluate 2**14 pieces."""
     curve = Counted(at, way)
-    found = list(arcs_of(curve, NEAR))
+    found = list(fit_arcs(curve, NEAR))
     assert sum(each.length for each in found) <= 3 * NEAR
     assert curve.count < 30
 
@@ -63,7 +63,7 @@ def test_a_curve_that_returns_to_its_start_is_not_lost() -> None:
         lambda u: (5.0 * math.cos(turn * u), 5.0 * math.sin(turn * u)),
         lambda u: (-math.sin(turn * u), math.cos(turn * u)),
     )
-    assert sum(each.length for each in arcs_of(curve, NEAR)) == pytest.approx(31.416, abs=0.01)
+    assert sum(each.length for each in fit_arcs(curve, NEAR)) == pytest.approx(31.416, abs=0.01)
 
 
 def shaft(space: Any, *middle: tuple[float, float], times: int = 60) -> None:
@@ -78,19 +78,19 @@ def shaft(space: Any, *middle: tuple[float, float], times: int = 60) -> None:
 
 def counting(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     count = [0]
-    curve_of = spline_spans.curve_of
+    curve_of = spline_spans.make_span_curve
 
     def counted(*args: Any) -> Any:
         curve = curve_of(*args)
 
-        def place(u: float) -> Place:
+        def place(u: float) -> CurvePoint:
             count[0] += 1
             assert count[0] < 20_000, "evaluated too often"
             return curve(u)
 
         return place
 
-    monkeypatch.setattr(spline_spans, "curve_of", counted)
+    monkeypatch.setattr(spline_spans, "make_span_curve", counted)
     return count
 
 
@@ -100,7 +100,9 @@ def test_a_spline_with_coincident_points_is_part_of_the_contour(
 ) -> None:
     count = counting(monkeypatch)
     chosen = profile_of(dxf(tmp_path / "x.dxf", lambda space: shaft(space, *middle)))
-    assert (chosen.front - chosen.back, chosen.elements[-1].end[0]) == pytest.approx((40.0, 10.0), abs=1e-3)
+    assert (chosen.front_z_mm - chosen.back_z_mm, chosen.elements[-1].end[0]) == pytest.approx(
+        (40.0, 10.0), abs=1e-3
+    )
     assert count[0] < 5_000
 
 
@@ -109,5 +111,5 @@ def test_the_case_of_a_spline_without_length(monkeypatch: pytest.MonkeyPatch) ->
     if not path.is_file():
         pytest.skip(f"no {path}")
     count = counting(monkeypatch)
-    assert len(read_drawing(path).drawn) == 20
+    assert len(read_drawing(path).elements) == 20
     assert count[0] < 2_000

@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 
-from app.desk.background_work import AbandonedError, Watch
-from app.extras.drawings.drawing_form import AddedDrawing, DrawingForm
-from app.extras.drawings.drawing_plan import Planner
-from app.extras.drawings.drawings_desk import attempt
-from app.extras.shapes.shapes_model import Shapes
-from app.screen.look import speak_in
+from app.desk.background_work import AbandonedError, ProgressCallback
+from app.extras.drawings.drawing_form import AddedDrawingForm, DrawingForm
+from app.extras.drawings.drawing_plan import DrawingPlanner
+from app.extras.drawings.drawings_setup import run_trial
+from app.extras.shapes.shapes_model import ShapesModel
+from app.screen.screen_theme import use_language
 from core.extras.drawings.drawing import Drawing
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.shapes.shape_fields import Setting, Shop
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from tests.extras.drawings.hand import TOOLS, chain, dxf
 from tests.extras.shapes.hand import machine
 from tests.texts import pattern, text
@@ -29,20 +29,20 @@ class Desk:
     """Shapes beside a folder with drawings."""
 
     def __init__(self, folder: Path, *, metric: bool = True) -> None:
-        shop = Shop(tools=TOOLS)
-        self.shapes = Shapes(lambda: shop, Setting(metric=metric))
-        self.shapes.shop = shop
-        self.drawing = AddedDrawing(
+        shop = ShopData(tools=TOOLS)
+        self.shapes = ShapesModel(lambda: shop, ProgramSettings(metric=metric))
+        self.shapes.shop_data = shop
+        self.drawing = AddedDrawingForm(
             lambda: {path.name: path for path in sorted(folder.glob("*.*"))},
-            lambda text, plan, watch: attempt(machine(), lambda: TOOLS, text, plan, watch),
+            lambda text, plan, watch: run_trial(machine(), lambda: TOOLS, text, plan, watch),
         )
-        self.shapes.added = (self.drawing,)
+        self.shapes.added_forms = (self.drawing,)
 
     def open(self, text: str = "") -> DrawingForm:
         assert self.shapes.open("x.nc", text, 1) == ""
-        self.shapes.worker.settle(60.0)
+        self.shapes.worker.wait_for_results(60.0)
         while self.shapes.form is not None:  # that of the piece at the cursor
-            self.shapes.escape()
+            self.shapes.handle_escape()
         self.strike("x")
         form = self.shapes.form
         assert isinstance(form, DrawingForm)
@@ -50,12 +50,12 @@ class Desk:
 
     def strike(self, *keys: str) -> None:
         for key in keys:
-            assert self.shapes.typed(key), key
+            assert self.shapes.handle_key(key), key
         self.settle()
 
     def settle(self) -> None:
-        self.drawing.planning.settle(60.0)
-        self.drawing.trying.settle(60.0)
+        self.drawing.plan_worker.wait_for_results(60.0)
+        self.drawing.trial_worker.wait_for_results(60.0)
 
 
 @pytest.fixture
@@ -69,27 +69,27 @@ def test_unit_and_layer_are_told_in_spanish_and_names_of_layers_are_not(desk: De
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
     unit, layer = (next(each for each in form.fields if each.word == word) for word in ("DUNIT", "LAYER"))
-    speak_in("es")
+    use_language("es")
     try:
-        assert form.shown(layer) == "TODAS"
-        form.typed = {"DUNIT": "INCH", "LAYER": "OUTSIDE"}
-        assert form.shown(unit) == "PULGADAS"
-        assert form.shown(layer) == "OUTSIDE"
-        form.typed = {"LAYER": "NO COUNT is on"}
-        assert form.shown(layer) == "NO COUNT is on"
+        assert form.get_display_text(layer) == "TODAS"
+        form.entered_texts = {"DUNIT": "INCH", "LAYER": "OUTSIDE"}
+        assert form.get_display_text(unit) == "PULGADAS"
+        assert form.get_display_text(layer) == "OUTSIDE"
+        form.entered_texts = {"LAYER": "NO COUNT is on"}
+        assert form.get_display_text(layer) == "NO COUNT is on"
     finally:
-        speak_in("en")
+        use_language("en")
 
 
 def test_a_drawing_becomes_pieces_that_are_opened_again(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
-    assert not form.troubles
-    assert form.words[0] == "secondary offset 1 must have X -.8 (diameter), Z -.4, R .4 mm"
-    assert any("remains in the corner at Z -9.975" in each for each in form.words)
-    desk.shapes.write()
-    assert [each.filled.shape.name for each in desk.shapes.pieces] == ["HEAD", "FACE", "TURN"]
-    assert all(each.foreign < 0 for each in desk.shapes.pieces)
+    assert not form.errors
+    assert form.remarks[0] == "secondary offset 1 must have X -.8 (diameter), Z -.4, R .4 mm"
+    assert any("remains in the corner at Z -9.975" in each for each in form.remarks)
+    desk.shapes.write_form()
+    assert [each.filled_shape.shape.name for each in desk.shapes.pieces] == ["HEAD", "FACE", "TURN"]
+    assert all(each.edited_line < 0 for each in desk.shapes.pieces)
     assert "X12\n" in desk.shapes.text
 
 
@@ -101,29 +101,31 @@ def test_contour_and_axis_by_pointer(desk: Desk, tmp_path: Path) -> None:
 
     dxf(tmp_path / "two.dxf", draw)
     form = desk.open()
-    desk.shapes.touch_at((-3.0, 14.0))
+    desk.shapes.handle_touch((-3.0, 14.0))
     desk.settle()
-    assert form.figure(form.shape.fields[3]) == "2"
-    desk.shapes.touch("CONTOUR 1")  # the number that stands on it
+    assert form.get_value_text(form.shape.fields[3]) == "2"
+    desk.shapes.select_touched("CONTOUR 1")  # the number that stands on it
     desk.settle()
-    assert form.one.t("CONTOUR") == "1"
-    form.go_to("AXIS")
-    desk.shapes.touch_at((20.0, -3.1))  # the line of no other end, drawn last
+    assert form.filled_shape.get_text("CONTOUR") == "1"
+    form.select_word("AXIS")
+    desk.shapes.handle_touch((20.0, -3.1))  # the line of no other end, drawn last
     desk.settle()
-    assert form.one.t("AXIS") == "LINE 10"
+    assert form.filled_shape.get_text("AXIS") == "LINE 10"
     assert form.plan is not None
-    assert form.plan.chosen is not None
-    assert max(each.box[1] for each in form.plan.chosen.elements) == pytest.approx(9.0)  # 6 above Y 0
+    assert form.plan.profile is not None
+    assert max(each.bounding_box[1] for each in form.plan.profile.elements) == pytest.approx(
+        9.0
+    )  # 6 above Y 0
 
 
 def test_by_keys(desk: Desk, tmp_path: Path) -> None:
     """Down to the side of the face, Right: the face is at the left."""
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
-    form.go_to("FRONT")
+    form.select_word("FRONT")
     desk.strike("Right")
-    assert form.one.t("FRONT") == "LEFT"
-    form.go_to("ROUGH")
+    assert form.filled_shape.get_text("FRONT") == "LEFT"
+    form.select_word("ROUGH")
     desk.strike("0")
     assert not any("G75" in line for line in form.lines)
 
@@ -138,31 +140,31 @@ def test_what_is_wrong_is_said_at_its_field(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP), unit=0)
     (tmp_path / "b.dxf").write_text("no drawing")
     form = desk.open()
-    assert form.troubles["DUNIT"] == text("shapes.no-unit", file="a.dxf")
-    form.go_to("DUNIT")
+    assert form.errors["DUNIT"] == text("shapes.no-unit", file="a.dxf")
+    form.select_word("DUNIT")
     desk.strike("M")
-    assert not form.troubles
-    form.go_to("SIDE")
+    assert not form.errors
+    form.select_word("SIDE")
     desk.strike("Right")
-    assert "no bore" in form.troubles["CONTOUR"]
-    form.go_to("FILE")
+    assert "no bore" in form.errors["CONTOUR"]
+    form.select_word("FILE")
     desk.strike("Right")
-    assert "damaged" in form.troubles["FILE"]
-    desk.shapes.write()
+    assert "damaged" in form.errors["FILE"]
+    desk.shapes.write_form()
     assert desk.shapes.form is form  # nothing is written
 
 
 def test_a_drawing_whose_program_is_wrong_is_not_written(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP))
     form = desk.open()
-    form.go_to("FROM")
+    form.select_word("FROM")
     desk.strike("5")
-    assert re.search(pattern("shapes.outside-stock", stock="5"), form.trouble)
+    assert re.search(pattern("shapes.outside-stock", stock="5"), form.current_error)
     assert not form.lines
 
 
 def test_without_a_drawing_it_says_where_one_goes(desk: Desk) -> None:
-    assert text("shapes.no-drawing") in desk.open().trouble
+    assert text("shapes.no-drawing") in desk.open().current_error
 
 
 class Reading:
@@ -171,7 +173,7 @@ class Reading:
     def __init__(self) -> None:
         self.begun, self.free, self.canceled = Event(), Event(), Event()
 
-    def __call__(self, path: Path, watch: Watch) -> Drawing:
+    def __call__(self, path: Path, watch: ProgressCallback) -> Drawing:
         self.begun.set()
         try:
             while not self.free.wait(0.01):
@@ -187,18 +189,18 @@ def reading(desk: Desk, tmp_path: Path) -> Reading:
     """The form of a drawing is open, and its file is being read."""
     dxf(tmp_path / "a.dxf", chain(*STEP))
     found = Reading()
-    desk.drawing.planner = Planner(found)
+    desk.drawing.planner = DrawingPlanner(found)
     desk.shapes.open("x.nc", "", 1)
-    desk.shapes.typed("x")
+    desk.shapes.handle_key("x")
     assert found.begun.wait(60.0)
     return found
 
 
 def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Reading) -> None:
-    while desk.drawing.planning.reached < 7:
+    while desk.drawing.plan_worker.progress < 7:
         pass
-    assert desk.shapes.prompt() == text("shapes.being-read", seconds=7)
-    desk.shapes.write()
+    assert desk.shapes.prompt_text() == text("shapes.being-read", seconds=7)
+    desk.shapes.write_form()
     assert desk.shapes.text == ""
     reading.free.set()
     desk.settle()
@@ -210,22 +212,22 @@ def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Read
 def test_reading_is_canceled_and_begun_again(desk: Desk, reading: Reading, how: str) -> None:
     shapes = desk.shapes
     if how == "Esc":
-        assert shapes.escape()
+        assert shapes.handle_escape()
     else:
-        shapes.keys()[6].action()
+        shapes.function_keys()[6].action()
     assert reading.canceled.wait(60.0)
     desk.settle()
     assert isinstance(shapes.form, DrawingForm)
-    assert shapes.prompt() == text("shapes.reading-canceled")
-    assert not shapes.form.waits
-    shapes.write()
+    assert shapes.prompt_text() == text("shapes.reading-canceled")
+    assert not shapes.form.is_calculating
+    shapes.write_form()
     assert shapes.text == ""  # there is nothing to write
     reading.free.set()
-    shapes.keys()[6].action()
+    shapes.function_keys()[6].action()
     desk.settle()
-    assert not shapes.form.troubles
+    assert not shapes.form.errors
     assert shapes.form.lines
-    assert shapes.keys().get(6) is None
+    assert shapes.function_keys().get(6) is None
 
 
 def test_a_page_that_closes_ends_the_reading(desk: Desk, reading: Reading) -> None:
@@ -234,7 +236,7 @@ def test_a_page_that_closes_ends_the_reading(desk: Desk, reading: Reading) -> No
 
 
 def test_a_second_escape_leaves_the_form(desk: Desk, reading: Reading) -> None:
-    assert desk.shapes.escape()
+    assert desk.shapes.handle_escape()
     assert desk.shapes.form is not None
-    assert desk.shapes.escape()
+    assert desk.shapes.handle_escape()
     assert desk.shapes.form is None

@@ -10,9 +10,16 @@ from pathlib import Path
 import pytest
 
 from core.extras.drawings import drawing_child, drawing_process
-from core.extras.drawings.drawing import Drawing, DrawingError, Drawn, drawing_data, drawing_of, error_data
+from core.extras.drawings.drawing import (
+    Drawing,
+    DrawingError,
+    DrawnElement,
+    decode_drawing,
+    encode_drawing,
+    encode_error,
+)
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_process import Limits, read_in_process
+from core.extras.drawings.drawing_process import ReadingLimits, read_in_process
 from core.geometry.lines_and_arcs import Arc, Line
 from tests.coded import raises_code
 from tests.extras.drawings.hand import chain, dxf
@@ -38,18 +45,20 @@ def drawing(folder: Path, what: str) -> Path:
 def test_a_drawing_comes_back_as_it_is(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     here = read_drawing(path)
-    assert any(isinstance(each.element, Arc) for each in here.drawn)
+    assert any(isinstance(each.element, Arc) for each in here.elements)
     assert read_in_process(path) == here
 
 
 def test_every_kind_of_line_is_the_same_on_both_sides() -> None:
     drawn = (
-        Drawn(Line((0.1, -1e7), (1.0 / 3.0, 2.0)), "PART"),
-        Drawn(Arc((0.0, 1.0), (1.0, 0.0), (0.0, 0.0), clockwise=True), "Ø — \u4e2d", centre=True),
-        Drawn(Arc((0.0, 1.0), (1.0, 0.0), (0.0, 0.0), clockwise=False), ""),
+        DrawnElement(Line((0.1, -1e7), (1.0 / 3.0, 2.0)), "PART"),
+        DrawnElement(
+            Arc((0.0, 1.0), (1.0, 0.0), (0.0, 0.0), clockwise=True), "Ø — \u4e2d", is_center_line=True
+        ),
+        DrawnElement(Arc((0.0, 1.0), (1.0, 0.0), (0.0, 0.0), clockwise=False), ""),
     )
     one = Drawing("part.dxf", drawn, 25.4, {"TEXT": 3})
-    assert drawing_of(drawing_data(one)) == one
+    assert decode_drawing(encode_drawing(one)) == one
 
 
 def test_an_error_comes_back_with_its_code(tmp_path: Path) -> None:
@@ -58,7 +67,7 @@ def test_an_error_comes_back_with_its_code(tmp_path: Path) -> None:
     with raises_code(DrawingError, "unreadable", "none.svg"):
         read_in_process(tmp_path / "none.svg")
     with raises_code(DrawingError, "some-code", "why"):
-        drawing_of(error_data(DrawingError("why", "some-code")))
+        decode_drawing(encode_error(DrawingError("why", "some-code")))
 
 
 def test_the_current_folder_lends_no_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,7 +84,7 @@ def test_the_current_folder_lends_no_code(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.usefixtures("hostile")
 def test_a_drawing_that_takes_too_long_is_given_up(tmp_path: Path) -> None:
     with raises_code(DrawingError, "too-slow", "part.dxf"):
-        read_in_process(drawing(tmp_path, "hang"), limits=Limits(clock=0.0))
+        read_in_process(drawing(tmp_path, "hang"), limits=ReadingLimits(timeout_s=0.0))
 
 
 @linux
@@ -86,14 +95,14 @@ def test_a_drawing_that_takes_too_long_is_given_up(tmp_path: Path) -> None:
 )
 def test_a_process_that_takes_too_much_is_one_error(what: str, code: str, tmp_path: Path) -> None:
     with raises_code(DrawingError, code, "part.dxf"):
-        read_in_process(drawing(tmp_path, what), limits=Limits(processor=1))
+        read_in_process(drawing(tmp_path, what), limits=ReadingLimits(processor_time_s=1))
 
 
 @linux
 def test_memory_is_limited_for_the_libraries_too(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     with raises_code(DrawingError, "out-of-memory", "part.dxf"):
-        read_in_process(path, limits=Limits(memory=24 * 1024**2))
+        read_in_process(path, limits=ReadingLimits(memory_bytes=24 * 1024**2))
 
 
 def test_a_library_without_memory_is_the_same_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,7 +111,7 @@ def test_a_library_without_memory_is_the_same_error(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr("core.extras.drawings.dxf_reader.read_dxf", hungry)
     with raises_code(DrawingError, "out-of-memory", "part.dxf"):
-        drawing_of(drawing_child.answer(drawing(tmp_path, "0\n")))
+        decode_drawing(drawing_child.read_and_encode(drawing(tmp_path, "0\n")))
 
 
 def test_where_no_process_can_be_started_it_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

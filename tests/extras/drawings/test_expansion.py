@@ -10,9 +10,9 @@ import pytest
 import svgelements
 
 from core.extras.drawings import dxf_reader
-from core.extras.drawings.drawing import MOST_ELEMENTS, DrawingError
+from core.extras.drawings.drawing import MAX_ELEMENTS, DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.reader_parts import Content, check_expansion
+from core.extras.drawings.reader_tools import BlockContent, check_expansion
 
 LINE = "0\nLINE\n8\n0\n10\n0\n20\n0\n11\n1\n21\n1\n"
 
@@ -63,7 +63,7 @@ def nothing_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     def made(*_args: Any, **_more: Any) -> Any:
         raise AssertionError("expanded before it was counted")
 
-    monkeypatch.setattr(dxf_reader, "_taken_apart", made)
+    monkeypatch.setattr(dxf_reader, "_expand_blocks", made)
     monkeypatch.setattr(svgelements.SVG, "parse", made)
 
 
@@ -81,7 +81,7 @@ def nothing_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_blocks_are_counted_before_they_are_inserted(blocks: str, entities: str, tmp_path: Path) -> None:
-    assert str(MOST_ELEMENTS) in refused(dxf(tmp_path / "x.dxf", blocks, entities), "too-many-lines")
+    assert str(MAX_ELEMENTS) in refused(dxf(tmp_path / "x.dxf", blocks, entities), "too-many-lines")
 
 
 @pytest.mark.usefixtures("nothing_is_made")
@@ -97,7 +97,7 @@ def test_a_block_in_itself_is_refused(blocks: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(("depth", "times"), [(12, 4), (2, 300), (20, 2)])
 def test_uses_are_counted_before_they_are_parsed(depth: int, times: int, href: str, tmp_path: Path) -> None:
     body = uses(depth, times, href) + f'<use {href}="#g{depth}"/>'
-    assert str(MOST_ELEMENTS) in refused(svg(tmp_path / "x.svg", body), "too-many-lines")
+    assert str(MAX_ELEMENTS) in refused(svg(tmp_path / "x.svg", body), "too-many-lines")
 
 
 @pytest.mark.usefixtures("nothing_is_made")
@@ -108,8 +108,8 @@ def test_a_group_in_itself_is_refused(tmp_path: Path) -> None:
 
 def test_ordinary_blocks_and_uses_are_read(tmp_path: Path) -> None:
     path = dxf(tmp_path / "x.dxf", block("A", LINE * 2) + block("B", insert("A") * 3), insert("B", 4, 5))
-    assert len(read_drawing(path).drawn) == 2 * 3 * 4 * 5
-    assert len(read_drawing(svg(tmp_path / "x.svg", uses(2, 3) + '<use href="#g2"/>')).drawn) == 22
+    assert len(read_drawing(path).elements) == 2 * 3 * 4 * 5
+    assert len(read_drawing(svg(tmp_path / "x.svg", uses(2, 3) + '<use href="#g2"/>')).elements) == 22
     # g0 draws 1 line, g1 3, g2 9, and the last use 9 again.
 
 
@@ -117,12 +117,12 @@ def test_the_number_is_exact(tmp_path: Path) -> None:
     """1 block of 1 + 499 entities, 100 times: 50 000 are read, and one more is refused."""
 
     def content(entities: int) -> Any:
-        return lambda key: Content(0, [(100, "A")]) if not key else Content(1 + entities, [])
+        return lambda key: BlockContent(0, [(100, "A")]) if not key else BlockContent(1 + entities, [])
 
     check_expansion("x.dxf", "", content(499))
     with pytest.raises(DrawingError):
         check_expansion("x.dxf", "", content(500))
-    check_expansion("x.svg", "", content(500), spare=100)
+    check_expansion("x.svg", "", content(500), remaining_count=100)
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.extras.drawings.profile_trial_desk import TrialStock, tried
-from core.extras.drawings.drawing_view import Front, Side, Zero
-from core.extras.drawings.profile_job import is_corner
-from core.extras.shapes.contour import points
+from app.extras.drawings.profile_trial import TrialStock, run_profile_trial
+from core.extras.drawings.drawing_placement import ContourSide, FaceEnd, ZeroPosition
+from core.extras.drawings.profile_job import is_nose_fillet
+from core.extras.shapes.contour import resolve_points
 from core.language.source import Dialect
 from tests.extras.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of
 from tests.extras.shapes.hand import machine
@@ -69,9 +69,9 @@ def test_the_program_is_that_of_a_good_programmer(tmp_path: Path) -> None:
         "G41", "Z0D1", "X20Z-1", "Z-18", "X24Z-20", "Z-30", "G03X28Z-32R2", "X36", "G02X40Z-34R2", "Z-50.5",
         "X42", "G00Z25",
     ]  # fmt: skip
-    assert made.nose is not None
-    assert (made.nose.x, made.nose.z, made.nose.r) == (-0.4, -0.4, 0.4)
-    assert not made.left
+    assert made.nose_offset is not None
+    assert (made.nose_offset.x, made.nose_offset.z, made.nose_offset.r) == (-0.4, -0.4, 0.4)
+    assert not made.uncut_ranges
 
 
 def test_a_ball_at_the_end_of_a_half_section_in_inches(tmp_path: Path) -> None:
@@ -102,7 +102,7 @@ def test_a_bore_with_a_step(tmp_path: Path) -> None:
     """A section drawn closed: the bore of 24 with a chamfer of 1, and of 16 behind it."""
     ring = [(0, 13), (0, 20), (-40, 20), (-40, 8), (-15, 8), (-15, 12), (-1, 12), (0, 13)]
     path = dxf(tmp_path / "ring.dxf", chain(*ring))
-    made = program(profile_of(path, side=Side.INSIDE, axis="Y 0"), HOLE=14.0)
+    made = program(profile_of(path, side=ContourSide.INSIDE, axis="Y 0"), HOLE=14.0)
     at = [-0.2, -0.8, -1.5, -14.0, -15.5, -39.0]
     found = radii(made, "tube:45mm:14mm:60mm", at, inside=True)
     assert found == pytest.approx([12.8, 12.2, 12.0, 12.0, 8.0, 8.0], abs=NEAR)
@@ -112,9 +112,9 @@ def test_a_bore_with_a_step(tmp_path: Path) -> None:
 def test_face_at_the_left_and_zero_at_the_origin(tmp_path: Path) -> None:
     """Drawn with its face to the left, 5 mm from the origin: Z of the face is -5, or shifted."""
     path = dxf(tmp_path / "left.dxf", chain((5, 0), (5, 4), (15, 4), (15, 6), (25, 6), (25, 0)))
-    chosen = profile_of(path, front=Front.LEFT, zero=Zero.ORIGIN)
-    assert (chosen.front, chosen.back) == (-5.0, -25.0)
-    made = program(profile_of(path, front=Front.LEFT, zero=Zero.ORIGIN, shift=5.0))
+    chosen = profile_of(path, front=FaceEnd.LEFT, zero=ZeroPosition.ORIGIN)
+    assert (chosen.front_z_mm, chosen.back_z_mm) == (-5.0, -25.0)
+    made = program(profile_of(path, front=FaceEnd.LEFT, zero=ZeroPosition.ORIGIN, shift=5.0))
     found = radii(made, "bar:14mm:80mm", [-1.0, -9.5, -10.1, -19.0])
     assert found == pytest.approx([4.0, 4.0, 6.0, 6.0], abs=NEAR)
 
@@ -147,7 +147,7 @@ def test_gaps_are_closed_and_told(tmp_path: Path) -> None:
             space.add_line(a, b)  # type: ignore[attr-defined]
 
     chosen = profile_of(dxf(tmp_path / "gaps.dxf", draw), axis="Y 0")
-    assert 0.005 < chosen.closed < 0.01
+    assert 0.005 < chosen.widest_closed_gap_mm < 0.01
     assert len(chosen.elements) == 3
 
 
@@ -174,7 +174,7 @@ def test_chamfers_of_a_groove_are_its_own(tmp_path: Path) -> None:
     made = program(profile_of(path))
     at = [-7.9, -8.2, -8.6, -10.0, -12.4, -12.8, -13.1]
     assert radii(made, "bar:20.5mm:80mm", at) == pytest.approx([10, 9.8, 7, 7, 7, 9.8, 10], abs=NEAR)
-    assert not made.left
+    assert not made.uncut_ranges
 
 
 def test_of_a_v_groove_the_blade_cuts_what_it_can(tmp_path: Path) -> None:
@@ -211,7 +211,7 @@ def test_a_shallow_fall_is_turned_and_a_steep_one_followed_by_the_edge(tmp_path:
             )
         )
     )
-    assert [each.why for each in made.left] == [text("shapes.falls-too-steeply")]
+    assert [each.reason for each in made.uncut_ranges] == [text("shapes.falls-too-steeply")]
     slope = math.tan(math.radians(30.0))
     at = [-9.0, -10.0, -12.0]
     assert radii(made, "bar:20.5mm:80mm", at) == pytest.approx([10 + (z + 8) * slope for z in at], abs=0.02)
@@ -228,12 +228,14 @@ def test_a_cone_that_falls_from_the_face_is_roughed_up_the_face(
     chosen = profile_of(dxf(tmp_path / "cone.dxf", chain((0, 0), (0, 10), *behind)))
     made = program(chosen, {1: SLIM}, dialect=dialect)
     lathe = machine() if dialect is Dialect.OMNITURN else LINEAR
-    trial = tried(text_of(made), chosen, TrialStock(21.0, 0.5), made.nose, lathe, {1: SLIM}, dialect=dialect)
+    trial = run_profile_trial(
+        text_of(made), chosen, TrialStock(21.0, 0.5), made.nose_offset, lathe, {1: SLIM}, dialect=dialect
+    )
     assert not trial.errors
     assert trial.comparison is not None
-    assert not [each for each in trial.comparison.found if not is_corner(each, made.nose_radius)]
-    assert trial.comparison.worst < 0.02
-    contour = points(made.shapes[-1][0].rows)
+    assert not [each for each in trial.comparison.deviations if not is_nose_fillet(each, made.nose_radius)]
+    assert trial.comparison.worst_deviation_mm < 0.02
+    contour = resolve_points(made.shapes[-1][0].contour_points)
     assert contour[:3] == [(0.0, 4.0), (0.0, 10.0), (-20.0, 4.0)]
 
 
@@ -241,6 +243,6 @@ def test_nothing_is_ever_cut_too_deep_where_the_contour_goes_back_under_itself(t
     """A dovetail: no tool from outside gets under its wall, which is cut upright."""
     path = dxf(tmp_path / "d.dxf", chain(*groove((-6, 7), (-16, 7), (-14, 10))))
     made = program(profile_of(path))
-    assert any(each.why == text("shapes.contour-undercut") for each in made.left)
+    assert any(each.reason == text("shapes.contour-undercut") for each in made.uncut_ranges)
     at = np.linspace(-29.0, -0.5, 200)
     assert (radii(made, "bar:20.5mm:80mm", at) > 6.99).all()

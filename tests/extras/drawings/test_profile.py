@@ -209,5 +209,7 @@ def test_the_json_has_the_declared_keys(turndesk: Turndesk, tmp_path: Path) -> N
         whole(turndesk(*words, "--groove-tool", 1)),
         whole(turndesk(*words, "--out", tmp_path / "part.mpf")),
     ]
-    declared_alone(values, profile_command.PROFILE.keys)
-    declared_alone([whole(turndesk("profile", path, "--list", "--json"))], profile_command.PROFILE_LIST.keys)
+    declared_alone(values, profile_command.PROFILE_OUTPUT.keys)
+    declared_alone(
+        [whole(turndesk("profile", path, "--list", "--json"))], profile_command.PROFILE_LIST_OUTPUT.keys
+    )

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.extras.drawings.drawing_plan import Asked
-from core.extras.shapes.shape_fields import Setting, Shop
+from app.extras.drawings.drawing_plan import PlanRequest
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.drawings.hand import chain, dxf, planned
 
@@ -18,10 +18,10 @@ def test_the_form_of_a_drawing_shows_the_depth_that_its_program_has(tmp_path: Pa
     """A shaft of 12 mm and 18 mm out of steel, a bar of 19 mm: 1.016 mm by material, rounded down to 1.0."""
     points = (0.0, 0.0), (0.0, 6.0), (-10.0, 6.0), (-14.0, 9.0), (-20.0, 9.0), (-20.0, 0.0)
     path = dxf(tmp_path / "x.dxf", chain(*points))
-    now = Setting(metric=True, material="STEEL", bar=1.0, shop=Shop(tools={1: CNMG}))
-    plan = planned(Asked(path, {}, (), now))
+    now = ProgramSettings(metric=True, material="STEEL", bar=1.0, shop=ShopData(tools={1: CNMG}))
+    plan = planned(PlanRequest(path, {}, (), now))
     assert plan.proposals["ROUGH"] == pytest.approx(1.0)
-    assert plan.made is not None
-    assert any(line.startswith("G75I1U") for line in plan.made.lines)
-    plan = planned(Asked(path, {"ROUGH": 7.0}, (), now))
-    assert "ROUGH" in plan.troubles  # CNMG 12 takes 6.448 mm
+    assert plan.program is not None
+    assert any(line.startswith("G75I1U") for line in plan.program.lines)
+    plan = planned(PlanRequest(path, {"ROUGH": 7.0}, (), now))
+    assert "ROUGH" in plan.errors  # CNMG 12 takes 6.448 mm

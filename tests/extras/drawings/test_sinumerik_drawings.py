@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from app.cli.main import main
-from app.extras.drawings.profile_trial_desk import Trial, TrialStock, tried
-from core.extras.drawings.drawing_view import Profile, Side
-from core.extras.drawings.profile_job import in_json, in_words
+from app.extras.drawings.profile_trial import TrialResult, TrialStock, run_profile_trial
+from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
+from core.extras.drawings.profile_job import convert_to_json, describe_program
 from core.extras.drawings.profile_program import ProfileProgram
-from core.extras.shapes.pieces import pieces
-from core.extras.shapes.shape_fields import Setting, Shop
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
+from core.extras.shapes.shape_pieces import find_pieces
 from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import recorded_refusals
@@ -38,11 +38,15 @@ SHAFT = (
 )
 
 
-def of(chosen: Profile, bar: float, hole: float = 0.0, **typed: Any) -> tuple[ProfileProgram, Trial]:
+def of(
+    chosen: ContourProfile, bar: float, hole: float = 0.0, **typed: Any
+) -> tuple[ProfileProgram, TrialResult]:
     """The program, and its proof on the shipped lathe."""
     made = program(chosen, dialect=OURS, **typed)
     stock = TrialStock(bar, typed.get("STOCK", 0.5), hole)
-    return made, tried(text_of(made), chosen, stock, made.nose, LINEAR, TOOLS, dialect=OURS)
+    return made, run_profile_trial(
+        text_of(made), chosen, stock, made.nose_offset, LINEAR, TOOLS, dialect=OURS
+    )
 
 
 def test_a_shaft_is_faced_roughed_finished_and_grooved(tmp_path: Path) -> None:
@@ -51,24 +55,24 @@ def test_a_shaft_is_faced_roughed_finished_and_grooved(tmp_path: Path) -> None:
     made, trial = of(chosen, 21.0)
     assert not trial.errors
     assert trial.comparison is not None
-    assert trial.comparison.worst < 0.02, trial.comparison.found
+    assert trial.comparison.worst_deviation_mm < 0.02, trial.comparison.deviations
     text = text_of(made).splitlines()
     assert text[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
     assert {"G42", "CONTOUR_1:", "CONTOUR_1_END:"} <= set(text)
-    found = pieces(text, Shop(tools=TOOLS), Setting(dialect=OURS))
-    assert [(each.filled.shape.name, each.foreign) for each in found] == [
+    found = find_pieces(text, ShopData(tools=TOOLS), ProgramSettings(dialect=OURS))
+    assert [(each.filled_shape.shape.name, each.edited_line) for each in found] == [
         ("HEAD", -1), ("FACE", -1), ("TURN", -1), ("GROOVE", -1)
     ]  # fmt: skip
 
 
 def test_a_bore_is_cut_left_of_its_contour(tmp_path: Path) -> None:
     ring = [(0, 13), (0, 20), (-40, 20), (-40, 8), (-15, 8), (-15, 12), (-1, 12), (0, 13)]
-    chosen = profile_of(dxf(tmp_path / "ring.dxf", chain(*ring)), side=Side.INSIDE, axis="Y 0")
+    chosen = profile_of(dxf(tmp_path / "ring.dxf", chain(*ring)), side=ContourSide.INSIDE, axis="Y 0")
     made, trial = of(chosen, 45.0, 14.0, HOLE=14.0, STOCK=0.0)
     assert "G41" in made.lines
     assert not trial.errors
     assert trial.comparison is not None
-    assert trial.comparison.worst < 0.02, trial.comparison.found
+    assert trial.comparison.worst_deviation_mm < 0.02, trial.comparison.deviations
 
 
 def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
@@ -77,8 +81,8 @@ def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
     made = program(chosen, dialect=OURS)
     assert TIP_DIRECTIONS[3] == (-1, -1)
     words = wording("shapes.edge-must-have", edge="T1 D1", radius=".4", unit="mm", quadrant=3)
-    assert words in list(in_words(made, None, chosen, metric=True))
-    told = in_json(made, None, chosen)
+    assert words in list(describe_program(made, None, chosen, metric=True))
+    told = convert_to_json(made, None, chosen)
     assert (told["secondary_offset"], told["cutting_edge"]) == (
         None, {"tool": 1, "edge": 1, "r": 0.4, "quadrant": 3}
     )  # fmt: skip
@@ -88,9 +92,9 @@ def test_without_a_nose_of_the_edge_the_proof_says_what_stays(tmp_path: Path) ->
     """A cone of 45 degrees cut by the bare tip stands off it by R (2 - sqrt 2) along the radius: .234."""
     chosen = profile_of(dxf(tmp_path / "cone.dxf", chain((0, 0), (0, 5), (-8, 13), (-20, 13), (-20, 0))))
     made, trial = of(chosen, 27.0, COMP=0.0)
-    assert made.nose is None
+    assert made.nose_offset is None
     assert trial.comparison is not None
-    (stays,) = [each.most for each in trial.comparison.found if each.front > -8.0]
+    (stays,) = [each.max_deviation_mm for each in trial.comparison.deviations if each.front_z_mm > -8.0]
     assert stays == pytest.approx(0.4 * (2.0 - math.sqrt(2.0)), abs=0.02)
 
 
@@ -102,7 +106,7 @@ def test_a_fall_leaves_what_is_usual_for_the_finish(tmp_path: Path) -> None:
     assert any(", , , 0.25, " in line for line in made.lines if line.startswith("CYCLE95"))
     assert not trial.errors
     assert trial.comparison is not None
-    assert trial.comparison.worst < 0.02
+    assert trial.comparison.worst_deviation_mm < 0.02
 
 
 def test_the_command_writes_the_language_of_the_name(

@@ -12,8 +12,8 @@ from ezdxf.math import BSpline
 from core.extras.drawings import spline_spans
 from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.reader_parts import arcs_of
-from core.extras.drawings.spline_spans import biarcs, curve_of, spans_of
+from core.extras.drawings.reader_tools import fit_arcs
+from core.extras.drawings.spline_spans import fit_biarcs, make_span_curve, make_spans
 from tests.extras.drawings.hand import dxf
 
 NEAR = 0.002
@@ -29,24 +29,24 @@ def spline(weights: list[float] | None) -> BSpline:
 @pytest.mark.parametrize("weights", [None, WEIGHTS])
 def test_a_span_is_the_curve_and_its_direction(weights: list[float] | None) -> None:
     curve = spline(weights)
-    spans = spans_of(curve.control_points, curve.weights(), curve.knots(), 3)
-    assert len(spans.length) == 5
+    spans = make_spans(curve.control_points, curve.weights(), curve.knots(), 3)
+    assert len(spans.parameter_lengths) == 5
     for number in range(5):
-        place = curve_of(spans, number)
+        place = make_span_curve(spans, number)
         for u in (0.0, 0.3, 1.0):
             t = (number + min(max(u, 1e-6), 1.0 - 1e-6)) / 5
             _, way = next(iter(curve.derivatives([t], 1)))
-            assert place(u).at == pytest.approx(tuple(curve.point((number + u) / 5))[:2], abs=1e-9)
-            assert place(u).way == pytest.approx((way.x, way.y), abs=1e-6)
+            assert place(u).point == pytest.approx(tuple(curve.point((number + u) / 5))[:2], abs=1e-9)
+            assert place(u).tangent == pytest.approx((way.x, way.y), abs=1e-6)
 
 
 @pytest.mark.parametrize("weights", [None, WEIGHTS])
 @pytest.mark.parametrize("near", [0.002, 0.05, 0.5])
 def test_two_arcs_are_those_that_one_span_alone_would_get(weights: list[float] | None, near: float) -> None:
     curve = spline(weights)
-    spans = spans_of(curve.control_points, curve.weights(), curve.knots(), 3)
-    for number, fit in enumerate(biarcs(spans, near)):
-        alone = list(arcs_of(curve_of(spans, number), near))
+    spans = make_spans(curve.control_points, curve.weights(), curve.knots(), 3)
+    for number, fit in enumerate(fit_biarcs(spans, near)):
+        alone = list(fit_arcs(make_span_curve(spans, number), near))
         assert (fit is not None) == (len(alone) == 2)
         if fit is not None:
             assert alone[0].end[::-1] == pytest.approx(fit.joint, abs=1e-9)
@@ -57,9 +57,9 @@ def test_a_long_spline_is_not_evaluated_span_by_span(tmp_path: Path, monkeypatch
     def evaluated(*_args: Any) -> Any:
         raise AssertionError
 
-    monkeypatch.setattr(spline_spans, "curve_of", evaluated)
+    monkeypatch.setattr(spline_spans, "make_span_curve", evaluated)
     file = dxf(tmp_path / "x.dxf", lambda space: space.add_open_spline(WAVE, degree=3))
-    drawn = read_drawing(file).drawn
+    drawn = read_drawing(file).elements
     ends = [each.element.end[::-1] for each in drawn]
     assert 2997 <= len(drawn) <= 2 * 2997
     assert ends[-1] == pytest.approx(WAVE[-1], abs=1e-9)
@@ -79,5 +79,5 @@ def test_a_spline_that_a_knot_interrupts_is_refused(tmp_path: Path) -> None:
 
 def test_a_knot_may_be_repeated_up_to_a_corner() -> None:
     knots = [0, 0, 0, 0.3, 0.3, 0.6, 1, 1, 1]
-    spans = spans_of([(-float(k), 6.0 + k % 2) for k in range(6)], (), knots, 2)
-    assert list(spans.length) == pytest.approx([0.3, 0.3, 0.4])
+    spans = make_spans([(-float(k), 6.0 + k % 2) for k in range(6)], (), knots, 2)
+    assert list(spans.parameter_lengths) == pytest.approx([0.3, 0.3, 0.4])

@@ -11,8 +11,14 @@ import pytest
 from core.extras.drawings import svg_reader
 from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_view import Side, View, axis_named, contours, profile
-from core.extras.drawings.reader_parts import Place
+from core.extras.drawings.drawing_placement import (
+    ContourSide,
+    DrawingPlacement,
+    extract_profile,
+    find_contours,
+    select_axis,
+)
+from core.extras.drawings.reader_tools import CurvePoint
 from core.geometry.lines_and_arcs import Arc, Line
 from tests.coded import raises_code
 from tests.extras.drawings.hand import SLIM, profile_of, program, radii
@@ -30,7 +36,7 @@ def test_a_path_of_lines_and_an_arc(tmp_path: Path) -> None:
         '<g transform="translate(50,20)"><path d="M0 0V-5H-10A2 2 0 0 1 -12 -7V-10H-25V0Z"/></g>',
     )
     chosen = profile_of(path)
-    assert (chosen.front, chosen.back) == (0.0, pytest.approx(-25.0, abs=1e-4))
+    assert (chosen.front_z_mm, chosen.back_z_mm) == (0.0, pytest.approx(-25.0, abs=1e-4))
     at = [-1.0, -9.0, -11.0, -12.5, -24.0]
     expected = [5.0, 5.0, 7.0 - math.sqrt(4.0 - 1.0), 10.0, 10.0]
     assert radii(program(chosen, {1: SLIM}), "bar:21mm:80mm", at, {1: SLIM}) == pytest.approx(
@@ -41,8 +47,8 @@ def test_a_path_of_lines_and_an_arc(tmp_path: Path) -> None:
 def test_a_bezier_becomes_arcs_on_its_curve(tmp_path: Path) -> None:
     """Every point of the arcs lies on the cubic B(t) of the four points, within .003 mm."""
     path = svg(tmp_path / "b.svg", '<path d="M50 15C40 15 40 10 30 10V20"/>')
-    arcs = [each.element for each in read_drawing(path).drawn if isinstance(each.element, Arc)]
-    unit = read_drawing(path).unit
+    arcs = [each.element for each in read_drawing(path).elements if isinstance(each.element, Arc)]
+    unit = read_drawing(path).unit_mm
     a, b, c, d = (50, 15), (40, 15), (40, 10), (30, 10)
     curve = [
         tuple(
@@ -53,7 +59,7 @@ def test_a_bezier_becomes_arcs_on_its_curve(tmp_path: Path) -> None:
     ]
     assert 4 <= len(arcs) <= 40
     for arc in arcs:
-        y, x = (v * unit for v in arc.point(arc.length / 3))
+        y, x = (v * unit for v in arc.point_at(arc.length / 3))
         assert (
             min(math.dist((x, -y), p) for p in curve) < 0.003 + 0.01
         )  # and half the step of the curve's points
@@ -73,10 +79,10 @@ def test_shapes_and_units(tmp_path: Path) -> None:
     drawn = read_drawing(
         svg(tmp_path / "c.svg", '<rect width="10" height="4"/><line x2="5"/><polyline points="0,0 1,1"/>')
     )
-    assert sum(isinstance(each.element, Line) for each in drawn.drawn) == 6
-    assert drawn.unit == pytest.approx(25.4 / 96)
+    assert sum(isinstance(each.element, Line) for each in drawn.elements) == 6
+    assert drawn.unit_mm == pytest.approx(25.4 / 96)
     bare = read_drawing(svg(tmp_path / "d.svg", "<line x2='5'/>", 'viewBox="0 0 60 40"'))
-    assert bare.unit == 0.0
+    assert bare.unit_mm == 0.0
 
 
 HEAD = "<svg xmlns='http://www.w3.org/2000/svg' width='40mm' height='20mm' viewBox='0 0 40 20'>"
@@ -112,12 +118,12 @@ def test_a_contour_that_bulges_before_all_its_ends_is_refused(tmp_path: Path) ->
     path = tmp_path / "x.svg"
     path.write_text(f"{HEAD}<path d='M0 2.5 H24.330127 A5 5 0 0 1 22.5 9.330127 H0'/></svg>")
     drawing = read_drawing(path)
-    view = View(axis_named(drawing, ""), drawing.unit or 1.0)
-    (net,) = contours(drawing, view)
+    view = DrawingPlacement(select_axis(drawing, ""), drawing.unit_mm or 1.0)
+    (net,) = find_contours(drawing, view)
     with raises_code(DrawingError, "front-in-arc"):
-        profile(drawing, view, net, Side.OUTSIDE)
+        extract_profile(drawing, view, net, ContourSide.OUTSIDE)
     with raises_code(DrawingError, "no-bore"):
-        profile(drawing, view, net, Side.INSIDE)
+        extract_profile(drawing, view, net, ContourSide.INSIDE)
 
 
 @pytest.mark.parametrize(
@@ -131,8 +137,8 @@ def test_a_contour_that_bulges_before_all_its_ends_is_refused(tmp_path: Path) ->
 )
 def test_what_is_infinite_is_refused(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Before curves are halved again and again for it."""
-    asked = Mock(wraps=Place)
-    monkeypatch.setattr(svg_reader, "Place", asked)
+    asked = Mock(wraps=CurvePoint)
+    monkeypatch.setattr(svg_reader, "CurvePoint", asked)
     with pytest.raises(DrawingError) as raised:
         read_drawing(svg(tmp_path / "x.svg", f'<line x2="5"/>{text}'))
     assert raised.value.code in {"not-a-number", "damaged", "too-far-from-zero"}

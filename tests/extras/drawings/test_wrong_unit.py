@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.extras.drawings.drawing_plan import Asked
-from core.extras.shapes.shape_fields import Setting, Shop
+from app.extras.drawings.drawing_plan import PlanRequest
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from tests.extras.drawings.hand import chain, dxf, planned
 
 INCH, FOOT, MM, METRE = 1, 2, 4, 6  # $INSUNITS
@@ -21,10 +21,10 @@ def shaft(path: Path, unit: int, long: float, radius: float) -> Path:
 
 def trouble(path: Path, travel: tuple[float, float] = TRAVEL, **typed: str) -> str:
     """What the form of the screen reports at the field of the unit; other faults are not expected."""
-    setting = Setting(metric=True, shop=Shop(travel=travel))
-    plan = planned(Asked(path, typed, (), setting))
-    assert set(plan.troubles) <= {"DUNIT"}
-    return plan.troubles.get("DUNIT", "")
+    setting = ProgramSettings(metric=True, shop=ShopData(travel=travel))
+    plan = planned(PlanRequest(path, typed, (), setting))
+    assert set(plan.errors) <= {"DUNIT"}
+    return plan.errors.get("DUNIT", "")
 
 
 @pytest.mark.parametrize(

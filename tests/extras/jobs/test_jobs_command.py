@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app.extras.jobs.jobs_command import JOBS
-from core.access.access_table import Level
-from core.store import people
+from app.extras.jobs.jobs_command import JOBS_OUTPUT
+from core.access.access_table import AccessLevel
+from core.store import user_records
 from core.store.production import job_queue
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
@@ -34,7 +34,7 @@ def test_added_listed_moved_removed_cleared(turndesk: Turndesk, home: Path) -> N
     assert turndesk("jobs", "move", 2, 1).out == "ring.nc is job 1\n"
     with Store.open(home) as store:
         job = store.jobs.read_jobs()[0].id
-        store.write(lambda c: job_queue.begin(c, job)).result()
+        store.write(lambda c: job_queue.activate_job(c, job)).result()
         store.runs.add_parts("ring.nc", 2).result()
     assert turndesk("jobs", "list").out == (
         "  1  ring.nc  2 of 2 parts  done\n"
@@ -88,8 +88,8 @@ def test_jobs_are_the_operators_and_have_the_name(
     monkeypatch.setattr("getpass.getuser", lambda: "shop")
     monkeypatch.delenv("SSH_CONNECTION", raising=False)
     with Store.open(home) as store:
-        ann = people.PersonRow("ANN", Level.SERVICE, b"salt", b"hash")
-        store.write(lambda c: people.keep_person(c, ann)).result(60)
+        ann = user_records.UserRow("ANN", AccessLevel.SERVICE, b"salt", b"hash")
+        store.write(lambda c: user_records.save_user(c, ann)).result(60)
     assert turndesk("jobs", "add", "cap", 20).status == 0
     with Store.open(home) as store:
         assert [(row.text, row.who) for row in store.events.read_events("jobs")] == [
@@ -99,4 +99,4 @@ def test_jobs_are_the_operators_and_have_the_name(
 
 def test_the_list_has_the_declared_keys(turndesk: Turndesk, home: Path) -> None:
     assert turndesk("jobs", "add", "pin.nc", "5").status == 0
-    declared_alone([whole(turndesk("jobs", "list", "--json"))], JOBS.keys)
+    declared_alone([whole(turndesk("jobs", "list", "--json"))], JOBS_OUTPUT.keys)

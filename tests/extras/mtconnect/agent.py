@@ -11,7 +11,7 @@ import socket
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
-from app.extras.mtconnect.driver.mtconnect_adapter import NAMESPACE
+from app.extras.mtconnect.driver.mtconnect_adapter import SCHEMA_NAMESPACE
 from core.ports import Clock
 
 UNAVAILABLE = "UNAVAILABLE"
@@ -152,7 +152,7 @@ class FakeAgent:
 
 def kinds_of(model: str) -> dict[str, str]:
     """Category by name, of all items of a device model."""
-    items = ElementTree.fromstring(model).iter(f"{{{NAMESPACE}}}DataItem")
+    items = ElementTree.fromstring(model).iter(f"{{{SCHEMA_NAMESPACE}}}DataItem")
     return {item.attrib["name"]: item.attrib["category"] for item in items}
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 
-from app.extras.mtconnect.driver.agent_links import Active, Report, Value
-from app.extras.mtconnect.driver.mtconnect_adapter import Adapter, devices_xml
-from app.extras.mtconnect.driver.mtconnect_items import Component, Layout, machine_items
+from app.extras.mtconnect.driver.agent_links import ActiveCondition, ItemValue, MachineReport
+from app.extras.mtconnect.driver.mtconnect_adapter import MtconnectAdapter, make_devices_xml
+from app.extras.mtconnect.driver.mtconnect_items import Component, MachineLayout, make_machine_items
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.extras.mtconnect.agent import FakeAgent
 
 BEGIN = datetime(2026, 1, 31, 23, 59, 58, 500_000, tzinfo=UTC)
@@ -19,22 +19,24 @@ _TURNS = 60_000  # of a millisecond, or less
 
 def lathe(name: str = "GT75") -> Component:
     """A gang-tool lathe whose spindle is C."""
-    return machine_items(Layout(("X", "Z"), (), "C", spindle_turns_to=True, chuck=True), name)
+    return make_machine_items(
+        MachineLayout(("X", "Z"), (), "C", is_spindle_positionable=True, has_chuck=True), name
+    )
 
 
 class Bench:
     """``values`` and ``conditions`` are what the machine says at the next look."""
 
     def __init__(self, heartbeat: float = HEARTBEAT) -> None:
-        self.clock = StepClock()
-        self.values: dict[str, Value] = {"avail": "AVAILABLE", "execution": "READY", "Xabs": 1.0}
-        self.conditions: dict[str, tuple[Active, ...]] = {"system": (), "Xservo": ()}
-        self.model = devices_xml(lathe(), "bench", BEGIN)
+        self.clock = ManualClock()
+        self.values: dict[str, ItemValue] = {"avail": "AVAILABLE", "execution": "READY", "Xabs": 1.0}
+        self.conditions: dict[str, tuple[ActiveCondition, ...]] = {"system": (), "Xservo": ()}
+        self.model = make_devices_xml(lathe(), "bench", BEGIN)
         self.agents: list[FakeAgent] = []
-        self.adapter = Adapter(
+        self.adapter = MtconnectAdapter(
             MtconnectTable(port=0, heartbeat=heartbeat),
             tuple(lathe().all_items()),
-            lambda: Report(dict(self.values), dict(self.conditions)),
+            lambda: MachineReport(dict(self.values), dict(self.conditions)),
             self.clock,
             lambda: BEGIN + timedelta(seconds=self.clock.now()),
         )
@@ -69,7 +71,7 @@ class Bench:
         self._both()
 
     def _both(self) -> None:
-        self.adapter.turn(0.001)
+        self.adapter.run_once(0.001)
         for agent in self.agents:
             agent.read()
 

@@ -5,7 +5,14 @@ from __future__ import annotations
 import socket
 from collections.abc import Iterable
 
-from app.extras.mtconnect.driver.agent_links import Active, AgentLink, LostError, clean, text_of, values_line
+from app.extras.mtconnect.driver.agent_links import (
+    ActiveCondition,
+    AgentLink,
+    AgentLostError,
+    format_value,
+    make_values_line,
+    replace_separators,
+)
 from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
 from tests.fuzz.fuzz_target import Target
 
@@ -16,11 +23,13 @@ def _shdr(data: bytes) -> Iterable[str]:
     """Texts of programs and alarms go out as values; bytes of an agent come in."""
     texts = data.decode("utf-8", "surrogateescape").split("\0")
     for text in texts:
-        line = values_line("t", {"block": text_of(_ITEM, text), "program": clean(text)})
+        line = make_values_line(
+            "t", {"block": format_value(_ITEM, text), "program": replace_separators(text)}
+        )
         if line.count("\n") != 1 or line.count("|") != 4 or "--multiline--" in line:
             raise AssertionError(f"two values have not stayed two: {line!r}")
         line.encode("utf-8")
-        clean(Active("FAULT", text, text).text)
+        replace_separators(ActiveCondition("FAULT", text, text).text)
     ours, theirs = socket.socketpair()
     with ours, theirs:
         ours.setblocking(False)
@@ -28,13 +37,16 @@ def _shdr(data: bytes) -> Iterable[str]:
         for at in range(0, len(data), 1000):
             theirs.sendall(data[at : at + 1000])
             link.read(float(at))
-            link.mind(float(at))
+            link.check_timeout(float(at))
     return ()
 
 
 NAMES = ("SHDR lines",)
 TARGETS = (
     Target(
-        "SHDR lines", lambda: (b"* PING\n", b'G90 X1|2\0"x"\0--multiline--\0\xff\xfe'), _shdr, (LostError,)
+        "SHDR lines",
+        lambda: (b"* PING\n", b'G90 X1|2\0"x"\0--multiline--\0\xff\xfe'),
+        _shdr,
+        (AgentLostError,),
     ),
 )

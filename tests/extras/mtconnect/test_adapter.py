@@ -8,11 +8,17 @@ from functools import partial
 
 import pytest
 
-from app.extras.mtconnect.driver.agent_links import BEHIND, READ, Active, AgentLink, Report
-from app.extras.mtconnect.driver.mtconnect_adapter import MOST, Adapter
+from app.extras.mtconnect.driver.agent_links import (
+    MAX_UNSENT_BYTES,
+    READ_BYTES,
+    ActiveCondition,
+    AgentLink,
+    MachineReport,
+)
+from app.extras.mtconnect.driver.mtconnect_adapter import MAX_AGENTS, MtconnectAdapter
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from core.ports import DriverError
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.extras.mtconnect.bench import HEARTBEAT, Bench
 from tests.texts import shows
 
@@ -49,7 +55,7 @@ def test_a_quiet_machine_keeps_its_agent_by_answering_pings(bench: Bench) -> Non
 
 def test_conditions_come_and_go_one_by_one(bench: Bench) -> None:
     agent = bench.agent()
-    one, other = Active("FAULT", "101", "X: over current"), Active("FAULT", "102", "X lags")
+    one, other = ActiveCondition("FAULT", "101", "X: over current"), ActiveCondition("FAULT", "102", "X lags")
     bench.conditions["Xservo"] = (one, other)
     bench.look()
     assert agent.active["Xservo"] == {"101": ("FAULT", one.text), "102": ("FAULT", other.text)}
@@ -69,7 +75,7 @@ def test_one_that_comes_back_gets_everything_again(bench: Bench, caplog: pytest.
     bench.look()
     agent.hang_up()
     assert agent.values["execution"] == "UNAVAILABLE"
-    bench.until(lambda: bench.adapter.agents == 0)
+    bench.until(lambda: bench.adapter.agent_count == 0)
     agent.connect(bench.adapter.address)
     bench.until(lambda: agent.values["execution"] == "ACTIVE")
     assert bench.adapter.counts.accepted == 2
@@ -103,8 +109,10 @@ def test_whatever_is_no_ping_is_counted_and_changes_nothing(bench: Bench, said: 
     assert agent.lines[before[1] :] == ["* PONG 10000"]
     assert (agent.values, other.values) == (before[0], before[0])
     agent.hang_up()
-    bench.until(lambda: bench.adapter.agents == 1)
-    assert bench.adapter.counts.ignored == len([line for line in said.split(b"\n") if line.strip()])
+    bench.until(lambda: bench.adapter.agent_count == 1)
+    assert bench.adapter.counts.ignored_line_count == len(
+        [line for line in said.split(b"\n") if line.strip()]
+    )
 
 
 def test_a_ping_may_come_in_pieces(bench: Bench) -> None:
@@ -128,7 +136,7 @@ def test_a_flood_of_lines_does_not_keep_others_waiting(bench: Bench) -> None:
     flooding.send(b"* PING\n")
     before = flooding.lines.count("* PONG 10000")
     bench.until(lambda: flooding.lines.count("* PONG 10000") > before)  # all of it was taken, bit by bit
-    assert bench.adapter.agents == 2
+    assert bench.adapter.agent_count == 2
 
 
 def test_no_more_than_a_kilobyte_is_taken_of_an_agent_at_a_time() -> None:
@@ -138,10 +146,10 @@ def test_no_more_than_a_kilobyte_is_taken_of_an_agent_at_a_time() -> None:
         far.sendall(b"x\n" * 2000)
         link = AgentLink(near, HEARTBEAT)
         link.read(0.0)
-        assert link.ignored == READ // 2
+        assert link.ignored_line_count == READ_BYTES // 2
         for _ in range(10):
             link.read(0.0)
-        assert link.ignored == 2000
+        assert link.ignored_line_count == 2000
 
 
 def test_one_that_sends_no_lines_is_given_up(bench: Bench) -> None:
@@ -150,7 +158,7 @@ def test_one_that_sends_no_lines_is_given_up(bench: Bench) -> None:
     bench.until(lambda: flooding.wire is None)
     bench.look()
     assert other.wire is not None
-    assert (bench.adapter.agents, bench.adapter.counts.lost) == (1, 1)
+    assert (bench.adapter.agent_count, bench.adapter.counts.lost) == (1, 1)
 
 
 def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(
@@ -159,13 +167,13 @@ def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(
     slow, other = bench.agent(receive=4096), bench.agent()
     bench.agents.remove(slow)  # connected, and never reads again
     looks = 0
-    while bench.adapter.agents == 2:
+    while bench.adapter.agent_count == 2:
         bench.values["block"] = f"N{looks} " + "X" * 240
         if looks % 50 == 0:
             slow.send(b"* PING\n")  # it is there, and it is not its silence that ends it
         bench.look()
         looks += 1
-        assert looks < 40 * BEHIND // 240
+        assert looks < 40 * MAX_UNSENT_BYTES // 240
     assert shows(caplog.text, "drivers.agent-does-not-read")
     assert other.values["block"].startswith(f"N{looks - 1} ")
     slow.hang_up()
@@ -178,10 +186,10 @@ def test_a_computer_that_vanishes_is_noticed_by_its_silence(
     bench.agents.remove(gone)  # no FIN, no RST: its plug was pulled
     for _ in range(205):
         bench.silent_look()
-    assert bench.adapter.agents == 2
+    assert bench.adapter.agent_count == 2
     for _ in range(10):  # past two heartbeats and one second
         bench.silent_look()
-    assert bench.adapter.agents == 1
+    assert bench.adapter.agent_count == 1
     assert re.search("PING .*21 s", caplog.text)
     assert other.wire is not None
     gone.hang_up()
@@ -189,10 +197,10 @@ def test_a_computer_that_vanishes_is_noticed_by_its_silence(
 
 def test_a_person_with_a_terminal_need_not_ping(bench: Bench) -> None:
     with socket.create_connection(bench.adapter.address, 60.0) as wire:
-        bench.until(lambda: bench.adapter.agents == 1)
+        bench.until(lambda: bench.adapter.agent_count == 1)
         for _ in range(1000):
             bench.silent_look()
-        assert bench.adapter.agents == 1
+        assert bench.adapter.agent_count == 1
         assert b"|execution|READY|" in wire.recv(65536)
 
 
@@ -202,49 +210,49 @@ def test_one_that_is_gone_before_it_is_let_in_costs_nothing(bench: Bench) -> Non
         wire.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00")
         wire.close()  # a reset instead of an end
         bench.silent_look()
-    bench.until(lambda: bench.adapter.agents == 0)
+    bench.until(lambda: bench.adapter.agent_count == 0)
     assert bench.agent().values["execution"] == "READY"
 
 
 def test_there_is_room_for_so_many_and_no_more(bench: Bench) -> None:
-    for _ in range(MOST):
+    for _ in range(MAX_AGENTS):
         bench.agent()
     with socket.create_connection(bench.adapter.address, 60.0) as wire:
         wire.sendall(b"* PING\n")
-        bench.until(lambda: bench.adapter.counts.refused == 1)
+        bench.until(lambda: bench.adapter.counts.rejected_count == 1)
         assert b"|" not in wire.recv(100)  # nothing of the machine
     bench.agents[0].hang_up()
-    bench.until(lambda: bench.adapter.agents == MOST - 1)
+    bench.until(lambda: bench.adapter.agent_count == MAX_AGENTS - 1)
     bench.agent()
 
 
 def _serves(bench: Bench, count: int) -> bool:
-    return bench.adapter.agents == count
+    return bench.adapter.agent_count == count
 
 
 def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
     """Half-open connections and port scanners must not lock the agents out."""
     silent = []
-    for taken in range(1, MOST + 1):
+    for taken in range(1, MAX_AGENTS + 1):
         silent.append(socket.create_connection(bench.adapter.address, 60.0))
         bench.until(partial(_serves, bench, taken))
-    agents = [bench.agent() for _ in range(MOST)]
+    agents = [bench.agent() for _ in range(MAX_AGENTS)]
     assert all(agent.values["execution"] == "READY" for agent in agents)
-    assert bench.adapter.agents == MOST
-    assert bench.adapter.counts.lost == MOST
+    assert bench.adapter.agent_count == MAX_AGENTS
+    assert bench.adapter.counts.lost == MAX_AGENTS
     for wire in silent:
         wire.close()
 
 
 def test_who_waits_at_the_door_and_never_pings_is_sent_away(bench: Bench) -> None:
-    for _ in range(MOST):
+    for _ in range(MAX_AGENTS):
         bench.agent()
     with socket.create_connection(bench.adapter.address, 60.0) as wire:
-        bench.until(lambda: len(bench.adapter._links) == MOST + 1)
+        bench.until(lambda: len(bench.adapter._links) == MAX_AGENTS + 1)
         for _ in range(51):
             bench.silent_look()
         assert wire.recv(100) == b""
-    assert bench.adapter.agents == MOST
+    assert bench.adapter.agent_count == MAX_AGENTS
 
 
 def test_closing_hangs_up_on_everybody() -> None:
@@ -258,7 +266,9 @@ def test_closing_hangs_up_on_everybody() -> None:
 
 
 def refusing(bind: str, port: int) -> str:
-    adapter = Adapter(MtconnectTable(bind=bind, port=port), (), lambda: Report({}, {}), StepClock())
+    adapter = MtconnectAdapter(
+        MtconnectTable(bind=bind, port=port), (), lambda: MachineReport({}, {}), ManualClock()
+    )
     with pytest.raises(DriverError) as caught:
         adapter.open()
     adapter.close()

@@ -7,11 +7,11 @@ import threading
 
 import pytest
 
-from app.extras.mtconnect.driver.agent_links import Report
-from app.extras.mtconnect.driver.mtconnect_adapter import Adapter, AdapterThread
+from app.extras.mtconnect.driver.agent_links import MachineReport
+from app.extras.mtconnect.driver.mtconnect_adapter import AdapterThread, MtconnectAdapter
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from core.ports import DriverError
-from drivers.waiting import RealClock
+from drivers.wakeups import RealClock
 from tests.coded import raises_code
 from tests.extras.mtconnect.bench import lathe
 
@@ -24,14 +24,14 @@ class Machine:
     def __init__(self) -> None:
         self.state, self.broken = "READY", threading.Event()
 
-    def report(self) -> Report:
+    def report(self) -> MachineReport:
         if self.broken.is_set():
             raise RuntimeError("a mistake of our own")
-        return Report({"execution": self.state}, {})
+        return MachineReport({"execution": self.state}, {})
 
 
-def adapter(machine: Machine, port: int = 0) -> Adapter:
-    return Adapter(
+def adapter(machine: Machine, port: int = 0) -> MtconnectAdapter:
+    return MtconnectAdapter(
         MtconnectTable(bind=HERE, port=port), tuple(lathe().all_items()), machine.report, RealClock()
     )
 
@@ -59,7 +59,7 @@ def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
         machine.state = "STOPPED"  # the last word, whether a look comes before the end or not
         thread.close()
         assert "execution|STOPPED" in all_of(wire)
-    assert not thread.alive
+    assert not thread.is_alive
     assert threads() == []
     with pytest.raises(ConnectionError):
         socket.create_connection(address, 60.0)
@@ -93,5 +93,5 @@ def test_should_it_fail_agents_are_hung_up_on(caplog: pytest.LogCaptureFixture) 
         machine.broken.set()
         all_of(wire)
     thread.close()
-    assert not thread.alive
+    assert not thread.is_alive
     assert "RuntimeError: a mistake of our own" in caplog.text

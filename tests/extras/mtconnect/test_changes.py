@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import pytest
 
-from app.extras.mtconnect.driver.agent_links import Active, AgentsState, Report, Value
+from app.extras.mtconnect.driver.agent_links import ActiveCondition, ItemValue, MachineReport, SentState
 from tests.extras.mtconnect.bench import lathe
 
 A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
 
 
-def told_after(*values: dict[str, Value]) -> str:
+def told_after(*values: dict[str, ItemValue]) -> str:
     """What the last of these reports makes."""
-    told, said = AgentsState(tuple(lathe().all_items())), ""
+    told, said = SentState(tuple(lathe().all_items())), ""
     for each in values:
-        said = told.changes(Report(each, {}), A)
+        said = told.report_changes(MachineReport(each, {}), A)
     return said
 
 
 def test_before_anything_is_known_all_of_it_is_unavailable() -> None:
-    lines = AgentsState(tuple(lathe().all_items())).whole(A).splitlines()
+    lines = SentState(tuple(lathe().all_items())).make_complete_state(A).splitlines()
     values, *conditions = (line.split("|") for line in lines)
     assert set(values[2::2]) == {"UNAVAILABLE"}
     assert {parts[2] for parts in conditions} == {"UNAVAILABLE"}
@@ -46,21 +46,23 @@ def test_before_anything_is_known_all_of_it_is_unavailable() -> None:
         ("block", "X1", "X1 ", ""),  # nobody could see the difference
     ],
 )
-def test_what_is_worth_a_line(key: str, before: Value, now: Value, said: str) -> None:
+def test_what_is_worth_a_line(key: str, before: ItemValue, now: ItemValue, said: str) -> None:
     line = told_after({key: before}, {key: now})
     assert line == (f"{A}|{said}\n" if said else "")
 
 
 def test_a_slow_drift_is_not_lost_in_the_band() -> None:
     """Each step is within the band of the one before, not of what was told."""
-    steps: list[dict[str, Value]] = [{"Xabs": 10.0 + 0.0008 * i} for i in range(5)]
+    steps: list[dict[str, ItemValue]] = [{"Xabs": 10.0 + 0.0008 * i} for i in range(5)]
     assert told_after(*steps) == f"{A}|Xabs|10.0032\n"
 
 
 def test_what_a_report_leaves_out_is_no_longer_known() -> None:
-    told = AgentsState(tuple(lathe().all_items()))
-    told.changes(Report({"Xabs": 1.0}, {"Xservo": (Active("FAULT", "101", "tripped"),)}), A)
-    lines = told.changes(Report({"avail": "UNAVAILABLE"}, {}), B).splitlines()
+    told = SentState(tuple(lathe().all_items()))
+    told.report_changes(
+        MachineReport({"Xabs": 1.0}, {"Xservo": (ActiveCondition("FAULT", "101", "tripped"),)}), A
+    )
+    lines = told.report_changes(MachineReport({"avail": "UNAVAILABLE"}, {}), B).splitlines()
     assert lines == [f"{B}|Xabs|UNAVAILABLE", f"{B}|Xservo|UNAVAILABLE||||"]
 
 
@@ -69,8 +71,8 @@ def test_keys_that_are_no_items_are_not_sent() -> None:
 
 
 def test_a_new_text_of_the_same_fault_replaces_it() -> None:
-    told = AgentsState(tuple(lathe().all_items()))
-    told.changes(Report({}, {"system": (Active("WARNING", "hold", "ONE"),)}), A)
-    said = told.changes(Report({}, {"system": (Active("WARNING", "hold", "TWO"),)}), B)
+    told = SentState(tuple(lathe().all_items()))
+    told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "ONE"),)}), A)
+    said = told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "TWO"),)}), B)
     assert said == f"{B}|system|WARNING|hold|||TWO\n"
-    assert told.whole(B).count("hold") == 1
+    assert told.make_complete_state(B).count("hold") == 1

@@ -7,22 +7,22 @@ from datetime import UTC, datetime
 import pytest
 
 from app.extras.mtconnect.driver.agent_links import (
-    LONGEST,
-    Active,
-    active_line,
-    clean,
-    cleared_line,
-    pong,
-    stamp,
-    text_of,
-    unknown_line,
-    values_line,
+    MAX_VALUE_LENGTH,
+    ActiveCondition,
+    format_utc_time,
+    format_value,
+    make_active_line,
+    make_cleared_line,
+    make_pong,
+    make_unknown_line,
+    make_values_line,
+    replace_separators,
 )
 from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
 from tests.extras.mtconnect.agent import tokens
 
 AT = "2026-11-21T22:17:39.000Z"
-PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", digits=4)
+PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", decimal_places=4)
 
 
 @pytest.mark.parametrize(
@@ -45,12 +45,12 @@ PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", digits
     ],
 )
 def test_a_value_stays_one_value(text: str, told: str) -> None:
-    assert clean(text) == told
-    assert tokens(f"{AT}|block|{clean(text)}|line|7") == [AT, "block", told, "line", "7"]
+    assert replace_separators(text) == told
+    assert tokens(f"{AT}|block|{replace_separators(text)}|line|7") == [AT, "block", told, "line", "7"]
 
 
 def test_a_program_without_line_ends_makes_no_endless_line() -> None:
-    assert len(clean("X" * 100_000)) == LONGEST
+    assert len(replace_separators("X" * 100_000)) == MAX_VALUE_LENGTH
 
 
 @pytest.mark.parametrize(
@@ -66,20 +66,20 @@ def test_a_program_without_line_ends_makes_no_endless_line() -> None:
     ],
 )
 def test_values_as_text(value: str | float | None, told: str) -> None:
-    assert text_of(PLACE, value) == told
+    assert format_value(PLACE, value) == told
 
 
 def test_lines() -> None:
-    assert values_line(AT, {"execution": "ACTIVE", "line": "12"}) == f"{AT}|execution|ACTIVE|line|12\n"
-    fault = Active("FAULT", "102", "X lags | 0.2\nmm")
-    assert active_line(AT, "Xservo", fault) == f"{AT}|Xservo|FAULT|102|||X lags / 0.2 mm\n"
-    assert cleared_line(AT, "Xservo", "102") == f"{AT}|Xservo|NORMAL|102|||\n"
-    assert cleared_line(AT, "Xservo") == f"{AT}|Xservo|NORMAL||||\n"
-    assert unknown_line(AT, "Xservo") == f"{AT}|Xservo|UNAVAILABLE||||\n"
+    assert make_values_line(AT, {"execution": "ACTIVE", "line": "12"}) == f"{AT}|execution|ACTIVE|line|12\n"
+    fault = ActiveCondition("FAULT", "102", "X lags | 0.2\nmm")
+    assert make_active_line(AT, "Xservo", fault) == f"{AT}|Xservo|FAULT|102|||X lags / 0.2 mm\n"
+    assert make_cleared_line(AT, "Xservo", "102") == f"{AT}|Xservo|NORMAL|102|||\n"
+    assert make_cleared_line(AT, "Xservo") == f"{AT}|Xservo|NORMAL||||\n"
+    assert make_unknown_line(AT, "Xservo") == f"{AT}|Xservo|UNAVAILABLE||||\n"
 
 
 def test_times_are_utc_with_z() -> None:
-    assert stamp(datetime(2026, 3, 4, 5, 6, 7, 89_999, UTC)) == "2026-03-04T05:06:07.089Z"
+    assert format_utc_time(datetime(2026, 3, 4, 5, 6, 7, 89_999, UTC)) == "2026-03-04T05:06:07.089Z"
 
 
 @pytest.mark.parametrize(
@@ -93,4 +93,4 @@ def test_times_are_utc_with_z() -> None:
 )
 def test_a_pong_has_a_time_that_the_agent_takes(seconds: float, said: bytes) -> None:
     """It refuses 0, and half an hour itself."""
-    assert pong(seconds) == said
+    assert make_pong(seconds) == said

@@ -8,8 +8,8 @@ from xml.etree.ElementTree import Element
 
 import pytest
 
-from app.extras.mtconnect.driver.mtconnect_adapter import NAMESPACE, devices_xml
-from app.extras.mtconnect.driver.mtconnect_items import Layout, machine_items
+from app.extras.mtconnect.driver.mtconnect_adapter import SCHEMA_NAMESPACE, make_devices_xml
+from app.extras.mtconnect.driver.mtconnect_items import MachineLayout, make_machine_items
 from core.ports import DriverError
 from tests.coded import raises_code
 from tests.extras.mtconnect.bench import lathe
@@ -54,11 +54,11 @@ WANTED = {
 
 
 def root(name: str = "GT75") -> Element:
-    return ElementTree.fromstring(devices_xml(lathe(name), "a lathe", AT))
+    return ElementTree.fromstring(make_devices_xml(lathe(name), "a lathe", AT))
 
 
 def elements(top: Element, kind: str) -> list[Element]:
-    return list(top.iter(f"{{{NAMESPACE}}}{kind}"))
+    return list(top.iter(f"{{{SCHEMA_NAMESPACE}}}{kind}"))
 
 
 def test_every_item_is_what_the_standard_calls_it() -> None:
@@ -72,7 +72,7 @@ def test_every_item_is_what_the_standard_calls_it() -> None:
 
 
 def test_nothing_is_declared_native_or_the_agent_would_multiply_it() -> None:
-    text = devices_xml(lathe(), "a lathe", AT)
+    text = make_devices_xml(lathe(), "a lathe", AT)
     assert "native" not in text
     frames = {
         item.get("coordinateSystem") for item in elements(root(), "DataItem") if item.get("coordinateSystem")
@@ -110,16 +110,18 @@ def test_the_header_has_a_time() -> None:
 @pytest.mark.parametrize("name", ["", "GT 75", "75GT", "GT|75", "GT:75", "<GT>", "Drehmaschine Ø"])
 def test_a_name_that_no_agent_takes_is_refused(name: str) -> None:
     with raises_code(DriverError, "driver", "[mtconnect] device", repr(name)):
-        devices_xml(lathe(name), "a lathe", AT)
+        make_devices_xml(lathe(name), "a lathe", AT)
 
 
 def test_words_for_people_may_be_anything() -> None:
-    text = devices_xml(lathe(), 'Tom & "Jerry" <5>', AT)
+    text = make_devices_xml(lathe(), 'Tom & "Jerry" <5>', AT)
     assert elements(ElementTree.fromstring(text), "Description")[0].text == 'Tom & "Jerry" <5>'
 
 
 def test_a_mill_has_its_own_axes_and_no_chuck() -> None:
-    mill = machine_items(Layout(("X", "Y", "Z"), ("A", "C"), "S", spindle_turns_to=False, chuck=False), "AC")
+    mill = make_machine_items(
+        MachineLayout(("X", "Y", "Z"), ("A", "C"), "S", is_spindle_positionable=False, has_chuck=False), "AC"
+    )
     keys = {item.key for item in mill.all_items()}
     assert {"Yabs", "Yservo", "Aabs", "Aservo", "Atravel", "Cabs", "Cservo", "Srpm", "Sdrive"} <= keys
     assert not keys & {"chuck", "chuckil", "Sabs"}

@@ -5,16 +5,23 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.extras.mtconnect.driver.agent_links import Active, AgentsState, Report, Value, clean, values_line
-from app.extras.mtconnect.driver.mtconnect_adapter import devices_xml
+from app.extras.mtconnect.driver.agent_links import (
+    ActiveCondition,
+    ItemValue,
+    MachineReport,
+    SentState,
+    make_values_line,
+    replace_separators,
+)
+from app.extras.mtconnect.driver.mtconnect_adapter import make_devices_xml
 from app.extras.mtconnect.driver.mtconnect_items import Category
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.extras.mtconnect.agent import FakeAgent, tokens
 from tests.extras.mtconnect.bench import BEGIN, lathe
 
 AT = "2026-01-01T00:00:00.000Z"
 ITEMS = tuple(lathe().all_items())
-MODEL = devices_xml(lathe(), "bench", BEGIN)
+MODEL = make_devices_xml(lathe(), "bench", BEGIN)
 TEXTS = st.one_of(
     st.text(max_size=40),
     st.text(alphabet='"|\\\n-* @:multine', max_size=40),
@@ -24,30 +31,32 @@ TEXTS = st.one_of(
 
 @given(TEXTS, TEXTS)
 def test_two_values_stay_two_values(one: str, other: str) -> None:
-    line = values_line(AT, {"block": clean(one), "program": clean(other), "line": "7"})
+    line = make_values_line(
+        AT, {"block": replace_separators(one), "program": replace_separators(other), "line": "7"}
+    )
     assert line.endswith("|line|7\n")
     assert line.count("\n") == 1
     assert "--multiline--" not in line
     assert line.splitlines() == [line[:-1]]
     found = tokens(line.rstrip("\n"))
     assert found[1::2] == ["block", "program", "line"]
-    assert (found[2], found[4]) == (clean(one), clean(other))
+    assert (found[2], found[4]) == (replace_separators(one), replace_separators(other))
     line.encode("utf-8")
 
 
-def values() -> st.SearchStrategy[Report]:
+def values() -> st.SearchStrategy[MachineReport]:
     """Reports with some of the items, sometimes the same again."""
     samples = [item.key for item in ITEMS if item.category is Category.SAMPLE]
     events = [item.key for item in ITEMS if item.category is Category.EVENT]
     conditions = [item.key for item in ITEMS if item.category is Category.CONDITION]
-    number: st.SearchStrategy[Value] = st.one_of(st.none(), st.floats(-1e4, 1e4), st.just(0.0))
-    text: st.SearchStrategy[Value] = st.one_of(st.none(), TEXTS)
+    number: st.SearchStrategy[ItemValue] = st.one_of(st.none(), st.floats(-1e4, 1e4), st.just(0.0))
+    text: st.SearchStrategy[ItemValue] = st.one_of(st.none(), TEXTS)
     active = st.builds(
-        Active, st.sampled_from(["FAULT", "WARNING"]), st.sampled_from(["101", "102", "hold"]), TEXTS
+        ActiveCondition, st.sampled_from(["FAULT", "WARNING"]), st.sampled_from(["101", "102", "hold"]), TEXTS
     )
     several = st.lists(active, max_size=3, unique_by=lambda each: each.code).map(tuple)
     return st.builds(
-        lambda a, b, c: Report({**a, **b}, c),
+        lambda a, b, c: MachineReport({**a, **b}, c),
         st.dictionaries(st.sampled_from(samples), number),
         st.dictionaries(st.sampled_from(events), text),
         st.dictionaries(st.sampled_from(conditions), several),
@@ -56,16 +65,16 @@ def values() -> st.SearchStrategy[Report]:
 
 @settings(max_examples=30)
 @given(st.lists(values(), min_size=1, max_size=6), st.data())
-def test_who_comes_late_knows_what_the_others_know(reports: list[Report], data: st.DataObject) -> None:
+def test_who_comes_late_knows_what_the_others_know(reports: list[MachineReport], data: st.DataObject) -> None:
     comes = data.draw(st.integers(0, len(reports) - 1))
-    told = AgentsState(ITEMS)
-    early, late = (FakeAgent(MODEL, StepClock()) for _ in range(2))
-    hear(early, told.whole(AT))
+    told = SentState(ITEMS)
+    early, late = (FakeAgent(MODEL, ManualClock()) for _ in range(2))
+    hear(early, told.make_complete_state(AT))
     for i, report in enumerate(reports):
-        said = told.changes(report, AT)
+        said = told.report_changes(report, AT)
         hear(early, said)
         if i == comes:
-            hear(late, told.whole(AT))
+            hear(late, told.make_complete_state(AT))
         elif i > comes:
             hear(late, said)
     assert early.values == late.values
@@ -74,7 +83,9 @@ def test_who_comes_late_knows_what_the_others_know(reports: list[Report], data: 
     last = reports[-1]
     for key, active in early.active.items():
         now = last.conditions.get(key)
-        wanted = None if now is None else {each.code: (each.level, clean(each.text)) for each in now}
+        wanted = (
+            None if now is None else {each.code: (each.level, replace_separators(each.text)) for each in now}
+        )
         assert active == wanted
 
 

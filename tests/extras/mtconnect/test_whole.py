@@ -15,12 +15,12 @@ from xml.etree import ElementTree
 import pytest
 
 import resources
-from app.compose.machine.machine_files import load_machine, named_machine
+from app.compose.machine.machine_files import load_machine, load_named_machine
 from app.compose.screen_desk import build_desk
+from app.extras.mtconnect.adapter_setup import make_adapter, make_device, make_device_model
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
-from app.extras.mtconnect.shop_floor import adapter_of, device_model, device_of
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.machine.machine_model import Machine
 from tests.cli.conftest import Turndesk, home, turndesk
 from tests.executor.rig import Rig
@@ -44,17 +44,17 @@ class Floor:
 
     def __init__(self) -> None:
         self.rig = Rig(machine=with_model(LATHE))
-        self.adapter = adapter_of(self.rig.machine, MODEL, lambda: self.rig.shot)
+        self.adapter = make_adapter(self.rig.machine, MODEL, lambda: self.rig.shot)
         self.adapter.open()
-        self.agent = FakeAgent(device_model(self.rig.machine, datetime.now(UTC)), self.rig.clock)
+        self.agent = FakeAgent(make_device_model(self.rig.machine, datetime.now(UTC)), self.rig.clock)
         self.agent.connect(self.adapter.address)
         self.history("execution")
         self.rig.watch.append(lambda _: self.see())
 
     def see(self) -> None:
         """One look, whatever the wall clock says."""
-        self.adapter.look()
-        self.adapter.turn(0.0)
+        self.adapter.send_changes()
+        self.adapter.run_once(0.0)
         self.agent.read()
 
     def history(self, key: str) -> list[str]:
@@ -62,7 +62,7 @@ class Floor:
         mark = len(self.agent.lines)
         self.agent.send(b"* PING\n")
         while not any(line.startswith("* PONG") for line in self.agent.lines[mark:]):
-            self.adapter.turn(0.001)
+            self.adapter.run_once(0.001)
             self.agent.read()
         assert (self.agent.unknown, self.agent.bad) == ([], [])
         return re.findall(rf"\|{key}\|([^|\n]*)", "\n".join(self.agent.lines))
@@ -81,7 +81,7 @@ def floor() -> Iterator[Floor]:
 
 def test_a_program_from_power_up_to_its_end(floor: Floor) -> None:
     floor.rig.start("G90G94F300\nM03S500\nX.1\nM30\n")
-    floor.rig.until(State.IDLE)
+    floor.rig.until(MachineState.IDLE)
     assert floor.history("execution") == ["STOPPED", "READY", "ACTIVE", "PROGRAM_COMPLETED"]
     assert floor.history("pcount") == ["0", "1"]
     assert floor.history("line") == ["UNAVAILABLE", "2", "3", "UNAVAILABLE"]  # M30 takes no time
@@ -98,11 +98,11 @@ def test_a_program_from_power_up_to_its_end(floor: Floor) -> None:
 def test_program_stop_and_optional_stop_are_two_things(floor: Floor, program: str, told: str) -> None:
     floor.rig.post(SetSwitch("optional_stop", True))
     floor.rig.start(f"G90G94F300\n{program}\nX.1\nM30\n")
-    floor.rig.until(State.PROGRAM_STOP)
+    floor.rig.until(MachineState.PROGRAM_STOP)
     assert floor.history("execution")[-1] == told
     floor.rig.run(0.4)
     floor.rig.post(CycleStart())
-    floor.rig.until(State.IDLE)
+    floor.rig.until(MachineState.IDLE)
     assert floor.history("execution")[-3:] == [told, "ACTIVE", "PROGRAM_COMPLETED"]
 
 
@@ -110,10 +110,10 @@ def test_hold_and_giving_up(floor: Floor) -> None:
     floor.rig.start("G90G94F10\nX1\nM30\n")
     floor.rig.run(1.0)
     floor.rig.post(FeedHold())
-    floor.rig.until(State.HOLD)
+    floor.rig.until(MachineState.HOLD)
     assert floor.history("execution")[-2:] == ["ACTIVE", "FEED_HOLD"]
     floor.rig.post(Reset())
-    floor.rig.until(State.IDLE)
+    floor.rig.until(MachineState.IDLE)
     assert floor.history("execution")[-1] == "STOPPED"
     assert floor.history("pcount") == ["0"]
 
@@ -122,7 +122,7 @@ def test_a_jammed_slide_is_a_fault_of_that_slide_until_reset(floor: Floor) -> No
     floor.rig.start("G90G94F60\nX1\nM30\n")
     floor.rig.run(0.5)
     floor.rig.sim.machine.jam("X")
-    floor.rig.until(State.FAULT)
+    floor.rig.until(MachineState.FAULT)
     assert floor.history("execution")[-1] == "STOPPED"
     assert [level for level, _ in (floor.agent.active["Xservo"] or {}).values()] == ["FAULT"]
     assert floor.agent.active["Zservo"] == {}
@@ -149,20 +149,20 @@ def test_estop(floor: Floor) -> None:
 )
 def test_what_is_told_of_each_shipped_machine_is_what_its_model_declares(name: str) -> None:
     """A key that the model has and nobody ever tells would stay UNAVAILABLE for ever."""
-    machine = named_machine(str(Path(resources.__file__).parent / "machines" / name))
-    kinds = kinds_of(device_model(with_model(machine), datetime.now(UTC)))
+    machine = load_named_machine(str(Path(resources.__file__).parent / "machines" / name))
+    kinds = kinds_of(make_device_model(with_model(machine), datetime.now(UTC)))
     snapshot = Snapshot(
         t=1.0,
         axes=tuple(axis.name for axis in machine.axes),
         actual=tuple(1.0 for _ in machine.axes),
         homed=tuple(True for _ in machine.axes),
     )
-    adapter = adapter_of(machine, MODEL, lambda: snapshot)
+    adapter = make_adapter(machine, MODEL, lambda: snapshot)
     report = adapter._report()
     told = set(report.values) - ({"chuck", "chuckil"} if machine.kind == "mill" else set())
     assert told == {key for key, kind in kinds.items() if kind != "CONDITION"}
     assert set(report.conditions) == {key for key, kind in kinds.items() if kind == "CONDITION"}
-    assert device_of(machine, "GT75").name == "GT75"
+    assert make_device(machine, "GT75").name == "GT75"
 
 
 def machine_file(folder: Path, port: int, **changes: str) -> Path:
@@ -197,10 +197,10 @@ def test_a_port_that_is_taken_is_said_and_the_machine_runs(home: Path, tmp_path:
         port = other.getsockname()[1]
         desk = build_desk(str(machine_file(tmp_path, port)))
         try:
-            assert re.fullmatch(pattern("shopfloor.no-data"), desk.notice)
+            assert re.fullmatch(pattern("shopfloor.no-data"), desk.prompt_notice)
             for value in ("[mtconnect]", "127.0.0.1", str(port)):
-                assert value in desk.notice
-            assert desk.snapshot().state is State.DISABLED
+                assert value in desk.prompt_notice
+            assert desk.read_snapshot().state is MachineState.DISABLED
         finally:
             desk.close()
     assert threads() == []

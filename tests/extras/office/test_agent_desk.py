@@ -10,7 +10,7 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 import pytest
 
 from app.compose.machine.machine_files import parse_machine
-from app.extras.office.other_desks import asked_agent, current_address, streams_answer
+from app.extras.office.other_machines import make_current_address, parse_streams, read_agent_status
 from core.extras.office.shop_network_tables import StatusPageTable
 from core.table_schema import MachineFileError
 from resources import machine_file
@@ -54,7 +54,7 @@ def streams(**told: str) -> bytes:
 
 @pytest.mark.parametrize("version", ["1.3", "2.5"])
 def test_a_machine_that_runs(version: str) -> None:
-    found, trouble = streams_answer(streams(version=version))
+    found, trouble = parse_streams(streams(version=version))
     assert found == {"machine": "MILL4", "state": "RUNNING", "program": "O4711", "line": 88, "made": 57}
     assert trouble == ""
 
@@ -71,24 +71,24 @@ def test_a_machine_that_runs(version: str) -> None:
     ],
 )
 def test_how_a_machine_stands(told: dict[str, str], state: str) -> None:
-    found, _ = streams_answer(streams(**told))
+    found, _ = parse_streams(streams(**told))
     assert found is not None
     assert found["state"] == state
 
 
 def test_an_alarm_says_why() -> None:
-    found, trouble = streams_answer(streams(condition=FAULT.format("X servo\n  excess error &lt;x&gt;")))
+    found, trouble = parse_streams(streams(condition=FAULT.format("X servo\n  excess error &lt;x&gt;")))
     assert found is not None
     assert (found["state"], trouble) == ("ALARM", "X servo excess error <x>")
 
 
 def test_of_a_machine_that_the_agent_does_not_hear_nothing_is_told() -> None:
-    assert streams_answer(streams(available="UNAVAILABLE")) == (None, text("shopfloor.agent-hears-nothing"))
+    assert parse_streams(streams(available="UNAVAILABLE")) == (None, text("shopfloor.agent-hears-nothing"))
 
 
 @pytest.mark.parametrize("count", ["UNAVAILABLE", "-3", "1e9", "", "9" * 4000, "٣"])
 def test_a_count_that_is_none_is_left_out(count: str) -> None:
-    found, _ = streams_answer(streams(count=count))
+    found, _ = parse_streams(streams(count=count))
     assert found is not None
     assert "made" not in found
 
@@ -106,7 +106,7 @@ def test_a_count_that_is_none_is_left_out(count: str) -> None:
 )
 def test_what_no_agent_says(data: bytes) -> None:
     with pytest.raises(ValueError, match=r".*"):
-        streams_answer(data)
+        parse_streams(data)
 
 
 # --- asked over the wire ----------------------------------------------------------------------------
@@ -140,37 +140,37 @@ def test_an_agent_is_asked_for_one_machine() -> None:
         return (200, streams()) if path == "/MILL4/current" else (404, b"<MTConnectError/>")
 
     with agent(answer) as address:
-        heard, unknown = asked_agent(f"{address}/MILL4"), asked_agent(f"{address}/MILL5/")
+        heard, unknown = read_agent_status(f"{address}/MILL4"), read_agent_status(f"{address}/MILL5/")
     assert heard.status is not None
     assert heard.status["made"] == 57
     assert unknown.status is None
     assert unknown.address == f"{address.removeprefix('http://')}/MILL5"
-    assert unknown.trouble == text("shopfloor.answers", answer="404 Not Found")
+    assert unknown.error_text == text("shopfloor.answers", answer="404 Not Found")
 
 
 def test_what_answers_and_is_no_agent_is_told() -> None:
     with agent(lambda _path: (200, b"<html>")) as address:
-        assert asked_agent(f"{address}/MILL4").trouble == text("shopfloor.no-desk")
+        assert read_agent_status(f"{address}/MILL4").error_text == text("shopfloor.no-desk")
 
 
 def test_the_address_of_what_is_so_now() -> None:
-    assert current_address("http://shop-pc:5000/MILL4/") == "http://shop-pc:5000/MILL4/current"
+    assert make_current_address("http://shop-pc:5000/MILL4/") == "http://shop-pc:5000/MILL4/current"
 
 
 # --- in the machine file ----------------------------------------------------------------------------
 
 
 def page_table(keys: str) -> StatusPageTable:
-    table = parse_machine(f"{machine_file('gt75.toml')}[status_page]\n{keys}\n", "m.toml").hardware.table(
-        StatusPageTable
-    )
+    table = parse_machine(
+        f"{machine_file('gt75.toml')}[status_page]\n{keys}\n", "m.toml"
+    ).hardware.find_driver_table(StatusPageTable)
     assert table is not None
     return table
 
 
 def test_the_machine_file_names_machines_at_their_agents() -> None:
     table = page_table('agents = ["http://shop-pc:5000/MILL4", "https://shop-pc/mtc/MILL5"]')
-    assert table.told_by_agents == ("http://shop-pc:5000/MILL4", "https://shop-pc/mtc/MILL5")
+    assert table.agent_addresses == ("http://shop-pc:5000/MILL4", "https://shop-pc/mtc/MILL5")
 
 
 @pytest.mark.parametrize("address", ["http://shop-pc:5000", "http://shop-pc:5000/", "shop-pc:5000/MILL4"])

@@ -26,24 +26,24 @@ import pytest
 from paho.mqtt.enums import CallbackAPIVersion
 
 from app.extras.office import mqtt_broker
-from app.extras.office.announcements import HELD, Announcement, Announcer, happened
-from app.extras.office.mqtt_broker import MqttBroker
-from app.extras.office.other_desks import asked
-from app.extras.office.timed_http import Trouble, cause_of
-from app.extras.office.web_hook import WebHook, posted
-from app.shopfloor.status_file import Status
+from app.extras.office.announcements import MAX_QUEUED, Announcement, Announcer, find_events
+from app.extras.office.mqtt_broker import MqttReceiver
+from app.extras.office.other_machines import read_turndesk_status
+from app.extras.office.timed_http import DeliveryErrorLog, find_cause
+from app.extras.office.web_hook import WebhookReceiver, post_json
+from app.shopfloor.status_file import StatusDocument
 from core.extras.office.shop_network_tables import AnnounceTable
 from tests.free_port import free_port
 from tests.texts import text
 
-READY: Status = {
+READY: StatusDocument = {
     "state": "READY", "program": "pin.nc", "made": 3, "parts": 2, "stop": "", "waiting_for": ""
 }  # fmt: skip
-RUNNING: Status = {**READY, "state": "RUNNING"}
+RUNNING: StatusDocument = {**READY, "state": "RUNNING"}
 
 
-def told(before: Status, now: Status) -> list[tuple[str, str]]:
-    return [(each.kind, each.text) for each in happened(before, now)]
+def told(before: StatusDocument, now: StatusDocument) -> list[tuple[str, str]]:
+    return [(each.kind, each.text) for each in find_events(before, now)]
 
 
 # --- what has happened ------------------------------------------------------------------------------
@@ -60,7 +60,7 @@ def test_a_part_is_done() -> None:
 
 
 @pytest.mark.parametrize("now", [{"program": "nut.nc", "made": 90}, {"made": 4}])
-def test_a_count_that_is_read_or_typed_is_no_part(now: Status) -> None:
+def test_a_count_that_is_read_or_typed_is_no_part(now: StatusDocument) -> None:
     """Of another program; of the same one, told behind its loading: so after each start of the desk."""
     assert told(READY, {**READY, **now}) == []
 
@@ -70,20 +70,20 @@ def test_a_count_put_back_is_no_part() -> None:
 
 
 def test_a_stop_and_an_alarm_say_why() -> None:
-    hold: Status = {**RUNNING, "state": "FEED HOLD", "stop": "GUARD OPEN"}
-    alarm: Status = {**RUNNING, "state": "ALARM", "stop": "FOLLOWING ERROR: X"}
+    hold: StatusDocument = {**RUNNING, "state": "FEED HOLD", "stop": "GUARD OPEN"}
+    alarm: StatusDocument = {**RUNNING, "state": "ALARM", "stop": "FOLLOWING ERROR: X"}
     assert told(RUNNING, hold) == [("stop", "FEED HOLD: GUARD OPEN")]
     assert told(RUNNING, alarm) == [("alarm", "ALARM: FOLLOWING ERROR: X")]
 
 
 def test_waiting_for_the_spindle_is_no_stop() -> None:
-    waits: Status = {**RUNNING, "state": "WAITING", "waiting_for": "AT SPEED"}
+    waits: StatusDocument = {**RUNNING, "state": "WAITING", "waiting_for": "AT SPEED"}
     assert told(RUNNING, waits) == []
     assert told(waits, RUNNING) == []
 
 
 def test_a_tool_at_the_end_of_its_life() -> None:
-    worn: Status = {**RUNNING, "next_barred": "T3 HAS CUT 400 PARTS"}
+    worn: StatusDocument = {**RUNNING, "next_barred": "T3 HAS CUT 400 PARTS"}
     assert told(RUNNING, worn) == [("tool-life", "T3 HAS CUT 400 PARTS")]
     assert told(worn, worn) == []
 
@@ -101,10 +101,10 @@ class Heard:
         self.states: list[str] = []
         self.events: list[str] = []
 
-    def state(self, status: Status) -> None:
+    def send_status(self, status: StatusDocument) -> None:
         self.states.append(str(status["state"]))
 
-    def tell(self, announcement: Announcement) -> None:
+    def send_announcement(self, announcement: Announcement) -> None:
         self.events.append(announcement.kind)
 
     def close(self) -> None:
@@ -118,19 +118,19 @@ def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
     heard = Heard()
     announcer = Announcer(lambda: next(looks), [heard])
     for _ in range(4):
-        announcer.once()
+        announcer.poll()
     announcer.close()
     assert heard.states == ["READY", "RUNNING", "RUNNING"]
     assert heard.events == ["runs", "part", "closed"]
 
 
 def test_a_part_that_is_made_while_the_control_is_silent_is_told_behind_it() -> None:
-    silent: Status = {**RUNNING, "state": "CONTROL SILENT", "made": None, "parts": None}
+    silent: StatusDocument = {**RUNNING, "state": "CONTROL SILENT", "made": None, "parts": None}
     looks = iter([RUNNING, silent, silent, {**RUNNING, "made": 4, "parts": 3}, {**RUNNING, "parts": 3}])
     heard = Heard()
     announcer = Announcer(lambda: next(looks), [heard])
     for _ in range(5):
-        announcer.once()
+        announcer.poll()
     announcer.close()
     assert heard.events == ["alarm", "part", "runs", "closed"]
 
@@ -175,9 +175,9 @@ def posts() -> Iterator[tuple[str, SimpleQueue[dict[str, object]]]]:
 
 def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, object]]]) -> None:
     address, heard = posts
-    hook = WebHook(address, AT_ONCE)
+    hook = WebhookReceiver(address, AT_ONCE)
     for number in range(5):
-        hook.tell(Announcement("part", f"part {number}", READY))
+        hook.send_announcement(Announcement("part", f"part {number}", READY))
     assert [heard.get(timeout=60)["text"] for _ in range(5)] == [f"part {n}" for n in range(5)]
     hook.close()
 
@@ -197,9 +197,9 @@ def test_what_a_web_hook_refuses_is_given_up_and_told_once(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     address, heard = posts
-    hook = WebHook(address + path, AT_ONCE)
+    hook = WebhookReceiver(address + path, AT_ONCE)
     for number in range(3):
-        hook.tell(Announcement("part", f"part {number}", READY))
+        hook.send_announcement(Announcement("part", f"part {number}", READY))
     assert [heard.get(timeout=60)["text"] for _ in range(3)] == [f"part {n}" for n in range(3)]
     hook.close()
     ((who, why),) = [values_of(each) for each in caplog.records]
@@ -215,8 +215,8 @@ def test_a_host_with_a_fault_is_asked_again_and_told_of_once(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     address, heard = posts
-    hook = WebHook(address + path, AT_ONCE)
-    hook.tell(Announcement("alarm", "ALARM", READY))
+    hook = WebhookReceiver(address + path, AT_ONCE)
+    hook.send_announcement(Announcement("alarm", "ALARM", READY))
     assert [heard.get(timeout=60)["text"] for _ in range(3)] == ["ALARM"] * 3
     hook.close()
     ((who, why),) = [values_of(each) for each in caplog.records]
@@ -233,9 +233,9 @@ def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCap
         if next(away, False):
             raise URLError(OSError(111, "Connection refused"))
 
-    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    hook = WebhookReceiver("http://shop/hook", AT_ONCE, post)
     for word in ("first", "second"):
-        hook.tell(Announcement("stop", word, READY))
+        hook.send_announcement(Announcement("stop", word, READY))
     assert [asked.get(timeout=60) for _ in range(5)] == ["first"] * 4 + ["second"]
     hook.close()
     (said,) = [values_of(each) for each in caplog.records]
@@ -251,9 +251,9 @@ def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptu
             raise OSError(1, why)
         asked.put(json.loads(body)["text"])
 
-    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    hook = WebhookReceiver("http://shop/hook", AT_ONCE, post)
     for word in ("first", "second"):
-        hook.tell(Announcement("stop", word, READY))
+        hook.send_announcement(Announcement("stop", word, READY))
         assert asked.get(timeout=60) == word
     hook.close()
     assert [values_of(each)[1] for each in caplog.records] == [
@@ -264,9 +264,9 @@ def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptu
 def test_a_host_that_says_something_else_each_time_does_not_fill_the_log(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    trouble = Trouble(logging.getLogger("hook"), "http://shop/hook")
+    trouble = DeliveryErrorLog(logging.getLogger("hook"), "http://shop/hook")
     for number in range(100):
-        trouble.say(str(number))
+        trouble.log_cause(str(number))
     assert len(caplog.records) == 10
 
 
@@ -281,13 +281,13 @@ def test_of_more_than_a_hundred_for_a_dead_hook_the_newest_are_kept() -> None:
             dead.set()
             raise OSError(113, "No route to host")
 
-    hook = WebHook("http://shop/hook", AT_ONCE, post)
-    hook.tell(Announcement("part", "0", READY))
+    hook = WebhookReceiver("http://shop/hook", AT_ONCE, post)
+    hook.send_announcement(Announcement("part", "0", READY))
     assert asked.get(timeout=60) == 0
-    for number in range(1, HELD + 31):
-        hook.tell(Announcement("part", str(number), READY))
+    for number in range(1, MAX_QUEUED + 31):
+        hook.send_announcement(Announcement("part", str(number), READY))
     queued.set()
-    assert [asked.get(timeout=60) for _ in range(HELD)] == list(range(31, HELD + 31))
+    assert [asked.get(timeout=60) for _ in range(MAX_QUEUED)] == list(range(31, MAX_QUEUED + 31))
     hook.close()
 
 
@@ -337,13 +337,13 @@ def test_an_answer_that_comes_byte_by_byte_has_a_deadline_as_a_whole() -> None:
 
     with Far(drip) as far:
         with pytest.raises(TimeoutError):
-            posted(f"http://127.0.0.1:{far.port}/", b"{}", clock)
+            post_json(f"http://127.0.0.1:{far.port}/", b"{}", clock)
         reads.release(100)
 
 
 def test_an_answer_in_time_is_taken() -> None:
     with Far(lambda connection: connection.sendall(b"HTTP/1.1 204 No Content\r\n\r\n")) as far:
-        posted(f"http://127.0.0.1:{far.port}/", b"{}", lambda: 0.0)
+        post_json(f"http://127.0.0.1:{far.port}/", b"{}", lambda: 0.0)
 
 
 def not_trusted() -> ssl.SSLCertVerificationError:
@@ -364,13 +364,13 @@ def not_trusted() -> ssl.SSLCertVerificationError:
 def test_what_a_host_answers_is_the_cause(answer: bytes, scheme: str, why: str) -> None:
     with Far(lambda connection: connection.sendall(answer)) as far:
         with pytest.raises((OSError, HTTPException)) as raised:
-            posted(f"{scheme}://127.0.0.1:{far.port}/", b"{}")
-        assert asked(f"{scheme}://127.0.0.1:{far.port}/").trouble == text(why)
-    assert cause_of(raised.value) == text(why)
+            post_json(f"{scheme}://127.0.0.1:{far.port}/", b"{}")
+        assert read_turndesk_status(f"{scheme}://127.0.0.1:{far.port}/").error_text == text(why)
+    assert find_cause(raised.value) == text(why)
 
 
 def test_a_bad_certificate_is_the_cause() -> None:
-    assert cause_of(URLError(not_trusted())) == text(
+    assert find_cause(URLError(not_trusted())) == text(
         "shopfloor.bad-certificate", why="self-signed certificate"
     )
 
@@ -385,8 +385,8 @@ def test_the_log_has_no_token_of_an_address(address: str, caplog: pytest.LogCapt
         tried.set()
         raise InvalidURL(f"URL can't contain control characters. {address!r}")
 
-    hook = WebHook(address, 60.0, post)
-    hook.tell(Announcement("part", "part 1", READY))
+    hook = WebhookReceiver(address, 60.0, post)
+    hook.send_announcement(Announcement("part", "part 1", READY))
     assert tried.wait(60)
     hook.close()
     hook._thread.join(60)
@@ -404,10 +404,10 @@ def table(port: int) -> AnnounceTable:
 def test_a_broker_that_is_away_keeps_nobody_waiting() -> None:
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
-        broker = MqttBroker(table(nobody.getsockname()[1]))
-        broker.state(READY)
+        broker = MqttReceiver(table(nobody.getsockname()[1]))
+        broker.send_status(READY)
         for _ in range(300):
-            broker.tell(Announcement("part", "", READY))
+            broker.send_announcement(Announcement("part", "", READY))
         broker.close()
 
 
@@ -444,7 +444,7 @@ def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
         port = nobody.getsockname()[1]
-        broker = MqttBroker(table(port))
+        broker = MqttReceiver(table(port))
         assert logged.why(port) == text("shopfloor.refused")
         broker.close()
 
@@ -460,7 +460,7 @@ def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None
 )
 def test_what_a_broker_refuses_is_the_only_cause(connack: bytes, why: str, logged: Logged) -> None:
     with Far(lambda connection: connection.sendall(connack)) as far:
-        broker = MqttBroker(table(far.port))
+        broker = MqttReceiver(table(far.port))
         assert logged.why(far.port) == text(why)
         for _ in range(2):
             far.ended.get(timeout=60)
@@ -487,7 +487,7 @@ def test_why_a_broker_cannot_be_reached(
         raise cause
 
     monkeypatch.setattr(socket, "create_connection", refuse)
-    broker = MqttBroker(table(1883))
+    broker = MqttReceiver(table(1883))
     assert logged.why(1883) == why
     tries.get(timeout=60)
     if isinstance(cause, ValueError):
@@ -498,10 +498,10 @@ def test_why_a_broker_cannot_be_reached(
 def test_what_takes_the_connection_and_says_no_word_is_told_of(
     logged: Logged, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE_S", 1)
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        broker = MqttBroker(table(port))
+        broker = MqttReceiver(table(port))
         assert logged.why(port) == text("shopfloor.no-answer")
         broker.close()
 
@@ -516,7 +516,7 @@ def test_a_desk_closes_while_a_broker_does_not_answer(monkeypatch: pytest.Monkey
         raise TimeoutError("timed out")
 
     monkeypatch.setattr(socket, "create_connection", swallowed)
-    broker = MqttBroker(table(1883))
+    broker = MqttReceiver(table(1883))
     assert connecting.wait(60)
     broker.close()
     assert not over.is_set()
@@ -574,12 +574,12 @@ def office(mosquitto: tuple[int, int]) -> Iterator[Office]:
 
 
 def test_a_broker_hears_state_events_and_the_end(mosquitto: tuple[int, int], office: Office) -> None:
-    broker = MqttBroker(table(mosquitto[0]))
+    broker = MqttReceiver(table(mosquitto[0]))
     assert office.next() == ("shop/gt75/available", b"online", False)
-    broker.state(RUNNING)
+    broker.send_status(RUNNING)
     topic, payload, _ = office.next()
     assert (topic, json.loads(payload)) == ("shop/gt75/state", RUNNING)
-    broker.tell(Announcement("part", "part 4 of pin.nc is done", RUNNING))
+    broker.send_announcement(Announcement("part", "part 4 of pin.nc is done", RUNNING))
     topic, payload, _ = office.next()
     assert topic == "shop/gt75/event"
     assert json.loads(payload)["text"] == "part 4 of pin.nc is done"
@@ -602,15 +602,15 @@ def test_a_broker_that_was_away_hears_online_state_and_the_newest_hundred(
 
     with monkeypatch.context() as cable_out:
         cable_out.setattr(mqtt.Client, "loop_start", begins_later)
-        broker = MqttBroker(table(mosquitto[0]))
-        broker.state(READY)
-        for number in range(HELD + 30):
-            broker.tell(Announcement("part", str(number), READY))
+        broker = MqttReceiver(table(mosquitto[0]))
+        broker.send_status(READY)
+        for number in range(MAX_QUEUED + 30):
+            broker.send_announcement(Announcement("part", str(number), READY))
     away[0].loop_start()
     assert office.next() == ("shop/gt75/available", b"online", False)
     assert office.next()[0] == "shop/gt75/state"
-    assert [json.loads(office.next()[1])["text"] for _ in range(HELD)] == [
-        str(number) for number in range(30, HELD + 30)
+    assert [json.loads(office.next()[1])["text"] for _ in range(MAX_QUEUED)] == [
+        str(number) for number in range(30, MAX_QUEUED + 30)
     ]
     broker.close()
 
@@ -619,9 +619,9 @@ def test_a_broker_that_is_frozen_is_told_of(
     mosquitto: tuple[int, int], office: Office, logged: Logged, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its computer takes each new connection, and nobody there says a word."""
-    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE_S", 1)
     port, process = mosquitto
-    broker = MqttBroker(table(port))
+    broker = MqttReceiver(table(port))
     assert office.next()[1] == b"online"
     os.kill(process, signal.SIGSTOP)
     try:
@@ -633,12 +633,12 @@ def test_a_broker_that_is_frozen_is_told_of(
 
 def test_a_desk_closes_beside_a_broker_that_is_frozen(mosquitto: tuple[int, int], office: Office) -> None:
     port, process = mosquitto
-    broker = MqttBroker(table(port))
+    broker = MqttReceiver(table(port))
     assert office.next()[1] == b"online"
     os.kill(process, signal.SIGSTOP)
     try:
-        for number in range(HELD + 30):
-            broker.tell(Announcement("part", str(number), READY))
+        for number in range(MAX_QUEUED + 30):
+            broker.send_announcement(Announcement("part", str(number), READY))
         broker.close()  # raises nothing, though what waits cannot go out
     finally:
         os.kill(process, signal.SIGCONT)

@@ -20,23 +20,23 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QImage
 
-from app.compose.backends.machine_answers import check_ports
+from app.compose.backends.machine_check import check_machine
 from app.compose.machine.machine_files import load_machine, parse_machine
-from app.extras.office import other_desks
-from app.extras.office.office_desk import STOPS, AlarmDrawing, OfficeLook, PartPicture
-from app.extras.office.office_pictures import HIGH, alarm_drawing, png_of
-from app.extras.office.other_desks import OtherDesks, asked, status_address
-from app.extras.office.page_connections import DEADLINE, MOST, MOST_OF_ONE
-from app.extras.office.page_server import PageServer, listening_at
-from app.extras.office.status_page import OtherDesk, StatusPage
+from app.extras.office import other_machines
+from app.extras.office.office_pictures import HIGH, encode_png, make_alarm_svg
+from app.extras.office.office_setup import MAX_LISTED_STOPS, AlarmPicture, PartPicture, StatusSource
+from app.extras.office.other_machines import OtherMachines, make_status_address, read_turndesk_status
+from app.extras.office.page_connections import MAX_CONNECTIONS, MAX_CONNECTIONS_PER_HOST, REQUEST_DEADLINE_S
+from app.extras.office.page_server import StatusPageServer, open_listening_socket
+from app.extras.office.status_page import OtherMachine, StatusPage
 from app.programs.program_rows import Thumbnail
-from app.screen.look import speak_in
-from app.shopfloor.floor_reading import FloorReader
-from app.shopfloor.status_file import Status
-from core.executor.snapshot import Snapshot, State
-from core.extras.office.shop_network_tables import StatusPageTable, broker_of
+from app.screen.screen_theme import use_language
+from app.shopfloor.machine_reading import MachineReader
+from app.shopfloor.status_file import StatusDocument
+from core.executor.snapshot import MachineState, Snapshot
+from core.extras.office.shop_network_tables import StatusPageTable, parse_broker_address
 from core.ports import DriverError
-from core.records.record import Record, channels_of
+from core.records.record import ScopeRecord, list_machine_channels
 from core.store.production.part_cycles import StopRow
 from core.table_schema import MachineFileError
 from resources import machine_file
@@ -45,7 +45,7 @@ from tests.texts import text, text_in_spanish
 
 LATHE = load_machine(None)
 TOKEN = "gt75-word-of-ours"
-STATUS: Status = {
+STATUS: StatusDocument = {
     "updated": "2026-11-23T09:00:00+00:00",
     "machine": "GT-75",
     "available": True,
@@ -63,7 +63,9 @@ STATUS: Status = {
 }
 
 
-def page(token: str = "", status: Status = STATUS, others: tuple[OtherDesk, ...] = ()) -> StatusPage:
+def page(
+    token: str = "", status: StatusDocument = STATUS, others: tuple[OtherMachine, ...] = ()
+) -> StatusPage:
     return StatusPage("GT-75", token, lambda: status, lambda: others, lambda: b"", lambda: b"<svg/>")
 
 
@@ -186,7 +188,7 @@ def test_a_page_open_to_the_shop_wants_a_token() -> None:
         parse_machine(text + '[status_page]\ndesks = ["lathe2:8317"]\n', "m.toml")
     table = parse_machine(
         text + f'[status_page]\nbind = "0.0.0.0"\ntoken = "{TOKEN}"\n', "m.toml"
-    ).hardware.table(StatusPageTable)
+    ).hardware.find_driver_table(StatusPageTable)
     assert table is not None
     assert not table.enabled
 
@@ -203,12 +205,12 @@ def test_a_page_open_to_the_shop_wants_a_token() -> None:
 def test_a_wrong_address_of_who_is_told_is_refused(line: str, path: str) -> None:
     with pytest.raises(MachineFileError) as told:
         parse_machine(f"{machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
-    assert [finding.path for finding in told.value.errors] == [path]
+    assert [finding.path for finding in told.value.findings] == [path]
 
 
 def test_the_broker_has_its_usual_port() -> None:
-    assert broker_of("shop-pc") == ("shop-pc", 1883)
-    assert broker_of("shop-pc:18") == ("shop-pc", 18)
+    assert parse_broker_address("shop-pc") == ("shop-pc", 1883)
+    assert parse_broker_address("shop-pc:18") == ("shop-pc", 18)
 
 
 # --- what it shows ----------------------------------------------------------------------------------
@@ -240,16 +242,16 @@ def test_the_page_says_which_picture_belongs_to_what_it_shows() -> None:
 
 def test_what_happened_today_has_no_date() -> None:
     now = datetime.now().astimezone()
-    told: Status = {**STATUS, "stops": [{"at": now.isoformat(), "reason": "FEED HOLD", "seconds": 5}]}
+    told: StatusDocument = {**STATUS, "stops": [{"at": now.isoformat(), "reason": "FEED HOLD", "seconds": 5}]}
     assert f'<td class="time">{now:%H:%M:%S}</td>' in get(page(status=told))[2]
 
 
 def test_the_page_is_read_in_the_language_of_the_screen() -> None:
-    speak_in("es")
+    use_language("es")
     try:
         body, told = get(page(status={**STATUS, "stop": "GUARD OPEN"}))[2], get(page(), "/status.json")[2]
     finally:
-        speak_in("en")
+        use_language("en")
     assert '<html lang="es">' in body
     assert ">EN MARCHA<" in body
     assert f">{text_in_spanish('shopfloor.time-remaining')}<" in body
@@ -273,38 +275,40 @@ def test_the_same_for_a_script() -> None:
     assert json.loads(get(page(), "/status.json")[2]) == STATUS
 
 
-def looking(**snapshot: Any) -> Status:
-    reader = FloorReader(LATHE, lambda: 0.0)
+def looking(**snapshot: Any) -> StatusDocument:
+    reader = MachineReader(LATHE, lambda: 0.0)
     stops = [StopRow(str(i), "", "pin.nc", f"2026-11-23T08:0{i}:00Z", 10.0 + i, "H") for i in range(9)]
     now = datetime(2026, 11, 23, 9, tzinfo=UTC)
     shot = Snapshot(**snapshot)
-    return OfficeLook("GT-75", reader, lambda: shot, lambda _: 42.04, lambda: stops, lambda: now).status()
+    return StatusSource(
+        "GT-75", reader, lambda: shot, lambda _: 42.04, lambda: stops, lambda: now
+    ).read_status()
 
 
 def test_a_running_part_has_its_time_left_and_the_newest_stops() -> None:
-    told = looking(state=State.RUN, program="/p/pin.nc", counts=True, made=3, line=9)
+    told = looking(state=MachineState.RUN, program="/p/pin.nc", counts=True, made=3, line=9)
     assert (told["state"], told["program"], told["made"], told["line"]) == ("RUNNING", "pin.nc", 3, 9)
     assert told["time_left"] == 42.0
     stops = told["stops"]
     assert isinstance(stops, list)
-    assert [each["seconds"] for each in stops] == [18, 17, 16, 15, 14, 13][:STOPS]
+    assert [each["seconds"] for each in stops] == [18, 17, 16, 15, 14, 13][:MAX_LISTED_STOPS]
 
 
 def test_what_does_not_run_has_no_time_left() -> None:
-    assert looking(state=State.IDLE)["time_left"] is None
+    assert looking(state=MachineState.IDLE)["time_left"] is None
 
 
 def test_a_message_to_the_operator_is_why_it_stands() -> None:
-    told = looking(state=State.PROGRAM_STOP, message="TURN THE PART ROUND")
+    told = looking(state=MachineState.PROGRAM_STOP, message="TURN THE PART ROUND")
     assert told["stop"] == "TURN THE PART ROUND"
 
 
 def test_of_a_silent_control_nothing_else_is_said() -> None:
     seconds = iter((0.0, 10.0, 20.0, 30.0))
-    reader = FloorReader(LATHE, lambda: next(seconds))
-    look = OfficeLook("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
-    look.status()
-    told = look.status()
+    reader = MachineReader(LATHE, lambda: next(seconds))
+    look = StatusSource("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
+    look.read_status()
+    told = look.read_status()
     assert (told["state"], told["available"], told["made"]) == (text("shopfloor.control-silent"), False, None)
 
 
@@ -314,8 +318,8 @@ def test_of_a_silent_control_nothing_else_is_said() -> None:
 @contextmanager
 def served(wsgi: StatusPage, clock: Callable[[], float] = time.monotonic) -> Iterator[str]:
     """A page on a real socket."""
-    listening = listening_at("127.0.0.1", 0)
-    server = PageServer(wsgi, listening, lambda: None, clock)
+    listening = open_listening_socket("127.0.0.1", 0)
+    server = StatusPageServer(wsgi, listening, lambda: None, clock)
     server.start()
     try:
         yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
@@ -333,20 +337,23 @@ def test_browsers_that_ask_half_a_question_keep_nobody_waiting() -> None:
     with served(page()) as address, ExitStack() as half:
         for _ in range(150):
             half.enter_context(connected(address)).sendall(b"GET /?tok")
-        assert asked(address).trouble == ""
+        assert read_turndesk_status(address).error_text == ""
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="one loopback address only")
 def test_connections_have_a_limit_in_all() -> None:
     with served(page()) as address, ExitStack() as half:
-        askers = [half.enter_context(connected(address, f"127.0.0.{2 + n // 10}")) for n in range(MOST + 1)]
+        askers = [
+            half.enter_context(connected(address, f"127.0.0.{2 + n // 10}"))
+            for n in range(MAX_CONNECTIONS + 1)
+        ]
         assert askers[0].recv(1) == b""
-        assert asked(address).trouble == ""
+        assert read_turndesk_status(address).error_text == ""
 
 
 def test_connections_of_one_address_have_a_limit_and_the_oldest_ends() -> None:
     with served(page()) as address, ExitStack() as half:
-        askers = [half.enter_context(connected(address)) for _ in range(MOST_OF_ONE + 1)]
+        askers = [half.enter_context(connected(address)) for _ in range(MAX_CONNECTIONS_PER_HOST + 1)]
         assert askers[0].recv(1) == b""
         askers[1].sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
         assert askers[1].recv(12) == b"HTTP/1.0 200"
@@ -357,10 +364,10 @@ def test_a_request_has_a_deadline_as_a_whole() -> None:
     now = [100.0]
     with served(page(), lambda: now[0]) as address, connected(address) as drips:
         drips.sendall(b"GET /?tok")
-        assert asked(address).trouble == ""
-        now[0] += DEADLINE - 1.0
+        assert read_turndesk_status(address).error_text == ""
+        now[0] += REQUEST_DEADLINE_S - 1.0
         drips.sendall(b"e")
-        assert asked(address).trouble == ""
+        assert read_turndesk_status(address).error_text == ""
         now[0] += 2.0
         assert drips.recv(1) == b""
 
@@ -387,7 +394,7 @@ def test_a_request_without_end_is_refused() -> None:
 def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
     go_on, under_way = threading.Event(), threading.Semaphore(0)
 
-    def slow() -> Status:
+    def slow() -> StatusDocument:
         under_way.release()
         go_on.wait(60)
         return STATUS
@@ -408,8 +415,8 @@ def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytes
 
 def test_a_desk_shows_another_one() -> None:
     with served(page(TOKEN)) as address:
-        heard = asked(f"{address}?token={TOKEN}")
-    assert heard.trouble == ""
+        heard = read_turndesk_status(f"{address}?token={TOKEN}")
+    assert heard.error_text == ""
     assert heard.status is not None
     assert heard.status["program"] == "<b>pin</b>.nc"
     shown = get(page(others=(heard,)))[2]
@@ -419,22 +426,22 @@ def test_a_desk_shows_another_one() -> None:
 
 def test_another_desk_that_wants_another_token_says_so() -> None:
     with served(page(TOKEN)) as address:
-        assert asked(address).trouble == text("shopfloor.other-token")
+        assert read_turndesk_status(address).error_text == text("shopfloor.other-token")
 
 
 def test_a_desk_that_is_off_does_not_answer() -> None:
     with socket.socket() as nobody:
         nobody.bind(("127.0.0.1", 0))
-        heard = asked(f"http://127.0.0.1:{nobody.getsockname()[1]}")
+        heard = read_turndesk_status(f"http://127.0.0.1:{nobody.getsockname()[1]}")
     assert heard.status is None
-    assert "refused" in heard.trouble
+    assert "refused" in heard.error_text
     assert text("shopfloor.no-answer-shown") in get(page(others=(heard,)))[2]
 
 
 def test_what_another_desk_says_is_not_believed() -> None:
-    odd: Status = {**STATUS, "time_left": "soon", "program": ["x"], "line": {"a": 1}, "state": "<hr>"}
+    odd: StatusDocument = {**STATUS, "time_left": "soon", "program": ["x"], "line": {"a": 1}, "state": "<hr>"}
     with served(page(status=odd)) as address:
-        heard = asked(address)
+        heard = read_turndesk_status(address)
     shown = get(page(others=(heard,)))[2]
     assert "soon" not in shown
     assert "<hr>" not in shown
@@ -443,33 +450,35 @@ def test_what_another_desk_says_is_not_believed() -> None:
 @pytest.mark.parametrize("odd", [float("inf"), float("nan"), -float("inf"), 10**400, True])
 def test_a_figure_that_is_none_is_left_out(odd: float) -> None:
     with served(page(status={**STATUS, "time_left": odd, "last_cycle": odd})) as address:
-        heard = asked(address)
+        heard = read_turndesk_status(address)
     assert heard.status is not None
     assert heard.status.keys() & {"time_left", "last_cycle"} == set()
     assert "RUNNING" in get(page(others=(heard,)))[2]
 
 
 def test_the_address_of_the_status() -> None:
-    assert status_address("http://a:1/?token=x") == "http://a:1/status.json?token=x"
-    assert status_address("http://a:1/desk") == "http://a:1/desk/status.json"
+    assert make_status_address("http://a:1/?token=x") == "http://a:1/status.json?token=x"
+    assert make_status_address("http://a:1/desk") == "http://a:1/desk/status.json"
 
 
 def test_other_desks_are_asked_while_somebody_looks() -> None:
-    heard = OtherDesk("lathe2", {"state": "READY"})
-    asking = OtherDesks(("http://lathe2:8317",), lambda _address: heard)
-    assert (asking.look()[0].state, asking.look()[0].trouble) == ("…", "")
+    heard = OtherMachine("lathe2", {"state": "READY"})
+    asking = OtherMachines(("http://lathe2:8317",), lambda _address: heard)
+    assert (asking.read_states()[0].state, asking.read_states()[0].error_text) == ("…", "")
     asking.start()
-    while asking.look()[0].status != heard.status:
+    while asking.read_states()[0].status != heard.status:
         pass
     asking.close()
 
 
 def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> None:
     """Side by side: one that knows no counts and times yet, one that was killed, one as new as this."""
-    older: Status = {key: STATUS[key] for key in ("machine", "state", "program", "line")}
+    older: StatusDocument = {key: STATUS[key] for key in ("machine", "state", "program", "line")}
     with served(page(status=older)) as old, served(page(status=STATUS)) as new, socket.socket() as dead:
         dead.bind(("127.0.0.1", 0))
-        heard = [asked(each) for each in (old, f"http://127.0.0.1:{dead.getsockname()[1]}", new)]
+        heard = [
+            read_turndesk_status(each) for each in (old, f"http://127.0.0.1:{dead.getsockname()[1]}", new)
+        ]
     assert [each.status is not None for each in heard] == [True, False, True]
     shown = get(page(others=tuple(heard)))[2]
     cards = shown[shown.index('class="others"') :].split("<article>")[1:]
@@ -481,20 +490,20 @@ def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> No
 
 
 def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
-    hangs, healthy = threading.Event(), OtherDesk("lathe3", {"state": "READY"})
+    hangs, healthy = threading.Event(), OtherMachine("lathe3", {"state": "READY"})
 
-    def ask(address: str) -> OtherDesk:
+    def ask(address: str) -> OtherMachine:
         if "lathe2" in address:
             hangs.wait()
         return healthy
 
-    asking = OtherDesks(("http://lathe2:8317", "http://lathe3:8317"), ask)
-    asking.look()
+    asking = OtherMachines(("http://lathe2:8317", "http://lathe3:8317"), ask)
+    asking.read_states()
     asking.start()
     try:
-        while asking.look()[1].status is not healthy.status:
+        while asking.read_states()[1].status is not healthy.status:
             pass
-        assert asking.look()[0].state == "…"
+        assert asking.read_states()[0].state == "…"
     finally:
         hangs.set()
         asking.close()
@@ -502,66 +511,72 @@ def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
 
 def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
     now = [0.0]
-    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
-    asking.look()
-    asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
+    asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
+    asking.read_states()
+    asking._heard["http://lathe2:8317"] = 0.0, OtherMachine("lathe2", {"state": "RUNNING"})
     now[0] = 10.0
-    assert asking.look()[0].status == {"state": "RUNNING"}
+    assert asking.read_states()[0].status == {"state": "RUNNING"}
     now[0] = 10.5
-    assert (asking.look()[0].status, asking.look()[0].trouble) == (None, text("shopfloor.silent-for", age=10))
+    assert (asking.read_states()[0].status, asking.read_states()[0].error_text) == (
+        None,
+        text("shopfloor.silent-for", age=10),
+    )
 
 
 def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
     now = [100.0]
-    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
-    assert asking.look()[0].state == "…"
+    asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
+    assert asking.read_states()[0].state == "…"
     now[0] = 110.5
-    assert (asking.look()[0].state, asking.look()[0].trouble) == (
+    assert (asking.read_states()[0].state, asking.read_states()[0].error_text) == (
         text("shopfloor.no-answer-shown"),
         text("shopfloor.silent-for", age=10),
     )
 
 
 def test_a_desk_that_dies_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(other_desks, "EVERY", 0.001)
-    dies, answers = threading.Event(), iter([OtherDesk("lathe2", {"machine": "LATHE 2", "state": "READY"})])
+    monkeypatch.setattr(other_machines, "READ_INTERVAL_S", 0.001)
+    dies, answers = (
+        threading.Event(),
+        iter([OtherMachine("lathe2", {"machine": "LATHE 2", "state": "READY"})]),
+    )
 
-    def ask(_address: str) -> OtherDesk:
+    def ask(_address: str) -> OtherMachine:
         if (heard := next(answers, None)) is not None:
             return heard
         dies.wait()
-        return OtherDesk("lathe2", trouble="Connection refused")
+        return OtherMachine("lathe2", error_text="Connection refused")
 
-    asking = OtherDesks(("http://lathe2:8317",), ask)
-    asking.look()
+    asking = OtherMachines(("http://lathe2:8317",), ask)
+    asking.read_states()
     asking.start()
-    while asking.look()[0].status is None:
+    while asking.read_states()[0].status is None:
         pass
     dies.set()
-    while asking.look()[0].status is not None:
+    while asking.read_states()[0].status is not None:
         pass
     asking.close()
-    shown = get(page(others=tuple(asking.look())))[2]
+    shown = get(page(others=tuple(asking.read_states())))[2]
     assert "<h2>LATHE 2 (lathe2:8317)</h2>" in shown
     assert "Connection refused" in shown
 
 
 def test_who_looks_after_a_night_sees_no_desk_that_is_dead_because_nobody_asked() -> None:
     now = [0.0]
-    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
-    asking.look()
-    asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
+    asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
+    asking.read_states()
+    asking._heard["http://lathe2:8317"] = 0.0, OtherMachine("lathe2", {"state": "RUNNING"})
     now[0] = 30_000.0
-    assert (asking.look()[0].status, asking.look()[0].state) == (None, "…")
+    assert (asking.read_states()[0].status, asking.read_states()[0].state) == (None, "…")
 
 
 def test_a_port_that_is_taken_is_told() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
         with raises_code(DriverError, "driver", f"[status_page] 127.0.0.1:{port}: "):
-            listening_at("127.0.0.1", port)
+            open_listening_socket("127.0.0.1", port)
     with raises_code(DriverError, "driver", "[status_page] 192.0.2.1:8317: "):
-        listening_at("192.0.2.1", 8317)
+        open_listening_socket("192.0.2.1", 8317)
 
 
 def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
@@ -573,7 +588,7 @@ def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
             f'[status_page]\nenabled = true\nport = {taken + 1}\n[announce]\nmqtt = "127.0.0.1:{away}"\n',
         )
         told = [
-            check_ports(parse_machine(machine_file("gt75.toml") + each, "m.toml")).rows for each in tables
+            check_machine(parse_machine(machine_file("gt75.toml") + each, "m.toml")).rows for each in tables
         ]
     states = [{row.name: row.state for row in rows} for rows in told]
     assert (states[0]["status_page"], states[0]["announce"]) == ("fault", "ok")
@@ -592,36 +607,36 @@ def test_no_part_is_drawn_while_one_is_made() -> None:
         return Thumbnail(b"\xff" * 16, 2, 2)
 
     picture = PartPicture(lambda: job, lambda: not runs[0], draw)
-    picture.look()
-    assert (picture.png(), drawn) == (b"", [])
+    picture.update()
+    assert (picture.get_png(), drawn) == (b"", [])
     runs[0] = False
-    picture.look()
-    picture.look()
-    assert picture.png().startswith(b"\x89PNG")
+    picture.update()
+    picture.update()
+    assert picture.get_png().startswith(b"\x89PNG")
     assert drawn == [1]
     job.digest = "b"
-    assert picture.png() == b""  # of another program
+    assert picture.get_png() == b""  # of another program
 
 
 def test_a_png_is_what_qt_reads() -> None:
     colours = [0xFF102030, 0x80FFFFFF, 0x00000000, 0xFF00FF00, 0xFFFF0000, 0xFF0000FF]
-    image = QImage.fromData(png_of(np.array(colours, dtype=np.uint32).tobytes(), 3, 2))
+    image = QImage.fromData(encode_png(np.array(colours, dtype=np.uint32).tobytes(), 3, 2))
     assert [image.pixel(x, y) for y in range(2) for x in range(3)] == colours
 
 
-def record_of(error: Any) -> Record:
-    channels = channels_of({"X": False, "C": True}, (), ())
+def record_of(error: Any) -> ScopeRecord:
+    channels = list_machine_channels({"X": False, "C": True}, (), ())
     times = np.arange(len(error)) / 1000.0 + 50.0
     columns = {each.name: np.full(len(error), np.nan) for each in channels}
     columns |= {"X following error": np.asarray(error), "C following error": np.ones(len(error))}
     about = {"alarm": "102 FOLLOWING ERROR: <X>", "alarm time": "52.5"}
-    return Record(channels, times, columns, 0.0, 1000.0, about)
+    return ScopeRecord(channels, times, columns, 0.0, 1000.0, about)
 
 
 def test_an_alarm_is_drawn_with_its_peak() -> None:
     error = np.zeros(5000)
     error[2500] = 0.25  # one sample of 5 000, at the alarm
-    svg = alarm_drawing(record_of(error)).decode()
+    svg = make_alarm_svg(record_of(error)).decode()
     assert "±0.2500 mm" in svg
     assert "&lt;X&gt;" in svg
     assert svg.count("<polyline") == 1  # C is no slide
@@ -633,13 +648,13 @@ def test_an_alarm_is_drawn_with_its_peak() -> None:
 
 
 def test_a_record_without_samples_is_not_drawn() -> None:
-    assert alarm_drawing(record_of(np.array([]))) == b""
-    assert alarm_drawing(record_of(np.full(10, np.nan))) == b""
-    assert alarm_drawing(replace(record_of(np.zeros(10)), about={})) == b""
+    assert make_alarm_svg(record_of(np.array([]))) == b""
+    assert make_alarm_svg(record_of(np.full(10, np.nan))) == b""
+    assert make_alarm_svg(replace(record_of(np.zeros(10)), about={})) == b""
 
 
 def test_a_record_that_is_damaged_is_not_drawn(tmp_path: Path) -> None:
     (tmp_path / "20261123-alarm102.scope").write_bytes(b"PK damaged")
-    drawing = AlarmDrawing(tmp_path, lambda: True)
-    drawing.look()
-    assert drawing.svg() == b""
+    drawing = AlarmPicture(tmp_path, lambda: True)
+    drawing.update()
+    assert drawing.get_svg() == b""

@@ -7,7 +7,7 @@ import struct
 from collections.abc import Mapping
 
 from app.extras.pendant.driver.input_devices import AxisRange
-from app.extras.pendant.driver.pendant_table import button_of, wheel_of
+from app.extras.pendant.driver.pendant_table import parse_button_name, parse_wheel_name
 
 # Written down from the kernel's header, and not from the reader that is tested.
 EVENT = struct.Struct("@llHHi")
@@ -38,10 +38,10 @@ class Peer:
     def fileno(self) -> int:
         return self._read
 
-    def keys(self) -> frozenset[int]:
+    def read_pressed_keys(self) -> frozenset[int]:
         return frozenset(self.pressed)
 
-    def ranges(self) -> Mapping[int, AxisRange]:
+    def read_axis_ranges(self) -> Mapping[int, AxisRange]:
         return self._ranges
 
     def close(self) -> None:
@@ -69,12 +69,12 @@ class Peer:
 
 
 BUTTONS = {
-    "jog_x_plus": button_of("BTN_A"),
-    "hold": button_of("BTN_B"),
-    "wheel_x": button_of("BTN_0"),
-    "jog_z_plus": button_of("ABS_HAT0X+"),
-    "jog_z_minus": button_of("ABS_HAT0X-"),
+    "jog_x_plus": parse_button_name("BTN_A"),
+    "hold": parse_button_name("BTN_B"),
+    "wheel_x": parse_button_name("BTN_0"),
+    "jog_z_plus": parse_button_name("ABS_HAT0X+"),
+    "jog_z_minus": parse_button_name("ABS_HAT0X-"),
 }
 BOUND = {name: control for name, control in BUTTONS.items() if control is not None}
-WHEEL = wheel_of("REL_DIAL")
+WHEEL = parse_wheel_name("REL_DIAL")
 HAT = {ABS_HAT0X: AxisRange(-1, 1, 0)}

@@ -7,15 +7,15 @@ from collections.abc import Callable
 
 import pytest
 
-from app.extras.pendant.driver.input_devices import AxisRange, InputEvent, Packet, Packets
+from app.extras.pendant.driver.input_devices import AxisRange, EventPacket, InputEvent, PacketParser
 from app.extras.pendant.driver.pendant_station import (
-    LOST,
-    Pendant,
+    LOST_EVENTS_MESSAGE,
     PendantButtons,
     PendantIO,
+    PendantReader,
     PendantStation,
 )
-from app.extras.pendant.driver.pendant_table import STOPS, wheel_of
+from app.extras.pendant.driver.pendant_table import STOP_INPUTS, parse_wheel_name
 from core.ports import DriverError, StationState
 from tests.coded import raises_code
 from tests.extras.pendant.made import (
@@ -47,8 +47,8 @@ class Bench:
         self.peer: Peer | None = None
         self.plug(*pressed)
         self.rung = 0
-        self.pendant = Pendant(
-            BOUND, frozenset(STOPS), WHEEL, self._find, lambda: self.t, place=place, ring=self._ring
+        self.pendant = PendantReader(
+            BOUND, frozenset(STOP_INPUTS), WHEEL, self._find, lambda: self.t, place=place, ring=self._ring
         )
         self.look()
 
@@ -72,7 +72,7 @@ class Bench:
             self.peer.now = self.t
 
     def look(self) -> None:
-        self.pendant.look(0.0)
+        self.pendant.process_events(0.0)
 
     @property
     def device(self) -> Peer:
@@ -81,11 +81,11 @@ class Bench:
 
     @property
     def held(self) -> set[str]:
-        return {name for name, on in self.pendant.state().inputs.items() if on}
+        return {name for name, on in self.pendant.get_state().inputs.items() if on}
 
     @property
     def counts(self) -> int:
-        return self.pendant.state().counts
+        return self.pendant.get_state().wheel_counts
 
 
 def test_the_struct_is_the_kernels() -> None:
@@ -96,16 +96,16 @@ def test_the_struct_is_the_kernels() -> None:
     data += bytes.fromhex("0000 0000 00000000")
     if EVENT.size != 24:
         pytest.skip("a long has four bytes here")
-    (packet,) = Packets().feed(data)
+    (packet,) = PacketParser().parse(data)
     (event,) = packet.events
     assert event == (10.5, REL, REL_DIAL, -1)
 
 
 def test_a_packet_in_pieces_counts_once_it_is_whole() -> None:
-    packets = Packets()
+    packets = PacketParser()
     data = EVENT.pack(1, 0, REL, REL_DIAL, 3) + EVENT.pack(1, 0, SYN, 0, 0)
-    assert [packet for i in range(len(data) - 1) for packet in packets.feed(data[i : i + 1])] == []
-    (packet,) = packets.feed(data[-1:])
+    assert [packet for i in range(len(data) - 1) for packet in packets.parse(data[i : i + 1])] == []
+    (packet,) = packets.parse(data[-1:])
     assert packet.events[0].value == 3
 
 
@@ -222,11 +222,11 @@ def test_dropped_events_let_everything_go_and_take_the_wheel_away() -> None:
     assert bench.held == set()  # though it is still down: it must be let go first
     assert bench.counts == 0
     station = PendantStation(Inner(), bench.pendant, stops=True, wheel=True)
-    assert station.snapshot().wheel_trouble == LOST
-    assert station.snapshot().trouble == ""
+    assert station.read_state().wheel_trouble == LOST_EVENTS_MESSAGE
+    assert station.read_state().trouble == ""
     bench.go(0.31)
     bench.look()
-    assert station.snapshot().wheel_trouble == ""
+    assert station.read_state().wheel_trouble == ""
     bench.device.key(BTN_A, False)
     bench.device.key(BTN_A, True)
     bench.look()
@@ -251,7 +251,7 @@ class Inner:
 
     state = StationState(handwheel=4)
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         return self.state
 
     def inputs(self) -> dict[str, bool]:
@@ -263,7 +263,7 @@ class Inner:
     def write(self, name: str, on: bool) -> None:
         raise DriverError(f"{name} {on}")
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         raise DriverError("safe")
 
 
@@ -277,12 +277,12 @@ def test_unplugged_everything_is_let_go_and_it_is_told() -> None:
     bench.peer = None
     bench.look()
     assert bench.held == set()
-    assert "unplugged" in bench.pendant.state().away
+    assert "unplugged" in bench.pendant.get_state().missing_reason
     station = PendantStation(Inner(), bench.pendant, stops=True, wheel=True)
     bench.go(10.0)
     bench.look()
-    assert "not plugged in" in station.snapshot().trouble  # as long as its stop is away
-    assert "not plugged in" in station.snapshot().wheel_trouble
+    assert "not plugged in" in station.read_state().trouble  # as long as its stop is away
+    assert "not plugged in" in station.read_state().wheel_trouble
 
 
 def test_one_without_a_stop_holds_once_and_is_not_missed() -> None:
@@ -291,11 +291,11 @@ def test_one_without_a_stop_holds_once_and_is_not_missed() -> None:
     bench.device.pull()
     bench.peer = None
     bench.look()
-    assert "unplugged" in station.snapshot().trouble
+    assert "unplugged" in station.read_state().trouble
     bench.go(0.4)
     bench.look()
-    assert station.snapshot().trouble == ""
-    assert "not plugged in" in station.snapshot().wheel_trouble
+    assert station.read_state().trouble == ""
+    assert "not plugged in" in station.read_state().wheel_trouble
 
 
 def test_plugged_in_again_it_is_back_and_nothing_moves_by_itself() -> None:
@@ -306,7 +306,7 @@ def test_plugged_in_again_it_is_back_and_nothing_moves_by_itself() -> None:
     bench.look()
     bench.plug(BTN_A)
     bench.look()
-    assert bench.pendant.state().away == ""
+    assert bench.pendant.get_state().missing_reason == ""
     assert bench.held == set()
     assert bench.counts == 3
     bench.device.turn(1)
@@ -320,7 +320,7 @@ def test_a_reader_that_has_stopped_holds_nothing() -> None:
     bench.look()
     bench.go(0.31)  # and nobody looks
     assert bench.held == set()
-    assert "has stopped" in bench.pendant.state().away
+    assert "has stopped" in bench.pendant.get_state().missing_reason
 
 
 def test_it_adds_to_the_station_and_can_start_nothing() -> None:
@@ -328,7 +328,7 @@ def test_it_adds_to_the_station_and_can_start_nothing() -> None:
     bench.device.turn(2)
     bench.device.key(BTN_B, True)
     bench.look()
-    state = PendantStation(Inner(), bench.pendant, stops=True, wheel=True).snapshot()
+    state = PendantStation(Inner(), bench.pendant, stops=True, wheel=True).read_state()
     assert state == dataclasses.replace(Inner.state, handwheel=6, hold=True)
     io = PendantIO(Inner(), bench.pendant)
     assert io.inputs()["hold"]
@@ -337,7 +337,7 @@ def test_it_adds_to_the_station_and_can_start_nothing() -> None:
     with raises_code(DriverError, "driver", "coolant False"):
         io.write("coolant", False)
     with raises_code(DriverError, "driver", "safe"):
-        io.safe()
+        io.switch_to_safe_state()
 
 
 def test_its_thread_reads_and_ends() -> None:
@@ -375,11 +375,11 @@ class Said:
     """Buttons without a device: what is told goes straight in."""
 
     def __init__(self, wheel: str, ranges: dict[int, AxisRange], keys: tuple[int, ...] = ()) -> None:
-        self.buttons = PendantButtons(BOUND, frozenset(STOPS), wheel_of(wheel))
-        self.buttons.begin(keys, ranges)
+        self.buttons = PendantButtons(BOUND, frozenset(STOP_INPUTS), parse_wheel_name(wheel))
+        self.buttons.start(keys, ranges)
 
     def tell(self, kind: int, code: int, value: int, ago: float = 0.0) -> None:
-        self.buttons.take(Packet((InputEvent(10.0 - ago, kind, code, value),)), 10.0)
+        self.buttons.apply_packet(EventPacket((InputEvent(10.0 - ago, kind, code, value),)), 10.0)
 
 
 def test_an_absolute_wheel_counts_from_where_it_stands_and_round_its_end() -> None:
@@ -388,7 +388,7 @@ def test_an_absolute_wheel_counts_from_where_it_stands_and_round_its_end() -> No
     counts = []
     for value, ago in ((5, 0.0), (255, 0.0), (200, 5.0), (201, 0.0)):
         said.tell(ABS, ABS_WHEEL, value, ago)
-        counts.append(said.buttons.counts)
+        counts.append(said.buttons.wheel_counts)
     assert counts == [11, 5, 5, 6]
 
 
@@ -396,7 +396,7 @@ def test_an_absolute_wheel_without_a_range_counts_nothing() -> None:
     said = Said("ABS_WHEEL", {ABS_WHEEL: AxisRange(3, 3, 3)})
     for value in (4, 9, 3):
         said.tell(ABS, ABS_WHEEL, value)
-    assert said.buttons.counts == 0
+    assert said.buttons.wheel_counts == 0
 
 
 @pytest.mark.parametrize("ranges", [{}, {ABS_HAT0X: AxisRange(0, 0, 0)}])
@@ -404,7 +404,7 @@ def test_a_stick_of_which_the_range_is_not_known_is_never_held(ranges: dict[int,
     said = Said("REL_DIAL", ranges)
     for value in (1, 255, -32768):
         said.tell(ABS, ABS_HAT0X, value)
-        assert said.buttons.down == set()
+        assert said.buttons.pressed_names == set()
 
 
 def test_a_stick_is_held_to_one_side_until_it_is_back() -> None:
@@ -412,7 +412,7 @@ def test_a_stick_is_held_to_one_side_until_it_is_back() -> None:
     seen = []
     for value in (140, 190, 140, 105, 10):
         said.tell(ABS, ABS_HAT0X, value)
-        seen.append(set(said.buttons.down))
+        seen.append(set(said.buttons.pressed_names))
     assert seen == [set(), {"jog_z_plus"}, {"jog_z_plus"}, set(), {"jog_z_minus"}]
 
 
@@ -420,9 +420,9 @@ def test_a_late_report_of_a_button_that_is_held_changes_nothing() -> None:
     said = Said("REL_DIAL", {})
     said.tell(KEY, BTN_A, 1)
     said.tell(KEY, BTN_A, 1, ago=5.0)
-    assert said.buttons.down == {"jog_x_plus"}
-    said.buttons.gone()
-    assert said.buttons.down == set()
+    assert said.buttons.pressed_names == {"jog_x_plus"}
+    said.buttons.release_all()
+    assert said.buttons.pressed_names == set()
 
 
 # --- the reader ---------------------------------------------------------------------------------------------
@@ -431,7 +431,7 @@ def test_a_late_report_of_a_button_that_is_held_changes_nothing() -> None:
 class Pulled(Peer):
     """Found, and gone before it says what is pressed."""
 
-    def keys(self) -> frozenset[int]:
+    def read_pressed_keys(self) -> frozenset[int]:
         raise OSError(19, "No such device")
 
 
@@ -443,10 +443,10 @@ def test_one_that_goes_while_it_is_opened_is_let_go_and_looked_for_again() -> No
     bench.peer = gone
     bench.look()
     assert gone.closed
-    assert "unplugged" in bench.pendant.state().away
+    assert "unplugged" in bench.pendant.get_state().missing_reason
     bench.plug()
     bench.look()
-    assert bench.pendant.state().away == ""
+    assert bench.pendant.get_state().missing_reason == ""
 
 
 def test_a_pendant_that_was_never_started_is_let_go() -> None:
@@ -454,4 +454,4 @@ def test_a_pendant_that_was_never_started_is_let_go() -> None:
     device = bench.device
     bench.pendant.close()
     assert device.closed
-    assert bench.pendant.state().away == "TurnDesk has stopped reading the pendant"
+    assert bench.pendant.get_state().missing_reason == "TurnDesk has stopped reading the pendant"

@@ -9,12 +9,24 @@ from typing import Any
 
 import pytest
 
-from app.extras.pendant.driver.input_devices import DeviceEntry, KernelDevice, chosen, entries
-from app.extras.pendant.driver.pendant_table import ABS, KEY, REL, Control, button_of, wheel_of
+from app.extras.pendant.driver.input_devices import (
+    DeviceEntry,
+    KernelDevice,
+    list_devices,
+    select_device_nodes,
+)
+from app.extras.pendant.driver.pendant_table import (
+    ABS,
+    KEY,
+    REL,
+    PendantControl,
+    parse_button_name,
+    parse_wheel_name,
+)
 from core.ports import DriverError
 from tests.coded import raises_code
 
-WANTED = {"hold": Control(KEY, 0x131), "handwheel": Control(REL, 7)}
+WANTED = {"hold": PendantControl(KEY, 0x131), "handwheel": PendantControl(REL, 7)}
 ABLE = frozenset({(KEY, 0x130), (KEY, 0x131), (REL, 7)})
 
 
@@ -51,13 +63,13 @@ def in_sysfs(
 
 
 def test_sysfs_is_read() -> None:
-    assert entries(Path("/nowhere")) == []
+    assert list_devices(Path("/nowhere")) == []
 
 
 def test_capabilities_are_words_of_64_bits_the_highest_first(tmp_path: Path) -> None:
     in_sysfs(tmp_path, "event3", "Shop Pendant", key="3000000000000 0 0 0 0", rel="80")
     in_sysfs(tmp_path, "event4", "Mouse", bus="0005")
-    first, second = entries(tmp_path)
+    first, second = list_devices(tmp_path)
     assert (first.name, first.numbers, first.stem) == ("Shop Pendant", "0b33:0030", "usb-1.2")
     assert first.able == {(KEY, 0x130), (KEY, 0x131), (REL, 7)}  # 4 words of 64, then bits 48 and 49
     assert second.bluetooth
@@ -67,20 +79,20 @@ def test_a_device_that_is_pulled_out_while_it_is_read_is_none(tmp_path: Path) ->
     in_sysfs(tmp_path, "event3", "Shop Pendant")
     (tmp_path / "event4" / "device").mkdir(parents=True)  # without its name
     (tmp_path / "event5").mkdir()
-    assert [each.node for each in entries(tmp_path)] == ["event3"]
+    assert [each.node for each in list_devices(tmp_path)] == ["event3"]
 
 
 @pytest.mark.parametrize("device", ["Shop Pendant", "shop pendant", "0B33:0030"])
 def test_by_name_or_by_number(device: str) -> None:
     other = entry(node="event4", name="Keyboard", numbers="046d:c31c", stem="usb-1.1")
-    assert chosen(device, "", WANTED, [other, entry()]) == (entry(),)
+    assert select_device_nodes(device, "", WANTED, [other, entry()]) == (entry(),)
 
 
 def test_one_device_of_two_nodes_is_both() -> None:
     dial = entry(node="event4", name="Shop Pendant Dial", able=frozenset({(REL, 7)}))
     buttons = entry(able=frozenset({(KEY, 0x131)}))
     mouse = entry(node="event5", able=frozenset({(KEY, 0x110)}))
-    assert chosen("0b33:0030", "", WANTED, [buttons, dial, mouse]) == (buttons, dial)
+    assert select_device_nodes("0b33:0030", "", WANTED, [buttons, dial, mouse]) == (buttons, dial)
 
 
 @pytest.mark.parametrize(
@@ -101,13 +113,13 @@ def test_one_device_of_two_nodes_is_both() -> None:
 )
 def test_what_is_refused(found: list[DeviceEntry], serial: str, reason: str, values: list[str]) -> None:
     with raises_code(DriverError, "driver", *values) as told:
-        chosen("Shop Pendant", serial, WANTED, found)
+        select_device_nodes("Shop Pendant", serial, WANTED, found)
     assert told.value.reason == reason
 
 
 def test_a_twin_is_told_apart_by_its_serial() -> None:
     twin = entry(node="event9", stem="usb-1.3", serial="B2")
-    assert chosen("Shop Pendant", "B2", WANTED, [entry(serial="A1"), twin]) == (twin,)
+    assert select_device_nodes("Shop Pendant", "B2", WANTED, [entry(serial="A1"), twin]) == (twin,)
 
 
 def test_what_may_not_be_read_says_the_rule_to_add(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,8 +156,8 @@ def test_the_kernel_is_asked_by_the_numbers_of_its_header(
     os.mkfifo(tmp_path / "event3")
     device = KernelDevice(entry(able=ABLE | {(ABS, 0x10)}), tmp_path)
     try:
-        assert device.keys() == {0x131}
-        assert device.ranges() == {0x10: (-1, 255, 7)}
+        assert device.read_pressed_keys() == {0x131}
+        assert device.read_axis_ranges() == {0x10: (-1, 255, 7)}
         assert asked == [0x400445A0, 0x40044590, 0x80604518, 0x80184550]
         assert device.read() == b""
     finally:
@@ -177,7 +189,9 @@ def test_names_are_the_kernels() -> None:
 
     asked = 0
     for name in known:
-        found = button_of(name) or (wheel_of(name) if name.startswith(("REL_", "ABS_")) else None)
+        found = parse_button_name(name) or (
+            parse_wheel_name(name) if name.startswith(("REL_", "ABS_")) else None
+        )
         if found is not None:
             assert found.code == number(name), name
             asked += 1
@@ -186,8 +200,8 @@ def test_names_are_the_kernels() -> None:
 
 @pytest.mark.parametrize("name", ["", "BTN_NONE", "KEY_0xfff", "ABS_HAT0X", "REL_DIAL", "+", "ABS_+"])
 def test_what_is_no_button(name: str) -> None:
-    assert button_of(name) is None
+    assert parse_button_name(name) is None
 
 
 def test_a_key_by_its_number() -> None:
-    assert button_of("KEY_0x1d3") == Control(KEY, 0x1D3)
+    assert parse_button_name("KEY_0x1d3") == PendantControl(KEY, 0x1D3)

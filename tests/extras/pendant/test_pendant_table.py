@@ -7,15 +7,15 @@ from dataclasses import replace
 import pytest
 
 import resources
-from app.compose.backends.connection import connect
-from app.compose.backends.machine_answers import check_ports
+from app.compose.backends.connection import connect_machine
+from app.compose.backends.machine_check import check_machine
 from app.compose.machine.machine_files import parse_machine
 from app.extras.pendant.driver.input_devices import AxisRange
 from app.extras.pendant.driver.pendant_table import PendantModel
-from app.extras.pendant.pendant_wire import wired, with_pendant
+from app.extras.pendant.pendant_setup import add_pendant, remove_pendant
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.extras.pendant.made import ABS_HAT0X, Peer
 from tests.texts import text as wording
 
@@ -51,10 +51,10 @@ def refused(*changes: tuple[str, str]) -> str:
 
 def test_a_pendant() -> None:
     machine = parse_machine(text(), "test")
-    assert machine.hardware.table(PendantModel) == PendantModel("0b33:0030", "", "place")
-    backend = wired(machine)
+    assert machine.hardware.find_driver_table(PendantModel) == PendantModel("0b33:0030", "", "place")
+    backend = remove_pendant(machine)
     assert not {"wheel_x", "start_inhibit"} & set(backend.inputs)
-    assert "handwheel" not in backend.hardware.analog
+    assert "handwheel" not in backend.hardware.analog_inputs
     assert "guard" in backend.inputs
 
 
@@ -102,33 +102,33 @@ def test_a_pendant_that_nothing_is_at() -> None:
     found = resources.machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
     with pytest.raises(MachineFileError) as caught:
         parse_machine(found, "test")
-    (finding,) = caught.value.errors
+    (finding,) = caught.value.findings
     assert finding.path == "[pendant]"
     assert "pendant.BTN_B" in finding.expected
 
 
 def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """``machine check`` names it, and what to do; the machine answers all the same."""
-    monkeypatch.setattr("app.extras.pendant.pendant_wire.entries", list)
-    answers = check_ports(parse_machine(text(), "test"))
+    monkeypatch.setattr("app.extras.pendant.pendant_setup.list_devices", list)
+    answers = check_machine(parse_machine(text(), "test"))
     rows = {each.name: each for each in answers.rows}
     assert (rows["pendant"].at, rows["pendant"].state) == ("0b33:0030", "no answer")
     assert "not plugged in" in rows["pendant"].detail
-    assert any("pendant" in each for each in answers.trouble)
+    assert any("pendant" in each for each in answers.faults)
     assert {rows[name].verdict for name in ("X", "Z", "spindle", "input wheel_x")} == {"not checked"}
 
 
 def test_a_pendant_that_is_there_is_read_beside_the_machine() -> None:
     peer = Peer({ABS_HAT0X: AxisRange(-1, 1, 0)})
     machine = parse_machine(text(), "test")
-    connected = with_pendant(
-        machine, connect(wired(replace_pendant(machine)), StepClock()), lambda *_: [peer]
+    connected = add_pendant(
+        machine, connect_machine(remove_pendant(replace_pendant(machine)), ManualClock()), lambda *_: [peer]
     )
     try:
         assert connected.ports.warnings == ()
         assert not connected.ports.io.inputs()["wheel_x"]
         assert "guard" in connected.ports.io.inputs()
-        assert connected.ports.station.snapshot().trouble == ""
+        assert connected.ports.station.read_state().trouble == ""
     finally:
         connected.close()
     assert peer.closed

@@ -7,15 +7,15 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from app.extras.quality.shift_figures import Shift, shift_figures
-from app.extras.quality.shift_page import shift_html
-from core.store.event_log import log
+from app.extras.quality.shift_page import make_shift_html
+from app.extras.quality.shift_results import Shift, calculate_shift_results
+from core.store.event_log import add_events
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
-from core.store.store_rows import EventRow, utc
+from core.store.store_rows import EventRow, format_utc
 
 BEGIN = datetime(2026, 3, 2, 6, tzinfo=UTC)
 
@@ -53,8 +53,8 @@ def shift_report(folder: Path) -> str:
     with Store.open(folder) as store:
         _fill(store)
         shift = Shift(BEGIN.timestamp(), (BEGIN + timedelta(hours=8)).timestamp())
-        found = shift_figures(store, shift, shift.end + 120.0)
-        return shift_html(found, "GT-75", "2026-03-02 14:02", metric=False)
+        found = calculate_shift_results(store, shift, shift.end_s + 120.0)
+        return make_shift_html(found, "GT-75", "2026-03-02 14:02", metric=False)
 
 
 def _fill(store: Store) -> None:
@@ -65,22 +65,24 @@ def _fill(store: Store) -> None:
             part = part + 1 if part and run.program == "bushing.nc" else number + 1
             seconds = run.seconds + (number % 3 == 0) + (number % 5 == 0)
             end = at + timedelta(seconds=seconds)
-            made = CycleRow(f"{at:%H%M%S}", run.program, part, utc(at), utc(end), seconds, "COMPLETE")
+            made = CycleRow(
+                f"{at:%H%M%S}", run.program, part, format_utc(at), format_utc(end), seconds, "COMPLETE"
+            )
             store.write(partial(part_cycles.save_cycle, row=made)).result()
             at = end + timedelta(seconds=3)
         if run.stop:
-            stop = StopRow(f"{at:%H%M%S}", "", run.program, utc(at), run.stood, run.stop, run.line)
+            stop = StopRow(f"{at:%H%M%S}", "", run.program, format_utc(at), run.stood, run.stop, run.line)
             store.write(partial(part_cycles.save_stop, row=stop)).result()
         if run.stop == "E-STOP":
-            alarm = EventRow(utc(at), "alarm", ALARM, run.line)
-            store.write(partial(log, events=[alarm])).result()
+            alarm = EventRow(format_utc(at), "alarm", ALARM, run.line)
+            store.write(partial(add_events, events=[alarm])).result()
         at += timedelta(seconds=run.stood)
     feature = FeatureRow(0, "bushing.nc", "OUTSIDE", "diameter", 22.225, -0.0254, 0.0254, "tool", 1, 1, 5, 1)
     kept = store.write(partial(measured_parts.save_feature, row=feature)).result()
     for number, off in enumerate(SIZES, start=1):
-        read = utc(BEGIN + timedelta(minutes=26 * number))
+        read = format_utc(BEGIN + timedelta(minutes=26 * number))
         size = 22.225 + off * 0.00254
         row = ReadingRow(0, kept, 10 * number, size, "in", read, "gauge", "micrometer")
         store.write(partial(measured_parts.add_reading, row=row)).result()
-    store.write(partial(tool_lives.set_limits, row=LifeRow(1, 200, 0.0, 0.9, True))).result()
-    store.write(lambda c: tool_lives.set_use(c, 1, 184, 4020.0)).result()
+    store.write(partial(tool_lives.save_limits, row=ToolLifeRow(1, 200, 0.0, 0.9, True))).result()
+    store.write(lambda c: tool_lives.save_use(c, 1, 184, 4020.0)).result()

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.extras.quality.control_charts import LEAST, QualityError, capability
+from core.extras.quality.control_charts import MIN_READINGS, QualityError, calculate_capability
 from tests.coded import raises_code
 
 TEN = [9.99, 10.01] * 5
@@ -14,7 +14,7 @@ TEN = [9.99, 10.01] * 5
 
 def test_worked_by_hand() -> None:
     """Every moving range is .02, so sigma within is .02/1.128; all of it s = .01 √(10/9)."""
-    found = capability(TEN, 9.95, 10.08)
+    found = calculate_capability(TEN, 9.95, 10.08)
     assert found.mean == pytest.approx(10.0)
     assert found.cp == pytest.approx(0.13 * 1.128 / 0.12)  # 1.222
     assert found.cpk == pytest.approx(0.94)  # .05 · 1.128 / .06: the lower limit is nearer
@@ -24,40 +24,40 @@ def test_worked_by_hand() -> None:
 
 def test_what_ten_readings_promise_at_least() -> None:
     """.94 − 1.645 √(1/90 + .8836/18)."""
-    assert capability(TEN, 9.95, 10.08).at_least == pytest.approx(0.536388, abs=1e-5)
+    assert calculate_capability(TEN, 9.95, 10.08).cpk_lower_bound == pytest.approx(0.536388, abs=1e-5)
 
 
 def test_in_samples_the_range_tells_the_scatter() -> None:
     """Five samples of two, each range .02: the same sigma; samples of five have d2 2.326."""
-    assert capability(TEN, 9.95, 10.08, 2).cpk == pytest.approx(0.94)
-    assert capability(TEN, 9.95, 10.08, 5).cpk == pytest.approx(0.05 * 2.326 / 0.06)
+    assert calculate_capability(TEN, 9.95, 10.08, 2).cpk == pytest.approx(0.94)
+    assert calculate_capability(TEN, 9.95, 10.08, 5).cpk == pytest.approx(0.05 * 2.326 / 0.06)
 
 
 def test_one_limit_has_no_width() -> None:
-    found = capability(TEN, None, 10.05)
+    found = calculate_capability(TEN, None, 10.05)
     assert (found.cp, found.pp) == (None, None)
     assert found.cpk == pytest.approx(0.94)
 
 
 def test_a_mean_outside_is_negative() -> None:
-    assert (capability(TEN, 9.8, 9.95).cpk or 0) == pytest.approx(-0.94)
+    assert (calculate_capability(TEN, 9.8, 9.95).cpk or 0) == pytest.approx(-0.94)
 
 
 def test_a_gauge_that_sees_no_scatter_has_no_cpk() -> None:
-    found = capability([10.0] * 12, 9.9, 10.1)
-    assert (found.cpk, found.cp, found.at_least) == (None, None, None)
+    found = calculate_capability([10.0] * 12, 9.9, 10.1)
+    assert (found.cpk, found.cp, found.cpk_lower_bound) == (None, None, None)
 
 
 @pytest.mark.parametrize(
     ("count", "lower", "upper", "code"),
     [
-        (LEAST - 1, 9.9, 10.1, "too-few-readings"),
+        (MIN_READINGS - 1, 9.9, 10.1, "too-few-readings"),
         (0, 9.9, 10.1, "too-few-readings"),
-        (LEAST, None, None, "no-tolerance"),
-        (LEAST, 10.1, 9.9, "limits-reversed"),
-        (LEAST, 10.0, 10.0, "limits-reversed"),
+        (MIN_READINGS, None, None, "no-tolerance"),
+        (MIN_READINGS, 10.1, 9.9, "limits-reversed"),
+        (MIN_READINGS, 10.0, 10.0, "limits-reversed"),
     ],
 )
 def test_refused(count: int, lower: float | None, upper: float | None, code: str) -> None:
     with raises_code(QualityError, code):
-        capability(TEN[:count], lower, upper)
+        calculate_capability(TEN[:count], lower, upper)

@@ -8,68 +8,70 @@ import numpy as np
 import pytest
 
 from core.extras.quality.control_charts import (
-    CONSTANTS,
-    Chart,
+    CHART_FACTORS,
+    ControlChart,
     QualityError,
-    average_and_range,
-    charts_of,
-    individuals,
+    make_charts,
+    make_individuals_charts,
+    make_xbar_r_charts,
 )
 from tests.coded import raises_code
 
 
 def test_average_and_range_of_samples_of_two() -> None:
     """Means 11 12 13, ranges 2 2 2: 12 ± 1.880 · 2, and 3.267 · 2 for the range."""
-    pair = average_and_range([(10, 12), (11, 13), (14, 12)])
+    pair = make_xbar_r_charts([(10, 12), (11, 13), (14, 12)])
     assert pair.location.points.tolist() == [11, 12, 13]
-    assert (pair.location.lower, pair.location.centre, pair.location.upper) == pytest.approx(
+    assert (pair.location.lower_limit, pair.location.center_line, pair.location.upper_limit) == pytest.approx(
         (8.24, 12, 15.76)
     )
-    assert (pair.spread.lower, pair.spread.centre, pair.spread.upper) == pytest.approx((0, 2, 6.534))
-    assert pair.within == pytest.approx(2 / 1.128)
+    assert (pair.spread.lower_limit, pair.spread.center_line, pair.spread.upper_limit) == pytest.approx(
+        (0, 2, 6.534)
+    )
+    assert pair.within_sigma == pytest.approx(2 / 1.128)
 
 
 def test_the_classic_sample_of_five() -> None:
     """A2 .577, D3 0, D4 2.114 at an average range of .32521 and a mean of 1.5056 (Montgomery)."""
     half = 0.32521 / 2
     rows = [(1.5056 - half, 1.5056 - half / 2, 1.5056, 1.5056 + half / 2, 1.5056 + half)] * 3
-    pair = average_and_range(rows)
-    assert pair.location.upper == pytest.approx(1.69325, abs=2e-5)
-    assert pair.location.lower == pytest.approx(1.31795, abs=2e-5)
-    assert pair.spread.upper == pytest.approx(0.68749, abs=2e-5)
+    pair = make_xbar_r_charts(rows)
+    assert pair.location.upper_limit == pytest.approx(1.69325, abs=2e-5)
+    assert pair.location.lower_limit == pytest.approx(1.31795, abs=2e-5)
+    assert pair.spread.upper_limit == pytest.approx(0.68749, abs=2e-5)
 
 
 def test_individuals() -> None:
     """Values 10 12 11 13: moving ranges 2 1 2, mean 5/3; 11.5 ± 3/1.128 · 5/3, 3.267 · 5/3."""
-    pair = individuals([10, 12, 11, 13])
-    assert pair.location.upper == pytest.approx(11.5 + 3 / 1.128 * 5 / 3)
-    assert pair.location.lower == pytest.approx(11.5 - 3 / 1.128 * 5 / 3)
+    pair = make_individuals_charts([10, 12, 11, 13])
+    assert pair.location.upper_limit == pytest.approx(11.5 + 3 / 1.128 * 5 / 3)
+    assert pair.location.lower_limit == pytest.approx(11.5 - 3 / 1.128 * 5 / 3)
     assert pair.spread.points.tolist() == [2, 1, 2]
-    assert pair.spread.upper == pytest.approx(5.445)
+    assert pair.spread.upper_limit == pytest.approx(5.445)
 
 
 @pytest.mark.parametrize("size", range(2, 11))
 def test_the_constants_belong_together(size: int) -> None:
     """A2 is 3/(d2 √n); D3 and D4 lie as far from 1 on both sides, where D3 is not cut off at 0."""
-    a2, d3, d4, d2 = CONSTANTS[size]
+    a2, d3, d4, d2 = CHART_FACTORS[size]
     assert a2 == pytest.approx(3 / (d2 * math.sqrt(size)), abs=1e-3)
     assert d3 == 0 or d3 + d4 == pytest.approx(2, abs=1e-3)
 
 
 def test_d2_is_the_mean_range_of_a_normal_sample() -> None:
     drawn = np.random.default_rng(15).standard_normal((200_000, 10))
-    for size, factors in CONSTANTS.items():
+    for size, factors in CHART_FACTORS.items():
         assert np.ptp(drawn[:, :size], axis=1).mean() == pytest.approx(factors.d2, rel=0.005)
 
 
 def test_an_incomplete_sample_waits() -> None:
-    assert len(charts_of([1, 2, 3, 4, 5], 2).location.points) == 2
-    assert len(charts_of([1, 2, 3, 4, 5], 1).location.points) == 5
+    assert len(make_charts([1, 2, 3, 4, 5], 2).location.points) == 2
+    assert len(make_charts([1, 2, 3, 4, 5], 1).location.points) == 5
 
 
 def test_limits_settle_with_twenty_points() -> None:
-    assert not Chart(np.zeros(19), 0, -1, 1).settled
-    assert Chart(np.zeros(20), 0, -1, 1).settled
+    assert not ControlChart(np.zeros(19), 0, -1, 1).has_stable_limits
+    assert ControlChart(np.zeros(20), 0, -1, 1).has_stable_limits
 
 
 @pytest.mark.parametrize(
@@ -86,9 +88,9 @@ def test_limits_settle_with_twenty_points() -> None:
 )
 def test_what_has_no_chart(values: list[float], size: int, code: str) -> None:
     with raises_code(QualityError, code):
-        charts_of(values, size)
+        make_charts(values, size)
 
 
 def test_ragged_samples_have_no_chart() -> None:
     with raises_code(QualityError, "sample-size"):
-        average_and_range([1, 2, 3])
+        make_xbar_r_charts([1, 2, 3])

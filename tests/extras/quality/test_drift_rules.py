@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.extras.quality.control_charts import RULES, Chart, findings
+from core.extras.quality.control_charts import CONTROL_RULES, ControlChart, find_rule_violations
 
 
 def rules(points: list[float]) -> list[tuple[int, int]]:
-    return [(each.point, each.rule) for each in findings(Chart(np.asarray(points), 0.0, -3.0, 3.0))]
+    return [
+        (each.point_index, each.rule_number)
+        for each in find_rule_violations(ControlChart(np.asarray(points), 0.0, -3.0, 3.0))
+    ]
 
 
 @pytest.mark.parametrize(
@@ -42,10 +45,12 @@ def test_what_is_no_drift() -> None:
 
 
 def test_points_that_do_not_scatter_tell_nothing() -> None:
-    assert findings(Chart(np.ones(30), 1.0, 1.0, 1.0)) == ()
-    assert findings(Chart(np.zeros(0), 0.0, -3.0, 3.0)) == ()
+    assert find_rule_violations(ControlChart(np.ones(30), 1.0, 1.0, 1.0)) == ()
+    assert find_rule_violations(ControlChart(np.zeros(0), 0.0, -3.0, 3.0)) == ()
 
 
 def test_each_has_words() -> None:
-    assert len({words for words, _ in RULES.values()}) == 8
-    assert findings(Chart(np.asarray([4.0]), 0, -3, 3))[0].words == ("one point beyond a control limit")
+    assert len({words for words, _ in CONTROL_RULES.values()}) == 8
+    assert find_rule_violations(ControlChart(np.asarray([4.0]), 0, -3, 3))[0].text == (
+        "one point beyond a control limit"
+    )

@@ -13,15 +13,15 @@ from dataclasses import dataclass
 import pytest
 
 from app.extras.quality.gauge_table import GaugeModel
-from app.extras.quality.gauge_wire import (
-    LONGEST,
-    SILENT,
+from app.extras.quality.serial_gauge import (
+    MAX_LINE_LENGTH,
+    SILENCE_LIMIT_S,
     GaugeError,
-    GaugeWire,
-    LineReader,
+    GaugeReading,
+    LineSplitter,
     NoGauge,
-    Reading,
-    reading_of,
+    SerialGauge,
+    parse_reading,
 )
 from tests.coded import raises_code
 from tests.texts import pattern, text
@@ -40,7 +40,7 @@ from tests.texts import pattern, text
     ],
 )
 def test_a_line_is_a_reading(line: str, value: float, unit: str) -> None:
-    assert reading_of(line) == Reading(value, unit)
+    assert parse_reading(line) == GaugeReading(value, unit)
 
 
 @pytest.mark.parametrize(
@@ -59,28 +59,28 @@ def test_a_line_is_a_reading(line: str, value: float, unit: str) -> None:
 )
 def test_what_is_no_reading(line: str, code: str) -> None:
     with raises_code(GaugeError, code):
-        reading_of(line)
+        parse_reading(line)
 
 
 def test_bytes_are_cut_into_lines() -> None:
-    reader = LineReader()
-    assert reader.lines(b"01A+000") == []
-    assert reader.lines(b"12.345\r") == ["01A+00012.345"]
-    assert reader.lines(b"\n1 mm\r\n2 mm\r\n\r\n3") == ["1 mm", "2 mm"]
-    assert reader.lines(b" mm\r") == ["3 mm"]
+    reader = LineSplitter()
+    assert reader.split_lines(b"01A+000") == []
+    assert reader.split_lines(b"12.345\r") == ["01A+00012.345"]
+    assert reader.split_lines(b"\n1 mm\r\n2 mm\r\n\r\n3") == ["1 mm", "2 mm"]
+    assert reader.split_lines(b" mm\r") == ["3 mm"]
 
 
 def test_a_line_without_an_end_does_not_grow() -> None:
-    reader = LineReader()
-    assert reader.lines(b"x" * (LONGEST + 1)) == ["x" * (LONGEST + 1)]
-    assert reader.lines(b"1 mm\r") == ["1 mm"]
+    reader = LineSplitter()
+    assert reader.split_lines(b"x" * (MAX_LINE_LENGTH + 1)) == ["x" * (MAX_LINE_LENGTH + 1)]
+    assert reader.split_lines(b"1 mm\r") == ["1 mm"]
 
 
 @dataclass
 class Bench:
     """A gauge on a pty: what is written to ``far`` comes out of its cable."""
 
-    wire: GaugeWire
+    wire: SerialGauge
     far: int
     near: int
     now: list[float]
@@ -88,11 +88,11 @@ class Bench:
     def send(self, data: bytes) -> None:
         os.write(self.far, data)
 
-    def hears(self, enough: Callable[[list[Reading | str]], bool]) -> list[Reading | str]:
+    def hears(self, enough: Callable[[list[GaugeReading | str]], bool]) -> list[GaugeReading | str]:
         """Look until it is enough."""
-        found: list[Reading | str] = []
+        found: list[GaugeReading | str] = []
         for _ in range(6000):
-            found += self.wire.received()
+            found += self.wire.fetch_readings()
             if enough(found):
                 return found
             if self.wire._thread is not None:
@@ -106,7 +106,7 @@ def bench() -> Iterator[Bench]:
     tty.setraw(near)
     now = [0.0]
     model = GaugeModel(os.ttyname(near), "micrometer", "in", 9600, 8, "N", 1)
-    bench = Bench(GaugeWire(model, clock=lambda: now[0]), far, near, now)
+    bench = Bench(SerialGauge(model, clock=lambda: now[0]), far, near, now)
     yield bench
     bench.wire.close()
     if bench.wire._thread is not None:
@@ -119,14 +119,14 @@ def bench() -> Iterator[Bench]:
 
 def listening(bench: Bench) -> None:
     """It is on when the first line comes through: what was sent before it listened is not for it."""
-    assert bench.wire.turn() == ""
-    found: list[Reading | str] = []
+    assert bench.wire.toggle_receiving() == ""
+    found: list[GaugeReading | str] = []
     while not found:
         bench.send(b"1 mm\r\n")
         bench.wire._thread.join(0.05)  # type: ignore[union-attr]
-        found = list(bench.wire.received())
+        found = list(bench.wire.fetch_readings())
     bench.send(b"9999 mm\r\n")
-    bench.hears(lambda found: Reading(9999.0, "mm") in found)
+    bench.hears(lambda found: GaugeReading(9999.0, "mm") in found)
 
 
 def test_both_kinds_of_lines_and_garbage_between(bench: Bench) -> None:
@@ -134,10 +134,10 @@ def test_both_kinds_of_lines_and_garbage_between(bench: Bench) -> None:
     bench.send(b"01A+00000.5012\r")
     bench.send(b"\x00\xff#?\r\n12.345 mm\r\n")
     found = bench.hears(lambda found: len(found) >= 3)
-    assert found[0] == Reading(0.5012)
+    assert found[0] == GaugeReading(0.5012)
     assert re.fullmatch(pattern("quality.gauge-refused"), str(found[1]))
     assert "#?" in str(found[1])
-    assert found[2] == Reading(12.345, "mm")
+    assert found[2] == GaugeReading(12.345, "mm")
 
 
 def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> None:
@@ -149,38 +149,38 @@ def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> No
     assert str(why).startswith("GAUGE: ")
     assert "F5: LISTEN AGAIN" in str(why)
     for _ in range(60_000):  # told first, then closed, by its own thread
-        if not bench.wire.open:
+        if not bench.wire.is_receiving:
             break
         threading.Event().wait(0.001)
-    assert not bench.wire.open
+    assert not bench.wire.is_receiving
 
 
 def test_a_port_that_is_not_there(bench: Bench) -> None:
-    gone = GaugeWire(GaugeModel("/dev/ttyNONE", "g", "mm", 9600, 8, "N", 1))
-    assert gone.turn() == ""
+    gone = SerialGauge(GaugeModel("/dev/ttyNONE", "g", "mm", 9600, 8, "N", 1))
+    assert gone.toggle_receiving() == ""
     bench.wire = gone
     (why,) = bench.hears(bool)
     assert "this port does not exist" in str(why)
 
 
 def test_silence_is_told(bench: Bench) -> None:
-    assert "Press F5 to start" in bench.wire.words
+    assert "Press F5 to start" in bench.wire.status_text
     listening(bench)
-    assert re.fullmatch(pattern("quality.listening"), bench.wire.words)
-    bench.now[0] += SILENT + 60.0
-    assert "No reading from the gauge for 6 min" in bench.wire.words
+    assert re.fullmatch(pattern("quality.listening"), bench.wire.status_text)
+    bench.now[0] += SILENCE_LIMIT_S + 60.0
+    assert "No reading from the gauge for 6 min" in bench.wire.status_text
     bench.send(b"2 mm\r")
     bench.hears(bool)
-    assert re.fullmatch(pattern("quality.listening"), bench.wire.words)
+    assert re.fullmatch(pattern("quality.listening"), bench.wire.status_text)
 
 
 def test_listening_ends(bench: Bench) -> None:
     listening(bench)
-    assert bench.wire.turn() == ""
-    assert not bench.wire.open
+    assert bench.wire.toggle_receiving() == ""
+    assert not bench.wire.is_receiving
 
 
 def test_a_machine_without_a_gauge() -> None:
     none = NoGauge()
-    assert none.turn() == text("quality.no-gauge")
-    assert list(none.received()) == []
+    assert none.toggle_receiving() == text("quality.no-gauge")
+    assert list(none.fetch_readings()) == []

@@ -12,7 +12,7 @@ from tests.cli.json_output import declared_alone, whole
 
 
 def test_parts(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("parts", "--json"))], quality_json_keys.PARTS.keys)
+    declared_alone([whole(turndesk("parts", "--json"))], quality_json_keys.PARTS_OUTPUT.keys)
 
 
 def test_shift(turndesk: Turndesk, filled: Path) -> None:
@@ -21,4 +21,4 @@ def test_shift(turndesk: Turndesk, filled: Path) -> None:
     now = datetime.now()
     first, last = (f"{now + timedelta(days=days):%Y-%m-%d %H:%M}" for days in (-2, 2))
     found = whole(turndesk("shift", "--from", first, "--to", last, "--json"))
-    declared_alone([found], quality_json_keys.SHIFT.keys)
+    declared_alone([found], quality_json_keys.SHIFT_OUTPUT.keys)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.extras.quality.parts_data import PartsData, write_readings
+from app.extras.quality.parts_data import PartsData, write_readings_csv
 from tests.power_cut import cut_everywhere
 
 OLD = b"part,value\n1,12.7\n"
@@ -15,7 +15,7 @@ def test_readings_for_a_spreadsheet_stay_whole(tmp_path: Path) -> None:
 
     def again() -> None:
         path.write_bytes(OLD)
-        write_readings(PartsData("pin.nc"), tmp_path)
+        write_readings_csv(PartsData("pin.nc"), tmp_path)
 
     told = cut_everywhere(again, path.read_bytes)
     assert len(set(told)) == 2

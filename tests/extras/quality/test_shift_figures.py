@@ -12,21 +12,21 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.extras.quality.shift_figures import (
+from app.extras.quality.shift_page import make_shift_html
+from app.extras.quality.shift_results import (
     Shift,
-    ShiftFigures,
+    ShiftResults,
     ShiftTimesError,
-    between,
-    moment_of,
-    shift_figures,
-    shift_of,
+    calculate_shift_results,
+    find_shift,
+    make_period,
+    parse_local_time,
 )
-from app.extras.quality.shift_page import shift_html
-from core.store.event_log import log
+from core.store.event_log import add_events
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow, StopRow
-from core.store.production.tool_lives import LifeRow
+from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.store_rows import EventRow
 from tests.coded import raises_code, recorded_refusals
@@ -86,75 +86,79 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
             EventRow(f"{DAY}14:00:00.000Z", "alarm", "of the next shift"),
             EventRow(f"{DAY}08:16:00.000Z", "switch", "no alarm"),
         ]
-        store.write(lambda c: log(c, events)).result()
+        store.write(lambda c: add_events(c, events)).result()
         feature = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 10.0, -0.05, 0.05, "tool", 1, 1, 0, 1)
         number = store.write(lambda c: measured_parts.save_feature(c, feature)).result()
         for at, size in (("06:30", 10.05), ("07:00", 10.051), ("15:00", 11.0)):
             reading = ReadingRow(0, number, 8, size, "mm", f"{DAY}{at}:00.000Z", "typed", "")
             store.write(partial(measured_parts.add_reading, row=reading)).result()
-        store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result()
-        store.write(lambda c: tool_lives.set_use(c, 1, 20, 60.0)).result()
+        store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(1, 50))).result()
+        store.write(lambda c: tool_lives.save_use(c, 1, 20, 60.0)).result()
         yield store
 
 
-def figures(store: Store, shift: Shift = EIGHT) -> ShiftFigures:
-    return shift_figures(store, shift, datetime(2026, 3, 3, tzinfo=UTC).timestamp())
+def figures(store: Store, shift: Shift = EIGHT) -> ShiftResults:
+    return calculate_shift_results(store, shift, datetime(2026, 3, 3, tzinfo=UTC).timestamp())
 
 
 def test_parts_are_those_that_were_finished_in_the_shift(store: Store) -> None:
     found = figures(store)
-    assert [(p.program, p.parts, dict(p.others)) for p in found.programs] == [
+    assert [(p.program, p.parts, dict(p.incomplete_cycles)) for p in found.programs] == [
         ("pin.nc", 3, {}),
         ("cap.nc", 0, {"GIVEN UP": 1, "CUT OFF": 1}),
     ]
-    assert found.programs[0].times == (1200.0, 3600.0, 1500.0)
-    assert found.parts == 3
+    assert found.programs[0].cycle_times_s == (1200.0, 3600.0, 1500.0)
+    assert found.part_count == 3
 
 
 def test_availability_and_stops_by_hand(store: Store) -> None:
     found = figures(store)
     assert found.availability is not None
     # 10 + 60 + 25 + 15 + 20 min of cycles in 8 h; 10 + 5 + 30 min of stops
-    assert (found.availability.planned, found.availability.producing) == (28_800.0, 7_800.0)
-    assert [(r.reason, r.times, r.seconds) for r in found.stood] == [
+    assert (found.availability.planned_s, found.availability.producing_s) == (28_800.0, 7_800.0)
+    assert [(r.reason, r.times, r.seconds) for r in found.stop_reasons] == [
         ("BETWEEN CYCLES", 2, 2400.0),
         ("FEED HOLD", 1, 300.0),
     ]
-    assert (found.stopped, found.untold) == (2700.0, 28_800.0 - 7_800.0 - 2_700.0)
+    assert (found.stopped_s, found.unrecorded_s) == (2700.0, 28_800.0 - 7_800.0 - 2_700.0)
 
 
 def test_alarms_readings_and_lives(store: Store) -> None:
     found = figures(store)
     assert [row.text for row in found.alarms] == ["102 following error: X"]
-    assert found.measured == 2
-    assert [row.value for _, row in found.bad] == [10.051]  # on the limit is good
-    assert [(row.number, row.parts) for row in found.lives] == [(1, 20)]
+    assert found.reading_count == 2
+    assert [row.value for _, row in found.bad_readings] == [10.051]  # on the limit is good
+    assert [(row.number, row.parts) for row in found.tool_lives] == [(1, 20)]
 
 
 def test_offsets_are_told_with_who_and_when(store: Store) -> None:
-    store.offsets.tools.change_row(1, "wear", {"x": 1.0, "wear_x": -0.01}, who="proposed").result()
+    store.offsets.tool_offsets.change_row(1, "wear", {"x": 1.0, "wear_x": -0.01}, who="proposed").result()
     now = datetime.now(UTC).timestamp()
-    found = shift_figures(store, Shift(now - 60.0, now + 60.0), now)
-    assert [(c.number, c.why, c.who) for c in found.offsets] == [(1, "wear", "proposed")]
-    page = shift_html(found, "GT-75", "now", metric=True)
+    found = calculate_shift_results(store, Shift(now - 60.0, now + 60.0), now)
+    assert [(c.number, c.why, c.who) for c in found.offset_changes] == [(1, "wear", "proposed")]
+    page = make_shift_html(found, "GT-75", "now", metric=True)
     assert "proposed" in page
     assert "The shift is still running" in page
 
 
 def test_an_empty_shift_says_so(store: Store) -> None:
-    found = figures(store, Shift(EIGHT.start - 30 * 86_400, EIGHT.end - 30 * 86_400))
-    assert (found.parts, found.programs, found.notes) == (0, (), ("No part was started in this period.",))
-    assert found.untold == 28_800.0
-    assert "none" in shift_html(found, "", "now", metric=False)
+    found = figures(store, Shift(EIGHT.start_s - 30 * 86_400, EIGHT.end_s - 30 * 86_400))
+    assert (found.part_count, found.programs, found.notes) == (
+        0,
+        (),
+        ("No part was started in this period.",),
+    )
+    assert found.unrecorded_s == 28_800.0
+    assert "none" in make_shift_html(found, "", "now", metric=False)
 
 
 def test_a_clock_that_was_set_back_is_told_and_lengths_stay(store: Store) -> None:
     store.write(lambda c: part_cycles.save_cycle(c, cycle("p9", "07:00:00", "06:40:00", 600.0, 10))).result()
     found = figures(store)
     assert any("was set back" in note for note in found.notes)
-    assert 600.0 in found.programs[0].times
+    assert 600.0 in found.programs[0].cycle_times_s
     assert found.availability is not None
-    assert found.availability.producing == 7_800.0  # it overlaps what ran: nothing is counted twice
+    assert found.availability.producing_s == 7_800.0  # it overlaps what ran: nothing is counted twice
 
 
 @pytest.mark.parametrize(
@@ -168,19 +172,19 @@ def test_a_clock_that_was_set_back_is_told_and_lengths_stay(store: Store) -> Non
 def test_a_night_in_which_the_clock_moves_is_as_long_as_it_was(
     now: datetime, hours: float, moved: float
 ) -> None:
-    shift = shift_of((22, 6), now)
-    assert (shift.end - shift.start) / 3600 == hours
-    assert shift.clock_moved == moved
-    assert datetime.fromtimestamp(shift.start).hour == 22
-    assert datetime.fromtimestamp(shift.end).hour == 6
+    shift = find_shift((22, 6), now)
+    assert (shift.end_s - shift.start_s) / 3600 == hours
+    assert shift.clock_change_s == moved
+    assert datetime.fromtimestamp(shift.start_s).hour == 22
+    assert datetime.fromtimestamp(shift.end_s).hour == 6
 
 
 def test_the_shift_that_is_on_and_those_before_it() -> None:
     at = datetime(2026, 11, 23, 9, tzinfo=UTC)  # 10 h in Berlin
-    assert shift_of((6, 14), at).start == moment_of("2026-11-23 06:00")
-    assert shift_of((6, 14), at, 1).start == moment_of("2026-11-22 06:00")
-    assert shift_of((14, 22), at).start == moment_of("2026-11-22 14:00")
-    assert shift_of((6, 6), at).end == moment_of("2026-11-24 06:00")
+    assert find_shift((6, 14), at).start_s == parse_local_time("2026-11-23 06:00")
+    assert find_shift((6, 14), at, 1).start_s == parse_local_time("2026-11-22 06:00")
+    assert find_shift((14, 22), at).start_s == parse_local_time("2026-11-22 14:00")
+    assert find_shift((6, 6), at).end_s == parse_local_time("2026-11-24 06:00")
 
 
 @pytest.mark.parametrize(
@@ -194,13 +198,13 @@ def test_the_shift_that_is_on_and_those_before_it() -> None:
 )
 def test_times_that_are_none_are_refused(first: str, last: str, code: str, value: str) -> None:
     with raises_code(ShiftTimesError, code, value):
-        between(first, last)
+        make_period(first, last)
 
 
 def test_names_of_others_are_text_on_the_page(store: Store) -> None:
     row = cycle("p7", "10:00:00", "10:10:00", 600.0, 11)._replace(program="<script>alert(1)</script>")
     store.write(lambda c: part_cycles.save_cycle(c, row)).result()
-    page = shift_html(figures(store), "<b>", "now", metric=True)
+    page = make_shift_html(figures(store), "<b>", "now", metric=True)
     assert "<script>" not in page
     assert "&lt;script&gt;" in page
     assert "http" not in page.replace("http-equiv", "")  # nothing is loaded from anywhere

@@ -5,12 +5,25 @@ from __future__ import annotations
 import pytest
 
 from core.extras.quality.control_charts import QualityError
-from core.extras.quality.stops import Span, Stop, availability, pareto, times_between
+from core.extras.quality.production_stops import (
+    ProductionStop,
+    TimeSpan,
+    analyze_stop_reasons,
+    calculate_availability,
+    calculate_times_between,
+)
 from tests.coded import raises_code
 
 
 def test_pareto() -> None:
-    rows = pareto([Stop("DOOR", 0, 10), Stop("BAR", 50, 60), Stop("DOOR", 200, 20), Stop("HOLD", 300, 10)])
+    rows = analyze_stop_reasons(
+        [
+            ProductionStop("DOOR", 0, 10),
+            ProductionStop("BAR", 50, 60),
+            ProductionStop("DOOR", 200, 20),
+            ProductionStop("HOLD", 300, 10),
+        ]
+    )
     assert [(row.reason, row.times, row.seconds) for row in rows] == [
         ("BAR", 1, 60),
         ("DOOR", 2, 30),
@@ -21,37 +34,41 @@ def test_pareto() -> None:
 
 
 def test_stops_that_cost_nothing_share_nothing() -> None:
-    assert pareto([]) == ()
-    assert pareto([Stop("A", 0, 0)])[0].share == 0.0
+    assert analyze_stop_reasons([]) == ()
+    assert analyze_stop_reasons([ProductionStop("A", 0, 0)])[0].share == 0.0
 
 
 def test_time_between_stops() -> None:
     """From 10 to 50 forty, from 110 to 200 ninety; out of order they are put in order."""
-    stops = [Stop("A", 0, 10), Stop("C", 200, 20), Stop("B", 50, 60)]
-    assert times_between(stops) == (40, 90)
-    assert times_between([Stop("A", 0, 100), Stop("B", 50, 10), Stop("C", 130, 1)]) == (0, 30)
-    assert times_between([Stop("A", 0, 10)]) == ()
+    stops = [ProductionStop("A", 0, 10), ProductionStop("C", 200, 20), ProductionStop("B", 50, 60)]
+    assert calculate_times_between(stops) == (40, 90)
+    assert calculate_times_between(
+        [ProductionStop("A", 0, 100), ProductionStop("B", 50, 10), ProductionStop("C", 130, 1)]
+    ) == (0, 30)
+    assert calculate_times_between([ProductionStop("A", 0, 10)]) == ()
 
 
 def test_availability() -> None:
     """Of 100 s: 10 of the first, 30 to 60 once although told twice, 90 to the end."""
-    found = availability(Span(100, 200), [Span(0, 110), Span(130, 150), Span(140, 160), Span(190, 250)])
-    assert (found.planned, found.producing, found.share) == (100, 50, 0.5)
+    found = calculate_availability(
+        TimeSpan(100, 200), [TimeSpan(0, 110), TimeSpan(130, 150), TimeSpan(140, 160), TimeSpan(190, 250)]
+    )
+    assert (found.planned_s, found.producing_s, found.producing_share) == (100, 50, 0.5)
 
 
 def test_nothing_ran() -> None:
-    assert availability(Span(0, 10), []).share == 0.0
-    assert availability(Span(0, 10), [Span(10, 20)]).share == 0.0
+    assert calculate_availability(TimeSpan(0, 10), []).producing_share == 0.0
+    assert calculate_availability(TimeSpan(0, 10), [TimeSpan(10, 20)]).producing_share == 0.0
 
 
-@pytest.mark.parametrize("shift", [Span(10, 10), Span(10, 0)])
-def test_a_shift_has_a_length(shift: Span) -> None:
+@pytest.mark.parametrize("shift", [TimeSpan(10, 10), TimeSpan(10, 0)])
+def test_a_shift_has_a_length(shift: TimeSpan) -> None:
     with raises_code(QualityError, "shift-times"):
-        availability(shift, [])
+        calculate_availability(shift, [])
 
 
 def test_a_clock_that_was_set_back() -> None:
     with raises_code(QualityError, "clock-set-back"):
-        availability(Span(0, 10), [Span(5, 4)])
+        calculate_availability(TimeSpan(0, 10), [TimeSpan(5, 4)])
     with raises_code(QualityError, "clock-set-back"):
-        pareto([Stop("A", 5, -1)])
+        analyze_stop_reasons([ProductionStop("A", 5, -1)])

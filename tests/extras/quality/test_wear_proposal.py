@@ -9,19 +9,21 @@ import pytest
 
 from core.extras.quality.control_charts import QualityError
 from core.extras.quality.measured_feature import (
-    CorrectedBy,
+    CorrectingOffset,
     CorrectionRule,
-    Feature,
     FeatureKind,
+    MeasuredFeature,
     check_feature,
-    propose,
+    propose_correction,
 )
 from tests.coded import raises_code
 
 IN = 25.4
 TENTH = 0.0001 * IN
-SPIGOT = Feature("SPIGOT", FeatureKind.DIAMETER, 0.5 * IN, -0.001 * IN, 0.001 * IN, CorrectedBy.TOOL, 3)
-FULL = CorrectionRule(step=1.0)
+SPIGOT = MeasuredFeature(
+    "SPIGOT", FeatureKind.DIAMETER, 0.5 * IN, -0.001 * IN, 0.001 * IN, CorrectingOffset.TOOL, 3
+)
+FULL = CorrectionRule(step_share=1.0)
 
 
 def inches(*sizes: float) -> list[float]:
@@ -30,64 +32,66 @@ def inches(*sizes: float) -> list[float]:
 
 def test_a_diameter_that_is_too_large_wants_less() -> None:
     """Ø .5012 → Ø .5000 is −.0012 of the diameter, −.0006 at the offset, whose X is a radius."""
-    found = propose(SPIGOT, inches(0.5012), TENTH, FULL)
-    assert found.change == pytest.approx(-0.0012 * IN)
-    assert found.offset_change == pytest.approx(-0.0006 * IN)
-    assert found.expected == pytest.approx(0.5 * IN)
+    found = propose_correction(SPIGOT, inches(0.5012), TENTH, FULL)
+    assert found.change_mm == pytest.approx(-0.0012 * IN)
+    assert found.offset_change_mm == pytest.approx(-0.0006 * IN)
+    assert found.expected_size == pytest.approx(0.5 * IN)
 
 
 def test_half_a_step_goes_half_way() -> None:
-    found = propose(SPIGOT, inches(0.5012), TENTH)
-    assert found.change == pytest.approx(-0.0006 * IN)
-    assert found.expected == pytest.approx(0.5006 * IN)
+    found = propose_correction(SPIGOT, inches(0.5012), TENTH)
+    assert found.change_mm == pytest.approx(-0.0006 * IN)
+    assert found.expected_size == pytest.approx(0.5006 * IN)
 
 
 def test_a_bore_that_is_too_small_wants_more() -> None:
     """The same sign inside as outside: the edge has to go outward."""
-    assert propose(SPIGOT, inches(0.4992), TENTH, FULL).change == pytest.approx(0.0008 * IN)
+    assert propose_correction(SPIGOT, inches(0.4992), TENTH, FULL).change_mm == pytest.approx(0.0008 * IN)
 
 
 def test_a_tool_at_x_negative_wants_the_other_sign() -> None:
-    found = propose(replace(SPIGOT, grows=-1), inches(0.5012), TENTH, FULL)
-    assert found.change == pytest.approx(0.0012 * IN)
-    assert found.expected == pytest.approx(0.5 * IN)
+    found = propose_correction(replace(SPIGOT, grows=-1), inches(0.5012), TENTH, FULL)
+    assert found.change_mm == pytest.approx(0.0012 * IN)
+    assert found.expected_size == pytest.approx(0.5 * IN)
 
 
 def test_a_length_is_no_diameter() -> None:
     """A shoulder whose length shrinks as its tool goes to Z+: .020 too long wants +.020 of Z."""
-    length = Feature("L", FeatureKind.LENGTH, 30.0, -0.05, 0.05, CorrectedBy.SECONDARY, 2, grows=-1)
-    found = propose(length, [30.02], 0.001, FULL)
-    assert [found.change, found.offset_change] == pytest.approx([0.02, 0.02])
-    assert found.expected == pytest.approx(30.0)
+    length = MeasuredFeature(
+        "L", FeatureKind.LENGTH, 30.0, -0.05, 0.05, CorrectingOffset.SECONDARY, 2, grows=-1
+    )
+    found = propose_correction(length, [30.02], 0.001, FULL)
+    assert [found.change_mm, found.offset_change_mm] == pytest.approx([0.02, 0.02])
+    assert found.expected_size == pytest.approx(30.0)
 
 
 def test_the_middle_of_a_one_sided_tolerance_is_aimed_at() -> None:
     """20 −.04/0: the middle is 19.98, so 20.00 is .02 too large."""
-    shaft = Feature("H", FeatureKind.DIAMETER, 20.0, -0.04, 0.0, CorrectedBy.TOOL, 1)
-    assert propose(shaft, [20.0], 0.001, FULL).change == pytest.approx(-0.02)
+    shaft = MeasuredFeature("H", FeatureKind.DIAMETER, 20.0, -0.04, 0.0, CorrectingOffset.TOOL, 1)
+    assert propose_correction(shaft, [20.0], 0.001, FULL).change_mm == pytest.approx(-0.02)
 
 
 def test_the_newest_readings_count() -> None:
     """Of seven the last five: mean .5004."""
     sizes = inches(0.52 - 0.018, 0.502, 0.5002, 0.5003, 0.5004, 0.5005, 0.5006)
-    found = propose(SPIGOT, sizes, TENTH, FULL)
-    assert found.count == 5
-    assert found.mean == pytest.approx(0.5004 * IN)
+    found = propose_correction(SPIGOT, sizes, TENTH, FULL)
+    assert found.reading_count == 5
+    assert found.mean_deviation == pytest.approx(0.5004 * IN)
 
 
 def test_within_the_dead_band_nothing_is_changed() -> None:
     """A tenth of .002 is .0002."""
-    assert propose(SPIGOT, inches(0.5002), TENTH, FULL).change == 0.0
-    assert "dead band" in propose(SPIGOT, inches(0.5002), TENTH, FULL).why
-    assert propose(SPIGOT, inches(0.5003), TENTH, FULL).change == pytest.approx(-0.0003 * IN)
+    assert propose_correction(SPIGOT, inches(0.5002), TENTH, FULL).change_mm == 0.0
+    assert "dead band" in propose_correction(SPIGOT, inches(0.5002), TENTH, FULL).reason
+    assert propose_correction(SPIGOT, inches(0.5003), TENTH, FULL).change_mm == pytest.approx(-0.0003 * IN)
 
 
 def test_whole_steps_of_the_control_and_never_more_than_asked_for() -> None:
     """Half of .0005 is two and a half tenths: two."""
-    assert propose(SPIGOT, inches(0.5005), TENTH).change == pytest.approx(-0.0002 * IN)
-    coarse = propose(SPIGOT, inches(0.5005), 0.01 * IN)
-    assert coarse.change == 0.0
-    assert "smallest offset step" in coarse.why
+    assert propose_correction(SPIGOT, inches(0.5005), TENTH).change_mm == pytest.approx(-0.0002 * IN)
+    coarse = propose_correction(SPIGOT, inches(0.5005), 0.01 * IN)
+    assert coarse.change_mm == 0.0
+    assert "smallest offset step" in coarse.reason
 
 
 @pytest.mark.parametrize(
@@ -101,13 +105,13 @@ def test_whole_steps_of_the_control_and_never_more_than_asked_for() -> None:
 )
 def test_no_proposal(readings: list[float], code: str) -> None:
     with raises_code(QualityError, code):
-        propose(SPIGOT, readings, TENTH)
+        propose_correction(SPIGOT, readings, TENTH)
 
 
 def test_more_than_the_tables_take_is_touched_off() -> None:
     wide = replace(SPIGOT, low=-0.2 * IN, high=0.2 * IN)
     with raises_code(QualityError, "correction-too-large"):
-        propose(wide, inches(0.75), TENTH, FULL)
+        propose_correction(wide, inches(0.75), TENTH, FULL)
 
 
 @pytest.mark.parametrize(

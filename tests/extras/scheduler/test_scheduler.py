@@ -15,8 +15,8 @@ from typing import NamedTuple
 import pytest
 
 from app.cli.proofs import proof_work
-from app.cli.proofs.proof_work import OtherVersionError, proof_of
-from core.language.source import Source
+from app.cli.proofs.proof_work import VersionMismatchError, prove_packed
+from core.language.source import ProgramSource
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
 
@@ -117,6 +117,6 @@ def test_jobs_and_scheduler_exclude_each_other(turndesk: Turndesk, parts: Path) 
 
 
 def test_a_worker_with_another_turndesk_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(proof_work, "code_version", lambda: "another")
-    with pytest.raises(OtherVersionError):
-        proof_of(b"", "ours", Source("a.nc", "M30\n"))
+    monkeypatch.setattr(proof_work, "get_code_hash", lambda: "another")
+    with pytest.raises(VersionMismatchError):
+        prove_packed(b"", "ours", ProgramSource("a.nc", "M30\n"))

@@ -7,35 +7,40 @@ import math
 
 import pytest
 
-from app.extras.shapes.shapes_model import Shapes
-from core.extras.shapes.calculators import SPEED, THREADS, TRIANGLE, triangle
-from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_fields import Setting, Shop, Value
-from core.extras.shapes.threads.tapping import TAP, drill_for
+from app.extras.shapes.shapes_model import ShapesModel
+from core.extras.shapes.calculators import SPEED_CALCULATOR, TAPER_CALCULATOR, THREAD_CALCULATOR, solve_taper
+from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
+from core.extras.shapes.threads.tapping import TAPPING_SHAPE, find_tap_drill
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import Programmer, bad, proved
 from tests.texts import text as wording
 
-INCH, MM = Setting(), Setting(metric=True)
-TAPER: dict[str, Value] = {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0, "ANGLE": math.degrees(math.atan(0.25))}
+INCH, MM = ProgramSettings(), ProgramSettings(metric=True)
+TAPER: dict[str, FieldValue] = {
+    "SMALL": 0.5,
+    "LARGE": 1.0,
+    "LONG": 1.0,
+    "ANGLE": math.degrees(math.atan(0.25)),
+}
 
 
-def said(one: Filled, setting: Setting) -> list[str]:
-    return [each.text for each in one.refusals(setting)]
+def said(one: FilledShape, setting: ProgramSettings) -> list[str]:
+    return [each.text for each in one.find_errors(setting)]
 
 
 @pytest.mark.parametrize("three", list(itertools.combinations(TAPER, 3)))
 def test_any_three_of_a_taper_give_the_fourth(three: tuple[str, ...]) -> None:
-    found = triangle({word: TAPER[word] for word in three})
+    found = solve_taper({word: TAPER[word] for word in three})
     assert found == pytest.approx(TAPER)
 
 
 def test_a_taper_is_written_and_told() -> None:
     """.5 to 1. over 1.: slope sqrt(1 + .0625), 1 : 2 on the diameter."""
-    one = filled(TRIANGLE, {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0}, INCH)
+    one = fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0}, INCH)
     assert not said(one, INCH)
-    assert one.lines(INCH) == ["X.5Z0", "X1Z-1"]
-    assert TRIANGLE.says(one, INCH) == (
+    assert one.make_lines(INCH) == ["X.5Z0", "X1Z-1"]
+    assert TAPER_CALCULATOR.says(one, INCH) == (
         "slant length 1.0308",
         "included angle 28.0725°",
         wording("shapes.taper-ratio", ratio="1 : 2"),
@@ -45,11 +50,11 @@ def test_a_taper_is_written_and_told() -> None:
 def test_a_triangle_that_is_none() -> None:
     assert (
         wording("shapes.value-missing", label="LENGTH")
-        in said(filled(TRIANGLE, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
+        in said(fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
     )
-    four = filled(TRIANGLE, {**TAPER, "ANGLE": 20.0}, INCH)
+    four = fill_shape(TAPER_CALCULATOR, {**TAPER, "ANGLE": 20.0}, INCH)
     assert said(four, INCH) == [wording("shapes.no-taper", angle=14.04)]
-    through = filled(TRIANGLE, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
+    through = fill_shape(TAPER_CALCULATOR, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
     assert "crosses the spindle centerline" in said(through, INCH)[0]
 
 
@@ -61,9 +66,9 @@ def test_a_triangle_that_is_none() -> None:
         ({"DIA": 0.1, "SURF": 900.0}, 3500, INCH),  # what the spindle has
     ],
 )
-def test_speed(typed: dict[str, Value], rpm: float, setting: Setting) -> None:
-    one = filled(SPEED, typed, setting)
-    assert one.n("RPM") == rpm
+def test_speed(typed: dict[str, FieldValue], rpm: float, setting: ProgramSettings) -> None:
+    one = fill_shape(SPEED_CALCULATOR, typed, setting)
+    assert one.get_number("RPM") == rpm
     assert not said(one, setting)
 
 
@@ -72,40 +77,49 @@ def test_speed(typed: dict[str, Value], rpm: float, setting: Setting) -> None:
 )
 def test_speed_says_the_depth_of_a_rough_pass(work: str, depth: str) -> None:
     """An assumed CCMT 0602 takes 3.224 mm: a quarter is .0317 in, half of it .0159 in for a boring bar."""
-    typed: dict[str, Value] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
-    words = [each for each in SPEED.says(filled(SPEED, typed, INCH), INCH) if "rough" in each]
+    typed: dict[str, FieldValue] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
+    words = [
+        each
+        for each in SPEED_CALCULATOR.says(fill_shape(SPEED_CALCULATOR, typed, INCH), INCH)
+        if "rough" in each
+    ]
     assert words == ([f"roughing passes {depth.removeprefix('0')} deep per side"] if depth else [])
 
 
 def test_feed_both_ways() -> None:
     """1000 rpm at .005 are 5 in/min; 6 in/min are .006."""
-    one = filled(SPEED, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005}, INCH)
-    assert one.n("RATE") == 5.0
-    assert one.lines(INCH) == ["M03S1000", "G95F.005"]
-    assert one.n("SURF") == pytest.approx(1000 * math.pi / 12, abs=0.05)
-    assert filled(SPEED, {"DIA": 1.0, "RPM": 1000.0, "RATE": 6.0}, INCH).n("FEED") == 0.006
-    torn = filled(SPEED, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005, "RATE": 9.0}, INCH)
+    one = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005}, INCH)
+    assert one.get_number("RATE") == 5.0
+    assert one.make_lines(INCH) == ["M03S1000", "G95F.005"]
+    assert one.get_number("SURF") == pytest.approx(1000 * math.pi / 12, abs=0.05)
+    assert (
+        fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "RATE": 6.0}, INCH).get_number("FEED")
+        == 0.006
+    )
+    torn = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005, "RATE": 9.0}, INCH)
     assert said(torn, INCH) == ["1000 rpm at 0.005 per revolution is 5 per minute: clear one of the values."]
-    fast = filled(SPEED, {"DIA": 1.0, "RPM": 5000.0}, INCH)
+    fast = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 5000.0}, INCH)
     assert "more than the 3500 rpm" in said(fast, INCH)[0]
 
 
 def test_passes_of_a_thread() -> None:
     """Depth h in n passes: the first h / sqrt(n), pass k at I sqrt(k); either of I and n gives the other."""
-    own: dict[str, Value] = {"PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 1.0}
-    own["SERIES"] = next(c for c in THREADS.fields[0].choices if "OWN" in c.upper())
-    one = filled(THREADS, {**own, "PASSES": 9.0}, INCH)
-    assert one.n("FIRST") == pytest.approx(0.01)
-    assert one.lines(INCH) == ["G33X.44Z-1I.02K.05C"]
-    told = THREADS.says(one, INCH)
+    own: dict[str, FieldValue] = {"PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 1.0}
+    own["SERIES"] = next(c for c in THREAD_CALCULATOR.fields[0].choices if "OWN" in c.upper())
+    one = fill_shape(THREAD_CALCULATOR, {**own, "PASSES": 9.0}, INCH)
+    assert one.get_number("FIRST") == pytest.approx(0.01)
+    assert one.make_lines(INCH) == ["G33X.44Z-1I.02K.05C"]
+    told = THREAD_CALCULATOR.says(one, INCH)
     assert told[:2] == (
         wording("shapes.thread-depth", depth=".03", first=".01"),
         wording("shapes.starts-at", value=".48"),
     )
     places = [f"{0.5 - 0.02 * math.sqrt(k):.4f}".rstrip("0").lstrip("0") for k in range(1, 10)]
     assert told[2] == wording("shapes.x-of-passes", positions=" ".join(places))
-    assert filled(THREADS, {**own, "FIRST": 0.01}, INCH).n("PASSES") == pytest.approx(9.0)
-    torn = filled(THREADS, {**own, "FIRST": 0.01, "PASSES": 4.0}, INCH)
+    assert fill_shape(THREAD_CALCULATOR, {**own, "FIRST": 0.01}, INCH).get_number("PASSES") == pytest.approx(
+        9.0
+    )
+    torn = fill_shape(THREAD_CALCULATOR, {**own, "FIRST": 0.01, "PASSES": 4.0}, INCH)
     assert wording("shapes.first-pass-given", count=4, depth=".015") == said(torn, INCH)[0]
 
 
@@ -113,13 +127,13 @@ def test_passes_of_a_thread() -> None:
 
 
 def written(keys: str, text: str = "") -> str:
-    shapes = Shapes(shop=Shop())
+    shapes = ShapesModel(shop_data=ShopData())
     assert shapes.open("x.nc", text, len(text.splitlines()), helpers=True) == ""
-    shapes.worker.settle(60.0)
+    shapes.worker.wait_for_results(60.0)
     for key in keys:
-        assert shapes.typed(key), (key, shapes.prompt())
-    shapes.write()
-    assert shapes.form is None, shapes.prompt()
+        assert shapes.handle_key(key), (key, shapes.prompt_text())
+    shapes.write_form()
+    assert shapes.form is None, shapes.prompt_text()
     shapes.close()
     return shapes.text
 
@@ -131,7 +145,7 @@ def test_templates_make_a_program_that_is_good() -> None:
     report, part = proved(text, {1: ToolShape(ToolKind.TURNING, tip=3)}, stock="bar:1:2")
     assert not report.errors, bad(report)
     assert "(" not in text  # nothing that would be opened again
-    assert part.removed > 0.0
+    assert part.removed_volume_mm3 > 0.0
 
 
 def test_a_thread_and_a_loop_by_template() -> None:
@@ -147,11 +161,11 @@ def test_a_shape_is_not_opened_from_the_calculators() -> None:
     head = (
         "G90G94F300G72(HEAD INCH UNIT DIAMETER WORDS STEEL MATERIAL ON COOLANT 1 CLEAR 300 RAPID)\nM08\nM30\n"
     )
-    shapes = Shapes(shop=Shop())
+    shapes = ShapesModel(shop_data=ShopData())
     shapes.open("x.nc", head, 1, helpers=True)
-    assert shapes.listing
-    assert not shapes.listed
-    assert not shapes.takes("x")
+    assert shapes.is_list_shown
+    assert not shapes.listed_pieces
+    assert not shapes.accepts_key("x")
     shapes.close()
 
 
@@ -168,20 +182,20 @@ def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
     assert lines == ["T4", "G00X0Z1", "Z.15", "G95F.05Z-.45", "M04", "G04F.5", "Z.15", "G00Z1", "M30"]
     report, _ = proved(text, {4: tap}, stock="tube:1:.2:2")
     assert not bad(report)
-    assert [each.foreign for each in hand.shapes.pieces] == [-1, -1]
+    assert [each.edited_line for each in hand.shapes.pieces] == [-1, -1]
 
 
 def test_the_hole_before_a_tap() -> None:
     """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
-    one = filled(TAP, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
-    assert TAP.says(one, MM) == (
+    one = fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
+    assert TAPPING_SHAPE.says(one, MM) == (
         wording("shapes.hole-before-tapping", size="8.53", smallest="8.38", largest="8.68"),
         "tap drill: 8.5 mm",
     )
-    assert one.n("PITCH") == 1.5
-    pipe = filled(TAP, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
+    assert one.get_number("PITCH") == 1.5
+    pipe = fill_shape(TAPPING_SHAPE, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
     limits = {"smallest": "18.63", "largest": "19.17"}
-    assert TAP.says(pipe, MM)[0] == wording("shapes.hole-before-tapping", size="18.9", **limits)
+    assert TAPPING_SHAPE.says(pipe, MM)[0] == wording("shapes.hole-before-tapping", size="18.9", **limits)
 
 
 DRILLS = {
@@ -218,19 +232,25 @@ DRILLS = {
 )
 def test_the_drill_before_a_tap_is_that_of_the_charts(series: str, size: str) -> None:
     setting = MM if series.startswith("M") else INCH
-    told = TAP.says(filled(TAP, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting)[1]
+    told = TAPPING_SHAPE.says(
+        fill_shape(TAPPING_SHAPE, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting
+    )[1]
     assert told.removeprefix("tap drill: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
 
 
 def test_a_drill_in_the_other_unit_is_told_with_its_size() -> None:
-    inch = TAP.says(filled(TAP, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH)
-    metric = TAP.says(filled(TAP, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM)
+    inch = TAPPING_SHAPE.says(
+        fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH
+    )
+    metric = TAPPING_SHAPE.says(
+        fill_shape(TAPPING_SHAPE, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM
+    )
     assert (inch[1], metric[1]) == ("tap drill: 5 mm, .1969", "tap drill: #7, 5.105")
 
 
 def test_no_drill_is_told_where_none_is_sold() -> None:
-    assert drill_for(0.2015, 0.2028, metric=False) is None
-    assert drill_for(60.0, 61.0, metric=True) is None
+    assert find_tap_drill(0.2015, 0.2028, metric=False) is None
+    assert find_tap_drill(60.0, 61.0, metric=True) is None
 
 
 @pytest.mark.parametrize(
@@ -249,10 +269,10 @@ def test_no_drill_is_told_where_none_is_sold() -> None:
         ),
     ],
 )
-def test_what_no_tap_does(typed: dict[str, Value], says: str) -> None:
+def test_what_no_tap_does(typed: dict[str, FieldValue], says: str) -> None:
     taps = {4: ToolShape(ToolKind.TAP, pitch=1.27, length=20.0), 5: ToolShape(ToolKind.TAP, pitch=1.0)}
-    setting = Setting(shop=Shop(tools=taps))
-    base: dict[str, Value] = {
+    setting = ProgramSettings(shop=ShopData(tools=taps))
+    base: dict[str, FieldValue] = {
         "T": 4.0,
         "SERIES": "UNC",
         "DEEP": 0.5,
@@ -260,5 +280,5 @@ def test_what_no_tap_does(typed: dict[str, Value], says: str) -> None:
         "PITCH": 0.05,
         "RPM": 500.0,
     }
-    one = filled(TAP, {**base, **typed}, setting)
+    one = fill_shape(TAPPING_SHAPE, {**base, **typed}, setting)
     assert any(says in text for text in said(one, setting)), said(one, setting)

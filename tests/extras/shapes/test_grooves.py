@@ -7,34 +7,34 @@ import math
 import numpy as np
 import pytest
 
-from core.extras.shapes.pieces import setting_at, with_shape
-from core.extras.shapes.shape import filled
-from core.extras.shapes.shape_fields import Shop, Value
-from core.extras.shapes.shape_table import SHAPES
+from core.extras.shapes.editor_shape import fill_shape
+from core.extras.shapes.shape_fields import FieldValue, ShopData
+from core.extras.shapes.shape_pieces import find_settings, insert_shape
+from core.extras.shapes.shape_table import SHAPES_BY_KEY
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import proved
 
 BLADE = ToolShape(ToolKind.GROOVING, tip=3, width=2.0, length=12.0)
 BORE_BLADE = ToolShape(ToolKind.GROOVING, tip=2, width=2.0, length=4.0, diameter=10.0)
-METRIC: dict[str, Value] = {"UNIT": "METRIC"}
+METRIC: dict[str, FieldValue] = {"UNIT": "METRIC"}
 
 
-def made(tool: ToolShape, **typed: Value) -> str:
+def made(tool: ToolShape, **typed: FieldValue) -> str:
     """The program of one groove, in mm."""
-    shop, text, behind = Shop(tools={1: tool}), [""], 0
+    shop, text, behind = ShopData(tools={1: tool}), [""], 0
     for key, words in (("N", METRIC), ("G", {"T": 1.0, "WIDE": 2.0, **typed})):
-        setting = setting_at(text, behind, shop)
-        one = filled(SHAPES[key], words, setting)
-        assert not one.refusals(setting)
-        text, behind = with_shape(text, behind, one, setting)
+        setting = find_settings(text, behind, shop)
+        one = fill_shape(SHAPES_BY_KEY[key], words, setting)
+        assert not one.find_errors(setting)
+        text, behind = insert_shape(text, behind, one, setting)
     return "\n".join(text) + "\n"
 
 
 def radii(text: str, tool: ToolShape, stock: str, at: list[float], *, inside: bool = False) -> list[float]:
     report, part = proved(text, {1: tool}, stock=stock)
     assert not report.errors, [d.text for d in report.diagnostics]
-    assert part.last is not None
-    points = np.array(part.last.bore if inside else part.last.outside)[::-1]
+    assert part.last_piece is not None
+    points = np.array(part.last_piece.bore_profile if inside else part.last_piece.outside_profile)[::-1]
     return [float(each) for each in np.interp(np.array(at), points[:, 0], points[:, 1])]
 
 

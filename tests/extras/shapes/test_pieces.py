@@ -4,21 +4,39 @@ from __future__ import annotations
 
 import pytest
 
-from core.extras.shapes.contour import Row
-from core.extras.shapes.pieces import Piece, pieces, renewed, setting_at, with_shape
-from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_fields import Setting, Shop, Value
-from core.extras.shapes.shape_table import SHAPES
+from core.extras.shapes.contour import ContourPoint
+from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
+from core.extras.shapes.shape_pieces import (
+    ShapePiece,
+    find_pieces,
+    find_settings,
+    insert_shape,
+    rewrite_pieces,
+)
+from core.extras.shapes.shape_table import SHAPES_BY_KEY
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import Programmer, bad, proved
 from tests.texts import shows
 from tests.texts import text as wording
 
-SHOP = Shop(slide_accel=3048.0)
-PROFILE = (Row(0.0, 0.0), Row(0.5, chamfer=0.05), Row(z=-0.5), Row(0.7, -0.6, arc=0.2), Row(0.7, -0.9))
-BORED = (Row(0.6, 0.0), Row(0.5, -0.05), Row(z=-0.4), Row(0.3), Row(z=-0.6))
+SHOP = ShopData(max_acceleration=3048.0)
+PROFILE = (
+    ContourPoint(0.0, 0.0),
+    ContourPoint(0.5, chamfer=0.05),
+    ContourPoint(z=-0.5),
+    ContourPoint(0.7, -0.6, arc=0.2),
+    ContourPoint(0.7, -0.9),
+)
+BORED = (
+    ContourPoint(0.6, 0.0),
+    ContourPoint(0.5, -0.05),
+    ContourPoint(z=-0.4),
+    ContourPoint(0.3),
+    ContourPoint(z=-0.6),
+)
 
-Step = tuple[str, dict[str, Value], tuple[Row, ...]]
+Step = tuple[str, dict[str, FieldValue], tuple[ContourPoint, ...]]
 STEPS: dict[str, list[Step]] = {
     "face and profile": [
         ("F", {"FROM": 0.75, "STOCK": 0.06}, ()),
@@ -51,15 +69,23 @@ STEPS: dict[str, list[Step]] = {
         )
     ],
     "thread": [
-        ("T", {"FROM": 0.5}, (Row(0.0, 0.0), Row(0.49, chamfer=0.05), Row(z=-0.8))),
+        (
+            "T",
+            {"FROM": 0.5},
+            (ContourPoint(0.0, 0.0), ContourPoint(0.49, chamfer=0.05), ContourPoint(z=-0.8)),
+        ),
         ("R", {"SIZE": "1/2", "LONG": 0.5}, ()),
     ],
     "pipe thread": [
-        ("T", {"FROM": 0.6}, (Row(0.0, 0.0), Row(0.52, 0.0), Row(0.56, -0.6))),
+        ("T", {"FROM": 0.6}, (ContourPoint(0.0, 0.0), ContourPoint(0.52, 0.0), ContourPoint(0.56, -0.6))),
         ("R", {"SERIES": "NPT", "SIZE": "1/4"}, ()),
     ],
     "three starts": [
-        ("T", {"FROM": 0.5}, (Row(0.0, 0.0), Row(0.49, chamfer=0.05), Row(z=-0.8))),
+        (
+            "T",
+            {"FROM": 0.5},
+            (ContourPoint(0.0, 0.0), ContourPoint(0.49, chamfer=0.05), ContourPoint(z=-0.8)),
+        ),
         ("R", {"SIZE": "1/2", "LONG": 0.5, "STARTS": 3.0}, ()),
     ],
     "part off": [
@@ -84,26 +110,30 @@ STEPS: dict[str, list[Step]] = {
     "bar loop": [
         ("L", {"COUNT": 3.0, "LONG": 0.9}, ()),
         ("F", {"FROM": 0.75}, ()),
-        ("T", {"FROM": 0.75}, (Row(0.0, 0.0), Row(0.5), Row(z=-0.5), Row(0.75))),
+        (
+            "T",
+            {"FROM": 0.75},
+            (ContourPoint(0.0, 0.0), ContourPoint(0.5), ContourPoint(z=-0.5), ContourPoint(0.75)),
+        ),
         ("P", {"FROM": 0.75, "LONG": 0.8, "WIDE": 0.1}, ()),
     ],
 }
 
 
-def written(steps: list[Step], **head: Value) -> list[str]:
+def written(steps: list[Step], **head: FieldValue) -> list[str]:
     """The program of these shapes, head first."""
     text: list[str] = []
     behind = 0
     for key, typed, rows in [("N", head, ()), *steps]:
-        setting = setting_at(text, behind, SHOP)
-        one = filled(SHAPES[key], typed, setting, rows)
-        assert not one.refusals(setting), one.refusals(setting)
-        text, behind = with_shape(text, behind, one, setting)
+        setting = find_settings(text, behind, SHOP)
+        one = fill_shape(SHAPES_BY_KEY[key], typed, setting, rows)
+        assert not one.find_errors(setting), one.find_errors(setting)
+        text, behind = insert_shape(text, behind, one, setting)
     return text
 
 
-def only(text: list[str], name: str) -> Piece:
-    (found,) = [each for each in pieces(text, SHOP) if each.filled.shape.name == name]
+def only(text: list[str], name: str) -> ShapePiece:
+    (found,) = [each for each in find_pieces(text, SHOP) if each.filled_shape.shape.name == name]
     return found
 
 
@@ -113,19 +143,19 @@ def test_every_shape_is_read_and_found_good_and_found_again(name: str) -> None:
     text = written(STEPS[name])
     report, _ = proved("\n".join(text) + "\n")
     assert not bad(report), (bad(report), text)
-    found = pieces(text, SHOP)
-    assert [each.filled.shape.name for each in found] == [
+    found = find_pieces(text, SHOP)
+    assert [each.filled_shape.shape.name for each in found] == [
         "HEAD",
-        *(SHAPES[key].name for key, _, _ in STEPS[name]),
+        *(SHAPES_BY_KEY[key].name for key, _, _ in STEPS[name]),
     ]
-    assert all(each.foreign < 0 and not each.taken for each in found)
+    assert all(each.edited_line < 0 and not each.adopted_fields for each in found)
     for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
-        assert {word: piece.filled.values[word] for word in typed} == typed
-        assert len(piece.filled.rows) == len(rows)
+        assert {word: piece.filled_shape.values[word] for word in typed} == typed
+        assert len(piece.filled_shape.contour_points) == len(rows)
 
 
 @pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "METRIC"}])
-def test_other_modes_are_found_again(head: dict[str, Value]) -> None:
+def test_other_modes_are_found_again(head: dict[str, FieldValue]) -> None:
     scale = 25.4 if "UNIT" in head else 1.0
     typed: dict[str, float | str] = {
         "FROM": 0.75 * scale,
@@ -136,7 +166,7 @@ def test_other_modes_are_found_again(head: dict[str, Value]) -> None:
     text = written([("P", typed, ())], **head)
     report, _ = proved("\n".join(text) + "\n")
     assert not bad(report)
-    assert only(text, "PART OFF").filled.values["FROM"] == pytest.approx(0.75 * scale)
+    assert only(text, "PART OFF").filled_shape.values["FROM"] == pytest.approx(0.75 * scale)
 
 
 def changed(text: list[str], before: str, after: str) -> list[str]:
@@ -147,7 +177,11 @@ def changed(text: list[str], before: str, after: str) -> list[str]:
 def test_a_feed_that_was_changed_by_hand_is_taken_over() -> None:
     text = changed(written(STEPS["thread"][:1]), "G95F.003Z0", "G95F.002Z0")
     piece = only(text, "TURN")
-    assert (piece.foreign, piece.taken, piece.filled.values["FEED"]) == (-1, ("FEED",), 0.002)
+    assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["FEED"]) == (
+        -1,
+        ("FEED",),
+        0.002,
+    )
 
 
 def test_a_depth_and_a_speed_that_were_changed_by_hand_are_taken_over() -> None:
@@ -156,15 +190,15 @@ def test_a_depth_and_a_speed_that_were_changed_by_hand_are_taken_over() -> None:
     (hole,) = [line for line in text if line.startswith("G81")]
     text = changed(changed(text, speed, "M03S900"), hole, hole.replace("Z-.6", "Z-.65"))
     piece = only(text, "DRILL")
-    assert piece.foreign == -1
-    assert (piece.filled.values["RPM"], piece.filled.values["DEEP"]) == (900.0, 0.65)
+    assert piece.edited_line == -1
+    assert (piece.filled_shape.values["RPM"], piece.filled_shape.values["DEEP"]) == (900.0, 0.65)
 
 
 def test_points_that_were_changed_by_hand_are_those_of_the_form() -> None:
     text = changed(written([("T", {"FROM": 0.5}, PROFILE[:3])]), "Z-.5", "Z-.55")
     piece = only(text, "TURN")
-    assert piece.foreign == -1
-    assert piece.filled.rows[2] == Row(z=-0.55)
+    assert piece.edited_line == -1
+    assert piece.filled_shape.contour_points[2] == ContourPoint(z=-0.55)
 
 
 def test_a_line_put_in_by_hand_is_told_and_nothing_is_taken_for_it() -> None:
@@ -172,37 +206,37 @@ def test_a_line_put_in_by_hand_is_told_and_nothing_is_taken_for_it() -> None:
     (at,) = [n for n, line in enumerate(text) if line.startswith("G81")]
     text.insert(at, "G04F1")
     piece = only(text, "DRILL")
-    assert piece.foreign == at
-    assert piece.behind == text.index("M30")
+    assert piece.edited_line == at
+    assert piece.next_line == text.index("M30")
 
 
 def test_a_figure_that_no_field_explains_is_told() -> None:
     text = changed(written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())]), "Z.05", "Z.75")
-    assert only(text, "DRILL").foreign >= 0
+    assert only(text, "DRILL").edited_line >= 0
 
 
 def test_lines_between_shapes_stay() -> None:
     text = written(STEPS["thread"])
     second = only(text, "THREAD")
-    text[second.first : second.first] = ["M01(LOOK AT THE DIAMETER)"]
-    found = pieces(text, SHOP)
-    assert [each.foreign for each in found] == [-1, -1, -1]
-    again, _ = with_shape(text, 0, found[1].filled, found[1].setting, found[1])
+    text[second.first_line : second.first_line] = ["M01(LOOK AT THE DIAMETER)"]
+    found = find_pieces(text, SHOP)
+    assert [each.edited_line for each in found] == [-1, -1, -1]
+    again, _ = insert_shape(text, 0, found[1].filled_shape, found[1].settings, found[1])
     assert again == text
 
 
 def test_comments_of_others_are_no_shapes() -> None:
-    assert not pieces(["G90G94F300(HEAD OF THE LINE)", "T1(DRILL)", "T2(FACE 1 TWO)", "M30"], SHOP)
+    assert not find_pieces(["G90G94F300(HEAD OF THE LINE)", "T1(DRILL)", "T2(FACE 1 TWO)", "M30"], SHOP)
 
 
 def test_another_unit_converts_what_was_written() -> None:
     """A drill of .25 in is one of 6.35 mm: no figure keeps its digits under another unit."""
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6, "FEED": 0.004}, ())])
-    before = pieces(text, SHOP)
-    head = filled(SHAPES["N"], {"UNIT": "METRIC"}, setting_at(text, 0, SHOP))
-    text, _ = with_shape(text, 0, head, before[0].setting, before[0])
-    text, stay = renewed(text, SHOP, before)
-    drill = only(text, "DRILL").filled
+    before = find_pieces(text, SHOP)
+    head = fill_shape(SHAPES_BY_KEY["N"], {"UNIT": "METRIC"}, find_settings(text, 0, SHOP))
+    text, _ = insert_shape(text, 0, head, before[0].settings, before[0])
+    text, stay = rewrite_pieces(text, SHOP, before)
+    drill = only(text, "DRILL").filled_shape
     assert not stay
     assert (drill.values["DIA"], drill.values["DEEP"], drill.values["FEED"]) == (6.35, 15.24, 0.1016)
     assert not bad(proved("\n".join(text) + "\n")[0])
@@ -211,15 +245,15 @@ def test_another_unit_converts_what_was_written() -> None:
 def test_a_shape_changed_by_hand_stays_under_another_unit_and_is_counted() -> None:
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
     text.insert(-2, "G04F1")
-    before = pieces(text, SHOP)
-    again, stay = renewed(text, SHOP, before)
+    before = find_pieces(text, SHOP)
+    again, stay = rewrite_pieces(text, SHOP, before)
     assert (again, stay) == (text, 1)
 
 
-def refused(key: str, typed: dict[str, Value], rows: tuple[Row, ...] = ()) -> dict[str, str]:
-    setting = setting_at(written([]), 1, SHOP)
-    one: Filled = filled(SHAPES[key], typed, setting, rows)
-    return {each.word: each.text for each in one.refusals(setting)}
+def refused(key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...] = ()) -> dict[str, str]:
+    setting = find_settings(written([]), 1, SHOP)
+    one: FilledShape = fill_shape(SHAPES_BY_KEY[key], typed, setting, rows)
+    return {each.field_word: each.text for each in one.find_errors(setting)}
 
 
 @pytest.mark.parametrize(
@@ -259,7 +293,9 @@ def refused(key: str, typed: dict[str, Value], rows: tuple[Row, ...] = ()) -> di
         ("S", {"DIA": 0.1, "FROM": 0.5, "LONG": 0.2, "DEEP": 0.3}, "DEEP"),
     ],
 )
-def test_what_no_part_can_have_is_refused_at_its_field(key: str, typed: dict[str, Value], word: str) -> None:
+def test_what_no_part_can_have_is_refused_at_its_field(
+    key: str, typed: dict[str, FieldValue], word: str
+) -> None:
     said = refused(key, typed)
     assert list(said) == [word], said
     assert said[word][-1] in ".?"
@@ -268,37 +304,39 @@ def test_what_no_part_can_have_is_refused_at_its_field(key: str, typed: dict[str
 @pytest.mark.parametrize(
     ("rows", "word"),
     [
-        ((Row(0.0, 0.0),), "#2"),
-        ((Row(0.5), Row(z=-0.5)), "#1"),
-        ((Row(0.5, 0.0), Row(0.5)), "#2"),
-        ((Row(0.4, 0.0), Row(1.0, 0.0, arc=0.1)), "#2"),
-        ((Row(0.4, 0.0), Row(0.5, chamfer=0.2), Row(z=-0.1)), "#2"),
-        ((Row(0.4, 0.0), Row(z=-0.5, radius=0.1)), "#2"),
-        ((Row(0.4, 0.0), Row(-0.2), Row(z=-1.0)), "#2"),
+        ((ContourPoint(0.0, 0.0),), "#2"),
+        ((ContourPoint(0.5), ContourPoint(z=-0.5)), "#1"),
+        ((ContourPoint(0.5, 0.0), ContourPoint(0.5)), "#2"),
+        ((ContourPoint(0.4, 0.0), ContourPoint(1.0, 0.0, arc=0.1)), "#2"),
+        ((ContourPoint(0.4, 0.0), ContourPoint(0.5, chamfer=0.2), ContourPoint(z=-0.1)), "#2"),
+        ((ContourPoint(0.4, 0.0), ContourPoint(z=-0.5, radius=0.1)), "#2"),
+        ((ContourPoint(0.4, 0.0), ContourPoint(-0.2), ContourPoint(z=-1.0)), "#2"),
     ],
 )
-def test_contours_that_cannot_be_are_refused_at_their_point(rows: tuple[Row, ...], word: str) -> None:
+def test_contours_that_cannot_be_are_refused_at_their_point(
+    rows: tuple[ContourPoint, ...], word: str
+) -> None:
     assert word in refused("T", {}, rows)
 
 
 def test_tools_that_are_others_by_their_sheets_are_refused_and_not_proposed() -> None:
     sheets = {1: ToolShape(ToolKind.TURNING, insert="CNMG432"), 3: ToolShape(ToolKind.DRILL, diameter=6.35)}
-    setting = Setting(shop=Shop(tools=sheets))
-    thread = filled(SHAPES["R"], {"SIZE": "1/2", "LONG": 0.5}, setting)
-    assert (thread.n("T"), thread.refusals(setting)) == (2.0, [])
-    drill = filled(SHAPES["D"], {"DEEP": 0.5}, setting)
-    assert (drill.n("T"), drill.n("DIA")) == (3.0, 0.25)
-    wrong = filled(SHAPES["R"], {"SIZE": "1/2", "LONG": 0.5, "T": 3.0}, setting)
-    assert "T" in {each.word for each in wrong.refusals(setting)}
+    setting = ProgramSettings(shop=ShopData(tools=sheets))
+    thread = fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5}, setting)
+    assert (thread.get_number("T"), thread.find_errors(setting)) == (2.0, [])
+    drill = fill_shape(SHAPES_BY_KEY["D"], {"DEEP": 0.5}, setting)
+    assert (drill.get_number("T"), drill.get_number("DIA")) == (3.0, 0.25)
+    wrong = fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5, "T": 3.0}, setting)
+    assert "T" in {each.field_word for each in wrong.find_errors(setting)}
 
 
 def test_what_works_in_a_bore_is_proposed_there() -> None:
     sheets = {1: ToolShape(ToolKind.TURNING), 2: ToolShape(ToolKind.BORING), 3: ToolShape(ToolKind.THREADING)}
-    setting = Setting(shop=Shop(tools=sheets))
-    assert filled(SHAPES["T"], {}, setting).n("T") == 1.0
-    assert filled(SHAPES["T"], {"SIDE": "BORE"}, setting).n("T") == 2.0
-    assert filled(SHAPES["R"], {"SIZE": "1/2"}, setting).n("T") == 3.0
-    assert filled(SHAPES["R"], {"SIZE": "1/2", "SIDE": "BORE"}, setting).n("T") == 4.0
+    setting = ProgramSettings(shop=ShopData(tools=sheets))
+    assert fill_shape(SHAPES_BY_KEY["T"], {}, setting).get_number("T") == 1.0
+    assert fill_shape(SHAPES_BY_KEY["T"], {"SIDE": "BORE"}, setting).get_number("T") == 2.0
+    assert fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2"}, setting).get_number("T") == 3.0
+    assert fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "SIDE": "BORE"}, setting).get_number("T") == 4.0
 
 
 @pytest.mark.parametrize(
@@ -320,19 +358,19 @@ def test_what_works_in_a_bore_is_proposed_there() -> None:
     ],
 )
 def test_what_the_tool_cannot_do_is_refused(
-    key: str, typed: dict[str, Value], sheet: ToolShape, word: str
+    key: str, typed: dict[str, FieldValue], sheet: ToolShape, word: str
 ) -> None:
-    setting = Setting(shop=Shop(tools={1: sheet}))
-    said = filled(SHAPES[key], typed, setting).refusals(setting)
-    assert [each.word for each in said] == [word], said
+    setting = ProgramSettings(shop=ShopData(tools={1: sheet}))
+    said = fill_shape(SHAPES_BY_KEY[key], typed, setting).find_errors(setting)
+    assert [each.field_word for each in said] == [word], said
 
 
 def test_nose_compensation_in_a_bar_loop_is_refused() -> None:
     text = written(STEPS["bar loop"][:1])
-    setting = setting_at(text, len(text) - 1, SHOP)
-    assert setting.called
-    one = filled(SHAPES["T"], {"COMP": 1.0}, setting, PROFILE[:3])
-    assert [each.word for each in one.refusals(setting)] == ["COMP"]
+    setting = find_settings(text, len(text) - 1, SHOP)
+    assert setting.is_subroutine
+    one = fill_shape(SHAPES_BY_KEY["T"], {"COMP": 1.0}, setting, PROFILE[:3])
+    assert [each.field_word for each in one.find_errors(setting)] == ["COMP"]
 
 
 DRILLED = "T1(DRILL 0P25 DIA 0P5 DEEP 0 PECK 0P004 FEED 1200 RPM)"
@@ -349,7 +387,7 @@ def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) 
     hand = Programmer(text=text)
     hand.open(text.replace(DRILLED, spoilt), line)
     assert hand.shapes.form is None
-    assert hand.shapes.prompt() == wording("shapes.comment-edited", line=3, shape="DRILL")
+    assert hand.shapes.prompt_text() == wording("shapes.comment-edited", line=3, shape="DRILL")
 
 
 @pytest.mark.parametrize(
@@ -360,4 +398,4 @@ def test_a_comment_of_another_hand_is_none_of_ours(comment: str, line: int) -> N
     text = Programmer().strike("n§d.25⏎.5§").close()
     hand = Programmer(text=text)
     hand.open(text.replace(DRILLED, f"T1{comment}" if line > 2 else comment), line)
-    assert not shows(hand.shapes.prompt(), "shapes.comment-edited")
+    assert not shows(hand.shapes.prompt_text(), "shapes.comment-edited")

@@ -8,12 +8,18 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from app.extras.shapes.shapes_desk import shop_of
-from core.extras.shapes.contour import Row
-from core.extras.shapes.cutting_data import MATERIALS, facing_depth, finish_depth, most_depth, rough_depth
-from core.extras.shapes.shape import Filled, filled
-from core.extras.shapes.shape_fields import Setting, Shop, Value
-from core.extras.shapes.shape_table import HELPERS_OF, SHAPES_OF
+from app.extras.shapes.shapes_setup import make_shop_data
+from core.extras.shapes.contour import ContourPoint
+from core.extras.shapes.cutting_data import (
+    CUTTING_DATA,
+    find_max_depth,
+    propose_facing_depth,
+    propose_finish_allowance,
+    propose_roughing_depth,
+)
+from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
+from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIALECT
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import Programmer, bad, proved
@@ -29,19 +35,26 @@ CNMG, VNMG = turning("CNMG120408"), turning("VNMG160404")
 
 def setting(
     material: str = "STEEL", tools: dict[int, ToolShape] | None = None, rpm: float = 3500.0, **more: object
-) -> Setting:
-    shop = Shop(max_rpm=rpm, tools=tools or {})
-    return Setting(material=material, shop=shop, bar=1.0, **more)  # type: ignore[arg-type]
+) -> ProgramSettings:
+    shop = ShopData(max_rpm=rpm, tools=tools or {})
+    return ProgramSettings(material=material, shop=shop, bar=1.0, **more)  # type: ignore[arg-type]
 
 
 def one(
-    key: str, typed: dict[str, Value], now: Setting, rows: tuple[Row, ...] = (), *, helper: bool = False
-) -> Filled:
-    return filled((HELPERS_OF if helper else SHAPES_OF)[now.dialect][key], typed, now, rows)
+    key: str,
+    typed: dict[str, FieldValue],
+    now: ProgramSettings,
+    rows: tuple[ContourPoint, ...] = (),
+    *,
+    helper: bool = False,
+) -> FilledShape:
+    return fill_shape(
+        (CALCULATORS_BY_DIALECT if helper else SHAPES_BY_DIALECT)[now.dialect][key], typed, now, rows
+    )
 
 
-def refused(made: Filled, now: Setting) -> list[str]:
-    return [each.word for each in made.refusals(now)]
+def refused(made: FilledShape, now: ProgramSettings) -> list[str]:
+    return [each.field_word for each in made.find_errors(now)]
 
 
 # --- the most that an insert takes; C 12 has a circle of 12.7 mm and an edge of 12.7 / sin 80 = 12.896 mm
@@ -60,7 +73,9 @@ def refused(made: Filled, now: Setting) -> list[str]:
     ],
 )
 def test_the_most_of_an_insert(insert: str, most: float) -> None:
-    assert most_depth(setting(tools={1: turning(insert)}, metric=True), 1) == pytest.approx(most, abs=1e-3)
+    assert find_max_depth(setting(tools={1: turning(insert)}, metric=True), 1) == pytest.approx(
+        most, abs=1e-3
+    )
 
 
 # --- the proposal is the least of three values, rounded down to .005 in or 0.1 mm
@@ -89,7 +104,7 @@ def test_the_most_of_an_insert(insert: str, most: float) -> None:
 def test_a_depth_by_material_insert_and_machine(
     material: str, tool: ToolShape, across: float, rpm: float, depth: float
 ) -> None:
-    assert rough_depth(setting(material, {1: tool}, rpm), 1, across) == pytest.approx(depth)
+    assert propose_roughing_depth(setting(material, {1: tool}, rpm), 1, across) == pytest.approx(depth)
 
 
 @pytest.mark.parametrize(
@@ -102,41 +117,51 @@ def test_a_depth_by_material_insert_and_machine(
 )  # fmt: skip
 def test_a_depth_by_the_power_of_the_machine_file(stated: str, depth: float) -> None:
     text = resources.machine_file("gt75.toml").replace("[spindle]\n", f"[spindle]\n{stated}\n", 1)
-    shop = shop_of(parse_machine(text, "t"), {1: CNMG})
+    shop = make_shop_data(parse_machine(text, "t"), {1: CNMG})
     now = replace(setting("STEEL"), shop=shop)
-    assert rough_depth(now, 1, 2.0) == pytest.approx(depth)
+    assert propose_roughing_depth(now, 1, 2.0) == pytest.approx(depth)
 
 
 def test_metric_facing_boring_and_finishing() -> None:
     """Steel .04 in = 1.016 mm; on 25 mm 4.093 / (2600 x 0.127 x 0.0125) = 0.992 mm; half of it for a bar."""
     now = setting(tools={1: CNMG, 2: BAR}, metric=True)
-    assert rough_depth(now, 1, 25.0) == pytest.approx(0.9)
-    assert facing_depth(now, 1, 25.0) == pytest.approx(0.6)  # 3/4 of 0.9 = 0.675
-    assert rough_depth(now, 2, 12.0, inside=True) == pytest.approx(0.4)  # 3.224 / 4 / 2 = 0.403
-    assert finish_depth(now, 0.9) == 0.25
-    assert finish_depth(now, 0.4) == pytest.approx(0.2)  # at most half a rough pass
+    assert propose_roughing_depth(now, 1, 25.0) == pytest.approx(0.9)
+    assert propose_facing_depth(now, 1, 25.0) == pytest.approx(0.6)  # 3/4 of 0.9 = 0.675
+    assert propose_roughing_depth(now, 2, 12.0, is_inside=True) == pytest.approx(0.4)  # 3.224 / 4 / 2 = 0.403
+    assert propose_finish_allowance(now, 0.9) == 0.25
+    assert propose_finish_allowance(now, 0.4) == pytest.approx(0.2)  # at most half a rough pass
 
 
-@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("material", CUTTING_DATA)
 @pytest.mark.parametrize("metric", [False, True])
 def test_every_material_has_a_conservative_depth(material: str, metric: bool) -> None:
     """0.5 mm to 1.6 mm on small stock, and never more than the insert takes."""
     now = setting(material, {1: CNMG}, metric=metric)
-    depth = rough_depth(now, 1, 8.0 if metric else 0.3)
+    depth = propose_roughing_depth(now, 1, 8.0 if metric else 0.3)
     assert 0.5 <= depth * now.mm <= 1.6
-    assert depth < most_depth(now, 1)
-    assert 0.0 < finish_depth(now, depth) < depth
+    assert depth < find_max_depth(now, 1)
+    assert 0.0 < propose_finish_allowance(now, depth) < depth
 
 
 # --- the forms
 
 
-STEPPED = (Row(0.5, 0.0), Row(z=-0.5), Row(0.7, radius=0.1), Row(z=-1.1))
-FORMS: dict[str, tuple[str, dict[str, Value], tuple[Row, ...], float]] = {
+STEPPED = (ContourPoint(0.5, 0.0), ContourPoint(z=-0.5), ContourPoint(0.7, radius=0.1), ContourPoint(z=-1.1))
+FORMS: dict[str, tuple[str, dict[str, FieldValue], tuple[ContourPoint, ...], float]] = {
     "turn": ("T", {"T": 1.0}, STEPPED, 0.035),  # 1 in steel: 0.976 mm = .0384 in by the machine
-    "turn from the axis": ("T", {"T": 1.0}, (Row(0.0, 0.0), Row(0.5), Row(z=-1.0)), 0.035),
+    "turn from the axis": (
+        "T",
+        {"T": 1.0},
+        (ContourPoint(0.0, 0.0), ContourPoint(0.5), ContourPoint(z=-1.0)),
+        0.035,
+    ),
     "turn without a bar": ("T", {"T": 1.0, "FROM": 0.0}, STEPPED, 0.04),  # .1 in from .7 to .5
-    "turn a bore": ("T", {"SIDE": "BORE", "T": 2.0, "HOLE": 0.4}, (Row(0.6, 0.0), Row(z=-0.5)), 0.015),
+    "turn a bore": (
+        "T",
+        {"SIDE": "BORE", "T": 2.0, "HOLE": 0.4},
+        (ContourPoint(0.6, 0.0), ContourPoint(z=-0.5)),
+        0.015,
+    ),
     "taper": ("A", {"T": 1.0, "SMALL": 0.5, "LARGE": 0.9, "LONG": 1.0}, (), 0.035),
     "bore": ("B", {"T": 2.0, "HOLE": 0.4, "DIAM": 0.6, "DEEP": 0.5}, (), 0.015),
 }
@@ -148,36 +173,41 @@ def test_every_form_along_a_contour_roughs(name: str, dialect: Dialect) -> None:
     key, typed, rows, depth = FORMS[name]
     now = setting(tools={1: CNMG, 2: BAR}, dialect=dialect)
     made = one(key, typed, now, rows)
-    assert not made.refusals(now)
-    assert (made.n("ROUGH"), made.n("LEAVE")) == pytest.approx((depth, min(0.01, depth / 2)))
+    assert not made.find_errors(now)
+    assert (made.get_number("ROUGH"), made.get_number("LEAVE")) == pytest.approx(
+        (depth, min(0.01, depth / 2))
+    )
     code = {Dialect.OMNITURN: "G75I", Dialect.SINUMERIK: "CYCLE95("}[dialect]
-    assert any(line.startswith(code) for line in made.lines(now))
+    assert any(line.startswith(code) for line in made.make_lines(now))
 
 
 @pytest.mark.parametrize(
     ("typed", "rows"),
     [
         ({"FROM": 0.52}, STEPPED[:2]),  # .01 in a side is left for finishing already
-        ({"FROM": 1.0}, (Row(0.0, 0.0), Row(1.0))),  # along the face alone
-        ({"FROM": 0.7}, (Row(0.6, -1.0), Row(z=0.0))),  # to the face, which roughing does not
-        ({"FROM": 0.0}, (Row(0.5, 0.0), Row(z=-1.0))),  # nothing is known of the stock
+        ({"FROM": 1.0}, (ContourPoint(0.0, 0.0), ContourPoint(1.0))),  # along the face alone
+        (
+            {"FROM": 0.7},
+            (ContourPoint(0.6, -1.0), ContourPoint(z=0.0)),
+        ),  # to the face, which roughing does not
+        ({"FROM": 0.0}, (ContourPoint(0.5, 0.0), ContourPoint(z=-1.0))),  # nothing is known of the stock
     ],
 )
 def test_no_roughing_is_proposed_where_there_is_nothing_to_rough(
-    typed: dict[str, Value], rows: tuple[Row, ...]
+    typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...]
 ) -> None:
     now = setting(tools={1: CNMG})
     made = one("T", {"T": 1.0, **typed}, now, rows)
-    assert made.n("ROUGH") == 0.0
-    assert not made.refusals(now)
+    assert made.get_number("ROUGH") == 0.0
+    assert not made.find_errors(now)
 
 
 def test_the_templates_of_roughing_follow_the_same_rule() -> None:
     for dialect in (Dialect.OMNITURN, Dialect.SINUMERIK):
         now = setting("TITANIUM", {1: CNMG}, used=frozenset({1}), dialect=dialect)
         made = one("G", {"FROM": 0.5}, now, helper=True)
-        assert (made.n("ROUGH"), made.n("LEAVE")) == pytest.approx((0.02, 0.01))
-        assert made.n("FEED") == pytest.approx(0.004)  # .005 in/rev x 0.8 for titanium
+        assert (made.get_number("ROUGH"), made.get_number("LEAVE")) == pytest.approx((0.02, 0.01))
+        assert made.get_number("FEED") == pytest.approx(0.004)  # .005 in/rev x 0.8 for titanium
 
 
 # --- refusals: one error, at the field
@@ -190,7 +220,12 @@ def test_the_templates_of_roughing_follow_the_same_rule() -> None:
         ("T", {"T": 9.0, "ROUGH": 0.0}, STEPPED, "ROUGH"),  # .25 in, and an assumed insert takes .127
         ("T", {"T": 9.0, "ROUGH": 0.2}, STEPPED, "ROUGH"),
         ("T", {"T": 3.0, "ROUGH": 0.14}, STEPPED, "ROUGH"),  # VNMG: .131
-        ("T", {"SIDE": "BORE", "T": 2.0, "HOLE": 0.4, "ROUGH": 0.0}, (Row(0.7, 0.0), Row(z=-0.5)), "ROUGH"),
+        (
+            "T",
+            {"SIDE": "BORE", "T": 2.0, "HOLE": 0.4, "ROUGH": 0.0},
+            (ContourPoint(0.7, 0.0), ContourPoint(z=-0.5)),
+            "ROUGH",
+        ),
         ("A", {"T": 9.0, "SMALL": 0.5, "LARGE": 0.9, "LONG": 1.0, "ROUGH": 0.0}, (), "ROUGH"),
         ("B", {"T": 2.0, "HOLE": 0.4, "DIAM": 0.7, "DEEP": 0.5, "ROUGH": 0.0}, (), "ROUGH"),
         ("F", {"T": 9.0, "STOCK": 0.3, "DEEP": 0.2}, (), "DEEP"),
@@ -198,7 +233,7 @@ def test_the_templates_of_roughing_follow_the_same_rule() -> None:
     ],
 )
 def test_a_pass_deeper_than_the_insert_takes_is_one_error(
-    key: str, typed: dict[str, Value], rows: tuple[Row, ...], word: str, dialect: Dialect
+    key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...], word: str, dialect: Dialect
 ) -> None:
     now = setting(tools={2: BAR, 3: VNMG}, dialect=dialect)
     assert refused(one(key, typed, now, rows), now) == [word]
@@ -215,7 +250,7 @@ def test_a_pass_deeper_than_the_insert_takes_is_one_error(
     ],
 )
 def test_a_pass_that_the_insert_takes_is_accepted(
-    key: str, typed: dict[str, Value], rows: tuple[Row, ...]
+    key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...]
 ) -> None:
     now = setting(tools={1: CNMG})
     assert refused(one(key, typed, now, rows), now) == []
@@ -227,10 +262,12 @@ def test_a_pass_that_the_insert_takes_is_accepted(
 def test_the_proposed_tool_is_of_the_kind_of_the_work() -> None:
     rear = turning("CNMG120408", rear=True)
     now = setting(tools={1: BAR, 2: rear, 3: CNMG})
-    assert one("T", {}, now, STEPPED).n("T") == 3.0
-    assert one("F", {}, now).n("T") == 3.0
-    assert one("T", {"SIDE": "BORE"}, now).n("T") == 1.0
-    assert one("T", {}, setting(tools={1: BAR}), STEPPED).n("T") == 2.0  # a place that no sheet takes
+    assert one("T", {}, now, STEPPED).get_number("T") == 3.0
+    assert one("F", {}, now).get_number("T") == 3.0
+    assert one("T", {"SIDE": "BORE"}, now).get_number("T") == 1.0
+    assert (
+        one("T", {}, setting(tools={1: BAR}), STEPPED).get_number("T") == 2.0
+    )  # a place that no sheet takes
     assert refused(one("T", {"T": 1.0}, now, STEPPED), now) == []  # a boring bar may turn where it is typed
 
 
@@ -248,7 +285,7 @@ def test_a_depth_of_zero_is_reported_at_its_field() -> None:
     programmer = Programmer().strike("n↓↓↓1§t.5⏎z-.5⏎.7⏎z-1.1")
     form = programmer.shapes.form
     assert form is not None
-    form.go_to("ROUGH")
+    form.select_word("ROUGH")
     programmer.strike("0")
     assert list(programmer.troubles) == ["ROUGH"]
     programmer.strike("⌫")  # the proposal applies again

@@ -153,5 +153,5 @@ def test_the_list_has_every_kind_and_key(turndesk: Turndesk) -> None:
 def test_the_json_has_the_declared_keys(turndesk: Turndesk, tmp_path: Path) -> None:
     path = tmp_path / "form.toml"
     path.write_text('[[step]]\nkind = "head"\n[[step]]\nkind = "face"\nfrom = .5\nto = 0\n')
-    declared_alone([whole(turndesk("shapes", path, "--json"))], shapes_command.SHAPES.keys)
-    declared_alone([whole(turndesk("shapes", "--list", "--json"))], shapes_command.SHAPES_LIST.keys)
+    declared_alone([whole(turndesk("shapes", path, "--json"))], shapes_command.SHAPES_OUTPUT.keys)
+    declared_alone([whole(turndesk("shapes", "--list", "--json"))], shapes_command.SHAPES_LIST_OUTPUT.keys)

@@ -8,23 +8,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.extras.shapes.shapes_model import Shapes
-from core.extras.shapes.shape_fields import Setting, Shop
+from app.extras.shapes.shapes_model import ShapesModel
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.language.source import Dialect
 from tests.extras.shapes.test_sinumerik_shapes import NEAR, metal, strike
 from tests.texts import begins
 
-SHOP = Shop(slide_accel=3048.0, chuck=(69, 68))
+SHOP = ShopData(max_acceleration=3048.0, chuck_codes=(69, 68))
 HEAD = "G54 G18 G90 G95 G710 DIAMON\n"
 
 
-def written(keys: str, text: str = "", name: str = "x.mpf", shop: Shop = SHOP) -> tuple[str, str]:
+def written(keys: str, text: str = "", name: str = "x.mpf", shop: ShopData = SHOP) -> tuple[str, str]:
     """The text with what one calculator or template writes before its end; and what is told instead."""
-    shapes = Shapes(lambda: shop, Setting(metric=True), shop=shop)
+    shapes = ShapesModel(lambda: shop, ProgramSettings(metric=True), shop_data=shop)
     assert shapes.open(name, text, max(1, len(text.splitlines())), helpers=True) == ""
-    shapes.worker.settle(60.0)
+    shapes.worker.wait_for_results(60.0)
     strike(shapes, keys)
-    said = "" if shapes.form is None else shapes.prompt()
+    said = "" if shapes.form is None else shapes.prompt_text()
     shapes.close()
     return shapes.text, said
 
@@ -103,5 +103,5 @@ def test_a_bar_is_fed_by_the_codes_of_the_chuck() -> None:
 
 
 def test_a_bar_without_codes_of_a_chuck_is_refused() -> None:
-    _, said = written("b5⏎3⏎22§", HEAD, shop=replace(SHOP, chuck=None))
+    _, said = written("b5⏎3⏎22§", HEAD, shop=replace(SHOP, chuck_codes=None))
     assert begins(said, "shapes.no-chuck-codes")

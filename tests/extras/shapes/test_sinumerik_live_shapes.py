@@ -8,31 +8,31 @@ from math import atan2, degrees, hypot
 
 import pytest
 
-from app.compose.machine.machine_files import shipped_machine
-from app.compose.machine.machine_setup import setup_for
-from core.extras.shapes.pieces import pieces, setting_at, with_shape
-from core.extras.shapes.shape import filled
-from core.extras.shapes.shape_fields import Setting, Shop, Value
+from app.compose.machine.machine_files import load_shipped_machine
+from app.compose.machine.machine_setup import create_setup
+from core.extras.shapes.editor_shape import fill_shape
+from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
+from core.extras.shapes.shape_pieces import find_pieces, find_settings, insert_shape
 from core.extras.shapes.shape_table import SINUMERIK_SHAPES
-from core.interpreter.dialects import ReadProgram
-from core.interpreter.shared.actions import Collet, Output
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.dialects import SharedProgram
+from core.interpreter.shared.actions import ColletSwitch, OutputSwitch
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
-from core.language.source import Dialect, Source
+from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
-from core.part.ray_cuts import plane_path
+from core.part.ray_cuts import make_plane_path
 from core.proving.prove_program import prove
 from tests.extras.shapes.hand import setup_of
 from tests.extras.shapes.test_pieces import written as omniturn
 from tests.sinumerik.lathe import LINEAR
 
-LIVE = shipped_machine("sinumerik-live")
+LIVE = load_shipped_machine("sinumerik-live")
 BARS = replace(LIVE, m_codes={68: ("collet", True), 69: ("collet", False)})
-SHOP = Shop(slide_accel=3000.0, c_rpm=400.0, chuck=(69, 68))
-NEW = Setting(dialect=Dialect.SINUMERIK)
+SHOP = ShopData(max_acceleration=3000.0, max_c_rpm=400.0, chuck_codes=(69, 68))
+NEW = ProgramSettings(dialect=Dialect.SINUMERIK)
 
-Typed = dict[str, Value]
+Typed = dict[str, FieldValue]
 FACES: Typed = {"DIA": 6.0, "FROM": 20.0, "ACROSS": 17.0, "LONG": 5.0}
 CROSS: Typed = {"DIA": 3.0, "FROM": 20.0, "AT": 8.0, "DEEP": 6.0, "COUNT": 4.0, "ANGLE": 27.5}
 SLOT: Typed = {"DIA": 3.0, "FROM": 20.0, "AT": 5.0, "LONG": 12.0, "DEEP": 2.0, "PASS": 1.0, "COUNT": 3.0}
@@ -40,28 +40,28 @@ TAP: Typed = {"SERIES": "M", "SIZE": "6", "DEEP": 12.0}
 LOOP: Typed = {"COUNT": 3.0, "LONG": 22.0}
 
 
-def written(*steps: tuple[str, Typed], shop: Shop = SHOP, **head: Value) -> list[str]:
+def written(*steps: tuple[str, Typed], shop: ShopData = SHOP, **head: FieldValue) -> list[str]:
     """The program of these shapes, in mm, head first."""
     text, behind = list[str](), 0
     for key, typed in [("N", {"UNIT": "METRIC", **head}), *steps]:
-        setting = setting_at(text, behind, shop, NEW)
-        one = filled(SINUMERIK_SHAPES[key], typed, setting)
-        assert not one.refusals(setting), one.refusals(setting)
-        text, behind = with_shape(text, behind, one, setting)
+        setting = find_settings(text, behind, shop, NEW)
+        one = fill_shape(SINUMERIK_SHAPES[key], typed, setting)
+        assert not one.find_errors(setting), one.find_errors(setting)
+        text, behind = insert_shape(text, behind, one, setting)
     return text
 
 
-def source(text: list[str]) -> Source:
-    return Source("x.mpf", "\n".join(text) + "\n", Dialect.SINUMERIK)
+def source(text: list[str]) -> ProgramSource:
+    return ProgramSource("x.mpf", "\n".join(text) + "\n", Dialect.SINUMERIK)
 
 
 def blocks(text: list[str], machine: Machine = LIVE) -> list[Block]:
     """Of a program that is proved without an error."""
     tools = {n: ToolOffset(50.0, 100.0, 0.0, 3) for n in range(1, 10)}
-    around = setup_for(machine, tools=tools, secondary={})
+    around = create_setup(machine, tool_offsets=tools, secondary_offsets={})
     report = prove(source(text), around, machine)
-    assert not report.errors, [each.in_one_line("x") for each in report.diagnostics]
-    return list(ReadProgram(source(text)).begin(around).blocks())
+    assert not report.errors, [each.format_one_line("x") for each in report.diagnostics]
+    return list(SharedProgram(source(text)).start_pass(around).generate_blocks())
 
 
 def cuts(text: list[str]) -> list[Block]:
@@ -87,9 +87,13 @@ def cuts(text: list[str]) -> list[Block]:
 def test_each_is_proved_and_opened_again_from_its_text(key: str, typed: Typed, head: Typed) -> None:
     text = written((key, typed), shop=SHOP, **head)
     blocks(text)
-    piece = pieces(text, SHOP, NEW)[-1]
-    assert (piece.filled.shape.name, piece.foreign, piece.taken) == (SINUMERIK_SHAPES[key].name, -1, ())
-    assert {word: piece.filled.values[word] for word in typed} == typed
+    piece = find_pieces(text, SHOP, NEW)[-1]
+    assert (piece.filled_shape.shape.name, piece.edited_line, piece.adopted_fields) == (
+        SINUMERIK_SHAPES[key].name,
+        -1,
+        (),
+    )
+    assert {word: piece.filled_shape.values[word] for word in typed} == typed
 
 
 # --- taps
@@ -99,7 +103,7 @@ def test_a_tap_in_a_holder_that_gives_goes_in_by_its_pitch_and_is_turned_back() 
     """M6 has 1 mm a turn; the slide stops a pitch before the depth, as the spindle runs on."""
     text = written(("O", {**TAP, "RPM": 300.0, "DWELL": 0.5}))
     assert "CYCLE840(3, 0, 3, -11, , 0.5, 0, , 0, , 1)" in text
-    tapped = [each for each in blocks(text) if each.coupled]
+    tapped = [each for each in blocks(text) if each.follows_spindle]
     assert [(each.z, each.feed) for each in tapped] == [(-11.0, 1.0), (3.0, 1.0)]
 
 
@@ -119,7 +123,7 @@ def test_a_rigid_tap_goes_the_whole_depth_and_a_left_one_turns_the_other_way() -
 def test_holes_lie_at_their_angles() -> None:
     """Feeds along X from 11.25 to 4 mm of radius, Z -8, C from 27.5 by 90 degrees, the spindle at rest."""
     text = written(("C", CROSS))
-    drilled = [each for each in blocks(text) if each.kind is Kind.FEED]
+    drilled = [each for each in blocks(text) if each.kind is BlockKind.FEED]
     assert [(each.x0, each.x, each.z) for each in drilled] == [(11.25, 4.0, -8.0)] * 4
     assert [each.c % 360.0 for each in drilled] == pytest.approx([27.5, 117.5, 207.5, 297.5])
     assert not any(each.modal.spindle for each in drilled)
@@ -160,7 +164,7 @@ def test_two_flats_in_passes_do_not_cross_the_part_in_omniturn_either() -> None:
 def test_a_slot_lies_at_its_angle_and_as_deep_as_it_is_said() -> None:
     """Three slots of 12 mm at radius 8, 0, 120 and 240 degrees apart, on the part as C turns it."""
     ways = [each.plane for each in cuts(written(("S", SLOT))) if each.plane]
-    paths = [plane_path(way) for way in ways]  # r, z and angle on the part
+    paths = [make_plane_path(way) for way in ways]  # r, z and angle on the part
     bottom = [
         path for path in paths if path[0][0] == pytest.approx(8.0) and abs(path[0][1] - path[-1][1]) > 1
     ]
@@ -181,10 +185,14 @@ def test_a_keyway_round_the_part_turns_as_in_omniturn() -> None:
     """A quarter turn, 2 mm deep in 20: at radius 8 from one angle on the part to that 90 degrees on."""
     typed: Typed = {**SLOT, "TURN": 90.0, "LONG": 0.0, "COUNT": 1.0, "PASS": 2.0}
     there = omniturn([("S", typed | {"DIA": 3.0}, ())], UNIT="METRIC")
-    program = Source("x.nc", "\n".join(there) + "\n", Dialect.OMNITURN)
-    theirs = [b.plane for b in ReadProgram(program).begin(setup_of()).blocks() if b.plane is not None]
+    program = ProgramSource("x.nc", "\n".join(there) + "\n", Dialect.OMNITURN)
+    theirs = [
+        b.plane
+        for b in SharedProgram(program).start_pass(setup_of()).generate_blocks()
+        if b.plane is not None
+    ]
     for way in ([b.plane for b in cuts(written(("S", typed))) if b.plane], theirs):
-        paths = [p for p in map(plane_path, way) if abs(p[-1][2] - p[0][2]) > 1.0]
+        paths = [p for p in map(make_plane_path, way) if abs(p[-1][2] - p[0][2]) > 1.0]
         (path,) = [p for p in paths if p[0][0] == pytest.approx(8.0)]
         assert path[-1][2] - path[0][2] == pytest.approx(90.0, abs=1e-2)
 
@@ -199,24 +207,24 @@ def test_a_bar_loop_makes_its_parts(feeds: str) -> None:
     text = written(("L", {**LOOP, "FEEDS": feeds}), face)
     assert text.index("M30") < text.index("%_N_PART_1_SPF") < text.index("M17")
     made = blocks(text, BARS)
-    opened = [each for each in made if each.action == Collet(closed=False)]
+    opened = [each for each in made if each.action == ColletSwitch(closed=False)]
     assert len(opened) == (3 if feeds == "EACH PART" else 1)
     assert not any(each.modal.spindle for each in opened)
-    faced = [each.mz for each in made if each.kind is Kind.FEED and each.x < 0]
+    faced = [each.mz for each in made if each.kind is BlockKind.FEED and each.x < 0]
     step = 0.0 if feeds == "EACH PART" else -22.0
     assert faced == pytest.approx([faced[0] + k * step for k in range(3)])
-    names = [(piece.filled.shape.name, piece.foreign) for piece in pieces(text, SHOP, NEW)]
+    names = [(piece.filled_shape.shape.name, piece.edited_line) for piece in find_pieces(text, SHOP, NEW)]
     assert names == [("HEAD", -1), ("BAR LOOP", -1), ("FACE", -1)]
 
 
 def test_a_contour_of_a_bar_loop_may_be_compensated_here() -> None:
     text = written(("L", LOOP))
-    setting = setting_at(text, len(text) - 1, SHOP, NEW)
-    assert setting.called
-    one = filled(
+    setting = find_settings(text, len(text) - 1, SHOP, NEW)
+    assert setting.is_subroutine
+    one = fill_shape(
         SINUMERIK_SHAPES["A"], {"SMALL": 8.0, "LONG": 5.0, "LARGE": 9.0, "FROM": 20.0, "COMP": 1.0}, setting
     )
-    assert not one.refusals(setting)
+    assert not one.find_errors(setting)
 
 
 @pytest.mark.parametrize(
@@ -228,15 +236,17 @@ def test_a_code_bound_to_the_chuck_is_no_mere_output(text: str, found: str) -> N
         BARS, interlocks=replace(BARS.interlocks, unclamp_while_turning=False, spindle_with_collet_open=False)
     )
     report = prove(
-        source(["G54 G18 G90", *text.split("\n"), "M30"]), setup_for(held, tools={}, secondary={}), held
+        source(["G54 G18 G90", *text.split("\n"), "M30"]),
+        create_setup(held, tool_offsets={}, secondary_offsets={}),
+        held,
     )
     assert [each.code for each in report.errors] == [found]
 
 
 def test_a_chuck_that_opens_and_closes_at_rest_is_the_collet() -> None:
     made = blocks(["G54 G18 G90", "M5", "M69", "M68", "M30"], BARS)
-    assert [each.action for each in made if isinstance(each.action, Collet | Output)] == [
-        Collet(closed=False), Collet(closed=True)
+    assert [each.action for each in made if isinstance(each.action, ColletSwitch | OutputSwitch)] == [
+        ColletSwitch(closed=False), ColletSwitch(closed=True)
     ]  # fmt: skip
 
 
@@ -246,32 +256,36 @@ def test_a_chuck_that_opens_and_closes_at_rest_is_the_collet() -> None:
 @pytest.mark.parametrize(
     ("key", "typed", "shop", "word"),
     [
-        ("O", {**TAP, "HOLDER": "RIGID"}, replace(SHOP, spindle_is_c=False), "HOLDER"),
+        ("O", {**TAP, "HOLDER": "RIGID"}, replace(SHOP, has_spindle_as_c=False), "HOLDER"),
         ("O", {**TAP, "HOLDER": "RIGID", "RPM": 500.0}, SHOP, "RPM"),
         ("O", {**TAP, "SERIES": "NPT", "SIZE": "1/4"}, SHOP, "SERIES"),
-        ("C", CROSS, replace(SHOP, live_output=False), "T"),
+        ("C", CROSS, replace(SHOP, has_live_output=False), "T"),
         ("C", CROSS, replace(SHOP, third_axis=""), "T"),
         ("C", {**CROSS, "DEEP": 21.0}, SHOP, "DEEP"),
         ("M", FACES, replace(SHOP, third_axis="Y"), "T"),
         ("M", {**FACES, "ACROSS": 20.0}, SHOP, "ACROSS"),
         ("S", {**SLOT, "DEEP": 11.0, "PASS": 1.0}, SHOP, "DEEP"),
-        ("L", LOOP, replace(SHOP, chuck=None), "FEEDS"),
+        ("L", LOOP, replace(SHOP, chuck_codes=None), "FEEDS"),
     ],
 )
 def test_what_the_machine_cannot_do_is_refused_at_its_field(
-    key: str, typed: Typed, shop: Shop, word: str
+    key: str, typed: Typed, shop: ShopData, word: str
 ) -> None:
-    setting = setting_at(written(), 1, shop, NEW)
-    one = filled(SINUMERIK_SHAPES[key], typed, setting)
-    assert [each.word for each in one.refusals(setting)] == [word]
+    setting = find_settings(written(), 1, shop, NEW)
+    one = fill_shape(SINUMERIK_SHAPES[key], typed, setting)
+    assert [each.field_word for each in one.find_errors(setting)] == [word]
 
 
 def test_a_loop_in_the_part_of_another_is_refused() -> None:
     text = written(("L", LOOP))
-    setting = setting_at(text, len(text) - 1, SHOP, NEW)
-    assert [each.word for each in filled(SINUMERIK_SHAPES["L"], LOOP, setting).refusals(setting)] == ["COUNT"]
+    setting = find_settings(text, len(text) - 1, SHOP, NEW)
+    assert [
+        each.field_word for each in fill_shape(SINUMERIK_SHAPES["L"], LOOP, setting).find_errors(setting)
+    ] == ["COUNT"]
 
 
 def test_a_lathe_without_a_live_tool_says_so_in_the_proof_too() -> None:
-    report = prove(source(written(("C", CROSS))), setup_for(LINEAR, tools={}, secondary={}), LINEAR)
+    report = prove(
+        source(written(("C", CROSS))), create_setup(LINEAR, tool_offsets={}, secondary_offsets={}), LINEAR
+    )
     assert any(each.severity is Severity.ERROR and each.code == "one-spindle" for each in report.diagnostics)

@@ -8,36 +8,47 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.compose.machine.machine_setup import setup_for
-from app.extras.shapes.shapes_model import Shapes
-from core.extras.shapes.contour import Row
-from core.extras.shapes.pieces import pieces, renewed, setting_at, with_shape
-from core.extras.shapes.shape import filled
-from core.extras.shapes.shape_fields import Setting, Shop, Value
-from core.extras.shapes.shape_table import SHAPES_OF
-from core.interpreter.dialects import ReadProgram
-from core.interpreter.shared.elementary_blocks import Kind
+from app.compose.machine.machine_setup import create_setup
+from app.extras.shapes.shapes_model import ShapesModel
+from core.extras.shapes.contour import ContourPoint
+from core.extras.shapes.editor_shape import fill_shape
+from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
+from core.extras.shapes.shape_pieces import find_pieces, find_settings, insert_shape, rewrite_pieces
+from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
+from core.interpreter.dialects import SharedProgram
+from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
-from core.language.source import Dialect, Source
-from core.part.stock_spec import stock_spec
+from core.language.source import Dialect, ProgramSource
+from core.part.stock_spec import parse_specification
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_proof import prove_with_part
-from core.proving.program_tools import PartSetting
-from core.tool_edges import edge_key
+from core.proving.program_tools import PartSettings
+from core.tool_edges import make_edge_key
 from tests.extras.shapes.hand import machine, setup_of
 from tests.sinumerik.lathe import LINEAR
 from tests.texts import text
 
-SHOP = Shop(slide_accel=3048.0)
+SHOP = ShopData(max_acceleration=3048.0)
 OURS, THEIRS = Dialect.SINUMERIK, Dialect.OMNITURN
 NEAR = 0.0001 * 25.4  # mm of a radius
 PROFILE = (
-    Row(0.0, 0.0), Row(12.0, chamfer=1.0), Row(z=-12.0, radius=1.0), Row(18.0), Row(z=-15.0),
-    Row(22.0, -17.0, arc=4.0), Row(26.0, -19.0, arc=-3.0),
-)  # fmt: skip
-BORED = (Row(16.0, 0.0), Row(14.0, -1.0), Row(z=-8.0), Row(10.0, -10.0, arc=-2.0), Row(z=-15.0))
+    ContourPoint(0.0, 0.0),
+    ContourPoint(12.0, chamfer=1.0),
+    ContourPoint(z=-12.0, radius=1.0),
+    ContourPoint(18.0),
+    ContourPoint(z=-15.0),
+    ContourPoint(22.0, -17.0, arc=4.0),
+    ContourPoint(26.0, -19.0, arc=-3.0),
+)
+BORED = (
+    ContourPoint(16.0, 0.0),
+    ContourPoint(14.0, -1.0),
+    ContourPoint(z=-8.0),
+    ContourPoint(10.0, -10.0, arc=-2.0),
+    ContourPoint(z=-15.0),
+)
 
-Step = tuple[str, dict[str, Value], tuple[Row, ...]]
+Step = tuple[str, dict[str, FieldValue], tuple[ContourPoint, ...]]
 DRILLED: Step = ("D", {"DIA": 9.0, "DEEP": 40.0, "PECK": 9.0}, ())
 STEPS: dict[str, list[Step]] = {
     "face": [("F", {"FROM": 30.0, "AT": -1.5, "STOCK": 1.5}, ())],
@@ -47,7 +58,7 @@ STEPS: dict[str, list[Step]] = {
     "profile in a bore": [DRILLED, ("T", {"SIDE": "BORE", "HOLE": 9.0, "ROUGH": 0.5}, BORED)],
     "taper": [("A", {"FROM": 30.0, "SMALL": 10.0, "LONG": 12.0, "ANGLE": 10.0, "ROUGH": 1.0}, ())],
     "two roughed": [
-        ("T", {"FROM": 30.0, "ROUGH": 1.0}, (*PROFILE[:2], Row(z=-12.0))),
+        ("T", {"FROM": 30.0, "ROUGH": 1.0}, (*PROFILE[:2], ContourPoint(z=-12.0))),
         ("A", {"FROM": 12.0, "SMALL": 6.0, "LONG": 4.0, "LARGE": 10.0, "ROUGH": 0.5}, ()),
     ],
     "edge": [("K", {"DIAM": 30.0, "EDGE": 2.0, "KIND": "RADIUS"}, ())],
@@ -68,26 +79,30 @@ STEPS: dict[str, list[Step]] = {
 }  # fmt: skip
 
 
-def written(steps: list[Step], dialect: Dialect, **head: Value) -> list[str]:
+def written(steps: list[Step], dialect: Dialect, **head: FieldValue) -> list[str]:
     """The program of these shapes in a language, head first, in mm."""
-    text, behind, new = list[str](), 0, Setting(dialect=dialect)
+    text, behind, new = list[str](), 0, ProgramSettings(dialect=dialect)
     for key, typed, rows in [("N", {"UNIT": "METRIC", **head}, ()), *steps]:
-        setting = setting_at(text, behind, SHOP, new)
-        one = filled(SHAPES_OF[dialect][key], typed, setting, rows)
-        assert not one.refusals(setting), one.refusals(setting)
-        text, behind = with_shape(text, behind, one, setting)
+        setting = find_settings(text, behind, SHOP, new)
+        one = fill_shape(SHAPES_BY_DIALECT[dialect][key], typed, setting, rows)
+        assert not one.find_errors(setting), one.find_errors(setting)
+        text, behind = insert_shape(text, behind, one, setting)
     return text
 
 
-def source(text: list[str], dialect: Dialect) -> Source:
-    return Source("x.mpf" if dialect is OURS else "x.nc", "\n".join(text) + "\n", dialect)
+def source(text: list[str], dialect: Dialect) -> ProgramSource:
+    return ProgramSource("x.mpf" if dialect is OURS else "x.nc", "\n".join(text) + "\n", dialect)
 
 
 def setup_in(dialect: Dialect, nose: float = 0.0, *, right: bool = False) -> Setup:
     """Tools at one place. In SINUMERIK D2 lies 2 mm from D1: to the face, of a ``right`` D1 to the chuck."""
     tools = {n: ToolOffset(50.0, 100.0, nose, 3) for n in range(1, 10)}
-    edges = {edge_key(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
-    return setup_for(LINEAR, tools=tools | edges, secondary={}) if dialect is OURS else setup_of()
+    edges = {make_edge_key(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
+    return (
+        create_setup(LINEAR, tool_offsets=tools | edges, secondary_offsets={})
+        if dialect is OURS
+        else setup_of()
+    )
 
 
 def tools_of(steps: list[Step]) -> dict[int, ToolShape]:
@@ -112,16 +127,22 @@ def metal(
 ) -> tuple[np.ndarray, list[str]]:
     """Outer and inner radii of the proved part by Z, and what the proof says against the program."""
     lathe = LINEAR if dialect is OURS else machine()
-    setting = PartSetting(stock=stock_spec("bar:30mm:60mm"), shapes=tools or {})
+    setting = PartSettings(stock=parse_specification("bar:30mm:60mm"), shapes=tools or {})
     report, part = prove_with_part(
         source(text, dialect), setup_in(dialect, nose, right=right), lathe, setting
     )
     assert part is not None
-    assert part.last is not None
+    assert part.last_piece is not None
     at = np.arange(-30.0, -0.05, 0.0625) + 0.01
-    sides = [np.array(side)[::-1] for side in (part.last.outside, part.last.bore) if side]
+    sides = [
+        np.array(side)[::-1]
+        for side in (part.last_piece.outside_profile, part.last_piece.bore_profile)
+        if side
+    ]
     found = [np.interp(at, side[:, 0], side[:, 1]) for side in sides]
-    said = [d.in_one_line("x") for d in report.diagnostics if d.check != "depth-of-cut"]  # one pass, as typed
+    said = [
+        d.format_one_line("x") for d in report.diagnostics if d.check_name != "depth-of-cut"
+    ]  # one pass, as typed
     return np.stack(found), said
 
 
@@ -133,13 +154,17 @@ def test_the_same_metal_as_in_omniturn_and_found_again(name: str) -> None:
     assert not said, ours
     assert mine.shape == there.shape
     assert np.quantile(np.abs(mine - there), 0.97) <= NEAR  # columns at a wall lie before or behind it
-    found = pieces(ours, SHOP, Setting(dialect=OURS))
-    assert [each.filled.shape.name for each in found][1:] == [
-        SHAPES_OF[OURS][key].name for key, _, _ in STEPS[name]
+    found = find_pieces(ours, SHOP, ProgramSettings(dialect=OURS))
+    assert [each.filled_shape.shape.name for each in found][1:] == [
+        SHAPES_BY_DIALECT[OURS][key].name for key, _, _ in STEPS[name]
     ]
     for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
-        assert (piece.foreign, piece.taken, len(piece.filled.rows)) == (-1, (), len(rows))
-        assert {word: piece.filled.values[word] for word in typed} == typed
+        assert (piece.edited_line, piece.adopted_fields, len(piece.filled_shape.contour_points)) == (
+            -1,
+            (),
+            len(rows),
+        )
+        assert {word: piece.filled_shape.values[word] for word in typed} == typed
 
 
 @pytest.mark.parametrize(
@@ -150,9 +175,13 @@ def test_the_same_metal_as_in_omniturn_and_found_again(name: str) -> None:
         {"AT": 10.0, "LONG": 5.0, "TOP": 26.0, "BOTTOM": 20.0, "OVER": 30.0, "CORNER": "RIGHT"},
     ],
 )
-def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, Value]) -> None:
+def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, FieldValue]) -> None:
     """The blade of 2 mm has D1 at the corner that was touched off, and D2."""
-    turned: Step = ("T", {"FROM": 30.0}, (Row(30.0, 0.0), Row(z=-9.0), Row(26.0), Row(z=-28.0)))
+    turned: Step = (
+        "T",
+        {"FROM": 30.0},
+        (ContourPoint(30.0, 0.0), ContourPoint(z=-9.0), ContourPoint(26.0), ContourPoint(z=-28.0)),
+    )
     before = [turned] if "OVER" in typed else []
     steps = [*before, ("G", {"WIDE": 2.0, **typed}, ())]
     cycle = [*before, ("G", {"WIDE": 2.0, "DN": 2.0, **typed}, ())]
@@ -165,19 +194,19 @@ def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, Value]) -> 
     there, _ = metal(written(steps, OURS), OURS, tools)
     assert not said, text
     assert np.quantile(np.abs(mine - there), 0.97) <= NEAR
-    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
-    assert (piece.foreign, piece.taken, piece.filled.values["DN"]) == (-1, (), 2.0)
+    piece = find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["DN"]) == (-1, (), 2.0)
 
 
 @pytest.mark.parametrize(
     ("typed", "word"),
     [({"DN": 1.0}, "DN"), ({"SIDE": "REAR"}, "SIDE"), ({"EDGE": 0.5}, "EDGE"), ({"CANGLE": 10.0}, "FANGLE")],
 )
-def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, Value], word: str) -> None:
-    setting = setting_at(written([], OURS), 1, SHOP, Setting(dialect=OURS))
+def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, FieldValue], word: str) -> None:
+    setting = find_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
     groove = {"TOP": 30.0, "BOTTOM": 20.0, "AT": 9.0, "WIDE": 2.0, "LONG": 8.0, "DN": 2.0, **typed}
-    one = filled(SHAPES_OF[OURS]["G"], groove, setting)
-    assert [each.word for each in one.refusals(setting)] == [word]
+    one = fill_shape(SHAPES_BY_DIALECT[OURS]["G"], groove, setting)
+    assert [each.field_word for each in one.find_errors(setting)] == [word]
 
 
 @pytest.mark.parametrize(
@@ -189,21 +218,21 @@ def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, Value
         {"SERIES": "NPT", "SIZE": "1/4", "LONG": 12.0},
     ],
 )
-def test_the_same_thread_as_in_omniturn(typed: dict[str, Value]) -> None:
+def test_the_same_thread_as_in_omniturn(typed: dict[str, FieldValue]) -> None:
     """The last pass is the thread: radius and Z at its end, its lead, its slope."""
     relief = {"RELIEF": 8.0}
     ours = written([("R", {**typed, **relief}, ())], OURS)
     theirs = written([("R", {**typed, **relief, "PULL": "NO"}, ())], THEIRS)
     last = []
     for program, dialect in ((ours, OURS), (theirs, THEIRS)):
-        blocks = ReadProgram(source(program, dialect)).begin(setup_in(dialect)).blocks()
-        last.append([b for b in blocks if b.kind is Kind.THREAD][-1])
+        blocks = SharedProgram(source(program, dialect)).start_pass(setup_in(dialect)).generate_blocks()
+        last.append([b for b in blocks if b.kind is BlockKind.THREAD][-1])
     mine, there = last
     assert (mine.x, mine.z, mine.feed) == pytest.approx((there.x, there.z, there.feed), abs=2 * NEAR)
     slopes = [(b.x - b.x0) / (b.z - b.z0) for b in last]
     assert slopes[0] == pytest.approx(slopes[1], abs=1e-3)
-    piece = pieces(ours, SHOP, Setting(dialect=OURS))[-1]
-    assert (piece.foreign, piece.taken) == (-1, ())
+    piece = find_pieces(ours, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, piece.adopted_fields) == (-1, ())
 
 
 def test_the_program_is_that_of_a_good_programmer() -> None:
@@ -229,17 +258,17 @@ def test_the_program_is_that_of_a_good_programmer() -> None:
 
 
 @pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "INCH"}])
-def test_other_modes_are_found_again(head: dict[str, Value]) -> None:
+def test_other_modes_are_found_again(head: dict[str, FieldValue]) -> None:
     scale = 1.0 if "WORDS" in head else 1.0 / 25.4
-    typed: dict[str, Value] = {"FROM": 30.0 * scale, "ROUGH": 1.0 * scale}
-    rows = tuple(Row(x * scale, z * scale) for x, z in ((0.0, 0.0), (20.0, 0.0), (20.0, -10.0)))
+    typed: dict[str, FieldValue] = {"FROM": 30.0 * scale, "ROUGH": 1.0 * scale}
+    rows = tuple(ContourPoint(x * scale, z * scale) for x, z in ((0.0, 0.0), (20.0, 0.0), (20.0, -10.0)))
     text = written([("T", typed, rows)], OURS, **head)
     assert text[0].startswith("G54 G18 G90 G95 G700 DIAMON" if scale < 1 else "G54 G18 G90 G95 G710 DIAMOF")
     found, said = metal(text, OURS)
     assert not said
     assert found[0].min() == pytest.approx(10.0, abs=NEAR)
-    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
-    assert (piece.foreign, len(piece.filled.rows)) == (-1, 3)
+    piece = find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, len(piece.filled_shape.contour_points)) == (-1, 3)
 
 
 def test_a_figure_changed_by_hand_is_taken_over_and_a_line_put_in_is_told() -> None:
@@ -247,21 +276,25 @@ def test_a_figure_changed_by_hand_is_taken_over_and_a_line_put_in_is_told() -> N
     (at,) = [n for n, line in enumerate(text) if line.startswith("CYCLE81")]
     assert text[at] == "CYCLE81(2.5, 0, 1.25, -15)"
     text[at] = "CYCLE81(2.5, 0, 1.25, -16)"
-    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
-    assert (piece.foreign, piece.taken, piece.filled.values["DEEP"]) == (-1, ("DEEP",), 16.0)
+    piece = find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["DEEP"]) == (
+        -1,
+        ("DEEP",),
+        16.0,
+    )
     text.insert(at, "G4 F1")
-    assert pieces(text, SHOP, Setting(dialect=OURS))[-1].foreign == at
+    assert find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1].edited_line == at
 
 
 def test_block_numbers_change_nothing_and_another_unit_converts() -> None:
     text = written([("D", {"DIA": 6.35, "DEEP": 12.7, "PECK": 0.0, "FEED": 0.1016}, ())], OURS)
     numbered = [f"N{10 * n} {line}" for n, line in enumerate(text, 1)]
-    before = pieces(numbered, SHOP, Setting(dialect=OURS))
-    assert [each.foreign for each in before] == [-1, -1]
-    new = Setting(dialect=OURS)
-    head = filled(SHAPES_OF[OURS]["N"], {"UNIT": "INCH"}, setting_at(text, 0, SHOP, new))
-    text, _ = with_shape(text, 0, head, before[0].setting, before[0])
-    text, stay = renewed(text, SHOP, before)
+    before = find_pieces(numbered, SHOP, ProgramSettings(dialect=OURS))
+    assert [each.edited_line for each in before] == [-1, -1]
+    new = ProgramSettings(dialect=OURS)
+    head = fill_shape(SHAPES_BY_DIALECT[OURS]["N"], {"UNIT": "INCH"}, find_settings(text, 0, SHOP, new))
+    text, _ = insert_shape(text, 0, head, before[0].settings, before[0])
+    text, stay = rewrite_pieces(text, SHOP, before)
     assert not stay
     assert "CYCLE81(0.1, 0, 0.05, -0.5)" in text
 
@@ -275,28 +308,30 @@ def test_block_numbers_change_nothing_and_another_unit_converts() -> None:
         ("D", {"DIA": 2.0, "DEEP": 30.0, "PECK": 0.0}, "PECK"),
     ],
 )
-def test_what_no_part_can_have_is_refused_at_its_field(key: str, typed: dict[str, Value], word: str) -> None:
-    setting = setting_at(written([], OURS), 1, SHOP, Setting(dialect=OURS))
-    one = filled(SHAPES_OF[OURS][key], typed, setting, PROFILE)
-    assert [each.word for each in one.refusals(setting)] == [word]
+def test_what_no_part_can_have_is_refused_at_its_field(
+    key: str, typed: dict[str, FieldValue], word: str
+) -> None:
+    setting = find_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
+    one = fill_shape(SHAPES_BY_DIALECT[OURS][key], typed, setting, PROFILE)
+    assert [each.field_word for each in one.find_errors(setting)] == [word]
 
 
 @pytest.fixture
-def desk() -> Iterator[Shapes]:
-    shapes = Shapes(lambda: SHOP, Setting(metric=True), shop=SHOP)
+def desk() -> Iterator[ShapesModel]:
+    shapes = ShapesModel(lambda: SHOP, ProgramSettings(metric=True), shop_data=SHOP)
     yield shapes
     shapes.close()
 
 
-def strike(shapes: Shapes, keys: str) -> None:
+def strike(shapes: ShapesModel, keys: str) -> None:
     for key in keys:
         if key == "§":
-            shapes.write()
+            shapes.write_form()
         else:
-            assert shapes.typed({"⏎": "Enter", "↑": "Up"}.get(key, key)), (key, shapes.prompt())
+            assert shapes.handle_key({"⏎": "Enter", "↑": "Up"}.get(key, key)), (key, shapes.prompt_text())
 
 
-def test_the_forms_write_the_language_of_the_program(desk: Shapes) -> None:
+def test_the_forms_write_the_language_of_the_program(desk: ShapesModel) -> None:
     """Head and a hole by keys into a program whose name says SINUMERIK; the hole is opened again from it."""
     assert desk.open("x.mpf", "M30\n", 1) == ""
     strike(desk, "n§d6⏎15§")
@@ -305,15 +340,15 @@ def test_the_forms_write_the_language_of_the_program(desk: Shapes) -> None:
     assert lines[-3:] == ["G18", "G0 Z25", "M30"]
     assert desk.open("x.mpf", desk.text, lines.index("CYCLE81(2.5, 0, 1.25, -15)") + 1) == ""
     assert desk.form is not None
-    assert desk.form.one.n("DEEP") == 15.0
+    assert desk.form.filled_shape.get_number("DEEP") == 15.0
 
 
-def test_a_program_without_a_head_asks_for_it(desk: Shapes) -> None:
+def test_a_program_without_a_head_asks_for_it(desk: ShapesModel) -> None:
     assert desk.open("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
     strike(desk, "d")
     assert (desk.form, "PRESS N" in desk.notice) == (None, True)
 
 
-def test_a_language_that_the_forms_do_not_write_is_refused(desk: Shapes) -> None:
+def test_a_language_that_the_forms_do_not_write_is_refused(desk: ShapesModel) -> None:
     for helpers in (False, True):
         assert desk.open("x.h", "", 1, helpers=helpers) == text("shapes.other-language")

@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from core.interpreter.dialects import ReadProgram
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.language.source import Source
-from core.part.stock_spec import stock_spec
+from core.interpreter.dialects import SharedProgram
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.language.source import ProgramSource
+from core.part.stock_spec import parse_specification
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_history import PartGathering, PartHistory
+from core.proving.part_history import PartHistory, StepCollector
 from core.proving.program_timeline import MotionSpan, RestSpan
-from core.proving.program_tools import PartSetting
+from core.proving.program_tools import PartSettings
 from core.proving.prove_program import prove
 from tests.extras.shapes.hand import Programmer, bad, machine, proved, setup_of
 from tests.worked import worked
@@ -61,19 +61,19 @@ PARTS = {
 
 def sections(text: str, made: Made) -> np.ndarray:
     """Radii of the metal by column of Z when the program has ended: inside and outside."""
-    setting = PartSetting(stock=stock_spec(made.stock), shapes=made.tools, step=STEP)
-    gathered = PartGathering(setting)
+    setting = PartSettings(stock=parse_specification(made.stock), shapes=made.tools, step=STEP)
+    gathered = StepCollector(setting)
 
     def see(span: MotionSpan | RestSpan) -> None:
-        gathered.see(span)
+        gathered.add_span(span)
 
-    prove(Source("x.nc", text), setup_of(), machine(), seen=see)
-    moves = gathered.moves()
+    prove(ProgramSource("x.nc", text), setup_of(), machine(), on_span=see)
+    moves = gathered.collected_steps()
     assert moves is not None
     history = PartHistory(moves)
-    near = history.at(history.blocks, 0.0).near
+    near = history.at(history.block_count, 0.0).x_plus_half
     assert near is not None
-    return np.stack([near.low, near.high])
+    return np.stack([near.inner_radii, near.outer_radii])
 
 
 def made_by_hand(name: str, made: Made) -> tuple[str, str]:
@@ -105,7 +105,7 @@ def test_the_same_metal_by_fewer_keys(name: str) -> None:
 
 def blocks_of(text: str) -> list[Block]:
     """All elementary blocks of a program that move."""
-    return list(ReadProgram(Source("x.nc", text)).begin(setup_of()).blocks())
+    return list(SharedProgram(ProgramSource("x.nc", text)).start_pass(setup_of()).generate_blocks())
 
 
 THREADS = {
@@ -118,7 +118,7 @@ THREADS = {
 def test_the_same_thread_by_fewer_keys(name: str) -> None:
     """The last pass is the thread: its radius, its lead, where it ends; and it begins before the part."""
     example, ours = made_by_hand(name, THREADS[name])
-    theirs, mine = ([b for b in blocks_of(text) if b.kind is Kind.THREAD] for text in (example, ours))
+    theirs, mine = ([b for b in blocks_of(text) if b.kind is BlockKind.THREAD] for text in (example, ours))
     theirs, mine = ([b for b in each if b.x == b.x0][-1:] for each in (theirs, mine))
     (last,), (made,) = theirs, mine
     assert (made.x, made.z, made.feed) == pytest.approx((last.x, last.z, last.feed), abs=NEAR)
@@ -129,11 +129,13 @@ def test_the_same_pieces_off_a_bar_by_fewer_keys() -> None:
     tools = {1: TURNING, 2: BLADE}
     made = Made("n§l3⏎.35⏎o§t.1z-.05⏎z-.15⏎.2§p↑r⏎.2⏎⏎.29§", "bar:.2:2", tools)
     example, ours = made_by_hand("workshift-bar-loop", made)
-    theirs, mine = (proved(text, tools, stock=made.stock)[1].pieces for text in (example, ours))
+    theirs, mine = (proved(text, tools, stock=made.stock)[1].parted_pieces for text in (example, ours))
     assert len(theirs) == len(mine) == 3
     for there, here in zip(theirs, mine, strict=True):
-        assert here.volume == pytest.approx(there.volume, rel=1e-4)
-        assert [r for _, r in here.outside] == pytest.approx([r for _, r in there.outside], abs=NEAR)
+        assert here.volume_mm3 == pytest.approx(there.volume_mm3, rel=1e-4)
+        assert [r for _, r in here.outside_profile] == pytest.approx(
+            [r for _, r in there.outside_profile], abs=NEAR
+        )
 
 
 def test_the_same_cross_holes_by_fewer_keys() -> None:

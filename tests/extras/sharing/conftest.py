@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing import ProgramSharing
 from core.store.store import Store
 from tests.extras.sharing.postgres_server import PostgresServer, programs
 from tests.extras.sharing.rigs import KINDS, Rig, rig_of
 
-MakeDesk = Callable[[int], Sharing]
+MakeDesk = Callable[[int], ProgramSharing]
 
 
 @pytest.fixture(scope="session")
@@ -33,7 +33,7 @@ def postgres() -> Iterator[PostgresServer]:
 def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
     """Each kind of place, laid out."""
     with rig_of(request.param, tmp_path, request) as made:
-        made.place().begin()
+        made.place().set_up()
         yield made
 
 
@@ -41,20 +41,20 @@ def rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
 def folder_rig(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Rig]:
     """The cheapest kind, where the kind does not matter."""
     with rig_of("folder", tmp_path, request) as made:
-        made.place().begin()
+        made.place().set_up()
         yield made
 
 
 def desks_of(rig: Rig, stack: ExitStack) -> MakeDesk:
     """Desks with stores and program folders of their own."""
-    made: dict[int, Sharing] = {}
+    made: dict[int, ProgramSharing] = {}
 
-    def desk(number: int) -> Sharing:
+    def desk(number: int) -> ProgramSharing:
         if number not in made:
             home = rig.folder / f"desk-{number}"
             (home / "programs").mkdir(parents=True)
             store = stack.enter_context(Store.open(home))
-            made[number] = Sharing(
+            made[number] = ProgramSharing(
                 rig.place(number), f"LATHE {number}", f"{number:032x}", home / "programs", lambda: store
             )
         return made[number]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from app.compose.program_proving import get_samples_folder
 from app.compose.runs.journal import Journal
-from app.compose.workshop import samples
 from app.desk.desk import Desk
-from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing import ProgramSharing
 from app.extras.sharing.sharing_model import SharingModel
 from app.screen.page_base import Page
 from core.extras.sharing.shared_folder import SharedFolder
@@ -24,22 +24,22 @@ def prepare(desk: Desk, journal: Journal, folder: Path) -> None:
     for each in (shop, here, there / "programs"):
         each.mkdir(parents=True)
     for name in SHARED:
-        (here / name).write_bytes((samples() / name).read_bytes())
-    SharedFolder(shop).begin()
-    made = Sharing(SharedFolder(shop), "LATHE 1", "1" * 32, here, journal.opened)
-    made.look()
+        (here / name).write_bytes((get_samples_folder() / name).read_bytes())
+    SharedFolder(shop).set_up()
+    made = ProgramSharing(SharedFolder(shop), "LATHE 1", "1" * 32, here, journal.require_store)
+    made.synchronize()
     with Store.open(there) as store:
-        other = Sharing(SharedFolder(shop), "LATHE 2", "2" * 32, there / "programs", lambda: store)
-        for family in other.look().families.values():
-            other.take(family.newest[0])
+        other = ProgramSharing(SharedFolder(shop), "LATHE 2", "2" * 32, there / "programs", lambda: store)
+        for family in other.synchronize().programs.values():
+            other.copy_version(family.newest_versions[0])
         better = there / "programs" / SHARED[0]
         better.write_bytes(better.read_bytes().replace(b"G95F.008", b"G95F.010"))
-        other.look()
-    made.look()
-    before = desk.pages.find(SharingModel)
+        other.synchronize()
+    made.synchronize()
+    before = desk.page_registry.find(SharingModel)
     if before is not None:
         before.close()
-    desk.pages.attach(SharingModel(desk, made))
+    desk.page_registry.attach_model(SharingModel(desk, made))
 
 
 def settle(_page: Page | None, _wait: Callable[[], None]) -> None:

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from core.extras.sharing.shared_database import SharedDatabase
-from core.extras.sharing.shared_folder import MARK, SharedFolder
-from core.extras.sharing.shared_place import Cause, SharedPlace
+from core.extras.sharing.shared_folder import MARKER_FILE_NAME, SharedFolder
+from core.extras.sharing.shared_location import SharedLocation, SharingErrorCause
 from tests.extras.sharing.postgres_server import PostgresServer, programs
 
 KINDS = ("folder", "postgresql")
@@ -27,13 +27,13 @@ class PowerCut(BaseException):
 class Rig(ABC):
     """``desk`` is a number: what a desk keeps of the place for itself is its own."""
 
-    away_cause = Cause.AWAY
+    away_cause = SharingErrorCause.AWAY
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     @abstractmethod
-    def place(self, desk: int = 1) -> SharedPlace:
+    def place(self, desk: int = 1) -> SharedLocation:
         """The place as a desk sees it."""
 
     @abstractmethod
@@ -64,14 +64,14 @@ class Rig(ABC):
 
 
 class FolderRig(Rig):
-    away_cause = Cause.NOT_THERE
+    away_cause = SharingErrorCause.NOT_THERE
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder)
         self.shop = folder / "shop"
         self.shop.mkdir()
 
-    def place(self, desk: int = 1) -> SharedPlace:
+    def place(self, desk: int = 1) -> SharedLocation:
         del desk  # all see the same folder
         return SharedFolder(self.shop)
 
@@ -82,7 +82,7 @@ class FolderRig(Rig):
         (self.folder / "unmounted").rename(self.shop)
 
     def make_newer(self) -> None:
-        (self.shop / MARK).write_text('{"format": 2}')
+        (self.shop / MARKER_FILE_NAME).write_text('{"format": 2}')
 
     def litter(self) -> None:
         (self.shop / "versions" / "Thumbs.db").write_bytes(b"\0\1")
@@ -111,7 +111,7 @@ class PostgresRig(Rig):
         self.server, self.database = server, f"shop{PostgresRig.databases}"
         server.sql(f"CREATE DATABASE {self.database}")
 
-    def place(self, desk: int = 1) -> SharedPlace:
+    def place(self, desk: int = 1) -> SharedLocation:
         del desk  # all ask the same server
         return SharedDatabase(self.server.conninfo(self.database))
 

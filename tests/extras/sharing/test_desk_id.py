@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.extras.sharing.sharing_desk import claim, home_of
+from app.extras.sharing.sharing_setup import read_machine_id, store_machine_id
 from tests.power_cut import cut_everywhere, mains
 
 __all__ = ["mains"]
@@ -12,6 +12,8 @@ __all__ = ["mains"]
 
 def test_a_desk_keeps_its_own_id_among_those_that_share(tmp_path: Path) -> None:
     """An empty file would be another desk, whose programs nobody may go on with."""
-    claim(tmp_path, "0" * 32)
-    seen = set(cut_everywhere(lambda: claim(tmp_path, "f" * 32), lambda: home_of(tmp_path)))
+    store_machine_id(tmp_path, "0" * 32)
+    seen = set(
+        cut_everywhere(lambda: store_machine_id(tmp_path, "f" * 32), lambda: read_machine_id(tmp_path))
+    )
     assert seen == {"0" * 32, "f" * 32}

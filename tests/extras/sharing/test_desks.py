@@ -11,42 +11,42 @@ from pathlib import Path
 import pytest
 
 from app.extras.sharing import sharing as sharing_module
-from app.extras.sharing.sharing import Sharing, TakeError
-from app.programs import whole_file
-from app.programs.whole_file import FileError
-from core.extras.sharing.shared_place import Published, SharingError
-from core.extras.sharing.shared_versions import Family, SharedVersion
-from core.extras.sharing.version_record import DeskState
+from app.extras.sharing.sharing import ProgramSharing, VersionCopyError
+from app.programs import atomic_files
+from app.programs.atomic_files import FileOperationError
+from core.extras.sharing.shared_location import PublishedVersion, SharingError
+from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion
+from core.extras.sharing.version_record import MachineState
 from tests.coded import raises_code
 from tests.extras.sharing.conftest import MakeDesk
 from tests.extras.sharing.rigs import PowerCut, Rig
 
 
-def write(desk: Sharing, text: str, name: str = "PART.NC") -> None:
+def write(desk: ProgramSharing, text: str, name: str = "PART.NC") -> None:
     (folder_of(desk) / name).write_text(text)
 
 
-def read(desk: Sharing, name: str = "PART.NC") -> str:
+def read(desk: ProgramSharing, name: str = "PART.NC") -> str:
     return (folder_of(desk) / name).read_text()
 
 
-def folder_of(desk: Sharing) -> Path:
+def folder_of(desk: ProgramSharing) -> Path:
     return desk._files.folder
 
 
-def family(desk: Sharing, key: str = "part.nc") -> Family:
-    return desk.now.families[key]
+def family(desk: ProgramSharing, key: str = "part.nc") -> ProgramVersions:
+    return desk.last_result.programs[key]
 
 
-def together(*desks: Sharing) -> None:
+def together(*desks: ProgramSharing) -> None:
     """Each hears of what all others have."""
     for desk in (*desks, *desks):
-        shared = desk.look()
-        assert (shared.trouble, shared.waiting) == ("", 0)
+        shared = desk.synchronize()
+        assert (shared.error_text, shared.unpublished_count) == ("", 0)
 
 
-def only(desk: Sharing) -> SharedVersion:
-    (version,) = family(desk).elsewhere
+def only(desk: ProgramSharing) -> SharedVersion:
+    (version,) = family(desk).newest_remote_versions
     return version
 
 
@@ -58,15 +58,15 @@ def test_what_is_changed_here_is_newer_there_until_it_is_taken(desk: MakeDesk) -
     write(one, "G00 X1\n")
     together(one, two)
     assert (family(two).state, (folder_of(two) / "PART.NC").exists()) == ("new", False)  # never unasked
-    two.take(only(two))
+    two.copy_version(only(two))
     together(two, one)
     assert (read(two), family(two).state, family(one).state) == ("G00 X1\n", "same", "same")
-    assert one.now.who_has(family(one).here) == ("LATHE 1", "LATHE 2")
+    assert one.last_result.find_machines_with(family(one).local_version_id) == ("LATHE 1", "LATHE 2")
     write(one, "G00 X2\n")
     together(one, two)
     assert (family(two).state, read(two)) == ("newer", "G00 X1\n")
-    assert one.now.who_has(family(one).here) == ("LATHE 1",)
-    two.take(only(two))
+    assert one.last_result.find_machines_with(family(one).local_version_id) == ("LATHE 1",)
+    two.copy_version(only(two))
     assert read(two) == "G00 X2\n"
 
 
@@ -74,26 +74,26 @@ def test_desks_that_were_apart_for_a_day_keep_both_versions_and_settle_once(rig:
     one, two = desk(1), desk(2)
     write(one, "G00 X1\n")
     together(one, two)
-    two.take(only(two))
+    two.copy_version(only(two))
     together(two, one)
     rig.leave()
     for hour in range(3):
         write(one, f"G00 X1{hour}\n")
         write(two, f"G00 X2{hour}\n")
-        assert one.look().trouble
-        assert (two.look().waiting, two.now.trouble.count("\n")) == (hour + 1, 0)
+        assert one.synchronize().error_text
+        assert (two.synchronize().unpublished_count, two.last_result.error_text.count("\n")) == (hour + 1, 0)
     rig.come_back()
     together(one, two)
     assert (family(one).state, family(two).state) == ("both", "both")
     assert (read(one), read(two)) == ("G00 X12\n", "G00 X22\n")
-    two.take(only(two))
+    two.copy_version(only(two))
     together(two, one)
     assert (read(two), family(two).state) == ("G00 X12\n", "same")
     assert family(one).state == "newer"  # by lineage; the text is that of this desk
-    one.take(only(one))
+    one.copy_version(only(one))
     together(one, two)
     assert (family(one).state, family(two).state, read(one)) == ("same", "same", "G00 X12\n")
-    kept = {one.text(each) for each in family(one).versions.values()}
+    kept = {one.read_text(each) for each in family(one).versions.values()}
     assert kept == {b"G00 X1\n", *(b"G00 X%d%d\n" % (d, hour) for d in (1, 2) for hour in range(3))}
 
 
@@ -108,10 +108,10 @@ def test_a_place_that_ends_in_the_middle_of_publishing_loses_nothing(
     with monkeypatch.context() as patch:
         rig.cut_in_put(patch)
         with suppress(PowerCut):
-            assert one.look().trouble
+            assert one.synchronize().error_text
     rig.mend()
     together(one, two)
-    found = {key: two.text(each.newest[0]) for key, each in two.now.families.items()}
+    found = {key: two.read_text(each.newest_versions[0]) for key, each in two.last_result.programs.items()}
     assert found == {"first.nc": b"G00 X0\n"} | {f"part{n}.nc": b"G00 X%d\n" % n for n in range(5)}
 
 
@@ -120,21 +120,21 @@ def test_a_place_that_ends_in_the_middle_of_publishing_loses_nothing(
 
 def test_what_is_here_can_stand_against_what_was_changed_elsewhere(desk_at_folder: MakeDesk) -> None:
     one, two = _both_changed(desk_at_folder)
-    one.keep("part.nc")
+    one.resolve_with_local("part.nc")
     together(one, two)
     assert (family(one).state, read(one)) == ("same", "ONE\n")
     assert (family(two).state, read(two)) == ("newer", "TWO\n")
-    two.take(only(two))
+    two.copy_version(only(two))
     assert read(two) == "ONE\n"
-    with raises_code(TakeError, "nothing-to-settle"):
-        one.keep("part.nc")
+    with raises_code(VersionCopyError, "nothing-to-settle"):
+        one.resolve_with_local("part.nc")
 
 
-def _both_changed(desk: MakeDesk) -> tuple[Sharing, Sharing]:
+def _both_changed(desk: MakeDesk) -> tuple[ProgramSharing, ProgramSharing]:
     one, two = desk(1), desk(2)
     write(one, "G00\n")
     together(one, two)
-    two.take(only(two))
+    two.copy_version(only(two))
     write(one, "ONE\n")
     write(two, "TWO\n")
     together(one, two)
@@ -146,16 +146,16 @@ def test_a_clock_that_is_years_off_changes_nothing(
     desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
-    monkeypatch.setattr(sharing_module, "utc_now", lambda: "2041-01-01T00:00:00.000Z")
+    monkeypatch.setattr(sharing_module, "get_utc_now_text", lambda: "2041-01-01T00:00:00.000Z")
     write(one, "OLD\n")
     together(one)
-    monkeypatch.setattr(sharing_module, "utc_now", lambda: "1999-01-01T00:00:00.000Z")
+    monkeypatch.setattr(sharing_module, "get_utc_now_text", lambda: "1999-01-01T00:00:00.000Z")
     together(two)
-    two.take(only(two))
+    two.copy_version(only(two))
     write(two, "NEW\n")
     together(two, one)
     assert (family(one).state, only(one).saved) == ("newer", "1999-01-01T00:00:00.000Z")
-    one.take(only(one))
+    one.copy_version(only(one))
     assert read(one) == "NEW\n"
 
 
@@ -164,11 +164,11 @@ def test_the_text_of_before_is_a_newer_version_again(desk_at_folder: MakeDesk) -
     for text in ("A\n", "B\n"):
         write(one, text)
         together(one, two)
-        two.take(only(two))
+        two.copy_version(only(two))
     write(two, "A\n")
     together(two, one)
     assert family(one).state == "newer"
-    one.take(only(one))
+    one.copy_version(only(one))
     assert read(one) == "A\n"
 
 
@@ -183,7 +183,7 @@ def test_the_same_text_on_two_desks_is_one_version(desk_at_folder: MakeDesk) -> 
 def test_one_name_for_two_programs_keeps_both(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "BOLT\n")
-    one.look()
+    one.synchronize()
     write(two, "NUT\n")
     together(two, one)
     assert (family(one).state, family(two).state) == ("both", "both")
@@ -194,20 +194,20 @@ def test_names_that_differ_by_case_only_are_one_program(desk_at_folder: MakeDesk
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n", "Part.nc")
     together(one, two)
-    two.take(only(two))
+    two.copy_version(only(two))
     (folder_of(two) / "Part.nc").rename(folder_of(two) / "PART.NC")
     write(one, "G01\n", "Part.nc")
     together(one, two)
-    assert two.take(only(two)) == "PART.NC"
+    assert two.copy_version(only(two)) == "PART.NC"
     assert [path.name for path in folder_of(two).iterdir()] == ["PART.NC"]
     write(two, "ELSE\n", "part.NC")
-    shared = two.look()
-    assert set(shared.refused) == {"PART.NC", "part.NC"}
+    shared = two.synchronize()
+    assert set(shared.rejected_files) == {"PART.NC", "part.NC"}
     write(one, "G02\n", "Part.nc")
     together(one)
-    two.look()
-    with raises_code(TakeError, "refused-name"):
-        two.take(only(two))
+    two.synchronize()
+    with raises_code(VersionCopyError, "refused-name"):
+        two.copy_version(only(two))
     assert (read(two, "PART.NC"), read(two, "part.NC")) == ("G01\n", "ELSE\n")
 
 
@@ -215,36 +215,36 @@ def test_a_program_that_is_deleted_here_stays_with_the_others(desk_at_folder: Ma
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n")
     together(one, two)
-    two.take(only(two))
+    two.copy_version(only(two))
     (folder_of(one) / "PART.NC").unlink()
     together(one, two)
     assert (family(one).state, family(two).state, read(two)) == ("new", "same", "G00\n")
-    assert one.now.who_has(family(two).here) == ("LATHE 2",)
+    assert one.last_result.find_machines_with(family(two).local_version_id) == ("LATHE 2",)
 
 
 def test_what_is_being_written_is_left_until_it_stands_still(desk_at_folder: MakeDesk) -> None:
     one = desk_at_folder(1)
     write(one, "G00\n")
-    one.look(settled=True)
+    one.synchronize(is_settled=True)
     write(one, "G00\nG01 X")
-    one.look(settled=True)
+    one.synchronize(is_settled=True)
     assert len(family(one).versions) == 1
     write(one, "G00\nG01 X1\n")
-    one.look(settled=True)
-    one.look(settled=True)
-    assert {one.text(each) for each in family(one).versions.values()} == {b"G00\n", b"G00\nG01 X1\n"}
+    one.synchronize(is_settled=True)
+    one.synchronize(is_settled=True)
+    assert {one.read_text(each) for each in family(one).versions.values()} == {b"G00\n", b"G00\nG01 X1\n"}
 
 
 def test_two_desks_of_one_name_are_refused_and_nothing_is_published(desk_at_folder: MakeDesk) -> None:
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "G00\n")
-    one.look()
-    two.desk = "lathe 1"
+    one.synchronize()
+    two.machine_name = "lathe 1"
     write(two, "G01\n", "OTHER.NC")
-    shared = two.look()
-    assert (shared.waiting, "--claim" in shared.trouble) == (1, True)
-    two.home = one.home  # claimed: that computer is gone
-    assert two.look().trouble == ""
+    shared = two.synchronize()
+    assert (shared.unpublished_count, "--claim" in shared.error_text) == (1, True)
+    two.machine_id = one.machine_id  # claimed: that computer is gone
+    assert two.synchronize().error_text == ""
 
 
 def test_a_file_that_cannot_be_written_leaves_all_as_it_was(
@@ -253,12 +253,12 @@ def test_a_file_that_cannot_be_written_leaves_all_as_it_was(
     one, two = _both_changed(desk_at_folder)
 
     def full(_path: Path, _data: bytes) -> None:
-        raise FileError("PART.NC CANNOT BE WRITTEN: No space left on device", "cannot-write")
+        raise FileOperationError("PART.NC CANNOT BE WRITTEN: No space left on device", "cannot-write")
 
     with monkeypatch.context() as patch:
-        patch.setattr(sharing_module, "write_whole", full)
-        with raises_code(TakeError, "cannot-write", os.strerror(errno.ENOSPC)):
-            two.take(only(two))
+        patch.setattr(sharing_module, "write_program_file", full)
+        with raises_code(VersionCopyError, "cannot-write", os.strerror(errno.ENOSPC)):
+            two.copy_version(only(two))
     together(two, one)
     assert (family(one).state, family(two).state, read(two)) == ("both", "both", "TWO\n")
     assert len(family(one).versions) == 3
@@ -271,19 +271,19 @@ def test_a_power_cut_while_a_version_is_taken_is_made_good_by_the_next_look(
     one, two = desk_at_folder(1), desk_at_folder(2)
     write(one, "A\n")
     together(one, two)
-    two.take(only(two))
+    two.copy_version(only(two))
     write(one, "B\n")
     together(one, two)
 
     def cut(path: Path, data: bytes) -> None:
         if not before:
-            whole_file.write_whole(path, data)
+            atomic_files.write_program_file(path, data)
         raise PowerCut
 
     with monkeypatch.context() as patch:
-        patch.setattr(sharing_module, "write_whole", cut)
+        patch.setattr(sharing_module, "write_program_file", cut)
         with pytest.raises(PowerCut):
-            two.take(only(two))
+            two.copy_version(only(two))
     together(two, one)
     assert len(family(one).versions) == 2  # nothing was made up
     assert (family(two).state, read(two)) == (("newer", "A\n") if before else ("same", "B\n"))
@@ -295,12 +295,12 @@ def test_a_version_whose_text_cannot_be_had_is_not_taken(folder_rig: Rig, desk_a
     together(one, two)
     folder_rig.leave()
     with raises_code(SharingError, "not-there"):
-        two.take(only(two))
+        two.copy_version(only(two))
     assert list(folder_of(two).iterdir()) == []
     folder_rig.come_back()
-    two.take(only(two))
-    with raises_code(TakeError, "already-current"):
-        two.take(family(two).newest[0])
+    two.copy_version(only(two))
+    with raises_code(VersionCopyError, "already-current"):
+        two.copy_version(family(two).newest_versions[0])
 
 
 def test_what_somebody_took_out_of_the_place_is_published_again(
@@ -312,7 +312,7 @@ def test_what_somebody_took_out_of_the_place_is_published_again(
     for file in (folder_rig.folder / "shop" / "versions").iterdir():
         file.unlink()
     together(one, two)
-    assert two.text(only(two)) == b"G00\n"
+    assert two.read_text(only(two)) == b"G00\n"
 
 
 def test_a_thousand_programs_go_over_in_one_look_each(
@@ -322,10 +322,10 @@ def test_a_thousand_programs_go_over_in_one_look_each(
     monkeypatch.setattr("os.fsync", lambda _file: None)  # a thousand files to the disk, elsewhere shown
     for number in range(1000):
         write(one, f"G00 X{number}\n", f"P{number:04d}.NC")
-    one.look()
-    two.look()
-    assert len(two.now.families) == 1000
-    assert two.text(two.now.families["p0999.nc"].newest[0]) == b"G00 X999\n"
+    one.synchronize()
+    two.synchronize()
+    assert len(two.last_result.programs) == 1000
+    assert two.read_text(two.last_result.programs["p0999.nc"].newest_versions[0]) == b"G00 X999\n"
 
 
 def test_a_restore_in_the_middle_of_a_look_is_told_and_ends_nothing(
@@ -336,11 +336,11 @@ def test_a_restore_in_the_middle_of_a_look_is_told_and_ends_nothing(
     write(one, "G00 X1\n")
     together(one)
     (folder_of(one) / "PART.NC").unlink()
-    store, put = one._store(), one.place.put
+    store, put = one._store(), one.location.publish
 
-    def closed_meanwhile(versions: Sequence[Published], state: DeskState) -> None:
+    def closed_meanwhile(versions: Sequence[PublishedVersion], state: MachineState) -> None:
         put(versions, state)
         store.close()
 
-    monkeypatch.setattr(one.place, "put", closed_meanwhile)
-    assert "is closed" in one.look().trouble
+    monkeypatch.setattr(one.location, "publish", closed_meanwhile)
+    assert "is closed" in one.synchronize().error_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing import ProgramSharing
 from app.extras.sharing.sharing_model import SharingModel
 from core.extras.sharing.shared_folder import SharedFolder
 from core.store.store import Store
@@ -22,30 +22,32 @@ def shared(room: Room, tmp_path: Path) -> SharingModel:
     (tmp_path / "other" / "programs").mkdir(parents=True)
     (tmp_path / "other" / "programs" / "peg.nc").write_text("M30\n")
     place = SharedFolder(tmp_path / "shop")
-    place.begin()
+    place.set_up()
     with Store.open(tmp_path / "other") as store:
-        Sharing(place, "LATHE 2", "2" * 32, tmp_path / "other" / "programs", lambda: store).look()
+        ProgramSharing(
+            place, "LATHE 2", "2" * 32, tmp_path / "other" / "programs", lambda: store
+        ).synchronize()
     own = tmp_path / "home" / "programs"
-    sharing = Sharing(place, "LATHE 1", "1" * 32, own, room.journal.opened)
-    sharing.look()
+    sharing = ProgramSharing(place, "LATHE 1", "1" * 32, own, room.journal.require_store)
+    sharing.synchronize()
     model = SharingModel(room.desk, sharing)
     for _ in range(3):
-        model.look()
-        model.worker.settle(LIMIT)
-    assert model.version is not None
+        model.update()
+        model.worker.wait_for_results(LIMIT)
+    assert model.selected_version is not None
     return model
 
 
 def test_taking_a_shared_program_is_no_operators_work(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     model, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
-    model.take()
-    model.worker.settle(LIMIT)
-    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
+    model.copy_version()
+    model.worker.wait_for_results(LIMIT)
+    assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert not peg.exists()
     room.sign_in("BEN")
-    model.take()
-    model.worker.settle(LIMIT)
+    model.copy_version()
+    model.worker.wait_for_results(LIMIT)
     assert peg.read_text() == "M30\n"
     assert room.log("change")[-1] == (wording("log.taken-as", name="peg.nc", desk="LATHE 2"), "BEN")
     model.close()
@@ -56,22 +58,22 @@ def test_a_shared_program_asks_again_when_it_is_taken_and_has_the_name_of_who_to
 ) -> None:
     room.enter_people()
     page, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
-    version = page.version
+    version = page.selected_version
     assert version is not None
     changes: tuple[Callable[[], object], ...] = (
         lambda: page._take(version),
         lambda: page._keep("peg.nc", "peg.nc"),
     )
     for refused in changes:
-        room.desk.clear()  # what was asked is answered when the level has fallen back
+        room.desk.clear_prompt_line()  # what was asked is answered when the level has fallen back
         refused()
-        page.worker.settle(LIMIT)
-        assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
+        page.worker.wait_for_results(LIMIT)
+        assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert not peg.exists()
     room.sign_in("BEN")
     page._take(version)
     room.access.sign_out()
-    page.worker.settle(LIMIT)
+    page.worker.wait_for_results(LIMIT)
     assert peg.read_text() == "M30\n"
     assert room.log("change") == [(wording("log.taken-as", name="peg.nc", desk="LATHE 2"), "BEN")]
     page.close()

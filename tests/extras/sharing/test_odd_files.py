@@ -13,9 +13,9 @@ from typing import TypeVar
 
 import pytest
 
-from core.extras.sharing.shared_folder import DESKS, MARK, VERSIONS, SharedFolder
-from core.extras.sharing.shared_place import Cause
-from core.input_file import TooLargeError, input_bytes
+from core.extras.sharing.shared_folder import DESKS, MARKER_FILE_NAME, VERSIONS, SharedFolder
+from core.extras.sharing.shared_location import SharingErrorCause
+from core.input_file import TooLargeError, read_input_bytes
 from tests.extras.sharing.test_places import HOME, cause_of, published, state
 
 Result = TypeVar("Result")
@@ -26,8 +26,8 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes in f
 def place(tmp_path: Path) -> SharedFolder:
     """A folder that is laid out and has one version."""
     found = SharedFolder(tmp_path)
-    found.begin()
-    found.put([published(1)], state())
+    found.set_up()
+    found.publish([published(1)], state())
     return found
 
 
@@ -53,16 +53,16 @@ def little_memory() -> Iterator[None]:
 @pytest.mark.parametrize("name", [f"{VERSIONS}/{'a' * 64}.version", f"{DESKS}/{'b' * 32}.json"])
 def test_a_pipe_is_a_stray_and_keeps_no_look_waiting(place: SharedFolder, tmp_path: Path, name: str) -> None:
     os.mkfifo(tmp_path / name)
-    found = in_time(lambda: place.look({}))
-    assert found.strays == (Path(name).name,)
-    assert found.fresh == (published(1).version,)
+    found = in_time(lambda: place.read_contents({}))
+    assert found.foreign_items == (Path(name).name,)
+    assert found.unknown_versions == (published(1).version,)
 
 
 def test_a_pipe_in_the_place_of_the_mark_is_named(place: SharedFolder, tmp_path: Path) -> None:
-    (tmp_path / MARK).unlink()
-    os.mkfifo(tmp_path / MARK)
-    cause, words = in_time(lambda: cause_of(place.look, {}))
-    assert (cause, MARK in words) == (Cause.OTHER, True)
+    (tmp_path / MARKER_FILE_NAME).unlink()
+    os.mkfifo(tmp_path / MARKER_FILE_NAME)
+    cause, words = in_time(lambda: cause_of(place.read_contents, {}))
+    assert (cause, MARKER_FILE_NAME in words) == (SharingErrorCause.OTHER, True)
 
 
 def test_a_pipe_in_the_place_of_a_version_is_put_aside(place: SharedFolder, tmp_path: Path) -> None:
@@ -70,9 +70,9 @@ def test_a_pipe_in_the_place_of_a_version_is_put_aside(place: SharedFolder, tmp_
     path = tmp_path / VERSIONS / f"{one.version.id}.version"
     path.unlink()
     os.mkfifo(path)
-    assert in_time(lambda: cause_of(place.text, one.version))[0] is Cause.DAMAGED
-    in_time(lambda: place.put([one], state()))
-    assert place.text(one.version) == one.text
+    assert in_time(lambda: cause_of(place.read_text, one.version))[0] is SharingErrorCause.DAMAGED
+    in_time(lambda: place.publish([one], state()))
+    assert place.read_text(one.version) == one.text
 
 
 @pytest.mark.parametrize("name", [f"{VERSIONS}/{'a' * 64}.version", f"{DESKS}/{HOME}.json"])
@@ -80,18 +80,18 @@ def test_a_file_of_gigabytes_is_not_read(place: SharedFolder, tmp_path: Path, na
     with (tmp_path / name).open("wb") as file:
         file.truncate(3 * 1024**3)
     with little_memory():
-        assert place.look({}).strays == (Path(name).name,)
+        assert place.read_contents({}).foreign_items == (Path(name).name,)
 
 
 def test_what_is_no_regular_file_is_refused(tmp_path: Path) -> None:
     for path in (tmp_path, Path("/dev/zero")):
         with pytest.raises(OSError, match=path.name):
-            input_bytes(path, 10)
+            read_input_bytes(path, 10)
 
 
 def test_a_file_has_its_limit(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(b"0123456789")
-    assert input_bytes(path, 10) == b"0123456789"
+    assert read_input_bytes(path, 10) == b"0123456789"
     with pytest.raises(TooLargeError):
-        input_bytes(path, 9)
+        read_input_bytes(path, 9)

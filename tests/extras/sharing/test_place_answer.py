@@ -10,10 +10,10 @@ from typing import cast
 
 import pytest
 
-from app.extras.sharing import place_answer
-from app.extras.sharing.place_answer import answered
-from core.extras.sharing.shared_folder import MARK, SharedFolder
-from core.extras.sharing.shared_place import Cause, SharedPlace, SharingError
+from app.extras.sharing import location_wait
+from app.extras.sharing.location_wait import wait_for_location
+from core.extras.sharing.shared_folder import MARKER_FILE_NAME, SharedFolder
+from core.extras.sharing.shared_location import SharedLocation, SharingError, SharingErrorCause
 from tests.coded import raises_code
 from tests.texts import text as wording
 
@@ -28,29 +28,29 @@ def test_a_silent_place_is_told_once_and_its_answer_still_counts(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = threading.Event()
-    tell = place_answer._tell
+    tell = location_wait._tell
 
-    def tell_and_answer(place: SharedPlace, seconds: float) -> None:
+    def tell_and_answer(place: SharedLocation, seconds: float) -> None:
         tell(place, seconds)
         told.set()
 
-    monkeypatch.setattr(place_answer, "_tell", tell_and_answer)
-    assert answered(cast("SharedPlace", Place()), lambda: told.wait(60.0), 0.0) is True
+    monkeypatch.setattr(location_wait, "_tell", tell_and_answer)
+    assert wait_for_location(cast("SharedLocation", Place()), lambda: told.wait(60.0), 0.0) is True
     said = wording("cli.no-response", place="the database shop", seconds=0, until="")
     assert capsys.readouterr() == ("", f"turndesk: {said}\n")
 
 
 def test_an_answer_in_time_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    assert answered(cast("SharedPlace", Place()), lambda: 7) == 7
+    assert wait_for_location(cast("SharedLocation", Place()), lambda: 7) == 7
     assert capsys.readouterr() == ("", "")
 
 
 def test_what_the_place_refuses_is_raised_where_it_was_asked() -> None:
     def refuse() -> None:
-        raise Cause.FULL.error("the folder x")
+        raise SharingErrorCause.FULL.make_error("the folder x")
 
     with raises_code(SharingError, "disk-full", "folder x"):
-        answered(cast("SharedPlace", Place()), refuse)
+        wait_for_location(cast("SharedLocation", Place()), refuse)
 
 
 def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -59,9 +59,9 @@ def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     def press(*_args: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(place_answer, "wait", press)
+    monkeypatch.setattr(location_wait, "wait", press)
     with pytest.raises(KeyboardInterrupt):
-        answered(cast("SharedPlace", Place()), lambda: never.wait(60.0))
+        wait_for_location(cast("SharedLocation", Place()), lambda: never.wait(60.0))
     never.set()
 
 
@@ -69,7 +69,7 @@ def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_folder_that_hangs_is_told_before_it_is_touched(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    os.mkfifo(tmp_path / MARK)  # opening it waits for a writer, as a dead drive does
+    os.mkfifo(tmp_path / MARKER_FILE_NAME)  # opening it waits for a writer, as a dead drive does
     waits, real = list[object](), subprocess.Popen.wait
 
     def in_no_time(process: subprocess.Popen[bytes], timeout: float | None = None) -> int:
@@ -82,7 +82,7 @@ def test_a_folder_that_hangs_is_told_before_it_is_touched(
     touched = threading.Event()
     monkeypatch.setattr(subprocess.Popen, "wait", in_no_time)
     with raises_code(SharingError, "away", "300 s"):
-        answered(SharedFolder(tmp_path), touched.set)
+        wait_for_location(SharedFolder(tmp_path), touched.set)
     assert (waits, touched.is_set()) == ([30.0, 270.0], False)
     until = wording("cli.stops-waiting", seconds=300)
     said = wording("cli.no-response", place=f"the folder {tmp_path}", seconds=30, until=until)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.backends.machine_answers import check_ports
+from app.compose.backends.machine_check import check_machine
 from app.compose.machine.machine_files import parse_machine
 from app.extras.sharing import share_command
 from core.store.store import Store
@@ -153,23 +153,25 @@ def test_machine_check_has_a_row_for_the_place(shop: Shop) -> None:
     for name, state in (("shop", "ok"), ("gone", "no answer")):
         table = f'[sharing]\nfolder = "{shop.folder / name}"\n'
         machine = parse_machine(resources.machine_file("gt75.toml") + table, "m.toml")
-        (row,) = (row for row in check_ports(machine).rows if row.name == "sharing")
+        (row,) = (row for row in check_machine(machine).rows if row.name == "sharing")
         assert (row.state, "LATHE 1" in row.detail) == (state, state == "ok")
 
 
 def test_share(shop: Shop) -> None:
     begun = whole(shop.share(1, "begin", "--json"))
-    declared_alone([begun], share_command.SHARE_BEGIN.keys)
+    declared_alone([begun], share_command.SHARE_BEGIN_OUTPUT.keys)
     shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
     shop.program(1, "LARGE.NC").write_bytes(b"(X)\n" * (9 * 2**20))
     shared = [whole(shop.share(1, "publish", "--json"))]
     (shop.folder / "shop" / "stray.txt").write_text("X")
     taken = whole(shop.share(2, "take", "CAP.NC", "--json"))
-    declared_alone([taken], share_command.SHARE_TAKE.keys)
+    declared_alone([taken], share_command.SHARE_COPY_OUTPUT.keys)
     for number in (1, 2):
         shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
         shop.share(number, "publish")
     shared.append(whole(shop.share(1, "status", "--json")))
-    declared_alone(shared, share_command.SHARE_STATUS.keys)
-    declared_alone([whole(shop.share(1, "compare", "CAP.NC", "--json"))], share_command.SHARE_COMPARE.keys)
-    declared_alone([whole(shop.share(1, "keep", "CAP.NC", "--json"))], share_command.SHARE_KEEP.keys)
+    declared_alone(shared, share_command.SHARE_STATUS_OUTPUT.keys)
+    declared_alone(
+        [whole(shop.share(1, "compare", "CAP.NC", "--json"))], share_command.SHARE_COMPARE_OUTPUT.keys
+    )
+    declared_alone([whole(shop.share(1, "keep", "CAP.NC", "--json"))], share_command.SHARE_KEEP_OUTPUT.keys)

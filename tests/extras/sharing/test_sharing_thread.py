@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from typing import cast
 
-from app.extras.sharing.sharing import Shared, Sharing, SharingThread
+from app.extras.sharing.sharing import ProgramSharing, SharingResult, SharingThread
 
 
 class Dead:
@@ -14,22 +14,22 @@ class Dead:
     def __init__(self) -> None:
         self.asked, self.answers = threading.Event(), threading.Event()
 
-    def look(self, *, settled: bool) -> Shared:
-        assert settled
+    def synchronize(self, *, is_settled: bool) -> SharingResult:
+        assert is_settled
         self.asked.set()
         assert self.answers.wait(60.0)
-        return Shared()
+        return SharingResult()
 
 
 def test_a_look_that_hangs_is_counted_until_it_ends() -> None:
     now, dead, heard = [100.0], Dead(), threading.Event()
-    thread = SharingThread(cast("Sharing", dead), 3600.0, lambda _shared: heard.set(), lambda: now[0])
-    assert thread.silent_for() == 0.0
+    thread = SharingThread(cast("ProgramSharing", dead), 3600.0, lambda _shared: heard.set(), lambda: now[0])
+    assert thread.get_waiting_time() == 0.0
     thread.start()
     assert dead.asked.wait(60.0)
     now[0] = 140.0
-    assert thread.silent_for() == 40.0
+    assert thread.get_waiting_time() == 40.0
     dead.answers.set()
     assert heard.wait(60.0)
-    assert thread.silent_for() == 0.0
+    assert thread.get_waiting_time() == 0.0
     thread.close()

@@ -1,4 +1,6 @@
-"""``turndesk tools import``: preview, questions, one step of the history, and what is left unchanged."""
+"""``turndesk tool_offsets import``: preview, questions, one step of the history, and what is left
+unchanged.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from app.extras.tool_tables.import_command import IMPORT
-from core.access.access_table import Level
+from core.access.access_table import AccessLevel
 from core.message import CodedError
-from core.store.people import PersonRow, keep_person
 from core.store.store import Store
-from core.store.store_rows import Kind, ShapeRow, ToolRow
+from core.store.store_rows import OffsetKind, ShapeRow, ToolRow
+from core.store.user_records import UserRow, save_user
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
 from tests.cli.say import Say, codes
@@ -30,12 +32,12 @@ def table(tmp_path: Path) -> Path:
 
 def rows(home: Path) -> tuple[dict[int, ToolRow], dict[int, ShapeRow]]:
     with Store.open(home, read_only=True) as store:
-        return store.offsets.tools.read_rows(), store.offsets.shapes.read_rows()
+        return store.offsets.tool_offsets.read_rows(), store.offsets.tool_shapes.read_rows()
 
 
 def set_tool(home: Path, number: int, **values: float | str) -> None:
     with Store.open(home) as store:
-        store.offsets.tools.change_row(number, "touched off", values).result(60)
+        store.offsets.tool_offsets.change_row(number, "touched off", values).result(60)
 
 
 def test_new_tools_are_imported(turndesk: Turndesk, table: Path, home: Path) -> None:
@@ -55,7 +57,7 @@ def test_the_import_is_one_step_with_its_reason(turndesk: Turndesk, table: Path,
     with Store.open(home) as store:
         changes = store.offsets.read_history()
     assert {(each.step, each.why) for each in changes} == {(1, "old control")}
-    assert {each.kind for each in changes} == {Kind.TOOL, Kind.SHAPE}
+    assert {each.kind for each in changes} == {OffsetKind.TOOL, OffsetKind.SHAPE}
     assert turndesk("offsets", "undo").status == 0
     assert rows(home) == ({}, {})
     assert turndesk("offsets", "undo").code == "nothing-to-undo"
@@ -191,9 +193,9 @@ def test_a_level_below_setup_may_not_import(
     say: Say, table: Path, home: Path, refusals: list[CodedError]
 ) -> None:
     with Store.open(home) as store:
-        for name, level in (("ANNA", Level.SERVICE), ("OLE", Level.OPERATOR)):
-            row = PersonRow(name, level, b"salt", b"hash")
-            store.write(partial(keep_person, row=row)).result(60)
+        for name, level in (("ANNA", AccessLevel.SERVICE), ("OLE", AccessLevel.OPERATOR)):
+            row = UserRow(name, level, b"salt", b"hash")
+            store.write(partial(save_user, row=row)).result(60)
     assert say("tools", "import", table, "--unit", "in", "--yes", "--as", "OLE")[0] == 2
     assert codes(refusals) == ["level-too-low"]
     assert rows(home) == ({}, {})

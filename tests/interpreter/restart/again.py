@@ -4,25 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.interpreter.dialects import interpretation
-from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
-from core.interpreter.restart.restart_point import NoRestart, RestartPoint
-from core.interpreter.restart.state_rebuild import StateRebuild
-from core.interpreter.shared.checkpoint import Begin
+from core.interpreter.dialects import interpret_program
+from core.interpreter.restart.restart_approach import OperatorChoices, PresentState, make_lathe_start
+from core.interpreter.restart.restart_point import RestartPoint, RestartRefusal
+from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.shared.checkpoint import PassStart
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import Setup
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import Severity
-from core.language.source import Source
+from core.language.source import ProgramSource
 
 STANDS = (33.0, 44.0)  # where the slides are when the restart is asked for, mm
 TURNED = 500.0  # degrees from where C has to be
 
 
-def all_of(source: Source, setup: Setup) -> list[Block]:
+def all_of(source: ProgramSource, setup: Setup) -> list[Block]:
     """The elementary blocks of a pass that has no errors."""
-    taken = interpretation(source, setup)
-    blocks = list(taken.blocks())
+    taken = interpret_program(source, setup)
+    blocks = list(taken.generate_blocks())
     errors = [each for each in taken.diagnostics if each.severity is Severity.ERROR]
     assert not errors, errors
     return blocks
@@ -39,24 +39,24 @@ def begun(setup: Setup, found: RestartPoint) -> Setup:
     return replace(setup, start=at, begin=beginning(found, at))
 
 
-def beginning(found: RestartPoint, at: tuple[float, ...]) -> Begin:
+def beginning(found: RestartPoint, at: tuple[float, ...]) -> PassStart:
     """A restart at a machine that stands still with its collet as it was."""
-    return begin_at(found, MachineNow(at, Modal()), Choices())
+    return make_lathe_start(found, PresentState(at, ModalState()), OperatorChoices())
 
 
-def of_each_line(source: Source, setup: Setup, passes: int = 0) -> list[RestartPoint | NoRestart]:
+def of_each_line(source: ProgramSource, setup: Setup, passes: int = 0) -> list[RestartPoint | RestartRefusal]:
     """What SEARCHTO says of every line, in order; of one in a loop or a subroutine, of all its passes.
 
     ``passes``: of so many first ones and of the last.
     """
-    rebuild = StateRebuild(source, setup, lambda _count: None)
-    said: list[RestartPoint | NoRestart] = []
+    rebuild = OmniturnSearch(source, setup, lambda _count: None)
+    said: list[RestartPoint | RestartRefusal] = []
     for line in range(1, len(source.lines) + 1):
-        answer = rebuild.find(line, 1)
+        answer = rebuild.find_restart(line, 1)
         said.append(answer)
-        count = answer.visit.of if isinstance(answer, RestartPoint) else 1
+        count = answer.visit.visit_count if isinstance(answer, RestartPoint) else 1
         later = [n for n in range(2, count + 1) if not passes or n <= passes or n == count]
-        said += [rebuild.find(line, number) for number in later]
+        said += [rebuild.find_restart(line, number) for number in later]
     return said
 
 

@@ -9,10 +9,10 @@ import pytest
 
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.restart.restart_point import RestartPoint
-from core.interpreter.shared.actions import AskInput
+from core.interpreter.shared.actions import InputRead
 from core.interpreter.shared.job_setup import Setup
 from core.language.diagnostics import Severity
-from core.language.source import Source, load_source
+from core.language.source import ProgramSource, load_source
 from tests.interpreter.programs import ALL_TOOLS, setup
 from tests.interpreter.restart.again import all_of, begun, of_each_line, told
 from tests.interpreter.test_golden import circumstances
@@ -31,13 +31,13 @@ def golden_setup(path: Path) -> Setup:
     return circumstances([line[1:].split() for line in table if line.startswith("#")])
 
 
-def runs(source: Source, given: Setup) -> bool:
+def runs(source: ProgramSource, given: Setup) -> bool:
     return not any(d.severity is Severity.ERROR for d in read_program(source).diagnostics) and bool(
         given.tools
     )
 
 
-def check(source: Source, given: Setup) -> int:
+def check(source: ProgramSource, given: Setup) -> int:
     """Compare every good line; how many there were."""
     full = all_of(source, given)
     good = [each for each in of_each_line(source, given) if isinstance(each, RestartPoint)]
@@ -46,18 +46,18 @@ def check(source: Source, given: Setup) -> int:
         assert begin.begin is not None
         again = all_of(source, begin)[len(begin.begin.approach) :]
         rest = [block for block in full if block.n > found.checkpoint.blocks]
-        if any(isinstance(block.action, AskInput) for block in full):  # the count depends on the answers
+        if any(isinstance(block.action, InputRead) for block in full):  # the count depends on the answers
             rest = full[len(full) - len(again) :]
             again = [replace(block, n=0) for block in again]
             rest = [replace(block, n=0) for block in rest]
         assert [told(block) for block in again] == [told(block) for block in rest], found.line
-        once = found.visit.of == 1 and not found.visit.within
+        once = found.visit.visit_count == 1 and not found.visit.enclosing_levels
         assert not (again and once) or again[0].line >= found.line or again[0].line in _called(source)
     return len({found.line for found in good})
 
 
-def _called(source: Source) -> set[int]:
-    return set(range(read_program(source).structure.main_end, len(source.lines) + 1))
+def _called(source: ProgramSource) -> set[int]:
+    return set(range(read_program(source).structure.main_end_index, len(source.lines) + 1))
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)

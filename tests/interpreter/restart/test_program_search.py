@@ -6,19 +6,24 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine.machine_files import named_machine
-from app.compose.machine.machine_setup import setup_for
-from core.interpreter.dialects import ReadProgram
-from core.interpreter.restart.program_search import ProgramSearch, _is_uncut, _Stand
-from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at, begin_on_mill
-from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
+from app.compose.machine.machine_files import load_named_machine
+from app.compose.machine.machine_setup import create_setup
+from core.interpreter.dialects import SharedProgram
+from core.interpreter.restart.program_search import BlockSearch, _is_uncut, _PassState
+from core.interpreter.restart.restart_approach import (
+    OperatorChoices,
+    PresentState,
+    make_lathe_start,
+    make_mill_start,
+)
+from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRefusal
 from core.interpreter.shared.actions import ProgramStop, SpindleRun, ToolChange
-from core.interpreter.shared.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep
+from core.interpreter.shared.checkpoint import AxesLeg, Checkpoint, FunctionStep, PassStart
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Source
-from core.tool_edges import edge_key
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import ProgramSource
+from core.tool_edges import make_edge_key
 from tests.texts import text
 
 PLATE = """\
@@ -80,32 +85,34 @@ M30
 TOOLS = {5: ToolOffset(z=80.0, nose_radius=6.0), 6: ToolOffset(z=95.0, nose_radius=4.0)}
 
 
-def mill(program: str = PLATE) -> tuple[ReadProgram, Setup]:
-    return ReadProgram(Source("plate.h", program)), setup_for(
-        named_machine("ac-table-mill"), tools=TOOLS, secondary={}
+def mill(program: str = PLATE) -> tuple[SharedProgram, Setup]:
+    return SharedProgram(ProgramSource("plate.h", program)), create_setup(
+        load_named_machine("ac-table-mill"), tool_offsets=TOOLS, secondary_offsets={}
     )
 
 
-def lathe(program: str = TURNED) -> tuple[ReadProgram, Setup]:
-    machine = named_machine("sinumerik-modulo")
+def lathe(program: str = TURNED) -> tuple[SharedProgram, Setup]:
+    machine = load_named_machine("sinumerik-modulo")
     zero = {54: ZeroOffset(z=-300.0)}
-    return ReadProgram(Source("shaft.mpf", program)), setup_for(machine, tools={}, secondary={}, zero=zero)
+    return SharedProgram(ProgramSource("shaft.mpf", program)), create_setup(
+        machine, tool_offsets={}, secondary_offsets={}, zero_offsets=zero
+    )
 
 
 def searched(
-    of: tuple[ReadProgram, Setup], line: int, visit: int = 0, broken: Interruption | None = None
-) -> RestartPoint | NoRestart:
+    of: tuple[SharedProgram, Setup], line: int, visit: int = 0, broken: Interruption | None = None
+) -> RestartPoint | RestartRefusal:
     reading, setup = of
-    return ProgramSearch(reading, setup, lambda _count: None).find(line, visit, broken)
+    return BlockSearch(reading, setup, lambda _count: None).find_restart(line, visit, broken)
 
 
-def refused(of: tuple[ReadProgram, Setup], line: int, broken: Interruption | None = None) -> NoRestart:
+def refused(of: tuple[SharedProgram, Setup], line: int, broken: Interruption | None = None) -> RestartRefusal:
     found = searched(of, line, broken=broken)
-    assert isinstance(found, NoRestart)
+    assert isinstance(found, RestartRefusal)
     return found
 
 
-def good(of: tuple[ReadProgram, Setup], line: int, visit: int = 0) -> RestartPoint:
+def good(of: tuple[SharedProgram, Setup], line: int, visit: int = 0) -> RestartPoint:
     found = searched(of, line, visit)
     assert isinstance(found, RestartPoint), found
     return found
@@ -125,23 +132,27 @@ def told(block: Block) -> tuple[object, ...]:
     )
 
 
-def whole(of: tuple[ReadProgram, Setup]) -> list[Block]:
-    return list(of[0].begin(of[1]).blocks(to_first_error=True))
+def whole(of: tuple[SharedProgram, Setup]) -> list[Block]:
+    return list(of[0].start_pass(of[1]).generate_blocks(to_first_error=True))
 
 
-def restarted(of: tuple[ReadProgram, Setup], begin: Begin, start: tuple[float, ...]) -> list[Block]:
-    run = of[0].begin(replace(of[1], start=start, begin=begin))
-    blocks = list(run.blocks(to_first_error=True))
-    assert not run.failed, run.diagnostics
+def restarted(of: tuple[SharedProgram, Setup], begin: PassStart, start: tuple[float, ...]) -> list[Block]:
+    run = of[0].start_pass(replace(of[1], start=start, begin=begin))
+    blocks = list(run.generate_blocks(to_first_error=True))
+    assert not run.has_errors, run.diagnostics
     return blocks
 
 
 STANDS = (-50.0, 30.0, -420.0, 0.0, 0.0)
 
 
-def mill_begin(of: tuple[ReadProgram, Setup], found: RestartPoint, now: MachineNow | None = None) -> Begin:
+def mill_begin(
+    of: tuple[SharedProgram, Setup], found: RestartPoint, now: PresentState | None = None
+) -> PassStart:
     assert of[1].kinematics is not None
-    return begin_on_mill(found, now or MachineNow(STANDS, Modal()), Choices(), of[1].kinematics)
+    return make_mill_start(
+        found, now or PresentState(STANDS, ModalState()), OperatorChoices(), of[1].kinematics
+    )
 
 
 # --- what follows ---------------------------------------------------------------------------------------
@@ -180,9 +191,9 @@ def test_behind_the_way_a_mill_does_what_the_run_would_have_done(line: int, visi
 def test_behind_the_way_a_lathe_does_what_the_run_would_have_done(line: int, visit: int) -> None:
     of = lathe()
     found = good(of, line, visit)
-    now = MachineNow((150.0, 100.0, 0.0), Modal())
-    begin = begin_at(found, now, Choices())
-    blocks, made = restarted(of, begin, now.at), found.checkpoint.blocks
+    now = PresentState((150.0, 100.0, 0.0), ModalState())
+    begin = make_lathe_start(found, now, OperatorChoices())
+    blocks, made = restarted(of, begin, now.axis_positions), found.checkpoint.blocks
     rest = [told(each) for each in blocks[len(begin.approach) :]]
     assert rest == [told(each) for each in whole(of) if each.n > made]
 
@@ -197,7 +208,7 @@ def test_the_pass_that_was_interrupted_is_the_one_that_is_meant() -> None:
     broken = Interruption(second.n, 5, STANDS, second.n)
     found = searched(mill(), 9, broken=broken)
     assert isinstance(found, RestartPoint)
-    assert found.visit.number == 2
+    assert found.visit.visit_number == 2
 
 
 # --- the way --------------------------------------------------------------------------------------------
@@ -205,27 +216,31 @@ def test_the_pass_that_was_interrupted_is_the_one_that_is_meant() -> None:
 
 def test_a_mill_goes_out_along_the_tool_turns_over_and_in_last() -> None:
     of = mill()
-    turned = MachineNow((-50.0, 30.0, -420.0, 15.0, 200.0), Modal())
+    turned = PresentState((-50.0, 30.0, -420.0, 15.0, 200.0), ModalState())
     begin = mill_begin(of, good(of, 19), turned)
     legs = [step for step in begin.approach if isinstance(step, AxesLeg)]
     assert [leg.text for leg in legs] == ["Z", "Z", "A C", "X Y", "Z", "Z"]
-    assert dict(legs[1].goal)["Z"] == pytest.approx(-0.01)  # the top of its travel
-    assert dict(legs[2].goal) == pytest.approx({"A": 20.0, "C": 0.0})
+    assert dict(legs[1].target_positions)["Z"] == pytest.approx(-0.01)  # the top of its travel
+    assert dict(legs[2].target_positions) == pytest.approx({"A": 20.0, "C": 0.0})
     assert legs[-1].feed is not None
     assert all(leg.feed is None for leg in legs[1:-1])
 
 
 def test_another_tool_is_asked_for_at_the_top_and_the_spindle_turns_behind_it() -> None:
     of = mill()
-    begin = mill_begin(of, good(of, 15), MachineNow(STANDS, Modal(tool=5, spindle=1, rpm=3000.0)))
+    begin = mill_begin(of, good(of, 15), PresentState(STANDS, ModalState(tool=5, spindle=1, rpm=3000.0)))
     actions = [step.action for step in begin.approach if isinstance(step, FunctionStep)]
     assert actions[1:] == [ToolChange(6), ProgramStop(optional=False, message="TOOL 6"), SpindleRun(1500.0)]
 
 
 def test_an_axis_that_never_moved_stays_where_it_stands() -> None:
     found = good(mill(), 10, 1)
-    assert found.axes[3:] == (None, None)
-    goals = [dict(step.goal) for step in mill_begin(mill(), found).approach if isinstance(step, AxesLeg)]
+    assert found.axis_positions[3:] == (None, None)
+    goals = [
+        dict(step.target_positions)
+        for step in mill_begin(mill(), found).approach
+        if isinstance(step, AxesLeg)
+    ]
     assert not any("A" in goal or "C" in goal for goal in goals)
 
 
@@ -263,18 +278,18 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     assert first.travel is not None
     broken = Interruption(first.n, 5, first.travel.end, first.n)
     reading, setup = of
-    search = ProgramSearch(reading, setup, lambda _count: None)
-    found = search.find(10, 2, broken)
-    assert isinstance(found, NoRestart)
+    search = BlockSearch(reading, setup, lambda _count: None)
+    found = search.find_restart(10, 2, broken)
+    assert isinstance(found, RestartRefusal)
     assert found.why == text(
         "search.in-uncut-material", line=10, uncut=text("search.uncut-lines", first=9, last=10)
     )
-    above = search.find(7, 2, broken)
+    above = search.find_restart(7, 2, broken)
     assert isinstance(above, RestartPoint)
-    assert above.left_out == (10, 10)
-    half_cut = search.find(7, 2, broken._replace(at=STANDS))
+    assert above.skipped_lines == (10, 10)
+    half_cut = search.find_restart(7, 2, broken._replace(machine_position=STANDS))
     assert isinstance(half_cut, RestartPoint)
-    assert half_cut.left_out == (9, 10)
+    assert half_cut.skipped_lines == (9, 10)
 
 
 def test_a_full_circle_that_was_interrupted_counts_as_uncut_wherever_it_stopped() -> None:
@@ -282,8 +297,8 @@ def test_a_full_circle_that_was_interrupted_counts_as_uncut_wherever_it_stopped(
     circle = next(each for each in whole(of) if each.line == 8)
     assert circle.travel is not None
     found = searched(of, 10, broken=Interruption(circle.n, 5, circle.travel.end, circle.n))
-    assert isinstance(found, NoRestart)
-    assert found.before == 8
+    assert isinstance(found, RestartRefusal)
+    assert found.nearest_line_before == 8
 
 
 @pytest.mark.parametrize("turn", [360.0, 720.0])
@@ -314,7 +329,7 @@ def test_comments_and_lines_behind_the_end_are_told_apart() -> None:
 
 def test_a_refusal_names_the_nearest_good_lines() -> None:
     found = refused(mill(), 21)
-    assert (found.before, found.after) == (20, 23)
+    assert (found.nearest_line_before, found.nearest_line_after) == (20, 23)
 
 
 def test_a_line_that_is_named_in_the_place_of_another_is_good() -> None:
@@ -322,7 +337,7 @@ def test_a_line_that_is_named_in_the_place_of_another_is_good() -> None:
     of = lathe("G54 G90 G94 G71 DIAMON\nT1 D1\nG0 X0 Z1\nG1 Z-1 F600\nX6 F60\nZ1 F600\nM30\n")
     for line in (4, 5):
         found = refused(of, line)
-        for each in (found.before, found.after):
+        for each in (found.nearest_line_before, found.nearest_line_after):
             assert not each or good(of, each)
 
 
@@ -335,7 +350,7 @@ def test_work_that_nobody_wants_is_given_up() -> None:
 
     long = "G90 G54 G0 X10 Z10\n" + "G0 X20\nG0 X21\n" * 2000 + "M30\n"
     with pytest.raises(GivenUpError):
-        ProgramSearch(*lathe(long), watch).find(3)
+        BlockSearch(*lathe(long), watch).find_restart(3)
 
 
 CONTOUR = """\
@@ -352,9 +367,9 @@ M30
 """
 
 
-def edged(program: str = CONTOUR) -> tuple[ReadProgram, Setup]:
+def edged(program: str = CONTOUR) -> tuple[SharedProgram, Setup]:
     reading, around = lathe(program)
-    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), edge_key(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
+    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), make_edge_key(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
     return reading, replace(around, tools=tools)
 
 
@@ -367,7 +382,9 @@ def test_no_search_ends_on_a_contour_of_g42(line: int) -> None:
 def test_the_edge_and_its_nose_go_over_to_the_pass_behind(line: int) -> None:
     of = edged()
     found = good(of, line)
-    begin = begin_at(found, MachineNow((50.0, 60.0, 0.0), found.checkpoint.modal), Choices())
+    begin = make_lathe_start(
+        found, PresentState((50.0, 60.0, 0.0), found.checkpoint.modal), OperatorChoices()
+    )
     behind = [told(block) for block in restarted(of, begin, (50.0, 60.0, 0.0))]
     run = [told(block) for block in whole(of) if block.line >= line]
     assert [each[1:] for each in behind[-len(run) :]] == [each[1:] for each in run]
@@ -396,9 +413,13 @@ M30
 """
 
 
-def milled(program: str = FLATS) -> tuple[ReadProgram, Setup]:
-    setup = setup_for(named_machine("sinumerik-live"), tools={1: ToolOffset(10.0, 20.0, 4.0)}, secondary={})
-    return ReadProgram(Source("flats.mpf", program)), setup
+def milled(program: str = FLATS) -> tuple[SharedProgram, Setup]:
+    setup = create_setup(
+        load_named_machine("sinumerik-live"),
+        tool_offsets={1: ToolOffset(10.0, 20.0, 4.0)},
+        secondary_offsets={},
+    )
+    return SharedProgram(ProgramSource("flats.mpf", program)), setup
 
 
 @pytest.mark.parametrize("line", [9, 10, 12, 13, 14, 16])
@@ -406,9 +427,9 @@ def test_in_transmit_the_part_is_turned_to_where_the_run_would_have_had_it(line:
     """X, Z and C are where they would have been; C counts whole turns from where the part stands now."""
     of = milled()
     found = good(of, line)
-    now = MachineNow((150.0, 100.0, 725.0), Modal())
-    begin = begin_at(found, now, Choices())
-    blocks = restarted(of, begin, now.at)[len(begin.approach) :]
+    now = PresentState((150.0, 100.0, 725.0), ModalState())
+    begin = make_lathe_start(found, now, OperatorChoices())
+    blocks = restarted(of, begin, now.axis_positions)[len(begin.approach) :]
     run = [each for each in whole(of) if each.n > found.checkpoint.blocks]
     assert [told(each)[:3] for each in blocks] == [told(each)[:3] for each in run]
     for have, want in zip(blocks, run, strict=True):
@@ -419,7 +440,9 @@ def test_in_transmit_the_part_is_turned_to_where_the_run_would_have_had_it(line:
 
 
 def test_the_live_tool_and_the_held_part_come_before_the_line() -> None:
-    begin = begin_at(good(milled(), 10), MachineNow((150.0, 100.0, 0.0), Modal()), Choices())
+    begin = make_lathe_start(
+        good(milled(), 10), PresentState((150.0, 100.0, 0.0), ModalState()), OperatorChoices()
+    )
     told_of = [step.text for step in begin.approach if isinstance(step, FunctionStep)]
     assert told_of == ["M89", "LIVE ON"]
 
@@ -443,10 +466,10 @@ def test_a_spindle_that_the_run_would_have_held_is_brought_to_its_angle(
 ) -> None:
     of = lathe(HELD)
     found = good(of, line)
-    now = MachineNow((150.0, 100.0, 0.0), Modal())
-    begin = begin_at(found, now, Choices())
+    now = PresentState((150.0, 100.0, 0.0), ModalState())
+    begin = make_lathe_start(found, now, OperatorChoices())
     assert [step.text for step in begin.approach if isinstance(step, FunctionStep)] == told_of
-    behind = [told(block) for block in restarted(of, begin, now.at)][len(begin.approach) :]
+    behind = [told(block) for block in restarted(of, begin, now.axis_positions)][len(begin.approach) :]
     assert behind == [told(block) for block in whole(of) if block.n > found.checkpoint.blocks]
 
 
@@ -468,6 +491,6 @@ def test_only_a_place_of_a_rapid_with_the_table_still_is_above_what_was_left_out
     cutting: bool, turned: bool, good: bool
 ) -> None:
     """Tip at 60 - 20 = 40 mm, the highest cut begins at 30."""
-    stand = _Stand(cutting=cutting, turned=turned, length=20.0, top=30.0)
-    assert stand.above(Checkpoint(Modal(), at=(0.0, 0.0, 60.0))) is good
-    assert not stand.above(Checkpoint(Modal(), at=(0.0, 0.0, 49.0)))
+    stand = _PassState(is_cutting=cutting, moves_rotary_axes=turned, tool_length_mm=20.0, max_skipped_z=30.0)
+    assert stand.is_above_skipped_cuts(Checkpoint(ModalState(), at=(0.0, 0.0, 60.0))) is good
+    assert not stand.is_above_skipped_cuts(Checkpoint(ModalState(), at=(0.0, 0.0, 49.0)))

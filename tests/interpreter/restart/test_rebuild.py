@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
-from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRefusal
+from core.interpreter.restart.state_rebuild import OmniturnSearch
 from core.interpreter.shared.job_setup import ToolOffset
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, setup
 from tests.texts import text as text_of
 
 
-def find(text: str, line: int, visit: int = 0, **given: object) -> RestartPoint | NoRestart:
-    return StateRebuild(Source("PART", text), setup(**given), lambda _count: None).find(line, visit)  # type: ignore[arg-type]
+def find(text: str, line: int, visit: int = 0, **given: object) -> RestartPoint | RestartRefusal:
+    found_setup = setup(**given)  # type: ignore[arg-type]
+    return OmniturnSearch(ProgramSource("PART", text), found_setup, lambda _count: None).find_restart(
+        line, visit
+    )
 
 
 PLAIN = "G90G94F300G72\nT1\nX1Z.1\nM03S900\nM08\nG95F.005Z-.5\nX1.1\nM30\n"
@@ -34,9 +37,9 @@ def test_everything_that_a_line_inherits() -> None:
     assert (modal.diameter, modal.tool, modal.spindle, modal.rpm, modal.coolant) == (True, 1, 1, 900.0, True)
     assert (modal.per_rev, modal.feed) == (True, pytest.approx(0.005 * INCH))
     assert point.first_feed == pytest.approx(300 * INCH / 60)  # it goes on to count as a rapid
-    assert found.cut is not None
-    assert found.cut.radius == pytest.approx(0.55 * INCH)  # it feeds to X1.1, a diameter
-    assert found.cut.clear_z == pytest.approx(-20.0 + 0.1 * INCH)
+    assert found.cut_record is not None
+    assert found.cut_record.max_feed_radius == pytest.approx(0.55 * INCH)  # it feeds to X1.1, a diameter
+    assert found.cut_record.max_machine_z == pytest.approx(-20.0 + 0.1 * INCH)
 
 
 @pytest.mark.parametrize(
@@ -59,17 +62,17 @@ def test_lines_that_are_not_good_and_the_nearest_that_are(
     text: str, line: int, why: str, before: int, after: int
 ) -> None:
     answer = find(text, line, secondary={1: (-0.015, -0.015, 0.015)})
-    assert isinstance(answer, NoRestart)
+    assert isinstance(answer, RestartRefusal)
     assert answer.why == why
-    assert (answer.before, answer.after) == ((0 if before == 2 else before), after)
+    assert (answer.nearest_line_before, answer.nearest_line_after) == ((0 if before == 2 else before), after)
 
 
 @pytest.mark.parametrize("line", [1, 2])
 def test_nothing_has_moved_yet(line: int) -> None:
     answer = find("G90G94F300\nT1\nX1Z1\nX2\nM30\n", line)
-    assert isinstance(answer, NoRestart)
+    assert isinstance(answer, RestartRefusal)
     assert answer.why.startswith(f"No axis has moved before line {line}")
-    assert (answer.before, answer.after) == (0, 4)
+    assert (answer.nearest_line_before, answer.nearest_line_after) == (0, 4)
 
 
 IN_A_LOOP = "G90G94F300\nT1\nLS3\nX1Z.1\nX.5\nG91Z-.1\nG90X1\nLF\nM30\n"
@@ -79,19 +82,19 @@ IN_A_LOOP = "G90G94F300\nT1\nLS3\nX1Z.1\nX.5\nG91Z-.1\nG90X1\nLF\nM30\n"
 def test_a_program_whose_first_move_is_in_a_loop_is_entered_in_every_pass(visit: int, expected: int) -> None:
     answer = find(IN_A_LOOP, 5, visit=visit)
     assert isinstance(answer, RestartPoint)
-    assert (answer.visit.number, answer.visit.of) == (expected, 3)
+    assert (answer.visit.visit_number, answer.visit.visit_count) == (expected, 3)
     assert answer.checkpoint.machine == pytest.approx((INCH, 0.1 * INCH))
 
 
 def test_the_first_move_itself_in_the_first_pass_depends_on_the_start_and_later_passes_do_not() -> None:
     first, second = find(IN_A_LOOP, 4, visit=1), find(IN_A_LOOP, 4, visit=2)
-    assert isinstance(first, NoRestart)
+    assert isinstance(first, RestartRefusal)
     assert isinstance(second, RestartPoint)
 
 
 def test_a_loop_of_incremental_moves_alone_stays_refused() -> None:
     text = "G91G94F300\nT1\nLS3\nX.1Z-.1\nX-.1\nLF\nM30\n"
-    assert all(isinstance(find(text, 5, visit=each), NoRestart) for each in (1, 2, 3))
+    assert all(isinstance(find(text, 5, visit=each), RestartRefusal) for each in (1, 2, 3))
 
 
 def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are_known() -> None:
@@ -99,9 +102,9 @@ def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are
     said = {line: find(text, line) for line in range(3, 9)}
     for line in (3, 4, 5, 6):
         answer = said[line]
-        assert isinstance(answer, NoRestart)
+        assert isinstance(answer, RestartRefusal)
         assert "depend on the axis positions at Cycle Start" in answer.why
-        assert answer.after == 7
+        assert answer.nearest_line_after == 7
     assert isinstance(said[7], RestartPoint)
     assert isinstance(said[8], RestartPoint)  # incremental, from a place that is known
 
@@ -109,8 +112,8 @@ def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are
 def test_a_preset_at_an_unknown_place_stays_unknown() -> None:
     text = "G90G94F300\nG92X0Z0\nX1Z1\nX2\nT1\nX1Z1\nX2\nM30\n"
     answer = find(text, 4)
-    assert isinstance(answer, NoRestart)
-    assert answer.after == 7
+    assert isinstance(answer, RestartRefusal)
+    assert answer.nearest_line_after == 7
     assert isinstance(find(text, 7), RestartPoint)
 
 
@@ -118,9 +121,12 @@ def test_what_an_input_answered_is_not_guessed() -> None:
     sub = "}1\nZ.5\nM99\n"
     text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
     answer = find(text, 4)
-    assert isinstance(answer, NoRestart)
+    assert isinstance(answer, RestartRefusal)
     assert answer.why == text_of("search.input-read", line=4, asked=3)
-    assert (answer.before, answer.after) == (3, 6)  # behind Z2 both answers lead to one place
+    assert (answer.nearest_line_before, answer.nearest_line_after) == (
+        3,
+        6,
+    )  # behind Z2 both answers lead to one place
     assert isinstance(find(text, 3), RestartPoint)
     assert isinstance(find(text, 6), RestartPoint)
 
@@ -128,29 +134,29 @@ def test_what_an_input_answered_is_not_guessed() -> None:
 def test_a_second_unknown_answer_before_the_first_has_lost_its_effect() -> None:
     text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
     answer = find(text, 6)
-    assert isinstance(answer, NoRestart)
+    assert isinstance(answer, RestartRefusal)
     assert text_of("search.unknown-input", asked=4) in answer.why
 
 
 def test_an_input_asked_in_a_loop_or_in_a_subroutine() -> None:
     text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
     answer = find(text, 7)
-    assert isinstance(answer, NoRestart)
+    assert isinstance(answer, RestartRefusal)
     assert text_of("search.unknown-terminal", asked=4, terminal=3) in answer.why
 
 
 def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
     answer = find("G90G94F300\nX1Z1\nM97I3C0P1\nX2\nM30\n}1\nM30\nM99\n", 4)
-    assert isinstance(answer, NoRestart)
+    assert isinstance(answer, RestartRefusal)
     broken = find("G90G94F300\nX1Z1\nX1R9\nX2\nX3\nM30\n", 5)
-    assert isinstance(broken, NoRestart)
+    assert isinstance(broken, RestartRefusal)
     assert broken.why == "The program has errors before line 5."
 
 
 def test_loops_are_gone_through_and_asks_go_on_from_each_other() -> None:
     text = "G90G94F300\nX1Z1\nLS50\nG91X-.01\nZ-.01\nLF\nG90\nX1Z1\nM30\n"
-    rebuild = StateRebuild(Source("PART", text), setup(), lambda _count: None)
-    first, later, earlier = rebuild.find(3), rebuild.find(7), rebuild.find(3)
+    rebuild = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None)
+    first, later, earlier = rebuild.find_restart(3), rebuild.find_restart(7), rebuild.find_restart(3)
     assert isinstance(first, RestartPoint)
     assert isinstance(later, RestartPoint)
     assert later.checkpoint.x == pytest.approx(0.5 * INCH)
@@ -168,14 +174,16 @@ def test_the_work_is_given_up_when_nobody_wants_it_any_more() -> None:
 
     text = "G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n"
     with pytest.raises(GivenUpError):
-        StateRebuild(Source("PART", text), setup(), watch).find(7)
+        OmniturnSearch(ProgramSource("PART", text), setup(), watch).find_restart(7)
 
 
 NESTED = "G90G94F300\nX1Z1\nLS2\nG91X-.1\nLS3\nZ-.1\nLF\nM98P1\nLF\nG90\nX1Z1\nM30\n}1\nX.05\nM99\n"
 
 
 def visit(text: str, line: int, number: int, broken: Interruption | None = None) -> RestartPoint:
-    found = StateRebuild(Source("PART", text), setup(), lambda _count: None).find(line, number, broken)
+    found = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None).find_restart(
+        line, number, broken
+    )
     assert isinstance(found, RestartPoint), found
     return found
 
@@ -199,8 +207,8 @@ def test_passes_of_nested_loops_and_calls(
     line: int, number: int, of: int, x: float, z: float, within: tuple[tuple[int, ...], ...]
 ) -> None:
     found = visit(NESTED, line, number)
-    assert (found.visit.number, found.visit.of) == (number, of)
-    assert tuple(tuple(each) for each in found.visit.within) == within
+    assert (found.visit.visit_number, found.visit.visit_count) == (number, of)
+    assert tuple(tuple(each) for each in found.visit.enclosing_levels) == within
     assert (found.checkpoint.x / INCH, found.checkpoint.z / INCH) == pytest.approx((x, z))
 
 
@@ -214,10 +222,10 @@ def test_the_work_shift_of_a_pass_is_what_the_passes_before_it_have_added_up() -
 def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
     # X1Z1 is block 1, the first outer pass 2 to 6, the second 7 to 11: in that line 6 is 8, 9, 10.
     found = visit(NESTED, 6, 0, Interruption(9, 0, (0.0, 0.0, 0.0), 9))
-    assert found.visit.number == 5
-    assert found.was == found.visit
+    assert found.visit.visit_number == 5
+    assert found.interrupted_visit == found.visit
     other = visit(NESTED, 6, 2, Interruption(9, 0, (0.0, 0.0, 0.0), 9))
-    assert (other.visit.number, other.was) == (2, found.visit)
+    assert (other.visit.visit_number, other.interrupted_visit) == (2, found.visit)
 
 
 @pytest.mark.parametrize(
@@ -242,6 +250,8 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
     ],
 )  # fmt: skip
 def test_passes_that_are_no_place_to_go_on(text: str, line: int, number: int, why: str) -> None:
-    answer = StateRebuild(Source("PART", text), setup(), lambda _count: None).find(line, number)
-    assert isinstance(answer, NoRestart)
+    answer = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None).find_restart(
+        line, number
+    )
+    assert isinstance(answer, RestartRefusal)
     assert answer.why == why

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_retract import Place, Retract, ToolPlace, retract
-from core.interpreter.restart.state_rebuild import StateRebuild
+from core.interpreter.restart.restart_retract import Retract, ToolPosition, ToolSituation, plan_retract
+from core.interpreter.restart.state_rebuild import OmniturnSearch
 from core.interpreter.shared.job_setup import ControlLimits
-from core.language.source import Source
+from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, OUTPUTS, setup
 
 HEAD = "G90G94F300\nT1\nM03S900\n"
@@ -16,15 +16,17 @@ LIMITS = ControlLimits(m_outputs={**OUTPUTS, 27: ("mill", True)})
 
 
 def cut_of(text: str) -> CutRecord:
-    return StateRebuild(Source("PART", f"{HEAD}{text}M30\n"), setup(limits=LIMITS), lambda _count: None).cut
+    return OmniturnSearch(
+        ProgramSource("PART", f"{HEAD}{text}M30\n"), setup(limits=LIMITS), lambda _count: None
+    ).cut_record
 
 
 def standing(text: str, line: int, x: float, z: float, nth: int = 1) -> Retract:
     """The tip at (x, z), inches, on the ``nth`` move of this line of the text (the first is 4)."""
     cut = cut_of(text)
-    rows = [row for row in range(len(cut)) if cut.line[row] == line]
-    n = sorted({int(cut.n[row]) for row in rows})[nth - 1]
-    return retract(cut, Place(n, 1, x * INCH, z * INCH), n)
+    rows = [row for row in range(len(cut)) if cut.line_number[row] == line]
+    n = sorted({int(cut.block_number[row]) for row in rows})[nth - 1]
+    return plan_retract(cut, ToolPosition(n, 1, x * INCH, z * INCH), n)
 
 
 def hops(found: Retract) -> list[tuple[float, float]]:
@@ -75,35 +77,35 @@ ON_THE_FACE = "X-.8Z1\nM27\nM19\nG94F10Z-.1\n(~PLXC)\n(X.4Y.3)\n(END)\nF300Z1\nM
 )  # fmt: skip
 def test_the_way_out_of(text: str, line: int, x: float, z: float, way: list[tuple[float, float]]) -> None:
     found = standing(text, line, x, z)
-    assert found.tool_place is ToolPlace.WORK
+    assert found.situation is ToolSituation.IN_PART
     assert hops(found) == way
 
 
 def test_out_of_a_thread_it_is_x_alone_first_and_never_back_along_z() -> None:
     # S is X.5, I .02 a side: it is drawn back to S + 3 I.
     found = standing(THREAD, 5, 0.5, -0.2)
-    assert found.tool_place is ToolPlace.THREAD
+    assert found.situation is ToolSituation.IN_THREAD
     assert hops(found)[0] == (0.56, -0.2)
 
 
 def test_a_tap_has_no_way_out_by_the_slides() -> None:
     found = standing(TAP, 5, 0.0, -0.3)
-    assert found.tool_place is ToolPlace.TAP
-    assert not found.known
-    assert standing(TAP, 7, 0.0, -0.3).tool_place is ToolPlace.TAP  # on its way back too
+    assert found.situation is ToolSituation.IN_TAPPED_HOLE
+    assert not found.is_known
+    assert standing(TAP, 7, 0.0, -0.3).situation is ToolSituation.IN_TAPPED_HOLE  # on its way back too
 
 
 def test_a_live_drill_in_a_cross_hole_leaves_along_x() -> None:
     found = standing(CROSS, 8, 0.6, -0.3)
-    assert (found.tool_place, hops(found)) == (ToolPlace.MILL, [(0.75, -0.3)])
+    assert (found.situation, hops(found)) == (ToolSituation.MILLING, [(0.75, -0.3)])
 
 
 def test_a_mill_leaves_along_its_own_axis() -> None:
     side = standing(ON_THE_SIDE, 11, -0.4, -0.2)
-    assert side.tool_place is ToolPlace.MILL
+    assert side.situation is ToolSituation.MILLING
     assert hops(side)[0][0] == -1.0  # X, away from the centre, as far as it has been
     face = standing(ON_THE_FACE, 9, -0.6, -0.1)
-    assert (face.tool_place, hops(face)) == (ToolPlace.MILL, [(-0.6, 1.0)])
+    assert (face.situation, hops(face)) == (ToolSituation.MILLING, [(-0.6, 1.0)])
 
 
 @pytest.mark.parametrize(
@@ -114,14 +116,14 @@ def test_a_tool_that_the_program_did_not_bring_there_has_no_way_known(
     text: str, line: int, x: float, z: float
 ) -> None:
     found = standing(text, line, x, z)
-    assert (found.tool_place, found.known) == (ToolPlace.UNKNOWN, False)
+    assert (found.situation, found.is_known) == (ToolSituation.UNKNOWN, False)
 
 
 def test_where_the_collet_was_opened_since_nothing_of_before_counts() -> None:
     """The bar has been pulled: where the tool came through is metal now."""
     pulled = "X.5Z.1\nZ-.3\nM05\nM13\nF20Z.3\nM12\nF300Z1\nX1\n"
     found = standing(pulled, 8, 0.5, 0.0)
-    assert not found.known
+    assert not found.is_known
 
 
 def test_the_largest_cut_of_a_program_that_only_bores_is_not_the_outside_of_its_bar() -> None:

@@ -13,13 +13,18 @@ import numpy.typing as npt
 import pytest
 
 from core.interpreter.restart.cut_record import FACE, FEED, SIDE, CutRecord
-from core.interpreter.restart.restart_approach import Choices, MachineNow, approach_steps, way_out
+from core.interpreter.restart.restart_approach import (
+    OperatorChoices,
+    PresentState,
+    plan_exit_moves,
+    plan_lathe_approach,
+)
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
-from core.interpreter.restart.state_rebuild import StateRebuild
-from core.interpreter.shared.checkpoint import ApproachStep, Leg
+from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.shared.checkpoint import ApproachStep, StraightLeg
 from core.interpreter.shared.job_setup import ControlLimits, Setup
-from core.interpreter.shared.modal_state import Modal
-from core.language.source import Source, load_source
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import ProgramSource, load_source
 from tests.interpreter.programs import ALL_TOOLS, OUTPUTS, setup
 from tests.interpreter.restart.again import of_each_line
 from tests.interpreter.restart.test_everything import GOLDEN, SAMPLES, WORKED, golden_setup
@@ -69,9 +74,9 @@ class Metal:
     def __init__(self, cut: CutRecord, tool: int, row: int) -> None:
         self.cut, self.tool = cut, tool
         index = np.arange(len(cut))
-        feeds = ((cut.how & FEED) != 0) & ((cut.how & (FACE | SIDE)) == 0)
+        feeds = ((cut.move_kind & FEED) != 0) & ((cut.move_kind & (FACE | SIDE)) == 0)
         self.done, self.row, self.feeds = index <= row, row, feeds
-        self.own = cut.tool == tool
+        self.own = cut.tool_number == tool
         self.radius = float(np.nanmax(np.abs(cut.x[feeds]), initial=0.0))
         self.front = float(np.nanmax(cut.z[feeds], initial=-np.inf))
 
@@ -109,23 +114,23 @@ def spoiled(
     """The first leg that goes where it must not, in words; empty: none does."""
     x, z = at
     for step in steps:
-        if not isinstance(step, Leg):
+        if not isinstance(step, StraightLeg):
             continue
         to_x, to_z = x if step.x is None else step.x, z if step.z is None else step.z
         points = between(x - offset[0], z - offset[1], to_x - offset[0], to_z - offset[1])
-        if metal.crossed(points) or (step.rapid and not metal.rapid(points)):
-            return f"{'rapid' if step.rapid else 'feed'} to {to_x - offset[0]:.3f} {to_z - offset[1]:.3f}"
+        if metal.crossed(points) or (step.is_rapid and not metal.rapid(points)):
+            return f"{'rapid' if step.is_rapid else 'feed'} to {to_x - offset[0]:.3f} {to_z - offset[1]:.3f}"
         x, z = to_x, to_z
     return ""
 
 
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: path.stem)
 def test_the_way_out_from_every_block_and_from_within_it(path: Path) -> None:
-    cut = StateRebuild(load_source(path), given_for(path), lambda _count: None).cut
+    cut = OmniturnSearch(load_source(path), given_for(path), lambda _count: None).cut_record
     known = asked = 0
     for row in range(0, len(cut), max(1, len(cut) // MOST)):
-        tool, n = int(cut.tool[row]), int(cut.n[row])
-        off_x, off_z = cut.offsets[tool]
+        tool, n = int(cut.tool_number[row]), int(cut.block_number[row])
+        off_x, off_z = cut.tool_offsets[tool]
         metal = Metal(cut, tool, row)
         for share in (0.35, 0.8, 1.0):
             x = float(cut.x0[row] + share * (cut.x[row] - cut.x0[row])) + off_x
@@ -133,10 +138,12 @@ def test_the_way_out_from_every_block_and_from_within_it(path: Path) -> None:
             if np.isnan(x) or np.isnan(z):
                 continue
             at = (x, z, 0.0)
-            steps = way_out(cut, MachineNow(at, Modal(), Interruption(n, tool, at, n)), Choices())
+            steps = plan_exit_moves(
+                cut, PresentState(at, ModalState(), Interruption(n, tool, at, n)), OperatorChoices()
+            )
             known, asked = known + bool(steps), asked + 1
             wrong = spoiled(metal, steps, (x, z), (off_x, off_z))
-            assert not wrong, (int(cut.line[row]), share, wrong)
+            assert not wrong, (int(cut.line_number[row]), share, wrong)
     assert known >= 0.6 * asked or path in GOLDEN or path.stem in FEW, (known, asked)
 
 
@@ -144,22 +151,22 @@ FEW = {"tapping"}
 """Programs out of whose work the control knows few ways: a tap comes out by its spindle alone."""
 
 
-def ways_in(source: Source, given: Setup) -> tuple[int, int]:
+def ways_in(source: ProgramSource, given: Setup) -> tuple[int, int]:
     """Checks the way to every good line, in its first passes and the last; how many there were."""
     said = of_each_line(source, given, 3)
     good = [each for each in said if isinstance(each, RestartPoint)]
     for found in good:
-        cut, modal = found.cut, found.checkpoint.modal
+        cut, modal = found.cut_record, found.checkpoint.modal
         assert cut is not None
-        row = cut.row_behind(found.checkpoint.blocks)
+        row = cut.find_last_row(found.checkpoint.blocks)
         if row < 0:
             continue
-        tool = int(cut.tool[row])
-        clear = (found.checkpoint.machine[0], cut.clear_z + 1.0, 0.0)
-        steps = approach_steps(found, MachineNow(clear, Modal()), Choices())
-        wrong = spoiled(Metal(cut, tool, row), steps, clear[:2], cut.offsets[tool])
+        tool = int(cut.tool_number[row])
+        clear = (found.checkpoint.machine[0], cut.max_machine_z + 1.0, 0.0)
+        steps = plan_lathe_approach(found, PresentState(clear, ModalState()), OperatorChoices())
+        wrong = spoiled(Metal(cut, tool, row), steps, clear[:2], cut.tool_offsets[tool])
         assert not wrong, (found.line, found.visit, wrong)
-        assert modal.tool in cut.offsets or not cut.offsets
+        assert modal.tool in cut.tool_offsets or not cut.tool_offsets
     return len(good), len(said)
 
 

@@ -6,9 +6,9 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.editor.editor_parts_view import Mode
+from app.editor.editor_parts_view import EditorMode
 from app.screen.panel import Panel
-from core.language.code_book import Entry
+from core.language.code_book import CodeBookEntry
 from tests.screen.editor.writer import Writer
 
 Key = Qt.Key
@@ -20,28 +20,28 @@ def proved(writer: Writer) -> Writer:
     """In front of a program that is proved: the book of its language is at hand."""
     writer.new("coded")
     writer.write("G90G94G72F100\nG0")
-    writer.sees(lambda: writer.proved() and writer.editor.findings.findings.book is not None)
+    writer.sees(lambda: writer.proved() and writer.editor.finding_list.findings.code_book is not None)
     return writer
 
 
-def head_of(entry: Entry | None) -> str:
+def head_of(entry: CodeBookEntry | None) -> str:
     return "" if entry is None else entry.head
 
 
 def marked(writer: Writer) -> str:
-    return head_of(writer.editor.codes._help.chosen)
+    return head_of(writer.editor.code_list._help.selected_entry)
 
 
 def look_up(writer: Writer) -> None:
     writer.key(Key.Key_Space, CTRL)
-    writer.sees(lambda: writer.editor.mode is Mode.CODES)
+    writer.sees(lambda: writer.editor.mode is EditorMode.CODES)
 
 
 def test_the_line_beside_the_text_says_what_the_code_means(proved: Writer) -> None:
-    proved.editor.go_to(1, 5)
-    proved.sees(lambda: head_of(proved.editor.code.entry) == "G94")
-    proved.editor.go_to(1, 8)
-    proved.sees(lambda: head_of(proved.editor.code.entry) == "G72")
+    proved.editor.move_cursor_to(1, 5)
+    proved.sees(lambda: head_of(proved.editor.code_strip.entry) == "G94")
+    proved.editor.move_cursor_to(1, 8)
+    proved.sees(lambda: head_of(proved.editor.code_strip.entry) == "G72")
 
 
 def test_what_is_typed_is_completed(proved: Writer) -> None:
@@ -52,7 +52,7 @@ def test_what_is_typed_is_completed(proved: Writer) -> None:
     assert marked(proved) == "G02"
     proved.key(Key.Key_Return)
     assert proved.text() == "G90G94G72F100\nG02"
-    assert proved.editor.mode is Mode.TEXT
+    assert proved.editor.mode is EditorMode.TEXT
     proved.write("X.5")
     assert proved.text().endswith("G02X.5")
     proved.key(Key.Key_Z, CTRL)
@@ -70,11 +70,11 @@ def test_chapters_are_turned_and_left_without_a_trace(proved: Writer) -> None:
     look_up(proved)
     before = proved.text()
     proved.key(Key.Key_Right)
-    other = proved.editor.codes._help.title
+    other = proved.editor.code_list._help.title
     proved.key(Key.Key_Left)
-    assert proved.editor.codes._help.title != other
+    assert proved.editor.code_list._help.title != other
     proved.key(Key.Key_Escape)
-    assert proved.editor.mode is Mode.TEXT
+    assert proved.editor.mode is EditorMode.TEXT
     assert proved.text() == before
 
 
@@ -84,15 +84,15 @@ def test_a_finger_opens_marks_and_writes(proved: Writer) -> None:
         at = panel._places[place][0].center().toPoint()
         QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=at)
 
-    touch(proved.editor.code, 0)
-    proved.sees(lambda: proved.editor.mode is Mode.CODES)
-    touch(proved.editor.codes, 1)
+    touch(proved.editor.code_strip, 0)
+    proved.sees(lambda: proved.editor.mode is EditorMode.CODES)
+    touch(proved.editor.code_list, 1)
     proved.sees(lambda: marked(proved) == "G01")
-    touch(proved.editor.codes, 1)
+    touch(proved.editor.code_list, 1)
     assert proved.text() == "G90G94G72F100\nG01"
 
 
 def test_nothing_is_looked_up_before_the_first_proof(writer: Writer) -> None:
     writer.new("early")
-    writer.editor.codes._help._book = None
-    assert not writer.editor.codes._help.ask()
+    writer.editor.code_list._help._book = None
+    assert not writer.editor.code_list._help.open_choices()

@@ -9,32 +9,32 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from app.screen import page_table
-from app.screen.entry_panel import PROGRAMS
+from app.screen.entry_panel import PROGRAM_KEYS
 from app.screen.panel import Panel
-from app.screen.window_layout import FINGER
+from app.screen.window_layout import FINGERTIP_PX
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 
-KEYS = [key for row in PROGRAMS for key in row]
+KEYS = [key for row in PROGRAM_KEYS for key in row]
 
 
 def touch(writer: Writer, panel: Panel, place: int) -> None:
     """A finger in the middle of a place."""
     writer.window.grab()
     box, *_ = panel._places[place]
-    assert min(box.width(), box.height()) >= FINGER
+    assert min(box.width(), box.height()) >= FINGERTIP_PX
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
 
 
 def strike(writer: Writer, *keys: str) -> None:
     for key in keys:
-        touch(writer, writer.editor.letters, KEYS.index(key))
+        touch(writer, writer.editor.letter_pad, KEYS.index(key))
 
 
 def shown(writer: Writer) -> None:
     """KEYBOARD, at the right of the line over the text."""
-    touch(writer, writer.editor.head, 0)
-    assert writer.editor.letters.isVisible()
+    touch(writer, writer.editor.head_line, 0)
+    assert writer.editor.letter_pad.isVisible()
 
 
 @pytest.mark.parametrize("size", [(1024, 600), (1920, 1080)])
@@ -61,7 +61,7 @@ def test_a_program_is_written_and_saved_by_a_finger(
     assert writer.text() == "G90G94F300\n(A B)\nX-.5Z+1\nM30"
     strike(writer, "Up", "Left", "Left", "Down", "Right", "Back", *"0")
     assert writer.text().endswith("\nM00")
-    writer.window.press("F2")
+    writer.window.press_key("F2")
     writer.sees((tmp_path / "touched.nc").exists)
 
 
@@ -79,24 +79,24 @@ def test_what_is_asked_takes_the_keys(writer: Writer) -> None:
     shown(writer)
     strike(writer, *"X1", "Enter", *"X2")
     writer.key(Key.Key_F5)
-    assert writer.editor.letters.isVisible()
+    assert writer.editor.letter_pad.isVisible()
     strike(writer, "1", "Enter")
-    assert writer.editor.field.line == 1
+    assert writer.editor.text_field.cursor_line == 1
     assert writer.text() == "X1\nX2"
 
 
 def test_it_goes_away_and_the_path_is_seen_again(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
-    assert not writer.editor.path.isVisible()
-    touch(writer, writer.editor.head, 0)
-    assert not writer.editor.letters.isVisible()
-    assert writer.editor.path.isVisible()
+    assert not writer.editor.path_view.isVisible()
+    touch(writer, writer.editor.head_line, 0)
+    assert not writer.editor.letter_pad.isVisible()
+    assert writer.editor.path_view.isVisible()
     shown(writer)
     writer.key(Key.Key_F7)  # the history writes nothing
-    assert not writer.editor.letters.isVisible()
+    assert not writer.editor.letter_pad.isVisible()
     writer.key(Key.Key_Escape)
-    assert writer.editor.letters.isVisible()
+    assert writer.editor.letter_pad.isVisible()
     assert writer.front == page_table.EDITOR
 
 
@@ -104,20 +104,23 @@ def test_the_text_keeps_room_over_it(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     writer.window.grab()
-    assert writer.editor.field.height() >= 3 * writer.editor.field.fontMetrics().height()
-    assert writer.editor.field.geometry().bottom() < writer.editor.letters.geometry().top()
+    assert writer.editor.text_field.height() >= 3 * writer.editor.text_field.fontMetrics().height()
+    assert writer.editor.text_field.geometry().bottom() < writer.editor.letter_pad.geometry().top()
 
 
 def test_a_finger_on_a_key_leaves_the_keyboard_where_it_is(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
     strike(writer, "X")
-    assert writer.editor.field.hasFocus()
+    assert writer.editor.text_field.hasFocus()
     writer.type("1")
     writer.key(Key.Key_F4)
     strike(writer, "X")
     writer.key(Key.Key_Tab)
     strike(writer, "Z")
-    assert writer.editor.ask.second.hasFocus()
-    assert (writer.editor.ask.first.text(), writer.editor.ask.second.text()) == ("X", "Z")
+    assert writer.editor.question_line.second_field.hasFocus()
+    assert (
+        writer.editor.question_line.first_field.text(),
+        writer.editor.question_line.second_field.text(),
+    ) == ("X", "Z")
     assert writer.text() == "X1"

@@ -21,8 +21,8 @@ def drawn(writer: Writer) -> Writer:
     writer.new("looked")
     writer.write(PART)
     page = writer.editor
-    writer.sees(lambda: writer.proved() and page.path.drawn)
-    assert page.path.picture is page.editor.proof.now.picture
+    writer.sees(lambda: writer.proved() and page.path_view.has_path)
+    assert page.path_view.picture is page.editor.live_proof.current.picture
     return writer
 
 
@@ -32,51 +32,53 @@ def inch(z: float, diameter: float) -> tuple[float, float]:
 
 def touch(writer: Writer, z: float, diameter: float) -> None:
     """A finger on the path."""
-    path = writer.editor.path
+    path = writer.editor.path_view
     pane = path.panes[0]
-    at = (pane.room.topLeft() + pane.spot(*inch(z, diameter))).toPoint()
+    at = (pane.area.topLeft() + pane.map_to_pane(*inch(z, diameter))).toPoint()
     QTest.mouseClick(path, Qt.MouseButton.LeftButton, pos=at + QPoint(1, 2))
 
 
 def test_touching_the_path_leads_to_its_line(drawn: Writer) -> None:
     touch(drawn, -0.5, 0.5)
-    assert drawn.editor.field.line == 5
+    assert drawn.editor.text_field.cursor_line == 5
     touch(drawn, -1.5, 1.0)
-    assert drawn.editor.field.line == 6
-    assert drawn.editor.field.hasFocus()
+    assert drawn.editor.text_field.cursor_line == 6
+    assert drawn.editor.text_field.hasFocus()
 
 
 def test_touching_nothing_leads_nowhere(drawn: Writer) -> None:
-    line = drawn.editor.field.line
+    line = drawn.editor.text_field.cursor_line
     touch(drawn, -1.0, -1.4)
-    assert drawn.editor.field.line == line
+    assert drawn.editor.text_field.cursor_line == line
 
 
 def test_what_the_line_of_the_cursor_draws_is_marked(drawn: Writer) -> None:
-    drawn.editor.go_to(6)
-    picture = drawn.editor.path.picture
+    drawn.editor.move_cursor_to(6)
+    picture = drawn.editor.path_view.picture
     assert picture is not None
-    drawn.sees(lambda: drawn.editor.path.tip.block == picture.block_of_line(6))
-    ((start, end),) = drawn.editor.path.panes[0].marked
+    drawn.sees(lambda: drawn.editor.path_view.tip_position.block == picture.find_block_for_line(6))
+    ((start, end),) = drawn.editor.path_view.panes[0].marked_point_ranges
     points = [(picture.z[k], picture.x[k]) for k in range(start - 1, end)]
     assert points == [pytest.approx(inch(-1, 0.5)), pytest.approx(inch(-2, 1.5))]
 
 
 def test_a_line_without_moves_marks_nothing(drawn: Writer) -> None:
-    drawn.editor.go_to(2)
-    drawn.sees(lambda: not any(len(range(*part)) for part in drawn.editor.path.panes[0].marked))
+    drawn.editor.move_cursor_to(2)
+    drawn.sees(
+        lambda: not any(len(range(*part)) for part in drawn.editor.path_view.panes[0].marked_point_ranges)
+    )
 
 
 def test_a_taper_is_measured_by_keys(drawn: Writer) -> None:
     drawn.key(Key.Key_M, CTRL)
-    path = drawn.editor.path
-    assert path.ruler is not None
+    path = drawn.editor.path_view
+    assert path.measurement is not None
     assert path.hasFocus()
-    while path.ruler.cursor[:2] != pytest.approx(inch(-1, 0.5)):
+    while path.measurement.cursor[:2] != pytest.approx(inch(-1, 0.5)):
         drawn.key(Key.Key_Tab)
     drawn.key(Key.Key_Return)
     drawn.key(Key.Key_Tab)
-    rows = dict(path.ruler.rows(path.in_mm))
+    rows = dict(path.measurement.make_rows(path.is_metric))
     assert rows["ΔX Ø"] == "1.00000"
     assert rows["ΔX R"] == "0.50000"
     assert rows["ΔZ"] == "−1.00000"
@@ -86,24 +88,24 @@ def test_a_taper_is_measured_by_keys(drawn: Writer) -> None:
 
 
 def test_from_the_cross_to_the_line(drawn: Writer) -> None:
-    drawn.editor.go_to(1)
+    drawn.editor.move_cursor_to(1)
     drawn.key(Key.Key_M, CTRL)
-    path = drawn.editor.path
-    assert path.ruler is not None
-    while path.ruler.cursor[:2] != pytest.approx(inch(-2, 1.5)):
+    path = drawn.editor.path_view
+    assert path.measurement is not None
+    while path.measurement.cursor[:2] != pytest.approx(inch(-2, 1.5)):
         drawn.key(Key.Key_Tab)
     drawn.key(Key.Key_F3)
-    assert drawn.editor.field.line == 6
-    assert drawn.editor.field.hasFocus()
-    assert path.ruler is None
+    assert drawn.editor.text_field.cursor_line == 6
+    assert drawn.editor.text_field.hasFocus()
+    assert path.measurement is None
 
 
 def test_a_cross_beside_the_path_names_no_line(drawn: Writer) -> None:
     drawn.key(Key.Key_M, CTRL)
-    ruler = drawn.editor.path.ruler
+    ruler = drawn.editor.path_view.measurement
     assert ruler is not None
     for _ in range(40):
-        QTest.keyClick(drawn.editor.path, Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
+        QTest.keyClick(drawn.editor.path_view, Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
     drawn.key(Key.Key_F3)
     drawn.sees(lambda: begins(drawn.prompt(), "editor.cross-on-no-line"))
 
@@ -113,27 +115,27 @@ def test_esc_goes_back_to_the_text(drawn: Writer) -> None:
     before = drawn.text()
     drawn.type("xz")  # no letter writes while one looks
     drawn.key(Key.Key_Escape)
-    assert drawn.editor.field.hasFocus()
-    assert drawn.editor.path.ruler is None
+    assert drawn.editor.text_field.hasFocus()
+    assert drawn.editor.path_view.measurement is None
     assert drawn.text() == before
 
 
 def test_zoom_keys_work_while_one_looks(drawn: Writer) -> None:
     drawn.key(Key.Key_M, CTRL)
-    before = drawn.editor.path.view
+    before = drawn.editor.path_view.first_projection
     drawn.key(Key.Key_Z)
-    nearer = drawn.editor.path.view
+    nearer = drawn.editor.path_view.first_projection
     assert before is not None
     assert nearer is not None
     assert nearer.scale > before.scale
     drawn.key(Key.Key_Right, CTRL)
-    assert drawn.editor.path.view != nearer
+    assert drawn.editor.path_view.first_projection != nearer
     drawn.key(Key.Key_F5)
-    assert drawn.editor.path.view == before
+    assert drawn.editor.path_view.first_projection == before
 
 
 def test_without_a_path_there_is_nothing_to_look_at(writer: Writer) -> None:
     writer.new("empty")
     writer.key(Key.Key_M, CTRL)
     writer.sees(lambda: shows(writer.prompt(), "editor.no-path-yet"))
-    assert writer.editor.path.ruler is None
+    assert writer.editor.path_view.measurement is None

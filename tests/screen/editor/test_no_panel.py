@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 
-from app.editor.editor_parts_view import Mode
+from app.editor.editor_parts_view import EditorMode
 from app.screen import page_table
 from app.screen.page_base import EditorPanel
 from tests.screen.editor.writer import Writer
@@ -22,9 +22,12 @@ def no_panel(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("key", [Key.Key_F3, Key.Key_F4])
 def test_no_key_opens_a_panel(no_panel: None, writer: Writer, key: Key) -> None:
     writer.new("plain")
-    assert type(writer.editor.panel) is EditorPanel
+    assert type(writer.editor.editor_panel) is EditorPanel
     writer.key(key, SHIFT)
-    writer.editor.head.grab()
-    assert (writer.editor.mode, len(writer.editor.head._places)) == (Mode.TEXT, 1)  # the drawn keyboard
+    writer.editor.head_line.grab()
+    assert (writer.editor.mode, len(writer.editor.head_line._places)) == (
+        EditorMode.TEXT,
+        1,
+    )  # the drawn keyboard
     writer.type("g04")
     assert writer.text() == "g04"

@@ -11,33 +11,33 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import NONE
-from app.desk.status.formats import local_time
-from app.editor.editor import Editor, Stage, enter
-from app.editor.editor_parts_view import FindingList, editor_places
-from app.editor.live_proof import Findings
-from app.editor.text_view import TextField
-from app.screen.look import DARK, LIGHT, Look
-from app.screen.window_layout import FINGER
+from app.compose.stored_offsets import NO_OFFSETS
+from app.desk.status.formats import format_local_time
+from app.editor.editor_model import EditorModel, EditorStage, open_editor
+from app.editor.editor_parts_view import FindingList, make_editor_layout
+from app.editor.live_proof import ProofFindings
+from app.editor.text_view import ProgramTextField
+from app.screen.screen_theme import DARK_PALETTE, LIGHT_PALETTE, ScreenTheme
+from app.screen.window_layout import FINGERTIP_PX
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.editor.shop import GOOD
 
 KEYS = 2  # places before those of the rows, where not all of them fit: the keys that leaf
 
 
 @pytest.fixture
-def field(qtbot: QtBot) -> Iterator[TextField]:
+def field(qtbot: QtBot) -> Iterator[ProgramTextField]:
     window = QWidget()
     qtbot.addWidget(window)
-    yield TextField(Look(DARK), window)
+    yield ProgramTextField(ScreenTheme(DARK_PALETTE), window)
     window.close()
 
 
-def inks(field: TextField, line: int) -> list[tuple[str, str]]:
+def inks(field: ProgramTextField, line: int) -> list[tuple[str, str]]:
     """What is written in which colour."""
     block = field.document().findBlockByNumber(line - 1)
     text, found = block.text(), []
@@ -47,57 +47,68 @@ def inks(field: TextField, line: int) -> list[tuple[str, str]]:
     return found
 
 
-def test_words_are_coloured_as_the_lexer_reads_them(field: TextField) -> None:
-    field.put_text("g0 1X.5F.1(G05)T1", afresh=True)
-    field.dress()
+def test_words_are_coloured_as_the_lexer_reads_them(field: ProgramTextField) -> None:
+    field.put_text("g0 1X.5F.1(G05)T1", as_new=True)
+    field.apply_theme()
     assert inks(field, 1) == [
-        ("g0 1", DARK.accent),
-        ("X.5", DARK.text),
-        ("F.1", DARK.run),
-        ("(G05)", DARK.soft),
-        ("T1", DARK.pause),
+        ("g0 1", DARK_PALETTE.accent),
+        ("X.5", DARK_PALETTE.text),
+        ("F.1", DARK_PALETTE.run),
+        ("(G05)", DARK_PALETTE.soft),
+        ("T1", DARK_PALETTE.pause),
     ]
 
 
-def test_statements_of_a_plane_are_no_comments(field: TextField) -> None:
-    field.put_text("M19\n(~PLXC)\n(G02X.5 Y.2I.1J0F8)\n(X?)\n(END)\n(DONE)\nX1", afresh=True)
-    field.dress()
-    assert inks(field, 2) == [("(~PLXC)", DARK.accent)]
-    assert inks(field, 3)[1:4] == [("X.5", DARK.text), ("Y.2I.1J0", DARK.text), ("F8", DARK.run)]
-    assert ("?", DARK.alarm) in inks(field, 4) or ("X", DARK.alarm) in inks(field, 4)
-    assert inks(field, 5) == [("(END)", DARK.accent)]
-    assert inks(field, 6) == [("(DONE)", DARK.soft)]
+def test_statements_of_a_plane_are_no_comments(field: ProgramTextField) -> None:
+    field.put_text("M19\n(~PLXC)\n(G02X.5 Y.2I.1J0F8)\n(X?)\n(END)\n(DONE)\nX1", as_new=True)
+    field.apply_theme()
+    assert inks(field, 2) == [("(~PLXC)", DARK_PALETTE.accent)]
+    assert inks(field, 3)[1:4] == [
+        ("X.5", DARK_PALETTE.text),
+        ("Y.2I.1J0", DARK_PALETTE.text),
+        ("F8", DARK_PALETTE.run),
+    ]
+    assert ("?", DARK_PALETTE.alarm) in inks(field, 4) or ("X", DARK_PALETTE.alarm) in inks(field, 4)
+    assert inks(field, 5) == [("(END)", DARK_PALETTE.accent)]
+    assert inks(field, 6) == [("(DONE)", DARK_PALETTE.soft)]
 
 
-def test_a_plane_that_is_taken_out_leaves_comments(field: TextField) -> None:
-    field.put_text("(~PLXC)\n(X.5)", afresh=True)
-    field.dress()
-    assert inks(field, 2) == [("X.5", DARK.text)]
-    field.replace_at((1,), 1, "")  # the mark of the entry
-    assert inks(field, 2) == [("(X.5)", DARK.soft)]
+def test_a_plane_that_is_taken_out_leaves_comments(field: ProgramTextField) -> None:
+    field.put_text("(~PLXC)\n(X.5)", as_new=True)
+    field.apply_theme()
+    assert inks(field, 2) == [("X.5", DARK_PALETTE.text)]
+    field.replace_ranges((1,), 1, "")  # the mark of the entry
+    assert inks(field, 2) == [("(X.5)", DARK_PALETTE.soft)]
 
 
-def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: TextField) -> None:
-    field.put_text("X1?", afresh=True)
-    field.dress()
-    assert ("?", DARK.alarm) in inks(field, 1)
-    field.put_text("X1", afresh=True)
-    assert DARK.alarm not in {ink for _text, ink in inks(field, 1)}
+def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: ProgramTextField) -> None:
+    field.put_text("X1?", as_new=True)
+    field.apply_theme()
+    assert ("?", DARK_PALETTE.alarm) in inks(field, 1)
+    field.put_text("X1", as_new=True)
+    assert DARK_PALETTE.alarm not in {ink for _text, ink in inks(field, 1)}
 
 
-def test_other_colours_reach_the_text(field: TextField) -> None:
-    field.put_text("G01", afresh=True)
-    field.dress()
-    field.look.repaint(LIGHT)
-    field.dress()
-    assert inks(field, 1) == [("G01", LIGHT.accent)]
+def test_other_colours_reach_the_text(field: ProgramTextField) -> None:
+    field.put_text("G01", as_new=True)
+    field.apply_theme()
+    field.theme.set_palette(LIGHT_PALETTE)
+    field.apply_theme()
+    assert inks(field, 1) == [("G01", LIGHT_PALETTE.accent)]
 
 
 @pytest.mark.parametrize("asking", [True, False])
 @pytest.mark.parametrize(("width", "height", "u"), [(860, 390, 6.4), (1600, 700, 12.0), (3200, 1400, 24.0)])
 def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> None:
-    at = editor_places(width, height, u, asking=asking)
-    parts = [at.head, at.text, at.path, at.findings, at.code, *([at.ask] if asking else [])]
+    at = make_editor_layout(width, height, u, has_question=asking)
+    parts = [
+        at.head_line,
+        at.text,
+        at.path_area,
+        at.finding_list,
+        at.code_strip,
+        *([at.question_line] if asking else []),
+    ]
     for one, other in combinations(parts, 2):
         apart = one.right <= other.x or other.right <= one.x or one.bottom <= other.y or other.bottom <= one.y
         assert apart, (one, other)
@@ -107,66 +118,66 @@ def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> No
 
 def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    journal = Journal.at_home()
-    desk, executor = desk_and_executor(None, lambda: NONE, StepClock(), journal)
-    executor.tick()
-    editor = desk.pages.find(Editor)
+    journal = Journal.open_default()
+    desk, executor = create_desk_and_executor(None, lambda: NO_OFFSETS, ManualClock(), journal)
+    executor.run_tick()
+    editor = desk.page_registry.find(EditorModel)
     assert editor is not None
-    editor.wanted = "new"
-    assert enter(desk, editor)
-    editor.create()
+    editor.pending_name = "new"
+    assert open_editor(desk, editor)
+    editor.create_document()
     for text in (GOOD, GOOD, GOOD + "(2)\n"):
-        editor.save(text)
-        editor.worker.settle(60.0)
-    editor.leave(GOOD + "(2)\n", to_desk=True)
-    assert editor.stage is Stage.CLOSED
-    assert desk.session.settled(20).name == "new.nc"
+        editor.save_document(text)
+        editor.worker.wait_for_results(60.0)
+    editor.save_and_leave(GOOD + "(2)\n", should_load=True)
+    assert editor.stage is EditorStage.CLOSED
+    assert desk.program_loader.wait_until_loaded(20).name == "new.nc"
     rows = journal.versions("new.nc")
     assert [row.number for row in rows] == [2, 1]
-    assert journal.text_of("new.nc", 1) == GOOD.encode()
+    assert journal.read_version_text("new.nc", 1) == GOOD.encode()
     assert (tmp_path / "programs" / "new.nc").read_text() == GOOD + "(2)\n"
     desk.close()
     journal.close()
 
 
 def test_times_are_those_of_the_shop() -> None:
-    assert local_time("2026-03-01T10:00:00.000Z").endswith(":00:00")
+    assert format_local_time("2026-03-01T10:00:00.000Z").endswith(":00:00")
 
 
-def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: TextField) -> None:
-    field.highlighter.speak(Dialect.SINUMERIK)
-    field.put_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", afresh=True)
-    field.dress()
+def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: ProgramTextField) -> None:
+    field.highlighter.set_dialect(Dialect.SINUMERIK)
+    field.put_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", as_new=True)
+    field.apply_theme()
     assert inks(field, 1) == [
-        ("N10", DARK.soft),
-        ("G1", DARK.accent),
-        ("X=IC(5)", DARK.text),
-        ("F100", DARK.run),
-        ("; (in)", DARK.soft),
+        ("N10", DARK_PALETTE.soft),
+        ("G1", DARK_PALETTE.accent),
+        ("X=IC(5)", DARK_PALETTE.text),
+        ("F100", DARK_PALETTE.run),
+        ("; (in)", DARK_PALETTE.soft),
     ]
-    assert inks(field, 2)[0] == ("NUT", DARK.pause)
-    assert inks(field, 3)[-1] == ("T1", DARK.pause)
-    assert ("H", DARK.alarm) in inks(field, 4)
+    assert inks(field, 2)[0] == ("NUT", DARK_PALETTE.pause)
+    assert inks(field, 3)[-1] == ("T1", DARK_PALETTE.pause)
+    assert ("H", DARK_PALETTE.alarm) in inks(field, 4)
 
 
-def test_another_language_colours_anew(field: TextField) -> None:
-    field.put_text("G0X1(a)", afresh=True)
+def test_another_language_colours_anew(field: ProgramTextField) -> None:
+    field.put_text("G0X1(a)", as_new=True)
     before = inks(field, 1)
-    field.highlighter.speak(Dialect.SINUMERIK)
+    field.highlighter.set_dialect(Dialect.SINUMERIK)
     assert inks(field, 1) != before
-    field.highlighter.speak(Dialect.OMNITURN)
+    field.highlighter.set_dialect(Dialect.OMNITURN)
     assert inks(field, 1) == before
 
 
 def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
-    panel = FindingList(Look(DARK, 6.4), lambda _found: None, above)
+    panel = FindingList(ScreenTheme(DARK_PALETTE, 6.4), lambda _found: None, above)
     panel.resize(374, 106)  # as at 1024x600
     found = [Diagnostic(line, 1, Severity.ERROR, "unknown", "not known") for line in range(1, 5)]
-    panel.show_findings(Findings(diagnostics=tuple(found)), 4)
+    panel.show_findings(ProofFindings(diagnostics=tuple(found)), 4)
     panel.grab()
     assert len(panel._places) == KEYS + 2
     for box, *_ in panel._places:
-        assert box.height() >= FINGER
-        assert panel.area().contains(box)
+        assert box.height() >= FINGERTIP_PX
+        assert panel.find_full_area().contains(box)

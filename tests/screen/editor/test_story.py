@@ -9,13 +9,13 @@ import pytest
 from PySide6.QtCore import Qt
 
 from app.desk.pages import page_entry
-from app.desk.programs.program_loading import Phase
+from app.desk.programs.program_loading import LoadingPhase
 from app.editor import editor_messages as messages
-from app.editor.editor import Stage
-from app.programs.program_list import ProgramList
+from app.editor.editor_model import EditorStage
+from app.programs.program_list_model import ProgramListModel
 from app.screen import page_table
 from core.executor.commands import CycleStart, FeedHold, LoadJob
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from core.language.diagnostics import Severity
 from tests.editor.shop import GOOD, Memory
 from tests.screen.desks import SAMPLES
@@ -35,23 +35,23 @@ def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: P
     writer.key(Key.Key_F3)
     assert writer.prompt() == wording("screen.new-file")
     writer.key(Key.Key_F1)
-    writer.sees(lambda: writer.editor.head.heading.mark == "NEW")
+    writer.sees(lambda: writer.editor.head_line.heading.mark == "NEW")
     writer.write(GOOD.replace("Z-.5", "Z-.5.5"))
     writer.sees(writer.proved)
-    found = writer.editor.field.finding_at(5)
+    found = writer.editor.text_field.finding_at(5)
     assert found is not None
     assert found.severity is Severity.ERROR
     writer.key(Key.Key_F6)
-    writer.sees(lambda: writer.editor.field.line == 5)
+    writer.sees(lambda: writer.editor.text_field.cursor_line == 5)
     writer.sees(lambda: found.message in writer.prompt())
     writer.key(Key.Key_End)
     writer.key(Key.Key_Backspace)
     writer.key(Key.Key_Backspace)
-    writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.diagnostics)
+    writer.sees(lambda: writer.proved() and not writer.editor.finding_list.findings.diagnostics)
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    assert writer.desk.session.now.name == "first.nc"
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    assert writer.desk.program_loader.loaded.name == "first.nc"
     assert (tmp_path / "first.nc").read_text() == GOOD
     assert [text for text, _why in memory.kept["first.nc"]] == [GOOD.encode()]
     writer.sees(lambda: writer.prompt().startswith(wording("screen.to-start")))
@@ -61,7 +61,7 @@ def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
     writer.key(Key.Key_F2)
     writer.type("first")
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.prompt() == messages.CREATE)
+    writer.sees(lambda: writer.prompt() == messages.CREATE_FILE)
     writer.key(Key.Key_Escape)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
@@ -74,11 +74,11 @@ def test_what_was_edited_last_is_not_shown_with_an_offer(writer: Writer) -> None
     writer.key(Key.Key_F2)
     writer.type("first")
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.prompt() == messages.CREATE)
-    assert not writer.editor.field.isVisible()
-    assert writer.editor.head.heading.name == "first"
+    writer.sees(lambda: writer.prompt() == messages.CREATE_FILE)
+    assert not writer.editor.text_field.isVisible()
+    assert writer.editor.head_line.heading.name == "first"
     writer.key(Key.Key_F1)
-    writer.sees(writer.editor.field.hasFocus)
+    writer.sees(writer.editor.text_field.hasFocus)
     writer.sees(lambda: writer.text() == "")
 
 
@@ -98,28 +98,30 @@ def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) ->
     assert writer.front == page_table.AUTOMATIC
 
 
-@pytest.mark.parametrize("state", [State.RUN, State.HOLD, State.BLOCK_END, State.WAIT])
-def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer, state: State) -> None:
+@pytest.mark.parametrize(
+    "state", [MachineState.RUN, MachineState.HOLD, MachineState.BLOCK_END, MachineState.WAIT]
+)
+def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer, state: MachineState) -> None:
     writer.load("pin")
-    loaded = writer.desk.session.now
+    loaded = writer.desk.program_loader.loaded
     writer.machine.now = replace(writer.machine.now, state=state, rpm_command=900.0, rpm_actual=900.0)
     writer.machine.blocks = ()
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.EDITOR)
-    assert writer.desk.session.now is loaded
-    assert not writer.desk.window.starts_here  # the palms are for the Automatic page
+    assert writer.desk.program_loader.loaded is loaded
+    assert not writer.desk.window_state.can_start_here  # the palms are for the Automatic page
 
 
 def test_refused_while_a_slide_is_moved_by_hand(writer: Writer) -> None:
     writer.load("pin")
-    writer.machine.now = replace(writer.machine.now, state=State.JOG)
+    writer.machine.now = replace(writer.machine.now, state=MachineState.JOG)
     writer.key(Key.Key_F3)
-    assert writer.prompt() == page_entry.SLIDES
+    assert writer.prompt() == page_entry.AXES_MOVING
     assert writer.front == page_table.AUTOMATIC
 
 
 @pytest.mark.parametrize(
-    ("command", "measured", "why"), [(900, 0, page_entry.SPINDLE_ON), (0, 80, page_entry.COASTING)]
+    ("command", "measured", "why"), [(900, 0, page_entry.SPINDLE_ON), (0, 80, page_entry.SPINDLE_COASTING)]
 )
 def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured: int, why: str) -> None:
     writer.load("pin")
@@ -138,28 +140,28 @@ def test_the_palms_start_nothing_from_the_editor(writer: Writer) -> None:
 def test_a_sample_asks_for_a_name_and_stays_as_it_was(writer: Writer, tmp_path: Path) -> None:
     before = (SAMPLES / "pin.nc").read_bytes()
     writer.edit("pin")
-    assert writer.editor.head.heading.mark == "SAMPLE"
+    assert writer.editor.head_line.heading.mark == "SAMPLE"
     writer.type("(MINE)")
     writer.key(Key.Key_F2)
-    writer.sees(lambda: writer.prompt() == messages.SAMPLE)
-    writer.sees(writer.editor.ask.first.hasFocus)
+    writer.sees(lambda: writer.prompt() == messages.SAMPLE_READ_ONLY)
+    writer.sees(writer.editor.question_line.first_field.hasFocus)
     writer.type("mine")
     writer.key(Key.Key_Return)
     writer.sees(lambda: writer.prompt() == wording("editor.saved", name="mine.nc"))
     assert (SAMPLES / "pin.nc").read_bytes() == before
     assert (tmp_path / "mine.nc").read_bytes() == b"(MINE)" + before
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    assert writer.desk.session.now.name == "mine.nc"
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    assert writer.desk.program_loader.loaded.name == "mine.nc"
 
 
 def test_esc_at_the_name_of_a_sample_goes_on_editing(writer: Writer, tmp_path: Path) -> None:
     writer.edit("pin")
     writer.type("(MINE)")
     writer.key(Key.Key_F3)
-    writer.sees(writer.editor.ask.first.hasFocus)
+    writer.sees(writer.editor.question_line.first_field.hasFocus)
     writer.key(Key.Key_Escape)
-    writer.sees(writer.editor.field.hasFocus)
+    writer.sees(writer.editor.text_field.hasFocus)
     writer.type("X")
     assert writer.text().startswith("(MINE)X")
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
@@ -172,14 +174,14 @@ def test_find_counts_and_replace_all_is_one_step(writer: Writer) -> None:
     writer.type("f100")
     writer.sees(
         lambda: (
-            writer.editor.ask.answer
+            writer.editor.question_line.message_text
             == wording("editor.found-and-inside", found=wording("editor.found", count=2), count=1)
         )
     )
     writer.key(Key.Key_Tab)
     writer.type("F300")
     writer.key(Key.Key_F5)
-    assert writer.editor.ask.answer == wording("editor.replaced", count=2)
+    assert writer.editor.question_line.message_text == wording("editor.replaced", count=2)
     assert writer.text() == "F300\nX1F1000\nZ1F300"
     writer.key(Key.Key_Escape)
     writer.key(Key.Key_Z, CTRL)
@@ -204,11 +206,11 @@ def test_go_to_a_line_and_what_is_no_line(writer: Writer) -> None:
     writer.key(Key.Key_F5)
     writer.type("0")
     writer.key(Key.Key_Return)
-    assert begins(writer.editor.ask.answer, "editor.number-from-one")
+    assert begins(writer.editor.question_line.message_text, "editor.number-from-one")
     writer.key(Key.Key_Backspace)
     writer.type("7")
     writer.key(Key.Key_Return)
-    assert writer.editor.field.line == 7
+    assert writer.editor.text_field.cursor_line == 7
 
 
 def test_the_path_follows_the_cursor(writer: Writer) -> None:
@@ -218,10 +220,10 @@ def test_the_path_follows_the_cursor(writer: Writer) -> None:
     writer.key(Key.Key_G, CTRL)
     writer.type("4")
     writer.key(Key.Key_Return)
-    writer.sees(lambda: writer.editor.path.tip.z == pytest.approx(2.54))
+    writer.sees(lambda: writer.editor.path_view.tip_position.z == pytest.approx(2.54))
     writer.key(Key.Key_Down)
-    writer.sees(lambda: writer.editor.path.tip.z == pytest.approx(-12.7))
-    assert writer.editor.path.tip.x == pytest.approx(12.7)  # X1 is a diameter of one inch
+    writer.sees(lambda: writer.editor.path_view.tip_position.z == pytest.approx(-12.7))
+    assert writer.editor.path_view.tip_position.x == pytest.approx(12.7)  # X1 is a diameter of one inch
 
 
 def test_an_older_version_is_restored_and_can_be_undone(writer: Writer, memory: Memory) -> None:
@@ -234,9 +236,9 @@ def test_an_older_version_is_restored_and_can_be_undone(writer: Writer, memory: 
     writer.sees(lambda: len(memory.kept["part.nc"]) == 2)
     writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
     writer.key(Key.Key_F7)
-    writer.sees(lambda: len(writer.editor.history.rows) == 2)
+    writer.sees(lambda: len(writer.editor.version_history.rows) == 2)
     writer.key(Key.Key_Down)
-    writer.sees(lambda: [row.sign for row in writer.editor.history.changes].count("-") == 1)
+    writer.sees(lambda: [row.sign for row in writer.editor.version_history.changes].count("-") == 1)
     writer.key(Key.Key_Return)
     writer.sees(lambda: writer.text() == GOOD)
     writer.key(Key.Key_Z, CTRL)
@@ -247,9 +249,9 @@ def test_leaving_without_saving_asks_once(writer: Writer, tmp_path: Path) -> Non
     writer.new("gone")
     writer.write("X1")
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == messages.ABANDON)
+    writer.sees(lambda: writer.prompt() == messages.CONFIRM_DISCARD)
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == messages.ABANDON)  # never the key that asked
+    writer.sees(lambda: writer.prompt() == messages.CONFIRM_DISCARD)  # never the key that asked
     writer.key(Key.Key_F6)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     assert not list(tmp_path.glob("[!.]*"))  # no program; a draft is none
@@ -259,18 +261,18 @@ def test_typing_takes_the_question_back(writer: Writer) -> None:
     writer.new("kept")
     writer.write("X1")
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == messages.ABANDON)
+    writer.sees(lambda: writer.prompt() == messages.CONFIRM_DISCARD)
     writer.type("Z1")
-    writer.sees(lambda: writer.prompt() != messages.ABANDON)
+    writer.sees(lambda: writer.prompt() != messages.CONFIRM_DISCARD)
     writer.key(Key.Key_F10)
-    writer.sees(lambda: writer.prompt() == messages.ABANDON)
+    writer.sees(lambda: writer.prompt() == messages.CONFIRM_DISCARD)
     assert writer.text() == "X1Z1"
 
 
 def test_esc_holds_what_a_station_has_started(writer: Writer) -> None:
     writer.edit("pin")
-    writer.machine.now = replace(writer.machine.now, state=State.RUN)
-    writer.sees(lambda: writer.prompt() == messages.RUNS_OLD)
+    writer.machine.now = replace(writer.machine.now, state=MachineState.RUN)
+    writer.sees(lambda: writer.prompt() == messages.TEXT_NOT_RUNNING)
     writer.key(Key.Key_Escape)
     assert FeedHold() in writer.machine.posted
 
@@ -287,7 +289,7 @@ def test_closing_the_window_saves_first(writer: Writer, tmp_path: Path) -> None:
 def test_an_empty_program_is_not_saved(writer: Writer) -> None:
     writer.new("empty")
     writer.key(Key.Key_F2)
-    writer.sees(lambda: writer.prompt() == messages.EMPTY)
+    writer.sees(lambda: writer.prompt() == messages.EMPTY_NOT_SAVED)
     writer.key(Key.Key_F3)  # an untouched new file is forgotten
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
 
@@ -298,67 +300,69 @@ def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> 
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
     assert (tmp_path / "menu.nc").exists()
-    assert writer.desk.session.now.phase is Phase.EMPTY  # that is what F3 is for
-    assert writer.desk.notice == wording("editor.saved-not-loaded", name="menu.nc")
+    assert writer.desk.program_loader.loaded.phase is LoadingPhase.EMPTY  # that is what F3 is for
+    assert writer.desk.prompt_notice == wording("editor.saved-not-loaded", name="menu.nc")
 
 
 def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer, tmp_path: Path) -> None:
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
-    assert writer.desk.programs.choose("mine")
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    assert writer.desk.program_choice.load_by_name("mine")
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
     on_desk, posted, model = (
-        writer.desk.session.now,
+        writer.desk.program_loader.loaded,
         len(writer.machine.posted),
-        writer.desk.pages.find(ProgramList),
+        writer.desk.page_registry.find(ProgramListModel),
     )
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
-        writer.frame.go(page_table.PROGRAMS)
-        writer.sees(lambda: "other.nc" in [program.name for program in model.listed])
-        model.choose([program.name for program in model.listed].index("other.nc"))
+        writer.frame.open_page(page_table.PROGRAMS)
+        writer.sees(lambda: "other.nc" in [program.name for program in model.listed_programs])
+        model.select_row([program.name for program in model.listed_programs].index("other.nc"))
         writer.key(Key.Key_F3)
         writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.name == "other.nc")
-        writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
+        writer.sees(lambda: writer.editor.editor.stage is EditorStage.OPEN)
         writer.key(leaves)
         writer.sees(lambda: writer.front != page_table.EDITOR)
-        assert writer.desk.session.now is on_desk
+        assert writer.desk.program_loader.loaded is on_desk
         if leaves is not Key.Key_Escape:
-            assert writer.desk.notice == wording("editor.only-looked-at", name="other.nc", other="mine.nc")
+            assert writer.desk.prompt_notice == wording(
+                "editor.only-looked-at", name="other.nc", other="mine.nc"
+            )
     assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
 
 
 def test_f1_saves_only_and_f3_loads_the_saved_text(writer: Writer, tmp_path: Path) -> None:
     """F1 loaded the text although the prompt said that it does not, and the next start ran it."""
     (tmp_path / "mine.nc").write_text(GOOD)
-    assert writer.desk.programs.choose("mine")
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    on_desk, posted = writer.desk.session.now, len(writer.machine.posted)
+    assert writer.desk.program_choice.load_by_name("mine")
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    on_desk, posted = writer.desk.program_loader.loaded, len(writer.machine.posted)
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
+    writer.sees(lambda: writer.editor.editor.stage is EditorStage.OPEN)
     writer.write("(CHANGED)\n")
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
     assert "(CHANGED)" in (tmp_path / "mine.nc").read_text()
-    assert writer.desk.session.now is on_desk
+    assert writer.desk.program_loader.loaded is on_desk
     assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
-    assert writer.desk.notice == wording("editor.saved-old-runs", name="mine.nc")
+    assert writer.desk.prompt_notice == wording("editor.saved-old-runs", name="mine.nc")
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is Stage.OPEN)
+    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is EditorStage.OPEN)
     writer.key(Key.Key_F3)  # nothing has been typed since, and yet it is not what is loaded
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    source = writer.desk.session.now.source
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    source = writer.desk.program_loader.loaded.source
     assert source is not None
     assert "(CHANGED)" in source.text
 
 
 def test_every_page_says_that_the_saved_text_is_not_loaded(writer: Writer) -> None:
-    writer.desk.storage.follow_program(lambda: "DIFFERENT", lambda: None)
+    writer.desk.storage_state.set_file_readers(lambda: "DIFFERENT", lambda: None)
     for page in (page_table.AUTOMATIC, page_table.PROGRAMS, page_table.MENU):
-        writer.frame.go(page)
+        writer.frame.open_page(page)
         writer.sees(lambda page=page: writer.front == page)  # type: ignore[misc]
-        writer.sees(lambda: "DIFFERENT" in [row.text for row in writer.frame.notices.rows])
+        writer.sees(lambda: "DIFFERENT" in [row.text for row in writer.frame.notice_rows.notice_rows])
 
 
 def test_another_document_does_not_show_the_findings_of_the_last_one(writer: Writer, tmp_path: Path) -> None:
@@ -366,79 +370,79 @@ def test_another_document_does_not_show_the_findings_of_the_last_one(writer: Wri
     writer.new("first")
     writer.write("G90G94\nQ\n")
     editor = writer.editor.editor
-    writer.sees(lambda: editor.proof.now.errors > 0)
+    writer.sees(lambda: editor.live_proof.current.error_count > 0)
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
     other = tmp_path / "other" / "first.nc"
     other.parent.mkdir()
     other.write_text(GOOD)
-    editor.proof.worker.give_up()
-    editor.open(other)
+    editor.live_proof.worker.cancel()
+    editor.open_program(other)
     while editor.document is None:
         editor.poll()
-    assert editor.proof.now.errors == 0  # before its own proof
+    assert editor.live_proof.current.error_count == 0  # before its own proof
 
 
 def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer: Writer, tmp_path: Path
 ) -> None:
     (tmp_path / "mine.nc").write_text(GOOD)
-    assert writer.desk.programs.choose("mine")
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    before = writer.desk.session.loads
+    assert writer.desk.program_choice.load_by_name("mine")
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    before = writer.desk.program_loader.load_count
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
+    writer.sees(lambda: writer.editor.editor.stage is EditorStage.OPEN)
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
-    assert writer.desk.session.loads == before
+    assert writer.desk.program_loader.load_count == before
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is Stage.OPEN)
+    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is EditorStage.OPEN)
     writer.write("(CHANGED)\n")
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.session.loads == before + 1)
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    writer.sees(lambda: writer.desk.program_loader.load_count == before + 1)
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
 
 
 def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer, tmp_path: Path) -> None:
     """It edits no other one, and nothing is there before it is said so."""
     (tmp_path / "mine.nc").write_text(GOOD)
-    assert writer.desk.programs.choose("mine")
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
-    writer.frame.go(page_table.PROGRAMS)
-    model = writer.desk.pages.find(ProgramList)
+    assert writer.desk.program_choice.load_by_name("mine")
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
+    writer.frame.open_page(page_table.PROGRAMS)
+    model = writer.desk.page_registry.find(ProgramListModel)
     assert model is not None
-    writer.sees(lambda: bool(model.listed))
+    writer.sees(lambda: bool(model.listed_programs))
     writer.type("NOSUCHNAME")
-    writer.sees(lambda: not model.listed)
+    writer.sees(lambda: not model.listed_programs)
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.frame.keys.labels[0] == "CREATE")
+    writer.sees(lambda: writer.frame.key_bar.key_labels[0] == "CREATE")
     writer.key(Key.Key_F10)
     writer.sees(lambda: writer.front != page_table.EDITOR)
     assert [path.name for path in tmp_path.glob("*.nc")] == ["mine.nc"]
 
 
 def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
-    writer.frame.go(page_table.PROGRAMS)
-    model = writer.desk.pages.find(ProgramList)
+    writer.frame.open_page(page_table.PROGRAMS)
+    model = writer.desk.page_registry.find(ProgramListModel)
     assert model is not None
-    writer.sees(lambda: bool(model.listed))
-    model.all, model.listed = (), ()
+    writer.sees(lambda: bool(model.listed_programs))
+    model.all_programs, model.listed_programs = (), ()
     writer.key(Key.Key_F3)
     assert writer.front == page_table.PROGRAMS
-    assert writer.desk.notice == wording("screen.no-program-marked")
+    assert writer.desk.prompt_notice == wording("screen.no-program-marked")
 
 
 def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Writer, tmp_path: Path) -> None:
     for name in ("mine.nc", "other.nc"):
         (tmp_path / name).write_text(GOOD)
-    assert writer.desk.programs.choose("mine")
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    assert writer.desk.program_choice.load_by_name("mine")
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
     writer.key(Key.Key_F2)
     writer.key(Key.Key_F3)
     assert writer.front == page_table.AUTOMATIC
-    assert begins(writer.desk.notice, "editor.name-or-mark")
-    files = writer.page.files
+    assert begins(writer.desk.prompt_notice, "editor.name-or-mark")
+    files = writer.page.file_prompt
     names = [entry.name for entry in files._entries]
     for _ in range(names.index("other.nc")):
         writer.key(Key.Key_Down)
@@ -457,7 +461,7 @@ def test_letters_of_the_machine_write_and_switch_nothing(writer: Writer) -> None
 def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> None:
     writer.new("day")
     writer.write("G90G94G72F300\nT1\nM03S1000\nX1Z.1\nF5Z-.5\nF5X1.5\nM05\nF300X2Z1\nM30")
-    writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.errors)
+    writer.sees(lambda: writer.proved() and not writer.editor.finding_list.findings.error_count)
     writer.key(Key.Key_F2)
     writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
     written = writer.text()
@@ -467,7 +471,7 @@ def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> 
     writer.key(Key.Key_Tab)
     writer.type("F8")
     writer.key(Key.Key_F5)
-    assert writer.editor.ask.answer == wording("editor.replaced", count=2)
+    assert writer.editor.question_line.message_text == wording("editor.replaced", count=2)
     writer.key(Key.Key_Escape)
     assert writer.text() == written.replace("F5", "F8")
     writer.key(Key.Key_F8)
@@ -480,25 +484,25 @@ def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> 
     writer.key(Key.Key_Return)
     writer.key(Key.Key_End)
     writer.type("Q")
-    writer.sees(lambda: writer.proved() and writer.editor.findings.findings.errors > 0)
+    writer.sees(lambda: writer.proved() and writer.editor.finding_list.findings.error_count > 0)
     writer.key(Key.Key_Home, CTRL)
     writer.key(Key.Key_F6)
-    assert writer.editor.field.line == 6
+    assert writer.editor.text_field.cursor_line == 6
     writer.key(Key.Key_End)
     writer.key(Key.Key_Backspace)
-    writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.errors)
+    writer.sees(lambda: writer.proved() and not writer.editor.finding_list.findings.error_count)
     writer.key(Key.Key_F2)
     writer.sees(lambda: len(memory.kept["day.nc"]) == 2)
     writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
 
     writer.key(Key.Key_F7)  # the first version back, saved by leaving
-    writer.sees(lambda: len(writer.editor.history.rows) == 2)
+    writer.sees(lambda: len(writer.editor.version_history.rows) == 2)
     writer.key(Key.Key_Down)
-    writer.sees(lambda: [row.sign for row in writer.editor.history.changes].count("+") == 2)
+    writer.sees(lambda: [row.sign for row in writer.editor.version_history.changes].count("+") == 2)
     writer.key(Key.Key_Return)
     writer.sees(lambda: writer.text().rstrip() == written)
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
-    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
     assert (tmp_path / "day.nc").read_text().rstrip() == written
     assert len(memory.kept["day.nc"]) == 3

@@ -13,18 +13,18 @@ class Writer(Hands):
     @property
     def editor(self) -> EditorPage:
         """The page, which must be in front."""
-        page = self.frame.page
+        page = self.frame.current_page
         assert isinstance(page, EditorPage)
         return page
 
     @property
     def front(self) -> str:
         """The name of the page in front."""
-        return self.frame.page.NAME
+        return self.frame.current_page.NAME
 
     def text(self) -> str:
         """What stands in the field."""
-        return self.editor.field.toPlainText()
+        return self.editor.text_field.toPlainText()
 
     def write(self, text: str) -> None:
         """Type lines."""
@@ -41,7 +41,7 @@ class Writer(Hands):
         self.key(Key.Key_X)
         self.key(Key.Key_F3)
         self.key(Key.Key_F1)
-        self.sees(lambda: self.front == page_table.EDITOR and self.editor.field.hasFocus())
+        self.sees(lambda: self.front == page_table.EDITOR and self.editor.text_field.hasFocus())
 
     def edit(self, name: str) -> None:
         """A program of the folders, from the desk into the editor."""
@@ -52,6 +52,6 @@ class Writer(Hands):
     def proved(self) -> bool:
         """Whether what is typed is proved."""
         page = self.editor
-        proof = page.editor.proof
-        fresh = not page.typed_text.stale and not proof.behind  # what was typed has come to the proof
-        return fresh and page.findings.findings is proof.now and proof.now.number > 0
+        proof = page.editor.live_proof
+        fresh = not page.typed_text.is_stale and not proof.is_outdated  # what was typed has come to the proof
+        return fresh and page.finding_list.findings is proof.current and proof.current.number > 0

@@ -12,17 +12,17 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.compose.desk_assembly import desk_and_executor
-from app.compose.stored_offsets import offsets_of
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.stored_offsets import read_store_offsets
 from app.desk.desk import Desk
 from app.jog.jog_view import JogPage
-from app.screen.look import DARK, Look
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from app.screen.window.main_window import MainWindow
-from app.screen.window.window_frame import Frame
+from app.screen.window.window_frame import WindowFrame
 from core.executor.executor import Executor
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
-from drivers.waiting import StepClock
+from drivers.wakeups import ManualClock
 from tests.offset_store import use_store
 from tests.screen.yes import yes
 
@@ -80,11 +80,11 @@ class JogBench:
     window: MainWindow
     desk: Desk
     executor: Executor
-    clock: StepClock
+    clock: ManualClock
     store: Store
 
     @property
-    def frame(self) -> Frame:
+    def frame(self) -> WindowFrame:
         """What the operator looks at."""
         assert self.window.frame is not None
         return self.window.frame
@@ -92,7 +92,7 @@ class JogBench:
     @property
     def page(self) -> JogPage:
         """The Jog page in front."""
-        page = self.frame.page
+        page = self.frame.current_page
         assert isinstance(page, JogPage)
         return page
 
@@ -106,7 +106,7 @@ class JogBench:
         end = self.clock.now() + seconds
         while self.clock.now() < end - 1e-9:
             self.clock.advance(TICK)
-            self.executor.tick()
+            self.executor.run_tick()
             if screen:
                 self.window.refresh()
 
@@ -119,7 +119,7 @@ class JogBench:
 
     def rests(self) -> None:
         """Run until the machine is ready again."""
-        self.until(lambda: self.shot.state is State.IDLE and not self.page.model.hold.held)
+        self.until(lambda: self.shot.state is MachineState.IDLE and not self.page.model.held_jog.active_jog)
 
     def saved(self) -> None:
         """Wait for the disk, then look."""
@@ -163,22 +163,22 @@ class JogBench:
     def prompt(self) -> str:
         """The prompt line."""
         self.window.refresh()
-        return self.frame.prompt.text
+        return self.frame.prompt_line.main_text
 
 
 def bench_on(folder: Path, *, absolute: bool = True, **more: bool) -> JogBench:
     """Desk, lathe and window; the drives are on and the Jog page is open. ``more`` as ``shipped`` has it."""
-    clock = StepClock()
+    clock = ManualClock()
     store = Store.open(folder / "home")
     file = shipped(folder, absolute=absolute, **more)
-    desk, executor = desk_and_executor(file, lambda: offsets_of(store), clock)
+    desk, executor = create_desk_and_executor(file, lambda: read_store_offsets(store), clock)
     use_store(desk, store)
-    desk.hands.clock = clock.now
-    window = MainWindow(Look(DARK))
+    desk.station_controls.clock = clock.now
+    window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)
     bench = JogBench(window, desk, executor, clock, store)
-    bench.executor.tick()
-    window.open_desk(desk)
+    bench.executor.run_tick()
+    window.show_model(desk)
     window.show()
     return bench
 

@@ -17,7 +17,7 @@ def _open(qtbot: QtBot, folder: Path, *, absolute: bool = True, **more: bool) ->
     qtbot.waitExposed(bench.window, timeout=LIMIT)
     opened(bench)
     yield bench
-    bench.window.put_away()
+    bench.window.close_silently()
     bench.desk.close()
     bench.store.close()
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QDialog
 from pytestqt.qtbot import QtBot
 
 from app.screen import page_table
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
@@ -25,7 +25,7 @@ def moving(jog: JogBench, key: Key = Key.Key_Left) -> float:
     """An arrow is held and the slide moves; where it is."""
     jog.down(key)
     jog.run(0.5)
-    assert jog.shot.state is State.JOG
+    assert jog.shot.state is MachineState.JOG
     assert jog.shot.demand[1] < -0.3 * SLOW
     return jog.shot.demand[1]
 
@@ -33,7 +33,7 @@ def moving(jog: JogBench, key: Key = Key.Key_Left) -> float:
 def stands(jog: JogBench, at: float, run_on: float = RUN_ON) -> None:
     """It comes to rest within what a lease allows, and nothing moves it again."""
     jog.run(0.5)
-    assert jog.shot.state is not State.JOG
+    assert jog.shot.state is not MachineState.JOG
     rest = jog.shot.demand[1]
     assert at - rest <= run_on
     jog.run(1.0)
@@ -73,7 +73,7 @@ def test_the_pairs_of_a_repeating_key_neither_end_it_nor_begin_it_again(jog: Jog
     for _ in range(20):
         jog.repeats(Key.Key_Left)
         jog.run(0.03)
-    assert jog.shot.state is State.JOG
+    assert jog.shot.state is MachineState.JOG
     at = jog.shot.demand[1]
     jog.up(Key.Key_Left)
     jog.repeats(Key.Key_Left)
@@ -123,7 +123,7 @@ def test_a_dialog_of_the_window(jog: JogBench, qtbot: QtBot) -> None:
 def test_the_page_changes(jog: JogBench) -> None:
     at = moving(jog)
     jog.key(Key.Key_F8)
-    assert jog.frame.page.NAME == page_table.TOOLS
+    assert jog.frame.current_page.NAME == page_table.TOOLS
     stands(jog, at)
 
 
@@ -131,7 +131,7 @@ def test_the_increment_changes_while_held(jog: JogBench) -> None:
     at = moving(jog)
     jog.key(Key.Key_F2)
     stands(jog, at)
-    assert jog.page.model.speeds.step == 0
+    assert jog.page.model.jog_speeds.step_index == 0
 
 
 def test_the_speed_changes_while_held(jog: JogBench) -> None:
@@ -177,10 +177,10 @@ def test_the_other_direction_while_moving(jog: JogBench) -> None:
 def test_a_screen_that_stands_still(jog: JogBench) -> None:
     at = moving(jog)
     jog.run(2.0, screen=False)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     assert at - jog.shot.demand[1] <= RUN_ON
     stands(jog, at)
-    assert jog.page.model.hold.held is None
+    assert jog.page.model.held_jog.active_jog is None
 
 
 def test_a_rapid_whose_shift_comes_up_first(jog: JogBench) -> None:
@@ -217,7 +217,7 @@ def test_a_chord_moves_nothing(jog: JogBench) -> None:
 def test_the_soft_limit_ends_it_and_it_is_said(jog: JogBench) -> None:
     jog.down(Key.Key_Right, SHIFT)
     jog.run(5.0)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     assert jog.shot.demand[1] == pytest.approx(6 * INCH - 0.01, abs=1e-6)
     jog.up(Key.Key_Right)
     jog.down(Key.Key_Right)
@@ -243,42 +243,42 @@ def test_with_the_drives_off_it_says_why(jog: JogBench) -> None:
 def target(jog: JogBench, number: int) -> QPoint:
     """The middle of one of the six targets, in the order in which they are drawn."""
     jog.window.grab()
-    controls = jog.page.pad.controls[-6:]
+    controls = jog.page.jog_cross.controls[-6:]
     return controls[number].box.center().toPoint()
 
 
 def test_a_finger_moves_while_it_stays(jog: JogBench) -> None:
     left = target(jog, 1)
-    QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=left)
+    QTest.mousePress(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=left)
     jog.run(0.5)
     assert jog.shot.demand[1] < -0.3 * SLOW
     at = jog.shot.demand[1]
-    QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=left)
+    QTest.mouseRelease(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=left)
     stands(jog, at)
 
 
 def test_a_finger_that_slides_off_the_target(jog: JogBench) -> None:
-    QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
+    QTest.mousePress(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 1))
     jog.run(0.5)
     at = jog.shot.demand[1]
-    QTest.mouseMove(jog.page.pad, pos=target(jog, 2))
+    QTest.mouseMove(jog.page.jog_cross, pos=target(jog, 2))
     stands(jog, at)
-    QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 2))
+    QTest.mouseRelease(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 2))
 
 
 def test_a_finger_and_a_key_at_once(jog: JogBench) -> None:
     at = moving(jog)
-    QTest.mousePress(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
+    QTest.mousePress(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 1))
     stands(jog, at)
-    QTest.mouseRelease(jog.page.pad, Qt.MouseButton.LeftButton, pos=target(jog, 1))
+    QTest.mouseRelease(jog.page.jog_cross, Qt.MouseButton.LeftButton, pos=target(jog, 1))
 
 
 def test_a_finger_that_asks_for_something_while_a_key_is_held(jog: JogBench) -> None:
     at = moving(jog)
     jog.window.grab()
-    box, *_ = jog.page.tool._places[0]  # the tool's number
-    QTest.mouseClick(jog.page.tool, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
-    assert jog.page.model.tool.asked
+    box, *_ = jog.page.tool_panel._places[0]  # the tool's number
+    QTest.mouseClick(jog.page.tool_panel, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+    assert jog.page.model.tool_setting.question_name
     stands(jog, at)
 
 
@@ -295,11 +295,11 @@ def test_every_target_fits_a_finger_and_none_lies_on_another(jog: JogBench, size
     jog.window.resize(*size)
     jog.run(0.02)
     jog.window.grab()
-    boxes = [control.box for control in jog.page.pad.controls]
+    boxes = [control.box for control in jog.page.jog_cross.controls]
     assert len(boxes) == 5 + 5 + 4 + 6
     for number, box in enumerate(boxes):
         assert min(box.width(), box.height()) >= 30
-        assert jog.page.pad.area().contains(box)
+        assert jog.page.jog_cross.find_full_area().contains(box)
         assert not any(box.intersects(other) for other in boxes[number + 1 :])
     for box in boxes[-6:]:
         assert min(box.width(), box.height()) >= 60  # 12.5 mm of the smallest panel
@@ -307,34 +307,34 @@ def test_every_target_fits_a_finger_and_none_lies_on_another(jog: JogBench, size
 
 def test_a_machine_without_c_has_no_targets_and_no_keys_for_it(no_c: JogBench) -> None:
     no_c.window.grab()
-    assert len(no_c.page.pad.controls) == 5 + 5 + 3 + 4
+    assert len(no_c.page.jog_cross.controls) == 5 + 5 + 3 + 4
     no_c.down(Key.Key_PageUp)
     no_c.run(0.3)
     no_c.up(Key.Key_PageUp)
     assert no_c.shot.demand == (0.0, 0.0, 0.0)
-    assert no_c.shot.state is State.IDLE
+    assert no_c.shot.state is MachineState.IDLE
 
 
 def test_rapid_that_a_finger_selected_ends_with_a_jog_by_key(jog: JogBench) -> None:
     model = jog.page.model
-    model.arm()
+    model.toggle_rapid()
     jog.down(Key.Key_Left)
-    assert model.hold.held is not None
-    assert not model.hold.held.rapid
+    assert model.held_jog.active_jog is not None
+    assert not model.held_jog.active_jog.is_rapid
     jog.up(Key.Key_Left)
     jog.run(0.5)
-    assert not model.hold.rapid_armed
-    model.finger("finger", "Z", -1)
-    assert model.hold.held is not None
-    assert not model.hold.held.rapid
-    model.let_go()
+    assert not model.held_jog.is_rapid_armed
+    model.press_direction("finger", "Z", -1)
+    assert model.held_jog.active_jog is not None
+    assert not model.held_jog.active_jog.is_rapid
+    model.release_all()
 
 
 def test_rapid_that_a_finger_selected_holds_for_its_next_jog_alone(jog: JogBench) -> None:
     model = jog.page.model
-    model.arm()
-    model.finger("finger", "Z", -1)
-    assert model.hold.held is not None
-    assert model.hold.held.rapid
-    assert not model.hold.rapid_armed
-    model.let_go()
+    model.toggle_rapid()
+    model.press_direction("finger", "Z", -1)
+    assert model.held_jog.active_jog is not None
+    assert model.held_jog.active_jog.is_rapid
+    assert not model.held_jog.is_rapid_armed
+    model.release_all()

@@ -10,9 +10,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialog, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.jog.hand_functions import WORDS
+from app.jog.manual_functions import LANGUAGE_CODES
 from app.screen import page_table
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
@@ -32,7 +32,7 @@ def palms(jog: JogBench) -> None:
 
 def proved(jog: JogBench) -> None:
     """The worker has proved what was chosen, and the screen has seen it."""
-    jog.page.model.hand.line.worker.settle(60.0)
+    jog.page.model.manual_functions.prepared_line.worker.wait_for_results(60.0)
     jog.run(0.1)
 
 
@@ -41,20 +41,20 @@ def chosen(jog: JogBench, speed: str = "200") -> None:
     jog.type("b1")
     jog.enter(speed)
     proved(jog)
-    assert jog.page.model.hand.line.ready is not None, jog.prompt
+    assert jog.page.model.manual_functions.prepared_line.ready_job is not None, jog.prompt
 
 
 def turning(jog: JogBench) -> None:
     """The spindle turns at 200 rpm."""
     chosen(jog)
     palms(jog)
-    jog.until(lambda: abs(jog.shot.rpm_actual - 200.0) < 10.0 and jog.shot.state is State.IDLE)
+    jog.until(lambda: abs(jog.shot.rpm_actual - 200.0) < 10.0 and jog.shot.state is MachineState.IDLE)
 
 
 def test_the_palms_start_the_spindle_and_nothing_else_does(jog: JogBench) -> None:
     chosen(jog)
     jog.run(0.5)
-    assert (jog.shot.rpm_command, jog.shot.state) == (0.0, State.IDLE)
+    assert (jog.shot.rpm_command, jog.shot.state) == (0.0, MachineState.IDLE)
     assert "G97M03S200" in jog.prompt
     assert text("screen.both-palms") in jog.prompt
     palms(jog)
@@ -76,10 +76,10 @@ def test_one_palm_starts_nothing(jog: JogBench) -> None:
 
 def test_palms_without_a_choice_start_neither_spindle_nor_program(jog: JogBench) -> None:
     palms(jog)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     jog.type("b")
     palms(jog)
-    assert (jog.shot.state, jog.shot.rpm_command) == (State.IDLE, 0.0)
+    assert (jog.shot.state, jog.shot.rpm_command) == (MachineState.IDLE, 0.0)
     assert shows(jog.prompt, "jog.nothing-chosen")
 
 
@@ -108,7 +108,7 @@ def test_esc_takes_it_back(jog: JogBench) -> None:
     jog.key(Key.Key_Escape)
     palms(jog)
     assert jog.shot.rpm_command == 0.0
-    assert jog.frame.page.NAME == page_table.JOG
+    assert jog.frame.current_page.NAME == page_table.JOG
 
 
 def by_key(jog: JogBench) -> None:
@@ -116,9 +116,9 @@ def by_key(jog: JogBench) -> None:
 
 
 def by_finger(jog: JogBench) -> None:
-    hand = jog.page.hand
+    hand = jog.page.manual_panel
     hand.grab()
-    stop = next(each for each in hand.controls if each.always)
+    stop = next(each for each in hand.controls if each.acts_when_late)
     QTest.mouseClick(hand, Qt.MouseButton.LeftButton, pos=stop.box.center().toPoint())
 
 
@@ -131,7 +131,7 @@ def by_estop(jog: JogBench) -> None:
 
 
 def by_switch(jog: JogBench) -> None:
-    jog.desk.hands.set_spindle_auto(False)  # on the station: A is a key of the Automatic page
+    jog.desk.station_controls.set_spindle_auto(False)  # on the station: A is a key of the Automatic page
 
 
 @pytest.mark.parametrize(
@@ -146,11 +146,11 @@ def test_what_stops_it(jog: JogBench, stop: Callable[[JogBench], None], jogging:
     if jogging:
         jog.down(Key.Key_Left)
         jog.run(0.5)
-        assert jog.shot.state is State.JOG
+        assert jog.shot.state is MachineState.JOG
     stop(jog)
     jog.run(0.5)
     assert jog.shot.rpm_command == 0.0
-    assert jog.shot.state is not State.JOG
+    assert jog.shot.state is not MachineState.JOG
     stands = jog.shot.demand
     jog.run(0.5)
     assert (jog.shot.demand, jog.shot.rpm_command) == (stands, 0.0)
@@ -167,7 +167,7 @@ def test_stop_counts_while_the_spindle_speeds_up_in_its_line(jog: JogBench) -> N
     jog.up(Key.Key_F11)
     jog.up(Key.Key_F12)
     jog.run(0.5)
-    assert (jog.shot.rpm_command, jog.shot.state) == (0.0, State.IDLE)
+    assert (jog.shot.rpm_command, jog.shot.state) == (0.0, MachineState.IDLE)
 
 
 def test_estop_released_starts_nothing(jog: JogBench) -> None:
@@ -188,15 +188,15 @@ def test_with_the_drives_off_nothing_is_chosen(jog: JogBench) -> None:
     jog.run(0.2)
     jog.type("b3")
     proved(jog)
-    assert jog.page.model.hand.line.ready is None
+    assert jog.page.model.manual_functions.prepared_line.ready_job is None
     assert shows(jog.prompt, "screen.drives-off-for-hands")
 
 
 def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
     turning(jog)
-    jog.executor.failed(RuntimeError("made by the test"))
+    jog.executor.handle_failure(RuntimeError("made by the test"))
     jog.run(0.3)
-    assert (jog.shot.state, jog.shot.rpm_command) == (State.FAULT, 0.0)
+    assert (jog.shot.state, jog.shot.rpm_command) == (MachineState.FAULT, 0.0)
     jog.type("1")
     palms(jog)
     assert jog.shot.rpm_command == 0.0
@@ -204,13 +204,13 @@ def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
 
 def test_a_held_feed_hold_lets_nothing_start(jog: JogBench) -> None:
     chosen(jog)
-    assert jog.desk.control.panel is not None
-    jog.desk.control.panel.press_hold()
+    assert jog.desk.desk_control.station_panel is not None
+    jog.desk.desk_control.station_panel.press_hold()
     palms(jog)
     jog.run(0.5)
-    assert (jog.shot.state, jog.shot.rpm_command) == (State.IDLE, 0.0)
-    assert text("jog.in-feed-hold") in jog.shot.start_refused
-    jog.desk.control.panel.release_hold()
+    assert (jog.shot.state, jog.shot.rpm_command) == (MachineState.IDLE, 0.0)
+    assert text("jog.in-feed-hold") in jog.shot.start_refusal
+    jog.desk.desk_control.station_panel.release_hold()
 
 
 @pytest.mark.parametrize("page", [Key.Key_F8, Key.Key_F1])
@@ -218,11 +218,11 @@ def test_leaving_takes_back_what_was_ready_and_leaves_what_turns(jog: JogBench, 
     turning(jog)
     jog.type("2")
     proved(jog)
-    assert jog.page.model.hand.line.ready is not None
+    assert jog.page.model.manual_functions.prepared_line.ready_job is not None
     jog.key(page)
     jog.run(0.5)
     assert jog.shot.rpm_command == 200.0  # as MDI leaves it; every page shows it
-    assert jog.shot.prepared == ""
+    assert jog.shot.prepared_digest == ""
 
 
 def test_a_key_held_while_the_page_changes(jog: JogBench) -> None:
@@ -247,7 +247,7 @@ def test_a_rapid_whose_shift_is_let_go_does_not_go_on_slowly(jog: JogBench) -> N
     jog.run(0.5)
     stands = jog.shot.demand
     jog.run(0.5)
-    assert (jog.shot.demand, jog.shot.state) == (stands, State.IDLE)
+    assert (jog.shot.demand, jog.shot.state) == (stands, MachineState.IDLE)
 
 
 def test_a_window_that_loses_the_keyboard_ends_the_jog_and_takes_nothing_up(
@@ -267,14 +267,14 @@ def test_a_window_that_loses_the_keyboard_ends_the_jog_and_takes_nothing_up(
     jog.window.activateWindow()
     qtbot.waitUntil(jog.window.isActiveWindow, timeout=LIMIT)
     jog.run(0.5)
-    assert (jog.shot.demand, jog.shot.state) == (stands, State.IDLE)
+    assert (jog.shot.demand, jog.shot.state) == (stands, MachineState.IDLE)
 
 
 def test_c_is_not_jogged_while_it_turns(jog: JogBench) -> None:
     turning(jog)
     jog.down(Key.Key_PageUp)
     jog.run(0.5)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     jog.up(Key.Key_PageUp)
 
 
@@ -305,7 +305,7 @@ def test_a_collet_that_is_ready_to_open_is_so_no_more_when_the_spindle_waits(jog
     jog.until(lambda: jog.shot.rpm_actual == 0.0)
     jog.type("6")  # it stands, and the switch may start it
     proved(jog)
-    assert jog.page.model.hand.line.ready is None
+    assert jog.page.model.manual_functions.prepared_line.ready_job is None
     palms(jog)
     jog.run(0.5)
     assert "collet" in jog.shot.outputs
@@ -315,7 +315,7 @@ def test_the_collet_opens_and_closes_by_the_palms(jog: JogBench) -> None:
     jog.type("b6")
     proved(jog)
     palms(jog)
-    jog.until(lambda: jog.shot.state is State.IDLE)
+    jog.until(lambda: jog.shot.state is MachineState.IDLE)
     assert "collet" not in jog.shot.outputs
     jog.type("1")
     jog.enter("500")
@@ -326,7 +326,7 @@ def test_the_collet_opens_and_closes_by_the_palms(jog: JogBench) -> None:
     jog.type("5")
     proved(jog)
     palms(jog)
-    jog.until(lambda: jog.shot.state is State.IDLE)
+    jog.until(lambda: jog.shot.state is MachineState.IDLE)
     assert "collet" in jog.shot.outputs
 
 
@@ -338,15 +338,19 @@ def test_a_speed_that_is_none(jog: JogBench, typed: str, said: str) -> None:
     jog.enter(typed)
     assert said in jog.prompt
     jog.key(Key.Key_Left)
-    assert jog.shot.state is State.IDLE  # an entry is open
+    assert jog.shot.state is MachineState.IDLE  # an entry is open
     jog.key(Key.Key_Escape)
-    assert jog.page.model.hand.rpm == 0.0
+    assert jog.page.model.manual_functions.entered_rpm == 0.0
 
 
 def test_every_target_is_a_fingertip(jog: JogBench) -> None:
     jog.type("b")
     jog.run(0.1)
-    for panel, least in ((jog.page.hand, 43.0), (jog.page.strip, 43.0), (jog.page.pad, 43.0)):
+    for panel, least in (
+        (jog.page.manual_panel, 43.0),
+        (jog.page.manual_strip, 43.0),
+        (jog.page.jog_cross, 43.0),
+    ):
         panel.grab()
         assert panel.controls
         for each in panel.controls:
@@ -357,7 +361,7 @@ def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
     def touch(panel: QWidget, at: QPointF) -> None:
         QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=at.toPoint())
 
-    strip, hand = jog.page.strip, jog.page.hand
+    strip, hand = jog.page.manual_strip, jog.page.manual_panel
     strip.grab()
     touch(strip, strip.controls[0].box.center())
     jog.run(0.1)
@@ -365,7 +369,7 @@ def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
     hand.grab()
     touch(hand, hand.controls[2].box.center())  # FORWARD
     jog.run(0.1)
-    assert jog.page.numbers.isVisible()
+    assert jog.page.number_pad.isVisible()
     jog.enter("300")
     proved(jog)
     palms(jog)
@@ -374,4 +378,4 @@ def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
 
 
 def test_every_language_says_it() -> None:
-    assert set(WORDS) == {"omniturn", "sinumerik", "klartext"}
+    assert set(LANGUAGE_CODES) == {"omniturn", "sinumerik", "klartext"}

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.jog.skim_and_setter import CutStep
+from app.jog.skim_and_setter import SkimCutStep
 from app.screen import page_table
 from core.executor.commands import CycleStart
-from core.executor.snapshot import Starts, State
+from core.executor.snapshot import MachineState, StartAction
 from tests.screen.hands import LIMIT
 from tests.screen.jog import bench
 from tests.screen.jog.bench import JogBench, Key, opened
@@ -35,14 +35,14 @@ def mill(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Itera
     qtbot.waitExposed(built.window, timeout=LIMIT)
     opened(built)
     yield built
-    built.window.put_away()
+    built.window.close_silently()
     built.desk.close()
     built.store.close()
 
 
 def test_on_a_mill_the_speed_shown_is_the_one_that_starts(mill: JogBench) -> None:
     """M3 has no S of its own: one that was typed and not run is not what the spindle gets."""
-    hand = mill.page.model.hand
+    hand = mill.page.model.manual_functions
     mill.type("b9")
     mill.enter("3000")
     proved(mill)
@@ -54,11 +54,11 @@ def test_on_a_mill_the_speed_shown_is_the_one_that_starts(mill: JogBench) -> Non
     proved(mill)
     mill.type("1")  # instead of the palms
     proved(mill)
-    assert hand.speed == 3000.0
+    assert hand.start_speed_rpm == 3000.0
     assert "M3 (S3000)" in mill.prompt
     palms(mill)
     mill.run(2.0)
-    assert mill.shot.rpm_command == hand.speed == 3000.0
+    assert mill.shot.rpm_command == hand.start_speed_rpm == 3000.0
 
 
 def test_stop_counts_before_the_screen_has_seen_the_start(jog: JogBench) -> None:
@@ -67,7 +67,7 @@ def test_stop_counts_before_the_screen_has_seen_the_start(jog: JogBench) -> None
     jog.executor.post(CycleStart())  # the palms, and 0 before another snapshot
     jog.key(Key.Key_0)
     jog.run(2.0)
-    assert (jog.shot.rpm_command, jog.shot.state) == (0.0, State.IDLE)
+    assert (jog.shot.rpm_command, jog.shot.state) == (0.0, MachineState.IDLE)
 
 
 def test_a_program_that_began_while_jog_was_opened_does_not_begin_there_again(
@@ -78,22 +78,22 @@ def test_a_program_that_began_while_jog_was_opened_does_not_begin_there_again(
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
     jog.run(0.1)
-    jog.desk.programs.load(part)
-    jog.desk.session.settled(60.0)
+    jog.desk.program_choice.load_path(part)
+    jog.desk.program_loader.wait_until_loaded(60.0)
     jog.run(0.3)
     jog.executor.post(CycleStart())
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
     jog.run(0.1)
-    jog.until(lambda: jog.shot.state is State.IDLE)
-    assert jog.frame.page.NAME == page_table.JOG
+    jog.until(lambda: jog.shot.state is MachineState.IDLE)
+    assert jog.frame.current_page.NAME == page_table.JOG
     jog.run(0.3)
-    assert jog.shot.starts is Starts.LINE
+    assert jog.shot.starts is StartAction.MDI_LINE
     ends = jog.shot.ends
     jog.executor.post(CycleStart())
     jog.run(0.5)
-    assert (jog.shot.state, jog.shot.ends) == (State.IDLE, ends)
-    assert jog.shot.start_refused == wording("jog.no-line-ready")
+    assert (jog.shot.state, jog.shot.ends) == (MachineState.IDLE, ends)
+    assert jog.shot.start_refusal == wording("jog.no-line-ready")
 
 
 def test_nothing_is_ready_beside_the_question_for_a_size(jog: JogBench) -> None:
@@ -102,7 +102,7 @@ def test_nothing_is_ready_beside_the_question_for_a_size(jog: JogBench) -> None:
     jog.enter("1")
     chosen(jog)
     palms(jog)
-    jog.until(lambda: abs(jog.shot.rpm_actual) > 190 and jog.shot.state is State.IDLE)
+    jog.until(lambda: abs(jog.shot.rpm_actual) > 190 and jog.shot.state is MachineState.IDLE)
     jog.type("c")
     jog.type("x")
     for key, seconds in ((Key.Key_Left, 1.5), (Key.Key_Right, 0.6)):
@@ -113,13 +113,16 @@ def test_nothing_is_ready_beside_the_question_for_a_size(jog: JogBench) -> None:
         if key == Key.Key_Left:
             jog.key(Key.Key_Return)
     model = jog.page.model
-    assert model.skim.step is CutStep.AWAY
+    assert model.skim_cut.cut_step is SkimCutStep.RETRACT
     jog.type("0")
     jog.type("1")
-    jog.until(lambda: model.skim.step is CutStep.MEASURE)
+    jog.until(lambda: model.skim_cut.cut_step is SkimCutStep.MEASURING)
     jog.run(0.3)
-    assert model.tool.asked
-    assert (model.hand.chosen, model.hand.line.ready) == ("", None)
+    assert model.tool_setting.question_name
+    assert (model.manual_functions.selected_function, model.manual_functions.prepared_line.ready_job) == (
+        "",
+        None,
+    )
     palms(jog)
     jog.run(0.5)
     assert jog.shot.rpm_command == 0.0

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.desk.late_presses import Starting, name_of
-from core.executor.snapshot import State
+from app.desk.late_presses import StartingAction, name_starting_action
+from core.executor.snapshot import MachineState
 from tests.screen.jog.bench import SHIFT, JogBench, Key
 from tests.screen.yes import read
 from tests.texts import shows
@@ -12,29 +12,31 @@ from tests.texts import shows
 def late_down(jog: JogBench, *keys: Key) -> None:
     """Keys go down that waited behind a stall."""
     for key in keys:
-        jog.window.judge(late=True)
+        jog.window.set_late(is_late=True)
         jog.down(key)
-    jog.window.judge(late=False)
+    jog.window.set_late(is_late=False)
 
 
-def told(jog: JogBench, starting: Starting) -> bool:
-    return shows(jog.desk.answers.answer, "screen.screen-stood-still", what=name_of(starting))
+def told(jog: JogBench, starting: StartingAction) -> bool:
+    return shows(
+        jog.desk.prompt_answers.message, "screen.screen-stood-still", what=name_starting_action(starting)
+    )
 
 
 def moves(jog: JogBench, seconds: float = 1.0) -> bool:
     """Whether anything moves within this time."""
     before = jog.shot.demand
     jog.run(seconds)
-    return jog.shot.demand != before or jog.shot.state in {State.JOG, State.HOME}
+    return jog.shot.demand != before or jog.shot.state in {MachineState.JOG, MachineState.HOME}
 
 
 def test_an_arrow_pressed_and_released_in_a_stall_does_nothing(jog: JogBench) -> None:
     late_down(jog, Key.Key_Right)
-    jog.window.judge(late=True)
+    jog.window.set_late(is_late=True)
     jog.up(Key.Key_Right)
     assert not moves(jog)
-    assert jog.page.model.hold.down == set()
-    assert told(jog, Starting.JOG)
+    assert jog.page.model.held_jog.keys_down == set()
+    assert told(jog, StartingAction.JOG)
 
 
 def test_an_arrow_held_through_the_end_of_a_stall_jogs_only_when_pressed_again(jog: JogBench) -> None:
@@ -49,9 +51,9 @@ def test_an_arrow_held_through_the_end_of_a_stall_jogs_only_when_pressed_again(j
 
 
 def test_a_late_step_is_none_and_the_step_that_was_chosen_late_counts(jog: JogBench) -> None:
-    jog.window.judge(late=True)
+    jog.window.set_late(is_late=True)
     jog.key(Key.Key_F2)
-    assert jog.page.model.speeds.step == 0
+    assert jog.page.model.jog_speeds.step_index == 0
     late_down(jog, Key.Key_Right)
     assert not moves(jog)
     jog.up(Key.Key_Right)
@@ -68,27 +70,27 @@ def test_a_late_second_key_still_ends_what_is_held(jog: JogBench) -> None:
 
 
 def test_a_late_finger_jogs_nothing(jog: JogBench) -> None:
-    jog.window.judge(late=True)
-    jog.page.model.finger("finger Z1", "Z", 1)
-    jog.window.judge(late=False)
+    jog.window.set_late(is_late=True)
+    jog.page.model.press_direction("finger Z1", "Z", 1)
+    jog.window.set_late(is_late=False)
     assert not moves(jog)
 
 
 def test_a_late_rapid_is_none_when_shift_is_let_go(jog: JogBench) -> None:
-    jog.window.judge(late=True)
+    jog.window.set_late(is_late=True)
     jog.down(Key.Key_Right, SHIFT)
-    jog.window.judge(late=False)
+    jog.window.set_late(is_late=False)
     assert not moves(jog)
 
 
 def test_home_is_asked_late_and_never_begun_late(lost: JogBench) -> None:
-    lost.window.judge(late=True)
+    lost.window.set_late(is_late=True)
     lost.key(Key.Key_Home)
-    assert lost.desk.asked == "Enter"
+    assert lost.desk.confirm_key == "Enter"
     read(lost.desk)
     late_down(lost, Key.Key_Return)
     assert not moves(lost)
-    assert told(lost, Starting.YES)
+    assert told(lost, StartingAction.YES)
     lost.up(Key.Key_Return)
     lost.key(Key.Key_Return)
     assert moves(lost, 0.2)
@@ -99,26 +101,26 @@ def test_the_letter_of_an_axis_homes_nothing_late(lost: JogBench) -> None:
     read(lost.desk)
     late_down(lost, Key.Key_X)
     assert not moves(lost)
-    assert told(lost, Starting.HOME)
+    assert told(lost, StartingAction.HOME)
 
 
 def test_a_late_key_selects_no_handwheel_and_lets_it_go(wheeled: JogBench) -> None:
     late_down(wheeled, Key.Key_V)
     wheeled.run(0.3)
     assert wheeled.shot.wheel == ""
-    assert told(wheeled, Starting.HANDWHEEL)
+    assert told(wheeled, StartingAction.HANDWHEEL)
     wheeled.up(Key.Key_V)
     wheeled.key(Key.Key_V)
     wheeled.run(0.3)
     assert wheeled.shot.wheel == "X"
-    wheeled.window.judge(late=True)
+    wheeled.window.set_late(is_late=True)
     wheeled.key(Key.Key_Escape)
     wheeled.run(0.3)
     assert wheeled.shot.wheel == ""
 
 
 def test_a_late_letter_still_asks_for_its_value(jog: JogBench) -> None:
-    jog.window.judge(late=True)
+    jog.window.set_late(is_late=True)
     jog.type("t")
-    jog.window.judge(late=False)
-    assert jog.page.model.asked
+    jog.window.set_late(is_late=False)
+    assert jog.page.model.is_asking

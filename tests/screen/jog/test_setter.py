@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.snapshot import State
-from core.store.store_rows import Kind, ToolRow
-from drivers.simulators.plant_hands import PlantHands
+from core.executor.snapshot import MachineState
+from core.store.store_rows import OffsetKind, ToolRow
+from drivers.simulators.plant_controls import PlantControls
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.texts import Pattern, begins, shows, text
 
@@ -15,18 +15,18 @@ BESIDE = (0.65, -0.2)  # and from which Z- does
 TIP = (0.15, -1.6)
 
 
-def hands(bench: JogBench) -> PlantHands:
-    assert isinstance(bench.desk.hands.station, PlantHands)
-    return bench.desk.hands.station
+def hands(bench: JogBench) -> PlantControls:
+    assert isinstance(bench.desk.station_controls.station, PlantControls)
+    return bench.desk.station_controls.station
 
 
 def put(bench: JogBench, place: tuple[float, float]) -> None:
     """The slides stand there: somebody has pushed them while the drives were off."""
-    hands(bench)._plant.power(False)
+    hands(bench)._plant.set_power(False)
     for axis, inches in zip("XZ", place, strict=True):
         here = bench.shot.actual["XZ".index(axis)]
         hands(bench).push(axis, inches * INCH - here)
-    hands(bench)._plant.power(True)
+    hands(bench)._plant.set_power(True)
     bench.run(0.1)
 
 
@@ -34,7 +34,7 @@ def given(bench: JogBench, number: int, row: ToolRow) -> None:
     """The table has this tool already."""
     values = row._asdict()
     values.pop("master")
-    bench.desk.book.change(Kind.TOOL, number, values, "typed")
+    bench.desk.offset_book.change_fields(OffsetKind.TOOL, number, values, "typed")
     bench.saved()
 
 
@@ -48,7 +48,7 @@ def hold(bench: JogBench, key: Key, seconds: float = 20.0) -> None:
     """Until it is back, or nothing comes of it."""
     bench.down(key)
     bench.run(0.1)
-    bench.until(lambda: bench.shot.state is State.IDLE, seconds)
+    bench.until(lambda: bench.shot.state is MachineState.IDLE, seconds)
     bench.up(key)
     bench.run(0.1)
 
@@ -60,8 +60,8 @@ def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench)
     assert shows(setter.prompt, "jog.at-setter", number=3, keys=Pattern(r"↑ \(X−\).*"))
     hold(setter, Key.Key_Up)
     assert shows(setter.prompt, "jog.return-keeps-found")
-    words = setter.page.asked.asked
-    assert "not set  →  +0.1" in words.change
+    words = setter.page.entry_panel.entry_texts
+    assert "not set  →  +0.1" in words.change_text
     assert begins(words.text, "jog.reason-setter", way="X−")
     setter.key(Key.Key_Return)
     put(setter, BESIDE)
@@ -69,9 +69,9 @@ def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench)
     hold(setter, Key.Key_Left)
     setter.key(Key.Key_Return)
     setter.saved()
-    row = setter.desk.book.tools[3]
+    row = setter.desk.offset_book.tools[3]
     assert (row.x, row.z) == pytest.approx((TIP[0] * INCH, TIP[1] * INCH), abs=0.002)
-    assert shows(setter.desk.book.history(Kind.TOOL)[0].why, "jog.reason-setter", way="Z−")
+    assert shows(setter.desk.offset_book.read_history(OffsetKind.TOOL)[0].why, "jog.reason-setter", way="Z−")
 
 
 def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_is_asked_once(setter: JogBench) -> None:
@@ -80,23 +80,23 @@ def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_is_asked_once(
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
-    words = setter.page.asked.asked
-    assert "DIFFERENCE +0.0" in words.change
-    assert not setter.desk.asked
+    words = setter.page.entry_panel.entry_texts
+    assert "DIFFERENCE +0.0" in words.change_text
+    assert not setter.desk.confirm_key
     setter.key(Key.Key_Escape)
     setter.saved()
-    assert setter.desk.book.tools[2].x == pytest.approx(0.14 * INCH)  # nothing was kept
+    assert setter.desk.offset_book.tools[2].x == pytest.approx(0.14 * INCH)  # nothing was kept
     given(setter, 2, ToolRow(x=0.11 * INCH, z=-1.6 * INCH, quadrant=3))
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
     assert shows(setter.prompt, "offsets.suspicious", changes=Pattern(r"T2 X R \+0\.11000 → \+0\.1[45].*"))
-    assert not setter.page.model.asked  # Return is no second question
+    assert not setter.page.model.is_asking  # Return is no second question
     setter.key(Key.Key_Return)
     setter.saved()
-    assert setter.desk.book.tools[2].x == pytest.approx(0.11 * INCH)
+    assert setter.desk.offset_book.tools[2].x == pytest.approx(0.11 * INCH)
     setter.confirm()
-    assert setter.desk.book.tools[2].x == pytest.approx(TIP[0] * INCH, abs=0.002)
+    assert setter.desk.offset_book.tools[2].x == pytest.approx(TIP[0] * INCH, abs=0.002)
 
 
 def test_a_figure_that_is_typed_changes_nothing_of_what_was_found(setter: JogBench) -> None:
@@ -105,10 +105,10 @@ def test_a_figure_that_is_typed_changes_nothing_of_what_was_found(setter: JogBen
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
-    before = setter.page.asked.asked.change
+    before = setter.page.entry_panel.entry_texts.change_text
     setter.type("12")
     setter.run(0.05)
-    assert setter.page.asked.asked.change == before
+    assert setter.page.entry_panel.entry_texts.change_text == before
 
 
 def test_letting_go_finds_nothing_and_the_next_press_begins_anew(setter: JogBench) -> None:
@@ -118,9 +118,9 @@ def test_letting_go_finds_nothing_and_the_next_press_begins_anew(setter: JogBenc
     setter.down(Key.Key_Up)
     setter.run(0.3)
     setter.up(Key.Key_Up)
-    setter.until(lambda: setter.shot.state is State.IDLE)
+    setter.until(lambda: setter.shot.state is MachineState.IDLE)
     assert shows(setter.prompt, "jog.not-touched-off")
-    assert setter.page.model.tool.asked == ""
+    assert setter.page.model.tool_setting.question_name == ""
     hold(setter, Key.Key_Up)
     assert shows(setter.prompt, "jog.return-keeps-found")
 
@@ -132,16 +132,16 @@ def test_another_key_and_another_page_end_it(setter: JogBench) -> None:
     setter.down(Key.Key_Up)
     setter.run(0.3)
     setter.key(Key.Key_F3)
-    setter.until(lambda: setter.shot.state is State.IDLE)
-    assert setter.page.model.tool.asked == ""
+    setter.until(lambda: setter.shot.state is MachineState.IDLE)
+    assert setter.page.model.tool_setting.question_name == ""
     setter.up(Key.Key_Up)
-    assert setter.page.model.setter.armed
+    assert setter.page.model.setter_touch.is_armed
     setter.key(Key.Key_F8)
     setter.run(0.05)
     setter.key(Key.Key_F1)
     setter.key(Key.Key_F5)
     setter.run(0.05)
-    assert not setter.page.model.setter.armed
+    assert not setter.page.model.setter_touch.is_armed
 
 
 # --- which way ----------------------------------------------------------------------------------------------
@@ -160,9 +160,9 @@ def test_the_tip_says_which_way(setter: JogBench, quadrant: int, ways: str) -> N
         setter.run(0.02)
         setter.down(key)
         setter.run(0.05)
-        moves = setter.shot.state is State.JOG
+        moves = setter.shot.state is MachineState.JOG
         setter.up(key)
-        setter.until(lambda: setter.shot.state is State.IDLE)
+        setter.until(lambda: setter.shot.state is MachineState.IDLE)
         assert moves == (way in ways.split()), way
         setter.key(Key.Key_Escape)
 
@@ -176,7 +176,7 @@ def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
     hold(setter, Key.Key_Up)
     setter.confirm()
     # The contact is at .15; the centre of the nose is .03 further out.
-    assert setter.desk.book.tools[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
+    assert setter.desk.offset_book.tools[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
 
 
 def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:
@@ -196,7 +196,7 @@ def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:
     setter.run(0.05)
     setter.down(Key.Key_Up)
     setter.run(0.1)
-    assert setter.shot.state is State.IDLE
+    assert setter.shot.state is MachineState.IDLE
     assert text("jog.input-on-already").upper() in setter.prompt.upper()
 
 
@@ -211,12 +211,12 @@ def test_a_lathe_without_a_setter_says_so(jog: JogBench) -> None:
 def test_a_button_jogs_while_it_is_held(setter: JogBench) -> None:
     hands(setter).set_input("jog_z_plus", True)
     setter.run(0.5)
-    assert setter.shot.state is State.JOG
+    assert setter.shot.state is MachineState.JOG
     assert setter.shot.demand[1] > 0.5
     assert setter.shot.demand[0] == 0.0
     hands(setter).set_input("jog_z_plus", False)
     setter.run(0.02)
-    setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
+    setter.until(lambda: setter.shot.state is MachineState.IDLE, 0.5)
 
 
 def test_it_stops_though_the_screen_stands_still(setter: JogBench) -> None:
@@ -236,12 +236,12 @@ def test_one_that_is_down_when_the_page_opens_moves_nothing(setter: JogBench) ->
     setter.key(Key.Key_F1)
     setter.key(Key.Key_F5)
     setter.run(0.5)
-    assert setter.shot.state is State.IDLE
+    assert setter.shot.state is MachineState.IDLE
     hands(setter).set_input("jog_z_plus", False)
     setter.run(0.05)
     hands(setter).set_input("jog_z_plus", True)
     setter.run(0.1)
-    assert setter.shot.state is State.JOG
+    assert setter.shot.state is MachineState.JOG
 
 
 def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> None:
@@ -250,9 +250,9 @@ def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> N
     hands(setter).set_input("jog_x_minus", True)
     setter.run(0.05)
     assert shows(setter.prompt, "jog.two-at-once")
-    setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
+    setter.until(lambda: setter.shot.state is MachineState.IDLE, 0.5)
     setter.run(0.5)
-    assert setter.shot.state is State.IDLE
+    assert setter.shot.state is MachineState.IDLE
     for name in ("jog_z_plus", "jog_x_minus"):
         hands(setter).set_input(name, False)
     setter.run(0.05)
@@ -260,7 +260,7 @@ def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> N
     setter.run(0.2)
     setter.down(Key.Key_Left)
     setter.run(0.05)
-    setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
+    setter.until(lambda: setter.shot.state is MachineState.IDLE, 0.5)
 
 
 def test_rapid_is_the_button_beside_it(setter: JogBench) -> None:
@@ -271,7 +271,7 @@ def test_rapid_is_the_button_beside_it(setter: JogBench) -> None:
     assert setter.shot.velocity == pytest.approx(100 * INCH / 60, rel=0.02)
     hands(setter).set_input("jog_rapid", False)
     setter.run(0.3)
-    assert setter.shot.state is State.IDLE  # it does not go on slowly
+    assert setter.shot.state is MachineState.IDLE  # it does not go on slowly
 
 
 def test_a_button_touches_off_as_a_key_does(setter: JogBench) -> None:
@@ -280,7 +280,7 @@ def test_a_button_touches_off_as_a_key_does(setter: JogBench) -> None:
     setter.key(Key.Key_P)
     hands(setter).set_input("jog_x_minus", True)
     setter.run(0.1)
-    setter.until(lambda: setter.shot.state is State.IDLE)
+    setter.until(lambda: setter.shot.state is MachineState.IDLE)
     assert shows(setter.prompt, "jog.return-keeps-found")
     hands(setter).set_input("jog_x_minus", False)
     setter.run(0.1)

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
-from app.jog.skim_and_setter import CutStep
-from core.executor.commands import JogStep
-from core.executor.snapshot import State
+from app.jog.skim_and_setter import SkimCutStep
+from core.executor.commands import JogByStep
+from core.executor.snapshot import MachineState
 from tests.screen.jog.bench import INCH, JogBench, Key
 from tests.screen.jog.test_by_hand import by_estop, palms, proved
 from tests.texts import shows, text
@@ -16,10 +16,10 @@ from tests.texts import shows, text
 X, Z = 0, 1
 
 
-def step(jog: JogBench) -> CutStep:
+def step(jog: JogBench) -> SkimCutStep:
     """What is to be done next."""
     jog.run(0.02)
-    return jog.page.model.skim.step
+    return jog.page.model.skim_cut.cut_step
 
 
 def goes(jog: JogBench, key: Key, seconds: float = 1.0) -> None:
@@ -31,13 +31,13 @@ def goes(jog: JogBench, key: Key, seconds: float = 1.0) -> None:
 
 
 def spindle(jog: JogBench) -> None:
-    hand = jog.page.model.hand
-    jog.type("1" if hand.shown else "b1")
-    if hand.asked:
+    hand = jog.page.model.manual_functions
+    jog.type("1" if hand.is_shown else "b1")
+    if hand.is_asking_speed:
         jog.enter("200")
     proved(jog)
     palms(jog)
-    jog.until(lambda: jog.shot.rpm_actual > 190.0 and jog.shot.state is State.IDLE)
+    jog.until(lambda: jog.shot.rpm_actual > 190.0 and jog.shot.state is MachineState.IDLE)
 
 
 def begun(jog: JogBench, axis: str = "x") -> None:
@@ -45,7 +45,7 @@ def begun(jog: JogBench, axis: str = "x") -> None:
     jog.type("t")
     jog.enter("1")
     jog.type("c" + axis)
-    assert step(jog) is CutStep.CUT
+    assert step(jog) is SkimCutStep.CUTTING
 
 
 def cut(jog: JogBench) -> float:
@@ -55,36 +55,36 @@ def cut(jog: JogBench) -> float:
     goes(jog, Key.Key_Down, 0.5)
     goes(jog, Key.Key_Left)
     jog.key(Key.Key_Return)
-    assert step(jog) is CutStep.AWAY
+    assert step(jog) is SkimCutStep.RETRACT
     return jog.shot.actual[X]
 
 
 def rows(jog: JogBench) -> dict[int, object]:
     jog.saved()
-    return dict(jog.desk.book.tools)
+    return dict(jog.desk.offset_book.tools)
 
 
 def test_a_diameter(jog: JogBench) -> None:
     x = cut(jog)
     goes(jog, Key.Key_Right)
-    assert step(jog) is CutStep.AWAY  # the spindle still turns
+    assert step(jog) is SkimCutStep.RETRACT  # the spindle still turns
     jog.type("0")
-    jog.until(lambda: jog.page.model.tool.asked != "")
-    assert step(jog) is CutStep.MEASURE
+    jog.until(lambda: jog.page.model.tool_setting.question_name != "")
+    assert step(jog) is SkimCutStep.MEASURING
     jog.type(".5")
     jog.run(0.05)
-    assert "→" in jog.page.asked.asked.change
+    assert "→" in jog.page.entry_panel.entry_texts.change_text
     assert rows(jog) == {}
     jog.key(Key.Key_Return)
     assert shows(
-        jog.page.model.tool.note(), "jog.touched-one-of-two", axis="Z"
+        jog.page.model.tool_setting.make_note_text(), "jog.touched-one-of-two", axis="Z"
     )  # a new tool is kept with both axes
-    assert step(jog) is CutStep.OFF
+    assert step(jog) is SkimCutStep.OFF
     jog.key(Key.Key_F6)
     jog.enter("0")
     jog.saved()
     jog.run(0.1)
-    row = jog.desk.book.tools[1]
+    row = jog.desk.offset_book.tools[1]
     assert row.x == pytest.approx(x - 0.25 * INCH, abs=1e-6)  # machine X less half of the diameter
     jog.key(Key.Key_F4)
     jog.confirm()
@@ -100,12 +100,12 @@ def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) ->
     jog.saved()
     x = cut(jog)
     jog.type("0")
-    jog.until(lambda: jog.page.model.tool.asked != "")
+    jog.until(lambda: jog.page.model.tool_setting.question_name != "")
     jog.type(".3")
     jog.key(Key.Key_Return)
     jog.confirm()
     jog.run(0.1)
-    assert jog.desk.book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
+    assert jog.desk.offset_book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
     assert jog.store.offsets.read_history(limit=1)[0].why == "skim cut Ø .3"
 
 
@@ -118,8 +118,8 @@ def test_a_face(jog: JogBench) -> None:
     z = jog.shot.actual[Z]
     goes(jog, Key.Key_Down)  # retract in X, Z is kept
     jog.type("0")
-    jog.until(lambda: jog.page.model.tool.asked == "touch z")
-    assert jog.page.model.tool.touching.at == pytest.approx(z, abs=1e-6)
+    jog.until(lambda: jog.page.model.tool_setting.question_name == "touch z")
+    assert jog.page.model.tool_setting.touch_off.touch_position == pytest.approx(z, abs=1e-6)
 
 
 def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> None:
@@ -127,11 +127,11 @@ def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> N
     goes(jog, Key.Key_Right)
     goes(jog, Key.Key_Down, 0.3)
     assert shows(jog.prompt, "jog.moved-since-cut", axis="X")
-    assert step(jog) is CutStep.CUT
+    assert step(jog) is SkimCutStep.CUTTING
     goes(jog, Key.Key_Up, 0.3)  # coming back is no cut either
     jog.type("0")
     jog.run(1.5)
-    assert step(jog) is CutStep.CUT
+    assert step(jog) is SkimCutStep.CUTTING
     jog.key(Key.Key_Return)
     assert text("jog.no-cut-spindle-stands") in jog.prompt
     assert rows(jog) == {}
@@ -140,11 +140,11 @@ def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> N
 def test_x_that_moves_while_the_size_is_asked(jog: JogBench) -> None:
     cut(jog)
     jog.type("0")
-    jog.until(lambda: jog.page.model.tool.asked != "")
+    jog.until(lambda: jog.page.model.tool_setting.question_name != "")
     jog.type(".5")
     jog.key(Key.Key_Left)
-    assert jog.shot.state is State.IDLE  # an entry is open: no arrow moves anything
-    jog.desk.post(JogStep("X", 0.5, 5.0))  # whoever else moves it
+    assert jog.shot.state is MachineState.IDLE  # an entry is open: no arrow moves anything
+    jog.desk.post(JogByStep("X", 0.5, 5.0))  # whoever else moves it
     jog.run(4.5)  # the answer to the arrow is gone
     assert shows(jog.prompt, "jog.moved-since-cut", axis="X")
     jog.key(Key.Key_Return)
@@ -175,11 +175,11 @@ def test_what_is_no_cut(jog: JogBench, how: Callable[[JogBench], str]) -> None:
     begun(jog)
     said = how(jog)
     if how is moving:
-        jog.page.model.skim.made()
+        jog.page.model.skim_cut.finish_cut()
     else:
         jog.key(Key.Key_Return)
     assert said in jog.prompt
-    assert step(jog) is CutStep.CUT
+    assert step(jog) is SkimCutStep.CUTTING
 
 
 def in_the_cut(jog: JogBench) -> None:
@@ -193,7 +193,7 @@ def away(jog: JogBench) -> None:
 def measuring(jog: JogBench) -> None:
     cut(jog)
     jog.type("0")
-    jog.until(lambda: jog.page.model.tool.asked != "")
+    jog.until(lambda: jog.page.model.tool_setting.question_name != "")
     jog.type(".5")
 
 
@@ -201,7 +201,7 @@ def measuring(jog: JogBench) -> None:
 def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[JogBench], None]) -> None:
     until(jog)
     jog.key(Key.Key_Escape)
-    assert step(jog) is CutStep.OFF
+    assert step(jog) is SkimCutStep.OFF
     assert text("jog.skim-given-up") in jog.prompt
     jog.key(Key.Key_Return)
     assert rows(jog) == {}
@@ -210,9 +210,9 @@ def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[Jog
 @pytest.mark.parametrize("until", [away, measuring])
 def test_estop_gives_it_up(jog: JogBench, until: Callable[[JogBench], None]) -> None:
     until(jog)
-    jog.desk.station.press_estop()
+    jog.desk.station_keys.press_estop()
     jog.run(0.3)
-    assert step(jog) is CutStep.OFF
+    assert step(jog) is SkimCutStep.OFF
     assert rows(jog) == {}
 
 
@@ -221,7 +221,7 @@ def test_leaving_the_page_gives_it_up(jog: JogBench) -> None:
     jog.key(Key.Key_F8)
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
-    assert step(jog) is CutStep.OFF
+    assert step(jog) is SkimCutStep.OFF
     assert rows(jog) == {}
 
 
@@ -232,13 +232,13 @@ def test_without_a_tool_or_a_home_it_is_refused(lost: JogBench) -> None:
     lost.enter("1")
     lost.type("c")
     assert shows(lost.prompt, "jog.position-means-nothing", axis="X")
-    assert step(lost) is CutStep.OFF
+    assert step(lost) is SkimCutStep.OFF
 
 
 def test_the_size_is_not_asked_while_the_spindle_turns(jog: JogBench) -> None:
     cut(jog)
     goes(jog, Key.Key_Right)
     jog.run(1.0)
-    assert jog.page.model.tool.asked == ""
+    assert jog.page.model.tool_setting.question_name == ""
     assert shows(jog.prompt, "jog.retract-along")
     by_estop(jog)

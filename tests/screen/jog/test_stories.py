@@ -6,8 +6,8 @@ import pytest
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPixmap
 
-from app.screen.look import Painter
-from core.executor.snapshot import State
+from app.screen.screen_theme import ThemedPainter
+from core.executor.snapshot import MachineState
 from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import yes
@@ -16,7 +16,7 @@ from tests.texts import begins, shows, text
 
 def step_to(jog: JogBench, key: Key, step: int, presses: int) -> None:
     """Choose a step by F2 and press so often."""
-    while jog.page.model.speeds.step != step:
+    while jog.page.model.jog_speeds.step_index != step:
         jog.key(Key.Key_F2)
     for _ in range(presses):
         jog.key(key)
@@ -32,8 +32,8 @@ def test_steps_lead_to_a_position(jog: JogBench) -> None:
     step_to(jog, Key.Key_Left, 0, 1)
     assert jog.shot.demand[0] == pytest.approx(0.3195 * INCH, abs=1e-9)
     assert jog.shot.demand[1] == pytest.approx(-0.1 * INCH, abs=1e-9)
-    assert jog.frame.head.view is not None
-    assert jog.frame.head.view.position.axes[0].value == "0.31950"
+    assert jog.frame.readout_line.status is not None
+    assert jog.frame.readout_line.status.position.axes[0].value == "0.31950"
 
 
 def test_a_step_that_is_held_is_one_step(jog: JogBench) -> None:
@@ -52,7 +52,7 @@ def test_a_step_is_cut_short_by_the_page_and_that_is_said(jog: JogBench) -> None
     jog.run(0.1)
     jog.key(Key.Key_F8)
     jog.run(0.5)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     assert jog.shot.demand[1] > -0.09 * INCH
     assert shows(jog.prompt, "jog.stopped-in-step")
 
@@ -70,29 +70,31 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
     jog.enter("1")
     touch(jog, "x", ".5-.002")
     assert text("jog.touched-one-of-two", number=1, axis="Z") in jog.prompt
-    assert jog.store.offsets.tools.read_rows() == {}
+    assert jog.store.offsets.tool_offsets.read_rows() == {}
     touch(jog, "z", "0")
     assert jog.prompt == text("screen.saved", names="T1")
     # the tip stands at diameter .498 with the slide at home: part zero is .249 further in
-    assert jog.store.offsets.tools.read_rows()[1].x == pytest.approx(-0.249 * INCH, abs=1e-9)
-    assert jog.store.offsets.tools.read_rows()[1].z == 0.0
+    assert jog.store.offsets.tool_offsets.read_rows()[1].x == pytest.approx(-0.249 * INCH, abs=1e-9)
+    assert jog.store.offsets.tool_offsets.read_rows()[1].z == 0.0
     step_to(jog, Key.Key_Up, 0, 10)
     step_to(jog, Key.Key_Right, 0, 5)
     jog.type("t")
     jog.enter("2")
     touch(jog, "x", ".75")
     touch(jog, "z", ".1")
-    second = jog.store.offsets.tools.read_rows()[2]
+    second = jog.store.offsets.tool_offsets.read_rows()[2]
     assert second.x == pytest.approx((-1.0 - 0.375) * INCH, abs=0.0013)
     assert second.z == pytest.approx((0.5 - 0.1) * INCH, abs=0.0013)
-    assert jog.page.model.tool.tip(jog.shot) == pytest.approx((0.375 * INCH, 0.1 * INCH), abs=1e-9)
+    assert jog.page.model.tool_setting.find_tip_position(jog.shot) == pytest.approx(
+        (0.375 * INCH, 0.1 * INCH), abs=1e-9
+    )
     assert [change.why for change in jog.store.offsets.read_history()] == [text("jog.touched-off")] * 2
 
 
 def set_two(jog: JogBench) -> None:
-    jog.store.offsets.tools.change_row(1, "x", {"x": -5.0, "z": -50.0, "wear_x": 0.1})
-    jog.store.offsets.tools.change_row(2, "x", {"x": 3.0, "z": -40.0}).result(60)
-    jog.desk.book.read()
+    jog.store.offsets.tool_offsets.change_row(1, "x", {"x": -5.0, "z": -50.0, "wear_x": 0.1})
+    jog.store.offsets.tool_offsets.change_row(2, "x", {"x": 3.0, "z": -40.0}).result(60)
+    jog.desk.offset_book.read_store()
     jog.type("t")
     jog.enter("1")
 
@@ -103,16 +105,16 @@ def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> 
     jog.type("1")
     jog.run(0.02)
     # radius .5 in; was −5 mm = −.19685 in
-    change = jog.page.asked.asked.change
+    change = jog.page.entry_panel.entry_texts.change_text
     assert change == "X R  −0.19685  →  −0.50000   WEAR X  +0.00787  →  +0.00000"  # .1 mm of radius
     jog.key(Key.Key_Return)
     jog.confirm()
-    assert jog.store.offsets.tools.read_rows()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
-    assert jog.store.offsets.tools.read_rows()[1].wear_x == 0.0
-    assert jog.store.offsets.tools.read_rows()[2].x == 3.0
+    assert jog.store.offsets.tool_offsets.read_rows()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
+    assert jog.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0
+    assert jog.store.offsets.tool_offsets.read_rows()[2].x == 3.0
     jog.key(Key.Key_F4)
     jog.confirm()
-    assert jog.store.offsets.tools.read_rows()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
+    assert jog.store.offsets.tool_offsets.read_rows()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
 
 
 def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
@@ -121,21 +123,23 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     jog.confirm()
     jog.type("z")
     jog.run(0.02)
-    assert shows(jog.page.asked.asked.foot, "jog.is-master", number=1, others="T2")
+    assert shows(jog.page.entry_panel.entry_texts.footer_text, "jog.is-master", number=1, others="T2")
     jog.enter("1")
     jog.confirm()
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
-    assert jog.store.offsets.tools.read_rows()[1].z == pytest.approx(-25.4, abs=1e-9)
-    assert jog.store.offsets.tools.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
+    assert jog.store.offsets.tool_offsets.read_rows()[1].z == pytest.approx(-25.4, abs=1e-9)
+    assert jog.store.offsets.tool_offsets.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
     jog.run(0.02)
     # F5 is TOUCH X on this page: the list of changes is on the page of F8
-    assert jog.page.model.tool.old_to_new() == text("offsets.count-changed", count=2, keys="F8, F5")
+    assert jog.page.model.tool_setting.describe_change() == text(
+        "offsets.count-changed", count=2, keys="F8, F5"
+    )
     jog.type("z")
     jog.type("l")
     jog.enter("0")
     jog.confirm()
-    assert jog.store.offsets.tools.read_rows()[1].z == pytest.approx(0.0, abs=1e-9)
-    assert jog.store.offsets.tools.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
+    assert jog.store.offsets.tool_offsets.read_rows()[1].z == pytest.approx(0.0, abs=1e-9)
+    assert jog.store.offsets.tool_offsets.read_rows()[2].z == pytest.approx(-15.4, abs=1e-9)
 
 
 def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
@@ -149,9 +153,9 @@ def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
     touch(jog, "x", "1")
     jog.confirm()
     jog.run(0.05)
-    assert jog.frame.head.view is not None
-    assert jog.frame.head.view.position.axes[0].value == "0.50000"
-    assert jog.frame.head.view.tool == "T1"
+    assert jog.frame.readout_line.status is not None
+    assert jog.frame.readout_line.status.position.axes[0].value == "0.50000"
+    assert jog.frame.readout_line.status.tool_text == "T1"
 
 
 def test_fields_of_a_tool(jog: JogBench) -> None:
@@ -160,13 +164,13 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
     touch(jog, "q", "3")
     touch(jog, "k", "Hardened END")
     touch(jog, "w", "-.001")
-    assert jog.page.asked.asked.question == "T1  WEAR Z?"
+    assert jog.page.entry_panel.entry_texts.question_text == "T1  WEAR Z?"
     jog.enter("")
-    row = jog.store.offsets.tools.read_rows()[1]
+    row = jog.store.offsets.tool_offsets.read_rows()[1]
     assert row.nose_radius == pytest.approx(0.4)
     assert (row.quadrant, row.remark) == (3, "Hardened END")
     assert row.wear_x == pytest.approx(-0.0127)
-    assert jog.shot.state is State.IDLE  # H, E and D were letters of the remark
+    assert jog.shot.state is MachineState.IDLE  # H, E and D were letters of the remark
 
 
 @pytest.mark.parametrize(
@@ -197,13 +201,13 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
 )
 def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer: str, why: str) -> None:
     set_two(jog)
-    before = jog.store.offsets.tools.read_rows()
+    before = jog.store.offsets.tool_offsets.read_rows()
     jog.type(key)
     jog.enter(answer)
     assert jog.prompt.startswith(why)
     jog.saved()
-    assert jog.store.offsets.tools.read_rows() == before
-    assert jog.page.model.tool.asked
+    assert jog.store.offsets.tool_offsets.read_rows() == before
+    assert jog.page.model.tool_setting.question_name
 
 
 def test_without_a_tool_it_asks_for_one(jog: JogBench) -> None:
@@ -222,18 +226,22 @@ def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> Non
     lost.key(Key.Key_Home)
     assert begins(lost.prompt, "jog.home", first="Z, THEN X")
     lost.run(0.5)
-    assert lost.shot.state is State.IDLE
+    assert lost.shot.state is MachineState.IDLE
     lost.key(Key.Key_Home)
     lost.run(0.05)
-    assert lost.shot.state is State.IDLE  # never the key that asked
+    assert lost.shot.state is MachineState.IDLE  # never the key that asked
     yes(lost.window, Key.Key_Return)
     lost.run(0.05)
-    assert lost.shot.state is State.HOME
+    assert lost.shot.state is MachineState.HOME
     seen = []
 
     def done() -> bool:
-        seen.append(tuple(known.value for known in lost.page.model.home.known(lost.shot).values())[:2])
-        return lost.shot.state is State.IDLE
+        seen.append(
+            tuple(known.value for known in lost.page.model.homing_question.find_states(lost.shot).values())[
+                :2
+            ]
+        )
+        return lost.shot.state is MachineState.IDLE
 
     lost.until(done)
     assert list(dict.fromkeys(seen)) == [("NOT HOMED", "HOMING"), ("HOMING", "HOMED"), ("HOMED", "HOMED")]
@@ -245,7 +253,7 @@ def test_one_axis_alone(lost: JogBench) -> None:
     lost.key(Key.Key_Home)
     lost.type("x")  # sooner than anybody has read the question
     lost.run(0.2)
-    assert lost.shot.state is State.IDLE
+    assert lost.shot.state is MachineState.IDLE
     lost.key(Key.Key_Home)
     yes(lost.window, Key.Key_X)
     lost.until(lambda: lost.shot.homed[0])
@@ -262,7 +270,7 @@ def test_another_key_takes_the_question_back(lost: JogBench) -> None:
     assert lost.shot.demand[1] == 0.0  # the arrow took it back, and is pressed again to jog
     lost.up(Key.Key_Left)
     lost.run(0.5)
-    assert lost.shot.state is State.IDLE
+    assert lost.shot.state is MachineState.IDLE
     assert not any(lost.shot.homed[:2])
 
 
@@ -291,7 +299,7 @@ def test_hold_ends_homing(lost: JogBench) -> None:
     lost.run(0.05)
     lost.key(Key.Key_H)
     lost.run(0.5)
-    assert lost.shot.state is State.IDLE
+    assert lost.shot.state is MachineState.IDLE
     assert not lost.shot.homed[1]
 
 
@@ -300,17 +308,17 @@ def test_the_tip_is_shown_in_the_unit_of_the_readout(
     jog: JogBench, monkeypatch: pytest.MonkeyPatch, units: str, shown: str, other: str
 ) -> None:
     """The readout showed millimeters, and the tip next to it inches."""
-    jog.store.offsets.tools.change_row(1, "test", {"x": 0.0, "z": -12.7}).result(60)
-    jog.desk.book.read()
-    jog.desk.choose_setting("units", units)
+    jog.store.offsets.tool_offsets.change_row(1, "test", {"x": 0.0, "z": -12.7}).result(60)
+    jog.desk.offset_book.read_store()
+    jog.desk.apply_setting("units", units)
     jog.type("t")
     jog.enter("1")
     jog.run(0.1)
     written: list[str] = []
 
-    monkeypatch.setattr(Painter, "write", lambda *values, **_more: written.append(values[2]))
+    monkeypatch.setattr(ThemedPainter, "draw_text_line", lambda *values, **_more: written.append(values[2]))
     pixmap = QPixmap(400, 100)
-    with Painter(pixmap, jog.page.look) as painter:
-        jog.page.tool._stands(painter, QRectF(0, 0, 300, 60))
+    with ThemedPainter(pixmap, jog.page.theme) as painter:
+        jog.page.tool_panel._stands(painter, QRectF(0, 0, 300, 60))
     assert [each for each in written if each.lstrip("-").startswith(shown)], written
     assert not [each for each in written if each.lstrip("-").startswith(other)], written

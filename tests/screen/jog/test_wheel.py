@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QApplication, QDialog
 from pytestqt.qtbot import QtBot
 
 from app.desk.status.interrupted_notice import NoticeRow
-from app.screen.window_layout import FINGER
-from core.executor.snapshot import State
+from app.screen.window_layout import FINGERTIP_PX
+from core.executor.snapshot import MachineState
 from tests.screen.jog.bench import INCH, JogBench, Key
 from tests.texts import shows, text
 
@@ -22,7 +22,7 @@ THOU = 0.001 * INCH
 
 def notches(jog: JogBench, count: int) -> None:
     """The mouse's wheel over the pad, one notch a tick."""
-    pad = jog.page.pad
+    pad = jog.page.jog_cross
     for _ in range(abs(count)):
         delta = QPoint(0, 120 if count > 0 else -120)
         middle = QPointF(pad.rect().center())
@@ -54,7 +54,7 @@ def test_a_notch_is_a_thousandth(wheeled: JogBench, axis: str) -> None:
     selected(wheeled, axis)
     assert shows(wheeled.prompt, "jog.wheel-moves", axis=axis)
     notches(wheeled, 5)
-    wheeled.until(lambda: wheeled.shot.state is State.IDLE)
+    wheeled.until(lambda: wheeled.shot.state is MachineState.IDLE)
     wheeled.run(0.3)
     assert wheeled.shot.demand["XZ".index(axis)] == pytest.approx(5 * THOU, abs=1e-9)
     notches(wheeled, -5)
@@ -64,12 +64,12 @@ def test_a_notch_is_a_thousandth(wheeled: JogBench, axis: str) -> None:
 
 def test_a_finger_round_the_drawn_wheel(wheeled: JogBench) -> None:
     selected(wheeled)
-    wheeled.page.pad.grab()  # drawing places the controls
-    box = wheeled.page.pad.controls[-1].box
-    for at in wheeled.page.pad.controls:
-        if at.along is not None and at.up is None:
+    wheeled.page.jog_cross.grab()  # drawing places the controls
+    box = wheeled.page.jog_cross.controls[-1].box
+    for at in wheeled.page.jog_cross.controls:
+        if at.on_move is not None and at.on_release is None:
             box = at.box
-    pad, centre, size = wheeled.page.pad, box.center(), 0.3 * min(box.width(), box.height())
+    pad, centre, size = wheeled.page.jog_cross, box.center(), 0.3 * min(box.width(), box.height())
 
     def around(degrees: float) -> QPoint:
         angle = math.radians(degrees)
@@ -100,7 +100,7 @@ def stays(wheeled: JogBench) -> None:
     assert wheeled.shot.wheel == ""
     at = wheeled.shot.demand
     for _ in range(20):
-        station = wheeled.desk.hands.station
+        station = wheeled.desk.station_controls.station
         assert station is not None
         station.turn_handwheel(4)
         wheeled.run(0.01)
@@ -171,20 +171,20 @@ def test_the_step_key_changes_the_click(wheeled: JogBench) -> None:
 def test_without_one_the_key_says_so_and_nothing_is_drawn(jog: JogBench) -> None:
     jog.key(Key.Key_V)
     assert jog.prompt == text("jog.no-wheel")
-    assert not jog.page.model.wheel_drawn
+    assert not jog.page.model.is_wheel_shown
 
 
 @pytest.mark.parametrize("high", [314, 361])
 def test_every_target_fits_a_finger_on_the_smallest_screen(wheeled: JogBench, high: int) -> None:
     """314 pixels are what a yellow row leaves to the page, 361 what it has without one."""
     wheeled.window.resize(1024, 600)
-    pad = wheeled.page.pad
+    pad = wheeled.page.jog_cross
     pad.resize(394, high)
     pad.grab()
     assert len(pad.controls) >= 17
     for control in pad.controls:
-        assert min(control.box.width(), control.box.height()) >= FINGER - 1
-        assert pad.area().contains(control.box)
+        assert min(control.box.width(), control.box.height()) >= FINGERTIP_PX - 1
+        assert pad.find_full_area().contains(control.box)
 
 
 def test_two_yellow_rows_leave_a_fingertip_to_every_target(
@@ -197,26 +197,26 @@ def test_two_yellow_rows_leave_a_fingertip_to_every_target(
         NoticeRow("INTERRUPTED: LINE 4", "T1"),
         NoticeRow("NOT SAVED: the disk is full", "20 parts"),
     )
-    monkeypatch.setattr(frame, "_notices_of", lambda *_what, **_more: rows)
+    monkeypatch.setattr(frame, "_make_notices", lambda *_what, **_more: rows)
     wheeled.window.resize(1024, 600)
     wheeled.window.refresh()
-    assert frame.notices.isVisible()
-    pad = wheeled.page.pad
+    assert frame.notice_rows.isVisible()
+    pad = wheeled.page.jog_cross
     pad.grab()
     assert len(pad.controls) >= 12
     for control in pad.controls:
-        assert min(control.box.width(), control.box.height()) >= FINGER - 1
-        assert pad.area().contains(control.box)
+        assert min(control.box.width(), control.box.height()) >= FINGERTIP_PX - 1
+        assert pad.find_full_area().contains(control.box)
 
 
 def test_in_a_low_pad_one_row_goes_through_steps_and_speeds(wheeled: JogBench) -> None:
     wheeled.window.resize(1024, 600)
-    pad, speeds = wheeled.page.pad, wheeled.page.model.speeds
+    pad, speeds = wheeled.page.jog_cross, wheeled.page.model.jog_speeds
     pad.resize(394, 314)
     pad.grab()
-    step, speed = speeds.step, speeds.speed
+    step, speed = speeds.step_index, speeds.speed_index
     for control in pad.controls[:3]:
         QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=control.box.center().toPoint())
-    assert wheeled.page.model.hold.rapid_armed
-    assert speeds.step != step
-    assert speeds.speed != speed
+    assert wheeled.page.model.held_jog.is_rapid_armed
+    assert speeds.step_index != step
+    assert speeds.speed_index != speed

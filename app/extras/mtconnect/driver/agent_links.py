@@ -18,16 +18,16 @@ from core.message import Message
 from core.ports import DriverError
 
 UNAVAILABLE = "UNAVAILABLE"
-NORMAL = "NORMAL"
-PING = b"* PING"
-LONGEST = 256  # characters of a value; a program block can have any length
+NORMAL_LEVEL = "NORMAL"
+PING_COMMAND = b"* PING"
+MAX_VALUE_LENGTH = 256  # characters of a value; a program block can have any length
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffe\uffff]+")
 _LONGEST_BEAT = 30 * 60 * 1000 - 1  # ms; the agent requires less than half an hour
 
-Value = str | float | None  # None: not known
+ItemValue = str | float | None  # None: not known
 
 
-class Active(NamedTuple):
+class ActiveCondition(NamedTuple):
     """Active condition. ``level`` is WARNING or FAULT, and ``code`` identifies the condition."""
 
     level: str
@@ -35,22 +35,22 @@ class Active(NamedTuple):
     text: str
 
 
-class Report(NamedTuple):
+class MachineReport(NamedTuple):
     """State of the machine at one instant: values of samples and events, and active conditions.
 
     A missing key means that the value is not known.
     """
 
-    values: Mapping[str, Value]
-    conditions: Mapping[str, tuple[Active, ...]]
+    values: Mapping[str, ItemValue]
+    conditions: Mapping[str, tuple[ActiveCondition, ...]]
 
 
-def stamp(at: datetime) -> str:
+def format_utc_time(time: datetime) -> str:
     """Return a UTC time in the format of the agent, in milliseconds."""
-    return at.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return time.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-def pong(heartbeat: float) -> bytes:
+def make_pong(heartbeat: float) -> bytes:
     """Return the reply to a PING.
 
     ``heartbeat`` is in seconds, sent as 1 ms to just under half an hour.
@@ -58,136 +58,138 @@ def pong(heartbeat: float) -> bytes:
     return b"* PONG %d\n" % min(max(round(1000 * heartbeat), 1), _LONGEST_BEAT)
 
 
-def text_of(item: DataItem, value: Value) -> str:
+def format_value(item: DataItem, value: ItemValue) -> str:
     """Return a value as text."""
     if value is None:
         return UNAVAILABLE
     if isinstance(value, str):
-        return clean(value)
-    return f"{round(value, item.digits) + 0.0:.{item.digits}f}"
+        return replace_separators(value)
+    return f"{round(value, item.decimal_places) + 0.0:.{item.decimal_places}f}"
 
 
-def clean(text: str) -> str:
+def replace_separators(text: str) -> str:
     """Return text that the agent reads as one value, with separators and quotation marks replaced.
 
     A leading quotation mark or ``--multiline--`` would include the following data.
     """
     text = _CONTROL.sub(" ", text).replace("|", "/").replace("--multiline--", "- multiline -")
-    text = text.encode("utf-8", "replace").decode("utf-8")[:LONGEST].strip()
+    text = text.encode("utf-8", "replace").decode("utf-8")[:MAX_VALUE_LENGTH].strip()
     return "'" + text[1:] if text.startswith('"') else text
 
 
-def values_line(at: str, pairs: Mapping[str, str]) -> str:
+def make_values_line(time: str, pairs: Mapping[str, str]) -> str:
     """Return the line with samples and events of one instant."""
-    return "|".join((at, *(part for pair in pairs.items() for part in pair))) + "\n"
+    return "|".join((time, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
-def active_line(at: str, key: str, active: Active) -> str:
+def make_active_line(time: str, key: str, active: ActiveCondition) -> str:
     """Return the line for a condition that becomes active or changes its text.
 
     The fields for severity and qualifier are empty.
     """
-    return f"{at}|{key}|{active.level}|{clean(active.code)}|||{clean(active.text)}\n"
+    return (
+        f"{time}|{key}|{active.level}|{replace_separators(active.code)}|||{replace_separators(active.text)}\n"
+    )
 
 
-def cleared_line(at: str, key: str, code: str = "") -> str:
+def make_cleared_line(time: str, key: str, code: str = "") -> str:
     """Return the line for the end of a condition code, or of the whole condition without a code."""
-    return f"{at}|{key}|{NORMAL}|{clean(code)}|||\n"
+    return f"{time}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
 
 
-def unknown_line(at: str, key: str) -> str:
+def make_unknown_line(time: str, key: str) -> str:
     """Return the line for a condition whose state is not known."""
-    return f"{at}|{key}|{UNAVAILABLE}||||\n"
+    return f"{time}|{key}|{UNAVAILABLE}||||\n"
 
 
 # --- Sent values, so that only changes are sent. --------------------
 
 
-Conditions = dict[str, tuple[Active, ...] | None]  # None: not known
+ConditionsByItem = dict[str, tuple[ActiveCondition, ...] | None]  # None: not known
 
 
-class AgentsState:
+class SentState:
     """State of the machine that all connected agents have received."""
 
     def __init__(self, items: tuple[DataItem, ...]) -> None:
         self._values = {item.key: item for item in items if item.category is not Category.CONDITION}
-        self._conditions: Conditions = {
+        self._conditions: ConditionsByItem = {
             item.key: None for item in items if item.category is Category.CONDITION
         }
-        self._last: dict[str, Value] = dict.fromkeys(self._values)
+        self._last: dict[str, ItemValue] = dict.fromkeys(self._values)
         self._shown = dict.fromkeys(self._values, UNAVAILABLE)
 
-    def whole(self, at: str) -> str:
+    def make_complete_state(self, time: str) -> str:
         """Return the complete state for a new agent."""
-        lines = [values_line(at, self._shown)]
+        lines = [make_values_line(time, self._shown)]
         for key, active in self._conditions.items():
-            lines += _whole_condition(at, key, active)
+            lines += _whole_condition(time, key, active)
         return "".join(lines)
 
-    def changes(self, report: Report, at: str) -> str:
+    def report_changes(self, report: MachineReport, time: str) -> str:
         """Return the changes in a report, which then count as sent."""
         new = dict(self._new_values(report))
-        lines = [values_line(at, new)] if new else []
+        lines = [make_values_line(time, new)] if new else []
         for key, before in self._conditions.items():
             now = report.conditions.get(key)
             if now != before:
-                lines += _changed_condition(at, key, before, now)
+                lines += _changed_condition(time, key, before, now)
                 self._conditions[key] = now
         return "".join(lines)
 
-    def _new_values(self, report: Report) -> Iterator[tuple[str, str]]:
+    def _new_values(self, report: MachineReport) -> Iterator[tuple[str, str]]:
         for key, item in self._values.items():
             value = report.values.get(key)
             if not _differs(item, self._last[key], value):
                 continue
             self._last[key] = value
-            text = text_of(item, value)
+            text = format_value(item, value)
             if text != self._shown[key]:
                 self._shown[key] = text
                 yield key, text
 
 
-def _differs(item: DataItem, before: Value, now: Value) -> bool:
+def _differs(item: DataItem, before: ItemValue, now: ItemValue) -> bool:
     """Return whether a value has changed. A sample must leave its band, except from or to 0."""
     if isinstance(before, str) or isinstance(now, str) or before is None or now is None:
         return before != now
     if now == 0.0 or before == 0.0:
         return now != before
-    return abs(now - before) > item.band + item.share * abs(before)
+    return abs(now - before) > item.minimum_change + item.relative_change * abs(before)
 
 
-def _whole_condition(at: str, key: str, active: tuple[Active, ...] | None) -> list[str]:
+def _whole_condition(at: str, key: str, active: tuple[ActiveCondition, ...] | None) -> list[str]:
     if active is None:
-        return [unknown_line(at, key)]
-    return [active_line(at, key, each) for each in active] or [cleared_line(at, key)]
+        return [make_unknown_line(at, key)]
+    return [make_active_line(at, key, each) for each in active] or [make_cleared_line(at, key)]
 
 
 def _changed_condition(
-    at: str, key: str, before: tuple[Active, ...] | None, now: tuple[Active, ...] | None
+    time: str, key: str, before: tuple[ActiveCondition, ...] | None, now: tuple[ActiveCondition, ...] | None
 ) -> list[str]:
     """Return the lines of new and changed conditions, followed by those of ended conditions."""
     if not now or before is None:
-        return _whole_condition(at, key, now)
+        return _whole_condition(time, key, now)
     codes = {each.code for each in now}
-    lines = [active_line(at, key, each) for each in now if each not in before]
-    return lines + [cleared_line(at, key, each.code) for each in before if each.code not in codes]
+    lines = [make_active_line(time, key, each) for each in now if each not in before]
+    return lines + [make_cleared_line(time, key, each.code) for each in before if each.code not in codes]
 
 
-BEHIND = 64 * 1024  # bytes that may wait for a slow agent; about one minute at ten lines per second
-READ = 1024  # bytes per read; a faster sender waits in its own buffers
-LONGEST_LINE = 1024
+MAX_UNSENT_BYTES = 64 * 1024  # bytes that may wait for a slow agent; about one minute at ten lines per second
+READ_BYTES = 1024  # bytes per read; a faster sender waits in its own buffers
+MAX_LINE_LENGTH = 1024
 # --- Agent: data to be sent to it, and data received from it.
 
 
 _GRACE = 1.0  # seconds in addition to two heartbeats
-DOOR = 5.0  # seconds within which an additional agent must send PING
+PING_TIMEOUT_S = 5.0  # seconds within which an additional agent must send PING
 
 
-class LostError(Exception):
+class AgentLostError(Exception):
     """Error for an agent that is gone or disconnected. The message states the reason."""
 
 
-class GoneError(LostError):
+class AgentDisconnectedError(AgentLostError):
     """Error for an agent that has closed its connection."""
 
 
@@ -199,23 +201,23 @@ class AgentLink:
     """
 
     def __init__(self, wire: socket.socket, heartbeat: float, waits_since: float | None = None) -> None:
-        self.wire = wire
-        self.waits_since = waits_since
-        self.ignored = 0  # received lines other than PING
+        self.agent_socket = wire
+        self.waiting_since = waits_since
+        self.ignored_line_count = 0  # received lines other than PING
         self._heartbeat = heartbeat
         self._heard: float | None = None  # time of the last PING; None if the agent has never sent one
         self._in = b""
         self._out = bytearray()
 
     @property
-    def pings(self) -> bool:
+    def has_pinged(self) -> bool:
         """Whether the peer has sent a PING."""
         return self._heard is not None
 
-    def put(self, data: bytes) -> None:
+    def queue_data(self, data: bytes) -> None:
         """Queue data. Raises LostError if too much earlier data is waiting."""
-        if len(self._out) + len(data) > BEHIND:
-            raise LostError(
+        if len(self._out) + len(data) > MAX_UNSENT_BYTES:
+            raise AgentLostError(
                 Message(
                     "the agent does not read its data: {out_count} bytes are waiting",
                     out_count=len(self._out),
@@ -226,11 +228,11 @@ class AgentLink:
     def flush(self) -> None:
         """Send as much queued data as the socket accepts. Raises LostError."""
         try:
-            sent = self.wire.send(self._out)
+            sent = self.agent_socket.send(self._out)
         except BlockingIOError:
             return
         except OSError as error:
-            raise GoneError(
+            raise AgentDisconnectedError(
                 Message("the agent cannot be reached: {cause}", cause=error.strerror or error)
             ) from error
         del self._out[:sent]
@@ -238,34 +240,36 @@ class AgentLink:
     def read(self, now: float) -> None:
         """Read received data. A PING is answered, and other lines are counted. Raises LostError."""
         try:
-            come = self.wire.recv(READ)
+            come = self.agent_socket.recv(READ_BYTES)
         except BlockingIOError:
             return
         except OSError as error:
-            raise GoneError(
+            raise AgentDisconnectedError(
                 Message("the connection failed: {cause}", cause=error.strerror or error)
             ) from error
         if not come:
-            raise GoneError("the agent closed the connection")
+            raise AgentDisconnectedError("the agent closed the connection")
         *lines, self._in = (self._in + come).split(b"\n")
         for line in lines:
             self._obey(line.strip(), now)
-        if len(self._in) > LONGEST_LINE:
-            raise LostError("the agent sent data that is not a valid line")
+        if len(self._in) > MAX_LINE_LENGTH:
+            raise AgentLostError("the agent sent data that is not a valid line")
 
     def _obey(self, line: bytes, now: float) -> None:
-        if line == PING:
+        if line == PING_COMMAND:
             self._heard = now
-            self.put(pong(self._heartbeat))
+            self.queue_data(make_pong(self._heartbeat))
         elif line:
-            self.ignored += 1
+            self.ignored_line_count += 1
 
-    def mind(self, now: float) -> None:
+    def check_timeout(self, now: float) -> None:
         """Raise LostError if an agent has stopped sending PING, or waits for a place without sending PING."""
-        if self.waits_since is not None and now - self.waits_since > DOOR:
-            raise GoneError("all connections are in use, and this agent does not send PING")
+        if self.waiting_since is not None and now - self.waiting_since > PING_TIMEOUT_S:
+            raise AgentDisconnectedError("all connections are in use, and this agent does not send PING")
         if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
-            raise LostError(Message("no PING from the agent for {now} s", now=f"{now - self._heard:.0f}"))
+            raise AgentLostError(
+                Message("no PING from the agent for {now} s", now=f"{now - self._heard:.0f}")
+            )
 
 
 # --- Listening socket. -----------------
@@ -276,7 +280,7 @@ _SEND = 64 * 1024  # bytes that the system buffers for a slow agent, so that its
 _UNANSWERED = 30_000  # ms without a response after which the other computer counts as gone
 
 
-def listening(bind: str, port: int) -> socket.socket:
+def open_listening_socket(bind: str, port: int) -> socket.socket:
     """Return a bound, listening socket. Raises DriverError with the cause."""
     try:
         family, kind, proto, _, address = socket.getaddrinfo(
@@ -307,9 +311,9 @@ def listening(bind: str, port: int) -> socket.socket:
     return wire
 
 
-def accepted(door: socket.socket) -> socket.socket:
+def accepted(listener: socket.socket) -> socket.socket:
     """Accept a connection without waiting. Raises OSError if the peer has gone."""
-    wire, _ = door.accept()
+    wire, _ = listener.accept()
     try:
         _tune(wire)
     except OSError:

@@ -19,62 +19,62 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from app.extras.mtconnect.driver.agent_links import (
+    AgentDisconnectedError,
     AgentLink,
-    AgentsState,
-    GoneError,
-    LostError,
-    Report,
+    AgentLostError,
+    MachineReport,
+    SentState,
     accepted,
-    listening,
-    stamp,
+    format_utc_time,
+    open_listening_socket,
 )
 from app.extras.mtconnect.driver.mtconnect_items import Component, DataItem
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from core.ports import Clock, DriverError
 
-LOOK = 0.1  # seconds between two reports
-MOST = 8  # agents at a time
+REPORT_INTERVAL_S = 0.1  # seconds between two reports
+MAX_AGENTS = 8  # agents at a time
 _AT_DOOR = 4  # agents that can wait for a connection without PING
-ENDS = 2.0  # seconds that closing waits for the thread
+CLOSE_TIMEOUT_S = 2.0  # seconds that closing waits for the thread
 _log = logging.getLogger(__name__)
 
 
 @dataclass(slots=True)
-class Counts:
+class ConnectionCounts:
     """Counts of connections since the adapter was opened."""
 
     accepted: int = 0
-    refused: int = 0  # connections beyond the limit
+    rejected_count: int = 0  # connections beyond the limit
     lost: int = 0
-    ignored: int = 0  # lines other than PING from agents that are gone
+    ignored_line_count: int = 0  # lines other than PING from agents that are gone
 
 
-def utc_now() -> datetime:
+def get_utc_now() -> datetime:
     """Return the present time in UTC."""
     return datetime.now(UTC)
 
 
-class Adapter:
+class MtconnectAdapter:
     """Adapter that reports the machine to agents.
 
-    The owner calls ``turn`` repeatedly. ``report`` returns the present state of the machine.
+    The owner calls ``run_once`` repeatedly. ``report`` returns the present state of the machine.
     """
 
     def __init__(
         self,
         settings: MtconnectTable,
         items: tuple[DataItem, ...],
-        report: Callable[[], Report],
+        report: Callable[[], MachineReport],
         clock: Clock,
-        utc: Callable[[], datetime] = utc_now,
+        utc: Callable[[], datetime] = get_utc_now,
     ) -> None:
         self._settings, self._report, self._clock, self._utc = settings, report, clock, utc
-        self._sent = AgentsState(items)
+        self._sent = SentState(items)
         self._door: socket.socket | None = None
         self._selector = selectors.DefaultSelector()
         self._links: list[AgentLink] = []
         self._next_look = 0.0
-        self.counts = Counts()
+        self.counts = ConnectionCounts()
 
     @property
     def address(self) -> tuple[str, int]:
@@ -84,33 +84,33 @@ class Adapter:
         return host, port
 
     @property
-    def agents(self) -> int:
+    def agent_count(self) -> int:
         """Number of agents that receive data."""
         return len(self._served())
 
     def _served(self) -> list[AgentLink]:
-        return [link for link in self._links if link.waits_since is None]
+        return [link for link in self._links if link.waiting_since is None]
 
     def open(self) -> None:
         """Start listening. Raises DriverError on failure."""
         try:
-            self._door = listening(self._settings.bind, self._settings.port)
+            self._door = open_listening_socket(self._settings.bind, self._settings.port)
         except DriverError:
             self._selector.close()
             raise
         self._selector.register(self._door, selectors.EVENT_READ)
-        self.look()
+        self.send_changes()
 
-    def turn(self, patience: float = 0.0) -> None:
-        """Process pending work, waiting at most ``patience`` seconds or until the next report."""
+    def run_once(self, timeout_s: float = 0.0) -> None:
+        """Process pending work, waiting at most ``timeout_s`` seconds or until the next report."""
         left = max(self._next_look - self._clock.now(), 0.0)
-        for key, _ in self._selector.select(min(patience, left)):
+        for key, _ in self._selector.select(min(timeout_s, left)):
             if key.data is None:
                 self._welcome()
             else:
                 self._serve(key.data)
         if self._clock.now() >= self._next_look:
-            self.look()
+            self.send_changes()
 
     def close(self) -> None:
         """Disconnect all agents, which then know that no values are available."""
@@ -122,20 +122,20 @@ class Adapter:
             self._door = None
         self._selector.close()
 
-    def look(self) -> None:
+    def send_changes(self) -> None:
         """Send the changes of the machine state to all agents."""
-        self._next_look = self._clock.now() + LOOK
-        changes = self._sent.changes(self._report(), stamp(self._utc())).encode("utf-8")
+        self._next_look = self._clock.now() + REPORT_INTERVAL_S
+        changes = self._sent.report_changes(self._report(), format_utc_time(self._utc())).encode("utf-8")
         for link in self._links.copy():
             self._tell(link, changes)
 
     def _tell(self, link: AgentLink, data: bytes) -> None:
         try:
-            link.mind(self._clock.now())
-            if link.waits_since is None:
-                link.put(data)
+            link.check_timeout(self._clock.now())
+            if link.waiting_since is None:
+                link.queue_data(data)
                 link.flush()
-        except LostError as lost:
+        except AgentLostError as lost:
             self._lose(link, lost)
 
     def _welcome(self) -> None:
@@ -144,11 +144,11 @@ class Adapter:
             wire = accepted(self._door)
         except OSError:  # the peer has gone or no file is free; the next turn tries again
             return
-        if len(self._links) >= MOST + _AT_DOOR:
-            self.counts.refused += 1
+        if len(self._links) >= MAX_AGENTS + _AT_DOOR:
+            self.counts.rejected_count += 1
             wire.close()
             return
-        full = len(self._served()) >= MOST
+        full = len(self._served()) >= MAX_AGENTS
         link = AgentLink(wire, self._settings.heartbeat, self._clock.now() if full else None)
         self._links.append(link)
         self._selector.register(wire, selectors.EVENT_READ, link)
@@ -156,45 +156,51 @@ class Adapter:
             self._admit(link)
 
     def _admit(self, link: AgentLink) -> None:
-        link.waits_since = None
+        link.waiting_since = None
         self.counts.accepted += 1
-        self._tell(link, self._sent.whole(stamp(self._utc())).encode("utf-8"))
+        self._tell(link, self._sent.make_complete_state(format_utc_time(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
         """Serve a waiting agent. The first connection that never sent PING is closed if necessary."""
         served = self._served()
-        silent = next((other for other in served if not other.pings), None)
-        if len(served) >= MOST and silent is None:
-            self.counts.refused += 1
+        silent = next((other for other in served if not other.has_pinged), None)
+        if len(served) >= MAX_AGENTS and silent is None:
+            self.counts.rejected_count += 1
             self._forget(link)
             return
-        if len(served) >= MOST and silent is not None:
+        if len(served) >= MAX_AGENTS and silent is not None:
             self._lose(
-                silent, GoneError("the agent never sent a PING, and another agent needs the connection")
+                silent,
+                AgentDisconnectedError("the agent never sent a PING, and another agent needs the connection"),
             )
         self._admit(link)
 
     def _serve(self, link: AgentLink) -> None:
         try:
             link.read(self._clock.now())
-            if link.waits_since is not None and link.pings:
+            if link.waiting_since is not None and link.has_pinged:
                 self._make_room(link)
             else:
                 link.flush()
-        except LostError as lost:
+        except AgentLostError as lost:
             self._lose(link, lost)
 
-    def _lose(self, link: AgentLink, why: LostError) -> None:
+    def _lose(self, link: AgentLink, why: AgentLostError) -> None:
         self.counts.lost += 1
-        level = logging.INFO if isinstance(why, GoneError) else logging.WARNING
-        _log.log(level, "an MTConnect agent is no longer served: %s; %d lines ignored", why, link.ignored)
+        level = logging.INFO if isinstance(why, AgentDisconnectedError) else logging.WARNING
+        _log.log(
+            level,
+            "an MTConnect agent is no longer served: %s; %d lines ignored",
+            why,
+            link.ignored_line_count,
+        )
         self._forget(link)
 
     def _forget(self, link: AgentLink) -> None:
-        self.counts.ignored += link.ignored
+        self.counts.ignored_line_count += link.ignored_line_count
         self._links.remove(link)
-        self._selector.unregister(link.wire)
-        link.wire.close()
+        self._selector.unregister(link.agent_socket)
+        link.agent_socket.close()
 
 
 # --- Thread of the adapter. ---------------
@@ -209,13 +215,13 @@ class AdapterThread:
     After a failure, all agents are disconnected.
     """
 
-    def __init__(self, adapter: Adapter) -> None:
+    def __init__(self, adapter: MtconnectAdapter) -> None:
         self._adapter = adapter
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._keep, name="mtconnect", daemon=True)
 
     @property
-    def alive(self) -> bool:
+    def is_alive(self) -> bool:
         """Whether the thread is running."""
         return self._thread.is_alive()
 
@@ -225,16 +231,16 @@ class AdapterThread:
         self._thread.start()
 
     def close(self) -> None:
-        """Disconnect the agents and stop the thread within ``ENDS`` seconds."""
+        """Disconnect the agents and stop the thread within ``CLOSE_TIMEOUT_S`` seconds."""
         self._closing.set()
         if self._thread.is_alive():
-            self._thread.join(ENDS)
+            self._thread.join(CLOSE_TIMEOUT_S)
 
     def _keep(self) -> None:
         try:
             while not self._closing.wait(_BREATH):
-                self._adapter.turn(LOOK)
-            self._adapter.look()  # reports the final state
+                self._adapter.run_once(REPORT_INTERVAL_S)
+            self._adapter.send_changes()  # reports the final state
         finally:
             if not self._closing.is_set():
                 _log.error("there is no shop-floor data any more: a mistake of the control", exc_info=True)
@@ -244,47 +250,49 @@ class AdapterThread:
 # --- Device model for the reference agent. ---
 
 
-VERSION = "2.2"
-NAMESPACE = f"urn:mtconnect.org:MTConnectDevices:{VERSION}"
-_SCHEMA = f"{NAMESPACE} http://schemas.mtconnect.org/schemas/MTConnectDevices_{VERSION}.xsd"
+SCHEMA_VERSION = "2.2"
+SCHEMA_NAMESPACE = f"urn:mtconnect.org:MTConnectDevices:{SCHEMA_VERSION}"
+_SCHEMA = f"{SCHEMA_NAMESPACE} http://schemas.mtconnect.org/schemas/MTConnectDevices_{SCHEMA_VERSION}.xsd"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 
 
-def devices_xml(device: Component, described: str, at: datetime) -> str:
+def make_devices_xml(device: Component, description_text: str, time: datetime) -> str:
     """Return the XML document. Raises DriverError if the device name is not valid for agents.
 
-    ``described`` is a text for people. The uuid depends only on the name of the device.
+    ``description_text`` is a text for people. The uuid depends only on the name of the device.
     """
     if not _NAME.fullmatch(device.name):
         raise DriverError(
             "[mtconnect] device = {device}: use only letters, digits, ., - and _, and begin with a letter",
             device=f"{device.name!r}",
         )
-    root = Element("MTConnectDevices", {"xmlns": NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA})
-    root.append(_header(at))
+    root = Element(
+        "MTConnectDevices", {"xmlns": SCHEMA_NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA}
+    )
+    root.append(_header(time))
     inner = _element(device, device.name, SubElement(root, "Devices"))
     inner.set("uuid", str(uuid.uuid5(uuid.NAMESPACE_URL, f"urn:turndesk:{device.name}")))
     description = Element("Description")
-    description.text = described
+    description.text = description_text
     inner.insert(0, description)
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _header(at: datetime) -> Element:
+def _header(time: datetime) -> Element:
     """Return the header element that the schema requires. An agent replaces its values."""
     return Element(
         "Header",
         {
-            "creationTime": stamp(at),
+            "creationTime": format_utc_time(time),
             "sender": "turndesk",
             "instanceId": "1",
-            "version": f"{VERSION}.0.0",
+            "version": f"{SCHEMA_VERSION}.0.0",
             "assetBufferSize": "1024",
             "assetCount": "0",
             "bufferSize": "131072",
-            "deviceModelChangeTime": stamp(at),
+            "deviceModelChangeTime": format_utc_time(time),
         },
     )
 
@@ -294,15 +302,15 @@ def _element(component: Component, device: str, parent: Element) -> Element:
 
     Identifiers begin with the name of the device, so that they are unique in an agent with several devices.
     """
-    named = {"id": f"{device}_{component.kind}_{component.name}", "name": component.name}
-    element = SubElement(parent, component.kind, named)
+    named = {"id": f"{device}_{component.component_type}_{component.name}", "name": component.name}
+    element = SubElement(parent, component.component_type, named)
     if component.items:
         items = SubElement(element, "DataItems")
         for item in component.items:
             SubElement(items, "DataItem", _attributes(item, device))
-    if component.parts:
+    if component.sub_components:
         parts = SubElement(element, "Components")
-        for part in component.parts:
+        for part in component.sub_components:
             _element(part, device, parts)
     return element
 
@@ -315,6 +323,6 @@ def _attributes(item: DataItem, device: str) -> dict[str, str]:
         "type": item.type,
         "subType": item.sub_type,
         "units": item.units,
-        "coordinateSystem": item.frame,
+        "coordinateSystem": item.coordinate_system,
     }
     return {name: text for name, text in told.items() if text}

@@ -19,7 +19,8 @@ class Category(StrEnum):
 class DataItem:
     """Data item. ``key`` is its name in SHDR lines, and ``units`` are the units of the sent values.
 
-    Samples have ``digits`` decimals. A change within ``band`` + ``share`` of the value is not sent.
+    Samples have ``decimal_places`` decimals. A change within ``minimum_change`` + ``relative_change`` of the
+    value is not sent.
     """
 
     key: str
@@ -27,54 +28,54 @@ class DataItem:
     type: str
     sub_type: str = ""
     units: str = ""
-    frame: str = ""  # coordinate system of a position
-    digits: int = 0
-    band: float = 0.0
-    share: float = 0.0
+    coordinate_system: str = ""  # coordinate system of a position
+    decimal_places: int = 0
+    minimum_change: float = 0.0
+    relative_change: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Component:
     """Component of the machine with its items and sub-components."""
 
-    kind: str
+    component_type: str
     name: str
     items: tuple[DataItem, ...] = ()
-    parts: tuple[Component, ...] = ()
+    sub_components: tuple[Component, ...] = ()
 
     def all_items(self) -> Iterator[DataItem]:
         """Yield the items of the component and of all its parts."""
         yield from self.items
-        for part in self.parts:
+        for part in self.sub_components:
             yield from part.all_items()
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class MachineLayout:
     """Layout of the machine, which determines its data items.
 
-    ``spindle`` is the name of the spindle component. With ``spindle_turns_to``, the spindle is also a rotary
-    axis with an angle.
+    ``spindle_name`` is the name of the spindle component. With ``is_spindle_positionable``, the spindle is
+    also a rotary axis with an angle.
     """
 
-    linear: tuple[str, ...]
-    rotary: tuple[str, ...]
-    spindle: str
-    spindle_turns_to: bool
-    chuck: bool
+    linear_axes: tuple[str, ...]
+    rotary_axes: tuple[str, ...]
+    spindle_name: str
+    is_spindle_positionable: bool
+    has_chuck: bool
 
 
-def machine_items(layout: Layout, name: str) -> Component:
+def make_machine_items(layout: MachineLayout, name: str) -> Component:
     """Return the device with all items. Units are mm, degrees, mm/s, rpm and percent."""
     return Component(
         "Device",
         name,
         (_event("avail", "AVAILABILITY"),),
         (
-            Component("Axes", "base", parts=(*_linear(layout), *_rotary(layout), _spindle(layout))),
+            Component("Axes", "base", sub_components=(*_linear(layout), *_rotary(layout), _spindle(layout))),
             Component("Controller", "controller", _CONTROLLER, (Component("Path", "path", _PATH),)),
             Component("Door", "guard", (_event("door", "DOOR_STATE"),)),
-            Component("Auxiliaries", "auxiliaries", parts=(_BAR_FEEDER,)),
+            Component("Auxiliaries", "auxiliaries", sub_components=(_BAR_FEEDER,)),
         ),
     )
 
@@ -84,7 +85,7 @@ def _event(key: str, kind: str, sub_type: str = "", units: str = "") -> DataItem
 
 
 def _percent(key: str, kind: str) -> DataItem:
-    return DataItem(key, Category.EVENT, kind, "PROGRAMMED", "PERCENT", digits=1)
+    return DataItem(key, Category.EVENT, kind, "PROGRAMMED", "PERCENT", decimal_places=1)
 
 
 def _condition(key: str, kind: str) -> DataItem:
@@ -93,20 +94,31 @@ def _condition(key: str, kind: str) -> DataItem:
 
 def _rpm(key: str, sub_type: str) -> DataItem:
     units = "REVOLUTION/MINUTE"
-    return DataItem(key, Category.SAMPLE, "ROTARY_VELOCITY", sub_type, units, digits=1, band=1.0, share=0.005)
+    return DataItem(
+        key,
+        Category.SAMPLE,
+        "ROTARY_VELOCITY",
+        sub_type,
+        units,
+        decimal_places=1,
+        minimum_change=1.0,
+        relative_change=0.005,
+    )
 
 
 def _angle(axis: str) -> DataItem:
-    return DataItem(f"{axis}abs", Category.SAMPLE, "ANGLE", "ACTUAL", "DEGREE", digits=3, band=0.05)
+    return DataItem(
+        f"{axis}abs", Category.SAMPLE, "ANGLE", "ACTUAL", "DEGREE", decimal_places=3, minimum_change=0.05
+    )
 
 
 def _own_drive(axis: str) -> tuple[DataItem, ...]:
     return (_condition(f"{axis}travel", "POSITION"), _condition(f"{axis}servo", "ACTUATOR"))
 
 
-def _linear(layout: Layout) -> Iterator[Component]:
+def _linear(layout: MachineLayout) -> Iterator[Component]:
     """Yield the linear axes. A band of 3 µm suppresses encoder noise at standstill."""
-    for axis in layout.linear:
+    for axis in layout.linear_axes:
         at = DataItem(
             f"{axis}abs",
             Category.SAMPLE,
@@ -114,28 +126,28 @@ def _linear(layout: Layout) -> Iterator[Component]:
             "ACTUAL",
             "MILLIMETER",
             "MACHINE",
-            digits=4,
-            band=0.003,
+            decimal_places=4,
+            minimum_change=0.003,
         )
         yield Component("Linear", axis, (at, *_own_drive(axis)))
 
 
-def _rotary(layout: Layout) -> Iterator[Component]:
-    for axis in layout.rotary:
+def _rotary(layout: MachineLayout) -> Iterator[Component]:
+    for axis in layout.rotary_axes:
         yield Component("Rotary", axis, (_angle(axis), *_own_drive(axis)))
 
 
-def _spindle(layout: Layout) -> Component:
+def _spindle(layout: MachineLayout) -> Component:
     items = (
-        *((_angle(layout.spindle),) if layout.spindle_turns_to else ()),
+        *((_angle(layout.spindle_name),) if layout.is_spindle_positionable else ()),
         _rpm("Srpm", "ACTUAL"),
         _rpm("Scmd", "PROGRAMMED"),
         _percent("Sovr", "ROTARY_VELOCITY_OVERRIDE"),
-        DataItem("Sload", Category.SAMPLE, "LOAD", "ACTUAL", "PERCENT", digits=1, band=1.0),
+        DataItem("Sload", Category.SAMPLE, "LOAD", "ACTUAL", "PERCENT", decimal_places=1, minimum_change=1.0),
         _event("rotmode", "ROTARY_MODE"),
         _condition("Sdrive", "ACTUATOR"),
     )
-    return Component("Rotary", layout.spindle, items, (_CHUCK,) if layout.chuck else ())
+    return Component("Rotary", layout.spindle_name, items, (_CHUCK,) if layout.has_chuck else ())
 
 
 _CHUCK = Component("Chuck", "collet", (_event("chuck", "CHUCK_STATE"), _event("chuckil", "CHUCK_INTERLOCK")))
@@ -161,9 +173,9 @@ _PATH = (
         "PATH_FEEDRATE",
         "ACTUAL",
         "MILLIMETER/SECOND",
-        digits=3,
-        band=0.1,
-        share=0.02,
+        decimal_places=3,
+        minimum_change=0.1,
+        relative_change=0.02,
     ),
     _percent("Fovr", "PATH_FEEDRATE_OVERRIDE"),
     _condition("motion", "MOTION_PROGRAM"),

@@ -23,36 +23,36 @@ from app.extras.pendant.driver.pendant_table import (
     SYN,
     SYN_DROPPED,
     SYN_REPORT,
-    Control,
+    PendantControl,
 )
 from core.message import Message
 from core.ports import DriverError
 
 # Two C longs of time, then type, code and value: 24 bytes if a long has 8 bytes. The format is part of the
 # kernel's stable interface (Documentation/input/event-codes.rst).
-EVENT = struct.Struct("@llHHi")
+EVENT_STRUCT = struct.Struct("@llHHi")
 
 
 class InputEvent(NamedTuple):
-    """Input event. ``t`` is the kernel's time stamp in seconds of the selected clock."""
+    """Input event. ``time_s`` is the kernel's time stamp in seconds of the selected clock."""
 
-    t: float
+    time_s: float
     kind: int
     code: int
     value: int
 
 
-class Packet(NamedTuple):
+class EventPacket(NamedTuple):
     """Simultaneous changes.
 
-    ``lost`` means that earlier events were lost, so counts are not reliable.
+    ``has_lost_events`` means that earlier events were lost, so counts are not reliable.
     """
 
     events: tuple[InputEvent, ...]
-    lost: bool = False
+    has_lost_events: bool = False
 
 
-class Packets:
+class PacketParser:
     """Parser of bytes into complete packets.
 
     Data from SYN_DROPPED to the next SYN_REPORT is discarded.
@@ -63,28 +63,28 @@ class Packets:
         self._events: list[InputEvent] = []
         self._lost = False
 
-    def feed(self, data: bytes) -> Iterator[Packet]:
+    def parse(self, data: bytes) -> Iterator[EventPacket]:
         """Yield every packet that is now complete."""
         self._bytes += data
-        whole = len(self._bytes) // EVENT.size * EVENT.size
+        whole = len(self._bytes) // EVENT_STRUCT.size * EVENT_STRUCT.size
         read, self._bytes = self._bytes[:whole], self._bytes[whole:]
-        for seconds, micro, kind, code, value in EVENT.iter_unpack(read):
+        for seconds, micro, kind, code, value in EVENT_STRUCT.iter_unpack(read):
             event = InputEvent(seconds + 1e-6 * micro, kind, code, value)
             if kind != SYN:
                 self._events.append(event)
             elif code == SYN_DROPPED:
                 self._lost = True
             elif code == SYN_REPORT:
-                packet = Packet(() if self._lost else tuple(self._events), self._lost)
+                packet = EventPacket(() if self._lost else tuple(self._events), self._lost)
                 self._events, self._lost = [], False
                 yield packet
 
 
 class AxisRange(NamedTuple):
-    """Range of an axis from ``low`` to ``high``, and its present ``value``."""
+    """Range of an axis from ``minimum`` to ``maximum``, and its present ``value``."""
 
-    low: int
-    high: int
+    minimum: int
+    maximum: int
     value: int
 
 
@@ -94,7 +94,7 @@ NODES, SYSFS = Path("/dev/input"), Path("/sys/class/input")
 
 _BLUETOOTH = "0005"
 _CAPABILITIES = {KEY: "key", REL: "rel", ABS: "abs"}
-RULES = "/etc/udev/rules.d/70-turndesk-pendant.rules"
+UDEV_RULES_PATH = "/etc/udev/rules.d/70-turndesk-pendant.rules"
 
 
 class EventSource(Protocol):
@@ -106,11 +106,11 @@ class EventSource(Protocol):
 
     def fileno(self) -> int: ...
 
-    def keys(self) -> frozenset[int]:
+    def read_pressed_keys(self) -> frozenset[int]:
         """Return the codes of all pressed keys. Raises OSError."""
         ...
 
-    def ranges(self) -> Mapping[int, AxisRange]:
+    def read_axis_ranges(self) -> Mapping[int, AxisRange]:
         """Return the ranges and positions of its axes. Raises OSError."""
         ...
 
@@ -130,7 +130,7 @@ class DeviceEntry:
     able: frozenset[tuple[int, int]]  # kind and code of all possible events
 
 
-def entries(sysfs: Path = SYSFS) -> list[DeviceEntry]:
+def list_devices(sysfs: Path = SYSFS) -> list[DeviceEntry]:
     """Return all connected input devices."""
     found = []
     for path in sorted(sysfs.glob("event*")):
@@ -176,14 +176,14 @@ def _bits(words: str) -> Iterable[int]:
         yield from (place * size + bit for bit in range(size) if value >> bit & 1)
 
 
-def chosen(
-    device: str, serial: str, wanted: Mapping[str, Control], found: Sequence[DeviceEntry]
+def select_device_nodes(
+    device: str, serial: str, required_controls: Mapping[str, PendantControl], entries: Sequence[DeviceEntry]
 ) -> tuple[DeviceEntry, ...]:
     """Return the nodes of the single device that matches and has all wanted controls.
 
     Raises DriverError.
     """
-    meant = [each for each in found if device.lower() in {each.name.lower(), each.numbers}]
+    meant = [each for each in entries if device.lower() in {each.name.lower(), each.numbers}]
     meant = [each for each in meant if not serial or each.serial == serial]
     if not meant:
         of = Message(" with serial number {serial}", serial=serial) if serial else ""
@@ -202,7 +202,7 @@ def chosen(
             meant=_apart(meant),
         )
     able = frozenset().union(*(each.able for each in meant))
-    lacking = [name for name, control in wanted.items() if control[:2] not in able]
+    lacking = [name for name, control in required_controls.items() if control[:2] not in able]
     if lacking:
         names = ", ".join(lacking)
         raise DriverError(
@@ -219,7 +219,7 @@ def chosen(
             reason="bluetooth",
             device=device,
         )
-    needed = {control[:2] for control in wanted.values()}
+    needed = {control[:2] for control in required_controls.values()}
     return tuple(each for each in meant if each.able & needed)
 
 
@@ -298,13 +298,13 @@ class KernelDevice:
         except BlockingIOError:
             return b""
 
-    def keys(self) -> frozenset[int]:
+    def read_pressed_keys(self) -> frozenset[int]:
         """Return the pressed keys (EVIOCGKEY)."""
         bits = bytearray(KEYS // 8)
         _ioctl(self._fd, _request(2, 0x18, len(bits)), bits)
         return frozenset(i for i in range(KEYS) if bits[i // 8] >> (i % 8) & 1)
 
-    def ranges(self) -> Mapping[int, AxisRange]:
+    def read_axis_ranges(self) -> Mapping[int, AxisRange]:
         """Return the range of every axis (EVIOCGABS)."""
         told = {}
         for code in range(AXES):
@@ -330,7 +330,7 @@ def _not_allowed(entry: DeviceEntry, path: Path) -> str:
         "plug it in again",
         path=path,
         entry=entry.name,
-        rules=RULES,
+        rules=UDEV_RULES_PATH,
         vendor=vendor,
         product=product,
     )

@@ -14,41 +14,47 @@ import threading
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from app.extras.pendant.driver.input_devices import AxisRange, EventSource, InputEvent, Packet, Packets
-from app.extras.pendant.driver.pendant_table import ABS, KEY, REL, Control
+from app.extras.pendant.driver.input_devices import (
+    AxisRange,
+    EventPacket,
+    EventSource,
+    InputEvent,
+    PacketParser,
+)
+from app.extras.pendant.driver.pendant_table import ABS, KEY, REL, PendantControl
 from core.ports import DigitalIO, DriverError, Station, StationState
 
 _LISTEN = 0.05  # seconds of one read of the device
 _AGAIN = 0.5  # seconds between two searches for a missing device
 _SILENT = 0.3  # seconds without a read by the thread after which no button counts as pressed
-ENDS = 1.0  # seconds that closing waits for the thread
+CLOSE_TIMEOUT_S = 1.0  # seconds that closing waits for the thread
 
 
 @dataclass(frozen=True, slots=True)
 class PendantState:
     """State of the pendant.
 
-    ``inputs`` have the names of the machine file, ``away`` is why it is not read.
+    ``inputs`` have the names of the machine file, ``missing_reason`` is why it is not read.
     """
 
     inputs: Mapping[str, bool]
-    counts: int
-    away: str
-    broke: float  # time at which the device or events were last lost
+    wheel_counts: int
+    missing_reason: str
+    lost_at_s: float  # time at which the device or events were last lost
 
 
-class Pendant:
+class PendantReader:
     """Pendant. ``find`` opens the nodes of the device, and ``now`` is the clock of their events.
 
-    ``find`` raises DriverError if the device cannot be opened. ``run`` needs a separate thread, and ``look``
-    serves a test without a thread.
+    ``find`` raises DriverError if the device cannot be opened. ``run`` needs a separate thread, and
+    ``process_events`` serves a test without a thread.
     """
 
     def __init__(
         self,
-        bound: Mapping[str, Control],
+        bound: Mapping[str, PendantControl],
         stops: frozenset[str],
-        wheel: Control | None,
+        wheel: PendantControl | None,
         find: Callable[[], Sequence[EventSource]],
         now: Callable[[], float],
         *,
@@ -58,30 +64,30 @@ class Pendant:
         """Create the pendant. ``ring`` is called after each change."""
         self._ring = ring
         self._buttons = PendantButtons(bound, stops, wheel, place)
-        self._find, self.now = find, now
+        self._find, self.clock = find, now
         self._lock = threading.Lock()
-        self._nodes: dict[EventSource, Packets] = {}
+        self._nodes: dict[EventSource, PacketParser] = {}
         self._away = "the search for the pendant has not started yet"
         self._broke = -1e9
         self._looked = 0.0
         self._ending = threading.Event()
         self._thread: threading.Thread | None = None
 
-    def state(self) -> PendantState:
+    def get_state(self) -> PendantState:
         """Return the present state; callable from any thread."""
         with self._lock:
             buttons = self._buttons
             away = self._away
-            if self._nodes and self.now() - self._looked > _SILENT:
+            if self._nodes and self.clock() - self._looked > _SILENT:
                 away = "the software thread that reads the pendant has stopped"
-            held = {name: not away and name in buttons.down for name in buttons.bound}
-            return PendantState(held, buttons.counts, away, self._broke)
+            held = {name: not away and name in buttons.pressed_names for name in buttons.control_by_name}
+            return PendantState(held, buttons.wheel_counts, away, self._broke)
 
     # --- thread ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
         """Search for the device once, so that its state is known, then continue in a thread."""
-        self.look(0.0)
+        self.process_events(0.0)
         self._thread = threading.Thread(target=self._run, name="pendant", daemon=True)
         self._thread.start()
 
@@ -89,18 +95,18 @@ class Pendant:
         """Stop the thread and close the device."""
         self._ending.set()
         if self._thread is not None:
-            self._thread.join(ENDS)
+            self._thread.join(CLOSE_TIMEOUT_S)
         self._drop("TurnDesk has stopped reading the pendant")
 
     def _run(self) -> None:
         while not self._ending.is_set():
-            self.look(_LISTEN)
+            self.process_events(_LISTEN)
             if not self._nodes:
                 self._ending.wait(_AGAIN)
 
-    def look(self, seconds: float) -> None:
+    def process_events(self, seconds: float) -> None:
         """Process events for ``seconds``, or search for a missing device."""
-        self._looked = self.now()
+        self._looked = self.clock()
         if not self._nodes:
             self._open()
             return
@@ -124,8 +130,8 @@ class Pendant:
                 node.close()
             return
         with self._lock:
-            self._nodes = {node: Packets() for node in nodes}
-            self._buttons.begin(keys, ranges)
+            self._nodes = {node: PacketParser() for node in nodes}
+            self._buttons.start(keys, ranges)
             self._away = ""
         self._ring()
 
@@ -133,21 +139,21 @@ class Pendant:
         data = node.read()
         if not data:
             raise OSError("the device was disconnected and returned no data")
-        for packet in self._nodes[node].feed(data):
-            again = _pressed(list(self._nodes)) if packet.lost else None
+        for packet in self._nodes[node].parse(data):
+            again = _pressed(list(self._nodes)) if packet.has_lost_events else None
             with self._lock:
                 if again is None:
-                    self._buttons.take(packet, self.now())
+                    self._buttons.apply_packet(packet, self.clock())
                 else:
-                    self._buttons.begin(*again)
-                    self._broke = self.now()
+                    self._buttons.start(*again)
+                    self._broke = self.clock()
         self._ring()
 
     def _drop(self, why: str) -> None:
         nodes, self._nodes = self._nodes, {}
         with self._lock:
-            self._buttons.gone()
-            self._away, self._broke = why, self.now()
+            self._buttons.release_all()
+            self._away, self._broke = why, self.clock()
         self._ring()
         for node in nodes:
             with contextlib.suppress(OSError):
@@ -159,8 +165,8 @@ def _pressed(nodes: Sequence[EventSource]) -> tuple[set[int], dict[int, AxisRang
     keys: set[int] = set()
     ranges: dict[int, AxisRange] = {}
     for node in nodes:
-        keys |= node.keys()
-        ranges |= node.ranges()
+        keys |= node.read_pressed_keys()
+        ranges |= node.read_axis_ranges()
     return keys, ranges
 
 
@@ -168,7 +174,7 @@ def _pressed(nodes: Sequence[EventSource]) -> tuple[set[int], dict[int, AxisRang
 
 
 _TOLD = 0.3  # seconds for which a single event is reported, so that a control that polls each tick detects it
-LOST = "pendant events were lost; the handwheel may have turned farther than TurnDesk counted"
+LOST_EVENTS_MESSAGE = "pendant events were lost; the handwheel may have turned farther than TurnDesk counted"
 
 
 class PendantStation:
@@ -178,42 +184,42 @@ class PendantStation:
     feed hold. The pendant cannot start any motion.
     """
 
-    def __init__(self, station: Station, pendant: Pendant, *, stops: bool, wheel: bool) -> None:
+    def __init__(self, station: Station, pendant: PendantReader, *, stops: bool, wheel: bool) -> None:
         self._station, self._pendant = station, pendant
         self._stops, self._wheel = stops, wheel
 
     @property
-    def away(self) -> str:
+    def missing_reason(self) -> str:
         """Reason why TurnDesk does not read the pendant, or an empty string."""
-        return self._pendant.state().away
+        return self._pendant.get_state().missing_reason
 
-    def snapshot(self) -> StationState:
+    def read_state(self) -> StationState:
         """Return the state of the station, including the pendant."""
-        state, pendant = self._station.snapshot(), self._pendant.state()
-        just = self._pendant.now() - pendant.broke < _TOLD
-        lost = pendant.away if pendant.away and (self._stops or just) else ""
+        state, pendant = self._station.read_state(), self._pendant.get_state()
+        just = self._pendant.clock() - pendant.lost_at_s < _TOLD
+        lost = pendant.missing_reason if pendant.missing_reason and (self._stops or just) else ""
         return dataclasses.replace(
             state,
             hold=state.hold or pendant.inputs.get("hold", False),
-            handwheel=state.handwheel + pendant.counts,
+            handwheel=state.handwheel + pendant.wheel_counts,
             trouble=state.trouble or lost,
             wheel_trouble=state.wheel_trouble or (self._of_wheel(pendant, just=just) if self._wheel else ""),
         )
 
     @staticmethod
     def _of_wheel(pendant: PendantState, *, just: bool) -> str:
-        return pendant.away or (LOST if just else "")
+        return pendant.missing_reason or (LOST_EVENTS_MESSAGE if just else "")
 
 
 class PendantIO:
     """Implementation of ``core.ports.DigitalIO`` with the pendant's buttons as inputs."""
 
-    def __init__(self, io: DigitalIO, pendant: Pendant) -> None:
+    def __init__(self, io: DigitalIO, pendant: PendantReader) -> None:
         self._io, self._pendant = io, pendant
 
     def inputs(self) -> Mapping[str, bool]:
         """Return the inputs of the machine and of the pendant."""
-        return {**self._io.inputs(), **self._pendant.state().inputs}
+        return {**self._io.inputs(), **self._pendant.get_state().inputs}
 
     def outputs(self) -> Mapping[str, bool]:
         """Return the outputs of the machine, because a pendant has no outputs."""
@@ -223,12 +229,14 @@ class PendantIO:
         """Write an output of the machine. Raises DriverError."""
         self._io.write(name, on)
 
-    def safe(self) -> None:
+    def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
-        self._io.safe()
+        self._io.switch_to_safe_state()
 
 
-LATE = 0.1  # seconds from the kernel to this code; older presses belong to an earlier state of the machine
+MAX_EVENT_AGE_S = (
+    0.1  # seconds from the kernel to this code; older presses belong to an earlier state of the machine
+)
 # --- Meaning of events: pressed buttons, counted detents, and ignored events. ---------------------
 
 
@@ -241,50 +249,53 @@ _REPEAT = 2  # value of an automatic key repeat
 class PendantButtons:
     """Buttons and handwheel of the pendant. ``bound`` maps names of the machine file to controls.
 
-    ``stops`` are the names that count even if late. ``down`` are the names of pressed buttons, and ``counts``
-    is the handwheel count. ``place`` means that the wheel reports positions instead of steps.
+    ``stops`` are the names that count even if late. ``pressed_names`` are the names of pressed buttons, and
+    ``wheel_counts`` is the handwheel count. ``place`` means that the wheel reports positions instead of
+    steps.
     """
 
-    bound: Mapping[str, Control]
-    stops: frozenset[str]
-    wheel: Control | None = None
-    place: bool = False
-    counts: int = 0
-    down: set[str] = field(default_factory=set)
-    stale: set[str] = field(default_factory=set)  # pressed, but without effect until they are released
+    control_by_name: Mapping[str, PendantControl]
+    stop_inputs: frozenset[str]
+    wheel: PendantControl | None = None
+    has_absolute_wheel: bool = False
+    wheel_counts: int = 0
+    pressed_names: set[str] = field(default_factory=set)
+    ineffective_names: set[str] = field(
+        default_factory=set
+    )  # pressed, but without effect until they are released
     ranges: dict[int, AxisRange] = field(default_factory=dict)
     _at: int | None = None  # position of a wheel that reports positions
 
-    def begin(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
+    def start(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
         """Start with the present state of the device.
 
         Pressed buttons other than stops have no effect.
         """
         self.ranges = dict(ranges)
         pressed, self._at = set(keys), None
-        held = {name for name, control in self.bound.items() if self._held(control, pressed)}
-        self.down = held & self.stops
-        self.stale = held - self.stops
+        held = {name for name, control in self.control_by_name.items() if self._held(control, pressed)}
+        self.pressed_names = held & self.stop_inputs
+        self.ineffective_names = held - self.stop_inputs
         if self.wheel is not None and self.wheel.kind == ABS and self.wheel.code in self.ranges:
             self._at = self.ranges[self.wheel.code].value
 
-    def gone(self) -> None:
+    def release_all(self) -> None:
         """Release all buttons and forget the position of the wheel, because the device is gone."""
-        self.down.clear()
-        self.stale.clear()
+        self.pressed_names.clear()
+        self.ineffective_names.clear()
         self._at = None
 
-    def take(self, packet: Packet, now: float) -> None:
+    def apply_packet(self, packet: EventPacket, now: float) -> None:
         """Apply the events of a packet. ``now`` is on the clock of the events."""
         for event in packet.events:
-            late = now - event.t > LATE
+            late = now - event.time_s > MAX_EVENT_AGE_S
             if self.wheel is not None and (event.kind, event.code) == self.wheel[:2]:
                 self._turn(event, late)
-            for name, control in self.bound.items():
+            for name, control in self.control_by_name.items():
                 if (event.kind, event.code) == control[:2]:
                     self._press(name, control, event, late)
 
-    def _press(self, name: str, control: Control, event: InputEvent, late: bool) -> None:
+    def _press(self, name: str, control: PendantControl, event: InputEvent, late: bool) -> None:
         if control.kind == KEY:
             if event.value == _REPEAT:
                 return
@@ -292,42 +303,44 @@ class PendantButtons:
         else:
             self._keep(event)
             share = self._share(control)
-            pressed = share >= _PRESSED or (share > _FREE and name in self.down | self.stale)
+            pressed = share >= _PRESSED or (
+                share > _FREE and name in self.pressed_names | self.ineffective_names
+            )
         if not pressed:
-            self.down.discard(name)
-            self.stale.discard(name)
-        elif name in self.stops or not late:
-            if name not in self.stale:
-                self.down.add(name)
-        elif name not in self.down:
-            self.stale.add(name)
+            self.pressed_names.discard(name)
+            self.ineffective_names.discard(name)
+        elif name in self.stop_inputs or not late:
+            if name not in self.ineffective_names:
+                self.pressed_names.add(name)
+        elif name not in self.pressed_names:
+            self.ineffective_names.add(name)
 
     def _turn(self, event: InputEvent, late: bool) -> None:
-        if event.kind == REL and not self.place:
-            self.counts += 0 if late else event.value
+        if event.kind == REL and not self.has_absolute_wheel:
+            self.wheel_counts += 0 if late else event.value
             return
         if event.kind == ABS:
             self._keep(event)
         reach = self.ranges.get(event.code) if event.kind == ABS else None
-        size = reach.high - reach.low + 1 if reach is not None else _PLACES
+        size = reach.maximum - reach.minimum + 1 if reach is not None else _PLACES
         last, self._at = self._at, event.value
         if last is not None and not late and size > 1:
-            self.counts += (event.value - last + size // 2) % size - size // 2
+            self.wheel_counts += (event.value - last + size // 2) % size - size // 2
 
     def _keep(self, event: InputEvent) -> None:
         reach = self.ranges.get(event.code)
         if reach is not None:
             self.ranges[event.code] = reach._replace(value=event.value)
 
-    def _held(self, control: Control, keys: set[int]) -> bool:
+    def _held(self, control: PendantControl, keys: set[int]) -> bool:
         if control.kind == KEY:
             return control.code in keys
         return self._share(control) > _FREE
 
-    def _share(self, control: Control) -> float:
+    def _share(self, control: PendantControl) -> float:
         """Return the deflection of an axis in the direction of a control, 0 to 1."""
         reach = self.ranges.get(control.code)
-        if reach is None or reach.high <= reach.low:
+        if reach is None or reach.maximum <= reach.minimum:
             return 0.0
-        middle, half = (reach.high + reach.low) / 2.0, (reach.high - reach.low) / 2.0
-        return control.end * (reach.value - middle) / half
+        middle, half = (reach.maximum + reach.minimum) / 2.0, (reach.maximum - reach.minimum) / 2.0
+        return control.axis_end * (reach.value - middle) / half

@@ -10,24 +10,30 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from core.key_declaration import file_key, key_table
+from core.key_declaration import declare_key, make_key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, FileReading, Finding, written
+from core.table_schema import (
+    DriverDeclaration,
+    DriverTable,
+    FileFinding,
+    MachineFileReading,
+    format_toml_value,
+)
 
 SYN, KEY, REL, ABS = 0x00, 0x01, 0x02, 0x03
 SYN_REPORT, SYN_DROPPED = 0, 3
 KEYS, RELS, AXES = 0x300, 0x10, 0x40  # number of codes of each kind
 
 
-class Control(NamedTuple):
+class PendantControl(NamedTuple):
     """Key, wheel or one end of an axis.
 
-    ``end`` is -1 or +1 for an axis that is used as two buttons.
+    ``axis_end`` is -1 or +1 for an axis that is used as two buttons.
     """
 
     kind: int
     code: int
-    end: int = 0
+    axis_end: int = 0
 
 
 def _row(first: int, names: str, prefix: str) -> Iterator[tuple[str, int]]:
@@ -75,39 +81,39 @@ _KEYS: Mapping[str, int] = dict((*_keys(), *_buttons()))
 _BY_NUMBER = re.compile(r"KEY_0x([0-9a-fA-F]{1,3})")
 
 
-def button_of(name: str) -> Control | None:
+def parse_button_name(name: str) -> PendantControl | None:
     """Return the control for a button name such as ``BTN_A``, ``KEY_F13`` or ``ABS_HAT0X-``, or None."""
     if name in _KEYS:
-        return Control(KEY, _KEYS[name])
+        return PendantControl(KEY, _KEYS[name])
     if (found := _BY_NUMBER.fullmatch(name)) and int(found[1], 16) < KEYS:
-        return Control(KEY, int(found[1], 16))
+        return PendantControl(KEY, int(found[1], 16))
     if name[-1:] in {"+", "-"} and name[:-1] in _AXES:
-        return Control(ABS, _AXES[name[:-1]], 1 if name[-1] == "+" else -1)
+        return PendantControl(ABS, _AXES[name[:-1]], 1 if name[-1] == "+" else -1)
     return None
 
 
-def wheel_of(name: str) -> Control | None:
+def parse_wheel_name(name: str) -> PendantControl | None:
     """Return the control for a wheel name such as ``REL_DIAL``, or None.
 
     ``ABS_WHEEL`` reports positions instead of steps.
     """
     if name in _RELS:
-        return Control(REL, _RELS[name])
-    return Control(ABS, _AXES[name]) if name in _AXES else None
+        return PendantControl(REL, _RELS[name])
+    return PendantControl(ABS, _AXES[name]) if name in _AXES else None
 
 
-AT_PENDANT = "pendant."  # prefix of the address of a button or wheel
+PENDANT_PREFIX = "pendant."  # prefix of the address of a button or wheel
 _PATH, _WHEEL = "pendant", "io.analog.handwheel"
-STOPS = ("hold", "start_inhibit")  # inputs that must not count as present when the device is gone
+STOP_INPUTS = ("hold", "start_inhibit")  # inputs that must not count as present when the device is gone
 _MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
 _STARTS = re.compile(r"(cycle_?)?start.*|.*palms?.*|spindle_auto", re.IGNORECASE)
-NO_START = (
+CANNOT_START_MESSAGE = (
     "a pendant cannot start anything: Cycle Start must come from the output of a "
     "two-hand relay, wired to a terminal; remove this line"
 )
 
 
-@key_table
+@make_key_table
 class PendantModel:
     """Settings of the pendant.
 
@@ -115,14 +121,14 @@ class PendantModel:
     ``counts`` states whether the wheel reports steps (REL) or its position from 0 to 255, as a Shuttle does.
     """
 
-    device: str = file_key(
+    device: str = declare_key(
         meaning="Name of the USB device or its `vendor:product` in hexadecimal, as "
         "`/proc/bus/input/devices` shows them."
     )
-    serial: str = file_key(
+    serial: str = declare_key(
         default="", meaning="Serial number, to distinguish two identical devices. Default: any."
     )
-    counts: str = file_key(
+    counts: str = declare_key(
         default="steps",
         choices=("steps", "place"),
         meaning='"steps": the handwheel reports detents; "place": the handwheel reports its position, 0 to '
@@ -130,16 +136,16 @@ class PendantModel:
     )
 
 
-def _rules(file: FileReading) -> Iterator[Finding]:
+def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
     buttons = _pendant_inputs(file)
     for path, terminal in buttons.items():
         if why := _wrong_button(path, terminal):
-            yield Finding(f"{path}.at", written(terminal), why)
-    yield from _taken(buttons)
+            yield FileFinding(f"{path}.at", format_toml_value(terminal), why)
+    yield from _find_double_use(buttons)
     yield from _analog(file)
     used = [*buttons, *([_WHEEL] if _wheel(file) else ())]
     if used and _PATH not in file.tables:
-        yield Finding(
+        yield FileFinding(
             f"[{_PATH}]",
             "",
             Message(
@@ -149,12 +155,12 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         )
     if not used and _PATH in file.tables:
         expected = 'nothing is at it; expected an input such as hold = { at = "pendant.BTN_B" }'
-        yield Finding(f"[{_PATH}]", "", expected)
+        yield FileFinding(f"[{_PATH}]", "", expected)
 
 
-def _pendant_inputs(file: FileReading) -> Mapping[str, str]:
+def _pendant_inputs(file: MachineFileReading) -> Mapping[str, str]:
     """Return the inputs and outputs of the pendant, by path."""
-    return {path: at for path, at in file.elsewhere.items() if at.startswith(AT_PENDANT)}
+    return {path: at for path, at in file.separate_device_inputs.items() if at.startswith(PENDANT_PREFIX)}
 
 
 def _wrong_button(path: str, terminal: str) -> str:
@@ -162,7 +168,7 @@ def _wrong_button(path: str, terminal: str) -> str:
     if path.startswith("io.out."):
         return "a pendant cannot switch an output; expected a terminal of the machine"
     if _STARTS.fullmatch(name) and name != "start_inhibit":
-        return NO_START
+        return CANNOT_START_MESSAGE
     if not _MAY.fullmatch(name):
         return Message(
             "{name} cannot be assigned to a pendant, because USB is not suitable for this "
@@ -170,7 +176,7 @@ def _wrong_button(path: str, terminal: str) -> str:
             "jog input",
             name=name,
         )
-    if button_of(terminal.removeprefix(AT_PENDANT)) is None:
+    if parse_button_name(terminal.removeprefix(PENDANT_PREFIX)) is None:
         return (
             "expected the Linux name of a button, for example pendant.BTN_A, pendant.KEY_F13 or "
             "pendant.ABS_HAT0X+"
@@ -178,45 +184,45 @@ def _wrong_button(path: str, terminal: str) -> str:
     return ""
 
 
-def _taken(buttons: Mapping[str, str]) -> Iterator[Finding]:
+def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
     """Yield a finding for each button that has more than one function."""
     taken: dict[object, str] = {}
     for path, terminal in buttons.items():
-        code = button_of(terminal.removeprefix(AT_PENDANT))
+        code = parse_button_name(terminal.removeprefix(PENDANT_PREFIX))
         first = taken.setdefault(code, path)
         if code is not None and first != path:
             expected = Message("expected an unused button; {first} already uses this button", first=first)
-            yield Finding(f"{path}.at", written(terminal), expected)
+            yield FileFinding(f"{path}.at", format_toml_value(terminal), expected)
 
 
-def _wheel(file: FileReading) -> str:
+def _wheel(file: MachineFileReading) -> str:
     """Return the address of the handwheel on the pendant, or an empty string."""
     path = f"{_WHEEL}.at"
-    at = file.values.text(path) if file.values.has(path) else ""
-    return at if at.startswith(AT_PENDANT) else ""
+    at = file.values.text(path) if file.values.has_values(path) else ""
+    return at if at.startswith(PENDANT_PREFIX) else ""
 
 
-def _analog(file: FileReading) -> Iterator[Finding]:
+def _analog(file: MachineFileReading) -> Iterator[FileFinding]:
     values = file.values
-    for name in file.names("io.analog"):
+    for name in file.list_table_keys("io.analog"):
         path = f"io.analog.{name}.at"
-        if name != "handwheel" and values.has(path) and values.text(path).startswith(AT_PENDANT):
+        if name != "handwheel" and values.has_values(path) and values.text(path).startswith(PENDANT_PREFIX):
             expected = "expected a terminal; the handwheel is the only analog input that can be on a pendant"
-            yield Finding(path, written(values.text(path)), expected)
-    if (at := _wheel(file)) and wheel_of(at.removeprefix(AT_PENDANT)) is None:
+            yield FileFinding(path, format_toml_value(values.text(path)), expected)
+    if (at := _wheel(file)) and parse_wheel_name(at.removeprefix(PENDANT_PREFIX)) is None:
         expected = "expected the Linux name of a handwheel, for example pendant.REL_DIAL or pendant.ABS_WHEEL"
-        yield Finding(f"{_WHEEL}.at", written(at), expected)
+        yield FileFinding(f"{_WHEEL}.at", format_toml_value(at), expected)
 
 
-DRIVER = Driver(
+DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             _PATH,
             PendantModel,
-            rules=_rules,
+            check_rules=_rules,
             purpose="A pendant, gamepad or jog dial on USB. Its buttons are inputs of [io.in] at "
             "`pendant.…`; no button can start a cycle or switch an output.",
         ),
     ),
-    prefix=AT_PENDANT,
+    address_prefix=PENDANT_PREFIX,
 )

@@ -6,151 +6,176 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from core.extras.shapes.cutting_data import Work
-from core.extras.shapes.forms.turning import begin_spindle, end_spindle
-from core.extras.shapes.lines.code_lines import Bars, Code, write_bars
-from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, size
-from core.extras.shapes.usual_fields import (
-    around,
-    bar,
-    feed_field,
-    next_tool,
-    per_rev,
-    rpm_field,
-    surface_field,
-    too_fast,
-    tool_field,
+from core.extras.shapes.common_fields import (
+    check_feeds,
+    check_rpm,
+    find_next_tool,
+    make_diameter_reader,
+    make_feed_field,
+    make_rpm_field,
+    make_surface_speed_field,
+    make_tool_field,
+    propose_bar,
+)
+from core.extras.shapes.cutting_data import Operation
+from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.forms.turning import write_spindle_end, write_spindle_start
+from core.extras.shapes.lines.code_lines import BarFeedLoop, CodeWriter, write_bar_feed_loop
+from core.extras.shapes.shape_fields import (
+    FieldError,
+    FieldKind,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ShapeField,
+    number,
+    propose_length,
 )
 from core.message import Message
 from core.part.tool_shape import ToolKind
-from core.sketch import Dim, Outline, Sketch, cut, part, sketch, tool
+from core.sketch import (
+    Dimension,
+    Outline,
+    Sketch,
+    make_cut_outline,
+    make_part_outline,
+    make_sketch,
+    make_tool_outline,
+)
 
 FRONT, REAR, INSIDE = "FRONT", "REAR", "BORE"
 LEFT, RIGHT = "LEFT", "RIGHT"
-FREE = {False: 0.02, True: 0.5}
+BLADE_CLEARANCE = {False: 0.02, True: 0.5}
 """By metric: how far beside the diameter a blade stands."""
 
 
-def _width(values: Values, setting: Setting) -> Value | None:
+def _width(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     shape = setting.tool(number(values, "T"))
     return round(shape.width / setting.mm, 5) if shape is not None and shape.width else None
 
 
-def _corner(values: Values, setting: Setting) -> Value | None:
+def _corner(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Return the touched-off corner from the tool data; for an unknown tool, the corner at the chuck."""
-    shape = setting.tool(number(values, "T"))
+    shape = settings.tool(number(values, "T"))
     return RIGHT if shape is not None and shape.direction[0] > 0 else LEFT
 
 
-def side_of(filled: Filled) -> float:
+def get_tool_side(filled_shape: FilledShape) -> float:
     """Return -1 if the tool works at negative X, otherwise 1."""
-    return -1.0 if filled.t("SIDE") == REAR else 1.0
+    return -1.0 if filled_shape.get_text("SIDE") == REAR else 1.0
 
 
-BLADE_FIELD = Field("WIDE", "BLADE WIDTH", Kind.LENGTH, _width, marked=True)
-CORNER_FIELD = Field("CORNER", "CORNER USED FOR TOUCH-OFF", Kind.CHOICE, _corner, (LEFT, RIGHT))
+BLADE_WIDTH_FIELD = ShapeField("WIDE", "BLADE WIDTH", FieldKind.LENGTH, _width, is_in_comment=True)
+BLADE_CORNER_FIELD = ShapeField(
+    "CORNER", "CORNER USED FOR TOUCH-OFF", FieldKind.CHOICE, _corner, (LEFT, RIGHT)
+)
 
 
-class Blade:
+class BladeWriter:
     """Writer of moves that position one corner of a blade.
 
     ``start`` is the radius from which the blade approaches.
     """
 
-    def __init__(self, filled: Filled, code: Code, start: float = 0.0) -> None:
-        self.wide = filled.n("WIDE")
-        self.left = filled.t("CORNER") == LEFT
-        self._side, self._code = side_of(filled), code
+    def __init__(self, filled_shape: FilledShape, code: CodeWriter, start: float = 0.0) -> None:
+        self.width = filled_shape.get_number("WIDE")
+        self.is_left_corner = filled_shape.get_text("CORNER") == LEFT
+        self._side, self._code = get_tool_side(filled_shape), code
         self._r, self._z = start, math.inf
 
     def _at(self, r: float | None, z: float | None) -> None:
         self._r = self._r if r is None else r
         self._z = self._z if z is None else z
 
-    def at(self, chuck: float) -> float:
+    def calculate_z_at_chuck_corner(self, chuck: float) -> float:
         """Return the programmed Z that puts the chuck-side corner at ``chuck``."""
-        return chuck if self.left else chuck + self.wide
+        return chuck if self.is_left_corner else chuck + self.width
 
-    def face(self, front: float) -> float:
+    def calculate_z_at_face_corner(self, front: float) -> float:
         """Return the programmed Z that puts the face-side corner at ``front``."""
-        return self.at(front - self.wide)
+        return self.calculate_z_at_chuck_corner(front - self.width)
 
-    def over(self, z: float, r: float) -> None:
+    def move_over(self, z: float, r: float) -> None:
         """Move along Z at the present radius, then to radius ``r``; omit moves that are not necessary."""
         if z != self._z:
-            self.rapid(z=z)
+            self.write_rapid(z=z)
         if r != self._r:
-            self.rapid(r)
+            self.write_rapid(r)
 
-    def rapid(self, r: float | None = None, z: float | None = None) -> None:
+    def write_rapid(self, r: float | None = None, z: float | None = None) -> None:
         """Write a rapid to a radius on the tool's side of the axis and to a programmed Z."""
         self._at(r, z)
-        self._code.rapid(None if r is None else self._side * r, z)
+        self._code.write_rapid(None if r is None else self._side * r, z)
 
-    def cut(self, r: float | None = None, z: float | None = None, feed: float = 0.0) -> None:
+    def write_cut(self, r: float | None = None, z: float | None = None, feed: float = 0.0) -> None:
         """Write a feed move to a radius and a programmed Z."""
         self._at(r, z)
-        self._code.cut(None if r is None else self._side * r, z, feed)
+        self._code.write_cut(None if r is None else self._side * r, z, feed)
 
-    def dwell(self, seconds: float) -> None:
+    def write_dwell(self, seconds: float) -> None:
         """Write a dwell; 0 s writes nothing."""
-        self._code.dwell(seconds)
+        self._code.write_dwell(seconds)
 
 
-def reach(filled: Filled, setting: Setting, deep: float, word: str) -> Iterator[Refusal]:
+def check_blade(
+    filled_shape: FilledShape, settings: ProgramSettings, depth: float, word: str
+) -> Iterator[FieldError]:
     """Yield errors if the blade is too short, or if its width differs from the tool data."""
-    shape, wide, name = setting.tool(filled.n("T")), filled.n("WIDE"), f"T{filled.n('T'):.0f}"
+    shape, wide, name = (
+        settings.tool(filled_shape.get_number("T")),
+        filled_shape.get_number("WIDE"),
+        f"T{filled_shape.get_number('T'):.0f}",
+    )
     if shape is None:
         return
-    if shape.length and deep > shape.length / setting.mm + 1e-9:
-        yield Refusal(
+    if shape.length and depth > shape.length / settings.mm + 1e-9:
+        yield FieldError(
             word,
             Message(
                 "Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.",
-                depth=f"{deep:.4g}",
+                depth=f"{depth:.4g}",
                 name=name,
-                length=f"{shape.length / setting.mm:.4g}",
+                length=f"{shape.length / settings.mm:.4g}",
             ),
         )
-    if shape.width and abs(shape.width / setting.mm - wide) > 0.001 / setting.mm * 25.4:
-        yield Refusal(
+    if shape.width and abs(shape.width / settings.mm - wide) > 0.001 / settings.mm * 25.4:
+        yield FieldError(
             "WIDE",
             Message(
                 "The blade width in the tool data of {name} is {width}: enter that width.",
                 name=name,
-                width=f"{shape.width / setting.mm:.4g}",
+                width=f"{shape.width / settings.mm:.4g}",
             ),
         )
 
 
-def _part_off(filled: Filled, setting: Setting, code: Code) -> None:
-    free = FREE[setting.metric]
-    bar_r, back, feed = filled.n("FROM") / 2.0, -filled.n("LONG"), filled.n("FEED")
-    blade = Blade(filled, code)
-    kerf = blade.face(back)
-    begin_spindle(filled, setting, code, side_of(filled) * (bar_r + free), None)
-    blade.rapid(z=kerf)
-    own, following = filled.n("BACK"), filled.n("NEXT")
+def _part_off(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+    free = BLADE_CLEARANCE[setting.metric]
+    bar_r, back, feed = filled.get_number("FROM") / 2.0, -filled.get_number("LONG"), filled.get_number("FEED")
+    blade = BladeWriter(filled, code)
+    kerf = blade.calculate_z_at_face_corner(back)
+    write_spindle_start(filled, setting, code, get_tool_side(filled) * (bar_r + free), None)
+    blade.write_rapid(z=kerf)
+    own, following = filled.get_number("BACK"), filled.get_number("NEXT")
     if own or following:
-        blade.cut(bar_r - max(own, following) - free, feed=feed)
-        blade.rapid(bar_r + free)
+        blade.write_cut(bar_r - max(own, following) - free, feed=feed)
+        blade.write_rapid(bar_r + free)
     if following:
-        blade.rapid(z=kerf - following - free)
-        blade.cut(bar_r - following, kerf, feed=feed)
-        blade.rapid(bar_r + free)
+        blade.write_rapid(z=kerf - following - free)
+        blade.write_cut(bar_r - following, kerf, feed=feed)
+        blade.write_rapid(bar_r + free)
     if own:
-        blade.rapid(z=kerf + own + free)
-        blade.cut(bar_r - own, kerf, feed=feed)
-    blade.cut(filled.n("TO") / 2.0, feed=feed)
-    blade.rapid(bar_r + free)
-    end_spindle(filled, code)
+        blade.write_rapid(z=kerf + own + free)
+        blade.write_cut(bar_r - own, kerf, feed=feed)
+    blade.write_cut(filled.get_number("TO") / 2.0, feed=feed)
+    blade.write_rapid(bar_r + free)
+    write_spindle_end(filled, code)
 
 
-def _part_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    top, end = filled.n("FROM"), filled.n("TO")
+def _part_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    top, end = filled.get_number("FROM"), filled.get_number("TO")
     if end >= top:
-        yield Refusal(
+        yield FieldError(
             "TO",
             Message(
                 "Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.",
@@ -159,56 +184,56 @@ def _part_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             ),
         )
     for word in ("BACK", "NEXT"):
-        if filled.n(word) >= (top - end) / 2.0 > 0.0:
-            yield Refusal(
+        if filled.get_number(word) >= (top - end) / 2.0 > 0.0:
+            yield FieldError(
                 word,
                 Message(
                     "A chamfer of {word} removes the whole wall: enter a smaller chamfer.",
-                    word=f"{filled.n(word):g}",
+                    word=f"{filled.get_number(word):g}",
                 ),
             )
-    if filled.n("BACK") > filled.n("LONG"):
-        yield Refusal("BACK", "The chamfer is longer than the part: enter a smaller chamfer.")
-    yield from reach(filled, setting, (top - end) / 2.0, "FROM")
-    yield from too_fast(filled, setting)
-    yield from per_rev(filled, setting, "FEED")
+    if filled.get_number("BACK") > filled.get_number("LONG"):
+        yield FieldError("BACK", "The chamfer is longer than the part: enter a smaller chamfer.")
+    yield from check_blade(filled, setting, (top - end) / 2.0, "FROM")
+    yield from check_rpm(filled, setting)
+    yield from check_feeds(filled, setting, "FEED")
 
 
-def _part_sketch(_filled: Filled) -> Sketch:
-    solid = part(
+def _part_sketch(_filled: FilledShape) -> Sketch:
+    solid = make_part_outline(
         (0, 0), (0, 10), (-13, 10), (-14, 9), (-14, 0.4), (-17, 0.4), (-17, 9), (-18, 10), (-27, 10), (-27, 0)
     )
-    return sketch(
+    return make_sketch(
         solid,
-        cut((-13, 10), (-14, 9), (-14, 0.4), (-17, 0.4), (-17, 9), (-18, 10)),
-        tool((-17, 16), (-17, 10.5), (-14, 10.5), (-14, 16)),
-        dims=(
-            Dim("FROM", (-24, -10), (-24, 10)),
-            Dim("TO", (-14, 0.4)),
-            Dim("LONG", (-14, 10), (0, 10), 3),
-            Dim("WIDE", (-17, 16), (-14, 16), 2),
-            Dim("BACK", (-12.4, 9)),
-            Dim("NEXT", (-20.5, 9)),
+        make_cut_outline((-13, 10), (-14, 9), (-14, 0.4), (-17, 0.4), (-17, 9), (-18, 10)),
+        make_tool_outline((-17, 16), (-17, 10.5), (-14, 10.5), (-14, 16)),
+        dimensions=(
+            Dimension("FROM", (-24, -10), (-24, 10)),
+            Dimension("TO", (-14, 0.4)),
+            Dimension("LONG", (-14, 10), (0, 10), 3),
+            Dimension("WIDE", (-17, 16), (-14, 16), 2),
+            Dimension("BACK", (-12.4, 9)),
+            Dimension("NEXT", (-20.5, 9)),
         ),
     )
 
 
-PART_OFF = Shape(
+PARTING_SHAPE = Shape(
     "PART OFF",
     "parts off to the center or to a bore, with chamfers on both sides of the cut",
     (
-        tool_field(ToolKind.PARTING, ToolKind.GROOVING),
-        Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR)),
-        Field("FROM", "DIAMETER", Kind.DIAMETER, bar),
-        Field("TO", "END DIAMETER", Kind.DIAMETER, 0.0, zero=True),
-        Field("LONG", "PART LENGTH", Kind.LENGTH),
-        BLADE_FIELD,
-        CORNER_FIELD,
-        Field("BACK", "CHAMFER ON THE PART", Kind.LENGTH, 0.0, zero=True),
-        Field("NEXT", "CHAMFER ON THE BAR", Kind.LENGTH, 0.0, zero=True),
-        feed_field(Work.PART),
-        rpm_field(Work.PART, around("FROM")),
-        surface_field(),
+        make_tool_field(ToolKind.PARTING, ToolKind.GROOVING),
+        ShapeField("SIDE", "SIDE", FieldKind.CHOICE, FRONT, (FRONT, REAR)),
+        ShapeField("FROM", "DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("TO", "END DIAMETER", FieldKind.DIAMETER, 0.0, allows_zero=True),
+        ShapeField("LONG", "PART LENGTH", FieldKind.LENGTH),
+        BLADE_WIDTH_FIELD,
+        BLADE_CORNER_FIELD,
+        ShapeField("BACK", "CHAMFER ON THE PART", FieldKind.LENGTH, 0.0, allows_zero=True),
+        ShapeField("NEXT", "CHAMFER ON THE BAR", FieldKind.LENGTH, 0.0, allows_zero=True),
+        make_feed_field(Operation.PART_OFF),
+        make_rpm_field(Operation.PART_OFF, make_diameter_reader("FROM")),
+        make_surface_speed_field(),
     ),
     _part_off,
     _part_sketch,
@@ -219,61 +244,70 @@ PART_OFF = Shape(
 EACH, ONCE = "EACH PART", "ONCE"
 
 
-def _sub(_values: Values, setting: Setting) -> Value | None:
-    return float(setting.free_sub)
+def _sub(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    return float(setting.free_subroutine)
 
 
-def _loop(filled: Filled, _setting: Setting, code: Code) -> None:
-    write_bars(
+def _loop(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
+    write_bar_feed_loop(
         code,
-        Bars(
-            int(filled.n("COUNT")), filled.n("LONG"), filled.t("FEEDS") == EACH, filled.n("STOP"),
-            filled.n("STOCK"), filled.n("RATE"), int(filled.n("SUB")),
-        )
-    )  # fmt: skip
+        BarFeedLoop(
+            int(filled.get_number("COUNT")),
+            filled.get_number("LONG"),
+            filled.get_text("FEEDS") == EACH,
+            filled.get_number("STOP"),
+            filled.get_number("STOCK"),
+            filled.get_number("RATE"),
+            int(filled.get_number("SUB")),
+        ),
+    )
 
 
-def _checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    if setting.called:
-        yield Refusal(
+def _checks(_filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    if setting.is_subroutine:
+        yield FieldError(
             "COUNT",
             "A bar feed loop cannot be inside another bar feed loop: write this shape "
             "before or after the other loop.",
         )
 
 
-def _sketch(_filled: Filled) -> Sketch:
-    bar = part((0, 0), (0, 7), (-30, 7), (-30, 0))
+def _sketch(_filled: FilledShape) -> Sketch:
+    bar = make_part_outline((0, 0), (0, 7), (-30, 7), (-30, 0))
     cuts = [Outline(((z, 0.0), (z, 7.0)), "cut") for z in (-8, -16, -24)]
-    return sketch(
+    return make_sketch(
         bar,
         *cuts,
-        tool((1, -3), (1, 3), (4, 3), (4, -3)),
-        dims=(
-            Dim("LONG", (-16, 7), (-8, 7), 3),
-            Dim("COUNT", (-20, -4)),
-            Dim("STOCK", (0, 10)),
-            Dim("STOP", (5, -5)),
+        make_tool_outline((1, -3), (1, 3), (4, 3), (4, -3)),
+        dimensions=(
+            Dimension("LONG", (-16, 7), (-8, 7), 3),
+            Dimension("COUNT", (-20, -4)),
+            Dimension("STOCK", (0, 10)),
+            Dimension("STOP", (5, -5)),
         ),
     )
 
 
-def _tail(filled: Filled) -> tuple[str, ...]:
-    return f"}}{filled.n('SUB'):.0f}", "M99"
+def _tail(filled: FilledShape) -> tuple[str, ...]:
+    return f"}}{filled.get_number('SUB'):.0f}", "M99"
 
 
-LOOP = Shape(
+BAR_LOOP_SHAPE = Shape(
     "BAR LOOP",
     "feeds the bar to a stop and repeats the following lines for a number of "
     "parts; these lines make the part",
     (
-        Field("COUNT", "PARTS", Kind.COUNT, None, most=100_000),
-        Field("LONG", "BAR LENGTH PER PART + CUT-OFF", Kind.LENGTH),
-        Field("FEEDS", "FEED THE BAR", Kind.CHOICE, EACH, (EACH, ONCE)),
-        Field("STOP", "TOOL USED AS STOP", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32),
-        Field("STOCK", "FACING ALLOWANCE", Kind.LENGTH, size(0.025, 0.6), zero=True),
-        Field("RATE", "BAR FEED PER MINUTE", Kind.RATE, size(50.0, 1200.0)),
-        Field("SUB", "PART SUBROUTINE NUMBER", Kind.COUNT, _sub, most=9999),
+        ShapeField("COUNT", "PARTS", FieldKind.COUNT, None, maximum=100_000),
+        ShapeField("LONG", "BAR LENGTH PER PART + CUT-OFF", FieldKind.LENGTH),
+        ShapeField("FEEDS", "FEED THE BAR", FieldKind.CHOICE, EACH, (EACH, ONCE)),
+        ShapeField(
+            "STOP", "TOOL USED AS STOP", FieldKind.TOOL, lambda _v, s: float(find_next_tool(s)), maximum=32
+        ),
+        ShapeField(
+            "STOCK", "FACING ALLOWANCE", FieldKind.LENGTH, propose_length(0.025, 0.6), allows_zero=True
+        ),
+        ShapeField("RATE", "BAR FEED PER MINUTE", FieldKind.RATE, propose_length(50.0, 1200.0)),
+        ShapeField("SUB", "PART SUBROUTINE NUMBER", FieldKind.COUNT, _sub, maximum=9999),
     ),
     _loop,
     _sketch,
@@ -282,24 +316,24 @@ LOOP = Shape(
 )
 
 
-def no_chuck(setting: Setting, word: str) -> Iterator[Refusal]:
+def check_chuck(settings: ProgramSettings, word: str) -> Iterator[FieldError]:
     """Yield an error at this field if a SINUMERIK program cannot open the chuck of this machine."""
-    if setting.shop.chuck is None:
-        yield Refusal(
+    if settings.shop.chuck_codes is None:
+        yield FieldError(
             word,
             "This machine has no M codes that open and close the chuck: assign two M codes "
             "to the output named collet under [m_codes] in the machine file.",
         )
 
 
-def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    yield from no_chuck(setting, "FEEDS")
+def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    yield from check_chuck(setting, "FEEDS")
     yield from _checks(filled, setting)
 
 
-def _sinumerik_tail(filled: Filled) -> tuple[str, ...]:
-    return f"%_N_PART_{filled.n('SUB'):.0f}_SPF", "M17"
+def _sinumerik_tail(filled: FilledShape) -> tuple[str, ...]:
+    return f"%_N_PART_{filled.get_number('SUB'):.0f}_SPF", "M17"
 
 
-SINUMERIK_LOOP = replace(LOOP, checks=_sinumerik_checks, ends=_sinumerik_tail)
+SINUMERIK_BAR_LOOP_SHAPE = replace(BAR_LOOP_SHAPE, checks=_sinumerik_checks, ends=_sinumerik_tail)
 """The same with a subprogram, and M codes of the machine's own for the chuck."""

@@ -6,31 +6,60 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from core.extras.shapes.contour import SAME, Row, contour_refusals, outline, points, row_word
-from core.extras.shapes.cutting_data import Work, facing_depth, finish_depth, most_depth, rough_depth
-from core.extras.shapes.lines.code_lines import Along, Code
-from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, text
-from core.extras.shapes.usual_fields import (
-    around,
-    bar,
-    feed_field,
-    per_rev,
-    rpm_field,
-    surface_field,
-    too_fast,
-    tool_field,
+from core.extras.shapes.common_fields import (
+    check_feeds,
+    check_rpm,
+    make_diameter_reader,
+    make_feed_field,
+    make_rpm_field,
+    make_surface_speed_field,
+    make_tool_field,
+    propose_bar,
+)
+from core.extras.shapes.contour import (
+    POINT_TOLERANCE,
+    ContourPoint,
+    find_contour_errors,
+    make_outline,
+    make_point_label,
+    resolve_points,
+)
+from core.extras.shapes.cutting_data import (
+    Operation,
+    find_max_depth,
+    propose_facing_depth,
+    propose_finish_allowance,
+    propose_roughing_depth,
+)
+from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.lines.code_lines import CodeWriter, ContourTurning
+from core.extras.shapes.shape_fields import (
+    FieldError,
+    FieldKind,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ShapeField,
+    number,
+    text,
 )
 from core.language.source import Dialect
 from core.message import Message
 from core.part.tool_shape import ToolKind
-from core.sketch import Dim, Sketch, cut, part, sketch, turned
+from core.sketch import (
+    Dimension,
+    Sketch,
+    make_cut_outline,
+    make_part_outline,
+    make_sketch,
+    make_turned_outlines,
+)
 
 OUTSIDE, INSIDE = "OUTSIDE", "BORE"
 _BESIDE = {False: 0.02, True: 0.5}  # by metric; clearance from the part at which a contour begins and ends
 
 
-def _roughs(values: Values) -> bool:
+def _roughs(values: FieldValues) -> bool:
     return number(values, "ROUGH") > 0.0
 
 
@@ -38,19 +67,19 @@ LOWEST, HIGHEST = "LOWEST", "HIGHEST"
 """Diameters between which the points of a contour turn; they are no fields, proposals follow them."""
 
 
-def _extent(rows: Sequence[Row]) -> Values:
+def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
     """Return LOWEST and HIGHEST of a contour, without moves square across the face.
 
     The result is empty if roughing along Z cannot cut the contour.
     """
-    there = points(rows)
-    turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > SAME for r in (a[1], b[1])]
-    if not turned or any(b[0] > a[0] + SAME for a, b in pairwise(there)):
+    there = resolve_points(rows)
+    turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > POINT_TOLERANCE for r in (a[1], b[1])]
+    if not turned or any(b[0] > a[0] + POINT_TOLERANCE for a, b in pairwise(there)):
         return {}
     return {LOWEST: 2.0 * min(turned), HIGHEST: 2.0 * max(turned)}
 
 
-def _stock_and_end(values: Values) -> tuple[float, float]:
+def _stock_and_end(values: FieldValues) -> tuple[float, float]:
     """Return the diameters of the stock and of the deepest cut; equal if they are unknown."""
     low = number(values, LOWEST) or number(values, "SMALL")
     high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
@@ -61,82 +90,118 @@ def _stock_and_end(values: Values) -> tuple[float, float]:
     return max(number(values, "FROM"), high), low
 
 
-def _depth(values: Values, setting: Setting) -> Value | None:
+def _depth(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose roughing passes if the stock exceeds two finishing passes."""
     stock, end = _stock_and_end(values)
-    depth = rough_depth(setting, number(values, "T"), max(stock, end), inside=end > stock)
-    return depth if abs(stock - end) / 4.0 > finish_depth(setting, depth) + SAME else 0.0
+    depth = propose_roughing_depth(settings, number(values, "T"), max(stock, end), is_inside=end > stock)
+    return (
+        depth if abs(stock - end) / 4.0 > propose_finish_allowance(settings, depth) + POINT_TOLERANCE else 0.0
+    )
 
 
-def _leave(values: Values, setting: Setting) -> Value | None:
-    return finish_depth(setting, number(values, "ROUGH"))
+def _leave(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    return propose_finish_allowance(setting, number(values, "ROUGH"))
 
 
-ROUGH = Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, _depth, zero=True)
-LEAVE = Field("LEAVE", "FINISHING ALLOWANCE", Kind.LENGTH, _leave, zero=True, only=_roughs)
-RFEED = feed_field(Work.TURN, "RFEED", "ROUGHING FEED", only=_roughs)
-COMP = Field("COMP", "NOSE COMPENSATION: D NUMBER", Kind.OFFSET, 0.0, zero=True, most=32)
+ROUGHING_DEPTH_FIELD = ShapeField(
+    "ROUGH", "ROUGHING DEPTH OF CUT", FieldKind.LENGTH, _depth, allows_zero=True
+)
+ALLOWANCE_FIELD = ShapeField(
+    "LEAVE", "FINISHING ALLOWANCE", FieldKind.LENGTH, _leave, allows_zero=True, applies_to=_roughs
+)
+ROUGHING_FEED_FIELD = make_feed_field(Operation.TURN, "RFEED", "ROUGHING FEED", only=_roughs)
+COMPENSATION_FIELD = ShapeField(
+    "COMP", "NOSE COMPENSATION: D NUMBER", FieldKind.OFFSET, 0.0, allows_zero=True, maximum=32
+)
 
 
-def _next_label(_values: Values, setting: Setting) -> Value | None:
-    return float(setting.free_sub)
+def _next_label(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    return float(setting.free_subroutine)
 
 
-LABEL = Field("LABEL", "CONTOUR NUMBER", Kind.COUNT, _next_label, most=9999, only=_roughs)
+LABEL_FIELD = ShapeField(
+    "LABEL", "CONTOUR NUMBER", FieldKind.COUNT, _next_label, maximum=9999, applies_to=_roughs
+)
 """Of a contour that CYCLE95 finds by its labels."""
 
 
-def begin_spindle(filled: Filled, setting: Setting, code: Code, x: float, z: float | None) -> None:
+def write_spindle_start(
+    filled_shape: FilledShape, settings: ProgramSettings, code: CodeWriter, x: float, z: float | None
+) -> None:
     """Write tool, spindle and approach to the part, with constant surface speed if specified."""
-    code.edge = filled.n("COMP") or 1.0
-    code.begin(filled.n("T"), filled.n("RPM"), x, z)
-    if filled.n("SURF"):
-        code.surface_speed(filled.n("SURF"), min(setting.shop.max_rpm, filled.n("RPM")))
+    code.cutting_edge = filled_shape.get_number("COMP") or 1.0
+    code.write_tool_start(filled_shape.get_number("T"), filled_shape.get_number("RPM"), x, z)
+    if filled_shape.get_number("SURF"):
+        code.write_surface_speed(
+            filled_shape.get_number("SURF"), min(settings.shop.max_rpm, filled_shape.get_number("RPM"))
+        )
 
 
-def end_spindle(filled: Filled, code: Code) -> None:
+def write_spindle_end(filled_shape: FilledShape, code: CodeWriter) -> None:
     """Write the retract to the tool change position, and the return to rpm."""
-    code.away()
-    if filled.n("SURF"):
-        code.constant_speed()
+    code.write_retract()
+    if filled_shape.get_number("SURF"):
+        code.write_constant_rpm()
 
 
 # --- Turning a contour
 
 
-def cut_contour(filled: Filled, setting: Setting, code: Code, rows: Sequence[Row], *, inside: bool) -> None:
+def write_contour(
+    filled_shape: FilledShape,
+    settings: ProgramSettings,
+    code: CodeWriter,
+    rows: Sequence[ContourPoint],
+    *,
+    is_inside: bool,
+) -> None:
     """Write tool and spindle, roughing if a depth is specified, the contour, and the retract."""
-    there = points(rows)
-    beside = _beside(filled, setting, there, inside=inside)
-    rough, comp = filled.n("ROUGH"), filled.n("COMP")
-    begin_spindle(filled, setting, code, beside if rough else there[0][1], there[0][0] + setting.near)
-    code.along(
-        Along(
-            rows, beside, inside, filled.n("FEED"), rough, filled.n("LEAVE"), filled.n("RFEED"), comp,
-            filled.n("LABEL"),
+    there = resolve_points(rows)
+    beside = _calculate_clear_radius(filled_shape, settings, there, is_inside=is_inside)
+    rough, comp = filled_shape.get_number("ROUGH"), filled_shape.get_number("COMP")
+    write_spindle_start(
+        filled_shape, settings, code, beside if rough else there[0][1], there[0][0] + settings.near
+    )
+    code.write_contour_turning(
+        ContourTurning(
+            rows,
+            beside,
+            is_inside,
+            filled_shape.get_number("FEED"),
+            rough,
+            filled_shape.get_number("LEAVE"),
+            filled_shape.get_number("RFEED"),
+            comp,
+            filled_shape.get_number("LABEL"),
         )
-    )  # fmt: skip
-    end_spindle(filled, code)
-    code.let_go(comp)
+    )
+    write_spindle_end(filled_shape, code)
+    code.cancel_compensation(comp)
 
 
-def _beside(filled: Filled, setting: Setting, there: Sequence[tuple[float, float]], *, inside: bool) -> float:
+def _calculate_clear_radius(
+    filled_shape: FilledShape,
+    settings: ProgramSettings,
+    there: Sequence[tuple[float, float]],
+    *,
+    is_inside: bool,
+) -> float:
     """Return the radius clear of the material at which a contour ends and roughing begins."""
-    free, radii = _BESIDE[setting.metric], [r for _, r in there]
-    if inside:
-        hole = filled.n("HOLE") / 2.0 or min(radii)
+    free, radii = _BESIDE[settings.metric], [r for _, r in there]
+    if is_inside:
+        hole = filled_shape.get_number("HOLE") / 2.0 or min(radii)
         return max(0.0, min(hole, *radii) - free)
-    stock = filled.n("FROM") / 2.0
+    stock = filled_shape.get_number("FROM") / 2.0
     return max(stock, *radii) + free
 
 
-def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    inside = filled.t("SIDE") == INSIDE
-    yield from contour_refusals(filled.rows)
-    yield from compensated(filled, setting)
-    yield from cutting_checks(filled, setting)
-    there = points(filled.rows)
-    if filled.n("ROUGH"):
+def _contour_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    inside = filled.get_text("SIDE") == INSIDE
+    yield from find_contour_errors(filled.contour_points)
+    yield from check_compensation(filled, setting)
+    yield from check_cutting_data(filled, setting)
+    there = resolve_points(filled.contour_points)
+    if filled.get_number("ROUGH"):
         for at, (before, here) in enumerate(pairwise(there), 2):
             if here[0] > before[0] + 1e-9:
                 text_ = Message(
@@ -144,55 +209,59 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                     "the chuck along Z.",
                     position=at,
                 )
-                yield Refusal(row_word(at), text_)
+                yield FieldError(make_point_label(at), text_)
                 break
-        yield from _falls_at_once(there, inside=inside)
+        yield from _check_first_move(there, is_inside=inside)
     if (
         not inside
-        and filled.n("FROM")
-        and max((r for _, r in there), default=0.0) > filled.n("FROM") / 2 + 1e-9
+        and filled.get_number("FROM")
+        and max((r for _, r in there), default=0.0) > filled.get_number("FROM") / 2 + 1e-9
     ):
         at = max(range(len(there)), key=lambda n: there[n][1])
         words = Message(
             "Point {position} is outside the stock diameter of {number}: enter a smaller X.",
             position=at + 1,
-            number=f"{filled.n('FROM'):g}",
+            number=f"{filled.get_number('FROM'):g}",
         )
-        yield Refusal(row_word(at + 1), words)
+        yield FieldError(make_point_label(at + 1), words)
 
 
-def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Iterator[Refusal]:
+def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) -> Iterator[FieldError]:
     """Yield an error if the contour leads into the material at its first point.
 
     The return path of roughing would cross such a contour.
     """
-    side = -1.0 if inside else 1.0
-    if len(there) > 1 and there[1][0] < there[0][0] - SAME and side * (there[0][1] - there[1][1]) > SAME:
-        yield Refusal(
-            row_word(1),
+    side = -1.0 if is_inside else 1.0
+    if (
+        len(there) > 1
+        and there[1][0] < there[0][0] - POINT_TOLERANCE
+        and side * (there[0][1] - there[1][1]) > POINT_TOLERANCE
+    ):
+        yield FieldError(
+            make_point_label(1),
             "The contour cuts deeper directly after its first point, and roughing cannot "
             "return past that point: add a point before the first point, at the same Z and "
             "at the lowest X.",
         )
 
 
-def compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def check_compensation(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if G41 would not work."""
-    if filled.n("COMP") and setting.called and setting.dialect is Dialect.OMNITURN:
-        yield Refusal(
+    if filled_shape.get_number("COMP") and settings.is_subroutine and settings.dialect is Dialect.OMNITURN:
+        yield FieldError(
             "COMP",
             "G41 does not work in a subroutine, and a bar feed loop runs this shape in a "
             "subroutine: enter 0.",
         )
 
 
-def cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def check_cutting_data(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield errors for speeds, feeds and depths that the machine or the insert does not permit."""
-    yield from too_fast(filled, setting)
-    yield from per_rev(filled, setting, "FEED", "RFEED")
-    rough, leave = filled.n("ROUGH"), filled.n("LEAVE")
+    yield from check_rpm(filled_shape, settings)
+    yield from check_feeds(filled_shape, settings, "FEED", "RFEED")
+    rough, leave = filled_shape.get_number("ROUGH"), filled_shape.get_number("LEAVE")
     if rough and leave >= rough:
-        yield Refusal(
+        yield FieldError(
             "LEAVE",
             Message(
                 "A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller allowance.",
@@ -200,65 +269,73 @@ def cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                 rough=f"{rough:g}",
             ),
         )
-    stock, end = _stock_and_end({**filled.shape.extent(filled.rows), **filled.values})
-    if filled.shape.field("ROUGH") is not None:
-        yield from too_deep_pass(filled, setting, "ROUGH", rough or abs(stock - end) / 2.0)
+    stock, end = _stock_and_end(
+        {**filled_shape.shape.extent(filled_shape.contour_points), **filled_shape.values}
+    )
+    if filled_shape.shape.find_field("ROUGH") is not None:
+        yield from check_pass_depth(filled_shape, settings, "ROUGH", rough or abs(stock - end) / 2.0)
 
 
-def too_deep_pass(filled: Filled, setting: Setting, word: str, deep: float) -> Iterator[Refusal]:
+def check_pass_depth(
+    filled_shape: FilledShape, settings: ProgramSettings, word: str, depth: float
+) -> Iterator[FieldError]:
     """Yield an error if a pass is deeper than the insert permits."""
-    most = most_depth(setting, filled.n("T"))
-    if deep > most + SAME:
-        yield Refusal(
+    most = find_max_depth(settings, filled_shape.get_number("T"))
+    if depth > most + POINT_TOLERANCE:
+        yield FieldError(
             word,
             Message(
                 "A pass would be {depth} deep, but the insert of T{number} allows a depth of "
                 "only {maximum}: enter a smaller depth of cut.",
-                depth=f"{deep:.4g}",
-                number=f"{filled.n('T'):.0f}",
+                depth=f"{depth:.4g}",
+                number=f"{filled_shape.get_number('T'):.0f}",
                 maximum=f"{most:.4g}",
             ),
         )
 
 
-def _turn(filled: Filled, setting: Setting, code: Code) -> None:
-    cut_contour(filled, setting, code, filled.rows, inside=filled.t("SIDE") == INSIDE)
+def _turn(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+    write_contour(filled, setting, code, filled.contour_points, is_inside=filled.get_text("SIDE") == INSIDE)
 
 
-def _turn_sketch(filled: Filled) -> Sketch:
-    rows = [row for row in filled.rows if not row.empty]
-    drawn = outline(rows)
+def _turn_sketch(filled: FilledShape) -> Sketch:
+    rows = [row for row in filled.contour_points if not row.empty]
+    drawn = make_outline(rows)
     if len(drawn) < 2:
-        return sketch(part((0, 0), (0, 5), (-12, 5), (-12, 0)))
-    across = max(filled.n("FROM"), 2.0 * max(r for _, r in drawn))
-    dims = tuple(Dim(row_word(k), at) for k, at in enumerate(points(rows), 1))
-    if filled.t("SIDE") == INSIDE:
+        return make_sketch(make_part_outline((0, 0), (0, 5), (-12, 5), (-12, 0)))
+    across = max(filled.get_number("FROM"), 2.0 * max(r for _, r in drawn))
+    dims = tuple(Dimension(make_point_label(k), at) for k, at in enumerate(resolve_points(rows), 1))
+    if filled.get_text("SIDE") == INSIDE:
         back = min(z for z, _ in drawn)
         wall = 1.3 * max(r for _, r in drawn)
-        solid = part((drawn[0][0], wall), *drawn, (back, 0.0), (1.3 * back, 0.0), (1.3 * back, wall))
-        return sketch(solid, cut(*drawn), dims=dims)
-    return sketch(*turned(drawn, across), dims=dims)
+        solid = make_part_outline(
+            (drawn[0][0], wall), *drawn, (back, 0.0), (1.3 * back, 0.0), (1.3 * back, wall)
+        )
+        return make_sketch(solid, make_cut_outline(*drawn), dimensions=dims)
+    return make_sketch(*make_turned_outlines(drawn, across), dimensions=dims)
 
 
-def _outside(values: Values) -> bool:
+def _outside(values: FieldValues) -> bool:
     return text(values, "SIDE") != INSIDE
 
 
-TURN = Shape(
+TURNING_SHAPE = Shape(
     "TURN",
     "a profile of points, corners and arcs, with or without roughing",
     (
-        tool_field(ToolKind.TURNING, ToolKind.BORING),
-        Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
-        Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, bar, zero=True, only=_outside),
-        Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER, None, only=lambda v: not _outside(v)),
-        ROUGH,
-        LEAVE,
-        RFEED,
-        feed_field(Work.FINISH),
-        rpm_field(Work.TURN, around("FROM")),
-        surface_field(),
-        COMP,
+        make_tool_field(ToolKind.TURNING, ToolKind.BORING),
+        ShapeField("SIDE", "SIDE", FieldKind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
+        ShapeField(
+            "FROM", "STOCK DIAMETER", FieldKind.DIAMETER, propose_bar, allows_zero=True, applies_to=_outside
+        ),
+        ShapeField("HOLE", "HOLE DIAMETER", FieldKind.DIAMETER, None, applies_to=lambda v: not _outside(v)),
+        ROUGHING_DEPTH_FIELD,
+        ALLOWANCE_FIELD,
+        ROUGHING_FEED_FIELD,
+        make_feed_field(Operation.FINISH),
+        make_rpm_field(Operation.TURN, make_diameter_reader("FROM")),
+        make_surface_speed_field(),
+        COMPENSATION_FIELD,
     ),
     _turn,
     _turn_sketch,
@@ -271,58 +348,60 @@ TURN = Shape(
 # --- Face
 
 
-def _face(filled: Filled, setting: Setting, code: Code) -> None:
-    at, stock, deep = filled.n("AT"), filled.n("STOCK"), filled.n("DEEP")
-    start, end = filled.n("FROM") / 2.0 + _BESIDE[setting.metric], filled.n("TO") / 2.0
+def _face(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+    at, stock, deep = filled.get_number("AT"), filled.get_number("STOCK"), filled.get_number("DEEP")
+    start, end = filled.get_number("FROM") / 2.0 + _BESIDE[setting.metric], filled.get_number("TO") / 2.0
     passes = max(1, math.ceil(stock / deep - 1e-9)) if deep else 1
-    begin_spindle(filled, setting, code, start, at + stock + setting.near)
+    write_spindle_start(filled, setting, code, start, at + stock + setting.near)
     for k in range(1, passes + 1):
         z = at + stock * (passes - k) / passes
         if k > 1:
-            code.rapid(z=z + stock / passes + _BESIDE[setting.metric])
-            code.rapid(x=start)
-        code.rapid(z=z)
-        code.cut(x=end, feed=filled.n("FEED"))
-    end_spindle(filled, code)
+            code.write_rapid(z=z + stock / passes + _BESIDE[setting.metric])
+            code.write_rapid(x=start)
+        code.write_rapid(z=z)
+        code.write_cut(x=end, feed=filled.get_number("FEED"))
+    write_spindle_end(filled, code)
 
 
-def _past_axis(values: Values, setting: Setting) -> Value | None:
+def _past_axis(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Return the end diameter of two nose radii past the axis, because stopping earlier leaves a pip."""
-    shape = setting.tool(number(values, "T"))
-    nose = shape.nose_radius / setting.mm if shape is not None else 0.0
-    return -math.ceil(2000.0 * (nose or 0.4 / setting.mm)) / 1000.0
+    shape = settings.tool(number(values, "T"))
+    nose = shape.nose_radius / settings.mm if shape is not None else 0.0
+    return -math.ceil(2000.0 * (nose or 0.4 / settings.mm)) / 1000.0
 
 
-def _facing(values: Values, setting: Setting) -> Value | None:
-    return facing_depth(setting, number(values, "T"), number(values, "FROM"))
+def _facing(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    return propose_facing_depth(setting, number(values, "T"), number(values, "FROM"))
 
 
-def _face_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    yield from too_deep_pass(filled, setting, "DEEP", min(filled.n("DEEP"), filled.n("STOCK")))
-    if filled.n("TO") >= filled.n("FROM"):
-        yield Refusal(
+def _face_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    yield from check_pass_depth(
+        filled, setting, "DEEP", min(filled.get_number("DEEP"), filled.get_number("STOCK"))
+    )
+    if filled.get_number("TO") >= filled.get_number("FROM"):
+        yield FieldError(
             "TO",
             Message(
                 "Facing starts at diameter {number} and runs inward: end diameter {number2} must be less.",
-                number=f"{filled.n('FROM'):g}",
-                number2=f"{filled.n('TO'):g}",
+                number=f"{filled.get_number('FROM'):g}",
+                number2=f"{filled.get_number('TO'):g}",
             ),
         )
-    yield from too_fast(filled, setting)
-    yield from per_rev(filled, setting, "FEED")
+    yield from check_rpm(filled, setting)
+    yield from check_feeds(filled, setting, "FEED")
 
 
-def _face_sketch(_filled: Filled) -> Sketch:
-    solid = part((0, 0), (0, 10), (-22, 10), (-22, 0))
-    return sketch(
+def _face_sketch(_filled: FilledShape) -> Sketch:
+    solid = make_part_outline((0, 0), (0, 10), (-22, 10), (-22, 0))
+    return make_sketch(
         solid,
-        cut((0, 10), (0, 1)),
-        cut((3, 10), (3, 0), (0, 0)),
-        dims=(
-            Dim("FROM", (-16, -10), (-16, 10)),
-            Dim("TO", (0, 1), None),
-            Dim("STOCK", (0, 10), (3, 10), 4),
-            Dim("AT", (0, 5)),
+        make_cut_outline((0, 10), (0, 1)),
+        make_cut_outline((3, 10), (3, 0), (0, 0)),
+        dimensions=(
+            Dimension("FROM", (-16, -10), (-16, 10)),
+            Dimension("TO", (0, 1), None),
+            Dimension("STOCK", (0, 10), (3, 10), 4),
+            Dimension("AT", (0, 5)),
         ),
     )
 
@@ -331,15 +410,17 @@ FACE = Shape(
     "FACE",
     "the end of the part faced square, in one or more passes",
     (
-        tool_field(ToolKind.TURNING),
-        Field("FROM", "START DIAMETER", Kind.DIAMETER, bar),
-        Field("TO", "END DIAMETER", Kind.COORDINATE, _past_axis),
-        Field("AT", "FACE AT Z", Kind.COORDINATE, 0.0),
-        Field("STOCK", "STOCK ON THE FACE", Kind.LENGTH, 0.0, zero=True),
-        Field("DEEP", "DEPTH PER PASS", Kind.LENGTH, _facing, only=lambda v: number(v, "STOCK") > 0),
-        feed_field(Work.FINISH),
-        rpm_field(Work.TURN, around("FROM")),
-        surface_field(),
+        make_tool_field(ToolKind.TURNING),
+        ShapeField("FROM", "START DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("TO", "END DIAMETER", FieldKind.COORDINATE, _past_axis),
+        ShapeField("AT", "FACE AT Z", FieldKind.COORDINATE, 0.0),
+        ShapeField("STOCK", "STOCK ON THE FACE", FieldKind.LENGTH, 0.0, allows_zero=True),
+        ShapeField(
+            "DEEP", "DEPTH PER PASS", FieldKind.LENGTH, _facing, applies_to=lambda v: number(v, "STOCK") > 0
+        ),
+        make_feed_field(Operation.FINISH),
+        make_rpm_field(Operation.TURN, make_diameter_reader("FROM")),
+        make_surface_speed_field(),
     ),
     _face,
     _face_sketch,

@@ -8,123 +8,129 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from core.extras.shapes.contour import SAME, Row, points
-from core.extras.shapes.shape_fields import Setting
+from core.extras.shapes.contour import POINT_TOLERANCE, ContourPoint, resolve_points
+from core.extras.shapes.shape_fields import ProgramSettings
 from core.language.source import Dialect
 
 
-class Bars(NamedTuple):
+class BarFeedLoop(NamedTuple):
     """A bar feed loop.
 
-    ``many`` parts of the length ``long`` are made. The bar is fed at ``rate`` per minute to the tool
-    ``stop``, which leaves ``stock`` on the face. ``each`` feeds the bar for each part, otherwise it is fed
-    once. ``part`` is the number of the part's subroutine.
+    ``part_count`` parts of the length ``part_length`` are made. The bar is fed at ``feed_rate`` per minute
+    to the tool ``stop_tool``, which leaves ``facing_stock`` on the face. ``feeds_each_part`` feeds the bar
+    for each part, otherwise it is fed once. ``subroutine_number`` is the number of the part's subroutine.
     """
 
-    many: int
-    long: float
-    each: bool
-    stop: float
-    stock: float
-    rate: float
-    part: int
+    part_count: int
+    part_length: float
+    feeds_each_part: bool
+    stop_tool: float
+    facing_stock: float
+    feed_rate: float
+    subroutine_number: int
 
     @property
-    def out(self) -> float:
+    def feed_length(self) -> float:
         """Length by which the bar is fed out at a time."""
-        return self.long if self.each else self.many * self.long
+        return self.part_length if self.feeds_each_part else self.part_count * self.part_length
 
 
-def write_bars(code: Code, bars: Bars) -> None:
+def write_bar_feed_loop(code: CodeWriter, loop: BarFeedLoop) -> None:
     """Write a bar feed loop in the language of the program."""
-    (_sinumerik if code.setting.dialect is Dialect.SINUMERIK else _omniturn)(code, bars)
+    (_sinumerik if code.settings.dialect is Dialect.SINUMERIK else _omniturn)(code, loop)
 
 
-def _omniturn(code: Code, bars: Bars) -> None:
+def _omniturn(code: CodeWriter, bars: BarFeedLoop) -> None:
     """Write the loop with LS … LF. G97 only carries the comment, which is not allowed inside a loop."""
-    call, loop = f"P{bars.part}", f"LS{bars.many}"
-    code.write("G97", loop) if bars.each else code.write("G97")
-    code.write(f"T{bars.stop:.0f}")
-    _to_stop(code, bars)
-    code.write("M13", f"G94F{plain(bars.rate)}{code.z(bars.stock)}", "M12")
-    code.forget()
-    code.away()
-    if bars.each:
+    call, loop = f"P{bars.subroutine_number}", f"LS{bars.part_count}"
+    code.write("G97", loop) if bars.feeds_each_part else code.write("G97")
+    code.write(f"T{bars.stop_tool:.0f}")
+    _write_stop_move(code, bars)
+    code.write("M13", f"G94F{format_short_number(bars.feed_rate)}{code.format_z(bars.facing_stock)}", "M12")
+    code.clear_modal_state()
+    code.write_retract()
+    if bars.feeds_each_part:
         code.write(call, "LF")
     else:
-        code.write(loop, call, f"G10{code.point(0.0, -bars.long)}", "LF", "T0")
+        code.write(loop, call, f"G10{code.format_point(0.0, -bars.part_length)}", "LF", "T0")
 
 
-def _sinumerik(code: Code, bars: Bars) -> None:
+def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
     """Write the loop with REPEAT between two labels; ATRANS shifts zero along a bar that is fed once."""
-    opens, closes = code.setting.shop.chuck or (0, 0)
-    begin, end = f"BAR_{bars.part}", f"BAR_{bars.part}_END"
-    code.write(*([f"{begin}:"] if bars.each else []), f"T{bars.stop:.0f} D1", "M5")
-    code.forget()
-    _to_stop(code, bars)
-    code.write(f"M{opens}", f"G94 G1 {code.z(bars.stock)} F{plain(bars.rate)}", f"M{closes}")
-    code.forget()
-    code.away()
-    code.write(*([] if bars.each else [f"{begin}:"]), f"PART_{bars.part}")
-    if not bars.each:
-        code.write(" ".join(("ATRANS", code.z(-bars.long))))
+    opens, closes = code.settings.shop.chuck_codes or (0, 0)
+    begin, end = f"BAR_{bars.subroutine_number}", f"BAR_{bars.subroutine_number}_END"
+    code.write(*([f"{begin}:"] if bars.feeds_each_part else []), f"T{bars.stop_tool:.0f} D1", "M5")
+    code.clear_modal_state()
+    _write_stop_move(code, bars)
+    code.write(
+        f"M{opens}",
+        f"G94 G1 {code.format_z(bars.facing_stock)} F{format_short_number(bars.feed_rate)}",
+        f"M{closes}",
+    )
+    code.clear_modal_state()
+    code.write_retract()
+    code.write(*([] if bars.feeds_each_part else [f"{begin}:"]), f"PART_{bars.subroutine_number}")
+    if not bars.feeds_each_part:
+        code.write(" ".join(("ATRANS", code.format_z(-bars.part_length))))
     code.write(f"{end}:")
-    if bars.many > 1:
-        code.write(" ".join(("REPEAT", begin, end, f"P={bars.many - 1}")))
-    if not bars.each:
+    if bars.part_count > 1:
+        code.write(" ".join(("REPEAT", begin, end, f"P={bars.part_count - 1}")))
+    if not bars.feeds_each_part:
         code.write("TRANS")
 
 
-def _to_stop(code: Code, bars: Bars) -> None:
+def _write_stop_move(code: CodeWriter, bars: BarFeedLoop) -> None:
     """Write the move of the stop to the end of the bar."""
-    code.rapid(0.0, code.setting.clear)
-    code.rapid(z=bars.stock - bars.out)
+    code.write_rapid(0.0, code.settings.clear)
+    code.write_rapid(z=bars.facing_stock - bars.feed_length)
 
 
-class Along(NamedTuple):
-    """Turning of a contour: roughing in passes of ``rough`` (0 for none), then one pass along the contour.
+class ContourTurning(NamedTuple):
+    """Turning of a contour: roughing in passes of ``roughing_depth`` (0 for none), then one pass along the
+    contour.
 
     The contour ends at a radius clear of the material. ``offset`` is the number of the nose compensation, or
-    0. ``label`` is a number for the contour in languages that label contours.
+    0. ``roughing_label`` is a number for the contour in languages that label contours.
     """
 
-    rows: Sequence[Row]
-    beside: float
-    inside: bool
+    points: Sequence[ContourPoint]
+    clear_radius: float
+    is_inside: bool
     feed: float
-    rough: float = 0.0
-    leave: float = 0.0
-    rough_feed: float = 0.0
-    offset: float = 0.0
-    label: float = 0.0
+    roughing_depth: float = 0.0
+    finish_allowance: float = 0.0
+    roughing_feed: float = 0.0
+    compensation_offset: float = 0.0
+    roughing_label: float = 0.0
 
 
-class Tap(NamedTuple):
-    """A tap on the axis from ``start`` to ``end`` with ``pitch`` at ``rpm``; ``into`` is its M code.
+class TappingCycle(NamedTuple):
+    """A tap on the axis from ``start`` to ``end`` with ``pitch`` at ``rpm``; ``spindle_code`` is its M code.
 
-    ``rigid`` turns the spindle in step with Z if the language permits; otherwise a floating holder is used.
+    ``is_rigid`` turns the spindle in step with Z if the language permits; otherwise a floating holder is
+    used.
     """
 
-    start: float
-    end: float
+    start_z: float
+    end_z: float
     pitch: float
     rpm: float
-    into: str
-    dwell: float
-    rigid: bool = False
+    spindle_code: str
+    dwell_s: float
+    is_rigid: bool = False
 
 
-class Code:
+class CodeWriter:
     """Writer of lines that tracks the modal state of the program.
 
     X is given as a radius. Words that are already in force are not repeated.
     """
 
-    loops = True  # LS … LF can repeat a group of lines
-    edge = 1.0  # cutting edge of the tools, in languages with several edges per tool
+    supports_loops = True  # LS … LF can repeat a group of lines
+    cutting_edge = 1.0  # cutting edge of the tools, in languages with several edges per tool
 
-    def __init__(self, setting: Setting) -> None:
-        self.setting = setting
+    def __init__(self, settings: ProgramSettings) -> None:
+        self.settings = settings
         self.lines: list[str] = []
         self._rapid = False
         self._feed = ""
@@ -133,54 +139,58 @@ class Code:
         """Add lines unchanged."""
         self.lines += lines
 
-    def forget(self) -> None:
+    def clear_modal_state(self) -> None:
         """Clear the tracked modal state, after lines that were added unchanged."""
         self._rapid, self._feed = False, ""
 
     # --- Words
 
-    def x(self, radius: float, letter: str = "X") -> str:
+    def format_x(self, radius: float, letter: str = "X") -> str:
         """Return the word of a radius, as a diameter if the program uses diameters."""
-        s = self.setting
+        s = self.settings
         value = 2.0 * radius if s.diameter else radius
-        return letter + plain(rounded(value, metric=s.metric, twice=s.diameter))
+        return letter + format_short_number(round_length(value, metric=s.metric, is_diameter=s.diameter))
 
-    def z(self, value: float, letter: str = "Z") -> str:
+    def format_z(self, value: float, letter: str = "Z") -> str:
         """Return the word of a length along Z, or of another length that is never a diameter."""
-        return letter + plain(rounded(value, metric=self.setting.metric))
+        return letter + format_short_number(round_length(value, metric=self.settings.metric))
 
-    def point(self, x: float | None, z: float | None) -> str:
+    def format_point(self, x: float | None, z: float | None) -> str:
         """Return the X and Z words of a move; None omits a word."""
-        return ("" if x is None else self.x(x)) + ("" if z is None else self.z(z))
+        return ("" if x is None else self.format_x(x)) + ("" if z is None else self.format_z(z))
 
     # --- Moves
 
-    def noted(self, comment: str) -> list[str]:
+    def add_comment(self, comment: str) -> list[str]:
         """Return the lines with a comment on the first line."""
         return [f"{self.lines[0]}({comment})", *self.lines[1:]]
 
-    def begin(self, tool: float, rpm: float, x: float, z: float | None, turns: str = "M03") -> None:
+    def write_tool_start(
+        self, tool: float, rpm: float, x: float, z: float | None, spindle_code: str = "M03"
+    ) -> None:
         """Write tool, spindle and rapids to ``x`` at the tool change Z, and then to ``z``."""
         self.write(f"T{tool:.0f}")
         if rpm:
-            self.write(f"{turns}S{plain(rpm, 0)}")
-        self.forget()
-        self.rapid(x, self.setting.clear)
+            self.write(f"{spindle_code}S{format_short_number(rpm, 0)}")
+        self.clear_modal_state()
+        self.write_rapid(x, self.settings.clear)
         if z is not None:
-            self.rapid(z=z)
+            self.write_rapid(z=z)
 
-    def rapid(self, x: float | None = None, z: float | None = None) -> None:
+    def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
         """Write a rapid."""
-        self.write(("" if self._rapid else "G00") + self.point(x, z))
+        self.write(("" if self._rapid else "G00") + self.format_point(x, z))
         self._rapid = True
 
-    def cut(self, x: float | None = None, z: float | None = None, feed: float = 0.0, more: str = "") -> None:
-        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``more`` follows the point."""
-        self.write(self.fed(feed) + self.point(x, z) + more)
+    def write_cut(
+        self, x: float | None = None, z: float | None = None, feed: float = 0.0, suffix: str = ""
+    ) -> None:
+        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``suffix`` follows the point."""
+        self.write(self.format_feed(feed) + self.format_point(x, z) + suffix)
 
-    def fed(self, feed: float) -> str:
+    def format_feed(self, feed: float) -> str:
         """Return the words that make the next move a cut at ``feed`` per revolution; empty if in force."""
-        word = f"F{plain(feed, 6)}" if feed else self._feed
+        word = f"F{format_short_number(feed, 6)}" if feed else self._feed
         if word == self._feed:
             again = "G01" if self._rapid else ""
         else:
@@ -188,94 +198,108 @@ class Code:
         self._feed, self._rapid = word, False
         return again
 
-    def set_feed(self, feed: float) -> None:
+    def write_feed(self, feed: float) -> None:
         """Write a line with only a feed, for the following moves."""
-        self.write(self.fed(feed) or f"F{plain(feed, 6)}")
+        self.write(self.format_feed(feed) or f"F{format_short_number(feed, 6)}")
 
-    def line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
+    def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """Write a line of a contour, with the corner to the next line."""
-        corner = self.z(chamfer, "C") if chamfer else self.z(radius, "R") if radius else ""
-        self.write(self.fed(0.0) + self.point(x, z) + corner)
+        corner = self.format_z(chamfer, "C") if chamfer else self.format_z(radius, "R") if radius else ""
+        self.write(self.format_feed(0.0) + self.format_point(x, z) + corner)
 
-    def arc(self, x: float, z: float, radius: float, *, convex: bool) -> None:
+    def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
         """Write an arc from the last point: convex like a shoulder of a shaft, or concave like a fillet."""
-        self.write(f"{'G02' if convex else 'G03'}{self.point(x, z)}{self.z(radius, 'R')}")
+        self.write(f"{'G02' if is_convex else 'G03'}{self.format_point(x, z)}{self.format_z(radius, 'R')}")
 
-    def dwell(self, seconds: float) -> None:
+    def write_dwell(self, seconds: float) -> None:
         """Write a dwell; 0 s writes nothing."""
         if seconds:
-            self.write(f"G04F{plain(seconds)}")
+            self.write(f"G04F{format_short_number(seconds)}")
 
-    def away(self) -> None:
+    def write_retract(self) -> None:
         """Write a rapid along Z to the tool change position."""
-        self.rapid(z=self.setting.clear)
+        self.write_rapid(z=self.settings.clear)
 
     # --- Contours and holes
 
-    def along(self, way: Along) -> None:
+    def write_contour_turning(self, turning: ContourTurning) -> None:
         """Write roughing with G75 if specified, then the contour, with compensation if specified."""
-        there = points(way.rows)
+        there = resolve_points(turning.points)
         first = there[0]
-        if way.rough:
-            self.set_feed(way.rough_feed)
-            self.write(f"G75{self.z(way.rough, 'I')}{self.z(way.leave, 'U')}F{_feed(way.rough_feed)}")
-            self.write(self.point(first[1], first[0]))
-            self.contour(way.rows)
+        if turning.roughing_depth:
+            self.write_feed(turning.roughing_feed)
+            self.write(
+                f"G75{self.format_z(turning.roughing_depth, 'I')}"
+                f"{self.format_z(turning.finish_allowance, 'U')}F{_feed(turning.roughing_feed)}"
+            )
+            self.write(self.format_point(first[1], first[0]))
+            self.write_contour(turning.points)
             self.write("RF")
-            self.rapid(x=first[1])
-        if way.offset:
-            self.set_feed(way.feed)
-            self.write("G42" if way.inside else "G41", f"{self.z(first[0])}D{way.offset:.0f}")
+            self.write_rapid(x=first[1])
+        if turning.compensation_offset:
+            self.write_feed(turning.feed)
+            self.write(
+                "G42" if turning.is_inside else "G41",
+                f"{self.format_z(first[0])}D{turning.compensation_offset:.0f}",
+            )
         else:
-            self.cut(z=first[0], feed=way.feed)
-        self.contour(way.rows)
-        if abs(way.beside - there[-1][1]) > 1e-9:
-            self.cut(x=way.beside)
+            self.write_cut(z=first[0], feed=turning.feed)
+        self.write_contour(turning.points)
+        if abs(turning.clear_radius - there[-1][1]) > 1e-9:
+            self.write_cut(x=turning.clear_radius)
 
-    def contour(self, rows: Sequence[Row]) -> None:
+    def write_contour(self, points: Sequence[ContourPoint]) -> None:
         """Write the lines of a contour after its first point, which the tool has already reached."""
-        for (_, before), (row, here) in pairwise(zip(rows, points(rows), strict=True)):
-            x = here[1] if row.x is not None and (row.arc or abs(here[1] - before[1]) > SAME) else None
-            z = here[0] if row.z is not None and (row.arc or abs(here[0] - before[0]) > SAME) else None
+        for (_, before), (row, here) in pairwise(zip(points, resolve_points(points), strict=True)):
+            x = (
+                here[1]
+                if row.x is not None and (row.arc or abs(here[1] - before[1]) > POINT_TOLERANCE)
+                else None
+            )
+            z = (
+                here[0]
+                if row.z is not None and (row.arc or abs(here[0] - before[0]) > POINT_TOLERANCE)
+                else None
+            )
             if row.arc:
-                self.arc(here[1], here[0], abs(row.arc), convex=row.arc > 0)
+                self.write_arc(here[1], here[0], abs(row.arc), is_convex=row.arc > 0)
             elif x is not None or z is not None:
-                self.line(x, z, row.chamfer, row.radius)
+                self.write_line(x, z, row.chamfer, row.radius)
 
-    def let_go(self, offset: float) -> None:
+    def cancel_compensation(self, offset: float) -> None:
         """Cancel the compensation if a contour used this offset."""
         if offset:
             self.write("G40")
 
-    def drill(self, end: float, peck: float, feed: float, start: float) -> None:
+    def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
         """Write a hole from the present position to ``end``, with pecks or in one pass.
 
         ``start`` is the depth of an existing hole.
         """
-        word = f"F{plain(feed, 6)}"
+        word = f"F{format_short_number(feed, 6)}"
         self.write("G95")
         if peck:
-            back = self.z(self.setting.near / 2.0, "R") if start else ""
-            self.write(f"G83{self.z(end)}{self.z(peck, 'K')}{word}{back}")
+            back = self.format_z(self.settings.near / 2.0, "R") if start else ""
+            self.write(f"G83{self.format_z(end)}{self.format_z(peck, 'K')}{word}{back}")
         else:
-            self.write(f"G81{self.z(end)}{word}")
-        self.forget()
+            self.write(f"G81{self.format_z(end)}{word}")
+        self.clear_modal_state()
 
-    def tap(self, tool: float, tap: Tap) -> None:
+    def write_tapping(self, tool: float, cycle: TappingCycle) -> None:
         """Write a tap: feed in at the pitch, reverse the spindle, feed out."""
-        self.begin(tool, tap.rpm, 0.0, tap.start, tap.into)
-        self.cut(z=tap.end, feed=tap.pitch)
-        self.write("M03" if tap.into == "M04" else "M04")
-        self.dwell(tap.dwell)
-        self.cut(z=tap.start)
+        self.write_tool_start(tool, cycle.rpm, 0.0, cycle.start_z, cycle.spindle_code)
+        self.write_cut(z=cycle.end_z, feed=cycle.pitch)
+        self.write("M03" if cycle.spindle_code == "M04" else "M04")
+        self.write_dwell(cycle.dwell_s)
+        self.write_cut(z=cycle.start_z)
 
     # --- Spindle
 
-    def surface_speed(self, surface: float, most: float) -> None:
-        """Write constant surface speed, limited to ``most`` rpm."""
-        self.write(f"G96S{plain(surface, 0)}", f"G77S{plain(most, 0)}")
+    def write_surface_speed(self, surface: float, max_rpm: float) -> None:
+        """Write constant surface speed, limited to ``max_rpm`` rpm."""
+        self.write(f"G96S{format_short_number(surface, 0)}", f"G77S{format_short_number(max_rpm, 0)}")
 
-    def constant_speed(self) -> None:
+    def write_constant_rpm(self) -> None:
         """Write the return to rpm, before another tool."""
         self.write("G97")
 
@@ -292,7 +316,7 @@ _NAME = str.maketrans({"/": "S", "-": "A", ".": "P", "#": "N"})
 _BACK = str.maketrans({"S": "/", "A": "-", "P": ".", "N": "#"})
 
 
-def plain(value: float, places: int = 5) -> str:
+def format_short_number(value: float, places: int = 5) -> str:
     """Return a number as programs write it, without zeros before the point or at the end: .5, -.035, 2."""
     text = f"{value:.{places}f}"
     if "." in text:
@@ -302,23 +326,25 @@ def plain(value: float, places: int = 5) -> str:
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
-def figure(value: float, places: int = 5) -> str:
+def format_sinumerik_number(value: float, places: int = 5) -> str:
     """Return a number as SINUMERIK programs write it: 0.5, -0.035, 2."""
-    return with_zero(plain(value, places))
+    return add_leading_zero(format_short_number(value, places))
 
 
-def with_zero(word: str) -> str:
-    """Return a word from ``plain`` with a zero before its point."""
+def add_leading_zero(word: str) -> str:
+    """Return a word from ``format_short_number`` with a zero before its point."""
     return _NO_ZERO.sub("0.", word)
 
 
-def rounded(value: float, *, metric: bool, twice: bool = False) -> float:
-    """Return a length rounded to the step of the control; ``twice`` rounds to the step of a diameter."""
-    step = _STEPS[metric] * (2.0 if twice else 1.0)
+def round_length(value: float, *, metric: bool, is_diameter: bool = False) -> float:
+    """Return a length rounded to the step of the control; ``is_diameter`` rounds to the step of a
+    diameter.
+    """
+    step = _STEPS[metric] * (2.0 if is_diameter else 1.0)
     return round(value / step) * step
 
 
-def rounded_up(radius: float, *, metric: bool) -> float:
+def round_depth_up(radius: float, *, metric: bool) -> float:
     """Return a depth rounded up to the step of the control.
 
     In passes of equal chip area, a slightly smaller depth would require one more pass.
@@ -327,15 +353,15 @@ def rounded_up(radius: float, *, metric: bool) -> float:
     return math.ceil(radius / step - 1e-6) * step
 
 
-def in_comment(value: float, places: int = 5) -> str:
+def encode_comment_number(value: float, places: int = 5) -> str:
     """Return a number for a comment, with P for the point and a leading M for minus: 0P5, M0P035."""
     text = f"{abs(value):.{places}f}".rstrip("0").rstrip(".")
     sign = "M" if value < 0 and text.strip("0.") else ""
     return sign + text.replace(".", "P")
 
 
-def from_comment(text: str) -> float | None:
-    """Return the number written by ``in_comment``; None if the text has another format."""
+def decode_comment_number(text: str) -> float | None:
+    """Return the number written by ``encode_comment_number``; None if the text has another format."""
     found = _NUMBER.fullmatch(text)
     if found is None:
         return None
@@ -343,11 +369,11 @@ def from_comment(text: str) -> float | None:
     return -value if found[1] else value
 
 
-def name_in_comment(name: str) -> str:
+def encode_thread_name(name: str) -> str:
     """Return a thread size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
     return name.translate(_NAME)
 
 
-def name_from_comment(text: str) -> str:
-    """Return the name that ``name_in_comment`` has written."""
+def decode_thread_name(text: str) -> str:
+    """Return the name that ``encode_thread_name`` has written."""
     return text.translate(_BACK)

@@ -5,135 +5,145 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from core.extras.shapes.lines.code_lines import Code, figure, plain
-from core.extras.shapes.shape_fields import Setting
+from core.extras.shapes.lines.code_lines import CodeWriter, format_short_number, format_sinumerik_number
+from core.extras.shapes.shape_fields import ProgramSettings
 
-QUICK = 50.0  # in/min, clear of the part in the plane
+RAPID_RATE_IN_MIN = 50.0  # in/min, clear of the part in the plane
 
 
-class Holes(NamedTuple):
-    """Radial holes: ``many`` holes at Z ``at``, from ``angle`` on in steps of ``step``.
+class RadialHoles(NamedTuple):
+    """Radial holes: ``hole_count`` holes at Z ``at``, from ``start_angle_deg`` on in steps of
+    ``angle_step_deg``.
 
-    Each hole goes from the radius ``out`` to the radius ``deep``.
+    Each hole goes from the radius ``clearance_radius`` to the radius ``bottom_radius``.
     """
 
-    out: float
-    deep: float
-    at: float
-    angle: float
-    many: int
-    step: float
-    rate: float
+    clearance_radius: float
+    bottom_radius: float
+    hole_z: float
+    start_angle_deg: float
+    hole_count: int
+    angle_step_deg: float
+    feed_rate: float
 
 
-class Faces(NamedTuple):
+class FaceMilling(NamedTuple):
     """Milling around the end of a part: ``path`` of the tool center as (x, y) from the axis, for each depth.
 
-    ``entry`` is X clear of the part at Y 0, to which the tool returns after each round. If the path leads
-    ``around`` the part, the tool goes directly to its first point, which is also clear of the part.
+    ``entry_x`` is X clear of the part at Y 0, to which the tool returns after each round. If the path leads
+    ``is_closed`` the part, the tool goes directly to its first point, which is also clear of the part.
     """
 
-    entry: float
+    entry_x: float
     path: list[tuple[float, float]]
-    levels: list[float]
-    rate: float
-    around: bool
+    depths_z: list[float]
+    feed_rate: float
+    is_closed: bool
 
 
-class Slots(NamedTuple):
-    """Slots in a cylinder of diameter ``across``, each ``along`` Z and ``turn`` degrees around it.
+class CylinderSlots(NamedTuple):
+    """Slots in a cylinder of diameter ``diameter``, each ``length_z`` Z and ``angle_span_deg`` degrees
+    around it.
 
-    ``depths`` are the radii of the mill's end, one for each pass in alternating directions. ``out`` is the
-    radius clear of the part.
+    ``bottom_radii`` are the radii of the mill's end, one for each pass in alternating directions.
+    ``clearance_radius`` is the radius clear of the part.
     """
 
-    across: float
-    at: float
-    along: float
-    turn: float
-    angles: list[float]
-    depths: list[float]
-    out: float
-    rate: float
+    diameter: float
+    start_z: float
+    length_z: float
+    angle_span_deg: float
+    start_angles_deg: list[float]
+    bottom_radii: list[float]
+    clearance_radius: float
+    feed_rate: float
 
 
-class LiveLines:
+class LiveToolWriter:
     """Writer for a live tool in OmniTurn.
 
     M19 holds the spindle, CA and CI turn it, and ~PLXC and ~PLZC select the planes.
     """
 
-    def __init__(self, code: Code, rpm: float) -> None:
+    def __init__(self, code: CodeWriter, rpm: float) -> None:
         self._code, self._rpm = code, rpm
 
     @property
-    def _setting(self) -> Setting:
-        return self._code.setting
+    def _setting(self) -> ProgramSettings:
+        return self._code.settings
 
     @property
     def _quick(self) -> str:
-        return f"F{plain(QUICK * 25.4 / self._setting.mm, 0)}"
+        return f"F{format_short_number(RAPID_RATE_IN_MIN * 25.4 / self._setting.mm, 0)}"
 
-    def _held(self, tool: float, x: float, z: float) -> None:
+    def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
         """Write the approach, stop and hold the spindle, and start the live tool."""
-        self._code.begin(tool, 0.0, x, z)
-        self._code.write("M05", f"M{self._setting.shop.live[0]:02d}", "M19")
+        self._code.write_tool_start(tool, 0.0, x, z)
+        self._code.write("M05", f"M{self._setting.shop.live_tool_codes[0]:02d}", "M19")
 
     def _released(self) -> None:
-        self._code.forget()
-        self._code.away()
-        self._code.write(f"M{self._setting.shop.live[1]:02d}", "M05")
+        self._code.clear_modal_state()
+        self._code.write_retract()
+        self._code.write(f"M{self._setting.shop.live_tool_codes[1]:02d}", "M05")
 
     def _angle(self, word: str, degrees: float) -> None:
         if word == "CA" or degrees:
-            wait = f"G04F{plain(_wait(degrees, self._setting.shop.c_rpm), 1)}"
-            self._code.write(f"{word}{plain(degrees, 3)}", wait)
+            wait = f"G04F{format_short_number(_wait(degrees, self._setting.shop.max_c_rpm), 1)}"
+            self._code.write(f"{word}{format_short_number(degrees, 3)}", wait)
 
-    def holes(self, tool: float, holes: Holes) -> None:
+    def write_holes(self, tool: float, holes: RadialHoles) -> None:
         """Write drilled and indexed holes, as a loop if there are several."""
         code = self._code
-        self._held(tool, holes.out, holes.at)
-        self._angle("CA", holes.angle)
-        if holes.many > 1:
-            code.write(f"LS{holes.many}")
-        code.write(f"G94F{plain(holes.rate)}{code.x(holes.deep)}", f"G00{code.x(holes.out)}")
-        if holes.many > 1:
-            self._angle("CI", holes.step)
+        self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
+        self._angle("CA", holes.start_angle_deg)
+        if holes.hole_count > 1:
+            code.write(f"LS{holes.hole_count}")
+        code.write(
+            f"G94F{format_short_number(holes.feed_rate)}{code.format_x(holes.bottom_radius)}",
+            f"G00{code.format_x(holes.clearance_radius)}",
+        )
+        if holes.hole_count > 1:
+            self._angle("CI", holes.angle_step_deg)
             code.write("LF")
         self._released()
 
-    def faces(self, tool: float, faces: Faces) -> None:
+    def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
         """Write milling in the plane XC, from the side of negative X."""
-        code, rate = self._code, f"F{plain(faces.rate)}"
-        entry, (first, *rest) = plain(faces.entry, 4), faces.path
-        begin = f"X{plain(first[0], 4)}Y{plain(first[1], 4)}"
-        self._held(tool, -faces.entry, self._setting.near)
+        code, rate = self._code, f"F{format_short_number(faces.feed_rate)}"
+        entry, (first, *rest) = format_short_number(faces.entry_x, 4), faces.path
+        begin = f"X{format_short_number(first[0], 4)}Y{format_short_number(first[1], 4)}"
+        self._write_live_tool_start(tool, -faces.entry_x, self._setting.near)
         code.write(f"G94{rate}", "(~PLXC)")  # an earlier shape may have left feed per revolution in force
-        for k, z in enumerate(faces.levels):
+        for k, z in enumerate(faces.depths_z):
             if k:
-                code.write(f"({begin if faces.around else f'X{entry}Y0'}{self._quick})")
-            code.write(f"({code.z(z)}{rate})", f"({begin}{rate})")
-            code.lines += [f"(X{plain(x, 4)}Y{plain(y, 4)})" for x, y in rest]
-            if not faces.around:
+                code.write(f"({begin if faces.is_closed else f'X{entry}Y0'}{self._quick})")
+            code.write(f"({code.format_z(z)}{rate})", f"({begin}{rate})")
+            code.lines += [f"(X{format_short_number(x, 4)}Y{format_short_number(y, 4)})" for x, y in rest]
+            if not faces.is_closed:
                 code.write(f"(X{entry}Y0)")
-        code.write("(END)", f"G00{code.x(-faces.entry)}")
+        code.write("(END)", f"G00{code.format_x(-faces.entry_x)}")
         self._released()
 
-    def slots(self, tool: float, slots: Slots) -> None:
+    def write_slots(self, tool: float, slots: CylinderSlots) -> None:
         """Write slots in the plane ZC, starting at each angle of C."""
-        code, rate = self._code, plain(slots.rate)
-        around = slots.turn / 360.0 * math.pi * slots.across
-        self._held(tool, -slots.out, slots.at)
-        for k, angle in enumerate(slots.angles):
+        code, rate = self._code, format_short_number(slots.feed_rate)
+        around = slots.angle_span_deg / 360.0 * math.pi * slots.diameter
+        self._write_live_tool_start(tool, -slots.clearance_radius, slots.start_z)
+        for k, angle in enumerate(slots.start_angles_deg):
             if k or angle:
                 self._angle("CA", angle)
-            code.write(f"G94F{rate}", "(~PLZC)", f"(D{plain(slots.across, 4)})")
-            for level, radius in enumerate(slots.depths):
-                there, back = f"(X{plain(slots.along, 4)}Y{plain(around, 4)}F{rate})", "(X0Y0)"
-                down = f"(Z{plain(2.0 * radius, 4)}F{plain(slots.rate / 2.0)})"
+            code.write(f"G94F{rate}", "(~PLZC)", f"(D{format_short_number(slots.diameter, 4)})")
+            for level, radius in enumerate(slots.bottom_radii):
+                there, back = (
+                    f"(X{format_short_number(slots.length_z, 4)}Y{format_short_number(around, 4)}F{rate})",
+                    "(X0Y0)",
+                )
+                down = (
+                    f"(Z{format_short_number(2.0 * radius, 4)}F{format_short_number(slots.feed_rate / 2.0)})"
+                )
                 code.write(down, back if level % 2 else there)
-            code.write(f"(Z{plain(2.0 * slots.out, 4)}{self._quick})")
-            if len(slots.depths) % 2:
+            code.write(f"(Z{format_short_number(2.0 * slots.clearance_radius, 4)}{self._quick})")
+            if len(slots.bottom_radii) % 2:
                 code.write("(X0Y0)")
             code.write("(END)")
         self._released()
@@ -144,79 +154,84 @@ def _wait(degrees: float, c_rpm: float) -> float:
     return math.ceil(10.0 * (abs(degrees) / (6.0 * c_rpm) + 0.5)) / 10.0
 
 
-class SinumerikLiveLines(LiveLines):
+class SinumerikLiveToolWriter(LiveToolWriter):
     """Writer for a live tool in SINUMERIK: M5 stops the spindle before C moves or a plane begins."""
 
-    def _held(self, tool: float, x: float, z: float) -> None:
-        self._code.begin(tool, 0.0, x, z)
-        self._code.write("M5", f"S2={figure(self._rpm, 0)} M2=3", "G94")
-        self._code.forget()
+    def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
+        self._code.write_tool_start(tool, 0.0, x, z)
+        self._code.write("M5", f"S2={format_sinumerik_number(self._rpm, 0)} M2=3", "G94")
+        self._code.clear_modal_state()
 
     def _released(self) -> None:
-        self._code.away()
+        self._code.write_retract()
         self._code.write("M2=5")
 
     def _c(self, degrees: float) -> str:
         name = self._setting.shop.third_axis
-        return f"{name}{'' if len(name) == 1 else '='}{figure(degrees, 3)}"
+        return f"{name}{'' if len(name) == 1 else '='}{format_sinumerik_number(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
         """Switch X between radius and diameter, because TRANSMIT measures X and Y in the same unit."""
         if self._setting.diameter:
             self._code.write("DIAMON" if degrees else "DIAMOF")
 
-    def holes(self, tool: float, holes: Holes) -> None:
+    def write_holes(self, tool: float, holes: RadialHoles) -> None:
         """Write each hole with its absolute angle of C."""
         code = self._code
-        self._held(tool, holes.out, holes.at)
-        for k in range(holes.many):
-            code.write(f"G0 {self._c(holes.angle + k * holes.step)}")
-            code.forget()
-            code.cut(x=holes.deep, feed=holes.rate)
-            code.rapid(holes.out)
+        self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
+        for k in range(holes.hole_count):
+            code.write(f"G0 {self._c(holes.start_angle_deg + k * holes.angle_step_deg)}")
+            code.clear_modal_state()
+            code.write_cut(x=holes.bottom_radius, feed=holes.feed_rate)
+            code.write_rapid(holes.clearance_radius)
         self._released()
 
-    def faces(self, tool: float, faces: Faces) -> None:
+    def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
         """Write milling with TRANSMIT around the face, from the side of positive X."""
-        code, rate = self._code, f"F{figure(faces.rate)}"
-        self._held(tool, faces.entry, self._setting.near)
+        code, rate = self._code, f"F{format_sinumerik_number(faces.feed_rate)}"
+        self._write_live_tool_start(tool, faces.entry_x, self._setting.near)
         self._words(degrees=False)
         code.write("G17", "TRANSMIT")
-        for k, z in enumerate(faces.levels):
-            if k and faces.around:
+        for k, z in enumerate(faces.depths_z):
+            if k and faces.is_closed:
                 code.write(f"G0 {self._xy(*faces.path[0])}")
-            code.write(f"G1 {code.z(z)} {rate}")
+            code.write(f"G1 {code.format_z(z)} {rate}")
             code.lines += [self._xy(x, y) for x, y in faces.path]
-            if not faces.around:
-                code.write(self._xy(faces.entry, 0.0))
-        code.write(f"G0 {code.z(self._setting.near)}", "TRAFOOF", "G18")
+            if not faces.is_closed:
+                code.write(self._xy(faces.entry_x, 0.0))
+        code.write(f"G0 {code.format_z(self._setting.near)}", "TRAFOOF", "G18")
         self._words(degrees=True)
-        code.forget()
-        code.rapid(x=faces.entry)
+        code.clear_modal_state()
+        code.write_rapid(x=faces.entry_x)
         self._released()
 
     def _xy(self, x: float, y: float) -> str:
-        return f"X{figure(x, 4)} Y{figure(y, 4)}"
+        return f"X{format_sinumerik_number(x, 4)} Y{format_sinumerik_number(y, 4)}"
 
-    def slots(self, tool: float, slots: Slots) -> None:
+    def write_slots(self, tool: float, slots: CylinderSlots) -> None:
         """Write slots with TRACYL.
 
         Y is measured around the part from C0, in the opposite direction of C.
         """
-        code, degree = self._code, math.pi * slots.across / 360.0
-        self._held(tool, slots.out, slots.at)
-        code.write("G19", f"TRACYL({figure(slots.across)})")
-        rate, slow = (f"F{figure(each)}" for each in (slots.rate, slots.rate / 2.0))
-        for angle in slots.angles:
-            begin = f"{self._y(-angle * degree)} {code.z(slots.at)}"
-            end = f"{self._y((slots.turn - angle) * degree)} {code.z(slots.at - slots.along)}"
+        code, degree = self._code, math.pi * slots.diameter / 360.0
+        self._write_live_tool_start(tool, slots.clearance_radius, slots.start_z)
+        code.write("G19", f"TRACYL({format_sinumerik_number(slots.diameter)})")
+        rate, slow = (
+            f"F{format_sinumerik_number(each)}" for each in (slots.feed_rate, slots.feed_rate / 2.0)
+        )
+        for angle in slots.start_angles_deg:
+            begin = f"{self._y(-angle * degree)} {code.format_z(slots.start_z)}"
+            end = (
+                f"{self._y((slots.angle_span_deg - angle) * degree)} "
+                f"{code.format_z(slots.start_z - slots.length_z)}"
+            )
             code.write(f"G0 {begin}")
-            for level, radius in enumerate(slots.depths):
-                code.write(f"G1 {code.x(radius)} {slow}", f"{begin if level % 2 else end} {rate}")
-            code.write(f"G0 {code.x(slots.out)}")
+            for level, radius in enumerate(slots.bottom_radii):
+                code.write(f"G1 {code.format_x(radius)} {slow}", f"{begin if level % 2 else end} {rate}")
+            code.write(f"G0 {code.format_x(slots.clearance_radius)}")
         code.write("TRAFOOF", "G18")
-        code.forget()
+        code.clear_modal_state()
         self._released()
 
     def _y(self, length: float) -> str:
-        return f"Y{figure(length, 4)}"
+        return f"Y{format_sinumerik_number(length, 4)}"

@@ -5,45 +5,51 @@ Grooves use G1, or CYCLE93 if the form specifies the second cutting edge of the 
 
 from __future__ import annotations
 
-from core.extras.shapes.contour import points
-from core.extras.shapes.lines.code_lines import Along, Code, Tap, figure, with_zero
-from core.extras.shapes.shape_fields import Setting
+from core.extras.shapes.contour import resolve_points
+from core.extras.shapes.lines.code_lines import (
+    CodeWriter,
+    ContourTurning,
+    TappingCycle,
+    add_leading_zero,
+    format_sinumerik_number,
+)
+from core.extras.shapes.shape_fields import ProgramSettings
 from core.message import Message
 
 _TURNS = {"M03": "M3", "M04": "M4"}
 
 
-class SinumerikCode(Code):
+class SinumerikCodeWriter(CodeWriter):
     """Writer of lines under G18, G90 and G95 that repeats the motion word only in contours."""
 
-    loops = False
+    supports_loops = False
 
-    def __init__(self, setting: Setting) -> None:
-        super().__init__(setting)
+    def __init__(self, settings: ProgramSettings) -> None:
+        super().__init__(settings)
         self._motion = ""
 
-    def forget(self) -> None:
+    def clear_modal_state(self) -> None:
         """Clear the tracked modal state, after lines that were added unchanged."""
-        super().forget()
+        super().clear_modal_state()
         self._motion = ""
 
-    def noted(self, comment: str) -> list[str]:
+    def add_comment(self, comment: str) -> list[str]:
         """Return the lines with a comment on the first line."""
         return [f"{self.lines[0]} ; {comment}", *self.lines[1:]]
 
     # --- Words
 
-    def x(self, radius: float, letter: str = "X") -> str:
+    def format_x(self, radius: float, letter: str = "X") -> str:
         """Return the word of a radius, as a diameter if the program uses diameters."""
-        return with_zero(super().x(radius, letter))
+        return add_leading_zero(super().format_x(radius, letter))
 
-    def z(self, value: float, letter: str = "Z") -> str:
+    def format_z(self, value: float, letter: str = "Z") -> str:
         """Return the word of a length along Z."""
-        return with_zero(super().z(value, letter))
+        return add_leading_zero(super().format_z(value, letter))
 
-    def point(self, x: float | None, z: float | None) -> str:
+    def format_point(self, x: float | None, z: float | None) -> str:
         """Return the X and Z words of a move; None omits a word."""
-        return " ".join(([] if x is None else [self.x(x)]) + ([] if z is None else [self.z(z)]))
+        return " ".join(([] if x is None else [self.format_x(x)]) + ([] if z is None else [self.format_z(z)]))
 
     def _move(self, motion: str, *words: str) -> None:
         begin = [] if self._motion == motion else [motion]
@@ -52,139 +58,176 @@ class SinumerikCode(Code):
 
     # --- Moves
 
-    def begin(self, tool: float, rpm: float, x: float, z: float | None, turns: str = "M03") -> None:
+    def write_tool_start(
+        self, tool: float, rpm: float, x: float, z: float | None, spindle_code: str = "M03"
+    ) -> None:
         """Write tool, cutting edge, spindle and rapids to ``x`` at the tool change Z, and then to ``z``."""
-        self.write(f"T{tool:.0f} D{self.edge:.0f}")
+        self.write(f"T{tool:.0f} D{self.cutting_edge:.0f}")
         if rpm:
-            self.write(f"G95 S{figure(rpm, 0)} {_TURNS[turns]}")
-        self.forget()
-        self.rapid(x, self.setting.clear)
+            self.write(f"G95 S{format_sinumerik_number(rpm, 0)} {_TURNS[spindle_code]}")
+        self.clear_modal_state()
+        self.write_rapid(x, self.settings.clear)
         if z is not None:
-            self.rapid(z=z)
+            self.write_rapid(z=z)
 
-    def rapid(self, x: float | None = None, z: float | None = None) -> None:
+    def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
         """Write a rapid."""
-        self._move("G0", self.point(x, z))
+        self._move("G0", self.format_point(x, z))
 
-    def cut(self, x: float | None = None, z: float | None = None, feed: float = 0.0, more: str = "") -> None:
-        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``more`` follows the point."""
-        self._move("G1", self.point(x, z), more, self._fresh(feed))
+    def write_cut(
+        self, x: float | None = None, z: float | None = None, feed: float = 0.0, suffix: str = ""
+    ) -> None:
+        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``suffix`` follows the point."""
+        self._move("G1", self.format_point(x, z), suffix, self._fresh(feed))
 
     def _fresh(self, feed: float) -> str:
         """Return the word of a feed; empty if the feed is in force."""
-        word = f"F{figure(feed, 6)}" if feed else self._feed
+        word = f"F{format_sinumerik_number(feed, 6)}" if feed else self._feed
         said, self._feed = ("" if word == self._feed else word), word
         return said
 
-    def set_feed(self, feed: float) -> None:
+    def write_feed(self, feed: float) -> None:
         """Write a line with only a feed, for the following cycle."""
-        self.write(self._fresh(feed) or f"F{figure(feed, 6)}")
+        self.write(self._fresh(feed) or f"F{format_sinumerik_number(feed, 6)}")
 
-    def line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
+    def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """Write a line of a contour, with the corner to the next line."""
-        corner = self.z(chamfer, "CHR=") if chamfer else self.z(radius, "RND=") if radius else ""
-        self._move("G1", self.point(x, z), corner)
+        corner = (
+            self.format_z(chamfer, "CHR=") if chamfer else self.format_z(radius, "RND=") if radius else ""
+        )
+        self._move("G1", self.format_point(x, z), corner)
 
-    def arc(self, x: float, z: float, radius: float, *, convex: bool) -> None:
+    def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
         """Write an arc from the last point: convex like a shoulder of a shaft, or concave like a fillet."""
         self._motion = ""
-        self._move("G3" if convex else "G2", self.point(x, z), self.z(radius, "CR="))
+        self._move("G3" if is_convex else "G2", self.format_point(x, z), self.format_z(radius, "CR="))
         self._motion = ""
 
-    def dwell(self, seconds: float) -> None:
+    def write_dwell(self, seconds: float) -> None:
         """Write a dwell; 0 s writes nothing."""
         if seconds:
-            self.write(f"G4 F{figure(seconds)}")
+            self.write(f"G4 F{format_sinumerik_number(seconds)}")
 
     # --- Contours and holes
 
-    def along(self, way: Along) -> None:
+    def write_contour_turning(self, turning: ContourTurning) -> None:
         """Write CYCLE95 for the contour between two labels if it is roughed, then one pass along the contour.
 
         The cycle removes material up to the outermost point of its contour, so the contour includes the move
         away from the part.
         """
-        there, name = points(way.rows), f"CONTOUR_{way.label or 1.0:.0f}"
-        (z, x), feed = there[0], self._fresh(way.feed)
-        if way.rough:
-            fast = figure(way.rough_feed, 6)
-            words = f"{figure(way.rough)}, , , {figure(way.leave)}, {fast}, {fast}"
+        there, name = resolve_points(turning.points), f"CONTOUR_{turning.roughing_label or 1.0:.0f}"
+        (z, x), feed = there[0], self._fresh(turning.feed)
+        if turning.roughing_depth:
+            fast = format_sinumerik_number(turning.roughing_feed, 6)
+            words = (
+                f"{format_sinumerik_number(turning.roughing_depth)}, , , "
+                f"{format_sinumerik_number(turning.finish_allowance)}, {fast}, {fast}"
+            )
             self.write(
                 Message(
                     'CYCLE95("{name}:{name2}_END", {words}, , {value})',
                     name=name,
                     name2=name,
                     words=words,
-                    value=3 if way.inside else 1,
+                    value=3 if turning.is_inside else 1,
                 )
             )
-            self.forget()
-            self.rapid(x, z + self.setting.near)
-        if way.offset:
-            self.write("G41" if way.inside else "G42")
-        if way.rough:
+            self.clear_modal_state()
+            self.write_rapid(x, z + self.settings.near)
+        if turning.compensation_offset:
+            self.write("G41" if turning.is_inside else "G42")
+        if turning.roughing_depth:
             self.write(f"{name}:")
         self._motion = ""
-        self._move("G1", self.point(x, z), feed or f"F{figure(way.feed, 6)}")
-        self.contour(way.rows)
-        off, leaves = "G40" if way.offset else "", abs(way.beside - there[-1][1]) > 1e-9
-        if way.rough:
+        self._move("G1", self.format_point(x, z), feed or f"F{format_sinumerik_number(turning.feed, 6)}")
+        self.write_contour(turning.points)
+        off, leaves = (
+            "G40" if turning.compensation_offset else "",
+            abs(turning.clear_radius - there[-1][1]) > 1e-9,
+        )
+        if turning.roughing_depth:
             if leaves:
-                self.cut(way.beside)
+                self.write_cut(turning.clear_radius)
             self.write(f"{name}_END:")
         self._motion = ""
-        if leaves and not way.rough:
-            self.write(" ".join(word for word in (off, "G1", self.x(way.beside)) if word))
+        if leaves and not turning.roughing_depth:
+            self.write(" ".join(word for word in (off, "G1", self.format_x(turning.clear_radius)) if word))
         elif off:
             self.write(off)
 
-    def let_go(self, offset: float) -> None:
+    def cancel_compensation(self, offset: float) -> None:
         """Write nothing, because the move away from the contour has canceled the compensation."""
 
-    def drill(self, end: float, peck: float, feed: float, start: float) -> None:
+    def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
         """Write CYCLE81 or CYCLE83 under G17, for drilling along Z."""
-        near = self.setting.near
-        planes = f"{figure(near)}, {figure(-start)}, {figure(near / 2.0)}, {figure(end)}"
+        near = self.settings.near
+        planes = (
+            f"{format_sinumerik_number(near)}, {format_sinumerik_number(-start)}, "
+            f"{format_sinumerik_number(near / 2.0)}, {format_sinumerik_number(end)}"
+        )
         self.write(f"G17 {self._fresh(feed)}".rstrip())
         if peck:
             self.write(
-                Message("CYCLE83({planes}, , , {peck}, 0, 0, 0, 1, 1)", planes=planes, peck=figure(peck))
+                Message(
+                    "CYCLE83({planes}, , , {peck}, 0, 0, 0, 1, 1)",
+                    planes=planes,
+                    peck=format_sinumerik_number(peck),
+                )
             )
         else:
             self.write(f"CYCLE81({planes})")
         self.write("G18")
-        self.forget()
+        self.clear_modal_state()
 
-    def tap(self, tool: float, tap: Tap) -> None:
+    def write_tapping(self, tool: float, cycle: TappingCycle) -> None:
         """Write CYCLE840, or CYCLE84 with the spindle as C axis, under G17."""
-        self.begin(tool, 0.0 if tap.rigid else tap.rpm, 0.0, tap.start, tap.into)
-        hole = f"{figure(tap.start)}, 0, {figure(tap.start)}, {figure(tap.end)}, , {figure(tap.dwell)}"
+        self.write_tool_start(
+            tool, 0.0 if cycle.is_rigid else cycle.rpm, 0.0, cycle.start_z, cycle.spindle_code
+        )
+        hole = (
+            f"{format_sinumerik_number(cycle.start_z)}, 0, {format_sinumerik_number(cycle.start_z)}, "
+            f"{format_sinumerik_number(cycle.end_z)}, , {format_sinumerik_number(cycle.dwell_s)}"
+        )
         self.write("G17")
-        if tap.rigid:
-            lead, speed = tap.pitch * (-1.0 if tap.into == "M04" else 1.0), figure(tap.rpm, 0)
+        if cycle.is_rigid:
+            lead, speed = (
+                cycle.pitch * (-1.0 if cycle.spindle_code == "M04" else 1.0),
+                format_sinumerik_number(cycle.rpm, 0),
+            )
             self.write(
                 "M5",
                 Message(
                     "CYCLE84({hole}, 5, , {lead}, 0, {speed}, {speed2})",
                     hole=hole,
-                    lead=figure(lead, 6),
+                    lead=format_sinumerik_number(lead, 6),
                     speed=speed,
                     speed2=speed,
                 ),
             )
         else:
-            self.write(Message("CYCLE840({hole}, 0, , 0, , {pitch})", hole=hole, pitch=figure(tap.pitch, 6)))
+            self.write(
+                Message(
+                    "CYCLE840({hole}, 0, , 0, , {pitch})",
+                    hole=hole,
+                    pitch=format_sinumerik_number(cycle.pitch, 6),
+                )
+            )
         self.write("G18")
-        self.forget()
+        self.clear_modal_state()
 
     # --- Spindle
 
-    def surface_speed(self, surface: float, most: float) -> None:
-        """Write constant surface speed, limited to ``most`` rpm."""
+    def write_surface_speed(self, surface: float, max_rpm: float) -> None:
+        """Write constant surface speed, limited to ``max_rpm`` rpm."""
         self.write(
-            Message("G96 S{surface} LIMS={maximum}", surface=figure(surface, 0), maximum=figure(most, 0))
+            Message(
+                "G96 S{surface} LIMS={maximum}",
+                surface=format_sinumerik_number(surface, 0),
+                maximum=format_sinumerik_number(max_rpm, 0),
+            )
         )
 
-    def constant_speed(self) -> None:
+    def write_constant_rpm(self) -> None:
         """Write the return to rpm, before another tool."""
         self.write("G97")

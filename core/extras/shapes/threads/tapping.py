@@ -7,24 +7,39 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
-from core.extras.shapes.cutting_data import Work, rpm
-from core.extras.shapes.lines.code_lines import Code, Tap, plain
-from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Refusal, Setting, Value, Values, number, text
-from core.extras.shapes.threads.thread_series import METRIC, TAPERED, Series, in_unit, size_of
+from core.extras.shapes.common_fields import MAX_RPM, check_flute_length, check_rpm, make_tool_field
+from core.extras.shapes.cutting_data import Operation, rpm
+from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.lines.code_lines import CodeWriter, TappingCycle, format_short_number
+from core.extras.shapes.shape_fields import (
+    FieldError,
+    FieldKind,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ShapeField,
+    number,
+    text,
+)
+from core.extras.shapes.threads.thread_series import (
+    METRIC_SERIES,
+    TAPERED_SERIES,
+    ThreadSeries,
+    convert_length,
+    find_size,
+)
 from core.extras.shapes.threads.thread_values import (
     INSIDE,
     LEFT,
     RIGHT,
-    class_choices,
-    limits_of,
-    series_of,
-    unknown_name,
+    check_thread_name,
+    find_limits,
+    get_series,
+    list_classes_for_side,
 )
-from core.extras.shapes.usual_fields import MOST_RPM, too_deep, too_fast, tool_field
 from core.message import Message
 from core.part.tool_shape import ToolKind
-from core.sketch import Dim, Sketch, cut, part, sketch, tool
+from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, make_sketch, make_tool_outline
 
 _NUMBERS = (
     *(2280, 2210, 2130, 2090, 2055, 2040, 2010, 1990, 1960, 1935, 1910, 1890, 1850, 1820, 1800, 1770),
@@ -48,15 +63,15 @@ def _metric() -> Iterator[float]:
     yield from (n / 4 for n in range(56, 201))
 
 
-def drill_for(least: float, most: float, *, metric: bool) -> tuple[str, float] | None:
+def find_tap_drill(minimum: float, maximum: float, *, metric: bool) -> tuple[str, float] | None:
     """Return name and size of the drill for a hole between two limits, in mm or inches; or None.
 
     The drill is the largest that is not above the middle, because drills cut oversize. Otherwise the next
     larger drill is used.
     """
     sold = {f"{size:g}": size for size in _metric()} if metric else _INCH
-    fits = sorted((size, name) for name, size in sold.items() if least <= size <= most)
-    middle = (least + most) / 2.0 + (_OVER if metric else 0.0)
+    fits = sorted((size, name) for name, size in sold.items() if minimum <= size <= maximum)
+    middle = (minimum + maximum) / 2.0 + (_OVER if metric else 0.0)
     below = [each for each in fits if each[0] <= middle]
     chosen = below[-1] if below else fits[0] if fits else None
     return None if chosen is None else (chosen[1], chosen[0])
@@ -71,49 +86,52 @@ _COARSEST = 0.2  # in/rev, the highest feed of the control without G35
 FLOATING, RIGID = "FLOATING", "RIGID"
 
 
-def _rigid(values: Values) -> bool:
+def _rigid(values: FieldValues) -> bool:
     return text(values, "HOLDER") == RIGID
 
 
-def _named(values: Values) -> bool:
-    return series_of(values) is not Series.OWN
+def _named(values: FieldValues) -> bool:
+    return get_series(values) is not ThreadSeries.CUSTOM
 
 
-def _pitch(values: Values, setting: Setting) -> Value | None:
-    found = size_of(series_of(values), text(values, "SIZE"))
+def _pitch(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    found = find_size(get_series(values), text(values, "SIZE"))
     if found is None:
         return None
-    return round(in_unit(found.pitch, series_of(values), metric=setting.metric), 6)
+    return round(convert_length(found.pitch, get_series(values), metric=setting.metric), 6)
 
 
-def _across(values: Values, setting: Setting) -> Value | None:
-    found = size_of(series_of(values), text(values, "SIZE"))
+def _across(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    found = find_size(get_series(values), text(values, "SIZE"))
     if found is None:
         return None
-    return round(in_unit(found.diameter, series_of(values), metric=setting.metric), 4)
+    return round(convert_length(found.diameter, get_series(values), metric=setting.metric), 4)
 
 
-def _turns(values: Values, setting: Setting) -> Value | None:
+def _turns(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     across = number(values, "DIA")
     if not across:
         return None
-    return max(50.0, 50.0 * math.floor(min(_SLOW * rpm(Work.DRILL, across, setting), _MOST_RPM) / 50.0))
+    return max(50.0, 50.0 * math.floor(min(_SLOW * rpm(Operation.DRILL, across, setting), _MOST_RPM) / 50.0))
 
 
-def _tap(filled: Filled, setting: Setting, code: Code) -> None:
-    pitch = filled.n("PITCH")
+def _tap(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+    pitch = filled.get_number("PITCH")
     start = math.ceil(max(setting.near, 3.0 * pitch) * 100.0 - 1e-6) / 100.0
-    into = "M04" if filled.t("HAND") == LEFT else "M03"
-    end = -(filled.n("DEEP") - (0.0 if _rigid(filled.values) else filled.n("SHORT")))
+    into = "M04" if filled.get_text("HAND") == LEFT else "M03"
+    end = -(filled.get_number("DEEP") - (0.0 if _rigid(filled.values) else filled.get_number("SHORT")))
     held = _rigid(filled.values)
-    code.tap(filled.n("T"), Tap(start, end, pitch, filled.n("RPM"), into, filled.n("DWELL"), held))
-    code.away()
+    code.write_tapping(
+        filled.get_number("T"),
+        TappingCycle(start, end, pitch, filled.get_number("RPM"), into, filled.get_number("DWELL"), held),
+    )
+    code.write_retract()
 
 
-def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    series, pitch = series_of(filled.values), filled.n("PITCH")
-    if series in TAPERED or series is Series.ACME:
-        yield Refusal(
+def _checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    series, pitch = get_series(filled.values), filled.get_number("PITCH")
+    if series in TAPERED_SERIES or series is ThreadSeries.ACME:
+        yield FieldError(
             "SERIES",
             Message(
                 "{series} threads cannot be tapped with this shape: cut the thread with G33.", series=series
@@ -121,7 +139,7 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         )
     if pitch * setting.mm / 25.4 > _COARSEST:
         most = _COARSEST * 25.4 / setting.mm
-        yield Refusal(
+        yield FieldError(
             "PITCH",
             Message(
                 "A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.",
@@ -129,29 +147,29 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                 maximum=f"{most:g}",
             ),
         )
-    if filled.n("SHORT") >= filled.n("DEEP") and not _rigid(filled.values):
-        yield Refusal(
+    if filled.get_number("SHORT") >= filled.get_number("DEEP") and not _rigid(filled.values):
+        yield FieldError(
             "SHORT",
             Message(
                 "The tap would stop {number} short of depth {number2}, so nothing is cut.",
-                number=f"{filled.n('SHORT'):g}",
-                number2=f"{filled.n('DEEP'):g}",
+                number=f"{filled.get_number('SHORT'):g}",
+                number2=f"{filled.get_number('DEEP'):g}",
             ),
         )
-    speed = pitch * filled.n("RPM") * setting.mm / 25.4
+    speed = pitch * filled.get_number("RPM") * setting.mm / 25.4
     if speed > 300.0:
-        yield Refusal(
+        yield FieldError(
             "RPM",
             Message(
                 "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
                 "enter a lower speed.",
-                number=f"{filled.n('RPM'):g}",
+                number=f"{filled.get_number('RPM'):g}",
                 speed=f"{speed:.0f}",
             ),
         )
-    shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
+    shape, name = setting.tool(filled.get_number("T")), f"T{filled.get_number('T'):.0f}"
     if shape is not None and shape.pitch and abs(shape.pitch / setting.mm - pitch) > 0.01 * pitch:
-        yield Refusal(
+        yield FieldError(
             "T",
             Message(
                 "The tool data of {name} specifies a pitch of {pitch}, but this thread has a "
@@ -161,24 +179,24 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                 needed=f"{pitch:.5g}",
             ),
         )
-    yield from too_deep(filled, setting)
-    yield from too_fast(filled, setting)
+    yield from check_flute_length(filled, setting)
+    yield from check_rpm(filled, setting)
 
 
-def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
-    known = limits_of({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
+def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
+    known = find_limits({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
     if known is None:
         return ()
-    series = series_of(filled.values)
-    places, unit = (2 if setting.metric else 4), in_unit(1.0, series, metric=setting.metric)
-    least, most = (plain(value * unit, places) for value in known.minor)
+    series = get_series(filled.values)
+    places, unit = (2 if setting.metric else 4), convert_length(1.0, series, metric=setting.metric)
+    least, most = (format_short_number(value * unit, places) for value in known.minor_diameter)
     told = Message(
         "hole diameter before tapping: {crest}; limits {minimum} to {maximum}",
-        crest=plain(known.crest * unit, places),
+        crest=format_short_number(known.crest_diameter * unit, places),
         minimum=least,
         maximum=most,
     )
-    drill = drill_for(*known.minor, metric=series in METRIC)
+    drill = find_tap_drill(*known.minor_diameter, metric=series in METRIC_SERIES)
     return (
         (told,)
         if drill is None
@@ -186,74 +204,84 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     )
 
 
-def _called(name: str, size: float, series: Series, setting: Setting) -> str:
+def _called(name: str, size: float, series: ThreadSeries, settings: ProgramSettings) -> str:
     """Return the name of a drill, with its size in the program's unit if the name is in another unit."""
-    size = in_unit(size, series, metric=setting.metric)
-    shown = plain(size, 3 if setting.metric else 4)
-    named = Message("{unit} mm", unit=name) if series in METRIC else name
+    size = convert_length(size, series, metric=settings.metric)
+    shown = format_short_number(size, 3 if settings.metric else 4)
+    named = Message("{unit} mm", unit=name) if series in METRIC_SERIES else name
     return (
         named
-        if series in METRIC and setting.metric
+        if series in METRIC_SERIES and settings.metric
         else Message("{named}, {value}", named=named, value=shown)
     )
 
 
-def _usual_class(filled: Filled) -> str:
-    allowed = class_choices({**filled.values, "SIDE": INSIDE})
+def _usual_class(filled: FilledShape) -> str:
+    allowed = list_classes_for_side({**filled.values, "SIDE": INSIDE})
     return allowed[0] if allowed else ""
 
 
-def _sketch(_filled: Filled) -> Sketch:
-    wall = part((0, 0), (0, 10), (-24, 10), (-24, 0))
+def _sketch(_filled: FilledShape) -> Sketch:
+    wall = make_part_outline((0, 0), (0, 10), (-24, 10), (-24, 0))
     teeth = [(-k, 4.0 if k % 2 else 3.4) for k in range(15)]
-    body = tool((-14, -3.4), (-14, 3.4), (8, 3.4), (8, -3.4))
-    dims = (Dim("DEEP", (-14, 10), (0, 10), 3), Dim("DIA", (-17, -4), (-17, 4)), Dim("PITCH", (-4, 6.4)))
-    return sketch(wall, body, cut(*teeth), dims=dims)
+    body = make_tool_outline((-14, -3.4), (-14, 3.4), (8, 3.4), (8, -3.4))
+    dims = (
+        Dimension("DEEP", (-14, 10), (0, 10), 3),
+        Dimension("DIA", (-17, -4), (-17, 4)),
+        Dimension("PITCH", (-4, 6.4)),
+    )
+    return make_sketch(wall, body, make_cut_outline(*teeth), dimensions=dims)
 
 
-TAP = Shape(
+TAPPING_SHAPE = Shape(
     "TAP",
     "tapping on the spindle centerline: feed in, reverse the spindle, feed out at the pitch",
     (
-        tool_field(ToolKind.TAP),
-        Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
-        Field("SIZE", "SIZE", Kind.NAME, None, only=_named),
-        Field("DIA", "DIAMETER", Kind.DIAMETER, _across, marked=True),
-        Field("PITCH", "PITCH", Kind.LENGTH, _pitch),
-        Field("DEEP", "DEPTH", Kind.LENGTH),
-        Field("HAND", "HAND", Kind.CHOICE, RIGHT, (RIGHT, LEFT)),
-        Field(
+        make_tool_field(ToolKind.TAP),
+        ShapeField(
+            "SERIES",
+            "SERIES",
+            FieldKind.CHOICE,
+            ThreadSeries.UNC.value,
+            tuple(each.value for each in ThreadSeries),
+        ),
+        ShapeField("SIZE", "SIZE", FieldKind.NAME, None, applies_to=_named),
+        ShapeField("DIA", "DIAMETER", FieldKind.DIAMETER, _across, is_in_comment=True),
+        ShapeField("PITCH", "PITCH", FieldKind.LENGTH, _pitch),
+        ShapeField("DEEP", "DEPTH", FieldKind.LENGTH),
+        ShapeField("HAND", "HAND", FieldKind.CHOICE, RIGHT, (RIGHT, LEFT)),
+        ShapeField(
             "SHORT",
             "STOP DISTANCE BEFORE DEPTH",
-            Kind.LENGTH,
+            FieldKind.LENGTH,
             lambda v, _s: round(_SHORT * number(v, "PITCH"), 4),
-            zero=True,
-            only=lambda v: not _rigid(v),
+            allows_zero=True,
+            applies_to=lambda v: not _rigid(v),
         ),
-        Field("DWELL", "DWELL DURING REVERSAL", Kind.SECONDS, 0.5, zero=True, most=60),
-        Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, _turns, most=MOST_RPM),
+        ShapeField("DWELL", "DWELL DURING REVERSAL", FieldKind.SECONDS, 0.5, allows_zero=True, maximum=60),
+        ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, _turns, maximum=MAX_RPM),
     ),
     _tap,
     _sketch,
     _checks,
-    first=unknown_name,
+    first=check_thread_name,
     says=_says,
 )
 
 
-def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
     yield from _checks(filled, setting)
     if not _rigid(filled.values):
         return
-    if not setting.shop.spindle_is_c:
-        yield Refusal(
+    if not setting.shop.has_spindle_as_c:
+        yield FieldError(
             "HOLDER",
             "The spindle of this machine cannot be positioned and turned in sync with Z: "
             "use a floating tap holder.",
         )
-    elif filled.n("RPM") > setting.shop.c_rpm:
-        most = f"{setting.shop.c_rpm:g}"
-        yield Refusal(
+    elif filled.get_number("RPM") > setting.shop.max_c_rpm:
+        most = f"{setting.shop.max_c_rpm:g}"
+        yield FieldError(
             "RPM",
             Message(
                 "A rigid tap turns with the C axis, which reaches {maximum} rpm: enter {maximum2} or less.",
@@ -263,20 +291,23 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         )
 
 
-def _held_turns(values: Values, setting: Setting) -> Value | None:
+def _propose_tapping_rpm(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Return the proposed rpm, limited to that of the C axis for a rigid tap."""
-    turns = _turns(values, setting)
-    most = setting.shop.c_rpm if _rigid(values) else math.inf
+    turns = _turns(values, settings)
+    most = settings.shop.max_c_rpm if _rigid(values) else math.inf
     return min(turns, most) if isinstance(turns, float) else turns
 
 
-SINUMERIK_TAP = replace(
-    TAP,
+SINUMERIK_TAPPING_SHAPE = replace(
+    TAPPING_SHAPE,
     checks=_sinumerik_checks,
     fields=(
-        TAP.fields[0],
-        Field("HOLDER", "HOLDER", Kind.CHOICE, FLOATING, (FLOATING, RIGID)),
-        *(replace(each, start=_held_turns) if each.word == "RPM" else each for each in TAP.fields[1:]),
+        TAPPING_SHAPE.fields[0],
+        ShapeField("HOLDER", "HOLDER", FieldKind.CHOICE, FLOATING, (FLOATING, RIGID)),
+        *(
+            replace(each, default=_propose_tapping_rpm) if each.word == "RPM" else each
+            for each in TAPPING_SHAPE.fields[1:]
+        ),
     ),
 )
 """The same by CYCLE840, or by CYCLE84 without a holder that gives."""

@@ -12,7 +12,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 
-class Series(StrEnum):
+class ThreadSeries(StrEnum):
     """The standard thread series, and OWN for a thread defined by dimensions."""
 
     UNC = "UNC"
@@ -24,12 +24,12 @@ class Series(StrEnum):
     BSP = "BSP"
     BSPT = "BSPT"
     ACME = "ACME"
-    OWN = "OWN"
+    CUSTOM = "OWN"
 
 
-METRIC = frozenset({Series.M, Series.MF, Series.BSP, Series.BSPT})
-UNIFIED = frozenset({Series.UNC, Series.UNF, Series.UNEF})
-TAPERED = frozenset({Series.NPT, Series.BSPT})
+METRIC_SERIES = frozenset({ThreadSeries.M, ThreadSeries.MF, ThreadSeries.BSP, ThreadSeries.BSPT})
+UNIFIED_SERIES = frozenset({ThreadSeries.UNC, ThreadSeries.UNF, ThreadSeries.UNEF})
+TAPERED_SERIES = frozenset({ThreadSeries.NPT, ThreadSeries.BSPT})
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,13 @@ class ThreadSize:
     """A thread size in the unit of its series.
 
     ``diameter`` is the basic major diameter; for a pipe thread it is the diameter of the pipe (NPT) or at the
-    gauge plane. ``gauge`` is the distance of the gauge plane from the small end of a tapered thread.
+    gauge plane. ``gauge_length`` is the distance of the gauge plane from the small end of a tapered thread.
     """
 
     name: str
     diameter: float
     pitch: float
-    gauge: float = 0.0
+    gauge_length: float = 0.0
 
 
 def _fraction(name: str) -> float:
@@ -83,48 +83,48 @@ def _listed(unit: float, listed: str) -> tuple[ThreadSize, ...]:
     return tuple(found)
 
 
-SIZES: dict[Series, tuple[ThreadSize, ...]] = {
-    Series.UNC: _unified_series(
+THREAD_SIZES: dict[ThreadSeries, tuple[ThreadSize, ...]] = {
+    ThreadSeries.UNC: _unified_series(
         "#1:64 #2:56 #3:48 #4:40 #5:40 #6:32 #8:32 #10:24 #12:24 1/4:20 5/16:18 3/8:16 7/16:14 1/2:13 "
         "9/16:12 5/8:11 3/4:10 7/8:9 1:8 1-1/8:7 1-1/4:7 1-3/8:6 1-1/2:6 1-3/4:5 2:4.5"
     ),
-    Series.UNF: _unified_series(
+    ThreadSeries.UNF: _unified_series(
         "#0:80 #1:72 #2:64 #3:56 #4:48 #5:44 #6:40 #8:36 #10:32 #12:28 1/4:28 5/16:24 3/8:24 7/16:20 "
         "1/2:20 9/16:18 5/8:18 3/4:16 7/8:14 1:12 1-1/8:12 1-1/4:12 1-3/8:12 1-1/2:12"
     ),
-    Series.UNEF: _unified_series(
+    ThreadSeries.UNEF: _unified_series(
         "#12:32 1/4:32 5/16:32 3/8:32 7/16:28 1/2:28 9/16:24 5/8:24 11/16:24 3/4:20 13/16:20 7/8:20 "
         "15/16:20 1:20 1-1/16:18 1-1/8:18 1-1/4:18 1-3/8:18 1-1/2:18"
     ),
-    Series.M: _metric_series(
+    ThreadSeries.M: _metric_series(
         "1.6x0.35 2x0.4 2.5x0.45 3x0.5 3.5x0.6 4x0.7 5x0.8 6x1 7x1 8x1.25 10x1.5 12x1.75 14x2 16x2 18x2.5 "
         "20x2.5 22x2.5 24x3 27x3 30x3.5 33x3.5 36x4 39x4 42x4.5 48x5",
         fine=False,
     ),
-    Series.MF: _metric_series(
+    ThreadSeries.MF: _metric_series(
         "4x0.5 5x0.5 6x0.75 8x0.75 8x1 10x0.75 10x1 10x1.25 12x1 12x1.25 12x1.5 14x1 14x1.5 16x1 16x1.5 "
         "18x1 18x1.5 20x1 20x1.5 20x2 22x1.5 24x1 24x1.5 24x2 27x1.5 27x2 30x1.5 30x2 33x2 36x1.5 36x3 "
         "39x3 42x2 42x3 48x2 48x3",
         fine=True,
     ),
-    Series.NPT: _listed(
+    ThreadSeries.NPT: _listed(
         1.0,
         "1/16:0.3125:27:0.160 1/8:0.405:27:0.1615 1/4:0.540:18:0.2278 3/8:0.675:18:0.240 "
         "1/2:0.840:14:0.320 3/4:1.050:14:0.339 1:1.315:11.5:0.400 1-1/4:1.660:11.5:0.420 "
         "1-1/2:1.900:11.5:0.420 2:2.375:11.5:0.436",
     ),
-    Series.BSP: _listed(
+    ThreadSeries.BSP: _listed(
         25.4,
         "1/16:7.723:28 1/8:9.728:28 1/4:13.157:19 3/8:16.662:19 1/2:20.955:14 5/8:22.911:14 3/4:26.441:14 "
         "7/8:30.201:14 1:33.249:11 1-1/8:37.897:11 1-1/4:41.910:11 1-1/2:47.803:11 1-3/4:53.746:11 "
         "2:59.614:11",
     ),
-    Series.BSPT: _listed(
+    ThreadSeries.BSPT: _listed(
         25.4,
         "1/16:7.723:28:4.0 1/8:9.728:28:4.0 1/4:13.157:19:6.0 3/8:16.662:19:6.4 1/2:20.955:14:8.2 "
         "3/4:26.441:14:9.5 1:33.249:11:10.4 1-1/4:41.910:11:12.7 1-1/2:47.803:11:12.7 2:59.614:11:15.9",
     ),
-    Series.ACME: _listed(
+    ThreadSeries.ACME: _listed(
         1.0,
         "1/4:0.25:16 5/16:0.3125:14 3/8:0.375:12 7/16:0.4375:12 1/2:0.5:10 5/8:0.625:8 3/4:0.75:6 "
         "7/8:0.875:6 1:1:5 1-1/8:1.125:5 1-1/4:1.25:5 1-3/8:1.375:4 1-1/2:1.5:4 1-3/4:1.75:4 2:2:4",
@@ -133,13 +133,13 @@ SIZES: dict[Series, tuple[ThreadSize, ...]] = {
 """From small to large."""
 
 
-def size_of(series: Series, name: str) -> ThreadSize | None:
+def find_size(series: ThreadSeries, name: str) -> ThreadSize | None:
     """Return the size with this name, such as 1/2, 1/2-13, #10, M10X1.25, 10, 10-32 or 10X1.25; or None.
 
     If a name is ambiguous, 1 is the size in inches and #1 the number.
     """
     wanted = name.strip().upper().replace(" ", "")
-    sizes = SIZES.get(series, ())
+    sizes = THREAD_SIZES.get(series, ())
     for bare in ("", "#", "M"):
         for each in sizes:
             if wanted in {known.removeprefix(bare) for known in _names(series, each)}:
@@ -147,21 +147,21 @@ def size_of(series: Series, name: str) -> ThreadSize | None:
     return None
 
 
-def _names(series: Series, size: ThreadSize) -> tuple[str, ...]:
+def _names(series: ThreadSeries, size: ThreadSize) -> tuple[str, ...]:
     """Return the names of a size with and without its pitch."""
-    if series in {Series.M, Series.MF}:
+    if series in {ThreadSeries.M, ThreadSeries.MF}:
         return size.name, f"{size.name.partition('X')[0]}X{size.pitch:g}"
-    turns = (25.4 if series in METRIC else 1.0) / size.pitch
+    turns = (25.4 if series in METRIC_SERIES else 1.0) / size.pitch
     return size.name, f"{size.name}-{round(turns, 2):g}"
 
 
-V60 = math.sqrt(3.0) / 2.0  # =
+V60_HEIGHT_FACTOR = math.sqrt(3.0) / 2.0  # =
 _V55 = 0.960491  # height of a sharp V of 55° in pitches
 _PIPE_HEIGHT = 0.8  # height of an NPT thread in pitches; ASME B1.20.1
 _WHITWORTH = 2.0 / 3.0 * _V55  # height of a 55° thread with a sixth rounded off at crest and root; ISO 228-1
 _TAPER = 1.0 / 16.0  # on the diameter
 
-CLASSES = {
+TOLERANCE_CLASSES = {
     "unified": (("2A", "1A", "3A"), ("2B", "1B", "3B")),
     "metric": (("6g", "6h", "4h", "8g"), ("6H", "5H", "7H", "6G")),
     "ACME": (("2G", "3G", "4G"), ("2G", "3G", "4G")),
@@ -171,72 +171,80 @@ CLASSES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ThreadLimits:
     """Limits of the diameters of a thread in the unit of its series, at the small end of a tapered thread.
 
-    ``root`` is the final diameter of the tip of a standard tool when the pitch diameter is in the middle of
-    its limits. ``crest`` is the diameter to be turned or bored before threading.
+    ``root_diameter`` is the final diameter of the tip of a standard tool when the pitch diameter is in the
+    middle of its limits. ``crest_diameter`` is the diameter to be turned or bored before threading.
     """
 
-    major: tuple[float, float]
-    pitch: tuple[float, float]
-    minor: tuple[float, float]
-    crest: float
-    root: float
-    angle: float = 60.0
+    major_diameter: tuple[float, float]
+    pitch_diameter: tuple[float, float]
+    minor_diameter: tuple[float, float]
+    crest_diameter: float
+    root_diameter: float
+    flank_angle_deg: float = 60.0
 
     @property
-    def height(self) -> float:
+    def thread_height(self) -> float:
         """Height from crest to root, as a radius."""
-        return abs(self.crest - self.root) / 2.0
+        return abs(self.crest_diameter - self.root_diameter) / 2.0
 
 
-def classes(series: Series, *, inside: bool) -> tuple[str, ...]:
+def list_classes(series: ThreadSeries, *, is_inside: bool) -> tuple[str, ...]:
     """Return the classes of a series, the usual class first; () if the standard has only one."""
-    if series in UNIFIED:
-        return CLASSES["unified"][inside]
-    if series in {Series.M, Series.MF}:
-        return CLASSES["metric"][inside]
-    return CLASSES[series.value][inside] if series.value in CLASSES else ()
+    if series in UNIFIED_SERIES:
+        return TOLERANCE_CLASSES["unified"][is_inside]
+    if series in {ThreadSeries.M, ThreadSeries.MF}:
+        return TOLERANCE_CLASSES["metric"][is_inside]
+    return TOLERANCE_CLASSES[series.value][is_inside] if series.value in TOLERANCE_CLASSES else ()
 
 
-def angle_of(series: Series) -> float | None:
+def get_flank_angle(series: ThreadSeries) -> float | None:
     """Return the included angle of the flanks in degrees; None if the series does not specify it."""
-    if series is Series.OWN:
+    if series is ThreadSeries.CUSTOM:
         return None
-    return 29.0 if series is Series.ACME else 55.0 if series in {Series.BSP, Series.BSPT} else 60.0
+    return (
+        29.0
+        if series is ThreadSeries.ACME
+        else 55.0
+        if series in {ThreadSeries.BSP, ThreadSeries.BSPT}
+        else 60.0
+    )
 
 
-def limits(series: Series, size: ThreadSize, tolerance: str, *, inside: bool, nose: float = 0.0) -> Limits:
+def calculate_limits(
+    series: ThreadSeries, size: ThreadSize, tolerance_class: str, *, is_inside: bool, nose_radius: float = 0.0
+) -> ThreadLimits:
     """Return the limits of a thread.
 
     ``nose`` is the tip radius of the tool in the unit of the series; 0 means the standard profile.
     """
-    if series in UNIFIED:
-        return _unified(series, size, tolerance, nose, inside=inside)
-    if series in {Series.M, Series.MF}:
-        return _metric(size, tolerance, nose, inside=inside)
-    if series is Series.ACME:
-        return _acme(size, tolerance, inside=inside)
-    if series in TAPERED:
-        return _pipe(series, size, nose, inside=inside)
-    return _parallel_pipe(size, tolerance, nose, inside=inside)
+    if series in UNIFIED_SERIES:
+        return _unified(series, size, tolerance_class, nose_radius, inside=is_inside)
+    if series in {ThreadSeries.M, ThreadSeries.MF}:
+        return _metric(size, tolerance_class, nose_radius, inside=is_inside)
+    if series is ThreadSeries.ACME:
+        return _acme(size, tolerance_class, is_inside=is_inside)
+    if series in TAPERED_SERIES:
+        return _pipe(series, size, nose_radius, is_inside=is_inside)
+    return _parallel_pipe(size, tolerance_class, nose_radius, is_inside=is_inside)
 
 
 def _middle(pair: tuple[float, float]) -> float:
     return (pair[0] + pair[1]) / 2.0
 
 
-def _v_root(pitch_diameter: float, pitch: float, nose: float, *, inside: bool) -> float:
+def _v_root(pitch_diameter: float, pitch: float, nose: float, *, is_inside: bool) -> float:
     """Return the final diameter of a tip with radius ``nose``: half the sharp V, minus the tip truncation.
 
     A nose of 0 means the standard profile: H/6 outside (rounded root), and inside a flat of P/8, which
     truncates H/8.
     """
-    high = V60 * pitch
-    lack = nose or high / (8.0 if inside else 6.0)
+    high = V60_HEIGHT_FACTOR * pitch
+    lack = nose or high / (8.0 if is_inside else 6.0)
     far = high - 2.0 * lack
-    return pitch_diameter + far if inside else pitch_diameter - far
+    return pitch_diameter + far if is_inside else pitch_diameter - far
 
 
 # --- ASME B1.1
@@ -247,27 +255,29 @@ def _printed(value: float) -> float:
     return math.floor(value * 10_000.0 + 0.5 + 1e-9) / 10_000.0
 
 
-def _unified(series: Series, size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+def _unified(
+    series: ThreadSeries, size: ThreadSize, tolerance: str, nose: float, *, inside: bool
+) -> ThreadLimits:
     d, p = size.diameter, size.pitch
     grade = int(tolerance[0])
-    engaged = 9.0 * p if series is Series.UNEF else d
+    engaged = 9.0 * p if series is ThreadSeries.UNEF else d
     pitch_2a = round(0.0015 * d ** (1 / 3) + 0.0015 * math.sqrt(engaged) + 0.015 * p ** (2 / 3), 6)
-    basic_pitch, basic_minor = _printed(d - 0.75 * V60 * p), d - 1.25 * V60 * p
+    basic_pitch, basic_minor = _printed(d - 0.75 * V60_HEIGHT_FACTOR * p), d - 1.25 * V60_HEIGHT_FACTOR * p
     if inside:
         wide = _printed({1: 1.95, 2: 1.3, 3: 0.975}[grade] * pitch_2a)
         pitch = basic_pitch, basic_pitch + wide
         minor = basic_minor, basic_minor + _minor_tolerance(d, p, grade)
-        return Limits(
-            (d, math.inf), pitch, minor, _middle(minor), _v_root(_middle(pitch), p, nose, inside=True)
+        return ThreadLimits(
+            (d, math.inf), pitch, minor, _middle(minor), _v_root(_middle(pitch), p, nose, is_inside=True)
         )
     allowance = _printed(0.3 * pitch_2a) if grade < 3 else 0.0
     wide = _printed({1: 1.5, 2: 1.0, 3: 0.75}[grade] * pitch_2a)
     major_wide = _printed((0.09 if grade == 1 else 0.06) * p ** (2 / 3))
     major = d - allowance - major_wide, d - allowance
     pitch = basic_pitch - allowance - wide, basic_pitch - allowance
-    root = _v_root(_middle(pitch), p, nose, inside=False)
-    deepest = d - allowance - 17.0 / 12.0 * V60 * p  # UNR, reference value
-    return Limits(major, pitch, (-math.inf, deepest), _middle(major), root)
+    root = _v_root(_middle(pitch), p, nose, is_inside=False)
+    deepest = d - allowance - 17.0 / 12.0 * V60_HEIGHT_FACTOR * p  # UNR, reference value
+    return ThreadLimits(major, pitch, (-math.inf, deepest), _middle(major), root)
 
 
 def _minor_tolerance(d: float, p: float, grade: int) -> float:
@@ -319,7 +329,7 @@ def _preferred(value: float, *, up: bool = False) -> float:
     return min(numbers, key=lambda n: (abs(n - value), -n))
 
 
-def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> ThreadLimits:
     d, p = size.diameter, size.pitch
     grade, place = int(tolerance[0]), tolerance[1]
     low = max(step for step in _STEPS if step < d)
@@ -327,21 +337,23 @@ def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> L
     pitch_6 = _PITCH_6.get((p, low)) or _preferred(90.0 * p**0.4 * mean**0.1)
     away = _PLACE_G.get(p, round(15.0 + 11.0 * p)) / 1000.0
     shift = {"g": -away, "G": away}.get(place, 0.0)
-    basic_pitch, basic_minor = d - 0.75 * V60 * p, d - 1.25 * V60 * p
+    basic_pitch, basic_minor = d - 0.75 * V60_HEIGHT_FACTOR * p, d - 1.25 * V60_HEIGHT_FACTOR * p
     if inside:
         wide = _preferred(_preferred(1.32 * pitch_6, up=True) * _GRADES[grade]) / 1000.0
         minor_wide = _preferred(_MINOR_6.get(p, 230.0 * p**0.7) * _GRADES[grade]) / 1000.0
         pitch = basic_pitch + shift, basic_pitch + shift + wide
         minor = basic_minor + shift, basic_minor + shift + minor_wide
-        root = _v_root(_middle(pitch), p, nose, inside=True)
-        return Limits((d + shift, math.inf), pitch, minor, _middle(minor), root)
+        root = _v_root(_middle(pitch), p, nose, is_inside=True)
+        return ThreadLimits((d + shift, math.inf), pitch, minor, _middle(minor), root)
     wide = _preferred(pitch_6 * _GRADES[grade]) / 1000.0
     major_6 = _MAJOR_6.get(p) or _preferred(180.0 * p ** (2 / 3) - 3.15 / math.sqrt(p))
     major_wide = _preferred(major_6 * {4: 0.63, 6: 1.0, 8: 1.6}[grade]) / 1000.0
     major = d + shift - major_wide, d + shift
     pitch = basic_pitch + shift - wide, basic_pitch + shift
-    root = _v_root(_middle(pitch), p, nose, inside=False)
-    return Limits(major, pitch, (-math.inf, d + shift - 1.25 * V60 * p), _middle(major), root)
+    root = _v_root(_middle(pitch), p, nose, is_inside=False)
+    return ThreadLimits(
+        major, pitch, (-math.inf, d + shift - 1.25 * V60_HEIGHT_FACTOR * p), _middle(major), root
+    )
 
 
 # --- Pipe threads, ACME
@@ -352,61 +364,61 @@ _PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
 """ISO 228-1, mm, by turns an inch: pitch diameter inside and of class A (B: twice), minor diameter inside."""
 
 
-def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: bool) -> ThreadLimits:
     """Return the limits of a parallel pipe thread of ISO 228-1, which has one class inside."""
     d, p, turns = size.diameter, size.pitch, round(25.4 / size.pitch)
     wide, basic_pitch, basic_minor = _PIPE_PITCH[turns], d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p
-    if inside:
+    if is_inside:
         pitch = basic_pitch, basic_pitch + wide
         minor = basic_minor, basic_minor + _PIPE_MINOR[turns]
-        root = _pipe_root(_middle(pitch), p, 55.0, nose, inside=True)
-        return Limits((d, math.inf), pitch, minor, _middle(minor), root, 55.0)
+        root = _pipe_root(_middle(pitch), p, 55.0, nose, is_inside=True)
+        return ThreadLimits((d, math.inf), pitch, minor, _middle(minor), root, 55.0)
     pitch, major = (
         (basic_pitch - (wide if tolerance == "A" else 2.0 * wide), basic_pitch),
         (d - 2.0 * wide, d),
     )
-    root = _pipe_root(_middle(pitch), p, 55.0, nose, inside=False)
-    return Limits(major, pitch, (-math.inf, basic_minor), _middle(major), root, 55.0)
+    root = _pipe_root(_middle(pitch), p, 55.0, nose, is_inside=False)
+    return ThreadLimits(major, pitch, (-math.inf, basic_minor), _middle(major), root, 55.0)
 
 
-def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, inside: bool) -> float:
+def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, is_inside: bool) -> float:
     """Return the final diameter of a tip with radius ``nose``; 0 means the standard profile."""
     if nose:
-        sharp = _V55 if angle == 55.0 else V60
+        sharp = _V55 if angle == 55.0 else V60_HEIGHT_FACTOR
         high = sharp * pitch - 2.0 * nose * (1.0 / math.sin(math.radians(angle / 2.0)) - 1.0)
     else:
         high = (_WHITWORTH if angle == 55.0 else _PIPE_HEIGHT) * pitch
-    return pitch_diameter + high if inside else pitch_diameter - high
+    return pitch_diameter + high if is_inside else pitch_diameter - high
 
 
-def _pipe(series: Series, size: ThreadSize, nose: float, *, inside: bool) -> Limits:
+def _pipe(series: ThreadSeries, size: ThreadSize, nose: float, *, is_inside: bool) -> ThreadLimits:
     """Return the limits at the small end outside, or at the mouth inside, which is the large end."""
     d, p = size.diameter, size.pitch
-    if series is Series.NPT:
+    if series is ThreadSeries.NPT:
         small = d - (0.05 * d + 1.1) * p  # =
         high, angle = _PIPE_HEIGHT, 60.0
     else:
-        small = d - size.gauge * _TAPER - _WHITWORTH * p
+        small = d - size.gauge_length * _TAPER - _WHITWORTH * p
         high, angle = _WHITWORTH, 55.0
-    pitch = small + size.gauge * _TAPER if inside else small
+    pitch = small + size.gauge_length * _TAPER if is_inside else small
     outer, inner = pitch + high * p, pitch - high * p
-    crest = inner if inside else outer
-    root = _pipe_root(pitch, p, angle, nose, inside=inside)
-    return Limits((outer, outer), (pitch, pitch), (inner, inner), crest, root, angle)
+    crest = inner if is_inside else outer
+    root = _pipe_root(pitch, p, angle, nose, is_inside=is_inside)
+    return ThreadLimits((outer, outer), (pitch, pitch), (inner, inner), crest, root, angle)
 
 
-def pipe_length(series: Series, size: ThreadSize) -> float:
+def get_pipe_thread_length(series: ThreadSeries, size: ThreadSize) -> float:
     """Return the length of the full thread of a tapered pipe thread; 0 if it must be specified.
 
     The source is L2 of B1.20.1, or the gauge length and fitting allowance of ISO 7-1.
     """
-    if series is Series.NPT:
+    if series is ThreadSeries.NPT:
         return (0.8 * size.diameter + 6.8) * size.pitch
     turns = 2.75 if size.diameter < 50.0 else 3.25
-    return size.gauge + turns * size.pitch if series is Series.BSPT else 0.0
+    return size.gauge_length + turns * size.pitch if series is ThreadSeries.BSPT else 0.0
 
 
-def _acme(size: ThreadSize, tolerance: str, *, inside: bool) -> Limits:
+def _acme(size: ThreadSize, tolerance: str, *, is_inside: bool) -> ThreadLimits:
     """Return the limits of an ACME thread by B1.5, general purpose.
 
     The height is P/2 with a clearance of .010 in at the root, or .005 in above 10 threads per inch.
@@ -417,18 +429,22 @@ def _acme(size: ThreadSize, tolerance: str, *, inside: bool) -> Limits:
     allowance = {"2": 0.008, "3": 0.006, "4": 0.004}[grade] * math.sqrt(d)
     wide = {"2": 1.0, "3": 7.0 / 15.0, "4": 1.0 / 3.0}[grade] * (0.030 * math.sqrt(p) + 0.006 * math.sqrt(d))
     basic_pitch, basic_minor = d - p / 2.0, d - p
-    if inside:
+    if is_inside:
         pitch = basic_pitch, basic_pitch + wide
         minor = basic_minor, basic_minor + max(0.05 * p, 0.005)
-        return Limits((d + clear, math.inf), pitch, minor, _middle(minor), d + clear + 0.5 * wide, 29.0)
+        return ThreadLimits((d + clear, math.inf), pitch, minor, _middle(minor), d + clear + 0.5 * wide, 29.0)
     pitch = basic_pitch - allowance - wide, basic_pitch - allowance
     major = d - max(0.05 * p, 0.005), d
     deepest = basic_minor - clear
-    return Limits(major, pitch, (-math.inf, deepest), _middle(major), deepest - 0.5 * wide, 29.0)
+    return ThreadLimits(major, pitch, (-math.inf, deepest), _middle(major), deepest - 0.5 * wide, 29.0)
 
 
-def in_unit(value: float, series: Series, *, metric: bool) -> float:
+def convert_length(value: float, series: ThreadSeries, *, metric: bool) -> float:
     """Return a length of a series in the unit of a program."""
     return value * (
-        1.0 / 25.4 if series in METRIC and not metric else 25.4 if metric and series not in METRIC else 1.0
+        1.0 / 25.4
+        if series in METRIC_SERIES and not metric
+        else 25.4
+        if metric and series not in METRIC_SERIES
+        else 1.0
     )

@@ -5,21 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from core.extras.shapes.cutting_data import Work, rpm
-from core.extras.shapes.shape import Filled
-from core.extras.shapes.shape_fields import Proposal, Refusal, Setting, Value, Values, number, text
-from core.extras.shapes.threads.thread_series import (
-    TAPERED,
-    Limits,
-    Series,
-    angle_of,
-    classes,
-    in_unit,
-    limits,
-    pipe_length,
-    size_of,
+from core.extras.shapes.common_fields import check_rpm
+from core.extras.shapes.cutting_data import Operation, rpm
+from core.extras.shapes.editor_shape import FilledShape
+from core.extras.shapes.shape_fields import (
+    FieldError,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ValueProposal,
+    number,
+    text,
 )
-from core.extras.shapes.usual_fields import too_fast
+from core.extras.shapes.threads.thread_series import (
+    TAPERED_SERIES,
+    ThreadLimits,
+    ThreadSeries,
+    calculate_limits,
+    convert_length,
+    find_size,
+    get_flank_angle,
+    get_pipe_thread_length,
+    list_classes,
+)
 from core.language.source import Dialect
 from core.message import Message
 from core.part.tool_shape import ToolKind
@@ -32,133 +40,139 @@ _TURNS_BEFORE = 3.0  # revolutions of run-up if the acceleration of the axis is 
 _TAPER = 1.0 / 16.0
 
 
-def series_of(values: Values) -> Series:
+def get_series(values: FieldValues) -> ThreadSeries:
     """Return the chosen series."""
-    return Series(text(values, "SERIES") or Series.OWN)
+    return ThreadSeries(text(values, "SERIES") or ThreadSeries.CUSTOM)
 
 
-def limits_of(values: Values, setting: Setting) -> Limits | None:
+def find_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits | None:
     """Return the limits by series, size and class in the unit of the series; None if they are unknown."""
-    series, inside = series_of(values), text(values, "SIDE") == INSIDE
-    found = size_of(series, text(values, "SIZE"))
+    series, inside = get_series(values), text(values, "SIDE") == INSIDE
+    found = find_size(series, text(values, "SIZE"))
     if found is None:
         return None
-    shape = setting.tool(number(values, "T"))
-    nose = shape.nose_radius / in_unit(1.0, series, metric=True) if shape is not None else 0.0
-    allowed = classes(series, inside=inside)
+    shape = settings.tool(number(values, "T"))
+    nose = shape.nose_radius / convert_length(1.0, series, metric=True) if shape is not None else 0.0
+    allowed = list_classes(series, is_inside=inside)
     chosen = text(values, "CLASS")
     if allowed and chosen not in allowed:
         return None
-    return limits(series, found, chosen, inside=inside, nose=nose)
+    return calculate_limits(series, found, chosen, is_inside=inside, nose_radius=nose)
 
 
-def from_limits(of: str) -> Proposal:
-    """Return a proposal for a diameter of the standard; ``of`` is crest or root."""
+def propose_diameter(limit_name: str) -> ValueProposal:
+    """Return a proposal for a diameter of the standard; ``limit_name`` is crest or root."""
 
-    def proposed(values: Values, setting: Setting) -> Value | None:
-        known = limits_of(values, setting)
+    def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+        known = find_limits(values, setting)
         if known is None:
             return None
-        value = known.crest if of == "crest" else known.root
-        return round(in_unit(value, series_of(values), metric=setting.metric), 4 if not setting.metric else 3)
+        value = known.crest_diameter if limit_name == "crest" else known.root_diameter
+        return round(
+            convert_length(value, get_series(values), metric=setting.metric), 4 if not setting.metric else 3
+        )
 
     return proposed
 
 
-def proposed_pitch(values: Values, setting: Setting) -> Value | None:
+def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the pitch of the thread size."""
-    series = series_of(values)
-    found = size_of(series, text(values, "SIZE"))
+    series = get_series(values)
+    found = find_size(series, text(values, "SIZE"))
     if found is None:
         return None
-    return round(in_unit(found.pitch, series, metric=setting.metric), 6)
+    return round(convert_length(found.pitch, series, metric=settings.metric), 6)
 
 
-def proposed_class(values: Values, _setting: Setting) -> Value | None:
+def propose_class(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
     """Propose the usual class of the series."""
-    allowed = classes(series_of(values), inside=text(values, "SIDE") == INSIDE)
+    allowed = list_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
     return allowed[0] if allowed else ""
 
 
-def class_choices(values: Values) -> tuple[str, ...]:
+def list_classes_for_side(values: FieldValues) -> tuple[str, ...]:
     """Return the classes of this series for the chosen side."""
-    return classes(series_of(values), inside=text(values, "SIDE") == INSIDE)
+    return list_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
 
 
-def is_named(values: Values) -> bool:
+def has_standard_series(values: FieldValues) -> bool:
     """Return whether the thread has a standard series and therefore a size."""
-    return series_of(values) is not Series.OWN
+    return get_series(values) is not ThreadSeries.CUSTOM
 
 
-def proposed_taper(values: Values, _setting: Setting) -> Value | None:
+def propose_taper(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
     """Propose the taper of the series."""
-    return _TAPER if series_of(values) in TAPERED else 0.0
+    return _TAPER if get_series(values) in TAPERED_SERIES else 0.0
 
 
-def proposed_length(values: Values, setting: Setting) -> Value | None:
+def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the length of a pipe thread."""
-    series = series_of(values)
-    found = size_of(series, text(values, "SIZE"))
-    long = pipe_length(series, found) if found is not None else 0.0
-    return round(in_unit(long, series, metric=setting.metric), 3) if long else None
+    series = get_series(values)
+    found = find_size(series, text(values, "SIZE"))
+    long = get_pipe_thread_length(series, found) if found is not None else 0.0
+    return round(convert_length(long, series, metric=settings.metric), 3) if long else None
 
 
-def proposed_passes(values: Values, setting: Setting) -> Value | None:
+def propose_passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the number of passes by pitch, from 4 for the finest to 16 for the coarsest.
 
     Insert makers recommend these numbers.
     """
-    pitch = number(values, "PITCH") * setting.mm / 25.4
+    pitch = number(values, "PITCH") * settings.mm / 25.4
     return float(min(16, max(4, round(4 + 80 * pitch)))) if pitch else None
 
 
-def flank_angle(values: Values, setting: Setting) -> float:
+def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
     """Return the included angle of the flanks from the series, from the tool data, or 60 degrees."""
-    shape = setting.tool(number(values, "T"))
+    shape = settings.tool(number(values, "T"))
     point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
-    return angle_of(series_of(values)) or point or 60.0
+    return get_flank_angle(get_series(values)) or point or 60.0
 
 
-def proposed_infeed(values: Values, setting: Setting) -> Value | None:
+def propose_infeed(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose an infeed angle at least half a degree less than the flank: 29 for 60°, as in the control."""
-    return math.ceil(flank_angle(values, setting) / 2.0) - 1.0
+    return math.ceil(find_flank_angle(values, settings) / 2.0) - 1.0
 
 
-def proposed_rpm(values: Values, setting: Setting) -> Value | None:
+def propose_threading_rpm(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose a speed that the axis can follow."""
     lead = number(values, "PITCH") * number(values, "STARTS")
     across = number(values, "CREST")
     if not lead or not across:
         return None
-    most = min(rpm(Work.THREAD, across, setting), _MOST_RPM)
-    fastest = 60.0 * 25.4 / setting.mm / lead  # in/min that the axis reaches in a short run-up
+    most = min(rpm(Operation.THREAD, across, settings), _MOST_RPM)
+    fastest = 60.0 * 25.4 / settings.mm / lead  # in/min that the axis reaches in a short run-up
     return max(10.0, 10.0 * math.floor(min(most, fastest) / 10.0))
 
 
-def proposed_run_up(values: Values, setting: Setting) -> Value | None:
+def propose_run_up(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the distance that the axis needs to reach the lead, at least two pitches."""
     lead, turns = number(values, "PITCH") * number(values, "STARTS"), number(values, "RPM")
     if not lead or not turns:
         return None
-    accel = setting.shop.slide_accel / setting.mm
+    accel = settings.shop.max_acceleration / settings.mm
     needed = (lead * turns / 60.0) ** 2 / accel if accel else _TURNS_BEFORE * lead
-    return round(max(needed, 2.0 * number(values, "PITCH"), setting.near), 2 if not setting.metric else 1)
+    return round(max(needed, 2.0 * number(values, "PITCH"), settings.near), 2 if not settings.metric else 1)
 
 
-def filled_depth(filled: Filled) -> float:
+def calculate_thread_depth(filled_shape: FilledShape) -> float:
     """Return the depth of the thread per side."""
-    return abs(filled.n("CREST") - filled.n("ROOT")) / 2.0
+    return abs(filled_shape.get_number("CREST") - filled_shape.get_number("ROOT")) / 2.0
 
 
-COARSE = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G35 and with G35F2
+G35_LEAD_LIMITS_IN = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G35 and with G35F2
 
 
-def thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield the errors of a thread: its dimensions, the machine's limits and the tool."""
-    inside = filled.t("SIDE") == INSIDE
-    crest, root, pitch = filled.n("CREST"), filled.n("ROOT"), filled.n("PITCH")
+    inside = filled_shape.get_text("SIDE") == INSIDE
+    crest, root, pitch = (
+        filled_shape.get_number("CREST"),
+        filled_shape.get_number("ROOT"),
+        filled_shape.get_number("PITCH"),
+    )
     if inside and root <= crest:
-        yield Refusal(
+        yield FieldError(
             "ROOT",
             Message(
                 "An internal thread is cut outward, so the diameter at the last pass, {root}, "
@@ -168,7 +182,7 @@ def thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             ),
         )
     if not inside and root >= crest:
-        yield Refusal(
+        yield FieldError(
             "ROOT",
             Message(
                 "An external thread is cut inward, so the diameter at the last pass, {root}, "
@@ -177,36 +191,36 @@ def thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                 crest=f"{crest:g}",
             ),
         )
-    sharp = pitch / 2.0 / math.tan(math.radians(flank_angle(filled.values, setting) / 2.0))
-    if filled_depth(filled) > 1.02 * sharp:
-        yield Refusal(
+    sharp = pitch / 2.0 / math.tan(math.radians(find_flank_angle(filled_shape.values, settings) / 2.0))
+    if calculate_thread_depth(filled_shape) > 1.02 * sharp:
+        yield FieldError(
             "ROOT",
             Message(
                 "The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a "
                 "depth of {sharp}. Check both diameters.",
-                filled=f"{filled_depth(filled):.4f}",
+                filled=f"{calculate_thread_depth(filled_shape):.4f}",
                 pitch=f"{pitch:.5g}",
                 sharp=f"{sharp:.4f}",
             ),
         )
-    if setting.dialect is Dialect.OMNITURN:
-        yield from _lead_checks(filled, setting)
-    pulls = filled.t("PULL") == YES or filled.shape.field("RELIEF") is None
+    if settings.dialect is Dialect.OMNITURN:
+        yield from _lead_checks(filled_shape, settings)
+    pulls = filled_shape.get_text("PULL") == YES or filled_shape.shape.find_field("RELIEF") is None
     if not pulls:
-        yield from _relief(filled)
-    yield from _flank_checks(filled, setting)
-    yield from _by_sheet(filled, setting)
-    yield from too_fast(filled, setting)
+        yield from _relief(filled_shape)
+    yield from _flank_checks(filled_shape, settings)
+    yield from _by_sheet(filled_shape, settings)
+    yield from check_rpm(filled_shape, settings)
 
 
-def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def _flank_checks(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the infeed is flatter than the flank.
 
     Passes would then cut into the flank that the previous pass has left.
     """
-    angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
+    angle, flank = filled_shape.get_number("INFEED"), find_flank_angle(filled_shape.values, settings) / 2.0
     if angle > flank + 1e-9:
-        yield Refusal(
+        yield FieldError(
             "INFEED",
             Message(
                 "An infeed angle of {angle}° is more than the flank angle of {flank}°, so the "
@@ -218,47 +232,47 @@ def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         )
 
 
-def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    lead = filled.n("PITCH") * filled.n("STARTS")
+def _lead_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    lead = filled.get_number("PITCH") * filled.get_number("STARTS")
     inch = lead * setting.mm / 25.4
-    if inch > COARSE[2]:
-        yield Refusal(
+    if inch > G35_LEAD_LIMITS_IN[2]:
+        yield FieldError(
             "PITCH",
             Message(
                 "A lead of {lead} is more than the maximum that the control can cut, {coarse}.",
                 lead=f"{lead:g}",
-                coarse=f"{COARSE[2] / setting.mm * 25.4:g}",
+                coarse=f"{G35_LEAD_LIMITS_IN[2] / setting.mm * 25.4:g}",
             ),
         )
-    speed = inch * filled.n("RPM")
+    speed = inch * filled.get_number("RPM")
     if speed > 300.0:
         slow = math.floor(300.0 / inch)
-        yield Refusal(
+        yield FieldError(
             "RPM",
             Message(
                 "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
                 "enter S{slow} or less.",
-                number=f"{filled.n('RPM'):g}",
+                number=f"{filled.get_number('RPM'):g}",
                 speed=f"{speed:.0f}",
                 slow=slow,
             ),
         )
 
 
-def _relief(filled: Filled) -> Iterator[Refusal]:
+def _relief(filled_shape: FilledShape) -> Iterator[FieldError]:
     """Yield an error if a pass that ends without pulling out has no relief groove."""
-    lead = filled.n("PITCH") * filled.n("STARTS")
-    relief = filled.n("RELIEF")
+    lead = filled_shape.get_number("PITCH") * filled_shape.get_number("STARTS")
+    relief = filled_shape.get_number("RELIEF")
     if relief <= 0.0:
         text_ = (
             "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, "
             "or set pull-out to YES."
         )
-        if filled.t("PULL") != NO:  # a language without pull-out
+        if filled_shape.get_text("PULL") != NO:  # a language without pull-out
             text_ = "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width."
-        yield Refusal("RELIEF", text_)
+        yield FieldError("RELIEF", text_)
     elif relief < 1.5 * lead:
-        yield Refusal(
+        yield FieldError(
             "RELIEF",
             Message(
                 "A relief width of {relief} is less than {lead}, which is 1.5 times the lead.",
@@ -268,11 +282,11 @@ def _relief(filled: Filled) -> Iterator[Refusal]:
         )
 
 
-def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
+def _by_sheet(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+    shape, name = setting.tool(filled.get_number("T")), f"T{filled.get_number('T'):.0f}"
     if shape is None:
         return
-    angle = flank_angle(filled.values, setting)
+    angle = find_flank_angle(filled.values, setting)
     if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - angle) > 0.5:
         words = Message(
             "{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.",
@@ -280,34 +294,40 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             point=f"{shape.point:g}",
             angle=f"{angle:g}",
         )
-        yield Refusal("T", words)
-    if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
-        yield Refusal(
+        yield FieldError("T", words)
+    if shape.pitch and abs(shape.pitch / setting.mm - filled.get_number("PITCH")) > 0.02 * filled.get_number(
+        "PITCH"
+    ):
+        yield FieldError(
             "T",
             Message(
                 "{name} is made for a pitch of {pitch}, not {needed}: use another insert.",
                 name=name,
                 pitch=f"{shape.pitch / setting.mm:.5g}",
-                needed=f"{filled.n('PITCH'):.5g}",
+                needed=f"{filled.get_number('PITCH'):.5g}",
             ),
         )
-    if filled.t("SIDE") == INSIDE and shape.diameter and shape.diameter / setting.mm > filled.n("CREST"):
-        yield Refusal(
+    if (
+        filled.get_text("SIDE") == INSIDE
+        and shape.diameter
+        and shape.diameter / setting.mm > filled.get_number("CREST")
+    ):
+        yield FieldError(
             "T",
             Message(
                 "The bar of {name} does not fit into a bore of {number}.",
                 name=name,
-                number=f"{filled.n('CREST'):g}",
+                number=f"{filled.get_number('CREST'):g}",
             ),
         )
 
 
-def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
+def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the series does not have this size or class; no values are then proposed."""
-    series, allowed = series_of(filled.values), class_choices(filled.values)
-    size, tolerance = filled.t("SIZE"), filled.t("CLASS")
-    if series is not Series.OWN and size and size_of(series, size) is None:
-        yield Refusal(
+    series, allowed = get_series(filled_shape.values), list_classes_for_side(filled_shape.values)
+    size, tolerance = filled_shape.get_text("SIZE"), filled_shape.get_text("CLASS")
+    if series is not ThreadSeries.CUSTOM and size and find_size(series, size) is None:
+        yield FieldError(
             "SIZE",
             Message(
                 "{series} does not include size {size}: choose a size with the arrows.",
@@ -315,8 +335,8 @@ def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
                 size=size,
             ),
         )
-    elif filled.shape.field("CLASS") is not None and allowed and tolerance not in allowed:
-        yield Refusal(
+    elif filled_shape.shape.find_field("CLASS") is not None and allowed and tolerance not in allowed:
+        yield FieldError(
             "CLASS",
             Message(
                 "CLASS {tolerance} is not valid: choose one of {allowed}.",
@@ -326,11 +346,11 @@ def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
         )
 
 
-def coarse_step(filled: Filled, setting: Setting) -> float:
+def find_coarse_step(filled_shape: FilledShape, settings: ProgramSettings) -> float:
     """Return the step of the axis under the G35 or G35F2 that a lead requires, or 0.
 
     The step is in the unit of the program.
     """
-    lead = filled.n("PITCH") * max(1.0, filled.n("STARTS")) * setting.mm / 25.4
-    inch = 0.0 if lead <= COARSE[0] else 0.00025 if lead <= COARSE[1] else 0.0005
-    return inch * 25.4 / setting.mm
+    lead = filled_shape.get_number("PITCH") * max(1.0, filled_shape.get_number("STARTS")) * settings.mm / 25.4
+    inch = 0.0 if lead <= G35_LEAD_LIMITS_IN[0] else 0.00025 if lead <= G35_LEAD_LIMITS_IN[1] else 0.0005
+    return inch * 25.4 / settings.mm

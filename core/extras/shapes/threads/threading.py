@@ -6,145 +6,189 @@ import math
 from dataclasses import replace
 from functools import partial
 
-from core.extras.shapes.lines.code_lines import Code, figure, plain, rounded_up
-from core.extras.shapes.shape import Filled, Shape
-from core.extras.shapes.shape_fields import Field, Kind, Setting, text
-from core.extras.shapes.threads.thread_series import TAPERED, Series, classes, in_unit
+from core.extras.shapes.common_fields import MAX_RPM, make_tool_field
+from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.lines.code_lines import (
+    CodeWriter,
+    format_short_number,
+    format_sinumerik_number,
+    round_depth_up,
+)
+from core.extras.shapes.shape_fields import FieldKind, ProgramSettings, ShapeField, text
+from core.extras.shapes.threads.thread_series import (
+    TAPERED_SERIES,
+    ThreadSeries,
+    convert_length,
+    list_classes,
+)
 from core.extras.shapes.threads.thread_values import (
-    COARSE,
+    G35_LEAD_LIMITS_IN,
     INSIDE,
     LEFT,
     NO,
     OUTSIDE,
     RIGHT,
     YES,
-    class_choices,
-    coarse_step,
-    filled_depth,
-    from_limits,
-    is_named,
-    limits_of,
-    proposed_class,
-    proposed_infeed,
-    proposed_length,
-    proposed_passes,
-    proposed_pitch,
-    proposed_rpm,
-    proposed_run_up,
-    proposed_taper,
-    series_of,
-    thread_checks,
-    unknown_name,
+    calculate_thread_depth,
+    check_thread,
+    check_thread_name,
+    find_coarse_step,
+    find_limits,
+    get_series,
+    has_standard_series,
+    list_classes_for_side,
+    propose_class,
+    propose_diameter,
+    propose_infeed,
+    propose_length,
+    propose_passes,
+    propose_pitch,
+    propose_run_up,
+    propose_taper,
+    propose_threading_rpm,
 )
-from core.extras.shapes.usual_fields import MOST_RPM, tool_field
 from core.message import Message
 from core.part.tool_shape import ToolKind
-from core.sketch import Dim, Sketch, cut, part, sketch
+from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, make_sketch
 
 
-def first_depth(filled: Filled) -> float:
+def calculate_first_depth(filled_shape: FilledShape) -> float:
     """Return the depth of the first pass per side for a constant chip area: the depth divided by √N."""
-    return filled_depth(filled) / math.sqrt(max(1.0, filled.n("PASSES")))
+    return calculate_thread_depth(filled_shape) / math.sqrt(max(1.0, filled_shape.get_number("PASSES")))
 
 
-def first_word(filled: Filled, setting: Setting) -> float:
+def round_first_depth(filled_shape: FilledShape, settings: ProgramSettings) -> float:
     """Return the depth of the first pass, rounded up to the step of its word."""
-    deep, coarse = first_depth(filled), coarse_step(filled, setting)
-    return math.ceil(deep / coarse - 1e-6) * coarse if coarse else rounded_up(deep, metric=setting.metric)
+    deep, coarse = calculate_first_depth(filled_shape), find_coarse_step(filled_shape, settings)
+    return (
+        math.ceil(deep / coarse - 1e-6) * coarse if coarse else round_depth_up(deep, metric=settings.metric)
+    )
 
 
-def _cycle97(filled: Filled, _setting: Setting, code: Code) -> None:
+def _cycle97(filled_shape: FilledShape, _settings: ProgramSettings, code: CodeWriter) -> None:
     """Write a thread with CYCLE97, which stops at the end of the thread and therefore needs a relief."""
-    crest, far = filled.n("CREST"), _far(filled)
-    turns = "M04" if filled.t("HAND") == LEFT else "M03"
-    inside = filled.t("SIDE") == INSIDE
-    code.begin(filled.n("T"), filled.n("RPM"), 0.0 if inside else max(crest, far) / 2.0, None, turns)
-    code.rapid(z=filled.n("RUNUP") - filled.n("AT"))
-    write_cycle97(filled, code)
-    code.away()
+    crest, far = filled_shape.get_number("CREST"), _far(filled_shape)
+    turns = "M04" if filled_shape.get_text("HAND") == LEFT else "M03"
+    inside = filled_shape.get_text("SIDE") == INSIDE
+    code.write_tool_start(
+        filled_shape.get_number("T"),
+        filled_shape.get_number("RPM"),
+        0.0 if inside else max(crest, far) / 2.0,
+        None,
+        turns,
+    )
+    code.write_rapid(z=filled_shape.get_number("RUNUP") - filled_shape.get_number("AT"))
+    write_cycle97(filled_shape, code)
+    code.write_retract()
 
 
-def _far(filled: Filled) -> float:
+def _far(filled_shape: FilledShape) -> float:
     """Return the diameter before threading at the far end of a tapered thread."""
-    outwards = -1.0 if filled.t("SIDE") == INSIDE else 1.0
-    return filled.n("CREST") + outwards * filled.n("TAPER") * filled.n("LONG")
+    outwards = -1.0 if filled_shape.get_text("SIDE") == INSIDE else 1.0
+    return filled_shape.get_number("CREST") + outwards * filled_shape.get_number(
+        "TAPER"
+    ) * filled_shape.get_number("LONG")
 
 
-def write_cycle97(filled: Filled, code: Code) -> None:
+def write_cycle97(filled_shape: FilledShape, code: CodeWriter) -> None:
     """Write CYCLE97 with passes of equal chip area."""
-    starts = max(1.0, filled.n("STARTS"))
-    begin, end = -filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
-    ends = (begin, end, filled.n("CREST"), _far(filled), filled.n("RUNUP"), 0.0)
-    depth, angle, passes = filled_depth(filled), filled.n("INFEED"), math.ceil(filled.n("PASSES") - 1e-6)
-    kind = 4.0 if filled.t("SIDE") == INSIDE else 3.0
+    starts = max(1.0, filled_shape.get_number("STARTS"))
+    begin, end = (
+        -filled_shape.get_number("AT"),
+        -(filled_shape.get_number("AT") + filled_shape.get_number("LONG")),
+    )
+    ends = (
+        begin,
+        end,
+        filled_shape.get_number("CREST"),
+        _far(filled_shape),
+        filled_shape.get_number("RUNUP"),
+        0.0,
+    )
+    depth, angle, passes = (
+        calculate_thread_depth(filled_shape),
+        filled_shape.get_number("INFEED"),
+        math.ceil(filled_shape.get_number("PASSES") - 1e-6),
+    )
+    kind = 4.0 if filled_shape.get_text("SIDE") == INSIDE else 3.0
     figures = (*ends, depth, 0.0, angle, 0.0, passes, 0.0, kind, starts)
-    words = (figure(filled.n("PITCH") * starts, 6), "", *map(figure, figures))
+    words = (
+        format_sinumerik_number(filled_shape.get_number("PITCH") * starts, 6),
+        "",
+        *map(format_sinumerik_number, figures),
+    )
     code.write(f"CYCLE97({', '.join(words)})")
-    code.forget()
+    code.clear_modal_state()
 
 
-def _thread(filled: Filled, setting: Setting, code: Code) -> None:
-    inside = filled.t("SIDE") == INSIDE
+def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+    inside = filled.get_text("SIDE") == INSIDE
     outwards = -1.0 if inside else 1.0
-    near = partial(_on_step, step=coarse_step(filled, setting))
-    starts = max(1, int(filled.n("STARTS")))
-    lead, first = filled.n("PITCH") * starts, first_word(filled, setting)
-    begin, end = filled.n("RUNUP") - filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
-    taper = filled.n("TAPER") / 2.0  # taper of the radius
-    down = -outwards * taper * filled.n("RUNUP")  # radius change at the start of a pass
-    crest, root = filled.n("CREST") / 2.0 + down, filled.n("ROOT") / 2.0 + down
+    near = partial(_on_step, step=find_coarse_step(filled, setting))
+    starts = max(1, int(filled.get_number("STARTS")))
+    lead, first = filled.get_number("PITCH") * starts, round_first_depth(filled, setting)
+    begin, end = (
+        filled.get_number("RUNUP") - filled.get_number("AT"),
+        -(filled.get_number("AT") + filled.get_number("LONG")),
+    )
+    taper = filled.get_number("TAPER") / 2.0  # taper of the radius
+    down = -outwards * taper * filled.get_number("RUNUP")  # radius change at the start of a pass
+    crest, root = filled.get_number("CREST") / 2.0 + down, filled.get_number("ROOT") / 2.0 + down
     at, root, begin, end = near(crest - outwards * first), near(root), near(begin), near(end)
-    turns = "M04" if filled.t("HAND") == LEFT else "M03"
+    turns = "M04" if filled.get_text("HAND") == LEFT else "M03"
     clear = near(at + outwards * 3.0 * first)
-    code.begin(filled.n("T"), filled.n("RPM"), clear, begin, turns)
-    coarse = lead * setting.mm / 25.4 > COARSE[0]
+    code.write_tool_start(filled.get_number("T"), filled.get_number("RPM"), clear, begin, turns)
+    coarse = lead * setting.mm / 25.4 > G35_LEAD_LIMITS_IN[0]
     for k in range(starts):
-        start_z = near(begin + k * filled.n("PITCH"))
-        on_cone = -outwards * taper * k * filled.n("PITCH")  # the same cone, started farther away
-        code.rapid(near(at + on_cone), start_z if k else None)
+        start_z = near(begin + k * filled.get_number("PITCH"))
+        on_cone = -outwards * taper * k * filled.get_number("PITCH")  # the same cone, started farther away
+        code.write_rapid(near(at + on_cone), start_z if k else None)
         if coarse and k == 0:
-            f2 = "F2" if lead * setting.mm / 25.4 > COARSE[1] else ""
-            code.write(f"G35{f2}", f"G92{code.point(at, start_z)}")
-        words = f"G33{code.x(near(root + on_cone))}{code.z(end)}{code.x(first, 'I')}K{plain(lead, 6)}"
+            f2 = "F2" if lead * setting.mm / 25.4 > G35_LEAD_LIMITS_IN[1] else ""
+            code.write(f"G35{f2}", f"G92{code.format_point(at, start_z)}")
+        words = (
+            f"G33{code.format_x(near(root + on_cone))}{code.format_z(end)}"
+            f"{code.format_x(first, 'I')}K{format_short_number(lead, 6)}"
+        )
         if taper:
-            far = (begin + k * filled.n("PITCH") - end) * taper * outwards
-            words += code.x(far, "A")
-        words += "P" if filled.t("PULL") == YES else ""
+            far = (begin + k * filled.get_number("PITCH") - end) * taper * outwards
+            words += code.format_x(far, "A")
+        words += "P" if filled.get_text("PULL") == YES else ""
         words += (
             ""
-            if not filled.n("INFEED")
+            if not filled.get_number("INFEED")
             else "C"
-            if filled.n("INFEED") == 29.0
-            else f"C{plain(filled.n('INFEED'))}"
+            if filled.get_number("INFEED") == 29.0
+            else f"C{format_short_number(filled.get_number('INFEED'))}"
         )
         code.write(words)
     if coarse:
         if starts > 1:
-            code.rapid(z=begin)
-        code.write("G36", f"G92{code.point(at, begin)}")
-    code.forget()
-    code.rapid(clear)
-    code.away()
+            code.write_rapid(z=begin)
+        code.write("G36", f"G92{code.format_point(at, begin)}")
+    code.clear_modal_state()
+    code.write_rapid(clear)
+    code.write_retract()
 
 
-def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
+def _make_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
     """Return notes about the measured diameters, and about the cone to be cut before a tapered thread."""
-    known = limits_of(filled.values, setting)
+    known = find_limits(filled_shape.values, settings)
     if known is None:
         return ()
-    places = 3 if setting.metric else 4
-    unit = in_unit(1.0, series_of(filled.values), metric=setting.metric)
-    inside = filled.t("SIDE") == INSIDE
-    pairs = (known.minor if inside else known.major, known.pitch)
-    least, most, low, high = (plain(value * unit, places) for pair in pairs for value in pair)
-    if series_of(filled.values) in TAPERED:
-        far = plain(_far(filled), places)
+    places = 3 if settings.metric else 4
+    unit = convert_length(1.0, get_series(filled_shape.values), metric=settings.metric)
+    inside = filled_shape.get_text("SIDE") == INSIDE
+    pairs = (known.minor_diameter if inside else known.major_diameter, known.pitch_diameter)
+    least, most, low, high = (format_short_number(value * unit, places) for pair in pairs for value in pair)
+    if get_series(filled_shape.values) in TAPERED_SERIES:
+        far = format_short_number(_far(filled_shape), places)
         return (
             Message("pitch diameter {low} at the start of the thread", low=low),
             (
                 Message(
                     "taper before threading: diameter {number} at the start, {distance} at the end",
-                    number=plain(filled.n("CREST"), places),
+                    number=format_short_number(filled_shape.get_number("CREST"), places),
                     distance=far,
                 )
             ),
@@ -174,82 +218,106 @@ def _on_step(value: float, step: float) -> float:
     return round(value / step) * step if step else value
 
 
-def _sketch(filled: Filled) -> Sketch:
+def _sketch(filled: FilledShape) -> Sketch:
     teeth: list[tuple[float, float]] = [(0.0, 6.6)]
     for k in range(7):
         teeth += [(-1.0 - 2 * k, 8.0), (-2.0 - 2 * k, 6.6)]
     relief = (
         [(-14.0, 6.0), (-17.0, 6.0), (-17.0, 10.0)]
-        if filled.n("RELIEF")
+        if filled.get_number("RELIEF")
         else [(-14.6, 8.0), (-17, 8.0), (-17, 10)]
     )
-    inside = filled.t("SIDE") == INSIDE
+    inside = filled.get_text("SIDE") == INSIDE
     solid = (
-        part((0, 0), *teeth, *relief, (-24, 10), (-24, 0))
+        make_part_outline((0, 0), *teeth, *relief, (-24, 10), (-24, 0))
         if not inside
-        else part((0, 13), (0, 8), *((z, 14.6 - r) for z, r in teeth[1:]), (-15, 6.6), (-24, 6.6), (-24, 13))
+        else make_part_outline(
+            (0, 13), (0, 8), *((z, 14.6 - r) for z, r in teeth[1:]), (-15, 6.6), (-24, 6.6), (-24, 13)
+        )
     )
     crest, root = (6.6, 8.0) if inside else (8.0, 6.6)
-    return sketch(
+    return make_sketch(
         solid,
-        cut(*(teeth if not inside else [(z, 14.6 - r) for z, r in teeth])),
-        dims=(
-            Dim("CREST", (-5, -crest), (-5, crest)),
-            Dim("ROOT", (-10, -root), (-10, root)),
-            Dim("LONG", (-14, 13), (0, 13), 2),
-            Dim("RUNUP", (0, 13), (5, 13), 2),
-            Dim("PITCH", (-3, 9.6)),
-            Dim("SIZE", (-19, 4)),
-            *((Dim("RELIEF", (-15.5, 4.5)),) if filled.n("RELIEF") else ()),
+        make_cut_outline(*(teeth if not inside else [(z, 14.6 - r) for z, r in teeth])),
+        dimensions=(
+            Dimension("CREST", (-5, -crest), (-5, crest)),
+            Dimension("ROOT", (-10, -root), (-10, root)),
+            Dimension("LONG", (-14, 13), (0, 13), 2),
+            Dimension("RUNUP", (0, 13), (5, 13), 2),
+            Dimension("PITCH", (-3, 9.6)),
+            Dimension("SIZE", (-19, 4)),
+            *((Dimension("RELIEF", (-15.5, 4.5)),) if filled.get_number("RELIEF") else ()),
         ),
     )
 
 
 _ALL_CLASSES = tuple(
-    dict.fromkeys(c for s in Series for inside in (False, True) for c in classes(s, inside=inside))
+    dict.fromkeys(
+        c for s in ThreadSeries for inside in (False, True) for c in list_classes(s, is_inside=inside)
+    )
 )
 
-THREAD = Shape(
+THREAD_SHAPE = Shape(
     "THREAD",
     "a thread defined by series, size and class (UNC, UNF, M, NPT, BSP, ACME) or by custom dimensions",
     (
-        tool_field(ToolKind.THREADING),
-        Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
-        Field("SIZE", "SIZE", Kind.NAME, None, only=is_named),
-        Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
-        Field(
-            "CLASS", "CLASS", Kind.CHOICE, proposed_class, _ALL_CLASSES, only=lambda v: bool(class_choices(v))
+        make_tool_field(ToolKind.THREADING),
+        ShapeField(
+            "SERIES",
+            "SERIES",
+            FieldKind.CHOICE,
+            ThreadSeries.UNC.value,
+            tuple(each.value for each in ThreadSeries),
         ),
-        Field("LONG", "LENGTH", Kind.LENGTH, proposed_length),
-        Field("AT", "DISTANCE FROM Z0 TO START", Kind.LENGTH, 0.0, zero=True),
-        Field("PULL", "PULL OUT WHILE FEEDING", Kind.CHOICE, YES, (YES, NO)),
-        Field("RELIEF", "RELIEF WIDTH", Kind.LENGTH, 0.0, zero=True, only=lambda v: text(v, "PULL") == NO),
-        Field("PITCH", "PITCH", Kind.LENGTH, proposed_pitch),
-        Field("STARTS", "STARTS", Kind.COUNT, 1.0, most=24),
-        Field("HAND", "HAND", Kind.CHOICE, RIGHT, (RIGHT, LEFT)),
-        Field("CREST", "DIAMETER BEFORE THREADING", Kind.DIAMETER, from_limits("crest")),
-        Field("ROOT", "DIAMETER AT LAST PASS", Kind.DIAMETER, from_limits("root")),
-        Field("TAPER", "TAPER ON THE DIAMETER", Kind.RATIO, proposed_taper, zero=True, most=1.0),
-        Field("PASSES", "PASSES", Kind.COUNT, proposed_passes, most=60),
-        Field("INFEED", "INFEED ANGLE", Kind.ANGLE, proposed_infeed, most=30.0, zero=True),
-        Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, proposed_rpm, most=MOST_RPM),
-        Field("RUNUP", "RUN-UP", Kind.LENGTH, proposed_run_up),
+        ShapeField("SIZE", "SIZE", FieldKind.NAME, None, applies_to=has_standard_series),
+        ShapeField("SIDE", "SIDE", FieldKind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
+        ShapeField(
+            "CLASS",
+            "CLASS",
+            FieldKind.CHOICE,
+            propose_class,
+            _ALL_CLASSES,
+            applies_to=lambda v: bool(list_classes_for_side(v)),
+        ),
+        ShapeField("LONG", "LENGTH", FieldKind.LENGTH, propose_length),
+        ShapeField("AT", "DISTANCE FROM Z0 TO START", FieldKind.LENGTH, 0.0, allows_zero=True),
+        ShapeField("PULL", "PULL OUT WHILE FEEDING", FieldKind.CHOICE, YES, (YES, NO)),
+        ShapeField(
+            "RELIEF",
+            "RELIEF WIDTH",
+            FieldKind.LENGTH,
+            0.0,
+            allows_zero=True,
+            applies_to=lambda v: text(v, "PULL") == NO,
+        ),
+        ShapeField("PITCH", "PITCH", FieldKind.LENGTH, propose_pitch),
+        ShapeField("STARTS", "STARTS", FieldKind.COUNT, 1.0, maximum=24),
+        ShapeField("HAND", "HAND", FieldKind.CHOICE, RIGHT, (RIGHT, LEFT)),
+        ShapeField("CREST", "DIAMETER BEFORE THREADING", FieldKind.DIAMETER, propose_diameter("crest")),
+        ShapeField("ROOT", "DIAMETER AT LAST PASS", FieldKind.DIAMETER, propose_diameter("root")),
+        ShapeField(
+            "TAPER", "TAPER ON THE DIAMETER", FieldKind.RATIO, propose_taper, allows_zero=True, maximum=1.0
+        ),
+        ShapeField("PASSES", "PASSES", FieldKind.COUNT, propose_passes, maximum=60),
+        ShapeField("INFEED", "INFEED ANGLE", FieldKind.ANGLE, propose_infeed, maximum=30.0, allows_zero=True),
+        ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, propose_threading_rpm, maximum=MAX_RPM),
+        ShapeField("RUNUP", "RUN-UP", FieldKind.LENGTH, propose_run_up),
     ),
     _thread,
     _sketch,
-    thread_checks,
-    first=unknown_name,
-    says=_says,
+    check_thread,
+    first=check_thread_name,
+    says=_make_remarks,
 )
 
 
-def _of_cycle97(each: Field) -> Field:
-    return replace(each, only=lambda _values: True) if each.word == "RELIEF" else each
+def _of_cycle97(each: ShapeField) -> ShapeField:
+    return replace(each, applies_to=lambda _values: True) if each.word == "RELIEF" else each
 
 
-SINUMERIK_THREAD = replace(
-    THREAD,
+SINUMERIK_THREAD_SHAPE = replace(
+    THREAD_SHAPE,
     cut=_cycle97,
-    fields=tuple(_of_cycle97(each) for each in THREAD.fields if each.word != "PULL"),
+    fields=tuple(_of_cycle97(each) for each in THREAD_SHAPE.fields if each.word != "PULL"),
 )
 """The same by CYCLE97, which does not pull out while it goes on."""

@@ -10,321 +10,375 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from core.geometry.contour_offset import GougeError, pieces_beside
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of
-from core.geometry.pocket_area import AreaError, Cut, Loop, Within, begun_at, clearing, follows, inset, walked
-from core.interpreter.klartext.cycles.contour_figures import OPEN, ContourFigure, area_of
+from core.geometry.contour_offset import GougeError, offset_known_contour
+from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Arc, Element, Point, left_normal
+from core.geometry.pocket_area import (
+    AreaCheck,
+    AreaError,
+    ClearingRing,
+    ElementLoop,
+    close_loop,
+    inset_loops,
+    make_clearing_rings,
+    split_loop,
+    start_loop_at,
+)
 from core.interpreter.klartext.cycles.cycle_moves import CycleTool
-from core.interpreter.klartext.cycles.hole_cycles import SMALLEST, levels
+from core.interpreter.klartext.cycles.hole_cycles import MIN_LENGTH_MM, compute_levels
+from core.interpreter.klartext.cycles.sl_contours import MAX_CLOSING_GAP_MM, SlContour, find_area_boundary
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.shared.elementary_blocks import Block
 from core.language.diagnostics import ProgramError
-from core.language.klartext.q_parameters import MAX_FEED
+from core.language.klartext.q_parameters import MAX_FEED_VALUE
 
 _RAMP = math.tan(math.radians(3.0))
-_MOST_OVERLAP = 2.0
-_MOST_RAMP = 1000.0  # maximum number of rounds of a ramp along a ring
-_ABOVE = 2.0  # mm above the surface; cycle 25 has no Q6 and continues at Q11 from there
-_TRIES = 6  # number of times that the arc to a wall is halved until it fits
+_MAX_OVERLAP = 2.0
+_MAX_RAMP_ROUNDS = 1000.0  # maximum number of rounds of a ramp along a ring
+_CLEARANCE_MM = 2.0  # mm above the surface; cycle 25 has no Q6 and continues at Q11 from there
+_MAX_TRIES = 6  # number of times that the arc to a wall is halved until it fits
 
-Figures = Sequence[ContourFigure]
+ContourSequence = Sequence[SlContour]
 
 
-class Clearing:
+class ClearingData:
     """Data of cycle 20 (Q1 to Q9), feeds of the active cycle, and the area to be cleared."""
 
-    def __init__(self, tool: CycleTool, area: Sequence[Loop] = (), above: float | None = None) -> None:
+    def __init__(
+        self, tool: CycleTool, area: Sequence[ElementLoop] = (), clearance_mm: float | None = None
+    ) -> None:
         self.tool, self.area = tool, area
-        depth = tool.length(1)
+        depth = tool.read_length_mm(1)
         text = "Depth Q1={depth} mm is positive (upward)."
         tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
-        self.surface = tool.length(5, 0.0)
-        self.bottom = self.surface + depth
-        self.clear = self.surface + (tool.length(6) if above is None else above)
-        self.safe = max(tool.length(7), self.clear)
-        self.side, self.floor = tool.length(3, 0.0), tool.length(4, 0.0)
-        if tool.radius <= SMALLEST:
-            raise tool.refuse("The tool radius is not defined.", "Enter the tool radius R in the tool table.")
+        self.surface_z_mm = tool.read_length_mm(5, 0.0)
+        self.bottom_z_mm = self.surface_z_mm + depth
+        self.clearance_z_mm = self.surface_z_mm + (
+            tool.read_length_mm(6) if clearance_mm is None else clearance_mm
+        )
+        self.safe_z_mm = max(tool.read_length_mm(7), self.clearance_z_mm)
+        self.side_allowance_mm, self.floor_allowance_mm = (
+            tool.read_length_mm(3, 0.0),
+            tool.read_length_mm(4, 0.0),
+        )
+        if tool.radius_mm <= MIN_LENGTH_MM:
+            raise tool.make_error(
+                "The tool radius is not defined.", "Enter the tool radius R in the tool table."
+            )
 
     @property
-    def against(self) -> bool:
+    def is_up_cut(self) -> bool:
         """Whether pockets are milled clockwise: up-cut milling (negative Q9) with M3."""
-        return (self.tool.plain(9, 1.0) < 0.0) != (self.tool.rpm < 0.0)
+        return (self.tool.read_value(9, 1.0) < 0.0) != (self.tool.running_rpm < 0.0)
 
     @property
-    def step(self) -> float:
+    def stepover_mm(self) -> float:
         """Distance between rings in mm: Q2 times the tool radius.
 
         It is at most the tool radius, so that no material remains. Raises ProgramError for an invalid Q2.
         """
-        overlap = self.tool.plain(2, 1.0)
+        overlap = self.tool.read_value(2, 1.0)
         text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
         hint = "Enter a value between 0.0001 and 1.9999."
-        self.tool.check(0.0 < overlap < _MOST_OVERLAP, text, hint, named=self.tool.named(2), overlap=overlap)
-        return min(overlap, 1.0) * self.tool.radius
+        self.tool.check(
+            0.0 < overlap < _MAX_OVERLAP, text, hint, named=self.tool.format_name(2), overlap=overlap
+        )
+        return min(overlap, 1.0) * self.tool.radius_mm
 
-    def levels(self, bottom: float) -> list[float]:
+    def compute_levels(self, bottom_z_mm: float) -> list[float]:
         """Return the heights of the infeeds; the last one is the bottom."""
-        return levels(self.tool, self.surface, bottom, lambda: abs(self.tool.length(10)))
+        return compute_levels(
+            self.tool, self.surface_z_mm, bottom_z_mm, lambda: abs(self.tool.read_length_mm(10))
+        )
 
-    def plan(self, radius: float) -> list[Cut]:
+    def plan_level(self, tool_radius_mm: float) -> list[ClearingRing]:
         """Return the rings that clear one level with a tool of this radius in mm."""
-        share = self.step / self.tool.radius * radius
-        here = self.tool.here
+        share = self.stepover_mm / self.tool.radius_mm * tool_radius_mm
+        here = self.tool.xy_position
         try:
-            return clearing(self.area, radius + self.side, share, radius, against=self.against, here=here)
+            return make_clearing_rings(
+                self.area,
+                tool_radius_mm + self.side_allowance_mm,
+                share,
+                tool_radius_mm,
+                conventional=self.is_up_cut,
+                position=here,
+            )
         except AreaError as problem:
-            raise self.unfit(problem) from None
+            raise self.make_fit_error(problem) from None
 
-    def unfit(self, problem: AreaError | GougeError) -> ProgramError:
+    def make_fit_error(self, problem: AreaError | GougeError) -> ProgramError:
         """Return the error for a contour that does not fit the tool radius."""
         text = "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}."
-        hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius:.10g}"
-        return self.tool.refuse(text, hint, radius=radius, problem=problem)
+        hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius_mm:.10g}"
+        return self.tool.make_error(text, hint, radius=radius, problem=problem)
 
-    def above(self) -> Iterator[Block]:
+    def move_to_safe_z(self) -> Iterator[Block]:
         """Yield a rapid to the clearance height."""
-        yield self.tool.to(max(self.safe, self.tool.height))
+        yield self.tool.move_to_z(max(self.safe_z_mm, self.tool.z_position))
 
-    def home(self) -> Iterator[Block]:
+    def retract(self) -> Iterator[Block]:
         """Yield the retract at Q208 to the clearance height."""
         tool = self.tool
-        asked = tool.plain(208, MAX_FEED)
-        back = None if asked >= MAX_FEED else tool.feed(208) if asked else tool.cut(12)
-        if back is not None and tool.height < self.clear:
-            yield tool.to(self.clear, back)
-        yield tool.to(self.safe)
+        asked = tool.read_value(208, MAX_FEED_VALUE)
+        back = (
+            None if asked >= MAX_FEED_VALUE else tool.read_feed(208) if asked else tool.read_cutting_feed(12)
+        )
+        if back is not None and tool.z_position < self.clearance_z_mm:
+            yield tool.move_to_z(self.clearance_z_mm, back)
+        yield tool.move_to_z(self.safe_z_mm)
 
 
-def contour_data(tool: CycleTool) -> None:
+def check_contour_data(tool: CycleTool) -> None:
     """Check the data of cycle 20, which remain in Q1 to Q9. Raises ProgramError if they are invalid."""
-    tool.check(tool.length(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
+    tool.check(
+        tool.read_length_mm(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign."
+    )
     text = "With the programmed path overlap Q2, the cycle cannot clear the area."
-    tool.check(0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999.")
+    tool.check(
+        0.0 < tool.read_value(2, 1.0) < _MAX_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999."
+    )
 
 
 # --- clearing -------------------------------------------------------------------------------------------
 
 
-def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
+def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
     """Yield the blocks of cycle 21: a hole at each position at which cycle 22 plunges with tool Q13."""
-    told = Clearing(tool, area)
-    radius = tool.radius_of(int(tool.plain(13)))
-    if radius is None or radius <= SMALLEST:
+    told = ClearingData(tool, area)
+    radius = tool.find_radius_mm(int(tool.read_value(13)))
+    if radius is None or radius <= MIN_LENGTH_MM:
         text = "Rough-out tool {plain} (Q13) has no radius in the tool table."
-        raise tool.refuse(text, "Set Q13 to the number of a measured tool.", plain=tool.plain(13))
-    feed, bottom = told.tool.cut(11), told.bottom + told.floor
-    yield from told.above()
-    for cut in told.plan(radius):
-        if cut.straight:
+        raise tool.make_error(text, "Set Q13 to the number of a measured tool.", plain=tool.read_value(13))
+    feed, bottom = told.tool.read_cutting_feed(11), told.bottom_z_mm + told.floor_allowance_mm
+    yield from told.move_to_safe_z()
+    for cut in told.plan_level(radius):
+        if cut.moves_at_depth:
             continue
-        yield tool.across(cut.ramp[0].start)
-        yield tool.to(told.clear)
-        for z in told.levels(bottom):
-            yield tool.to(z, feed)
-            yield tool.to(told.clear)
-        yield tool.to(told.safe)
+        yield tool.move_straight(cut.ramp_loop[0].start)
+        yield tool.move_to_z(told.clearance_z_mm)
+        for z in told.compute_levels(bottom):
+            yield tool.move_to_z(z, feed)
+            yield tool.move_to_z(told.clearance_z_mm)
+        yield tool.move_to_z(told.safe_z_mm)
 
 
-def rough_out(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
+def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
     """Yield the blocks of cycle 22: clearing by levels, with the allowances of cycle 20.
 
     Q401 reduces the feed in full cuts.
     """
-    told = Clearing(tool, area)
-    if tool.plain(18, 0.0):
-        tool.tell(
+    told = ClearingData(tool, area)
+    if tool.read_value(18, 0.0):
+        tool.log_note(
             "the whole pocket is milled again, including the area that the coarse roughing tool "
             "(Q18) has cleared."
         )
-    feed = told.tool.cut(12)
-    slow = feed * min(max(tool.plain(401, 100.0), 1.0), 100.0) / 100.0
-    plan = told.plan(tool.radius)
-    yield from told.above()
-    top = told.surface
-    for z in told.levels(told.bottom + told.floor):
+    feed = told.tool.read_cutting_feed(12)
+    slow = feed * min(max(tool.read_value(401, 100.0), 1.0), 100.0) / 100.0
+    plan = told.plan_level(tool.radius_mm)
+    yield from told.move_to_safe_z()
+    top = told.surface_z_mm
+    for z in told.compute_levels(told.bottom_z_mm + told.floor_allowance_mm):
         for cut in plan:
-            yield from _down_to(told, cut, top, z, slow)
-            yield from _along(tool, cut.loop, feed if cut.straight else slow)
+            yield from _move_to_depth(told, cut, top, z, slow)
+            yield from _along(tool, cut.loop, feed if cut.moves_at_depth else slow)
         top = z
-    yield from told.home()
+    yield from told.retract()
 
 
-def _down_to(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterator[Block]:
+def _move_to_depth(
+    clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
+) -> Iterator[Block]:
     """Yield the moves to the start of a ring at its depth, or along a ramp."""
-    tool = told.tool
-    if not cut.straight:
-        yield from tool.over(cut.ramp[0].start, told.clear)
-        yield from _ramp(told, cut, top, z, slow)
-    elif math.dist(tool.here, cut.loop[0].start) > SAME_POINT:
-        yield tool.across(cut.loop[0].start, None, slow)
+    tool = clearing.tool
+    if not cut.moves_at_depth:
+        yield from tool.move_above(cut.ramp_loop[0].start, clearing.clearance_z_mm)
+        yield from _ramp(clearing, cut, top, z, reduced_feed)
+    elif math.dist(tool.xy_position, cut.loop[0].start) > SAME_POINT_TOLERANCE_MM:
+        yield tool.move_straight(cut.loop[0].start, None, reduced_feed)
 
 
-def _ramp(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterator[Block]:
+def _ramp(
+    clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
+) -> Iterator[Block]:
     """Yield the plunge: straight down at Q11 if Q19 is 0, otherwise along the ring at Q19."""
-    tool = told.tool
-    yield tool.to(top, told.tool.cut(11))
-    if not tool.plain(19, 0.0):
-        yield tool.to(z, told.tool.cut(11))
+    tool = clearing.tool
+    yield tool.move_to_z(top, clearing.tool.read_cutting_feed(11))
+    if not tool.read_value(19, 0.0):
+        yield tool.move_to_z(z, clearing.tool.read_cutting_feed(11))
     else:
-        feed, length, ring = told.tool.cut(19), (top - z) / _RAMP, sum(element.length for element in cut.ramp)
+        feed, length, ring = (
+            clearing.tool.read_cutting_feed(19),
+            (top - z) / _RAMP,
+            sum(element.length for element in cut.ramp_loop),
+        )
         text = "There is not enough room to plunge along a ramp."
-        tool.check(length <= _MOST_RAMP * ring, text, "Use a center-cutting tool and plunge vertically.")
-        way, rest = walked(cut.ramp, length)
+        tool.check(
+            length <= _MAX_RAMP_ROUNDS * ring, text, "Use a center-cutting tool and plunge vertically."
+        )
+        way, rest = split_loop(cut.ramp_loop, length)
         done = 0.0
         for element in way:
             done += element.length
             yield _element(tool, element, top + (z - top) * min(done / length, 1.0), feed)
-        yield from _along(tool, walked(rest, math.ceil(length / ring - 1e-9) * ring - length)[0], slow)
-    if math.dist(tool.here, cut.loop[0].start) > SAME_POINT:
-        yield tool.across(cut.loop[0].start, None, slow)
+        yield from _along(
+            tool, split_loop(rest, math.ceil(length / ring - 1e-9) * ring - length)[0], reduced_feed
+        )
+    if math.dist(tool.xy_position, cut.loop[0].start) > SAME_POINT_TOLERANCE_MM:
+        yield tool.move_straight(cut.loop[0].start, None, reduced_feed)
 
 
 def _along(tool: CycleTool, loop: Sequence[Element], feed: float) -> Iterator[Block]:
     for element in loop:
-        yield _element(tool, element, tool.height, feed)
+        yield _element(tool, element, tool.z_position, feed)
 
 
 def _element(tool: CycleTool, element: Element, z: float, feed: float) -> Block:
     if isinstance(element, Arc):
-        return tool.round(element, z, feed)
-    return tool.across(element.end, z, feed)
+        return tool.move_on_arc(element, z, feed)
+    return tool.move_straight(element.end, z, feed)
 
 
-def floor_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
+def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
     """Yield the blocks of cycle 23: the floor at its depth, up to the walls with their allowance."""
-    told = Clearing(tool, area)
-    feed, plunge = told.tool.cut(12), told.tool.cut(11)
-    plan = told.plan(tool.radius)
-    yield from told.above()
-    for cut in plan if told.surface - told.bottom > SMALLEST else ():
+    told = ClearingData(tool, area)
+    feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
+    plan = told.plan_level(tool.radius_mm)
+    yield from told.move_to_safe_z()
+    for cut in plan if told.surface_z_mm - told.bottom_z_mm > MIN_LENGTH_MM else ():
         start = cut.loop[0].start
-        if not cut.straight:
-            yield from tool.over(start, told.clear)
-            yield tool.to(told.bottom, plunge)
-        elif math.dist(tool.here, start) > SAME_POINT:
-            yield tool.across(start, None, feed)
+        if not cut.moves_at_depth:
+            yield from tool.move_above(start, told.clearance_z_mm)
+            yield tool.move_to_z(told.bottom_z_mm, plunge)
+        elif math.dist(tool.xy_position, start) > SAME_POINT_TOLERANCE_MM:
+            yield tool.move_straight(start, None, feed)
         yield from _along(tool, cut.loop, feed)
-    yield from told.home()
+    yield from told.retract()
 
 
 # --- walls ------------------------------------------------------------------------------------------------
 
 
-def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
+def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
     """Yield the blocks of cycle 24: the walls to Q14, with quarter circles as approach and departure."""
-    told = Clearing(tool, area)
-    feed, plunge = told.tool.cut(12), told.tool.cut(11)
-    apart = tool.radius + tool.length(14, 0.0)
+    told = ClearingData(tool, area)
+    feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
+    apart = tool.radius_mm + tool.read_length_mm(14, 0.0)
     try:
-        loops = inset(area, apart)
+        loops = inset_loops(area, apart)
     except AreaError as problem:
-        raise told.unfit(problem) from None
+        raise told.make_fit_error(problem) from None
     if not loops:
-        raise told.unfit(AreaError("the tool does not fit anywhere inside the contour"))
-    room = Within(area)
-    yield from told.above()
+        raise told.make_fit_error(AreaError("the tool does not fit anywhere inside the contour"))
+    room = AreaCheck(area)
+    yield from told.move_to_safe_z()
     for loop in loops:
-        ring = [element.reversed() for element in reversed(loop)] if told.against else loop
-        ring, to_it, off_it = _led(ring, room, apart, tool.radius, against=told.against)
-        for z in told.levels(told.bottom):
-            yield from tool.over(to_it.start if to_it else ring[0].start, told.clear)
-            yield tool.to(z, plunge)
+        ring = [element.reversed() for element in reversed(loop)] if told.is_up_cut else loop
+        ring, to_it, off_it = _add_approach_arcs(ring, room, apart, tool.radius_mm, is_up_cut=told.is_up_cut)
+        for z in told.compute_levels(told.bottom_z_mm):
+            yield from tool.move_above(to_it.start if to_it else ring[0].start, told.clearance_z_mm)
+            yield tool.move_to_z(z, plunge)
             yield from _along(tool, [each for each in (to_it, *ring, off_it) if each is not None], feed)
-        yield tool.to(told.clear)
-    yield from told.home()
+        yield tool.move_to_z(told.clearance_z_mm)
+    yield from told.retract()
 
 
-def _led(
-    ring: Loop, room: Within, apart: float, radius: float, *, against: bool
-) -> tuple[Loop, Arc | None, Arc | None]:
+def _add_approach_arcs(
+    ring: ElementLoop, room: AreaCheck, offset_mm: float, radius: float, *, is_up_cut: bool
+) -> tuple[ElementLoop, Arc | None, Arc | None]:
     """Return the ring with a new start, and its approach and departure arcs.
 
     The start is at a point with room for both arcs. Without such a point, both arcs are None.
     """
     order = sorted(range(len(ring)), key=lambda at: (isinstance(ring[at], Arc), -ring[at].length))
-    for size in (radius / 2.0**tries for tries in range(_TRIES)):
+    for size in (radius / 2.0**tries for tries in range(_MAX_TRIES)):
         for at in order:
-            begun = begun_at(ring, at, ring[at].length / 2.0)
-            to_it, off_it = _quarters(begun[0].start, begun[0].start_direction, size, left=not against)
-            if room.holds(to_it, apart) and room.holds(off_it, apart):
+            begun = start_loop_at(ring, at, ring[at].length / 2.0)
+            to_it, off_it = _make_quarter_arcs(
+                begun[0].start, begun[0].start_direction, size, is_left=not is_up_cut
+            )
+            if room.contains_element(to_it, offset_mm) and room.contains_element(off_it, offset_mm):
                 return begun, to_it, off_it
-    return begun_at(ring, order[0], ring[order[0]].length / 2.0), None, None
+    return start_loop_at(ring, order[0], ring[order[0]].length / 2.0), None, None
 
 
-def _quarters(at: Point, direction: Point, size: float, *, left: bool) -> tuple[Arc, Arc]:
+def _make_quarter_arcs(
+    wall_point: Point, direction: Point, radius_mm: float, *, is_left: bool
+) -> tuple[Arc, Arc]:
     """Return the quarter circles on the pocket side, to a point of the wall and away from it."""
-    x, y = left_of(direction)
-    side = (x, y) if left else (-x, -y)
-    centre = at[0] + side[0] * size, at[1] + side[1] * size
-    before = centre[0] - direction[0] * size, centre[1] - direction[1] * size
-    behind = centre[0] + direction[0] * size, centre[1] + direction[1] * size
-    return Arc(before, at, centre, not left), Arc(at, behind, centre, not left)
+    x, y = left_normal(direction)
+    side = (x, y) if is_left else (-x, -y)
+    centre = wall_point[0] + side[0] * radius_mm, wall_point[1] + side[1] * radius_mm
+    before = centre[0] - direction[0] * radius_mm, centre[1] - direction[1] * radius_mm
+    behind = centre[0] + direction[0] * radius_mm, centre[1] + direction[1] * radius_mm
+    return Arc(before, wall_point, centre, not is_left), Arc(wall_point, behind, centre, not is_left)
 
 
 # --- open contours ----------------------------------------------------------------------------------------
 
 
-def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
+def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Block]:
     """Yield the blocks of cycle 25: levels along a contour; Q15 is 0 for both directions, -1 for up-cut."""
-    told = Clearing(tool, above=_ABOVE)
-    if len(figures) > 1:
-        tool.tell("Cycle 25 mills only the first contour listed in cycle 14.")
-    figure = figures[0]
-    way = _beside(told, figure)
-    kind = tool.plain(15, 1.0)
-    climbs = (figure.side == "L") == (tool.rpm > 0.0)  # in the programmed direction
+    told = ClearingData(tool, clearance_mm=_CLEARANCE_MM)
+    if len(contours) > 1:
+        tool.log_note("Cycle 25 mills only the first contour listed in cycle 14.")
+    figure = contours[0]
+    way = _offset_path(told, figure)
+    kind = tool.read_value(15, 1.0)
+    climbs = (figure.side == "L") == (tool.running_rpm > 0.0)  # in the programmed direction
     if kind and figure.side and climbs != (kind > 0.0):
         way = [element.reversed() for element in reversed(way)]
-    feed, plunge = told.tool.cut(12), told.tool.cut(11)
-    yield from told.above()
-    for index, z in enumerate(told.levels(told.bottom)):
+    feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
+    yield from told.move_to_safe_z()
+    for index, z in enumerate(told.compute_levels(told.bottom_z_mm)):
         if kind or index == 0:
-            yield tool.to(max(told.clear, tool.height) if index else tool.height)
-            yield tool.across(way[0].start)
-            yield tool.to(told.clear)
-        yield tool.to(z, plunge)
+            yield tool.move_to_z(max(told.clearance_z_mm, tool.z_position) if index else tool.z_position)
+            yield tool.move_straight(way[0].start)
+            yield tool.move_to_z(told.clearance_z_mm)
+        yield tool.move_to_z(z, plunge)
         yield from _along(tool, way, feed)
         if not kind:
             way = [element.reversed() for element in reversed(way)]
-    yield tool.to(told.safe)
+    yield tool.move_to_z(told.safe_z_mm)
 
 
-def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
+def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
     """Return the path of the tool center, at the tool radius plus Q3 from the contour.
 
     Without RL or RR, the path is the contour itself.
     """
-    elements = list(figure.elements)
+    elements = list(contour.elements)
     text = "Contour {figure} does not contain any elements."
-    told.tool.check(elements, text, "Add path functions to the contour.", figure=figure.label)
-    if not figure.side:
+    clearing.tool.check(elements, text, "Add path functions to the contour.", figure=contour.label)
+    if not contour.side:
         return elements
-    apart = told.tool.radius + told.side
-    closed = math.dist(elements[-1].end, elements[0].start) <= OPEN
+    apart = clearing.tool.radius_mm + clearing.side_allowance_mm
+    closed = math.dist(elements[-1].end, elements[0].start) <= MAX_CLOSING_GAP_MM
     if closed:
-        elements = follows(elements)
+        elements = close_loop(elements)
     try:
-        beside = pieces_beside(elements, apart if figure.side == "L" else -apart)
+        beside = offset_known_contour(elements, apart if contour.side == "L" else -apart)
     except GougeError as problem:
-        raise told.unfit(problem) from None
+        raise clearing.make_fit_error(problem) from None
     return [piece.element for piece in beside]
 
 
-def run_contour(state: State, tool: CycleTool, number: int, figures: Figures, column: int) -> Iterator[Block]:
-    """Yield the blocks of a cycle of ``CONTOURS`` for its contours. Raises ProgramError."""
-    if number == TRAIN:
-        yield from contour_train(tool, figures)
+def run_contour_cycle(
+    state: State, tool: CycleTool, number: int, contours: ContourSequence, column: int
+) -> Iterator[Block]:
+    """Yield the blocks of a cycle of ``CONTOUR_CYCLES`` for its contours. Raises ProgramError."""
+    if number == CONTOUR_TRAIN_CYCLE:
+        yield from run_contour_train(tool, contours)
     else:
-        yield from _AREAS[number](tool, area_of(state, figures, column))
+        yield from _AREA_CYCLES[number](tool, find_area_boundary(state, contours, column))
 
 
-TRAIN = 25
-_AREAS: dict[int, Callable[[CycleTool, Sequence[Loop]], Iterator[Block]]] = {
-    21: pilot_drilling,
-    22: rough_out,
-    23: floor_finishing,
-    24: side_finishing,
+CONTOUR_TRAIN_CYCLE = 25
+_AREA_CYCLES: dict[int, Callable[[CycleTool, Sequence[ElementLoop]], Iterator[Block]]] = {
+    21: run_pilot_drilling,
+    22: run_roughing,
+    23: run_floor_finishing,
+    24: run_side_finishing,
 }
-CONTOURS = frozenset({*_AREAS, TRAIN})
+CONTOUR_CYCLES = frozenset({*_AREA_CYCLES, CONTOUR_TRAIN_CYCLE})
 """Cycles by their number."""

@@ -17,118 +17,128 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.language.klartext.klartext_faults import CYCLE_MISSING
 from core.language.klartext.klartext_nodes import CycleLine
 
-Lines = Mapping[int, CycleLine]
-_SMALLEST = 1e-6  # mm
+CycleLines = Mapping[int, CycleLine]
+_MIN_LENGTH_MM = 1e-6  # mm
 # overlap factor of the tool diameter; machine parameter 7430 of the control is 1.4 times the radius
 _OVERLAP = 0.7
-_MOST_LEVELS = 10_000
+_MAX_LEVELS = 10_000
 
 
-class Told:
+class OlderCycleData:
     """Values in the lines of a cycle below 200."""
 
-    def __init__(self, state: State, lines: Lines, column: int) -> None:
+    def __init__(self, state: State, lines: CycleLines, column: int) -> None:
         self._state = state
         self._lines = lines
         self._column = column
 
     @property
-    def cycle(self) -> int:
+    def cycle_number(self) -> int:
         """Number of the cycle."""
-        return next(iter(self._lines.values())).number if self._lines else 0
+        return next(iter(self._lines.values())).cycle_number if self._lines else 0
 
-    def number(self, part: int, axis: str = "") -> float:
+    def read_number(self, line_number: int, axis: str = "") -> float:
         """Return the first number of a line, or the number of an axis word.
 
         Raises ProgramError if it is missing.
         """
-        words = self._lines[part].words if part in self._lines else ()
+        words = self._lines[line_number].words if line_number in self._lines else ()
         word = next((each for each in words if each.axis == axis), None)
         if word is None:
             text = "Line {number}.{part} of the cycle has no {axis}."
             hint = "Complete the CYCL DEF."
-            raise self._state.refuse(
-                self._column, CYCLE_MISSING, text, hint, number=self.cycle, part=part, axis=axis or "number"
+            raise self._state.make_error(
+                self._column,
+                CYCLE_MISSING,
+                text,
+                hint,
+                number=self.cycle_number,
+                part=line_number,
+                axis=axis or "number",
             )
         return value(self._state, word.value.formula)
 
-    def length(self, part: int, axis: str = "") -> float:
+    def read_length_mm(self, line_number: int, axis: str = "") -> float:
         """Return the same number as a length in mm."""
-        return self.number(part, axis) * self._state.scale
+        return self.read_number(line_number, axis) * self._state.mm_per_unit
 
-    def feed(self, part: int) -> float | None:
+    def read_feed(self, line_number: int) -> float | None:
         """Return the feed of a line as programmed; None for a rapid."""
-        line = self._lines.get(part)
-        return word_values.feed_word(self._state, line.feed if line else None, self._column)
+        line = self._lines.get(line_number)
+        return word_values.evaluate_feed(self._state, line.feed if line else None, self._column)
 
-    def cutting_feed(self, part: int) -> float:
+    def read_cutting_feed(self, line_number: int) -> float:
         """Return the feed of a line. Raises ProgramError for a rapid."""
-        found = self.feed(part)
+        found = self.read_feed(line_number)
         if found is None:
             text = "A pocket cannot be milled at rapid."
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write F in CYCL DEF.")
+            raise self._state.make_error(self._column, CYCLE_MISSING, text, "Write F in CYCL DEF.")
         return found
 
-    def turn(self, part: int) -> float:
+    def read_direction(self, line_number: int) -> float:
         """Return 1 for DR+ (counterclockwise) or -1 for DR-."""
-        line = self._lines.get(part)
-        return -1.0 if line is not None and line.turn == "-" else 1.0
+        line = self._lines.get(line_number)
+        return -1.0 if line is not None and line.rotation_direction == "-" else 1.0
 
-    def has(self, part: int, axis: str) -> bool:
+    def has_axis_word(self, line_number: int, axis: str) -> bool:
         """Return whether a line has a word for this axis."""
-        return part in self._lines and any(word.axis == axis for word in self._lines[part].words)
+        return line_number in self._lines and any(
+            word.axis == axis for word in self._lines[line_number].words
+        )
 
 
-def _pecking(told: Told, tool: CycleTool) -> Iterator[Block]:
+def _pecking(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 1: pecks with full retracts, and rapids to just above the last depth."""
-    clear, feed = tool.height, told.feed(5)
-    depth, step = abs(told.length(2)), abs(told.length(3))
-    surface = clear - told.length(1)
+    clear, feed = tool.z_position, data.read_feed(5)
+    depth, step = abs(data.read_length_mm(2)), abs(data.read_length_mm(3))
+    surface = clear - data.read_length_mm(1)
     near = 0.6 if depth <= 30.0 else min(depth / 50.0, 7.0)
     for done in _levels(tool, depth, step):
-        yield tool.to(surface - done, feed)
+        yield tool.move_to_z(surface - done, feed)
         if done < depth:
-            yield tool.to(clear)
-            yield tool.to(min(clear, surface - done + near))
-    yield from tool.dwell(told.number(4))
-    yield tool.to(clear)
+            yield tool.move_to_z(clear)
+            yield tool.move_to_z(min(clear, surface - done + near))
+    yield from tool.make_dwell_blocks(data.read_number(4))
+    yield tool.move_to_z(clear)
 
 
-def _tapping(told: Told, tool: CycleTool) -> Iterator[Block]:
+def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 2 (feed) or 17 (pitch, whose sign sets the direction)."""
-    rigid = told.cycle == _RIGID
-    clear, before = tool.height, tool.turns
+    rigid = data.cycle_number == _RIGID
+    clear, before = tool.z_position, tool.signed_rpm
     if rigid:
         tool.warn_uncoupled()
-    lead = told.length(3) if rigid else tool.lead_of(told.cutting_feed(4))
-    rpm, lead = tool.thread_speed(lead) if rigid else tool.rpm, abs(lead)
-    yield from tool.turning(rpm)
-    yield tool.tap(clear - told.length(1) - abs(told.length(2)), lead, in_hole=True)
+    lead = data.read_length_mm(3) if rigid else tool.convert_feed_to_lead(data.read_cutting_feed(4))
+    rpm, lead = tool.compute_thread_rpm(lead) if rigid else tool.running_rpm, abs(lead)
+    yield from tool.set_spindle_speed(rpm)
+    yield tool.make_tap_block(
+        clear - data.read_length_mm(1) - abs(data.read_length_mm(2)), lead, in_hole=True
+    )
     if not rigid:
-        yield from tool.dwell(told.number(3), in_hole=True)
-    yield tool.turn(-rpm, in_hole=True)
-    yield tool.tap(clear, lead)
-    yield from tool.turning(before)
+        yield from tool.make_dwell_blocks(data.read_number(3), in_hole=True)
+    yield tool.run_spindle(-rpm, in_hole=True)
+    yield tool.make_tap_block(clear, lead)
+    yield from tool.set_spindle_speed(before)
 
 
-def _slot(told: Told, tool: CycleTool) -> Iterator[Block]:
+def _slot(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 3: levels along the first side, then around at the width."""
-    first, second = _sides(told, 4), _sides(told, 5)
-    (x, y), clear = tool.here, tool.height
+    first, second = _sides(data, 4), _sides(data, 5)
+    (x, y), clear = tool.xy_position, tool.z_position
     end = x + first[0], y + first[1]
     text = "The slot of cycle 3 has no length."
-    tool.check(math.hypot(*first) > _SMALLEST, text, "Write the length of the slot in line 3.4.")
-    width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
-    tool.check(width >= -_SMALLEST, "The tool is wider than the slot.", "Use a smaller tool.")
-    surface, feed = clear - told.length(1), told.cutting_feed(6)
+    tool.check(math.hypot(*first) > _MIN_LENGTH_MM, text, "Write the length of the slot in line 3.4.")
+    width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius_mm
+    tool.check(width >= -_MIN_LENGTH_MM, "The tool is wider than the slot.", "Use a smaller tool.")
+    surface, feed = clear - data.read_length_mm(1), data.read_cutting_feed(6)
     ends = [(x, y), end]
-    for at, done in enumerate(_levels(tool, abs(told.length(2)), abs(told.length(3)))):
-        yield tool.to(surface - done, told.feed(3))
-        yield tool.across(ends[1 - at % 2], None, feed)
-    if width > _SMALLEST:
+    for at, done in enumerate(_levels(tool, abs(data.read_length_mm(2)), abs(data.read_length_mm(3)))):
+        yield tool.move_to_z(surface - done, data.read_feed(3))
+        yield tool.move_straight(ends[1 - at % 2], None, feed)
+    if width > _MIN_LENGTH_MM:
         yield from _round_slot(tool, (x, y), end, width, feed)
-    yield tool.to(clear)
-    yield tool.across((x, y))
+    yield tool.move_to_z(clear)
+    yield tool.move_straight((x, y))
 
 
 def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: float) -> Iterator[Block]:
@@ -142,19 +152,22 @@ def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: f
         (start[0] + v[0], start[1] + v[1]),
     ]
     for corner in (*corners, corners[0]):
-        yield tool.across(corner, None, feed)
+        yield tool.move_straight(corner, None, feed)
 
 
-def _pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
+def _pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 4: rectangles from the center outward on each level."""
-    (x, y), clear = tool.here, tool.height
-    half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
-    tool.check(min(half) >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
-    surface, feed, turn = clear - told.length(1), told.cutting_feed(6), told.turn(6)
+    (x, y), clear = tool.xy_position, tool.z_position
+    half = (
+        abs(data.read_length_mm(4, "X")) / 2.0 - tool.radius_mm,
+        abs(data.read_length_mm(5, "Y")) / 2.0 - tool.radius_mm,
+    )
+    tool.check(min(half) >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool.")
+    surface, feed, turn = clear - data.read_length_mm(1), data.read_cutting_feed(6), data.read_direction(6)
     count = _ring_count(tool, min(half))
-    for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
-        yield tool.across((x, y), None, feed)
-        yield tool.to(surface - done, told.feed(3))
+    for done in _levels(tool, abs(data.read_length_mm(2)), abs(data.read_length_mm(3))):
+        yield tool.move_straight((x, y), None, feed)
+        yield tool.move_to_z(surface - done, data.read_feed(3))
         for ring in range(1, count + 1):
             inset = min(half) * (1.0 - ring / count)
             a, b = half[0] - inset, half[1] - inset
@@ -165,53 +178,53 @@ def _pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
                 (x - a, y - turn * b),
             ]
             for corner in (*corners, corners[0]):
-                yield tool.across(corner, None, feed)
-    yield tool.to(clear)
-    yield tool.across((x, y))
+                yield tool.move_straight(corner, None, feed)
+    yield tool.move_to_z(clear)
+    yield tool.move_straight((x, y))
 
 
-def _circular_pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
+def _circular_pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 5: circles from the center outward on each level."""
-    (x, y), clear = tool.here, tool.height
-    radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
-    tool.check(radius >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
-    surface, feed, turn = clear - told.length(1), told.cutting_feed(5), told.turn(5)
+    (x, y), clear = tool.xy_position, tool.z_position
+    radius = abs(data.read_length_mm(4, "R" if data.has_axis_word(4, "R") else "")) - tool.radius_mm
+    tool.check(radius >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool.")
+    surface, feed, turn = clear - data.read_length_mm(1), data.read_cutting_feed(5), data.read_direction(5)
     count = _ring_count(tool, radius)
-    for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
-        yield tool.across((x, y), None, feed)
-        yield tool.to(surface - done, told.feed(3))
+    for done in _levels(tool, abs(data.read_length_mm(2)), abs(data.read_length_mm(3))):
+        yield tool.move_straight((x, y), None, feed)
+        yield tool.move_to_z(surface - done, data.read_feed(3))
         for ring in range(1, count + 1):
             start = x + radius * ring / count, y
-            yield tool.across(start, None, feed)
-            yield tool.round(Arc(start, start, (x, y), clockwise=turn < 0.0), tool.height, feed)
-    yield tool.to(clear)
-    yield tool.across((x, y))
+            yield tool.move_straight(start, None, feed)
+            yield tool.move_on_arc(Arc(start, start, (x, y), clockwise=turn < 0.0), tool.z_position, feed)
+    yield tool.move_to_z(clear)
+    yield tool.move_straight((x, y))
 
 
-def _thread_cutting(told: Told, tool: CycleTool) -> Iterator[Block]:
+def _thread_cutting(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 18: from the tool position to the depth at pitch times speed.
 
     The spindle stops at the depth.
     """
     tool.warn_uncoupled()
-    rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
+    rpm, pitch, depth = tool.programmed_rpm, data.read_length_mm(2), data.read_length_mm(1)
     text = "Cycle 18 needs a spindle speed and a pitch."
     tool.check(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
-    yield tool.turn(rpm if pitch > 0.0 else -rpm)
-    yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
-    yield tool.stop()
+    yield tool.run_spindle(rpm if pitch > 0.0 else -rpm)
+    yield tool.make_tap_block(tool.z_position + depth, abs(pitch), in_hole=True)
+    yield tool.stop_spindle()
 
 
 def _ring_count(tool: CycleTool, width: float) -> int:
     """Return the number of rings from the center of a pocket to its wall."""
-    step = tool.radius * 2.0 * _OVERLAP
-    return max(1, math.ceil(width / step)) if step > _SMALLEST else 1
+    step = tool.radius_mm * 2.0 * _OVERLAP
+    return max(1, math.ceil(width / step)) if step > _MIN_LENGTH_MM else 1
 
 
-def _sides(told: Told, part: int) -> Point:
+def _sides(told: OlderCycleData, part: int) -> Point:
     return (
-        told.length(part, "X") if told.has(part, "X") else 0.0,
-        told.length(part, "Y") if told.has(part, "Y") else 0.0,
+        told.read_length_mm(part, "X") if told.has_axis_word(part, "X") else 0.0,
+        told.read_length_mm(part, "Y") if told.has_axis_word(part, "Y") else 0.0,
     )
 
 
@@ -222,12 +235,12 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
         return
     count = math.ceil(depth / step - 1e-9)
     text = "An infeed of {step} mm would need {count} passes, which is too many."
-    tool.check(count <= _MOST_LEVELS, text, "Increase the infeed.", step=step, count=count)
+    tool.check(count <= _MAX_LEVELS, text, "Increase the infeed.", step=step, count=count)
     yield from (min(step * at, depth) for at in range(1, count + 1))
 
 
 _RIGID = 17
-OLDER: dict[int, Callable[[Told, CycleTool], Iterator[Block]]] = {
+OLDER_CYCLES: dict[int, Callable[[OlderCycleData, CycleTool], Iterator[Block]]] = {
     1: _pecking,
     2: _tapping,
     3: _slot,
@@ -238,5 +251,5 @@ OLDER: dict[int, Callable[[Told, CycleTool], Iterator[Block]]] = {
 }
 """Cycles by their number."""
 
-LAST_LINE = {1: 5, 2: 4, 3: 6, 4: 6, 5: 5, 17: 3, 18: 2}
+LAST_LINE_NUMBERS = {1: 5, 2: 4, 3: 6, 4: 6, 5: 5, 17: 3, 18: 2}
 """The number behind the point of the last line that each has: with one missing the control runs none."""

@@ -11,393 +11,468 @@ import math
 from collections.abc import Callable, Iterator
 
 from core.geometry.lines_and_arcs import Arc, Point
-from core.geometry.pocket_area import Loop
-from core.interpreter.klartext.cycles.contour_cycles import floor_finishing, rough_out, side_finishing
-from core.interpreter.klartext.cycles.cycle_moves import CycleTool, Parameters, Ring, Seat
-from core.interpreter.klartext.cycles.hole_cycles import SMALLEST, heights, infeeds, levels, out
+from core.geometry.pocket_area import ElementLoop
+from core.interpreter.klartext.cycles.contour_cycles import (
+    run_floor_finishing,
+    run_roughing,
+    run_side_finishing,
+)
+from core.interpreter.klartext.cycles.cycle_moves import (
+    CycleParameters,
+    CycleTool,
+    Placement,
+    RoundedRectangle,
+)
+from core.interpreter.klartext.cycles.hole_cycles import (
+    MIN_LENGTH_MM,
+    compute_infeeds,
+    compute_levels,
+    out,
+    read_heights,
+)
 from core.interpreter.shared.elementary_blocks import Block
-from core.language.klartext.q_parameters import MAX_FEED
+from core.language.klartext.q_parameters import MAX_FEED_VALUE
 
 _RAMP = math.tan(math.radians(3.0))
-_MOST_OVERLAP = 1.9999
+_MAX_OVERLAP = 1.9999
 _BOTH, _ROUGH, _FINISH = 0, 1, 2
-_MOST_SLOTS = 1_000
+_MAX_SLOTS = 1_000
 _CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
 
-class _Milling:
+class _MillingParameters:
     """Parameters of a milling cycle."""
 
     def __init__(self, tool: CycleTool) -> None:
         self.tool = tool
-        self.surface, self.clear, self.bottom = heights(tool)
-        self.safe = self.surface + max(tool.length(204, 0.0), tool.length(200))
-        self.feed, self.plunge = tool.cut(207), tool.cut(206)
-        self.side, self.floor = tool.length(368, 0.0), tool.length(369, 0.0)
-        self.scope = int(tool.plain(215, float(_ROUGH)))
-        overlap = tool.plain(370, 1.0)
-        if not 0.0 < overlap <= _MOST_OVERLAP or tool.radius <= SMALLEST:
+        self.surface_z_mm, self.clearance_z_mm, self.bottom_z_mm = read_heights(tool)
+        self.safe_z_mm = self.surface_z_mm + max(tool.read_length_mm(204, 0.0), tool.read_length_mm(200))
+        self.feed, self.plunge_feed = tool.read_cutting_feed(207), tool.read_cutting_feed(206)
+        self.side_allowance_mm, self.floor_allowance_mm = (
+            tool.read_length_mm(368, 0.0),
+            tool.read_length_mm(369, 0.0),
+        )
+        self.scope = int(tool.read_value(215, float(_ROUGH)))
+        overlap = tool.read_value(370, 1.0)
+        if not 0.0 < overlap <= _MAX_OVERLAP or tool.radius_mm <= MIN_LENGTH_MM:
             text = (
                 "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the "
                 "area."
             )
             hint = "Set Q370 between 0.1 and 1.9999, and enter the tool radius."
-            raise tool.refuse(text, hint, overlap=overlap, radius=tool.radius)
-        self.step = overlap * tool.radius
-        self.against = (tool.plain(351, 1.0) < 0.0) != (tool.rpm < 0.0)
+            raise tool.make_error(text, hint, overlap=overlap, radius=tool.radius_mm)
+        self.stepover_mm = overlap * tool.radius_mm
+        self.is_up_cut = (tool.read_value(351, 1.0) < 0.0) != (tool.running_rpm < 0.0)
 
-    def levels(self) -> list[float]:
+    def compute_levels(self) -> list[float]:
         """Return the heights of the clearing levels, the deepest last."""
-        floor = self.bottom + (self.floor if self.scope != _FINISH else 0.0)
-        return levels(self.tool, self.surface, floor, lambda: self.tool.length(202))
+        floor = self.bottom_z_mm + (self.floor_allowance_mm if self.scope != _FINISH else 0.0)
+        return compute_levels(self.tool, self.surface_z_mm, floor, lambda: self.tool.read_length_mm(202))
 
     @property
-    def finishes(self) -> bool:
+    def has_finishing(self) -> bool:
         """Whether walls and floor are finished."""
-        return self.scope == _FINISH or (self.scope == _BOTH and max(self.side, self.floor) > SMALLEST)
+        return self.scope == _FINISH or (
+            self.scope == _BOTH and max(self.side_allowance_mm, self.floor_allowance_mm) > MIN_LENGTH_MM
+        )
 
     @property
-    def last_feed(self) -> float:
+    def finishing_feed(self) -> float:
         """Feed of the finishing passes."""
-        return self.tool.cut(385) if self.tool.plain(385, 0.0) else self.feed
+        return self.tool.read_cutting_feed(385) if self.tool.read_value(385, 0.0) else self.feed
 
-    def wall_levels(self) -> list[float]:
+    def compute_wall_levels(self) -> list[float]:
         """Return the heights of wall finishing in steps of Q338; with 0, only the bottom."""
-        step = self.tool.length(338, 0.0)
-        return [self.surface - done for done in infeeds(self.tool, self.surface - self.bottom, step)]
+        step = self.tool.read_length_mm(338, 0.0)
+        return [
+            self.surface_z_mm - done
+            for done in compute_infeeds(self.tool, self.surface_z_mm - self.bottom_z_mm, step)
+        ]
 
 
 # --- pockets and slots: from the inside out
 
 
-def rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
+def mill_rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 251: sides Q218 and Q219, corners Q220, rotation Q224, position Q367."""
-    a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
+    a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
-    seat = Seat(tool.here, tool.plain(224, 0.0)).moved(*_placed(tool, corner))
-    yield from _pocket(tool, seat, Ring(a, b, tool.length(220, 0.0)))
+    seat = Placement(tool.xy_position, tool.read_value(224, 0.0)).translate(*_placed(tool, corner))
+    yield from _pocket(tool, seat, RoundedRectangle(a, b, tool.read_length_mm(220, 0.0)))
 
 
-def circular_pocket(tool: CycleTool) -> Iterator[Block]:
+def mill_circular_pocket(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 252: a pocket of diameter Q223 around the tool position."""
-    radius = tool.length(223) / 2.0
-    yield from _pocket(tool, Seat(tool.here), Ring(radius, radius, radius))
+    radius = tool.read_length_mm(223) / 2.0
+    yield from _pocket(tool, Placement(tool.xy_position), RoundedRectangle(radius, radius, radius))
 
 
-def slot(tool: CycleTool) -> Iterator[Block]:
+def mill_slot(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 253: length Q218, width Q219, rotation Q374, position Q367."""
-    a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
-    tool.check(a >= b - SMALLEST, "The slot is wider than it is long.", "Correct Q218 and Q219.")
+    a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
+    tool.check(a >= b - MIN_LENGTH_MM, "The slot is wider than it is long.", "Correct Q218 and Q219.")
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
-    seat = Seat(tool.here, tool.plain(374, 0.0)).moved(*_placed(tool, ends))
-    yield from _pocket(tool, seat, Ring(a, b, b))
+    seat = Placement(tool.xy_position, tool.read_value(374, 0.0)).translate(*_placed(tool, ends))
+    yield from _pocket(tool, seat, RoundedRectangle(a, b, b))
 
 
 def _placed(tool: CycleTool, places: dict[int, tuple[float, float]]) -> tuple[float, float]:
-    found = places.get(int(tool.plain(367, 0.0)))
+    found = places.get(int(tool.read_value(367, 0.0)))
     if found is None:
-        raise tool.refuse("Q367 must be 0, 1, 2, 3 or 4.", "Correct Q367.")
+        raise tool.make_error("Q367 must be 0, 1, 2, 3 or 4.", "Correct Q367.")
     return found
 
 
-def _pocket(tool: CycleTool, seat: Seat, wall: Ring) -> Iterator[Block]:
-    if wall.b > wall.a:  # the long side first, because the tool plunges along it
-        seat, wall = Seat(seat.middle, seat.angle + 90.0), Ring(wall.b, wall.a, wall.radius)
-    told = _Milling(tool)
-    last = wall.wider(-tool.radius)
-    rough = last.wider(-told.side) if told.scope != _FINISH else last
-    if min(rough.b, last.b) < -SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket or slot.", "Use a smaller tool.")
-    rough, last = (Ring(max(each.a, 0.0), max(each.b, 0.0), each.radius) for each in (rough, last))
-    yield tool.to(max(told.clear, min(tool.height, told.safe)))
-    if told.surface - told.bottom < SMALLEST:
+def _pocket(tool: CycleTool, seat: Placement, wall: RoundedRectangle) -> Iterator[Block]:
+    if wall.half_side_v_mm > wall.half_side_u_mm:  # the long side first, because the tool plunges along it
+        seat, wall = (
+            Placement(seat.center, seat.angle_deg + 90.0),
+            RoundedRectangle(wall.half_side_v_mm, wall.half_side_u_mm, wall.corner_radius_mm),
+        )
+    told = _MillingParameters(tool)
+    last = wall.enlarge(-tool.radius_mm)
+    rough = last.enlarge(-told.side_allowance_mm) if told.scope != _FINISH else last
+    if min(rough.half_side_v_mm, last.half_side_v_mm) < -MIN_LENGTH_MM:
+        raise tool.make_error("The tool is wider than the pocket or slot.", "Use a smaller tool.")
+    rough, last = (
+        RoundedRectangle(max(each.half_side_u_mm, 0.0), max(each.half_side_v_mm, 0.0), each.corner_radius_mm)
+        for each in (rough, last)
+    )
+    yield tool.move_to_z(max(told.clearance_z_mm, min(tool.z_position, told.safe_z_mm)))
+    if told.surface_z_mm - told.bottom_z_mm < MIN_LENGTH_MM:
         return
     if told.scope != _FINISH:
-        above = told.surface
-        for z in told.levels():
-            yield from _down(told, seat, rough, above, z)
-            yield from _cleared(told, seat, rough, told.feed)
+        above = told.surface_z_mm
+        for z in told.compute_levels():
+            yield from _plunge(told, seat, rough, above, z)
+            yield from _clear_level(told, seat, rough, told.feed)
             above = z
-    if told.finishes:
-        yield from _finished(told, seat, last)
-    yield tool.to(told.clear)
-    yield tool.across(seat.middle)
-    yield from out(tool, told.surface, told.clear, None)
+    if told.has_finishing:
+        yield from _finish_walls(told, seat, last)
+    yield tool.move_to_z(told.clearance_z_mm)
+    yield tool.move_straight(seat.center)
+    yield from out(tool, told.surface_z_mm, told.clearance_z_mm, None)
 
 
-def _down(told: _Milling, seat: Seat, ring: Ring, above: float, z: float) -> Iterator[Block]:
+def _plunge(
+    milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, above: float, z: float
+) -> Iterator[Block]:
     """Yield the plunge from ``above`` to ``z`` at the start of the center line: straight, helix or zigzag."""
-    tool, half = told.tool, ring.a - ring.b
-    start, end = seat.at(-half, 0.0), seat.at(half, 0.0)
-    yield tool.to(min(told.clear, above + tool.length(200)))
-    yield tool.across(start)
-    if not int(tool.plain(366, 1.0)):
-        yield tool.to(z, told.plunge)
-    elif half > tool.radius:
-        yield tool.to(above, told.plunge)
-        passes = 2 * math.ceil((above - z) / (4.0 * half * _RAMP) - SMALLEST)
+    tool, half = milling.tool, ring.half_side_u_mm - ring.half_side_v_mm
+    start, end = placement.to_program_point(-half, 0.0), placement.to_program_point(half, 0.0)
+    yield tool.move_to_z(min(milling.clearance_z_mm, above + tool.read_length_mm(200)))
+    yield tool.move_straight(start)
+    if not int(tool.read_value(366, 1.0)):
+        yield tool.move_to_z(z, milling.plunge_feed)
+    elif half > tool.radius_mm:
+        yield tool.move_to_z(above, milling.plunge_feed)
+        passes = 2 * math.ceil((above - z) / (4.0 * half * _RAMP) - MIN_LENGTH_MM)
         for count in range(1, passes + 1):
-            yield tool.across((start, end)[count % 2], above + (z - above) * count / passes, told.plunge)
+            yield tool.move_straight(
+                (start, end)[count % 2], above + (z - above) * count / passes, milling.plunge_feed
+            )
     else:
-        yield from _helix(told, seat.moved(-half, 0.0), min(tool.radius, ring.b), above, z)
+        yield from _helix(
+            milling, placement.translate(-half, 0.0), min(tool.radius_mm, ring.half_side_v_mm), above, z
+        )
 
 
-def _helix(told: _Milling, seat: Seat, radius: float, above: float, z: float) -> Iterator[Block]:
+def _helix(
+    told: _MillingParameters, seat: Placement, radius: float, above: float, z: float
+) -> Iterator[Block]:
     tool = told.tool
     text = "There is not enough room to plunge along a ramp."
-    tool.check(radius >= SMALLEST * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
-    begin = seat.at(radius, 0.0)
-    yield tool.across(begin)
-    yield tool.to(above, told.plunge)
-    turns = math.ceil((above - z) / (2.0 * math.pi * radius * _RAMP) - SMALLEST)
-    circle = Arc(begin, begin, seat.middle, told.against)
+    tool.check(radius >= MIN_LENGTH_MM * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
+    begin = seat.to_program_point(radius, 0.0)
+    yield tool.move_straight(begin)
+    yield tool.move_to_z(above, told.plunge_feed)
+    turns = math.ceil((above - z) / (2.0 * math.pi * radius * _RAMP) - MIN_LENGTH_MM)
+    circle = Arc(begin, begin, seat.center, told.is_up_cut)
     for count in range(1, turns + 1):
-        yield tool.round(circle, above + (z - above) * count / turns, told.plunge)
-    yield tool.round(circle, z, told.plunge)
-    yield tool.across(seat.middle, None, told.feed)
+        yield tool.move_on_arc(circle, above + (z - above) * count / turns, told.plunge_feed)
+    yield tool.move_on_arc(circle, z, told.plunge_feed)
+    yield tool.move_straight(seat.center, None, told.feed)
 
 
-def _cleared(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Block]:
+def _clear_level(
+    milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, feed: float
+) -> Iterator[Block]:
     """Yield the clearing moves of the present level, from the center line to the ring."""
-    tool = told.tool
-    if ring.a - ring.b > SMALLEST:
-        yield tool.across(seat.at(ring.a - ring.b, 0.0), None, feed)
-    count = math.ceil(ring.b / told.step - SMALLEST) if ring.b > SMALLEST else 0
+    tool = milling.tool
+    if ring.half_side_u_mm - ring.half_side_v_mm > MIN_LENGTH_MM:
+        yield tool.move_straight(
+            placement.to_program_point(ring.half_side_u_mm - ring.half_side_v_mm, 0.0), None, feed
+        )
+    count = (
+        math.ceil(ring.half_side_v_mm / milling.stepover_mm - MIN_LENGTH_MM)
+        if ring.half_side_v_mm > MIN_LENGTH_MM
+        else 0
+    )
     for at in range(1, count + 1):
-        each = ring.wider(-ring.b * (1.0 - at / count))
-        yield tool.across(seat.at(each.a, 0.0), None, feed)
-        yield from each.milled(tool, seat, feed, clockwise=told.against)
+        each = ring.enlarge(-ring.half_side_v_mm * (1.0 - at / count))
+        yield tool.move_straight(placement.to_program_point(each.half_side_u_mm, 0.0), None, feed)
+        yield from each.mill(tool, placement, feed, is_clockwise=milling.is_up_cut)
 
 
-def _finished(told: _Milling, seat: Seat, ring: Ring) -> Iterator[Block]:
+def _finish_walls(
+    milling: _MillingParameters, placement: Placement, ring: RoundedRectangle
+) -> Iterator[Block]:
     """Yield the finishing moves of floor and walls, with quarter circles as approach and departure."""
-    tool, feed = told.tool, told.last_feed
-    half = seat.at(ring.b - ring.a, 0.0)
-    if told.floor > SMALLEST:
-        yield tool.to(told.clear)
-        yield tool.across(half)
-        yield tool.to(told.bottom, told.plunge)
-        yield from _cleared(told, seat, ring, feed)
-    if told.side <= SMALLEST and told.scope != _FINISH:
+    tool, feed = milling.tool, milling.finishing_feed
+    half = placement.to_program_point(ring.half_side_v_mm - ring.half_side_u_mm, 0.0)
+    if milling.floor_allowance_mm > MIN_LENGTH_MM:
+        yield tool.move_to_z(milling.clearance_z_mm)
+        yield tool.move_straight(half)
+        yield tool.move_to_z(milling.bottom_z_mm, milling.plunge_feed)
+        yield from _clear_level(milling, placement, ring, feed)
+    if milling.side_allowance_mm <= MIN_LENGTH_MM and milling.scope != _FINISH:
         return
-    quarter, side = min(tool.radius / 2.0, ring.b), -1.0 if told.against else 1.0
-    for z in told.wall_levels():
-        yield tool.to(min(told.clear, tool.height + tool.length(200)))
-        yield tool.across(seat.at(ring.a - quarter, -side * quarter))
-        yield tool.to(z, told.plunge)
-        yield from _round_once(told, seat, ring, quarter, feed)
+    quarter, side = min(tool.radius_mm / 2.0, ring.half_side_v_mm), -1.0 if milling.is_up_cut else 1.0
+    for z in milling.compute_wall_levels():
+        yield tool.move_to_z(min(milling.clearance_z_mm, tool.z_position + tool.read_length_mm(200)))
+        yield tool.move_straight(placement.to_program_point(ring.half_side_u_mm - quarter, -side * quarter))
+        yield tool.move_to_z(z, milling.plunge_feed)
+        yield from _mill_ring(milling, placement, ring, quarter, feed)
 
 
-def _round_once(told: _Milling, seat: Seat, ring: Ring, quarter: float, feed: float) -> Iterator[Block]:
+def _mill_ring(
+    milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, quarter: float, feed: float
+) -> Iterator[Block]:
     """Yield the approach to a ring, one round, and the departure.
 
     A positive ``quarter`` approaches from the inside, a negative one from the outside.
     """
-    tool, clockwise = told.tool, told.against
+    tool, clockwise = milling.tool, milling.is_up_cut
     if quarter < 0.0:
         clockwise = not clockwise
     side = -1.0 if clockwise else 1.0
-    on, size = seat.at(ring.a, 0.0), abs(quarter)
-    about = seat.at(ring.a - quarter, 0.0)
+    on, size = placement.to_program_point(ring.half_side_u_mm, 0.0), abs(quarter)
+    about = placement.to_program_point(ring.half_side_u_mm - quarter, 0.0)
     turns = clockwise if quarter > 0.0 else not clockwise
-    if size > SMALLEST:
-        begin = seat.at(ring.a - quarter, -side * size)
-        yield tool.round(Arc(begin, on, about, turns), tool.height, feed)
-    yield from ring.milled(tool, seat, feed, clockwise=clockwise)
-    if size > SMALLEST:
-        end = seat.at(ring.a - quarter, side * size)
-        yield tool.round(Arc(on, end, about, turns), tool.height, feed)
+    if size > MIN_LENGTH_MM:
+        begin = placement.to_program_point(ring.half_side_u_mm - quarter, -side * size)
+        yield tool.move_on_arc(Arc(begin, on, about, turns), tool.z_position, feed)
+    yield from ring.mill(tool, placement, feed, is_clockwise=clockwise)
+    if size > MIN_LENGTH_MM:
+        end = placement.to_program_point(ring.half_side_u_mm - quarter, side * size)
+        yield tool.move_on_arc(Arc(on, end, about, turns), tool.z_position, feed)
 
 
 # --- studs: from the blank inwards
 
 
-def rectangular_stud(tool: CycleTool) -> Iterator[Block]:
+def mill_rectangular_stud(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 256: sides Q218 and Q219, blank Q424 and Q425.
 
     Q220 is the corner radius, and Q224 is the rotation.
     """
-    a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
+    a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
-    seat = Seat(tool.here, tool.plain(224, 0.0)).moved(*_placed(tool, corner))
-    more = max(tool.length(424) / 2.0 - a, tool.length(425) / 2.0 - b)
-    yield from _stud(tool, seat, Ring(a, b, tool.length(220, 0.0)), more)
+    seat = Placement(tool.xy_position, tool.read_value(224, 0.0)).translate(*_placed(tool, corner))
+    more = max(tool.read_length_mm(424) / 2.0 - a, tool.read_length_mm(425) / 2.0 - b)
+    yield from _stud(tool, seat, RoundedRectangle(a, b, tool.read_length_mm(220, 0.0)), more)
 
 
-def circular_stud(tool: CycleTool) -> Iterator[Block]:
+def mill_circular_stud(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 257: diameter Q223, blank Q222, start angle Q376."""
-    radius = tool.length(223) / 2.0
-    seat = Seat(tool.here, max(tool.plain(376, 0.0), 0.0))
-    yield from _stud(tool, seat, Ring(radius, radius, radius), tool.length(222) / 2.0 - radius)
+    radius = tool.read_length_mm(223) / 2.0
+    seat = Placement(tool.xy_position, max(tool.read_value(376, 0.0), 0.0))
+    yield from _stud(
+        tool, seat, RoundedRectangle(radius, radius, radius), tool.read_length_mm(222) / 2.0 - radius
+    )
 
 
-def _stud(tool: CycleTool, seat: Seat, wall: Ring, more: float) -> Iterator[Block]:
-    """Yield rings that approach the stud on each level; ``more`` is the oversize of the blank in mm."""
-    told = _Milling(tool)
-    tool.check(more >= SMALLEST, "The blank is not larger than the stud.", "Correct the blank dimensions.")
-    last = wall.wider(tool.radius)
-    rough = last.wider(told.side if told.scope != _FINISH else 0.0)
-    outside = last.a + more + tool.radius + tool.length(200)
-    yield tool.to(max(told.safe, tool.height))
-    if told.surface - told.bottom < SMALLEST:
+def _stud(
+    tool: CycleTool, placement: Placement, wall: RoundedRectangle, oversize_mm: float
+) -> Iterator[Block]:
+    """Yield rings that approach the stud on each level; ``oversize_mm`` is the oversize of the blank in
+    mm.
+    """
+    told = _MillingParameters(tool)
+    tool.check(
+        oversize_mm >= MIN_LENGTH_MM,
+        "The blank is not larger than the stud.",
+        "Correct the blank dimensions.",
+    )
+    last = wall.enlarge(tool.radius_mm)
+    rough = last.enlarge(told.side_allowance_mm if told.scope != _FINISH else 0.0)
+    outside = last.half_side_u_mm + oversize_mm + tool.radius_mm + tool.read_length_mm(200)
+    yield tool.move_to_z(max(told.safe_z_mm, tool.z_position))
+    if told.surface_z_mm - told.bottom_z_mm < MIN_LENGTH_MM:
         return
-    rounds = math.ceil(more / told.step - SMALLEST)
-    for z in told.levels() if told.scope != _FINISH else ():
+    rounds = math.ceil(oversize_mm / told.stepover_mm - MIN_LENGTH_MM)
+    for z in told.compute_levels() if told.scope != _FINISH else ():
         for at in range(1, rounds + 1):
-            each = rough.wider(more * (1.0 - at / rounds))
-            yield from _approached(told, seat, outside, z, at == 1)
-            yield from _around(told, seat, each, told.feed)
-    if told.finishes:
-        for z in told.wall_levels():
-            yield from _approached(told, seat, outside, z, True)
-            yield from _around(told, seat, last, told.last_feed)
-    yield tool.to(told.clear)
-    yield from out(tool, told.surface, told.clear, None)
+            each = rough.enlarge(oversize_mm * (1.0 - at / rounds))
+            yield from _approach_level(told, placement, outside, z, at == 1)
+            yield from _around(told, placement, each, told.feed)
+    if told.has_finishing:
+        for z in told.compute_wall_levels():
+            yield from _approach_level(told, placement, outside, z, True)
+            yield from _around(told, placement, last, told.finishing_feed)
+    yield tool.move_to_z(told.clearance_z_mm)
+    yield from out(tool, told.surface_z_mm, told.clearance_z_mm, None)
 
 
-def _approached(told: _Milling, seat: Seat, outside: float, z: float, down: bool) -> Iterator[Block]:
+def _approach_level(
+    milling: _MillingParameters, placement: Placement, outside: float, z: float, down: bool
+) -> Iterator[Block]:
     """Yield the rapid to a point next to the blank and the move down to the level."""
-    tool = told.tool
+    tool = milling.tool
     if not down:
         return
-    yield from tool.over(seat.at(outside, 0.0), told.clear)
-    yield tool.to(z, told.plunge)
+    yield from tool.move_above(placement.to_program_point(outside, 0.0), milling.clearance_z_mm)
+    yield tool.move_to_z(z, milling.plunge_feed)
 
 
-def _around(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Block]:
+def _around(
+    told: _MillingParameters, seat: Placement, ring: RoundedRectangle, feed: float
+) -> Iterator[Block]:
     tool = told.tool
-    side = 1.0 if told.against else -1.0  # the direction is opposite to that of a pocket
-    yield tool.across(seat.at(ring.a + tool.radius, -side * tool.radius), None, feed)
-    yield from _round_once(told, seat, ring, -tool.radius, feed)
+    side = 1.0 if told.is_up_cut else -1.0  # the direction is opposite to that of a pocket
+    yield tool.move_straight(
+        seat.to_program_point(ring.half_side_u_mm + tool.radius_mm, -side * tool.radius_mm), None, feed
+    )
+    yield from _mill_ring(told, seat, ring, -tool.radius_mm, feed)
 
 
 # --- circular slots: areas with a separate boundary, cleared by the rings of the SL cycles
 
 
-def circular_slot(tool: CycleTool) -> Iterator[Block]:
+def mill_circular_slot(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 254: width Q219 on the circle Q375, from Q376 over Q248 degrees.
 
     Q377 is the number of slots, and Q378 is the angle between them.
     """
-    surface, clear, _ = heights(tool)
-    safe = max(surface + tool.length(204, 0.0), clear) / tool.scale
+    surface, clear, _ = read_heights(tool)
+    safe = max(surface + tool.read_length_mm(204, 0.0), clear) / tool.mm_per_unit
     centre, begin, sweep = _slot_place(tool)
-    count, step = int(tool.plain(377, 1.0)), tool.plain(378, 0.0)
+    count, step = int(tool.read_value(377, 1.0)), tool.read_value(378, 0.0)
     text = "Q377={count} is not a valid number of slots."
-    tool.check(1 <= count <= _MOST_SLOTS, text, "Enter a valid number.", count=count)
-    scope = int(tool.plain(215, 0.0))
-    side, floor = tool.length(368, 0.0), tool.length(369, 0.0)
+    tool.check(1 <= count <= _MAX_SLOTS, text, "Enter a valid number.", count=count)
+    scope = int(tool.read_value(215, 0.0))
+    side, floor = tool.read_length_mm(368, 0.0), tool.read_length_mm(369, 0.0)
     for at in range(count):
-        area = [slot_of(tool, centre, begin + at * step, sweep)]
-        asked = tool.seen({**_AS_CONTOUR, 7: safe, 19: 206 if tool.plain(366, 1.0) else 0.0})
+        area = [make_slot_outline(tool, centre, begin + at * step, sweep)]
+        asked = tool.with_parameters(
+            {**_CONTOUR_PARAMETERS, 7: safe, 19: 206 if tool.read_value(366, 1.0) else 0.0}
+        )
         if scope != _FINISH:
-            yield from rough_out(asked, area)
-        if scope == _FINISH or (scope == _BOTH and max(side, floor) > SMALLEST):
-            last = tool.seen({**_AS_CONTOUR, 3: 0.0, 4: 0.0, 7: safe, **_finishing(tool)})
-            if floor > SMALLEST:
-                yield from floor_finishing(last, area)
-            yield from side_finishing(last, area)
+            yield from run_roughing(asked, area)
+        if scope == _FINISH or (scope == _BOTH and max(side, floor) > MIN_LENGTH_MM):
+            last = tool.with_parameters({**_CONTOUR_PARAMETERS, 3: 0.0, 4: 0.0, 7: safe, **_finishing(tool)})
+            if floor > MIN_LENGTH_MM:
+                yield from run_floor_finishing(last, area)
+            yield from run_side_finishing(last, area)
 
 
-def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
+def make_slot_outline(tool: CycleTool, center: Point, start_deg: float, sweep_deg: float) -> ElementLoop:
     """Return the outline of one slot, counterclockwise. Raises ProgramError if its dimensions are invalid."""
-    radius, half = tool.length(375) / 2.0, tool.length(219) / 2.0
-    if not SMALLEST < half < radius or not 0.0 < abs(sweep) <= 360.0:
+    radius, half = tool.read_length_mm(375) / 2.0, tool.read_length_mm(219) / 2.0
+    if not MIN_LENGTH_MM < half < radius or not 0.0 < abs(sweep_deg) <= 360.0:
         text = (
             "A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible."
         )
-        raise tool.refuse(text, "Correct Q219, Q248 and Q375.", half=2 * half, sweep=sweep, radius=2 * radius)
-    if radius * math.radians(360.0 - abs(sweep)) < 2.0 * half:
-        raise tool.refuse("The ends of the slot overlap.", "Reduce Q248.")
-    first, last = sorted((begin, begin + sweep))
+        raise tool.make_error(
+            text, "Correct Q219, Q248 and Q375.", half=2 * half, sweep=sweep_deg, radius=2 * radius
+        )
+    if radius * math.radians(360.0 - abs(sweep_deg)) < 2.0 * half:
+        raise tool.make_error("The ends of the slot overlap.", "Reduce Q248.")
+    first, last = sorted((start_deg, start_deg + sweep_deg))
 
     def at(angle: float, away: float) -> Point:
         turned = math.radians(angle)
-        return centre[0] + away * math.cos(turned), centre[1] + away * math.sin(turned)
+        return center[0] + away * math.cos(turned), center[1] + away * math.sin(turned)
 
     wide, near = radius + half, radius - half
     return [
-        Arc(at(first, wide), at(last, wide), centre, False),
+        Arc(at(first, wide), at(last, wide), center, False),
         Arc(at(last, wide), at(last, near), at(last, radius), False),
-        Arc(at(last, near), at(first, near), centre, True),
+        Arc(at(last, near), at(first, near), center, True),
         Arc(at(first, near), at(first, wide), at(first, radius), False),
     ]
 
 
 def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
     """Return center, start angle and sweep, from the parameters or from the tool position (Q367)."""
-    begin, sweep, radius = tool.plain(376), tool.plain(248), tool.length(375) / 2.0
-    place = int(tool.plain(367, 0.0))
+    begin, sweep, radius = tool.read_value(376), tool.read_value(248), tool.read_length_mm(375) / 2.0
+    place = int(tool.read_value(367, 0.0))
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
         tool.check(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
-        return (tool.length(216), tool.length(217)), begin, sweep
+        return (tool.read_length_mm(216), tool.read_length_mm(217)), begin, sweep
     turned = math.radians(begin)  # Q376 is the angle of the tool position
-    x, y = tool.here
+    x, y = tool.xy_position
     return (x - radius * math.cos(turned), y - radius * math.sin(turned)), begin - share * sweep, sweep
 
 
 # The parameters of a slot by the numbers of the SL cycles. Other parameters of these cycles have fixed
 # values.
-_AS_CONTOUR: Parameters = {
+_CONTOUR_PARAMETERS: CycleParameters = {
     1: 201, 2: 370, 3: 368, 4: 369, 5: 203, 6: 200, 9: 351, 10: 202, 11: 206, 12: 207, 14: 0.0,
-    18: 0.0, 208: MAX_FEED, 401: 100.0,
+    18: 0.0, 208: MAX_FEED_VALUE, 401: 100.0,
 }  # fmt: skip
 
 
-def _finishing(tool: CycleTool) -> Parameters:
+def _finishing(tool: CycleTool) -> CycleParameters:
     """Return the finishing parameters: feed Q385, infeeds of Q338, or one infeed if Q338 is 0."""
-    feed: Parameters = {12: 385} if tool.plain(385, 0.0) else {}
-    return {**feed, 10: 338 if tool.plain(338, 0.0) else -1e9}
+    feed: CycleParameters = {12: 385} if tool.read_value(385, 0.0) else {}
+    return {**feed, 10: 338 if tool.read_value(338, 0.0) else -1e9}
 
 
 # --- older cycles with a programmed center (Q216, Q217), executed as newer cycles with these parameters
 
 
-Milling = Callable[[CycleTool], Iterator[Block]]
+MillingCycle = Callable[[CycleTool], Iterator[Block]]
 
-_HEIGHTS: Parameters = {200: 200, 201: 201, 203: 203, 204: 204}
-_SLOT: Parameters = {**_HEIGHTS, 202: 202, 206: 207, 207: 207, 215: 215, 219: 219, 338: 338, 366: 1.0}
-_WALLS: Parameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 338: 202}
+_HEIGHTS: CycleParameters = {200: 200, 201: 201, 203: 203, 204: 204}
+_SLOT: CycleParameters = {**_HEIGHTS, 202: 202, 206: 207, 207: 207, 215: 215, 219: 219, 338: 338, 366: 1.0}
+_WALLS: CycleParameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 338: 202}
 
 
-def _centred(milling: Milling, parameters: Parameters) -> Milling:
+def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> MillingCycle:
     """Return a cycle around Q216, Q217 that executes another cycle with these parameters."""
 
     def run(tool: CycleTool) -> Iterator[Block]:
-        surface, clear, _ = heights(tool)
-        yield tool.to(max(clear, surface + tool.length(204, 0.0), tool.height))
-        yield tool.across((tool.length(216), tool.length(217)))
-        yield from milling(tool.seen(parameters))
+        surface, clear, _ = read_heights(tool)
+        yield tool.move_to_z(max(clear, surface + tool.read_length_mm(204, 0.0), tool.z_position))
+        yield tool.move_straight((tool.read_length_mm(216), tool.read_length_mm(217)))
+        yield from milling(tool.with_parameters(parameters))
 
     return run
 
 
 def _round_corners(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 212, with corners of the tool radius if Q220 is 0."""
-    radius = tool.length(220, 0.0) or tool.radius
-    yield from _centred(rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.scale})(tool)
+    radius = tool.read_length_mm(220, 0.0) or tool.radius_mm
+    yield from _make_centered_cycle(
+        mill_rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.mm_per_unit}
+    )(tool)
 
 
 def _older_stud(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 213; the oversize of the blank is Q221, or the tool diameter without Q221."""
-    more = 2.0 * (tool.plain(221, 0.0) or tool.radius / tool.scale)
-    sides = {424: tool.plain(218) + more, 425: tool.plain(219) + more}
-    yield from _centred(rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(tool)
+    more = 2.0 * (tool.read_value(221, 0.0) or tool.radius_mm / tool.mm_per_unit)
+    sides = {424: tool.read_value(218) + more, 425: tool.read_value(219) + more}
+    yield from _make_centered_cycle(mill_rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(
+        tool
+    )
 
 
-MILLED: dict[int, Milling] = {
-    210: _centred(slot, {**_SLOT, 218: 218, 374: 224}),
-    211: _centred(circular_slot, {**_SLOT, 216: 216, 217: 217, 375: 244, 376: 245, 248: 248}),
+MILLING_CYCLES: dict[int, MillingCycle] = {
+    210: _make_centered_cycle(mill_slot, {**_SLOT, 218: 218, 374: 224}),
+    211: _make_centered_cycle(
+        mill_circular_slot, {**_SLOT, 216: 216, 217: 217, 375: 244, 376: 245, 248: 248}
+    ),
     212: _round_corners,
     213: _older_stud,
-    214: _centred(circular_pocket, {**_WALLS, 223: 223}),
-    215: _centred(circular_stud, {**_WALLS, 222: 222, 223: 223}),
-    251: rectangular_pocket,
-    252: circular_pocket,
-    253: slot,
-    254: circular_slot,
-    256: rectangular_stud,
-    257: circular_stud,
+    214: _make_centered_cycle(mill_circular_pocket, {**_WALLS, 223: 223}),
+    215: _make_centered_cycle(mill_circular_stud, {**_WALLS, 222: 222, 223: 223}),
+    251: mill_rectangular_pocket,
+    252: mill_circular_pocket,
+    253: mill_slot,
+    254: mill_circular_slot,
+    256: mill_rectangular_stud,
+    257: mill_circular_stud,
 }
 """Cycles by their number."""

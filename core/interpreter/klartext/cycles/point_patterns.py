@@ -10,14 +10,14 @@ from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext.cycles.cycle_moves import CycleTool
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import State
-from core.language.klartext.klartext_faults import INPUT_VALUE
-from core.language.klartext.klartext_nodes import PatternDef, PatternPart
+from core.language.klartext.klartext_faults import INPUT_VALUE_INCORRECT
+from core.language.klartext.klartext_nodes import PatternDefinition, PatternPart
 
-MOST_POINTS = 10_000
+MAX_POINTS = 10_000
 _LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
 
 
-def points(state: State, node: PatternDef) -> list[Vector]:
+def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
     """Return X, Y and the height above Q203 of each point, in mm.
 
     Raises ProgramError if there are too many points.
@@ -26,99 +26,99 @@ def points(state: State, node: PatternDef) -> list[Vector]:
     for part in node.parts:
         told = _numbers(state, part)
         found += [(*at, told.get("Z", 0.0)) for at in _of_a_part(state, part, told)]
-    if len(found) > MOST_POINTS:
+    if len(found) > MAX_POINTS:
         text = "The pattern has too many points: {found_count}."
         hint = "The maximum is {most_points} points."
-        raise state.refuse(
-            node.column, INPUT_VALUE, text, hint, found_count=len(found), most_points=MOST_POINTS
+        raise state.make_error(
+            node.column, INPUT_VALUE_INCORRECT, text, hint, found_count=len(found), most_points=MAX_POINTS
         )
     return found
 
 
 def _numbers(state: State, part: PatternPart) -> dict[str, float]:
     return {
-        word.axis: word_values.number(state, word.value, word.axis, word_values.MOST_COORDINATE)
-        * (state.scale if word.axis in _LENGTHS else 1.0)
+        word.axis: word_values.number(state, word.value, word.axis, word_values.MAX_COORDINATE)
+        * (state.mm_per_unit if word.axis in _LENGTHS else 1.0)
         for word in part.words
     }
 
 
 def _of_a_part(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
     x, y = told["X"], told["Y"]
-    if part.form == "POS":
+    if part.kind == "POS":
         yield x, y
-    elif part.form == "ROW":
+    elif part.kind == "ROW":
         angle = math.radians(told.get("ROT", 0.0))
         for at in range(_count(state, part, told["NUM"])):
             yield x + at * told["D"] * math.cos(angle), y + at * told["D"] * math.sin(angle)
-    elif part.form in {"PAT", "FRAME"}:
+    elif part.kind in {"PAT", "FRAME"}:
         yield from _grid(state, part, told)
     else:
         count = _count(state, part, told["NUM"])
-        step = told["STEP"] if part.form == "PITCHCIRC" else 360.0 / count
+        step = told["STEP"] if part.kind == "PITCHCIRC" else 360.0 / count
         yield from _circle((x, y), told["D"] / 2.0, count, told.get("START", 0.0), step)
 
 
-def _grid(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
+def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator[tuple[float, float]]:
     """Yield the points of a grid in alternating directions; for a frame, only the border."""
-    columns, rows = _count(state, part, told["NUMX"]), _count(state, part, told["NUMY"])
-    turn = told.get("ROT", 0.0)
-    u = math.radians(turn + told.get("ROTX", 0.0))
-    v = math.radians(turn + 90.0 + told.get("ROTY", 0.0))
-    for column, row in _there_and_back(columns, rows):
-        if part.form == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
+    columns, rows = _count(state, part, values["NUMX"]), _count(state, part, values["NUMY"])
+    turn = values.get("ROT", 0.0)
+    u = math.radians(turn + values.get("ROTX", 0.0))
+    v = math.radians(turn + 90.0 + values.get("ROTY", 0.0))
+    for column, row in _alternating_cells(columns, rows):
+        if part.kind == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
             continue
-        along, across = column * told["DX"], row * told["DY"]
+        along, across = column * values["DX"], row * values["DY"]
         yield (
-            told["X"] + along * math.cos(u) + across * math.cos(v),
-            told["Y"] + along * math.sin(u) + across * math.sin(v),
+            values["X"] + along * math.cos(u) + across * math.cos(v),
+            values["Y"] + along * math.sin(u) + across * math.sin(v),
         )
 
 
 def _count(state: State, part: PatternPart, number: float) -> int:
-    if number != int(number) or not 1 <= number <= MOST_POINTS:
+    if number != int(number) or not 1 <= number <= MAX_POINTS:
         text = "{form}: {number} is not a valid number of points."
         hint = "Enter a whole number of 1 or more."
-        raise state.refuse(part.column, INPUT_VALUE, text, hint, form=part.form, number=number)
+        raise state.make_error(part.column, INPUT_VALUE_INCORRECT, text, hint, form=part.kind, number=number)
     return int(number)
 
 
-def on_circle(tool: CycleTool) -> list[Point]:
+def compute_circle_points(tool: CycleTool) -> list[Point]:
     """Return the points of cycle 220. Raises ProgramError for invalid parameters."""
-    centre, radius = (tool.length(216), tool.length(217)), tool.length(244) / 2.0
-    count, first = _told_count(tool, 241), tool.plain(245, 0.0)
-    step = tool.plain(247, 0.0)
+    centre, radius = (tool.read_length_mm(216), tool.read_length_mm(217)), tool.read_length_mm(244) / 2.0
+    count, first = _told_count(tool, 241), tool.read_value(245, 0.0)
+    step = tool.read_value(247, 0.0)
     if not step:
-        swept = tool.plain(246, first + 360.0) - first
+        swept = tool.read_value(246, first + 360.0) - first
         step = swept / count if abs(swept) >= 360.0 or count == 1 else swept / (count - 1)
     return list(_circle(centre, radius, count, first, step))
 
 
-def in_rows(tool: CycleTool) -> list[Point]:
+def compute_row_points(tool: CycleTool) -> list[Point]:
     """Return the points of cycle 221 by rows in alternating directions. Raises ProgramError."""
-    x, y = tool.length(225), tool.length(226)
+    x, y = tool.read_length_mm(225), tool.read_length_mm(226)
     columns, rows = _told_count(tool, 242), _told_count(tool, 243)
-    angle = math.radians(tool.plain(224, 0.0))
+    angle = math.radians(tool.read_value(224, 0.0))
     c, s, found = math.cos(angle), math.sin(angle), list[Point]()
-    for column, row in _there_and_back(columns, rows):
-        u, v = column * tool.length(237), row * tool.length(238)
+    for column, row in _alternating_cells(columns, rows):
+        u, v = column * tool.read_length_mm(237), row * tool.read_length_mm(238)
         found.append((x + u * c - v * s, y + u * s + v * c))
     return found
 
 
 def _told_count(tool: CycleTool, q: int) -> int:
-    count, text = int(tool.plain(q)), "Q{parameter}={count} is not a valid number of positions."
-    tool.check(1 <= count <= MOST_POINTS, text, "Enter a valid number.", parameter=q, count=count)
+    count, text = int(tool.read_value(q)), "Q{parameter}={count} is not a valid number of positions."
+    tool.check(1 <= count <= MAX_POINTS, text, "Enter a valid number.", parameter=q, count=count)
     return count
 
 
-def _circle(centre: Point, radius: float, count: int, first: float, step: float) -> Iterator[Point]:
+def _circle(center: Point, radius: float, count: int, first: float, step: float) -> Iterator[Point]:
     """Yield points on a circle from an angle in degrees."""
     for angle in (math.radians(first + at * step) for at in range(count)):
-        yield centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
+        yield center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle)
 
 
-def _there_and_back(columns: int, rows: int) -> Iterator[tuple[int, int]]:
+def _alternating_cells(columns: int, rows: int) -> Iterator[tuple[int, int]]:
     """Yield column and row of each point of a grid, with every second row reversed."""
     for row in range(rows):
         order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)

@@ -8,19 +8,19 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from core.interpreter.klartext.klartext_state import SAME_POINT, State
+from core.interpreter.klartext.klartext_state import POINT_TOLERANCE, State
 from core.language.diagnostics import Severity
-from core.language.klartext.klartext_faults import INPUT_VALUE, WRONG_RPM, unsupported
-from core.language.klartext.klartext_nodes import MCode
+from core.language.klartext.klartext_faults import INPUT_VALUE_INCORRECT, WRONG_RPM, make_unsupported_error
+from core.language.klartext.klartext_nodes import MFunction
 
 REVOLUTION, TOOTH = "U", "Z"
-MOST_FEED = 99_999.999
-_LITTLE = 0.001  # degrees; test distance of a rotary move
-_ON_THE_AXIS = 1e-6  # mm per degree
+MAX_FEED = 99_999.999
+_TEST_ANGLE_DEG = 0.001  # degrees; test distance of a rotary move
+_MIN_MM_PER_DEGREE = 1e-6  # mm per degree
 _TENTHS = 10.0  # F of an INCH program is in tenths of an inch
 
 
-def switch(state: State, codes: Sequence[MCode]) -> None:
+def execute_feed_codes(state: State, codes: Sequence[MFunction]) -> None:
     """Execute M136 and M137 (feed per revolution or per minute), and M103 (plunging factor in percent).
 
     M136 and M137 cancel the active feed, because its number has another unit. Raises ProgramError.
@@ -29,84 +29,91 @@ def switch(state: State, codes: Sequence[MCode]) -> None:
         if code.number in {136, 137}:
             _count_revolutions(state, code)
         elif code.number == 103:
-            state.plunging = None if code.feed is None else _factor(state, code)
+            state.plunging_feed_factor = None if code.feed is None else _factor(state, code)
 
 
-def _count_revolutions(state: State, code: MCode) -> None:
-    if code.number == 136 and state.scale != 1.0:
-        raise unsupported(state.line, code.column, "M136 in an INCH program")
-    if state.per_revolution != (code.number == 136):
+def _count_revolutions(state: State, code: MFunction) -> None:
+    if code.number == 136 and state.mm_per_unit != 1.0:
+        raise make_unsupported_error(state.line_number, code.column, "M136 in an INCH program")
+    if state.is_feed_per_revolution != (code.number == 136):
         state.feed = state.tool_feed = None
-    state.per_revolution = code.number == 136
+    state.is_feed_per_revolution = code.number == 136
 
 
-def _factor(state: State, code: MCode) -> float:
+def _factor(state: State, code: MFunction) -> float:
     value = code.feed.value if code.feed is not None else None
     assert value is not None  # guaranteed by the reader
-    if value.q is not None:
-        raise unsupported(state.line, value.column, "M103 with a Q parameter")
+    if value.parameter_number is not None:
+        raise make_unsupported_error(state.line_number, value.column, "M103 with a Q parameter")
     if not 0.0 < value.number <= 100.0:
         text = "M103 F{number} must be above 0 and at most 100 percent."
         hint = "Write M103 F20 for a fifth of the feed."
-        raise state.refuse(value.column, INPUT_VALUE, text, hint, number=value.number)
+        raise state.make_error(value.column, INPUT_VALUE_INCORRECT, text, hint, number=value.number)
     return value.number / 100.0
 
 
-def per_minute(state: State, feed: float, per: str, column: int) -> float:
+def convert_to_feed_per_minute(state: State, feed: float, base: str, column: int) -> float:
     """Return a feed per minute in mm, or in tenths of an inch in an INCH program.
 
     Raises ProgramError if the spindle is stopped, the number of teeth is unknown, or the feed is too high.
     """
-    if not per:
+    if not base:
         return feed
-    word = "F under M136" if state.per_revolution and per == REVOLUTION else f"F{per}"
+    word = "F under M136" if state.is_feed_per_revolution and base == REVOLUTION else f"F{base}"
     rpm = state.modal.rpm if state.modal.spindle else 0.0
     if rpm <= 0.0:
         text = "{word} depends on the spindle speed, but the spindle is stopped."
         hint = "Start the spindle with M3 or M4 before this block."
-        raise state.refuse(column, WRONG_RPM, text, hint, word=word)
-    made = feed * rpm * (_teeth(state, column) if per == TOOTH else 1)
-    made *= 1.0 if state.scale == 1.0 else _TENTHS
-    if made > MOST_FEED:
+        raise state.make_error(column, WRONG_RPM, text, hint, word=word)
+    made = feed * rpm * (_teeth(state, column) if base == TOOTH else 1)
+    made *= 1.0 if state.mm_per_unit == 1.0 else _TENTHS
+    if made > MAX_FEED:
         text = "{word} {feed} at S{rpm} gives a feed rate of {count}, which is above the maximum."
         hint = "Correct the feed rate."
-        raise state.refuse(column, INPUT_VALUE, text, hint, word=word, feed=feed, rpm=rpm, count=made)
+        raise state.make_error(
+            column, INPUT_VALUE_INCORRECT, text, hint, word=word, feed=feed, rpm=rpm, count=made
+        )
     text = "{word} uses the programmed S, so the spindle override does not change the feed rate."
-    state.tell_once(column, Severity.NOTE, "feed-by-programmed-speed", text, word=word)
+    state.log_once(column, Severity.NOTE, "feed-by-programmed-speed", text, word=word)
     return made
 
 
 def _teeth(state: State, column: int) -> int:
     tool = state.modal.tool
     row = state.setup.mill_tools.get(tool)
-    if row is None or row.teeth < 1:
+    if row is None or row.tooth_count < 1:
         text = "FZ is feed per tooth, but the number of teeth (CUT) of tool {tool} is not in the tool table."
         hint = "Enter the number of teeth (CUT) in the tool table, or program F."
-        raise state.refuse(column, INPUT_VALUE, text, hint, tool=tool)
-    return row.teeth
+        raise state.make_error(column, INPUT_VALUE_INCORRECT, text, hint, tool=tool)
+    return row.tooth_count
 
 
-def plunged(state: State, feed: float | None, length: float, down: float) -> float | None:
-    """Return the feed of a move of ``length`` that descends by ``down``, reduced by the factor of M103."""
-    if state.plunging is None or feed is None or down <= SAME_POINT:
+def reduce_plunging_feed(state: State, feed: float | None, length: float, descent: float) -> float | None:
+    """Return the feed of a move of ``length`` that descends by ``descent``, reduced by the factor of M103."""
+    if state.plunging_feed_factor is None or feed is None or descent <= POINT_TOLERANCE:
         return feed
-    return feed * min(1.0, state.plunging * length / down)
+    return feed * min(1.0, state.plunging_feed_factor * length / descent)
 
 
-def rotary_feed(state: State, feed: float, goals: Mapping[str, float]) -> float:
-    """Return the feed of a move of only rotary axes to ``goals``, in degrees/s.
+def compute_rotary_feed(state: State, feed: float, targets: Mapping[str, float]) -> float:
+    """Return the feed of a move of only rotary axes to ``targets``, in degrees/s.
 
     F is in degrees/min. Under M116, F is in mm/min of the tip on the workpiece, calculated from its distance
     to the axes at the start; on the axis line, degrees apply.
     """
-    way = {name: goal - state.rotary[name] for name, goal in goals.items()}
+    way = {name: goal - state.rotary_angles[name] for name, goal in targets.items()}
     whole = math.hypot(*way.values())
-    if not state.rotary_by_way or whole <= SAME_POINT:
+    if not state.is_rotary_feed_at_tip or whole <= POINT_TOLERANCE:
         return feed / 60.0
-    begin = {name: state.rotary[name] + way.get(name, 0.0) * _LITTLE / whole for name in state.rotary}
+    begin = {
+        name: state.rotary_angles[name] + way.get(name, 0.0) * _TEST_ANGLE_DEG / whole
+        for name in state.rotary_angles
+    }
     there, here = (
-        state.kinematics.place(angles, tool_length=state.tool_length).point(state.slides)
-        for angles in (begin, state.rotary)
+        state.kinematics.make_transform(angles, tool_length=state.tool_length_mm).to_frame_point(
+            state.linear_position
+        )
+        for angles in (begin, state.rotary_angles)
     )
-    per_degree = math.dist(there, here) / _LITTLE
-    return state.path_feed(feed) / per_degree if per_degree > _ON_THE_AXIS else feed / 60.0
+    per_degree = math.dist(there, here) / _TEST_ANGLE_DEG
+    return state.convert_feed_to_mm_s(feed) / per_degree if per_degree > _MIN_MM_PER_DEGREE else feed / 60.0

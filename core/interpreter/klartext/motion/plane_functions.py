@@ -11,173 +11,189 @@ from core.geometry.rotation_frames import (
     X_AXIS,
     Y_AXIS,
     Z_AXIS,
+    InvalidFrameError,
     Matrix,
-    NoFrameError,
     Vector,
-    applied,
-    from_euler,
-    from_points,
-    from_projections,
-    from_spatial,
-    from_vectors,
-    minus,
-    plus,
-    product,
-    scaled,
-    transposed,
-    turned,
+    add_vectors,
+    apply_matrix,
+    frame_from_euler_angles,
+    frame_from_points,
+    frame_from_projections,
+    frame_from_spatial_angles,
+    frame_from_vectors,
+    multiply_matrices,
+    rotation_about,
+    scale_vector,
+    subtract_vectors,
+    transpose_matrix,
 )
-from core.geometry.swivel_angles import SolutionSide, choose, fitting
+from core.geometry.swivel_angles import SolutionSide, choose_solution, find_reachable_solutions
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import (
-    ORIGIN,
-    Q_TARGETS,
-    ROTARY,
-    SAME_POINT,
-    SLIDES,
+    LINEAR_AXES,
+    ORIGIN_POINT,
+    POINT_TOLERANCE,
+    ROTARY_AXES,
+    TARGET_ANGLE_PARAMETERS,
+    ActivePlane,
     State,
-    WorkingPlane,
 )
 from core.interpreter.klartext.motion.path_elements import PathElement
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.klartext.klartext_faults import (
-    ANGLE,
-    INPUT_VALUE,
-    M128_ON,
-    PLANE_WRONG,
+    ANGLE_NOT_PERMITTED,
+    INPUT_VALUE_INCORRECT,
+    M128_ACTIVE,
+    PLANE_INCORRECT,
     TOOL_AXIS_MISSING,
     WRONG_AXIS,
 )
-from core.language.klartext.klartext_nodes import AxisWord, Plane, Retract
+from core.language.klartext.klartext_nodes import AxisWord, PlaneBlock, RetractWord
 from core.message import Message
 
 # --- frame and angles of a PLANE block, without motion
 
 
-_ABOUT = {"SPA": X_AXIS, "SPB": Y_AXIS, "SPC": Z_AXIS}
+_ROTATION_AXES = {"SPA": X_AXIS, "SPB": Y_AXIS, "SPC": Z_AXIS}
 
 
-def working_plane(state: State, node: Plane) -> WorkingPlane:
+def make_working_plane(state: State, node: PlaneBlock) -> ActivePlane:
     """Return the plane of a block. Raises ProgramError if it is not defined or cannot be reached."""
-    if node.form == "AXIAL":
+    if node.kind == "AXIAL":
         return _axial(state, node)
-    frame = product(_base(state, node), _as_figured(state, node, _FORMS[node.form](state, node)))
-    side = SolutionSide(node.positioning.side) if node.positioning.side else None
-    table_rot = node.positioning.rotation == "TABLE ROT"
-    found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
+    frame = multiply_matrices(
+        _base(state, node), _transform_frame(state, node, _FORMS[node.kind](state, node))
+    )
+    side = SolutionSide(node.positioning.solution) if node.positioning.solution else None
+    table_rot = node.positioning.rotation_mode == "TABLE ROT"
+    found = choose_solution(state.kinematics, frame, state.rotary_angles, side, rotates_table=table_rot)
     if found is None:
         asked = Message(" when {side} is programmed", side=side) if side else ""
         text = "The rotary axes cannot reach this plane within their ranges{requested}."
-        raise state.refuse(node.column, ANGLE, text, "Check the points, angles and SYM.", requested=asked)
-    if side is None and not state.table_known:
-        _tell_of_two_ways(state, node, frame)
-    return WorkingPlane(frame, found.angles, state.line)
+        raise state.make_error(
+            node.column, ANGLE_NOT_PERMITTED, text, "Check the points, angles and SYM.", requested=asked
+        )
+    if side is None and not state.is_table_positioned:
+        _note_swivel_direction(state, node, frame)
+    return ActivePlane(frame, found.axis_angles, state.line_number)
 
 
-def _tell_of_two_ways(state: State, node: Plane, frame: Matrix) -> None:
+def _note_swivel_direction(state: State, node: PlaneBlock, frame: Matrix) -> None:
     """Note that the swivel direction depends on the start position of the table.
 
     The proof does not know this position.
     """
-    if len(fitting(state.kinematics, frame, state.rotary)) > 1:
+    if len(find_reachable_solutions(state.kinematics, frame, state.rotary_angles)) > 1:
         text = (
             "There are two possible swivel directions; the start position of the table "
             "determines which direction is used."
         )
         hint = "Write SYM+ or SYM-, or position the table before this block."
-        state.log.add(Diagnostic(state.line, node.column, Severity.NOTE, "two-ways", text, hint))
+        state.log.add(Diagnostic(state.line_number, node.column, Severity.NOTE, "two-ways", text, hint))
 
 
-def _axial(state: State, node: Plane) -> WorkingPlane:
+def _axial(state: State, node: PlaneBlock) -> ActivePlane:
     """Return the plane of PLANE AXIAL: absolute or incremental axis angles, without the basic rotation."""
-    angles = state.targets
+    angles = state.target_angles
     for word in node.words:
-        axis = state.kinematics.rotary(word.axis)
+        axis = state.kinematics.find_rotary_axis(word.axis)
         if axis is None:
             text = "This machine has no rotary axis {axis}."
             hint = "Remove the word, or select a machine with axis {axis}."
-            raise state.refuse(word.column, WRONG_AXIS, text, hint, axis=word.axis)
-        value = word_values.number(state, word.value, word.axis, word_values.MOST_ANGLE)
-        zero = state.kinematics.zero[axis.name]
-        angle = angles[axis.name] + value if word.incremental else value + zero
-        if not axis.inside(angle):
-            ends = Message("{low} and {high}", low=f"{axis.low - zero:g}", high=f"{axis.high - zero:g}")
+            raise state.make_error(word.column, WRONG_AXIS, text, hint, axis=word.axis)
+        value = word_values.number(state, word.value, word.axis, word_values.MAX_AXIS_ANGLE_DEG)
+        zero = state.kinematics.zero_angles[axis.name]
+        angle = angles[axis.name] + value if word.is_incremental else value + zero
+        if not axis.is_in_range(angle):
+            ends = Message(
+                "{low} and {high}", low=f"{axis.travel_min - zero:g}", high=f"{axis.travel_max - zero:g}"
+            )
             text = "{axis} {angle} is not between {ends}."
             hint = "Correct the angle."
-            raise state.refuse(
-                word.column, ANGLE, text, hint, axis=axis.name, angle=f"{angle - zero:+.7g}", ends=ends
+            raise state.make_error(
+                word.column,
+                ANGLE_NOT_PERMITTED,
+                text,
+                hint,
+                axis=axis.name,
+                angle=f"{angle - zero:+.7g}",
+                ends=ends,
             )
-        angles[axis.name] = axis.displayed(angle)
-    return WorkingPlane(state.kinematics.frame(angles), angles, state.line)
+        angles[axis.name] = axis.displayed_angle(angle)
+    return ActivePlane(state.kinematics.tool_frame(angles), angles, state.line_number)
 
 
-def _points(state: State, node: Plane) -> Matrix:
-    x1, y1, z1, x2, y2, z2, x3, y3, z3 = (number * state.scale for number in _lengths(state, node))
-    return _made(state, node, lambda: from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
+def _points(state: State, node: PlaneBlock) -> Matrix:
+    x1, y1, z1, x2, y2, z2, x3, y3, z3 = (number * state.mm_per_unit for number in _lengths(state, node))
+    return _made(state, node, lambda: frame_from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
 
 
-def _vector(state: State, node: Plane) -> Matrix:
+def _vector(state: State, node: PlaneBlock) -> Matrix:
     bx, by, bz, nx, ny, nz = _lengths(state, node)
-    return _made(state, node, lambda: from_vectors((bx, by, bz), (nx, ny, nz)))
+    return _made(state, node, lambda: frame_from_vectors((bx, by, bz), (nx, ny, nz)))
 
 
-def _lengths(state: State, node: Plane) -> list[float]:
-    most = word_values.MOST_POINT
+def _lengths(state: State, node: PlaneBlock) -> list[float]:
+    most = word_values.MAX_POINT_COORDINATE
     return [word_values.number(state, word.value, word.axis, most) for word in node.words]
 
 
-def _made(state: State, node: Plane, frame: Callable[[], Matrix]) -> Matrix:
+def _made(state: State, node: PlaneBlock, frame: Callable[[], Matrix]) -> Matrix:
     try:
         return frame()
-    except NoFrameError as problem:
+    except InvalidFrameError as problem:
         text = "Correct the points, vectors or angles."
-        raise state.refuse(
-            node.column, PLANE_WRONG, "{what}.", text, what=str(problem).capitalize()
+        raise state.make_error(
+            node.column, PLANE_INCORRECT, "{what}.", text, what=str(problem).capitalize()
         ) from problem
 
 
-def _projected(state: State, node: Plane) -> Matrix:
+def _projected(state: State, node: PlaneBlock) -> Matrix:
     first, second, rotation = (_angle(state, word) for word in node.words)
-    return _made(state, node, lambda: from_projections(first, second, rotation))
+    return _made(state, node, lambda: frame_from_projections(first, second, rotation))
 
 
-def _euler(state: State, node: Plane) -> Matrix:
+def _euler(state: State, node: PlaneBlock) -> Matrix:
     precession, nutation, rotation = (_angle(state, word) for word in node.words)
-    return from_euler(precession, nutation, rotation)
+    return frame_from_euler_angles(precession, nutation, rotation)
 
 
-def _spatial(state: State, node: Plane) -> Matrix:
+def _spatial(state: State, node: PlaneBlock) -> Matrix:
     a, b, c = (_angle(state, word) for word in node.words)
-    return from_spatial(a, b, c)
+    return frame_from_spatial_angles(a, b, c)
 
 
-def _relative(state: State, node: Plane) -> Matrix:
+def _relative(state: State, node: PlaneBlock) -> Matrix:
     """Return the rotation of PLANE RELATIV about an axis of the active plane, or of the workpiece system."""
     (word,) = node.words
-    return turned(_ABOUT[word.axis], _angle(state, word))
+    return rotation_about(_ROTATION_AXES[word.axis], _angle(state, word))
 
 
-def _base(state: State, node: Plane) -> Matrix:
+def _base(state: State, node: PlaneBlock) -> Matrix:
     """Return the reference frame of the block: the basic rotation, or for RELATIV the active plane."""
-    relative = node.form == "RELATIV" and state.plane is not None
-    return state.plane.frame if relative and state.plane is not None else state.kinematics.basic
+    relative = node.kind == "RELATIV" and state.active_plane is not None
+    return (
+        state.active_plane.frame
+        if relative and state.active_plane is not None
+        else state.kinematics.workpiece_rotation
+    )
 
 
-def _as_figured(state: State, node: Plane, frame: Matrix) -> Matrix:
+def _transform_frame(state: State, node: PlaneBlock, frame: Matrix) -> Matrix:
     """Return the frame in a system changed by TRANS MIRROR, ROTATION and SCALE: T F T⁻¹.
 
     The program in the plane is also transformed by T, so that p = T F q, the mirrored or rotated image of the
     original plane. PLANE AXIAL specifies axis angles and is not changed.
     """
-    figure = state.figure
-    if figure.plain:
+    figure = state.transformation
+    if figure.is_identity:
         return frame
     text = "MIRROR, ROTATION or SCALE is active and also applies to PLANE {form}."
     hint = "Check the axis angles, write PLANE before MIRROR, ROTATION and SCALE, or use PLANE AXIAL."
-    state.log.warn(state.line, node.column, "plane-figure", text, hint, form=node.form)
-    columns = [figure.plane(applied(frame, figure.program(unit))) for unit in IDENTITY]
-    return transposed((columns[0], columns[1], columns[2]))
+    state.log.warn(state.line_number, node.column, "plane-figure", text, hint, form=node.kind)
+    columns = [figure.to_plane(apply_matrix(frame, figure.to_program(unit))) for unit in IDENTITY]
+    return transpose_matrix((columns[0], columns[1], columns[2]))
 
 
 _FORMS = {
@@ -191,90 +207,104 @@ _FORMS = {
 
 
 def _angle(state: State, word: AxisWord) -> float:
-    return word_values.number(state, word.value, word.axis, word_values.MOST_SPATIAL)
+    return word_values.number(state, word.value, word.axis, word_values.MAX_SPATIAL_ANGLE_DEG)
 
 
-SHORT_OF_LIMIT = 0.001  # mm; distance of MB MAX from the software limit
+LIMIT_CLEARANCE_MM = 0.001  # mm; distance of MB MAX from the software limit
 
 
-def plane(state: State, node: Plane) -> Iterator[Block]:
+def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
     """Yield the blocks of PLANE: the retract, if any, and a block of kind ``plane``.
 
     Raises ProgramError before any change.
     """
     _demand_possible(state, node)
-    made = None if node.form == "RESET" else working_plane(state, node)
-    if made is not None and made.frame != state.kinematics.basic:
-        _demand_tool_axis(state, node)
-    targets = state.kinematics.zero if made is None else made.targets
-    way = node.positioning.way or "STAY"
-    feed = word_values.feed_word(state, node.positioning.feed, node.column) if way != "STAY" else None
-    up = retract_way(state, node.positioning.retract)
-    distance = word_values.length(state, node.positioning.distance, "DIST")
-    _warn_of_shift(state, made)
-    for q, name in zip(Q_TARGETS, ROTARY, strict=True):
-        axis = state.kinematics.rotary(name)
-        state.q[q] = 0.0 if axis is None else state.kinematics.shown(axis, targets[name])
-    if up > SAME_POINT:
-        yield retract(state, up, feed)
+    made = None if node.kind == "RESET" else make_working_plane(state, node)
+    if made is not None and made.frame != state.kinematics.workpiece_rotation:
+        _check_tool_axis(state, node)
+    targets = state.kinematics.zero_angles if made is None else made.target_angles
+    way = node.positioning.mode or "STAY"
+    feed = word_values.evaluate_feed(state, node.positioning.feed, node.column) if way != "STAY" else None
+    up = compute_retract_length(state, node.positioning.retract)
+    distance = word_values.evaluate_length_mm(state, node.positioning.distance, "DIST")
+    _warn_about_shift(state, made)
+    for q, name in zip(TARGET_ANGLE_PARAMETERS, ROTARY_AXES, strict=True):
+        axis = state.kinematics.find_rotary_axis(name)
+        state.q_values[q] = 0.0 if axis is None else state.kinematics.displayed_angle(axis, targets[name])
+    if up > POINT_TOLERANCE:
+        yield make_retract_block(state, up, feed)
     pivot = _pivot(state, distance) if way == "MOVE" else None
-    goal = state.rotary if way == "STAY" else _goal(state, targets)
-    state.table_known = state.table_known or way != "STAY"
+    goal = state.rotary_angles if way == "STAY" else _goal(state, targets)
+    state.is_table_positioned = state.is_table_positioned or way != "STAY"
     state.set_plane(made)
     yield _swivel(state, goal, feed, pivot, distance)
 
 
-def retract(state: State, up: float, feed: float | None) -> Block:
+def make_retract_block(state: State, distance_mm: float, feed: float | None) -> Block:
     """Return a retract from the workpiece along the tool; ``feed`` is as programmed, None for a rapid."""
-    goal = dict(zip(SLIDES, _raised(state, up), strict=True))
-    rate = None if feed is None else state.path_feed(feed)
-    return state.move(Kind.RAPID if rate is None else Kind.FEED, goal, rate)
+    goal = dict(zip(LINEAR_AXES, _raised(state, distance_mm), strict=True))
+    rate = None if feed is None else state.convert_feed_to_mm_s(feed)
+    return state.make_move_block(BlockKind.RAPID if rate is None else BlockKind.FEED, goal, rate)
 
 
-def retract_way(state: State, asked: Retract | None) -> float:
+def compute_retract_length(state: State, retract_word: RetractWord | None) -> float:
     """Return the length of MB in mm, or 0 without it; MB MAX ends just before the first software limit."""
-    if asked is None:
+    if retract_word is None:
         return 0.0
-    if asked.distance is not None:
-        return word_values.length(state, asked.distance, "MB")
+    if retract_word.distance is not None:
+        return word_values.evaluate_length_mm(state, retract_word.distance, "MB")
     ways = []
     for slide, at, share in zip(
-        state.kinematics.slides, state.slides, state.kinematics.tool_axis(state.rotary), strict=True
+        state.kinematics.linear_axes,
+        state.linear_position,
+        state.kinematics.tool_direction(state.rotary_angles),
+        strict=True,
     ):
-        if abs(share) > SAME_POINT:
-            ways.append(((slide.high if share > 0.0 else slide.low) - at) / share)
+        if abs(share) > POINT_TOLERANCE:
+            ways.append(((slide.travel_max if share > 0.0 else slide.travel_min) - at) / share)
     up = min(ways, default=math.inf)
     text = "MB MAX needs a software limit, but this machine does not have one along the tool axis."
-    state.check(not math.isinf(up), asked.column, INPUT_VALUE, text, "Write MB with a length.")
-    return max(up - SHORT_OF_LIMIT, 0.0)
+    state.check(
+        not math.isinf(up), retract_word.column, INPUT_VALUE_INCORRECT, text, "Write MB with a length."
+    )
+    return max(up - LIMIT_CLEARANCE_MM, 0.0)
 
 
-def _demand_possible(state: State, node: Plane) -> None:
+def _demand_possible(state: State, node: PlaneBlock) -> None:
     text = "M128 is active."
-    state.check(not state.m128, node.column, M128_ON, text, "Switch M128 off with M129 before this block.")
+    state.check(
+        not state.is_tcpm_active,
+        node.column,
+        M128_ACTIVE,
+        text,
+        "Switch M128 off with M129 before this block.",
+    )
 
 
-def _demand_tool_axis(state: State, node: Plane) -> None:
+def _check_tool_axis(state: State, node: PlaneBlock) -> None:
     """Raise ProgramError if a tilted plane has no tool axis; a plane that is not tilted needs none."""
     if not state.tool_axis:
         text = "No TOOL CALL has defined a tool axis."
-        raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before this block.")
+        raise state.make_error(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before this block.")
 
 
 def _raised(state: State, up: float) -> Vector:
-    return minus(state.slides, scaled(state.kinematics.tool_axis(state.rotary), -up))
+    return subtract_vectors(
+        state.linear_position, scale_vector(state.kinematics.tool_direction(state.rotary_angles), -up)
+    )
 
 
 def _pivot(state: State, distance: float) -> Vector:
     """Return the pivot point of MOVE in the machine-parallel system at the workpiece zero."""
-    place = state.kinematics.place(state.rotary, tool_length=state.tool_length)
-    return place.point(_raised(state, -distance))
+    place = state.kinematics.make_transform(state.rotary_angles, tool_length=state.tool_length_mm)
+    return place.to_frame_point(_raised(state, -distance))
 
 
 def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
     return {
-        axis.name: state.at[axis.name] + axis.travel(state.at[axis.name], targets[axis.name])
-        for axis in state.kinematics.rotaries
+        axis.name: state.position_by_axis[axis.name]
+        + axis.find_travel(state.position_by_axis[axis.name], targets[axis.name])
+        for axis in state.kinematics.rotary_axes
     }
 
 
@@ -283,62 +313,70 @@ def _swivel(
 ) -> Block:
     """Return the block of kind ``plane``: only rotary axes, or with linear axes that hold the pivot point."""
     rate = None if feed is None else feed / 60.0
-    start = state.rotary
+    start = state.rotary_angles
     turn = math.hypot(*(goal[name] - at for name, at in start.items()))
-    if pivot is None or turn <= SAME_POINT:
-        return state.move(Kind.PLANE, goal, rate)
-    way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length, turn)
-    return state.move(Kind.PLANE, way.goals(), rate, way)
+    if pivot is None or turn <= POINT_TOLERANCE:
+        return state.make_move_block(BlockKind.PLANE, goal, rate)
+    way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length_mm, turn)
+    return state.make_move_block(BlockKind.PLANE, way.end_positions(), rate, way)
 
 
-def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
+def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
     """Warn of a datum shift in a tilted system that another PLANE follows, which is a common mistake."""
-    if made is None or state.plane is None or state.shift == ORIGIN:
+    if plane is None or state.active_plane is None or state.shift == ORIGIN_POINT:
         return
     text = "The datum was shifted in the tilted coordinate system that is defined on line {line}."
     hint = (
         "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY before TRANS "
         "DATUM."
     )
-    state.log.warn(state.line, 0, "datum-in-plane", text, hint, line=state.plane.line)
+    state.log.warn(state.line_number, 0, "datum-in-plane", text, hint, line=state.active_plane.line)
 
 
-def switch(state: State, *, on: bool) -> None:
+def set_tcpm_active(state: State, *, active: bool) -> None:
     """Turn tool center point control on or off."""
-    state.m128 = on
-    state.derive()
+    state.is_tcpm_active = active
+    state.update_derived_values()
 
 
-def swivelled(state: State, element: PathElement) -> Block:
+def move_with_rotary_axes(state: State, element: PathElement) -> Block:
     """Return a straight move of the tip on the workpiece with a proportional move of the rotary axes.
 
     The feed is in mm of the tip path, or in degrees if the tip does not move.
     """
-    first, last = (_parallel(state, state.figure.plane(at)) for at in (element.start, element.end))
-    start = state.rotary
+    first, last = (_parallel(state, state.transformation.to_plane(at)) for at in (element.start, element.end))
+    start = state.rotary_angles
     end = start | dict(element.rotary)
     way = math.dist(first, last)
     turn = math.hypot(*(end[name] - at for name, at in start.items()))
-    moves = way > SAME_POINT
+    moves = way > POINT_TOLERANCE
     led = PivotMove(
         state.kinematics,
         start,
         end,
         first,
         0.0,
-        state.tool_length,
+        state.tool_length_mm,
         way if moves else turn,
         last if moves else None,
     )
-    goals = led.goals()
-    rate = None if element.feed is None else (state.path_feed(element.feed) if moves else element.feed / 60.0)
-    kind = Kind.RAPID if rate is None else Kind.FEED
-    if turn <= SAME_POINT:
-        return state.move(kind, {name: goals[name] for name in SLIDES}, rate)
-    return state.move(kind, goals, rate, led)
+    goals = led.end_positions()
+    rate = (
+        None
+        if element.feed is None
+        else (state.convert_feed_to_mm_s(element.feed) if moves else element.feed / 60.0)
+    )
+    kind = BlockKind.RAPID if rate is None else BlockKind.FEED
+    if turn <= POINT_TOLERANCE:
+        return state.make_move_block(kind, {name: goals[name] for name in LINEAR_AXES}, rate)
+    return state.make_move_block(kind, goals, rate, led)
 
 
 def _parallel(state: State, point: Vector) -> Vector:
     """Return a point of the working plane in the machine-parallel system at the workpiece zero, in mm."""
-    frame = state.plane.frame if state.plane is not None else state.kinematics.basic
-    return plus(applied(state.kinematics.basic, state.origin), applied(frame, point))
+    frame = (
+        state.active_plane.frame if state.active_plane is not None else state.kinematics.workpiece_rotation
+    )
+    return add_vectors(
+        apply_matrix(state.kinematics.workpiece_rotation, state.origin), apply_matrix(frame, point)
+    )

@@ -10,28 +10,39 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from core.geometry.contour_offset import GougeError, Piece, pieces_beside
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of, touching
+from core.geometry.contour_offset import GougeError, OffsetPiece, offset_known_contour
+from core.geometry.lines_and_arcs import (
+    SAME_POINT_TOLERANCE_MM,
+    Arc,
+    Element,
+    Point,
+    left_normal,
+    tangent_point,
+)
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.motion.path_elements import PathElement, goal
-from core.language.klartext.klartext_faults import INPUT_VALUE, RADIUS_TOO_LARGE, fault
-from core.language.klartext.klartext_nodes import Move
+from core.interpreter.klartext.motion.path_elements import PathElement, compute_end_point
+from core.language.klartext.klartext_faults import (
+    INPUT_VALUE_INCORRECT,
+    RADIUS_TOO_LARGE,
+    make_klartext_error,
+)
+from core.language.klartext.klartext_nodes import PathFunction
 from core.message import Message
 
-_MOST_CCA = 360.0
+_MAX_CCA = 360.0
 
 
-class Contour:
+class CompensatedContour:
     """The elements of a contour, and the path of the tool center ``radius`` mm to its ``side``."""
 
-    def __init__(self, elements: list[PathElement], side: str, radius: float) -> None:
-        self._flats = [each for each in elements if each.flat is not None]
-        self._pieces: dict[int, list[Piece]] = {id(each): [] for each in elements}
-        self.first: Element | None = self._flats[0].flat if self._flats else None
-        for piece in self._beside(radius if side == "L" else -radius):
-            self._pieces[id(self._flats[piece.source])].append(piece)
+    def __init__(self, elements: list[PathElement], side: str, tool_radius_mm: float) -> None:
+        self._flats = [each for each in elements if each.planar_element is not None]
+        self._pieces: dict[int, list[OffsetPiece]] = {id(each): [] for each in elements}
+        self.first_element: Element | None = self._flats[0].planar_element if self._flats else None
+        for piece in self._beside(tool_radius_mm if side == "L" else -tool_radius_mm):
+            self._pieces[id(self._flats[piece.source_index])].append(piece)
 
     @property
     def end(self) -> Point | None:
@@ -43,32 +54,34 @@ class Contour:
         """Direction at the end of the contour."""
         return self._flats[-1].end_direction if self._flats else None
 
-    def _beside(self, left: float) -> list[Piece]:
+    def _beside(self, left: float) -> list[OffsetPiece]:
         try:
-            return pieces_beside([each.flat for each in self._flats if each.flat is not None], left)
+            return offset_known_contour(
+                [each.planar_element for each in self._flats if each.planar_element is not None], left
+            )
         except GougeError as problem:
-            at = self._flats[min(problem.index, len(self._flats) - 1)]
+            at = self._flats[min(problem.element_index, len(self._flats) - 1)]
             text = Message(
                 "A tool radius of {radius} mm does not fit the contour: {why}.",
                 radius=f"{abs(left):.10g}",
-                why=problem.why,
+                why=problem.reason,
             )
             hint = "Use a smaller tool, or change the contour."
-            raise fault(at.line, at.column, RADIUS_TOO_LARGE, text, hint) from None
+            raise make_klartext_error(at.line_number, at.column, RADIUS_TOO_LARGE, text, hint) from None
 
-    def pieces(self, element: PathElement, here: Vector) -> Iterator[PathElement]:
+    def generate_path(self, element: PathElement, start: Vector) -> Iterator[PathElement]:
         """Yield the tool path along one element from ``here``, including an outside corner at its end."""
         mine = self._pieces[id(element)]
         z0, z1 = element.start[2], element.end[2]
         if not mine:
-            if abs(z1 - z0) > SAME_POINT:
-                yield replace(element, start=here, end=(*here[:2], z1), arc=None)
+            if abs(z1 - z0) > SAME_POINT_TOLERANCE_MM:
+                yield replace(element, start=start, end=(*start[:2], z1), arc=None)
             return
-        whole = sum(piece.element.length for piece in mine if not piece.corner)
+        whole = sum(piece.element.length for piece in mine if not piece.is_corner)
         done = 0.0
         for piece in mine:
             below = z0 + (z1 - z0) * (done / whole if whole else 1.0)
-            done += 0.0 if piece.corner else piece.element.length
+            done += 0.0 if piece.is_corner else piece.element.length
             above = z0 + (z1 - z0) * (done / whole if whole else 1.0)
             yield _along(element, piece.element, below, above)
 
@@ -79,30 +92,30 @@ def _along(element: PathElement, flat: Element, z0: float, z1: float) -> PathEle
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ContourEntry:
     """A block that leads to a contour, from the tool position ``start`` to its first point ``at``.
 
     ``side`` is L or R with the tool ``radius``, or empty without compensation; mm, in program coordinates.
     """
 
-    node: Move
+    node: PathFunction
     start: Vector
-    at: Vector
+    contour_start: Vector
     feed: float | None
     side: str
-    radius: float
+    radius_mm: float
 
 
-def way_in(state: State, entry: Entry, direction: Point) -> Iterator[PathElement]:
+def plan_approach_path(state: State, entry: ContourEntry, direction: Point) -> Iterator[PathElement]:
     """Yield the approach to a contour that begins in this direction (a unit vector)."""
-    beside = _beside(entry.at, direction, entry.side, entry.radius)
-    made = PathElement(entry.start, entry.start, entry.feed, state.line, state.text, entry.node.column)
-    form = entry.node.form.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
-    if not entry.node.form.startswith("APPR"):
+    beside = _offset_point(entry.contour_start, direction, entry.side, entry.radius_mm)
+    made = PathElement(entry.start, entry.start, entry.feed, state.line_number, state.text, entry.node.column)
+    form = entry.node.function_name.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
+    if not entry.node.function_name.startswith("APPR"):
         yield _straight(made, entry.start, beside)
     elif form in {"LT", "LN"}:
         length = _length(state, entry.node, "LEN")
-        back = (-direction[0], -direction[1]) if form == "LT" else _outwards(direction, entry.side)
+        back = (-direction[0], -direction[1]) if form == "LT" else _outward_normal(direction, entry.side)
         before = (beside[0] + back[0] * length, beside[1] + back[1] * length, beside[2])
         yield _straight(made, entry.start, before)
         yield _straight(made, before, beside)
@@ -112,21 +125,27 @@ def way_in(state: State, entry: Entry, direction: Point) -> Iterator[PathElement
         yield _round(made, arc, beside[2], beside[2])
 
 
-def way_out(
-    state: State, node: Move, here: Vector, direction: Point, side: str, radius: float, feed: float | None
+def plan_departure_path(
+    state: State,
+    node: PathFunction,
+    contour_end: Vector,
+    direction: Point,
+    side: str,
+    radius: float,
+    feed: float | None,
 ) -> Iterator[PathElement]:
     """Yield the departure of DEP from a contour that ends ``here`` in this direction (a unit vector)."""
-    beside = _beside(here, direction, side, radius)
-    made = PathElement(beside, beside, feed, state.line, state.text, node.column)
-    form = node.form.removeprefix("DEP ").replace("PL", "L")
-    end = goal(state, node, here)
+    beside = _offset_point(contour_end, direction, side, radius)
+    made = PathElement(beside, beside, feed, state.line_number, state.text, node.column)
+    form = node.function_name.removeprefix("DEP ").replace("PL", "L")
+    end = compute_end_point(state, node, contour_end)
     if form in {"LT", "LN"}:
         length = _length(state, node, "LEN")
-        on = direction if form == "LT" else _outwards(direction, side)
+        on = direction if form == "LT" else _outward_normal(direction, side)
         yield _straight(made, beside, (beside[0] + on[0] * length, beside[1] + on[1] * length, end[2]))
         return
     # A departure is a reversed approach.
-    back = Entry(node, end, here, feed, {"L": "R", "R": "L"}.get(side, ""), radius)
+    back = ContourEntry(node, end, contour_end, feed, {"L": "R", "R": "L"}.get(side, ""), radius)
     turned = -direction[0], -direction[1]
     arc = _arc_in(state, back, turned, beside, tangent=form == "LCT").reversed()
     yield _round(made, arc, beside[2], beside[2])
@@ -134,80 +153,86 @@ def way_out(
         yield _straight(made, (*arc.end, beside[2]), end)
 
 
-def _arc_in(state: State, entry: Entry, direction: Point, beside: Vector, *, tangent: bool) -> Arc:
+def _arc_in(
+    state: State, entry: ContourEntry, direction: Point, offset_point: Vector, *, tangent: bool
+) -> Arc:
     """Return the arc that ends at the offset contour, in the direction of the contour.
 
     Its angle is CCA, or it begins at a tangent line.
     """
     size, turn = _radius(state, entry)
-    left = left_of(direction)
-    centre = beside[0] + left[0] * size * turn, beside[1] + left[1] * size * turn
+    left = left_normal(direction)
+    centre = offset_point[0] + left[0] * size * turn, offset_point[1] + left[1] * size * turn
     if tangent:
-        start = _touching(state, entry, centre, size, clockwise=turn < 0)
+        start = _tangent_point(state, entry, centre, size, clockwise=turn < 0)
     else:
-        word = entry.node.word("CCA")
+        word = entry.node.find_word("CCA")
         assert word is not None  # guaranteed by the reader
-        swept = math.radians(word_values.number(state, word.value, "CCA", _MOST_CCA, 0.0))
-        angle = math.atan2(beside[1] - centre[1], beside[0] - centre[0]) - turn * swept
+        swept = math.radians(word_values.number(state, word.value, "CCA", _MAX_CCA, 0.0))
+        angle = math.atan2(offset_point[1] - centre[1], offset_point[0] - centre[0]) - turn * swept
         start = centre[0] + size * math.cos(angle), centre[1] + size * math.sin(angle)
-    return Arc(start, beside[:2], centre, clockwise=turn < 0)
+    return Arc(start, offset_point[:2], centre, clockwise=turn < 0)
 
 
-def _radius(state: State, entry: Entry) -> tuple[float, float]:
+def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
     """Return the radius of the center's arc, and 1 if its center is on the left, else -1.
 
     A positive R is on the side of the tool, a negative R on the side of the workpiece; without compensation,
     the center is on the left.
     """
-    word = entry.node.word("R")
+    word = entry.node.find_word("R")
     assert word is not None
-    value = word_values.coordinate(state, word)
+    value = word_values.evaluate_coordinate(state, word)
     turn = -1.0 if (entry.side == "R") != (value < 0.0) else 1.0
-    size = value - entry.radius if value > 0.0 else entry.radius - value
-    if value == 0.0 or size < SAME_POINT:
-        raise state.refuse(
+    size = value - entry.radius_mm if value > 0.0 else entry.radius_mm - value
+    if value == 0.0 or size < SAME_POINT_TOLERANCE_MM:
+        raise state.make_error(
             word.column,
             RADIUS_TOO_LARGE,
             "R {value} mm of {form} must be larger than the tool radius of {radius} mm.",
             "Increase R.",
             value=f"{value:.10g}",
-            form=entry.node.form,
-            radius=f"{entry.radius:.10g}",
+            form=entry.node.function_name,
+            radius=f"{entry.radius_mm:.10g}",
         )
     return size, turn
 
 
-def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwise: bool) -> Point:
+def _tangent_point(
+    state: State, entry: ContourEntry, center: Point, size: float, *, clockwise: bool
+) -> Point:
     """Return the point at which a line from the start of the entry is tangent to the circle."""
-    if math.dist(entry.start[:2], centre) < size:
+    if math.dist(entry.start[:2], center) < size:
         text = "No path is possible for {form} because the tool is inside the arc of this move."
         hint = "Start farther from the contour, or reduce R."
-        raise state.refuse(entry.node.column, INPUT_VALUE, text, hint, form=entry.node.form)
-    return touching(entry.start[:2], centre, size, clockwise=clockwise)
+        raise state.make_error(
+            entry.node.column, INPUT_VALUE_INCORRECT, text, hint, form=entry.node.function_name
+        )
+    return tangent_point(entry.start[:2], center, size, clockwise=clockwise)
 
 
-def _beside(at: Vector, direction: Point, side: str, radius: float) -> Vector:
+def _offset_point(point: Vector, direction: Point, side: str, radius: float) -> Vector:
     """Return the tool center perpendicular to a point of the contour."""
     if not side:
-        return at
-    left = left_of(direction)
+        return point
+    left = left_normal(direction)
     off = radius if side == "L" else -radius
-    return at[0] + left[0] * off, at[1] + left[1] * off, at[2]
+    return point[0] + left[0] * off, point[1] + left[1] * off, point[2]
 
 
-def _outwards(direction: Point, side: str) -> Point:
+def _outward_normal(direction: Point, side: str) -> Point:
     """Return the direction perpendicular to the contour on the tool side.
 
     Without compensation, it is to the left.
     """
-    left = left_of(direction)
+    left = left_normal(direction)
     return (-left[0], -left[1]) if side == "R" else left
 
 
-def _length(state: State, node: Move, name: str) -> float:
-    word = node.word(name)
+def _length(state: State, node: PathFunction, name: str) -> float:
+    word = node.find_word(name)
     assert word is not None  # guaranteed by the reader
-    return word_values.number(state, word.value, name, word_values.MOST_COORDINATE, 0.0) * state.scale
+    return word_values.number(state, word.value, name, word_values.MAX_COORDINATE, 0.0) * state.mm_per_unit
 
 
 def _straight(made: PathElement, start: Vector, end: Vector) -> PathElement:

@@ -9,49 +9,55 @@ from dataclasses import replace
 
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext.flow import word_values
-from core.interpreter.klartext.klartext_state import ORIGIN, ROTARY, SLIDES, State
-from core.language.klartext.klartext_faults import INPUT_VALUE, NO_TABLE, WRONG_AXIS
-from core.language.klartext.klartext_nodes import AxisWord, Datum, Transform, Value
+from core.interpreter.klartext.klartext_state import LINEAR_AXES, ORIGIN_POINT, ROTARY_AXES, State
+from core.language.klartext.klartext_faults import DATUM_TABLE_MISSING, INPUT_VALUE_INCORRECT, WRONG_AXIS
+from core.language.klartext.klartext_nodes import AxisWord, CoordinateTransform, DatumShift, Value
 
-MOST_FACTOR = 99.999999
-MOST_ROW = 999_999.0
+MAX_SCALE_FACTOR = 99.999999
+MAX_TABLE_ROW = 999_999.0
 
 
-def datum(state: State, node: Datum) -> None:
+def execute_datum_shift(state: State, node: DatumShift) -> None:
     """Execute TRANS DATUM or cycle 7, in the workpiece system or within the active plane."""
-    if node.row is not None:
-        node = Datum(_of_the_table(state, node.row, node.column))
-    if node.reset:
-        state.datum = state.shift = ORIGIN
+    if node.table_row is not None:
+        node = DatumShift(_read_table_row(state, node.table_row, node.column))
+    if node.is_reset:
+        state.datum = state.shift = ORIGIN_POINT
     elif node.axes:
-        now = dict(zip(SLIDES, state.shift if state.plane is not None else state.datum, strict=True))
+        now = dict(
+            zip(LINEAR_AXES, state.shift if state.active_plane is not None else state.datum, strict=True)
+        )
         for word in node.axes:
-            value = word_values.coordinate(state, word)
+            value = word_values.evaluate_coordinate(state, word)
             if word.axis not in now:
                 _demand_no_turn(state, word.axis, value, word.column)
                 continue
-            now[word.axis] = now[word.axis] + value if word.incremental else value
+            now[word.axis] = now[word.axis] + value if word.is_incremental else value
         made: Vector = (now["X"], now["Y"], now["Z"])
-        if state.plane is not None:
+        if state.active_plane is not None:
             state.shift = made
         else:
             state.datum = made
-    state.derive()
+    state.update_derived_values()
 
 
-def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]:
+def _read_table_row(state: State, row: Value, column: int) -> tuple[AxisWord, ...]:
     """Return the axis words of a row of the datum table. Raises ProgramError without the table or row."""
-    if state.datum_table is None:
+    if state.datum_table_rows is None:
         text = "No datum table is selected."
-        raise state.refuse(column, NO_TABLE, text, "Select the file with SEL TABLE before this block.")
-    number = int(word_values.number(state, row, "#", MOST_ROW, 0.0))
-    found = state.datum_table.get(number)
+        raise state.make_error(
+            column, DATUM_TABLE_MISSING, text, "Select the file with SEL TABLE before this block."
+        )
+    number = int(word_values.number(state, row, "#", MAX_TABLE_ROW, 0.0))
+    found = state.datum_table_rows.get(number)
     if found is None:
         text = "The datum table has no row {number}."
-        raise state.refuse(column, NO_TABLE, text, "Correct the row number, or add the row.", number=number)
-    told = ((axis, found[axis]) for axis in (*SLIDES, *ROTARY) if axis in found)
+        raise state.make_error(
+            column, DATUM_TABLE_MISSING, text, "Correct the row number, or add the row.", number=number
+        )
+    told = ((axis, found[axis]) for axis in (*LINEAR_AXES, *ROTARY_AXES) if axis in found)
     return tuple(
-        AxisWord(axis, Value(value / (state.scale if axis in SLIDES else 1.0)), column=column)
+        AxisWord(axis, Value(value / (state.mm_per_unit if axis in LINEAR_AXES else 1.0)), column=column)
         for axis, value in told
     )
 
@@ -62,22 +68,28 @@ def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
     state.check(not value, column, WRONG_AXIS, text, hint, axis=axis)
 
 
-def transform(state: State, node: Transform) -> None:
+def execute_transformation(state: State, node: CoordinateTransform) -> None:
     """Execute TRANS MIRROR, ROTATION or SCALE, or cycles 8, 10 and 11. Raises ProgramError."""
-    figure = state.figure
-    if node.form == "MIRROR":
-        state.figure = replace(figure, mirrored=node.axes)
+    figure = state.transformation
+    if node.kind == "MIRROR":
+        state.transformation = replace(figure, mirrored_axes=node.axes)
         return
     if node.value is None:
-        state.figure = (
-            replace(figure, rotation=0.0) if node.form == "ROTATION" else replace(figure, factor=1.0)
+        state.transformation = (
+            replace(figure, rotation_deg=0.0)
+            if node.kind == "ROTATION"
+            else replace(figure, scale_factor=1.0)
         )
         return
-    if node.form == "ROTATION":
+    if node.kind == "ROTATION":
         value = word_values.number(state, node.value, "ROT", 360.0)
-        state.figure = replace(figure, rotation=figure.rotation + value if node.incremental else value)
+        state.transformation = replace(
+            figure, rotation_deg=figure.rotation_deg + value if node.is_incremental else value
+        )
         return
-    factor = word_values.number(state, node.value, "SCL", MOST_FACTOR, 0.0)
+    factor = word_values.number(state, node.value, "SCL", MAX_SCALE_FACTOR, 0.0)
     text = "A scaling factor of 0 is not allowed."
-    state.check(factor > 0.0, node.column, INPUT_VALUE, text, "Program SCL with a factor such as 0.99.")
-    state.figure = replace(figure, factor=factor)
+    state.check(
+        factor > 0.0, node.column, INPUT_VALUE_INCORRECT, text, "Program SCL with a factor such as 0.99."
+    )
+    state.transformation = replace(figure, scale_factor=factor)

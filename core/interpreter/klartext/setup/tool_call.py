@@ -7,29 +7,34 @@ from collections.abc import Iterator
 
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.motion.feed_rates import MOST_FEED, REVOLUTION
+from core.interpreter.klartext.motion.feed_rates import MAX_FEED, REVOLUTION
 from core.interpreter.shared.actions import ProgramStop, SpindleRun, SpindleStop, ToolChange
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import ToolUse
-from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
-from core.language.klartext.klartext_nodes import ToolCall, ToolDef, Value
-from core.language.klartext.structure_blocks import MOST_TOOL
+from core.interpreter.shared.interpretation import ToolUsage
+from core.language.klartext.klartext_faults import (
+    NOT_ALLOWED_WITH_M128,
+    TOOL_UNKNOWN,
+    WRONG_RPM,
+    make_unsupported_error,
+)
+from core.language.klartext.klartext_nodes import ToolCall, ToolDefinition, Value
+from core.language.klartext.structure_blocks import MAX_TOOL_NUMBER
 from core.message import Message
-from core.tool_edges import NAMED_TOOLS, NamedTool
+from core.tool_edges import FIRST_NAMED_TOOL, NamedTool
 
 
-def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
+def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterator[Block]:
     """Yield the blocks of TOOL CALL. The axes do not move; the tip position follows from the new length.
 
     Raises ProgramError before any change.
     """
     changes = node.tool is not None or node.length is not None or node.radius is not None
-    if state.m128 and changes:
+    if state.is_tcpm_active and changes:
         text = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
-        raise state.refuse(1, NOT_WITH_M128, text, "Switch M128 off with M129 before this block.")
+        raise state.make_error(1, NOT_ALLOWED_WITH_M128, text, "Switch M128 off with M129 before this block.")
     if node.tool_axis not in {"", "Z"}:
-        raise unsupported(
-            state.line, node.column, Message("The tool axis {tool_axis}", tool_axis=node.tool_axis)
+        raise make_unsupported_error(
+            state.line_number, node.column, Message("The tool axis {tool_axis}", tool_axis=node.tool_axis)
         )
     number = _number(state, node.tool, node.column)
     rpm = _speed(state, node, number)
@@ -38,85 +43,89 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
     state.tool_axis = node.tool_axis or state.tool_axis
     if feed is not None:
         state.feed = state.tool_feed = feed
-        per = node.feed_per or (REVOLUTION if state.per_revolution else "")
-        state.feed_per = state.tool_feed_per = per
+        per = node.feed_base or (REVOLUTION if state.is_feed_per_revolution else "")
+        state.feed_base = state.tool_feed_base = per
     elif node.tool is not None:
         state.tool_feed = None
     if number is not None:
-        yield from _change(state, number, longer, thicker, use, node.column)
+        yield from _change(state, number, longer, thicker, usage, node.column)
     elif node.length is not None or node.radius is not None:
-        _measure(state, state.modal.tool, longer, thicker, use, node.column)
+        _measure(state, state.modal.tool, longer, thicker, usage, node.column)
     if rpm is not None:
         state.modal = state.modal._replace(rpm=rpm)
         if state.modal.spindle:
-            yield state.action(SpindleRun(rpm * state.modal.spindle))
+            yield state.make_action_block(SpindleRun(rpm * state.modal.spindle))
 
 
-def define_tool(state: State, node: ToolDef) -> None:
+def define_tool(state: State, node: ToolDefinition) -> None:
     """Execute TOOL DEF, whose length and radius have priority over the tool table. Raises ProgramError."""
     if node.length is None and node.radius is None:
         return  # the block only prepares the tool
-    length = _oversize(state, node.length, "L", word_values.MOST_COORDINATE)
-    state.tool_defs[node.tool] = length, _oversize(state, node.radius, "R", word_values.MOST_COORDINATE)
+    length = _oversize(state, node.length, "L", word_values.MAX_COORDINATE)
+    state.tool_definitions[node.tool] = length, _oversize(state, node.radius, "R", word_values.MAX_COORDINATE)
 
 
 def _number(state: State, tool: int | str | Value | None, column: int) -> int | None:
     """Return the number of the called tool; a name must be in the program or in the tool table."""
     if isinstance(tool, Value):
-        return round(word_values.number(state, tool, "TOOL CALL", MOST_TOOL, 0.0))
+        return round(word_values.number(state, tool, "TOOL CALL", MAX_TOOL_NUMBER, 0.0))
     if not isinstance(tool, str):
         return tool
-    names = [each for each in state.tool_defs if isinstance(each, str)]
+    names = [each for each in state.tool_definitions if isinstance(each, str)]
     if tool in names:
-        return NamedTool(NAMED_TOOLS + names.index(tool), tool)
+        return NamedTool(FIRST_NAMED_TOOL + names.index(tool), tool)
     if (found := state.setup.tool_names.get(tool.upper())) is not None:
         return found
     hint = "Give this name to a tool in the tool table, or call the tool by its number."
-    raise state.refuse(column, TOOL_UNKNOWN, 'No tool is named "{tool}".', hint, tool=tool)
+    raise state.make_error(column, TOOL_UNKNOWN, 'No tool is named "{tool}".', hint, tool=tool)
 
 
 def _oversize(state: State, value: Value | None, what: str, most: float = 99.999) -> float:
-    return 0.0 if value is None else word_values.number(state, value, what, most) * state.scale
+    return 0.0 if value is None else word_values.number(state, value, what, most) * state.mm_per_unit
 
 
 def _change(
-    state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int
+    state: State, tool: int, delta_length_mm: float, delta_radius_mm: float, usage: ToolUsage, column: int
 ) -> Iterator[Block]:
     """Yield the blocks of a tool change: spindle stop, tool, and a stop for a manual change."""
     before = state.modal.tool
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0, oriented=None)
-        yield state.action(SpindleStop())
+        yield state.make_action_block(SpindleStop())
     state.modal = state.modal._replace(tool=tool)
-    _measure(state, tool, longer, thicker, use, column)
-    yield state.action(ToolChange(tool))
+    _measure(state, tool, delta_length_mm, delta_radius_mm, usage, column)
+    yield state.make_action_block(ToolChange(tool))
     if tool and before not in {0, tool}:
-        yield state.action(ProgramStop(optional=False, message=Message("TOOL {tool}", tool=tool_text(tool))))
+        yield state.make_action_block(
+            ProgramStop(optional=False, message=Message("TOOL {tool}", tool=format_tool(tool)))
+        )
 
 
-def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int) -> None:
+def _measure(
+    state: State, tool: int, delta_length_mm: float, delta_radius_mm: float, usage: ToolUsage, column: int
+) -> None:
     """Set the tool dimensions from TOOL DEF or from its offset; 0 with a warning if not measured."""
-    state.oversize = longer, thicker
-    if 0 < tool < NAMED_TOOLS:
-        use.call(tool)
-    if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
+    state.tool_deltas_mm = delta_length_mm, delta_radius_mm
+    if 0 < tool < FIRST_NAMED_TOOL:
+        usage.record_tool(tool)
+    if _defined(state, tool) is None and tool and usage.use_tool_offset(tool, state.setup.tools) is None:
         text = "Tool {tool} has no offset, so 0 is used and the machine will not start."
         hint = "Set the tool offset."
-        state.log.warn(state.line, column, "tool-offset-missing", text, hint, tool=tool_text(tool))
-    measure_again(state)
+        state.log.warn(state.line_number, column, "tool-offset-missing", text, hint, tool=format_tool(tool))
+    update_tool_dimensions(state)
 
 
-def measure_again(state: State) -> None:
+def update_tool_dimensions(state: State) -> None:
     """Set length and radius of the active tool from the present TOOL DEF or tool table."""
-    tool, (longer, thicker) = state.modal.tool, state.oversize
+    tool, (longer, thicker) = state.modal.tool, state.tool_deltas_mm
     offset = state.setup.tools.get(tool)
     table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)
     length, radius = _defined(state, tool) or table
-    state.tool_length, state.tool_radius = length + longer, radius + thicker
-    state.derive()
+    state.tool_length_mm, state.tool_radius_mm = length + longer, radius + thicker
+    state.update_derived_values()
 
 
-def radius_of(state: State, tool: int) -> float | None:
+def find_tool_radius_mm(state: State, tool: int) -> float | None:
     """Return the radius of a tool without deltas in mm, from TOOL DEF or the table; None if not defined."""
     if (told := _defined(state, tool)) is not None:
         return told[1]
@@ -125,17 +134,17 @@ def radius_of(state: State, tool: int) -> float | None:
 
 
 def _defined(state: State, tool: int) -> tuple[float, float] | None:
-    return state.tool_defs.get(tool) or state.tool_defs.get(_name_of(state, tool))
+    return state.tool_definitions.get(tool) or state.tool_definitions.get(_name_of(state, tool))
 
 
-def tool_text(tool: int) -> str:
+def format_tool(tool: int) -> str:
     """Return the tool number or name as the program writes it."""
     return f'"{tool.name}"' if isinstance(tool, NamedTool) else f"{tool}"
 
 
 def _name_of(state: State, tool: int) -> str:
-    names = [each for each in state.tool_defs if isinstance(each, str)]
-    at = tool - NAMED_TOOLS
+    names = [each for each in state.tool_definitions if isinstance(each, str)]
+    at = tool - FIRST_NAMED_TOOL
     return names[at] if 0 <= at < len(names) else ""
 
 
@@ -145,8 +154,8 @@ def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float
     Raises ProgramError without a radius.
     """
     assert node.cutting_speed is not None
-    speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
-    radius = radius_of(state, state.modal.tool if number is None else number) or 0.0
+    speed = word_values.number(state, node.cutting_speed, "VC", word_values.MAX_SPEED_RPM, 0.0)
+    radius = find_tool_radius_mm(state, state.modal.tool if number is None else number) or 0.0
     text = "A cutting speed needs the tool radius, but the radius of the tool is not defined."
     hint = "Enter the tool radius R in the tool table, or program S."
     state.check(radius > 0.0, node.cutting_speed.column, WRONG_RPM, text, hint)
@@ -158,7 +167,7 @@ def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
         return min(_by_cutting_speed(state, node, number), state.setup.limits.max_rpm)
     if node.speed is None:
         return None
-    rpm = word_values.number(state, node.speed, "S", word_values.MOST_SPEED, 0.0)
+    rpm = word_values.number(state, node.speed, "S", word_values.MAX_SPEED_RPM, 0.0)
     highest = state.setup.limits.max_rpm
     text = "S{rpm} is above the spindle maximum of {highest} rpm."
     state.check(rpm <= highest, node.speed.column, WRONG_RPM, text, "Lower S.", rpm=rpm, highest=highest)
@@ -168,5 +177,5 @@ def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
 def _feed(state: State, node: ToolCall) -> float | None:
     if node.feed is None:
         return None
-    feed = word_values.number(state, node.feed, "F", MOST_FEED, 0.0)
+    feed = word_values.number(state, node.feed, "F", MAX_FEED, 0.0)
     return feed or None

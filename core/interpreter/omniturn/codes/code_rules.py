@@ -8,10 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.interpreter.omniturn.codes.code_entry import MOST_PER_REV, Code, Limit, Refusal, When, WordRule
+from core.interpreter.omniturn.codes.code_entry import (
+    MAX_FEEDS_PER_REV,
+    CodeEntry,
+    ErrorTemplate,
+    RejectCondition,
+    WordLimit,
+    WordRule,
+)
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.shared.units import METRES_PER_MINUTE
+from core.interpreter.shared.units import MM_S_PER_M_MIN
 from core.language.diagnostics import ProgramError
 from core.language.omniturn import Word
 from core.message import Message
@@ -20,7 +27,7 @@ _ROUNDING = 1 + 1e-9
 
 
 def refused(
-    statement: Statement, code: Code, refusal: Refusal, at: Word | None = None, **told: object
+    statement: Statement, code: CodeEntry, refusal: ErrorTemplate, at: Word | None = None, **told: object
 ) -> ProgramError:
     """Return the error to raise for a refusal; ``told`` has the values of further placeholders."""
     told = {
@@ -31,160 +38,170 @@ def refused(
         "letter": "" if at is None else at.letter,
         **told,
     }
-    return statement.refuse(
-        refusal.at if at is None else at,
-        refusal.code,
+    return statement.make_error(
+        refusal.location if at is None else at,
+        refusal.diagnostic_code,
         Message(refusal.text, **told),
         Message(refusal.hint, **told),
     )
 
 
-def number(state: State, statement: Statement, letter: str, code: Code | None = None) -> float | None:
+def number(state: State, statement: Statement, letter: str, code: CodeEntry | None = None) -> float | None:
     """Return the number of a word as written, checked by the rule of the line's code; None without the word.
 
     Raises ProgramError if the rule rejects the number.
     """
-    code = code or statement.entry
+    code = code or statement.code_entry
     rule, word = code.rules[letter], statement.words.get(letter)
-    if word is not None and word.value is None and rule.bare is not None:
-        return rule.bare
-    return checked(state, statement, letter, None if word is None else word.value, code)
+    if word is not None and word.value is None and rule.bare_value is not None:
+        return rule.bare_value
+    return check_value(state, statement, letter, None if word is None else word.value, code)
 
 
-def checked(
+def check_value(
     state: State,
     statement: Statement,
     letter: str,
     value: float | None,
-    code: Code | None = None,
+    code: CodeEntry | None = None,
     *,
-    more: str = "",
+    extra_remedy: str = "",
 ) -> float | None:
     """Return a converted number (mm, rounded, unsigned) after checking it by the rule of the line's code.
 
-    ``more`` is another remedy for a number above the limit. Raises ProgramError if the rule rejects the
-    number.
+    ``extra_remedy`` is another remedy for a number above the limit. Raises ProgramError if the rule rejects
+    the number.
     """
-    code = code or statement.entry
+    code = code or statement.code_entry
     rule, word = code.rules[letter], statement.words.get(letter)
     refusal = _wrong(state, rule, word, value)
     if refusal is None:
         return value
-    if more and value is not None and value > rule.least:
-        refusal = refusal._replace(hint=more)
-    at = None if refusal.at or word is None else word
-    if word is None and not refusal.at:
-        refusal = refusal._replace(at=letter)
-    most = shown(state, rule.most) if isinstance(rule.most, Limit) else ""
-    told = {"letter": letter, "what": rule.what, "value": f"{value or 0.0:g}", "most": most}
+    if extra_remedy and value is not None and value > rule.minimum:
+        refusal = refusal._replace(hint=extra_remedy)
+    at = None if refusal.location or word is None else word
+    if word is None and not refusal.location:
+        refusal = refusal._replace(location=letter)
+    most = format_limit(state, rule.maximum) if isinstance(rule.maximum, WordLimit) else ""
+    told = {"letter": letter, "what": rule.description, "value": f"{value or 0.0:g}", "most": most}
     raise refused(statement, code, refusal, at, **{"word": word.text if word else "", **told})
 
 
-def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None) -> Refusal | None:
-    if word is not None and (word.value is None or rule.numbered is not None):
-        refusal = rule.numberless if word.value is None else rule.numbered
+def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None) -> ErrorTemplate | None:
+    if word is not None and (word.value is None or rule.unwanted_number_error is not None):
+        refusal = rule.no_number_error if word.value is None else rule.unwanted_number_error
         if refusal is not None:
             return refusal
     if value is None:
-        return rule.missing
-    most = limit(state, rule.most) * _ROUNDING if isinstance(rule.most, Limit) else rule.most
-    return rule.refusal_of(value, most)
+        return rule.missing_error
+    most = get_limit(state, rule.maximum) * _ROUNDING if isinstance(rule.maximum, WordLimit) else rule.maximum
+    return rule.find_error(value, most)
 
 
-def limit(state: State, most: Limit) -> float:
+def get_limit(state: State, maximum: WordLimit) -> float:
     """Return the present value of a limit: mm/s or mm/rev for feeds, rpm for speeds."""
-    return _LIMITS[most](state)
+    return _LIMITS[maximum](state)
 
 
-def shown(state: State, most: Limit) -> str:
+def format_limit(state: State, maximum: WordLimit) -> str:
     """Return the present value of a limit as text in the unit of the program."""
-    value = limit(state, most)
-    if most not in {Limit.FEED, Limit.FEED_IN_FORCE, Limit.LEAD}:
+    value = get_limit(state, maximum)
+    if maximum not in {WordLimit.FEED, WordLimit.ACTIVE_FEED, WordLimit.LEAD}:
         return f"{value:g}"
-    per_rev = most is Limit.LEAD or (most is Limit.FEED_IN_FORCE and state.modal.per_rev)
-    return state.modal.feed_text(value, per_rev=per_rev)
+    per_rev = maximum is WordLimit.LEAD or (maximum is WordLimit.ACTIVE_FEED and state.modal.per_rev)
+    return state.modal.format_feed(value, per_rev=per_rev)
 
 
 def _feed_in_force(state: State) -> float:
-    return MOST_PER_REV[state.modal.coarse] if state.modal.per_rev else state.setup.limits.max_feed
+    return MAX_FEEDS_PER_REV[state.modal.coarse] if state.modal.per_rev else state.setup.limits.max_feed
 
 
-_LIMITS: dict[Limit, Callable[[State], float]] = {
-    Limit.FEED: lambda state: state.setup.limits.max_feed,
-    Limit.FEED_IN_FORCE: _feed_in_force,
-    Limit.LEAD: lambda state: MOST_PER_REV[state.modal.coarse],
-    Limit.SURFACE: lambda _: 6000 * METRES_PER_MINUTE,
-    Limit.RPM: lambda state: state.setup.limits.max_rpm,
-    Limit.C_RPM: lambda state: state.setup.limits.c_max_rpm,
+_LIMITS: dict[WordLimit, Callable[[State], float]] = {
+    WordLimit.FEED: lambda state: state.setup.limits.max_feed,
+    WordLimit.ACTIVE_FEED: _feed_in_force,
+    WordLimit.LEAD: lambda state: MAX_FEEDS_PER_REV[state.modal.coarse],
+    WordLimit.SURFACE_SPEED: lambda _: 6000 * MM_S_PER_M_MIN,
+    WordLimit.RPM: lambda state: state.setup.limits.max_rpm,
+    WordLimit.C_RPM: lambda state: state.setup.limits.c_max_rpm,
 }
 
 
-def check_together(statement: Statement, code: Code) -> None:
+def check_word_groups(statement: Statement, code: CodeEntry) -> None:
     """Raise ProgramError if a line has none of the required words, or two that exclude each other."""
-    if code.one_of is not None and statement.words.keys().isdisjoint(code.one_of.letters):
-        raise refused(statement, code, code.one_of.refusal)
-    for letters, refusal in code.apart:
+    if code.required_words is not None and statement.words.keys().isdisjoint(code.required_words.letters):
+        raise refused(statement, code, code.required_words.refusal)
+    for letters, refusal in code.exclusive_words:
         found = [statement.words[letter] for letter in letters if letter in statement.words]
         if len(found) > 1:
             raise refused(statement, code, refusal, found[1], first=found[0].text)
 
 
-def check_when(state: State, statement: Statement, code: Code, *only: When, word: Word | None = None) -> None:
+def check_conditions(
+    state: State, statement: Statement, code: CodeEntry, *only: RejectCondition, word: Word | None = None
+) -> None:
     """Raise ProgramError for the first condition that rejects a code; ``only`` restricts the conditions.
 
     ``word`` is the location of the error if it is not the code itself.
     """
-    for when, refusal in code.not_when.items():
-        if (not only or when in only) and _IS[when](state, statement, code):
+    for when, refusal in code.reject_conditions.items():
+        if (not only or when in only) and _CONDITION_CHECKS[when](state, statement, code):
             line = state.tool_line
-            if when is When.TOOL_NOT_MOVED:
+            if when is RejectCondition.TOOL_NOT_MOVED:
                 state.tool_line = 0  # The error is reported only once.
-            raise refused(statement, code, refusal, word, line=line, on=state.modal.nose_comp)
+            raise refused(statement, code, refusal, word, line=line, on=state.modal.compensation_code)
 
 
-def _with_others(_state: State, statement: Statement, code: Code) -> bool:
-    others = statement.words.keys() - code.words or statement.one_shot is not None or statement.m is not None
-    return bool(others) or len(statement.modal) > 1
+def _with_others(_state: State, statement: Statement, code: CodeEntry) -> bool:
+    others = (
+        statement.words.keys() - code.allowed_words
+        or statement.one_shot_code is not None
+        or statement.m_number is not None
+    )
+    return bool(others) or len(statement.modal_codes) > 1
 
 
-def _no_feed(state: State, statement: Statement, _code: Code) -> bool:
+def _no_feed(state: State, statement: Statement, _code: CodeEntry) -> bool:
     return "F" not in statement.words and (not state.cut or state.modal.feed is None)
 
 
-def _no_speed(state: State, _made: Statement, _code: Code) -> bool:
+def _no_speed(state: State, _made: Statement, _code: CodeEntry) -> bool:
     return not (state.modal.surface_speed if state.modal.css else state.modal.rpm)
 
 
-def _turning(state: State, _made: Statement, _code: Code) -> bool:
-    return bool(state.modal.spindle) and not state.setup.limits.unclamp_while_turning
+def _turning(state: State, _made: Statement, _code: CodeEntry) -> bool:
+    return bool(state.modal.spindle) and not state.setup.limits.can_unclamp_while_turning
 
 
-def _collet_open(state: State, _made: Statement, _code: Code) -> bool:
-    return not state.modal.collet_closed and not state.setup.limits.start_with_collet_open
+def _collet_open(state: State, _made: Statement, _code: CodeEntry) -> bool:
+    return not state.modal.collet_closed and not state.setup.limits.can_start_with_collet_open
 
 
-_IS: dict[When, Callable[[State, Statement, Code], bool]] = {
-    When.WITH_OTHERS: _with_others,
-    When.WITH_FEED: lambda _, statement, _code: (
-        (statement.f_is_feed and "F" in statement.words) or 94 in statement.modal or 95 in statement.modal
+_CONDITION_CHECKS: dict[RejectCondition, Callable[[State, Statement, CodeEntry], bool]] = {
+    RejectCondition.WITH_OTHER_WORDS: _with_others,
+    RejectCondition.WITH_FEED: lambda _, statement, _code: (
+        (statement.f_is_feed and "F" in statement.words)
+        or 94 in statement.modal_codes
+        or 95 in statement.modal_codes
     ),
-    When.WITH_M: lambda _, statement, _code: statement.m is not None,
-    When.NOSE_COMPENSATION: lambda state, _, _code: state.modal.nose_comp != 40,
-    When.COARSE: lambda state, _, _code: bool(state.modal.coarse),
-    When.NOT_COARSE: lambda state, _, _code: not state.modal.coarse,
-    When.INCREMENTAL_DIAMETERS: lambda state, _, _code: state.modal.diameter and not state.absolute,
-    When.SURFACE_SPEED: lambda state, _, _code: state.modal.css,
-    When.PER_REV: lambda state, _, _code: state.modal.per_rev,
-    When.NO_FEED: _no_feed,
-    When.NO_CUT_FEED: lambda state, _, _code: state.modal.cut_feed is None,
-    When.TOOL_NOT_MOVED: lambda state, _, _code: bool(state.tool_line),
-    When.NO_SPEED: _no_speed,
-    When.STANDING: lambda state, _, _code: not state.rpm_at(state.x),
-    When.TURNING: _turning,
-    When.COLLET_OPEN: _collet_open,
-    When.C_LOCKED: lambda state, _, _code: state.modal.c_locked,
-    When.C_FREE: lambda state, _, _code: not state.modal.c_locked,
-    When.NO_C: lambda state, _, _code: not state.setup.limits.c_enabled,
+    RejectCondition.WITH_M: lambda _, statement, _code: statement.m_number is not None,
+    RejectCondition.NOSE_COMPENSATION: lambda state, _, _code: state.modal.compensation_code != 40,
+    RejectCondition.COARSE: lambda state, _, _code: bool(state.modal.coarse),
+    RejectCondition.NOT_COARSE: lambda state, _, _code: not state.modal.coarse,
+    RejectCondition.INCREMENTAL_DIAMETERS: lambda state, _, _code: (
+        state.modal.diameter and not state.absolute
+    ),
+    RejectCondition.SURFACE_SPEED: lambda state, _, _code: state.modal.css,
+    RejectCondition.FEED_PER_REV: lambda state, _, _code: state.modal.per_rev,
+    RejectCondition.NO_FEED: _no_feed,
+    RejectCondition.NO_CUT_FEED: lambda state, _, _code: state.modal.last_cutting_feed is None,
+    RejectCondition.TOOL_NOT_MOVED: lambda state, _, _code: bool(state.tool_line),
+    RejectCondition.NO_SPEED: _no_speed,
+    RejectCondition.SPINDLE_STOPPED: lambda state, _, _code: not state.compute_rpm_at(state.x),
+    RejectCondition.SPINDLE_TURNING: _turning,
+    RejectCondition.COLLET_OPEN: _collet_open,
+    RejectCondition.C_LOCKED: lambda state, _, _code: state.modal.c_locked,
+    RejectCondition.C_NOT_LOCKED: lambda state, _, _code: not state.modal.c_locked,
+    RejectCondition.C_DISABLED: lambda state, _, _code: not state.setup.limits.c_enabled,
     # This condition is checked only for lines without a straight move.
-    When.NO_STRAIGHT_MOVE: lambda *_: True,
+    RejectCondition.NO_STRAIGHT_MOVE: lambda *_: True,
 }

@@ -2,9 +2,9 @@
 
 The entries are in ``move_codes``, ``cycle_codes`` and ``flow_codes``. A code without an entry does not exist.
 ``handler`` names the function that executes the code, as ``folder.file:name`` in the package of this dialect.
-``acts`` determines the order of the actions on a line. An invalid entry raises an error when the table is
-loaded, or fails ``tests/interpreter/test_code_table.py``. ``language_page`` generates ``docs/language.md``
-from this table, and its examples are proved.
+``action_kind`` determines the order of the actions on a line. An invalid entry raises an error when the
+table is loaded, or fails ``tests/interpreter/test_code_table.py``. ``language_page`` generates
+``docs/language.md`` from this table, and its examples are proved.
 """
 
 from __future__ import annotations
@@ -14,38 +14,42 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from core.interpreter.omniturn.codes.code_entry import PLAIN_WORDS, Acts, Code, FWord
+from core.interpreter.omniturn.codes.code_entry import PLAIN_WORDS, ActionKind, CodeEntry, FMeaning
 from core.interpreter.omniturn.codes.cycle_codes import CYCLE_CHAPTERS
 from core.interpreter.omniturn.codes.flow_codes import FLOW_CHAPTERS
 from core.interpreter.omniturn.codes.move_codes import MOVE_CHAPTERS
 
-PLAIN = Code(
-    "", "", "", "", acts=Acts.PLAIN, handler="motion.straight_moves:statement_move",
-    words=PLAIN_WORDS, f=FWord.FEED
+PLAIN_LINE_ENTRY = CodeEntry(
+    "", "", "", "", action_kind=ActionKind.PLAIN, handler="motion.straight_moves:make_statement_move",
+    allowed_words=PLAIN_WORDS, f_meaning=FMeaning.FEED
 )  # fmt: skip
 
-CHAPTERS = (*MOVE_CHAPTERS, *CYCLE_CHAPTERS, *FLOW_CHAPTERS)
+CODE_CHAPTERS = (*MOVE_CHAPTERS, *CYCLE_CHAPTERS, *FLOW_CHAPTERS)
 """All codes in the order of the page: the title of each chapter, and its codes."""
 
-G_CODES = {int(code.name[1:]): code for _, codes in CHAPTERS for code in codes if code.name[0] == "G"}
+G_CODES = {int(code.name[1:]): code for _, codes in CODE_CHAPTERS for code in codes if code.name[0] == "G"}
 """By number. Modes and one-shot codes: the latter act on their own line alone, and a line may hold one."""
 
 M_CODES = {
     int(code.name[1:]): code
-    for _, codes in CHAPTERS
+    for _, codes in CODE_CHAPTERS
     for code in codes
-    if code.name[0] == "M" and code.acts is not Acts.FLOW
+    if code.name[0] == "M" and code.action_kind is not ActionKind.FLOW
 }
 """M codes of the control itself, by number; all others are the machine file's."""
 
-LETTERS = {code.name: code for _, codes in CHAPTERS for code in codes if code.acts is Acts.WORD}
+LETTER_ENTRIES = {
+    code.name: code for _, codes in CODE_CHAPTERS for code in codes if code.action_kind is ActionKind.WORD
+}
 """Words that have an entry of their own."""
 
-FLOW_CODES = {code.name: code for _, codes in CHAPTERS for code in codes if code.acts is Acts.FLOW}
-"""What steers the order of execution; ``words`` is exactly what stands on such a line."""
+FLOW_CODES = {
+    code.name: code for _, codes in CODE_CHAPTERS for code in codes if code.action_kind is ActionKind.FLOW
+}
+"""What steers the order of execution; ``allowed_words`` is exactly what stands on such a line."""
 
 
-def carry_out(code: Code) -> Callable[..., Any]:
+def load_handler(code: CodeEntry) -> Callable[..., Any]:
     """Return the function that executes a code. Its module is imported on first use."""
     return _function(code.handler)
 

@@ -9,10 +9,16 @@ import re
 import sys
 from math import inf
 
-from core.interpreter.omniturn.codes.code_entry import HEAD, TAIL, Code, Limit, WordRule
-from core.interpreter.omniturn.codes.code_table import CHAPTERS
-from core.language.omniturn.omniturn_words import COUNTING, RANGES
-from core.page_contents import contents
+from core.interpreter.omniturn.codes.code_entry import (
+    EXAMPLE_HEAD,
+    EXAMPLE_TAIL,
+    CodeEntry,
+    WordLimit,
+    WordRule,
+)
+from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
+from core.language.omniturn.omniturn_words import VALUE_RANGES, WHOLE_NUMBER_LETTERS
+from core.page_contents import make_contents
 
 _TOP = """\
 # OmniTurn, code by code
@@ -42,21 +48,21 @@ with the code.
 {numbers}"""
 
 
-def page() -> str:
+def render_language_reference() -> str:
     """Return the text of ``docs/language.md``."""
     anchors: set[str] = set()
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(_anchor(code, anchors) + _entry(code) for code in codes)
-        for title, codes in CHAPTERS
+        for title, codes in CODE_CHAPTERS
     )
-    titles = contents(["Numbers", *(title for title, _ in CHAPTERS)])
-    return _TOP.format(head=HEAD, tail=TAIL, numbers=_numbers(), contents=titles) + chapters
+    titles = make_contents(["Numbers", *(title for title, _ in CODE_CHAPTERS)])
+    return _TOP.format(head=EXAMPLE_HEAD, tail=EXAMPLE_TAIL, numbers=_numbers(), contents=titles) + chapters
 
 
 def _numbers() -> str:
     letters: dict[tuple[float, float, bool], list[str]] = {}
-    for letter, (least, most) in RANGES.items():
-        letters.setdefault((least, most, letter in COUNTING), []).append(letter)
+    for letter, (least, most) in VALUE_RANGES.items():
+        letters.setdefault((least, most, letter in WHOLE_NUMBER_LETTERS), []).append(letter)
     rows = [
         f"| {' '.join(f'`{letter}`' for letter in those)} | {_shown(least)} | {_shown(most)}"
         f"{', whole number' if whole else ''} |\n"
@@ -65,7 +71,7 @@ def _numbers() -> str:
     return "| word | minimum | maximum |\n|---|---|---|\n" + "".join(rows)
 
 
-def _anchor(entry: Code, anchors: set[str]) -> str:
+def _anchor(entry: CodeEntry, anchors: set[str]) -> str:
     """Return the anchor of a code, such as ``#g75``, before its first entry.
 
     For its other entries, the text is empty.
@@ -77,56 +83,65 @@ def _anchor(entry: Code, anchors: set[str]) -> str:
     return f'<a id="{name}"></a>\n\n'
 
 
-def _entry(entry: Code) -> str:
+def _entry(entry: CodeEntry) -> str:
     lines = [
         *entry.example.splitlines(),
         *(["…", *entry.subroutine.splitlines()] if entry.subroutine else []),
     ]
     rules = "".join(f"- {line}\n" for line in _rules(entry))
     example = "```\n" + "\n".join(lines) + "\n```\n\n"
-    return f"**`{entry.form}`** {entry.what}\n\n" + (f"{rules}\n" if rules else "") + example
+    return f"**`{entry.syntax}`** {entry.description}\n\n" + (f"{rules}\n" if rules else "") + example
 
 
-def _rules(entry: Code) -> list[str]:
+def _rules(entry: CodeEntry) -> list[str]:
     """Return the rules of an entry: limits of its words, conditions that reject it, and further findings."""
     rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.rules.items()]
-    if entry.one_of is not None:
-        letters, refusal = entry.one_of
-        rules.append(f"one of {_letters(letters)} is required: `{refusal.code}`")
+    if entry.required_words is not None:
+        letters, refusal = entry.required_words
+        rules.append(f"one of {_letters(letters)} is required: `{refusal.diagnostic_code}`")
     rules += [
-        f"{_letters(letters)} must not be used together: `{refusal.code}`" for letters, refusal in entry.apart
+        f"{_letters(letters)} must not be used together: `{refusal.diagnostic_code}`"
+        for letters, refusal in entry.exclusive_words
     ]
-    rules += [f"not allowed when {when.value}: `{refusal.code}`" for when, refusal in entry.not_when.items()]
-    if entry.further:
-        rules.append("other findings: " + ", ".join(f"`{code}`" for code in sorted(entry.further)))
+    rules += [
+        f"not allowed when {when.value}: `{refusal.diagnostic_code}`"
+        for when, refusal in entry.reject_conditions.items()
+    ]
+    if entry.other_diagnostic_codes:
+        rules.append(
+            "other findings: " + ", ".join(f"`{code}`" for code in sorted(entry.other_diagnostic_codes))
+        )
     return rules
 
 
 def _rule(rule: WordRule) -> str:
-    said = [rule.what]
-    if rule.missing is not None:
+    said = [rule.description]
+    if rule.missing_error is not None:
         said.append("required")
-    if rule.numbered is not None:
+    if rule.unwanted_number_error is not None:
         said.append("must be written without a number")
-    if rule.bare is not None:
-        said.append(f"{_shown(rule.bare)} if no number follows")
-    if rule.nonzero:
+    if rule.bare_value is not None:
+        said.append(f"{_shown(rule.bare_value)} if no number follows")
+    if rule.is_nonzero:
         said.append("not 0")
-    if rule.least > -inf:
+    if rule.minimum > -inf:
         said.append(_range(rule))
-    if rule.whole:
+    if rule.is_whole:
         said.append("whole number")
-    codes = dict.fromkeys(f"`{each.code}`" for each in rule.refusals)
+    codes = dict.fromkeys(f"`{each.diagnostic_code}`" for each in rule.errors)
     return ", ".join(said) + (f": {', '.join(codes)}" if codes else "")
 
 
 def _range(rule: WordRule) -> str:
-    least, most = _shown(rule.least), rule.most.value if isinstance(rule.most, Limit) else _shown(rule.most)
-    if rule.most == rule.least:
+    least, most = (
+        _shown(rule.minimum),
+        rule.maximum.value if isinstance(rule.maximum, WordLimit) else _shown(rule.maximum),
+    )
+    if rule.maximum == rule.minimum:
         return f"must be {least}"
-    if rule.most == inf:
-        return f"greater than {least}" if rule.over else f"{least} or more"
-    return f"greater than {least}, at most {most}" if rule.over else f"{least} to {most}"
+    if rule.maximum == inf:
+        return f"greater than {least}" if rule.excludes_minimum else f"{least} or more"
+    return f"greater than {least}, at most {most}" if rule.excludes_minimum else f"{least} to {most}"
 
 
 def _letters(letters: tuple[str, ...]) -> str:
@@ -138,4 +153,4 @@ def _shown(value: float) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(page())
+    sys.stdout.write(render_language_reference())

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
-from core.interpreter.omniturn.codes.code_entry import HEAD, TAIL, Code, Limit, WordRule
-from core.interpreter.omniturn.codes.code_table import CHAPTERS
-from core.language.code_book import CodeBook, Entry
+from core.interpreter.omniturn.codes.code_entry import (
+    EXAMPLE_HEAD,
+    EXAMPLE_TAIL,
+    CodeEntry,
+    WordLimit,
+    WordRule,
+)
+from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
+from core.language.code_book import CodeBook, CodeBookEntry
 
 _PLAIN = {
     "X": "the X coordinate",
@@ -29,31 +35,31 @@ _PLAIN = {
 """Words for whose numbers no entry has a rule."""
 
 
-def book() -> CodeBook:
+def build_code_book() -> CodeBook:
     """Return the code book with all entries of the table by chapter."""
-    chapters = tuple((title, tuple(map(_entry, codes))) for title, codes in CHAPTERS)
-    meanings = dict(each for _, codes in CHAPTERS for code in codes for each in _meanings(code))
-    return CodeBook(chapters, HEAD, TAIL, "(", _PLAIN | meanings, r"[A-Z](?=n|O|$)")
+    chapters = tuple((title, tuple(map(_entry, codes))) for title, codes in CODE_CHAPTERS)
+    meanings = dict(each for _, codes in CODE_CHAPTERS for code in codes for each in _meanings(code))
+    return CodeBook(chapters, EXAMPLE_HEAD, EXAMPLE_TAIL, "(", _PLAIN | meanings, r"[A-Z](?=n|O|$)")
 
 
-def _entry(code: Code) -> Entry:
+def _entry(code: CodeEntry) -> CodeBookEntry:
     head = _head(code)
-    words = code.form.removeprefix(head) if code.form.startswith(head) else code.form
-    return Entry(head, words.strip(), code.what, code.example, behind=code.subroutine)
+    words = code.syntax.removeprefix(head) if code.syntax.startswith(head) else code.syntax
+    return CodeBookEntry(head, words.strip(), code.description, code.example, behind=code.subroutine)
 
 
-def _head(code: Code) -> str:
-    return code.name.rstrip("()") or code.form
+def _head(code: CodeEntry) -> str:
+    return code.name.rstrip("()") or code.syntax
 
 
-def _meanings(code: Code) -> Iterator[tuple[str, str]]:
+def _meanings(code: CodeEntry) -> Iterator[tuple[str, str]]:
     for letter, rule in code.rules.items():
-        yield f"{_head(code)}.{letter}", rule.what + _range(rule)
+        yield f"{_head(code)}.{letter}", rule.description + _range(rule)
 
 
 def _range(rule: WordRule) -> str:
     """Return the range of a word as text if the entry has both limits; otherwise an empty text."""
-    most = rule.most
-    if isinstance(most, Limit) or not (isfinite(most) and isfinite(rule.least)):
+    most = rule.maximum
+    if isinstance(most, WordLimit) or not (isfinite(most) and isfinite(rule.minimum)):
         return ""
-    return f": {rule.least:g} … {most:g}"
+    return f": {rule.minimum:g} … {most:g}"

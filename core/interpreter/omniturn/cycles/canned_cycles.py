@@ -6,93 +6,108 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 
 from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
-from core.interpreter.omniturn.codes.code_rules import check_when, checked
-from core.interpreter.omniturn.motion.feeds import check_move
-from core.interpreter.omniturn.motion.move_words import move_words
-from core.interpreter.omniturn.motion.straight_moves import on_step
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value
+from core.interpreter.omniturn.motion.feeds import check_move_feed
+from core.interpreter.omniturn.motion.move_words import format_move
+from core.interpreter.omniturn.motion.straight_moves import round_to_resolution
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared import units
-from core.interpreter.shared.contour_passes import Move
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.contour_passes import CycleMove
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 
-LIFT = 0.02 * units.MM_PER_INCH
+LIFT_MM = 0.02 * units.MM_PER_INCH
 """How far a tool is drawn off the cut before it goes back, mm."""
 
-MOST_PASSES = 10_000
-_SAME = 1e-9  # mm
+MAX_PASSES = 10_000
+_TOLERANCE_MM = 1e-9  # mm
 
 
-def name(statement: Statement) -> str:
+def get_cycle_code(statement: Statement) -> str:
     """Return the code of the cycle for messages, such as G75."""
-    return f"G{statement.one_shot}"
+    return f"G{statement.one_shot_code}"
 
 
 def check_ready(state: State, statement: Statement) -> None:
     """Raise ProgramError if the start point or feed is unknown, or if nose compensation is active."""
-    check_when(state, statement, statement.entry)
+    check_conditions(state, statement, statement.code_entry)
 
 
-def length(state: State, statement: Statement, letter: str) -> float:
+def read_length_mm(state: State, statement: Statement, letter: str) -> float:
     """Return a length word in mm, or 0 without the word. Raises ProgramError if its rule rejects it."""
-    return checked(state, statement, letter, on_step(state, statement, letter)) or 0.0
+    return check_value(state, statement, letter, round_to_resolution(state, statement, letter)) or 0.0
 
 
-def check_count(statement: Statement, letter: str, count: int, what: str) -> None:
-    """Raise ProgramError if a cycle has too many passes; ``what`` is the plural noun for the message."""
-    if count > MOST_PASSES:
-        raise statement.refuse(
+def check_pass_count(statement: Statement, letter: str, count: int, description: str) -> None:
+    """Raise ProgramError if a cycle has too many passes; ``description`` is the plural noun for the
+    message.
+    """
+    if count > MAX_PASSES:
+        raise statement.make_error(
             letter,
             "cycle-passes",
             "{text} would make {count} {what}; the maximum is {most_passes}.",
             "Look for a missing decimal point in {letter}.",
-            text=name(statement),
+            text=get_cycle_code(statement),
             count=f"{count:,}",
-            what=what,
-            most_passes=f"{MOST_PASSES:,}",
+            what=description,
+            most_passes=f"{MAX_PASSES:,}",
             letter=letter,
         )
 
 
-def blocks_of_moves(state: State, statement: Statement, moves: Sequence[Move]) -> Iterator[Block]:
+def make_move_blocks(state: State, statement: Statement, moves: Sequence[CycleMove]) -> Iterator[Block]:
     """Yield the motions as blocks, without those of zero length. All are checked before the first is yielded.
 
     Raises ProgramError without a valid feed, or if the feed is per revolution and the spindle is stopped.
     """
-    kept: list[Move] = []
+    kept: list[CycleMove] = []
     at = state.x, state.z
     for move in moves:
-        if move.centre is None and hypot(move.x - at[0], move.z - at[1]) <= _SAME:
+        if move.center is None and hypot(move.x - at[0], move.z - at[1]) <= _TOLERANCE_MM:
             continue
         kept.append(move)
-        if move.rapid is None:
-            check_move(state, statement.line, at[0], move.x, _length(at, move))
+        if move.rapid_rate_mm_s is None:
+            check_move_feed(state, statement.line, at[0], move.x, _length(at, move))
         at = move.x, move.z
     for move in kept:
         yield _block(state, statement, move)
 
 
-def _length(start: Point, move: Move) -> float:
-    if move.centre is None:
+def _length(start: Point, move: CycleMove) -> float:
+    if move.center is None:
         return hypot(move.x - start[0], move.z - start[1])
-    return arc_length(start, (move.x, move.z), move.centre, clockwise=move.clockwise)
+    return arc_length(start, (move.x, move.z), move.center, clockwise=move.is_clockwise)
 
 
-def _block(state: State, statement: Statement, move: Move) -> Block:
-    kind = Kind.RAPID if move.rapid is not None else Kind.FEED if move.centre is None else Kind.ARC
+def _block(state: State, statement: Statement, move: CycleMove) -> Block:
+    kind = (
+        BlockKind.RAPID
+        if move.rapid_rate_mm_s is not None
+        else BlockKind.FEED
+        if move.center is None
+        else BlockKind.ARC
+    )
     start, text = (state.x, state.z, state.c), _text(state, move)
     state.x, state.z = move.x, move.z
-    state.px, state.pz = state.x - state.dx, state.z - state.dz
+    state.px, state.pz = state.x - state.secondary_x, state.z - state.secondary_z
     return state.move(
-        kind, statement.line, text, start, state.feed if move.rapid is None else move.rapid,
-        per_rev=move.rapid is None and state.per_rev, rpm=state.rpm_at(move.x), css=state.modal.css_speed,
-        centre=move.centre or (0.0, 0.0), clockwise=move.clockwise,
-    )  # fmt: skip
+        kind,
+        statement.line,
+        text,
+        start,
+        state.feed if move.rapid_rate_mm_s is None else move.rapid_rate_mm_s,
+        per_rev=move.rapid_rate_mm_s is None and state.per_rev,
+        rpm=state.compute_rpm_at(move.x),
+        surface_speed=state.modal.active_surface_speed,
+        center=move.center or (0.0, 0.0),
+        is_clockwise=move.is_clockwise,
+    )
 
 
-def _text(state: State, move: Move) -> str:
+def _text(state: State, move: CycleMove) -> str:
     """Return the motion as a program line in the active mode and unit."""
     start, end = (state.x, state.z), (move.x, move.z)
-    if move.centre is not None:
-        return move_words(state.modal, Arc(start, end, move.centre, move.clockwise))
-    return ("" if move.rapid is None else "G00") + move_words(state.modal, Line(start, end))
+    if move.center is not None:
+        return format_move(state.modal, Arc(start, end, move.center, move.is_clockwise))
+    return ("" if move.rapid_rate_mm_s is None else "G00") + format_move(state.modal, Line(start, end))

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from core.interpreter.omniturn.codes.code_rules import checked
-from core.interpreter.omniturn.cycles.canned_cycles import LIFT, check_count, length
-from core.interpreter.omniturn.motion.straight_moves import on_step
+from core.interpreter.omniturn.codes.code_rules import check_value
+from core.interpreter.omniturn.cycles.canned_cycles import LIFT_MM, check_pass_count, read_length_mm
+from core.interpreter.omniturn.motion.straight_moves import round_to_resolution
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared import units
-from core.interpreter.shared.contour_passes import Move, pass_count
+from core.interpreter.shared.contour_passes import CycleMove, count_passes
 
 _RETRACT_RATE = 200 * units.MM_PER_INCH / 60  # mm/s, without L
-_WHOLE = 1e-6  # of a peck; tolerance for the rounding of decimal fractions
+_ROUNDING_TOLERANCE = 1e-6  # of a peck; tolerance for the rounding of decimal fractions
 
 
-def drill_moves(state: State, statement: Statement) -> list[Move]:
+def plan_drilling(state: State, statement: Statement) -> list[CycleMove]:
     """Return the motions of G81: feed to Z, rapid to the start. Raises ProgramError for invalid words."""
     moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
     depth = _depth(state, statement)
-    return [*moves, Move(x, depth), Move(x, state.z, state.modal.rapid_rate)]
+    return [*moves, CycleMove(x, depth), CycleMove(x, state.z, state.modal.rapid_rate)]
 
 
-def peck_moves(state: State, statement: Statement) -> list[Move]:
+def plan_pecking(state: State, statement: Statement) -> list[CycleMove]:
     """Return the motions of G83: pecks of K with a retract to R and a return to C above the last depth.
 
     The last peck drills the remaining depth. The cycle ends at the start point. Raises ProgramError for
@@ -31,9 +31,9 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
     moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
     start, depth = state.z, _depth(state, statement)
-    peck = length(state, statement, "K")
-    if peck > (start - depth) * (1.0 + _WHOLE):
-        deep = state.modal.length_text(start - depth)
+    peck = read_length_mm(state, statement, "K")
+    if peck > (start - depth) * (1.0 + _ROUNDING_TOLERANCE):
+        deep = state.modal.format_length(start - depth)
         state.log.warn(
             statement.line,
             statement.words["K"].column,
@@ -43,48 +43,50 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
             text=statement.words["K"].text,
             depth=deep,
         )
-    count = pass_count(start - depth, peck)
-    check_count(statement, "K", count, "pecks")
-    rate, clear = _rate(state, statement), LIFT
+    count = count_passes(start - depth, peck)
+    check_pass_count(statement, "K", count, "pecks")
+    rate, clear = _rate(state, statement), LIFT_MM
     if "C" in statement.words:
-        clear = length(state, statement, "C")
+        clear = read_length_mm(state, statement, "C")
     out = _retract(state, statement, max(start - peck, depth))
     for k in range(1, count + 1):
         reached = depth if k == count else start - k * peck
-        moves += [Move(x, reached), Move(x, out, rate)]
+        moves += [CycleMove(x, reached), CycleMove(x, out, rate)]
         if k < count and reached + clear < out:
-            moves.append(Move(x, reached + clear, rate))
-    return [*moves, Move(x, start, rate)]
+            moves.append(CycleMove(x, reached + clear, rate))
+    return [*moves, CycleMove(x, start, rate)]
 
 
-def _position(state: State, statement: Statement) -> list[Move]:
+def _position(state: State, statement: Statement) -> list[CycleMove]:
     """Return the move to the X position of the hole; an empty list without X."""
-    x = on_step(state, statement, "X")
+    x = round_to_resolution(state, statement, "X")
     if x is None:
         return []
-    return [Move(x + (state.dx if state.absolute else state.x), state.z, state.modal.rapid_rate)]
+    return [
+        CycleMove(x + (state.secondary_x if state.absolute else state.x), state.z, state.modal.rapid_rate)
+    ]
 
 
 def _depth(state: State, statement: Statement) -> float:
-    depth = length(state, statement, "Z") + (state.dz if state.absolute else state.z)
+    depth = read_length_mm(state, statement, "Z") + (state.secondary_z if state.absolute else state.z)
     if depth >= state.z:
-        raise statement.refuse(
+        raise statement.make_error(
             "Z",
             "cycle-depth",
             "The bottom of the hole at {depth} is not deeper than the start point at {z}.",
             "Correct Z, or move the start point farther away from the part.",
-            depth=state.modal.length_text(depth),
-            z=state.modal.length_text(state.z),
+            depth=state.modal.format_length(depth),
+            z=state.modal.format_length(state.z),
         )
     return depth
 
 
 def _retract(state: State, statement: Statement, first: float) -> float:
     """Return the retract position in Z (R), or the start point without R."""
-    r = on_step(state, statement, "R")
+    r = round_to_resolution(state, statement, "R")
     if r is None:
         return state.z
-    out = r + (state.dz if state.absolute else state.z)
+    out = r + (state.secondary_z if state.absolute else state.z)
     text = "{text} is inside the hole, at or below the depth of the first peck."
     hint = "R is the Z position to which the drill retracts from the hole."
     statement.check(out > first, "R", "cycle-retract", text, hint, text=statement.words["R"].text)
@@ -93,8 +95,8 @@ def _retract(state: State, statement: Statement, first: float) -> float:
 
 def _rate(state: State, statement: Statement) -> float:
     """Return the rate of retract and return moves (L) in mm/s."""
-    value = statement.value("L")
+    value = statement.get_value("L")
     if value is None:
         return min(_RETRACT_RATE, state.setup.limits.max_feed)
-    rate = value * units.per_unit(metric=state.modal.metric) / 60
-    return checked(state, statement, "L", rate) or 0.0
+    rate = value * units.get_mm_per_unit(is_metric=state.modal.metric) / 60
+    return check_value(state, statement, "L", rate) or 0.0

@@ -9,35 +9,44 @@ import copy
 from collections import deque
 from collections.abc import Sequence
 
-from core.geometry.contour_offset import Area, TrimError
-from core.geometry.lines_and_arcs import Element, Point, shifted
-from core.interpreter.omniturn.codes.code_entry import Acts
-from core.interpreter.omniturn.codes.code_rules import check_together, number
-from core.interpreter.omniturn.codes.code_table import LETTERS
-from core.interpreter.omniturn.cycles.canned_cycles import LIFT, check_count, length, name
-from core.interpreter.omniturn.motion.arc_moves import arc_move
-from core.interpreter.omniturn.motion.corners import ContourCorners, corner_size
-from core.interpreter.omniturn.motion.move_words import WordedMoves
-from core.interpreter.omniturn.motion.straight_moves import geometry_modes, go, on_step
-from core.interpreter.omniturn.omniturn_state import Corner, State
-from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
-from core.interpreter.omniturn.setup.tools_and_offsets import preset
-from core.interpreter.shared.contour_passes import (
-    MOST_ELEMENTS,
-    MOST_LOOKS,
-    ContourView,
-    Move,
-    Rougher,
-    StartNearError,
-    equal_depths,
-    pass_count,
-    view_from,
+from core.geometry.contour_offset import RoughingArea, TrimError
+from core.geometry.lines_and_arcs import Element, Point, shift_element
+from core.interpreter.omniturn.codes.code_entry import ActionKind
+from core.interpreter.omniturn.codes.code_rules import check_word_groups, number
+from core.interpreter.omniturn.codes.code_table import LETTER_ENTRIES
+from core.interpreter.omniturn.cycles.canned_cycles import (
+    LIFT_MM,
+    check_pass_count,
+    get_cycle_code,
+    read_length_mm,
 )
-from core.interpreter.shared.contour_stage import element_of
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.omniturn.motion.arc_moves import make_arc_block
+from core.interpreter.omniturn.motion.corners import ContourCornerStage, read_corner_size_mm
+from core.interpreter.omniturn.motion.move_words import RewordedMoveFactory
+from core.interpreter.omniturn.motion.straight_moves import (
+    execute_geometry_modes,
+    round_to_resolution,
+    set_position,
+)
+from core.interpreter.omniturn.omniturn_state import Corner, State
+from core.interpreter.omniturn.omniturn_statement import UNREADABLE_FLOW, Statement
+from core.interpreter.omniturn.setup.tools_and_offsets import set_preset
+from core.interpreter.shared.contour_passes import (
+    MAX_COMPARISONS,
+    MAX_ELEMENTS,
+    ContourFrame,
+    CycleMove,
+    RoughingPlanner,
+    StartTooCloseError,
+    compute_equal_depths,
+    count_passes,
+    make_contour_frame,
+)
+from core.interpreter.shared.contour_stage import make_element
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Word
-from core.message import Message, worded
+from core.message import Message, fill_template
 
 _MODES = "absolute", "metric", "diameter", "preset_x", "preset_z"
 _NOSE = frozenset({40, 41, 42})
@@ -53,11 +62,11 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
     reader = _Reader(state, statement)
     for each in lines:
         if not (each.block_delete and state.setup.block_delete):
-            reader.take(each)
+            reader.read_line(each)
     elements = reader.finish()
     text = "The contour of G{one_shot} does not contain a line or an arc."
     hint = "Write the points of the contour."
-    statement.check(elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot)
+    statement.check(elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot_code)
     return elements
 
 
@@ -68,32 +77,34 @@ class _Reader:
         self._state, self._made = state, statement
         self._own = copy.copy(state)
         # The state is set to rapid, because a rapid needs neither feed nor spindle.
-        self._own.adopt(state.modal._replace(rapid=True))
+        self._own.set_modal(state.modal._replace(rapid=True))
         self._own.reported = set()
         self._own.title_rapid = self._own.tool_line = 0
         self._begun = False
         self._reported = False
         self._moves: list[tuple[Block, Corner | None]] = []
 
-    def take(self, line: Statement) -> None:
-        if line.flow == UNREADABLE:
+    def read_line(self, line: Statement) -> None:
+        if line.flow_code == UNREADABLE_FLOW:
             raise _refused(line, 1, "This line of the contour cannot be read", "Correct the line.")
-        idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
-        if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
+        idle_corner = not line.moves_x_or_z and not _CORNERS.isdisjoint(line.words)
+        if line.flow_code or idle_corner or not _TURNS.isdisjoint(line.words):
             hint = "Write the contour block by block, with only straight moves, arcs, chamfers and roundings."
             raise _refused(line, 1, "{line} is not allowed in a contour", hint, line=line.text)
-        if line.one_shot is not None and not line.entry.in_contour:
-            column = line.code.column if line.code else 1
+        if line.one_shot_code is not None and not line.code_entry.allowed_in_contour:
+            column = line.code_word.column if line.code_word else 1
             text = "G{one_shot} is not allowed in a contour"
-            raise _refused(line, column, text, "Remove this text from the program.", one_shot=line.one_shot)
-        if not _NOSE.isdisjoint(line.modal):
+            raise _refused(
+                line, column, text, "Remove this text from the program.", one_shot=line.one_shot_code
+            )
+        if not _NOSE.isdisjoint(line.modal_codes):
             text = "Nose compensation cannot be turned on or off in a contour"
             raise _refused(line, 1, text, "Program a separate contour for finishing.", "cycle-nose-comp")
         self._tell_ignored(line)
-        geometry_modes(self._own, line)
-        if line.one_shot == 92:
-            deque(preset(self._own, line), maxlen=0)
-        elif line.moves:
+        execute_geometry_modes(self._own, line)
+        if line.one_shot_code == 92:
+            deque(set_preset(self._own, line), maxlen=0)
+        elif line.moves_x_or_z:
             self._move(line)
 
     def finish(self) -> list[Element]:
@@ -107,42 +118,42 @@ class _Reader:
                 self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
         state = self._state
-        moves = WordedMoves(state.setup.limits.max_rpm)
-        blocks = ContourCorners(state.log, moves).cut(self._moves)
-        elements = [shifted(element_of(each), *self._shift(each)) for each in blocks]
+        moves = RewordedMoveFactory(state.setup.limits.max_rpm)
+        blocks = ContourCornerStage(state.log, moves).insert_corners(self._moves)
+        elements = [shift_element(make_element(each), *self._shift(each)) for each in blocks]
         return [element for element in elements if element.length > _SAME]
 
     def _tell_ignored(self, line: Statement) -> None:
-        words = [line.words[letter] for letter in "TDSF" if letter in line.words and line.one_shot != 4]
+        words = [line.words[letter] for letter in "TDSF" if letter in line.words and line.one_shot_code != 4]
         words += [line.m_word] if line.m_word else []
-        words += [line.code] if line.code and line.one_shot in {4, 10} else []
+        words += [line.code_word] if line.code_word and line.one_shot_code in {4, 10} else []
         if words and not self._reported:
             self._reported = True
             text = Message(
                 "{words} and other words that do not belong to a contour are ignored in the contour "
                 "of G{one_shot}.",
                 words=words[0].text,
-                one_shot=self._made.one_shot,
+                one_shot=self._made.one_shot_code,
             )
             found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
             self._state.log.add(found)
 
     def _move(self, line: Statement) -> None:
-        arc = line.entry.acts is Acts.ARC
+        arc = line.code_entry.action_kind is ActionKind.ARC
         word = None if arc else line.words.get("C") or line.words.get("R")
         if not self._begun:
             self._begin(line, word)
             return
-        block, corner = arc_move(self._own, line) if arc else self._line(line), None
+        block, corner = make_arc_block(self._own, line) if arc else self._line(line), None
         if word is not None:
-            check_together(line, LETTERS[word.letter])
-            corner = Corner(word.letter, corner_size(self._own, line, word), word.column)
-        if corner is not None or element_of(block).length > _SAME:
+            check_word_groups(line, LETTER_ENTRIES[word.letter])
+            corner = Corner(word.letter, read_corner_size_mm(self._own, line, word), word.column)
+        if corner is not None or make_element(block).length > _SAME:
             self._moves.append((block, corner))
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
         """Read the first line, which is the move from the start point to the first point of the contour."""
-        if line.entry.acts is Acts.ARC or corner is not None:
+        if line.code_entry.action_kind is ActionKind.ARC or corner is not None:
             column = corner.column if corner else 1
             text = "The first line of a contour defines its start point and cannot contain an arc or a corner"
             raise _refused(line, column, text, "Write only X and Z of the first point.")
@@ -151,8 +162,8 @@ class _Reader:
 
     def _line(self, line: Statement) -> Block:
         own, start = self._own, (self._own.x, self._own.z, self._own.c)
-        go(own, on_step(own, line, "X"), on_step(own, line, "Z"))
-        return own.move(Kind.FEED, line.line, "", start, 0.0)
+        set_position(own, round_to_resolution(own, line, "X"), round_to_resolution(own, line, "Z"))
+        return own.move(BlockKind.FEED, line.line, "", start, 0.0)
 
     def _shift(self, block: Block) -> Point:
         """Return the shift in X (radius) and Z, in mm, from the frame of this block to that of the cycle."""
@@ -162,89 +173,96 @@ class _Reader:
 def _refused(
     line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line", /, **values: object
 ) -> ProgramError:
-    return line.refuse(column, code, "{what}.", hint, what=worded(what, values))
+    return line.make_error(column, code, "{what}.", hint, what=fill_template(what, values))
 
 
 _SAME = 1e-6  # mm
 
 
-def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Move]:
+def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[Statement]) -> list[CycleMove]:
     """Return the motions of G75 or G78 along the contour in ``lines``, from the start point and back.
 
     Raises ProgramError if a word is missing or the contour cannot be cut from the start point.
     """
     number(state, statement, "P")
-    cut = length(state, statement, "I") if statement.one_shot == 75 else None
-    left = length(state, statement, "U")
+    cut = read_length_mm(state, statement, "I") if statement.one_shot_code == 75 else None
+    left = read_length_mm(state, statement, "U")
     contour = read_contour(state, statement, lines)
-    if len(contour) > MOST_ELEMENTS:
-        raise statement.refuse(
+    if len(contour) > MAX_ELEMENTS:
+        raise statement.make_error(
             "G",
             "cycle-contour-long",
             "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
             "Program the contour with fewer, longer moves.",
             contour_count=f"{len(contour):,}",
-            most_elements=f"{MOST_ELEMENTS:,}",
+            most_elements=f"{MAX_ELEMENTS:,}",
         )
-    view = _view(state, statement, contour)
+    view = _make_view(state, statement, contour)
     try:
-        area = Area(view.from_start(contour), left)
+        area = RoughingArea(view.transform_contour(contour), left)
     except TrimError:
         text = "{text} cannot find a continuous path along the contour at distance U."
         hint = "Reduce U, or widen the narrow part of the contour."
-        raise statement.refuse("U", "cycle-no-way", text, hint, text=name(statement)) from None
-    rougher = Rougher(area, state.modal.rapid_rate, LIFT)
+        raise statement.make_error("U", "cycle-no-way", text, hint, text=get_cycle_code(statement)) from None
+    rougher = RoughingPlanner(area, state.modal.rapid_rate, LIFT_MM)
     if cut is not None:
         _passes(state, statement, rougher, area, cut, len(contour))
     try:
-        rougher.finish(backwards=view.backwards)
-    except StartNearError:
+        rougher.add_finishing_pass(is_reversed=view.is_reversed)
+    except StartTooCloseError:
         text = (
             "On the path from the start point to the contour and back, the tool comes closer to "
             "the contour than the distance U."
         )
         hint = "Move the start point away from the contour."
-        if _falls_at_once(view.from_start(contour)[0]):
+        if _plunges_at_start(view.transform_contour(contour)[0]):
             hint = (
                 "The contour goes deeper immediately after its first point; start the contour at the "
                 "lowest X and move up the face first."
             )
-        raise statement.refuse("G", "cycle-start-near", text, hint) from None
-    if area.turns_back:
+        raise statement.make_error("G", "cycle-start-near", text, hint) from None
+    if area.reverses_in_z:
         text = (
             "The contour reverses along Z. The roughing passes do not reach this undercut, so the pass along "
             "the contour cuts all of its material."
         )
         hint = "Check whether the tool fits into the undercut."
         state.log.warn(statement.line, statement.code_column, "cycle-undercut", text, hint)
-    return [view.placed(move) for move in rougher.moves]
+    return [view.transform_move(move) for move in rougher.moves]
 
 
-def _falls_at_once(first: Element) -> bool:
+def _plunges_at_start(first: Element) -> bool:
     """Return whether a contour, in depth and length from the start point, goes deeper at its first point."""
     (depth, way), (there, further) = first.start, first.end
     return there > depth + _SAME and abs(further - way) > _SAME
 
 
 def _passes(
-    state: State, statement: Statement, rougher: Rougher, area: Area, cut: float, elements: int
+    state: State,
+    statement: Statement,
+    rougher: RoughingPlanner,
+    area: RoughingArea,
+    cut: float,
+    elements: int,
 ) -> None:
     text = "No material remains to be cut between the contour and the start point."
-    statement.check(area.deepest > 0, "G", "cycle-nothing", text, "Start farther from the contour in X.")
-    count = pass_count(area.deepest, cut)
-    check_count(statement, "I", count, "passes")
-    if count * elements > MOST_LOOKS:
+    statement.check(area.max_depth > 0, "G", "cycle-nothing", text, "Start farther from the contour in X.")
+    count = count_passes(area.max_depth, cut)
+    check_pass_count(statement, "I", count, "passes")
+    if count * elements > MAX_COMPARISONS:
         text = "{count} passes along a contour of {elements} lines and arcs are too many to calculate."
         hint = "Increase I, or program the contour with fewer moves."
-        raise statement.refuse("I", "cycle-passes", text, hint, count=f"{count:,}", elements=f"{elements:,}")
-    rougher.rough(count)
-    if rougher.plunged:
+        raise statement.make_error(
+            "I", "cycle-passes", text, hint, count=f"{count:,}", elements=f"{elements:,}"
+        )
+    rougher.add_roughing_passes(count)
+    if rougher.has_plunged:
         text = "The contour rises and falls again, so the tool plunges into the material after the rise."
         hint = "Check whether the tool can plunge into the material."
         state.log.warn(statement.line, statement.code_column, "cycle-plunge", text, hint)
 
 
-def _view(state: State, statement: Statement, contour: list[Element]) -> ContourView:
+def _make_view(state: State, statement: Statement, contour: list[Element]) -> ContourFrame:
     """Return the frame of the contour. Raises ProgramError with the code cycle-quadrant or cycle-nothing."""
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
@@ -263,38 +281,43 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
         )
         hint = "Move the start point away from the contour."
         statement.check(not to_first == to_last == 0, "G", "cycle-nothing", text, hint, letter=letter)
-    return view_from(start, first, last)
+    return make_contour_frame(start, first, last)
 
 
-def box_moves(state: State, statement: Statement) -> list[Move]:
+def plan_box_cycle(state: State, statement: Statement) -> list[CycleMove]:
     """Return the motions of G74: equal passes of at most I from the start to X, with the allowance U.
 
     The tool enters each pass at the feed, because it may cut material at a shoulder. The cycle ends at the
     start point. Raises ProgramError for invalid words.
     """
-    x = _corner(state, statement, "X", state.x, state.dx)
-    z = _corner(state, statement, "Z", state.z, state.dz)
-    cut, left = length(state, statement, "I"), length(state, statement, "U")
+    x = _corner(state, statement, "X", state.x, state.secondary_x)
+    z = _corner(state, statement, "Z", state.z, state.secondary_z)
+    cut, left = read_length_mm(state, statement, "I"), read_length_mm(state, statement, "U")
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
         text = "The allowance {text} leaves no material for the box cycle to cut."
         hint = "U must be less than the distance in X from the start point to the programmed X."
-        raise statement.refuse("U", "cycle-nothing", text, hint, text=statement.words["U"].text)
-    count = pass_count(depth, cut)
-    check_count(statement, "I", count, "passes")
+        raise statement.make_error("U", "cycle-nothing", text, hint, text=statement.words["U"].text)
+    count = count_passes(depth, cut)
+    check_pass_count(statement, "I", count, "passes")
     rapid = state.modal.rapid_rate
-    moves: list[Move] = []
-    for below in equal_depths(depth, count):
+    moves: list[CycleMove] = []
+    for below in compute_equal_depths(depth, count):
         level = state.x + towards * below
-        off = level - towards * LIFT
-        moves += [Move(level, state.z), Move(level, z), Move(off, z, rapid), Move(off, state.z, rapid)]
-    return [*moves, Move(state.x, state.z, rapid)]
+        off = level - towards * LIFT_MM
+        moves += [
+            CycleMove(level, state.z),
+            CycleMove(level, z),
+            CycleMove(off, z, rapid),
+            CycleMove(off, state.z, rapid),
+        ]
+    return [*moves, CycleMove(state.x, state.z, rapid)]
 
 
 def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
     """Return X or Z of the corner opposite the start point."""
-    end = length(state, statement, letter) + (offset if state.absolute else start)
+    end = read_length_mm(state, statement, letter) + (offset if state.absolute else start)
     text = "The box has zero size along {letter} because its corner is at the start point."
     hint = "Correct {letter} or the start point."
     statement.check(end != start, letter, "cycle-nothing", text, hint, letter=letter)

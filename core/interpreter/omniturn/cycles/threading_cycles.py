@@ -10,88 +10,90 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, copysign, radians, tan
 
-from core.interpreter.omniturn.codes.code_rules import check_when, checked, number
-from core.interpreter.omniturn.motion.straight_moves import check_tool, on_step
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, number
+from core.interpreter.omniturn.motion.straight_moves import check_tool_first_move, round_to_resolution
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
 
 # --- words and checks of a thread
 
 
-MOST_PASSES = 1000  # a real thread takes fewer than 100 passes
-_LEAST_LEAD = 0.0254  # mm/rev; the finest pitch of ISO 1501 is 0.08 mm
+MAX_PASSES = 1000  # a real thread takes fewer than 100 passes
+_MIN_LEAD = 0.0254  # mm/rev; the finest pitch of ISO 1501 is 0.08 mm
 _ROUNDING = 1 + 1e-9
 _CLICK = 1e-6  # of a pass; tolerance for the rounding of √ and decimal fractions
 _NEAR = 1e-6  # mm
 
 
 @dataclass(frozen=True, slots=True)
-class Thread:
+class ThreadCycle:
     """One threading cycle, in mm with X as a radius, and radians. ``x0 z0`` is the start point.
 
-    ``out`` is the sign of X away from the part, and ``along`` is the sign of Z in the cutting direction.
-    ``depth`` is the depth of the last pass from the start point, ``first`` is the I word per side, and
-    ``taper`` is the change of X from the start point to the end.
+    ``x_outward_sign`` is the sign of X away from the part, and ``z_cutting_sign`` is the sign of Z in the
+    cutting direction. ``depth`` is the depth of the last pass from the start point, ``first_infeed`` is the
+    I word per side, and ``taper`` is the change of X from the start point to the end.
     """
 
     x0: float
     z0: float
     z1: float
-    out: float
-    along: float
+    x_outward_sign: float
+    z_cutting_sign: float
     depth: float
-    first: float
+    first_infeed: float
     lead: float
     taper: float
-    angle: float
-    passes: int
-    pulls_out: bool
+    angle_rad: float
+    pass_count: int
+    has_pullout: bool
 
     @property
-    def retract(self) -> float:
+    def retract_x(self) -> float:
         """X of the return move: 3 I outside the start point, plus the taper if the far end is farther out."""
-        return self.x0 + self.out * (3 * self.first + max(self.out * self.taper, 0.0))
+        return self.x0 + self.x_outward_sign * (
+            3 * self.first_infeed + max(self.x_outward_sign * self.taper, 0.0)
+        )
 
 
-def read_thread(state: State, statement: Statement) -> Thread:
+def read_thread(state: State, statement: Statement) -> ThreadCycle:
     """Return the threading cycle of a line. Raises ProgramError if it is invalid."""
     if state.tool_line:
-        check_tool(state, statement.line, None, None)
+        check_tool_first_move(state, statement.line, None, None)
     number(state, statement, "P")
     lead = _lead(state, statement)
     _check_spindle(state, statement, lead)
-    along, z1 = _way(state, statement)
-    single = statement.one_shot == 34
-    first = checked(state, statement, "I", _across(state, statement, "I")) or 0.0
+    along, z1 = _cutting_direction(state, statement)
+    single = statement.one_shot_code == 34
+    first = check_value(state, statement, "I", _read_radius_word(state, statement, "I")) or 0.0
     depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, statement)
     once = single or "O" in statement.words
     angle = radians(number(state, statement, "C") or 0.0) if "C" in statement.words else 0.0
-    thread = Thread(
+    thread = ThreadCycle(
         x0=state.x,
         z0=state.z,
         z1=z1,
-        out=out,
-        along=along,
+        x_outward_sign=out,
+        z_cutting_sign=along,
         depth=depth,
-        first=abs(first),
+        first_infeed=abs(first),
         lead=lead,
-        taper=_across(state, statement, "A") or 0.0,
-        angle=angle,
-        passes=1 if once else _count(statement, depth, first, lead),
-        pulls_out="P" in statement.words,
+        taper=_read_radius_word(state, statement, "A") or 0.0,
+        angle_rad=angle,
+        pass_count=1 if once else _count(statement, depth, first, lead),
+        has_pullout="P" in statement.words,
     )
     if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
         text = "Because of the flank angle, the last pass would start beyond its end point in Z."
-        raise statement.refuse("C", "thread-angle", text, "Start farther away from the end point Z.")
+        raise statement.make_error("C", "thread-angle", text, "Start farther away from the end point Z.")
     return thread
 
 
 def _lead(state: State, statement: Statement) -> float:
-    lead, feed = statement.value("K"), statement.words.get("F")
+    lead, feed = statement.get_value("K"), statement.words.get("F")
     if lead is None and feed is not None:
-        raise statement.refuse(
+        raise statement.make_error(
             "F",
             "thread-lead-missing",
             "The lead K is missing, but the line contains {feed}.",
@@ -99,126 +101,134 @@ def _lead(state: State, statement: Statement) -> float:
             feed=feed.text,
         )
     coarser = ("Use G35 for a larger lead.", "Use G35F2 for a larger lead.", "Correct K.")[state.modal.coarse]
-    value = checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
-    if value < _LEAST_LEAD:
-        least = state.modal.feed_text(_LEAST_LEAD, per_rev=True)
+    value = (
+        check_value(state, statement, "K", lead and lead * state.mm_per_z_unit, extra_remedy=coarser) or 0.0
+    )
+    if value < _MIN_LEAD:
+        least = state.modal.format_feed(_MIN_LEAD, per_rev=True)
         text = "{text}: the minimum lead is {minimum}."
-        raise statement.refuse(
+        raise statement.make_error(
             "K", "thread-lead-range", text, "Correct K.", text=statement.words["K"].text, minimum=least
         )
     return value
 
 
 def _check_spindle(state: State, statement: Statement, lead: float) -> None:
-    check_when(state, statement, statement.entry)
-    modal, rpm = state.modal, abs(state.rpm_at(state.x))
+    check_conditions(state, statement, statement.code_entry)
+    modal, rpm = state.modal, abs(state.compute_rpm_at(state.x))
     speed, most = lead * rpm / 60, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
-        shown = modal.feed_text(speed, per_rev=False)
-        limit = modal.feed_text(most, per_rev=False)
+        shown = modal.format_feed(speed, per_rev=False)
+        limit = modal.format_feed(most, per_rev=False)
         text = "At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}."
         hint = "Lower S."
-        raise statement.refuse("K", "feed-over-speed", text, hint, rpm=f"{rpm:.0f}", value=shown, limit=limit)
+        raise statement.make_error(
+            "K", "feed-over-speed", text, hint, rpm=f"{rpm:.0f}", value=shown, limit=limit
+        )
 
 
-def _way(state: State, statement: Statement) -> tuple[float, float]:
+def _cutting_direction(state: State, statement: Statement) -> tuple[float, float]:
     """Return the sign of the cutting direction, and Z of the end."""
-    z = checked(state, statement, "Z", on_step(state, statement, "Z")) or 0.0
-    z1 = (z if state.absolute else state.pz + z) + state.dz
+    z = check_value(state, statement, "Z", round_to_resolution(state, statement, "Z")) or 0.0
+    z1 = (z if state.absolute else state.pz + z) + state.secondary_z
     if abs(z1 - state.z) <= _NEAR:
         text = "The thread ends at the same Z where it starts."
-        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move the tool away before G33.")
+        raise statement.make_error("Z", "thread-length", text, "Correct Z, or move the tool away before G33.")
     return copysign(1.0, z1 - state.z), z1
 
 
 def _depth(state: State, statement: Statement) -> tuple[float, float]:
     """Return the depth of the last pass from the start point, and the sign of X away from the part."""
-    x = checked(state, statement, "X", on_step(state, statement, "X")) or 0.0
-    x1 = (x if state.absolute else state.px + x) + state.dx
-    here = Message("the tool is at radius {x}", x=state.modal.length_text(state.x))
+    x = check_value(state, statement, "X", round_to_resolution(state, statement, "X")) or 0.0
+    x1 = (x if state.absolute else state.px + x) + state.secondary_x
+    here = Message("the tool is at radius {x}", x=state.modal.format_length(state.x))
     if abs(x1 - state.x) <= _NEAR:
         text = "{text} leaves no material to cut because {position}."
         hint = "Position the tool at the depth of the first pass before this line."
-        raise statement.refuse("X", "thread-side", text, hint, text=statement.words["X"].text, position=here)
+        raise statement.make_error(
+            "X", "thread-side", text, hint, text=statement.words["X"].text, position=here
+        )
     if x1 * state.x < 0:
         text = "{text} is on the other side of the spindle centerline: {position}."
         hint = "Check the sign of X and the start position of the tool."
-        raise statement.refuse("X", "thread-side", text, hint, text=statement.words["X"].text, position=here)
+        raise statement.make_error(
+            "X", "thread-side", text, hint, text=statement.words["X"].text, position=here
+        )
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
-def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
+def _count(statement: Statement, depth: float, first_infeed: float, lead: float) -> int:
     """Return the number of passes. Raises ProgramError if I does not fit the lead."""
     text = "{text}: the first pass would be deeper than the lead."
     hint = "Correct I (the depth of the first pass) or K."
-    statement.check(first <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
-    count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
-    if count > MOST_PASSES:
+    statement.check(first_infeed <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
+    count = max(ceil((depth / first_infeed + 1.0) ** 2 - _CLICK), 1)
+    if count > MAX_PASSES:
         text = "The thread would take {count} passes; the maximum is {most_passes}."
-        raise statement.refuse(
-            "I", "thread-passes", text, "Correct I.", count=f"{count:,}", most_passes=f"{MOST_PASSES:,}"
+        raise statement.make_error(
+            "I", "thread-passes", text, "Correct I.", count=f"{count:,}", most_passes=f"{MAX_PASSES:,}"
         )
     return count
 
 
-def _across(state: State, statement: Statement, letter: str) -> float | None:
+def _read_radius_word(state: State, statement: Statement, letter: str) -> float | None:
     """Return I or A in mm as a radius (a diameter word under G72), or None without the word."""
-    value = on_step(state, statement, letter)
-    return None if value is None else value * state.scale_x / state.scale_z
+    value = round_to_resolution(state, statement, letter)
+    return None if value is None else value * state.mm_per_x_unit / state.mm_per_z_unit
 
 
-MANY_PASSES = 60
+MANY_PASSES_LIMIT = 60
 _FACE = 1e-9  # mm
 
 
-def thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
+def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
     """Return an iterator of the blocks of a G33 or G34 line, which start and end at the same point.
 
     Raises ProgramError before the first block.
     """
     thread = read_thread(state, statement)
     _warn(state, statement, thread)
-    return _Cutter(state, statement, thread).blocks()
+    return _ThreadBlockGenerator(state, statement, thread).blocks()
 
 
-def pass_depths(thread: Thread) -> list[float]:
+def compute_pass_depths(thread: ThreadCycle) -> list[float]:
     """Return the depth of each pass from the start point in mm.
 
     The depths are I(√k - 1), so that each pass removes the same area.
     """
-    if thread.passes == 1:
+    if thread.pass_count == 1:
         return [thread.depth]
-    cuts = [thread.first * (k**0.5 - 1.0) for k in range(1, thread.passes)]
+    cuts = [thread.first_infeed * (k**0.5 - 1.0) for k in range(1, thread.pass_count)]
     return [*cuts, thread.depth]
 
 
-def start_z(thread: Thread, depth: float) -> float:
+def compute_start_z(thread: ThreadCycle, depth: float) -> float:
     """Return the start Z of a pass of this depth, shifted along the flank in the cutting direction."""
-    return thread.z0 + thread.along * depth * tan(thread.angle)
+    return thread.z0 + thread.z_cutting_sign * depth * tan(thread.angle_rad)
 
 
-class _Cutter:
+class _ThreadBlockGenerator:
     """Generator of the blocks of one threading cycle."""
 
-    def __init__(self, state: State, statement: Statement, thread: Thread) -> None:
+    def __init__(self, state: State, statement: Statement, thread: ThreadCycle) -> None:
         self._state, self._line, self._thread = state, statement.line, thread
-        self._rpm = state.rpm_at(state.x)
+        self._rpm = state.compute_rpm_at(state.x)
 
     def blocks(self) -> Iterator[Block]:
         thread = self._thread
-        retract = thread.retract
-        depths = pass_depths(thread)
+        retract = thread.retract_x
+        depths = compute_pass_depths(thread)
         for k, depth in enumerate(depths, start=1):
-            z = start_z(thread, depth)
-            x = thread.x0 - thread.out * depth
+            z = compute_start_z(thread, depth)
+            x = thread.x0 - thread.x_outward_sign * depth
             slope = thread.taper / (thread.z1 - thread.z0)
             if k > 1:
                 yield from self._rapid(retract, z)
             yield from self._rapid(x + slope * (z - thread.z0), z)
             end = x + thread.taper
             yield self._cut(end, thread.z1, f"({k}/{len(depths)})")
-            if thread.pulls_out:
-                yield self._cut(retract, thread.z1 + thread.along * abs(retract - end), "P")
+            if thread.has_pullout:
+                yield self._cut(retract, thread.z1 + thread.z_cutting_sign * abs(retract - end), "P")
             else:
                 yield from self._rapid(retract, thread.z1)
         yield from self._rapid(retract, thread.z0)
@@ -228,15 +238,15 @@ class _Cutter:
     def _rapid(self, x: float, z: float) -> Iterator[Block]:
         """Yield a rapid, unless the axes are already at the target."""
         if max(abs(x - self._state.x), abs(z - self._state.z)) > _FACE:
-            yield self._block(x, z, Kind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
+            yield self._block(x, z, BlockKind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
 
     def _cut(self, x: float, z: float, what: str) -> Block:
-        lead = self._state.modal.feed_text(self._thread.lead, per_rev=True).split()[0]
+        lead = self._state.modal.format_feed(self._thread.lead, per_rev=True).split()[0]
         text = f"{self._text('G33', x, z)}K{lead} {what}"
-        return self._block(x, z, Kind.THREAD, self._thread.lead, text)
+        return self._block(x, z, BlockKind.THREAD, self._thread.lead, text)
 
-    def _block(self, x: float, z: float, kind: Kind, feed: float, text: str) -> Block:
-        state, per_rev = self._state, kind is Kind.THREAD
+    def _block(self, x: float, z: float, kind: BlockKind, feed: float, text: str) -> Block:
+        state, per_rev = self._state, kind is BlockKind.THREAD
         start, state.x, state.z = (state.x, state.z, state.c), x, z
         return state.move(kind, self._line, text, start, feed, per_rev=per_rev, rpm=self._rpm)
 
@@ -244,18 +254,18 @@ class _Cutter:
         """Return the motion as a program line, in the active unit and X mode."""
         state = self._state
         places = 4 if state.modal.metric else 5
-        return f"{code}X{x / state.scale_x + 0.0:.{places}f}Z{z / state.scale_z + 0.0:.{places}f}"
+        return f"{code}X{x / state.mm_per_x_unit + 0.0:.{places}f}Z{z / state.mm_per_z_unit + 0.0:.{places}f}"
 
 
-def _warn(state: State, statement: Statement, thread: Thread) -> None:
-    if thread.passes > MANY_PASSES:
+def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
+    if thread.pass_count > MANY_PASSES_LIMIT:
         text = "The thread takes {passes} passes."
         hint = "Check I (a larger I gives fewer passes) and the X start position of the tool."
         state.log.warn(
-            statement.line, statement.code_column, "thread-passes", text, hint, passes=thread.passes
+            statement.line, statement.code_column, "thread-passes", text, hint, passes=thread.pass_count
         )
-    speed = thread.lead * abs(state.rpm_at(state.x)) / 60
-    needed = speed**2 / (2 * state.setup.limits.slide_accel)
+    speed = thread.lead * abs(state.compute_rpm_at(state.x)) / 60
+    needed = speed**2 / (2 * state.setup.limits.z_acceleration)
     run_up = _run_up(thread)
     if run_up < needed:
         state.log.warn(
@@ -265,18 +275,18 @@ def _warn(state: State, statement: Statement, thread: Thread) -> None:
             "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading "
             "feed rate.",
             "Start farther from the thread, or reduce S.",
-            run_up=state.modal.length_text(max(run_up, 0.0)),
-            needed=state.modal.length_text(needed),
+            run_up=state.modal.format_length(max(run_up, 0.0)),
+            needed=state.modal.format_length(needed),
         )
 
 
-def _run_up(thread: Thread) -> float:
+def _run_up(thread: ThreadCycle) -> float:
     """Return the run-up of the deepest pass before the part, in mm.
 
     It ends at part zero if the pass crosses part zero. Otherwise the whole pass counts, because the start of
     the part is unknown.
     """
-    z = start_z(thread, thread.depth)
+    z = compute_start_z(thread, thread.depth)
     if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:
         return abs(z)
     return abs(thread.z1 - z)

@@ -9,32 +9,32 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from core.interpreter.omniturn.codes.code_table import FLOW_CODES
-from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
-from core.interpreter.shared.checkpoint import FlowLevel, FlowPlace
-from core.interpreter.shared.control_flow import ControlFlow, Frame
-from core.interpreter.shared.interpretation import DEEPEST_CALL
-from core.language.diagnostics import Diagnostic, refusal
+from core.interpreter.omniturn.omniturn_statement import UNREADABLE_FLOW, Statement
+from core.interpreter.shared.checkpoint import FlowLevel, FlowPosition
+from core.interpreter.shared.control_flow import ControlFlow, FlowFrame
+from core.interpreter.shared.interpretation import MAX_CALL_DEPTH
+from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.message import Message
 
 _CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
 
-class Structure(NamedTuple):
+class ProgramStructure(NamedTuple):
     """Structure of a program. All positions are line indices from 0."""
 
     loop_ends: dict[int, int]  # index of LS → index of its LF
     loop_starts: dict[int, int]
     subroutines: dict[int, int]  # number → index of its }n
     subroutine_ends: dict[int, int]  # number → index of its M99
-    main_end: int  # one past the last line of the main program
-    contours: dict[int, int]  # index of a G75 or G78 without P → index of its RF
+    main_end_index: int  # one past the last line of the main program
+    contour_ends: dict[int, int]  # index of a G75 or G78 without P → index of its RF
 
 
 class _Finder:
     """Finder of the program structure, which reads the relevant statements once."""
 
     def __init__(self, length: int) -> None:
-        self.found = Structure({}, {}, {}, {}, length, {})
+        self.structure = ProgramStructure({}, {}, {}, {}, length, {})
         self.problems: list[Diagnostic] = []
         self._loops: list[Statement] = []
         self._inside: int | None = None  # number of the subroutine that is being read
@@ -44,24 +44,24 @@ class _Finder:
         self._contour: Statement | None = None  # G75 or G78 without its RF so far
         self._contour_lost = False  # the G75 or G78 is on a line that cannot be read
 
-    def take(self, statement: Statement) -> None:
+    def accept(self, statement: Statement) -> None:
         if self._in_contour(statement):
             return
-        if statement.flow == "}":
+        if statement.flow_code == "}":
             self._open_subroutine(statement)
             return
-        ends_job = _ends(statement) and not statement.block_delete
+        ends_job = _ends_program(statement) and not statement.block_delete
         self._job_end = statement.line - 1 if ends_job and self._inside is not None else None
-        if statement.flow == "M99":
+        if statement.flow_code == "M99":
             self._close_subroutine(statement)
         elif self._ended and self._inside is None:
-            if statement.flow != UNREADABLE or statement.text.strip():
+            if statement.flow_code != UNREADABLE_FLOW or statement.text.strip():
                 self._unreachable(statement)
-        elif statement.flow == "LS" or _unread(statement, "LS"):
+        elif statement.flow_code == "LS" or _is_probably(statement, "LS"):
             self._loops.append(statement)
-        elif statement.flow == "LF":
+        elif statement.flow_code == "LF":
             self._close_loop(statement)
-        elif _unread(statement, "LF") and self._loops:
+        elif _is_probably(statement, "LF") and self._loops:
             self._loops.pop()
         elif self._inside is None and ends_job:
             self._end_main(statement.line)
@@ -71,7 +71,7 @@ class _Finder:
 
         Such a line does not affect the structure.
         """
-        if statement.flow == "RF":
+        if statement.flow_code == "RF":
             if self._contour is None and not self._contour_lost:
                 self._refuse(
                     statement,
@@ -80,29 +80,29 @@ class _Finder:
                     "Add G75 or G78, or remove RF.",
                 )
             elif self._contour is not None:
-                self.found.contours[self._contour.line - 1] = statement.line - 1
+                self.structure.contour_ends[self._contour.line - 1] = statement.line - 1
             self._contour, self._contour_lost = None, False
             return True
-        if statement.flow == UNREADABLE and _CONTOUR_CYCLE.search(statement.text):
+        if statement.flow_code == UNREADABLE_FLOW and _CONTOUR_CYCLE.search(statement.text):
             self._contour_lost = True  # The error is already reported, so its RF must not cause another one.
-        if statement.flow in {"}", "M99"} or statement.ends_program:
+        if statement.flow_code in {"}", "M99"} or statement.ends_program:
             self._open_contour()
         inside = self._contour is not None
-        if not inside and statement.contour_cycle and "P" not in statement.words:
+        if not inside and statement.is_contour_cycle and "P" not in statement.words:
             self._contour = statement
         return inside
 
     def _open_contour(self) -> None:
         statement, self._contour = self._contour, None
         if statement is not None:
-            text = Message("The contour of G{one_shot} has no RF.", one_shot=statement.one_shot)
+            text = Message("The contour of G{one_shot} has no RF.", one_shot=statement.one_shot_code)
             hint = "Write RF alone on the line after the contour, or P with a subroutine number."
             self._refuse(statement, "contour-open", text, hint)
 
     def _end_main(self, line: int) -> None:
         self._ended = True
         self._unclosed_loops()
-        self.found = self.found._replace(main_end=min(line, self.found.main_end))
+        self.structure = self.structure._replace(main_end_index=min(line, self.structure.main_end_index))
 
     def _open_subroutine(self, statement: Statement) -> None:
         if self._inside is not None and not self._closed_by_job_end(self._inside):
@@ -116,13 +116,13 @@ class _Finder:
             self._no_end(statement.line - 1)
         self._unclosed_loops()
         self._job_end = None
-        number = int(statement.value("}") or 0)
-        if number in self.found.subroutines:
-            first = self.found.subroutines[number] + 1
+        number = int(statement.get_value("}") or 0)
+        if number in self.structure.subroutines:
+            first = self.structure.subroutines[number] + 1
             text = Message("Subroutine {number} already begins on line {first}.", number=number, first=first)
             self._refuse(statement, "subroutine-twice", text, "Use a different number.")
         else:
-            self.found.subroutines[number] = statement.line - 1
+            self.structure.subroutines[number] = statement.line - 1
         self._inside, self._stray = number, False
 
     def _close_subroutine(self, statement: Statement) -> None:
@@ -131,14 +131,14 @@ class _Finder:
             self._refuse(statement, "m99-outside", "M99 is not in a subroutine.", hint)
             return
         self._unclosed_loops()
-        self.found.subroutine_ends.setdefault(self._inside, statement.line - 1)
+        self.structure.subroutine_ends.setdefault(self._inside, statement.line - 1)
         self._inside = None
 
     def _closed_by_job_end(self, number: int) -> bool:
         """Return whether M30 or M02 ends the subroutine, so that the subroutine needs no M99."""
         if self._job_end is None:
             return False
-        self.found.subroutine_ends.setdefault(number, self._job_end)
+        self.structure.subroutine_ends.setdefault(number, self._job_end)
         return True
 
     def _close_loop(self, statement: Statement) -> None:
@@ -148,12 +148,12 @@ class _Finder:
             )
             return
         start = self._loops.pop().line - 1
-        self.found.loop_ends[start] = statement.line - 1
-        self.found.loop_starts[statement.line - 1] = start
+        self.structure.loop_ends[start] = statement.line - 1
+        self.structure.loop_starts[statement.line - 1] = start
 
     def _unclosed_loops(self) -> None:
         for statement in self._loops:
-            if statement.flow == UNREADABLE:
+            if statement.flow_code == UNREADABLE_FLOW:
                 continue  # already reported
             self._refuse(
                 statement,
@@ -174,11 +174,13 @@ class _Finder:
 
     def _no_end(self, line: int) -> None:
         self._ended = True
-        self.found = self.found._replace(main_end=line)
+        self.structure = self.structure._replace(main_end_index=line)
         if any(problem.code == "m99-outside" for problem in self.problems):
             return  # M99 was intended as the end of the program.
         text = "The main program ends without M30 or M02."
-        self.problems.append(refusal(line, 0, "no-end", text, "Write M30 before the subroutines."))
+        self.problems.append(
+            make_error_diagnostic(line, 0, "no-end", text, "Write M30 before the subroutines.")
+        )
 
     def finish(self, length: int) -> None:
         self._open_contour()
@@ -187,26 +189,28 @@ class _Finder:
             self._no_end(length)
         elif self._inside is not None and not self._closed_by_job_end(self._inside):
             text = Message("Subroutine {inside} has no M99.", inside=self._inside)
-            line = self.found.subroutines[self._inside] + 1
+            line = self.structure.subroutines[self._inside] + 1
             self.problems.append(
-                refusal(line, 1, "subroutine-open", text, "Add M99 at the end of the subroutine.")
+                make_error_diagnostic(
+                    line, 1, "subroutine-open", text, "Add M99 at the end of the subroutine."
+                )
             )
 
     def _refuse(self, statement: Statement, code: str, text: str, hint: str) -> None:
-        self.problems.append(refusal(statement.line, 1, code, text, hint))
+        self.problems.append(make_error_diagnostic(statement.line, 1, code, text, hint))
 
 
-def _ends(statement: Statement) -> bool:
+def _ends_program(statement: Statement) -> bool:
     """Return whether the line ends the program, or is an unreadable line that was intended to do so."""
-    return statement.ends_program or _unread(statement, "M0*(?:30|2)(?![0-9])")
+    return statement.ends_program or _is_probably(statement, "M0*(?:30|2)(?![0-9])")
 
 
-def _unread(statement: Statement, word: str) -> bool:
+def _is_probably(statement: Statement, word: str) -> bool:
     """Return whether an unreadable line was probably intended as this word."""
-    return statement.flow == UNREADABLE and re.search(word, statement.text.upper()) is not None
+    return statement.flow_code == UNREADABLE_FLOW and re.search(word, statement.text.upper()) is not None
 
 
-def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:
+def find_structure(statements: Iterable[Statement], length: int) -> tuple[ProgramStructure, list[Diagnostic]]:
     """Return the structure of a program of ``length`` lines, and its errors.
 
     ``statements`` are the lines with more than X and Z, in order.
@@ -214,158 +218,167 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
     finder = _Finder(length)
     calls: list[Statement] = []
     for statement in statements:
-        finder.take(statement)
-        if statement.calls or (statement.contour_cycle and statement.value("P")):
+        finder.accept(statement)
+        if statement.calls_subroutine or (statement.is_contour_cycle and statement.get_value("P")):
             calls.append(statement)
     finder.finish(length)
     for statement in calls:
-        number = call_target(statement)
-        if number not in finder.found.subroutines:
-            column, hint = statement.column("P") or 1, "Write the subroutine after M30."
+        number = get_subroutine_number(statement)
+        if number not in finder.structure.subroutines:
+            column, hint = statement.get_column("P") or 1, "Write the subroutine after M30."
             text = Message(
                 "Subroutine {number} is called, but the program does not contain }}{number2}.",
                 number=number,
                 number2=number,
             )
-            finder.problems.append(refusal(statement.line, column, "subroutine-missing", text, hint))
-    return finder.found, finder.problems
+            finder.problems.append(
+                make_error_diagnostic(statement.line, column, "subroutine-missing", text, hint)
+            )
+    return finder.structure, finder.problems
 
 
-def call_target(statement: Statement) -> int:
+def get_subroutine_number(statement: Statement) -> int:
     """Return the number of the called subroutine; M95 always calls subroutine 1."""
-    return 1 if statement.flow == "M95" else int(statement.value("P") or 0)
+    return 1 if statement.flow_code == "M95" else int(statement.get_value("P") or 0)
 
 
-def terminal(statement: Statement) -> str:
+def get_input_terminal(statement: Statement) -> str:
     """Return the input that a conditional call reads."""
-    return FLOW_CODES[statement.flow].terminal[0] or f"{statement.value('I'):.0f}"
+    return FLOW_CODES[statement.flow_code].required_input[0] or f"{statement.get_value('I'):.0f}"
 
 
-def takes_call(statement: Statement, inputs: Callable[[str], bool]) -> bool:
+def is_call_made(statement: Statement, inputs: Callable[[str], bool]) -> bool:
     """Return whether a conditional call is made with the present states of the inputs."""
-    return inputs(terminal(statement)) == called_when(statement)
+    return inputs(get_input_terminal(statement)) == get_calling_state(statement)
 
 
-def called_when(statement: Statement) -> bool:
+def get_calling_state(statement: Statement) -> bool:
     """Return the input state in which a conditional call is made."""
-    return statement.flow == "M95" or statement.value("C") == 1
+    return statement.flow_code == "M95" or statement.get_value("C") == 1
 
 
-class Flow(ControlFlow[Frame[Structure]]):
+class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
     """Position in a program, with an optional line at which execution stops."""
 
-    def __init__(self, structure: Structure) -> None:
-        super().__init__(Frame(structure, 0, structure.main_end))
+    def __init__(self, structure: ProgramStructure) -> None:
+        super().__init__(FlowFrame(structure, 0, structure.main_end_index))
         self._stop: int | None = None  # index of the line before which execution stops
 
-    def twin(self) -> Flow:
+    def copy(self) -> Flow:
         """Return an independent copy of this position."""
         twin = copy(self)
-        twin.frames = [replace(each, left=dict(each.left)) for each in self.frames]
-        twin.here = twin.frames[-1]
+        twin.frames = [replace(each, remaining_repeats=dict(each.remaining_repeats)) for each in self.frames]
+        twin.active_frame = twin.frames[-1]
         return twin
 
     def stop(self) -> None:
         """End the program here, so that no further line is executed."""
         self._stop = None
-        self.end = self.at
+        self.end_index = self.next_index
 
-    def until(self, line: int) -> None:
+    def stop_before(self, line: int) -> None:
         """Stop before this line (from 1) the next time execution reaches it, in any loop pass or call."""
         self._stop = line - 1
-        self._bound()
+        self._update_end()
 
     @property
-    def stopped(self) -> bool:
-        """Whether the line of ``until`` is the next line."""
-        return self._stop is not None and self.at == self._stop
+    def is_at_stop_line(self) -> bool:
+        """Whether the line of ``stop_before`` is the next line."""
+        return self._stop is not None and self.next_index == self._stop
 
-    def pass_stop(self) -> None:
-        """Execute the line of ``until`` once, and stop when execution reaches it again."""
-        self.end = self.here.end
+    def skip_stop_once(self) -> None:
+        """Execute the line of ``stop_before`` once, and stop when execution reaches it again."""
+        self.end_index = self.active_frame.end_index
 
     @property
-    def place(self) -> FlowPlace:
+    def position(self) -> FlowPosition:
         """The position with all active loops and calls, the outermost first.
 
         Programs continue equally from equal positions.
         """
-        self.here.at = self.at
-        return tuple(FlowLevel(each.at, each.end, tuple(each.left.items())) for each in self.frames)
+        self.active_frame.next_index = self.next_index
+        return tuple(
+            FlowLevel(each.next_index, each.end_index, tuple(each.remaining_repeats.items()))
+            for each in self.frames
+        )
 
-    def resume(self, line: int, place: FlowPlace) -> None:
+    def resume(self, line: int, position: FlowPosition) -> None:
         """Set the next line (from 1) and the active loops and calls."""
-        if place:
-            structure = self.here.routine
-            self.frames = [Frame(structure, run.back, run.end, dict(run.loops)) for run in place]
-            self._go_on()
-        self.at = line - 1
+        if position:
+            structure = self.active_frame.routine
+            self.frames = [
+                FlowFrame(structure, run.return_index, run.end_index, dict(run.remaining_repeats))
+                for run in position
+            ]
+            self._resume_frame()
+        self.next_index = line - 1
 
-    def _bound(self) -> None:
+    def _update_end(self) -> None:
         """Set the end of execution: the end of the frame, or the line before which execution stops."""
-        stop, end = self._stop, self.here.end
-        self.end = stop if stop is not None and self.at <= stop < end else end
+        stop, end = self._stop, self.active_frame.end_index
+        self.end_index = stop if stop is not None and self.next_index <= stop < end else end
 
-    def passes_left(self, start: int) -> int:
+    def get_remaining_repeats(self, start: int) -> int:
         """Return the remaining repeats of the innermost loop; 0 if its LS is not at index ``start``."""
-        left = self.here.left
+        left = self.active_frame.remaining_repeats
         return left[start] if left and next(reversed(left)) == start else 0
 
-    def passed(self, start: int, times: int) -> None:
+    def record_loop_executions(self, start: int, times: int) -> None:
         """Record ``times`` executions of the loop with this LS, each ending back at its first line."""
-        self.here.left[start] -= times
+        self.active_frame.remaining_repeats[start] -= times
 
-    def steer(self, statement: Statement) -> None:
+    def execute_flow_line(self, statement: Statement) -> None:
         """Execute a line with LS, LF or M99."""
-        flow, self.at = statement.flow, statement.line
-        frame, here = self.here, statement.line - 1
+        flow, self.next_index = statement.flow_code, statement.line
+        frame, here = self.active_frame, statement.line - 1
         if flow == "LF":
-            self._loop_end(frame.left, frame.routine.loop_starts.get(here))
+            self._loop_end(frame.remaining_repeats, frame.routine.loop_starts.get(here))
         elif flow == "LS" and here in frame.routine.loop_ends:
-            frame.left[here] = int(statement.value("LS") or 1) - 1
+            frame.remaining_repeats[here] = int(statement.get_value("LS") or 1) - 1
         elif flow == "M99" and len(self.frames) > 1:
-            self.leave()
+            self.return_to_caller()
         if self._stop is not None:
-            self._bound()
+            self._update_end()
 
-    def call(self, statement: Statement) -> None:
+    def call_subroutine(self, statement: Statement) -> None:
         """Enter the subroutine that the line calls. Raises ProgramError if calls are nested too deeply."""
-        number, structure = call_target(statement), self.here.routine
-        self.at = statement.line
+        number, structure = get_subroutine_number(statement), self.active_frame.routine
+        self.next_index = statement.line
         start = structure.subroutines.get(number)
         if start is None:
             return  # already reported when the program was read
-        if len(self.frames) > DEEPEST_CALL:
+        if len(self.frames) > MAX_CALL_DEPTH:
             text = Message(
-                "Subroutine calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
+                "Subroutine calls are nested more than {deepest_call} levels deep.",
+                deepest_call=MAX_CALL_DEPTH,
             )
-            raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
-        self.enter(Frame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1))
+            raise statement.make_error("P", "recursion", text, "A subroutine must not call itself.")
+        self.enter(FlowFrame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1))
         if self._stop is not None:
-            self._bound()
+            self._update_end()
 
-    def contour(self, statement: Statement) -> range | None:
+    def skip_contour(self, statement: Statement) -> range | None:
         """Return the line indices of the contour of a G75 or G78, and skip these lines.
 
         Returns None if the contour is missing, which was reported when the program was read.
         """
-        structure = self.here.routine
+        structure = self.active_frame.routine
         if "P" not in statement.words:
-            end = structure.contours.get(statement.line - 1)
+            end = structure.contour_ends.get(statement.line - 1)
             if end is None:
                 return None
-            self.at = end + 1
+            self.next_index = end + 1
             return range(statement.line, end)
-        number = int(statement.value("P") or 0)
+        number = int(statement.get_value("P") or 0)
         start = structure.subroutines.get(number)
         return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
 
-    def _loop_end(self, left: dict[int, int], start: int | None) -> None:
+    def _loop_end(self, remaining: dict[int, int], start: int | None) -> None:
         """Jump back to the line after LS while repeats remain, but only from the LF of the innermost loop."""
-        if start is None or next(reversed(left), None) != start:
+        if start is None or next(reversed(remaining), None) != start:
             return
-        if left[start] > 0:
-            left[start] -= 1
-            self.at = start + 1
+        if remaining[start] > 0:
+            remaining[start] -= 1
+            self.next_index = start + 1
         else:
-            del left[start]
+            del remaining[start]

@@ -1,7 +1,7 @@
 """Series of straight moves from many lines: consecutive lines, or passes of a loop.
 
-All rules are in other modules: ``in_force`` determines which words change nothing, the end points are those
-of ``line_to``, and warnings are logged by the functions for single lines.
+All rules are in other modules: ``is_already_active`` determines which words change nothing, the end points
+are those of ``line_to``, and warnings are logged by the functions for single lines.
 """
 
 from __future__ import annotations
@@ -13,87 +13,112 @@ from math import hypot
 import numpy as np
 
 from core.interpreter.omniturn.flow.loops_and_subroutines import Flow
-from core.interpreter.omniturn.motion.feeds import SLOW_MOVE, check_move, is_free, set_feed, speed_of
-from core.interpreter.omniturn.motion.plain_moves import MOST, NO_CODE, Bools, Columns, Floats, Ints
-from core.interpreter.omniturn.motion.straight_moves import WHOLE, in_force, rounded, step_of
+from core.interpreter.omniturn.motion.feeds import (
+    SLOW_MOVE_S,
+    check_move_feed,
+    compute_feed_speed,
+    passes_feed_checks,
+    set_feed,
+)
+from core.interpreter.omniturn.motion.plain_moves import (
+    MAX_RUN_LENGTH,
+    NO_G_CODE,
+    BoolArray,
+    FloatArray,
+    IntArray,
+    LineColumns,
+)
+from core.interpreter.omniturn.motion.straight_moves import (
+    ROUNDING_TOLERANCE,
+    get_resolution,
+    is_already_active,
+    round_coordinates,
+)
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_state import State
-from core.interpreter.shared.elementary_blocks import Block, Series, with_feed
+from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries, replace_feed
 
 
-def unchanged(state: State, lines: Columns) -> Bools:
+def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
     """Return a mask (m,) of the lines with only X, Z and words that are already active."""
-    answer = lines.known.copy()
+    answer = lines.is_plain_move.copy()
     fed = ~np.isnan(lines.f)
-    for g in (0, 1, NO_CODE):
+    for g in (0, 1, NO_G_CODE):
         coded = lines.g == g
-        if g != NO_CODE and not in_force(state, g, None):
+        if g != NO_G_CODE and not is_already_active(state, g, None):
             answer &= ~coded | fed
         for f in set(lines.f[coded & fed].tolist()):  # np.unique would first import masked arrays.
-            if not in_force(state, g, f):
+            if not is_already_active(state, g, f):
                 answer &= ~coded | (lines.f != f)
     return answer
 
 
-def plain(state: State, lines: Columns) -> Bools:
+def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
     """Return a mask (m,) of the lines that can be part of a series.
 
-    These are the ``unchanged`` lines, and lines that only change the cutting feed to one that needs no check.
+    These are the ``mask_unchanged_lines`` lines, and lines that only change the cutting feed to one that
+    needs no check.
     """
-    answer = unchanged(state, lines)
+    answer = mask_unchanged_lines(state, lines)
     if state.steady_feed is None:
         return answer
-    fed = lines.known & ~answer & ~np.isnan(lines.f) & (lines.g != 0)
+    fed = lines.is_plain_move & ~answer & ~np.isnan(lines.f) & (lines.g != 0)
     for f in set(lines.f[fed].tolist()):
-        if is_free(state, state.feed_word(f)):
+        if passes_feed_checks(state, state.convert_feed(f)):
             answer |= fed & (lines.f == f)
     return answer
 
 
-def _feeds(state: State, lines: Columns) -> Floats | None:
+def _feeds(state: State, lines: LineColumns) -> FloatArray | None:
     """Return the feed (m,) of each line in mm/s or mm/rev; None if no line changes the feed."""
     fed = ~np.isnan(lines.f)
-    feeds = np.where(fed, state.feed_word(lines.f), state.feed)
+    feeds = np.where(fed, state.convert_feed(lines.f), state.feed)
     if (feeds == state.feed).all():
         return None
     last = np.maximum.accumulate(np.where(fed, np.arange(len(fed)), -1))
     return np.where(last < 0, state.feed, feeds[last])
 
 
-def series(state: State, lines: Columns, line: Ints, texts: Sequence[str]) -> Series:
+def make_series(
+    state: State, lines: LineColumns, line_numbers: IntArray, texts: Sequence[str]
+) -> StraightMoveSeries:
     """Return these lines as a series of moves; ``line`` (m,) are their numbers.
 
-    All lines must be ``plain``. Requires ``state.fast``: a move with this state must have passed all checks.
+    All lines must be ``mask_plain_lines``. Requires ``state.fast``: a move with this state must have passed
+    all checks.
     """
-    x, x_finer = _on_step(state, "X", lines.x, lines.fine)
-    z, z_finer = _on_step(state, "Z", lines.z, lines.fine)
-    px, pz = _along(state, x, state.px, state.scale_x), _along(state, z, state.pz, state.scale_z)
-    x1, z1 = px + state.dx, pz + state.dz
+    x, x_finer = _round_to_resolution(state, "X", lines.x, lines.has_fifth_decimal)
+    z, z_finer = _round_to_resolution(state, "Z", lines.z, lines.has_fifth_decimal)
+    px, pz = (
+        _compute_positions(state, x, state.px, state.mm_per_x_unit),
+        _compute_positions(state, z, state.pz, state.mm_per_z_unit),
+    )
+    x1, z1 = px + state.secondary_x, pz + state.secondary_z
     x0, z0 = np.concatenate([[state.x], x1[:-1]]), np.concatenate([[state.z], z1[:-1]])
-    n = np.arange(state.blocks + 1, state.blocks + 1 + len(line))
+    n = np.arange(state.blocks + 1, state.blocks + 1 + len(line_numbers))
     feed = _feeds(state, lines)
     first = Block(
-        int(n[0]), int(line[0]), state.kind, texts[line[0] - 1], state.x, state.z, state.c,
+        int(n[0]), int(line_numbers[0]), state.kind, texts[line_numbers[0] - 1], state.x, state.z, state.c,
         float(x1[0]), float(z1[0]), state.c, state.offset_x, state.offset_z,
         state.modal, state.feed, state.per_rev, state.rpm,
     )  # fmt: skip
     if feed is not None:
-        first = replace(first, modal=with_feed(state.modal, float(feed[0])), feed=float(feed[0]))
-    made = Series(first, texts, n, line, x0=x0, z0=z0, x=x1, z=z1, feed=feed)
+        first = replace(first, modal=replace_feed(state.modal, float(feed[0])), feed=float(feed[0]))
+    made = StraightMoveSeries(first, texts, n, line_numbers, x0=x0, z0=z0, x=x1, z=z1, feed=feed)
     _tell(state, made, lines, x_finer | z_finer)
     state.px, state.pz, state.x, state.z = float(px[-1]), float(pz[-1]), float(x1[-1]), float(z1[-1])
-    state.blocks += len(line)
+    state.blocks += len(line_numbers)
     if feed is not None:
         set_feed(state, float(feed[-1]))
     return made
 
 
-def _along(state: State, word: Floats, at: float, scale: float) -> Floats:
+def _compute_positions(state: State, word: FloatArray, at: float, scale: float) -> FloatArray:
     """Return the positions in mm after each word (NaN for none) from position ``at``, by G90 or G91."""
     named = ~np.isnan(word)
     if not state.absolute:
         ways = np.where(named, word, 0.0) + 0.0  # -0 as 0
-        way: Floats = np.add.accumulate(np.concatenate([[at], ways * scale]))[1:]
+        way: FloatArray = np.add.accumulate(np.concatenate([[at], ways * scale]))[1:]
         return way
     if named.all():
         return word * scale
@@ -101,95 +126,107 @@ def _along(state: State, word: Floats, at: float, scale: float) -> Floats:
     return np.where(last < 0, at, word[last] * scale)
 
 
-def _on_step(state: State, letter: str, word: Floats, fine: Bools) -> tuple[Floats, Bools]:
+def _round_to_resolution(
+    state: State, letter: str, word: FloatArray, fine: BoolArray
+) -> tuple[FloatArray, BoolArray]:
     """Return the numbers rounded to the control's resolution, and a mask of the numbers that were finer.
 
-    The rounding is that of ``straight_moves.rounded``.
+    The rounding is that of ``straight_moves.round_coordinates``.
     """
     if not fine.any():
         return word, fine
-    step = step_of(state, letter)
+    step = get_resolution(state, letter)
     count = word / step
-    whole = np.copysign(np.floor(np.abs(count) + 0.5 + WHOLE), count)
-    finer = fine & (np.abs(count - whole) > np.maximum(WHOLE, np.abs(count) * 1e-12))
+    whole = np.copysign(np.floor(np.abs(count) + 0.5 + ROUNDING_TOLERANCE), count)
+    finer = fine & (np.abs(count - whole) > np.maximum(ROUNDING_TOLERANCE, np.abs(count) * 1e-12))
     return np.where(finer, whole * step, word), finer
 
 
-def _tell(state: State, made: Series, lines: Columns, finer: Bools) -> None:
+def _tell(state: State, series: StraightMoveSeries, lines: LineColumns, finer: BoolArray) -> None:
     """Log warnings for rounded words and slow moves, line by line, until the log is full."""
-    dx, dz = made.x - made.x0, made.z - made.z0
-    slow_length = state.slow_length if made.feed is None else speed_of(state, made.feed) * SLOW_MOVE
+    dx, dz = series.x - series.x0, series.z - series.z0
+    slow_length = (
+        state.slow_length_mm if series.feed is None else compute_feed_speed(state, series.feed) * SLOW_MOVE_S
+    )
     slow = (np.abs(dx) + np.abs(dz) > slow_length) & state.cut
     for at in np.flatnonzero(finer | slow).tolist():
-        if state.log.silent:
+        if state.log.is_muted:
             return
-        line = int(made.line[at])
+        line = int(series.line[at])
         if finer[at]:
             x, z = (None if np.isnan(word) else float(word) for word in (lines.x[at], lines.z[at]))
-            rounded(state, line, made.texts[line - 1], x, z)
+            round_coordinates(state, line, series.texts[line - 1], x, z)
         if slow[at]:
-            if made.feed is not None:
-                set_feed(state, float(made.feed[at]))
-            check_move(state, line, float(made.x0[at]), float(made.x[at]), hypot(dx[at], dz[at]))
+            if series.feed is not None:
+                set_feed(state, float(series.feed[at]))
+            check_move_feed(state, line, float(series.x0[at]), float(series.x[at]), hypot(dx[at], dz[at]))
 
 
-LEAST = 48
+MIN_SERIES_LENGTH = 48
 """Moves for which a series pays; fewer are made one by one."""
 
 
-class SeriesLookAhead:
+class SeriesReader:
     """Look-ahead that combines the next moves of a program in one series."""
 
     def __init__(self, state: State, program: Program, flow: Flow) -> None:
         self._state, self._flow = state, flow
-        self._ready, self._texts = program.ready, program.source.lines
+        self._ready, self._texts = program.executable_lines, program.source.lines
         self._loops = program.structure.loop_ends
         self._without = range(0)  # indices of lines at which no series starts
 
-    def take(self, lines: int, blocks: int) -> tuple[Series, int] | None:
+    def read_next_series(self, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
         """Return the next moves and the number of executed lines; None if a series is not worthwhile.
 
         ``lines`` and ``blocks`` are the remaining limits. Requires ``state.fast``.
         """
-        at = self._flow.at
+        at = self._flow.next_index
         if at in self._without:
             return None
         # This range changes if a series or another kind of line is found.
-        self._without = range(at, at + LEAST)
+        self._without = range(at, at + MIN_SERIES_LENGTH)
         return (
             self._passes(at, lines, blocks) if at - 1 in self._loops else self._consecutive(at, lines, blocks)
         )
 
-    def _consecutive(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
+    def _consecutive(
+        self, start_index: int, lines: int, blocks: int
+    ) -> tuple[StraightMoveSeries, int] | None:
         """Return the series of consecutive lines, or None."""
-        end = min(self._ready.moves_until(at), self._flow.end, at + min(MOST, lines, blocks))
+        end = min(
+            self._ready.find_next_statement(start_index),
+            self._flow.end_index,
+            start_index + min(MAX_RUN_LENGTH, lines, blocks),
+        )
         columns = self._ready.columns
-        if end - at < LEAST:
-            self._without = range(at, end + 1)
+        if end - start_index < MIN_SERIES_LENGTH:
+            self._without = range(start_index, end + 1)
             return None
-        if not plain(self._state, columns.part(slice(at, at + LEAST))).all():
+        if not mask_plain_lines(
+            self._state, columns.select_lines(slice(start_index, start_index + MIN_SERIES_LENGTH))
+        ).all():
             return None
-        part = columns.part(slice(at, end))
-        other = np.flatnonzero(~plain(self._state, part))
-        count = int(other[0]) if len(other) else end - at
-        self._flow.at, self._without = at + count, range(0)
-        numbers = np.arange(at + 1, at + 1 + count)
-        return series(self._state, part.part(slice(0, count)), numbers, self._texts), count
+        part = columns.select_lines(slice(start_index, end))
+        other = np.flatnonzero(~mask_plain_lines(self._state, part))
+        count = int(other[0]) if len(other) else end - start_index
+        self._flow.next_index, self._without = start_index + count, range(0)
+        numbers = np.arange(start_index + 1, start_index + 1 + count)
+        return make_series(self._state, part.select_lines(slice(0, count)), numbers, self._texts), count
 
-    def _passes(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
+    def _passes(self, start_index: int, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
         """Return the series of all passes of a loop except the last one, within the limits, or None."""
-        length = self._loops[at - 1] - at
-        if not length or self._flow.end <= at + length:
+        length = self._loops[start_index - 1] - start_index
+        if not length or self._flow.end_index <= start_index + length:
             return None
-        left = self._flow.passes_left(at - 1)
-        times = min(left, lines // (length + 1), (blocks - 1) // length, MOST // length)
-        if times * length < LEAST:
+        left = self._flow.get_remaining_repeats(start_index - 1)
+        times = min(left, lines // (length + 1), (blocks - 1) // length, MAX_RUN_LENGTH // length)
+        if times * length < MIN_SERIES_LENGTH:
             return None
-        body = self._ready.columns.part(slice(at, at + length))
-        if not plain(self._state, body).all():
+        body = self._ready.columns.select_lines(slice(start_index, start_index + length))
+        if not mask_plain_lines(self._state, body).all():
             return None
         index = np.tile(np.arange(length), times)
-        self._flow.passed(at - 1, times)
+        self._flow.record_loop_executions(start_index - 1, times)
         self._without = range(0)
-        made = series(self._state, body.part(index), at + 1 + index, self._texts)
+        made = make_series(self._state, body.select_lines(index), start_index + 1 + index, self._texts)
         return made, times * (length + 1)

@@ -7,29 +7,29 @@ from math import pi
 
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.interpreter.shared import units
-from core.interpreter.shared.contour_stage import AdjustedMoves
+from core.interpreter.shared.contour_stage import AdjustedMoveFactory
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 
 _WORD = re.compile(r"([A-Z])([-+0-9.]*)")
-_PLACE = frozenset("XZIKRC")
-_ANEW = frozenset({"G02", "G03"})
-_SAME = 1e-9  # mm
+_POSITION_WORDS = frozenset("XZIKRC")
+_ARC_CODES = frozenset({"G02", "G03"})
+_TOLERANCE_MM = 1e-9  # mm
 _HALF_TURN = pi - 1e-3  # rad; R does not define a longer arc reliably
 
 
-def move_words(modal: Modal, element: Element, named: str = "") -> str:
+def format_move(modal: ModalState, element: Element, required_letters: str = "") -> str:
     """Return an element of the program frame as words: coordinates, or distances under G91.
 
-    ``named`` are letters that are included even if that axis does not move.
+    ``required_letters`` are letters that are included even if that axis does not move.
     """
     start, end = element.start, element.end
-    scale = units.per_unit(metric=modal.metric)
+    scale = units.get_mm_per_unit(is_metric=modal.metric)
     scale_x = scale / 2 if modal.diameter else scale
     base_x, base_z = (modal.secondary_x, modal.secondary_z) if modal.absolute is not False else start
     arc = isinstance(element, Arc)
-    moved_x = arc or "X" in named or abs(end[0] - start[0]) > _SAME
-    moved_z = arc or "Z" in named or abs(end[1] - start[1]) > _SAME
+    moved_x = arc or "X" in required_letters or abs(end[0] - start[0]) > _TOLERANCE_MM
+    moved_z = arc or "Z" in required_letters or abs(end[1] - start[1]) > _TOLERANCE_MM
     words = ""
     if moved_x or not moved_z:
         words += "X" + number((end[0] - base_x) / scale_x, metric=modal.metric)
@@ -38,34 +38,34 @@ def move_words(modal: Modal, element: Element, named: str = "") -> str:
     return words if isinstance(element, Line) else _arc(modal, element, words)
 
 
-def _arc(modal: Modal, arc: Arc, words: str) -> str:
-    scale = units.per_unit(metric=modal.metric)
+def _arc(modal: ModalState, arc: Arc, words: str) -> str:
+    scale = units.get_mm_per_unit(is_metric=modal.metric)
     code = "G02" if arc.clockwise else "G03"
     if abs(arc.sweep) < _HALF_TURN:
         return f"{code}{words}R{number(arc.radius / scale, metric=modal.metric)}"
     distances = modal.diameter or modal.absolute is False
     base_x, base_z = arc.start if distances else (modal.secondary_x, modal.secondary_z)
-    i = number((arc.centre[0] - base_x) / scale, metric=modal.metric)
-    k = number((arc.centre[1] - base_z) / scale, metric=modal.metric)
+    i = number((arc.center[0] - base_x) / scale, metric=modal.metric)
+    k = number((arc.center[1] - base_z) / scale, metric=modal.metric)
     return f"{code}{words}I{i}K{k}"
 
 
-def with_other_words(block: Block, element: Element) -> str:
+def replace_move_words(block: Block, element: Element) -> str:
     """Return the text of a block whose move now follows ``element``.
 
     The text has the block's modal words, feed and D, with new coordinates.
     """
-    words = [match for match in _WORD.finditer(block.text.upper()) if match[0] not in _ANEW]
-    before = "".join(word[0] for word in words if word[1] not in _PLACE and word[1] != "D")
+    words = [match for match in _WORD.finditer(block.text.upper()) if match[0] not in _ARC_CODES]
+    before = "".join(word[0] for word in words if word[1] not in _POSITION_WORDS and word[1] != "D")
     offset = "".join(word[0] for word in words if word[1] == "D")
     if offset and block.modal.absolute is False:
-        element = _without_change(block, element, {word[1]: float(word[2] or 0) for word in words})
-    return before + move_words(block.modal, element, block.text.upper()) + offset
+        element = _without_secondary_offset(block, element, {word[1]: float(word[2] or 0) for word in words})
+    return before + format_move(block.modal, element, block.text.upper()) + offset
 
 
-def _without_change(block: Block, element: Element, words: dict[str, float]) -> Element:
+def _without_secondary_offset(block: Block, element: Element, words: dict[str, float]) -> Element:
     """Return the element without the distance that D adds to the X and Z words of its line."""
-    scale = units.per_unit(metric=block.modal.metric)
+    scale = units.get_mm_per_unit(is_metric=block.modal.metric)
     scale_x = scale / 2 if block.modal.diameter else scale
     x = block.x - block.x0 - words.get("X", 0.0) * scale_x
     z = block.z - block.z0 - words.get("Z", 0.0) * scale
@@ -84,23 +84,23 @@ def number(value: float, *, metric: bool) -> str:
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
-class WordedMoves(AdjustedMoves):
+class RewordedMoveFactory(AdjustedMoveFactory):
     """Factory of adjusted moves whose text states the new coordinates."""
 
     def __init__(self, max_rpm: float) -> None:
         self._max_rpm = max_rpm
 
     @property
-    def highest_rpm(self) -> float:
+    def max_rpm(self) -> float:
         """The speed limit of the spindle in rpm."""
         return self._max_rpm
 
-    def along(self, block: Block, element: Element) -> Block:
+    def replace_element(self, block: Block, element: Element) -> Block:
         """Return the block with its move along another element of the same kind."""
         if (block.x0, block.z0) == element.start and (block.x, block.z) == element.end:
             return block
-        return self._placed(block, element, with_other_words(block, element))
+        return self._placed(block, element, replace_move_words(block, element))
 
-    def inserted(self, block: Block, element: Element) -> Block:
+    def insert_move(self, block: Block, element: Element) -> Block:
         """Return a new move along an element, to follow ``block`` with the same line, feed and state."""
-        return self._placed(block, element, move_words(block.modal, element))
+        return self._placed(block, element, format_move(block.modal, element))

@@ -14,16 +14,16 @@ from typing import NamedTuple, overload
 import numpy as np
 import numpy.typing as npt
 
-from core.interpreter.omniturn.omniturn_statement import PlainMove, ReadyLine
-from core.language.long_lines import LongLines
+from core.interpreter.omniturn.omniturn_statement import ExecutableLine, PlainMove
+from core.language.long_lines import LazyLines
 
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int64]
-Digits = npt.NDArray[np.uint8]
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+IntArray = npt.NDArray[np.int64]
+DigitArray = npt.NDArray[np.uint8]
 
-NO_CODE = -1
-MOST = 20_000
+NO_G_CODE = -1
+MAX_RUN_LENGTH = 20_000
 """Lines that are read, and handed on, at once."""
 
 _NUMBER = r"[-+]?(?:[0-9]{1,4}(?:\.[0-9]{0,5})?|\.[0-9]{1,5})"
@@ -38,7 +38,7 @@ _LONGEST = 64  # characters; longer lines are no plain moves
 _PAGE, _PAGES = 1024, 32
 
 
-def read_move(text: str) -> PlainMove | None:
+def parse_plain_move(text: str) -> PlainMove | None:
     """Return the numbers of a line with only G00 or G01, X, Z and F; None for any other line."""
     match = _words(text)
     if match is None:
@@ -47,7 +47,7 @@ def read_move(text: str) -> PlainMove | None:
     x, z, f = (None if number is None else float(number) for number in numbers)
     if f is not None and f <= 0:
         return None
-    return x, z, f, NO_CODE if g is None else int(g), _is_fine(text)
+    return x, z, f, NO_G_CODE if g is None else int(g), _is_fine(text)
 
 
 def _words(text: str) -> re.Match[str] | None:
@@ -61,43 +61,57 @@ def _is_fine(text: str) -> bool:
     return _FIVE_PLACES.search(text) is not None
 
 
-class Columns(NamedTuple):
-    """Arrays of m lines: X, Z and F as written (NaN for none), and G 0, 1 or NO_CODE.
+class LineColumns(NamedTuple):
+    """Arrays of m lines: X, Z and F as written (NaN for none), and G 0, 1 or NO_G_CODE.
 
-    ``fine`` marks lines with a fifth decimal place, and ``known`` marks plain moves.
+    ``has_fifth_decimal`` marks lines with a fifth decimal place, and ``is_plain_move`` marks plain moves.
     """
 
-    x: Floats
-    z: Floats
-    f: Floats
+    x: FloatArray
+    z: FloatArray
+    f: FloatArray
     g: npt.NDArray[np.int8]
-    fine: Bools
-    known: Bools
+    has_fifth_decimal: BoolArray
+    is_plain_move: BoolArray
 
     @staticmethod
-    def empty(m: int) -> Columns:
+    def empty(line_count: int) -> LineColumns:
         """Return the columns of m lines, none of which is known."""
-        x, z, f = (np.full(m, np.nan) for _ in range(3))
-        return Columns(x, z, f, np.full(m, NO_CODE, np.int8), np.zeros(m, bool), np.zeros(m, bool))
+        x, z, f = (np.full(line_count, np.nan) for _ in range(3))
+        return LineColumns(
+            x,
+            z,
+            f,
+            np.full(line_count, NO_G_CODE, np.int8),
+            np.zeros(line_count, bool),
+            np.zeros(line_count, bool),
+        )
 
-    def put(self, at: int, move: PlainMove) -> None:
+    def store_line(self, index: int, move: PlainMove) -> None:
         """Store a line that was read separately."""
         x, z, f, g, fine = move
-        self.x[at], self.z[at], self.f[at] = (np.nan if v is None else v for v in (x, z, f))
-        self.g[at], self.fine[at], self.known[at] = g, fine, True
+        self.x[index], self.z[index], self.f[index] = (np.nan if v is None else v for v in (x, z, f))
+        self.g[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
 
-    def moves(self) -> list[PlainMove | None]:
-        """Return each line as ``read_move`` returns it; None for a line that is not a plain move."""
-        x, z, f = (_words_of(column) for column in self[:3])
-        rows = zip(x, z, f, self.g.tolist(), self.fine.tolist(), strict=True)
-        return [row if known else None for row, known in zip(rows, self.known.tolist(), strict=True)]
+    def list_moves(self) -> list[PlainMove | None]:
+        """Return each line as ``parse_plain_move`` returns it; None for a line that is not a plain move."""
+        x, z, f = (_column_values(column) for column in self[:3])
+        rows = zip(x, z, f, self.g.tolist(), self.has_fifth_decimal.tolist(), strict=True)
+        return [row if known else None for row, known in zip(rows, self.is_plain_move.tolist(), strict=True)]
 
-    def part(self, at: slice | Ints) -> Columns:
+    def select_lines(self, indices: slice | IntArray) -> LineColumns:
         """Return the lines of a slice or with these indices."""
-        return Columns(self.x[at], self.z[at], self.f[at], self.g[at], self.fine[at], self.known[at])
+        return LineColumns(
+            self.x[indices],
+            self.z[indices],
+            self.f[indices],
+            self.g[indices],
+            self.has_fifth_decimal[indices],
+            self.is_plain_move[indices],
+        )
 
 
-def _words_of(column: Floats) -> list[float | None]:
+def _column_values(column: FloatArray) -> list[float | None]:
     """Return the numbers of a column, with None for NaN."""
     numbers: list[float | None] = column.tolist()
     for at in np.isnan(column).nonzero()[0].tolist():
@@ -105,8 +119,10 @@ def _words_of(column: Floats) -> list[float | None]:
     return numbers
 
 
-def read_columns(text: str, columns: Columns) -> None:
-    """Fill the columns from the text; ``known`` remains False for other lines and lines of a rare form."""
+def parse_columns(text: str, columns: LineColumns) -> None:
+    """Fill the columns from the text; ``is_plain_move`` remains False for other lines and lines of a rare
+    form.
+    """
     raw = text.encode("ascii", "replace")  # one byte per character
     digits, shapes = np.frombuffer(raw, np.uint8), np.frombuffer(raw.translate(_SHAPE), np.uint8)
     ends = np.append(np.flatnonzero(digits == _NEW_LINE), len(digits))
@@ -117,7 +133,12 @@ def read_columns(text: str, columns: Columns) -> None:
 
 
 def _read_length(
-    columns: Columns, rows: Ints, starts: Ints, length: int, digits: Digits, shapes: Digits
+    columns: LineColumns,
+    rows: IntArray,
+    starts: IntArray,
+    length: int,
+    digits: DigitArray,
+    shapes: DigitArray,
 ) -> None:
     """Fill the lines ``rows``, all of which have this length, form by form; the most in their first line."""
     rare = 0
@@ -138,23 +159,25 @@ def _read_length(
 class _Lines(NamedTuple):
     """The first characters of lines in a text; ``step`` is the distance between lines, 0 if it varies."""
 
-    first: Ints
+    first: IntArray
     step: int
 
     @classmethod
-    def of(cls, first: Ints) -> _Lines:
+    def of(cls, first: IntArray) -> _Lines:
         """Return the lines that start at these characters, in ascending order."""
         steps = np.diff(first)
         return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
 
-    def column(self, text: Digits, at: int) -> Digits:
+    def column(self, text: DigitArray, at: int) -> DigitArray:
         """Return the character ``at`` (from 0) of each line."""
         if not self.step:
             return text.take(self.first + at)
         return text[self.first[0] + at : self.first[-1] + at + 1 : self.step]
 
 
-def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digits, lines: _Lines) -> None:
+def _read_shape(
+    columns: LineColumns, rows: IntArray, match: re.Match[str], digits: DigitArray, lines: _Lines
+) -> None:
     """Fill the lines ``rows``, all of which have the form of the match."""
     known = np.ones(len(rows), bool)
     for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.f)):
@@ -166,11 +189,11 @@ def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digi
         at = match.start("g")
         columns.g[rows] = lines.column(digits, at) - ord("0")
         known &= (lines.column(digits, at - 1) == ord("0")) & (columns.g[rows] <= 1)
-    columns.fine[rows] = _is_fine(match.string)
-    columns.known[rows] = known
+    columns.has_fifth_decimal[rows] = _is_fine(match.string)
+    columns.is_plain_move[rows] = known
 
 
-def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: Digits) -> Floats:
+def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: DigitArray) -> FloatArray:
     """Return the numbers of a word in these lines.
 
     Digits as a whole number and powers of ten are exact, so that their quotient equals the result of
@@ -184,84 +207,92 @@ def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: Digits) -> 
             whole += lines.column(digits, at)
             whole -= ord("0")
     decimals = len(text) - text.index(".") - 1 if "." in text else 0
-    value: Floats = whole / 10.0**decimals
+    value: FloatArray = whole / 10.0**decimals
     return -value if text.startswith("-") else value
 
 
-class ReadyLines(Sequence[ReadyLine]):
+class ExecutableLines(Sequence[ExecutableLine]):
     """The lines of a program from index 0: plain moves in ``columns``, all other lines as statements."""
 
-    def __init__(self, columns: Columns, others: dict[int, ReadyLine]) -> None:
+    def __init__(self, columns: LineColumns, statements: dict[int, ExecutableLine]) -> None:
         self.columns = columns
-        self._others = others
-        self._pages: dict[int, list[ReadyLine]] = {}
+        self._others = statements
+        self._pages: dict[int, list[ExecutableLine]] = {}
 
-    def copy(self) -> ReadyLines:
+    def copy(self) -> ExecutableLines:
         """Return a copy with its own lines; the arrays of numbers are shared."""
-        return ReadyLines(self.columns._replace(known=self.columns.known.copy()), self._others.copy())
+        return ExecutableLines(
+            self.columns._replace(is_plain_move=self.columns.is_plain_move.copy()), self._others.copy()
+        )
 
     def __len__(self) -> int:
-        return len(self.columns.known)
+        return len(self.columns.is_plain_move)
 
     @overload
-    def __getitem__(self, at: int) -> ReadyLine: ...
+    def __getitem__(self, at: int) -> ExecutableLine: ...
     @overload
-    def __getitem__(self, at: slice) -> list[ReadyLine]: ...
-    def __getitem__(self, at: int | slice) -> ReadyLine | list[ReadyLine]:
+    def __getitem__(self, at: slice) -> list[ExecutableLine]: ...
+    def __getitem__(self, at: int | slice) -> ExecutableLine | list[ExecutableLine]:
         if isinstance(at, slice):
             return [self[k] for k in range(len(self))[at]]
         page = self._pages.get(at // _PAGE) or self._page(at // _PAGE)
         return page[at % _PAGE]
 
-    def __setitem__(self, at: int, line: ReadyLine) -> None:
+    def __setitem__(self, at: int, line: ExecutableLine) -> None:
         """Replace a line, which is then no longer in the columns."""
         self._others[at] = self._page(at // _PAGE)[at % _PAGE] = line
-        self.columns.known[at] = False
+        self.columns.is_plain_move[at] = False
 
-    def __iter__(self) -> Iterator[ReadyLine]:
+    def __iter__(self) -> Iterator[ExecutableLine]:
         for number in range(-(-len(self) // _PAGE)):
             yield from self._page(number)
 
-    def moves_until(self, at: int) -> int:
+    def find_next_statement(self, index: int) -> int:
         """Return the index of the next line that is not a plain move, at most MOST lines away."""
-        known = self.columns.known[at : at + MOST]
+        known = self.columns.is_plain_move[index : index + MAX_RUN_LENGTH]
         first = int(known.argmin()) if len(known) else 0
-        return at + (len(known) if len(known) and known[first] else first)
+        return index + (len(known) if len(known) and known[first] else first)
 
-    def _page(self, number: int) -> list[ReadyLine]:
+    def _page(self, number: int) -> list[ExecutableLine]:
         if number not in self._pages:
             if len(self._pages) >= _PAGES:
                 del self._pages[next(iter(self._pages))]
             self._pages[number] = self._made(number)
         return self._pages[number]
 
-    def _made(self, number: int) -> list[ReadyLine]:
+    def _made(self, number: int) -> list[ExecutableLine]:
         lines = range(number * _PAGE, min((number + 1) * _PAGE, len(self)))
-        moves = self.columns.part(slice(lines.start, lines.stop)).moves()
+        moves = self.columns.select_lines(slice(lines.start, lines.stop)).list_moves()
         return [self._others[at] if move is None else move for at, move in zip(lines, moves, strict=True)]
 
 
 def _joined(lines: Sequence[str], these: range) -> str:
-    return lines.joined(these) if isinstance(lines, LongLines) else "\n".join(lines[these.start : these.stop])
+    return (
+        lines.join_lines(these)
+        if isinstance(lines, LazyLines)
+        else "\n".join(lines[these.start : these.stop])
+    )
 
 
-def read_lines(lines: Sequence[str], read: Callable[[int, str], ReadyLine], *, in_order: bool) -> ReadyLines:
+def parse_lines(
+    lines: Sequence[str], read: Callable[[int, str], ExecutableLine], *, in_order: bool
+) -> ExecutableLines:
     """Return the lines ready for execution.
 
     ``read`` (number from 1, text) is called for lines not read as arrays.
 
     With ``in_order``, ``read`` is called for each line, because the meaning depends on earlier lines.
     """
-    columns = Columns.empty(len(lines))
-    others: dict[int, ReadyLine] = {}
-    for first in range(0, len(lines), MOST):
-        part = columns.part(slice(first, first + MOST))
+    columns = LineColumns.empty(len(lines))
+    others: dict[int, ExecutableLine] = {}
+    for first in range(0, len(lines), MAX_RUN_LENGTH):
+        part = columns.select_lines(slice(first, first + MAX_RUN_LENGTH))
         if not in_order:
-            read_columns(_joined(lines, range(first, min(first + MOST, len(lines)))), part)
-        for at in np.flatnonzero(~part.known).tolist():
+            parse_columns(_joined(lines, range(first, min(first + MAX_RUN_LENGTH, len(lines)))), part)
+        for at in np.flatnonzero(~part.is_plain_move).tolist():
             line = read(first + at + 1, lines[first + at])
             if isinstance(line, tuple):
-                part.put(at, line)
+                part.store_line(at, line)
             else:
                 others[first + at] = line
-    return ReadyLines(columns, others)
+    return ExecutableLines(columns, others)

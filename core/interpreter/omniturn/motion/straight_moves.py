@@ -4,82 +4,84 @@ from __future__ import annotations
 
 from math import copysign, floor, hypot, isfinite
 
-from core.interpreter.omniturn.motion.feeds import another_feed, check_move
+from core.interpreter.omniturn.motion.feeds import check_move_feed, set_plain_feed
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
 from core.interpreter.shared import units
 from core.interpreter.shared.elementary_blocks import Block
-from core.language.diagnostics import program_error
+from core.language.diagnostics import make_program_error
 from core.language.omniturn import Word, lex_line
 from core.message import Message
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
 _DIAMETERS = frozenset({"X"})  # words that are diameters under G72
-WHOLE = 1e-6  # of a step; tolerance for the rounding of decimal fractions
+ROUNDING_TOLERANCE = 1e-6  # of a step; tolerance for the rounding of decimal fractions
 
 
-def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | None:
+def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -> Block | None:
     """Return the block of a line with only G00 or G01, X, Z and F; None if the full statement is needed.
 
-    Raises ProgramError as ``line_to`` does.
+    Raises ProgramError as ``make_straight_move`` does.
     """
     x, z, f, g, fine = move
-    same = (g < 0 and f is None) or in_force(state, g, f)
-    if not same and (g == 0 or f is None or not another_feed(state, f)):
+    same = (g < 0 and f is None) or is_already_active(state, g, f)
+    if not same and (g == 0 or f is None or not set_plain_feed(state, f)):
         return None
     # Numbers with four decimal places are multiples of every resolution except a coarse one.
     if fine or state.modal.coarse:
-        x, z = rounded(state, line, text, x, z)
+        x, z = round_coordinates(state, line, text, x, z)
     if x is not None:
-        x *= state.scale_x
+        x *= state.mm_per_x_unit
     if z is not None:
-        z *= state.scale_z
-    return line_to(state, line, text, x, z)
+        z *= state.mm_per_z_unit
+    return make_straight_move(state, line, text, x, z)
 
 
-def in_force(state: State, g: int, f: float | None) -> bool:
+def is_already_active(state: State, g: int, f: float | None) -> bool:
     """Return whether G00 or G01 (negative for none) and F (None for none) are already active."""
     if g == 0:
         return f is None and state.modal.rapid and not state.title_rapid
     if state.steady_feed is None:
         return g < 0 and f is None
-    return f is None or state.feed_word(f) == state.steady_feed
+    return f is None or state.convert_feed(f) == state.steady_feed
 
 
-def statement_move(state: State, statement: Statement) -> Block:
+def make_statement_move(state: State, statement: Statement) -> Block:
     """Return the straight move of a line after all checks. Raises ProgramError."""
-    x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
+    x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
     state.fast = False
-    return line_to(state, statement.line, statement.part("move"), x, z)
+    return make_straight_move(state, statement.line, statement.get_block_text("move"), x, z)
 
 
-def line_to(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
+def make_straight_move(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
     """Return the straight move to X and Z in mm, with None for a word that is not programmed.
 
     If ``state.fast`` is True, an earlier move with this state passed all checks, and only the length is
     checked. Raises ProgramError.
     """
     x0, z0 = state.x, state.z
-    if state.absolute:  # This is the same as ``go`` but avoids the call.
+    if state.absolute:  # This is the same as ``set_position`` but avoids the call.
         state.px = state.px if x is None else x
         state.pz = state.pz if z is None else z
     else:
         state.px += x or 0.0
         state.pz += z or 0.0
-    state.x = x1 = state.px + state.dx
-    state.z = z1 = state.pz + state.dz
+    state.x = x1 = state.px + state.secondary_x
+    state.z = z1 = state.pz + state.secondary_z
     if state.fast:
-        if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length:
-            check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+        if state.cut and abs(x1 - x0) + abs(z1 - z0) > state.slow_length_mm:
+            check_move_feed(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
         rpm, surface_speed = state.rpm, None
     else:
-        check_tool(state, line, x, z)
-        check_move(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
-        warn_of_title_rapid(state, line)
+        check_tool_first_move(state, line, x, z)
+        check_move_feed(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
+        warn_about_title_rapid(state, line)
         modal = state.modal
-        rpm, surface_speed = state.rpm_at(x1), modal.css_speed
+        rpm, surface_speed = state.compute_rpm_at(x1), modal.active_surface_speed
         # The limit of G95 depends on the spindle speed, which changes between moves only under G96.
-        state.fast = not modal.css and not modal.coarse and not state.reported and not state.contour.active
+        state.fast = (
+            not modal.css and not modal.coarse and not state.reported and not state.contour.is_buffering
+        )
     state.blocks = n = state.blocks + 1
     c = state.c
     return Block(
@@ -88,7 +90,7 @@ def line_to(state: State, line: int, text: str, x: float | None, z: float | None
     )  # fmt: skip
 
 
-def go(state: State, x: float | None, z: float | None) -> None:
+def set_position(state: State, x: float | None, z: float | None) -> None:
     """Set the position to X and Z (mm) by G90 or G91, including the secondary offset."""
     if state.absolute:
         state.px = state.px if x is None else x
@@ -96,10 +98,10 @@ def go(state: State, x: float | None, z: float | None) -> None:
     else:
         state.px += x or 0.0
         state.pz += z or 0.0
-    state.x, state.z = state.px + state.dx, state.pz + state.dz
+    state.x, state.z = state.px + state.secondary_x, state.pz + state.secondary_z
 
 
-def check_tool(state: State, line: int, x: float | None, z: float | None) -> None:
+def check_tool_first_move(state: State, line: int, x: float | None, z: float | None) -> None:
     """Check that the first motion after a T has X and Z. Raises ProgramError (tool-first-move)."""
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
@@ -107,12 +109,12 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
         text = Message(
             "The first move after {place} has no {ending}.", place=where, ending="X" if x is None else "Z"
         )
-        raise program_error(
+        raise make_program_error(
             line, 0, "tool-first-move", text, "Write both X and Z, or write G92 before this move."
         )
 
 
-def warn_of_title_rapid(state: State, line: int) -> None:
+def warn_about_title_rapid(state: State, line: int) -> None:
     """Warn of a rapid that ``G00 (TITLE)`` turned on before a move that would have cut."""
     if state.title_rapid and state.modal.rapid:
         text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."
@@ -121,7 +123,7 @@ def warn_of_title_rapid(state: State, line: int) -> None:
     state.title_rapid = 0
 
 
-def on_step(state: State, statement: Statement, letter: str) -> float | None:
+def round_to_resolution(state: State, statement: Statement, letter: str) -> float | None:
     """Return a length word in mm (X as a radius by G72/G73), rounded to the resolution with a warning.
 
     Returns None without the word.
@@ -132,21 +134,21 @@ def on_step(state: State, statement: Statement, letter: str) -> float | None:
     value, finer = _nearest_step(state, letter, word.value)
     if finer:
         _warn_of_finer(state, statement.line, word, value)
-    return value * (state.scale_x if letter in _DIAMETERS else state.scale_z)
+    return value * (state.mm_per_x_unit if letter in _DIAMETERS else state.mm_per_z_unit)
 
 
-def mill_step(state: State, line: int, word: Word) -> float:
+def round_mill_length(state: State, line: int, word: Word) -> float:
     """Return a length of plane switching in mm, never halved, rounded to the resolution with a warning."""
-    step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
+    step = units.METRIC_STEP_MM if state.modal.metric else _COARSE[state.modal.coarse]
     value, finer = _nearest(step, word.value or 0.0)
     if finer:
         text = "{word} is finer than the resolution; {value} is used."
         hint = "Round the number."
         state.log.warn(line, word.column, "finer-than-step", text, hint, word=word.text, value=f"{value:.5f}")
-    return value * state.scale_z
+    return value * state.mm_per_z_unit
 
 
-def rounded(
+def round_coordinates(
     state: State, line: int, text: str, x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
     """Return X and Z of a line rounded to the resolution, with a warning for each rounded word."""
@@ -162,30 +164,32 @@ def rounded(
     return new_x, new_z
 
 
-def step_of(state: State, letter: str) -> float:
+def get_resolution(state: State, letter: str) -> float:
     """Return the resolution of the control in the unit of the program."""
     modal = state.modal
     if modal.metric:
-        return units.METRIC_STEP
+        return units.METRIC_STEP_MM
     return _COARSE[modal.coarse] * (2 if modal.diameter and letter in _DIAMETERS else 1)
 
 
 def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
     """Return the number rounded to the resolution, and whether it changed."""
-    return _nearest(step_of(state, letter), value)
+    return _nearest(get_resolution(state, letter), value)
 
 
 def _nearest(step: float, value: float) -> tuple[float, bool]:
     count = value / step
-    whole = copysign(floor(abs(count) + 0.5 + WHOLE), count)  # half a step is rounded away from zero
-    if abs(count - whole) <= max(WHOLE, abs(count) * 1e-12):
+    whole = copysign(
+        floor(abs(count) + 0.5 + ROUNDING_TOLERANCE), count
+    )  # half a step is rounded away from zero
+    if abs(count - whole) <= max(ROUNDING_TOLERANCE, abs(count) * 1e-12):
         return value, False
     return whole * step, True
 
 
 def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     name = "mm" if state.modal.metric else "in"
-    step = f"{step_of(state, word.letter):.5f}".rstrip("0")
+    step = f"{get_resolution(state, word.letter):.5f}".rstrip("0")
     state.log.warn(
         line,
         word.column,
@@ -199,16 +203,16 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     )
 
 
-def geometry_modes(state: State, statement: Statement) -> None:
+def execute_geometry_modes(state: State, statement: Statement) -> None:
     """Execute the modes for distance, units and X words of a line."""
-    if not statement.modal:
+    if not statement.modal_codes:
         return
     modal = state.modal
-    for code in statement.modal:
+    for code in statement.modal_codes:
         if code in {90, 91}:
             modal = modal._replace(absolute=code == 90)
         elif code in {70, 71}:
             modal = modal._replace(metric=code == 71)
         elif code in {72, 73}:
             modal = modal._replace(diameter=code == 72)
-    state.adopt(modal)
+    state.set_modal(modal)

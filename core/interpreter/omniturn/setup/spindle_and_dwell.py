@@ -5,89 +5,94 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil, sqrt
 
-from core.interpreter.omniturn.codes.code_rules import check_when, checked, number
-from core.interpreter.omniturn.codes.code_table import G_CODES, LETTERS, M_CODES
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, number
+from core.interpreter.omniturn.codes.code_table import G_CODES, LETTER_ENTRIES, M_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared.actions import Dwell, SpindleRun, SpindleStop
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.units import FEET_PER_MINUTE, METRES_PER_MINUTE
+from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
 from core.message import Message
 
 
-def spindle_modes(state: State, statement: Statement) -> None:
+def execute_spindle_modes(state: State, statement: Statement) -> None:
     """Execute G96, G97, G76 and G77 of a line; with G76 or G77, S is their limit."""
-    if not statement.modal:
+    if not statement.modal_codes:
         return
     modal = state.modal
-    if 96 in statement.modal and not modal.css:
-        state.adopt(state.modal._replace(css=True))
-    elif 97 in statement.modal and modal.css:
+    if 96 in statement.modal_codes and not modal.css:
+        state.set_modal(state.modal._replace(css=True))
+    elif 97 in statement.modal_codes and modal.css:
         # The spindle continues at its present speed, because a jump to an old S would be unexpected.
-        rpm = abs(state.rpm_at(state.x)) if modal.spindle else modal.rpm
-        state.adopt(state.modal._replace(css=False, rpm=rpm))
-    if 76 in statement.modal:
-        state.adopt(state.modal._replace(css_min=_limit(state, statement, 76)))
-    if 77 in statement.modal:
-        state.adopt(state.modal._replace(css_max=_limit(state, statement, 77)))
+        rpm = abs(state.compute_rpm_at(state.x)) if modal.spindle else modal.rpm
+        state.set_modal(state.modal._replace(css=False, rpm=rpm))
+    if 76 in statement.modal_codes:
+        state.set_modal(state.modal._replace(min_css_rpm=_limit(state, statement, 76)))
+    if 77 in statement.modal_codes:
+        state.set_modal(state.modal._replace(max_css_rpm=_limit(state, statement, 77)))
     modal = state.modal
-    if modal.css_max is not None and modal.css_min > modal.css_max:
+    if modal.max_css_rpm is not None and modal.min_css_rpm > modal.max_css_rpm:
         message = Message(
             "G76 ({css_min} rpm) is higher than G77 ({css_max} rpm).",
-            css_min=f"{modal.css_min:g}",
-            css_max=f"{modal.css_max:g}",
+            css_min=f"{modal.min_css_rpm:g}",
+            css_max=f"{modal.max_css_rpm:g}",
         )
-        state.adopt(state.modal._replace(css_min=modal.css_max))
-        raise statement.refuse("S", "speed-limits", message, "Correct G76 or G77.")
+        state.set_modal(state.modal._replace(min_css_rpm=modal.max_css_rpm))
+        raise statement.make_error("S", "speed-limits", message, "Correct G76 or G77.")
 
 
 def _limit(state: State, statement: Statement, code: int) -> float:
     return number(state, statement, "S", G_CODES[code]) or 0.0
 
 
-def speed_word(state: State, statement: Statement) -> None:
+def execute_speed_word(state: State, statement: Statement) -> None:
     """Execute S of a line: rpm under G97, surface speed under G96."""
     word = statement.words.get("S")
     if word is None or word.value is None or statement.s_is_limit:
         return
     modal, speed = state.modal, word.value
     if modal.css:
-        unit = METRES_PER_MINUTE if modal.metric else FEET_PER_MINUTE
-        checked(state, statement, "S", speed * unit, G_CODES[96])
-        state.adopt(modal._replace(surface_speed=speed * unit))
+        unit = MM_S_PER_M_MIN if modal.metric else MM_S_PER_FT_MIN
+        check_value(state, statement, "S", speed * unit, G_CODES[96])
+        state.set_modal(modal._replace(surface_speed=speed * unit))
         return
     if speed >= 0:  # The speed is also set after an error, so that later lines can be checked.
-        state.adopt(modal._replace(rpm=min(speed, state.setup.limits.max_rpm)))
-    number(state, statement, "S", LETTERS["S"])
+        state.set_modal(modal._replace(rpm=min(speed, state.setup.limits.max_rpm)))
+    number(state, statement, "S", LETTER_ENTRIES["S"])
 
 
-def run_block(state: State, statement: Statement) -> Iterator[Block]:
+def run_spindle(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the spindle block of a line with M03, M04 or S, unless the spindle remains stopped."""
-    direction = {3: 1, 4: -1}.get(statement.m or 0, 0)
+    direction = {3: 1, 4: -1}.get(statement.m_number or 0, 0)
     if direction:
-        check_when(state, statement, M_CODES[statement.m or 0])
+        check_conditions(state, statement, M_CODES[statement.m_number or 0])
         state.reported.discard("spindle-stopped")
-        state.adopt(state.modal._replace(spindle=direction))
-    elif "S" not in statement.words or statement.m == 5 or not state.modal.spindle or statement.s_is_limit:
+        state.set_modal(state.modal._replace(spindle=direction))
+    elif (
+        "S" not in statement.words
+        or statement.m_number == 5
+        or not state.modal.spindle
+        or statement.s_is_limit
+    ):
         return
     state.reported.discard("spindle-stopped")
-    rpm = state.rpm_at(state.x)
-    surface = state.modal.css_speed
-    yield state.action(statement.line, statement.part("spindle"), SpindleRun(rpm, surface))
+    rpm = state.compute_rpm_at(state.x)
+    surface = state.modal.active_surface_speed
+    yield state.action(statement.line, statement.get_block_text("spindle"), SpindleRun(rpm, surface))
 
 
-def stop_block(state: State, statement: Statement) -> Iterator[Block]:
+def stop_spindle(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of M05, which stops the spindle and releases C."""
-    state.adopt(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
-    yield state.action(statement.line, statement.part("m"), SpindleStop())
+    state.set_modal(state.modal._replace(spindle=0, c_locked=False, c_rpm=None))
+    yield state.action(statement.line, statement.get_block_text("m"), SpindleStop())
 
 
-_SHORTEST = G_CODES[4].rules["F"].least  # s
+_SHORTEST = G_CODES[4].rules["F"].minimum  # s
 _LONG = 60.0  # s with an active tool; warm-up programs have no tool
-_DONE = 1e-9  # s, degrees
+_ARRIVAL_TOLERANCE = 1e-9  # s, degrees
 
 
-def dwell(state: State, statement: Statement) -> Iterator[Block]:
+def execute_dwell(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of G04. Raises ProgramError if F is missing or out of range."""
     seconds = number(state, statement, "F") or 0.0
     if seconds > _LONG and state.modal.tool:
@@ -100,26 +105,26 @@ def dwell(state: State, statement: Statement) -> Iterator[Block]:
             seconds=f"{seconds / 60.0:.1f}",
         )
     _shorten_arrival(state, seconds)
-    yield state.action(statement.line, statement.part("move"), Dwell(seconds))
+    yield state.action(statement.line, statement.get_block_text("move"), Dwell(seconds))
 
 
-def expect_arrival(state: State, line: int, column: int, turn: float) -> None:
-    """Record the time of a turn of C by ``turn`` degrees, if its drive does not report the position."""
+def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) -> None:
+    """Record the time of a turn of C by ``turn_deg`` degrees, if its drive does not report the position."""
     limits = state.setup.limits
-    if limits.c_feedback or turn <= _DONE:
+    if limits.has_c_feedback or turn_deg <= _ARRIVAL_TOLERANCE:
         return
-    speed, accel = (state.modal.c_rpm or limits.c_max_rpm) * 6.0, limits.c_accel
+    speed, accel = (state.modal.c_rpm or limits.c_max_rpm) * 6.0, limits.c_acceleration
     ramps = speed * speed / accel
-    seconds = turn / speed + speed / accel if turn >= ramps else 2.0 * sqrt(turn / accel)
+    seconds = turn_deg / speed + speed / accel if turn_deg >= ramps else 2.0 * sqrt(turn_deg / accel)
     state.turning = (line, column, seconds)
 
 
-def warn_of_short_dwell(state: State) -> None:
+def warn_about_short_dwell(state: State) -> None:
     """Log a warning if a move or the end occurs before C is in position."""
     if state.turning is None:
         return
     (line, column, left), state.turning = state.turning, None
-    if left > _DONE:
+    if left > _ARRIVAL_TOLERANCE:
         needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST)
         text = (
             "The C drive does not signal when C is in position; at this point, C needs another {needed} s to "
@@ -129,8 +134,8 @@ def warn_of_short_dwell(state: State) -> None:
         state.log.warn(line, column, "dwell-too-short", text, hint, needed=f"{needed:.2f}")
 
 
-def _shorten_arrival(state: State, seconds: float) -> None:
+def _shorten_arrival(state: State, dwell_s: float) -> None:
     """Subtract a dwell from the time that C needs to reach its position."""
     if state.turning is not None:
         line, column, left = state.turning
-        state.turning = (line, column, left - seconds)
+        state.turning = (line, column, left - dwell_s)

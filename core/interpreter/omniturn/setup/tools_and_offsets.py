@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from core.interpreter.omniturn.codes.code_rules import check_together
-from core.interpreter.omniturn.motion.straight_moves import on_step
+from core.interpreter.omniturn.codes.code_rules import check_word_groups
+from core.interpreter.omniturn.motion.straight_moves import round_to_resolution
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared.actions import Preset, ToolChange, WorkShift
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import ToolUse
+from core.interpreter.shared.interpretation import ToolUsage
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Word
 from core.message import Message
 
 
-def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
+def _offset(state: State, line: int, word: Word, usage: ToolUsage) -> ToolOffset:
     """Return the offset of a T word; 0 with a warning if it was never set."""
     number = int(word.value or 0)
-    offset = use.offset(number, state.setup.tools) if number else ToolOffset()
+    offset = usage.use_tool_offset(number, state.setup.tools) if number else ToolOffset()
     if offset is None:
-        state.log.again(missing_offset(use.missing, line, word.column))
+        state.log.count_repeat(make_missing_offset_warning(usage.tools_without_offset, line, word.column))
     return offset or ToolOffset()
 
 
-def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
+def make_missing_offset_warning(tools: Sequence[int], line: int, column: int) -> Diagnostic:
     """Return the warning for tools whose offset was never set."""
     names, hint = ", ".join(f"T{number}" for number in tools), "Set the tool offsets."
     text = Message("{names} have no offset, so 0 is used and the machine will not start.", names=names)
@@ -38,71 +38,74 @@ def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
     return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, hint)
 
 
-def tool_change(state: State, statement: Statement, word: Word, use: ToolUse) -> Block:
+def change_tool(state: State, statement: Statement, word: Word, usage: ToolUsage) -> Block:
     """Return the block of T: a new tool offset and the sum of G10; T cancels G92, D and compensation."""
     modal = state.modal
     number = int(word.value or 0)
     if modal.css and number:
         text = "G96 is active at a tool change, so the spindle drive must follow every sudden change in X."
         state.log.warn(statement.line, word.column, "tool-under-css", text, "Write G97 before T.")
-    offset = _offset(state, statement.line, word, use)
+    offset = _offset(state, statement.line, word, usage)
     if number:
         state.pending_shift.update(dict.fromkeys(state.pending_shift, True))
     shift_x = modal.pending_shift_x if number else 0.0
     shift_z = modal.pending_shift_z if number else 0.0
     state.stay(
         modal._replace(
-            tool=number, tool_x=offset.x, tool_z=offset.z, nose_comp=40,
+            tool=number, tool_x=offset.x, tool_z=offset.z, compensation_code=40,
             shift_x=shift_x, shift_z=shift_z, pending_shift_x=shift_x, pending_shift_z=shift_z,
             preset_x=0.0, preset_z=0.0, secondary=0, secondary_x=0.0, secondary_z=0.0,
         )
     )  # fmt: skip
     state.tool_line = statement.line if number else 0
     state.fast = False  # The same tool may not change the modal state, but the next move must be checked.
-    secondary(state, statement)
-    return state.action(statement.line, statement.part("tool"), ToolChange(number))
+    select_secondary_offset(state, statement)
+    return state.action(statement.line, statement.get_block_text("tool"), ToolChange(number))
 
 
-def secondary(state: State, statement: Statement) -> None:
+def select_secondary_offset(state: State, statement: Statement) -> None:
     """Execute D: its offset applies to the end point of this line's move and of all later moves."""
-    number = statement.value("D")
+    number = statement.get_value("D")
     if number is None:
         return
-    state.contour.d_line = statement.line
+    state.contour.secondary_offset_line = statement.line
     offset = state.setup.secondary.get(int(number), SecondaryOffset()) if number else SecondaryOffset()
-    state.adopt(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
+    state.set_modal(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
 
 
-def work_shift(state: State, statement: Statement) -> Iterator[Block]:
+def add_work_shift(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of G10, which adds to the shift at the next T. Raises ProgramError without X and Z."""
-    check_together(statement, statement.entry)
-    x, z = on_step(state, statement, "X") or 0.0, on_step(state, statement, "Z") or 0.0
+    check_word_groups(statement, statement.code_entry)
+    x, z = (
+        round_to_resolution(state, statement, "X") or 0.0,
+        round_to_resolution(state, statement, "Z") or 0.0,
+    )
     modal = state.modal
-    state.adopt(
+    state.set_modal(
         modal._replace(pending_shift_x=modal.pending_shift_x + x, pending_shift_z=modal.pending_shift_z + z)
     )
     state.pending_shift.setdefault(statement.line, False)
-    yield state.action(statement.line, statement.part("frame"), WorkShift(x, z))
+    yield state.action(statement.line, statement.get_block_text("frame"), WorkShift(x, z))
 
 
-def preset(state: State, statement: Statement) -> Iterator[Block]:
+def set_preset(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of G92, which sets the present coordinates. Raises ProgramError without X and Z."""
-    check_together(statement, statement.entry)
+    check_word_groups(statement, statement.code_entry)
     if {"X", "Z", "F"} <= statement.words.keys():
         text = (
             "On this control, G92 presets the position and does not cut a thread. Threads are cut with G33."
         )
-        state.log.warn(statement.line, statement.column("F"), "preset-thread", text, "Write G33XnZnInKn.")
-    x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
+        state.log.warn(statement.line, statement.get_column("F"), "preset-thread", text, "Write G33XnZnInKn.")
+    x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal
     preset_x, preset_z = modal.preset_x + state.x - x, modal.preset_z + state.z - z
     state.stay(modal._replace(preset_x=preset_x, preset_z=preset_z))
     state.tool_line = 0
-    yield state.action(statement.line, statement.part("frame"), Preset(x, z))
+    yield state.action(statement.line, statement.get_block_text("frame"), Preset(x, z))
 
 
-def warn_of_idle_shifts(state: State) -> None:
+def warn_about_idle_shifts(state: State) -> None:
     """Log a warning at the end for each G10 that no T followed."""
     for line, taken in state.pending_shift.items():
         if not taken:

@@ -7,79 +7,95 @@ from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Element
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.sinumerik.cycles.cycle_parameters import Cycle
-from core.interpreter.sinumerik.cycles.drilling_cycles import bore, drill, lift_off, peck, stop
-from core.interpreter.sinumerik.cycles.grooving_cycles import groove, part_off
-from core.interpreter.sinumerik.cycles.stock_removal import (
-    WRONG_CONTOUR,
-    contour_lines,
-    read_contour,
-    stock_removal,
+from core.interpreter.sinumerik.cycles.cycle_parameters import CycleCall
+from core.interpreter.sinumerik.cycles.drilling_cycles import (
+    run_boring,
+    run_boring_with_liftoff,
+    run_drilling,
+    run_pecking,
+    stop,
 )
-from core.interpreter.sinumerik.cycles.tapping_cycles import compensating, rigid
-from core.interpreter.sinumerik.cycles.thread_cycle import thread_chain, thread_cycle
-from core.interpreter.sinumerik.cycles.undercut_cycles import shoulder_undercut, thread_undercut, undercut
+from core.interpreter.sinumerik.cycles.grooving_cycles import run_grooving, run_part_off
+from core.interpreter.sinumerik.cycles.stock_removal import (
+    WRONG_CONTOUR_DEFINITION,
+    find_contour_lines,
+    read_contour,
+    run_stock_removal,
+)
+from core.interpreter.sinumerik.cycles.tapping_cycles import run_compensating_tapping, run_rigid_tapping
+from core.interpreter.sinumerik.cycles.thread_cycle import run_thread, run_thread_chain
+from core.interpreter.sinumerik.cycles.undercut_cycles import (
+    run_shoulder_undercut,
+    run_thread_undercut,
+    run_undercut,
+)
 from core.interpreter.sinumerik.flow.subprogram_flow import Flow
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.diagnostics import Diagnostic, ProgramError
-from core.language.sinumerik.sinumerik_words import Line
+from core.language.sinumerik.sinumerik_words import LexedBlock
 from core.message import Message
 
-_RUN: Mapping[str, Callable[[Cycle], Iterator[Block]]] = {
-    "CYCLE81": drill,
-    "CYCLE82": drill,
-    "CYCLE83": peck,
-    "CYCLE84": rigid,
-    "CYCLE840": compensating,
-    "CYCLE85": bore,
-    "CYCLE86": lift_off,
+_CYCLE_FUNCTIONS: Mapping[str, Callable[[CycleCall], Iterator[Block]]] = {
+    "CYCLE81": run_drilling,
+    "CYCLE82": run_drilling,
+    "CYCLE83": run_pecking,
+    "CYCLE84": run_rigid_tapping,
+    "CYCLE840": run_compensating_tapping,
+    "CYCLE85": run_boring,
+    "CYCLE86": run_boring_with_liftoff,
     "CYCLE87": stop,
     "CYCLE88": stop,
-    "CYCLE89": bore,
-    "CYCLE92": part_off,
-    "CYCLE93": groove,
-    "CYCLE94": shoulder_undercut,
-    "CYCLE940": undercut,
-    "CYCLE96": thread_undercut,
-    "CYCLE97": thread_cycle,
-    "CYCLE98": thread_chain,
-    "CYCLE99": thread_cycle,
+    "CYCLE89": run_boring,
+    "CYCLE92": run_part_off,
+    "CYCLE93": run_grooving,
+    "CYCLE94": run_shoulder_undercut,
+    "CYCLE940": run_undercut,
+    "CYCLE96": run_thread_undercut,
+    "CYCLE97": run_thread,
+    "CYCLE98": run_thread_chain,
+    "CYCLE99": run_thread,
 }
 
 
-def cycle_blocks(state: State, line: Line, flow: Flow) -> Iterator[Block]:
+def generate_cycle_blocks(state: State, line: LexedBlock, flow: Flow) -> Iterator[Block]:
     """Return an iterator of the blocks of a standard cycle. Raises ProgramError before the first block."""
-    cycle = Cycle(state, line)
-    if line.call == "CYCLE95":
-        return stock_removal(cycle, _contour(cycle, flow))
-    return _RUN[line.call](cycle)
+    cycle = CycleCall(state, line)
+    if line.called_name == "CYCLE95":
+        return run_stock_removal(cycle, _contour(cycle, flow))
+    return _CYCLE_FUNCTIONS[line.called_name](cycle)
 
 
-def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
-    named = cycle.text("NPP")
+def _contour(cycle: CycleCall, flow: Flow) -> list[Element]:
+    named = cycle.read_text("NPP")
     hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
-    cycle.check(named, "NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR)
-    known = flow.routine(named)
-    lines = contour_lines(named, flow.running, known)
+    cycle.check_parameter(
+        named, "NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR_DEFINITION
+    )
+    known = flow.find_routine(named)
+    lines = find_contour_lines(named, flow.active_routine, known)
     if lines is None:
         if ":" in named:
             text = "{name} refers to labels that do not exist: {named}"
-            raise cycle.wrong("NPP", text, "Correct the entries named in the message.", 14080, named=named)
+            raise cycle.make_parameter_error(
+                "NPP", text, "Correct the entries named in the message.", 14080, named=named
+            )
         text = "{name} refers to subprogram {named}, which does not exist"
         hint = (
             "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's "
             "file."
         )
-        raise cycle.wrong("NPP", text, hint, "subprogram-missing", named=named, named2=named)
+        raise cycle.make_parameter_error("NPP", text, hint, "subprogram-missing", named=named, named2=named)
     try:
         return read_contour(cycle.state, lines)
     except ProgramError as problem:
-        if known is None or not known.shown:
+        if known is None or not known.displayed_name:
             raise
-        raise ProgramError(_told_at(cycle.line, known.shown, problem.diagnostic)) from None
+        raise ProgramError(_relocate_finding(cycle.line, known.displayed_name, problem.diagnostic)) from None
 
 
-def _told_at(line: Line, shown: str, found: Diagnostic) -> Diagnostic:
+def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> Diagnostic:
     """Return an error in the contour's file as a finding at the line of the cycle."""
-    message = Message("{source} line {line}: {value}", source=shown, line=found.line, value=found.message)
-    return replace(found, line=line.number, column=line.call_column, message=message)
+    message = Message(
+        "{source} line {line}: {value}", source=file_name, line=finding.line, value=finding.message
+    )
+    return replace(finding, line=line.number, column=line.call_column, message=message)

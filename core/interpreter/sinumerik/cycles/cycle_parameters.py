@@ -8,64 +8,72 @@ from math import hypot
 from typing import NamedTuple
 
 from core.geometry.lines_and_arcs import Point
-from core.interpreter.shared.actions import Action, Dwell, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
-from core.interpreter.shared.contour_passes import pass_count
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, block_of
-from core.interpreter.sinumerik.motion.sinumerik_feeds import check_feed
+from core.interpreter.shared.actions import (
+    Action,
+    Dwell,
+    SpindleLock,
+    SpindlePositioning,
+    SpindleRun,
+    SpindleStop,
+)
+from core.interpreter.shared.contour_passes import count_passes
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, make_travel_block
+from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError, Severity
-from core.language.sinumerik.call_arguments import Argument
-from core.language.sinumerik.cycle_names import CYCLES
-from core.language.sinumerik.sinumerik_alarms import fault
-from core.language.sinumerik.sinumerik_words import Line
-from core.message import Message, worded
+from core.language.sinumerik.call_arguments import CallArgument
+from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS
+from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_words import LexedBlock
+from core.message import Message, fill_template
 
-TOO_MANY = 12330
+TOO_MANY_ARGUMENTS = 12330
 NO_FEED, NO_F = 61003, 10860
-NO_DIRECTION = 61102
+NO_SPINDLE_DIRECTION = 61102
 _CORRECT, _POINT = "Correct the value.", "Look for a missing decimal point."
-_OWN = "cycle-parameter"
+_PARAMETER_CODE = "cycle-parameter"
 _Alarm = int | str
-MACHINING_TYPE = 61002
-MOST_PASSES = 10_000
-RETRACT = 1.0  # mm; default retract distance from the part without _VRT
+WRONG_MACHINING_TYPE = 61002
+MAX_PASSES = 10_000
+DEFAULT_RETRACT_MM = 1.0  # mm; default retract distance from the part without _VRT
 _SAME = 1e-9  # mm
 
 
-class Step(NamedTuple):
+class CycleStep(NamedTuple):
     """One motion of a cycle in the program frame, in mm with X as a radius.
 
     ``feed`` is in the unit of ``modal.feed``, or the lead of a thread, or None for a rapid. A step with
-    ``action`` does not move. ``turn`` is the simultaneous turn of C in degrees; ``feed`` is then in mm/s. A
-    ``tap`` step follows the spindle, and ``in_hole`` means that the tap is in the hole at its end.
+    ``action`` does not move. ``c_travel_deg`` is the simultaneous turn of C in degrees; ``feed`` is then in
+    mm/s. A ``is_tapping`` step follows the spindle, and ``in_hole`` means that the tap is in the hole at its
+    end.
     """
 
     x: float
     z: float
     feed: float | None = None
-    centre: Point | None = None
-    clockwise: bool = False
-    thread: bool = False
+    center: Point | None = None
+    is_clockwise: bool = False
+    is_thread: bool = False
     action: Action | None = None
-    turn: float = 0.0
-    spindle: int | None = None  # spindle direction after the action: +1, 0 or -1
-    tap: bool = False
-    in_hole: bool = False
+    c_travel_deg: float = 0.0
+    spindle_direction: int | None = None  # spindle direction after the action: +1, 0 or -1
+    is_tapping: bool = False
+    ends_in_hole: bool = False
 
 
-_LIVE = frozenset(("CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCLE89", "HOLES1", "HOLES2"))
+_LIVE_TOOL_CYCLES = frozenset(("CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCLE89", "HOLES1", "HOLES2"))
 """Cycles that drill along the depth of TRANSMIT, too."""
 
 
-class Cycle:
+class CycleCall:
     """One call of a standard cycle.
 
     ``x z`` is the position of the tip in the program frame, in mm with X as a radius.
     """
 
-    def __init__(self, state: State, line: Line) -> None:
+    def __init__(self, state: State, line: LexedBlock) -> None:
         self.state, self.line = state, line
         self.statement = Statement(line)
         self._in_thread = False
@@ -76,14 +84,18 @@ class Cycle:
         if state.transformation is not None:
             self.x, self.z = 0.0, state.transformation.depth
 
-    def _by_name(self) -> dict[str, Argument]:
-        names, arguments = CYCLES[self.line.call], self.line.arguments or ()
+    def _by_name(self) -> dict[str, CallArgument]:
+        names, arguments = CYCLE_PARAMETERS[self.line.called_name], self.line.arguments or ()
         if len(arguments) > len(names):
             text = "{call} accepts {names_count} parameters, but the call passes {arguments_count}."
-            told = {"call": self.line.call, "names_count": len(names), "arguments_count": len(arguments)}
+            told = {
+                "call": self.line.called_name,
+                "names_count": len(names),
+                "arguments_count": len(arguments),
+            }
             hint = Message("Use only these parameters: {names}.", names=", ".join(names))
-            raise self._fault(arguments[len(names)].column, TOO_MANY, Message(text, **told), hint)
-        return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
+            raise self._fault(arguments[len(names)].column, TOO_MANY_ARGUMENTS, Message(text, **told), hint)
+        return {name: each for name, each in zip(names, arguments, strict=False) if each.is_specified}
 
     def _check(self) -> None:
         """Raise ProgramError if the cycle is not allowed in the present state.
@@ -93,254 +105,301 @@ class Cycle:
         """
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
-        self.require(self.state.programmed.plain, "cycle-frame", text, hint)
+        self.require(self.state.programmed_frame.is_shift_only, "cycle-frame", text, hint)
         plane = self.state.transformation
-        if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
+        if plane is not None and (self.line.called_name not in _LIVE_TOOL_CYCLES or not plane.has_z_depth):
             template = (
                 "{call} uses the spindle for turning or tapping, but {plane} is active."
-                if plane.along_z
+                if plane.has_z_depth
                 else "{call} moves along Z, but {plane} is active."
             )
             hint = "Write TRAFOOF before this block."
-            raise self.refused("transformation", template, hint, plane=plane.name)
-        text, on = "{what} is not allowed while G{state} is active.", self.state.modal.nose_comp
+            raise self.make_call_error("transformation", template, hint, plane=plane.name)
+        text, on = "{what} is not allowed while G{state} is active.", self.state.modal.compensation_code
         hint = "Write G40 and a move before this block."
-        self.require(on == 40, "comp-with", text, hint, what=self.line.call, state=on)
+        self.require(on == 40, "comp-with", text, hint, what=self.line.called_name, state=on)
 
-    def given(self, name: str) -> bool:
+    def has_argument(self, name: str) -> bool:
         """Return whether the call passes this parameter."""
         return name in self._arguments
 
-    def text(self, name: str) -> str:
+    def read_text(self, name: str) -> str:
         """Return a string parameter in capitals; empty without it."""
         argument = self._arguments.get(name)
         return "" if argument is None or argument.text is None else argument.text.upper()
 
-    def number(self, name: str, default: float = 0.0) -> float:
+    def read_number(self, name: str, default: float = 0.0) -> float:
         """Return a number as written. Raises ProgramError for a string."""
         argument = self._arguments.get(name)
         if argument is None:
             return default
         if argument.formula is None:
-            raise self.wrong(name, "{name} is text but must be a number", "Enter a number.")
-        return self.state.worth(
+            raise self.make_parameter_error(name, "{name} is text but must be a number", "Enter a number.")
+        return self.state.evaluate_formula(
             argument.formula,
             lambda c, t, h: self._fault(argument.column, c, Message("{name}: {t}", name=name, t=t), h),
         )
 
-    def length(self, name: str, default: float = 0.0) -> float:
+    def read_length_mm(self, name: str, default: float = 0.0) -> float:
         """Return a length in mm, converted from inches under G70."""
-        if not self.given(name):
+        if not self.has_argument(name):
             return default
-        return self.number(name) * (1.0 if self.state.modal.metric else 25.4)
+        return self.read_number(name) * (1.0 if self.state.modal.metric else 25.4)
 
-    def size(self, name: str, default: float = 0.0) -> float:
+    def read_size_mm(self, name: str, default: float = 0.0) -> float:
         """Return a length without a sign, in mm. Raises ProgramError if it is negative."""
-        value = self.length(name, default)
-        self.check(value >= 0.0, name, "{name} is a size and cannot be negative", "Remove the sign.")
+        value = self.read_length_mm(name, default)
+        self.check_parameter(
+            value >= 0.0, name, "{name} is a size and cannot be negative", "Remove the sign."
+        )
         return value
 
-    def needed(self, name: str) -> float:
+    def read_required_mm(self, name: str) -> float:
         """Return a required length in mm. Raises ProgramError if it is missing."""
-        if not self.given(name):
-            raise self.wrong(name, "{name} is missing", "Add this parameter to {call}.", call=self.line.call)
-        return self.length(name)
+        if not self.has_argument(name):
+            raise self.make_parameter_error(
+                name, "{name} is missing", "Add this parameter to {call}.", call=self.line.called_name
+            )
+        return self.read_length_mm(name)
 
-    def over_zero(self, name: str, alarm: _Alarm = _OWN) -> float:
+    def read_positive_mm(self, name: str, alarm: _Alarm = _PARAMETER_CODE) -> float:
         """Return a required length above 0, in mm. Raises ProgramError if it is missing or not above 0."""
-        value = self.needed(name)
-        self.check(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
+        value = self.read_required_mm(name)
+        self.check_parameter(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
 
-    def whole(self, name: str, default: int, low: int, high: int) -> int:
-        """Return a whole number from ``low`` to ``high``. Raises ProgramError for any other value."""
-        value = self.number(name, float(default))
+    def read_whole_number(self, name: str, default: int, minimum: int, maximum: int) -> int:
+        """Return a whole number from ``minimum`` to ``maximum``. Raises ProgramError for any other value."""
+        value = self.read_number(name, float(default))
         self._demand_whole(name, value)
         text = "{name} is {value} but must be between {low} and {high}"
-        self.check(low <= value <= high, name, text, "Correct the value.", value=value, low=low, high=high)
+        self.check_parameter(
+            minimum <= value <= maximum,
+            name,
+            text,
+            "Correct the value.",
+            value=value,
+            low=minimum,
+            high=maximum,
+        )
         return round(value)
 
     def _demand_whole(self, name: str, value: float) -> None:
         text = "{name} is {value} but must be a whole number"
-        self.check(value == round(value), name, text, "Enter a whole number.", value=value)
+        self.check_parameter(value == round(value), name, text, "Enter a whole number.", value=value)
 
-    def zero_only(self, name: str, why: str) -> None:
+    def check_zero(self, name: str, reason: str) -> None:
         """Raise ProgramError if a parameter requests a function that is not supported."""
-        if self.number(name):
-            raise self.wrong(name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=why)
+        if self.read_number(name):
+            raise self.make_parameter_error(
+                name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=reason
+            )
 
-    def feed(self, name: str) -> float | None:
+    def read_feed(self, name: str) -> float | None:
         """Return a feed in the unit of ``modal.feed``; without the parameter, the active feed."""
-        if not self.given(name) or not self.number(name):
+        if not self.has_argument(name) or not self.read_number(name):
             return self.state.modal.feed
-        value = self.number(name)
-        self.check(value >= 0.0, name, "{name} must be a feed rate above 0", "Correct the value.")
+        value = self.read_number(name)
+        self.check_parameter(value >= 0.0, name, "{name} must be a feed rate above 0", "Correct the value.")
         value *= 25.4 if self.state.feed_in_inches else 1.0
         return value if self.state.modal.per_rev else value / 60.0
 
-    def machining(self, name: str, known: range) -> int:
+    def read_machining_type(self, name: str, allowed_types: range) -> int:
         """Return VARI. Raises ProgramError with the alarm of the control for an invalid type."""
-        value = self.number(name)
+        value = self.read_number(name)
         self._demand_whole(name, value)
-        if round(value) not in known:
-            low, high = known[0], known[-1]
+        if round(value) not in allowed_types:
+            low, high = allowed_types[0], allowed_types[-1]
             text = "{name} is {value}; valid types are {low} to {high}"
             hint = "Correct the value."
-            raise self.wrong(name, text, hint, MACHINING_TYPE, value=value, low=low, high=high)
+            raise self.make_parameter_error(
+                name, text, hint, WRONG_MACHINING_TYPE, value=value, low=low, high=high
+            )
         return round(value)
 
-    def angle(self, name: str, text: str) -> float:
+    def read_angle_deg(self, name: str, text: str) -> float:
         """Return an angle from 0 to less than 360 degrees. Raises ProgramError for any other value."""
-        value = self.number(name)
-        self.check(0.0 <= value < 360.0, name, text)
+        value = self.read_number(name)
+        self.check_parameter(0.0 <= value < 360.0, name, text)
         return value
 
-    def pass_count(
-        self, whole: float, each: float, name: str, text: str, hint: str = _POINT, most: int = MOST_PASSES
+    def compute_pass_count(
+        self,
+        total_depth: float,
+        depth_per_pass: float,
+        name: str,
+        text: str,
+        hint: str = _POINT,
+        maximum: int = MAX_PASSES,
     ) -> int:
-        """Return the number of passes of ``each`` mm for a depth in mm.
+        """Return the number of passes of ``depth_per_pass`` mm for a depth in mm.
 
         Raises ProgramError if there are too many.
         """
-        count = pass_count(whole, each)
-        self.check(count <= min(most, MOST_PASSES), name, text, hint, count=f"{count:,}")
+        count = count_passes(total_depth, depth_per_pass)
+        self.check_parameter(count <= min(maximum, MAX_PASSES), name, text, hint, count=f"{count:,}")
         return count
 
-    def known_feed(
+    def check_feed_known(
         self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
     ) -> float:
         """Return the feed. Raises ProgramError if it is None."""
         if feed is None:
-            raise self.refused(alarm, "no feedrate is programmed.", hint)
+            raise self.make_call_error(alarm, "no feedrate is programmed.", hint)
         return feed
 
-    def off_part(self, clear: float, out: float = 1.0) -> list[Step]:
-        """Return a step to X ``clear`` if the tool is closer to the part.
+    def make_clearance_steps(self, clearance_x: float, outward_sign: float = 1.0) -> list[CycleStep]:
+        """Return a step to X ``clearance_x`` if the tool is closer to the part.
 
-        ``out`` is the sign of X away from the part.
+        ``outward_sign`` is the sign of X away from the part.
         """
-        return [] if out * self.x >= out * clear else [Step(clear, self.z)]
+        return [] if outward_sign * self.x >= outward_sign * clearance_x else [CycleStep(clearance_x, self.z)]
 
-    def demand_tool(self) -> None:
+    def check_tool(self) -> None:
         """Raise ProgramError unless a tool with an offset is active."""
         modal, text = self.state.modal, "{call} needs an active tool with an offset."
         self.require(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
 
-    def wrong(
-        self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
+    def make_parameter_error(
+        self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _PARAMETER_CODE, /, **values: object
     ) -> ProgramError:
         """Return an error about one parameter; ``values`` fill the placeholders of ``what`` and ``hint``."""
         argument = self._arguments.get(name)
         column = self.line.call_column if argument is None else argument.column
-        values = {"name": name, "call": self.line.call, **values}
-        text = Message("{call}: {what}.", call=self.line.call, what=worded(what, values))
-        return self._fault(column, code, text, worded(hint, values))
+        values = {"name": name, "call": self.line.called_name, **values}
+        text = Message("{call}: {what}.", call=self.line.called_name, what=fill_template(what, values))
+        return self._fault(column, code, text, fill_template(hint, values))
 
-    def check(
-        self, ok: object, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
+    def check_parameter(
+        self,
+        condition: object,
+        name: str,
+        message: str,
+        hint: str = _CORRECT,
+        code: _Alarm = _PARAMETER_CODE,
+        /,
+        **values: object,
     ) -> None:
-        """Raise the error of ``wrong`` unless the condition ``ok`` is true."""
-        if not ok:
-            raise self.wrong(name, what, hint, code, **values)
+        """Raise the error of ``make_parameter_error`` unless the condition ``condition`` is true."""
+        if not condition:
+            raise self.make_parameter_error(name, message, hint, code, **values)
 
-    def refused(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
+    def make_call_error(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
         """Return an error about the whole call; ``values`` fill the placeholders of ``text`` and ``hint``."""
-        values = {"call": self.line.call, **values}
-        return self._fault(self.line.call_column, code, worded(text, values), worded(hint, values))
+        values = {"call": self.line.called_name, **values}
+        return self._fault(
+            self.line.call_column, code, fill_template(text, values), fill_template(hint, values)
+        )
 
-    def require(self, ok: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
-        """Raise the error of ``refused`` unless the condition ``ok`` is true."""
-        if not ok:
-            raise self.refused(code, text, hint, **values)
+    def require(self, condition: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
+        """Raise the error of ``make_call_error`` unless the condition ``condition`` is true."""
+        if not condition:
+            raise self.make_call_error(code, text, hint, **values)
 
     def _fault(self, column: int, code: _Alarm, text: str, hint: str) -> ProgramError:
-        return ProgramError(fault(self.line.number, column, code, self.line.block, text, hint))
+        return ProgramError(make_alarm(self.line.number, column, code, self.line.block_name, text, hint))
 
     def warn(self, code: str, text: str, hint: str, /, **values: object) -> None:
         """Log a warning about the call."""
-        found = self.refused(code, text, hint, **values).diagnostic
+        found = self.make_call_error(code, text, hint, **values).diagnostic
         self.state.log.add(replace(found, severity=Severity.WARNING))
 
-    def blocks(self, steps: Sequence[Step]) -> Iterator[Block]:
+    def make_blocks(self, steps: Sequence[CycleStep]) -> Iterator[Block]:
         """Yield the motions as blocks. All feeds are checked before the first block. Raises ProgramError."""
-        at, kept = (self.x, self.z), list[tuple[Step, float]]()
+        at, kept = (self.x, self.z), list[tuple[CycleStep, float]]()
         for step in steps:
-            still = step.action is None and step.centre is None and not step.turn
+            still = step.action is None and step.center is None and not step.c_travel_deg
             if still and hypot(step.x - at[0], step.z - at[1]) <= _SAME:
                 continue
             feed = step.feed or 0.0
-            if step.action is None and step.feed is not None and not step.thread and not step.turn:
+            if step.action is None and step.feed is not None and not step.is_thread and not step.c_travel_deg:
                 feed = self._check_feed(step, at[0])
             kept.append((step, feed))
             at = (step.x, step.z) if step.action is None else at
         for step, feed in kept:
             yield self._block(step, feed)
 
-    def _check_feed(self, step: Step, x0: float) -> float:
+    def _check_feed(self, step: CycleStep, x0: float) -> float:
         """Return the feed of a step in the unit of its block. Raises ProgramError if it is invalid."""
         state, modal = self.state, self.state.modal
-        state.adopt(modal._replace(feed=step.feed))
+        state.set_modal(modal._replace(feed=step.feed))
         try:
-            return check_feed(state, self.statement, x0, step.x)
+            return check_block_feed(state, self.statement, x0, step.x)
         finally:
-            state.adopt(modal)
+            state.set_modal(modal)
 
-    def _block(self, step: Step, feed: float) -> Block:
+    def _block(self, step: CycleStep, feed: float) -> Block:
         state, modal = self.state, self.state.modal
         if step.action is not None:
-            if step.spindle is not None:
+            if step.spindle_direction is not None:
                 action, locked = step.action, isinstance(step.action, SpindleLock)
-                at = action.angle if isinstance(action, SpindleOrient) else None
-                state.adopt(modal._replace(spindle=step.spindle, c_locked=locked, oriented=at))
+                at = action.angle if isinstance(action, SpindlePositioning) else None
+                state.set_modal(modal._replace(spindle=step.spindle_direction, c_locked=locked, oriented=at))
             done = state.action(self.line.number, _told(step), step.action)
-            done.in_hole = step.in_hole
+            done.in_hole = step.ends_in_hole
             return done
-        text = f"{self.line.call} {_words(step, modal.diameter)}"
+        text = f"{self.line.called_name} {_words(step, modal.diameter)}"
         if state.transformation is not None:
-            return state.transformation.down_to(
+            return state.transformation.move_to_depth(
                 self.statement, step.z, None if step.feed is None else feed, text
             )
         x, z = step.x + modal.offset_x, step.z + modal.offset_z
         travel = AxisTravel(
-            state.x, state.z, state.c, x, z, state.c + step.turn, modal, modal.offset_x, modal.offset_z,
-            state.programmed,
-        )  # fmt: skip
-        kind = Kind.THREAD if step.thread else Kind.ARC if step.centre is not None else Kind.FEED
+            state.x,
+            state.z,
+            state.c,
+            x,
+            z,
+            state.c + step.c_travel_deg,
+            modal,
+            modal.offset_x,
+            modal.offset_z,
+            state.programmed_frame,
+        )
+        kind = (
+            BlockKind.THREAD
+            if step.is_thread
+            else BlockKind.ARC
+            if step.center is not None
+            else BlockKind.FEED
+        )
         if step.feed is None:
-            speeds = state.setup.limits.speeds
-            made = block_of(state, self.statement, travel, Kind.RAPID, travel.rapid_rate(speeds))
+            speeds = state.setup.limits.max_axis_speeds
+            made = make_travel_block(
+                state, self.statement, travel, BlockKind.RAPID, travel.compute_rapid_rate(speeds)
+            )
         else:
-            made = block_of(state, self.statement, travel, kind, feed)
+            made = make_travel_block(state, self.statement, travel, kind, feed)
         made.text = text
-        made.per_rev = (step.thread or made.per_rev) and not step.turn
-        made.coupled, made.in_hole = step.tap, step.in_hole
-        made.continues, self._in_thread = step.thread and self._in_thread, step.thread
-        if step.centre is not None:
-            made.cx, made.cz = step.centre
-            made.clockwise = step.clockwise
+        made.per_rev = (step.is_thread or made.per_rev) and not step.c_travel_deg
+        made.follows_spindle, made.in_hole = step.is_tapping, step.ends_in_hole
+        made.continues, self._in_thread = step.is_thread and self._in_thread, step.is_thread
+        if step.center is not None:
+            made.cx, made.cz = step.center
+            made.clockwise = step.is_clockwise
         return made
 
 
-def acting(action: Action, spindle: int | None = None) -> Step:
-    """Return a step with an action at the present position; ``spindle`` is as in ``Step``."""
-    return Step(0.0, 0.0, action=action, spindle=spindle)
+def make_action_step(action: Action, spindle_direction: int | None = None) -> CycleStep:
+    """Return a step with an action at the present position; ``spindle`` is as in ``CycleStep``."""
+    return CycleStep(0.0, 0.0, action=action, spindle_direction=spindle_direction)
 
 
-def dwell(seconds: float) -> list[Step]:
+def make_dwell_steps(seconds: float) -> list[CycleStep]:
     """Return a dwell step, or an empty list for 0 s."""
-    return [acting(Dwell(seconds))] if seconds > 0.0 else []
+    return [make_action_step(Dwell(seconds))] if seconds > 0.0 else []
 
 
-def _words(step: Step, diameter: bool) -> str:
+def _words(step: CycleStep, diameter: bool) -> str:
     # G2 is clockwise in the view with X up. Blocks use the view with X down.
-    code = "G33" if step.thread else "G0" if step.feed is None else "G1"
-    if step.centre is not None:
-        code = "G3" if step.clockwise else "G2"
+    code = "G33" if step.is_thread else "G0" if step.feed is None else "G1"
+    if step.center is not None:
+        code = "G3" if step.is_clockwise else "G2"
     x = step.x * (2.0 if diameter else 1.0)
     return f"{code} X{x + 0.0:.3f} Z{step.z + 0.0:.3f}"
 
 
-def _told(step: Step) -> str:
+def _told(step: CycleStep) -> str:
     match step.action:
         case Dwell(seconds=seconds):
             return f"G4 F{seconds:g}"
@@ -350,7 +409,7 @@ def _told(step: Step) -> str:
             return "M5"
         case SpindleLock():
             return "M70"
-        case SpindleOrient(angle=angle):
+        case SpindlePositioning(angle=angle):
             return f"SPOS={angle:g}"
         case _:
             return "M0"

@@ -12,54 +12,70 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from core.geometry.contour_offset import Area, TrimError
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shifted
+from core.geometry.contour_offset import RoughingArea, TrimError
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shift_element
 from core.interpreter.shared.contour_passes import (
-    MOST_ELEMENTS,
-    MOST_LOOKS,
-    ContourView,
-    Move,
-    Rougher,
-    StartNearError,
-    view_from,
+    MAX_COMPARISONS,
+    MAX_ELEMENTS,
+    ContourFrame,
+    CycleMove,
+    RoughingPlanner,
+    StartTooCloseError,
+    make_contour_frame,
 )
-from core.interpreter.shared.contour_stage import element_of
-from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.contour_stage import make_element
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.sinumerik.cycles.cycle_parameters import MACHINING_TYPE, RETRACT, Cycle, Step, dwell
-from core.interpreter.sinumerik.flow.control_structures import Routine, find_label
-from core.interpreter.sinumerik.flow.variables import Scope
-from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corners, corner_of
-from core.interpreter.sinumerik.motion.linear_moves import straight
-from core.interpreter.sinumerik.motion.sinumerik_arcs import arc
-from core.interpreter.sinumerik.setup.modes_and_offsets import modes
-from core.interpreter.sinumerik.sinumerik_state import ARCS, Motion, State
-from core.interpreter.sinumerik.sinumerik_statement import Statement, statement_of
+from core.interpreter.sinumerik.cycles.cycle_parameters import (
+    DEFAULT_RETRACT_MM,
+    WRONG_MACHINING_TYPE,
+    CycleCall,
+    CycleStep,
+    make_dwell_steps,
+)
+from core.interpreter.sinumerik.flow.control_structures import Routine, find_label_index
+from core.interpreter.sinumerik.flow.variables import VariableScope
+from core.interpreter.sinumerik.motion.chamfers_and_rounds import SinumerikCornerStage, make_corner
+from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
+from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
+from core.interpreter.sinumerik.setup.modes_and_offsets import execute_modes
+from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, MotionKind, State
+from core.interpreter.sinumerik.sinumerik_statement import Statement, make_statement
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.program_jumps import Steering
-from core.language.sinumerik.sinumerik_alarms import fault
-from core.language.sinumerik.sinumerik_words import Line as SourceLine
-from core.language.sinumerik.word_table import ABSOLUTE, MOTION, PLANE, TRANSVERSE
+from core.language.sinumerik.control_statements import ControlKeyword
+from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_words import LexedBlock as SourceLine
+from core.language.sinumerik.word_table import DIAMETER_GROUP, DISTANCE_MODE_GROUP, MOTION_GROUP, PLANE_GROUP
 from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
-WRONG_CONTOUR = 61605
+WRONG_CONTOUR_DEFINITION = 61605
 _MOTIONS = frozenset({0, 1, 2, 3})
-_GROUPS = frozenset({MOTION, ABSOLUTE, PLANE, TRANSVERSE})
-_TAKEN = frozenset({Steering.PROCEDURE, Steering.MESSAGE, Steering.STOP_READING, Steering.RETURN})
+_GROUPS = frozenset({MOTION_GROUP, DISTANCE_MODE_GROUP, PLANE_GROUP, DIAMETER_GROUP})
+_ALLOWED_FLOW_WORDS = frozenset(
+    {ControlKeyword.PROCEDURE, ControlKeyword.MESSAGE, ControlKeyword.STOP_READING, ControlKeyword.RETURN}
+)
 _END = frozenset({2, 17, 30})
 
 
-def contour_lines(named: str, running: Routine, known: Routine | None) -> list[SourceLine] | None:
+def find_contour_lines(
+    contour_name: str, active_routine: Routine, routine: Routine | None
+) -> list[SourceLine] | None:
     """Return the lines of a contour by its name, or None if the name does not exist."""
-    if ":" in named:
-        first, last = (part.strip() for part in named.split(":", 1))
-        start = find_label(Steering.GOTO, first, running, running.lines.start - 1)
-        end = None if start is None else find_label(Steering.GOTO_FORWARD, last, running, start)
+    if ":" in contour_name:
+        first, last = (part.strip() for part in contour_name.split(":", 1))
+        start = find_label_index(
+            ControlKeyword.GOTO, first, active_routine, active_routine.line_range.start - 1
+        )
+        end = (
+            None
+            if start is None
+            else find_label_index(ControlKeyword.GOTO_FORWARD, last, active_routine, start)
+        )
         if start is None or end is None:
             return None
-        return [running.line(at) for at in range(start, end + 1)]
-    return None if known is None else [known.line(at) for at in known.lines]
+        return [active_routine.get_line(at) for at in range(start, end + 1)]
+    return None if routine is None else [routine.get_line(at) for at in routine.line_range]
 
 
 def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
@@ -69,9 +85,9 @@ def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
     """
     reader = _Reader(state)
     for line in lines:
-        if line.skip is not None and state.setup.block_delete:
+        if line.skip_level is not None and state.setup.block_delete:
             continue
-        if line.executable and reader.take(line):
+        if line.is_executable and reader.read_line(line):
             break
     return reader.elements()
 
@@ -79,145 +95,156 @@ def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
 class _Reader:
     def __init__(self, state: State) -> None:
         own = copy.copy(state)
-        own.log = Log()
+        own.log = DiagnosticLog()
         own.variables = copy.copy(state.variables)
-        own.variables.scope = Scope(dict(state.variables.scope.numbers))
-        own.variables.r = dict(state.variables.r)
-        own.threads, own.rounding, own.motion = (), 0.0, Motion.LINE
+        own.variables.variable_scope = VariableScope(dict(state.variables.variable_scope.numbers))
+        own.variables.r_parameters = dict(state.variables.r_parameters)
+        own.threads, own.rounding, own.motion = (), 0.0, MotionKind.LINE
         # The feeds of a contour have no effect, so a missing feed is not an error.
-        own.adopt(state.modal._replace(feed=1.0, per_rev=False, css=False))
+        own.set_modal(state.modal._replace(feed=1.0, per_rev=False, css=False))
         self._state = own
-        self._corners = Corners(own, own.log)
+        self._corners = SinumerikCornerStage(own, own.log)
         self._blocks: list[Block] = []
 
-    def take(self, line: SourceLine) -> bool:
+    def read_line(self, line: SourceLine) -> bool:
         """Read one line, and return whether it ends the contour. Raises ProgramError."""
         for found in line.errors:
             raise ProgramError(found)
-        if line.call or line.modal_call or (line.jump is not None and line.jump.steering not in _TAKEN):
+        if (
+            line.called_name
+            or line.is_modal_call
+            or (
+                line.control_statement is not None
+                and line.control_statement.keyword not in _ALLOWED_FLOW_WORDS
+            )
+        ):
             raise _refused(line, "a contour can contain only moves, but this line contains a call or a jump")
-        if line.jump is not None:
-            return line.jump.steering is Steering.RETURN
-        statement = statement_of(line)
+        if line.control_statement is not None:
+            return line.control_statement.keyword is ControlKeyword.RETURN
+        statement = make_statement(line)
         self._check(statement)
-        for word in statement.sets:
-            self._state.variables.keep(word.name, self._state.number(statement, word))
-        if statement.g:
-            modes(self._state, statement)
-        if statement.moves:
-            block = (arc if self._state.motion in ARCS else straight)(self._state, statement)
-            corner = corner_of(self._state, statement, block)
-            self._blocks += self._corners.take(block, corner)
-        return bool(_END & statement.m.keys())
+        for word in statement.assignments:
+            self._state.variables.set_value(word.name, self._state.number(statement, word))
+        if statement.g_words:
+            execute_modes(self._state, statement)
+        if statement.has_position_word:
+            block = (make_arc_block if self._state.motion in ARC_MOTIONS else make_straight_block)(
+                self._state, statement
+            )
+            corner = make_corner(self._state, statement, block)
+            self._blocks += self._corners.accept(block, corner)
+        return bool(_END & statement.m_words.keys())
 
     def _check(self, statement: Statement) -> None:
-        groups = statement.g.keys() - _GROUPS
+        groups = statement.g_words.keys() - _GROUPS
         if groups:
-            word = statement.g[min(groups)]
+            word = statement.g_words[min(groups)]
             raise _refused(statement.line, Message("{line} is not allowed in a contour", line=word.text))
-        motion = statement.code(MOTION)
+        motion = statement.get_g_code(MOTION_GROUP)
         if motion is not None and motion not in _MOTIONS:
             raise _refused(statement.line, "a contour can contain only G0, G1, G2 and G3")
-        if "C" in statement.words or statement.frame_key is not None:
+        if "C" in statement.words or statement.frame_word is not None:
             raise _refused(statement.line, "C and frames are not allowed in a contour")
 
     def elements(self) -> list[Element]:
         """Return all elements after the first move."""
-        self._blocks += self._corners.end()
-        elements = [element_of(block) for block in self._blocks[1:] if block.moves]
+        self._blocks += self._corners.finish()
+        elements = [make_element(block) for block in self._blocks[1:] if block.moves]
         return [each for each in elements if each.length > _SAME]
 
 
 def _refused(line: SourceLine, why: str) -> ProgramError:
     return ProgramError(
-        fault(
+        make_alarm(
             line.number,
             1,
-            WRONG_CONTOUR,
-            line.block,
+            WRONG_CONTOUR_DEFINITION,
+            line.block_name,
             Message("{what}.", what=why),
             "Remove this text from the program.",
         )
     )
 
 
-NO_INFEED = 61610
+MISSING_INFEED = 61610
 _SAME = 1e-6  # mm
 # With a VARI above this value, the steps between passes are left; here, the last pass along the contour cuts
 # them.
 _ROUNDING = 200
 
 
-class Kind(NamedTuple):
-    """Machining type of VARI: ``across`` (along X instead of Z), ``inside``, roughing and finishing."""
+class MachiningType(NamedTuple):
+    """Machining type of VARI: ``is_transverse`` (along X instead of Z), ``is_inside``, roughing and
+    finishing.
+    """
 
-    across: bool
-    inside: bool
-    roughs: bool
-    finishes: bool
+    is_transverse: bool
+    is_inside: bool
+    has_roughing: bool
+    has_finishing: bool
 
 
-def kind_of(cycle: Cycle) -> Kind:
+def read_machining_type(cycle: CycleCall) -> MachiningType:
     """Return the type of VARI 1 to 12 or 201 to 212. Raises ProgramError for any other value."""
-    value = cycle.number("VARI", -1.0)
+    value = cycle.read_number("VARI", -1.0)
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
         wrong = "{name} is {value}; valid types are 1 to 12"
         missing = "{name} is missing; valid types are 1 to 12"
         hint = "Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z."
-        text = wrong if cycle.given("VARI") else missing
-        raise cycle.wrong("VARI", text, hint, MACHINING_TYPE, value=value)
+        text = wrong if cycle.has_argument("VARI") else missing
+        raise cycle.make_parameter_error("VARI", text, hint, WRONG_MACHINING_TYPE, value=value)
     rest = (number - 1) % 4
-    return Kind(rest % 2 == 1, rest >= 2, number <= 4 or number >= 9, number >= 5)
+    return MachiningType(rest % 2 == 1, rest >= 2, number <= 4 or number >= 9, number >= 5)
 
 
-def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
+def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Block]:
     """Return the blocks of the cycle. Raises ProgramError before the first block."""
-    kind = kind_of(cycle)
+    kind = read_machining_type(cycle)
     text = "{name} refers to a contour without lines or arcs"
-    cycle.check(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
-    if len(contour) > MOST_ELEMENTS:
+    cycle.check_parameter(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR_DEFINITION)
+    if len(contour) > MAX_ELEMENTS:
         text = "{name} has {contour_count} elements; the maximum is {most_elements}"
         hint = "Split the contour into smaller parts."
-        raise cycle.wrong(
-            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MOST_ELEMENTS:,}"
+        raise cycle.make_parameter_error(
+            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MAX_ELEMENTS:,}"
         )
     plan = _Plan(cycle, kind, contour)
-    steps = plan.approach()
-    if kind.roughs:
-        steps += plan.rough()
-    if kind.finishes:
-        steps += plan.finish()
-    return cycle.blocks(steps)
+    steps = plan.plan_approach()
+    if kind.has_roughing:
+        steps += plan.plan_roughing()
+    if kind.has_finishing:
+        steps += plan.plan_finishing()
+    return cycle.make_blocks(steps)
 
 
 class _Plan:
     """Motions in depth and length, which are X and Z, or Z and X for passes along X."""
 
-    def __init__(self, cycle: Cycle, kind: Kind, contour: list[Element]) -> None:
+    def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
-        self._off = cycle.size("_VRT") or RETRACT
-        self._left = cycle.size("FAL")
-        self._allow = cycle.size("FALX"), cycle.size("FALZ")
-        if kind.across:
+        self._off = cycle.read_size_mm("_VRT") or DEFAULT_RETRACT_MM
+        self._left = cycle.read_size_mm("FAL")
+        self._allow = cycle.read_size_mm("FALX"), cycle.read_size_mm("FALZ")
+        if kind.is_transverse:
             contour = [_swapped(each) for each in contour]
             self._allow = self._allow[1], self._allow[0]
         self._contour = contour
         self._signs = self._free_side()
-        self._nose, self._tip = _nose_of(cycle)
-        self._contour = self._lengthened()
+        self._nose, self._tip = _tool_nose(cycle)
+        self._contour = self._extend_contour()
         self._start = self._start_point()
 
     def _free_side(self) -> tuple[float, float]:
         """Return the signs of depth and length from the part to the open side of the contour."""
-        if self._kind.across:  # The face is on the right side.
-            return 1.0, (-1.0 if self._kind.inside else 1.0)
+        if self._kind.is_transverse:  # The face is on the right side.
+            return 1.0, (-1.0 if self._kind.is_inside else 1.0)
         first, last = self._contour[0].start, self._contour[-1].end
-        out = -1.0 if self._kind.inside else 1.0
+        out = -1.0 if self._kind.is_inside else 1.0
         deep, other = (first, last) if out * first[0] <= out * last[0] else (last, first)
         return out, (1.0 if deep[1] >= other[1] else -1.0)
 
-    def _lengthened(self) -> list[Element]:
+    def _extend_contour(self) -> list[Element]:
         """Return the contour, extended by the nose radius at ends that lead straight out.
 
         The tip then reaches the programmed end.
@@ -239,70 +266,76 @@ class _Plan:
         It is at the outermost depth of the contour, and in front of it by the allowance and _VRT.
         """
         out, front = self._signs
-        boxes = [each.box for each in self._contour]
+        boxes = [each.bounding_box for each in self._contour]
         depth = max(b[1] for b in boxes) if out > 0 else min(b[0] for b in boxes)
         way = max(b[3] for b in boxes) if front > 0 else min(b[2] for b in boxes)
         (allow_depth, allow_way), left = self._allow, self._left + self._nose
         return depth + out * (allow_depth + left), way + front * (allow_way + left + self._off)
 
-    def _area(self, contour: Sequence[Element], left: float) -> tuple[Area, ContourView]:
+    def _area(self, contour: Sequence[Element], left: float) -> tuple[RoughingArea, ContourFrame]:
         ends = contour[0].start, contour[-1].end
-        view = view_from(self._start, *ends)
+        view = make_contour_frame(self._start, *ends)
         try:
-            return Area(view.from_start(contour), left + self._nose), view
+            return RoughingArea(view.transform_contour(contour), left + self._nose), view
         except TrimError:
             text = "with allowance {name}, no continuous path along the contour is possible"
             hint = "Reduce FAL, or widen the narrow part of the contour."
-            raise self._cycle.wrong("FAL", text, hint, 61606) from None
+            raise self._cycle.make_parameter_error("FAL", text, hint, 61606) from None
 
-    def approach(self) -> list[Step]:
+    def plan_approach(self) -> list[CycleStep]:
         """Return the steps to the start point: first away from the part in depth, then in length."""
         out, _ = self._signs
         depth, way = self._start
         x, z = self._cycle.x - self._tip[0], self._cycle.z - self._tip[1]
-        here = (z, x) if self._kind.across else (x, z)
+        here = (z, x) if self._kind.is_transverse else (x, z)
         clear = depth + out * self._off
         if out * here[0] > out * clear:
             clear = here[0]
-        return [self._step(Move(clear, here[1], 1.0)), self._step(Move(clear, way, 1.0)),
-                self._step(Move(depth, way, 1.0))]  # fmt: skip
+        return [self._step(CycleMove(clear, here[1], 1.0)), self._step(CycleMove(clear, way, 1.0)),
+                self._step(CycleMove(depth, way, 1.0))]  # fmt: skip
 
-    def rough(self) -> list[Step]:
+    def plan_roughing(self) -> list[CycleStep]:
         """Return the roughing steps.
 
         These are equal passes of at most MID, and a pass along the contour that leaves the allowance.
         """
         cycle = self._cycle
-        infeed = cycle.size("MID")
+        infeed = cycle.read_size_mm("MID")
         text = "{name} is missing, so the depth of a pass is not defined"
-        cycle.check(infeed, "MID", text, "Write MID.", NO_INFEED)
+        cycle.check_parameter(infeed, "MID", text, "Write MID.", MISSING_INFEED)
         contour, left = self._with_allowance()
         area, view = self._area(contour, left)
         text = "{name} specifies a contour with no material to cut"
-        cycle.check(area.deepest > 0, "NPP", text, "Check the direction of the contour.", WRONG_CONTOUR)
+        cycle.check_parameter(
+            area.max_depth > 0, "NPP", text, "Check the direction of the contour.", WRONG_CONTOUR_DEFINITION
+        )
         text = "{name} would need {count} passes, which is too many"
-        count = cycle.pass_count(area.deepest, infeed, "MID", text, most=MOST_LOOKS // len(contour))
-        rougher = Rougher(area, 1.0, self._off)
-        rougher.rough(count)
-        if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
+        count = cycle.compute_pass_count(
+            area.max_depth, infeed, "MID", text, maximum=MAX_COMPARISONS // len(contour)
+        )
+        rougher = RoughingPlanner(area, 1.0, self._off)
+        rougher.add_roughing_passes(count)
+        if rougher.has_plunged and not cycle.read_number("FF2") and cycle.state.modal.feed is None:
             text = "{name} is missing, but the contour has a relief cut"
-            raise cycle.wrong("FF2", text, "Write FF2.", 61003)
+            raise cycle.make_parameter_error("FF2", text, "Write FF2.", 61003)
         moves = self._run(rougher, view)
-        return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
+        return self._fed(moves, cycle.read_feed("FF1"), cycle.read_feed("FF2"), breaks=True)
 
-    def finish(self) -> list[Step]:
+    def plan_finishing(self) -> list[CycleStep]:
         """Return the steps of the finishing pass along the contour."""
         area, view = self._area(self._contour, 0.0)
-        return self._fed(self._run(Rougher(area, 1.0, self._off), view), self._cycle.feed("FF3"), None)
+        return self._fed(
+            self._run(RoughingPlanner(area, 1.0, self._off), view), self._cycle.read_feed("FF3"), None
+        )
 
-    def _run(self, rougher: Rougher, view: ContourView) -> list[Move]:
+    def _run(self, rougher: RoughingPlanner, view: ContourFrame) -> list[CycleMove]:
         try:
-            rougher.finish(backwards=view.backwards)
-        except StartNearError:
+            rougher.add_finishing_pass(is_reversed=view.is_reversed)
+        except StartTooCloseError:
             text = "{name} specifies a contour that the tool cannot approach or leave with enough clearance"
             hint = "End the contour at a point where the tool can leave it."
-            raise self._cycle.wrong("NPP", text, hint, 61607) from None
-        return [view.placed(move) for move in rougher.moves]
+            raise self._cycle.make_parameter_error("NPP", text, hint, 61607) from None
+        return [view.transform_move(move) for move in rougher.moves]
 
     def _with_allowance(self) -> tuple[list[Element], float]:
         """Return the contour shifted by FALX and FALZ, and the remaining allowance.
@@ -319,56 +352,65 @@ class _Plan:
         rises = all(b[0] >= a[0] - _SAME for a, b in pairwise(flat))
         falls = all(b[0] <= a[0] + _SAME for a, b in pairwise(flat))
         if (rises or falls) and not self._left:
-            return [shifted(each, out * depth, front * way) for each in self._contour], 0.0
+            return [shift_element(each, out * depth, front * way) for each in self._contour], 0.0
         return self._contour, max(depth, way, self._left)
 
     def _fed(
-        self, moves: Sequence[Move], feed: float | None, plunge: float | None, *, breaks: bool = False
-    ) -> list[Step]:
+        self, moves: Sequence[CycleMove], feed: float | None, plunge: float | None, *, breaks: bool = False
+    ) -> list[CycleStep]:
         cycle = self._cycle
         if feed is None:
             name = "FF1" if breaks else "FF3"
-            raise cycle.wrong(name, "{name} is missing, and no F is active", "Write {name}.", 61003)
-        steps: list[Step] = []
+            raise cycle.make_parameter_error(
+                name, "{name} is missing, and no F is active", "Write {name}.", 61003
+            )
+        steps: list[CycleStep] = []
         at = self._start
         for move in moves:
             # In a recess, the tool moves only in depth, away from the front of the area.
             deeper = self._signs[0] * (at[0] - move.x) > _SAME and abs(move.z - at[1]) < _SAME
             into = deeper and abs(at[1] - self._start[1]) > _SAME
             speed = plunge if into and plunge is not None else feed
-            steps += self._broken(at, move, speed) if breaks else [self._step(move, speed)]
+            steps += self._break_chips(at, move, speed) if breaks else [self._step(move, speed)]
             at = move.x, move.z
         return steps
 
-    def _broken(self, at: Point, move: Move, feed: float) -> list[Step]:
+    def _break_chips(self, position: Point, move: CycleMove, feed: float) -> list[CycleStep]:
         """Return a cut with a dwell DT after each distance DAM to break chips."""
-        length, seconds = self._cycle.size("DAM"), self._cycle.number("DT")
-        way = move.z - at[1]
-        if not length or move.rapid is not None or move.centre is not None or abs(way) <= length + _SAME:
+        length, seconds = self._cycle.read_size_mm("DAM"), self._cycle.read_number("DT")
+        way = move.z - position[1]
+        if (
+            not length
+            or move.rapid_rate_mm_s is not None
+            or move.center is not None
+            or abs(way) <= length + _SAME
+        ):
             return [self._step(move, feed)]
-        steps: list[Step] = []
+        steps: list[CycleStep] = []
         text = "{name} would interrupt a pass {count} times, which is too many"
-        count = self._cycle.pass_count(abs(way), length, "DAM", text, "Correct the value.")
+        count = self._cycle.compute_pass_count(abs(way), length, "DAM", text, "Correct the value.")
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
-            between = Move(at[0] + (move.x - at[0]) * share, at[1] + way * share)
+            between = CycleMove(position[0] + (move.x - position[0]) * share, position[1] + way * share)
             steps.append(self._step(between, feed))
             if k < count:
-                steps += dwell(seconds)
+                steps += make_dwell_steps(seconds)
         return steps
 
-    def _step(self, move: Move, feed: float | None = None) -> Step:
+    def _step(self, move: CycleMove, feed: float | None = None) -> CycleStep:
         """Return a motion of the nose center, in depth and length, as a step of the tip in X and Z."""
         dx, dz = self._tip
-        at, centre, clockwise = (move.x, move.z), move.centre, move.clockwise
-        if self._kind.across:
+        at, centre, clockwise = (move.x, move.z), move.center, move.is_clockwise
+        if self._kind.is_transverse:
             at, centre = (move.z, move.x), None if centre is None else (centre[1], centre[0])
             clockwise = centre is not None and not clockwise
         about = None if centre is None else (centre[0] + dx, centre[1] + dz)
-        return Step(at[0] + dx, at[1] + dz, None if move.rapid is not None else feed, about, clockwise)
+        return CycleStep(
+            at[0] + dx, at[1] + dz, None if move.rapid_rate_mm_s is not None else feed, about, clockwise
+        )
 
 
-def _nose_of(cycle: Cycle) -> tuple[float, Point]:
+def _tool_nose(cycle: CycleCall) -> tuple[float, Point]:
     """Return the nose radius, and the position of the tip relative to the nose center in mm (X, Z).
 
     Without a tip quadrant, the position of the center is unknown. The tip then follows the contour, with a
@@ -390,4 +432,4 @@ def _swapped(element: Element) -> Element:
     (x0, z0), (x1, z1) = element.start, element.end
     if isinstance(element, Line):
         return Line((z0, x0), (z1, x1))
-    return Arc((z0, x0), (z1, x1), (element.centre[1], element.centre[0]), not element.clockwise)
+    return Arc((z0, x0), (z1, x1), (element.center[1], element.center[0]), not element.clockwise)

@@ -8,45 +8,47 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from core.interpreter.shared.checkpoint import Begin, Checkpoint, CTurn, KeptPass, StateLine
+from core.interpreter.shared.checkpoint import CAxisMove, Checkpoint, PassStart, SavedPass, StateLine
 from core.interpreter.shared.job_setup import ToolOffset
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.sinumerik.flow.subprogram_flow import Flow
-from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corners
-from core.interpreter.sinumerik.sinumerik_state import NO_OFFSET, State, motion_name
-from core.language.diagnostics import Diagnostic, refusal
-from core.language.sinumerik.program_jumps import Steering
+from core.interpreter.sinumerik.motion.chamfers_and_rounds import SinumerikCornerStage
+from core.interpreter.sinumerik.sinumerik_state import ZERO_SETTABLE_OFFSET, State, format_motion
+from core.language.diagnostics import Diagnostic, make_error_diagnostic
+from core.language.sinumerik.control_statements import ControlKeyword
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import CORNERS, OWN, Line
-from core.language.source import Source
+from core.language.sinumerik.sinumerik_words import CORNER_WORDS, INTERNAL_AXIS_NAME, LexedBlock
+from core.language.source import ProgramSource
 from core.message import Message
-from core.tool_edges import edge_name
+from core.tool_edges import format_edge_name
 
 
-class Parts(NamedTuple):
-    """State of an interpreter. ``taken`` is a block that was read but not yet executed."""
+class InterpreterParts(NamedTuple):
+    """State of an interpreter. ``pending_line`` is a block that was read but not yet executed."""
 
     state: State
-    corners: Corners
+    corners: SinumerikCornerStage
     flow: Flow
-    taken: Line | None = None
+    pending_line: LexedBlock | None = None
 
 
-def checkpoint_of(parts: Parts, shared: tuple[object, ...], blocks: int) -> Checkpoint:
+def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...], blocks: int) -> Checkpoint:
     """Return the state that the next block inherits, so that another pass can continue from it."""
     state, modal = parts.state, parts.state.modal
     x, z, c = state.x - modal.offset_x, state.z - modal.offset_z, state.c - modal.offset_c
-    kept = KeptPass(parts, shared, tuple(_lines(state)))
+    kept = SavedPass(parts, shared, tuple(_lines(state)))
     return Checkpoint(modal, x, z, c, x, z, blocks=blocks, kept=kept)
 
 
-def take_up(state: State, begin: Begin) -> None:
+def restore_state(state: State, pass_start: PassStart) -> None:
     """Set the present axis positions, offsets and machine functions in the state."""
-    was, now = state.modal, begin.checkpoint.modal
+    was, now = state.modal, pass_start.checkpoint.modal
     state.x, state.z, state.c = state.setup.start
-    if not begin.single:
-        state.x, state.z = begin.checkpoint.machine
-        state.c = next((step.c for step in begin.approach if isinstance(step, CTurn)), state.c)
+    if not pass_start.is_mdi_line:
+        state.x, state.z = pass_start.checkpoint.machine
+        state.c = next(
+            (step.angle_deg for step in pass_start.approach if isinstance(step, CAxisMove)), state.c
+        )
     state.modal = was._replace(
         tool=now.tool,
         edge=now.edge,
@@ -59,7 +61,7 @@ def take_up(state: State, begin: Begin) -> None:
         c_locked=now.c_locked,
         oriented=now.oriented,
     )
-    state.settable = state.setup.zero.get(was.settable, NO_OFFSET)
+    state.settable = state.setup.zero.get(was.settable, ZERO_SETTABLE_OFFSET)
     state.edge = state.setup.tools.get(now.tool, ToolOffset()) if now.tool else ToolOffset()
     state.derive_offsets()
 
@@ -67,7 +69,7 @@ def take_up(state: State, begin: Begin) -> None:
 def _lines(state: State) -> Iterator[StateLine]:
     """Yield the modal state, one line for each group of functions."""
     modal = state.modal
-    yield StateLine("motion", motion_name(state.motion))
+    yield StateLine("motion", format_motion(state.motion))
     yield StateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
     yield StateLine("trans", _trans(modal))
     plane = state.transformation
@@ -75,7 +77,7 @@ def _lines(state: State) -> Iterator[StateLine]:
     yield StateLine("units", "G71 MM" if modal.metric else "G70 INCH")
     yield StateLine("x words", "DIAMON Ø" if modal.diameter else "DIAMOF R")
     yield StateLine("distance", "G90" if modal.absolute else "G91")
-    yield StateLine("tool", edge_name(modal.tool) if modal.tool else "")
+    yield StateLine("tool", format_edge_name(modal.tool) if modal.tool else "")
     yield StateLine("speed", f"G96 S{modal.surface_speed * 0.06:g}" if modal.css else f"G97 S{modal.rpm:g}")
     held = f"SPOS={modal.oriented:g}" if modal.oriented is not None else "M5"
     yield StateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
@@ -85,42 +87,43 @@ def _lines(state: State) -> Iterator[StateLine]:
     yield StateLine("outputs", " ".join(sorted(name.upper() for name in modal.outputs)))
 
 
-def _trans(modal: Modal) -> str:
+def _trans(modal: ModalState) -> str:
     if not modal.zero_x and not modal.zero_z:
         return ""
     return f"X{modal.zero_x:+.3f}  Z{modal.zero_z:+.3f}"
 
 
 _HINT = "Use this command in a program."
-_ALONE = frozenset({Steering.DEFINE, Steering.MESSAGE})
+_SINGLE_BLOCK_KEYWORDS = frozenset({ControlKeyword.DEFINE, ControlKeyword.MESSAGE})
 
 
-def needs_others(source: Source, third_axis: str = OWN) -> Diagnostic | None:
+def check_single_block(source: ProgramSource, third_axis: str = INTERNAL_AXIS_NAME) -> Diagnostic | None:
     """Return the error for a block that cannot be executed alone, or None."""
     line = lex_line(1, source.lines[0] if source.lines else "", third_axis)
     if line.errors:
         return None  # reported when the block is executed
-    if line.skip is not None:
+    if line.skip_level is not None:
         return _refuse(1, "/ skips a program block and has no meaning in MDI")
-    if line.call or line.modal_call:
+    if line.called_name or line.is_modal_call:
         return _refuse(
             line.call_column,
-            Message("{call} calls another program and cannot be used in MDI", call=line.call),
+            Message("{call} calls another program and cannot be used in MDI", call=line.called_name),
         )
-    if line.jump is not None and line.jump.steering not in _ALONE:
+    if line.control_statement is not None and line.control_statement.keyword not in _SINGLE_BLOCK_KEYWORDS:
         return _refuse(
-            line.jump.column,
+            line.control_statement.column,
             Message(
-                "{steering} jumps to another block and cannot be used in MDI", steering=line.jump.steering
+                "{steering} jumps to another block and cannot be used in MDI",
+                steering=line.control_statement.keyword,
             ),
         )
-    return _words(line)
+    return _check_words(line)
 
 
-def _words(line: Line) -> Diagnostic | None:
+def _check_words(line: LexedBlock) -> Diagnostic | None:
     """Return the error for a word that needs later blocks, or None."""
     for word in line.words:
-        if word.name in CORNERS:
+        if word.name in CORNER_WORDS:
             return _refuse(
                 word.column, Message("{word} is allowed only between two blocks of a contour", word=word.text)
             )
@@ -128,4 +131,4 @@ def _words(line: Line) -> Diagnostic | None:
 
 
 def _refuse(column: int, what: str) -> Diagnostic:
-    return refusal(1, column, "not-alone-mdi", Message("{what}.", what=what), _HINT)
+    return make_error_diagnostic(1, column, "not-alone-mdi", Message("{what}.", what=what), _HINT)

@@ -6,262 +6,289 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import prod
 
-from core.interpreter.sinumerik.flow.variables import LARGEST_ARRAY, MOST_DIMENSIONS
+from core.interpreter.sinumerik.flow.variables import MAX_ARRAY_SIZE, MAX_DIMENSIONS
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.formulas import Formula, Parameter
-from core.language.sinumerik.program_jumps import Defined, Jump, Steering
-from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED
+from core.language.sinumerik.control_statements import ControlKeyword, ControlStatement, VariableDefinition
+from core.language.sinumerik.sinumerik_alarms import (
+    JUMP_TARGET_MISSING,
+    NAME_NOT_DEFINED,
+    WRONG_FIRST_INDEX,
+    WRONG_NESTING,
+)
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import OWN, Line
-from core.language.source import Source
+from core.language.sinumerik.sinumerik_words import INTERNAL_AXIS_NAME, LexedBlock
+from core.language.source import ProgramSource
 from core.message import Message
 
-_ENDS = {
-    Steering.END_IF: Steering.IF,
-    Steering.END_WHILE: Steering.WHILE,
-    Steering.END_FOR: Steering.FOR,
-    Steering.END_LOOP: Steering.LOOP,
-    Steering.UNTIL: Steering.REPEAT,
+_END_KEYWORDS = {
+    ControlKeyword.END_IF: ControlKeyword.IF,
+    ControlKeyword.END_WHILE: ControlKeyword.WHILE,
+    ControlKeyword.END_FOR: ControlKeyword.FOR,
+    ControlKeyword.END_LOOP: ControlKeyword.LOOP,
+    ControlKeyword.UNTIL: ControlKeyword.REPEAT,
 }
-_BEGINS = frozenset(_ENDS.values())
-_ASKED = frozenset({Steering.IF, Steering.WHILE, Steering.UNTIL})
-_BACK = frozenset({Steering.END_WHILE, Steering.END_LOOP})
+_START_KEYWORDS = frozenset(_END_KEYWORDS.values())
+_CONDITIONAL_KEYWORDS = frozenset({ControlKeyword.IF, ControlKeyword.WHILE, ControlKeyword.UNTIL})
+_BACKWARD_JUMPS = frozenset({ControlKeyword.END_WHILE, ControlKeyword.END_LOOP})
 _SAME = 1e-12  # values of CASE with a smaller difference are equal
-_GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD, Steering.GOTO_START})
+_GOTO = frozenset(
+    {ControlKeyword.GOTO, ControlKeyword.GOTO_BACK, ControlKeyword.GOTO_FORWARD, ControlKeyword.GOTO_START}
+)
 
 
 @dataclass(slots=True)
 class Routine:
-    """One program of a file. ``shown`` is its name in findings if it is in another file."""
+    """One program of a file. ``displayed_name`` is its name in findings if it is in another file."""
 
-    source: Source
-    lines: range
-    shown: str = ""
-    third_axis: str = OWN  # name of the third axis on this machine
-    repeats: bool = False  # lines may be executed repeatedly, so they are stored after reading
-    _read: dict[int, Line] = field(default_factory=dict)
+    source: ProgramSource
+    line_range: range
+    displayed_name: str = ""
+    third_axis_name: str = INTERNAL_AXIS_NAME  # name of the third axis on this machine
+    has_repeats: bool = False  # lines may be executed repeatedly, so they are stored after reading
+    _read: dict[int, LexedBlock] = field(default_factory=dict)
     _labelled: dict[str, tuple[int, ...]] = field(default_factory=dict)
     _partners: dict[int, tuple[int, ...]] | None = None
 
-    def partners(self) -> dict[int, tuple[int, ...]]:
+    def map_structures(self) -> dict[int, tuple[int, ...]]:
         """Return the line indices of each control structure, by the index of each of its lines.
 
         Raises ProgramError if a structure has no end or no start.
         """
         if self._partners is None:
-            self._partners = belonging(self.line(at) for at in self.lines)
+            self._partners = match_structures(self.get_line(at) for at in self.line_range)
         return self._partners
 
-    def line(self, at: int) -> Line:
+    def get_line(self, index: int) -> LexedBlock:
         """Return the line with this index."""
-        line = self._read.get(at)
+        line = self._read.get(index)
         if line is None:
-            line = lex_line(at + 1, self.source.lines[at], self.third_axis)
-            if self.repeats:
-                self._read[at] = line
+            line = lex_line(index + 1, self.source.lines[index], self.third_axis_name)
+            if self.has_repeats:
+                self._read[index] = line
         return line
 
-    def labelled(self, label: str) -> tuple[int, ...]:
+    def find_label_lines(self, label: str) -> tuple[int, ...]:
         """Return the indices, in ascending order, of the lines with this label or block number."""
         if label not in self._labelled:
-            self._labelled[label] = tuple(at for at in self.lines if self._bears(at, label))
+            self._labelled[label] = tuple(at for at in self.line_range if self._has_label(at, label))
         return self._labelled[label]
 
-    def _bears(self, at: int, label: str) -> bool:
+    def _has_label(self, index: int, label: str) -> bool:
         """Return whether a line has this label; only lines that contain its letters are read."""
-        if label not in self.source.lines[at].upper():
+        if label not in self.source.lines[index].upper():
             return False
-        line = self.line(at)
-        return label in {line.label, line.block}
+        line = self.get_line(index)
+        return label in {line.label, line.block_name}
 
-    def heading(self) -> Jump | None:
+    def read_proc_statement(self) -> ControlStatement | None:
         """Return the PROC statement of the first line, or None."""
-        first = self.first()
-        jump = None if first is None else first.jump
-        return jump if jump is not None and jump.steering is Steering.PROCEDURE else None
+        first = self.find_first_line()
+        jump = None if first is None else first.control_statement
+        return jump if jump is not None and jump.keyword is ControlKeyword.PROCEDURE else None
 
-    def first(self) -> Line | None:
+    def find_first_line(self) -> LexedBlock | None:
         """Return the first line with more than a comment, or None."""
-        lines = (self.line(at) for at in self.lines)
-        return next((line for line in lines if line.executable), None)
+        lines = (self.get_line(at) for at in self.line_range)
+        return next((line for line in lines if line.is_executable), None)
 
 
-def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
+def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
     """Return the line indices of each structure, by each of these indices. Raises ProgramError.
 
     A structure without a start or an end is an error.
     """
     found: dict[int, tuple[int, ...]] = {}
-    opened: list[tuple[Line, Jump, list[int]]] = []
+    opened: list[tuple[LexedBlock, ControlStatement, list[int]]] = []
     for line in lines:
-        jump = line.jump
+        jump = line.control_statement
         if jump is None:
             continue
         at = line.number - 1
-        if jump.steering in _BEGINS and not jump.target:
+        if jump.keyword in _START_KEYWORDS and not jump.target:
             opened.append((line, jump, [at]))
-        elif jump.steering is Steering.ELSE and opened and opened[-1][1].steering is Steering.IF:
+        elif jump.keyword is ControlKeyword.ELSE and opened and opened[-1][1].keyword is ControlKeyword.IF:
             opened[-1][2].append(at)
-        elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
-            if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
-                text = Message("{steering} has no matching start.", steering=jump.steering)
-                raise line.refuse(jump.column, NESTING, text, "Check the start of the control structure.")
+        elif jump.keyword is ControlKeyword.ELSE or jump.keyword in _END_KEYWORDS:
+            if not opened or opened[-1][1].keyword is not _END_KEYWORDS.get(jump.keyword):
+                text = Message("{steering} has no matching start.", steering=jump.keyword)
+                raise line.make_error(
+                    jump.column, WRONG_NESTING, text, "Check the start of the control structure."
+                )
             places = (*opened.pop()[2], at)
             found.update(dict.fromkeys(places, places))
     if opened:
         line, jump, _ = opened[-1]
-        text = Message("{steering} has no matching end.", steering=jump.steering)
-        raise line.refuse(jump.column, NESTING, text, "Add the matching end statement.")
+        text = Message("{steering} has no matching end.", steering=jump.keyword)
+        raise line.make_error(jump.column, WRONG_NESTING, text, "Add the matching end statement.")
     return found
 
 
-def follow(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
+def execute_control_line(
+    line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int
+) -> int | None:
     """Execute a control statement, and return the index of the next line; None for the following line.
 
     Raises ProgramError for an invalid statement.
     """
-    steering = jump.steering
+    steering = jump.keyword
     if steering in _GOTO:
         if jump.condition is None or _worth(line, jump, state, jump.condition):
-            return _target(line, jump, program, at)
-        return None if jump.other is None else follow(line, jump.other, state, program, at)
-    if steering is Steering.CASE:
-        return _case(line, jump, state, program, at)
-    if steering is Steering.DEFINE:
-        _define(line, jump, state)
-    elif steering is Steering.MESSAGE:
-        state.adopt(state.modal._replace(comment=_message(line, jump, state)))
-    elif steering is Steering.ALARM:
+            return _target(line, jump, program, index)
+        return (
+            None
+            if jump.else_jump is None
+            else execute_control_line(line, jump.else_jump, state, program, index)
+        )
+    if steering is ControlKeyword.CASE:
+        return _case(line, jump, state, program, index)
+    if steering is ControlKeyword.DEFINE:
+        _execute_def(line, jump, state)
+    elif steering is ControlKeyword.MESSAGE:
+        state.set_modal(state.modal._replace(comment=_format_message(line, jump, state)))
+    elif steering is ControlKeyword.ALARM:
         number = _worth(line, jump, state, jump.condition)
         text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
-        raise line.refuse(jump.column, "program-alarm", text, "Check the preceding blocks for the cause.")
-    elif steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE:
-        return _structure(line, jump, state, program, program.partners()[at])
+        raise line.make_error(jump.column, "program-alarm", text, "Check the preceding blocks for the cause.")
+    elif steering in _START_KEYWORDS or steering in _END_KEYWORDS or steering is ControlKeyword.ELSE:
+        return _structure(line, jump, state, program, program.map_structures()[index])
     return None
 
 
-def _structure(line: Line, jump: Jump, state: State, program: Routine, places: tuple[int, ...]) -> int | None:
+def _structure(
+    line: LexedBlock, jump: ControlStatement, state: State, program: Routine, structure_lines: tuple[int, ...]
+) -> int | None:
     """Return the index of the line that follows a line of IF, WHILE, FOR, LOOP or REPEAT in execution.
 
-    The result is None if execution continues with the next line. ``places`` are the lines of the structure.
-    Raises ProgramError.
+    The result is None if execution continues with the next line. ``structure_lines`` are the lines of the
+    structure. Raises ProgramError.
     """
-    first, last, steering = places[0], places[-1], jump.steering
-    if steering is Steering.END_FOR:
-        begin = program.line(first).jump
+    first, last, steering = structure_lines[0], structure_lines[-1], jump.keyword
+    if steering is ControlKeyword.END_FOR:
+        begin = program.get_line(first).control_statement
         assert begin is not None
-        value = state.variables.number(begin.name) + 1.0
-        return first + 1 if _counts(line, jump, begin, state, value) else None
-    if steering is Steering.FOR:
-        value = _worth(line, jump, state, jump.first)
-        return None if _counts(line, jump, jump, state, value) else last + 1
-    if steering in _ASKED:
-        elsewhere = first if steering is Steering.UNTIL else places[1]
+        value = state.variables.get_number(begin.identifier) + 1.0
+        return first + 1 if _execute_for(line, jump, begin, state, value) else None
+    if steering is ControlKeyword.FOR:
+        value = _worth(line, jump, state, jump.start_value)
+        return None if _execute_for(line, jump, jump, state, value) else last + 1
+    if steering in _CONDITIONAL_KEYWORDS:
+        elsewhere = first if steering is ControlKeyword.UNTIL else structure_lines[1]
         return None if _worth(line, jump, state, jump.condition) else elsewhere + 1
-    if steering is Steering.ELSE:
+    if steering is ControlKeyword.ELSE:
         return last + 1
-    return first if steering in _BACK else None
+    return first if steering in _BACKWARD_JUMPS else None
 
 
-def _counts(line: Line, jump: Jump, begin: Jump, state: State, value: float) -> bool:
+def _execute_for(
+    line: LexedBlock, jump: ControlStatement, begin: ControlStatement, state: State, value: float
+) -> bool:
     """Set the variable of FOR, and return whether it is not above the end value. Raises ProgramError."""
-    if not state.variables.keep(begin.name, value):
-        text = Message("the name {jump} is not defined with DEF.", jump=begin.name)
-        hint = Message("Write DEF INT {jump} before this block.", jump=begin.name)
-        raise line.refuse(begin.column, NOT_DEFINED, text, hint)
-    return value <= _worth(line, jump, state, begin.last)
+    if not state.variables.set_value(begin.identifier, value):
+        text = Message("the name {jump} is not defined with DEF.", jump=begin.identifier)
+        hint = Message("Write DEF INT {jump} before this block.", jump=begin.identifier)
+        raise line.make_error(begin.column, NAME_NOT_DEFINED, text, hint)
+    return value <= _worth(line, jump, state, begin.end_value)
 
 
-def _case(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
+def _case(line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int) -> int | None:
     """Return the target of the first branch with the value of CASE, or of DEFAULT."""
     value = _worth(line, jump, state, jump.condition)
-    for formula, steering, target in jump.choices:
+    for formula, steering, target in jump.case_branches:
         if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
-            return _target(line, jump._replace(steering=steering, target=target), program, at)
+            return _target(line, jump._replace(keyword=steering, target=target), program, index)
     return None
 
 
-def _define(line: Line, jump: Jump, state: State) -> None:
+def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None:
     """Execute DEF: numbers, arrays, and strings for MSG."""
-    scope = state.variables.scope
-    for each in jump.defined:
-        if each.kind == "STRING":
-            scope.texts[each.name] = each.text
+    scope = state.variables.variable_scope
+    for each in jump.definitions:
+        if each.type_name == "STRING":
+            scope.strings[each.name] = each.text
             continue
         first = 0.0 if each.formula is None else _worth(line, jump, state, each.formula)
         scope.define(each.name, first, _sizes(line, jump, state, each))
         if each.values is not None:
-            left = state.variables.fill(each.name, scope.elements(each.name)[0], each.values,
+            left = state.variables.assign_values(each.name, scope.list_elements(each.name)[0], each.values,
                                         lambda asked: _worth(line, jump, state, asked))  # fmt: skip
             if left:
                 told = Message(
                     "array {item} needs {left} more elements for this list.", item=each.name, left=left
                 )
-                raise line.refuse(
+                raise line.make_error(
                     jump.column, "array-values", told, "Shorten the list, or enlarge the array."
                 )
 
 
-def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ...]:
+def _sizes(
+    line: LexedBlock, jump: ControlStatement, state: State, each: VariableDefinition
+) -> tuple[int, ...]:
     """Return the dimensions of an array. Raises ProgramError if a dimension or the size is invalid."""
-    sizes = tuple(int(_worth(line, jump, state, size)) for size in each.sizes)
-    if len(sizes) > MOST_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > LARGEST_ARRAY:
+    sizes = tuple(int(_worth(line, jump, state, size)) for size in each.dimensions)
+    if len(sizes) > MAX_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > MAX_ARRAY_SIZE:
         told = Message(
             "{item}{sizes}: an array must have 1 to {largest_array} elements.",
             item=each.name,
             sizes=list(sizes),
-            largest_array=f"{LARGEST_ARRAY:,}",
+            largest_array=f"{MAX_ARRAY_SIZE:,}",
         )
         hint = Message(
             "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
-            most_dimensions=MOST_DIMENSIONS,
+            most_dimensions=MAX_DIMENSIONS,
         )
-        raise line.refuse(jump.column, FIRST_INDEX, told, hint)
+        raise line.make_error(jump.column, WRONG_FIRST_INDEX, told, hint)
     return sizes
 
 
-def _message(line: Line, jump: Jump, state: State) -> str:
+def _format_message(line: LexedBlock, jump: ControlStatement, state: State) -> str:
     """Return the text of MSG, with numbers without trailing zeros."""
     shown = []
-    for piece in jump.pieces:
+    for piece in jump.message_parts:
         if isinstance(piece, str):
             shown.append(piece)
-        elif isinstance(piece, Parameter) and piece.letters in state.variables.scope.texts:
-            shown.append(state.variables.scope.texts[piece.letters])
+        elif isinstance(piece, Parameter) and piece.letters in state.variables.variable_scope.strings:
+            shown.append(state.variables.variable_scope.strings[piece.letters])
         else:
             shown.append(f"{_worth(line, jump, state, piece):.6g}")
     return "".join(shown)
 
 
-def _worth(line: Line, jump: Jump, state: State, formula: Formula | None) -> float:
+def _worth(line: LexedBlock, jump: ControlStatement, state: State, formula: Formula | None) -> float:
     assert formula is not None
-    return state.worth(formula, lambda code, text, hint: line.refuse(jump.column, code, text, hint))
+    return state.evaluate_formula(
+        formula, lambda code, text, hint: line.make_error(jump.column, code, text, hint)
+    )
 
 
-def _target(line: Line, jump: Jump, program: Routine, at: int) -> int:
+def _target(line: LexedBlock, jump: ControlStatement, program: Routine, index: int) -> int:
     """Return the index of the target label.
 
     GOTOF searches after the line, GOTOB before it, and GOTO after and then before it. Raises ProgramError if
     the label does not exist there.
     """
-    if jump.steering is Steering.GOTO_START:
-        return program.lines.start
-    place = find_label(jump.steering, jump.target, program, at)
+    if jump.keyword is ControlKeyword.GOTO_START:
+        return program.line_range.start
+    place = find_label_index(jump.keyword, jump.target, program, index)
     if place is None:
         text = Message(
             "label {target} was not found in the search direction of {steering}.",
             target=jump.target,
-            steering=jump.steering,
+            steering=jump.keyword,
         )
-        raise line.refuse(jump.column, NO_TARGET, text, "Correct the label or the direction of the jump.")
+        raise line.make_error(
+            jump.column, JUMP_TARGET_MISSING, text, "Correct the label or the direction of the jump."
+        )
     return place
 
 
-def find_label(steering: Steering, target: str, program: Routine, at: int) -> int | None:
+def find_label_index(
+    jump_keyword: ControlKeyword, target: str, program: Routine, start_index: int
+) -> int | None:
     """Return the index of the line with this label or number in the jump's search direction, or None."""
-    places = program.labelled(target)
-    behind = next((place for place in places if place > at), None)
-    before = next((place for place in reversed(places) if place <= at), None)
-    if steering is Steering.GOTO_BACK or (steering is Steering.GOTO and behind is None):
+    places = program.find_label_lines(target)
+    behind = next((place for place in places if place > start_index), None)
+    before = next((place for place in reversed(places) if place <= start_index), None)
+    if jump_keyword is ControlKeyword.GOTO_BACK or (jump_keyword is ControlKeyword.GOTO and behind is None):
         return before
     return behind

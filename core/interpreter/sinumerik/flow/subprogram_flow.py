@@ -9,63 +9,70 @@ from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain, repeat
 
-from core.interpreter.shared.control_flow import ENDLESS, ControlFlow, Frame, LoopWatch
-from core.interpreter.shared.interpretation import DEEPEST_CALL
+from core.interpreter.shared.control_flow import (
+    ENDLESS_LOOP_CODE,
+    ControlFlow,
+    EndlessLoopDetector,
+    FlowFrame,
+)
+from core.interpreter.shared.interpretation import MAX_CALL_DEPTH
 from core.interpreter.shared.job_setup import ZeroOffset
-from core.interpreter.shared.modal_state import Modal
-from core.interpreter.sinumerik.flow.control_structures import Routine, find_label, follow
-from core.interpreter.sinumerik.flow.variables import Scope, place_name
+from core.interpreter.shared.modal_state import ModalState
+from core.interpreter.sinumerik.flow.control_structures import Routine, execute_control_line, find_label_index
+from core.interpreter.sinumerik.flow.variables import VariableScope, format_variable_name
 from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
-from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Parameter as Variable
-from core.language.sinumerik.call_arguments import Argument, Parameter
-from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
-from core.language.sinumerik.program_jumps import Jump, Steering
-from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET
-from core.language.sinumerik.sinumerik_words import Line
-from core.language.sinumerik.subprogram_files import program_name, sections
-from core.language.source import Source
+from core.language.sinumerik.call_arguments import CallArgument, ProcParameter
+from core.language.sinumerik.control_statements import ControlKeyword, ControlStatement
+from core.language.sinumerik.cycle_names import UNSUPPORTED_CYCLES
+from core.language.sinumerik.sinumerik_alarms import JUMP_TARGET_MISSING, WRONG_NESTING
+from core.language.sinumerik.sinumerik_words import LexedBlock
+from core.language.sinumerik.subprogram_files import derive_program_name, split_sections
+from core.language.source import ProgramSource
 from core.message import Message
 
-TOO_MANY = 12330
+TOO_MANY_ARGUMENTS = 12330
 """The alarm of a call whose arguments do not fit the parameters."""
 
-NO_VARIABLE = 12320
-OTHER_SIZE = 12360
+NOT_A_VARIABLE = 12320
+WRONG_ARRAY_SIZE = 12360
 """Those of an argument of VAR that is no variable, and of an array with other sizes; recalled as 12330 is."""
 
 _GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
 
 
 @dataclass(frozen=True, slots=True)
-class Saved:
+class SavedFunctions:
     """Modal G functions and frame at the call of a program with SAVE."""
 
-    modal: Modal
-    motion: Motion
-    plane: int
-    settable: ZeroOffset
-    programmed: ProgrammedFrame
+    modal: ModalState
+    motion: MotionKind
+    plane_code: int
+    settable_offset: ZeroOffset
+    programmed_frame: ProgrammedFrame
 
     @classmethod
-    def of(cls, state: State) -> Saved:
+    def from_state(cls, state: State) -> SavedFunctions:
         """Return a copy of the active functions and frame."""
-        return cls(state.modal, state.motion, state.plane, state.settable, state.programmed)
+        return cls(state.modal, state.motion, state.plane, state.settable, state.programmed_frame)
 
-    def bring_back(self, state: State) -> None:
+    def restore(self, state: State) -> None:
         """Restore the G functions and the frame; F, S and M remain as the program has set them."""
-        state.motion, state.plane = self.motion, self.plane
-        state.settable, state.programmed = self.settable, self.programmed
+        state.motion, state.plane = self.motion, self.plane_code
+        state.settable, state.programmed_frame = self.settable_offset, self.programmed_frame
         kept = {name: getattr(self.modal, name) for name in _GROUPS}
         if self.modal.per_rev == state.modal.per_rev:
             kept["feed"] = state.modal.feed
-        state.adopt(state.modal._replace(**kept, rapid=self.motion == 0))
+        state.set_modal(state.modal._replace(**kept, rapid=self.motion == 0))
         state.derive_offsets()
 
 
-def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, list[tuple[str, str]]]:
+def pass_arguments(
+    state: State, line: LexedBlock, heading: ControlStatement | None
+) -> tuple[VariableScope, list[tuple[str, str]]]:
     """Return the variables of the called program, and its VAR parameters with the caller's variables.
 
     Raises ProgramError if the arguments do not match the parameters.
@@ -75,63 +82,63 @@ def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, 
     if len(arguments) > len(parameters):
         text = Message(
             "{call} accepts {parameters_count}, but the call passes {arguments_count}.",
-            call=line.call,
+            call=line.called_name,
             parameters_count=_count(len(parameters)),
             arguments_count=len(arguments),
         )
         hint = "Correct the call, or the PROC line of the subprogram."
-        raise line.refuse(arguments[len(parameters)].column, TOO_MANY, text, hint)
-    made = _HandOver(state, line)
-    left_out = Argument(None, None, line.call_column)
+        raise line.make_error(arguments[len(parameters)].column, TOO_MANY_ARGUMENTS, text, hint)
+    made = _ArgumentTransfer(state, line)
+    left_out = CallArgument(None, None, line.call_column)
     for parameter, argument in zip(parameters, chain(arguments, repeat(left_out)), strict=False):
-        (made.array if parameter.sizes else made.value)(parameter, argument)
+        (made.pass_array if parameter.dimensions else made.pass_value)(parameter, argument)
     return made.scope, made.references
 
 
-class _HandOver:
+class _ArgumentTransfer:
     """Transfer of the arguments of a call to the parameters."""
 
-    def __init__(self, state: State, line: Line) -> None:
+    def __init__(self, state: State, line: LexedBlock) -> None:
         self._state, self._line = state, line
-        self.scope = Scope()
+        self.scope = VariableScope()
         self.references: list[tuple[str, str]] = []
 
-    def value(self, parameter: Parameter, argument: Argument) -> None:
+    def pass_value(self, parameter: ProcParameter, argument: CallArgument) -> None:
         """Set a number or a string; an omitted argument is 0 or an empty string. Raises ProgramError."""
-        given = argument if argument.given else parameter.default
+        given = argument if argument.is_specified else parameter.default
         name = parameter.name
-        if parameter.by_reference:
-            self.references.append((name, self._place(parameter, argument)))
+        if parameter.is_by_reference:
+            self.references.append((name, self._variable_name(parameter, argument)))
         if given is None:
-            if parameter.kind in {"STRING", "AXIS"}:
-                self.scope.texts[name] = ""
+            if parameter.type_name in {"STRING", "AXIS"}:
+                self.scope.strings[name] = ""
             else:
                 self.scope.numbers[name] = 0.0
         elif given.text is not None:
-            self.scope.texts[name] = given.text
+            self.scope.strings[name] = given.text
         elif given.formula is not None:
-            value = self._state.worth(given.formula, partial(self._line.refuse, given.column))
-            whole = parameter.kind != "INT" or value.is_integer()
+            value = self._state.evaluate_formula(given.formula, partial(self._line.make_error, given.column))
+            whole = parameter.type_name != "INT" or value.is_integer()
             self.scope.numbers[name] = value if whole else float(round(value))
 
-    def array(self, parameter: Parameter, argument: Argument) -> None:
+    def pass_array(self, parameter: ProcParameter, argument: CallArgument) -> None:
         """Copy a VAR array, whose elements are copied back after the call. Raises ProgramError."""
-        line, outer, formula = self._line, self._state.variables.scope, argument.formula
+        line, outer, formula = self._line, self._state.variables.variable_scope, argument.formula
         name = formula.letters if isinstance(formula, Variable) and formula.number is None else ""
-        sizes = outer.sizes.get(name, ())
+        sizes = outer.array_dimensions.get(name, ())
         if not sizes:
             text = Message(
                 "{parameter} of {call} is a VAR array, so the call must pass an array.",
                 parameter=parameter.name,
-                call=line.call,
+                call=line.called_name,
             )
-            raise line.refuse(
-                argument.column, NO_VARIABLE, text, "Pass the name of an array without an index."
+            raise line.make_error(
+                argument.column, NOT_A_VARIABLE, text, "Pass the name of an array without an index."
             )
         asked = tuple(
-            size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False)
+            size if each is None else each for each, size in zip(parameter.dimensions, sizes, strict=False)
         )
-        if asked != sizes or len(parameter.sizes) != len(sizes):
+        if asked != sizes or len(parameter.dimensions) != len(sizes):
             text = Message(
                 "{name} has {text} elements, but this size does not match the dimensions of {parameter}.",
                 name=name,
@@ -139,24 +146,30 @@ class _HandOver:
                 parameter=parameter.name,
             )
             hint = "Use the array sizes given in the PROC line."
-            raise line.refuse(argument.column, OTHER_SIZE, text, hint)
+            raise line.make_error(argument.column, WRONG_ARRAY_SIZE, text, hint)
         self.scope.define(parameter.name, 0.0, sizes)
-        for inside, outside in zip(self.scope.elements(parameter.name), outer.elements(name), strict=True):
+        for inside, outside in zip(
+            self.scope.list_elements(parameter.name), outer.list_elements(name), strict=True
+        ):
             self.scope.numbers[inside] = outer.numbers[outside]
             self.references.append((inside, outside))
 
-    def _place(self, parameter: Parameter, argument: Argument) -> str:
+    def _variable_name(self, parameter: ProcParameter, argument: CallArgument) -> str:
         """Return the caller's variable to which VAR writes back. Raises ProgramError."""
         state, line, formula = self._state, self._line, argument.formula
         if not isinstance(formula, Variable):
             text = Message(
                 "{parameter} of {call} is a VAR parameter, so the call must pass a variable.",
                 parameter=parameter.name,
-                call=line.call,
+                call=line.called_name,
             )
-            raise line.refuse(argument.column, TOO_MANY, text, "Pass a variable or an R parameter.")
-        refuse = partial(line.refuse, line.call_column)
-        return place_name(formula.letters, formula.number, lambda index: state.worth(index, refuse), refuse)
+            raise line.make_error(
+                argument.column, TOO_MANY_ARGUMENTS, text, "Pass a variable or an R parameter."
+            )
+        refuse = partial(line.make_error, line.call_column)
+        return format_variable_name(
+            formula.letters, formula.number, lambda index: state.evaluate_formula(index, refuse), refuse
+        )
 
 
 def _count(count: int) -> str:
@@ -169,46 +182,54 @@ def _count(count: int) -> str:
 class _Repeat:
     """Lines that REPEAT executes again, from ``start`` to before ``end``.
 
-    ``left`` is the number of repeats that remain, and ``back`` is the line at which execution then continues.
+    ``remaining`` is the number of repeats that remain, and ``back`` is the line at which execution then
+    continues.
     """
 
     start: int
     end: int
-    left: int
-    back: int
+    remaining: int
+    return_index: int
 
 
 @dataclass(slots=True)
-class _Call(Frame[Routine]):
-    passes: int = 1
-    modal: bool = False  # called by MCALL, directly or indirectly
-    scope: Scope = field(default_factory=Scope)
+class _Call(FlowFrame[Routine]):
+    remaining_passes: int = 1
+    is_modal: bool = False  # called by MCALL, directly or indirectly
+    scope: VariableScope = field(default_factory=VariableScope)
     # VAR: name in this program, and name in the caller
     references: list[tuple[str, str]] = field(default_factory=list)
-    saved: Saved | None = None  # state that SAVE restores
+    saved_functions: SavedFunctions | None = None  # state that SAVE restores
     repeats: list[_Repeat] = field(default_factory=list)
 
     @property
-    def standing(self) -> tuple[object, ...]:
+    def comparison_key(self) -> tuple[object, ...]:
         """The next line, and the remaining passes and repeats, for comparison."""
-        return self.file, self.at, self.passes, [(each.start, each.left) for each in self.repeats]
+        return (
+            self.file_name,
+            self.next_index,
+            self.remaining_passes,
+            [(each.start, each.remaining) for each in self.repeats],
+        )
 
 
 class Flow(ControlFlow[_Call]):
     """Position in a program and its subprograms."""
 
-    def __init__(self, source: Source, state: State) -> None:
-        found, axis = sections(source), state.setup.limits.third_axis
+    def __init__(self, source: ProgramSource, state: State) -> None:
+        found, axis = split_sections(source), state.setup.limits.third_axis_name
         self._state = state
-        self._known = {name: Routine(source, lines, third_axis=axis) for name, lines in found[1:] if name}
+        self._known = {
+            name: Routine(source, lines, third_axis_name=axis) for name, lines in found[1:] if name
+        }
         for each in source.subprograms:
-            routine = Routine(each, sections(each)[0].lines, each.name, axis)
-            self._known.setdefault(program_name(each), routine)
+            routine = Routine(each, split_sections(each)[0].lines, each.name, axis)
+            self._known.setdefault(derive_program_name(each), routine)
         lines = found[0].lines
-        self._main = Routine(source, lines, third_axis=axis)
-        super().__init__(_Call(self._main, lines.start, lines.stop, scope=state.variables.scope))
+        self._main = Routine(source, lines, third_axis_name=axis)
+        super().__init__(_Call(self._main, lines.start, lines.stop, scope=state.variables.variable_scope))
         read = (source, *source.subprograms)
-        self._loops = None if any(map(_reads_positions, read)) else LoopWatch()
+        self._loops = None if any(map(_reads_positions, read)) else EndlessLoopDetector()
 
     @property
     def routines(self) -> tuple[Routine, ...]:
@@ -216,108 +237,111 @@ class Flow(ControlFlow[_Call]):
         return self._main, *self._known.values()
 
     @property
-    def by_modal_call(self) -> bool:
+    def is_in_modal_call(self) -> bool:
         """Whether the position is in a program called by MCALL, in which MCALL has no effect."""
-        return self.here.modal
+        return self.active_frame.is_modal
 
     @property
-    def running(self) -> Routine:
+    def active_routine(self) -> Routine:
         """The program that is being executed."""
-        return self.here.routine
+        return self.active_frame.routine
 
-    def next(self) -> Line | None:
+    def read_next_line(self) -> LexedBlock | None:
         """Return the next line, or None at the end of the main program."""
         while True:
-            here = self.here
-            if here.repeats and self.at == here.repeats[-1].end:
+            here = self.active_frame
+            if here.repeats and self.next_index == here.repeats[-1].end:
                 self._repeat(here.repeats)
-            elif self.at < self.end:
-                self.at += 1
-                return here.routine.line(self.at - 1)
-            elif self.called:
-                self.back()
+            elif self.next_index < self.end_index:
+                self.next_index += 1
+                return here.routine.get_line(self.next_index - 1)
+            elif self.is_in_subprogram:
+                self.end_subprogram()
             else:
                 return None
 
     def _repeat(self, repeats: list[_Repeat]) -> None:
         """Continue at the end of a REPEAT section: repeat it, or continue after the REPEAT."""
         part = repeats[-1]
-        part.left -= 1
-        if part.left > 0:
-            self.at = part.start
+        part.remaining -= 1
+        if part.remaining > 0:
+            self.next_index = part.start
         else:
             repeats.pop()
-            self.at = part.back
+            self.next_index = part.return_index
 
-    def back(self) -> None:
+    def end_subprogram(self) -> None:
         """End a subprogram (M17, RET or its last line): repeat it, or return to the caller."""
-        call = self.here
-        call.passes -= 1
+        call = self.active_frame
+        call.remaining_passes -= 1
         call.repeats.clear()
-        if call.passes > 0:
-            self.at = call.routine.lines.start
-        elif not self.called:
-            self.end_all()
+        if call.remaining_passes > 0:
+            self.next_index = call.routine.line_range.start
+        elif not self.is_in_subprogram:
+            self.end_program()
         else:
-            self.leave()
+            self.return_to_caller()
             variables = self._state.variables
-            variables.scope = self.here.scope
+            variables.variable_scope = self.active_frame.scope
             for name, outer in call.references:
-                variables.keep(outer, call.scope.numbers[name])
-            if call.saved is not None:
-                call.saved.bring_back(self._state)
+                variables.set_value(outer, call.scope.numbers[name])
+            if call.saved_functions is not None:
+                call.saved_functions.restore(self._state)
 
-    def knows(self, name: str) -> bool:
+    def has_routine(self, name: str) -> bool:
         """Return whether a program with this name exists."""
         return name in self._known
 
-    def routine(self, name: str) -> Routine | None:
+    def find_routine(self, name: str) -> Routine | None:
         """Return the program with this name, or None."""
         return self._known.get(name)
 
-    def call(self, line: Line, *, modal: bool = False) -> None:
+    def call_subprogram(self, line: LexedBlock, *, is_modal: bool = False) -> None:
         """Enter the subprogram that the line calls.
 
         Raises ProgramError if it does not exist or if calls are nested too deeply.
         """
-        routine = self._known.get(line.call)
+        routine = self._known.get(line.called_name)
         if routine is None:
             raise _missing(line)
-        if len(self.frames) > DEEPEST_CALL:
+        if len(self.frames) > MAX_CALL_DEPTH:
             text = Message(
-                "subprogram calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
+                "subprogram calls are nested more than {deepest_call} levels deep.",
+                deepest_call=MAX_CALL_DEPTH,
             )
-            raise line.refuse(line.call_column, "recursion", text, "A subprogram must not call itself.")
-        heading = routine.heading()
-        first = routine.first()
+            raise line.make_error(line.call_column, "recursion", text, "A subprogram must not call itself.")
+        heading = routine.read_proc_statement()
+        first = routine.find_first_line()
         # The error is reported when the line is executed. Its parameters are unknown.
         if first is not None and first.errors:
             line = line._replace(arguments=None)
-        routine.repeats = True
-        scope, references = handed_over(self._state, line, heading)
-        frame = _Call(routine, routine.lines.start, routine.lines.stop, scope=scope, references=references)
-        if routine.shown:
-            frame.file, frame.place = routine.shown, self.shown_line(line.number)
-        frame.passes, frame.modal = line.passes, modal or self.by_modal_call
-        if heading is not None and heading.saves:
-            frame.saved = Saved.of(self._state)
+        routine.has_repeats = True
+        scope, references = pass_arguments(self._state, line, heading)
+        frame = _Call(
+            routine, routine.line_range.start, routine.line_range.stop, scope=scope, references=references
+        )
+        if routine.displayed_name:
+            frame.file_name, frame.call_line = routine.displayed_name, self.get_displayed_line(line.number)
+        frame.remaining_passes, frame.is_modal = line.execution_count, is_modal or self.is_in_modal_call
+        if heading is not None and heading.has_save:
+            frame.saved_functions = SavedFunctions.from_state(self._state)
         self.enter(frame)
-        self._state.variables.scope = scope
+        self._state.variables.variable_scope = scope
 
-    def steer(self, line: Line, jump: Jump, state: State) -> None:
+    def execute_control_line(self, line: LexedBlock, jump: ControlStatement, state: State) -> None:
         """Execute a line with a control statement. Raises ProgramError."""
-        if jump.steering in _AGAIN and jump.target:
+        if jump.keyword in _REPEAT_KEYWORDS and jump.target:
             self._begin_repeat(line, jump, state)
             return
-        routine = self.running
-        at = follow(line, jump, state, routine, self.at - 1)
-        if jump.steering is Steering.RETURN:
-            self.back()
+        routine = self.active_routine
+        at = execute_control_line(line, jump, state, routine, self.next_index - 1)
+        if jump.keyword is ControlKeyword.RETURN:
+            self.end_subprogram()
         elif at is not None:
-            back = at < self.at
-            routine.repeats = routine.repeats or back
-            self.at = at
-            if back and self._comes_round():
+            back = at < self.next_index
+            routine.has_repeats = routine.has_repeats or back
+            self.next_index = at
+            if back and self._is_repeated_state():
                 text = (
                     "this jump repeats forever because nothing in the loop changes the result of a jump "
                     "condition."
@@ -326,9 +350,9 @@ class Flow(ControlFlow[_Call]):
                     "In the loop, change a variable that the condition uses; to make another part, use "
                     "Cycle Start instead."
                 )
-                raise line.refuse(jump.column, ENDLESS, text, hint)
+                raise line.make_error(jump.column, ENDLESS_LOOP_CODE, text, hint)
 
-    def _comes_round(self) -> bool:
+    def _is_repeated_state(self) -> bool:
         """Return whether a jump back occurs in the same state as an earlier jump.
 
         The loop is then endless.
@@ -336,28 +360,30 @@ class Flow(ControlFlow[_Call]):
         if self._loops is None:
             return False
         state = self._state
-        tool = state.modal.tool, state.modal.edge, state.modal.metric, state.edge, state.modal_call
+        tool = state.modal.tool, state.modal.edge, state.modal.metric, state.edge, state.modal_call_line
         numbers = [each.scope.numbers for each in self.frames]
-        return self._loops.comes_round(self, tool, state.variables.r, numbers)
+        return self._loops.is_repeated_state(self, tool, state.variables.r_parameters, numbers)
 
-    def _begin_repeat(self, line: Line, jump: Jump, state: State) -> None:
+    def _begin_repeat(self, line: LexedBlock, jump: ControlStatement, state: State) -> None:
         """Start REPEAT or REPEATB.
 
         The section extends from one label to another or to this line, or is the block of the label.
         """
-        routine, repeats, here = self.running, self.here.repeats, self.at - 1
-        start = find_label(Steering.GOTO, jump.target, routine, here)
-        until = find_label(Steering.GOTO, jump.until, routine, here) if jump.until else here
+        routine, repeats, here = self.active_routine, self.active_frame.repeats, self.next_index - 1
+        start = find_label_index(ControlKeyword.GOTO, jump.target, routine, here)
+        until = (
+            find_label_index(ControlKeyword.GOTO, jump.end_label, routine, here) if jump.end_label else here
+        )
         if start is None or until is None:
             text = Message(
                 "label {missing}, which {steering} uses, is not in this program.",
-                missing=jump.target if start is None else jump.until,
-                steering=jump.steering,
+                missing=jump.target if start is None else jump.end_label,
+                steering=jump.keyword,
             )
-            raise line.refuse(jump.column, NO_TARGET, text, "Correct the label.")
-        if jump.steering is Steering.REPEAT_BLOCK:
+            raise line.make_error(jump.column, JUMP_TARGET_MISSING, text, "Correct the label.")
+        if jump.keyword is ControlKeyword.REPEAT_BLOCK:
             end = start + 1
-        elif jump.until:
+        elif jump.end_label:
             end = until + 1
         else:
             end = _end_label(routine, start, here)
@@ -365,54 +391,54 @@ class Flow(ControlFlow[_Call]):
             text = Message(
                 "the program section to be repeated contains the {steering} block or does not "
                 "end before that block.",
-                steering=jump.steering,
+                steering=jump.keyword,
             )
             hint = "Put the whole section to be repeated before or after this block."
-            raise line.refuse(jump.column, NESTING, text, hint)
+            raise line.make_error(jump.column, WRONG_NESTING, text, hint)
         passes = 1
-        if jump.passes is not None:
-            passes = int(state.worth(jump.passes, partial(line.refuse, jump.column)))
-        if not 1 <= passes <= _MOST_PASSES or len(repeats) >= DEEPEST_CALL:
+        if jump.repeat_count is not None:
+            passes = int(state.evaluate_formula(jump.repeat_count, partial(line.make_error, jump.column)))
+        if not 1 <= passes <= _MAX_PASSES or len(repeats) >= MAX_CALL_DEPTH:
             text = Message("P{passes} is not a valid repeat count.", passes=passes)
-            hint = Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MOST_PASSES)
-            raise line.refuse(jump.column, "passes", text, hint)
-        routine.repeats = True
-        repeats.append(_Repeat(start, end, passes, self.at))
-        self.at = start
+            hint = Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MAX_PASSES)
+            raise line.make_error(jump.column, "passes", text, hint)
+        routine.has_repeats = True
+        repeats.append(_Repeat(start, end, passes, self.next_index))
+        self.next_index = start
 
 
-_AGAIN = frozenset({Steering.REPEAT, Steering.REPEAT_BLOCK})
-_MOST_PASSES = 9999
+_REPEAT_KEYWORDS = frozenset({ControlKeyword.REPEAT, ControlKeyword.REPEAT_BLOCK})
+_MAX_PASSES = 9999
 
 
-def _end_label(routine: Routine, start: int, here: int) -> int:
+def _end_label(routine: Routine, start: int, repeat_index: int) -> int:
     """Return the end of a REPEAT section with one label: ENDLABEL, the REPEAT, or the program end."""
-    for at in range(start, routine.lines.stop):
-        if at == here:
-            return here
-        if routine.line(at).label == "ENDLABEL":
+    for at in range(start, routine.line_range.stop):
+        if at == repeat_index:
+            return repeat_index
+        if routine.get_line(at).label == "ENDLABEL":
             return at + 1
-    return routine.lines.stop
+    return routine.line_range.stop
 
 
-def _reads_positions(source: Source) -> bool:
+def _reads_positions(source: ProgramSource) -> bool:
     """Return whether a program reads axis positions, on which its jumps may then depend."""
     return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
 
 
-def ends_main(statement: Statement, *, called: bool) -> bool:
+def ends_main_program(statement: Statement, *, is_in_subprogram: bool) -> bool:
     """Return whether the block ends the whole program; in a subprogram, M2 and M30 act like M17."""
-    return statement.ends and not called
+    return statement.ends_program and not is_in_subprogram
 
 
-def _missing(line: Line) -> ProgramError:
-    if reason := CYCLES_OUTSIDE.get(line.call):
-        text = Message("{word}: {problem}.", word=line.call, problem=reason)
-        return line.refuse(line.call_column, "not-in-subset", text, "Remove this text from the program.")
-    text = Message("subprogram {call} does not exist.", call=line.call)
+def _missing(line: LexedBlock) -> ProgramError:
+    if reason := UNSUPPORTED_CYCLES.get(line.called_name):
+        text = Message("{word}: {problem}.", word=line.called_name, problem=reason)
+        return line.make_error(line.call_column, "not-in-subset", text, "Remove this text from the program.")
+    text = Message("subprogram {call} does not exist.", call=line.called_name)
     hint = Message(
         "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's file.",
-        named=line.call,
-        named2=line.call,
+        named=line.called_name,
+        named2=line.called_name,
     )
-    return line.refuse(line.call_column, "subprogram-missing", text, hint)
+    return line.make_error(line.call_column, "subprogram-missing", text, hint)

@@ -8,42 +8,42 @@ from dataclasses import dataclass, field
 from itertools import product
 
 from core.interpreter.shared.job_setup import ToolOffset
-from core.interpreter.shared.modal_state import Modal
+from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
-from core.language.formulas import Formula, Parameter, indices_of
-from core.language.sinumerik.block_reader import Values
-from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
-from core.language.sinumerik.sinumerik_words import MOST_R
+from core.language.formulas import Formula, Parameter, split_index
+from core.language.sinumerik.block_reader import ValueList
+from core.language.sinumerik.sinumerik_alarms import NAME_NOT_DEFINED, WRONG_FIRST_INDEX, WRONG_OTHER_INDEX
+from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER
 from core.message import Message
-from core.tool_edges import NAMED_TOOLS, tool_of
+from core.tool_edges import FIRST_NAMED_TOOL, get_tool_number
 
-UNSET = "r-unset"
-LARGEST_ARRAY = 10_000
-MOST_DIMENSIONS = 3
+UNSET_PARAMETER_CODE = "r-unset"
+MAX_ARRAY_SIZE = 10_000
+MAX_DIMENSIONS = 3
 
-Refuse = Callable[[int | str, str, str], ProgramError]
+ErrorFactory = Callable[[int | str, str, str], ProgramError]
 """Makes the error to raise of its code, text and hint."""
 
 
 @dataclass(slots=True)
-class Scope:
+class VariableScope:
     """Variables of one program: numbers by name, array elements as ``NAME[2,0]``, and strings."""
 
     numbers: dict[str, float] = field(default_factory=dict)
-    texts: dict[str, str] = field(default_factory=dict)
-    sizes: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    strings: dict[str, str] = field(default_factory=dict)
+    array_dimensions: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     def define(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
         """Define a number, or with ``sizes`` an array whose elements all have this value."""
         if not sizes:
             self.numbers[name] = value
             return
-        self.sizes[name] = sizes
-        self.numbers.update(dict.fromkeys(self.elements(name), value))
+        self.array_dimensions[name] = sizes
+        self.numbers.update(dict.fromkeys(self.list_elements(name), value))
 
-    def elements(self, name: str) -> list[str]:
+    def list_elements(self, name: str) -> list[str]:
         """Return the names of an array's elements in fill order; the last index changes first."""
-        places = product(*(range(size) for size in self.sizes[name]))
+        places = product(*(range(size) for size in self.array_dimensions[name]))
         return [f"{name}[{','.join(map(str, each))}]" for each in places]
 
 
@@ -51,61 +51,71 @@ class Variables:
     """All variables that a line can read."""
 
     def __init__(self) -> None:
-        self.r: dict[str, float] = {}
-        self.scope = Scope()
+        self.r_parameters: dict[str, float] = {}
+        self.variable_scope = VariableScope()
 
-    def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
-        """Return the value of an R parameter or a variable. Raises the error of ``refuse`` if it has none."""
-        if asked.letters.startswith("$"):
+    def get_value(
+        self, parameter: Parameter, compute_formula: Callable[[Formula], float], make_error: ErrorFactory
+    ) -> float:
+        """Return the value of an R parameter or a variable. Raises the error of ``make_error`` if it has
+        none.
+        """
+        if parameter.letters.startswith("$"):
             text = Message(
-                "{letters} is a system variable, which TurnDesk cannot read.", letters=asked.letters
+                "{letters} is a system variable, which TurnDesk cannot read.", letters=parameter.letters
             )
-            raise refuse("system-variable", text, "Write the value, or an R parameter that contains it.")
-        name = place_name(asked.letters, asked.number, worth, refuse)
-        found = (self.r if asked.letters == "R" else self.scope.numbers).get(name)
+            raise make_error("system-variable", text, "Write the value, or an R parameter that contains it.")
+        name = format_variable_name(parameter.letters, parameter.number, compute_formula, make_error)
+        found = (self.r_parameters if parameter.letters == "R" else self.variable_scope.numbers).get(name)
         if found is None:
-            raise refuse(*self.missing(asked.letters, name))
+            raise make_error(*self.describe_missing(parameter.letters, name))
         return found
 
-    def fill(self, letters: str, first: str, values: Values, worth: Callable[[Formula], float]) -> int:
-        """Assign values to elements from ``first`` on; return the number of values without an element."""
-        places = _r_places() if letters == "R" else self.scope.elements(letters)
-        places = places[places.index(first) :]
+    def assign_values(
+        self, letters: str, first_element: str, values: ValueList, compute_formula: Callable[[Formula], float]
+    ) -> int:
+        """Assign values to elements from ``first_element`` on; return the number of values without an
+        element.
+        """
+        places = _r_places() if letters == "R" else self.variable_scope.list_elements(letters)
+        places = places[places.index(first_element) :]
         formulas = list(values.formulas)
-        if values.repeated:
-            times = len(places) if values.times is None else round(worth(values.times))
+        if values.is_repeated:
+            times = (
+                len(places) if values.repeat_count is None else round(compute_formula(values.repeat_count))
+            )
             formulas *= max(times, 0)
         for place, formula in zip(places, formulas, strict=False):
             if formula is not None:
-                self.keep(place, worth(formula))
+                self.set_value(place, compute_formula(formula))
         return max(len(formulas) - len(places), 0)
 
-    def keep(self, name: str, value: float) -> bool:
+    def set_value(self, name: str, value: float) -> bool:
         """Set a value; return False if the variable is not defined."""
         if name[0] == "R" and name[1:].isdigit():
-            self.r[f"R{int(name[1:])}"] = value
-        elif name in self.scope.numbers:
-            self.scope.numbers[name] = value
+            self.r_parameters[f"R{int(name[1:])}"] = value
+        elif name in self.variable_scope.numbers:
+            self.variable_scope.numbers[name] = value
         else:
             return False
         return True
 
-    def number(self, name: str) -> float:
+    def get_number(self, name: str) -> float:
         """Return the value of a variable, or 0 if it has none."""
         if name[0] == "R" and name[1:].isdigit():
-            return self.r.get(f"R{int(name[1:])}", 0.0)
-        return self.scope.numbers.get(name, 0.0)
+            return self.r_parameters.get(f"R{int(name[1:])}", 0.0)
+        return self.variable_scope.numbers.get(name, 0.0)
 
-    def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
+    def describe_missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
         """Return code, text and hint of the error for a variable without a number."""
-        if name in self.scope.texts:
+        if name in self.variable_scope.strings:
             return (
                 "text-variable",
                 Message("{name} is text, not a number.", name=name),
                 ("Use a variable of type REAL or INT."),
             )
-        if letters in self.scope.sizes:
-            sizes = self.scope.sizes[letters]
+        if letters in self.variable_scope.array_dimensions:
+            sizes = self.variable_scope.array_dimensions[letters]
             index = name[len(letters) :].strip("[]").split(",")
             right = index[0].isdigit() and int(index[0]) < sizes[0]
             text = Message(
@@ -118,10 +128,10 @@ class Variables:
             hint = Message(
                 "Use indices from 0; the last element is {letters}[{last}].", letters=letters, last=last
             )
-            return OTHER_INDEX if right else FIRST_INDEX, text, hint
+            return WRONG_OTHER_INDEX if right else WRONG_FIRST_INDEX, text, hint
         if letters == "R":
             return (
-                UNSET,
+                UNSET_PARAMETER_CODE,
                 (
                     Message(
                         "{name} has no value and is treated as 0: neither the program nor the operator has "
@@ -134,37 +144,40 @@ class Variables:
                 ),
             )
         text = Message("the name {jump} is not defined with DEF.", jump=name)
-        return NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=name)
+        return NAME_NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=name)
 
 
-def place_name(
-    letters: str, number: int | Formula | None, worth: Callable[[Formula], float], refuse: Refuse
+def format_variable_name(
+    letters: str,
+    number: int | Formula | None,
+    compute_formula: Callable[[Formula], float],
+    make_error: ErrorFactory,
 ) -> str:
     """Return the name of a variable or element, such as R7, LENGTH or TABLE[2].
 
-    Raises the error of ``refuse`` if an index is not a whole number of 0 or more.
+    Raises the error of ``make_error`` if an index is not a whole number of 0 or more.
     """
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"
-    indices = [worth(each) for each in indices_of(number)]
+    indices = [compute_formula(each) for each in split_index(number)]
     for place, index in enumerate(indices):
         if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
-            code = OTHER_INDEX if place else FIRST_INDEX
+            code = WRONG_OTHER_INDEX if place else WRONG_FIRST_INDEX
             text = Message(
                 "{letters}[{item}] does not exist.",
                 letters=letters,
                 item=",".join(f"{each:g}" for each in indices),
             )
-            raise refuse(code, text, "Use a whole number of 0 or more as the index.")
+            raise make_error(code, text, "Use a whole number of 0 or more as the index.")
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"
 
 
 def _r_places() -> list[str]:
-    return [f"R{number}" for number in range(MOST_R + 1)]
+    return [f"R{number}" for number in range(MAX_R_NUMBER + 1)]
 
 
-def system_value(name: str, modal: Modal, edge: ToolOffset) -> float | None:
+def read_system_value(name: str, modal: ModalState, edge: ToolOffset) -> float | None:
     """Return the value of a system variable; None if it is not supported or not known.
 
     ``edge`` is the row of T and D. $P_TOOL is D, and $P_TOOLR is the nose radius in mm, or 0 with D0. The
@@ -172,8 +185,8 @@ def system_value(name: str, modal: Modal, edge: ToolOffset) -> float | None:
     """
     if name == "$P_TOOL":
         return float(modal.edge or 0)
-    if name == "$P_TOOLNO" and tool_of(modal.tool) < NAMED_TOOLS:
-        return float(tool_of(modal.tool))
+    if name == "$P_TOOLNO" and get_tool_number(modal.tool) < FIRST_NAMED_TOOL:
+        return float(get_tool_number(modal.tool))
     if name == "$P_TOOLR" and modal.metric:
         return edge.nose_radius if modal.edge else 0.0
     return None
@@ -182,7 +195,7 @@ def system_value(name: str, modal: Modal, edge: ToolOffset) -> float | None:
 _POSITION = re.compile(r"\$(?:AA_IW|P_EP)\[([A-Z][0-9]?)\]")
 
 
-def position_asked(name: str) -> str:
+def get_position_axis(name: str) -> str:
     """Return the axis whose position a system variable reads; empty for any other name."""
     match = _POSITION.fullmatch(name)
     return match[1] if match else ""

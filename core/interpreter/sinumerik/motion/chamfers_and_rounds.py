@@ -9,58 +9,59 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Never
 
-from core.geometry.chamfer_and_rounding import CornerError, chamfer, leg_of, rounding
+from core.geometry.chamfer_and_rounding import CornerError, chamfer, find_chamfer_leg, make_rounding
 from core.geometry.lines_and_arcs import Element
 from core.interpreter.shared.actions import ProgramEnd
-from core.interpreter.shared.contour_stage import FOLLOWED, CornerStage, HeldMove, element_of
-from core.interpreter.shared.diagnostic_log import Log
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.motion.linear_moves import MovesAlong
-from core.interpreter.sinumerik.motion.sinumerik_feeds import feed_of
-from core.interpreter.sinumerik.sinumerik_state import State, positive
+from core.interpreter.shared.contour_stage import CONTOUR_KINDS, BufferedMove, CornerStage, make_element
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.sinumerik.motion.linear_moves import PlainMoveFactory
+from core.interpreter.sinumerik.motion.sinumerik_feeds import convert_feed
+from core.interpreter.sinumerik.sinumerik_state import State, check_positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
 from core.message import Message
 
-_CUT = FOLLOWED - {Kind.RAPID}
+_CUT = CONTOUR_KINDS - {BlockKind.RAPID}
 
 
 @dataclass(slots=True)
 class Corner:
-    """Corner at the end of a block. ``size`` in mm is the chamfer (CHF), its leg (CHR) or the radius (RND).
+    """Corner at the end of a block. ``size_mm`` in mm is the chamfer (CHF), its leg (CHR) or the radius
+    (RND).
 
     At an arc, the leg is a chord.
     """
 
     statement: Statement
     word: Word
-    size: float
+    size_mm: float
     feed: float | None = None  # FRC, FRCM
-    modal: bool = False  # RNDM: blocks that form no corner are not an error
+    is_modal: bool = False  # RNDM: blocks that form no corner are not an error
 
-    def refuse(self, code: str, why: str, hint: str) -> ProgramError:
+    def make_error(self, code: str, reason: str, hint: str) -> ProgramError:
         """Return an error at the corner's word."""
-        return self.statement.refuse(
+        return self.statement.make_error(
             self.word,
             code,
-            Message("Corner {letter} is not possible: {why}.", letter=self.word.text, why=why),
+            Message("Corner {letter} is not possible: {why}.", letter=self.word.text, why=reason),
             hint,
         )
 
 
-def corner_of(state: State, statement: Statement, block: Block) -> Corner | None:
+def make_corner(state: State, statement: Statement, block: Block) -> Corner | None:
     """Return the corner of a block, or None. Raises ProgramError if it is invalid."""
-    word = statement.corner
+    word = statement.corner_word
     if word is None:
         return _modal_corner(state, statement, block)
-    size = positive(statement, word, state.length(statement, word), "the corner size")
+    size = check_positive(statement, word, state.length(statement, word), "the corner size")
     corner = Corner(statement, word, size, _feed(state, statement))
     if block.kind not in _CUT or not _moves(block):
         hint = "Use CHF, CHR and RND only with G1, G2 and G3."
-        raise corner.refuse("corner-next", "the block is not a line or an arc", hint)
+        raise corner.make_error("corner-next", "the block is not a line or an arc", hint)
     if state.plane != 18:
-        raise corner.refuse("corner-plane", "corners in X and Z need G18", "Write G18 before this block.")
+        raise corner.make_error("corner-plane", "corners in X and Z need G18", "Write G18 before this block.")
     return corner
 
 
@@ -69,79 +70,79 @@ def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | 
     if not state.rounding or block.kind not in _CUT or not _moves(block) or state.plane != 18:
         return None
     word = Word("RND", state.rounding, 1, f"RNDM={state.rounding:g}")
-    return Corner(statement, word, state.rounding, _feed(state, statement), modal=True)
+    return Corner(statement, word, state.rounding, _feed(state, statement), is_modal=True)
 
 
 def _feed(state: State, statement: Statement) -> float | None:
     word = statement.words.get("FRC")
-    return state.corner_feed if word is None else feed_of(state, statement, word)
+    return state.corner_feed if word is None else convert_feed(state, statement, word)
 
 
-_Held = HeldMove[Corner, Never]
+_BufferedMove = BufferedMove[Corner, Never]
 
 
-class Corners(CornerStage[Corner, Never]):
+class SinumerikCornerStage(CornerStage[Corner, Never]):
     """Corner stage for corners between lines and arcs."""
 
-    def __init__(self, state: State, log: Log) -> None:
-        super().__init__(MovesAlong(state))
+    def __init__(self, state: State, log: DiagnosticLog) -> None:
+        super().__init__(PlainMoveFactory(state))
         self._log = log
 
-    def end(self) -> Iterator[Block]:
+    def finish(self) -> Iterator[Block]:
         """Yield the buffered blocks at the end of the program. Raises ProgramError if a corner remains."""
         held, self._held = self._held, None
-        if held is not None and held.corner.modal:
-            yield from (held.block, *held.between)
+        if held is not None and held.corner.is_modal:
+            yield from (held.block, *held.blocks_between)
         elif held is not None:
-            raise held.corner.refuse(
+            raise held.corner.make_error(
                 "corner-next", "no move follows the corner", "Program two consecutive moves for the corner."
             )
 
-    def _waits(self, held: _Held, item: Block) -> bool:
-        del held
+    def _keeps_waiting(self, buffered: _BufferedMove, item: Block) -> bool:
+        del buffered
         return item.action is not None and not isinstance(item.action, ProgramEnd)
 
-    def _meets(self, held: _Held, after: Block) -> bool:
-        if after.kind in FOLLOWED and _moves(after):
-            return not held.corner.modal or after.kind is not Kind.RAPID
-        if held.corner.modal:
+    def _forms_corner(self, buffered: _BufferedMove, after: Block) -> bool:
+        if after.kind in CONTOUR_KINDS and _moves(after):
+            return not buffered.corner.is_modal or after.kind is not BlockKind.RAPID
+        if buffered.corner.is_modal:
             return False
         why = Message("the next move, on line {line}, is not a line or an arc in X and Z", line=after.line)
-        raise held.corner.refuse("corner-next", why, "Program two consecutive moves for the corner.")
+        raise buffered.corner.make_error("corner-next", why, "Program two consecutive moves for the corner.")
 
     def _elements(self, corner: Corner, first: Element, last: Element) -> Sequence[Element]:
         if corner.word.name == "RND":
-            return rounding(first, last, corner.size)
-        leg = leg_of(first, last, corner.size) if corner.word.name == "CHF" else corner.size
+            return make_rounding(first, last, corner.size_mm)
+        leg = find_chamfer_leg(first, last, corner.size_mm) if corner.word.name == "CHF" else corner.size_mm
         return chamfer(first, last, leg)
 
-    def _inserted(self, held: _Held, between: Element) -> Block:
+    def _inserted(self, held: _BufferedMove, between: Element) -> Block:
         made = super()._inserted(held, between)
         return made if held.corner.feed is None else replace(made, feed=held.corner.feed)
 
-    def _tell_straight(self, held: _Held, after: Block) -> None:
-        if held.corner.modal:
+    def _report_straight(self, buffered: _BufferedMove, after: Block) -> None:
+        if buffered.corner.is_modal:
             return
         text = Message(
             "the moves on lines {line} and {line2} are in the same direction and do not form a corner.",
-            line=held.block.line,
+            line=buffered.block.line,
             line2=after.line,
         )
-        statement, hint = held.corner.statement, "Remove this text from the program."
-        self._log.add(statement.warning(held.corner.word, "corner-straight", text, hint))
+        statement, hint = buffered.corner.statement, "Remove this text from the program."
+        self._log.add(statement.make_warning(buffered.corner.word, "corner-straight", text, hint))
 
-    def _too_large(self, held: _Held, of: Block, needed: float) -> ProgramError:
+    def _make_size_error(self, buffered: _BufferedMove, block: Block, needed_mm: float) -> ProgramError:
         why = Message(
             "the corner needs {needed} mm of the move on line {line}, which is only {left} mm long",
-            needed=f"{needed:.4f}",
-            line=of.line,
-            left=f"{element_of(of).length:.4f}",
+            needed=f"{needed_mm:.4f}",
+            line=block.line,
+            left=f"{make_element(block).length:.4f}",
         )
-        return held.corner.refuse("corner-too-large", why, "Use a smaller chamfer or radius.")
+        return buffered.corner.make_error("corner-too-large", why, "Use a smaller chamfer or radius.")
 
-    def _impossible(self, held: _Held, after: Block, problem: CornerError) -> ProgramError:
+    def _make_corner_error(self, buffered: _BufferedMove, after: Block, problem: CornerError) -> ProgramError:
         del after
-        return held.corner.refuse("corner-next", str(problem), "Program a different end point.")
+        return buffered.corner.make_error("corner-next", str(problem), "Program a different end point.")
 
 
 def _moves(block: Block) -> bool:

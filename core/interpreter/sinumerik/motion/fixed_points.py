@@ -3,36 +3,36 @@
 from __future__ import annotations
 
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, rapid
+from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, make_rapid_block
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
-from core.language.sinumerik.word_table import BLOCKWISE, MOTION
+from core.language.sinumerik.word_table import MOTION_GROUP, NON_MODAL_GROUP
 from core.message import Message
 
 _AXES = frozenset({"X", "Z", "X1", "Z1"})
 
 
-def home(state: State, statement: Statement) -> Block:
+def make_home_move(state: State, statement: Statement) -> Block:
     """Return the rapid of G74 to home for the named axes, X1=0 Z1=0. Raises ProgramError."""
-    named = _named(state, statement, _AXES)
+    named = _axis_words(state, statement, _AXES)
     for word in named:
         if state.number(statement, word) != 0.0:
             text = "{word}: G74 always moves to machine home."
-            raise statement.refuse(
+            raise statement.make_error(
                 word, "word-unused", text, Message("Write {word}=0.", word=word.name), word=word.text
             )
-    return _to(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
+    return _make_rapid(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
 
 
-def fixed_point(state: State, statement: Statement) -> Block:
+def make_fixed_point_move(state: State, statement: Statement) -> Block:
     """Return the rapid of G75 to a fixed point (FP=1 to 4) for the named axes.
 
     The values of the axis words have no effect. The machine file defines the points in machine coordinates.
     Raises ProgramError if a point is not defined.
     """
-    named = _named(state, statement, _AXES | {"FP"})
+    named = _axis_words(state, statement, _AXES | {"FP"})
     number = _number(state, statement)
     ends = {}
     for word in named:
@@ -42,22 +42,22 @@ def fixed_point(state: State, statement: Statement) -> Block:
             raise _missing(statement, axis, number, len(points))
         ends[axis] = points[number - 1]
         if state.number(statement, word) != 0.0:
-            _tell_value(state, statement, word, ends[axis])
-    return _to(state, statement, ends)
+            _warn_ignored_value(state, statement, word, ends[axis])
+    return _make_rapid(state, statement, ends)
 
 
-def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
+def _axis_words(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
     """Return the axis words of the block. Raises ProgramError if the block has other words."""
-    word = statement.g[BLOCKWISE]
+    word = statement.g_words[NON_MODAL_GROUP]
     named = [each for name, each in statement.words.items() if name in _AXES]
-    others = statement.words.keys() - words or statement.m or statement.sets
-    if not named or others or statement.g.keys() - {BLOCKWISE, MOTION}:
+    others = statement.words.keys() - words or statement.m_words or statement.assignments
+    if not named or others or statement.g_words.keys() - {NON_MODAL_GROUP, MOTION_GROUP}:
         text = "{word} must be in a block that contains only the axes to move, each programmed as 0."
-        raise statement.refuse(word, "own-block", text, "Write {word} X1=0 Z1=0.", word=word.text)
-    if (code := state.modal.nose_comp) != 40:
+        raise statement.make_error(word, "own-block", text, "Write {word} X1=0 Z1=0.", word=word.text)
+    if (code := state.modal.compensation_code) != 40:
         text = "{word} moves the tool off the contour and cannot be used while G{code} is active."
         hint = "Write G40 and a move before this block."
-        raise statement.refuse(word, "comp-with", text, hint, word=word.text, code=code)
+        raise statement.make_error(word, "comp-with", text, hint, word=word.text, code=code)
     return named
 
 
@@ -69,13 +69,15 @@ def _number(state: State, statement: Statement) -> int:
     number = state.number(statement, word)
     if number not in {1, 2, 3, 4}:
         text = "{word} is not a valid fixed point."
-        raise statement.refuse(word, "fixed-point", text, "Write a value from FP=1 to FP=4.", word=word.text)
+        raise statement.make_error(
+            word, "fixed-point", text, "Write a value from FP=1 to FP=4.", word=word.text
+        )
     return int(number)
 
 
 def _missing(statement: Statement, axis: str, number: int, known: int) -> ProgramError:
     key = Message("fixed_points under [axis.{axis}] in the machine file", axis=axis)
-    word = statement.words.get("FP") or statement.g[BLOCKWISE]
+    word = statement.words.get("FP") or statement.g_words[NON_MODAL_GROUP]
     if known:
         text = Message(
             "{word}: the machine file defines {known} fixed points for {axis}, but number "
@@ -85,17 +87,17 @@ def _missing(statement: Statement, axis: str, number: int, known: int) -> Progra
             axis=axis,
             number=number,
         )
-        return statement.refuse(
+        return statement.make_error(
             word, "fixed-point", text, Message("Correct FP, or add the point to {key}.", key=key)
         )
     text = Message(
         "{word}: the machine file does not define a fixed point for {axis}.", word=word.text, axis=axis
     )
     hint = Message("Add {key}, or write SUPA G0 D0 with machine coordinates X and Z.", key=key)
-    return statement.refuse(word, "fixed-point", text, hint)
+    return statement.make_error(word, "fixed-point", text, hint)
 
 
-def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
+def _warn_ignored_value(state: State, statement: Statement, word: Word, end: float) -> None:
     """Warn that the value of an axis word has no effect."""
     text = Message(
         "{word} has no effect with G75: the axis moves to machine position {end} mm.",
@@ -103,14 +105,14 @@ def _tell_value(state: State, statement: Statement, word: Word, end: float) -> N
         end=f"{end:g}",
     )
     state.log.add(
-        statement.warning(word, "fixed-point-value", text, Message("Write {word}0.", word=word.name[0]))
+        statement.make_warning(word, "fixed-point-value", text, Message("Write {word}0.", word=word.name[0]))
     )
 
 
-def _to(state: State, statement: Statement, ends: dict[str, float]) -> Block:
+def _make_rapid(state: State, statement: Statement, targets: dict[str, float]) -> Block:
     """Return the rapid to these machine coordinates, in which all axes end together."""
     state.threads = ()
-    x, z = ends.get("X", state.x), ends.get("Z", state.z)
+    x, z = targets.get("X", state.x), targets.get("Z", state.z)
     modal = state.modal
     travel = AxisTravel(state.x, state.z, state.c, x, z, state.c, modal, modal.offset_x, modal.offset_z)
-    return rapid(state, statement, travel)
+    return make_rapid_block(state, statement, travel)

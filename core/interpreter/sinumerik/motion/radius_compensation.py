@@ -10,52 +10,63 @@ from collections.abc import Iterator, Sequence
 from math import cos, dist, pi, sin
 from typing import NamedTuple
 
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, clearance, touching, turn
+from core.geometry.lines_and_arcs import (
+    SAME_POINT_TOLERANCE_MM,
+    Arc,
+    Element,
+    Line,
+    Point,
+    min_distance,
+    tangent_point,
+    turn_angle,
+)
 from core.interpreter.shared.actions import ProgramEnd, ToolChange
 from core.interpreter.shared.contour_stage import (
-    FOLLOWED,
-    STRAIGHT,
+    CONTOUR_KINDS,
+    STRAIGHT_KINDS,
     ContourMove,
     ContourStage,
-    cuts_in,
-    element_of,
+    is_gouging,
+    make_element,
 )
-from core.interpreter.shared.diagnostic_log import Log
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.motion.linear_moves import MovesAlong
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.sinumerik.motion.linear_moves import PlainMoveFactory
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_alarms import fault
+from core.language.sinumerik.sinumerik_alarms import make_alarm
 from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
-_TOUCHES = 0.002  # mm
-_SHARPEST = 2.0 * pi / 3.0  # rad; largest turn at which G451 uses the intersection
+_CONTACT_TOLERANCE_MM = 0.002  # mm
+_MAX_CORNER_TURN_RAD = 2.0 * pi / 3.0  # rad; largest turn at which G451 uses the intersection
 
 
-class Compensation:
+class CompensationStage:
     """Stage that accepts the blocks of a program in order and compensates them while G41 or G42 is active."""
 
-    def __init__(self, state: State, log: Log, *, in_plane: bool = False) -> None:
+    def __init__(self, state: State, log: DiagnosticLog, *, is_in_transformed_plane: bool = False) -> None:
         self._state, self._log = state, log
-        self._in_plane = in_plane  # in TRANSMIT or TRACYL, C of a block is its depth, which may change
+        self._in_plane = (
+            is_in_transformed_plane  # in TRANSMIT or TRACYL, C of a block is its depth, which may change
+        )
         self._contour: _Contour | None = None
 
     @property
-    def holds(self) -> bool:
+    def has_open_contour(self) -> bool:
         """Whether a contour is active, so that no other pass can begin here."""
         return self._contour is not None
 
-    def drop(self) -> None:
+    def discard(self) -> None:
         """Discard the buffered contour after an error."""
         self._contour = None
 
-    def take(self, block: Block) -> Iterator[Block]:
+    def accept(self, block: Block) -> Iterator[Block]:
         """Accept a block, and yield the blocks that no later block can change.
 
         Raises ProgramError if compensation is not possible.
         """
-        contour, code = self._contour, block.modal.nose_comp
+        contour, code = self._contour, block.modal.compensation_code
         ends = isinstance(block.action, ProgramEnd)
         if contour is None:
             if block.moves and code != 40:
@@ -63,24 +74,24 @@ class Compensation:
             else:
                 yield block
         elif block.action is not None and not (ends and code == 40):
-            self._rest(contour, block)
+            self._store_motionless(contour, block)
         elif code == 40:
             self._contour = None
             yield from self._close(contour, block)
         else:
-            self._follow(contour, block)
+            self._add_move(contour, block)
 
-    def end(self) -> Iterator[Block]:
+    def finish(self) -> Iterator[Block]:
         """Process the end of the program. Raises ProgramError if a contour is not finished."""
         contour, self._contour = self._contour, None
         if contour is not None:
-            raise _open(contour.last.block)
+            raise _open(contour.last_move.block)
         yield from ()
 
     def _begin(self, block: Block) -> None:
         """Start the contour with its approach move."""
-        state, code = self._state, block.modal.nose_comp
-        if block.kind not in STRAIGHT or self._turns(block):
+        state, code = self._state, block.modal.compensation_code
+        if block.kind not in STRAIGHT_KINDS or self._turns(block):
             text = Message("the first move with G{code} is not a straight line.", code=code)
             raise _fault(block, "comp-approach", text, "Approach with G0 or G1, then begin the contour.")
         if not state.modal.edge:
@@ -99,31 +110,31 @@ class Compensation:
                 block, "comp-no-quadrant", text, "Enter the tip quadrant (F8); 9 means the nose center."
             )
         # G42 is to the right with X up. In the frame of blocks, with X down, it is to the left.
-        side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
+        side = 1.0 if (code == 42) is not state.programmed_frame.is_mirrored else -1.0
         z, x = TIP_DIRECTIONS[edge.quadrant]
         tip = x * edge.nose_radius, z * edge.nose_radius
         self._contour = _Contour(state, block, side * edge.nose_radius, tip)
 
-    def _rest(self, contour: _Contour, block: Block) -> None:
+    def _store_motionless(self, contour: _Contour, block: Block) -> None:
         """Store a block without motion at the compensated end of the previous move."""
         if isinstance(block.action, ProgramEnd):
             raise _open(block)
         if isinstance(block.action, ToolChange):
             text = "T or D is programmed before the move that leaves the contour."
             raise _fault(block, "comp-with", text, "After G40, program a move before T or D.")
-        contour.last.after.append(block)
+        contour.last_move.following_blocks.append(block)
 
-    def _follow(self, contour: _Contour, block: Block) -> None:
+    def _add_move(self, contour: _Contour, block: Block) -> None:
         """Add a move to the contour."""
-        first, code = contour.approach.block, block.modal.nose_comp
-        if code != first.modal.nose_comp:
+        first, code = contour.approach_move.block, block.modal.compensation_code
+        if code != first.modal.compensation_code:
             text = Message(
                 "G{nose_comp} cannot change to G{code} within the same contour.",
                 code=code,
-                nose_comp=first.modal.nose_comp,
+                nose_comp=first.modal.compensation_code,
             )
             raise _fault(block, "comp-with", text, "Leave the contour with G40 before this block.")
-        if block.kind not in FOLLOWED or self._turns(block):
+        if block.kind not in CONTOUR_KINDS or self._turns(block):
             template = (
                 "the C axis turns while G{code} is active."
                 if self._turns(block)
@@ -133,27 +144,27 @@ class Compensation:
         if (block.offset_x, block.offset_z) != (first.offset_x, first.offset_z):
             text = Message("the zero point changes while G{code} is active.", code=code)
             raise _fault(block, "comp-with", text, "Write G40 and a move before this block.")
-        if (block.x, block.z) == (block.x0, block.z0) and block.kind is not Kind.ARC:
-            contour.last.after.append(block)
+        if (block.x, block.z) == (block.x0, block.z0) and block.kind is not BlockKind.ARC:
+            contour.last_move.following_blocks.append(block)
         else:
-            contour.last = ContourMove(block)
-            contour.moves.append(contour.last)
+            contour.last_move = ContourMove(block)
+            contour.moves.append(contour.last_move)
 
     def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
         """Yield the contour and the departure move of G40; at the program end, the nose does not move."""
-        code = contour.approach.block.modal.nose_comp
-        if block.moves and (block.kind not in STRAIGHT or self._turns(block)):
+        code = contour.approach_move.block.modal.compensation_code
+        if block.moves and (block.kind not in STRAIGHT_KINDS or self._turns(block)):
             text = "the first move with G40 is not a straight line."
             raise _fault(block, "comp-departure", text, "Leave the contour with G0 or G1.")
         if block.moves and (block.offset_x, block.offset_z) != (
-            contour.approach.block.offset_x,
-            contour.approach.block.offset_z,
+            contour.approach_move.block.offset_x,
+            contour.approach_move.block.offset_z,
         ):
             text = "the zero point changes in the move that leaves the contour."
             raise _fault(block, "comp-departure", text, "Leave the contour before you change the zero point.")
         if not contour.moves:
             text = Message("no contour move follows G{code}.", code=code)
-            raise _fault(contour.approach.block, "comp-empty", text, "Write the contour before G40.")
+            raise _fault(contour.approach_move.block, "comp-empty", text, "Write the contour before G40.")
         yield from contour.close(block)
 
     def _turns(self, block: Block) -> bool:
@@ -163,18 +174,18 @@ class Compensation:
         self._log.warn(block.line, 0, code, f"channel 1 block in line {block.line}: {text}", hint)
 
 
-class _End(NamedTuple):
+class _ContourEnd(NamedTuple):
     """One end of the contour at ``corner``.
 
-    The center moves from ``at`` to ``to``, perpendicular to the contour.
+    The center moves from ``nose_start`` to ``to``, perpendicular to the contour.
 
     ``contour`` begins with the element at this end.
     """
 
     name: str  # approach or departure
     block: Block
-    at: Point
-    to: Point
+    nose_start: Point
+    nose_end: Point
     corner: Point
     contour: Sequence[Element]
 
@@ -182,24 +193,24 @@ class _End(NamedTuple):
 class _Contour(ContourStage):
     """The contour between G41 or G42 and the move after G40."""
 
-    def __init__(self, state: State, approach: Block, left: float, tip: Point) -> None:
-        super().__init__(MovesAlong(state), approach, left, tip)
-        self.rounded, self.round_ends = state.rounded, state.round_ends
+    def __init__(self, state: State, approach: Block, left_offset_mm: float, tip_offset: Point) -> None:
+        super().__init__(PlainMoveFactory(state), approach, left_offset_mm, tip_offset)
+        self.has_rounded_corners, self.has_rounded_ends = state.rounded, state.round_ends
         self.moves: list[ContourMove] = []
         self._elements: list[Element] = []
 
-    def close(self, leaving: Block) -> Iterator[Block]:
+    def close(self, departure: Block) -> Iterator[Block]:
         """Yield the contour and the move that leaves it. Raises ProgramError."""
-        self._elements = [element_of(move.block) for move in self.moves]
+        self._elements = [make_element(move.block) for move in self.moves]
         both = zip(self.moves, self._elements, strict=True)
-        pieces = [piece for move, element in both for piece in self._follow(move, element)]
-        pieces += self._rest()
-        beside = list(self._hand_out(pieces))
-        out = self._way_out(leaving, pieces[-1].element.end) if leaving.moves else []
+        pieces = [piece for move, element in both for piece in self._add_move(move, element)]
+        pieces += self._remaining_pieces()
+        beside = list(self._yield_pieces(pieces))
+        out = self._departure_path(departure, pieces[-1].element.end) if departure.moves else []
         yield from beside
-        yield from self._leave(ContourMove(leaving), out)
-        if not leaving.moves:
-            yield from self._standing(ContourMove(leaving, [leaving]))
+        yield from self._depart(ContourMove(departure), out)
+        if not departure.moves:
+            yield from self._standing(ContourMove(departure, [departure]))
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
         """Return the path around an outside corner: an arc, or under G451 the tangents to their intersection.
@@ -209,48 +220,51 @@ class _Contour(ContourStage):
         """
         if not isinstance(element, Arc):
             return [element]
-        angle = turn(element.start_direction, element.end_direction)
-        sharp = abs(element.sweep) > _SHARPEST
-        if block.kind is Kind.RAPID and sharp:
-            middle = element.point(element.length / 2.0)
-            halves = element.part(element.start, middle), element.part(middle, element.end)
+        angle = turn_angle(element.start_direction, element.end_direction)
+        sharp = abs(element.sweep) > _MAX_CORNER_TURN_RAD
+        if block.kind is BlockKind.RAPID and sharp:
+            middle = element.point_at(element.length / 2.0)
+            halves = (
+                element.section_between(element.start, middle),
+                element.section_between(middle, element.end),
+            )
             return [each for half in halves for each in self._corner(block, half)]
-        if sharp or (self.rounded and block.kind is not Kind.RAPID):
+        if sharp or (self.has_rounded_corners and block.kind is not BlockKind.RAPID):
             return [element]
         reach = element.radius * abs(sin(angle) / (1.0 + cos(angle)))
         ux, uz = element.start_direction
         meet = element.start[0] + ux * reach, element.start[1] + uz * reach
         return [Line(element.start, meet), Line(meet, element.end)]
 
-    def _way_in(self, to: Point) -> Sequence[Element]:
-        block, first = self.approach.block, self._elements[0]
+    def _approach_path(self, to: Point) -> Sequence[Element]:
+        block, first = self.approach_move.block, self._elements[0]
         at = self._centre((block.x0, block.z0))
-        return self._way(_End("approach", block, at, to, first.start, self._elements))
+        return self._path_to_end(_ContourEnd("approach", block, at, to, first.start, self._elements))
 
-    def _way_out(self, block: Block, begun: Point) -> Sequence[Element]:
+    def _departure_path(self, block: Block, start: Point) -> Sequence[Element]:
         """Return the departure path, which is calculated like an approach and reversed."""
         last = self._elements[-1]
         at = self._centre((block.x, block.z))
-        back = self._way(_End("departure", block, at, begun, last.end, self._elements[::-1]))
+        back = self._path_to_end(_ContourEnd("departure", block, at, start, last.end, self._elements[::-1]))
         return [element.reversed() for element in reversed(back)]
 
-    def _way(self, end: _End) -> list[Element]:
+    def _path_to_end(self, end: _ContourEnd) -> list[Element]:
         """Return a straight path, or with KONT a path around the end of the contour if necessary.
 
         Raises ProgramError if the path cuts the contour.
         """
-        radius, way = self.radius, Line(end.at, end.to)
-        if not radius or not cuts_in(way, end.contour, radius):
-            return [way] if way.length > SAME_POINT else []
+        radius, way = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
+        if not radius or not is_gouging(way, end.contour, radius):
+            return [way] if way.length > SAME_POINT_TOLERANCE_MM else []
         text = Message(
             "during the {end}, the nose radius of {radius} mm cuts into the contour.",
             end=end.name,
             radius=f"{radius:g}",
         )
-        if not self.round_ends:
+        if not self.has_rounded_ends:
             hint = "Choose another point for this move, or write KONT to go around the end of the contour."
             raise _fault(end.block, "comp-gouge", text, hint)
-        if dist(end.at, end.corner) < radius - SAME_POINT:
+        if dist(end.nose_start, end.corner) < radius - SAME_POINT_TOLERANCE_MM:
             text = Message(
                 "with KONT, the distance from the {end} point to the end of the contour is "
                 "less than the nose radius.",
@@ -259,28 +273,28 @@ class _Contour(ContourStage):
             raise _fault(
                 end.block, f"comp-{end.name}-short", text, "Choose a point farther away from the contour."
             )
-        around = self._round(end)
-        straight = Line(end.at, around.start)
-        if any(clearance(straight, each) < radius - _TOUCHES for each in end.contour):
+        around = self._tangent_arc(end)
+        straight = Line(end.nose_start, around.start)
+        if any(min_distance(straight, each) < radius - _CONTACT_TOLERANCE_MM for each in end.contour):
             raise _fault(end.block, "comp-gouge", text, "Choose another point for this move.")
         way_round = [straight, *self._corner(end.block, around)]
-        return [element for element in way_round if element.length > SAME_POINT]
+        return [element for element in way_round if element.length > SAME_POINT_TOLERANCE_MM]
 
-    def _round(self, end: _End) -> Arc:
+    def _tangent_arc(self, end: _ContourEnd) -> Arc:
         """Return the arc about the end of the contour that is tangent to the straight approach."""
         # An approach with the arc center on its right is clockwise. A departure is calculated in reverse.
-        clockwise = (self.left < 0.0) is (end.name == "departure")
-        touch = touching(end.at, end.corner, self.radius, clockwise=clockwise)
-        return Arc(touch, end.to, end.corner, clockwise=clockwise)
+        clockwise = (self.left_offset_mm < 0.0) is (end.name == "departure")
+        touch = tangent_point(end.nose_start, end.corner, self.nose_radius_mm, clockwise=clockwise)
+        return Arc(touch, end.nose_end, end.corner, clockwise=clockwise)
 
     def _centre(self, tip: Point) -> Point:
-        return tip[0] - self.tip[0], tip[1] - self.tip[1]
+        return tip[0] - self.tip_offset[0], tip[1] - self.tip_offset[1]
 
-    def _gouges(self, block: Block, why: str) -> ProgramError:
+    def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
         text = Message(
             "a nose radius of {radius} mm does not fit this contour: {why}.",
-            radius=f"{self.radius:g}",
-            why=why,
+            radius=f"{self.nose_radius_mm:g}",
+            why=code_suffix,
         )
         return _fault(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
 
@@ -291,4 +305,6 @@ def _open(block: Block) -> ProgramError:
 
 
 def _fault(block: Block, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(fault(block.line, 1, code, Message("in line {line}", line=block.line), text, hint))
+    return ProgramError(
+        make_alarm(block.line, 1, code, Message("in line {line}", line=block.line), text, hint)
+    )

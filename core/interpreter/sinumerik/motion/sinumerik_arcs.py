@@ -5,78 +5,90 @@ from __future__ import annotations
 from dataclasses import replace
 from math import atan2, cos, dist, hypot, radians, sin, tan
 
-from core.geometry.lines_and_arcs import Point, centre_from_radius
-from core.interpreter.shared.elementary_blocks import Block, Kind
+from core.geometry.lines_and_arcs import Point, center_from_radius
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import (
-    NO_WAY,
+    MIN_PATH_MM,
     AxisTravel,
-    block_of,
-    keep_direction,
-    travel_of,
+    compute_travel,
+    make_travel_block,
+    store_end_direction,
 )
-from core.interpreter.sinumerik.motion.sinumerik_feeds import check_feed
-from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_words import ARC, Form, Word
+from core.language.sinumerik.sinumerik_words import ARC_WORDS, PositionForm, Word
 from core.message import Message
 
-WRONG_END = 14040
+WRONG_ARC_END = 14040
 _TOLERANCE = 0.01  # mm; permitted difference of the radii at both ends
 
 
-def arc(state: State, statement: Statement) -> Block:
+def make_arc_block(state: State, statement: Statement) -> Block:
     """Return the block of an arc. Raises ProgramError if its words do not define an arc."""
     if state.plane != 18:
         text = "arcs in X and Z need G18."
-        raise statement.refuse(statement.g.get("motion"), "arc-plane", text, "Write G18 before this block.")
+        raise statement.make_error(
+            statement.g_words.get("motion"), "arc-plane", text, "Write G18 before this block."
+        )
     _check_words(state, statement)
-    travel = travel_of(state, statement)
-    if not travel.frame.uniform:
+    travel = compute_travel(state, statement)
+    if not travel.frame.is_uniform:
         text = "SCALE uses different factors for X and Z, so an arc is not possible."
         hint = "Use the same factor for both axes."
-        raise statement.refuse(statement.g.get("motion"), "arc-scaled", text, hint)
-    clockwise, (centre, travel) = _found(state, statement, travel)
+        raise statement.make_error(statement.g_words.get("motion"), "arc-scaled", text, hint)
+    clockwise, (centre, travel) = _compute_arc(state, statement, travel)
     offset = travel.offset_x
-    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
-    made_block = block_of(state, statement, travel, Kind.ARC, feed)
+    feed = check_block_feed(state, statement, travel.x0 - offset, travel.x - offset)
+    made_block = make_travel_block(state, statement, travel, BlockKind.ARC, feed)
     made_block = replace(
         made_block, cx=centre[0] - travel.offset_x, cz=centre[1] - travel.offset_z, clockwise=clockwise
     )
-    return keep_direction(state, made_block)
+    return store_end_direction(state, made_block)
 
 
-_OF_CIP = frozenset({"I1", "K1"})
+_CIP_WORDS = frozenset({"I1", "K1"})
 
 
 def _check_words(state: State, statement: Statement) -> None:
     """Raise ProgramError for a word of another kind of arc."""
-    own = {Motion.THROUGH: _OF_CIP, Motion.TANGENT: frozenset[str]()}.get(state.motion, ARC - _OF_CIP)
-    for name in sorted((ARC - own) & statement.words.keys()):
+    own = {MotionKind.ARC_BY_POINT: _CIP_WORDS, MotionKind.TANGENTIAL_ARC: frozenset[str]()}.get(
+        state.motion, ARC_WORDS - _CIP_WORDS
+    )
+    for name in sorted((ARC_WORDS - own) & statement.words.keys()):
         word = statement.words[name]
-        kind = {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(state.motion, f"G{state.motion:d}")
+        kind = {MotionKind.ARC_BY_POINT: "CIP", MotionKind.TANGENTIAL_ARC: "CT"}.get(
+            state.motion, f"G{state.motion:d}"
+        )
         text = "{word} cannot be used with {kind}."
         hint = "Remove this word, or program the type of arc that uses it."
-        raise statement.refuse(word, "word-unused", text, hint, word=word.text, kind=kind)
+        raise statement.make_error(word, "word-unused", text, hint, word=word.text, kind=kind)
 
 
-def _found(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+def _compute_arc(
+    state: State, statement: Statement, travel: AxisTravel
+) -> tuple[bool, tuple[Point, AxisTravel]]:
     """Return the direction, center and travel of the arc."""
-    if state.motion is Motion.THROUGH:
-        return _through(state, statement, travel)
-    if state.motion is Motion.TANGENT:
-        return _tangent(state, statement, travel)
+    if state.motion is MotionKind.ARC_BY_POINT:
+        return _arc_by_point(state, statement, travel)
+    if state.motion is MotionKind.TANGENTIAL_ARC:
+        return _tangential_arc(state, statement, travel)
     # G2 is clockwise in the view with X up and Z to the right. Blocks use the view with X down.
-    clockwise = (state.motion is Motion.COUNTER) is not travel.frame.mirrored
-    return clockwise, _centre(state, statement, travel, clockwise)
+    clockwise = (state.motion is MotionKind.COUNTERCLOCKWISE) is not travel.frame.is_mirrored
+    return clockwise, _compute_center(state, statement, travel, clockwise)
 
 
-def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+def _arc_by_point(
+    state: State, statement: Statement, travel: AxisTravel
+) -> tuple[bool, tuple[Point, AxisTravel]]:
     """Return the arc of CIP through the start, the point of I1 and K1, and the end."""
-    begun, words = travel.begun, statement.words
-    if not _OF_CIP & words.keys():
+    begun, words = travel.program_start, statement.words
+    if not _CIP_WORDS & words.keys():
         text = "CIP needs I1 and K1 to define a point on the arc."
-        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, "Add I1 and K1.")
+        raise statement.make_error(
+            statement.g_words.get("motion"), "arc-centre-missing", text, "Add I1 and K1."
+        )
     relative = state.modal.absolute is False
     x, z = begun
     if "I1" in words:
@@ -85,16 +97,16 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
         x = value / (2.0 if halved else 1.0) + (begun[0] if relative else 0.0)
     if "K1" in words:
         z = state.length(statement, words["K1"]) + (begun[1] if relative else 0.0)
-    a, b, c = (travel.x0, travel.z0), travel.placed(x, z), (travel.x, travel.z)
+    a, b, c = (travel.x0, travel.z0), travel.to_machine(x, z), (travel.x, travel.z)
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    if abs(across) < NO_WAY * max(dist(a, b), dist(a, c), NO_WAY):
+    if abs(across) < MIN_PATH_MM * max(dist(a, b), dist(a, c), MIN_PATH_MM):
         text = (
             "the start point, the end point and the intermediate point (I1, K1) are on one "
             "line, or two of them are identical."
         )
         word = words.get("I1") or words.get("K1")
-        raise statement.refuse(word, "arc-radius", text, "Correct the point, or write G1.")
-    return _clockwise(across), (_circumcentre(a, b, c), travel)
+        raise statement.make_error(word, "arc-radius", text, "Correct the point, or write G1.")
+    return _clockwise(across), (_circumcenter(a, b, c), travel)
 
 
 def _clockwise(across: float) -> bool:
@@ -102,7 +114,7 @@ def _clockwise(across: float) -> bool:
     return across < 0.0
 
 
-def _circumcentre(a: Point, b: Point, c: Point) -> Point:
+def _circumcenter(a: Point, b: Point, c: Point) -> Point:
     """Return the center of the circle through three points.
 
     It is calculated relative to the first point for precision.
@@ -113,52 +125,54 @@ def _circumcentre(a: Point, b: Point, c: Point) -> Point:
     return a[0] + (cz * b2 - bz * c2) / twice, a[1] + (bx * c2 - cx * b2) / twice
 
 
-def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
+def _tangential_arc(
+    state: State, statement: Statement, travel: AxisTravel
+) -> tuple[bool, tuple[Point, AxisTravel]]:
     """Return the arc of CT, which begins in the end direction of the previous path."""
-    word = statement.g.get("motion")
+    word = statement.g_words.get("motion")
     if state.direction is None:
         text = "CT continues a path, but no move precedes it."
-        raise statement.refuse(word, "arc-centre-missing", text, "Program a move before this block.")
-    _demand_ends(statement, word, travel.length)
+        raise statement.make_error(word, "arc-centre-missing", text, "Program a move before this block.")
+    _demand_ends(statement, word, travel.length_mm)
     ux, uz = state.direction
     dx, dz = travel.x - travel.x0, travel.z - travel.z0
     aside = ux * dz - uz * dx  # signed distance of the end from the tangent line
-    if abs(aside) < NO_WAY:
+    if abs(aside) < MIN_PATH_MM:
         text = "the end point of CT is in line with the previous path, so no arc is possible."
-        raise statement.refuse(word, "arc-radius", text, "Write G1, or change the end point.")
+        raise statement.make_error(word, "arc-radius", text, "Write G1, or change the end point.")
     far = (dx * dx + dz * dz) / (2.0 * aside)
     centre = travel.x0 - uz * far, travel.z0 + ux * far
     return _clockwise(aside), (centre, travel)
 
 
-def _centre(
+def _compute_center(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
     """Return the center in machine coordinates, and the travel with an end point if it was not programmed."""
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
         text = "the arc has CR and another definition of its center."
-        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of the conflicting words.")
+        raise statement.make_error(words["CR"], "arc-both", text, "Keep only one of the conflicting words.")
     if "CR" in words:
-        return _by_radius(state, statement, travel, clockwise), travel
+        return _center_by_radius(state, statement, travel, clockwise), travel
     if "AR" in words:
         if {"X", "Z", "RP", "AP"} & words.keys():
-            return _by_angle(state, statement, travel, clockwise), travel
-        return _turned(state, statement, travel, clockwise)
+            return _center_by_angle(state, statement, travel, clockwise), travel
+        return _end_by_angle(state, statement, travel, clockwise)
     if not by_centre:
         text = "the arc needs CR, AR, or I and K."
         hint = "Add one of the missing values."
-        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, hint)
-    centre = _by_words(state, statement, travel)
+        raise statement.make_error(statement.g_words.get("motion"), "arc-centre-missing", text, hint)
+    centre = _center_by_words(state, statement, travel)
     _check_radii(statement, travel, centre)
     return centre, travel
 
 
-def _by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
+def _center_by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
     """Return the center from I and K: distances from the start, or coordinates with AC( )."""
-    begun = travel.begun
+    begun = travel.program_start
     i, k = _component(state, statement, "I", begun[0]), _component(state, statement, "K", begun[1])
-    x, z = travel.frame.turned(i, k)
+    x, z = travel.frame.transform_distance(i, k)
     return travel.x0 + x, travel.z0 + z
 
 
@@ -167,15 +181,15 @@ def _component(state: State, statement: Statement, name: str, start: float) -> f
     if word is None:
         return 0.0
     value = state.length(statement, word)
-    if word.form is not Form.AC:
+    if word.position_form is not PositionForm.AC:
         return value  # a radius, independent of DIAMON
     return value / (2.0 if name == "I" and state.modal.diameter else 1.0) - start
 
 
-def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
+def _center_by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
     """Return the center from CR: positive for arcs of up to half a circle, negative for larger arcs."""
     word = statement.words["CR"]
-    radius, chord = state.length(statement, word) * travel.frame.factor, travel.length
+    radius, chord = state.length(statement, word) * travel.frame.scale_factor, travel.length_mm
     _demand_ends(statement, word, chord)
     if chord > 2 * abs(radius) + _TOLERANCE:
         text = (
@@ -183,20 +197,20 @@ def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise
             "{chord} mm."
         )
         hint = "Correct CR or the end point."
-        raise statement.refuse(word, "arc-radius", text, hint, word=word.text, chord=f"{chord:.4f}")
+        raise statement.make_error(word, "arc-radius", text, hint, word=word.text, chord=f"{chord:.4f}")
     side = clockwise if radius > 0 else not clockwise
-    return centre_from_radius((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), clockwise=side)
+    return center_from_radius((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), clockwise=side)
 
 
-def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
+def _center_by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
     """Return the center from AR and the end point; r = chord / (2 sin(angle / 2))."""
-    word, chord = statement.words["AR"], travel.length
+    word, chord = statement.words["AR"], travel.length_mm
     _demand_ends(statement, word, chord)
     half = radians(_angle(state, statement, word)) / 2
     if {"I", "K"} & statement.words.keys():
         text = "the arc has AR, an end point and a center, but only two of them are allowed."
         hint = "Keep only two of the three: AR, the end point and the center."
-        raise statement.refuse(word, "arc-both", text, hint)
+        raise statement.make_error(word, "arc-both", text, hint)
     # The center of a clockwise arc is to the right of the chord. Above half a circle, the cotangent changes
     # the side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
@@ -204,19 +218,19 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
     return (travel.x0 + travel.x) / 2 + aside * dz, (travel.z0 + travel.z) / 2 - aside * dx
 
 
-def _turned(
+def _end_by_angle(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
     """Return the center, and the travel whose end is the start rotated about it by AR."""
     word = statement.words["AR"]
     if not {"I", "K"} & statement.words.keys():
         text = "AR is programmed without an end point and without I and K."
-        raise statement.refuse(word, "arc-centre-missing", text, "Add one of the missing values.")
-    centre = _by_words(state, statement, travel)
+        raise statement.make_error(word, "arc-centre-missing", text, "Add one of the missing values.")
+    centre = _center_by_words(state, statement, travel)
     x, z = travel.x0 - centre[0], travel.z0 - centre[1]
-    if hypot(x, z) < NO_WAY:
+    if hypot(x, z) < MIN_PATH_MM:
         text = "the center of the arc is its start point."
-        raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
+        raise statement.make_error(word, "arc-radius", text, "Correct I and K.")
     angle = radians(_angle(state, statement, word))
     turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ toward X+ is clockwise with X down
     radius = hypot(x, z)
@@ -228,23 +242,25 @@ def _angle(state: State, statement: Statement, word: Word) -> float:
     angle = state.number(statement, word)
     if not 0.0 < angle < 360.0:
         text = "{word}: an opening angle must be greater than 0 and less than 360 degrees."
-        raise statement.refuse(word, "arc-angle", text, "Program a full circle with I and K.", word=word.text)
+        raise statement.make_error(
+            word, "arc-angle", text, "Program a full circle with I and K.", word=word.text
+        )
     return angle
 
 
 def _demand_ends(statement: Statement, word: Word | None, chord: float) -> None:
-    if chord < NO_WAY:
+    if chord < MIN_PATH_MM:
         by = f" by {word.name}" if word else ""
         text = "the arc{name} ends where it starts."
-        raise statement.refuse(word, "arc-no-chord", text, "Program a full circle with I and K.", name=by)
+        raise statement.make_error(word, "arc-no-chord", text, "Program a full circle with I and K.", name=by)
 
 
 def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> None:
     word = statement.words.get("I") or statement.words.get("K")
     first, last = dist((travel.x0, travel.z0), centre), dist((travel.x, travel.z), centre)
-    if first < NO_WAY:
+    if first < MIN_PATH_MM:
         text = "the center of the arc is its start point."
-        raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
+        raise statement.make_error(word, "arc-radius", text, "Correct I and K.")
     if abs(first - last) > _TOLERANCE:
         text = Message(
             "the arc's radius is {first} mm at its start and {last} mm at its end.",
@@ -254,5 +270,5 @@ def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> Non
         hint = (
             "Enter I and K as distances from the start point (I as a radius), or as coordinates with AC( )."
         )
-        error: ProgramError = statement.refuse(word, WRONG_END, text, hint)
+        error: ProgramError = statement.make_error(word, WRONG_ARC_END, text, hint)
         raise error

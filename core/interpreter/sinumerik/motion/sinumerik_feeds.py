@@ -3,56 +3,56 @@
 from __future__ import annotations
 
 from core.interpreter.shared.units import MM_PER_INCH
-from core.interpreter.sinumerik.sinumerik_state import State, positive
+from core.interpreter.sinumerik.sinumerik_state import State, check_positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import Word
-from core.language.sinumerik.word_table import DWELL, FEED_AND_SPEED, MOTION
+from core.language.sinumerik.word_table import DWELL_GROUP, FEED_TYPE_GROUP, MOTION_GROUP
 
-NO_FEED = 10860
+MISSING_FEED = 10860
 
-_BY_REVOLUTION = {94: False, 95: True, 96: True, 961: False, 97: True, 971: False, 973: True}
+_PER_REV_BY_CODE = {94: False, 95: True, 96: True, 961: False, 97: True, 971: False, 973: True}
 """Kind of feed by code of the group; G962 and G972 leave it as it is."""
 
 
-_OF_LEAD = frozenset({34, 35})
+_LEAD_MOTIONS = frozenset({34, 35})
 """Of these motions F is the change of a lead."""
 
 
-def feed_words(state: State, statement: Statement) -> None:
+def execute_feed_words(state: State, statement: Statement) -> None:
     """Execute the feed type, F, OVR, FRCM and RNDM of a block.
 
     A change of the feed type deletes F. Raises ProgramError for an invalid value.
     """
-    per_rev = _BY_REVOLUTION.get(statement.code(FEED_AND_SPEED) or 0, state.modal.per_rev)
+    per_rev = _PER_REV_BY_CODE.get(statement.get_g_code(FEED_TYPE_GROUP) or 0, state.modal.per_rev)
     if per_rev != state.modal.per_rev:
-        state.adopt(state.modal._replace(per_rev=per_rev, feed=None))
+        state.set_modal(state.modal._replace(per_rev=per_rev, feed=None))
         state.corner_feed = None
     if word := statement.words.get("OVR"):
         state.override = state.number(statement, word) / 100.0
         if not 0.01 <= state.override <= 2.0:
             text = "{word} is not between 1 and 200."
-            raise statement.refuse(word, "not-positive", text, "Correct the value.", word=word.text)
+            raise statement.make_error(word, "not-positive", text, "Correct the value.", word=word.text)
     if word := statement.words.get("FRCM"):
         value = state.number(statement, word)
-        state.corner_feed = feed_of(state, statement, word) if value else None
+        state.corner_feed = convert_feed(state, statement, word) if value else None
     if word := statement.words.get("RNDM"):
         state.rounding = state.length(statement, word)
     word = statement.words.get("F")
-    motion = statement.code(MOTION)
-    leads = (state.motion if motion is None else motion) in _OF_LEAD
-    if word is not None and statement.code(DWELL) is None and not leads:
-        state.adopt(state.modal._replace(feed=feed_of(state, statement, word)))
+    motion = statement.get_g_code(MOTION_GROUP)
+    leads = (state.motion if motion is None else motion) in _LEAD_MOTIONS
+    if word is not None and statement.get_g_code(DWELL_GROUP) is None and not leads:
+        state.set_modal(state.modal._replace(feed=convert_feed(state, statement, word)))
 
 
-def feed_of(state: State, statement: Statement, word: Word) -> float:
+def convert_feed(state: State, statement: Statement, word: Word) -> float:
     """Return a feed in mm (degrees) per second or revolution. Raises ProgramError if it is not above 0."""
-    value = positive(statement, word, state.number(statement, word), "the feed")
+    value = check_positive(statement, word, state.number(statement, word), "the feed")
     value *= MM_PER_INCH if state.feed_in_inches else 1.0
     # The unit is mm/min and degrees/min, or mm and degrees per revolution, depending on the kind of block.
     return value if state.modal.per_rev else value / 60.0
 
 
-def check_feed(
+def check_block_feed(
     state: State, statement: Statement, x0: float, x1: float, *, in_degrees: bool = False
 ) -> float:
     """Return the feed of a block from radius ``x0`` to ``x1``, in mm (degrees) per second or revolution.
@@ -62,27 +62,29 @@ def check_feed(
     """
     modal = state.modal
     word = statement.words.get("FB")
-    feed = modal.feed if word is None else feed_of(state, statement, word)
+    feed = modal.feed if word is None else convert_feed(state, statement, word)
     if feed is None:
         hint = "Program F. A change between G94 and G95 deletes F; G96 and G97 have the same effect as G95."
-        raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
+        raise statement.make_error(
+            _first_axis_word(statement), MISSING_FEED, "no feedrate is programmed.", hint
+        )
     if modal.css and modal.spindle and not modal.surface_speed:
         text = "G96 is active, but no surface speed is programmed with S."
         hint = "Program S together with G96."
-        raise statement.refuse(statement.words.get("S"), "surface-speed-missing", text, hint)
+        raise statement.make_error(statement.words.get("S"), "surface-speed-missing", text, hint)
     by_tool = modal.per_rev and state.master != 1
     if by_tool and not state.live_rpm:
         text = "G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped."
         hint = "Start the live tool with S and M3."
-        raise statement.refuse(_mover(statement), "g95-spindle-stopped", text, hint)
-    if modal.per_rev and not by_tool and not (state.rpm_at(x0) and state.rpm_at(x1)):
+        raise statement.make_error(_first_axis_word(statement), "g95-spindle-stopped", text, hint)
+    if modal.per_rev and not by_tool and not (state.compute_rpm_at(x0) and state.compute_rpm_at(x1)):
         text = "G95 needs a spindle speed, but the spindle is stopped."
         hint = "Start the spindle with S and M3 or M4, or use G94."
-        raise statement.refuse(_mover(statement), "g95-spindle-stopped", text, hint)
+        raise statement.make_error(_first_axis_word(statement), "g95-spindle-stopped", text, hint)
     feed *= abs(state.live_rpm) / 60.0 if by_tool else 1.0
     return feed * state.override / (MM_PER_INCH if in_degrees and state.feed_in_inches else 1.0)
 
 
-def _mover(statement: Statement) -> Word | None:
+def _first_axis_word(statement: Statement) -> Word | None:
     """Return the first axis word of the block, or None."""
-    return next((statement.words[name] for name in statement.axes), None)
+    return next((statement.words[name] for name in statement.axis_names), None)

@@ -8,19 +8,19 @@ from __future__ import annotations
 
 from math import inf
 
-from core.language.sinumerik.sinumerik_words import Form
+from core.language.sinumerik.sinumerik_words import PositionForm
 from core.message import CodedError, Message
 
-TURN = 360.0
-TURNS = (-TURN, TURN)
+FULL_TURN_DEG = 360.0
+NON_MODULO_RANGE = (-FULL_TURN_DEG, FULL_TURN_DEG)
 """Ends of a C that does not wrap."""
 
-ROUNDING = 1e-9
+ROUNDING_TOLERANCE = 1e-9
 """Degrees that are noise of sums in binary: a target as near as this is reached."""
 
-WRONG_MODULO = 16830
-WRONG_RANGE = 10720
-NO_ROTARY = {Form.DC: 16800, Form.ACP: 16810, Form.ACN: 16820}
+WRONG_MODULO_POSITION = 16830
+WRONG_AXIS_RANGE = 10720
+MODULO_ONLY_ALARMS = {PositionForm.DC: 16800, PositionForm.ACP: 16810, PositionForm.ACN: 16820}
 """Alarms of the forms that only a modulo rotary axis takes."""
 
 
@@ -29,67 +29,67 @@ class TargetError(CodedError):
 
     def __init__(self, number: int, text: str) -> None:
         super().__init__(text, str(number))
-        self.number = number
+        self.alarm_number = number
 
 
-def wrapped(angle: float) -> float:
+def wrap_angle(angle: float) -> float:
     """Return the angle from 0 to below 360; an angle within rounding of 360 is 0."""
-    rest = angle % TURN
-    return 0.0 if TURN - rest <= ROUNDING else rest
+    rest = angle % FULL_TURN_DEG
+    return 0.0 if FULL_TURN_DEG - rest <= ROUNDING_TOLERANCE else rest
 
 
-def modulo_travel(form: Form, value: float, position: float) -> float:
+def compute_modulo_travel(form: PositionForm, value: float, position: float) -> float:
     """Return the signed travel of a modulo axis to ``value``, or by ``value`` (IC), in degrees.
 
     ``position`` may include any number of revolutions. Raises TargetError for a target that is not from 0 to
     below 360.
     """
-    if form is Form.IC:
+    if form is PositionForm.IC:
         return value
-    if not 0.0 <= value < TURN:
+    if not 0.0 <= value < FULL_TURN_DEG:
         raise TargetError(
-            WRONG_MODULO,
+            WRONG_MODULO_POSITION,
             Message(
                 "{value} is not a valid position of a modulo axis; valid positions are from 0 "
                 "to less than 360",
                 value=f"{value:.9g}",
             ),
         )
-    at = wrapped(position)
-    if form is Form.AC:
+    at = wrap_angle(position)
+    if form is PositionForm.AC:
         return _unless_noise(value - at)
-    travel = wrapped(value - at)
-    if travel <= ROUNDING:
+    travel = wrap_angle(value - at)
+    if travel <= ROUNDING_TOLERANCE:
         return 0.0
-    if form is Form.ACP:
+    if form is PositionForm.ACP:
         return travel
-    if form is Form.ACN:
-        return travel - TURN
-    return travel if travel <= TURN / 2 + ROUNDING else travel - TURN
+    if form is PositionForm.ACN:
+        return travel - FULL_TURN_DEG
+    return travel if travel <= FULL_TURN_DEG / 2 + ROUNDING_TOLERANCE else travel - FULL_TURN_DEG
 
 
-def linear_travel(form: Form, value: float, position: float) -> float:
+def compute_linear_travel(form: PositionForm, value: float, position: float) -> float:
     """Return the signed travel of an axis without modulo to ``value``, or by ``value`` (IC).
 
     Raises TargetError for DC, ACP and ACN, which need a modulo rotary axis.
     """
-    if form in NO_ROTARY:
-        raise TargetError(NO_ROTARY[form], Message("{form} needs a modulo rotary axis", form=form))
-    return value if form is Form.IC else _unless_noise(value - position)
+    if form in MODULO_ONLY_ALARMS:
+        raise TargetError(MODULO_ONLY_ALARMS[form], Message("{form} needs a modulo rotary axis", form=form))
+    return value if form is PositionForm.IC else _unless_noise(value - position)
 
 
-def check_reach(end: float, ends: tuple[float, float] | None = TURNS) -> None:
+def check_axis_range(end: float, ends: tuple[float, float] | None = NON_MODULO_RANGE) -> None:
     """Raise TargetError if the end is outside the range of the axis in machine coordinates."""
     low, high = ends or (-inf, inf)
-    if not low - ROUNDING <= end <= high + ROUNDING:
+    if not low - ROUNDING_TOLERANCE <= end <= high + ROUNDING_TOLERANCE:
         text = Message(
             "the end point {end} is outside the machine range of {low} to {high}",
             end=f"{end:g}",
             low=f"{low:g}",
             high=f"{high:+g}",
         )
-        raise TargetError(WRONG_RANGE, text)
+        raise TargetError(WRONG_AXIS_RANGE, text)
 
 
 def _unless_noise(travel: float) -> float:
-    return 0.0 if abs(travel) <= ROUNDING else travel
+    return 0.0 if abs(travel) <= ROUNDING_TOLERANCE else travel

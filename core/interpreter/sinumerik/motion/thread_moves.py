@@ -9,31 +9,39 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import sqrt
 
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.motion.linear_moves import NO_WAY, AxisTravel, block_of, rapid, travel_of
-from core.interpreter.sinumerik.sinumerik_state import Motion, State
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.sinumerik.motion.linear_moves import (
+    MIN_PATH_MM,
+    AxisTravel,
+    compute_travel,
+    make_rapid_block,
+    make_travel_block,
+)
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
-from core.language.sinumerik.word_table import FEED_AND_SPEED, MOTION
+from core.language.sinumerik.word_table import FEED_TYPE_GROUP, MOTION_GROUP
 
 _ROUNDING = 1 + 1e-9
 _STEEP = 0.5  # ratio of X to Z; a steeper move is a pull-out instead of a continuation
 _SAME = 1e-9  # mm
-_LEAST_LEAD = 0.01  # mm
+_MIN_LEAD = 0.01  # mm
 
 
-def thread(state: State, statement: Statement) -> Iterator[Block]:
+def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of G33, G34 or G35, after the move back for SF. Raises ProgramError."""
     for name in ("CR", "AR", "I1", "K1"):
         if word := statement.words.get(name):
             text = "{word} cannot be used with G{motion}."
             hint = "Remove this text from the program."
-            raise statement.refuse(word, "word-unused", text, hint, word=word.text, motion=int(state.motion))
-    travel = travel_of(state, statement)
-    if abs(travel.z - travel.z0) < NO_WAY or travel.turn:
+            raise statement.make_error(
+                word, "word-unused", text, hint, word=word.text, motion=int(state.motion)
+            )
+    travel = compute_travel(state, statement)
+    if abs(travel.z - travel.z0) < MIN_PATH_MM or travel.c_travel:
         text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
-        if travel.turn:
+        if travel.c_travel:
             text = "C cannot turn while a thread is cut."
         raise _refused(statement, "thread-length", text, "Enter Z of the end point and K.")
     lead = _lead(state, statement, travel)
@@ -41,11 +49,11 @@ def thread(state: State, statement: Statement) -> Iterator[Block]:
     back = _start_angle(state, statement, travel, lead, growth)
     if back is not None:
         yield back
-        travel, lead = travel._replace(x0=state.x, z0=state.z), lead - growth * state.start_turns
+        travel, lead = travel._replace(x0=state.x, z0=state.z), lead - growth * state.start_revolutions
     mean, end = _mean_lead(statement, travel, lead, growth)
-    check_spindle(state, statement, max(lead, end))
+    check_thread_spindle(state, statement, max(lead, end))
     continues = _continues(state, statement, travel, lead)
-    made = block_of(state, statement, travel, Kind.THREAD, mean)
+    made = make_travel_block(state, statement, travel, BlockKind.THREAD, mean)
     made.per_rev, made.growth, made.continues = True, growth, continues
     state.threads, state.end_lead = (*state.threads, made), end
     yield made
@@ -53,7 +61,7 @@ def thread(state: State, statement: Statement) -> Iterator[Block]:
 
 def _growth(state: State, statement: Statement) -> float:
     """Return the lead change per revolution in mm/rev: F of G34, negative with G35, 0 with G33."""
-    if state.motion is Motion.THREAD:
+    if state.motion is MotionKind.THREAD:
         return 0.0
     if word := statement.words.get("F"):
         value = state.length(statement, word)
@@ -65,7 +73,7 @@ def _growth(state: State, statement: Statement) -> float:
         text = "G{motion} needs F, the lead change per revolution."
         hint = "Enter F as the lead change per revolution, in mm/rev."
         raise _refused(statement, "thread-lead-missing", text, hint, motion=int(state.motion))
-    return state.lead_change if state.motion is Motion.GROWING else -state.lead_change
+    return state.lead_change if state.motion is MotionKind.THREAD_GROWING_LEAD else -state.lead_change
 
 
 def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: float) -> tuple[float, float]:
@@ -75,7 +83,7 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
         return lead, lead
     square = lead * lead + 2.0 * growth * way
     end = sqrt(square) if square > 0.0 else 0.0
-    if end < _LEAST_LEAD:
+    if end < _MIN_LEAD:
         raise _refused(
             statement,
             "thread-lead-missing",
@@ -100,13 +108,13 @@ def _start_angle(
     text = "{word} is allowed only in the first block of a thread chain."
     hint = "Write this word in the first block of the thread chain."
     statement.check(not state.threads, word, "word-unused", text, hint, word=word.text)
-    state.start_turns = turns = angle / 360.0
+    state.start_revolutions = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
     text = "at this start point, the lead has already decreased to 0."
-    statement.check(lead - growth * turns >= _LEAST_LEAD, word, "thread-lead-missing", text, "Lower F.")
+    statement.check(lead - growth * turns >= _MIN_LEAD, word, "thread-lead-missing", text, "Lower F.")
     share = far / abs(travel.z - travel.z0)
     x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
-    return rapid(state, statement, travel._replace(x=x, z=z))
+    return make_rapid_block(state, statement, travel._replace(x=x, z=z))
 
 
 def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
@@ -124,7 +132,7 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     if along is not None and across is not None:
         text = "the thread has both a lead along X and a lead along Z."
         hint = "Write K for angles up to 45 degrees and I for larger angles."
-        raise statement.refuse(across, "thread-lead-both", text, hint)
+        raise statement.make_error(across, "thread-lead-both", text, hint)
     word = along or across
     assert word is not None
     value = state.length(statement, word)
@@ -134,11 +142,11 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
         return value
     dx = abs(travel.x - travel.x0)
     text = "{word} is the lead along X, but X does not move."
-    statement.check(dx >= NO_WAY, word, "thread-lead-missing", text, "Write K.", word=word.text)
+    statement.check(dx >= MIN_PATH_MM, word, "thread-lead-missing", text, "Write K.", word=word.text)
     return value * abs(travel.z - travel.z0) / dx
 
 
-def check_spindle(state: State, statement: Statement, lead: float) -> None:
+def check_thread_spindle(state: State, statement: Statement, lead: float) -> None:
     """Raise ProgramError if the spindle is stopped, under G96, or too fast for this lead in mm."""
     modal = state.modal
     if not modal.spindle or not state.rpm:
@@ -146,8 +154,8 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
         raise _refused(statement, "g95-spindle-stopped", text, "Start the spindle with S and M3 or M4.")
     if modal.css:
         text = "G96 is active, but a thread needs the same spindle speed from the first pass to the last."
-        word = statement.g.get(FEED_AND_SPEED) or statement.g.get(MOTION)
-        raise statement.refuse(word, "thread-under-css", text, "Write G97 with S before this block.")
+        word = statement.g_words.get(FEED_TYPE_GROUP) or statement.g_words.get(MOTION_GROUP)
+        raise statement.make_error(word, "thread-under-css", text, "Write G97 with S before this block.")
     speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown, limit = speed * 60.0, most * 60.0
@@ -178,11 +186,11 @@ def _continues(state: State, statement: Statement, travel: AxisTravel, lead: flo
         text = "the previous block moved out of the thread and ended the thread chain."
         raise _refused(statement, "thread-chain", text, "End the thread chain with G0.")
     leads_out = abs(way_x) >= _STEEP * abs(way_z) and abs(lead - state.end_lead) < _SAME and not last.growth
-    return not leads_out or state.motion is not Motion.THREAD
+    return not leads_out or state.motion is not MotionKind.THREAD
 
 
 def _refused(
     statement: Statement, code: int | str, text: str, hint: str, /, **values: object
 ) -> ProgramError:
-    word: Word | None = statement.g.get(MOTION) or next(iter(statement.words.values()), None)
-    return statement.refuse(word, code, text, hint, **values)
+    word: Word | None = statement.g_words.get(MOTION_GROUP) or next(iter(statement.words.values()), None)
+    return statement.make_error(word, code, text, hint, **values)

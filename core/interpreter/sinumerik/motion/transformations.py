@@ -5,90 +5,98 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from core.geometry.virtual_mill import Face, Side
+from core.geometry.virtual_mill import FacePlane, SidePlane
 from core.interpreter.shared.actions import SpindleLock
-from core.interpreter.shared.diagnostic_log import Log
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.sinumerik.motion.transformed_plane import Transformation
-from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, State
+from core.interpreter.sinumerik.motion.transformed_plane import ActiveTransformation
+from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.sinumerik.sinumerik_words import PLACES, Word
-from core.language.sinumerik.word_table import TRANSFORMATION
+from core.language.sinumerik.sinumerik_words import POSITION_WORDS, Word
+from core.language.sinumerik.word_table import TRANSFORMATION_GROUP
 from core.message import Message
 
-COMPENSATED = 14400
+COMPENSATION_ACTIVE = 14400
 """Alarm: radius compensation is on where a transformation begins or ends."""
-NOT_THERE = 14401
+TRANSFORMATION_MISSING = 14401
 """Alarm: the transformation is not there."""
 _SAME = 1e-9
 
 
-def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
+def switch_transformation(state: State, log: DiagnosticLog, statement: Statement) -> Iterator[Block]:
     """Yield the blocks of TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError if it is not allowed."""
-    word = statement.g[TRANSFORMATION]
-    if (PLACES & statement.words.keys()) or statement.sets or statement.m:
+    word = statement.g_words[TRANSFORMATION_GROUP]
+    if (POSITION_WORDS & statement.words.keys()) or statement.assignments or statement.m_words:
         text: str = Message("{word} must be in a separate block.", word=word.text)
-        raise statement.refuse(word, "own-block", text, "Split the block into two or more blocks.")
-    if state.modal.nose_comp != 40:
+        raise statement.make_error(word, "own-block", text, "Split the block into two or more blocks.")
+    if state.modal.compensation_code != 40:
         text = Message(
-            "{what} is not allowed while G{state} is active.", what=word.text, state=state.modal.nose_comp
+            "{what} is not allowed while G{state} is active.",
+            what=word.text,
+            state=state.modal.compensation_code,
         )
-        raise statement.refuse(word, COMPENSATED, text, "Write G40 and a move before this block.")
+        raise statement.make_error(word, COMPENSATION_ACTIVE, text, "Write G40 and a move before this block.")
     if word.name == "TRAFOOF":
-        _leave(state)
+        _end_transformation(state)
         return
     frame = _frame(state, statement, word)
     _check_machine(state, statement, word)
-    if not state.modal.c_locked and state.setup.limits.spindle_is_c:
-        state.adopt(state.modal._replace(c_locked=True))
+    if not state.modal.c_locked and state.setup.limits.is_spindle_c_axis:
+        state.set_modal(state.modal._replace(c_locked=True))
         yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
-    _leave(state)
+    _end_transformation(state)
     if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
         state.told.add("DIAMON")
         text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
-        log.add(statement.warning(word, "transmit-diameter", text, "Write DIAMOF before this block."))
-    state.transformation = Transformation(state, log, frame)
+        log.add(statement.make_warning(word, "transmit-diameter", text, "Write DIAMOF before this block."))
+    state.transformation = ActiveTransformation(state, log, frame)
 
 
-def _leave(state: State) -> None:
+def _end_transformation(state: State) -> None:
     """Turn the transformation off and reset the programmed frame.
 
     This also applies before a new transformation.
     """
     state.transformation = None
-    state.programmed = NO_FRAME
-    state.pole, state.polar, state.direction = (0.0, 0.0), None, None
+    state.programmed_frame = IDENTITY_FRAME
+    state.pole, state.last_polar_point, state.direction = (0.0, 0.0), None, None
     state.derive_offsets()
     if state.modal.mill is not None:
-        state.adopt(state.modal._replace(mill=None))
+        state.set_modal(state.modal._replace(mill=None))
 
 
 def _check_machine(state: State, statement: Statement, word: Word) -> None:
     modal, limits = state.modal, state.setup.limits
-    if limits.third_axis == "Y":
+    if limits.third_axis_name == "Y":
         text = Message(
             "{word} creates a Y axis from X and the spindle, but the third axis of this machine is Y.",
             word=word.text,
         )
-        raise statement.refuse(word, NOT_THERE, text, "Program the part with the Y axis of this machine.")
+        raise statement.make_error(
+            word, TRANSFORMATION_MISSING, text, "Program the part with the Y axis of this machine."
+        )
     if not limits.c_enabled:
         text = Message("{word} rotates the part with C, but this machine has no third axis.", word=word.text)
-        raise statement.refuse(word, NOT_THERE, text, "Select a machine file that has a C axis.")
-    if limits.c_linear:
+        raise statement.make_error(
+            word, TRANSFORMATION_MISSING, text, "Select a machine file that has a C axis."
+        )
+    if limits.is_c_linear:
         text = Message(
             "{word} rotates the part with C, but the third axis of this machine is linear.", word=word.text
         )
-        raise statement.refuse(word, NOT_THERE, text, "Select a machine file that has a C axis.")
+        raise statement.make_error(
+            word, TRANSFORMATION_MISSING, text, "Select a machine file that has a C axis."
+        )
     if modal.spindle:
         text = Message("{word}: the spindle is turning, but it must be locked as the C axis.", word=word.text)
-        raise statement.refuse(word, "transformation", text, "Write M5 or SPOS=0 before this block.")
+        raise statement.make_error(word, "transformation", text, "Write M5 or SPOS=0 before this block.")
     if modal.settable_x:
         text = Message(
             "{word}: G{settable} shifts X, but the part rotates about X0.",
             word=word.text,
             settable=modal.settable,
         )
-        raise statement.refuse(
+        raise statement.make_error(
             word,
             "transformation",
             text,
@@ -96,10 +104,13 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
         )
 
 
-def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
+def _frame(state: State, statement: Statement, word: Word) -> FacePlane | SidePlane:
     """Return the frame of the word for the present side of the tool, relative to the spindle axis."""
-    refuse = partial(statement.refuse, word)
-    values = [0.0 if each.formula is None else state.worth(each.formula, refuse) for each in word.arguments]
+    refuse = partial(statement.make_error, word)
+    values = [
+        0.0 if each.formula is None else state.evaluate_formula(each.formula, refuse)
+        for each in word.arguments
+    ]
     sets = values[1:] if word.name == "TRACYL" else values
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
         text: str = Message(
@@ -107,9 +118,9 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
             "set, without groove walls, is available.",
             word=word.text,
         )
-        raise statement.refuse(
+        raise statement.make_error(
             word,
-            NOT_THERE,
+            TRANSFORMATION_MISSING,
             text,
             Message(
                 "Write {word} without a data set number or groove walls, and program the groove "
@@ -117,11 +128,13 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
                 word=word.name,
             ),
         )
-    far = state.x - state.modal.base_x > -_SAME
+    far = state.x - state.modal.drawing_zero_x > -_SAME
     if word.name == "TRANSMIT":
-        return Face(0.0, far=far)
+        return FacePlane(0.0, is_far_side=far)
     diameter = values[0] * (1.0 if state.modal.metric else 25.4) if values else 0.0
     if diameter <= 0.0:
         text = "TRACYL needs the diameter on which Y is measured."
-        raise statement.refuse(word, NOT_THERE, text, "Write the diameter, as in TRACYL(40).")
-    return Side(0.0, 0.0, diameter, far=far)
+        raise statement.make_error(
+            word, TRANSFORMATION_MISSING, text, "Write the diameter, as in TRACYL(40)."
+        )
+    return SidePlane(0.0, 0.0, diameter, is_far_side=far)

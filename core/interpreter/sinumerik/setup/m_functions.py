@@ -4,31 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.interpreter.shared.actions import Collet, Coolant, Output
+from core.interpreter.shared.actions import ColletSwitch, CoolantSwitch, OutputSwitch
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.machine_requirements import BUILDERS_M, Need, how_bound
-from core.interpreter.sinumerik.setup.modes_and_offsets import tell_idle
+from core.interpreter.shared.machine_requirements import (
+    BUILDER_M_PREFIX,
+    MachineRequirement,
+    format_binding_lines,
+)
+from core.interpreter.sinumerik.setup.modes_and_offsets import note_ineffective
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
-from core.language.sinumerik.word_table import IDLE, M_FUNCTIONS
+from core.language.sinumerik.word_table import INEFFECTIVE_WORDS, M_FUNCTIONS
 from core.message import Message
 
-COLLET = "collet"  # the output of the chuck for any M code of the builder
-_OF_ISO = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call and end subprograms
+COLLET_OUTPUT = "collet"  # the output of the chuck for any M code of the builder
+_ISO_CODES = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call and end subprograms
 
 
-def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
-    """Check the M functions of a block, and add builder functions that this machine lacks to ``lacking``.
+def check_m_functions(
+    state: State, statement: Statement, missing_functions: list[MachineRequirement]
+) -> None:
+    """Check the M functions of a block, and add builder functions that this machine lacks to
+    ``missing_functions``.
 
     The original control passes an unknown code to the builder's PLC without an alarm. Raises ProgramError for
     a code that the machine file does not enable.
     """
     limits = state.setup.limits
-    for code, word in statement.m.items():
-        if code in limits.m_ignored:
-            tell_idle(
+    for code, word in statement.m_words.items():
+        if code in limits.ignored_m_codes:
+            note_ineffective(
                 state,
                 statement,
                 word,
@@ -36,77 +43,83 @@ def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
                 "the machine file contains ignored = true for this M code",
             )
         elif code in M_FUNCTIONS:
-            tell_idle(state, statement, word, f"M{code}", _idle(state, code))
+            note_ineffective(state, statement, word, f"M{code}", _idle(state, code))
         elif code in limits.m_outputs:
             _check_chuck(state, statement, word, *limits.m_outputs[code])
-        elif code in limits.m_disabled or code in _OF_ISO:
+        elif code in limits.disabled_m_codes or code in _ISO_CODES:
             raise _refused(state, statement, code, word)
         else:
-            lacking.append(Need(f"{BUILDERS_M}{code}", statement.line.number))
-            _tell_unanswered(state, statement, code, word)
+            missing_functions.append(MachineRequirement(f"{BUILDER_M_PREFIX}{code}", statement.line.number))
+            _warn_missing_function(state, statement, code, word)
 
 
 def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: bool) -> None:
     """Raise ProgramError if a code opens the chuck while the spindle turns, as for M13 in OmniTurn."""
-    turns = state.modal.spindle and 5 not in statement.m
-    if name == COLLET and not on and turns and not state.setup.limits.unclamp_while_turning:
+    turns = state.modal.spindle and 5 not in statement.m_words
+    if name == COLLET_OUTPUT and not on and turns and not state.setup.limits.can_unclamp_while_turning:
         text = Message("{word} cannot open the chuck while the spindle turns.", word=word.text)
-        raise statement.refuse(word, "unclamp-turning", text, "Write M5 before this block.")
+        raise statement.make_error(word, "unclamp-turning", text, "Write M5 before this block.")
 
 
 def _idle(state: State, code: int) -> str:
     if code == 6 and 6 not in state.setup.limits.m_outputs:
         return "T changes the tool automatically on this machine"
-    return IDLE.get(f"M{code}", "")
+    return INEFFECTIVE_WORDS.get(f"M{code}", "")
 
 
 def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:
-    if code in state.setup.limits.m_disabled:
+    if code in state.setup.limits.disabled_m_codes:
         text = Message("M{code} is defined but not enabled in the machine file.", code=code)
-        return statement.refuse(
+        return statement.make_error(
             word, "m-disabled", text, Message("Set enabled = true for {code} under [m_codes].", code=code)
         )
     text = Message("M{code} belongs to the ISO dialect of this control.", code=code)
-    return statement.refuse(word, "m-unknown", text, "Call a subprogram by its name, and end it with M17.")
+    return statement.make_error(
+        word, "m-unknown", text, "Call a subprogram by its name, and end it with M17."
+    )
 
 
-def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) -> None:
+def _warn_missing_function(state: State, statement: Statement, code: int, word: Word) -> None:
     """Warn once that this machine lacks a builder function, so that it does not start."""
     if f"M{code}" in state.told:
         return
     state.told.add(f"M{code}")
     what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
     text = Message("{what}, so the machine will not start.", what=what)
-    hint = how_bound(code)
-    state.log.add(statement.warning(word, "m-unanswered", text, Message("{hint}.", hint=hint.as_sentence())))
+    hint = format_binding_lines(code)
+    state.log.add(
+        statement.make_warning(
+            word, "m-unanswered", text, Message("{hint}.", hint=hint.capitalize_first_letter())
+        )
+    )
 
 
-def functions_before(state: State, statement: Statement) -> Iterator[Block]:
+def execute_before_motion(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the blocks that switch coolant and outputs on, before the motion."""
     yield from _outputs(state, statement, on=True)
     yield from _coolant(state, statement, {7, 8})
 
 
-def functions_after(state: State, statement: Statement) -> Iterator[Block]:
+def execute_after_motion(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the blocks that switch coolant and outputs off, after the motion."""
     yield from _coolant(state, statement, {9})
     yield from _outputs(state, statement, on=False)
 
 
 def _outputs(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
-    for code in statement.m:
+    for code in statement.m_words:
         name, wanted = state.setup.limits.m_outputs.get(code, ("", not on))
-        if name == COLLET and wanted is on:
-            state.adopt(state.modal._replace(collet_closed=on))
-            yield state.action(statement.line.number, f"M{code}", Collet(closed=on))
+        if name == COLLET_OUTPUT and wanted is on:
+            state.set_modal(state.modal._replace(collet_closed=on))
+            yield state.action(statement.line.number, f"M{code}", ColletSwitch(closed=on))
         elif name and wanted is on:
             outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
-            state.adopt(state.modal._replace(outputs=outputs))
-            yield state.action(statement.line.number, f"M{code}", Output(name, on))
+            state.set_modal(state.modal._replace(outputs=outputs))
+            yield state.action(statement.line.number, f"M{code}", OutputSwitch(name, on))
 
 
 def _coolant(state: State, statement: Statement, codes: set[int]) -> Iterator[Block]:
-    code = next((code for code in sorted(codes) if code in statement.m), None)
+    code = next((code for code in sorted(codes) if code in statement.m_words), None)
     if code is not None:
-        state.adopt(state.modal._replace(coolant=code != 9))
-        yield state.action(statement.line.number, f"M{code}", Coolant(code != 9))
+        state.set_modal(state.modal._replace(coolant=code != 9))
+        yield state.action(statement.line.number, f"M{code}", CoolantSwitch(code != 9))

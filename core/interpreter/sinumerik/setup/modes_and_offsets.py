@@ -4,86 +4,86 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, NO_OFFSET, Motion, State
+from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, ZERO_SETTABLE_OFFSET, MotionKind, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import Severity
 from core.language.sinumerik import word_table as table
-from core.language.sinumerik.sinumerik_words import Form, Word
+from core.language.sinumerik.sinumerik_words import PositionForm, Word
 from core.message import Message
 
-_NAMED_MOTION = {"CIP": Motion.THROUGH, "CT": Motion.TANGENT}
+_NAMED_MOTION = {"CIP": MotionKind.ARC_BY_POINT, "CT": MotionKind.TANGENTIAL_ARC}
 _FIFTH = {505: 58, 506: 59}  # the settable offsets that these codes select
 
 
-def settable_offset(state: State, statement: Statement) -> None:
+def activate_settable_offset(state: State, statement: Statement) -> None:
     """Activate the settable offset of G54 to G59, G505 or G506; G500 turns it off."""
-    code = statement.code(table.SETTABLE)
+    code = statement.get_g_code(table.SETTABLE_OFFSET_GROUP)
     if code is None:
         return
     code = _FIFTH.get(code, code)
-    state.settable = state.setup.zero.get(code, NO_OFFSET) if code != 500 else NO_OFFSET
-    state.adopt(state.modal._replace(settable=0 if code == 500 else code))
+    state.settable = state.setup.zero.get(code, ZERO_SETTABLE_OFFSET) if code != 500 else ZERO_SETTABLE_OFFSET
+    state.set_modal(state.modal._replace(settable=0 if code == 500 else code))
     state.derive_offsets()
 
 
-def programmed_frame(state: State, statement: Statement) -> None:
+def execute_frame(state: State, statement: Statement) -> None:
     """Execute TRANS, ROT, SCALE and MIRROR, which replace the frame, or their A forms, which add to it.
 
     Without axes, they reset the frame. Raises ProgramError for invalid words.
     """
-    key = statement.frame_key
+    key = statement.frame_word
     if key is None:
         return
-    check_c(state, statement)
+    check_c_word(state, statement)
     name = key.name.removeprefix("A")
     if name == "ROT":
         _refuse_axes(statement, key)
     elif word := statement.words.get("RPL"):
-        raise statement.refuse(
+        raise statement.make_error(
             word,
             "word-unused",
             Message("{word} can be used only with ROT.", word=word.text),
             "Remove this text from the program.",
         )
-    frame = state.programmed if key.name[0] == "A" else NO_FRAME
+    frame = state.programmed_frame if key.name[0] == "A" else IDENTITY_FRAME
     if name == "TRANS":
-        frame = frame.shifted(*(_shift(state, statement, axis) for axis in "XZC"))
+        frame = frame.shift(*(_shift(state, statement, axis) for axis in "XZC"))
     elif name == "ROT":
         angle = statement.words.get("RPL")
-        frame = frame.rotated(0.0 if angle is None else state.number(statement, angle))
+        frame = frame.rotate(0.0 if angle is None else state.number(statement, angle))
     elif name == "SCALE":
-        frame = frame.scaled(_factor(state, statement, "X"), _factor(state, statement, "Z"))
+        frame = frame.scale(_factor(state, statement, "X"), _factor(state, statement, "Z"))
     else:
-        frame = frame.scaled(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
+        frame = frame.scale(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
     if name in {"SCALE", "MIRROR"} and (word := statement.words.get("C")):
-        raise statement.refuse(
+        raise statement.make_error(
             word, "offset-form", Message("{word} can be used only with X and Z.", word=key.name), "Remove C."
         )
-    state.programmed = frame
+    state.programmed_frame = frame
     state.derive_offsets()
 
 
-def leave_offsets(state: State) -> None:
+def reset_offsets(state: State) -> None:
     """Reset the offsets at the end of a program, so that later programs in any language do not use them.
 
     G71 and DIAMON become active, as the next line of MDI expects.
     """
-    state.settable, state.programmed = NO_OFFSET, NO_FRAME
-    state.adopt(state.modal._replace(settable=0, metric=True, diameter=True))
+    state.settable, state.programmed_frame = ZERO_SETTABLE_OFFSET, IDENTITY_FRAME
+    state.set_modal(state.modal._replace(settable=0, metric=True, diameter=True))
     state.derive_offsets()
 
 
-def check_c(state: State, statement: Statement) -> None:
+def check_c_word(state: State, statement: Statement) -> None:
     """Raise ProgramError for a C word if the machine has no third axis."""
     word = statement.words.get("C")
     if word is not None and not state.setup.limits.c_enabled:
         text = "unknown axis: this machine has no third axis."
-        raise statement.refuse(
+        raise statement.make_error(
             word, "unknown-axis", text, "Remove this axis, or select a machine file that has this axis."
         )
 
 
-def check_y(state: State, statement: Statement) -> None:
+def check_y_word(state: State, statement: Statement) -> None:
     """Raise ProgramError for a Y word outside TRANSMIT and TRACYL."""
     word = statement.words.get("Y") or statement.words.get("J")
     if word is None or state.transformation is not None:
@@ -92,18 +92,18 @@ def check_y(state: State, statement: Statement) -> None:
     if word.name == "J":
         text = "J: an arc in G18 uses I and K."
     hint = "Remove this word; TRANSMIT and TRACYL create Y from X and C."
-    raise statement.refuse(word, "not-in-subset", text, hint)
+    raise statement.make_error(word, "not-in-subset", text, hint)
 
 
 def _refuse_axes(statement: Statement, key: Word) -> None:
-    for axis in statement.axes:
+    for axis in statement.axis_names:
         word = statement.words[axis]
         text = Message(
             "{word}: on a lathe, {key} rotates the plane with RPL=, not with axis words.",
             word=word.text,
             key=key.name,
         )
-        raise statement.refuse(word, "offset-form", text, Message("Write {key} RPL=…", key=key.name))
+        raise statement.make_error(word, "offset-form", text, Message("Write {key} RPL=…", key=key.name))
 
 
 def _shift(state: State, statement: Statement, name: str) -> float:
@@ -119,7 +119,7 @@ def _factor(state: State, statement: Statement, name: str) -> float:
     value = 1.0 if word is None else state.number(statement, word)
     if word is not None and not 0.001 <= value <= 1000.0:
         text = Message("{word}: a factor must be between 0.001 and 1000.", word=word.text)
-        raise statement.refuse(
+        raise statement.make_error(
             word, "offset-form", text, "Correct the factor; to reverse an axis, use MIRROR."
         )
     return value
@@ -127,20 +127,20 @@ def _factor(state: State, statement: Statement, name: str) -> float:
 
 def _plain(statement: Statement, name: str) -> Word | None:
     word = statement.words.get(name)
-    if word is not None and word.form is not Form.PLAIN:
+    if word is not None and word.position_form is not PositionForm.PLAIN:
         text = Message("{word}: an offset must be a plain number.", word=word.text)
-        raise statement.refuse(
+        raise statement.make_error(
             word, "offset-form", text, Message("Write {word} with a plain number.", word=word.name)
         )
     return word
 
 
-def modes(state: State, statement: Statement) -> None:
+def execute_modes(state: State, statement: Statement) -> None:
     """Set the modal functions of a block. Raises ProgramError."""
     modal = state.modal
     _motion_and_plane(state, statement)
-    metric, absolute = statement.code(table.UNIT), statement.code(table.ABSOLUTE)
-    if transverse := statement.key(table.TRANSVERSE):
+    metric, absolute = statement.get_g_code(table.UNIT_GROUP), statement.get_g_code(table.DISTANCE_MODE_GROUP)
+    if transverse := statement.get_named_function(table.DIAMETER_GROUP):
         modal = modal._replace(diameter=transverse != "DIAMOF")
         state.distance_is_radius = transverse == "DIAM90"
     if metric is not None:
@@ -148,82 +148,84 @@ def modes(state: State, statement: Statement) -> None:
         state.feed_in_inches = metric == 700
     if absolute is not None:
         modal = modal._replace(absolute=absolute == 90)
-    if modal.rapid != (state.motion is Motion.RAPID):
-        modal = modal._replace(rapid=state.motion is Motion.RAPID)
-    state.adopt(modal)
+    if modal.rapid != (state.motion is MotionKind.RAPID):
+        modal = modal._replace(rapid=state.motion is MotionKind.RAPID)
+    state.set_modal(modal)
     _path_modes(state, statement)
-    settable_offset(state, statement)
+    activate_settable_offset(state, statement)
 
 
 def _motion_and_plane(state: State, statement: Statement) -> None:
-    motion, plane = statement.code(table.MOTION), statement.code(table.PLANE)
+    motion, plane = statement.get_g_code(table.MOTION_GROUP), statement.get_g_code(table.PLANE_GROUP)
     if motion is not None:
-        state.motion = Motion(motion)
-    elif name := statement.key(table.MOTION):
+        state.motion = MotionKind(motion)
+    elif name := statement.get_named_function(table.MOTION_GROUP):
         state.motion = _NAMED_MOTION[name]
-    if plane is not None and plane != state.plane and state.modal.nose_comp != 40:
+    if plane is not None and plane != state.plane and state.modal.compensation_code != 40:
         text = Message(
             "G{plane} cannot change the plane while G{nose_comp} is active.",
             plane=plane,
-            nose_comp=state.modal.nose_comp,
+            nose_comp=state.modal.compensation_code,
         )
-        raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, "Write G40 before this line.")
+        raise statement.make_error(
+            statement.g_words[table.PLANE_GROUP], "comp-plane", text, "Write G40 before this line."
+        )
     state.plane = plane or state.plane
 
 
 def _path_modes(state: State, statement: Statement) -> None:
     """Set the modes of exact stop, outside corners, approach and working area."""
-    exact, corner = statement.code(table.EXACT), statement.code(table.CORNER)
+    exact, corner = statement.get_g_code(table.EXACT_STOP_GROUP), statement.get_g_code(table.CORNER_GROUP)
     if exact is not None:
         state.exact = exact == 60
     if corner is not None:
         state.rounded = corner == 450
-    if approach := statement.key(table.APPROACH):
+    if approach := statement.get_named_function(table.APPROACH_GROUP):
         state.round_ends = approach == "KONT"
-    if (code := statement.code(table.COMPENSATION)) is not None:
-        plane = 18 if state.transformation is None else state.transformation.plane
+    if (code := statement.get_g_code(table.COMPENSATION_GROUP)) is not None:
+        plane = 18 if state.transformation is None else state.transformation.plane_code
         if code != 40 and state.plane != plane:
             of = "X and Z" if state.transformation is None else state.transformation.name
             word, text = (
-                statement.g[table.COMPENSATION],
+                statement.g_words[table.COMPENSATION_GROUP],
                 (Message("radius compensation in {total} needs G{plane}.", total=of, plane=plane)),
             )
-            raise statement.refuse(
+            raise statement.make_error(
                 word, "comp-plane", text, Message("Write G{plane} before this block.", plane=plane)
             )
-        state.adopt(state.modal._replace(nose_comp=code))
-    if area := statement.key(table.AREA):
-        state.area_on = area == "WALIMON"
+        state.set_modal(state.modal._replace(compensation_code=code))
+    if area := statement.get_named_function(table.WORKING_AREA_GROUP):
+        state.is_working_area_active = area == "WALIMON"
 
 
-def tell_idle_words(state: State, statement: Statement) -> None:
+def note_ineffective_words(state: State, statement: Statement) -> None:
     """Note once each word without effect."""
-    for word in statement.g.values():
+    for word in statement.g_words.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
-        tell_idle(state, statement, word, name, table.IDLE.get(name, ""))
+        note_ineffective(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
     for name, word in statement.words.items():
-        tell_idle(state, statement, word, name, table.IDLE.get(name, ""))
+        note_ineffective(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
 
 
-def tell_idle(state: State, statement: Statement, word: Word, name: str, why: str) -> None:
-    """Note once that a function has no effect, with the reason ``why``."""
-    if why and name not in state.told:
+def note_ineffective(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
+    """Note once that a function has no effect, with the reason ``reason``."""
+    if reason and name not in state.told:
         state.told.add(name)
-        found = statement.warning(
-            word, "no-effect", Message("{name} has no effect because {why}.", name=name, why=why), ""
+        found = statement.make_warning(
+            word, "no-effect", Message("{name} has no effect because {why}.", name=name, why=reason), ""
         )
         state.log.add(replace(found, severity=Severity.NOTE))
 
 
-def frame_block(state: State, statement: Statement) -> bool:
+def execute_frame_block(state: State, statement: Statement) -> bool:
     """Execute G110 to G112, G25 and G26; return whether the block is one of them. Raises ProgramError."""
-    word = statement.g.get(table.BLOCKWISE)
-    code = statement.code(table.BLOCKWISE)
+    word = statement.g_words.get(table.NON_MODAL_GROUP)
+    code = statement.get_g_code(table.NON_MODAL_GROUP)
     if word is None or code not in {110, 111, 112, 25, 26}:
         return False
     if "C" in statement.words:
         text = Message("{word} can be used only with X and Z.", word=word.text)
-        raise statement.refuse(statement.words["C"], "own-block", text, "Remove C.")
+        raise statement.make_error(statement.words["C"], "own-block", text, "Remove C.")
     if code in {25, 26}:
         _limits(state, statement, upper=code == 26)
     else:
@@ -237,7 +239,7 @@ def _pole(state: State, statement: Statement, code: int) -> None:
         base = state.pole
     elif code == 110:
         x, z = state.x - state.modal.offset_x, state.z - state.modal.offset_z
-        base = state.programmed.unturned(x, z)
+        base = state.programmed_frame.invert_distance(x, z)
     state.pole = base[0] + _place(state, statement, "X"), base[1] + _place(state, statement, "Z")
 
 
@@ -255,9 +257,9 @@ def _limits(state: State, statement: Statement, *, upper: bool) -> None:
             state.area[name, upper] = _place(state, statement, name)
 
 
-def check_area(state: State, statement: Statement, x: float, z: float) -> None:
+def check_working_area(state: State, statement: Statement, x: float, z: float) -> None:
     """Raise ProgramError if the tip leaves the working area of G25 and G26; ``x z`` are machine mm."""
-    if not state.area_on or not state.area:
+    if not state.is_working_area_active or not state.area:
         return
     modal = state.modal
     edge = (0.0, 0.0) if modal.edge == 0 else (modal.tool_x, modal.tool_z)
@@ -272,4 +274,4 @@ def check_area(state: State, statement: Statement, x: float, z: float) -> None:
                     limit=f"{limit:g}",
                 )
                 hint = "Correct the move, or write WALIMOF."
-                raise statement.refuse(statement.words.get(name), "working-area", text, hint)
+                raise statement.make_error(statement.words.get(name), "working-area", text, hint)

@@ -13,56 +13,56 @@ class ProgrammedFrame(NamedTuple):
     other offsets.
     """
 
-    x: float = 0.0
-    z: float = 0.0
-    c: float = 0.0
+    shift_x: float = 0.0
+    shift_z: float = 0.0
+    shift_c: float = 0.0
     xx: float = 1.0
     xz: float = 0.0
     zx: float = 0.0
     zz: float = 1.0
 
     @property
-    def plain(self) -> bool:
+    def is_shift_only(self) -> bool:
         """Whether the frame only shifts."""
         return (self.xx, self.xz, self.zx, self.zz) == (1.0, 0.0, 0.0, 1.0)
 
     @property
-    def mirrored(self) -> bool:
+    def is_mirrored(self) -> bool:
         """Whether the frame reverses the direction of arcs."""
         return self.xx * self.zz - self.xz * self.zx < 0.0
 
     @property
-    def uniform(self) -> bool:
+    def is_uniform(self) -> bool:
         """Whether both axes have the same factor, so that circles remain circles."""
         across = self.xx * self.xx + self.zx * self.zx
         along = self.xz * self.xz + self.zz * self.zz
         return abs(across - along) < 1e-9 * along
 
-    def turned(self, x: float, z: float) -> tuple[float, float]:
+    def transform_distance(self, x: float, z: float) -> tuple[float, float]:
         """Return a distance of the program as a machine distance."""
         return self.xx * x + self.xz * z, self.zx * x + self.zz * z
 
-    def unturned(self, x: float, z: float) -> tuple[float, float]:
+    def invert_distance(self, x: float, z: float) -> tuple[float, float]:
         """Return a machine distance as a distance of the program."""
         whole = self.xx * self.zz - self.xz * self.zx
         return (self.zz * x - self.xz * z) / whole, (self.xx * z - self.zx * x) / whole
 
     @property
-    def factor(self) -> float:
+    def scale_factor(self) -> float:
         """Scale factor of lengths in a uniform frame."""
         return sqrt(abs(self.xx * self.zz - self.xz * self.zx))
 
-    def shifted(self, x: float, z: float, c: float) -> ProgrammedFrame:
+    def shift(self, x: float, z: float, c: float) -> ProgrammedFrame:
         """Return the frame with its zero shifted by a distance of the program."""
-        dx, dz = self.turned(x, z)
-        return self._replace(x=self.x + dx, z=self.z + dz, c=self.c + c)
+        dx, dz = self.transform_distance(x, z)
+        return self._replace(shift_x=self.shift_x + dx, shift_z=self.shift_z + dz, shift_c=self.shift_c + c)
 
-    def rotated(self, degrees: float) -> ProgrammedFrame:
+    def rotate(self, degrees: float) -> ProgrammedFrame:
         """Return the frame rotated further, from Z toward X."""
         a = radians(degrees)
         return self._by(cos(a), sin(a), -sin(a), cos(a))
 
-    def scaled(self, x: float, z: float) -> ProgrammedFrame:
+    def scale(self, x: float, z: float) -> ProgrammedFrame:
         """Return the frame with further factors; negative factors mirror."""
         return self._by(x, 0.0, 0.0, z)
 

@@ -5,63 +5,72 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from math import copysign
 
-from core.interpreter.shared.actions import Dwell, Output, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
-from core.interpreter.shared.elementary_blocks import Block, Kind
-from core.interpreter.shared.units import METRES_PER_MINUTE, MM_PER_INCH
-from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, block_of, turn_of_c
-from core.interpreter.sinumerik.motion.third_axis import WRONG_MODULO, modulo_travel
-from core.interpreter.sinumerik.sinumerik_state import State, positive
+from core.interpreter.shared.actions import (
+    Dwell,
+    OutputSwitch,
+    SpindleLock,
+    SpindlePositioning,
+    SpindleRun,
+    SpindleStop,
+)
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.units import MM_PER_INCH, MM_S_PER_M_MIN
+from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, compute_c_travel, make_travel_block
+from core.interpreter.sinumerik.motion.third_axis import WRONG_MODULO_POSITION, compute_modulo_travel
+from core.interpreter.sinumerik.sinumerik_state import State, check_positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_words import Form, Word
-from core.language.sinumerik.word_table import BLOCKWISE, DWELL, FEED_AND_SPEED
+from core.language.sinumerik.sinumerik_words import PositionForm, Word
+from core.language.sinumerik.word_table import DWELL_GROUP, FEED_TYPE_GROUP, NON_MODAL_GROUP
 from core.message import Message
 
-_FASTEST_SURFACE = 100_000.0  # mm/s; ten times the limit of any tool
-_LONGEST_DWELL = 3600.0  # s
+_MAX_SURFACE_SPEED = 100_000.0  # mm/s; ten times the limit of any tool
+_MAX_DWELL_S = 3600.0  # s
 _AXIS_MODE = 70  # M70
 _TURN = 360.0
 _SURFACE = frozenset({96, 961, 962})
 _FEET = 12.0 * MM_PER_INCH / 60.0  # mm/s per ft/min
 
 
-def turns_spindle(statement: Statement) -> bool:
+def has_spindle_words(statement: Statement) -> bool:
     """Return whether a block has words for the spindle."""
-    return bool(statement.m or _WORDS & statement.words.keys() or FEED_AND_SPEED in statement.g)
+    return bool(statement.m_words or _WORDS & statement.words.keys() or FEED_TYPE_GROUP in statement.g_words)
 
 
 _WORDS = frozenset({"S", "LIMS", "SPOS", "SPOSA", "SETMS"})
 
 
-def spindle_words(state: State, statement: Statement) -> Iterator[Block]:
+def execute_spindle_words(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the spindle blocks of a block, which precede its motion. Raises ProgramError."""
     before = (state.modal.spindle, state.rpm, state.css)
     _modes(state, statement)
     _limit(state, statement)
-    if statement.code(BLOCKWISE) not in {25, 26}:
+    if statement.get_g_code(NON_MODAL_GROUP) not in {25, 26}:
         _speed(state, statement)
-    if 5 in statement.m:
-        state.adopt(state.modal._replace(spindle=0, c_locked=False, oriented=None))
+    if 5 in statement.m_words:
+        state.set_modal(state.modal._replace(spindle=0, c_locked=False, oriented=None))
         yield state.action(statement.line.number, "M5", SpindleStop())
     elif word := _positions(statement):
-        yield from _position(state, statement, word)
+        yield from _position_spindle(state, statement, word)
     else:
         yield from _run(state, statement, before)
 
 
 def _run(state: State, statement: Statement, before: tuple[int, float, float | None]) -> Iterator[Block]:
-    direction = next((m for m in (3, 4) if m in statement.m), 0)
+    direction = next((m for m in (3, 4) if m in statement.m_words), 0)
     if direction:
-        _check_start(state, statement, statement.m[direction])
-        state.adopt(state.modal._replace(spindle=1 if direction == 3 else -1, c_locked=False, oriented=None))
+        _check_start(state, statement, statement.m_words[direction])
+        state.set_modal(
+            state.modal._replace(spindle=1 if direction == 3 else -1, c_locked=False, oriented=None)
+        )
     if direction or (state.modal.spindle and before != (state.modal.spindle, state.rpm, state.css)):
         yield state.action(statement.line.number, _text(statement), SpindleRun(state.rpm, state.css))
 
 
 def _text(statement: Statement) -> str:
-    words = [statement.g.get(FEED_AND_SPEED), statement.words.get("S"), statement.words.get("LIMS")]
+    words = [statement.g_words.get(FEED_TYPE_GROUP), statement.words.get("S"), statement.words.get("LIMS")]
     return " ".join(
-        word.text for word in (*words, statement.m.get(3), statement.m.get(4)) if word is not None
+        word.text for word in (*words, statement.m_words.get(3), statement.m_words.get(4)) if word is not None
     )
 
 
@@ -69,60 +78,60 @@ def _text(statement: Statement) -> str:
 
 
 def _positions(statement: Statement) -> Word | None:
-    found = [statement.m[code] for code in (19, 70) if code in statement.m]
+    found = [statement.m_words[code] for code in (19, 70) if code in statement.m_words]
     found += [statement.words[name] for name in ("SPOS", "SPOSA") if name in statement.words]
     return found[0] if found else None
 
 
-def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]:
+def _position_spindle(state: State, statement: Statement, word: Word) -> Iterator[Block]:
     """Yield the blocks that stop the spindle and orient it, by its drive or as C. Raises ProgramError."""
 
     def refuse(text: str, hint: str) -> ProgramError:
-        return statement.refuse(
+        return statement.make_error(
             word, "spindle-position", Message("{word}: {what}", word=word.text, what=text), hint
         )
 
     if word.name == "M" and word.value == _AXIS_MODE:
-        demand_spindle_as_c(state, refuse)
-        state.adopt(state.modal._replace(spindle=0, c_locked=True))
+        check_spindle_is_c(state, refuse)
+        state.set_modal(state.modal._replace(spindle=0, c_locked=True))
         yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
         return
-    demand_position(state, refuse)
-    if oriented_by_drive(state):
+    check_can_position(state, refuse)
+    if is_oriented_by_drive(state):
         action = _orient(state, statement, word)
-        state.adopt(state.modal._replace(spindle=0, oriented=action.angle))
+        state.set_modal(state.modal._replace(spindle=0, oriented=action.angle))
         yield state.action(statement.line.number, word.text, action)
         return
     limits = state.setup.limits
-    state.adopt(state.modal._replace(spindle=0, c_locked=True))
+    state.set_modal(state.modal._replace(spindle=0, c_locked=True))
     yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
     turn = _spindle_turn(state, statement, word)
     if turn:
         x, z, c, modal = state.x, state.z, state.c, state.modal
         travel = AxisTravel(x, z, c, x, z, c + turn, modal, modal.offset_x, modal.offset_z)
-        made = block_of(state, statement, travel, Kind.ROTATE, limits.speeds[2])
-        made.per_rev, made.rpm, made.text = False, copysign(limits.speeds[2] / 6.0, turn), word.text
+        made = make_travel_block(state, statement, travel, BlockKind.ROTATE, limits.max_axis_speeds[2])
+        made.per_rev, made.rpm, made.text = False, copysign(limits.max_axis_speeds[2] / 6.0, turn), word.text
         yield made
 
 
-def oriented_by_drive(state: State) -> bool:
+def is_oriented_by_drive(state: State) -> bool:
     """Return whether the spindle drive orients the spindle, because the spindle is not the C axis."""
     limits = state.setup.limits
-    return limits.spindle_oriented and not (limits.c_enabled and limits.spindle_is_c)
+    return limits.can_orient_spindle and not (limits.c_enabled and limits.is_spindle_c_axis)
 
 
-def demand_position(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
-    """Raise the error of ``refuse`` (text and hint) if the spindle cannot be positioned at an angle."""
-    if not oriented_by_drive(state):
-        demand_spindle_as_c(state, refuse)
+def check_can_position(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
+    """Raise the error of ``make_error`` (text and hint) if the spindle cannot be positioned at an angle."""
+    if not is_oriented_by_drive(state):
+        check_spindle_is_c(state, make_error)
 
 
-def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
-    """Raise the error of ``refuse`` (text and hint) if the spindle is not the C axis."""
+def check_spindle_is_c(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
+    """Raise the error of ``make_error`` (text and hint) if the spindle is not the C axis."""
     limits = state.setup.limits
-    if limits.c_enabled and limits.spindle_is_c:
+    if limits.c_enabled and limits.is_spindle_c_axis:
         return
-    if limits.spindle_oriented:
+    if limits.can_orient_spindle:
         text = (
             "the spindle of this machine is not a C axis because C has a separate drive; the spindle "
             "drive can only turn the spindle to an angle."
@@ -130,7 +139,7 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
             else "the spindle of this machine is not a C axis because the machine has no C axis; the "
             "spindle drive can only turn the spindle to an angle."
         )
-        raise refuse(text, "Select the machine sinumerik-live, whose spindle is the C axis.")
+        raise make_error(text, "Select the machine sinumerik-live, whose spindle is the C axis.")
     text = (
         "the spindle of this machine cannot be oriented because C has a separate drive and the machine "
         "file does not enable orientation by the spindle drive."
@@ -138,45 +147,47 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
         else "the spindle of this machine cannot be oriented because the machine has no C axis and the "
         "machine file does not enable orientation by the spindle drive."
     )
-    raise refuse(
+    raise make_error(
         text,
         "Set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an "
         "angle, or write M5 and index the part with C.",
     )
 
 
-def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
+def _orient(state: State, statement: Statement, word: Word) -> SpindlePositioning:
     """Return angle and direction of M19 and SPOS; the angle is from 0 to below 360 degrees."""
     if word.name == "M":
-        return SpindleOrient(0.0)
-    form, at = word.form, state.modal.oriented
+        return SpindlePositioning(0.0)
+    form, at = word.position_form, state.modal.oriented
     value = state.number(statement, word)
-    if form is Form.IC:
+    if form is PositionForm.IC:
         if at is None:
             text = (
                 "{word} is relative to a spindle angle, but the spindle has not been positioned at an angle."
             )
             hint = "Write SPOS with an angle before this block."
-            raise statement.refuse(word, "spindle-position", text, hint, word=word.text)
+            raise statement.make_error(word, "spindle-position", text, hint, word=word.text)
         text = "{word}: on this drive, a spindle positioning move must be less than one revolution."
         hint = "Enter an angle of less than 360 degrees."
         statement.check(abs(value) < _TURN, word, "spindle-position", text, hint, word=word.text)
-        return SpindleOrient((at + value) % _TURN, int(copysign(1, value)) if value else 0)
+        return SpindlePositioning((at + value) % _TURN, int(copysign(1, value)) if value else 0)
     text = "{word}: {value} is not a valid spindle angle."
     hint = "Enter an angle from 0 to less than 360 degrees."
-    statement.check(0.0 <= value < _TURN, word, WRONG_MODULO, text, hint, word=word.text, value=value)
-    sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
-    if form is Form.AC and at is not None:  # AC never crosses 0
+    statement.check(
+        0.0 <= value < _TURN, word, WRONG_MODULO_POSITION, text, hint, word=word.text, value=value
+    )
+    sense = {PositionForm.ACP: 1, PositionForm.ACN: -1}.get(form, 0)
+    if form is PositionForm.AC and at is not None:  # AC never crosses 0
         sense = int(copysign(1, value - at)) if value != at else 0
-    return SpindleOrient(value, sense)
+    return SpindlePositioning(value, sense)
 
 
-def shortest_turn(state: State, angle: float) -> float:
+def compute_shortest_turn(state: State, angle: float) -> float:
     """Return the signed travel of C to an angle of the program by the shorter distance, in degrees."""
     at = state.c - state.modal.offset_c
-    if not state.setup.limits.c_modulo:
+    if not state.setup.limits.is_c_modulo:
         return angle - at
-    return modulo_travel(Form.DC, angle, at)
+    return compute_modulo_travel(PositionForm.DC, angle, at)
 
 
 def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
@@ -184,96 +195,102 @@ def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
     if word.name == "M":
         word = word._replace(value=0.0, formula=None)
     at = state.c - state.modal.offset_c
-    modulo = state.setup.limits.c_modulo
-    form = word.form if word.form is not Form.PLAIN else Form.DC if modulo else Form.AC
-    return turn_of_c(state, statement, word, form, at)
+    modulo = state.setup.limits.is_c_modulo
+    form = (
+        word.position_form
+        if word.position_form is not PositionForm.PLAIN
+        else PositionForm.DC
+        if modulo
+        else PositionForm.AC
+    )
+    return compute_c_travel(state, statement, word, form, at)
 
 
 # --- G96, G97 and their kin, LIMS, G25, G26
 
 
 def _modes(state: State, statement: Statement) -> None:
-    word, code = statement.g.get(FEED_AND_SPEED), statement.code(FEED_AND_SPEED)
+    word, code = statement.g_words.get(FEED_TYPE_GROUP), statement.get_g_code(FEED_TYPE_GROUP)
     if code in _SURFACE:
         _demand_controlled(state, statement, word)
-        state.adopt(state.modal._replace(css=True))
+        state.set_modal(state.modal._replace(css=True))
     elif code is not None and state.modal.css:
         # G97 retains the present speed. G94 and G95 restore the earlier S.
         rpm = abs(state.rpm) if state.modal.spindle else state.modal.rpm
         rpm = state.modal.rpm or rpm if code in {94, 95} else rpm
-        state.adopt(state.modal._replace(css=False, rpm=rpm))
+        state.set_modal(state.modal._replace(css=False, rpm=rpm))
     if code == 973:
-        state.adopt(state.modal._replace(css_max=None))
+        state.set_modal(state.modal._replace(max_css_rpm=None))
 
 
 def _limit(state: State, statement: Statement) -> None:
     word = statement.words.get("LIMS")
     if word is not None:
         _demand_controlled(state, statement, word)
-        highest = positive(statement, word, state.number(statement, word), "the speed limit")
-        state.adopt(state.modal._replace(css_max=highest))
+        highest = check_positive(statement, word, state.number(statement, word), "the speed limit")
+        state.set_modal(state.modal._replace(max_css_rpm=highest))
     word = statement.words.get("S")
-    code = statement.code(BLOCKWISE)
+    code = statement.get_g_code(NON_MODAL_GROUP)
     if word is None or code not in {25, 26}:
         return
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     if value < 0 or (code == 26 and not value):
         text = "{word} is not a valid speed limit."
-        raise statement.refuse(word, "not-positive", text, "Correct the value.", word=word.text)
+        raise statement.make_error(word, "not-positive", text, "Correct the value.", word=word.text)
     lowest, highest = (value, state.highest) if code == 25 else (state.lowest, value)
     highest = min(highest, state.setup.limits.max_rpm)
     if lowest > highest:
         text = "{word}: the minimum speed {lowest} is above the maximum speed {highest}."
-        raise statement.refuse(
+        raise statement.make_error(
             word, "speed-limits", text, "Correct G25 or G26.", word=word.text, lowest=lowest, highest=highest
         )
     state.lowest, state.highest = lowest, highest
-    state.adopt(state.modal._replace(css_min=lowest))
+    state.set_modal(state.modal._replace(min_css_rpm=lowest))
 
 
 def _speed(state: State, statement: Statement) -> None:
     """Set S: rpm under G97, m/min under G96."""
     word = statement.words.get("S")
-    if word is None or statement.code("dwell") is not None:
+    if word is None or statement.get_g_code("dwell") is not None:
         return
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     text = "{word}: the speed cannot be negative; M3 and M4 set the direction."
     statement.check(value >= 0, word, "speed-sign", text, "Remove the sign.", word=word.text)
     if state.modal.css:
-        speed = value * (METRES_PER_MINUTE if state.modal.metric else _FEET)
-        if speed > _FASTEST_SURFACE:
+        speed = value * (MM_S_PER_M_MIN if state.modal.metric else _FEET)
+        if speed > _MAX_SURFACE_SPEED:
             text = "a surface speed of {word} m/min is too high for any tool."
-            raise statement.refuse(word, "speed-range", text, "Write G97 if S is in rpm.", word=word.text)
-        state.adopt(state.modal._replace(surface_speed=speed))
+            raise statement.make_error(word, "speed-range", text, "Write G97 if S is in rpm.", word=word.text)
+        state.set_modal(state.modal._replace(surface_speed=speed))
         return
     highest = state.setup.limits.max_rpm
-    state.adopt(state.modal._replace(rpm=min(value, highest)))
+    state.set_modal(state.modal._replace(rpm=min(value, highest)))
     text = "{word} is above the spindle maximum of {highest} rpm."
     statement.check(value <= highest, word, "speed-range", text, "Lower S.", word=word.text, highest=highest)
 
 
 def _demand_controlled(state: State, statement: Statement, word: Word | None) -> None:
-    if word is not None and not state.setup.limits.spindle_controlled:
+    if word is not None and not state.setup.limits.is_spindle_controlled:
         text = "{word} needs a controlled spindle, which this machine does not have."
         hint = "Remove this text from the program."
-        raise statement.refuse(word, "no-controlled-spindle", text, hint, word=word.text)
+        raise statement.make_error(word, "no-controlled-spindle", text, hint, word=word.text)
 
 
 def _check_start(state: State, statement: Statement, word: Word) -> None:
     limits = state.setup.limits
-    if not limits.spindle_controlled:
-        state.adopt(state.modal._replace(rpm=limits.max_rpm))  # the spindle has only one speed
+    if not limits.is_spindle_controlled:
+        state.set_modal(state.modal._replace(rpm=limits.max_rpm))  # the spindle has only one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
         text = "{word} starts the spindle, but S is 0 or not programmed."
-        raise statement.refuse(word, "speed-missing", text, "Write S in the block.", word=word.text)
-    if not state.modal.collet_closed and not limits.start_with_collet_open:
+        raise statement.make_error(word, "speed-missing", text, "Write S in the block.", word=word.text)
+    if not state.modal.collet_closed and not limits.can_start_with_collet_open:
         text = "{word} starts the spindle with the collet open."
-        raise statement.refuse(word, "collet-open", text, "Close the collet first.", word=word.text)
+        raise statement.make_error(word, "collet-open", text, "Close the collet first.", word=word.text)
 
 
-def dwell(state: State, statement: Statement) -> Block:
+def make_dwell_block(state: State, statement: Statement) -> Block:
     """Return the block of G4 with F in seconds or S in revolutions; the active F and S do not change.
 
     Raises ProgramError for an invalid time or a stopped spindle.
@@ -283,15 +300,15 @@ def dwell(state: State, statement: Statement) -> Block:
     text = "{word}: a dwell cannot be negative."
     statement.check(value >= 0, word, "dwell-range", text, "Correct the value.", word=word.text)
     seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
-    if seconds > _LONGEST_DWELL:
-        raise statement.refuse(
+    if seconds > _MAX_DWELL_S:
+        raise statement.make_error(
             word,
             "dwell-range",
             "{word} is a dwell of {seconds} s; the maximum is {longest_dwell} s.",
             "Enter F in seconds or S in revolutions.",
             word=word.text,
             seconds=f"{seconds:.0f}",
-            longest_dwell=_LONGEST_DWELL,
+            longest_dwell=_MAX_DWELL_S,
         )
     return state.action(statement.line.number, statement.line.text, Dwell(seconds))
 
@@ -306,40 +323,44 @@ def _turning(state: State, statement: Statement, word: Word) -> float:
     return rpm
 
 
-NUMBER = 2
+LIVE_SPINDLE_NUMBER = 2
 _TURNS = frozenset({3, 4, 5})
 
 
-def live_words(state: State, statement: Statement) -> None:
-    """Move the words of the live tool to ``statement.live``. Raises ProgramError without a live tool."""
-    for word in statement.live:
+def separate_live_words(state: State, statement: Statement) -> None:
+    """Move the words of the live tool to ``statement.live_tool_words``. Raises ProgramError without a live
+    tool.
+    """
+    for word in statement.live_tool_words:
         _demand(state, statement, word)
     masters = [
-        each for each in (*statement.live, statement.words.get("SETMS")) if each and each.name == "SETMS"
+        each
+        for each in (*statement.live_tool_words, statement.words.get("SETMS"))
+        if each and each.name == "SETMS"
     ]
     if masters:
-        state.master = NUMBER if masters[0].spindle == NUMBER else 1
-    if state.master != NUMBER or DWELL in statement.g:
+        state.master = LIVE_SPINDLE_NUMBER if masters[0].spindle_number == LIVE_SPINDLE_NUMBER else 1
+    if state.master != LIVE_SPINDLE_NUMBER or DWELL_GROUP in statement.g_words:
         return
-    if (speed := statement.words.get("S")) and not speed.spindle:
-        statement.live.append(statement.words.pop("S"))
-    for code in _TURNS & statement.m.keys():
-        if not statement.m[code].spindle:
-            statement.live.append(statement.m.pop(code))
+    if (speed := statement.words.get("S")) and not speed.spindle_number:
+        statement.live_tool_words.append(statement.words.pop("S"))
+    for code in _TURNS & statement.m_words.keys():
+        if not statement.m_words[code].spindle_number:
+            statement.live_tool_words.append(statement.m_words.pop(code))
 
 
 def _demand(state: State, statement: Statement, word: Word) -> None:
     text = "{word}: this machine has one spindle and no output for a live tool."
     hint = "Remove this word, or define an output named live under [io.out] in the machine file."
-    statement.check(state.setup.limits.live_output, word, "one-spindle", text, hint, word=word.text)
+    statement.check(state.setup.limits.live_tool_output, word, "one-spindle", text, hint, word=word.text)
 
 
-def live_tool(state: State, statement: Statement) -> Iterator[Block]:
+def switch_live_tool(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the blocks that set the speed and start or stop the live tool. Raises ProgramError."""
-    for word in statement.live:
+    for word in statement.live_tool_words:
         if word.name == "S":
             _live_speed(state, statement, word)
-    for word in statement.live:
+    for word in statement.live_tool_words:
         if word.name == "M":
             yield from _turn(state, statement, word)
 
@@ -348,7 +369,7 @@ def _live_speed(state: State, statement: Statement, word: Word) -> None:
     value = state.number(statement, word)
     text = "{word}: the speed cannot be negative; M3 and M4 set the direction."
     statement.check(value >= 0.0, word, "speed-sign", text, "Remove the sign.", word=word.text)
-    state.live_speed = value
+    state.live_speed_rpm = value
     if state.live_rpm:
         state.live_rpm = value
     if "live-speed" not in state.told:
@@ -359,7 +380,7 @@ def _live_speed(state: State, statement: Statement, word: Word) -> None:
             word=word.text,
         )
         state.log.add(
-            statement.warning(
+            statement.make_warning(
                 word,
                 "live-speed",
                 text,
@@ -374,11 +395,11 @@ def _turn(state: State, statement: Statement, word: Word) -> Iterator[Block]:
     hint = "Write M3, and use a tool that cuts in that direction."
     statement.check(code != 4, word, "live-direction", text, hint, word=word.text)
     on = code == 3
-    if on and not state.live_speed:
+    if on and not state.live_speed_rpm:
         text = "{word} starts the live tool, but its speed is not programmed with S."
-        raise statement.refuse(word, "speed-missing", text, "Write S2= in the block.", word=word.text)
-    state.live_rpm = state.live_speed if on else 0.0
-    name = state.setup.limits.live_output
+        raise statement.make_error(word, "speed-missing", text, "Write S2= in the block.", word=word.text)
+    state.live_rpm = state.live_speed_rpm if on else 0.0
+    name = state.setup.limits.live_tool_output
     outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
-    state.adopt(state.modal._replace(outputs=outputs))
-    yield state.action(statement.line.number, word.text, Output(name, on))
+    state.set_modal(state.modal._replace(outputs=outputs))
+    yield state.action(statement.line.number, word.text, OutputSwitch(name, on))

@@ -7,104 +7,126 @@ from collections.abc import Iterator
 
 from core.interpreter.shared.actions import ToolChange
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import ToolUse
+from core.interpreter.shared.interpretation import ToolUsage
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import Word
 from core.message import Message
-from core.tool_edges import EDGES, NAMED_TOOLS, NamedTool, edge_key, edge_name, edge_of, tool_of
+from core.tool_edges import (
+    EDGE_NUMBERS,
+    FIRST_NAMED_TOOL,
+    NamedTool,
+    format_edge_name,
+    get_edge_number,
+    get_tool_number,
+    make_edge_key,
+)
 
-WRONG_TOOL = 17190
-WRONG_EDGE = 17180
+WRONG_TOOL_NUMBER = 17190
+WRONG_EDGE_NUMBER = 17180
 
 
-def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Block]:
+def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
     """Yield the blocks of T and D: T selects the tool with D1, and D0 has no offset. Raises ProgramError."""
     tool, edge = statement.words.get("T"), statement.words.get("D")
     if tool is None and edge is None:
         return
-    if state.modal.nose_comp != 40:
+    if state.modal.compensation_code != 40:
         word = tool or edge
         text = "{what} is not allowed while G{state} is active."
         hint = "Write G40 and a move before this block."
-        raise statement.refuse(
-            word, "comp-with", text, hint, what=word.text if word else "", state=state.modal.nose_comp
+        raise statement.make_error(
+            word, "comp-with", text, hint, what=word.text if word else "", state=state.modal.compensation_code
         )
     before = state.modal.tool
-    number = tool_of(before) if tool is None else _number(state, statement, tool)
+    number = get_tool_number(before) if tool is None else _number(state, statement, tool)
     wanted = 1 if edge is None else _edge(state, statement, edge)
     if not number and edge is not None and wanted:
         text = "{edge}: no tool is active."
-        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before this block.", edge=edge.text)
-    _take(state, statement, number, wanted if number else 0, use)
+        raise statement.make_error(
+            edge, WRONG_EDGE_NUMBER, text, "Write T before this block.", edge=edge.text
+        )
+    _activate_edge(state, statement, number, wanted if number else 0, usage)
     if tool is not None or state.modal.tool != before:
         text = " ".join(word.text for word in (tool, edge) if word is not None)
         yield state.action(statement.line.number, text, ToolChange(state.modal.tool))
 
 
 def _number(state: State, statement: Statement, word: Word) -> int:
-    if not word.string:
+    if not word.quoted_name:
         value = state.number(statement, word)
-        if not value.is_integer() or not 0 <= value < NAMED_TOOLS:
+        if not value.is_integer() or not 0 <= value < FIRST_NAMED_TOOL:
             text = "{word} results in {value}, which is not a tool number."
             hint = "Enter the tool number as a whole number."
-            raise statement.refuse(word, WRONG_TOOL, text, hint, word=word.text, value=value)
+            raise statement.make_error(word, WRONG_TOOL_NUMBER, text, hint, word=word.text, value=value)
         return int(value)
-    wanted = word.string.casefold()
+    wanted = word.quoted_name.casefold()
     for key, offset in sorted(state.setup.tools.items()):
         if offset.name.casefold() == wanted:
-            return tool_of(key)
+            return get_tool_number(key)
     if wanted not in state.names:
         state.names.append(wanted)
-    return NamedTool(NAMED_TOOLS + state.names.index(wanted), word.string)
+    return NamedTool(FIRST_NAMED_TOOL + state.names.index(wanted), word.quoted_name)
 
 
 def _edge(state: State, statement: Statement, word: Word) -> int:
     value = state.number(statement, word)
     text = "{word}: cutting edges are D1 to D9; D0 deselects the cutting edge."
-    statement.check(value == 0 or value in EDGES, word, WRONG_EDGE, text, "Correct D.", word=word.text)
+    statement.check(
+        value == 0 or value in EDGE_NUMBERS, word, WRONG_EDGE_NUMBER, text, "Correct D.", word=word.text
+    )
     return int(value)
 
 
-def _take(state: State, statement: Statement, number: int, edge: int, use: ToolUse) -> None:
+def _activate_edge(state: State, statement: Statement, number: int, edge: int, usage: ToolUsage) -> None:
     """Activate the edge with this number; 0 for D0 and T0."""
-    key = edge_key(number, edge or edge_of(state.modal.tool) if number == tool_of(state.modal.tool) else edge)
-    offset = ToolOffset() if not number else _offset(state, statement, key, use)
+    key = make_edge_key(
+        number,
+        edge or get_edge_number(state.modal.tool) if number == get_tool_number(state.modal.tool) else edge,
+    )
+    offset = ToolOffset() if not number else _offset(state, statement, key, usage)
     moved = state.edge if state.modal.edge else ToolOffset()
     other = offset if edge else ToolOffset()
     state.moved_by_tool |= {
         name for name, a, b in (("X", moved.x, other.x), ("Z", moved.z, other.z)) if a != b
     }
     state.edge = offset
-    state.adopt(state.modal._replace(tool=key if number else 0, edge=edge))
+    state.set_modal(state.modal._replace(tool=key if number else 0, edge=edge))
     state.derive_offsets()
 
 
-def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolOffset:
+def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> ToolOffset:
     """Return the offset of an edge. Raises ProgramError if the tool has no such edge."""
     tools = state.setup.tools
-    if key not in tools and tool_of(key) in tools:
-        name, word = edge_name(key), statement.words.get("D")
+    if key not in tools and get_tool_number(key) in tools:
+        name, word = format_edge_name(key), statement.words.get("D")
         text = "{name} does not exist: {key} has no such cutting edge in the tool offsets."
         hint = "Set {other} on the TOOL OFFSETS page (F8)."
-        raise statement.refuse(
-            word, WRONG_EDGE, text, hint, name=name, key=edge_name(tool_of(key)), other=name
+        raise statement.make_error(
+            word,
+            WRONG_EDGE_NUMBER,
+            text,
+            hint,
+            name=name,
+            key=format_edge_name(get_tool_number(key)),
+            other=name,
         )
-    offset = use.offset(key, tools)
+    offset = usage.use_tool_offset(key, tools)
     if offset is None:
         word = statement.words.get("T") or statement.words.get("D")
         text = Message(
-            "{key} has no tool offset, so 0 is used and the machine will not start.", key=edge_name(key)
+            "{key} has no tool offset, so 0 is used and the machine will not start.",
+            key=format_edge_name(key),
         )
         hint = _hint(word)
-        state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
+        state.log.add(statement.make_warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
 
 
 def _hint(word: Word | None) -> str:
     """Return the remedy for a tool without an offset; T0101 is tool 1 with its offset on other controls."""
-    if word is not None and word.string:
+    if word is not None and word.quoted_name:
         return "Enter this name as the remark of a tool (F8)."
     if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
         meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"

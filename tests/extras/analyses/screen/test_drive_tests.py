@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.extras.analyses.drive_test_view import DriveTestPage
 from app.screen import page_table
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
@@ -25,9 +25,9 @@ def page(jog: JogBench) -> DriveTestPage:
 
 
 def on_page(jog: JogBench) -> DriveTestPage:
-    assert jog.frame.go("DRIVE TEST")
+    assert jog.frame.open_page("DRIVE TEST")
     jog.run(0.1)
-    page = jog.frame.page
+    page = jog.frame.current_page
     assert isinstance(page, DriveTestPage)
     return page
 
@@ -43,11 +43,11 @@ def asked_and_held(jog: JogBench, key: Key = Key.Key_Right) -> None:
 def stands(jog: JogBench) -> None:
     """It comes to rest and nothing moves it again."""
     jog.run(0.4)
-    assert jog.shot.state is not State.JOG
+    assert jog.shot.state is not MachineState.JOG
     rest = jog.shot.demand
     jog.run(1.5)
     assert jog.shot.demand == rest
-    assert jog.shot.drive_test.whole == 0
+    assert jog.shot.drive_test.completed_test_count == 0
 
 
 def ramp(jog: JogBench) -> None:
@@ -58,7 +58,7 @@ def ramp(jog: JogBench) -> None:
 def test_the_first_press_asks_and_moves_nothing(jog: JogBench, page: DriveTestPage) -> None:
     jog.down(Key.Key_Right)
     jog.run(1.0)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     assert jog.shot.demand == (0.0, 0.0, 0.0)
     assert jog.prompt == text(
         "jog.play-test",
@@ -70,41 +70,43 @@ def test_the_first_press_asks_and_moves_nothing(jog: JogBench, page: DriveTestPa
     assert jog.shot.demand == (0.0, 0.0, 0.0)
     assert shows(jog.prompt, "jog.test-travel", there="−0.01000 in")
     jog.key(Key.Key_Escape)
-    assert page.model.hold.asked is None
+    assert page.model.held_jog.requested_direction is None
 
 
 def test_held_to_its_end_it_is_kept_and_told_in_figures(
     qtbot: QtBot, jog: JogBench, page: DriveTestPage
 ) -> None:
     asked_and_held(jog)
-    assert jog.shot.state is State.JOG
+    assert jog.shot.state is MachineState.JOG
     assert jog.shot.drive_test.axis == "Z"
     jog.run(1.5)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     jog.up(Key.Key_Right)
-    assert jog.shot.drive_test.whole == 1
+    assert jog.shot.drive_test.completed_test_count == 1
     assert jog.shot.demand[1] == pytest.approx(0.0, abs=1e-9)
-    assert jog.desk.control.recordings is not None
-    jog.desk.control.recordings.drain()
+    assert jog.desk.desk_control.recordings is not None
+    jog.desk.desk_control.recordings.drain()
 
     def worked_out() -> bool:
         jog.run(0.01)
-        return page.model.found is not None
+        return page.model.results is not None
 
     qtbot.waitUntil(worked_out, timeout=60_000)  # on a worker, whose time is not the machine's
-    found = page.model.found
+    found = page.model.results
     assert found is not None
     assert [each.way for each in found.steps] == pytest.approx([SIZE, -SIZE])
-    assert page.model.kept.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
-    assert (page.model.scope.shelf.folder / page.model.kept).exists()
-    kept = page.model.scope.shelf.open(page.model.scope.shelf.folder / page.model.kept)
+    assert page.model.saved_record.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
+    assert (page.model.scope.recording_store.folder / page.model.saved_record).exists()
+    kept = page.model.scope.recording_store.read_recording(
+        page.model.scope.recording_store.folder / page.model.saved_record
+    )
     assert text("jog.drive-test") in kept.about
-    titles = [page.model.sheet().rows[0].cells[0]]
+    titles = [page.model.make_table().rows[0].cells[0]]
     for _ in range(3):
         jog.key(Key.Key_F5)
-        titles.append(page.model.sheet().rows[0].cells[0])
+        titles.append(page.model.make_table().rows[0].cells[0])
     assert titles == ["RISE, 10 TO 90 %", "FOLLOWING LAG", "SHAPE", "RISE, 10 TO 90 %"]
-    assert not page.model.drawing().equal
+    assert not page.model.make_drawing().has_equal_axes
 
 
 def test_kept_down_after_its_end_it_plays_no_second_one(jog: JogBench, page: DriveTestPage) -> None:
@@ -115,16 +117,16 @@ def test_kept_down_after_its_end_it_plays_no_second_one(jog: JogBench, page: Dri
     jog.key(Key.Key_Right)  # asks again, and no more
     jog.run(0.5)
     assert jog.shot.drive_test.number == 1
-    assert "HOLD" in page.asks()
+    assert "HOLD" in page.pending_question()
 
 
 def test_the_release_ends_it(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     asked_and_held(jog)
-    assert jog.shot.state is State.JOG
+    assert jog.shot.state is MachineState.JOG
     jog.up(Key.Key_Right)
     stands(jog)
-    assert page.model.found is None
+    assert page.model.results is None
 
 
 def test_the_pairs_of_a_repeating_key_do_not_end_it_and_its_silence_does(
@@ -136,10 +138,10 @@ def test_the_pairs_of_a_repeating_key_do_not_end_it_and_its_silence_does(
     for _ in range(40):
         jog.repeats(Key.Key_Right)
         jog.run(0.03)
-    assert jog.shot.state is State.JOG
+    assert jog.shot.state is MachineState.JOG
     jog.run(0.6)
     stands(jog)
-    assert page.model.hold.held is None
+    assert page.model.held_jog.active_jog is None
 
 
 @pytest.mark.parametrize("key", [Key.Key_F2, Key.Key_F3, Key.Key_H, Key.Key_Escape, Key.Key_Up, Key.Key_R])
@@ -148,7 +150,7 @@ def test_any_other_key_ends_it(jog: JogBench, page: DriveTestPage, key: Key) -> 
     asked_and_held(jog)
     jog.key(key)
     stands(jog)
-    assert page.model.hold.held is None
+    assert page.model.held_jog.active_jog is None
 
 
 def test_the_window_that_loses_the_keyboard_ends_it(jog: JogBench, page: DriveTestPage, qtbot: QtBot) -> None:
@@ -161,38 +163,40 @@ def test_the_window_that_loses_the_keyboard_ends_it(jog: JogBench, page: DriveTe
     stands(jog)
     other.close()
     other.deleteLater()
-    assert page.model.hold.held is None
+    assert page.model.held_jog.active_jog is None
 
 
 def test_a_screen_that_stands_still_ends_it(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     asked_and_held(jog)
     jog.run(0.6, screen=False)
-    assert jog.shot.state is State.IDLE
+    assert jog.shot.state is MachineState.IDLE
     stands(jog)
-    assert page.model.found is None
+    assert page.model.results is None
 
 
 def test_another_page_ends_it(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     asked_and_held(jog)
-    jog.frame.go(page_table.SCOPE)
+    jog.frame.open_page(page_table.SCOPE)
     stands(jog)
-    assert page.model.hold.asked is None
+    assert page.model.held_jog.requested_direction is None
 
 
 def test_a_finger_asks_and_then_holds(jog: JogBench, page: DriveTestPage) -> None:
     ramp(jog)
     jog.run(0.1)
-    box = next(each.box for each in page.pad.controls if each.box.center().x() > page.pad.width() * 0.7)
+    box = next(
+        each.box for each in page.jog_cross.controls if each.box.center().x() > page.jog_cross.width() * 0.7
+    )
     spot = QPoint(round(box.center().x()), round(box.center().y()))
-    QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    QTest.mouseClick(page.jog_cross, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
     jog.run(0.3)
-    assert jog.shot.state is State.IDLE
-    QTest.mousePress(page.pad, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    assert jog.shot.state is MachineState.IDLE
+    QTest.mousePress(page.jog_cross, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
     jog.run(0.2)
-    assert jog.shot.state is State.JOG
-    QTest.mouseRelease(page.pad, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
+    assert jog.shot.state is MachineState.JOG
+    QTest.mouseRelease(page.jog_cross, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot)
     stands(jog)
 
 
@@ -204,7 +208,7 @@ def test_it_has_no_rapid(jog: JogBench, page: DriveTestPage) -> None:
     jog.down(Key.Key_Right, SHIFT)
     jog.run(0.3)
     assert shows(jog.prompt, "jog.test-no-rapid")
-    assert page.model.hold.held is None
+    assert page.model.held_jog.active_jog is None
     assert jog.shot.demand == (0.0, 0.0, 0.0)
 
 
@@ -214,9 +218,9 @@ def test_with_the_estop_in_it_says_so(jog: JogBench, page: DriveTestPage) -> Non
     jog.key(Key.Key_Right)
     jog.down(Key.Key_Right)
     jog.run(0.3)
-    assert jog.shot.state is State.ESTOP
+    assert jog.shot.state is MachineState.ESTOP
     assert jog.shot.drive_test.number == 0
-    assert "E-STOP" in page.prompt()
+    assert "E-STOP" in page.prompt_text()
     jog.up(Key.Key_Right)
     twist_out(jog.window)
 
@@ -224,7 +228,7 @@ def test_with_the_estop_in_it_says_so(jog: JogBench, page: DriveTestPage) -> Non
 def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
     page = on_page(lost)
     lost.key(Key.Key_Right)
-    assert shows(page.asks(), "jog.test-not-homed", axis="Z")
+    assert shows(page.pending_question(), "jog.test-not-homed", axis="Z")
     lost.down(Key.Key_Right)
     lost.run(0.5)
     assert lost.shot.demand[1] == 0.0
@@ -232,13 +236,13 @@ def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
 
 
 def test_no_room_is_told_before(jog: JogBench, page: DriveTestPage) -> None:
-    assert jog.desk.machine.model is not None
-    travel = jog.desk.machine.model.axis("Z").travel
+    assert jog.desk.machine.machine is not None
+    travel = jog.desk.machine.machine.find_axis("Z").travel
     assert travel is not None
-    jog.frame.go(page_table.JOG)
+    jog.frame.open_page(page_table.JOG)
     jog.down(Key.Key_Right, SHIFT)
     jog.run(0.1)
-    jog.until(lambda: jog.shot.state is not State.JOG or jog.shot.demand[1] > travel[1] - 0.05)
+    jog.until(lambda: jog.shot.state is not MachineState.JOG or jog.shot.demand[1] > travel[1] - 0.05)
     jog.up(Key.Key_Right)
     jog.rests()
     on_page(jog)
@@ -249,4 +253,4 @@ def test_no_room_is_told_before(jog: JogBench, page: DriveTestPage) -> None:
     jog.run(0.5)
     assert jog.shot.demand == here
     assert jog.shot.drive_test.number == 0
-    assert page.model.hold.held is None
+    assert page.model.held_jog.active_jog is None

@@ -11,14 +11,14 @@ from pytestqt.qtbot import QtBot
 
 from app.extras.jobs.jobs_model import JobsModel
 from app.extras.jobs.jobs_view import JobsPage
-from app.extras.jobs.jobs_watch import JobsWatch, ProvedJob
+from app.extras.jobs.jobs_watch import JobWatch, ProvedJob
 from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
-from app.screen.window_layout import FINGER
-from core.executor.snapshot import State
+from app.screen.window_layout import FINGERTIP_PX
+from core.executor.snapshot import MachineState
 from core.store.production import tool_lives
-from core.store.production.tool_lives import LifeRow
-from core.store.store_rows import Kind, utc_now
+from core.store.production.tool_lives import ToolLifeRow
+from core.store.store_rows import OffsetKind, get_utc_now_text
 from tests.screen.day import SHIFT, Day, Key, begun
 from tests.screen.yes import yes
 from tests.texts import begins, pattern, shows
@@ -36,25 +36,25 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     (folder / "cap.nc").write_text(CAP)
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     with begun(qtbot, "peg.nc", PEG) as day:
-        day.store.offsets.tools.change_row(
+        day.store.offsets.tool_offsets.change_row(
             1, "test", {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}
         ).result(60)
-        day.desk.book.read()
+        day.desk.offset_book.read_store()
         day.run(0.02)
         day.key(Key.Key_D)
-        assert day.desk.programs.choose("peg")
+        assert day.desk.program_choice.load_by_name("peg")
         day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
 def model(day: Day) -> JobsModel:
-    found = day.desk.pages.find(JobsModel)
+    found = day.desk.page_registry.find(JobsModel)
     assert found is not None
     return found
 
 
-def watch(day: Day) -> JobsWatch:
-    return model(day).watch
+def watch(day: Day) -> JobWatch:
+    return model(day).job_watch
 
 
 def opened(day: Day) -> None:
@@ -68,32 +68,32 @@ def added(day: Day, program: str, parts: str) -> None:
     day.key(Key.Key_F1, Key.Key_F6)
     day.sees(lambda: day.page == page_table.PROGRAMS)
     day.type(program[:3])
-    page = day.frame.page
+    page = day.frame.current_page
     assert isinstance(page, ProgramsPage)
-    day.sees(lambda: program in "".join(row.cells[0] for row in page.model.sheet().rows))
+    day.sees(lambda: program in "".join(row.cells[0] for row in page.model.make_table().rows))
     day.key(Key.Key_F10)
     assert day.page == "JOBS"
-    assert model(day).sheet(day.shot).question == wording("screen.how-many-parts", program=program)
+    assert model(day).make_table(day.shot).question == wording("screen.how-many-parts", program=program)
     day.enter(parts)
     day.sees(lambda: len(watch(day).jobs) == before + 1)
 
 
 def rows(day: Day) -> list[tuple[str, ...]]:
     day.window.refresh()
-    return [row.cells[1:3] for row in model(day).sheet(day.shot).rows]
+    return [row.cells[1:3] for row in model(day).make_table(day.shot).rows]
 
 
 def loaded(day: Day, program: str) -> None:
     """F2 on the marked job: it is on the desk, and nothing has moved."""
 
     def taken() -> bool:
-        job = watch(day).under_way
-        return job is not None and job.program == program and not day.desk.session.now.busy
+        job = watch(day).active_job
+        return job is not None and job.program == program and not day.desk.program_loader.loaded.is_busy
 
     day.key(Key.Key_F2)
     assert day.page == page_table.AUTOMATIC
     day.sees(taken)
-    assert day.shot.state is State.IDLE
+    assert day.shot.state is MachineState.IDLE
 
 
 def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
@@ -102,37 +102,39 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     assert rows(day) == [("peg.nc\n", "0/2"), ("cap.nc\n", "0/5")]
     day.key(Key.Key_Up)
     loaded(day, "peg.nc")
-    assert day.desk.runs.counter.words == "0/2"
+    assert day.desk.program_runs.part_counter.count_text == "0/2"
     day.key(Key.Key_C)  # cycle repeat
     day.palms()
-    day.reaches(State.RUN)
-    watch(day).proofs.anew()
+    day.reaches(MachineState.RUN)
+    watch(day).proofs.clear_proofs()
     day.run(0.05)
-    watch(day).proofs.worker.settle(
+    watch(day).proofs.worker.wait_for_results(
         60.0
     )  # the machine stands still in time meanwhile, in the middle of the peg
-    assert isinstance(watch(day).proofs.of("cap.nc", day.desk.book.changes), ProvedJob)
-    assert day.shot.state in {State.RUN, State.WAIT}
-    day.until(lambda: day.shot.parts == 2 and day.shot.state is State.IDLE)  # repeat ends with the last part
+    assert isinstance(watch(day).proofs.find_proof("cap.nc", day.desk.offset_book.changes), ProvedJob)
+    assert day.shot.state in {MachineState.RUN, MachineState.WAIT}
+    day.until(
+        lambda: day.shot.parts == 2 and day.shot.state is MachineState.IDLE
+    )  # repeat ends with the last part
     day.sees(lambda: shows(day.prompt, "screen.job-done"))
     following = (
         f"{wording('screen.next-job', program='cap.nc', left=5)}, {wording('screen.missing', count=1)}"
     )
     assert day.prompt == f"{wording('screen.job-done', made=2, wanted=2, program='peg.nc')} {following}"
     day.run(3.0)
-    assert (day.shot.state, day.shot.program, day.shot.parts) == (State.IDLE, day.shot.program, 2)
-    assert day.desk.session.now.name == "peg.nc"
-    row = day.desk.pages.offered_notice(day.shot)
+    assert (day.shot.state, day.shot.program, day.shot.parts) == (MachineState.IDLE, day.shot.program, 2)
+    assert day.desk.program_loader.loaded.name == "peg.nc"
+    row = day.desk.page_registry.find_notice(day.shot)
     assert row is not None
-    assert row.figures == following
-    assert [each.made for each in day.store.jobs.read_jobs()] == [2, 0]
-    assert day.store.runs.count_parts("peg.nc") == 2
+    assert row.values_text == following
+    assert [each.parts_made for each in day.store.jobs.read_jobs()] == [2, 0]
+    assert day.store.runs.read_part_count("peg.nc") == 2
     opened(day)
     day.key(Key.Key_Down)
     loaded(day, "cap.nc")
-    assert day.desk.session.now.name == "cap.nc"
-    assert day.desk.runs.counter.words == "0/5"
-    assert day.desk.pages.offered_notice(day.shot) is None
+    assert day.desk.program_loader.loaded.name == "cap.nc"
+    assert day.desk.program_runs.part_counter.count_text == "0/5"
+    assert day.desk.page_registry.find_notice(day.shot) is None
 
 
 def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
@@ -140,31 +142,37 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
 
     def lacking() -> list[str]:
         day.window.refresh()
-        return [cells[2] for cells in (r.cells for r in model(day).setup().rows) if cells[0] == "T2"]
+        return [
+            cells[2] for cells in (r.cells for r in model(day).make_setup_table().rows) if cells[0] == "T2"
+        ]
 
     day.sees(lambda: lacking() == [wording("screen.offset-missing")])
-    day.desk.book.change(
-        Kind.TOOL, 2, {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}, "touched off"
+    day.desk.offset_book.change_fields(
+        OffsetKind.TOOL, 2, {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}, "touched off"
     )
-    day.store.write(lambda c: tool_lives.set_limits(c, LifeRow(2, 40, stops=True))).result(60)
-    day.store.write(lambda c: tool_lives.set_use(c, 2, 28, 100.0)).result(60)
-    watch(day).parts.book.refresh()
+    day.store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(2, 40, stops=True))).result(60)
+    day.store.write(lambda c: tool_lives.save_use(c, 2, 28, 100.0)).result(60)
+    watch(day).parts_watch.parts_book.request_reload()
     day.sees(lambda: lacking() == [wording("screen.life-left", left=12, parts=50)])
     day.key(Key.Key_F4)
     day.enter("12")
     day.sees(lambda: lacking() == ["ready"])
-    day.sees(lambda: wording("screen.tool-complete") in model(day).sheet(day.shot).rows[0].cells)
+    day.sees(lambda: wording("screen.tool-complete") in model(day).make_table(day.shot).rows[0].cells)
 
 
 def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
     day.store.runs.record_start("peg.nc").result(60)
     started = day.store.runs.read_records()[0].started
     assert started is not None
-    day.sees(lambda: utc_now() > started)  # of one millisecond are what was set and what ran with it
-    day.desk.book.change(Kind.TOOL, 1, {"nose_radius": 0.8, "quadrant": 2}, "another insert")
+    day.sees(lambda: get_utc_now_text() > started)  # of one millisecond are what was set and what ran with it
+    day.desk.offset_book.change_fields(
+        OffsetKind.TOOL, 1, {"nose_radius": 0.8, "quadrant": 2}, "another insert"
+    )
     added(day, "peg.nc", "3")
-    day.sees(lambda: len(model(day).setup().rows) > 1)
-    told = next(r.cells[2] for r in model(day).setup().rows if r.cells[0] == "T1").replace("\n", " ")
+    day.sees(lambda: len(model(day).make_setup_table().rows) > 1)
+    told = next(r.cells[2] for r in model(day).make_setup_table().rows if r.cells[0] == "T1").replace(
+        "\n", " "
+    )
     tips = {"radius": "0.0315 in", "tip": "tip quadrant 2", "was": "0.0157 in", "was_tip": "tip quadrant 3"}
     assert re.fullmatch(pattern("screen.another-tip", **tips), told)
 
@@ -193,18 +201,18 @@ def test_a_note_is_typed_by_a_finger_on_the_smallest_screen(day: Day) -> None:
     added(day, "peg.nc", "2")
     day.key(Key.Key_F8)
     assert day.window.frame is not None
-    page = day.window.frame.page
+    page = day.window.frame.current_page
     assert isinstance(page, JobsPage)
-    day.sees(page.letters.isVisible)
+    day.sees(page.letter_pad.isVisible)
     page.grab()
-    assert all(box.height() >= FINGER - 1 for box, *_ in page.letters._places)
-    assert page.table.geometry().bottom() < page.letters.geometry().top()  # the question stays in sight
+    assert all(box.height() >= FINGERTIP_PX - 1 for box, *_ in page.letter_pad._places)
+    assert page.table.geometry().bottom() < page.letter_pad.geometry().top()  # the question stays in sight
     letters = {
-        key: press for key, (_, press, *_) in zip("qwertyuiop", page.letters._places[10:20], strict=True)
+        key: press for key, (_, press, *_) in zip("qwertyuiop", page.letter_pad._places[10:20], strict=True)
     }
     for key in "prep":
         letters[key]()
-    page.letters._places[-1][1]()
+    page.letter_pad._places[-1][1]()
     day.sees(lambda: rows(day)[0][0] == "peg.nc\nprep")
 
 
@@ -212,7 +220,7 @@ def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
     added(day, "cap.nc", "5")
     day.key(Key.Key_Escape)
     day.palms()
-    day.reaches(State.RUN)
+    day.reaches(MachineState.RUN)
     opened(day)
     day.key(Key.Key_F2)
     assert day.page == "JOBS"
@@ -221,8 +229,8 @@ def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
     assert begins(day.prompt, "screen.notes-between-cycles")
     day.key(Key.Key_F1, Key.Key_F2)  # the page closes, the part goes on
     day.until(lambda: day.shot.parts == 1)
-    assert watch(day).under_way is None
-    assert day.store.jobs.read_jobs()[0].made == 0
+    assert watch(day).active_job is None
+    assert day.store.jobs.read_jobs()[0].parts_made == 0
 
 
 @pytest.mark.parametrize("text", ["0", "1.5", "abc", "99999999"])
@@ -230,7 +238,7 @@ def test_a_count_that_is_none_is_refused_and_asked_again(day: Day, text: str) ->
     opened(day)
     day.key(Key.Key_F3)
     day.enter(text)
-    day.sees(lambda: day.desk.notice != "" and "TYPE" not in day.desk.notice)
+    day.sees(lambda: day.desk.prompt_notice != "" and "TYPE" not in day.desk.prompt_notice)
     assert watch(day).jobs == ()
 
 
@@ -240,7 +248,7 @@ def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
     day.key(Key.Key_F10)
     day.enter("2", "7")
     assert day.prompt == wording("screen.job-has-own-count")
-    assert day.desk.runs.counter.aim == 3
+    assert day.desk.program_runs.part_counter.final_count == 3
 
 
 def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
@@ -248,31 +256,31 @@ def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
     (tmp_path / "home" / "programs" / "cap.nc").unlink()
     day.key(Key.Key_F2)
     assert day.prompt == wording("screen.not-among-programs", name="cap.nc")
-    assert watch(day).under_way is None
+    assert watch(day).active_job is None
 
 
 def test_without_a_store_nothing_is_queued_and_that_is_said(day: Day) -> None:
-    watch(day).parts.book.reopen(None, "THE DISK IS GONE")
+    watch(day).parts_watch.parts_book.use_store(None, "THE DISK IS GONE")
     day.run(0.05)
     opened(day)
     day.key(Key.Key_F3)
     day.enter("4")
     assert day.prompt == wording("screen.not-kept", why="THE DISK IS GONE")
-    assert model(day).sheet(day.shot).notes == ("THE DISK IS GONE",)
+    assert model(day).make_table(day.shot).notes == ("THE DISK IS GONE",)
 
 
 def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_other(day: Day) -> None:
     added(day, "peg.nc", "3")
     loaded(day, "peg.nc")
     opened(day)
-    assert model(day).sheet(day.shot).rows[0].cells[4] == "IN PROGRESS"
+    assert model(day).make_table(day.shot).rows[0].cells[4] == "IN PROGRESS"
     day.key(Key.Key_F1, Key.Key_F2)
-    assert day.desk.programs.choose("cap")
-    day.sees(lambda: not day.desk.session.now.busy)
+    assert day.desk.program_choice.load_by_name("cap")
+    day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
     opened(day)
-    day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
+    day.sees(lambda: model(day).make_table(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")
-    day.sees(lambda: day.desk.runs.counter.words == "0/3")
+    day.sees(lambda: day.desk.program_runs.part_counter.count_text == "0/3")
 
 
 def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:
@@ -285,8 +293,8 @@ def test_what_is_asked_of_a_job_is_answered_before_another_key_acts(day: Day) ->
     """F4 while the count of a new job is typed had asked for the count of the marked one."""
     added(day, "cap.nc", "5")
     day.key(Key.Key_F3)
-    assert model(day).sheet(day.shot).question == wording("screen.how-many-parts", program="peg.nc")
-    assert model(day).keys() == {}
+    assert model(day).make_table(day.shot).question == wording("screen.how-many-parts", program="peg.nc")
+    assert model(day).function_keys() == {}
     day.key(Key.Key_F4)
     day.enter("2")
     day.sees(lambda: rows(day) == [("cap.nc\n", "0/5"), ("peg.nc\n", "0/2")])

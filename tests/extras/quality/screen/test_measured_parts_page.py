@@ -11,13 +11,13 @@ from threading import Event
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.desk.pages.sheet import Sheet
-from app.extras.quality.gauge_wire import NoGauge, Reading
-from app.extras.quality.quality_desk import QualityFunctions
+from app.desk.pages.table_content import TableContent
+from app.extras.quality.quality_setup import QualityFunctions
 from app.extras.quality.quality_view import MeasuredPartsPage
 from app.extras.quality.readings_section import ReadingsSection
+from app.extras.quality.serial_gauge import GaugeReading, NoGauge
 from app.production.parts_watch import PartsWatch
-from core.executor.snapshot import State
+from core.executor.snapshot import MachineState
 from tests.screen.day import Day, Key, begun
 from tests.screen.yes import yes
 from tests.texts import Pattern, begins, fragment, pattern, shows
@@ -33,17 +33,17 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     (tmp_path / "peg.nc").write_text(PEG)
     with begun(qtbot) as day:
-        day.store.offsets.tools.change_row(1, "test", {"x": -12.7, "z": -50.8}).result(60)
-        day.desk.book.read()
+        day.store.offsets.tool_offsets.change_row(1, "test", {"x": -12.7, "z": -50.8}).result(60)
+        day.desk.offset_book.read_store()
         day.run(0.02)
         day.key(Key.Key_D)
-        day.desk.programs.load(tmp_path / "peg.nc")
+        day.desk.program_choice.load_path(tmp_path / "peg.nc")
         day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
 def model(day: Day) -> QualityFunctions:
-    found = day.desk.pages.find(QualityFunctions)
+    found = day.desk.page_registry.find(QualityFunctions)
     assert found is not None
     return found
 
@@ -61,14 +61,14 @@ def section(day: Day, number: str) -> None:
 
 def settled(day: Day) -> bool:
     """What is known is what is kept."""
-    watch = day.desk.pages.find(PartsWatch)
+    watch = day.desk.page_registry.find(PartsWatch)
     assert watch is not None
-    return watch.book.settled
+    return watch.parts_book.is_settled
 
 
-def sheet(day: Day) -> Sheet:
+def sheet(day: Day) -> TableContent:
     day.window.refresh()
-    return model(day).current.sheet(day.shot)
+    return model(day).shown_function.make_table(day.shot)
 
 
 def cells(day: Day) -> list[tuple[str, ...]]:
@@ -115,7 +115,7 @@ def parts(day: Day, count: int) -> None:
         before = day.shot.parts
         day.palms()
         day.until(partial(has_made_more, day, before))
-        day.reaches(State.IDLE)
+        day.reaches(MachineState.IDLE)
     day.run(0.1)
 
 
@@ -226,17 +226,17 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
     day.sees(lambda: cells(day)[0][2] == "2")
     day.key(Key.Key_F8)
     assert begins(day.prompt, "measure.correct", words="T1 X −0.00060: SPIGOT 0.50120 → 0.50060")
-    assert day.store.offsets.tools.read_rows()[1].wear_x == 0.0, "nothing is changed unasked"
+    assert day.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0, "nothing is changed unasked"
     yes(day.window)
-    day.sees(lambda: not day.desk.book.busy)
-    assert day.store.offsets.tools.read_rows()[1].wear_x == pytest.approx(-0.0003 * 25.4)
+    day.sees(lambda: not day.desk.offset_book.is_saving)
+    assert day.store.offsets.tool_offsets.read_rows()[1].wear_x == pytest.approx(-0.0003 * 25.4)
     assert day.store.offsets.read_history(limit=1)[0].why == wording(
         "measure.reason-of-correction", name="SPIGOT", mean="0.50120", count=2, change="−0.00060"
     )
     day.key(Key.Key_F4)
     yes(day.window)
-    day.sees(lambda: not day.desk.book.busy)
-    assert day.store.offsets.tools.read_rows()[1].wear_x == 0.0
+    day.sees(lambda: not day.desk.offset_book.is_saving)
+    assert day.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0
 
 
 def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -> None:
@@ -246,26 +246,26 @@ def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -
     measured(day, ".5012", ".5012")
     day.key(Key.Key_Escape)
     day.sees(lambda: cells(day)[0][2] == "2")
-    shown = model(day).current
+    shown = model(day).shown_function
     assert isinstance(shown, ReadingsSection)
-    assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
+    assert (shown.chart_share, shown.make_chart().plots) == (0.0, ())
     day.key(Key.Key_F8)
     asked = day.prompt
     day.sees(lambda: sheet(day).title.startswith(wording("screen.effect-on-part")))
-    (diameter,) = [row.cells for row in sheet(day).rows if row.lit]
+    (diameter,) = [row.cells for row in sheet(day).rows if row.is_lit]
     assert diameter[1:] == ("0.50000", "0.49940", "−0.00060")
-    (plot,) = shown.drawing().plots
+    (plot,) = shown.make_chart().plots
     taken, now, then = plot.curves
-    assert list(taken.y) == pytest.approx([0.5012, 0.5012])
-    assert list(now.y) == pytest.approx([0.5012, 0.5012])
-    assert list(then.y) == pytest.approx([0.5006, 0.5006])
-    assert then.x[0] == taken.x[-1] + 1.0
+    assert list(taken.values) == pytest.approx([0.5012, 0.5012])
+    assert list(now.values) == pytest.approx([0.5012, 0.5012])
+    assert list(then.values) == pytest.approx([0.5006, 0.5006])
+    assert then.part_numbers[0] == taken.part_numbers[-1] + 1.0
     assert [each.value for each in plot.levels] == pytest.approx([0.5, 0.499, 0.501])
     assert shown.chart_share > 0.0
-    assert (day.prompt, day.store.offsets.tools.read_rows()[1].wear_x) == (asked, 0.0)
+    assert (day.prompt, day.store.offsets.tool_offsets.read_rows()[1].wear_x) == (asked, 0.0)
     day.key(Key.Key_Escape)
     assert cells(day)[0][0].upper() == "SPIGOT", "the readings are back"
-    assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
+    assert (shown.chart_share, shown.make_chart().plots) == (0.0, ())
 
 
 def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
@@ -275,10 +275,10 @@ def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
     assert shows(day.prompt, "measure.dead-band")
-    shown = model(day).current
+    shown = model(day).shown_function
     assert isinstance(shown, ReadingsSection)
-    assert not shown.effect.stands
-    assert shown.drawing().plots == ()
+    assert not shown.correction_effect.is_question_open
+    assert shown.make_chart().plots == ()
 
 
 def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
@@ -287,11 +287,11 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     measured(day, ".5012")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    watch, read = day.desk.pages.find(PartsWatch), Event()
+    watch, read = day.desk.page_registry.find(PartsWatch), Event()
     assert watch is not None
     yes(day.window)
-    watch.book.worker.queue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
-    day.sees(lambda: not day.desk.book.busy)
+    watch.parts_book.worker.enqueue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
+    day.sees(lambda: not day.desk.offset_book.is_saving)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
     assert shows(day.prompt, "measure.still-reading"), "what is on its way would be proposed once more"
@@ -313,11 +313,11 @@ def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
     yes(day.window)
-    day.sees(lambda: not day.desk.book.busy)
-    day.store.offsets.tools.change_row(1, "by hand", {"wear_z": 0.01}).result(60)
+    day.sees(lambda: not day.desk.offset_book.is_saving)
+    day.store.offsets.tool_offsets.change_row(1, "by hand", {"wear_z": 0.01}).result(60)
     day.key(Key.Key_F4)
     assert shows(day.prompt, "measure.another-change-after")
-    assert day.store.offsets.tools.read_rows()[1].wear_z == 0.01
+    assert day.store.offsets.tool_offsets.read_rows()[1].wear_z == 0.01
 
 
 def test_without_readings_there_is_no_proposal(day: Day) -> None:
@@ -369,12 +369,12 @@ def test_parts_wait_for_the_plan_when_asked(day: Day) -> None:
     day.type("c")
     day.palms()
     day.until(lambda: day.shot.parts == 2)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     day.run(1.0)
     assert day.shot.parts == 2
     day.palms()
     assert wording("measure.part-first", part=2, names="SPIGOT") in day.prompt
-    assert day.shot.state is State.IDLE
+    assert day.shot.state is MachineState.IDLE
     measured(day, ".5000")
     day.sees(lambda: day.shot.next_barred == "")
 
@@ -387,7 +387,7 @@ def test_the_chart_is_loaded_when_it_is_opened(day: Day) -> None:
     parts(day, 1)
     measured(day, ".5001")
     section(day, FEATURES)
-    page = day.frame.page
+    page = day.frame.current_page
     assert isinstance(page, MeasuredPartsPage)
     assert page.chart is None
     section(day, CHARTS)
@@ -423,7 +423,7 @@ def test_a_spent_tool_stops_the_next_part_and_a_fresh_insert_lets_it_go(day: Day
     day.type("c")
     day.palms()
     day.until(lambda: day.shot.parts == 2)
-    day.reaches(State.IDLE)
+    day.reaches(MachineState.IDLE)
     day.run(2.0)
     assert day.shot.parts == 2, "no other part begins"
     day.palms()
@@ -491,7 +491,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     assert re.fullmatch(r"0–24: \d+ %, in cycle for \d:\d\d of .+", ran)
     # of the machine, whatever program is on the desk
     (tmp_path / "other.nc").write_text(PEG)
-    day.desk.programs.load(tmp_path / "other.nc")
+    day.desk.program_choice.load_path(tmp_path / "other.nc")
     day.sees(lambda: texts(day)["CYCLE TIME"] == wording("measure.no-part-made") and settled(day))
     assert texts(day)["AVAILABILITY"] >= ran  # the clock on the wall goes on
 
@@ -501,9 +501,9 @@ def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
 
     class Sent(NoGauge):
         def __init__(self) -> None:
-            self.lines: list[Reading | str] = [Reading(0.5003, "in")]
+            self.lines: list[GaugeReading | str] = [GaugeReading(0.5003, "in")]
 
-        def received(self) -> list[Reading | str]:
+        def fetch_readings(self) -> list[GaugeReading | str]:
             taken, self.lines = self.lines, []
             return taken
 
@@ -538,10 +538,10 @@ def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
     day.key(Key.Key_F8)
     assert begins(day.prompt, "measure.correct", words="D4 X −0.00060: GROOVE 0.50120 → 0.50060")
     yes(day.window)
-    day.sees(lambda: not day.desk.book.busy)
-    assert day.store.offsets.secondary.read_rows()[4].x == pytest.approx(-0.0003 * 25.4)
+    day.sees(lambda: not day.desk.offset_book.is_saving)
+    assert day.store.offsets.secondary_offsets.read_rows()[4].x == pytest.approx(-0.0003 * 25.4)
     day.sees(lambda: settled(day))
     day.key(Key.Key_F4)
     yes(day.window)
-    day.sees(lambda: not day.desk.book.busy)
-    assert 4 not in day.store.offsets.secondary.read_rows()
+    day.sees(lambda: not day.desk.offset_book.is_saving)
+    assert 4 not in day.store.offsets.secondary_offsets.read_rows()

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.desk_assembly import desk_and_executor
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.program_proving import get_samples_folder
 from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
 from app.extras.quality.charts_and_trends import TrendsSection
 from app.extras.quality.features_section import FeaturesSection
-from app.extras.quality.quality_desk import QualityFunctions
-from app.screen.page_table import menu_keys
-from drivers.waiting import StepClock
+from app.extras.quality.quality_setup import QualityFunctions
+from app.screen.page_table import map_menu_keys
+from drivers.wakeups import ManualClock
 from tests.attached import attached
 
 
@@ -24,8 +24,8 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     found = {}
     for name in ("gt75", "sinumerik-live", "ac-table-mill"):
-        desk, _executor = desk_and_executor(
-            name, lambda: read_offsets(samples() / "offsets.toml"), StepClock()
+        desk, _executor = create_desk_and_executor(
+            name, lambda: read_offsets(get_samples_folder() / "offsets.toml"), ManualClock()
         )
         pages = attached(desk, QualityFunctions)
         features, readings, *_, trends = pages.functions
@@ -33,11 +33,11 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
         assert isinstance(trends, TrendsSection)
         names = [each.name for each in pages.functions]
         found[name] = (
-            "CORRECTED BY" in features.fields,
-            "TOOL OR OFFSET NUMBER" in features.fields,
-            "F8" in dict(readings.keys()),
+            "CORRECTED BY" in features.field_names,
+            "TOOL OR OFFSET NUMBER" in features.field_names,
+            "F8" in dict(readings.function_keys()),
             "TOOL LIFE" in names,
-            "WEAR" in trends.kinds,
+            "WEAR" in trends.trends,
         )
         desk.close()
     assert found == {
@@ -45,4 +45,4 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
         "sinumerik-live": (False, True, True, True, True),
         "ac-table-mill": (False, False, False, False, False),
     }
-    assert "W" in menu_keys("klartext")
+    assert "W" in map_menu_keys("klartext")

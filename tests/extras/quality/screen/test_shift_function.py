@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.runs.journal import Journal
-from app.desk.data_folder import data_folder
+from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
 from app.special.special_view import SpecialPage
 from tests.screen.desks import desk_on
@@ -21,27 +21,29 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
 
 
 def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
-    return page.table.sheet.rows[row].cells
+    return page.table_panel.table.rows[row].cells
 
 
 def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    page = hands.frame.page
+    page = hands.frame.current_page
     assert isinstance(page, SpecialPage)
     page._enter([each.name for each in page.model.functions].index("SHIFT REPORT"))
-    hands.sees(lambda: bool(page.table.sheet.rows) and cells(page, 0) == ("Parts", "0"))
+    hands.sees(lambda: bool(page.table_panel.table.rows) and cells(page, 0) == ("Parts", "0"))
     hands.key(Key.Key_F3)
     assert hands.prompt() == wording("screen.no-later-shift")
     hands.key(Key.Key_F2)
     hands.sees(
-        lambda: begins(page.model.current.sheet(hands.desk.snapshot()).notes[-1], "screen.no-part-begun")
+        lambda: begins(
+            page.model.shown_function.make_table(hands.desk.read_snapshot()).notes[-1], "screen.no-part-begun"
+        )
     )
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(page.table.sheet.rows) and cells(page, -1)[0] == "THIS CONTROL")
+    hands.sees(lambda: bool(page.table_panel.table.rows) and cells(page, -1)[0] == "THIS CONTROL")
     hands.key(Key.Key_Up)
-    for _ in page.table.sheet.rows:
+    for _ in page.table_panel.table.rows:
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
-    (written,) = (data_folder() / "sheets").glob("shift-*.html")
+    (written,) = (find_data_folder() / "sheets").glob("shift-*.html")
     assert wording("screen.no-part-begun") in written.read_text()

@@ -8,6 +8,6 @@ from tests.screen.editor.writer import Writer
 
 def shapes_of(writer: Writer) -> ShapesView:
     """Return the panel of the editor in front."""
-    found = writer.editor.panel
+    found = writer.editor.editor_panel
     assert isinstance(found, ShapesView)
     return found

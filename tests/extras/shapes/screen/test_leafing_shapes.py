@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QWidget
 
-from app.extras.shapes.shapes_view import RowsPanel, _Line
-from app.screen.look import DARK, Look
+from app.extras.shapes.shapes_view import ShapeRowsPanel, _Line
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
 from tests.screen.test_leafing import MANY, SMALL, above, chosen_rows, leaf_keys
 
 __all__ = ["above"]
@@ -13,7 +13,7 @@ __all__ = ["above"]
 
 def test_a_finger_comes_to_every_shape(above: QWidget) -> None:
     touched: list[int] = []
-    panel = RowsPanel(Look(DARK, SMALL), lambda row, _column: touched.append(row), above)
+    panel = ShapeRowsPanel(ScreenTheme(DARK_PALETTE, SMALL), lambda row, _column: touched.append(row), above)
     panel.resize(260, 300)
-    panel.shown = tuple(_Line(f"row {n}") for n in range(MANY))
+    panel.displayed_rows = tuple(_Line(f"row {n}") for n in range(MANY))
     assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))

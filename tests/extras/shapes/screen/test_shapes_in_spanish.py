@@ -6,8 +6,8 @@ import pytest
 
 from app.desk.translation import tr
 from app.extras.shapes.shape_form import ShapeForm
-from core.extras.shapes.shape_fields import Setting
-from core.extras.shapes.shape_table import SHAPES
+from core.extras.shapes.shape_fields import ProgramSettings
+from core.extras.shapes.shape_table import SHAPES_BY_KEY
 from tests.screen.hands import Hands
 from tests.screen.test_language import spanish
 
@@ -23,6 +23,6 @@ __all__ = ["spanish"]
     ],
 )
 def test_a_refusal_of_a_shape_calls_its_field_as_the_form_does(spanish: Hands, key: str, told: str) -> None:
-    form = ShapeForm(SHAPES[key], Setting())
-    assert tr(form.trouble).startswith(f"{told} falta: ")
-    assert tr(SHAPES[key].name) not in {"", SHAPES[key].name}
+    form = ShapeForm(SHAPES_BY_KEY[key], ProgramSettings())
+    assert tr(form.current_error).startswith(f"{told} falta: ")
+    assert tr(SHAPES_BY_KEY[key].name) not in {"", SHAPES_BY_KEY[key].name}

@@ -11,12 +11,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.editor.editor_parts_view import Mode
+from app.editor.editor_parts_view import EditorMode
 from app.extras.shapes import shapes_view
-from app.extras.shapes.shapes_view import LinesPanel, RowsPanel, _Line
-from app.screen.look import DARK, Look, Painter
+from app.extras.shapes.shapes_view import ShapeLinesPanel, ShapeRowsPanel, _Line
 from app.screen.panel import Panel
-from app.screen.window_layout import FINGER
+from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
 from tests.extras.shapes.screen.panel import shapes_of
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
@@ -31,7 +31,7 @@ def opened(writer: Writer) -> Writer:
     """In front of the list of shapes of a new program."""
     writer.new("shaped")
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: writer.editor.mode is Mode.PANEL)
+    writer.sees(lambda: writer.editor.mode is EditorMode.PANEL)
     return writer
 
 
@@ -56,7 +56,7 @@ def test_a_hole_is_written_and_the_text_is_one_step_back(writer: Writer) -> None
     drilled(writer)
     assert writer.text().splitlines()[-1] == "M30"
     writer.key(Key.Key_F10)
-    assert writer.editor.mode is Mode.TEXT
+    assert writer.editor.mode is EditorMode.TEXT
     writer.key(Key.Key_F8)
     assert "G81" not in writer.text()
     assert writer.text().startswith("G90G94F300G72(HEAD")
@@ -71,7 +71,7 @@ def test_the_path_follows_every_key(writer: Writer) -> None:
     writer.type(".6")
 
     def deepest() -> float:
-        picture = writer.editor.editor.proof.now.picture
+        picture = writer.editor.editor.live_proof.current.picture
         return min(picture.z, default=0.0) if picture is not None else 0.0
 
     writer.sees(lambda: abs(deepest() + 0.6 * 25.4) < 1e-6)
@@ -80,7 +80,7 @@ def test_the_path_follows_every_key(writer: Writer) -> None:
     assert "G81" not in writer.text()
     writer.key(Key.Key_Escape)
     writer.key(Key.Key_Escape)
-    writer.sees(lambda: writer.editor.mode is Mode.TEXT and not deepest())
+    writer.sees(lambda: writer.editor.mode is EditorMode.TEXT and not deepest())
 
 
 def test_what_is_wrong_is_said_and_nothing_is_written(writer: Writer) -> None:
@@ -94,70 +94,70 @@ def test_what_is_wrong_is_said_and_nothing_is_written(writer: Writer) -> None:
     writer.key(Key.Key_Down)
     writer.type("0")
     writer.key(Key.Key_F2)
-    assert shows(writer.editor.prompt(), "shapes.peck-too-deep")
+    assert shows(writer.editor.prompt_text(), "shapes.peck-too-deep")
     assert writer.text() == before
 
 
 def test_the_cursor_opens_the_shape_that_it_stands_in(writer: Writer) -> None:
     drilled(writer)
     writer.key(Key.Key_F10)
-    writer.editor.go_to(5)
+    writer.editor.move_cursor_to(5)
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: writer.editor.mode is Mode.PANEL)
+    writer.sees(lambda: writer.editor.mode is EditorMode.PANEL)
     form = shapes_of(writer).model.form
     assert form is not None
-    assert form.typed["DEEP"] == ".6"
+    assert form.entered_texts["DEEP"] == ".6"
 
 
 def test_lines_changed_by_hand_are_written_over_only_when_asked(writer: Writer) -> None:
     drilled(writer)
     writer.key(Key.Key_F10)
-    writer.editor.go_to(6)
+    writer.editor.move_cursor_to(6)
     writer.write("G04F2\n")
     changed = writer.text()
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: writer.editor.mode is Mode.PANEL)
-    assert shows(writer.editor.prompt(), "shapes.line-changed-by-hand")
+    writer.sees(lambda: writer.editor.mode is EditorMode.PANEL)
+    assert shows(writer.editor.prompt_text(), "shapes.line-changed-by-hand")
     writer.key(Key.Key_F2)
     assert writer.text() == changed
-    assert shows(writer.editor.prompt(), "shapes.replaces-changed-lines")
+    assert shows(writer.editor.prompt_text(), "shapes.replaces-changed-lines")
     writer.key(Key.Key_F6)
     writer.sees(lambda: "G04F2" not in writer.text())
 
 
 def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
     opened(writer)
-    touch(writer, shapes_of(writer).rows, ROWS)
+    touch(writer, shapes_of(writer).rows_panel, ROWS)
     writer.sees(lambda: shapes_of(writer).model.form is not None)
     writer.key(Key.Key_F2)
     writer.sees(lambda: writer.text().startswith("G90"))
     writer.type("d")
-    writer.sees(lambda: len(shapes_of(writer).rows.shown) > 4)
+    writer.sees(lambda: len(shapes_of(writer).rows_panel.displayed_rows) > 4)
     writer.key(Key.Key_F9)
-    writer.sees(shapes_of(writer).pad.isVisible)
-    touch(writer, shapes_of(writer).pad, 2)
+    writer.sees(shapes_of(writer).number_pad.isVisible)
+    touch(writer, shapes_of(writer).number_pad, 2)
     form = shapes_of(writer).model.form
     assert form is not None
-    assert form.typed == {"DIA": "9"}
+    assert form.entered_texts == {"DIA": "9"}
 
 
 def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> None:
     opened(writer)
     press = QKeyEvent(QEvent.Type.KeyPress, Key.Key_ScrollLock, Qt.KeyboardModifier.NoModifier)
-    stop = writer.window.keyboard._stop_of(press)
+    stop = writer.window.keyboard_filter._find_stop(press)
     assert stop is not None
     stop(press=0)
-    assert writer.desk.hands.estop_pressed
+    assert writer.desk.station_controls.estop_pressed
     assert shapes_of(writer).model.form is None
 
 
 def test_another_language_has_no_shapes(writer: Writer) -> None:
     writer.new("other.h")
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: shows(writer.editor.prompt(), "shapes.no-shapes-in-language"))
-    assert writer.editor.mode is Mode.TEXT
+    writer.sees(lambda: shows(writer.editor.prompt_text(), "shapes.no-shapes-in-language"))
+    assert writer.editor.mode is EditorMode.TEXT
     writer.editor.show_text()
-    assert [key.name for key in writer.editor.head.panel_keys] == ["Calculators"]
+    assert [key.name for key in writer.editor.head_line.panel_keys] == ["Calculators"]
 
 
 def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> None:
@@ -165,51 +165,51 @@ def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> No
     opened(writer).type("n")
     view = shapes_of(writer)
     writer.key(Key.Key_F9)
-    writer.sees(lambda: view.pad.isVisible() and len(view.pad._places) == 20)
-    assert not view.sketch.isVisible()  # under the keys there is no room for it
-    for panel in (view.rows, view.pad):
+    writer.sees(lambda: view.number_pad.isVisible() and len(view.number_pad._places) == 20)
+    assert not view.sketch_panel.isVisible()  # under the keys there is no room for it
+    for panel in (view.rows_panel, view.number_pad):
         panel.grab()
         for box, *_ in panel._places:
-            assert min(box.width(), box.height()) >= FINGER - 1
-            assert panel.area().contains(box)
+            assert min(box.width(), box.height()) >= FINGERTIP_PX - 1
+            assert panel.find_full_area().contains(box)
     writer.key(Key.Key_F9)
-    writer.sees(view.sketch.isVisible)
-    view.sketch.grab()
-    assert view.sketch._places
-    for box, *_ in view.sketch._places:
-        assert min(box.width(), box.height()) >= FINGER
-        assert view.sketch.area().contains(box)
+    writer.sees(view.sketch_panel.isVisible)
+    view.sketch_panel.grab()
+    assert view.sketch_panel._places
+    for box, *_ in view.sketch_panel._places:
+        assert min(box.width(), box.height()) >= FINGERTIP_PX
+        assert view.sketch_panel.find_full_area().contains(box)
 
 
 def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> None:
     writer.new("shaped")
-    head = writer.editor.head
+    head = writer.editor.head_line
     head.grab()
     keyboard, shapes, sums = range(3)
     assert len({box.x() for box, *_ in head._places}) == len(head._places) == 3
     touch(writer, head, shapes)
-    assert (writer.editor.mode, shapes_of(writer).model.of_shapes) == (Mode.PANEL, True)
+    assert (writer.editor.mode, shapes_of(writer).model.lists_shapes) == (EditorMode.PANEL, True)
     shapes_of(writer).refresh()
-    assert shapes_of(writer).rows.heading.startswith("SHAPES")
+    assert shapes_of(writer).rows_panel.heading.startswith("SHAPES")
     touch(writer, head, shapes)
-    assert writer.editor.mode is Mode.TEXT
+    assert writer.editor.mode is EditorMode.TEXT
     touch(writer, head, sums)
-    assert (writer.editor.mode, shapes_of(writer).model.of_shapes) == (Mode.PANEL, False)
+    assert (writer.editor.mode, shapes_of(writer).model.lists_shapes) == (EditorMode.PANEL, False)
     shapes_of(writer).refresh()  # the list of before stood there, and another form was opened by a touch
-    assert shapes_of(writer).rows.heading == wording("shapes.calculators")
-    assert "TRIANGLE" in shapes_of(writer).rows.shown[0].label
-    assert begins(shapes_of(writer).model.prompt(), "shapes.calculators-prompt")
+    assert shapes_of(writer).rows_panel.heading == wording("shapes.calculators")
+    assert "TRIANGLE" in shapes_of(writer).rows_panel.displayed_rows[0].label
+    assert begins(shapes_of(writer).model.prompt_text(), "shapes.calculators-prompt")
     touch(writer, head, shapes)
     touch(writer, head, keyboard)
-    assert writer.editor.lettered
+    assert writer.editor.is_keyboard_shown
 
 
 def test_what_is_longer_than_its_place_is_turned_by_a_finger(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
-    panel = LinesPanel(Look(DARK, 6.4), above)
+    panel = ShapeLinesPanel(ScreenTheme(DARK_PALETTE, 6.4), above)
     panel.resize(180, 110)
-    panel.words = ("the nose leaves metal there " * 20,)
+    panel.remarks = ("the nose leaves metal there " * 20,)
 
     def turned() -> QImage:
         QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(60, 40))
@@ -219,7 +219,7 @@ def test_what_is_longer_than_its_place_is_turned_by_a_finger(qtbot: QtBot) -> No
     pages = [turned() for _ in range(40)]
     assert pages[0] != first
     assert first in pages  # behind the last page stands the first
-    panel.words = ("short",)
+    panel.remarks = ("short",)
     assert panel.grab().toImage() == turned()
 
 
@@ -227,34 +227,34 @@ def test_the_list_is_one_key_from_a_form(writer: Writer) -> None:
     """A finger has no Esc: from the form that the cursor opened, other shapes were behind the number pad."""
     drilled(writer)
     writer.key(Key.Key_F10)
-    writer.editor.go_to(5)
+    writer.editor.move_cursor_to(5)
     before = writer.text()
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: shapes_of(writer).model.form is not None)
     writer.type("9")
-    assert writer.frame.keys.labels[7] == "LIST" or writer.editor.labels()[7] == "LIST"
+    assert writer.frame.key_bar.key_labels[7] == "LIST" or writer.editor.key_labels()[7] == "LIST"
     writer.key(Key.Key_F8)
-    assert shapes_of(writer).model.listing
+    assert shapes_of(writer).model.is_list_shown
     assert writer.text() == before
 
 
 def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
-    look = Look(DARK, 6.4)
-    look.caret = True
-    panel = RowsPanel(look, lambda _row, _column: None, above)
+    look = ScreenTheme(DARK_PALETTE, 6.4)
+    look.is_caret_shown = True
+    panel = ShapeRowsPanel(look, lambda _row, _column: None, above)
     panel.resize(260, 300)  # as at 1024x600
     drawn: list[str] = []
-    write = Painter.write
+    write = ThemedPainter.draw_text_line
 
-    def writing(painter: Painter, rect: QRectF, text: str, *rest: Any, **more: Any) -> None:
+    def writing(painter: ThemedPainter, rect: QRectF, text: str, *rest: Any, **more: Any) -> None:
         drawn.append(text)
         write(painter, rect, text, *rest, **more)
 
-    panel.shown = (_Line(wording("shapes.wall-leans"), "0"), _Line("TOOL", "1"))
+    panel.displayed_rows = (_Line(wording("shapes.wall-leans"), "0"), _Line("TOOL", "1"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Painter, "write", writing)
+        patch.setattr(ThemedPainter, "draw_text_line", writing)
         panel.grab()
     assert wording("shapes.wall-leans") not in drawn
     first = next(n for n, text in enumerate(drawn) if text.startswith("SLOPE"))
@@ -266,41 +266,41 @@ def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
     """A question mark stood in the entry as if somebody had typed it, and a bar behind a choice."""
     above = QWidget()
     qtbot.addWidget(above)
-    look = Look(DARK, 6.4)
-    look.caret = True
-    panel = RowsPanel(look, lambda _row, _column: None, above)
+    look = ScreenTheme(DARK_PALETTE, 6.4)
+    look.is_caret_shown = True
+    panel = ShapeRowsPanel(look, lambda _row, _column: None, above)
     panel.resize(260, 300)
-    panel.typing = True
+    panel.is_entry_open = True
 
     def image(figure: str) -> QImage:
-        panel.shown = (_Line("DIAMETER", figure),)
+        panel.displayed_rows = (_Line("DIAMETER", figure),)
         return panel.grab().toImage()
 
     assert image("?") == image("")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(shapes_view, "_TURN", "none")
         typed = image("◂ INCH ▸")
-    panel.shown = ()
+    panel.displayed_rows = ()
     assert image("◂ INCH ▸") != typed
 
 
 def test_what_is_said_of_the_lines_leaves_no_half_line_below(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
-    panel = LinesPanel(Look(DARK, 6.4), above)
+    panel = ShapeLinesPanel(ScreenTheme(DARK_PALETTE, 6.4), above)
     panel.resize(180, 110)
-    panel.words = ("the nose leaves metal there " * 20,)
+    panel.remarks = ("the nose leaves metal there " * 20,)
     without = panel.grab().toImage()
-    panel.lines = ("T1", "M03S750")
+    panel.displayed_lines = ("T1", "M03S750")
     assert panel.grab().toImage() == without
 
 
 def test_the_heading_counts_the_lines_of_the_text_that_is_proved(writer: Writer) -> None:
     drilled(writer)
-    writer.sees(lambda: bool(shapes_of(writer).model.listing))
+    writer.sees(lambda: bool(shapes_of(writer).model.is_list_shown))
     count = len(shapes_of(writer).model.text.splitlines())
     writer.type("f.5")
     form = shapes_of(writer).model.form
     assert form is not None
     written = count + len(form.lines) + 1
-    writer.sees(lambda: f" OF {written} " in writer.editor.head.heading.place)
+    writer.sees(lambda: f" OF {written} " in writer.editor.head_line.heading.cursor_position)

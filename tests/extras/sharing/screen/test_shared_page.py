@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.extras.sharing.sharing import Sharing
-from app.extras.sharing.sharing_desk import Heard
-from app.extras.sharing.sharing_model import NO_PLACE, SharingModel
-from core.executor.snapshot import State
+from app.extras.sharing.sharing import ProgramSharing
+from app.extras.sharing.sharing_model import NO_LOCATION_MESSAGE, SharingModel
+from app.extras.sharing.sharing_setup import SharingResultHandler
+from core.executor.snapshot import MachineState
 from core.extras.sharing.shared_folder import SharedFolder
 from core.store.store import Store
 from tests.screen.day import Day, Key, begun
@@ -27,48 +27,48 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     """PEG on the desk with T1 touched off; nothing is shared yet."""
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     with begun(qtbot, "peg.nc", PEG) as day:
-        day.store.offsets.tools.change_row(
+        day.store.offsets.tool_offsets.change_row(
             1, "test", {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}
         ).result(60)
-        day.desk.book.read()
+        day.desk.offset_book.read_store()
         yield day
 
 
 @pytest.fixture
-def other(tmp_path: Path) -> Iterator[Sharing]:
+def other(tmp_path: Path) -> Iterator[ProgramSharing]:
     """Another lathe of the shop."""
     (tmp_path / "shop").mkdir()
     (tmp_path / "other" / "programs").mkdir(parents=True)
     place = SharedFolder(tmp_path / "shop")
-    place.begin()
+    place.set_up()
     with Store.open(tmp_path / "other") as store:
-        yield Sharing(place, "LATHE 2", "2" * 32, tmp_path / "other" / "programs", lambda: store)
+        yield ProgramSharing(place, "LATHE 2", "2" * 32, tmp_path / "other" / "programs", lambda: store)
 
 
 @pytest.fixture
-def sharing(day: Day, other: Sharing, tmp_path: Path) -> Sharing:
+def sharing(day: Day, other: ProgramSharing, tmp_path: Path) -> ProgramSharing:
     """This desk shares; the other one has taken PEG and made it better."""
-    made = Sharing(
+    made = ProgramSharing(
         SharedFolder(tmp_path / "shop"),
         "LATHE 1",
         "1" * 32,
         tmp_path / "home" / "programs",
-        day.journal.opened,
+        day.journal.require_store,
     )
-    before = day.desk.pages.find(SharingModel)
+    before = day.desk.page_registry.find(SharingModel)
     assert before is not None
     before.close()
-    day.desk.pages.attach(SharingModel(day.desk, made))
-    made.look()
-    other.take(other.look().families["peg.nc"].newest[0])
+    day.desk.page_registry.attach_model(SharingModel(day.desk, made))
+    made.synchronize()
+    other.copy_version(other.synchronize().programs["peg.nc"].newest_versions[0])
     (tmp_path / "other" / "programs" / "peg.nc").write_text(BETTER)
-    other.look()
-    made.look()
+    other.synchronize()
+    made.synchronize()
     return made
 
 
 def model(day: Day) -> SharingModel:
-    found = day.desk.pages.find(SharingModel)
+    found = day.desk.page_registry.find(SharingModel)
     assert found is not None
     return found
 
@@ -78,12 +78,18 @@ def opened(day: Day) -> None:
     day.sees(lambda: day.page == "SHARED PROGRAMS")
 
 
-def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Sharing, tmp_path: Path) -> None:
+def test_what_is_newer_is_compared_and_taken_when_asked(
+    day: Day, sharing: ProgramSharing, tmp_path: Path
+) -> None:
     peg = tmp_path / "home" / "programs" / "peg.nc"
     opened(day)
-    day.sees(lambda: bool(model(day).elsewhere.changes))
-    assert model(day).sheet().rows[0].cells[:3] == ("peg.nc", "NEWER VERSION ON ANOTHER CONTROL", "LATHE 2")
-    signs = [(row.sign, row.text) for row in model(day).elsewhere.changes if row.sign in "+-"]
+    day.sees(lambda: bool(model(day).remote_versions.changes))
+    assert model(day).make_table().rows[0].cells[:3] == (
+        "peg.nc",
+        "NEWER VERSION ON ANOTHER CONTROL",
+        "LATHE 2",
+    )
+    signs = [(row.sign, row.text) for row in model(day).remote_versions.changes if row.sign in "+-"]
     assert signs == [("-", "G01G94F60Z-.3"), ("+", "G01G94F40Z-.3")]
     day.key(Key.Key_F2)
     assert begins(day.prompt, "screen.take-shared", name="peg.nc", desk="LATHE 2")
@@ -94,20 +100,20 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
     day.key(Key.Key_Y)
     day.sees(lambda: day.prompt == wording("screen.taken-shared", name="peg.nc", desk="LATHE 2"))
     assert peg.read_text() == BETTER
-    day.sees(lambda: model(day).sheet().rows[0].cells[1] == "UP TO DATE")
+    day.sees(lambda: model(day).make_table().rows[0].cells[1] == "UP TO DATE")
     with sharing._store().read() as connection:
         kept = [bytes(text) for (text,) in connection.execute("SELECT text FROM program_versions")]
     assert PEG.encode() in kept
 
 
-def test_a_program_that_runs_is_not_replaced(day: Day, sharing: Sharing, tmp_path: Path) -> None:
+def test_a_program_that_runs_is_not_replaced(day: Day, sharing: ProgramSharing, tmp_path: Path) -> None:
     day.key(Key.Key_D)
-    assert day.desk.programs.choose("peg")
+    assert day.desk.program_choice.load_by_name("peg")
     day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
     day.palms()
-    day.reaches(State.RUN)
+    day.reaches(MachineState.RUN)
     opened(day)
-    day.sees(lambda: model(day).version is not None)
+    day.sees(lambda: model(day).selected_version is not None)
     day.key(Key.Key_F2)
     assert day.prompt == wording("screen.program-being-cut", name="peg.nc")
     day.key(Key.Key_Return)
@@ -115,82 +121,84 @@ def test_a_program_that_runs_is_not_replaced(day: Day, sharing: Sharing, tmp_pat
 
 
 def test_what_both_have_changed_is_kept_by_f3(
-    day: Day, sharing: Sharing, other: Sharing, tmp_path: Path
+    day: Day, sharing: ProgramSharing, other: ProgramSharing, tmp_path: Path
 ) -> None:
     mine = PEG.replace("S2000", "S1500")
     (tmp_path / "home" / "programs" / "peg.nc").write_text(mine)
     opened(day)
     day.key(Key.Key_F3)
     assert begins(day.prompt, "screen.nothing-to-settle")
-    sharing.look()
-    day.sees(lambda: model(day).sheet().rows[0].cells[1] == wording("screen.changed-on-both"))
+    sharing.synchronize()
+    day.sees(lambda: model(day).make_table().rows[0].cells[1] == wording("screen.changed-on-both"))
     day.key(Key.Key_F3)
     assert begins(day.prompt, "screen.keep-own", name="peg.nc")
-    day.sees(lambda: not model(day).worker.busy)  # the versions of the others are read
+    day.sees(lambda: not model(day).worker.is_busy)  # the versions of the others are read
     day.run(0.7)
     day.key(Key.Key_Y)
     day.sees(lambda: day.prompt == wording("screen.kept-own", name="peg.nc"))
-    sharing.look()
-    assert other.look().states == {"peg.nc": "newer"}
+    sharing.synchronize()
+    assert other.synchronize().states_by_program == {"peg.nc": "newer"}
 
 
 def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
-    day: Day, sharing: Sharing, tmp_path: Path
+    day: Day, sharing: ProgramSharing, tmp_path: Path
 ) -> None:
     (tmp_path / "shop").rename(tmp_path / "unmounted")
-    heard = Heard(day.desk, day.journal)
+    heard = SharingResultHandler(day.desk, day.journal)
     for _ in range(3):
-        heard.hear(sharing.look())
+        heard.handle_result(sharing.synchronize())
     day.saved()
     told = [each.text for each in day.journal.events("was not found", (), 10)]
     assert len(told) == 1
     opened(day)
-    assert shows(" ".join(model(day).sheet().notes), "screen.share-not-there")
-    day.sees(lambda: model(day).version is not None)
+    assert shows(" ".join(model(day).make_table().notes), "screen.share-not-there")
+    day.sees(lambda: model(day).selected_version is not None)
     day.key(Key.Key_F2)
     day.run(0.7)
     day.key(Key.Key_Y)
     day.sees(lambda: day.prompt.startswith(wording("screen.refused", why="the folder")))
 
 
-def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Sharing) -> None:
-    assert day.desk.programs.choose("peg")
-    day.sees(lambda: not day.desk.session.now.busy)
-    heard = Heard(day.desk, day.journal)
-    day.desk.ask("PRESS Y TO DELETE IT", lambda: None)
-    heard.hear(sharing.now)  # on the sharing thread: a question is not spoilt in the middle of being asked
-    assert day.desk.notice == "PRESS Y TO DELETE IT"
-    day.desk.look()
-    assert (day.desk.answers.answer, day.desk.answers.question) == (
+def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: ProgramSharing) -> None:
+    assert day.desk.program_choice.load_by_name("peg")
+    day.sees(lambda: not day.desk.program_loader.loaded.is_busy)
+    heard = SharingResultHandler(day.desk, day.journal)
+    day.desk.ask_operator("PRESS Y TO DELETE IT", lambda: None)
+    heard.handle_result(
+        sharing.last_result
+    )  # on the sharing thread: a question is not spoilt in the middle of being asked
+    assert day.desk.prompt_notice == "PRESS Y TO DELETE IT"
+    day.desk.update()
+    assert (day.desk.prompt_answers.message, day.desk.prompt_answers.question) == (
         wording("screen.changed-elsewhere", name="peg.nc", desk="LATHE 2"),
         "PRESS Y TO DELETE IT",
     )
-    day.desk.clear()
-    heard.hear(sharing.now)
-    day.desk.look()
-    assert day.desk.notice == ""
+    day.desk.clear_prompt_line()
+    heard.handle_result(sharing.last_result)
+    day.desk.update()
+    assert day.desk.prompt_notice == ""
 
 
 def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
     opened(day)
-    assert model(day).sheet().notes == (NO_PLACE,)
+    assert model(day).make_table().notes == (NO_LOCATION_MESSAGE,)
     day.key(Key.Key_F2)
     assert day.prompt == wording("screen.mark-program")
     day.key(Key.Key_F5)
-    assert day.prompt == NO_PLACE
+    assert day.prompt == NO_LOCATION_MESSAGE
 
 
-def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: Sharing) -> None:
+def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: ProgramSharing) -> None:
     """A dead network drive: the look waits for ever. The page says so behind 30 s, and queues nothing."""
-    model(day).silent_for = lambda: 29.0
-    assert not any(shows(note, "screen.share-silent") for note in model(day).sheet().notes)
+    model(day).get_waiting_time = lambda: 29.0
+    assert not any(shows(note, "screen.share-silent") for note in model(day).make_table().notes)
     opened(day)
-    day.sees(lambda: model(day).version is not None and not model(day).worker.busy)
-    model(day).silent_for = lambda: 95.0
-    said = wording("screen.share-silent", name=sharing.place.name, seconds=95)
-    assert shows(" ".join(model(day).sheet().notes), "screen.share-silent", seconds=95)
+    day.sees(lambda: model(day).selected_version is not None and not model(day).worker.is_busy)
+    model(day).get_waiting_time = lambda: 95.0
+    said = wording("screen.share-silent", name=sharing.location.name, seconds=95)
+    assert shows(" ".join(model(day).make_table().notes), "screen.share-silent", seconds=95)
     for key in (Key.Key_F5, Key.Key_F2):
-        day.desk.clear()
+        day.desk.clear_prompt_line()
         day.key(key)
-        assert day.desk.notice.startswith(said)
-    assert not model(day).worker.busy
+        assert day.desk.prompt_notice.startswith(said)
+    assert not model(day).worker.is_busy

@@ -1,0 +1,124 @@
+"""Output of elementary blocks of Klartext programs, in mm, degrees and minutes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from app.cli.figures.units import (
+    Json,
+    get_path_feed,
+    make_block_head,
+    round_degrees,
+    round_millimeters,
+    round_seconds,
+)
+
+if TYPE_CHECKING:
+    from core.interpreter.shared.elementary_blocks import Block
+    from core.interpreter.shared.working_plane import PlanePosition
+    from core.proving.proof_report import MillResults, ProofReport
+
+TABLE_HEAD = (
+    "    n  line  kind           X          Y          Z         A        B        C"
+    "          feed      rpm       t  block\n"
+)
+_PER_MINUTE = 60.0
+_AXES = ("a", "b", "c")
+
+
+def make_block_json(block: Block, source_line: str, start_s: float, end_s: float) -> Json:
+    """Return an elementary block with the keys of docs/json.md; missing axes are null."""
+    feed, mode = _feed_and_unit(block)
+    swivel = block.swivel
+    shown = {
+        **make_block_head(block, source_line),
+        "units": "mm",
+        **({} if swivel is None else _position_json(swivel)),
+        "feed": feed,
+        "feed_mode": mode,
+        "rpm": round(block.rpm, 6) + 0.0,
+        "t0": round_seconds(start_s),
+        "t1": round_seconds(end_s),
+    }
+    return shown | _plane_json(swivel) if block.kind == "plane" and swivel is not None else shown
+
+
+def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
+    """Return the JSON keys of a proof that differ on a mill.
+
+    ``limits`` are machine positions, and ``final_position`` has all axes.
+    """
+    limits: Json = {
+        name.lower(): [round_millimeters(low), round_millimeters(high)]
+        for name, (low, high) in zip(mill.axis_names, mill.axis_ranges, strict=False)
+    }
+    limits["rpm"] = [round(rpm, 3) for rpm in report.ranges.rpm_range]
+    limits["feed_mm_min"] = [round(speed * _PER_MINUTE, 6) for speed in report.ranges.feed_range]
+    return {
+        "limits": limits,
+        "final": {} if mill.final_position is None else _position_json(mill.final_position),
+    }
+
+
+def format_machine_limits(mill: MillResults) -> str:
+    """Return the limits of the machine positions as a line of text."""
+    if not mill.axis_ranges:
+        return "  machine stands\n"
+    reached = zip(mill.axis_names, mill.axis_ranges, strict=False)
+    return "  machine " + "   ".join(f"{name} {low:.3f} … {high:.3f}" for name, (low, high) in reached) + "\n"
+
+
+def get_final_position(
+    mill: MillResults, setpoint: Sequence[float], *, is_complete: bool
+) -> dict[str, float]:
+    """Return the final position of a run: all axes, and the working plane if the run is ``is_complete``."""
+    if is_complete and mill.final_position is not None:
+        return {name: at for name, at in _position_json(mill.final_position).items() if isinstance(at, float)}
+    named = ((f"m{name.lower()}" if name in "XYZ" else name.lower()) for name in mill.axis_names)
+    return {name: round_millimeters(at) for name, at in zip(named, setpoint, strict=False)}
+
+
+def format_row(block: Block, start_s: float) -> str:
+    """Return a block as a line of the table, with positions in the working plane."""
+    feed, mode = _feed_and_unit(block)
+    speed = "" if feed is None else f"{feed:.1f}{'°' if mode == 'deg/min' else ''}/m"
+    swivel = block.swivel
+    places = "" if swivel is None else "".join(f"{value:11.4f}" for value in swivel.end)
+    angles = "" if swivel is None else "".join(_angle(angle) for angle in swivel.rotary_angles)
+    return (
+        f"{block.n:5d} {block.line:5d}  {block.kind:8s}{places}{angles}"
+        f"{speed:>14s}{block.rpm:9.0f}{start_s:8.2f}  {block.text}\n"
+    )
+
+
+def _position_json(swivel: PlanePosition) -> Json:
+    """Return the end point in the working plane, and the positions of all axes."""
+    plane = dict(zip(("x", "y", "z"), map(round_millimeters, swivel.end), strict=True))
+    machine = dict(zip(("mx", "my", "mz"), map(round_millimeters, swivel.machine_position), strict=True))
+    angles = (None if angle is None else round_degrees(angle) for angle in swivel.rotary_angles)
+    return {**plane, **machine, **dict(zip(_AXES, angles, strict=True))}
+
+
+def _plane_json(swivel: PlanePosition) -> Json:
+    """Return the plane of a PLANE block: its frame by rows, its origin and the targets of the axes."""
+    q120, q121, q122 = (round_degrees(target) for target in swivel.system.target_angles)
+    return {
+        "frame": [[round(cell, 12) + 0.0 for cell in line] for line in swivel.system.frame],
+        "datum": [round_millimeters(value) for value in swivel.system.datum],
+        "q120": q120,
+        "q121": q121,
+        "q122": q122,
+    }
+
+
+def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
+    """Return the speed along the path and its unit; for a rapid, the speed that the slowest axis permits."""
+    if not block.moves or block.travel is None or block.travel.length == 0.0:
+        return None, None
+    unit = "deg" if block.has_angular_feed else "mm"
+    return get_path_feed(block, unit)
+
+
+def _angle(angle: float | None) -> str:
+    return f"{'-':>9s}" if angle is None else f"{angle:9.3f}"

@@ -1,0 +1,129 @@
+"""The LinuxCNC HAL file for a machine file, with its wiring table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+
+from app.desk.command_errors import CommandError
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.table_schema import MachineFileError
+from drivers.hal.boards import board_table
+from drivers.hal.boards.board_table import BoardTable
+from drivers.hal.boards.ethercat_lathe import build_ethercat_file
+from drivers.hal.boards.hal_file_builder import (
+    HalFile,
+    LatheAxis,
+    LatheData,
+    WiringRow,
+    format_wiring_table,
+    render_file,
+)
+from drivers.hal.boards.mesa_servo_lathe import build_mesa_servo_file
+from drivers.hal.boards.mesa_step_lathe import build_mesa_step_file
+from drivers.hal.boards.parallel_port import build_parallel_port_file
+from drivers.hal.boards.simulated_lathe import build_simulated_file
+from drivers.hal.hal_table import HalTable
+
+_BOARD_BUILDERS: Mapping[str, Callable[[LatheData], HalFile]] = {
+    board_table.SIM: build_simulated_file,
+    board_table.PARPORT: build_parallel_port_file,
+    board_table.MESA_STEP: build_mesa_step_file,
+    board_table.MESA_SERVO: build_mesa_servo_file,
+    board_table.ETHERCAT: build_ethercat_file,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class GeneratedHal:
+    """The generated files and tables for a machine.
+
+    ``name`` is the file name in [hal], and ``wiring_rows`` are the rows of the wiring table. Other
+    attributes are the additional files, the wiring table as text lines, and the required measurements.
+    """
+
+    name: str
+    board: str
+    text: str
+    extra_files: Mapping[str, str]
+    wiring_rows: tuple[WiringRow, ...]
+    wiring_table: tuple[str, ...]
+    measurements: tuple[str, ...]
+
+
+def generate_hal(machine: Machine) -> GeneratedHal:
+    """Return the HAL file of a machine as text. Raises the errors of ``build_hal_file``."""
+    file, hal = build_hal_file(machine), machine.hardware.find_driver_table(HalTable)
+    return GeneratedHal(
+        name=hal.file if hal is not None else "",
+        board=file.lathe.board_table.kind,
+        text=render_file(file),
+        extra_files=file.extra_files,
+        wiring_rows=tuple(file.wiring_rows),
+        wiring_table=tuple(format_wiring_table(file.wiring_rows)),
+        measurements=tuple(file.check_notes),
+    )
+
+
+def build_hal_file(machine: Machine) -> HalFile:
+    """Return the HAL file of a machine that uses LinuxCNC HAL.
+
+    Raises CommandError if the machine file has no [hal] or [board], and MachineFileError for names that the
+    board does not have.
+    """
+    hal, board = machine.hardware.find_driver_table(HalTable), machine.hardware.find_driver_table(BoardTable)
+    if hal is None or machine.backend != "hal":
+        raise CommandError(
+            Message(
+                '{source}: machine.backend is {backend}, but a HAL file can be written only for "hal"',
+                source=machine.source,
+                backend=machine.backend,
+            ),
+            "not-hal",
+        )
+    if board is None:
+        kinds = ", ".join(f'"{kind}"' for kind in board_table.BOARD_KINDS)
+        raise CommandError(
+            Message(
+                "{source}: the [board] table is missing; add it with kind = one of {kinds}",
+                source=machine.source,
+                kinds=kinds,
+            ),
+            "no-board",
+        )
+    if machine.hardware.spindle_driver != "hal":  # an inverter on a separate serial line
+        board = replace(board, spindle=replace(board.spindle, full_speed=0.0, pwm="", channel=-1))
+    axes = [
+        LatheAxis(axis.name, axis.count, axis.vmax, axis.amax)
+        for axis in machine.axes
+        if axis.name in hal.axes
+    ]
+    lathe = LatheData(
+        name=machine.name,
+        source_file=machine.source,
+        board_table=board,
+        servo_thread=hal.thread,
+        period_s=hal.period,
+        axes=tuple(axes),
+        rpm_max=machine.spindle.max_rpm,
+        rpm_accel=machine.spindle.accel,
+        encoder_lines=machine.spindle.encoder_ppr,
+        spindle_is_c=machine.spindle_is_c and machine.hardware.spindle_driver == "hal",
+        terminal_names={path: name for path, name in _terminal_names(machine, hal) if name},
+    )
+    file = _BOARD_BUILDERS[board.kind](lathe)
+    if file.findings:
+        raise MachineFileError(file.findings, machine.source)
+    return file
+
+
+def _terminal_names(machine: Machine, hal: HalTable) -> Iterator[tuple[str, str]]:
+    """Yield every pin or signal in the machine file, with its key."""
+    yield from ((f"hal.{key}", getattr(hal, key)) for key in ("machine_on", "charge_pump", "link_fault"))
+    for axis, pins in hal.axes.items():
+        yield from ((f"hal.axes.{axis}.{key}", name) for key, name in asdict(pins).items())
+    yield from ((f"hal.spindle.{key}", name) for key, name in asdict(hal.spindle).items())
+    yield from ((f"io.out.{name}", out.terminal) for name, out in machine.outputs.items())
+    yield from ((f"io.in.{name}", wired.terminal) for name, wired in machine.inputs.items())
+    yield from ((f"io.analog.{name}", pot.terminal) for name, pot in machine.hardware.analog_inputs.items())

@@ -1,0 +1,63 @@
+"""Shared memory and the socket of the stop keys, passed as file descriptors through a connection."""
+
+from __future__ import annotations
+
+import mmap
+import os
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from socket import AF_UNIX, SOCK_SEQPACKET, SOCK_STREAM, fromfd, recv_fds, send_fds, socket
+
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, StopPress
+
+_MARK = b"f"  # a descriptor must be sent together with a byte
+
+
+def send_descriptor(connection: Connection, file: int) -> None:
+    """Send a file descriptor to the process at the other end. Raises OSError."""
+    with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
+        send_fds(sock, [_MARK], [file])
+
+
+def receive_descriptor(connection: Connection) -> int:
+    """Return the file descriptor that the other process sends. Raises OSError and EOFError."""
+    with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
+        _, files, _, _ = recv_fds(sock, len(_MARK), 1)
+    if not files:
+        raise EOFError
+    return files[0]
+
+
+class SharedMemory:
+    """Shared memory without a file, which exists until the last process closes it. ``memory_view`` has its
+    bytes.
+    """
+
+    def __init__(self, file: int) -> None:
+        self.descriptor = file
+        self.memory_view = memoryview(mmap.mmap(file, 0))
+
+    @classmethod
+    def create(cls, size: int) -> SharedMemory:
+        """Return new memory of ``size`` bytes, all zero. Raises OSError."""
+        file = os.memfd_create("turndesk-scope")
+        os.ftruncate(file, size)
+        return cls(file)
+
+
+def handle_stop_keys(stop_socket: int, request_stop: Callable[[StopPress], None]) -> None:
+    """Call ``stop`` for each stop key received from the socket ``line``, until the socket closes.
+
+    One separate thread receives the keys and calls ``stop``, independently of the screen's state.
+    """
+    sock = socket(AF_UNIX, SOCK_SEQPACKET, fileno=stop_socket)
+    threading.Thread(target=_obey, args=(sock, request_stop), name="stop-keys", daemon=True).start()
+
+
+def _obey(line: socket, stop: Callable[[StopPress], None]) -> None:
+    with line, suppress(OSError):
+        while record := line.recv(MAX_RECORD_BYTES):
+            with suppress(ValueError):  # =
+                stop(StopPress.from_bytes(record))

@@ -1,0 +1,93 @@
+"""Rights that the system grants to the control process: real-time priority, locked memory, nice value."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from core.message import Message
+from drivers.process_rights import lock_process_memory, request_scheduling
+
+USES_OWN_PROCESS = (
+    sys.platform == "linux"
+)  # on other systems the control runs in a thread of the screen's process
+REAL_TIME_PRIORITY = 40  # priority of SCHED_RR, below that of the driver host, whose bus has a shorter period
+READING = 1  # priority of the thread that reads programs, below that of the executor
+NICE_VALUE = -10
+_AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
+
+
+class ProcessRight(NamedTuple):
+    """A right: the granted value, and the consequence if it was refused, or empty."""
+
+    name: str
+    granted: str
+    missing: str = ""
+
+
+def acquire_rights() -> tuple[ProcessRight, ...]:
+    """Request all rights for this process. Raises no exception."""
+    scheduling = _scheduling()
+    others = (_nice(), *_check_autogroup()) if scheduling.missing else ()
+    return scheduling, _memory(), *others
+
+
+def check_rights() -> tuple[ProcessRight, ...]:
+    """Return the rights that a control would get; this process returns them afterwards."""
+    policy, priority, nice = (
+        os.sched_getscheduler(0),
+        os.sched_getparam(0),
+        os.getpriority(os.PRIO_PROCESS, 0),
+    )
+    rights = (_scheduling(), _nice(), *_check_autogroup())
+    os.sched_setscheduler(0, policy, priority)
+    with suppress(OSError):
+        os.setpriority(os.PRIO_PROCESS, 0, nice)
+    return rights
+
+
+def _scheduling() -> ProcessRight:
+    cause = request_scheduling("SCHED_RR", REAL_TIME_PRIORITY)
+    if not cause:
+        return ProcessRight("real-time priority", Message("SCHED_RR {priority}", priority=REAL_TIME_PRIORITY))
+    words = (
+        "other programs can delay the control ({cause}). To prevent this, add the line "
+        "'@machine - rtprio 60' to /etc/security/limits.d/turndesk.conf and log in again"
+    )
+    return ProcessRight("real-time priority", "no", Message(words, cause=cause))
+
+
+def _memory() -> ProcessRight:
+    cause, limit = lock_process_memory(only_used=True)
+    words = (
+        "the system can move memory of the control to the disk ({cause}). To prevent this, add the line "
+        "'@machine - memlock unlimited' to /etc/security/limits.d/turndesk.conf and log in again"
+    )
+    if cause:
+        return ProcessRight("locked memory", "no", Message(words, cause=cause))
+    return ProcessRight("locked memory", Message("{limit} MB", limit=limit >> 20) if limit else "all")
+
+
+def _nice() -> ProcessRight:
+    with suppress(OSError, AttributeError):
+        os.setpriority(os.PRIO_PROCESS, 0, NICE_VALUE)
+        return ProcessRight("nice value", str(NICE_VALUE))
+    words = (
+        "the control has the priority of any other program. To improve it, add the line "
+        "'@machine - nice -10' to /etc/security/limits.d/turndesk.conf and log in again"
+    )
+    return ProcessRight("nice value", "0", words)
+
+
+def _check_autogroup() -> tuple[ProcessRight, ...]:
+    """Return a warning row if the kernel groups processes by session.
+
+    Nice values then apply only within one session.
+    """
+    with suppress(OSError):
+        if _AUTOGROUP.read_text().strip() == "1":
+            return (ProcessRight("automatic groups", "on"),)
+    return ()

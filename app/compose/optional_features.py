@@ -1,0 +1,217 @@
+"""Optional features: the table in which they are registered, and the interface of a feature.
+
+The code of a feature is in ``core/extras/NAME`` (without Qt), ``app/extras/NAME`` and ``tests/extras/NAME``.
+``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``OptionalFeature`` that overrides the parts that
+the feature adds. No module outside a feature imports it. If its folders are deleted, TurnDesk works without
+the feature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+if TYPE_CHECKING:
+    from app.compose.backends.backend_entry import CheckResults, ConnectedMachine
+    from app.compose.runs.journal import Journal
+    from app.desk.background_work import LatestRequestWorker
+    from app.desk.desk import Desk
+    from app.desk.page_description import PageDescription
+    from app.desk.persistence import Persistence
+    from app.desk.programs.program_loading import LoadingSteps
+    from app.special.special_functions import SpecialFunction
+    from core.executor.snapshot import Snapshot
+    from core.json_keys import JsonOutput
+    from core.machine.machine_model import Machine
+    from core.store.store import Store
+    from core.store.user_records import UserRow
+
+FEATURE_NAMES = (
+    *("access", "quality", "jobs", "pendant", "mtconnect", "office", "sharing", "analyses", "scheduler"),
+    *("shapes", "drawings", "convert", "tool_tables"),
+)
+"""All optional features. A feature comes after the features that it needs."""
+
+ReportFunction = Callable[[str], None]
+CloseFunction = Callable[[], None]
+T = TypeVar("T")
+
+
+class Subcommand(NamedTuple):
+    """A subcommand of ``turndesk``: the subcommand that it follows in the help, and its help line."""
+
+    predecessor: str
+    help_line: str
+
+
+class OptionalFeature:
+    """Base class of an optional feature. A feature overrides only the parts that it adds.
+
+    ``subcommands`` are its subcommands. The module of a subcommand is ``app.extras.NAME.SUBCOMMAND_command``.
+    ``supervised_threads`` maps each supervised thread to the function that is lost when the thread ends.
+    ``own_special_functions`` names the special functions that a page of the feature shows, so that F10 does
+    not show them. ``required_features`` names the features that this feature requires. ``proof_workers`` is
+    the dotted name of a class of workers on other computers, which prove programs. ``drawing_suffixes`` are
+    the suffixes of drawings from which this feature makes programs; the list of programs shows them.
+    ``editor_panel_class`` is the dotted name of a subclass of ``EditorPanel`` that replaces the editor's
+    text area and writes lines. ``machine_actions`` lists the actions of ``turndesk machine``, each with a
+    module ``app.extras.NAME.ACTION_command``. ``list_machine_tables`` maps each module whose ``DRIVER``
+    declares tables of the machine file to the paths of these tables. ``preceding_table`` is the table of
+    the machine file after which the tables of this feature are listed; empty lists them last.
+    """
+
+    required_features: Sequence[str] = ()
+    subcommands: Mapping[str, Subcommand] = {}
+    machine_actions: Sequence[str] = ()
+    supervised_threads: Mapping[str, str] = {}
+    worker_class_name = ""
+    drawing_suffixes: Sequence[str] = ()
+    editor_panel_class: str = ""
+    list_machine_tables: Mapping[str, tuple[str, ...]] = {}
+    preceding_table: str = ""
+    own_special_functions: Collection[str] = ()
+
+    @property
+    def pages(self) -> Sequence[PageDescription]:
+        """The pages of the main window that this feature adds."""
+        return ()
+
+    def remove_own_inputs(self, machine: Machine) -> Machine:
+        """Return the machine without the inputs that this feature provides, as its backend is wired."""
+        return machine
+
+    def add_ports(self, machine: Machine, connected: ConnectedMachine) -> ConnectedMachine:
+        """Add what this feature provides to the ports of a connected machine."""
+        return connected
+
+    def attach_models(
+        self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
+    ) -> None:
+        """Attach the models of this feature to the operator screen; without a ``journal`` nothing is saved.
+
+        ``loading_steps`` reads and proves programs with the present offsets, and saves nothing.
+        """
+
+    def list_special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
+    ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return the special functions (F10) of this feature.
+
+        Each function has the name of its predecessor in the list.
+        """
+        return ()
+
+    def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
+        """Extend ``model``, a model of a required feature, when that model is created."""
+
+    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        """Start the threads of this feature; return the function that ends them, or None.
+
+        The callback reports on the prompt line and in the event log why the feature cannot run.
+        """
+
+    def start_headless(
+        self, machine: Machine, snapshot: Callable[[], Snapshot], report: ReportFunction, *, real_time: bool
+    ) -> CloseFunction | None:
+        """Start the services of this feature for a run without a screen; return the function that ends them.
+
+        ``real_time`` means that the run takes as long as on the machine. The callback prints the reason if
+        the feature cannot run.
+        """
+
+    def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the declared outputs of --json of this feature.
+
+        The keys are the outputs that they follow in the reference.
+        """
+        return {}
+
+    def words(self) -> Sequence[str]:
+        """Return screen texts that look like names in the source, for the list of all texts."""
+        return ()
+
+    def list_shop_outputs(self) -> Sequence[JsonOutput]:
+        """Return the declared data that this feature sends to the shop network.
+
+        ``command`` is the title of the section in the reference.
+        """
+        return ()
+
+    def require_pin(self, store: Store, row: UserRow, remedy: str) -> bool:
+        """Ask for the PIN of this user on the command line.
+
+        The result is False if this feature does not support PINs. ``remedy`` is the instruction for a user
+        without a PIN. Raises CommandError if the PIN is wrong.
+        """
+        return False
+
+    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+        """Add the rows of this feature to ``turndesk machine add_check_rows``."""
+
+
+@cache
+def extras() -> Mapping[str, OptionalFeature]:
+    """Return the optional features that are installed, by name."""
+    found: dict[str, OptionalFeature] = {}
+    for name in FEATURE_NAMES:
+        if _is_installed(name):
+            extra: OptionalFeature = import_module(f"app.extras.{name}.extra").EXTRA
+            if found.keys() >= set(extra.required_features):
+                found[name] = extra
+    return found
+
+
+def _is_installed(name: str) -> bool:
+    """Return whether the feature has its module; a folder with only cache files has none."""
+    return find_spec(f"app.extras.{name}") is not None and find_spec(f"app.extras.{name}.extra") is not None
+
+
+def map_command_modules() -> Mapping[str, str]:
+    """Return the module of each subcommand that an optional feature adds."""
+    return _modules(lambda extra: extra.subcommands)
+
+
+def map_action_modules() -> Mapping[str, str]:
+    """Return the module of each action of ``turndesk machine`` that an optional feature adds."""
+    return _modules(lambda extra: extra.machine_actions)
+
+
+def _modules(words_of: Callable[[OptionalFeature], Iterable[str]]) -> Mapping[str, str]:
+    return {
+        word: f"app.extras.{name}.{word}_command"
+        for name, extra in extras().items()
+        for word in words_of(extra)
+    }
+
+
+def find_worker_class() -> str:
+    """Return the dotted name of the class of workers on other computers; empty without such a feature."""
+    return next((extra.worker_class_name for extra in extras().values() if extra.worker_class_name), "")
+
+
+def list_drawing_suffixes() -> tuple[str, ...]:
+    """Return the suffixes of all drawings from which an optional feature makes programs."""
+    return tuple(ending for extra in extras().values() for ending in extra.drawing_suffixes)
+
+
+def insert_after(
+    items: Iterable[T], get_name: Callable[[T], str], additions: Iterable[tuple[T, str]]
+) -> list[T]:
+    """Return ``items`` with each item of ``additions`` inserted after the item that its pair names.
+
+    That item may also be an addition. Additions that follow the same item retain their order. If no item has
+    that name, the addition is appended.
+    """
+    found, waiting = list(items), list(additions)
+    newest: dict[str, str] = {}
+    while waiting:
+        names = [get_name(each) for each in found]
+        item, after = next((pair for pair in waiting if pair[1] in names), waiting[0])
+        waiting.remove((item, after))
+        place = newest.get(after, after)
+        found.insert(names.index(place) + 1 if place in names else len(found), item)
+        newest[after] = get_name(item)
+    return found

@@ -1,0 +1,122 @@
+"""Data of a part that is known before its proof: tools, clamping of the stock, and neighboring tools.
+
+The store has the stock for each program by name; the stock is never written into the program text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import convert_to_command_error
+from app.desk.data_folder import find_data_folder
+from app.desk.stored_part import EMPTY_STORED_PART, StoredPart, load_stored_part
+from core.interpreter.shared.job_setup import ToolOffset
+from core.machine.machine_model import Machine
+from core.part.stock import Clamping
+from core.part.tool_shape import ToolShape
+from core.proving.checks.machine_checks import LIVE_TOOL
+from core.proving.checks.thread_checks import DriveLimits
+from core.proving.program_tools import PartSettings
+from core.store.store_file import has_store
+
+if TYPE_CHECKING:
+    pass
+
+MACHINE_FILE_REASON = "set by the machine file"
+
+
+def read_known_part(
+    machine: Machine,
+    tools: Mapping[int, ToolOffset],
+    shapes: Mapping[int, ToolShape],
+    stick_out: float | None = None,
+) -> PartSettings:
+    """Return the part data without a stock.
+
+    ``stick_out`` in mm is that of the job, or None for that of the machine file.
+    """
+    return PartSettings(
+        shapes=shapes,
+        nose_radii={number: tool.nose_radius for number, tool in tools.items()},
+        clamping=_stock_clamping(machine, stick_out),
+        drives=DriveLimits(machine.axes[1].amax, machine.spindle.decel),
+        gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling_kind == "gang" else {},
+        live_codes=any(on and name.startswith(LIVE_TOOL) for name, on in machine.m_codes.values()),
+        silenced=dict.fromkeys(machine.silenced_checks, MACHINE_FILE_REASON),
+        travel=_axis_travel(machine),
+    )
+
+
+def apply_stored_clamping(
+    setting: PartSettings, machine: Machine, stored: StoredPart, *, is_explicit: bool = False
+) -> PartSettings:
+    """Return the part data with the stored stick-out and silenced checks.
+
+    ``is_explicit`` retains the present stick-out, because it was specified explicitly.
+    """
+    if stored.stick_out is not None and not is_explicit and machine.clamping.diameter:
+        setting = replace(setting, clamping=_stock_clamping(machine, stored.stick_out))
+    return replace(setting, silenced={**setting.silenced, **stored.silenced_checks})
+
+
+def _axis_travel(machine: Machine) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """Return the travel of X and Z; None if one of them is unlimited."""
+    x, z = machine.axes[0].travel, machine.axes[1].travel
+    return (x, z) if x is not None and z is not None else None
+
+
+def _stock_clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
+    """Return the clamping by chuck or collet, and the tailstock, or None.
+
+    Without a stick-out, only the speed limit of the chuck and the tailstock apply.
+    """
+    held = machine.clamping
+    out = held.stick_out if stick_out is None else stick_out
+    if not out and not held.max_rpm and not held.quill_diameter:
+        return None
+    return Clamping(
+        held.diameter if out else 0.0,
+        out,
+        held.jaws,
+        held.jaw_diameter or held.diameter,
+        held.max_rpm,
+        held.quill_diameter,
+        held.centre_point,
+        held.centre_at,
+    )
+
+
+def read_stored_part(program: str) -> StoredPart:
+    """Return the stored data of a program's part; empty without a store. Raises CommandError."""
+    return read_stored_parts([program]).get(program, EMPTY_STORED_PART)
+
+
+def read_stored_parts(programs: Iterable[str]) -> dict[str, StoredPart]:
+    """Return the stored part data of all programs that have some, by name.
+
+    Raises CommandError if the store cannot be read.
+    """
+    folder = find_data_folder()
+    if not has_store(folder):
+        return {}
+    from core.store.store import Store, StoreError
+
+    with convert_to_command_error(StoreError), Store.open(folder, read_only=True) as store:
+        found = {program: load_stored_part(store.settings.read_setting, program) for program in programs}
+    return {program: kept for program, kept in found.items() if kept != EMPTY_STORED_PART}
+
+
+def save_stock(program: str, text: str, stick_out: float | None) -> None:
+    """Save the stock text of a program, and the stick-out in mm; None retains the stored stick-out.
+
+    Raises CommandError if the store cannot be written.
+    """
+    from core.store.store import Store, StoreError
+
+    with convert_to_command_error(StoreError), Store.open(find_data_folder()) as store:
+        kept = replace(load_stored_part(store.settings.read_setting, program), stock=text)
+        kept = kept if stick_out is None else replace(kept, stick_out=stick_out)
+        for key, value in kept.make_settings(program).items():
+            store.settings.save_setting(key, value).result()

@@ -1,0 +1,154 @@
+"""Proof of the part of the loaded program: known data, and the weight of each finding.
+
+It runs after the proof of the program. Decision 0011 states which functions wait for it.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.desk.background_work import AbandonedError, ProgressCallback, describe_error
+from app.desk.programs.program_loading import PartProof
+from app.desk.stored_part import EMPTY_STORED_PART, StoredPart
+from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
+from core.proving.checks.part_checks import is_serious
+from core.store.store_errors import StoreError
+
+if TYPE_CHECKING:
+    from core.executor.job import Job
+    from core.language.source import ProgramSource
+    from core.machine.machine_model import Machine
+    from core.part.tool_shape import ToolShape
+    from core.proving.offset_comparison import ComparedPart
+    from core.proving.part_history import ProgramSteps
+    from core.proving.program_tools import PartSettings
+    from core.proving.proof_report import PartReport
+
+ReadShapes = Callable[[], Mapping[int, "ToolShape"]]
+"""The shapes of tools, by T, as they are when it is called; on the worker."""
+ReadStoredPart = Callable[[str], StoredPart]
+"""What is kept of a program's part, by its name; on the worker."""
+
+_log = logging.getLogger(__name__)
+
+NOT_MADE, NO_STOCK = "part-not-made", "stock-unusable"
+
+
+def get_empty_part(_program: str) -> StoredPart:
+    """Return the empty data of a part, for callers without a store."""
+    return EMPTY_STORED_PART
+
+
+@dataclass(frozen=True, slots=True)
+class PartProver:
+    """Proof of parts on this machine. ``read_source`` reads the program whose finished part is used as
+    stock.
+    """
+
+    machine: Machine
+    read_shapes: ReadShapes
+    read_stored_part: ReadStoredPart
+    read_source: Callable[[Path], ProgramSource]
+
+    def read_setting(
+        self, job: Job, report_progress: ProgressCallback
+    ) -> tuple[PartSettings, Diagnostic | None]:
+        """Return the specified stock, tools and clamping, and a finding if the stock cannot be used."""
+        from app.compose.part_data import apply_stored_clamping, read_known_part
+        from app.compose.specified_stock import StockContext, read_stock
+
+        setting = read_known_part(self.machine, job.setup.tools, self.read_shapes())
+        try:
+            kept = self.read_stored_part(job.source.name)
+        except StoreError as error:
+            return setting, _unusable(str(error))
+        setting = apply_stored_clamping(setting, self.machine, kept)
+        if not kept.stock:
+            return setting, None
+        try:
+            around = StockContext(
+                self.read_source, job.setup, self.machine, setting, report_progress, self.read_stored_part
+            )
+            return replace(setting, stock=read_stock(kept.stock, around)), None
+        except ValueError as error:  # invalid text, or a program that cannot be read
+            return setting, _unusable(str(error))
+
+    def compare_parts(
+        self, old_job: Job, new_job: Job, report_progress: ProgressCallback
+    ) -> ComparedPart | None:
+        """Return the part of a job with other offsets, compared with its present part.
+
+        The result is None if the job has no part.
+        """
+        from core.proving.offset_comparison import FINE_COLUMN_WIDTH_MM, ProvedPart, prove_other_offsets
+        from core.proving.part_proof import prove_with_part
+
+        setting = replace(self.read_setting(old_job, report_progress)[0], step=FINE_COLUMN_WIDTH_MM)
+        around = old_job.setup, self.machine, setting
+        report, part = prove_with_part(
+            old_job.shared_program, *around, report_progress, check_canceled=report_progress
+        )
+        if part is None or part.last_piece is None:
+            return None
+        this = ProvedPart(old_job.setup, setting, report, part)
+        return prove_other_offsets(old_job.shared_program, this, new_job.setup, self.machine, report_progress)
+
+    def prove_part(
+        self, moves: ProgramSteps, stock_finding: Diagnostic | None, report_progress: ProgressCallback
+    ) -> PartProof:
+        """Return the proof of the part. An exception of the proof becomes a warning."""
+        from core.proving.part_proof import PartProof
+
+        try:
+            report = PartProof(moves.part_settings, moves.parts).make_report(report_progress)
+        except AbandonedError:
+            raise
+        except Exception as error:  # noqa: BLE001 - the program itself is proved, and may be run
+            _log.exception("proving the part")
+            failed = Diagnostic(
+                0,
+                0,
+                Severity.WARNING,
+                NOT_MADE,
+                Message("The part could not be proved: {error}.", error=describe_error(error)),
+                "Change the specified stock or the tool shapes.",
+            )
+            return _assign_severity([failed], None)
+        return _assign_severity([*([stock_finding] if stock_finding else []), *report.findings], report)
+
+
+def _unusable(why: str) -> Diagnostic:
+    return Diagnostic(
+        0,
+        0,
+        Severity.WARNING,
+        NO_STOCK,
+        Message("The specified stock cannot be used ({why}). An assumed stock is used instead.", why=why),
+        "Enter the stock again on the PART page.",
+    )
+
+
+def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) -> PartProof:
+    """Return the findings with those that are announced before a start."""
+    findings = tuple(findings)
+    warned = [each for each in findings if _is_announced(each)]
+    return PartProof(findings, tuple(_shorten(each) for each in warned), report)
+
+
+def _is_announced(finding: Diagnostic) -> bool:
+    """Return whether a start announces the finding: a serious warning, or a part that was not proved."""
+    if finding.code in {NOT_MADE, NO_STOCK}:
+        return True
+    return is_serious(finding) and finding.severity is not Severity.ERROR
+
+
+def _shorten(finding: Diagnostic) -> str:
+    """Return the short text of an announced finding; the list of findings has the full text and remedy."""
+    if not finding.line:
+        return "PART NOT PROVED WITH THE SPECIFIED STOCK AND TOOLS"
+    return Message("LINE {line}: {check}", line=finding.line, check=finding.check_name.upper())

@@ -1,0 +1,66 @@
+"""Interfaces of pages, start handlers and watchers attached to TurnDesk, and the order of closing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from app.desk.programs.program_loading import LoadedProgram
+from core.closing_steps import ClosingStep, WaitFunction, close_in_order, close_together, wait_for_end
+from core.executor.snapshot import Snapshot
+
+DRIVERS_CLOSE_TIMEOUT_S = 10.0  # Seconds for stopping an inverter and for a driver process to end.
+
+
+class AttachedModel(Protocol):
+    """The model of a page or a background worker, which is closed with TurnDesk."""
+
+    def close(self) -> None: ...
+
+
+class StartHandler(Protocol):
+    """A page that uses the start buttons while it is open, such as MDI or restart."""
+
+    is_open: bool
+
+    def barred(self) -> str:
+        """Return why the start buttons have no effect now. Empty if they can start a cycle."""
+        ...
+
+
+class FrameWatcher(Protocol):
+    """An object that sees every frame and may add a reminder to the prompt line."""
+
+    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None: ...
+
+    def due_reminder(self) -> str:
+        """Return what the operator must do soon. Empty if there is nothing to do."""
+        ...
+
+
+@dataclass(slots=True)
+class ClosingSequence:
+    """The steps that close TurnDesk.
+
+    Every step has a time limit, and no step depends on another. See ``core/closing_steps.py``.
+    """
+
+    stop_steps: list[ClosingStep] = field(default_factory=list)  # Close the machine before everything else.
+    close_drivers: Callable[[], None] = field(default=lambda: None)  # Closes the drivers.
+    # Closed at the same time as the attached models.
+    worker_steps: list[ClosingStep] = field(default_factory=list)
+    # Close the targets that the workers write to, in this order.
+    final_steps: list[ClosingStep] = field(default_factory=list)
+    wait_for_step: WaitFunction = wait_for_end  # Waits for one closing step.
+
+    def close(self, model_steps: Iterable[ClosingStep]) -> None:
+        """Stop the machine and close its drivers, then close all workers at once, then execute
+        ``final_steps``.
+        """
+        close_in_order(
+            [*self.stop_steps, ClosingStep("drivers", self.close_drivers, DRIVERS_CLOSE_TIMEOUT_S)],
+            self.wait_for_step,
+        )
+        close_together([*model_steps, *self.worker_steps], self.wait_for_step)
+        close_in_order(self.final_steps, self.wait_for_step)

@@ -1,0 +1,116 @@
+"""Tables with an entry line and function keys, as the list pages of TurnDesk use them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH
+from app.desk.status.machine_status import Tone
+
+if TYPE_CHECKING:
+    from core.part.tool_outline import ToolOutline
+
+T = TypeVar("T")
+ROW_STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # Rows that the selection moves, by key.
+
+
+def following(choices: Iterable[T], current: T) -> T:
+    """Return the choice after ``current``, in a cycle. An unknown ``current`` gives the first choice."""
+    order = list(choices)
+    return order[(order.index(current) + 1) % len(order) if current in order else 0]
+
+
+class RejectedText(str):
+    """A rejected value: the next character replaces it, and Back edits it."""
+
+    __slots__ = ()
+
+
+def refused(text: str) -> str:
+    """Return a rejected text as RefusedText, unless it is a name, which is edited and not retyped."""
+    return text if set(text) - EXPRESSION_CHARACTERS else RejectedText(text)
+
+
+def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
+    """Return an input text after one more key: a character, ``Back`` or ``Delete``."""
+    if key == "Back":
+        return text[:-1]
+    if key == "Delete":
+        return ""
+    return key if isinstance(text, RejectedText) else (text + key)[:max_length]
+
+
+@dataclass(frozen=True, slots=True)
+class TableRow:
+    """One row of a table.
+
+    ``is_lit`` draws a lamp, filled if True and hollow if False; None draws no lamp. A cell may have two
+    lines if the table is ``has_tall_rows``. ``outline`` is drawn in the last cell.
+    """
+
+    cells: tuple[str, ...]
+    is_lit: bool | None = None
+    tone: Tone = Tone.READY
+    bar_fraction: float | None = None  # Filled part of the last cell, 0…1.
+    outline: ToolOutline | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TableContent:
+    """A table with a title, column heads and an entry line.
+
+    ``column_shares`` divide the table's width. ``marked`` is the index of the selected row, -1 for none.
+    ``question`` and ``text`` are the entry line. Cells of the columns ``raw_columns`` contain names and user
+    texts, which are not translated.
+    """
+
+    title: str
+    column_heads: tuple[str, ...]
+    column_shares: tuple[float, ...]
+    rows: tuple[TableRow, ...]
+    marked: int = -1
+    question: str = ""
+    text: str = ""
+    notes: tuple[str, ...] = ()
+    raw_columns: frozenset[int] = frozenset()
+    number_columns: frozenset[int] = frozenset()  # Columns that are right-aligned, for numbers.
+    has_tall_rows: bool = False  # Rows are high enough for two lines and a drawing.
+    is_rejected: bool = field(init=False)  # The next character replaces the text.
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "is_rejected", isinstance(self.text, RejectedText))
+
+
+class FunctionKey(NamedTuple):
+    """A function key of a page: its label of up to eight characters, and its action."""
+
+    label: str
+    action: Callable[[], None]
+    barred: bool = False  # The action would be rejected now.
+
+
+@dataclass(slots=True)
+class InputField:
+    """An input field. With ``words``, it accepts any character, otherwise only characters of numbers."""
+
+    words: bool = False
+    text: str = ""
+    proposed_text: str = ""  # A proposed text that the first character replaces and Back edits.
+
+    def propose(self, text: str) -> None:
+        """Set a proposed text, which the first character replaces."""
+        self.text = self.proposed_text = text
+
+    def accepts_key(self, key: str) -> bool:
+        """Return whether this character can be entered in the field."""
+        return len(key) == 1 and (self.words or key in EXPRESSION_CHARACTERS)
+
+    def handle_key(self, key: str) -> bool:
+        """Handle a key. Return False if the key has no meaning here. The caller handles Return."""
+        taken = self.accepts_key(key) or key in {"Back", "Delete"}
+        if taken:
+            replaced = self.accepts_key(key) and self.text == self.proposed_text
+            self.text, self.proposed_text = edit_text("" if replaced else self.text, key), ""
+        return taken

@@ -1,0 +1,294 @@
+"""The simulated operator station: palm buttons, feed hold, E-stop, spindle switch and pots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from app.desk.late_presses import LatePresses, StartingAction
+from app.desk.status.prompt_line import ONE_PALM_PRESSED, RELEASE_BOTH_PALMS
+
+# --- palm buttons and pots ----------------------------------------------------------------------------
+
+
+TWO_HAND_WINDOW_S = 0.5  # Seconds within which the second palm button must follow the first.
+
+
+class StationPanel(Protocol):
+    """Interface of the simulated station. The station decides whether both palm buttons start a cycle."""
+
+    def press_left(self) -> None: ...
+
+    def release_left(self) -> None: ...
+
+    def press_right(self) -> None: ...
+
+    def release_right(self) -> None: ...
+
+    def press_hold(self) -> None: ...
+
+    def release_hold(self) -> None: ...
+
+    def press_estop(self) -> None: ...
+
+    def release_estop(self) -> None:
+        """Twist the E-stop button out again."""
+        ...
+
+    def set_spindle_auto(self, is_auto: bool) -> None: ...
+
+    def set_spindle_pot(self, fraction: float) -> None:
+        """Turn the spindle override pot to a fraction of its range, 0…1."""
+        ...
+
+    def set_feed_pot(self, fraction: float) -> None:
+        """Set the feed override pot to a fraction of the programmed feed, 0…1.5."""
+        ...
+
+    def turn_handwheel(self, counts: int) -> None:
+        """Turn the handwheel by a signed number of counts, at a machine with a handwheel."""
+        ...
+
+
+@dataclass(slots=True)
+class PalmButtons:
+    """The palm buttons that are pressed, with their times. It is used to explain a failed start.
+
+    A pair is dead if the buttons were not pressed in time, or if one was released and the other was not. A
+    dead pair starts nothing until both buttons are released, so that a button that is taped down starts
+    nothing.
+    """
+
+    # "left" or "right", with its monotonic time in seconds.
+    press_times: dict[str, float] = field(default_factory=dict)
+    both_pressed: bool = False  # Both were down together since the last time both were up.
+    is_pair_invalid: bool = False
+
+    def press(self, side: str, time_s: float) -> bool:
+        """Record a press. Return True if both buttons are now down and were pressed within the time limit."""
+        if side in self.press_times:
+            return False
+        self.press_times[side] = time_s
+        times = self.press_times.values()
+        if len(self.press_times) < 2:
+            return False
+        self.is_pair_invalid = self.is_pair_invalid or max(times) - min(times) > TWO_HAND_WINDOW_S
+        self.both_pressed = self.both_pressed or not self.is_pair_invalid
+        return not self.is_pair_invalid
+
+    def release(self, side: str) -> bool:
+        """Record a release. Return True if the button was released without the other one pressed in time."""
+        if self.press_times.pop(side, None) is None:
+            return False
+        alone = not self.both_pressed
+        self.is_pair_invalid = bool(self.press_times)
+        if not self.press_times:
+            self.both_pressed = False
+        return alone
+
+
+POT_SLEW_RATE = 1.0  # Fraction of the range per second. A control treats a faster change as a faulty pot.
+
+
+@dataclass(slots=True)
+class OverridePot:
+    """A pot on the screen. ``wanted`` follows the touch, and ``position`` follows at a limited speed."""
+
+    maximum: float
+    wanted: float = 1.0
+    position: float = 1.0
+    starting_action: StartingAction = StartingAction.OVERRIDE
+    late_presses: LatePresses | None = None
+
+    def set(self, fraction: float) -> None:
+        """Set the target of the pot. The pot turns there at a limited speed.
+
+        A late press does not raise the target, because an operator who sees no effect presses too often.
+        """
+        if (
+            self.late_presses is None
+            or fraction <= self.wanted
+            or not self.late_presses.refuse_late_press(self.starting_action)
+        ):
+            self._choose(fraction)
+
+    def _choose(self, fraction: float) -> None:
+        self.wanted = max(0.0, min(self.maximum, fraction))
+
+    def advance(self, elapsed_s: float) -> bool:
+        """Turn the pot for this many seconds. Return True if the pot has moved."""
+        if self.position == self.wanted:
+            return False
+        step = POT_SLEW_RATE * elapsed_s
+        self.position += max(-step, min(step, self.wanted - self.position))
+        return True
+
+
+OVERRIDE_STEP = 0.1
+MAX_OVERRIDE = 1.5
+LATCH_TIME_S = 5.0  # Seconds for which a touched palm button waits for the other one.
+# Maximum seconds of turning per frame, so that a pot does not jump after a stall of the screen.
+MAX_TURN_STEP_S = 0.1
+
+
+@dataclass(slots=True)
+class StationControls:
+    """The buttons and pots of the simulated station that the operator uses on the screen.
+
+    Without a simulated station, all actions have no effect. ``say`` shows a message on the prompt line, and
+    ``clear`` removes it. ``starting`` is called when both palm buttons are pressed. ``barred`` returns why a
+    start is not possible now.
+    """
+
+    station: StationPanel | None
+    clock: Callable[[], float]
+    say: Callable[[str], None]
+    clear: Callable[[], None]
+    starting: Callable[[], None]
+    barred: Callable[[], str] = str
+    find_press_age: Callable[[], float] = float  # Seconds since the press that is being handled.
+    palms: PalmButtons = field(default_factory=PalmButtons)
+    one_palm_message: str = ONE_PALM_PRESSED  # Message after a single palm button was pressed.
+    estop_pressed: bool = False
+    late: LatePresses | None = None
+    spindle_pot: OverridePot = field(
+        default_factory=lambda: OverridePot(1.0, starting_action=StartingAction.SPINDLE)
+    )
+    feed_pot: OverridePot = field(default_factory=lambda: OverridePot(MAX_OVERRIDE))
+    latched: str = ""  # The palm button that waits for the other one, "left" or "right".
+    _latched_at: float = 0.0
+    _looked: float | None = None
+
+    def use_late_presses(self, late: LatePresses) -> None:
+        """Drop late presses that would start something at the station."""
+        self.late = self.spindle_pot.late_presses = self.feed_pot.late_presses = late
+
+    def _refuses(self, starting: StartingAction) -> bool:
+        return self.late is not None and self.late.refuse_late_press(starting)
+
+    def at(self) -> float:
+        """Return the time of the press that is being handled, by this clock."""
+        return self.clock() - self.find_press_age()
+
+    def palm(self, side: str, is_down: bool) -> None:
+        """Press or release a palm button, at the time of the key event.
+
+        The relay of the station decides whether the pair starts a cycle. The relay gets presses when this
+        method is called. Therefore this method passes on only one press of a pair that was not pressed
+        together.
+        """
+        station = self.station
+        if station is None:
+            return
+        if is_down and self._refuses(StartingAction.CYCLE):
+            self.palms.is_pair_invalid = bool(self.palms.press_times)
+        elif is_down and self.barred():
+            self.palms.is_pair_invalid = bool(self.palms.press_times)
+            self.say(self.barred())
+        elif is_down and side not in self.palms.press_times:
+            self._palm_down(station, side)
+        elif not is_down and side in self.palms.press_times:
+            (station.release_left if side == "left" else station.release_right)()
+            if self.palms.release(side):
+                self.say(self.one_palm_message)
+
+    def latch(self, side: str) -> None:
+        """Press a palm button of a simulated machine with one touch or the mouse.
+
+        The button waits for the other one. A press of the other one presses both together, and the release of
+        the touch releases both.
+        """
+        first, self.latched = self.update_latched_side(), ""
+        if self._refuses(StartingAction.CYCLE):
+            return
+        if first in {"", side}:
+            if why := self.barred():
+                self.say(why)
+            elif not first:
+                self.clear()
+                self.latched, self._latched_at = side, self.clock()
+            return
+        for each in (first, side):
+            self.palm(each, is_down=True)
+
+    def update_latched_side(self) -> str:
+        """Return the palm button that waits for the other one.
+
+        After a time limit, the button no longer waits.
+        """
+        if self.latched and self.clock() - self._latched_at > LATCH_TIME_S:
+            self.latched = ""
+        return self.latched
+
+    def release_latched(self) -> None:
+        """Release both palm buttons at the end of the touch."""
+        for side in tuple(self.palms.press_times):
+            self.palm(side, is_down=False)
+
+    def _palm_down(self, station: StationPanel, side: str) -> None:
+        self.clear()
+        if self.palms.press(side, self.at()):
+            self.starting()
+        if self.palms.is_pair_invalid:
+            self.say(RELEASE_BOTH_PALMS)
+        else:
+            (station.press_left if side == "left" else station.press_right)()
+
+    def release_all(self) -> None:
+        """Release all buttons, because the window has lost the keyboard and gets no release events."""
+        self.latched = ""
+        for side in tuple(self.palms.press_times):
+            self.palm(side, is_down=False)
+
+    def hold(self, is_down: bool) -> None:
+        """Press or release the station's feed hold button."""
+        self.latched = ""
+        if self.station:
+            (self.station.press_hold if is_down else self.station.release_hold)()
+
+    def estop(self, is_pressed: bool) -> None:
+        """Press the E-stop button, or twist it out."""
+        if not is_pressed and self._refuses(StartingAction.RELEASE_ESTOP):
+            return
+        if self.station and is_pressed is not self.estop_pressed:
+            self.estop_pressed = is_pressed
+            self.clear()
+            (self.station.press_estop if is_pressed else self.station.release_estop)()
+
+    def set_spindle_auto(self, is_auto: bool) -> None:
+        """Turn the spindle switch to AUTO or to OFF."""
+        if self.station and not (is_auto and self._refuses(StartingAction.SPINDLE)):
+            self.station.set_spindle_auto(is_auto)
+
+    def turn_spindle_pot(self, steps: int) -> None:
+        """Turn the spindle pot by a number of steps of ten percent."""
+        self.spindle_pot.set(step_fraction(self.spindle_pot.wanted, steps))
+
+    def turn_feed_pot(self, steps: int) -> None:
+        """Turn the feed pot by a number of steps of ten percent.
+
+        The feed override always equals the position of the pot.
+        """
+        self.feed_pot.set(step_fraction(self.feed_pot.wanted, steps))
+
+    def advance_pots(self) -> None:
+        """Move the pots toward their targets; called once a frame."""
+        now = self.clock()
+        passed = min(MAX_TURN_STEP_S, now - self._looked) if self._looked is not None else 0.0
+        self._looked = now
+        if self.station is not None:
+            if self.spindle_pot.advance(passed):
+                self.station.set_spindle_pot(self.spindle_pot.position)
+            if self.feed_pot.advance(passed):
+                self.station.set_feed_pot(self.feed_pot.position)
+
+
+def step_fraction(fraction: float, steps: int) -> float:
+    """Return an override fraction after a number of steps of ten percent, without a range limit."""
+    return round(fraction / OVERRIDE_STEP + steps) * OVERRIDE_STEP
+
+
+def step_feed_override(fraction: float, steps: int) -> float:
+    """Return a feed override after a number of steps of ten percent, within its range."""
+    return max(0.0, min(MAX_OVERRIDE, step_fraction(fraction, steps)))

@@ -1,0 +1,57 @@
+"""Stored settings of the part of a program: stock, stick-out and silenced checks.
+
+The store finds them by the program's name. They are never written to the program text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from core.store.store_file import make_part_setting_key, make_stock_setting_key
+
+ReadSetting = Callable[[str], object]
+
+
+@dataclass(frozen=True, slots=True)
+class StoredPart:
+    """The stored part settings of one program.
+
+    ``stock`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out`` is in mm, or None
+    if not entered. ``silenced_checks`` maps each silenced check to the reason.
+    """
+
+    stock: str = ""
+    stick_out: float | None = None
+    silenced_checks: Mapping[str, str] = field(default_factory=dict)
+
+    def make_settings(self, program: str) -> dict[str, object]:
+        """Return the settings to store for a program, by setting name. The value None removes a setting."""
+        rest: dict[str, object] = {"stick_out": self.stick_out, "silenced": dict(self.silenced_checks)}
+        said = {name: value for name, value in rest.items() if value}
+        return {
+            make_stock_setting_key(program): self.stock or None,
+            make_part_setting_key(program): said or None,
+        }
+
+
+EMPTY_STORED_PART = StoredPart()
+
+
+def load_stored_part(read_setting: ReadSetting, program: str) -> StoredPart:
+    """Return the stored part settings of a program. Invalid stored values are ignored."""
+    stock, rest = read_setting(make_stock_setting_key(program)), read_setting(make_part_setting_key(program))
+    known = rest if isinstance(rest, dict) else {}
+    out, silenced = known.get("stick_out"), known.get("silenced")
+    return StoredPart(
+        stock if isinstance(stock, str) else "",
+        float(out) if isinstance(out, int | float) and not isinstance(out, bool) and out > 0.0 else None,
+        {str(check): str(why) for check, why in silenced.items()} if isinstance(silenced, dict) else {},
+    )
+
+
+def make_stock_absolute(stock: str) -> str:
+    """Return a stock description that is valid in every folder, with the absolute path of a file."""
+    kind, _, rest = stock.partition(":")
+    return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else stock

@@ -1,0 +1,268 @@
+"""Document of the editor: its file, how it is saved, and the draft that protects unsaved text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.background_work import LatestRequestWorker
+from app.desk.programs.program_folder import PROGRAM_EXTENSIONS
+from app.editor import editor_messages as messages
+from app.editor.version_history import VersionArchive
+from app.programs.atomic_files import read_if_exists, write_program_file
+from core.file_replacement import write_atomically
+from core.language.source import SourceError, load_source
+from core.message import CodedError, Message
+from core.store.program_records import check_program_name
+from core.store.store_errors import StoreError
+
+MAX_LINES = 50_000  # The text field needs 0.7 s for this number of lines.
+_CRLF = "\r\n"
+
+
+class TooLongError(CodedError, ValueError):
+    """Error for a text that is too long for the editor, with a message for the operator."""
+
+
+class InvalidNameError(ValueError):
+    """Error for an invalid program name, with a message for the operator."""
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """Edited program. ``text`` has line feeds only, and ``line_ending`` is the line ending of the file.
+
+    ``is_read_only`` marks a sample, which must be saved under another name. ``is_new`` marks a document that
+    is not on the disk yet.
+    """
+
+    path: Path
+    text: str = ""
+    line_ending: str = "\n"
+    is_read_only: bool = False
+    is_new: bool = False
+
+    @property
+    def name(self) -> str:
+        """File name of the program."""
+        return self.path.name
+
+    def encode(self, text: str) -> bytes:
+        """Return ``text`` as the bytes of the file, with the file's line ending."""
+        return end_last_line(text).replace("\n", self.line_ending).encode("utf-8", "replace")
+
+
+def end_last_line(text: str) -> str:
+    """Return the text with a final line feed, as it is saved and proved."""
+    return text if text.endswith("\n") or not text else text + "\n"
+
+
+def open_document(path: Path, samples_folder: Path) -> Document:
+    """Open a file as a document.
+
+    Raises SourceError if the file is not a program text, and TooLongError if the text is too long.
+    """
+    text = _read_text(path)
+    if text.count("\n") >= MAX_LINES:
+        raise TooLongError(
+            Message(
+                "{path} has over {most_lines} lines, too many for this editor; split the file in "
+                "another editor",
+                path=path.name,
+                most_lines=MAX_LINES,
+            ),
+            "too-long",
+        )
+    line_end = _CRLF if _CRLF in text else "\n"
+    protected = path.resolve().is_relative_to(samples_folder.resolve())
+    return Document(path, text.replace(_CRLF, "\n").replace("\r", "\n"), line_end, protected)
+
+
+def _read_text(path: Path) -> str:
+    """Return the text of a file. An empty file is permitted."""
+    try:
+        return load_source(path).text
+    except SourceError as error:
+        if error.diagnostic.code == "file-empty":
+            return ""
+        raise
+
+
+def create_document(folder: Path, typed_name: str, default_extension: str) -> Document:
+    """Return a new, empty document for a typed name. Raises NameRefusedError."""
+    return Document(folder / make_program_name(typed_name, default_extension), is_new=True)
+
+
+def make_program_name(typed_name: str, default_extension: str) -> str:
+    """Return the file name for a typed name, with the ``default_extension`` extension if the name has none.
+
+    Raises NameRefusedError if the name is not valid.
+    """
+    name = typed_name.strip()
+    if not name:
+        raise InvalidNameError("ENTER A PROGRAM NAME")
+    if name.startswith("."):
+        raise InvalidNameError(
+            Message("{name} WOULD BE A HIDDEN FILE. START WITH A LETTER OR DIGIT", name=name)
+        )
+    try:
+        check_program_name(name)
+    except StoreError as error:
+        raise InvalidNameError(
+            Message("{name}: INVALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE", name=name)
+        ) from error
+    ending = Path(name).suffix
+    if ending.lower() not in PROGRAM_EXTENSIONS:
+        allowed = " ".join(sorted(PROGRAM_EXTENSIONS - {""}))
+        raise InvalidNameError(
+            Message(
+                "EXTENSION {ending} IS NOT ALLOWED. USE ONE OF {allowed} OR NONE",
+                ending=ending,
+                allowed=allowed,
+            )
+        )
+    return name if ending else name + default_extension
+
+
+# --- saving: the file first, then the version; the previous content is archived too ------------------------
+
+
+CHANGED_EXTERNALLY = "changed by another program"
+
+
+def save_document(document: Document, text: str, archive: VersionArchive, may_overwrite: bool) -> str:
+    """Write ``text`` to the file of ``document`` and archive it as a version.
+
+    Returns an empty string, the reason why no version was archived, or ``CHANGED_EXTERNALLY``.
+    ``CHANGED_EXTERNALLY`` means that the file differs from the opened text. Nothing is written then, unless
+    ``may_overwrite`` is set. Raises FileError.
+    """
+    there = read_if_exists(document.path)
+    foreign = there is not None and not _matches_opened(document, there)
+    if foreign and not may_overwrite:
+        return CHANGED_EXTERNALLY
+    trouble = ""
+    if there is not None:
+        trouble = _kept(archive, document.name, there, "text before editing")
+        if trouble and foreign:
+            return CHANGED_EXTERNALLY  # Content from another program is not replaced before it is archived.
+    data = document.encode(text)
+    write_program_file(document.path, data)
+    return _kept(archive, document.name, data, "saved in the editor") or trouble
+
+
+def _matches_opened(document: Document, data: bytes) -> bool:
+    """Return whether the file still contains the text that was opened or last saved."""
+    if document.is_new:
+        return False
+    return data == document.encode(document.text) or _matches_text(document, data)
+
+
+def _matches_text(document: Document, data: bytes) -> bool:
+    """Return whether data from DOS decodes to the document's text.
+
+    Such data can have another character set, a byte order mark or an end-of-file character.
+    """
+    for code in ("utf-8-sig", "cp437", "latin-1"):
+        try:
+            text = data.decode(code)
+        except UnicodeDecodeError:
+            continue
+        if text.rstrip("\x1a").replace("\r\n", "\n").replace("\r", "\n") == document.text:
+            return True
+    return False
+
+
+def _kept(archive: VersionArchive, name: str, data: bytes, why: str) -> str:
+    try:
+        archive.save_version(name, data, why)
+    except StoreError as error:
+        return str(error)
+    return ""
+
+
+WHY = "unsaved draft"
+
+
+@dataclass(slots=True)
+class DraftStore:
+    """Draft files, one per text, written by a worker with the latest unsaved text."""
+
+    folder: Path
+    archive: VersionArchive
+    error_text: str = ""  # reason why the last draft was not written
+    _wanted: dict[str, str | None] = field(default_factory=dict)  # None: the draft is obsolete
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-drafts"))
+
+    def set_text(self, document: Document, text: str) -> None:
+        """Record the present text of the editor as the draft."""
+        self._wanted[document.name] = None if text == document.text else text
+        self._go_on()
+
+    def delete_draft(self, document: Document) -> None:
+        """Delete the draft of a document, because its text was saved or discarded."""
+        self._wanted[document.name] = None
+        self._go_on()
+
+    def recover_draft(self, document: Document, show_message: Callable[[str], None]) -> None:
+        """Move a leftover draft of the document to the history before a new draft is written.
+
+        ``show_message`` is called with a message.
+        """
+        self.worker.enqueue(lambda: self._recovered(document), show_message, show_message)
+
+    def _recovered(self, document: Document) -> str:
+        place = self._place(document.name)
+        try:
+            text = place.read_text("utf-8")
+            if text == document.text:
+                place.unlink(missing_ok=True)
+                return ""
+            if self.archive.save_version(document.name, document.encode(text), WHY):
+                place.unlink(missing_ok=True)
+                return messages.DRAFT_IN_HISTORY
+            why = messages.NO_STORE
+        except (FileNotFoundError, NotADirectoryError):
+            return ""  # No draft was left.
+        except (OSError, UnicodeDecodeError, StoreError) as error:
+            why = str(error)
+        aside = place.replace(place.with_suffix(".left"))  # The present text gets a separate draft file.
+        return Message(messages.DRAFT_NOT_ARCHIVED, name=aside, why=why)
+
+    def poll(self) -> None:
+        """Process finished writes and start the next; called once per frame."""
+        self.worker.poll()
+        self._go_on()
+
+    def close(self) -> None:
+        """Write the pending drafts and stop the worker."""
+        self.worker.close()
+        for name in list(self._wanted):
+            self._write_draft(name, self._wanted.pop(name))
+
+    def _go_on(self) -> None:
+        if self.worker.is_busy or not self._wanted:
+            return
+        name, text = next(iter(self._wanted.items()))
+        del self._wanted[name]
+        self.worker.enqueue(lambda: self._write_draft(name, text), self._written, self._written)
+
+    def _written(self, trouble: str) -> None:
+        self.error_text = trouble
+        self._go_on()
+
+    def _write_draft(self, name: str, text: str | None) -> str:
+        """Write or delete a draft file atomically, and return an error message or an empty string."""
+        place = self._place(name)
+        try:
+            if text is None:
+                place.unlink(missing_ok=True)
+                return ""
+            write_atomically(place, text.encode("utf-8", "replace"))
+        except OSError as error:
+            return messages.DRAFT_NOT_SAVED.format(error.strerror)
+        return ""
+
+    def _place(self, name: str) -> Path:
+        return self.folder / f"{name}.draft"

@@ -1,0 +1,389 @@
+"""Editor model without Qt: opening, creating, saving and leaving programs, with version history.
+
+No method waits. Each request of the operator starts at once and ends in a later ``poll``, which is called
+once per frame. The text is in the text field of the page, which passes it with each request.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from functools import partial
+from pathlib import Path
+
+from app.desk.background_work import LatestRequestWorker
+from app.desk.desk import Desk
+from app.desk.pages.page_entry import find_editor_refusal
+from app.desk.programs.program_loading import LoadedProgram, LoadingSteps
+from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.translation import tr
+from app.editor import editor_messages as messages
+from app.editor.edited_document import (
+    CHANGED_EXTERNALLY,
+    Document,
+    DraftStore,
+    InvalidNameError,
+    create_document,
+    end_last_line,
+    open_document,
+    save_document,
+)
+from app.editor.live_proof import LiveProof
+from app.editor.version_history import VersionArchive
+from core.message import Message
+
+
+class EditorStage(StrEnum):
+    """State of the editor."""
+
+    CLOSED = "closed"
+    OFFERED = "offered"  # a new file: F1 creates it, Esc cancels
+    READING = "reading"
+    OPEN = "open"
+    NAMING = "naming"  # saving waits for a name
+    SAVING = "saving"
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedProgram:
+    """Program that was closed in the editor.
+
+    ``changed`` means that it was saved with changes, and ``should_load`` that it is to be loaded.
+    """
+
+    path: Path
+    is_changed: bool
+    should_load: bool
+    text: str = ""
+
+
+@dataclass(slots=True)
+class EditorModel:
+    """Editor of one document at a time. ``left`` is called with the program that was closed.
+
+    ``loading_steps`` prove a text without storing anything, and ``programs`` is the operator's program
+    folder.
+    """
+
+    loading_steps: LoadingSteps
+    version_archive: VersionArchive
+    programs_folder: Path
+    samples_folder: Path
+    on_closed: Callable[[ClosedProgram], None] = field(default=lambda _: None)
+    find_save_refusal: Callable[[], str] = str  # reason why the access level does not permit saving, or empty
+    stage: EditorStage = EditorStage.CLOSED
+    document: Document | None = None
+    message: str = ""
+    text_number: int = 0  # counts the texts that the model puts into the field: opened, created or restored
+    text: str = ""  # the last of these texts
+    pending_name: str = ""  # name typed on another page, for which the editor is opened
+    source_drawing: Path | None = (
+        None  # file from which an optional feature generates the text of this program
+    )
+    is_restored: bool = False  # the text replaces the typed text as one step that can be undone
+    block_delete: bool = False
+    default_extension: str = ".nc"  # extension of new programs, from the language of the machine
+    live_proof: LiveProof = field(init=False)
+    draft_store: DraftStore = field(init=False)
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-files"))
+    _offered: str = ""
+    _leaving: bool = False
+    _to_desk: bool = False
+    _changed: bool = False  # saved at least once since it was opened
+    pending_action: Callable[[str], None] | None = (
+        None  # action of F6; never the action of the key that asked
+    )
+    _unnamed: str = ""  # text whose saving waits for a name
+
+    def __post_init__(self) -> None:
+        self.live_proof = LiveProof(self.loading_steps)
+        self.draft_store = DraftStore(self.programs_folder / ".drafts", self.version_archive)
+
+    def poll(self) -> None:
+        """Process finished work; called once per frame."""
+        self.worker.poll()
+        self.draft_store.poll()
+        if self.draft_store.error_text and not self.message:
+            self.message = self.draft_store.error_text
+
+    def close(self) -> None:
+        """Stop the workers after pending writes are finished."""
+        self.live_proof.close()
+        self.worker.close()
+        self.draft_store.close()
+
+    # --- opening -------------------------------------------------------------------------------------
+
+    def open_program(self, path: Path, block_delete: bool = False) -> None:
+        """Read a program into the editor."""
+        self.clear_message()
+        self.block_delete = block_delete
+        self.stage = EditorStage.READING
+        self.worker.enqueue(lambda: open_document(path, self.samples_folder), self._opened, self._not_opened)
+
+    def offer_new(self, typed_name: str) -> None:
+        """Ask whether to create a new file with this name."""
+        self.clear_message()
+        self.stage, self._offered = EditorStage.OFFERED, typed_name
+        self.message = messages.CREATE_FILE
+
+    def create_document(self) -> None:
+        """Create the offered document (F1)."""
+        if self.stage is not EditorStage.OFFERED:
+            return
+        try:
+            document = create_document(self.programs_folder, self._offered, self.default_extension)
+        except InvalidNameError as error:
+            self.message = Message("{error}. ESC: BACK", error=error)
+            return
+        if document.path.exists():
+            self.message = messages.NAME_EXISTS.format(document.name)
+            return
+        self.clear_message()
+        self._opened(document)
+
+    def cancel_offer(self) -> None:
+        """Cancel the offer of a new document (Esc)."""
+        if self.stage is EditorStage.OFFERED:
+            self.clear_message()
+            self._shut()
+
+    def _opened(self, document: Document) -> None:
+        self.document, self.stage, self._changed = document, EditorStage.OPEN, False
+        self.live_proof.clear_findings()
+        self._put(document.text)
+        self.draft_store.recover_draft(document, self._recovered)
+
+    def _recovered(self, said: str) -> None:
+        self.message = said or self.message
+
+    def _not_opened(self, why: str) -> None:
+        self._shut()
+        self.message = why
+
+    def _put(self, text: str, *, restored: bool = False) -> None:
+        self.text, self.is_restored = text, restored
+        self.text_number += 1
+
+    # --- editing -------------------------------------------------------------------------------------
+
+    @property
+    def is_saved_since_open(self) -> bool:
+        """Whether the document was saved since it was opened."""
+        return self._changed
+
+    @property
+    def name(self) -> str:
+        """Name of the document or of the offered new file."""
+        return self.document.name if self.document else self._offered
+
+    def update_text(self, text: str) -> None:
+        """Prove the changed text and store it as a draft."""
+        self.live_proof.submit_text(self.name, end_last_line(text), self.block_delete)
+        if self.document is not None:
+            self.draft_store.set_text(self.document, text)
+
+    def preview_text(self, text: str) -> None:
+        """Prove the text that a form would produce, without storing it."""
+        self.live_proof.submit_text(self.name, end_last_line(text), self.block_delete)
+
+    def is_dirty(self, text: str) -> bool:
+        """Return whether the text has unsaved changes."""
+        document = self.document
+        return document is not None and text != document.text
+
+    def restore_version(self, text: str, version_number: int) -> None:
+        """Replace the text with an older version, as one step that can be undone."""
+        self._put(text, restored=True)
+        self.message = messages.VERSION_RESTORED.format(version_number)
+
+    def clear_message(self) -> None:
+        """Clear the message and the pending question."""
+        self.message, self.pending_action = "", None
+
+    # --- saving and leaving --------------------------------------------------------------------------
+
+    def save_document(self, text: str, *, leave_after: bool = False, may_overwrite: bool = False) -> None:
+        """Save the file and archive the version, then leave if requested."""
+        document = self.document
+        if document is None or self.stage is not EditorStage.OPEN:
+            return
+        self.clear_message()
+        self._leaving = leave_after
+        if why := self.find_save_refusal():
+            self.message = why
+        elif not text.strip():
+            self.message = messages.EMPTY_NOT_SAVED
+        elif document.is_read_only:
+            self.stage, self.message, self._unnamed = EditorStage.NAMING, messages.SAMPLE_READ_ONLY, text
+        else:
+            self._write(document, text, replacing=may_overwrite)
+
+    def save_under_name(self, typed_name: str) -> bool:
+        """Save a sample under the typed name. Return False if the name is rejected."""
+        document = self.document
+        if document is None or self.stage is not EditorStage.NAMING:
+            return False
+        try:
+            path = create_document(
+                self.programs_folder, typed_name, document.path.suffix or self.default_extension
+            ).path
+        except InvalidNameError as error:
+            self.message = str(error)
+            return False
+        if path.exists():
+            self.message = messages.NAME_EXISTS.format(path.name)
+            return False
+        self.clear_message()
+        self._write(replace(document, path=path, is_read_only=False, is_new=True), self._unnamed)
+        return True
+
+    def cancel_naming(self) -> None:
+        """Cancel the name entry and continue editing (Esc)."""
+        if self.stage is EditorStage.NAMING:
+            self.clear_message()
+            self.stage, self._leaving = EditorStage.OPEN, False
+
+    def save_and_leave(self, text: str, *, should_load: bool = False) -> None:
+        """Save changes and leave the editor. An empty new file is discarded.
+
+        If ``should_load`` is set, the program is loaded (F3). Otherwise the loaded program remains (F1).
+        """
+        document, self._to_desk = self.document, should_load
+        if document is None or self.stage is not EditorStage.OPEN:
+            return
+        if document.is_new and not text.strip():
+            self._shut()
+        elif self.is_dirty(text) or document.is_new:
+            self.save_document(text, leave_after=True)
+        else:
+            self._go(document)
+
+    def discard_and_leave(self, text: str) -> None:
+        """Leave without saving. Unsaved changes require confirmation with another key."""
+        if self.stage is not EditorStage.OPEN:
+            return
+        if self.is_dirty(text):
+            self.message, self.pending_action = messages.CONFIRM_DISCARD, lambda _text: self._shut()
+            return
+        self._shut()
+
+    def confirm_question(self, text: str) -> None:
+        """Confirm the pending question (F6)."""
+        asked = self.pending_action
+        self.clear_message()
+        if asked is not None and self.stage is EditorStage.OPEN:
+            asked(text)
+
+    def _write(self, document: Document, text: str, *, replacing: bool = False) -> None:
+        self.stage = EditorStage.SAVING
+        self.worker.enqueue(
+            lambda: save_document(document, text, self.version_archive, replacing),
+            lambda trouble: self._saved(document, text, trouble),
+            self._not_saved,
+        )
+
+    def _saved(self, document: Document, text: str, trouble: str) -> None:
+        if trouble == CHANGED_EXTERNALLY:
+            leave = self._leaving
+            self._not_saved(messages.CHANGED_ON_DISK.format(document.name))
+            self.pending_action = lambda now: self.save_document(now, leave_after=leave, may_overwrite=True)
+            return
+        # Both the old and the new name of a sample have a draft.
+        for each in (document, self.document or document):
+            self.draft_store.delete_draft(each)
+        self.document, self.stage = replace(document, text=text, is_new=False), EditorStage.OPEN
+        self._changed = True
+        self.message = messages.VERSION_NOT_SAVED.format(trouble) if trouble else ""
+        if self._leaving:
+            self._go(self.document)
+        elif not trouble:
+            self.message = Message("{document} SAVED", document=document.name)
+
+    def _not_saved(self, why: str) -> None:
+        self.stage, self.message, self._leaving = EditorStage.OPEN, why, False
+
+    def _go(self, document: Document) -> None:
+        self._shut()
+        text = end_last_line(document.text)
+        self.on_closed(ClosedProgram(document.path, self._changed, self._to_desk, text))
+
+    def _shut(self) -> None:
+        if self.document is not None:
+            self.draft_store.delete_draft(self.document)
+        self.stage, self.document, self._leaving = EditorStage.CLOSED, None, False
+        self._offered = ""
+        self.pending_action = None
+
+
+# --- opening and closing in the context of the machine ----------------------------------------------------
+def open_editor(desk: Desk, editor: EditorModel) -> bool:
+    """Open the editor with the program whose name was typed, or else with the loaded program.
+
+    An unknown name is offered as a new file. Returns False if the editor cannot be opened. TurnDesk shows the
+    reason.
+    """
+    name, now = editor.pending_name.strip(), desk.program_loader.loaded
+    editor.pending_name = ""
+    path = desk.program_choice.program_folders.find_path(name) if name else now.path
+    if why := find_editor_refusal(desk.read_snapshot(), has_name=bool(name or path)):
+        desk.say(why)
+        return False
+    desk.clear_prompt_line()
+    editor.on_closed = partial(_handle_closed, desk)
+    if path is None:
+        editor.offer_new(name)
+    else:
+        editor.open_program(path, now.block_delete)
+    return True
+
+
+def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
+    """Load the closed program if F3 requires it.
+
+    Otherwise report which program remains loaded.
+    """
+    path, now = closed.path, desk.program_loader.loaded
+    if closed.is_changed:
+        desk.storage_state.recheck_file()
+    if not closed.should_load:
+        if closed.is_changed or path != now.path:
+            desk.show_success(tr(Message(_stays(closed, now), name=path.name, other=now.name)))
+    elif not _should_load(closed, now):
+        if path != now.path:
+            desk.show_success(tr(Message(messages.NOT_CHANGED, name=path.name, other=now.name)))
+    elif desk.read_snapshot().state in ACTIVE_STATES:
+        desk.say(
+            tr(messages.RELOAD_AFTER_RUN)
+        )  # A cycle was started at the operator station in the meantime.
+    elif path == now.path:
+        desk.program_loader.start_loading(path, now.block_delete)
+    else:
+        desk.program_choice.load_path(path)
+
+
+def _stays(left: ClosedProgram, now: LoadedProgram) -> str:
+    if now.path is None:
+        return messages.SAVED_LOAD_HINT
+    if not left.is_changed:
+        return messages.NOT_CHANGED
+    return messages.SAVED_NOT_LOADED if left.path == now.path else messages.SAVED_ONLY
+
+
+def _should_load(closed: ClosedProgram, loaded: LoadedProgram) -> bool:
+    """Return whether F3 loads the program: it was changed, or the loaded program has another text.
+
+    Viewing a program never replaces another loaded program.
+    """
+    if closed.is_changed or loaded.path is None:
+        return True
+    return closed.path == loaded.path and not _is_loaded(closed.text, loaded)
+
+
+def _is_loaded(text: str, current: LoadedProgram) -> bool:
+    """Return whether the loaded program has this text, ignoring line endings."""
+    if current.source is None:
+        return False
+    loaded = current.source.text.replace("\r\n", "\n").replace("\r", "\n")
+    return end_last_line(loaded) == text

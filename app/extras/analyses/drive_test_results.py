@@ -1,0 +1,231 @@
+"""Results of a drive test: step, ramp and sine responses, bandwidth, and the effect of other limits.
+
+The record of a test contains the commanded test path, so that a stored record gives the same results.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from app.desk.pages.table_content import TableContent, TableRow
+from app.desk.status import formats
+from app.desk.translation import tr
+from app.extras.analyses.axis_response import (
+    COLUMN_SHARES,
+    AxisMotion,
+    UnitFormat,
+    find_moves,
+    make_limit_rows,
+    make_motion,
+    make_step_rows,
+)
+from core.executor.hand_motion.drive_test import PAUSE_S, DriveTestPath, Shape
+from core.extras.analyses.step_response import (
+    RampResponse,
+    SineResponse,
+    StepResponse,
+    analyze_ramp,
+    analyze_sine,
+    analyze_step,
+    calculate_bandwidth,
+)
+from core.machine.machine_model import Axis
+from core.message import Message
+from core.records.record import AnalysisError, ScopeRecord
+
+FloatArray = npt.NDArray[np.float64]
+TEST_PATH_KEY = "drive test"  # key of the test path in a record
+REST_BEFORE_TEST_S = 0.1  # seconds of rest before a test that are included
+_REST_AFTER_MOVE_S = 0.9 * PAUSE_S  # seconds of rest after a move that are included
+_SHAPE_NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
+
+
+def encode_test_path(path: DriveTestPath) -> str:
+    """Return the test path in the form for the record."""
+    told = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies)
+    return json.dumps(told)
+
+
+def find_test_path(record: ScopeRecord) -> DriveTestPath | None:
+    """Return the test path of a record, or None if the record is not from a drive test."""
+    try:
+        axis, shape, size, speed, frequencies = json.loads(record.about.get(TEST_PATH_KEY, ""))
+        return DriveTestPath(
+            str(axis), Shape(shape), float(size), float(speed), tuple(float(each) for each in frequencies)
+        )
+    except (ValueError, TypeError):
+        return None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DriveTestResults:
+    """Results of one test: the response of the outbound and the return move, or of each frequency."""
+
+    test_path: DriveTestPath
+    motion: AxisMotion
+    step_responses: tuple[StepResponse, ...] = ()
+    ramp_responses: tuple[RampResponse, ...] = ()
+    sine_responses: tuple[SineResponse, ...] = ()
+
+
+def calculate_results(
+    record: ScopeRecord, path: DriveTestPath, linear_axes: Mapping[str, Axis]
+) -> DriveTestResults:
+    """Calculate the results from the record of a complete test. Raises AnalysisError."""
+    name, axis = Message("{item} demand", item=path.axis), linear_axes.get(path.axis)
+    if axis is None or name not in record.values_by_channel:
+        raise AnalysisError(tr(Message("this machine has no {axis} axis", axis=path.axis)), "no-axis")
+    found = find_moves(record.times_s, record.values_by_channel[name])
+    ways = len(path.frequencies) if path.shape is Shape.SINE else 2
+    if len(found) < ways:
+        raise AnalysisError(
+            tr("the key was released before the test ended; hold the key until the axis has returned"),
+            "test-broken-off",
+        )
+    found = found[-ways:]
+    times, zero = record.times_s, float(record.times_s[found[0][0]])
+    whole = _about(times, zero - REST_BEFORE_TEST_S, float(times[found[-1][1]]) + _REST_AFTER_MOVE_S)
+    move = make_motion(path.axis, axis, record, whole, zero)
+    if path.shape is Shape.SINE:
+        sines = tuple(
+            _sine(record, path, first, last, frequency)
+            for (first, last), frequency in zip(found, path.frequencies, strict=True)
+        )
+        return DriveTestResults(path, move, sine_responses=sines)
+    parts = [
+        make_motion(
+            path.axis,
+            axis,
+            record,
+            _about(times, times[first] - REST_BEFORE_TEST_S, times[last] + _REST_AFTER_MOVE_S),
+            zero,
+        )
+        for first, last in found
+    ]
+    steps = tuple(
+        analyze_step(each.times_s, each.setpoints, each.positions, axis.in_position) for each in parts
+    )
+    if path.shape is Shape.STEP:
+        return DriveTestResults(path, move, steps)
+    ramps = tuple(analyze_ramp(each.times_s, each.setpoints, each.positions) for each in parts)
+    return DriveTestResults(path, move, steps, ramps)
+
+
+def _about(times: FloatArray, begin: float, end: float) -> slice:
+    first, last = np.searchsorted(times, (begin, end))
+    return slice(int(first), int(last))
+
+
+def _sine(record: ScopeRecord, path: DriveTestPath, first: int, last: int, frequency: float) -> SineResponse:
+    """Return the sine response without the first period, in which the axis settles."""
+    times = record.times_s
+    cut = _about(times, float(times[first]) + 1.0 / frequency, float(times[last]))
+    asked, done = (record.values_by_channel[f"{path.axis} {what}"][cut] for what in ("demand", "actual"))
+    return analyze_sine(times[cut], asked, done, frequency)
+
+
+# --- display --------------------------------------------------------------------------------------------
+
+
+def describe_test_path(path: DriveTestPath, metric: bool) -> str:
+    """Return the test path as display text."""
+    units = UnitFormat(metric)
+    words = (
+        f"{path.axis}{'+' if path.travel_mm > 0.0 else '−'}  {tr(_SHAPE_NAMES[path.shape])}  "
+        f"{units.way(abs(path.travel_mm))}"
+    )
+    if path.shape is Shape.RAMP:
+        return f"{words}, {units.format_speed(path.speed)}"
+    if path.shape is Shape.SINE:
+        return Message(
+            "{words}, {item} Hz", words=words, item=", ".join(f"{each:g}" for each in path.frequencies)
+        )
+    return words
+
+
+class ResultsPart(Enum):
+    """Displayed part of the results, because a small screen cannot show all."""
+
+    RESPONSE = "response"
+    LIMITS = "window"
+    ALL = "all"
+
+
+def make_results_table(
+    title: str, results: DriveTestResults, metric: bool, part: ResultsPart = ResultsPart.ALL
+) -> TableContent:
+    """Return the table of responses, followed by the effect of the limits."""
+    units = UnitFormat(metric)
+    rows = [TableRow(cells) for cells in _responses(results, units)] if part is not ResultsPart.LIMITS else []
+    rows += map(TableRow, make_limit_rows(results.motion, units)) if part is not ResultsPart.RESPONSE else ()
+    heads = (
+        ("", tr("GAIN"), tr("PHASE LAG")) if results.sine_responses else ("", tr("OUTBOUND"), tr("RETURN"))
+    )
+    if part is ResultsPart.LIMITS:
+        heads = ("", "", "")
+    notes = (describe_test_path(results.test_path, metric), tr("Nothing was written to the drive."))
+    return TableContent(
+        title, heads, COLUMN_SHARES, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
+    )
+
+
+def _responses(found: DriveTestResults, units: UnitFormat) -> list[tuple[str, ...]]:
+    if found.sine_responses:
+        return _sine_rows(found)
+    rows: list[tuple[str, ...]] = [*make_step_rows(found.step_responses, units)]
+    if found.ramp_responses:
+        rows += [
+            (tr("LAG AT CONSTANT SPEED"), *(units.way(abs(each.lag_mm)) for each in found.ramp_responses)),
+            (tr("SPEED / LAG (GAIN)"), *(_gain(each) for each in found.ramp_responses)),
+        ]
+    return rows
+
+
+def _gain(ramp: RampResponse) -> str:
+    """Return the gain of the position loop, Kv = v/e, or a dash if feedforward removes the lag."""
+    return (
+        f"{formats.format_fixed(1.0 / abs(ramp.lag_s), 0)} /s" if abs(ramp.lag_s) > 1e-5 else formats.NO_VALUE
+    )
+
+
+def _sine_rows(found: DriveTestResults) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = [
+        (
+            Message("{item} Hz", item=f"{each.frequency_hz:g}"),
+            f"{formats.format_fixed(100.0 * each.gain, 1)} %",
+            f"{formats.format_fixed(each.phase_lag_deg, 1)}°",
+        )
+        for each in found.sine_responses
+    ]
+    seen, most = calculate_bandwidth(found.sine_responses), found.sine_responses[-1].frequency_hz
+
+    def at(hertz: float | None) -> str:
+        return (
+            Message("{item} Hz", item=formats.format_fixed(hertz, 1))
+            if hertz is not None
+            else tr(Message("−3 dB is not reached at frequencies up to {maximum} Hz", maximum=f"{most:g}"))
+        )
+
+    if len(found.sine_responses) > 1:
+        rows += [
+            (tr("BANDWIDTH, −3 dB"), "", at(seen.gain_bandwidth_hz)),
+            (tr("90° PHASE LAG"), "", at(seen.phase_bandwidth_hz)),
+        ]
+    late = found.sine_responses[0].lag_s
+    rows.append(
+        (
+            tr("DELAY"),
+            "",
+            Message("{seconds} ms", seconds=formats.format_fixed(1000.0 * late, 2))
+            if math.isfinite(late)
+            else "",
+        )
+    )
+    return rows

@@ -1,0 +1,55 @@
+"""Setup of the drawing form: available drawings and the trial with the present tools."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+
+from app.compose.stored_offsets import try_read_shapes
+from app.desk.background_work import ProgressCallback
+from app.desk.desk import Desk
+from app.extras.drawings.drawing_form import AddedDrawingForm
+from app.extras.drawings.drawing_plan import DrawingPlan
+from app.extras.drawings.profile_trial import TrialStock, run_profile_trial
+from app.extras.shapes.shapes_model import ShapesModel
+from core.extras.drawings.part_comparison import DrawingComparison
+from core.extras.drawings.profile_program import find_max_diameter
+from core.machine.machine_model import Machine
+from core.part.tool_shape import ToolShape
+
+
+def add_drawing_form(shapes: ShapesModel, desk: Desk, machine: Machine) -> None:
+    """Add the form of a drawing to the list of shapes."""
+
+    def files() -> dict[str, Path]:
+        return {each.name: each.path for each in desk.program_choice.program_folders.list_drawings()}
+
+    shapes.added_forms = (
+        *shapes.added_forms,
+        AddedDrawingForm(files, partial(run_trial, machine, try_read_shapes)),
+    )
+
+
+def run_trial(
+    machine: Machine,
+    shapes: Callable[[], Mapping[int, ToolShape]],
+    text: str,
+    plan: DrawingPlan,
+    watch: ProgressCallback,
+) -> tuple[DrawingComparison | None, tuple[str, ...]]:
+    """Prove the program with the stock of the form and the present tools, and compare the part."""
+    made, chosen, mm = plan.program, plan.profile, plan.request.settings.mm
+    if made is None or chosen is None:
+        return None, ()
+
+    def length(word: str) -> float:
+        value = plan.request.entered_values.get(word, plan.proposals.get(word, 0.0))
+        return 0.0 if isinstance(value, str) else value * mm
+
+    bar = length("FROM") or 1.5 * find_max_diameter(chosen)
+    stock = TrialStock(bar, length("STOCK"), length("HOLE"))
+    trial = run_profile_trial(
+        text, chosen, stock, made.nose_offset, machine, shapes(), watch, plan.request.settings.dialect
+    )
+    return trial.comparison, trial.errors

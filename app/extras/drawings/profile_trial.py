@@ -1,0 +1,86 @@
+"""Trial of a program from a drawing: proof, and comparison of the part with the drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from app.compose.machine.machine_setup import create_setup
+from app.compose.part_data import read_known_part
+from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
+from core.extras.drawings.part_comparison import DrawingComparison, compare_part
+from core.extras.drawings.profile_program import NoseOffset
+from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect, ProgramSource
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.part.stock_spec import StockSpec
+from core.part.tool_shape import ToolShape
+from core.proving.part_proof import prove_with_part
+from core.tool_edges import make_edge_key
+
+_SPARE = 10.0  # mm of stock beyond the part
+_HOME = ToolOffset(12.7, -76.2)
+
+
+@dataclass(frozen=True, slots=True)
+class TrialStock:
+    """Stock of a trial in mm: bar diameter, material in front of the face, and predrilled hole."""
+
+    diameter: float
+    face_stock_mm: float = 0.0
+    hole_diameter: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class TrialResult:
+    """Result of a trial.
+
+    ``comparison`` is None if the program makes no part, ``errors`` are from the proof.
+    """
+
+    comparison: DrawingComparison | None
+    errors: tuple[str, ...] = ()
+
+
+def run_profile_trial(
+    text: str,
+    profile: ContourProfile,
+    stock: TrialStock,
+    nose: NoseOffset | None,
+    machine: Machine,
+    shapes: Mapping[int, ToolShape],
+    watch: Callable[[float], None] | None = None,
+    dialect: Dialect = Dialect.OMNITURN,
+) -> TrialResult:
+    """Prove the program with all tools at one position and the required nose offset, and compare the part."""
+    of_edge = nose is not None and nose.quadrant
+    secondary = {nose.number: SecondaryOffset(nose.x, nose.z, nose.r)} if nose and not of_edge else {}
+    tools = dict.fromkeys(range(1, 33), _HOME)
+    if nose is not None and of_edge:
+        edge = replace(_HOME, nose_radius=nose.r, quadrant=nose.quadrant)
+        tools |= {make_edge_key(n, nose.number): edge for n in tools}
+    setup = create_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
+    setting = read_known_part(machine, {}, shapes)
+    front = profile.front_z_mm + stock.face_stock_mm
+    length = front - profile.back_z_mm + _SPARE
+    bar = StockSpec("bar", stock.diameter, stock.hole_diameter, length, front)
+    setting = replace(setting, stock=bar, clamping=None, gang={}, travel=None)
+    report, part = prove_with_part(
+        ProgramSource("drawing", text, dialect), setup, machine, setting, check_canceled=watch
+    )
+    errors = tuple(_said(each) for each in report.diagnostics if each.severity is Severity.ERROR)
+    made = None if part is None or part.last_piece is None else part.last_piece
+    side = (
+        None
+        if made is None
+        else made.bore_profile
+        if profile.side is ContourSide.INSIDE
+        else made.outside_profile
+    )
+    return TrialResult(compare_part(profile, side) if side else None, errors)
+
+
+def _said(found: Diagnostic) -> str:
+    return Message("LINE {line}: {value} {hint}", line=found.line, value=found.text, hint=found.hint).strip()

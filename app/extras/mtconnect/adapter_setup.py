@@ -1,0 +1,126 @@
+"""MTConnect adapter of a machine, and its device model."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from datetime import datetime
+
+from app.extras.mtconnect.driver.agent_links import ActiveCondition, MachineReport, open_listening_socket
+from app.extras.mtconnect.driver.mtconnect_adapter import (
+    AdapterThread,
+    MtconnectAdapter,
+    get_utc_now,
+    make_devices_xml,
+)
+from app.extras.mtconnect.driver.mtconnect_items import Component, MachineLayout, make_machine_items
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from app.shopfloor.machine_reading import MachineReader, MachineReading
+from core.executor.snapshot import Snapshot
+from core.machine.machine_model import Machine
+from core.message import Message
+from core.ports import DriverError
+from drivers.wakeups import RealClock
+
+
+def start_adapter(
+    machine: Machine, snapshot: Callable[[], Snapshot], report_error: Callable[[str], None]
+) -> Callable[[], None] | None:
+    """Start to report the machine to agents, and return a function that stops it.
+
+    A port that cannot be opened is reported, and the machine runs anyway. Returns None if the adapter is not
+    enabled or cannot run.
+    """
+    model = machine.hardware.find_driver_table(MtconnectTable)
+    if model is None or not model.enabled:
+        return None
+    thread = AdapterThread(make_adapter(machine, model, snapshot))
+    try:
+        thread.start()
+    except DriverError as error:
+        report_error(str(error))
+        return None
+    return thread.close
+
+
+def start_headless_adapter(
+    machine: Machine,
+    snapshot: Callable[[], Snapshot],
+    report_error: Callable[[str], None],
+    *,
+    is_real_time: bool,
+) -> Callable[[], None] | None:
+    """Start to report a run without a screen, and return a function that stops it.
+
+    A run that is faster than real time is not reported, because it would report parts that were not made.
+    """
+
+    def tell(why: str) -> None:
+        report_error(Message("no data is reported to the shop floor: {why}", why=why))
+
+    if is_adapter_enabled(machine) and not is_real_time:
+        tell("this run is faster than real time; use --realtime")
+        return None
+    return start_adapter(machine, snapshot, tell)
+
+
+def is_adapter_enabled(machine: Machine) -> bool:
+    """Return whether the machine file enables the adapter."""
+    model = machine.hardware.find_driver_table(MtconnectTable)
+    return model is not None and model.enabled
+
+
+def check_adapter(machine: Machine, model: MtconnectTable) -> None:
+    """Check that the port can be opened and the device model can be made. Raises DriverError."""
+    open_listening_socket(model.bind, model.port).close()
+    make_device_model(machine, get_utc_now())
+
+
+def make_adapter(
+    machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]
+) -> MtconnectAdapter:
+    """Return the adapter on the real-time clock. Its data is from snapshots only."""
+    device = make_device(machine, model.device)
+    reader = MachineReader(machine, time.monotonic)
+    return MtconnectAdapter(
+        model, tuple(device.all_items()), lambda: _report(reader.read_snapshot(snapshot())), RealClock()
+    )
+
+
+def make_device_model(machine: Machine, time: datetime) -> str:
+    """Return ``Devices.xml`` for the agent.
+
+    Raises DriverError without [mtconnect] or for an invalid name.
+    """
+    model = machine.hardware.find_driver_table(MtconnectTable)
+    if model is None:
+        raise DriverError(
+            "{source}: the [mtconnect] table is missing; add it to specify the name and port "
+            "under which this machine reports to the shop floor",
+            source=machine.source,
+        )
+    return make_devices_xml(
+        make_device(machine, model.device),
+        Message("{machine}, {kind}", machine=machine.name, kind=machine.kind),
+        time,
+    )
+
+
+def make_device(machine: Machine, name: str) -> Component:
+    """Return the device model of a machine under a name.
+
+    On a lathe the spindle is also the C axis, unless C has a separate drive.
+    """
+    lathe = machine.kind == "lathe"
+    one = lathe and machine.spindle_is_c
+    linear = tuple(axis.name for axis in machine.axes if not axis.rotary)
+    rotary = tuple(axis.name for axis in machine.axes if axis.rotary and not (one and axis.name == "C"))
+    layout = MachineLayout(linear, rotary, "C" if one else "S", one, lathe)
+    return make_machine_items(layout, name)
+
+
+def _report(reading: MachineReading) -> MachineReport:
+    conditions = {
+        key: tuple(ActiveCondition(*each) for each in found) for key, found in reading.conditions.items()
+    }
+    return MachineReport(reading.values, conditions)

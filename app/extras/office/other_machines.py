@@ -1,0 +1,251 @@
+"""Status of other machines, read while the page is viewed: TurnDesk systems and MTConnect agents."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from http import HTTPStatus
+from http.client import HTTPException
+from typing import NamedTuple
+from urllib.error import HTTPError, URLError
+from urllib.parse import urlsplit, urlunsplit
+from urllib.request import ProxyHandler
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+from app.desk.translation import tr
+from app.extras.office.status_page import LOADING_TEXT, OtherMachine
+from app.extras.office.timed_http import find_cause, make_one_line, make_timed_opener
+from core.message import Message
+
+READ_INTERVAL_S = 3.0  # seconds
+VIEW_TIMEOUT_S = 15.0  # seconds after which the page counts as not viewed
+STALE_AFTER_S = 10.0  # seconds after which a status is outdated
+_PATIENCE = 2.0  # seconds
+_LARGEST = 1e9  # largest value; Python's JSON reader accepts Infinity and NaN
+_MOST = 100_000  # bytes
+_ASK = make_timed_opener(ProxyHandler({}))  # machines of one shop are accessed without a proxy
+
+
+def make_status_address(address: str) -> str:
+    """Return the address of the status of a TurnDesk page. The token remains in the query."""
+    parts = urlsplit(address)
+    return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/status.json", fragment=""))
+
+
+class MachineResponse(NamedTuple):
+    """Part of a response that the page shows.
+
+    ``error_text`` is a stop reason or the reason for a missing status.
+    """
+
+    status: Mapping[str, object] | None
+    error_text: str = ""
+
+
+def read_turndesk_status(address: str) -> OtherMachine:
+    """Read the status of a TurnDesk system, waiting at most 2 s."""
+    return read_status(address, make_status_address(address), _MOST, _desk_answer)
+
+
+def _desk_answer(data: bytes) -> MachineResponse:
+    match json.loads(data):
+        case dict() as found:
+            return MachineResponse(found)
+        case other:
+            raise ValueError(other)
+
+
+def read_status(
+    address: str, request: str, max_bytes: int, convert: Callable[[bytes], MachineResponse]
+) -> OtherMachine:
+    """Request ``request`` and convert the response with ``convert``, which raises ValueError for invalid
+    data.
+
+    ``max_bytes`` is the maximum number of bytes. An error is returned as the ``error_text`` of the result.
+    """
+    name = _name(address)
+    try:
+        with _ASK.open(request, timeout=_PATIENCE) as answer:
+            status, trouble = convert(answer.read(max_bytes))
+    except HTTPError as error:
+        return OtherMachine(name, error_text=_refused(error))
+    except (URLError, HTTPException, OSError) as error:
+        return OtherMachine(name, error_text=find_cause(error))
+    except (ValueError, RecursionError):
+        return OtherMachine(name, error_text=tr("the server at this address is not a TurnDesk server"))
+    shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
+    return OtherMachine(name, shown, make_one_line(trouble))
+
+
+def _refused(error: HTTPError) -> str:
+    if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
+        return tr("access token rejected")
+    return make_one_line(
+        tr(Message("the server returns HTTP status {answer}", answer=f"{error.code} {error.reason}"))
+    )
+
+
+_TEXTS = frozenset({"machine", "state", "execution", "program", "stop", "waiting_for"})
+_FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"})
+
+
+def _fits(key: str, value: object) -> bool:
+    """Return whether the page can show a value, because the other side is not trusted."""
+    figure = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
+    return (key in _TEXTS and isinstance(value, str)) or (key in _FIGURES and figure)
+
+
+class OtherMachines:
+    """Status of other machines. One thread per machine reads the status while ``read_states`` is called.
+
+    A machine that hangs or responds slowly does not delay the others. Outdated statuses are not shown.
+    """
+
+    def __init__(
+        self,
+        addresses: Sequence[str],
+        ask: Callable[[str], OtherMachine] = read_turndesk_status,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._ask, self._clock = ask, clock
+        # including the name of the machine, once it is known
+        self._names = {each: _name(each) for each in addresses}
+        self._heard = {each: self._not_yet(each, clock()) for each in addresses}
+        self._looked = threading.Event()
+        self._closing = threading.Event()
+        self._last = -VIEW_TIMEOUT_S
+        self._threads = [
+            threading.Thread(target=self._keep, args=(each,), name="other-desks", daemon=True)
+            for each in addresses
+        ]
+
+    def start(self) -> None:
+        """Start the threads; to be called once."""
+        for thread in self._threads:
+            thread.start()
+
+    def read_states(self) -> Sequence[OtherMachine]:
+        """Return the latest status of each machine."""
+        now = self._clock()
+        # no requests were made in the meantime, so the machines are not silent
+        if now - self._last > VIEW_TIMEOUT_S:
+            self._heard.update({each: self._not_yet(each, now) for each in self._heard})
+        self._last = now
+        self._looked.set()
+        return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
+
+    def close(self) -> None:
+        """Stop the threads after their pending requests, without waiting for them."""
+        self._closing.set()
+        self._looked.set()
+
+    def _not_yet(self, address: str, now: float) -> tuple[float, OtherMachine]:
+        return now, OtherMachine(self._names[address], state=LOADING_TEXT)
+
+    def _keep(self, address: str) -> None:
+        while not self._closing.is_set():
+            self._looked.wait()
+            heard = self._ask(address)
+            if heard.status is not None and (machine := heard.status.get("machine")):
+                self._names[address] = f"{machine} ({_name(address)})"
+            self._heard[address] = self._clock(), replace(heard, address=self._names[address])
+            if self._clock() - self._last > VIEW_TIMEOUT_S:
+                self._looked.clear()
+            self._closing.wait(READ_INTERVAL_S)
+
+
+def _name(address: str) -> str:
+    """Return the address without user, password and token."""
+    parts = urlsplit(address)
+    return parts.netloc.rpartition("@")[2] + parts.path.rstrip("/")
+
+
+def _if_fresh(desk: OtherMachine, age: float) -> OtherMachine:
+    """Return the status, or a message if it is older than ``STALE_AFTER_S``."""
+    if age <= STALE_AFTER_S:
+        return desk
+    return OtherMachine(desk.address, error_text=tr(Message("no response for {age} s", age=round(age))))
+
+
+_MOST_OF_AGENT = 1_000_000  # bytes
+_UNAVAILABLE = "UNAVAILABLE"
+_WORDS = {
+    "ACTIVE": "RUNNING",
+    "WAIT": "WAITING",
+    "PROGRAM_STOPPED": "PROGRAM STOP",
+    "PROGRAM_COMPLETED": "READY",
+}
+_LONGEST = 15  # digits of a number
+
+
+def make_current_address(address: str) -> str:
+    """Return the address of the agent's current state. ``address`` includes the device's path."""
+    parts = urlsplit(address)
+    return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/current", fragment=""))
+
+
+def read_agent_status(address: str) -> OtherMachine:
+    """Read the status of a machine from its agent, waiting at most 2 s."""
+    return read_status(address, make_current_address(address), _MOST_OF_AGENT, parse_streams)
+
+
+def parse_streams(data: bytes) -> MachineResponse:
+    """Return the status in an MTConnectStreams document and its faults. Raises ValueError."""
+    if b"<!DOCTYPE" in data:  # agents do not send a DOCTYPE, and entities could grow without limit
+        raise ValueError(data[:40])
+    try:
+        device = next(_named(ElementTree.fromstring(data), "DeviceStream"), None)
+    except ElementTree.ParseError as error:
+        raise ValueError(str(error)) from error
+    if device is None:
+        raise ValueError("no DeviceStream")
+    machine = {"machine": device.get("name") or ""}
+    if next(_values(device, "Availability"), "AVAILABLE") == _UNAVAILABLE:
+        return MachineResponse(None, tr("the MTConnect agent reports that the machine is unavailable"))
+    faults = ". ".join(
+        filter(None, (" ".join((each.text or "").split()) for each in _named(device, "Fault")))
+    )
+    faulty = next(_named(device, "Fault"), None) is not None
+    return MachineResponse({**machine, "state": _state(device, faulty=faulty), **_figures(device)}, faults)
+
+
+def _state(device: Element, *, faulty: bool) -> str:
+    """Return the state, in TurnDesk's words where possible."""
+    if "TRIGGERED" in _values(device, "EmergencyStop"):
+        return "E-STOP"
+    if faulty:
+        return "ALARM"
+    execution = next(_known(device, "Execution"), _UNAVAILABLE)
+    return _WORDS.get(execution, execution.replace("_", " "))
+
+
+def _figures(device: Element) -> dict[str, object]:
+    counts = (each.text for each in _named(device, "PartCount") if each.get("subType") in {None, "ALL"})
+    found: dict[str, object] = {
+        "program": next(_known(device, "Program"), None),
+        "line": _whole(next(_known(device, "Line"), next(_known(device, "LineNumber"), None))),
+        "made": _whole(next(counts, None)),
+    }
+    return {key: value for key, value in found.items() if value is not None}
+
+
+def _whole(text: str | None) -> int | None:
+    text = (text or "").strip()
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= _LONGEST else None
+
+
+def _named(inside: Element, name: str) -> Iterator[Element]:
+    """Yield the elements with a name, independent of the version in the namespace."""
+    return (each for each in inside.iter() if each.tag.rpartition("}")[2] == name)
+
+
+def _values(device: Element, name: str) -> Iterator[str]:
+    return ((each.text or "").strip() for each in _named(device, name))
+
+
+def _known(device: Element, name: str) -> Iterator[str]:
+    return (value for value in _values(device, name) if value and value != _UNAVAILABLE)

@@ -1,0 +1,128 @@
+"""Pendant of a machine file: its device is opened and read in addition to the machine's ports."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+
+from app.compose.backends.backend_entry import CheckRow, ConnectedMachine
+from app.extras.pendant.driver.input_devices import (
+    EventSource,
+    KernelDevice,
+    list_devices,
+    select_device_nodes,
+)
+from app.extras.pendant.driver.pendant_station import PendantIO, PendantReader, PendantStation
+from app.extras.pendant.driver.pendant_table import (
+    PENDANT_PREFIX,
+    STOP_INPUTS,
+    PendantControl,
+    PendantModel,
+    parse_button_name,
+    parse_wheel_name,
+)
+from core.machine.machine_model import Machine
+from core.ports import DriverError
+
+WHEEL_INPUT = "handwheel"
+DeviceFinder = Callable[[PendantModel, Mapping[str, PendantControl]], Sequence[EventSource]]
+
+
+def remove_pendant(machine: Machine) -> Machine:
+    """Return the machine without the inputs and the handwheel of the pendant, as its backend is wired."""
+    inputs = {name: each for name, each in machine.inputs.items() if not _at_pendant(each.terminal)}
+    pots = {
+        name: each for name, each in machine.hardware.analog_inputs.items() if not _at_pendant(each.terminal)
+    }
+    return replace(machine, inputs=inputs, hardware=replace(machine.hardware, analog_inputs=pots))
+
+
+def open_devices(
+    model: PendantModel, required_controls: Mapping[str, PendantControl]
+) -> Sequence[EventSource]:
+    """Open the nodes of the matching device. Raises DriverError with the remedy."""
+    if sys.platform != "linux":
+        raise DriverError("a USB pendant works only on Linux; remove [pendant] from the machine file")
+    devices: list[KernelDevice] = []
+    with ExitStack() as opened:
+        for node in select_device_nodes(model.device, model.serial, required_controls, list_devices()):
+            devices.append(KernelDevice(node))
+            opened.callback(devices[-1].close)
+        opened.pop_all()
+    return devices
+
+
+def add_pendant(
+    machine: Machine, connected: ConnectedMachine, find_devices: DeviceFinder | None = None
+) -> ConnectedMachine:
+    """Return the machine with its pendant, if configured.
+
+    A missing pendant is reported and searched for.
+    """
+    model = machine.hardware.find_driver_table(PendantModel)
+    if model is None:
+        return connected
+    bound, wheel = _bound(machine), _wheel(machine)
+    wanted = {**bound, **({WHEEL_INPUT: wheel} if wheel is not None else {})}
+    look, ports = find_devices or open_devices, connected.ports
+    pendant = PendantReader(
+        bound,
+        frozenset(STOP_INPUTS),
+        wheel,
+        lambda: look(model, wanted),
+        time.monotonic,
+        place=model.counts == "place",
+        ring=ports.wakeup.wake if ports.wakeup is not None else lambda: None,
+    )
+    pendant.start()
+    away = pendant.get_state().missing_reason
+    station = PendantStation(
+        ports.station,
+        pendant,
+        stops=any(name in bound for name in STOP_INPUTS),
+        wheel=wheel is not None or any(name.startswith("wheel_") for name in bound),
+    )
+    ports = replace(
+        ports,
+        station=station,
+        io=PendantIO(ports.io, pendant),
+        warnings=(*ports.warnings, *([away] if away else [])),
+    )
+
+    def close() -> None:
+        connected.close()
+        pendant.close()
+
+    def rows() -> Iterable[CheckRow]:
+        yield CheckRow(
+            "pendant", model.device, "no answer" if station.missing_reason else "ok", station.missing_reason
+        )
+
+    def measured() -> Iterable[str]:
+        if not station.missing_reason:
+            yield from ("pendant", *(f"input {name}" for name in bound))
+
+    return replace(connected, ports=ports, close=close, list_more_rows=rows, list_measured_rows=measured)
+
+
+def _at_pendant(terminal: str) -> bool:
+    return terminal.startswith(PENDANT_PREFIX)
+
+
+def _bound(machine: Machine) -> dict[str, PendantControl]:
+    found = {
+        name: parse_button_name(each.terminal.removeprefix(PENDANT_PREFIX))
+        for name, each in machine.inputs.items()
+        if _at_pendant(each.terminal)
+    }
+    return {name: control for name, control in found.items() if control is not None}
+
+
+def _wheel(machine: Machine) -> PendantControl | None:
+    model = machine.hardware.analog_inputs.get(WHEEL_INPUT)
+    if model is None or not _at_pendant(model.terminal):
+        return None
+    return parse_wheel_name(model.terminal.removeprefix(PENDANT_PREFIX))

@@ -1,0 +1,112 @@
+"""Setup of measured parts and trends, and their entry in the special functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from app.desk.background_work import LatestRequestWorker
+from app.desk.desk import Desk
+from app.desk.pages.table_content import TableRow
+from app.desk.status.formats import NO_VALUE
+from app.desk.translation import tr
+from app.extras.quality.parts_data import BOOK_KEY, get_loaded_parts_data, read_parts_data
+from app.extras.quality.sample_plan import SamplePlan
+from app.production.parts_watch import PartsWatch
+from app.special.special_functions import PageFunction, SpecialFunction, SpecialFunctionList
+from core.machine.machine_model import Machine
+
+MEASURED_PARTS_PAGE = "MEASURED PARTS"  # name of the page in app.screen.page_table
+
+
+class MeasuredPartsFunction(PageFunction):
+    """Special function with the number of features and readings, and the measurements that are due."""
+
+    name = "MEASURED PARTS"
+    use = "features, readings, charts, trends"
+    page = MEASURED_PARTS_PAGE
+    key_hint = "Press Enter to open the page, or press W in the main menu."
+
+    def make_fact_rows(self) -> tuple[TableRow, ...]:
+        """Return the rows with the numbers of features and readings, and the due measurements."""
+        watch = self.desk.page_registry.find(PartsWatch)
+        if watch is None or watch.parts_book.lock_reason:
+            return (
+                TableRow((tr("STORED"), watch.parts_book.lock_reason if watch is not None else NO_VALUE)),
+            )
+        data = get_loaded_parts_data(watch.parts_book)
+        return (
+            TableRow((tr("FEATURES"), str(len(data.features)))),
+            TableRow((tr("READINGS"), str(len(data.readings)))),
+            TableRow((tr("MEASUREMENT DUE"), watch.due_reminder() or NO_VALUE)),
+        )
+
+    def prompt_text(self) -> str:
+        """Return the prompt that names the keys."""
+        return "ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST"
+
+
+def attach_quality(desk: Desk, machine: Machine) -> None:
+    """Attach measured parts to TurnDesk if production data is available."""
+    watch = desk.page_registry.find(PartsWatch)
+    if watch is None:
+        return
+    watch.parts_book.readers[BOOK_KEY] = read_parts_data
+    plan = SamplePlan(desk, watch)
+    watch.production_plans.append(plan)
+    desk.page_registry.attach_model(
+        QualityFunctions(lambda: _sections(desk, machine, watch, plan), watch.parts_book.worker)
+    )
+
+
+def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
+    """Return the sections of the page. Their import is deferred to keep the start fast."""
+    from app.extras.quality.sections_setup import make_sections
+
+    return make_sections(desk, machine, watch, plan)
+
+
+SectionFactory = Callable[[], Sequence[SpecialFunction]]
+
+
+class QualityFunctions(SpecialFunctionList):
+    """Sections of the page.
+
+    Readings of a gauge count only while the section of readings is displayed.
+    """
+
+    __slots__ = ("_made", "_make")
+
+    def __init__(self, make: SectionFactory, worker: LatestRequestWorker) -> None:
+        self._make = make
+        self._made: Sequence[SpecialFunction] = ()
+        super().__init__((), worker)
+
+    @property
+    def functions(self) -> Sequence[SpecialFunction]:
+        """Sections, created at the first access to keep the start fast."""
+        if not self._made:
+            self._made = tuple(self._make())
+        return self._made
+
+    @functions.setter
+    def functions(self, _none: Sequence[SpecialFunction]) -> None:
+        """Ignore the value, because the sections are created by the getter."""
+
+    def poll(self) -> None:
+        """Poll the gauge once per frame.
+
+        The feature that is displayed at that time determines the meaning of a reading.
+        """
+        for section in self.functions:
+            section.process_wire_input(is_displayed=section is self.shown_function)
+
+    def on_open(self) -> None:
+        """Open the page and discard readings received before, because their part is unknown."""
+        super().on_open()
+        for section in self.functions:
+            section.process_wire_input(is_displayed=False)
+
+    def close(self) -> None:
+        """Finish pending work of the sections. The worker belongs to the parts book."""
+        for function in self._made:
+            function.close()

@@ -1,0 +1,235 @@
+"""Gauge on a serial line: a thread receives readings in Digimatic format or as plain values."""
+
+from __future__ import annotations
+
+import queue
+import re
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from app.compose.backends.serial_ports import open_serial_port
+from app.desk.translation import tr
+from app.extras.quality.gauge_table import GaugeModel
+from core.message import CodedError, Message
+from core.ports import DriverError
+from drivers.serial_line import LineSettings, SerialTransport
+
+MAX_LINE_LENGTH = 60  # characters; a longer line without an end is not from a gauge
+_DIGIMATIC = re.compile(r"\d{2}A([+-]\d{1,8}(?:\.\d{1,8})?)")
+_PLAIN = re.compile(r"([+-]?(?:\d{1,6}(?:[.,]\d{0,7})?|[.,]\d{1,7}))\s*(mm|in|inch|\"|)", re.IGNORECASE)
+_UNITS = {"mm": "mm", "in": "in", "inch": "in", '"': "in", "": ""}
+# Error codes of a Mitutoyo interface.
+_ERRORS = {
+    "911": ("the gauge is not connected or is switched off", "no-gauge"),
+    "912": ("the gauge sent unreadable data", "unreadable"),
+}
+
+
+class GaugeError(CodedError, ValueError):
+    """Error for a line that is not a reading."""
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeReading:
+    """Reading of a gauge. ``unit`` is mm or in, or empty if the line does not state it."""
+
+    value: float
+    unit: str = ""
+
+
+def parse_reading(line: str) -> GaugeReading:
+    """Return the reading of one line. Raises GaugeError for any other text."""
+    text = line.strip()
+    if text in _ERRORS:
+        raise GaugeError(*_ERRORS[text])
+    digimatic = _DIGIMATIC.fullmatch(text)
+    if digimatic:
+        return GaugeReading(float(digimatic.group(1)))
+    plain = _PLAIN.fullmatch(text)
+    if plain is None:
+        raise GaugeError(f"it has sent {text[:24]!r}, which is no reading", "not-a-reading")
+    return GaugeReading(float(plain.group(1).replace(",", ".")), _UNITS[plain.group(2).lower()])
+
+
+class LineSplitter:
+    """Splits received bytes into lines at CR or LF."""
+
+    def __init__(self) -> None:
+        self._text = ""
+
+    def split_lines(self, data: bytes) -> list[str]:
+        """Return the complete lines.
+
+        An incomplete line is buffered, or returned if it is too long.
+        """
+        self._text += data.decode("ascii", "replace")
+        *whole, self._text = re.split(r"[\r\n]+", self._text)
+        if len(self._text) > MAX_LINE_LENGTH:
+            whole.append(self._text)
+            self._text = ""
+        return [line for line in whole if line.strip()]
+
+
+class Gauge(Protocol):
+    """Gauge on a serial line. No method waits."""
+
+    @property
+    def is_receiving(self) -> bool:
+        """Whether the line is being received."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """Name in the machine file, stored with the readings."""
+        ...
+
+    @property
+    def default_unit(self) -> str:
+        """Unit of lines that do not state it, mm or in."""
+        ...
+
+    @property
+    def status_text(self) -> str:
+        """Status text: whether the gauge is being received, and the number or age of its readings."""
+        ...
+
+    def toggle_receiving(self) -> str:
+        """Start or stop receiving. Return a reason if that is not possible, or an empty string."""
+        ...
+
+    def fetch_readings(self) -> Sequence[GaugeReading | str]:
+        """Return the readings and error messages since the last call."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class NoGauge:
+    """Gauge of a machine whose file does not define one."""
+
+    is_receiving = False
+    name = ""
+    default_unit = "mm"
+
+    @property
+    def status_text(self) -> str:
+        """Text about the configuration of a gauge."""
+        return tr("No gauge is configured: enter its serial port under [gauge] in the machine file.")
+
+    def toggle_receiving(self) -> str:
+        """Return the reason why no gauge can be received."""
+        return tr("NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …")
+
+    def fetch_readings(self) -> Sequence[GaugeReading | str]:
+        """Return no readings."""
+        return ()
+
+    def close(self) -> None:
+        """Do nothing, because no line is open."""
+
+
+RECEIVE_TIMEOUT_S = 0.1  # seconds of one receive call
+SILENCE_LIMIT_S = 300.0  # seconds without a line before the status text mentions it
+WireOpener = Callable[[LineSettings], SerialTransport]
+
+
+class SerialGauge:
+    """Implementation of ``Gauge`` on a serial line, which its thread opens and closes."""
+
+    def __init__(
+        self,
+        model: GaugeModel,
+        wire: WireOpener = open_serial_port,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._model, self._open_wire, self._clock = model, wire, clock
+        self._heard: queue.SimpleQueue[GaugeReading | str] = queue.SimpleQueue()
+        self._ending = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._last = 0.0  # time of the last line, or of the start
+        self._count = 0
+
+    @property
+    def is_receiving(self) -> bool:
+        """Whether the line is being received."""
+        return self._thread is not None and self._thread.is_alive() and not self._ending.is_set()
+
+    @property
+    def name(self) -> str:
+        """Name in the machine file."""
+        return self._model.name
+
+    @property
+    def default_unit(self) -> str:
+        """Unit of lines that do not state it."""
+        return self._model.unit
+
+    @property
+    def status_text(self) -> str:
+        """Status text: whether the gauge is being received, and whether readings arrive."""
+        if not self.is_receiving:
+            return tr("Not listening to the gauge. Press F5 to start.")
+        silent = self._clock() - self._last
+        if silent > SILENCE_LIMIT_S:
+            return tr(
+                Message(
+                    "No reading from the gauge for {minutes} min. Check its switch and cable.",
+                    minutes=int(silent / 60.0),
+                )
+            )
+        return tr(Message("Listening to the gauge: {count} readings.", count=self._count))
+
+    def toggle_receiving(self) -> str:
+        """Start or stop receiving."""
+        if self.is_receiving:
+            self.close()
+            return ""
+        self._ending = threading.Event()
+        self._last, self._count = self._clock(), 0
+        self._thread = threading.Thread(target=self._listen, args=(self._ending,), name="gauge", daemon=True)
+        self._thread.start()
+        return ""
+
+    def fetch_readings(self) -> Sequence[GaugeReading | str]:
+        """Return the readings and messages since the last call."""
+        found = []
+        while not self._heard.empty():
+            found.append(self._heard.get())
+        return found
+
+    def close(self) -> None:
+        """Stop receiving. The thread closes the line."""
+        self._ending.set()
+
+    def _listen(self, ending: threading.Event) -> None:
+        model = self._model
+        settings = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop)
+        try:
+            wire = self._open_wire(settings)
+        except DriverError as error:
+            self._tell(error)
+            return
+        try:
+            reader = LineSplitter()
+            wire.discard_input()
+            while not ending.is_set():
+                for line in reader.split_lines(wire.receive(RECEIVE_TIMEOUT_S)):
+                    self._take(line)
+        except DriverError as error:
+            self._tell(error)
+        finally:
+            wire.close()
+
+    def _tell(self, error: DriverError) -> None:
+        self._heard.put(tr(Message("GAUGE: {why}. F5: LISTEN AGAIN", why=error)))
+
+    def _take(self, line: str) -> None:
+        self._last = self._clock()
+        try:
+            self._heard.put(parse_reading(line))
+            self._count += 1
+        except ValueError as error:
+            self._heard.put(tr(Message("GAUGE: {why}. MEASURE AGAIN", why=error)))

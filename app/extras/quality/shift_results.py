@@ -1,0 +1,293 @@
+"""Results of a shift from stored data, and the start and end of a shift.
+
+The rows are the same as those of the trends and of ``turndesk parts``. Nothing is counted again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from itertools import pairwise
+from typing import NamedTuple
+
+from app.desk.status.formats import format_duration, format_local_time
+from app.desk.translation import tr
+from app.extras.quality.parts_data import make_feature
+from app.production.cycle_recorder import COMPLETE
+from core.extras.quality.production_stops import (
+    Availability,
+    ProductionStop,
+    StopReasonTotal,
+    TimeSpan,
+    analyze_stop_reasons,
+    calculate_availability,
+)
+from core.message import CodedError, Message
+from core.store import event_log
+from core.store.offsets import offset_history
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, CycleTime, StopRow
+from core.store.production.tool_lives import InsertChange, ToolLifeRow
+from core.store.store import Store
+from core.store.store_rows import EventRow, OffsetChange, OffsetKind, format_utc
+
+DEFAULT_SHIFT_HOURS = (6, 14)
+SHIFT_HOURS_SETTING = "shift"  # setting with the first and last hour
+MAX_REPORT_DAYS = 62  # maximum length of a report
+_TIME_FORMATS = ("%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M", "%Y-%m-%d")
+
+
+class Shift(NamedTuple):
+    """Period from ``start`` to ``end`` in seconds of UTC, including changes of the local clock."""
+
+    start_s: float
+    end_s: float
+
+    @property
+    def utc_texts(self) -> tuple[str, str]:
+        """Start and end in the time format of the store."""
+        first, last = (format_utc(datetime.fromtimestamp(each, UTC)) for each in self)
+        return first, last
+
+    @property
+    def clock_change_s(self) -> float:
+        """Seconds by which the local clock was set forward during the shift, negative if it was set back."""
+        first, last = (datetime.fromtimestamp(each).astimezone().utcoffset() for each in self)
+        return ((last or timedelta()) - (first or timedelta())).total_seconds()
+
+
+class ShiftTimesError(CodedError, ValueError):
+    """Error for invalid start or end times of a report."""
+
+
+def get_shift_hours(stored: object) -> tuple[int, int]:
+    """Return the stored hours of a shift, or the default hours."""
+    match stored:
+        case [int(first), int(last)] if 0 <= first < 24 and 0 <= last <= 24:
+            return first, last
+        case _:
+            return DEFAULT_SHIFT_HOURS
+
+
+def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> Shift:
+    """Return the present or last shift, or the shift ``shifts_back`` shifts earlier.
+
+    Start and end are hours of the local clock. A night in which the clock is set back is one hour longer.
+    """
+    wall = now.astimezone().replace(tzinfo=None)
+    begins = wall.replace(hour=hours[0], minute=0, second=0, microsecond=0)
+    if begins.timestamp() > now.timestamp():
+        begins -= timedelta(days=1)
+    begins -= timedelta(days=shifts_back)
+    length = (hours[1] - hours[0]) % 24 or 24
+    return Shift(begins.timestamp(), (begins + timedelta(hours=length)).timestamp())
+
+
+def parse_local_time(text: str) -> float:
+    """Return the seconds of a typed local time such as ``2026-11-23 06:00`` or a day.
+
+    Raises ShiftTimesError.
+    """
+    for form in _TIME_FORMATS:
+        try:
+            return datetime.strptime(text.strip(), form).timestamp()
+        except ValueError:
+            continue
+    raise ShiftTimesError(
+        f"{text!r} is no time; write it as 2026-11-23 06:00, by the clock on the wall", "not-a-time"
+    )
+
+
+def make_period(start: str, end: str) -> Shift:
+    """Return the period between two typed times. Raises ShiftTimesError."""
+    shift = Shift(parse_local_time(start), parse_local_time(end))
+    if shift.end_s <= shift.start_s:
+        raise ShiftTimesError(
+            f"{end} is not behind {start}; a report goes from the earlier to the later", "ends-first"
+        )
+    if shift.end_s - shift.start_s > MAX_REPORT_DAYS * 86_400:
+        raise ShiftTimesError(
+            f"from {start} to {end} are more than {MAX_REPORT_DAYS} days; take fewer", "too-many-days"
+        )
+    return shift
+
+
+ALARM_EVENT_KINDS = frozenset({"alarm", "estop"})
+_MAX_CHANGES = 1_000_000  # maximum number of changes of offsets
+_MIN_CLOCK_STEP_BACK_S = 1.0  # seconds of backward jump from which the clock counts as set back
+
+
+class ProgramResults(NamedTuple):
+    """Results of one program: counted parts, cycles without a part by outcome, and complete cycle times."""
+
+    program: str
+    parts: int
+    incomplete_cycles: tuple[tuple[str, int], ...]
+    cycle_times_s: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ShiftResults:
+    """Results of a shift.
+
+    ``until`` is its end, or the present time while the shift runs, in seconds of UTC.
+    """
+
+    shift: Shift
+    evaluated_until_s: float
+    programs: tuple[ProgramResults, ...]
+    availability: Availability | None
+    stops: tuple[StopRow, ...]
+    stop_reasons: tuple[StopReasonTotal, ...]
+    alarms: tuple[EventRow, ...]
+    tool_lives: tuple[ToolLifeRow, ...]
+    insert_changes: tuple[InsertChange, ...]
+    offset_changes: tuple[OffsetChange, ...]
+    reading_count: int
+    bad_readings: tuple[tuple[FeatureRow, ReadingRow], ...]
+    cycle_spans: tuple[TimeSpan, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def part_count(self) -> int:
+        """Number of parts of all programs."""
+        return sum(each.parts for each in self.programs)
+
+    @property
+    def stopped_s(self) -> float:
+        """Duration of all stops within the shift in seconds."""
+        return sum(each.seconds for each in self.stop_reasons)
+
+    @property
+    def unrecorded_s(self) -> float:
+        """Duration without stored data in seconds, because the control was off or no part was started."""
+        if self.availability is None:
+            return 0.0
+        return max(0.0, self.availability.planned_s - self.availability.producing_s - self.stopped_s)
+
+
+def parse_store_time(at: str) -> float:
+    """Return a time of the store in seconds of UTC."""
+    return datetime.fromisoformat(at).timestamp()
+
+
+def make_cycle_span(row: CycleRow | CycleTime, now: float) -> TimeSpan | None:
+    """Return the span of a cycle from its start for its duration, or None if the cycle has not ended."""
+    start = parse_store_time(row.started)
+    if row.ended is None or start > now:
+        return None
+    return TimeSpan(start, max(start, min(start + row.seconds, now)))
+
+
+def make_cycle_spans(rows: Iterable[CycleRow | CycleTime], now: float) -> list[TimeSpan]:
+    """Return the spans of all ended cycles."""
+    return [span for row in rows if (span := make_cycle_span(row, now)) is not None]
+
+
+def convert_stops(rows: Iterable[StopRow]) -> list[ProductionStop]:
+    """Return the stops for the calculation of reasons and availability."""
+    return [ProductionStop(row.reason, parse_store_time(row.at), row.seconds) for row in rows]
+
+
+def calculate_shift_results(
+    store: Store, shift: Shift, now: float, tools: OffsetKind = OffsetKind.TOOL
+) -> ShiftResults:
+    """Return the results of a shift; runs on a worker. Raises StoreError."""
+    since, end = shift.utc_texts
+    until = max(shift.start_s, min(shift.end_s, now))
+    with store.read() as connection:
+        cycles = part_cycles.read_cycles_between(connection, since, end)
+        stops = part_cycles.read_stops_between(connection, since, end)
+        alarms = event_log.find_events_between(connection, ALARM_EVENT_KINDS, since, end)
+        readings = measured_parts.read_readings_between(connection, since, end)
+        lives = tool_lives.read_tool_lives(connection, tools)
+        inserts = tool_lives.read_insert_changes(connection, -1)
+        offsets = offset_history.read_history_in_store(connection, _MAX_CHANGES)
+    running = make_cycle_spans(cycles, now)
+    ended = [row for row in cycles if row.ended is not None and since <= row.ended < end]
+    return ShiftResults(
+        shift,
+        until,
+        _make_program_results(ended, _select_interrupted(cycles, on=now < shift.end_s)),
+        calculate_availability(TimeSpan(shift.start_s, until), running) if until > shift.start_s else None,
+        stops,
+        analyze_stop_reasons(_limit_stops(convert_stops(stops), shift.start_s, until)),
+        alarms,
+        tuple(row for row in lives.values() if any(row[5:7]) or any(row[1:3])),
+        tuple(row for row in reversed(inserts) if since <= row.at < end),
+        tuple(row for row in reversed(offsets) if since <= row.at < end),
+        len(readings),
+        tuple(each for each in readings if not make_feature(each[0]).good(each[1].value)),
+        tuple(running),
+        tuple(_make_remarks(shift, until, now, cycles)),
+    )
+
+
+def _make_program_results(
+    ended: Sequence[CycleRow], cut_off: Sequence[CycleRow]
+) -> tuple[ProgramResults, ...]:
+    """Return the results by program. A part belongs to the shift in which it was finished."""
+    found = []
+    for name in dict.fromkeys(row.program for row in (*ended, *cut_off)):
+        rows = [row for row in ended if row.program == name]
+        others = [row.outcome for row in rows if not row.part]
+        others += [tr("CUT OFF")] * sum(row.program == name for row in cut_off)
+        times = tuple(row.seconds for row in rows if row.outcome == COMPLETE and row.seconds > 0.0)
+        parts = sum(row.part > 0 for row in rows)
+        found.append(
+            ProgramResults(name, parts, tuple((w, others.count(w)) for w in dict.fromkeys(others)), times)
+        )
+    return tuple(found)
+
+
+def _select_interrupted(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRow]:
+    """Return cycles without a stored end.
+
+    The last cycle of a shift that is ``on`` may still run.
+    """
+    known = cycles[:-1] if on else cycles
+    return [row for row in known if row.ended is None]
+
+
+def _limit_stops(stops: Iterable[ProductionStop], start: float, end: float) -> list[ProductionStop]:
+    """Return the stops limited to a period."""
+    clipped = [
+        (each.reason, max(each.start_s, start), min(each.start_s + each.duration_s, end)) for each in stops
+    ]
+    return [ProductionStop(reason, a, b - a) for reason, a, b in clipped if b > a]
+
+
+def _make_remarks(shift: Shift, until: float, now: float, cycles: Sequence[CycleRow]) -> Iterable[str]:
+    """Yield remarks about the times of the report."""
+    if now < shift.start_s:
+        yield tr("The shift has not started.")
+    elif until < shift.end_s:
+        yield tr(
+            Message(
+                "The shift is still running; this report covers it up to {time}.",
+                time=datetime.fromtimestamp(until).astimezone().strftime("%H:%M"),
+            )
+        )
+    moved = shift.clock_change_s
+    if moved:
+        words = tr(
+            "The clock was set forward by {time} during the shift, so the shift was shorter by "
+            "the same amount."
+        )
+        if moved < 0:
+            words = tr(
+                "The clock was set back by {time} during the shift, so the shift was longer by the "
+                "same amount."
+            )
+        yield tr(Message(words, time=format_duration(abs(moved))))
+    for before, after in pairwise(cycles):
+        if parse_store_time(after.started) < parse_store_time(before.started) - _MIN_CLOCK_STEP_BACK_S:
+            words = tr(
+                "The clock was set back after {time}, so times of day overlap at that point, but "
+                "durations are correct."
+            )
+            yield tr(Message(words, time=format_local_time(before.started)))
+    if not cycles and now >= shift.start_s:
+        yield tr("No part was started in this period.")

@@ -1,0 +1,67 @@
+"""Data of the machine and its tools for shapes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+from app.compose.optional_features import extras
+from app.compose.stored_offsets import try_read_shapes
+from app.desk.desk import Desk
+from app.extras.shapes.shapes_model import ShapesModel
+from core.extras.shapes.shape_fields import ProgramSettings, ShopData
+from core.machine.machine_model import Axis, Machine
+from core.part.tool_shape import ToolShape
+
+_LIVE = re.compile(r"live|mill|driven", re.IGNORECASE)
+_USUAL = (15, 16)
+
+
+def make_shapes_model(desk: Desk, machine: Machine) -> ShapesModel:
+    """Return the shapes model. The tools are read again each time a form opens."""
+    found = ShapesModel(
+        lambda: make_shop_data(machine, try_read_shapes()), ProgramSettings(metric=not machine.is_inch)
+    )
+    for extra in extras().values():
+        extra.extend_model(found, desk, machine)
+    return found
+
+
+def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData:
+    """Return the machine and tool data on which proposals and limits of a shape depend."""
+    by_name = {axis.name: axis for axis in machine.axes}
+    z, c = by_name.get("Z"), by_name.get("C")
+    return ShopData(
+        max_rpm=machine.spindle.max_rpm,
+        spindle_power=machine.spindle.power or ShopData().spindle_power,
+        max_acceleration=z.amax if z is not None else 0.0,
+        max_c_rpm=c.vmax / 6.0 if c is not None and c.vmax else ShopData().max_c_rpm,
+        live_tool_codes=_live(machine),
+        has_live_output=bool(machine.live_tool_output),
+        third_axis=machine.third_axis if machine.c_enabled else "",
+        has_spindle_as_c=machine.spindle_is_c,
+        chuck_codes=_chuck(machine),
+        travel=(_travel(by_name.get("X")), _travel(z)),
+        tools=dict(tools),
+    )
+
+
+def _travel(axis: Axis | None) -> float:
+    """Return the length of an axis's travel in mm, 0 if the machine file does not limit it."""
+    return axis.travel[1] - axis.travel[0] if axis is not None and axis.travel else 0.0
+
+
+def _chuck(machine: Machine) -> tuple[int, int] | None:
+    """Return the M codes that open and close the chuck, or None if the machine file does not define them."""
+    codes = {on: code for code, (output, on) in sorted(machine.m_codes.items()) if output == "collet"}
+    return (codes[False], codes[True]) if len(codes) == 2 else None
+
+
+def _live(machine: Machine) -> tuple[int, int]:
+    """Return the first M codes that switch the live tool on and off, found by the name of the output."""
+    for code, (output, state) in sorted(machine.m_codes.items()):
+        if state and _LIVE.search(output):
+            off = [other for other, (name, on) in machine.m_codes.items() if name == output and not on]
+            if off:
+                return code, min(off)
+    return _USUAL

@@ -1,0 +1,388 @@
+"""Manual functions of the Jog page: spindle, coolant and collet.
+
+Each function is an MDI line that the operator starts with the start buttons. The line is proved and checked
+like a typed MDI line, with the same interlocks. Switching a function off needs no start buttons.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError, evaluate_expression
+from app.desk.desk import Desk
+from app.desk.pages.table_content import edit_text, refused
+from app.desk.programs.prepared_line import PreparedMdiLine, ProveLine
+from app.desk.status import prompt_line
+from app.desk.status.readouts import TURNING_RPM
+from app.desk.translation import tr
+from core.executor.commands import ForceOutput, Reset, StopSpindle
+from core.executor.snapshot import CYCLE_STATES, STOPPED_STATES, MachineState, Snapshot, StartAction
+from core.language.diagnostics import Diagnostic
+from core.machine.machine_model import Machine
+from core.message import Message
+
+FORWARD, REVERSE, STOP = "forward", "reverse", "stop"
+COOLANT_ON, COOLANT_OFF = "coolant on", "coolant off"
+CLOSE, OPEN = "close", "open"
+MANUAL_KEYS = {
+    "1": FORWARD,
+    "2": REVERSE,
+    "0": STOP,
+    "3": COOLANT_ON,
+    "4": COOLANT_OFF,
+    "5": CLOSE,
+    "6": OPEN,
+}
+COLLET_REFUSAL = "CANNOT OPEN COLLET WHILE SPINDLE TURNS. 0: STOP SPINDLE"
+SPEED_KEY = "9"  # The key that asks for the spindle speed.
+
+
+class Words(NamedTuple):
+    """The code of each function in a programming language.
+
+    ``speed`` is a separate line for the speed, if S is not allowed in the line of M3.
+    """
+
+    forward: str
+    reverse: str
+    coolant: str
+    collet: tuple[str, str] = ("", "")  # Codes for close and open.
+    speed: str = ""
+
+
+LANGUAGE_CODES = {
+    "omniturn": Words("G97M03S{rpm:g}", "G97M04S{rpm:g}", "M08", ("M12", "M13")),
+    "sinumerik": Words("G97 S{rpm:g} M3", "G97 S{rpm:g} M4", "M8"),
+    "klartext": Words("M3", "M4", "M8", speed="TOOL CALL S{rpm:g}"),
+}
+
+
+@dataclass(slots=True)
+class ManualFunctions:
+    """The manual function that is selected, prepared or running.
+
+    ``is_open`` is True while the Jog page is open. ``is_shown`` is True while the panel of the functions is
+    visible.
+    """
+
+    desk: Desk
+    machine: Machine
+    prove_line: ProveLine
+    prepared_line: PreparedMdiLine = field(init=False)
+    is_open: bool = False
+    is_shown: bool = False
+    selected_function: str = ""
+    entered_rpm: float = 0.0  # The speed that was entered last; 0: none.
+    is_asking_speed: bool = False  # The speed is being entered.
+    text: str = ""
+    _wanted: str = ""  # The function to select after the speed is entered.
+    _armed: bool = False  # Cycle Start runs lines only.
+    _moved: bool = False  # The axes have moved since the selected function was proved.
+
+    def __post_init__(self) -> None:
+        self.prepared_line = PreparedMdiLine(self.prove_line, self.desk.post, on_refused=self._refused)
+
+    @property
+    def function_codes(self) -> Words:
+        """The codes in the machine's programming language."""
+        return LANGUAGE_CODES[self.machine.language]
+
+    @property
+    def available_functions(self) -> frozenset[str]:
+        """The functions that this machine has."""
+        found = {FORWARD, REVERSE, STOP}
+        if "coolant" in self.machine.outputs:
+            found |= {COOLANT_ON, COOLANT_OFF}
+        if "collet" in self.machine.outputs and self.function_codes.collet[0]:
+            found |= {CLOSE, OPEN}
+        return frozenset(found)
+
+    # --- page ----------------------------------------------------------------------------------------
+
+    def on_open(self) -> None:
+        """Prepare for the open Jog page: Cycle Start runs selected functions and no program."""
+        self.is_open = True
+        self._arm(self.desk.read_snapshot())
+
+    def _arm(self, snapshot: Snapshot) -> None:
+        if not self._armed and snapshot.state not in CYCLE_STATES:
+            self._armed = True
+            self.prepared_line.cancel_line()
+
+    def try_leave(self) -> bool:
+        """Return whether the page can close, which is not possible while a line runs.
+
+        The spindle remains on.
+        """
+        if self.is_line_running(self.desk.read_snapshot()):
+            self.desk.say(tr("A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R"))
+            return False
+        if self._armed:
+            self.prepared_line.stop_line_mode()
+        self.is_open = self.is_shown = self._armed = False
+        self._forget()
+        return True
+
+    def close(self) -> None:
+        """End the worker that proves lines."""
+        self.prepared_line.close()
+
+    def is_line_running(self, snapshot: Snapshot) -> bool:
+        """Return whether a line that was selected here is running."""
+        return self._armed and snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
+
+    # --- keys and touches ----------------------------------------------------------------------------
+
+    def toggle_shown(self) -> None:
+        """Show the manual functions, or tool setting again."""
+        self.cancel_selection()
+        self.desk.clear_prompt_line()
+        self.is_shown = not self.is_shown
+
+    def select_function(self, function: str) -> None:
+        """Select a function. A function that switches something off acts immediately."""
+        if function == STOP:
+            self.stop_spindle()
+        elif function == COOLANT_OFF:
+            self._coolant_off()
+        elif function in {FORWARD, REVERSE} and not self.start_speed_rpm:
+            self.ask_speed()
+            self._wanted = function
+        else:
+            self._choose(function)
+
+    @property
+    def start_speed_rpm(self) -> float:
+        """The speed in rpm that FORWARD and REVERSE start, or 0 if none is known.
+
+        The speed is the active S, or the entered one if S is in the line of the function.
+        """
+        modal = self.desk.read_snapshot().modal
+        typed = 0.0 if self.function_codes.speed else self.entered_rpm
+        return typed or (0.0 if modal.css else modal.rpm)
+
+    def _choose(self, name: str) -> None:
+        snapshot = self.desk.read_snapshot()
+        why = self._find_refusal(snapshot)
+        if not why and name == OPEN and self._is_gripping(snapshot):
+            why = tr(COLLET_REFUSAL)
+        if why:
+            self.desk.say(why)
+            return
+        self.desk.clear_prompt_line()
+        self.selected_function = name
+        self.prepared_line.prove_line(self.make_line(name), snapshot, self._failed)
+
+    def make_line(self, name: str) -> str:
+        """Return the MDI line of a function."""
+        words = self.function_codes
+        lines = {
+            FORWARD: words.forward,
+            REVERSE: words.reverse,
+            COOLANT_ON: words.coolant,
+            CLOSE: words.collet[0],
+            OPEN: words.collet[1],
+            SPEED_KEY: words.speed,
+        }
+        return tr(Message(lines[name], rpm=self.entered_rpm if name == SPEED_KEY else self.start_speed_rpm))
+
+    def _find_refusal(self, snapshot: Snapshot) -> str:
+        """Return why no function can be selected now.
+
+        The executor makes the same checks, and more, at the start.
+        """
+        if snapshot.state is MachineState.IDLE:
+            return ""
+        words = {
+            MachineState.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
+            MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
+            MachineState.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
+            MachineState.JOG: tr("AXES ARE STILL MOVING"),
+            MachineState.HOME: tr("HOMING. PRESS H TO STOP"),
+        }
+        return words.get(snapshot.state) or tr("MACHINE IS BUSY. LET IT FINISH, OR PRESS R TO CANCEL")
+
+    def stop_spindle(self) -> None:
+        """Stop the spindle immediately, without the start buttons.
+
+        A running line of this page is canceled.
+        """
+        snapshot = self.desk.read_snapshot()
+        self.cancel_selection()
+        self.desk.clear_prompt_line()
+        self.desk.post(Reset() if self.is_line_running(snapshot) else StopSpindle())
+
+    def _coolant_off(self) -> None:
+        self.cancel_selection()
+        if self.desk.read_snapshot().state is MachineState.JOG:
+            self.desk.say(tr("AXES ARE STILL MOVING"))
+        else:
+            self.desk.clear_prompt_line()
+            self.desk.post(ForceOutput("coolant", on=False))
+
+    # --- the speed -----------------------------------------------------------------------------------
+
+    def ask_speed(self) -> None:
+        """Ask for the spindle speed."""
+        self.cancel_selection()
+        self.desk.clear_prompt_line()
+        self.is_asking_speed, self.text = True, ""
+
+    def handle_key(self, key: str) -> bool:
+        """Handle a key. Return False to leave the key to the page."""
+        if self.is_asking_speed:
+            if key == "Enter":
+                self._enter()
+            elif key in {"Back", "Delete"} or self.accepts_key(key):
+                self.text = edit_text(self.text, key, MAX_LENGTH)
+            else:
+                return False
+            return True
+        name = MANUAL_KEYS.get(key, "")
+        if name == STOP or (self.is_shown and name in self.available_functions):
+            self.select_function(name)
+        elif self.is_shown and key == SPEED_KEY:
+            self.ask_speed()
+        elif key in {"b", "B"}:
+            self.toggle_shown()
+        else:
+            return False
+        return True
+
+    def accepts_key(self, key: str) -> bool:
+        """Return whether this character is text input for the speed."""
+        return self.is_asking_speed and key in EXPRESSION_CHARACTERS
+
+    def _enter(self) -> None:
+        try:
+            rpm = evaluate_expression(self.text)
+        except EntryError as error:
+            self.text = refused(self.text)
+            self.desk.say(tr(Message("REJECTED: {why}", why=error)))
+            return
+        highest = self.desk.read_snapshot().spindle_limit_rpm or self.machine.spindle.max_rpm
+        if not 0.0 < rpm <= highest:
+            self.text = refused(self.text)
+            self.desk.say(
+                tr(
+                    Message(
+                        "{rpm:g} RPM REJECTED. ENTER MORE THAN 0, UP TO {highest:g} RPM",
+                        rpm=rpm,
+                        highest=highest,
+                    )
+                )
+            )
+            return
+        self.entered_rpm, self.is_asking_speed, self.text = rpm, False, ""
+        wanted, self._wanted = self._wanted, ""
+        if self.function_codes.speed:
+            self._choose(SPEED_KEY)
+        elif wanted:
+            self._choose(wanted)
+
+    # --- cancel --------------------------------------------------------------------------------------
+
+    def cancel_selection(self) -> bool:
+        """Cancel the selected function or the question. Return False if there was neither."""
+        was = bool(self.selected_function or self.is_asking_speed)
+        if self._armed and self.selected_function and not self.is_line_running(self.desk.read_snapshot()):
+            self.prepared_line.cancel_line()
+        self._forget()
+        return was
+
+    def _forget(self) -> None:
+        self._moved = False
+        self.selected_function, self.is_asking_speed, self.text, self._wanted = "", False, "", ""
+
+    def handle_cancel_key(self) -> bool:
+        """Handle Esc: cancel the selected function or the question. Return False if nothing was canceled."""
+        if self.is_line_running(self.desk.read_snapshot()) or not self.cancel_selection():
+            return False
+        self.desk.clear_prompt_line()
+        return True
+
+    def hide_functions(self) -> bool:
+        """Handle Esc: show tool setting again. Return False if it is already shown or a line is running."""
+        if self.is_line_running(self.desk.read_snapshot()):
+            return False
+        was, self.is_shown = self.is_shown, False
+        return was
+
+    def _refused(self, error: Diagnostic) -> None:
+        self._forget()
+        self.desk.say(tr(Message("REJECTED: {why}", why=f"{tr(error.message)} {tr(error.hint)}".strip())))
+
+    def _failed(self, why: str) -> None:
+        self._forget()
+        self.desk.say(tr(Message("THE LINE CANNOT BE CHECKED: {why}", why=why)))
+
+    # --- every frame ---------------------------------------------------------------------------------
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Accept the proof of a line; called once a frame.
+
+        A prepared line is canceled if the axes have moved.
+        """
+        self._arm(snapshot)
+        if self._armed:
+            self.prepared_line.renew_line_mode(snapshot)
+        if self.prepared_line.update(snapshot):
+            self._forget()
+        if self.selected_function and snapshot.state not in {MachineState.IDLE, *CYCLE_STATES}:
+            self.cancel_selection()
+            self._moved = snapshot.state is MachineState.JOG
+        elif self.selected_function == OPEN and self._is_gripping(snapshot):
+            self.cancel_selection()
+            self.desk.say(tr(COLLET_REFUSAL))
+
+    @staticmethod
+    def _is_gripping(snapshot: Snapshot) -> bool:
+        """Return whether the collet clamps a part that turns or that a switch could start to turn."""
+        return ManualFunctions.is_spindle_turning(snapshot) or snapshot.requested_rpm != 0.0
+
+    def barred(self) -> str:
+        """Return why the start buttons have no effect now. Empty if they can start a line."""
+        snapshot = self.desk.read_snapshot()
+        if snapshot.state in CYCLE_STATES:
+            return "" if self.is_line_running(snapshot) else prompt_line.START_ON_AUTOMATIC
+        if snapshot.state is not MachineState.IDLE or self.prepared_line.ready_job is not None:
+            return ""
+        if not self.is_shown:
+            return prompt_line.START_ON_AUTOMATIC
+        return tr("NOTHING SELECTED. PICK 1–6, THEN CYCLE START")
+
+    def prompt_text(self, snapshot: Snapshot) -> str:
+        """Return the prompt for manual functions. Empty if the prompt for jogging applies."""
+        if self.is_asking_speed:
+            return tr("TYPE THE RPM AND PRESS ENTER. ESC: CANCEL")
+        if self.is_line_running(snapshot):
+            words = tr("{line} IS RUNNING. 0: STOP SPINDLE")
+            if snapshot.state in STOPPED_STATES:
+                words = tr("{line} STOPPED. CYCLE START: RESUME   0: STOP SPINDLE, CANCEL")
+            return tr(Message(words, line=snapshot.block_text))
+        if snapshot.state is not MachineState.IDLE:
+            return ""
+        if self.prepared_line.is_proving:
+            return tr("CHECKING THE LINE FOR ERRORS")
+        return self._ready_words(snapshot)
+
+    def _ready_words(self, snapshot: Snapshot) -> str:
+        if self.prepared_line.ready_job is not None:
+            words = tr("RUN {line}: {start}   ESC: CANCEL")
+            line = self.prepared_line.ready_job.source.text
+            if self.function_codes.speed and self.selected_function in {FORWARD, REVERSE}:
+                line = f"{line} (S{self.start_speed_rpm:g})"  # The line itself does not contain the active S.
+            return tr(Message(words, line=line, start=tr(self.desk.start_instruction)))
+        if self._moved:
+            return tr("AXES WERE MOVED. PICK THE FUNCTION AGAIN")
+        if self.is_spindle_turning(snapshot):
+            return tr("SPINDLE IS TURNING. KEEP CLEAR. 0: STOP   HOLD AN ARROW: JOG")
+        if not self.is_shown:
+            return ""
+        return tr("PICK 1–6, THEN CYCLE START. 9: RPM. B: TOOL SETTING")
+
+    @staticmethod
+    def is_spindle_turning(snapshot: Snapshot) -> bool:
+        """Return whether the spindle turns or is commanded to turn."""
+        return abs(snapshot.rpm_actual) > TURNING_RPM or snapshot.rpm_command != 0.0

@@ -1,0 +1,114 @@
+"""Conversion of stored offset rows to the values that the interpreter uses, for lathes and mills."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset
+from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ToolRow
+
+if TYPE_CHECKING:
+    from core.geometry.rotary_axes import DatumPreset
+
+
+PRESET_SETTING = "preset"  # Setting with the number of the preset in force.
+
+
+R_PARAMETERS_SETTING = (
+    "r-parameters"  # Setting with the R parameters that have a value, by their number as text.
+)
+
+
+def parse_r_parameters(stored: object) -> dict[int, float]:
+    """Return the R parameters from the stored setting. Invalid entries are ignored."""
+    if not stored or not isinstance(stored, dict):
+        return {}
+    from core.language.sinumerik.sinumerik_words import MAX_R_NUMBER
+
+    return {
+        int(number): float(value)
+        for number, value in stored.items()
+        if str(number).isdecimal() and int(number) <= MAX_R_NUMBER and isinstance(value, int | float)
+    }
+
+
+def find_active_preset(stored: object, presets: Mapping[int, PresetRow]) -> int:
+    """Return the number of the preset in force. A preset that is not in the table gives 0."""
+    return stored if isinstance(stored, int) and stored in presets else 0
+
+
+def make_tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
+    """Return the tool offsets as sums of geometry and wear."""
+    return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
+
+
+def make_secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
+    """Return X, Z and nose radius of the secondary offsets."""
+    return {n: SecondaryOffset(*row) for n, row in rows.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class MillOffsets:
+    """The offset tables of a mill by number, and the preset in force, or 0 for that of the machine file."""
+
+    tools: Mapping[int, MillRow] = field(default_factory=dict)
+    presets: Mapping[int, PresetRow] = field(default_factory=dict)
+    preset: int = 0
+
+
+def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
+    """Return the job setup with the tables of a mill. The setup of a lathe is returned unchanged.
+
+    Only the tools of the mill's table are used, and not a lathe's offsets in the same store.
+    ``job_setup.kinematics`` must be as in the machine file.
+    """
+    machine = job_setup.kinematics
+    if machine is None:
+        return job_setup
+    from core.geometry.rotary_axes import DatumPreset
+
+    presets = {0: DatumPreset(machine.origin, machine.basic_rotation_deg)}
+    presets |= {number: make_datum_preset(row) for number, row in offsets.presets.items()}
+    active = offsets.preset if offsets.preset in presets else 0
+    return replace(
+        job_setup,
+        tools={number: _make_tool_offset(row) for number, row in offsets.tools.items()},
+        tool_names={row.name.upper(): number for number, row in offsets.tools.items() if row.name},
+        mill_tools={number: _row(row) for number, row in offsets.tools.items()},
+        presets=presets,
+        preset=active,
+        kinematics=machine.with_preset(presets[active]),
+    )
+
+
+def make_mill_rows(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
+    """Return the tools of an offsets file as rows of a mill's tool table.
+
+    Z is the length, the remark is the name.
+    """
+    return {number: MillRow(row.remark, row.z + row.wear_z, row.nose_radius) for number, row in tools.items()}
+
+
+def make_datum_preset(row: PresetRow) -> DatumPreset:
+    """Return a row of the preset table as a datum preset for calculations."""
+    from core.geometry.rotary_axes import DatumPreset
+
+    return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(find_rotary_zeros(row).items()))
+
+
+def find_rotary_zeros(row: PresetRow) -> dict[str, float]:
+    """Return the machine positions in degrees at which the rotary axes read 0, by name."""
+    return {"A": row.a, "B": row.b, "C": row.c}
+
+
+def _make_tool_offset(row: MillRow) -> ToolOffset:
+    """Return the length and radius of a tool with its oversizes."""
+    return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
+
+
+def _row(row: MillRow) -> MillTool:
+    return MillTool(
+        row.length, row.radius, row.corner, row.dl, row.dr, row.dr2, row.teeth, row.point, row.life
+    )

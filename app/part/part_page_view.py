@@ -1,0 +1,141 @@
+"""Page PART: findings or stock on the left, and the part after the selected block on the right."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.pages.page_entry import find_editor_refusal
+from app.desk.pages.table_content import FunctionKey
+from app.desk.programs.program_loading import LoadedProgram
+from app.desk.status.machine_status import MachineStatus
+from app.part.part_model import PartModel, PartSection
+from app.part.part_tables import make_table
+from app.path.part_player import make_part_player
+from app.path.path_view import PathView
+from app.screen import page_table
+from app.screen.entry_panel import LetterPad, NumberPad
+from app.screen.page_base import KeyActions, PageHost
+from app.screen.table_panel import ListPage, TablePanel
+from core.executor.snapshot import Snapshot
+from core.language.diagnostics import Diagnostic
+
+# ratio of the page width; units: width of the number pad, height of the letter pad
+SHARE, PAD, LETTERS = 0.5, 28.4, 24.0
+
+
+class PartPathView(PathView):
+    """View of the part after the block of the selected finding, or at the time of the time line."""
+
+    title = "PART"
+
+
+class PartPage(ListPage):
+    """Page PART: shows its model and passes the keys to it."""
+
+    NAME = page_table.PART
+    model: PartModel
+
+    def __init__(self, host: PageHost, model: PartModel, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.table_panel = TablePanel(self.theme, model.touch_row, self)
+        self.path_view = PartPathView(self.theme, self, part_player=make_part_player(host.desk))
+        self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
+        self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
+        self._loaded: LoadedProgram | None = None
+        self._shown: Diagnostic | None = None  # finding whose location the part view shows
+        model.show_location = self._show
+
+    def function_keys(self) -> Mapping[str, FunctionKey]:
+        """Return the function keys of the model."""
+        return self.model.function_keys()
+
+    def key_labels(self) -> tuple[str, ...]:
+        """Return the labels of the displayed table and of the page."""
+        return self.make_labels({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.function_keys())
+
+    def disabled_keys(self) -> frozenset[str]:
+        """Return the barred keys of the table, and F3 while the editor cannot be opened."""
+        named = self.desk.program_loader.loaded.path is not None
+        closed = find_editor_refusal(self.desk.read_snapshot(), has_name=named)
+        return super().disabled_keys() | ({"F3"} if closed else set())
+
+    def is_animating(self) -> bool:
+        """Return whether the part is being played."""
+        return self.path_view.part_player is not None and self.path_view.part_player.is_playing
+
+    def key_actions(self) -> KeyActions:
+        """Return the actions of the table, the time line and the view."""
+        path = self.path_view
+        return {
+            **{name: key.action for name, key in self.function_keys().items()},
+            "F3": partial(self.host.open_page, page_table.EDITOR),
+            "F5": path.fit_all,
+            "F8": partial(self.host.open_page, page_table.TOOLS),
+            "View": path.select_next_view,
+            **path.make_view_key_actions(),
+            **path.make_playback_key_actions(),
+        }
+
+    def has_text_field(self) -> bool:
+        """Return whether a reason, a file name or a value of the stock is being typed."""
+        return self.model.has_entry
+
+    def apply_theme(self) -> None:
+        """Redraw the path in the present colors."""
+        self.path_view.redraw()
+
+    def _show(self, found: Diagnostic) -> None:
+        """Show the part after the block of the finding."""
+        player = self.path_view.part_player
+        assert player is not None
+        self._shown = found
+        if found.block_number:
+            player.seek_block(found.block_number)
+        elif found.line:
+            player.seek_line(found.line)
+
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
+        """Update the table and the part."""
+        model = self.model
+        model.poll()
+        sheet = make_table(model)
+        self.table_panel.show_table(sheet)
+        self._show_part(loaded)
+        figures = (
+            model.shown_section is PartSection.STOCK and model.accepts_key("1") and not model.has_keyboard
+        )
+        if (figures, model.has_keyboard) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
+            self.number_pad.setVisible(figures)
+            self.letter_pad.setVisible(model.has_keyboard)
+            self._lay_out()
+
+    def _show_part(self, loaded: LoadedProgram) -> None:
+        if loaded is not self._loaded:
+            self._loaded = loaded
+            picture = loaded.picture
+            self.path_view.show_picture(
+                None if picture is not None and picture.scene is not None else picture
+            )
+            self.path_view.show_part()
+            first = self.model.selected_finding
+            if first is not None and loaded.picture is not None and first is not self._shown:
+                self._show(first)
+        self.path_view.draw_slice()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Arrange table, part and pads."""
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        u = self.theme.u
+        gap, left = max(4, round(0.7 * u)), round(SHARE * self.width())
+        right, pad = self.width() - left - gap, 0 if self.number_pad.isHidden() else round(PAD * u) + gap
+        low = 0 if self.letter_pad.isHidden() else round(LETTERS * u) + gap
+        self.table_panel.setGeometry(0, 0, left, self.height())
+        self.path_view.setGeometry(left + gap, 0, right - pad, self.height() - low)
+        self.number_pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
+        self.letter_pad.setGeometry(left + gap, self.height() - low + gap, right, max(0, low - gap))

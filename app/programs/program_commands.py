@@ -1,0 +1,234 @@
+"""Copying, renaming and deleting programs, with a name entry or a confirmation.
+
+A worker changes the files, and no file is ever overwritten.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.desk.background_work import LatestRequestWorker
+from app.desk.desk import Desk
+from app.desk.pages.table_content import InputField
+from app.desk.persistence import Persistence
+from app.desk.programs.program_folder import PROGRAM_EXTENSIONS, AcceptsName, is_program_name
+from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.translation import tr
+from app.programs.atomic_files import FileOperationError, read_if_exists, write_program_file
+from app.programs.program_rows import ListedFile
+from core.access.access_table import ProtectedChange
+from core.message import Message
+from core.store.program_records import check_program_name
+from core.store.store_errors import StoreError
+
+SAMPLE_READ_ONLY = "SAMPLES ARE READ-ONLY. F4: COPY THE SAMPLE FIRST"
+NO_SELECTION = "SELECT A PROGRAM FIRST"
+COMMAND_IN_PROGRESS = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
+COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
+
+
+def check_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name) -> str:
+    """Return ``name``, with the extension of ``reference_name`` if it has none.
+
+    Raises FileError for an invalid name.
+    """
+    name = name.strip()
+    if not name:
+        raise FileOperationError("TYPE A NAME FIRST")
+    if not Path(name).suffix or not accepts_name(name):
+        name += reference_name.suffix
+    try:
+        check_program_name(name)
+    except StoreError as error:
+        raise FileOperationError(str(error)) from error
+    if name.startswith("."):
+        raise FileOperationError(
+            Message("{name} WOULD BE HIDDEN. USE A NAME WITHOUT A LEADING PERIOD", name=name)
+        )
+    return name
+
+
+def remove_extension(name: str) -> str:
+    """Return the name without its extension, or the whole name if the rest ends in another extension."""
+    left = Path(name).stem
+    return name if Path(left).suffix.lower() in PROGRAM_EXTENSIONS - {""} else left
+
+
+def find_same_name(folder: Path, name: str) -> str:
+    """Return the name of the file that is equal except for case, or an empty string."""
+    try:
+        names = [path.name for path in folder.iterdir()]
+    except OSError:
+        return ""
+    return next((other for other in names if other.lower() == name.lower()), "")
+
+
+def copy_program(source: Path, folder: Path, name: str, accepts_name: AcceptsName = is_program_name) -> str:
+    """Copy a program to the operator's folder and return its name. Raises FileError."""
+    name = check_name(name, source, accepts_name)
+    _free(folder, name)
+    write_program_file(folder / name, _read(source))
+    return name
+
+
+def rename_program(
+    source: Path, name: str, persistence: Persistence, accepts_name: AcceptsName = is_program_name
+) -> str:
+    """Rename a program together with its versions, count and record, and return the name.
+
+    Raises FileError.
+    """
+    name = check_name(name, source, accepts_name)
+    if name == source.name:
+        raise FileOperationError(Message("THE PROGRAM IS ALREADY NAMED {name}", name=name))
+    if name.lower() != source.name.lower():
+        _free(source.parent, name)
+    try:
+        source.rename(source.with_name(name))
+        persistence.move_program_data(source.name, name)
+    except OSError as error:
+        raise FileOperationError(
+            Message("{source} CANNOT BE RENAMED: {cause}", source=source.name, cause=error.strerror)
+        ) from error
+    except StoreError as error:
+        raise FileOperationError(
+            Message(
+                "PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER THE NAME {source}: {error}",
+                source=source.name,
+                error=error,
+            )
+        ) from error
+    return name
+
+
+def delete_program(path: Path, persistence: Persistence) -> str:
+    """Archive a program as a version and delete its file.
+
+    If FileError is raised, the file still exists.
+    """
+    try:
+        persistence.save_version(path.name, _read(path), "deleted")
+        path.unlink()
+    except StoreError as error:
+        raise FileOperationError(
+            Message("PROGRAM NOT DELETED. ITS CURRENT VERSION CANNOT BE SAVED FIRST: {error}", error=error)
+        ) from error
+    except OSError as error:
+        raise FileOperationError(
+            Message("{path} CANNOT BE DELETED: {cause}", path=path.name, cause=error.strerror)
+        ) from error
+    return path.name
+
+
+def _free(folder: Path, name: str) -> None:
+    if other := find_same_name(folder, name):
+        raise FileOperationError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
+
+
+def _read(path: Path) -> bytes:
+    data = read_if_exists(path)
+    if data is None:
+        raise FileOperationError(Message("{path} NO LONGER EXISTS", path=path.name))
+    return data
+
+
+@dataclass(slots=True)
+class ProgramCommands:
+    """Commands on the selected program.
+
+    ``on_changed`` is called with the name to select after the list was read again.
+    """
+
+    desk: Desk
+    own_folder: Path
+    persistence: Persistence
+    worker: LatestRequestWorker
+    find_selected: Callable[[], ListedFile | None]
+    on_changed: Callable[[str], None]
+    question: str = ""
+    name_field: InputField = field(default_factory=lambda: InputField(words=True))
+
+    def ask_name(self, question: str) -> None:
+        """Ask for the name of a copy or the new name."""
+        here = self.find_selected()
+        if here is None:
+            self.desk.say(NO_SELECTION)
+        elif self.desk.is_refused(ProtectedChange.PROGRAMS):
+            return
+        elif question == RENAME and self._find_protection(here):
+            self.desk.say(self._find_protection(here))
+        else:
+            self.desk.clear_prompt_line()
+            self.question = question
+            self.name_field.propose(remove_extension(here.name))
+
+    @property
+    def is_protected(self) -> bool:
+        """Whether the selected program cannot be renamed or deleted now."""
+        here = self.find_selected()
+        return here is None or bool(self._find_protection(here))
+
+    def _find_protection(self, program: ListedFile) -> str:
+        """Return the reason why a program cannot be changed, or an empty string."""
+        if program.is_sample:
+            return SAMPLE_READ_ONLY
+        found = self.desk.read_snapshot().interrupted
+        if found is not None and found.program == program.name:
+            words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
+            return tr(Message(words, name=program.name))
+        state = self.desk.read_snapshot().state
+        if state in ACTIVE_STATES and self.desk.program_loader.loaded.path == program.path:
+            return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=program.name))
+        return ""
+
+    def execute_with_name(self) -> None:
+        """Execute the command with the typed name."""
+        here, name, question = self.find_selected(), self.name_field.text, self.question
+        takes = self.desk.program_choice.program_folders.accepts_name
+        if here is None:
+            self.question = ""
+        elif self.desk.is_refused(ProtectedChange.PROGRAMS):
+            return  # The entry remains until an authorized user has signed in.
+        elif question == COPY:
+            self._change(lambda: copy_program(here.path, self.own_folder, name, takes), "COPIED AS {name}")
+        else:
+            self._change(
+                lambda: rename_program(here.path, name, self.persistence, takes), "RENAMED TO {name}"
+            )
+
+    def confirm_delete(self) -> None:
+        """Delete the selected program after confirmation. Its text remains as a version."""
+        here = self.find_selected()
+        if here is None or self._find_protection(here):
+            self.desk.say(self._find_protection(here) if here else NO_SELECTION)
+            return
+        if self.desk.is_refused(ProtectedChange.PROGRAMS):
+            return
+        asked = tr("Y: DELETE {name} (STORED VERSIONS REMAIN)   N: KEEP IT")
+        self.desk.ask_operator(tr(Message(asked, name=here.name)), lambda: self._delete(here))
+
+    def _delete(self, program: ListedFile) -> None:
+        if self._find_protection(program):  # The program was started in the meantime.
+            self.desk.say(self._find_protection(program))
+            return
+        self._change(
+            lambda: delete_program(program.path, self.persistence),
+            "{name} DELETED. ITS STORED VERSIONS REMAIN",
+        )
+
+    def _change(self, work: Callable[[], str], words: str) -> None:
+        if self.worker.is_busy:
+            self.desk.say(COMMAND_IN_PROGRESS)
+            return
+
+        def done(name: str) -> None:
+            self.question = ""
+            self.desk.show_success(tr(Message(words, name=name)))
+            self.persistence.log_change(
+                Message("program {words}", words=tr(Message(words, name=name)).lower())
+            )
+            self.on_changed(name)
+
+        self.worker.enqueue(work, done, self.desk.show_refusal)

@@ -1,0 +1,328 @@
+"""Model of the program list without Qt: search, sort, preview, load, file commands and transfer."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+from app.desk.background_work import LatestRequestWorker
+from app.desk.desk import Desk
+from app.desk.pages.page_entry import MANUAL_STATES
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, following
+from app.desk.persistence import Persistence
+from app.desk.status import formats
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.translation import tr
+from app.programs.import_export import ImportExport
+from app.programs.program_commands import COPY, NO_SELECTION, RENAME, ProgramCommands
+from app.programs.program_rows import (
+    SORT_ORDERS,
+    ListedFile,
+    ProgramPreview,
+    format_file_time,
+    format_store_time,
+    list_programs,
+    sort_programs,
+)
+from core.message import Message, join_messages
+
+DRAWING_HINT = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
+
+
+@dataclass(slots=True)
+class ProgramListModel:
+    """Model of the program list. ``own_folder`` is the operator's folder."""
+
+    desk: Desk
+    own_folder: Path
+    persistence: Persistence
+    worker: LatestRequestWorker
+    preview: ProgramPreview
+    import_export: ImportExport
+    sort_order: str = "NAME"
+    selected_row: int = 0
+    search_field: InputField = field(default_factory=lambda: InputField(words=True))
+    all_programs: tuple[ListedFile, ...] = ()
+    listed_programs: tuple[ListedFile, ...] = ()
+    program_commands: ProgramCommands = field(init=False)
+    _after: str = ""  # name to select after the list was read again
+
+    def __post_init__(self) -> None:
+        self.import_export.on_finished = self.reload_list
+        self.program_commands = ProgramCommands(
+            self.desk,
+            self.own_folder,
+            self.persistence,
+            self.worker,
+            lambda: self.selected_program,
+            self._changed,
+        )
+
+    @property
+    def question(self) -> str:
+        """Question about a name, or an empty string."""
+        return self.program_commands.question
+
+    @property
+    def name_field(self) -> InputField:
+        """Entry field of the name."""
+        return self.program_commands.name_field
+
+    # --- displayed values ----------------------------------------------------------------------------
+
+    def on_open(self) -> None:
+        """Read the folders and the records when the page opens."""
+        self._after = self.desk.program_loader.loaded.name
+        self.reload_list()
+
+    def reload_list(self) -> None:
+        """Read the folders again. The result arrives in a later frame."""
+        work = partial(
+            list_programs, self.desk.program_choice.program_folders, self.own_folder, self.persistence
+        )
+        self.worker.enqueue(work, self._found, self.desk.show_refusal)
+
+    def poll(self) -> None:
+        """Process the results of the worker; called once per frame."""
+        self.worker.poll()
+
+    def _found(self, found: tuple[ListedFile, ...]) -> None:
+        name = self._after or (self.selected_program.name if self.selected_program else "")
+        self._after, self.all_programs = "", found
+        self._narrow(name)
+
+    def _narrow(self, mark: str = "") -> None:
+        part = self.search_field.text.strip().lower()
+        found = [program for program in self.all_programs if part in program.name.lower()]
+        self.listed_programs = sort_programs(self.sort_order, found)
+        names = [program.name for program in self.listed_programs]
+        self.selected_row = names.index(mark) if mark in names else 0
+
+    @property
+    def selected_program(self) -> ListedFile | None:
+        """Selected program, or None in an empty list."""
+        return (
+            self.listed_programs[self.selected_row] if self.selected_row < len(self.listed_programs) else None
+        )
+
+    def make_table(self) -> TableContent:
+        """Return the table of programs, or of the folder chooser while it is open."""
+        return self.import_export.make_table() if self.import_export.is_open else make_program_table(self)
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def function_keys(self) -> Mapping[str, FunctionKey]:
+        """Return the present function keys."""
+        if self.import_export.is_open:
+            return self.import_export.function_keys()
+        return {
+            "F2": FunctionKey("SORT", self.select_next_order),
+            "F4": FunctionKey("COPY", lambda: self.program_commands.ask_name(COPY)),
+            "F5": FunctionKey(
+                "RENAME",
+                lambda: self.program_commands.ask_name(RENAME),
+                barred=self.program_commands.is_protected,
+            ),
+            "F6": FunctionKey(
+                "DELETE", self.program_commands.confirm_delete, barred=self.program_commands.is_protected
+            ),
+            "F8": FunctionKey("IMPORT", lambda: self._transfer(out=False)),
+            "F9": FunctionKey("EXPORT", lambda: self._transfer(out=True)),
+        }
+
+    def accepts_key(self, key: str) -> bool:
+        """Return whether a character is part of a name, as all are while the folder chooser is closed."""
+        return not self.import_export.is_open and self.search_field.accepts_key(key)
+
+    def handle_key(self, key: str) -> bool:
+        """Handle a key: arrows select, Enter loads or submits, and letters filter the list."""
+        if self.import_export.is_open:
+            return self.import_export.handle_key(key)
+        if key in ROW_STEPS and not self.question:
+            self.select_row(self.selected_row + ROW_STEPS[key])
+        elif key == "Enter":
+            self.program_commands.execute_with_name() if self.question else self.load_selected()
+        elif (self.name_field if self.question else self.search_field).handle_key(key):
+            self.desk.clear_prompt_line()
+            if not self.question:
+                self._narrow(self.selected_program.name if self.selected_program else "")
+        else:
+            return False
+        return True
+
+    def select_row(self, row: int) -> None:
+        """Select a row."""
+        if not self.question and self.listed_programs:
+            self.desk.clear_prompt_line()
+            self.selected_row = max(0, min(len(self.listed_programs) - 1, row))
+
+    def handle_escape(self) -> bool:
+        """Go back one step. Return False if the page can close."""
+        if self.desk.prompt_notice:
+            self.desk.clear_prompt_line()
+        elif self.import_export.is_open:
+            self.import_export.handle_escape()
+        elif self.question:
+            self.program_commands.question = ""
+        elif self.search_field.text:
+            self.search_field.text = ""
+            self._narrow(self.selected_program.name if self.selected_program else "")
+        else:
+            return False
+        return True
+
+    def on_close(self) -> None:
+        """Clear questions and filters when the page closes."""
+        self.program_commands.question = self.search_field.text = ""
+        self.import_export.close_chooser()
+        self.preview.find_picture(None)
+        self._narrow(self.selected_program.name if self.selected_program else "")
+
+    def select_next_order(self) -> None:
+        """Sort the list by the next criterion (F2)."""
+        self.sort_order = following(SORT_ORDERS, self.sort_order)
+        self._narrow(self.selected_program.name if self.selected_program else "")
+
+    def can_load(self) -> bool:
+        """Return whether the selected program can be loaded, and show the reason if not."""
+        if self.selected_program is None or self.selected_program.is_drawing:
+            self.desk.say(
+                NO_SELECTION
+                if self.selected_program is None
+                else tr(Message(DRAWING_HINT, name=self.selected_program.name))
+            )
+            return False
+        programs = self.desk.program_choice
+        return (
+            programs.can_choose()
+            and programs.program_folders.find_path(str(self.selected_program.path)) is not None
+        )
+
+    def load_selected(self) -> bool:
+        """Load the selected program or ask for confirmation.
+
+        Return False if loading is not possible.
+        """
+        program = self.selected_program
+        return (
+            self.can_load()
+            and program is not None
+            and self.desk.program_choice.load_by_name(str(program.path))
+        )
+
+    def _changed(self, name: str) -> None:
+        self._after = name
+        self.reload_list()
+
+    def _transfer(self, *, out: bool) -> None:
+        if out and self.selected_program is None:
+            self.desk.say(NO_SELECTION)
+        else:
+            self.desk.clear_prompt_line()
+            self.import_export.open_chooser(
+                tuple(p.path for p in self.listed_programs),
+                self.selected_program.path if self.selected_program else None,
+                out,
+            )
+
+    def prompt_text(self) -> str:
+        """Return the prompt for the present keys."""
+        if self.import_export.is_open:
+            return self.import_export.prompt_text()
+        if self.question:
+            return "TYPE A NAME   BACKSPACE: EDIT   ENTER: ACCEPT   ESC: CANCEL"
+        if self.search_field.text and not self.listed_programs:
+            return tr("NO PROGRAM NAME CONTAINS THIS TEXT. F3: NEW PROGRAM")
+        if self.desk.read_snapshot().state in MANUAL_STATES:
+            return "TYPE PART OF A NAME   PAUSE: FEED HOLD   ESC: AUTOMATIC"
+        if self.desk.read_snapshot().state in ACTIVE_STATES:
+            return "TYPE PART OF NAME   F3: EDIT   PAUSE: FEED HOLD   ESC: BACK"
+        return "TYPE PART OF A NAME OR USE ARROWS   ENTER: LOAD   ESC: BACK"
+
+    def close(self) -> None:
+        """Stop the workers of the list and of the preview."""
+        self.worker.close()
+        self.preview.close()
+
+
+# --- rows of the list and details of the selected program ------------------------------------------------
+
+ProgramDetail = tuple[str, str]
+
+
+def make_program_table(model: ProgramListModel) -> TableContent:
+    """Return the table with name, date, last run, parts and best cycle."""
+    rows = tuple(_row(program) for program in model.listed_programs)
+    count = (
+        Message(
+            "{listed_count} OF {all_count} PROGRAMS",
+            listed_count=len(model.listed_programs),
+            all_count=len(model.all_programs),
+        )
+        if model.search_field.text
+        else Message("{rows_count} PROGRAMS", rows_count=len(rows))
+    )
+    question, text = model.question, model.name_field.text
+    if not question:
+        question, text = "NAME TO FIND OR CREATE", model.search_field.text
+    return TableContent(
+        Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order),
+        ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),
+        (0.32, 0.25, 0.25, 0.09, 0.09),
+        rows,
+        model.selected_row if rows else -1,
+        question=question,
+        text=text,
+        raw_columns=frozenset({0, 1, 2}),
+        number_columns=frozenset({3, 4}),
+    )
+
+
+def _row(program: ListedFile) -> TableRow:
+    run = program.run_row
+    best = formats.format_duration(run.best) if run.best is not None else formats.NO_VALUE
+    cells = (
+        program.name,
+        format_file_time(program.modified_at),
+        format_store_time(run.started),
+        str(run.parts),
+        best,
+    )
+    good = run.proof == "PROVED"
+    lit = None if not run.proof else good
+    return TableRow(cells, lit, Tone.RUN if good else Tone.ALARM)
+
+
+def make_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
+    """Return the details of a program.
+
+    The last two texts can be long, and the others are short.
+    """
+    run = program.run_row
+    return (
+        ("SIZE", formats.format_file_size(program.size_bytes)),
+        ("TYPE", "DRAWING" if program.is_drawing else "SAMPLE" if program.is_sample else "USER PROGRAM"),
+        ("PARTS", str(run.parts)),
+        ("BEST CYCLE", _time(run.best)),
+        ("LAST CYCLE", _time(run.latest)),
+        ("PLANNED TIME", _time(run.planned)),
+        (
+            "LAST RUN",
+            join_messages("  ·  ", (format_store_time(run.started), run.outcome))
+            if run.outcome
+            else format_store_time(run.started),
+        ),
+        (
+            "LAST PROOF",
+            join_messages("  ·  ", (run.proof, format_store_time(run.proved)))
+            if run.proof
+            else "NEVER PROVED",
+        ),
+    )
+
+
+def _time(seconds: float | None) -> str:
+    return formats.format_duration(seconds) if seconds is not None else formats.NO_VALUE

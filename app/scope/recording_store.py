@@ -1,0 +1,181 @@
+"""Scope records on the disk: listing, saving, opening and exporting.
+
+All functions run on a worker. A full disk and an invalid file raise an error with a message for the operator.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple, TypeVar
+
+from app.desk.status.formats import format_file_size
+from core.file_replacement import replace_atomically
+from core.message import CodedError, Message
+from core.records.record import ScopeRecord
+from core.records.record_file import RECORD_SUFFIX
+
+ALARM_TIME_KEY = "alarm time"  # key of an alarm record: the alarm's time on the clock of the samples
+INSTANT_KEY = "instant"  # key of a record: seconds from its first sample to the trigger or the alarm
+MAX_FILES = 500
+_RESERVED_BYTES = 20_000_000  # bytes of disk space reserved for the store and the log
+
+
+class RecordingFileError(CodedError):
+    """Failed file operation. The message states the reason and the remedy."""
+
+
+class RecordingFile(NamedTuple):
+    """Record file with its path, modification time and size in bytes."""
+
+    path: Path
+    modified_at: float
+    size: int
+
+    @property
+    def modified_text(self) -> str:
+        """Month, day and time of the last modification. The name contains the year."""
+        return time.strftime("%m-%d %H:%M:%S", time.localtime(self.modified_at))
+
+    @property
+    def size_text(self) -> str:
+        """Size of the file as text with a unit."""
+        return format_file_size(self.size)
+
+
+T = TypeVar("T")
+SaveRecording = Callable[[ScopeRecord, Path], None]
+OpenRecording = Callable[[Path], ScopeRecord]
+WriteCsvTable = Callable[[ScopeRecord, Callable[[str], object]], None]
+
+
+@dataclass(slots=True)
+class RecordingStore:
+    """Folder of scope records, with the functions that know the file format.
+
+    Errors are raised as ShelfError or as an error whose text is a message for the operator.
+    """
+
+    folder: Path
+    save_recording: SaveRecording
+    open_recording: OpenRecording
+    write_table: WriteCsvTable
+    clock: Callable[[], float] = time.time
+    recording_files: tuple[RecordingFile, ...] = field(default=())
+
+    def list_files(self) -> tuple[RecordingFile, ...]:
+        """Return the record files, newest first, at most ``MAX_FILES``; runs on a worker."""
+        found = []
+        with suppress(FileNotFoundError):
+            for entry in os.scandir(self.folder):
+                with suppress(OSError):
+                    if entry.name.endswith(RECORD_SUFFIX) and entry.is_file():
+                        told = entry.stat()
+                        found.append(RecordingFile(Path(entry.path), told.st_mtime, told.st_size))
+        return tuple(sorted(found, key=lambda each: -each.modified_at)[:MAX_FILES])
+
+    def save_named(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
+        """Save a record under a name with date and time, and return its path. Raises ShelfError."""
+        path = self._make_path(name_stem, RECORD_SUFFIX)
+        self._write_guarded(path, lambda: self.save_recording(record, path))
+        return path
+
+    def write_csv(self, record: ScopeRecord) -> Path:
+        """Write a record as a CSV table and return its path. Raises ShelfError."""
+        path = self._make_path("scope", ".csv")
+
+        def write() -> None:
+            with _draft(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+                self.write_table(record, file.write)
+            replace_atomically(draft, path)
+
+        self._write_guarded(path, write)
+        return path
+
+    def write_picture(self, png: bytes) -> Path:
+        """Save a picture of the page and return its path. Raises ShelfError."""
+        path = self._make_path("scope", ".png")
+
+        def write() -> None:
+            with _draft(path) as draft:
+                draft.write_bytes(png)
+            replace_atomically(draft, path)
+
+        self._write_guarded(path, write)
+        return path
+
+    def read_recording(self, path: Path) -> ScopeRecord:
+        """Open a stored record. Raises ShelfError."""
+        return self._run_reporting(path, lambda: self.open_recording(path))
+
+    def delete(self, path: Path) -> None:
+        """Delete a record file. Raises ShelfError."""
+        self._run_reporting(path, path.unlink)
+
+    def _make_path(self, stem: str, extension: str) -> Path:
+        """Return an unused path with the date and time."""
+        named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.clock()))}"
+        names = (f"{named}{more}{extension}" for more in ("", *(f" {n}" for n in range(2, 100))))
+        return next(self.folder / name for name in names if not (self.folder / name).exists())
+
+    def _write_guarded(self, path: Path, write: Callable[[], None]) -> None:
+        """Write a file if there is enough disk space."""
+
+        def carefully() -> None:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            if shutil.disk_usage(self.folder).free < _RESERVED_BYTES:
+                raise RecordingFileError(
+                    Message("{path} NOT SAVED: DISK FULL. DELETE RECORDS OR PROGRAMS", path=path.name),
+                    "disk-full",
+                )
+            write()
+
+        self._run_reporting(path, carefully)
+
+    def _run_reporting(self, path: Path, work: Callable[[], T]) -> T:
+        """Run a file operation and convert an OSError into a ShelfError with the file name."""
+        try:
+            return work()
+        except RecordingFileError:
+            raise
+        except OSError as error:
+            raise RecordingFileError(
+                Message("{path}: {cause}", path=path.name, cause=error.strerror or error), "unusable"
+            ) from error
+
+
+def _draft(path: Path) -> _DraftFile:
+    return _DraftFile(path.with_name(path.name + ".part"))
+
+
+class _DraftFile:
+    """Temporary file next to its target, deleted if writing fails."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def __enter__(self) -> Path:
+        return self._path
+
+    def __exit__(self, kind: object, *_rest: object) -> None:
+        if kind is not None:
+            with suppress(OSError):
+                self._path.unlink()
+
+
+def find_zero_instant(record: ScopeRecord) -> float:
+    """Return the instant 0 of a record on its clock: the trigger or alarm, or else the last sample."""
+    told = record.about.get(INSTANT_KEY, "")
+    if not len(record.times_s):
+        return 0.0
+    try:
+        if not told and ALARM_TIME_KEY in record.about:
+            return float(record.about[ALARM_TIME_KEY])
+        return float(record.times_s[0]) + float(told)
+    except ValueError:
+        return float(record.times_s[-1])

@@ -1,0 +1,142 @@
+"""Start of the operator screen: show the window first, then build the model, then load a program."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+from collections.abc import Callable
+from types import TracebackType
+
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
+
+from app.desk.desk import Desk
+from app.desk.programs.first_program import load_first_program
+from app.screen import accessible
+from app.screen.screen_theme import PALETTES, ScreenTheme, load_fonts, style_application
+from app.screen.window.main_window import MainWindow
+from core.message import Message
+
+_LISTENS_AFTER = 500  # ms; the first picture does not wait for what few starts need
+BuildModel = Callable[[], Desk]
+_log = logging.getLogger(__name__)
+# These signals stop the machine and end the threads, like closing the window.
+END_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def run_screen(
+    machine: str | None = None,
+    program_file: str | None = None,
+    offsets_file: str | None = None,
+    theme: str = "dark",
+    build_model: BuildModel | None = None,
+    *,
+    is_kiosk: bool = False,
+) -> int:
+    """Show the screen until it is closed, and return the exit status.
+
+    ``machine`` is a machine file. ``program`` is a file to load at the start. ``offsets`` is an offsets file
+    that replaces the stored offsets. ``build`` creates the model; the default is the composed model. A
+    ``is_kiosk`` fills the screen and cannot be closed by hand. An exception of ``build`` is raised here after
+    the window has closed.
+    """
+    build_model = build_model or _import_builder(machine, offsets_file)
+    app = _application(theme)
+    # Otherwise Qt would post a quit event that remains after this event loop.
+    app.setQuitOnLastWindowClosed(False)
+    window = MainWindow(ScreenTheme(PALETTES[theme]), app.quit)
+    window.is_kiosk = is_kiosk
+    window.show_on(app.primaryScreen())
+    start = _Startup(window, build_model, program_file)
+    before, sys.excepthook = sys.excepthook, start.handle_exception
+    # Use exit and not quit, because a window may refuse to close, and a shutdown cannot wait.
+    handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in END_SIGNALS]
+    QTimer.singleShot(0, start.run)
+    status = app.exec()
+    sys.excepthook = before
+    for number, handler in handlers:
+        signal.signal(number, handler)
+    window.hide()
+    window.deleteLater()
+    start.close()
+    return status
+
+
+class _Startup:
+    """The steps that follow the first painting of the window."""
+
+    def __init__(self, window: MainWindow, build: BuildModel, program: str | None) -> None:
+        self._window, self._build, self._program = window, build, program
+        self._desk: Desk | None = None
+        self._trouble: Exception | None = None
+
+    def run(self) -> None:
+        """Build the model and open it. An error ends the event loop, and ``close`` raises it."""
+        try:
+            desk = self._desk = self._build()
+            self._window.show_model(desk)
+            load_first_program(desk, self._program)
+            self._listen_later()
+        except Exception as error:  # noqa: BLE001 - raised into Qt's loop nobody could catch it
+            self._trouble = error
+            QApplication.exit(1)
+
+    def _listen_later(self) -> None:
+        """Start ``_listen`` after the first pictures; the timer ends with the window."""
+        timer = QTimer(self._window)
+        timer.setSingleShot(True)
+        timer.timeout.connect(self._listen)
+        timer.start(_LISTENS_AFTER)
+
+    def _listen(self) -> None:
+        """Receive the programs that later starts of TurnDesk hand over."""
+        from app.screen.window.file_opening import FileOpening
+        from app.screen.window.running_screen import RunningScreen
+
+        opening = FileOpening(self._window)
+        RunningScreen(opening.open_file, self._window).listen()
+
+    def handle_exception(
+        self, kind: type[BaseException], error: BaseException, trace: TracebackType | None
+    ) -> None:
+        """Log an exception from Qt's event loop with its traceback, and show it to the operator."""
+        _log.error("the screen has failed", exc_info=(kind, error, trace))
+        if self._desk is not None:
+            self._desk.say(
+                Message("SCREEN FAULT (MACHINE OK): {name}: {error}", name=kind.__name__, error=error)
+            )
+
+    def close(self) -> None:
+        """Stop the machine, end the threads and raise the error of the start, if any."""
+        if self._desk is not None:
+            self._desk.close()
+        if self._trouble is not None:
+            raise self._trouble
+
+
+def _import_builder(machine: str | None, offsets: str | None) -> BuildModel:
+    """Start the control in the background, and return the function that builds the model on it."""
+    from app.compose.control.control_attachment import find_or_start_control
+
+    begun = find_or_start_control(machine)
+
+    def build() -> Desk:
+        from app.compose.screen_desk import build_desk
+        from app.compose.stored_offsets import make_offsets_reader
+
+        return build_desk(machine, make_offsets_reader(offsets), begun)
+
+    return build
+
+
+def _application(theme: str) -> QApplication:
+    present = QApplication.instance()
+    app = present if isinstance(present, QApplication) else QApplication(sys.argv[:1])
+    app.setApplicationName("TurnDesk")
+    # Desktops use this name to find the application's name and icon, also under Wayland.
+    app.setDesktopFileName("turndesk")
+    load_fonts()
+    accessible.register_accessibility()
+    style_application(PALETTES[theme])
+    return app

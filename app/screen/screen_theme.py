@@ -1,0 +1,502 @@
+"""Themes, bundled fonts, unit of size and language, for everything that draws on the screen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from importlib.resources import files
+from typing import ClassVar, Self
+
+from PySide6.QtCore import QPointF, QRectF, Qt, QTranslator
+from PySide6.QtGui import (
+    QBrush,
+    QColor,
+    QFont,
+    QFontDatabase,
+    QFontMetricsF,
+    QPaintDevice,
+    QPainter,
+    QPalette,
+    QPen,
+    QPolygonF,
+)
+from PySide6.QtWidgets import QApplication
+
+from app.desk.status.machine_status import Tone
+from app.desk.translation import ENGLISH_CODE, Translate, set_translator, tr
+from app.screen.text_sizes import PanelSize, Role
+from app.screen.window_layout import FINGERTIP_PX
+from core.message import Message
+
+
+@dataclass(frozen=True, slots=True)
+class ColorPalette:
+    """Colors as ``#rrggbb``. ``on_…`` is the text color on a background of that color."""
+
+    name: str
+    ground: str
+    panel: str
+    frame: str
+    text: str
+    soft: str
+    accent: str
+    key: str
+    ready: str
+    run: str
+    pause: str
+    wait: str
+    alarm: str
+    off: str
+    on_state: str
+    mark: str
+    on_mark: str
+    lit: str
+    on_lit: str
+    here: str
+    todo: str
+    done: str
+    rapid: str
+    ghost: str
+    centre: str
+    tip: str
+    estop: str = "#c81e1e"  # An E-stop is red on yellow in every theme (IEC 60204-1).
+    estop_rim: str = "#7a0d0d"
+    estop_plate: str = "#ffd400"
+    estop_ground: str = "#14161a"
+    estop_ink: str = "#ffffff"
+
+
+DARK_PALETTE = ColorPalette(
+    name="dark",
+    ground="#080c14",
+    panel="#0f1623",
+    frame="#5f7699",
+    text="#f4f7fb",
+    soft="#a9b9cf",
+    accent="#74d4f7",
+    key="#1d2a40",
+    ready="#dde6f1",
+    run="#35c4a2",
+    pause="#f5b638",
+    wait="#7fc8f6",
+    alarm="#ff7f50",
+    off="#8b9ab0",
+    on_state="#05080d",
+    mark="#f5b638",
+    on_mark="#05080d",
+    lit="#74d4f7",
+    on_lit="#05080d",
+    here="#203555",
+    todo="#8093ad",
+    done="#ffffff",
+    rapid="#d98e1f",
+    ghost="#3a4d6b",
+    centre="#a8779a",
+    tip="#ff7f50",
+)
+LIGHT_PALETTE = ColorPalette(
+    name="light",
+    ground="#dfe5ec",
+    panel="#ffffff",
+    frame="#66788f",
+    text="#0a101b",
+    soft="#41506a",
+    accent="#005580",
+    key="#cdd7e3",
+    ready="#2a3547",
+    run="#006a52",
+    pause="#8f4e00",
+    wait="#005f99",
+    alarm="#b32d00",
+    off="#566478",
+    on_state="#ffffff",
+    mark="#8f4e00",
+    on_mark="#ffffff",
+    lit="#005f99",
+    on_lit="#ffffff",
+    here="#cfe3f3",
+    todo="#7c8ca1",
+    done="#0a101b",
+    rapid="#a85c00",
+    ghost="#c3ccd8",
+    centre="#94497f",
+    tip="#b32d00",
+)
+PALETTES = {palette.name: palette for palette in (DARK_PALETTE, LIGHT_PALETTE)}
+
+# Colors of chart curves on the color ``panel``. Adjacent colors differ in lightness and in hue.
+CURVE_COLORS = {
+    "dark": (
+        *("#74d4f7", "#f5b638", "#35c4a2", "#ff7f50"),
+        *("#d6a2e8", "#f4f7fb", "#b5d36a", "#8f9bff"),
+    ),
+    "light": (
+        *("#005f99", "#8f4e00", "#006a52", "#b32d00"),
+        *("#86347a", "#0a101b", "#5d6b00", "#3a3fb8"),
+    ),
+}
+
+
+# B612 has digits of equal width, and an O that differs from a 0. In B612 Mono both look alike, and a gap
+# follows the decimal point, so that X.69 looks like X. 69.
+FONT_FAMILY = "B612"
+ALIGN_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+MIN_TEXT_SIZE = 1.35  # Units: the smallest text.
+MIN_ROW_PX = 20.0  # Pixels: a line of text.
+_GROWN = 1.35  # Largest factor by which a text of a table is enlarged for the distance.
+_ROW_SHARE = {Role.TABLE: 0.9, Role.PROMPT: 0.95}  # Largest em height as a ratio to the height of the row.
+_ALONE = 1.1  # The same ratio for digits and capitals that have their row for themselves.
+MIN_TEXT_SCALE = 0.6  # A translation may be drawn at this fraction of its text size.
+ALIGN_CENTER = Qt.AlignmentFlag.AlignCenter
+
+
+@cache
+def load_fonts() -> tuple[str, ...]:
+    """Register the bundled fonts with Qt and return their families.
+
+    Without them, a system without fonts shows boxes instead of characters.
+    """
+    families: list[str] = []
+    for file in sorted(files("resources").joinpath("fonts").iterdir(), key=lambda f: f.name):
+        if file.name.endswith(".otf"):
+            number = QFontDatabase.addApplicationFontFromData(file.read_bytes())
+            families += QFontDatabase.applicationFontFamilies(number)
+    return tuple(families)
+
+
+class ScreenTheme:
+    """Colors, fonts and sizes that all widgets of a window share. ``u`` changes with the window's size."""
+
+    def __init__(self, palette: ColorPalette, u: float = 12.0) -> None:
+        self.palette = palette
+        self.u = u
+        self.is_caret_shown = (
+            False  # An input field of the current page has the keyboard, so its caret is drawn.
+        )
+        self.screen = PanelSize()
+        self._colours: dict[str, QColor] = {}
+        self._fonts: dict[tuple[float, bool], QFont] = {}
+
+    def set_unit(self, u: float) -> None:
+        """Set the unit of size in pixels."""
+        if u != self.u:
+            self.u = u
+            self._fonts.clear()
+
+    def find_row_height(
+        self, height_units: float, max_height_mm: float, *, is_touchable: bool = False
+    ) -> float:
+        """Return the height of a list row in pixels.
+
+        The height is ``height_units`` of the window, but at most ``max_height_mm`` on the screen. A larger
+        screen thus shows more rows. A row for ``is_touchable`` is never lower than a fingertip on the
+        smallest screen.
+        """
+        high = min(height_units * self.u, max_height_mm * self.screen.pixels_per_mm)
+        return (
+            max(high, float(FINGERTIP_PX))
+            if is_touchable
+            else max(high, min(height_units * self.u, MIN_ROW_PX))
+        )
+
+    def find_key_rows_height(self, row_count: int) -> int:
+        """Return the height of a number of rows of touch keys in pixels, each as high as a fingertip."""
+        return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.u)
+
+    def em(self, size: float, role: Role, high: float) -> float:
+        """Return the em height in units of a text in a row that is ``high`` pixels high.
+
+        The height is at least ``size``. It is larger if the role of the text requires it at the size of this
+        screen, and the row has room.
+        """
+        least = self.screen.least_em(role) / self.u
+        room = high / self.u * _ROW_SHARE.get(role, _ALONE)
+        most = min(room, size * _GROWN) if role is Role.TABLE else room
+        return max(size, min(least, most))
+
+    def set_palette(self, palette: ColorPalette) -> None:
+        """Use the colors of another palette."""
+        self.palette = palette
+        self._colours.clear()
+
+    def color(self, name: str) -> QColor:
+        """Return a copy of a palette color, which the caller may change."""
+        if name not in self._colours:
+            self._colours[name] = QColor(getattr(self.palette, name))
+        return QColor(self._colours[name])
+
+    def make_font(self, size: float, *, is_bold: bool = False) -> QFont:
+        """Return the bundled font with an em height of ``size`` units."""
+        key = (size, is_bold)
+        if key not in self._fonts:
+            font = QFont(FONT_FAMILY)
+            font.setPixelSize(max(8, round(size * self.u)))
+            font.setBold(is_bold)
+            self._fonts[key] = font
+        return self._fonts[key]
+
+    def make_pen(self, name: str, width: float = 0.12) -> QPen:
+        """Return a pen of a palette color. ``width`` is in units, at least one pixel."""
+        return QPen(self.color(name), max(1.0, width * self.u))
+
+    def fit_font(self, text: str, size: float, width: float, *, is_bold: bool = False) -> QFont:
+        """Return the font of this size, or a smaller one in which ``text`` is not wider than ``width``.
+
+        The font stays large enough to read. A text that is still too long is elided when it is drawn.
+        """
+        font = self.make_font(size, is_bold=is_bold)
+        wide = measure_text(tr(text), font)
+        if wide <= width or wide <= 0:
+            return font
+        smaller = QFont(font)
+        smaller.setPixelSize(max(round(MIN_TEXT_SIZE * self.u), int(font.pixelSize() * width / wide)))
+        return smaller
+
+
+def draw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
+    """Draw one line of TurnDesk's own text in the operator's language. See ``draw_raw_text``.
+
+    A translation that is too wide is drawn smaller, as far as it remains readable.
+    """
+    shown, font = tr(text), painter.font()
+    wide = measure_text(shown, font) if shown != text else 0.0
+    if wide > rect.width() > 0:
+        smaller = QFont(font)
+        smaller.setPixelSize(int(font.pixelSize() * max(MIN_TEXT_SCALE, rect.width() / wide)))
+        painter.setFont(smaller)
+        draw_raw_text(painter, rect, flags, shown)
+        painter.setFont(font)
+    else:
+        draw_raw_text(painter, rect, flags, shown)
+
+
+def draw_raw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
+    """Draw one line of untranslated text, such as program lines, comments, names and input.
+
+    Its capitals are centered vertically in ``rect``. A text that is too long is elided.
+    """
+    font = painter.font()
+    if ThemedPainter.records_texts and isinstance(painter, ThemedPainter):
+        painter.drawn_texts.append((QRectF(rect), text))
+    width = measure_text(text, font)
+    if width > rect.width() + 1:
+        text = QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, rect.width())
+        width = measure_text(text, font)
+    x = rect.left()
+    if flags & Qt.AlignmentFlag.AlignRight:
+        x = rect.right() - width
+    elif flags & Qt.AlignmentFlag.AlignHCenter:
+        x = rect.center().x() - width / 2
+    painter.drawText(round(x), round(rect.center().y() + _capitals(*_face(font)) / 2), text)
+
+
+def measure_text(text: str, font: QFont) -> float:
+    """Return the width of a line of text in pixels.
+
+    The result is cached, because Qt shapes the text each time.
+    """
+    return _width(text, *_face(font))
+
+
+def _face(font: QFont) -> tuple[str, int, bool]:
+    return font.family(), font.pixelSize(), font.bold()
+
+
+@lru_cache(maxsize=4096)
+def _width(text: str, family: str, pixels: int, bold: bool) -> float:
+    return _metrics(family, pixels, bold).horizontalAdvance(text)
+
+
+@cache
+def _capitals(family: str, pixels: int, bold: bool) -> float:
+    return _metrics(family, pixels, bold).capHeight()
+
+
+def _metrics(family: str, pixels: int, bold: bool) -> QFontMetricsF:
+    font = QFont(family)
+    if pixels > 0:  # Otherwise the default font size applies.
+        font.setPixelSize(pixels)
+    font.setBold(bold)
+    return QFontMetricsF(font)
+
+
+class ThemedPainter(QPainter):
+    """A painter that uses the colors, fonts and unit of a look."""
+
+    # Whether all painters record the texts that they draw, for assistive technology.
+    records_texts: ClassVar[bool] = False
+
+    def __init__(self, device: QPaintDevice, theme: ScreenTheme) -> None:
+        super().__init__(device)
+        self.theme = theme
+        self.drawn_texts: list[tuple[QRectF, str]] = []  # Recorded texts and their rectangles.
+
+    def __enter__(self) -> Self:
+        super().__enter__()
+        return self
+
+    def draw_text_line(
+        self,
+        rect: QRectF,
+        text: str,
+        size: float,
+        ink: str,
+        *,
+        at: Qt.AlignmentFlag = ALIGN_LEFT,
+        bold: bool = True,
+        raw: bool = False,
+        margin: float = 0.0,
+        fit: bool = True,
+        role: Role = Role.TABLE,
+    ) -> None:
+        """Draw one line of text in a palette color, ``size`` units high, or smaller if necessary.
+
+        It is larger if its role requires that, see ``ScreenTheme.em``.
+
+        The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated,
+        see ``draw_raw_text``. Color and font remain set.
+        """
+        look = self.theme
+        room = rect.width() - margin * look.u
+        size = look.em(size, role, rect.height()) if fit else size
+        self.setPen(look.color(ink))
+        self.setFont(
+            look.fit_font(text, size, room, is_bold=bold) if fit else look.make_font(size, is_bold=bold)
+        )
+        (draw_raw_text if raw else draw_text)(self, rect, at, text)
+
+    def draw_wrapped_text(self, rect: QRectF, flags: int | Qt.AlignmentFlag | Qt.TextFlag, text: str) -> None:
+        """Draw a text with several lines in the present pen and font."""
+        self.drawn_texts.append((QRectF(rect), text))
+        self.drawText(rect, int(flags), text)
+
+    def fill_rect(self, rect: QRectF, color: str) -> None:
+        """Fill a rectangle with a palette color."""
+        self.fillRect(rect, self.theme.color(color))
+
+    def draw_box(self, rect: QRectF, line_color: str, width: float, fill_color: str) -> None:
+        """Draw a filled rectangle with an edge ``width`` units wide. An empty ``ground`` leaves it hollow."""
+        self.setPen(self.theme.make_pen(line_color, width))
+        self.setBrush(self.theme.color(fill_color) if fill_color else Qt.BrushStyle.NoBrush)
+        self.drawRect(rect)
+
+
+def style_application(palette: ColorPalette) -> None:
+    """Use the Fusion style with TurnDesk's palette for the standard widgets.
+
+    Qt's setColorScheme has no effect on a plain X server.
+    """
+    QApplication.setStyle("Fusion")
+    look = ScreenTheme(palette)
+    colours = QPalette()
+    for role, name in (
+        (QPalette.ColorRole.Window, "ground"),
+        (QPalette.ColorRole.Base, "panel"),
+        (QPalette.ColorRole.AlternateBase, "panel"),
+        (QPalette.ColorRole.Button, "key"),
+        (QPalette.ColorRole.Text, "text"),
+        (QPalette.ColorRole.WindowText, "text"),
+        (QPalette.ColorRole.ButtonText, "text"),
+        (QPalette.ColorRole.Highlight, "lit"),
+        (QPalette.ColorRole.HighlightedText, "on_lit"),
+        (QPalette.ColorRole.PlaceholderText, "soft"),
+    ):
+        colours.setColor(role, look.color(name))
+    QApplication.setPalette(colours)
+
+
+# --- state symbols ------------------------------------------------------------------------------------
+
+
+def draw_state_symbol(painter: QPainter, box: QRectF, tone: Tone, color: QColor) -> None:
+    """Draw the symbol of a state.
+
+    Running is a triangle, paused is two bars, waiting is dots, an alarm is a triangle with a bar, ready is a
+    square.
+    """
+    side = min(box.width(), box.height())
+    square = QRectF(box.center().x() - side / 2, box.center().y() - side / 2, side, side)
+    painter.save()
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QBrush(color))
+    _STATE_SYMBOLS[tone](painter, square, color)
+    painter.restore()
+
+
+def _run(painter: QPainter, box: QRectF, _colour: QColor) -> None:
+    painter.drawPolygon(QPolygonF([box.topLeft(), QPointF(box.right(), box.center().y()), box.bottomLeft()]))
+
+
+def _pause(painter: QPainter, box: QRectF, _colour: QColor) -> None:
+    bar = box.width() * 0.36
+    painter.drawRect(QRectF(box.left(), box.top(), bar, box.height()))
+    painter.drawRect(QRectF(box.right() - bar, box.top(), bar, box.height()))
+
+
+def _wait(painter: QPainter, box: QRectF, _colour: QColor) -> None:
+    size = box.width() * 0.24
+    for k in range(3):
+        x = box.left() + k * (box.width() - size) / 2
+        painter.drawEllipse(QRectF(x, box.center().y() - size / 2, size, size))
+
+
+def _alarm(painter: QPainter, box: QRectF, colour: QColor) -> None:
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    pen = QPen(colour, box.width() * 0.12)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    painter.setPen(pen)
+    inner = box.adjusted(box.width() * 0.06, box.width() * 0.06, -box.width() * 0.06, -box.width() * 0.06)
+    painter.drawPolygon(
+        QPolygonF([QPointF(inner.center().x(), inner.top()), inner.bottomRight(), inner.bottomLeft()])
+    )
+    x = box.center().x()
+    painter.drawLine(QPointF(x, box.top() + box.height() * 0.40), QPointF(x, box.top() + box.height() * 0.62))
+    painter.drawPoint(QPointF(x, box.top() + box.height() * 0.79))
+
+
+def _ready(painter: QPainter, box: QRectF, _colour: QColor) -> None:
+    inset = box.width() * 0.12
+    painter.drawRect(box.adjusted(inset, inset, -inset, -inset))
+
+
+def _off(painter: QPainter, box: QRectF, colour: QColor) -> None:
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(QPen(colour, box.width() * 0.14))
+    inset = box.width() * 0.12
+    painter.drawEllipse(box.adjusted(inset, inset, -inset, -inset))
+
+
+_STATE_SYMBOLS = {
+    Tone.RUN: _run,
+    Tone.PAUSE: _pause,
+    Tone.WAIT: _wait,
+    Tone.ALARM: _alarm,
+    Tone.READY: _ready,
+    Tone.OFF: _off,
+}
+
+
+TRANSLATION_CONTEXT = "turndesk"
+
+
+def use_language(language: str) -> None:
+    """Show texts in this language from now on. Raises FileNotFoundError if it has no catalog."""
+    set_translator(None if language == ENGLISH_CODE else load_catalog(language), language)
+
+
+@cache
+def load_catalog(language: str) -> Translate:
+    """Return the translation function of a language. The catalog is read once.
+
+    The function returns an empty text for a text without a translation. Raises FileNotFoundError without a
+    catalog.
+    """
+    folder = files("resources") / "translations"
+    translator = QTranslator()
+    if not translator.load(str(folder / f"turndesk_{language}.qm")):
+        raise FileNotFoundError(
+            Message("catalog turndesk_{language}.qm not found in {folder}", language=language, folder=folder)
+        )
+    return lambda text: translator.translate(TRANSLATION_CONTEXT, text) or ""

@@ -1,0 +1,361 @@
+"""Panels with rows: a scrolling list, and a table with a head line, notes and an entry line; their page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from typing import Protocol
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPolygonF, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
+from app.screen import page_table
+from app.screen.entry_panel import draw_entry_box
+from app.screen.page_base import ModelPage, PageHost, PageModel
+from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.screen_theme import ALIGN_LEFT, ALIGN_RIGHT, ScreenTheme, ThemedPainter
+from app.screen.window_layout import FINGERTIP_PX
+
+SCROLL_KEY_SIZE = 5.0  # Units: size of the two scroll keys, at least a fingertip.
+NARROW_WIDTH = 50.0  # Units: a narrower list uses its full width for rows.
+
+
+class RowPanel(Panel):
+    """A list of rows of equal height.
+
+    A subclass gets the rectangle for its rows from ``draw_scroll_keys``, and each visible row from
+    ``find_row_boxes``. The selected row stays visible when the selection or the size changes. Scrolling does
+    not move the selection, except in a ``is_centered`` list.
+    """
+
+    is_list = True
+    scroll_step = 3  # Rows that one notch of the wheel scrolls.
+    row_margin = 0  # Rows that remain visible on both sides of the selection.
+    is_centered = False  # The selection is in the middle, and ``scroll_by`` of the subclass moves it.
+    has_scroll_keys = True  # Two scroll keys are drawn if not all rows fit.
+
+    def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
+        super().__init__(theme, parent)
+        self.first_row = 0  # Index of the first visible row.
+        self.rows = 1  # Number of rows that fit.
+        self._count = 0
+        # Selection and number of visible rows when the list last followed the selection.
+        self._followed = (-1, 0)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Scroll by ``scroll_step`` rows for each notch of the wheel."""
+        self.scroll_by(-round(event.angleDelta().y() * self.scroll_step / 120))
+
+    def scroll_by(self, rows: int) -> None:
+        """Scroll down by a number of rows. A negative number scrolls up."""
+        self.first_row = self._limited(self.first_row + rows)
+        self.update()
+
+    def _limited(self, top: int) -> int:
+        return max(0, min(top, self._count - self.rows))
+
+    def draw_scroll_keys(
+        self, painter: ThemedPainter, area: QRectF, visible_count: int, count: int, selected_row: int = -1
+    ) -> QRectF:
+        """Draw the scroll keys if ``count`` rows do not fit, and return the rectangle for the rows.
+
+        ``visible_count`` is the number of rows that fit. ``marked`` is the index of the selected row, or -1.
+        """
+        self.rows, self._count = visible_count, count
+        if self.is_centered:
+            self.first_row = selected_row - visible_count // 2
+        elif (selected_row, visible_count) != self._followed and selected_row >= 0 and visible_count:
+            lowest, highest = (
+                selected_row - visible_count + 1 + self.row_margin,
+                max(0, selected_row - self.row_margin),
+            )
+            self.first_row = min(max(self.first_row, lowest), highest)
+        self._followed = (selected_row, visible_count)
+        self.first_row = self._limited(self.first_row)
+        return self._with_keys(painter, area) if self.has_scroll_keys and 0 < visible_count < count else area
+
+    def find_row_boxes(self, area: QRectF, height: float) -> Iterator[tuple[int, QRectF]]:
+        """Yield the index and box of each visible row. ``height`` is the height of a row in pixels."""
+        for number in range(self.first_row, min(self._count, self.first_row + self.rows)):
+            yield (
+                number,
+                QRectF(area.x(), area.y() + (number - self.first_row) * height, area.width(), height),
+            )
+
+    def count_fitting_rows(self, area: QRectF, height: float, count: int) -> int:
+        """Return how many rows of this height fit, at least one.
+
+        The scroll keys of a narrow list are below its rows and use some of the height.
+        """
+        fits = int(area.height() / height)
+        if self.has_scroll_keys and fits < count and self.is_narrow(area.width()):
+            fits = int((area.height() - self.scroll_key_size[1] - 0.6 * self.theme.u) / height)
+        return max(1, fits)
+
+    @property
+    def scroll_key_size(self) -> tuple[float, float]:
+        """The width and minimum height of a scroll key in pixels."""
+        size = max(SCROLL_KEY_SIZE * self.theme.u, float(FINGERTIP_PX))
+        return size, size
+
+    def is_narrow(self, width: float) -> bool:
+        """Return whether a list of this width has its scroll keys below the rows, not to their right."""
+        return width < NARROW_WIDTH * self.theme.u
+
+    def _with_keys(self, painter: ThemedPainter, area: QRectF) -> QRectF:
+        """Draw the scroll keys and the scroll bar, and return the rectangle that remains for the rows.
+
+        The keys are at the right, or below the rows of a narrow list. They are side by side if there is
+        little height.
+        """
+        gap, (wide, high) = 0.6 * self.theme.u, self.scroll_key_size
+        foot = self.is_narrow(area.width())
+        beside = foot or area.height() < 2 * high + gap
+        strip = QRectF(area.right() - wide - beside * (wide + gap), area.y(), wide, area.height())
+        if foot:
+            wide = (area.width() - gap) / 2
+            strip = QRectF(area.x(), area.bottom() - high, wide, high)
+        right, down = (wide + gap, 0.0) if beside else (0.0, (strip.height() + gap) / 2)
+        for number, sign in enumerate((-1, 1)):
+            box = QRectF(strip.x(), strip.y(), wide, strip.height() if beside else down - gap)
+            self._scroll_key(painter, box.translated(number * right, number * down), sign)
+        left = area.adjusted(0, 0, -2 * gap, -high - gap)
+        if not foot:
+            left = area.adjusted(0, 0, strip.x() - 2 * gap - area.right(), 0)
+        self._scroll_bar(painter, QRectF(left.right() + gap, left.y(), 0.6 * gap, left.height()))
+        return left
+
+    def _scroll_key(self, painter: ThemedPainter, box: QRectF, sign: int) -> None:
+        at, size = box.center(), 1.2 * self.theme.u
+        ends = self.first_row <= 0 if sign < 0 else self.first_row + self.rows >= self._count
+        painter.fill_rect(box, "key")
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(self.theme.color("ghost" if ends else "accent"))
+        tip, foot = QPointF(at.x(), at.y() + sign * size), at.y() - sign * size
+        painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
+        name = "PREVIOUS ROWS" if sign < 0 else "NEXT ROWS"
+        self.add_target(box, partial(self.scroll_by, sign * self.rows), name)
+
+    def _scroll_bar(self, painter: ThemedPainter, track: QRectF) -> None:
+        painter.fill_rect(track, "key")
+        part = QRectF(track.x(), 0, track.width(), track.height() * self.rows / self._count)
+        part.moveTop(track.y() + track.height() * self.first_row / self._count)
+        painter.fill_rect(part, "accent")
+
+
+ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # Units.
+TALL_ROW_HEIGHT = 6.0
+LAMP_SIZE = 3.2
+_ROUNDING = 1e-6
+
+
+class TablePanel(RowPanel):
+    """A panel that draws a table. A touch selects a row. The selected row stays visible."""
+
+    table = RedrawingAttribute(TableContent("", (), (), ()))
+
+    def __init__(self, theme: ScreenTheme, on_select: Callable[[int], None], parent: QWidget) -> None:
+        super().__init__(theme, parent)
+        self._choose = on_select
+        self.on_entry_touched: Callable[[], None] | None = None  # Called for a touch on the entry line.
+
+    def show_table(self, table: TableContent) -> None:
+        """Show a table, and redraw it if it has changed. A table with another title begins at its top."""
+        if table.title.split("  ·  ")[0] != self.table.title.split("  ·  ")[0]:
+            self.first_row = 0
+        self.table = table
+
+    @property
+    def _high(self) -> float:
+        """The height of a row in units.
+
+        A row is at least as high as a fingertip. On a large screen, a row has at most 9 mm, or 14 mm if it is
+        tall. If there are few rows, their height follows the size of the window.
+        """
+        own, mm = (TALL_ROW_HEIGHT, 14.0) if self.table.has_tall_rows else (ROW, 9.0)
+        share = self._find_list_height(len(self.table.notes)) / max(1, len(self.table.rows)) - _ROUNDING
+        return max(self.theme.find_row_height(own, mm, is_touchable=True) / self.theme.u, min(own, share))
+
+    def _find_list_height(self, notes: int) -> float:
+        """Return the height in units that is left for rows next to a number of note lines."""
+        foot = notes * NOTE + (self._entry_height if self.table.question else 0.0)
+        return self.height() / self.theme.u - 4.0 - HEAD - foot
+
+    @property
+    def _entry_height(self) -> float:
+        """The height of the entry line in units, at least a fingertip if it reacts to touch."""
+        return ASKED if self.on_entry_touched is None else max(ASKED, FINGERTIP_PX / self.theme.u + 0.6)
+
+    @property
+    def _text_scale(self) -> float:
+        """The scale of the letters in a row, which depends on the row's height."""
+        return min(1.0, self._high / (TALL_ROW_HEIGHT if self.table.has_tall_rows else 4.2))
+
+    def _count_fitting(self) -> int:
+        """Return how many rows of the table fit. 0 if the entry line needs the whole panel."""
+        fits = self._fit(len(self._visible_notes))
+        if fits < len(self.table.rows):
+            fits = self._fit(len(self._visible_notes), self._scroll_key_height)
+        return max(0 if self.table.question else 1, fits)
+
+    def _fit(self, notes: int, below: float = 0.0) -> int:
+        return int((self._find_list_height(notes) - below) / self._high)
+
+    @property
+    def _scroll_key_height(self) -> float:
+        """The height in units of the scroll keys below the rows of a narrow table, else 0."""
+        return self.scroll_key_size[1] / self.theme.u + 0.6 if self.is_narrow(self.inside().width()) else 0.0
+
+    @property
+    def _visible_notes(self) -> tuple[str, ...]:
+        """The notes. Empty if the entry line and the notes would leave no room for the selected row."""
+        notes = self.table.notes
+        return () if self.table.question and self._fit(len(notes)) < 1 else notes
+
+    def draw(self, painter: ThemedPainter) -> None:
+        u, sheet = self.theme.u, self.table
+        self.frame(painter, sheet.title)
+        room, fits, high = self.inside(), self._count_fitting(), self._high
+        row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
+        below = self._scroll_key_height if fits < len(sheet.rows) else 0.0
+        body = QRectF(room.x(), row.bottom(), room.width(), (fits * high + below) * u)
+        left = self.draw_scroll_keys(painter, body, fits, len(sheet.rows), sheet.marked)
+        row.setWidth(left.width())
+        self._head(painter, row)
+        for number, box in self.find_row_boxes(left, high * u):
+            self._row(painter, box, sheet.rows[number], number == sheet.marked)
+            self.add_target(box, partial(self._choose, number), kind="row", is_on=number == sheet.marked)
+        self._foot(painter, room)
+
+    def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:
+        u = self.theme.u
+        lamp = LAMP_SIZE * u if any(row.is_lit is not None for row in self.table.rows) else 0.8 * u
+        x, wide = box.x() + lamp, box.width() - lamp - 0.6 * u
+        for number, share in enumerate(self.table.column_shares):
+            yield number, QRectF(x, box.y(), share * wide - 1.0 * u, box.height())
+            x += share * wide
+
+    def _head(self, painter: ThemedPainter, box: QRectF) -> None:
+        for number, at in self._columns(box):
+            painter.draw_text_line(at, self.table.column_heads[number], 1.6, "soft", at=self._side(number))
+
+    def _side(self, number: int) -> Qt.AlignmentFlag:
+        return ALIGN_RIGHT if number in self.table.number_columns else ALIGN_LEFT
+
+    def _row(self, painter: ThemedPainter, box: QRectF, row: TableRow, marked: bool) -> None:
+        u = self.theme.u
+        if marked:
+            painter.fill_rect(box, "here")
+            painter.fill_rect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
+        if row.is_lit is not None:
+            side = min(1.6 * u, 0.5 * box.height())
+            lamp = QRectF(box.x() + 1.0 * u, box.center().y() - side / 2, side, side)
+            painter.draw_box(lamp, row.tone.value, 0.2, row.tone.value if row.is_lit else "")
+        for number, at in self._columns(box):
+            if row.bar_fraction is not None and number == len(row.cells) - 1:
+                self._draw_filled(painter, at, row)
+            side, bold, raw = self._side(number), number == 0 or marked, number in self.table.raw_columns
+            first, two, second = row.cells[number].partition("\n")
+            if two:
+                half = QRectF(at.x(), at.center().y(), at.width(), 0.44 * at.height())
+                painter.draw_text_line(
+                    half, second, 1.8 * self._text_scale, "soft", at=side, bold=False, raw=raw
+                )
+                at.setTop(at.y() + 0.06 * at.height())
+                at.setHeight(half.height())
+            painter.draw_text_line(at, first, 2.1 * self._text_scale, "text", at=side, bold=bold, raw=raw)
+            if row.outline is not None and number == len(row.cells) - 1:
+                from app.screen.drawings import draw_tool_outline
+
+                draw_tool_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, is_small=True)
+
+    def _draw_filled(self, painter: ThemedPainter, at: QRectF, row: TableRow) -> None:
+        """Draw a bar below the text of the last cell."""
+        high = 0.5 * self.theme.u
+        track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
+        painter.fill_rect(track, "key")
+        track.setWidth(track.width() * min(1.0, max(0.0, row.bar_fraction or 0.0)))
+        painter.fill_rect(track, row.tone.value)
+
+    def _foot(self, painter: ThemedPainter, room: QRectF) -> None:
+        u, sheet = self.theme.u, self.table
+        notes = self._visible_notes
+        y = room.bottom() - len(notes) * NOTE * u
+        for number, note in enumerate(notes):
+            row = QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u)
+            painter.draw_text_line(row, note, 1.8, "soft", bold=False)
+        if sheet.question:
+            self._ask(
+                painter,
+                QRectF(room.x(), y - self._entry_height * u, room.width(), (self._entry_height - 0.6) * u),
+            )
+
+    def _ask(self, painter: ThemedPainter, row: QRectF) -> None:
+        u, sheet = self.theme.u, self.table
+        asked = QRectF(row.x(), row.y(), 0.5 * row.width(), row.height())
+        painter.draw_text_line(asked, sheet.question, 2.2, "text", margin=1.0)
+        box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
+        draw_entry_box(painter, box, sheet.text, 2.6)
+        if self.on_entry_touched is not None:
+            self.add_target(row, self.on_entry_touched)
+
+
+# --- a page with a list ------------------------------------------------------------------------------------
+
+
+class ListModel(PageModel, Protocol):
+    """Interface of a list page's model. ``handle_escape`` returns False if only the list is shown."""
+
+    def prompt_text(self) -> str: ...
+
+    def on_close(self) -> None: ...
+
+
+class ListPage(ModelPage):
+    """A page with a list. It passes keys to its model. Esc leads from the list to the Automatic page."""
+
+    model: ListModel
+
+    def __init__(self, host: PageHost, model: ListModel, parent: QWidget) -> None:
+        super().__init__(host, parent)
+        self.model = model
+
+    def make_labels(
+        self, page_labels: Mapping[str, str], function_keys: Mapping[str, FunctionKey]
+    ) -> tuple[str, ...]:
+        """Return the ten labels from the common keys, the page's ``page_labels`` labels and the model's
+        ``function_keys``.
+        """
+        named = {"F1": "MENU", "F7": "ALARMS", **page_labels}
+        named.update((name, key.label) for name, key in function_keys.items())
+        return tuple(named.get(f"F{number}", "") for number in range(1, 11))
+
+    def function_keys(self) -> Mapping[str, FunctionKey]:
+        """Return the function keys of the model."""
+        return {}
+
+    def disabled_keys(self) -> frozenset[str]:
+        """Return the function keys of the model that are disabled now."""
+        return frozenset(name for name, key in self.function_keys().items() if key.barred)
+
+    def prompt_text(self) -> str:
+        """Return the prompt of the model."""
+        return self.model.prompt_text()
+
+    def try_leave(self) -> bool:
+        """Cancel unfinished entries and questions, and let the page close."""
+        self.desk.clear_prompt_line()
+        self.model.on_close()
+        return True
+
+    def is_esc_stop_key(self) -> bool:
+        """Return False, because Esc goes one step back even while the machine moves."""
+        return False
+
+    def handle_escape(self) -> bool:
+        """Go one step back, or from the list to the Automatic page."""
+        if not self.model.handle_escape():
+            self.host.open_page(page_table.AUTOMATIC)
+        return True

@@ -1,0 +1,119 @@
+"""The table of keys and their functions, shared by the screen and its tests.
+
+Bare arrow keys have no function on the Automatic page, because they move axes on the Jog page.
+"""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeyEvent
+
+Key = Qt.Key
+CTRL_MODIFIER = Qt.KeyboardModifier.ControlModifier
+SHIFT_MODIFIER = Qt.KeyboardModifier.ShiftModifier
+NO_MODIFIER = Qt.KeyboardModifier.NoModifier
+
+PALM_KEYS = {Key.Key_F11: "left", Key.Key_F12: "right"}
+
+# Name of a key with these modifiers. Keypad and Shift are distinguished only where necessary.
+KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
+    **{(Key(Key.Key_F1 + n), NO_MODIFIER): f"F{n + 1}" for n in range(10)},
+    (Key.Key_S, NO_MODIFIER): "S",
+    (Key.Key_O, NO_MODIFIER): "O",
+    (Key.Key_Slash, NO_MODIFIER): "/",
+    (Key.Key_C, NO_MODIFIER): "C",
+    (Key.Key_P, NO_MODIFIER): "P",
+    (Key.Key_G, NO_MODIFIER): "G",
+    (Key.Key_B, NO_MODIFIER): "B",
+    (Key.Key_U, NO_MODIFIER): "U",
+    (Key.Key_R, NO_MODIFIER): "R",
+    (Key.Key_D, NO_MODIFIER): "D",
+    (Key.Key_A, NO_MODIFIER): "A",
+    (Key.Key_Comma, NO_MODIFIER): ",",
+    (Key.Key_Period, NO_MODIFIER): ".",
+    (Key.Key_Plus, NO_MODIFIER): "+",
+    (Key.Key_Minus, NO_MODIFIER): "-",
+    (Key.Key_T, NO_MODIFIER): "T",
+    (Key.Key_Y, NO_MODIFIER): "Y",
+    (Key.Key_Escape, NO_MODIFIER): "Esc",
+    (Key.Key_Z, NO_MODIFIER): "Zoom in",
+    (Key.Key_Z, SHIFT_MODIFIER): "Zoom out",
+    (Key.Key_M, NO_MODIFIER): "Measure",
+    (Key.Key_V, NO_MODIFIER): "View",
+    (Key.Key_J, NO_MODIFIER): "Step back",
+    (Key.Key_K, NO_MODIFIER): "Play",
+    (Key.Key_K, SHIFT_MODIFIER): "Play fast",
+    (Key.Key_L, NO_MODIFIER): "Step forward",
+    (Key.Key_N, NO_MODIFIER): "To line",
+    (Key.Key_W, NO_MODIFIER): "W",
+    (Key.Key_Left, CTRL_MODIFIER): "Pan left",
+    (Key.Key_Right, CTRL_MODIFIER): "Pan right",
+    (Key.Key_Up, CTRL_MODIFIER): "Pan up",
+    (Key.Key_Down, CTRL_MODIFIER): "Pan down",
+    (Key.Key_PageUp, NO_MODIFIER): "Page up",
+    (Key.Key_PageDown, NO_MODIFIER): "Page down",
+    (Key.Key_Home, NO_MODIFIER): "Follow",
+    (Key.Key_F10, SHIFT_MODIFIER): "Scope",
+    (Key.Key_F1, SHIFT_MODIFIER): "Codes",
+    (Key.Key_F3, SHIFT_MODIFIER): "Shapes",
+    (Key.Key_F4, SHIFT_MODIFIER): "Calculators",
+    (Key.Key_F6, SHIFT_MODIFIER): "Shift+F6",
+    (Key.Key_Q, NO_MODIFIER): "Q",
+    (Key.Key_X, NO_MODIFIER): "X",
+}
+MENU_KEYS = {"J": "Step back"}
+"""Letters of the main menu that are called otherwise, by what they do where a part is played."""
+REPEATING_KEYS = frozenset(
+    {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
+    | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step forward"}
+)
+# Stop keys work with any modifier.
+_STOP_KEYS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}
+STOP_LETTERS = frozenset(_STOP_KEYS.values())
+NO_KEY = "No"  # N while a question is open, and its touch target. It only closes the question.
+AUTOMATIC_KEYS = frozenset({"A", "C", "O", "P", "S", "/"})
+"""Keys that change how a cycle runs: keys of the Automatic page alone."""
+YES_KEY = "Yes"  # The key that means yes, and its touch target on the prompt line.
+# Signs that need Shift on some keyboards and not on others.
+_SIGN_KEYS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}
+
+
+def name_key(key: int, modifiers: Qt.KeyboardModifier) -> str:
+    """Return the name of a pressed key. Empty if the key has no function."""
+    held = modifiers & (
+        CTRL_MODIFIER | SHIFT_MODIFIER | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+    )
+    if key in _STOP_KEYS:
+        return _STOP_KEYS[Key(key)]
+    if key in _SIGN_KEYS:
+        held &= ~SHIFT_MODIFIER
+    return KEY_NAMES.get((key, held), "")
+
+
+_EDITING_KEYS = {
+    Key.Key_Return: "Enter",
+    Key.Key_Enter: "Enter",
+    Key.Key_Backspace: "Back",
+    Key.Key_Delete: "Delete",
+    Key.Key_Tab: "Tab",
+    Key.Key_Up: "Up",
+    Key.Key_Down: "Down",
+    Key.Key_Left: "Left",
+    Key.Key_Right: "Right",
+    Key.Key_PageUp: "Page up",
+    Key.Key_PageDown: "Page down",
+}
+# These keys may repeat while they are held down.
+REPEATED_WHEN_TYPED = frozenset({"Back", "Up", "Down", "Left", "Right", "Page up", "Page down"})
+
+
+def find_typed_text(event: QKeyEvent) -> str:
+    """Return a key as text input: one character, or the name of an editing key. Empty for any other key."""
+    held = event.modifiers() & (
+        CTRL_MODIFIER | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+    )
+    if held:
+        return ""
+    name = _EDITING_KEYS.get(Key(event.key()), "")
+    text = event.text()
+    return name or (text if len(text) == 1 and text.isprintable() else "")

@@ -1,0 +1,139 @@
+"""Search for the restart line of SEARCHTO, by number or text, and its proof on a worker."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from app.desk.arithmetic import evaluate_line_number
+from app.desk.background_work import LatestRequestWorker, ProgressCallback
+from app.desk.pages.table_content import edit_text
+from app.desk.programs.program_loading import ProvedJob
+from core.executor.job import Job
+from core.interpreter.restart.cut_record import CutRecord
+from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRefusal
+
+if TYPE_CHECKING:
+    from core.interpreter.restart.program_search import BlockSearch
+    from core.interpreter.restart.state_rebuild import OmniturnSearch
+
+    Search = OmniturnSearch | BlockSearch
+
+
+RestartSearchResult = RestartPoint | RestartRefusal | CutRecord | tuple[Job, ProvedJob]
+
+
+@dataclass(slots=True)
+class RestartFinder:
+    """Finds and proves restart lines on a worker. A search for a later line continues from an earlier one.
+
+    ``rebuild`` and ``prove_job`` are called on the worker. ``found`` and ``on_failed`` are called with the
+    results when the worker is polled.
+    """
+
+    rebuild_state: Callable[[Job, ProgressCallback], Search]
+    prove_job: Callable[[Job, ProgressCallback], ProvedJob]
+    on_found: Callable[[RestartSearchResult], None]
+    on_failed: Callable[[str], None]
+    worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("loading-search"))
+    _rebuild: tuple[Job, Search] | None = None  # Used by the worker only.
+
+    def find_line(
+        self, job: Job, line: int, pass_number: int = 0, interruption: Interruption | None = None
+    ) -> None:
+        """Search for a line of this job's program.
+
+        ``visit`` is the pass of the line, counted from 1. 0 means the interrupted pass, or else the first
+        pass.
+        """
+        self._ask(job, lambda rebuild: rebuild.find_restart(line, pass_number, interruption))
+
+    def calculate_cuts(self, job: Job) -> None:
+        """Calculate everything that this job's program cuts."""
+        self._ask(job, lambda rebuild: rebuild.cut_record)
+
+    def prove_restart(self, job: Job) -> None:
+        """Prove the job of a restart."""
+        self.worker.request(lambda watch: (job, self.prove_job(job, watch)), self.on_found, self.on_failed)
+
+    def _ask(self, job: Job, ask: Callable[[Search], RestartSearchResult]) -> None:
+        self.worker.request(lambda watch: self._with(job, watch, ask), self.on_found, self.on_failed)
+
+    def _with(
+        self, job: Job, watch: ProgressCallback, ask: Callable[[Search], RestartSearchResult]
+    ) -> RestartSearchResult:
+        """Run a query on the worker. A canceled search is discarded, because it stopped within a line."""
+        kept, self._rebuild = self._rebuild, None
+        if kept is not None and kept[0] is job:
+            rebuild = kept[1]
+            rebuild.report_progress = watch
+        else:
+            rebuild = self.rebuild_state(job, watch)
+        answer = ask(rebuild)
+        self._rebuild = (job, rebuild)
+        return answer
+
+
+_PASS_PATTERN = re.compile(r"\s*(\d+)\s*[Pp]\s*(\d+)\s*")
+MAX_ENTRY_LENGTH = 60  # Maximum characters of the entry.
+_QUOTE = '"'
+
+
+@dataclass(slots=True)
+class LineCursor:
+    """The selected program line, counted from 1, and the text that is entered to find another line."""
+
+    lines: Sequence[str] = ()
+    selected_line: int = 1
+    entry_text: str = ""
+    is_found: bool = False  # The line was found by the present text.
+
+    @property
+    def entered_number(self) -> int | None:
+        """The line number that was entered, also as an expression. None if the entry is a search text."""
+        passes = _PASS_PATTERN.fullmatch(self.entry_text)
+        return int(passes[1]) if passes else evaluate_line_number(self.entry_text)
+
+    @property
+    def entered_pass(self) -> int:
+        """The pass that was entered after the line, for example in ``8P4``. 0 without a pass."""
+        passes = _PASS_PATTERN.fullmatch(self.entry_text)
+        return int(passes[2]) if passes else 0
+
+    @property
+    def search_text(self) -> str:
+        """The search text. A leading quotation mark makes a number a text."""
+        return self.entry_text.removeprefix(_QUOTE).upper()
+
+    def set_program(self, lines: Sequence[str], line: int) -> None:
+        """Set the program lines and the selected line."""
+        self.lines, self.entry_text, self.is_found = lines, "", False
+        self.select_line(line)
+
+    def select_line(self, line: int) -> None:
+        """Select this line, or the nearest line that exists."""
+        self.selected_line = max(1, min(line, len(self.lines)))
+
+    def handle_key(self, key: str) -> bool:
+        """Handle a character or an editing key. Return False if the key has no meaning here."""
+        taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
+        if taken:
+            self.entry_text, self.is_found = edit_text(self.entry_text, key, MAX_ENTRY_LENGTH), False
+        return taken
+
+    def find_text(self, direction: int) -> bool:
+        """Select the next (1) or previous (-1) line that contains the text, in a cycle.
+
+        Return False if no line contains the text.
+        """
+        count, wanted = len(self.lines), self.search_text
+        if not wanted:
+            return False
+        for step in range(1, count + 1):
+            at = (self.selected_line - 1 + direction * step) % count
+            if wanted in self.lines[at].upper():
+                self.selected_line, self.is_found = at + 1, True
+                return True
+        return False

@@ -1,0 +1,83 @@
+"""Independent closing steps: a step that fails or hangs does not prevent the other steps.
+
+Each step runs in its own daemon thread for a limited time. A step that takes longer continues until the
+process ends.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+_log = logging.getLogger(__name__)
+DEFAULT_LIMIT_S = 3.0  # s, default limit of a step
+
+WaitFunction = Callable[[str, threading.Event, float], bool]
+"""Wait for the end of the step of this name for so many seconds at most; returns whether it has ended."""
+
+
+def wait_for_end(_name: str, end_event: threading.Event, seconds: float) -> bool:
+    """Wait for the end of a step in real time; return whether the step has ended."""
+    return end_event.wait(seconds)
+
+
+class ClosingStep(NamedTuple):
+    """A function that closes one thing, with its name for the log and its time limit in seconds."""
+
+    name: str
+    run: Callable[[], object]
+    timeout_s: float = DEFAULT_LIMIT_S
+
+
+def close_in_order(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
+    """Run the steps one after the other; return the names of the steps that failed or did not end."""
+    return [step.name for step in steps if not _RunningStep(step).wait_for_success(step.timeout_s, wait)]
+
+
+def close_together(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
+    """Run all steps at the same time; return the names of the steps that failed or did not end.
+
+    Several steps that hang thus cost the time limit of only one.
+    """
+    begun = [_RunningStep(step) for step in steps]
+    failed: list[str] = []
+    hung = 0.0  # s already spent on a step that hangs; the limits of all steps run at the same time
+    for each in begun:
+        limit = max(each.step.timeout_s - hung, 0.0)
+        if not each.wait_for_success(limit, wait):
+            failed.append(each.step.name)
+            hung = hung if each.ended else max(hung, each.step.timeout_s)
+    return failed
+
+
+class _RunningStep:
+    """A closing step that has started."""
+
+    def __init__(self, step: ClosingStep) -> None:
+        self.step = step
+        self._done = threading.Event()
+        self._failed = False
+        threading.Thread(target=self._run, name=f"closing {step.name}", daemon=True).start()
+
+    @property
+    def ended(self) -> bool:
+        """Whether the step has ended, successfully or not."""
+        return self._done.is_set()
+
+    def wait_for_success(self, seconds: float, wait: WaitFunction) -> bool:
+        """Return whether the step ends successfully within this time."""
+        if not wait(self.step.name, self._done, seconds):
+            _log.error("closing: %s does not end within %g s", self.step.name, self.step.timeout_s)
+            return False
+        return not self._failed
+
+    def _run(self) -> None:
+        try:
+            self.step.run()
+        except BaseException as error:  # noqa: BLE001 - whatever it is, the other steps are carried out
+            self._failed = True
+            _log.error("closing: %s has failed", self.step.name, exc_info=error)
+        finally:
+            self._done.set()

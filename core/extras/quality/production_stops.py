@@ -1,0 +1,117 @@
+"""Stops of the machine: Pareto analysis of their reasons, times between stops, and availability.
+
+The availability of a shift is the fraction of its time in which parts were made (ISO 22400-2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from core.extras.quality.control_charts import QualityError
+from core.message import Message
+
+
+class ProductionStop(NamedTuple):
+    """A stop of production, with its start and duration in seconds of one clock."""
+
+    reason: str
+    start_s: float
+    duration_s: float
+
+
+class StopReasonTotal(NamedTuple):
+    """All stops with one reason.
+
+    ``share`` is the fraction of the total stop time. ``together`` is the cumulative fraction with all more
+    frequent reasons.
+    """
+
+    reason: str
+    times: int
+    seconds: float
+    share: float
+    together: float
+
+
+def analyze_stop_reasons(stops: Iterable[ProductionStop]) -> tuple[StopReasonTotal, ...]:
+    """Return the reasons by total duration, longest first.
+
+    Raises QualityError if a stop has a negative duration.
+    """
+    counts: dict[str, tuple[int, float]] = {}
+    for stop in stops:
+        if stop.duration_s < 0.0:
+            raise QualityError(
+                Message(
+                    "{reason}: the end of a stop is earlier than its start because the clock was set back",
+                    reason=stop.reason,
+                ),
+                "clock-set-back",
+            )
+        count, seconds = counts.get(stop.reason, (0, 0.0))
+        counts[stop.reason] = count + 1, seconds + stop.duration_s
+    total = sum(seconds for _, seconds in counts.values())
+    rows, together = [], 0.0
+    for reason, (count, seconds) in sorted(counts.items(), key=lambda item: (-item[1][1], item[0])):
+        share = seconds / total if total else 0.0
+        together += share
+        rows.append(StopReasonTotal(reason, count, seconds, share, together))
+    return tuple(rows)
+
+
+def calculate_times_between(stops: Sequence[ProductionStop]) -> tuple[float, ...]:
+    """Return the seconds from the end of each stop to the start of the next, in order of time.
+
+    Stops that overlap have 0 s between them.
+    """
+    ordered = sorted(stops, key=lambda stop: stop.start_s)
+    between, end = [], None
+    for stop in ordered:
+        if end is not None:
+            between.append(max(0.0, stop.start_s - end))
+        end = max(end or stop.start_s, stop.start_s + stop.duration_s)
+    return tuple(between)
+
+
+class TimeSpan(NamedTuple):
+    """A period from ``start_s`` to ``end_s``, in seconds of one clock."""
+
+    start_s: float
+    end_s: float
+
+
+class Availability(NamedTuple):
+    """Duration of a shift and of its running cycles, in seconds."""
+
+    planned_s: float
+    producing_s: float
+
+    @property
+    def producing_share(self) -> float:
+        """Fraction of the shift in which a cycle ran, 0…1."""
+        return self.producing_s / self.planned_s
+
+
+def calculate_availability(shift: TimeSpan, cycle_spans: Iterable[TimeSpan]) -> Availability:
+    """Return the availability of a shift from the periods in which a cycle ran.
+
+    Overlapping periods count once, and time outside the shift does not count. Raises QualityError for a shift
+    without duration, and for a period that ends before it begins.
+    """
+    if shift.end_s <= shift.start_s:
+        raise QualityError(
+            "the end of a shift must be later than its start; correct the shift times", "shift-times"
+        )
+    producing, reached = 0.0, shift.start_s
+    for span in sorted(cycle_spans):
+        if span.end_s < span.start_s:
+            raise QualityError(
+                "the end of a cycle is earlier than its start because the clock was set back",
+                "clock-set-back",
+            )
+        start, end = max(span.start_s, reached), min(span.end_s, shift.end_s)
+        if end > start:
+            producing += end - start
+            reached = end
+    return Availability(shift.end_s - shift.start_s, producing)

@@ -1,0 +1,186 @@
+"""A shape: its fields, lines, checks and sketch; and a shape with values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+from core.extras.shapes.contour import ContourPoint
+from core.extras.shapes.lines.code_lines import (
+    CodeWriter,
+    decode_comment_number,
+    decode_thread_name,
+    encode_comment_number,
+    encode_thread_name,
+)
+from core.extras.shapes.lines.sinumerik_lines import SinumerikCodeWriter
+from core.extras.shapes.shape_fields import (
+    LENGTH_KINDS,
+    TEXT_KINDS,
+    FieldError,
+    FieldKind,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ShapeField,
+)
+from core.language.source import Dialect
+from core.message import Message
+from core.part.tool_shape import ToolKind
+from core.sketch import Sketch
+
+
+def _no_checks(_filled: FilledShape, _setting: ProgramSettings) -> Iterator[FieldError]:
+    return iter(())
+
+
+TOOL_FIELD_WORD = "T"  # in the code of the line with the comment, and therefore not in the comment
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A shape that the editor offers.
+
+    ``name`` begins the comment, so it has only letters and spaces. ``cut`` writes the lines. ``first`` yields
+    errors that prevent proposals for other fields, and ``checks`` errors between fields. ``contour`` means
+    that the shape has a point table, which is read from its lines. ``ends`` returns lines for the end of the
+    program, after M30. ``noted`` means that the lines have a comment, so that the shape can be opened again.
+    ``says`` returns notes about the lines. ``extent`` returns values of the points on which proposals depend.
+    """
+
+    name: str
+    use: str
+    fields: tuple[ShapeField, ...]
+    cut: Callable[[FilledShape, ProgramSettings, CodeWriter], None]
+    sketch: Callable[[FilledShape], Sketch]
+    checks: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(default=_no_checks)
+    contour: bool = False
+    ends: Callable[[FilledShape], tuple[str, ...]] = field(default=lambda _filled: ())
+    noted: bool = True
+    first: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(default=_no_checks)
+    says: Callable[[FilledShape, ProgramSettings], tuple[str, ...]] = field(
+        default=lambda _filled, _setting: ()
+    )
+    extent: Callable[[Sequence[ContourPoint]], FieldValues] = field(default=lambda _rows: {})
+
+    def find_field(self, word: str) -> ShapeField | None:
+        """Return the field with this word, or None."""
+        return next((each for each in self.fields if each.word == word), None)
+
+
+@dataclass(frozen=True, slots=True)
+class FilledShape:
+    """A shape with entered values and with proposals for the other fields."""
+
+    shape: Shape
+    values: FieldValues
+    contour_points: tuple[ContourPoint, ...] = ()
+
+    def get_number(self, word: str) -> float:
+        """Return the value of a number field; 0 if it is missing."""
+        value = self.values.get(word, 0.0)
+        return 0.0 if isinstance(value, str) else float(value)
+
+    def get_text(self, word: str) -> str:
+        """Return the value of a text field; empty if it is missing."""
+        value = self.values.get(word, "")
+        return value if isinstance(value, str) else ""
+
+    @property
+    def fields(self) -> tuple[ShapeField, ...]:
+        """Fields that exist for these values."""
+        return tuple(each for each in self.shape.fields if each.applies_to(self.values))
+
+    def find_errors(self, settings: ProgramSettings) -> list[FieldError]:
+        """Return all errors of single fields, or else the errors between fields."""
+        if first := list(self.shape.first(self, settings)):
+            return first
+        said = (each.find_error(self.values.get(each.word)) for each in self.fields)
+        found = [refused for refused in said if refused is not None]
+        return found or [*self._tool(settings), *self.shape.checks(self, settings)]
+
+    def _tool(self, settings: ProgramSettings) -> Iterator[FieldError]:
+        """Yield an error if the tool data specifies another kind of tool."""
+        known, sheet = self.shape.find_field(TOOL_FIELD_WORD), settings.tool(self.get_number(TOOL_FIELD_WORD))
+        if known is not None and sheet is not None and sheet.kind not in {*known.tool_kinds, ToolKind.FORM}:
+            wanted = " or ".join(known.tool_kinds)
+            text = Message(
+                "The tool data of T{tool_word} specifies the type {kind}, but this shape needs {expected}",
+                tool_word=f"{self.get_number(TOOL_FIELD_WORD):.0f}",
+                kind=sheet.kind,
+                expected=wanted,
+            )
+            yield FieldError(TOOL_FIELD_WORD, Message("{what}: enter another tool.", what=text))
+
+    def make_lines(self, settings: ProgramSettings) -> list[str]:
+        """Return the lines with their comment. All fields must have values."""
+        code = (
+            SinumerikCodeWriter(settings) if settings.dialect is Dialect.SINUMERIK else CodeWriter(settings)
+        )
+        self.shape.cut(self, settings, code)
+        return code.add_comment(self.make_comment(settings)) if self.shape.noted else code.lines
+
+    def make_comment(self, settings: ProgramSettings) -> str:
+        """Return the comment: the name of the shape, and value and word of each field with a value."""
+        said = [self.shape.name]
+        for each in self.fields:
+            value = self.values.get(each.word)
+            if (
+                each.word == TOOL_FIELD_WORD
+                or value is None
+                or (value == 0.0 and each.allows_zero and not each.default)
+            ):
+                continue
+            said += [_said(each, value, settings), each.word]
+        return " ".join(said)
+
+
+def fill_shape(
+    shape: Shape,
+    entered_values: FieldValues,
+    settings: ProgramSettings,
+    contour_points: tuple[ContourPoint, ...] = (),
+) -> FilledShape:
+    """Return the shape with the entered values, and proposals for the other fields in order."""
+    values: dict[str, FieldValue] = {}
+    drawn = shape.extent(contour_points)
+    for each in shape.fields:
+        value = entered_values.get(each.word)
+        if value is None and each.applies_to({**entered_values, **values}):
+            value = each.propose_value({**drawn, **entered_values, **values}, settings)
+            value = 0.0 if value is None and each.allows_zero else value
+        if value is not None:
+            values[each.word] = value
+    return FilledShape(shape, values, contour_points)
+
+
+def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None:
+    """Return the values from the words of a comment after the shape's name; None if they are invalid."""
+    if len(words) % 2:
+        return None
+    found: dict[str, FieldValue] = {}
+    for said, word in zip(words[::2], words[1::2], strict=True):
+        known = shape.find_field(word)
+        value = None if known is None else _read(known, said)
+        if value is None:
+            return None
+        found[word] = value
+    for each in shape.fields:
+        if each.word not in found and each.allows_zero:
+            found[each.word] = 0.0
+    return found
+
+
+def _said(each: ShapeField, value: FieldValue, setting: ProgramSettings) -> str:
+    if isinstance(value, str):
+        return encode_thread_name(value) if each.kind is FieldKind.NAME else value.replace(" ", "")
+    unit = "MM" if each.is_in_comment and setting.metric and each.kind in LENGTH_KINDS else ""
+    return encode_comment_number(value, 6) + unit
+
+
+def _read(each: ShapeField, said: str) -> FieldValue | None:
+    if each.kind is FieldKind.NAME:
+        return decode_thread_name(said)
+    if each.kind in TEXT_KINDS:
+        return next((choice for choice in each.choices if choice.replace(" ", "") == said), None)
+    return decode_comment_number(said)

@@ -1,0 +1,471 @@
+"""Shapes in the text of a program: found by their comments, compared, written and replaced.
+
+A shape is intact if its fields produce the lines in the text. If a value was changed by hand and one field
+explains the change, the field adopts it. Otherwise the shape is reported as changed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from core.extras.shapes.contour import ContourPoint, read_contour
+from core.extras.shapes.editor_shape import TOOL_FIELD_WORD, FilledShape, Shape, fill_shape, read_comment
+from core.extras.shapes.shape_fields import (
+    LENGTH_KINDS,
+    FieldKind,
+    FieldValue,
+    FieldValues,
+    ProgramSettings,
+    ShopData,
+)
+from core.extras.shapes.shape_table import find_shape
+from core.extras.shapes.templates import MM, RADIUS
+from core.language.source import Dialect
+
+_COMMENT = {
+    Dialect.OMNITURN: re.compile(r"\(([^()]*)\)\s*$"),
+    Dialect.SINUMERIK: re.compile(r";([^;]*)$"),
+}
+_MODES = re.compile(r"G7([0-3])(?!\d)")
+_S_MODES = re.compile(r"(G700?(?!\d)|G710?(?!\d)|DIAMON|DIAMOF)")
+_BLOCK_NUMBER = re.compile(r"N\d+(?=[A-Z])")
+_TOOL = re.compile(r"(?:^|[^A-Z])T(\d+)")
+_SUB = {
+    Dialect.OMNITURN: re.compile(r"}(\d+)"),
+    Dialect.SINUMERIK: re.compile(r"^(?:CONTOUR_|%_N_PART_)(\d+)(?::|_SPF)"),
+}
+_END = {
+    Dialect.OMNITURN: re.compile(r"\s*(?:M30|M02|M99|})"),
+    Dialect.SINUMERIK: re.compile(r"\s*(?:N\d+\s*)?(?:M30|M0?2|M17|RET)\b(?!=)", re.IGNORECASE),
+}
+_BEGINS = ("}", "%_N_PART_")  # start of a subroutine
+_LABEL = re.compile(r"CONTOUR_\d+(?:_END)?:")
+_FIRST_CUT = re.compile(r"G1X-?[.\d]+Z-?[.\d]+F[.\d]+")
+_WORD = re.compile(r"([A-Z~_=:,(\"]+)([-+]?(?:\d+\.?\d*|\.\d+))?")
+_SCALED = LENGTH_KINDS | {FieldKind.FEED, FieldKind.RATE, FieldKind.SURFACE_SPEED}
+_FEET = {True: 0.3048, False: 1.0 / 0.3048}  # by metric, conversion between ft/min and m/min
+_MOST_CHANGES = 4  # largest number of hand-changed values that are adopted
+
+
+@dataclass(frozen=True, slots=True)
+class ShapePiece:
+    """A shape in a text: ``first_line`` is its first line, counted from 0, and ``line_count`` the number of
+    lines.
+
+    ``adopted_fields`` are the fields that were adopted from the lines. ``edited_line`` is the line, counted
+    from 0, that differs from the lines of the fields, or -1.
+    """
+
+    first_line: int
+    line_count: int
+    filled_shape: FilledShape
+    settings: ProgramSettings
+    adopted_fields: tuple[str, ...] = ()
+    edited_line: int = -1
+
+    @property
+    def next_line(self) -> int:
+        """Number of the first line after the shape."""
+        return self.first_line + self.line_count
+
+
+def strip_line(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
+    """Return a line without comment and spaces, in capitals; a line of plane switching remains complete.
+
+    In SINUMERIK, the block number is also removed.
+    """
+    bare = line.strip()
+    if dialect is Dialect.SINUMERIK:
+        return _BLOCK_NUMBER.sub("", bare.partition(";")[0].upper().replace(" ", ""), count=1)
+    if bare.startswith("("):
+        return bare.upper().replace(" ", "")
+    return _COMMENT[dialect].sub("", bare).upper().replace(" ", "")
+
+
+def ends_program(line: str, dialect: Dialect) -> bool:
+    """Return whether a line ends a program or a subroutine."""
+    return _END[dialect].match(line) is not None and not starts_subroutine(line)
+
+
+def starts_subroutine(line: str) -> bool:
+    """Return whether a line starts a subroutine that a form has written or can write into."""
+    return line.lstrip().upper().startswith(_BEGINS)
+
+
+def has_units(lines: Sequence[str], dialect: Dialect) -> bool:
+    """Return whether a program already specifies its units, in its header or in other lines."""
+    if dialect is Dialect.OMNITURN:
+        return any(line.upper().startswith(("G90", "G91")) for line in lines[:1])
+    codes = [code for line in lines if (code := strip_line(line, dialect))]
+    return any(not code.startswith("%") and not _END[dialect].match(code) for code in codes)
+
+
+# --- Settings in force at a line
+
+
+def find_settings(
+    lines: Sequence[str], line_number: int, shop: ShopData, initial_settings: ProgramSettings | None = None
+) -> ProgramSettings:
+    """Return the settings in force before line ``at``, counted from 0.
+
+    ``initial_settings`` has the settings for a program that does not specify any.
+    """
+    now = replace(initial_settings or ProgramSettings(), shop=shop)
+    for line in lines[:line_number]:
+        now = _after(line, now)
+    used = {int(n) for line in lines for n in _SUB[now.dialect].findall(strip_line(line, now.dialect))}
+    free = next(number for number in range(1, len(used) + 2) if number not in used)
+    return replace(now, free_subroutine=free)
+
+
+def _after(line: str, now: ProgramSettings) -> ProgramSettings:
+    code = strip_line(line, now.dialect)
+    if code.startswith("("):
+        return now
+    if now.dialect is Dialect.SINUMERIK:
+        for mode in _S_MODES.findall(code):
+            diameter = mode == "DIAMON" if mode.startswith("D") else now.diameter
+            now = replace(now, diameter=diameter, metric=now.metric if mode[0] == "D" else mode[:3] == "G71")
+    for mode in _MODES.findall(code) if now.dialect is Dialect.OMNITURN else ():
+        words = {"metric": mode == "1"} if mode in "01" else {"diameter": mode == "2"}
+        now = replace(now, **words)
+    for tool in _TOOL.findall(code):
+        now = replace(now, used=now.used | {int(tool)})
+    if code.startswith((*_BEGINS, "M99", "M17")):
+        now = replace(now, is_subroutine=code.startswith(_BEGINS))
+    head = _parse_comment(line, now.dialect)
+    return now if head is None or head[0].name != "HEAD" else _with_head(head[1], now)
+
+
+def _with_head(values: FieldValues, now: ProgramSettings) -> ProgramSettings:
+    clear, bar, material = values.get("CLEAR"), values.get("BAR"), values.get("MATERIAL")
+    return replace(
+        now,
+        metric=values.get("UNIT") == MM,
+        diameter=values.get("WORDS") != RADIUS,
+        tool_change_z=clear if isinstance(clear, float) else now.tool_change_z,
+        bar=bar if isinstance(bar, float) else 0.0,
+        material=material if isinstance(material, str) else "",
+    )
+
+
+def _parse_comment(line: str, dialect: Dialect) -> tuple[Shape, dict[str, FieldValue]] | None:
+    """Return the shape whose comment a line has, with its fields; None without such a comment."""
+    found = _COMMENT[dialect].search(line)
+    if found is None or line.lstrip().startswith(("(", ";")):
+        return None
+    known = find_shape(found[1].split(), dialect)
+    if known is None:
+        return None
+    shape, words = known
+    values = read_comment(shape, words)
+    if not words or values is None:
+        return None
+    tool = _TOOL.search(strip_line(line, dialect))
+    if shape.find_field(TOOL_FIELD_WORD) is not None:
+        if tool is None:
+            return None
+        values[TOOL_FIELD_WORD] = float(tool[1])
+    return shape, values
+
+
+def find_damaged_comment(
+    lines: Sequence[str], line_number: int, dialect: Dialect
+) -> tuple[int, Shape] | None:
+    """Return the line, counted from 0, and the shape of a damaged comment above line ``at``; or None.
+
+    Such a comment begins with the name of a shape and still has two of its fields, because programmers also
+    use names such as DRILL in comments.
+    """
+    for line in range(min(line_number, len(lines) - 1), -1, -1):
+        found = _COMMENT[dialect].search(lines[line])
+        known = find_shape(found[1].split(), dialect) if found is not None else None
+        if known is None:
+            continue
+        shape, words = known
+        if _parse_comment(lines[line], dialect) is not None:
+            return None
+        if sum(each.word in words for each in shape.fields) > 1:
+            return line, shape
+    return None
+
+
+# --- Shapes of a text
+
+
+def find_pieces(
+    lines: Sequence[str], shop: ShopData, initial_settings: ProgramSettings | None = None
+) -> list[ShapePiece]:
+    """Return all shapes of a program in order."""
+    found: list[ShapePiece] = []
+    now, at = replace(initial_settings or ProgramSettings(), shop=shop), 0
+    while at < len(lines):
+        head = _parse_comment(lines[at], now.dialect)
+        if head is None:
+            now, at = _after(lines[at], now), at + 1
+            continue
+        piece = _piece(lines, at, head, now)
+        found.append(piece)
+        for line in lines[at : piece.next_line]:
+            now = _after(line, now)
+        at = piece.next_line
+    return found
+
+
+def _piece(
+    lines: Sequence[str], at: int, head: tuple[Shape, dict[str, FieldValue]], setting: ProgramSettings
+) -> ShapePiece:
+    shape, values = head
+    if shape.name == "HEAD":
+        setting = _with_head(values, setting)
+    reach = at + 1
+    end, dialect = _END[setting.dialect], setting.dialect
+    while (
+        reach < len(lines) and not end.match(lines[reach]) and _parse_comment(lines[reach], dialect) is None
+    ):
+        reach += 1
+    there = [strip_line(line, dialect) for line in lines[at:reach]]
+    best: ShapePiece | None = None
+    for rows in _contours(shape, there, setting):
+        one = fill_shape(shape, values, setting, rows)
+        found = _compare_with_text(one, there, at, setting)
+        if best is None or found.edited_line < 0 or found.edited_line > best.edited_line >= 0:
+            best = found
+        if found.edited_line < 0:
+            return found
+    assert best is not None
+    return best
+
+
+def _compare_with_text(
+    filled_shape: FilledShape, there: list[str], at: int, settings: ProgramSettings
+) -> ShapePiece:
+    """Return the piece for these fields, compared with the lines in the text."""
+    wanted = make_code_lines(filled_shape, settings)
+    if wanted and there[: len(wanted)] == wanted:
+        return ShapePiece(at, len(wanted), filled_shape, settings)
+    taken = _adopt_fields(filled_shape, there[: len(wanted)], settings, _MOST_CHANGES) if wanted else None
+    if taken is not None:
+        words = tuple(w for w, v in taken.values.items() if filled_shape.values.get(w) != v)
+        return ShapePiece(at, len(wanted), taken, settings, words)
+    apart = next(
+        (n for n, (a, b) in enumerate(zip(wanted, there, strict=False)) if a != b),
+        min(len(wanted), len(there)) - 1,
+    )
+    return ShapePiece(at, len(there), filled_shape, settings, edited_line=at + max(apart, 0))
+
+
+def make_code_lines(shape: FilledShape, settings: ProgramSettings) -> list[str]:
+    """Return the code lines of a shape without comments; [] if its fields are incomplete or invalid."""
+    if shape.find_errors(settings) and _incomplete(shape):
+        return []
+    try:
+        return [strip_line(line, settings.dialect) for line in shape.make_lines(settings)]
+    except (ArithmeticError, ValueError, IndexError):
+        return []  # a comment may contain any values
+
+
+def _incomplete(one: FilledShape) -> bool:
+    return any(one.values.get(each.word) is None for each in one.fields)
+
+
+def _contours(
+    shape: Shape, there: list[str], settings: ProgramSettings
+) -> Iterator[tuple[ContourPoint, ...]]:
+    """Yield the point tables that these lines may contain; one empty table for a shape without a contour."""
+    if not shape.contour:
+        yield ()
+        return
+    if settings.dialect is Dialect.SINUMERIK:
+        yield from _sinumerik_contours(there, settings)
+        yield ()
+        return
+    first = next((n for n, line in enumerate(there) if line.startswith("G75")), None)
+    if first is not None and "RF" in there[first:]:
+        rows = read_contour(there[first + 1 : there.index("RF", first)], settings)
+        if rows:
+            yield rows
+    else:
+        yield from _bare_contours(there, settings)
+    yield ()
+
+
+def _sinumerik_contours(there: list[str], settings: ProgramSettings) -> Iterator[tuple[ContourPoint, ...]]:
+    """Yield the contours from the first cut to the move away from the part.
+
+    This move is the last line or the line after it.
+    """
+    labels = [n for n, line in enumerate(there) if _LABEL.fullmatch(line)]
+    begin = next((n for n, line in enumerate(there) if _FIRST_CUT.fullmatch(line)), len(there))
+    end = next((n for n in range(begin, len(there)) if there[n].startswith(("G0", "G40"))), len(there))
+    for last in (labels[1] - 1, labels[1]) if len(labels) > 1 else (end - 1, end):
+        rows = read_contour(there[begin:last], settings)
+        if rows:
+            yield rows
+
+
+def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tuple[ContourPoint, ...]]:
+    """Yield the contours without roughing, from the approach to the move away from the part.
+
+    This move is the last line or the line before it.
+    """
+    began = [
+        n
+        for n, line in enumerate(there)
+        if re.fullmatch(r"(?:G95F[.\d]+|G01|F[.\d]+)?Z-?[.\d]+(?:D\d+)?", line)
+    ]
+    approach = next((line for line in there if line.startswith("G00X")), "")
+    for begin in began[:2]:
+        end = next((n for n in range(begin + 1, len(there)) if there[n].startswith("G00")), len(there))
+        z = re.search(r"Z(-?[.\d]+)", there[begin])
+        x = re.search(r"X(-?[.\d]+)", approach)
+        for last in (end - 1, end):
+            rows = read_contour(there[begin + 1 : last], settings)
+            if rows and z and x:
+                across = float(x[1]) * (1.0 if settings.diameter else 2.0)
+                yield (ContourPoint(across, float(z[1])), *rows)
+
+
+# --- Values changed by hand
+
+
+def _adopt_fields(
+    filled_shape: FilledShape, there: list[str], settings: ProgramSettings, left: int
+) -> FilledShape | None:
+    """Return the shape with fields that match the lines; None if no such fields exist."""
+    wanted = make_code_lines(filled_shape, settings)
+    if wanted == there:
+        return filled_shape
+    change = _first_change(wanted, there)
+    if change is None or not left:
+        return None
+    before, after = change
+    for word, value in _explaining(filled_shape, before, after):
+        other = replace(filled_shape, values={**filled_shape.values, word: value})
+        if not make_code_lines(other, settings) or _agreeing(
+            make_code_lines(other, settings), there
+        ) <= _agreeing(wanted, there):
+            continue
+        found = _adopt_fields(other, there, settings, left - 1)
+        if found is not None:
+            return found
+    return None
+
+
+def _agreeing(wanted: list[str], there: list[str]) -> int:
+    """Return the number of words before the first difference."""
+    count = 0
+    for a, b in zip(wanted, there, strict=False):
+        for this, that in zip(_WORD.findall(a), _WORD.findall(b), strict=False):
+            if this != that:
+                return count
+            count += 1
+    return count
+
+
+def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | None:
+    """Return the first number that differs, before and after; None if other parts differ too."""
+    if len(wanted) != len(there):
+        return None
+    for a, b in zip(wanted, there, strict=True):
+        here, other = _WORD.findall(a), _WORD.findall(b)
+        if [letter for letter, _ in here] != [letter for letter, _ in other]:
+            return None
+        for (_, was), (_, now) in zip(here, other, strict=True):
+            if was != now and was and now:
+                return float(was), float(now)
+    return None
+
+
+def _explaining(filled_shape: FilledShape, before: float, after: float) -> Iterator[tuple[str, float]]:
+    """Yield the fields whose value is in the changed word: unchanged, negated, doubled or halved."""
+    for word, value in filled_shape.values.items():
+        if isinstance(value, str):
+            continue
+        for sign in (1.0, -1.0, 2.0, 0.5, -2.0, -0.5):
+            if abs(value * sign - before) < 1e-6:
+                yield word, round(after / sign, 6)
+
+
+# --- Writing
+
+
+def insert_shape(
+    lines: Sequence[str],
+    line_number: int,
+    shape: FilledShape,
+    settings: ProgramSettings,
+    replaced_piece: ShapePiece | None = None,
+) -> tuple[list[str], int]:
+    """Return the text with a shape inserted before line ``at``, or replacing a piece, and the next line.
+
+    A program without an end gets M30. A bar feed loop gets its subroutine at the end of the program, and the
+    next line is then inside the subroutine.
+    """
+    text = list(lines)
+    while text and not text[-1].strip():
+        text.pop()
+    new = shape.make_lines(settings)
+    line_number = replaced_piece.first_line if replaced_piece is not None else min(line_number, len(text))
+    text[line_number : replaced_piece.next_line if replaced_piece is not None else line_number] = new
+    ends = r"\s*/?M(30|02)" if settings.dialect is Dialect.OMNITURN else r"\s*(N\d+\s*)?M(30|0?2|17)\b(?!=)"
+    if not any(re.match(ends, line) for line in text):
+        text.append("M30")
+    behind = line_number + len(new)
+    tail = shape.shape.ends(shape)
+    if tail and replaced_piece is None and tail[0] not in (strip_line(line) for line in text):
+        text += tail
+        behind = len(text) - 1
+    return text, behind
+
+
+def convert_unit(
+    shape: FilledShape, old_settings: ProgramSettings, new_settings: ProgramSettings
+) -> FilledShape:
+    """Return a shape with lengths and feeds converted to the program's new unit."""
+    if old_settings.metric == new_settings.metric:
+        return shape
+    scale = 25.4 if new_settings.metric else 1.0 / 25.4
+    values = dict(shape.values)
+    for each in shape.shape.fields:
+        value = values.get(each.word)
+        if isinstance(value, float) and each.kind in _SCALED:
+            places = 4 if new_settings.metric and each.kind in LENGTH_KINDS else 6
+            values[each.word] = round(
+                value * (_FEET[new_settings.metric] if each.kind is FieldKind.SURFACE_SPEED else scale),
+                places,
+            )
+    rows = tuple(_scaled(row, scale) for row in shape.contour_points)
+    return replace(shape, values=values, contour_points=rows)
+
+
+def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
+    x, z = (None if value is None else round(value * scale, 5) for value in (row.x, row.z))
+    chamfer, radius, arc = (round(value * scale, 5) for value in (row.chamfer, row.radius, row.arc))
+    return ContourPoint(x, z, chamfer, radius, arc)
+
+
+def rewrite_pieces(
+    lines: Sequence[str], shop: ShopData, old_settings: Sequence[ShapePiece]
+) -> tuple[list[str], int]:
+    """Rewrite the pieces after a changed head; return the text and the number of pieces left unchanged.
+
+    Pieces that were changed by hand are left unchanged.
+    """
+    text, stay = list(lines), 0
+    shift = 0
+    new = ProgramSettings(dialect=old_settings[0].settings.dialect) if old_settings else None
+    for piece in old_settings:
+        if piece.filled_shape.shape.name == "HEAD":
+            continue
+        if piece.edited_line >= 0:
+            stay += 1
+            continue
+        first = piece.first_line + shift
+        setting = find_settings(text, first, shop, new)
+        again = convert_unit(piece.filled_shape, piece.settings, setting).make_lines(setting)
+        text[first : first + piece.line_count] = again
+        shift += len(again) - piece.line_count
+    return text, stay

@@ -1,0 +1,61 @@
+"""Settings that one program leaves for the next: units, rapid rate, and the modal state after its end."""
+
+from __future__ import annotations
+
+import re
+
+from core.interpreter.shared.modal_state import ModalState
+from core.language.source import Dialect, ProgramSource
+
+UNITS, RAPID = "units", "rapid"
+
+_COMMENT = re.compile(r"\([^)]*\)?")
+_UNIT = re.compile(r"G7[01](?![0-9])")
+_RATE = re.compile(r"F[0-9.]")
+_PER_REV = re.compile(r"G95(?![0-9])")
+
+
+def find_inherited_settings(source: ProgramSource) -> frozenset[str]:
+    """Return which of ``units`` and ``rapid`` the program inherits.
+
+    Programs of other dialects do not inherit settings.
+    """
+    if source.dialect is not Dialect.OMNITURN:
+        return frozenset()
+    first = next((words for words in map(_words, source.lines) if words), "")
+    found = set()
+    if not _UNIT.search(first):
+        found.add(UNITS)
+    if not _RATE.search(first) or _PER_REV.search(first):
+        found.add(RAPID)
+    return frozenset(found)
+
+
+def _words(line: str) -> str:
+    return _COMMENT.sub("", line).replace(" ", "").upper()
+
+
+def compute_modal_after_end(previous: ModalState, rpm: float, *, reset: bool) -> ModalState:
+    """Return the modal state after the program end.
+
+    It is the power-up state except for units, tool offset, preset, and, without ``reset``, the M functions.
+    ``rpm`` is the unsigned commanded speed at the end. M30 resets the M functions, and M02 does not.
+    """
+    return ModalState(
+        metric=previous.metric,
+        rapid_rate=previous.rapid_rate,
+        tool=previous.tool,
+        tool_x=0.0 if previous.settable else previous.tool_x,
+        tool_z=0.0 if previous.settable else previous.tool_z,
+        preset_x=previous.preset_x,
+        preset_z=previous.preset_z,
+        collet_closed=previous.collet_closed,
+        spindle=0 if reset else previous.spindle,
+        rpm=rpm if previous.spindle and not reset else previous.rpm,
+        coolant=previous.coolant and not reset,
+        outputs=frozenset() if reset else previous.outputs,
+        comment=previous.comment,
+        # Whole revolutions remain; other offsets are removed.
+        offset_c=previous.offset_c if previous.offset_c % 360.0 == 0.0 else 0.0,
+        is_c_modulo=previous.is_c_modulo,
+    )

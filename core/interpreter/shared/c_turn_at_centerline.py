@@ -1,0 +1,26 @@
+"""Turning of C at the axis of a virtual mill, until the path leads out along X, in all languages."""
+
+from __future__ import annotations
+
+from math import degrees
+
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
+
+_SAME = 1e-9  # degrees; a smaller angle is not a turn
+_WARNING_ANGLE_DEG = 1.0  # degrees; C may turn by this angle without a warning
+
+
+def check_centerline_turn(log: DiagnosticLog, line: int, turn_rad: float) -> bool:
+    """Return whether C turns at the axis by ``turn_rad`` radians.
+
+    A large turn is logged as a warning, because the tool does not move during the turn.
+    """
+    angle = abs(degrees(turn_rad))
+    if angle > _WARNING_ANGLE_DEG:
+        text = "The path passes through the spindle centerline, where C turns by {angle} degrees."
+        hint = (
+            "At the spindle centerline, the tool does not move while C turns; route the path around the "
+            "centerline."
+        )
+        log.warn(line, 1, "plane-centre", text, hint, angle=f"{angle:.0f}")
+    return angle > _SAME

@@ -1,0 +1,30 @@
+"""Kinds of line parts for syntax coloring."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import NamedTuple
+
+PLAIN_STATE = 0
+"""The state that a line hands on to the next where nothing goes on."""
+
+
+class SyntaxKind(StrEnum):
+    """Kind of a part of a line, which determines its color."""
+
+    NUMBER = "number"  # of the block
+    CODE = "code"
+    POSITION = "position"
+    FEED_AND_SPEED = "run"  # feed and speed
+    KEYWORD = "key"
+    CALL = "call"
+    COMMENT = "comment"
+    ERROR = "fault"
+
+
+class ColoredSpan(NamedTuple):
+    """A range of characters in a line, with its kind. ``start`` counts from 0."""
+
+    start: int
+    length: int
+    kind: SyntaxKind

@@ -1,0 +1,187 @@
+"""Comparison of the part with other offsets: features and findings with one and the other set.
+
+The tools are at the positions that the offsets of the proof specify. With the other offsets the axes move
+elsewhere, and the part becomes larger, smaller, longer or shorter.
+
+A feature is a straight line of the profile: a diameter along Z, or a shoulder across Z. Cones, arcs and the
+nose radius in a corner are not features.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import pairwise
+from typing import NamedTuple
+
+from core.interpreter.dialects import SharedProgram
+from core.interpreter.shared.job_setup import Setup
+from core.language.diagnostics import Diagnostic
+from core.language.source import ProgramSource
+from core.machine.machine_model import Machine
+from core.part.turned_part import PartedPiece, ProfilePoints
+from core.proving.part_proof import prove_with_part
+from core.proving.program_tools import PartSettings
+from core.proving.proof_report import PartReport, ProofReport
+from core.proving.prove_program import ReportProgress
+
+_SHORTEST = 0.25  # mm
+_STRAIGHT = 0.006  # mm of r along a diameter, or of Z along a shoulder; profiles have a tolerance of 0.004
+_FAR = 6.35  # mm; features further apart are not matched
+FINE_COLUMN_WIDTH_MM = 0.001
+"""Width of a column of the part, mm, where parts are compared: a shoulder is off by .00002 in at most."""
+FEATURE_TOLERANCE_MM = 0.0012  # mm; smaller differences are ignored
+
+
+class FeatureKind(StrEnum):
+    """The kind of a straight line of a profile."""
+
+    DIAMETER = "diameter"
+    SHOULDER = "shoulder"
+    BORE = "bore"
+    BORE_SHOULDER = "bore-shoulder"
+
+
+class PartFeature(NamedTuple):
+    """A feature with its diameter or Z in mm (``at``), and its extent in Z or r (``extent``)."""
+
+    kind: FeatureKind
+    at: float
+    extent: tuple[float, float]
+
+    def distance_to(self, other: PartFeature) -> float:
+        """Return the distance to another feature in mm, where a radius counts like a length."""
+        half = 0.5 if self.kind in {FeatureKind.DIAMETER, FeatureKind.BORE} else 1.0
+        return abs(self.at - other.at) * half + math.dist(self.extent, other.extent)
+
+
+class Pair(NamedTuple):
+    """A feature on both parts; None if the other part has no similar feature."""
+
+    this_feature: PartFeature | None
+    other_feature: PartFeature | None
+
+    @property
+    def difference(self) -> float | None:
+        """The value of the other part minus the value here, in mm, or None."""
+        if self.this_feature is None or self.other_feature is None:
+            return None
+        return self.other_feature.at - self.this_feature.at
+
+
+def find_features(piece: PartedPiece) -> list[PartFeature]:
+    """Return the features of the outside from the face on, then those of the bore."""
+    outside, bore = piece.outside_profile, piece.bore_profile or []
+    if not outside:
+        return []
+    ends = [(outside[0][0], 0.0)], [(outside[-1][0], 0.0)]
+    found = list(_of([*ends[0], *outside, *ends[1]], FeatureKind.DIAMETER, FeatureKind.SHOULDER))
+    return found + [
+        each for each in _of(bore, FeatureKind.BORE, FeatureKind.BORE_SHOULDER) if abs(each.at) > _STRAIGHT
+    ]
+
+
+def _of(profile: ProfilePoints, along: FeatureKind, across: FeatureKind) -> Iterator[PartFeature]:
+    for k, ((z0, r0), (z1, r1)) in enumerate(pairwise(profile)):
+        if abs(z1 - z0) >= _SHORTEST and abs(r1 - r0) <= _STRAIGHT:
+            yield PartFeature(along, 2.0 * _sharp_end(profile, k)[1], (z0, z1))
+        elif abs(r1 - r0) >= _SHORTEST and abs(z1 - z0) <= _STRAIGHT:
+            yield PartFeature(across, _sharp_end(profile, k)[0], (min(r0, r1), max(r0, r1)))
+
+
+def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
+    """Return the end of straight ``k`` that has no fillet, which is next to the longer neighbor.
+
+    The nose radius at the other end is part of the straight if it is within the tolerance of the profile.
+    """
+    before = math.dist(profile[k - 1], profile[k]) if k else math.inf
+    behind = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf
+    return profile[k] if before >= behind else profile[k + 1]
+
+
+def match_features(these: Sequence[PartFeature], others: Sequence[PartFeature]) -> list[Pair]:
+    """Return pairs of the closest features of one kind, in the order of ``here``, then the remaining ones."""
+    near = sorted(
+        (a.distance_to(b), i, j)
+        for i, a in enumerate(these)
+        for j, b in enumerate(others)
+        if a.kind is b.kind and a.distance_to(b) <= _FAR
+    )
+    partner: dict[int, int] = {}
+    taken: set[int] = set()
+    for _, i, j in near:
+        if i not in partner and j not in taken:
+            partner[i] = j
+            taken.add(j)
+    pairs = [Pair(a, others[partner[i]] if i in partner else None) for i, a in enumerate(these)]
+    return pairs + [Pair(None, b) for j, b in enumerate(others) if j not in taken]
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedPart:
+    """The result of the other offsets: proof, part, pairs of features, and findings of only one proof."""
+
+    report: ProofReport
+    part: PartReport | None
+    feature_pairs: tuple[Pair, ...]
+    resolved_findings: tuple[Diagnostic, ...]
+    new_findings: tuple[Diagnostic, ...]
+
+    @property
+    def differing_feature_count(self) -> int:
+        """The number of features that differ or have no counterpart."""
+        return sum(
+            pair.difference is None or abs(pair.difference) > FEATURE_TOLERANCE_MM
+            for pair in self.feature_pairs
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ProvedPart:
+    """A proved program with its setup, its part settings and the resulting part."""
+
+    setup: Setup
+    part_settings: PartSettings
+    report: ProofReport
+    part: PartReport | None
+
+
+def prove_other_offsets(
+    program: ProgramSource | SharedProgram, proved_part: ProvedPart, other_setup: Setup, machine: Machine,
+    report_progress: ReportProgress | None = None, *, ideal: bool = False,
+) -> ComparedPart:  # fmt: skip
+    """Prove the same program, stock and tools with the offsets of ``there``. ``watch`` may cancel."""
+    setting = proved_part.part_settings
+    if proved_part.part is not None:
+        setting = replace(setting, stock=proved_part.part.stock, tips=_tip_positions(proved_part.setup))
+    report, part = prove_with_part(
+        program, other_setup, machine, setting, report_progress, ideal=ideal, check_canceled=report_progress
+    )
+    pairs: list[Pair] = []
+    if proved_part.part is not None and part is not None:
+        parts = [each.last_piece for each in (proved_part.part, part)]
+        pairs = match_features(*([] if each is None else find_features(each) for each in parts))
+    gone, added = _find_unmatched(proved_part.report.diagnostics, report.diagnostics)
+    return ComparedPart(report, part, tuple(pairs), gone, added)
+
+
+def _tip_positions(setup: Setup) -> dict[int, tuple[float, float]]:
+    """Return the positions at which the tips are at part zero, by T and by G54 to G59."""
+    own = {n: (tool.x, tool.z) for n, tool in setup.tools.items()}
+    return own | {n: (zero.x, zero.z) for n, zero in setup.zero.items()}
+
+
+def _find_unmatched(
+    own_findings: Iterable[Diagnostic], there: Iterable[Diagnostic]
+) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
+    """Return the findings that only one side has, compared by line and code."""
+
+    def key(each: Diagnostic) -> tuple[int, str]:
+        return each.line, each.code
+
+    ours, theirs = {key(each) for each in own_findings}, {key(each) for each in there}
+    return tuple(d for d in own_findings if key(d) not in theirs), tuple(
+        d for d in there if key(d) not in ours
+    )

@@ -1,0 +1,367 @@
+"""Set of axis drives that are powered and stopped together at one SYNC, with the PVT queue of each drive.
+
+Records of position, velocity and time (PVT) are those of EPOS2 (20C1h) and of Copley (2010h).
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from core.message import Message
+from core.ports import DriverError
+from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_bus import CanBus
+from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_nodes import ObjectValues
+from drivers.canopen.canopen_objects import (
+    CSP,
+    HM,
+    IP,
+    MODE_BITS,
+    PP,
+    DriveState,
+)
+from drivers.canopen.canopen_setup import NodeSetup, build_axis_objects
+from drivers.canopen.canopen_table import CanopenTable
+from drivers.canopen.cia402_drives import Cia402Drive, DriveSetupData
+from drivers.canopen.drive_profiles import DriveQueue, PdoEntry, RecordFormat
+
+_RECORD_FORMAT = struct.Struct("<i")
+_MAX_SIGNED_24_BIT = 2**23 - 1  # Maximum of a signed 24-bit number.
+_CLEAR, _COUNT_ANEW = 0x80, 0x83  # Commands to a Copley queue: clear and stop, restart the segment count.
+_COPLEY_VELOCITY_SCALE = 10.0  # Copley velocities are in 0.1 counts/s.
+_COUNTER_RANGE = 8  # Range of the integrity counter.
+POSITION_TARGET, POINT_TARGET = PdoEntry(od.TARGET, 0, 32), PdoEntry(od.IP_RECORD, 1, 32)
+_POWER_ON_S = 1.5  # Seconds in which the drives must switch on or clear their faults.
+_REST, _LOOKS = 2, 0.0095  # Counts within at least this number of seconds; fewer mean standstill.
+_DRIVE_STOP_S = 1.0  # Seconds until a drive without host is at rest: three heartbeats and its ramp.
+_FAULT_STATES = frozenset((DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE))
+
+
+def pack_epos2_record(duration_ms: int, velocity: float, position: float) -> bytes:
+    """Pack one EPOS2 record: position in the low 32 bits, velocity in 24 bits, time in 8 bits.
+
+    Raises ValueError for values out of range.
+    """
+    speed, place = round(velocity), round(position)
+    if abs(speed) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
+        raise ValueError(f"a record of {duration_ms} ms and {speed} counts/s does not fit the drive")
+    return _RECORD_FORMAT.pack(place) + (speed & 0xFFFFFF).to_bytes(3, "little") + bytes([duration_ms])
+
+
+def unpack_epos2_record(data: bytes) -> tuple[int, int, int]:
+    """Return milliseconds, velocity and position of an EPOS2 record."""
+    return data[7], _signed(data[4:7]), _RECORD_FORMAT.unpack(data[:4])[0]
+
+
+def pack_copley_segment(number: int, duration_ms: int, velocity: float, position: float) -> bytes:
+    """Pack one Copley segment of format 0: count, time, position, and velocity in 0.1 counts/s.
+
+    Raises ValueError for values that exceed 24 bits.
+    """
+    speed, place = round(_COPLEY_VELOCITY_SCALE * velocity), round(position)
+    if abs(speed) > _MAX_SIGNED_24_BIT or abs(place) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
+        raise ValueError(
+            f"a segment of {duration_ms} ms, {place} counts and {velocity:.0f} counts/s does not fit"
+        )
+    return bytes([number % _COUNTER_RANGE, duration_ms]) + _low(place) + _low(speed)
+
+
+def unpack_copley_segment(data: bytes) -> tuple[int, int, float, int]:
+    """Return count, milliseconds, velocity in counts/s and position of a Copley segment."""
+    return data[0] & 0x07, data[1], _signed(data[5:8]) / _COPLEY_VELOCITY_SCALE, _signed(data[2:5])
+
+
+class RecordQueue:
+    """PVT queue of one drive."""
+
+    def __init__(
+        self, config: AxisConfig, queue: DriveQueue, setup: NodeSetup, send_bytes: Callable[[bytes], None]
+    ) -> None:
+        """Create the queue; ``send_bytes`` transmits a record to the drive immediately."""
+        self._config, self._setup, self._send = config, setup, send_bytes
+        self.queue = queue
+        self._pushed = 0
+
+    def clear(self) -> None:
+        """Clear the queue in the drive. Raises DriverError."""
+        self._pushed = 0
+        if self.queue.record_format is RecordFormat.COPLEY:
+            for order in (_CLEAR, _COUNT_ANEW):
+                self._setup.write_bytes(self.queue.object_index, 0, bytes([order]) + bytes(7))
+        else:
+            for clear in (0, 1):
+                self._setup.write(od.BUFFER, 6, clear)
+
+    def send_record(self, duration_ms: int, velocity: float, position: float) -> None:
+        """Send one record with position in mm or degrees and velocity per second.
+
+        Raises ValueError for values that do not fit into a record.
+        """
+        config = self._config
+        place = position / config.count
+        if self.queue.record_format is RecordFormat.COPLEY:
+            self._send(pack_copley_segment(self._pushed, duration_ms, velocity / config.count, place))
+        else:
+            self._send(pack_epos2_record(duration_ms, config.velocity(velocity), place))
+        self._pushed += 1
+
+
+def _low(value: int) -> bytes:
+    return (value & 0xFFFFFF).to_bytes(3, "little")
+
+
+def _signed(data: bytes) -> int:
+    return int.from_bytes(data, "little", signed=True)
+
+
+@dataclass(frozen=True, slots=True)
+class MotionMode:
+    """Motion mode: CiA 402 mode, object of the setpoints, and whether one setpoint is sent per SYNC."""
+
+    mode: int
+    target_entry: PdoEntry = POSITION_TARGET
+    is_cyclic: bool = False
+
+
+MOTION_MODES = {  # By the mode in the machine file.
+    "pvt": MotionMode(IP),
+    "csp": MotionMode(CSP, is_cyclic=True),
+    "ip": MotionMode(IP, POINT_TARGET, is_cyclic=True),
+    "pp": MotionMode(PP),
+}
+
+
+@dataclass(slots=True)
+class DrivenAxis:
+    """One axis with its drive; ``is_homed`` means that its counts are machine positions."""
+
+    config: AxisConfig
+    drive: Cia402Drive
+    is_homed: bool = False
+    last_counts: int = 0  # Counts at the previous reply.
+    is_moving: bool = False
+    records: RecordQueue | None = None  # Queue of the drive if its family has one.
+
+    def __post_init__(self) -> None:
+        """Create the queue of the drive if its family has one."""
+        queue = self.config.profile.queue
+        self.records = None
+        if queue is not None:
+            self.records = RecordQueue(self.config, queue, self.drive.setup, self.drive.send_record)
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether the drive has power and reports the commanded mode."""
+        return self.drive.enabled and self.drive.reported_mode == self.drive.commanded_mode
+
+
+class DriveSet:
+    """Set of all axis drives with their common motion mode."""
+
+    def __init__(self, axes: tuple[AxisConfig, ...], bus: CanBus, motion_mode: MotionMode) -> None:
+        self._bus = bus
+        self._how = motion_mode
+        self.axis_indices = [i for i, axis in enumerate(axes) if axis.node is not None]
+        self.axes = [
+            _create_axis(axis, Cia402Drive(bus, axis.node, motion_mode.target_entry, ()))
+            for axis in axes
+            if axis.node is not None
+        ]
+        for axis in self.axes:
+            axis.drive.setpoint_mode = motion_mode.mode if motion_mode.is_cyclic else None
+        # Times of the SYNC of the last replies and of the last exchange.
+        self.last_reply_s = self._sent = bus.clock.now()
+        self._compared = self.last_reply_s  # Time of the last comparison of positions.
+
+    @property
+    def drives(self) -> list[Cia402Drive]:
+        """The drives of the axes."""
+        return [axis.drive for axis in self.axes]
+
+    @property
+    def is_powered(self) -> bool:
+        """Whether all drives have power."""
+        return all(axis.drive.enabled for axis in self.axes)
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether any axis moves, according to its counts."""
+        return any(axis.is_moving for axis in self.axes)
+
+    def configure_drives(self) -> None:
+        """Configure every drive before the NMT start. Raises DriverError."""
+        for axis in self.axes:
+            self._connect(axis)
+
+    def start_nodes(self) -> None:
+        """Start all drives by NMT."""
+        for axis in self.axes:
+            axis.drive.start_node()
+
+    def send_commands(self) -> None:
+        """Send the commands of all drives, which take effect together at the next SYNC."""
+        for axis in self.axes:
+            axis.drive.send_command()
+
+    def record_sync(self, now: float) -> None:
+        """Record that a SYNC is sent, to which every drive must reply."""
+        for axis in self.axes:
+            axis.drive.record_sync(now)
+
+    def exchange_sync(self) -> None:
+        """Send the commands and a SYNC immediately."""
+        self._sent = self._bus.clock.now()
+        self.send_commands()
+        self.record_sync(self._sent)
+        self._bus.send_sync()
+
+    def poll_axes(self) -> list[DrivenAxis]:
+        """Exchange once if the last exchange has been answered or has timed out, and return the axes.
+
+        Used as the polling step of a wait. In cyclic modes, the SYNC continues independently.
+        """
+        if self._how.is_cyclic and not self._bus.is_stepped:
+            return self.axes  # The wait of the bus continues the SYNC.
+        waiting = any(axis.drive.missing_reply_count for axis in self.axes)
+        if not waiting or self._bus.clock.now() - self._sent >= 2 * self._bus.config.sync:
+            self.exchange_sync()
+        self._bus.process_frames()
+        return self.axes
+
+    def set_goal_state(self, goal: DriveState) -> None:
+        """Set the goal state of all drives and clear their motion bits."""
+        for axis in self.axes:
+            axis.drive.goal_state, axis.drive.mode_bits = goal, 0
+
+    def power_on(self) -> None:
+        """Switch all drives on and wait.
+
+        Raises DriverError that names the drives that fail; then all are switched off.
+        """
+        for axis in self.axes:
+            axis.drive.commanded_mode, axis.drive.goal_state = self._how.mode, DriveState.OPERATION_ENABLED
+        if not self._bus.wait_until(lambda: all(axis.is_ready for axis in self.poll_axes()), _POWER_ON_S):
+            slow = [
+                Message("{name} is {state}", name=axis.config.name, state=axis.drive.state)
+                for axis in self.axes
+                if not axis.is_ready
+            ]
+            self.set_goal_state(DriveState.SWITCH_ON_DISABLED)
+            why = Message(
+                "the drives do not switch on: {slow}; check that the E-stop is released and the "
+                "drives have power",
+                slow=", ".join(slow),
+            )
+            raise DriverError(why, "no-power")
+
+    def power_off(self) -> None:
+        """Switch all drives off and wait up to 0.3 s."""
+        self.set_goal_state(DriveState.SWITCH_ON_DISABLED)
+        self._bus.wait_until(lambda: not any(axis.drive.enabled for axis in self.poll_axes()), 0.3)
+
+    def reset_faults(self) -> None:
+        """Reset faults and configure drives that have restarted; afterwards no drive has power.
+
+        Raises DriverError if a fault remains.
+        """
+        for axis in self.axes:
+            if axis.drive.has_restarted or axis.drive.missing_reply_count:
+                self._connect(axis)
+                axis.drive.start_node()
+            axis.drive.clear_failure()
+            axis.drive.reset_fault()
+        if not self._bus.wait_until(
+            lambda: not any(a.drive.state in _FAULT_STATES for a in self.poll_axes()), _POWER_ON_S
+        ):
+            names = [axis.config.name for axis in self.axes if axis.drive.state in _FAULT_STATES]
+            why = Message(
+                "{names}: the drive fault cannot be cleared; check the drive's display",
+                names=", ".join(names),
+            )
+            raise DriverError(why, "drive-keeps-fault")
+
+    def clear_home(self) -> None:
+        """Clear the home of all axes without an absolute encoder, as required after an E-stop."""
+        for axis in self.axes:
+            axis.is_homed = axis.config.absolute
+
+    def supervise(self) -> str:
+        """Supervise the drives and return the first fault, or an empty text."""
+        trouble: str = ""
+        for axis in self.axes:
+            axis.drive.supervise(3.0 * self._bus.config.heartbeat)
+            trouble = trouble or axis.drive.failure
+            if axis.drive.has_restarted:
+                axis.is_homed = axis.config.absolute
+        return trouble
+
+    def update_motion(self, now: float) -> None:
+        """Update which axes move, by comparing the positions of two replies.
+
+        A silent drive counts as stopped when the time for its own stop reaction has passed.
+        """
+        speaking = [axis for axis in self.axes if not axis.drive.is_silent]
+        for axis in self.axes:
+            if axis not in speaking and now - axis.drive.last_reply_s > _DRIVE_STOP_S:
+                axis.is_moving = False
+        seen = min((axis.drive.last_reply_s for axis in speaking), default=now)
+        if seen <= self.last_reply_s:
+            return
+        self.last_reply_s = seen
+        if seen - self._compared < _LOOKS:
+            return
+        self._compared = seen
+        for axis in speaking:
+            axis.is_moving = abs(axis.drive.position - axis.last_counts) > _REST
+            axis.last_counts = axis.drive.position
+
+    def _connect(self, axis: DrivenAxis) -> None:
+        config = axis.config
+        axis.drive.connect(build_drive_setup(config, self._bus.config, self._how))
+        if config.counts_per_rev:
+            axis.drive.setup.require_counts_per_rev(config.counts_per_rev)
+        if not config.absolute:
+            axis.drive.setup.require_homing_method(config.home_method)
+        axis.is_homed, axis.last_counts = config.absolute, axis.drive.position
+        axis.drive.commanded_mode = self._how.mode
+
+
+def build_drive_setup(config: AxisConfig, bus: CanopenTable, motion_mode: MotionMode) -> DriveSetupData:
+    """Return the configuration of an axis drive."""
+    queue = config.profile.queue if motion_mode.mode == IP and not motion_mode.is_cyclic else None
+    submode: ObjectValues = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
+    return DriveSetupData(
+        mode_bits=MODE_BITS[motion_mode.mode] | (0 if config.absolute else MODE_BITS[HM]),
+        default_objects=(
+            *build_axis_objects(config, bus),
+            *(submode if motion_mode.mode == IP else ()),
+            *(build_period_objects(bus.sync) if motion_mode.is_cyclic else ()),
+        ),
+        file_objects=config.node.sdo if config.node is not None else (),
+        record_object=queue.object_index if queue is not None else 0,
+        setpoint_period_s=bus.sync if motion_mode.is_cyclic else 0.0,
+    )
+
+
+def _create_axis(config: AxisConfig, drive: Cia402Drive) -> DrivenAxis:
+    """Create an axis with the profile of its drive. Raises DriverError if required counts are missing."""
+    profile = drive.profile
+    if profile.uses_rpm and not config.counts_per_rev:
+        where = f"canopen.nodes.{config.name}.counts_per_rev"
+        raise DriverError(
+            "{name}: {title} reports speeds in rpm, but {place} is missing; enter 4 × the "
+            "encoder pulses per revolution",
+            "drive-setup",
+            name=config.name,
+            title=profile.title,
+            place=where,
+        )
+    return DrivenAxis(replace(config, profile=profile), drive)
+
+
+def build_period_objects(period_s: float) -> ObjectValues:
+    """Return the objects that set the setpoint period (0x60C2)."""
+    return ((od.IP_TIME, 1, round(1000 * period_s)), (od.IP_TIME, 2, -3))

@@ -1,0 +1,302 @@
+"""Connection to the driver host, by a socket or within one thread, with the last polled state.
+
+A driver host that has ended is a fault.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import select
+import socket
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from typing import Protocol
+
+from core.faults import TrippedError, get_fault_code
+from core.message import Message as Text
+from core.ports import ALL_UNKNOWN_PARTS, Clock, DriverError, Fault, FloatArray, UnknownPart
+from drivers.driver_host.host_messages import (
+    NO_NUMBERS,
+    PROTOCOL_VERSION,
+    Message,
+    MessageDecoder,
+    encode_message,
+    parse_texts,
+    read_fault,
+    text,
+)
+from drivers.driver_host.host_server import DriverHost
+from drivers.wakeups import ConnectionAttempt, ProcessBell
+
+_log = logging.getLogger(__name__)
+_POLL_VALIDITY_S = 0.002  # Seconds for which one poll serves all ports.
+_SLEEP_POLL_VALIDITY_S = 0.02  # The same while the control sleeps: one tick, because changes cause a wake-up.
+_MAX_BATCHES = 200  # Maximum number of sample batches waiting for the recorder.
+
+
+class HostLink(Protocol):
+    """Connection that transports requests and replies; ``end_signals`` become readable when it ends."""
+
+    @property
+    def end_signals(self) -> Sequence[int]: ...
+
+    def send_request(self, message: Message) -> Message:
+        """Send a request and return the reply. Raises DriverError without a reply."""
+        ...
+
+    def disconnect(self) -> None:
+        """Disconnect, from any thread."""
+        ...
+
+    def close(self) -> None: ...
+
+
+def clear_host_faults(link: HostLink) -> HostLink:
+    """Clear the faults of the drives after a restart of the driver host. Raises DriverError."""
+    answer = link.send_request(Message({"do": "do", "what": "clear_fault"}, NO_NUMBERS))
+    if why := read_fault(answer.head, "error", "driver"):
+        raise DriverError(why)
+    return link
+
+
+class HostConnection:
+    """Connection that sends requests and caches the last polled state.
+
+    ``restart_host`` starts another driver host in place of a lost one. The driver host also uses
+    ``wakeup_bell`` while the control sleeps.
+    """
+
+    def __init__(
+        self,
+        link: HostLink,
+        clock: Clock,
+        restart_host: Callable[[], ConnectionAttempt[HostLink]] | None = None,
+        wakeup_bell: ProcessBell | None = None,
+    ) -> None:
+        self._link = link
+        self._again = restart_host
+        self._opening: ConnectionAttempt[HostLink] | None = None
+        self.clock = clock
+        self.wakeup_bell = wakeup_bell
+        self._asleep = self._sleeps = False  # State known to the driver host, and state for the next poll.
+        self.fault: Fault | str = ""  # Reason why the driver host is lost.
+        self._state: Mapping[str, object] = {}
+        self._at = -1.0
+        self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
+        self.sample_batches: deque[FloatArray] = deque(maxlen=_MAX_BATCHES)  # Batches since the last reading.
+
+    def send_request(self, message: Message) -> Message:
+        """Send a request and return the reply.
+
+        Raises DriverError if the drivers reject the request or the driver host is lost, and TrippedError
+        after a trip.
+        """
+        if self.fault:
+            raise DriverError(self.fault)
+        if self._opening is not None:
+            raise DriverError("the driver host is restarting", "feeder-gone")
+        self._asleep = False
+        try:
+            answer = self._link.send_request(message)
+        except DriverError as error:
+            self.fault = error.fault
+            raise
+        if "tripped" in answer.head:
+            raise TrippedError(text(answer.head, "tripped"))
+        if why := read_fault(answer.head, "error", "driver"):
+            raise DriverError(why, reason=text(answer.head, "reason"))
+        return answer
+
+    def send_command(self, command: str, **values: object) -> None:
+        """Send a command that changes the machine, and invalidate the polled state."""
+        self._at = -1.0
+        self.send_request(Message({"do": "do", "what": command, **values}, NO_NUMBERS))
+
+    def post_message(self, message: Message) -> None:
+        """Queue a message from any thread, which is sent before the next poll."""
+        self._posted.put(message)
+        if self.wakeup_bell is not None:
+            self.wakeup_bell.ring()
+
+    def enter_sleep(self) -> None:
+        """Let the driver host send wake-ups for changes until the next other request. Raises DriverError."""
+        if not self._asleep:
+            self.send_request(Message({"do": "rest"}, NO_NUMBERS))
+        self._asleep = self._sleeps = True
+
+    def leave_sleep(self) -> None:
+        """End the sleep, and invalidate the polled state."""
+        self._sleeps, self._at = False, -1.0
+
+    @property
+    def end_signals(self) -> Sequence[int]:
+        """The files of the connection, which become readable only when it ends."""
+        return self._link.end_signals
+
+    def poll_state(self, *, force: bool = False) -> Mapping[str, object]:
+        """Poll the state, at most once per tick unless forced; return the last state after a loss."""
+        if self._opening is not None:
+            self._reopen(self._opening)
+        now = self.clock.now()
+        fresh = _SLEEP_POLL_VALIDITY_S if self._asleep else _POLL_VALIDITY_S
+        if not self.is_lost and (force or not 0.0 <= now - self._at < fresh):
+            try:
+                while not self._posted.empty():
+                    self.send_request(self._posted.get())
+                sleeps, self._sleeps = self._sleeps, False
+                answer = self.send_request(Message({"do": "look", "rests": sleeps}, NO_NUMBERS))
+                self._asleep = sleeps
+                self._state = answer.head
+                if len(answer.numbers):
+                    self.sample_batches.append(answer.numbers)
+            except DriverError as error:
+                self.fault = self.fault or error.fault
+            self._at = now
+            for note in parse_texts(self._state.get("notes")):
+                _log.warning("driver host: %s", note)
+        return self._state
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether no driver host is available."""
+        return self.fault != "" or self._opening is not None
+
+    def restart_host(self) -> None:
+        """Start another driver host; a later failure becomes the next fault.
+
+        Raises DriverError if a restart is not possible.
+        """
+        if self._again is None:
+            words = Text("{fault}; restart TurnDesk", fault=self.fault)
+            raise DriverError(words, get_fault_code(self.fault, "feeder-gone"))
+        self.fault, self._opening = "", self._again()
+
+    def read_properties(self) -> Mapping[str, object]:
+        """Return the properties of the driver host. Raises DriverError for another version."""
+        hello = self.send_request(Message({"do": "hello"}, NO_NUMBERS)).head
+        if hello.get("version") != PROTOCOL_VERSION:
+            raise DriverError(
+                "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
+                "TurnDesk, complete the installation, then start TurnDesk again",
+                version=hello.get("version"),
+                expected=PROTOCOL_VERSION,
+            )
+        return hello
+
+    def _reopen(self, opening: ConnectionAttempt[HostLink]) -> None:
+        try:
+            link = opening.take()
+            if link is None:
+                return
+            self._link, self._opening, self._at = link, None, -1.0
+            self._state = {}
+            self.read_properties()
+        except DriverError as error:
+            self._opening, self.fault = None, error.fault
+
+    def find_unknown_items(self) -> frozenset[UnknownPart]:
+        """Return the unknown states; all of them if the driver host is lost."""
+        if self.is_lost:
+            return ALL_UNKNOWN_PARTS
+        return frozenset(map(UnknownPart, parse_texts(self.poll_state().get("unknown"))))
+
+    def disconnect(self) -> None:
+        """Disconnect from any thread; the driver host detects the loss and stops the machine for good."""
+        self._link.disconnect()
+
+    def close(self) -> None:
+        """Close the connection, which ends the driver host."""
+        self._link.close()
+
+
+# --- Two links to the driver host: within one thread, and by a socket.
+
+
+_REPLY_TIMEOUT_S = 0.5  # Seconds for a reply; the driver host needs milliseconds.
+_MAX_WAIT_SLICE_S = 0.05  # Maximum in s that one wait counts, so that a delay of this process is not counted.
+# Seconds for commands that wait for a drive; clearing a fault may configure a complete bus.
+_LONG_TIMEOUTS_S = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
+_RECEIVE_SIZE = 1 << 16
+
+
+class InProcessLink:
+    """Link to a driver host in the same thread that uses the same bytes, for tests and headless runs."""
+
+    end_signals = ()  # Its end is always detected.
+
+    def __init__(self, host: DriverHost) -> None:
+        self._host = host
+
+    def send_request(self, message: Message) -> Message:
+        """Run one cycle of the driver host, then encode, handle and decode the message."""
+        self._host.run_cycle()
+        (request,) = MessageDecoder().decode(encode_message(message))
+        (answer,) = MessageDecoder().decode(encode_message(self._host.handle_message(request)))
+        return answer
+
+    def disconnect(self) -> None:
+        """Mark the driver host as orphaned."""
+        self._host.is_orphaned = True
+
+    def close(self) -> None:
+        """Mark the driver host as orphaned."""
+        self.disconnect()
+
+
+class SocketLink:
+    """Link to a driver host in its own process, with one request at a time and a time limit for each."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        self._socket = sock
+        self._socket.setblocking(True)
+        self._inbox = MessageDecoder()
+
+    @property
+    def end_signals(self) -> tuple[int, ...]:
+        """The file of the socket, which becomes readable when the driver host ends."""
+        return (self._socket.fileno(),)
+
+    def send_request(self, message: Message) -> Message:
+        """Send a request and return the reply. Raises DriverError after a loss or a timeout."""
+        limit = _LONG_TIMEOUTS_S.get(text(message.head, "what"), _REPLY_TIMEOUT_S)
+        try:
+            self._socket.settimeout(limit)
+            self._socket.sendall(encode_message(message))
+            return self._answer(limit)
+        except TimeoutError as error:
+            raise DriverError(
+                "no response from the driver host for {seconds} s; the axes stop on their path",
+                "feeder-silent",
+                seconds=f"{limit:g}",
+            ) from error
+        except OSError as error:
+            raise DriverError(
+                "the driver host has ended ({cause})", "feeder-gone", cause=error.strerror
+            ) from error
+
+    def disconnect(self) -> None:
+        """Shut down both directions, even while another thread waits for a reply."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """Disconnect and close the socket; the driver host then stops the machine."""
+        self.disconnect()
+        self._socket.close()
+
+    def _answer(self, left: float) -> Message:
+        while left > 0.0:
+            began = time.monotonic()
+            ready, _, _ = select.select([self._socket], [], [], min(left, _MAX_WAIT_SLICE_S))
+            left -= min(time.monotonic() - began, _MAX_WAIT_SLICE_S)
+            if not ready:
+                continue
+            data = self._socket.recv(_RECEIVE_SIZE)
+            if not data:
+                raise DriverError("the driver host has ended", "feeder-gone")
+            for message in self._inbox.decode(data):
+                return message
+        raise TimeoutError

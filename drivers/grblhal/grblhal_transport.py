@@ -1,0 +1,298 @@
+"""Connection to a grblHAL controller, lines with one reply each, and scripts that wait for replies.
+
+The connection is a serial device, a pseudo terminal or TCP. Only opening and closing wait.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+from collections import deque
+from collections.abc import Callable, Generator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+from core.ports import DriverError, FaultCode
+from drivers.serial_line import why
+
+if TYPE_CHECKING:
+    import serial
+
+
+_TCP_PATTERN = re.compile(r"(?:tcp|socket)://(?P<host>.*):(?P<number>\d+)/?")
+_OPENING, _CLOSING = 3.0, 0.5  # s
+
+
+class TransportLostError(Exception):
+    """Loss of the connection; the text states how it was detected."""
+
+
+class GrblTransport(Protocol):
+    """Byte connection whose ``read`` and ``write`` never wait and raise WireLostError after a loss."""
+
+    def read(self) -> bytes: ...
+
+    def write(self, data: bytes) -> None: ...
+
+    def close(self) -> None: ...
+
+
+def parse_tcp_address(port: str) -> tuple[str, int] | None:
+    """Return host and port of ``tcp://…:…`` or ``socket://…:…``, or None for a device.
+
+    Raises DriverError if the address is malformed.
+    """
+    if "://" not in port:
+        return None
+    found = _TCP_PATTERN.fullmatch(port)
+    if found is None or not found["host"]:
+        raise DriverError("{port} must have the form tcp://host:port", port=port)
+    return found["host"].strip("[]"), int(found["number"])
+
+
+def open_transport(port: str, baud: int) -> GrblTransport:
+    """Open a serial device or a TCP port. Raises DriverError if it cannot be opened."""
+    address = parse_tcp_address(port)
+    return GrblSerialTransport(port, baud) if address is None else GrblTcpTransport(*address)
+
+
+class GrblSerialTransport:
+    """Serial port without DTR and RTS, because some boards reset and lose their position when these rise."""
+
+    def __init__(self, port: str, baud: int) -> None:
+        try:
+            import serial  # noqa: PLC0415  not everybody has a controller
+        except ImportError as error:
+            raise DriverError("backend grblhal needs pyserial; run: pip install pyserial") from error
+        self._port: serial.Serial = serial.Serial(timeout=0, write_timeout=0, exclusive=True)
+        self._port.port, self._port.baudrate = port, baud
+        self._port.dtr = self._port.rts = False
+        try:
+            self._port.open()
+        except (OSError, ValueError) as error:
+            raise DriverError(
+                "{port} cannot be opened: {error}; check [grblhal] port",
+                reason="not-opened",
+                port=port,
+                error=why(error),
+            ) from error
+
+    def read(self) -> bytes:
+        """Return the bytes received so far."""
+        try:
+            return bytes(self._port.read(4096))
+        except (OSError, TypeError) as error:  # pyserial raises TypeError when the device disappears.
+            raise TransportLostError(str(error)) from error
+
+    def write(self, data: bytes) -> None:
+        """Write all bytes to the buffer of the computer, which is larger than that of the controller."""
+        try:
+            if self._port.write(data) != len(data):
+                raise TransportLostError("the serial port does not accept any more bytes")
+        except OSError as error:
+            raise TransportLostError(str(error)) from error
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()
+
+
+class GrblTcpTransport:
+    """TCP connection with a socket that does not block."""
+
+    def __init__(self, host: str, port: int) -> None:
+        try:
+            self._socket = socket.create_connection((host, port), _OPENING)
+        except OSError as error:
+            raise DriverError(
+                "no response from tcp://{host}:{port}: {error}", host=host, port=port, error=error
+            ) from error
+        self._socket.setblocking(False)
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+    def read(self) -> bytes:
+        """Return the bytes received so far."""
+        try:
+            data = self._socket.recv(4096)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            raise TransportLostError(str(error)) from error
+        if not data:
+            raise TransportLostError("the remote host has closed the connection")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Write all bytes."""
+        try:
+            if self._socket.send(data) != len(data):
+                raise TransportLostError("the connection does not accept any more bytes")
+        except OSError as error:
+            raise TransportLostError(str(error)) from error
+
+    def close(self) -> None:
+        """Close the connection after receiving the remaining bytes; otherwise a simulator would fail."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_WR)
+            self._socket.settimeout(_CLOSING)
+            while self._socket.recv(4096):
+                continue
+        self._socket.close()
+
+
+# --- Lines with one reply each.
+
+
+# Bytes of the buffer that are never used. With 100 free bytes or fewer, the firmware's simulator reads
+# nothing from its socket, not even a cycle start or a reset.
+_RESERVE = 128
+_MAX_LINE_BYTES = 256  # bytes of a line
+
+
+@dataclass(slots=True)
+class SentLine:
+    """Line that was sent, with the lines received before its ``ok``; ``error`` 0 means no error."""
+
+    line: str
+    lines: list[str] = field(default_factory=list)
+    is_done: bool = False
+    error_code: int = 0
+    sent_time_s: float = 0.0
+    ticket: int = 0  # Ticket of a block, 0 for other lines.
+
+    @property
+    def size_bytes(self) -> int:
+        """The number of bytes of the line with its line end."""
+        return len(self.line) + 1
+
+
+class LineSender:
+    """Sender of lines in order; a line is sent only if it fits into the controller's buffer."""
+
+    def __init__(self, write: Callable[[bytes], None]) -> None:
+        self._write = write
+        self.free_bytes = 100  # Bytes that may be unacknowledged, until the controller reports its buffer.
+        self.waiting_lines: deque[SentLine] = deque()
+        self.unacknowledged_lines: deque[SentLine] = deque()
+        self.has_stale_replies = False  # Replies to discarded lines may still arrive.
+
+    def set_buffer_size(self, buffer_bytes: int) -> None:
+        """Set the size of the controller's buffer in bytes."""
+        self.free_bytes = buffer_bytes - _RESERVE
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether all lines are sent and acknowledged."""
+        return not self.waiting_lines and not self.unacknowledged_lines
+
+    def can_send(self, line: str) -> bool:
+        """Return whether a line could be sent immediately."""
+        return not self.waiting_lines and self._used() + len(line) + 1 <= self.free_bytes
+
+    def send_line(self, line: str, now: float, ticket: int = 0) -> SentLine:
+        """Send a line, or queue it until it fits."""
+        assert line.isascii(), line
+        assert len(line) < _MAX_LINE_BYTES, line
+        ask = SentLine(line, sent_time_s=now, ticket=ticket)
+        self.waiting_lines.append(ask)
+        self.send_waiting(now)
+        return ask
+
+    def send_waiting(self, now: float) -> None:
+        """Send the queued lines that fit now."""
+        while self.waiting_lines and (
+            not self.unacknowledged_lines
+            or self._used() + self.waiting_lines[0].size_bytes <= self.free_bytes
+        ):
+            ask = self.waiting_lines.popleft()
+            ask.sent_time_s = now
+            self.unacknowledged_lines.append(ask)
+            self._write(ask.line.encode("ascii") + b"\n")
+
+    def handle_reply(self, error: int) -> SentLine | None:
+        """Handle ``ok`` (0) or an error code and return its line, or None if no line is pending."""
+        if not self.unacknowledged_lines:
+            return None
+        ask = self.unacknowledged_lines.popleft()
+        ask.is_done, ask.error_code = True, error
+        return ask
+
+    def add_message(self, line: str) -> None:
+        """Add a received message to the line that is acknowledged next."""
+        if self.unacknowledged_lines:
+            self.unacknowledged_lines[0].lines.append(line)
+
+    def discard_lines(self) -> None:
+        """Discard all lines; replies are ignored until ``$G`` is reported."""
+        self.waiting_lines.clear()
+        self.unacknowledged_lines.clear()
+        self.has_stale_replies = True
+
+    def _used(self) -> int:
+        return sum(ask.size_bytes for ask in self.unacknowledged_lines)
+
+
+# --- Scripts: generators that yield conditions and continue when they are met.
+
+
+ScriptStep = tuple[Callable[[], bool], float, str]  # Condition, limit in s, and error text after the limit.
+Script = Generator[ScriptStep, None, None]
+
+
+class ScriptError(DriverError):
+    """Failure of a script, whose text and code become the fault."""
+
+    def __init__(self, text: str, code: FaultCode = "controller-refuses", **values: object) -> None:
+        super().__init__(text, code, reason="", **values)
+
+
+class ScriptRunner:
+    """Runner of one script at a time, advanced by its caller."""
+
+    def __init__(self) -> None:
+        self.purpose = ""  # Purpose of the present script.
+        self._script: Script | None = None
+        self._step: ScriptStep = (lambda: True, 0.0, "")
+        self._until = 0.0
+        self._inside = False  # The script is executing a step.
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a script is running."""
+        return self._script is not None
+
+    def start_script(self, script: Script, purpose: str, now: float) -> None:
+        """Start a script; a script that is running is canceled."""
+        self.cancel_script()
+        self._script, self.purpose = script, purpose
+        self._step, self._until = (lambda: True, 0.0, ""), now
+
+    def cancel_script(self) -> None:
+        """Cancel the script; a script that is within a step ends with this step."""
+        if self._script is not None and not self._inside:
+            self._script.close()
+        self._script = None
+
+    def advance(self, now: float) -> str:
+        """Advance the script as far as possible; return the reason for a failure, or an empty text."""
+        while self._script is not None:
+            until, _, why = self._step
+            if not until():
+                if now > self._until:
+                    self._script = None
+                    return why
+                return ""
+            try:
+                self._inside = True
+                self._step = next(self._script)
+            except StopIteration:
+                self._script = None
+            except DriverError as error:
+                self._script = None
+                return error.fault
+            else:
+                self._until = now + self._step[1]
+            finally:
+                self._inside = False
+        return ""

@@ -1,0 +1,356 @@
+"""Builder of a HAL file: loaded components, calls, parameters, nets and the wiring table."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import NamedTuple
+
+from core.message import Message
+from core.table_schema import FileFinding, format_toml_value
+from drivers.hal.boards.board_table import BoardTable
+
+TURNDESK_MARK = "#turndesk"
+C_AXIS = "C"
+_WIDTH = 110
+
+
+@dataclass(frozen=True, slots=True)
+class LatheAxis:
+    """One axis that HAL moves, in mm or degrees, and seconds; ``count`` is the travel per count or step."""
+
+    name: str
+    count: float
+    vmax: float
+    amax: float
+
+    @property
+    def unit(self) -> str:
+        """The unit of the positions as text."""
+        return "degree" if self.name == C_AXIS else "mm"
+
+
+@dataclass(frozen=True, slots=True)
+class LatheData:
+    """Data of a machine that its HAL file depends on.
+
+    ``names`` are the pins and signals of the machine file by their keys, in its order. ``period_s`` is that
+    of the servo thread in seconds.
+    """
+
+    name: str
+    source_file: str
+    board_table: BoardTable
+    servo_thread: str
+    period_s: float
+    axes: tuple[LatheAxis, ...]
+    rpm_max: float
+    rpm_accel: float
+    encoder_lines: int
+    terminal_names: Mapping[str, str]
+    spindle_is_c: bool = False  # C is the spindle drive.
+
+    @property
+    def c_axis(self) -> LatheAxis | None:
+        """The C axis if it is the spindle drive, otherwise None."""
+        return next((axis for axis in self.axes if axis.name == C_AXIS and self.spindle_is_c), None)
+
+    @property
+    def driven_axes(self) -> tuple[LatheAxis, ...]:
+        """The axes that have their own drive."""
+        return tuple(axis for axis in self.axes if axis is not self.c_axis)
+
+
+class BoardTerminal(NamedTuple):
+    """Terminal of a board: ``is_output`` is True for an output, ``place`` is the printed label."""
+
+    is_output: bool
+    label: str
+
+
+class WiringRow(NamedTuple):
+    """Row of the wiring table; ``names`` are keys of the machine file."""
+
+    place: str
+    pin: str
+    signal: str
+    names: tuple[str, ...]
+
+
+class FileSection(NamedTuple):
+    """Group of lines with a title."""
+
+    title: str
+    lines: list[str]
+
+
+_READ_FUNCTIONS = re.compile(
+    r"hal\.link_fault|io\.in\..*|io\.analog\..*|hal\.axes\.\w+\.(feedback|fault|home|limit_low|limit_high|index_enable)"
+    r"|hal\.spindle\.(position|velocity|at_speed|fault|load|in_position_mode|index_enable)"
+)
+
+
+@dataclass(slots=True)
+class HalFile:
+    """HAL file that is being built; ``find_terminal`` returns the terminal of a board pin, or None."""
+
+    lathe: LatheData
+    title: str
+    find_terminal: Callable[[str], BoardTerminal | None]
+    terminal_hint: str = ""  # Names of the board's terminals.
+    check_notes: list[str] = field(default_factory=list)  # Checks before the first motion.
+    load_lines: list[str] = field(default_factory=list)
+    base_thread_calls: list[str] = field(default_factory=list)  # Called in the base thread.
+    first_calls: list[str] = field(default_factory=list)  # Called before the setpoints are read.
+    last_calls: list[str] = field(default_factory=list)
+    sections: list[FileSection] = field(default_factory=list)
+    wiring_rows: list[WiringRow] = field(default_factory=list)
+    findings: list[FileFinding] = field(default_factory=list)
+    extra_files: dict[str, str] = field(default_factory=dict)  # Additional files by name.
+    _done: set[str] = field(default_factory=set)
+    _claimed: dict[str, str] = field(default_factory=dict)
+
+    def add_load(self, line: str, comment: str = "") -> None:
+        """Add a line that loads a component."""
+        self.load_lines += [f"# {comment}", line] if comment else [line]
+
+    def add_instance(self, component: str, name: str) -> None:
+        """Add an instance of a component, which is loaded once with all its instances."""
+        for index, line in enumerate(self.load_lines):
+            if line.startswith(f"loadrt {component} names="):
+                self.load_lines[index] = f"{line},{name}"
+                return
+        self.add_load(f"loadrt {component} names={name}")
+
+    def start_section(self, title: str) -> None:
+        """Start a section with this title."""
+        self.sections.append(FileSection(title, []))
+
+    def add_comment(self, comment: str) -> None:
+        """Add a comment to the present section."""
+        self.sections[-1].lines.append(f"# {comment}")
+
+    def set_pin(self, pin: str, value: float, comment: str = "") -> None:
+        """Set a pin or parameter to a number."""
+        line = f"setp {pin} {value:.10g}"
+        self.sections[-1].lines.append(f"{line:<58} # {comment}" if comment else line)
+
+    def connect(self, signal: str, *pins: str) -> None:
+        """Connect pins to a signal, with the source first."""
+        self.sections[-1].lines.append(f"net {signal} {' '.join(pins)}")
+
+    def connect_key(self, path: str, signal: str, *pins: str, label: str = "", required: bool = False) -> str:
+        """Connect the pins of the key ``path`` and return their signal.
+
+        The machine file may name the signal, one of the pins, or a terminal of the board. A terminal is
+        connected to the pins.
+        """
+        self._done.add(path)
+        name = self.lathe.terminal_names.get(path, "")
+        drives = not _READ_FUNCTIONS.fullmatch(path)
+        if not name:
+            if required:
+                why = Message("missing; expected a signal ({signal}) or a pin", signal=signal)
+                self.findings.append(FileFinding(path, "", why))
+            return signal
+        if "." not in name:
+            return self._on_signal(path, name, pins, label)
+        on = pins
+        if name not in pins:
+            found = self.find_terminal(name)
+            if found is None or found.is_output is not drives:
+                self.findings.append(FileFinding(path, format_toml_value(name), self._expected(pins, found)))
+                return signal
+            label = label or found.label
+            if drives:
+                self.claim_terminal(name, path)
+            on = (*pins, name) if drives else (name, *pins)
+        self._add_wiring_row(path, signal, on, label, name)
+        return signal
+
+    def connect_positions(
+        self, axis: str, command: Iterable[str], feedback: Iterable[str], label: str = ""
+    ) -> None:
+        """Connect the pins of commanded and measured position of an axis."""
+        path, name = f"hal.axes.{axis}", axis.lower()
+        self.connect_key(f"{path}.command", f"{name}-pos-cmd", *command, label=label, required=True)
+        self.connect_key(f"{path}.feedback", f"{name}-pos-fb", *feedback, label=label, required=True)
+
+    def connect_terminal(
+        self, path: str, signal: str, name: str, pin: str, *, is_output: bool = True
+    ) -> None:
+        """Connect a terminal that [board] names to one pin."""
+        found = self.find_terminal(name)
+        if found is None or found.is_output is not is_output:
+            self.findings.append(FileFinding(path, format_toml_value(name), self._expected((), found)))
+            return
+        if is_output:
+            self.claim_terminal(name, path)
+        self.connect(signal, *((pin, name) if is_output else (name, pin)))
+        self.wiring_rows.append(WiringRow(found.label, name, signal, (path,)))
+
+    def add_signal(self, path: str, name: str) -> None:
+        """Create a signal without a pin, which is set by hand."""
+        self._done.add(path)
+        self.sections[-1].lines.append(f"newsig {name} bit")
+        self.wiring_rows.append(WiringRow("", "-", name, (path,)))
+
+    def connect_enable(self, *pins: str) -> None:
+        """Connect the pins of the board and of the machine file that enable the drives.
+
+        All of them use one signal, because they are driven alike.
+        """
+        paths = {f"hal.axes.{axis.name}.enable": axis.name for axis in self.lathe.axes}
+        named = [path for path in paths if path in self.lathe.terminal_names]
+        for path in named:
+            self._done.add(path)
+            name = self.lathe.terminal_names[path]
+            found = self.find_terminal(name)
+            if name not in pins and found is not None and found.is_output:
+                self.claim_terminal(name, path)
+                pins = (*pins, name)
+            elif name not in pins:
+                why = Message(
+                    "expected {terminals}; or remove this key: hal.machine_on then enables every axis",
+                    terminals=self.terminal_hint,
+                )
+                self.findings.append(FileFinding(path, format_toml_value(name), why))
+                continue
+            self.wiring_rows.append(WiringRow(found.label if found else "", name, "machine-on", (path,)))
+        if named and "hal.machine_on" not in self.lathe.terminal_names:
+            self.connect("machine-on", *pins)
+        else:
+            self.connect_key("hal.machine_on", "machine-on", *pins, required=True)
+
+    def connect_link_fault(self, gate: str, *pins: str, extra_pins: tuple[str, ...] = ()) -> None:
+        """Put hal.link_fault on a gate: "or" of pins that report a fault, "nand" of pins that report health.
+
+        ``extra_pins`` pins of the file are on the same signal.
+        """
+        personality = {"or": 0x200, "nand": 0x800}[gate] + len(pins)
+        self.add_load(
+            f"loadrt logic names=board-link personality={personality:#x}",
+            "inputs retain their last value while the board does not respond; this component "
+            "then opens the E-stop chain",
+        )
+        self.first_calls.append("board-link")
+        self.start_section("Board connection: a connection fault opens the E-stop chain")
+        for number, pin in enumerate(pins):
+            self.connect(f"board-link-{number}", pin, f"board-link.in-{number:02d}")
+        self.connect_key("hal.link_fault", "link-fault", f"board-link.{gate}", *extra_pins, required=True)
+
+    def claim_terminal(self, pin: str, path: str) -> None:
+        """Reserve a driven terminal; a second use adds a finding."""
+        first = self._claimed.setdefault(pin, path)
+        if first != path:
+            why = Message("expected an unused pin; {first} already uses this pin", first=first)
+            self.findings.append(FileFinding(path, format_toml_value(pin), why))
+
+    def connect_remaining(self) -> None:
+        """Connect every name of the machine file that is not yet connected to its terminal."""
+        self.start_section("Inputs and outputs")
+        for path in self.lathe.terminal_names:
+            if path not in self._done:
+                self.connect_key(path, get_signal_name(path))
+
+    def _on_signal(self, path: str, name: str, pins: tuple[str, ...], place: str) -> str:
+        if pins:
+            self._add_wiring_row(path, name, pins, place, pins[0])
+        else:
+            why = Message(
+                "this signal is not connected to a pin; expected {terminals}", terminals=self.terminal_hint
+            )
+            self.findings.append(FileFinding(path, format_toml_value(name), why))
+        return name
+
+    def _add_wiring_row(self, path: str, signal: str, pins: tuple[str, ...], label: str, pin: str) -> None:
+        """Add one net; for a signal that exists already, such as a combined switch, only extend the table."""
+        for index, wire in enumerate(self.wiring_rows):
+            if wire.pin == pin:
+                self.wiring_rows[index] = wire._replace(names=(*wire.names, path))
+                return
+        self.connect(signal, *pins)
+        self.wiring_rows.append(WiringRow(label, pin, signal, (path,)))
+
+    def _expected(self, pins: tuple[str, ...], found: BoardTerminal | None) -> str:
+        if found is not None:
+            if found.is_output:
+                return "this terminal is an output; expected an input"
+            return "this terminal is an input; expected an output"
+        if not pins:
+            return Message(
+                "the board does not have this pin; expected {terminals}", terminals=self.terminal_hint
+            )
+        return Message(
+            "the board does not have this pin; expected {pins}, the name of a signal, or {terminals}",
+            pins=", ".join(pins),
+            terminals=self.terminal_hint,
+        )
+
+
+def get_signal_name(path: str) -> str:
+    """Return the signal name for a key: io.in.guard is in-guard, hal.axes.X.limit_low is x-limit-low."""
+    word = path.removeprefix("io.").removeprefix("hal.axes.").removeprefix("hal.").removesuffix(".at")
+    return re.sub(r"[^a-z0-9]+", "-", word.lower())
+
+
+# --- Output as text.
+
+
+def render_file(file: HalFile) -> str:
+    """Return the complete file; the same machine file always gives the same text."""
+    return "\n".join((*_head(file), *_body(file), ""))
+
+
+def _head(file: HalFile) -> Iterator[str]:
+    lathe = file.lathe
+    yield f"# {lathe.name}: {file.title}."
+    source = PurePath(lathe.source_file).name
+    yield (f"# Generated by: turndesk machine hal {source}   Run this command again when that file changes.")
+    yield (
+        "# Positions are in mm (X as a radius) or degrees (rotary axes). E-stop, guard and "
+        "overtravel are hardwired."
+    )
+    yield "# Hardwired safety: see docs/integrator/choose-hardware.md."
+    yield "# From power-off to the first part: see docs/integrator/wiring.md."
+    if file.check_notes:
+        yield "#"
+        yield "# Check and measure on the real machine before the first part:"
+        for note in file.check_notes:
+            lines = textwrap.wrap(note, _WIDTH - 5)
+            yield from (f"#  {'-' if n == 0 else ' '} {line}" for n, line in enumerate(lines))
+    yield "#"
+    yield "# Wiring table:"
+    yield from (f"#  {line}".rstrip() for line in format_wiring_table(file.wiring_rows))
+
+
+def _body(file: HalFile) -> Iterator[str]:
+    thread = file.lathe.servo_thread
+    yield from ("", *file.load_lines, "")
+    if file.base_thread_calls:
+        yield "# Step generation and encoder counting run in the fast thread."
+        yield from (f"addf {call} base-thread" for call in file.base_thread_calls)
+        yield ""
+    yield "# 1. Functions that read from the machine run first in the thread."
+    yield from (f"addf {call} {thread}" for call in file.first_calls)
+    yield from (
+        "",
+        "# 2. Setpoints, gear, E-stop chain: TurnDesk replaces the next line with its own functions.",
+    )
+    yield from (TURNDESK_MARK, "", "# 3. Functions that drive the machine run last.")
+    yield from (f"addf {call} {thread}" for call in file.last_calls)
+    for section in file.sections:
+        if section.lines:
+            yield from ("", f"# --- {section.title}", *section.lines)
+
+
+def format_wiring_table(wires: Iterable[WiringRow]) -> Iterator[str]:
+    """Yield the lines of the wiring table: terminal, pin, signal, and keys of the machine file."""
+    rows = [("terminal", "HAL pin", "signal", "machine file")]
+    rows += [(wire.place or "-", wire.pin, wire.signal, ", ".join(wire.names)) for wire in wires]
+    widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    for *cells, last in rows:
+        yield "".join(f"{cell:<{width}}  " for cell, width in zip(cells, widths, strict=True)) + last

@@ -1,0 +1,488 @@
+"""Control of an inverter on its line: commands, polling and detection of an inverter that does not obey.
+
+``InverterControl.run_exchange`` is one exchange. ``InverterThread`` repeats it; tests call it directly. A
+stop has priority over everything and waits at most for the response in progress.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from core.message import Message
+from core.ports import Clock, DriverError, Fault, FaultCode
+from drivers.inverter.inverter_family import InverterFamily, InverterState
+from drivers.inverter.modbus_rtu import NoResponseError, RequestRejectedError, RequestWithheldError
+from drivers.serial_line import SerialLineError
+
+# --- Check whether an inverter obeys.
+
+
+RESPONSE_TIME_S = 1.0  # s
+_ROUNDING = 0.001  # Additional tolerance in Hz for rounding of the setpoint.
+STANDSTILL_HZ = 0.5  # Hz
+_SPEED_DROP_FRACTION = 0.005  # Fraction of the speed by which it must fall at least once per second.
+PRESS_ESTOP_TEXT = "PRESS E-STOP"
+
+
+def add_estop_request(reason: str) -> str:
+    """Return the fault text with the request to press the E-stop."""
+    return Message("{why}: {press}", why=reason, press=PRESS_ESTOP_TEXT)
+
+
+class CommandMonitor:
+    """Check whether an inverter follows its commands; ``command`` notes a command, ``check_poll`` checks a
+    poll.
+
+    On a slow line, a poll is as old as its exchange is long. The permitted second therefore starts after the
+    exchange, and a falling speed is compared with the first poll after the command. ``setpoint_step_hz`` is
+    the resolution of the reported setpoint in Hz.
+    """
+
+    def __init__(self, setpoint_step_hz: float = 0.01) -> None:
+        self._within = setpoint_step_hz + _ROUNDING
+        self._since: float | None = None  # Time since which the inverter does not obey; None: it obeys.
+        self._lowest: float = 0.0  # Lowest output in Hz while the speed falls.
+        self._unseen = False  # No poll has been completed since the command.
+        self._asked = 0.0
+
+    def note_command(self, now: float, commanded_hz: float, last_state: InverterState | None) -> None:
+        """Note a command in Hz, signed; a new setpoint in the same direction does not restart the limit."""
+        if commanded_hz == self._asked:
+            return
+        if last_state is not None and (
+            commanded_hz == 0.0 or commanded_hz * self._asked < 0.0 or abs(commanded_hz) < abs(self._asked)
+        ):
+            self._lowest = last_state.output_hz
+            self._unseen = True
+        self._asked = commanded_hz
+        if self._since is None:
+            self._since = now
+
+    def check_poll(self, now: float, state: InverterState, exchange_s: float = 0.0) -> str:
+        """Return the reason why the inverter has not obeyed for one second plus ``exchange_s``.
+
+        ``exchange_s`` is the duration of one exchange in seconds. The result is empty while the inverter may
+        still obey.
+        """
+        if self._unseen:  # The motor may still have accelerated when the command was sent.
+            self._lowest, self._unseen = max(self._lowest, state.output_hz), False
+        wrong = self._wrong(state)
+        if self._is_decelerating(state):
+            self._lowest = state.output_hz
+        if not wrong:
+            self._since = None
+            return ""
+        if self._since is None:
+            self._since = now
+        return wrong if now - self._since > RESPONSE_TIME_S + exchange_s else ""
+
+    def _wrong(self, look: InverterState) -> str:
+        why = (
+            self._standing(look)
+            if self._asked == 0.0
+            else self._describe_setpoint_error(look) or self._describe_rotation_error(look)
+        )
+        return add_estop_request(why) if why else ""
+
+    def _standing(self, look: InverterState) -> str:
+        if look.output_hz > STANDSTILL_HZ and (look.is_running or not self._is_decelerating(look)):
+            return Message(
+                "a stop was commanded, but the inverter still outputs {output} Hz",
+                output=f"{look.output_hz:.1f}",
+            )
+        return (
+            "a stop was commanded, but the inverter still reports that it is running"
+            if look.is_running
+            else ""
+        )
+
+    def _describe_setpoint_error(self, state: InverterState) -> str:
+        """Return the difference between the command and the reported setpoint, run state and direction."""
+        asked = abs(self._asked)
+        if abs(state.setpoint_hz - asked) > self._within:
+            return Message(
+                "{requested} Hz was commanded, but the inverter reports a setpoint of {setpoint} Hz",
+                requested=f"{asked:.2f}",
+                setpoint=f"{state.setpoint_hz:.2f}",
+            )
+        if not state.is_running:
+            return Message(
+                "{requested} Hz was commanded, but the inverter is not running", requested=f"{asked:.1f}"
+            )
+        return (
+            ""
+            if state.is_reverse_commanded == (self._asked < 0.0)
+            else ("the inverter reports a command for the opposite direction")
+        )
+
+    def _describe_rotation_error(self, state: InverterState) -> str:
+        """Return a wrong output: the speed must fall toward a lower setpoint or before a reversal."""
+        back = state.is_reverse != (self._asked < 0.0) and state.output_hz > STANDSTILL_HZ
+        if back and not self._is_decelerating(state):
+            return "the inverter runs in the direction opposite to its command"
+        if (
+            not back
+            and state.output_hz > abs(self._asked) + STANDSTILL_HZ
+            and not self._is_decelerating(state)
+        ):
+            return Message(
+                "{requested} Hz was commanded, but the inverter outputs {output} Hz",
+                requested=f"{abs(self._asked):.1f}",
+                output=f"{state.output_hz:.1f}",
+            )
+        return ""
+
+    def _is_decelerating(self, state: InverterState) -> bool:
+        """Return whether the output is below its lowest value since the command by more than a ripple."""
+        return state.output_hz < self._lowest * (1.0 - _SPEED_DROP_FRACTION)
+
+
+# --- Comparison of encoder and inverter, to detect open couplings, slipping belts and wrong counts. The value
+# of the inverter is delayed by one exchange, so it is compared only while it is constant.
+
+
+_EVEN_RPM, _EVEN = 10.0, 0.01  # A smaller change of the output is ignored.
+_SETTLING_TIME_S = 0.5  # Seconds of constant output before the comparison.
+_DEVIATION_TIME_S = 1.0  # Seconds for which both must differ.
+_SLACK_RPM = 30.0  # rpm
+
+
+class SpeedComparison:
+    """Comparison of encoder and inverter speed; ``max_difference`` is the permitted relative difference."""
+
+    def __init__(self, max_difference: float) -> None:
+        self._fraction = max_difference
+        self._given = 0.0
+        self._even_since = 0.0
+        self._off_since: float | None = None
+
+    def compare_speeds(self, measured_rpm: float, reported_rpm: float, now: float) -> str:
+        """Return the fault when the speeds have differed for 1 s, or an empty text.
+
+        Both speeds are in rpm, signed. They are compared only at a constant inverter output other than 0.
+        """
+        if abs(reported_rpm - self._given) > _EVEN_RPM + _EVEN * abs(reported_rpm):
+            self._given, self._even_since = reported_rpm, now
+        off = abs(measured_rpm - reported_rpm) > _SLACK_RPM + self._fraction * abs(reported_rpm)
+        if reported_rpm == 0.0 or not off or now - self._even_since < _SETTLING_TIME_S:
+            self._off_since = None
+            return ""
+        self._off_since = now if self._off_since is None else self._off_since
+        if now - self._off_since < _DEVIATION_TIME_S:
+            return ""
+        return Fault(
+            "the encoder measures {measured} rpm, but the inverter output corresponds to {given} "
+            "rpm; check the coupling, the belt and counts_per_rev; {press}",
+            "spindle-disagrees",
+            measured=f"{measured_rpm:.0f}",
+            given=f"{reported_rpm:.0f}",
+            press=PRESS_ESTOP_TEXT,
+        )
+
+
+# --- Polling and commands.
+
+
+SILENCE_TIMEOUT_S = 1.0  # Seconds without a response after which the inverter counts as lost.
+MAX_SILENCE_S = SILENCE_TIMEOUT_S + 0.5  # Seconds after which the exchange itself has reported the silence.
+_PARTIAL_RESPONSE_S = (
+    2.0  # Seconds after a poll in which single responses count, before the next poll must be complete.
+)
+_RETRY_DELAY_S = 1.0  # Seconds between two attempts to open a lost port.
+_MAX_POLLS = 60  # Polls until the inverter must be trusted.
+_RESTART_TIME_S = 3.0  # Seconds in which an inverter may be silent after a reset.
+
+
+@dataclass(frozen=True, slots=True)
+class PolledState:
+    """Last poll and its time.
+
+    ``asked`` is a time before which all commands were sent when the poll began.
+    """
+
+    time_s: float
+    state: InverterState
+    commands_sent_before_s: float = 0.0
+
+
+class InverterControl:
+    """Owner of the inverter's line.
+
+    Any thread may set ``commanded_hz``; all else belongs to the thread of ``run_exchange``.
+
+    ``open_line`` opens the line and returns the inverter; it raises DriverError. ``setpoint_step_hz`` is the
+    resolution of the reported setpoint in Hz.
+    """
+
+    def __init__(
+        self,
+        open_line: Callable[[], InverterFamily],
+        clock: Clock,
+        comm_timeout_s: float,
+        max_hz: float,
+        setpoint_step_hz: float = 0.01,
+    ) -> None:
+        self._open, self._clock = open_line, clock
+        self._comm_loss, self._highest, self._step = comm_timeout_s, max_hz, setpoint_step_hz
+        self._want = 0.0
+        self._told: float | None = None  # None: no command since the line was opened.
+        self._stops = self._stopped = 0  # Number of commanded stops, and of those that the inverter has.
+        self._obedience = CommandMonitor(self._step)
+        self._family: InverterFamily | None = None
+        self._retry = 0.0
+        self._began = self._began_before = clock.now()  # Start times of the present and the last exchange.
+        self._answered = clock.now()  # Time of the last response in an exchange without an error.
+        self._reset = False
+        self.silence_allowed_until = 0.0  # Silence is permitted until this time.
+        self.last_poll: PolledState | None = None
+        self.failure: Fault | str = ""  # Latched until ``clear_fault``.
+        self.exchange_error = ""  # Reason why the last exchange failed.
+        self.warnings: tuple[str, ...] = ()
+
+    @property
+    def commanded_hz(self) -> float:
+        """The commanded frequency in Hz, signed; a fault sets it permanently to 0."""
+        return 0.0 if self.failure else self._want
+
+    @commanded_hz.setter
+    def commanded_hz(self, hz: float) -> None:
+        if hz == 0.0 and self._want != 0.0:
+            self._stops += 1  # The stop is sent even if a start follows before the next exchange.
+        self._want = hz
+
+    @property
+    def is_trusted(self) -> bool:
+        """Whether the inverter has sent enough valid responses to be trusted."""
+        return (
+            self._family is not None
+            and self._family.valid_response_count >= self._family.required_response_count
+        )
+
+    @property
+    def is_state_unknown(self) -> bool:
+        """Whether the state is unknown, because the port is closed or the inverter is silent."""
+        return self._family is None or self.last_poll is None or self.silence_s > SILENCE_TIMEOUT_S
+
+    @property
+    def silence_s(self) -> float:
+        """The seconds since the last poll or partial response; 0 while silence is permitted."""
+        seen, now = self.last_poll, self._clock.now()
+        if seen is None or now <= self.silence_allowed_until:
+            return 0.0
+        return now - max(seen.time_s, min(self._answered, seen.time_s + _PARTIAL_RESPONSE_S))
+
+    @property
+    def line_delay_s(self) -> float:
+        """The seconds by which the line delays a command and the poll that shows its effect."""
+        seen = self.last_poll
+        return self._clock.now() - seen.commands_sent_before_s if seen is not None else 0.0
+
+    def open_and_check(self) -> None:
+        """Open the line, stop the inverter, check it, and poll until it is trusted. Raises DriverError."""
+        self._prepare()
+        for _ in range(_MAX_POLLS):
+            self._look()
+            if self.is_trusted:
+                return
+        raise DriverError(
+            "the inverter did not send {warm_up} valid responses in a row: {missed}",
+            warm_up=self._familiar.required_response_count,
+            missed=self.exchange_error,
+        )
+
+    def run_exchange(self) -> None:
+        """Perform one exchange; errors become the fault and are never raised."""
+        try:
+            if self._family is None:
+                self._reopen()
+            else:
+                self._exchange()
+            self.exchange_error = ""
+        except SerialLineError as error:
+            self._let_go(str(error))
+        except (NoResponseError, RequestRejectedError) as error:
+            self.exchange_error = str(error)
+            self._told = None  # The command may be lost, so it is sent again.
+            self._answered = 0.0  # Other responses do not complete the poll.
+        self._supervise()
+
+    def clear_fault(self) -> None:
+        """Clear the fault, reset a trip and discard the commanded frequency; callable from any thread."""
+        self._want = 0.0
+        self._reset = True
+        self.failure = ""
+
+    def discard_state(self) -> None:
+        """Discard the known state; the next poll may take a few seconds."""
+        self.clear_fault()
+        self._told, self.last_poll, self.silence_allowed_until = (
+            None,
+            None,
+            self._clock.now() + _RESTART_TIME_S,
+        )
+
+    def close(self) -> None:
+        """Stop the inverter and close the line."""
+        self._want = 0.0
+        if self._family is not None:
+            try:
+                self._family.stop()
+            except DriverError as error:
+                self.exchange_error = str(error)
+            self._family.close()
+            self._family = None
+
+    @property
+    def _familiar(self) -> InverterFamily:
+        if self._family is None:
+            raise NoResponseError("the serial line to the inverter is not open")
+        return self._family
+
+    def _prepare(self) -> None:
+        self._family = self._open()
+        self._family.is_stop_pending = lambda: self._stop_waits() or self._has_unsent_stop()
+        self._stop_now()
+        self.warnings = tuple(self._family.check_parameters(self._comm_loss, self._highest))
+
+    def _stop_waits(self) -> bool:
+        return self.commanded_hz == 0.0 and self._told != 0.0
+
+    def _has_unsent_stop(self) -> bool:
+        return self._stops != self._stopped
+
+    def _stop_now(self) -> None:
+        """Stop the inverter; the stop counts when the inverter has confirmed it. Raises DriverError."""
+        stops, self._told = self._stops, None
+        self._familiar.stop()
+        self._told, self._stopped = 0.0, stops
+
+    def _reopen(self) -> None:
+        now = self._clock.now()
+        if now < self._retry:
+            self._clock.sleep_until(min(self._retry, now + 0.1))
+            return
+        self._retry = now + _RETRY_DELAY_S
+        self._prepare()
+
+    def _exchange(self) -> None:
+        self._began_before, self._began = self._began, self._clock.now()
+        if self._reset:
+            self._perform_clear()
+        with suppress(RequestWithheldError):  # The next exchange starts with the stop.
+            self._tell()
+            self._look()
+
+    def _perform_clear(self) -> None:
+        """Stop and reset a trip; a trip that remains is reported by the next poll."""
+        self._stop_now()
+        self._obedience = CommandMonitor(self._step)
+        tripped = self.last_poll is None or bool(self.last_poll.state.trip_text)
+        self._reset = False
+        if tripped:
+            self.silence_allowed_until = self._clock.now() + _RESTART_TIME_S
+            self._familiar.reset_trip()
+
+    def _tell(self) -> None:
+        want, look = self.commanded_hz, self.last_poll.state if self.last_poll else None
+        # A stop is repeated until standstill.
+        turns = want == 0.0 and look is not None and (look.is_running or look.output_hz > STANDSTILL_HZ)
+        missing = self._has_unsent_stop()
+        if want == self._told and not turns and not missing:
+            return
+        if want == 0.0 or missing:
+            self._obedience.note_command(self._clock.now(), 0.0, look)
+            self._stop_now()
+        if want != 0.0:
+            self._obedience.note_command(self._clock.now(), want, look)
+            self._told = None  # From the first frame on, a stop must be sent and has priority.
+            self._familiar.command_hz(want)
+        self._told, self._answered = want, self._clock.now()
+
+    def _look(self) -> None:
+        for look in self._familiar.poll_steps():
+            self._answered = self._clock.now()
+            if look is not None:
+                self._judge(look)
+            elif self._stop_waits():
+                return
+
+    def _judge(self, look: InverterState) -> None:
+        now = self._clock.now()
+        self.last_poll = PolledState(now, look, self._began_before)
+        if self._reset:
+            return  # This poll started before the operator's reset.
+        if look.trip_text:
+            self._latch(Message("the inverter has tripped: {trip}", trip=look.trip_text), "spindle")
+        elif why := self._obedience.check_poll(now, look, now - self._began):
+            self._latch(Message("the inverter does not follow its command: {why}", why=why), "ignores-stop")
+
+    def _let_go(self, why: str) -> None:
+        self.exchange_error = why
+        if self._family is not None:
+            self._family.close()
+        self._family, self._told = None, None
+        self._latch(add_estop_request(why) if self._may_turn() else why, "inverter-silent")
+
+    def _supervise(self) -> None:
+        """Set a fault if the inverter has been silent for too long, even if no command is active."""
+        never = self.last_poll is None and self._clock.now() >= self.silence_allowed_until
+        if (never or self.silence_s >= SILENCE_TIMEOUT_S) and not self.failure:
+            why = self.exchange_error or "no response from inverter"
+            self._latch(add_estop_request(why) if self._may_turn() else why, "inverter-silent")
+
+    def _may_turn(self) -> bool:
+        return self._want != 0.0 or self.last_poll is None or self.last_poll.state.output_hz > 0.0
+
+    def _latch(self, why: str, code: FaultCode) -> None:
+        if not self.failure:
+            self.failure = Fault(why, code)
+        self._want, self._reset = 0.0, False
+
+
+# --- Thread that repeats the exchanges. The spindle's fault reports its end.
+
+
+_CLOSE_TIMEOUT_S = 3.0  # Seconds for the longest exchange with its retries.
+
+
+class InverterThread:
+    """Thread that repeats the exchanges without a pause; the line limits the rate of requests."""
+
+    def __init__(self, control: InverterControl) -> None:
+        self._attendant = control
+        self._ended = threading.Event()
+        self.thread = self._made()
+
+    def start(self) -> None:
+        """Start the thread; must be called only once."""
+        self.thread.start()
+
+    def restart(self) -> None:
+        """Start a new thread if the last one has failed; its first command is a stop."""
+        if not self.is_alive and not self._ended.is_set():
+            self._attendant.discard_state()
+            self.thread = self._made()
+            self.thread.start()
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether the thread is running."""
+        return self.thread.is_alive()
+
+    def close(self) -> None:
+        """End the thread and send a final stop."""
+        self._attendant.commanded_hz = 0.0  # Prevents further commands of the thread.
+        self._ended.set()
+        if self.thread.is_alive():
+            self.thread.join(_CLOSE_TIMEOUT_S)
+        self._attendant.close()
+
+    def _made(self) -> threading.Thread:
+        return threading.Thread(target=self._keep, name="inverter", daemon=True)
+
+    def _keep(self) -> None:
+        while not self._ended.is_set():
+            self._attendant.run_exchange()

@@ -1,0 +1,172 @@
+"""Parts of ports that several drivers use: checks of commands, probe touches and scope samples."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Container, Mapping
+from typing import TypeVar
+
+import numpy as np
+
+from core.faults import get_fault_code
+from core.ports import DriverError, FloatArray, TouchLatch
+
+T = TypeVar("T")
+
+# --- Checks: each function raises DriverError unless the command is permitted.
+
+
+def require_no_fault(fault: str) -> None:
+    """Raise DriverError if a fault prevents switching the drives on."""
+    if fault:
+        raise DriverError(
+            "the drives stay off because of a fault ({fault}); clear the fault first", "no-power", fault=fault
+        )
+
+
+def require_power(fault: str, powered: bool) -> None:
+    """Raise DriverError if a motion is not permitted because of a fault or because the drives are off."""
+    if fault:
+        raise DriverError("{fault}; clear the fault first", get_fault_code(fault, "axis"), fault=fault)
+    if not powered:
+        raise DriverError("the drives are off; switch them on first", "power-lost")
+
+
+def require_no_homing(axis: str) -> None:
+    """Raise DriverError while ``axis`` is homing; an empty name means no axis."""
+    if axis:
+        raise DriverError("{name} is homing; wait until homing is complete", reason="homing", name=axis)
+
+
+def require_axis(axis: str, axes: Container[str]) -> None:
+    """Raise DriverError if ``axis`` is not among ``axes``."""
+    if axis not in axes:
+        raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
+
+
+def require_standstill(axis: str, moving: bool) -> None:
+    """Raise DriverError if ``axis`` cannot home because an axis is moving."""
+    if moving:
+        raise DriverError(
+            "{axis} cannot home while an axis is moving; wait until all axes are at rest",
+            "homing",
+            reason="axis-moves",
+            axis=axis,
+        )
+
+
+def require_spindle_ready(problem: str) -> None:
+    """Raise DriverError if a ``problem`` prevents turning the spindle."""
+    if problem:
+        raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=problem)
+
+
+def require_estop_released(pressed: bool) -> None:
+    """Raise DriverError if the spindle cannot turn because the E-stop is pressed."""
+    if pressed:
+        raise DriverError(
+            "the spindle stays off while the E-stop is pressed; release the E-stop first", "spindle-off"
+        )
+
+
+def require_free_drive(enabled: bool, turning: bool) -> None:
+    """Raise DriverError if the spindle drive cannot become C, because it is off or turns."""
+    if not enabled:
+        raise DriverError(
+            "C uses the spindle drive, and the drives are off; switch them on first",
+            "c-coupling",
+            reason="drives-off",
+        )
+    if turning:
+        raise DriverError(
+            "C uses the spindle drive, and the spindle is turning; stop the spindle first",
+            "c-coupling",
+            reason="spindle-turns",
+        )
+
+
+def find_output(name: str, outputs: Mapping[str, T]) -> T:
+    """Return the output of this name. Raises DriverError if the machine does not have it."""
+    if name not in outputs:
+        raise DriverError(
+            "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
+        )
+    return outputs[name]
+
+
+def require_output_allowed(name: str, state: bool, problem: str) -> None:
+    """Raise DriverError if a ``problem`` prevents switching an output on."""
+    if state and problem:
+        raise DriverError("output {name} stays off: {problem}", "output", name=name, problem=problem)
+
+
+# --- Touch of a probe.
+
+
+class FirstTouchInput:
+    """``core.ports.TouchInput`` that latches the axis positions at the first touch after ``arm_latch``."""
+
+    def __init__(self) -> None:
+        self._on = False
+        self._kept: TouchLatch | None = None
+
+    def arm_latch(self) -> None:
+        """Clear the latched touch."""
+        self._kept = None
+
+    def read_latch(self) -> TouchLatch | None:
+        """Return the first touch since ``arm_latch``, or None."""
+        return self._kept
+
+    def _is_first_touch(self, is_on: bool) -> bool:
+        """Return whether the present input state ``on`` is the first touch."""
+        before, self._on = self._on, is_on
+        return is_on and not before and self._kept is None
+
+
+# --- Samples for the scope in preallocated memory.
+
+
+LOG_ROWS = 8192  # Rows, which cover eight seconds at 1 ms for a delayed control.
+
+
+class SampleLog:
+    """Ring buffer of rows as in ``core.ports.SampleSource``."""
+
+    def __init__(self, axes: int, capacity: int = LOG_ROWS) -> None:
+        self.row_width = 5 + 3 * axes
+        self._row = struct.Struct(f"={self.row_width}d")
+        self._kept = capacity
+        self._bytes = bytearray(capacity * self._row.size)
+        self._added = self._taken = 0
+        self._rows = np.frombuffer(self._bytes, dtype=np.float64).reshape(capacity, self.row_width)
+        self._none = np.empty((0, self.row_width))
+        self.newest_time_s = -np.inf  # Time of the newest row.
+
+    def append_row(self, t: float, *figures: float) -> None:
+        """Append one row; the oldest row is discarded if the buffer is full."""
+        self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *figures)
+        self._added += 1
+        self.newest_time_s = t
+
+    def append_rows(self, rows: FloatArray) -> None:
+        """Append the newest of these rows, as many as the buffer can store."""
+        rows = rows[-self._kept :]
+        at = self._added % self._kept
+        head = rows[: self._kept - at]
+        self._rows[at : at + len(head)] = head
+        self._rows[: len(rows) - len(head)] = rows[len(head) :]
+        self._added += len(rows)
+        self.newest_time_s = rows[-1, 0]
+
+    def pop_rows(self, max_rows: int = LOG_ROWS) -> FloatArray:
+        """Remove and return at most ``max_rows`` of the oldest rows."""
+        first = max(self._taken, self._added - self._kept)
+        count = min(self._added - first, max_rows)
+        if not count:
+            return self._none
+        self._taken = first + count
+        at = first % self._kept
+        if at + count <= self._kept:
+            return self._rows[at : at + count].copy()
+        return np.concatenate((self._rows[at:], self._rows[: at + count - self._kept]))

@@ -1,0 +1,177 @@
+"""Wake-ups, clocks and background openings for drivers.
+
+A wake-up lets a driver report a change to its control at once, so that a machine at rest is polled less
+often. Lost connections are opened in a separate thread, so that the control never waits for a missing port or
+process.
+"""
+
+from __future__ import annotations
+
+import queue
+import select
+import socket
+import threading
+import time
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, suppress
+from types import TracebackType
+from typing import Generic, TypeVar
+
+from core.ports import DriverError
+
+# --- Wake-ups.
+
+
+_CHUNK = 1 << 16
+
+
+class LocalWakeup:
+    """``core.ports.LocalWakeup`` within one process.
+
+    ``is_settled`` is supplied by the driver and returns whether nothing changes without a wake-up.
+    """
+
+    def __init__(self, is_settled: Callable[[], bool]) -> None:
+        self.is_settled = is_settled
+        self._rung = threading.Event()
+
+    def wake(self) -> None:
+        """Wake up the control after a command or change, from any thread."""
+        self._rung.set()
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for a wake-up for at most ``seconds`` and return whether there was one."""
+        rung = self._rung.wait(seconds)
+        self._rung.clear()
+        return rung
+
+
+class ProcessBell:
+    """Wake-up between two processes by a socket pair; both ends may ring from any thread."""
+
+    def __init__(self) -> None:
+        self._near, self.far_socket = socket.socketpair()
+        self._near.setblocking(False)
+        self.far_socket.setblocking(False)
+
+    def ring(self) -> None:
+        """Wake up the waiting process; nothing happens if the socket is full or closed."""
+        with suppress(OSError):
+            self.far_socket.send(b"!")
+
+    def wait(self, seconds: float, files: Sequence[int] = ()) -> bool:
+        """Wait for a wake-up or a readable file, for at most ``seconds``; return whether there was one.
+
+        Earlier wake-ups also count.
+        """
+        try:
+            if not select.select([self._near.fileno(), *files], [], [], seconds)[0]:
+                return False
+        except (OSError, ValueError):  # Closed by another thread.
+            return True
+        with suppress(OSError):
+            while self._near.recv(_CHUNK):
+                pass
+        return True
+
+    def close(self) -> None:
+        """Close both ends."""
+        self._near.close()
+        self.far_socket.close()
+
+
+class ActionLock:
+    """Lock for actions on a machine that wakes up the control when it is released."""
+
+    def __init__(self, lock: AbstractContextManager[object], wake: Callable[[], None]) -> None:
+        self._lock, self._ring = lock, wake
+        self.action_count = 0  # Number of times the lock was acquired.
+
+    def __enter__(self) -> None:
+        self._lock.__enter__()
+        self.action_count += 1
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._lock.__exit__(kind, error, trace)
+        self._ring()
+
+
+# --- Clocks: the real one, and one that tests and runs without a screen advance.
+
+
+class RealClock:
+    """Monotonic clock that starts at its creation, or at ``origin_s`` of the system's monotonic clock.
+
+    The system's clock is common to all processes, so two instances with the same zero agree.
+    """
+
+    def __init__(self, origin_s: float | None = None) -> None:
+        self.origin_s = time.monotonic() if origin_s is None else origin_s
+
+    def now(self) -> float:
+        """Return the seconds since the start of this clock."""
+        return time.monotonic() - self.origin_s
+
+    def sleep_until(self, t: float) -> None:
+        """Wait until ``t``; return at once if the time has passed."""
+        left = t - self.now()
+        if left > 0:
+            time.sleep(left)
+
+
+class ManualClock:
+    """Clock that advances only by calls, also by sleeping; thread-safe."""
+
+    def __init__(self, start: float = 0.0) -> None:
+        self._t = start
+        self._lock = threading.Lock()
+
+    def now(self) -> float:
+        """Return the present time in seconds."""
+        return self._t
+
+    def sleep_until(self, t: float) -> None:
+        """Advance to ``t`` at once, but never backward."""
+        with self._lock:
+            self._t = max(self._t, t)
+
+    def advance(self, dt: float) -> None:
+        """Advance by ``dt`` seconds."""
+        with self._lock:
+            self._t += dt
+
+
+# --- Openings of lost connections.
+
+
+T = TypeVar("T")
+
+
+class ConnectionAttempt(Generic[T]):
+    """Attempt to open a lost connection in a thread, or with ``synchronous`` in the calling thread."""
+
+    def __init__(self, open_connection: Callable[[], T], *, synchronous: bool = False) -> None:
+        self._open = open_connection
+        self._found: queue.SimpleQueue[T | DriverError] = queue.SimpleQueue()
+        if synchronous:
+            self._run()
+        else:
+            threading.Thread(target=self._run, name="reopening", daemon=True).start()
+
+    def take(self) -> T | None:
+        """Return the opened connection, or None while opening. Raises DriverError if opening failed."""
+        try:
+            found = self._found.get_nowait()
+        except queue.Empty:
+            return None
+        if isinstance(found, DriverError):
+            raise found
+        return found
+
+    def _run(self) -> None:
+        try:
+            self._found.put(self._open())
+        except DriverError as error:
+            self._found.put(error)
